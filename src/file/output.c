@@ -230,7 +230,7 @@ static nt_status open_sink(const nt_output *output, nt_sink *sink, nt_error *err
 			return nt_fail_memory(error);
 		return sink->dry ? NT_OK : open_temporary(sink, sink->path, error);
 	}
-	if (sink->role != NT_ROLE_INTERIM)
+	if (sink->role != NT_ROLE_STAGING)
 		return open_main(output, sink, error);
 	/* the same file as the main file, so it was checked with that */
 	sink->target = strdup(output->main->target);
@@ -246,7 +246,7 @@ static void append_sink(nt_output *output, nt_sink *sink)
 	output->last = sink;
 	if (sink->role == NT_ROLE_MAIN && !output->main)
 		output->main = sink;
-	if (sink->role == NT_ROLE_INTERIM)
+	if (sink->role == NT_ROLE_STAGING)
 		output->staging = sink;
 }
 
@@ -298,7 +298,7 @@ uint64_t nt_output_size(const nt_output *output)
 {
 	uint64_t size = 0;
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		size += sink->role == NT_ROLE_INTERIM ? 0 : sink->size;
+		size += sink->role == NT_ROLE_STAGING ? 0 : sink->size;
 	return size;
 }
 
@@ -306,7 +306,7 @@ uint64_t nt_output_copied(const nt_output *output)
 {
 	uint64_t size = 0;
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		size += sink->role == NT_ROLE_INTERIM ? 0 : sink->copied;
+		size += sink->role == NT_ROLE_STAGING ? 0 : sink->copied;
 	return size;
 }
 
@@ -381,7 +381,7 @@ static void note_written(const nt_output *output)
 {
 	struct stat status;
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		if (sink->target && sink->role != NT_ROLE_INTERIM && stat(present_path(sink), &status) == 0)
+		if (sink->target && sink->role != NT_ROLE_STAGING && stat(present_path(sink), &status) == 0)
 			nt_trace_written(nt_sink_is_sidecar(sink) ? sink->target : sink->path,
 				present_path(sink), &status);
 }

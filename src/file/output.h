@@ -20,7 +20,7 @@ typedef struct nt_sink nt_sink;
 
 typedef enum nt_role {
 	NT_ROLE_MAIN,    /* named by the user. Further ones stand for themselves and are placed before the first */
-	NT_ROLE_INTERIM, /* the first main file once more, with the staging names of sidecars */
+	NT_ROLE_STAGING, /* the first main file once more, with the staging names of sidecars */
 	NT_ROLE_BUFFER,  /* a sidecar of this main file: it may replace one that an earlier run made for it */
 	NT_ROLE_IMAGE    /* a sidecar that other documents may share: never replaced, never removed */
 } nt_role;
@@ -95,8 +95,8 @@ nt_status nt_output_claim(nt_output *output, const char *name, const char *diges
 nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error);
 
 /* Whether a settled sidecar takes the place of another file. Then the main file is to be written twice: as
- * NT_ROLE_INTERIM with staging names, and as NT_ROLE_MAIN. */
-bool nt_output_has_interim(const nt_output *output);
+ * NT_ROLE_STAGING with staging names, and as NT_ROLE_MAIN. */
+bool nt_output_has_staging(const nt_output *output);
 
 /* By which name in its folder the main file refers to a settled sidecar. */
 const char *nt_sink_name(const nt_sink *sink, bool staging);

@@ -384,7 +384,7 @@ nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
 	return status;
 }
 
-bool nt_output_has_interim(const nt_output *output)
+bool nt_output_has_staging(const nt_output *output)
 {
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
 		if (sink->staging || sink->supersedes)

@@ -75,18 +75,18 @@ nt_status nt_gltf_find_claims(nt_output *output, const char *path, nt_error *err
 
 /* ---- writing ---- */
 
-void nt_gltf_record_uri(nt_buffer *text, const nt_sink *sidecar, bool interim)
+void nt_gltf_record_uri(nt_buffer *text, const nt_sink *sidecar, bool staging)
 {
-	nt_uri_append_path(text, nt_sink_name(sidecar, interim));
+	nt_uri_append_path(text, nt_sink_name(sidecar, staging));
 }
 
-void nt_gltf_record_extras(nt_buffer *text, const nt_sink *sidecar, bool interim)
+void nt_gltf_record_extras(nt_buffer *text, const nt_sink *sidecar, bool staging)
 {
 	const char *digest = nt_sink_digest(sidecar), *before = nt_sink_digest_before(sidecar);
 	if (!digest)
 		return;
 	nt_buffer_format(text, "{\"%s\":\"%s\"", key_digest, digest);
-	if (interim && before)
+	if (staging && before)
 		nt_buffer_format(text, ",\"%s\":\"%s\"", key_before, before);
 	nt_buffer_text(text, "}");
 }
@@ -99,11 +99,11 @@ static void set_digest(nt_json *json, nt_json_value *extras, const char *key, co
 		nt_json_remove(json, extras, key);
 }
 
-nt_status nt_gltf_record(nt_json *json, nt_json_value *buffer, const nt_sink *sidecar, bool interim,
+nt_status nt_gltf_record(nt_json *json, nt_json_value *buffer, const nt_sink *sidecar, bool staging,
 	nt_error *error)
 {
 	nt_buffer uri = {0};
-	nt_gltf_record_uri(&uri, sidecar, interim);
+	nt_gltf_record_uri(&uri, sidecar, staging);
 	if (!uri.failed)
 		nt_json_set_string(json, nt_json_put(json, buffer, "uri"), uri.data, uri.size);
 	const bool failed = uri.failed;
@@ -122,7 +122,7 @@ nt_status nt_gltf_record(nt_json *json, nt_json_value *buffer, const nt_sink *si
 	if (type == NT_JSON_NONE)
 		nt_json_set_object(json, extras);
 	set_digest(json, extras, key_digest, digest);
-	set_digest(json, extras, key_before, interim ? nt_sink_digest_before(sidecar) : NULL);
+	set_digest(json, extras, key_before, staging ? nt_sink_digest_before(sidecar) : NULL);
 	return NT_OK;
 }
 

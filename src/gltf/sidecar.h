@@ -4,7 +4,7 @@
  * later run knows them for ours (output.h).
  *
  *   "extras": {"nmtan:xxh128": DIGEST}                             we wrote these bytes, for this document
- *   "extras": {"nmtan:xxh128": DIGEST, "nmtan:replaces": DIGEST}   under an interim name, to replace that
+ *   "extras": {"nmtan:xxh128": DIGEST, "nmtan:replaces": DIGEST}   under a staging name, to replace that
  */
 #ifndef NT_GLTF_SIDECAR_H
 #define NT_GLTF_SIDECAR_H
@@ -16,14 +16,14 @@
 nt_status nt_gltf_find_claims(nt_output *output, const char *path, nt_error *error);
 
 /* Gives a buffer the uri and the digest of a settled sidecar. Extras that are no object stay as they are. */
-nt_status nt_gltf_record(nt_json *json, nt_json_value *buffer, const nt_sink *sidecar, bool interim,
+nt_status nt_gltf_record(nt_json *json, nt_json_value *buffer, const nt_sink *sidecar, bool staging,
 	nt_error *error);
 
 /* Takes the digest away: the buffer is not, or no longer, a file that was written for this document. */
 void nt_gltf_forget_record(nt_json *json, nt_json_value *buffer);
 
 /* Appends the uri, and the text of the extras, which is empty where there is nothing to record. */
-void nt_gltf_record_uri(nt_buffer *text, const nt_sink *sidecar, bool interim);
-void nt_gltf_record_extras(nt_buffer *text, const nt_sink *sidecar, bool interim);
+void nt_gltf_record_uri(nt_buffer *text, const nt_sink *sidecar, bool staging);
+void nt_gltf_record_extras(nt_buffer *text, const nt_sink *sidecar, bool staging);
 
 #endif

@@ -404,14 +404,14 @@ static nt_status write_bin(const composition *c, nt_sink **bin, nt_error *error)
 	return status == NT_OK ? nt_output_settle(c->output, *bin, error) : status;
 }
 
-static nt_status write_document(const composition *c, const nt_sink *bin, bool interim, nt_sink *sink,
+static nt_status write_document(const composition *c, const nt_sink *bin, bool staging, nt_sink *sink,
 	nt_error *error)
 {
 	nt_buffer uri = {0}, extras = {0};
 	nt_model_text text = {0};
 	if (bin) {
-		nt_gltf_record_uri(&uri, bin, interim);
-		nt_gltf_record_extras(&extras, bin, interim);
+		nt_gltf_record_uri(&uri, bin, staging);
+		nt_gltf_record_extras(&extras, bin, staging);
 	}
 	nt_status status = uri.failed || extras.failed ? nt_fail_memory(error) : NT_OK;
 	const nt_model_file file = {uri.data, extras.data};
@@ -429,12 +429,12 @@ static nt_status write_document(const composition *c, const nt_sink *bin, bool i
 
 static nt_status write_with_bin(const composition *c, nt_sink *sink, nt_error *error)
 {
-	nt_sink *bin, *interim;
+	nt_sink *bin, *staging;
 	nt_status status = write_bin(c, &bin, error);
-	if (status == NT_OK && nt_output_has_interim(c->output)) {
-		status = nt_output_add(c->output, c->options.path, NT_ROLE_INTERIM, &interim, error);
+	if (status == NT_OK && nt_output_has_staging(c->output)) {
+		status = nt_output_add(c->output, c->options.path, NT_ROLE_STAGING, &staging, error);
 		if (status == NT_OK)
-			status = write_document(c, bin, true, interim, error);
+			status = write_document(c, bin, true, staging, error);
 	}
 	return status == NT_OK ? write_document(c, bin, false, sink, error) : status;
 }

@@ -371,7 +371,7 @@ static nt_status write_glb(const writing *c, const nt_buffer *text, uint64_t len
 }
 
 /* The document with the names that its sidecars have in it. */
-static nt_status write_document(writing *c, bool bin, bool interim, nt_sink *sink)
+static nt_status write_document(writing *c, bool bin, bool staging, nt_sink *sink)
 {
 	nt_buffer text = {0};
 	uint64_t length;
@@ -379,7 +379,7 @@ static nt_status write_document(writing *c, bool bin, bool interim, nt_sink *sin
 	for (uint32_t i = 0; !status && i < c->buffers.buffer_count; i++) {
 		nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), i);
 		if (c->sidecars[i])
-			status = nt_gltf_record(c->json, json, c->sidecars[i], interim, c->error);
+			status = nt_gltf_record(c->json, json, c->sidecars[i], staging, c->error);
 	}
 	if (!status)
 		status = nt_data_uris_text(&c->uris, &text, &length, c->error);
@@ -394,8 +394,8 @@ static nt_status write_main(writing *c, bool bin)
 {
 	nt_sink *sink;
 	nt_status status = NT_OK;
-	if (nt_output_has_interim(c->output.set)) {
-		status = nt_output_add(c->output.set, c->options->path, NT_ROLE_INTERIM, &sink, c->error);
+	if (nt_output_has_staging(c->output.set)) {
+		status = nt_output_add(c->output.set, c->options->path, NT_ROLE_STAGING, &sink, c->error);
 		if (!status)
 			status = write_document(c, bin, true, sink);
 	}

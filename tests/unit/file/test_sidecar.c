@@ -20,7 +20,7 @@ static nt_status claim_old(nt_output *output, const char *path, nt_error *error)
 	return nt_output_claim(output, "a.bin", SOMEBODY, NULL, error);
 }
 
-static nt_status claim_interim(nt_output *output, const char *path, nt_error *error)
+static nt_status claim_staging(nt_output *output, const char *path, nt_error *error)
 {
 	(void)path;
 	return nt_output_claim(output, "a.new-0123456789abcdef.bin", "0123456789abcdef0123456789abcdef",
@@ -118,10 +118,10 @@ static void a_long_name_is_cut_between_characters(void **state)
 	assert_string_equal(path + 234, "-" "da44bf30a9ce9c98" ".bin");
 }
 
-static void a_file_of_ours_is_replaced_by_way_of_an_interim_name(void **state)
+static void a_file_of_ours_is_replaced_by_way_of_a_staging_name(void **state)
 {
 	(void)state;
-	nt_status (*const claims[])(nt_output *, const char *, nt_error *) = {claim_old, claim_interim};
+	nt_status (*const claims[])(nt_output *, const char *, nt_error *) = {claim_old, claim_staging};
 	for (size_t i = 0; i < 2; i++) {
 		const nt_output_options options = {.find_claims = claims[i]};
 		nt_sink *main;
@@ -129,7 +129,7 @@ static void a_file_of_ours_is_replaced_by_way_of_an_interim_name(void **state)
 		put_text_file("a.bin", "somebody\n");
 		nt_output *output = start(&options, &main);
 		nt_sink *sink = sidecar(output, "a.bin", NT_ROLE_BUFFER, "new");
-		assert_true(nt_output_has_interim(output));
+		assert_true(nt_output_has_staging(output));
 		assert_string_equal(nt_sink_name(sink, false), "a.bin");
 		assert_memory_equal(nt_sink_name(sink, true), "a.new-", 6);
 		assert_string_equal(nt_sink_digest_before(sink), SOMEBODY);
@@ -146,7 +146,7 @@ static void a_file_that_is_not_provably_ours_is_not_replaced(void **state)
 	put_text_file("a.bin", "somebody\n");
 	nt_output *output = start(&claimed, &main);
 	sidecar(output, "a.bin", NT_ROLE_BUFFER, "new");
-	assert_false(nt_output_has_interim(output));
+	assert_false(nt_output_has_staging(output));
 	nt_output_abort(output);
 	/* one that says nothing; an image; a file that was changed; one that the input refers to; in place */
 	put_text_file("a.gltf", "old");
@@ -161,7 +161,7 @@ static void a_file_that_is_not_provably_ours_is_not_replaced(void **state)
 		if (i == 3)
 			assert_int_equal(nt_output_protect(output, in_folder("a.bin"), NULL, &error), NT_OK);
 		nt_sink *sink = sidecar(output, "a.bin", i == 1 ? NT_ROLE_IMAGE : NT_ROLE_BUFFER, "new");
-		assert_false(nt_output_has_interim(output));
+		assert_false(nt_output_has_staging(output));
 		assert_string_not_equal(nt_sink_name(sink, false), "a.bin");
 		nt_output_abort(output);
 	}
@@ -227,7 +227,7 @@ int main(void)
 		CASE(equal_bytes_are_used),
 		CASE(another_file_stays_and_the_name_is_of_the_bytes),
 		CASE(a_long_name_is_cut_between_characters),
-		CASE(a_file_of_ours_is_replaced_by_way_of_an_interim_name),
+		CASE(a_file_of_ours_is_replaced_by_way_of_a_staging_name),
 		CASE(a_file_that_is_not_provably_ours_is_not_replaced),
 		CASE(a_name_that_is_taken_meanwhile_is_not_replaced),
 		CASE(every_failed_allocation_is_said),
