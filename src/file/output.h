@@ -49,9 +49,9 @@ typedef struct nt_output_options {
 	const char *in_place; /* this file may be replaced by a main file, and keeps its mode, owner and
 	                         attributes; NULL: none */
 	nt_output_result *result; /* NULL: not wanted */
-	/* Calls nt_output_claim() for each ownership record in the main file at `path`, which is about to be replaced;
-	 * NULL: there are none. Returns NT_OK, also when the file cannot be read, or NT_ERROR_MEMORY. */
-	nt_status (*find_claims)(nt_output *output, const char *path, nt_error *error);
+	/* Calls nt_output_add_ownership() for each ownership record in the main file at `path`, which is about to
+	 * be replaced; NULL: there are none. Returns NT_OK, also when the file cannot be read, or NT_ERROR_MEMORY. */
+	nt_status (*find_ownership)(nt_output *output, const char *path, nt_error *error);
 	/* Called by nt_output_commit() when every file is complete, noted (trace.h) and about to take its name. Then
 	 * nothing takes a name if this fails. NULL: nobody wants to know. */
 	nt_status (*placing)(void *user, nt_error *error);
@@ -88,7 +88,7 @@ void nt_output_leave(nt_output *output);
 
 /* Adds an ownership record: the main file that is about to be replaced refers to a sidecar `name` in its folder, which
  * we made with this digest. `before`: digest of the file that an interrupted run was replacing; NULL: none. */
-nt_status nt_output_claim(nt_output *output, const char *name, const char *digest, const char *before,
+nt_status nt_output_add_ownership(nt_output *output, const char *name, const char *digest, const char *before,
 	nt_error *error);
 
 /* Ends the writing of a sidecar and chooses its name. */

@@ -106,7 +106,7 @@ const char *nt_sink_name(const nt_sink *sink, bool staging)
 
 /* ---- whose file ---- */
 
-nt_status nt_output_claim(nt_output *output, const char *name, const char *digest, const char *before, nt_error *error)
+nt_status nt_output_add_ownership(nt_output *output, const char *name, const char *digest, const char *before, nt_error *error)
 {
 	if (!nt_grow((void **)&output->ownership, &output->ownership_capacity, output->ownership_count + 1,
 		sizeof *output->ownership))
@@ -119,13 +119,13 @@ nt_status nt_output_claim(nt_output *output, const char *name, const char *diges
 /* Asks the previous main file, once. */
 static nt_status know_ownership(nt_output *output, nt_error *error)
 {
-	if (output->ownership_known || !output->options.find_claims || !output->main || !output->main->target)
+	if (output->ownership_known || !output->options.find_ownership || !output->main || !output->main->target)
 		return NT_OK;
 	output->ownership_known = true;
 	struct stat status;
 	if (stat(output->main->path, &status) != 0 || !S_ISREG(status.st_mode))
 		return NT_OK;
-	return output->options.find_claims(output, output->main->path, error);
+	return output->options.find_ownership(output, output->main->path, error);
 }
 
 /* Whether the previous main file says that the file `name` is ours if it has this digest; for any digest where that is

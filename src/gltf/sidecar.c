@@ -22,7 +22,7 @@ static const char *digest_at(const nt_json_value *buffer, const char *key)
 	return text && length == 32 && strspn(text, "0123456789abcdef") == 32 ? text : NULL;
 }
 
-static nt_status claim_buffer(nt_output *output, const nt_json_value *buffer, nt_error *error)
+static nt_status add_ownership_of(nt_output *output, const nt_json_value *buffer, nt_error *error)
 {
 	size_t length;
 	const char *uri = nt_json_get_string(nt_json_find(buffer, "uri"), &length);
@@ -32,7 +32,7 @@ static nt_status claim_buffer(nt_output *output, const nt_json_value *buffer, nt
 	nt_buffer name = {0};
 	nt_status status = NT_OK;
 	if (nt_uri_append_name(&name, uri, length))
-		status = nt_output_claim(output, name.data, digest, digest_at(buffer, key_before), error);
+		status = nt_output_add_ownership(output, name.data, digest, digest_at(buffer, key_before), error);
 	else if (name.failed)
 		status = nt_fail_memory(error);
 	nt_buffer_free(&name);
@@ -54,7 +54,7 @@ static nt_status parse(const nt_file *file, nt_json **json, nt_error *error)
 	return status;
 }
 
-nt_status nt_gltf_find_claims(nt_output *output, const char *path, nt_error *error)
+nt_status nt_gltf_find_ownership(nt_output *output, const char *path, nt_error *error)
 {
 	nt_file file;
 	nt_json *json = NULL;
@@ -68,7 +68,7 @@ nt_status nt_gltf_find_claims(nt_output *output, const char *path, nt_error *err
 		return status == NT_ERROR_MEMORY ? nt_fail_memory(error) : NT_OK;
 	const nt_json_value *buffers = nt_json_find(nt_json_root(json), "buffers");
 	for (size_t i = 0; !status && i < nt_json_count(buffers); i++)
-		status = claim_buffer(output, nt_json_at(buffers, i), error);
+		status = add_ownership_of(output, nt_json_at(buffers, i), error);
 	nt_json_free(json);
 	return status;
 }

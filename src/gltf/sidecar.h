@@ -12,8 +12,8 @@
 #include "file/output.h"
 #include "json/json.h"
 
-/* For nt_output_options.find_claims. */
-nt_status nt_gltf_find_claims(nt_output *output, const char *path, nt_error *error);
+/* For nt_output_options.find_ownership. */
+nt_status nt_gltf_find_ownership(nt_output *output, const char *path, nt_error *error);
 
 /* Gives a buffer the uri and the digest of a settled sidecar. Extras that are no object stay as they are. */
 nt_status nt_gltf_record(nt_json *json, nt_json_value *buffer, const nt_sink *sidecar, bool staging,

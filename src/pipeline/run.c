@@ -108,7 +108,7 @@ static nt_output_options output_options_of(run *r)
 	return (nt_output_options){.no_clobber = s->no_clobber, .sync = s->sync, .equal = s->equal,
 		.dry_run = s->dry_run || s->check, .threads = s->threads,
 		.in_place = s->in_place ? r->input_path : NULL, .result = &r->result,
-		.find_claims = r->writer->format != NT_FORMAT_PLY ? nt_gltf_find_claims : NULL,
+		.find_ownership = r->writer->format != NT_FORMAT_PLY ? nt_gltf_find_ownership : NULL,
 		.placing = tell_placing, .placing_user = r};
 }
 

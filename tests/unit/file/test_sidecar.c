@@ -14,16 +14,16 @@
 
 #define SOMEBODY "da44bf30a9ce9c985c29cf2b20168f87"
 
-static nt_status claim_old(nt_output *output, const char *path, nt_error *error)
+static nt_status own_old(nt_output *output, const char *path, nt_error *error)
 {
 	(void)path;
-	return nt_output_claim(output, "a.bin", SOMEBODY, NULL, error);
+	return nt_output_add_ownership(output, "a.bin", SOMEBODY, NULL, error);
 }
 
-static nt_status claim_staging(nt_output *output, const char *path, nt_error *error)
+static nt_status own_staging(nt_output *output, const char *path, nt_error *error)
 {
 	(void)path;
-	return nt_output_claim(output, "a.new-0123456789abcdef.bin", "0123456789abcdef0123456789abcdef",
+	return nt_output_add_ownership(output, "a.new-0123456789abcdef.bin", "0123456789abcdef0123456789abcdef",
 		SOMEBODY, error);
 }
 
@@ -121,9 +121,9 @@ static void a_long_name_is_cut_between_characters(void **state)
 static void a_file_of_ours_is_replaced_by_way_of_a_staging_name(void **state)
 {
 	(void)state;
-	nt_status (*const claims[])(nt_output *, const char *, nt_error *) = {claim_old, claim_staging};
+	nt_status (*const records[])(nt_output *, const char *, nt_error *) = {own_old, own_staging};
 	for (size_t i = 0; i < 2; i++) {
-		const nt_output_options options = {.find_claims = claims[i]};
+		const nt_output_options options = {.find_ownership = records[i]};
 		nt_sink *main;
 		put_text_file("a.gltf", "old");
 		put_text_file("a.bin", "somebody\n");
@@ -141,7 +141,7 @@ static void a_file_that_is_not_provably_ours_is_not_replaced(void **state)
 {
 	(void)state;
 	nt_sink *main;
-	const nt_output_options claimed = {.find_claims = claim_old};
+	const nt_output_options claimed = {.find_ownership = own_old};
 	/* no main file that could say so */
 	put_text_file("a.bin", "somebody\n");
 	nt_output *output = start(&claimed, &main);
@@ -152,7 +152,7 @@ static void a_file_that_is_not_provably_ours_is_not_replaced(void **state)
 	put_text_file("a.gltf", "old");
 	static char path[512];
 	snprintf(path, sizeof path, "%s", in_folder("a.gltf"));
-	const nt_output_options silent = {0}, in_place = {.find_claims = claim_old, .in_place = path};
+	const nt_output_options silent = {0}, in_place = {.find_ownership = own_old, .in_place = path};
 	const nt_output_options *const all[] = {&silent, &claimed, &claimed, &claimed, &in_place};
 	for (size_t i = 0; i < 5; i++) {
 		nt_error error;
@@ -197,7 +197,7 @@ static void a_name_that_is_taken_meanwhile_is_not_replaced(void **state)
 static void every_failed_allocation_is_said(void **state)
 {
 	(void)state;
-	const nt_output_options options = {.find_claims = claim_old};
+	const nt_output_options options = {.find_ownership = own_old};
 	bool failed = true;
 	put_text_file("a.gltf", "old");
 	for (size_t n = 0; failed; n++) {
