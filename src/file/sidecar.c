@@ -106,7 +106,8 @@ const char *nt_sink_name(const nt_sink *sink, bool staging)
 
 /* ---- whose file ---- */
 
-nt_status nt_output_add_ownership(nt_output *output, const char *name, const char *digest, const char *before, nt_error *error)
+nt_status nt_output_add_ownership(nt_output *output, const char *name, const char *digest, const char *before,
+	nt_error *error)
 {
 	if (!nt_grow((void **)&output->ownership, &output->ownership_capacity, output->ownership_count + 1,
 		sizeof *output->ownership))
