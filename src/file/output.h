@@ -121,11 +121,10 @@ nt_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error 
 nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size, nt_error *error);
 
 /*
- * Sets the next `size` bytes of a file aside. They are written to *part, while another thread may write to the sink
- * what comes behind them. *part is NULL where that cannot be: the file is no new one, or has a digest. Then all comes
- * in its order.
+ * Reserves the next `size` bytes of a file: they are written to *part, while another thread writes what comes behind
+ * them to the sink. If the file is not new, or has a digest, *part is NULL, and all has to be written in order.
  */
-nt_status nt_sink_set_aside(nt_sink *sink, uint64_t size, nt_sink **part, nt_error *error);
+nt_status nt_sink_reserve_range(nt_sink *sink, uint64_t size, nt_sink **part, nt_error *error);
 
 /* Ends a part, of which all bytes were written or some in vain. */
 nt_status nt_sink_end_part(nt_sink *part, nt_error *error);
@@ -138,7 +137,7 @@ nt_status nt_output_written(nt_output *output, const char *path, const char **te
 /* Adds to nt_output_result.note, if that is wanted; begins with "; " or goes on. */
 void nt_output_note(nt_output *output, const char *format, ...) NT_PRINTF(2, 3);
 
-/* Bytes written to all files of the set so far, the staging one aside. */
+/* Bytes written to all files of the set so far, the staging one not counted. */
 uint64_t nt_output_size(const nt_output *output);
 
 /* Bytes of them that came from an input file as they are (nt_sink_copy). */

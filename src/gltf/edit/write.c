@@ -362,7 +362,7 @@ static nt_status write_glb(const writing *c, const nt_buffer *text, uint64_t len
 		.size = bin ? c->buffers.buffers[0].length : raw ? document->glb.bin.size : 0};
 	nt_status status = nt_glb_begin(sink, length, bin || raw, p.size, other_bytes(document), c->error);
 	if (!status && length >= APART_BYTES && !c->uris.count && nt_thread_count(c->options->threads) > 1)
-		status = nt_sink_set_aside(sink, length, &p.json, c->error);
+		status = nt_sink_reserve_range(sink, length, &p.json, c->error);
 	if (!status && p.json)
 		return write_apart(&p);
 	if (!status)

@@ -143,8 +143,8 @@ static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
 	free(bytes);
 }
 
-/* "head", what is set aside, and "tail" with a copy behind it; the order of writing is another one. */
-static void output_has_what_was_set_aside_where_it_belongs(void **state)
+/* "head", what is reserved, and "tail" with a copy behind it; the order of writing is another one. */
+static void output_has_a_reserved_range_where_it_belongs(void **state)
 {
 	(void)state;
 	enum { SIZE = 3000000, COPIED = 2000000 };
@@ -158,28 +158,28 @@ static void output_has_what_was_set_aside_where_it_belongs(void **state)
 	assert_int_equal(nt_file_open(&file, in_folder("in"), &error), NT_OK);
 	/* from 0 on the pages of both files meet behind what is there by then, from 1 on they do not */
 	for (size_t from = 0; from < 2; from++) {
-		const size_t aside = SIZE - 8 - (4096 - (4 + 4 + SIZE - 8) % 4096) % 4096;
+		const size_t reserved = SIZE - 8 - (4096 - (4 + 4 + SIZE - 8) % 4096) % 4096;
 		nt_output *output = start(NULL);
 		nt_sink *sink = add(output, in_folder("out"), NT_ROLE_MAIN), *part;
 		assert_int_equal(nt_sink_write(sink, "head", 4, &error), NT_OK);
-		assert_int_equal(nt_sink_set_aside(sink, aside, &part, &error), NT_OK);
+		assert_int_equal(nt_sink_reserve_range(sink, reserved, &part, &error), NT_OK);
 		assert_non_null(part);
 		assert_int_equal(nt_sink_write(sink, "tail", 4, &error), NT_OK);
 		assert_int_equal(nt_sink_copy(sink, &file, from, COPIED, &error), NT_OK);
-		for (size_t done = 0, step = 0; done < aside; done += step) { /* 1, 3 ... 2^21 - 1 */
-			step = 2 * step + 1 < aside - done ? 2 * step + 1 : aside - done;
+		for (size_t done = 0, step = 0; done < reserved; done += step) { /* 1, 3 ... 2^21 - 1 */
+			step = 2 * step + 1 < reserved - done ? 2 * step + 1 : reserved - done;
 			assert_int_equal(nt_sink_write(part, bytes + done, step, &error), NT_OK);
 		}
 		assert_int_equal(nt_sink_end_part(part, &error), NT_OK);
-		assert_int_equal(nt_output_size(output), 8 + aside + COPIED);
+		assert_int_equal(nt_output_size(output), 8 + reserved + COPIED);
 		assert_int_equal(nt_output_copied(output), COPIED);
 		assert_int_equal(nt_output_commit(output, &error), NT_OK);
 		assert_int_equal(nt_file_open(&written, in_folder("out"), &error), NT_OK);
-		assert_int_equal(written.size, 8 + aside + COPIED);
+		assert_int_equal(written.size, 8 + reserved + COPIED);
 		assert_memory_equal(written.data, "head", 4);
-		assert_int_equal(memcmp(written.data + 4, bytes, aside), 0);
-		assert_memory_equal(written.data + 4 + aside, "tail", 4);
-		assert_int_equal(memcmp(written.data + 8 + aside, bytes + from, COPIED), 0);
+		assert_int_equal(memcmp(written.data + 4, bytes, reserved), 0);
+		assert_memory_equal(written.data + 4 + reserved, "tail", 4);
+		assert_int_equal(memcmp(written.data + 8 + reserved, bytes + from, COPIED), 0);
 		nt_file_close(&written);
 	}
 	nt_file_close(&file);
@@ -187,19 +187,19 @@ static void output_has_what_was_set_aside_where_it_belongs(void **state)
 }
 
 /* What is no file of its own, or has a digest, is written in its order. */
-static void output_sets_nothing_aside_where_bytes_come_in_their_order(void **state)
+static void output_reserves_nothing_where_bytes_come_in_their_order(void **state)
 {
 	(void)state;
 	nt_error error;
 	nt_sink *part;
 	nt_output *output = start(NULL);
-	assert_int_equal(nt_sink_set_aside(add(output, "/dev/null", NT_ROLE_MAIN), 4, &part, &error), NT_OK);
+	assert_int_equal(nt_sink_reserve_range(add(output, "/dev/null", NT_ROLE_MAIN), 4, &part, &error), NT_OK);
 	assert_null(part);
-	assert_int_equal(nt_sink_set_aside(add(output, in_folder("out.bin"), NT_ROLE_BUFFER), 4, &part, &error), NT_OK);
+	assert_int_equal(nt_sink_reserve_range(add(output, in_folder("out.bin"), NT_ROLE_BUFFER), 4, &part, &error), NT_OK);
 	assert_null(part);
 	nt_output_abort(output);
 	output = start(&(nt_output_options){.dry_run = true});
-	assert_int_equal(nt_sink_set_aside(add(output, in_folder("out"), NT_ROLE_MAIN), 4, &part, &error), NT_OK);
+	assert_int_equal(nt_sink_reserve_range(add(output, in_folder("out"), NT_ROLE_MAIN), 4, &part, &error), NT_OK);
 	assert_null(part);
 	nt_output_abort(output);
 }
@@ -525,8 +525,8 @@ int main(void)
 		CASE(output_appears_at_commit_only),
 		CASE(output_abort_leaves_nothing),
 		CASE(output_bytes_are_the_same_for_small_and_large_writes),
-		CASE(output_has_what_was_set_aside_where_it_belongs),
-		CASE(output_sets_nothing_aside_where_bytes_come_in_their_order),
+		CASE(output_has_a_reserved_range_where_it_belongs),
+		CASE(output_reserves_nothing_where_bytes_come_in_their_order),
 		CASE(output_has_its_bytes_whatever_was_announced),
 		CASE(output_can_be_read_back_before_it_has_its_name),
 		CASE(output_that_is_an_input_is_refused_by_name),
