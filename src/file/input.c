@@ -158,7 +158,7 @@ void nt_file_close(nt_file *file)
 	*file = (nt_file){.data = no_bytes, .fd = -1};
 }
 
-void nt_file_forget(const nt_file *file, const void *bytes, size_t size)
+void nt_file_release_pages(const nt_file *file, const void *bytes, size_t size)
 {
 	const uintptr_t map = (uintptr_t)file->data, at = (uintptr_t)bytes;
 	if (!file->mapped || at < map || at - map > file->size || size > file->size - (at - map))

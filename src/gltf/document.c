@@ -189,12 +189,12 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 static void forget_in(const nt_file *file, const void *bytes, size_t size)
 {
 	if (bytes)
-		nt_file_forget(file, bytes, size);
+		nt_file_release_pages(file, bytes, size);
 	else
 		nt_file_release(file, 0, file->size);
 }
 
-void nt_gltf_forget(const nt_scene *scene, const void *bytes, size_t size)
+void nt_gltf_release_pages(const nt_scene *scene, const void *bytes, size_t size)
 {
 	enum { WORTH_BYTES = 256 * 1024 }; /* a system call, and a look at all buffers */
 	const nt_gltf *document = scene->source;

@@ -556,9 +556,8 @@ const nt_texture_source *nt_textures_source(const nt_textures *t, uint32_t numbe
 	return &t->sources[t->requests[number].how.channels[channel].source]->file;
 }
 
-void nt_textures_forget(const nt_textures *t, const nt_texture *texture)
+void nt_texture_release_pages(const nt_texture *texture)
 {
-	(void)t;
 	if (texture->mapped)
 		madvise((void *)(uintptr_t)texture->bytes, texture->size, MADV_DONTNEED);
 }

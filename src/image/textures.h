@@ -102,8 +102,8 @@ size_t nt_textures_count(const nt_textures *textures);
 const nt_texture *nt_textures_at(const nt_textures *textures, size_t result);
 size_t nt_textures_result(const nt_textures *textures, uint32_t request);
 
-/* Says that the bytes of a result will hardly be read again. */
-void nt_textures_forget(const nt_textures *textures, const nt_texture *texture);
+/* Releases the pages of a result that is in a file; they come back when they are read. */
+void nt_texture_release_pages(const nt_texture *texture);
 
 /* What a request itself came to: what was lost, what its alpha does. */
 const nt_texture *nt_textures_of(const nt_textures *textures, uint32_t request);

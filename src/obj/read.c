@@ -223,7 +223,7 @@ static void parse_chunks(void *context, size_t begin, size_t end, unsigned slot)
 			atomic_store(&job->failed, true);
 		/* text is half of what a conversion would hold, and only names are read again */
 		if (file->scene->file)
-			nt_file_forget(file->scene->file, chunk->begin, (size_t)(chunk->end - chunk->begin));
+			nt_file_release_pages(file->scene->file, chunk->begin, (size_t)(chunk->end - chunk->begin));
 	}
 	obj_chunk_free(&work);
 }

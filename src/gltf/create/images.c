@@ -127,7 +127,7 @@ static nt_status open_image(const nt_texture *image, nt_file *file, nt_error *er
 static void close_image(const nt_image_set *set, const nt_texture *image, nt_file *file)
 {
 	nt_file_close(file);
-	nt_textures_forget(set->options.textures, image);
+	nt_texture_release_pages(image);
 }
 
 static nt_status write_file(nt_image_set *set, image_entry *entry, nt_output *output, nt_error *error)

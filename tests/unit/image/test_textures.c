@@ -100,7 +100,7 @@ static void large_results_are_in_a_file(void **state)
 		const nt_texture *texture = result(t, number);
 		assert_true(texture->size > 256 * 1024);
 		assert_int_equal(texture->mapped, i == 0);
-		nt_textures_forget(t, texture);
+		nt_texture_release_pages(texture);
 		nt_pixels pixels;
 		assert_int_equal(nt_image_decode(texture->bytes, texture->size, &pixels, &error), NT_OK);
 		assert_memory_equal(pixels.samples, tga + 18, SIDE * SIDE);
