@@ -25,7 +25,7 @@ enum {
 typedef struct slot {
 	nt_arena kept;      /* until the scene takes it over */
 	nt_arena temporary; /* the same of temporary meshes */
-	nt_arena passing;   /* of the mesh that it is about to solve */
+	nt_arena per_mesh;  /* temporary arena: of the mesh that it is about to solve */
 } slot;
 
 /* One window. */
@@ -112,7 +112,7 @@ static void load_small(void *context, size_t item, unsigned number)
 	slot *own = &w->slots[number];
 	const bool solved = w->solves && mesh->plan.plain && 3 * mesh->face_count < NT_LEAST_ALONE_CORNERS;
 	const nt_mesh before = *mesh;
-	nt_arena *arena = solved ? &own->passing : &own->kept;
+	nt_arena *arena = solved ? &own->per_mesh : &own->kept;
 	nt_scene part = w->scene;
 	part.arena = *arena;
 	part.temporary = own->temporary;
@@ -126,7 +126,7 @@ static void load_small(void *context, size_t item, unsigned number)
 	if (!status && solved)
 		drop_geometry(mesh);
 	if (solved)
-		nt_arena_clear(&own->passing);
+		nt_arena_clear(&own->per_mesh);
 	w->needed[item] = status != NT_OK;
 	if (status)
 		*mesh = before;
@@ -161,7 +161,7 @@ static nt_status load_all_small(window *w)
 	for (unsigned i = 0; w->slots && i < threads; i++) {
 		nt_arena_join(&w->scene.arena, &w->slots[i].kept);
 		nt_arena_join(&w->scene.temporary, &w->slots[i].temporary);
-		nt_arena_free(&w->slots[i].passing);
+		nt_arena_free(&w->slots[i].per_mesh);
 	}
 	free(w->slots);
 	t->reader->unshare(&w->scene);
