@@ -235,7 +235,8 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	scene->forget = nt_gltf_release_pages;
 	scene->format = document->is_glb ? NT_FORMAT_GLB : NT_FORMAT_GLTF;
 	/* the JSON has a copy of its text */
-	nt_gltf_release_pages(scene, scene->bytes, document->is_glb ? document->glb.json.offset + document->glb.json.size :
+	nt_gltf_release_pages(scene, scene->bytes,
+		document->is_glb ? document->glb.json.offset + document->glb.json.size :
 		scene->byte_count);
 
 	/* The meshes, and which of them a scene shows. */

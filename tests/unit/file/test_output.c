@@ -195,7 +195,8 @@ static void output_reserves_nothing_where_bytes_come_in_their_order(void **state
 	nt_output *output = start(NULL);
 	assert_int_equal(nt_sink_reserve_range(add(output, "/dev/null", NT_ROLE_MAIN), 4, &part, &error), NT_OK);
 	assert_null(part);
-	assert_int_equal(nt_sink_reserve_range(add(output, in_folder("out.bin"), NT_ROLE_BUFFER), 4, &part, &error), NT_OK);
+	nt_sink *buffer = add(output, in_folder("out.bin"), NT_ROLE_BUFFER);
+	assert_int_equal(nt_sink_reserve_range(buffer, 4, &part, &error), NT_OK);
 	assert_null(part);
 	nt_output_abort(output);
 	output = start(&(nt_output_options){.dry_run = true});
