@@ -126,7 +126,7 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 	if (!status)
 		status = check_attributes(&r->mesh);
 	if (!status)
-		status = nt_check_faces(&r->mesh, r->options.threads, &corner_count);
+		status = nt_check_faces(&r->mesh, &corner_count);
 	if (status)
 		return status;
 	nt_scratch *scratch = r->options.workspace

@@ -5,10 +5,9 @@
  */
 #include "base/largest.h"
 
-uint32_t nt_largest(const uint32_t *values, size_t count, unsigned threads)
+uint32_t nt_largest(const uint32_t *values, size_t count)
 {
 	enum { LANES = 16 };
-	(void)threads;
 	uint32_t lanes[LANES] = {0}, largest = 0;
 	size_t i = 0;
 	for (; count - i >= LANES; i += LANES)

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The largest of values[0..count); 0 where there are none. threads: 0 is one per processor. */
-uint32_t nt_largest(const uint32_t *values, size_t count, unsigned threads);
+/* The largest of values[0..count); 0 where there are none. */
+uint32_t nt_largest(const uint32_t *values, size_t count);
 
 #endif

@@ -454,7 +454,7 @@ static void widen(const unsigned char *elements, uint32_t type, uint32_t stride,
 }
 
 nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
-	unsigned threads, nt_arena *arena, uint32_t **indices, nt_error *error)
+	nt_arena *arena, uint32_t **indices, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER];
 	nt_gltf_pointer(pointer, "accessors", accessor->index);
@@ -491,7 +491,7 @@ nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, s
 			out[replaced[i]] = read_unsigned(values + i * accessor->element_bytes, type);
 	}
 	const uint32_t reserved = type == NT_GLTF_UBYTE ? 0xFF : type == NT_GLTF_USHORT ? 0xFFFF : NT_NONE;
-	const uint32_t most = nt_largest(out, count, threads);
+	const uint32_t most = nt_largest(out, count);
 	const bool sound = count == 0 || (most < vertex_count && most < reserved);
 	for (size_t i = 0; !sound && i < count; i++)
 		if (out[i] == reserved && nt_gltf_uses(document, "KHR_mesh_primitive_restart"))

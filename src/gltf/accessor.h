@@ -56,7 +56,7 @@ nt_status nt_gltf_shared_floats(nt_gltf *document, const nt_gltf_accessor *acces
 /* An accessor of unsigned scalars as 32-bit indices, each below `vertex_count` and not the value that
  * is reserved for restarts. Points into the input where it already is that. */
 nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
-	unsigned threads, nt_arena *arena, uint32_t **indices, nt_error *error);
+	nt_arena *arena, uint32_t **indices, nt_error *error);
 
 /* Size of a component; 0 for an unknown type. */
 uint32_t nt_gltf_component_bytes(uint64_t component_type);

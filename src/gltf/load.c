@@ -390,7 +390,7 @@ static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, 
 }
 
 /* The corners that a primitive lists; *count is untouched where it lists none. */
-static nt_status load_chain(nt_gltf *document, const nt_mesh *mesh, const nt_json_value *primitive, unsigned threads,
+static nt_status load_chain(nt_gltf *document, const nt_mesh *mesh, const nt_json_value *primitive,
 	nt_arena *arena, uint32_t **chain, uint64_t *count, nt_error *error)
 {
 	uint64_t index;
@@ -404,18 +404,18 @@ static nt_status load_chain(nt_gltf *document, const nt_mesh *mesh, const nt_jso
 	nt_gltf_accessor accessor;
 	status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
 	if (!status)
-		status = nt_gltf_indices(document, &accessor, mesh->vertex_count, threads, arena, chain, error);
+		status = nt_gltf_indices(document, &accessor, mesh->vertex_count, arena, chain, error);
 	*count = accessor.count;
 	return status;
 }
 
 /* Faces, of compact vertices where the mesh shares them. */
 static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const nt_json_value *primitive,
-	const inputs *in, unsigned threads, nt_compact *view, nt_error *error)
+	const inputs *in, nt_compact *view, nt_error *error)
 {
 	uint64_t mode = NT_GLTF_TRIANGLES, count = mesh->vertex_count;
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
-	nt_status status = load_chain(document, mesh, primitive, threads, nt_mesh_arena(scene, mesh), &mesh->indices,
+	nt_status status = load_chain(document, mesh, primitive, nt_mesh_arena(scene, mesh), &mesh->indices,
 		&count, error);
 	if (!status)
 		status = make_compact(scene, mesh, in, (size_t)count, view, error);
@@ -483,7 +483,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	if (!status)
 		status = load_vertices(scene, mesh, &in, error);
 	if (!status)
-		status = load_faces(scene, document, mesh, primitive, &in, options->threads, &view, error);
+		status = load_faces(scene, document, mesh, primitive, &in, &view, error);
 	if (!status && mesh->texcoords)
 		status = flip_texcoords(scene, mesh, options->threads, error);
 	if (!status && mesh->plan.quantized)

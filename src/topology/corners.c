@@ -23,7 +23,7 @@ static nmtan_status count_corners(const nmtan_mesh *mesh, size_t *corner_count)
 	return wrong ? NMTAN_ERROR_FACE_SIZE : NMTAN_OK;
 }
 
-nmtan_status nt_check_faces(const nmtan_mesh *mesh, unsigned threads, size_t *corner_count)
+nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count)
 {
 	if (mesh->face_count > NMTAN_MAX_FACES || mesh->vertex_count > UINT32_MAX)
 		return NMTAN_ERROR_TOO_LARGE;
@@ -32,7 +32,7 @@ nmtan_status nt_check_faces(const nmtan_mesh *mesh, unsigned threads, size_t *co
 		return status;
 	if (!mesh->indices)
 		return *corner_count > mesh->vertex_count ? NMTAN_ERROR_INDEX : NMTAN_OK;
-	const uint32_t most = nt_largest(mesh->indices, *corner_count, threads);
+	const uint32_t most = nt_largest(mesh->indices, *corner_count);
 	return *corner_count > 0 && most >= mesh->vertex_count ? NMTAN_ERROR_INDEX : NMTAN_OK;
 }
 

@@ -117,7 +117,7 @@ static inline unsigned nt_face_triangles(const nmtan_mesh *mesh, size_t face, si
 
 /* Checks that face sizes are 3 or 4 and indices below vertex_count, and counts the corners. Returns
  * NMTAN_OK, NMTAN_ERROR_TOO_LARGE, NMTAN_ERROR_FACE_SIZE or NMTAN_ERROR_INDEX. */
-nmtan_status nt_check_faces(const nmtan_mesh *mesh, unsigned threads, size_t *corner_count);
+nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count);
 
 /*
  * Welds corners. Strides must be filled in and indices checked.

@@ -229,7 +229,7 @@ nmtan_status nmtan_split(const nmtan_mesh *mesh, const float *tangents, const nm
 	if (!mesh || !tangents || !output || !read_arguments(&a, mesh, options, output))
 		return NMTAN_ERROR_ARGUMENT;
 	size_t corner_count;
-	nmtan_status status = nt_check_faces(&a.mesh, a.options.threads, &corner_count);
+	nmtan_status status = nt_check_faces(&a.mesh, &corner_count);
 	if (status)
 		return status;
 

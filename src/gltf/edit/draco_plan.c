@@ -60,7 +60,7 @@ static nt_status find_faces(planning *f, const nt_gltf_recoding *r, nt_mesh *mes
 	if (nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &index)) {
 		status = nt_gltf_get_accessor(r->document, index, "", &accessor, error);
 		if (!status)
-			status = nt_gltf_indices(r->document, &accessor, mesh->vertex_count, f->options.threads,
+			status = nt_gltf_indices(r->document, &accessor, mesh->vertex_count,
 				&f->of_pool, &indices, error);
 	}
 	mesh->indices = indices;

@@ -40,7 +40,7 @@ static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices,
 	out->count = mesh->corner_count + tail_count;
 	/* those of few vertices fit, whatever they are */
 	if (nt_gltf_index_type(most, least) != least) {
-		uint32_t highest = nt_largest(indices, mesh->corner_count, 1);
+		uint32_t highest = nt_largest(indices, mesh->corner_count);
 		for (size_t i = 0; i < tail_count; i++)
 			highest = tail[i] > highest ? tail[i] : highest;
 		most = (uint64_t)highest + 1;

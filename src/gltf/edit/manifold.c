@@ -146,7 +146,7 @@ nt_status nt_gltf_follow_manifold(nt_buffer_edits *edits, uint32_t buffer, nt_sc
 		report(scene, mesh, m.obstacle);
 		return NT_OK;
 	}
-	const uint32_t highest = nt_largest(m.corners, m.corner_count, 1);
+	const uint32_t highest = nt_largest(m.corners, m.corner_count);
 	const uint32_t type = nt_gltf_index_type((uint64_t)highest + 1, m.component_type);
 	uint32_t view;
 	const nt_status status = add_numbers(edits, buffer, m.corners, m.corner_count, type,

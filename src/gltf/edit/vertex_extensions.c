@@ -53,7 +53,7 @@ static nt_status follow_outline(nt_buffer_edits *edits, uint32_t buffer, const n
 	nt_status status =
 		nt_gltf_get_accessor(edits->document, number, nt_gltf_of_mesh(mesh).pointer, &accessor, error);
 	if (!status)
-		status = nt_gltf_indices(edits->document, &accessor, vertices->old_count, 1, &edits->arena,
+		status = nt_gltf_indices(edits->document, &accessor, vertices->old_count, &edits->arena,
 			&edges, error);
 	if (!status &&
 		nt_outline_follow(edges, (size_t)accessor.count / 2, &triangles, &edits->arena, &followed, &count))

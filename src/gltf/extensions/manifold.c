@@ -86,9 +86,9 @@ static nt_status read_corners(nt_manifold *m, nt_gltf *document, const nt_gltf_a
 	nt_gltf_accessor plain = *all;
 	uint32_t *before, *after;
 	plain.sparse_count = 0;
-	nt_status status = nt_gltf_indices(document, &plain, vertex_count, 1, arena, &before, NULL);
+	nt_status status = nt_gltf_indices(document, &plain, vertex_count, arena, &before, NULL);
 	if (!status)
-		status = nt_gltf_indices(document, all, vertex_count, 1, arena, &after, NULL);
+		status = nt_gltf_indices(document, all, vertex_count, arena, &after, NULL);
 	if (status)
 		return obstruct(m, status, "whose indices are faulty");
 	m->corner_count = (size_t)all->count;

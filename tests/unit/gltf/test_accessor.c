@@ -106,7 +106,7 @@ static void indices_are_stored_and_read(void **state)
 			const nt_gltf_accessor accessor = {.component_type = types[k],
 				.component_bytes = widths[k], .components = 1,
 				.element_bytes = widths[k], .stride = widths[k], .count = count, .decoded = bytes + at};
-			assert_int_equal(nt_gltf_indices(&document, &accessor, UINT32_MAX, 1, &arena, &read,
+			assert_int_equal(nt_gltf_indices(&document, &accessor, UINT32_MAX, &arena, &read,
 				NULL), NT_OK);
 			for (size_t i = 0; i < count; i++)
 				assert_int_equal(read[i], numbers[i]);
