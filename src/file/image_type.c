@@ -101,3 +101,49 @@ const char *nt_image_extension(nt_image_type type)
 {
 	return table[type].extension;
 }
+
+/* ---- sizes: a PNG has them in its first chunk (W3C PNG, 11.2.1), a JPEG in the first frame header, behind other
+ * segments (ITU-T T.81, B.2.2) ---- */
+
+static uint32_t big_endian(const unsigned char *p, int bytes)
+{
+	uint32_t value = 0;
+	for (int i = 0; i < bytes; i++)
+		value = value << 8 | p[i];
+	return value;
+}
+
+static void size_of_jpeg(const unsigned char *bytes, size_t size, uint32_t pixels[2])
+{
+	size_t at = 2;
+	while (at + 9 < size && bytes[at] == 0xFF) {
+		const unsigned char marker = bytes[at + 1];
+		if (marker == 0xFF) { /* fill */
+			at++;
+			continue;
+		}
+		/* SOF0 to SOF15, without DHT, JPG and DAC, which lie among them */
+		if (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) {
+			pixels[0] = big_endian(bytes + at + 7, 2);
+			pixels[1] = big_endian(bytes + at + 5, 2);
+			return;
+		}
+		at += 2 + big_endian(bytes + at + 2, 2);
+	}
+}
+
+bool nt_image_size(const unsigned char *bytes, size_t size, uint32_t pixels[2])
+{
+	const nt_image_type type = nt_image_type_of_bytes(bytes, size);
+	pixels[0] = pixels[1] = 0;
+	if (type == NT_IMAGE_PNG && size >= 24 && memcmp(bytes + 12, "IHDR", 4) == 0) {
+		pixels[0] = big_endian(bytes + 16, 4);
+		pixels[1] = big_endian(bytes + 20, 4);
+	} else if (type == NT_IMAGE_JPEG) {
+		size_of_jpeg(bytes, size, pixels);
+	}
+	if (pixels[0] && pixels[1])
+		return true;
+	pixels[0] = pixels[1] = 0;
+	return false;
+}

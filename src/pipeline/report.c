@@ -6,7 +6,7 @@
 #include "pipeline/stages.h"
 
 #include <string.h>
-#include "file/image_size.h"
+#include "file/image_type.h"
 #include "file/relative_path.h"
 #include "format/normal_map.h"
 #include "pipeline/joins.h"
