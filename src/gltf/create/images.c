@@ -124,7 +124,7 @@ static nt_status open_image(const nt_texture *image, nt_file *file, nt_error *er
 	return nt_error_in_file(error, source->path);
 }
 
-static void close_image(const nt_image_set *set, const nt_texture *image, nt_file *file)
+static void close_image(const nt_texture *image, nt_file *file)
 {
 	nt_file_close(file);
 	nt_texture_release_pages(image);
@@ -149,7 +149,7 @@ static nt_status write_file(nt_image_set *set, image_entry *entry, nt_output *ou
 	if (status != NT_OK)
 		return status;
 	status = nt_sink_copy(sink, &file, 0, file.size, error);
-	close_image(set, entry->image, &file);
+	close_image(entry->image, &file);
 	if (status == NT_OK)
 		status = nt_output_settle(output, sink, error);
 	entry->file = sink;
@@ -274,5 +274,5 @@ nt_status nt_image_set_open(const nt_image_set *set, uint32_t number, nt_file *f
 
 void nt_image_set_close(const nt_image_set *set, uint32_t number, nt_file *file)
 {
-	close_image(set, set->entries[number].image, file);
+	close_image(set->entries[number].image, file);
 }
