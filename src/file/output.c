@@ -258,7 +258,6 @@ nt_status nt_output_add(nt_output *output, const char *path, nt_role role, nt_si
 	added->fd = -1;
 	added->role = role;
 	added->dry = output->options.dry_run;
-	added->threads = output->options.threads;
 	added->path = strdup(path);
 	added->buffer = nt_alloc(NT_SINK_BUFFER_BYTES, 1);
 	const nt_status status = added->path && added->buffer ? open_sink(output, added, error)

@@ -45,7 +45,6 @@ typedef struct nt_output_options {
 	nt_equal_choice equal;
 	bool sync;       /* whatever a power cut leaves, the main file is whole: files and folders are synchronised */
 	bool dry_run;    /* refuse what would be refused, count what would be written, write nothing */
-	unsigned threads; /* that may take part in writing; 0: one per processor */
 	const char *in_place; /* this file may be replaced by a main file, and keeps its mode, owner and
 	                         attributes; NULL: none */
 	nt_output_result *result; /* NULL: not wanted */

@@ -106,7 +106,7 @@ static nt_output_options output_options_of(run *r)
 {
 	const nt_settings *s = r->settings;
 	return (nt_output_options){.no_clobber = s->no_clobber, .sync = s->sync, .equal = s->equal,
-		.dry_run = s->dry_run || s->check, .threads = s->threads,
+		.dry_run = s->dry_run || s->check,
 		.in_place = s->in_place ? r->input_path : NULL, .result = &r->result,
 		.find_ownership = r->writer->format != NT_FORMAT_PLY ? nt_gltf_find_ownership : NULL,
 		.placing = tell_placing, .placing_user = r};
