@@ -124,19 +124,14 @@ static void load_range(void *context, size_t begin, size_t end, unsigned slot)
 	sieve *s = context;
 	uint32_t *const marked = marked_of(s, slot), *const again = again_of(s, slot);
 	memset(marked, 0, 2 * sizeof *marked << s->word_bits);
-	size_t found = 0, marks = begin; /* of vertices before this one */
+	size_t found = 0;
 	for (size_t first = begin, last; first < end; first = last) {
 		last = end - first < NT_WELD_BATCH ? end : first + NT_WELD_BATCH;
 		if (end - first >= LOAD_AHEAD + NT_WELD_BATCH)
 			prefetch_attributes(s->w->mesh, first + LOAD_AHEAD, first + LOAD_AHEAD + NT_WELD_BATCH);
 		if (!nt_weld_ordered(load_rows(s->w, first, last, s->places)))
 			find_unordered(s, first, last, marked);
-		for (size_t v = first; v < last; v++)
-			__builtin_prefetch(&marked[word_of(s->places[v], s->word_bits)], 1);
-		/* those of the batch before are there by now */
-		const size_t to = last < end ? first : end;
-		found += mark_batch(s, s->places + marks, to - marks, marked, again);
-		marks = to;
+		found += mark_batch(s, s->places + first, last - first, marked, again);
 		if (found > MANY + (last - begin) / 8)
 			__atomic_store_n(&s->many, true, __ATOMIC_RELAXED);
 		if (__atomic_load_n(&s->many, __ATOMIC_RELAXED))
