@@ -12,32 +12,35 @@
 #include "base/scratch.h"
 #include "nmtan.h"
 
-/* Ways of their own for meshes that are rare, and which come to the same, are not worth their bytes in a browser. */
+/* Fast paths beside the plain ones, with the same bytes. A browser gets the plain ones alone, which are fewer bytes. */
 #ifdef __wasm__
-enum { NT_SHORT_WAYS = 0 };
+enum { NT_FAST_PATHS = 0 };
 #else
-enum { NT_SHORT_WAYS = 1 };
+enum { NT_FAST_PATHS = 1 };
 #endif
 
-/* What a method knows of its result, so that usable.c need not look at all of it. Of a triangle without a bit of
- * `suspect` all corners are usable, it is not degenerate, no half of a folded quad, and its orientation, positive
- * where a bit of `positive` is set, is exact and survives storing. Where the solve repairs, a method may mark rows of
- * suspects: NT_W_OPEN.
+/* What a method knows of its result, so that usable.c need not look at all of it. `flags` has a byte for each triangle,
+ * two for a quad; what its bits mean is told by these sets of bits, of which each may be empty:
  *
- * With ids the rows of triangles without a bit of `suspect` may not have been written: the tangent of
- * such a corner is that of its vertex and its triangle's orientation. Meshes with quads have no ids. */
+ *   suspect     The triangle has to be looked at. Without these bits all its corners are usable, it is not degenerate
+ *               and no half of a folded quad, and its orientation is exact and survives storing.
+ *   positive    Its orientation is +1, else -1.
+ *   doubtful    Some of `suspect`: its orientation is not known. Without these bits it is: 0 with a bit of `flat`, else
+ *               as `positive` says.
+ *   flat        Its UVs have no area.
+ *   degenerate  Two of its corners are at one position; told of suspects that are not doubtful.
+ *   judged      Some of `suspect`: they say no more of the triangle than that rows may have NT_W_OPEN. If there are such
+ *               bits, rows without NT_W_OPEN are usable by all but w.
+ *
+ * With ids the rows of triangles that are no suspects may not have been written: the tangent of such a corner is that of
+ * its vertex and its triangle's orientation. Meshes with quads have no ids. */
 typedef struct nt_known {
-	const uint8_t *flags; /* [triangle_count], quads count as two; NULL: nothing is known */
-	uint8_t suspect, positive;
-	uint8_t doubtful;     /* bits of `suspect` without which a triangle's orientation is known all the same: 0 with
-	                         a bit of `flat`; it is degenerate with one of `degenerate` */
-	uint8_t flat, degenerate;
-	uint8_t judged;       /* bits of `suspect` that say of a triangle no more than that rows may have NT_W_OPEN.
-	                         With them rows without it are usable by all but w, and `rows` are told; 0: not so */
-	bool open;            /* a row may have NT_W_OPEN; set by any thread */
+	const uint8_t *flags; /* [triangle_count]; NULL: nothing is known */
+	uint8_t suspect, positive, doubtful, flat, degenerate, judged;
+	bool open;            /* a row may have NT_W_OPEN, which needs `judged`; set by any thread */
 	const uint32_t *ids;  /* [corner_count] welded vertices, or NULL */
-	const float *rows[2]; /* [welded_count][4] by orientation, w = 0 where no triangle at the vertex
-	                         has it; NULL: none at all. Told with ids, and with `judged` */
+	const float *rows[2]; /* [welded_count][4] by orientation, w = 0 where no triangle at the vertex has it; NULL: none
+	                         at all. Told with ids */
 	size_t row_step;      /* floats from one row to the next */
 	const uint32_t *welded; /* [corner_count] welded vertices, below welded_count, whatever else is
 	                           known; NULL: ask nt_weld_corners() */

@@ -167,7 +167,7 @@ static void write_corner(const nt_complex *c, uint32_t place, const nt_corner *r
 static uint32_t __attribute__((noinline)) mark_of(const nt_complex *c, uint32_t place, const nt_corner *r)
 {
 	const nt_solve *solve = c->fast->solve;
-	if (!NT_SHORT_WAYS || !nt_fast_judges(solve) || nt_is_frame(r->u, nt_normal(solve->mesh,
+	if (!NT_FAST_PATHS || !nt_fast_judges(solve) || nt_is_frame(r->u, nt_normal(solve->mesh,
 			nt_vertex_of(solve->mesh, nt_complex_corner(c, c->corners[place])))))
 		return 0;
 	nt_fast_tell_open(solve);
@@ -358,7 +358,7 @@ static bool average_whole(const nt_complex *c, const nt_batch *b, const part *p,
 static void average_parts(const nt_complex *c, const nt_batch *b, const part *p, const nt_corner *whole, directions *d)
 {
 	const unsigned threads = p->count > SOLVED ? c->fast->solve->threads : 1;
-	if (NT_SHORT_WAYS) {
+	if (NT_FAST_PATHS) {
 		list_directions(c, p, d);
 		nt_parallel_ranges(threads, (d->count + NT_LANES - 1) / NT_LANES, 1, sum_directions,
 			&(sum_context){c, p, d});
@@ -366,7 +366,7 @@ static void average_parts(const nt_complex *c, const nt_batch *b, const part *p,
 	for (size_t i = 0; i < p->count; i++) {
 		/* a member without a frame belongs to all */
 		const bool any = p->solved[i].kind == NT_CORNER_ANY;
-		const nt_corner result = any ? *whole : NT_SHORT_WAYS ? d->sums[d->number[i]] : average_own(c, p, i);
+		const nt_corner result = any ? *whole : NT_FAST_PATHS ? d->sums[d->number[i]] : average_own(c, p, i);
 		put_result(c, b, p->members[i], &result, mark_of(c, p->members[i], &result));
 	}
 }
@@ -481,7 +481,7 @@ nmtan_status nt_solve_batch(const nt_complex *c, nt_batch *b)
 
 nmtan_status nt_finish_batch(const nt_complex *c, nt_batch *b)
 {
-	if (NT_SHORT_WAYS && b->summed.count > 0)
+	if (NT_FAST_PATHS && b->summed.count > 0)
 		nt_write_sums(c, &b->summed);
 	return nt_solve_batch(c, b);
 }
@@ -534,7 +534,7 @@ nmtan_status nt_take_vertex(const nt_complex *c, nt_batch *b, size_t v)
 		write_frameless(c, v, done);
 	if (done[0] && done[1])
 		return NMTAN_OK;
-	if (NT_SHORT_WAYS && sum && end - begin <= NT_FAN_DEPTH) {
+	if (NT_FAST_PATHS && sum && end - begin <= NT_FAN_DEPTH) {
 		nt_take_sums(c, &b->summed, v, done);
 		return NMTAN_OK;
 	}

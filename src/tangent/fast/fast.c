@@ -254,7 +254,7 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 	if (!r.settled)
 		return NMTAN_ERROR_MEMORY;
 	memset(r.settled, 0, ranges * sizeof *r.settled);
-	if (NT_SHORT_WAYS && fast->sparse) {
+	if (NT_FAST_PATHS && fast->sparse) {
 		fast->open = nt_scratch_alloc(fast->solve->scratch, (fast->vertex_count + NT_LANES - 1) / NT_LANES, 1);
 		if (!fast->open)
 			return NMTAN_ERROR_MEMORY;
@@ -288,7 +288,7 @@ static void tell_known(const nt_fast *fast)
 	nt_known *known = fast->solve->known;
 	*known = (nt_known){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT, .suspect = NT_TRIANGLE_SUSPECT,
 		.doubtful = NT_TRIANGLE_UNCERTAIN, .flat = NT_TRIANGLE_ANY, .degenerate = NT_TRIANGLE_DEGENERATE,
-		.judged = NT_SHORT_WAYS && nt_fast_judges(fast->solve) ? NT_TRIANGLE_COMPLEX : 0,
+		.judged = NT_FAST_PATHS && nt_fast_judges(fast->solve) ? NT_TRIANGLE_COMPLEX : 0,
 		.open = known->open, .welded = fast->triangles.ids, .welded_count = fast->vertex_count,
 		.row_step = fast->record_step * sizeof(nt_record) / sizeof(float)};
 	/* a record is x, y, z and, as state, the sign */

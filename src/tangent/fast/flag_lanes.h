@@ -51,7 +51,7 @@ static bool __attribute__((noinline)) classify_special(uint8_t *flags, size_t co
 				     (out->frameless[i] ? NT_TRIANGLE_ANY : 0) |
 				     (out->degenerate[i] ? NT_TRIANGLE_DEGENERATE : 0) |
 				     (out->doubt[i] < 0.0f && !out->frameless[i] ? 0 : NT_TRIANGLE_UNCERTAIN));
-	if (NT_SHORT_WAYS && special)
+	if (NT_FAST_PATHS && special)
 		clear_flat(in, flags, count);
 	return !special;
 }
@@ -71,7 +71,7 @@ static inline bool classify_lanes(const nt_fast *fast, size_t first, size_t coun
 {
 	uint8_t *flags = fast->flags + first;
 	bool ordinary = out->plain;
-	if (!NT_SHORT_WAYS || !ordinary)
+	if (!NT_FAST_PATHS || !ordinary)
 		ordinary = classify_special(flags, count, in, out);
 	else if (count == NT_LANES)
 		classify_plain(flags, NT_LANES, out);

@@ -103,7 +103,7 @@ static inline __attribute__((always_inline)) void solve_frames(const lanes_in *r
 	if (more)
 		out->mag_u[i] = d.s_length / fabsf(area), out->mag_v[i] = d.t_length / fabsf(area);
 	out->area[i] = area;
-	if (NT_SHORT_WAYS)
+	if (NT_FAST_PATHS)
 		out->doubt[i] = area_rounding(&d) - fabsf(area);
 }
 

@@ -8,5 +8,5 @@
 #include "tangent/fast/part_lanes.h"
 #include "tangent/fast/settle.h"
 
-const nt_kernels NT_KERNEL = {accumulate, settle, corners, NT_SHORT_WAYS ? corner_sums : NULL,
-	NT_SHORT_WAYS ? part_sums : NULL, NT_SHORT_WAYS ? group_results : NULL};
+const nt_kernels NT_KERNEL = {accumulate, settle, corners, NT_FAST_PATHS ? corner_sums : NULL,
+	NT_FAST_PATHS ? part_sums : NULL, NT_FAST_PATHS ? group_results : NULL};

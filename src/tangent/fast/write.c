@@ -117,7 +117,7 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 		uint8_t *flags = &fast->flags[t];
 		uint32_t copy[3];
 		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
-		if (NT_SHORT_WAYS && fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT) && !is_near_open(fast, v))
+		if (NT_FAST_PATHS && fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT) && !is_near_open(fast, v))
 			continue;
 		if (fast->scattered)
 			prefetch_records(fast, t, end);
@@ -280,7 +280,7 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
 	(void)slot;
 	const writing *w = context;
 	nt_fast *fast = w->fast;
-	void (*write)(nt_fast *, size_t, size_t) = NT_SHORT_WAYS && fast->sparse && !w->has_open ? write_suspects
+	void (*write)(nt_fast *, size_t, size_t) = NT_FAST_PATHS && fast->sparse && !w->has_open ? write_suspects
 		: fast->wants_more || fast->sparse ? write_triangles
 		: fast->triangles.cuts || fast->scattered ? write_tangents : write_plain;
 	for (size_t range = begin; range < end; range++)
@@ -328,7 +328,7 @@ static void copy_corner(const nt_solve *solve, size_t to, size_t from)
  * written; a result of complex.c (COMPLEX); or that of the orientation that comes first (COPY). */
 static unsigned copy_reason(const nt_fast *fast, uint32_t vertex)
 {
-	if (!NT_SHORT_WAYS)
+	if (!NT_FAST_PATHS)
 		return NT_TRIANGLE_COPY;
 	uint32_t state[2] = {NT_RESULT_NONE, NT_RESULT_NONE};
 	for (int o = 0; o < 2; o++)
