@@ -25,22 +25,22 @@ enum { NT_FAST_PATHS = 1 };
  *   suspect     The triangle has to be looked at. Without these bits all its corners are usable, it is not degenerate
  *               and no half of a folded quad, and its orientation is exact and survives storing.
  *   positive    Its orientation is +1, else -1.
- *   doubtful    Some of `suspect`: its orientation is not known. Without these bits it is: 0 with a bit of `flat`, else
- *               as `positive` says.
+ *   doubtful    Some of `suspect`: its orientation is not known. Without these bits it is: 0 with a bit of `flat`,
+ *               else as `positive` says.
  *   flat        Its UVs have no area.
  *   degenerate  Two of its corners are at one position; told of suspects that are not doubtful.
- *   judged      Some of `suspect`: they say no more of the triangle than that rows may have NT_W_OPEN. If there are such
- *               bits, rows without NT_W_OPEN are usable by all but w.
+ *   judged      Some of `suspect`: they say no more of the triangle than that rows may have NT_W_OPEN. If there are
+ *               such bits, rows without NT_W_OPEN are usable by all but w.
  *
- * With ids the rows of triangles that are no suspects may not have been written: the tangent of such a corner is that of
- * its vertex and its triangle's orientation. Meshes with quads have no ids. */
+ * With ids the rows of triangles that are no suspects may not have been written: the tangent of such a corner is that
+ * of its vertex and its triangle's orientation. Meshes with quads have no ids. */
 typedef struct nt_known {
 	const uint8_t *flags; /* [triangle_count]; NULL: nothing is known */
 	uint8_t suspect, positive, doubtful, flat, degenerate, judged;
 	bool open;            /* a row may have NT_W_OPEN, which needs `judged`; set by any thread */
 	const uint32_t *ids;  /* [corner_count] welded vertices, or NULL */
-	const float *rows[2]; /* [welded_count][4] by orientation, w = 0 where no triangle at the vertex has it; NULL: none
-	                         at all. Told with ids */
+	const float *rows[2]; /* [welded_count][4] by orientation, w = 0 where no triangle at the vertex
+	                         has it; NULL: none at all. Told with ids */
 	size_t row_step;      /* floats from one row to the next */
 	const uint32_t *welded; /* [corner_count] welded vertices, below welded_count, whatever else is
 	                           known; NULL: ask nt_weld_corners() */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Welding: an indexed mesh by its vertices (weld_sieve.c), and so a soup of triangles that hardly share any; others by
+ * Welding: an indexed mesh by its vertices (weld_bloom.c), and so a soup of triangles that hardly share any; others by
  * their corners, whose rows are looked up in a table (weld_table.c); several threads do so for a range of corners each
  * (weld_threads.c).
  */
@@ -13,8 +13,8 @@
 enum { LEAST_FLAT = 3 * 1024 };
 
 /* Whether the corners of a mesh without indices seem to have vertices of their own, as with a normal for each triangle:
- * in triangles that follow one another, at some places, hardly any two are equal. The sieve gives up soon where that
- * was chance. */
+ * in triangles that follow one another, at some places, hardly any two are equal. The filter is given up soon where
+ * that was chance. */
 static bool is_flat(const nmtan_mesh *mesh, size_t corner_count)
 {
 	enum { PLACES = 16, TRIANGLES = 4, CORNERS = 3 * TRIANGLES };
@@ -99,9 +99,9 @@ static const uint32_t *weld_vertices(nt_welder *w, size_t corner_count, unsigned
 {
 	char *const begin = w->memory->begin, *const row_begin = w->row_memory->begin;
 	const nt_scratch_mark mark = nt_scratch_here(w->memory->scratch);
-	nt_weld_outcome outcome = nt_weld_sieve(w, ranges);
+	nt_weld_outcome outcome = nt_weld_by_filter(w, ranges);
 	if (outcome == NT_WELD_MANY) {
-		/* the table takes the memory that the sieve had */
+		/* the table takes the memory that the filter had */
 		w->memory->begin = begin;
 		w->row_memory->begin = row_begin;
 		nt_scratch_back(w->memory->scratch, mark);

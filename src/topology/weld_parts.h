@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What the table of rows (weld_table.c), its use on several threads (weld_threads.c) and the weld of vertices
- * (weld_sieve.c) share: the entries of that table. For these files and weld.c only.
+ * (weld_bloom.c) share: the entries of that table. For these files and weld.c only.
  *
  * An entry of 4 bytes holds a number and, in the bits that the number leaves free, a tag of the hash, so that
  * the row of another key is read about once in 2^tag probes. Tables are open-addressing and at most half full.
@@ -93,6 +93,6 @@ typedef enum nt_weld_outcome {
 
 /* Welds vertices, which are the items of `w`: those of corners where the mesh has no indices. Makes rows, row_count
  * and, where a number is another than the vertex's own, numbers. */
-nt_weld_outcome nt_weld_sieve(nt_welder *w, unsigned ranges);
+nt_weld_outcome nt_weld_by_filter(nt_welder *w, unsigned ranges);
 
 #endif

@@ -261,7 +261,7 @@ static void equal_vertices_in_one_place_weld_alike(void **state)
 		}
 }
 
-/* More than the sieve bears. */
+/* More than the filter bears. */
 static void many_equal_vertices_weld_alike(void **state)
 {
 	(void)state;
@@ -354,10 +354,10 @@ static void flat_soups_weld_alike(void **state)
 	check_flat_soup(60000, 0, -0.0f);
 	check_flat_soup(60000, 0, NAN);
 	check_flat_soup(60000, 3, NAN);
-	check_flat_soup(60000, 90, NAN); /* more than the sieve bears */
+	check_flat_soup(60000, 90, NAN); /* more than the filter bears */
 }
 
-/* So many that the sieve lets through go to all threads. */
+/* So many that the filter lets through go to all threads. */
 static void an_eighth_of_a_million_equal_vertices_weld_alike(void **state)
 {
 	(void)state;

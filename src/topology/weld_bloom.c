@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The weld of a large indexed mesh, or of one whose corners have a vertex each. Nearly always no vertex is equal to
- * another, and the whole weld is to find that out: a sieve does so without a table of the vertices.
+ * another, and the whole weld is to find that out: a Bloom filter does so without a table of the vertices.
  *
  *   load    each vertex's row; its hash marks two bits of a word in a bitmap (a Bloom filter of one word). A
  *           vertex that finds both marked already may equal an earlier one: the bits are marked in a second bitmap
@@ -17,13 +17,13 @@
 #include "base/parallel.h"
 #include "topology/weld_parts.h"
 
-/* Threads that sieve: each takes up to 8 bytes a vertex for its bitmaps. */
+/* Threads that fill filters: each takes up to 8 bytes a vertex for its bitmaps. */
 enum { MOST_RANGES = 8 };
 
 /* Listed vertices that one thread welds alone: a table of all threads takes as long. */
 enum { FEW = 1 << 16 };
 
-/* Vertices found marked, beside an eighth of those met, with which the sieve gives up: it would only be work beside
+/* Vertices found marked, beside an eighth of those met, with which the filter is given up: it would only be work beside
  * that of the table. */
 enum { MANY = 4096 };
 
@@ -31,7 +31,7 @@ enum { MANY = 4096 };
  * than two share a word, and more are listed by chance. */
 enum { BIT_BITS = 5, MOST_WORD_BITS = 32 - 2 * BIT_BITS };
 
-typedef struct sieve {
+typedef struct bloom_filter {
 	nt_welder *w;
 	unsigned ranges;
 	unsigned word_bits; /* log2 of the words of a bitmap */
@@ -41,16 +41,16 @@ typedef struct sieve {
 	bool many;          /* atomic: it is left to the table */
 	/* of a range: its first vertex, how many it found marked, how many it lists */
 	size_t begins[MOST_RANGES], found[MOST_RANGES], listed[MOST_RANGES];
-} sieve;
+} bloom_filter;
 
-static inline uint32_t *marked_of(const sieve *s, unsigned range)
+static inline uint32_t *marked_of(const bloom_filter *f, unsigned range)
 {
-	return s->bitmaps + ((size_t)2 * range << s->word_bits);
+	return f->bitmaps + ((size_t)2 * range << f->word_bits);
 }
 
-static inline uint32_t *again_of(const sieve *s, unsigned range)
+static inline uint32_t *again_of(const bloom_filter *f, unsigned range)
 {
-	return marked_of(s, range) + ((size_t)1 << s->word_bits);
+	return marked_of(f, range) + ((size_t)1 << f->word_bits);
 }
 
 static inline size_t word_of(uint32_t place, unsigned word_bits)
@@ -94,18 +94,18 @@ static inline __attribute__((always_inline)) void prefetch_attributes(const nmta
 }
 
 /* Whoever holds a NaN gets place 0, as if it had been found. */
-static void find_unordered(const sieve *s, size_t begin, size_t end, uint32_t *marked)
+static void find_unordered(const bloom_filter *f, size_t begin, size_t end, uint32_t *marked)
 {
 	marked[0] |= bits_of(0);
 	for (size_t v = begin; v < end; v++)
-		if (!nt_weld_row_ordered(&s->w->rows[v]))
-			s->places[v] = 0;
+		if (!nt_weld_row_ordered(&f->w->rows[v]))
+			f->places[v] = 0;
 }
 
 /* Marks the places of a batch. Returns how many were marked already. */
-static size_t mark_batch(const sieve *s, const uint32_t *places, size_t count, uint32_t *marked, uint32_t *again)
+static size_t mark_batch(const bloom_filter *f, const uint32_t *places, size_t count, uint32_t *marked, uint32_t *again)
 {
-	const unsigned word_bits = s->word_bits; /* a copy, which no store changes */
+	const unsigned word_bits = f->word_bits; /* a copy, which no store changes */
 	size_t found = 0;
 	for (size_t i = 0; i < count; i++) {
 		const size_t at = word_of(places[i], word_bits);
@@ -121,24 +121,24 @@ static size_t mark_batch(const sieve *s, const uint32_t *places, size_t count, u
 
 static void load_range(void *context, size_t begin, size_t end, unsigned slot)
 {
-	sieve *s = context;
-	uint32_t *const marked = marked_of(s, slot), *const again = again_of(s, slot);
-	memset(marked, 0, 2 * sizeof *marked << s->word_bits);
+	bloom_filter *f = context;
+	uint32_t *const marked = marked_of(f, slot), *const again = again_of(f, slot);
+	memset(marked, 0, 2 * sizeof *marked << f->word_bits);
 	size_t found = 0;
 	for (size_t first = begin, last; first < end; first = last) {
 		last = end - first < NT_WELD_BATCH ? end : first + NT_WELD_BATCH;
 		if (end - first >= LOAD_AHEAD + NT_WELD_BATCH)
-			prefetch_attributes(s->w->mesh, first + LOAD_AHEAD, first + LOAD_AHEAD + NT_WELD_BATCH);
-		if (!nt_weld_ordered(load_rows(s->w, first, last, s->places)))
-			find_unordered(s, first, last, marked);
-		found += mark_batch(s, s->places + first, last - first, marked, again);
+			prefetch_attributes(f->w->mesh, first + LOAD_AHEAD, first + LOAD_AHEAD + NT_WELD_BATCH);
+		if (!nt_weld_ordered(load_rows(f->w, first, last, f->places)))
+			find_unordered(f, first, last, marked);
+		found += mark_batch(f, f->places + first, last - first, marked, again);
 		if (found > MANY + (last - begin) / 8)
-			__atomic_store_n(&s->many, true, __ATOMIC_RELAXED);
-		if (__atomic_load_n(&s->many, __ATOMIC_RELAXED))
+			__atomic_store_n(&f->many, true, __ATOMIC_RELAXED);
+		if (__atomic_load_n(&f->many, __ATOMIC_RELAXED))
 			break;
 	}
-	s->begins[slot] = begin;
-	s->found[slot] = found;
+	f->begins[slot] = begin;
+	f->found[slot] = found;
 }
 
 /* List */
@@ -146,44 +146,44 @@ static void load_range(void *context, size_t begin, size_t end, unsigned slot)
 /* What two ranges have marked, or one again. */
 static void join_range(void *context, size_t begin, size_t end, unsigned slot)
 {
-	const sieve *s = context;
+	const bloom_filter *f = context;
 	(void)slot;
 	for (size_t i = begin; i < end; i++) {
 		uint32_t marked = 0, again = 0;
-		for (unsigned r = 0; r < s->ranges; r++) {
-			again |= again_of(s, r)[i] | (marked & marked_of(s, r)[i]);
-			marked |= marked_of(s, r)[i];
+		for (unsigned r = 0; r < f->ranges; r++) {
+			again |= again_of(f, r)[i] | (marked & marked_of(f, r)[i]);
+			marked |= marked_of(f, r)[i];
 		}
-		again_of(s, 0)[i] = again;
+		again_of(f, 0)[i] = again;
 	}
 }
 
 static void list_range(void *context, size_t begin, size_t end, unsigned slot)
 {
-	sieve *s = context;
-	const uint32_t *const again = again_of(s, 0);
-	uint32_t *const places = s->places, *list = places + begin;
-	const unsigned word_bits = s->word_bits;
+	bloom_filter *f = context;
+	const uint32_t *const again = again_of(f, 0);
+	uint32_t *const places = f->places, *list = places + begin;
+	const unsigned word_bits = f->word_bits;
 	for (size_t v = begin; v < end; v++) {
 		const uint32_t place = places[v], word = again[word_of(place, word_bits)];
 		*list = (uint32_t)v;
 		list += word >> (place & 31) & word >> (place >> BIT_BITS & 31) & 1; /* both of bits_of() */
 	}
-	s->listed[slot] = (size_t)(list - (places + begin));
+	f->listed[slot] = (size_t)(list - (places + begin));
 }
 
 /* Lists the vertices that may be equal to another, ascending, and those with a NaN. Returns how many. */
-static size_t list_vertices(sieve *s)
+static size_t list_vertices(bloom_filter *f)
 {
-	if (s->ranges == 1 && s->found[0] == 0)
+	if (f->ranges == 1 && f->found[0] == 0)
 		return 0; /* usual in small meshes */
-	if (s->ranges > 1)
-		nt_parallel_ranges(s->ranges, (size_t)1 << s->word_bits, 1, join_range, s);
-	nt_parallel_ranges(s->ranges, s->w->item_count, 1, list_range, s);
-	size_t count = s->listed[0];
-	for (unsigned r = 1; r < s->ranges; r++) {
-		memmove(s->places + count, s->places + s->begins[r], s->listed[r] * sizeof *s->places);
-		count += s->listed[r];
+	if (f->ranges > 1)
+		nt_parallel_ranges(f->ranges, (size_t)1 << f->word_bits, 1, join_range, f);
+	nt_parallel_ranges(f->ranges, f->w->item_count, 1, list_range, f);
+	size_t count = f->listed[0];
+	for (unsigned r = 1; r < f->ranges; r++) {
+		memmove(f->places + count, f->places + f->begins[r], f->listed[r] * sizeof *f->places);
+		count += f->listed[r];
 	}
 	return count;
 }
@@ -231,38 +231,38 @@ static bool number_vertices(nt_welder *w, const uint32_t *list, size_t count, un
 
 /* Memory for rows, places and bitmaps of at least 16 bits a vertex; few vertices get more, so that they are hardly
  * ever listed by chance. */
-static bool make_sieve(sieve *s)
+static bool make_filter(bloom_filter *f)
 {
-	nt_welder *w = s->w;
+	nt_welder *w = f->w;
 	const size_t count = w->item_count, words = count < 128 ? 2 * count : 256;
-	s->word_bits = nt_weld_bits_for(count / 2 > words ? count / 2 : words);
-	if (s->word_bits > MOST_WORD_BITS)
-		s->word_bits = MOST_WORD_BITS;
+	f->word_bits = nt_weld_bits_for(count / 2 > words ? count / 2 : words);
+	if (f->word_bits > MOST_WORD_BITS)
+		f->word_bits = MOST_WORD_BITS;
 	if (!nt_weld_grow_rows(w, count + 1))
 		return false;
-	const size_t bitmap_words = (size_t)2 * s->ranges << s->word_bits;
-	s->in_room = nt_borrowed_has(w->memory, bitmap_words + count, sizeof *s->bitmaps);
-	s->bitmaps = nt_borrowed_alloc(w->memory, bitmap_words + count, sizeof *s->bitmaps);
-	if (s->bitmaps)
-		s->places = s->bitmaps + bitmap_words;
-	return s->bitmaps;
+	const size_t bitmap_words = (size_t)2 * f->ranges << f->word_bits;
+	f->in_room = nt_borrowed_has(w->memory, bitmap_words + count, sizeof *f->bitmaps);
+	f->bitmaps = nt_borrowed_alloc(w->memory, bitmap_words + count, sizeof *f->bitmaps);
+	if (f->bitmaps)
+		f->places = f->bitmaps + bitmap_words;
+	return f->bitmaps;
 }
 
-nt_weld_outcome nt_weld_sieve(nt_welder *w, unsigned ranges)
+nt_weld_outcome nt_weld_by_filter(nt_welder *w, unsigned ranges)
 {
-	sieve s;
-	s.w = w;
-	s.many = false;
-	s.ranges = nt_parallel_slots(ranges < MOST_RANGES ? ranges : MOST_RANGES, w->item_count, 1);
-	if (!make_sieve(&s))
+	bloom_filter f;
+	f.w = w;
+	f.many = false;
+	f.ranges = nt_parallel_slots(ranges < MOST_RANGES ? ranges : MOST_RANGES, w->item_count, 1);
+	if (!make_filter(&f))
 		return NT_WELD_NO_MEMORY;
-	nt_parallel_ranges(s.ranges, w->item_count, 1, load_range, &s);
-	if (s.many)
+	nt_parallel_ranges(f.ranges, w->item_count, 1, load_range, &f);
+	if (f.many)
 		return NT_WELD_MANY;
-	const size_t count = list_vertices(&s);
+	const size_t count = list_vertices(&f);
 	w->row_count = w->item_count;
 	/* a table in fresh pages would be 2 MB more of an output that is hardly begun */
-	if (s.in_room)
-		nt_borrowed_trim(w->memory, s.bitmaps, ((size_t)(s.places - s.bitmaps) + count) * sizeof *s.places);
-	return number_vertices(w, s.places, count, count < FEW ? 1 : ranges) ? NT_WELD_DONE : NT_WELD_NO_MEMORY;
+	if (f.in_room)
+		nt_borrowed_trim(w->memory, f.bitmaps, ((size_t)(f.places - f.bitmaps) + count) * sizeof *f.places);
+	return number_vertices(w, f.places, count, count < FEW ? 1 : ranges) ? NT_WELD_DONE : NT_WELD_NO_MEMORY;
 }
