@@ -35,9 +35,9 @@ enum { VERTEX_GRAIN = 32768 }; /* vertices or triangles per thread below which t
 #define NO_NUMBER UINT32_MAX
 
 /* Other threads write the same value, or one that check_numbers() finds to differ. */
-static void find_numbers(void *context, size_t begin, size_t end, unsigned slot)
+static void find_numbers(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	const vertex_split *job = context;
 	const uint32_t *indices = job->solve->mesh->indices, *ids = job->solve->known->ids;
 	for (size_t c = 3 * begin; c < 3 * end; c++)
@@ -45,9 +45,9 @@ static void find_numbers(void *context, size_t begin, size_t end, unsigned slot)
 }
 
 /* A vertex with a NaN is another welded vertex at each corner. */
-static void check_numbers(void *context, size_t begin, size_t end, unsigned slot)
+static void check_numbers(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	const vertex_split *job = context;
 	const uint32_t *indices = job->solve->mesh->indices, *ids = job->solve->known->ids;
 	for (size_t c = 3 * begin; c < 3 * end; c++)
@@ -93,7 +93,7 @@ static bool has_result(const nt_known *known, int side, uint32_t number)
 }
 
 /* Gives vertices [begin, end) their one row; counts those that do not have one. */
-static void take_vertices(void *context, size_t begin, size_t end, unsigned slot)
+static void take_vertices(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const vertex_split *job = context;
 	const nt_known *known = job->solve->known;
@@ -113,12 +113,12 @@ static void take_vertices(void *context, size_t begin, size_t end, unsigned slot
 			memcpy(job->splitter->tangents + 4 * v, row, 4 * sizeof(float));
 		}
 	}
-	job->open[slot] = open;
+	job->open[thread] = open;
 }
 
-static void touch_triangles(void *context, size_t begin, size_t end, unsigned slot)
+static void touch_triangles(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	const vertex_split *job = context;
 	const nmtan_mesh *mesh = job->solve->mesh;
 	const uint8_t *seen = job->splitter->seen;
@@ -152,17 +152,17 @@ static nmtan_status split_shared(const nt_solve *solve, nt_splitter *splitter)
 	/* without indices vertices behind the last corner have none */
 	const size_t vertex_count = solve->mesh->indices ? solve->mesh->vertex_count : solve->corner_count;
 	const double begin = nt_seconds();
-	const unsigned slots = nt_parallel_slots(solve->threads, vertex_count, VERTEX_GRAIN);
+	const unsigned threads = nt_parallel_slots(solve->threads, vertex_count, VERTEX_GRAIN);
 	vertex_split job = {.solve = solve, .splitter = splitter,
-		.open = nt_scratch_alloc(solve->scratch, slots, sizeof *job.open)};
+		.open = nt_scratch_alloc(solve->scratch, threads, sizeof *job.open)};
 	nmtan_status status = job.open ? number_vertices(&job) : NMTAN_ERROR_MEMORY;
 	if (status)
 		return status;
 	open_suspects(&job);
 	nt_parallel_ranges(solve->threads, vertex_count, VERTEX_GRAIN, take_vertices, &job);
 	size_t open = 0;
-	for (unsigned slot = 0; slot < slots; slot++)
-		open += job.open[slot];
+	for (unsigned thread = 0; thread < threads; thread++)
+		open += job.open[thread];
 	if (open)
 		status = split_open(&job);
 	if (solve->timing)

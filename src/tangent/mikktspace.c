@@ -37,12 +37,12 @@ typedef struct triangle {
 } triangle;
 
 /* One result, and what the reference keeps beside it. */
-typedef struct slot {
+typedef struct corner_frame {
 	nt_vec3 os, ot;
 	float mag_s, mag_t;
 	bool orient;
 	unsigned char writes;
-} slot;
+} corner_frame;
 
 /* One entry for each corner of the sound triangles around a welded vertex. */
 typedef struct fan_corner {
@@ -64,7 +64,7 @@ typedef struct state {
 	size_t triangle_count, sound_count;
 	uint32_t *ids;       /* [corner_count] welded vertex */
 	size_t vertex_count;
-	slot *slots;         /* [corner_count] */
+	corner_frame *frames; /* [corner_count] */
 	size_t *fan_begin;   /* [vertex_count + 1] into fans */
 	fan_corner *fans;    /* [3 * sound_count] ascending by triangle in each vertex */
 	fan_corner *group;   /* members of the current group */
@@ -356,9 +356,9 @@ static bool belong_together(const state *s, const triangle *f, const triangle *t
 }
 
 /* The weighted average of a part's frames; the weight is the triangle's angle seen along the normal. */
-static slot average(const state *s, const fan_corner *part, size_t count)
+static corner_frame average(const state *s, const fan_corner *part, size_t count)
 {
-	slot sum = {0};
+	corner_frame sum = {0};
 	float angles = 0.0f;
 	for (size_t i = 0; i < count; i++) {
 		const triangle *t = &s->triangles[part[i].triangle];
@@ -390,9 +390,9 @@ static slot average(const state *s, const fan_corner *part, size_t count)
 }
 
 /* The corner of a quad's diagonal gets two results, one from each half: they are averaged. */
-static slot merge_slots(const slot *a, const slot *b)
+static corner_frame merge_frames(const corner_frame *a, const corner_frame *b)
 {
-	slot merged = *a;
+	corner_frame merged = *a;
 	if (a->mag_s == b->mag_s && a->mag_t == b->mag_t && equal3(a->os, b->os) && equal3(a->ot, b->ot))
 		return merged;
 	merged.mag_s = 0.5f * (a->mag_s + b->mag_s);
@@ -402,10 +402,10 @@ static slot merge_slots(const slot *a, const slot *b)
 	return merged;
 }
 
-static void write_slot(slot *target, slot result, bool orient)
+static void write_frame(corner_frame *target, corner_frame result, bool orient)
 {
 	if (target->writes)
-		result = merge_slots(target, &result);
+		result = merge_frames(target, &result);
 	result.writes = (unsigned char)(target->writes + 1);
 	result.orient = orient;
 	*target = result;
@@ -415,7 +415,7 @@ static void write_slot(slot *target, slot result, bool orient)
 static void finish_group(state *s, size_t count, bool orient)
 {
 	qsort(s->group, count, sizeof *s->group, compare_fan_corners);
-	slot whole;
+	corner_frame whole;
 	bool have_whole = false;
 	for (size_t i = 0; i < count; i++) {
 		const triangle *f = &s->triangles[s->group[i].triangle];
@@ -424,7 +424,7 @@ static void finish_group(state *s, size_t count, bool orient)
 		for (size_t j = 0; j < count; j++)
 			if (belong_together(s, f, &s->triangles[s->group[j].triangle], n))
 				s->part[part_count++] = s->group[j];
-		slot result;
+		corner_frame result;
 		if (part_count < count) {
 			result = average(s, s->part, part_count);
 		} else {
@@ -433,7 +433,7 @@ static void finish_group(state *s, size_t count, bool orient)
 			have_whole = true;
 			result = whole;
 		}
-		write_slot(&s->slots[f->corner[s->group[i].k]], result, orient);
+		write_frame(&s->frames[f->corner[s->group[i].k]], result, orient);
 	}
 }
 
@@ -484,7 +484,7 @@ static void copy_from_half(state *s, const triangle *degenerate, const triangle 
 			continue;
 		for (int j = 0; j < 3; j++) {
 			if (equal3(position(s, corner), position(s, sound->corner[j]))) {
-				s->slots[corner] = s->slots[sound->corner[j]];
+				s->frames[corner] = s->frames[sound->corner[j]];
 				break;
 			}
 		}
@@ -505,8 +505,8 @@ static void fill_degenerate(state *s)
 			if (begin == s->fan_begin[t->vertex[k] + 1])
 				continue; /* no sound triangle there: the default stays */
 			const fan_corner first = s->fans[begin];
-			s->slots[t->corner[k]] =
-				s->slots[s->triangles[first.triangle].corner[first.k]];
+			s->frames[t->corner[k]] =
+				s->frames[s->triangles[first.triangle].corner[first.k]];
 		}
 	}
 }
@@ -515,7 +515,7 @@ static void write_output(const state *s)
 {
 	const nt_solve *solve = s->solve;
 	for (size_t c = 0; c < solve->corner_count; c++) {
-		const slot *from = &s->slots[c];
+		const corner_frame *from = &s->frames[c];
 		const float w = !from->writes ? nt_unassigned_sign(solve) : from->orient ? 1.0f : -1.0f;
 		memcpy(solve->tangents + 4 * c, (float[4]){from->os.x, from->os.y, from->os.z, w},
 			4 * sizeof(float));
@@ -534,11 +534,11 @@ nmtan_status nt_mikktspace_scalar(const nt_solve *solve)
 	s.triangles = nt_scratch_alloc(solve->scratch, nt_triangle_count(solve->mesh, solve->corner_count),
 		sizeof *s.triangles);
 	s.ids = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *s.ids);
-	s.slots = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *s.slots);
-	if (!s.triangles || !s.ids || !s.slots)
+	s.frames = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *s.frames);
+	if (!s.triangles || !s.ids || !s.frames)
 		return NMTAN_ERROR_MEMORY;
 	for (size_t c = 0; c < solve->corner_count; c++)
-		s.slots[c] = (slot){.os = {1, 0, 0}, .ot = {0, 1, 0}, .mag_s = 1, .mag_t = 1};
+		s.frames[c] = (corner_frame){.os = {1, 0, 0}, .ot = {0, 1, 0}, .mag_s = 1, .mag_t = 1};
 
 	nmtan_status status = nt_weld_corners(solve->mesh, solve->corner_count, solve->scratch, s.ids,
 		&s.vertex_count);

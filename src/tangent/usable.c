@@ -227,7 +227,7 @@ static void check_quads(const search *job, size_t begin, size_t end, nmtan_count
 	}
 }
 
-static void check_words(void *context, size_t begin, size_t end, unsigned slot)
+static void check_words(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const search *job = context;
 	nmtan_counts counts = {0};
@@ -235,7 +235,7 @@ static void check_words(void *context, size_t begin, size_t end, unsigned slot)
 		check_quads(job, begin, end, &counts);
 	else
 		check_triangles(job, begin, end, &counts);
-	job->counts[slot] = counts;
+	job->counts[thread] = counts;
 }
 
 nmtan_status nt_find_unusable(const nt_solve *solve, nmtan_counts *counts, uint64_t **faulty)
@@ -243,14 +243,14 @@ nmtan_status nt_find_unusable(const nt_solve *solve, nmtan_counts *counts, uint6
 	memset(counts, 0, sizeof *counts);
 	*faulty = NULL;
 	const size_t words = (solve->mesh->face_count + WORD - 1) / WORD;
-	const unsigned slots = nt_parallel_slots(solve->threads, words, GRAIN);
-	search job = {solve, nt_scratch_alloc(solve->scratch, slots, sizeof *job.counts),
+	const unsigned threads = nt_parallel_slots(solve->threads, words, GRAIN);
+	search job = {solve, nt_scratch_alloc(solve->scratch, threads, sizeof *job.counts),
 		nt_scratch_alloc(solve->scratch, words, sizeof *job.faulty)};
 	if (!job.counts || !job.faulty)
 		return NMTAN_ERROR_MEMORY;
 	nt_parallel_ranges(solve->threads, words, GRAIN, check_words, &job);
-	for (unsigned slot = 0; slot < slots; slot++)
-		nt_counts_add(counts, &job.counts[slot]);
+	for (unsigned thread = 0; thread < threads; thread++)
+		nt_counts_add(counts, &job.counts[thread]);
 	if (nt_counts_repaired(counts))
 		*faulty = job.faulty;
 	return NMTAN_OK;

@@ -48,9 +48,9 @@ static void count_range(const counting *c, size_t range)
 	}
 }
 
-static void count_ranges(void *context, size_t begin, size_t end, unsigned slot)
+static void count_ranges(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	for (size_t range = begin; range < end; range++)
 		count_range(context, range);
 }

@@ -135,9 +135,9 @@ nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, size_t co
 	return NMTAN_OK;
 }
 
-static void copy_range(void *context, size_t begin, size_t end, unsigned slot)
+static void copy_range(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	const nt_splitter *s = context;
 	uint32_t *to = s->output->indices;
 	const uint32_t *from = s->mesh->indices;

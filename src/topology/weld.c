@@ -42,10 +42,10 @@ typedef struct copying {
 	uint32_t *ids;
 } copying;
 
-static void copy_numbers(void *context, size_t begin, size_t end, unsigned slot)
+static void copy_numbers(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const copying job = *(const copying *)context;
-	(void)slot;
+	(void)thread;
 	for (size_t c = begin; c < end; c++) {
 		const size_t vertex = job.indices ? job.indices[c] : c;
 		job.ids[c] = job.numbers ? job.numbers[vertex] : (uint32_t)vertex;

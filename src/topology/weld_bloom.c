@@ -119,10 +119,10 @@ static size_t mark_batch(const bloom_filter *f, const uint32_t *places, size_t c
 	return found;
 }
 
-static void load_range(void *context, size_t begin, size_t end, unsigned slot)
+static void load_range(void *context, size_t begin, size_t end, unsigned thread)
 {
 	bloom_filter *f = context;
-	uint32_t *const marked = marked_of(f, slot), *const again = again_of(f, slot);
+	uint32_t *const marked = marked_of(f, thread), *const again = again_of(f, thread);
 	memset(marked, 0, 2 * sizeof *marked << f->word_bits);
 	size_t found = 0;
 	for (size_t first = begin, last; first < end; first = last) {
@@ -137,17 +137,17 @@ static void load_range(void *context, size_t begin, size_t end, unsigned slot)
 		if (__atomic_load_n(&f->many, __ATOMIC_RELAXED))
 			break;
 	}
-	f->begins[slot] = begin;
-	f->found[slot] = found;
+	f->begins[thread] = begin;
+	f->found[thread] = found;
 }
 
 /* List */
 
 /* What two ranges have marked, or one again. */
-static void join_range(void *context, size_t begin, size_t end, unsigned slot)
+static void join_range(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const bloom_filter *f = context;
-	(void)slot;
+	(void)thread;
 	for (size_t i = begin; i < end; i++) {
 		uint32_t marked = 0, again = 0;
 		for (unsigned r = 0; r < f->ranges; r++) {
@@ -158,7 +158,7 @@ static void join_range(void *context, size_t begin, size_t end, unsigned slot)
 	}
 }
 
-static void list_range(void *context, size_t begin, size_t end, unsigned slot)
+static void list_range(void *context, size_t begin, size_t end, unsigned thread)
 {
 	bloom_filter *f = context;
 	const uint32_t *const again = again_of(f, 0);
@@ -169,7 +169,7 @@ static void list_range(void *context, size_t begin, size_t end, unsigned slot)
 		*list = (uint32_t)v;
 		list += word >> (place & 31) & word >> (place >> BIT_BITS & 31) & 1; /* both of bits_of() */
 	}
-	f->listed[slot] = (size_t)(list - (places + begin));
+	f->listed[thread] = (size_t)(list - (places + begin));
 }
 
 /* Lists the vertices that may be equal to another, ascending, and those with a NaN. Returns how many. */

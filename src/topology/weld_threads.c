@@ -44,10 +44,10 @@ typedef struct joint {
 
 /* Weld */
 
-static void weld_range(void *context, size_t begin, size_t end, unsigned slot)
+static void weld_range(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const joint *j = context;
-	(void)slot;
+	(void)thread;
 	for (size_t r = begin; r < end; r++)
 		j->ranges[r].done = nt_weld_some(&j->ranges[r].welder, j->ranges[r].done);
 }
@@ -115,12 +115,12 @@ static void seek_batch(const range *in, const nt_weld_row *rows, const uint64_t 
 	}
 }
 
-static void seek_rows(void *context, size_t begin, size_t end, unsigned slot)
+static void seek_rows(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const joint *j = context;
 	range *here = &j->ranges[j->sought];
 	size_t new_count = 0;
-	(void)slot;
+	(void)thread;
 	for (size_t first = begin, count; first < end; first += count) {
 		const nt_weld_row *rows = here->welder.rows + first;
 		uint32_t *places = j->places + here->place + first;
@@ -155,10 +155,10 @@ static bool seek_all(joint *j)
 
 /* Number */
 
-static void number_range(void *context, size_t begin, size_t end, unsigned slot)
+static void number_range(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const joint *j = context;
-	(void)slot;
+	(void)thread;
 	for (size_t r = begin > 0 ? begin : 1; r < end; r++) {
 		const range *here = &j->ranges[r];
 		size_t number = j->ranges[0].welder.row_count;
@@ -194,11 +194,11 @@ static bool number_rows(joint *j)
 /* Resolve */
 
 /* Numbers of rows that a range before has; a row that was found is new in its range. */
-static void resolve_rows(void *context, size_t begin, size_t end, unsigned slot)
+static void resolve_rows(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const joint *j = context;
 	const size_t first_count = j->ranges[0].welder.row_count;
-	(void)slot;
+	(void)thread;
 	for (size_t i = first_count + begin; i < first_count + end; i++) {
 		const uint32_t place = j->places[i];
 		if (!(place & FINAL))
@@ -207,11 +207,11 @@ static void resolve_rows(void *context, size_t begin, size_t end, unsigned slot)
 }
 
 /* Items have got the number of their row in their range. */
-static void resolve_items(void *context, size_t begin, size_t end, unsigned slot)
+static void resolve_items(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const joint *j = context;
 	const size_t first_end = j->ranges[0].welder.item_count;
-	(void)slot;
+	(void)thread;
 	begin += first_end;
 	end += first_end;
 	for (unsigned r = 1; r < j->count; r++) {

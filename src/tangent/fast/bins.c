@@ -24,9 +24,9 @@ typedef struct counting {
 	const nt_bins *bins;
 } counting;
 
-static void count_ranges(void *context, size_t begin, size_t end, unsigned slot)
+static void count_ranges(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	const counting *c = context;
 	const unsigned bits = c->bins->vertex_bits;
 	for (size_t range = begin; range < end; range++) {

@@ -151,10 +151,10 @@ typedef struct work {
 	nmtan_status status;
 } work;
 
-static void solve_range(void *context, size_t begin, size_t end, unsigned slot)
+static void solve_range(void *context, size_t begin, size_t end, unsigned thread)
 {
 	work *w = context;
-	nt_batch *batch = &w->batches[slot];
+	nt_batch *batch = &w->batches[thread];
 	nmtan_status status = NMTAN_OK;
 	for (size_t v = begin; v < end && !status; v++) {
 		nt_find_groups(w->c, v);

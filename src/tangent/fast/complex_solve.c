@@ -299,9 +299,9 @@ typedef struct sum_context {
 } sum_context;
 
 /* Averages for directions NT_LANES * [begin, end). */
-static void sum_directions(void *context, size_t begin, size_t end, unsigned slot)
+static void sum_directions(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	const sum_context *s = context;
 	const directions *d = s->d;
 	for (size_t first = NT_LANES * begin; first < NT_LANES * end; first += NT_LANES) {

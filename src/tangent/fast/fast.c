@@ -164,9 +164,9 @@ static bool is_binned(const nt_fast *fast, unsigned bin_bits)
 		nt_is_scattered(mesh->indices, fast->solve->corner_count, mesh->vertex_count));
 }
 
-static void fill_ranges(void *context, size_t begin, size_t end, unsigned slot)
+static void fill_ranges(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	const run *r = context;
 	const size_t *bounds = r->fast->ranges.bounds;
 	for (size_t range = begin; range < end; range++)
@@ -212,27 +212,27 @@ static void mark_undecided(nt_fast *fast)
 	}
 }
 
-static void settle_blocks(void *context, size_t begin, size_t end, unsigned slot)
+static void settle_blocks(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const run *r = context;
 	nt_settled settled = {0};
 	r->kernels->settle(r->fast, &r->fast->adjacency, r->fast->records, begin, end, &settled);
-	r->settled[slot] = settled;
+	r->settled[thread] = settled;
 }
 
 /* Adds up bins and settles their vertices while they are in the cache. */
-static void settle_bins(void *context, size_t begin, size_t end, unsigned slot)
+static void settle_bins(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const run *r = context;
 	nt_settled settled = {0};
-	nt_bin *bin = &r->bins[slot];
+	nt_bin *bin = &r->bins[thread];
 	for (size_t index = begin; index < end; index++) {
 		nt_bin_add_up(&r->fast->bins, index, bin);
 		const size_t first = bin->adjacency.first_vertex / NT_LANES;
 		r->kernels->settle(r->fast, &bin->adjacency, bin->sums, first,
 			first + (bin->adjacency.vertex_count + NT_LANES - 1) / NT_LANES, &settled);
 	}
-	r->settled[slot] = settled;
+	r->settled[thread] = settled;
 }
 
 static bool make_bins(run *r, unsigned ranges)

@@ -86,9 +86,9 @@ static bool get_array(nt_fast *view, int orient, void *context)
 	return true;
 }
 
-static void add_ranges(void *context, size_t begin, size_t end, unsigned slot)
+static void add_ranges(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	job *j = context;
 	const size_t *bounds = j->fast->ranges.bounds;
 	for (size_t range = begin; range < end; range++) {

@@ -275,9 +275,9 @@ typedef struct writing {
 	bool has_open; /* a record that is not the result, or not usable */
 } writing;
 
-static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
+static void write_ranges(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	const writing *w = context;
 	nt_fast *fast = w->fast;
 	void (*write)(nt_fast *, size_t, size_t) = NT_FAST_PATHS && fast->sparse && !w->has_open ? write_suspects

@@ -161,13 +161,13 @@ static bool make_sums(nt_sums *s, int side, nt_borrowed *memory)
 typedef struct run {
 	nt_sums *s;
 	const nt_sum_kernels *kernels;
-	nt_sums_finished *finished; /* [slots] */
+	nt_sums_finished *finished; /* [used_threads] */
 	size_t *ill;                /* [ranges] corners */
 } run;
 
-static void sum_ranges(void *context, size_t begin, size_t end, unsigned slot)
+static void sum_ranges(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	const run *r = context;
 	for (size_t range = begin; range < end; range++) {
 		int side;
@@ -212,12 +212,12 @@ static nmtan_status sum_up(const run *r, nt_borrowed *memory)
 
 /* Results */
 
-static void finish_blocks(void *context, size_t begin, size_t end, unsigned slot)
+static void finish_blocks(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const run *r = context;
 	nt_sums_finished finished = {0};
 	r->kernels->finish(r->s, begin, end, &finished);
-	r->finished[slot] = finished;
+	r->finished[thread] = finished;
 }
 
 static nmtan_status finish(const run *given, nt_sums_finished *sum)
@@ -226,13 +226,13 @@ static nmtan_status finish(const run *given, nt_sums_finished *sum)
 	nt_sums *s = r.s;
 	const unsigned threads = s->solve->threads;
 	const size_t blocks = (s->weld.count + NT_SUM_LANES - 1) / NT_SUM_LANES;
-	const unsigned slots = nt_parallel_slots(threads, blocks, BLOCK_GRAIN);
+	const unsigned used_threads = nt_parallel_slots(threads, blocks, BLOCK_GRAIN);
 	s->vertex_flags = nt_scratch_alloc(s->solve->scratch, s->weld.count, 1);
-	r.finished = nt_scratch_alloc(s->solve->scratch, slots, sizeof *r.finished);
+	r.finished = nt_scratch_alloc(s->solve->scratch, used_threads, sizeof *r.finished);
 	if (!s->vertex_flags || !r.finished)
 		return NMTAN_ERROR_MEMORY;
 	nt_parallel_ranges(threads, blocks, BLOCK_GRAIN, finish_blocks, &r);
-	for (unsigned i = 0; i < slots; i++) {
+	for (unsigned i = 0; i < used_threads; i++) {
 		sum->lost += r.finished[i].lost;
 		sum->ill += r.finished[i].ill;
 	}
@@ -343,9 +343,9 @@ static size_t write_range(const writing *w, size_t begin, size_t end)
 	return ill;
 }
 
-static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
+static void write_ranges(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	const writing *w = context;
 	const nt_sums *s = w->r->s;
 	for (size_t range = begin; range < end; range++)
