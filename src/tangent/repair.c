@@ -13,7 +13,7 @@
  *   4 where its face has no orientation of its own, 1 or 2 of the other orientation
  *   5 a unit vector perpendicular to the normal
  *
- * A face without orientation takes that of its usable corners, or of what is around its vertices. What is usable
+ * A face without orientation takes that of its usable corners, or of its vertices' neighbourhoods. What is usable
  * keeps its bytes.
  *
  * Apart from what is faulty this costs one look at the numbers of each triangle's vertices.
@@ -34,15 +34,15 @@ typedef struct answers {
 	bool there[2];                          /* triangles or usable corners */
 } answers;
 
-/* What is around a vertex with an unusable corner, for orientation -1 and +1. */
-typedef struct surroundings {
+/* Triangles and usable corners at a vertex with an unusable corner, for orientation -1 and +1. */
+typedef struct neighbourhood {
 	nt_dvec3 normal;    /* unit or zero: of the first unusable corner */
 	uint32_t usable[2]; /* the first usable corners, or NT_NO_ID */
 	union {
-		nt_frame_sum sums[2]; /* until all around is visited */
+		nt_frame_sum sums[2]; /* until all triangles are visited */
 		answers answers;
 	};
-} surroundings;
+} neighbourhood;
 
 /* A repair. Welded vertices with an unusable corner are open. */
 typedef struct repair_state {
@@ -52,7 +52,7 @@ typedef struct repair_state {
 	size_t welded_count;
 	uint32_t *ids;          /* [welded_count] numbers of open vertices, or NT_NO_ID */
 	size_t id_count;
-	surroundings *around;   /* [id_count], with room for as many as there can be */
+	neighbourhood *neighbourhoods; /* [id_count], with room for as many as there can be */
 } repair_state;
 
 /* Whether a corner's vertex is open. */
@@ -161,8 +161,8 @@ static nmtan_status number_vertices(repair_state *r, size_t unusable)
 	const nt_solve *solve = r->solve;
 	const size_t most = unusable < r->welded_count ? unusable : r->welded_count;
 	r->ids = nt_scratch_alloc(solve->scratch, r->welded_count, sizeof *r->ids);
-	r->around = nt_scratch_alloc(solve->scratch, most, sizeof *r->around);
-	if (!r->ids || !r->around)
+	r->neighbourhoods = nt_scratch_alloc(solve->scratch, most, sizeof *r->neighbourhoods);
+	if (!r->ids || !r->neighbourhoods)
 		return NMTAN_ERROR_MEMORY;
 	memset(r->ids, 0xff, r->welded_count * sizeof *r->ids);
 	for (place at = {0, 0}; find_faulty(r, &at); step_over(r, &at))
@@ -171,23 +171,23 @@ static nmtan_status number_vertices(repair_state *r, size_t unusable)
 				continue;
 			const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
 			r->ids[r->welded[c]] = (uint32_t)r->id_count;
-			r->around[r->id_count++] = (surroundings){.normal = n, .usable = {NT_NO_ID, NT_NO_ID}};
+			r->neighbourhoods[r->id_count++] = (neighbourhood){.normal = n, .usable = {NT_NO_ID, NT_NO_ID}};
 		}
 	return NMTAN_OK;
 }
 
-/* What is around */
+/* Neighbourhoods */
 
-/* Adds a face of 3 or 4 corners with an open vertex to what is around these. */
-static inline void visit_face(const repair_state *r, size_t face, size_t first, unsigned size)
+/* Adds a face of 3 or 4 corners to the neighbourhoods of its open vertices. */
+static void visit_face(const repair_state *r, size_t face, size_t first, unsigned size)
 {
 	const nt_solve *solve = r->solve;
-	surroundings *around[4]; /* of its vertices; NULL: not open */
+	neighbourhood *of[4]; /* its vertices; NULL: not open */
 	for (size_t k = 0; k < size; k++) {
-		around[k] = is_open(r, first + k) ? &r->around[r->ids[r->welded[first + k]]] : NULL;
-		const float w = around[k] ? nt_corner_tangent(solve, first + k)[3] : 0.0f;
-		if (w != 0.0f && around[k]->usable[w > 0.0f] == NT_NO_ID)
-			around[k]->usable[w > 0.0f] = (uint32_t)(first + k);
+		of[k] = is_open(r, first + k) ? &r->neighbourhoods[r->ids[r->welded[first + k]]] : NULL;
+		const float w = of[k] ? nt_corner_tangent(solve, first + k)[3] : 0.0f;
+		if (w != 0.0f && of[k]->usable[w > 0.0f] == NT_NO_ID)
+			of[k]->usable[w > 0.0f] = (uint32_t)(first + k);
 	}
 	const int orientation = orientation_of(r, face, first);
 	if (!orientation)
@@ -198,7 +198,7 @@ static inline void visit_face(const repair_state *r, size_t face, size_t first, 
 		nt_frame_sum *to[3];
 		nt_dvec3 normals[3];
 		for (int k = 0; k < 3; k++) {
-			surroundings *at = around[corners[i][k] - first];
+			neighbourhood *at = of[corners[i][k] - first];
 			to[k] = at ? &at->sums[orientation > 0] : NULL;
 			normals[k] = at ? at->normal : (nt_dvec3){0, 0, 0};
 		}
@@ -207,21 +207,21 @@ static inline void visit_face(const repair_state *r, size_t face, size_t first, 
 }
 
 /* Sums become answers. */
-static void answer(const nt_solve *solve, surroundings *around)
+static void answer(const nt_solve *solve, neighbourhood *at)
 {
-	const nt_dvec3 n = around->normal;
+	const nt_dvec3 n = at->normal;
 	answers a = {0};
 	for (int side = 0; side < 2; side++) {
-		const bool weighs = around->sums[side].weights > 0.0, usable = around->usable[side] != NT_NO_ID;
+		const bool weighs = at->sums[side].weights > 0.0, usable = at->usable[side] != NT_NO_ID;
 		nt_dvec3 t;
 		a.there[side] = usable || weighs;
-		a.averaged[side] = weighs && nt_sum_tangent(&around->sums[side], n, &t);
-		a.borrowed[side] = !a.averaged[side] && usable && borrow_tangent(solve, around->usable[side], n, &t);
+		a.averaged[side] = weighs && nt_sum_tangent(&at->sums[side], n, &t);
+		a.borrowed[side] = !a.averaged[side] && usable && borrow_tangent(solve, at->usable[side], n, &t);
 		if (a.averaged[side] || a.borrowed[side])
 			nt_dvec3_store(t, a.tangents[side]);
 	}
 	nt_dvec3_store(nt_dvec3_perpendicular(n), a.perpendicular);
-	around->answers = a;
+	at->answers = a;
 }
 
 /* Visits the faces with an open vertex. */
@@ -235,12 +235,12 @@ static void visit_faces(const repair_state *r)
 	}
 }
 
-/* Finds what is around open vertices: `answers`. */
-static void look_around(const repair_state *r)
+/* Finds the answers of all open vertices. */
+static void visit_neighbourhoods(const repair_state *r)
 {
 	visit_faces(r);
 	for (size_t i = 0; i < r->id_count; i++)
-		answer(r->solve, &r->around[i]);
+		answer(r->solve, &r->neighbourhoods[i]);
 }
 
 /* Repairs */
@@ -252,24 +252,24 @@ typedef struct face {
 	int orientation, side;
 } face;
 
-static const surroundings *around_corner(const repair_state *r, size_t c)
+static const neighbourhood *neighbourhood_of(const repair_state *r, size_t c)
 {
-	return &r->around[r->ids[r->welded[c]]];
+	return &r->neighbourhoods[r->ids[r->welded[c]]];
 }
 
 /* The best tangent that can be had at an unusable corner c of a face; it may lie in `own`. */
 static const float *best_tangent(const repair_state *r, const face *f, size_t c, float own[3])
 {
 	const nt_solve *solve = r->solve;
-	const surroundings *around = around_corner(r, c);
-	const answers *a = &around->answers;
+	const neighbourhood *at = neighbourhood_of(r, c);
+	const answers *a = &at->answers;
 	if (solve->faults && !a->averaged[f->side])
 		solve->faults[c] |= NMTAN_FAULT_NO_AVERAGE;
 	if (a->averaged[f->side] || a->borrowed[f->side])
 		return a->tangents[f->side];
 	for (size_t k = 0; k < f->size; k++) {
 		nt_dvec3 t;
-		if (f->usable[k] && borrow_tangent(solve, (uint32_t)(f->first + k), around->normal, &t)) {
+		if (f->usable[k] && borrow_tangent(solve, (uint32_t)(f->first + k), at->normal, &t)) {
 			nt_dvec3_store(t, own);
 			return own;
 		}
@@ -278,8 +278,8 @@ static const float *best_tangent(const repair_state *r, const face *f, size_t c,
 	return other ? a->tangents[!f->side] : a->perpendicular;
 }
 
-/* The side of a face without orientation: that of a usable corner, all of which agree; else what most of its vertices
- * have around them; of the first usable corner around where that is even; +1 where there is nothing. */
+/* The side of a face without orientation: that of a usable corner, all of which agree; else that of most of its
+ * vertices' neighbourhoods; else that of the first usable corner in these; +1 where there is none. */
 static int choose_side(const repair_state *r, const face *f)
 {
 	int votes = 0, nearest = 1;
@@ -288,18 +288,18 @@ static int choose_side(const repair_state *r, const face *f)
 		if (f->usable[k])
 			return r->solve->tangents[4 * (f->first + k) + 3] > 0.0f;
 	for (size_t k = 0; k < f->size; k++) {
-		const surroundings *around = around_corner(r, f->first + k);
-		votes += around->answers.there[1] - around->answers.there[0];
+		const neighbourhood *at = neighbourhood_of(r, f->first + k);
+		votes += at->answers.there[1] - at->answers.there[0];
 		for (int side = 0; side < 2; side++) {
-			nearest = around->usable[side] < least ? side : nearest;
-			least = around->usable[side] < least ? around->usable[side] : least;
+			nearest = at->usable[side] < least ? side : nearest;
+			least = at->usable[side] < least ? at->usable[side] : least;
 		}
 	}
 	return votes ? votes > 0 : nearest;
 }
 
-/* Repairs one face. What is read of its own corners and of those around are usable ones, which are never written: the
- * order of corners and of faces does not matter. */
+/* Repairs one face. It reads usable corners of the face and of neighbourhoods, which nobody writes: the order of
+ * corners and of faces does not matter. */
 static void repair_face(const repair_state *r, size_t number, size_t first)
 {
 	face f = {.first = first, .size = nt_face_size(r->solve->mesh, number)};
@@ -325,7 +325,7 @@ static nmtan_status __attribute__((noinline)) repair(const nt_solve *solve, cons
 		status = number_vertices(&r, nt_counts_repaired(counts));
 	if (status)
 		return status;
-	look_around(&r);
+	visit_neighbourhoods(&r);
 	for (place at = {0, 0}; find_faulty(&r, &at); step_over(&r, &at))
 		repair_face(&r, at.face, at.first);
 	return NMTAN_OK;
