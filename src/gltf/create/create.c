@@ -17,7 +17,6 @@
 #include "gltf/accessor.h"
 #include "gltf/sidecar.h"
 #include "gltf/create/images.h"
-#include "gltf/create/material.h"
 #include "gltf/create/model.h"
 #include "gltf/create/primitive.h"
 #include "gltf/glb.h"
@@ -159,45 +158,33 @@ static bool is_textured(const composition *c, const nt_new_primitive *primitive)
 	return nt_new_primitive_has(primitive, NT_ATTRIBUTE_TEXCOORD) && nt_material_takes_texcoords(material);
 }
 
-/* Calls body for the material of every primitive. */
-static nt_status each_material(composition *c, nt_error *error,
-	nt_status (*body)(composition *, uint32_t material, bool textured, nt_error *))
-{
-	nt_status status = NT_OK;
-	for (size_t m = 0; m < c->scene->mesh_count; m++)
-		for (size_t p = 0; p < c->primitives[m].count && status == NT_OK; p++) {
-			const nt_new_primitive *primitive = &c->primitives[m].items[p];
-			if (primitive->material != NT_NONE)
-				status = body(c, primitive->material, is_textured(c, primitive), error);
-		}
-	return status;
-}
-
-static nt_status use_images(composition *c, uint32_t material, bool textured, nt_error *error)
-{
-	return textured ? nt_new_material_use(&c->scene->materials[material], c->images, c->output, error) : NT_OK;
-}
-
-static nt_status add_material(composition *c, uint32_t index, bool textured, nt_error *error)
-{
-	(void)error;
-	uint32_t *known = &c->materials[index][textured];
-	if (*known == NT_MODEL_NONE)
-		*known = nt_new_material_add(&c->scene->materials[index], textured ? c->images : NULL, c->model);
-	return NT_OK;
-}
-
 static nt_status plan_materials(composition *c, nt_error *error)
 {
 	nt_status status = nt_image_set_create(&c->images, &c->options, error);
-	if (status == NT_OK)
-		status = each_material(c, error, use_images);
+	for (size_t m = 0; m < c->scene->mesh_count; m++)
+		for (size_t p = 0; p < c->primitives[m].count && status == NT_OK; p++) {
+			const nt_new_primitive *primitive = &c->primitives[m].items[p];
+			if (primitive->material != NT_NONE && is_textured(c, primitive))
+				status = nt_new_material_use(&c->scene->materials[primitive->material], c->images,
+					c->output, error);
+		}
 	/* The main file comes before its sidecars, and is none of the images that it refers to. */
 	if (status == NT_OK)
 		status = nt_output_add(c->output, c->options.path, NT_ROLE_MAIN, &c->main, error);
 	if (status == NT_OK)
 		status = nt_image_set_add(c->images, c->model, &c->buffer_size, c->output, error);
-	return status == NT_OK ? each_material(c, error, add_material) : status;
+	for (size_t m = 0; m < c->scene->mesh_count && status == NT_OK; m++)
+		for (size_t p = 0; p < c->primitives[m].count; p++) {
+			const nt_new_primitive *primitive = &c->primitives[m].items[p];
+			if (primitive->material == NT_NONE)
+				continue;
+			const bool textured = is_textured(c, primitive);
+			uint32_t *known = &c->materials[primitive->material][textured];
+			if (*known == NT_MODEL_NONE)
+				*known = nt_new_material_add(&c->scene->materials[primitive->material],
+					textured ? c->images : NULL, c->model);
+		}
+	return status;
 }
 
 /* The attributes of a primitive, in the order of their names. */
@@ -302,14 +289,6 @@ static nt_status pad_to(byte_stream *stream, uint64_t offset, nt_error *error)
 	return stream_bytes(stream, zeros, (size_t)(offset - stream->position), error);
 }
 
-static nt_status write_image(byte_stream *stream, const nt_file *file, nt_error *error)
-{
-	if (stream->base64)
-		return stream_bytes(stream, file->data, file->size, error);
-	stream->position += file->size;
-	return nt_sink_copy(stream->sink, file, 0, file->size, error);
-}
-
 /* The whole buffer. */
 static nt_status write_buffer(const composition *c, byte_stream *stream, nt_error *error)
 {
@@ -328,8 +307,12 @@ static nt_status write_buffer(const composition *c, byte_stream *stream, nt_erro
 		if (status != NT_OK)
 			break;
 		status = pad_to(stream, offset, error);
-		if (status == NT_OK)
-			status = write_image(stream, &file, error);
+		if (status == NT_OK && stream->base64)
+			status = stream_bytes(stream, file.data, file.size, error);
+		else if (status == NT_OK)
+			status = nt_sink_copy(stream->sink, &file, 0, file.size, error);
+		if (!stream->base64)
+			stream->position += file.size;
 		nt_image_set_close(c->images, i, &file);
 	}
 	return status;
@@ -439,13 +422,6 @@ static nt_status write_with_bin(const composition *c, nt_sink *sink, nt_error *e
 	return status == NT_OK ? write_document(c, bin, false, sink, error) : status;
 }
 
-static nt_status write_output(const composition *c, nt_error *error)
-{
-	if (c->options.format == NT_FORMAT_GLB)
-		return write_glb(c, c->main, error);
-	return c->options.embed ? write_embedded(c, c->main, error) : write_with_bin(c, c->main, error);
-}
-
 nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_output *output,
 	nt_error *error)
 {
@@ -468,7 +444,8 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 	if (status == NT_OK)
 		status = plan_scene(&c, error);
 	if (status == NT_OK)
-		status = write_output(&c, error);
+		status = options->format == NT_FORMAT_GLB ? write_glb(&c, c.main, error)
+			: options->embed ? write_embedded(&c, c.main, error) : write_with_bin(&c, c.main, error);
 	nt_image_set_free(c.images);
 	nt_model_free(c.model);
 	nt_arena_free(&c.arena);

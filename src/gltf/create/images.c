@@ -84,17 +84,12 @@ static image_entry *entry_of(const nt_image_set *set, uint32_t request)
 	return &set->entries[nt_textures_result(set->options.textures, request)];
 }
 
-/* Only who asks for links gets one that leads to nothing. */
-static bool is_usable(const nt_image_set *set, const nt_texture *image)
-{
-	return image->type != NT_IMAGE_OTHER &&
-	       (image->sources[0]->found != NT_IMAGE_MISSING || set->options.images == NT_IMAGES_LINK);
-}
-
 nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *output, nt_error *error)
 {
 	image_entry *entry = entry_of(set, map->request);
-	if (!entry || !is_usable(set, entry->image))
+	/* only who asks for links gets one that leads to nothing */
+	if (!entry || entry->image->type == NT_IMAGE_OTHER ||
+		(entry->image->sources[0]->found == NT_IMAGE_MISSING && set->options.images != NT_IMAGES_LINK))
 		return NT_OK;
 	entry->wants[map->placement.clamp] = true;
 	if (entry->used)
@@ -156,13 +151,6 @@ static nt_status write_file(nt_image_set *set, image_entry *entry, nt_output *ou
 	return status;
 }
 
-/* Name of an image in the document: the file's, without its ending. */
-static char *image_title(const nt_texture *image)
-{
-	const char *dot = strrchr(image->name, '.');
-	return strndup(image->name, dot ? (size_t)(dot - image->name) : strlen(image->name));
-}
-
 static uint32_t add_embedded(image_entry *entry, const char *title, nt_model *model, uint64_t *buffer_size)
 {
 	const uint64_t size = entry->image->bytes ? entry->image->size : entry->image->sources[0]->identity.size;
@@ -182,7 +170,9 @@ static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_model *mode
 			return status;
 	}
 	nt_buffer uri = {0};
-	char *title = image_title(entry->image);
+	/* its name in the document: the file's, without its ending */
+	const char *name = entry->image->name, *dot = strrchr(name, '.');
+	char *title = strndup(name, dot ? (size_t)(dot - name) : strlen(name));
 	uint32_t image = NT_MODEL_NONE;
 	if (entry->embedded) {
 		image = add_embedded(entry, title, model, buffer_size);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The images of a new glTF document: of the results that its materials use (image/textures.h), each linked, copied or
- * embedded. An image that was made is a file of nobody yet, so where others are linked it is written beside the
- * output. An image that several materials use is one image, and a texture for each of its samplers.
+ * The images and materials of a new glTF document. Of the results that its materials use (image/textures.h) each is
+ * linked, copied or embedded. An image that was made is a file of nobody yet, so where others are linked it is written
+ * beside the output. An image that several materials use is one image, and a texture for each of its samplers.
  */
 #ifndef NT_GLTF_CREATE_IMAGES_H
 #define NT_GLTF_CREATE_IMAGES_H
@@ -43,5 +43,14 @@ uint32_t nt_image_set_embedded(const nt_image_set *set, uint32_t from);
 nt_status nt_image_set_open(const nt_image_set *set, uint32_t number, nt_file *file,
 	uint64_t *offset, nt_error *error);
 void nt_image_set_close(const nt_image_set *set, uint32_t number, nt_file *file);
+
+/* ---- materials: material.c ---- */
+
+/* Says that the document uses the images of a material. Returns what nt_image_set_use() does. */
+nt_status nt_new_material_use(const nt_material *material, nt_image_set *images, nt_output *output, nt_error *error);
+
+/* Adds it to the document, after the images. images: NULL: without textures and what else takes texture coordinates.
+ * Returns its number. */
+uint32_t nt_new_material_add(const nt_material *material, const nt_image_set *images, nt_model *model);
 
 #endif

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Materials of new documents: see material.h. Where a map is there its own factor counts, else the material's number.
+ * Materials of new documents: see images.h. Where a map is there its own factor counts, else the material's number.
  */
-#include "gltf/create/material.h"
+#include "gltf/create/images.h"
 
 #include <math.h>
 
@@ -31,15 +31,10 @@ static float factor_of(const nt_image_set *images, const nt_map *map, float othe
 	return clamp01(texture->texture == NT_MODEL_NONE ? otherwise : map->factor);
 }
 
-static bool is_black(const float color[3])
-{
-	return color[0] == 0 && color[1] == 0 && color[2] == 0;
-}
-
 /* Colours, beside a texture none that would hide it. */
 static void take_color(const float *from, const nt_model_use *texture, float most, float *to)
 {
-	const bool hides = texture->texture != NT_MODEL_NONE && is_black(from);
+	const bool hides = texture->texture != NT_MODEL_NONE && from[0] == 0 && from[1] == 0 && from[2] == 0;
 	for (int i = 0; i < 3; i++)
 		to[i] = hides ? 1 : from[i] < most ? from[i] : most;
 }

@@ -34,11 +34,6 @@ struct nt_model {
 
 /* ---- values ---- */
 
-static void put_text(nt_buffer *out, const char *text)
-{
-	nt_buffer_text(out, text);
-}
-
 static void put_uint(nt_buffer *out, uint64_t value)
 {
 	char digits[20];
@@ -78,7 +73,7 @@ static void put_ascii(nt_buffer *out, char c)
 /* A string of any bytes; those that are no UTF-8 are Latin-1, where the code point is the byte. */
 static void put_string(nt_buffer *out, const char *text)
 {
-	put_text(out, "\"");
+	nt_buffer_text(out, "\"");
 	while (*text) {
 		const size_t length = nt_utf8_length(text, SIZE_MAX);
 		const unsigned byte = (unsigned char)*text;
@@ -90,7 +85,7 @@ static void put_string(nt_buffer *out, const char *text)
 			nt_buffer_append(out, (char[]){(char)(0xc0 | byte >> 6), (char)(0x80 | (byte & 0x3f))}, 2);
 		text += length ? length : 1;
 	}
-	put_text(out, "\"");
+	nt_buffer_text(out, "\"");
 }
 
 /* ---- members ---- */
@@ -100,7 +95,7 @@ static nt_buffer *begin_object(nt_model *model, int array, uint32_t *number)
 {
 	nt_buffer *out = &model->arrays[array];
 	*number = model->counts[array]++;
-	put_text(out, *number ? ",{" : "{");
+	nt_buffer_text(out, *number ? ",{" : "{");
 	return out;
 }
 
@@ -108,9 +103,9 @@ static nt_buffer *begin_object(nt_model *model, int array, uint32_t *number)
 static void put_key(nt_buffer *out, const char *key)
 {
 	const char last = out->size ? out->data[out->size - 1] : '{';
-	put_text(out, last == '{' ? "\"" : ",\"");
-	put_text(out, key);
-	put_text(out, "\":");
+	nt_buffer_text(out, last == '{' ? "\"" : ",\"");
+	nt_buffer_text(out, key);
+	nt_buffer_text(out, "\":");
 }
 
 static void put_index(nt_buffer *out, const char *key, uint32_t index)
@@ -136,20 +131,29 @@ static void put_bounds(nt_buffer *out, const char *key, const float *values, int
 		return;
 	put_key(out, key);
 	for (int i = 0; i < count; i++) {
-		put_text(out, i ? "," : "[");
+		nt_buffer_text(out, i ? "," : "[");
 		put_double(out, values[i]);
 	}
-	put_text(out, "]");
+	nt_buffer_text(out, "]");
 }
 
 static void put_floats(nt_buffer *out, const char *key, const float *values, int count)
 {
 	put_key(out, key);
 	for (int i = 0; i < count; i++) {
-		put_text(out, i ? "," : "[");
+		nt_buffer_text(out, i ? "," : "[");
 		put_float(out, values[i]);
 	}
-	put_text(out, "]");
+	nt_buffer_text(out, "]");
+}
+
+/* A number that is not the one which is meant where none stands. */
+static void put_factor(nt_buffer *out, const char *key, float value, float otherwise)
+{
+	if (value == otherwise)
+		return;
+	put_key(out, key);
+	put_float(out, value);
 }
 
 static void add_name(nt_model *model, name_list *list, const char *name)
@@ -168,13 +172,13 @@ static void begin_texture(nt_model *model, nt_buffer *out, const char *key, cons
 {
 	static const char transform[] = "KHR_texture_transform";
 	put_key(out, key);
-	put_text(out, "{");
+	nt_buffer_text(out, "{");
 	if (use->moved) {
 		add_name(model, &model->used, transform);
 		nt_buffer_format(out, "\"extensions\":{\"%s\":{", transform);
 		put_floats(out, "offset", use->offset, 2);
 		put_floats(out, "scale", use->scale, 2);
-		put_text(out, "}}");
+		nt_buffer_text(out, "}}");
 	}
 	put_index(out, "index", use->texture);
 }
@@ -184,7 +188,7 @@ static void put_texture(nt_model *model, nt_buffer *out, const char *key, const 
 	if (use->texture == NT_MODEL_NONE)
 		return;
 	begin_texture(model, out, key, use);
-	put_text(out, "}");
+	nt_buffer_text(out, "}");
 }
 
 /* ---- additions ---- */
@@ -214,7 +218,7 @@ uint32_t nt_model_view(nt_model *model, uint64_t offset, uint64_t length, int ta
 {
 	uint32_t number;
 	nt_buffer *out = begin_object(model, VIEWS, &number);
-	put_text(out, "\"buffer\":0,\"byteLength\":");
+	nt_buffer_text(out, "\"buffer\":0,\"byteLength\":");
 	put_uint(out, length);
 	if (offset) {
 		put_key(out, "byteOffset");
@@ -222,7 +226,7 @@ uint32_t nt_model_view(nt_model *model, uint64_t offset, uint64_t length, int ta
 	}
 	if (target != NT_GLTF_NO_TARGET)
 		put_index(out, "target", (uint32_t)target);
-	put_text(out, "}");
+	nt_buffer_text(out, "}");
 	return number;
 }
 
@@ -238,10 +242,10 @@ uint32_t nt_model_add_accessor(nt_model *model, const nt_model_accessor *accesso
 	put_bounds(out, "max", accessor->max, accessor->components);
 	put_bounds(out, "min", accessor->min, accessor->components);
 	if (accessor->normalized)
-		put_text(out, ",\"normalized\":true");
+		nt_buffer_text(out, ",\"normalized\":true");
 	put_key(out, "type");
 	put_string(out, types[accessor->components - 1]);
-	put_text(out, "}");
+	nt_buffer_text(out, "}");
 	return number;
 }
 
@@ -252,7 +256,7 @@ uint32_t nt_model_image_uri(nt_model *model, const char *name, const char *uri)
 	put_name(out, name);
 	put_key(out, "uri");
 	put_string(out, uri);
-	put_text(out, "}");
+	nt_buffer_text(out, "}");
 	return number;
 }
 
@@ -264,17 +268,7 @@ uint32_t nt_model_image_view(nt_model *model, const char *name, uint32_t view, c
 	put_key(out, "mimeType");
 	put_string(out, media_type);
 	put_name(out, name);
-	put_text(out, "}");
-	return number;
-}
-
-/* The only sampler that is needed: what repeats has none. */
-static uint32_t clamping_sampler(nt_model *model)
-{
-	uint32_t number = 0;
-	if (!model->counts[SAMPLERS])
-		nt_buffer_format(begin_object(model, SAMPLERS, &number), "\"wrapS\":%d,\"wrapT\":%d}",
-			NT_GLTF_CLAMP_TO_EDGE, NT_GLTF_CLAMP_TO_EDGE);
+	nt_buffer_text(out, "}");
 	return number;
 }
 
@@ -286,9 +280,14 @@ uint32_t nt_model_texture(nt_model *model, uint32_t image, bool clamp, const cha
 		nt_buffer_format(out, "\"extensions\":{\"%s\":{\"source\":%u}}", extension, image);
 		nt_model_require(model, extension);
 	}
-	put_index(out, "sampler", clamp ? clamping_sampler(model) : NT_MODEL_NONE);
+	/* the only sampler that is needed: what repeats has none */
+	uint32_t sampler = clamp ? 0 : NT_MODEL_NONE;
+	if (clamp && !model->counts[SAMPLERS])
+		nt_buffer_format(begin_object(model, SAMPLERS, &sampler), "\"wrapS\":%d,\"wrapT\":%d}",
+			NT_GLTF_CLAMP_TO_EDGE, NT_GLTF_CLAMP_TO_EDGE);
+	put_index(out, "sampler", sampler);
 	put_index(out, "source", extension ? NT_MODEL_NONE : image);
-	put_text(out, "}");
+	nt_buffer_text(out, "}");
 	return number;
 }
 
@@ -314,50 +313,23 @@ static void put_reflection(nt_model *model, nt_buffer *out, const nt_model_mater
 		m->metallic == 1 && m->roughness == 1)
 		return;
 	put_key(out, "pbrMetallicRoughness");
-	put_text(out, "{");
+	nt_buffer_text(out, "{");
 	if (!white)
 		put_floats(out, "baseColorFactor", color, 4);
 	put_texture(model, out, "baseColorTexture", &m->base_color_texture);
-	if (m->metallic != 1) {
-		put_key(out, "metallicFactor");
-		put_float(out, m->metallic);
-	}
+	put_factor(out, "metallicFactor", m->metallic, 1);
 	put_texture(model, out, "metallicRoughnessTexture", &m->metallic_roughness_texture);
-	if (m->roughness != 1) {
-		put_key(out, "roughnessFactor");
-		put_float(out, m->roughness);
-	}
-	put_text(out, "}");
-}
-
-static void put_normal_texture(nt_model *model, nt_buffer *out, const nt_model_material *m)
-{
-	if (m->normal_texture.texture == NT_MODEL_NONE)
-		return;
-	begin_texture(model, out, "normalTexture", &m->normal_texture);
-	if (m->normal_scale != 1) {
-		put_key(out, "scale");
-		put_float(out, m->normal_scale);
-	}
-	put_text(out, "}");
-}
-
-/* A number that is not the one which is meant where none stands. */
-static void put_factor(nt_buffer *out, const char *key, float value, float otherwise)
-{
-	if (value == otherwise)
-		return;
-	put_key(out, key);
-	put_float(out, value);
+	put_factor(out, "roughnessFactor", m->roughness, 1);
+	nt_buffer_text(out, "}");
 }
 
 /* Begins an extension of a material, which is the first where nothing stands in `out`. */
 static void begin_extension(nt_model *model, nt_buffer *out, const char *name)
 {
 	add_name(model, &model->used, name);
-	put_text(out, out->size ? "}" : "{");
+	nt_buffer_text(out, out->size ? "}" : "{");
 	put_key(out, name);
-	put_text(out, "{");
+	nt_buffer_text(out, "{");
 }
 
 /* The object of a material's extensions, without its end; nothing, where it has none. */
@@ -407,13 +379,17 @@ uint32_t nt_model_add_material(nt_model *model, const nt_model_material *materia
 	if (extensions.size) {
 		put_key(out, "extensions");
 		nt_buffer_append(out, extensions.data, extensions.size);
-		put_text(out, "}}");
+		nt_buffer_text(out, "}}");
 	}
 	put_name(out, material->name);
-	put_normal_texture(model, out, material);
+	if (material->normal_texture.texture != NT_MODEL_NONE) {
+		begin_texture(model, out, "normalTexture", &material->normal_texture);
+		put_factor(out, "scale", material->normal_scale, 1);
+		nt_buffer_text(out, "}");
+	}
 	put_texture(model, out, "occlusionTexture", &material->occlusion_texture);
 	put_reflection(model, out, material);
-	put_text(out, "}");
+	nt_buffer_text(out, "}");
 	out->failed |= extensions.failed;
 	nt_buffer_free(&extensions);
 	return number;
@@ -423,7 +399,7 @@ uint32_t nt_model_add_material(nt_model *model, const nt_model_material *materia
 static void end_mesh(nt_model *model)
 {
 	if (model->in_mesh)
-		put_text(&model->arrays[MESHES], "]}");
+		nt_buffer_text(&model->arrays[MESHES], "]}");
 	model->in_mesh = false;
 }
 
@@ -434,7 +410,7 @@ uint32_t nt_model_mesh(nt_model *model, const char *name)
 	nt_buffer *out = begin_object(model, MESHES, &number);
 	put_name(out, name);
 	put_key(out, "primitives");
-	put_text(out, "[");
+	nt_buffer_text(out, "[");
 	model->in_mesh = true;
 	model->has_primitive = false;
 	return number;
@@ -448,15 +424,15 @@ void nt_model_primitive(nt_model *model, const nt_model_attribute *attributes, s
 		model->misused = true;
 		return;
 	}
-	put_text(out, model->has_primitive ? ",{\"attributes\":{" : "{\"attributes\":{");
+	nt_buffer_text(out, model->has_primitive ? ",{\"attributes\":{" : "{\"attributes\":{");
 	model->has_primitive = true;
 	for (size_t i = 0; i < attribute_count; i++)
 		put_index(out, attributes[i].name, attributes[i].accessor);
-	put_text(out, "}");
+	nt_buffer_text(out, "}");
 	put_index(out, "indices", indices);
 	put_index(out, "material", material);
 	put_index(out, "mode", NT_GLTF_TRIANGLES);
-	put_text(out, "}");
+	nt_buffer_text(out, "}");
 }
 
 static bool is_identity(const double matrix[16])
@@ -474,15 +450,15 @@ uint32_t nt_model_node(nt_model *model, const char *name, uint32_t mesh, const d
 	if (!is_identity(matrix)) {
 		put_key(out, "matrix");
 		for (int i = 0; i < 16; i++) {
-			put_text(out, i ? "," : "[");
+			nt_buffer_text(out, i ? "," : "[");
 			put_double(out, matrix[i]);
 		}
-		put_text(out, "]");
+		nt_buffer_text(out, "]");
 	}
 	put_index(out, "mesh", mesh);
 	put_name(out, name);
-	put_text(out, "}");
-	put_text(&model->arrays[ROOTS], model->counts[ROOTS]++ ? "," : "");
+	nt_buffer_text(out, "}");
+	nt_buffer_text(&model->arrays[ROOTS], model->counts[ROOTS]++ ? "," : "");
 	put_uint(&model->arrays[ROOTS], number);
 	return number;
 }
@@ -513,22 +489,22 @@ static void put_extensions(nt_buffer *out, const char *key, const name_list *lis
 		else
 			nt_buffer_format(out, ",\"%s\"", list->names[i]);
 	}
-	put_text(out, list->count ? "]" : "");
+	nt_buffer_text(out, list->count ? "]" : "");
 }
 
 /* The buffers' member and the document's end; where the base64 goes is after *cut bytes. */
 static void put_buffers(nt_buffer *out, uint64_t length, nt_model_buffer kind, const nt_model_file *file, size_t *cut)
 {
-	put_text(out, ",\"buffers\":[{\"byteLength\":");
+	nt_buffer_text(out, ",\"buffers\":[{\"byteLength\":");
 	put_uint(out, length);
 	if (kind == NT_MODEL_FILE)
 		nt_buffer_format(out, ",\"uri\":\"%s\"", file->uri);
 	if (kind == NT_MODEL_FILE && file->extras)
 		nt_buffer_format(out, ",\"extras\":%s", file->extras);
 	if (kind == NT_MODEL_EMBEDDED)
-		put_text(out, ",\"uri\":\"data:application/octet-stream;base64,");
+		nt_buffer_text(out, ",\"uri\":\"data:application/octet-stream;base64,");
 	*cut = out->size;
-	put_text(out, kind == NT_MODEL_EMBEDDED ? "\"}]" : "}]");
+	nt_buffer_text(out, kind == NT_MODEL_EMBEDDED ? "\"}]" : "}]");
 }
 
 nt_status nt_model_json(nt_model *model, uint64_t buffer_length, nt_model_buffer buffer,
@@ -545,7 +521,7 @@ nt_status nt_model_json(nt_model *model, uint64_t buffer_length, nt_model_buffer
 	size_t cut = own->size;
 	if (buffer_length)
 		put_buffers(own, buffer_length, buffer, file, &cut);
-	put_text(own, "}");
+	nt_buffer_text(own, "}");
 	bool failed = own->failed;
 	for (int i = 0; i < ARRAY_COUNT; i++)
 		failed |= model->arrays[i].failed;

@@ -30,11 +30,6 @@ static size_t vertex_count_after_split(const nt_mesh *mesh)
 	return mesh->vertex_count + mesh->split.source_count;
 }
 
-static size_t triangle_count(const nt_mesh *mesh)
-{
-	return mesh->corner_count - 2 * mesh->face_count;
-}
-
 /* A mesh with one primitive that is drawn as it is. */
 static nt_new_primitive whole_primitive(const nt_mesh *mesh)
 {
@@ -54,7 +49,7 @@ static uint32_t *sort_triangles(const nt_mesh *mesh, nt_arena *arena, size_t *fi
 {
 	const size_t primitives = mesh->primitive_count ? mesh->primitive_count : 1;
 	const uint32_t *of_face = primitives > 1 ? mesh->face_primitive : NULL;
-	uint32_t *sorted = nt_arena_alloc(arena, 3 * triangle_count(mesh), sizeof *sorted);
+	uint32_t *sorted = nt_arena_alloc(arena, 3 * (mesh->corner_count - 2 * mesh->face_count), sizeof *sorted);
 	if (!sorted)
 		return NULL;
 	memset(first, 0, (primitives + 1) * sizeof *first);
@@ -264,14 +259,6 @@ static bool is_unit(const float n[3])
 	return fabsf(square - 1) <= 1e-3f;
 }
 
-static void make_unit(float n[3])
-{
-	const double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
-	const bool usable = length > 0 && isfinite(length);
-	for (int k = 0; k < 3; k++)
-		n[k] = usable ? (float)(n[k] / length) : k == 2;
-}
-
 static bool all_unit(const float *normals, size_t count)
 {
 	bool unit = true;
@@ -301,24 +288,16 @@ static void gather(const nt_new_primitive *primitive, nt_attribute attribute, si
 	}
 }
 
-static void flip_v(float *texcoords, size_t count)
-{
-	for (size_t i = 0; i < count; i++)
-		texcoords[2 * i + 1] = 1 - texcoords[2 * i + 1];
-}
-
 static void make_units(float *normals, size_t count)
 {
 	for (size_t i = 0; i < count; i++)
-		if (!is_unit(normals + 3 * i))
-			make_unit(normals + 3 * i);
-}
-
-/* B = cross(N, T) * w, in place of the tangents: row i of the result ends before row i of them. */
-static void make_bitangents(const float *normals, float *tangents, size_t count)
-{
-	for (size_t i = 0; i < count; i++)
-		nt_bitangent(normals + 3 * i, tangents + 4 * i, tangents + 3 * i);
+		if (!is_unit(normals + 3 * i)) {
+			float *n = normals + 3 * i;
+			const double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
+			const bool usable = length > 0 && isfinite(length);
+			for (int k = 0; k < 3; k++)
+				n[k] = usable ? (float)(n[k] / length) : k == 2;
+		}
 }
 
 nt_status nt_new_primitive_write_attribute(const nt_new_primitive *primitive, nt_attribute attribute,
@@ -345,13 +324,16 @@ nt_status nt_new_primitive_write_attribute(const nt_new_primitive *primitive, nt
 		const size_t count = left < BLOCK_ROWS ? left : BLOCK_ROWS;
 		gather(primitive, attribute, begin, count, block);
 		if (attribute == NT_ATTRIBUTE_TEXCOORD)
-			flip_v(block, count);
+			for (size_t i = 0; i < count; i++)
+				block[2 * i + 1] = 1 - block[2 * i + 1];
 		if (attribute == NT_ATTRIBUTE_NORMAL)
 			make_units(block, count);
 		if (attribute == NT_ATTRIBUTE_BITANGENT) {
 			gather(primitive, NT_ATTRIBUTE_NORMAL, begin, count, normals);
 			make_units(normals, count);
-			make_bitangents(normals, block, count);
+			/* B = cross(N, T) * w in place of the tangents: row i of it ends before row i of them */
+			for (size_t i = 0; i < count; i++)
+				nt_bitangent(normals + 3 * i, block + 4 * i, block + 3 * i);
 		}
 		const nt_status status = write(user, block, count * row_bytes, error);
 		if (status != NT_OK)
