@@ -14,11 +14,7 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/parallel.h"
 #include "ext/openmesh.h"
-
-/* Triangles that are worth a thread. */
-enum { GRAIN = 32768 };
 
 /* A run of edges in walking order, in the arrays of `runs`. */
 typedef struct run {
@@ -97,45 +93,31 @@ typedef struct vicinity {
 	uint8_t *marked;     /* [3 * triangle_count] */
 } vicinity;
 
-typedef struct near_search {
-	const ends *e;
-	uint64_t *near; /* [triangle_count] bits */
-} near_search;
-
-/* Marks the triangles that have edges and an end. */
-static void find_near(void *context, size_t begin, size_t end, unsigned slot)
-{
-	const near_search *search = context;
-	const nt_surface *s = search->e->s;
-	const uint64_t *touched = search->e->touched;
-	(void)slot;
-	for (size_t t = begin; t < end; t++)
-		if ((nt_bit(touched, nt_side_point(s, 3 * t)) || nt_bit(touched, nt_side_point(s, 3 * t + 1)) ||
-			    nt_bit(touched, nt_side_point(s, 3 * t + 2))) && nt_has_edges(s, t))
-			nt_bit_set(search->near, t);
-}
-
-static nt_status find_vicinity(const ends *e, const nt_marks *marks, unsigned threads, nt_scratch *scratch, vicinity *v)
+/* Of triangles that have edges and an end. */
+static nt_status find_vicinity(const ends *e, const nt_marks *marks, nt_scratch *scratch, vicinity *v)
 {
 	*v = (vicinity){0};
 	const nt_surface *s = e->s;
 	const size_t words = nt_bit_words(s->triangle_count);
-	const near_search search = {e, nt_scratch_alloc(scratch, words, sizeof *search.near)};
+	uint64_t *near = nt_scratch_alloc(scratch, words, sizeof *near);
 	uint32_t *number = nt_scratch_alloc(scratch, s->point_count, sizeof *number);
-	if (!number || !search.near)
+	if (!number || !near)
 		return NT_ERROR_MEMORY;
 	memset(number, 0xff, s->point_count * sizeof *number);
-	memset(search.near, 0, words * sizeof *search.near);
-	nt_parallel_ranges(threads, s->triangle_count, GRAIN, find_near, (void *)&search);
-	for (size_t word = 0; word < words; word++)
-		v->triangle_count += (size_t)__builtin_popcountll(search.near[word]);
+	memset(near, 0, words * sizeof *near);
+	for (size_t t = 0; t < s->triangle_count; t++)
+		if ((nt_bit(e->touched, nt_side_point(s, 3 * t)) || nt_bit(e->touched, nt_side_point(s, 3 * t + 1)) ||
+			    nt_bit(e->touched, nt_side_point(s, 3 * t + 2))) && nt_has_edges(s, t)) {
+			nt_bit_set(near, t);
+			v->triangle_count++;
+		}
 	v->triangles = nt_scratch_alloc(scratch, 3 * v->triangle_count, sizeof *v->triangles);
 	v->origin = nt_scratch_alloc(scratch, v->triangle_count, sizeof *v->origin);
 	v->points = nt_scratch_alloc(scratch, 3 * v->triangle_count, sizeof *v->points);
 	v->marked = nt_scratch_alloc(scratch, 3 * v->triangle_count, 1);
 	if (!v->triangles || !v->origin || !v->points || !v->marked)
 		return NT_ERROR_MEMORY;
-	for (size_t n = 0, t = 0; (t = nt_bit_next(search.near, t, s->triangle_count)) < s->triangle_count; n++, t++) {
+	for (size_t n = 0, t = 0; (t = nt_bit_next(near, t, s->triangle_count)) < s->triangle_count; n++, t++) {
 		for (size_t k = 0; k < 3; k++) {
 			const uint32_t point = nt_side_point(s, 3 * t + k);
 			if (number[point] == NT_NONE) {
@@ -158,15 +140,6 @@ static uint32_t original_side(const vicinity *v, uint32_t side)
 	return side == NT_OPEN ? NT_NONE : 3 * v->origin[side / 3] + side % 3;
 }
 
-/* The marked one of a step's two sides. */
-static uint32_t marked_side(const vicinity *v, const uint64_t *marked, uint32_t left, uint32_t right)
-{
-	const uint32_t a = original_side(v, left), b = original_side(v, right);
-	if (a != NT_NONE && nt_bit(marked, a))
-		return a;
-	return b != NT_NONE && nt_bit(marked, b) ? b : NT_NONE;
-}
-
 static void add_run(runs *r, const ends *e, size_t first, bool closed)
 {
 	const size_t count = r->side_count - first;
@@ -184,7 +157,12 @@ static void take_walk(const ends *e, const vicinity *v, const nt_walks *walks, s
 	const size_t first = r->side_count;
 	bool whole = true;
 	for (size_t step = walks->first[walk]; step < walks->first[walk + 1]; step++) {
-		const uint32_t side = marked_side(v, marks->sides, walks->left[step], walks->right[step]);
+		/* the marked one of the step's two sides */
+		uint32_t side = original_side(v, walks->left[step]);
+		if (side == NT_NONE || !nt_bit(marks->sides, side))
+			side = original_side(v, walks->right[step]);
+		if (side != NT_NONE && !nt_bit(marks->sides, side))
+			side = NT_NONE;
 		if (side == NT_NONE || nt_bit(taken, side)) {
 			whole = false;
 			continue;
@@ -346,8 +324,8 @@ static nt_status allocate(nt_scratch *scratch, size_t edges, runs *r, nt_chains 
 	return complete ? NT_OK : NT_ERROR_MEMORY;
 }
 
-nt_status nt_chains_trace(const nt_surface *surface, const nt_marks *marks, unsigned threads, nt_scratch *scratch,
-	nt_chains *chains, nt_error *error)
+nt_status nt_chains_trace(const nt_surface *surface, const nt_marks *marks, nt_scratch *scratch, nt_chains *chains,
+	nt_error *error)
 {
 	const size_t sides = 3 * surface->triangle_count, words = nt_bit_words(sides);
 	runs r;
@@ -367,7 +345,7 @@ nt_status nt_chains_trace(const nt_surface *surface, const nt_marks *marks, unsi
 	memset(taken, 0, words * sizeof *taken);
 	if (marks->conflicts || any_fork(&e, marks, degree)) {
 		vicinity v;
-		status = find_vicinity(&e, marks, threads, scratch, &v);
+		status = find_vicinity(&e, marks, scratch, &v);
 		if (!status)
 			status = take_walks(&e, &v, marks, taken, &r, &chains->left_out, error);
 		if (status)

@@ -35,7 +35,7 @@ typedef struct nt_marks {
  *
  * Everything is in scratch. Returns NT_OK, NT_ERROR_MEMORY, or NT_ERROR_MODULE and what else opening a module comes to.
  */
-nt_status nt_chains_trace(const nt_surface *surface, const nt_marks *marks, unsigned threads, nt_scratch *scratch,
-	nt_chains *chains, nt_error *error);
+nt_status nt_chains_trace(const nt_surface *surface, const nt_marks *marks, nt_scratch *scratch, nt_chains *chains,
+	nt_error *error);
 
 #endif

@@ -31,9 +31,6 @@ static const double DEGREES = 57.29577951308232;
 /* Blocks that a thread takes at a time. What is found in them is joined in their order. */
 enum { PART = 128 };
 
-/* Triangles or vertices that are worth a thread. */
-enum { GRAIN = 32768 };
-
 /* What is found in the triangles of a part. */
 typedef struct triangle_part {
 	nt_tally flat, no_uv_area, near, against;
@@ -338,12 +335,7 @@ static nt_status check_triangles(nt_check *check)
 /* Normals whose squared length lies between these have unit length for certain. */
 static const double LEAST_UNIT = 0.987, GREATEST_UNIT = 1.0134;
 
-typedef struct odd_search {
-	const nt_check *check;
-	uint64_t *odd; /* [vertex_count] bits */
-	bool found;
-} odd_search;
-
+/* Whether there may be something to say about a vertex. */
 static bool is_odd(const nt_mesh *mesh, size_t v)
 {
 	if (!is_finite(mesh->positions + 3 * v, 3) || (mesh->texcoords && !is_finite(mesh->texcoords + 2 * v, 2)))
@@ -355,44 +347,32 @@ static bool is_odd(const nt_mesh *mesh, size_t v)
 	return !(square > LEAST_UNIT && square < GREATEST_UNIT);
 }
 
-/* Marks the vertices of triangles that there may be something to say about. */
-static void find_odd(void *context, size_t begin, size_t end, unsigned slot)
-{
-	odd_search *search = context;
-	const nt_check *check = search->check;
-	bool found = false;
-	(void)slot;
-	for (size_t v = begin; v < end; v++) {
-		if (check->surface.points[v] == NT_NONE || !is_odd(check->mesh, v))
-			continue;
-		nt_bit_set(search->odd, v);
-		found = true;
-	}
-	if (found)
-		__atomic_store_n(&search->found, true, __ATOMIC_RELAXED);
-}
-
 /* Each vertex that a triangle uses, once. */
 static nt_status check_vertices(nt_check *check)
 {
 	const nt_surface *s = &check->surface;
 	const nt_mesh *mesh = check->mesh;
 	const size_t words = nt_bit_words(mesh->vertex_count);
-	odd_search search = {.check = check, .odd = nt_scratch_alloc(check->scratch, words, sizeof *search.odd)};
-	if (!search.odd)
+	uint64_t *odd = nt_scratch_alloc(check->scratch, words, sizeof *odd);
+	bool any = false;
+	if (!odd)
 		return NT_ERROR_MEMORY;
-	memset(search.odd, 0, words * sizeof *search.odd);
-	nt_parallel_ranges(nt_thread_count(check->options->threads), mesh->vertex_count, GRAIN, find_odd, &search);
+	memset(odd, 0, words * sizeof *odd);
+	for (size_t v = 0; v < mesh->vertex_count; v++)
+		if (s->points[v] != NT_NONE && is_odd(mesh, v)) {
+			nt_bit_set(odd, v);
+			any = true;
+		}
 	nt_tally position = {.code = NT_CODE_POS_NOT_FINITE};
 	nt_tally texcoord = {.code = NT_CODE_UV_NOT_FINITE};
 	nt_tally zero = {.code = NT_CODE_MESH_NORMAL_ZERO};
 	nt_tally non_unit = {.code = NT_CODE_MESH_NORMAL_NON_UNIT};
 	double worst = 1.0;
-	for (size_t c = 0; search.found && c < 3 * s->triangle_count; c++) {
+	for (size_t c = 0; any && c < 3 * s->triangle_count; c++) {
 		const uint32_t v = nt_side_vertex(s, c);
-		if (!nt_bit(search.odd, v))
+		if (!nt_bit(odd, v))
 			continue;
-		nt_bit_clear(search.odd, v);
+		nt_bit_clear(odd, v);
 		if (!is_finite(mesh->positions + 3 * (size_t)v, 3))
 			nt_tally_vertex(check, &position, v, NAN);
 		if (mesh->texcoords && !is_finite(mesh->texcoords + 2 * (size_t)v, 2))

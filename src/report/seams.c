@@ -14,7 +14,6 @@
 #include <string.h>
 #include "base/angle.h"
 #include "base/dvec.h"
-#include "base/parallel.h"
 #include "report/chains.h"
 
 /* A seam lies in a plane when its points keep within this part of the mesh's extent. */
@@ -334,8 +333,7 @@ static nt_status trace_boundary(nt_check *check)
 	nt_chains chains;
 	const nt_marks marks = {.sides = check->boundary, .count = check->facts->boundary_edges,
 		.conflicts = any_conflict(check)};
-	const nt_status status = nt_chains_trace(&check->surface, &marks, nt_thread_count(check->options->threads),
-		check->scratch, &chains, check->error);
+	const nt_status status = nt_chains_trace(&check->surface, &marks, check->scratch, &chains, check->error);
 	for (size_t i = 0; !status && i < chains.count; i++) {
 		if (chains.closed[i])
 			check->facts->boundary_loops++;
@@ -353,8 +351,7 @@ static nt_status trace_seams(nt_check *check)
 	nt_chains chains;
 	const nt_marks marks = {.sides = check->mirrors, .against = check->mirrors_against,
 		.count = check->mirror_edge_count, .conflicts = any_conflict(check)};
-	nt_status status = nt_chains_trace(&check->surface, &marks, nt_thread_count(check->options->threads),
-		check->scratch, &chains, check->error);
+	nt_status status = nt_chains_trace(&check->surface, &marks, check->scratch, &chains, check->error);
 	if (status)
 		return status;
 	facts->seams = nt_arena_alloc(&check->report->arena, chains.count, sizeof *facts->seams);
