@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * UV islands: which are mirrored, which lie on a twin, which are folded.
+ * UV islands: which are mirrored, which overlap others, which are folded.
  *
  * A mirrored island that shares its texture with an unmirrored one is how symmetric models are made. To
  * tell it from a lone one, centroids of its triangles are looked up among the unmirrored triangles of
@@ -25,8 +25,8 @@ enum { SAMPLE_COUNT = 16384, GRID_SIZE = 128 };
  * s. Beyond, points count as not found. */
 static const size_t MESH_VISITS = 1 << 22, TRIANGLE_VISITS = 1 << 10, MOST_VISITS = 100000000;
 
-/* Shares from which on an island counts as lying on another, and as lying on its twin exactly. */
-static const double COVERED_SHARE = 0.5, TWIN_SHARE = 0.95;
+/* Shares from which on an island overlaps another, and overlaps it exactly. */
+static const double COVERED_SHARE = 0.5, EXACT_SHARE = 0.95;
 
 /* ---- what each island is made of ---- */
 
@@ -323,7 +323,7 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 	return NT_OK;
 }
 
-/* ---- folds and twins ---- */
+/* ---- folds and overlapping islands ---- */
 
 /* Texture coordinates of an island, and the point that has them. */
 typedef struct uv_key {
@@ -393,9 +393,9 @@ static void visit_vertices(const nt_check *check, bool mirrored, uint32_t *last,
 	}
 }
 
-/* Sets `twin` of mixed islands: mirrored corners lie on unmirrored corners of the same island, and the
+/* Sets `overlaps_itself` of mixed islands: mirrored corners lie on unmirrored corners of the same island, and the
  * triangles on its triangles. */
-static nt_status find_twins(nt_check *check)
+static nt_status find_overlapping(nt_check *check)
 {
 	const size_t islands = check->facts->island_count;
 	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
@@ -410,8 +410,8 @@ static nt_status find_twins(nt_check *check)
 	for (size_t i = 0; i < islands; i++) {
 		nt_island *island = &check->facts->islands[i];
 		const double corners = (double)(counts[2 * i] + counts[2 * i + 1]);
-		island->twin = island->kind == NT_ISLAND_MIXED && island->covered >= TWIN_SHARE &&
-			counts[2 * i + 1] > 0 && (double)counts[2 * i + 1] >= TWIN_SHARE * corners;
+		island->overlaps_itself = island->kind == NT_ISLAND_MIXED && island->covered >= EXACT_SHARE &&
+			counts[2 * i + 1] > 0 && (double)counts[2 * i + 1] >= EXACT_SHARE * corners;
 	}
 	nt_hash_index_free(&table.index);
 	free(table.keys);
@@ -423,7 +423,7 @@ static nt_status find_twins(nt_check *check)
 
 static nt_code code_of(const nt_island *island)
 {
-	if (island->kind == NT_ISLAND_MIXED && !island->twin)
+	if (island->kind == NT_ISLAND_MIXED && !island->overlaps_itself)
 		return NT_CODE_UV_MIXED_WINDING_ISLAND;
 	return island->kind == NT_ISLAND_MIXED || island->covered >= COVERED_SHARE
 		? NT_CODE_UV_MIRROR_OVERLAP
@@ -500,7 +500,7 @@ nt_status nt_check_islands(nt_check *check)
 	}
 	nt_status status = mirrored ? find_covered(check, mirrored) : NT_OK;
 	if (!status && facts->island_kinds[NT_ISLAND_MIXED])
-		status = find_twins(check);
+		status = find_overlapping(check);
 	if (!status)
 		report_islands(check);
 	return status;

@@ -152,7 +152,7 @@ typedef struct nt_island {
 	double texel_density[2]; /* texels per unit: median by area, least; NaN: not measured, or the size is
 	                            not known */
 	double stretch[2];       /* longest to shortest texel: median by area, greatest; NaN: not measured */
-	bool twin;            /* mixed, but the mirrored part lies point by point on its twin */
+	bool overlaps_itself; /* mixed, but the mirrored part lies point by point on the unmirrored one */
 	float minimum[2], maximum[2]; /* in the source's UV */
 	uint32_t first_triangle;
 	nt_box box;

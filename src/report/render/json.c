@@ -160,7 +160,7 @@ static void put_island(nt_buffer *out, const nt_island *island)
 	by_orientation(out, "triangles", island->triangles);
 	put_float(out, "area", island->area);
 	put_float(out, "covered_share", island->covered);
-	put_bool(out, "twin", island->twin);
+	put_bool(out, "twin", island->overlaps_itself);
 	put_measure(out, "texel_density", island->texel_density);
 	put_measure(out, "stretch", island->stretch);
 	key(out, SAME_LINE, "uv_box");
