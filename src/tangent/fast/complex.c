@@ -27,7 +27,7 @@
  * Time is linear in corners but for directions that really are antiparallel: there every direction of a group may have
  * a sum of its own.
  */
-#include "tangent/fast/complex.h"
+#include "tangent/fast/parts.h"
 
 #include <string.h>
 #include "base/parallel.h"

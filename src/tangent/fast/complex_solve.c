@@ -17,7 +17,6 @@
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "base/vec.h"
-#include "tangent/fast/write.h"
 #include "tangent/usable.h"
 #include "topology/corners.h"
 

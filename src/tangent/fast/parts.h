@@ -164,4 +164,35 @@ static inline size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigne
 enum { NT_TRIANGLE_SUSPECT = NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_COMPLEX |
 			     NT_TRIANGLE_UNCERTAIN };
 
+/* Step 4 without bins: records.c */
+
+/* Adds all triangles to the records of their vertices. The adjacency is made. Returns NMTAN_OK or
+ * NMTAN_ERROR_MEMORY. */
+nmtan_status nt_fast_add(nt_fast *fast, const nt_kernels *kernels);
+
+/* Steps 6 and 8: write.c */
+
+/* Every corner gets the result of its vertex; with fast->sparse those of suspects only. Marks triangles COMPLEX
+ * and COPY. */
+void nt_fast_write(nt_fast *fast, const nt_settled *settled);
+
+/* Writes what a sparse solve left out. */
+void nt_fast_write_rest(nt_fast *fast);
+
+/* Writes the default to a corner that no group reached (step 10 of the spec page). */
+void nt_fast_write_unassigned(const nt_fast *fast, size_t corner);
+
+/* Writes the default to every corner, for a mesh without a sound triangle. */
+void nt_fast_write_defaults(const nt_fast *fast);
+
+/* Corners of triangles that are COPY take the values of others, which must have been written. Returns NMTAN_OK or
+ * NMTAN_ERROR_MEMORY. */
+nmtan_status nt_fast_write_copies(nt_fast *fast);
+
+/* Step 7: complex.c */
+
+/* Solves the vertices whose records are complex and writes their corners. `memory` is what the passes
+ * before have left. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, const nt_settled *settled, nt_borrowed *memory);
+
 #endif

@@ -9,7 +9,7 @@
  * A vertex belongs to the first range that touches it. Later ranges put their contributions aside, and these are
  * added in the end in the order of ranges: every sum is in triangle order, whatever the number of threads.
  */
-#include "tangent/fast/records.h"
+#include "tangent/fast/parts.h"
 
 #include <string.h>
 #include "base/lock.h"

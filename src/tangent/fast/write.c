@@ -2,7 +2,7 @@
 /*
  * Steps 6 and 8 of the fast path: results go from vertices to corners.
  */
-#include "tangent/fast/write.h"
+#include "tangent/fast/parts.h"
 
 #include <string.h>
 #include "base/parallel.h"

@@ -4,7 +4,7 @@
  * vertices have no normal, differences that are no doubles and cancel, signs that are in doubt. All triangles go this
  * way where the caller asks for the scalar path.
  */
-#include "tangent/sums/hard.h"
+#include "tangent/sums/parts.h"
 
 #include "topology/corners.h"
 

@@ -13,7 +13,7 @@
  */
 #include <math.h>
 #include "tangent/fast/turn.h"
-#include "tangent/sums/hard.h"
+#include "tangent/sums/parts.h"
 #include "tangent/weigh.h"
 
 #define LANE_INLINE static inline __attribute__((always_inline))

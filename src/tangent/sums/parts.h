@@ -95,4 +95,12 @@ static inline size_t nt_sums_corner(const nt_sums *s, size_t i)
 	return s->corners ? s->corners[i] : i;
 }
 
+/* Triangles that go by the definition in frames.c, one by one: hard.c */
+
+/* Does triangle t by the definition: its lane of the block, and its sign. */
+void nt_sums_do_hard(const nt_sums *s, size_t t, int lane, nt_sum_block *block);
+
+/* Flags of the face of triangle t, two triangles for a quad, by the exact sign of what is stored. */
+void nt_sums_orient(const nt_sums *s, size_t t);
+
 #endif
