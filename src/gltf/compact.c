@@ -2,19 +2,20 @@
 /*
  * Compact views. Primitives that share one vertex buffer are loaded with the vertices that their own corners use, so
  * that each costs what it uses and not what all of them have together. Vertices keep their order: whoever goes through
- * them in ascending numbers meets them as in the buffer.
+ * them in ascending numbers meets them as in the buffer. One that uses nearly all vertices takes them as they are.
  *
- * A set of bits over the range from the least to the greatest index gives each vertex its number by counting. Where
- * corners are few in a wide range, they are sorted instead: the cost is bounded by corners alone.
+ * A table over the range from the least to the greatest index gives each vertex its number. Where corners are few in a
+ * wide range, they are sorted instead: the cost is bounded by corners alone.
  */
 #include "gltf/compact.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/bits.h"
 
-/* Vertices of the range for each corner, from which on corners are sorted: a bit costs 1/64 of a word. */
-enum { SPARSE = 256 };
+enum {
+	SPARSE = 8, /* vertices of the range for each corner, from which on corners are sorted */
+	MOST = 8    /* all vertices but one in so many are nearly all */
+};
 
 typedef struct range {
 	uint32_t least, most;
@@ -30,32 +31,32 @@ static range find_range(const uint32_t *indices, size_t count)
 	return r;
 }
 
-static nt_status number_by_bits(const uint32_t *indices, size_t corner_count, size_t vertex_count, range r,
+static nt_status number_by_table(const uint32_t *indices, size_t corner_count, size_t vertex_count, range r,
 	nt_arena *arena, nt_compact *view)
 {
-	const size_t size = (size_t)r.most - r.least + 1, words = nt_bit_words(size);
-	uint64_t *bits = nt_calloc(words, sizeof *bits);
-	uint32_t *ranks = nt_alloc(words, sizeof *ranks);
-	if (bits && ranks) {
-		for (size_t c = 0; c < corner_count; c++)
-			bits[(indices[c] - r.least) / 64] |= (uint64_t)1 << (indices[c] - r.least) % 64;
-		view->count = nt_bit_ranks(bits, size, ranks);
-	}
-	const bool all = view->count == vertex_count;
-	if (bits && ranks && !all) {
-		view->vertices = nt_arena_alloc(arena, view->count, sizeof *view->vertices);
-		view->indices = nt_arena_alloc(arena, corner_count, sizeof *view->indices);
-	}
-	if (view->vertices && view->indices) {
-		size_t number = 0;
-		for (size_t v = nt_bit_next(bits, 0, size); v < size; v = nt_bit_next(bits, v + 1, size))
-			view->vertices[number++] = r.least + (uint32_t)v;
-		for (size_t c = 0; c < corner_count; c++)
-			view->indices[c] = nt_bit_rank(bits, ranks, indices[c] - r.least);
-	}
-	free(bits);
-	free(ranks);
-	return all || (view->vertices && view->indices) ? NT_OK : NT_ERROR_MEMORY;
+	const size_t size = (size_t)r.most - r.least + 1;
+	uint32_t *table = nt_calloc(size, sizeof *table);
+	if (!table)
+		return NT_ERROR_MEMORY;
+	for (size_t c = 0; c < corner_count; c++)
+		table[indices[c] - r.least] = 1;
+	for (size_t v = 0; v < size; v++)
+		view->count += table[v];
+	const bool most = view->count >= vertex_count - vertex_count / MOST;
+	if (most)
+		view->count = vertex_count;
+	view->vertices = most ? NULL : nt_arena_alloc(arena, view->count, sizeof *view->vertices);
+	view->indices = most ? NULL : nt_arena_alloc(arena, corner_count, sizeof *view->indices);
+	const bool numbered = view->vertices && view->indices;
+	for (size_t v = 0, number = 0; numbered && v < size; v++)
+		if (table[v]) {
+			view->vertices[number] = r.least + (uint32_t)v;
+			table[v] = (uint32_t)number++;
+		}
+	for (size_t c = 0; numbered && c < corner_count; c++)
+		view->indices[c] = table[indices[c] - r.least];
+	free(table);
+	return most || numbered ? NT_OK : NT_ERROR_MEMORY;
 }
 
 static int compare_numbers(const void *a, const void *b)
@@ -96,7 +97,7 @@ nt_status nt_compact_vertices(const uint32_t *indices, size_t corner_count, size
 	const range r = find_range(indices, corner_count);
 	const nt_status status = ((size_t)r.most - r.least) / SPARSE >= corner_count
 		? number_by_sorting(indices, corner_count, arena, view)
-		: number_by_bits(indices, corner_count, vertex_count, r, arena, view);
+		: number_by_table(indices, corner_count, vertex_count, r, arena, view);
 	if (!status && !view->vertices)
 		memcpy(&view->indices, &indices, sizeof indices);
 	return status;

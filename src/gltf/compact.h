@@ -14,8 +14,9 @@ typedef struct nt_compact {
 	uint32_t *indices;  /* [corner_count] of these vertices */
 } nt_compact;
 
-/* Numbers the vertices that corners use, of a pool of `vertex_count`. indices: [corner_count], each below that. All of
- * the view is in the arena, or `indices` themselves. Returns NT_OK or NT_ERROR_MEMORY. */
+/* Numbers the vertices that corners use, of a pool of `vertex_count`; nearly all are taken for all. indices:
+ * [corner_count], each below that. All of the view is in the arena, or `indices` themselves. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
 nt_status nt_compact_vertices(const uint32_t *indices, size_t corner_count, size_t vertex_count, nt_arena *arena,
 	nt_compact *view);
 
