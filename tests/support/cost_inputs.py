@@ -7,6 +7,7 @@ usemtl    an OBJ that changes its material COUNT times
 same      a GLB of COUNT primitives over one set of accessors, 43 218 triangles each
 windows   a GLB of COUNT primitives over one grid of SIDE (118) quads squared, each with another window of its 16-bit
           indices; the texture coordinates turn back at every fourth column, so that vertices are split
+ranges    a GLB of COUNT primitives over one grid of SIDE (100) quads squared, each with triangles of its own
 scene     a GLB of COUNT primitives, ten in a mesh, of SIDE (3) quads squared and with accessors of their own, of 50
           materials
 images    an OBJ of COUNT materials, and FILE.mtl beside it, with two images each that are not there
@@ -102,7 +103,7 @@ def grid(side, windows):
     return arrays
 
 
-def glb(count, out, side, windows):
+def glb(count, out, side, windows, ranges=False):
     arrays, kind, width_bytes = grid(side, windows), *((5123, 2) if windows else (5125, 4))
     views, offset = [], 0
     for array in arrays:
@@ -113,11 +114,15 @@ def glb(count, out, side, windows):
                   'min': [0, 0, 0], 'max': [side, side, 0]},
                  {'bufferView': 1, 'componentType': 5126, 'count': vertices, 'type': 'VEC3'},
                  {'bufferView': 2, 'componentType': 5126, 'count': vertices, 'type': 'VEC2'}]
-    for i in range(count if windows else 1):
+    for i in range(count if ranges else 0):
+        first, end = triangles * i // count, triangles * (i + 1) // count
+        accessors.append({'bufferView': 3, 'byteOffset': 3 * width_bytes * first, 'componentType': kind,
+                          'type': 'SCALAR', 'count': 3 * (end - first)})
+    for i in range(0 if ranges else count if windows else 1):
         accessors.append({'bufferView': 3, 'byteOffset': 3 * width_bytes * i, 'componentType': kind, 'type': 'SCALAR',
                           'count': 3 * (triangles - (count if windows else 0))})
     primitives = [{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'material': 0,
-                   'indices': 3 + i if windows else 3} for i in range(count)]
+                   'indices': 3 + i if windows or ranges else 3} for i in range(count)]
     write_glb(out, {'meshes': [{'primitives': primitives}], 'materials': [{'normalTexture': {'index': 0}}],
                     'accessors': accessors, 'bufferViews': views}, arrays)
 
@@ -162,6 +167,8 @@ with open(sys.argv[3], 'wb') as out:
         glb(count, out, 147, False)
     elif kind == 'windows':
         glb(count, out, side or 118, True)
+    elif kind == 'ranges':
+        glb(count, out, side or 100, False, True)
     elif kind == 'scene':
         scene(count, out, side or 3)
     else:
