@@ -14,6 +14,9 @@
 #include "ext/number.h"
 #include "json/tree.h"
 
+/* NULs behind the text: it ends for every loop, also where keys are compared in words of four bytes. */
+enum { PADDING_BYTES = 4 };
+
 /* A container whose end has not been read. The keys of an object mostly are those of the one before it at that depth:
  * while they are, they are compared and not read. */
 typedef struct opened {
@@ -282,7 +285,7 @@ static size_t keys_before(const reader *r, const opened *o)
 }
 
 /* Whether the next key is the next one of the guessed shape, spelled as there: it has no escapes then, and was found to
- * be sound. The text ends with a NUL, which no key has that is in it. */
+ * be sound. The text ends with NULs, which no key has that is in it. */
 static bool meets_guess(reader *r, const opened *o, nt_json_name *key)
 {
 	const size_t index = keys_before(r, o);
@@ -290,7 +293,7 @@ static bool meets_guess(reader *r, const opened *o, nt_json_name *key)
 		return false;
 	*key = o->guessed->keys[index];
 	const bool is_spelled_so = (uintptr_t)key->text - (uintptr_t)r->document->text < r->document->size;
-	if (!is_spelled_so || strncmp(r->at + 1, key->text, key->length) != 0 || r->at[1 + key->length] != '"')
+	if (!is_spelled_so || !nt_json_same_bytes(r->at + 1, key->text, key->length) || r->at[1 + key->length] != '"')
 		return false;
 	r->at[1 + key->length] = '\0';
 	r->at += key->length + 2;
@@ -339,7 +342,7 @@ static nt_status read_key(reader *r)
 		return fail(r, r->at, "':'");
 	r->at++;
 	o->foreign_member = r->foreign && key.length == r->foreign_length &&
-		memcmp(key.text, r->foreign, key.length) == 0;
+		nt_json_same_bytes(key.text, r->foreign, key.length);
 	return NT_OK;
 }
 
@@ -511,12 +514,12 @@ nt_status nt_json_parse(nt_json **document, const char *text, size_t size, const
 	nt_status status = NT_ERROR_MEMORY;
 	if (r)
 		memset(r, 0, offsetof(reader, open));
-	if (parsed && r && nt_size_add(size, 1, &bytes))
+	if (parsed && r && nt_size_add(size, PADDING_BYTES, &bytes))
 		parsed->text = nt_alloc(bytes, 1);
 	if (parsed && parsed->text) {
 		if (size)
 			memcpy(parsed->text, text, size);
-		parsed->text[size] = '\0';
+		memset(parsed->text + size, 0, PADDING_BYTES);
 		parsed->size = size;
 		r->document = parsed;
 		r->at = parsed->text;
