@@ -82,13 +82,9 @@ run --existing=replace --draco=off packed.glb off.glb
 exits 0
 says_not DRACO
 # a second primitive over the same positions, with tangents of its own
-node -e 'const fs = require("fs"), b = fs.readFileSync("packed.glb"), size = b.readUInt32LE(12);
-	const g = JSON.parse(b.subarray(20, 20 + size)), p = structuredClone(g.meshes[0].primitives[0]);
+gltf packed.glb two 'const p = structuredClone(g.meshes[0].primitives[0]);
 	delete p.targets;
-	g.meshes[0].primitives.push(p);
-	g.buffers[0].uri = "packed.bin";
-	fs.writeFileSync("packed.bin", b.subarray(28 + size));
-	fs.writeFileSync("two.gltf", JSON.stringify(g))'
+	g.meshes[0].primitives.push(p)'
 run --existing=replace --fail-on=warning two.gltf two.glb
 exits 6
 says "mesh \"sheet\", primitive 1"
@@ -96,19 +92,11 @@ says "it shares vertices with other primitives [DRACO_PLAIN]"
 is "$(compressed two.glb)" 0
 
 scene "primitives with different blocks that name the same accessors keep their own vertices"
-node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1] + "/plain.gltf"));
-	const p = g.meshes[0].primitives[0], a = g.accessors[p.attributes.TEXCOORD_0], v = g.bufferViews[a.bufferView];
-	for (const buffer of g.buffers) fs.copyFileSync(process.argv[1] + "/" + decodeURIComponent(buffer.uri), decodeURIComponent(buffer.uri));
-	const b = fs.readFileSync(decodeURIComponent(g.buffers[v.buffer].uri));
-	delete p.targets;
-	fs.writeFileSync("one.gltf", JSON.stringify(g));
-	for (let i = 0; i < a.count; i++) { /* its mirror image */
-		const at = (v.byteOffset ?? 0) + (a.byteOffset ?? 0) + i * (v.byteStride ?? 8);
-		b.writeFloatLE(1 - b.readFloatLE(at), at);
-	}
-	g.buffers[v.buffer].uri = "other.bin";
-	fs.writeFileSync("other.bin", b);
-	fs.writeFileSync("other.gltf", JSON.stringify(g))' "$WORK/layouts"
+gltf "$WORK/layouts/plain.gltf" one 'delete g.meshes[0].primitives[0].targets'
+gltf one.gltf other 'const n = g.meshes[0].primitives[0].attributes.TEXCOORD_0, a = g.accessors[n]; /* its mirror image */
+	const b = bytes[g.bufferViews[a.bufferView].buffer];
+	for (let i = 0; i < a.count; i++)
+		b.writeFloatLE(1 - b.readFloatLE(at(n, i)), at(n, i))'
 run --draco=sequential one.gltf one.glb
 exits 0
 run --draco=sequential other.gltf other.glb
@@ -348,10 +336,9 @@ is "$(gltf out.glb 'rows(g.meshes[1].primitives[0].attributes._CORNER)')" \
 
 scene "indices of a block that claim to be sparse, too, are the block's where they are written plain"
 run -q --only=all --draco=edgebreaker "$data/plates.gltf" block.gltf
-node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync("block.gltf")), p = g.meshes[0].primitives[0];
-	g.accessors[p.indices].sparse = {count: 1, indices: {bufferView: 0, componentType: 5121}, values: {bufferView: 0}};
-	g.bufferViews[0].byteLength = 8;
-	fs.writeFileSync("sparse.gltf", JSON.stringify(g))'
+gltf block.gltf sparse 'g.accessors[g.meshes[0].primitives[0].indices].sparse =
+		{count: 1, indices: {bufferView: 0, componentType: 5121}, values: {bufferView: 0}};
+	g.bufferViews[0].byteLength = 8'
 run -q --only=all --existing=replace --draco=off block.gltf plain.glb
 run --only=all --existing=replace --draco=off --verify sparse.gltf out.glb
 exits 0
@@ -405,15 +392,11 @@ grains_obj >grains.obj
 run -q --normals=smooth grains.obj grains.glb
 run -q --only=all --existing=replace --draco=sequential --draco-bits=16,12,14,16 grains.glb packed.glb
 for name in grains packed; do
-	node -e 'const fs = require("fs"), name = process.argv[1], b = fs.readFileSync(name + ".glb"), size = b.readUInt32LE(12);
-		const g = JSON.parse(b.subarray(20, 20 + size)), [p] = g.meshes[0].primitives;
-		delete p.attributes.NORMAL;
-		delete p.extensions?.KHR_draco_mesh_compression.attributes.NORMAL;
-		delete p.attributes.TANGENT;
-		delete p.extensions?.KHR_draco_mesh_compression.attributes.TANGENT;
-		g.buffers[0].uri = name + ".bin";
-		fs.writeFileSync(name + ".bin", b.subarray(28 + size));
-		fs.writeFileSync(name + ".gltf", JSON.stringify(g))' $name
+	gltf $name.glb $name 'const [p] = g.meshes[0].primitives;
+		for (const gone of ["NORMAL", "TANGENT"]) {
+			delete p.attributes[gone];
+			delete p.extensions?.KHR_draco_mesh_compression.attributes[gone];
+		}'
 	choice=$([ $name = packed ] && echo keep || echo sequential)
 	run --only=all --normals=smooth --draco=$choice --draco-bits=16,5,14,16 --verify $name.gltf $name.made.glb
 	exits 0
@@ -443,13 +426,9 @@ for method in sequential edgebreaker; do
 	is "$(gltf plain_$method.glb "$meet")" 21,21
 done
 # a third primitive has the vertices of the second, which both are plain then: no border moves
-node -e 'const fs = require("fs"), b = fs.readFileSync("two.glb"), size = b.readUInt32LE(12);
-	const g = JSON.parse(b.subarray(20, 20 + size)), all = g.meshes[0].primitives, p = structuredClone(all[1]);
+gltf two.glb three 'const all = g.meshes[0].primitives, p = structuredClone(all[1]);
 	p.indices = g.accessors.push({...g.accessors[p.indices], count: 6}) - 1;
-	all.push(p);
-	g.buffers[0].uri = "three.bin";
-	fs.writeFileSync("three.bin", b.subarray(28 + size));
-	fs.writeFileSync("three.gltf", JSON.stringify(g))'
+	all.push(p)'
 for choice in off sequential; do
 	run --across=mesh --only=all --existing=replace --draco=$choice three.gltf $choice.glb
 	exits 0
@@ -463,10 +442,7 @@ exists off.txt
 
 scene "what cannot be compressed for its unused vertices is solved for its own values"
 # without the last triangle one vertex is unused, and morph targets count it
-node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1] + "/plain.gltf"));
-	for (const buffer of g.buffers) fs.copyFileSync(process.argv[1] + "/" + decodeURIComponent(buffer.uri), decodeURIComponent(buffer.uri));
-	g.accessors[g.meshes[0].primitives[0].indices].count -= 6;
-	fs.writeFileSync("unused.gltf", JSON.stringify(g))' "$WORK/layouts"
+gltf "$WORK/layouts/plain.gltf" unused 'g.accessors[g.meshes[0].primitives[0].indices].count -= 6'
 run --existing=replace --draco=off unused.gltf off.glb
 run --existing=replace --draco=edgebreaker --draco-bits=6,4,6,12 unused.gltf out.glb
 exits 0
@@ -477,33 +453,24 @@ same out.glb off.glb
 # and on no grid: those of FROM.glb moved by up to 0.00005, as the attribute SET. The value that the first one gets may
 # be given, too.
 with_texcoords() {
-	node -e 'const fs = require("fs"), [input, name, from, set, first] = process.argv.slice(1);
-		const read = (path) => { const b = fs.readFileSync(path), size = b.readUInt32LE(12);
-			return [JSON.parse(b.subarray(20, 20 + size)), b.subarray(28 + size)]; };
-		const [g, bin] = read(input), [h, other] = read(from), [p] = g.meshes[0].primitives;
-		const a = h.accessors[h.meshes[0].primitives[0].attributes.TEXCOORD_0], view = h.bufferViews[a.bufferView];
-		const old = (view.byteOffset ?? 0) + (a.byteOffset ?? 0), stride = view.byteStride ?? 8;
-		const count = g.accessors[p.attributes.POSITION].count, texcoords = Buffer.alloc(8 * count);
+	gltf "$1" "$2" "const set = '$4', first = '${5-}', other = open('$3');" '
+		const [p] = g.meshes[0].primitives, count = g.accessors[p.attributes.POSITION].count, texcoords = Buffer.alloc(8 * count);
+		const old = other.rows(other.g.meshes[0].primitives[0].attributes.TEXCOORD_0);
 		let seed = 1;
 		for (let i = 0; i < 2 * count; i++) {
 			seed = (seed * 421 + 1663) % 7875;
-			texcoords.writeFloatLE(other.readFloatLE(old + stride * (i >> 1) + 4 * (i & 1)) + 0.0001 * (seed / 7875 - 0.5), 4 * i);
+			texcoords.writeFloatLE(old[i >> 1][i & 1] + 0.0001 * (seed / 7875 - 0.5), 4 * i);
 		}
 		if (first)
 			texcoords.writeFloatLE(Number(first), 0);
-		const draco = p.extensions?.KHR_draco_mesh_compression.attributes;
 		for (const gone of ["TANGENT", set]) {
 			delete p.attributes[gone];
-			delete draco?.[gone];
+			delete p.extensions?.KHR_draco_mesh_compression.attributes[gone];
 		}
-		const begin = bin.length + 3 & ~3, all = Buffer.alloc(begin + texcoords.length);
-		bin.copy(all);
-		texcoords.copy(all, begin);
 		p.attributes[set] = g.accessors.push({bufferView: g.bufferViews.length, componentType: 5126, count, type: "VEC2"}) - 1;
+		const begin = bytes[0].length + 3 & ~3;
 		g.bufferViews.push({buffer: 0, byteOffset: begin, byteLength: texcoords.length});
-		g.buffers = [{uri: name + ".bin", byteLength: all.length}];
-		fs.writeFileSync(name + ".bin", all);
-		fs.writeFileSync(name + ".gltf", JSON.stringify(g))' "$@"
+		bytes[0] = Buffer.concat([bytes[0], Buffer.alloc(begin - bytes[0].length), texcoords])'
 }
 
 scene "what is beside a block is not quantized, nor is it for the solve"
@@ -557,25 +524,16 @@ scene "--across=mesh: integers are on no grid, and need none"
 grains_obj | awk '/^v / {$2 *= 1024; $3 *= 1024; $4 *= 1024} /^f 442/ {print "usemtl a"; next}
 	/^f 211\// && !cut++ {print "usemtl b"} {print}' >two.obj
 run -q --normals=smooth two.obj two.glb
-node -e 'const fs = require("fs"), b = fs.readFileSync("two.glb"), size = b.readUInt32LE(12);
-	const g = JSON.parse(b.subarray(20, 20 + size)), parts = [b.subarray(28 + size)];
-	let length = parts[0].length;
-	g.extensionsUsed = g.extensionsRequired = ["KHR_mesh_quantization"];
+gltf two.glb two 'g.extensionsUsed = g.extensionsRequired = ["KHR_mesh_quantization"];
 	for (const p of g.meshes[0].primitives) {
-		const a = g.accessors[p.attributes.POSITION], v = g.bufferViews[a.bufferView], rows = Buffer.alloc(8 * a.count);
-		for (let i = 0; i < 3 * a.count; i++)
-			rows.writeInt16LE(Math.round(1024 * parts[0].readFloatLE((v.byteOffset ?? 0) + (a.byteOffset ?? 0) +
-				Math.floor(i / 3) * (v.byteStride ?? 12) + i % 3 * 4)), Math.floor(i / 3) * 8 + i % 3 * 2);
-		a.bufferView = g.bufferViews.push({buffer: 0, byteOffset: length, byteLength: rows.length, byteStride: 8}) - 1;
+		const a = g.accessors[p.attributes.POSITION], data = Buffer.alloc(8 * a.count);
+		rows(p.attributes.POSITION).forEach((row, i) => row.forEach((x, k) => data.writeInt16LE(Math.round(1024 * x), 8 * i + 2 * k)));
+		a.bufferView = g.bufferViews.push({buffer: 0, byteOffset: bytes[0].length, byteLength: data.length, byteStride: 8}) - 1;
 		delete a.byteOffset;
 		a.componentType = 5122;
 		for (const bound of ["min", "max"]) a[bound] = a[bound].map((x) => Math.round(1024 * x));
-		parts.push(rows);
-		length += rows.length;
-	}
-	g.buffers = [{uri: "two.bin", byteLength: length}];
-	fs.writeFileSync("two.bin", Buffer.concat(parts));
-	fs.writeFileSync("two.gltf", JSON.stringify(g))'
+		bytes[0] = Buffer.concat([bytes[0], data]);
+	}'
 for method in sequential edgebreaker; do
 	run --across=mesh --only=all --existing=replace --draco=$method --draco-bits=14,12,4,12 --verify two.gltf $method.glb
 	exits 0
