@@ -171,14 +171,9 @@ is "$(gltf out.gltf "[$metadata.vertexCount, $metadata.primitiveCount]")" "[17,1
 scene "where nothing is copied there is no warning, and the outline is what it was"
 mirrored_gltf '{"CESIUM_primitive_outline": {"indices": 4}, "VENDOR_weights": {"a": 5}}' '{"EXT_mesh_manifold": {}}' '{}'
 sed -i 's/"TEXCOORD_0": 2/"TEXCOORD_0": 0/' in.gltf
-python3 - <<'END'
-import json
-d = json.load(open('in.gltf'))
-d['meshes'][0]['primitives'][0]['attributes']['TEXCOORD_0'] = 6
-d['bufferViews'].append(dict(d['bufferViews'][0], byteStride=12))
-d['accessors'].append({'bufferView': 6, 'componentType': 5126, 'count': 6, 'type': 'VEC2'})
-json.dump(d, open('in.gltf', 'w'))
-END
+gltf in.gltf in 'g.meshes[0].primitives[0].attributes.TEXCOORD_0 = 6;
+	g.bufferViews.push({...g.bufferViews[0], byteStride: 12});
+	g.accessors.push({bufferView: 6, componentType: 5126, count: 6, type: "VEC2"})'
 run --only=all in.gltf out.gltf
 exits 0
 says_not EXTENSION_STALE
@@ -186,8 +181,7 @@ is "$(gltf out.gltf 'g.meshes[0].primitives[0].extensions.CESIUM_primitive_outli
 
 scene "extensions that are an array have no names, and are passed over"
 for place in 'g.meshes[0].primitives[0]' 'g.meshes[0]'; do
-	node -e "const g = JSON.parse(require('fs').readFileSync('$data/morph.gltf')); $place.extensions = ['x', 1];
-		require('fs').writeFileSync('array.gltf', JSON.stringify(g))"
+	gltf "$data/morph.gltf" array "$place.extensions = ['x', 1]"
 	for option in --draco=off --draco=sequential --morph=drop; do
 		run $option array.gltf out.glb
 		exits 0

@@ -96,10 +96,8 @@ done
 
 # alone.gltf: the file of instanced primitives with these of them.
 only_primitives() {
-	cp "$WORK/layouts/instanced_turned 0.bin" .
-	node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1]));
-		g.meshes[0].primitives = process.argv.slice(2).map((i) => g.meshes[0].primitives[i]);
-		fs.writeFileSync("alone.gltf", JSON.stringify(g))' "$WORK/layouts/instanced_turned.gltf" "$@"
+	gltf "$WORK/layouts/instanced_turned.gltf" alone \
+		"g.meshes[0].primitives = '$*'.split(' ').map((i) => g.meshes[0].primitives[i])"
 }
 
 scene "primitives with the same geometry are solved once and share their tangents"

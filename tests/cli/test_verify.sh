@@ -86,12 +86,11 @@ run "$data/quad.obj" quad.gltf
 run --only=all --existing=replace --draco=sequential quad.gltf block.gltf
 exits 0
 for index_offset in none 0 5; do
-	node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1])), offset = process.argv[2];
-		const p = g.meshes[0].primitives[0], view = p.extensions.KHR_draco_mesh_compression.bufferView;
+	gltf block.gltf sparse "const offset = '$index_offset';" 'const p = g.meshes[0].primitives[0];
+		const view = p.extensions.KHR_draco_mesh_compression.bufferView;
 		if (offset !== "none")
 			g.accessors[p.attributes.POSITION].sparse = { count: 1, values: { bufferView: view },
-				indices: { bufferView: view, componentType: 5121, byteOffset: +offset } };
-		fs.writeFileSync("sparse.gltf", JSON.stringify(g))' block.gltf $index_offset
+				indices: { bufferView: view, componentType: 5121, byteOffset: +offset } }'
 	for draco in keep off; do
 		run --verify --only=all --existing=replace --draco=$draco sparse.gltf $draco.$index_offset.glb
 		exits 0
@@ -102,23 +101,16 @@ done
 
 scene "a fan of one triangle has as many corners as vertices, in another order"
 run "$data/quad.obj" quad.gltf
-python3 - <<'PY'
-import json
-document = json.load(open("quad.gltf"))
-primitive = document["meshes"][0]["primitives"][0]
-primitive["mode"] = 6
-del primitive["attributes"]["TANGENT"]
-document["accessors"][primitive["indices"]]["count"] = 3
-json.dump(document, open("fan.gltf", "w"))
-PY
+gltf quad.gltf fan 'const p = g.meshes[0].primitives[0];
+	p.mode = 6;
+	delete p.attributes.TANGENT;
+	g.accessors[p.indices].count = 3'
 run --verify --only=all fan.gltf out.glb
 exits 0
 says_not NOT_VERIFIED
 
 scene "an extension of a buffer view that nobody needs is no fault"
-node -e "const g = JSON.parse(require('fs').readFileSync('$data/morph.gltf'));
-	for (const view of g.bufferViews) view.extensions = {VENDOR_view: {}};
-	require('fs').writeFileSync('views.gltf', JSON.stringify(g))"
+gltf "$data/morph.gltf" views 'for (const view of g.bufferViews) view.extensions = {VENDOR_view: {}}'
 run --verify views.gltf out.glb
 exits 0
 says_not NOT_VERIFIED
