@@ -162,11 +162,14 @@ static bool open_locked(nt_temporary *entry, const char *from, unsigned mode)
 	if (entry->fd < 0)
 		return false;
 	/* where there are no locks, nobody takes the file for stale; `from` is this run's mostly, which has its lock */
-	const bool refused = flock(entry->fd, LOCK_EX | LOCK_NB) != 0;
-	if (from ? link(from, entry->path) == 0
-		 : !(refused && errno == EWOULDBLOCK) && fstat(entry->fd, &status) == 0 && status.st_nlink > 0)
+	const bool refused = flock(entry->fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+	const bool known = !from && !refused && fstat(entry->fd, &status) == 0;
+	if (from ? link(from, entry->path) == 0 : known && status.st_nlink > 0)
 		return true;
 	const int number = from ? errno : EEXIST;
+	/* nobody else removes a file that is locked here */
+	if (!from && !refused && !known)
+		unlink(entry->path);
 	close(entry->fd);
 	errno = number;
 	return false;

@@ -47,7 +47,7 @@ static void mirrored_pair_has_one_open_seam_of_one_edge(void **state)
 	assert_int_equal(m->boundary_chains, 0);
 	/* one island, since the UVs continue; its mirrored half lies point by point on the other */
 	assert_int_equal(m->island_count, 1);
-	assert_true(m->islands[0].twin);
+	assert_true(m->islands[0].overlaps_itself);
 	hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP);
 	assert_int_equal(hand_findings(report, NT_CODE_UV_MIXED_WINDING_ISLAND), 0);
 	assert_int_equal(hand_finding(report, NT_CODE_TAN_MIRROR_SHARED_VERTEX)->count, 2);
