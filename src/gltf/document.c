@@ -186,7 +186,7 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 	return NT_OK;
 }
 
-static void forget_in(const nt_file *file, const void *bytes, size_t size)
+static void release_in(const nt_file *file, const void *bytes, size_t size)
 {
 	if (bytes)
 		nt_file_release_pages(file, bytes, size);
@@ -201,11 +201,11 @@ void nt_gltf_release_pages(const nt_scene *scene, const void *bytes, size_t size
 	if (bytes && size < WORTH_BYTES)
 		return;
 	if (scene->file)
-		forget_in(scene->file, bytes, size);
+		release_in(scene->file, bytes, size);
 	for (size_t i = 0; i < document->buffer_count; i++) {
 		const nt_gltf_buffer *buffer = &document->buffers[i];
 		if (buffer->opened && buffer->storage == NT_GLTF_STORED_FILE)
-			forget_in(&buffer->file, bytes, size);
+			release_in(&buffer->file, bytes, size);
 	}
 }
 

@@ -161,7 +161,7 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_buffer **buffer, nt_error *error);
 
-/* For what a shared document refuses: it is done again when the document is nobody else's, and has words then. */
+/* Defers errors: the caller repeats the call on a private document to get the message. */
 nt_status nt_gltf_refuse(nt_error *error);
 
 /* Books bytes of a buffer as read: whole pages, each once. What a data URI holds was read with the JSON. */

@@ -232,7 +232,7 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	scene->source = document;
 	scene->free_source = nt_gltf_free;
 	scene->read_of_source = count_read;
-	scene->forget = nt_gltf_release_pages;
+	scene->release_pages = nt_gltf_release_pages;
 	scene->format = document->is_glb ? NT_FORMAT_GLB : NT_FORMAT_GLTF;
 	/* the JSON has a copy of its text */
 	nt_gltf_release_pages(scene, scene->bytes,

@@ -92,7 +92,7 @@ static bool count_decisions(run *r)
 	return any;
 }
 
-/* Who keeps a record is told before the output has its name: the two agree then, or the output is made again. */
+/* The record is written before the rename: if the run ends between the two, the output is made again. */
 static nt_status tell_placing(void *user, nt_error *error)
 {
 	const run *r = user;

@@ -62,8 +62,7 @@ nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const n
  * NT_ERROR_IO or NT_ERROR_MEMORY. */
 nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_error *error);
 
-/* What is wrong with an input that changed is that, whatever was made of it and found in it: returns that, or
- * `status`. */
+/* If an input changed during the run, reports only that; else returns `status`. */
 nt_status nt_check_inputs(nt_scene *scene, nt_status status, nt_error *error);
 
 /* Fills summary->report: of the scene as it now is, or of what went wrong. written: the format that is judged,

@@ -29,7 +29,7 @@ typedef struct wishes {
 	bool round_trip;    /* the output stores 1 - v */
 	bool triangulates;  /* the output has triangles where the input has quads */
 	bool splits;        /* something is written, or judged as if it were */
-	bool forgets;       /* the input is not read again after the solve */
+	bool releases;      /* the input is not read again after the solve */
 } wishes;
 
 /* What a thread solves small meshes with. */
@@ -64,7 +64,8 @@ static wishes wishes_of(nt_scene *scene, const nt_settings *settings, nt_format 
 		.round_trip = output != NT_FORMAT_UNKNOWN &&
 		nt_format_is_gltf(scene->format) != nt_format_is_gltf(output),
 		.triangulates = nt_format_is_gltf(output), .splits = output != NT_FORMAT_UNKNOWN,
-		.forgets = scene->forget && nt_format_is_gltf(output) && !settings->report && !settings->verify};
+		.releases = scene->release_pages && nt_format_is_gltf(output) && !settings->report &&
+			!settings->verify};
 }
 
 static bool is_solved(const nt_mesh *mesh)
@@ -206,36 +207,36 @@ static nt_status keep_split(nt_mesh *mesh, const nmtan_split_output *output, nt_
 	return NT_ERROR_MEMORY;
 }
 
-typedef struct forgetting {
+typedef struct releasing {
 	const nt_scene *scene;
 	const void *bytes;
-} forgetting;
+} releasing;
 
-static void forget_range(void *context, size_t begin, size_t end, unsigned slot)
+static void release_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
-	const forgetting *f = context;
-	f->scene->forget(f->scene, (const char *)f->bytes + begin, end - begin);
+	const releasing *r = context;
+	r->scene->release_pages(r->scene, (const char *)r->bytes + begin, end - begin);
 }
 
-static void forget_bytes(const mesh_bytes *of, const void *bytes, size_t size)
+static void release_bytes(const mesh_bytes *of, const void *bytes, size_t size)
 {
 	enum { GRAIN = 2 << 20 };
-	forgetting f = {of->scene, bytes};
+	releasing r = {of->scene, bytes};
 	if (bytes)
-		nt_parallel_ranges(of->threads, size, GRAIN, forget_range, &f);
+		nt_parallel_ranges(of->threads, size, GRAIN, release_range, &r);
 }
 
 /* The input's pages that a solve is done with: glTF that is made from glTF is copied by the kernel. */
-static void forget_part(void *user, nt_mesh_part part)
+static void release_part(void *user, nt_mesh_part part)
 {
 	const mesh_bytes *of = user;
 	const nt_mesh *mesh = of->mesh;
 	if (part == NT_PART_ATTRIBUTES) {
-		forget_bytes(of, mesh->positions, 3 * sizeof(float) * mesh->vertex_count);
-		forget_bytes(of, mesh->normals, 3 * sizeof(float) * mesh->vertex_count);
+		release_bytes(of, mesh->positions, 3 * sizeof(float) * mesh->vertex_count);
+		release_bytes(of, mesh->normals, 3 * sizeof(float) * mesh->vertex_count);
 	} else {
-		forget_bytes(of, mesh->indices, sizeof(uint32_t) * mesh->corner_count);
+		release_bytes(of, mesh->indices, sizeof(uint32_t) * mesh->corner_count);
 	}
 }
 
@@ -265,7 +266,7 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 		mesh_bytes bytes = {job->scene, mesh, nt_thread_count(options->threads)};
 		/* small ones have a workspace, whose pages are there */
 		const nt_vertex_request request = {.lazy_indices = true, .lends_copies = !options->workspace,
-			.passed = job->forgets ? forget_part : NULL, .user = &bytes};
+			.passed = job->releases ? release_part : NULL, .user = &bytes};
 		status = nt_status_of(nt_vertex_tangents(&view, options, &request, &output, &mesh->counts));
 	}
 	if (!status)
@@ -378,8 +379,8 @@ void nt_small_solves_end(nt_small_solves *small)
 		nt_arena_join(&job->scene->temporary, &small->solvers[i].temporary);
 	}
 	/* what passed while they were solved is too little each time to be let go of */
-	if (job->forgets && corners >= LARGE_CORNERS)
-		job->scene->forget(job->scene, NULL, 0);
+	if (job->releases && corners >= LARGE_CORNERS)
+		job->scene->release_pages(job->scene, NULL, 0);
 	free(small);
 }
 

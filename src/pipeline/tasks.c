@@ -99,7 +99,7 @@ static void drop_geometry(nt_mesh *mesh)
 	const nt_split split = mesh->split;
 	if (mesh->plan.temporary)
 		return;
-	nt_mesh_forget(mesh);
+	nt_mesh_drop_arrays(mesh);
 	mesh->split = split;
 }
 
@@ -200,7 +200,7 @@ static nt_status merge_meshes(window *w)
 			status = t->writer->merge(t->scene, &w->scene.meshes[i], w->error);
 	for (size_t i = 0; i < w->scene.mesh_count; i++)
 		if (w->scene.meshes[i].plan.temporary)
-			nt_mesh_forget(&w->scene.meshes[i]);
+			nt_mesh_drop_arrays(&w->scene.meshes[i]);
 	nt_arena_free(&w->scene.temporary);
 	return status;
 }

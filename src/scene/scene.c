@@ -85,7 +85,7 @@ void nt_mesh_share(nt_mesh *mesh)
 		mesh->primitives[0].face_count = mesh->face_count;
 }
 
-void nt_mesh_forget(nt_mesh *mesh)
+void nt_mesh_drop_arrays(nt_mesh *mesh)
 {
 	mesh->positions = mesh->normals = mesh->solve_normals = mesh->colors = mesh->tangents = NULL;
 	mesh->texcoords = mesh->solve_texcoords = mesh->corner_tangents = mesh->split.vertex_tangents = NULL;

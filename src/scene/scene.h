@@ -298,9 +298,9 @@ typedef struct nt_scene {
 	void (*free_source)(void *source);
 	uint64_t (*read_of_source)(const void *source); /* bytes of the input and its files that were read, as far as
 	                                                   the reader knows; NULL: all of the input */
-	void (*forget)(const struct nt_scene *scene, const void *bytes, size_t size); /* these bytes of the input or its
-	                                                   files, with NULL all of them, will hardly be read
-	                                                   again; NULL: nobody cares */
+	/* Releases the pages of these bytes of the input or its files, with NULL of all of them, since they will hardly
+	 * be read again; NULL: nobody cares. */
+	void (*release_pages)(const struct nt_scene *scene, const void *bytes, size_t size);
 	/* Finds faces, which come sorted by mesh and face, in the text: fills line and corners, these in an arena.
 	 * The text is read again for it. NULL: there are no lines. */
 	nt_status (*locate_faces)(const struct nt_scene *scene, nt_face_place *faces, size_t count,
@@ -347,7 +347,7 @@ static inline nt_arena *nt_mesh_arena(nt_scene *scene, const nt_mesh *mesh)
 }
 
 /* Makes NULL of what a mesh holds in an arena that is gone: geometry and results, but not what is counted of them. */
-void nt_mesh_forget(nt_mesh *mesh);
+void nt_mesh_drop_arrays(nt_mesh *mesh);
 
 /* How the source numbers a vertex of it; not one that was appended. */
 static inline uint32_t nt_mesh_pool_vertex(const nt_mesh *mesh, uint32_t vertex)
