@@ -27,7 +27,7 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, v
 		return EAGAIN;
 #ifdef __GLIBC__
 	cpu_set_t set; /* all there can be where none was chosen */
-	if (affinity_fails && attributes && pthread_attr_getaffinity_np(attributes, sizeof set, &set) == 0 &&
+	if (affinity_fails && pthread_attr_getaffinity_np(attributes, sizeof set, &set) == 0 &&
 		CPU_COUNT(&set) < CPU_SETSIZE)
 		return EPERM;
 #endif
