@@ -5,7 +5,6 @@
  * plain, it could hold the elements of one of them only. So before anything is read, each further content (a block,
  * and an attribute in it or its indices) gets a copy of the accessor, which says the same.
  */
-#include "gltf/draco_shared.h"
 
 #include <stdlib.h>
 #include <string.h>

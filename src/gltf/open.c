@@ -12,7 +12,6 @@
 #include <stdio.h>
 #include <string.h>
 #include "gltf/draco.h"
-#include "gltf/draco_shared.h"
 #include "gltf/materials.h"
 #include "gltf/nodes.h"
 #include "gltf/pointer.h"

@@ -7,7 +7,6 @@
  * texture transform. Primitives with equal numbers have equal geometry; a table of keys finds them in linear
  * time. What is not known to be equal is not.
  */
-#include "gltf/same_geometry.h"
 
 #include <stdio.h>
 #include <stdlib.h>

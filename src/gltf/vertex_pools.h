@@ -10,6 +10,7 @@
 #ifndef NT_GLTF_VERTEX_POOLS_H
 #define NT_GLTF_VERTEX_POOLS_H
 
+#include "scene/scene.h"
 #include "gltf/primitive.h"
 
 /* All pools of a document. Accessors over the same bytes count as one: the first alias. */
@@ -72,5 +73,8 @@ static inline bool nt_pool_is_solved(const nt_vertex_pool *pool, size_t user)
 {
 	return pool->sets.of[user] != NT_NONE;
 }
+
+/* After the decisions: sets same_as of meshes that will be solved and have the geometry of an earlier one. */
+nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_error *error);
 
 #endif

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "gltf/accessor.h"
-#include "gltf/edit/append_sparse.h"
+#include "gltf/edit/append_targets.h"
 #include "gltf/view.h"
 
 /* ---- accessors that must keep their count ---- */

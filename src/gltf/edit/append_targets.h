@@ -68,4 +68,7 @@ bool nt_append_note_edit(nt_appending *appending, uint32_t buffer, uint64_t begi
 /* All accessors of all users; when nothing is appended, only those with new values. Sorts the overrides. */
 nt_status nt_append_collect(nt_appending *appending, nt_gltf_override *overrides, size_t override_count);
 
+/* Appends the elements that are copies of replaced ones to what a sparse accessor replaces. */
+nt_status nt_append_sparse(nt_appending *appending, const nt_append_target *target);
+
 #endif

@@ -21,7 +21,7 @@
 #include "gltf/edit/merge_splits.h"
 #include "gltf/edit/new_accessors.h"
 #include "gltf/edit/old_tangents.h"
-#include "gltf/edit/vertex_extensions.h"
+#include "gltf/edit/manifold.h"
 #include "gltf/edit/write.h"
 #include "gltf/extensions/geometry_metadata.h"
 #include "gltf/quantize.h"

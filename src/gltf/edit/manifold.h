@@ -14,4 +14,10 @@
 nt_status nt_gltf_follow_manifold(nt_buffer_edits *edits, uint32_t buffer, nt_scene *scene,
 	nt_pool_vertices *vertices, size_t first, bool compressed, nt_error *error);
 
+/* Outlines of the pool's primitives get the edges that their triangles have now, the primitives of manifolds new
+ * indices, so that they are not `changed` any more; for what cannot follow there is a finding. compressed: by Draco,
+ * which may give vertices any order. New views go to `buffer`. */
+nt_status nt_gltf_follow_vertices(nt_buffer_edits *edits, uint32_t buffer, nt_scene *scene,
+	nt_pool_vertices *vertices, bool compressed, nt_error *error);
+
 #endif

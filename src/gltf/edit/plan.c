@@ -6,11 +6,8 @@
  */
 #include "gltf/edit/plan.h"
 
-#include <stdlib.h>
 #include "gltf/draco.h"
-#include "gltf/edit/draco_plan.h"
 #include "gltf/joins.h"
-#include "gltf/same_geometry.h"
 #include "gltf/vertex_pools.h"
 
 /* Whether a mesh will be loaded: to be solved, or only to be checked, or for others. */

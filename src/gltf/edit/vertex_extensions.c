@@ -4,7 +4,6 @@
  * gltf/extensions; here it is read from the document and stored in it. The accessor of an outline stays as it is,
  * since others may use it, and the primitive gets another.
  */
-#include "gltf/edit/vertex_extensions.h"
 
 #include "gltf/accessor.h"
 #include "gltf/edit/manifold.h"

@@ -9,7 +9,6 @@
 #include "base/buffer.h"
 #include "gltf/joins.h"
 #include "gltf/open.h"
-#include "gltf/same_geometry.h"
 #include "gltf/vertex_pools.h"
 #include "scene/select.h"
 

@@ -6,7 +6,6 @@
 #include "file/base64.h"
 #include "gltf/load.h"
 #include "gltf/open.h"
-#include "gltf/same_geometry.h"
 #include "gltf/vertex_pools.h"
 #include "pipeline/run.h"
 #include "test.h"
