@@ -40,6 +40,16 @@ int remove_folder(void **state)
 	return nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
 }
 
+int enter_folder(void **state)
+{
+	return make_folder(state) || chdir(folder);
+}
+
+int leave_folder(void **state)
+{
+	return chdir("/") || remove_folder(state);
+}
+
 const char *in_folder(const char *name)
 {
 	static char paths[8][512];

@@ -7,17 +7,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Works in a fresh folder. */
-static int enter(void **state)
-{
-	return make_folder(state) || chdir(in_folder(""));
-}
-
-static int leave(void **state)
-{
-	return chdir("/") || remove_folder(state);
-}
-
 #define INPUTS(...) ((const char *const[]){__VA_ARGS__}), \
 	sizeof((const char *const[]){__VA_ARGS__}) / sizeof(const char *)
 
@@ -296,5 +285,5 @@ int main(void)
 		cmocka_unit_test(after_a_failure_no_further_job_begins_if_so_wished),
 		cmocka_unit_test(one_input_has_all_threads),
 	};
-	return cmocka_run_group_tests_name("batch/batch", tests, enter, leave);
+	return cmocka_run_group_tests_name("batch/batch", tests, enter_folder, leave_folder);
 }

@@ -10,17 +10,6 @@
 #include <stdio.h>
 #include <unistd.h>
 
-/* Works in a fresh folder. */
-static int enter(void **state)
-{
-	return make_folder(state) || chdir(in_folder(""));
-}
-
-static int leave(void **state)
-{
-	return chdir("/") || remove_folder(state);
-}
-
 /* Read in this order; NULL ends them. Another was looked for in vain. */
 static void make_trace(nt_trace *trace, const char *const *read)
 {
@@ -144,5 +133,5 @@ int main(void)
 		cmocka_unit_test(it_is_written_whole_and_not_over_an_input),
 		cmocka_unit_test(an_exhausted_memory_is_told),
 	};
-	return cmocka_run_group_tests_name("batch/depfile", tests, enter, leave);
+	return cmocka_run_group_tests_name("batch/depfile", tests, enter_folder, leave_folder);
 }

@@ -12,17 +12,6 @@
 
 static const nt_folder_rules files_only, folders = {.recursive = true};
 
-/* Works in a fresh folder. */
-static int enter(void **state)
-{
-	return make_folder(state) || chdir(in_folder(""));
-}
-
-static int leave(void **state)
-{
-	return chdir("/") || remove_folder(state);
-}
-
 /* All names, each with a blank behind it. */
 static void are(nt_inputs *inputs, const char *expected)
 {
@@ -124,5 +113,5 @@ int main(void)
 		cmocka_unit_test(lists_have_a_name_a_line_or_one_before_each_nul),
 		cmocka_unit_test(an_exhausted_memory_is_told),
 	};
-	return cmocka_run_group_tests_name("batch/inputs", tests, enter, leave);
+	return cmocka_run_group_tests_name("batch/inputs", tests, enter_folder, leave_folder);
 }

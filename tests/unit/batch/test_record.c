@@ -13,17 +13,6 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Works in a fresh folder. */
-static int enter(void **state)
-{
-	return make_folder(state) || chdir(in_folder(""));
-}
-
-static int leave(void **state)
-{
-	return chdir("/") || remove_folder(state);
-}
-
 /* A file that changed long before now, so that its time tells. */
 static void put_old_file(const char *name, const char *text)
 {
@@ -213,12 +202,12 @@ static void an_exhausted_memory_is_told(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(an_output_is_current_while_all_is_as_it_was, enter, leave),
-		cmocka_unit_test_setup_teardown(any_file_that_differs_makes_it_stale, enter, leave),
-		cmocka_unit_test_setup_teardown(by_content_times_do_not_count, enter, leave),
-		cmocka_unit_test_setup_teardown(what_changed_just_before_is_compared_by_content_too, enter, leave),
-		cmocka_unit_test_setup_teardown(a_tree_can_be_moved_with_its_record, enter, leave),
-		cmocka_unit_test_setup_teardown(an_exhausted_memory_is_told, enter, leave),
+		unit_test_inside_folder(an_output_is_current_while_all_is_as_it_was),
+		unit_test_inside_folder(any_file_that_differs_makes_it_stale),
+		unit_test_inside_folder(by_content_times_do_not_count),
+		unit_test_inside_folder(what_changed_just_before_is_compared_by_content_too),
+		unit_test_inside_folder(a_tree_can_be_moved_with_its_record),
+		unit_test_inside_folder(an_exhausted_memory_is_told),
 	};
 	return cmocka_run_group_tests_name("batch/record", tests, NULL, NULL);
 }

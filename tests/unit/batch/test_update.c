@@ -11,17 +11,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Works in a fresh folder. */
-static int enter(void **state)
-{
-	return make_folder(state) || chdir(in_folder(""));
-}
-
-static int leave(void **state)
-{
-	return chdir("/") || remove_folder(state);
-}
-
 static void put_at(const char *name, time_t seconds)
 {
 	const struct timespec times[] = {{seconds, 500}, {seconds, 500}};
@@ -183,12 +172,12 @@ static void an_exhausted_memory_is_told(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(without_a_record_an_output_that_is_not_older_is_current, enter, leave),
-		cmocka_unit_test_setup_teardown(a_record_decides_where_it_knows_the_output, enter, leave),
-		cmocka_unit_test_setup_teardown(a_record_can_be_written_without_being_asked, enter, leave),
-		cmocka_unit_test_setup_teardown(streams_and_pipes_have_no_record, enter, leave),
-		cmocka_unit_test_setup_teardown(a_record_that_cannot_be_is_refused_before_anything_runs, enter, leave),
-		cmocka_unit_test_setup_teardown(an_exhausted_memory_is_told, enter, leave),
+		unit_test_inside_folder(without_a_record_an_output_that_is_not_older_is_current),
+		unit_test_inside_folder(a_record_decides_where_it_knows_the_output),
+		unit_test_inside_folder(a_record_can_be_written_without_being_asked),
+		unit_test_inside_folder(streams_and_pipes_have_no_record),
+		unit_test_inside_folder(a_record_that_cannot_be_is_refused_before_anything_runs),
+		unit_test_inside_folder(an_exhausted_memory_is_told),
 	};
 	return cmocka_run_group_tests_name("batch/update", tests, NULL, NULL);
 }

@@ -12,17 +12,6 @@
 #include <stdio.h>
 #include <unistd.h>
 
-/* Works in a fresh folder. */
-static int enter(void **state)
-{
-	return make_folder(state) || chdir(in_folder(""));
-}
-
-static int leave(void **state)
-{
-	return chdir("/") || remove_folder(state);
-}
-
 /* Which files a job had to do with. */
 static void note(nt_trace *trace)
 {
@@ -176,5 +165,5 @@ int main(void)
 		cmocka_unit_test(what_cannot_be_written_is_told_at_the_end),
 		cmocka_unit_test(a_line_needs_no_memory),
 	};
-	return cmocka_run_group_tests_name("cli/manifest", tests, enter, leave);
+	return cmocka_run_group_tests_name("cli/manifest", tests, enter_folder, leave_folder);
 }

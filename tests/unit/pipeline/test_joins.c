@@ -6,18 +6,9 @@
  * corners of some cells, which repair has to fill.
  */
 #include "fail_alloc.h"
-#include "folder.h"
-#include "test.h"
+#include "hand_gltf_file.h"
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include "base/buffer.h"
-#include "gltf/accessor.h"
-#include "gltf/document.h"
 #include "gltf/load.h"
-#include "gltf/open.h"
-#include "pipeline/run.h"
 
 enum { SIDE = 24, CELLS = SIDE * SIDE, MOST_PARTS = 3 };
 
@@ -80,100 +71,73 @@ static void join_surface(const surface *s, part *joined)
 
 /* ---- files ---- */
 
-/* A file is made of primitives, six accessors each: POSITION, NORMAL, TEXCOORD_0, indices, the target's POSITION, and
- * TANGENT with a value that no solve gives. */
-typedef struct file {
-	nt_buffer bin, accessors;
-	size_t accessor_count;
-} file;
-
-static size_t put_accessor(file *f, const void *data, size_t count, size_t width, int type, const char *kind)
-{
-	nt_buffer_format(&f->accessors, "%s{\"bufferView\":0,\"byteOffset\":%zu,\"componentType\":%d,\"count\":%zu,"
-		"\"type\":\"%s\"}", f->accessor_count ? "," : "", f->bin.size, type, count, kind);
-	nt_buffer_append(&f->bin, data, count * width);
-	return f->accessor_count++;
-}
-
-/* Returns the first of its accessors. */
-static size_t put_part(file *f, const part *p)
+/* A primitive has six accessors: POSITION, NORMAL, TEXCOORD_0, indices, the target's POSITION, and TANGENT with a value
+ * that no solve gives. Returns the first. */
+static size_t put_part(hand_file *f, const part *p)
 {
 	const size_t count = 4 * p->cells;
 	static float authored[4 * CELLS][4];
 	for (size_t i = 0; i < count; i++)
 		memcpy(authored[i], (float[]){0.6f, 0.8f, 0, 1}, sizeof authored[i]);
-	const size_t first = put_accessor(f, p->positions, count, 12, 5126, "VEC3");
-	put_accessor(f, p->normals, count, 12, 5126, "VEC3");
-	put_accessor(f, p->texcoords, count, 8, 5126, "VEC2");
-	put_accessor(f, p->indices, 6 * p->cells, 4, 5125, "SCALAR");
-	put_accessor(f, p->moves, count, 12, 5126, "VEC3");
-	put_accessor(f, authored, count, 16, 5126, "VEC4");
+	const size_t first = put_accessor(f, p->positions, count, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(f, p->normals, count, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(f, p->texcoords, count, NT_GLTF_FLOAT, "VEC2");
+	put_accessor(f, p->indices, 6 * p->cells, NT_GLTF_UINT, "SCALAR");
+	put_accessor(f, p->moves, count, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(f, authored, count, NT_GLTF_FLOAT, "VEC4");
 	return first;
 }
 
-/* What stands in a primitive behind its attributes; a for attributes. */
-static void put_primitive(nt_buffer *json, size_t first, const char *attributes, const char *rest)
+/* With what stands behind its three attributes, and behind those. */
+static void put_primitive(nt_buffer *json, size_t first, const char *attributes, int material, const char *rest)
 {
-	nt_buffer_format(json,
-		"{\"attributes\":{\"POSITION\":%zu,\"NORMAL\":%zu,\"TEXCOORD_0\":%zu%s},\"indices\":%zu%s}",
-		first, first + 1, first + 2, attributes, first + 3, rest);
+	nt_buffer_format(json, "%s{\"attributes\":{\"POSITION\":%zu,\"NORMAL\":%zu,\"TEXCOORD_0\":%zu%s},"
+		"\"indices\":%zu,\"material\":%d%s}", json->size && json->data[json->size - 1] == '}' ? "," : "",
+		first, first + 1, first + 2, attributes, first + 3, material, rest);
 }
 
-/* Materials: 0 and 1 have a normal map, 2 has none, 3 to 5 have one that is turned and scaled, 5 another way round. */
-static const char materials[] =
-	"{\"normalTexture\":{\"index\":0}},{\"normalTexture\":{\"index\":0,\"scale\":2}},{\"name\":\"plain\"},"
-	"{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"rotation\":0.5,"
-	"\"scale\":[2,1]}}}},{\"normalTexture\":{\"index\":0,"
-	"\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,1],\"rotation\":0.5,\"offset\":[3,4]}}}},"
-	"{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"rotation\":-0.5,"
-	"\"scale\":[2,1]}}}}";
-
-static void put_glb(const char *name, file *f, const char *meshes)
+/* Writes primitives with commas between them as one mesh. Materials: 0 and 1 have a normal map, 2 has none, 3 to 5 have
+ * one that is turned and scaled, 5 another way round. */
+static void put_mesh(const char *name, hand_file *f, nt_buffer *primitives)
 {
-	nt_buffer json = {0};
-	nt_buffer_format(&json, "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_texture_transform\"],"
-		"\"materials\":[%s],\"textures\":[{}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu}],"
-		"\"accessors\":[%s],\"meshes\":[%s],\"buffers\":[{\"byteLength\":%zu}]}", materials, f->bin.size,
-		f->accessors.data, meshes, f->bin.size);
-	put_glb_file(name, json.data, f->bin.data, f->bin.size);
-	nt_buffer_free(&json);
-	nt_buffer_free(&f->bin);
-	nt_buffer_free(&f->accessors);
-	*f = (file){0};
+	nt_buffer members = {0};
+	nt_buffer_format(&members, "\"extensionsUsed\":[\"KHR_texture_transform\"],\"textures\":[{}],\"materials\":["
+		"{\"normalTexture\":{\"index\":0}},{\"normalTexture\":{\"index\":0,\"scale\":2}},{\"name\":\"plain\"},"
+		"{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"rotation\":0.5,"
+		"\"scale\":[2,1]}}}},{\"normalTexture\":{\"index\":0,"
+		"\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,1],\"rotation\":0.5,\"offset\":[3,4]}}}},"
+		"{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"rotation\":-0.5,"
+		"\"scale\":[2,1]}}}}],\"meshes\":[{\"primitives\":[%s]}],", primitives->data);
+	put_glb(name, f, members.data);
+	nt_buffer_free(&members);
+	nt_buffer_free(primitives);
 }
 
 /* The surface as one mesh of three primitives with these materials; attributes and rest may be NULL. */
 static void put_three(const char *name, const surface *s, const int material[3], const char *const attributes[3],
 	const char *const rest[3])
 {
-	file f = {0};
-	nt_buffer meshes = {0};
-	nt_buffer_text(&meshes, "{\"primitives\":[");
-	for (size_t i = 0; i < MOST_PARTS; i++) {
-		char more[200];
-		snprintf(more, sizeof more, ",\"material\":%d%s", material[i], rest ? rest[i] : "");
-		if (i)
-			nt_buffer_text(&meshes, ",");
-		put_primitive(&meshes, put_part(&f, &s->parts[i]), attributes ? attributes[i] : "", more);
-	}
-	nt_buffer_text(&meshes, "]}");
-	put_glb(name, &f, meshes.data);
-	nt_buffer_free(&meshes);
+	hand_file f = {0};
+	nt_buffer primitives = {0};
+	for (size_t i = 0; i < MOST_PARTS; i++)
+		put_primitive(&primitives, put_part(&f, &s->parts[i]), attributes ? attributes[i] : "", material[i],
+			rest ? rest[i] : "");
+	put_mesh(name, &f, &primitives);
+}
+
+static void put_one(const char *name, const part *p, int material, const char *rest)
+{
+	hand_file f = {0};
+	nt_buffer primitive = {0};
+	put_primitive(&primitive, put_part(&f, p), "", material, rest);
+	put_mesh(name, &f, &primitive);
 }
 
 static void put_joined(const char *name, const surface *s, int material, const char *rest)
 {
 	static part joined;
-	file f = {0};
-	nt_buffer mesh = {0};
-	char more[200];
 	join_surface(s, &joined);
-	nt_buffer_text(&mesh, "{\"primitives\":[");
-	snprintf(more, sizeof more, ",\"material\":%d%s", material, rest);
-	put_primitive(&mesh, put_part(&f, &joined), "", more);
-	nt_buffer_text(&mesh, "]}");
-	put_glb(name, &f, mesh.data);
-	nt_buffer_free(&mesh);
+	put_one(name, &joined, material, rest);
 }
 
 /* ---- results ---- */
@@ -188,32 +152,23 @@ typedef struct result {
 
 static void convert(result *r, const char *name, nt_settings settings)
 {
-	settings.texcoord_set = -1;
-	nt_summary summary;
-	nt_error error;
-	if (nt_run(in_folder(name), settings.check ? NULL : in_folder("out.glb"), &settings, &summary, &error))
-		fail_msg("%s: %s", error.place.pointer, error.message);
-	*r = (result){0};
+	nt_summary summary = convert_file(name, settings.check ? NULL : "out.glb", settings);
+	*r = (result){.repaired = count_findings(&summary, NT_CODE_TAN_REPAIRED),
+		.border_count = count_findings(&summary, NT_CODE_TAN_PRIMITIVE_BORDER)};
 	for (size_t i = 0; i < summary.findings.count; i++) {
 		const nt_finding *finding = &summary.findings.items[i];
-		if (finding->code == NT_CODE_TAN_REPAIRED)
-			r->repaired += finding->count;
 		if (finding->code != NT_CODE_TAN_PRIMITIVE_BORDER)
 			continue;
 		double degrees = 0;
 		assert_int_equal(sscanf(finding->detail, "by up to %lf degrees", &degrees), 1);
-		r->border_count += finding->count;
 		r->border_degrees = fmax(r->border_degrees, degrees);
 	}
 	nt_summary_free(&summary);
 	if (settings.check)
 		return;
-	assert_int_equal(nt_file_open(&r->file, in_folder("out.glb"), &error), NT_OK);
-	nt_scene_init(&r->scene, "out.glb");
-	r->scene.bytes = r->file.data;
-	r->scene.byte_count = r->file.size;
 	const nt_read_options options = {.texcoord_set = -1, .morphs = NT_MORPH_KEEP};
-	assert_int_equal(nt_gltf_open(&r->scene, &options, &error), NT_OK);
+	nt_error error;
+	open_file(&r->scene, &r->file, "out.glb", &options);
 	for (size_t i = 0; i < r->scene.mesh_count; i++)
 		assert_int_equal(nt_gltf_load(&r->scene, &r->scene.meshes[i], &options, &error), NT_OK);
 }
@@ -325,22 +280,17 @@ static void shared_geometry_gets_tangents_of_its_own(void **state)
 {
 	(void)state;
 	result r, one, apart;
-	file f = {0};
-	nt_buffer meshes = {0};
+	hand_file f = {0};
+	nt_buffer primitives = {0};
 	size_t first[3];
 	for (size_t i = 0; i < 3; i++)
 		first[i] = put_part(&f, &sheet.parts[i]);
-	for (size_t mesh = 0; mesh < 3; mesh++) {
-		nt_buffer_text(&meshes, mesh ? ",{\"primitives\":[" : "{\"primitives\":[");
-		for (size_t i = 0; i < (mesh == 1 ? 1u : 3u); i++) {
-			if (i)
-				nt_buffer_text(&meshes, ",");
-			put_primitive(&meshes, first[i], "", ",\"material\":0");
-		}
-		nt_buffer_text(&meshes, "]}");
-	}
-	put_glb("shared.glb", &f, meshes.data);
-	nt_buffer_free(&meshes);
+	for (const char *i = "012|0|012"; *i; i++)
+		if (*i == '|')
+			nt_buffer_text(&primitives, "]},{\"primitives\":[");
+		else
+			put_primitive(&primitives, first[*i - '0'], "", 0, "");
+	put_mesh("shared.glb", &f, &primitives);
 	put_joined("one.glb", &sheet, 0, "");
 	put_three("three.glb", &sheet, mapped, NULL, NULL);
 	convert(&one, "one.glb", across);
@@ -360,23 +310,6 @@ static void shared_geometry_gets_tangents_of_its_own(void **state)
 	close_result(&apart);
 }
 
-/* The deltas of a target's TANGENT. */
-static float *target_tangents(const result *r, size_t mesh)
-{
-	const nt_json_value *primitive = nt_json_at(nt_json_find(
-		nt_json_at(nt_gltf_root_member(r->scene.source, "meshes"), 0), "primitives"), mesh);
-	uint64_t index;
-	nt_gltf_accessor accessor;
-	nt_error error;
-	float *rows;
-	assert_true(nt_json_get_uint64(nt_json_find(nt_json_at(nt_json_find(primitive, "targets"), 0), "TANGENT"),
-		&index));
-	assert_int_equal(nt_gltf_get_accessor(r->scene.source, index, "", &accessor, &error), NT_OK);
-	assert_int_equal(nt_gltf_floats(r->scene.source, &accessor, 3, 0, (nt_arena *)&r->scene.arena, &rows, &error),
-		NT_OK);
-	return rows;
-}
-
 static void targets_are_solved_as_one_too(void **state)
 {
 	(void)state;
@@ -389,11 +322,12 @@ static void targets_are_solved_as_one_too(void **state)
 		",\"targets\":[{\"POSITION\":10}]", ",\"targets\":[{\"POSITION\":16}]"});
 	convert(&one, "one.glb", across);
 	convert(&r, "three.glb", across);
-	const float *joined = target_tangents(&one, 0);
+	uint64_t count;
+	const float *joined = rows_of(&one.scene, tangent_of(&one.scene, 0, 0, 0), 3, &count);
 	size_t turned = 0;
 	for (size_t i = 0, corner = 0; i < 3; corner += r.scene.meshes[i++].corner_count) {
 		const nt_mesh *mesh = &r.scene.meshes[i];
-		const float *rows = target_tangents(&r, i);
+		const float *rows = rows_of(&r.scene, tangent_of(&r.scene, 0, i, 0), 3, &count);
 		assert_int_equal(differing(mesh, &one.scene.meshes[0], corner), 0);
 		for (size_t c = 0; c < mesh->corner_count; c++) {
 			const float *delta = rows + 3 * mesh->indices[c];
@@ -413,8 +347,8 @@ static void shared_vertices_are_not_split_at_borders(void **state)
 	(void)state;
 	static part joined;
 	result r, one;
-	file f = {0};
-	nt_buffer mesh = {0};
+	hand_file f = {0};
+	nt_buffer primitives = {0};
 	memset(&joined, 0, sizeof joined);
 	joined.cells = CELLS;
 	for (int y = 0; y <= SIDE; y++)
@@ -428,19 +362,13 @@ static void shared_vertices_are_not_split_at_borders(void **state)
 	put_part(&f, &joined);
 	/* the first two thirds of the rows, and the rest */
 	const size_t two = 6 * CELLS / 3 * 2;
-	const size_t low = put_accessor(&f, joined.indices, two, 4, 5125, "SCALAR");
-	const size_t high = put_accessor(&f, joined.indices + two, 6 * CELLS - two, 4, 5125, "SCALAR");
-	nt_buffer_format(&mesh, "{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},"
-		"\"indices\":%zu,\"material\":0},{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},"
-		"\"indices\":%zu,\"material\":1}]}", low, high);
-	put_glb("two.glb", &f, mesh.data);
-	nt_buffer_free(&mesh);
-	put_part(&f, &joined);
-	nt_buffer_text(&mesh, "{\"primitives\":[");
-	put_primitive(&mesh, 0, "", ",\"material\":0");
-	nt_buffer_text(&mesh, "]}");
-	put_glb("one.glb", &f, mesh.data);
-	nt_buffer_free(&mesh);
+	const size_t low = put_accessor(&f, joined.indices, two, NT_GLTF_UINT, "SCALAR");
+	const size_t high = put_accessor(&f, joined.indices + two, 6 * CELLS - two, NT_GLTF_UINT, "SCALAR");
+	for (int i = 0; i < 2; i++)
+		nt_buffer_format(&primitives, "%s{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},"
+			"\"indices\":%zu,\"material\":%d}", i ? "," : "", i ? high : low, i);
+	put_mesh("two.glb", &f, &primitives);
+	put_one("one.glb", &joined, 0, "");
 	convert(&one, "one.glb", across);
 	convert(&r, "two.glb", across);
 	const nt_mesh *meshes = r.scene.meshes;
@@ -495,14 +423,10 @@ static void same_for_others_and_for_checks(void **state)
 	/* nothing to join: the bytes are those of the default */
 	put_joined("one.glb", &sheet, 0, "");
 	convert(&r, "one.glb", (nt_settings){.threads = 1});
-	void *before = malloc(r.file.size);
-	const size_t size = r.file.size;
-	memcpy(before, r.file.data, size);
 	close_result(&r);
+	assert_int_equal(rename(in_folder("out.glb"), in_folder("default.glb")), 0);
 	convert(&r, "one.glb", across);
-	assert_int_equal(r.file.size, size);
-	assert_memory_equal(r.file.data, before, size);
-	free(before);
+	assert_true(same_files("out.glb", "default.glb"));
 	close_result(&r);
 	put_three("three.glb", &sheet, mapped, NULL, NULL);
 	convert(&r, "three.glb", (nt_settings){.across = NT_ACROSS_MESH, .check = true, .threads = 1});
@@ -514,12 +438,11 @@ static void same_for_others_and_for_checks(void **state)
  * 90 - a, since the second is the parallelogram (1, 0), (1 + s, k), which keeps u and v; at (1, 1): 90 and 90 + a.
  * Solved as one the tangent is turned by b from the first with tan b = w sin a / (90 + w cos a), w the second's angle.
  */
-static void put_sheared(const char *name, double k)
+static void put_sheared(double k)
 {
-	file f = {0};
-	nt_buffer mesh = {0};
+	hand_file f = {0};
+	nt_buffer primitives = {0};
 	static part p[2];
-	nt_buffer_text(&mesh, "{\"primitives\":[");
 	for (int i = 0; i < 2; i++) {
 		memset(&p[i], 0, sizeof p[i]);
 		p[i].cells = 1;
@@ -532,13 +455,9 @@ static void put_sheared(const char *name, double k)
 			p[i].texcoords[c][1] = (float)-y;
 		}
 		memcpy(p[i].indices, (uint32_t[]){0, 1, 3, 0, 3, 2}, 6 * sizeof(uint32_t));
-		if (i)
-			nt_buffer_text(&mesh, ",");
-		put_primitive(&mesh, put_part(&f, &p[i]), "", ",\"material\":0");
+		put_primitive(&primitives, put_part(&f, &p[i]), "", 0, "");
 	}
-	nt_buffer_text(&mesh, "]}");
-	put_glb(name, &f, mesh.data);
-	nt_buffer_free(&mesh);
+	put_mesh("border.glb", &f, &primitives);
 }
 
 static void a_report_tells_borders_that_would_change(void **state)
@@ -555,7 +474,7 @@ static void a_report_tells_borders_that_would_change(void **state)
 		const double second = degrees - atan2(below * sin(a), 90 + below * cos(a)) * 180 / pi;
 		const double worst = fmax(first, second);
 		result r;
-		put_sheared("border.glb", k);
+		put_sheared(k);
 		for (int check = 0; check < 2; check++) {
 			convert(&r, "border.glb", (nt_settings){.report = &report, .check = check, .threads = 1});
 			if (fabs(r.border_degrees - (worst > 5 ? worst : 0)) > 0.06)
@@ -578,12 +497,8 @@ static void a_report_tells_borders_that_would_change(void **state)
 static size_t mismatches(nt_across how)
 {
 	const nt_report_options report = {0};
-	const nt_settings settings = {.texcoord_set = -1, .check = true, .report = &report, .across = how,
-		.threads = 1};
-	nt_summary summary;
-	nt_error error;
-	if (nt_run(in_folder("out.glb"), NULL, &settings, &summary, &error))
-		fail_msg("%s: %s", error.place.pointer, error.message);
+	nt_summary summary = convert_file("out.glb", NULL,
+		(nt_settings){.check = true, .report = &report, .across = how, .threads = 1});
 	size_t count = 0;
 	for (size_t i = 0; i < summary.report->finding_count; i++)
 		if (summary.report->findings[i].code == NT_CODE_TAN_DIRECTION_MISMATCH)
@@ -596,7 +511,7 @@ static void a_check_judges_by_the_same_rule(void **state)
 {
 	(void)state;
 	result r;
-	put_sheared("border.glb", 4);
+	put_sheared(4);
 	convert(&r, "border.glb", across);
 	close_result(&r);
 	/* 76 degrees apart, and the joined tangents more than 30 from one of the two squares' */

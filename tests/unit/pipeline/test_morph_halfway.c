@@ -8,13 +8,8 @@
  *
  * which is 0 for every rigid turn below 180 degrees, where both cancel.
  */
-#include "folder.h"
-#include "test.h"
+#include "hand_gltf_file.h"
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
-#include "base/buffer.h"
-#include "pipeline/run.h"
 
 enum { MOST_VERTICES = 64 };
 
@@ -51,44 +46,32 @@ static void map(grid *g, double ux, double uy, double vx, double vy)
 	}
 }
 
-static void put_grid(const char *name, const grid *g, const char *extras)
+static void put_grid(const grid *g, const char *extras)
 {
 	const size_t n = g->vertex_count;
-	nt_buffer bin = {0}, json = {0};
 	const float (*const rows[])[3] = {g->positions, g->normals, g->moves, g->turns};
+	hand_file f = {0};
+	nt_buffer members = {0};
+	uint16_t corners[MOST_VERTICES / 2][6];
+	for (uint16_t i = 0; i < g->columns; i++)
+		for (int k = 0; k < 6; k++)
+			corners[i][k] = (uint16_t)(2 * i + "\0\2\3\0\3\1"[k]);
 	for (size_t i = 0; i < 4; i++)
-		nt_buffer_append(&bin, rows[i], n * sizeof *rows[i]);
-	nt_buffer_append(&bin, g->texcoords, n * sizeof *g->texcoords);
-	for (uint16_t i = 0; i < g->columns; i++) {
-		const uint16_t a = (uint16_t)(2 * i);
-		const uint16_t corners[6] = {a, (uint16_t)(a + 2), (uint16_t)(a + 3), a, (uint16_t)(a + 3),
-			(uint16_t)(a + 1)};
-		nt_buffer_append(&bin, corners, sizeof corners);
-	}
-	nt_buffer_format(&json, "{\"asset\":{\"version\":\"2.0\"},\"materials\":[{\"normalTexture\":{\"index\":0}}],"
-		"\"textures\":[{}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu}],\"accessors\":[", bin.size);
-	for (size_t i = 0; i < 4; i++)
-		nt_buffer_format(&json, "{\"bufferView\":0,\"byteOffset\":%zu,\"componentType\":5126,\"count\":%zu,"
-			"\"type\":\"VEC3\"},", 12 * n * i, n);
-	nt_buffer_format(&json, "{\"bufferView\":0,\"byteOffset\":%zu,\"componentType\":5126,\"count\":%zu,"
-		"\"type\":\"VEC2\"},{\"bufferView\":0,\"byteOffset\":%zu,\"componentType\":5123,\"count\":%zu,"
-		"\"type\":\"SCALAR\"}],\"meshes\":[{%s\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,"
-		"\"TEXCOORD_0\":4},\"indices\":5,\"material\":0,\"targets\":[{\"POSITION\":2,\"NORMAL\":3}]}]}],"
-		"\"buffers\":[{\"byteLength\":%zu}]}", 48 * n, n, 56 * n, 6 * g->columns, extras, bin.size);
-	put_glb_file(name, json.data, bin.data, bin.size);
-	nt_buffer_free(&bin);
-	nt_buffer_free(&json);
+		put_accessor(&f, rows[i], n, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(&f, g->texcoords, n, NT_GLTF_FLOAT, "VEC2");
+	put_accessor(&f, corners, 6 * g->columns, NT_GLTF_USHORT, "SCALAR");
+	nt_buffer_format(&members, NORMAL_MAP "\"meshes\":[{%s\"primitives\":[{\"attributes\":{\"POSITION\":0,"
+		"\"NORMAL\":1,\"TEXCOORD_0\":4},\"indices\":5,\"material\":0,\"targets\":[{\"POSITION\":2,"
+		"\"NORMAL\":3}]}]}],", extras);
+	put_glb("in.glb", &f, members.data);
+	nt_buffer_free(&members);
 }
 
 /* Converts; the angle of the finding, 0 where there is none. */
 static double found(const grid *g, const char *extras, size_t *triangles, char *detail)
 {
-	put_grid("in.glb", g, extras);
-	const nt_settings settings = {.texcoord_set = -1, .threads = 1};
-	nt_summary summary;
-	nt_error error;
-	if (nt_run(in_folder("in.glb"), in_folder("out.glb"), &settings, &summary, &error))
-		fail_msg("%s: %s", error.place.pointer, error.message);
+	put_grid(g, extras);
+	nt_summary summary = convert_file("in.glb", "out.glb", (nt_settings){.threads = 1});
 	double angle = 0;
 	for (size_t i = 0; i < summary.findings.count; i++) {
 		const nt_finding *finding = &summary.findings.items[i];

@@ -6,16 +6,9 @@
  * Target 0 tilts it by 45 degrees about y, normals too: T = (1, 0, 1) / sqrt 2. It has a TANGENT of its own,
  * which is nonsense. Target 1 moves x to -x: T = (-1, 0, 0), and both triangles are seen from behind.
  */
-#include "folder.h"
-#include "test.h"
+#include "hand_gltf_file.h"
 #include <math.h>
-#include <stdio.h>
 #include <time.h>
-#include "base/buffer.h"
-#include "gltf/accessor.h"
-#include "gltf/document.h"
-#include "gltf/open.h"
-#include "pipeline/run.h"
 
 static const float rows[6][4][3] = {
 	{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},     /* 0: positions */
@@ -31,35 +24,22 @@ static const uint16_t indices[6] = {0, 1, 2, 0, 2, 3};
 /* integers: normals are stored as (0, 0, 64 / 127), and target 0 adds -64 / 127 to x, which is 45 degrees, too. */
 static void write_input(bool integers)
 {
-	static const int8_t short_normals[4][4] = {{0, 0, 64}, {0, 0, 64}, {0, 0, 64}, {0, 0, 64}};
+	static const int8_t short_normals[4][3] = {{0, 0, 64}, {0, 0, 64}, {0, 0, 64}, {0, 0, 64}};
 	float values[6][4][3];
 	memcpy(values, rows, sizeof values);
-	if (integers)
-		memcpy(values[1], short_normals, sizeof short_normals);
 	for (int i = 0; integers && i < 4; i++)
 		values[3][i][0] = -64 / 127.0f;
-	nt_buffer bin = {0}, json = {0};
-	nt_buffer_append(&bin, values, sizeof values);
-	nt_buffer_append(&bin, texcoords, sizeof texcoords);
-	nt_buffer_append(&bin, indices, sizeof indices);
-	nt_buffer_text(&json, "{\"asset\":{\"version\":\"2.0\"},\"materials\":[{\"normalTexture\":{\"index\":0}}],"
-		"\"textures\":[{}],\"bufferViews\":[");
+	hand_file f = {0};
 	for (int i = 0; i < 6; i++)
-		nt_buffer_format(&json, "{\"buffer\":0,\"byteOffset\":%d,\"byteLength\":48%s},", 48 * i,
-			integers && i == 1 ? ",\"byteStride\":4" : "");
-	nt_buffer_text(&json, "{\"buffer\":0,\"byteOffset\":288,\"byteLength\":32},"
-		"{\"buffer\":0,\"byteOffset\":320,\"byteLength\":12}],\"accessors\":[");
-	for (int i = 0; i < 6; i++)
-		nt_buffer_format(&json, "{\"bufferView\":%d,\"componentType\":%s,\"count\":4,\"type\":\"VEC3\"},", i,
-			integers && i == 1 ? "5120,\"normalized\":true" : "5126");
-	nt_buffer_format(&json, "{\"bufferView\":6,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"},"
-		"{\"bufferView\":7,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}],"
-		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":6},"
-		"\"indices\":7,\"material\":0,\"targets\":[{\"POSITION\":2,\"NORMAL\":3,\"TANGENT\":4},"
-		"{\"POSITION\":5}]}]}],\"buffers\":[{\"byteLength\":%zu}]}", bin.size);
-	put_glb_file("in.glb", json.data, bin.data, bin.size);
-	nt_buffer_free(&bin);
-	nt_buffer_free(&json);
+		if (integers && i == 1)
+			put_accessor(&f, short_normals, 4, NT_GLTF_BYTE, "VEC3");
+		else
+			put_accessor(&f, values[i], 4, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(&f, texcoords, 4, NT_GLTF_FLOAT, "VEC2");
+	put_accessor(&f, indices, 6, NT_GLTF_USHORT, "SCALAR");
+	put_glb("in.glb", &f, NORMAL_MAP "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,"
+		"\"TEXCOORD_0\":6},\"indices\":7,\"material\":0,\"targets\":[{\"POSITION\":2,\"NORMAL\":3,"
+		"\"TANGENT\":4},{\"POSITION\":5}]}]}],");
 }
 
 typedef struct result {
@@ -71,25 +51,12 @@ typedef struct result {
 /* Converts the input and opens what came out. */
 static void convert(result *r, nt_morph_choice morphs)
 {
-	const nt_settings settings = {.texcoord_set = -1, .morphs = morphs};
-	nt_summary summary;
-	nt_error error;
-	if (nt_run(in_folder("in.glb"), in_folder("out.glb"), &settings, &summary, &error))
-		fail_msg("%s: %s", error.place.pointer, error.message);
+	nt_summary summary = convert_file("in.glb", "out.glb", (nt_settings){.morphs = morphs});
 	assert_int_equal(summary.solved_count, 1);
 	assert_int_equal(summary.appended_tangents, 0);
-	r->turned = 0;
-	for (size_t i = 0; i < summary.findings.count; i++)
-		if (summary.findings.items[i].code == NT_CODE_TAN_MORPH_TURNED)
-			r->turned += summary.findings.items[i].count;
+	r->turned = count_findings(&summary, NT_CODE_TAN_MORPH_TURNED);
 	nt_summary_free(&summary);
-
-	assert_int_equal(nt_file_open(&r->file, in_folder("out.glb"), &error), NT_OK);
-	nt_scene_init(&r->scene, "out.glb");
-	r->scene.bytes = r->file.data;
-	r->scene.byte_count = r->file.size;
-	r->scene.format = NT_FORMAT_GLB;
-	assert_int_equal(nt_gltf_open(&r->scene, &(nt_read_options){.texcoord_set = -1}, &error), NT_OK);
+	open_file(&r->scene, &r->file, "out.glb", &(nt_read_options){.texcoord_set = -1});
 }
 
 static void close_result(result *r)
@@ -98,27 +65,11 @@ static void close_result(result *r)
 	nt_file_close(&r->file);
 }
 
-/* The accessor of a target's TANGENT; target -1: the primitive's. NT_NONE: there is none. */
-static uint32_t tangent_of(const result *r, int target)
+static void rows_are(result *r, uint32_t index, uint32_t width, const float *expected)
 {
-	const nt_json_value *primitive = nt_json_at(nt_json_find(
-		nt_json_at(nt_gltf_root_member(r->scene.source, "meshes"), 0), "primitives"), 0);
-	const nt_json_value *attributes = target < 0 ? nt_json_find(primitive, "attributes") :
-		nt_json_at(nt_json_find(primitive, "targets"), (size_t)target);
-	uint64_t index = NT_NONE;
-	nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &index);
-	return (uint32_t)index;
-}
-
-static void rows_are(const result *r, uint32_t index, uint32_t width, const float *expected)
-{
-	nt_gltf_accessor accessor;
-	nt_error error;
-	float *found;
-	assert_int_equal(nt_gltf_get_accessor(r->scene.source, index, "", &accessor, &error), NT_OK);
-	assert_int_equal(nt_gltf_floats(r->scene.source, &accessor, width, 0, (nt_arena *)&r->scene.arena, &found,
-		&error), NT_OK);
-	assert_int_equal(accessor.count, 4);
+	uint64_t count;
+	const float *found = rows_of(&r->scene, index, width, &count);
+	assert_int_equal(count, 4);
 	for (size_t i = 0; i < 4 * width; i++)
 		assert_true(fabsf(found[i] - expected[i % width]) <= 1.2e-7f);
 }
@@ -128,9 +79,9 @@ static void check_baked(void)
 	const float half = sqrtf(0.5f);
 	result r;
 	convert(&r, NT_MORPH_BAKE);
-	rows_are(&r, tangent_of(&r, -1), 4, (float[]){1, 0, 0, 1});
-	rows_are(&r, tangent_of(&r, 0), 3, (float[]){half - 1, 0, half});
-	rows_are(&r, tangent_of(&r, 1), 3, (float[]){-2, 0, 0});
+	rows_are(&r, tangent_of(&r.scene, 0, 0, -1), 4, (float[]){1, 0, 0, 1});
+	rows_are(&r, tangent_of(&r.scene, 0, 0, 0), 3, (float[]){half - 1, 0, half});
+	rows_are(&r, tangent_of(&r.scene, 0, 0, 1), 3, (float[]){-2, 0, 0});
 	close_result(&r);
 }
 
@@ -154,10 +105,10 @@ static void kept_targets_are_as_they_were(void **state)
 	(void)state;
 	result r;
 	convert(&r, NT_MORPH_KEEP);
-	rows_are(&r, tangent_of(&r, -1), 4, (float[]){1, 0, 0, 1});
-	assert_int_equal(tangent_of(&r, 0), 4);
+	rows_are(&r, tangent_of(&r.scene, 0, 0, -1), 4, (float[]){1, 0, 0, 1});
+	assert_int_equal(tangent_of(&r.scene, 0, 0, 0), 4);
 	rows_are(&r, 4, 3, rows[4][0]);
-	assert_int_equal(tangent_of(&r, 1), NT_NONE);
+	assert_int_equal(tangent_of(&r.scene, 0, 0, 1), NT_NONE);
 	close_result(&r);
 }
 
@@ -166,9 +117,9 @@ static void dropped_targets_have_none(void **state)
 	(void)state;
 	result r;
 	convert(&r, NT_MORPH_DROP);
-	rows_are(&r, tangent_of(&r, -1), 4, (float[]){1, 0, 0, 1});
-	assert_int_equal(tangent_of(&r, 0), NT_NONE);
-	assert_int_equal(tangent_of(&r, 1), NT_NONE);
+	rows_are(&r, tangent_of(&r.scene, 0, 0, -1), 4, (float[]){1, 0, 0, 1});
+	assert_int_equal(tangent_of(&r.scene, 0, 0, 0), NT_NONE);
+	assert_int_equal(tangent_of(&r.scene, 0, 0, 1), NT_NONE);
 	/* accessors keep their numbers */
 	rows_are(&r, 4, 3, rows[4][0]);
 	close_result(&r);
@@ -206,31 +157,17 @@ static void write_hub(void)
 			uvs[v][1] = k ? -1.0f : 0.0f;
 			triangles[i][k + 1] = v;
 		}
-	nt_buffer bin = {0}, json = {0};
-	nt_buffer_append(&bin, positions, HUB_VERTICES * sizeof *positions);
-	nt_buffer_append(&bin, normals, HUB_VERTICES * sizeof *normals);
-	nt_buffer_append(&bin, uvs, HUB_VERTICES * sizeof *uvs);
-	nt_buffer_append(&bin, triangles, HUB * sizeof *triangles);
+	hand_file f = {0};
+	put_accessor(&f, positions, HUB_VERTICES, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(&f, normals, HUB_VERTICES, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(&f, uvs, HUB_VERTICES, NT_GLTF_FLOAT, "VEC2");
+	put_accessor(&f, triangles, 3 * HUB, NT_GLTF_UINT, "SCALAR");
 	free(positions);
 	free(normals);
 	free(uvs);
 	free(triangles);
-	nt_buffer_format(&json, "{\"asset\":{\"version\":\"2.0\"},\"materials\":[{\"normalTexture\":{\"index\":0}}],"
-		"\"textures\":[{}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu}],\"accessors\":[", bin.size);
-	const struct {
-		const char *type;
-		size_t offset;
-	} parts[] = {{"VEC3", 0}, {"VEC3", 12}, {"VEC2", 24}};
-	for (size_t i = 0; i < 3; i++)
-		nt_buffer_format(&json, "{\"bufferView\":0,\"byteOffset\":%zu,\"componentType\":5126,\"count\":%d,"
-			"\"type\":\"%s\"},", parts[i].offset * HUB_VERTICES, HUB_VERTICES, parts[i].type);
-	nt_buffer_format(&json, "{\"bufferView\":0,\"byteOffset\":%d,\"componentType\":5125,\"count\":%d,"
-		"\"type\":\"SCALAR\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,"
-		"\"TEXCOORD_0\":2},\"indices\":3,\"material\":0,\"targets\":[{\"POSITION\":1}]}]}],"
-		"\"buffers\":[{\"byteLength\":%zu}]}", 32 * HUB_VERTICES, 3 * HUB, bin.size);
-	put_glb_file("hub.glb", json.data, bin.data, bin.size);
-	nt_buffer_free(&bin);
-	nt_buffer_free(&json);
+	put_glb("hub.glb", &f, NORMAL_MAP "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,"
+		"\"TEXCOORD_0\":2},\"indices\":3,\"material\":0,\"targets\":[{\"POSITION\":1}]}]}],");
 }
 
 /* Compared one with another the corners of the hub would be 5 * 10^9 pairs, twice: when it is split, and when
@@ -239,12 +176,8 @@ static void a_hub_of_a_hundred_thousand_tangents_is_no_burden(void **state)
 {
 	(void)state;
 	write_hub();
-	const nt_settings settings = {.texcoord_set = -1, .threads = 1};
-	nt_summary summary;
-	nt_error error;
 	const clock_t begin = clock();
-	if (nt_run(in_folder("hub.glb"), in_folder("out.glb"), &settings, &summary, &error))
-		fail_msg("%s: %s", error.place.pointer, error.message);
+	nt_summary summary = convert_file("hub.glb", "out.glb", (nt_settings){.threads = 1});
 	assert_true(clock() - begin < 20 * CLOCKS_PER_SEC);
 	/* neighbours differ by 6e-5 in a float of 24 bits: no two tangents are the same */
 	assert_int_equal(summary.appended_tangents, HUB - 1);

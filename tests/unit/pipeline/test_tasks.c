@@ -5,13 +5,9 @@
  * SIDE x SIDE quads.
  */
 #include "fail_alloc.h"
-#include "folder.h"
-#include "test.h"
+#include "hand_gltf_file.h"
 #include <math.h>
-#include "base/buffer.h"
-#include "file/input.h"
 #include "pipeline/stages.h"
-#include "pipeline/run.h"
 
 enum { SIDE = 16, VERTICES = (SIDE + 1) * (SIDE + 1), CORNERS = 6 * SIDE * SIDE };
 
@@ -33,22 +29,15 @@ typedef enum kind {
 } kind;
 
 typedef struct file {
-	nt_buffer bin, accessors, primitives;
-	size_t accessor_count, primitive_count;
+	hand_file accessors;
+	nt_buffer primitives;
+	size_t primitive_count;
 } file;
-
-static size_t put_accessor(file *f, const void *data, size_t count, size_t width, int type, const char *words)
-{
-	nt_buffer_format(&f->accessors, "%s{\"bufferView\":0,\"byteOffset\":%zu,\"componentType\":%d,\"count\":%zu,"
-		"\"type\":\"%s\"}", f->accessor_count ? "," : "", f->bin.size, type, count, words);
-	nt_buffer_append(&f->bin, data, count * width);
-	nt_buffer_append(&f->bin, "\0\0\0", (4 - count * width % 4) % 4);
-	return f->accessor_count++;
-}
 
 /* POSITION, NORMAL and TEXCOORD_0 of a grid, different for each `number`; the number of the first. vertices: [count] of
  * the grid; NULL: all VERTICES. */
-static size_t put_vertices(file *f, int number, bool mirrored, float length, const uint32_t *vertices, size_t count)
+static size_t put_vertices(hand_file *f, int number, bool mirrored, float length, const uint32_t *vertices,
+	size_t count)
 {
 	static float positions[CORNERS][3], normals[CORNERS][3], texcoords[CORNERS][2];
 	for (size_t i = 0; i < count; i++) {
@@ -62,9 +51,9 @@ static size_t put_vertices(file *f, int number, bool mirrored, float length, con
 	}
 	if (length != 1)
 		memset(normals[SIDE], 0, sizeof normals[SIDE]);
-	const size_t first = put_accessor(f, positions, count, 12, 5126, "VEC3");
-	put_accessor(f, normals, count, 12, 5126, "VEC3");
-	put_accessor(f, texcoords, count, 8, 5126, "VEC2");
+	const size_t first = put_accessor(f, positions, count, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(f, normals, count, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(f, texcoords, count, NT_GLTF_FLOAT, "VEC2");
 	return first;
 }
 
@@ -84,14 +73,14 @@ static void make_corners(uint32_t *corners, bool reversed)
 }
 
 /* The number of an accessor of `count` indices, of 16 bits or 32. */
-static size_t put_indices(file *f, const uint32_t *corners, size_t count, bool wide)
+static size_t put_indices(hand_file *f, const uint32_t *corners, size_t count, bool wide)
 {
 	uint16_t narrow[CORNERS + 2];
 	if (wide)
-		return put_accessor(f, corners, count, 4, 5125, "SCALAR");
+		return put_accessor(f, corners, count, NT_GLTF_UINT, "SCALAR");
 	for (size_t c = 0; c < count; c++)
 		narrow[c] = (uint16_t)corners[c];
-	return put_accessor(f, narrow, count, 2, 5123, "SCALAR");
+	return put_accessor(f, narrow, count, NT_GLTF_USHORT, "SCALAR");
 }
 
 static void put_primitive(file *f, kind which, bool faulty)
@@ -106,13 +95,14 @@ static void put_primitive(file *f, kind which, bool faulty)
 	static const uint32_t few[] = {SIDE / 2, SIDE / 2 + 1, SIDE + SIDE / 2 + 2, SIDE + SIDE / 2, SIDE / 2 - 1},
 		cut[] = {0, 1, 2, 3, 4, 0};
 	const bool shares = which == REVERSED || which == BESIDE, same = which == SAME || which == CONFLICT;
-	const size_t first = same ? 0 : shares ? f->accessor_count - 4 :
-		which == CUT ? put_vertices(f, number, mirrored, 1, few, 5) :
-		put_vertices(f, number, mirrored, which == LONG ? 2 : 1, lists ? corners : NULL,
+	hand_file *const rows = &f->accessors;
+	const size_t first = same ? 0 : shares ? rows->accessor_count - 4 :
+		which == CUT ? put_vertices(rows, number, mirrored, 1, few, 5) :
+		put_vertices(rows, number, mirrored, which == LONG ? 2 : 1, lists ? corners : NULL,
 			lists ? CORNERS : VERTICES);
 	const size_t count = which == CUT ? 6 : which == BESIDE ? 3 : which == TAIL ? CORNERS + 2 : CORNERS;
 	const size_t indices = same ? 3 : lists ? 0 :
-		put_indices(f, which == CUT ? cut : which == BESIDE ? cut + 3 : corners, count, which == WIDE);
+		put_indices(rows, which == CUT ? cut : which == BESIDE ? cut + 3 : corners, count, which == WIDE);
 	nt_buffer_format(&f->primitives, "%s{\"attributes\":{\"POSITION\":%zu,\"NORMAL\":%zu,\"TEXCOORD_0\":%zu},",
 		number ? "," : "", first, first + 1, first + 2);
 	if (!lists)
@@ -122,22 +112,19 @@ static void put_primitive(file *f, kind which, bool faulty)
 }
 
 /* A scene of `count` primitives, of which those behind `faulty` have an index that is no vertex. */
-static void put_scene(const char *name, size_t count, size_t faulty)
+static void put_scene(size_t count, size_t faulty)
 {
 	file f = {0};
-	nt_buffer json = {0};
+	nt_buffer members = {0};
 	for (size_t i = 0; i < count; i++)
 		put_primitive(&f, (kind)(i % KINDS), i >= faulty);
-	nt_buffer_format(&json, "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_texture_transform\"],"
-		"\"textures\":[{}],\"materials\":[{\"normalTexture\":{\"index\":0}},{\"normalTexture\":{\"index\":0},"
-		"\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatNormalTexture\":{\"index\":0,\"extensions\":{"
-		"\"KHR_texture_transform\":{\"scale\":[2,1]}}}}}}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu}],"
-		"\"accessors\":[%s],\"meshes\":[{\"primitives\":[%s]}],\"buffers\":[{\"byteLength\":%zu}]}", f.bin.size,
-		f.accessors.data, f.primitives.data, f.bin.size);
-	put_glb_file(name, json.data, f.bin.data, f.bin.size);
-	nt_buffer_free(&json);
-	nt_buffer_free(&f.bin);
-	nt_buffer_free(&f.accessors);
+	nt_buffer_format(&members, "\"extensionsUsed\":[\"KHR_texture_transform\"],\"textures\":[{}],"
+		"\"materials\":[{\"normalTexture\":{\"index\":0}},{\"normalTexture\":{\"index\":0},\"extensions\":{"
+		"\"KHR_materials_clearcoat\":{\"clearcoatNormalTexture\":{\"index\":0,\"extensions\":{"
+		"\"KHR_texture_transform\":{\"scale\":[2,1]}}}}}}],\"meshes\":[{\"primitives\":[%s]}],",
+		f.primitives.data);
+	put_glb("in.glb", &f.accessors, members.data);
+	nt_buffer_free(&members);
 	nt_buffer_free(&f.primitives);
 }
 
@@ -152,39 +139,19 @@ static void assert_same_findings(const nt_finding_list *a, const nt_finding_list
 	}
 }
 
-static void assert_same_files(const char *a, const char *b)
-{
-	nt_file x, y;
-	nt_error error;
-	assert_int_equal(nt_file_open(&x, a, &error), NT_OK);
-	assert_int_equal(nt_file_open(&y, b, &error), NT_OK);
-	assert_int_equal(x.size, y.size);
-	assert_memory_equal(x.data, y.data, x.size);
-	nt_file_close(&x);
-	nt_file_close(&y);
-}
-
 static void the_same_as_where_geometry_is_kept(void **state)
 {
 	(void)state;
-	put_scene("in.glb", 2 * KINDS, SIZE_MAX);
-	nt_error error;
-	nt_summary first, results;
-	const nt_settings loads = {.texcoord_set = -1, .verify = true, .threads = 1};
-	assert_int_equal(nt_run(in_folder("in.glb"), in_folder("first.glb"), &loads, &first, &error), NT_OK);
+	put_scene(2 * KINDS, SIZE_MAX);
+	nt_summary first = convert_file("in.glb", "first.glb", (nt_settings){.verify = true, .threads = 1});
 	assert_int_equal(first.solved_count, 2 * KINDS);
 	assert_int_equal(first.same_count, 4);
 	assert_true(first.appended_tangents > 0);
-	bool conflict = false;
-	for (size_t i = 0; i < first.findings.count; i++)
-		conflict |= first.findings.items[i].code == NT_CODE_TAN_UVSET_CONFLICT;
-	assert_true(conflict);
+	assert_true(count_findings(&first, NT_CODE_TAN_UVSET_CONFLICT) > 0);
 	static const unsigned threads[] = {1, 2, 4};
 	for (size_t i = 0; i < sizeof threads / sizeof *threads; i++) {
-		const nt_settings settings = {.texcoord_set = -1, .threads = threads[i]};
-		assert_int_equal(nt_run(in_folder("in.glb"), in_folder("results.glb"), &settings, &results, &error),
-			NT_OK);
-		assert_same_files(in_folder("first.glb"), in_folder("results.glb"));
+		nt_summary results = convert_file("in.glb", "results.glb", (nt_settings){.threads = threads[i]});
+		assert_true(same_files("first.glb", "results.glb"));
 		assert_same_findings(&first.findings, &results.findings);
 		assert_memory_equal(&first.counts, &results.counts, sizeof first.counts);
 		assert_int_equal(first.solved_count, results.solved_count);
@@ -201,19 +168,15 @@ static void the_same_as_where_geometry_is_kept(void **state)
 static void what_needs_no_repair_stays(void **state)
 {
 	(void)state;
-	put_scene("in.glb", 2 * KINDS, SIZE_MAX);
-	nt_error error;
-	nt_summary summary;
-	nt_settings settings = {.texcoord_set = -1, .precision = NT_PRECISION_SHORT};
-	assert_int_equal(nt_run(in_folder("in.glb"), in_folder("first.glb"), &settings, &summary, &error), NT_OK);
+	put_scene(2 * KINDS, SIZE_MAX);
+	nt_summary summary = convert_file("in.glb", "first.glb", (nt_settings){.precision = NT_PRECISION_SHORT});
 	nt_summary_free(&summary);
-	settings = (nt_settings){.texcoord_set = -1, .existing = NT_EXISTING_REPAIR};
-	for (settings.threads = 1; settings.threads <= 2; settings.threads++) {
-		assert_int_equal(nt_run(in_folder("first.glb"), in_folder("again.glb"), &settings, &summary,
-			&error), NT_OK);
+	for (unsigned threads = 1; threads <= 2; threads++) {
+		summary = convert_file("first.glb", "again.glb",
+			(nt_settings){.existing = NT_EXISTING_REPAIR, .threads = threads});
 		assert_int_equal(summary.solved_count, 2 * KINDS);
 		nt_summary_free(&summary);
-		assert_same_files(in_folder("first.glb"), in_folder("again.glb"));
+		assert_true(same_files("first.glb", "again.glb"));
 	}
 }
 
@@ -227,7 +190,7 @@ static void begin_stage(void *run, nt_stage stage)
 static void geometry_is_let_go_of_where_only_results_count(void **state)
 {
 	(void)state;
-	put_scene("in.glb", KINDS, SIZE_MAX);
+	put_scene(KINDS, SIZE_MAX);
 	for (int only_results = 0; only_results < 2; only_results++) {
 		const nt_settings settings = {.texcoord_set = -1, .threads = 2};
 		const nt_read_options options = {.texcoord_set = -1, .threads = 2, .edits = true,
@@ -269,7 +232,7 @@ static void the_first_fault_is_told(void **state)
 {
 	(void)state;
 	enum { FAULTY = 2 * KINDS + TAIL };
-	put_scene("in.glb", 4 * KINDS, FAULTY);
+	put_scene(4 * KINDS, FAULTY);
 	for (unsigned threads = 1; threads <= 4; threads++) {
 		const nt_settings settings = {.texcoord_set = -1, .threads = threads};
 		nt_summary summary;
@@ -287,7 +250,7 @@ static void the_first_fault_is_told(void **state)
 static void exhausted_memory_is_told(void **state)
 {
 	(void)state;
-	put_scene("in.glb", KINDS, SIZE_MAX);
+	put_scene(KINDS, SIZE_MAX);
 	for (unsigned threads = 1; threads <= 2; threads++) {
 		size_t failures = 0, told = 0;
 		for (bool failed = true; failed; failures++) {
@@ -310,12 +273,11 @@ static void exhausted_memory_is_told(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(the_same_as_where_geometry_is_kept, make_folder, remove_folder),
-		cmocka_unit_test_setup_teardown(what_needs_no_repair_stays, make_folder, remove_folder),
-		cmocka_unit_test_setup_teardown(geometry_is_let_go_of_where_only_results_count, make_folder,
-			remove_folder),
-		cmocka_unit_test_setup_teardown(the_first_fault_is_told, make_folder, remove_folder),
-		cmocka_unit_test_setup_teardown(exhausted_memory_is_told, make_folder, remove_folder),
+		unit_test_in_folder(the_same_as_where_geometry_is_kept),
+		unit_test_in_folder(what_needs_no_repair_stays),
+		unit_test_in_folder(geometry_is_let_go_of_where_only_results_count),
+		unit_test_in_folder(the_first_fault_is_told),
+		unit_test_in_folder(exhausted_memory_is_told),
 	};
 	return cmocka_run_group_tests_name("pipeline/tasks", tests, NULL, NULL);
 }
