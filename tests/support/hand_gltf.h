@@ -111,6 +111,13 @@ static inline void compose_well(nt_scene *scene, nt_write_options options, const
 		fail_msg("%s", error.message);
 }
 
+static inline void assert_file_says(const char *name, const char *const *parts)
+{
+	char *text = text_of(name);
+	assert_says(text, parts);
+	free(text);
+}
+
 typedef struct opened {
 	nt_file main, sidecar;
 	nt_reread *reread;

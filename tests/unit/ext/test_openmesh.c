@@ -54,6 +54,15 @@ static uint32_t side_between(const uint32_t (*triangles)[3], size_t count, uint3
 	return NT_OPEN;
 }
 
+/* The chains of marked sides. */
+static nt_walks chains_of(const nt_halfedges *mesh, const uint8_t *marked, const uint32_t (*triangles)[3])
+{
+	nt_walks walks;
+	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NT_OK);
+	assert_sound(&walks, triangles);
+	return walks;
+}
+
 /* The walks along sides that no other is opposite to. */
 static nt_walks boundary_of(const nt_halfedges *mesh, const uint32_t (*triangles)[3], size_t count)
 {
@@ -62,10 +71,7 @@ static nt_walks boundary_of(const nt_halfedges *mesh, const uint32_t (*triangles
 	for (size_t s = 0; s < 3 * count; s++)
 		marked[s] = side_between(triangles, count, triangles[s / 3][(s + 1) % 3], triangles[s / 3][s % 3]) ==
 			NT_OPEN;
-	nt_walks walks;
-	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NT_OK);
-	assert_sound(&walks, triangles);
-	return walks;
+	return chains_of(mesh, marked, triangles);
 }
 
 static void strip_has_one_boundary_loop_in_order(void **state)
@@ -100,16 +106,13 @@ static void closed_seams_are_walked_round(void **state)
 {
 	(void)state;
 	nt_halfedges *mesh = built(8, cube, COUNT(cube));
-	nt_walks walks;
-
 	/* the rim of z = 1: 4-5-7-6, marked in no particular order and from either side */
 	uint8_t marked[36] = {0};
 	marked[side_between(cube, 12, 7, 6)] = 1;
 	marked[side_between(cube, 12, 5, 4)] = 1;
 	marked[side_between(cube, 12, 5, 7)] = 1;
 	marked[side_between(cube, 12, 4, 6)] = 1;
-	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NT_OK);
-	assert_sound(&walks, cube);
+	nt_walks walks = chains_of(mesh, marked, cube);
 	assert_int_equal(walks.count, 1);
 	assert_true(walks.closed[0]);
 	static const uint32_t rim[] = {4, 5, 7, 6}; /* lowest side: 6, which is 4-5 of triangle 2 */
@@ -120,8 +123,7 @@ static void closed_seams_are_walked_round(void **state)
 
 	/* the rim and one upright edge: vertex 4 is a junction, so the rim begins there */
 	marked[side_between(cube, 12, 0, 4)] = 1;
-	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NT_OK);
-	assert_sound(&walks, cube);
+	walks = chains_of(mesh, marked, cube);
 	assert_int_equal(walks.count, 2);
 	assert_true(walks.closed[0]);
 	assert_int_equal(walks.from[0], 4);
@@ -139,9 +141,7 @@ static void open_chain_is_ordered_from_end_to_end(void **state)
 	marked[side_between(cube, 12, 7, 6)] = 1;
 	marked[side_between(cube, 12, 1, 5)] = 1;
 	marked[side_between(cube, 12, 5, 7)] = 1;
-	nt_walks walks;
-	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NT_OK);
-	assert_sound(&walks, cube);
+	nt_walks walks = chains_of(mesh, marked, cube);
 	assert_int_equal(walks.count, 1);
 	assert_false(walks.closed[0]);
 	/* lowest side: 7, 5-7 of triangle 2, so the chain runs 1-5-7-6 */
@@ -165,9 +165,7 @@ static void moebius_strip_loses_nothing(void **state)
 	assert_int_equal(left_out[0], 4); /* uses 0-1 again, as triangle 0 does */
 	uint8_t marked[15] = {0};
 	marked[14] = 1; /* a side of the triangle left out is not lost */
-	nt_walks walks;
-	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NT_OK);
-	assert_sound(&walks, band);
+	nt_walks walks = chains_of(mesh, marked, band);
 	assert_int_equal(walks.count, 1);
 	assert_int_equal(walks.left[0], 14);
 	nt_walks_free(&walks);
@@ -181,9 +179,7 @@ static void degenerate_and_third_triangles_are_left_out(void **state)
 	nt_halfedges *mesh = built(6, soup, COUNT(soup));
 	const uint32_t *left_out;
 	assert_int_equal(nt_halfedges_left_out(mesh, &left_out), 3);
-	assert_int_equal(left_out[0], 2);
-	assert_int_equal(left_out[1], 3);
-	assert_int_equal(left_out[2], 4);
+	assert_memory_equal(left_out, ((uint32_t[]){2, 3, 4}), 12);
 	nt_halfedges_free(mesh);
 }
 

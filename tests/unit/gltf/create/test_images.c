@@ -10,10 +10,12 @@
 static const unsigned char png[] = "\x89PNG\r\n\x1a\n and then some";
 static const unsigned char jpeg[] = "\xff\xd8\xff\xe0 and then some more";
 
+static hand_scene hand;
+
 /* mtl/m.mtl with images beside it, one of them under a name that needs encoding. */
-static nt_scene *make_textured(hand_scene *hand)
+static int set_up(void **state)
 {
-	nt_scene *scene = make_scene(hand);
+	*state = make_scene(&hand);
 	mkdir(in_folder("mtl"), 0777);
 	mkdir(in_folder("mtl/tex"), 0777);
 	put_file("mtl/m.mtl", "", 0);
@@ -23,15 +25,21 @@ static nt_scene *make_textured(hand_scene *hand)
 	put_file("outside.png", png, sizeof png);
 	static char library[200];
 	snprintf(library, sizeof library, "%s", in_folder("mtl/m.mtl"));
-	hand->material.library = library;
-	hand->material.line = 3;
-	hand->material.base_color_map.name = "tex\\a b.png";
-	hand->material.emissive_map.name = "./tex/../tex/a b.png";
-	hand->material.normal_map.name = "n.jpg";
+	hand.material.library = library;
+	hand.material.line = 3;
+	hand.material.base_color_map.name = "tex\\a b.png";
+	hand.material.emissive_map.name = "./tex/../tex/a b.png";
+	hand.material.normal_map.name = "n.jpg";
 	for (size_t i = 0; i < NT_MATERIAL_MAPS; i++)
-		hand->material.maps[i].gain = 1;
-	hand->primitives[0].material = 0;
-	return scene;
+		hand.material.maps[i].gain = 1;
+	hand.primitives[0].material = 0;
+	return 0;
+}
+
+static int tear_down(void **state)
+{
+	nt_scene_free(*state);
+	return 0;
 }
 
 /* As the pipeline does it. The images here are no images, and none is looked into. */
@@ -68,29 +76,20 @@ static const nt_finding *finding_of(const nt_scene *scene, nt_code code)
 
 static void linked_images_are_relative_to_the_output(void **state)
 {
-	(void)state;
-	hand_scene hand;
-	nt_scene *scene = make_textured(&hand);
+	nt_scene *scene = *state;
 	mkdir(in_folder("out"), 0777);
 	compose_images_well(scene, (nt_write_options){0}, "out/linked.gltf");
-	char *text = text_of("out/linked.gltf");
-	assert_non_null(strstr(text, "\"uri\":\"../mtl/tex/a%20b.png\""));
-	assert_non_null(strstr(text, "\"uri\":\"../mtl/n.jpg\""));
 	/* one image, used twice */
-	assert_non_null(strstr(text, "\"baseColorTexture\":{\"index\":0}"));
-	assert_non_null(strstr(text, "\"emissiveTexture\":{\"index\":0}"));
-	assert_non_null(strstr(text, "\"normalTexture\":{\"index\":1}"));
-	assert_non_null(strstr(text, "\"textures\":[{\"source\":0},{\"source\":1}]"));
+	assert_file_says("out/linked.gltf", PARTS("\"uri\":\"../mtl/tex/a%20b.png\"",
+		"\"uri\":\"../mtl/n.jpg\"", "\"baseColorTexture\":{\"index\":0}",
+		"\"emissiveTexture\":{\"index\":0}", "\"normalTexture\":{\"index\":1}",
+		"\"textures\":[{\"source\":0},{\"source\":1}]"));
 	assert_int_equal(scene->findings.count, 0);
-	free(text);
-	nt_scene_free(scene);
 }
 
 static void embedded_images_lie_behind_the_geometry(void **state)
 {
-	(void)state;
-	hand_scene hand;
-	nt_scene *scene = make_textured(&hand);
+	nt_scene *scene = *state;
 	compose_images_well(scene, (nt_write_options){0}, "images.glb");
 	nt_file file;
 	nt_error error;
@@ -104,14 +103,11 @@ static void embedded_images_lie_behind_the_geometry(void **state)
 	opened back = open_back("images.glb");
 	assert_whole(&back, hand.tangents);
 	close_back(&back);
-	nt_scene_free(scene);
 }
 
 static void copied_images_stand_beside_the_output(void **state)
 {
-	(void)state;
-	hand_scene hand;
-	nt_scene *scene = make_textured(&hand);
+	nt_scene *scene = *state;
 	mkdir(in_folder("copies"), 0777);
 	compose_images_well(scene, (nt_write_options){.images = NT_IMAGES_COPY}, "copies/c.gltf");
 	char *text = text_of("copies/c.gltf"), *copy = text_of("copies/n.jpg");
@@ -126,39 +122,27 @@ static void copied_images_stand_beside_the_output(void **state)
 	put_file("mtl/a b.png", jpeg, sizeof jpeg);
 	hand.material.normal_map.name = "a b.png";
 	compose_images_well(scene, (nt_write_options){.images = NT_IMAGES_COPY}, "mtl/c.gltf");
-	text = text_of("mtl/c.gltf");
-	assert_non_null(strstr(text, "\"uri\":\"a%20b.png\""));
-	assert_non_null(strstr(text, "\"uri\":\"a%20b-256d04da728a78c9.png\""));
+	assert_file_says("mtl/c.gltf", PARTS("\"uri\":\"a%20b.png\"",
+		"\"uri\":\"a%20b-256d04da728a78c9.png\""));
 	assert_true(exists("mtl/a b-256d04da728a78c9.png"));
-	free(text);
-	nt_scene_free(scene);
 }
 
 static void no_images_means_no_textures(void **state)
 {
-	(void)state;
-	hand_scene hand;
-	nt_scene *scene = make_textured(&hand);
+	nt_scene *scene = *state;
 	compose_images_well(scene, (nt_write_options){.images = NT_IMAGES_NONE}, "none.gltf");
-	char *text = text_of("none.gltf");
-	assert_null(strstr(text, "exture"));
-	assert_non_null(strstr(text, "\"material\":0"));
-	free(text);
-	nt_scene_free(scene);
+	assert_file_says("none.gltf", PARTS("!exture", "\"material\":0"));
 }
 
 static void missing_and_foreign_images_are_findings(void **state)
 {
-	(void)state;
-	hand_scene hand;
-	nt_scene *scene = make_textured(&hand);
+	nt_scene *scene = *state;
 	hand.material.base_color_map.name = "gone.png";
 	hand.material.emissive_map.name = "t.tga"; /* three bytes */
 	hand.material.normal_map.name = NULL;
 	compose_images_well(scene, (nt_write_options){0}, "gone.gltf");
-	char *text = text_of("gone.gltf");
-	assert_null(strstr(text, "gone.png")); /* nobody asked for a link to nothing */
-	free(text);
+	/* nobody asked for a link to nothing */
+	assert_file_says("gone.gltf", PARTS("!gone.png"));
 	compose_images_well(scene, (nt_write_options){.images = NT_IMAGES_LINK}, "gone.gltf");
 	const nt_finding *missing = finding_of(scene, NT_CODE_IMAGE_MISSING);
 	assert_non_null(missing);
@@ -168,62 +152,40 @@ static void missing_and_foreign_images_are_findings(void **state)
 	const nt_finding *type = finding_of(scene, NT_CODE_IMAGE_TYPE);
 	assert_non_null(type);
 	assert_string_equal(type->detail, "t.tga");
-	text = text_of("gone.gltf");
-	assert_non_null(strstr(text, "\"uri\":\"mtl/gone.png\"")); /* the link stays */
-	assert_null(strstr(text, "tga"));
-	assert_null(strstr(text, "emissiveTexture"));
-	free(text);
+	/* the link stays */
+	assert_file_says("gone.gltf", PARTS("\"uri\":\"mtl/gone.png\"", "!tga", "!emissiveTexture"));
 	compose_images_well(scene, (nt_write_options){0}, "gone.glb"); /* there is nothing to embed */
 	opened file = open_back("gone.glb");
 	close_back(&file);
-	nt_scene_free(scene);
 }
 
 static void images_outside_of_the_mtl_folder_need_leave(void **state)
 {
-	(void)state;
-	hand_scene hand;
-	nt_scene *scene = make_textured(&hand);
+	nt_scene *scene = *state;
 	scene->path = hand.material.library; /* beside the OBJ would be inside, too */
 	assert_int_equal(symlink("../outside.png", in_folder("mtl/link.png")), 0);
 	hand.material.base_color_map.name = "../outside.png";
 	hand.material.emissive_map.name = "link.png";
 	hand.material.normal_map.name = "C:\\work\\n.jpg"; /* found by its last part */
 	compose_images_well(scene, (nt_write_options){0}, "confined.gltf");
-	char *text = text_of("confined.gltf");
-	assert_null(strstr(text, "outside"));
-	assert_null(strstr(text, "link.png"));
-	assert_non_null(strstr(text, "\"uri\":\"mtl/n.jpg\""));
+	assert_file_says("confined.gltf", PARTS("!outside", "!link.png", "\"uri\":\"mtl/n.jpg\""));
 	assert_non_null(strstr(finding_of(scene, NT_CODE_IMAGE_MISSING)->detail, "../outside.png"));
-	free(text);
 	compose_images_well(scene, (nt_write_options){.allow_outside = true}, "confined.gltf");
-	text = text_of("confined.gltf");
-	assert_non_null(strstr(text, "\"uri\":\"outside.png\""));
-	assert_non_null(strstr(text, "\"uri\":\"mtl/link.png\""));
-	assert_non_null(strstr(text, "\"uri\":\"mtl/n.jpg\""));
-	free(text);
-	nt_scene_free(scene);
+	assert_file_says("confined.gltf", PARTS("\"uri\":\"outside.png\"", "\"uri\":\"mtl/link.png\"",
+		"\"uri\":\"mtl/n.jpg\""));
 }
 
 static void primitive_without_texcoords_gets_no_textures(void **state)
 {
-	(void)state;
-	hand_scene hand;
-	nt_scene *scene = make_textured(&hand);
+	nt_scene *scene = *state;
 	hand.mesh.texcoords = NULL;
 	compose_images_well(scene, (nt_write_options){0}, "plain.gltf");
-	char *text = text_of("plain.gltf");
-	assert_null(strstr(text, "exture"));
-	assert_null(strstr(text, "images"));
-	free(text);
-	nt_scene_free(scene);
+	assert_file_says("plain.gltf", PARTS("!exture", "!images"));
 }
 
 static void images_are_safe_from_the_output(void **state)
 {
-	(void)state;
-	hand_scene hand;
-	nt_scene *scene = make_textured(&hand);
+	nt_scene *scene = *state;
 	put_file("mtl/n.bin", png, sizeof png);
 	hand.material.normal_map.name = "n.bin"; /* a PNG by content, and where the buffer would go */
 	compose_images_well(scene, (nt_write_options){0}, "mtl/n.gltf");
@@ -238,20 +200,19 @@ static void images_are_safe_from_the_output(void **state)
 	kept = text_of("mtl/n.bin");
 	assert_memory_equal(kept, png, sizeof png);
 	free(kept);
-	nt_scene_free(scene);
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(linked_images_are_relative_to_the_output),
-		cmocka_unit_test(embedded_images_lie_behind_the_geometry),
-		cmocka_unit_test(copied_images_stand_beside_the_output),
-		cmocka_unit_test(no_images_means_no_textures),
-		cmocka_unit_test(missing_and_foreign_images_are_findings),
-		cmocka_unit_test(images_outside_of_the_mtl_folder_need_leave),
-		cmocka_unit_test(primitive_without_texcoords_gets_no_textures),
-		cmocka_unit_test(images_are_safe_from_the_output),
+		cmocka_unit_test_setup_teardown(linked_images_are_relative_to_the_output, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(embedded_images_lie_behind_the_geometry, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(copied_images_stand_beside_the_output, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(no_images_means_no_textures, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(missing_and_foreign_images_are_findings, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(images_outside_of_the_mtl_folder_need_leave, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(primitive_without_texcoords_gets_no_textures, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(images_are_safe_from_the_output, set_up, tear_down),
 	};
 	return cmocka_run_group_tests_name("gltf/create/images", tests, make_folder, remove_folder);
 }

@@ -3,17 +3,11 @@
  * The same mesh plain, packed by meshoptimizer and compressed by Draco. Its u runs back in the middle,
  * so that vertices have to be split.
  */
-#include "folder.h"
-#include "test.h"
+#include "hand_gltf_file.h"
 #include <math.h>
 #include <meshoptimizer.h>
-#include <stdio.h>
-#include "base/buffer.h"
-#include "ext/draco.h"
 #include "gltf/draco.h"
 #include "gltf/load.h"
-#include "gltf/open.h"
-#include "pipeline/run.h"
 
 enum { N = 12, VERTICES = (N + 1) * (N + 1), CORNERS = N * N * 6 };
 
@@ -47,23 +41,15 @@ static void make_sheet(sheet *s)
 		}
 }
 
-static void pad(nt_buffer *buffer)
-{
-	while (buffer->size % 4)
-		nt_buffer_append(buffer, "", 1);
-}
-
 static size_t add_part(nt_buffer *bin, const void *bytes, size_t size)
 {
-	pad(bin);
+	nt_buffer_append(bin, "\0\0\0", (4 - bin->size % 4) % 4);
 	const size_t at = bin->size;
 	nt_buffer_append(bin, bytes, size);
 	return at;
 }
 
-#define HEAD                                                                                       \
-	"{\"asset\":{\"version\":\"2.0\"},\"materials\":[{\"normalTexture\":{\"index\":0}}],"        \
-	"\"textures\":[{}],"
+#define HEAD "{\"asset\":{\"version\":\"2.0\"}," NORMAL_MAP
 #define ACCESSOR(view, type, count, kind, more)                                                    \
 	"{" view "\"componentType\":" type ",\"count\":" count ",\"type\":\"" kind "\"" more "}"
 #define BOUNDS ",\"min\":[0,0,0],\"max\":[3,3,0.25]"
@@ -95,22 +81,13 @@ static const char *const accessors_with_tangents = ACCESSORS_WITH_VIEWS("5120");
 
 static void write_plain(const sheet *s, const char *name)
 {
-	nt_buffer bin = {0}, json = {0};
-	const size_t at[5] = {add_part(&bin, s->positions, sizeof s->positions),
-		add_part(&bin, s->normals, sizeof s->normals),
-		add_part(&bin, s->texcoords, sizeof s->texcoords),
-		add_part(&bin, s->colors, sizeof s->colors), add_part(&bin, s->indices, sizeof s->indices)};
-	const size_t sizes[5] = {sizeof s->positions, sizeof s->normals, sizeof s->texcoords,
-		sizeof s->colors, sizeof s->indices};
-	nt_buffer_text(&json, HEAD "\"bufferViews\":[");
-	for (int i = 0; i < 5; i++)
-		nt_buffer_format(&json, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}",
-			i ? "," : "", at[i], sizes[i]);
-	nt_buffer_format(&json, "],%s" PRIMITIVE "}]}],\"buffers\":[{\"byteLength\":%zu}]}",
-		accessors_with_views, bin.size);
-	put_glb_file(name, json.data, bin.data, bin.size);
-	nt_buffer_free(&bin);
-	nt_buffer_free(&json);
+	hand_file f = {0};
+	put_accessor(&f, s->positions, VERTICES, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(&f, s->normals, VERTICES, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(&f, s->texcoords, VERTICES, NT_GLTF_FLOAT, "VEC2");
+	put_accessor(&f, s->colors, VERTICES, NT_GLTF_UBYTE, "VEC4");
+	put_accessor(&f, s->indices, CORNERS, NT_GLTF_UINT, "SCALAR");
+	put_glb(name, &f, NORMAL_MAP PRIMITIVE "}]}],");
 }
 
 static void write_meshopt(const sheet *s, const char *accessors, const char *meshes, const char *name)
@@ -185,25 +162,14 @@ typedef struct loaded {
 	nt_mesh *mesh;
 } loaded;
 
-static void load_mesh(loaded *l, const char *path, size_t mesh)
+static void load(loaded *l, const char *name, size_t mesh)
 {
 	static const nt_read_options options = {.texcoord_set = -1, .world = true};
 	nt_error error;
-	nt_error_clear(&error);
-	assert_int_equal(nt_file_open(&l->file, path, &error), NT_OK);
-	nt_scene_init(&l->scene, path);
-	l->scene.bytes = l->file.data;
-	l->scene.byte_count = l->file.size;
-	l->scene.format = NT_FORMAT_GLB;
-	if (nt_gltf_open(&l->scene, &options, &error) ||
-		nt_gltf_load(&l->scene, &l->scene.meshes[mesh], &options, &error))
-		fail_msg("%s: %s: %s", path, error.place.pointer, error.message);
+	open_file(&l->scene, &l->file, name, &options);
 	l->mesh = &l->scene.meshes[mesh];
-}
-
-static void load(loaded *l, const char *path)
-{
-	load_mesh(l, path, 0);
+	if (nt_gltf_load(&l->scene, l->mesh, &options, &error))
+		fail_msg("%s: %s: %s", name, error.place.pointer, error.message);
 }
 
 static void unload(loaded *l)
@@ -219,11 +185,7 @@ static bool lists_extension(const loaded *l, const char *list)
 
 static void solve(const char *input, const char *output, nt_draco_choice draco)
 {
-	const nt_settings settings = {.texcoord_set = -1, .draco = draco, .verify = true};
-	nt_summary summary;
-	nt_error error;
-	if (nt_run(input, output, &settings, &summary, &error))
-		fail_msg("%s: %s: %s", input, error.place.pointer, error.message);
+	nt_summary summary = convert_file(input, output, (nt_settings){.draco = draco, .verify = true});
 	assert_int_equal(summary.solved_count, 1);
 	nt_summary_free(&summary);
 }
@@ -266,12 +228,12 @@ static void meshopt_gives_what_plain_gives(void **state)
 	(void)state;
 	write_plain(&source, "plain.glb");
 	write_meshopt(&source, accessors_with_views, PRIMITIVE, "packed.glb");
-	solve(in_folder("plain.glb"), in_folder("plain_out.glb"), NT_DRACO_KEEP);
-	solve(in_folder("packed.glb"), in_folder("packed_out.glb"), NT_DRACO_KEEP);
+	solve("plain.glb", "plain_out.glb", NT_DRACO_KEEP);
+	solve("packed.glb", "packed_out.glb", NT_DRACO_KEEP);
 	loaded in, plain, packed;
-	load(&in, in_folder("packed.glb"));
-	load(&plain, in_folder("plain_out.glb"));
-	load(&packed, in_folder("packed_out.glb"));
+	load(&in, "packed.glb", 0);
+	load(&plain, "plain_out.glb", 0);
+	load(&packed, "packed_out.glb", 0);
 	check_same_corners(in.mesh, packed.mesh);
 	check_same_corners(plain.mesh, packed.mesh);
 	check_tangents(plain.mesh, packed.mesh, 0);
@@ -289,33 +251,28 @@ static void meshopt_gives_what_plain_gives(void **state)
 	unload(&packed);
 }
 
+/* The same with a u that runs on. */
+static sheet even_sheet(void)
+{
+	sheet even = source;
+	for (int v = 0; v < VERTICES; v++)
+		even.texcoords[v][0] = (float)(v % (N + 1)) * 0.125f;
+	return even;
+}
+
 /* Nothing is split, so that nothing has to be unpacked; --verify does. */
 static void meshopt_views_that_do_not_change_stay_packed(void **state)
 {
 	(void)state;
-	sheet even = source;
-	for (int v = 0; v < VERTICES; v++)
-		even.texcoords[v][0] = (float)(v % (N + 1)) * 0.125f;
+	sheet even = even_sheet();
 	write_meshopt(&even, accessors_with_views, PRIMITIVE, "packed.glb");
-	solve(in_folder("packed.glb"), in_folder("packed_out.glb"), NT_DRACO_KEEP);
+	solve("packed.glb", "packed_out.glb", NT_DRACO_KEEP);
 	loaded out;
-	load(&out, in_folder("packed_out.glb"));
+	load(&out, "packed_out.glb", 0);
 	assert_int_equal(out.mesh->vertex_count, VERTICES);
 	assert_memory_equal(out.mesh->positions, even.positions, sizeof even.positions);
 	assert_true(lists_extension(&out, "extensionsRequired"));
 	unload(&out);
-}
-
-static bool same_files(const char *a, const char *b)
-{
-	nt_file x, y;
-	nt_error error;
-	assert_int_equal(nt_file_open(&x, a, &error), NT_OK);
-	assert_int_equal(nt_file_open(&y, b, &error), NT_OK);
-	const bool same = x.size == y.size && memcmp(x.data, y.data, x.size) == 0;
-	nt_file_close(&x);
-	nt_file_close(&y);
-	return same;
 }
 
 /* u runs along x and v, which glTF has down, along y: T = x, N = z and B = -y, so that w = -1. */
@@ -323,25 +280,20 @@ static void packed_tangents_that_are_valid_stay_packed(void **state)
 {
 	(void)state;
 	static const int8_t tangent[4] = {127, 0, 0, -127};
-	sheet even = source;
-	for (int v = 0; v < VERTICES; v++) {
-		even.texcoords[v][0] = (float)(v % (N + 1)) * 0.125f;
+	sheet even = even_sheet();
+	for (int v = 0; v < VERTICES; v++)
 		memcpy(even.colors[v], tangent, sizeof tangent);
-	}
-	nt_settings settings = {.texcoord_set = -1, .existing = NT_EXISTING_REPAIR, .verify = true};
+	nt_settings settings = {.existing = NT_EXISTING_REPAIR, .verify = true};
 	/* the last one has an invalid tangent; and what is asked for beside the repair is done */
 	for (int i = 0; i < 4; i++) {
 		even.colors[N + 3][0] = i < 3 ? 127 : 0;
 		write_meshopt(&even, accessors_with_tangents, WITH_TANGENTS, "packed.glb");
 		settings.bitangents = i == 1;
 		settings.precision = i == 2 ? NT_PRECISION_SHORT : NT_PRECISION_FLOAT;
-		nt_summary summary;
-		nt_error error;
-		assert_int_equal(nt_run(in_folder("packed.glb"), in_folder("packed_out.glb"), &settings,
-			&summary, &error), NT_OK);
+		nt_summary summary = convert_file("packed.glb", "packed_out.glb", settings);
 		assert_int_equal(summary.solved_count, 1);
 		nt_summary_free(&summary);
-		assert_int_equal(same_files(in_folder("packed.glb"), in_folder("packed_out.glb")), i == 0);
+		assert_int_equal(same_files("packed.glb", "packed_out.glb"), i == 0);
 	}
 }
 
@@ -351,10 +303,10 @@ static void meshopt_views_of_others_in_the_pool_grow(void **state)
 {
 	(void)state;
 	write_meshopt(&source, accessors_with_views, TWO_PRIMITIVES, "packed.glb");
-	solve(in_folder("packed.glb"), in_folder("packed_out.glb"), NT_DRACO_KEEP);
+	solve("packed.glb", "packed_out.glb", NT_DRACO_KEEP);
 	loaded in, out;
-	load_mesh(&in, in_folder("packed.glb"), 1);
-	load_mesh(&out, in_folder("packed_out.glb"), 1);
+	load(&in, "packed.glb", 1);
+	load(&out, "packed_out.glb", 1);
 	assert_true(out.mesh->vertex_count > VERTICES);
 	check_same_corners(in.mesh, out.mesh);
 	unload(&in);
@@ -364,12 +316,12 @@ static void meshopt_views_of_others_in_the_pool_grow(void **state)
 static void check_draco(nt_draco_method method)
 {
 	write_draco(&source, method, "in.glb");
-	solve(in_folder("in.glb"), in_folder("plain.glb"), NT_DRACO_OFF);
-	solve(in_folder("in.glb"), in_folder("out.glb"), NT_DRACO_KEEP);
+	solve("in.glb", "plain.glb", NT_DRACO_OFF);
+	solve("in.glb", "out.glb", NT_DRACO_KEEP);
 	loaded in, plain, out;
-	load(&in, in_folder("in.glb"));
-	load(&plain, in_folder("plain.glb"));
-	load(&out, in_folder("out.glb"));
+	load(&in, "in.glb", 0);
+	load(&plain, "plain.glb", 0);
+	load(&out, "out.glb", 0);
 	check_same_corners(in.mesh, plain.mesh);
 	assert_false(lists_extension(&plain, "extensionsUsed"));
 	assert_true(lists_extension(&out, "extensionsRequired"));
@@ -387,12 +339,6 @@ static void check_draco(nt_draco_method method)
 	unload(&in);
 	unload(&plain);
 	unload(&out);
-}
-
-static void draco_sequential_keeps_every_value(void **state)
-{
-	(void)state;
-	check_draco(NT_DRACO_SEQUENTIAL);
 }
 
 /* The block of a file's only primitive. */
@@ -419,11 +365,11 @@ static void explicit_methods_compress_plain_primitives(void **state)
 {
 	(void)state;
 	write_plain(&source, "in.glb");
-	solve(in_folder("in.glb"), in_folder("plain.glb"), NT_DRACO_OFF);
-	solve(in_folder("in.glb"), in_folder("out.glb"), NT_DRACO_AS_SEQUENTIAL);
+	solve("in.glb", "plain.glb", NT_DRACO_OFF);
+	solve("in.glb", "out.glb", NT_DRACO_AS_SEQUENTIAL);
 	loaded plain, out;
-	load(&plain, in_folder("plain.glb"));
-	load(&out, in_folder("out.glb"));
+	load(&plain, "plain.glb", 0);
+	load(&out, "out.glb", 0);
 	assert_int_equal(block_of(&out)->method, NT_DRACO_SEQUENTIAL);
 	assert_true(lists_extension(&out, "extensionsUsed"));
 	assert_true(lists_extension(&out, "extensionsRequired"));
@@ -457,12 +403,12 @@ static void explicit_methods_replace_the_one_of_the_source(void **state)
 		{NT_DRACO_SEQUENTIAL, NT_DRACO_EDGEBREAKER, NT_DRACO_AS_EDGEBREAKER},
 		{NT_DRACO_EDGEBREAKER, NT_DRACO_SEQUENTIAL, NT_DRACO_AS_SEQUENTIAL},
 	};
+	loaded in, out;
 	for (size_t i = 0; i < 2; i++) {
 		write_draco(&source, cases[i].before, "in.glb");
-		solve(in_folder("in.glb"), in_folder("out.glb"), cases[i].choice);
-		loaded in, out;
-		load(&in, in_folder("in.glb"));
-		load(&out, in_folder("out.glb"));
+		solve("in.glb", "out.glb", cases[i].choice);
+		load(&in, "in.glb", 0);
+		load(&out, "out.glb", 0);
 		assert_int_equal(block_of(&in)->method, cases[i].before);
 		assert_int_equal(block_of(&out)->method, cases[i].after);
 		assert_non_null(out.mesh->tangents);
@@ -473,28 +419,17 @@ static void explicit_methods_replace_the_one_of_the_source(void **state)
 		unload(&in);
 		unload(&out);
 	}
-	/* a plain one by edgebreaker */
-	write_plain(&source, "in.glb");
-	solve(in_folder("in.glb"), in_folder("out.glb"), NT_DRACO_AS_EDGEBREAKER);
-	loaded out;
-	load(&out, in_folder("out.glb"));
-	assert_int_equal(block_of(&out)->method, NT_DRACO_EDGEBREAKER);
-	assert_int_equal(out.mesh->corner_count, CORNERS);
-	unload(&out);
-}
-
-static void faces_without_area_are_kept_by_the_sequential_method(void **state)
-{
-	(void)state;
-	sheet folded = source;
-	folded.indices[0] = folded.indices[1];
-	write_plain(&folded, "in.glb");
-	solve(in_folder("in.glb"), in_folder("out.glb"), NT_DRACO_AS_EDGEBREAKER);
-	loaded out;
-	load(&out, in_folder("out.glb"));
-	assert_int_equal(block_of(&out)->method, NT_DRACO_SEQUENTIAL);
-	assert_int_equal(out.mesh->corner_count, CORNERS);
-	unload(&out);
+	/* a plain one by edgebreaker; faces without area are kept by the sequential method */
+	sheet sheets[2] = {source, source};
+	sheets[1].indices[0] = sheets[1].indices[1];
+	for (size_t i = 0; i < 2; i++) {
+		write_plain(&sheets[i], "in.glb");
+		solve("in.glb", "out.glb", NT_DRACO_AS_EDGEBREAKER);
+		load(&out, "out.glb", 0);
+		assert_int_equal(block_of(&out)->method, i ? NT_DRACO_SEQUENTIAL : NT_DRACO_EDGEBREAKER);
+		assert_int_equal(out.mesh->corner_count, CORNERS);
+		unload(&out);
+	}
 }
 
 static int compare_floats(const void *a, const void *b)
@@ -503,13 +438,14 @@ static int compare_floats(const void *a, const void *b)
 }
 
 /* Edgebreaker reorders: the positions of all corners are the same as a set. */
-static void draco_edgebreaker_keeps_every_value(void **state)
+static void draco_keeps_every_value(void **state)
 {
 	(void)state;
+	check_draco(NT_DRACO_SEQUENTIAL);
 	check_draco(NT_DRACO_EDGEBREAKER);
 	loaded in, out;
-	load(&in, in_folder("in.glb"));
-	load(&out, in_folder("out.glb"));
+	load(&in, "in.glb", 0);
+	load(&out, "out.glb", 0);
 	static float a[CORNERS][3], b[CORNERS][3];
 	for (size_t c = 0; c < CORNERS; c++) {
 		memcpy(a[c], row(in.mesh->positions, in.mesh, c, 3), sizeof a[c]);
@@ -531,9 +467,8 @@ static void damaged_blocks_are_harmless(void **state)
 			write_meshopt(&source, accessors_with_views, PRIMITIVE, "good.glb");
 		else
 			write_draco(&source, NT_DRACO_EDGEBREAKER, "good.glb");
-		nt_file good;
+		nt_file good = file_in_folder("good.glb");
 		nt_error error;
-		assert_int_equal(nt_file_open(&good, in_folder("good.glb"), &error), NT_OK);
 		unsigned char *bytes = malloc(good.size);
 		for (size_t i = 0; i < 150; i++) {
 			memcpy(bytes, good.data, good.size);
@@ -564,11 +499,9 @@ int main(void)
 		cmocka_unit_test(meshopt_views_that_do_not_change_stay_packed),
 		cmocka_unit_test(packed_tangents_that_are_valid_stay_packed),
 		cmocka_unit_test(meshopt_views_of_others_in_the_pool_grow),
-		cmocka_unit_test(draco_sequential_keeps_every_value),
-		cmocka_unit_test(draco_edgebreaker_keeps_every_value),
+		cmocka_unit_test(draco_keeps_every_value),
 		cmocka_unit_test(explicit_methods_compress_plain_primitives),
 		cmocka_unit_test(explicit_methods_replace_the_one_of_the_source),
-		cmocka_unit_test(faces_without_area_are_kept_by_the_sequential_method),
 		cmocka_unit_test(damaged_blocks_are_harmless),
 	};
 	return cmocka_run_group_tests_name("gltf/edit/compressed", tests, set_up, remove_folder);
