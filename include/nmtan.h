@@ -165,10 +165,12 @@ typedef enum nmtan_method {
 	                                large faces beside them */
 	NMTAN_METHOD_LENGYEL,        /* the same triangles, dP/du added as it is: E. Lengyel, "Computing
 	                                Tangent Space Basis Vectors for an Arbitrary Mesh", 2001 */
-	NMTAN_METHOD_ROBUST          /* the same triangles with MikkTSpace's angle weights, without
+	NMTAN_METHOD_ROBUST,         /* the same triangles with MikkTSpace's angle weights, without
 	                                rounding: exact differences and products, sums in double. Each
 	                                component of T is within 2^-23 of the exact value of the
 	                                formula, but for counts.ill_conditioned corners */
+	NMTAN_METHOD_MIKKTSPACE_SORTED /* MikkTSpace with its sort of edges completed, as Blender's and three.js's
+	                                rewrites have it: see "Results" */
 } nmtan_method;
 
 /* What happens to results that a renderer cannot use. */

@@ -38,7 +38,7 @@ static nmtan_status check_attributes(nmtan_mesh *mesh)
 static nmtan_status check_options(const nmtan_options *options)
 {
 	const float degrees = options->angular_threshold_degrees;
-	if ((unsigned)options->method > NMTAN_METHOD_ROBUST ||
+	if ((unsigned)options->method > NMTAN_METHOD_MIKKTSPACE_SORTED ||
 		(unsigned)options->repair > NMTAN_REPAIR_OFF || !(degrees >= 0.0f && degrees <= 180.0f))
 		return NMTAN_ERROR_ARGUMENT;
 	return NMTAN_OK;
@@ -54,6 +54,7 @@ static nmtan_status run_method(const nt_solve *solve, nmtan_method method, size_
 {
 	switch (method) {
 	case NMTAN_METHOD_MIKKTSPACE:
+	case NMTAN_METHOD_MIKKTSPACE_SORTED:
 		return solve->one_by_one || !nt_fast_can(solve)
 			? nt_mikktspace_scalar(solve) : nt_mikktspace_fast(solve);
 	case NMTAN_METHOD_AREA:
@@ -139,6 +140,7 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 		/* asking how many processors there are is a system call */
 		.threads = corner_count < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(r->options.threads),
 		.isa = implementation->isa == NT_ISA_AUTO ? nt_cpu_best() : implementation->isa,
+		.sorted = r->options.method == NMTAN_METHOD_MIKKTSPACE_SORTED,
 		.one_by_one = implementation->scalar,
 		.scratch = scratch,
 		.timing = r->options.timing ? &r->timing : NULL,

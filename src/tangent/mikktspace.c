@@ -2,7 +2,7 @@
 /*
  * MikkTSpace, the definition: one pass after the other, as a student would write it from the paper
  * (M. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008). Its bytes are those of the
- * reference implementation with the edge sort completed and the plain weld; every faster path is held
+ * reference implementation as published, or with its edge sort completed; every faster path is held
  * against this file.
  *
  *   1 cut quads into triangles        5 pair triangles across edges
@@ -21,11 +21,12 @@
 #include "base/vec.h"
 #include "tangent/acos.h"
 #include "topology/corners.h"
+#include "topology/edge_sort.h"
 
 #define NO_TRIANGLE UINT32_MAX
 
 typedef struct triangle {
-	uint32_t face;
+	uint32_t face, number; /* number: in the order of faces, degenerate ones too */
 	uint32_t corner[3];    /* corners of the mesh */
 	uint32_t vertex[3];    /* welded */
 	uint32_t neighbour[3]; /* triangle across edge k (corner k to k + 1), or NO_TRIANGLE */
@@ -62,6 +63,7 @@ typedef struct state {
 	const nmtan_mesh *mesh;
 	triangle *triangles; /* the sound ones first, in order, then the degenerate ones */
 	size_t triangle_count, sound_count;
+	uint32_t *cuts;      /* [triangle_count] in the order of faces */
 	uint32_t *ids;       /* [corner_count] welded vertex */
 	size_t vertex_count;
 	corner_frame *frames; /* [corner_count] */
@@ -107,7 +109,8 @@ static void cut_faces(state *s)
 		const unsigned count = nt_face_triangles(s->mesh, face, first, corners);
 		for (unsigned i = 0; i < count; i++) {
 			triangle *t = &s->triangles[s->triangle_count++];
-			*t = (triangle){.face = (uint32_t)face};
+			*t = (triangle){.face = (uint32_t)face, .number = (uint32_t)s->triangle_count - 1};
+			s->cuts[t->number] = nt_cut_of((uint32_t)first, corners[i]);
 			for (int k = 0; k < 3; k++) {
 				t->corner[k] = corners[i][k];
 				t->vertex[k] = s->ids[corners[i][k]];
@@ -290,6 +293,40 @@ static nmtan_status pair_edges(state *s)
 		}
 	}
 	return NMTAN_OK;
+}
+
+/* A sound triangle by its number. */
+static uint32_t sound_triangle(const state *s, uint32_t number)
+{
+	size_t low = 0, high = s->sound_count;
+	while (low + 1 < high) {
+		const size_t middle = low + (high - low) / 2;
+		*(s->triangles[middle].number <= number ? &low : &high) = middle;
+	}
+	return (uint32_t)low;
+}
+
+/* The published sort leaves some edges unsorted, which are paired otherwise. */
+static nmtan_status pair_unsorted(state *s)
+{
+	nt_scratch *scratch = s->solve->scratch;
+	float *positions = nt_scratch_alloc(scratch, s->vertex_count + 1, 3 * sizeof *positions);
+	if (!positions)
+		return NMTAN_ERROR_MEMORY;
+	for (uint32_t c = 0; c < s->solve->corner_count; c++)
+		memcpy(positions + 3 * (size_t)s->ids[c], nt_position(s->mesh, nt_vertex_of(s->mesh, c)),
+			3 * sizeof *positions);
+	const nt_triangles triangles = {s->ids, s->cuts};
+	nt_unsorted unsorted;
+	const nmtan_status status = nt_find_unsorted(&(nt_welded_mesh){.triangles = &triangles,
+		.triangle_count = s->triangle_count, .vertex_count = s->vertex_count, .positions = positions,
+		.step = 3, .threads = s->solve->threads, .scratch = scratch}, scratch, &unsorted);
+	for (size_t i = 0; i < unsorted.count; i++) {
+		const nt_unsorted_edge *e = &unsorted.edges[i];
+		s->triangles[sound_triangle(s, e->edge / 3)].neighbour[e->edge % 3] =
+			e->neighbour == NT_NO_NEIGHBOUR ? NO_TRIANGLE : sound_triangle(s, e->neighbour);
+	}
+	return status;
 }
 
 /* 6 */
@@ -533,9 +570,10 @@ nmtan_status nt_mikktspace_scalar(const nt_solve *solve)
 	state s = {.solve = solve, .mesh = solve->mesh};
 	s.triangles = nt_scratch_alloc(solve->scratch, nt_triangle_count(solve->mesh, solve->corner_count),
 		sizeof *s.triangles);
+	s.cuts = nt_scratch_alloc(solve->scratch, nt_triangle_count(solve->mesh, solve->corner_count), sizeof *s.cuts);
 	s.ids = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *s.ids);
 	s.frames = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *s.frames);
-	if (!s.triangles || !s.ids || !s.frames)
+	if (!s.triangles || !s.cuts || !s.ids || !s.frames)
 		return NMTAN_ERROR_MEMORY;
 	for (size_t c = 0; c < solve->corner_count; c++)
 		s.frames[c] = (corner_frame){.os = {1, 0, 0}, .ot = {0, 1, 0}, .mag_s = 1, .mag_t = 1};
@@ -550,7 +588,8 @@ nmtan_status nt_mikktspace_scalar(const nt_solve *solve)
 	for (size_t i = 0; i < s.sound_count; i++)
 		solve_frame(&s, &s.triangles[i]);
 	orient_quads(&s);
-	if ((status = list_fans(&s)) || (status = pair_edges(&s)) || (status = solve_groups(&s)))
+	if ((status = list_fans(&s)) || (status = pair_edges(&s)) ||
+		(!solve->sorted && (status = pair_unsorted(&s))) || (status = solve_groups(&s)))
 		return status;
 	fill_degenerate(&s);
 	write_output(&s);

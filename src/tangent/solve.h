@@ -122,6 +122,7 @@ typedef struct nt_solve {
 	float threshold_cos;     /* (float)cos of the angular threshold; -1 for 180 degrees */
 	unsigned threads;        /* at least 1 */
 	nt_isa isa;           /* never AUTO */
+	bool sorted;             /* MikkTSpace: the sort of edges is completed; else as published */
 	bool one_by_one;         /* sums: each triangle by the definition in frames.c */
 	nt_scratch *scratch;
 	nmtan_timing *timing;    /* to be added to, or NULL */

@@ -53,6 +53,33 @@ static void pair_tangled(const nt_complex *c, uint32_t begin, uint32_t end)
 	}
 }
 
+/* The place of a triangle's corner, if it has one among these. */
+static uint32_t place_of(const nt_complex *c, uint32_t begin, uint32_t end, uint32_t triangle)
+{
+	for (uint32_t count = end - begin; count > 0;) {
+		const uint32_t middle = begin + count / 2;
+		if ((c->corners[middle] & NT_COMPLEX_CORNER) >> 2 < triangle) {
+			begin = middle + 1;
+			count -= count / 2 + 1;
+		} else {
+			count /= 2;
+		}
+	}
+	return begin < end && (c->corners[begin] & NT_COMPLEX_CORNER) >> 2 == triangle ? begin : NT_WAITS;
+}
+
+/* Edges that the published sort pairs otherwise. */
+static void pair_unsorted(const nt_complex *c, uint32_t begin, uint32_t end)
+{
+	for (uint32_t e = 2 * begin; e < 2 * end; e++) {
+		const uint32_t corner = c->corners[e / 2] & NT_COMPLEX_CORNER, k = corner & 3;
+		const uint32_t edge = 3 * (corner >> 2) + (e % 2 == 0 ? k : k > 0 ? k - 1 : 2);
+		uint32_t neighbour;
+		if (nt_unsorted_neighbour(&c->fast->unsorted, edge, &neighbour))
+			c->across[e] = place_of(c, begin, end, neighbour);
+	}
+}
+
 typedef uint32_t four_ids __attribute__((vector_size(16)));
 
 /* No edge occurs twice in one direction, so that each has one other at most, whatever the order. `fours`: corners / 4,
@@ -91,9 +118,11 @@ static inline __attribute__((always_inline)) void pair_plain(const nt_complex *c
 
 static void pair_vertex(const nt_complex *c, size_t v, uint32_t begin, uint32_t end)
 {
-	if (nt_is_tangled(c, v))
+	if (nt_is_tangled(c, v)) {
 		pair_tangled(c, begin, end);
-	else if (end - begin <= 4)
+		if (c->fast->unsorted.count > 0)
+			pair_unsorted(c, begin, end);
+	} else if (end - begin <= 4)
 		pair_plain(c, begin, end - begin, 1);
 	else if (end - begin <= 8)
 		pair_plain(c, begin, end - begin, 2);

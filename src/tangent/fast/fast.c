@@ -126,6 +126,24 @@ static unsigned count_ranges(const nt_fast *fast, const nt_fast_plan *plan)
 	return ranges == 1 && two ? 2 : ranges;
 }
 
+/* Asks what the published sort of edges leaves, in memory that is not in use yet. */
+static nmtan_status find_unsorted(nt_fast *fast, const nt_borrowed *memory)
+{
+	enum { LEAST_LENT_BYTES = 1 << 14 };
+	nt_scratch *scratch = fast->solve->scratch, lent;
+	const size_t bytes = (size_t)(memory->end - memory->begin);
+	nt_scratch_init(&lent, &scratch->allocator);
+	if (bytes >= LEAST_LENT_BYTES)
+		nt_scratch_lend(&lent, memory->begin, bytes);
+	const nmtan_status status = nt_find_unsorted(&(nt_welded_mesh){.triangles = &fast->triangles,
+		.triangle_count = fast->triangle_count, .vertex_count = fast->vertex_count,
+		.positions = fast->rows->position, .step = sizeof *fast->rows / sizeof *fast->rows->position,
+		.threads = fast->solve->threads, .scratch = bytes >= LEAST_LENT_BYTES ? &lent : scratch},
+		scratch, &fast->unsorted);
+	nt_scratch_free(&lent);
+	return status;
+}
+
 static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_memory *memory)
 {
 	const unsigned ranges = count_ranges(fast, plan);
@@ -133,6 +151,8 @@ static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_mem
 	nmtan_status status = weld(fast, ranges, memory, &welded);
 	if (!status)
 		status = make_triangles(fast, &welded);
+	if (!status && !fast->solve->sorted)
+		status = find_unsorted(fast, &memory->borrowed);
 	return status ? status : make_ranges(fast, ranges);
 }
 
@@ -277,6 +297,58 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 	return NMTAN_OK;
 }
 
+/* Makes a vertex complex and tangled, if it is not: as if it had no corners. */
+static bool unsettle(nt_fast *fast, uint32_t vertex, nt_settled *settled)
+{
+	const uint32_t state = nt_fast_record(fast, !fast->records[0], vertex)->state;
+	const bool complex = state & NT_RESULT_COMPLEX;
+	const size_t corners = complex ? state & NT_RESULT_NUMBER : 0;
+	if (complex && state & NT_RESULT_TANGLED)
+		return false;
+	for (int o = 0; o < 2; o++)
+		if (fast->records[o])
+			nt_fast_record(fast, o, vertex)->state = complex ? state | NT_RESULT_TANGLED
+									 : NT_RESULT_COMPLEX | NT_RESULT_TANGLED;
+	if (fast->open)
+		fast->open[vertex / NT_LANES] = true;
+	settled->complex_count += !complex;
+	settled->tangled_count++;
+	settled->tangled_corners += corners;
+	settled->most_tangled = corners > settled->most_tangled ? corners : settled->most_tangled;
+	return !complex;
+}
+
+/* The ends of edges that the published sort pairs otherwise have to be looked at. */
+static nmtan_status unsettle_unsorted(nt_fast *fast, nt_settled *settled)
+{
+	const nt_unsorted *unsorted = &fast->unsorted;
+	const size_t words = fast->vertex_count / 64 + 1;
+	uint64_t *new = nt_scratch_alloc(fast->solve->scratch, words, sizeof *new);
+	if (!new)
+		return NMTAN_ERROR_MEMORY;
+	memset(new, 0, words * sizeof *new);
+	for (size_t i = 0; i < 2 * unsorted->count; i++) {
+		const uint32_t edge = unsorted->edges[i / 2].edge, k = edge % 3;
+		const uint32_t vertex = nt_fast_vertex(fast, i % 2 ? edge - k + (k + 1) % 3 : edge);
+		if (unsettle(fast, vertex, settled))
+			new[vertex / 64] |= (uint64_t)1 << vertex % 64;
+	}
+	/* their corners are counted */
+	for (size_t i = 0; i < 3 * fast->triangle_count; i++) {
+		const uint32_t vertex = nt_fast_vertex(fast, i);
+		if (!(new[vertex / 64] >> vertex % 64 & 1) || fast->flags[i / 3] & NT_TRIANGLE_DEGENERATE)
+			continue;
+		uint32_t corners = 0;
+		for (int o = 0; o < 2; o++)
+			if (fast->records[o])
+				corners = ++nt_fast_record(fast, o, vertex)->state & NT_RESULT_NUMBER;
+		settled->complex_corners++;
+		settled->tangled_corners++;
+		settled->most_tangled = corners > settled->most_tangled ? corners : settled->most_tangled;
+	}
+	return NMTAN_OK;
+}
+
 /* 6 to 8: write, complex, copies */
 
 /* Tells tangent/usable.c which triangles need no look, and repair.c what is welded. */
@@ -345,6 +417,8 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 	/* sums become results, where the definition would not have split or joined them otherwise */
 	nt_settled settled;
 	status = settle(&fast, kernels, &settled);
+	if (!status && fast.unsorted.count > 0)
+		status = unsettle_unsorted(&fast, &settled);
 	return status ? status : write_results(&fast, kernels, &settled);
 }
 
