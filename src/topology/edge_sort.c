@@ -158,7 +158,8 @@ static bool list_vertices(question *q)
 	bound_cells(&q->grid, wanted, &low, &high);
 	for (size_t begin = 0; begin < m->vertex_count; begin += BATCH_VERTICES) {
 		const size_t left = m->vertex_count - begin, count = left < BATCH_VERTICES ? left : BATCH_VERTICES;
-		if (count == BATCH_VERTICES && !has_within(coordinates + m->step * begin, m->step, q->grid.low, low, high))
+		if (count == BATCH_VERTICES &&
+			!has_within(coordinates + m->step * begin, m->step, q->grid.low, low, high))
 			continue;
 		for (size_t v = begin; v < begin + count; v++)
 			if (wanted[nt_grid_cell(&q->grid, coordinates[m->step * v])])
@@ -343,8 +344,8 @@ static int compare_ends(const void *left, const void *right)
 	return a->high != b->high ? (a->high > b->high) - (a->high < b->high) : compare_edges(a, b);
 }
 
-/* Pairs edges between the same two vertices: each takes the first later one that is free and runs the other way, so that
- * the n-th of one direction meets the n-th of the other. */
+/* Pairs edges between the same two vertices: each takes the first later one that is free and runs the other way, so
+ * that the n-th of one direction meets the n-th of the other. */
 static void pair_equal(run_edge *edges, size_t count)
 {
 	size_t forward = 0, backward = 0;
@@ -396,7 +397,8 @@ typedef struct key_range {
 } key_range;
 
 /* The published quicksort's step: smaller keys come before `*left_end`, larger ones from `*right_begin` on. */
-static void part_keys(key_edge *keys, const key_range *range, uint32_t pivot, size_t *left_end, size_t *right_begin)
+static void part_keys(key_edge *keys, const key_range *range, uint32_t pivot, size_t *left_end,
+	size_t *right_begin)
 {
 	size_t left = range->begin, right = range->end; /* the latter one behind the reference's */
 	do {
@@ -425,7 +427,8 @@ static bool has_key(const key_edge *keys, size_t begin, size_t end, uint32_t key
  * more than NT_EDGE_SORT_VISITS. */
 static bool sort_largest(key_edge *keys, size_t count, uint32_t largest)
 {
-	key_range waiting[64] = {{0, count, 39871946u}}; /* the smaller part first: each is half of what waits below it */
+	/* the smaller part comes first, so that each is half of what waits below it */
+	key_range waiting[64] = {{0, count, 39871946u}};
 	size_t depth = 1, visits = 0;
 	while (depth > 0) {
 		key_range range = waiting[--depth];

@@ -5,8 +5,8 @@
  * unfinished sort shows.
  *
  * Ordinary meshes: bumpy planes, tubes and tori, closed or not, of triangles and quads, faces in order or shuffled and
- * turned, with some of them missing, doubled, mirrored or without UV area; and soups and nasty ones with positions that are
- * finite and below FLT_MAX / 2.
+ * turned, with some of them missing, doubled, mirrored or without UV area; and soups and nasty ones with positions that
+ * are finite and below FLT_MAX / 2.
  */
 #include "test.h"
 #include <float.h>
@@ -43,7 +43,8 @@ static int face_size(const SMikkTSpaceContext *context, const int face)
 	return m->face_sizes ? m->face_sizes[face] : 3;
 }
 
-static void get(const reference *r, const float *rows, size_t stride_bytes, size_t floats, float *to, int face, int vert)
+static void get(const reference *r, const float *rows, size_t stride_bytes, size_t floats, float *to, int face,
+	int vert)
 {
 	const size_t corner = r->first[face] + (size_t)vert;
 	const size_t vertex = r->mesh->indices ? r->mesh->indices[corner] : corner;
@@ -106,7 +107,8 @@ static point point_at(uint32_t kind, double a, double b, double bump)
 		memcpy(p.position, (float[3]){(float)a, (float)b, (float)(bump / 4)}, sizeof p.position);
 		memcpy(p.normal, (float[3]){0, 0, 1}, sizeof p.normal);
 	} else if (kind == 1) {
-		memcpy(p.position, (float[3]){(float)(r * cos(u)), (float)(r * sin(u)), (float)(3 * b)}, sizeof p.position);
+		memcpy(p.position, (float[3]){(float)(r * cos(u)), (float)(r * sin(u)), (float)(3 * b)},
+			sizeof p.position);
 		memcpy(p.normal, (float[3]){(float)cos(u), (float)sin(u), 0}, sizeof p.normal);
 	} else {
 		const double w = 3 + r * cos(v);
@@ -171,7 +173,8 @@ static soup make_ordinary(nt_random *random)
 	g.closed[1] = g.kind > 1 && nt_random_below(random, 2);
 	const uint32_t cells = g.columns * g.rows, points = (g.columns + 1) * (g.rows + 1);
 	const double bump = nt_random_below(random, 4) * 0.1;
-	const uint32_t quads = nt_random_below(random, 2) * nt_random_below(random, 5), odd = nt_random_below(random, 3);
+	const uint32_t quads = nt_random_below(random, 2) * nt_random_below(random, 5);
+	const uint32_t odd = nt_random_below(random, 3);
 	const bool shuffled = nt_random_below(random, 2);
 	g.points = malloc(points * sizeof *g.points);
 	uint32_t *order = malloc(cells * sizeof *order);
