@@ -2,10 +2,7 @@
 /*
  * Accessors that are read again are what they were, until they are changed; indices of all types, read and stored.
  */
-#include "test.h"
-#include "base/buffer.h"
-#include "gltf/accessor.h"
-#include "gltf/open.h"
+#include "hand_gltf_file.h"
 
 /* Bytes of a view that all accessors lie in; nobody reads them. */
 #define VIEWS "\"buffers\":[{\"byteLength\":8000000000}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":8000000000}," \
@@ -62,11 +59,9 @@ static void accessors_stay_until_they_are_changed(void **state)
 {
 	(void)state;
 	nt_scene scene;
-	nt_scene_init(&scene, "accessors.gltf");
-	scene.bytes = (const unsigned char *)document_text;
-	scene.byte_count = sizeof document_text - 1;
-	scene.format = NT_FORMAT_GLTF;
-	assert_int_equal(nt_gltf_open(&scene, &(nt_read_options){.texcoord_set = -1, .threads = 1}, NULL), NT_OK);
+	nt_error error;
+	assert_int_equal(open_bytes(&scene, document_text, sizeof document_text - 1,
+		&(nt_read_options){.texcoord_set = -1, .threads = 1}, &error), NT_OK);
 	nt_gltf *document = scene.source;
 	for (int pass = 0; pass < 3; pass++)
 		for (uint32_t i = 0; i < ACCESSORS; i++)

@@ -2,12 +2,9 @@
 /*
  * Blocks that are decoded before the primitives are loaded: which, and what becomes of those that cannot be.
  */
-#include "test.h"
-#include "base/buffer.h"
-#include "file/uri.h"
+#include "hand_gltf_file.h"
 #include "gltf/draco.h"
 #include "gltf/load.h"
-#include "gltf/open.h"
 
 enum { BLOCKS = 5, BROKEN = 2, UNASKED = 3 };
 
@@ -36,9 +33,8 @@ static nt_buffer make_document(void)
 		nt_draco_block block = triangle((float)(i + 1));
 		if (i == BROKEN)
 			block.bytes[0] = 0;
-		nt_buffer_format(&json, "%s{\"byteLength\":%zu,\"uri\":\"", comma, block.size);
-		nt_uri_append_data(&json, "application/octet-stream", block.bytes, block.size);
-		nt_buffer_text(&json, "\"}");
+		nt_buffer_text(&json, comma);
+		append_buffer(&json, block.bytes, block.size);
 		nt_buffer_format(&views, "%s{\"buffer\":%d,\"byteLength\":%zu}", comma, i, block.size);
 		nt_buffer_format(&accessors, "%s{\"componentType\":5126,\"type\":\"VEC3\",\"count\":3}", comma);
 		nt_buffer_format(&primitives, "%s{\"attributes\":{\"POSITION\":%d},\"extensions\":"
@@ -54,19 +50,14 @@ static nt_buffer make_document(void)
 	return json;
 }
 
-static void check_with(unsigned threads)
+static void decode_with(unsigned threads)
 {
 	nt_buffer json = make_document();
 	const nt_read_options options = {.texcoord_set = -1, .threads = threads};
 	bool needed[BLOCKS];
 	nt_scene scene;
 	nt_error error;
-	nt_error_clear(&error);
-	nt_scene_init(&scene, "blocks.gltf");
-	scene.bytes = (const unsigned char *)json.data;
-	scene.byte_count = json.size;
-	scene.format = NT_FORMAT_GLTF;
-	assert_int_equal(nt_gltf_open(&scene, &options, &error), NT_OK);
+	assert_int_equal(open_bytes(&scene, json.data, json.size, &options, &error), NT_OK);
 	assert_int_equal(scene.mesh_count, BLOCKS);
 	for (size_t i = 0; i < BLOCKS; i++)
 		needed[i] = i != UNASKED;
@@ -100,7 +91,7 @@ static void blocks_are_decoded_ahead_on_several_threads(void **state)
 {
 	(void)state;
 	for (unsigned threads = 1; threads <= 8; threads *= 2)
-		check_with(threads);
+		decode_with(threads);
 }
 
 int main(void)

@@ -6,9 +6,6 @@
  */
 #include "folder.h"
 #include "test.h"
-#include <stdio.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include "file/input.h"
 #include "mutate.h"
 #include "pipeline/run.h"
@@ -38,9 +35,7 @@ static void run_one(const char *path, uint32_t *chance, counts *tally)
 		.output_format = mutate_random(chance, 4) ? NT_FORMAT_GLB : NT_FORMAT_GLTF};
 	nt_summary summary;
 	nt_error error;
-	char output[400];
-	snprintf(output, sizeof output, "%s.output", path);
-	const nt_status status = nt_run(path, output, &settings, &summary, &error);
+	const nt_status status = nt_run(path, in_folder("output"), &settings, &summary, &error);
 	tally->runs++;
 	tally->solved += status == NT_OK;
 	tally->geometry += summary.solved_count > 0 || strstr(error.place.pointer, "/accessors/") ||
@@ -55,12 +50,11 @@ static void run_one(const char *path, uint32_t *chance, counts *tally)
 	nt_summary_free(&summary);
 }
 
-static void link_sidecars(const char *seed, const char *folder)
+static void copy_sidecars(const char *seed)
 {
 	char command[1024];
 	const char *slash = strrchr(seed, '/');
-	snprintf(command, sizeof command, "cp '%.*s'/*.bin '%s' 2>/dev/null", (int)(slash - seed), seed,
-		folder);
+	snprintf(command, sizeof command, "cp '%.*s'/*.bin '%s' 2>/dev/null", (int)(slash - seed), seed, in_folder(""));
 	if (system(command) != 0)
 		return; /* the seed has none */
 }
@@ -70,16 +64,14 @@ static void damaged_files_end_with_a_status(void **state)
 	(void)state;
 	const char *wanted = getenv("NT_MUTATIONS");
 	const size_t rounds = (wanted ? (size_t)atoi(wanted) : 600) / SEED_COUNT;
-	char *folder = in_tmpdir("nmtan-test-hostile-XXXXXX"), path[350];
-	assert_non_null(mkdtemp(folder));
 	counts tally = {0};
 	for (size_t s = 0; s < SEED_COUNT; s++) {
 		nt_file file;
 		nt_error error;
 		if (nt_file_open(&file, seeds[s], &error) != NT_OK)
 			continue; /* ../shared is not there */
-		link_sidecars(seeds[s], folder);
-		snprintf(path, sizeof path, "%s/x%s", folder, strrchr(seeds[s], '.'));
+		copy_sidecars(seeds[s]);
+		const char *name = strstr(seeds[s], ".glb") ? "x.glb" : "x.gltf";
 		char *bytes = malloc(file.size + 2 * MUTATE_ROOM);
 		assert_non_null(bytes);
 		for (size_t i = 0; i < rounds; i++) {
@@ -88,18 +80,12 @@ static void damaged_files_end_with_a_status(void **state)
 			memcpy(bytes, file.data, size);
 			for (uint32_t k = 1 + mutate_random(&chance, 2); k-- > 0 && size;)
 				size = mutate(bytes, size, &chance);
-			FILE *stream = fopen(path, "wb");
-			assert_non_null(stream);
-			assert_int_equal(fwrite(bytes, 1, size, stream), size);
-			fclose(stream);
-			run_one(path, &chance, &tally);
+			put_file(name, bytes, size);
+			run_one(in_folder(name), &chance, &tally);
 		}
 		free(bytes);
 		nt_file_close(&file);
 	}
-	char command[400];
-	snprintf(command, sizeof command, "rm -rf '%s'", folder);
-	assert_int_equal(system(command), 0);
 	print_message("%zu mutations: %zu written, %zu refused; %zu came as far as geometry\n", tally.runs,
 		tally.solved, tally.refused, tally.geometry);
 	assert_true(tally.geometry * 3 >= tally.runs);
@@ -110,5 +96,5 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(damaged_files_end_with_a_status),
 	};
-	return cmocka_run_group_tests_name("gltf/hostile", tests, NULL, NULL);
+	return cmocka_run_group_tests_name("gltf/hostile", tests, make_folder, remove_folder);
 }

@@ -2,23 +2,13 @@
 /*
  * Meshes that several threads load: which, and what is left for the load of one after the other.
  */
-#include "test.h"
-#include "base/buffer.h"
+#include "hand_gltf_file.h"
 #include "base/parallel.h"
-#include "file/uri.h"
 #include "gltf/load.h"
-#include "gltf/open.h"
 
 /* Of the meshes: one with an index that is no vertex, one with an attribute and one with positions in a buffer that
  * nobody has opened, and one that is not needed. All have FACES triangles. */
 enum { MESHES = 12, DAMAGED = 5, COLORED = 7, ELSEWHERE = 8, UNASKED = 9, FACES = 500 };
-
-static void put_buffer(nt_buffer *json, const char *comma, const void *bytes, size_t size)
-{
-	nt_buffer_format(json, "%s{\"byteLength\":%zu,\"uri\":\"", comma, size);
-	nt_uri_append_data(json, "application/octet-stream", bytes, size);
-	nt_buffer_text(json, "\"}");
-}
 
 /* Buffer 0: positions, then indices of FACES triangles, and a 7 behind them. Buffer 1: other positions. */
 static nt_buffer make_document(void)
@@ -31,8 +21,9 @@ static nt_buffer make_document(void)
 	first[sizeof positions[0] + 3 * FACES] = 7;
 	nt_buffer json = {0};
 	nt_buffer_text(&json, "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[");
-	put_buffer(&json, "", first, sizeof first);
-	put_buffer(&json, ",", positions[1], sizeof positions[1]);
+	append_buffer(&json, first, sizeof first);
+	nt_buffer_text(&json, ",");
+	append_buffer(&json, positions[1], sizeof positions[1]);
 	nt_buffer_format(&json, "],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":1,\"byteLength\":36},"
 		"{\"buffer\":0,\"byteOffset\":36,\"byteLength\":%d}],\"accessors\":["
 		"{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":3},"
@@ -73,12 +64,7 @@ static void check_with(unsigned threads)
 	bool needed[MESHES];
 	nt_scene scene;
 	nt_error error;
-	nt_error_clear(&error);
-	nt_scene_init(&scene, "small.gltf");
-	scene.bytes = (const unsigned char *)json.data;
-	scene.byte_count = json.size;
-	scene.format = NT_FORMAT_GLTF;
-	assert_int_equal(nt_gltf_open(&scene, &options, &error), NT_OK);
+	assert_int_equal(open_bytes(&scene, json.data, json.size, &options, &error), NT_OK);
 	assert_int_equal(scene.mesh_count, MESHES);
 	for (size_t i = 0; i < MESHES; i++)
 		needed[i] = i != UNASKED;

@@ -3,12 +3,9 @@
  * Which primitives count as the same. One triangle with everything a solve takes, and lists of primitives
  * over it; the expected answer is written beside each: the number of the earlier primitive, or -1.
  */
-#include "file/base64.h"
+#include "hand_gltf_file.h"
 #include "gltf/load.h"
-#include "gltf/open.h"
 #include "gltf/vertex_pools.h"
-#include "pipeline/run.h"
-#include "test.h"
 
 /* Positions, normals, texture coordinates, indices of one triangle; accessor 4 is 0 once more, 5 are other
  * positions, 6 is a delta. */
@@ -44,16 +41,11 @@ static void open_with(const char *primitives, const nt_read_options *options)
 	nt_buffer_text(&text, "{\"asset\":{\"version\":\"2.0\"},");
 	nt_buffer_text(&text, accessors);
 	nt_buffer_text(&text, materials);
-	nt_buffer_format(&text, "\"meshes\":[{\"primitives\":[%s]}],\"buffers\":[{\"byteLength\":%zu,\"uri\":"
-		"\"data:application/octet-stream;base64,", primitives, sizeof bytes);
-	nt_base64_append(&text, bytes, sizeof bytes);
-	nt_buffer_text(&text, "\"}]}");
+	nt_buffer_format(&text, "\"meshes\":[{\"primitives\":[%s]}],\"buffers\":[", primitives);
+	append_buffer(&text, bytes, sizeof bytes);
+	nt_buffer_text(&text, "]}");
 	nt_error error;
-	nt_error_clear(&error);
-	nt_scene_init(&scene, "same.gltf");
-	scene.bytes = (const unsigned char *)text.data;
-	scene.byte_count = text.size;
-	if (nt_gltf_open(&scene, options, &error))
+	if (open_bytes(&scene, text.data, text.size, options, &error))
 		fail_msg("%s: %s", error.place.pointer, error.message);
 	nt_select(&scene, NT_ONLY_AUTO, NT_EXISTING_REPLACE, true);
 	if (nt_vertex_pools_find(&scene, options, &error) || nt_gltf_find_same(&scene, options, &error))

@@ -3,14 +3,8 @@
  * Folded quads and normals that are not of unit length in a whole run: what is counted, and that every failed
  * allocation ends it with a status and nothing else. What is written is tests/cli/test_frames.sh's.
  */
-#include "folder.h"
-#include "test.h"
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 #include "fail_alloc.h"
-#include "pipeline/run.h"
+#include "hand_gltf_file.h"
 
 /* A folded quad (tests/cli/test_frames.sh derives its halves), and a triangle with a normal of length .5, a zero one
  * and none. */
@@ -18,64 +12,38 @@ static const char text[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 3 0 0
 	"vt 0 0\nvt 1 0\nvt 1 1\nvt 1.25 .5\nvn 0 0 1\nvn 0 0 .5\nvn 0 0 0\n"
 	"f 1/1/1 2/2/1 3/3/1 4/4/1\nf 5/1/2 6/2/3 7/3\n";
 
-static nt_status run(const char *path, nt_summary *summary, nt_error *error)
-{
-	const nt_settings settings = {.texcoord_set = -1, .dry_run = true, .threads = 1,
-		.output_format = NT_FORMAT_GLB};
-	return nt_run(path, "out.glb", &settings, summary, error);
-}
-
-static size_t count_of(const nt_summary *summary, nt_code code)
-{
-	size_t count = 0;
-	for (size_t i = 0; i < summary->findings.count; i++)
-		count += summary->findings.items[i].code == code ? summary->findings.items[i].count : 0;
-	return count;
-}
-
-static void write_input(char *path)
-{
-	const int file = mkstemps(path, 4);
-	assert_true(file >= 0);
-	assert_int_equal(write(file, text, sizeof text - 1), (int)sizeof text - 1);
-	close(file);
-}
+static const nt_settings settings = {.texcoord_set = -1, .dry_run = true, .threads = 1,
+	.output_format = NT_FORMAT_GLB};
 
 static void odd_normals_and_folded_quads_are_counted(void **state)
 {
 	(void)state;
-	char *path = in_tmpdir("nmtan_XXXXXX.obj");
-	write_input(path);
-	nt_summary summary;
-	nt_error error;
-	assert_int_equal(run(path, &summary, &error), NT_OK);
+	put_text_file("in.obj", text);
+	nt_summary summary = convert_file("in.obj", "out.glb", settings);
 	assert_int_equal(summary.triangle_count, 3);
 	assert_int_equal(summary.counts.folded_quads, 1);
 	assert_int_equal(summary.counts.repaired_sign, 3); /* the smaller half */
-	assert_int_equal(count_of(&summary, NT_CODE_NORMALS_SCALED), 1);
-	assert_int_equal(count_of(&summary, NT_CODE_NORMALS_MADE), 2);
+	assert_int_equal(count_findings(&summary, NT_CODE_NORMALS_SCALED), 1);
+	assert_int_equal(count_findings(&summary, NT_CODE_NORMALS_MADE), 2);
 	nt_summary_free(&summary);
-	unlink(path);
 }
 
 static void failed_allocations_end_the_run(void **state)
 {
 	(void)state;
-	char *path = in_tmpdir("nmtan_XXXXXX.obj");
-	write_input(path);
+	put_text_file("in.obj", text);
 	size_t failures = 0;
 	for (bool failed = true; failed; failures++) {
 		nt_summary summary;
 		nt_error error;
 		fail_allocations_from(failures);
-		const nt_status status = run(path, &summary, &error);
+		const nt_status status = nt_run(in_folder("in.obj"), in_folder("out.glb"), &settings, &summary, &error);
 		failed = stop_failing_allocations();
 		assert_true(failed ? status != NT_OK : status == NT_OK);
 		nt_summary_free(&summary);
 		assert_true(failures < 10000);
 	}
 	assert_true(failures > 30);
-	unlink(path);
 }
 
 int main(void)
@@ -84,5 +52,5 @@ int main(void)
 		cmocka_unit_test(odd_normals_and_folded_quads_are_counted),
 		cmocka_unit_test(failed_allocations_end_the_run),
 	};
-	return cmocka_run_group_tests_name("pipeline/folded_quads", tests, NULL, NULL);
+	return cmocka_run_group_tests_name("pipeline/folded_quads", tests, make_folder, remove_folder);
 }

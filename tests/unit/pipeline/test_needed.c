@@ -10,7 +10,6 @@
 #include <signal.h>
 #include <stdio.h>
 #include <sys/mman.h>
-#include <unistd.h>
 #include "pipeline/run.h"
 
 enum { PAGE = 4096, MOST_PAGES = 1 << 18 };
@@ -56,12 +55,9 @@ static size_t count_touched(size_t begin, size_t end)
 /* Makes the file and runs it. *begin, *end receive the bytes of the 38th primitive. */
 static void run(const char *which, size_t *begin, size_t *end, size_t expected_solved)
 {
-	char *path = in_tmpdir("nmtan-test-needed-XXXXXX"), command[500];
+	char command[800];
 	const char *megabytes = getenv("NT_HUNDRED_MB");
-	const int fd = mkstemp(path);
-	assert_true(fd >= 0);
-	close(fd);
-	snprintf(command, sizeof command, "python3 tests/support/gltf_hundred.py %s %s %s", path,
+	snprintf(command, sizeof command, "python3 tests/support/gltf_hundred.py %s %s %s", in_folder("in.glb"),
 		megabytes ? megabytes : "30", which);
 	FILE *said = popen(command, "r");
 	assert_non_null(said);
@@ -76,14 +72,13 @@ static void run(const char *which, size_t *begin, size_t *end, size_t expected_s
 	nt_error error;
 	map = NULL;
 	memset((void *)(uintptr_t)touched, 0, sizeof touched);
-	assert_int_equal(nt_run(path, in_tmpdir("nmtan-test-needed-output.glb"), &settings, &summary, &error), NT_OK);
+	assert_int_equal(nt_run(in_folder("in.glb"), in_folder("out.glb"), &settings, &summary, &error), NT_OK);
 	sigaction(SIGSEGV, &before, NULL);
 	assert_non_null(map);
 	assert_true(map_size / PAGE < MOST_PAGES);
 	assert_int_equal(summary.mesh_count, 100);
 	assert_int_equal(summary.solved_count, expected_solved);
 	nt_summary_free(&summary);
-	unlink(path);
 	const size_t all = count_touched(0, map_size), own = count_touched(*begin, *end);
 	print_message("%zu of %zu bytes touched, %zu of them of the primitive\n", all * PAGE, map_size, own * PAGE);
 	/* --timing says the same, but for pages that lie half in the document and half in the buffer */
@@ -119,5 +114,5 @@ int main(void)
 		cmocka_unit_test(one_primitive_of_a_hundred_is_read),
 		cmocka_unit_test(nothing_is_read_where_nothing_is_needed),
 	};
-	return cmocka_run_group_tests_name("pipeline/needed", tests, NULL, NULL);
+	return cmocka_run_group_tests_name("pipeline/needed", tests, make_folder, remove_folder);
 }
