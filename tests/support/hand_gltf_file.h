@@ -5,6 +5,7 @@
 #ifndef NT_TEST_HAND_GLTF_FILE_H
 #define NT_TEST_HAND_GLTF_FILE_H
 
+#include "fail_alloc.h"
 #include "folder.h"
 #include "test.h"
 #include "base/buffer.h"
@@ -77,6 +78,31 @@ static inline nt_summary convert_file(const char *from, const char *to, nt_setti
 	if (nt_run(in_folder(from), to ? in_folder(to) : NULL, &settings, &summary, &error))
 		fail_msg("%s: %s: %s", from, error.place.pointer, error.message);
 	return summary;
+}
+
+/* Runs it with the first allocation failing, and all behind it, then from the second on, until none fails: memory is
+ * exhausted, or the run succeeds all the same. Returns how often it did not. from: a path. */
+static inline size_t exhaust_memory(const char *from, nt_settings settings)
+{
+	char input[512];
+	size_t told = 0;
+	bool failed = true;
+	snprintf(input, sizeof input, "%s", from); /* in_folder() forgets it */
+	settings.texcoord_set = -1;
+	for (size_t n = 0; failed; n++) {
+		nt_summary summary;
+		nt_error error;
+		fail_allocations_from(n);
+		const nt_status status = nt_run(input, in_folder("out.glb"), &settings, &summary, &error);
+		failed = stop_failing_allocations();
+		if (status && (status != NT_ERROR_MEMORY || !failed || !strstr(error.message, "out of memory")))
+			fail_msg("%s, allocation %zu: %s", input, n, error.message);
+		told += status != NT_OK;
+		nt_summary_free(&summary);
+		/* what frees the document allocates too, from a reserve: the last ones do no harm */
+		assert_true(n < told + 50 && n < 10000);
+	}
+	return told;
 }
 
 /* How often a code was found. */

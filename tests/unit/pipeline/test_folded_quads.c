@@ -3,7 +3,6 @@
  * Folded quads and normals that are not of unit length in a whole run: what is counted, and that every failed
  * allocation ends it with a status and nothing else. What is written is tests/cli/test_frames.sh's.
  */
-#include "fail_alloc.h"
 #include "hand_gltf_file.h"
 
 /* A folded quad (tests/cli/test_frames.sh derives its halves), and a triangle with a normal of length .5, a zero one

@@ -4,7 +4,6 @@
  * all of them, as --verify makes it, whatever the number of threads. A scene of primitives of all kinds: grids of
  * SIDE x SIDE quads.
  */
-#include "fail_alloc.h"
 #include "hand_gltf_file.h"
 #include <math.h>
 #include "pipeline/stages.h"
@@ -251,23 +250,8 @@ static void exhausted_memory_is_told(void **state)
 {
 	(void)state;
 	put_scene(KINDS, SIZE_MAX);
-	for (unsigned threads = 1; threads <= 2; threads++) {
-		size_t failures = 0, told = 0;
-		for (bool failed = true; failed; failures++) {
-			const nt_settings settings = {.texcoord_set = -1, .threads = threads};
-			nt_summary summary;
-			nt_error error;
-			fail_allocations_from(failures);
-			const nt_status status =
-				nt_run(in_folder("in.glb"), in_folder("out.glb"), &settings, &summary, &error);
-			failed = stop_failing_allocations();
-			assert_true(status == NT_OK || (failed && status == NT_ERROR_MEMORY));
-			told += status != NT_OK;
-			nt_summary_free(&summary);
-			assert_true(failures < 10000);
-		}
-		assert_true(told > 50);
-	}
+	for (unsigned threads = 1; threads <= 2; threads++)
+		assert_true(exhaust_memory(in_folder("in.glb"), (nt_settings){.threads = threads}) > 50);
 }
 
 int main(void)

@@ -4,39 +4,13 @@
  * transforms, data URIs, sidecars, Draco. The run says that memory is exhausted, or does without; leaks are for the
  * sanitizers to see.
  */
-#include "fail_alloc.h"
-#include "folder.h"
-#include "pipeline/run.h"
-#include "test.h"
+#include "hand_gltf_file.h"
 
-static nt_status run(const char *input, nt_settings settings, nt_error *error)
-{
-	nt_summary summary;
-	settings.texcoord_set = -1;
-	settings.threads = 1;
-	settings.dry_run = true;
-	nt_error_clear(error);
-	const nt_status status = nt_run(input, in_folder("out"), &settings, &summary, error);
-	stop_failing_allocations();
-	nt_summary_free(&summary);
-	return status;
-}
-
-/* From the first allocation to the last: with none left to fail the run succeeds. */
 static void fail_each(const char *input, nt_settings settings)
 {
-	nt_error error;
-	assert_int_equal(run(input, settings, &error), NT_OK);
-	size_t count = 0;
-	for (;; count++) {
-		fail_allocations_from(count);
-		const nt_status status = run(input, settings, &error);
-		if (status == NT_OK)
-			break;
-		if (status != NT_ERROR_MEMORY || !strstr(error.message, "out of memory"))
-			fail_msg("%s, allocation %zu: %s", input, count, error.message);
-	}
-	assert_true(count > 40);
+	settings.threads = 1;
+	settings.dry_run = true;
+	assert_true(exhaust_memory(input, settings) > 40);
 	assert_int_equal(count_in_folder(), 0);
 }
 

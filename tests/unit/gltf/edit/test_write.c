@@ -3,7 +3,6 @@
  * A .glb with a long JSON, which is made while another thread writes what comes behind it: a triangle, so much in its
  * extras, a BIN chunk of some megabytes and a chunk that nobody knows.
  */
-#include "fail_alloc.h"
 #include "hand_gltf_file.h"
 #include <signal.h>
 #include <sys/resource.h>
