@@ -513,26 +513,20 @@ static void print_conventions(const bench *b)
 /* The programs that a user chooses between, calls and runs each in a panel of their own: what has a label. */
 static void write_chart(const bench *b, const char *path)
 {
-	static double x[MOST_ROWS];
-	static chart_series series[2][MOST_ROWS];
-	chart_panel panels[2] = {{"calls: arrays in, arrays out", series[0], 0},
-		{"runs: from file to file", series[1], 0}};
+	static chart_mark marks[2][MOST_ROWS];
+	chart_panel panels[2] = {{"calls: arrays in, arrays out", marks[0], 0}, {"runs: from file to file", marks[1], 0}};
 	for (const row *r = b->rows; r < b->rows + b->row_count; r++) {
 		if (!r->present || !r->label[0])
 			continue;
-		x[r - b->rows] = fastest(r);
-		chart_panel *p = &panels[r->kind >= RUN_TOOL];
-		series[r->kind >= RUN_TOOL][p->series_count++] = (chart_series){
-			r->label, &x[r - b->rows], &r->bits16.median, 1, &r->bits16.high};
+		const int of = r->kind >= RUN_TOOL;
+		marks[of][panels[of].mark_count++] =
+			(chart_mark){r->label, fastest(r), r->bits16.median, r->bits16.high};
 	}
 	const chart c = {.title = "Run time against the error of a normal map's round trip",
 		.subtitle = "One thread, a map of 16 bits. Full marks: median, hollow ones: 99.9 % "
 			    "of the points. Left and low is good.",
 		.x_label = "nanoseconds a triangle",
 		.y_label = "degrees",
-		.log_x = true,
-		.log_y = true,
-		.in_place = true,
 		.panels = panels,
 		.panel_count = 2};
 	if (!chart_write(path, &c)) {

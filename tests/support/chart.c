@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * See chart.h. Colours are O. Okabe's and K. Ito's, which colour-blind readers can tell apart; marks differ
- * in shape as well. A name in place is put where it covers no mark, bar or other name: beside its mark, below or
- * above it; red where there is no such place.
+ * See chart.h. Colours are O. Okabe's and K. Ito's, which colour-blind readers can tell apart; marks differ in
+ * shape as well. A name is put where it covers no mark, bar or other name: beside its mark, below or above it; red where
+ * there is no such place.
  */
 #include "chart.h"
 
@@ -13,14 +13,11 @@
 enum {
 	WIDTH = 1020,
 	LEFT = 80,
-	RIGHT = 660, /* with a legend */
-	RIGHT_ALONE = 1000,
+	RIGHT = 1000,
 	TOP = 60,
-	PANEL_TITLE = 26,     /* height */
-	PANEL_HEIGHT = 400,   /* at least, with a legend */
-	PANEL_IN_PLACE = 270,
-	PANEL_GAP = 30,       /* for the numbers of the axis */
-	LEGEND_LINE = 18,
+	PANEL_TITLE = 26, /* height */
+	PANEL_HEIGHT = 270,
+	PANEL_GAP = 30,   /* for the numbers of the axis */
 	NAME_LINE = 15,
 	MOST_BOXES = 256
 };
@@ -42,56 +39,47 @@ typedef struct taken {
 	size_t count;
 } taken;
 
+/* Logarithmic. */
 typedef struct axis {
 	double low, high;
-	bool logarithmic;
 	int from, to; /* where these are in the picture */
 } axis;
 
-static bool shown(double value, bool logarithmic)
+static bool shown(double value)
 {
-	return isfinite(value) && (!logarithmic || value > 0);
+	return isfinite(value) && value > 0;
 }
 
-static void widen(axis *a, const double *values, size_t count)
+static void widen(axis *a, double value)
 {
-	for (size_t i = 0; values && i < count; i++) {
-		if (shown(values[i], a->logarithmic)) {
-			a->low = fmin(a->low, values[i]);
-			a->high = fmax(a->high, values[i]);
-		}
+	if (shown(value)) {
+		a->low = fmin(a->low, value);
+		a->high = fmax(a->high, value);
 	}
 }
 
 /* An axis that has the values of all panels. */
 static axis make_axis(const chart *c, bool vertical, int from, int to)
 {
-	axis a = {INFINITY, -INFINITY, vertical ? c->log_y : c->log_x, from, to};
+	axis a = {INFINITY, -INFINITY, from, to};
 	for (const chart_panel *p = c->panels; p < c->panels + c->panel_count; p++) {
-		for (size_t s = 0; s < p->series_count; s++) {
-			widen(&a, vertical ? p->series[s].y : p->series[s].x, p->series[s].count);
-			widen(&a, vertical ? p->series[s].high : NULL, p->series[s].count);
+		for (size_t i = 0; i < p->mark_count; i++) {
+			widen(&a, vertical ? p->marks[i].y : p->marks[i].x);
+			widen(&a, vertical ? p->marks[i].high : NAN);
 		}
 	}
 	if (!(a.low <= a.high))
 		a.low = a.high = 1;
-	if (a.logarithmic) {
-		a.low = pow(10, floor(log10(a.low)));
-		a.high = pow(10, ceil(log10(a.high)));
-		if (a.low == a.high)
-			a.high *= 10;
-	} else {
-		a.low = fmin(a.low, 0);
-		a.high += a.high == a.low ? 1 : 0.05 * (a.high - a.low);
-	}
+	a.low = pow(10, floor(log10(a.low)));
+	a.high = pow(10, ceil(log10(a.high)));
+	if (a.low == a.high)
+		a.high *= 10;
 	return a;
 }
 
 static double place(const axis *a, double v)
 {
-	const double share = a->logarithmic ? log10(v / a->low) / log10(a->high / a->low)
-					    : (v - a->low) / (a->high - a->low);
-	return a->from + share * (a->to - a->from);
+	return a->from + log10(v / a->low) / log10(a->high / a->low) * (a->to - a->from);
 }
 
 static void print_text(FILE *f, const char *text)
@@ -113,26 +101,21 @@ static void print_label(FILE *f, double x, double y, const char *attributes, con
 	fprintf(f, "</text>\n");
 }
 
-/* Ticks at powers of ten, or at five even steps. */
+/* Ticks at powers of ten. */
 static void draw_ticks(FILE *f, const axis *a, bool vertical, const axis *across)
 {
 	const double decades = log10(a->high / a->low);
 	const int step = decades > 24 ? 10 : decades > 12 ? 5 : decades > 8 ? 2 : 1;
-	const int count = a->logarithmic ? (int)(decades + 0.5) / step : 5;
-	for (int i = 0; i <= count; i++) {
-		const double v = a->logarithmic ? a->low * pow(10, i * step) : a->low + (a->high - a->low) * i / 5;
+	for (int i = 0; i <= (int)(decades + 0.5) / step; i++) {
+		const double v = a->low * pow(10, i * step), at = place(a, v);
 		char text[32];
-		snprintf(text, sizeof text, a->logarithmic && (v < 0.009 || v > 2000) ? "%.0e" : "%g", v);
+		snprintf(text, sizeof text, v < 0.009 || v > 2000 ? "%.0e" : "%g", v);
 		if (vertical) {
-			const double y = place(a, v);
-			fprintf(f, "<path class=\"grid\" d=\"M%d %.1fH%d\"/>\n", across->from, y,
-				across->to);
-			print_label(f, across->from - 6, y + 4, "text-anchor=\"end\"", text);
+			fprintf(f, "<path class=\"grid\" d=\"M%d %.1fH%d\"/>\n", across->from, at, across->to);
+			print_label(f, across->from - 6, at + 4, "text-anchor=\"end\"", text);
 		} else {
-			const double x = place(a, v);
-			fprintf(f, "<path class=\"grid\" d=\"M%.1f %dV%d\"/>\n", x, across->to,
-				across->from);
-			print_label(f, x, across->from + 16, "text-anchor=\"middle\"", text);
+			fprintf(f, "<path class=\"grid\" d=\"M%.1f %dV%d\"/>\n", at, across->to, across->from);
+			print_label(f, at, across->from + 16, "text-anchor=\"middle\"", text);
 		}
 	}
 }
@@ -161,21 +144,6 @@ static void draw_mark(FILE *f, double x, double y, size_t shape, bool hollow, co
 	}
 }
 
-static void draw_path(FILE *f, const chart *c, const chart_series *series, const axis *ax,
-	const axis *ay, const char *colour)
-{
-	bool drawing = false;
-	fprintf(f, "<path fill=\"none\" stroke-width=\"1.5\" stroke=\"%s\" d=\"M0 0", colour);
-	for (size_t i = 0; i < series->count; i++) {
-		const bool here = shown(series->x[i], c->log_x) && shown(series->y[i], c->log_y);
-		if (here)
-			fprintf(f, "%c%.1f %.1f", drawing ? 'L' : 'M', place(ax, series->x[i]),
-				place(ay, series->y[i]));
-		drawing = here;
-	}
-	fprintf(f, "\"/>\n");
-}
-
 static void take(taken *t, box b)
 {
 	if (t->count < MOST_BOXES)
@@ -191,26 +159,21 @@ static bool is_free(const taken *t, box b)
 	return true;
 }
 
-static void draw_series(FILE *f, const chart *c, const chart_series *series, const axis *ax,
-	const axis *ay, const char *colour, size_t shape, taken *marks)
+/* Full at y, hollow at `high`, with a bar between them. */
+static void draw_marks(FILE *f, const chart_mark *m, const axis *ax, const axis *ay, size_t number, taken *marks)
 {
-	draw_path(f, c, series, ax, ay, colour);
-	for (size_t i = 0; i < series->count; i++) {
-		if (!shown(series->x[i], c->log_x) || !shown(series->y[i], c->log_y))
-			continue;
-		const double x = place(ax, series->x[i]), y = place(ay, series->y[i]);
-		double top = y;
-		if (series->high && shown(series->high[i], c->log_y)) {
-			top = place(ay, series->high[i]);
-			fprintf(f, "<path stroke=\"%s\" stroke-opacity=\"0.4\" d=\"M%.1f %.1fV%.1f\"/>\n",
-				colour, x, y, top);
-			draw_mark(f, x, top, shape, true, colour);
-			take(marks, (box){x - 6, top - 6, x + 6, top + 6});
-		}
-		draw_mark(f, x, y, shape, false, colour);
-		take(marks, (box){x - 6, y - 6, x + 6, y + 6});
-		take(marks, (box){x - 1, top, x + 1, y});
+	if (!shown(m->x) || !shown(m->y))
+		return;
+	const char *colour = colours[number % COLOUR_COUNT];
+	const double x = place(ax, m->x), y = place(ay, m->y), top = shown(m->high) ? place(ay, m->high) : y;
+	if (shown(m->high)) {
+		fprintf(f, "<path stroke=\"%s\" stroke-opacity=\"0.4\" d=\"M%.1f %.1fV%.1f\"/>\n", colour, x, y, top);
+		draw_mark(f, x, top, number, true, colour);
+		take(marks, (box){x - 6, top - 6, x + 6, top + 6});
 	}
+	draw_mark(f, x, y, number, false, colour);
+	take(marks, (box){x - 6, y - 6, x + 6, y + 6});
+	take(marks, (box){x - 1, top, x + 1, y});
 }
 
 /* A name in row `row` from its mark: 0 is beside it, 1 and 2 are below, -1 and -2 above the bar. False: no place. */
@@ -235,49 +198,30 @@ static bool draw_name_in(FILE *f, const char *name, int row, double x, double y,
 	return false;
 }
 
-static void draw_name(FILE *f, const chart *c, const chart_series *series, const axis *ax, const axis *ay, taken *t)
+static void draw_name(FILE *f, const chart_mark *m, const axis *ax, const axis *ay, taken *t)
 {
 	static const int rows[] = {0, 1, -1, 2, -2};
-	if (!series->count || !shown(series->x[0], c->log_x) || !shown(series->y[0], c->log_y))
+	if (!shown(m->x) || !shown(m->y))
 		return;
-	const double x = place(ax, series->x[0]), y = place(ay, series->y[0]);
-	const double top = series->high && shown(series->high[0], c->log_y) ? place(ay, series->high[0]) : y;
-	bool done = false;
-	for (size_t i = 0; i < sizeof rows / sizeof *rows && !done; i++)
-		done = draw_name_in(f, series->name, rows[i], x, (rows[i] < 0 ? top : y) + NAME_LINE * rows[i], ax, ay,
-			t);
-	if (!done)
-		print_label(f, x, y + NAME_LINE, "font-size=\"11\" fill=\"#d00\"", series->name);
+	const double x = place(ax, m->x), y = place(ay, m->y), top = shown(m->high) ? place(ay, m->high) : y;
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+		if (draw_name_in(f, m->name, rows[i], x, (rows[i] < 0 ? top : y) + NAME_LINE * rows[i], ax, ay, t))
+			return;
+	print_label(f, x, y + NAME_LINE, "font-size=\"11\" fill=\"#d00\"", m->name);
 }
 
 static void draw_panel(FILE *f, const chart *c, const chart_panel *p, int top, int bottom)
 {
-	const axis ax = make_axis(c, false, LEFT, c->in_place ? RIGHT_ALONE : RIGHT),
-		   ay = make_axis(c, true, bottom, top);
+	const axis ax = make_axis(c, false, LEFT, RIGHT), ay = make_axis(c, true, bottom, top);
 	taken marks = {.count = 0};
 	draw_ticks(f, &ax, false, &ay);
 	draw_ticks(f, &ay, true, &ax);
-	fprintf(f, "<path fill=\"none\" stroke=\"#333\" d=\"M%d %dV%dH%d\"/>\n", LEFT, top, bottom,
-		ax.to);
-	if (p->title)
-		print_label(f, LEFT, top - 8, "font-weight=\"bold\"", p->title);
-	for (size_t s = 0; s < p->series_count; s++) {
-		const char *colour = colours[s % COLOUR_COUNT];
-		draw_series(f, c, &p->series[s], &ax, &ay, colour, s, &marks);
-		const double y = top + 10 + LEGEND_LINE * (double)s;
-		if (!c->in_place) {
-			draw_mark(f, RIGHT + 18, y - 4, s, false, colour);
-			print_label(f, RIGHT + 30, y, "font-size=\"11\"", p->series[s].name);
-		}
-	}
-	for (size_t s = 0; s < p->series_count && c->in_place; s++)
-		draw_name(f, c, &p->series[s], &ax, &ay, &marks);
-}
-
-static int panel_height(const chart *c, const chart_panel *p)
-{
-	const int legend = LEGEND_LINE * (int)p->series_count;
-	return c->in_place ? PANEL_IN_PLACE : legend > PANEL_HEIGHT ? legend : PANEL_HEIGHT;
+	fprintf(f, "<path fill=\"none\" stroke=\"#333\" d=\"M%d %dV%dH%d\"/>\n", LEFT, top, bottom, RIGHT);
+	print_label(f, LEFT, top - 8, "font-weight=\"bold\"", p->title);
+	for (size_t i = 0; i < p->mark_count; i++)
+		draw_marks(f, &p->marks[i], &ax, &ay, i, &marks);
+	for (size_t i = 0; i < p->mark_count; i++)
+		draw_name(f, &p->marks[i], &ax, &ay, &marks);
 }
 
 bool chart_write(const char *path, const chart *c)
@@ -285,9 +229,7 @@ bool chart_write(const char *path, const chart *c)
 	FILE *f = fopen(path, "w");
 	if (!f)
 		return false;
-	int height = TOP;
-	for (const chart_panel *p = c->panels; p < c->panels + c->panel_count; p++)
-		height += (p->title ? PANEL_TITLE : 0) + panel_height(c, p) + PANEL_GAP;
+	const int height = TOP + (int)c->panel_count * (PANEL_TITLE + PANEL_HEIGHT + PANEL_GAP);
 	fprintf(f, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\""
 		" font-family=\"sans-serif\" font-size=\"12\">\n<style>.grid{stroke:#ddd}</style>\n"
 		"<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n", WIDTH, height + 30, WIDTH, height + 30);
@@ -295,8 +237,8 @@ bool chart_write(const char *path, const chart *c)
 	print_label(f, LEFT, 44, "fill=\"#555\" font-size=\"11\"", c->subtitle);
 	int top = TOP;
 	for (const chart_panel *p = c->panels; p < c->panels + c->panel_count; p++) {
-		top += p->title ? PANEL_TITLE : 0;
-		const int bottom = top + panel_height(c, p);
+		top += PANEL_TITLE;
+		const int bottom = top + PANEL_HEIGHT;
 		draw_panel(f, c, p, top, bottom);
 		char turned[80];
 		snprintf(turned, sizeof turned,
@@ -305,8 +247,7 @@ bool chart_write(const char *path, const chart *c)
 		print_label(f, 20, (top + bottom) / 2.0, turned, c->y_label);
 		top = bottom + PANEL_GAP;
 	}
-	print_label(f, (LEFT + (c->in_place ? RIGHT_ALONE : RIGHT)) / 2.0, height + 10,
-		"text-anchor=\"middle\"", c->x_label);
+	print_label(f, (LEFT + RIGHT) / 2.0, height + 10, "text-anchor=\"middle\"", c->x_label);
 	fprintf(f, "</svg>\n");
 	return fclose(f) == 0;
 }
