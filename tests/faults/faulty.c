@@ -16,7 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/sendfile.h>
 #include <sys/stat.h>
 #include <sys/xattr.h>
 #include <unistd.h>
@@ -135,7 +134,6 @@ void *mmap(void *address, size_t size, int protection, int flags, int fd, off_t 
 WATCH(int, stat, (const char *path, struct stat *info), (path, info))
 WATCH(int, lstat, (const char *path, struct stat *info), (path, info))
 WATCH(int, fstat, (int fd, struct stat *info), (fd, info))
-WATCH(int, fstatat, (int folder, const char *path, struct stat *info, int flags), (folder, path, info, flags))
 WATCH(int, access, (const char *path, int mode), (path, mode))
 WATCH(ssize_t, readlink, (const char *path, char *text, size_t size), (path, text, size))
 WATCH(ssize_t, read, (int fd, void *bytes, size_t size), (fd, bytes, size))
@@ -143,17 +141,12 @@ WATCH(ssize_t, pread, (int fd, void *bytes, size_t size, off_t offset), (fd, byt
 WATCH(ssize_t, write, (int fd, const void *bytes, size_t size), (fd, bytes, size))
 WATCH(ssize_t, writev, (int fd, const struct iovec *pieces, int count), (fd, pieces, count))
 WATCH(ssize_t, pwritev, (int fd, const struct iovec *pieces, int count, off_t offset), (fd, pieces, count, offset))
-WATCH(ssize_t, pwrite, (int fd, const void *bytes, size_t size, off_t offset), (fd, bytes, size, offset))
-WATCH(ssize_t, copy_file_range, (int in, off64_t *from, int out, off64_t *to, size_t size, unsigned flags),
-	(in, from, out, to, size, flags))
-WATCH(ssize_t, sendfile, (int out, int in, off_t *from, size_t size), (out, in, from, size))
 WATCH(off_t, lseek, (int fd, off_t offset, int whence), (fd, offset, whence))
 WATCH(int, madvise, (void *address, size_t size, int advice), (address, size, advice))
 WATCH(int, munmap, (void *address, size_t size), (address, size))
 WATCH(int, ftruncate, (int fd, off_t size), (fd, size))
 WATCH(int, fallocate, (int fd, int mode, off_t offset, off_t size), (fd, mode, offset, size))
 WATCH(int, fsync, (int fd), (fd))
-WATCH(int, fdatasync, (int fd), (fd))
 WATCH(int, fchmod, (int fd, mode_t mode), (fd, mode))
 WATCH(int, rename, (const char *from, const char *to), (from, to))
 WATCH(int, renameat2, (int a, const char *from, int b, const char *to, unsigned flags), (a, from, b, to, flags))

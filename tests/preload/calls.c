@@ -36,15 +36,7 @@ static unsigned snapshots;
 enum { MOST_CALLS = 4096 };
 static const char *made[MOST_CALLS];
 
-static void *next(const char *name)
-{
-	void *function = dlsym(RTLD_NEXT, name);
-	if (!function)
-		_exit(97);
-	return function;
-}
-
-#define REAL(type, name, ...) ((type (*)(__VA_ARGS__))next(name))
+#define REAL(name) ((__typeof__(name) *)dlsym(RTLD_NEXT, #name))
 
 /* Before a call. False: it is to fail, errno is set. */
 static bool enter(const char *name)
@@ -105,13 +97,12 @@ static void note(const char *format, ...)
 	const int kept = errno;
 	if (log_fd < 0) {
 		snprintf(line, sizeof line, "%s/log", folder);
-		log_fd = REAL(int, "open", const char *, int, ...)(line,
-			O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+		log_fd = REAL(open)(line, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
 	}
 	va_start(arguments, format);
 	const int length = vsnprintf(line, sizeof line, format, arguments);
 	va_end(arguments);
-	if (REAL(ssize_t, "write", int, const void *, size_t)(log_fd, line, (size_t)length) != length)
+	if (REAL(write)(log_fd, line, (size_t)length) != length)
 		_exit(98);
 	errno = kept;
 }
@@ -151,6 +142,22 @@ static void note_name(const char *what, const char *path)
 
 /* ---- the calls ---- */
 
+/* One of which nothing is noted. */
+#define CALL(type, name, parameters, arguments) \
+	type name parameters \
+	{ \
+		return enter(#name) ? REAL(name) arguments : -1; \
+	}
+
+CALL(ssize_t, write, (int fd, const void *bytes, size_t size), (fd, bytes, size))
+CALL(ssize_t, pwritev, (int fd, const struct iovec *parts, int count, off_t offset), (fd, parts, count, offset))
+CALL(ssize_t, writev, (int fd, const struct iovec *parts, int count), (fd, parts, count))
+CALL(int, fchmod, (int fd, mode_t mode), (fd, mode))
+CALL(int, fchown, (int fd, uid_t user, gid_t group), (fd, user, group))
+CALL(int, fsetxattr, (int fd, const char *name, const void *value, size_t size, int flags),
+	(fd, name, value, size, flags))
+CALL(int, mkdir, (const char *path, mode_t mode), (path, mode))
+
 int open(const char *path, int flags, ...)
 {
 	va_list arguments;
@@ -158,36 +165,11 @@ int open(const char *path, int flags, ...)
 	const mode_t mode = flags & O_CREAT ? va_arg(arguments, mode_t) : 0;
 	va_end(arguments);
 	if (!(flags & O_CREAT))
-		return REAL(int, "open", const char *, int, ...)(path, flags);
-	if (!enter("open"))
-		return -1;
-	const int fd = REAL(int, "open", const char *, int, ...)(path, flags, mode);
+		return REAL(open)(path, flags);
+	const int fd = enter("open") ? REAL(open)(path, flags, mode) : -1;
 	if (fd >= 0)
 		note_name("create", path);
 	return fd;
-}
-
-ssize_t write(int fd, const void *bytes, size_t size)
-{
-	return enter("write") ? REAL(ssize_t, "write", int, const void *, size_t)(fd, bytes, size) : -1;
-}
-
-ssize_t pwritev(int fd, const struct iovec *parts, int count, off_t offset)
-{
-	return enter("pwritev")
-		? REAL(ssize_t, "pwritev", int, const struct iovec *, int, off_t)(fd, parts, count, offset) :
-				  -1;
-}
-
-ssize_t writev(int fd, const struct iovec *parts, int count)
-{
-	return enter("writev") ? REAL(ssize_t, "writev", int, const struct iovec *, int)(fd, parts, count) : -1;
-}
-
-ssize_t copy_file_range(int from, off64_t *at, int to, off64_t *there, size_t size, unsigned flags)
-{
-	return enter("copy_file_range") ? REAL(ssize_t, "copy_file_range", int, off64_t *, int, off64_t *, size_t,
-		unsigned)(from, at, to, there, size, flags) : -1;
 }
 
 int fsync(int fd)
@@ -198,46 +180,28 @@ int fsync(int fd)
 	return 0;
 }
 
-int fchmod(int fd, mode_t mode)
+static int renamed(int result, const char *from, const char *to)
 {
-	return enter("fchmod") ? REAL(int, "fchmod", int, mode_t)(fd, mode) : -1;
-}
-
-int fchown(int fd, uid_t user, gid_t group)
-{
-	return enter("fchown") ? REAL(int, "fchown", int, uid_t, gid_t)(fd, user, group) : -1;
-}
-
-int fsetxattr(int fd, const char *name, const void *value, size_t size, int flags)
-{
-	return enter("fsetxattr")
-		? REAL(int, "fsetxattr", int, const char *, const void *, size_t, int)(fd, name, value,
-		size, flags) : -1;
+	if (result == 0)
+		note("rename\t%s\t%s\n", from, to);
+	return result;
 }
 
 int rename(const char *from, const char *to)
 {
-	const int result = enter("rename") && !is_kept(from) && !is_kept(to)
-		? REAL(int, "rename", const char *, const char *)(from, to) : -1;
-	if (result == 0)
-		note("rename\t%s\t%s\n", from, to);
-	return result;
+	const bool allowed = enter("rename") && !is_kept(from) && !is_kept(to);
+	return renamed(allowed ? REAL(rename)(from, to) : -1, from, to);
 }
 
 int renameat2(int from_folder, const char *from, int to_folder, const char *to, unsigned flags)
 {
-	const int result = enter("renameat2") && !is_kept(from) && !is_kept(to)
-		? REAL(int, "renameat2", int, const char *, int, const char *, unsigned)(
-		from_folder, from, to_folder, to, flags) : -1;
-	if (result == 0)
-		note("rename\t%s\t%s\n", from, to);
-	return result;
+	const bool allowed = enter("renameat2") && !is_kept(from) && !is_kept(to);
+	return renamed(allowed ? REAL(renameat2)(from_folder, from, to_folder, to, flags) : -1, from, to);
 }
 
 int link(const char *from, const char *to)
 {
-	const int result = enter("link") && !is_kept(from)
-		? REAL(int, "link", const char *, const char *)(from, to) : -1;
+	const int result = enter("link") && !is_kept(from) ? REAL(link)(from, to) : -1;
 	if (result == 0)
 		note_name("link", to);
 	return result;
@@ -245,13 +209,8 @@ int link(const char *from, const char *to)
 
 int unlink(const char *path)
 {
-	const int result = enter("unlink") && !is_kept(path) ? REAL(int, "unlink", const char *)(path) : -1;
+	const int result = enter("unlink") && !is_kept(path) ? REAL(unlink)(path) : -1;
 	if (result == 0)
 		note("unlink\t%s\n", path);
 	return result;
-}
-
-int mkdir(const char *path, mode_t mode)
-{
-	return enter("mkdir") ? REAL(int, "mkdir", const char *, mode_t)(path, mode) : -1;
 }
