@@ -239,18 +239,10 @@ if command -v script >/dev/null 2>&1; then
 fi
 
 scene "a colour that is not finite is no colour of a PLY"
-python3 - <<'PY'
-import base64, json, struct
-data = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + struct.pack("<6f", 0, 0, 1, 0, 0, 1)
-data += struct.pack("<12f", *[1] * 9, float("nan"), 1, 1)
-views = [(0, 36), (36, 24), (60, 48)]
-json.dump({"asset": {"version": "2.0"},
-	"meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "COLOR_0": 2}}]}], "nodes": [{"mesh": 0}],
-	"accessors": [{"bufferView": i, "type": t, "componentType": 5126, "count": 3} for i, t in enumerate(["VEC3", "VEC2", "VEC4"])],
-	"bufferViews": [{"buffer": 0, "byteOffset": o, "byteLength": n} for o, n in views],
-	"buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}]},
-	open("nan.gltf", "w"))
-PY
+gltf new nan 'const attributes = {POSITION: add("VEC3", 5126, [0, 0, 0, 1, 0, 0, 0, 1, 0]),
+		TEXCOORD_0: add("VEC2", 5126, [0, 0, 1, 0, 0, 1]), COLOR_0: add("VEC4", 5126, [...Array(9).fill(1), NaN, 1, 1])};
+	g.meshes = [{primitives: [{attributes}]}];
+	g.nodes = [{mesh: 0}]'
 run nan.gltf out.ply
 exits 3
 says "the colour of vertex 2 is not finite"

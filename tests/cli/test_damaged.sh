@@ -27,38 +27,35 @@ for file in "$data"/damaged/*.obj "$data"/damaged/*.ply "$data"/damaged/*.glb "$
 done
 
 scene "what a file refers to in vain never comes to mean what is added"
-python3 - <<'PY'
-import base64, json, struct
-data = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + struct.pack("<6f", 0, 0, 1, 0, 0, 1) + struct.pack("<9f", *[0, 0, 1] * 3)
-views = [(0, 36), (36, 24), (60, 36)]
-triangle = {"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "NORMAL": 2}}
-def write(name, hidden=triangle, **more):
-	json.dump({"asset": {"version": "2.0"}, "meshes": [{"primitives": [triangle]}, {"primitives": hidden if isinstance(hidden, list) else [hidden]}],
-		"nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0,
-		"accessors": [{"bufferView": i, "type": t, "componentType": 5126, "count": 3} for i, t in enumerate(["VEC3", "VEC2", "VEC3"])] +
-			[{"type": "VEC3", "componentType": 5126, "count": 3}],
-		"bufferViews": [{"buffer": 0, "byteOffset": o, "byteLength": n} for o, n in views],
-		"buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}]}
-		| more, open(name, "w"))
-def packed(view, **more):
-	return {"attributes": {"POSITION": 3} | more,
-		"extensions": {"KHR_draco_mesh_compression": {"bufferView": view, "attributes": {"POSITION": 0}}}}
-write("attribute.gltf", {"attributes": {"POSITION": 0, "NORMAL": 4}})
-write("target.gltf", {"attributes": {"POSITION": 0}, "targets": [{"POSITION": 4}]})
-write("skin.gltf", skins=[{"joints": [0]}, {"joints": [0], "inverseBindMatrices": 4}])
-write("sampler.gltf", animations=[{"channels": [], "samplers": [{"input": 4, "output": 0}]}])
-write("image.gltf", images=[{"bufferView": 3, "mimeType": "image/png"}])
-write("shared.gltf", [packed(1), packed(2, NORMAL=4)], extensionsUsed=["KHR_draco_mesh_compression"])
-write("far.gltf", {"attributes": {"POSITION": 0, "NORMAL": 40}})
+# accessor 3 has no bytes
+base='const xyz = [0, 0, 0, 1, 0, 0, 0, 1, 0], up = [0, 0, 1, 0, 0, 1, 0, 0, 1];
+	const attributes = {POSITION: add("VEC3", 5126, xyz), TEXCOORD_0: add("VEC2", 5126, [0, 0, 1, 0, 0, 1]),
+		NORMAL: add("VEC3", 5126, up)};
+	g.accessors.push({type: "VEC3", componentType: 5126, count: 3});
+	g.meshes = [{primitives: [{attributes}]}, {primitives: [{attributes}]}];
+	g.nodes = [{mesh: 0}];
+	const hide = (primitive) => { g.meshes[1].primitives = [primitive]; };
+	const packed = (bufferView, more) => ({attributes: {POSITION: 3, ...more},
+		extensions: {KHR_draco_mesh_compression: {bufferView, attributes: {POSITION: 0}}}});'
+while IFS='|' read -r name statements; do
+	gltf new $name "$base" "$statements"
+done <<'LIST'
+attribute|hide({attributes: {POSITION: 0, NORMAL: 4}})
+target|hide({attributes: {POSITION: 0}, targets: [{POSITION: 4}]})
+skin|g.skins = [{joints: [0]}, {joints: [0], inverseBindMatrices: 4}]
+sampler|g.animations = [{channels: [], samplers: [{input: 4, output: 0}]}]
+image|g.images = [{bufferView: 3, mimeType: "image/png"}]
+shared|g.meshes[1].primitives = [packed(1), packed(2, {NORMAL: 4})]; g.extensionsUsed = ["KHR_draco_mesh_compression"]
+far|hide({attributes: {POSITION: 0, NORMAL: 40}})
+LIST
 # mirrored triangles over one edge: two vertices are copied, so that what is there moves
-data = struct.pack("<12f", 0, 0, 0, 0, 1, 0, 1, 0, 0, -1, 0, 0) + struct.pack("<8f", 0, 0, 0, 1, 1, 0, 1, 0) + struct.pack("<12f", *[0, 0, 1] * 4)
-views = [(0, 48), (48, 32), (80, 48), (128, 12)]
-data += struct.pack("<6H", 0, 2, 1, 0, 1, 3)
-triangle = triangle | {"indices": 3}
-write("split.gltf", {"attributes": {"POSITION": 0}}, skins=[{"joints": [0], "inverseBindMatrices": 4}],
-	accessors=[{"bufferView": i, "type": t, "componentType": 5126, "count": 4} for i, t in enumerate(["VEC3", "VEC2", "VEC3"])] +
-		[{"bufferView": 3, "type": "SCALAR", "componentType": 5123, "count": 6}])
-PY
+gltf new split 'const attributes = {POSITION: add("VEC3", 5126, [0, 0, 0, 0, 1, 0, 1, 0, 0, -1, 0, 0]),
+		TEXCOORD_0: add("VEC2", 5126, [0, 0, 0, 1, 1, 0, 1, 0]),
+		NORMAL: add("VEC3", 5126, [0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1])};
+	const indices = add("SCALAR", 5123, [0, 2, 1, 0, 1, 3]);
+	g.meshes = [{primitives: [{attributes, indices}]}, {primitives: [{attributes: {POSITION: 0}}]}];
+	g.nodes = [{mesh: 0}];
+	g.skins = [{joints: [0], inverseBindMatrices: 4}]'
 while read -r name place what; do
 	run --only=all "$name.gltf" out.glb
 	exits 3

@@ -4,15 +4,19 @@
 // answer.mjs gltf FILE NAME STATEMENTS...   writes NAME.gltf, with its buffers beside it, after the statements
 //
 // They see g, the document; bytes, the buffers, which they may change and replace; rows(accessor), an accessor's rows of
-// numbers; at(accessor, row), where one begins in its buffer; and open(FILE), another file with all of these.
+// numbers, by its number or itself; at(accessor, row), where one begins in its buffer; add(TYPE, COMPONENT TYPE, NUMBERS,
+// MEMBERS), which makes an accessor in the first buffer and gives its number; and open(FILE), another file with all of
+// these. The file "new" is a document with nothing in it.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 
 const widths = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT4: 16 };
 const readers = { 5120: ['readInt8', 1], 5122: ['readInt16LE', 2], 5121: ['readUInt8', 1], 5123: ['readUInt16LE', 2], 5125: ['readUInt32LE', 4], 5126: ['readFloatLE', 4] };
 
+const empty = '{"asset": {"version": "2.0"}, "buffers": [{"uri": "data:,"}], "bufferViews": [], "accessors": []}';
+
 export function open(path) {
-	const file = readFileSync(path), binary = file.toString('latin1', 0, 4) === 'glTF';
+	const file = path === 'new' ? Buffer.from(empty) : readFileSync(path), binary = file.toString('latin1', 0, 4) === 'glTF';
 	const size = binary ? file.readUInt32LE(12) : 0;
 	const g = JSON.parse(binary ? file.toString('utf8', 20, 20 + size) : file.toString('utf8'));
 	const chunk = binary ? file.subarray(20 + size + 8) : undefined;
@@ -29,17 +33,26 @@ export function open(path) {
 		const [method, size] = readers[accessor.componentType], width = widths[accessor.type];
 		return { method, size, width, stride: g.bufferViews[accessor.bufferView].byteStride ?? width * size };
 	};
+	const of = (accessor) => typeof accessor === 'number' ? g.accessors[accessor] : accessor;
 	const at = (number, row = 0) => {
-		const accessor = g.accessors[number], view = g.bufferViews[accessor.bufferView];
+		const accessor = of(number), view = g.bufferViews[accessor.bufferView];
 		return (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0) + row * shape(accessor).stride;
 	};
 	const rows = (number) => {
-		const accessor = g.accessors[number], { method, size, width } = shape(accessor);
+		const accessor = of(number), { method, size, width } = shape(accessor);
 		const data = bytes[g.bufferViews[accessor.bufferView].buffer];
 		return Array.from({ length: accessor.count }, (_, row) =>
 			Array.from({ length: width }, (_, k) => data[method](at(number, row) + k * size)));
 	};
-	return { g, bytes, rows, at };
+	const add = (type, componentType, numbers, more) => {
+		const [method, size] = readers[componentType], data = Buffer.alloc(numbers.length * size);
+		numbers.forEach((x, i) => data[method.replace('read', 'write')](x, i * size));
+		const begin = bytes[0].length + 3 & ~3;
+		loaded[0] = Buffer.concat([bytes[0], Buffer.alloc(begin - bytes[0].length), data]);
+		const bufferView = g.bufferViews.push({ buffer: 0, byteOffset: begin, byteLength: data.length }) - 1;
+		return g.accessors.push({ bufferView, componentType, type, count: numbers.length / widths[type], ...more }) - 1;
+	};
+	return { g, bytes, rows, at, add };
 }
 
 export default function answer([path, expression, ...statements], say) {
