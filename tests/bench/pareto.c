@@ -514,7 +514,8 @@ static void print_conventions(const bench *b)
 static void write_chart(const bench *b, const char *path)
 {
 	static chart_mark marks[2][MOST_ROWS];
-	chart_panel panels[2] = {{"calls: arrays in, arrays out", marks[0], 0}, {"runs: from file to file", marks[1], 0}};
+	chart_panel panels[2] = {{"calls: arrays in, arrays out", marks[0], 0},
+		{"runs: from file to file", marks[1], 0}};
 	for (const row *r = b->rows; r < b->rows + b->row_count; r++) {
 		if (!r->present || !r->label[0])
 			continue;

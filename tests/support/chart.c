@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * See chart.h. Colours are O. Okabe's and K. Ito's, which colour-blind readers can tell apart; marks differ in
- * shape as well. A name is put where it covers no mark, bar or other name: beside its mark, below or above it; red where
- * there is no such place.
+ * shape as well. A name is put where it covers no mark, bar or other name: beside its mark, below or above it; red
+ * where there is no such place.
  */
 #include "chart.h"
 
