@@ -44,11 +44,6 @@ case $NMTAN in
 *) factor=8 blocks=2000 elements=10000 materials=10000 strip=20000 faces=20000 windows=100 parts=10000 ;;
 esac
 
-# A value of a JSON file.
-value() {
-	python3 -c 'import json, sys; r = json.load(open(sys.argv[1])); print(eval(sys.argv[2]))' "$@"
-}
-
 scene "$blocks Draco blocks are found in linear time"
 inputs usemtl $blocks blocks.obj
 run -q --only=all blocks.obj blocks.glb

@@ -10,14 +10,6 @@ squares() {
 	printf 'f 1/1/1 2/2/1 3/3/1 4/4/1\nf 5/%s/1 6/%s/1 7/%s/1 8/%s/1\n' "$@"
 }
 
-value() {
-	python3 -c 'import json, sys; r = json.load(open(sys.argv[1])); print(eval(sys.argv[2]))' "$@"
-}
-
-validates() {
-	python3 "$ROOT/tests/report/schema.py" "$ROOT/data/nmtan-diff.schema.json" "$@" >faults.txt || wrong "$(head -3 faults.txt)"
-}
-
 scene "what did not change is not told, whatever numbers it has"
 squares "1 2 3 4" >old.obj
 { sed -n '/^v/p' old.obj; printf 'f 7/3/1 8/4/1 5/1/1\nf 5/1/1 6/2/1 7/3/1\nf 2/2/1 3/3/1 1/1/1\nf 3/3/1 4/4/1 1/1/1\n'; } >new.obj
@@ -34,7 +26,7 @@ squares "2 3 4 1" >turned.obj
 squares "2 1 4 3" >mirrored.obj
 for name in old turned mirrored; do run -q $name.obj $name.glb; done
 run -q --check --diff --report=d.json old.glb turned.glb
-validates d.json
+validates diff d.json
 is "$(value d.json '[(m["triangles_in_place"], m["corners_with_other_texcoords"], m["tangents"]["compared"],
 	m["tangents"]["turned"], m["tangents"]["reversed_w"], round(m["tangents"]["worst_degrees"], 3),
 	[h["corners"] for h in m["tangents"]["histogram"]]) for m in r["meshes"]]')" \
@@ -65,22 +57,14 @@ run --check --diff --report=d.md --fail-on=warning old.obj lone.obj
 exits 6
 grep -q '^| warning | `UV_MIRROR_LONE` |' d.md || wrong "no row of the new finding"
 
-# What the page has of $1: an expression of r.
-page() {
-	python3 -c 'import json, sys
-text = open(sys.argv[1]).read()
-r = json.loads(text.split("id=\"data\">", 1)[1].split("</script>", 1)[0])
-print(eval(sys.argv[2]))' "$@"
-}
-
 scene "a page has both versions, what is new and gone, and names as text"
 { echo 'o </script><script>window.broken=1</script>'; squares "2 1 4 3"; } >old.obj
 sed 's/^f 5.*/f 5\/1\/1 6\/2\/1 7\/3\/1 8\/4\/1/' old.obj >new.obj
 run --check --diff --report=d.html old.obj new.obj
 exits 0
-is "$(page d.html '[f["name"] for f in r["files"]], r["diff"]["unchanged"] > 0')" "(['old.obj', 'new.obj'], True)"
-is "$(page d.html '[[x["code"] for x in f["findings"] if not x["known"]] for f in r["files"]]')" "[['UV_MIRROR_OVERLAP'], []]"
-is "$(page d.html '[(m["old"], m["new"], m["changed"], m["rows"][0][1]) for m in r["diff"]["meshes"]]')" \
+is "$(value d.html '[f["name"] for f in r["files"]], r["diff"]["unchanged"] > 0')" "(['old.obj', 'new.obj'], True)"
+is "$(value d.html '[[x["code"] for x in f["findings"] if not x["known"]] for f in r["files"]]')" "[['UV_MIRROR_OVERLAP'], []]"
+is "$(value d.html '[(m["old"], m["new"], m["changed"], m["rows"][0][1]) for m in r["diff"]["meshes"]]')" \
 	"[(0, 0, True, '6 of 12 tangents turned, by 180 degrees at most, 6 with w reversed')]"
 grep -c '<script' d.html >scripts.txt
 is "$(cat scripts.txt)" 4 # what there is, what shows it, a mesh of each version
@@ -89,11 +73,11 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nvt
 { cat whole.obj; echo 'f 2/2/1 4/4/1 3/3/1'; } >plain.obj
 { cat whole.obj; echo 'f 2/2/1 4/1/1 3/3/1'; } >folded.obj
 run --check --diff --report=f.html plain.obj folded.obj
-is "$(page f.html '[(dict(m["rows"])["vertices"], dict(m["rows"])["split for tangents"]) for m in r["diff"]["meshes"]]')" "[('4 -> 6', '0 -> 2')]"
+is "$(value f.html '[(dict(m["rows"])["vertices"], dict(m["rows"])["split for tangents"]) for m in r["diff"]["meshes"]]')" "[('4 -> 6', '0 -> 2')]"
 run --check --diff --threads=1 --report=d1.html old.obj new.obj
 cmp d.html d1.html || wrong "one thread writes another page"
 run --check --diff --report=same.html new.obj new.obj
-is "$(page same.html '[m["changed"] for m in r["diff"]["meshes"]], [x["code"] for f in r["files"] for x in f["findings"] if not x["known"]]')" "([False], [])"
+is "$(value same.html '[m["changed"] for m in r["diff"]["meshes"]], [x["code"] for f in r["files"] for x in f["findings"] if not x["known"]]')" "([False], [])"
 
 scene "meshes that came and went are told"
 printf 'o one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n' >old.obj

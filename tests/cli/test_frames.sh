@@ -3,8 +3,12 @@
 # corner, whatever normals and texture coordinates are like. Numbers are derived beside each case; frames.mjs counts.
 . "$ROOT/tests/support/cli.sh"
 
+# triangle NAME POSITIONS NORMALS TEXCOORDS: NAME.gltf with a normal map.
 triangle() {
-	python3 "$ROOT/tests/support/gltf_triangle.py" "$@"
+	gltf new "$1" "const [P, N, T] = [$2, $3, $4];" '
+		const attributes = {POSITION: add("VEC3", 5126, P), NORMAL: add("VEC3", 5126, N), TEXCOORD_0: add("VEC2", 5126, T)};
+		Object.assign(g, {scene: 0, scenes: [{nodes: [0]}], nodes: [{mesh: 0}], textures: [{source: 0}], images: [{uri: "n.png"}],
+			meshes: [{primitives: [{attributes, material: 0}]}], materials: [{normalTexture: {index: 0}}]})'
 }
 
 # T of every vertex, to a millionth, and NORMAL.
@@ -28,8 +32,7 @@ sound() {
 
 # How often a code was found by the conversion.
 found() {
-	python3 -c 'import json, sys
-print(sum(i["count"] for f in json.load(open(sys.argv[1]))["files"] for i in f["findings"] if i["code"] == sys.argv[2]))' r.json "$1"
+	value r.json "sum(i['count'] for f in r['files'] for i in f['findings'] if i['code'] == '$1')"
 }
 
 normal_obj() {
@@ -60,7 +63,7 @@ sound n.glb
 
 scene "so it is in a glTF, whose normals stay"
 for length in 1 0.5 1.1; do
-	triangle '[0,0,0, 1,0,1, 0,1,0]' "[0,0,$length, 0,0,$length, 0,0,$length]" '[0,1, 1,1, 0,0]' >n.gltf
+	triangle n '[0,0,0, 1,0,1, 0,1,0]' "[0,0,$length, 0,0,$length, 0,0,$length]" '[0,1, 1,1, 0,0]'
 	run --report=r.json n.gltf n.glb
 	exits 0
 	is "$(tangents n.glb)" '[[1,0,0,1],[1,0,0,1],[1,0,0,1]]'
@@ -68,7 +71,7 @@ for length in 1 0.5 1.1; do
 	is "$(found NORMALS_SCALED)" "$([ $length = 1 ] && echo 0 || echo 3)"
 	sound n.glb
 done
-triangle '[0,0,0, 1,0,1, 0,1,0]' '[0,0,0, 0,0,0, 0,0,0]' '[0,1, 1,1, 0,0]' >n.gltf
+triangle n '[0,0,0, 1,0,1, 0,1,0]' '[0,0,0, 0,0,0, 0,0,0]' '[0,1, 1,1, 0,0]'
 run --report=r.json n.gltf n.glb
 exits 0
 is "$(tangents n.glb)" '[[0.707107,0,0.707107,1],[0.707107,0,0.707107,1],[0.707107,0,0.707107,1]]'
@@ -79,9 +82,9 @@ sound n.glb
 # Its UV determinant, v up, is (.35)(-.9) - (1.05)(-.3): 0 in float, exactly that of the floats next to these. MikkTSpace
 # leaves (1, 0, 0), which leans by .8.
 scene "what MikkTSpace does not compute is repaired, and so is its mirrored twin"
-triangle '[0,0,0, -0.6,0.8,0, 0,0,1]' '[0.8,0.6,0, 0.8,0.6,0, 0.8,0.6,0]' '[0,0, 1.05,0.9, 0.35,0.3]' >plain.gltf
-triangle '[0,0,0, -0.6,0.8,0, 0,0,1]' '[0.8,0.6,0, 0.8,0.6,0, 0.8,0.6,0]' '[0,0, 0.35,0.3, 1.05,0.9]' >twin.gltf
-triangle '[0,0,0, -0.6,0.8,0, 0,0,1]' '[0.8,0.6,0, 0.8,0.6,0, 0.8,0.6,0]' '[0,0, 0,0, 0,0]' >none.gltf
+triangle plain '[0,0,0, -0.6,0.8,0, 0,0,1]' '[0.8,0.6,0, 0.8,0.6,0, 0.8,0.6,0]' '[0,0, 1.05,0.9, 0.35,0.3]'
+triangle twin '[0,0,0, -0.6,0.8,0, 0,0,1]' '[0.8,0.6,0, 0.8,0.6,0, 0.8,0.6,0]' '[0,0, 0.35,0.3, 1.05,0.9]'
+triangle none '[0,0,0, -0.6,0.8,0, 0,0,1]' '[0.8,0.6,0, 0.8,0.6,0, 0.8,0.6,0]' '[0,0, 0,0, 0,0]'
 for file in plain twin none; do
 	run --report=r.json $file.gltf $file.glb
 	exits 0
@@ -162,9 +165,7 @@ if [ -f "$cube" ]; then
 fi
 
 scene "--morph=drop: a TANGENT that refers to nothing is gone like any other"
-node -e 'const g = JSON.parse(require("fs").readFileSync(process.argv[1]));
-	g.meshes[0].primitives[0].targets[0].TANGENT = g.accessors.length;
-	require("fs").writeFileSync("nothing.gltf", JSON.stringify(g))' "$ROOT/data/morph.gltf"
+gltf "$data/morph.gltf" nothing 'g.meshes[0].primitives[0].targets[0].TANGENT = g.accessors.length'
 run --morph=keep nothing.gltf out.glb
 exits 3
 says "refers to accessors["
@@ -173,15 +174,10 @@ exits 0
 is "$(gltf out.glb 'g.meshes[0].primitives[0].targets.some((t) => "TANGENT" in t)')" false
 
 scene "one geometry with other morph targets is solved once, and both primitives have its tangents"
-python3 - "$ROOT/data/morph.gltf" twice.gltf <<'PY'
-import json, sys
-document = json.load(open(sys.argv[1]))
-primitives = document["meshes"][0]["primitives"]
-primitives.append(json.loads(json.dumps(primitives[0])))
-primitives[0]["targets"] *= 2
-document["meshes"][0]["weights"] = [0, 0]
-json.dump(document, open(sys.argv[2], "w"))
-PY
+gltf "$data/morph.gltf" twice 'const all = g.meshes[0].primitives;
+	all.push(structuredClone(all[0]));
+	all[0].targets = [...all[0].targets, ...all[0].targets];
+	g.meshes[0].weights = [0, 0]'
 for morph in drop keep bake; do
 	run --morph=$morph "$ROOT/data/morph.gltf" once.gltf
 	exits 0

@@ -2,15 +2,6 @@
 # The manifest: one line for each input, valid, and true.
 . "$ROOT/tests/support/cli.sh"
 
-# Each line of a file is valid against the schema.
-validates() {
-	mkdir lines
-	split -l 1 "$1" lines/
-	python3 "$ROOT/tests/report/schema.py" "$data/nmtan-manifest.schema.json" lines/* >faults.txt ||
-		wrong "$(head -3 faults.txt)"
-	rm -rf lines faults.txt
-}
-
 # The value of a Python expression over m: the lines by input.
 value() {
 	python3 -c 'import json, sys; m = {l["input"]: l for l in map(json.loads, open(sys.argv[1]))}; print(eval(sys.argv[2]))' \
@@ -22,7 +13,7 @@ cp "$data"/mirrored_cube.obj "$data/bumps.png" "$data"/plates.* .
 printf 'v 0 0 0\nv 1 0 0\nf 1 2 3\n' >bad.obj
 run --method=area --manifest=m -d out mirrored_cube.obj plates.gltf bad.obj missing.obj
 exits 2
-validates m
+validates --lines manifest m
 is "$(value m 'sorted((k, v["status"], v["exit_code"]) for k, v in m.items())')" \
 	"[('bad.obj', 'failed', 3), ('mirrored_cube.obj', 'done', 0), ('missing.obj', 'failed', 2), ('plates.gltf', 'done', 0)]"
 is "$(value m 'm["bad.obj"]["error"]')" \
@@ -53,7 +44,7 @@ later
 run --update --manifest=m -d out a.obj
 run --update --manifest=m --fail-fast -j1 -d out a.obj b.obj c.obj
 exits 2
-validates m
+validates --lines manifest m
 is "$(value m '[l["status"] for l in m.values()]')" "['up-to-date', 'failed', 'untried']"
 is "$(value m '[d["path"] for d in m["a.obj"]["dependencies"]]')" "['a.obj']"
 
@@ -61,7 +52,7 @@ scene "findings that fail are in the exit code, and --check has a manifest"
 cp "$data/mirrored_cube.obj" a.obj
 run --check -q --fail-on=warning --manifest=m a.obj
 exits 6
-validates m
+validates --lines manifest m
 is "$(value m 'm["a.obj"]["exit_code"], m["a.obj"]["outputs"]')" "(6, [])"
 
 scene "a manifest is no input, and its failure is told"

@@ -5,10 +5,7 @@ script='"><script>.obj'
 
 # The index's rows, in the order of the inputs: a Python expression over the row f.
 rows() {
-	python3 -c 'import json, re, sys
-text = open(sys.argv[1], encoding="utf-8").read()
-data = json.loads(re.search(r"id=\"data\">(.*?)</script>", text, re.S).group(1))
-for f in data["files"]: print(eval(sys.argv[2]))' "$1" "$2"
+	value "$1" '"\n".join(str(('"$2"')) for f in r["files"])'
 }
 
 # What several scenes report on: names that are equal, equal but for case, hostile, hidden; an input that cannot be read.

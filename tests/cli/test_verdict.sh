@@ -4,17 +4,15 @@
 
 # Codes and counts of a JSON report, one to a line; $2: severities that count.
 findings() {
-	python3 -c 'import json, sys
-for f in json.load(open(sys.argv[1]))["files"][0]["findings"]:
-	if f["severity"] in sys.argv[2].split(): print(f["severity"], f["code"], f["count"])' "$1" "${2:-error warning info}" | sort
+	value "$1" '"\n".join("%(severity)s %(code)s %(count)s" % f for f in r["files"][0]["findings"] if f["severity"] in
+		'"'${2:-error warning info}'"')' | sort
 }
 
 # A square whose right half is a mirrored copy moved by $1 tiles along u; its folded place is $2 more.
 halves() {
 	printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvn 0 0 1\n'
 	printf 'vt %s %s\n' .1 .1  .4 .1  .4 .4  .1 .4
-	python3 -c 'import sys
-for u, v in ((.4, .1), (.1, .1), (.1, .4), (.4, .4)): print("vt", round(u + float(sys.argv[1]), 6), v)' "$1"
+	awk -v move="$1" '{ print "vt", $1 + move, $2 }' <<<$'.4 .1\n.1 .1\n.1 .4\n.4 .4'
 	printf 'f 1/1/1 2/2/1 3/3/1 4/4/1\nf 2/5/1 5/6/1 6/7/1 3/8/1\n'
 }
 
@@ -114,13 +112,14 @@ exits 6
 prints "UV_MIRROR_LONE"
 
 scene "every seam is a finding of its own"
-python3 - >many.obj <<'PY'
-print("vn 0 0 1\nvt 0 0\nvt 1 0\nvt .5 1")
-for i in range(40):
-	for p in ((0, 0), (1, 0), (.5, 1), (.5, -1)): print("v", p[0] + 2 * i, p[1], 0)
-	b = 4 * i
-	print(f"f {b+1}/1/1 {b+2}/2/1 {b+3}/3/1\nf {b+2}/2/1 {b+1}/1/1 {b+4}/3/1")
-PY
+{
+	printf '%s\n' "vn 0 0 1" "vt 0 0" "vt 1 0" "vt .5 1"
+	for i in $(seq 0 2 78); do
+		printf 'v %s 0\n' "$i 0" "$((i + 1)) 0" "$i.5 1" "$i.5 -1"
+		echo "f -4/1/1 -3/2/1 -2/3/1"
+		echo "f -3/2/1 -4/1/1 -1/3/1"
+	done
+} >many.obj
 run -q --check --report=r.json --fail-on=never many.obj
 is "$(findings r.json | grep -c UV_MIRROR_SEAM)" 40
 run --check --fail-on=never many.obj

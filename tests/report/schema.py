@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 #
-# schema.py SCHEMA DOCUMENT...
+# schema.py [--lines] SCHEMA DOCUMENT...
 #
-# Checks JSON documents against a JSON schema. Knows the part of draft 2020-12 that our schema uses and
+# Checks JSON documents, or each line of them, against a JSON schema. Knows the part of draft 2020-12 that our schema uses and
 # refuses keywords that it does not know, so that nothing in the schema goes unchecked. Also refuses
 # duplicate keys and NaN in the documents.
 import json
@@ -79,15 +79,18 @@ def refuse(word):
 
 
 def main():
-    with open(sys.argv[1], encoding='utf-8') as file:
+    lines = sys.argv[1] == '--lines'
+    _, path, *names = [word for word in sys.argv if word != '--lines']
+    with open(path, encoding='utf-8') as file:
         schema = json.load(file)
     bad = 0
-    for name in sys.argv[2:]:
+    for name in names:
         faults = []
         try:
             with open(name, encoding='utf-8') as file:
-                document = json.load(file, object_pairs_hook=unique, parse_constant=refuse)
-            check(schema, schema, document, '', faults)
+                for text in file if lines else [file.read()]:
+                    document = json.loads(text, object_pairs_hook=unique, parse_constant=refuse)
+                    check(schema, schema, document, '', faults)
         except ValueError as error:
             faults.append(str(error))
         for fault in faults[:20]:

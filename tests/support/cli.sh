@@ -127,6 +127,23 @@ python3() {
 # The value of a JavaScript expression over a glTF file: see gltf.mjs.
 gltf() { ask answer.mjs gltf "$@"; }
 
+# The value of a Python expression over r, which is what a JSON file holds, or a page of a report.
+value() {
+	python3 -c 'import json, re, sys
+text = open(sys.argv[1], encoding="utf-8").read()
+page = re.search(r"id=\"data\">(.*?)</script>", text, re.S)
+r = json.loads(page.group(1) if page else text)
+print(eval(sys.argv[2]))' "$@"
+}
+
+# validates KIND FILE...: each is as the schema of data/ says; with --lines before KIND, each line.
+validates() {
+	local lines=
+	[ "$1" != --lines ] || { lines=$1; shift; }
+	python3 "$ROOT/tests/report/schema.py" $lines "$data/nmtan-$1.schema.json" "${@:2}" >"$WORK/faults.txt" ||
+		wrong "$(head -3 "$WORK/faults.txt")"
+}
+
 # The output has no error in the Khronos validator that its input (if any) did not have.
 valid() {
 	if [ -f "$ROOT/build/node/node_modules/gltf-validator/package.json" ]; then
