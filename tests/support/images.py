@@ -3,8 +3,9 @@
 """Images for tests, with nothing but zlib.
 
     images.py write FILE WIDTH HEIGHT EXPRESSION   a TGA, BMP, TIFF or PNG by its ending; EXPRESSION of x, y (rows down), w, h and
-                                                   math gives (r, g, b) of bytes, a grey byte, or ("16", grey) of 16 bits
-    images.py rows FILE                            the samples of a PNG as JSON, row by row
+                                                   math gives (r, g, b) of bytes, in a PNG (r, g, b, a), too, a grey byte, or ("16", grey) of
+                                                   16 bits
+    images.py rows FILE [EXPRESSION]               the samples of a PNG as JSON, row by row; or an expression over the rows
     images.py tga FILE.png FILE.tga                the same picture
     images.py jpegtif FILE.jpg FILE.tif            the same grey picture, 8 x 8; tables apart from the scan, as TIFFs have them
     images.py embedded GLB NUMBER FILE             the bytes of an image of a GLB
@@ -30,7 +31,7 @@ def png(width, height, pixel):
         for x in range(width):
             p = pixel(x, y)
             raw += struct.pack(">H", p[1]) if wide else bytes([p] if grey else p)
-    header = struct.pack(">IIBBBBB", width, height, 16 if wide else 8, 0 if grey else 2, 0, 0, 0)
+    header = struct.pack(">IIBBBBB", width, height, 16 if wide else 8, 0 if grey else {3: 2, 4: 6}[len(first)], 0, 0, 0)
     return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(bytes(raw))) +
             chunk(b"IEND", b""))
 
@@ -121,7 +122,8 @@ def main():
         with open(path, "wb") as file:
             file.write(make(width, height, lambda x, y: eval(code, {"x": x, "y": y, "w": width, "h": height, "math": math})))
     elif sys.argv[1] == "rows":
-        print(json.dumps(rows(open(sys.argv[2], "rb").read()), separators=(",", ":")))
+        picture = rows(open(sys.argv[2], "rb").read())
+        print(eval(sys.argv[3], {"rows": picture, "math": math}) if sys.argv[3:] else json.dumps(picture, separators=(",", ":")))
     elif sys.argv[1] == "tga":
         picture = rows(open(sys.argv[2], "rb").read())
         with open(sys.argv[3], "wb") as file:
