@@ -90,13 +90,12 @@ exists pages/index.html
 sed 's/^vt 1.6/vt 500/' tiles.obj >far.obj
 python3 "$ROOT/tests/support/images.py" write n.png 32 32 '(128, 128, 255)'
 run -q tiles.obj tiles.gltf
-python3 -c 'import json
-for name, transform in ("mirrored", {}), ("shifted", {"KHR_texture_transform": {"offset": [0.35, 0]}}):
-	d = json.load(open("tiles.gltf"))
-	d.update(images=[{"uri": "n.png"}], samplers=[{"wrapS": 33648, "wrapT": 10497}], textures=[{"source": 0, "sampler": 0}],
-		materials=[{"normalTexture": {"index": 0, "extensions": transform}}], extensionsUsed=["KHR_texture_transform"])
-	d["meshes"][0]["primitives"][0]["material"] = 0
-	json.dump(d, open(name + ".gltf", "w"))'
+for wrapped in 'mirrored {}' 'shifted {KHR_texture_transform: {offset: [0.35, 0]}}'; do
+	gltf tiles.gltf "${wrapped%% *}" "const extensions = ${wrapped#* };" 'Object.assign(g, {images: [{uri: "n.png"}],
+		samplers: [{wrapS: 33648, wrapT: 10497}], textures: [{source: 0, sampler: 0}],
+		materials: [{normalTexture: {index: 0, extensions}}], extensionsUsed: ["KHR_texture_transform"]});
+		g.meshes[0].primitives[0].material = 0'
+done
 run --check --report=tiles.html --fail-on=never tiles.obj mirrored.gltf shifted.gltf far.obj
 exists tiles.html
 
@@ -106,14 +105,17 @@ python3 "$ROOT/tests/support/images.py" write tex/red.png 8 8 '(255, 0, 0)'
 cp tex/red.png tex/lost.png
 printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0 1\nf 1/1/1 2/2/1 3/3/1 4/4/1\n' >half.obj
 run -q half.obj half.gltf
-python3 -c 'import base64, json
-inside = "data:image/png;base64," + base64.b64encode(open("tex/red.png", "rb").read()).decode()
-for name, uri, set in ("red", "tex/red.png", 0), ("lost", "tex/lost.png", 0), ("inside", inside, 0), ("other", "tex/red.png", 1):
-	d = json.load(open("half.gltf"))
-	d.update(images=[{"uri": "n.png"}, {"uri": uri}], textures=[{"source": 0}, {"source": 1}],
-		materials=[{"normalTexture": {"index": 0}, "pbrMetallicRoughness": {"baseColorTexture": {"index": 1, "texCoord": set}}}])
-	d["meshes"][0]["primitives"][0]["material"] = 0
-	json.dump(d, open(name + ".gltf", "w"))'
+while read -r name set uri; do
+	gltf half.gltf $name "const uri = '$uri', texCoord = $set;" 'Object.assign(g, {images: [{uri: "n.png"}, {uri}],
+		textures: [{source: 0}, {source: 1}],
+		materials: [{normalTexture: {index: 0}, pbrMetallicRoughness: {baseColorTexture: {index: 1, texCoord}}}]});
+		g.meshes[0].primitives[0].material = 0'
+done <<END
+red 0 tex/red.png
+lost 0 tex/lost.png
+inside 0 data:image/png;base64,$(base64 -w 0 tex/red.png)
+other 1 tex/red.png
+END
 run --check --report=pictures.html --fail-on=never red.gltf lost.gltf inside.gltf other.gltf
 grep -ao '"image":[0-9nul]*,"map":[^]]*\],"file":[^}]*' pictures.html | sed 's/"map":[^]]*.,//' >images.txt
 is "$(cat images.txt)" '"image":0,"file":"n.png"

@@ -65,6 +65,8 @@ export default function answer([path, expression, ...statements], say) {
 	}
 	run(statements.join('\n'));
 	for (const [i, buffer] of (file.g.buffers ?? []).entries()) {
+		if (file.bytes[i] === undefined) /* of no URI */
+			continue;
 		const name = `${expression}${i ? `-${i}` : ''}.bin`, data = file.bytes[i];
 		Object.assign(buffer, { uri: name.replace(/.*\//, ''), byteLength: data.length });
 		writeFileSync(name, data);
