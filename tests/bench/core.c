@@ -52,19 +52,16 @@ static void print_machine(void)
 
 /* What a row of the table is timed on: one mesh, or many small ones in turn. */
 typedef struct workload {
-	nt_family_mesh *meshes; /* [count] */
+	nt_owned *meshes; /* [count] */
 	size_t count, triangles, most_corners;
 } workload;
 
 static workload make_workload(nt_family family, size_t count, size_t triangles)
 {
-	workload w = {.meshes = calloc(count, sizeof *w.meshes), .count = count};
+	workload w = {.meshes = measure_room(count, sizeof *w.meshes), .count = count};
 	for (size_t i = 0; i < count; i++) {
-		if (!w.meshes || !nt_family_make(family, triangles, &w.meshes[i])) {
-			fprintf(stderr, "core: out of memory\n");
-			exit(1);
-		}
-		w.triangles += w.meshes[i].triangle_count;
+		w.meshes[i] = nt_family_make(family, triangles);
+		w.triangles += w.meshes[i].mesh.face_count * (w.meshes[i].face_sizes ? 2 : 1);
 		if (w.meshes[i].corner_count > w.most_corners)
 			w.most_corners = w.meshes[i].corner_count;
 	}
@@ -74,7 +71,7 @@ static workload make_workload(nt_family family, size_t count, size_t triangles)
 static void free_workload(workload *w)
 {
 	for (size_t i = 0; i < w->count; i++)
-		nt_family_free(&w->meshes[i]);
+		nt_owned_free(&w->meshes[i]);
 	free(w->meshes);
 }
 

@@ -6,39 +6,16 @@
 #include "families.h"
 
 #include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include "measure.h"
 
 const char *const nt_family_names[NT_FAMILY_COUNT] = {"clean", "noise, mirror seam", "shuffled", "de-indexed",
 	"mirrored every 4", "zero-UV 18 %", "collapsed 10 %", "quads", "hubs of 100 000", "collapsed 50 %"};
 
-static uint64_t random_state = 1;
-
-static uint32_t random_below(uint32_t count)
+static float random_float(nt_random *random)
 {
-	random_state ^= random_state << 13;
-	random_state ^= random_state >> 7;
-	random_state ^= random_state << 17;
-	return (uint32_t)((random_state >> 32) * count >> 32);
-}
-
-static float random_float(void)
-{
-	return (float)random_below(1 << 24) * 0x1p-23f - 1.0f;
-}
-
-static int allocate(nt_family_mesh *m, size_t vertices, size_t corners)
-{
-	m->corner_count = corners;
-	m->mesh.struct_bytes = sizeof m->mesh;
-	m->mesh.vertex_count = vertices;
-	m->positions = malloc(vertices * 12);
-	m->normals = malloc(vertices * 12);
-	m->texcoords = malloc(vertices * 8);
-	m->indices = malloc(corners * sizeof *m->indices);
-	return m->positions && m->normals && m->texcoords && m->indices;
+	return (float)(2 * nt_random_real(random) - 1);
 }
 
 /* Columns of texture: u grows, or runs back and forth over `period` columns, or turns once in the middle. */
@@ -53,209 +30,156 @@ static float column_u(nt_family family, size_t column, size_t columns)
 	return (float)column / (float)columns;
 }
 
-static void torus_vertex(nt_family family, size_t row, size_t rows, size_t column, size_t columns, float *p,
-	float *n, float *t)
+static void torus_vertex(nt_family family, size_t row, size_t rows, size_t column, size_t columns,
+	nt_random *random, float *p, float *n, float *t)
 {
 	const double a = 6.283185307179586 * (double)row / (double)rows;
 	const double b = 6.283185307179586 * (double)column / (double)columns;
 	const float noise = family == NT_FAMILY_NOISE ? 1.0f : 0.0f;
-	n[0] = (float)(cos(a) * cos(b)) + 0.05f * noise * random_float();
-	n[1] = (float)(cos(a) * sin(b)) + 0.05f * noise * random_float();
-	n[2] = (float)sin(a) + 0.05f * noise * random_float();
+	n[0] = (float)(cos(a) * cos(b)) + 0.05f * noise * random_float(random);
+	n[1] = (float)(cos(a) * sin(b)) + 0.05f * noise * random_float(random);
+	n[2] = (float)sin(a) + 0.05f * noise * random_float(random);
 	const float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 	n[0] /= length, n[1] /= length, n[2] /= length;
 	const float step = 3.0f / (float)columns;
-	p[0] = (float)((2.0 + cos(a)) * cos(b)) + step * noise * random_float();
-	p[1] = (float)((2.0 + cos(a)) * sin(b)) + step * noise * random_float();
-	p[2] = (float)sin(a) + step * noise * random_float();
-	t[0] = column_u(family, column, columns) + 0.2f / (float)columns * noise * random_float();
-	t[1] = (float)row / (float)rows + 0.2f / (float)rows * noise * random_float();
+	p[0] = (float)((2.0 + cos(a)) * cos(b)) + step * noise * random_float(random);
+	p[1] = (float)((2.0 + cos(a)) * sin(b)) + step * noise * random_float(random);
+	p[2] = (float)sin(a) + step * noise * random_float(random);
+	t[0] = column_u(family, column, columns) + 0.2f / (float)columns * noise * random_float(random);
+	t[1] = (float)row / (float)rows + 0.2f / (float)rows * noise * random_float(random);
 }
 
-static int make_torus(nt_family family, size_t triangles, nt_family_mesh *m)
+static nt_owned make_torus(nt_family family, size_t triangles, nt_random *random)
 {
 	const size_t columns = (size_t)sqrt((double)triangles / 2.0) + 1;
-	const size_t rows = triangles / 2 / columns + 1;
-	const size_t faces = rows * columns;
+	const size_t rows = triangles / 2 / columns + 1, cells = rows * columns, vertices = (rows + 1) * (columns + 1);
 	const bool quads = family == NT_FAMILY_QUADS;
-	if (!allocate(m, (rows + 1) * (columns + 1), faces * (quads ? 4 : 6)))
-		return 0;
+	nt_owned m = quads ? nt_owned_make_quads(vertices, cells) : nt_owned_make(vertices, 2 * cells);
 	for (size_t r = 0; r <= rows; r++)
 		for (size_t c = 0; c <= columns; c++) {
 			const size_t v = r * (columns + 1) + c;
-			torus_vertex(family, r, rows, c, columns, m->positions + 3 * v, m->normals + 3 * v,
-				m->texcoords + 2 * v);
+			torus_vertex(family, r, rows, c, columns, random, m.positions[v], m.normals[v], m.texcoords[v]);
 		}
-	unsigned *out = m->indices;
+	uint32_t *out = m.indices;
 	for (size_t r = 0; r < rows; r++)
 		for (size_t c = 0; c < columns; c++) {
-			const unsigned i = (unsigned)(r * (columns + 1) + c), j = i + 1;
-			const unsigned k = (unsigned)(j + columns + 1), l = (unsigned)(i + columns + 1);
-			const unsigned quad[4] = {i, j, k, l}, pair[6] = {i, j, k, i, k, l};
+			const uint32_t i = (uint32_t)(r * (columns + 1) + c), j = i + 1;
+			const uint32_t k = (uint32_t)(j + columns + 1), l = (uint32_t)(i + columns + 1);
+			const uint32_t quad[4] = {i, j, k, l}, pair[6] = {i, j, k, i, k, l};
 			memcpy(out, quads ? quad : pair, (quads ? 4 : 6) * sizeof *out);
 			out += quads ? 4 : 6;
 		}
-	if (quads) {
-		m->face_sizes = malloc(faces);
-		if (!m->face_sizes)
-			return 0;
-		memset(m->face_sizes, 4, faces);
-	}
-	m->triangle_count = 2 * faces;
-	return 1;
+	return m;
 }
 
-static void swap_rows(float *rows, size_t floats, size_t i, size_t j)
+static void swap(void *a, void *b, size_t size)
 {
-	for (size_t c = 0; c < floats; c++) {
-		const float value = rows[floats * i + c];
-		rows[floats * i + c] = rows[floats * j + c];
-		rows[floats * j + c] = value;
-	}
+	unsigned char kept[16];
+	memcpy(kept, a, size);
+	memcpy(a, b, size);
+	memcpy(b, kept, size);
 }
 
-static int shuffle(nt_family_mesh *m)
+static void shuffle(nt_owned *m, nt_random *random)
 {
 	const size_t vertices = m->mesh.vertex_count;
-	unsigned *place = malloc(vertices * sizeof *place), *at = malloc(vertices * sizeof *at);
-	if (!place || !at)
-		return 0;
+	uint32_t *place = measure_room(vertices, sizeof *place), *at = measure_room(vertices, sizeof *at);
 	for (size_t v = 0; v < vertices; v++)
-		at[v] = (unsigned)v;
+		at[v] = (uint32_t)v;
 	for (size_t i = vertices; i > 1; i--) {
-		const size_t j = random_below((uint32_t)i);
-		swap_rows(m->positions, 3, i - 1, j);
-		swap_rows(m->normals, 3, i - 1, j);
-		swap_rows(m->texcoords, 2, i - 1, j);
-		const unsigned v = at[i - 1];
-		at[i - 1] = at[j];
-		at[j] = v;
+		const size_t j = nt_random_below(random, (uint32_t)i);
+		swap(m->positions[i - 1], m->positions[j], 12);
+		swap(m->normals[i - 1], m->normals[j], 12);
+		swap(m->texcoords[i - 1], m->texcoords[j], 8);
+		swap(&at[i - 1], &at[j], sizeof *at);
 	}
 	for (size_t i = 0; i < vertices; i++)
-		place[at[i]] = (unsigned)i;
+		place[at[i]] = (uint32_t)i;
 	for (size_t c = 0; c < m->corner_count; c++)
 		m->indices[c] = place[m->indices[c]];
-	for (size_t t = m->triangle_count; t > 1; t--) {
-		unsigned *a = m->indices + 3 * (t - 1), *b = m->indices + 3 * (size_t)random_below((uint32_t)t);
-		for (int k = 0; k < 3; k++) {
-			const unsigned v = a[k];
-			a[k] = b[k];
-			b[k] = v;
-		}
-	}
+	for (size_t t = m->mesh.face_count; t > 1; t--)
+		swap(m->indices + 3 * (t - 1), m->indices + 3 * (size_t)nt_random_below(random, (uint32_t)t),
+			3 * sizeof *m->indices);
 	free(place);
 	free(at);
-	return 1;
 }
 
-static float *expand(const float *rows, size_t floats, const unsigned *indices, size_t corners)
+static void deindex(nt_owned *m)
 {
-	float *result = malloc(corners * floats * sizeof *result);
-	for (size_t c = 0; result && c < corners; c++)
-		memcpy(result + floats * c, rows + floats * indices[c], floats * sizeof *result);
-	return result;
-}
-
-static int deindex(nt_family_mesh *m)
-{
-	nt_family_mesh flat = *m;
-	flat.positions = expand(m->positions, 3, m->indices, m->corner_count);
-	flat.normals = expand(m->normals, 3, m->indices, m->corner_count);
-	flat.texcoords = expand(m->texcoords, 2, m->indices, m->corner_count);
-	flat.indices = NULL;
-	flat.mesh.vertex_count = m->corner_count;
-	nt_family_free(m);
+	nt_owned flat = nt_owned_make(m->corner_count, m->mesh.face_count);
+	for (size_t c = 0; c < m->corner_count; c++) {
+		memcpy(flat.positions[c], m->positions[m->indices[c]], 12);
+		memcpy(flat.normals[c], m->normals[m->indices[c]], 12);
+		memcpy(flat.texcoords[c], m->texcoords[m->indices[c]], 8);
+	}
+	flat.mesh.indices = NULL;
+	nt_owned_free(m);
 	*m = flat;
-	return m->positions && m->normals && m->texcoords;
 }
 
 /* Texture coordinates of single triangles onto a point: both of an edge's ends take those of the first. */
-static void flatten_uvs(nt_family_mesh *m)
+static void flatten_uvs(nt_owned *m, nt_random *random)
 {
 	/* an edge collapses in UV for one vertex in 22: its two triangles lose their area */
-	for (size_t t = 0; t < m->triangle_count; t += 2)
-		if (random_below(22) == 0) {
-			const unsigned *v = m->indices + 3 * t;
-			memcpy(m->texcoords + 2 * (size_t)v[1], m->texcoords + 2 * (size_t)v[0], 8);
+	for (size_t t = 0; t < m->mesh.face_count; t += 2)
+		if (nt_random_below(random, 22) == 0) {
+			const uint32_t *v = m->indices + 3 * t;
+			memcpy(m->texcoords[v[1]], m->texcoords[v[0]], 8);
 		}
 }
 
 /* Behind every n triangles comes one that repeats a corner of the last. */
-static int add_collapsed(nt_family_mesh *m, size_t n)
+static void add_collapsed(nt_owned *m, size_t n)
 {
-	const size_t added = m->triangle_count / n;
-	unsigned *indices = malloc((m->corner_count + 3 * added) * sizeof *indices), *out = indices;
-	if (!indices)
-		return 0;
-	for (size_t t = 0; t < m->triangle_count; t++, out += 3) {
-		const unsigned *v = m->indices + 3 * t;
+	const size_t added = m->mesh.face_count / n;
+	uint32_t *indices = measure_room(m->corner_count + 3 * added, sizeof *indices), *out = indices;
+	for (size_t t = 0; t < m->mesh.face_count; t++, out += 3) {
+		const uint32_t *v = m->indices + 3 * t;
 		memcpy(out, v, 3 * sizeof *v);
 		if (t % n == n - 1 && t / n < added) {
 			out += 3;
-			memcpy(out, (unsigned[3]){v[0], v[0], v[2]}, 3 * sizeof *v);
+			memcpy(out, (uint32_t[3]){v[0], v[0], v[2]}, 3 * sizeof *v);
 		}
 	}
 	free(m->indices);
-	m->indices = indices;
-	m->triangle_count += added;
+	m->mesh.indices = m->indices = indices;
+	m->mesh.face_count += added;
 	m->corner_count += 3 * added;
-	return 1;
 }
 
-static int make_hubs(size_t triangles, nt_family_mesh *m)
+static nt_owned make_hubs(size_t triangles)
 {
 	const size_t spokes = triangles < 100000 ? triangles : 100000, hubs = triangles / spokes;
-	if (!allocate(m, hubs * (spokes + 1), hubs * spokes * 3))
-		return 0;
+	nt_owned m = nt_owned_make(hubs * (spokes + 1), hubs * spokes);
 	for (size_t h = 0; h < hubs; h++)
 		for (size_t i = 0; i <= spokes; i++) {
 			const size_t v = h * (spokes + 1) + i;
 			const double a = 6.283185307179586 * (double)i / (double)spokes;
 			const float x = i ? (float)cos(a) : 0.0f, y = i ? (float)sin(a) : 0.0f;
-			memcpy(m->positions + 3 * v, (float[3]){x + 3.0f * (float)h, y, 0.0f}, 12);
-			memcpy(m->normals + 3 * v, (float[3]){0.0f, 0.0f, 1.0f}, 12);
-			memcpy(m->texcoords + 2 * v, (float[2]){x, y}, 8);
+			memcpy(m.positions[v], (float[3]){x + 3.0f * (float)h, y, 0.0f}, 12);
+			memcpy(m.normals[v], (float[3]){0.0f, 0.0f, 1.0f}, 12);
+			memcpy(m.texcoords[v], (float[2]){x, y}, 8);
 		}
 	for (size_t h = 0; h < hubs; h++)
 		for (size_t i = 0; i < spokes; i++) {
-			const unsigned first = (unsigned)(h * (spokes + 1));
-			unsigned *v = m->indices + 3 * (h * spokes + i);
-			v[0] = first;
-			v[1] = first + 1 + (unsigned)i;
-			v[2] = first + 1 + (unsigned)((i + 1) % spokes);
+			const uint32_t hub = (uint32_t)(h * (spokes + 1)), next = (uint32_t)((i + 1) % spokes);
+			const uint32_t corners[3] = {hub, hub + 1 + (uint32_t)i, hub + 1 + next};
+			memcpy(m.indices + 3 * (h * spokes + i), corners, sizeof corners);
 		}
-	m->triangle_count = hubs * spokes;
-	return 1;
+	return m;
 }
 
-int nt_family_make(nt_family family, size_t triangles, nt_family_mesh *m)
+nt_owned nt_family_make(nt_family family, size_t triangles)
 {
-	memset(m, 0, sizeof *m);
-	random_state = 88172645463325252u;
-	int made = family == NT_FAMILY_HUB ? make_hubs(triangles, m) : make_torus(family, triangles, m);
-	if (made && family == NT_FAMILY_SHUFFLED)
-		made = shuffle(m);
-	if (made && family == NT_FAMILY_DEINDEXED)
-		made = deindex(m);
-	if (made && family == NT_FAMILY_ZERO_UV)
-		flatten_uvs(m);
-	if (made && (family == NT_FAMILY_COLLAPSED || family == NT_FAMILY_HALF))
-		made = add_collapsed(m, family == NT_FAMILY_HALF ? 1 : 10);
-	m->mesh.face_count = m->face_sizes ? m->triangle_count / 2 : m->triangle_count;
-	m->mesh.face_sizes = m->face_sizes;
-	m->mesh.indices = m->indices;
-	m->mesh.positions = m->positions;
-	m->mesh.normals = m->normals;
-	m->mesh.texcoords = m->texcoords;
-	return made;
-}
-
-void nt_family_free(nt_family_mesh *m)
-{
-	free(m->positions);
-	free(m->normals);
-	free(m->texcoords);
-	free(m->indices);
-	free(m->face_sizes);
-	memset(m, 0, sizeof *m);
+	nt_random random = nt_random_seed(1);
+	nt_owned m = family == NT_FAMILY_HUB ? make_hubs(triangles) : make_torus(family, triangles, &random);
+	if (family == NT_FAMILY_SHUFFLED)
+		shuffle(&m, &random);
+	if (family == NT_FAMILY_DEINDEXED)
+		deindex(&m);
+	if (family == NT_FAMILY_ZERO_UV)
+		flatten_uvs(&m, &random);
+	if (family == NT_FAMILY_COLLAPSED || family == NT_FAMILY_HALF)
+		add_collapsed(&m, family == NT_FAMILY_HALF ? 1 : 10);
+	return m;
 }

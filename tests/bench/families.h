@@ -5,7 +5,7 @@
 #ifndef NT_FAMILIES_H
 #define NT_FAMILIES_H
 
-#include "nmtan.h"
+#include "surfaces.h"
 
 typedef enum nt_family {
 	NT_FAMILY_CLEAN,     /* indexed torus */
@@ -23,16 +23,7 @@ typedef enum nt_family {
 
 extern const char *const nt_family_names[NT_FAMILY_COUNT];
 
-typedef struct nt_family_mesh {
-	nmtan_mesh mesh;
-	size_t triangle_count, corner_count;
-	float *positions, *normals, *texcoords;
-	unsigned *indices; /* NULL: not indexed */
-	unsigned char *face_sizes;
-} nt_family_mesh;
-
-/* A mesh with about that many triangles; false when out of memory. */
-int nt_family_make(nt_family family, size_t triangles, nt_family_mesh *mesh);
-void nt_family_free(nt_family_mesh *mesh);
+/* A mesh with about that many triangles; its indices are NULL where it is not indexed. */
+nt_owned nt_family_make(nt_family family, size_t triangles);
 
 #endif

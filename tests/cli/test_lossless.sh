@@ -309,27 +309,4 @@ exits 1
 says "--images=none"
 only
 
-scene "a sidecar never replaces a file of the input"
-cp "$WORK/layouts/plain.gltf" a.gltf
-cp "$WORK/layouts/plain 0.bin" b.bin
-sed -i 's/plain%200.bin/b.bin/' a.gltf
-cp b.bin before
-run a.gltf b.gltf
-exits 0
-says "b.bin is another file"
-cmp -s before b.bin || wrong "b.bin was changed"
-only a.gltf b.bin before b.gltf b-????????????????.bin
-lossless a.gltf b.gltf
-
-scene "in place, the document alone is replaced"
-cp "$WORK/layouts/plain.gltf" a.gltf
-cp "$WORK/layouts/plain 0.bin" a.bin
-sed -i 's/plain%200.bin/a.bin/' a.gltf
-cp a.bin before
-cp a.gltf original.gltf
-run --in-place a.gltf a.gltf
-exits 0
-cmp -s before a.bin || wrong "a.bin was changed"
-lossless original.gltf a.gltf
-
 done_testing

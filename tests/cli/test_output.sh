@@ -2,17 +2,6 @@
 # Outputs: whole or not at all, never over an input, written through where they are no files.
 . "$ROOT/tests/support/cli.sh"
 
-scene "no-clobber keeps what exists"
-echo mine >out.glb
-run -n "$data/quad.obj" out.glb
-exits 2
-says "out.glb"
-is "$(cat out.glb)" mine
-only out.glb
-run -n "$data/quad.obj" new.glb
-exits 0
-exists new.glb
-
 scene "an output that is the input is refused by name"
 cp "$data/plates.glb" a.glb
 run a.glb a.glb

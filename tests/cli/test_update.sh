@@ -44,6 +44,9 @@ says "o.glb: refusing to write: the file exists already"
 run -n bad.obj other.glb
 exits 3
 is "$(cat o.glb)" mine
+run -n "$data/quad.obj" new.glb
+exits 0
+exists new.glb
 mkfifo nobody_writes
 timeout 60 "$NMTAN" -n nobody_writes o.glb 2>"$WORK/err.txt"
 is $? 2
