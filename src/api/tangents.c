@@ -179,6 +179,51 @@ static void end_counts(const nmtan_counts *own, nmtan_counts *given)
 		nt_struct_write(given, own, sizeof *own);
 }
 
+/* Corner k of a half, as a corner of its quad. */
+static const uint8_t half_corners[][2][3] = {
+	[NT_HALF_ABC] = {{0, 1, 2}, {0, 2, 3}},
+	[NT_HALF_ABD] = {{0, 1, 3}, {1, 2, 3}},
+};
+
+/* Solves quads in the place of their halves, whose corners take the quads' results; nothing is known of these. */
+static nmtan_status solve_quads(request *r, const uint8_t *halves, size_t *ill_conditioned)
+{
+	const nmtan_mesh *mesh = &r->mesh;
+	nt_scratch *scratch = r->solve.scratch;
+	nmtan_mesh quads = *mesh;
+	uint8_t *sizes = nt_scratch_alloc(scratch, mesh->face_count, 1);
+	uint32_t *indices = nt_scratch_alloc(scratch, r->solve.corner_count, sizeof *indices);
+	nt_solve solve = r->solve;
+	solve.tangents = nt_scratch_alloc(scratch, r->solve.corner_count, 4 * sizeof *solve.tangents);
+	if (!sizes || !indices || !solve.tangents)
+		return NMTAN_ERROR_MEMORY;
+	quads.face_count = solve.corner_count = 0;
+	for (size_t t = 0, parts; t < mesh->face_count; t += parts) {
+		uint32_t *corners = indices + solve.corner_count;
+		parts = halves[t] == NT_HALF_NONE ? 1 : 2;
+		for (size_t part = 0; part < parts; part++)
+			for (size_t k = 0; k < 3; k++)
+				corners[parts == 1 ? k : half_corners[halves[t]][part][k]] =
+					(uint32_t)nt_vertex_of(mesh, 3 * (t + part) + k);
+		sizes[quads.face_count++] = (uint8_t)(2 + parts);
+		solve.corner_count += 2 + parts;
+	}
+	quads.indices = indices;
+	quads.face_sizes = sizes;
+	solve.mesh = &quads;
+	solve.known = r->solve.known = NULL;
+	const nmtan_status status = run_method(&solve, r->options.method, ill_conditioned);
+	const float *from = solve.tangents;
+	for (size_t t = 0, parts; !status && t < mesh->face_count; t += parts) {
+		parts = halves[t] == NT_HALF_NONE ? 1 : 2;
+		for (size_t i = 0; i < 3 * parts; i++)
+			memcpy(r->solve.tangents + 4 * (3 * t + i),
+				from + 4 * (parts == 1 ? i : half_corners[halves[t]][i / 3][i % 3]), 4 * sizeof *from);
+		from += 4 * (2 + parts);
+	}
+	return status;
+}
+
 nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_implementation *implementation, const nmtan_output *output, nmtan_counts *counts)
 {
@@ -201,7 +246,8 @@ nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	/* the method's own answer, then what a renderer can use */
 	size_t ill_conditioned = 0;
 	if (r.solve.corner_count > 0)
-		status = run_method(&r.solve, r.options.method, &ill_conditioned);
+		status = implementation->halves ? solve_quads(&r, implementation->halves, &ill_conditioned)
+						: run_method(&r.solve, r.options.method, &ill_conditioned);
 	if (!status && r.solve.corner_count > 0)
 		status = nt_repair(&r.solve, &met);
 	met.ill_conditioned = ill_conditioned;

@@ -19,15 +19,32 @@ typedef struct nt_vertex_request {
 nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_vertex_request *request, nmtan_split_output *output, nmtan_counts *counts);
 
-/* All give the same bytes, so users do not choose. */
+/* What a triangle is to a solve by quads. The corners of a quad are a, b, c, d; its halves follow one another. */
+enum nt_half {
+	NT_HALF_NONE,   /* a face of its own */
+	NT_HALF_ABC,    /* first half (a, b, c); (a, c, d) is the second */
+	NT_HALF_ABD,    /* first half (a, b, d); (b, c, d) is the second */
+	NT_HALF_SECOND
+};
+
+/* All give the same bytes, so users do not choose; but for halves of quads. */
 typedef struct nt_implementation {
 	bool scalar; /* the definition, one triangle after the other, instead of the passes in lanes */
 	nt_isa isa;  /* of the lanes */
+	const uint8_t *halves; /* [face_count] of a mesh of triangles: enum nt_half, which of them are solved as one
+	                          quad. Outputs are tangents and the faults of repair alone. NULL: none */
 } nt_implementation;
 
 /* nmtan_tangents() by that implementation. Returns NMTAN_ERROR_ARGUMENT also for an instruction set that the
  * processor lacks. */
 nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_implementation *implementation, const nmtan_output *output, nmtan_counts *counts);
+
+/* nmtan_tangents() where some triangles are solved as quads: see nt_implementation.halves, which may be NULL. */
+static inline nmtan_status nt_tangents_of_halves(const nmtan_mesh *mesh, const uint8_t *halves,
+	const nmtan_options *options, const nmtan_output *output, nmtan_counts *counts)
+{
+	return nt_tangents(mesh, options, &(nt_implementation){.isa = NT_ISA_AUTO, .halves = halves}, output, counts);
+}
 
 #endif

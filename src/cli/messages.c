@@ -192,6 +192,18 @@ void nt_message_current(nt_buffer *out, const nt_job *job)
 	nt_buffer_text(out, ": up to date\n");
 }
 
+/* Triangles that were solved as quads. */
+static void append_quads(nt_buffer *out, const nt_summary *s)
+{
+	if (!s->quad_count)
+		return;
+	nt_buffer_text(out, " (as ");
+	append_count(out, s->quad_count, "quad");
+	nt_buffer_text(out, " and ");
+	append_count(out, s->triangle_count - 2 * s->quad_count, "triangle");
+	nt_buffer_text(out, ")");
+}
+
 void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings)
 {
 	const nt_summary *s = &job->outcome->summary;
@@ -210,6 +222,7 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	if (s->solved_count && !settings->check) {
 		nt_buffer_text(out, ", ");
 		append_count(out, s->triangle_count, "triangle");
+		append_quads(out, s);
 		append_vertices(out, s);
 	}
 	const size_t repaired = nt_counts_repaired(&s->counts);

@@ -211,6 +211,7 @@ static nt_status load_vertices(nt_scene *scene, nt_mesh *mesh, const inputs *in,
 		status = load_floats(scene, mesh, &in->normals.accessor, 3, 0, &mesh->normals, error);
 	if (!status && in->tangents.exists)
 		status = load_floats(scene, mesh, &in->tangents.accessor, 4, 0, &mesh->tangents, error);
+	mesh->byte_tangents = in->tangents.exists && in->tangents.accessor.component_type == NT_GLTF_BYTE;
 	if (!status && in->colors.exists)
 		status = load_floats(scene, mesh, &in->colors.accessor, 4, 1, &mesh->colors, error);
 	if (!status && in->texcoords.exists)

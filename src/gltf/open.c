@@ -111,6 +111,7 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->has_positions = positions != NULL;
 	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;
 	mesh->has_tangents = nt_json_find(attributes, "TANGENT") != NULL;
+	mesh->has_polygons = nt_json_find(nt_json_find(primitive, "extensions"), "FB_ngon_encoding") != NULL;
 	mesh->has_texcoords = has_texcoords(attributes, mesh->texcoord_set);
 	mesh->targets_without_tangents = targets_without_tangents(primitive);
 	mesh->face_count = claimed_faces(corners, mode);
@@ -233,6 +234,9 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	scene->read_of_source = count_read;
 	scene->release_pages = nt_gltf_release_pages;
 	scene->format = document->is_glb ? NT_FORMAT_GLB : NT_FORMAT_GLTF;
+	const char *generator =
+		nt_json_get_string(nt_json_find(nt_gltf_root_member(document, "asset"), "generator"), NULL);
+	scene->solves_quads = generator && strstr(generator, "Blender");
 	/* the JSON has a copy of its text */
 	nt_gltf_release_pages(scene, scene->bytes,
 		document->is_glb ? document->glb.json.offset + document->glb.json.size :

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 #include "base/dvec.h"
+#include "report/quads.h"
 
 static size_t vertex_of(const nt_mesh *mesh, size_t corner)
 {
@@ -65,7 +66,8 @@ static bool face_is_valid(const nt_mesh *mesh, size_t first, size_t size)
 				 nmtan_orientation(mesh->texcoords + 2 * vertices[k],
 					 mesh->texcoords + 2 * vertices[(k + 1) % size],
 					 mesh->texcoords + 2 * vertices[(k + 2) % size]);
-		if (sign != 0 && w != (float)sign)
+		/* half of a folded quad may have the quad's */
+		if (sign != 0 && w != (float)sign && w != (float)nt_folded_orientation(mesh, mesh->halves, first / 3))
 			return false;
 	}
 	return w != 0.0f;

@@ -34,6 +34,7 @@ typedef struct whole {
 	size_t *first_vertex;  /* [part_count + 1] */
 	uint32_t *sources;     /* [mesh.vertex_count] vertex of its part */
 	uint32_t *indices;
+	uint8_t *halves;       /* [mesh.face_count] of the parts; NULL: none has quads */
 	float *positions, *normals, *texcoords, *stored_texcoords;
 	float *tangents;       /* [corner_count][4] */
 	nmtan_counts counts;
@@ -44,6 +45,7 @@ static void free_whole(whole *w)
 	free(w->first_vertex);
 	free(w->sources);
 	free(w->indices);
+	free(w->halves);
 	free(w->positions);
 	free(w->normals);
 	free(w->texcoords);
@@ -136,7 +138,23 @@ static nt_status solve(const whole *w, const nmtan_mesh *mesh, const nmtan_optio
 {
 	*tangents = nt_alloc(w->corner_count, 4 * sizeof **tangents);
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = *tangents};
-	return *tangents ? nt_status_of(nmtan_tangents(mesh, options, &output, counts)) : NT_ERROR_MEMORY;
+	return *tangents ? nt_status_of(nt_tangents_of_halves(mesh, w->halves, options, &output, counts))
+			 : NT_ERROR_MEMORY;
+}
+
+static nt_status gather_halves(whole *w)
+{
+	const nt_join *join = w->join;
+	bool any = false;
+	for (size_t i = 0; i < join->part_count; i++)
+		any |= join->parts[i]->halves != NULL;
+	w->halves = any ? nt_calloc(w->mesh.face_count, 1) : NULL;
+	if (any && !w->halves)
+		return NT_ERROR_MEMORY;
+	for (size_t i = 0, first = 0; any && i < join->part_count; first += join->parts[i++]->face_count)
+		if (join->parts[i]->halves)
+			memcpy(w->halves + first, join->parts[i]->halves, join->parts[i]->face_count);
+	return NT_OK;
 }
 
 static nt_status make_whole(whole *w)
@@ -144,6 +162,8 @@ static nt_status make_whole(whole *w)
 	nt_status status = number_all(w);
 	if (!status)
 		status = gather_all(w);
+	if (!status)
+		status = gather_halves(w);
 	w->counts = (nmtan_counts)NMTAN_COUNTS_INIT;
 	return status ? status : solve(w, &w->mesh, w->options, &w->tangents, &w->counts);
 }
@@ -278,7 +298,7 @@ static nt_status hand_out_target(const whole *w, uint32_t target, const float *t
 static nt_status measure_halfway(const whole *w, uint32_t target, const float *positions, const float *normals)
 {
 	float *halfway;
-	const nt_status status = nt_morphs_solve_halfway(&w->mesh, positions, normals, w->options, &halfway);
+	const nt_status status = nt_morphs_solve_halfway(&w->mesh, w->halves, positions, normals, w->options, &halfway);
 	for (size_t i = 0, corner = 0; !status && i < w->join->part_count;
 		corner += w->join->parts[i++]->corner_count) {
 		const nt_mesh *part = w->join->parts[i];

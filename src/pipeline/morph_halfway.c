@@ -14,6 +14,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "api/tangents.h"
 #include "base/angle.h"
 #include "base/dvec.h"
 
@@ -66,8 +67,8 @@ static void normalise_rows(float *rows, size_t count)
 	}
 }
 
-nt_status nt_morphs_solve_halfway(const nmtan_mesh *base, const float *positions, const float *normals,
-	const nmtan_options *options, float **tangents)
+nt_status nt_morphs_solve_halfway(const nmtan_mesh *base, const uint8_t *halves, const float *positions,
+	const float *normals, const nmtan_options *options, float **tangents)
 {
 	nmtan_mesh view = *base;
 	const size_t corner_count = 3 * base->face_count;
@@ -85,7 +86,7 @@ nt_status nt_morphs_solve_halfway(const nmtan_mesh *base, const float *positions
 		nmtan_options untimed = *options;
 		untimed.timing = NULL;
 		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = *tangents};
-		status = nt_status_of(nmtan_tangents(&view, &untimed, &output, NULL));
+		status = nt_status_of(nt_tangents_of_halves(&view, halves, &untimed, &output, NULL));
 	}
 	free(p);
 	free(n);

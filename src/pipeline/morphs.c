@@ -16,6 +16,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "api/tangents.h"
 #include "base/hash_index.h"
 
 enum { KEY_BITS = 20 }; /* of a corner number in each float of a key: floats are exact to 24 */
@@ -66,7 +67,7 @@ static nt_status measure_halfway(const nt_mesh *mesh, const nmtan_mesh *base, co
 		return NT_OK;
 	float *halfway;
 	const nt_status status =
-		nt_morphs_solve_halfway(base, morph->positions, morph->normals, options, &halfway);
+		nt_morphs_solve_halfway(base, mesh->halves, morph->positions, morph->normals, options, &halfway);
 	if (!status)
 		nt_morphs_compare_halfway(mesh, base, halfway, morph);
 	free(halfway);
@@ -88,7 +89,7 @@ nt_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_opt
 			continue;
 		}
 		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = morph->corner_tangents};
-		nt_status status = nt_status_of(nmtan_tangents(&moved, options, &output, NULL));
+		nt_status status = nt_status_of(nt_tangents_of_halves(&moved, mesh->halves, options, &output, NULL));
 		if (!status)
 			status = measure_halfway(mesh, view, options, morph);
 		if (status)

@@ -20,8 +20,8 @@ bool nt_morphs_turn(const nt_mesh *mesh, const nt_morph *morph);
 
 /* Solves a mesh halfway between its own positions and normals and those it is moved to; NULL: as its own. Tangents are
  * malloc'ed, also after failure, or NULL. */
-nt_status nt_morphs_solve_halfway(const nmtan_mesh *base, const float *positions, const float *normals,
-	const nmtan_options *options, float **tangents);
+nt_status nt_morphs_solve_halfway(const nmtan_mesh *base, const uint8_t *halves, const float *positions,
+	const float *normals, const nmtan_options *options, float **tangents);
 
 /* Fills halfway_triangles and halfway_degrees of a target. */
 void nt_morphs_compare_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const float *halfway, nt_morph *morph);

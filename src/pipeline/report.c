@@ -146,5 +146,6 @@ nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_forma
 	if (options.keep_geometry)
 		options.find_picture = find_picture;
 	options.threads = settings->threads;
+	options.quads = settings->quads;
 	return build_report(scene, settings, &options, summary, error);
 }

@@ -62,6 +62,7 @@ typedef struct nt_settings {
 	nt_existing existing;
 	nt_normals normals;
 	nt_across across;
+	nt_quads quads;
 	nt_images images;
 	nt_buffers buffers;
 	nt_draco_choice draco;
@@ -119,6 +120,7 @@ typedef struct nt_mesh_line {
 typedef struct nt_summary {
 	size_t mesh_count;       /* meshes (glTF: primitives) in the input */
 	size_t solved_count;     /* of them, those that got tangents */
+	size_t quad_count;       /* pairs of these triangles that were solved as quads */
 	size_t same_count;       /* of the solved ones, those that took the result of another: they have the
 	                            same geometry */
 	size_t skipped[NT_DECISION_COUNT]; /* of them, by reason */

@@ -123,7 +123,8 @@ static nt_status solve_corners(nt_mesh *mesh, const nmtan_mesh *view,
 		nt_mend_untextured(mesh, view, output.tangents);
 		return NT_OK;
 	}
-	const nt_status status = nt_status_of(nmtan_tangents(view, options, &output, counts));
+	const nt_status status =
+		nt_status_of(nt_tangents_of_halves(view, mesh->halves, options, &output, counts));
 	if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
 		nt_restore_authored(mesh, output.tangents);
 	return status;
@@ -246,7 +247,7 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	stored.v_offset = stored_v_offset(job);
 	mesh->counts = (nmtan_counts)NMTAN_COUNTS_INIT;
-	const bool by_corner = mesh->decision == NT_DECISION_REPAIR || mesh->morph_count;
+	const bool by_corner = mesh->decision == NT_DECISION_REPAIR || mesh->morph_count || mesh->halves;
 	if (!job->splits && by_corner)
 		return solve_corners(mesh, &view, options, &mesh->corner_tangents, &mesh->counts);
 
@@ -441,6 +442,7 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 		{NT_CODE_TAN_MORPH_TURNED, mesh->morph_turned},
 		{NT_CODE_TAN_REPAIRED, nt_counts_repaired(c)},
 		{NT_CODE_TAN_EXISTING_REPAIRED, mesh->replaced_tangents},
+		{NT_CODE_TAN_QUADS_LIKELY, mesh->may_be_quads},
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		if (rows[i].count)
@@ -454,6 +456,7 @@ static void add_counts(nt_summary *summary, const nt_mesh *mesh)
 	const size_t quads = mesh->corner_count - 3 * mesh->face_count;
 	summary->solved_count++;
 	summary->triangle_count += mesh->face_count + quads;
+	summary->quad_count += mesh->quad_count;
 	summary->vertex_count += mesh->unused_vertices + mesh->source_vertex_count;
 	summary->appended_normals += mesh->vertex_count - mesh->source_vertex_count;
 	summary->appended_tangents += mesh->split.source_count;

@@ -119,6 +119,8 @@ static void load_small(void *context, size_t item, unsigned number)
 	nt_status status = w->tasks->reader->load(&part, mesh, &w->alone, NULL);
 	if (!status && solved)
 		status = nt_make_unit_normals(&part, mesh, 1);
+	if (!status && solved)
+		status = nt_find_halves(&part, mesh, w->tasks->settings->quads, 1);
 	*arena = part.arena;
 	own->temporary = part.temporary;
 	if (!status && solved)
@@ -218,6 +220,9 @@ static nt_status do_window(window *w)
 	if (!status)
 		status = nt_gltf_quantize_made_normals(&w->scene, t->options, w->error);
 	t->begin_stage(t->run, NT_STAGE_TANGENTS);
+	for (size_t i = 0; !status && i < w->scene.mesh_count; i++)
+		if (nt_find_halves(&w->scene, &w->scene.meshes[i], t->settings->quads, t->settings->threads))
+			status = nt_fail_memory(w->error);
 	if (!status)
 		status = nt_stage_tangents_and_textures(&w->scene, t->settings,
 			t->writer ? t->writer->format : NT_FORMAT_UNKNOWN, t->textures, t->summary, w->error);

@@ -93,6 +93,7 @@ static void describe_surface(nt_check *check)
 		? check->mesh->source_vertex_count : check->mesh->vertex_count);
 	check->stored = stored_tangents(check->mesh, nt_is_written(check));
 	facts->checked_tangents = check->stored != NT_STORED_NONE;
+	facts->maker.agreement = -1.0;
 	facts->analysed = true;
 }
 

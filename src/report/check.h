@@ -40,6 +40,8 @@ typedef struct nt_check {
 	nt_surface surface;
 	double total_area;
 	nt_stored stored;
+	const uint8_t *halves;    /* [triangle_count] enum nt_half: the faces that its tangents are of; NULL:
+	                             triangles */
 
 	/* by edges.c */
 	uint64_t *boundary;       /* [3 * triangle_count] bits: sides without a neighbour */

@@ -437,6 +437,25 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"becomes 1 where the corners of a triangle do not agree; --existing=replace does the same there.",
 		"Nothing; --existing=keep leaves them as they are.",
 		"a triangle whose TANGENT is its NORMAL, converted with --existing=repair --only=all"),
+	ROW(TAN_MADE_BY, INFO, "the tangents are those of a known method",
+		"The input's tangents are compared with those of the methods that exporters and engines use, on "
+		"triangles and on the quads that these are halves of. A normal map is right with the tangents that "
+		"it was baked with, and most are baked with MikkTSpace.",
+		"Where the map was baked with MikkTSpace and the tangents are others, --existing=replace.",
+		"DamagedHelmet, converted with --method=area and checked"),
+	ROW(TAN_QUAD_SIGN, INFO,
+		"{count} {triangle has|triangles have} the sign of the folded quad of which {it is|they are} the "
+		"smaller half",
+		"The tangents were solved on quads. A quad whose halves are wound in opposite directions in texture "
+		"space has one orientation to MikkTSpace, that of the larger half.",
+		"Nothing where the map was baked on quads too; --existing=replace gives each half its own sign.",
+		"a quad with one corner folded over its diagonal in texture space, from Blender"),
+	ROW(TAN_QUADS_LIKELY, INFO,
+		"{count} {pair|pairs} of triangles may have been {one quad|quads} when the map was baked",
+		"The program that wrote the input solves tangents on quads and writes their halves as triangles. "
+		"Without tangents in the input nothing proves that the map was baked so.",
+		"Use --quads=pairs if the normal map was baked in that program.",
+		"a grid from Blender without tangents, converted with --only=all"),
 };
 
 const nt_code_row *nt_code_info(nt_code code)

@@ -12,6 +12,7 @@
 #ifndef NT_REPORT_REPORT_H
 #define NT_REPORT_REPORT_H
 
+#include "report/maker.h"
 #include "base/memory.h"
 #include "report/box.h"
 #include "report/codes.h"
@@ -68,6 +69,7 @@ typedef struct nt_report_options {
 		nt_picture picture, size_t most_bytes, nt_image *image);
 	const char *page_folder;      /* absolute: where an HTML page will be; NULL: nobody knows */
 	unsigned threads;
+	nt_quads quads;               /* AUTO: tangents may be of quads */
 } nt_report_options;
 
 /* A triangle, an edge or a vertex where something was found. */
@@ -198,6 +200,7 @@ typedef struct nt_report_mesh {
 	size_t left_out;          /* triangles at seams and boundaries that OpenMesh could not take */
 	double worst_orthogonality; /* degrees from perpendicular; NaN: nothing checked */
 	double relative_determinant[3]; /* least, median, greatest; NaN: none */
+	nt_maker maker;                /* of the input's tangents; agreement < 0: they were not compared */
 	size_t angle_histogram[NT_ANGLE_BINS]; /* corners, against a fresh solve */
 	size_t instance_count, negative_instances;
 

@@ -9,10 +9,13 @@
 #include "report/check.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include "base/angle.h"
 #include "base/dvec.h"
 #include "base/parallel.h"
+#include "report/maker.h"
+#include "report/quads.h"
 #include "topology/orientation.h"
 
 /* Below this a tangent has no length; the tolerance of the Khronos validator for the others. */
@@ -225,7 +228,7 @@ static bool is_reversed(const nt_check *check, size_t t)
 }
 
 typedef struct sign_tallies {
-	nt_tally mixed, wrong;
+	nt_tally mixed, wrong, of_quad;
 	size_t checked, by_w, reversed;
 	size_t untransformed; /* wrong, but right without the texture transform */
 } sign_tallies;
@@ -284,6 +287,11 @@ static void check_sign(const nt_check *check, size_t t, int orientation, sign_ta
 		return;
 	st->checked++;
 	const bool by_w = (w[0] > 0.0f) != (orientation > 0);
+	const int folded = by_w ? nt_folded_orientation(check->mesh, check->halves, t) : 0;
+	if (folded && (w[0] > 0.0f) == (folded > 0)) {
+		nt_tally_triangle(check, &st->of_quad, t, w[0]);
+		return;
+	}
 	const bool reversed = !by_w && is_reversed(check, t);
 	st->by_w += by_w;
 	st->reversed += reversed;
@@ -304,7 +312,7 @@ static void check_sign_part(void *context, size_t item, unsigned slot)
 	const float v_offset = stored_v_offset(check);
 	(void)slot;
 	work->parts[item] = (sign_tallies){.mixed = {.code = NT_CODE_TAN_MIXED_W_TRIANGLE},
-		.wrong = {.code = NT_CODE_TAN_SIGN_MISMATCH}};
+		.wrong = {.code = NT_CODE_TAN_SIGN_MISMATCH}, .of_quad = {.code = NT_CODE_TAN_QUAD_SIGN}};
 	for (size_t t = item * PART; t < part_end(check, item); t++)
 		check_sign(check, t, stored_orientation(check, t, v_offset), &work->parts[item]);
 }
@@ -320,12 +328,14 @@ static nt_status check_signs(nt_check *check)
 	for (size_t i = 1; i < parts; i++) {
 		nt_tally_join(&st.mixed, &work.parts[i].mixed);
 		nt_tally_join(&st.wrong, &work.parts[i].wrong);
+		nt_tally_join(&st.of_quad, &work.parts[i].of_quad);
 		st.checked += work.parts[i].checked;
 		st.by_w += work.parts[i].by_w;
 		st.reversed += work.parts[i].reversed;
 		st.untransformed += work.parts[i].untransformed;
 	}
 	nt_check_report(check, &st.mixed, NULL);
+	nt_check_report(check, &st.of_quad, NULL);
 	const double share = st.checked ? (double)st.wrong.count / (double)st.checked : 0.0;
 	nt_tally_number(&st.wrong, "share", share);
 	nt_tally_number(&st.wrong, "judged_triangles", (double)st.checked);
@@ -436,8 +446,51 @@ static nt_status compare_with_fresh(nt_check *check)
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	const nmtan_options options = {.struct_bytes = sizeof options, .threads = check->options->threads};
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = fresh};
-	const nt_status status = nt_status_of(nmtan_tangents(&view, &options, &output, NULL));
+	const nt_status status = nt_status_of(nt_tangents_of_halves(&view, check->halves, &options, &output, NULL));
 	return status ? status : check_directions(check, fresh);
+}
+
+/* ---- who made them ---- */
+
+static void report_maker(nt_check *check, double off_mikktspace)
+{
+	static const char *const methods[] = {"MikkTSpace", "area weights", "Lengyel's sums", "the robust method",
+		"MikkTSpace with its edges sorted"};
+	const nt_maker *maker = &check->facts->maker;
+	const bool mikktspace =
+		maker->method == NMTAN_METHOD_MIKKTSPACE || maker->method == NMTAN_METHOD_MIKKTSPACE_SORTED;
+	nt_tally tally = {.code = NT_CODE_TAN_MADE_BY, .count = 1, .box = check->facts->box};
+	nt_tally_number(&tally, "agreement", maker->agreement);
+	nt_tally_number(&tally, "within_degrees", maker->degrees);
+	char off[96] = "";
+	if (!mikktspace && off_mikktspace > maker->degrees)
+		snprintf(off, sizeof off, "; a map baked in MikkTSpace is shown up to %g degrees off, but for 1 %% of the corners",
+			off_mikktspace);
+	nt_check_report(check, &tally, "%s%s%s%s", methods[maker->method], maker->quads ? ", on quads" : "",
+		maker->inverted ? ", w inverted" : "", off);
+}
+
+/* Finds the maker, and the faces that the mesh is to be compared on. */
+static nt_status find_maker(nt_check *check)
+{
+	const nt_mesh *mesh = check->mesh;
+	uint8_t *halves = mesh->halves;
+	size_t quads = mesh->quad_count;
+	double off_mikktspace;
+	if (!halves && check->options->quads == NT_QUADS_AUTO && !mesh->face_sizes) {
+		halves = nt_scratch_alloc(check->scratch, mesh->face_count, 1);
+		if (!halves)
+			return NT_ERROR_MEMORY;
+		quads = nt_pair_quads(mesh, false, halves);
+	}
+	const nt_status status = nt_find_maker(mesh, quads ? halves : NULL, nt_thread_count(check->options->threads),
+		&check->facts->maker, &off_mikktspace);
+	if (status)
+		return status;
+	check->halves = mesh->halves || (check->facts->maker.known && check->facts->maker.quads) ? halves : NULL;
+	if (check->facts->maker.known)
+		report_maker(check, off_mikktspace);
+	return NT_OK;
 }
 
 /* ---- tangents that are there for nothing, or are not there ---- */
@@ -476,11 +529,14 @@ nt_status nt_check_tangents(nt_check *check)
 	check_presence(check);
 	nt_status status = NT_OK;
 	if (check->facts->checked_tangents) {
+		const bool compared = check->stored == NT_STORED_AUTHORED && mesh->texcoords && mesh->normals;
 		status = check_each(check);
+		check->halves = mesh->halves;
+		if (!status && compared)
+			status = find_maker(check);
 		if (!status && mesh->texcoords)
 			status = check_signs(check);
-		const bool authored = check->stored == NT_STORED_AUTHORED;
-		if (!status && authored && mesh->texcoords && mesh->normals)
+		if (!status && compared)
 			status = compare_with_fresh(check);
 	}
 	nt_scratch_back(check->scratch, mark);

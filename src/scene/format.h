@@ -29,6 +29,13 @@ typedef enum nt_across {
 	NT_ACROSS_MESH       /* those with the same texture coordinates and texture transform, as bakers do */
 } nt_across;
 
+/* Which triangles of a glTF are solved as quads, whose halves they are. */
+typedef enum nt_quads {
+	NT_QUADS_AUTO, /* where FB_ngon_encoding says so, or else the tangents that are there */
+	NT_QUADS_OFF,
+	NT_QUADS_PAIRS /* each triangle with the next one where they have an edge in common */
+} nt_quads;
+
 /* TANGENT of the morph targets of primitives that get tangents. */
 typedef enum nt_morph_choice {
 	NT_MORPH_BAKE, /* what to add to the base's, by a solve of the mesh as the target moves it */

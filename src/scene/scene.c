@@ -90,6 +90,7 @@ void nt_mesh_drop_arrays(nt_mesh *mesh)
 	mesh->positions = mesh->normals = mesh->solve_normals = mesh->colors = mesh->tangents = NULL;
 	mesh->texcoords = mesh->solve_texcoords = mesh->corner_tangents = mesh->split.vertex_tangents = NULL;
 	mesh->pool_vertices = mesh->indices = mesh->vertex_sources = mesh->split.indices = mesh->split.sources = NULL;
+	mesh->halves = NULL;
 	mesh->face_polygon = mesh->face_smoothing = mesh->face_primitive = NULL;
 	mesh->vertex_lacks = mesh->face_sizes = mesh->face_diagonals = NULL;
 	mesh->cut_arrays = NULL;

@@ -194,6 +194,7 @@ typedef struct nt_mesh {
 	float wrap_offset[2];    /* of its transform, v up, where it is mirrored: elsewhere an offset moves all alike */
 	bool texcoords_transformed; /* textures may be looked up elsewhere than the set says: glTF's texture
 	                               transforms */
+	bool has_polygons;       /* FB_ngon_encoding: triangles that follow each other with one first index are one */
 	bool texcoord_conflict;  /* another slot of it asks for another set: texcoord_other_set */
 	uint32_t texcoord_other_set;
 	uint32_t targets_without_tangents; /* morph targets that move it and have no TANGENT */
@@ -218,6 +219,7 @@ typedef struct nt_mesh {
 	int solve_sign;          /* of that transform's determinant; 0 also where there is none */
 	float *colors;           /* [vertex_count][4] linear RGBA; NULL: none */
 	float *tangents;         /* [vertex_count][4] authored, w for v up; NULL: none */
+	bool byte_tangents;      /* they are stored as bytes: within half a degree */
 	uint8_t *vertex_lacks;   /* [vertex_count] enum nt_lack bits; NULL: nothing lacks */
 	size_t face_count, corner_count;
 	uint8_t *face_sizes;     /* [face_count] 3 or 4; NULL: all triangles */
@@ -225,6 +227,11 @@ typedef struct nt_mesh {
 	                            corners 0 1 2, 0 2 3 and 1 gives 0 1 3, 1 2 3; NULL: 0 for all, until the
 	                            pipeline knows */
 	uint32_t *indices;       /* [corner_count]; NULL: corner c is vertex c, or nt_mesh_left_triangles() */
+	uint8_t *halves;         /* [face_count] of triangles that are solved as quads: enum nt_half of api/tangents.h;
+	                            NULL: all are solved as they are */
+	size_t quad_count;       /* how many quads these are */
+	size_t may_be_quads;     /* quads that its triangles make although they are solved as they are, if its author's
+	                            program solves quads; else 0 */
 	uint32_t *face_polygon;  /* [face_count] number of the source's polygon; NULL: the face's own */
 	uint32_t *face_smoothing;/* [face_count] smoothing group, 0 flat; NULL: all smooth */
 	uint32_t *face_primitive;/* [face_count] index into primitives; NULL: all 0 */
@@ -292,6 +299,8 @@ typedef struct nt_scene {
 	size_t join_count;
 	nt_finding_list findings;
 	nt_rounding rounding; /* of all meshes that were written */
+
+	bool solves_quads; /* what wrote the input solves tangents on quads: Blender */
 
 	/* What a reader keeps for the writer of the same format, and the input's bytes. */
 	void *source;

@@ -256,6 +256,19 @@ static void put_histogram(nt_buffer *out, const nt_report_mesh *mesh)
 	nt_buffer_text(out, "]");
 }
 
+static void put_maker(nt_buffer *out, const nt_maker *maker)
+{
+	static const char *const methods[] = {"mikktspace", "area", "lengyel", "robust", "mikktspace-sorted"};
+	if (maker->agreement < 0.0)
+		return;
+	open(out, "made_by", "{");
+	separate(out, SAME_LINE);
+	nt_buffer_format(out,
+		"\"method\":\"%s\",\"faces\":\"%s\",\"w\":\"%s\",\"agreement\":%.6g,\"within_degrees\":%g}",
+		maker->known ? methods[maker->method] : "unknown", maker->quads ? "quads" : "triangles",
+		maker->inverted ? "inverted" : "right", maker->agreement, maker->degrees);
+}
+
 /* What splitting costs, and the texture that density is measured by. */
 static void put_costs(nt_buffer *out, const nt_report_mesh *mesh)
 {
@@ -323,6 +336,7 @@ static void put_mesh(nt_buffer *out, const nt_report_mesh *mesh)
 	put_counts(out, mesh);
 	put_float(out, "worst_orthogonality_degrees", mesh->worst_orthogonality);
 	put_doubles(out, "relative_determinant", mesh->relative_determinant, 3);
+	put_maker(out, &mesh->maker);
 	put_histogram(out, mesh);
 	put_count(out, "instances", mesh->instance_count);
 	put_count(out, "negative_instances", mesh->negative_instances);

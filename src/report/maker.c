@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT */
+#include "report/maker.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include "api/tangents.h"
+#include "base/angle.h"
+#include "base/dvec.h"
+
+/* Halves of bytes' steps add up to that, of other tangents less. */
+static const double BYTE_DEGREES = 1.0, OTHER_DEGREES = 0.1, DEGREES = 57.29577951308232;
+
+/* From here on no other maker is tried: the dialects of MikkTSpace differ at a few corners. */
+static const double CERTAIN = 0.99999;
+
+/* Looks at the corners of triangles with an area in texture coordinates. */
+static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const float *fresh, nt_maker *maker)
+{
+	const double near = tan(maker->degrees / DEGREES) * tan(maker->degrees / DEGREES);
+	size_t judged = 0, agreeing = 0, inverted = 0;
+	size_t by_degrees[2 * 180 + 1] = {0}; /* halves of a degree */
+	for (size_t t = 0; t < mesh->face_count; t++) {
+		size_t v[3];
+		for (size_t k = 0; k < 3; k++)
+			v[k] = mesh->indices ? mesh->indices[3 * t + k] : 3 * t + k;
+		if (!nmtan_orientation(view->texcoords + 2 * v[0], view->texcoords + 2 * v[1], view->texcoords + 2 * v[2]))
+			continue;
+		for (size_t k = 0; k < 3; k++) {
+			const nt_dvec3 a = nt_dvec3_load(mesh->tangents + 4 * v[k]);
+			const nt_dvec3 b = nt_dvec3_load(fresh + 4 * (3 * t + k));
+			const nt_dvec3 cross = nt_dvec3_cross(a, b);
+			const double dot = nt_dvec3_dot(a, b), square = nt_dvec3_dot(cross, cross);
+			judged++;
+			agreeing += dot > 0.0 && square <= near * dot * dot;
+			inverted += mesh->tangents[4 * v[k] + 3] * fresh[4 * (3 * t + k) + 3] < 0.0f;
+			by_degrees[(size_t)(2.0 * DEGREES * nt_angle(sqrt(square), dot))]++;
+		}
+	}
+	maker->agreement = judged ? (double)agreeing / (double)judged : 0.0;
+	maker->inverted = 2 * inverted > judged;
+	size_t half = 0, below = by_degrees[0];
+	while (100 * below < 99 * judged)
+		below += by_degrees[++half];
+	maker->most_degrees = 0.5 * (double)(half + 1);
+}
+
+nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, nt_maker *maker)
+{
+	nmtan_stored_uv stored;
+	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = maker->method, .threads = threads};
+	const nmtan_output output = {.struct_bytes = sizeof output,
+		.tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float))};
+	if (!output.tangents)
+		return NT_ERROR_MEMORY;
+	maker->degrees = mesh->byte_tangents ? BYTE_DEGREES : OTHER_DEGREES;
+	const nt_status status = nt_status_of(
+		nt_tangents_of_halves(&view, maker->quads ? halves : NULL, &options, &output, NULL));
+	if (!status)
+		compare(mesh, &view, output.tangents, maker);
+	free(output.tangents);
+	return status;
+}
+
+nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, nt_maker *maker,
+	double *off_mikktspace)
+{
+	static const nmtan_method methods[] = {NMTAN_METHOD_MIKKTSPACE, NMTAN_METHOD_MIKKTSPACE_SORTED, NMTAN_METHOD_AREA,
+		NMTAN_METHOD_LENGYEL, NMTAN_METHOD_ROBUST};
+	enum { MAKERS = 2 * sizeof methods / sizeof *methods };
+	*maker = (nt_maker){.agreement = -1.0};
+	for (size_t i = 0; i < MAKERS && maker->agreement < CERTAIN; i++) {
+		nt_maker next = {.method = methods[i / 2], .quads = i % 2};
+		if (next.quads && !halves)
+			continue;
+		const nt_status status = nt_maker_compare(mesh, halves, threads, &next);
+		if (status)
+			return status;
+		if (i == 0)
+			*off_mikktspace = next.most_degrees;
+		if (next.agreement > maker->agreement)
+			*maker = next;
+	}
+	maker->known = maker->agreement >= NT_MAKER_SHARE;
+	return NT_OK;
+}

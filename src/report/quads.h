@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Quads of which a mesh has the halves: bakers solve quads, and files have triangles. The solve takes them
+ * (nt_implementation in api/tangents.h); all else keeps to the triangles.
+ */
+#ifndef NT_REPORT_QUADS_H
+#define NT_REPORT_QUADS_H
+
+#include "api/tangents.h"
+#include "scene/scene.h"
+
+/* Pairs the triangles of a mesh in their order, each with the next one where both make a quad of one of these forms;
+ * corners are compared by position, normal and texture coordinates. With `polygons` only triangles that
+ * FB_ngon_encoding has as one polygon of four corners: two, not more, whose first index is the same.
+ *
+ *   halves   [face_count] receives an nt_half for each
+ *
+ * Returns how many quads there are. */
+size_t nt_pair_quads(const nt_mesh *mesh, bool polygons, uint8_t *halves);
+
+/* The orientation that MikkTSpace gives both halves of a quad: that of the larger one. 0 where triangle t is no half
+ * (halves may be NULL), or the halves have one orientation, or one has none. */
+int nt_folded_orientation(const nt_mesh *mesh, const uint8_t *halves, size_t t);
+
+#endif
