@@ -33,7 +33,7 @@ static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const float *fr
 			judged++;
 			agreeing += dot > 0.0 && square <= near * dot * dot;
 			inverted += mesh->tangents[4 * v[k] + 3] * fresh[4 * (3 * t + k) + 3] < 0.0f;
-			by_degrees[(size_t)(2.0 * DEGREES * nt_angle(sqrt(square), dot))]++;
+			by_degrees[square >= 0.0 ? (size_t)(2.0 * DEGREES * nt_angle(sqrt(square), dot)) : 360]++;
 		}
 	}
 	maker->agreement = judged ? (double)agreeing / (double)judged : 0.0;

@@ -464,7 +464,8 @@ static void report_maker(nt_check *check, double off_mikktspace)
 	nt_tally_number(&tally, "within_degrees", maker->degrees);
 	char off[96] = "";
 	if (!mikktspace && off_mikktspace > maker->degrees)
-		snprintf(off, sizeof off, "; a map baked in MikkTSpace is shown up to %g degrees off, but for 1 %% of the corners",
+		snprintf(off, sizeof off,
+			"; a map baked in MikkTSpace is shown up to %g degrees off, but for 1 %% of the corners",
 			off_mikktspace);
 	nt_check_report(check, &tally, "%s%s%s%s", methods[maker->method], maker->quads ? ", on quads" : "",
 		maker->inverted ? ", w inverted" : "", off);
