@@ -437,7 +437,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"becomes 1 where the corners of a triangle do not agree; --existing=replace does the same there.",
 		"Nothing; --existing=keep leaves them as they are.",
 		"a triangle whose TANGENT is its NORMAL, converted with --existing=repair --only=all"),
-	ROW(TAN_MADE_BY, INFO, "the tangents are those of a known method",
+	ROW(TAN_MADE_BY, INFO, "the tangents are not those of MikkTSpace, which most maps are baked with",
 		"The input's tangents are compared with those of the methods that exporters and engines use, on "
 		"triangles and on the quads that these are halves of. A normal map is right with the tangents that "
 		"it was baked with, and most are baked with MikkTSpace.",

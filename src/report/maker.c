@@ -23,7 +23,8 @@ static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const float *fr
 		size_t v[3];
 		for (size_t k = 0; k < 3; k++)
 			v[k] = mesh->indices ? mesh->indices[3 * t + k] : 3 * t + k;
-		if (!nmtan_orientation(view->texcoords + 2 * v[0], view->texcoords + 2 * v[1], view->texcoords + 2 * v[2]))
+		if (!nmtan_orientation(view->texcoords + 2 * v[0], view->texcoords + 2 * v[1],
+			view->texcoords + 2 * v[2]))
 			continue;
 		for (size_t k = 0; k < 3; k++) {
 			const nt_dvec3 a = nt_dvec3_load(mesh->tangents + 4 * v[k]);
@@ -62,12 +63,12 @@ nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, unsigned 
 	return status;
 }
 
-nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, nt_maker *maker,
-	double *off_mikktspace)
+nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, nt_maker *maker)
 {
-	static const nmtan_method methods[] = {NMTAN_METHOD_MIKKTSPACE, NMTAN_METHOD_MIKKTSPACE_SORTED, NMTAN_METHOD_AREA,
-		NMTAN_METHOD_LENGYEL, NMTAN_METHOD_ROBUST};
+	static const nmtan_method methods[] = {NMTAN_METHOD_MIKKTSPACE, NMTAN_METHOD_MIKKTSPACE_SORTED,
+		NMTAN_METHOD_AREA, NMTAN_METHOD_LENGYEL, NMTAN_METHOD_ROBUST};
 	enum { MAKERS = 2 * sizeof methods / sizeof *methods };
+	double off_mikktspace = 0.0;
 	*maker = (nt_maker){.agreement = -1.0};
 	for (size_t i = 0; i < MAKERS && maker->agreement < CERTAIN; i++) {
 		nt_maker next = {.method = methods[i / 2], .quads = i % 2};
@@ -77,10 +78,30 @@ nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, unsigned thr
 		if (status)
 			return status;
 		if (i == 0)
-			*off_mikktspace = next.most_degrees;
+			off_mikktspace = next.most_degrees;
 		if (next.agreement > maker->agreement)
 			*maker = next;
 	}
+	maker->off_mikktspace = off_mikktspace;
 	maker->known = maker->agreement >= NT_MAKER_SHARE;
 	return NT_OK;
+}
+
+bool nt_maker_is_mikktspace(const nt_maker *maker)
+{
+	return maker->known && (maker->method == NMTAN_METHOD_MIKKTSPACE || maker->method == NMTAN_METHOD_MIKKTSPACE_SORTED);
+}
+
+void nt_maker_text(const nt_maker *maker, nt_buffer *out)
+{
+	static const char *const methods[] = {"MikkTSpace", "area weights", "Lengyel's sums", "the robust method",
+		"MikkTSpace with its edges sorted"};
+	if (!maker->known)
+		return;
+	nt_buffer_format(out, "%s%s%s", methods[maker->method], maker->quads ? ", on quads" : "",
+		maker->inverted ? ", w inverted" : "");
+	if (!nt_maker_is_mikktspace(maker) && maker->off_mikktspace > maker->degrees)
+		nt_buffer_format(out,
+			": a map baked in MikkTSpace is shown up to %g degrees off, but for 1 %% of the corners",
+			maker->off_mikktspace);
 }

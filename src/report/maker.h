@@ -5,6 +5,7 @@
 #ifndef NT_REPORT_MAKER_H
 #define NT_REPORT_MAKER_H
 
+#include "base/buffer.h"
 #include "scene/scene.h"
 
 /* From this share of the corners on, tangents are those of a method. */
@@ -19,21 +20,22 @@ typedef struct nt_maker {
 	double agreement;     /* share of the corners whose tangent is within `degrees` */
 	double degrees;       /* 0.1, or what the tangents' precision allows */
 	double most_degrees;  /* that 99 % of the corners are off at most */
+	double off_mikktspace; /* most_degrees of MikkTSpace on triangles */
 } nt_maker;
 
 /* Compares a mesh's own tangents with those of a maker, whose method and quads are given and whose other members are
  * filled. `halves` [face_count]: enum nt_half, where quads is set. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, nt_maker *maker);
 
-/* Finds the maker of a mesh's own tangents: the first of MikkTSpace as published and sorted, area, lengyel and robust, each
- * on triangles and on quads, with which most corners agree, if these are NT_MAKER_SHARE of all. Where nearly all agree
- * no other is tried.
- *
- *   halves          [face_count] enum nt_half; NULL: no quads
- *   off_mikktspace  receives most_degrees of MikkTSpace on triangles
- *
- * Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, nt_maker *maker,
-	double *off_mikktspace);
+/* Finds the maker of a mesh's own tangents: the first of MikkTSpace as published and sorted, area, lengyel and robust,
+ * each on triangles and on quads, with which most corners agree, if these are NT_MAKER_SHARE of all. Where nearly all
+ * agree no other is tried. `halves` [face_count]: enum nt_half; NULL: no quads. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, nt_maker *maker);
+
+/* Says who it is, if that is known: "MikkTSpace, on quads". */
+void nt_maker_text(const nt_maker *maker, nt_buffer *out);
+
+/* Whether it is MikkTSpace, whichever w it has. */
+bool nt_maker_is_mikktspace(const nt_maker *maker);
 
 #endif

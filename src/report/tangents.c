@@ -9,7 +9,6 @@
 #include "report/check.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include "base/angle.h"
 #include "base/dvec.h"
@@ -452,23 +451,19 @@ static nt_status compare_with_fresh(nt_check *check)
 
 /* ---- who made them ---- */
 
-static void report_maker(nt_check *check, double off_mikktspace)
+static nt_status report_maker(nt_check *check)
 {
-	static const char *const methods[] = {"MikkTSpace", "area weights", "Lengyel's sums", "the robust method",
-		"MikkTSpace with its edges sorted"};
 	const nt_maker *maker = &check->facts->maker;
-	const bool mikktspace =
-		maker->method == NMTAN_METHOD_MIKKTSPACE || maker->method == NMTAN_METHOD_MIKKTSPACE_SORTED;
 	nt_tally tally = {.code = NT_CODE_TAN_MADE_BY, .count = 1, .box = check->facts->box};
+	nt_buffer text = {0};
+	nt_maker_text(maker, &text);
 	nt_tally_number(&tally, "agreement", maker->agreement);
 	nt_tally_number(&tally, "within_degrees", maker->degrees);
-	char off[96] = "";
-	if (!mikktspace && off_mikktspace > maker->degrees)
-		snprintf(off, sizeof off,
-			"; a map baked in MikkTSpace is shown up to %g degrees off, but for 1 %% of the corners",
-			off_mikktspace);
-	nt_check_report(check, &tally, "%s%s%s%s", methods[maker->method], maker->quads ? ", on quads" : "",
-		maker->inverted ? ", w inverted" : "", off);
+	if (!text.failed)
+		nt_check_report(check, &tally, "%s", text.data);
+	const bool failed = text.failed;
+	nt_buffer_free(&text);
+	return failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
 /* Finds the maker, and the faces that the mesh is to be compared on. */
@@ -477,7 +472,6 @@ static nt_status find_maker(nt_check *check)
 	const nt_mesh *mesh = check->mesh;
 	uint8_t *halves = mesh->halves;
 	size_t quads = mesh->quad_count;
-	double off_mikktspace;
 	if (!halves && check->options->quads == NT_QUADS_AUTO && !mesh->face_sizes) {
 		halves = nt_scratch_alloc(check->scratch, mesh->face_count, 1);
 		if (!halves)
@@ -485,13 +479,11 @@ static nt_status find_maker(nt_check *check)
 		quads = nt_pair_quads(mesh, false, halves);
 	}
 	const nt_status status = nt_find_maker(mesh, quads ? halves : NULL, nt_thread_count(check->options->threads),
-		&check->facts->maker, &off_mikktspace);
+		&check->facts->maker);
 	if (status)
 		return status;
 	check->halves = mesh->halves || (check->facts->maker.known && check->facts->maker.quads) ? halves : NULL;
-	if (check->facts->maker.known)
-		report_maker(check, off_mikktspace);
-	return NT_OK;
+	return check->facts->maker.known && !nt_maker_is_mikktspace(&check->facts->maker) ? report_maker(check) : NT_OK;
 }
 
 /* ---- tangents that are there for nothing, or are not there ---- */

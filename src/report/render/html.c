@@ -153,6 +153,11 @@ static void put_facts(const nt_report_mesh *m, nt_buffer *out)
 	nt_buffer_format(out, "%zu: %zu open in %zu loops, %zu of more than two triangles, %zu against the "
 		"winding\"]", m->edge_count, m->boundary_edges, m->boundary_loops + m->boundary_chains,
 		m->non_manifold_edges, m->inconsistent_edges);
+	if (m->maker.known) {
+		begin_fact("tangents of", out);
+		nt_maker_text(&m->maker, out);
+		nt_buffer_text(out, "\"]");
+	}
 	if (isfinite(m->worst_orthogonality)) {
 		begin_fact("worst tangent", out);
 		nt_buffer_format(out, "%.3g degrees off perpendicular\"]", m->worst_orthogonality);

@@ -43,6 +43,10 @@ static void write_islands(const nt_report_mesh *mesh, nt_buffer *out)
 	nt_buffer_format(out, "; %zu mirror seam%s", mesh->seam_count, mesh->seam_count == 1 ? "" : "s");
 	if (mesh->seam_count)
 		nt_buffer_format(out, " of length %.4g", mesh->seam_length);
+	if (mesh->maker.known) {
+		nt_buffer_text(out, "; tangents of ");
+		nt_maker_text(&mesh->maker, out);
+	}
 }
 
 static void write_mesh(const nt_report *report, uint32_t index, nt_buffer *out)
