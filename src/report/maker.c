@@ -89,7 +89,8 @@ nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, unsigned thr
 
 bool nt_maker_is_mikktspace(const nt_maker *maker)
 {
-	return maker->known && (maker->method == NMTAN_METHOD_MIKKTSPACE || maker->method == NMTAN_METHOD_MIKKTSPACE_SORTED);
+	return maker->known &&
+	       (maker->method == NMTAN_METHOD_MIKKTSPACE || maker->method == NMTAN_METHOD_MIKKTSPACE_SORTED);
 }
 
 void nt_maker_text(const nt_maker *maker, nt_buffer *out)
