@@ -457,8 +457,6 @@ static nt_status report_maker(nt_check *check)
 	nt_tally tally = {.code = NT_CODE_TAN_MADE_BY, .count = 1, .box = check->facts->box};
 	nt_buffer text = {0};
 	nt_maker_text(maker, &text);
-	nt_tally_number(&tally, "agreement", maker->agreement);
-	nt_tally_number(&tally, "within_degrees", maker->degrees);
 	if (!text.failed)
 		nt_check_report(check, &tally, "%s", text.data);
 	const bool failed = text.failed;

@@ -16,12 +16,12 @@
 #define NONE NT_NO_NEIGHBOUR
 
 /* Triangles at the end that are looked at first, and how many times more the next time. */
-enum { FIRST_TRIANGLES = 4, MORE = 8 };
+enum { FIRST_TRIANGLES = 4, MORE = 4 };
 
 /* Corners that are looked up at a time. */
 enum { BATCH_TRIANGLES = 8, BATCH = 3 * BATCH_TRIANGLES };
 
-enum { MARKS = 1 << 14, BATCH_VERTICES = 16 };
+enum { MARKS = 1 << 15, BATCH_VERTICES = 16 };
 
 static size_t corner_count(const nt_welded_mesh *m)
 {
@@ -133,13 +133,13 @@ typedef int int4 __attribute__((vector_size(16)));
 /* Whether the first float of one of BATCH_VERTICES rows is within bounds, from `begin` on. */
 static bool has_within(const float *rows, size_t step, float begin, float low, float high)
 {
-	const float4 begins = {begin}, lows = {low}, highs = {high};
+	const float4 begins = {begin}, middles = {0.5f * (low + high)}, halves = {0.5f * (high - low)};
+	const int4 no_sign = {INT32_MAX};
 	int4 within = {0};
 	for (size_t i = 0; i < BATCH_VERTICES; i++) {
 		float4 row;
 		memcpy(&row, rows + step * i, sizeof row);
-		row -= begins;
-		within |= (row >= lows) & (row <= highs);
+		within |= (float4)((int4)(row - begins - middles) & no_sign) <= halves;
 	}
 	return within[0];
 }

@@ -5,6 +5,9 @@
 #include <math.h>
 #include <string.h>
 #include "base/parallel.h"
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 #define NONE UINT32_MAX
 
@@ -30,7 +33,9 @@ typedef struct weld {
 	const nt_welded_mesh *mesh;
 	entry *entries;
 	uint32_t *vertices;
-	uint32_t first_entry[NT_CELLS + 1], first_vertex[NT_CELLS + 1];
+	uint16_t number[NT_CELLS]; /* of each cell that has a corner, from 1 on; 0: none */
+	size_t cell_count;
+	uint32_t *first_entry, *first_vertex; /* [cell_count + 2] by number */
 	uint32_t *found;
 	bool limit; /* set by any thread */
 } weld;
@@ -45,27 +50,45 @@ static unsigned longest_axis(const box *b)
 typedef float float4 __attribute__((vector_size(16)));
 typedef int int4 __attribute__((vector_size(16)));
 
-static float4 select4(int4 mask, float4 yes, float4 no)
+/* By name where that is one operation and not four. The second value where the first is NaN. */
+static inline float4 least4(float4 a, float4 b)
 {
-	return (float4)(((int4)yes & mask) | ((int4)no & ~mask));
+#ifdef __SSE2__
+	return (float4)_mm_min_ps((__m128)a, (__m128)b);
+#else
+	const int4 less = a < b;
+	return (float4)(((int4)a & less) | ((int4)b & ~less));
+#endif
 }
 
 /* The box of vertices [first, end); false where a coordinate is NaN. */
 static bool box_of_block(const nt_welded_mesh *mesh, size_t first, size_t end, box *b)
 {
-	float4 low, high;
-	memcpy(&low, mesh->positions + mesh->step * first, sizeof low);
-	high = low;
+	enum { CHAINS = 4 };
+	float4 low[CHAINS], high[CHAINS]; /* of the coordinates, and of their negatives */
 	int4 unordered = {0};
-	for (size_t v = first; v < end; v++) {
-		float4 p;
-		memcpy(&p, mesh->positions + mesh->step * v, sizeof p);
-		low = select4(p < low, p, low);
-		high = select4(p > high, p, high);
-		unordered |= p != p;
+	memcpy(&low[0], mesh->positions + mesh->step * first, sizeof *low);
+	for (size_t c = 0; c < CHAINS; c++)
+		low[c] = low[0], high[c] = -low[0];
+	size_t v = first;
+	while (v < end) {
+		const size_t step = end - v < CHAINS ? 1 : CHAINS;
+		for (size_t c = 0; c < step; c++) {
+			float4 p;
+			memcpy(&p, mesh->positions + mesh->step * (v + c), sizeof p);
+			low[c] = least4(p, low[c]);
+			high[c] = least4(-p, high[c]);
+			unordered |= p != p;
+		}
+		v += step;
 	}
-	memcpy(b->low, &low, sizeof b->low);
-	memcpy(b->high, &high, sizeof b->high);
+	for (size_t c = 1; c < CHAINS; c++) {
+		low[0] = least4(low[c], low[0]);
+		high[0] = least4(high[c], high[0]);
+	}
+	high[0] = -high[0];
+	memcpy(b->low, &low[0], sizeof b->low);
+	memcpy(b->high, &high[0], sizeof b->high);
 	return !(unordered[0] | unordered[1] | unordered[2]);
 }
 
@@ -273,10 +296,10 @@ static void weld_cells(void *context, size_t begin, size_t end, unsigned thread)
 {
 	(void)thread;
 	weld *w = context;
-	for (size_t c = begin; c < end; c++) {
+	for (size_t c = begin + 1; c <= end; c++) {
 		const half cell = {w->entries + w->first_entry[c], w->vertices + w->first_vertex[c],
 			w->first_entry[c + 1] - w->first_entry[c], w->first_vertex[c + 1] - w->first_vertex[c]};
-		if (cell.entry_count > 0 && !weld_cell(w, &cell))
+		if (!weld_cell(w, &cell))
 			__atomic_store_n(&w->limit, true, __ATOMIC_RELAXED);
 	}
 }
@@ -291,51 +314,67 @@ static uint32_t vertex_at(const nt_welded_mesh *mesh, uint32_t corner)
 	return mesh->triangles->ids[nt_triangle_corner(mesh->triangles, corner / 3, corner % 3)];
 }
 
-/* Turns counts, each one place ahead, into where things begin. */
-static void add_up(uint32_t first[NT_CELLS + 1])
+/* Turns counts into where things begin. */
+static void add_up(uint32_t *counts, size_t cell_count)
 {
-	for (size_t c = 1; c <= NT_CELLS; c++)
-		first[c] += first[c - 1];
+	uint32_t sum = 0;
+	for (size_t c = 1; c <= cell_count + 1; c++) {
+		const uint32_t count = counts[c];
+		counts[c] = sum;
+		sum += count;
+	}
+}
+
+/* Moves where things begin back, after each cell has been filled. */
+static void move_back(uint32_t *ends, size_t cell_count)
+{
+	memmove(ends + 2, ends + 1, cell_count * sizeof *ends);
+	ends[1] = 0;
 }
 
 /* Puts entries and vertices into their cells, the former in order. */
 static bool fill_cells(weld *w, const nt_grid *grid, const uint32_t *corners, size_t count)
 {
 	const nt_welded_mesh *mesh = w->mesh;
-	uint16_t *cells = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *cells);
-	uint32_t *met = nt_scratch_alloc(mesh->scratch, mesh->vertex_count < count ? mesh->vertex_count : count,
-		sizeof *met);
+	const size_t most = mesh->vertex_count < count ? mesh->vertex_count : count;
+	const size_t cells = most < NT_CELLS ? most : NT_CELLS;
+	uint16_t *cell_of = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *cell_of);
+	uint32_t *met = nt_scratch_alloc(mesh->scratch, most, sizeof *met);
+	w->vertices = nt_scratch_alloc(mesh->scratch, most, sizeof *w->vertices);
 	w->entries = nt_scratch_alloc(mesh->scratch, count, sizeof *w->entries);
-	if (!cells || !met || !w->entries)
+	w->first_entry = nt_scratch_alloc(mesh->scratch, 2 * (cells + 2), sizeof *w->first_entry);
+	if (!cell_of || !met || !w->vertices || !w->entries || !w->first_entry)
 		return false;
+	w->first_vertex = w->first_entry + cells + 2;
+	memset(w->first_entry, 0, 2 * (cells + 2) * sizeof *w->first_entry);
 	size_t met_count = 0;
 	for (size_t i = 0; i < count; i++)
 		w->found[vertex_at(mesh, corner_at(corners, i))] = NONE;
 	for (size_t i = 0; i < count; i++) {
 		const uint32_t v = vertex_at(mesh, corner_at(corners, i));
 		if (w->found[v] == NONE) {
+			uint16_t *number =
+				&w->number[nt_grid_cell(grid, nt_welded_position(mesh, v)[grid->axis])];
+			if (*number == 0)
+				*number = (uint16_t)++w->cell_count;
 			w->found[v] = 0;
 			met[met_count++] = v;
-			cells[v] = (uint16_t)nt_grid_cell(grid, nt_welded_position(mesh, v)[grid->axis]);
-			w->first_vertex[cells[v] + 1]++;
+			cell_of[v] = *number;
+			w->first_vertex[*number]++;
 		}
-		w->first_entry[cells[v] + 1]++;
+		w->first_entry[cell_of[v]]++;
 	}
-	add_up(w->first_entry);
-	add_up(w->first_vertex);
-	w->vertices = nt_scratch_alloc(mesh->scratch, met_count, sizeof *w->vertices);
-	if (!w->vertices)
-		return false;
-	uint32_t next[NT_CELLS];
-	memcpy(next, w->first_vertex, sizeof next);
+	add_up(w->first_entry, w->cell_count);
+	add_up(w->first_vertex, w->cell_count);
 	for (size_t i = 0; i < met_count; i++)
-		w->vertices[next[cells[met[i]]]++] = met[i];
-	memcpy(next, w->first_entry, sizeof next);
+		w->vertices[w->first_vertex[cell_of[met[i]]]++] = met[i];
 	for (size_t i = 0; i < count; i++) {
 		const uint32_t corner = corner_at(corners, i), v = vertex_at(mesh, corner);
-		w->entries[next[cells[v]]++] = (entry){v,
+		w->entries[w->first_entry[cell_of[v]]++] = (entry){v,
 			(uint32_t)nt_triangle_corner(mesh->triangles, corner / 3, corner % 3)};
 	}
+	move_back(w->first_entry, w->cell_count);
+	move_back(w->first_vertex, w->cell_count);
 	return true;
 }
 
@@ -346,7 +385,7 @@ nt_representatives_end nt_representatives(const nt_welded_mesh *mesh, const nt_g
 	weld w = {.mesh = mesh, .found = found};
 	const bool filled = fill_cells(&w, grid, corners, count);
 	if (filled)
-		nt_parallel_ranges(corners ? 1 : mesh->threads, NT_CELLS, LEAST_CELLS, weld_cells, &w);
+		nt_parallel_ranges(corners ? 1 : mesh->threads, w.cell_count, LEAST_CELLS, weld_cells, &w);
 	nt_scratch_back(mesh->scratch, mark);
 	return !filled ? NT_REPRESENTATIVES_NO_MEMORY : w.limit ? NT_REPRESENTATIVES_LIMIT : NT_REPRESENTATIVES_FOUND;
 }
