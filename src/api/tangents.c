@@ -84,6 +84,7 @@ typedef struct request {
 	nt_scratch own;
 	nt_scratch_mark mark;
 	nmtan_timing timing; /* of this call */
+	bool sorted_instead;
 	double begin;
 	char memory[SMALL_BYTES]; /* of `own`: what few triangles need */
 } request;
@@ -146,7 +147,9 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 		.timing = r->options.timing ? &r->timing : NULL,
 		/* bounds on the error of the determinants of `texcoords` say nothing about those of others */
 		.known = nt_has_stored_texcoords(&r->mesh) ? NULL : &r->known,
-		.repair = r->options.repair == NMTAN_REPAIR_ON};
+		.repair = r->options.repair == NMTAN_REPAIR_ON,
+		.sorted_instead = &r->sorted_instead};
+	r->sorted_instead = false;
 	r->mark = nt_scratch_here(scratch);
 	return NMTAN_OK;
 }
@@ -251,6 +254,7 @@ nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	if (!status && r.solve.corner_count > 0)
 		status = nt_repair(&r.solve, &met);
 	met.ill_conditioned = ill_conditioned;
+	met.sorted_instead = r.sorted_instead;
 	end_request(&r);
 	end_counts(&met, counts);
 	return status;
@@ -271,6 +275,7 @@ static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_coun
 	if (!status)
 		status = nt_repair_and_split(&r->solve, counts, splitter);
 	counts->ill_conditioned = ill_conditioned;
+	counts->sorted_instead = r->sorted_instead;
 	return status;
 }
 

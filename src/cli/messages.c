@@ -229,6 +229,8 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	if (repaired)
 		nt_buffer_format(out, settings->check ? ", %zu tangents would be repaired"
 						      : ", repaired %zu of the tangents", repaired);
+	if (s->counts.sorted_instead)
+		nt_buffer_format(out, ", %zu solved as mikktspace-sorted", s->counts.sorted_instead);
 	if (s->rounding.count)
 		nt_buffer_format(out, ", rounded tangents by %.2g degrees at most, %.2g on average",
 			s->rounding.worst_radians * DEGREES,

@@ -326,6 +326,8 @@ static nmtan_status pair_unsorted(state *s)
 		s->triangles[sound_triangle(s, e->edge / 3)].neighbour[e->edge % 3] =
 			e->neighbour == NT_NO_NEIGHBOUR ? NO_TRIANGLE : sound_triangle(s, e->neighbour);
 	}
+	if (unsorted.limit && s->solve->sorted_instead)
+		*s->solve->sorted_instead = true;
 	return status;
 }
 

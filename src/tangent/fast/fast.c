@@ -141,6 +141,8 @@ static nmtan_status find_unsorted(nt_fast *fast, const nt_borrowed *memory)
 		.threads = fast->solve->threads, .scratch = bytes >= LEAST_LENT_BYTES ? &lent : scratch},
 		scratch, &fast->unsorted);
 	nt_scratch_free(&lent);
+	if (fast->unsorted.limit && fast->solve->sorted_instead)
+		*fast->solve->sorted_instead = true;
 	return status;
 }
 
