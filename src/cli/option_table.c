@@ -12,7 +12,7 @@
 
 /* Enumerations are stored through int; the words of a choice are in the order of its constants. */
 _Static_assert(sizeof(nt_only) == sizeof(int) && sizeof(nmtan_method) == sizeof(int), "enum is int");
-_Static_assert(NMTAN_METHOD_ROBUST == NMTAN_METHOD_MIKKTSPACE + 3, "the words of --method");
+_Static_assert(NMTAN_METHOD_MIKKTSPACE_SORTED == NMTAN_METHOD_MIKKTSPACE + 4, "the words of --method");
 
 const nt_option_row nt_option_rows[] = {
 	{.kind = NT_OPTION_HEADING, .name = "Which primitives, and how", .first = NT_SHAPES_OUTPUT},
@@ -22,7 +22,7 @@ const nt_option_row nt_option_rows[] = {
 		SETTING(only), false},
 	{"existing", 0, NT_OPTION_CHOICE, "keep|repair|replace", NT_EXISTING_KEEP, 0, "keep",
 		"what happens to tangents that the input has", SETTING(existing), false},
-	{"method", 0, NT_OPTION_CHOICE, "mikktspace|area|lengyel|robust", NMTAN_METHOD_MIKKTSPACE, 0,
+	{"method", 0, NT_OPTION_CHOICE, "mikktspace|area|lengyel|robust|mikktspace-sorted", NMTAN_METHOD_MIKKTSPACE, 0,
 		"mikktspace", "how triangles are averaged", SETTING(method), false},
 	{"repair", 0, NT_OPTION_CHOICE, "on|off", NMTAN_REPAIR_ON, 0, "on",
 		"replace results that no renderer can use", SETTING(repair), false},

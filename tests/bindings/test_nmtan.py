@@ -82,7 +82,7 @@ def test_convention():
     assert (down == before).all()
 
 
-@pytest.mark.parametrize("method", ["mikktspace", "area", "lengyel", "robust"])
+@pytest.mark.parametrize("method", ["mikktspace", "area", "lengyel", "robust", "mikktspace-sorted"])
 def test_methods(method):
     assert (nmtan.tangents(POSITIONS, NORMALS, TEXCOORDS, FACES, method=method) == [LEFT] * 6 + [RIGHT] * 6).all()
 

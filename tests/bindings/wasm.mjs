@@ -99,7 +99,7 @@ await test('interleaved arrays, plain arrays and both widths of indices give the
 });
 
 await test('methods: each gives the flat quads their tangents; robust has none that is ill-conditioned', () => {
-	for (const method of ['mikktspace', 'area', 'lengyel', 'robust']) {
+	for (const method of ['mikktspace', 'area', 'lengyel', 'robust', 'mikktspace-sorted']) {
 		const r = solve(quads, {...up, method});
 		assert.deepEqual([...r.tangents].map((x) => x + 0), [left, left, left, left, right, right, right, right].flat(), method);
 		assert.equal(r.counts.illConditioned, 0);

@@ -4,7 +4,7 @@
 // struct of 32-bit words: see entry.c. Calls are synchronous; memory is as large as the largest call needed, and given
 // back after a call that failed or needed more than KEPT_BYTES.
 
-const METHODS = ['mikktspace', 'area', 'lengyel', 'robust'];
+const METHODS = ['mikktspace', 'area', 'lengyel', 'robust', 'mikktspace-sorted'];
 const CONVENTIONS = ['mikktspace', 'gltf'];
 const STATUS = ['', 'an argument is out of range', 'an index is not below the number of vertices',
 	'a face has not three corners', 'the mesh is too large', 'out of memory'];
@@ -15,7 +15,7 @@ const WORD = {faces: 0, vertices: 1, indices: 2, positions: 3, normals: 4, texco
 	sourceCapacity: 8, tangents: 9, method: 10, noRepair: 11, vDown: 12, sourceCount: 13, counts: 15};
 const COUNTS = ['degeneratePositions', 'degenerateTexcoords', 'mirrored', 'storedDifferently', 'foldedQuads',
 	'repairedZero', 'repairedNotFinite', 'repairedParallel', 'repairedSign', 'repairedUnassigned', 'repairedLeaning',
-	'illConditioned'];
+	'illConditioned', 'sortedInstead'];
 
 const KEPT_BYTES = 2 ** 28;
 

@@ -4,15 +4,21 @@
 export type Attribute = ArrayLike<number> | {array: ArrayLike<number>; stride?: number; offset?: number};
 
 export interface Options {
-	/** How triangles around a vertex are averaged. Default: 'mikktspace'. */
-	method?: 'mikktspace' | 'area' | 'lengyel' | 'robust';
+	/**
+	 * How triangles around a vertex are averaged. 'mikktspace', the default, has the bytes of mikktspace.c as
+	 * published; 'mikktspace-sorted' those of the rewrites of Blender and three.js, which complete its sort of edges.
+	 */
+	method?: 'mikktspace' | 'area' | 'lengyel' | 'robust' | 'mikktspace-sorted';
 	/** Replace what a renderer cannot use by the nearest usable tangent, and count it. Default: true. */
 	repair?: boolean;
 	/** Where v points in texcoords: 'gltf' down (the default), 'mikktspace' up. */
 	convention?: 'gltf' | 'mikktspace';
 }
 
-/** What was met and repaired, in corners; degenerate and mirrored in triangles. */
+/**
+ * What was met and repaired, in corners; degenerate and mirrored in triangles. sortedInstead is 1 where 'mikktspace'
+ * gave the answer of 'mikktspace-sorted', since the mesh is beyond the limits that nmtan.h states under "Results".
+ */
 export interface Counts {
 	degeneratePositions: number;
 	degenerateTexcoords: number;
@@ -26,6 +32,7 @@ export interface Counts {
 	repairedUnassigned: number;
 	repairedLeaning: number;
 	illConditioned: number;
+	sortedInstead: number;
 }
 
 export interface IndexedTangents {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Tangents for normal-mapped meshes: MikkTSpace to the byte, indexed or not, in NumPy arrays.
+"""Tangents for normal-mapped meshes: mikktspace.c to the byte, indexed or not, in NumPy arrays.
 
     >>> import numpy as np, nmtan
     >>> positions = np.array([[0,0,0], [1,0,0], [1,1,0], [0,1,0], [2,0,0], [2,1,0]], np.float32)
@@ -32,7 +32,7 @@ __all__ = ["Conversion", "ConversionError", "Counts", "VertexTangents", "convert
            "vertex_tangents"]
 
 _lib = _library.load()
-_METHODS = ("mikktspace", "area", "lengyel", "robust")
+_METHODS = ("mikktspace", "area", "lengyel", "robust", "mikktspace-sorted")
 _CONVENTIONS = ("mikktspace", "gltf")
 _OUT_OF_MEMORY = 5
 
@@ -155,9 +155,13 @@ def tangents(positions: ArrayLike, normals: ArrayLike, texcoords: ArrayLike, fac
     """One tangent for each corner of each face.
 
     positions, normals: [vertices, 3]; texcoords: [vertices, 2]; faces: [faces, 3] or [faces, 4], or None where each
-    three vertices make a triangle. method: "mikktspace", "area", "lengyel" or "robust". repair: replace what a
-    renderer cannot use. convention: where v points, "mikktspace" up, "gltf" down. threads: 0 is one per processor;
-    the result does not depend on it.
+    three vertices make a triangle. method: "mikktspace", with the bytes of mikktspace.c as published,
+    "mikktspace-sorted", with those of the rewrites of Blender and three.js, which complete its sort of edges, "area",
+    "lengyel" or "robust". repair: replace what a renderer cannot use. convention: where v points, "mikktspace" up,
+    "gltf" down. threads: 0 is one per processor; the result does not depend on it.
+
+    Positions that are not finite or reach half of the largest float, and the bounds on work that nmtan.h states under
+    "Results", give the answer of "mikktspace-sorted" (Counts.sorted_instead).
 
     Returns float32 [faces * corners of a face, 4]: T and w; the bitangent is cross(N, T) * w.
     """
