@@ -38,15 +38,12 @@ exits 2
 
 # Optimizers leave such primitives behind: accessors of 0 elements, at some byte of a view of 0 bytes.
 scene "elements that are not there lie in no bytes"
-cat >empty.gltf <<END
-{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
-"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2}]}],
-"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":0},
-{"bufferView":0,"byteOffset":12,"componentType":5126,"type":"VEC2","count":0},
-{"bufferView":0,"byteOffset":20,"componentType":5123,"type":"SCALAR","count":0}],
-"bufferViews":[{"buffer":0,"byteLength":0,"byteStride":20}],
-"buffers":[{"byteLength":4,"uri":"data:application/octet-stream;base64,AAAAAA=="}]}
-END
+gltf new empty 'add("SCALAR", 5121, [0, 0, 0, 0]);
+	const none = (byteOffset, componentType, type) => ({bufferView: 0, byteOffset, componentType, type, count: 0});
+	g.accessors = [none(0, 5126, "VEC3"), none(12, 5126, "VEC2"), none(20, 5123, "SCALAR")];
+	g.bufferViews = [{buffer: 0, byteLength: 0, byteStride: 20}];
+	g.meshes = [{primitives: [{attributes: {POSITION: 0, TEXCOORD_0: 1}, indices: 2}]}];
+	g.nodes = [{mesh: 0}]'
 run --check --report=empty.html empty.gltf
 exits 0
 says "empty.gltf: checked"

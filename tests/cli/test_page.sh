@@ -6,34 +6,11 @@ modules=$ROOT/build/node
 # A plain quad at u 0..0.4 with a triangle that has no UV area and one that has none at all, and a mirrored quad at u 0.6..1 with a name
 # that tries to be a script.
 two_quads() {
-	cat <<-'END'
-		o plain
-		v 0 0 0
-		v 1 0 0
-		v 1 1 0
-		v 0 1 0
-		v 10 0 0
-		v 11 0 0
-		v 11 1 0
-		v 10 1 0
-		v 0 1.1 0
-		v 1 1.1 0
-		v 0 1.5 0
-		vt 0 0
-		vt 0.4 0
-		vt 0.4 1
-		vt 0 1
-		vt 1 0
-		vt 0.6 0
-		vt 0.6 1
-		vt 1 1
-		vn 0 0 1
-		f 1/1/1 2/2/1 3/3/1 4/4/1
-		f 9/1/1 10/1/1 11/1/1
-		f 9/1/1 9/2/1 10/3/1
-		o </script><script>window.broken=1</script>
-		f 5/5/1 6/6/1 7/7/1 8/8/1
-	END
+	echo "o plain"
+	printf 'v %s\n' '0 0 0' '1 0 0' '1 1 0' '0 1 0' '10 0 0' '11 0 0' '11 1 0' '10 1 0' '0 1.1 0' '1 1.1 0' '0 1.5 0'
+	printf 'vt %s\n' '0 0' '0.4 0' '0.4 1' '0 1' '1 0' '0.6 0' '0.6 1' '1 1'
+	printf '%s\n' "vn 0 0 1" "f 1/1/1 2/2/1 3/3/1 4/4/1" "f 9/1/1 10/1/1 11/1/1" "f 9/1/1 9/2/1 10/3/1" \
+		"o </script><script>window.broken=1</script>" "f 5/5/1 6/6/1 7/7/1 8/8/1"
 }
 
 # A grid of 2 n^2 triangles, mirrored at its middle.

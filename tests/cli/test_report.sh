@@ -153,30 +153,12 @@ is "$(value r.json '(r["truncated"], r["totals"]["dropped"] > 0, len(r["files"][
 scene "numbers that people act on: density, stretch, frames across seams, what splitting costs"
 python3 "$ROOT/tests/support/images.py" write n.png 64 32 '(128, 128, 255)'
 printf 'newmtl m\nnorm n.png\n' >m.mtl
-cat >m.obj <<-'END'
-	mtllib m.mtl
-	usemtl m
-	v 0 0 0
-	v 2 0 0
-	v 2 1 0
-	v 0 1 0
-	v 4 0 0
-	v 4 1 0
-	v 0 5 0
-	v 2 5 0
-	v 2 6 0
-	v 0 6 0
-	vt 0 0
-	vt 1 0
-	vt 1 1
-	vt 0 1
-	vt 0.5 0
-	vt 0.5 1
-	vn 0 0 1
-	f 1/1/1 2/2/1 3/3/1 4/4/1
-	f 2/2/1 5/1/1 6/4/1 3/3/1
-	f 7/1/1 8/5/1 9/6/1 10/4/1
-END
+{
+	printf '%s\n' "mtllib m.mtl" "usemtl m"
+	printf 'v %s\n' '0 0 0' '2 0 0' '2 1 0' '0 1 0' '4 0 0' '4 1 0' '0 5 0' '2 5 0' '2 6 0' '0 6 0'
+	printf 'vt %s\n' '0 0' '1 0' '1 1' '0 1' '0.5 0' '0.5 1'
+	printf '%s\n' "vn 0 0 1" "f 1/1/1 2/2/1 3/3/1 4/4/1" "f 2/2/1 5/1/1 6/4/1 3/3/1" "f 7/1/1 8/5/1 9/6/1 10/4/1"
+} >m.obj
 run -q --check --report=r.json m.obj
 exits 0
 validates report r.json

@@ -324,19 +324,17 @@ is "$(images rows made.png)" "$(images rows twin.png)"
 is "$(gltf t.glb '[g.images[0].mimeType, g.materials[0].pbrMetallicRoughness.baseColorTexture.index]')" '["image/png",0]'
 
 scene "maps that are none, or of another kind"
-images write constant.png 8 8 '(128, 128, 255)'
-quad 'norm constant.png'
-run --check quad.obj
-prints "NMAP_CONSTANT"
-images write sphere.png 64 64 '(lambda a, b: (int(127.5 + 127 * math.cos(a) * math.sin(b)), int(127.5 + 127 * math.sin(a) * math.sin(b)),
-	int(127.5 + 127 * math.cos(b))))(x / 10, y / 20.5)'
-quad 'norm sphere.png'
-run --check quad.obj
-prints "NMAP_OBJECT_SPACE"
-images write long.png 64 64 '(128 + x, 128 + y, 255)'
-quad 'norm long.png'
-run --check quad.obj
-prints "NMAP_NOT_UNIT"
+sphere='(math.cos(x / 10) * math.sin(y / 20.5), math.sin(x / 10) * math.sin(y / 20.5), math.cos(y / 20.5))'
+while IFS='|' read -r code width formula; do
+	images write map.png $width $width "$formula"
+	quad 'norm map.png'
+	run --check quad.obj
+	prints $code
+done <<END
+NMAP_CONSTANT|8|(128, 128, 255)
+NMAP_OBJECT_SPACE|64|tuple(int(127.5 + 127 * v) for v in $sphere)
+NMAP_NOT_UNIT|64|(128 + x, 128 + y, 255)
+END
 printf '\253KTX 20\273\r\n\032\n and more' >k.ktx2
 quad 'norm k.ktx2'
 run --check quad.obj

@@ -3,26 +3,34 @@
 . "$ROOT/tests/support/cli.sh"
 
 page=$ROOT/man/nmtan.1
-# The page as text without fonts, one option per line.
-plain() {
-	sed -e 's/\\f[BIRP]//g' -e 's/\\-/-/g' "$page"
+# A page as text without fonts, one option per line.
+text() {
+	sed -e 's/\\f[BIRP]//g' -e 's/\\-/-/g' "$1"
+}
+plain() { text "$page"; }
+# equal A B: the two lists are.
+equal() {
+	diff "$1" "$2" >difference || wrong "they differ: $(cat difference)"
+}
+well_formed() {
+	! command -v man >/dev/null 2>&1 || is "$(LC_ALL=C.UTF-8 man --warnings -l "$1" 2>&1 >/dev/null)" ""
 }
 
 scene "every option of help is in the manual and no other"
 "$NMTAN" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+' | grep -oE -- '--[a-z-]+' | sort >table
 plain | grep -E '^\.BR? .*--[a-z]' | grep -oE -- '--[a-z-]+' | grep -vE '^--$' | sort -u >all
 plain | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.TP' | grep -oE -- '--[a-z-]+' | sort >manual
-diff table manual >difference || { sed 's/^/# /' difference; wrong "they differ"; }
+equal table manual
 
 scene "short forms and values are those of help"
 "$NMTAN" --help | grep -oE '^  -[a-z], --[a-z-]+' | tr -d ' ' | sort >table
 plain | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.TP' | tr -d '" ' |
 	grep -oE -- '-[a-z],--[a-z-]+' | sort >manual
-diff table manual >difference || { sed 's/^/# /' difference; wrong "short forms differ"; }
+equal table manual
 "$NMTAN" --help | grep -oE -- '--[a-z-]+=[a-z|N]+[|][a-zN|]+' | sort >table
 plain | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.TP' | tr -d '" ' |
 	grep -oE -- '--[a-z-]+=[a-z|N]+[|][a-zN|]+' | sort >manual
-diff table manual >difference || { sed 's/^/# /' difference; wrong "values differ"; }
+equal table manual
 
 scene "every default of help is in the manual"
 "$NMTAN" --help | tr '\n' ' ' | tr -s ' ' | grep -oE 'default: [a-z0-9]+' | sort >table
@@ -35,15 +43,13 @@ for section in NAME SYNOPSIS DESCRIPTION OPTIONS "EXIT STATUS" EXAMPLES FILES "S
 	grep -q "^\.SH $section$" "$page" || wrong "no section $section"
 done
 grep -q "\"nmtan $("$NMTAN" --version | cut -d' ' -f2)\"" "$page" || wrong "another version"
-if command -v man >/dev/null 2>&1; then
-	is "$(LC_ALL=C.UTF-8 man --warnings -l "$page" 2>&1 >/dev/null)" ""
-fi
+well_formed "$page"
 
 scene "the report in the manual is what --check prints"
 (cd "$ROOT" && "$NMTAN" --check data/plates.gltf 2>"$WORK/err.txt") >printed
 plain | sed -n '/^nmtan --check data\/plates.gltf$/,/^\.fi$/p' | sed '1,/^\.nf$/d;/^\.fi$/d' >expected
 exists expected printed
-diff expected printed || wrong "prints something else"
+equal expected printed
 
 scene "every exit code of help is in the manual"
 for code in 0 1 2 3 4 5 6; do
@@ -52,24 +58,19 @@ done
 
 scene "the page about materials is well formed, and has each option that it names"
 mtl=$ROOT/man/nmtan-mtl.7
-if command -v man >/dev/null 2>&1; then
-	is "$(LC_ALL=C.UTF-8 man --warnings -l "$mtl" 2>&1 >/dev/null)" ""
-fi
+well_formed "$mtl"
 sed -e 's/\\-/-/g' "$mtl" | grep -oE -- '--[a-z-]+' | sort -u >named
 "$NMTAN" --help | grep -oE -- '--[a-z-]+' | sort -u >options
 is "$(comm -23 named options)" ""
 
 scene "the page about many machines has each file and command of the recipes, and no other"
 farm=$ROOT/man/nmtan-farm.7
-text() { sed -e 's/\\f[BIRP]//g' -e 's/\\-/-/g' "$1"; }
 text "$farm" | sed -n '/^\.SH FILES/,/^\.PP/p' | grep -o '[A-Za-z-]*\.sh\|nmtan-farm\|nmtan\.mk\|Snakefile' | sort -u >manual
 ls "$ROOT/data/farm" | sort >files
-diff files manual >difference || wrong "$(cat difference)"
+equal files manual
 "$ROOT/data/farm/nmtan-farm" --help | grep -o '^    nmtan-farm [a-z]* [A-Z]* *\[*[A-Z]*' | tr -d '[' | awk '{ print $2, $3 }' | sort >help
 text "$farm" | sed -n 's/^\.B nmtan-farm \([a-z]* [A-Z]*\).*/\1/p' | sort -u >manual
-diff help manual >difference || wrong "$(cat difference)"
-if command -v man >/dev/null 2>&1; then
-	is "$(LC_ALL=C.UTF-8 man --warnings -l "$farm" 2>&1 >/dev/null)" ""
-fi
+equal help manual
+well_formed "$farm"
 
 done_testing
