@@ -157,6 +157,20 @@ class Document:
             view = self.view(b''.join(pack(kind, (i,)) for i in list_), target=34963)
         return self.accessor((kind, False, [(i,) for i in list_]), view, offset)
 
+    def again(self, names):
+        """Accessors of their own over the same bytes."""
+        self.json['accessors'] += [dict(self.json['accessors'][a]) for a in names.values()]
+        return {n: len(self.json['accessors']) - len(names) + i for i, n in enumerate(names)}
+
+    def sparse(self, accessor, kind, where, rows):
+        self.json['accessors'][accessor]['sparse'] = {
+            'count': len(where),
+            'indices': {'bufferView': self.view(b''.join(pack(kind, (i,)) for i in where)), 'componentType': kind},
+            'values': {'bufferView': self.view(b''.join(pack(FLOAT, r) for r in rows))}}
+
+    def quantized(self):
+        self.json['extensionsUsed'] = self.json['extensionsRequired'] = ['KHR_mesh_quantization']
+
     def primitive(self, attributes, indices=None, **more):
         p = {'attributes': attributes, 'material': 0}
         if indices is not None:
@@ -194,6 +208,13 @@ class Document:
 PNG = 'data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg=='
 
 
+def one(name, lay_out, kind=USHORT, how='file', chunks=(), **more):
+    """A file of one primitive."""
+    d = Document()
+    d.primitive(lay_out(d), d.indices(triangles(), kind), **more)
+    d.write(name, how, chunks)
+
+
 def with_targets(d, targets):
     return [d.separate(t) for t in targets]
 
@@ -216,18 +237,11 @@ tight = d.indices(triangles(), UINT)
 d.primitive(d.interleaved(attributes), tight, targets=with_targets(d, targets))
 d.write('interleaved_u32.gltf', 'data')
 
-d = Document()
-d.primitive(d.interleaved(attributes, gap=8, cut=True), d.indices(triangles(), USHORT))
-d.write('interleaved_gap.glb', 'glb', [(0x41525458, b'extra chunk.')])
-
-d = Document()
-d.primitive(d.interleaved(attributes, views_overlap=True), d.indices(triangles(), USHORT))
-d.write('overlapping_views.gltf')
-
+one('interleaved_gap.glb', lambda d: d.interleaved(attributes, gap=8, cut=True), how='glb',
+    chunks=[(0x41525458, b'extra chunk.')])
+one('overlapping_views.gltf', lambda d: d.interleaved(attributes, views_overlap=True))
 # each view ends with its last element, as Magnum writes them
-d = Document()
-d.primitive(d.interleaved(attributes, views_overlap=True, views_cut=True), d.indices(triangles(), USHORT))
-d.write('overlapping_cut_views.gltf')
+one('overlapping_cut_views.gltf', lambda d: d.interleaved(attributes, views_overlap=True, views_cut=True))
 
 d = Document()
 flat = triangles()
@@ -246,10 +260,7 @@ d.write('two_ranges.gltf')
 # the same with accessors of their own over the same bytes, and a third primitive that needs nothing
 d = Document()
 shared = d.separate(attributes)
-twins = {}
-for n, a in shared.items():
-    d.json['accessors'].append(dict(d.json['accessors'][a]))
-    twins[n] = len(d.json['accessors']) - 1
+twins = d.again(shared)
 d.primitive(shared, d.indices(triangles(0, 6), USHORT))
 d.primitive(twins, d.indices(triangles(6, NX), UINT))
 d.json['materials'].append({'name': 'smooth'})
@@ -262,10 +273,7 @@ d = Document()
 shared = d.separate(attributes)
 moves = with_targets(d, targets)
 whole = d.indices(triangles(), USHORT)
-again = {}
-for n, a in shared.items():
-    d.json['accessors'].append(dict(d.json['accessors'][a]))
-    again[n] = len(d.json['accessors']) - 1
+again = d.again(shared)
 d.json['materials'].append({'name': 'bumpy too', 'normalTexture': {'index': 0, 'scale': 0.5}})
 d.primitive(dict(shared), whole, targets=[dict(t) for t in moves])
 d.primitive(dict(shared), whole, targets=[dict(t) for t in moves], material=1)
@@ -298,48 +306,31 @@ positions = attributes['POSITION']
 wrong = (FLOAT, False, [(9.0, 9.0, 9.0) if i % 5 == 0 else r for i, r in enumerate(positions[2])])
 names = d.separate({**plain, 'POSITION': wrong})
 some = [i for i in range(len(positions[2])) if i % 5 == 0]
-d.json['accessors'][names['POSITION']]['sparse'] = {
-    'count': len(some),
-    'indices': {'bufferView': d.view(b''.join(pack(UBYTE, (i,)) for i in some)), 'componentType': UBYTE},
-    'values': {'bufferView': d.view(b''.join(pack(FLOAT, positions[2][i]) for i in some))}}
+d.sparse(names['POSITION'], UBYTE, some, [positions[2][i] for i in some])
 d.json['accessors'][names['POSITION']].update(d.bounds(positions))
 moved = [i for i in range(len(positions[2])) if i % 13 in (4, 8)]
 target = d.accessor((FLOAT, False, positions[2]), None)
-d.json['accessors'][target]['sparse'] = {
-    'count': len(moved),
-    'indices': {'bufferView': d.view(b''.join(pack(USHORT, (i,)) for i in moved)), 'componentType': USHORT},
-    'values': {'bufferView': d.view(b''.join(pack(FLOAT, (0.0, 0.0, i * 0.01)) for i in moved))}}
+d.sparse(target, USHORT, moved, [(0.0, 0.0, i * 0.01) for i in moved])
 d.json['accessors'][target].update({'min': [0, 0, 0], 'max': [0, 0, struct.unpack('<f', struct.pack('<f', max(moved) * 0.01))[0]]})
 d.primitive(names, d.indices(triangles(), USHORT), targets=[{'POSITION': target}])
 d.write('sparse.gltf')
 
 # wrong tangents are there already, interleaved with the rest
-d = Document()
 tangents = (FLOAT, False, [(0.0, 1.0, 0.0, 1.0)] * len(positions[2]))
-d.primitive(d.interleaved({**attributes, 'TANGENT': tangents}), d.indices(triangles(), USHORT))
-d.write('tangents_interleaved.gltf')
-
-d = Document()
-d.primitive(d.interleaved({'TANGENT': tangents, **attributes}, views_overlap=True, views_cut=True), d.indices(triangles(), USHORT))
-d.write('tangents_cut_views.gltf')
-
+one('tangents_interleaved.gltf', lambda d: d.interleaved({**attributes, 'TANGENT': tangents}))
+one('tangents_cut_views.gltf',
+    lambda d: d.interleaved({'TANGENT': tangents, **attributes}, views_overlap=True, views_cut=True))
 # the same in views of their own: as floats, as integers, and sparse over zeros
+one('tangents_separate.gltf', lambda d: d.separate({'TANGENT': tangents, **attributes}))
 d = Document()
-d.primitive(d.separate({'TANGENT': tangents, **attributes}), d.indices(triangles(), USHORT))
-d.write('tangents_separate.gltf')
-d = Document()
-d.json['extensionsUsed'] = d.json['extensionsRequired'] = ['KHR_mesh_quantization']
+d.quantized()
 names = d.separate({'TANGENT': (SHORT, True, [(0, 32767, 0, 32767)] * len(positions[2])), **attributes})
 d.primitive(names, d.indices(triangles(), USHORT))
 d.write('tangents_short.gltf')
 d = Document()
 names = d.separate(attributes)
-every = range(len(positions[2]))
 names['TANGENT'] = d.accessor(tangents, None)
-d.json['accessors'][names['TANGENT']]['sparse'] = {
-    'count': len(every),
-    'indices': {'bufferView': d.view(b''.join(pack(USHORT, (i,)) for i in every)), 'componentType': USHORT},
-    'values': {'bufferView': d.view(b''.join(pack(FLOAT, r) for r in tangents[2]))}}
+d.sparse(names['TANGENT'], USHORT, range(len(positions[2])), tangents[2])
 d.primitive(names, d.indices(triangles(), USHORT))
 d.write('tangents_sparse.gltf')
 
@@ -367,7 +358,7 @@ quantized = dict(attributes)
 quantized['POSITION'] = (SHORT, True, [tuple(round(v * 8000) for v in r) for r in positions[2]])
 quantized['NORMAL'] = (BYTE, True, [(0, 0, 127)] * len(positions[2]))
 quantized['TEXCOORD_0'] = (USHORT, True, [tuple(round(v * 60000) for v in r) for r in attributes['TEXCOORD_0'][2]])
-d.json['extensionsUsed'] = d.json['extensionsRequired'] = ['KHR_mesh_quantization']
+d.quantized()
 d.primitive(d.interleaved(quantized), d.indices(triangles(), USHORT))
 for a in d.json['accessors']:
     if a['componentType'] == SHORT:
@@ -389,7 +380,6 @@ def single(value):
 
 
 for number, target in enumerate(targets):
-    d = Document()
     moved = dict(attributes)
     for n, delta in target.items():
         rows = [tuple(single(single(a) + single(b)) for a, b in zip(r, t))
@@ -397,5 +387,4 @@ for number, target in enumerate(targets):
         if n == 'NORMAL':
             rows = [tuple(c / sum(x * x for x in r) ** 0.5 for c in r) for r in rows]
         moved[n] = (FLOAT, False, rows)
-    d.primitive(d.separate(moved), d.indices(triangles(), USHORT))
-    d.write('moved_%d.gltf' % number)
+    one('moved_%d.gltf' % number, lambda d: d.separate(moved))
