@@ -36,16 +36,8 @@ typedef struct column {
 
 static void print_machine(void)
 {
-	char line[256] = "unknown processor\n";
-	FILE *info = fopen("/proc/cpuinfo", "r");
-	while (info && fgets(line, sizeof line, info))
-		if (strncmp(line, "model name", 10) == 0)
-			break;
-	if (info)
-		fclose(info);
-	const char *name = strchr(line, ':');
 	static const char *const sets[] = {"", "baseline", "AVX2", "AVX-512"};
-	printf("processor%s", name ? name : line);
+	printf("processor: %s\n", measure_processor());
 	printf("compiler %s, best instruction set %s, %u processors\n\n", __VERSION__, sets[nt_cpu_best()],
 		nt_thread_count(0));
 }

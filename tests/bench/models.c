@@ -170,44 +170,14 @@ nt_owned model_read_ply(const char *path, float (**tangents)[4])
 
 /* Stand-ins */
 
-/*
- * A lumpy ball of about that many triangles. Points inserted into a third of a grid's triangles give valences from 3 to
- * some 14; a tenth of them lie next to an edge, so that a sliver is there; 2 % of the corners refer to a copy of their
- * vertex. Texture coordinates are those of the ball or, `planar`, the projection to x and y.
- */
+/* A lumpy ball of about that many triangles. Texture coordinates are those of the ball or, `planar`, the projection to
+ * x and y. */
 static nt_owned stand_in(size_t triangles, bool planar)
 {
-	const uint32_t side = (uint32_t)sqrt((double)triangles / 2 / (5.0 / 3));
-	nt_owned grid = nt_surface_grid(NT_SPHERE, side, side, 0.4, 7);
+	const uint32_t side = (uint32_t)sqrt((double)triangles / 2);
+	nt_owned o = nt_surface_grid(NT_SPHERE, side, side, 0.4, 7);
 	nt_random random = nt_random_seed(triangles);
-	const size_t grid_triangles = grid.mesh.face_count, inserted = grid_triangles / 3;
-	const size_t copies = grid.corner_count / 50, first_copy = grid.mesh.vertex_count + inserted;
-	nt_owned o = nt_owned_make(first_copy + copies, grid_triangles + 2 * inserted);
-	memcpy(o.positions, grid.positions, grid.mesh.vertex_count * sizeof *o.positions);
-	memcpy(o.normals, grid.normals, grid.mesh.vertex_count * sizeof *o.normals);
-	memcpy(o.texcoords, grid.texcoords, grid.mesh.vertex_count * sizeof *o.texcoords);
-	uint32_t *to = o.indices;
-	for (size_t t = 0; t < grid_triangles; t++) {
-		const uint32_t *v = grid.indices + 3 * t;
-		if (t % 3 != 0 || t / 3 >= inserted) {
-			memcpy(to, v, 3 * sizeof *to);
-			to += 3;
-			continue;
-		}
-		const uint32_t centre = (uint32_t)(grid.mesh.vertex_count + t / 3);
-		const float third = nt_random_below(&random, 10) == 0 ? 1e-4f : 1.0f / 3;
-		const float weights[3] = {0.5f - third / 2, 0.5f - third / 2, third};
-		for (size_t k = 0; k < 3; k++) {
-			for (int i = 0; i < 3; i++)
-				o.positions[centre][i] += weights[k] * grid.positions[v[k]][i];
-			for (int i = 0; i < 2; i++)
-				o.texcoords[centre][i] += weights[k] * grid.texcoords[v[k]][i];
-			memcpy(to, (uint32_t[3]){v[k], v[(k + 1) % 3], centre}, 3 * sizeof *to);
-			to += 3;
-		}
-	}
-	nt_owned_free(&grid);
-	for (size_t v = 0; v < first_copy; v++) {
+	for (size_t v = 0; v < o.mesh.vertex_count; v++) {
 		const float *p = o.positions[v];
 		const float lump = 1 + 0.1f * sinf(7 * p[0] + 3 * p[2]) + 0.003f * (float)nt_random_real(&random);
 		for (int i = 0; i < 3; i++)
@@ -216,14 +186,6 @@ static nt_owned stand_in(size_t triangles, bool planar)
 	make_normals(&o);
 	if (planar)
 		project(&o);
-	for (size_t i = 0; i < copies; i++) {
-		const size_t c = nt_random_below(&random, (uint32_t)o.corner_count);
-		const uint32_t from = o.indices[c], copy = (uint32_t)(first_copy + i);
-		memcpy(o.positions[copy], o.positions[from], sizeof *o.positions);
-		memcpy(o.normals[copy], o.normals[from], sizeof *o.normals);
-		memcpy(o.texcoords[copy], o.texcoords[from], sizeof *o.texcoords);
-		o.indices[c] = copy;
-	}
 	return o;
 }
 

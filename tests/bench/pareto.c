@@ -447,14 +447,7 @@ static bool on_front(const bench *b, const row *r, bool high)
 
 static void print_machine(const bench *b)
 {
-	char line[256] = "", *name = NULL;
-	FILE *f = fopen("/proc/cpuinfo", "r");
-	while (f && !name && fgets(line, sizeof line, f))
-		if (strncmp(line, "model name", 10) == 0 && (name = strchr(line, ':')))
-			name[strcspn(name, "\n")] = 0;
-	if (f)
-		fclose(f);
-	printf("\n%s, %u processors, gcc %s. Models:", name ? name + 2 : "A processor", nt_thread_count(0),
+	printf("\n%s, %u processors, gcc %s. Models:", measure_processor(), nt_thread_count(0),
 		__VERSION__);
 	for (size_t m = 0; m < b->model_count; m++)
 		printf("%s %s (%zu)", m ? "," : "", b->models[m].name, b->models[m].mesh.mesh.face_count);

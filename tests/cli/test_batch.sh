@@ -24,15 +24,6 @@ exits 2
 says "missing.obj"
 says_not "quad.obj"
 
-scene "of many exit codes the worst counts"
-printf 'v 0 0 0\nv 1 0 0\nf 1 2 3\n' >bad.obj
-run -d out bad.obj "$data/quad.obj"
-exits 3
-run -d out bad.obj missing.obj
-exits 2
-run --check "$data/quad.obj" bad.obj
-exits 3
-
 scene "the messages come in the order of the inputs for any number of threads"
 for i in 1 2 3 4 5 6 7 8 9; do
 	cp "$data/quad.obj" "m$i.obj"

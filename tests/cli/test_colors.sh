@@ -25,14 +25,6 @@ is "$(gltf fold.glb "$colors")" "[[1,0,0,1],[0,0.5029,0,1],[0,0,1,1],[1,1,1,1],[
 run --check --fail-on=warning fold.obj
 is "$(grep -c COLORS_DOUBTFUL "$WORK/out.txt")" 0
 
-scene "comments that are malformed are a warning with their line, and no failure"
-fold "" "" "" "" "#MRGB ff0000"
-run fold.obj fold.glb
-exits 0
-says "fold.obj:5: warning: colours of vertices are not what they should be: #MRGB: 1 colours for 4 vertices [COLORS_DOUBTFUL]"
-says "fold.obj:5: warning: colours of vertices are not what they should be: #MRGB: found something else, expected 8 hexadecimal digits for each vertex"
-is "$(gltf fold.glb 'g.meshes[0].primitives[0].attributes.COLOR_0')" undefined
-
 scene "a PLY has the bytes that an OBJ had, and gives them back"
 fold "" "" "" "" "#MRGB ffff0000ff00bc0000010203ffffffff"
 run fold.obj fold.ply

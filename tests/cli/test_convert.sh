@@ -193,13 +193,6 @@ exits 0
 says "/images/0: warning: image has a type that glTF does not carry: it stays a file [IMAGE_TYPE]"
 only a.{obj,ply,glb,gltf,drc} pointer plates.gltf plates.bin bumps.png mirrored_cube.{obj,mtl} out.glb
 
-scene "timing names the stages"
-run --timing "$data/head.obj" head.glb
-exits 0
-for stage in map parse tangents split write total; do
-	says "$stage"
-done
-
 scene "progress is shown when it is asked for and never in the output"
 run --progress=on "$data/head.obj" -
 exits 0

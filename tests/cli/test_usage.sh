@@ -33,33 +33,6 @@ for pair in "--frob|'--frob'" "--frob=1|'--frob'" "-x|'-x'" "--thread=2|'--threa
 	only in.obj
 done
 
-scene "a missing value is named"
-run a b --threads
-exits 1
-says "--threads"
-
-scene "combinations that cannot be are refused"
-run -q -v a b
-exits 1
-says "--quiet and --verbose"
-run --check --in-place a
-exits 1
-says "--in-place"
-run -n --in-place a
-exits 1
-says "--no-clobber"
-run --embed --output-format=ply a b
-exits 1
-says "'ply'"
-
-scene "one name is too few and three are too many"
-run only.obj
-exits 1
-says "only.obj"
-run a b third.obj
-exits 1
-says "third.obj"
-
 scene "an output name that tells no format is refused before the input is read"
 run "$data/quad.obj" out.xyz
 exits 1

@@ -8,6 +8,9 @@
 #include <stddef.h>
 #include <stdio.h>
 
+/* What the system calls the processor. */
+const char *measure_processor(void);
+
 /* Seconds of the wall's clock. */
 double measure_seconds(void);
 
