@@ -63,22 +63,12 @@ outsider() {
 # A document of three buffers, of which two change, and two images of one name.
 many_files() {
 	mkdir -p in/x in/y
-	python3 - "$data" in <<'END'
-import json, os, sys
-data, folder = sys.argv[1:]
-g = json.load(open(os.path.join(data, 'plates.gltf')))
-whole = open(os.path.join(data, 'plates.bin'), 'rb').read()
-for i in range(3):
-    open(os.path.join(folder, 'b%d.bin' % i), 'wb').write(whole)
-g['buffers'] = [dict(g['buffers'][0], uri='b%d.bin' % i) for i in range(3)]
-g['images'] = [{'uri': 'x/n.png'}, {'uri': 'y/n.png'}]
-for i in range(2):
-    open(os.path.join(folder, 'xy'[i], 'n.png'), 'wb').write(b'\x89PNG\r\n\x1a\n' + bytes([i]) * 40)
-# each primitive has four accessors, each accessor a view
-for v, view in enumerate(g['bufferViews']):
-    view['buffer'] = v // 4
-json.dump(g, open(os.path.join(folder, 'm.gltf'), 'w'), indent=1)
-END
+	for image in x y; do printf '\x89PNG\r\n\x1a\n%s' $image >in/$image/n.png; done
+	gltf "$data/plates.gltf" in/m 'g.images = [{uri: "x/n.png"}, {uri: "y/n.png"}];
+		for (const i of [1, 2])
+			bytes[g.buffers.push({}) - 1] = bytes[0];
+		/* each primitive has four accessors, each accessor a view */
+		g.bufferViews.forEach((view, v) => { view.buffer = v >> 2; })'
 }
 
 # An OBJ with a normal map of these bytes.
@@ -458,12 +448,9 @@ same b.glb "$data/plates.glb"
 only a.glb b.glb
 
 scene "in place, the refusal comes before anything is decoded, and what needs nothing is left alone"
-python3 - "$data/plates.glb" <<'END'
-import struct, sys
-data = open(sys.argv[1], 'rb').read()
-at = 28 + struct.unpack_from('<I', data, 12)[0]
-open('a.glb', 'wb').write(data[:at] + b'\xff' * (len(data) - at))
-END
+begin=$((28 + $(od -An -t u4 -j 12 -N 4 "$data/plates.glb")))
+head -c "$begin" "$data/plates.glb" >a.glb
+head -c $(($(stat -c %s "$data/plates.glb") - begin)) /dev/zero | tr '\0' '\377' >>a.glb
 run --in-place a.glb
 exits 3
 chmod 444 a.glb
