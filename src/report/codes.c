@@ -162,6 +162,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"follow, and was left as it is.",
 		"Make what the extension holds again from the output, or split the vertices before nmtan does.",
 		"a primitive whose extension names an accessor with one element for each vertex"),
+	ROW(POLYGONS_DROPPED, INFO, "{detail} is not in the output: it would not say the same polygons",
+		"The extension marks triangles that follow each other as one polygon where their first index is "
+		"equal. A first vertex that needs several tangents is copied, or Draco gives triangles another order.",
+		"Nothing, unless polygons are read from the output; the input still has them.",
+		"two triangles with equal first index and a mirror seam between them, marked by FB_ngon_encoding"),
 	ROW(DRACO_PLAIN, WARNING, "the primitive is written without Draco compression",
 		"--draco asks for compression, or the input's primitive is compressed, but a Draco block cannot hold "
 		"what it has now: vertices shared with other primitives, strips or fans, sparse accessors, or "

@@ -36,11 +36,19 @@ static enum nt_half form_of(const nt_mesh *mesh, size_t t)
 	return NT_HALF_NONE;
 }
 
+/* The first vertex of a triangle, as the file has it. */
+static uint32_t first_of(const nt_mesh *mesh, size_t t)
+{
+	const uint32_t vertex = vertex_of(mesh, 3 * t);
+	return mesh->vertex_sources && vertex >= mesh->source_vertex_count
+		? mesh->vertex_sources[vertex - mesh->source_vertex_count] : vertex;
+}
+
 /* Triangles from t on that FB_ngon_encoding has as one polygon. */
 static size_t polygon_size(const nt_mesh *mesh, size_t t)
 {
 	size_t end = t + 1;
-	while (end < mesh->face_count && vertex_of(mesh, 3 * end) == vertex_of(mesh, 3 * t))
+	while (end < mesh->face_count && first_of(mesh, end) == first_of(mesh, t))
 		end++;
 	return end - t;
 }

@@ -52,6 +52,7 @@ typedef struct nt_buffer_edits {
 	nt_edited_buffer *virtuals; /* [view_count] of decompressed views */
 	nt_byte_users users;        /* of the source */
 	uint32_t alignment;         /* insertions are multiples of this */
+	bool polygons_dropped;      /* a primitive lost FB_ngon_encoding */
 
 	/* For appending to the attributes of one pool after the other. An attribute belongs to one pool, so that
 	 * nothing has to be emptied in between; bytes may be another pool's too. */

@@ -342,6 +342,7 @@ static nt_status edit_pools(const editing *e)
 	for (size_t first = 0; !status && first < e->pools->count;)
 		status = edit_window(e, window, list, &first, &plain);
 	nt_gltf_drop_draco(e->scene);
+	nt_gltf_drop_polygons(e->edits);
 	if (!status && plain && e->options->precision != NT_PRECISION_FLOAT) {
 		nt_gltf_list_extension(document, "extensionsUsed", NT_GLTF_QUANTIZATION);
 		nt_gltf_list_extension(document, "extensionsRequired", NT_GLTF_QUANTIZATION);

@@ -2,17 +2,19 @@
 /*
  * Extensions of primitives and meshes whose vertices were copied. What a known one says is computed in
  * gltf/extensions; here it is read from the document and stored in it. The accessor of an outline stays as it is,
- * since others may use it, and the primitive gets another.
+ * since others may use it, and the primitive gets another. FB_ngon_encoding, a mark that says which triangles are one
+ * polygon, goes where it would not say the same any more.
  */
 
 #include "gltf/accessor.h"
+#include "gltf/edit/extensions.h"
 #include "gltf/edit/manifold.h"
 #include "gltf/edit/new_accessors.h"
 #include "gltf/extensions/outline.h"
 #include "gltf/extensions/references.h"
 #include "gltf/pointer.h"
 
-static const char outline_name[] = "CESIUM_primitive_outline";
+static const char outline_name[] = "CESIUM_primitive_outline", polygons_name[] = "FB_ngon_encoding";
 
 /* The outline of a user, NULL where it has none. */
 static nt_json_value *outline_of(const nt_vertex_pool *pool, size_t user)
@@ -71,6 +73,46 @@ static void report_outline(nt_scene *scene, const nt_mesh *mesh)
 		outline_name);
 }
 
+/* Whether triangles that follow each other have one first vertex where they had, and nowhere else. */
+static bool keeps_polygons(const nt_pool_vertices *vertices, size_t user)
+{
+	const uint32_t *indices = vertices->indices[user];
+	const size_t count = nt_pool_mesh(vertices->pool, user)->corner_count;
+	for (size_t c = 3; indices && c < count; c += 3)
+		if (indices[c] != indices[c - 3] &&
+			nt_vertex_source(vertices, indices[c]) == nt_vertex_source(vertices, indices[c - 3]))
+			return false;
+	return true;
+}
+
+static void drop_polygons(nt_scene *scene, nt_buffer_edits *edits, nt_json_value *primitive, const nt_mesh *mesh)
+{
+	nt_json *json = edits->document->json;
+	nt_json_value *extensions = nt_json_find(primitive, "extensions");
+	nt_json_remove(json, extensions, polygons_name);
+	if (nt_json_count(extensions) == 0)
+		nt_json_remove(json, primitive, "extensions");
+	edits->polygons_dropped = true;
+	nt_finding_add(&scene->findings, NT_CODE_POLYGONS_DROPPED, nt_mesh_place(mesh, &(nt_place){0}), 1, "%s",
+		polygons_name);
+}
+
+void nt_gltf_drop_polygons(const nt_buffer_edits *edits)
+{
+	nt_gltf *document = edits->document;
+	const nt_json_value *meshes = nt_gltf_root_member(document, "meshes");
+	if (!edits->polygons_dropped)
+		return;
+	for (size_t i = 0; i < nt_json_count(meshes); i++) {
+		const nt_json_value *primitives = nt_json_find(nt_json_at(meshes, i), "primitives");
+		for (size_t k = 0; k < nt_json_count(primitives); k++)
+			if (nt_json_find(nt_json_find(nt_json_at(primitives, k), "extensions"), polygons_name))
+				return;
+	}
+	nt_gltf_remove_extension(document, "extensionsRequired", polygons_name);
+	nt_gltf_remove_extension(document, "extensionsUsed", polygons_name);
+}
+
 nt_status nt_gltf_follow_vertices(nt_buffer_edits *edits, uint32_t buffer, nt_scene *scene,
 	nt_pool_vertices *vertices, bool compressed, nt_error *error)
 {
@@ -86,6 +128,10 @@ nt_status nt_gltf_follow_vertices(nt_buffer_edits *edits, uint32_t buffer, nt_sc
 			report_outline(scene, mesh);
 		else if (outline && vertices->changed[i])
 			status = follow_outline(edits, buffer, vertices, i, outline, error);
+		nt_json_value *primitive = nt_pool_primitive(pool, i);
+		if (nt_pool_is_solved(pool, i) && nt_json_find(nt_json_find(primitive, "extensions"), polygons_name) &&
+			(compressed || !keeps_polygons(vertices, i)))
+			drop_polygons(scene, edits, primitive, mesh);
 		if (!status && nt_extension_references(scene, mesh, vertices->old_count, mesh->gltf_mesh != last_mesh))
 			status = nt_fail_memory(error);
 		last_mesh = mesh->gltf_mesh;
