@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Extensions that refer to vertices, when vertices are copied.
 . "$ROOT/tests/support/cli.sh"
+. "$ROOT/tests/support/manifold.sh"
 
 # Two quads that meet at x = 1 with mirrored texture coordinates, so that the vertices there get copies. $1: the
 # primitive's extensions, $2: the mesh's, $3: the scene's. Accessor 4 lists all edges of the outline, 5 has a number
@@ -47,11 +48,6 @@ says "/meshes/0/primitives/0/extensions/VENDOR_weights/a/0/of"
 says "VENDOR_weights refers to vertices"
 says_not VENDOR_other
 
-# A box that is a manifold of two primitives; $1: what its extension has otherwise.
-manifold_gltf() {
-	python3 "$ROOT/tests/support/gltf_manifold.py" in.gltf "$@"
-}
-
 # Prints "manifold" when the extension of $1 says what the specification asks for, and as many merges as there are.
 manifold_of() {
 	gltf "$1" '(() => {
@@ -83,7 +79,7 @@ merges_copies() {
 }
 
 scene "EXT_mesh_manifold: the manifold stays one, its merges follow"
-manifold_gltf '{}'
+manifold_gltf in
 is "$(manifold_of in.gltf)" "manifold 4 4"
 run --only=all --embed in.gltf out.gltf
 exits 0
@@ -107,7 +103,7 @@ valid out.glb
 
 scene "a mesh that is not as EXT_mesh_manifold demands gives a warning that says why"
 while IFS='|' read -r members why; do
-	manifold_gltf "$members"
+	manifold_gltf in "$members"
 	run --existing=replace --only=all in.gltf out.gltf
 	exits 0
 	says "/meshes/0/extensions/EXT_mesh_manifold"
@@ -119,11 +115,10 @@ done <<'END'
 {"manifoldPrimitive": {"indices": 4, "attributes": {"POSITION": 0}}}|a primitive of which has other indices than the manifold
 {"manifoldPrimitive": {"indices": 3, "attributes": {"POSITION": 1}}}|a primitive of which has another POSITION than the manifold
 END
-manifold_gltf '{}'
-sed -i 's/"indices": 7/"indices": 6/' in.gltf
+manifold_gltf in
+gltf in.gltf in 'g.meshes[0].primitives[1].indices = 6'
 run --existing=replace --only=all in.gltf out.gltf
 says "EXT_mesh_manifold, whose manifold has other triangles than its primitives, refers to vertices"
-manifold_gltf '{}'
 mirrored_gltf '{}' '{"EXT_mesh_manifold": {}}' '{}'
 run --existing=replace --only=all --draco=sequential in.gltf out.gltf
 exits 0

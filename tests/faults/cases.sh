@@ -7,6 +7,7 @@
 #                                  "shorten" for an input that becomes empty; bad runs on standard output, then one
 #                                  line for each kind: tried and bad
 faults=$BUILD/tests/faults
+. "$ROOT/tests/support/manifold.sh"
 
 make_inputs() {
 	mkdir -p "$WORK/in" && cd "$WORK/in" || return 1
@@ -15,7 +16,7 @@ make_inputs() {
 		"$ROOT"/data/sparse.gltf .
 	python3 "$ROOT/tests/support/cost_inputs.py" windows 20 windows.glb 12 || return 1
 	printf 'quad.obj\nplates.glb\n' >list
-	python3 "$ROOT/tests/support/gltf_manifold.py" manifold.gltf || return 1
+	manifold_gltf manifold || return 1
 	"$NMTAN" -q --update --update-by=content plates.gltf current.gltf || return 1
 	make_images &&
 	"$NMTAN" -q --draco=sequential plates.gltf draco.glb && "$NMTAN" -q --draco=edgebreaker morph.gltf edge.gltf &&
@@ -57,7 +58,7 @@ cases() {
 		across | windows.glb || --across=mesh --only=all --verify windows.glb o.glb
 		sparse | sparse.gltf || sparse.gltf o.glb
 		quantized | quantized.gltf || --precision=short quantized.gltf o.glb
-		extensions | manifold.gltf || --only=all manifold.gltf o.gltf
+		extensions | manifold.gltf manifold.bin || --only=all manifold.gltf o.gltf
 		skin, draco out | skin.gltf || --draco=sequential skin.gltf o.glb
 		edgebreaker out | plates.glb || --threads=2 --draco=edgebreaker --bitangents plates.glb o.glb
 		draco | draco.glb bumps.png || --threads=2 --existing=replace --verify draco.glb o.gltf

@@ -31,14 +31,6 @@ static oracle_weight weight_of(nmtan_method method)
 						: ORACLE_ANGLE;
 }
 
-static size_t triangle_count(const nmtan_mesh *mesh)
-{
-	size_t count = mesh->face_count;
-	for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
-		count += mesh->face_sizes[f] == 4;
-	return count;
-}
-
 /* Runs a method with a warm workspace, one thread, until 4 ms or 3 runs have passed; the best run counts. */
 static bool run(const nmtan_mesh *mesh, const column *c, nmtan_workspace *workspace, float *tangents,
 	uint8_t *faults, score *s)
@@ -57,7 +49,7 @@ static bool run(const nmtan_mesh *mesh, const column *c, nmtan_workspace *worksp
 		total += took;
 		best = fmin(best, took);
 	}
-	s->ns_per_triangle = 1e9 * best / (double)triangle_count(mesh);
+	s->ns_per_triangle = 1e9 * best / (double)oracle_triangle_count(mesh);
 	return nmtan_tangents(mesh, &options, &named, NULL) == NMTAN_OK;
 }
 
