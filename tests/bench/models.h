@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Real meshes to measure on, and stand-ins of the same kind where there are none.
+ * Real meshes to measure on, and stand-ins where there are none.
  */
 #ifndef NT_BENCH_MODELS_H
 #define NT_BENCH_MODELS_H
