@@ -28,9 +28,8 @@ static nmtan_status solve(const nmtan_mesh *mesh, const nmtan_options *options)
 	return nmtan_tangents(mesh, options, &output, NULL);
 }
 
-static void missing_arrays_are_argument_errors(void **state)
+TEST(missing_arrays_are_argument_errors)
 {
-	(void)state;
 	float tangents[8][4];
 	nmtan_output output = NMTAN_OUTPUT_INIT;
 	nmtan_mesh mesh = square();
@@ -48,9 +47,8 @@ static void missing_arrays_are_argument_errors(void **state)
 	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
 }
 
-static void strides_must_hold_a_row_and_keep_alignment(void **state)
+TEST(strides_must_hold_a_row_and_keep_alignment)
 {
-	(void)state;
 	nmtan_mesh mesh = square();
 	assert_int_equal(solve(&mesh, NULL), NMTAN_OK);
 	mesh.position_stride_bytes = 8;
@@ -60,9 +58,8 @@ static void strides_must_hold_a_row_and_keep_alignment(void **state)
 	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
 }
 
-static void options_out_of_range_are_argument_errors(void **state)
+TEST(options_out_of_range_are_argument_errors)
 {
-	(void)state;
 	const nmtan_mesh mesh = square();
 	nmtan_options wrong = NMTAN_OPTIONS_INIT;
 	assert_int_equal(solve(&mesh, &wrong), NMTAN_OK);
@@ -81,9 +78,8 @@ static void options_out_of_range_are_argument_errors(void **state)
 	assert_int_equal(solve(&mesh, &wrong), NMTAN_OK);
 }
 
-static void stored_offset_must_be_finite(void **state)
+TEST(stored_offset_must_be_finite)
 {
-	(void)state;
 	nmtan_stored_uv stored = NMTAN_STORED_UV_INIT;
 	nmtan_mesh mesh = square();
 	mesh.stored = &stored;
@@ -94,9 +90,8 @@ static void stored_offset_must_be_finite(void **state)
 	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
 }
 
-static void faces_and_indices_are_checked(void **state)
+TEST(faces_and_indices_are_checked)
 {
-	(void)state;
 	nmtan_mesh mesh = square();
 	const uint32_t beyond[6] = {0, 1, 2, 0, 2, 4};
 	mesh.indices = beyond;
@@ -116,9 +111,8 @@ static void faces_and_indices_are_checked(void **state)
 	assert_int_equal(solve(&mesh, NULL), NMTAN_OK);
 }
 
-static void split_checks_its_arguments_too(void **state)
+TEST(split_checks_its_arguments_too)
 {
-	(void)state;
 	const nmtan_mesh mesh = square();
 	float tangents[6][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {-1, 0, 0, 1}, {1, 0, 0, 1},
 		{1, 0, 0, 1}};
@@ -135,9 +129,8 @@ static void split_checks_its_arguments_too(void **state)
 	assert_int_equal(out[3], 4);
 }
 
-static void vertex_tangents_check_their_arguments_too(void **state)
+TEST(vertex_tangents_check_their_arguments_too)
 {
-	(void)state;
 	const nmtan_mesh mesh = square();
 	float tangents[4][4];
 	uint32_t out[6], sources[1];
@@ -162,9 +155,8 @@ static void vertex_tangents_check_their_arguments_too(void **state)
 }
 
 /* Rows that nmtan_split() reads only for vertices without corners have to be sound all the same. */
-static void split_checks_the_stride_of_normals(void **state)
+TEST(split_checks_the_stride_of_normals)
 {
-	(void)state;
 	const float tangents[6][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1},
 		{1, 0, 0, 1}};
 	float vertex_tangents[4][4];
@@ -204,9 +196,8 @@ static void limited_release(void *user, void *block, size_t size)
 }
 
 /* What a square needs lies on the stack, so there are many: they take blocks from the allocator. */
-static void exhausted_memory_is_told_and_nothing_leaks(void **state)
+TEST(exhausted_memory_is_told_and_nothing_leaks)
 {
-	(void)state;
 	enum { SQUARES = 5000 };
 	static unsigned many[SQUARES][6];
 	static float tangents[6 * SQUARES][4];
@@ -258,9 +249,8 @@ static void owned_release(void *user, void *block, size_t size)
 }
 
 /* A mesh that is large enough for several threads: 20 000 triangles, every third one mirrored. */
-static void allocator_is_called_by_the_calling_thread_alone(void **state)
+TEST(allocator_is_called_by_the_calling_thread_alone)
 {
-	(void)state;
 	enum { TRIANGLES = 20000, CORNERS = 3 * TRIANGLES };
 	float (*p)[8] = calloc(CORNERS, sizeof *p), (*tangents)[4] = malloc(2 * CORNERS * sizeof *tangents);
 	uint32_t *out = malloc(CORNERS * sizeof *out), *sources = malloc(CORNERS * sizeof *sources);
@@ -292,9 +282,8 @@ static void allocator_is_called_by_the_calling_thread_alone(void **state)
 }
 
 /* A workspace keeps its memory from call to call and gives it back at its end. */
-static void workspace_is_reused_and_returned(void **state)
+TEST(workspace_is_reused_and_returned)
 {
-	(void)state;
 	const nmtan_mesh mesh = square();
 	limited l = {.left = 100};
 	const nmtan_allocator allocator = {limited_allocate, limited_release, &l};
@@ -311,9 +300,8 @@ static void workspace_is_reused_and_returned(void **state)
 	assert_int_equal(l.bytes_out, 0);
 }
 
-static void statuses_have_texts(void **state)
+TEST(statuses_have_texts)
 {
-	(void)state;
 	for (int status = NMTAN_OK; status <= NMTAN_ERROR_MEMORY; status++)
 		assert_string_not_equal(nmtan_status_text((nmtan_status)status), "unknown status");
 	assert_string_equal(nmtan_status_text((nmtan_status)1000), "unknown status");
@@ -323,19 +311,5 @@ static void statuses_have_texts(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(missing_arrays_are_argument_errors),
-		cmocka_unit_test(strides_must_hold_a_row_and_keep_alignment),
-		cmocka_unit_test(options_out_of_range_are_argument_errors),
-		cmocka_unit_test(stored_offset_must_be_finite),
-		cmocka_unit_test(faces_and_indices_are_checked),
-		cmocka_unit_test(split_checks_its_arguments_too),
-		cmocka_unit_test(vertex_tangents_check_their_arguments_too),
-		cmocka_unit_test(split_checks_the_stride_of_normals),
-		cmocka_unit_test(exhausted_memory_is_told_and_nothing_leaks),
-		cmocka_unit_test(allocator_is_called_by_the_calling_thread_alone),
-		cmocka_unit_test(workspace_is_reused_and_returned),
-		cmocka_unit_test(statuses_have_texts),
-	};
-	return cmocka_run_group_tests_name("api/arguments", tests, NULL, NULL);
+	return run_group("api/arguments");
 }

@@ -36,9 +36,8 @@ static void expect(const uint8_t faults[3], uint8_t expected)
 
 static const float flat[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, up[3] = {0, 0, 1}, square[6] = {0, 0, 1, 0, 0, 1};
 
-static void a_corner_in_order_has_no_bit(void **state)
+TEST(a_corner_in_order_has_no_bit)
 {
-	(void)state;
 	uint8_t faults[3];
 	for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_MIKKTSPACE_SORTED; method++) {
 		faults_of(flat, up, square, NULL, (nmtan_method)method, faults);
@@ -46,9 +45,8 @@ static void a_corner_in_order_has_no_bit(void **state)
 	}
 }
 
-static void every_reason_has_its_bit(void **state)
+TEST(every_reason_has_its_bit)
 {
-	(void)state;
 	static const float nowhere[6] = {0, 0, 0, 0, 0, 0}, turned[6] = {0, 0, -1, 0, 0, 1};
 	/* its determinant is 0 in float, not in truth: the triangle has a frame */
 	static const float thin[6] = {0, 0, 1.05f, 0.9f, 0.35f, 0.3f};
@@ -80,9 +78,8 @@ static void normal_beside_u(float angle, float n[3])
 }
 
 /* By 1e-6 to 1e-4 radians: what float leaves of the projection is rounded to 2^-24. */
-static void a_direction_that_float_lost_is_leaning(void **state)
+TEST(a_direction_that_float_lost_is_leaning)
 {
-	(void)state;
 	size_t leaning = 0;
 	for (int i = 1; i <= 100; i++) {
 		float n[3];
@@ -96,9 +93,8 @@ static void a_direction_that_float_lost_is_leaning(void **state)
 }
 
 /* 24 bits cancel at 2^-24 radians. Robust's answer is unit and across them, and says that it is ill-conditioned. */
-static void robust_tells_which_corners_are_ill_conditioned(void **state)
+TEST(robust_tells_which_corners_are_ill_conditioned)
 {
-	(void)state;
 	const float beside[3] = {0, -1e-9f, 1}, along_z[9] = {0, 0, 0, 0, 0, 1, 0, 1, 0};
 	float n[3];
 	uint8_t faults[3];
@@ -176,9 +172,8 @@ static void check_counts(const uint8_t *faults, size_t count, const nmtan_counts
 	}
 }
 
-static void bits_are_what_is_counted_and_other_corners_keep_their_bytes(void **state)
+TEST(bits_are_what_is_counted_and_other_corners_keep_their_bytes)
 {
-	(void)state;
 	unsigned met = 0;
 	for (uint64_t seed = 1; seed <= 400; seed++) {
 		random_mesh m;
@@ -211,12 +206,5 @@ static void bits_are_what_is_counted_and_other_corners_keep_their_bytes(void **s
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_corner_in_order_has_no_bit),
-		cmocka_unit_test(every_reason_has_its_bit),
-		cmocka_unit_test(a_direction_that_float_lost_is_leaning),
-		cmocka_unit_test(robust_tells_which_corners_are_ill_conditioned),
-		cmocka_unit_test(bits_are_what_is_counted_and_other_corners_keep_their_bytes),
-	};
-	return cmocka_run_group_tests_name("api/corner_faults", tests, NULL, NULL);
+	return run_group("api/corner_faults");
 }

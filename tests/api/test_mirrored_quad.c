@@ -27,11 +27,15 @@ static const nmtan_mesh mesh = {
 	.texcoords = &texcoords[0][0],
 };
 
+static const nmtan_options mikktspace = NMTAN_OPTIONS_INIT;
+static const nmtan_options raw = {.struct_bytes = sizeof raw, .repair = NMTAN_REPAIR_OFF};
+static const nmtan_options area = {.struct_bytes = sizeof area, .method = NMTAN_METHOD_AREA};
+static const nmtan_options lengyel = {.struct_bytes = sizeof lengyel, .method = NMTAN_METHOD_LENGYEL};
+
 /* On the left u grows along +x, and B = cross(N, T) w must run along +y: w = +1. On the right u grows
  * along -x while v still grows along +y: cross((0,0,1), (-1,0,0)) = (0,-1,0), so w = -1. */
-static void tangents_follow_u_and_w_tells_the_mirrored_side(void **state)
+static void check_tangents(const nmtan_options *options)
 {
-	const nmtan_options *options = *state;
 	float tangents[12][4];
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
 	nmtan_counts counts = NMTAN_COUNTS_INIT;
@@ -46,11 +50,18 @@ static void tangents_follow_u_and_w_tells_the_mirrored_side(void **state)
 	assert_int_equal(counts.degenerate_texcoords, 0);
 }
 
+TEST(tangents_follow_u_and_w_tells_the_mirrored_side)
+{
+	check_tangents(&mikktspace);
+	check_tangents(&raw);
+	check_tangents(&area);
+	check_tangents(&lengyel);
+}
+
 /* The two vertices of the seam, 1 and 2, get a copy each, in the order in which the right side meets
  * them; nothing else changes. */
-static void seam_vertices_are_split_and_the_rest_stays(void **state)
+static void check_split(const nmtan_options *options)
 {
-	const nmtan_options *options = *state;
 	float tangents[12][4], vertex_tangents[18][4];
 	uint32_t indices[12], sources[12];
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
@@ -68,21 +79,26 @@ static void seam_vertices_are_split_and_the_rest_stays(void **state)
 		assert_memory_equal(vertex_tangents[indices[c]], tangents[c], sizeof tangents[c]);
 }
 
+TEST(seam_vertices_are_split_and_the_rest_stays)
+{
+	check_split(&mikktspace);
+	check_split(&area);
+}
+
 /* The same mesh with all tangents at vertex 2 made different: its corners 2, 4 and 11 need two copies, and the
  * count that comes before everything else says so. */
-static void copies_are_counted_before_there_is_room_for_them(void **state)
+TEST(copies_are_counted_before_there_is_room_for_them)
 {
-	const nmtan_options *options = *state;
 	float tangents[12][4];
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
-	assert_int_equal(nmtan_tangents(&mesh, options, &output, NULL), NMTAN_OK);
+	assert_int_equal(nmtan_tangents(&mesh, &mikktspace, &output, NULL), NMTAN_OK);
 	tangents[4][0] = 0.5f;
 	const uint32_t expected[6] = {0, 1, 2, 0, 0, 0};
 	uint32_t copy_counts[6], indices[12], sources[3];
 	memset(copy_counts, 0xff, sizeof copy_counts);
 	nmtan_split_output split = NMTAN_SPLIT_OUTPUT_INIT;
 	split.copy_counts = copy_counts;
-	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], options, &split), NMTAN_OK);
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], &mikktspace, &split), NMTAN_OK);
 	assert_int_equal(split.source_count, 3);
 	assert_memory_equal(copy_counts, expected, sizeof expected);
 
@@ -90,15 +106,15 @@ static void copies_are_counted_before_there_is_room_for_them(void **state)
 	split.indices = indices;
 	split.sources = sources;
 	split.source_capacity = split.source_count;
-	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], options, &split), NMTAN_OK);
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], &mikktspace, &split), NMTAN_OK);
 	assert_int_equal(split.source_count, 3);
 	assert_memory_equal(copy_counts, expected, sizeof expected);
 	split.source_capacity = 2;
-	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], options, &split), NMTAN_ERROR_TOO_LARGE);
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], &mikktspace, &split), NMTAN_ERROR_TOO_LARGE);
 }
 
 /* nmtan_vertex_tangents() counts them too. */
-static void a_solve_with_split_counts_copies(void **state)
+static void check_counts(const nmtan_options *options)
 {
 	uint32_t indices[12], sources[12], copy_counts[6];
 	float vertex_tangents[18][4];
@@ -106,27 +122,18 @@ static void a_solve_with_split_counts_copies(void **state)
 		.source_capacity = 12,
 		.vertex_tangents = &vertex_tangents[0][0], .copy_counts = copy_counts};
 	memset(copy_counts, 0xff, sizeof copy_counts);
-	assert_int_equal(nmtan_vertex_tangents(&mesh, *state, &split, NULL), NMTAN_OK);
+	assert_int_equal(nmtan_vertex_tangents(&mesh, options, &split, NULL), NMTAN_OK);
 	const uint32_t expected[6] = {0, 1, 1, 0, 0, 0};
 	assert_memory_equal(copy_counts, expected, sizeof expected);
 }
 
+TEST(a_solve_with_split_counts_copies)
+{
+	check_counts(&mikktspace);
+	check_counts(&area);
+}
+
 int main(void)
 {
-	static nmtan_options mikktspace = NMTAN_OPTIONS_INIT;
-	static nmtan_options raw = {.struct_bytes = sizeof raw, .repair = NMTAN_REPAIR_OFF};
-	static nmtan_options area = {.struct_bytes = sizeof area, .method = NMTAN_METHOD_AREA};
-	static nmtan_options lengyel = {.struct_bytes = sizeof lengyel, .method = NMTAN_METHOD_LENGYEL};
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_prestate(tangents_follow_u_and_w_tells_the_mirrored_side, &mikktspace),
-		cmocka_unit_test_prestate(tangents_follow_u_and_w_tells_the_mirrored_side, &raw),
-		cmocka_unit_test_prestate(tangents_follow_u_and_w_tells_the_mirrored_side, &area),
-		cmocka_unit_test_prestate(tangents_follow_u_and_w_tells_the_mirrored_side, &lengyel),
-		cmocka_unit_test_prestate(seam_vertices_are_split_and_the_rest_stays, &mikktspace),
-		cmocka_unit_test_prestate(seam_vertices_are_split_and_the_rest_stays, &area),
-		cmocka_unit_test_prestate(copies_are_counted_before_there_is_room_for_them, &mikktspace),
-		cmocka_unit_test_prestate(a_solve_with_split_counts_copies, &mikktspace),
-		cmocka_unit_test_prestate(a_solve_with_split_counts_copies, &area),
-	};
-	return cmocka_run_group_tests_name("api/mirrored_quad", tests, NULL, NULL);
+	return run_group("api/mirrored_quad");
 }

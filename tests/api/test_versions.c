@@ -112,9 +112,8 @@ static void expect(int which, size_t struct_bytes, size_t tail, nmtan_status exp
 	assert_int_equal(split(&c), t.by_split ? expected : NMTAN_OK);
 }
 
-static void size_that_is_none_is_an_argument_error(void **state)
+TEST(size_that_is_none_is_an_argument_error)
 {
-	(void)state;
 	for (int which = 0; which < STRUCTS; which++) {
 		expect(which, 0, 0, NMTAN_ERROR_ARGUMENT);
 		expect(which, sizeof(size_t) - 1, 0, NMTAN_ERROR_ARGUMENT);
@@ -123,9 +122,8 @@ static void size_that_is_none_is_an_argument_error(void **state)
 	}
 }
 
-static void newer_caller_is_served_while_it_asks_for_nothing_new(void **state)
+TEST(newer_caller_is_served_while_it_asks_for_nothing_new)
 {
-	(void)state;
 	for (int which = 0; which < STRUCTS; which++) {
 		expect(which, SIZE_MAX, 0, NMTAN_OK);
 		expect(which, SIZE_MAX, 1, NMTAN_ERROR_ARGUMENT);
@@ -134,9 +132,8 @@ static void newer_caller_is_served_while_it_asks_for_nothing_new(void **state)
 }
 
 /* Members that the caller does not have would be a bad offset, bad pointers, an impossible threshold. */
-static void older_caller_gets_defaults(void **state)
+TEST(older_caller_gets_defaults)
 {
-	(void)state;
 	void *const nowhere = (void *)(uintptr_t)0x10;
 	call c;
 	call_init(&c);
@@ -166,9 +163,8 @@ static void older_caller_gets_defaults(void **state)
 	assert_int_equal(solve(&c), NMTAN_ERROR_ARGUMENT);
 }
 
-static void no_more_is_written_than_the_caller_has(void **state)
+TEST(no_more_is_written_than_the_caller_has)
 {
-	(void)state;
 	call c;
 	call_init(&c);
 	memset(&c.counts, 0x5a, sizeof c.counts);
@@ -193,9 +189,8 @@ static void no_more_is_written_than_the_caller_has(void **state)
 }
 
 /* A macro whose list of members is not complete is a warning of the compiler; here: they mean what they say. */
-static void macros_are_a_size_and_defaults(void **state)
+TEST(macros_are_a_size_and_defaults)
 {
-	(void)state;
 	const nmtan_mesh mesh = NMTAN_MESH_INIT;
 	const nmtan_options options = NMTAN_OPTIONS_INIT;
 	const nmtan_counts counts = NMTAN_COUNTS_INIT;
@@ -219,12 +214,5 @@ static void macros_are_a_size_and_defaults(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(size_that_is_none_is_an_argument_error),
-		cmocka_unit_test(newer_caller_is_served_while_it_asks_for_nothing_new),
-		cmocka_unit_test(older_caller_gets_defaults),
-		cmocka_unit_test(no_more_is_written_than_the_caller_has),
-		cmocka_unit_test(macros_are_a_size_and_defaults),
-	};
-	return cmocka_run_group_tests_name("api/versions", tests, NULL, NULL);
+	return run_group("api/versions");
 }

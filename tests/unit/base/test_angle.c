@@ -4,9 +4,8 @@
 #include "base/angle.h"
 
 /* atan2 of the C library, which glibc computes to less than one unit in the last place, is the judge. */
-static void angle_is_atan2_to_three_ulps(void **state)
+TEST(angle_is_atan2_to_three_ulps)
 {
-	(void)state;
 	for (int i = 0; i <= 200000; i++) {
 		const double a = 3.14159265358979323846 * i / 200000.0;
 		const double s = sin(a) * (1 + i % 7), c = cos(a) * (1 + i % 7);
@@ -15,18 +14,16 @@ static void angle_is_atan2_to_three_ulps(void **state)
 	}
 }
 
-static void tiny_angles_keep_their_relative_precision(void **state)
+TEST(tiny_angles_keep_their_relative_precision)
 {
-	(void)state;
 	for (int e = -300; e < 0; e += 7) {
 		const double t = ldexp(1.25, e);
 		assert_true(fabs(nt_angle(t, 1) / atan(t) - 1) < 4e-16);
 	}
 }
 
-static void axes_and_nonsense_have_their_values(void **state)
+TEST(axes_and_nonsense_have_their_values)
 {
-	(void)state;
 	assert_true(nt_angle(0, 1) == 0.0);
 	assert_true(nt_angle(1, 0) == 1.57079632679489661923);
 	assert_true(nt_angle(0, -1) == 3.14159265358979323846);
@@ -36,9 +33,8 @@ static void axes_and_nonsense_have_their_values(void **state)
 }
 
 /* To 2^-50 of itself, for points a little off the circle too: the caller's sine and cosine are rounded. */
-static void angle_of_a_point_on_the_circle_is_atan2(void **state)
+TEST(angle_of_a_point_on_the_circle_is_atan2)
 {
-	(void)state;
 	for (int i = 0; i <= 200000; i++) {
 		const double a = 3.14159265358979323846 * i / 200000.0;
 		const double s = fabs(sin(a)), c = cos(a), scale = 1 + (i % 3 - 1) * 4.4e-16;
@@ -55,11 +51,5 @@ static void angle_of_a_point_on_the_circle_is_atan2(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(angle_is_atan2_to_three_ulps),
-		cmocka_unit_test(tiny_angles_keep_their_relative_precision),
-		cmocka_unit_test(axes_and_nonsense_have_their_values),
-		cmocka_unit_test(angle_of_a_point_on_the_circle_is_atan2),
-	};
-	return cmocka_run_group_tests_name("base/angle", tests, NULL, NULL);
+	return run_group("base/angle");
 }

@@ -7,17 +7,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static void it_is_at_most_what_the_machine_has(void **state)
+TEST(it_is_at_most_what_the_machine_has)
 {
-	(void)state;
 	const uint64_t pages = (uint64_t)sysconf(_SC_PHYS_PAGES), page = (uint64_t)sysconf(_SC_PAGESIZE);
 	assert_true(nt_memory_available() > 0);
 	assert_true(nt_memory_available() <= pages * page);
 }
 
-static void a_limit_of_the_address_space_counts(void **state)
+TEST(a_limit_of_the_address_space_counts)
 {
-	(void)state;
 	struct rlimit before, limit;
 	assert_int_equal(getrlimit(RLIMIT_AS, &before), 0);
 	limit = before;
@@ -29,9 +27,8 @@ static void a_limit_of_the_address_space_counts(void **state)
 }
 
 /* What a list of groups means where these are the limits of version 2 at the root, /a and /a/b, and of version 1. */
-static void the_least_limit_of_the_groups_above_counts(void **state)
+TEST(the_least_limit_of_the_groups_above_counts)
 {
-	(void)state;
 	static const struct {
 		const char *list;
 		uint64_t expected;
@@ -56,10 +53,5 @@ static void the_least_limit_of_the_groups_above_counts(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(it_is_at_most_what_the_machine_has),
-		cmocka_unit_test(a_limit_of_the_address_space_counts),
-		cmocka_unit_test(the_least_limit_of_the_groups_above_counts),
-	};
-	return cmocka_run_group_tests_name("base/available", tests, make_folder, remove_folder);
+	return run_group_within("base/available", make_folder, remove_folder);
 }

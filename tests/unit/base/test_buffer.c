@@ -3,9 +3,8 @@
 #include "fail_alloc.h"
 #include "test.h"
 
-static void pieces_follow_one_another(void **state)
+TEST(pieces_follow_one_another)
 {
-	(void)state;
 	nt_buffer buffer = {0};
 	nt_buffer_text(&buffer, "");
 	nt_buffer_text(&buffer, "a");
@@ -19,18 +18,16 @@ static void pieces_follow_one_another(void **state)
 }
 
 /* ESC would speak to the terminal; bytes of UTF-8 are above all controls. */
-static void control_characters_are_shown_as_numbers(void **state)
+TEST(control_characters_are_shown_as_numbers)
 {
-	(void)state;
 	nt_buffer buffer = {0};
 	nt_buffer_clean(&buffer, "\x1b[31m\t\x7f\xc3\xa4 \n");
 	assert_string_equal(buffer.data, "\\x1b[31m\\x09\\x7f\xc3\xa4 \\x0a");
 	nt_buffer_free(&buffer);
 }
 
-static void exhausted_memory_is_remembered_and_keeps_what_came_before(void **state)
+TEST(exhausted_memory_is_remembered_and_keeps_what_came_before)
 {
-	(void)state;
 	nt_buffer buffer = {0};
 	nt_buffer_text(&buffer, "kept");
 	fail_allocations_from(0);
@@ -43,9 +40,8 @@ static void exhausted_memory_is_remembered_and_keeps_what_came_before(void **sta
 	nt_buffer_free(&buffer);
 }
 
-static void reserved_room_needs_no_memory_later(void **state)
+TEST(reserved_room_needs_no_memory_later)
 {
-	(void)state;
 	nt_buffer buffer = {0};
 	assert_true(nt_buffer_reserve(&buffer, 100));
 	assert_int_equal(buffer.size, 0);
@@ -62,9 +58,8 @@ static void reserved_room_needs_no_memory_later(void **state)
 	nt_buffer_free(&buffer);
 }
 
-static void a_failure_goes_over_to_the_other_buffer(void **state)
+TEST(a_failure_goes_over_to_the_other_buffer)
 {
-	(void)state;
 	nt_buffer inner = {0}, outer = {0};
 	nt_buffer_text(&inner, "x");
 	nt_buffer_free_into(&inner, &outer);
@@ -79,12 +74,5 @@ static void a_failure_goes_over_to_the_other_buffer(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(pieces_follow_one_another),
-		cmocka_unit_test(control_characters_are_shown_as_numbers),
-		cmocka_unit_test(exhausted_memory_is_remembered_and_keeps_what_came_before),
-		cmocka_unit_test(reserved_room_needs_no_memory_later),
-		cmocka_unit_test(a_failure_goes_over_to_the_other_buffer),
-	};
-	return cmocka_run_group_tests_name("base/buffer", tests, NULL, NULL);
+	return run_group("base/buffer");
 }

@@ -21,9 +21,8 @@ static bool linux_names(const char *const *flags)
 }
 
 /* A set that is not told is not used, and nothing but the time would show it. */
-static void the_kernel_says_the_same(void **state)
+TEST(the_kernel_says_the_same)
 {
-	(void)state;
 	static const char *const avx2[] = {" avx2 ", " fma ", NULL};
 	static const char *const avx512[] = {" avx512f ", " avx512bw ", " avx512dq ", " avx512vl ", " fma ", NULL};
 	assert_true(nt_cpu_has(NT_ISA_AUTO) && nt_cpu_has(NT_ISA_BASELINE));
@@ -35,8 +34,5 @@ static void the_kernel_says_the_same(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(the_kernel_says_the_same),
-	};
-	return cmocka_run_group_tests_name("base/cpu", tests, NULL, NULL);
+	return run_group("base/cpu");
 }

@@ -7,9 +7,8 @@
 
 static const char *own_name;
 
-static void hashes_tell_texts_and_lengths_apart(void **state)
+TEST(hashes_tell_texts_and_lengths_apart)
 {
-	(void)state;
 	const uint64_t a = nt_hash_bytes(0, "abcde", 5);
 	assert_true(a == nt_hash_bytes(0, "abcdeX", 5));
 	assert_true(a != nt_hash_bytes(0, "abcdf", 5));
@@ -29,18 +28,16 @@ static void hashes_tell_texts_and_lengths_apart(void **state)
 }
 
 /* Written names are the same in each process. */
-static void names_have_no_key(void **state)
+TEST(names_have_no_key)
 {
-	(void)state;
 	assert_true(nt_hash_name(0, "") == 0x9e3779b97f4a7c15u);
 	/* one word, and then the upper half added to the lower by XOR */
 	const uint64_t product = (0x9e3779b97f4a7c15u ^ 1 ^ 'a') * 0xff51afd7ed558ccdu;
 	assert_true(nt_hash_name(0, "a") == (product ^ product >> 32));
 }
 
-static void equal_floats_have_equal_bits(void **state)
+TEST(equal_floats_have_equal_bits)
 {
-	(void)state;
 	assert_true(nt_hash_floats(0.0f, -0.0f) == nt_hash_floats(-0.0f, 0.0f));
 	assert_true(nt_hash_floats(1, 2) != nt_hash_floats(2, 1));
 }
@@ -57,9 +54,8 @@ static uint64_t hash_of_other_process(void)
 	return strtoull(line, NULL, 16);
 }
 
-static void processes_have_keys_of_their_own(void **state)
+TEST(processes_have_keys_of_their_own)
 {
-	(void)state;
 	const uint64_t own = nt_hash_bytes(0, "nmtan", 5), one = hash_of_other_process(), two = hash_of_other_process();
 	assert_true(own != one && own != two && one != two);
 }
@@ -83,9 +79,8 @@ static double mean_probes(const uint64_t *key, const uint64_t (*pairs)[2], size_
 }
 
 /* With any key, as what is random: linear probing needs 1.5 (Knuth 6.4). */
-static void structured_pairs_spread(void **state)
+TEST(structured_pairs_spread)
 {
-	(void)state;
 	enum { SIDE = 256, COUNT = SIDE * SIDE, FAMILIES = 5, KEYS = 50 };
 	uint64_t (*pairs)[2] = malloc(COUNT * sizeof *pairs), key[2] = {1, 2};
 	for (int family = 0; family < FAMILIES; family++)
@@ -117,15 +112,8 @@ static void structured_pairs_spread(void **state)
 
 int main(int argc, char **argv)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(hashes_tell_texts_and_lengths_apart),
-		cmocka_unit_test(names_have_no_key),
-		cmocka_unit_test(equal_floats_have_equal_bits),
-		cmocka_unit_test(processes_have_keys_of_their_own),
-		cmocka_unit_test(structured_pairs_spread),
-	};
 	own_name = argv[0];
 	if (argc > 1)
 		return printf("%016llx\n", (unsigned long long)nt_hash_bytes(0, "nmtan", 5)) < 0;
-	return cmocka_run_group_tests_name("base/hash", tests, NULL, NULL);
+	return run_group("base/hash");
 }

@@ -2,9 +2,8 @@
 #include "base/hash_index.h"
 #include "test.h"
 
-static void numbers_of_a_hash_come_in_the_order_of_adding(void **state)
+TEST(numbers_of_a_hash_come_in_the_order_of_adding)
 {
-	(void)state;
 	nt_hash_index index = {0};
 	/* the last place of every table is the home of hash ~0: its numbers run over to the first places */
 	const uint64_t hashes[] = {~(uint64_t)0, 0, 63};
@@ -20,9 +19,8 @@ static void numbers_of_a_hash_come_in_the_order_of_adding(void **state)
 	nt_hash_index_free(&index);
 }
 
-static void an_empty_index_has_nothing(void **state)
+TEST(an_empty_index_has_nothing)
 {
-	(void)state;
 	const nt_hash_index index = {0};
 	size_t at = NT_HASH_BEGIN;
 	assert_int_equal(nt_hash_index_next(&index, 7, &at), UINT32_MAX);
@@ -30,9 +28,5 @@ static void an_empty_index_has_nothing(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(numbers_of_a_hash_come_in_the_order_of_adding),
-		cmocka_unit_test(an_empty_index_has_nothing),
-	};
-	return cmocka_run_group_tests_name("base/hash_index", tests, NULL, NULL);
+	return run_group("base/hash_index");
 }

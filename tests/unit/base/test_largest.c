@@ -5,15 +5,13 @@
 #include "base/largest.h"
 #include "test.h"
 
-static void none_of_no_numbers(void **state)
+TEST(none_of_no_numbers)
 {
-	(void)state;
 	assert_int_equal(nt_largest(NULL, 0), 0);
 }
 
-static void few_numbers_at_every_place(void **state)
+TEST(few_numbers_at_every_place)
 {
-	(void)state;
 	uint32_t values[70];
 	for (size_t count = 1; count <= 70; count++) {
 		for (size_t at = 0; at < count; at++) {
@@ -29,9 +27,5 @@ static void few_numbers_at_every_place(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(none_of_no_numbers),
-		cmocka_unit_test(few_numbers_at_every_place),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return run_group("base/largest");
 }

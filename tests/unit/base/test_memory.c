@@ -6,9 +6,8 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-static void size_mul_overflow_is_told(void **state)
+TEST(size_mul_overflow_is_told)
 {
-	(void)state;
 	size_t product;
 	assert_true(nt_size_mul(SIZE_MAX / 8, 8, &product));
 	assert_int_equal(product, SIZE_MAX - 7);
@@ -17,9 +16,8 @@ static void size_mul_overflow_is_told(void **state)
 	assert_null(nt_calloc(SIZE_MAX / 8 + 1, 8));
 }
 
-static void grow_keeps_content_and_refuses_overflow(void **state)
+TEST(grow_keeps_content_and_refuses_overflow)
 {
-	(void)state;
 	uint32_t *block = NULL;
 	size_t capacity = 0;
 	for (uint32_t i = 0; i < 1000; i++) {
@@ -61,9 +59,8 @@ static bool is_advised(const char *at)
 	return advised;
 }
 
-static void large_blocks_end_with_a_large_page_where_that_is_little_more(void **state)
+TEST(large_blocks_end_with_a_large_page_where_that_is_little_more)
 {
-	(void)state;
 	enum { PAGE = 2 * 1024 * 1024 };
 	const size_t bytes[] = {4 * PAGE, 4 * PAGE - 4096, 7 * PAGE - PAGE / 2 /* a thirteenth more */};
 	char *blocks[3];
@@ -79,9 +76,8 @@ static void large_blocks_end_with_a_large_page_where_that_is_little_more(void **
 		assert_null(nt_alloc_large(SIZE_MAX - 4096));
 }
 
-static void arena_blocks_are_apart_and_aligned(void **state)
+TEST(arena_blocks_are_apart_and_aligned)
 {
-	(void)state;
 	nt_arena arena = {0};
 	unsigned char *blocks[300];
 	for (size_t i = 0; i < 300; i++) {
@@ -112,9 +108,8 @@ static void arena_blocks_are_apart_and_aligned(void **state)
 }
 
 /* 64 MB in small requests lie in few blocks; one large request does not make the next block large. */
-static void large_arenas_have_large_blocks(void **state)
+TEST(large_arenas_have_large_blocks)
 {
-	(void)state;
 	enum { REQUESTS = 64 * 1024, BYTES = 1024 };
 	nt_arena arena = {0};
 	size_t blocks = 0;
@@ -136,12 +131,5 @@ static void large_arenas_have_large_blocks(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(size_mul_overflow_is_told),
-		cmocka_unit_test(grow_keeps_content_and_refuses_overflow),
-		cmocka_unit_test(large_blocks_end_with_a_large_page_where_that_is_little_more),
-		cmocka_unit_test(arena_blocks_are_apart_and_aligned),
-		cmocka_unit_test(large_arenas_have_large_blocks),
-	};
-	return cmocka_run_group_tests_name("base/memory", tests, NULL, NULL);
+	return run_group("base/memory");
 }

@@ -3,9 +3,8 @@
 #include <stdio.h>
 #include "base/name_table.h"
 
-static void equal_names_have_one_number(void **state)
+TEST(equal_names_have_one_number)
 {
-	(void)state;
 	nt_name_table table = {0};
 	char texts[1000][8];
 	assert_int_equal(nt_name_find(&table, "a", 1), UINT32_MAX);
@@ -24,9 +23,8 @@ static void equal_names_have_one_number(void **state)
 	nt_name_table_free(&table);
 }
 
-static void text_becomes_utf8(void **state)
+TEST(text_becomes_utf8)
 {
-	(void)state;
 	static const struct {
 		const char *from, *to;
 	} cases[] = {
@@ -48,9 +46,5 @@ static void text_becomes_utf8(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(equal_names_have_one_number),
-		cmocka_unit_test(text_becomes_utf8),
-	};
-	return cmocka_run_group_tests_name("base/name_table", tests, NULL, NULL);
+	return run_group("base/name_table");
 }

@@ -16,9 +16,8 @@ static void note(void *context, unsigned slot)
 	strcat(context, digit);
 }
 
-static void the_caller_does_all_in_order(void **state)
+TEST(the_caller_does_all_in_order)
 {
-	(void)state;
 	char order[16] = "";
 	assert_int_equal(processors_alone(), 1);
 	run_alone(0, note, order);
@@ -30,6 +29,5 @@ static void the_caller_does_all_in_order(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {cmocka_unit_test(the_caller_does_all_in_order)};
-	return cmocka_run_group_tests_name("base/no_threads", tests, NULL, NULL);
+	return run_group("base/no_threads");
 }

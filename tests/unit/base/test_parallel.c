@@ -26,9 +26,8 @@ static void note_range(void *context, size_t begin, size_t end, unsigned slot)
 	r->calls[slot]++;
 }
 
-static void ranges_follow_one_another(void **state)
+TEST(ranges_follow_one_another)
 {
-	(void)state;
 	static const size_t counts[] = {0, 1, 2, 3, 7, 8, 63, 64, 65, 1000, SIZE_MAX};
 	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
 		for (unsigned threads = 0; threads <= MOST; threads = threads < 5 ? threads + 1 : threads * 2)
@@ -73,9 +72,8 @@ static void note_item(void *context, size_t item, unsigned slot)
 	atomic_fetch_sub(&s->inside[slot], 1);
 }
 
-static void items_come_once_and_slots_one_at_a_time(void **state)
+TEST(items_come_once_and_slots_one_at_a_time)
 {
-	(void)state;
 	static const size_t counts[] = {0, 1, 2, 3, 100, 1000};
 	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
 		for (unsigned threads = 1; threads <= 16; threads *= 2) {
@@ -89,9 +87,5 @@ static void items_come_once_and_slots_one_at_a_time(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(ranges_follow_one_another),
-		cmocka_unit_test(items_come_once_and_slots_one_at_a_time),
-	};
-	return cmocka_run_group_tests_name("base/parallel", tests, NULL, NULL);
+	return run_group("base/parallel");
 }

@@ -117,9 +117,9 @@ static bool two_slots_meet(void)
 
 /* ---- cases ---- */
 
-static void no_slot_and_one_slot_take_no_thread(void **state)
+/* First, while no thread is made yet. */
+TEST(no_slot_and_one_slot_take_no_thread)
 {
-	(void)state;
 	assert_true(each_slot_once(0));
 	assert_true(each_slot_once(1));
 	assert_int_equal(threads_made, 0);
@@ -156,18 +156,16 @@ static void solve_strip(size_t squares, unsigned threads, float *tangents)
 	free(corners);
 }
 
-static void small_meshes_make_no_thread(void **state)
+TEST(small_meshes_make_no_thread)
 {
-	(void)state;
 	static float tangents[4 * 6 * 500];
 	solve_strip(500, 8, tangents);
 	solve_strip(500, 0, tangents);
 	assert_int_equal(threads_made, 0);
 }
 
-static void slots_run_beside_one_another_and_threads_are_kept(void **state)
+TEST(slots_run_beside_one_another_and_threads_are_kept)
 {
-	(void)state;
 	assert_true(two_slots_meet());
 	assert_int_equal(threads_made, 1);
 	for (unsigned i = 0; i < 3000; i++) {
@@ -192,9 +190,8 @@ static void *run_regions(void *fault)
 	return NULL;
 }
 
-static void threads_may_go_wherever_their_maker_may(void **state)
+TEST(threads_may_go_wherever_their_maker_may)
 {
-	(void)state;
 	meeting m = {.fewest = UINT_MAX};
 	nt_pool_run(2, meet_anywhere, &m);
 	assert_false(m.missed);
@@ -208,15 +205,13 @@ static void meet_where_none_may_be_chosen(void)
 }
 
 /* As under a filter of system calls that refuses sched_setaffinity(). */
-static void threads_begin_where_no_processor_may_be_chosen(void **state)
+TEST(threads_begin_where_no_processor_may_be_chosen)
 {
-	(void)state;
 	in_a_child(meet_where_none_may_be_chosen);
 }
 
-static void callers_may_be_many(void **state)
+TEST(callers_may_be_many)
 {
-	(void)state;
 	enum { CALLERS = 6 };
 	pthread_t callers[CALLERS];
 	bool faults[CALLERS] = {false};
@@ -243,9 +238,8 @@ static void nest_twice(void *context, unsigned slot)
 	nt_pool_run(4, count_nested, context);
 }
 
-static void regions_nest(void **state)
+TEST(regions_nest)
 {
-	(void)state;
 	for (unsigned i = 0; i < 200; i++) {
 		atomic_uint sum = 0;
 		nt_pool_run(5, nest_twice, &sum);
@@ -277,9 +271,8 @@ static void work_in_children(void)
 	expect(two_slots_meet());
 }
 
-static void a_child_makes_threads_of_its_own(void **state)
+TEST(a_child_makes_threads_of_its_own)
 {
-	(void)state;
 	assert_true(each_slot_once(8));
 	in_a_child(work_in_children);
 	assert_true(two_slots_meet());
@@ -302,9 +295,8 @@ static void work_shortly(void)
 }
 
 /* Whatever the other threads are doing, with the lock or without. */
-static void fork_in_the_midst_of_regions(void **state)
+TEST(fork_in_the_midst_of_regions)
 {
-	(void)state;
 	pthread_t callers[2];
 	ends = false;
 	for (unsigned i = 0; i < 2; i++)
@@ -347,27 +339,13 @@ static void work_alone(void)
 	expect(helped[0] == 1 && helped[1] == 0 && helped[2] == 0 && helped[3] == 1);
 }
 
-static void without_threads_the_caller_does_all(void **state)
+TEST(without_threads_the_caller_does_all)
 {
-	(void)state;
 	threads_made = 0;
 	in_a_child(work_alone);
 }
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		/* first, while no thread is made yet */
-		cmocka_unit_test(no_slot_and_one_slot_take_no_thread),
-		cmocka_unit_test(small_meshes_make_no_thread),
-		cmocka_unit_test(slots_run_beside_one_another_and_threads_are_kept),
-		cmocka_unit_test(threads_may_go_wherever_their_maker_may),
-		cmocka_unit_test(threads_begin_where_no_processor_may_be_chosen),
-		cmocka_unit_test(callers_may_be_many),
-		cmocka_unit_test(regions_nest),
-		cmocka_unit_test(a_child_makes_threads_of_its_own),
-		cmocka_unit_test(fork_in_the_midst_of_regions),
-		cmocka_unit_test(without_threads_the_caller_does_all),
-	};
-	return cmocka_run_group_tests_name("base/pool", tests, NULL, NULL);
+	return run_group("base/pool");
 }

@@ -9,9 +9,8 @@
 
 enum { COUNT = 100 };
 
-static void floats_are_rounded_before_they_are_widened(void **state)
+TEST(floats_are_rounded_before_they_are_widened)
 {
-	(void)state;
 	double(*plane)[2] = malloc(COUNT * sizeof *plane);
 	float(*points)[3] = malloc(COUNT * sizeof *points);
 	for (size_t i = 0; i < COUNT; i++) {
@@ -30,8 +29,5 @@ static void floats_are_rounded_before_they_are_widened(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(floats_are_rounded_before_they_are_widened),
-	};
-	return cmocka_run_group_tests_name("base/rounding", tests, NULL, NULL);
+	return run_group("base/rounding");
 }

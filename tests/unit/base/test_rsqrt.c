@@ -4,9 +4,8 @@
 #include "base/rsqrt.h"
 
 /* The C library's square root, which is rounded correctly, is the judge. */
-static void reciprocal_square_roots_are_good_to_three_ulps(void **state)
+TEST(reciprocal_square_roots_are_good_to_three_ulps)
 {
-	(void)state;
 	double worst = 0, worst_rough = 0;
 	for (int i = 0; i < 1000000; i++) {
 		const double x = ldexp(1 + (i * 0.618033988749895 - floor(i * 0.618033988749895)), i % 1990 - 995);
@@ -17,9 +16,8 @@ static void reciprocal_square_roots_are_good_to_three_ulps(void **state)
 	assert_true(worst_rough < 1e-5);
 }
 
-static void zero_gives_something_finite(void **state)
+TEST(zero_gives_something_finite)
 {
-	(void)state;
 	assert_true(isfinite(nt_rsqrt(0)));
 	assert_true(isfinite(nt_rsqrt(0x1p-1074)));
 	assert_true(nt_sqrt_rough(0) == 0.0);
@@ -27,9 +25,5 @@ static void zero_gives_something_finite(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(reciprocal_square_roots_are_good_to_three_ulps),
-		cmocka_unit_test(zero_gives_something_finite),
-	};
-	return cmocka_run_group_tests_name("base/rsqrt", tests, NULL, NULL);
+	return run_group("base/rsqrt");
 }

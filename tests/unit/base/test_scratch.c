@@ -2,9 +2,8 @@
 #include "base/scratch.h"
 #include "test.h"
 
-static void blocks_are_aligned_and_apart(void **state)
+TEST(blocks_are_aligned_and_apart)
 {
-	(void)state;
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
 	unsigned char *blocks[100];
@@ -21,9 +20,8 @@ static void blocks_are_aligned_and_apart(void **state)
 	nt_scratch_free(&scratch);
 }
 
-static void going_back_reuses_the_same_memory(void **state)
+TEST(going_back_reuses_the_same_memory)
 {
-	(void)state;
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
 	void *kept = nt_scratch_alloc(&scratch, 1000, 1);
@@ -42,9 +40,8 @@ static void going_back_reuses_the_same_memory(void **state)
 }
 
 /* Lent memory of any alignment is used first, and is not given to the allocator. */
-static void lent_memory_comes_first(void **state)
+TEST(lent_memory_comes_first)
 {
-	(void)state;
 	enum { BYTES = 4096 };
 	static char memory[BYTES + 1];
 	for (size_t offset = 0; offset < 2; offset++) {
@@ -65,9 +62,8 @@ static void lent_memory_comes_first(void **state)
 }
 
 /* What is expected is in the first block that is not lent, once. */
-static void the_first_own_block_is_as_large_as_expected(void **state)
+TEST(the_first_own_block_is_as_large_as_expected)
 {
-	(void)state;
 	static char memory[4096];
 	for (int lends = 0; lends < 2; lends++) {
 		nt_scratch scratch;
@@ -88,11 +84,5 @@ static void the_first_own_block_is_as_large_as_expected(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(blocks_are_aligned_and_apart),
-		cmocka_unit_test(going_back_reuses_the_same_memory),
-		cmocka_unit_test(lent_memory_comes_first),
-		cmocka_unit_test(the_first_own_block_is_as_large_as_expected),
-	};
-	return cmocka_run_group_tests_name("base/scratch", tests, NULL, NULL);
+	return run_group("base/scratch");
 }

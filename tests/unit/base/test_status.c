@@ -5,9 +5,8 @@
 #include "base/status.h"
 #include "test.h"
 
-static void statuses_have_texts(void **state)
+TEST(statuses_have_texts)
 {
-	(void)state;
 	for (int s = NT_ERROR_USAGE; s <= NT_ERROR_INTERNAL; s++) {
 		assert_string_not_equal(nt_status_text((nt_status)s), "unknown status");
 		assert_string_equal(nmtan_status_text((nmtan_status)s), "unknown status");
@@ -16,9 +15,8 @@ static void statuses_have_texts(void **state)
 	assert_string_equal(nt_status_text((nt_status)(NT_ERROR_USAGE - 1)), "unknown status");
 }
 
-static void statuses_of_the_compute_library_pass(void **state)
+TEST(statuses_of_the_compute_library_pass)
 {
-	(void)state;
 	static const struct {
 		nmtan_status computed;
 		nt_status expected;
@@ -33,7 +31,5 @@ static void statuses_of_the_compute_library_pass(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {cmocka_unit_test(statuses_have_texts),
-		cmocka_unit_test(statuses_of_the_compute_library_pass)};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return run_group("base/status");
 }

@@ -17,9 +17,8 @@ typedef struct third {
 	size_t struct_bytes, a, b, c;
 } third;
 
-static void older_caller_has_zeros_for_what_it_lacks(void **state)
+TEST(older_caller_has_zeros_for_what_it_lacks)
 {
-	(void)state;
 	const third given = {sizeof(first), 1, 2, 3}; /* b and c lie behind the caller's struct */
 	third ours = {9, 9, 9, 9};
 	assert_true(nt_struct_read(&ours, sizeof ours, &given));
@@ -29,9 +28,8 @@ static void older_caller_has_zeros_for_what_it_lacks(void **state)
 	assert_int_equal(ours.c, 0);
 }
 
-static void newer_caller_may_not_ask_for_what_is_unknown(void **state)
+TEST(newer_caller_may_not_ask_for_what_is_unknown)
 {
-	(void)state;
 	third given = {sizeof(third), 1, 2, 0};
 	second ours;
 	assert_true(nt_struct_read(&ours, sizeof ours, &given));
@@ -41,9 +39,8 @@ static void newer_caller_may_not_ask_for_what_is_unknown(void **state)
 	assert_false(nt_struct_read(&ours, sizeof ours, &given));
 }
 
-static void sizes_that_no_struct_has_are_refused(void **state)
+TEST(sizes_that_no_struct_has_are_refused)
 {
-	(void)state;
 	static const size_t none[] = {0, 1, sizeof(size_t) - 1, sizeof(size_t) + 1, 4096 + sizeof(size_t), SIZE_MAX};
 	for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
 		const first given = {none[i], 1};
@@ -56,9 +53,8 @@ static void sizes_that_no_struct_has_are_refused(void **state)
 	assert_int_equal(ours.a, 7);
 }
 
-static void only_what_both_have_is_written(void **state)
+TEST(only_what_both_have_is_written)
 {
-	(void)state;
 	const second ours = {sizeof(second), 1, 2};
 	third older = {sizeof(first), 7, 8, 9}, same = {sizeof(second), 7, 8, 9}, newer = {sizeof(third), 7, 8, 9};
 	nt_struct_write(&older, &ours, sizeof ours);
@@ -71,11 +67,5 @@ static void only_what_both_have_is_written(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(older_caller_has_zeros_for_what_it_lacks),
-		cmocka_unit_test(newer_caller_may_not_ask_for_what_is_unknown),
-		cmocka_unit_test(sizes_that_no_struct_has_are_refused),
-		cmocka_unit_test(only_what_both_have_is_written),
-	};
-	return cmocka_run_group_tests_name("base/struct_bytes", tests, NULL, NULL);
+	return run_group("base/struct_bytes");
 }

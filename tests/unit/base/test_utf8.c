@@ -9,9 +9,8 @@
 #include <locale.h>
 #include <uchar.h>
 
-static void every_sequence_of_three_bytes_is_judged_as_the_c_library_does(void **state)
+TEST(every_sequence_of_three_bytes_is_judged_as_the_c_library_does)
 {
-	(void)state;
 	if (!setlocale(LC_CTYPE, "C.UTF-8"))
 		skip();
 	for (unsigned bits = 1; bits < 1u << 24; bits++) {
@@ -28,9 +27,8 @@ static void every_sequence_of_three_bytes_is_judged_as_the_c_library_does(void *
 	setlocale(LC_CTYPE, "C");
 }
 
-static void four_bytes_end_at_10ffff(void **state)
+TEST(four_bytes_end_at_10ffff)
 {
-	(void)state;
 	assert_int_equal(nt_utf8_length("\xf0\x90\x80\x80", SIZE_MAX), 4); /* U+10000 */
 	assert_int_equal(nt_utf8_length("\xf0\x8f\xbf\xbf", SIZE_MAX), 0); /* overlong */
 	assert_int_equal(nt_utf8_length("\xf4\x8f\xbf\xbf", SIZE_MAX), 4); /* U+10FFFF */
@@ -38,9 +36,8 @@ static void four_bytes_end_at_10ffff(void **state)
 	assert_int_equal(nt_utf8_length("\xf5\x80\x80\x80", SIZE_MAX), 0);
 }
 
-static void a_cut_sequence_is_none(void **state)
+TEST(a_cut_sequence_is_none)
 {
-	(void)state;
 	char *bytes = malloc(3); /* of its exact size, for the sanitizers */
 	memcpy(bytes, "\xf0\x9f\x98", 3);
 	assert_int_equal(nt_utf8_length(bytes, 3), 0);
@@ -51,10 +48,5 @@ static void a_cut_sequence_is_none(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(every_sequence_of_three_bytes_is_judged_as_the_c_library_does),
-		cmocka_unit_test(four_bytes_end_at_10ffff),
-		cmocka_unit_test(a_cut_sequence_is_none),
-	};
-	return cmocka_run_group_tests_name("base/utf8", tests, NULL, NULL);
+	return run_group("base/utf8");
 }

@@ -32,9 +32,8 @@ static char *encoded(const unsigned char *bytes, size_t size, size_t piece)
 	return text;
 }
 
-static void vectors_of_rfc_4648_come_out_in_any_pieces(void **state)
+TEST(vectors_of_rfc_4648_come_out_in_any_pieces)
 {
-	(void)state;
 	static const char *const expected[] = {"", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"};
 	for (size_t size = 0; size <= 6; size++)
 		for (size_t piece = 1; piece <= 6; piece++) {
@@ -44,9 +43,8 @@ static void vectors_of_rfc_4648_come_out_in_any_pieces(void **state)
 		}
 }
 
-static void large_blocks_pass_the_buffer_whole(void **state)
+TEST(large_blocks_pass_the_buffer_whole)
 {
-	(void)state;
 	enum { SIZE = 100001 };
 	unsigned char *bytes = malloc(SIZE);
 	memset(bytes, 0xff, SIZE);
@@ -60,9 +58,5 @@ static void large_blocks_pass_the_buffer_whole(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(vectors_of_rfc_4648_come_out_in_any_pieces),
-		cmocka_unit_test(large_blocks_pass_the_buffer_whole),
-	};
-	return cmocka_run_group_tests_name("file/base64", tests, NULL, NULL);
+	return run_group("file/base64");
 }

@@ -28,9 +28,8 @@ static void assert_reads(const char *text)
 	assert_memory_equal(&value, &expected, sizeof value);
 }
 
-static void numbers_of_every_shape(void **state)
+TEST(numbers_of_every_shape)
 {
-	(void)state;
 	static const char *const texts[] = {"0", "-0", "0.0", "-0.0", "1", "-1", "+1", "1.", ".5", "-.5", "1e5",
 		"1E-5", "1.5e+3", "12345678", "123456789", "1234567.12345678", "0.12345678",
 		"0.123456789", "0.1234567890123456", "0.12345678901234567", "0.00000000000000000001",
@@ -41,9 +40,8 @@ static void numbers_of_every_shape(void **state)
 		assert_reads(texts[i]);
 }
 
-static void what_is_no_number_is_refused(void **state)
+TEST(what_is_no_number_is_refused)
 {
-	(void)state;
 	static const char *const texts[] = {"", "-", "+", ".", "-.", "x", "e5", "--1", "+-1", "/", ":"};
 	for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
 		char padded[32] = {0};
@@ -53,9 +51,8 @@ static void what_is_no_number_is_refused(void **state)
 	}
 }
 
-static void random_decimals_of_all_lengths(void **state)
+TEST(random_decimals_of_all_lengths)
 {
-	(void)state;
 	for (int i = 0; i < 200000; i++) {
 		char text[48], *p = text;
 		const unsigned whole = random_number() % 9, fraction = random_number() % 18;
@@ -76,9 +73,8 @@ static void random_decimals_of_all_lengths(void **state)
 
 /* Midpoints of two floats, and their neighbours in the last decimal: where rounding twice goes wrong.
  * 1 + (2k + 1) 2^-24 has 24 fraction digits, of which 15 are written: above, at or below it. */
-static void numbers_beside_midpoints(void **state)
+TEST(numbers_beside_midpoints)
 {
-	(void)state;
 	for (int i = 0; i < 200000; i++) {
 		const uint32_t k = random_number() & 0x7FFFFF;
 		const double middle = 1 + (2.0 * k + 1) / 16777216;
@@ -89,9 +85,8 @@ static void numbers_beside_midpoints(void **state)
 	}
 }
 
-static void floats_written_and_read_back(void **state)
+TEST(floats_written_and_read_back)
 {
-	(void)state;
 	for (int i = 0; i < 200000; i++) {
 		const uint32_t bits = (random_number() & 0x807FFFFF) | ((96 + random_number() % 56) << 23);
 		float value, back;
@@ -105,12 +100,5 @@ static void floats_written_and_read_back(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(numbers_of_every_shape),
-		cmocka_unit_test(what_is_no_number_is_refused),
-		cmocka_unit_test(random_decimals_of_all_lengths),
-		cmocka_unit_test(numbers_beside_midpoints),
-		cmocka_unit_test(floats_written_and_read_back),
-	};
-	return cmocka_run_group_tests_name("file/decimal", tests, NULL, NULL);
+	return run_group("file/decimal");
 }

@@ -7,9 +7,8 @@ static nt_image_type type_of(const char *bytes, size_t size)
 	return nt_image_type_of_bytes((const unsigned char *)bytes, size);
 }
 
-static void type_is_told_by_signature(void **state)
+TEST(type_is_told_by_signature)
 {
-	(void)state;
 	assert_int_equal(type_of("\x89PNG\r\n\x1a\n", 8), NT_IMAGE_PNG);
 	assert_int_equal(type_of("\x89PNG\r\n\x1a\n", 7), NT_IMAGE_OTHER);
 	assert_int_equal(type_of("\xff\xd8\xff\xe0", 4), NT_IMAGE_JPEG);
@@ -26,9 +25,8 @@ static void type_is_told_by_signature(void **state)
 	assert_int_equal(type_of("", 0), NT_IMAGE_OTHER);
 }
 
-static void type_of_a_tga_is_told_by_its_header(void **state)
+TEST(type_of_a_tga_is_told_by_its_header)
 {
-	(void)state;
 	char header[18] = {[2] = 2, [12] = 4, [14] = 4, [16] = 24};
 	assert_int_equal(type_of(header, 18), NT_IMAGE_TGA);
 	assert_int_equal(type_of(header, 17), NT_IMAGE_OTHER);
@@ -41,9 +39,8 @@ static void type_of_a_tga_is_told_by_its_header(void **state)
 	assert_int_equal(type_of(header, 18), NT_IMAGE_OTHER);
 }
 
-static void type_of_a_name_is_its_ending_in_any_case(void **state)
+TEST(type_of_a_name_is_its_ending_in_any_case)
 {
-	(void)state;
 	assert_int_equal(nt_image_type_of_name("a.b/c.PNG"), NT_IMAGE_PNG);
 	assert_int_equal(nt_image_type_of_name("c.jpg"), NT_IMAGE_JPEG);
 	assert_int_equal(nt_image_type_of_name("c.Jpeg"), NT_IMAGE_JPEG);
@@ -57,9 +54,8 @@ static void type_of_a_name_is_its_ending_in_any_case(void **state)
 	assert_int_equal(nt_image_type_of_name("c."), NT_IMAGE_OTHER);
 }
 
-static void core_types_need_no_extension(void **state)
+TEST(core_types_need_no_extension)
 {
-	(void)state;
 	assert_null(nt_image_extension(NT_IMAGE_PNG));
 	assert_null(nt_image_extension(NT_IMAGE_JPEG));
 	assert_string_equal(nt_image_extension(NT_IMAGE_KTX2), "KHR_texture_basisu");
@@ -77,9 +73,8 @@ static const unsigned char png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n',
 static const unsigned char jpeg[] = {0xFF, 0xD8, 0xFF, 0xE0, 0, 4, 1, 2, 0xFF, 0xFF, 0xC4, 0, 2, 0xFF, 0xC2, 0,
 	17, 8, 0x02, 0x58, 0x03, 0x20, 3};
 
-static void sizes_stand_in_headers(void **state)
+TEST(sizes_stand_in_headers)
 {
-	(void)state;
 	uint32_t pixels[2];
 	assert_true(nt_image_size(png, sizeof png, pixels));
 	assert_int_equal(pixels[0], 0x102);
@@ -89,9 +84,8 @@ static void sizes_stand_in_headers(void **state)
 	assert_int_equal(pixels[1], 0x258);
 }
 
-static void what_is_cut_short_or_empty_has_none(void **state)
+TEST(what_is_cut_short_or_empty_has_none)
 {
-	(void)state;
 	uint32_t pixels[2];
 	for (size_t size = 0; size < sizeof png; size++)
 		assert_false(nt_image_size(png, size, pixels));
@@ -108,13 +102,5 @@ static void what_is_cut_short_or_empty_has_none(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(type_is_told_by_signature),
-		cmocka_unit_test(type_of_a_tga_is_told_by_its_header),
-		cmocka_unit_test(type_of_a_name_is_its_ending_in_any_case),
-		cmocka_unit_test(core_types_need_no_extension),
-		cmocka_unit_test(sizes_stand_in_headers),
-		cmocka_unit_test(what_is_cut_short_or_empty_has_none),
-	};
-	return cmocka_run_group_tests_name("file/image_type", tests, NULL, NULL);
+	return run_group("file/image_type");
 }

@@ -13,9 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static void input_is_mapped_and_knows_which_file_it_is(void **state)
+TEST(input_is_mapped_and_knows_which_file_it_is)
 {
-	(void)state;
 	put_text_file("a", "some bytes");
 	assert_int_equal(link(in_folder("a"), in_folder("b")), 0);
 	put_text_file("c", "some bytes");
@@ -51,9 +50,8 @@ static unsigned present_pages(const unsigned char *bytes, size_t count, size_t p
 	return present;
 }
 
-static void input_pages_that_are_forgotten_go_and_come_back(void **state)
+TEST(input_pages_that_are_forgotten_go_and_come_back)
 {
-	(void)state;
 	enum { PAGES = 8 };
 	const size_t page = (size_t)sysconf(_SC_PAGESIZE);
 	FILE *stream = fopen(in_folder("in"), "wb");
@@ -89,9 +87,8 @@ static void input_pages_that_are_forgotten_go_and_come_back(void **state)
 	nt_file_close(&file);
 }
 
-static void input_empty_is_no_error(void **state)
+TEST(input_empty_is_no_error)
 {
-	(void)state;
 	put_text_file("a", "");
 	nt_error error;
 	nt_file file;
@@ -101,9 +98,8 @@ static void input_empty_is_no_error(void **state)
 	nt_file_close(&file);
 }
 
-static void input_missing_or_a_folder_is_named(void **state)
+TEST(input_missing_or_a_folder_is_named)
 {
-	(void)state;
 	nt_error error;
 	nt_file file;
 	assert_int_equal(nt_file_open(&file, in_folder("missing"), &error), NT_ERROR_MISSING);
@@ -115,9 +111,8 @@ static void input_missing_or_a_folder_is_named(void **state)
 	nt_file_close(&file);
 }
 
-static void input_without_permission_is_named(void **state)
+TEST(input_without_permission_is_named)
 {
-	(void)state;
 	put_text_file("a", "secret");
 	assert_int_equal(chmod(in_folder("a"), 0), 0);
 	nt_error error;
@@ -132,9 +127,8 @@ static void input_without_permission_is_named(void **state)
 	nt_file_close(&file);
 }
 
-static void input_pipe_is_read_to_its_end(void **state)
+TEST(input_pipe_is_read_to_its_end)
 {
-	(void)state;
 	assert_int_equal(mkfifo(in_folder("pipe"), 0600), 0);
 	const pid_t child = fork();
 	if (child == 0) {
@@ -155,17 +149,7 @@ static void input_pipe_is_read_to_its_end(void **state)
 	assert_int_equal(waitpid(child, NULL, 0), child);
 }
 
-#define CASE(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
-
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		CASE(input_is_mapped_and_knows_which_file_it_is),
-		CASE(input_pages_that_are_forgotten_go_and_come_back),
-		CASE(input_empty_is_no_error),
-		CASE(input_missing_or_a_folder_is_named),
-		CASE(input_without_permission_is_named),
-		CASE(input_pipe_is_read_to_its_end),
-	};
-	return cmocka_run_group_tests_name("file/input", tests, NULL, NULL);
+	return run_group_each_within("file/input", make_folder, remove_folder);
 }

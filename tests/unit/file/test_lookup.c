@@ -18,9 +18,8 @@ static int leave(void **state)
 	return chdir("/") || remove_folder(state);
 }
 
-static void only_some_numbers_mean_missing(void **state)
+TEST(only_some_numbers_mean_missing)
 {
-	(void)state;
 	static const struct {
 		int number;
 		nt_status status;
@@ -35,9 +34,8 @@ static void only_some_numbers_mean_missing(void **state)
 	}
 }
 
-static void files_are_found_or_missing_or_behind_a_fault(void **state)
+TEST(files_are_found_or_missing_or_behind_a_fault)
 {
-	(void)state;
 	put_text_file("there", "x");
 	assert_int_equal(symlink("loop", "loop"), 0);
 	struct stat info;
@@ -71,9 +69,5 @@ static void files_are_found_or_missing_or_behind_a_fault(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(only_some_numbers_mean_missing),
-		cmocka_unit_test(files_are_found_or_missing_or_behind_a_fault),
-	};
-	return cmocka_run_group_tests_name("file/lookup", tests, enter, leave);
+	return run_group_within("file/lookup", enter, leave);
 }

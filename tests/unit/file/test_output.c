@@ -50,9 +50,98 @@ static void assert_refused(nt_output *output, const char *path, const char *mess
 	assert_string_equal(error.place.file, path);
 }
 
-static void output_appears_at_commit_only(void **state)
+/* Before there are threads: with them the thread sanitizer hands no signal on in children. */
+
+/* In a child: adds two files, tells the parent, waits for the signal. */
+static void wait_for_signal(int ready)
 {
-	(void)state;
+	nt_error error;
+	nt_output_catch_signals();
+	nt_output *output;
+	nt_sink *sink;
+	if (nt_output_create(&output, NULL, &error) ||
+		nt_output_add(output, in_folder("a"), NT_ROLE_MAIN, &sink, &error) ||
+		nt_output_add(output, in_folder("b"), NT_ROLE_BUFFER, &sink, &error) || write(ready, "!", 1) != 1)
+		_exit(1);
+	for (;;)
+		pause();
+}
+
+TEST(signals_remove_temporaries_and_end_the_process)
+{
+	const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+	for (int i = 0; i < 3; i++) {
+		int ready[2];
+		assert_int_equal(pipe(ready), 0);
+		const pid_t child = fork();
+		if (child == 0) {
+			signal(numbers[i], SIG_DFL);
+			wait_for_signal(ready[1]);
+		}
+		char byte;
+		assert_int_equal(read(ready[0], &byte, 1), 1);
+		assert_int_equal(count_in_folder(), 2);
+		assert_int_equal(kill(child, numbers[i]), 0);
+		int code;
+		assert_int_equal(waitpid(child, &code, 0), child);
+		assert_true(WIFSIGNALED(code));
+		assert_int_equal(WTERMSIG(code), numbers[i]);
+		assert_int_equal(count_in_folder(), 0);
+		close(ready[0]);
+		close(ready[1]);
+	}
+}
+
+static void tell_changed(const char *path, const char *change)
+{
+	_exit(strcmp(path, in_folder("in")) == 0 && strstr(change, "shorter") ? 7 : 1);
+}
+
+/* In a child: a set of one file and a mapped input; a fault after that has become shorter, or not. */
+static void fault(int number, bool shorter)
+{
+	nt_error error;
+	nt_file file;
+	nt_output *output;
+	nt_sink *sink;
+	signal(number, SIG_DFL);
+	nt_output_catch_faults(tell_changed);
+	if (nt_file_open(&file, in_folder("in"), &error) || !file.mapped || nt_output_create(&output, NULL, &error) ||
+		nt_output_add(output, in_folder("a"), NT_ROLE_MAIN, &sink, &error) ||
+		(shorter && truncate(in_folder("in"), 1) != 0))
+		_exit(1);
+	if (number == SIGABRT)
+		abort();
+	raise(number);
+	_exit(2);
+}
+
+/* Only a changed input makes a fault of the process an error of reading. */
+TEST(faults_after_an_input_has_changed_leave_nothing)
+{
+	const int numbers[] = {SIGSEGV, SIGBUS, SIGFPE, SIGABRT};
+	/* files of those that end by a signal stay */
+	for (int i = 0; i < 8; i++) {
+		const int number = numbers[i % 4], shorter = i < 4;
+		put_file("in", "four", 4);
+		const pid_t child = fork();
+		if (child == 0)
+			fault(number, shorter);
+		int code;
+		assert_int_equal(waitpid(child, &code, 0), child);
+		if (shorter) {
+			assert_true(WIFEXITED(code));
+			assert_int_equal(WEXITSTATUS(code), 7);
+			assert_int_equal(count_in_folder(), 1);
+		} else {
+			assert_true(WIFSIGNALED(code));
+			assert_int_equal(WTERMSIG(code), number);
+		}
+	}
+}
+
+TEST(output_appears_at_commit_only)
+{
 	put_text_file("out.gltf", "old");
 	nt_error error;
 	nt_output *output = start(NULL);
@@ -70,9 +159,8 @@ static void output_appears_at_commit_only(void **state)
 	assert_int_equal(count_in_folder(), 2);
 }
 
-static void output_abort_leaves_nothing(void **state)
+TEST(output_abort_leaves_nothing)
 {
-	(void)state;
 	put_text_file("out", "old");
 	nt_error error;
 	nt_output *output = start(NULL);
@@ -84,9 +172,8 @@ static void output_abort_leaves_nothing(void **state)
 	nt_output_abort(NULL);
 }
 
-static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
+TEST(output_bytes_are_the_same_for_small_and_large_writes)
 {
-	(void)state;
 	enum { SIZE = 7000000, LARGE = 5000000 };
 	unsigned char *bytes = malloc(SIZE);
 	assert_non_null(bytes);
@@ -144,9 +231,8 @@ static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
 }
 
 /* "head", what is reserved, and "tail" with a copy behind it; the order of writing is another one. */
-static void output_has_a_reserved_range_where_it_belongs(void **state)
+TEST(output_has_a_reserved_range_where_it_belongs)
 {
-	(void)state;
 	enum { SIZE = 3000000, COPIED = 2000000 };
 	unsigned char *bytes = malloc(SIZE);
 	assert_non_null(bytes);
@@ -187,9 +273,8 @@ static void output_has_a_reserved_range_where_it_belongs(void **state)
 }
 
 /* What is no file of its own, or has a digest, is written in its order. */
-static void output_reserves_nothing_where_bytes_come_in_their_order(void **state)
+TEST(output_reserves_nothing_where_bytes_come_in_their_order)
 {
-	(void)state;
 	nt_error error;
 	nt_sink *part;
 	nt_output *output = start(NULL);
@@ -206,9 +291,8 @@ static void output_reserves_nothing_where_bytes_come_in_their_order(void **state
 }
 
 /* Room that was announced is there before the bytes, where the file system gives any, and is no part of the file. */
-static void output_has_its_bytes_whatever_was_announced(void **state)
+TEST(output_has_its_bytes_whatever_was_announced)
 {
-	(void)state;
 	enum { SIZE = 2000000 };
 	static const char zeros[SIZE];
 	nt_error error;
@@ -235,9 +319,8 @@ static void output_has_its_bytes_whatever_was_announced(void **state)
 	}
 }
 
-static void output_can_be_read_back_before_it_has_its_name(void **state)
+TEST(output_can_be_read_back_before_it_has_its_name)
 {
-	(void)state;
 	nt_error error;
 	nt_output *output = start(&(nt_output_options){.sync = true});
 	nt_sink *sink = add(output, in_folder("out"), NT_ROLE_MAIN);
@@ -252,9 +335,8 @@ static void output_can_be_read_back_before_it_has_its_name(void **state)
 	assert_content("out", "text");
 }
 
-static void output_that_is_an_input_is_refused_by_name(void **state)
+TEST(output_that_is_an_input_is_refused_by_name)
 {
-	(void)state;
 	put_text_file("in.ply", "input");
 	assert_int_equal(link(in_folder("in.ply"), in_folder("hard")), 0);
 	assert_int_equal(symlink("in.ply", in_folder("soft")), 0);
@@ -273,9 +355,8 @@ static void output_that_is_an_input_is_refused_by_name(void **state)
 	assert_int_equal(count_in_folder(), 3);
 }
 
-static void output_in_place_replaces_what_is_mapped(void **state)
+TEST(output_in_place_replaces_what_is_mapped)
 {
-	(void)state;
 	put_text_file("a.ply", "0123456789");
 	nt_error error;
 	nt_file file;
@@ -289,9 +370,8 @@ static void output_in_place_replaces_what_is_mapped(void **state)
 	assert_content("a.ply", "56789");
 }
 
-static void output_through_a_link_keeps_the_link(void **state)
+TEST(output_through_a_link_keeps_the_link)
 {
-	(void)state;
 	put_text_file("file", "old");
 	assert_int_equal(symlink("file", in_folder("soft")), 0);
 	nt_error error;
@@ -304,9 +384,8 @@ static void output_through_a_link_keeps_the_link(void **state)
 	assert_true(S_ISLNK(status.st_mode));
 }
 
-static void output_places_that_cannot_be_are_refused(void **state)
+TEST(output_places_that_cannot_be_are_refused)
 {
-	(void)state;
 	put_text_file("file", "x");
 	nt_output *output = start(NULL);
 	assert_refused(output, in_folder(""), "cannot write: it is a directory");
@@ -323,9 +402,8 @@ static void output_places_that_cannot_be_are_refused(void **state)
 	nt_output_abort(output);
 }
 
-static void output_no_clobber_keeps_what_exists(void **state)
+TEST(output_no_clobber_keeps_what_exists)
 {
-	(void)state;
 	put_text_file("out", "old");
 	nt_error error;
 	nt_output *output = start(&(nt_output_options){.no_clobber = true});
@@ -342,9 +420,8 @@ static void output_no_clobber_keeps_what_exists(void **state)
 	assert_int_equal(count_in_folder(), 2);
 }
 
-static void output_mode_follows_the_umask(void **state)
+TEST(output_mode_follows_the_umask)
 {
-	(void)state;
 	nt_error error;
 	const mode_t before = umask(027);
 	nt_output *output = start(NULL);
@@ -356,9 +433,8 @@ static void output_mode_follows_the_umask(void **state)
 	assert_int_equal(status.st_mode & 0777, 0640);
 }
 
-static void output_dry_run_counts_and_refuses_but_writes_nothing(void **state)
+TEST(output_dry_run_counts_and_refuses_but_writes_nothing)
 {
-	(void)state;
 	const nt_output_options options = {.dry_run = true};
 	nt_error error;
 	nt_output *output;
@@ -382,9 +458,8 @@ static void output_dry_run_counts_and_refuses_but_writes_nothing(void **state)
 	assert_content("dry", "old");
 }
 
-static void output_pipe_is_written_through(void **state)
+TEST(output_pipe_is_written_through)
 {
-	(void)state;
 	assert_int_equal(mkfifo(in_folder("pipe"), 0600), 0);
 	const pid_t child = fork();
 	if (child == 0) {
@@ -411,9 +486,8 @@ static void output_pipe_is_written_through(void **state)
 	assert_true(S_ISFIFO(status.st_mode));
 }
 
-static void output_full_disk_is_an_error(void **state)
+TEST(output_full_disk_is_an_error)
 {
-	(void)state;
 	if (access("/dev/full", W_OK) != 0)
 		skip();
 	nt_error error;
@@ -425,120 +499,7 @@ static void output_full_disk_is_an_error(void **state)
 	assert_string_equal(error.place.file, "/dev/full");
 }
 
-/* In a child: adds two files, tells the parent, waits for the signal. */
-static void wait_for_signal(int ready)
-{
-	nt_error error;
-	nt_output_catch_signals();
-	nt_output *output;
-	nt_sink *sink;
-	if (nt_output_create(&output, NULL, &error) ||
-		nt_output_add(output, in_folder("a"), NT_ROLE_MAIN, &sink, &error) ||
-		nt_output_add(output, in_folder("b"), NT_ROLE_BUFFER, &sink, &error) || write(ready, "!", 1) != 1)
-		_exit(1);
-	for (;;)
-		pause();
-}
-
-static void signals_remove_temporaries_and_end_the_process(void **state)
-{
-	(void)state;
-	const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
-	for (int i = 0; i < 3; i++) {
-		int ready[2];
-		assert_int_equal(pipe(ready), 0);
-		const pid_t child = fork();
-		if (child == 0) {
-			signal(numbers[i], SIG_DFL);
-			wait_for_signal(ready[1]);
-		}
-		char byte;
-		assert_int_equal(read(ready[0], &byte, 1), 1);
-		assert_int_equal(count_in_folder(), 2);
-		assert_int_equal(kill(child, numbers[i]), 0);
-		int code;
-		assert_int_equal(waitpid(child, &code, 0), child);
-		assert_true(WIFSIGNALED(code));
-		assert_int_equal(WTERMSIG(code), numbers[i]);
-		assert_int_equal(count_in_folder(), 0);
-		close(ready[0]);
-		close(ready[1]);
-	}
-}
-
-static void tell_changed(const char *path, const char *change)
-{
-	_exit(strcmp(path, in_folder("in")) == 0 && strstr(change, "shorter") ? 7 : 1);
-}
-
-/* In a child: a set of one file and a mapped input; a fault after that has become shorter, or not. */
-static void fault(int number, bool shorter)
-{
-	nt_error error;
-	nt_file file;
-	nt_output *output;
-	nt_sink *sink;
-	signal(number, SIG_DFL);
-	nt_output_catch_faults(tell_changed);
-	if (nt_file_open(&file, in_folder("in"), &error) || !file.mapped || nt_output_create(&output, NULL, &error) ||
-		nt_output_add(output, in_folder("a"), NT_ROLE_MAIN, &sink, &error) ||
-		(shorter && truncate(in_folder("in"), 1) != 0))
-		_exit(1);
-	if (number == SIGABRT)
-		abort();
-	raise(number);
-	_exit(2);
-}
-
-/* Only a changed input makes a fault of the process an error of reading. */
-static void faults_after_an_input_has_changed_leave_nothing(void **state)
-{
-	(void)state;
-	const int numbers[] = {SIGSEGV, SIGBUS, SIGFPE, SIGABRT};
-	/* files of those that end by a signal stay */
-	for (int i = 0; i < 8; i++) {
-		const int number = numbers[i % 4], shorter = i < 4;
-		put_file("in", "four", 4);
-		const pid_t child = fork();
-		if (child == 0)
-			fault(number, shorter);
-		int code;
-		assert_int_equal(waitpid(child, &code, 0), child);
-		if (shorter) {
-			assert_true(WIFEXITED(code));
-			assert_int_equal(WEXITSTATUS(code), 7);
-			assert_int_equal(count_in_folder(), 1);
-		} else {
-			assert_true(WIFSIGNALED(code));
-			assert_int_equal(WTERMSIG(code), number);
-		}
-	}
-}
-
-#define CASE(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
-
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		/* before there are threads: with them the thread sanitizer hands no signal on in children */
-		CASE(signals_remove_temporaries_and_end_the_process),
-		CASE(faults_after_an_input_has_changed_leave_nothing),
-		CASE(output_appears_at_commit_only),
-		CASE(output_abort_leaves_nothing),
-		CASE(output_bytes_are_the_same_for_small_and_large_writes),
-		CASE(output_has_a_reserved_range_where_it_belongs),
-		CASE(output_reserves_nothing_where_bytes_come_in_their_order),
-		CASE(output_has_its_bytes_whatever_was_announced),
-		CASE(output_can_be_read_back_before_it_has_its_name),
-		CASE(output_that_is_an_input_is_refused_by_name),
-		CASE(output_in_place_replaces_what_is_mapped),
-		CASE(output_through_a_link_keeps_the_link),
-		CASE(output_places_that_cannot_be_are_refused),
-		CASE(output_no_clobber_keeps_what_exists),
-		CASE(output_mode_follows_the_umask),
-		CASE(output_dry_run_counts_and_refuses_but_writes_nothing),
-		CASE(output_pipe_is_written_through),
-		CASE(output_full_disk_is_an_error),
-	};
-	return cmocka_run_group_tests_name("file/output", tests, NULL, NULL);
+	return run_group_each_within("file/output", make_folder, remove_folder);
 }

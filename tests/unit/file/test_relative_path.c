@@ -29,9 +29,8 @@ static const char *join(const char *folder, const char *name)
 	return taken(&text);
 }
 
-static void uri_leads_from_folder_to_file(void **state)
+TEST(uri_leads_from_folder_to_file)
 {
-	(void)state;
 	assert_string_equal(uri("/a/b", "/a/b/c.png"), "c.png");
 	assert_string_equal(uri("/a/b", "/a/b/c/d.png"), "c/d.png");
 	assert_string_equal(uri("/a/b", "/a/c.png"), "../c.png");
@@ -41,16 +40,14 @@ static void uri_leads_from_folder_to_file(void **state)
 	assert_string_equal(uri("/", "/x/y.png"), "x/y.png");
 }
 
-static void uri_encodes_what_may_not_stand_in_a_path(void **state)
+TEST(uri_encodes_what_may_not_stand_in_a_path)
 {
-	(void)state;
 	assert_string_equal(uri("/a", "/a/b c%#?:.png"), "b%20c%25%23%3F%3A.png");
 	assert_string_equal(uri("/a", "/a/\xc3\xa9-_~1.png"), "%C3%A9-_~1.png");
 }
 
-static void join_resolves_dots_and_backslashes(void **state)
+TEST(join_resolves_dots_and_backslashes)
 {
-	(void)state;
 	assert_string_equal(join("/a/b", "c.png"), "/a/b/c.png");
 	assert_string_equal(join("/a/b", "t\\./u//c.png"), "/a/b/t/u/c.png");
 	assert_string_equal(join("/a/b", "../c.png"), "/a/c.png");
@@ -59,9 +56,8 @@ static void join_resolves_dots_and_backslashes(void **state)
 	assert_string_equal(join("/", ".."), "/");
 }
 
-static void absolute_names_are_told(void **state)
+TEST(absolute_names_are_told)
 {
-	(void)state;
 	static const char *const absolute[] = {"/x", "\\\\host\\x", "C:\\x", "C:x", "c:/x", "http://x",
 		"file:///x"};
 	static const char *const relative[] = {"x", "a b/c", "../x", "a:b", ".x", "", "tex:1.png"};
@@ -71,18 +67,16 @@ static void absolute_names_are_told(void **state)
 		assert_int_equal(nt_link_is_absolute(relative[i]), strcmp(relative[i], "a:b") == 0);
 }
 
-static void inside_means_below(void **state)
+TEST(inside_means_below)
 {
-	(void)state;
 	assert_true(nt_link_is_inside("/a/b", "/a"));
 	assert_true(nt_link_is_inside("/a", "/"));
 	assert_false(nt_link_is_inside("/ab", "/a"));
 	assert_false(nt_link_is_inside("/a", "/a"));
 }
 
-static void folder_of_a_name_may_be_missing_but_not_below_a_file(void **state)
+TEST(folder_of_a_name_may_be_missing_but_not_below_a_file)
 {
-	(void)state;
 	nt_buffer text = {0};
 	nt_error error;
 	assert_int_equal(nt_link_folder(&text, "/x.obj", &error), NT_OK);
@@ -95,9 +89,8 @@ static void folder_of_a_name_may_be_missing_but_not_below_a_file(void **state)
 	assert_int_equal(taken(&text)[0], '/');
 }
 
-static void absolute_paths_are_of_this_system(void **state)
+TEST(absolute_paths_are_of_this_system)
 {
-	(void)state;
 	nt_buffer text = {0};
 	nt_error error;
 	char here[4096], expected[8192];
@@ -113,14 +106,5 @@ static void absolute_paths_are_of_this_system(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(uri_leads_from_folder_to_file),
-		cmocka_unit_test(uri_encodes_what_may_not_stand_in_a_path),
-		cmocka_unit_test(join_resolves_dots_and_backslashes),
-		cmocka_unit_test(absolute_names_are_told),
-		cmocka_unit_test(inside_means_below),
-		cmocka_unit_test(absolute_paths_are_of_this_system),
-		cmocka_unit_test(folder_of_a_name_may_be_missing_but_not_below_a_file),
-	};
-	return cmocka_run_group_tests_name("file/relative_path", tests, NULL, NULL);
+	return run_group("file/relative_path");
 }

@@ -57,16 +57,14 @@ static void assert_named(const nt_output_options *options, const char *wanted, n
 	nt_output_abort(output);
 }
 
-static void a_free_name_is_taken(void **state)
+TEST(a_free_name_is_taken)
 {
-	(void)state;
 	assert_named(NULL, "a.bin", NT_ROLE_BUFFER, "new", "a.bin");
 	assert_named(NULL, "n.png", NT_ROLE_IMAGE, "new", "n.png");
 }
 
-static void equal_bytes_are_used(void **state)
+TEST(equal_bytes_are_used)
 {
-	(void)state;
 	nt_error error;
 	nt_sink *main;
 	put_text_file("n.png", "somebody\n");
@@ -80,9 +78,8 @@ static void equal_bytes_are_used(void **state)
 	assert_int_equal(count_in_folder(), 2);
 }
 
-static void another_file_stays_and_the_name_is_of_the_bytes(void **state)
+TEST(another_file_stays_and_the_name_is_of_the_bytes)
 {
-	(void)state;
 	put_text_file("a.bin", "theirs");
 	put_text_file("n", "theirs");
 	put_text_file(".hidden", "theirs");
@@ -99,9 +96,8 @@ static void another_file_stays_and_the_name_is_of_the_bytes(void **state)
 	assert_named(NULL, "a.bin", NT_ROLE_BUFFER, "somebody\n", "a-" "da44bf30a9ce9c98" "-1.bin");
 }
 
-static void a_long_name_is_cut_between_characters(void **state)
+TEST(a_long_name_is_cut_between_characters)
 {
-	(void)state;
 	char name[256], path[512];
 	/* 125 letters of two bytes and an ending make 254 */
 	for (int i = 0; i < 125; i++)
@@ -118,9 +114,8 @@ static void a_long_name_is_cut_between_characters(void **state)
 	assert_string_equal(path + 234, "-" "da44bf30a9ce9c98" ".bin");
 }
 
-static void a_file_of_ours_is_replaced_by_way_of_a_staging_name(void **state)
+TEST(a_file_of_ours_is_replaced_by_way_of_a_staging_name)
 {
-	(void)state;
 	nt_status (*const records[])(nt_output *, const char *, nt_error *) = {own_old, own_staging};
 	for (size_t i = 0; i < 2; i++) {
 		const nt_output_options options = {.find_ownership = records[i]};
@@ -137,9 +132,8 @@ static void a_file_of_ours_is_replaced_by_way_of_a_staging_name(void **state)
 	}
 }
 
-static void a_file_that_is_not_provably_ours_is_not_replaced(void **state)
+TEST(a_file_that_is_not_provably_ours_is_not_replaced)
 {
-	(void)state;
 	nt_sink *main;
 	const nt_output_options claimed = {.find_ownership = own_old};
 	/* no main file that could say so */
@@ -167,9 +161,8 @@ static void a_file_that_is_not_provably_ours_is_not_replaced(void **state)
 	}
 }
 
-static void a_name_that_is_taken_meanwhile_is_not_replaced(void **state)
+TEST(a_name_that_is_taken_meanwhile_is_not_replaced)
 {
-	(void)state;
 	nt_error error;
 	nt_sink *main;
 	nt_output_result result = {0};
@@ -194,9 +187,8 @@ static void a_name_that_is_taken_meanwhile_is_not_replaced(void **state)
 	nt_buffer_free(&result.note);
 }
 
-static void every_failed_allocation_is_said(void **state)
+TEST(every_failed_allocation_is_said)
 {
-	(void)state;
 	const nt_output_options options = {.find_ownership = own_old};
 	bool failed = true;
 	put_text_file("a.gltf", "old");
@@ -218,19 +210,7 @@ static void every_failed_allocation_is_said(void **state)
 	}
 }
 
-#define CASE(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
-
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		CASE(a_free_name_is_taken),
-		CASE(equal_bytes_are_used),
-		CASE(another_file_stays_and_the_name_is_of_the_bytes),
-		CASE(a_long_name_is_cut_between_characters),
-		CASE(a_file_of_ours_is_replaced_by_way_of_a_staging_name),
-		CASE(a_file_that_is_not_provably_ours_is_not_replaced),
-		CASE(a_name_that_is_taken_meanwhile_is_not_replaced),
-		CASE(every_failed_allocation_is_said),
-	};
-	return cmocka_run_group_tests_name("file/sidecar", tests, NULL, NULL);
+	return run_group_each_within("file/sidecar", make_folder, remove_folder);
 }

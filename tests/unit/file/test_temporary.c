@@ -48,9 +48,8 @@ static void fault_in_commit(void)
 		_exit(3);
 }
 
-static void a_fault_in_a_commit_ends_the_process(void **state)
+TEST(a_fault_in_a_commit_ends_the_process)
 {
-	(void)state;
 	assert_true(child_ends(fault_in_commit));
 }
 
@@ -79,9 +78,8 @@ static void fault_beside_commit(void)
 		_exit(3);
 }
 
-static void a_fault_waits_for_the_commit_of_another_thread(void **state)
+TEST(a_fault_waits_for_the_commit_of_another_thread)
 {
-	(void)state;
 	assert_true(child_ends(fault_beside_commit));
 }
 
@@ -93,16 +91,14 @@ static void release_and_fault(void)
 	fault_beside_commit();
 }
 
-static void a_hold_that_is_over_is_no_hold(void **state)
+TEST(a_hold_that_is_over_is_no_hold)
 {
-	(void)state;
 	assert_true(child_ends(release_and_fault));
 }
 
 /* Ends without removing its file, of which the parent gets the path. */
-static void stale_files_are_those_that_nobody_has_locked(void **state)
+TEST(stale_files_are_those_that_nobody_has_locked)
 {
-	(void)state;
 	int ends[2];
 	char path[400] = "";
 	assert_int_equal(pipe(ends), 0);
@@ -140,12 +136,5 @@ static void stale_files_are_those_that_nobody_has_locked(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(a_fault_in_a_commit_ends_the_process, make_folder, remove_folder),
-		cmocka_unit_test(a_fault_waits_for_the_commit_of_another_thread),
-		cmocka_unit_test(a_hold_that_is_over_is_no_hold),
-		cmocka_unit_test_setup_teardown(stale_files_are_those_that_nobody_has_locked, make_folder,
-			remove_folder),
-	};
-	return cmocka_run_group_tests_name("file/temporary", tests, NULL, NULL);
+	return run_group_within("file/temporary", make_folder, remove_folder);
 }

@@ -14,9 +14,8 @@ static const nt_trace_file *find(const nt_trace *trace, nt_trace_kind kind, cons
 	return NULL;
 }
 
-static void what_is_opened_and_what_is_missing_is_noted_once(void **state)
+TEST(what_is_opened_and_what_is_missing_is_noted_once)
 {
-	(void)state;
 	nt_trace trace = {0};
 	nt_error error;
 	nt_file file;
@@ -46,9 +45,8 @@ static void what_is_opened_and_what_is_missing_is_noted_once(void **state)
 	nt_trace_free(&trace);
 }
 
-static void what_was_written_is_noted_anew_when_it_is_forgotten(void **state)
+TEST(what_was_written_is_noted_anew_when_it_is_forgotten)
 {
-	(void)state;
 	nt_trace trace = {0};
 	struct stat info = {.st_size = 1};
 	nt_trace_use(&trace);
@@ -67,9 +65,8 @@ static void what_was_written_is_noted_anew_when_it_is_forgotten(void **state)
 	nt_trace_free(&trace);
 }
 
-static void an_exhausted_memory_is_remembered(void **state)
+TEST(an_exhausted_memory_is_remembered)
 {
-	(void)state;
 	const struct stat info = {.st_size = 1};
 	size_t failures = 0;
 	for (size_t n = 0; n < 20; n++) {
@@ -88,10 +85,5 @@ static void an_exhausted_memory_is_remembered(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(what_is_opened_and_what_is_missing_is_noted_once),
-		cmocka_unit_test(what_was_written_is_noted_anew_when_it_is_forgotten),
-		cmocka_unit_test(an_exhausted_memory_is_remembered),
-	};
-	return cmocka_run_group_tests_name("file/trace", tests, make_folder, remove_folder);
+	return run_group_within("file/trace", make_folder, remove_folder);
 }

@@ -18,9 +18,8 @@ static void check_data(const char *uri, const char *expected, size_t expected_si
 	free(bytes);
 }
 
-static void data_uris_of_any_kind_are_decoded(void **state)
+TEST(data_uris_of_any_kind_are_decoded)
 {
-	(void)state;
 	check_data("data:application/octet-stream;base64,AAECAw==", "\0\1\2\3", 4);
 	check_data("data:;base64,AAECAw", "\0\1\2\3", 4);
 	check_data("DATA:image/png;x=y;BASE64,/+8=", "\xFF\xEF", 2);
@@ -29,9 +28,8 @@ static void data_uris_of_any_kind_are_decoded(void **state)
 	check_data("data:,", "", 0);
 }
 
-static void broken_data_uris_are_refused(void **state)
+TEST(broken_data_uris_are_refused)
 {
-	(void)state;
 	static const char *const broken[] = {"data:x;base64", "data:;base64,AA*A", "data:;base64,AAAAA",
 		"data:;base64,=AAA", "data:;base64,AA===="};
 	for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
@@ -44,9 +42,8 @@ static void broken_data_uris_are_refused(void **state)
 	}
 }
 
-static void base64_comes_back(void **state)
+TEST(base64_comes_back)
 {
-	(void)state;
 	unsigned char bytes[50];
 	for (size_t i = 0; i < sizeof bytes; i++)
 		bytes[i] = (unsigned char)(i * 37 + 11);
@@ -81,9 +78,8 @@ static void check_resolve(const char *document, const char *uri, bool allow, nt_
 	assert_int_equal(resolve(document, uri, strlen(uri), allow, path), expected);
 }
 
-static void names_outside_are_refused(void **state)
+TEST(names_outside_are_refused)
 {
-	(void)state;
 	static const char *const outside[] = {"../x.bin", "a/../../x.bin", "%2e%2e/x.bin", "..\\x.bin",
 		"/etc/passwd", "%2Fetc/passwd", "\\\\host\\share", "C:\\x.bin", "c:/x.bin", "..", ""};
 	for (size_t i = 0; i < sizeof outside / sizeof *outside; i++)
@@ -99,9 +95,8 @@ static void names_outside_are_refused(void **state)
 	assert_string_equal(path, "/x.bin");
 }
 
-static void links_are_followed_only_within_the_folder(void **state)
+TEST(links_are_followed_only_within_the_folder)
 {
-	(void)state;
 	char *root = in_tmpdir("nmtan-test-uri-XXXXXX");
 	assert_non_null(mkdtemp(root));
 	char inner[300], file[300], good[300], bad[300], document[300], path[512];
@@ -128,9 +123,8 @@ static void links_are_followed_only_within_the_folder(void **state)
 	rmdir(root);
 }
 
-static void paths_are_percent_encoded(void **state)
+TEST(paths_are_percent_encoded)
 {
-	(void)state;
 	nt_buffer text = {0};
 	nt_uri_append_path(&text, "dir/a b%c\xC3\xA9#.bin");
 	assert_string_equal(text.data, "dir/a%20b%25c%C3%A9%23.bin");
@@ -139,13 +133,5 @@ static void paths_are_percent_encoded(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(data_uris_of_any_kind_are_decoded),
-		cmocka_unit_test(broken_data_uris_are_refused),
-		cmocka_unit_test(base64_comes_back),
-		cmocka_unit_test(names_outside_are_refused),
-		cmocka_unit_test(links_are_followed_only_within_the_folder),
-		cmocka_unit_test(paths_are_percent_encoded),
-	};
-	return cmocka_run_group_tests_name("file/uri", tests, NULL, NULL);
+	return run_group("file/uri");
 }

@@ -44,9 +44,8 @@ static void expect_lost(const char *name)
 }
 
 /* The table has room for 512 files, on 70 pages: what of it is not used costs no page fault. To come first. */
-static void unused_places_are_not_looked_at(void **state)
+TEST(unused_places_are_not_looked_at)
 {
-	(void)state;
 	nt_file file;
 	nt_error error;
 	struct rusage before, after;
@@ -59,9 +58,8 @@ static void unused_places_are_not_looked_at(void **state)
 	nt_file_close(&file);
 }
 
-static void what_is_gone_reads_as_zeros(void **state)
+TEST(what_is_gone_reads_as_zeros)
 {
-	(void)state;
 	nt_file file;
 	nt_error error;
 	open_pages(&file, "a", 4);
@@ -80,9 +78,8 @@ static void what_is_gone_reads_as_zeros(void **state)
 }
 
 /* No signal tells of that. */
-static void the_last_page_may_lose_a_part(void **state)
+TEST(the_last_page_may_lose_a_part)
 {
-	(void)state;
 	nt_file file;
 	open_pages(&file, "b", 1);
 	assert_int_equal(truncate(in_folder("b"), 10), 0);
@@ -91,9 +88,8 @@ static void the_last_page_may_lose_a_part(void **state)
 }
 
 /* Same size, other bytes; also after it is closed. */
-static void what_was_written_to_is_told(void **state)
+TEST(what_was_written_to_is_told)
 {
-	(void)state;
 	nt_file file;
 	nt_error error;
 	open_pages(&file, "e", 2);
@@ -110,9 +106,8 @@ static void what_was_written_to_is_told(void **state)
 	}
 }
 
-static void a_file_that_stays_is_not_told(void **state)
+TEST(a_file_that_stays_is_not_told)
 {
-	(void)state;
 	nt_file file, other;
 	nt_error error;
 	open_pages(&file, "c", 2);
@@ -137,9 +132,8 @@ static void *read_and_check(void *argument)
 	return nt_watch_check(&error) ? (void *)2 : NULL;
 }
 
-static void helpers_may_read_and_other_runs_hear_nothing(void **state)
+TEST(helpers_may_read_and_other_runs_hear_nothing)
 {
-	(void)state;
 	nt_file file;
 	open_pages(&file, "e", 64);
 	assert_int_equal(truncate(in_folder("e"), 0), 0);
@@ -156,9 +150,8 @@ static void helpers_may_read_and_other_runs_hear_nothing(void **state)
 }
 
 /* The kernel cannot read it for us. */
-static void what_is_gone_can_be_written(void **state)
+TEST(what_is_gone_can_be_written)
 {
-	(void)state;
 	nt_file file;
 	nt_error error;
 	nt_output *output;
@@ -174,9 +167,8 @@ static void what_is_gone_can_be_written(void **state)
 	nt_file_close(&file);
 }
 
-static void more_files_than_are_watched_are_read(void **state)
+TEST(more_files_than_are_watched_are_read)
 {
-	(void)state;
 	enum { COUNT = 600 };
 	static nt_file files[COUNT];
 	nt_error error;
@@ -192,9 +184,8 @@ static void more_files_than_are_watched_are_read(void **state)
 	nt_file_close(&files[0]);
 }
 
-static void devices_are_refused(void **state)
+TEST(devices_are_refused)
 {
-	(void)state;
 	nt_file file;
 	nt_error error;
 	assert_int_equal(nt_file_open(&file, "/dev/full", &error), NT_ERROR_IO);
@@ -205,16 +196,5 @@ static void devices_are_refused(void **state)
 int main(void)
 {
 	page = (size_t)sysconf(_SC_PAGESIZE);
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(unused_places_are_not_looked_at),
-		cmocka_unit_test(what_is_gone_reads_as_zeros),
-		cmocka_unit_test(the_last_page_may_lose_a_part),
-		cmocka_unit_test(what_was_written_to_is_told),
-		cmocka_unit_test(a_file_that_stays_is_not_told),
-		cmocka_unit_test(helpers_may_read_and_other_runs_hear_nothing),
-		cmocka_unit_test(what_is_gone_can_be_written),
-		cmocka_unit_test(more_files_than_are_watched_are_read),
-		cmocka_unit_test(devices_are_refused),
-	};
-	return cmocka_run_group_tests_name("file/watch", tests, make_folder, remove_folder);
+	return run_group_within("file/watch", make_folder, remove_folder);
 }

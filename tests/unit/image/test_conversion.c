@@ -46,9 +46,8 @@ static nt_pixels make(const nt_conversion *how, const nt_file *a, const nt_file 
 	return pixels;
 }
 
-static void conversions_that_are_an_image(void **state)
+TEST(conversions_that_are_an_image)
 {
-	(void)state;
 	nt_conversion how = {.packed = true, .channels = {take(3, NT_CHANNEL_RED), take(3, NT_CHANNEL_GREEN),
 		take(3, NT_CHANNEL_BLUE)}};
 	assert_true(nt_conversion_is_identity(&how));
@@ -66,9 +65,8 @@ static void conversions_that_are_an_image(void **state)
 	assert_true(nt_conversion_is_identity(&how));
 }
 
-static void channels_come_from_their_images(void **state)
+TEST(channels_come_from_their_images)
 {
-	(void)state;
 	unsigned char first[TGA_SIZE], second[TGA_SIZE];
 	const nt_file a = make_tga(first, (const unsigned char[]){10, 20, 30}),
 		b = make_tga(second, (const unsigned char[]){40, 50, 60});
@@ -83,9 +81,8 @@ static void channels_come_from_their_images(void **state)
 	nt_pixels_free(&p);
 }
 
-static void what_is_grey_is_stored_as_grey(void **state)
+TEST(what_is_grey_is_stored_as_grey)
 {
-	(void)state;
 	unsigned char bytes[TGA_SIZE];
 	const nt_file a = make_tga(bytes, (const unsigned char[]){77, 77, 77});
 	const nt_conversion how = {.packed = true, .channels = {{.source = UINT32_MAX}, take(0, NT_CHANNEL_LUMINANCE)}};
@@ -96,9 +93,8 @@ static void what_is_grey_is_stored_as_grey(void **state)
 	nt_pixels_free(&p);
 }
 
-static void a_damaged_image_makes_its_channels_white(void **state)
+TEST(a_damaged_image_makes_its_channels_white)
 {
-	(void)state;
 	unsigned char first[TGA_SIZE], second[TGA_SIZE];
 	const nt_file a = make_tga(first, (const unsigned char[]){10, 20, 30});
 	nt_file b = make_tga(second, (const unsigned char[]){40, 50, 60});
@@ -117,9 +113,8 @@ static void a_damaged_image_makes_its_channels_white(void **state)
 	assert_null(made.bytes);
 }
 
-static void conversions_without_memory_are_an_error(void **state)
+TEST(conversions_without_memory_are_an_error)
 {
-	(void)state;
 	unsigned char first[TGA_SIZE], second[TGA_SIZE];
 	const nt_file a = make_tga(first, (const unsigned char[]){10, 20, 30}),
 		b = make_tga(second, (const unsigned char[]){40, 50, 60});
@@ -141,12 +136,5 @@ static void conversions_without_memory_are_an_error(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(conversions_that_are_an_image),
-		cmocka_unit_test(channels_come_from_their_images),
-		cmocka_unit_test(what_is_grey_is_stored_as_grey),
-		cmocka_unit_test(a_damaged_image_makes_its_channels_white),
-		cmocka_unit_test(conversions_without_memory_are_an_error),
-	};
-	return cmocka_run_group_tests_name("image/conversion", tests, NULL, NULL);
+	return run_group("image/conversion");
 }

@@ -70,9 +70,8 @@ static nt_normal_facts facts_of(nt_pixels p)
 	return facts;
 }
 
-static void green_is_told_by_the_curl(void **state)
+TEST(green_is_told_by_the_curl)
 {
-	(void)state;
 	for (unsigned bits = 8; bits <= 16; bits += 8) {
 		const nt_normal_facts up = facts_of(make(hills, 1, bits)), down = facts_of(make(hills, -1, bits));
 		assert_int_equal(up.green, NT_GREEN_UP);
@@ -83,9 +82,8 @@ static void green_is_told_by_the_curl(void **state)
 	}
 }
 
-static void nothing_is_told_by_weak_evidence(void **state)
+TEST(nothing_is_told_by_weak_evidence)
 {
-	(void)state;
 	for (int green = -1; green <= 1; green += 2) {
 		assert_int_equal(facts_of(make(grid, green, 8)).green, NT_GREEN_UNKNOWN);
 		assert_int_equal(facts_of(make(swirl, green, 8)).green, NT_GREEN_UNKNOWN);
@@ -96,18 +94,16 @@ static void nothing_is_told_by_weak_evidence(void **state)
 }
 
 /* One half with green up and one with green down, as where two maps were joined. */
-static void halves_that_contradict_tell_nothing(void **state)
+TEST(halves_that_contradict_tell_nothing)
 {
-	(void)state;
 	nt_pixels a = make(hills, 1, 8), b = make(hills, -1, 8);
 	memcpy(a.samples, b.samples, nt_pixels_row_bytes(&a) * SIDE / 2);
 	nt_pixels_free(&b);
 	assert_int_equal(facts_of(a).green, NT_GREEN_UNKNOWN);
 }
 
-static void shares_are_counted(void **state)
+TEST(shares_are_counted)
 {
-	(void)state;
 	nt_pixels p = make(hills, 1, 8);
 	uint8_t *samples = p.samples;
 	for (size_t i = 0; i < SIDE * SIDE / 4; i++)
@@ -123,9 +119,8 @@ static void shares_are_counted(void **state)
 }
 
 /* A slope that changes by one level in 16 pixels. */
-static void wide_steps_are_bands(void **state)
+TEST(wide_steps_are_bands)
 {
-	(void)state;
 	nt_pixels p = make(hills, 1, 8);
 	assert_true(facts_of(p).banded < 0.1);
 	p = make(flat, 1, 8);
@@ -134,9 +129,8 @@ static void wide_steps_are_bands(void **state)
 	assert_true(facts_of(p).banded > 0.7);
 }
 
-static void examining_without_memory_is_an_error(void **state)
+TEST(examining_without_memory_is_an_error)
 {
-	(void)state;
 	nt_pixels p = make(hills, 1, 8);
 	nt_normal_facts facts;
 	nt_error error;
@@ -148,13 +142,5 @@ static void examining_without_memory_is_an_error(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(green_is_told_by_the_curl),
-		cmocka_unit_test(nothing_is_told_by_weak_evidence),
-		cmocka_unit_test(halves_that_contradict_tell_nothing),
-		cmocka_unit_test(shares_are_counted),
-		cmocka_unit_test(wide_steps_are_bands),
-		cmocka_unit_test(examining_without_memory_is_an_error),
-	};
-	return cmocka_run_group_tests_name("image/examine", tests, NULL, NULL);
+	return run_group("image/examine");
 }

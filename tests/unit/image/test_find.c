@@ -50,9 +50,8 @@ static void make_files(void)
 	assert_int_equal(symlink("../elsewhere/f.png", in_folder("mtl/link.png")), 0);
 }
 
-static void places_come_in_their_order(void **state)
+TEST(places_come_in_their_order)
 {
-	(void)state;
 	make_files();
 	assert_found("a.png", false, NT_IMAGE_FOUND, "mtl/a.png");
 	assert_found("./tex/../a.png", false, NT_IMAGE_FOUND, "mtl/a.png");
@@ -68,9 +67,8 @@ static void places_come_in_their_order(void **state)
 	assert_found("D:\\x\\gone.png", false, NT_IMAGE_MISSING, "mtl/gone.png");
 }
 
-static void outside_needs_leave(void **state)
+TEST(outside_needs_leave)
 {
-	(void)state;
 	assert_found("link.png", false, NT_IMAGE_OUTSIDE, "mtl/link.png");
 	assert_found("link.png", true, NT_IMAGE_FOUND, "mtl/link.png");
 	assert_found("../elsewhere/f.png", true, NT_IMAGE_FOUND, "elsewhere/f.png");
@@ -88,9 +86,8 @@ static void outside_needs_leave(void **state)
 	assert_found(absolute, true, NT_IMAGE_FOUND, "elsewhere/f.png");
 }
 
-static void finding_without_memory_is_an_error(void **state)
+TEST(finding_without_memory_is_an_error)
 {
-	(void)state;
 	const nt_image_places places = places_here(false);
 	for (size_t n = 0;; n++) {
 		nt_buffer path = {0};
@@ -108,10 +105,5 @@ static void finding_without_memory_is_an_error(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(places_come_in_their_order),
-		cmocka_unit_test(outside_needs_leave),
-		cmocka_unit_test(finding_without_memory_is_an_error),
-	};
-	return cmocka_run_group_tests_name("image/find", tests, make_folder, remove_folder);
+	return run_group_within("image/find", make_folder, remove_folder);
 }

@@ -44,9 +44,8 @@ static void assert_slopes(const nt_pixels *normals, uint32_t x, uint32_t y, doub
 		assert_int_equal(at(normals, x, y, c), floor((n[c] + 1) / 2 * ((1u << normals->bits) - 1) + 0.5));
 }
 
-static void flat_is_the_neutral_colour(void **state)
+TEST(flat_is_the_neutral_colour)
 {
-	(void)state;
 	nt_pixels heights = make(9, 7, 1, 8), wide = make(9, 7, 1, 16);
 	memset(heights.samples, 77, 63);
 	nt_pixels normals = convert(&heights, 0.5, false), wide_normals = convert(&wide, 0.5, true);
@@ -62,9 +61,8 @@ static void flat_is_the_neutral_colour(void **state)
 }
 
 /* h = 3 x + 2 y of 255 (then of 65535), in an image of 40: s = 40 * height. */
-static void plane_has_its_exact_normal(void **state)
+TEST(plane_has_its_exact_normal)
 {
-	(void)state;
 	for (unsigned bits = 8; bits <= 16; bits += 8) {
 		nt_pixels heights = make(40, 30, 1, bits);
 		const unsigned unit = bits == 8 ? 1 : 257;
@@ -89,9 +87,8 @@ static void plane_has_its_exact_normal(void **state)
 }
 
 /* One bright pixel in a corner is seen from the opposite borders, where the sampler repeats. */
-static void borders_wrap_as_the_sampler_does(void **state)
+TEST(borders_wrap_as_the_sampler_does)
 {
-	(void)state;
 	for (int clamp = 0; clamp <= 1; clamp++) {
 		nt_pixels heights = make(8, 4, 1, 8);
 		((uint8_t *)heights.samples)[0] = 255;
@@ -108,9 +105,8 @@ static void borders_wrap_as_the_sampler_does(void **state)
 /* A hemisphere of radius R lit from anywhere looks as its radii say: (dx, -dy, z) / R. Central differences of step 1
  * are wrong by f'''/6, at 0.8 R by 0.8 R^-2 / 0.6^5 / 2, which is 1e-3 for R = 60; 0.004 leaves room for the rounding
  * of colours to 16 bits and for the other direction. */
-static void hemisphere_relit_is_the_hemisphere(void **state)
+TEST(hemisphere_relit_is_the_hemisphere)
 {
-	(void)state;
 	enum { SIDE = 128, RADIUS = 60 };
 	static const double lights[][3] = {{0, 0, 1}, {0.6, 0, 0.8}, {0, 0.6, 0.8}, {-0.48, -0.36, 0.8}};
 	nt_pixels heights = make(SIDE, SIDE, 1, 16);
@@ -142,9 +138,8 @@ static void hemisphere_relit_is_the_hemisphere(void **state)
 	nt_pixels_free(&normals);
 }
 
-static void normals_without_memory_are_none(void **state)
+TEST(normals_without_memory_are_none)
 {
-	(void)state;
 	nt_pixels heights = make(4, 4, 1, 8), normals;
 	nt_error error;
 	for (size_t n = 0; n < 2; n++) {
@@ -158,12 +153,5 @@ static void normals_without_memory_are_none(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(flat_is_the_neutral_colour),
-		cmocka_unit_test(plane_has_its_exact_normal),
-		cmocka_unit_test(borders_wrap_as_the_sampler_does),
-		cmocka_unit_test(hemisphere_relit_is_the_hemisphere),
-		cmocka_unit_test(normals_without_memory_are_none),
-	};
-	return cmocka_run_group_tests_name("image/heights", tests, NULL, NULL);
+	return run_group("image/heights");
 }

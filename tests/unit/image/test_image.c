@@ -258,9 +258,8 @@ static void store_seed(const char *name, const bytes *b)
 	assert_int_equal(fclose(stream), 0);
 }
 
-static void decode_gives_the_picture(void **state)
+TEST(decode_gives_the_picture)
 {
-	(void)state;
 	for (size_t i = 0; i < FILE_COUNT; i++) {
 		bytes b;
 		nt_pixels p;
@@ -302,9 +301,8 @@ static const unsigned char png_palette[] = {
 	0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82,
 };
 
-static void decode_png_of_16_bits_and_of_a_palette(void **state)
+TEST(decode_png_of_16_bits_and_of_a_palette)
 {
-	(void)state;
 	nt_pixels p;
 	nt_error error;
 	assert_int_equal(nt_image_decode(png_grey16, sizeof png_grey16, &p, &error), NT_OK);
@@ -322,9 +320,8 @@ static void decode_png_of_16_bits_and_of_a_palette(void **state)
 	nt_pixels_free(&p);
 }
 
-static void encode_keeps_every_kind_of_sample(void **state)
+TEST(encode_keeps_every_kind_of_sample)
 {
-	(void)state;
 	for (unsigned channels = 1; channels <= 4; channels++)
 		for (unsigned bits = 8; bits <= 16; bits += 8) {
 			nt_pixels p, back;
@@ -357,9 +354,8 @@ static __attribute__((noinline)) void leave_on_the_stack(int value)
 }
 
 /* stb_image looks for such a colour behind those that it has read. */
-static void colours_that_a_palette_lacks_are_the_same_in_every_run(void **state)
+TEST(colours_that_a_palette_lacks_are_the_same_in_every_run)
 {
-	(void)state;
 	bytes b = {.size = 0};
 	put(&b, 'B' | 'M' << 8, 2, false);
 	put(&b, 62 + 4, 4, false);
@@ -385,9 +381,8 @@ static void colours_that_a_palette_lacks_are_the_same_in_every_run(void **state)
 	}
 }
 
-static void grey_is_told_by_pixels(void **state)
+TEST(grey_is_told_by_pixels)
 {
-	(void)state;
 	for (size_t i = 0; i < FILE_COUNT; i++) {
 		bytes b;
 		nt_error error;
@@ -400,9 +395,8 @@ static void grey_is_told_by_pixels(void **state)
 
 /* Whatever is missing of a file, it is no image. What may be missing: of a PNG the checksum of the last
  * IDAT and the IEND, which has 12 bytes, the padding of a BMP's last row, and a TIFF's offset of a second image. */
-static void decode_refuses_what_is_cut_short(void **state)
+TEST(decode_refuses_what_is_cut_short)
 {
-	(void)state;
 	for (size_t i = 0; i < FILE_COUNT; i++) {
 		bytes b;
 		nt_error error;
@@ -425,9 +419,8 @@ static void decode_refuses_what_is_cut_short(void **state)
 }
 
 /* Behind the end stb_image would read packets of no pixels, or lines of the header, for ever. */
-static void decode_ends_where_an_hdr_ends(void **state)
+TEST(decode_ends_where_an_hdr_ends)
 {
-	(void)state;
 	static const char row[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n" "\2\2\0\10\210a";
 	static const char header[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n-Y 2 +X 8\n";
 	nt_pixels p;
@@ -438,9 +431,8 @@ static void decode_ends_where_an_hdr_ends(void **state)
 	alarm(0);
 }
 
-static void decode_refuses_sizes_before_it_asks_for_memory(void **state)
+TEST(decode_refuses_sizes_before_it_asks_for_memory)
 {
-	(void)state;
 	static const unsigned sides[] = {65535, 32768, 20000, 16384};
 	for (size_t i = 0; i < 4; i++) {
 		bytes b;
@@ -523,9 +515,8 @@ static void decodes_with(const unsigned char *jpeg, size_t size, nt_status expec
 }
 
 /* The densest JPEG by Huffman codes: one grey, a bit each. */
-static void jpegs_are_held_against_a_bit_for_each_block(void **state)
+TEST(jpegs_are_held_against_a_bit_for_each_block)
 {
-	(void)state;
 	unsigned long size;
 	unsigned char *made = make_dense_jpeg(1, false, false, false, &size);
 	assert_true(size < SIDE * SIDE / 512 + 200);
@@ -536,9 +527,8 @@ static void jpegs_are_held_against_a_bit_for_each_block(void **state)
 }
 
 /* With components of 4 x 1, 1 x 4 and 1 x 1 no component has a block for each 8 x 8 pixels: of 16 all have 9. */
-static void blocks_of_a_jpeg_may_cover_many_pixels(void **state)
+TEST(blocks_of_a_jpeg_may_cover_many_pixels)
 {
-	(void)state;
 	unsigned long size;
 	unsigned char *made = make_dense_jpeg(3, true, false, false, &size);
 	assert_in_range(size, SIDE * SIDE / 512 * 9 / 16, SIDE * SIDE / 512 * 10 / 16 + 200);
@@ -548,9 +538,8 @@ static void blocks_of_a_jpeg_may_cover_many_pixels(void **state)
 
 /* Arithmetic codes take next to nothing where nothing changes. What libjpeg keeps of all scans follows the declared
  * size: that is looked at first, also where some rows are enough. */
-static void jpegs_of_arithmetic_codes_have_a_bound(void **state)
+TEST(jpegs_of_arithmetic_codes_have_a_bound)
 {
-	(void)state;
 	unsigned long size;
 	unsigned char *made = make_dense_jpeg(3, false, true, false, &size);
 	assert_true(size < SIDE);
@@ -570,9 +559,8 @@ static void jpegs_of_arithmetic_codes_have_a_bound(void **state)
 }
 
 /* Of one colour, they are as small as they like. Nothing is kept of a single scan. */
-static void large_jpegs_of_arithmetic_codes_are_decoded(void **state)
+TEST(large_jpegs_of_arithmetic_codes_are_decoded)
 {
-	(void)state;
 	static const unsigned sides[] = {6000, 16384}; /* of several scans, of one */
 	for (int sequential = 0; sequential < 2; sequential++) {
 		unsigned long size;
@@ -591,9 +579,8 @@ static void large_jpegs_of_arithmetic_codes_are_decoded(void **state)
 }
 
 /* Any bytes: an image or an error, and never more. The build with sanitizers looks on. */
-static void decode_survives_damage(void **state)
+TEST(decode_survives_damage)
 {
-	(void)state;
 	uint32_t seed = 13;
 	for (size_t i = 0; i < FILE_COUNT; i++) {
 		bytes b;
@@ -615,9 +602,8 @@ static void decode_survives_damage(void **state)
 	}
 }
 
-static void decode_without_memory_is_an_error(void **state)
+TEST(decode_without_memory_is_an_error)
 {
-	(void)state;
 	for (size_t i = 0; i < FILE_COUNT; i++) {
 		bytes b;
 		files[i].make(&b);
@@ -639,21 +625,5 @@ static void decode_without_memory_is_an_error(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(decode_gives_the_picture),
-		cmocka_unit_test(decode_png_of_16_bits_and_of_a_palette),
-		cmocka_unit_test(encode_keeps_every_kind_of_sample),
-		cmocka_unit_test(colours_that_a_palette_lacks_are_the_same_in_every_run),
-		cmocka_unit_test(grey_is_told_by_pixels),
-		cmocka_unit_test(decode_refuses_what_is_cut_short),
-		cmocka_unit_test(decode_ends_where_an_hdr_ends),
-		cmocka_unit_test(decode_refuses_sizes_before_it_asks_for_memory),
-		cmocka_unit_test(jpegs_are_held_against_a_bit_for_each_block),
-		cmocka_unit_test(blocks_of_a_jpeg_may_cover_many_pixels),
-		cmocka_unit_test(jpegs_of_arithmetic_codes_have_a_bound),
-		cmocka_unit_test(large_jpegs_of_arithmetic_codes_are_decoded),
-		cmocka_unit_test(decode_survives_damage),
-		cmocka_unit_test(decode_without_memory_is_an_error),
-	};
-	return cmocka_run_group_tests_name("image/image", tests, make_folder, remove_folder);
+	return run_group_within("image/image", make_folder, remove_folder);
 }

@@ -33,9 +33,8 @@ static void pack(const nt_pixels *from, nt_channel_map map, nt_pixels *to)
 
 static const nt_channel_map luminance = {.channel = NT_CHANNEL_LUMINANCE, .gain = 1};
 
-static void channels_are_taken(void **state)
+TEST(channels_are_taken)
 {
-	(void)state;
 	static const uint8_t rgba[] = {10, 20, 30, 40, 200, 200, 200, 255}, grey[] = {7, 250};
 	static const uint8_t expected[][2] = {{10, 200}, {20, 200}, {30, 200}, {40, 255}, {19, 200}};
 	nt_pixels color = make_row(4, rgba, sizeof rgba), narrow = make_row(1, grey, sizeof grey),
@@ -56,9 +55,8 @@ static void channels_are_taken(void **state)
 	nt_pixels_free(&to);
 }
 
-static void every_sample_becomes_its_number(void **state)
+TEST(every_sample_becomes_its_number)
 {
-	(void)state;
 	nt_pixels from = make(256, 1, 1, 8), to = make(256, 1, 1, 8), wide = make(256, 1, 1, 16);
 	for (unsigned v = 0; v < 256; v++)
 		((uint8_t *)from.samples)[v] = (uint8_t)v;
@@ -90,9 +88,8 @@ static void every_sample_becomes_its_number(void **state)
 	nt_pixels_free(&wide);
 }
 
-static void other_sizes_are_bilinear(void **state)
+TEST(other_sizes_are_bilinear)
 {
-	(void)state;
 	static const uint8_t two[] = {0, 100};
 	nt_pixels from = make_row(1, two, 2), to = make(4, 1, 1, 8);
 	const uint8_t *out = to.samples, repeated[] = {25, 25, 75, 75}, clamped[] = {0, 25, 75, 100};
@@ -118,9 +115,8 @@ static nt_alpha_mode alpha_of(unsigned low, unsigned middle, unsigned high, unsi
 	return mode;
 }
 
-static void alpha_has_a_mode(void **state)
+TEST(alpha_has_a_mode)
 {
-	(void)state;
 	assert_int_equal(alpha_of(0, 0, 0, 100), NT_ALPHA_OPAQUE);
 	assert_int_equal(alpha_of(50, 0, 0, 50), NT_ALPHA_MASK);
 	assert_int_equal(alpha_of(50, 5, 5, 40), NT_ALPHA_MASK);
@@ -131,11 +127,5 @@ static void alpha_has_a_mode(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(channels_are_taken),
-		cmocka_unit_test(every_sample_becomes_its_number),
-		cmocka_unit_test(other_sizes_are_bilinear),
-		cmocka_unit_test(alpha_has_a_mode),
-	};
-	return cmocka_run_group_tests_name("image/pack", tests, NULL, NULL);
+	return run_group("image/pack");
 }

@@ -46,9 +46,8 @@ static nt_status make(nt_textures *textures, nt_error *error)
 	return nt_textures_make(textures, &rules, error);
 }
 
-static void equal_results_are_made_once(void **state)
+TEST(equal_results_are_made_once)
 {
-	(void)state;
 	put_tga("grey.tga", 9, 9, 9);
 	put_tga("n.tga", 255, 128, 128);
 	nt_textures *t = nt_textures_create(NULL);
@@ -76,9 +75,8 @@ static void equal_results_are_made_once(void **state)
 }
 
 /* A grey TGA of noise, whose PNG is larger than 256 KB; where no file can be had, it stays in memory. */
-static void large_results_are_in_a_file(void **state)
+TEST(large_results_are_in_a_file)
 {
-	(void)state;
 	enum { SIDE = 600, BYTES = 18 + SIDE * SIDE };
 	static unsigned char tga[BYTES] = {[2] = 3, [12] = SIDE % 256, [13] = SIDE / 256, [14] = SIDE % 256,
 		[15] = SIDE / 256, [16] = 8, [17] = 0x20};
@@ -109,9 +107,8 @@ static void large_results_are_in_a_file(void **state)
 	}
 }
 
-static void file_that_is_not_what_it_was_is_an_error(void **state)
+TEST(file_that_is_not_what_it_was_is_an_error)
 {
-	(void)state;
 	put_tga("n.tga", 255, 128, 128);
 	nt_textures *t = nt_textures_create(NULL);
 	nt_error error;
@@ -128,9 +125,8 @@ static void file_that_is_not_what_it_was_is_an_error(void **state)
 	nt_textures_free(t);
 }
 
-static void textures_without_memory_are_an_error(void **state)
+TEST(textures_without_memory_are_an_error)
 {
-	(void)state;
 	put_tga("grey.tga", 9, 9, 9);
 	for (size_t n = 0;; n++) {
 		nt_textures *t = nt_textures_create(NULL);
@@ -154,11 +150,5 @@ static void textures_without_memory_are_an_error(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(equal_results_are_made_once),
-		cmocka_unit_test(large_results_are_in_a_file),
-		cmocka_unit_test(file_that_is_not_what_it_was_is_an_error),
-		cmocka_unit_test(textures_without_memory_are_an_error),
-	};
-	return cmocka_run_group_tests_name("image/textures", tests, make_folder, remove_folder);
+	return run_group_within("image/textures", make_folder, remove_folder);
 }

@@ -14,9 +14,8 @@ static void assert_color(const nt_mesh *mesh, size_t vertex, float r, float g, f
 		assert_true(fabsf(mesh->colors[4 * vertex + k] - expected[k]) < 1e-4f);
 }
 
-static void colors_of_lines_and_blocks(void **state)
+TEST(colors_of_lines_and_blocks)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r, TRIANGLE
 		"#The following MRGB block contains ZBrush Vertex Color (Polypaint) ...\n"
@@ -34,9 +33,8 @@ static void colors_of_lines_and_blocks(void **state)
 	close_reading(&r);
 }
 
-static void colors_of_vertices_come_first(void **state)
+TEST(colors_of_vertices_come_first)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh =
 		only_mesh(&r, "v 0 0 0 1 0 1\nv 1 0 0\nv 0 1 0\n#MRGB ff00ff00ff00ff00ff00ff00\nf 1 2 3\n");
@@ -46,9 +44,8 @@ static void colors_of_vertices_come_first(void **state)
 }
 
 /* ZBrush writes it of what nobody painted. */
-static void white_all_over_is_no_color(void **state)
+TEST(white_all_over_is_no_color)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r, TRIANGLE "#MRGB ffffffffffffffffffffffff\nf 1 2 3\n");
 	assert_null(mesh->colors);
@@ -56,9 +53,8 @@ static void white_all_over_is_no_color(void **state)
 	close_reading(&r);
 }
 
-static void what_is_malformed_is_doubtful_and_white(void **state)
+TEST(what_is_malformed_is_doubtful_and_white)
 {
-	(void)state;
 	static const struct {
 		const char *lines, *detail;
 		float color[3][3];
@@ -93,9 +89,8 @@ static void what_is_malformed_is_doubtful_and_white(void **state)
 }
 
 /* Findings of nonsense do not grow with it. */
-static void many_blocks_are_few_findings(void **state)
+TEST(many_blocks_are_few_findings)
 {
-	(void)state;
 	enum { COUNT = 1000 };
 	char *text = malloc(COUNT * 32 + 64), *to = text;
 	for (int i = 0; i < COUNT; i++)
@@ -109,9 +104,8 @@ static void many_blocks_are_few_findings(void **state)
 }
 
 /* A file of several chunks, whose colours stand in other chunks than their vertices. */
-static void colors_reach_over_chunks(void **state)
+TEST(colors_reach_over_chunks)
 {
-	(void)state;
 	enum { COUNT = 150000, OF_LINE = 64 };
 	char *text = malloc((size_t)COUNT * 64), *to = text;
 	for (int i = 0; i < COUNT; i++)
@@ -142,13 +136,5 @@ static void colors_reach_over_chunks(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(colors_of_lines_and_blocks),
-		cmocka_unit_test(colors_of_vertices_come_first),
-		cmocka_unit_test(white_all_over_is_no_color),
-		cmocka_unit_test(what_is_malformed_is_doubtful_and_white),
-		cmocka_unit_test(many_blocks_are_few_findings),
-		cmocka_unit_test(colors_reach_over_chunks),
-	};
-	return cmocka_run_group_tests_name("obj/colors", tests, NULL, NULL);
+	return run_group("obj/colors");
 }

@@ -4,9 +4,8 @@
  */
 #include "obj_file.h"
 
-static void file_without_faces_is_refused(void **state)
+TEST(file_without_faces_is_refused)
 {
-	(void)state;
 	static const char *const texts[] = {"", "\n", "# only a comment", "\xEF\xBB\xBF"};
 	for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
 		assert_fails(texts[i], 0, "found no faces, expected a mesh");
@@ -20,9 +19,8 @@ static void file_without_faces_is_refused(void **state)
 		"found a face of 2 corners and no larger one in the file, expected at least 3");
 }
 
-static void damaged_lines_are_named(void **state)
+TEST(damaged_lines_are_named)
 {
-	(void)state;
 	assert_fails("v 0 0\n", 1, "found the end of the line, expected 3 coordinates");
 	assert_fails("v 0 0 0\nv 0 x 0\n", 2, "found \"x\", expected a number");
 	assert_fails("v 0 0 1..2\n", 1, "found \"1..2\", expected a number");
@@ -51,9 +49,8 @@ static void damaged_lines_are_named(void **state)
 	assert_fails("# 1\r# 2\r\n# 3\nv x\n", 4, "found \"x\", expected a number");
 }
 
-static void numbers_that_are_not_finite_are_refused(void **state)
+TEST(numbers_that_are_not_finite_are_refused)
 {
-	(void)state;
 	assert_fails("v inf 0 0\n", 1, "found \"inf\", expected a finite number");
 	assert_fails("v 0 -nan 0\n", 1, "found \"-nan\", expected a finite number");
 	assert_fails("v 0 0 1e39\n", 1, "found \"1e39\", expected a finite number");
@@ -62,9 +59,8 @@ static void numbers_that_are_not_finite_are_refused(void **state)
 	assert_fails("v 0 0 0 nan\n", 1, "found \"nan\", expected a finite number");
 }
 
-static void indices_out_of_range_are_named(void **state)
+TEST(indices_out_of_range_are_named)
 {
-	(void)state;
 	assert_fails(TRIANGLE "f 0 1 2\n", 4,
 		"found \"0\", expected an index, which begins at 1 or counts back from -1");
 	assert_fails(TRIANGLE "f 1 2 -0\n", 4,
@@ -98,9 +94,8 @@ static void indices_out_of_range_are_named(void **state)
 	close_reading(&r);
 }
 
-static void bytes_that_are_no_text_are_refused(void **state)
+TEST(bytes_that_are_no_text_are_refused)
 {
-	(void)state;
 	reading r;
 	open_bytes(&r, "v 0 0 0\n\0\0\0\n", 12, 1);
 	assert_int_equal(r.status, NT_ERROR_INPUT);
@@ -121,9 +116,8 @@ static void bytes_that_are_no_text_are_refused(void **state)
 }
 
 /* Whatever a file is cut to, it is read or refused with a line; the sanitizers watch. */
-static void every_prefix_is_survived(void **state)
+TEST(every_prefix_is_survived)
 {
-	(void)state;
 	static const char text[] = "\xEF\xBB\xBFmtllib a.mtl b.mtl\no a\nv 0 0 0\nv 1 0 0 1 1 1\r\nv 1 1 1e-3\n"
 		"v 0.12345678901234567890 1 0 \\\n 1\nv -1 0.5 0\nvt 0.5\nvt 1 1\nvn 0 0 1\nusemtl m\ns 1\n"
 		"f 1/1/1 2/2/1 3//1\nf -1 -2 -3 -4 -5\n# comment \\\nl 1 2\nf 1 2 3 \\\n4 # end\ng x\ns off\n"
@@ -141,9 +135,8 @@ static void every_prefix_is_survived(void **state)
 }
 
 /* Every byte of a small file replaced by every other: read or refused. */
-static void every_changed_byte_is_survived(void **state)
+TEST(every_changed_byte_is_survived)
 {
-	(void)state;
 	static const char good[] = "o a\nv 0 0 0\nv 1. 0 -1\nv 0 1 0\nvt 0 1\nf 1/1 -2/1 3//\ns 1\nf 3 2 1 \\\n2\n";
 	char text[sizeof good];
 	for (size_t at = 0; at + 1 < sizeof good; at++)
@@ -159,14 +152,5 @@ static void every_changed_byte_is_survived(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(file_without_faces_is_refused),
-		cmocka_unit_test(damaged_lines_are_named),
-		cmocka_unit_test(numbers_that_are_not_finite_are_refused),
-		cmocka_unit_test(indices_out_of_range_are_named),
-		cmocka_unit_test(bytes_that_are_no_text_are_refused),
-		cmocka_unit_test(every_prefix_is_survived),
-		cmocka_unit_test(every_changed_byte_is_survived),
-	};
-	return cmocka_run_group_tests_name("obj/damage", tests, NULL, NULL);
+	return run_group("obj/damage");
 }

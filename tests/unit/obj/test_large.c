@@ -293,9 +293,8 @@ static char *generate(size_t *size)
 	return text;
 }
 
-static void generated_file_agrees_with_the_naive_reader(void **state)
+TEST(generated_file_agrees_with_the_naive_reader)
 {
-	(void)state;
 	size_t size;
 	char *text = generate(&size);
 	assert_true(size > 3u << 20);
@@ -344,9 +343,8 @@ static void assert_same_scene(const nt_scene *a, const nt_scene *b)
 	}
 }
 
-static void threads_do_not_show(void **state)
+TEST(threads_do_not_show)
 {
-	(void)state;
 	size_t size;
 	char *text = generate(&size);
 	nt_scene one;
@@ -364,9 +362,8 @@ static void threads_do_not_show(void **state)
 }
 
 /* Faults in several chunks: the first in the file is named, by every number of threads. */
-static void the_first_fault_is_named_whatever_the_threads(void **state)
+TEST(the_first_fault_is_named_whatever_the_threads)
 {
-	(void)state;
 	size_t size;
 	char *text = generate(&size);
 	const size_t at[3] = {size - 100000, size - (2u << 20), (1u << 20) + 5000};
@@ -389,9 +386,8 @@ static void the_first_fault_is_named_whatever_the_threads(void **state)
 }
 
 /* One v whose 100 000 corners all differ: the links behind a v end where a hash table begins. */
-static void hub_of_different_corners_is_not_quadratic(void **state)
+TEST(hub_of_different_corners_is_not_quadratic)
 {
-	(void)state;
 	char *text = malloc(8 << 20);
 	size_t used = (size_t)sprintf(text, "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
 	for (int i = 0; i < 100000; i++)
@@ -413,9 +409,8 @@ static void hub_of_different_corners_is_not_quadratic(void **state)
 }
 
 /* A line longer than a chunk, and a chunk whose every line is joined to the next. */
-static void lines_longer_than_a_chunk(void **state)
+TEST(lines_longer_than_a_chunk)
 {
-	(void)state;
 	char *text = malloc(8 << 20);
 	size_t used = (size_t)sprintf(text, "v 0 0 0\nv 1 0 0\nv 0 1 0\n#");
 	memset(text + used, 'x', 3 << 20);
@@ -469,9 +464,8 @@ static char *read_file(const char *path, size_t *size)
 	return bytes;
 }
 
-static void public_models_agree_with_the_naive_reader(void **state)
+TEST(public_models_agree_with_the_naive_reader)
 {
-	(void)state;
 	static const char folder[] = "../shared/models/obj";
 	DIR *dir = opendir(folder);
 	if (!dir) {
@@ -504,13 +498,5 @@ static void public_models_agree_with_the_naive_reader(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(generated_file_agrees_with_the_naive_reader),
-		cmocka_unit_test(threads_do_not_show),
-		cmocka_unit_test(the_first_fault_is_named_whatever_the_threads),
-		cmocka_unit_test(hub_of_different_corners_is_not_quadratic),
-		cmocka_unit_test(lines_longer_than_a_chunk),
-		cmocka_unit_test(public_models_agree_with_the_naive_reader),
-	};
-	return cmocka_run_group_tests_name("obj/large", tests, NULL, NULL);
+	return run_group("obj/large");
 }

@@ -18,9 +18,8 @@ static void assert_place(const reading *r, uint32_t mesh, uint32_t face, size_t 
 }
 
 /* What is no face is not counted: a triangle has its own line, whatever stands before it. */
-static void locate_behind_small_faces(void **state)
+TEST(locate_behind_small_faces)
 {
-	(void)state;
 	reading r;
 	only_mesh(&r, TRIANGLE      /* lines 1 to 3 */
 		"f 1 2\n"           /* 4: two corners */
@@ -33,9 +32,8 @@ static void locate_behind_small_faces(void **state)
 	close_reading(&r);
 }
 
-static void locate_with_lone_cr(void **state)
+TEST(locate_with_lone_cr)
 {
-	(void)state;
 	reading r;
 	only_mesh(&r, "v 0 0 0\rv 1 0 0\rv 0 1 0\r" /* 1 to 3 */
 		"# f 9 9 9\r"                       /* 4 */
@@ -47,9 +45,8 @@ static void locate_with_lone_cr(void **state)
 	close_reading(&r);
 }
 
-static void locate_with_crlf_and_mark(void **state)
+TEST(locate_with_crlf_and_mark)
 {
-	(void)state;
 	reading r;
 	only_mesh(&r, "\xEF\xBB\xBFv 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\n" /* 1 to 3 */
 		"\r\n"                                                /* 4 */
@@ -59,9 +56,8 @@ static void locate_with_crlf_and_mark(void **state)
 }
 
 /* ZBrush writes them. The face before them ends where they begin. */
-static void locate_before_zero_bytes(void **state)
+TEST(locate_before_zero_bytes)
 {
-	(void)state;
 	static const char text[] = TRIANGLE /* 1 to 3 */
 		"f 1 2 3\0\0";              /* 4: face 0 */
 	reading r;
@@ -72,9 +68,8 @@ static void locate_before_zero_bytes(void **state)
 }
 
 /* A pentagon becomes three triangles and stays one face of the source. */
-static void locate_polygons(void **state)
+TEST(locate_polygons)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r, "v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv -1 1 0\n" /* 1 to 5 */
 		"f 1 2 3\n"       /* 6: face 0 */
@@ -90,9 +85,8 @@ static void locate_polygons(void **state)
 }
 
 /* A statement stands where its first word does. */
-static void locate_joined_lines(void **state)
+TEST(locate_joined_lines)
 {
-	(void)state;
 	reading r;
 	only_mesh(&r, "v 0 \\\n0 0\nv 1 0 0\nv 0 1 0\n" /* 1 and 2, 3, 4 */
 		"f 1 \\\n"      /* 5: face 0 */
@@ -108,9 +102,8 @@ static void locate_joined_lines(void **state)
 }
 
 /* Faces count from the first of their object, which is a mesh. */
-static void locate_in_objects(void **state)
+TEST(locate_in_objects)
 {
-	(void)state;
 	reading r;
 	open_text(&r, TRIANGLE "vt 0 0\nvn 0 0 1\n"  /* 1 to 5 */
 		"o first\nf 1/1/1 2/1/1 3/1/1\n"     /* 6, 7: mesh 0 face 0 */
@@ -127,9 +120,8 @@ static void locate_in_objects(void **state)
 }
 
 /* Corners that do not fit are left out whole. */
-static void locate_long_polygon(void **state)
+TEST(locate_long_polygon)
 {
-	(void)state;
 	enum { SIZE = 200 };
 	char text[20000], *p = text;
 	for (int i = 0; i < SIZE; i++)
@@ -151,9 +143,8 @@ static void locate_long_polygon(void **state)
 }
 
 /* Many chunks, with lines that are no faces; asked for all at once, some twice. */
-static void locate_in_large_files(void **state)
+TEST(locate_in_large_files)
 {
-	(void)state;
 	enum { GROUPS = 60000, ASKED = 40 };
 	char *text = malloc((size_t)GROUPS * 80), *p = text;
 	p += sprintf(p, TRIANGLE); /* 1 to 3 */
@@ -178,9 +169,8 @@ static void locate_in_large_files(void **state)
 	free(text);
 }
 
-static void locate_out_of_memory(void **state)
+TEST(locate_out_of_memory)
 {
-	(void)state;
 	reading r;
 	only_mesh(&r, TRIANGLE "f 1 2 3\nf 2 3 1\n");
 	nt_status status;
@@ -200,17 +190,5 @@ static void locate_out_of_memory(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(locate_behind_small_faces),
-		cmocka_unit_test(locate_with_lone_cr),
-		cmocka_unit_test(locate_with_crlf_and_mark),
-		cmocka_unit_test(locate_before_zero_bytes),
-		cmocka_unit_test(locate_polygons),
-		cmocka_unit_test(locate_joined_lines),
-		cmocka_unit_test(locate_in_objects),
-		cmocka_unit_test(locate_long_polygon),
-		cmocka_unit_test(locate_in_large_files),
-		cmocka_unit_test(locate_out_of_memory),
-	};
-	return cmocka_run_group_tests_name("obj/locate", tests, NULL, NULL);
+	return run_group("obj/locate");
 }

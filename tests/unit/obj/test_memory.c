@@ -24,9 +24,8 @@ static nt_status open_text(const char *path, const char *text, nt_error *error)
 	return status;
 }
 
-static void every_allocation_of_the_reader_may_fail(void **state)
+TEST(every_allocation_of_the_reader_may_fail)
 {
-	(void)state;
 	char path[200], text[4000], *p = text;
 	snprintf(path, sizeof path, "%s", in_folder("a.obj"));
 	put_text_file("a.mtl", "newmtl a\nKd 1 1 1\nmap_Kd a.png\nbump b.png\nmap_Pr c.png\n");
@@ -57,9 +56,8 @@ static void every_allocation_of_the_reader_may_fail(void **state)
 }
 
 /* What is read goes into common blocks then; comments fill the chunks. */
-static void every_allocation_for_a_file_of_many_chunks_may_fail(void **state)
+TEST(every_allocation_for_a_file_of_many_chunks_may_fail)
 {
-	(void)state;
 	enum { CHUNKS = 6, CHUNK = 1 << 20 };
 	char path[200], *const text = malloc(CHUNKS * CHUNK + 1000), *p = text;
 	assert_non_null(text);
@@ -84,9 +82,8 @@ static void every_allocation_for_a_file_of_many_chunks_may_fail(void **state)
 	free(text);
 }
 
-static void allocations_of_large_polygons_may_fail(void **state)
+TEST(allocations_of_large_polygons_may_fail)
 {
-	(void)state;
 	static float points[100][3];
 	static uint32_t triangles[3 * 98];
 	for (int i = 0; i < 100; i++) {
@@ -108,10 +105,5 @@ static void allocations_of_large_polygons_may_fail(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(every_allocation_of_the_reader_may_fail),
-		cmocka_unit_test(every_allocation_for_a_file_of_many_chunks_may_fail),
-		cmocka_unit_test(allocations_of_large_polygons_may_fail),
-	};
-	return cmocka_run_group_tests_name("obj/memory", tests, make_folder, remove_folder);
+	return run_group_within("obj/memory", make_folder, remove_folder);
 }

@@ -43,9 +43,8 @@ static void close_reading(reading *r)
 	nt_scene_free(&r->scene);
 }
 
-static void every_property_is_read(void **state)
+TEST(every_property_is_read)
 {
-	(void)state;
 	reading r;
 	const nt_mtl_definition *d = parse_one(&r,
 		"# c\r\nnewmtl  old  stone \r\n\tKa 1 1 1\r\nKd 0.5 0.25 1\r\nd 0.75\r\nKe 0 2 0.5\r\nPr 0.125\r\n"
@@ -67,9 +66,8 @@ static void every_property_is_read(void **state)
 	close_reading(&r);
 }
 
-static void defaults_are_those_of_a_plain_material(void **state)
+TEST(defaults_are_those_of_a_plain_material)
 {
-	(void)state;
 	reading r;
 	const nt_mtl_definition *d = parse_one(&r, "newmtl a");
 	const float color[4] = {1, 1, 1, 1}, emissive[3] = {0, 0, 0};
@@ -82,9 +80,8 @@ static void defaults_are_those_of_a_plain_material(void **state)
 	close_reading(&r);
 }
 
-static void other_spellings_of_values(void **state)
+TEST(other_spellings_of_values)
 {
-	(void)state;
 	reading r;
 	const nt_mtl_definition *d =
 		parse_one(&r, "newmtl a\nkd 0.5\nTr 0.25\nPR 7\nPm -1\nmap_kd  a b.png \nmap_Ke\n");
@@ -101,9 +98,8 @@ static void other_spellings_of_values(void **state)
 	close_reading(&r);
 }
 
-static void bump_is_kept_apart_and_yields_to_normal_maps(void **state)
+TEST(bump_is_kept_apart_and_yields_to_normal_maps)
 {
-	(void)state;
 	static const char *const words[] = {"map_Bump", "map_bump", "bump"};
 	for (int i = 0; i < 3; i++) {
 		char text[100];
@@ -128,9 +124,8 @@ static void bump_is_kept_apart_and_yields_to_normal_maps(void **state)
 	}
 }
 
-static void map_options_are_skipped_by_their_arguments(void **state)
+TEST(map_options_are_skipped_by_their_arguments)
 {
-	(void)state;
 	static const struct {
 		const char *text, *name;
 		float scale;
@@ -169,9 +164,8 @@ static void map_options_are_skipped_by_their_arguments(void **state)
 	}
 }
 
-static void placements_are_read(void **state)
+TEST(placements_are_read)
 {
-	(void)state;
 	static const struct {
 		const char *text;
 		nt_placement placement;
@@ -204,9 +198,8 @@ static void placements_are_read(void **state)
 	}
 }
 
-static void lost_statements_are_findings(void **state)
+TEST(lost_statements_are_findings)
 {
-	(void)state;
 	reading r;
 	parse(&r, "Kd 1 1 1\nnewmtl a\ndecal r.png\ndecal r.png\nrubbish\nmap_Kd -s 2 2 -t 2 2 a.png\n");
 	assert_int_equal(r.status, NT_OK);
@@ -225,9 +218,8 @@ static void lost_statements_are_findings(void **state)
 	close_reading(&r);
 }
 
-static void damaged_numbers_are_named(void **state)
+TEST(damaged_numbers_are_named)
 {
-	(void)state;
 	static const struct {
 		const char *text, *message;
 		size_t line;
@@ -249,9 +241,8 @@ static void damaged_numbers_are_named(void **state)
 	}
 }
 
-static void every_prefix_is_survived(void **state)
+TEST(every_prefix_is_survived)
 {
-	(void)state;
 	static const char text[] = "\xEF\xBB\xBFnewmtl a\r\nKd 1 1 1\nd -halo 0.5\nmap_Kd -bm 1 -s 1 1 a b.png\n"
 		"bump \"b.png\" -bm 0.5\nxyz\nnewmtl b\nKe 1";
 	for (size_t size = 0; size < sizeof text; size++) {
@@ -293,9 +284,8 @@ static void open_obj(reading *r, char path[200], const char *text, bool allow_ou
 
 #define FACE "v 0 0 0\nf 1 1 1\n"
 
-static void libraries_are_found_beside_the_obj(void **state)
+TEST(libraries_are_found_beside_the_obj)
 {
-	(void)state;
 	reading r;
 	char path[200];
 	open_obj(&r, path,
@@ -319,9 +309,8 @@ static void libraries_are_found_beside_the_obj(void **state)
 	close_reading(&r);
 }
 
-static void name_with_blanks_is_tried_whole_first(void **state)
+TEST(name_with_blanks_is_tried_whole_first)
 {
-	(void)state;
 	reading r;
 	char path[200];
 	open_obj(&r, path, "mtllib b c.mtl\nusemtl b c\n" FACE, false);
@@ -336,9 +325,8 @@ static void name_with_blanks_is_tried_whole_first(void **state)
 	close_reading(&r);
 }
 
-static void a_link_within_the_folder_is_followed(void **state)
+TEST(a_link_within_the_folder_is_followed)
 {
-	(void)state;
 	reading r;
 	char path[200];
 	open_obj(&r, path, "mtllib other name.mtl\nusemtl a\n" FACE, false);
@@ -346,9 +334,8 @@ static void a_link_within_the_folder_is_followed(void **state)
 	close_reading(&r);
 }
 
-static void nothing_outside_the_folder_is_read(void **state)
+TEST(nothing_outside_the_folder_is_read)
 {
-	(void)state;
 	char text[400], path[200];
 	const char *const names[] = {"../outside.mtl", "..\\outside.mtl", "sub/../../outside.mtl", "link.mtl"};
 	for (int i = 0; i < 5; i++) {
@@ -380,20 +367,5 @@ static void nothing_outside_the_folder_is_read(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(every_property_is_read),
-		cmocka_unit_test(defaults_are_those_of_a_plain_material),
-		cmocka_unit_test(other_spellings_of_values),
-		cmocka_unit_test(bump_is_kept_apart_and_yields_to_normal_maps),
-		cmocka_unit_test(map_options_are_skipped_by_their_arguments),
-		cmocka_unit_test(placements_are_read),
-		cmocka_unit_test(lost_statements_are_findings),
-		cmocka_unit_test(damaged_numbers_are_named),
-		cmocka_unit_test(every_prefix_is_survived),
-		cmocka_unit_test(libraries_are_found_beside_the_obj),
-		cmocka_unit_test(name_with_blanks_is_tried_whole_first),
-		cmocka_unit_test(a_link_within_the_folder_is_followed),
-		cmocka_unit_test(nothing_outside_the_folder_is_read),
-	};
-	return cmocka_run_group_tests_name("obj/mtl", tests, make_libraries, remove_folder);
+	return run_group_within("obj/mtl", make_libraries, remove_folder);
 }

@@ -49,9 +49,8 @@ static void expect_finding(const reading *r, nt_code code, size_t line, const ch
 	assert_string_equal(f->place.object, "material \"a\"");
 }
 
-static void roughness_of_highlights(void **state)
+TEST(roughness_of_highlights)
 {
-	(void)state;
 	static const struct {
 		const char *lines;
 		float roughness;
@@ -71,9 +70,8 @@ static void roughness_of_highlights(void **state)
 	}
 }
 
-static void alpha_is_said_in_two_ways(void **state)
+TEST(alpha_is_said_in_two_ways)
 {
-	(void)state;
 	static const struct {
 		const char *lines;
 		float alpha;
@@ -99,9 +97,8 @@ static void alpha_is_said_in_two_ways(void **state)
 	}
 }
 
-static void layers_are_taken(void **state)
+TEST(layers_are_taken)
 {
-	(void)state;
 	reading r;
 	const nt_material *m = settle(&r, "Ps 0.5\nPc 0.75\nPcr 0.25\naniso 0.125\nanisor 0.25\nNi 1.33\nTf 1 1 1\n");
 	assert_true(m->sheen == 0.5f && m->sheen_roughness == 0.5f);
@@ -130,9 +127,8 @@ static void check_map(const nt_map *map, const char *name, char channel, float b
 	assert_true(map->factor == factor);
 }
 
-static void maps_have_their_numbers(void **state)
+TEST(maps_have_their_numbers)
 {
-	(void)state;
 	reading r;
 	const nt_material *m = settle(&r,
 		"Pr 0.5\nmap_Pr -imfchan g -mm 0.25 0.5 r.png\nPm 0\nmap_Pm m.png\nmap_ao o.png\n"
@@ -155,9 +151,8 @@ static void maps_have_their_numbers(void **state)
 	close_reading(&r);
 }
 
-static void packed_maps_have_their_order(void **state)
+TEST(packed_maps_have_their_order)
 {
-	(void)state;
 	reading r;
 	const nt_material *m = settle(&r, "map_ORM x.png\nPr 0.5");
 	check_map(&m->occlusion_map, "x.png", 'r', 0, 1, 1);
@@ -172,9 +167,8 @@ static void packed_maps_have_their_order(void **state)
 }
 
 /* 1 - (1 - roughness) v of map_Ks. */
-static void maps_of_highlights(void **state)
+TEST(maps_of_highlights)
 {
-	(void)state;
 	reading r;
 	const nt_material *m = settle(&r, "Ns 30\nKs 1 1 1\nmap_Ks s.png");
 	check_map(&m->roughness_map, "s.png", 0, 1, -0.5f, 1);
@@ -191,9 +185,8 @@ static void maps_of_highlights(void **state)
 	close_reading(&r);
 }
 
-static void what_is_lost_is_named(void **state)
+TEST(what_is_lost_is_named)
 {
-	(void)state;
 	static const struct {
 		const char *lines, *detail;
 	} cases[] = {
@@ -223,14 +216,5 @@ static void what_is_lost_is_named(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(roughness_of_highlights),
-		cmocka_unit_test(alpha_is_said_in_two_ways),
-		cmocka_unit_test(layers_are_taken),
-		cmocka_unit_test(maps_have_their_numbers),
-		cmocka_unit_test(packed_maps_have_their_order),
-		cmocka_unit_test(maps_of_highlights),
-		cmocka_unit_test(what_is_lost_is_named),
-	};
-	return cmocka_run_group_tests_name("obj/mtl_settle", tests, NULL, NULL);
+	return run_group("obj/mtl_settle");
 }

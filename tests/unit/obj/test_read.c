@@ -31,9 +31,8 @@ static const nt_finding *find(const reading *r, nt_code code)
 
 /* ---- what is read ---- */
 
-static void one_triangle_with_everything(void **state)
+TEST(one_triangle_with_everything)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r,
 		"# comment\no head\nv 0 0 0\nv 1.5 0 0\nv 0 -2e0 .25\n"
@@ -77,9 +76,8 @@ static void one_triangle_with_everything(void **state)
 
 /* Corners 1/1 2/2 3/3 then 1/1 3/3 4/2: the second face shares two; 4 is new, v 5 is not used. Then v 2
  * with another vt: a vertex of its own. */
-static void equal_corners_share_a_vertex_in_order_of_first_use(void **state)
+TEST(equal_corners_share_a_vertex_in_order_of_first_use)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r,
 		TRIANGLE "v 1 1 0\nv 9 9 9\nvt 0 0\nvt 1 0\nvt 1 1\n"
@@ -94,9 +92,8 @@ static void equal_corners_share_a_vertex_in_order_of_first_use(void **state)
 }
 
 /* -1 is the last one before the face, wherever it stands in the file. */
-static void negative_indices_count_back_from_the_face(void **state)
+TEST(negative_indices_count_back_from_the_face)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r,
 		TRIANGLE "vt 0 0\nvn 0 0 1\nf -3/-1/-1 -2/-1/-1 -1/-1/-1\n"
@@ -112,9 +109,8 @@ static void negative_indices_count_back_from_the_face(void **state)
 	close_reading(&r);
 }
 
-static void faces_may_come_before_their_vertices(void **state)
+TEST(faces_may_come_before_their_vertices)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r, "f 1/1 2/1 3/1\n" TRIANGLE "vt 0.5 0.5\n");
 	assert_int_equal(mesh->vertex_count, 3);
@@ -123,9 +119,8 @@ static void faces_may_come_before_their_vertices(void **state)
 }
 
 /* Where no vertex has a normal, none lacks one. */
-static void lacks_are_told_only_where_others_have(void **state)
+TEST(lacks_are_told_only_where_others_have)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r, TRIANGLE "vt 0 0\nvn 0 0 1\nf 1/1 2/1 3\n");
 	const uint8_t lacks[3] = {0, 0, NT_LACKS_TEXCOORD};
@@ -140,9 +135,8 @@ static void lacks_are_told_only_where_others_have(void **state)
 	close_reading(&r);
 }
 
-static void quads_stay_and_larger_polygons_become_triangles(void **state)
+TEST(quads_stay_and_larger_polygons_become_triangles)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r,
 		"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 0.5 0\n"
@@ -167,9 +161,8 @@ static void quads_stay_and_larger_polygons_become_triangles(void **state)
 }
 
 /* A polygon of 300 corners does not fit a byte; 254, 255 and 256 are around the border. */
-static void polygons_of_many_corners(void **state)
+TEST(polygons_of_many_corners)
 {
-	(void)state;
 	const size_t sizes[4] = {254, 255, 256, 300};
 	char *text = malloc(100000), *p = text;
 	for (int i = 0; i < 300; i++) /* on a parabola: convex */
@@ -198,9 +191,8 @@ static void polygons_of_many_corners(void **state)
 	free(text);
 }
 
-static void degenerate_polygon_is_a_finding_with_its_line(void **state)
+TEST(degenerate_polygon_is_a_finding_with_its_line)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r, "o line\n" TRIANGLE "f 1 2 3\nf 1 1 2 2 3\nf 1 1 1 1 1\n");
 	assert_int_equal(mesh->face_count, 7);
@@ -214,9 +206,8 @@ static void degenerate_polygon_is_a_finding_with_its_line(void **state)
 
 /* ---- objects, materials, smoothing ---- */
 
-static void objects_become_meshes_and_groups_do_not(void **state)
+TEST(objects_become_meshes_and_groups_do_not)
 {
-	(void)state;
 	reading r;
 	open_text(&r,
 		TRIANGLE "f 1 2 3\no empty\no first\ng a b\nf 1 2 3\ng c\nf 3 2 1\no second one\nf 2 1 3\n");
@@ -244,9 +235,8 @@ static void objects_become_meshes_and_groups_do_not(void **state)
 }
 
 /* b is used first, but its first face comes in the second mesh. */
-static void materials_become_primitives_in_order_of_first_use(void **state)
+TEST(materials_become_primitives_in_order_of_first_use)
 {
-	(void)state;
 	reading r;
 	open_text(&r,
 		TRIANGLE "f 1 2 3\nusemtl b\nusemtl  a name \nf 1 2 3\nf 1 2 3\nusemtl\nf 3 2 1\n"
@@ -277,9 +267,8 @@ static void materials_become_primitives_in_order_of_first_use(void **state)
 	close_reading(&r);
 }
 
-static void smoothing_groups_are_kept_where_normals_lack(void **state)
+TEST(smoothing_groups_are_kept_where_normals_lack)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r,
 		TRIANGLE "f 1 2 3\ns 1\nf 1 2 3\ns off\nf 1 2 3\ns 17\nf 1 2 3 1 2\ns on\nf 1 2 3\ns 0\nf 1 2 3\n");
@@ -301,9 +290,8 @@ static void smoothing_groups_are_kept_where_normals_lack(void **state)
 	close_reading(&r);
 }
 
-static void missing_library_is_a_finding(void **state)
+TEST(missing_library_is_a_finding)
 {
-	(void)state;
 	reading r;
 	only_mesh(&r, "usemtl stone\nmtllib no such file.mtl\nmtllib no such file.mtl\n" TRIANGLE "f 1 2 3\n");
 	const nt_finding *missing = find(&r, NT_CODE_MTL_MISSING);
@@ -319,9 +307,8 @@ static void missing_library_is_a_finding(void **state)
 
 /* ---- spellings ---- */
 
-static void line_ends_blanks_and_continuations(void **state)
+TEST(line_ends_blanks_and_continuations)
 {
-	(void)state;
 	static const char *const texts[] = {
 		"v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n",
 		"v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r",
@@ -342,9 +329,8 @@ static void line_ends_blanks_and_continuations(void **state)
 	}
 }
 
-static void comments_and_names_keep_their_backslash(void **state)
+TEST(comments_and_names_keep_their_backslash)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r,
 		"# C:\\models\\\nv 0 0 0 1\nv 1 0 0 0.5 # c \\\nv 0 1 0 2\no a\\\nfo 1 2 3 #\n#\\");
@@ -353,9 +339,8 @@ static void comments_and_names_keep_their_backslash(void **state)
 	close_reading(&r);
 }
 
-static void texture_coordinates_of_one_and_three_numbers(void **state)
+TEST(texture_coordinates_of_one_and_three_numbers)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r, TRIANGLE "vt 0.5\nvt 0.25 0.75 9\nvt 1 2\nf 1/1 2/2 3/3\n");
 	assert_floats(mesh->texcoords, (const float[]){0.5f, 0, 0.25f, 0.75f, 1, 2}, 6);
@@ -364,9 +349,8 @@ static void texture_coordinates_of_one_and_three_numbers(void **state)
 
 /* sRGB to linear: 0.5 -> ((0.5 + 0.055) / 1.055)^2.4 = 0.21404114, 0.04 -> 0.04 / 12.92 = 0.0030959752;
  * a vertex without a colour is white. */
-static void colors_are_srgb_and_become_linear(void **state)
+TEST(colors_are_srgb_and_become_linear)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh =
 		only_mesh(&r, "v 9 9 9\nv 0 0 0\nv 1 0 0 0.5 0.04 1\nv 0 1 0 0 2 -1 0.5\nf 2 3 4\n");
@@ -376,9 +360,8 @@ static void colors_are_srgb_and_become_linear(void **state)
 	close_reading(&r);
 }
 
-static void names_that_are_not_utf8_are_taken_as_latin1(void **state)
+TEST(names_that_are_not_utf8_are_taken_as_latin1)
 {
-	(void)state;
 	reading r;
 	const nt_mesh *mesh = only_mesh(&r, "o K\xF6rper\n" TRIANGLE "f 1 2 3\n");
 	assert_string_equal(mesh->name, "K\xC3\xB6rper");
@@ -388,9 +371,8 @@ static void names_that_are_not_utf8_are_taken_as_latin1(void **state)
 	close_reading(&r);
 }
 
-static void unused_statements_are_counted(void **state)
+TEST(unused_statements_are_counted)
 {
-	(void)state;
 	reading r;
 	only_mesh(&r,
 		TRIANGLE "l 1 2 3\np 1\nl 1 \\\n2\nf 1 2\nf 1\nf\nvp 0 0\nwhatever 1 2 3\nother\nf 1 2 3\n");
@@ -415,9 +397,8 @@ static void unused_statements_are_counted(void **state)
 	close_reading(&r);
 }
 
-static void content_is_recognised(void **state)
+TEST(content_is_recognised)
 {
-	(void)state;
 	static const char *const yes[] = {"v 0 0 0\n", "# x\n\n  o a\n", "\xEF\xBB\xBF# x\r\nmtllib a.mtl\r\n",
 		"f 1 2 3\n", "g\n", "s off\n"};
 	static const char *const no[] = {"", "# only comments\n", "ply\nformat ascii 1.0\n", "{\"asset\": 1}",
@@ -431,26 +412,5 @@ static void content_is_recognised(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(one_triangle_with_everything),
-		cmocka_unit_test(equal_corners_share_a_vertex_in_order_of_first_use),
-		cmocka_unit_test(negative_indices_count_back_from_the_face),
-		cmocka_unit_test(faces_may_come_before_their_vertices),
-		cmocka_unit_test(lacks_are_told_only_where_others_have),
-		cmocka_unit_test(quads_stay_and_larger_polygons_become_triangles),
-		cmocka_unit_test(polygons_of_many_corners),
-		cmocka_unit_test(degenerate_polygon_is_a_finding_with_its_line),
-		cmocka_unit_test(objects_become_meshes_and_groups_do_not),
-		cmocka_unit_test(materials_become_primitives_in_order_of_first_use),
-		cmocka_unit_test(smoothing_groups_are_kept_where_normals_lack),
-		cmocka_unit_test(missing_library_is_a_finding),
-		cmocka_unit_test(line_ends_blanks_and_continuations),
-		cmocka_unit_test(comments_and_names_keep_their_backslash),
-		cmocka_unit_test(texture_coordinates_of_one_and_three_numbers),
-		cmocka_unit_test(colors_are_srgb_and_become_linear),
-		cmocka_unit_test(names_that_are_not_utf8_are_taken_as_latin1),
-		cmocka_unit_test(unused_statements_are_counted),
-		cmocka_unit_test(content_is_recognised),
-	};
-	return cmocka_run_group_tests_name("obj/read", tests, NULL, NULL);
+	return run_group("obj/read");
 }

@@ -9,9 +9,8 @@
 
 #include <math.h>
 
-static void header_mistakes_have_their_line(void **state)
+TEST(header_mistakes_have_their_line)
 {
-	(void)state;
 	assert_refused("", 1, "not a PLY file: it does not begin with \"ply\"");
 	assert_refused("plyx\n", 1, "not a PLY file: it does not begin with \"ply\"");
 	assert_refused("ply", 1, "the file ends within the header, end_header was expected");
@@ -56,9 +55,8 @@ static void header_mistakes_have_their_line(void **state)
 		"PLY version \"2.0\": only 1.0 is known");
 }
 
-static void text_mistakes_have_their_line(void **state)
+TEST(text_mistakes_have_their_line)
 {
-	(void)state;
 	assert_refused(HEAD("3") FACES("1") "0 0 0\n1 O 0\n0 1 0\n3 0 1 2\n", 11,
 		"vertex 1: found \"O\", expected a number for property \"y\"");
 	assert_refused(HEAD("3") FACES("1") "0 0 0\n1 0 0x\n0 1 0\n3 0 1 2\n", 11,
@@ -89,9 +87,8 @@ static void text_mistakes_have_their_line(void **state)
 		"face 1: list \"texcoord\" has 4 values, expected 6 for 3 corners, or none");
 }
 
-static void meshes_must_be_finite(void **state)
+TEST(meshes_must_be_finite)
 {
-	(void)state;
 	assert_refused(HEAD("3") FACES("1") "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n", 11,
 		"vertex 1: found \"nan\", expected a finite number for property \"y\"");
 	assert_refused(HEAD("3") FACES("1") "0 0 0\n1 0 1e39\n0 1 0\n3 0 1 2\n", 11,
@@ -120,9 +117,8 @@ static void meshes_must_be_finite(void **state)
 	close_reading(&r);
 }
 
-static void counts_that_lie_are_refused(void **state)
+TEST(counts_that_lie_are_refused)
 {
-	(void)state;
 	/* the line of the face is taken for a vertex */
 	assert_refused(HEAD("4") FACES("1") POINTS "3 0 1 2\n", 13,
 		"vertex 3: found \"2\", expected the end of the line");
@@ -157,9 +153,8 @@ static void assert_binary_refused(const char *head, const char *body, size_t siz
 	assert_refused_bytes(m.bytes, m.size + size, NT_ERROR_INPUT, 0, m.size + at, message);
 }
 
-static void binary_mistakes_have_their_offset(void **state)
+TEST(binary_mistakes_have_their_offset)
 {
-	(void)state;
 	assert_binary_refused(BINARY_HEAD("2", "0", "uchar"), "abcde", 5, 0,
 		"2 rows of element \"vertex\" need at least 3 bytes each, the file has 5 bytes left");
 	assert_binary_refused(BINARY_HEAD("1", "3", "uchar"), "abc\0\0", 5, 3,
@@ -180,9 +175,8 @@ static void binary_mistakes_have_their_offset(void **state)
 }
 
 /* A prefix that lacks nothing but blanks at the end is sound, any other one is refused with a place. */
-static void every_prefix_is_read_or_refused(void **state)
+TEST(every_prefix_is_read_or_refused)
 {
-	(void)state;
 	for (int encoding = 0; encoding < 3; encoding++) {
 		image m;
 		make_full(&m, (ply_encoding)encoding);
@@ -204,9 +198,8 @@ static void every_prefix_is_read_or_refused(void **state)
 }
 
 /* Every byte of the body replaced by others: nothing may be read or written out of bounds. */
-static void damaged_bytes_do_no_harm(void **state)
+TEST(damaged_bytes_do_no_harm)
 {
-	(void)state;
 	static const unsigned char values[] = {0, 1, 9, '-', ' ', '\n', '9', 0x7f, 0x80, 0xff};
 	for (int encoding = 0; encoding < 3; encoding++) {
 		image m;
@@ -224,9 +217,8 @@ static void damaged_bytes_do_no_harm(void **state)
 	}
 }
 
-static void every_allocation_may_fail(void **state)
+TEST(every_allocation_may_fail)
 {
-	(void)state;
 	image m;
 	make_full(&m, ENCODING_LITTLE);
 	bool failed = true;
@@ -250,15 +242,5 @@ static void every_allocation_may_fail(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(header_mistakes_have_their_line),
-		cmocka_unit_test(text_mistakes_have_their_line),
-		cmocka_unit_test(meshes_must_be_finite),
-		cmocka_unit_test(counts_that_lie_are_refused),
-		cmocka_unit_test(binary_mistakes_have_their_offset),
-		cmocka_unit_test(every_prefix_is_read_or_refused),
-		cmocka_unit_test(damaged_bytes_do_no_harm),
-		cmocka_unit_test(every_allocation_may_fail),
-	};
-	return cmocka_run_group_tests_name("ply/damage", tests, NULL, NULL);
+	return run_group("ply/damage");
 }

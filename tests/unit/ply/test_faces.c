@@ -5,9 +5,8 @@
  */
 #include "ply_file.h"
 
-static void faces_may_come_before_vertices(void **state)
+TEST(faces_may_come_before_vertices)
 {
-	(void)state;
 	static const char *const text = "ply\nformat ascii 1.0\nelement face 2\n"
 		"property list uchar uint vertex_index\nproperty uchar red\nelement junk 2\n"
 		"property list int float values\nelement vertex 5\n" XYZ "end_header\n"
@@ -22,9 +21,8 @@ static void faces_may_come_before_vertices(void **state)
 	close_reading(&r);
 }
 
-static void binary_faces_before_vertices(void **state)
+TEST(binary_faces_before_vertices)
 {
-	(void)state;
 	image m = {.big = true};
 	put_text(&m, "ply\nformat binary_big_endian 1.0\nelement face 1\n"
 		"property list uint int vertex_index\nelement vertex 3\n" XYZ "end_header\n");
@@ -40,9 +38,8 @@ static void binary_faces_before_vertices(void **state)
 	close_reading(&r);
 }
 
-static void quads_stay_and_larger_polygons_are_cut(void **state)
+TEST(quads_stay_and_larger_polygons_are_cut)
 {
-	(void)state;
 	reading r;
 	open_text(&r, HEAD("5") FACES("3") "0 0 0\n2 0 0\n2 2 0\n1 3 0\n0 2 0\n"
 		"3 0 1 2\n4 0 1 2 4\n5 0 1 2 3 4\n");
@@ -66,9 +63,8 @@ static void quads_stay_and_larger_polygons_are_cut(void **state)
 	close_reading(&r);
 }
 
-static void faces_of_fewer_than_three_corners_are_skipped_and_said(void **state)
+TEST(faces_of_fewer_than_three_corners_are_skipped_and_said)
 {
-	(void)state;
 	reading r;
 	open_text(&r, HEAD("3") FACES("4") POINTS "2 0 1\n0\n3 0 1 2\n1 2\n");
 	assert_int_equal(r.mesh->face_count, 1);
@@ -77,9 +73,8 @@ static void faces_of_fewer_than_three_corners_are_skipped_and_said(void **state)
 	close_reading(&r);
 }
 
-static void polygons_without_area_are_cut_and_said(void **state)
+TEST(polygons_without_area_are_cut_and_said)
 {
-	(void)state;
 	reading r;
 	open_text(&r, HEAD("3") FACES("1") POINTS "5 0 0 0 0 0\n");
 	assert_int_equal(r.mesh->face_count, 3);
@@ -87,9 +82,8 @@ static void polygons_without_area_are_cut_and_said(void **state)
 	close_reading(&r);
 }
 
-static void files_without_faces_are_points(void **state)
+TEST(files_without_faces_are_points)
 {
-	(void)state;
 	reading r;
 	open_text(&r, HEAD("3") "end_header\n" POINTS);
 	assert_false(r.mesh->triangles);
@@ -104,9 +98,8 @@ static void files_without_faces_are_points(void **state)
 }
 
 /* 0-1-2, then 2 1 3 turned round to keep the winding; after the restart 3-1-0; 0 0 joins. */
-static void triangle_strips_become_triangles(void **state)
+TEST(triangle_strips_become_triangles)
 {
-	(void)state;
 	reading r;
 	open_text(&r, HEAD("4") "element tristrips 2\nproperty list int int vertex_indices\nend_header\n"
 		POINTS "1 1 0\n9 0 1 2 3 -1 3 1 0 0\n2 0 1\n");
@@ -116,9 +109,8 @@ static void triangle_strips_become_triangles(void **state)
 }
 
 /* Vertices 1 and 2 are shared; 2 has other coordinates in the second face and becomes a copy. */
-static void wedges_with_other_texcoords_become_vertices(void **state)
+TEST(wedges_with_other_texcoords_become_vertices)
 {
-	(void)state;
 	reading r;
 	open_text(&r, HEAD("4") "property float nx\nproperty float ny\nproperty float nz\n" WEDGES
 		"0 0 0 1 0 0\n1 0 0 2 0 0\n0 1 0 3 0 0\n1 1 0 4 0 0\n"
@@ -134,9 +126,8 @@ static void wedges_with_other_texcoords_become_vertices(void **state)
 	close_reading(&r);
 }
 
-static void wedges_that_lack_are_marked(void **state)
+TEST(wedges_that_lack_are_marked)
 {
-	(void)state;
 	reading r;
 	open_text(&r, HEAD("3") WEDGES POINTS "3 0 1 2 6 0 0 1 0 0 1\n3 0 2 1 0\n");
 	assert_int_equal(r.mesh->vertex_count, 6);
@@ -152,9 +143,8 @@ static void wedges_that_lack_are_marked(void **state)
 }
 
 /* 2000 faces around vertex 0, each with other coordinates there: more than the first hash table. */
-static void wedges_of_one_vertex_may_be_many(void **state)
+TEST(wedges_of_one_vertex_may_be_many)
 {
-	(void)state;
 	enum { FACES = 2000 };
 	char *text = malloc(200000), *p = text;
 	p += sprintf(p, HEAD("3") "element face %d\nproperty list uchar int vertex_indices\n"
@@ -173,9 +163,8 @@ static void wedges_of_one_vertex_may_be_many(void **state)
 	free(text);
 }
 
-static void binary_wedges(void **state)
+TEST(binary_wedges)
 {
-	(void)state;
 	image m = {0};
 	put_text(&m, "ply\nformat binary_little_endian 1.0\nelement vertex 3\n" XYZ
 		"element face 1\nproperty list uchar float texcoord\nproperty uchar flag\n"
@@ -245,9 +234,8 @@ static size_t make_runs(unsigned char *bytes, size_t *size, ply_encoding encodin
 	return place;
 }
 
-static void runs_of_triangles_and_quads_are_read_in_order(void **state)
+TEST(runs_of_triangles_and_quads_are_read_in_order)
 {
-	(void)state;
 	unsigned char *bytes = malloc(20000);
 	for (int encoding = 0; encoding < 3; encoding++) {
 		size_t size;
@@ -268,9 +256,8 @@ static void runs_of_triangles_and_quads_are_read_in_order(void **state)
 	free(bytes);
 }
 
-static void runs_end_at_an_index_out_of_range(void **state)
+TEST(runs_end_at_an_index_out_of_range)
 {
-	(void)state;
 	unsigned char *bytes = malloc(20000);
 	for (int encoding = 0; encoding < 3; encoding++) {
 		for (int face = 0; face < 300; face += 33) {
@@ -290,20 +277,5 @@ static void runs_end_at_an_index_out_of_range(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(faces_may_come_before_vertices),
-		cmocka_unit_test(binary_faces_before_vertices),
-		cmocka_unit_test(quads_stay_and_larger_polygons_are_cut),
-		cmocka_unit_test(faces_of_fewer_than_three_corners_are_skipped_and_said),
-		cmocka_unit_test(polygons_without_area_are_cut_and_said),
-		cmocka_unit_test(files_without_faces_are_points),
-		cmocka_unit_test(triangle_strips_become_triangles),
-		cmocka_unit_test(wedges_with_other_texcoords_become_vertices),
-		cmocka_unit_test(wedges_that_lack_are_marked),
-		cmocka_unit_test(wedges_of_one_vertex_may_be_many),
-		cmocka_unit_test(binary_wedges),
-		cmocka_unit_test(runs_of_triangles_and_quads_are_read_in_order),
-		cmocka_unit_test(runs_end_at_an_index_out_of_range),
-	};
-	return cmocka_run_group_tests_name("ply/faces", tests, NULL, NULL);
+	return run_group("ply/faces");
 }

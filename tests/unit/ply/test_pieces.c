@@ -50,9 +50,8 @@ static void check_values(const nt_mesh *mesh)
 	assert_int_equal(wrong, 0);
 }
 
-static void values_are_those_of_the_file(void **state)
+TEST(values_are_those_of_the_file)
 {
-	(void)state;
 	static const struct {
 		const char *before_vertex, *before_face, *line_end;
 	} files[] = {{"", "", "\n"}, {"", "", "\r\n"}, {"\n\n", "", "\n"}, {"", " ", "\n"}, {"\t", "\n", "\n"}};
@@ -70,9 +69,8 @@ static void values_are_those_of_the_file(void **state)
 	}
 }
 
-static void faults_are_found_where_they_are(void **state)
+TEST(faults_are_found_where_they_are)
 {
-	(void)state;
 	/* nine lines of header */
 	static const struct {
 		const char *before_vertex, *before_face;
@@ -110,9 +108,8 @@ static size_t take_letters(void *user, ply_cursor *cursor, size_t first, size_t 
 
 /* The run ends with the last row that is wanted, or before the first that is no such row, and after that one thread
  * goes on alone. */
-static void runs_end_at_the_first_other_row(void **state)
+TEST(runs_end_at_the_first_other_row)
 {
-	(void)state;
 	enum { LINES = 3 << 20 };
 	char *text = malloc(2 * LINES), *read = calloc(LINES, 1);
 	for (size_t i = 0; i < LINES; i++)
@@ -143,10 +140,5 @@ static void runs_end_at_the_first_other_row(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(values_are_those_of_the_file),
-		cmocka_unit_test(faults_are_found_where_they_are),
-		cmocka_unit_test(runs_end_at_the_first_other_row),
-	};
-	return cmocka_run_group_tests_name("ply/pieces", tests, NULL, NULL);
+	return run_group("ply/pieces");
 }

@@ -10,9 +10,8 @@
 #include <dirent.h>
 #include <math.h>
 
-static void ascii_triangle(void **state)
+TEST(ascii_triangle)
 {
-	(void)state;
 	reading r;
 	open_text(&r, HEAD("3") FACES("1") POINTS "3 0 1 2\n");
 	assert_int_equal(r.mesh->vertex_count, 3);
@@ -35,9 +34,8 @@ static void ascii_triangle(void **state)
 	close_reading(&r);
 }
 
-static void text_may_end_lines_in_three_ways_and_have_blanks_anywhere(void **state)
+TEST(text_may_end_lines_in_three_ways_and_have_blanks_anywhere)
 {
-	(void)state;
 	static const char *const files[] = {
 		"ply\r\nformat ascii 1.0\r\nelement vertex 1\r\nproperty float x\r\nproperty float y\r\n"
 		"property float z\r\nend_header\r\n1 2 3\r\n",
@@ -56,9 +54,8 @@ static void text_may_end_lines_in_three_ways_and_have_blanks_anywhere(void **sta
 	}
 }
 
-static void binary_after_carriage_returns_may_begin_with_a_line_feed(void **state)
+TEST(binary_after_carriage_returns_may_begin_with_a_line_feed)
 {
-	(void)state;
 	image m = {0};
 	put_text(&m, "ply\rformat binary_little_endian 1.0\relement vertex 1\rproperty uchar x\r"
 		"property uchar y\rproperty uchar z\rend_header\r");
@@ -69,9 +66,8 @@ static void binary_after_carriage_returns_may_begin_with_a_line_feed(void **stat
 	close_reading(&r);
 }
 
-static void numbers_of_every_kind_are_read(void **state)
+TEST(numbers_of_every_kind_are_read)
 {
-	(void)state;
 	reading r;
 	open_text(&r, HEAD("4") "end_header\n1e3 -2.5E-1 +.5\n0.1 123456789.125 1e-50\n"
 		"nan inf -inf\n-0 16777217 3.4028236e38\n");
@@ -83,9 +79,8 @@ static void numbers_of_every_kind_are_read(void **state)
 	close_reading(&r);
 }
 
-static void binary_types_and_their_aliases_in_both_byte_orders(void **state)
+TEST(binary_types_and_their_aliases_in_both_byte_orders)
 {
-	(void)state;
 	static const char *const types[2][8] = {
 		{"char", "uchar", "short", "ushort", "int", "uint", "float", "double"},
 		{"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"}};
@@ -121,9 +116,8 @@ static void binary_types_and_their_aliases_in_both_byte_orders(void **state)
 }
 
 /* 1.0f is 3f 80 00 00, 2.0f is 40 00 00 00, -0.5f is bf 00 00 00. */
-static void big_endian_bytes_by_hand(void **state)
+TEST(big_endian_bytes_by_hand)
 {
-	(void)state;
 	static const char file[] = "ply\nformat binary_big_endian 1.0\nelement vertex 1\n" XYZ
 		"element face 1\nproperty list ushort ushort vertex_index\nend_header\n"
 		"\x3f\x80\0\0\x40\0\0\0\xbf\0\0\0"
@@ -135,9 +129,8 @@ static void big_endian_bytes_by_hand(void **state)
 	close_reading(&r);
 }
 
-static void properties_come_in_any_order_among_strangers(void **state)
+TEST(properties_come_in_any_order_among_strangers)
 {
-	(void)state;
 	reading r;
 	open_text(&r, "ply\ncomment made by hand\nformat ascii 1.0\nobj_info any\nelement vertex 3\n"
 		"property float z\nproperty list uchar int stuff\nproperty float t\nproperty float nz\n"
@@ -151,9 +144,8 @@ static void properties_come_in_any_order_among_strangers(void **state)
 	close_reading(&r);
 }
 
-static void binary_rows_with_lists_are_walked(void **state)
+TEST(binary_rows_with_lists_are_walked)
 {
-	(void)state;
 	image m = {0};
 	put_text(&m, "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\n"
 		"property list uchar short stuff\nproperty float y\nproperty float z\nend_header\n");
@@ -174,9 +166,8 @@ static void binary_rows_with_lists_are_walked(void **state)
 	close_reading(&r);
 }
 
-static void texcoords_have_four_pairs_of_names(void **state)
+TEST(texcoords_have_four_pairs_of_names)
 {
-	(void)state;
 	static const char *const names[][2] = {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"},
 		{"texcoord_u", "texcoord_v"}};
 	for (size_t i = 0; i < 4; i++) {
@@ -202,9 +193,8 @@ static float linear(double c)
 	return (float)(c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4));
 }
 
-static void colors_are_scaled_by_their_type_and_become_linear(void **state)
+TEST(colors_are_scaled_by_their_type_and_become_linear)
 {
-	(void)state;
 	reading r;
 	open_text(&r, HEAD("1") "property uchar red\nproperty uchar green\nproperty ushort blue\n"
 		"property float alpha\nend_header\n0 0 0 255 51 65535 0.5\n");
@@ -216,9 +206,8 @@ static void colors_are_scaled_by_their_type_and_become_linear(void **state)
 	close_reading(&r);
 }
 
-static void textures_in_comments_become_materials(void **state)
+TEST(textures_in_comments_become_materials)
 {
-	(void)state;
 	reading r;
 	open_text(&r, "ply\nformat ascii 1.0\ncomment TextureFile wood grain.png \n"
 		"comment TextureFile unused.png\ncomment TextureFile b.jpg\nelement vertex 3\n" XYZ
@@ -243,9 +232,8 @@ static void textures_in_comments_become_materials(void **state)
 	close_reading(&r);
 }
 
-static void bytes_after_the_last_element_are_said(void **state)
+TEST(bytes_after_the_last_element_are_said)
 {
-	(void)state;
 	reading r;
 	open_text(&r, HEAD("3") FACES("1") POINTS "3 0 1 2\n3 0 2 1\n");
 	assert_int_equal(r.mesh->face_count, 1);
@@ -254,9 +242,8 @@ static void bytes_after_the_last_element_are_said(void **state)
 	close_reading(&r);
 }
 
-static void the_three_encodings_say_the_same(void **state)
+TEST(the_three_encodings_say_the_same)
 {
-	(void)state;
 	for (int encoding = 0; encoding < 3; encoding++) {
 		image m;
 		make_full(&m, (ply_encoding)encoding);
@@ -273,9 +260,8 @@ static void the_three_encodings_say_the_same(void **state)
 	}
 }
 
-static void shared_models_are_read(void **state)
+TEST(shared_models_are_read)
 {
-	(void)state;
 	static const char folder[] = "../shared/models/ply";
 	DIR *stream = opendir(folder);
 	if (!stream) {
@@ -304,21 +290,5 @@ static void shared_models_are_read(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(ascii_triangle),
-		cmocka_unit_test(text_may_end_lines_in_three_ways_and_have_blanks_anywhere),
-		cmocka_unit_test(binary_after_carriage_returns_may_begin_with_a_line_feed),
-		cmocka_unit_test(numbers_of_every_kind_are_read),
-		cmocka_unit_test(binary_types_and_their_aliases_in_both_byte_orders),
-		cmocka_unit_test(big_endian_bytes_by_hand),
-		cmocka_unit_test(properties_come_in_any_order_among_strangers),
-		cmocka_unit_test(binary_rows_with_lists_are_walked),
-		cmocka_unit_test(texcoords_have_four_pairs_of_names),
-		cmocka_unit_test(colors_are_scaled_by_their_type_and_become_linear),
-		cmocka_unit_test(textures_in_comments_become_materials),
-		cmocka_unit_test(bytes_after_the_last_element_are_said),
-		cmocka_unit_test(the_three_encodings_say_the_same),
-		cmocka_unit_test(shared_models_are_read),
-	};
-	return cmocka_run_group_tests_name("ply/read", tests, NULL, NULL);
+	return run_group("ply/read");
 }

@@ -101,9 +101,8 @@ static void set_split(nt_scene *scene, uint32_t *indices, uint32_t *sources, siz
 #define BITANGENT "property float bx\nproperty float by\nproperty float bz\n"
 #define LIST "property list uchar int vertex_indices\n"
 
-static void nothing_solved_gives_the_same_bytes(void **state)
+TEST(nothing_solved_gives_the_same_bytes)
 {
-	(void)state;
 	static const char text[] = "ply\r\nformat ascii 1.0 \nelement vertex 1\n" XYZ
 		"end_header\n  1.000 2e0\t+3 \n\ntrailing\n";
 	nt_scene scene;
@@ -111,9 +110,8 @@ static void nothing_solved_gives_the_same_bytes(void **state)
 	assert_written(&scene, true, text);
 }
 
-static void text_keeps_everything_and_gets_tangents(void **state)
+TEST(text_keeps_everything_and_gets_tangents)
 {
-	(void)state;
 	nt_scene scene;
 	open_text(&scene, "ply\ncomment first\nformat ascii 1.0\nobj_info kept\nelement extra 1\n"
 		"property list int int numbers\nelement vertex 3\ncomment inside\n" UV
@@ -136,9 +134,8 @@ static void text_keeps_everything_and_gets_tangents(void **state)
 		"7 3 0 1 2 0.125\n0 1\nleft over\n");
 }
 
-static void split_vertices_are_appended_with_all_properties(void **state)
+TEST(split_vertices_are_appended_with_all_properties)
 {
-	(void)state;
 	nt_scene scene;
 	open_text(&scene, "ply\r\nformat ascii 1.0\r\nelement vertex 4\r\nproperty float x\r\n"
 		"property float y\r\nproperty float z\r\nproperty uchar flag\r\nelement face 2\r\n"
@@ -155,9 +152,8 @@ static void split_vertices_are_appended_with_all_properties(void **state)
 		"100 3 0 1 2 .5\r\n101 3 4 5 3 .25\r\n");
 }
 
-static void old_tangents_and_bitangents_are_replaced(void **state)
+TEST(old_tangents_and_bitangents_are_replaced)
 {
-	(void)state;
 	static const char *const input = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float tx\n"
 		XYZ "property float bx\nproperty float by\nproperty float bz\n"
 		"property double ty\nproperty float tz\nproperty float tw\n" NORMAL "element face 1\n" LIST
@@ -174,9 +170,8 @@ static void old_tangents_and_bitangents_are_replaced(void **state)
 		"3 0 1 2\n");
 }
 
-static void normals_that_were_made_are_written(void **state)
+TEST(normals_that_were_made_are_written)
 {
-	(void)state;
 	nt_scene scene;
 	open_text(&scene, "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 1\n" LIST
 		"end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
@@ -194,9 +189,8 @@ static void normals_that_were_made_are_written(void **state)
 }
 
 /* Two of the old ones are no normals; the reader would take them for the new ones. */
-static void properties_of_a_name_that_is_written_all_go(void **state)
+TEST(properties_of_a_name_that_is_written_all_go)
 {
-	(void)state;
 	nt_scene scene;
 	open_text(&scene, "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ UV "property float nx\nproperty float ny\n"
 		"property float nx\nelement face 1\n" LIST "end_header\n"
@@ -211,9 +205,8 @@ static void properties_of_a_name_that_is_written_all_go(void **state)
 		"0 0 0 0 0 0 0 1 0 0 0 1\n1 0 0 1 0 0 0 1 1 0 0 1\n1 1 0 1 1 0 0 1 2 0 0 1\n3 0 1 2\n");
 }
 
-static void floats_in_text_read_back_as_themselves(void **state)
+TEST(floats_in_text_read_back_as_themselves)
 {
-	(void)state;
 	static const float values[] = {0.1f, 1.0f / 3.0f, 1e-45f, 3.4028235e38f, -16777217.0f, 1e10f,
 		0.30000001f, -0.0f};
 	char text[NT_FLOAT_TEXT];
@@ -242,9 +235,8 @@ static void put_row(unsigned char *to, float x, unsigned char flag, float k, boo
 	to[12] = flag;
 }
 
-static void binary_files_keep_their_byte_order(void **state)
+TEST(binary_files_keep_their_byte_order)
 {
-	(void)state;
 	for (int big = 0; big < 2; big++) {
 		const char *order = big ? "big" : "little";
 		char input[512], expected[512];
@@ -279,9 +271,8 @@ static void binary_files_keep_their_byte_order(void **state)
 #define PENTAGON "0 0 0\n2 0 0\n2 2 0\n1 3 0\n0 2 0\n"
 
 /* Which triangles the pentagon was cut into is taken from the mesh itself. */
-static void polygons_stay_where_their_triangles_agree(void **state)
+TEST(polygons_stay_where_their_triangles_agree)
 {
-	(void)state;
 	nt_scene scene;
 	open_text(&scene, "ply\nformat ascii 1.0\nelement vertex 5\n" XYZ "element face 3\n" LIST
 		"property int id\nend_header\n" PENTAGON "2 0 1 7\n5 0 1 2 3 4 8\n4 0 1 2 4 9\n");
@@ -298,9 +289,8 @@ static void polygons_stay_where_their_triangles_agree(void **state)
 	nt_scene_free(&scene);
 }
 
-static void polygons_whose_triangles_disagree_become_triangles(void **state)
+TEST(polygons_whose_triangles_disagree_become_triangles)
 {
-	(void)state;
 	nt_scene scene;
 	open_text(&scene, "ply\nformat ascii 1.0\nelement vertex 5\n" XYZ "element face 2\n"
 		"property list uchar float texcoord\n" LIST "property int id\nend_header\n" PENTAGON
@@ -339,9 +329,8 @@ static void polygons_whose_triangles_disagree_become_triangles(void **state)
 
 /* Vertex 1 has two pairs of coordinates, so two vertices in the mesh; their tangents are equal. Vertex
  * 2 has two as well, and two tangents. */
-static void wedges_stay_and_do_not_split_without_need(void **state)
+TEST(wedges_stay_and_do_not_split_without_need)
 {
-	(void)state;
 	static const char *const head = "ply\nformat ascii 1.0\nelement vertex %d\n" XYZ "%selement face 2\n"
 		LIST "property list uchar float texcoord\nend_header\n";
 	char input[1024], expected[1024];
@@ -360,9 +349,8 @@ static void wedges_stay_and_do_not_split_without_need(void **state)
 }
 
 /* Long enough for the tight loops of the reader, which stop elsewhere. */
-static void many_faces_are_copied_as_they_are(void **state)
+TEST(many_faces_are_copied_as_they_are)
 {
-	(void)state;
 	char *text = malloc(20000), *p = text;
 	p += sprintf(p, "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 100\n" LIST
 		"element end 30\nproperty int last\nend_header\n0 0 0\n1 0 0\n0 1 0\n");
@@ -385,9 +373,8 @@ static void many_faces_are_copied_as_they_are(void **state)
 	free(text);
 }
 
-static void index_types_grow_with_the_vertices(void **state)
+TEST(index_types_grow_with_the_vertices)
 {
-	(void)state;
 	char *text = malloc(100000), *p = text;
 	p += sprintf(p, "ply\nformat ascii 1.0\nelement vertex 256\n" XYZ
 		"element face 2\nproperty list uchar uchar vertex_index\nend_header\n");
@@ -413,9 +400,8 @@ static void index_types_grow_with_the_vertices(void **state)
 	free(text);
 }
 
-static void strips_stay_unless_vertices_split(void **state)
+TEST(strips_stay_unless_vertices_split)
 {
-	(void)state;
 	static const char *const text = "ply\nformat ascii 1.0\nelement vertex 4\n" XYZ
 		"element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
 		"0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n";
@@ -433,9 +419,8 @@ static void strips_stay_unless_vertices_split(void **state)
 		"3 0 1 2\n3 4 1 3\n");
 }
 
-static void faces_before_vertices_stay_there(void **state)
+TEST(faces_before_vertices_stay_there)
 {
-	(void)state;
 	nt_scene scene;
 	open_text(&scene, "ply\nformat ascii 1.0\nelement face 1\n" LIST "element vertex 3\n" XYZ
 		"end_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n");
@@ -478,9 +463,8 @@ static void make_gltf(hand_made *h)
 		.instances = h->instances, .instance_count = 2};
 }
 
-static void other_scenes_are_written_in_world_space(void **state)
+TEST(other_scenes_are_written_in_world_space)
 {
-	(void)state;
 	hand_made h;
 	make_gltf(&h);
 	nt_file file = write_scene(&h.scene, true);
@@ -517,9 +501,8 @@ static void other_scenes_are_written_in_world_space(void **state)
 
 /* A shear: the inverse transpose of (x + y, y, z) takes (1,0,0) to (1,-1,0) / sqrt 2, and the tangent
  * (0,1,0) to (1,1,0) / sqrt 2. */
-static void normals_go_by_the_inverse_transpose(void **state)
+TEST(normals_go_by_the_inverse_transpose)
 {
-	(void)state;
 	hand_made h;
 	make_gltf(&h);
 	float normals[] = {1, 0, 0, 1, 0, 0, 1, 0, 0}, tangents[] = {0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1};
@@ -540,9 +523,8 @@ static void normals_go_by_the_inverse_transpose(void **state)
 	nt_file_close(&file);
 }
 
-static void quads_and_float_colors_are_kept(void **state)
+TEST(quads_and_float_colors_are_kept)
 {
-	(void)state;
 	float positions[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
 	float colors[] = {0.3f, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 2, 1};
 	uint8_t sizes[] = {4};
@@ -565,9 +547,8 @@ static void quads_and_float_colors_are_kept(void **state)
 	nt_file_close(&file);
 }
 
-static void a_scene_without_faces_is_an_empty_mesh(void **state)
+TEST(a_scene_without_faces_is_an_empty_mesh)
 {
-	(void)state;
 	nt_scene scene = {.format = NT_FORMAT_GLB};
 	nt_file file = write_scene(&scene, false);
 	nt_scene back;
@@ -577,9 +558,8 @@ static void a_scene_without_faces_is_an_empty_mesh(void **state)
 	nt_file_close(&file);
 }
 
-static void every_allocation_may_fail(void **state)
+TEST(every_allocation_may_fail)
 {
-	(void)state;
 	static const char *const text = "ply\nformat ascii 1.0\nelement vertex 5\n" XYZ "element face 2\n"
 		"property list uchar float texcoord\n" LIST "property int id\nend_header\n" PENTAGON
 		"10 0 .0 1 .1 2 .2 3 .3 4 .4 5 0 1 2 3 4 8\n0 3 0 1 2 9\n";
@@ -603,31 +583,7 @@ static void every_allocation_may_fail(void **state)
 	assert_true(n > 10);
 }
 
-#define CASE(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
-
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		CASE(nothing_solved_gives_the_same_bytes),
-		CASE(text_keeps_everything_and_gets_tangents),
-		CASE(split_vertices_are_appended_with_all_properties),
-		CASE(old_tangents_and_bitangents_are_replaced),
-		CASE(normals_that_were_made_are_written),
-		CASE(properties_of_a_name_that_is_written_all_go),
-		CASE(floats_in_text_read_back_as_themselves),
-		CASE(binary_files_keep_their_byte_order),
-		CASE(polygons_stay_where_their_triangles_agree),
-		CASE(polygons_whose_triangles_disagree_become_triangles),
-		CASE(wedges_stay_and_do_not_split_without_need),
-		CASE(many_faces_are_copied_as_they_are),
-		CASE(index_types_grow_with_the_vertices),
-		CASE(strips_stay_unless_vertices_split),
-		CASE(faces_before_vertices_stay_there),
-		CASE(other_scenes_are_written_in_world_space),
-		CASE(normals_go_by_the_inverse_transpose),
-		CASE(quads_and_float_colors_are_kept),
-		CASE(a_scene_without_faces_is_an_empty_mesh),
-		CASE(every_allocation_may_fail),
-	};
-	return cmocka_run_group_tests_name("ply/write", tests, NULL, NULL);
+	return run_group_each_within("ply/write", make_folder, remove_folder);
 }

@@ -29,9 +29,8 @@ static void set_tangent(hand_mesh *h, size_t vertex, float x, float y, float z, 
 	memcpy(h->tangents[vertex], (float[4]){x, y, z, w}, sizeof h->tangents[vertex]);
 }
 
-static void sound_tangents_give_no_findings(void **state)
+TEST(sound_tangents_give_no_findings)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	nt_report *report = hand_report(h, NULL);
 	assert_int_equal(report->finding_count, 0);
@@ -42,9 +41,8 @@ static void sound_tangents_give_no_findings(void **state)
 	hand_free(h, report);
 }
 
-static void inverted_w_is_one_finding_with_its_share(void **state)
+TEST(inverted_w_is_one_finding_with_its_share)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	for (size_t v = 0; v < 4; v++)
 		h->tangents[v][3] = -1.0f;
@@ -60,9 +58,8 @@ static void inverted_w_is_one_finding_with_its_share(void **state)
 
 /* T turned by half a turn, and with it the bitangent. Where dP/dv is 20 degrees from dP/du, a T that averaging turned
  * by 60 degrees has a bitangent that is 130 degrees from dP/dv, and yet is not reversed. */
-static void reversed_tangents_are_not_those_of_sheared_coordinates(void **state)
+TEST(reversed_tangents_are_not_those_of_sheared_coordinates)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	for (size_t v = 0; v < 4; v++)
 		set_tangent(h, v, -1, 0, 0, 1);
@@ -82,9 +79,8 @@ static void reversed_tangents_are_not_those_of_sheared_coordinates(void **state)
 	hand_free(h, report);
 }
 
-static void unused_tangents_are_told_and_cannot_be_errors(void **state)
+TEST(unused_tangents_are_told_and_cannot_be_errors)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	h->mesh.slots = 0;
 	for (size_t v = 0; v < 4; v++)
@@ -95,9 +91,8 @@ static void unused_tangents_are_told_and_cannot_be_errors(void **state)
 	hand_free(h, report);
 }
 
-static void each_kind_of_bad_tangent_has_its_code(void **state)
+TEST(each_kind_of_bad_tangent_has_its_code)
 {
-	(void)state;
 	const struct {
 		float t[4];
 		nt_code code;
@@ -124,9 +119,8 @@ static void each_kind_of_bad_tangent_has_its_code(void **state)
 	}
 }
 
-static void length_within_the_validators_tolerance_is_unit(void **state)
+TEST(length_within_the_validators_tolerance_is_unit)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	set_tangent(h, 1, 1.0067f, 0, 0, 1);
 	nt_report *report = hand_report(h, NULL);
@@ -134,9 +128,8 @@ static void length_within_the_validators_tolerance_is_unit(void **state)
 	hand_free(h, report);
 }
 
-static void mixed_w_is_counted_by_triangle(void **state)
+TEST(mixed_w_is_counted_by_triangle)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	h->tangents[1][3] = -1.0f; /* in the first triangle only */
 	nt_report *report = hand_report(h, NULL);
@@ -145,9 +138,8 @@ static void mixed_w_is_counted_by_triangle(void **state)
 	hand_free(h, report);
 }
 
-static void directions_off_by_90_degrees_fill_one_bin(void **state)
+TEST(directions_off_by_90_degrees_fill_one_bin)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	for (size_t v = 0; v < 4; v++)
 		set_tangent(h, v, 0, 1, 0, 1);
@@ -159,9 +151,8 @@ static void directions_off_by_90_degrees_fill_one_bin(void **state)
 	hand_free(h, report);
 }
 
-static void required_tangents_are_missed(void **state)
+TEST(required_tangents_are_missed)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	h->mesh.tangents = NULL;
 	h->mesh.has_tangents = false;
@@ -174,9 +165,8 @@ static void required_tangents_are_missed(void **state)
 	hand_free(h, report);
 }
 
-static void kept_tangents_that_are_bad_are_told_on_conversion(void **state)
+TEST(kept_tangents_that_are_bad_are_told_on_conversion)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	set_tangent(h, 1, 0, 0, 0, 1);
 	const nt_report_options options = {.written = NT_FORMAT_PLY};
@@ -188,9 +178,8 @@ static void kept_tangents_that_are_bad_are_told_on_conversion(void **state)
 	hand_free(h, report);
 }
 
-static void morph_targets_without_tangents_are_told(void **state)
+TEST(morph_targets_without_tangents_are_told)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	h->mesh.targets_without_tangents = 2;
 	nt_report *report = hand_report(h, NULL);
@@ -200,9 +189,8 @@ static void morph_targets_without_tangents_are_told(void **state)
 
 /* A texture transform that turns u over: what is mirrored is checked as it is looked up, what is shown are the
  * file's own coordinates. */
-static void texture_transform_that_mirrors_counts(void **state)
+TEST(texture_transform_that_mirrors_counts)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	float solved[4][2];
 	for (size_t v = 0; v < 4; v++) {
@@ -220,9 +208,8 @@ static void texture_transform_that_mirrors_counts(void **state)
 	hand_free(h, report);
 }
 
-static void degenerate_triangles_are_counted_and_weighed(void **state)
+TEST(degenerate_triangles_are_counted_and_weighed)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	/* no UV area, half the area of the sound quad, so a third of all; one corner is the quad's */
 	hand_vertex(h, 2, 1, 0, 2, 1);
@@ -248,9 +235,8 @@ static void degenerate_triangles_are_counted_and_weighed(void **state)
 }
 
 /* A float near 1000 is known to 2^-15: a height of 1e-4 is then uncertain by a third. */
-static void nearly_collinear_coordinates_far_from_the_origin(void **state)
+TEST(nearly_collinear_coordinates_far_from_the_origin)
 {
-	(void)state;
 	hand_mesh *h = hand_new();
 	hand_vertex(h, 0, 0, 0, 1000, 0);
 	hand_vertex(h, 1, 0, 0, 1001, 0);
@@ -271,9 +257,8 @@ static void nearly_collinear_coordinates_far_from_the_origin(void **state)
 }
 
 /* Right triangles but one with an angle of 30 degrees: the relative determinant is the sine of the angle. */
-static void relative_determinants_are_sines(void **state)
+TEST(relative_determinants_are_sines)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	hand_vertex(h, 5, 0, 0, 0, 0);
 	hand_vertex(h, 6, 0, 0, 1, 0);
@@ -288,9 +273,8 @@ static void relative_determinants_are_sines(void **state)
 	hand_free(h, report);
 }
 
-static void normals_are_checked(void **state)
+TEST(normals_are_checked)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	h->mesh.tangents = NULL;
 	h->normals[0][2] = 2.0f;
@@ -307,9 +291,8 @@ static void normals_are_checked(void **state)
 	hand_free(h, report);
 }
 
-static void values_that_are_not_finite_are_told_and_harmless(void **state)
+TEST(values_that_are_not_finite_are_told_and_harmless)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	h->positions[1][0] = NAN;
 	h->texcoords[2][1] = INFINITY;
@@ -319,9 +302,8 @@ static void values_that_are_not_finite_are_told_and_harmless(void **state)
 	hand_free(h, report);
 }
 
-static void options_ignore_reweigh_and_limit(void **state)
+TEST(options_ignore_reweigh_and_limit)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	set_tangent(h, 1, 0, 0, 0, 1);    /* TAN_ZERO, error */
 	set_tangent(h, 3, 0.8f, 0, 0.6f, 1); /* TAN_NOT_ORTHOGONAL, warning */
@@ -344,9 +326,8 @@ static void options_ignore_reweigh_and_limit(void **state)
 	hand_free(h, report);
 }
 
-static void baseline_knows_old_findings_each_as_often_as_it_has_them(void **state)
+TEST(baseline_knows_old_findings_each_as_often_as_it_has_them)
 {
-	(void)state;
 	hand_mesh *h = sound_quad();
 	set_tangent(h, 1, 0, 0, 0, 1);
 	nt_report *report = hand_report(h, NULL);
@@ -371,9 +352,8 @@ static void baseline_knows_old_findings_each_as_often_as_it_has_them(void **stat
 }
 
 /* Two lone mirrored islands at one place have one fingerprint; a baseline with it once knows one of them. */
-static void baseline_entries_count_once_each(void **state)
+TEST(baseline_entries_count_once_each)
 {
-	(void)state;
 	hand_mesh *h = hand_new();
 	for (uint32_t i = 0; i < 2; i++) {
 		hand_vertex(h, 0, 0, 0, 1 + 2 * (float)i, 0);
@@ -398,27 +378,5 @@ static void baseline_entries_count_once_each(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(sound_tangents_give_no_findings),
-		cmocka_unit_test(inverted_w_is_one_finding_with_its_share),
-		cmocka_unit_test(reversed_tangents_are_not_those_of_sheared_coordinates),
-		cmocka_unit_test(unused_tangents_are_told_and_cannot_be_errors),
-		cmocka_unit_test(each_kind_of_bad_tangent_has_its_code),
-		cmocka_unit_test(length_within_the_validators_tolerance_is_unit),
-		cmocka_unit_test(mixed_w_is_counted_by_triangle),
-		cmocka_unit_test(directions_off_by_90_degrees_fill_one_bin),
-		cmocka_unit_test(required_tangents_are_missed),
-		cmocka_unit_test(kept_tangents_that_are_bad_are_told_on_conversion),
-		cmocka_unit_test(morph_targets_without_tangents_are_told),
-		cmocka_unit_test(texture_transform_that_mirrors_counts),
-		cmocka_unit_test(degenerate_triangles_are_counted_and_weighed),
-		cmocka_unit_test(nearly_collinear_coordinates_far_from_the_origin),
-		cmocka_unit_test(relative_determinants_are_sines),
-		cmocka_unit_test(normals_are_checked),
-		cmocka_unit_test(values_that_are_not_finite_are_told_and_harmless),
-		cmocka_unit_test(options_ignore_reweigh_and_limit),
-		cmocka_unit_test(baseline_entries_count_once_each),
-		cmocka_unit_test(baseline_knows_old_findings_each_as_often_as_it_has_them),
-	};
-	return cmocka_run_group_tests_name("report/analyse", tests, NULL, NULL);
+	return run_group("report/analyse");
 }

@@ -3,9 +3,8 @@
 #include <stdio.h>
 #include "report/codes.h"
 
-static void every_code_has_a_complete_row_and_is_found_by_its_name(void **state)
+TEST(every_code_has_a_complete_row_and_is_found_by_its_name)
 {
-	(void)state;
 	for (unsigned i = 0; i < NT_CODE_COUNT; i++) {
 		const nt_code_row *row = nt_code_info((nt_code)i);
 		assert_non_null(row->name);
@@ -27,17 +26,15 @@ static void sentence_is(nt_code code, size_t count, const char *detail, const ch
 	nt_buffer_free(&out);
 }
 
-static void sentences_count_and_carry_the_detail(void **state)
+TEST(sentences_count_and_carry_the_detail)
 {
-	(void)state;
 	sentence_is(NT_CODE_TAN_ZERO, 1, NULL, "1 tangent has no length");
 	sentence_is(NT_CODE_TAN_ZERO, 7, "", "7 tangents have no length");
 	sentence_is(NT_CODE_MTL_MISSING, 1, "a.mtl", "material library cannot be read: a.mtl");
 }
 
-static void severities_have_names(void **state)
+TEST(severities_have_names)
 {
-	(void)state;
 	nt_severity severity;
 	assert_true(nt_severity_find("warning", &severity));
 	assert_int_equal(severity, NT_SEVERITY_WARNING);
@@ -138,9 +135,8 @@ static void write_manual(nt_buffer *out)
 	nt_buffer_text(out, manual_tail);
 }
 
-static void manual_lists_every_code_as_the_table_has_it(void **state)
+TEST(manual_lists_every_code_as_the_table_has_it)
 {
-	(void)state;
 	static const char path[] = "man/nmtan-report.5";
 	nt_buffer expected = {0};
 	write_manual(&expected);
@@ -164,11 +160,5 @@ static void manual_lists_every_code_as_the_table_has_it(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(every_code_has_a_complete_row_and_is_found_by_its_name),
-		cmocka_unit_test(sentences_count_and_carry_the_detail),
-		cmocka_unit_test(severities_have_names),
-		cmocka_unit_test(manual_lists_every_code_as_the_table_has_it),
-	};
-	return cmocka_run_group_tests_name("report/codes", tests, NULL, NULL);
+	return run_group("report/codes");
 }

@@ -57,9 +57,8 @@ static void compare_bin(void *context, size_t bin, const nt_edge_side *sides, si
 	__atomic_add_fetch(&e->right, right, __ATOMIC_RELAXED);
 }
 
-static void edges_come_in_order(void **state)
+TEST(edges_come_in_order)
 {
-	(void)state;
 	lattice *l = lattice_new(true);
 	expected e = {0};
 	for (unsigned threads = 1; threads <= 3; threads++) {
@@ -87,6 +86,5 @@ static void edges_come_in_order(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {cmocka_unit_test(edges_come_in_order)};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return run_group("report/edge_bins");
 }

@@ -47,23 +47,17 @@ static void compare(bool indexed)
 	free(l);
 }
 
-static void points_of_an_indexed_mesh(void **state)
+TEST(points_of_an_indexed_mesh)
 {
-	(void)state;
 	compare(true);
 }
 
-static void points_of_a_soup(void **state)
+TEST(points_of_a_soup)
 {
-	(void)state;
 	compare(false);
 }
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(points_of_an_indexed_mesh),
-		cmocka_unit_test(points_of_a_soup),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return run_group("report/points");
 }

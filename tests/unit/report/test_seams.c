@@ -20,9 +20,8 @@ static hand_mesh *mirrored_pair(bool split)
 	return h;
 }
 
-static void mirrored_pair_has_one_open_seam_of_one_edge(void **state)
+TEST(mirrored_pair_has_one_open_seam_of_one_edge)
 {
-	(void)state;
 	hand_mesh *h = mirrored_pair(false);
 	nt_report *report = hand_report(h, NULL);
 	const nt_report_mesh *m = &report->meshes[0];
@@ -55,9 +54,8 @@ static void mirrored_pair_has_one_open_seam_of_one_edge(void **state)
 	hand_free(h, report);
 }
 
-static void seam_between_split_vertices_counts_too(void **state)
+TEST(seam_between_split_vertices_counts_too)
 {
-	(void)state;
 	hand_mesh *h = mirrored_pair(true);
 	h->positions[4][0] = -0.0f; /* the same place as 0 */
 	nt_report *report = hand_report(h, NULL);
@@ -105,9 +103,8 @@ static hand_mesh *mirrored_cube(void)
 	return h;
 }
 
-static void mirrored_cube_has_one_closed_seam_around_x_0(void **state)
+TEST(mirrored_cube_has_one_closed_seam_around_x_0)
 {
-	(void)state;
 	hand_mesh *h = mirrored_cube();
 	nt_report *report = hand_report(h, NULL);
 	const nt_report_mesh *m = &report->meshes[0];
@@ -138,9 +135,8 @@ static void mirrored_cube_has_one_closed_seam_around_x_0(void **state)
 }
 
 /* A sheet of 2n x m quads over x in [-n, n], u = |x|: symmetric like a head, centre vertices shared. */
-static void symmetric_sheet_has_a_seam_along_its_middle(void **state)
+TEST(symmetric_sheet_has_a_seam_along_its_middle)
 {
-	(void)state;
 	enum { N = 3, M = 5 };
 	hand_mesh *h = hand_new();
 	for (int y = 0; y <= M; y++)
@@ -172,9 +168,8 @@ static void symmetric_sheet_has_a_seam_along_its_middle(void **state)
 
 /* A strip of n quads, closed with a half turn: vertex (i, side) for i < n, and the last quad joins
  * (n - 1, s) to (0, 1 - s). */
-static void moebius_strip_has_one_edge_against_the_winding(void **state)
+TEST(moebius_strip_has_one_edge_against_the_winding)
 {
-	(void)state;
 	enum { N = 12 };
 	hand_mesh *h = hand_new();
 	for (uint32_t i = 0; i <= N; i++) {
@@ -206,9 +201,8 @@ static void moebius_strip_has_one_edge_against_the_winding(void **state)
 
 /* Three quads in a row, u = 0, 1, 0.4, 1.4: the middle one runs back over the first, but not onto its
  * corners. */
-static void fold_is_found_inside_its_island(void **state)
+TEST(fold_is_found_inside_its_island)
 {
-	(void)state;
 	static const float u[4] = {0.0f, 1.0f, 0.4f, 1.4f};
 	hand_mesh *h = hand_new();
 	for (int i = 0; i < 4; i++) {
@@ -234,9 +228,8 @@ static void add_quad(hand_mesh *h, float x, float u, bool mirrored)
 	hand_quad(h, a, b, c, d);
 }
 
-static void stacked_islands_are_told_from_lone_ones(void **state)
+TEST(stacked_islands_are_told_from_lone_ones)
 {
-	(void)state;
 	hand_mesh *h = hand_new();
 	add_quad(h, 0, 0, false);
 	add_quad(h, 10, 0, true); /* on the first: another diagonal, but the same area */
@@ -285,9 +278,8 @@ static nt_code code_of_pair(nt_wrap wrap, float moved, float offset, float scale
 }
 
 /* Over 3e35 tiles, of which few are searched: many small meshes may have such coordinates. */
-static void search_of_overlap_is_bounded_by_the_triangles(void **state)
+TEST(search_of_overlap_is_bounded_by_the_triangles)
 {
-	(void)state;
 	hand_mesh *h = hand_new();
 	const uint32_t a = hand_vertex(h, 0, 0, 0, 0, 0), b = hand_vertex(h, 1, 0, 0, 3e35f, 0);
 	const uint32_t c = hand_vertex(h, 0, 1, 0, 0, 3e35f);
@@ -308,9 +300,8 @@ static void search_of_overlap_is_bounded_by_the_triangles(void **state)
 	hand_free(h, report);
 }
 
-static void overlap_is_judged_as_the_sampler_wraps(void **state)
+TEST(overlap_is_judged_as_the_sampler_wraps)
 {
-	(void)state;
 	const nt_code on = NT_CODE_UV_MIRROR_OVERLAP, off = NT_CODE_UV_MIRROR_LONE;
 	const struct {
 		float offset, scale;
@@ -336,9 +327,8 @@ static void overlap_is_judged_as_the_sampler_wraps(void **state)
 	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25f, 2, 1), on);
 }
 
-static void bowtie_of_two_triangles_meets_in_a_point_only(void **state)
+TEST(bowtie_of_two_triangles_meets_in_a_point_only)
 {
-	(void)state;
 	hand_mesh *h = hand_new();
 	const uint32_t m = hand_vertex(h, 0, 0, 0, 0.5f, 0.5f);
 	const uint32_t a = hand_vertex(h, 1, -1, 0, 1, 0), b = hand_vertex(h, 1, 1, 0, 1, 1);
@@ -355,9 +345,8 @@ static void bowtie_of_two_triangles_meets_in_a_point_only(void **state)
 }
 
 /* Three triangles on one edge, one of them mirrored: the edge is a seam and is not manifold. */
-static void edge_of_three_triangles_is_reported_and_still_a_seam(void **state)
+TEST(edge_of_three_triangles_is_reported_and_still_a_seam)
 {
-	(void)state;
 	hand_mesh *h = hand_new();
 	const uint32_t a = hand_vertex(h, 0, 0, 0, 0, 0), b = hand_vertex(h, 0, 1, 0, 0, 1);
 	const uint32_t c = hand_vertex(h, -1, 0, 0, -1, 0), d = hand_vertex(h, 1, 0, 0, 1, 0);
@@ -384,9 +373,8 @@ static uint64_t seam_fingerprint(const hand_mesh *h)
 	return fingerprint;
 }
 
-static void fingerprint_survives_other_indices_but_not_another_place(void **state)
+TEST(fingerprint_survives_other_indices_but_not_another_place)
 {
-	(void)state;
 	hand_mesh *h = mirrored_cube();
 	const uint64_t before = seam_fingerprint(h);
 	/* the last triangle becomes the first, corners rotate */
@@ -404,19 +392,5 @@ static void fingerprint_survives_other_indices_but_not_another_place(void **stat
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(mirrored_pair_has_one_open_seam_of_one_edge),
-		cmocka_unit_test(seam_between_split_vertices_counts_too),
-		cmocka_unit_test(mirrored_cube_has_one_closed_seam_around_x_0),
-		cmocka_unit_test(symmetric_sheet_has_a_seam_along_its_middle),
-		cmocka_unit_test(moebius_strip_has_one_edge_against_the_winding),
-		cmocka_unit_test(fold_is_found_inside_its_island),
-		cmocka_unit_test(stacked_islands_are_told_from_lone_ones),
-		cmocka_unit_test(search_of_overlap_is_bounded_by_the_triangles),
-		cmocka_unit_test(overlap_is_judged_as_the_sampler_wraps),
-		cmocka_unit_test(bowtie_of_two_triangles_meets_in_a_point_only),
-		cmocka_unit_test(edge_of_three_triangles_is_reported_and_still_a_seam),
-		cmocka_unit_test(fingerprint_survives_other_indices_but_not_another_place),
-	};
-	return cmocka_run_group_tests_name("report/seams", tests, NULL, NULL);
+	return run_group("report/seams");
 }

@@ -84,9 +84,8 @@ static size_t check(unsigned ranges, size_t bytes, size_t *scratch_bytes)
 	return rest;
 }
 
-static void borrowed_memory_of_any_size_gives_the_same_places(void **state)
+TEST(borrowed_memory_of_any_size_gives_the_same_places)
 {
-	(void)state;
 	make_ids();
 	for (unsigned ranges = 1; ranges <= 3; ranges += 2) {
 		size_t all, parted = 0, before = SIZE_MAX;
@@ -103,9 +102,8 @@ static void borrowed_memory_of_any_size_gives_the_same_places(void **state)
 	}
 }
 
-static void places_that_do_not_suffice_leave_hubs(void **state)
+TEST(places_that_do_not_suffice_leave_hubs)
 {
-	(void)state;
 	make_ids();
 	static const size_t bounds[4] = {0, 100, 100, TRIANGLES};
 	size_t hubs = SIZE_MAX;
@@ -130,9 +128,8 @@ static void places_that_do_not_suffice_leave_hubs(void **state)
 }
 
 /* Narrow entries are there for whoever is no hub; a hub knows how many corners it has. */
-static void few_vertices_need_not_be_counted(void **state)
+TEST(few_vertices_need_not_be_counted)
 {
-	(void)state;
 	make_ids();
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
@@ -176,10 +173,5 @@ static void few_vertices_need_not_be_counted(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(borrowed_memory_of_any_size_gives_the_same_places),
-		cmocka_unit_test(places_that_do_not_suffice_leave_hubs),
-		cmocka_unit_test(few_vertices_need_not_be_counted),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return run_group("topology/adjacency");
 }

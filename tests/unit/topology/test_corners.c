@@ -17,9 +17,8 @@ static void weld(const float (*rows)[8], size_t count, uint32_t *ids, size_t *we
 	nt_scratch_free(&scratch);
 }
 
-static void equal_rows_are_one_and_zero_signs_do_not_matter(void **state)
+TEST(equal_rows_are_one_and_zero_signs_do_not_matter)
 {
-	(void)state;
 	const float rows[6][8] = {{0, 1, 2, 0, 0, 1, 5, 6}, {-0.0f, 1, 2, 0, -0.0f, 1, 5, 6},
 		{0, 1, 2, 0, 0, 1, 5, 7}, {0, 1, 2, 0, 0, 1, 5, 6}, {0, 1, 2, 1, 0, 0, 5, 6},
 		{3, 1, 2, 0, 0, 1, 5, 6}};
@@ -31,9 +30,8 @@ static void equal_rows_are_one_and_zero_signs_do_not_matter(void **state)
 	assert_int_equal(welded, 4);
 }
 
-static void nan_equals_nothing(void **state)
+TEST(nan_equals_nothing)
 {
-	(void)state;
 	const float rows[3][8] = {{NAN, 0}, {NAN, 0}, {0, NAN}};
 	uint32_t ids[3];
 	size_t welded;
@@ -42,9 +40,8 @@ static void nan_equals_nothing(void **state)
 }
 
 /* An indexed mesh welds its vertices, but a NaN vertex stays apart at each corner. */
-static void indexed_corners_take_their_vertex(void **state)
+TEST(indexed_corners_take_their_vertex)
 {
-	(void)state;
 	const float rows[3][8] = {{1}, {2}, {NAN}};
 	const uint32_t indices[6] = {0, 1, 2, 1, 0, 2};
 	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 2, .vertex_count = 3,
@@ -63,10 +60,5 @@ static void indexed_corners_take_their_vertex(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(equal_rows_are_one_and_zero_signs_do_not_matter),
-		cmocka_unit_test(nan_equals_nothing),
-		cmocka_unit_test(indexed_corners_take_their_vertex),
-	};
-	return cmocka_run_group_tests_name("topology/corners", tests, NULL, NULL);
+	return run_group("topology/corners");
 }

@@ -4,9 +4,8 @@
 #include <math.h>
 #include "topology/orientation.h"
 
-static void orientation_is_positive_counterclockwise(void **state)
+TEST(orientation_is_positive_counterclockwise)
 {
-	(void)state;
 	const float a[2] = {0, 0}, b[2] = {1, 0}, c[2] = {0, 1};
 	assert_int_equal(nmtan_orientation(a, b, c), 1);
 	assert_int_equal(nmtan_orientation(a, c, b), -1);
@@ -15,9 +14,8 @@ static void orientation_is_positive_counterclockwise(void **state)
 
 /* Needles whose float determinant rounds to zero or to the wrong sign. With a = (0, 0), b = (1, 1 + e),
  * c = (1 + e, 1 + 3 e), e = 2^-23: det = 1 + 3e - (1 + e)^2 = e - e^2 > 0. */
-static void orientation_of_needles_is_exact(void **state)
+TEST(orientation_of_needles_is_exact)
 {
-	(void)state;
 	const float e = FLT_EPSILON;
 	const float a[2] = {0, 0}, b[2] = {1, 1 + e}, c[2] = {1 + e, 1 + 3 * e};
 	assert_int_equal(nt_orientation(a, b, c), 1);
@@ -29,9 +27,8 @@ static void orientation_of_needles_is_exact(void **state)
 
 /* (b - a) needs 224 bits: only expansions see the 2^-100. det of (2^100, 2^-100), (2^100, 2^-101) about
  * the origin shifted to (2^-120, 0) is 2^100 (2^-101 - 2^-100) + ... < 0 whatever is added. */
-static void orientation_takes_mixed_exponents(void **state)
+TEST(orientation_takes_mixed_exponents)
 {
-	(void)state;
 	const float big = ldexpf(1, 100), small = ldexpf(1, -100);
 	const float a[2] = {ldexpf(1, -120), 0}, b[2] = {big, small}, c[2] = {big, small / 2};
 	assert_int_equal(nt_orientation(a, b, c), -1);
@@ -44,9 +41,8 @@ static void orientation_takes_mixed_exponents(void **state)
 	assert_int_equal(nt_orientation(p, q, r), 1);
 }
 
-static void orientation_of_values_that_are_not_finite_is_zero(void **state)
+TEST(orientation_of_values_that_are_not_finite_is_zero)
 {
-	(void)state;
 	const float a[2] = {0, 0}, b[2] = {1, 0}, n[2] = {NAN, 1}, i[2] = {0, INFINITY};
 	assert_int_equal(nt_orientation(a, b, n), 0);
 	assert_int_equal(nt_orientation(a, b, i), 0);
@@ -62,9 +58,8 @@ static uint32_t next_random(uint32_t *seed)
 
 /* Small integers: the determinant is exact in 64 bits. Scaling by powers of two and swapping keeps or
  * flips the sign; the slow path agrees with the fast one. */
-static void orientation_agrees_with_integers(void **state)
+TEST(orientation_agrees_with_integers)
 {
-	(void)state;
 	uint32_t seed = 1;
 	for (int i = 0; i < 20000; i++) {
 		int64_t x[6];
@@ -95,9 +90,8 @@ static void orientation_agrees_with_integers(void **state)
 
 /* Differences of 53 bits, so that products are rounded and tie: a is 2^-29 times small integers, c = 2 b of 24 bits.
  * (b - a) x (2 b - a) = b x a. */
-static void orientation_of_ties_is_decided_by_residuals(void **state)
+TEST(orientation_of_ties_is_decided_by_residuals)
 {
-	(void)state;
 	uint32_t seed = 7;
 	int ties = 0;
 	for (int i = 0; i < 20000; i++) {
@@ -115,9 +109,8 @@ static void orientation_of_ties_is_decided_by_residuals(void **state)
 	assert_true(ties > 1000);
 }
 
-static void quad_diagonal_is_the_shorter_one_in_uv_then_in_space(void **state)
+TEST(quad_diagonal_is_the_shorter_one_in_uv_then_in_space)
 {
-	(void)state;
 	const float square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 	const float kite[4][2] = {{0, 0}, {1, 0}, {2, 2}, {0, 1}};
 	const float flat[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -133,14 +126,5 @@ static void quad_diagonal_is_the_shorter_one_in_uv_then_in_space(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(orientation_is_positive_counterclockwise),
-		cmocka_unit_test(orientation_of_needles_is_exact),
-		cmocka_unit_test(orientation_takes_mixed_exponents),
-		cmocka_unit_test(orientation_of_values_that_are_not_finite_is_zero),
-		cmocka_unit_test(orientation_agrees_with_integers),
-		cmocka_unit_test(orientation_of_ties_is_decided_by_residuals),
-		cmocka_unit_test(quad_diagonal_is_the_shorter_one_in_uv_then_in_space),
-	};
-	return cmocka_run_group_tests_name("topology/orientation", tests, NULL, NULL);
+	return run_group("topology/orientation");
 }

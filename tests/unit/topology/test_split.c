@@ -33,9 +33,8 @@ static void split_hub(size_t n, const float (*hub_tangents)[4], uint32_t *hub_in
 	free(tangents);
 }
 
-static void first_tangent_keeps_the_vertex_and_copies_follow_in_order(void **state)
+TEST(first_tangent_keeps_the_vertex_and_copies_follow_in_order)
 {
-	(void)state;
 	const float a[4] = {1, 0, 0, 1}, b[4] = {1, 0, 0, -1}, c[4] = {0, 1, 0, 1};
 	float tangents[6][4];
 	const float *order[6] = {b, a, b, c, a, c};
@@ -49,9 +48,8 @@ static void first_tangent_keeps_the_vertex_and_copies_follow_in_order(void **sta
 	assert_int_equal(copies, 2);
 }
 
-static void signs_of_zeros_and_nans_do_not_split(void **state)
+TEST(signs_of_zeros_and_nans_do_not_split)
 {
-	(void)state;
 	const float tangents[4][4] = {{0.0f, 1, 0, 1}, {-0.0f, 1, 0, 1}, {NAN, 1, 0, 1}, {-NAN, 1, 0, 1}};
 	uint32_t hub[4];
 	size_t copies;
@@ -62,9 +60,8 @@ static void signs_of_zeros_and_nans_do_not_split(void **state)
 }
 
 /* 200 000 different tangents at one vertex: quadratic search would take minutes. */
-static void hub_of_many_tangents_is_linear(void **state)
+TEST(hub_of_many_tangents_is_linear)
 {
-	(void)state;
 	enum { COUNT = 200000 };
 	float (*tangents)[4] = malloc(COUNT * sizeof *tangents);
 	uint32_t *hub = malloc(COUNT * sizeof *hub);
@@ -93,9 +90,8 @@ static nmtan_status split_corners(nt_splitter *s, const float (*tangents)[4], si
 
 /* Tangents that would have one hash if a word of the key were 0 spread over the table: otherwise all would stand in one
  * run of slots, and each be compared with those before it. */
-static void tangents_of_one_hash_spread(void **state)
+TEST(tangents_of_one_hash_spread)
 {
-	(void)state;
 	enum { KINDS = 20001 };
 	float (*tangents)[4] = calloc(KINDS, sizeof *tangents);
 	for (uint32_t i = 0; i < KINDS; i++)
@@ -131,9 +127,8 @@ static void tangents_of_one_hash_spread(void **state)
 	free(sources);
 }
 
-static void unused_vertices_get_a_unit_tangent(void **state)
+TEST(unused_vertices_get_a_unit_tangent)
 {
-	(void)state;
 	const uint32_t indices[3] = {0, 1, 2};
 	const float normals[5][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {1, 0, 0}, {0, 0, 0}};
 	const float tangents[3][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}};
@@ -153,12 +148,5 @@ static void unused_vertices_get_a_unit_tangent(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(first_tangent_keeps_the_vertex_and_copies_follow_in_order),
-		cmocka_unit_test(signs_of_zeros_and_nans_do_not_split),
-		cmocka_unit_test(hub_of_many_tangents_is_linear),
-		cmocka_unit_test(tangents_of_one_hash_spread),
-		cmocka_unit_test(unused_vertices_get_a_unit_tangent),
-	};
-	return cmocka_run_group_tests_name("topology/split", tests, NULL, NULL);
+	return run_group("topology/split");
 }

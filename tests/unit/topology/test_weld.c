@@ -147,9 +147,8 @@ static void check_corners(const vertex_row *rows, size_t vertices, size_t corner
 	free(indices);
 }
 
-static void corners_weld_alike_on_all_threads(void **state)
+TEST(corners_weld_alike_on_all_threads)
 {
-	(void)state;
 	enum { COUNT = 9000 };
 	/* from nearly one row to nearly all different, which the first table does not hold; -0 is 0 */
 	static const uint32_t kinds[] = {1, 5, 1500, 4000, 1 << 24};
@@ -163,9 +162,8 @@ static void corners_weld_alike_on_all_threads(void **state)
 		}
 }
 
-static void no_corners_weld_to_nothing(void **state)
+TEST(no_corners_weld_to_nothing)
 {
-	(void)state;
 	vertex_row rows[2] = {{0}};
 	for (size_t vertices = 0; vertices < 3; vertices++)
 		for (int indexed = 0; indexed < 2; indexed++) {
@@ -182,9 +180,8 @@ static void no_corners_weld_to_nothing(void **state)
 		}
 }
 
-static void few_corners_weld_alike_on_all_threads(void **state)
+TEST(few_corners_weld_alike_on_all_threads)
 {
-	(void)state;
 	for (size_t corners = 3; corners < 900; corners += corners / 3)
 		for (uint32_t kinds = 1; kinds < 1000; kinds *= 9) {
 			vertex_row *rows = random_rows(corners, kinds, NAN);
@@ -195,9 +192,8 @@ static void few_corners_weld_alike_on_all_threads(void **state)
 		}
 }
 
-static void vertices_weld_alike_on_all_threads(void **state)
+TEST(vertices_weld_alike_on_all_threads)
 {
-	(void)state;
 	enum { VERTICES = 5000, CORNERS = 9000 };
 	static const uint32_t kinds[] = {1, 5, 1500, 4000, 1 << 24};
 	for (int k = 0; k < 5; k++)
@@ -209,9 +205,8 @@ static void vertices_weld_alike_on_all_threads(void **state)
 }
 
 /* Two corners for three vertices and more: the weld goes by corner. */
-static void few_of_many_vertices_weld_alike(void **state)
+TEST(few_of_many_vertices_weld_alike)
 {
-	(void)state;
 	enum { VERTICES = 5000, CORNERS = 900 };
 	vertex_row *rows = random_rows(VERTICES, 300, -0.0f);
 	check_corners(rows, VERTICES, CORNERS, 7);
@@ -234,18 +229,16 @@ static void check_doubles(size_t vertices, size_t corners, uint32_t equal, float
 	free(rows);
 }
 
-static void some_equal_vertices_of_many_weld_alike(void **state)
+TEST(some_equal_vertices_of_many_weld_alike)
 {
-	(void)state;
 	check_doubles(30000, 60000, 0, NAN);
 	check_doubles(30000, 60000, 1, -0.0f);
 	check_doubles(30000, 60000, 10, NAN);
 }
 
 /* Equal vertices in one place, as where a seam was appended: most corners keep their vertex. */
-static void equal_vertices_in_one_place_weld_alike(void **state)
+TEST(equal_vertices_in_one_place_weld_alike)
 {
-	(void)state;
 	enum { VERTICES = 5000, CORNERS = 3 * 3001 };
 	static const size_t places[] = {1, 2000, VERTICES - 20};
 	for (size_t p = 0; p < 3; p++)
@@ -262,9 +255,8 @@ static void equal_vertices_in_one_place_weld_alike(void **state)
 }
 
 /* More than the filter bears. */
-static void many_equal_vertices_weld_alike(void **state)
+TEST(many_equal_vertices_weld_alike)
 {
-	(void)state;
 	check_doubles(60000, 90000, 25, -0.0f);
 	check_doubles(60000, 90000, 90, NAN);
 }
@@ -290,9 +282,8 @@ static void make_row_of_hash(uint64_t hash, uint32_t number, nt_weld_row *row)
 
 /* Rows that were made for one hash spread over the table. Without the key of the process all would stand in one run,
  * and each be compared with those before it. */
-static void rows_of_one_hash_spread(void **state)
+TEST(rows_of_one_hash_spread)
 {
-	(void)state;
 	enum { COUNT = 20000 };
 	nt_weld_row *rows = malloc(COUNT * sizeof *rows);
 	for (uint32_t i = 0; i < COUNT; i++) {
@@ -320,9 +311,8 @@ static void rows_of_one_hash_spread(void **state)
 }
 
 /* Fewer than a vector, a batch, and more. */
-static void every_number_of_vertices_welds_alike(void **state)
+TEST(every_number_of_vertices_welds_alike)
 {
-	(void)state;
 	static const size_t counts[] = {1, 2, 3, 4, 5, 7, 31, 32, 33, 34, 35, 63, 64, 65, 129, 1000, 65536};
 	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
 		check_doubles(counts[i], 3 * counts[i], 0, -0.0f);
@@ -348,9 +338,8 @@ static void check_flat_soup(size_t corners, uint32_t equal, float odd)
 	free(rows);
 }
 
-static void flat_soups_weld_alike(void **state)
+TEST(flat_soups_weld_alike)
 {
-	(void)state;
 	check_flat_soup(60000, 0, -0.0f);
 	check_flat_soup(60000, 0, NAN);
 	check_flat_soup(60000, 3, NAN);
@@ -358,15 +347,13 @@ static void flat_soups_weld_alike(void **state)
 }
 
 /* So many that the filter lets through go to all threads. */
-static void an_eighth_of_a_million_equal_vertices_weld_alike(void **state)
+TEST(an_eighth_of_a_million_equal_vertices_weld_alike)
 {
-	(void)state;
 	check_doubles(900000, 500000, 11, NAN);
 }
 
-static void without_doubles_the_indices_of_the_mesh_are_the_numbers(void **state)
+TEST(without_doubles_the_indices_of_the_mesh_are_the_numbers)
 {
-	(void)state;
 	enum { VERTICES = 3000 };
 	vertex_row *rows = calloc(VERTICES, sizeof *rows);
 	uint32_t indices[VERTICES];
@@ -389,9 +376,8 @@ static void without_doubles_the_indices_of_the_mesh_are_the_numbers(void **state
 	free(rows);
 }
 
-static void every_failed_allocation_is_told(void **state)
+TEST(every_failed_allocation_is_told)
 {
-	(void)state;
 	enum { COUNT = 60000 };
 	static const uint32_t kinds[] = {5, 20000, 1 << 26};
 	for (int k = 0; k < 3; k++) {
@@ -423,21 +409,5 @@ static void every_failed_allocation_is_told(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(corners_weld_alike_on_all_threads),
-		cmocka_unit_test(no_corners_weld_to_nothing),
-		cmocka_unit_test(few_corners_weld_alike_on_all_threads),
-		cmocka_unit_test(vertices_weld_alike_on_all_threads),
-		cmocka_unit_test(few_of_many_vertices_weld_alike),
-		cmocka_unit_test(some_equal_vertices_of_many_weld_alike),
-		cmocka_unit_test(equal_vertices_in_one_place_weld_alike),
-		cmocka_unit_test(many_equal_vertices_weld_alike),
-		cmocka_unit_test(rows_of_one_hash_spread),
-		cmocka_unit_test(every_number_of_vertices_welds_alike),
-		cmocka_unit_test(flat_soups_weld_alike),
-		cmocka_unit_test(an_eighth_of_a_million_equal_vertices_weld_alike),
-		cmocka_unit_test(without_doubles_the_indices_of_the_mesh_are_the_numbers),
-		cmocka_unit_test(every_failed_allocation_is_told),
-	};
-	return cmocka_run_group_tests_name("topology/weld", tests, NULL, NULL);
+	return run_group("topology/weld");
 }

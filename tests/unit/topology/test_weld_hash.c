@@ -154,9 +154,8 @@ static double tag_matches(const uint64_t *hashes)
 	return pairs * (1 << TAG_BITS) / (0.5 * COUNT * (COUNT - 1.0));
 }
 
-static void structured_rows_spread_like_random_ones(void **state)
+TEST(structured_rows_spread_like_random_ones)
 {
-	(void)state;
 	static const struct {
 		const char *name;
 		make_row *make;
@@ -191,8 +190,5 @@ static void structured_rows_spread_like_random_ones(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(structured_rows_spread_like_random_ones),
-	};
-	return cmocka_run_group_tests_name("topology/weld_hash", tests, NULL, NULL);
+	return run_group("topology/weld_hash");
 }

@@ -74,9 +74,8 @@ static double enclosed(const nt_outlined *mesh, const regions *r, size_t region)
 
 static regions found;
 
-static void a_square_of_two_triangles_has_one_loop_of_four_points(void **state)
+TEST(a_square_of_two_triangles_has_one_loop_of_four_points)
 {
-	(void)state;
 	/* the diagonal's vertices are there twice, with the same coordinates; -0 is 0 */
 	static const float uv[] = {0, 0, 1, 0, 1, 1, -0.0f, 0, 1, 1, 0, 1};
 	static const uint32_t indices[] = {0, 1, 2, 3, 4, 5};
@@ -90,9 +89,8 @@ static void a_square_of_two_triangles_has_one_loop_of_four_points(void **state)
 	assert_true(enclosed(&mesh, &found, 0) == 2.0);
 }
 
-static void each_winding_and_island_is_a_region_and_degenerate_ones_none(void **state)
+TEST(each_winding_and_island_is_a_region_and_degenerate_ones_none)
 {
-	(void)state;
 	static const float uv[] = {0, 0, 1, 0, 0, 1, 0.5f, 0.5f};
 	static const uint32_t indices[] = {0, 1, 2, 0, 2, 1, 0, 1, 2, 1, 2, 3, 0, 1, 2};
 	static const int8_t orientation[] = {1, -1, 1, 0, 1};
@@ -107,9 +105,8 @@ static void each_winding_and_island_is_a_region_and_degenerate_ones_none(void **
 		assert_true(found.items[i].sizes[0] == 3 && enclosed(&mesh, &found, i) == 1.0);
 }
 
-static void a_frame_has_an_outer_and_an_inner_loop(void **state)
+TEST(a_frame_has_an_outer_and_an_inner_loop)
 {
-	(void)state;
 	/* corners of a square of 3, then of one of 1 in its middle */
 	static const float uv[] = {0, 0, 3, 0, 3, 3, 0, 3, 1, 1, 2, 1, 2, 2, 1, 2};
 	static const uint32_t indices[] = {0, 1, 4, 1, 5, 4, 1, 2, 5, 2, 6, 5, 2, 3, 6, 3, 7, 6, 3, 0, 7, 0, 4, 7};
@@ -121,9 +118,8 @@ static void a_frame_has_an_outer_and_an_inner_loop(void **state)
 	assert_true(enclosed(&mesh, &found, 0) == 2.0 * (9 - 1));
 }
 
-static void triangles_that_touch_at_a_point_are_closed_loops(void **state)
+TEST(triangles_that_touch_at_a_point_are_closed_loops)
 {
-	(void)state;
 	static const float uv[] = {0, 0, 1, 1, 0, 2, 2, 0, 2, 2};
 	static const uint32_t indices[] = {0, 1, 2, 1, 3, 4};
 	static const int8_t orientation[] = {1, 1};
@@ -136,9 +132,8 @@ static void triangles_that_touch_at_a_point_are_closed_loops(void **state)
 	assert_true(enclosed(&mesh, &found, 0) == 4.0);
 }
 
-static void one_triangle_twice_is_wound_around_twice(void **state)
+TEST(one_triangle_twice_is_wound_around_twice)
 {
-	(void)state;
 	static const float uv[] = {0, 0, 1, 0, 0, 1};
 	static const uint32_t indices[] = {0, 1, 2, 0, 1, 2};
 	static const int8_t orientation[] = {1, 1};
@@ -147,9 +142,8 @@ static void one_triangle_twice_is_wound_around_twice(void **state)
 	assert_true(enclosed(&mesh, &found, 0) == 2.0);
 }
 
-static void no_triangles_have_no_regions(void **state)
+TEST(no_triangles_have_no_regions)
 {
-	(void)state;
 	const nt_outlined mesh = {0, 0, NULL, NULL, NULL, NULL};
 	outline(&mesh, &found);
 	assert_int_equal(found.count, 0);
@@ -157,13 +151,5 @@ static void no_triangles_have_no_regions(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_square_of_two_triangles_has_one_loop_of_four_points),
-		cmocka_unit_test(each_winding_and_island_is_a_region_and_degenerate_ones_none),
-		cmocka_unit_test(a_frame_has_an_outer_and_an_inner_loop),
-		cmocka_unit_test(triangles_that_touch_at_a_point_are_closed_loops),
-		cmocka_unit_test(one_triangle_twice_is_wound_around_twice),
-		cmocka_unit_test(no_triangles_have_no_regions),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return run_group("report/pack/outline");
 }

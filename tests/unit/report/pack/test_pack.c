@@ -155,9 +155,8 @@ static void free_sheet(sheet *s)
 
 /* ---- cases ---- */
 
-static void positions_and_indices_take_less_than_eight_bytes_a_triangle(void **state)
+TEST(positions_and_indices_take_less_than_eight_bytes_a_triangle)
 {
-	(void)state;
 	sheet *s = make_sheet(200, false);
 	unpacked u;
 	unpack(&u, &s->report, SIZE_MAX);
@@ -187,9 +186,8 @@ static void positions_and_indices_take_less_than_eight_bytes_a_triangle(void **s
 	free_sheet(s);
 }
 
-static void every_number_is_as_near_as_its_code(void **state)
+TEST(every_number_is_as_near_as_its_code)
 {
-	(void)state;
 	sheet *s = make_sheet(12, true);
 	const nt_report_geometry *g = &s->geometry;
 	unpacked u;
@@ -229,9 +227,8 @@ static void every_number_is_as_near_as_its_code(void **state)
 	free_sheet(s);
 }
 
-static void what_is_not_finite_is_marked_and_does_not_stretch_the_rest(void **state)
+TEST(what_is_not_finite_is_marked_and_does_not_stretch_the_rest)
 {
-	(void)state;
 	sheet *s = make_sheet(2, true);
 	s->geometry.positions[3 * 8] = NAN;
 	s->geometry.positions[3 * 7 + 1] = INFINITY;
@@ -252,9 +249,8 @@ static void what_is_not_finite_is_marked_and_does_not_stretch_the_rest(void **st
 	free_sheet(s);
 }
 
-static void a_mesh_above_the_bound_is_a_part_that_keeps_its_numbers(void **state)
+TEST(a_mesh_above_the_bound_is_a_part_that_keeps_its_numbers)
 {
-	(void)state;
 	sheet *s = make_sheet(20, true);
 	nt_report_finding finding = {.mesh = 0, .spot_count = 1, .spots = &(nt_spot){.triangle = 500}};
 	s->report.findings = &finding;
@@ -277,9 +273,8 @@ static void a_mesh_above_the_bound_is_a_part_that_keeps_its_numbers(void **state
 	free_sheet(s);
 }
 
-static void exhausted_memory_is_told_and_nothing_leaks(void **state)
+TEST(exhausted_memory_is_told_and_nothing_leaks)
 {
-	(void)state;
 	sheet *s = make_sheet(6, true);
 	for (size_t most = 20; most <= 100; most += 80)
 		for (size_t n = 0, failed = 1; failed; n++) {
@@ -295,12 +290,5 @@ static void exhausted_memory_is_told_and_nothing_leaks(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(positions_and_indices_take_less_than_eight_bytes_a_triangle),
-		cmocka_unit_test(every_number_is_as_near_as_its_code),
-		cmocka_unit_test(what_is_not_finite_is_marked_and_does_not_stretch_the_rest),
-		cmocka_unit_test(a_mesh_above_the_bound_is_a_part_that_keeps_its_numbers),
-		cmocka_unit_test(exhausted_memory_is_told_and_nothing_leaks),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return run_group("report/pack/pack");
 }

@@ -50,9 +50,8 @@ static void assert_extent(const nt_buffer *path, long x0, long y0, long x1, long
 }
 
 /* The layout is 4 by 2: as wide as the picture, and in its middle. */
-static void layout_fills_the_picture(void **state)
+TEST(layout_fills_the_picture)
 {
-	(void)state;
 	const nt_report_geometry g = two_squares();
 	nt_buffer paths[2];
 	draw(&g, true, paths);
@@ -63,9 +62,8 @@ static void layout_fills_the_picture(void **state)
 }
 
 /* Of one triangle the corner with the largest v is above where v points up. */
-static void v_points_up_or_down(void **state)
+TEST(v_points_up_or_down)
 {
-	(void)state;
 	float corner[] = {0, 0, 1, 0, 0, 1};
 	uint32_t one[] = {0, 1, 2};
 	int8_t plain[] = {1};
@@ -81,9 +79,8 @@ static void v_points_up_or_down(void **state)
 	}
 }
 
-static void nothing_to_draw_is_nothing(void **state)
+TEST(nothing_to_draw_is_nothing)
 {
-	(void)state;
 	nt_buffer paths[2];
 	nt_report_geometry g = two_squares();
 	g.texcoords = NULL;
@@ -104,10 +101,5 @@ static void nothing_to_draw_is_nothing(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(layout_fills_the_picture),
-		cmocka_unit_test(v_points_up_or_down),
-		cmocka_unit_test(nothing_to_draw_is_nothing),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return run_group("report/pack/thumb");
 }
