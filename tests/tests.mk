@@ -93,6 +93,16 @@ $(B)/tests/soak/hostile: $(B)/tests/soak/hostile.o $(B)/tests/support/any_settin
 	$(CXX) $(NT_LDFLAGS) -Wl,--wrap=open,--wrap=rename,--wrap=link -o $@ $(filter %.o,$^) \
 		-Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(LINKED_LIBS)
 
+# mikktspace.c as published is in the folder that MIKKTSPACE names: tests/soak/published.sh.
+$(B)/tests/soak/published.o: NT_CFLAGS += -I$(MIKKTSPACE)
+$(B)/tests/soak/mikktspace.o: $(MIKKTSPACE)/mikktspace.c
+	@mkdir -p $(@D)
+	$(CC) -O2 -ffp-contract=off -w -c -o $@ $<
+
+$(B)/tests/soak/published: $(patsubst %,$(B)/tests/%.o,soak/published soak/mikktspace support/definition support/nasty support/soup \
+		support/surfaces support/golden) $(B)/libnmtan.a
+	$(CC) $(NT_LDFLAGS) -o $@ $^ -lcmocka -lm
+
 # Heavy runs: tests/soak/*.sh in turn, each with its own closing line.
 soak-built: check-built
 	@$(MAKE) -s config=release build/release/tests/soak/hostile

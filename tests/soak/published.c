@@ -5,8 +5,10 @@
  * unfinished sort shows.
  *
  * Ordinary meshes: bumpy planes, tubes and tori, closed or not, of triangles and quads, faces in order or shuffled and
- * turned, with some of them missing, doubled, mirrored or without UV area; and soups and nasty ones with positions that
- * are finite and below FLT_MAX / 2.
+ * turned, with some of them missing, doubled, mirrored or without UV area; books and fans of many triangles; any of these
+ * with positions, normals and signs of zeros that are rare (`changes`), and with rows of vertices that no corner has; and
+ * soups and nasty ones with positions that are finite and below FLT_MAX / 2. At thresholds other than the default the
+ * definition alone is compared.
  */
 #include "test.h"
 #include <float.h>
@@ -76,7 +78,7 @@ static void set_frame(const SMikkTSpaceContext *context, const float tangent[], 
 	memcpy(r->magnitudes + 2 * c, (float[2]){mag_s, mag_t}, 8);
 }
 
-static nt_result solve_reference(const nmtan_mesh *mesh, size_t corners)
+static nt_result solve_reference(const nmtan_mesh *mesh, size_t corners, float degrees)
 {
 	SMikkTSpaceInterface calls = {.m_getNumFaces = face_count, .m_getNumVerticesOfFace = face_size,
 		.m_getPosition = get_position, .m_getNormal = get_normal, .m_getTexCoord = get_texcoord,
@@ -87,7 +89,8 @@ static nt_result solve_reference(const nmtan_mesh *mesh, size_t corners)
 		r.first[face] = first;
 		first += mesh->face_sizes ? mesh->face_sizes[face] : 3;
 	}
-	assert_true(genTangSpaceDefault(&(SMikkTSpaceContext){&calls, &r}));
+	const SMikkTSpaceContext context = {&calls, &r};
+	assert_true(degrees > 0 ? genTangSpace(&context, degrees) : genTangSpaceDefault(&context));
 	free(r.first);
 	return result;
 }
@@ -164,11 +167,9 @@ static void put_cell(soup *s, const grid *g, uint32_t x, uint32_t y, nt_random *
 	}
 }
 
-static soup make_ordinary(nt_random *random)
+static soup make_grid(nt_random *random, uint32_t columns, uint32_t rows)
 {
-	const uint32_t most = nt_random_below(random, 50) == 0 ? 60 : 10;
-	grid g = {2 + nt_random_below(random, most), 2 + nt_random_below(random, most), nt_random_below(random, 3),
-		{false, false}, NULL};
+	grid g = {columns, rows, nt_random_below(random, 3), {false, false}, NULL};
 	g.closed[0] = g.kind > 0 && nt_random_below(random, 2);
 	g.closed[1] = g.kind > 1 && nt_random_below(random, 2);
 	const uint32_t cells = g.columns * g.rows, points = (g.columns + 1) * (g.rows + 1);
@@ -203,6 +204,135 @@ static soup make_ordinary(nt_random *random)
 	return s;
 }
 
+static soup make_ordinary(nt_random *random)
+{
+	const uint32_t most = nt_random_below(random, 50) == 0 ? 60 : 10;
+	const uint32_t columns = 2 + nt_random_below(random, most), rows = 2 + nt_random_below(random, most);
+	return make_grid(random, columns, rows);
+}
+
+static point random_point(nt_random *random)
+{
+	point p = {.normal = {0, 0, 1}};
+	for (int i = 0; i < 3; i++)
+		p.position[i] = (float)nt_random_real(random);
+	for (int i = 0; i < 2; i++)
+		p.texcoord[i] = (float)nt_random_real(random);
+	return p;
+}
+
+/* Up to 500 triangles around a vertex, or with one edge in common: behind triangles of the other vertices, so that
+ * those have the smaller numbers and the many edges are the last of the sort; or before them. */
+static soup make_hub(nt_random *random)
+{
+	const uint32_t pages = 3 + nt_random_below(random, nt_random_below(random, 10) ? 40 : 497);
+	const bool fan = nt_random_below(random, 2), late = nt_random_below(random, 3);
+	const point hub[3] = {random_point(random), random_point(random), random_point(random)};
+	point *rim = malloc((pages + 2) * sizeof *rim);
+	for (uint32_t i = 0; i < pages + 2; i++)
+		rim[i] = random_point(random);
+	soup s = soup_make(2 * (size_t)pages, 6 * (size_t)pages);
+	s.face_count = s.corner_count = 0;
+	for (uint32_t i = 0; late && i < pages; i++)
+		put_face(&s, (point[3]){rim[i], rim[i + 1], rim[i + 2]}, 3, nt_random_below(random, 3), false);
+	for (uint32_t i = 0; i < pages; i++) {
+		const uint32_t at = nt_random_below(random, 4) ? i : nt_random_below(random, pages);
+		const point other = fan ? rim[at + 1] : hub[nt_random_below(random, 8) ? 1 : 2];
+		put_face(&s, (point[3]){hub[0], other, rim[at]}, 3, nt_random_below(random, 3),
+			nt_random_below(random, 3) == 0);
+	}
+	free(rim);
+	return s;
+}
+
+static void flatten_faces(soup *s, nt_random *random)
+{
+	const uint32_t kept = (const uint32_t[]){2, 4, 20, UINT32_MAX}[nt_random_below(random, 4)];
+	for (size_t f = 0, first = 0; f < s->face_count; first += s->sizes[f++])
+		if (nt_random_below(random, kept))
+			memcpy(s->positions[first], s->positions[first + 1 + nt_random_below(random, 2)],
+				sizeof *s->positions);
+}
+
+static void flatten_quads(soup *s, nt_random *random)
+{
+	for (size_t f = 0, first = 0; f < s->face_count; first += s->sizes[f++]) {
+		const uint32_t k = nt_random_below(random, 4);
+		if (s->sizes[f] == 4 && nt_random_below(random, 2))
+			memcpy(s->positions[first + k], s->positions[first + (k + 1) % 4], sizeof *s->positions);
+	}
+}
+
+/* Few positions have many vertices. */
+static void vary_normals(soup *s, nt_random *random)
+{
+	const uint32_t count = 2 + nt_random_below(random, nt_random_below(random, 2) ? 3 : 40);
+	for (size_t c = 0; c < s->corner_count; c++) {
+		const double a = 6.2831853 * nt_random_below(random, count) / count;
+		memcpy(s->normals[c], (float[3]){(float)cos(a), (float)sin(a), 0.5f}, sizeof *s->normals);
+	}
+}
+
+/* Up to the largest coordinates that are welded, or down to denormal ones, which coincide; in one direction, or all. */
+static void scale_positions(soup *s, nt_random *random)
+{
+	float largest = 0, scale;
+	const uint32_t axes = nt_random_below(random, 7) + 1, kind = nt_random_below(random, 4);
+	for (size_t i = 0; i < 3 * s->corner_count; i++)
+		largest = fmaxf(largest, fabsf(s->positions[0][i]));
+	scale = (const float[]){FLT_MAX / 2 / largest * 0.999999f, 1e-44f, 1e-38f, 3e-42f}[kind];
+	for (size_t i = 0; i < 3 * s->corner_count; i++)
+		if (axes >> i % 3 & 1)
+			s->positions[0][i] *= scale;
+}
+
+static void sign_zeros(soup *s, nt_random *random)
+{
+	float *const rows[3] = {s->positions[0], s->normals[0], s->texcoords[0]};
+	const uint32_t often = 1 + nt_random_below(random, 6);
+	for (int a = 0; a < 3; a++)
+		for (size_t i = 0; i < (a < 2 ? 3 : 2) * s->corner_count; i++) {
+			if (a == 0 && fabsf(rows[a][i]) < 0.15f * (float)often)
+				rows[a][i] = 0;
+			if (rows[a][i] == 0 && nt_random_below(random, 2))
+				rows[a][i] = -0.0f;
+		}
+}
+
+/* All on one plane, line or lattice of few points. */
+static void round_positions(soup *s, nt_random *random)
+{
+	const float steps = (float)(1 << nt_random_below(random, 5));
+	const uint32_t flat = nt_random_below(random, 8);
+	for (size_t i = 0; i < 3 * s->corner_count; i++)
+		s->positions[0][i] = flat >> i % 3 & 1 ? 0.5f : roundf(s->positions[0][i] * steps) / steps;
+}
+
+static const struct {
+	const char *name;
+	void (*apply)(soup *s, nt_random *random);
+} changes[] = {{"grid", NULL}, {"flat faces", flatten_faces}, {"half-flat quads", flatten_quads},
+	{"many normals", vary_normals}, {"scaled", scale_positions}, {"zeros", sign_zeros}, {"rounded", round_positions}};
+enum { CHANGES = sizeof changes / sizeof *changes };
+
+/* Rows behind the corners' that no corner has: far away, and of no number. */
+static void add_unused(soup *s, nt_random *random)
+{
+	enum { MORE = 3 };
+	soup more = soup_make(s->face_count, s->corner_count + MORE);
+	memcpy(more.sizes, s->sizes, s->face_count);
+	memcpy(more.positions, s->positions, s->corner_count * sizeof *s->positions);
+	memcpy(more.normals, s->normals, s->corner_count * sizeof *s->normals);
+	memcpy(more.texcoords, s->texcoords, s->corner_count * sizeof *s->texcoords);
+	for (size_t i = s->corner_count; i < s->corner_count + MORE; i++)
+		for (int k = 0; k < 3; k++)
+			more.positions[i][k] = (const float[]){NAN, 1e30f, -7, 0, INFINITY}[nt_random_below(random, 5)];
+	more.corner_count = s->corner_count;
+	soup_free(s);
+	*s = more;
+	s->corner_count += MORE;
+}
+
 static bool is_usual(const nmtan_mesh *m, size_t corners)
 {
 	for (size_t c = 0; c < corners; c++) {
@@ -226,7 +356,7 @@ static void compare(uint64_t seed, const char *kind, const nmtan_mesh *loose, si
 		return;
 	char name[64];
 	snprintf(name, sizeof name, "%s %llu", kind, (unsigned long long)seed);
-	nt_result published = solve_reference(&mesh, corners), defined = nt_result_define(&mesh, corners, true);
+	nt_result published = solve_reference(&mesh, corners, 0), defined = nt_result_define(&mesh, corners, true);
 	nt_result sorted = nt_result_make(corners);
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
@@ -246,30 +376,66 @@ static void compare(uint64_t seed, const char *kind, const nmtan_mesh *loose, si
 	nt_result_free(&sorted);
 }
 
+/* The definition at a threshold that the fast path does not know. */
+static void compare_threshold(uint64_t seed, const nmtan_mesh *loose, size_t corners, tally *t)
+{
+	const nmtan_mesh mesh = nt_filled(loose);
+	const float degrees = (const float[]){1, 30, 45, 90, 120, 179}[seed % 6];
+	nt_result published = solve_reference(&mesh, corners, degrees), found = nt_result_make(corners);
+	const nmtan_options options = {.struct_bytes = sizeof options, .repair = NMTAN_REPAIR_OFF,
+		.angular_threshold_degrees = degrees, .threads = 1};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = found.tangents,
+		.bitangents = found.bitangents, .magnitudes = found.magnitudes};
+	assert_int_equal(nmtan_tangents(&mesh, &options, &output, NULL), NMTAN_OK);
+	const size_t differences = nt_result_differences(&published, &found, corners, true);
+	if (differences)
+		print_error("%llu at %g degrees: %zu floats differ from mikktspace.c\n", (unsigned long long)seed, degrees,
+			differences);
+	t->different += differences > 0;
+	nt_result_free(&published);
+	nt_result_free(&found);
+}
+
+static void compare_nasty(uint64_t seed, tally *t)
+{
+	nt_nasty nasty;
+	nt_nasty_make(seed, &nasty);
+	compare(seed, "nasty", &nasty.mesh, nasty.corner_count, t);
+	nt_nasty_free(&nasty);
+}
+
+static void compare_soup(uint64_t seed, tally *t)
+{
+	nt_random random = nt_random_seed(seed);
+	const uint32_t kind = seed % 8 < 4 ? 0 : nt_random_below(&random, CHANGES);
+	soup s = seed % 8 == 0    ? soup_random(seed)
+		 : seed % 8 == 4   ? make_hub(&random)
+		 : seed % 800 == 2 ? make_grid(&random, 1000, 2)
+				   : make_ordinary(&random);
+	if (changes[kind].apply)
+		changes[kind].apply(&s, &random);
+	const size_t corners = s.corner_count;
+	if (seed % 5 == 0)
+		add_unused(&s, &random);
+	nmtan_mesh mesh = soup_mesh(&s);
+	soup_indexed indexed = soup_index(&s);
+	if (seed % 3 == 0)
+		mesh = indexed.mesh;
+	compare(seed, changes[kind].name, &mesh, corners, t);
+	if (seed % 16 == 7 && is_usual(&mesh, corners))
+		compare_threshold(seed, &mesh, corners, t);
+	soup_indexed_free(&indexed);
+	soup_free(&s);
+}
+
 int main(int count, char **arguments)
 {
 	if (count != 3)
 		return 64;
 	const uint64_t from = strtoull(arguments[1], NULL, 10), end = from + strtoull(arguments[2], NULL, 10);
 	tally t = {0};
-	for (uint64_t seed = from; seed < end && t.different < 20; seed++) {
-		nt_random random = nt_random_seed(seed);
-		soup s = seed % 8 == 0 ? soup_random(seed) : make_ordinary(&random);
-		nmtan_mesh mesh = soup_mesh(&s);
-		soup_indexed indexed = soup_index(&s);
-		if (seed % 3 == 0)
-			mesh = indexed.mesh;
-		if (seed % 8 != 1) {
-			compare(seed, seed % 8 ? "grid" : "soup", &mesh, s.corner_count, &t);
-		} else {
-			nt_nasty nasty;
-			nt_nasty_make(seed, &nasty);
-			compare(seed, "nasty", &nasty.mesh, nasty.corner_count, &t);
-			nt_nasty_free(&nasty);
-		}
-		soup_indexed_free(&indexed);
-		soup_free(&s);
-	}
+	for (uint64_t seed = from; seed < end && t.different < 20; seed++)
+		(seed % 8 == 1 ? compare_nasty : compare_soup)(seed, &t);
 	printf("%zu %zu %zu\n", t.meshes, t.different, t.matter);
 	return t.different > 0;
 }
