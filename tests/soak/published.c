@@ -5,10 +5,10 @@
  * unfinished sort shows.
  *
  * Ordinary meshes: bumpy planes, tubes and tori, closed or not, of triangles and quads, faces in order or shuffled and
- * turned, with some of them missing, doubled, mirrored or without UV area; books and fans of many triangles; any of these
- * with positions, normals and signs of zeros that are rare (`changes`), and with rows of vertices that no corner has; and
- * soups and nasty ones with positions that are finite and below FLT_MAX / 2. At thresholds other than the default the
- * definition alone is compared.
+ * turned, with some of them missing, doubled, mirrored or without UV area; books and fans of many triangles; these with
+ * rare positions, normals and signs of zeros (`changes`), and with rows of vertices that no corner has; and soups and
+ * nasty ones with positions that are finite and below FLT_MAX / 2. At thresholds other than the default the definition
+ * alone is compared.
  */
 #include "test.h"
 #include <float.h>
@@ -326,7 +326,8 @@ static void add_unused(soup *s, nt_random *random)
 	memcpy(more.texcoords, s->texcoords, s->corner_count * sizeof *s->texcoords);
 	for (size_t i = s->corner_count; i < s->corner_count + MORE; i++)
 		for (int k = 0; k < 3; k++)
-			more.positions[i][k] = (const float[]){NAN, 1e30f, -7, 0, INFINITY}[nt_random_below(random, 5)];
+			more.positions[i][k] =
+				(const float[]){NAN, 1e30f, -7, 0, INFINITY}[nt_random_below(random, 5)];
 	more.corner_count = s->corner_count;
 	soup_free(s);
 	*s = more;
@@ -358,16 +359,17 @@ static void compare(uint64_t seed, const char *kind, const nmtan_mesh *loose, si
 	snprintf(name, sizeof name, "%s %llu", kind, (unsigned long long)seed);
 	nt_result published = solve_reference(&mesh, corners, 0), defined = nt_result_define(&mesh, corners, true);
 	nt_result sorted = nt_result_make(corners);
+	sorted.sorted = true;
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	nt_solve solve = nt_result_solve(&mesh, corners, &scratch, &sorted, true);
-	solve.sorted = true;
-	assert_int_equal(nt_mikktspace_fast_as(&solve, &nt_usual_plan), NMTAN_OK);
+	const nt_solve solve = nt_result_solve(&mesh, corners, &scratch, &sorted, true);
+	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
 	nt_scratch_free(&scratch);
 	size_t differences = nt_result_differences(&published, &defined, corners, true);
 	if (differences)
 		print_error("%s: %zu floats differ from mikktspace.c\n", name, differences);
 	differences += nt_compare_variants(name, &mesh, corners, &published, seed % 2);
+	differences += nt_compare_run(name, &mesh, corners, &sorted, true, nt_cpu_best(), 1, &nt_usual_plan);
 	t->meshes++;
 	t->different += differences > 0;
 	t->matter += nt_result_differences(&published, &sorted, corners, true) > 0;
@@ -389,8 +391,8 @@ static void compare_threshold(uint64_t seed, const nmtan_mesh *loose, size_t cor
 	assert_int_equal(nmtan_tangents(&mesh, &options, &output, NULL), NMTAN_OK);
 	const size_t differences = nt_result_differences(&published, &found, corners, true);
 	if (differences)
-		print_error("%llu at %g degrees: %zu floats differ from mikktspace.c\n", (unsigned long long)seed, degrees,
-			differences);
+		print_error("%llu at %g degrees: %zu floats differ from mikktspace.c\n", (unsigned long long)seed,
+			degrees, differences);
 	t->different += differences > 0;
 	nt_result_free(&published);
 	nt_result_free(&found);

@@ -18,7 +18,7 @@ static size_t count_differences(const float *a, const float *b, size_t count)
 
 nt_result nt_result_make(size_t corners)
 {
-	return (nt_result){malloc(corners * 16 + 1), malloc(corners * 12 + 1), malloc(corners * 8 + 1)};
+	return (nt_result){malloc(corners * 16 + 1), malloc(corners * 12 + 1), malloc(corners * 8 + 1), false};
 }
 
 void nt_result_free(nt_result *r)
@@ -49,7 +49,7 @@ nmtan_mesh nt_filled(const nmtan_mesh *mesh)
 nt_solve nt_result_solve(const nmtan_mesh *mesh, size_t corners, nt_scratch *scratch, const nt_result *r, bool more)
 {
 	return (nt_solve){.mesh = mesh, .corner_count = corners, .threshold_cos = -1.0f, .threads = 1,
-		.isa = NT_ISA_BASELINE, .scratch = scratch, .tangents = r->tangents,
+		.isa = NT_ISA_BASELINE, .sorted = r->sorted, .scratch = scratch, .tangents = r->tangents,
 		.bitangents = more ? r->bitangents : NULL, .magnitudes = more ? r->magnitudes : NULL};
 }
 
@@ -70,6 +70,7 @@ size_t nt_compare_run(const char *name, const nmtan_mesh *mesh, size_t corners, 
 	bool more, nt_isa isa, unsigned threads, const nt_fast_plan *plan)
 {
 	nt_result got = nt_result_make(corners);
+	got.sorted = expected->sorted;
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
 	nt_solve solve = nt_result_solve(mesh, corners, &scratch, &got, more);
@@ -79,8 +80,9 @@ size_t nt_compare_run(const char *name, const nmtan_mesh *mesh, size_t corners, 
 	assert_int_equal(nt_mikktspace_fast_as(&solve, plan), NMTAN_OK);
 	const size_t differences = nt_result_differences(expected, &got, corners, more);
 	if (differences)
-		print_error("%s, set %d, %u threads, bins of 2^%u, %zu places: %zu of %zu floats differ\n", name,
-			(int)isa, threads, plan->bin_bits, plan->most_places, differences, corners * (more ? 9 : 4));
+		print_error("%s%s, set %d, %u threads, bins of 2^%u, %zu places: %zu of %zu floats differ\n", name,
+			expected->sorted ? ", sorted" : "", (int)isa, threads, plan->bin_bits, plan->most_places,
+			differences, corners * (more ? 9 : 4));
 	nt_scratch_free(&scratch);
 	nt_result_free(&got);
 	return differences;

@@ -9,6 +9,7 @@
 
 typedef struct nt_result {
 	float *tangents, *bitangents, *magnitudes;
+	bool sorted; /* of the method whose sort of edges is completed */
 } nt_result;
 
 nt_result nt_result_make(size_t corners);
