@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The choice of an implementation, which users do not have. That all give the same bytes is tested where
- * they are: test_fast.c, test_sums.c, test_usable.c.
+ * they are: test_fast.c, test_sums.c, test_usable.c. And triangles that are solved as quads.
  */
 #include "api/tangents.h"
+#include "surfaces.h"
 #include "test.h"
 #include <limits.h>
 #include <stdlib.h>
@@ -83,9 +84,99 @@ static void a_second_call_has_no_fresh_pages(void **state)
 	free(corners);
 }
 
+/* Random quads over few points, one in three of their triangles without area, and triangles between them. */
+enum { FACES = 60, POINTS = 24 };
+
+typedef struct random_faces {
+	float positions[POINTS][3], normals[POINTS][3], texcoords[POINTS][2];
+	uint32_t quads[4 * FACES], triangles[6 * FACES]; /* the same faces, quads as their halves */
+	uint8_t sizes[FACES], halves[2 * FACES];
+	size_t corner_count, triangle_count;
+	size_t corners[6 * FACES]; /* of each corner of the triangles: that of the faces */
+} random_faces;
+
+static void make_random_faces(random_faces *f, uint64_t seed)
+{
+	static const size_t cuts[2][6] = {{0, 1, 2, 0, 2, 3}, {0, 1, 3, 1, 2, 3}}, alone[] = {0, 1, 2};
+	nt_random random = nt_random_seed(seed);
+	for (size_t v = 0; v < POINTS; v++) {
+		for (size_t k = 0; k < 3; k++)
+			f->positions[v][k] = (float)nt_random_below(&random, 4);
+		for (size_t k = 0; k < 2; k++)
+			f->texcoords[v][k] = (float)nt_random_below(&random, 5);
+		memcpy(f->normals[v], normals[0], sizeof normals[0]);
+	}
+	f->corner_count = f->triangle_count = 0;
+	for (size_t i = 0; i < FACES; i++) {
+		const size_t size = 3 + (nt_random_below(&random, 3) > 0), cut = nt_random_below(&random, 2);
+		uint32_t *face = f->quads + f->corner_count;
+		for (size_t k = 0; k < size; k++)
+			face[k] = nt_random_below(&random, POINTS);
+		f->sizes[i] = (uint8_t)size;
+		f->halves[f->triangle_count] =
+			(uint8_t)(size == 3 ? NT_HALF_NONE : cut ? NT_HALF_ABD : NT_HALF_ABC);
+		if (size == 4)
+			f->halves[f->triangle_count + 1] = NT_HALF_SECOND;
+		for (size_t k = 0; k < 3 * (size - 2); k++) {
+			const size_t corner = size == 3 ? alone[k] : cuts[cut][k];
+			f->triangles[3 * f->triangle_count + k] = face[corner];
+			f->corners[3 * f->triangle_count + k] = f->corner_count + corner;
+		}
+		f->triangle_count += size - 2;
+		f->corner_count += size;
+	}
+}
+
+/* Halves of quads have the bytes of the quads' corners, those of folded and of degenerate ones too. */
+static void halves_have_the_bytes_of_their_quads(void **state)
+{
+	(void)state;
+	static random_faces f;
+	static float of_faces[4 * FACES][4], of_halves[6 * FACES][4];
+	for (uint64_t seed = 1; seed <= 2000; seed++) {
+		make_random_faces(&f, seed);
+		nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = FACES, .vertex_count = POINTS,
+			.face_sizes = f.sizes, .indices = f.quads, .positions = f.positions[0],
+			.normals = f.normals[0], .texcoords = f.texcoords[0]};
+		const nmtan_options options = {.struct_bytes = sizeof options, .repair = NMTAN_REPAIR_OFF,
+			.method = (nmtan_method)(seed % 5), .threads = 1 + seed % 3};
+		nmtan_output output = {.struct_bytes = sizeof output, .tangents = of_faces[0]};
+		assert_int_equal(nmtan_tangents(&mesh, &options, &output, NULL), NMTAN_OK);
+		mesh.face_sizes = NULL;
+		mesh.indices = f.triangles;
+		mesh.face_count = f.triangle_count;
+		output.tangents = of_halves[0];
+		assert_int_equal(nt_tangents_of_halves(&mesh, f.halves, &options, &output, NULL), NMTAN_OK);
+		for (size_t c = 0; c < 3 * f.triangle_count; c++)
+			assert_memory_equal(of_halves[c], of_faces[f.corners[c]], sizeof *of_halves);
+	}
+}
+
+/* None of them halves: what nmtan_tangents() says of the triangles. */
+static void no_halves_are_triangles(void **state)
+{
+	(void)state;
+	static random_faces f;
+	static float of_faces[6 * FACES][4], of_halves[6 * FACES][4];
+	make_random_faces(&f, 1);
+	memset(f.halves, NT_HALF_NONE, sizeof f.halves);
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = f.triangle_count, .vertex_count = POINTS,
+		.indices = f.triangles, .positions = f.positions[0], .normals = f.normals[0],
+		.texcoords = f.texcoords[0]};
+	nmtan_output output = {.struct_bytes = sizeof output, .tangents = of_faces[0]};
+	nmtan_counts counts = NMTAN_COUNTS_INIT, of_triangles = NMTAN_COUNTS_INIT;
+	assert_int_equal(nmtan_tangents(&mesh, NULL, &output, &of_triangles), NMTAN_OK);
+	output.tangents = of_halves[0];
+	assert_int_equal(nt_tangents_of_halves(&mesh, f.halves, NULL, &output, &counts), NMTAN_OK);
+	assert_memory_equal(of_halves, of_faces, 3 * f.triangle_count * sizeof *of_faces);
+	assert_memory_equal(&counts, &of_triangles, sizeof counts);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(halves_have_the_bytes_of_their_quads),
+		cmocka_unit_test(no_halves_are_triangles),
 		cmocka_unit_test(a_second_call_has_no_fresh_pages),
 		cmocka_unit_test(instruction_set_that_the_processor_lacks_is_an_argument_error)};
 	return cmocka_run_group_tests_name("api/tangents", tests, NULL, NULL);
