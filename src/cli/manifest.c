@@ -112,7 +112,7 @@ static void append_run(nt_buffer *out, const nt_summary *s)
 	append_number(out, "vertices_before", s->vertex_count);
 	append_number(out, "vertices_after", s->vertex_count + s->appended_normals + s->appended_tangents);
 	append_number(out, "split", s->appended_tangents);
-	append_number(out, "repaired", nt_counts_repaired(&s->counts));
+	append_number(out, "repaired", s->repaired);
 	append_number(out, "sorted_instead", s->counts.sorted_instead);
 	append_number(out, "bytes_read", s->bytes_read);
 	append_number(out, "bytes_written", s->bytes_written);

@@ -225,10 +225,9 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		append_quads(out, s);
 		append_vertices(out, s);
 	}
-	const size_t repaired = nt_counts_repaired(&s->counts);
-	if (repaired)
+	if (s->repaired)
 		nt_buffer_format(out, settings->check ? ", %zu tangents would be repaired"
-						      : ", repaired %zu of the tangents", repaired);
+						      : ", repaired %zu of the tangents", s->repaired);
 	if (s->counts.sorted_instead)
 		nt_buffer_format(out, ", %zu solved as mikktspace-sorted", s->counts.sorted_instead);
 	if (s->rounding.count)

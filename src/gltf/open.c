@@ -111,7 +111,8 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->has_positions = positions != NULL;
 	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;
 	mesh->has_tangents = nt_json_find(attributes, "TANGENT") != NULL;
-	mesh->has_polygons = mode == NT_GLTF_TRIANGLES && !nt_gltf_draco_of(primitive) &&
+	mesh->compressed = nt_gltf_draco_of(primitive) != NULL;
+	mesh->has_polygons = mode == NT_GLTF_TRIANGLES && !mesh->compressed &&
 		nt_json_find(nt_json_find(primitive, "extensions"), "FB_ngon_encoding");
 	mesh->has_texcoords = has_texcoords(attributes, mesh->texcoord_set);
 	mesh->targets_without_tangents = targets_without_tangents(primitive);

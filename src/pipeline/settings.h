@@ -120,6 +120,8 @@ typedef struct nt_mesh_line {
 typedef struct nt_summary {
 	size_t mesh_count;       /* meshes (glTF: primitives) in the input */
 	size_t solved_count;     /* of them, those that got tangents */
+	size_t repaired;         /* tangents of corners: what repair made of computed or, with --existing=repair, of the
+	                            input's own */
 	size_t quad_count;       /* pairs of these triangles that were solved as quads */
 	size_t same_count;       /* of the solved ones, those that took the result of another: they have the
 	                            same geometry */

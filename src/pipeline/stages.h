@@ -103,6 +103,10 @@ void nt_turn_untextured(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan
  * own sign; the mesh gets new faces and indices, and cut_arrays to free. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads);
 
+/* kept.c, for tasks.c. Adds what is wrong with w of tangents that are kept and used. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error);
+
 /* halves.c. Decides which triangles of a mesh with normals are solved as quads. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_find_halves(nt_scene *scene, nt_mesh *mesh, nt_quads choice, unsigned threads);
 

@@ -426,14 +426,22 @@ static void add_halfway(nt_finding_list *list, const nt_mesh *mesh, const nt_mor
 			morph->target, morph->name, morph->halfway_degrees);
 }
 
+/* A face of n corners is n - 2 triangles. */
+static size_t count_triangles(const nt_mesh *mesh)
+{
+	return mesh->corner_count - 2 * mesh->face_count;
+}
+
 static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 {
 	const nmtan_counts *c = &mesh->counts;
+	const size_t triangles = count_triangles(mesh);
+	const bool unmapped = triangles > 0 && c->degenerate_texcoords == triangles;
 	const struct {
 		nt_code code;
 		size_t count;
 	} rows[] = {
-		{NT_CODE_UV_DEGENERATE_TRIANGLE, c->degenerate_texcoords},
+		{unmapped ? NT_CODE_UV_UNMAPPED : NT_CODE_UV_DEGENERATE_TRIANGLE, c->degenerate_texcoords},
 		{NT_CODE_POS_DEGENERATE_TRIANGLE, c->degenerate_positions},
 		{NT_CODE_UV_FOLDED_QUAD, c->folded_quads},
 		{NT_CODE_UV_ROUNDED_AWAY, c->stored_differently},
@@ -453,9 +461,10 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 
 static void add_counts(nt_summary *summary, const nt_mesh *mesh)
 {
-	const size_t quads = mesh->corner_count - 3 * mesh->face_count;
 	summary->solved_count++;
-	summary->triangle_count += mesh->face_count + quads;
+	summary->triangle_count += count_triangles(mesh);
+	summary->repaired += mesh->decision == NT_DECISION_REPAIR && mesh->has_tangents
+		? mesh->replaced_tangents : nt_counts_repaired(&mesh->counts);
 	summary->quad_count += mesh->quad_count;
 	summary->vertex_count += mesh->unused_vertices + mesh->source_vertex_count;
 	summary->appended_normals += mesh->vertex_count - mesh->source_vertex_count;

@@ -226,6 +226,8 @@ static nt_status do_window(window *w)
 	if (!status)
 		status = nt_stage_tangents_and_textures(&w->scene, t->settings,
 			t->writer ? t->writer->format : NT_FORMAT_UNKNOWN, t->textures, t->summary, w->error);
+	if (!status && t->writer && !t->settings->report)
+		status = nt_stage_kept(&w->scene, t, w->error);
 	return status ? status : merge_meshes(w);
 }
 

@@ -235,6 +235,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"the sign of the larger one, and the smaller one is lit from the wrong side.",
 		"Straighten the quad in the UV editor, or triangulate it.",
 		"a quad with UVs (0,0), (1,1), (1,0), (0,1): a bowtie"),
+	ROW(UV_UNMAPPED, WARNING, "no triangle has an area in UV space: all {count} {is|are} unmapped",
+		"All texture coordinates are alike, or on a line. Tangents are made from normals, and mean nothing.",
+		"Unwrap the mesh.",
+		"a quad whose corners have one vt, converted"),
 	ROW(UV_ROUNDED_AWAY, INFO,
 		"{count} {triangle changes|triangles change} orientation when v becomes 1 - v",
 		"glTF stores 1 - v, which rounds: tiny triangles lose their area or turn over. w is right for "
@@ -300,7 +304,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"One vertex holds one tangent and one w, but the triangles on its two sides need opposite "
 		"signs. On conversion such vertices are split (info); on --check it is a warning, because "
 		"tangents stored in this file cannot be right on both sides.",
-		"Let nmtan split them: convert the file.",
+		"Let nmtan split them: convert the file, with --existing=replace where it has tangents.",
 		"two triangles that share two vertices and mirror their UVs across them"),
 	ROW(TAN_MIXED_W_TRIANGLE, WARNING,
 		"{count} {triangle has|triangles have} corners with different w",
@@ -442,6 +446,13 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"becomes 1 where the corners of a triangle do not agree; --existing=replace does the same there.",
 		"Nothing; --existing=keep leaves them as they are.",
 		"a triangle whose TANGENT is its NORMAL, converted with --existing=repair --only=all"),
+	ROW(TAN_KEPT_SIGN, WARNING,
+		"{count} {triangle keeps|triangles keep} tangents whose bitangent runs the wrong way",
+		"The input's tangents stay, a material uses them, and w is not that of the texture coordinates: bumps "
+		"look like dents there. On --check this is TAN_SIGN_MISMATCH, which looks at compressed primitives "
+		"too.",
+		"Convert with --existing=repair, or --existing=replace.",
+		"DamagedHelmet after gltfpack -gt, converted"),
 	ROW(TAN_MADE_BY, INFO, "the tangents are not those of MikkTSpace, which most maps are baked with",
 		"The input's tangents are compared with those of the methods that exporters and engines use, on "
 		"triangles and on the quads that these are halves of. A normal map is right with the tangents that "

@@ -194,6 +194,7 @@ typedef struct nt_mesh {
 	float wrap_offset[2];    /* of its transform, v up, where it is mirrored: elsewhere an offset moves all alike */
 	bool texcoords_transformed; /* textures may be looked up elsewhere than the set says: glTF's texture
 	                               transforms */
+	bool compressed;         /* with Draco */
 	bool has_polygons;       /* FB_ngon_encoding: triangles that follow each other with one first index are one */
 	bool texcoord_conflict;  /* another slot of it asks for another set: texcoord_other_set */
 	uint32_t texcoord_other_set;

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Tangents that stay as they are although a material uses them: whether w is right is asked of indices, texture
+ * coordinates and w alone, exactly. What only a decoder can tell is left to --check: it would take longer than copying
+ * the file.
+ */
+#include "pipeline/stages.h"
+
+#include "base/parallel.h"
+#include "report/quads.h"
+
+static bool is_looked_at(const nt_scene *scene, const nt_mesh *mesh)
+{
+	return nt_format_is_gltf(scene->format) && mesh->decision == NT_SKIP_HAS_TANGENTS && mesh->slots &&
+	       mesh->reachable && mesh->triangles && mesh->has_positions && mesh->has_texcoords && !mesh->compressed;
+}
+
+/* The sign of w at all corners of a triangle; 0: they differ, or are none. */
+static int common_sign(const nt_mesh *mesh, const size_t v[3])
+{
+	int signs[3];
+	for (int k = 0; k < 3; k++) {
+		const float w = mesh->tangents[4 * v[k] + 3];
+		signs[k] = (w > 0.0f) - (w < 0.0f);
+	}
+	return signs[0] == signs[1] && signs[1] == signs[2] ? signs[0] : 0;
+}
+
+typedef struct sign_count {
+	const nt_mesh *mesh;
+	const uint8_t *halves; /* NULL: quads are not asked */
+	size_t wrong, judged;  /* added to by any thread */
+} sign_count;
+
+static void count_range(void *context, size_t begin, size_t end, unsigned slot)
+{
+	sign_count *c = context;
+	const nt_mesh *mesh = c->mesh;
+	const int turn = mesh->solve_texcoords ? mesh->solve_sign : 1;
+	size_t wrong = 0, judged = 0;
+	(void)slot;
+	for (size_t t = begin; t < end; t++) {
+		size_t v[3];
+		for (size_t k = 0; k < 3; k++)
+			v[k] = mesh->indices ? mesh->indices[3 * t + k] : 3 * t + k;
+		const int sign = common_sign(mesh, v);
+		if (sign == 0 || turn == 0)
+			continue;
+		const int orientation = turn * nmtan_orientation(mesh->texcoords + 2 * v[0],
+			mesh->texcoords + 2 * v[1], mesh->texcoords + 2 * v[2]);
+		judged += orientation != 0;
+		wrong += orientation != 0 && orientation != sign && nt_folded_orientation(mesh, c->halves, t) != sign;
+	}
+	__atomic_fetch_add(&c->wrong, wrong, __ATOMIC_RELAXED);
+	__atomic_fetch_add(&c->judged, judged, __ATOMIC_RELAXED);
+}
+
+/* Triangles whose w is not that of their orientation. */
+static size_t count_wrong(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, size_t *judged)
+{
+	enum { GRAIN = 1 << 16 };
+	sign_count c = {.mesh = mesh, .halves = halves};
+	nt_parallel_ranges(nt_thread_count(threads), mesh->face_count, GRAIN, count_range, &c);
+	*judged = c.judged;
+	return c.wrong;
+}
+
+/* The same without halves of folded quads that have the quad's sign, if these are what is wrong. */
+static size_t count_wrong_of(const nt_mesh *mesh, nt_arena *arena, unsigned threads, size_t *judged)
+{
+	const size_t wrong = count_wrong(mesh, NULL, threads, judged);
+	uint8_t *halves = wrong ? nt_arena_alloc(arena, mesh->face_count, 1) : NULL;
+	if (!halves)
+		return wrong;
+	nt_pair_quads(mesh, false, halves);
+	const size_t others = count_wrong(mesh, halves, threads, judged);
+	return 2 * others > wrong ? wrong : others;
+}
+
+nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error)
+{
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		nt_mesh mesh = scene->meshes[i];
+		if (!is_looked_at(scene, &mesh))
+			continue;
+		nt_scene own = *scene;
+		own.arena = own.temporary = (nt_arena){0};
+		mesh.plan = (nt_mesh_plan){.pooled = mesh.plan.pooled};
+		size_t wrong = 0, judged = 0;
+		/* what cannot be read is copied as it is */
+		const nt_status status = tasks->reader->load(&own, &mesh, tasks->options, NULL);
+		if (!status && mesh.tangents && mesh.texcoords)
+			wrong = count_wrong_of(&mesh, &own.arena, tasks->settings->threads, &judged);
+		if (wrong)
+			nt_finding_add(&scene->findings, NT_CODE_TAN_KEPT_SIGN, nt_mesh_place(&mesh, &(nt_place){0}), wrong,
+				"%.3g %% of %zu", 100.0 * (double)wrong / (double)judged, judged);
+		nt_arena_free(&own.arena);
+		nt_arena_free(&own.temporary);
+		if (status == NT_ERROR_MEMORY)
+			return nt_fail_memory(error);
+	}
+	return NT_OK;
+}
