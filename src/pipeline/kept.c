@@ -92,8 +92,8 @@ nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error)
 		if (!status && mesh.tangents && mesh.texcoords)
 			wrong = count_wrong_of(&mesh, &own.arena, tasks->settings->threads, &judged);
 		if (wrong)
-			nt_finding_add(&scene->findings, NT_CODE_TAN_KEPT_SIGN, nt_mesh_place(&mesh, &(nt_place){0}), wrong,
-				"%.3g %% of %zu", 100.0 * (double)wrong / (double)judged, judged);
+			nt_finding_add(&scene->findings, NT_CODE_TAN_KEPT_SIGN, nt_mesh_place(&mesh, &(nt_place){0}),
+				wrong, "%.3g %% of %zu", 100.0 * (double)wrong / (double)judged, judged);
 		nt_arena_free(&own.arena);
 		nt_arena_free(&own.temporary);
 		if (status == NT_ERROR_MEMORY)

@@ -95,7 +95,7 @@ static void success_is_one_line_that_accounts_for_everything(void **state)
 	/* every primitive is judged, whichever would get tangents */
 	job = (nt_job){.input = "a.obj", .outcome = &outcome};
 	*summary = (nt_summary){.mesh_count = 3, .solved_count = 1, .triangle_count = 1,
-		.vertex_count = 3, .counts = {.repaired_zero = 2, .repaired_sign = 1}};
+		.vertex_count = 3, .repaired = 3};
 	summary->skipped[NT_SKIP_NO_TEXCOORDS] = 2;
 	settings.check = true;
 	nt_message_success(&out, &job, &settings);
