@@ -114,19 +114,6 @@ static bool take_last(question *q, size_t triangles)
 	return true;
 }
 
-/* Distances from the grid's begin between which the wanted cells are, and a little more. */
-static void bound_cells(const nt_grid *grid, const bool wanted[NT_CELLS], float *low, float *high)
-{
-	const float size = (grid->high - grid->low) / (float)NT_CELLS;
-	size_t first = 0, last = NT_CELLS - 1;
-	while (!wanted[first])
-		first++;
-	while (!wanted[last])
-		last--;
-	*low = ((float)first - 1) * size;
-	*high = ((float)last + 2) * size;
-}
-
 typedef float float4 __attribute__((vector_size(16)));
 typedef int int4 __attribute__((vector_size(16)));
 
@@ -144,25 +131,38 @@ static bool has_within(const float *rows, size_t step, float begin, float low, f
 	return within[0];
 }
 
+/* Distances from the grid's begin between which cells are, and a little more. */
+static void bound_cells(const nt_grid *grid, size_t first, size_t last, float *low, float *high)
+{
+	const float size = (grid->high - grid->low) / (float)NT_CELLS;
+	*low = ((float)first - 1) * size;
+	*high = ((float)last + 2) * size;
+}
+
 static bool list_vertices(question *q)
 {
 	const nt_welded_mesh *m = q->mesh;
 	const float *coordinates = m->positions + q->grid.axis;
-	bool wanted[NT_CELLS] = {false};
+	uint64_t wanted[NT_CELLS / 64] = {0};
+	size_t first = NT_CELLS, last = 0;
 	float low, high;
 	q->listed = make_bits(m);
 	if (!q->listed)
 		return false;
-	for (size_t i = 0; i < q->member_count; i++)
-		wanted[nt_grid_cell(&q->grid, coordinates[m->step * q->members[i]])] = true;
-	bound_cells(&q->grid, wanted, &low, &high);
+	for (size_t i = 0; i < q->member_count; i++) {
+		const unsigned cell = nt_grid_cell(&q->grid, coordinates[m->step * q->members[i]]);
+		add(wanted, cell);
+		first = cell < first ? cell : first;
+		last = cell > last ? cell : last;
+	}
+	bound_cells(&q->grid, first, last, &low, &high);
 	for (size_t begin = 0; begin < m->vertex_count; begin += BATCH_VERTICES) {
 		const size_t left = m->vertex_count - begin, count = left < BATCH_VERTICES ? left : BATCH_VERTICES;
 		if (count == BATCH_VERTICES &&
 			!has_within(coordinates + m->step * begin, m->step, q->grid.low, low, high))
 			continue;
 		for (size_t v = begin; v < begin + count; v++)
-			if (wanted[nt_grid_cell(&q->grid, coordinates[m->step * v])])
+			if (has(wanted, nt_grid_cell(&q->grid, coordinates[m->step * v])))
 				add(q->listed, (uint32_t)v);
 	}
 	/* so that it is known whether they have corners */
@@ -171,21 +171,26 @@ static bool list_vertices(question *q)
 	return true;
 }
 
-/* Marks vertices in a map of bytes that fits the first-level cache: a byte stands for several vertices. */
-static void fill_marks(const question *q, uint8_t marks[MARKS])
+/* Marks vertices in a map of bytes that fits the first-level cache: a byte stands for several vertices. Returns what of
+ * a vertex's number is the byte's. */
+static uint32_t fill_marks(const question *q, uint8_t marks[MARKS])
 {
-	memset(marks, 0, MARKS);
+	uint32_t count = 64;
+	while (count < q->mesh->vertex_count && count < MARKS)
+		count *= 2;
+	memset(marks, 0, count);
 	for (size_t word = 0; word <= q->mesh->vertex_count / 64; word++)
 		for (uint64_t bits = q->listed[word]; bits; bits &= bits - 1)
-			marks[(64 * word + (size_t)__builtin_ctzll(bits)) % MARKS] = 1;
+			marks[(64 * word + (size_t)__builtin_ctzll(bits)) & (count - 1)] = 1;
+	return count - 1;
 }
 
-static inline bool has_marked(const uint8_t marks[MARKS], const uint32_t *vertices, size_t count)
+static inline bool has_marked(const uint8_t marks[MARKS], uint32_t mask, const uint32_t *vertices, size_t count)
 {
 	unsigned any = 0;
 #pragma GCC unroll 16
 	for (size_t i = 0; i < count; i++)
-		any |= marks[vertices[i] % MARKS];
+		any |= marks[vertices[i] & mask];
 	return any;
 }
 
@@ -195,12 +200,12 @@ static size_t list_corners(const question *q, uint32_t *corners, size_t capacity
 	const nt_welded_mesh *m = q->mesh;
 	uint8_t marks[MARKS];
 	size_t count = 0;
-	fill_marks(q, marks);
+	const uint32_t mask = fill_marks(q, marks);
 	for (size_t t = 0; t < m->triangle_count; t += BATCH_TRIANGLES) {
 		uint32_t copy[BATCH];
 		const size_t left = m->triangle_count - t, triangles = left < BATCH_TRIANGLES ? left : BATCH_TRIANGLES;
 		const uint32_t *v = nt_triangle_vertices(m->triangles, t, triangles, copy);
-		if (triangles == BATCH_TRIANGLES && !has_marked(marks, v, BATCH))
+		if (triangles == BATCH_TRIANGLES && !has_marked(marks, mask, v, BATCH))
 			continue;
 		for (size_t i = 0; i < 3 * triangles; i++)
 			if (has(q->listed, v[i])) {
