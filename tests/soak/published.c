@@ -312,7 +312,8 @@ static const struct {
 	const char *name;
 	void (*apply)(soup *s, nt_random *random);
 } changes[] = {{"grid", NULL}, {"flat faces", flatten_faces}, {"half-flat quads", flatten_quads},
-	{"many normals", vary_normals}, {"scaled", scale_positions}, {"zeros", sign_zeros}, {"rounded", round_positions}};
+	{"many normals", vary_normals}, {"scaled", scale_positions}, {"zeros", sign_zeros},
+	{"rounded", round_positions}};
 enum { CHANGES = sizeof changes / sizeof *changes };
 
 /* Rows behind the corners' that no corner has: far away, and of no number. */
