@@ -160,12 +160,17 @@ static box box_of(const nt_welded_mesh *mesh, const half *h)
 	return b;
 }
 
-/* Entries that are parted without branches, which would be guessed wrong half of the time. */
-enum { MOST_COUNTED = 1024 };
+/* Entries that are parted without branches, which would be guessed wrong half of the time, and vertices that need not be
+ * halved because it is known what comes of it. Neither where each byte of code is sent to a browser. */
+#ifdef __wasm__
+enum { MOST_COUNTED = 0, FORESEEN_VERTICES = 0 };
+#else
+enum { MOST_COUNTED = 1024, FORESEEN_VERTICES = 2 };
+#endif
 
 static size_t part_few(entry *entries, size_t count, const float *coordinates, size_t step, float middle)
 {
-	uint8_t is_below[MOST_COUNTED];
+	uint8_t is_below[MOST_COUNTED + 1];
 	uint16_t above[MOST_COUNTED + 1], below[MOST_COUNTED + 1];
 	size_t left_count = 0, swaps = 0, others = 0;
 	for (size_t i = 0; i < count; i++)
@@ -190,7 +195,7 @@ static size_t part_few(entry *entries, size_t count, const float *coordinates, s
  * last that is below, and so on. The order of all others, and which of them are swapped, decides in the end. */
 static size_t part_entries(entry *entries, size_t count, const float *coordinates, size_t step, float middle)
 {
-	if (count <= MOST_COUNTED)
+	if (MOST_COUNTED && count <= MOST_COUNTED)
 		return part_few(entries, count, coordinates, step, middle);
 	size_t left = 0, right = count;
 	for (;;) {
@@ -273,7 +278,7 @@ static bool weld_cell(const weld *w, const half *cell)
 		const float *coordinates;
 		float middle;
 		while (part.vertex_count > 1 && find_middle(w->mesh, &part, &coordinates, &middle)) {
-			if (part.vertex_count == 2) {
+			if (part.vertex_count == FORESEEN_VERTICES) {
 				weld_two(w, &part, coordinates, middle);
 				part.entry_count = 0;
 				break;
