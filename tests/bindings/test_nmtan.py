@@ -47,6 +47,24 @@ def test_goldens(name):
     assert found.tobytes() == expected.tobytes()
 
 
+@pytest.mark.parametrize("folder, method", [("published", "mikktspace"), ("sorted", "mikktspace-sorted")])
+def test_goldens_of_the_sort_of_edges(folder, method):
+    paths = glob.glob(os.path.join(DATA, "golden", "edge_sort", folder, "*.nmtg"))
+    alike = [golden for golden in map(read_golden, paths) if len(set(golden[0])) == 1]
+    assert len(alike) > 5
+    for sizes, (positions, normals, texcoords, expected) in alike:
+        faces = None if sizes[0] == 3 else np.arange(len(positions)).reshape(-1, 4)
+        found = nmtan.tangents(positions, normals, texcoords, faces, repair=False, method=method)
+        assert found.tobytes() == expected.tobytes()
+
+
+def test_a_limit_is_counted():
+    far = POSITIONS.copy()
+    far[0, 0] = np.inf
+    assert nmtan.vertex_tangents(far, NORMALS, TEXCOORDS, FACES).counts.sorted_instead == 1
+    assert nmtan.vertex_tangents(POSITIONS, NORMALS, TEXCOORDS, FACES).counts.sorted_instead == 0
+
+
 def test_there_are_goldens():
     assert sum(sizes[0] == 3 for sizes, _ in GOLDENS.values()) > 20
 

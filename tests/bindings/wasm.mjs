@@ -34,6 +34,18 @@ await test('corners: the bytes of every golden of triangles', () => {
 		assert.ok(equalBytes(generateTangents(g.positions, g.normals, g.texcoords), g.tangents), name);
 });
 
+await test('the goldens of the unfinished sort and of the completed one have the bytes of their methods', () => {
+	for (const [folder, method] of [['published', 'mikktspace'], ['sorted', 'mikktspace-sorted']]) {
+		const some = triangleGoldens(`${data}/golden/edge_sort/${folder}`);
+		assert.ok(some.size > 5);
+		for (const [name, g] of some) {
+			const indices = Uint32Array.from({length: g.positions.length / 3}, (_, i) => i);
+			const r = generateTangentsIndexed(indices, g.positions, g.normals, g.texcoords, {...raw, method});
+			assert.ok(equalBytes(r.tangents, g.tangents), `${folder}/${name}`);
+		}
+	}
+});
+
 const rowAt = (array, size, row) => array.subarray(size * row, size * row + size);
 
 // The mesh with one vertex for each position, normal and texture coordinate that differ in their bits.

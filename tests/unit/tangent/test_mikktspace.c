@@ -67,11 +67,38 @@ static void each_dialect_has_its_bytes(void **state)
 		}
 }
 
+/* A position that is not finite, of a corner or of no corner, by the definition and the fast path. */
+static void limits_are_counted(void **state)
+{
+	(void)state;
+	float positions[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {NAN, 0, 0}}, tangents[3][4];
+	const float normals[4][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+	const float texcoords[4][2] = {{0, 0}, {1, 0}, {0, 1}, {0, 0}};
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 4,
+		.positions = positions[0], .normals = normals[0], .texcoords = texcoords[0]};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents[0]};
+	for (int of_corner = 0; of_corner < 2; of_corner++) {
+		positions[2][1] = of_corner ? INFINITY : 1;
+		for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_MIKKTSPACE_SORTED; method++)
+			for (int scalar = 0; scalar < 2; scalar++) {
+				const nmtan_options options = {.struct_bytes = sizeof options,
+					.method = (nmtan_method)method};
+				const nt_implementation implementation = {.scalar = scalar};
+				nmtan_counts counts = NMTAN_COUNTS_INIT;
+				assert_int_equal(nt_tangents(&mesh, &options, &implementation, &output, &counts),
+					NMTAN_OK);
+				assert_int_equal(counts.sorted_instead,
+					of_corner && method == NMTAN_METHOD_MIKKTSPACE);
+			}
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(goldens_are_byte_identical),
 		cmocka_unit_test(each_dialect_has_its_bytes),
+		cmocka_unit_test(limits_are_counted),
 	};
 	return cmocka_run_group_tests_name("tangent/mikktspace", tests, NULL, NULL);
 }

@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: MIT */
+/* Which corner stands for a welded vertex: small meshes whose answers follow from the published weld by hand. */
+#include "test.h"
+#include <float.h>
+#include <math.h>
+#include "budget.h"
+#include "topology/representatives.h"
+
+enum { MOST = 20000 };
+
+static float positions[MOST + 1][3]; /* three floats behind the last one can be read */
+
+static nt_welded_mesh mesh_of(const nt_triangles *triangles, size_t triangle_count, size_t vertices, nt_scratch *scratch)
+{
+	return (nt_welded_mesh){.triangles = triangles, .triangle_count = triangle_count, .vertex_count = vertices,
+		.positions = positions[0], .step = 3, .threads = 1, .scratch = scratch};
+}
+
+static nt_representatives_end find(const uint32_t *ids, size_t triangles, size_t vertices, unsigned threads,
+	uint32_t *found)
+{
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	const nt_triangles all = {.ids = ids};
+	nt_welded_mesh mesh = mesh_of(&all, triangles, vertices, &scratch);
+	mesh.threads = threads;
+	nt_grid grid;
+	assert_true(nt_grid_make(&mesh, NULL, &grid));
+	const nt_representatives_end end = nt_representatives(&mesh, &grid, NULL, 3 * triangles, found);
+	nt_scratch_free(&scratch);
+	return end;
+}
+
+static void put(uint32_t vertex, float x, float y, float z)
+{
+	memcpy(positions[vertex], (float[3]){x, y, z}, sizeof *positions);
+}
+
+/* Vertices by themselves in their cells have their first corners. */
+static void vertices_alone_have_their_first_corner(void **state)
+{
+	(void)state;
+	static const uint32_t ids[] = {2, 0, 1, 1, 3, 2};
+	uint32_t found[4];
+	for (uint32_t v = 0; v < 4; v++)
+		put(v, (float)v, 0, 0);
+	assert_int_equal(find(ids, 2, 4, 1, found), NT_REPRESENTATIVES_FOUND);
+	assert_memory_equal(found, ((uint32_t[]){1, 2, 0, 4}), sizeof found);
+}
+
+/* x is the longest axis, so that H (y = 1), M (0.25) and L (0) are in cell 0, in the order of corners H0 M1 L2 L3 M4 H5.
+ * Halved at y = 0.5: H0 changes places with M4, the last one below; what follows is on its side: M4 M1 L2 L3 | H0 H5.
+ * Halved at 0.125: M4 and L3 change places, then M1 and L2: L3 L2 | M1 M4. The first of each stands for the others. */
+static void corners_that_are_swapped_come_first(void **state)
+{
+	(void)state;
+	enum { H, M, L, A, B, C };
+	static const uint32_t ids[] = {H, M, L, L, M, H, A, B, C};
+	uint32_t found[6];
+	put(H, 0, 1, 0);
+	put(M, 0, 0.25f, 0);
+	put(L, 0, 0, 0);
+	for (uint32_t v = A; v <= C; v++)
+		put(v, 10, (float)v, 0);
+	assert_int_equal(find(ids, 3, 6, 1, found), NT_REPRESENTATIVES_FOUND);
+	assert_memory_equal(found, ((uint32_t[]){0, 1, 3, 6, 7, 8}), sizeof found);
+
+	/* two vertices: H0 L1 L2 H3 becomes L2 L1 | H0 H3, as H0 changes places with the last one below */
+	static const uint32_t two[] = {H, L, L, H, A, B};
+	assert_int_equal(find(two, 2, 6, 1, found), NT_REPRESENTATIVES_FOUND);
+	assert_int_equal(found[H], 0);
+	assert_int_equal(found[L], 2);
+}
+
+/* Nothing is left to halve, so that each has the first corner that is equal in all eight floats: its own. */
+static void vertices_at_one_position_stay_apart(void **state)
+{
+	(void)state;
+	static const uint32_t ids[] = {1, 0, 2, 0, 1, 2};
+	uint32_t found[3];
+	put(0, 1, 1, 1);
+	put(1, 1, 1, 1);
+	put(2, 3, 1, 1);
+	assert_int_equal(find(ids, 2, 3, 1, found), NT_REPRESENTATIVES_FOUND);
+	assert_memory_equal(found, ((uint32_t[]){1, 0, 2}), sizeof found);
+}
+
+static void the_box_is_that_of_used_vertices(void **state)
+{
+	(void)state;
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	const nt_triangles none = {0};
+	const nt_welded_mesh mesh = mesh_of(&none, 0, 4, &scratch);
+	nt_grid grid;
+	put(0, -1, 0, 0);
+	put(1, 0, 2, 0);
+	put(2, 1, 1, 0);
+	put(3, 0, 1, 50);
+	assert_true(nt_grid_make(&mesh, NULL, &grid));
+	assert_int_equal(grid.axis, 2);
+	assert_true(grid.low == 0 && grid.high == 50);
+	const uint64_t first_three = 7;
+	assert_true(nt_grid_make(&mesh, &first_three, &grid));
+	assert_int_equal(grid.axis, 0); /* y is as long, and not longer */
+	assert_true(grid.low == -1 && grid.high == 1);
+	assert_int_equal(nt_grid_cell(&grid, -1), 0);
+	assert_int_equal(nt_grid_cell(&grid, 0), NT_CELLS / 2);
+	assert_int_equal(nt_grid_cell(&grid, 1), NT_CELLS - 1);
+	static const float wrong[] = {NAN, INFINITY, -INFINITY, FLT_MAX / 2, -FLT_MAX / 2};
+	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+		put(3, 0, wrong[i], 0);
+		assert_false(nt_grid_make(&mesh, NULL, &grid));
+		assert_true(nt_grid_make(&mesh, &first_three, &grid));
+	}
+	put(3, 0, nextafterf(FLT_MAX / 2, 0), 0);
+	assert_true(nt_grid_make(&mesh, NULL, &grid));
+	nt_scratch_free(&scratch);
+}
+
+/* Each is nearer to 0 than half of the one before, so that a halving parts one of them from the others, all of which
+ * are in cell 0. */
+static void halvings_have_a_limit(void **state)
+{
+	(void)state;
+	enum { POINTS = 201 };
+	uint32_t ids[POINTS + 3], found[POINTS + 3];
+	for (uint32_t v = 0; v < POINTS + 3; v++) {
+		ids[v] = v;
+		put(v, v < POINTS ? 0 : 0x1p110f, ldexpf(1 - (float)v / 65536, 100 - (int)v), 0);
+	}
+	for (unsigned threads = 1; threads < 3; threads++)
+		assert_int_equal(find(ids, (POINTS + 3) / 3, POINTS + 3, threads, found), NT_REPRESENTATIVES_LIMIT);
+	for (uint32_t v = 99; v < POINTS; v++)
+		put(v, 0, 0x1p100f, 0);
+	assert_int_equal(find(ids, (POINTS + 3) / 3, POINTS + 3, 1, found), NT_REPRESENTATIVES_FOUND);
+	assert_memory_equal(found, ids, sizeof found);
+}
+
+static void every_failed_allocation_is_told(void **state)
+{
+	(void)state;
+	static uint32_t ids[3 * MOST], found[MOST];
+	for (uint32_t i = 0; i < 3 * MOST; i++) {
+		ids[i] = i * 7919 % MOST;
+		put(i % MOST, (float)(i % MOST % 100), (float)(i % MOST / 100), 0);
+	}
+	const nt_triangles all = {.ids = ids};
+	size_t allowed = 0;
+	for (nt_representatives_end end = NT_REPRESENTATIVES_NO_MEMORY; end != NT_REPRESENTATIVES_FOUND; allowed++) {
+		budget b = {allowed};
+		const nmtan_allocator allocator = {take_budget, give_back, &b};
+		nt_scratch scratch;
+		nt_scratch_init(&scratch, &allocator);
+		const nt_welded_mesh mesh = mesh_of(&all, MOST, MOST, &scratch);
+		nt_grid grid;
+		assert_true(nt_grid_make(&mesh, NULL, &grid));
+		end = nt_representatives(&mesh, &grid, NULL, 3 * MOST, found);
+		assert_true(end == NT_REPRESENTATIVES_FOUND || end == NT_REPRESENTATIVES_NO_MEMORY);
+		nt_scratch_free(&scratch);
+	}
+	assert_in_range(allowed, 4, 100);
+	for (uint32_t v = 0; v < MOST; v++)
+		assert_int_equal(ids[found[v]], v);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(vertices_alone_have_their_first_corner),
+		cmocka_unit_test(corners_that_are_swapped_come_first),
+		cmocka_unit_test(vertices_at_one_position_stay_apart),
+		cmocka_unit_test(the_box_is_that_of_used_vertices),
+		cmocka_unit_test(halvings_have_a_limit),
+		cmocka_unit_test(every_failed_allocation_is_told),
+	};
+	return cmocka_run_group_tests_name("topology/representatives", tests, NULL, NULL);
+}
