@@ -160,8 +160,8 @@ static box box_of(const nt_welded_mesh *mesh, const half *h)
 	return b;
 }
 
-/* Entries that are parted without branches, which would be guessed wrong half of the time, and vertices that need not be
- * halved because it is known what comes of it. Neither where each byte of code is sent to a browser. */
+/* Entries that are parted without branches, which would be guessed wrong half of the time; vertices that need not be
+ * halved because it is known what comes of it. None where each byte of code is sent to a browser. */
 #ifdef __wasm__
 enum { MOST_COUNTED = 0, FORESEEN_VERTICES = 0 };
 #else
