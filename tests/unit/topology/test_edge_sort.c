@@ -67,9 +67,9 @@ static void two_edges_are_sorted(void **state)
 /* Lower ends of the nine edges, by their representatives: 0 1 0 0 1 0 0 1 0. The last run are edges 1, 4 and 7, all
  * between A and B. The seed is 39871946, turned by 39871946 mod 32 = 10 bits; added, and 3: mod 9 it is 1, so that the
  * pivot is edge 1. From both ends 1 changes places with 8, then 4 with 7; the parts are places 0 to 6, of which one
- * has a 1, edge 7, and places 7 and 8, edges 4 and 1, which are equal and stay. So the order is 7 4 1, and since the run
- * is the last of all it is not sorted by triangle either: triangles 2 and 1 meet, and 0 has no neighbour there. Sorted,
- * 0 and 1 meet. */
+ * has a 1, edge 7, and places 7 and 8, edges 4 and 1, which are equal and stay. So the order is 7 4 1, and since the
+ * run is the last of all it is not sorted by triangle either: triangles 2 and 1 meet, and 0 has no neighbour there.
+ * Sorted, 0 and 1 meet. */
 static const uint32_t three[] = {C, A, B, C, B, A, C, A, B};
 static const nt_unsorted_edge three_edges[] = {{1, NT_NO_NEIGHBOUR}, {4, 2}, {7, 1}};
 
@@ -81,8 +81,8 @@ static void three_equal_edges_meet_from_the_end(void **state)
 }
 
 /* 0 1 0 four times: the pivot is edge 10 (the same seed mod 12), a 1. 1 changes places with 11, 4 with 10, and 7 with
- * 9: places 0 to 8 have edge 10 alone, places 9 to 11 edges 7, 4 and 1. In these the next seed chooses a 1 again; 7 and 1
- * change places. The order is 10 1 4 7: between A and D, B, D, B. Equal ones are not neighbours and do not meet. */
+ * 9: places 0 to 8 have edge 10 alone, places 9 to 11 edges 7, 4 and 1. In these the next seed chooses a 1 again; 7 and
+ * 1 change places. The order is 10 1 4 7: between A and D, B, D, B. Equal ones are not neighbours and do not meet. */
 static void equal_edges_that_are_apart_do_not_meet(void **state)
 {
 	(void)state;

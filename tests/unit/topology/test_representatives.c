@@ -10,7 +10,8 @@ enum { MOST = 20000 };
 
 static float positions[MOST + 1][3]; /* three floats behind the last one can be read */
 
-static nt_welded_mesh mesh_of(const nt_triangles *triangles, size_t triangle_count, size_t vertices, nt_scratch *scratch)
+static nt_welded_mesh mesh_of(const nt_triangles *triangles, size_t triangle_count, size_t vertices,
+	nt_scratch *scratch)
 {
 	return (nt_welded_mesh){.triangles = triangles, .triangle_count = triangle_count, .vertex_count = vertices,
 		.positions = positions[0], .step = 3, .threads = 1, .scratch = scratch};
@@ -48,9 +49,9 @@ static void vertices_alone_have_their_first_corner(void **state)
 	assert_memory_equal(found, ((uint32_t[]){1, 2, 0, 4}), sizeof found);
 }
 
-/* x is the longest axis, so that H (y = 1), M (0.25) and L (0) are in cell 0, in the order of corners H0 M1 L2 L3 M4 H5.
- * Halved at y = 0.5: H0 changes places with M4, the last one below; what follows is on its side: M4 M1 L2 L3 | H0 H5.
- * Halved at 0.125: M4 and L3 change places, then M1 and L2: L3 L2 | M1 M4. The first of each stands for the others. */
+/* x is the longest axis, so that H (y = 1), M (0.25) and L (0) are in cell 0, in the order of corners H0 M1 L2 L3 M4
+ * H5. Halved at y = 0.5: H0 changes places with M4, the last one below; what follows is on its side: M4 M1 L2 L3 | H0
+ * H5. Halved at 0.125: M4 and L3 change places, then M1 and L2: L3 L2 | M1 M4. The first of each is what is found. */
 static void corners_that_are_swapped_come_first(void **state)
 {
 	(void)state;
