@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
-#include <stdio.h>
 #include "base/cpu.h"
 
 /* Whether Linux names all of them among the flags of the first processor; each with a space on both sides. */

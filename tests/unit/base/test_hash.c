@@ -2,8 +2,6 @@
 #include "base/hash.h"
 #include "test.h"
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 static const char *own_name;
 

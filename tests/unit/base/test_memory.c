@@ -4,7 +4,6 @@
 #include "test.h"
 
 #include <inttypes.h>
-#include <stdio.h>
 
 TEST(size_mul_overflow_is_told)
 {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
-#include <stdio.h>
 #include "base/name_table.h"
 
 TEST(equal_names_have_one_number)

@@ -4,7 +4,6 @@
  * tests run in) in every bit.
  */
 #include "test.h"
-#include <stdio.h>
 #include "file/decimal.h"
 
 static uint64_t seed = 1;

@@ -2,7 +2,6 @@
 #include "test.h"
 
 #include <unistd.h>
-#include <stdio.h>
 #include "file/relative_path.h"
 
 /* What a function appends, as a string that lives until the next call. */

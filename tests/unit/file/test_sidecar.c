@@ -8,7 +8,6 @@
 #include "folder.h"
 #include "test.h"
 
-#include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

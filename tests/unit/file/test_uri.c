@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "folder.h"
 #include "test.h"
-#include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include "file/uri.h"

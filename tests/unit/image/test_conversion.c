@@ -5,8 +5,6 @@
  */
 #include "image/conversion.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include "fail_alloc.h"
 #include "test.h"
 

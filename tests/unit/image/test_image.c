@@ -5,7 +5,6 @@
  */
 #include "image/image.h"
 
-#include <stdio.h>
 #include <jpeglib.h>
 #include <tiffio.h>
 #include <unistd.h>

@@ -5,7 +5,6 @@
 #include "image/pack.h"
 
 #include <math.h>
-#include <string.h>
 #include "test.h"
 
 static nt_pixels make(uint32_t width, uint32_t height, unsigned channels, unsigned bits)

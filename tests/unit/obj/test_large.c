@@ -7,7 +7,6 @@
 #include "test.h"
 #include <dirent.h>
 #include <math.h>
-#include <stdio.h>
 #include "obj/read.h"
 
 /* ---- the naive reader ---- */

@@ -4,7 +4,6 @@
  */
 #include "fail_alloc.h"
 #include "obj_file.h"
-#include <stdio.h>
 
 /* Face `face` of mesh `mesh` stands in that line and has these corners. */
 static void assert_place(const reading *r, uint32_t mesh, uint32_t face, size_t line, const char *corners)

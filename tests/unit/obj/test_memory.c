@@ -5,7 +5,6 @@
  */
 #include "folder.h"
 #include "test.h"
-#include <stdio.h>
 #include "fail_alloc.h"
 #include "obj/read.h"
 #include "scene/polygon.h"

@@ -4,7 +4,6 @@
  * refused and where. The values are those that were written.
  */
 #include "test.h"
-#include <stdlib.h>
 #include "base/buffer.h"
 #include "ply/source.h"
 #include "ply/read.h"

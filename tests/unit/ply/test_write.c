@@ -11,7 +11,6 @@
 #include "test.h"
 
 #include <math.h>
-#include <stdio.h>
 
 static nt_status try_write(nt_scene *scene, bool bitangents, nt_error *error)
 {

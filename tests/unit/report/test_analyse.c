@@ -6,7 +6,6 @@
 #include "hand_mesh.h"
 
 #include <math.h>
-#include <stdio.h>
 
 /* An upright unit quad in the xy plane: u along x, v along y, T = (1,0,0), w = 1 is right. glTF, so that
  * slots matter. */

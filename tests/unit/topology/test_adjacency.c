@@ -2,7 +2,6 @@
 /* Places of corners: filled as accumulate fills them, then read as settle reads them, in borrowed memory of every
  * size. */
 #include "test.h"
-#include <string.h>
 #include "topology/adjacency.h"
 
 enum { VERTICES = 200, TRIANGLES = 400, BLOCKS = (VERTICES + NT_FAN_LANES - 1) / NT_FAN_LANES };

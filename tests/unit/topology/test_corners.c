@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include "topology/corners.h"
 
 /* Rows of position, normal, texture coordinates; corner c is vertex c. */

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include "budget.h"
 #include "topology/split.h"
 

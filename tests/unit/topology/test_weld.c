@@ -5,8 +5,6 @@
  */
 #include "test.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include "budget.h"
 #include "topology/corners.h"
 #include "topology/weld.h"

@@ -4,8 +4,6 @@
  * would.
  */
 #include "test.h"
-#include <stdlib.h>
-#include <string.h>
 #include "topology/weld_parts.h"
 
 enum { SIDE = 256, COUNT = SIDE * SIDE, TABLE_BITS = 17, TAG_BITS = 14 };

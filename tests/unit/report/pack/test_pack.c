@@ -8,8 +8,6 @@
 
 #include <libdeflate.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include "report/pack/pack.h"
 
 enum { INDICES, POSITIONS, NORMALS, TEXCOORDS, AUTHORED, COMPUTED, KINDS, ISLANDS, OUTLINES, SEAMS, NUMBERS };
