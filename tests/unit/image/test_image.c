@@ -5,6 +5,7 @@
  */
 #include "image/image.h"
 
+#include <stdio.h> /* for jpeglib.h */
 #include <jpeglib.h>
 #include <tiffio.h>
 #include <unistd.h>
@@ -35,6 +36,16 @@ static void put(bytes *b, uint64_t value, unsigned count, bool big)
 
 /* ---- files ---- */
 
+typedef struct file_kind file_kind;
+
+struct file_kind {
+	const char *name;
+	void (*make)(const file_kind *kind, bytes *b);
+	nt_image_type type;
+	unsigned channels, bits, variant;
+	bool flat; /* all 100 */
+};
+
 static void tga_header(bytes *b, unsigned type, unsigned width, unsigned height, unsigned depth, unsigned descriptor)
 {
 	*b = (bytes){.size = 0};
@@ -52,44 +63,44 @@ static void put_bgr(bytes *b, unsigned y)
 			put(b, sample(x, y, channel), 1, false);
 }
 
-static void make_tga(bytes *b)
+/* In packets those of type 10, and from the bottom, which is a TGA's own way. */
+static void make_tga(const file_kind *kind, bytes *b)
 {
-	tga_header(b, 2, WIDTH, HEIGHT, 24, 0x20);
-	for (unsigned y = 0; y < HEIGHT; y++)
-		put_bgr(b, y);
-}
-
-/* From the bottom, which is a TGA's own way, and in packets. */
-static void make_packed_tga(bytes *b)
-{
-	tga_header(b, 10, WIDTH, HEIGHT, 24, 0);
-	for (unsigned y = HEIGHT; y-- > 0;) {
-		put(b, WIDTH - 1, 1, false);
-		put_bgr(b, y);
+	const bool packed = kind->variant == 10;
+	tga_header(b, kind->variant, WIDTH, HEIGHT, 24, packed ? 0 : 0x20);
+	for (unsigned row = 0; row < HEIGHT; row++) {
+		if (packed)
+			put(b, WIDTH - 1, 1, false);
+		put_bgr(b, packed ? HEIGHT - 1 - row : row);
 	}
 }
 
-static void make_bmp(bytes *b)
+static void bmp_header(bytes *b, unsigned width, unsigned height, unsigned depth, unsigned colors, unsigned size)
 {
-	const unsigned row = (3 * WIDTH + 3) / 4 * 4;
 	*b = (bytes){.size = 0};
 	put(b, 'B' | 'M' << 8, 2, false);
-	put(b, 54 + row * HEIGHT, 4, false);
+	put(b, 54 + 4 * colors + size, 4, false);
 	put(b, 0, 4, false);
-	put(b, 54, 4, false);
+	put(b, 54 + 4 * colors, 4, false);
 	put(b, 40, 4, false);
-	put(b, WIDTH, 4, false);
-	put(b, HEIGHT, 4, false);
+	put(b, width, 4, false);
+	put(b, height, 4, false);
 	put(b, 1, 2, false);
-	put(b, 24, 2, false);
+	put(b, depth, 2, false);
 	put(b, 0, 24, false);
+}
+
+static void make_bmp(const file_kind *kind, bytes *b)
+{
+	const unsigned row = (3 * WIDTH + 3) / 4 * 4;
+	bmp_header(b, WIDTH, HEIGHT, 8 * kind->channels, 0, row * HEIGHT);
 	for (unsigned y = HEIGHT; y-- > 0;) {
 		put_bgr(b, y);
 		put(b, 0, row - 3 * WIDTH, false);
 	}
 }
 
-static void make_psd(bytes *b, unsigned bits)
+static void make_psd(const file_kind *kind, bytes *b)
 {
 	*b = (bytes){.size = 0};
 	put(b, '8' << 24 | 'B' << 16 | 'P' << 8 | 'S', 4, true);
@@ -98,7 +109,7 @@ static void make_psd(bytes *b, unsigned bits)
 	put(b, 3, 2, true);
 	put(b, HEIGHT, 4, true);
 	put(b, WIDTH, 4, true);
-	put(b, bits, 2, true);
+	put(b, kind->bits, 2, true);
 	put(b, 3, 2, true); /* RGB */
 	put(b, 0, 4, true);
 	put(b, 0, 4, true);
@@ -107,22 +118,14 @@ static void make_psd(bytes *b, unsigned bits)
 	for (unsigned channel = 0; channel < 3; channel++)
 		for (unsigned y = 0; y < HEIGHT; y++)
 			for (unsigned x = 0; x < WIDTH; x++)
-				put(b, sample(x, y, channel) * (bits == 16 ? 257 : 1), bits / 8, true);
+				put(b, sample(x, y, channel) * (kind->bits == 16 ? 257 : 1), kind->bits / 8, true);
 }
 
-static void make_psd8(bytes *b)
+/* libtiff's own writer, to a file; the variant is the compression. */
+static void make_tiff(const file_kind *kind, bytes *b)
 {
-	make_psd(b, 8);
-}
-
-static void make_psd16(bytes *b)
-{
-	make_psd(b, 16);
-}
-
-/* libtiff's own writer, to a file. */
-static void make_tiff(bytes *b, unsigned channels, unsigned bits, unsigned compression, bool tiled)
-{
+	const unsigned channels = kind->channels, bits = kind->bits;
+	const bool tiled = kind->variant == COMPRESSION_PACKBITS;
 	const char *path = in_folder("made.tif");
 	TIFF *tiff = TIFFOpen(path, "w");
 	TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, WIDTH);
@@ -131,7 +134,7 @@ static void make_tiff(bytes *b, unsigned channels, unsigned bits, unsigned compr
 	TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits);
 	TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
 	TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, channels == 1 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB);
-	TIFFSetField(tiff, TIFFTAG_COMPRESSION, compression);
+	TIFFSetField(tiff, TIFFTAG_COMPRESSION, kind->variant);
 	unsigned char rows[16 * 16 * 8] = {0};
 	const size_t row = (tiled ? 16 : WIDTH) * channels * bits / 8;
 	for (unsigned y = 0; y < HEIGHT; y++)
@@ -151,23 +154,8 @@ static void make_tiff(bytes *b, unsigned channels, unsigned bits, unsigned compr
 	fclose(file);
 }
 
-static void make_tiff8(bytes *b)
-{
-	make_tiff(b, 3, 8, COMPRESSION_LZW, false);
-}
-
-static void make_tiff16(bytes *b)
-{
-	make_tiff(b, 1, 16, COMPRESSION_ADOBE_DEFLATE, false);
-}
-
-static void make_tiled_tiff(bytes *b)
-{
-	make_tiff(b, 3, 8, COMPRESSION_PACKBITS, true);
-}
-
 /* 16 x 16 of one grey, which a JPEG has exactly. */
-static void make_jpeg(bytes *b, bool grey)
+static void make_jpeg(const file_kind *kind, bytes *b)
 {
 	struct jpeg_compress_struct jpeg;
 	struct jpeg_error_mgr errors;
@@ -177,8 +165,8 @@ static void make_jpeg(bytes *b, bool grey)
 	jpeg_create_compress(&jpeg);
 	jpeg_mem_dest(&jpeg, &made, &size);
 	jpeg.image_width = jpeg.image_height = 16;
-	jpeg.input_components = grey ? 1 : 3;
-	jpeg.in_color_space = grey ? JCS_GRAYSCALE : JCS_RGB;
+	jpeg.input_components = (int)kind->channels;
+	jpeg.in_color_space = kind->channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
 	jpeg_set_defaults(&jpeg);
 	jpeg_simple_progression(&jpeg);
 	jpeg_start_compress(&jpeg, TRUE);
@@ -192,22 +180,12 @@ static void make_jpeg(bytes *b, bool grey)
 	free(made);
 }
 
-static void make_grey_jpeg(bytes *b)
-{
-	make_jpeg(b, true);
-}
-
-static void make_rgb_jpeg(bytes *b)
-{
-	make_jpeg(b, false);
-}
-
-static void make_png(bytes *b)
+static void make_png(const file_kind *kind, bytes *b)
 {
 	nt_pixels pixels;
 	nt_error error;
 	unsigned char *made;
-	make_tga(b);
+	make_tga(kind, b);
 	assert_int_equal(nt_image_decode(b->data, b->size, &pixels, &error), NT_OK);
 	assert_int_equal(nt_encode_png(&pixels, &made, &b->size, &error), NT_OK);
 	memcpy(b->data, made, b->size);
@@ -215,24 +193,18 @@ static void make_png(bytes *b)
 	free(made);
 }
 
-static const struct {
-	const char *name;
-	void (*make)(bytes *b);
-	nt_image_type type;
-	unsigned channels, bits;
-	bool flat; /* all 100 */
-} files[] = {
-	{"png", make_png, NT_IMAGE_PNG, 3, 8, false},
-	{"tga", make_tga, NT_IMAGE_TGA, 3, 8, false},
-	{"packed tga", make_packed_tga, NT_IMAGE_TGA, 3, 8, false},
-	{"bmp", make_bmp, NT_IMAGE_BMP, 3, 8, false},
-	{"psd", make_psd8, NT_IMAGE_PSD, 3, 8, false},
-	{"psd of 16 bits", make_psd16, NT_IMAGE_PSD, 3, 16, false},
-	{"tiff", make_tiff8, NT_IMAGE_TIFF, 3, 8, false},
-	{"tiff of 16 bits", make_tiff16, NT_IMAGE_TIFF, 1, 16, false},
-	{"tiled tiff", make_tiled_tiff, NT_IMAGE_TIFF, 3, 8, false},
-	{"grey jpeg", make_grey_jpeg, NT_IMAGE_JPEG, 1, 8, true},
-	{"jpeg", make_rgb_jpeg, NT_IMAGE_JPEG, 3, 8, true},
+static const file_kind files[] = {
+	{"png", make_png, NT_IMAGE_PNG, 3, 8, 2, false},
+	{"tga", make_tga, NT_IMAGE_TGA, 3, 8, 2, false},
+	{"packed tga", make_tga, NT_IMAGE_TGA, 3, 8, 10, false},
+	{"bmp", make_bmp, NT_IMAGE_BMP, 3, 8, 0, false},
+	{"psd", make_psd, NT_IMAGE_PSD, 3, 8, 0, false},
+	{"psd of 16 bits", make_psd, NT_IMAGE_PSD, 3, 16, 0, false},
+	{"tiff", make_tiff, NT_IMAGE_TIFF, 3, 8, COMPRESSION_LZW, false},
+	{"tiff of 16 bits", make_tiff, NT_IMAGE_TIFF, 1, 16, COMPRESSION_ADOBE_DEFLATE, false},
+	{"tiled tiff", make_tiff, NT_IMAGE_TIFF, 3, 8, COMPRESSION_PACKBITS, false},
+	{"grey jpeg", make_jpeg, NT_IMAGE_JPEG, 1, 8, 0, true},
+	{"jpeg", make_jpeg, NT_IMAGE_JPEG, 3, 8, 0, true},
 };
 enum { FILE_COUNT = sizeof files / sizeof files[0] };
 
@@ -263,7 +235,7 @@ TEST(decode_gives_the_picture)
 		bytes b;
 		nt_pixels p;
 		nt_error error;
-		files[i].make(&b);
+		files[i].make(&files[i], &b);
 		assert_int_equal(nt_image_type_of_bytes(b.data, b.size), files[i].type);
 		assert_true(nt_image_is_decoded(files[i].type));
 		store_seed(files[i].name, &b);
@@ -355,17 +327,8 @@ static __attribute__((noinline)) void leave_on_the_stack(int value)
 /* stb_image looks for such a colour behind those that it has read. */
 TEST(colours_that_a_palette_lacks_are_the_same_in_every_run)
 {
-	bytes b = {.size = 0};
-	put(&b, 'B' | 'M' << 8, 2, false);
-	put(&b, 62 + 4, 4, false);
-	put(&b, 0, 4, false);
-	put(&b, 62, 4, false);
-	put(&b, 40, 4, false);
-	put(&b, 4, 4, false); /* 4 x 1 */
-	put(&b, 1, 4, false);
-	put(&b, 1, 2, false);
-	put(&b, 8, 2, false);
-	put(&b, 0, 24, false);
+	bytes b;
+	bmp_header(&b, 4, 1, 8, 2, 4);
 	put(&b, 0x112233, 4, false); /* two colours */
 	put(&b, 0x445566, 4, false);
 	put(&b, 0xc8030100, 4, false); /* 0, 1, 3, 200 */
@@ -386,7 +349,7 @@ TEST(grey_is_told_by_pixels)
 		bytes b;
 		nt_error error;
 		bool grey;
-		files[i].make(&b);
+		files[i].make(&files[i], &b);
 		assert_int_equal(nt_image_is_grey(b.data, b.size, &grey, &error), NT_OK);
 		assert_int_equal(grey, files[i].flat || files[i].channels == 1);
 	}
@@ -400,7 +363,7 @@ TEST(decode_refuses_what_is_cut_short)
 		bytes b;
 		nt_error error;
 		nt_pixels p;
-		files[i].make(&b);
+		files[i].make(&files[i], &b);
 		const size_t idle = files[i].type == NT_IMAGE_PNG ? 17
 			: files[i].type == NT_IMAGE_BMP || files[i].type == NT_IMAGE_TIFF ? 5 : 1;
 		for (size_t size = 0; size < b.size; size++) {
@@ -583,7 +546,7 @@ TEST(decode_survives_damage)
 	uint32_t seed = 13;
 	for (size_t i = 0; i < FILE_COUNT; i++) {
 		bytes b;
-		files[i].make(&b);
+		files[i].make(&files[i], &b);
 		for (int turn = 0; turn < 400; turn++) {
 			nt_pixels p;
 			nt_error error;
@@ -605,7 +568,7 @@ TEST(decode_without_memory_is_an_error)
 {
 	for (size_t i = 0; i < FILE_COUNT; i++) {
 		bytes b;
-		files[i].make(&b);
+		files[i].make(&files[i], &b);
 		for (size_t n = 0;; n++) {
 			nt_pixels p;
 			nt_error error;
