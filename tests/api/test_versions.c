@@ -12,35 +12,20 @@ static const float rows[6][8] = {{0, 0, 0, 0, 0, 1, 0, 0}, {1, 0, 0, 0, 0, 1, 1,
 	{2, 0, 0, 0, 0, 1, 0, 0}, {3, 0, 0, 0, 0, 1, -1, 0}, {3, 1, 0, 0, 0, 1, -1, 1}};
 
 /* Everything a call takes, each with a tail that a newer header might have. */
+#define WITH_TAIL(type, name) \
+	struct { \
+		type name; \
+		size_t tail[2]; \
+	} name
+
 typedef struct call {
-	struct {
-		nmtan_stored_uv stored;
-		size_t tail[2];
-	} stored;
-	struct {
-		nmtan_mesh mesh;
-		size_t tail[2];
-	} mesh;
-	struct {
-		nmtan_timing timing;
-		size_t tail[2];
-	} timing;
-	struct {
-		nmtan_options options;
-		size_t tail[2];
-	} options;
-	struct {
-		nmtan_output output;
-		size_t tail[2];
-	} output;
-	struct {
-		nmtan_split_output split;
-		size_t tail[2];
-	} split;
-	struct {
-		nmtan_counts counts;
-		size_t tail[2];
-	} counts;
+	WITH_TAIL(nmtan_stored_uv, stored);
+	WITH_TAIL(nmtan_mesh, mesh);
+	WITH_TAIL(nmtan_timing, timing);
+	WITH_TAIL(nmtan_options, options);
+	WITH_TAIL(nmtan_output, output);
+	WITH_TAIL(nmtan_split_output, split);
+	WITH_TAIL(nmtan_counts, counts);
 	float tangents[6][4], vertex_tangents[12][4];
 	uint32_t indices[6], sources[6];
 } call;
@@ -88,14 +73,10 @@ typedef struct taken {
 
 static taken struct_of(call *c, int which)
 {
-	const taken all[STRUCTS] = {
-		{&c->stored.stored.struct_bytes, c->stored.tail, sizeof c->stored.stored, true, true, false},
-		{&c->mesh.mesh.struct_bytes, c->mesh.tail, sizeof c->mesh.mesh, true, true, true},
-		{&c->timing.timing.struct_bytes, c->timing.tail, sizeof c->timing.timing, true, true, false},
-		{&c->options.options.struct_bytes, c->options.tail, sizeof c->options.options, true, true, true},
-		{&c->output.output.struct_bytes, c->output.tail, sizeof c->output.output, true, false, false},
-		{&c->split.split.struct_bytes, c->split.tail, sizeof c->split.split, false, true, true},
-		{&c->counts.counts.struct_bytes, c->counts.tail, sizeof c->counts.counts, true, true, false}};
+#define TAKEN(name) &c->name.name.struct_bytes, c->name.tail, sizeof c->name.name
+	const taken all[STRUCTS] = {{TAKEN(stored), true, true, false}, {TAKEN(mesh), true, true, true},
+		{TAKEN(timing), true, true, false}, {TAKEN(options), true, true, true}, {TAKEN(output), true, false, false},
+		{TAKEN(split), false, true, true}, {TAKEN(counts), true, true, false}};
 	return all[which];
 }
 

@@ -1,21 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 #include "folder.h"
 #include "test.h"
-#include <unistd.h>
 #include "file/base64.h"
 
 /* Writes `size` bytes in pieces of `piece` and gives the text. */
 static char *encoded(const unsigned char *bytes, size_t size, size_t piece)
 {
-	char *path = in_tmpdir("nmtan-base64-XXXXXX");
-	const int fd = mkstemp(path);
-	assert_true(fd >= 0);
-	close(fd);
 	nt_output *output;
 	nt_sink *sink;
 	nt_error error;
 	assert_int_equal(nt_output_create(&output, NULL, &error), NT_OK);
-	assert_int_equal(nt_output_add(output, path, NT_ROLE_MAIN, &sink, &error), NT_OK);
+	assert_int_equal(nt_output_add(output, in_folder("out"), NT_ROLE_MAIN, &sink, &error), NT_OK);
 	nt_base64 base64 = {.sink = sink};
 	for (size_t at = 0; at < size; at += piece)
 		assert_int_equal(nt_base64_write(&base64, bytes + at, size - at < piece ? size - at : piece,
@@ -23,11 +18,10 @@ static char *encoded(const unsigned char *bytes, size_t size, size_t piece)
 	assert_int_equal(nt_base64_end(&base64, &error), NT_OK);
 	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, path, &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("out"), &error), NT_OK);
 	char *text = calloc(file.size + 1, 1);
 	memcpy(text, file.data, file.size);
 	nt_file_close(&file);
-	unlink(path);
 	return text;
 }
 
@@ -57,5 +51,5 @@ TEST(large_blocks_pass_the_buffer_whole)
 
 int main(void)
 {
-	return run_group("file/base64");
+	return run_group_within("file/base64", make_folder, remove_folder);
 }

@@ -8,16 +8,6 @@
 #include "file/lookup.h"
 #include "folder.h"
 
-static int enter(void **state)
-{
-	return make_folder(state) || chdir(in_folder(""));
-}
-
-static int leave(void **state)
-{
-	return chdir("/") || remove_folder(state);
-}
-
 TEST(only_some_numbers_mean_missing)
 {
 	static const struct {
@@ -69,5 +59,5 @@ TEST(files_are_found_or_missing_or_behind_a_fault)
 
 int main(void)
 {
-	return run_group_within("file/lookup", enter, leave);
+	return run_group_within("file/lookup", enter_folder, leave_folder);
 }

@@ -96,30 +96,18 @@ TEST(names_outside_are_refused)
 
 TEST(links_are_followed_only_within_the_folder)
 {
-	char *root = in_tmpdir("nmtan-test-uri-XXXXXX");
-	assert_non_null(mkdtemp(root));
-	char inner[300], file[300], good[300], bad[300], document[300], path[512];
-	snprintf(inner, sizeof inner, "%s/inner", root);
-	snprintf(file, sizeof file, "%s/inner/a b.bin", root);
-	snprintf(good, sizeof good, "%s/inner/good", root);
-	snprintf(bad, sizeof bad, "%s/inner/bad", root);
-	snprintf(document, sizeof document, "%s/inner/a.gltf", root);
-	assert_int_equal(mkdir(inner, 0700), 0);
-	FILE *stream = fopen(file, "w");
-	fclose(stream);
-	assert_int_equal(symlink("a b.bin", good), 0);
-	assert_int_equal(symlink("/etc", bad), 0);
+	char document[300], path[512];
+	assert_int_equal(mkdir(in_folder("inner"), 0700), 0);
+	put_text_file("inner/a b.bin", "");
+	assert_int_equal(symlink("a b.bin", in_folder("inner/good")), 0);
+	assert_int_equal(symlink("/etc", in_folder("inner/bad")), 0);
+	snprintf(document, sizeof document, "%s", in_folder("inner/a.gltf"));
 	assert_int_equal(resolve(document, "a%20b.bin", 9, false, path), NT_OK);
-	assert_string_equal(path, file);
+	assert_string_equal(path, in_folder("inner/a b.bin"));
 	check_resolve(document, "good", false, NT_OK);
 	check_resolve(document, "bad/passwd", false, NT_ERROR_INPUT);
 	check_resolve(document, "bad/passwd", true, NT_OK);
 	check_resolve(document, "absent.bin", false, NT_ERROR_MISSING);
-	unlink(bad);
-	unlink(good);
-	unlink(file);
-	rmdir(inner);
-	rmdir(root);
 }
 
 TEST(paths_are_percent_encoded)
@@ -132,5 +120,5 @@ TEST(paths_are_percent_encoded)
 
 int main(void)
 {
-	return run_group("file/uri");
+	return run_group_within("file/uri", make_folder, remove_folder);
 }
