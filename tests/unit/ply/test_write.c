@@ -6,9 +6,8 @@
 #include "fail_alloc.h"
 #include "file/input.h"
 #include "folder.h"
-#include "ply/read.h"
 #include "ply/write.h"
-#include "test.h"
+#include "ply_file.h"
 
 #include <math.h>
 
@@ -36,31 +35,33 @@ static nt_file write_scene(nt_scene *scene, bool bitangents)
 	return file;
 }
 
-static void open_bytes(nt_scene *scene, const void *bytes, size_t size)
-{
-	const nt_read_options options = {.texcoord_set = -1, .threads = 1};
-	nt_error error;
-	nt_scene_init(scene, "in.ply");
-	scene->bytes = bytes;
-	scene->byte_count = size;
-	assert_int_equal(nt_ply_open(scene, &options, &error), NT_OK);
-}
-
-static void open_text(nt_scene *scene, const char *text)
-{
-	open_bytes(scene, text, strlen(text));
-}
-
-static void assert_written(nt_scene *scene, bool bitangents, const char *expected)
+/* The same, read again. */
+static void write_and_read(nt_scene *scene, bool bitangents, reading *back)
 {
 	nt_file file = write_scene(scene, bitangents);
+	open_sound(back, file.data, file.size);
+	nt_file_close(&file);
+}
+
+static void assert_written(reading *r, bool bitangents, const char *expected)
+{
+	nt_file file = write_scene(&r->scene, bitangents);
 	if (file.size != strlen(expected) || memcmp(file.data, expected, file.size) != 0)
 		print_message("written:\n%.*s\nexpected:\n%s\n", (int)file.size, (const char *)file.data,
 			expected);
 	assert_int_equal(file.size, strlen(expected));
 	assert_memory_equal(file.data, expected, file.size);
 	nt_file_close(&file);
-	nt_scene_free(scene);
+	close_reading(r);
+}
+
+/* What is written has this line, if it is not NULL, and this end. */
+static void assert_ends(reading *r, const char *line, const char *tail)
+{
+	nt_file file = write_scene(&r->scene, false);
+	assert_true(!line || memmem(file.data, file.size, line, strlen(line)));
+	assert_memory_equal(file.data + file.size - strlen(tail), tail, strlen(tail));
+	nt_file_close(&file);
 }
 
 static size_t count_findings(const nt_scene *scene, nt_code code)
@@ -82,18 +83,17 @@ static void fill_tangents(void)
 	}
 }
 
-static void set_split(nt_scene *scene, uint32_t *indices, uint32_t *sources, size_t source_count)
+static void set_split(reading *r, uint32_t *indices, uint32_t *sources, size_t source_count)
 {
 	fill_tangents();
-	scene->meshes->split = (nt_split){.indices = indices, .sources = sources,
+	r->scene.meshes->split = (nt_split){.indices = indices, .sources = sources,
 		.source_count = source_count, .vertex_tangents = plain_tangents[0]};
 }
 
-#define SET_SPLIT(scene, source_count, sources, ...) \
-	set_split(scene, (uint32_t[]){__VA_ARGS__}, sources, source_count)
+#define SET_SPLIT(r, source_count, sources, ...) \
+	set_split(r, (uint32_t[]){__VA_ARGS__}, sources, source_count)
 #define SOURCES(...) (uint32_t[]){__VA_ARGS__}
 
-#define XYZ "property float x\nproperty float y\nproperty float z\n"
 #define UV "property float s\nproperty float t\n"
 #define NORMAL "property float nx\nproperty float ny\nproperty float nz\n"
 #define TANGENT "property float tx\nproperty float ty\nproperty float tz\nproperty float tw\n"
@@ -104,15 +104,15 @@ TEST(nothing_solved_gives_the_same_bytes)
 {
 	static const char text[] = "ply\r\nformat ascii 1.0 \nelement vertex 1\n" XYZ
 		"end_header\n  1.000 2e0\t+3 \n\ntrailing\n";
-	nt_scene scene;
-	open_text(&scene, text);
-	assert_written(&scene, true, text);
+	reading r;
+	open_text(&r, text);
+	assert_written(&r, true, text);
 }
 
 TEST(text_keeps_everything_and_gets_tangents)
 {
-	nt_scene scene;
-	open_text(&scene, "ply\ncomment first\nformat ascii 1.0\nobj_info kept\nelement extra 1\n"
+	reading r;
+	open_text(&r, "ply\ncomment first\nformat ascii 1.0\nobj_info kept\nelement extra 1\n"
 		"property list int int numbers\nelement vertex 3\ncomment inside\n" UV
 		"property double quality\n" XYZ "property list uchar int list\ncomment behind\n"
 		"element face 1\nproperty uchar flags\n" LIST "property float area\nelement edge 1\n"
@@ -120,8 +120,8 @@ TEST(text_keeps_everything_and_gets_tangents)
 		"2  7 8\n\n"
 		"0.50 1.0000000001 1e-300 0 0 0 0 \n1 0 2 1 0.0 0 2 5 6\n\n0 1 3 0 1 0 1 9\n"
 		"7 3 0 1 2 0.125\n0 1\n\nleft over\n");
-	SET_SPLIT(&scene, 0, NULL, 0, 1, 2);
-	assert_written(&scene, false, "ply\ncomment first\nformat ascii 1.0\nobj_info kept\n"
+	SET_SPLIT(&r, 0, NULL, 0, 1, 2);
+	assert_written(&r, false, "ply\ncomment first\nformat ascii 1.0\nobj_info kept\n"
 		"element extra 1\nproperty list int int numbers\nelement vertex 3\ncomment inside\n" UV
 		"property double quality\n" XYZ "property list uchar int list\n" TANGENT
 		"comment behind\nelement face 1\nproperty uchar flags\n" LIST
@@ -135,14 +135,14 @@ TEST(text_keeps_everything_and_gets_tangents)
 
 TEST(split_vertices_are_appended_with_all_properties)
 {
-	nt_scene scene;
-	open_text(&scene, "ply\r\nformat ascii 1.0\r\nelement vertex 4\r\nproperty float x\r\n"
+	reading r;
+	open_text(&r, "ply\r\nformat ascii 1.0\r\nelement vertex 4\r\nproperty float x\r\n"
 		"property float y\r\nproperty float z\r\nproperty uchar flag\r\nelement face 2\r\n"
 		"property int id\r\nproperty list uchar uint vertex_index\r\nproperty float area\r\n"
 		"end_header\r\n0 0 0 10\r\n1 0 0 11\r\n1 1 0 12\r\n0 1 0 13\r\n"
 		"100 3  0 1 2 .5\r\n101 3 0 2 3 .25\r\n");
-	SET_SPLIT(&scene, 2, SOURCES(0, 2), 0, 1, 2, 4, 5, 3);
-	assert_written(&scene, false, "ply\r\nformat ascii 1.0\r\nelement vertex 6\r\nproperty float x\r\n"
+	SET_SPLIT(&r, 2, SOURCES(0, 2), 0, 1, 2, 4, 5, 3);
+	assert_written(&r, false, "ply\r\nformat ascii 1.0\r\nelement vertex 6\r\nproperty float x\r\n"
 		"property float y\r\nproperty float z\r\nproperty uchar flag\r\nproperty float tx\r\n"
 		"property float ty\r\nproperty float tz\r\nproperty float tw\r\nelement face 2\r\n"
 		"property int id\r\nproperty list uchar uint vertex_index\r\nproperty float area\r\n"
@@ -158,12 +158,12 @@ TEST(old_tangents_and_bitangents_are_replaced)
 		"property double ty\nproperty float tz\nproperty float tw\n" NORMAL "element face 1\n" LIST
 		"end_header\n9 0 0 0 9 9 9 9 9 -1 0 0 1\n9 1 0 0 9 9 9 9 9 -1 0 0 1\n"
 		"9 0 1 0 9 9 9 9 9 -1 0 0 1\n3 0 1 2\n";
-	nt_scene scene;
-	open_text(&scene, input);
-	assert_true(scene.meshes->has_tangents);
-	SET_SPLIT(&scene, 0, NULL, 0, 1, 2);
+	reading r;
+	open_text(&r, input);
+	assert_true(r.scene.meshes->has_tangents);
+	SET_SPLIT(&r, 0, NULL, 0, 1, 2);
 	/* B = (0,0,1) x (k,0,0) = (0,k,0); -0 comes from 0 * 0 - 1 * 0 in x */
-	assert_written(&scene, false, "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ NORMAL TANGENT
+	assert_written(&r, false, HEAD("3") NORMAL TANGENT
 		BITANGENT "element face 1\n" LIST "end_header\n"
 		"0 0 0 0 0 1 0 0 0 1 0 0 0\n1 0 0 0 0 1 1 0 0 1 0 1 0\n0 1 0 0 0 1 2 0 0 1 0 2 0\n"
 		"3 0 1 2\n");
@@ -171,17 +171,17 @@ TEST(old_tangents_and_bitangents_are_replaced)
 
 TEST(normals_that_were_made_are_written)
 {
-	nt_scene scene;
-	open_text(&scene, "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 1\n" LIST
+	reading r;
+	open_text(&r, HEAD("3") "element face 1\n" LIST
 		"end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
 	/* vertex 1 was split by its normal: 3 is its copy; the tangent splits that again */
-	nt_mesh *mesh = scene.meshes;
+	nt_mesh *mesh = r.scene.meshes;
 	mesh->vertex_count = 4;
 	mesh->vertex_sources = SOURCES(1);
 	mesh->normals = (float[]){0, 0, 1, 0, 1, 0, 0, 0, 1, 1, 0, 0};
 	mesh->normals_made = true;
-	SET_SPLIT(&scene, 1, SOURCES(3), 0, 4, 2);
-	assert_written(&scene, true, "ply\nformat ascii 1.0\nelement vertex 5\n" XYZ NORMAL TANGENT
+	SET_SPLIT(&r, 1, SOURCES(3), 0, 4, 2);
+	assert_written(&r, true, HEAD("5") NORMAL TANGENT
 		BITANGENT "element face 1\n" LIST "end_header\n"
 		"0 0 0 0 0 1 0 0 0 1 0 0 0\n1 0 0 0 1 0 1 0 0 1 0 0 -1\n0 1 0 0 0 1 2 0 0 1 0 2 0\n"
 		"1 0 0 1 0 0 3 0 0 1 0 0 0\n1 0 0 1 0 0 4 0 0 1 0 0 0\n3 0 4 2\n");
@@ -190,16 +190,16 @@ TEST(normals_that_were_made_are_written)
 /* Two of the old ones are no normals; the reader would take them for the new ones. */
 TEST(properties_of_a_name_that_is_written_all_go)
 {
-	nt_scene scene;
-	open_text(&scene, "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ UV "property float nx\nproperty float ny\n"
+	reading r;
+	open_text(&r, HEAD("3") UV "property float nx\nproperty float ny\n"
 		"property float nx\nelement face 1\n" LIST "end_header\n"
 		"0 0 0 0 0 nan 5 6\n1 0 0 1 0 nan 5 6\n1 1 0 1 1 nan 5 6\n3 0 1 2\n");
-	nt_mesh *mesh = scene.meshes;
+	nt_mesh *mesh = r.scene.meshes;
 	assert_null(mesh->normals);
 	mesh->normals = (float[]){0, 0, 1, 0, 0, 1, 0, 0, 1};
 	mesh->normals_made = true;
-	SET_SPLIT(&scene, 0, NULL, 0, 1, 2);
-	assert_written(&scene, false, "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ UV NORMAL TANGENT
+	SET_SPLIT(&r, 0, NULL, 0, 1, 2);
+	assert_written(&r, false, HEAD("3") UV NORMAL TANGENT
 		"element face 1\n" LIST "end_header\n"
 		"0 0 0 0 0 0 0 1 0 0 0 1\n1 0 0 1 0 0 0 1 1 0 0 1\n1 1 0 1 1 0 0 1 2 0 0 1\n3 0 1 2\n");
 }
@@ -256,14 +256,14 @@ TEST(binary_files_keep_their_byte_order)
 		}
 		memcpy(input + in, big ? "\3\0\0\0\1\0\0" : "\3\0\0\1\0\0\0", 7);
 		memcpy(expected + out, big ? "\3\0\0\0\1\0\2" : "\3\0\0\1\0\2\0", 7);
-		nt_scene scene;
-		open_bytes(&scene, input, (size_t)in + 7);
-		SET_SPLIT(&scene, 1, SOURCES(0), 0, 1, 2);
-		nt_file file = write_scene(&scene, false);
+		reading r;
+		open_sound(&r, input, (size_t)in + 7);
+		SET_SPLIT(&r, 1, SOURCES(0), 0, 1, 2);
+		nt_file file = write_scene(&r.scene, false);
 		assert_int_equal(file.size, out + 7);
 		assert_memory_equal(file.data, expected, file.size);
 		nt_file_close(&file);
-		nt_scene_free(&scene);
+		close_reading(&r);
 	}
 }
 
@@ -272,29 +272,28 @@ TEST(binary_files_keep_their_byte_order)
 /* Which triangles the pentagon was cut into is taken from the mesh itself. */
 TEST(polygons_stay_where_their_triangles_agree)
 {
-	nt_scene scene;
-	open_text(&scene, "ply\nformat ascii 1.0\nelement vertex 5\n" XYZ "element face 3\n" LIST
+	reading r;
+	open_text(&r, HEAD("5") "element face 3\n" LIST
 		"property int id\nend_header\n" PENTAGON "2 0 1 7\n5 0 1 2 3 4 8\n4 0 1 2 4 9\n");
 	uint32_t indices[13];
-	memcpy(indices, scene.meshes->indices, sizeof indices);
+	memcpy(indices, r.scene.meshes->indices, sizeof indices);
 	for (size_t c = 0; c < 9; c++) /* corner 3 of the pentagon gets the copy, in every triangle */
 		indices[c] = indices[c] == 3 ? 5 : indices[c];
-	set_split(&scene, indices, SOURCES(3), 1);
-	nt_file file = write_scene(&scene, false);
-	static const char tail[] = "1 3 0 5 0 0 1\n2 0 1 7\n5 0 1 2 5 4 8\n4 0 1 2 4 9\n";
-	assert_memory_equal(file.data + file.size - strlen(tail), tail, strlen(tail));
-	assert_int_equal(count_findings(&scene, NT_CODE_POLYGON_CUT), 0);
-	nt_file_close(&file);
-	nt_scene_free(&scene);
+	set_split(&r, indices, SOURCES(3), 1);
+	assert_ends(&r, NULL, "1 3 0 5 0 0 1\n2 0 1 7\n5 0 1 2 5 4 8\n4 0 1 2 4 9\n");
+	assert_int_equal(count_findings(&r.scene, NT_CODE_POLYGON_CUT), 0);
+	close_reading(&r);
 }
+
+static const char cut_pentagon[] = HEAD("5") "element face 2\n"
+	"property list uchar float texcoord\n" LIST "property int id\nend_header\n" PENTAGON
+	"10 0 .0 1 .1 2 .2 3 .3 4 .4 5 0 1 2 3 4 8\n0 3 0 1 2 9\n";
 
 TEST(polygons_whose_triangles_disagree_become_triangles)
 {
-	nt_scene scene;
-	open_text(&scene, "ply\nformat ascii 1.0\nelement vertex 5\n" XYZ "element face 2\n"
-		"property list uchar float texcoord\n" LIST "property int id\nend_header\n" PENTAGON
-		"10 0 .0 1 .1 2 .2 3 .3 4 .4 5 0 1 2 3 4 8\n0 3 0 1 2 9\n");
-	const nt_mesh *mesh = scene.meshes;
+	reading r;
+	open_text(&r, cut_pentagon);
+	const nt_mesh *mesh = r.scene.meshes;
 	assert_int_equal(mesh->face_count, 4);
 	/* the last face lacks coordinates: its vertices are copies 5, 6 and 7; and one more copy, 8, of
 	 * the first corner of the pentagon's last triangle */
@@ -302,13 +301,11 @@ TEST(polygons_whose_triangles_disagree_become_triangles)
 	memcpy(indices, mesh->indices, sizeof indices);
 	const uint32_t shared = indices[6];
 	indices[6] = 8;
-	set_split(&scene, indices, &(uint32_t){shared}, 1);
-	nt_file file = write_scene(&scene, false);
-	assert_int_equal(count_findings(&scene, NT_CODE_POLYGON_CUT), 1);
-
-	nt_scene back;
-	open_bytes(&back, file.data, file.size);
-	const nt_mesh *written = back.meshes;
+	set_split(&r, indices, &(uint32_t){shared}, 1);
+	reading back;
+	write_and_read(&r.scene, false, &back);
+	assert_int_equal(count_findings(&r.scene, NT_CODE_POLYGON_CUT), 1);
+	const nt_mesh *written = back.mesh;
 	assert_int_equal(written->face_count, 4);
 	assert_null(written->face_polygon);
 	assert_int_equal(written->corner_count, 12);
@@ -320,10 +317,9 @@ TEST(polygons_whose_triangles_disagree_become_triangles)
 		assert_true(uv[0] == (float)row && uv[1] == (float)row / 10.0f);
 		assert_true(written->tangents[4 * written->indices[c]] == (float)indices[c]);
 	}
-	assert_non_null(strstr((const char *)file.data, " 8\n0 3 5 6 7 9\n"));
-	nt_scene_free(&back);
-	nt_file_close(&file);
-	nt_scene_free(&scene);
+	assert_memory_equal(back.bytes + back.scene.byte_count - 15, " 8\n0 3 5 6 7 9\n", 15);
+	close_reading(&back);
+	close_reading(&r);
 }
 
 /* Vertex 1 has two pairs of coordinates, so two vertices in the mesh; their tangents are equal. Vertex
@@ -339,19 +335,19 @@ TEST(wedges_stay_and_do_not_split_without_need)
 	size = snprintf(expected, sizeof expected, head, 5, TANGENT);
 	strcpy(expected + size, "0 0 0 0 0 0 1\n1 0 0 1 0 0 1\n0 1 0 2 0 0 1\n1 1 0 3 0 0 1\n"
 		"0 1 0 4 0 0 1\n3 0 1 2 6 0 0 1 0 0 1\n3 4 1 3 6 .5 .5 .7 .5 .9 .9\n");
-	nt_scene scene;
-	open_text(&scene, input);
-	assert_int_equal(scene.meshes->vertex_count, 6);
-	SET_SPLIT(&scene, 0, NULL, 0, 1, 2, 4, 5, 3);
+	reading r;
+	open_text(&r, input);
+	assert_int_equal(r.scene.meshes->vertex_count, 6);
+	SET_SPLIT(&r, 0, NULL, 0, 1, 2, 4, 5, 3);
 	plain_tangents[5][0] = 1.0f;
-	assert_written(&scene, false, expected);
+	assert_written(&r, false, expected);
 }
 
 /* Long enough for the tight loops of the reader, which stop elsewhere. */
 TEST(many_faces_are_copied_as_they_are)
 {
 	char *text = malloc(20000), *p = text;
-	p += sprintf(p, "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 100\n" LIST
+	p += sprintf(p, HEAD("3") "element face 100\n" LIST
 		"element end 30\nproperty int last\nend_header\n0 0 0\n1 0 0\n0 1 0\n");
 	const char *const faces = p;
 	uint32_t indices[300];
@@ -362,13 +358,11 @@ TEST(many_faces_are_copied_as_they_are)
 	}
 	for (int i = 0; i < 30; i++)
 		p += sprintf(p, "12345\n");
-	nt_scene scene;
-	open_text(&scene, text);
-	set_split(&scene, indices, NULL, 0);
-	nt_file file = write_scene(&scene, false);
-	assert_memory_equal(file.data + file.size - strlen(faces), faces, strlen(faces));
-	nt_file_close(&file);
-	nt_scene_free(&scene);
+	reading r;
+	open_text(&r, text);
+	set_split(&r, indices, NULL, 0);
+	assert_ends(&r, NULL, faces);
+	close_reading(&r);
 	free(text);
 }
 
@@ -380,39 +374,33 @@ TEST(index_types_grow_with_the_vertices)
 	for (int i = 0; i < 256; i++)
 		p += sprintf(p, "%d 0 0\n", i);
 	strcpy(p, "3 0 1 255\n1 7\n");
-	nt_scene scene;
-	open_text(&scene, text);
-	SET_SPLIT(&scene, 1, SOURCES(255), 0, 1, 256);
-	nt_file file = write_scene(&scene, false);
-	static const char tail[] = "255 0 0 256 0 0 1\n3 0 1 256\n1 7\n";
-	assert_memory_equal(file.data + file.size - strlen(tail), tail, strlen(tail));
-	assert_non_null(strstr((const char *)file.data, "property list uchar int vertex_index\n"));
-	nt_file_close(&file);
-	nt_scene_free(&scene);
+	reading r;
+	open_text(&r, text);
+	SET_SPLIT(&r, 1, SOURCES(255), 0, 1, 256);
+	assert_ends(&r, "\nproperty list uchar int vertex_index\n", "255 0 0 256 0 0 1\n3 0 1 256\n1 7\n");
+	close_reading(&r);
 	/* without the copy they fit */
-	open_text(&scene, text);
-	SET_SPLIT(&scene, 0, NULL, 0, 1, 255);
-	file = write_scene(&scene, false);
-	assert_non_null(strstr((const char *)file.data, "property list uchar uchar vertex_index\n"));
-	nt_file_close(&file);
-	nt_scene_free(&scene);
+	open_text(&r, text);
+	SET_SPLIT(&r, 0, NULL, 0, 1, 255);
+	assert_ends(&r, "\nproperty list uchar uchar vertex_index\n", "3 0 1 255\n1 7\n");
+	close_reading(&r);
 	free(text);
 }
 
 TEST(strips_stay_unless_vertices_split)
 {
-	static const char *const text = "ply\nformat ascii 1.0\nelement vertex 4\n" XYZ
+	static const char *const text = HEAD("4")
 		"element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
 		"0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n";
-	nt_scene scene;
-	open_text(&scene, text);
-	SET_SPLIT(&scene, 0, NULL, 0, 1, 2, 2, 1, 3);
-	assert_written(&scene, false, "ply\nformat ascii 1.0\nelement vertex 4\n" XYZ TANGENT
+	reading r;
+	open_text(&r, text);
+	SET_SPLIT(&r, 0, NULL, 0, 1, 2, 2, 1, 3);
+	assert_written(&r, false, HEAD("4") TANGENT
 		"element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
 		"0 0 0 0 0 0 1\n1 0 0 1 0 0 1\n0 1 0 2 0 0 1\n1 1 0 3 0 0 1\n4 0 1 2 3\n");
-	open_text(&scene, text);
-	SET_SPLIT(&scene, 1, SOURCES(2), 0, 1, 2, 4, 1, 3);
-	assert_written(&scene, false, "ply\nformat ascii 1.0\nelement vertex 5\n" XYZ TANGENT
+	open_text(&r, text);
+	SET_SPLIT(&r, 1, SOURCES(2), 0, 1, 2, 4, 1, 3);
+	assert_written(&r, false, HEAD("5") TANGENT
 		"element face 2\n" LIST "end_header\n"
 		"0 0 0 0 0 0 1\n1 0 0 1 0 0 1\n0 1 0 2 0 0 1\n1 1 0 3 0 0 1\n0 1 0 4 0 0 1\n"
 		"3 0 1 2\n3 4 1 3\n");
@@ -420,11 +408,11 @@ TEST(strips_stay_unless_vertices_split)
 
 TEST(faces_before_vertices_stay_there)
 {
-	nt_scene scene;
-	open_text(&scene, "ply\nformat ascii 1.0\nelement face 1\n" LIST "element vertex 3\n" XYZ
+	reading r;
+	open_text(&r, "ply\nformat ascii 1.0\nelement face 1\n" LIST "element vertex 3\n" XYZ
 		"end_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n");
-	SET_SPLIT(&scene, 1, SOURCES(0), 3, 1, 2);
-	assert_written(&scene, false, "ply\nformat ascii 1.0\nelement face 1\n" LIST "element vertex 4\n"
+	SET_SPLIT(&r, 1, SOURCES(0), 3, 1, 2);
+	assert_written(&r, false, "ply\nformat ascii 1.0\nelement face 1\n" LIST "element vertex 4\n"
 		XYZ TANGENT "end_header\n3 3 1 2\n0 0 0 0 0 0 1\n1 0 0 1 0 0 1\n0 1 0 2 0 0 1\n"
 		"0 0 0 3 0 0 1\n");
 }
@@ -466,17 +454,16 @@ TEST(other_scenes_are_written_in_world_space)
 {
 	hand_made h;
 	make_gltf(&h);
-	nt_file file = write_scene(&h.scene, true);
+	reading back;
+	write_and_read(&h.scene, true, &back);
 	nt_finding_list_free(&h.scene.findings);
 	static const char head[] = "ply\nformat binary_little_endian 1.0\ncomment nmtan "
 		NMTAN_VERSION_STRING "\nelement vertex 6\n" XYZ NORMAL "property uchar red\n"
 		"property uchar green\nproperty uchar blue\nproperty uchar alpha\nproperty float u\n"
 		"property float v\n" TANGENT BITANGENT "element face 2\n" LIST "end_header\n";
-	assert_true(file.size > strlen(head));
-	assert_memory_equal(file.data, head, strlen(head));
-	nt_scene back;
-	open_bytes(&back, file.data, file.size);
-	const nt_mesh *mesh = back.meshes;
+	assert_true(back.scene.byte_count > strlen(head));
+	assert_memory_equal(back.bytes, head, strlen(head));
+	const nt_mesh *mesh = back.mesh;
 	const float positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 10, 0, 0, 8, 0, 0, 10, 3, 0};
 	const float texcoords[] = {0, 0, 1, 0, 0, 0.75f, 0, 0, 1, 0, 0, 0.75f};
 	const uint32_t indices[] = {0, 1, 2, 3, 5, 4}; /* turned round */
@@ -490,12 +477,11 @@ TEST(other_scenes_are_written_in_world_space)
 	}
 	/* the mirrored bitangent, cross((0,0,1), (-1,0,0)) * -1 = (0,1,0), still runs along growing v */
 	float b;
-	memcpy(&b, file.data + strlen(head) + 3 * 64 + 56, 4);
+	memcpy(&b, back.bytes + strlen(head) + 3 * 64 + 56, 4);
 	assert_true(b == 1.0f);
 	assert_memory_equal(mesh->colors, h.mesh.colors, 3 * sizeof *mesh->colors);
-	assert_memory_equal(file.data + strlen(head) + 6 * 4, "\x00\xff\x33\xff", 4);
-	nt_scene_free(&back);
-	nt_file_close(&file);
+	assert_memory_equal(back.bytes + strlen(head) + 6 * 4, "\x00\xff\x33\xff", 4);
+	close_reading(&back);
 }
 
 /* A shear: the inverse transpose of (x + y, y, z) takes (1,0,0) to (1,-1,0) / sqrt 2, and the tangent
@@ -510,16 +496,14 @@ TEST(normals_go_by_the_inverse_transpose)
 	h.mesh.colors = NULL;
 	h.instances[0].matrix[4] = 1;
 	h.scene.instance_count = 1;
-	nt_file file = write_scene(&h.scene, false);
-	nt_scene back;
-	open_bytes(&back, file.data, file.size);
+	reading back;
+	write_and_read(&h.scene, false, &back);
 	const float half = (float)sqrt(0.5);
-	assert_true(back.meshes->normals[0] == half && back.meshes->normals[1] == -half);
-	assert_true(fabsf(back.meshes->tangents[0] - half) < 1e-7f);
-	assert_true(fabsf(back.meshes->tangents[1] - half) < 1e-7f);
-	assert_true(back.meshes->tangents[3] == 1.0f);
-	nt_scene_free(&back);
-	nt_file_close(&file);
+	assert_true(back.mesh->normals[0] == half && back.mesh->normals[1] == -half);
+	assert_true(fabsf(back.mesh->tangents[0] - half) < 1e-7f);
+	assert_true(fabsf(back.mesh->tangents[1] - half) < 1e-7f);
+	assert_true(back.mesh->tangents[3] == 1.0f);
+	close_reading(&back);
 }
 
 TEST(quads_and_float_colors_are_kept)
@@ -532,52 +516,44 @@ TEST(quads_and_float_colors_are_kept)
 	nt_instance instance = {.matrix = {[0] = -1, [5] = 1, [10] = 1, [15] = 1}};
 	nt_scene scene = {.format = NT_FORMAT_OBJ, .meshes = &mesh, .mesh_count = 1,
 		.instances = &instance, .instance_count = 1};
-	nt_file file = write_scene(&scene, true);
-	nt_scene back;
-	open_bytes(&back, file.data, file.size);
+	reading back;
+	write_and_read(&scene, true, &back);
 	const uint32_t indices[] = {0, 3, 2, 1};
-	assert_int_equal(back.meshes->face_sizes[0], 4);
-	assert_memory_equal(back.meshes->indices, indices, sizeof indices);
+	assert_int_equal(back.mesh->face_sizes[0], 4);
+	assert_memory_equal(back.mesh->indices, indices, sizeof indices);
 	/* in between they are sRGB */
 	for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
-		assert_true(fabsf(back.meshes->colors[i] - colors[i]) <= 2e-7f * colors[i]);
-	assert_false(back.meshes->has_normals || back.meshes->has_texcoords || back.meshes->has_tangents);
-	nt_scene_free(&back);
-	nt_file_close(&file);
+		assert_true(fabsf(back.mesh->colors[i] - colors[i]) <= 2e-7f * colors[i]);
+	assert_false(back.mesh->has_normals || back.mesh->has_texcoords || back.mesh->has_tangents);
+	close_reading(&back);
 }
 
 TEST(a_scene_without_faces_is_an_empty_mesh)
 {
 	nt_scene scene = {.format = NT_FORMAT_GLB};
-	nt_file file = write_scene(&scene, false);
-	nt_scene back;
-	open_bytes(&back, file.data, file.size);
-	assert_int_equal(back.meshes->vertex_count, 0);
-	nt_scene_free(&back);
-	nt_file_close(&file);
+	reading back;
+	write_and_read(&scene, false, &back);
+	assert_int_equal(back.mesh->vertex_count, 0);
+	close_reading(&back);
 }
 
 TEST(every_allocation_may_fail)
 {
-	static const char *const text = "ply\nformat ascii 1.0\nelement vertex 5\n" XYZ "element face 2\n"
-		"property list uchar float texcoord\n" LIST "property int id\nend_header\n" PENTAGON
-		"10 0 .0 1 .1 2 .2 3 .3 4 .4 5 0 1 2 3 4 8\n0 3 0 1 2 9\n";
-	bool failed = true;
 	size_t n = 0;
-	for (; failed; n++) {
-		nt_scene scene;
+	for (bool failed = true; failed; n++) {
+		reading r;
 		nt_error error;
-		open_text(&scene, text);
+		open_text(&r, cut_pentagon);
 		uint32_t indices[12];
-		memcpy(indices, scene.meshes->indices, sizeof indices);
+		memcpy(indices, r.scene.meshes->indices, sizeof indices);
 		uint32_t source = indices[6];
 		indices[6] = 8;
-		set_split(&scene, indices, &source, 1);
+		set_split(&r, indices, &source, 1);
 		fail_allocations_from(n);
-		const nt_status status = try_write(&scene, false, &error);
+		const nt_status status = try_write(&r.scene, false, &error);
 		failed = stop_failing_allocations();
-		assert_true(failed ? status == NT_ERROR_MEMORY || scene.findings.failed : !status);
-		nt_scene_free(&scene);
+		assert_true(failed ? status == NT_ERROR_MEMORY || r.scene.findings.failed : !status);
+		close_reading(&r);
 	}
 	assert_true(n > 10);
 }
