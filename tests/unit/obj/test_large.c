@@ -4,10 +4,10 @@
  * corner of every polygon is. Both must agree corner by corner, on a generated file of several chunks for
  * every number of threads, and on the public models where they are.
  */
-#include "test.h"
+#include "obj_file.h"
 #include <dirent.h>
 #include <math.h>
-#include "obj/read.h"
+#include "file/input.h"
 
 /* ---- the naive reader ---- */
 
@@ -194,33 +194,22 @@ static size_t count_distinct(const naive *x)
 	return total;
 }
 
-static nt_status open_scene(nt_scene *scene, const char *bytes, size_t size, unsigned threads,
-	nt_error *error)
-{
-	nt_scene_init(scene, "large.obj");
-	nt_error_clear(error);
-	scene->bytes = (const unsigned char *)bytes;
-	scene->byte_count = size;
-	const nt_read_options options = {.texcoord_set = -1, .threads = threads};
-	return nt_obj_open(scene, &options, error);
-}
-
 static void assert_agrees(const char *bytes, size_t size, unsigned threads)
 {
-	nt_scene scene;
-	nt_error error;
+	reading r;
 	naive x;
-	if (open_scene(&scene, bytes, size, threads, &error))
-		print_message("line %zu: %s\n", error.place.line, error.message);
-	assert_int_equal(error.status, NT_OK);
+	open_bytes(&r, bytes, size, threads);
+	if (r.status)
+		print_message("line %zu: %s\n", r.error.place.line, r.error.message);
+	assert_int_equal(r.status, NT_OK);
 	naive_read(&x, bytes, size);
-	assert_same(&scene, &x);
+	assert_same(&r.scene, &x);
 	size_t vertices = 0;
-	for (size_t m = 0; m < scene.mesh_count; m++)
-		vertices += scene.meshes[m].vertex_count;
+	for (size_t m = 0; m < r.scene.mesh_count; m++)
+		vertices += r.scene.meshes[m].vertex_count;
 	assert_int_equal(vertices, count_distinct(&x));
 	naive_free(&x);
-	nt_scene_free(&scene);
+	close_reading(&r);
 }
 
 /* ---- the generated file ---- */
@@ -346,17 +335,17 @@ TEST(threads_do_not_show)
 {
 	size_t size;
 	char *text = generate(&size);
-	nt_scene one;
-	nt_error error;
-	assert_int_equal(open_scene(&one, text, size, 1, &error), NT_OK);
+	reading one, many;
+	open_bytes(&one, text, size, 1);
+	assert_int_equal(one.status, NT_OK);
 	const unsigned threads[] = {2, 3, 8};
 	for (int i = 0; i < 3; i++) {
-		nt_scene many;
-		assert_int_equal(open_scene(&many, text, size, threads[i], &error), NT_OK);
-		assert_same_scene(&one, &many);
-		nt_scene_free(&many);
+		open_bytes(&many, text, size, threads[i]);
+		assert_int_equal(many.status, NT_OK);
+		assert_same_scene(&one.scene, &many.scene);
+		close_reading(&many);
 	}
-	nt_scene_free(&one);
+	close_reading(&one);
 	free(text);
 }
 
@@ -375,11 +364,11 @@ TEST(the_first_fault_is_named_whatever_the_threads)
 				expected += *p == '\n';
 	}
 	for (unsigned threads = 1; threads <= 8; threads += threads) {
-		nt_scene scene;
-		nt_error error;
-		assert_int_equal(open_scene(&scene, text, size, threads, &error), NT_ERROR_INPUT);
-		assert_int_equal(error.place.line, expected);
-		nt_scene_free(&scene);
+		reading r;
+		open_bytes(&r, text, size, threads);
+		assert_int_equal(r.status, NT_ERROR_INPUT);
+		assert_int_equal(r.error.place.line, expected);
+		close_reading(&r);
 	}
 	free(text);
 }
@@ -394,16 +383,16 @@ TEST(hub_of_different_corners_is_not_quadratic)
 	for (int round = 0; round < 2; round++)
 		for (int i = 1; i <= 100000; i++)
 			used += (size_t)sprintf(text + used, "f 1/%d 2/1 3/1\n", i);
-	nt_scene scene;
-	nt_error error;
-	assert_int_equal(open_scene(&scene, text, used, 2, &error), NT_OK);
-	assert_int_equal(scene.meshes[0].vertex_count, 100002);
-	const uint32_t *indices = scene.meshes[0].indices;
+	reading r;
+	open_bytes(&r, text, used, 2);
+	assert_int_equal(r.status, NT_OK);
+	assert_int_equal(r.scene.meshes[0].vertex_count, 100002);
+	const uint32_t *indices = r.scene.meshes[0].indices;
 	for (uint32_t i = 0; i < 100000; i++) {
 		assert_int_equal(indices[3 * i], i ? i + 2 : 0);
 		assert_int_equal(indices[3 * (100000 + i)], indices[3 * i]);
 	}
-	nt_scene_free(&scene);
+	close_reading(&r);
 	free(text);
 }
 
@@ -419,18 +408,18 @@ TEST(lines_longer_than_a_chunk)
 		used += (size_t)sprintf(text + used, " \\\n%s", i == 200000 ? "2" : "");
 	used += (size_t)sprintf(text + used, " 3\nf 3 2 1");
 	for (unsigned threads = 1; threads <= 2; threads++) {
-		nt_scene scene;
-		nt_error error;
-		assert_int_equal(open_scene(&scene, text, used, threads, &error), NT_OK);
-		assert_int_equal(scene.meshes[0].face_count, 2);
-		nt_scene_free(&scene);
+		reading r;
+		open_bytes(&r, text, used, threads);
+		assert_int_equal(r.status, NT_OK);
+		assert_int_equal(r.scene.meshes[0].face_count, 2);
+		close_reading(&r);
 	}
 	used += (size_t)sprintf(text + used, " x");
-	nt_scene scene;
-	nt_error error;
-	assert_int_equal(open_scene(&scene, text, used, 2, &error), NT_ERROR_INPUT);
-	assert_int_equal(error.place.line, 4 + 1 + 400000 + 1);
-	nt_scene_free(&scene);
+	reading r;
+	open_bytes(&r, text, used, 2);
+	assert_int_equal(r.status, NT_ERROR_INPUT);
+	assert_int_equal(r.error.place.line, 4 + 1 + 400000 + 1);
+	close_reading(&r);
 	free(text);
 }
 
@@ -450,19 +439,6 @@ static bool lacks_normals(const char *name)
 	return strcmp(name, "test_wrong_attribute_mapping.obj") == 0;
 }
 
-static char *read_file(const char *path, size_t *size)
-{
-	FILE *file = fopen(path, "rb");
-	assert_non_null(file);
-	fseek(file, 0, SEEK_END);
-	*size = (size_t)ftell(file);
-	rewind(file);
-	char *bytes = malloc(*size + 1);
-	assert_int_equal(fread(bytes, 1, *size, file), *size);
-	fclose(file);
-	return bytes;
-}
-
 TEST(public_models_agree_with_the_naive_reader)
 {
 	static const char folder[] = "../shared/models/obj";
@@ -477,18 +453,20 @@ TEST(public_models_agree_with_the_naive_reader)
 		if (length < 4 || strcmp(entry->d_name + length - 4, ".obj") != 0)
 			continue;
 		char path[400];
-		size_t size;
+		nt_error error;
+		nt_file file;
 		snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-		char *bytes = read_file(path, &size);
+		assert_int_equal(nt_file_open(&file, path, &error), NT_OK);
+		const char *bytes = (const char *)file.data;
 		if (refusal(entry->d_name)) {
-			nt_scene scene;
-			nt_error error;
-			assert_int_equal(open_scene(&scene, bytes, size, 2, &error), refusal(entry->d_name));
-			nt_scene_free(&scene);
+			reading r;
+			open_bytes(&r, bytes, file.size, 2);
+			assert_int_equal(r.status, refusal(entry->d_name));
+			close_reading(&r);
 		} else if (!lacks_normals(entry->d_name)) {
-			assert_agrees(bytes, size, 2);
+			assert_agrees(bytes, file.size, 2);
 		}
-		free(bytes);
+		nt_file_close(&file);
 		count++;
 	}
 	closedir(dir);

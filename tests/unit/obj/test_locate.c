@@ -16,42 +16,69 @@ static void assert_place(const reading *r, uint32_t mesh, uint32_t face, size_t 
 	nt_arena_free(&arena);
 }
 
-/* What is no face is not counted: a triangle has its own line, whatever stands before it. */
-TEST(locate_behind_small_faces)
+TEST(locate_faces_by_the_lines_of_their_file)
 {
-	reading r;
-	only_mesh(&r, TRIANGLE      /* lines 1 to 3 */
-		"f 1 2\n"           /* 4: two corners */
-		"f 1 2 3\n"         /* 5: face 0 */
-		"f\n"               /* 6 */
-		"f 2\n"             /* 7 */
-		"f 3 1 2\n");       /* 8: face 1 */
-	assert_place(&r, 0, 0, 5, "1 2 3");
-	assert_place(&r, 0, 1, 8, "3 1 2");
-	close_reading(&r);
-}
-
-TEST(locate_with_lone_cr)
-{
-	reading r;
-	only_mesh(&r, "v 0 0 0\rv 1 0 0\rv 0 1 0\r" /* 1 to 3 */
-		"# f 9 9 9\r"                       /* 4 */
-		"f 1 2 3\r"                         /* 5: face 0 */
-		"\r"                                /* 6 */
-		"f 2 3 1");                         /* 7: face 1, without an end */
-	assert_place(&r, 0, 0, 5, "1 2 3");
-	assert_place(&r, 0, 1, 7, "2 3 1");
-	close_reading(&r);
-}
-
-TEST(locate_with_crlf_and_mark)
-{
-	reading r;
-	only_mesh(&r, "\xEF\xBB\xBFv 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\n" /* 1 to 3 */
-		"\r\n"                                                /* 4 */
-		"f 1 2 3\r\n");                                       /* 5: face 0 */
-	assert_place(&r, 0, 0, 5, "1 2 3");
-	close_reading(&r);
+	static const struct {
+		const char *text;
+		struct {
+			uint32_t mesh, face;
+			size_t line;
+			const char *corners;
+		} places[4];
+	} cases[] = {
+		/* what is no face is not counted: a triangle has its own line, whatever stands before it */
+		{TRIANGLE             /* lines 1 to 3 */
+			"f 1 2\n"     /* 4: two corners */
+			"f 1 2 3\n"   /* 5: face 0 */
+			"f\n"         /* 6 */
+			"f 2\n"       /* 7 */
+			"f 3 1 2\n",  /* 8: face 1 */
+			{{0, 0, 5, "1 2 3"}, {0, 1, 8, "3 1 2"}}},
+		{"v 0 0 0\rv 1 0 0\rv 0 1 0\r" /* 1 to 3 */
+			"# f 9 9 9\r"          /* 4 */
+			"f 1 2 3\r"            /* 5: face 0 */
+			"\r"                   /* 6 */
+			"f 2 3 1",             /* 7: face 1, without an end */
+			{{0, 0, 5, "1 2 3"}, {0, 1, 7, "2 3 1"}}},
+		{"\xEF\xBB\xBFv 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\n" /* 1 to 3 */
+			"\r\n"                                   /* 4 */
+			"f 1 2 3\r\n",                           /* 5: face 0 */
+			{{0, 0, 5, "1 2 3"}}},
+		/* a pentagon becomes three triangles and stays one face of the source */
+		{"v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv -1 1 0\n" /* 1 to 5 */
+			"f 1 2 3\n"     /* 6: face 0 */
+			"f 1 2 3 4 5\n" /* 7: face 1 */
+			"f 1 2 3 4\n"   /* 8: face 2 */
+			"f 3 4 5\n",    /* 9: face 3 */
+			{{0, 1, 7, "1 2 3 4 5"}, {0, 2, 8, "1 2 3 4"}, {0, 3, 9, "3 4 5"}}},
+		/* a statement stands where its first word does */
+		{"v 0 \\\n0 0\nv 1 0 0\nv 0 1 0\n" /* 1 and 2, 3, 4 */
+			"f 1 \\\n"      /* 5: face 0 */
+			"\t2 \\\r\n"    /* 6 */
+			"3 # f 1 1 1\n" /* 7 */
+			" \\\n"         /* 8 */
+			"f\t3  1 2#\n"  /* 9: face 1 */
+			"fo 2 3 1\n",   /* 10: face 2 */
+			{{0, 0, 5, "1 2 3"}, {0, 1, 9, "3 1 2"}, {0, 2, 10, "2 3 1"}}},
+		/* faces count from the first of their object, which is a mesh */
+		{TRIANGLE "vt 0 0\nvn 0 0 1\n"           /* 1 to 5 */
+			"o first\nf 1/1/1 2/1/1 3/1/1\n" /* 6, 7: mesh 0 face 0 */
+			"f 1 2\n"                        /* 8 */
+			"o empty\no second\n"            /* 9, 10 */
+			"f -3//-1 -2//-1 -1//-1\n"       /* 11: mesh 1 face 0 */
+			"g other\nf 1/1 2/1 3/1\n",      /* 12, 13: mesh 1 face 1 */
+			{{0, 0, 7, "1/1/1 2/1/1 3/1/1"}, {1, 0, 11, "-3//-1 -2//-1 -1//-1"}, {1, 1, 13, "1/1 2/1 3/1"}}},
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		reading r;
+		open_text(&r, cases[i].text);
+		assert_int_equal(r.status, NT_OK);
+		assert_int_equal(r.scene.mesh_count, strstr(cases[i].text, "o second") ? 2 : 1);
+		for (size_t k = 0; k < 4 && cases[i].places[k].line; k++)
+			assert_place(&r, cases[i].places[k].mesh, cases[i].places[k].face, cases[i].places[k].line,
+				cases[i].places[k].corners);
+		close_reading(&r);
+	}
 }
 
 /* ZBrush writes them. The face before them ends where they begin. */
@@ -63,58 +90,6 @@ TEST(locate_before_zero_bytes)
 	open_bytes(&r, text, sizeof text, 1);
 	assert_int_equal(r.status, NT_OK);
 	assert_place(&r, 0, 0, 4, "1 2 3");
-	close_reading(&r);
-}
-
-/* A pentagon becomes three triangles and stays one face of the source. */
-TEST(locate_polygons)
-{
-	reading r;
-	const nt_mesh *mesh = only_mesh(&r, "v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv -1 1 0\n" /* 1 to 5 */
-		"f 1 2 3\n"       /* 6: face 0 */
-		"f 1 2 3 4 5\n"   /* 7: face 1 */
-		"f 1 2 3 4\n"     /* 8: face 2 */
-		"f 3 4 5\n");     /* 9: face 3 */
-	assert_int_equal(mesh->face_count, 1 + 3 + 1 + 1);
-	assert_int_equal(mesh->face_polygon[mesh->face_count - 1], 3);
-	assert_place(&r, 0, 1, 7, "1 2 3 4 5");
-	assert_place(&r, 0, 2, 8, "1 2 3 4");
-	assert_place(&r, 0, 3, 9, "3 4 5");
-	close_reading(&r);
-}
-
-/* A statement stands where its first word does. */
-TEST(locate_joined_lines)
-{
-	reading r;
-	only_mesh(&r, "v 0 \\\n0 0\nv 1 0 0\nv 0 1 0\n" /* 1 and 2, 3, 4 */
-		"f 1 \\\n"      /* 5: face 0 */
-		"\t2 \\\r\n"    /* 6 */
-		"3 # f 1 1 1\n" /* 7 */
-		" \\\n"         /* 8 */
-		"f\t3  1 2#\n"  /* 9: face 1 */
-		"fo 2 3 1\n");  /* 10: face 2 */
-	assert_place(&r, 0, 0, 5, "1 2 3");
-	assert_place(&r, 0, 1, 9, "3 1 2");
-	assert_place(&r, 0, 2, 10, "2 3 1");
-	close_reading(&r);
-}
-
-/* Faces count from the first of their object, which is a mesh. */
-TEST(locate_in_objects)
-{
-	reading r;
-	open_text(&r, TRIANGLE "vt 0 0\nvn 0 0 1\n"  /* 1 to 5 */
-		"o first\nf 1/1/1 2/1/1 3/1/1\n"     /* 6, 7: mesh 0 face 0 */
-		"f 1 2\n"                            /* 8 */
-		"o empty\no second\n"                /* 9, 10 */
-		"f -3//-1 -2//-1 -1//-1\n"           /* 11: mesh 1 face 0 */
-		"g other\nf 1/1 2/1 3/1\n");         /* 12, 13: mesh 1 face 1 */
-	assert_int_equal(r.status, NT_OK);
-	assert_int_equal(r.scene.mesh_count, 2);
-	assert_place(&r, 0, 0, 7, "1/1/1 2/1/1 3/1/1");
-	assert_place(&r, 1, 0, 11, "-3//-1 -2//-1 -1//-1");
-	assert_place(&r, 1, 1, 13, "1/1 2/1 3/1");
 	close_reading(&r);
 }
 
