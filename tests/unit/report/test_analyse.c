@@ -40,40 +40,16 @@ TEST(sound_tangents_give_no_findings)
 	hand_free(h, report);
 }
 
-TEST(inverted_w_is_one_finding_with_its_share)
+/* Where dP/dv is 20 degrees from dP/du, a T that averaging turned by 60 degrees has a bitangent that is 130 degrees from
+ * dP/dv, and yet is not reversed. */
+TEST(tangents_of_sheared_coordinates_are_not_reversed)
 {
 	hand_mesh *h = sound_quad();
-	for (size_t v = 0; v < 4; v++)
-		h->tangents[v][3] = -1.0f;
-	nt_report *report = hand_report(h, NULL);
-	assert_int_equal(report->finding_count, 1);
-	const nt_report_finding *finding = hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH);
-	assert_int_equal(finding->count, 2);
-	assert_int_equal(finding->severity, NT_SEVERITY_ERROR);
-	assert_true(finding->numbers[0].value == 1.0);
-	assert_non_null(strstr(finding->message, "100 % of 2, the convention is inverted"));
-	hand_free(h, report);
-}
-
-/* T turned by half a turn, and with it the bitangent. Where dP/dv is 20 degrees from dP/du, a T that averaging turned
- * by 60 degrees has a bitangent that is 130 degrees from dP/dv, and yet is not reversed. */
-TEST(reversed_tangents_are_not_those_of_sheared_coordinates)
-{
-	hand_mesh *h = sound_quad();
-	for (size_t v = 0; v < 4; v++)
-		set_tangent(h, v, -1, 0, 0, 1);
-	nt_report *report = hand_report(h, NULL);
-	const nt_report_finding *finding = hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH);
-	assert_int_equal(finding->count, 2);
-	assert_non_null(strstr(finding->message, "100 % of 2, the tangents are reversed too"));
-	hand_free(h, report);
-
-	h = sound_quad();
 	for (size_t v = 0; v < 4; v++) {
 		h->texcoords[v][0] -= h->texcoords[v][1] * 2.7474774f; /* cot 20 degrees */
 		set_tangent(h, v, 0.5f, 0.8660254f, 0, 1);
 	}
-	report = hand_report(h, NULL);
+	nt_report *report = hand_report(h, NULL);
 	assert_int_equal(hand_findings(report, NT_CODE_TAN_SIGN_MISMATCH), 0);
 	hand_free(h, report);
 }
@@ -87,67 +63,57 @@ TEST(unused_tangents_are_told_and_cannot_be_errors)
 	nt_report *report = hand_report(h, NULL);
 	hand_finding(report, NT_CODE_TAN_UNUSED);
 	assert_int_equal(hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH)->severity, NT_SEVERITY_WARNING);
+	assert_true(hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH)->numbers[0].value == 1.0); /* all */
 	hand_free(h, report);
 }
 
+/* Of vertex 1, which has one corner, or of several. */
 TEST(each_kind_of_bad_tangent_has_its_code)
 {
 	const struct {
 		float t[4];
+		size_t first, last; /* vertices */
 		nt_code code;
+		nt_severity severity;
+		size_t count, findings, turned; /* of all codes; corners by the last bin of angles */
+		const char *says;
 	} cases[] = {
-		{{0, 0, 0, 1}, NT_CODE_TAN_ZERO},
-		{{NAN, 0, 0, 1}, NT_CODE_TAN_NOT_FINITE},
-		{{1, 0, 0, INFINITY}, NT_CODE_TAN_NOT_FINITE},
-		{{2, 0, 0, 1}, NT_CODE_TAN_NON_UNIT},
-		{{1.007f, 0, 0, 1}, NT_CODE_TAN_NON_UNIT},
-		{{1, 0, 0, 0}, NT_CODE_TAN_BAD_W},
-		{{1, 0, 0, 0.5f}, NT_CODE_TAN_BAD_W},
-		{{0, 0, 1, 1}, NT_CODE_TAN_PARALLEL_NORMAL},
-		{{0, 0, -1, 1}, NT_CODE_TAN_PARALLEL_NORMAL},
-		{{0.8f, 0, 0.6f, 1}, NT_CODE_TAN_NOT_ORTHOGONAL},
-		{{0, 1, 0, 1}, NT_CODE_TAN_DIRECTION_MISMATCH},
+		{{0, 0, 0, 1}, 1, 1, NT_CODE_TAN_ZERO, NT_SEVERITY_ERROR, 1, 1, 0, ""},
+		{{NAN, 0, 0, 1}, 1, 1, NT_CODE_TAN_NOT_FINITE, NT_SEVERITY_ERROR, 1, 1, 0, ""},
+		{{1, 0, 0, INFINITY}, 1, 1, NT_CODE_TAN_NOT_FINITE, NT_SEVERITY_ERROR, 1, 1, 0, ""},
+		{{2, 0, 0, 1}, 1, 1, NT_CODE_TAN_NON_UNIT, NT_SEVERITY_ERROR, 1, 1, 0, ""},
+		{{1.007f, 0, 0, 1}, 1, 1, NT_CODE_TAN_NON_UNIT, NT_SEVERITY_ERROR, 1, 1, 0, ""},
+		{{1, 0, 0, 0}, 1, 1, NT_CODE_TAN_BAD_W, NT_SEVERITY_ERROR, 1, 1, 0, ""},
+		{{1, 0, 0, 0.5f}, 1, 1, NT_CODE_TAN_BAD_W, NT_SEVERITY_ERROR, 1, 1, 0, ""},
+		{{0, 0, 1, 1}, 1, 1, NT_CODE_TAN_PARALLEL_NORMAL, NT_SEVERITY_ERROR, 1, 2, 1, ""},
+		{{0, 0, -1, 1}, 1, 1, NT_CODE_TAN_PARALLEL_NORMAL, NT_SEVERITY_ERROR, 1, 2, 1, ""},
+		{{0.8f, 0, 0.6f, 1}, 1, 1, NT_CODE_TAN_NOT_ORTHOGONAL, NT_SEVERITY_WARNING, 1, 2, 0, ""},
+		{{0, 1, 0, 1}, 1, 1, NT_CODE_TAN_DIRECTION_MISMATCH, NT_SEVERITY_WARNING, 1, 1, 1, ""},
+		{{0, 1, 0, 1}, 0, 3, NT_CODE_TAN_DIRECTION_MISMATCH, NT_SEVERITY_WARNING, 6, 1, 6, ""},
+		/* of three corners, in two triangles */
+		{{1, 0, 0, -1}, 0, 1, NT_CODE_TAN_MIXED_W_TRIANGLE, NT_SEVERITY_WARNING, 2, 1, 0, ""},
+		{{1, 0, 0, -1}, 0, 3, NT_CODE_TAN_SIGN_MISMATCH, NT_SEVERITY_ERROR, 2, 1, 0,
+			"100 % of 2, the convention is inverted"},
+		{{-1, 0, 0, 1}, 0, 3, NT_CODE_TAN_SIGN_MISMATCH, NT_SEVERITY_ERROR, 2, 2, 6,
+			"100 % of 2, the tangents are reversed too"},
+		{{1.0067f, 0, 0, 1}, 1, 1, NT_CODE_COUNT, 0, 0, 0, 0, ""}, /* within the validator's tolerance */
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
 		hand_mesh *h = sound_quad();
-		memcpy(h->tangents[1], cases[i].t, sizeof cases[i].t); /* vertex 1 has one corner */
+		for (size_t v = cases[i].first; v <= cases[i].last; v++)
+			memcpy(h->tangents[v], cases[i].t, sizeof cases[i].t);
 		nt_report *report = hand_report(h, NULL);
-		assert_int_equal(hand_finding(report, cases[i].code)->count, 1);
-		assert_int_equal(hand_finding(report, cases[i].code)->spots[0].vertices[0], 1);
+		assert_int_equal(report->finding_count, cases[i].findings);
+		if (cases[i].findings) {
+			const nt_report_finding *finding = hand_finding(report, cases[i].code);
+			assert_int_equal(finding->count, cases[i].count);
+			assert_int_equal(finding->severity, cases[i].severity);
+			assert_int_equal(finding->spots[0].vertices[0], cases[i].first);
+			assert_non_null(strstr(finding->message, cases[i].says));
+			assert_int_equal(report->meshes[0].angle_histogram[5], cases[i].turned);
+		}
 		hand_free(h, report);
 	}
-}
-
-TEST(length_within_the_validators_tolerance_is_unit)
-{
-	hand_mesh *h = sound_quad();
-	set_tangent(h, 1, 1.0067f, 0, 0, 1);
-	nt_report *report = hand_report(h, NULL);
-	assert_int_equal(report->finding_count, 0);
-	hand_free(h, report);
-}
-
-TEST(mixed_w_is_counted_by_triangle)
-{
-	hand_mesh *h = sound_quad();
-	h->tangents[1][3] = -1.0f; /* in the first triangle only */
-	nt_report *report = hand_report(h, NULL);
-	assert_int_equal(hand_finding(report, NT_CODE_TAN_MIXED_W_TRIANGLE)->count, 1);
-	assert_int_equal(hand_findings(report, NT_CODE_TAN_SIGN_MISMATCH), 0);
-	hand_free(h, report);
-}
-
-TEST(directions_off_by_90_degrees_fill_one_bin)
-{
-	hand_mesh *h = sound_quad();
-	for (size_t v = 0; v < 4; v++)
-		set_tangent(h, v, 0, 1, 0, 1);
-	nt_report *report = hand_report(h, NULL);
-	const nt_report_finding *finding = hand_finding(report, NT_CODE_TAN_DIRECTION_MISMATCH);
-	assert_int_equal(finding->count, 6);
-	assert_int_equal(finding->severity, NT_SEVERITY_WARNING);
-	assert_int_equal(report->meshes[0].angle_histogram[5], 6);
-	hand_free(h, report);
 }
 
 TEST(required_tangents_are_missed)
