@@ -12,8 +12,8 @@ enum { FAMILIES = 14 };
 
 static const char *const names[FAMILIES] = {"a plane of whole numbers", "a plane on its side",
 	"a plane about the origin", "a line of whole numbers", "a line of whole v", "mirrored in all axes",
-	"coordinates that are swapped", "texture coordinates alone", "normals of a byte", "position and texture apart", "powers of two",
-	"z in the last bits", "shorts from 0 to 1", "a cube of few values"};
+	"coordinates that are swapped", "texture coordinates alone", "normals of a byte", "position and texture apart",
+	"powers of two", "z in the last bits", "shorts from 0 to 1", "a cube of few values"};
 
 static float power_of_two(unsigned bits)
 {
