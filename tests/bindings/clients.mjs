@@ -6,6 +6,7 @@ import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { pathToFileURL } from 'node:url';
+import { equalBytes, triangleGoldens } from './golden.mjs';
 import { done, test } from './tap.mjs';
 
 const [npm, modules, playwright, folder, ...files] = process.argv.slice(2);
@@ -39,6 +40,19 @@ for (const file of files)
 			assert.deepEqual(found, expected);
 		});
 	});
+
+await test('the package mikktspace has the bytes of the unfinished sort, three\'s module those of the completed one', async () => {
+	const { default: published } = await peer('mikktspace');
+	const sorted = await peer('three/examples/jsm/libs/mikktspace.module.js');
+	await sorted.ready;
+	for (const [module, folder] of [[published, 'published'], [sorted, 'sorted']]) {
+		const goldens = triangleGoldens(new URL(`../../data/golden/edge_sort/${folder}`, import.meta.url).pathname);
+		assert.ok(goldens.size > 5);
+		for (const [name, g] of goldens)
+			assert.ok(equalBytes(Float32Array.from(module.generateTangents(g.positions, g.normals, g.texcoords)), g.tangents),
+				`${folder}/${name}`);
+	}
+});
 
 // A bundle of `entry` that finds three in MODULES and nmtan in PACKAGE.
 async function bundle(entry, outfile, format) {

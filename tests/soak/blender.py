@@ -39,7 +39,7 @@ def compare(name, mesh):
     positions = corner_array(mesh.vertices, "co", 3)[vertices]
     texcoords = corner_array(mesh.uv_layers.active.data, "uv", 2)
     start = time.perf_counter()
-    ours = nmtan.tangents(positions, normals, texcoords, repair=False)
+    ours = nmtan.tangents(positions, normals, texcoords, method="mikktspace-sorted", repair=False)
     seconds = time.perf_counter() - start
     dots = np.einsum("ij,ij->i", ours[:, :3].astype(float), theirs)
     cross = np.linalg.norm(np.cross(ours[:, :3].astype(float), theirs), axis=1)
