@@ -56,9 +56,8 @@ static bool is_limit(const uint32_t *ids, size_t triangles, size_t vertices)
 	return unsorted.limit;
 }
 
-static void two_edges_are_sorted(void **state)
+TEST(two_edges_are_sorted)
 {
-	(void)state;
 	place();
 	expect((uint32_t[]){C, A, B, C, B, A}, 2, 3, NULL, 0);
 	expect(NULL, 0, 0, NULL, 0);
@@ -73,9 +72,8 @@ static void two_edges_are_sorted(void **state)
 static const uint32_t three[] = {C, A, B, C, B, A, C, A, B};
 static const nt_unsorted_edge three_edges[] = {{1, NT_NO_NEIGHBOUR}, {4, 2}, {7, 1}};
 
-static void three_equal_edges_meet_from_the_end(void **state)
+TEST(three_equal_edges_meet_from_the_end)
 {
-	(void)state;
 	place();
 	expect(three, 3, 3, three_edges, 3);
 }
@@ -83,9 +81,8 @@ static void three_equal_edges_meet_from_the_end(void **state)
 /* 0 1 0 four times: the pivot is edge 10 (the same seed mod 12), a 1. 1 changes places with 11, 4 with 10, and 7 with
  * 9: places 0 to 8 have edge 10 alone, places 9 to 11 edges 7, 4 and 1. In these the next seed chooses a 1 again; 7 and
  * 1 change places. The order is 10 1 4 7: between A and D, B, D, B. Equal ones are not neighbours and do not meet. */
-static void equal_edges_that_are_apart_do_not_meet(void **state)
+TEST(equal_edges_that_are_apart_do_not_meet)
 {
-	(void)state;
 	static const uint32_t ids[] = {C, A, B, C, A, D, C, B, A, C, D, A};
 	static const nt_unsorted_edge edges[] = {{1, NT_NO_NEIGHBOUR}, {4, NT_NO_NEIGHBOUR}, {7, NT_NO_NEIGHBOUR},
 		{10, NT_NO_NEIGHBOUR}};
@@ -94,9 +91,8 @@ static void equal_edges_that_are_apart_do_not_meet(void **state)
 }
 
 /* A triangle with two corners at one position is no part of the array, but has its number. */
-static void degenerate_triangles_have_no_edges(void **state)
+TEST(degenerate_triangles_have_no_edges)
 {
-	(void)state;
 	static const uint32_t ids[] = {C, A, B, A, D, B, C, B, A, C, A, B};
 	static const nt_unsorted_edge edges[] = {{1, NT_NO_NEIGHBOUR}, {7, 3}, {10, 2}};
 	place();
@@ -107,9 +103,8 @@ static void degenerate_triangles_have_no_edges(void **state)
 	expect(ids, 4, 4, NULL, 0);
 }
 
-static void rows_without_corners_are_not_looked_at(void **state)
+TEST(rows_without_corners_are_not_looked_at)
 {
-	(void)state;
 	static const float unused[] = {1e30f, -5, NAN, INFINITY};
 	for (size_t i = 0; i < sizeof unused / sizeof *unused; i++)
 		for (int k = 0; k < 3; k++) {
@@ -119,9 +114,8 @@ static void rows_without_corners_are_not_looked_at(void **state)
 		}
 }
 
-static void positions_that_are_not_welded_are_a_limit(void **state)
+TEST(positions_that_are_not_welded_are_a_limit)
 {
-	(void)state;
 	static const float wrong[] = {NAN, INFINITY, -INFINITY, FLT_MAX / 2, -FLT_MAX / 2};
 	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
 		for (int k = 0; k < 3; k++) {
@@ -135,9 +129,8 @@ static void positions_that_are_not_welded_are_a_limit(void **state)
 }
 
 /* See test_representatives.c: each halving parts one point from the others. */
-static void too_many_halvings_are_a_limit(void **state)
+TEST(too_many_halvings_are_a_limit)
 {
-	(void)state;
 	enum { POINTS = 201 };
 	uint32_t ids[POINTS + 3];
 	place();
@@ -153,9 +146,8 @@ static void too_many_halvings_are_a_limit(void **state)
 }
 
 /* The same three triangles many times: every array is needed. */
-static void every_failed_allocation_is_told(void **state)
+TEST(every_failed_allocation_is_told)
 {
-	(void)state;
 	enum { TIMES = 3000 };
 	static uint32_t ids[9 * TIMES];
 	for (size_t i = 0; i < TIMES; i++)
@@ -179,15 +171,5 @@ static void every_failed_allocation_is_told(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(two_edges_are_sorted),
-		cmocka_unit_test(three_equal_edges_meet_from_the_end),
-		cmocka_unit_test(equal_edges_that_are_apart_do_not_meet),
-		cmocka_unit_test(degenerate_triangles_have_no_edges),
-		cmocka_unit_test(rows_without_corners_are_not_looked_at),
-		cmocka_unit_test(positions_that_are_not_welded_are_a_limit),
-		cmocka_unit_test(too_many_halvings_are_a_limit),
-		cmocka_unit_test(every_failed_allocation_is_told),
-	};
-	return cmocka_run_group_tests_name("topology/edge_sort", tests, NULL, NULL);
+	return run_group("topology/edge_sort");
 }

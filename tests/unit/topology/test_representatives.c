@@ -38,9 +38,8 @@ static void put(uint32_t vertex, float x, float y, float z)
 }
 
 /* Vertices by themselves in their cells have their first corners. */
-static void vertices_alone_have_their_first_corner(void **state)
+TEST(vertices_alone_have_their_first_corner)
 {
-	(void)state;
 	static const uint32_t ids[] = {2, 0, 1, 1, 3, 2};
 	uint32_t found[4];
 	for (uint32_t v = 0; v < 4; v++)
@@ -52,9 +51,8 @@ static void vertices_alone_have_their_first_corner(void **state)
 /* x is the longest axis, so that H (y = 1), M (0.25) and L (0) are in cell 0, in the order of corners H0 M1 L2 L3 M4
  * H5. Halved at y = 0.5: H0 changes places with M4, the last one below; what follows is on its side: M4 M1 L2 L3 | H0
  * H5. Halved at 0.125: M4 and L3 change places, then M1 and L2: L3 L2 | M1 M4. The first of each is what is found. */
-static void corners_that_are_swapped_come_first(void **state)
+TEST(corners_that_are_swapped_come_first)
 {
-	(void)state;
 	enum { H, M, L, A, B, C };
 	static const uint32_t ids[] = {H, M, L, L, M, H, A, B, C};
 	uint32_t found[6];
@@ -74,9 +72,8 @@ static void corners_that_are_swapped_come_first(void **state)
 }
 
 /* Nothing is left to halve, so that each has the first corner that is equal in all eight floats: its own. */
-static void vertices_at_one_position_stay_apart(void **state)
+TEST(vertices_at_one_position_stay_apart)
 {
-	(void)state;
 	static const uint32_t ids[] = {1, 0, 2, 0, 1, 2};
 	uint32_t found[3];
 	put(0, 1, 1, 1);
@@ -86,9 +83,8 @@ static void vertices_at_one_position_stay_apart(void **state)
 	assert_memory_equal(found, ((uint32_t[]){1, 0, 2}), sizeof found);
 }
 
-static void the_box_is_that_of_used_vertices(void **state)
+TEST(the_box_is_that_of_used_vertices)
 {
-	(void)state;
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
 	const nt_triangles none = {0};
@@ -121,9 +117,8 @@ static void the_box_is_that_of_used_vertices(void **state)
 
 /* Each is nearer to 0 than half of the one before, so that a halving parts one of them from the others, all of which
  * are in cell 0. */
-static void halvings_have_a_limit(void **state)
+TEST(halvings_have_a_limit)
 {
-	(void)state;
 	enum { POINTS = 201 };
 	uint32_t ids[POINTS + 3], found[POINTS + 3];
 	for (uint32_t v = 0; v < POINTS + 3; v++) {
@@ -138,9 +133,8 @@ static void halvings_have_a_limit(void **state)
 	assert_memory_equal(found, ids, sizeof found);
 }
 
-static void every_failed_allocation_is_told(void **state)
+TEST(every_failed_allocation_is_told)
 {
-	(void)state;
 	static uint32_t ids[3 * MOST], found[MOST];
 	for (uint32_t i = 0; i < 3 * MOST; i++) {
 		ids[i] = i * 7919 % MOST;
@@ -167,13 +161,5 @@ static void every_failed_allocation_is_told(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(vertices_alone_have_their_first_corner),
-		cmocka_unit_test(corners_that_are_swapped_come_first),
-		cmocka_unit_test(vertices_at_one_position_stay_apart),
-		cmocka_unit_test(the_box_is_that_of_used_vertices),
-		cmocka_unit_test(halvings_have_a_limit),
-		cmocka_unit_test(every_failed_allocation_is_told),
-	};
-	return cmocka_run_group_tests_name("topology/representatives", tests, NULL, NULL);
+	return run_group("topology/representatives");
 }
