@@ -22,9 +22,9 @@ typedef struct grid {
 	uint32_t quads[4 * QUADS], triangles[CORNERS];
 } grid;
 
-/* Every number is random, so that no two methods agree, and the order of quads, which are cut by their first
- * diagonal. One in six is missing: MikkTSpace takes quads that have only a corner in common as strangers, and the robust
- * method, which has its weights, does not. */
+/* Every number is random, so that no two methods agree, and the order of quads, which are cut by their first diagonal.
+ * One in six is missing: MikkTSpace takes quads that have only a corner in common as strangers, and the robust method,
+ * which has its weights, does not. */
 static void make_grid(grid *g, uint64_t seed)
 {
 	nt_random random = nt_random_seed(seed);

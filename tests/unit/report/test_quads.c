@@ -19,7 +19,7 @@ static hand_mesh *points(uint32_t count)
 	return h;
 }
 
-/* What the triangles are: of each, - alone, C and D the first half of an (a b c d) cut by a c or b d, 2 a second half. */
+/* What each triangle is: - alone, C and D the first half of an (a b c d) cut by a c or b d, 2 a second half. */
 static void expect(const hand_mesh *h, bool polygons, const char *letters)
 {
 	static const char names[] = {[NT_HALF_NONE] = '-', [NT_HALF_ABC] = 'C', [NT_HALF_ABD] = 'D',
@@ -39,7 +39,8 @@ static void expect(const hand_mesh *h, bool polygons, const char *letters)
 static void both_cuts_pair_and_so_do_their_mirror_images(void **state)
 {
 	(void)state;
-	static const uint32_t pairs[][6] = {{0, 1, 2, 0, 2, 3}, {0, 3, 2, 0, 2, 1}, {0, 1, 3, 1, 2, 3}, {0, 3, 1, 3, 2, 1}};
+	static const uint32_t pairs[][6] = {{0, 1, 2, 0, 2, 3}, {0, 3, 2, 0, 2, 1}, {0, 1, 3, 1, 2, 3},
+		{0, 3, 1, 3, 2, 1}};
 	static const char *const letters[] = {"C2", "C2", "D2", "D2"};
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
 		hand_mesh *h = points(4);
@@ -54,7 +55,8 @@ static void both_cuts_pair_and_so_do_their_mirror_images(void **state)
 static void other_neighbours_do_not_pair(void **state)
 {
 	(void)state;
-	static const uint32_t pairs[][6] = {{0, 1, 2, 2, 3, 0}, {0, 1, 2, 0, 3, 2}, {0, 1, 3, 3, 1, 2}, {0, 1, 2, 3, 4, 5}};
+	static const uint32_t pairs[][6] = {{0, 1, 2, 2, 3, 0}, {0, 1, 2, 0, 3, 2}, {0, 1, 3, 3, 1, 2},
+		{0, 1, 2, 3, 4, 5}};
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
 		hand_mesh *h = points(6);
 		hand_triangle(h, pairs[i][0], pairs[i][1], pairs[i][2]);
