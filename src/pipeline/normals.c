@@ -116,7 +116,7 @@ static nt_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, norma
 /* Corners keep the normal their vertex has, where it has one and that is not to be replaced. */
 static void choose_normals(nt_mesh *mesh, nt_normals mode, normal_job *job)
 {
-	mesh->made_normal_corners = mesh->replaced_normal_corners = 0;
+	mesh->made_normal_corners = mesh->replaced_normal_corners = mesh->cancelled_normal_corners = 0;
 	for (size_t c = 0; c < mesh->corner_count; c++) {
 		const size_t vertex = vertex_of(mesh, c);
 		const bool lacks = lacks_normal(mesh, vertex), make = lacks || replaces(mode);
@@ -124,6 +124,8 @@ static void choose_normals(nt_mesh *mesh, nt_normals mode, normal_job *job)
 			memcpy(job->rows[c], mesh->normals + 3 * vertex, 3 * sizeof(float));
 		mesh->made_normal_corners += lacks;
 		mesh->replaced_normal_corners += make && !lacks;
+		mesh->cancelled_normal_corners += make && job->rows[c][3] != 0.0f;
+		job->rows[c][3] = 0.0f;
 	}
 }
 
@@ -193,6 +195,9 @@ static void report_normals(nt_scene *scene, const nt_mesh *mesh)
 	if (mesh->replaced_normal_corners)
 		nt_finding_add(&scene->findings, NT_CODE_NORMALS_REPLACED, nt_mesh_place(mesh, &(nt_place){0}),
 			mesh->replaced_normal_corners, NULL);
+	if (mesh->cancelled_normal_corners)
+		nt_finding_add(&scene->findings, NT_CODE_NORMALS_CANCELLED, nt_mesh_place(mesh, &(nt_place){0}),
+			mesh->cancelled_normal_corners, NULL);
 }
 
 /* The new arrays become the mesh's. */

@@ -140,6 +140,13 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"--normals=replace-flat or replace-smooth asks for it. The finding counts corners that had a normal.",
 		"Nothing; --normals=flat and smooth make only those that are missing.",
 		"a PLY triangle with nx, ny, nz and --normals=replace-flat"),
+	ROW(NORMALS_CANCELLED, WARNING, "{count} made {normal is|normals are} flat: the faces around cancel out",
+		"The faces of one smoothing group at these corners look in opposite directions, as on a sheet whose "
+		"triangles are there twice, once reversed. The sum of their normals is nothing but rounding; the corners "
+		"have the normals of their own faces.",
+		"Give front and back smoothing groups of their own, export normals, or take the back away and make the "
+		"material double-sided.",
+		"an OBJ triangle and its reverse, without vn"),
 	ROW(NORMALS_NOT_THERE, WARNING, "faces refer to normals, but the file has none",
 		"The file has faces with numbers of normals and not a single vn. Normals are made as if the "
 		"numbers were not there.",

@@ -246,6 +246,7 @@ typedef struct nt_mesh {
 	bool normals_made;
 	size_t made_normal_corners; /* corners without a normal for which one was made */
 	size_t replaced_normal_corners; /* corners that had another one */
+	size_t cancelled_normal_corners; /* those of both where smooth normals cancel: they got their face's */
 
 	nt_morph *morphs;         /* [morph_count] targets that move positions or normals; filled by load() */
 	size_t morph_count;

@@ -12,6 +12,7 @@
 #include "base/angle.h"
 #include "base/dvec.h"
 #include "base/hash.h"
+#include "tangent/frames.h"
 #include "topology/corners.h"
 
 /* The sum for one position and smoothing group. */
@@ -19,6 +20,7 @@ typedef struct shared_normal {
 	float position[3]; /* -0 made +0 */
 	uint32_t group;
 	nt_dvec3 sum;
+	double weights; /* of what went into the sum: unit vectors times angles */
 } shared_normal;
 
 /* What a vertex remembers. */
@@ -153,6 +155,7 @@ static uint32_t look_up(normal_table *table, const float *p, uint32_t group)
 	memcpy(entry->position, position, sizeof position);
 	entry->group = group;
 	entry->sum = (nt_dvec3){0, 0, 0};
+	entry->weights = 0.0;
 	return (table->slots[at] = (uint32_t)table->count) - 1;
 }
 
@@ -192,8 +195,9 @@ static void add_block(const nmtan_mesh *mesh, const uint32_t *smoothing, size_t 
 		const uint32_t group = smoothing ? smoothing[face + i] : 1;
 		const nt_dvec3 n = lane(b->normal[0], b->normal[1], b->normal[2], i);
 		for (size_t k = 0; k < size && group != 0 && b->usable[i] != 0.0; k++) {
-			nt_dvec3 *sum = &find_entry(table, mesh, first + at + k, group)->sum;
-			*sum = nt_dvec3_add(*sum, nt_dvec3_scale(b->angles[at + k], n));
+			shared_normal *entry = find_entry(table, mesh, first + at + k, group);
+			entry->sum = nt_dvec3_add(entry->sum, nt_dvec3_scale(b->angles[at + k], n));
+			entry->weights += b->angles[at + k];
 		}
 		at += size;
 	}
@@ -217,7 +221,8 @@ static void sum_normals(const nmtan_mesh *mesh, const uint32_t *smoothing, norma
 	}
 }
 
-/* Sums become unit vectors; zero where they have no direction. */
+/* Sums become unit vectors; zero where they have no direction, as those of a sheet whose faces are there twice, once
+ * reversed: what the additions leave of these is rounding. */
 static void normalise_sums(normal_table *table)
 {
 	double v[3][CORNERS], usable[CORNERS];
@@ -227,8 +232,10 @@ static void normalise_sums(normal_table *table)
 		for (size_t i = 0; i < count; i++)
 			put(v, i, entries[i].sum);
 		normalise(v[0], v[1], v[2], usable, count);
-		for (size_t i = 0; i < count; i++)
-			entries[i].sum = usable[i] != 0.0 ? lane(v[0], v[1], v[2], i) : (nt_dvec3){0, 0, 0};
+		for (size_t i = 0; i < count; i++) {
+			const bool has_direction = nt_dvec3_length(entries[i].sum) > NT_CANCELLED * entries[i].weights;
+			entries[i].sum = has_direction && usable[i] != 0.0 ? lane(v[0], v[1], v[2], i) : (nt_dvec3){0, 0, 0};
+		}
 	}
 }
 
@@ -241,16 +248,18 @@ static bool is_zero(nt_dvec3 n)
 static void write_normals(const nmtan_mesh *mesh, const uint32_t *smoothing, normal_table *table,
 	float (*normals)[4])
 {
+	static const shared_normal none;
 	size_t first = 0;
 	for (size_t face = 0; face < mesh->face_count; face++) {
 		const size_t size = nt_face_size(mesh, face);
 		const uint32_t group = smoothing ? smoothing[face] : 1;
 		for (size_t k = 0; k < size; k++) {
-			nt_dvec3 n = group != 0 ? find_entry(table, mesh, first + k, group)->sum : (nt_dvec3){0, 0, 0};
-			if (is_zero(n) && !face_normal(mesh, first, size, &n))
-				n = (nt_dvec3){0, 0, 1};
-			nt_dvec3_store(n, normals[first + k]);
-			normals[first + k][3] = 0.0f;
+			const shared_normal *entry = group != 0 ? find_entry(table, mesh, first + k, group) : &none;
+			const bool cancelled = is_zero(entry->sum) && entry->weights > 0.0;
+			nt_dvec3 n = entry->sum;
+			const bool has_normal = !is_zero(n) || face_normal(mesh, first, size, &n);
+			nt_dvec3_store(has_normal ? n : (nt_dvec3){0, 0, 1}, normals[first + k]);
+			normals[first + k][3] = cancelled && has_normal ? 1.0f : 0.0f;
 		}
 		first += size;
 	}

@@ -68,6 +68,15 @@ says NORMALS_MADE
 says "6 normals of the input were replaced"
 is "$(gltf out.glb "$normals")" "0.000 0.000 1.000"
 
+scene "where the faces of a group cancel, corners have the normals of their own faces"
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'vt 0 0' 'vt 1 0' 'vt 0 1' 's 1' 'f 1/1 2/2 3/3' 'f 3/3 2/2 1/1' >t.obj
+run t.obj out.glb
+exits 0
+says "warning: 6 made normals are flat: the faces around cancel out [NORMALS_CANCELLED]"
+is "$(gltf out.glb "$normals")" "0.000 0.000 1.000, 0.000 0.000 -1.000"
+run --normals=flat t.obj out.glb
+says_not NORMALS_CANCELLED
+
 scene "triangles of one plane keep sharing their vertices"
 plane_obj 9 >p.obj
 for choice in auto smooth flat replace-smooth replace-flat; do

@@ -166,6 +166,42 @@ static void many_faces_are_what_the_formula_says(void **state)
 		}
 }
 
+/* A bumpy sheet of 10 x 10 quads, each triangle there twice, once reversed, from each corner in turn: at every position
+ * the face normals cancel, and each corner has its own face's. */
+static void where_faces_cancel_corners_have_their_faces(void **state)
+{
+	(void)state;
+	enum { N = 10, SIDE = N + 1, FACES = 4 * N * N };
+	float p[SIDE * SIDE][3], n[3 * FACES][4];
+	uint32_t indices[3 * FACES], (*const triangles)[3] = (uint32_t (*)[3])indices;
+	for (int v = 0; v < SIDE * SIDE; v++) {
+		const float x = (float)(v % SIDE) / N, y = (float)(v / SIDE) / N;
+		memcpy(p[v], (float[3]){x, y, 0.1f * sinf(7 * x) * cosf(9 * y)}, sizeof p[v]);
+	}
+	for (uint32_t i = 0; i < N * N; i++) {
+		const uint32_t a = i / N * SIDE + i % N, c = a + SIDE + 1;
+		const uint32_t halves[2][3] = {{a, a + 1, c}, {a, c, c - 1}};
+		for (uint32_t half = 0; half < 2; half++)
+			for (uint32_t k = 0; k < 3; k++) {
+				triangles[2 * i + half][k] = halves[half][k];
+				triangles[FACES / 2 + 2 * i + half][(5 - k + i) % 3] = halves[half][k];
+			}
+	}
+	const nmtan_mesh m = {.struct_bytes = sizeof m, .face_count = FACES, .vertex_count = SIDE * SIDE,
+		.indices = indices, .positions = &p[0][0], .position_stride_bytes = 12};
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	assert_int_equal(nt_corner_normals(&m, 3 * FACES, NULL, &scratch, n), NMTAN_OK);
+	nt_scratch_free(&scratch);
+	for (size_t c = 0; c < 3 * FACES; c++) {
+		double own[3] = {0, 0, 0};
+		add_share(&m, c / 3 * 3, 3, c % 3, corner_at(&m, c), own);
+		const double length = sqrt(own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
+		assert_near(n[c], (float)(own[0] / length), (float)(own[1] / length), (float)(own[2] / length));
+		assert_true(n[c][3] == 1.0f);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -174,6 +210,7 @@ int main(void)
 		cmocka_unit_test(angle_weights_do_not_depend_on_the_cut),
 		cmocka_unit_test(faces_without_area_give_a_unit_vector),
 		cmocka_unit_test(many_faces_are_what_the_formula_says),
+		cmocka_unit_test(where_faces_cancel_corners_have_their_faces),
 	};
 	return cmocka_run_group_tests_name("tangent/normals", tests, NULL, NULL);
 }
