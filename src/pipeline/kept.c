@@ -77,27 +77,34 @@ static size_t count_wrong_of(const nt_mesh *mesh, nt_arena *arena, unsigned thre
 	return 2 * others > wrong ? wrong : others;
 }
 
+/* Looks at one mesh as if it were alone; `memory` is empty before and after. */
+static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh mesh, nt_arena *memory)
+{
+	nt_scene own = *scene;
+	own.arena = *memory;
+	own.temporary = (nt_arena){0};
+	mesh.plan = (nt_mesh_plan){.pooled = true}; /* a primitive costs what it uses */
+	size_t wrong = 0, judged = 0;
+	/* what cannot be read is copied as it is */
+	const nt_status status = tasks->reader->load(&own, &mesh, tasks->options, NULL);
+	if (!status && mesh.tangents && mesh.texcoords)
+		wrong = count_wrong_of(&mesh, &own.arena, tasks->settings->threads, &judged);
+	if (wrong)
+		nt_finding_add(&scene->findings, NT_CODE_TAN_KEPT_SIGN, nt_mesh_place(&mesh, &(nt_place){0}), wrong,
+			"%.3g %% of %zu", 100.0 * (double)wrong / (double)judged, judged);
+	*memory = own.arena;
+	nt_arena_clear(memory);
+	nt_arena_free(&own.temporary);
+	return status == NT_ERROR_MEMORY ? status : NT_OK;
+}
+
 nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error)
 {
-	for (size_t i = 0; i < scene->mesh_count; i++) {
-		nt_mesh mesh = scene->meshes[i];
-		if (!is_looked_at(scene, &mesh))
-			continue;
-		nt_scene own = *scene;
-		own.arena = own.temporary = (nt_arena){0};
-		mesh.plan = (nt_mesh_plan){.pooled = mesh.plan.pooled};
-		size_t wrong = 0, judged = 0;
-		/* what cannot be read is copied as it is */
-		const nt_status status = tasks->reader->load(&own, &mesh, tasks->options, NULL);
-		if (!status && mesh.tangents && mesh.texcoords)
-			wrong = count_wrong_of(&mesh, &own.arena, tasks->settings->threads, &judged);
-		if (wrong)
-			nt_finding_add(&scene->findings, NT_CODE_TAN_KEPT_SIGN, nt_mesh_place(&mesh, &(nt_place){0}),
-				wrong, "%.3g %% of %zu", 100.0 * (double)wrong / (double)judged, judged);
-		nt_arena_free(&own.arena);
-		nt_arena_free(&own.temporary);
-		if (status == NT_ERROR_MEMORY)
-			return nt_fail_memory(error);
-	}
-	return NT_OK;
+	nt_arena memory = {0};
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < scene->mesh_count; i++)
+		if (is_looked_at(scene, &scene->meshes[i]))
+			status = look_at(scene, tasks, scene->meshes[i], &memory);
+	nt_arena_free(&memory);
+	return status ? nt_fail_memory(error) : NT_OK;
 }

@@ -208,7 +208,7 @@ static size_t list_corners(const question *q, uint32_t *corners, size_t capacity
 		if (triangles == BATCH_TRIANGLES && !has_marked(marks, mask, v, BATCH))
 			continue;
 		for (size_t i = 0; i < 3 * triangles; i++)
-			if (has(q->listed, v[i])) {
+			if (marks[v[i] & mask] && has(q->listed, v[i])) {
 				if (count < capacity)
 					corners[count] = (uint32_t)(3 * t + i);
 				count++;
