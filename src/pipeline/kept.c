@@ -9,12 +9,6 @@
 #include "base/parallel.h"
 #include "report/quads.h"
 
-static bool is_looked_at(const nt_scene *scene, const nt_mesh *mesh)
-{
-	return nt_format_is_gltf(scene->format) && mesh->decision == NT_SKIP_HAS_TANGENTS && mesh->slots &&
-	       mesh->reachable && mesh->triangles && mesh->has_positions && mesh->has_texcoords && !mesh->compressed;
-}
-
 /* The sign of w at all corners of a triangle; 0: they differ, or are none. */
 static int common_sign(const nt_mesh *mesh, const size_t v[3])
 {
@@ -83,7 +77,7 @@ static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh mesh, n
 	nt_scene own = *scene;
 	own.arena = *memory;
 	own.temporary = (nt_arena){0};
-	mesh.plan = (nt_mesh_plan){.pooled = true}; /* a primitive costs what it uses */
+	mesh.plan = (nt_mesh_plan){.pooled = mesh.plan.pooled}; /* a primitive costs what it uses */
 	size_t wrong = 0, judged = 0;
 	/* what cannot be read is copied as it is */
 	const nt_status status = tasks->reader->load(&own, &mesh, tasks->options, NULL);
@@ -103,7 +97,7 @@ nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error)
 	nt_arena memory = {0};
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->mesh_count; i++)
-		if (is_looked_at(scene, &scene->meshes[i]))
+		if (nt_format_is_gltf(scene->format) && nt_mesh_is_kept_and_used(&scene->meshes[i]))
 			status = look_at(scene, tasks, scene->meshes[i], &memory);
 	nt_arena_free(&memory);
 	return status ? nt_fail_memory(error) : NT_OK;

@@ -338,6 +338,13 @@ static inline bool nt_mesh_is_wanted(const nt_mesh *mesh)
 	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
 }
 
+/* Whether a mesh of a glTF keeps tangents that a material uses, and w can be looked at without decoding. */
+static inline bool nt_mesh_is_kept_and_used(const nt_mesh *mesh)
+{
+	return mesh->decision == NT_SKIP_HAS_TANGENTS && mesh->slots && mesh->reachable && mesh->triangles &&
+	       mesh->has_positions && mesh->has_texcoords && !mesh->compressed;
+}
+
 /* Before the stages that make normals and solve: whether a mesh was solved as soon as it was loaded. It has results
  * then, and no geometry. */
 static inline bool nt_mesh_is_solved_ahead(const nt_mesh *mesh)

@@ -13,7 +13,7 @@
 /* Whether a mesh will be loaded: to be solved, or only to be checked, or for others. */
 static bool is_loaded(const nt_mesh *mesh, const nt_read_options *options)
 {
-	return nt_mesh_is_wanted(mesh) ||
+	return nt_mesh_is_wanted(mesh) || nt_mesh_is_kept_and_used(mesh) ||
 		((options->report || options->across) && mesh->triangles && mesh->has_positions);
 }
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Tangents that are kept although their w is wrong, and meshes without area in texture coordinates, are told by
- * conversion: one quad in the plane z = 0 with normals along z and (u, v down) = (x, -y), so that T = (1, 0, 0) and w = 1.
+ * conversion: one quad in the plane z = 0 with normals along z and (u, v down) = (x, -y), so that T = (1, 0, 0) and
+ * w = 1.
  */
 #include "hand_gltf_file.h"
 
@@ -9,9 +10,11 @@ static const float positions[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}
 static const float normals[4][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 static const uint16_t indices[6] = {0, 1, 2, 0, 2, 3};
 
-/* v down. The last corner folds the second triangle over the diagonal: it is wound the other way, and the smaller one. */
+/* v down. The last corner folds the second triangle over the diagonal: it is wound the other way, and is the smaller
+ * one. */
 static const float plain[4][2] = {{0, 0}, {1, 0}, {1, -1}, {0, -1}},
-	folded[4][2] = {{0, 0}, {1, 0}, {1, -1}, {0.8f, -0.2f}}, alike[4][2] = {{0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}};
+	folded[4][2] = {{0, 0}, {1, 0}, {1, -1}, {0.8f, -0.2f}},
+	alike[4][2] = {{0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}};
 
 #define TURNED "\"textures\":[{}],\"materials\":[{\"normalTexture\":{\"index\":0,\"extensions\":" \
 	"{\"KHR_texture_transform\":{\"scale\":[-1,1]}}}}]," \
