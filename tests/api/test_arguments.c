@@ -37,14 +37,12 @@ TEST(missing_arrays_are_argument_errors)
 	output.tangents = &tangents[0][0];
 	assert_int_equal(nmtan_tangents(NULL, NULL, &output, NULL), NMTAN_ERROR_ARGUMENT);
 	assert_int_equal(nmtan_tangents(&mesh, NULL, NULL, NULL), NMTAN_ERROR_ARGUMENT);
-	mesh.positions = NULL;
-	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
-	mesh = square();
-	mesh.normals = NULL;
-	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
-	mesh = square();
-	mesh.texcoords = NULL;
-	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
+	const float **const arrays[] = {&mesh.positions, &mesh.normals, &mesh.texcoords};
+	for (size_t i = 0; i < 3; i++) {
+		mesh = square();
+		*arrays[i] = NULL;
+		assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
+	}
 }
 
 TEST(strides_must_hold_a_row_and_keep_alignment)

@@ -133,7 +133,16 @@ static vertex_row *random_rows(size_t count, uint32_t kinds, float odd)
 	return rows;
 }
 
-/* The same with the corners of random triangles, in borrowed memory and without. */
+/* The same of a soup, whose corners are its rows, with borrowed memory and without. */
+static void check_soup(vertex_row *rows, size_t corners, size_t borrowed_bytes)
+{
+	const nmtan_mesh mesh = mesh_of(rows, corners, NULL, corners);
+	check(&mesh, corners, 0);
+	check(&mesh, corners, borrowed_bytes);
+	free(rows);
+}
+
+/* The same with the corners of random triangles. */
 static void check_corners(const vertex_row *rows, size_t vertices, size_t corners, uint32_t seed)
 {
 	uint32_t *indices = malloc(corners * sizeof *indices);
@@ -145,17 +154,16 @@ static void check_corners(const vertex_row *rows, size_t vertices, size_t corner
 	free(indices);
 }
 
-TEST(corners_weld_alike_on_all_threads)
+TEST(corners_and_vertices_weld_alike_on_all_threads)
 {
-	enum { COUNT = 9000 };
+	enum { COUNT = 9000, VERTICES = 5000 };
 	/* from nearly one row to nearly all different, which the first table does not hold; -0 is 0 */
 	static const uint32_t kinds[] = {1, 5, 1500, 4000, 1 << 24};
 	for (int k = 0; k < 5; k++)
 		for (int odd = 0; odd < 2; odd++) {
-			vertex_row *rows = random_rows(COUNT, kinds[k], odd ? NAN : -0.0f);
-			const nmtan_mesh mesh = mesh_of(rows, COUNT, NULL, COUNT);
-			check(&mesh, COUNT, 0);
-			check(&mesh, COUNT, COUNT * 48);
+			check_soup(random_rows(COUNT, kinds[k], odd ? NAN : -0.0f), COUNT, COUNT * 48);
+			vertex_row *rows = random_rows(VERTICES, kinds[k], odd ? NAN : -0.0f);
+			check_corners(rows, VERTICES, COUNT, 7);
 			free(rows);
 		}
 }
@@ -181,25 +189,8 @@ TEST(no_corners_weld_to_nothing)
 TEST(few_corners_weld_alike_on_all_threads)
 {
 	for (size_t corners = 3; corners < 900; corners += corners / 3)
-		for (uint32_t kinds = 1; kinds < 1000; kinds *= 9) {
-			vertex_row *rows = random_rows(corners, kinds, NAN);
-			const nmtan_mesh mesh = mesh_of(rows, corners, NULL, corners);
-			check(&mesh, corners, 0);
-			check(&mesh, corners, corners * 16);
-			free(rows);
-		}
-}
-
-TEST(vertices_weld_alike_on_all_threads)
-{
-	enum { VERTICES = 5000, CORNERS = 9000 };
-	static const uint32_t kinds[] = {1, 5, 1500, 4000, 1 << 24};
-	for (int k = 0; k < 5; k++)
-		for (int odd = 0; odd < 2; odd++) {
-			vertex_row *rows = random_rows(VERTICES, kinds[k], odd ? NAN : -0.0f);
-			check_corners(rows, VERTICES, CORNERS, 7);
-			free(rows);
-		}
+		for (uint32_t kinds = 1; kinds < 1000; kinds *= 9)
+			check_soup(random_rows(corners, kinds, NAN), corners, corners * 16);
 }
 
 /* Two corners for three vertices and more: the weld goes by corner. */
@@ -330,10 +321,7 @@ static void check_flat_soup(size_t corners, uint32_t equal, float odd)
 		if (next_random(&random) % 999 == 0)
 			rows[c][3] = odd;
 	}
-	const nmtan_mesh mesh = mesh_of(rows, corners, NULL, corners);
-	check(&mesh, corners, 0);
-	check(&mesh, corners, corners * 16);
-	free(rows);
+	check_soup(rows, corners, corners * 16);
 }
 
 TEST(flat_soups_weld_alike)
