@@ -8,6 +8,7 @@
 
 #include "test.h"
 #include "ply/read.h"
+#include "ply/value.h"
 
 typedef struct reading {
 	nt_scene scene;
@@ -17,7 +18,7 @@ typedef struct reading {
 	const nt_mesh *mesh; /* NULL after an error */
 } reading;
 
-static inline void open_bytes(reading *r, const void *bytes, size_t size)
+static inline void open_by_threads(reading *r, const void *bytes, size_t size, unsigned threads)
 {
 	*r = (reading){.bytes = malloc(size ? size : 1)};
 	memcpy(r->bytes, bytes, size);
@@ -25,9 +26,14 @@ static inline void open_bytes(reading *r, const void *bytes, size_t size)
 	r->scene.bytes = r->bytes;
 	r->scene.byte_count = size;
 	nt_error_clear(&r->error);
-	const nt_read_options options = {.texcoord_set = -1, .threads = 1};
+	const nt_read_options options = {.texcoord_set = -1, .threads = threads};
 	r->status = nt_ply_open(&r->scene, &options, &r->error);
 	r->mesh = r->status ? NULL : r->scene.meshes;
+}
+
+static inline void open_bytes(reading *r, const void *bytes, size_t size)
+{
+	open_by_threads(r, bytes, size, 1);
 }
 
 static inline void close_reading(reading *r)
@@ -130,8 +136,6 @@ static inline void put_double(image *m, double value)
 	put(m, bits, 8);
 }
 
-typedef enum ply_encoding { ENCODING_ASCII, ENCODING_LITTLE, ENCODING_BIG } ply_encoding;
-
 #define XYZ "property float x\nproperty float y\nproperty float z\n"
 #define HEAD(vertices) "ply\nformat ascii 1.0\nelement vertex " vertices "\n" XYZ
 #define FACES(faces) "element face " faces "\nproperty list uchar int vertex_indices\nend_header\n"
@@ -143,7 +147,7 @@ typedef enum ply_encoding { ENCODING_ASCII, ENCODING_LITTLE, ENCODING_BIG } ply_
 static inline void make_full(image *m, ply_encoding encoding)
 {
 	static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-	*m = (image){.big = encoding == ENCODING_BIG};
+	*m = (image){.big = encoding == PLY_BIG};
 	char line[64];
 	snprintf(line, sizeof line, "ply\nformat %s 1.0\n", names[encoding]);
 	put_text(m, line);
@@ -155,7 +159,7 @@ static inline void make_full(image *m, ply_encoding encoding)
 	static const char body[] = "0 0 0 0 0 1 2 3\n2 0 0 0 0 1 2 3\n2 2 0 0 0 1 2 3\n1 3 0 0 0 1 2 3\n"
 		"0 2 0 0 0 1 2 3\n3 0 1 2 6 0 0 1 0 1 1 0\n4 0 1 2 4 0 -1\n"
 		"5 0 1 2 3 4 10 0 0 1 0 1 1 .5 2 0 1 0\n2 7 8\n";
-	if (encoding == ENCODING_ASCII) {
+	if (encoding == PLY_ASCII) {
 		put_text(m, body);
 		return;
 	}

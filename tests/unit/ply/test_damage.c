@@ -190,7 +190,7 @@ TEST(every_prefix_is_read_or_refused)
 						    r.error.place.line == 2));
 				assert_true(r.error.place.line > 0 || r.error.place.offset <= size);
 			} else {
-				assert_true(encoding == ENCODING_ASCII && size + 6 > m.size);
+				assert_true(encoding == PLY_ASCII && size + 6 > m.size);
 			}
 			close_reading(&r);
 		}
@@ -220,7 +220,7 @@ TEST(damaged_bytes_do_no_harm)
 TEST(every_allocation_may_fail)
 {
 	image m;
-	make_full(&m, ENCODING_LITTLE);
+	make_full(&m, PLY_LITTLE);
 	bool failed = true;
 	size_t n = 0;
 	for (; failed; n++) {

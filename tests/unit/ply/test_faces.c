@@ -189,41 +189,41 @@ TEST(binary_wedges)
 static size_t make_runs(unsigned char *bytes, size_t *size, ply_encoding encoding, int bad_face,
 	int bad_index)
 {
-	image m = {.big = encoding == ENCODING_BIG};
-	put_text(&m, encoding == ENCODING_ASCII ? "ply\nformat ascii 1.0\n"
+	image m = {.big = encoding == PLY_BIG};
+	put_text(&m, encoding == PLY_ASCII ? "ply\nformat ascii 1.0\n"
 			: m.big ? "ply\nformat binary_big_endian 1.0\n"
 				: "ply\nformat binary_little_endian 1.0\n");
 	put_text(&m, "element vertex 9\nproperty uchar x\nproperty uchar y\nproperty uchar z\n"
 		"element face 300\n");
-	put_text(&m, encoding == ENCODING_ASCII ? "" : "property short before\n");
+	put_text(&m, encoding == PLY_ASCII ? "" : "property short before\n");
 	put_text(&m, "property list uchar uint vertex_indices\n");
-	put_text(&m, encoding == ENCODING_ASCII ? "end_header\n" : "property uchar after\nend_header\n");
+	put_text(&m, encoding == PLY_ASCII ? "end_header\n" : "property uchar after\nend_header\n");
 	size_t place = 0, at = m.size;
 	memcpy(bytes, m.bytes, m.size);
 	for (int v = 0; v < 9; v++) {
-		if (encoding == ENCODING_ASCII)
+		if (encoding == PLY_ASCII)
 			at += (size_t)sprintf((char *)bytes + at, "%d 0 %d\r\n", v, v * v);
 		else
 			memcpy(bytes + at, (unsigned char[]){(unsigned char)v, 0, (unsigned char)(v * v)}, 3);
-		at += encoding == ENCODING_ASCII ? 0 : 3;
+		at += encoding == PLY_ASCII ? 0 : 3;
 	}
 	for (int f = 0; f < 300; f++) {
 		const int corners = f / 50 % 2 ? 4 : 3;
 		m.size = 0;
-		if (encoding == ENCODING_ASCII)
+		if (encoding == PLY_ASCII)
 			at += (size_t)sprintf((char *)bytes + at, "%d", corners);
 		else
 			put(&m, 7, 2), put(&m, (uint64_t)corners, 1);
 		for (int k = 0; k < corners; k++) {
 			const int index = f == bad_face && k == 1 ? bad_index : (f + 2 * k) % 9;
 			if (f == bad_face && k == 1)
-				place = encoding == ENCODING_ASCII ? 19 + (size_t)f : at + m.size;
-			if (encoding == ENCODING_ASCII)
+				place = encoding == PLY_ASCII ? 19 + (size_t)f : at + m.size;
+			if (encoding == PLY_ASCII)
 				at += (size_t)sprintf((char *)bytes + at, " %d", index);
 			else
 				put(&m, (uint64_t)index, 4);
 		}
-		if (encoding == ENCODING_ASCII)
+		if (encoding == PLY_ASCII)
 			at += (size_t)sprintf((char *)bytes + at, "\r\n");
 		else
 			put(&m, 5, 1);
@@ -267,7 +267,7 @@ TEST(runs_end_at_an_index_out_of_range)
 				make_runs(bytes, &size, (ply_encoding)encoding, face, 9);
 			snprintf(message, sizeof message,
 				"face %d: vertex index 9 is out of range, the file has 9 vertices", face);
-			const bool ascii = encoding == ENCODING_ASCII;
+			const bool ascii = encoding == PLY_ASCII;
 			assert_refused_bytes(bytes, size, NT_ERROR_INPUT, ascii ? place : 0,
 				ascii ? NT_NO_OFFSET : place, message);
 		}

@@ -3,10 +3,9 @@
  * Text of 8 MB, so that it is read in pieces: threads do not show, neither in what is read nor in what is
  * refused and where. The values are those that were written.
  */
-#include "test.h"
+#include "ply_file.h"
 #include "base/buffer.h"
 #include "ply/source.h"
-#include "ply/read.h"
 
 enum { VERTICES = 260000, FACES = 150000, MIDDLE = 130001 };
 
@@ -23,16 +22,6 @@ static nt_buffer make_file(const char *before_vertex, const char *before_face, c
 		nt_buffer_format(&text, "%s3 %d %d %d%s", i == MIDDLE ? before_face : "", i, i + 1, i + 2, line_end);
 	assert_false(text.failed);
 	return text;
-}
-
-static nt_status open_file(nt_scene *scene, const nt_buffer *text, unsigned threads, nt_error *error)
-{
-	nt_scene_init(scene, "large.ply");
-	scene->bytes = (const unsigned char *)text->data;
-	scene->byte_count = text->size;
-	nt_error_clear(error);
-	const nt_read_options options = {.texcoord_set = -1, .threads = threads};
-	return nt_ply_open(scene, &options, error);
 }
 
 static void check_values(const nt_mesh *mesh)
@@ -57,12 +46,12 @@ TEST(values_are_those_of_the_file)
 	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
 		nt_buffer text = make_file(files[i].before_vertex, files[i].before_face, files[i].line_end);
 		for (unsigned threads = 1; threads <= 3; threads++) {
-			nt_scene scene;
-			nt_error error;
-			assert_int_equal(open_file(&scene, &text, threads, &error), NT_OK);
-			check_values(scene.meshes);
-			assert_int_equal(scene.findings.count, 0);
-			nt_scene_free(&scene);
+			reading r;
+			open_by_threads(&r, text.data, text.size, threads);
+			assert_int_equal(r.status, NT_OK);
+			check_values(r.mesh);
+			assert_int_equal(r.scene.findings.count, 0);
+			close_reading(&r);
 		}
 		nt_buffer_free(&text);
 	}
@@ -80,14 +69,14 @@ TEST(faults_are_found_where_they_are)
 		nt_buffer text = make_file(files[i].before_vertex, files[i].before_face, "\n");
 		char message[sizeof((nt_error *)NULL)->message];
 		for (unsigned threads = 1; threads <= 3; threads++) {
-			nt_scene scene;
-			nt_error error;
-			assert_int_equal(open_file(&scene, &text, threads, &error), NT_ERROR_INPUT);
-			assert_int_equal(error.place.line, files[i].line);
+			reading r;
+			open_by_threads(&r, text.data, text.size, threads);
+			assert_int_equal(r.status, NT_ERROR_INPUT);
+			assert_int_equal(r.error.place.line, files[i].line);
 			if (threads == 1)
-				memcpy(message, error.message, sizeof message);
-			assert_string_equal(error.message, message);
-			nt_scene_free(&scene);
+				memcpy(message, r.error.message, sizeof message);
+			assert_string_equal(r.error.message, message);
+			close_reading(&r);
 		}
 		nt_buffer_free(&text);
 	}
