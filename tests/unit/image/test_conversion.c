@@ -119,16 +119,14 @@ TEST(conversions_without_memory_are_an_error)
 	const nt_file *const files[4] = {&a, &a, &b, &b};
 	const nt_conversion how = {.packed = true, .channels = {take(0, NT_CHANNEL_GREEN), take(0, NT_CHANNEL_RED),
 		take(1, NT_CHANNEL_GREEN), take(1, NT_CHANNEL_LUMINANCE)}};
-	for (size_t n = 0;; n++) {
+	for (size_t n = 0, failed = 1; failed; n++) {
 		nt_converted made;
 		nt_error error;
 		fail_allocations_from(n);
 		const nt_status status = nt_conversion_make(&how, files, &made, &error);
-		const bool failed = stop_failing_allocations();
+		failed = stop_failing_allocations();
 		assert_int_equal(status, failed ? NT_ERROR_MEMORY : NT_OK);
 		free(made.bytes);
-		if (!failed)
-			break;
 	}
 }
 
