@@ -10,6 +10,7 @@
  */
 #include "topology/edge_sort.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -120,7 +121,7 @@ typedef int int4 __attribute__((vector_size(16)));
 /* Whether the first float of one of BATCH_VERTICES rows is within bounds, from `begin` on. */
 static bool has_within(const float *rows, size_t step, float begin, float low, float high)
 {
-	const float4 begins = {begin}, middles = {0.5f * (low + high)}, halves = {0.5f * (high - low)};
+	const float4 begins = {begin}, middles = {0.5f * low + 0.5f * high}, halves = {0.5f * (high - low)};
 	const int4 no_sign = {INT32_MAX};
 	int4 within = {0};
 	for (size_t i = 0; i < BATCH_VERTICES; i++) {
@@ -131,12 +132,14 @@ static bool has_within(const float *rows, size_t step, float begin, float low, f
 	return within[0];
 }
 
-/* Distances from the grid's begin between which cells are, and a little more. */
+/* Distances from the grid's begin between which cells are, and a little more; more than the whole grid where a cell is
+ * too small a number to be exact. */
 static void bound_cells(const nt_grid *grid, size_t first, size_t last, float *low, float *high)
 {
-	const float size = (grid->high - grid->low) / (float)NT_CELLS;
-	*low = ((float)first - 1) * size;
-	*high = ((float)last + 2) * size;
+	const float extent = grid->high - grid->low, size = extent / (float)NT_CELLS;
+	const bool exact = size > FLT_MIN;
+	*low = exact ? ((float)first - 1) * size : -extent;
+	*high = exact ? ((float)last + 2) * size : 2 * extent;
 }
 
 static bool list_vertices(question *q)

@@ -145,6 +145,51 @@ TEST(too_many_halvings_are_a_limit)
 	assert_false(is_limit(ids, (POINTS + 3) / 3, POINTS + 3));
 }
 
+/* Memory that says nothing useful. */
+static void *take_dirty(void *user, size_t bytes)
+{
+	(void)user;
+	void *block = malloc(bytes);
+	return block ? memset(block, 0xff, bytes) : NULL;
+}
+
+/* Triangles from one end of the box to the other, the last three of which have the vertices 2, 1 and 0, at sizes at
+ * which bounds of cells overflow or are lost: positions are multiples of a step, so that they are in the same cells.
+ * Another program that follows the specification sorts the run as 256 259 253: triangles 85 and 86 meet, not 84 and 85. */
+TEST(size_does_not_matter)
+{
+	enum { VERTICES = 255, TRIANGLES = VERTICES / 3 + 2, SIZES = 6 };
+	static const float steps[SIZES] = {1, FLT_MAX / VERTICES * 0.999f, 0x1p-149f, 0x1p-148f, 10 * 0x1p-149f,
+		0x1p-120f};
+	static const nt_unsorted_edge expected[] = {{253, NT_NO_NEIGHBOUR}, {256, 86}, {259, 85}};
+	uint32_t ids[3 * TRIANGLES];
+	for (uint32_t i = 0; i < VERTICES; i++)
+		ids[i] = VERTICES - 1 - i;
+	memcpy(ids + VERTICES, (uint32_t[]){2, 0, 1, 2, 1, 0}, 6 * sizeof *ids);
+	for (int turned = 0; turned < 2; turned++)
+		for (int i = 0; i < SIZES; i++) {
+			const nmtan_allocator allocator = {take_dirty, give_back, NULL};
+			nt_scratch scratch;
+			nt_scratch_init(&scratch, &allocator);
+			nt_unsorted unsorted;
+			place();
+			for (int v = 0; v < VERTICES; v++) {
+				const int x = v < 4 ? 3 - v : v;
+				positions[v][0] = (float)((turned ? VERTICES - 1 - x : x) - VERTICES / 2) * steps[i];
+			}
+			/* the ends of the box are vertices of other triangles */
+			for (int axis = 1; axis < 3; axis++) {
+				positions[3][axis] = steps[i];
+				positions[100][axis] = -steps[i];
+			}
+			assert_int_equal(ask(ids, TRIANGLES, VERTICES, &scratch, &unsorted), NMTAN_OK);
+			assert_false(unsorted.limit);
+			assert_int_equal(unsorted.count, 3);
+			assert_memory_equal(unsorted.edges, expected, sizeof expected);
+			nt_scratch_free(&scratch);
+		}
+}
+
 /* The same three triangles many times: every array is needed. */
 TEST(every_failed_allocation_is_told)
 {
