@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Folded quads, for writers of triangles. The halves of such a quad are wound differently in UV space, so that no w
- * serves both. MikkTSpace has one result for each of its corners, and the library can only say so; where the quad is
- * written as triangles, each of them can have its own sign.
+ * Folded quads, for writers of triangles. The halves of such a quad, as they are written, are wound differently in UV
+ * space, so that no w serves both: its outline crosses itself there, or is concave and cut outside. MikkTSpace has one
+ * result for each of its corners; where the quad is written as triangles, each of them can have its own sign.
  *
  * The mesh is solved with its quads, since the tangents of their neighbours depend on that. Then the folded ones become
  * two triangles each, in place, and repair sees to these: the half whose sign the quad has is usable and keeps
@@ -36,7 +36,7 @@ static bool is_folded(const nmtan_mesh *view, size_t face, size_t first, uint32_
 {
 	bool folded = false;
 	if (view->face_sizes[face] == 4) {
-		nt_face_triangles(view, face, first, halves);
+		nt_written_triangles(view, face, first, halves);
 		nt_cut_orientation(view, halves, 2, true, &folded);
 	}
 	return folded;
@@ -132,11 +132,12 @@ nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned thr
 {
 	nmtan_stored_uv stored;
 	nmtan_mesh view = nt_mesh_view(mesh, &stored);
-	view.position_stride_bytes = view.normal_stride_bytes = 3 * sizeof(float);
-	view.texcoord_stride_bytes = 2 * sizeof(float);
 	stored.v_offset = stored_v_offset;
+	const size_t folded = mesh->texcoords ? count_folded(&view) : 0;
+	if (!folded)
+		return NT_OK;
 	cut_mesh cut;
-	if (!alloc_cut(mesh, count_folded(&view), &cut)) {
+	if (!alloc_cut(mesh, folded, &cut)) {
 		free(cut.tangents);
 		free(cut.indices);
 		free(cut.flags);

@@ -1,30 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Where quads are cut, for writers of triangles: along MikkTSpace's diagonal, since tangents were
- * computed for these halves.
+ * Where quads are cut, for writers of triangles: as nt_written_quad_diagonal() has it.
  */
 #include "pipeline/stages.h"
-#include "topology/orientation.h"
+#include "topology/corners.h"
 
 static uint8_t *cut_quads(nt_scene *scene, const nt_mesh *mesh)
 {
-	static const float no_texcoord[2];
+	nmtan_stored_uv stored;
+	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	uint8_t *diagonals = nt_arena_alloc(&scene->arena, mesh->face_count, 1);
-	size_t corner = 0;
-	for (size_t f = 0; diagonals && f < mesh->face_count; f++) {
-		diagonals[f] = 0;
-		if (mesh->face_sizes[f] == 4) {
-			const float *texcoords[4], *positions[4];
-			for (size_t k = 0; k < 4; k++) {
-				const size_t v = mesh->indices ? mesh->indices[corner + k] : corner + k;
-				positions[k] = mesh->positions + 3 * v;
-				/* equal ones leave the choice to the positions */
-				texcoords[k] = mesh->texcoords ? mesh->texcoords + 2 * v : no_texcoord;
-			}
-			diagonals[f] = (uint8_t)nt_quad_diagonal(texcoords, positions);
-		}
-		corner += mesh->face_sizes[f];
-	}
+	for (size_t f = 0, first = 0; diagonals && f < mesh->face_count; first += mesh->face_sizes[f++])
+		diagonals[f] = mesh->face_sizes[f] == 4 ? (uint8_t)nt_written_diagonal(&view, first) : 0;
 	return diagonals;
 }
 

@@ -73,7 +73,7 @@ nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_forma
 /* Fills summary->lines. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error);
 
-/* Says of every mesh with quads where they are cut (face_diagonals). For writers of triangles. */
+/* Says of every mesh with quads where they are cut (face_diagonals), for writers of triangles. */
 nt_status nt_stage_quads(nt_scene *scene, nt_error *error);
 
 /* tangents.c, for tasks.c too: small meshes, of which up to `slots` threads at a time solve one each. NULL: memory is

@@ -256,7 +256,7 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 	nt_status status;
 	if (by_corner || (job->triangulates && mesh->face_sizes)) {
 		status = solve_corners(mesh, &view, options, &mesh->corner_tangents, &mesh->counts);
-		if (!status && job->triangulates && mesh->counts.folded_quads && options->repair == NMTAN_REPAIR_ON)
+		if (!status && job->triangulates && mesh->face_sizes && options->repair == NMTAN_REPAIR_ON)
 			status = nt_cut_folded_quads(mesh, stored.v_offset, options->threads);
 		if (!status)
 			status = nt_morphs_solve(mesh, &view, options);

@@ -5,7 +5,7 @@
 #include "report/surface.h"
 
 #include <math.h>
-#include "topology/orientation.h"
+#include "topology/corners.h"
 
 /* Triangles by which vertices are prefetched before they are needed: costs nothing where neighbours are near. */
 enum { AHEAD = 16 };
@@ -15,7 +15,7 @@ static uint32_t vertex_of(const nt_mesh *mesh, size_t corner)
 	return mesh->indices ? mesh->indices[corner] : (uint32_t)corner;
 }
 
-/* Quads are cut, so that corners, faces and vertices are lists of their own. */
+/* Quads are cut as they are written, so that corners, faces and vertices are lists of their own. */
 typedef struct cut_lists {
 	uint32_t *corners, *faces, *vertices;
 } cut_lists;
@@ -30,20 +30,6 @@ static void add_triangle(nt_surface *s, const cut_lists *lists, size_t face, siz
 	}
 }
 
-/* The row of nt_quad_triangles that cuts the quad whose first corner is `first`. Without texture
- * coordinates they are all taken as equal, which leaves the choice to the positions. */
-static int quad_cut(const nt_surface *s, size_t first)
-{
-	static const float nowhere[2];
-	const float *uv[4], *p[4];
-	for (size_t k = 0; k < 4; k++) {
-		const size_t vertex = vertex_of(s->mesh, first + k);
-		uv[k] = s->texcoords ? s->texcoords + 2 * vertex : nowhere;
-		p[k] = s->mesh->positions + 3 * vertex;
-	}
-	return nt_quad_diagonal(uv, p);
-}
-
 static nt_status cut_faces(nt_surface *s, size_t triangle_count, nt_scratch *scratch)
 {
 	static const unsigned char in_order[3] = {0, 1, 2};
@@ -53,6 +39,8 @@ static nt_status cut_faces(nt_surface *s, size_t triangle_count, nt_scratch *scr
 		nt_scratch_alloc(scratch, 3 * triangle_count, sizeof *lists.vertices)};
 	if (!lists.corners || !lists.faces || !lists.vertices)
 		return NT_ERROR_MEMORY;
+	nmtan_stored_uv stored;
+	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	size_t first = 0;
 	for (size_t face = 0; face < mesh->face_count; face++) {
 		if (mesh->face_sizes[face] == 3) {
@@ -60,7 +48,7 @@ static nt_status cut_faces(nt_surface *s, size_t triangle_count, nt_scratch *scr
 			first += 3;
 			continue;
 		}
-		const int cut = quad_cut(s, first);
+		const int cut = nt_written_diagonal(&view, first);
 		add_triangle(s, &lists, face, first, nt_quad_triangles[cut][0]);
 		add_triangle(s, &lists, face, first, nt_quad_triangles[cut][1]);
 		first += 4;

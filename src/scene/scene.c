@@ -113,8 +113,11 @@ nmtan_mesh nt_mesh_view(const nt_mesh *mesh, nmtan_stored_uv *stored)
 		.face_sizes = mesh->face_sizes,
 		.indices = mesh->indices,
 		.positions = mesh->positions,
+		.position_stride_bytes = 3 * sizeof(float),
 		.normals = mesh->solve_normals ? mesh->solve_normals : mesh->normals,
+		.normal_stride_bytes = 3 * sizeof(float),
 		.texcoords = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords,
+		.texcoord_stride_bytes = 2 * sizeof(float),
 		.stored = stored,
 	};
 }

@@ -224,7 +224,7 @@ typedef struct nt_mesh {
 	uint8_t *vertex_lacks;   /* [vertex_count] enum nt_lack bits; NULL: nothing lacks */
 	size_t face_count, corner_count;
 	uint8_t *face_sizes;     /* [face_count] 3 or 4; NULL: all triangles */
-	uint8_t *face_diagonals; /* [face_count] where MikkTSpace cuts a quad (nt_quad_diagonal): 0 gives
+	uint8_t *face_diagonals; /* [face_count] where a quad is cut (nt_written_diagonal): 0 gives
 	                            corners 0 1 2, 0 2 3 and 1 gives 0 1 3, 1 2 3; NULL: 0 for all, until the
 	                            pipeline knows */
 	uint32_t *indices;       /* [corner_count]; NULL: corner c is vertex c, or nt_mesh_left_triangles() */

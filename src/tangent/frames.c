@@ -74,6 +74,21 @@ int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool 
 	return nt_cut_orientation(mesh, corners, count, stored, folded);
 }
 
+bool nt_outline_crosses(const nmtan_mesh *mesh, size_t first)
+{
+	bool crosses = true;
+	for (int cut = 0; cut < 2 && crosses; cut++) {
+		int product = 1;
+		for (int half = 0; half < 2; half++) {
+			const unsigned char *k = nt_quad_triangles[cut][half];
+			const uint32_t c = (uint32_t)first, corners[3] = {c + k[0], c + k[1], c + k[2]};
+			product *= nt_triangle_orientation(mesh, corners, true);
+		}
+		crosses = product < 0;
+	}
+	return crosses;
+}
+
 /* What the sums need of a triangle. */
 typedef struct solved {
 	nt_dvec3 u;          /* dP/du times |determinant|: growing u */

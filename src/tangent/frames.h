@@ -61,6 +61,10 @@ int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool 
 /* The same of a face that is cut into `count` triangles. */
 int nt_cut_orientation(const nmtan_mesh *mesh, uint32_t corners[2][3], unsigned count, bool stored, bool *folded);
 
+/* Whether the outline of the quad with that first corner crosses itself in UV space, as stored: along either diagonal
+ * it is cut into halves of different orientations. */
+bool nt_outline_crosses(const nmtan_mesh *mesh, size_t first);
+
 /* Adds a triangle's frame to the sums of its corners, of which nt_unit_normal() is known; NULL: the corner is left
  * out. */
 void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t corners[3], const nt_dvec3 normals[3],

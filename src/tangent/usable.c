@@ -132,7 +132,7 @@ static int count_triangle(const nmtan_mesh *mesh, const uint32_t corners[3], nmt
 	return stored ? stored : sign;
 }
 
-/* The same for a quad. */
+/* The same for a quad, cut as it is solved. The sign of its larger half is that of its area, whichever way it is cut. */
 static int count_quad(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_counts *counts)
 {
 	uint32_t corners[2][3];
@@ -142,7 +142,7 @@ static int count_quad(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_c
 	count_triangle(mesh, corners[1], counts);
 	counts->degenerate_positions += is_degenerate(mesh, corners[0]) && is_degenerate(mesh, corners[1]);
 	const int orientation = nt_cut_orientation(mesh, corners, 2, true, &folded);
-	counts->folded_quads += folded;
+	counts->folded_quads += folded && nt_outline_crosses(mesh, first);
 	return orientation;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Corners: the check of faces and indices that lets every later stage trust them, and the plain weld: each corner's row
- * is looked up in the table of rows (weld_table.c).
+ * Corners: the check of faces and indices that lets every later stage trust them, the triangles that faces are written
+ * as, and the plain weld: each corner's row is looked up in the table of rows (weld_table.c).
  */
 #include "topology/corners.h"
 
@@ -34,6 +34,28 @@ nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count)
 		return *corner_count > mesh->vertex_count ? NMTAN_ERROR_INDEX : NMTAN_OK;
 	const uint32_t most = nt_largest(mesh->indices, *corner_count);
 	return *corner_count > 0 && most >= mesh->vertex_count ? NMTAN_ERROR_INDEX : NMTAN_OK;
+}
+
+int nt_written_diagonal(const nmtan_mesh *mesh, size_t first)
+{
+	static const float nowhere[2];
+	const float *uv[4], *p[4];
+	for (size_t k = 0; k < 4; k++) {
+		const size_t vertex = nt_vertex_of(mesh, first + k);
+		uv[k] = mesh->texcoords ? nt_texcoord(mesh, vertex) : nowhere;
+		p[k] = nt_position(mesh, vertex);
+	}
+	return nt_written_quad_diagonal(uv, p);
+}
+
+unsigned nt_written_triangles(const nmtan_mesh *mesh, size_t face, size_t first, uint32_t corners[2][3])
+{
+	const unsigned count = nt_face_size(mesh, face) - 2;
+	const int cut = count == 2 ? nt_written_diagonal(mesh, first) : 0;
+	for (unsigned i = 0; i < count; i++)
+		for (int k = 0; k < 3; k++)
+			corners[i][k] = (uint32_t)first + nt_quad_triangles[cut][i][k];
+	return count;
 }
 
 nmtan_status nt_weld_corners(const nmtan_mesh *mesh, size_t corner_count, nt_scratch *scratch,

@@ -93,8 +93,8 @@ static inline void nt_stored_texcoord(const nmtan_mesh *mesh, size_t vertex, flo
 	stored[1] = t[1] + nt_stored_v_offset(mesh);
 }
 
-/* The one or two triangles of the face whose first corner is `first`, as corners of the mesh; quads are
- * cut as MikkTSpace cuts them. Returns how many. */
+/* The one or two triangles of the face whose first corner is `first`, as corners of the mesh, for the solve: quads
+ * are cut as MikkTSpace cuts them. Returns how many. */
 static inline unsigned nt_face_triangles(const nmtan_mesh *mesh, size_t face, size_t first,
 	uint32_t corners[2][3])
 {
@@ -114,6 +114,13 @@ static inline unsigned nt_face_triangles(const nmtan_mesh *mesh, size_t face, si
 			corners[half][k] = (uint32_t)first + nt_quad_triangles[cut][half][k];
 	return 2;
 }
+
+/* The diagonal along which the quad with that first corner is written: see nt_written_quad_diagonal(). Without
+ * texture coordinates the positions decide. */
+int nt_written_diagonal(const nmtan_mesh *mesh, size_t first);
+
+/* The same triangles as they are written: those that w has to fit. */
+unsigned nt_written_triangles(const nmtan_mesh *mesh, size_t face, size_t first, uint32_t corners[2][3]);
 
 /* Checks that face sizes are 3 or 4 and indices below vertex_count, and counts the corners. Returns
  * NMTAN_OK, NMTAN_ERROR_TOO_LARGE, NMTAN_ERROR_FACE_SIZE or NMTAN_ERROR_INDEX. */

@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include "base/dvec.h"
 #include "base/exact.h"
 
 enum { DETERMINANT_TERMS = 2 * NT_PRODUCT_TERMS };
@@ -91,4 +92,28 @@ int nt_quad_diagonal(const float *const texcoords[4], const float *const positio
 		return 1;
 	return squared_distance(positions[1], positions[3], 3) <
 	       squared_distance(positions[0], positions[2], 3);
+}
+
+/* Newell's normal of a quad is the cross product of its diagonals: twice the area of its shadows. Of coordinates with
+ * 24 bits of one scale the cross products are exact; where they are not, a triangle that is judged wrongly stands
+ * upright on the quad, to 2^-50. */
+static bool has_inverted(const float *const positions[4], int diagonal)
+{
+	nt_dvec3 p[4];
+	for (int k = 0; k < 4; k++)
+		p[k] = nt_dvec3_load(positions[k]);
+	const nt_dvec3 normal = nt_dvec3_cross(nt_dvec3_sub(p[2], p[0]), nt_dvec3_sub(p[3], p[1]));
+	bool inverted = false;
+	for (int half = 0; half < 2; half++) {
+		const unsigned char *k = nt_quad_triangles[diagonal][half];
+		const nt_dvec3 d1 = nt_dvec3_sub(p[k[1]], p[k[0]]), d2 = nt_dvec3_sub(p[k[2]], p[k[0]]);
+		inverted |= nt_dvec3_dot(nt_dvec3_cross(d1, d2), normal) < 0;
+	}
+	return inverted;
+}
+
+int nt_written_quad_diagonal(const float *const texcoords[4], const float *const positions[4])
+{
+	const int cut = nt_quad_diagonal(texcoords, positions);
+	return has_inverted(positions, cut) && !has_inverted(positions, !cut) ? !cut : cut;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The one definition of "mirrored" and "degenerate" in UV space, and of how a quad is cut.
+ * The one definition of "mirrored" and "degenerate" in UV space, and of how a quad is cut: as MikkTSpace does where it
+ * is solved, inside where it is written as triangles.
  *
  * The sign is exact. A difference of two floats is exact in double unless their exponents lie more
  * than 2^29 apart; rounding a product is monotone, so two rounded products that differ compare as the
@@ -49,5 +50,10 @@ extern const unsigned char nt_quad_triangles[2][2][3];
 /* The diagonal along which MikkTSpace cuts a quad, as a row of nt_quad_triangles: the shorter one in UV
  * space; where those are equal or not comparable, the shorter one in space, 0-2 when in doubt. */
 int nt_quad_diagonal(const float *const texcoords[4], const float *const positions[4]);
+
+/* The diagonal along which a quad is written as triangles: MikkTSpace's, unless it lies outside in space, so that one
+ * triangle is inverted, and the other one does not. "Inverted" is against the quad's Newell normal. Of a simple outline
+ * no triangle is, for it has at most one corner that turns inwards; of one that crosses itself one always is. */
+int nt_written_quad_diagonal(const float *const texcoords[4], const float *const positions[4]);
 
 #endif
