@@ -124,6 +124,113 @@ TEST(quad_diagonal_is_the_shorter_one_in_uv_then_in_space)
 	assert_int_equal(nt_quad_diagonal(uv_square, pos_flat), 0);
 }
 
+/* ---- the diagonal that is written ---- */
+
+/* Corners of a quad in whole numbers, and pointers to them as floats. */
+typedef struct quad {
+	int64_t p[4][3];
+	float position[4][3], texcoord[4][2];
+	const float *positions[4], *texcoords[4];
+} quad;
+
+static void fill(quad *q)
+{
+	for (int k = 0; k < 4; k++) {
+		for (int i = 0; i < 3; i++)
+			q->position[k][i] = (float)q->p[k][i];
+		q->positions[k] = q->position[k];
+		q->texcoords[k] = q->texcoord[k];
+	}
+}
+
+/* Whether corners a, b and c run against the Newell normal: 1, 0 (upright) or -1. */
+static int turn(const quad *q, int a, int b, int c)
+{
+	int64_t n[3], t[3], sum = 0;
+	for (int i = 0; i < 3; i++) {
+		const int j = (i + 1) % 3, k = (i + 2) % 3;
+		n[i] = t[i] = 0;
+		for (int v = 0; v < 4; v++)
+			n[i] += q->p[v][j] * q->p[(v + 1) % 4][k] - q->p[v][k] * q->p[(v + 1) % 4][j];
+		t[i] += (q->p[b][j] - q->p[a][j]) * (q->p[c][k] - q->p[a][k]) -
+			(q->p[b][k] - q->p[a][k]) * (q->p[c][j] - q->p[a][j]);
+	}
+	for (int i = 0; i < 3; i++)
+		sum += n[i] * t[i];
+	return (sum > 0) - (sum < 0);
+}
+
+/* A dart, whose corner 2 turns inwards: cut 0-2 it has two good triangles, cut 1-3 one lies outside. In space: in each
+ * of its rotations and with either winding, flat and bent, and turned in space by a matrix of whole numbers. Texture
+ * coordinates that ask for either diagonal change nothing. */
+TEST(a_dart_is_written_along_its_inner_diagonal)
+{
+	static const int64_t dart[4][2] = {{0, 0}, {8, 2}, {3, 3}, {2, 8}};
+	static const int64_t turned[3][3] = {{1, 2, 2}, {2, 1, -2}, {2, -2, 1}};
+	for (int i = 0; i < 4 * 2 * 3 * 2 * 2; i++) {
+		const int rotation = i % 4, mirrored = i / 4 % 2, bend = i / 8 % 3 - 1, wish = i / 24 % 2, turns = i / 48;
+		quad q = {0};
+		for (int k = 0; k < 4; k++) {
+			const int from = ((mirrored ? 4 - k : k) + rotation) % 4;
+			const int64_t flat[3] = {dart[from][0], dart[from][1], from % 2 ? bend : 0};
+			for (int row = 0; row < 3; row++)
+				for (int c = 0; c < 3; c++)
+					q.p[k][row] += turns ? turned[row][c] * flat[c] : (row == c) * flat[c];
+			q.texcoord[k][0] = k % 2 == wish ? 0 : k < 2 ? 1 : -1;
+		}
+		fill(&q);
+		assert_int_equal(nt_quad_diagonal(q.texcoords, q.positions), wish);
+		assert_int_equal(nt_written_quad_diagonal(q.texcoords, q.positions), rotation % 2);
+	}
+}
+
+/* At most one corner of a simple outline turns inwards. Of one that crosses itself two do, along either diagonal one
+ * triangle is inverted, and MikkTSpace's stays; so it does where it is good. */
+TEST(no_written_triangle_of_a_simple_quad_is_inverted)
+{
+	uint32_t seed = 11;
+	size_t changed = 0, crossed = 0;
+	for (int i = 0; i < 20000; i++) {
+		quad q;
+		const int depth = i % 3 ? 64 : 1; /* bent, or flat */
+		for (int k = 0; k < 4; k++) {
+			for (int c = 0; c < 3; c++)
+				q.p[k][c] = (int64_t)(next_random(&seed) % 64) * (c < 2) +
+					    (int64_t)(next_random(&seed) % (uint32_t)depth) * (c == 2);
+			for (int c = 0; c < 2; c++)
+				q.texcoord[k][c] = (float)(next_random(&seed) % 64);
+		}
+		fill(&q);
+		const int mikktspace = nt_quad_diagonal(q.texcoords, q.positions);
+		const int written = nt_written_quad_diagonal(q.texcoords, q.positions);
+		int inwards = 0, inverted[2] = {0, 0};
+		for (int k = 0; k < 4; k++) {
+			const int inward = turn(&q, (k + 3) % 4, k, (k + 1) % 4) < 0;
+			inwards += inward;
+			inverted[k % 2 == 0] += inward; /* the diagonal 1-3 cuts off corners 0 and 2 */
+		}
+		assert_true(inwards <= 2);
+		if (inwards < 2)
+			assert_int_equal(inverted[written], 0);
+		if (inwards == 2 || !inverted[mikktspace])
+			assert_int_equal(written, mikktspace);
+		changed += written != mikktspace;
+		crossed += inwards == 2;
+	}
+	assert_true(changed > 1000 && crossed > 1000);
+}
+
+/* Nothing is known of it. */
+TEST(a_quad_without_a_normal_is_written_as_it_is_solved)
+{
+	for (int i = 0; i < 4; i++) {
+		quad q = {.p = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, .texcoord = {{0, 0}, {5, 0}, {1, 1}, {0, 5}}};
+		fill(&q);
+		q.position[i][1] = i ? NAN : 0;
+		assert_int_equal(nt_written_quad_diagonal(q.texcoords, q.positions), 0);
+	}
+}
+
 int main(void)
 {
 	return run_group("topology/orientation");
