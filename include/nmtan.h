@@ -144,6 +144,10 @@ typedef struct nmtan_stored_uv {
  * face f, where first(f) is the sum of the sizes of the faces before f; without face_sizes corner
  * 3 * f + k is corner k of triangle f.
  *
+ * With repair all corners of a quad have one w, the sign of its UV area. Both triangles of a quad have this sign,
+ * unless its outline crosses itself in UV space or is concave there and cut along the outer diagonal: then the
+ * smaller one needs the other sign, and nmtan_orientation() tells.
+ *
  * Attribute arrays hold vertex_count rows; stride_bytes is the distance between rows, a multiple of
  * 4 and at least the row's size; 0 means tightly packed. Any float value is accepted, NaN and
  * infinities too. Normals are used as given and should have unit length. With repair T is within 2^-10 of
@@ -243,10 +247,12 @@ typedef struct nmtan_counts {
 	size_t struct_bytes;         /* sizeof(nmtan_counts): see "Structs" */
 	size_t degenerate_positions; /* faces each triangle of which has two corners at one position */
 	size_t degenerate_texcoords; /* triangles whose exact UV determinant is zero */
-	size_t mirrored;             /* triangles whose exact UV determinant is negative (v up) */
+	size_t mirrored;             /* triangles whose exact UV determinant is negative (v up); of quads those into
+	                                which MikkTSpace cuts them */
 	size_t stored_differently;   /* triangles whose orientation changes when v is stored (see
 	                                nmtan_stored_uv) */
-	size_t folded_quads;         /* quads whose two halves are wound differently in UV space */
+	size_t folded_quads;         /* quads whose outline crosses itself in UV space: cut along either diagonal,
+	                                their triangles are wound differently */
 	size_t repaired_zero;        /* tangents that were zero or not of unit length */
 	size_t repaired_not_finite;
 	size_t repaired_parallel;    /* tangents that were parallel to their normal */

@@ -236,10 +236,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Give the triangles more room in the UV layout, or keep islands near the origin.",
 		"a triangle with UVs (1000,0), (1001,0), (1000,0.0001)"),
 	ROW(UV_FOLDED_QUAD, WARNING,
-		"{count} {quad has|quads have} halves that are wound differently in UV space",
-		"A quad whose outline crosses itself or is folded in UV space. Written as two triangles, in a "
-		"glTF, each gets its own sign and vertices of its own. PLY keeps the quad: both halves take "
-		"the sign of the larger one, and the smaller one is lit from the wrong side.",
+		"{count} {quad crosses itself|quads cross themselves} in UV space",
+		"Cut along either diagonal, its triangles are wound in opposite directions. Written as two triangles, "
+		"in a glTF, each gets its own sign and vertices of its own. MikkTSpace, and with it a bake of quads, "
+		"has one sign for both, that of the larger one: --repair=off writes that. PLY keeps the quad and this "
+		"sign, and the smaller triangle is lit from the wrong side.",
 		"Straighten the quad in the UV editor, or triangulate it.",
 		"a quad with UVs (0,0), (1,1), (1,0), (0,1): a bowtie"),
 	ROW(UV_UNMAPPED, WARNING, "no triangle has an area in UV space: all {count} {is|are} unmapped",

@@ -132,7 +132,8 @@ static int count_triangle(const nmtan_mesh *mesh, const uint32_t corners[3], nmt
 	return stored ? stored : sign;
 }
 
-/* The same for a quad, cut as it is solved. The sign of its larger half is that of its area, whichever way it is cut. */
+/* The same for a quad, cut as it is solved. The sign of the larger half is that of the quad's area, whichever way it is
+ * cut. */
 static int count_quad(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_counts *counts)
 {
 	uint32_t corners[2][3];

@@ -71,7 +71,8 @@ static size_t put_quads(void)
 			const int t[2] = {i % 4 == 1 ? 64 - x : i % 4 ? uv[k][0] : x, i % 4 < 2 ? y : uv[k][1]};
 			memcpy(positions[4 * i + k], p, sizeof p);
 			memcpy(texcoords[4 * i + k], t, sizeof t);
-			nt_buffer_format(&text, "v %d %d %d\nvt %.9g %.9g\n", p[0], p[1], p[2], t[0] / 64.0, t[1] / 64.0);
+			nt_buffer_format(&text, "v %d %d %d\nvt %.9g %.9g\n", p[0], p[1], p[2], t[0] / 64.0,
+				t[1] / 64.0);
 		}
 		nt_buffer_format(&text, "f -4/-4/1 -3/-3/1 -2/-2/1 -1/-1/1\n");
 		crossed += crosses(texcoords + 4 * i);
@@ -143,7 +144,8 @@ static void read_written(const char *name, written *w)
 		size_t c = i / 6 * 4; /* of the quad, the corner at this position */
 		const float *at = position + 3 * (size_t)index[i];
 		for (; c < i / 6 * 4 + 4; c++)
-			if (at[0] == (float)positions[c][0] && at[1] == (float)positions[c][1] && at[2] == (float)positions[c][2])
+			if (at[0] == (float)positions[c][0] && at[1] == (float)positions[c][1] &&
+				at[2] == (float)positions[c][2])
 				break;
 		assert_true(c < i / 6 * 4 + 4);
 		w->corners[i] = c;

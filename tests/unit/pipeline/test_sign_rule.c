@@ -161,12 +161,9 @@ static void judge_conversion(const char *input, rule_count *count)
 	nt_error error;
 	if (nt_run(input, output, &settings, &summary, &error))
 		fail_msg("%s: %s", input, error.message);
-	const size_t folded = summary.counts.folded_quads;
 	nt_summary_free(&summary);
 	rule_count own = {0};
 	assert_true(judge_file(output, &own));
-	/* the smaller half of a folded quad has the sign of the larger one */
-	own.bad_w -= own.bad_w == 3 * folded ? own.bad_w : 0;
 	if (own.bad_w || own.mixed || own.wrong)
 		print_error("%s: %zu wrong of %zu, %zu corners with the wrong w, %zu triangles mixed\n", input,
 			own.wrong, own.judged, own.bad_w, own.mixed);

@@ -400,9 +400,9 @@ static void coordinates_before_a_transform_decide_the_sign(void **state)
 		}
 }
 
-/* Two halves wound differently: (0,0) (1,0) (1,1) is positive with twice the area 1, and with the fourth
- * corner at (0.75, 0.5), the shorter diagonal is 1-3, (0,0) (1,0) (.75,.5) has 0.5 and (1,0) (1,1)
- * (.75,.5) has 0.25: not folded. With the fourth corner at (1.25, 0.5) the second half is negative. */
+/* With the fourth corner at (.75, .5) the shorter diagonal is 1-3, and the determinants of (0,0) (1,0) (.75,.5) and
+ * (1,0) (1,1) (.75,.5) are .5 and .25. At (1.25, .5) the second is -.25, and along 0-2 they are 1 and -.75: the outline
+ * crosses itself. An arrowhead does not: along its shorter diagonal, which lies outside, they are 16 and -2. */
 static void folded_quad_takes_the_sign_of_its_larger_half(void **state)
 {
 	(void)state;
@@ -422,6 +422,13 @@ static void folded_quad_takes_the_sign_of_its_larger_half(void **state)
 	texcoords[3][0] = 1.25f;
 	assert_int_equal(nmtan_tangents(&mesh, NULL, &output, &counts), NMTAN_OK);
 	assert_int_equal(counts.folded_quads, 1);
+	for (int c = 0; c < 4; c++)
+		assert_true(tangents[c][3] == 1.0f);
+	const float arrowhead[4][2] = {{0, 8}, {-1, 0}, {0, 1}, {1, 0}};
+	memcpy(texcoords, arrowhead, sizeof texcoords);
+	assert_int_equal(nmtan_tangents(&mesh, NULL, &output, &counts), NMTAN_OK);
+	assert_int_equal(counts.folded_quads, 0);
+	assert_int_equal(counts.mirrored, 1);
 	for (int c = 0; c < 4; c++)
 		assert_true(tangents[c][3] == 1.0f);
 }

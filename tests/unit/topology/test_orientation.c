@@ -168,14 +168,14 @@ TEST(a_dart_is_written_along_its_inner_diagonal)
 	static const int64_t dart[4][2] = {{0, 0}, {8, 2}, {3, 3}, {2, 8}};
 	static const int64_t turned[3][3] = {{1, 2, 2}, {2, 1, -2}, {2, -2, 1}};
 	for (int i = 0; i < 4 * 2 * 3 * 2 * 2; i++) {
-		const int rotation = i % 4, mirrored = i / 4 % 2, bend = i / 8 % 3 - 1, wish = i / 24 % 2, turns = i / 48;
+		const int rotation = i % 4, mirrored = i / 4 % 2, bend = i / 8 % 3 - 1, wish = i / 24 % 2;
 		quad q = {0};
 		for (int k = 0; k < 4; k++) {
 			const int from = ((mirrored ? 4 - k : k) + rotation) % 4;
 			const int64_t flat[3] = {dart[from][0], dart[from][1], from % 2 ? bend : 0};
 			for (int row = 0; row < 3; row++)
 				for (int c = 0; c < 3; c++)
-					q.p[k][row] += turns ? turned[row][c] * flat[c] : (row == c) * flat[c];
+					q.p[k][row] += i / 48 ? turned[row][c] * flat[c] : (row == c) * flat[c];
 			q.texcoord[k][0] = k % 2 == wish ? 0 : k < 2 ? 1 : -1;
 		}
 		fill(&q);
@@ -224,7 +224,8 @@ TEST(no_written_triangle_of_a_simple_quad_is_inverted)
 TEST(a_quad_without_a_normal_is_written_as_it_is_solved)
 {
 	for (int i = 0; i < 4; i++) {
-		quad q = {.p = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, .texcoord = {{0, 0}, {5, 0}, {1, 1}, {0, 5}}};
+		quad q = {.p = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}},
+			.texcoord = {{0, 0}, {5, 0}, {1, 1}, {0, 5}}};
 		fill(&q);
 		q.position[i][1] = i ? NAN : 0;
 		assert_int_equal(nt_written_quad_diagonal(q.texcoords, q.positions), 0);
