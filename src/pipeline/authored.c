@@ -15,6 +15,7 @@
 #include <string.h>
 #include "base/dvec.h"
 #include "report/quads.h"
+#include "topology/corners.h"
 
 static size_t vertex_of(const nt_mesh *mesh, size_t corner)
 {
@@ -49,23 +50,23 @@ static float common_sign(const nt_mesh *mesh, size_t first, size_t size)
 }
 
 /* Whether the authored tangents can stay on a face: all valid, with one w, and that of the exact orientation of every
- * triangle of it. */
-static bool face_is_valid(const nt_mesh *mesh, size_t first, size_t size)
+ * triangle that it is written as. */
+static bool face_is_valid(const nt_mesh *mesh, const nmtan_mesh *view, size_t face, size_t first)
 {
+	const size_t size = face_size(mesh, face);
 	const float w = common_sign(mesh, first, size);
-	size_t vertices[4];
 	for (size_t k = 0; k < size; k++) {
-		vertices[k] = vertex_of(mesh, first + k);
-		if (!is_valid(mesh->tangents + 4 * vertices[k],
-			    mesh->normals ? mesh->normals + 3 * vertices[k] : NULL))
+		const size_t vertex = vertex_of(mesh, first + k);
+		if (!is_valid(mesh->tangents + 4 * vertex, mesh->normals ? mesh->normals + 3 * vertex : NULL))
 			return false;
 	}
-	for (size_t k = 0; k < size; k++) {
-		/* of a quad every corner's triangle, whichever diagonal it is cut along */
+	uint32_t corners[2][3];
+	const unsigned count = nt_written_triangles(view, face, first, corners);
+	for (unsigned i = 0; i < count; i++) {
 		const int sign = (mesh->solve_texcoords ? mesh->solve_sign : 1) *
-				 nmtan_orientation(mesh->texcoords + 2 * vertices[k],
-					 mesh->texcoords + 2 * vertices[(k + 1) % size],
-					 mesh->texcoords + 2 * vertices[(k + 2) % size]);
+				 nmtan_orientation(mesh->texcoords + 2 * vertex_of(mesh, corners[i][0]),
+					 mesh->texcoords + 2 * vertex_of(mesh, corners[i][1]),
+					 mesh->texcoords + 2 * vertex_of(mesh, corners[i][2]));
 		/* half of a folded quad may have the quad's */
 		if (sign != 0 && w != (float)sign && w != (float)nt_folded_orientation(mesh, mesh->halves, first / 3))
 			return false;
@@ -75,11 +76,13 @@ static bool face_is_valid(const nt_mesh *mesh, size_t first, size_t size)
 
 void nt_restore_authored(nt_mesh *mesh, float *corner_tangents)
 {
+	nmtan_stored_uv stored;
+	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	mesh->replaced_tangents = 0;
 	for (size_t face = 0, first = 0; face < mesh->face_count;
 		first += face_size(mesh, face++)) {
 		const size_t size = face_size(mesh, face);
-		const bool valid = face_is_valid(mesh, first, size);
+		const bool valid = face_is_valid(mesh, &view, face, first);
 		for (size_t c = first; valid && c < first + size; c++)
 			memcpy(corner_tangents + 4 * c, mesh->tangents + 4 * vertex_of(mesh, c),
 				4 * sizeof(float));

@@ -32,22 +32,24 @@ typedef struct cut_mesh {
 } cut_mesh;
 
 /* Whether a face is a folded quad, and if so its halves. */
-static bool is_folded(const nmtan_mesh *view, size_t face, size_t first, uint32_t halves[2][3])
+static bool is_folded(const nmtan_mesh *view, const uint8_t *diagonals, size_t face, size_t first,
+	uint32_t halves[2][3])
 {
 	bool folded = false;
 	if (view->face_sizes[face] == 4) {
-		nt_written_triangles(view, face, first, halves);
+		for (int i = 0; i < 6; i++)
+			halves[i / 3][i % 3] = (uint32_t)first + nt_quad_triangles[diagonals[face]][i / 3][i % 3];
 		nt_cut_orientation(view, halves, 2, true, &folded);
 	}
 	return folded;
 }
 
-static size_t count_folded(const nmtan_mesh *view)
+static size_t count_folded(const nmtan_mesh *view, const uint8_t *diagonals)
 {
 	uint32_t halves[2][3];
 	size_t folded = 0;
 	for (size_t face = 0, first = 0; face < view->face_count; first += view->face_sizes[face++])
-		folded += is_folded(view, face, first, halves);
+		folded += is_folded(view, diagonals, face, first, halves);
 	return folded;
 }
 
@@ -84,11 +86,11 @@ static void add_face(const nt_mesh *mesh, size_t face, const uint32_t *corners, 
 		cut->flags[cut->triangle_count++] = cut_here ? CUT : 0;
 }
 
-static void cut_faces(nt_mesh *mesh, const nmtan_mesh *view, cut_mesh *cut)
+static void cut_faces(nt_mesh *mesh, const nmtan_mesh *view, const uint8_t *diagonals, cut_mesh *cut)
 {
 	for (size_t face = 0, first = 0; face < mesh->face_count; first += mesh->face_sizes[face++]) {
 		uint32_t halves[2][3];
-		if (is_folded(view, face, first, halves)) {
+		if (is_folded(view, diagonals, face, first, halves)) {
 			add_face(mesh, face, halves[0], 3, true, cut);
 			add_face(mesh, face, halves[1], 3, true, cut);
 			mesh->primitives[mesh->face_primitive ? mesh->face_primitive[face] : 0].face_count++;
@@ -128,14 +130,8 @@ static nt_status repair_halves(nt_mesh *mesh, const nmtan_mesh *view, unsigned t
 	return status;
 }
 
-nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads)
+static nt_status cut_folded(nt_mesh *mesh, nmtan_mesh *view, const uint8_t *diagonals, size_t folded, unsigned threads)
 {
-	nmtan_stored_uv stored;
-	nmtan_mesh view = nt_mesh_view(mesh, &stored);
-	stored.v_offset = stored_v_offset;
-	const size_t folded = mesh->texcoords ? count_folded(&view) : 0;
-	if (!folded)
-		return NT_OK;
 	cut_mesh cut;
 	if (!alloc_cut(mesh, folded, &cut)) {
 		free(cut.tangents);
@@ -143,12 +139,31 @@ nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned thr
 		free(cut.flags);
 		return NT_ERROR_MEMORY;
 	}
-	cut_faces(mesh, &view, &cut);
+	cut_faces(mesh, view, diagonals, &cut);
 	adopt_cut(mesh, &cut);
-	view.face_count = mesh->face_count;
-	view.face_sizes = mesh->face_sizes;
-	view.indices = mesh->indices;
-	const nt_status status = repair_halves(mesh, &view, threads, cut.flags);
+	view->face_count = mesh->face_count;
+	view->face_sizes = mesh->face_sizes;
+	view->indices = mesh->indices;
+	const nt_status status = repair_halves(mesh, view, threads, cut.flags);
 	free(cut.flags);
+	return status;
+}
+
+nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads)
+{
+	nmtan_stored_uv stored;
+	nmtan_mesh view = nt_mesh_view(mesh, &stored);
+	stored.v_offset = stored_v_offset;
+	uint8_t *diagonals = nt_alloc(mesh->face_count, 1);
+	if (!diagonals)
+		return NT_ERROR_MEMORY;
+	nt_written_diagonals(&view, diagonals);
+	const size_t folded = mesh->texcoords ? count_folded(&view, diagonals) : 0;
+	if (!folded) {
+		mesh->face_diagonals = mesh->cut_arrays = diagonals;
+		return NT_OK;
+	}
+	const nt_status status = cut_folded(mesh, &view, diagonals, folded, threads);
+	free(diagonals);
 	return status;
 }

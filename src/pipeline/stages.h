@@ -100,7 +100,8 @@ void nt_mend_untextured(nt_mesh *mesh, const nmtan_mesh *view, float *tangents);
 void nt_turn_untextured(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved, float *tangents);
 
 /* folded_quads.c, for tangents.c. Cuts the folded quads of a mesh with corner_tangents in two and gives each half its
- * own sign; the mesh gets new faces and indices, and cut_arrays to free. Returns NT_OK or NT_ERROR_MEMORY. */
+ * own sign; the mesh gets new faces and indices, or face_diagonals, and cut_arrays to free. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
 nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads);
 
 /* kept.c, for tasks.c. Adds what is wrong with w of tangents that are kept and used. Returns NT_OK or

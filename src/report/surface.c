@@ -48,7 +48,7 @@ static nt_status cut_faces(nt_surface *s, size_t triangle_count, nt_scratch *scr
 			first += 3;
 			continue;
 		}
-		const int cut = nt_written_diagonal(&view, first);
+		const int cut = mesh->face_diagonals ? mesh->face_diagonals[face] : nt_written_diagonal(&view, first);
 		add_triangle(s, &lists, face, first, nt_quad_triangles[cut][0]);
 		add_triangle(s, &lists, face, first, nt_quad_triangles[cut][1]);
 		first += 4;

@@ -254,8 +254,8 @@ typedef struct nt_mesh {
 	                             serves them with and without it; counted once for each target */
 
 	/* results */
-	void *cut_arrays;         /* the block of indices and face arrays, where folded quads were cut; NULL:
-	                             none were */
+	void *cut_arrays;         /* the block of indices and face arrays, where folded quads were cut, or of
+	                             face_diagonals; NULL: neither */
 	float *corner_tangents;   /* [corner_count][4]; NULL until solved or after split */
 	nmtan_counts counts;
 	size_t replaced_tangents; /* corners whose authored tangent was invalid, or is beside one that was, and is

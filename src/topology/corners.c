@@ -48,6 +48,12 @@ int nt_written_diagonal(const nmtan_mesh *mesh, size_t first)
 	return nt_written_quad_diagonal(uv, p);
 }
 
+void nt_written_diagonals(const nmtan_mesh *mesh, uint8_t *diagonals)
+{
+	for (size_t face = 0, first = 0; face < mesh->face_count; first += nt_face_size(mesh, face++))
+		diagonals[face] = nt_face_size(mesh, face) == 4 ? (uint8_t)nt_written_diagonal(mesh, first) : 0;
+}
+
 unsigned nt_written_triangles(const nmtan_mesh *mesh, size_t face, size_t first, uint32_t corners[2][3])
 {
 	const unsigned count = nt_face_size(mesh, face) - 2;

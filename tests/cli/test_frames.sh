@@ -121,6 +121,21 @@ exits 0
 is "$(found UV_FOLDED_QUAD)" 1
 is "$(grep -ac 'element vertex 4' q.ply) $(grep -ac 'element face 1' q.ply)" '1 1'
 
+# An arrowhead, in space and in texture space: its shorter diagonal, along which it is solved, lies outside.
+scene "a quad that is concave is written inside, has its own sign, and is not called folded"
+printf '%s\n' 'v 0 8 0' 'v -1 0 0' 'v 0 1 0' 'v 1 0 0' 'vn 0 0 1' 'vt 0.5 1' 'vt 0.375 0' 'vt 0.5 0.125' 'vt 0.625 0' \
+	'f 1/1/1 2/2/1 3/3/1 4/4/1' >q.obj
+for output in q.glb q.ply; do
+	run --report=r.json q.obj $output
+	exits 0
+	is "$(found UV_FOLDED_QUAD) $(found TAN_REPAIRED)" '0 0'
+	is "$(value r.json "r['files'][0]['meshes'][0]['triangles']['mirrored']")" 0
+	run --existing=repair $output again.${output#*.}
+	same $output again.${output#*.}
+done
+sound q.glb
+is "$(gltf q.glb 'JSON.stringify(rows(g.meshes[0].primitives[0].indices).flat())')" '[0,1,2,0,2,3]'
+
 scene "deltas of morph targets that are right stay where they are"
 for precision in float byte; do
 	run --precision=$precision "$ROOT/data/morph.gltf" m.glb
