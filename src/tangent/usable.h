@@ -12,6 +12,7 @@
 
 #include <float.h>
 #include <math.h>
+#include "base/dvec.h"
 #include "base/vec.h"
 #include "tangent/solve.h"
 
@@ -26,34 +27,47 @@
 #define NT_PARALLEL_SINE_SQUARED 1e-6f
 #define NT_PARALLEL_COSINE_SQUARED 0.999999f
 
-/* The predicates have no branches: they are used in loops over lanes. */
+/* nt_is_surely_frame() has no branches: it is used in loops over lanes. */
 
 static inline float nt_squared(const float *v)
 {
 	return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
 }
 
-/* (T . N)^2 from which on T and N are parallel; none where the normal is zero or not finite. */
-static inline float nt_parallel_from(float tangent_squared, float normal_squared)
+/* Whether |N|^2 is good to the last places: it neither vanishes nor overflows. */
+static inline bool nt_is_normal_length(float squared)
 {
-	const bool has_length = (normal_squared > 0.0f) & (normal_squared <= FLT_MAX);
-	return has_length ? NT_PARALLEL_COSINE_SQUARED * normal_squared * tangent_squared : INFINITY;
+	return (squared >= 0x1p-100f) & (squared <= FLT_MAX);
 }
 
-/* Whether T is parallel to N. */
+/* Whether T is a unit vector across N; false, too, where N is too long or too short to tell. */
+static inline bool nt_is_surely_frame(const float *t, const float *n)
+{
+	const float squared = nt_squared(t), normal_squared = nt_squared(n);
+	const float along = t[0] * n[0] + t[1] * n[1] + t[2] * n[2];
+	const float from = nt_is_normal_length(normal_squared)
+		? NT_PARALLEL_COSINE_SQUARED * normal_squared * squared : -1.0f;
+	return (fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE) &
+	       !(along * along > (nt_is_unit_normal(n) ? NT_MOST_LEAN_SQUARED : from));
+}
+
+/* Whether T is parallel to N; not where N is zero or not finite. */
 static inline bool nt_is_parallel(const float *t, const float *n)
 {
 	const float along = t[0] * n[0] + t[1] * n[1] + t[2] * n[2];
-	return along * along > nt_parallel_from(nt_squared(t), nt_squared(n));
+	if (nt_is_normal_length(nt_squared(n)))
+		return along * along > NT_PARALLEL_COSINE_SQUARED * nt_squared(n) * nt_squared(t);
+	const nt_dvec3 tangent = nt_dvec3_load(t), normal = nt_dvec3_load(n);
+	const double exactly = nt_dvec3_dot(tangent, normal), squared = nt_dvec3_dot(normal, normal);
+	return squared <= DBL_MAX &&
+	       exactly * exactly > NT_PARALLEL_COSINE_SQUARED * squared * nt_dvec3_dot(tangent, tangent);
 }
 
 /* Whether T is a unit vector across N. */
 static inline bool nt_is_frame(const float *t, const float *n)
 {
-	const float squared = nt_squared(t), from = nt_parallel_from(squared, nt_squared(n));
-	const float along = t[0] * n[0] + t[1] * n[1] + t[2] * n[2];
-	return (fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE) &
-	       !(along * along > (nt_is_unit_normal(n) ? NT_MOST_LEAN_SQUARED : from));
+	return nt_is_surely_frame(t, n) || (!nt_is_normal_length(nt_squared(n)) && !nt_is_parallel(t, n) &&
+						   fabsf(nt_squared(t) - 1.0f) <= NT_UNIT_TOLERANCE);
 }
 
 /*

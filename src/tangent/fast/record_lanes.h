@@ -117,7 +117,7 @@ static inline void find_unusable(const float (*restrict normals)[NT_LANES], cons
 	for (size_t i = 0; i < used; i++) {
 		const float t[3] = {r->x[i], r->y[i], r->z[i]};
 		const float n[3] = {normals[0][i], normals[1][i], normals[2][i]};
-		unusable[i] = r->present[i] & !nt_is_frame(t, n);
+		unusable[i] = r->present[i] & !nt_is_surely_frame(t, n);
 	}
 }
 

@@ -114,12 +114,63 @@ static void slivers_around_the_bound_are_told_exactly(void **state)
 	free(texcoords);
 }
 
+/* Whether T is within 0.05 degrees of a normal's line, in double. */
+static bool runs_along(const float t[4], const float n[3])
+{
+	const double largest = fmax(fmax(fabs((double)n[0]), fabs((double)n[1])), fabs((double)n[2]));
+	double along = 0, normal = 0, tangent = 0;
+	for (int k = 0; k < 3; k++) {
+		along += t[k] * (n[k] / largest);
+		normal += n[k] / largest * (n[k] / largest);
+		tangent += (double)t[k] * t[k];
+	}
+	return along * along > cos(0.05 * M_PI / 180) * cos(0.05 * M_PI / 180) * normal * tangent;
+}
+
+/* Normals of every length that a float has. In float, T less N (N . T) is T where N is tiny, which may run along N,
+ * and N itself where N is large; squares are zero and infinite there. */
+static void tangents_are_not_parallel_to_normals_of_any_length(void **state)
+{
+	(void)state;
+	static const float directions[][3] = {{1, 0, 0}, {-1, 0, 1e-4f}, {1, 1e-3f, 0}, {1, 1, 0}, {0.3f, 0.4f, 1}};
+	const float positions[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+	const float texcoords[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+	size_t parallel = 0, raw_parallel = 0;
+	for (int exponent = -149; exponent < 128; exponent++)
+		for (size_t i = 0; i < 3 * sizeof directions / sizeof *directions; i++) {
+			float normals[3][3];
+			for (size_t k = 0; k < 3; k++)
+				for (int j = 0; j < 3; j++)
+					normals[k][j] = ldexpf(directions[(i + k) % 5][j], exponent);
+			for (size_t k = 0; k < 3 && i >= 5; k++) /* a little along u, much across */
+				memcpy(normals[k], (float[3]){i < 10 ? 0.5f : 1e-4f, 0, ldexpf(1, exponent)}, sizeof normals[k]);
+			const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 3,
+				.positions = &positions[0][0], .normals = &normals[0][0], .texcoords = &texcoords[0][0]};
+			compare_paths(&mesh, 3, 0, NMTAN_REPAIR_ON);
+			for (int method = 0; method <= NMTAN_METHOD_MIKKTSPACE_SORTED; method++) {
+				float t[3][4];
+				nmtan_options options = {.struct_bytes = sizeof options, .method = (nmtan_method)method};
+				const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &t[0][0]};
+				assert_int_equal(nmtan_tangents(&mesh, &options, &output, NULL), NMTAN_OK);
+				for (int k = 0; k < 3; k++)
+					parallel += runs_along(t[k], normals[k]);
+				options.repair = NMTAN_REPAIR_OFF;
+				assert_int_equal(nmtan_tangents(&mesh, &options, &output, NULL), NMTAN_OK);
+				for (int k = 0; k < 3; k++)
+					raw_parallel += runs_along(t[k], normals[k]);
+			}
+		}
+	assert_int_equal(parallel, 0);
+	assert_true(raw_parallel > 1000);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(known_faces_need_no_look_on_goldens),
 		cmocka_unit_test(known_faces_need_no_look_on_nasty_meshes),
 		cmocka_unit_test(slivers_around_the_bound_are_told_exactly),
+		cmocka_unit_test(tangents_are_not_parallel_to_normals_of_any_length),
 	};
 	return cmocka_run_group_tests_name("tangent/usable", tests, NULL, NULL);
 }
