@@ -106,9 +106,8 @@ static void make_grid_where_sorts(bool differ, grid *g, bool quads)
 	fail_msg("the sorts do not show");
 }
 
-static void every_method_is_found_on_both_kinds_of_faces(void **state)
+TEST(every_method_is_found_on_both_kinds_of_faces)
 {
-	(void)state;
 	static grid g;
 	static float tangents[CORNERS][4];
 	for (int quads = 0; quads < 2; quads++) {
@@ -129,9 +128,8 @@ static void every_method_is_found_on_both_kinds_of_faces(void **state)
 }
 
 /* Where the sorts agree, the published one is named. */
-static void first_of_equals_is_named(void **state)
+TEST(first_of_equals_is_named)
 {
-	(void)state;
 	static grid g;
 	static float tangents[CORNERS][4];
 	make_grid_where_sorts(false, &g, false);
@@ -139,9 +137,8 @@ static void first_of_equals_is_named(void **state)
 	assert_int_equal(find(&g, tangents, false, true).method, NMTAN_METHOD_MIKKTSPACE);
 }
 
-static void inverted_signs_do_not_hide_the_method(void **state)
+TEST(inverted_signs_do_not_hide_the_method)
 {
-	(void)state;
 	static grid g;
 	static float tangents[CORNERS][4];
 	make_grid(&g, 1);
@@ -169,9 +166,8 @@ static void turn(const grid *g, size_t corner, double degrees, float tangent[4])
 		tangent[k] = (float)(c * tangent[k] + s * b[k]);
 }
 
-static void turned_tangents_are_nobodys(void **state)
+TEST(turned_tangents_are_nobodys)
 {
-	(void)state;
 	static grid g;
 	static float tangents[CORNERS][4];
 	nt_random random = nt_random_seed(1);
@@ -191,9 +187,8 @@ static void turned_tangents_are_nobodys(void **state)
 }
 
 /* The share is of 99 %: 23 of 2 400 corners may be others', 25 may not. */
-static void few_corners_of_others_do_not_hide_the_method(void **state)
+TEST(few_corners_of_others_do_not_hide_the_method)
 {
-	(void)state;
 	static grid g;
 	static float tangents[CORNERS][4];
 	make_grid(&g, 1);
@@ -208,9 +203,8 @@ static void few_corners_of_others_do_not_hide_the_method(void **state)
 }
 
 /* Signed bytes are off by up to half a step of 1/127 in each component: 0.4 degrees. */
-static void bytes_are_compared_within_a_degree(void **state)
+TEST(bytes_are_compared_within_a_degree)
 {
-	(void)state;
 	static grid g;
 	static float tangents[CORNERS][4];
 	make_grid(&g, 1);
@@ -224,9 +218,8 @@ static void bytes_are_compared_within_a_degree(void **state)
 	assert_false(find(&g, tangents, false, true).known);
 }
 
-static void tangents_that_are_no_numbers_are_nobodys(void **state)
+TEST(tangents_that_are_no_numbers_are_nobodys)
 {
-	(void)state;
 	static grid g;
 	static float tangents[CORNERS][4];
 	make_grid(&g, 1);
@@ -237,14 +230,5 @@ static void tangents_that_are_no_numbers_are_nobodys(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(every_method_is_found_on_both_kinds_of_faces),
-		cmocka_unit_test(first_of_equals_is_named),
-		cmocka_unit_test(inverted_signs_do_not_hide_the_method),
-		cmocka_unit_test(turned_tangents_are_nobodys),
-		cmocka_unit_test(few_corners_of_others_do_not_hide_the_method),
-		cmocka_unit_test(bytes_are_compared_within_a_degree),
-		cmocka_unit_test(tangents_that_are_no_numbers_are_nobodys),
-	};
-	return cmocka_run_group_tests_name("report/maker", tests, NULL, NULL);
+	return run_group("report/maker");
 }

@@ -36,9 +36,8 @@ static void expect(const hand_mesh *h, bool polygons, const char *letters)
 	assert_int_equal(count, quads);
 }
 
-static void both_cuts_pair_and_so_do_their_mirror_images(void **state)
+TEST(both_cuts_pair_and_so_do_their_mirror_images)
 {
-	(void)state;
 	static const uint32_t pairs[][6] = {{0, 1, 2, 0, 2, 3}, {0, 3, 2, 0, 2, 1}, {0, 1, 3, 1, 2, 3},
 		{0, 3, 1, 3, 2, 1}};
 	static const char *const letters[] = {"C2", "C2", "D2", "D2"};
@@ -52,9 +51,8 @@ static void both_cuts_pair_and_so_do_their_mirror_images(void **state)
 }
 
 /* Triangles with an edge in common that are written in another order, or wound otherwise, are none of these forms. */
-static void other_neighbours_do_not_pair(void **state)
+TEST(other_neighbours_do_not_pair)
 {
-	(void)state;
 	static const uint32_t pairs[][6] = {{0, 1, 2, 2, 3, 0}, {0, 1, 2, 0, 3, 2}, {0, 1, 3, 3, 1, 2},
 		{0, 1, 2, 3, 4, 5}};
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
@@ -67,9 +65,8 @@ static void other_neighbours_do_not_pair(void **state)
 }
 
 /* Each pair is taken where it begins; what is left over at the end is alone. */
-static void fans_are_paired_in_order(void **state)
+TEST(fans_are_paired_in_order)
 {
-	(void)state;
 	static const char *const letters[] = {"", "-", "C2", "C2-", "C2C2", "C2C2-"};
 	for (uint32_t triangles = 0; triangles < 6; triangles++) {
 		hand_mesh *h = points(8);
@@ -81,9 +78,8 @@ static void fans_are_paired_in_order(void **state)
 }
 
 /* A second quad over copies of vertices: equal by position, normal and texture coordinates, in all but `other`. */
-static void corners_are_compared_by_value(void **state)
+TEST(corners_are_compared_by_value)
 {
-	(void)state;
 	for (int other = 0; other <= 4; other++) {
 		hand_mesh *h = points(4);
 		const uint32_t a = hand_vertex(h, 0, 0, 0, 0, 1), c = hand_vertex(h, 2, 4, 0, 2, 1);
@@ -99,9 +95,8 @@ static void corners_are_compared_by_value(void **state)
 }
 
 /* One vertex is itself, whatever it holds. */
-static void vertex_that_is_not_a_number_is_itself(void **state)
+TEST(vertex_that_is_not_a_number_is_itself)
 {
-	(void)state;
 	hand_mesh *h = points(4);
 	h->positions[0][0] = h->texcoords[2][1] = NAN;
 	hand_quad(h, 0, 1, 2, 3);
@@ -109,9 +104,8 @@ static void vertex_that_is_not_a_number_is_itself(void **state)
 	hand_free(h, NULL);
 }
 
-static void triangles_without_indices_pair(void **state)
+TEST(triangles_without_indices_pair)
 {
-	(void)state;
 	static const uint32_t corners[] = {0, 1, 3, 1, 2, 3, 3, 2, 1};
 	hand_mesh *h = hand_new();
 	for (size_t c = 0; c < 9; c++)
@@ -125,9 +119,8 @@ static void triangles_without_indices_pair(void **state)
 }
 
 /* A polygon of four corners is a quad, whichever of them its writer put first to tell it from the polygon before. */
-static void polygons_of_four_corners_are_quads(void **state)
+TEST(polygons_of_four_corners_are_quads)
 {
-	(void)state;
 	hand_mesh *h = points(10);
 	hand_quad(h, 0, 1, 2, 3);
 	hand_quad(h, 4, 5, 0, 3); /* (0 3 4 5), whose first corner would be 0 again */
@@ -139,9 +132,8 @@ static void polygons_of_four_corners_are_quads(void **state)
 
 /* Pairs that are no polygon stay alone: three triangles are a pentagon, another form has two first corners, and so have
  * vertices that only look the same. */
-static void other_polygons_stay_triangles(void **state)
+TEST(other_polygons_stay_triangles)
 {
-	(void)state;
 	hand_mesh *h = points(10);
 	for (uint32_t i = 1; i <= 3; i++)
 		hand_triangle(h, 0, i, i + 1);
@@ -156,9 +148,8 @@ static void other_polygons_stay_triangles(void **state)
 }
 
 /* A vertex that got a second normal has a second number, and is the first corner of its polygon still. */
-static void made_normals_leave_polygons_whole(void **state)
+TEST(made_normals_leave_polygons_whole)
 {
-	(void)state;
 	hand_mesh *h = points(5);
 	const uint32_t copy = hand_vertex(h, 0, 0, 0, 0, 1);
 	uint32_t sources[] = {0};
@@ -190,9 +181,8 @@ static int sign_of_quad(const hand_mesh *h, const uint32_t quad[4])
 
 /* Corners on a coarse lattice of texture coordinates, so that halves of equal area are there too: where MikkTSpace cuts
  * the quad as the file does, the first half decides. */
-static void folded_quads_have_the_sign_that_mikktspace_gives_them(void **state)
+TEST(folded_quads_have_the_sign_that_mikktspace_gives_them)
 {
-	(void)state;
 	static const uint32_t cuts[2][2][3] = {{{0, 1, 2}, {0, 2, 3}}, {{0, 1, 3}, {1, 2, 3}}};
 	const uint32_t quad[] = {0, 1, 2, 3};
 	nt_random random = nt_random_seed(1);
@@ -231,17 +221,5 @@ static void folded_quads_have_the_sign_that_mikktspace_gives_them(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(both_cuts_pair_and_so_do_their_mirror_images),
-		cmocka_unit_test(other_neighbours_do_not_pair),
-		cmocka_unit_test(fans_are_paired_in_order),
-		cmocka_unit_test(corners_are_compared_by_value),
-		cmocka_unit_test(vertex_that_is_not_a_number_is_itself),
-		cmocka_unit_test(triangles_without_indices_pair),
-		cmocka_unit_test(polygons_of_four_corners_are_quads),
-		cmocka_unit_test(other_polygons_stay_triangles),
-		cmocka_unit_test(made_normals_leave_polygons_whole),
-		cmocka_unit_test(folded_quads_have_the_sign_that_mikktspace_gives_them),
-	};
-	return cmocka_run_group_tests_name("report/quads", tests, NULL, NULL);
+	return run_group("report/quads");
 }

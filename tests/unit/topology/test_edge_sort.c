@@ -155,7 +155,8 @@ static void *take_dirty(void *user, size_t bytes)
 
 /* Triangles from one end of the box to the other, the last three of which have the vertices 2, 1 and 0, at sizes at
  * which bounds of cells overflow or are lost: positions are multiples of a step, so that they are in the same cells.
- * Another program that follows the specification sorts the run as 256 259 253: triangles 85 and 86 meet, not 84 and 85. */
+ * Another program that follows the specification sorts the run as 256 259 253: triangles 85 and 86 meet, not 84 and
+ * 85. */
 TEST(size_does_not_matter)
 {
 	enum { VERTICES = 255, TRIANGLES = VERTICES / 3 + 2, SIZES = 6 };
