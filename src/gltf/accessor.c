@@ -149,18 +149,18 @@ static nt_status check_dense(nt_gltf *document, const nt_json_value *json, const
 }
 
 /* One of the two halves of a sparse object. */
-static nt_status check_sparse_part(nt_gltf *document, const nt_json_value *sparse, const char *name,
+static nt_status check_sparse_array(nt_gltf *document, const nt_json_value *sparse, const char *name,
 	const char *pointer, uint64_t count, uint64_t element_bytes, uint32_t *view_index,
 	uint64_t *offset, nt_error *error)
 {
 	char place[NT_GLTF_POINTER * 2];
 	snprintf(place, sizeof place, "%s/%s", pointer, name);
-	const nt_json_value *part = nt_json_find(sparse, name);
+	const nt_json_value *list = nt_json_find(sparse, name);
 	uint64_t index;
-	nt_status status = nt_gltf_uint(part, place, "bufferView", UINT32_MAX - 1, NT_GLTF_REQUIRED,
+	nt_status status = nt_gltf_uint(list, place, "bufferView", UINT32_MAX - 1, NT_GLTF_REQUIRED,
 		&index, error);
 	if (!status)
-		status = nt_gltf_uint(part, place, "byteOffset", (uint64_t)1 << 53, 0, offset, error);
+		status = nt_gltf_uint(list, place, "byteOffset", (uint64_t)1 << 53, 0, offset, error);
 	nt_gltf_view view;
 	if (!status)
 		status = nt_gltf_get_view(document, index, place, &view, error);
@@ -189,12 +189,12 @@ static nt_status check_sparse(nt_gltf *document, const nt_json_value *sparse, co
 		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
 			"componentType %llu, expected 5121, 5123 or 5125", (unsigned long long)type);
 	accessor->sparse_index_type = (uint32_t)type;
-	status = check_sparse_part(document, sparse, "indices", pointer, accessor->sparse_count,
+	status = check_sparse_array(document, sparse, "indices", pointer, accessor->sparse_count,
 		nt_gltf_component_bytes(type), &accessor->sparse_index_view,
 		&accessor->sparse_index_offset, error);
 	if (status)
 		return status;
-	return check_sparse_part(document, sparse, "values", pointer, accessor->sparse_count,
+	return check_sparse_array(document, sparse, "values", pointer, accessor->sparse_count,
 		accessor->element_bytes, &accessor->sparse_value_view, &accessor->sparse_value_offset,
 		error);
 }

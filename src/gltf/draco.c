@@ -96,10 +96,10 @@ typedef struct decoding {
 	packed *blocks; /* [view_count] */
 } decoding;
 
-static void decode_wanted(void *context, size_t view, unsigned slot)
+static void decode_wanted(void *context, size_t view, unsigned thread)
 {
 	const decoding *d = context;
-	(void)slot;
+	(void)thread;
 	if (d->blocks[view].bytes)
 		nt_draco_decode(&d->document->draco_blocks[view], d->blocks[view].bytes, d->blocks[view].size, 0,
 			NULL);

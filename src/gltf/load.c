@@ -161,9 +161,9 @@ typedef struct flipping {
 	float *to;
 } flipping;
 
-static void flip_range(void *context, size_t begin, size_t end, unsigned slot)
+static void flip_range(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	const flipping *f = context;
 	size_t i = begin;
 	for (; i + 2 <= end; i += 2) {

@@ -64,10 +64,10 @@ static uint32_t targets_without_tangents(const nt_json_value *primitive)
 /* Whether nothing but its tangents will ever depend on the vertices of a primitive with indices: whole triangles, since
  * indices that form none stay as they are, with normals, uncompressed, not moved, and texture coordinates as all take
  * them. */
-static bool is_plain(const nt_json_value *primitive, const nt_mesh *mesh, uint64_t mode, uint64_t corners)
+static bool is_disposable(const nt_json_value *primitive, const nt_mesh *mesh, uint64_t mode, uint64_t corners)
 {
 	return mode == NT_GLTF_TRIANGLES && corners % 3 == 0 && mesh->has_normals &&
-		!mesh->texcoords_transformed && !nt_json_find(primitive, "targets") && !nt_gltf_draco_of(primitive);
+		!mesh->texcoords_transformed && !nt_json_find(primitive, "targets") && !mesh->compressed;
 }
 
 static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
@@ -117,7 +117,7 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->has_texcoords = has_texcoords(attributes, mesh->texcoord_set);
 	mesh->targets_without_tangents = targets_without_tangents(primitive);
 	mesh->face_count = claimed_faces(corners, mode);
-	mesh->plan.plain = indices && is_plain(primitive, mesh, mode, corners);
+	mesh->plan.disposable = indices && is_disposable(primitive, mesh, mode, corners);
 	mesh->primitive_count = 1;
 	mesh->primitives = nt_arena_alloc(&scene->arena, 1, sizeof *mesh->primitives);
 	if (!mesh->primitives)

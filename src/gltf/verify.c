@@ -482,11 +482,11 @@ static nt_status compare_check(const verification *v, const mesh_check *check, n
 	return v->edited ? compare_edited(check, v->threads, error) : compare_mesh(check->mesh, check->views, error);
 }
 
-static void compare_one(void *context, size_t item, unsigned slot)
+static void compare_one(void *context, size_t item, unsigned thread)
 {
 	verification *v = context;
 	nt_error ignored;
-	(void)slot;
+	(void)thread;
 	v->checks[item].status = compare_check(v, &v->checks[item], &ignored);
 }
 

@@ -95,10 +95,10 @@ typedef struct both_ways {
 	nt_status statuses[2];
 } both_ways;
 
-static void ask_one_way(void *context, size_t way, unsigned slot)
+static void ask_one_way(void *context, size_t way, unsigned thread)
 {
 	both_ways *w = context;
-	(void)slot;
+	(void)thread;
 	w->statuses[way] = find_missing(w->corners[way], w->face_counts[way], w->corners[1 - way],
 		w->face_counts[1 - way], w->tolerance, &w->missing[way]);
 }

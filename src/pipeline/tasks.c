@@ -22,20 +22,20 @@ enum {
 };
 
 /* What a thread loads into. */
-typedef struct slot {
+typedef struct loader {
 	nt_arena kept;      /* until the scene takes it over */
 	nt_arena temporary; /* the same of temporary meshes */
 	nt_arena per_mesh;  /* temporary arena: of the mesh that it is about to solve */
-} slot;
+} loader;
 
 /* One window. */
 typedef struct window {
 	const nt_tasks *tasks;
 	nt_scene scene;          /* the meshes of the window, as if they were all */
 	bool *needed;            /* [mesh_count] still to be loaded */
-	nt_read_options alone;   /* of a load by one thread */
+	nt_read_options of_one;  /* thread that loads a mesh */
 	nt_small_solves *solves; /* NULL: small meshes are only loaded */
-	slot *slots;
+	loader *loaders; /* one for each thread */
 	nt_error *error;
 } window;
 
@@ -103,31 +103,31 @@ static void drop_geometry(nt_mesh *mesh)
 	mesh->split = split;
 }
 
-static void load_small(void *context, size_t item, unsigned number)
+static void load_small(void *context, size_t item, unsigned thread)
 {
 	const window *w = context;
 	nt_mesh *mesh = &w->scene.meshes[item];
 	if (!w->needed[item] || !is_small(mesh))
 		return;
-	slot *own = &w->slots[number];
-	const bool solved = w->solves && mesh->plan.plain && 3 * mesh->face_count < NT_LEAST_ALONE_CORNERS;
+	loader *own = &w->loaders[thread];
+	const bool ahead = w->solves && mesh->plan.disposable && 3 * mesh->face_count < NT_LEAST_ALONE_CORNERS;
 	const nt_mesh before = *mesh;
-	nt_arena *arena = solved ? &own->per_mesh : &own->kept;
-	nt_scene part = w->scene;
-	part.arena = *arena;
-	part.temporary = own->temporary;
-	nt_status status = w->tasks->reader->load(&part, mesh, &w->alone, NULL);
-	if (!status && solved)
-		status = nt_make_unit_normals(&part, mesh, 1);
-	if (!status && solved)
-		status = nt_find_halves(&part, mesh, w->tasks->settings->quads, 1);
-	*arena = part.arena;
-	own->temporary = part.temporary;
-	if (!status && solved)
-		status = nt_small_solve(w->solves, mesh, number);
-	if (!status && solved)
+	nt_arena *arena = ahead ? &own->per_mesh : &own->kept;
+	nt_scene alone = w->scene;
+	alone.arena = *arena;
+	alone.temporary = own->temporary;
+	nt_status status = w->tasks->reader->load(&alone, mesh, &w->of_one, NULL);
+	if (!status && ahead)
+		status = nt_make_unit_normals(&alone, mesh, 1);
+	if (!status && ahead)
+		status = nt_find_halves(&alone, mesh, w->tasks->settings->quads, 1);
+	*arena = alone.arena;
+	own->temporary = alone.temporary;
+	if (!status && ahead)
+		status = nt_small_solve(w->solves, mesh, thread);
+	if (!status && ahead)
 		drop_geometry(mesh);
-	if (solved)
+	if (ahead)
 		nt_arena_clear(&own->per_mesh);
 	w->needed[item] = status != NT_OK;
 	if (status)
@@ -150,22 +150,22 @@ static nt_status load_all_small(window *w)
 		return status;
 	const unsigned threads = nt_thread_count(t->options->threads);
 	if ((t->options->only_results || threads > 1) && are_many(w)) {
-		w->slots = nt_calloc(threads, sizeof *w->slots);
+		w->loaders = nt_calloc(threads, sizeof *w->loaders);
 		w->solves = t->options->only_results
 			? nt_small_solves_begin(&w->scene, t->settings, t->writer->format, threads) : NULL;
-		if (!w->slots || (t->options->only_results && !w->solves))
+		if (!w->loaders || (t->options->only_results && !w->solves))
 			status = nt_fail_memory(w->error);
 		else
 			nt_parallel_items(threads, w->scene.mesh_count, load_small, w);
 		if (w->solves)
 			nt_small_solves_end(w->solves);
 	}
-	for (unsigned i = 0; w->slots && i < threads; i++) {
-		nt_arena_join(&w->scene.arena, &w->slots[i].kept);
-		nt_arena_join(&w->scene.temporary, &w->slots[i].temporary);
-		nt_arena_free(&w->slots[i].per_mesh);
+	for (unsigned i = 0; w->loaders && i < threads; i++) {
+		nt_arena_join(&w->scene.arena, &w->loaders[i].kept);
+		nt_arena_join(&w->scene.temporary, &w->loaders[i].temporary);
+		nt_arena_free(&w->loaders[i].per_mesh);
 	}
-	free(w->slots);
+	free(w->loaders);
 	t->reader->unshare(&w->scene);
 	return status;
 }
@@ -252,8 +252,8 @@ nt_status nt_tasks_do(const nt_tasks *t, nt_error *error)
 	size_t first = 0;
 	do {
 		const size_t end = find_end(scene, first);
-		window w = {.tasks = t, .scene = *scene, .needed = needed, .alone = *t->options, .error = error};
-		w.alone.threads = 1;
+		window w = {.tasks = t, .scene = *scene, .needed = needed, .of_one = *t->options, .error = error};
+		w.of_one.threads = 1;
 		w.scene.meshes += first;
 		w.scene.mesh_count = end - first;
 		if (!status)

@@ -166,8 +166,8 @@ typedef struct nt_mesh_plan {
 	const struct nt_mesh *transform_of; /* of a copy in a join: the mesh whose texture transform applies; NULL:
 	                                       its own */
 	nt_quantized quantized;
-	bool plain;              /* of its geometry, an edit of the source's document needs what a solve makes
-	                            of it alone */
+	bool disposable;         /* its geometry may go once it is solved: an edit of the source's document needs
+	                            nothing but the results */
 	bool pooled;             /* others have its vertices and other triangles: it is loaded with the vertices that
 	                            it uses */
 	bool temporary;          /* what it holds lies in scene->temporary, and is gone once the writer has merged it */
@@ -355,7 +355,7 @@ static inline bool nt_mesh_is_solved_ahead(const nt_mesh *mesh)
 /* Whether nobody keeps the triangles of a solved mesh: it was solved ahead, and none of its vertices was split. */
 static inline bool nt_mesh_left_triangles(const nt_mesh *mesh)
 {
-	return mesh->plan.plain && !mesh->indices && !mesh->split.indices;
+	return mesh->plan.disposable && !mesh->indices && !mesh->split.indices;
 }
 
 /* The arena of what a mesh holds. */

@@ -12,16 +12,16 @@
 #include "gltf/view.h"
 
 /* One of the two arrays of a sparse accessor, as it is and as it will be. */
-typedef struct sparse_part {
+typedef struct sparse_array {
 	const char *name;
 	uint32_t view;
 	uint64_t offset, old_size;
 	const unsigned char *bytes; /* the whole new array */
 	size_t size, width;         /* width: of an element, for its alignment */
 	bool extended;              /* the new array begins with the old one */
-} sparse_part;
+} sparse_array;
 
-static nt_status move_sparse_part(nt_appending *job, const sparse_part *moved, nt_json_value *json)
+static nt_status move_sparse_array(nt_appending *job, const sparse_array *moved, nt_json_value *json)
 {
 	uint32_t view;
 	const nt_status status = nt_edits_add_view(job->edits, job->buffer, moved->bytes,
@@ -49,31 +49,31 @@ static void find_edited(const nt_appending *job, uint32_t buffer, uint64_t begin
 
 /* Puts the new array where the old one is; where others use its bytes, into a new view. Morph targets often
  * share one array of indices: they replace the same elements, so it grows once for all of them. */
-static nt_status extend_sparse_part(nt_appending *job, const nt_append_target *from, const sparse_part *part)
+static nt_status extend_sparse_array(nt_appending *job, const nt_append_target *from, const sparse_array *array)
 {
 	nt_json_value *json = nt_json_find(nt_json_find(nt_json_at(
 		nt_gltf_root_member(job->document, "accessors"), from->accessor.index), "sparse"),
-		part->name);
+		array->name);
 	nt_gltf_view view;
-	const nt_status status = nt_gltf_get_view(job->document, part->view, "", &view, job->error);
+	const nt_status status = nt_gltf_get_view(job->document, array->view, "", &view, job->error);
 	if (status)
 		return status;
-	const uint64_t begin = view.offset + part->offset, end = begin + part->old_size;
+	const uint64_t begin = view.offset + array->offset, end = begin + array->old_size;
 	bool same, some;
 	find_edited(job, view.buffer, begin, end, &same, &some);
-	if (some || (!part->extended && begin % part->width) ||
+	if (some || (!array->extended && begin % array->width) ||
 		nt_byte_users_foreign(&job->edits->users, view.buffer, begin, end, job->edits->appended_by,
 			nt_append_owner(job)))
-		return move_sparse_part(job, part, json);
+		return move_sparse_array(job, array, json);
 	if (same)
 		return NT_OK;
 	if (!nt_append_note_edit(job, view.buffer, begin, end))
 		return nt_fail_memory(job->error);
-	if (!part->extended)
-		return nt_edits_replace(job->edits, view.buffer, begin, part->old_size, part->bytes,
-			part->size, job->error);
-	return nt_edits_replace(job->edits, view.buffer, end, 0, part->bytes + part->old_size,
-		part->size - (size_t)part->old_size, job->error);
+	if (!array->extended)
+		return nt_edits_replace(job->edits, view.buffer, begin, array->old_size, array->bytes,
+			array->size, job->error);
+	return nt_edits_replace(job->edits, view.buffer, end, 0, array->bytes + array->old_size,
+		array->size - (size_t)array->old_size, job->error);
 }
 
 /* Numbers of the elements that are replaced, then those of their copies. */
@@ -140,11 +140,11 @@ nt_status nt_append_sparse(nt_appending *job, const nt_append_target *from)
 	if (type != a->sparse_index_type)
 		nt_json_set_uint64(job->json, nt_json_put(job->json, nt_json_find(sparse, "indices"),
 			"componentType"), type);
-	status = extend_sparse_part(job, from, &(sparse_part){"indices", a->sparse_index_view,
+	status = extend_sparse_array(job, from, &(sparse_array){"indices", a->sparse_index_view,
 		a->sparse_index_offset,
 		r.old_count * old_width, numbers, r.count * width, width, width == old_width});
 	if (!status)
-		status = extend_sparse_part(job, from, &(sparse_part){"values", a->sparse_value_view,
+		status = extend_sparse_array(job, from, &(sparse_array){"values", a->sparse_value_view,
 			a->sparse_value_offset, r.old_count * a->element_bytes, r.values,
 			r.count * a->element_bytes, a->component_bytes, true});
 	return status;

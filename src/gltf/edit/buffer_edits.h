@@ -64,7 +64,7 @@ typedef struct nt_buffer_edits {
 
 /*
  * Starts with no edits. Compressed views that vertices will be appended to are decompressed first: edits
- * have to know them from the beginning. Faulty parts of the document that nothing needs are passed over.
+ * have to know them from the beginning. What is faulty and needed by nothing is passed over.
  */
 nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_error *error);
 void nt_edits_free(nt_buffer_edits *edits);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Who refers to which bytes of a document's buffers: accessors, their sparse parts, images, compressed
+ * Who refers to which bytes of a document's buffers: accessors, their sparse arrays, images, compressed
  * data, and views whose user is unknown. Sorted by buffer and begin, with the largest end so far beside each,
  * so that a question about a range looks at few of them.
  */
@@ -54,12 +54,12 @@ static bool add_accessor(nt_byte_users *users, nt_gltf *document, const nt_verte
 /* The bytes behind a compressed view lie in another place than the view. */
 static bool add_compressed(nt_byte_users *users, const nt_json_value *view)
 {
-	const nt_json_value *part = nt_gltf_compression_of(view, NULL);
+	const nt_json_value *packed = nt_gltf_compression_of(view, NULL);
 	uint64_t buffer, offset = 0, length;
-	if (!nt_json_get_uint64(nt_json_find(part, "buffer"), &buffer) || buffer >= UINT32_MAX ||
-		!nt_json_get_uint64(nt_json_find(part, "byteLength"), &length))
+	if (!nt_json_get_uint64(nt_json_find(packed, "buffer"), &buffer) || buffer >= UINT32_MAX ||
+		!nt_json_get_uint64(nt_json_find(packed, "byteLength"), &length))
 		return true;
-	nt_json_get_uint64(nt_json_find(part, "byteOffset"), &offset);
+	nt_json_get_uint64(nt_json_find(packed, "byteOffset"), &offset);
 	if (length > UINT64_MAX - offset)
 		return true;
 	return add_user(users, (uint32_t)buffer, offset, offset + length, NT_NONE);

@@ -9,7 +9,7 @@
 #include "gltf/edit/buffer_edits.h"
 #include "gltf/edit/merge_splits.h"
 
-/* A primitive that is to be compressed. The first part is what is known of it, the second what was looked up in the
+/* A primitive that is to be compressed. First comes what is known of it, then what was looked up in the
  * document, the third what was encoded. */
 typedef struct nt_gltf_recoding {
 	nt_buffer_edits *edits;

@@ -128,11 +128,11 @@ static int compare_needs(const void *a, const void *b)
 	return (x < y) - (x > y);
 }
 
-static void encode_item(void *context, size_t item, unsigned slot)
+static void encode_item(void *context, size_t item, unsigned thread)
 {
 	nt_gltf_recoding *const *list = context;
 	nt_error ignored;
-	(void)slot;
+	(void)thread;
 	nt_gltf_draco_encode(list[item], &ignored);
 }
 

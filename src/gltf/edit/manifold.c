@@ -82,15 +82,15 @@ static void move_primitives(nt_json *json, nt_json_value *primitives, const nt_m
 	}
 }
 
-/* Names an array of numbers as the extension has it twice: in the sparse part, and by an accessor. */
-static void set_part(nt_json *json, nt_json_value *extension, uint32_t manifold, const char *part, const char *key,
-	uint32_t view, uint32_t type, size_t count)
+/* Names an array of numbers as the extension has it twice: in the sparse accessor, and by an accessor. */
+static void set_sparse_array(nt_json *json, nt_json_value *extension, uint32_t manifold, const char *list,
+	const char *key, uint32_t view, uint32_t type, size_t count)
 {
 	const uint32_t number = nt_gltf_new_accessor(json, view, type, "SCALAR", count, false);
 	nt_json_value *accessor = nt_json_at(nt_json_find(nt_json_root(json), "accessors"), manifold);
-	nt_json_value *object = nt_json_put(json, nt_json_put(json, accessor, "sparse"), part);
+	nt_json_value *object = nt_json_put(json, nt_json_put(json, accessor, "sparse"), list);
 	nt_json_set_uint64(json, nt_json_put(json, object, "bufferView"), view);
-	if (strcmp(part, "indices") == 0)
+	if (strcmp(list, "indices") == 0)
 		nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), type);
 	nt_json_set_uint64(json, nt_json_put(json, extension, key), number);
 }
@@ -121,8 +121,8 @@ static nt_status move_manifold(nt_buffer_edits *edits, uint32_t buffer, const nt
 		return status;
 	nt_json_value *accessor = nt_json_at(nt_json_find(nt_json_root(json), "accessors"), manifold);
 	nt_json_set_uint64(json, nt_json_put(json, nt_json_put(json, accessor, "sparse"), "count"), count);
-	set_part(json, m->extension, manifold, "indices", "mergeIndices", corner_view, corner_type, count);
-	set_part(json, m->extension, manifold, "values", "mergeValues", vertex_view, type, count);
+	set_sparse_array(json, m->extension, manifold, "indices", "mergeIndices", corner_view, corner_type, count);
+	set_sparse_array(json, m->extension, manifold, "values", "mergeValues", vertex_view, type, count);
 	return NT_OK;
 }
 

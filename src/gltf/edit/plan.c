@@ -62,19 +62,19 @@ static void find_pooled(const nt_scene *scene, const nt_read_options *options)
 	}
 }
 
-/* What a mesh holds is temporary where only its results are asked for, and go to its pool. One that others with a
- * texture transform to be looked at share keeps its texture coordinates. */
+/* What a mesh holds is temporary where only its results are asked for, and go to its pool. Where a later mesh has the
+ * same geometry and a texture transform, which findings are about, the texture coordinates stay. */
 static void find_temporary(const nt_scene *scene, const nt_read_options *options)
 {
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
 		if (mesh->plan.same_as && mesh->texcoords_transformed)
-			scene->meshes[mesh->plan.same_as - scene->meshes].plan.plain = false;
+			scene->meshes[mesh->plan.same_as - scene->meshes].plan.disposable = false;
 	}
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
 		nt_mesh_plan *plan = &mesh->plan;
-		plan->temporary = options->only_results && plan->pooled && plan->plain && nt_mesh_is_wanted(mesh);
+		plan->temporary = options->only_results && plan->pooled && plan->disposable && nt_mesh_is_wanted(mesh);
 	}
 }
 

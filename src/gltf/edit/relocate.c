@@ -141,12 +141,12 @@ static void move_views(nt_buffer_edits *edits, const nt_relocated_buffer *buffer
 	for (size_t i = 0; i < edits->view_count; i++) {
 		nt_json_value *object = nt_json_at(views, i);
 		nt_gltf_view view;
-		nt_json_value *part = nt_gltf_compression_of(object, NULL);
+		nt_json_value *packed = nt_gltf_compression_of(object, NULL);
 		uint64_t buffer, offset = 0;
-		if (part && nt_json_get_uint64(nt_json_find(part, "buffer"), &buffer) &&
+		if (packed && nt_json_get_uint64(nt_json_find(packed, "buffer"), &buffer) &&
 			buffer < edits->document->buffer_count) {
-			nt_json_get_uint64(nt_json_find(part, "byteOffset"), &offset);
-			set_offset(json, part, "byteOffset",
+			nt_json_get_uint64(nt_json_find(packed, "byteOffset"), &offset);
+			set_offset(json, packed, "byteOffset",
 				map_position(&buffers[buffer], offset));
 		}
 		if (moved[i].buffer || edits->is_free[i] ||
@@ -222,9 +222,9 @@ static nt_status put_zeros(const target *to, uint64_t size, nt_error *error)
 	static const unsigned char zeros[4096];
 	nt_status status = NT_OK;
 	while (size && !status) {
-		const size_t part = size < sizeof zeros ? (size_t)size : sizeof zeros;
-		status = put_bytes(to, zeros, part, error);
-		size -= part;
+		const size_t some = size < sizeof zeros ? (size_t)size : sizeof zeros;
+		status = put_bytes(to, zeros, some, error);
+		size -= some;
 	}
 	return status;
 }
@@ -298,14 +298,14 @@ static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer
 /* ---- views that were decompressed ---- */
 
 /* Takes the compressed bytes of a view out, if nobody else refers to them. */
-static nt_status remove_compressed(nt_buffer_edits *edits, const nt_json_value *part, nt_error *error)
+static nt_status remove_compressed(nt_buffer_edits *edits, const nt_json_value *packed, nt_error *error)
 {
 	uint64_t buffer, offset = 0, length;
-	if (!nt_json_get_uint64(nt_json_find(part, "buffer"), &buffer) ||
-		!nt_json_get_uint64(nt_json_find(part, "byteLength"), &length) ||
+	if (!nt_json_get_uint64(nt_json_find(packed, "buffer"), &buffer) ||
+		!nt_json_get_uint64(nt_json_find(packed, "byteLength"), &length) ||
 		buffer >= edits->document->buffer_count)
 		return NT_OK;
-	nt_json_get_uint64(nt_json_find(part, "byteOffset"), &offset);
+	nt_json_get_uint64(nt_json_find(packed, "byteOffset"), &offset);
 	const size_t users = nt_byte_users_count(&edits->users, (uint32_t)buffer, offset, offset + length);
 	return users == 1 ? nt_edits_replace(edits, (uint32_t)buffer, offset, length,
 				    (const unsigned char *)"", 0, error) :
@@ -331,11 +331,11 @@ static nt_status settle_virtual(nt_buffer_edits *edits, uint32_t index, moved_vi
 	}
 	nt_json_value *view = nt_json_at(nt_gltf_root_member(document, "bufferViews"), index);
 	const char *name = "";
-	nt_json_value *part = nt_gltf_compression_of(view, &name);
+	nt_json_value *packed = nt_gltf_compression_of(view, &name);
 	uint64_t near = NT_NONE;
-	nt_json_get_uint64(nt_json_find(part, "buffer"), &near);
+	nt_json_get_uint64(nt_json_find(packed, "buffer"), &near);
 	uint32_t buffer = NT_NONE;
-	status = remove_compressed(edits, part, error);
+	status = remove_compressed(edits, packed, error);
 	if (!status)
 		status = nt_edits_choose_buffer(edits, (uint32_t)near, &buffer, error);
 	if (!status)

@@ -333,9 +333,9 @@ static nt_status write_rest(const glb_parts *p, nt_error *error)
 	return status;
 }
 
-static void write_part(void *context, size_t item, unsigned slot)
+static void write_part(void *context, size_t item, unsigned thread)
 {
-	(void)slot;
+	(void)thread;
 	glb_parts *p = context;
 	nt_error *const error = &p->errors[item];
 	p->statuses[item] = item == 0 ? write_rest(p, error) : nt_data_uris_write(&p->c->uris, p->text, p->json, error);

@@ -84,10 +84,10 @@ typedef struct adding {
 	size_t depth, capacity;
 } adding;
 
-static void add(nt_geometry_total *to, nt_geometry_total part)
+static void add(nt_geometry_total *to, nt_geometry_total more)
 {
-	to->vertices += part.vertices;
-	to->primitives += part.primitives;
+	to->vertices += more.vertices;
+	to->primitives += more.primitives;
 }
 
 /* The number of a node in a list; the count of nodes: none. */
