@@ -111,6 +111,14 @@ static void nothing_goes_where_nothing_was(void **state)
 	expect((nt_settings){.threads = 1}, 0, 0, 1);
 }
 
+/* The polygons' halves and quads are allocated too. */
+static void exhausted_memory_is_told(void **state)
+{
+	(void)state;
+	put_file_of((int[]){SPLITS_FIRST, SPLITS_OTHERS}, 2, EXTENSION);
+	assert_true(exhaust_memory(in_folder("in.glb"), (nt_settings){.threads = 1}) > 30);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -119,6 +127,7 @@ int main(void)
 		unit_test_in_folder(list_names_it_while_another_primitive_has_it),
 		unit_test_in_folder(compressed_triangles_lose_it),
 		unit_test_in_folder(nothing_goes_where_nothing_was),
+		unit_test_in_folder(exhausted_memory_is_told),
 	};
 	return cmocka_run_group_tests_name("gltf/edit/vertex_extensions", tests, NULL, NULL);
 }
