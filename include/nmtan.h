@@ -40,12 +40,12 @@
  * about one ordinary mesh in a hundred, by up to 90 degrees. Bakers and most engines ship the file as it is; the
  * rewrites of Blender and three.js sort all edges, and so does NMTAN_METHOD_MIKKTSPACE_SORTED. The default gives the
  * sorted answer too, and counts.sorted_instead tells, where what the file gives depends on more than is followed here:
- *   - a position of a face is not finite, or a coordinate reaches FLT_MAX / 2 in magnitude: mikktspace.c does not weld
- *     some of these corners;
- *   - the triangles have more than 2^28 corners;
- *   - mikktspace.c halves a part of the mesh more than 128 times to find equal corners: usual meshes need about 40;
- *     more is needed only by points that are closer together than 2^-40 of the mesh, at distances of many sizes;
- *   - its sort looks at each edge more than 64 times on average, which only edges in an order made for it need.
+ * - a position of a face is not finite, or a coordinate reaches FLT_MAX / 2 in magnitude: mikktspace.c does not weld
+ *   some of these corners;
+ * - the triangles have more than 2^28 corners;
+ * - mikktspace.c halves a part of the mesh more than 128 times to find equal corners: usual meshes need about 40;
+ *   more is needed only by points that are closer together than 2^-40 of the mesh, at distances of many sizes;
+ * - its sort looks at each edge more than 64 times on average, which only edges in an order made for it need.
  *
  * Structs: one that begins with struct_bytes may gain members at its end in a later version. Initialise it
  * with its macro (NMTAN_MESH_INIT and so on), or set struct_bytes to its sizeof and all else to zero: zero is

@@ -142,8 +142,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a PLY triangle with nx, ny, nz and --normals=replace-flat"),
 	ROW(NORMALS_CANCELLED, WARNING, "{count} made {normal is|normals are} flat: the faces around cancel out",
 		"The faces of one smoothing group at these corners look in opposite directions, as on a sheet whose "
-		"triangles are there twice, once reversed. The sum of their normals is nothing but rounding; the corners "
-		"have the normals of their own faces.",
+		"triangles are there twice, once reversed. The sum of their normals is nothing but rounding; the "
+		"corners have the normals of their own faces.",
 		"Give front and back smoothing groups of their own, export normals, or take the back away and make the "
 		"material double-sided.",
 		"an OBJ triangle and its reverse, without vn"),

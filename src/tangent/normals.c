@@ -234,7 +234,8 @@ static void normalise_sums(normal_table *table)
 		normalise(v[0], v[1], v[2], usable, count);
 		for (size_t i = 0; i < count; i++) {
 			const bool has_direction = nt_dvec3_length(entries[i].sum) > NT_CANCELLED * entries[i].weights;
-			entries[i].sum = has_direction && usable[i] != 0.0 ? lane(v[0], v[1], v[2], i) : (nt_dvec3){0, 0, 0};
+			entries[i].sum = has_direction && usable[i] != 0.0 ? lane(v[0], v[1], v[2], i)
+									  : (nt_dvec3){0, 0, 0};
 		}
 	}
 }

@@ -75,7 +75,8 @@ static taken struct_of(call *c, int which)
 {
 #define TAKEN(name) &c->name.name.struct_bytes, c->name.tail, sizeof c->name.name
 	const taken all[STRUCTS] = {{TAKEN(stored), true, true, false}, {TAKEN(mesh), true, true, true},
-		{TAKEN(timing), true, true, false}, {TAKEN(options), true, true, true}, {TAKEN(output), true, false, false},
+		{TAKEN(timing), true, true, false}, {TAKEN(options), true, true, true},
+		{TAKEN(output), true, false, false},
 		{TAKEN(split), false, true, true}, {TAKEN(counts), true, true, false}};
 	return all[which];
 }

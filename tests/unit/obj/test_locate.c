@@ -67,7 +67,8 @@ TEST(locate_faces_by_the_lines_of_their_file)
 			"o empty\no second\n"            /* 9, 10 */
 			"f -3//-1 -2//-1 -1//-1\n"       /* 11: mesh 1 face 0 */
 			"g other\nf 1/1 2/1 3/1\n",      /* 12, 13: mesh 1 face 1 */
-			{{0, 0, 7, "1/1/1 2/1/1 3/1/1"}, {1, 0, 11, "-3//-1 -2//-1 -1//-1"}, {1, 1, 13, "1/1 2/1 3/1"}}},
+			{{0, 0, 7, "1/1/1 2/1/1 3/1/1"}, {1, 0, 11, "-3//-1 -2//-1 -1//-1"},
+				{1, 1, 13, "1/1 2/1 3/1"}}},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		reading r;

@@ -40,8 +40,8 @@ TEST(sound_tangents_give_no_findings)
 	hand_free(h, report);
 }
 
-/* Where dP/dv is 20 degrees from dP/du, a T that averaging turned by 60 degrees has a bitangent that is 130 degrees from
- * dP/dv, and yet is not reversed. */
+/* Where dP/dv is 20 degrees from dP/du, a T that averaging turned by 60 degrees has a bitangent that is 130 degrees
+ * from dP/dv, and yet is not reversed. */
 TEST(tangents_of_sheared_coordinates_are_not_reversed)
 {
 	hand_mesh *h = sound_quad();

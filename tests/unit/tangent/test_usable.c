@@ -143,13 +143,16 @@ static void tangents_are_not_parallel_to_normals_of_any_length(void **state)
 				for (int j = 0; j < 3; j++)
 					normals[k][j] = ldexpf(directions[(i + k) % 5][j], exponent);
 			for (size_t k = 0; k < 3 && i >= 5; k++) /* a little along u, much across */
-				memcpy(normals[k], (float[3]){i < 10 ? 0.5f : 1e-4f, 0, ldexpf(1, exponent)}, sizeof normals[k]);
+				memcpy(normals[k], (float[3]){i < 10 ? 0.5f : 1e-4f, 0, ldexpf(1, exponent)},
+					sizeof normals[k]);
 			const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 3,
-				.positions = &positions[0][0], .normals = &normals[0][0], .texcoords = &texcoords[0][0]};
+				.positions = &positions[0][0], .normals = &normals[0][0],
+				.texcoords = &texcoords[0][0]};
 			compare_paths(&mesh, 3, 0, NMTAN_REPAIR_ON);
 			for (int method = 0; method <= NMTAN_METHOD_MIKKTSPACE_SORTED; method++) {
 				float t[3][4];
-				nmtan_options options = {.struct_bytes = sizeof options, .method = (nmtan_method)method};
+				nmtan_options options = {.struct_bytes = sizeof options,
+					.method = (nmtan_method)method};
 				const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &t[0][0]};
 				assert_int_equal(nmtan_tangents(&mesh, &options, &output, NULL), NMTAN_OK);
 				for (int k = 0; k < 3; k++)
