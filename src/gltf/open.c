@@ -35,12 +35,6 @@ static uint64_t claimed_count(const nt_gltf *document, const nt_json_value *refe
 	return count;
 }
 
-/* Triangles that so many corners form, to tell empty primitives; loading counts again. */
-static size_t claimed_faces(uint64_t corners, uint64_t mode)
-{
-	return corners < 3 ? 0 : (size_t)(mode == NT_GLTF_TRIANGLES ? corners / 3 : corners - 2);
-}
-
 static bool has_texcoords(const nt_json_value *attributes, uint32_t set)
 {
 	char name[32];
@@ -116,7 +110,8 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 		nt_json_find(nt_json_find(primitive, "extensions"), "FB_ngon_encoding");
 	mesh->has_texcoords = has_texcoords(attributes, mesh->texcoord_set);
 	mesh->targets_without_tangents = targets_without_tangents(primitive);
-	mesh->face_count = claimed_faces(corners, mode);
+	/* to tell empty primitives; loading counts again */
+	mesh->face_count = corners < 3 ? 0 : (size_t)(mode == NT_GLTF_TRIANGLES ? corners / 3 : corners - 2);
 	mesh->plan.disposable = indices && is_disposable(primitive, mesh, mode, corners);
 	mesh->primitive_count = 1;
 	mesh->primitives = nt_arena_alloc(&scene->arena, 1, sizeof *mesh->primitives);

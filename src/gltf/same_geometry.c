@@ -89,15 +89,6 @@ static nt_status put_transform(same_job *job, const nt_mesh *mesh, const nt_json
 	return status;
 }
 
-static void put_targets(same_job *job, const nt_mesh *mesh, const nt_json_value *primitive)
-{
-	const nt_json_value *targets = nt_json_find(primitive, "targets");
-	for (size_t i = 0; i < nt_json_count(targets); i++) {
-		put_accessor(job, mesh, nt_json_at(targets, i), "POSITION");
-		put_accessor(job, mesh, nt_json_at(targets, i), "NORMAL");
-	}
-}
-
 static nt_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
 {
 	const nt_json_value *primitive = nt_gltf_primitive_of(job->document, mesh);
@@ -118,8 +109,12 @@ static nt_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
 	const nt_status status = put_transform(job, mesh, primitive, error);
 	if (status)
 		return status;
-	if (!job->options->world && job->options->morphs == NT_MORPH_BAKE)
-		put_targets(job, mesh, primitive);
+	const bool bakes = !job->options->world && job->options->morphs == NT_MORPH_BAKE;
+	const nt_json_value *targets = bakes ? nt_json_find(primitive, "targets") : NULL;
+	for (size_t i = 0; i < nt_json_count(targets); i++) {
+		put_accessor(job, mesh, nt_json_at(targets, i), "POSITION");
+		put_accessor(job, mesh, nt_json_at(targets, i), "NORMAL");
+	}
 	return job->key.failed ? nt_fail_memory(error) : NT_OK;
 }
 

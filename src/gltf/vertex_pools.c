@@ -274,16 +274,6 @@ static bool gets_tangents(const nt_mesh *mesh)
 	return nt_mesh_is_wanted(mesh) || nt_gltf_is_solved(mesh);
 }
 
-/* Of a pool with one user, as most are: no key is needed. */
-static void find_lone_set(nt_vertex_pool *pool)
-{
-	const bool solved = gets_tangents(nt_pool_mesh(pool, 0));
-	pool->sets.count = solved;
-	pool->sets.of[0] = solved ? 0 : NT_NONE;
-	pool->sets.first[0] = 0;
-	pool->sets.next[0] = NT_NONE;
-}
-
 static bool find_sets(nt_vertex_pool *pool, const nt_vertex_pools *pools)
 {
 	uint32_t *last = nt_alloc(pool->user_count, sizeof *last);
@@ -317,7 +307,12 @@ nt_status nt_vertex_pools_get(const nt_vertex_pools *pools, size_t number, nt_ar
 			.next = nt_arena_alloc(arena, count, sizeof *pool->sets.next)}};
 	if (!pool->sets.of || !pool->sets.first || !pool->sets.next)
 		return nt_fail_memory(error);
-	if (count == 1)
-		find_lone_set(pool);
-	return count == 1 || find_sets(pool, pools) ? NT_OK : nt_fail_memory(error);
+	if (count != 1)
+		return find_sets(pool, pools) ? NT_OK : nt_fail_memory(error);
+	/* one user, as most have: no key is needed */
+	pool->sets.count = gets_tangents(nt_pool_mesh(pool, 0));
+	pool->sets.of[0] = pool->sets.count ? 0 : NT_NONE;
+	pool->sets.first[0] = 0;
+	pool->sets.next[0] = NT_NONE;
+	return NT_OK;
 }

@@ -40,12 +40,6 @@ static nt_status decompress_attribute(void *context, nt_json_value *attributes, 
 					     nt_gltf_decompress_view(d->document, found.view, d->error);
 }
 
-static bool has_new_vertices(const nt_mesh *mesh)
-{
-	return nt_gltf_is_solved(mesh) &&
-		(mesh->split.source_count || mesh->vertex_count > mesh->source_vertex_count);
-}
-
 /* Vertices are appended to all attributes of a pool, whoever of its users wants them. */
 static nt_status decompress_pools(nt_gltf *document, const nt_vertex_pools *pools, nt_error *error)
 {
@@ -53,8 +47,11 @@ static nt_status decompress_pools(nt_gltf *document, const nt_vertex_pools *pool
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < pools->count; i++) {
 		bool wanted = false;
-		for (uint32_t k = pools->first[i]; !wanted && k < pools->first[i + 1]; k++)
-			wanted = has_new_vertices(&pools->scene->meshes[pools->order[k]]);
+		for (uint32_t k = pools->first[i]; !wanted && k < pools->first[i + 1]; k++) {
+			const nt_mesh *mesh = &pools->scene->meshes[pools->order[k]];
+			wanted = nt_gltf_is_solved(mesh) &&
+				(mesh->split.source_count || mesh->vertex_count > mesh->source_vertex_count);
+		}
 		for (uint32_t k = pools->first[i]; !status && wanted && k < pools->first[i + 1]; k++)
 			status = nt_gltf_visit_attributes(nt_gltf_primitive_of(document,
 				&pools->scene->meshes[pools->order[k]]), pools->accessor_count,

@@ -24,29 +24,22 @@ void nt_gltf_draco_add(nt_gltf_recoding *r, const char *name, nt_draco_attribute
 	r->attributes[r->attribute_count++] = attribute;
 }
 
-static uint32_t free_id(const nt_gltf_recoding *r)
-{
-	uint32_t id = 0;
-	for (size_t i = 0; i < r->attribute_count; i++)
-		if (r->attributes[i].unique_id >= id)
-			id = r->attributes[i].unique_id + 1;
-	return id;
-}
-
-/* An attribute of ours: takes the place of one of that name. */
+/* An attribute of ours: takes the place and the id of one of that name, else it gets an id that is free. */
 static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind, int components,
 	const float *elements, int bits)
 {
-	const nt_draco_attribute attribute = {.unique_id = free_id(r), .kind = kind,
+	nt_draco_attribute attribute = {.kind = kind,
 		.component_type = NT_GLTF_FLOAT, .components = components,
 		.quantization = {.bits = bits}, .data = elements};
-	for (size_t i = 0; i < r->attribute_count; i++)
+	for (size_t i = 0; i < r->attribute_count; i++) {
+		const uint32_t id = r->attributes[i].unique_id;
 		if (strcmp(r->names[i], name) == 0) {
-			const uint32_t id = r->attributes[i].unique_id;
+			attribute.unique_id = id;
 			r->attributes[i] = attribute;
-			r->attributes[i].unique_id = id;
 			return;
 		}
+		attribute.unique_id = id >= attribute.unique_id ? id + 1 : attribute.unique_id;
+	}
 	nt_gltf_draco_add(r, name, attribute);
 }
 

@@ -16,19 +16,13 @@ enum { ELEMENT_BYTES = 100 };
 
 /* ---- one ---- */
 
-static const nt_draco_attribute *find_positions(const nt_gltf_recoding *r)
-{
-	for (size_t i = 0; i < r->attribute_count; i++)
-		if (r->attributes[i].kind == NT_DRACO_POSITION)
-			return &r->attributes[i];
-	return NULL;
-}
-
 /* Whether edgebreaker would drop a face: two corners at one position, as Draco gets them. What quantization brings
  * together it keeps. */
 static bool has_degenerate_face(const nt_gltf_recoding *r)
 {
-	const nt_draco_attribute *positions = find_positions(r);
+	const nt_draco_attribute *positions = NULL;
+	for (size_t i = 0; !positions && i < r->attribute_count; i++)
+		positions = r->attributes[i].kind == NT_DRACO_POSITION ? &r->attributes[i] : NULL;
 	const uint32_t *indices = r->vertices->indices[0];
 	if (!positions)
 		return false;

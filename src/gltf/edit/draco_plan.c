@@ -42,14 +42,6 @@ static bool count_vertices(nt_gltf *document, const nt_vertex_pool *pool, size_t
 	return found;
 }
 
-static bool gets_tangents(const nt_vertex_pool *pool)
-{
-	for (size_t i = 0; i < pool->user_count; i++)
-		if (!nt_mesh_is_wanted(nt_pool_mesh(pool, i)))
-			return false;
-	return true;
-}
-
 /* The faces of a plain primitive. */
 static nt_status find_faces(planning *f, const nt_gltf_recoding *r, nt_mesh *mesh, nt_error *error)
 {
@@ -96,7 +88,10 @@ static nt_status look_at_pool(planning *f, size_t number, nt_error *error)
 	nt_gltf_recoding recoding;
 	nt_arena_clear(&f->of_pool);
 	nt_status status = nt_vertex_pools_get(f->pools, number, &f->of_pool, &pool, error);
-	if (status || !gets_tangents(&pool) || !count_vertices(document, &pool, &vertices.old_count))
+	for (size_t i = 0; !status && i < pool.user_count; i++)
+		if (!nt_mesh_is_wanted(nt_pool_mesh(&pool, i)))
+			return NT_OK;
+	if (status || !count_vertices(document, &pool, &vertices.old_count))
 		return status;
 	const bool compressed = nt_gltf_draco_of(nt_pool_primitive(&pool, 0)) != NULL;
 	if (!compressed && f->options.draco == NT_DRACO_KEEP)

@@ -64,22 +64,6 @@ static bool stays(const nt_scene *scene, const nt_write_options *options, const 
 		(options->draco == NT_DRACO_OFF && !nt_gltf_draco_of(nt_gltf_primitive_of(scene->source, mesh))));
 }
 
-static bool all_stay(const nt_scene *scene, const nt_write_options *options)
-{
-	for (size_t i = 0; i < scene->mesh_count; i++)
-		if (!stays(scene, options, &scene->meshes[i]))
-			return false;
-	return true;
-}
-
-static bool pool_stays(const editing *e, const nt_vertex_pool *pool)
-{
-	for (size_t i = 0; i < pool->user_count; i++)
-		if (!stays(e->scene, e->options, nt_pool_mesh(pool, i)))
-			return false;
-	return true;
-}
-
 /* ---- values ---- */
 
 /* Rounds the tangents of all sets, so that what is derived from them fits what readers will see. */
@@ -262,7 +246,9 @@ static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 {
 	*p = (pool_edit){.number = number};
 	nt_status status = nt_vertex_pools_get(e->pools, number, e->of_window, &p->pool, e->error);
-	p->stays = !status && pool_stays(e, &p->pool);
+	p->stays = !status;
+	for (size_t i = 0; p->stays && i < p->pool.user_count; i++)
+		p->stays = stays(e->scene, e->options, nt_pool_mesh(&p->pool, i));
 	if (status || p->stays || e->options->draco == NT_DRACO_OFF ||
 		(e->options->draco == NT_DRACO_KEEP && !nt_gltf_has_draco(&p->pool)))
 		return status;
@@ -299,28 +285,21 @@ static nt_status edit_pool(const editing *e, pool_edit *p, bool *plain)
 
 /* ---- the whole ---- */
 
-/* The blocks of prepared pools, as far as they can be encoded. list: room for all. */
-static void encode_pools(const editing *e, pool_edit *window, size_t count, nt_gltf_recoding **list)
-{
-	size_t found = 0;
-	for (size_t i = 0; i < count; i++)
-		if (window[i].for_draco && !window[i].recoding.obstacle)
-			list[found++] = &window[i].recoding;
-	nt_gltf_draco_encode_all(list, found, nt_thread_count(e->options->threads));
-}
-
 /* Some pools from `first` on, which becomes the first of the next window. An error is that of the first pool that has
- * one. */
+ * one. list: room for as many as the window. */
 static nt_status edit_window(const editing *e, pool_edit *window, nt_gltf_recoding **list, size_t *first, bool *plain)
 {
 	nt_status status = NT_OK, unprepared = NT_OK;
-	size_t count = 0;
+	size_t count = 0, block_count = 0;
 	nt_arena_clear(e->of_window);
 	while (!unprepared && count < WINDOW && *first + count < e->pools->count) {
 		unprepared = prepare_pool(e, *first + count, &window[count]);
 		count += !unprepared;
 	}
-	encode_pools(e, window, count, list);
+	for (size_t i = 0; i < count; i++)
+		if (window[i].for_draco && !window[i].recoding.obstacle)
+			list[block_count++] = &window[i].recoding;
+	nt_gltf_draco_encode_all(list, block_count, nt_thread_count(e->options->threads));
 	for (size_t i = 0; !status && i < count; i++)
 		if (!window[i].stays)
 			status = edit_pool(e, &window[i], plain);
@@ -353,9 +332,11 @@ static nt_status edit_pools(const editing *e)
 nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_output *output, nt_error *error)
 {
 	/* Nothing to be done: the input as it is. */
-	bool written = false;
+	bool written = false, all_stay = true;
 	nt_status status = NT_OK;
-	if (all_stay(scene, options))
+	for (size_t i = 0; all_stay && i < scene->mesh_count; i++)
+		all_stay = stays(scene, options, &scene->meshes[i]);
+	if (all_stay)
 		status = nt_gltf_copy_unchanged(scene, options, output, &written, error);
 	if (status || written)
 		return status;

@@ -201,12 +201,6 @@ static bool find_leaders(const nt_vertex_pools *pools, const nt_pool_vertices *v
 	return found;
 }
 
-/* Whether everybody who uses a leader's indices will have the same new ones. */
-static bool all_users_agree(const nt_vertex_pools *pools, const written *leader)
-{
-	return leader->index != NT_NONE && leader->agreeing == pools->index_users[leader->first_alias];
-}
-
 /* What a user's indices are in the source: of the narrowest type that all hardware likes, where there are none. */
 static nt_status find_old(nt_gltf *document, const nt_mesh *mesh, uint32_t index, nt_gltf_accessor *old,
 	nt_error *error)
@@ -236,7 +230,8 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 	if (!status)
 		status = encode(&edits->arena, mesh, vertices->indices[user], vertices->borrowed,
 			tail_of(mesh, mode, old.count), vertices->new_count, old.component_type, &new, error);
-	if (!status && all_users_agree(pools, leader)) {
+	/* in place where everybody who uses these indices will have the same new ones */
+	if (!status && leader->index != NT_NONE && leader->agreeing == pools->index_users[leader->first_alias]) {
 		if (old.decoded)
 			status = give_view(edits, buffer, &old, &new, error);
 		else

@@ -23,23 +23,6 @@ static void report(nt_scene *scene, const nt_mesh *mesh, const char *obstacle)
 	nt_finding_add(&scene->findings, NT_CODE_EXTENSION_STALE, &place, 1, "%s, %s,", name, obstacle);
 }
 
-/* The users of the same glTF mesh end here. */
-static size_t end_of_mesh(const nt_vertex_pool *pool, size_t first)
-{
-	size_t i = first;
-	while (i < pool->user_count && nt_pool_mesh(pool, i)->gltf_mesh == nt_pool_mesh(pool, first)->gltf_mesh)
-		i++;
-	return i;
-}
-
-static bool any_changed(const nt_pool_vertices *vertices, size_t first, size_t last)
-{
-	bool changed = false;
-	for (size_t i = first; i < last; i++)
-		changed |= vertices->changed[i];
-	return changed;
-}
-
 /* Puts the corners that primitives have now in their places. Returns whether there are as many as before. */
 static bool take_corners(nt_manifold *m, const nt_pool_vertices *vertices, size_t first, size_t last)
 {
@@ -131,8 +114,12 @@ nt_status nt_gltf_follow_manifold(nt_buffer_edits *edits, uint32_t buffer, nt_sc
 {
 	const nt_mesh *mesh = nt_pool_mesh(vertices->pool, first);
 	nt_manifold m;
-	const size_t last = end_of_mesh(vertices->pool, first);
-	if (!compressed && !any_changed(vertices, first, last))
+	size_t last = first; /* the users of the same glTF mesh end there */
+	bool changed = compressed;
+	for (; last < vertices->pool->user_count &&
+		nt_pool_mesh(vertices->pool, last)->gltf_mesh == mesh->gltf_mesh; last++)
+		changed |= vertices->changed[last];
+	if (!changed)
 		return NT_OK;
 	if (nt_manifold_read(&m, edits->document, mesh->gltf_mesh, &edits->arena))
 		return nt_fail_memory(error);

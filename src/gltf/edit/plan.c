@@ -17,14 +17,6 @@ static bool is_loaded(const nt_mesh *mesh, const nt_read_options *options)
 		((options->report || options->across) && mesh->triangles && mesh->has_positions);
 }
 
-static bool any_is_loaded(const nt_scene *scene, const nt_read_options *options)
-{
-	for (size_t i = 0; i < scene->mesh_count; i++)
-		if (is_loaded(&scene->meshes[i], options))
-			return true;
-	return false;
-}
-
 /* --morph=drop: before anything asks which accessors are used, and which are not there. They keep their numbers. */
 static void drop_target_tangents(const nt_scene *scene)
 {
@@ -37,14 +29,6 @@ static void drop_target_tangents(const nt_scene *scene)
 		for (size_t t = 0; t < nt_json_count(targets); t++)
 			nt_json_remove(document->json, nt_json_at(targets, t), "TANGENT");
 	}
-}
-
-/* Solves what is solved together as one; what is only compared is not said of the meshes. */
-static void join_parts(const nt_scene *scene)
-{
-	for (size_t i = 0; i < scene->join_count; i++)
-		for (size_t k = 0; k < scene->joins[i].part_count; k++)
-			scene->joins[i].parts[k]->plan.join = &scene->joins[i];
 }
 
 /* Meshes of one pool with different triangles are loaded with the vertices that each uses. */
@@ -80,7 +64,10 @@ static void find_temporary(const nt_scene *scene, const nt_read_options *options
 
 nt_status nt_gltf_plan(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
-	if (!any_is_loaded(scene, options))
+	bool any = false;
+	for (size_t i = 0; !any && i < scene->mesh_count; i++)
+		any = is_loaded(&scene->meshes[i], options);
+	if (!any)
 		return NT_OK;
 	if (options->edits && options->morphs == NT_MORPH_DROP)
 		drop_target_tangents(scene);
@@ -91,8 +78,10 @@ nt_status nt_gltf_plan(nt_scene *scene, const nt_read_options *options, nt_error
 		status = nt_gltf_find_joins(scene, options->across, options->checks_kept, error);
 	if (status)
 		return status;
-	if (options->across)
-		join_parts(scene);
+	/* what is only compared is not said of the meshes */
+	for (size_t i = 0; options->across && i < scene->join_count; i++)
+		for (size_t k = 0; k < scene->joins[i].part_count; k++)
+			scene->joins[i].parts[k]->plan.join = &scene->joins[i];
 	find_pooled(scene, options);
 	find_temporary(scene, options);
 	return options->compresses ? nt_gltf_find_quantized(scene, options, error) : NT_OK;

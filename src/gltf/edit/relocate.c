@@ -373,21 +373,16 @@ static void drop_unneeded_compression(nt_gltf *document)
 
 /* ---- the whole ---- */
 
-/* Views that were decompressed and edited go into buffers; moved [view_count]. */
-static nt_status settle_virtuals(nt_buffer_edits *edits, moved_view *moved, nt_error *error)
+/* moved: [view_count] */
+static nt_status relocate(nt_buffer_edits *edits, nt_relocated *result, moved_view *moved, nt_error *error)
 {
+	/* Edits come to an end: views that were decompressed and edited go into buffers, those that have lost all get
+	 * a few bytes. */
 	const uint32_t *virtual_of = edits->document->virtual_of;
 	nt_status status = NT_OK;
 	for (uint32_t i = 0; !status && i < edits->view_count; i++)
 		if (virtual_of[i] != NT_NONE && nt_edits_of(edits, virtual_of[i])->edit_count)
 			status = settle_virtual(edits, i, &moved[i], error);
-	return status;
-}
-
-static nt_status relocate(nt_buffer_edits *edits, nt_relocated *result, moved_view *moved, nt_error *error)
-{
-	/* Edits come to an end: buffers that have lost all get a few bytes. */
-	nt_status status = settle_virtuals(edits, moved, error);
 	bool moves = edits->document->virtual_count > 0;
 	*result = (nt_relocated){.document = edits->document, .buffer_count = edits->buffer_count,
 		.buffers = nt_arena_alloc(&edits->arena, edits->buffer_count, sizeof *result->buffers)};

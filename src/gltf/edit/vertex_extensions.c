@@ -16,12 +16,6 @@
 
 static const char outline_name[] = "CESIUM_primitive_outline", polygons_name[] = "FB_ngon_encoding";
 
-/* The outline of a user, NULL where it has none. */
-static nt_json_value *outline_of(const nt_vertex_pool *pool, size_t user)
-{
-	return nt_json_find(nt_json_find(nt_pool_primitive(pool, user), "extensions"), outline_name);
-}
-
 /* A new accessor of vertex numbers. */
 static nt_status add_numbers(nt_buffer_edits *edits, uint32_t buffer, const uint32_t *numbers, size_t count,
 	uint32_t *accessor, nt_error *error)
@@ -65,12 +59,6 @@ static nt_status follow_outline(nt_buffer_edits *edits, uint32_t buffer, const n
 	if (!status)
 		nt_json_set_uint64(json, nt_json_put(json, outline, "indices"), new_accessor);
 	return status;
-}
-
-static void report_outline(nt_scene *scene, const nt_mesh *mesh)
-{
-	nt_finding_add(&scene->findings, NT_CODE_EXTENSION_STALE, nt_mesh_place(mesh, &(nt_place){0}), 1, "%s",
-		outline_name);
 }
 
 /* Whether triangles that follow each other have one first vertex where they had, and nowhere else. */
@@ -123,12 +111,13 @@ nt_status nt_gltf_follow_vertices(nt_buffer_edits *edits, uint32_t buffer, nt_sc
 		return NT_OK;
 	for (size_t i = 0; !status && i < pool->user_count; i++) {
 		const nt_mesh *mesh = nt_pool_mesh(pool, i);
-		nt_json_value *outline = outline_of(pool, i);
+		nt_json_value *primitive = nt_pool_primitive(pool, i);
+		nt_json_value *outline = nt_json_find(nt_json_find(primitive, "extensions"), outline_name);
 		if (outline && compressed)
-			report_outline(scene, mesh);
+			nt_finding_add(&scene->findings, NT_CODE_EXTENSION_STALE, nt_mesh_place(mesh, &(nt_place){0}),
+				1, "%s", outline_name);
 		else if (outline && vertices->changed[i])
 			status = follow_outline(edits, buffer, vertices, i, outline, error);
-		nt_json_value *primitive = nt_pool_primitive(pool, i);
 		if (nt_pool_is_solved(pool, i) && nt_json_find(nt_json_find(primitive, "extensions"), polygons_name) &&
 			(compressed || !keeps_polygons(vertices, i)))
 			drop_polygons(scene, edits, primitive, mesh);
