@@ -6,7 +6,7 @@
  * it is taken. Known are the places below: those of glTF 2.0, of the extensions in Khronos' repository of glTF, and of
  * some others that are in use. Elements of other arrays (images, materials ...) are never added.
  */
-#include "gltf/dangling.h"
+#include "gltf/document.h"
 
 #include <stdio.h>
 #include <string.h>

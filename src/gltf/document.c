@@ -31,15 +31,41 @@ nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name)
 	return nt_json_find(nt_json_root(document->json), name);
 }
 
-bool nt_gltf_uses(const nt_gltf *document, const char *extension)
+static bool is_listed(const nt_gltf *document, const char *list, const char *extension)
 {
-	const nt_json_value *used = nt_gltf_root_member(document, "extensionsUsed");
-	for (size_t i = 0; i < nt_json_count(used); i++) {
-		const char *name = nt_json_get_string(nt_json_at(used, i), NULL);
+	const nt_json_value *names = nt_gltf_root_member(document, list);
+	for (size_t i = 0; i < nt_json_count(names); i++) {
+		const char *name = nt_json_get_string(nt_json_at(names, i), NULL);
 		if (name && strcmp(name, extension) == 0)
 			return true;
 	}
 	return false;
+}
+
+bool nt_gltf_uses(const nt_gltf *document, const char *extension)
+{
+	return is_listed(document, "extensionsUsed", extension);
+}
+
+void nt_gltf_list_extension(nt_gltf *document, const char *list, const char *name)
+{
+	nt_json *json = document->json;
+	if (!is_listed(document, list, name))
+		nt_json_set_string(json, nt_json_append(json, nt_json_put(json, nt_json_root(json), list)), name,
+			strlen(name));
+}
+
+void nt_gltf_remove_extension(nt_gltf *document, const char *list, const char *name)
+{
+	nt_json_value *names = nt_gltf_root_member(document, list);
+	for (size_t i = nt_json_count(names); i-- > 0;) {
+		const char *text = nt_json_get_string(nt_json_at(names, i), NULL);
+		if (text && strcmp(text, name) == 0)
+			nt_json_remove_at(document->json, names, i);
+	}
+	/* an empty list is not valid */
+	if (names && nt_json_count(names) == 0)
+		nt_json_remove(document->json, nt_json_root(document->json), list);
 }
 
 /* A member of the root that is there must be an array. */

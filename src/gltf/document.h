@@ -171,4 +171,26 @@ void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin
 /* Bytes that were read: the JSON and what was booked. */
 uint64_t nt_gltf_bytes_read(const nt_gltf *document);
 
+/* nodes.c. Marks the meshes that a scene shows: reached[mesh]. Faulty nodes are passed over. */
+nt_status nt_gltf_reach(const nt_gltf *document, bool *reached, size_t mesh_count, nt_error *error);
+
+/* nodes.c. Calls place(context, mesh, matrix) for every mesh in the world of the default scene (of all roots,
+ * where there is no scene). */
+nt_status nt_gltf_walk_world(const nt_gltf *document,
+	nt_status (*place)(void *context, uint64_t mesh, const double matrix[16]), void *context,
+	nt_error *error);
+
+/* dangling.c. Notes the lowest dangling references of a document that nothing was added to yet. Does nothing the second
+ * time. */
+void nt_gltf_find_dangling(nt_gltf *document);
+
+/* dangling.c. NT_ERROR_INPUT with the place of a reference if what was added since then took the number that it names. */
+nt_status nt_gltf_check_dangling(const nt_gltf *document, nt_error *error);
+
+/* Adds an extension to extensionsUsed or extensionsRequired, where it is not there yet. */
+void nt_gltf_list_extension(nt_gltf *document, const char *list, const char *name);
+
+/* Takes an extension off "extensionsUsed" or "extensionsRequired". */
+void nt_gltf_remove_extension(nt_gltf *document, const char *list, const char *name);
+
 #endif

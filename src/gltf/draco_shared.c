@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/name_table.h"
-#include "gltf/dangling.h"
+#include "gltf/document.h"
 #include "gltf/draco.h"
 
 /* What an accessor stands for in a primitive. No padding: compared as bytes. */

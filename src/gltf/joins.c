@@ -15,7 +15,7 @@
  * times costs what one that names them once does, and a surface with two materials on it is no other surface. A join
  * whose parts are those of an earlier one, in another mesh, has that one's result.
  */
-#include "gltf/joins.h"
+#include "gltf/vertex_pools.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -50,7 +50,7 @@ typedef struct unit {
 /* All of them. */
 typedef struct search {
 	nt_scene *scene;
-	bool solved, kept;     /* see joins.h */
+	bool solved, kept;     /* see vertex_pools.h */
 	size_t solved_faces;   /* of what is solved without joins */
 	nt_name_table keys;    /* of units that differ: a kind and the geometry of its parts */
 	unit *units;           /* [keys.count] */
@@ -66,7 +66,7 @@ typedef struct search {
 typedef struct group {
 	nt_scene *scene;
 	nt_gltf *document;
-	bool kept;             /* see joins.h */
+	bool kept;             /* see vertex_pools.h */
 	uint32_t begin, end;   /* in scene->meshes */
 	uint32_t *kind_of;     /* [end - begin] or NO_KIND */
 	kind *kinds;           /* [kind_count]; room for end - begin */

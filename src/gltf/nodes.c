@@ -5,7 +5,7 @@
  * and depth costs no call stack. Faulty nodes and references are passed over: whether they matter is for
  * viewers to say, not for a tool that writes tangents.
  */
-#include "gltf/nodes.h"
+#include "gltf/document.h"
 
 #include <math.h>
 #include <stdlib.h>

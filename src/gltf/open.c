@@ -11,9 +11,9 @@
 
 #include <stdio.h>
 #include <string.h>
+#include "gltf/document.h"
 #include "gltf/draco.h"
 #include "gltf/materials.h"
-#include "gltf/nodes.h"
 #include "gltf/pointer.h"
 
 static const char *copy_name(nt_arena *arena, const nt_json_value *object)

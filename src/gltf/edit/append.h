@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Vertices that splitting appended: see append.c.
+ * Vertices that splitting appended, and the indices that use them: see append.c and indices.c.
  */
 #ifndef NT_GLTF_EDIT_APPEND_H
 #define NT_GLTF_EDIT_APPEND_H
@@ -12,5 +12,9 @@
 nt_status nt_append_vertices(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
 	const nt_pool_vertices *vertices, nt_gltf_override *overrides, size_t override_count, bool decoded_too,
 	nt_error *error);
+
+/* Writes the indices of a pool's solved users where they changed. buffer: of new views. */
+nt_status nt_gltf_write_indices(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
+	const nt_pool_vertices *vertices, nt_error *error);
 
 #endif

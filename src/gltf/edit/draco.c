@@ -12,10 +12,9 @@
 #include "gltf/edit/draco.h"
 
 #include <string.h>
+#include "gltf/document.h"
 #include "gltf/edit/append.h"
-#include "gltf/edit/draco_encode.h"
-#include "gltf/edit/draco_gather.h"
-#include "gltf/edit/extensions.h"
+#include "gltf/edit/draco_block.h"
 #include "gltf/edit/new_accessors.h"
 #include "gltf/primitive.h"
 #include "gltf/view.h"

@@ -60,4 +60,18 @@ bool nt_gltf_draco_release(nt_vertex_pools *pools, uint64_t view, size_t count);
 /* Puts the block where the primitive's was, else into a new view of `buffer`. */
 nt_status nt_gltf_draco_store(nt_gltf_recoding *recoding, uint32_t buffer, nt_error *error);
 
+/* draco_gather.c. The attributes of a plain primitive; recoding->obstacle where it cannot be compressed. */
+nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding, nt_error *error);
+
+/* draco_gather.c. Takes what the block holds out of the buffers, and gives the primitive its extension. */
+nt_status nt_gltf_draco_take_out(nt_gltf_recoding *recoding, nt_error *error);
+
+/* draco_encode.c. Encodes what was looked up: ->encoded then, with the block or the obstacle. Looks at no JSON, so that
+ * several may be encoded at once. Returns NT_OK or what is not the mesh's fault: NT_ERROR_MEMORY, NT_ERROR_MODULE, NT_ERROR_IO. */
+nt_status nt_gltf_draco_encode(nt_gltf_recoding *recoding, nt_error *error);
+
+/* The same for several on several threads; the list gets another order. One that fails is left as it was, for
+ * nt_gltf_draco_encode(), which has it alone and says what is wrong. */
+void nt_gltf_draco_encode_all(nt_gltf_recoding **list, size_t count, unsigned threads);
+
 #endif

@@ -10,13 +10,13 @@
  * The elements leave the buffers. Views keep their numbers: one takes the block, others that are empty then
  * share bytes with it.
  */
-#include "gltf/edit/draco_gather.h"
+#include "gltf/edit/draco_block.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "gltf/accessor.h"
-#include "gltf/edit/extensions.h"
+#include "gltf/document.h"
 #include "gltf/primitive.h"
 #include "gltf/view.h"
 

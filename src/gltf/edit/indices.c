@@ -4,7 +4,7 @@
  * still fit, its component type (the largest value of a type is reserved). Strips and fans whose
  * triangles changed become lists; primitives without indices get some.
  */
-#include "gltf/edit/indices.h"
+#include "gltf/edit/append.h"
 
 #include <stdio.h>
 #include <string.h>

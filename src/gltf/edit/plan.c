@@ -7,7 +7,6 @@
 #include "gltf/edit/plan.h"
 
 #include "gltf/draco.h"
-#include "gltf/joins.h"
 #include "gltf/vertex_pools.h"
 
 /* Whether a mesh will be loaded: to be solved, or only to be checked, or for others. */

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "gltf/edit/extensions.h"
+#include "gltf/document.h"
 #include "gltf/view.h"
 
 /* Of a free view that nothing new came for. */

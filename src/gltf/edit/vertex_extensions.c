@@ -7,7 +7,7 @@
  */
 
 #include "gltf/accessor.h"
-#include "gltf/edit/extensions.h"
+#include "gltf/document.h"
 #include "gltf/edit/manifold.h"
 #include "gltf/edit/new_accessors.h"
 #include "gltf/extensions/outline.h"

@@ -17,7 +17,7 @@
 #include "base/parallel.h"
 #include "file/uri.h"
 #include "gltf/sidecar.h"
-#include "gltf/dangling.h"
+#include "gltf/document.h"
 #include "gltf/edit/data_uris.h"
 #include "gltf/edit/images.h"
 #include "gltf/edit/links.h"

@@ -2,7 +2,7 @@
 #include "test.h"
 #include <stdio.h>
 #include "base/buffer.h"
-#include "gltf/dangling.h"
+#include "gltf/document.h"
 #include "gltf/view.h"
 
 /* `,"meshes":[{"primitives":[9]}]` for "/meshes/0/primitives/0": nothing stands beside what the path names. */

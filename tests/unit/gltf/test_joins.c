@@ -4,7 +4,6 @@
  */
 #include "hand_gltf_file.h"
 #include <time.h>
-#include "gltf/joins.h"
 #include "gltf/vertex_pools.h"
 
 /* How the joins of a test are found. */
