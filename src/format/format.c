@@ -12,7 +12,6 @@
 #include "gltf/document.h"
 #include "gltf/edit/edit.h"
 #include "gltf/edit/merge_splits.h"
-#include "gltf/edit/plan.h"
 #include "gltf/load.h"
 #include "gltf/open.h"
 #include "obj/read.h"

@@ -184,7 +184,8 @@ nt_status nt_gltf_walk_world(const nt_gltf *document,
  * time. */
 void nt_gltf_find_dangling(nt_gltf *document);
 
-/* dangling.c. NT_ERROR_INPUT with the place of a reference if what was added since then took the number that it names. */
+/* dangling.c. NT_ERROR_INPUT with the place of a reference if what was added since then took the number that it
+ * names. */
 nt_status nt_gltf_check_dangling(const nt_gltf *document, nt_error *error);
 
 /* Adds an extension to extensionsUsed or extensionsRequired, where it is not there yet. */

@@ -93,7 +93,7 @@ static nt_status read_kind(const group *g, const nt_mesh *mesh, kind *k, nt_erro
 		nt_gltf_of_mesh(mesh).pointer, &shading, error);
 	if (status)
 		return status;
-	const bool applies = shading.has_set && shading.set == mesh->texcoord_set && shading.transform.turns;
+	const bool applies = nt_gltf_turns(&shading, mesh->texcoord_set);
 	/* adding 0 makes 0 of -0 */
 	const nt_uv_transform *uv = &shading.transform.uv;
 	*k = (kind){mesh->texcoord_set, applies ? uv->rotation + 0.0 : 0,

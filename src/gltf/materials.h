@@ -29,6 +29,12 @@ typedef struct nt_gltf_shading {
 	bool transforms_differ;      /* another material or slot transforms that set otherwise */
 } nt_gltf_shading;
 
+/* Whether the transform turns or scales texture coordinates of this set. */
+static inline bool nt_gltf_turns(const nt_gltf_shading *shading, uint32_t set)
+{
+	return shading->has_set && shading->set == set && shading->transform.turns;
+}
+
 /* What the materials of a primitive want, variants included: slots, texture coordinates, transform. */
 nt_status nt_gltf_find_slots(nt_gltf *document, const nt_json_value *primitive,
 	const char *pointer, nt_gltf_shading *shading, nt_error *error);

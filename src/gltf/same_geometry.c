@@ -80,7 +80,7 @@ static nt_status put_transform(same_job *job, const nt_mesh *mesh, const nt_json
 	const nt_status status = !mesh->texcoords_transformed ? NT_OK : nt_gltf_find_slots(job->document, primitive,
 		nt_gltf_of_mesh(mesh).pointer, &shading, error);
 	const nt_gltf_transform *t = &shading.transform;
-	const bool applies = shading.has_set && shading.set == mesh->texcoord_set && t->turns;
+	const bool applies = nt_gltf_turns(&shading, mesh->texcoord_set);
 	put_number(job, applies);
 	if (applies) {
 		nt_buffer_append(&job->key, &t->uv.rotation, sizeof t->uv.rotation);

@@ -215,7 +215,7 @@ static void put_transform(nt_buffer *key, const nt_vertex_pools *pools, const nt
 {
 	nt_gltf_shading shading = {.has_set = false};
 	if (!mesh->texcoords_transformed || nt_gltf_find_slots(pools->scene->source, primitive, "", &shading, NULL) ||
-		!shading.has_set || shading.set != mesh->texcoord_set || !shading.transform.turns)
+		!nt_gltf_turns(&shading, mesh->texcoord_set))
 		return;
 	nt_buffer_append(key, &shading.transform.uv.rotation, sizeof shading.transform.uv.rotation);
 	nt_buffer_append(key, shading.transform.uv.scale, sizeof shading.transform.uv.scale);

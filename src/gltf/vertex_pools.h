@@ -77,10 +77,10 @@ static inline bool nt_pool_is_solved(const nt_vertex_pool *pool, size_t user)
 /* After the decisions: sets plan.same_as of meshes that will be solved and have the geometry of an earlier one. */
 nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_error *error);
 
-/* Fills scene->joins, after nt_gltf_find_same(). mesh->plan.join is left to the caller. With `solved` they will be solved,
- * and same_as becomes what holds then; else they will be compared, and those whose comparison costs many times the
- * solve are left out. With `kept` the tangents that primitives keep are to be checked, so that these stand for
- * themselves as if they got new ones. Returns NT_OK, NT_ERROR_MEMORY or what is wrong with a material. */
+/* Fills scene->joins, after nt_gltf_find_same(). mesh->plan.join is left to the caller. With `solved` they will be
+ * solved, and same_as becomes what holds then; else they will be compared, and those whose comparison costs many
+ * times the solve are left out. With `kept` the tangents that primitives keep are to be checked, so that these stand
+ * for themselves as if they got new ones. Returns NT_OK, NT_ERROR_MEMORY or what is wrong with a material. */
 nt_status nt_gltf_find_joins(nt_scene *scene, bool solved, bool kept, nt_error *error);
 
 #endif

@@ -67,7 +67,8 @@ nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding, nt_error *error
 nt_status nt_gltf_draco_take_out(nt_gltf_recoding *recoding, nt_error *error);
 
 /* draco_encode.c. Encodes what was looked up: ->encoded then, with the block or the obstacle. Looks at no JSON, so that
- * several may be encoded at once. Returns NT_OK or what is not the mesh's fault: NT_ERROR_MEMORY, NT_ERROR_MODULE, NT_ERROR_IO. */
+ * several may be encoded at once. Returns NT_OK or what is not the mesh's fault: NT_ERROR_MEMORY, NT_ERROR_MODULE,
+ * NT_ERROR_IO. */
 nt_status nt_gltf_draco_encode(nt_gltf_recoding *recoding, nt_error *error);
 
 /* The same for several on several threads; the list gets another order. One that fails is left as it was, for

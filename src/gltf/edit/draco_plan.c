@@ -14,7 +14,7 @@
  * Those that are compressed get one grid; where some are not, all are solved for what the file has, so that tangents
  * meet at the least.
  */
-#include "gltf/edit/plan.h"
+#include "gltf/edit/edit.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -20,7 +20,7 @@
 #include "gltf/edit/new_accessors.h"
 #include "gltf/edit/old_tangents.h"
 #include "gltf/edit/manifold.h"
-#include "gltf/edit/write.h"
+#include "gltf/edit/relocate.h"
 #include "gltf/extensions/geometry_metadata.h"
 #include "gltf/quantize.h"
 #include "gltf/view.h"

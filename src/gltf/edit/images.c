@@ -10,7 +10,6 @@
 #include <string.h>
 #include "file/image_type.h"
 #include "file/uri.h"
-#include "gltf/edit/links.h"
 
 nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *document)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Images of an edited document: see images.c.
+ * Images of an edited document, and references to files: see images.c and links.c.
  */
 #ifndef NT_GLTF_EDIT_IMAGES_H
 #define NT_GLTF_EDIT_IMAGES_H
@@ -30,5 +30,16 @@ nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_
 	nt_open_images *images, nt_error *error);
 
 void nt_open_images_close(nt_open_images *images);
+
+/* links.c. The text of an external reference: neither a data URI nor anything else than a string. NULL: none. */
+const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length);
+
+/* links.c. The way from the folder of one file to the folder of another as a URI: "../other/"; "" where they are
+ * the same or cannot be found. "-" is a file of the current folder. */
+nt_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *to, const char **prefix,
+	nt_error *error);
+
+/* links.c. Puts the prefix before the uri of a buffer or an image, where that is relative. */
+nt_status nt_gltf_link(nt_json *json, nt_json_value *object, const char *prefix, nt_error *error);
 
 #endif

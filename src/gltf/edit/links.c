@@ -2,7 +2,7 @@
 /*
  * External files of a document, named from another folder.
  */
-#include "gltf/edit/links.h"
+#include "gltf/edit/images.h"
 
 #include <stdlib.h>
 #include <string.h>

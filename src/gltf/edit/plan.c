@@ -4,7 +4,7 @@
  * vertices (its pool), whose geometry it has, with whom it is solved, whether it is solved as a decoder of Draco will
  * have it, and whether what it holds may go once its pool has its results. Reader, stages and writer keep to it.
  */
-#include "gltf/edit/plan.h"
+#include "gltf/edit/edit.h"
 
 #include "gltf/draco.h"
 #include "gltf/vertex_pools.h"

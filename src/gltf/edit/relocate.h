@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Moving offsets and writing buffers: see relocate.c.
+ * Moving offsets, writing buffers and the document: see relocate.c and write.c.
  */
 #ifndef NT_GLTF_EDIT_RELOCATE_H
 #define NT_GLTF_EDIT_RELOCATE_H
@@ -33,5 +33,13 @@ nt_status nt_relocated_write(const nt_relocated *relocated, uint32_t buffer, con
 
 /* The same as base64, without the last group's padding. */
 nt_status nt_relocated_encode(const nt_relocated *relocated, uint32_t buffer, nt_base64 *base64, nt_error *error);
+
+/* write.c. Writes the input as it is where that is what the output should be; *written tells. */
+nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *options,
+	nt_output *output, bool *written, nt_error *error);
+
+/* write.c. Ends the edits and writes the document with its buffers and images. */
+nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const nt_write_options *options,
+	nt_output *output, nt_error *error);
 
 #endif

@@ -9,19 +9,17 @@
  * other tools have it, but only with other buffer numbers and offsets, to which extensions that we do not
  * know may refer.
  */
-#include "gltf/edit/write.h"
+#include "gltf/edit/relocate.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
 #include "file/uri.h"
-#include "gltf/sidecar.h"
 #include "gltf/document.h"
 #include "gltf/edit/data_uris.h"
 #include "gltf/edit/images.h"
-#include "gltf/edit/links.h"
-#include "gltf/edit/relocate.h"
+#include "gltf/sidecar.h"
 
 /* An edited document on its way into files. */
 typedef struct writing {
