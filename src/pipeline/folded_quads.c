@@ -53,6 +53,15 @@ static size_t count_folded(const nmtan_mesh *view, const uint8_t *diagonals)
 	return folded;
 }
 
+/* Whether any quad may be folded: the counts, which are of the triangles of the solve, have both orientations, or
+ * `changed` quads are cut otherwise. */
+static bool may_be_folded(const nt_mesh *mesh, size_t changed)
+{
+	const nmtan_counts *c = &mesh->counts;
+	return mesh->texcoords && (changed || c->stored_differently ||
+		(c->mirrored && c->mirrored < mesh->corner_count - 2 * mesh->face_count));
+}
+
 static bool alloc_cut(const nt_mesh *mesh, size_t folded, cut_mesh *cut)
 {
 	const size_t faces = mesh->face_count + folded, corners = mesh->corner_count + 2 * folded;
@@ -157,8 +166,8 @@ nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned thr
 	uint8_t *diagonals = nt_alloc(mesh->face_count, 1);
 	if (!diagonals)
 		return NT_ERROR_MEMORY;
-	nt_written_diagonals(&view, diagonals);
-	const size_t folded = mesh->texcoords ? count_folded(&view, diagonals) : 0;
+	const size_t changed = nt_written_diagonals(&view, diagonals);
+	const size_t folded = may_be_folded(mesh, changed) ? count_folded(&view, diagonals) : 0;
 	if (!folded) {
 		mesh->face_diagonals = mesh->cut_arrays = diagonals;
 		return NT_OK;

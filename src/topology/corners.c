@@ -36,7 +36,8 @@ nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count)
 	return *corner_count > 0 && most >= mesh->vertex_count ? NMTAN_ERROR_INDEX : NMTAN_OK;
 }
 
-int nt_written_diagonal(const nmtan_mesh *mesh, size_t first)
+/* nt_written_diagonal(); *solved receives the diagonal of the solve. */
+static int written_diagonal(const nmtan_mesh *mesh, size_t first, int *solved)
 {
 	static const float nowhere[2];
 	const float *uv[4], *p[4];
@@ -45,13 +46,27 @@ int nt_written_diagonal(const nmtan_mesh *mesh, size_t first)
 		uv[k] = mesh->texcoords ? nt_texcoord(mesh, vertex) : nowhere;
 		p[k] = nt_position(mesh, vertex);
 	}
-	return nt_written_quad_diagonal(uv, p);
+	*solved = nt_quad_diagonal(uv, p);
+	return nt_written_quad_diagonal(*solved, p);
 }
 
-void nt_written_diagonals(const nmtan_mesh *mesh, uint8_t *diagonals)
+int nt_written_diagonal(const nmtan_mesh *mesh, size_t first)
 {
-	for (size_t face = 0, first = 0; face < mesh->face_count; first += nt_face_size(mesh, face++))
-		diagonals[face] = nt_face_size(mesh, face) == 4 ? (uint8_t)nt_written_diagonal(mesh, first) : 0;
+	int solved;
+	return written_diagonal(mesh, first, &solved);
+}
+
+size_t nt_written_diagonals(const nmtan_mesh *mesh, uint8_t *diagonals)
+{
+	size_t changed = 0;
+	for (size_t face = 0, first = 0; face < mesh->face_count; first += nt_face_size(mesh, face++)) {
+		int written = 0, solved = 0;
+		if (nt_face_size(mesh, face) == 4)
+			written = written_diagonal(mesh, first, &solved);
+		diagonals[face] = (uint8_t)written;
+		changed += written != solved;
+	}
+	return changed;
 }
 
 unsigned nt_written_triangles(const nmtan_mesh *mesh, size_t face, size_t first, uint32_t corners[2][3])

@@ -119,8 +119,8 @@ static inline unsigned nt_face_triangles(const nmtan_mesh *mesh, size_t face, si
  * texture coordinates the positions decide. */
 int nt_written_diagonal(const nmtan_mesh *mesh, size_t first);
 
-/* The same for each face; 0 for triangles. */
-void nt_written_diagonals(const nmtan_mesh *mesh, uint8_t *diagonals);
+/* The same for each face; 0 for triangles. Returns how many are not MikkTSpace's. */
+size_t nt_written_diagonals(const nmtan_mesh *mesh, uint8_t *diagonals);
 
 /* The same triangles as they are written: those that w has to fit. */
 unsigned nt_written_triangles(const nmtan_mesh *mesh, size_t face, size_t first, uint32_t corners[2][3]);

@@ -99,21 +99,15 @@ int nt_quad_diagonal(const float *const texcoords[4], const float *const positio
  * upright on the quad, to 2^-50. */
 static bool has_inverted(const float *const positions[4], int diagonal)
 {
-	nt_dvec3 p[4];
-	for (int k = 0; k < 4; k++)
-		p[k] = nt_dvec3_load(positions[k]);
-	const nt_dvec3 normal = nt_dvec3_cross(nt_dvec3_sub(p[2], p[0]), nt_dvec3_sub(p[3], p[1]));
-	bool inverted = false;
-	for (int half = 0; half < 2; half++) {
-		const unsigned char *k = nt_quad_triangles[diagonal][half];
-		const nt_dvec3 d1 = nt_dvec3_sub(p[k[1]], p[k[0]]), d2 = nt_dvec3_sub(p[k[2]], p[k[0]]);
-		inverted |= nt_dvec3_dot(nt_dvec3_cross(d1, d2), normal) < 0;
-	}
-	return inverted;
+	const nt_dvec3 from = nt_dvec3_load(positions[diagonal]), right = nt_dvec3_load(positions[diagonal + 1]),
+		       left = nt_dvec3_load(positions[(diagonal + 3) % 4]);
+	const nt_dvec3 along = nt_dvec3_sub(nt_dvec3_load(positions[diagonal + 2]), from);
+	const nt_dvec3 normal = nt_dvec3_cross(along, nt_dvec3_sub(left, right));
+	return (nt_dvec3_dot(nt_dvec3_cross(nt_dvec3_sub(right, from), along), normal) < 0) |
+	       (nt_dvec3_dot(nt_dvec3_cross(along, nt_dvec3_sub(left, from)), normal) < 0);
 }
 
-int nt_written_quad_diagonal(const float *const texcoords[4], const float *const positions[4])
+int nt_written_quad_diagonal(int solved, const float *const positions[4])
 {
-	const int cut = nt_quad_diagonal(texcoords, positions);
-	return has_inverted(positions, cut) && !has_inverted(positions, !cut) ? !cut : cut;
+	return has_inverted(positions, solved) && !has_inverted(positions, !solved) ? !solved : solved;
 }
