@@ -51,9 +51,10 @@ extern const unsigned char nt_quad_triangles[2][2][3];
  * space; where those are equal or not comparable, the shorter one in space, 0-2 when in doubt. */
 int nt_quad_diagonal(const float *const texcoords[4], const float *const positions[4]);
 
-/* The diagonal along which a quad is written as triangles: that of its solve, unless this lies outside in space, so that
- * one triangle is inverted, and the other one does not. "Inverted" is against the quad's Newell normal. Of a simple
- * outline no triangle is, for it has at most one corner that turns inwards; of one that crosses itself one always is. */
+/* The diagonal along which a quad is written as triangles: that of its solve, unless this lies outside in space, so
+ * that one triangle is inverted, and the other one does not. "Inverted" is against the quad's Newell normal. Of a
+ * simple outline no triangle is, for it has at most one corner that turns inwards; of one that crosses itself one
+ * always is. */
 int nt_written_quad_diagonal(int solved, const float *const positions[4]);
 
 #endif
