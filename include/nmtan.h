@@ -260,10 +260,10 @@ typedef struct nmtan_counts {
 	size_t repaired_unassigned;  /* corners to which no triangle gave a tangent: MikkTSpace leaves (1, 0, 0)
 	                                there */
 	size_t repaired_leaning;     /* tangents more than 2^-10 off perpendicular to a normal of unit length */
-	size_t ill_conditioned;      /* robust: tangents for which more than 24 bits cancel, in the sum or
-	                                because dP/du runs along the normal. They are unit and
-	                                perpendicular like all others, their direction is as good as
-	                                double arithmetic makes it */
+	size_t ill_conditioned;      /* robust: tangents for which more than 24 bits cancel, in the sum, in an
+	                                angle that turns it or because dP/du runs along the normal. They
+	                                are unit and perpendicular like all others, their direction is as
+	                                good as double arithmetic makes it */
 	size_t sorted_instead;       /* 1: the default method gave what NMTAN_METHOD_MIKKTSPACE_SORTED gives, since
 	                                the mesh is beyond the limits of "Results" */
 } nmtan_counts;

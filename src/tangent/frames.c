@@ -247,6 +247,7 @@ static void add_corner(const solved *f, const nt_measured *m, const double lengt
 	sum->u = nt_dvec3_add(sum->u, w.u);
 	sum->weights += w.weight;
 	sum->sensitivity += w.sensitivity;
+	sum->stretch += w.stretch;
 }
 
 void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t corners[3], const nt_dvec3 normals[3],

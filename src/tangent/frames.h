@@ -27,6 +27,7 @@ typedef struct nt_frame_sum {
 	double weights; /* sum of the lengths that went in */
 	double sensitivity; /* sum of the lengths times their condition: by how much a relative error of
 	                       one in the projections could move u */
+	double stretch;     /* the part of it that lies along what went in: errors of the angles */
 } nt_frame_sum;
 
 #define NT_NO_ID UINT32_MAX

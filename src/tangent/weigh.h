@@ -27,6 +27,7 @@ typedef struct nt_measured {
 typedef struct nt_weighed {
 	nt_dvec3 u;
 	double weight, sensitivity;
+	double stretch; /* the part of it that changes the weight alone: errors of the angle */
 } nt_weighed;
 
 static inline __attribute__((always_inline)) nt_measured nt_measure(nt_dvec3 u, nt_dvec3 across)
@@ -75,7 +76,8 @@ static inline __attribute__((always_inline)) nt_weighed nt_weigh_corner(const nt
 	const double factor = by_area ? usable * lengths : usable;
 	const double weight = factor * nt_angle_on_circle(sine * turn, cosine * turn);
 	const double scale = weight * nt_rsqrt(squared);
-	return (nt_weighed){nt_dvec3_scale(scale, d), weight, scale * m->u_length + factor * condition};
+	const double stretch = factor * condition;
+	return (nt_weighed){nt_dvec3_scale(scale, d), weight, scale * m->u_length + stretch, stretch};
 }
 
 /* The same for Lengyel's sum: dP/du as it is, u times the inverse determinant, without its part along n. */
@@ -83,7 +85,7 @@ static inline __attribute__((always_inline)) nt_weighed nt_weigh_nothing(const n
 	double inverse)
 {
 	const double length = m->u_length * inverse;
-	return (nt_weighed){nt_dvec3_reject(n, nt_dvec3_scale(inverse, m->u)), length, length};
+	return (nt_weighed){nt_dvec3_reject(n, nt_dvec3_scale(inverse, m->u)), length, length, 0.0};
 }
 
 #endif

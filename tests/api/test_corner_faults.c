@@ -106,6 +106,30 @@ TEST(robust_tells_which_corners_are_ill_conditioned)
 	expect(faults, 0);
 }
 
+/* Seen edge-on an angle has lost 30 bits. That moves a sum of two directions, not one. */
+TEST(an_angle_alone_is_not_ill_conditioned)
+{
+	const float edge_on[3] = {1e-9f, 1, 0}, along_z[9] = {0, 0, 0, 0, 0, 1, 0, 1, 0};
+	uint8_t faults[3];
+	faults_of(along_z, edge_on, square, NULL, NMTAN_METHOD_ROBUST, faults);
+	expect(faults, 0);
+	/* the second triangle turns at the vertex that both have: its u runs along x + z */
+	const float positions[5][3] = {{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {1, 0, 1}, {0, 1, 0}};
+	const float uvs[5][2] = {{0, 0}, {1, 0}, {0, 1}, {1, 0}, {0, 2}};
+	const uint32_t indices[6] = {0, 1, 2, 0, 3, 4};
+	float normals[5][3], tangents[6][4];
+	uint8_t both[6];
+	for (int v = 0; v < 5; v++)
+		memcpy(normals[v], (float[3]){1e-9f, 1, -1e-9f}, sizeof normals[v]);
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 2, .vertex_count = 5, .indices = indices,
+		.positions = &positions[0][0], .normals = &normals[0][0], .texcoords = &uvs[0][0]};
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = NMTAN_METHOD_ROBUST};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0], .corner_faults = both};
+	assert_int_equal(nmtan_tangents(&mesh, &options, &output, NULL), NMTAN_OK);
+	for (int c = 0; c < 6; c++)
+		assert_true(!(both[c] & NMTAN_FAULT_ILL_CONDITIONED) == (c % 3 != 0));
+}
+
 /* Random meshes: triangles and quads over few points, so that faces collapse, fold and meet. */
 
 enum { POINTS = 40, FACES = 60, CORNERS = 4 * FACES };

@@ -2,24 +2,33 @@
 /*
  * What the lanes of kernel.h leave to the definition in frames.c: triangles whose values are not finite or whose
  * vertices have no normal, differences that are no doubles and cancel, signs that are in doubt. All triangles go this
- * way where the caller asks for the scalar path.
+ * way where the caller asks for the scalar path. And the second look at sums that are ill-conditioned, which few are.
  */
 #include "tangent/sums/parts.h"
 
+#include <string.h>
 #include "topology/corners.h"
 
-void nt_sums_do_hard(const nt_sums *s, size_t t, int lane, nt_sum_block *block)
+/* What a triangle adds at each of its corners, which are told. */
+static void find_parts(const nt_sums *s, size_t t, uint32_t corners[3], nt_frame_sum parts[3])
 {
 	const nmtan_mesh *mesh = s->solve->mesh;
-	nt_frame_sum parts[3] = {{.weights = 0}, {.weights = 0}, {.weights = 0}};
 	nt_frame_sum *const to[3] = {&parts[0], &parts[1], &parts[2]};
-	uint32_t corners[3];
 	nt_dvec3 normals[3];
+	memset(parts, 0, 3 * sizeof *parts);
 	for (size_t k = 0; k < 3; k++) {
 		corners[k] = (uint32_t)nt_sums_corner(s, 3 * t + k);
 		normals[k] = nt_unit_normal(mesh, nt_vertex_of(mesh, corners[k]));
 	}
 	nt_add_triangle(mesh, s->weight, corners, normals, to);
+}
+
+void nt_sums_do_hard(const nt_sums *s, size_t t, int lane, nt_sum_block *block)
+{
+	const nmtan_mesh *mesh = s->solve->mesh;
+	nt_frame_sum parts[3];
+	uint32_t corners[3];
+	find_parts(s, t, corners, parts);
 	for (int k = 0; k < 3; k++) {
 		block->add[k][0][lane] = parts[k].u.x;
 		block->add[k][1][lane] = parts[k].u.y;
@@ -29,6 +38,63 @@ void nt_sums_do_hard(const nt_sums *s, size_t t, int lane, nt_sum_block *block)
 	block->sign[lane] = nt_triangle_orientation(mesh, corners, false);
 	block->plain[lane] = 0;
 	block->certain[lane] = !nt_has_stored(mesh);
+}
+
+/* Whether the sum at a vertex is ill-conditioned, and is not lost. */
+static bool is_ill(const nt_sums *s, uint32_t id, int side)
+{
+	const unsigned mask = NT_VERTEX_MET | NT_VERTEX_LOST | NT_VERTEX_ILL;
+	return (s->vertex_flags[id] >> side & mask) == (NT_VERTEX_MET | NT_VERTEX_ILL);
+}
+
+/* By how much errors of what a triangle adds could move a sum of that direction: an error of its angle moves it by its
+ * part across the direction, which a lone triangle has not. */
+static double movement_by(const nt_frame_sum *part, nt_dvec3 direction)
+{
+	nt_dvec3 u = part->u;
+	const double across = nt_dvec3_normalise(&u) ? nt_dvec3_length(nt_dvec3_cross(u, direction)) : 0.0;
+	return part->sensitivity - part->stretch + across * part->stretch;
+}
+
+/* A triangle's share of the movements of ill-conditioned sums. */
+static void add_movements(const nt_sums *s, size_t t, int side, double *movements)
+{
+	const uint32_t *ids = s->ids + 3 * t;
+	nt_frame_sum parts[3];
+	uint32_t corners[3];
+	if (!is_ill(s, ids[0], side) && !is_ill(s, ids[1], side) && !is_ill(s, ids[2], side))
+		return;
+	find_parts(s, t, corners, parts);
+	for (size_t k = 0; k < 3; k++) {
+		const nt_vertex_sum *sum = &s->sums[side][ids[k]];
+		nt_dvec3 direction = {sum->x, sum->y, sum->z};
+		if (is_ill(s, ids[k], side) && nt_dvec3_normalise(&direction))
+			movements[ids[k]] += movement_by(&parts[k], direction);
+	}
+}
+
+nmtan_status nt_sums_judge_ill(const nt_sums *s)
+{
+	const size_t count = s->weld.count;
+	double *movements = nt_scratch_alloc(s->solve->scratch, count, 2 * sizeof *movements);
+	if (!movements)
+		return NMTAN_ERROR_MEMORY;
+	memset(movements, 0, 2 * count * sizeof *movements);
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		const int side = (s->flags[t] & NT_SUM_POSITIVE) != 0;
+		if (!(s->flags[t] & NT_SUM_NONE))
+			add_movements(s, t, side, movements + (side ? count : 0));
+	}
+	for (uint32_t id = 0; id < count; id++)
+		for (int side = 0; side < 2; side++) {
+			const nt_vertex_sum *sum = s->sums[side] ? &s->sums[side][id] : NULL;
+			if (!sum || !is_ill(s, id, side))
+				continue;
+			const double length = nt_dvec3_length((nt_dvec3){sum->x, sum->y, sum->z});
+			if (movements[side * count + id] <= NT_WELL_CONDITIONED * length)
+				s->vertex_flags[id] &= (uint8_t)~(NT_VERTEX_ILL << side);
+		}
+	return NMTAN_OK;
 }
 
 void nt_sums_orient(const nt_sums *s, size_t t)

@@ -100,6 +100,11 @@ static inline size_t nt_sums_corner(const nt_sums *s, size_t i)
 /* Does triangle t by the definition: its lane of the block, and its sign. */
 void nt_sums_do_hard(const nt_sums *s, size_t t, int lane, nt_sum_block *block);
 
+/* A second look at vertices that are ill-conditioned by what kernels add up, which takes all errors for errors across
+ * the sum: NT_VERTEX_ILL goes where what can move the direction is within bounds. By angle, before results are
+ * written. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_sums_judge_ill(const nt_sums *s);
+
 /* Flags of the face of triangle t, two triangles for a quad, by the exact sign of what is stored. */
 void nt_sums_orient(const nt_sums *s, size_t t);
 
