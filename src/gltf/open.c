@@ -16,13 +16,6 @@
 #include "gltf/materials.h"
 #include "gltf/pointer.h"
 
-static const char *copy_name(nt_arena *arena, const nt_json_value *object)
-{
-	size_t length = 0;
-	const char *name = nt_json_get_string(nt_json_find(object, "name"), &length);
-	return nt_arena_text(arena, name ? name : "", name ? length : 0);
-}
-
 /* How many elements an accessor claims; where that cannot be said, enough for a triangle, so that loading
  * meets the fault and says it. */
 static uint64_t claimed_count(const nt_gltf *document, const nt_json_value *reference)
@@ -35,11 +28,23 @@ static uint64_t claimed_count(const nt_gltf *document, const nt_json_value *refe
 	return count;
 }
 
-static bool has_texcoords(const nt_json_value *attributes, uint32_t set)
+/* The texture coordinates that tangents follow, as the materials or the user want them. */
+static void describe_texcoords(nt_mesh *mesh, const nt_json_value *attributes, const nt_gltf_shading *shading,
+	const nt_read_options *options)
 {
 	char name[32];
-	nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), set);
-	return nt_json_find(attributes, name) != NULL;
+	mesh->texcoord_set = options->texcoord_set >= 0 ? (uint32_t)options->texcoord_set : shading->set;
+	nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), mesh->texcoord_set);
+	mesh->has_texcoords = nt_json_find(attributes, name) != NULL;
+	mesh->texcoords_transformed = shading->transforms_differ || shading->transform.animated ||
+		shading->transform.turns;
+	mesh->texcoord_conflict = shading->conflict && options->texcoord_set < 0;
+	mesh->texcoord_other_set = shading->other_set;
+	for (int axis = 0; axis < 2; axis++) {
+		mesh->wrap[axis] = shading->wrap[axis];
+		mesh->wrap_offset[axis] =
+			shading->wrap[axis] == NT_WRAP_MIRRORED ? (float)shading->transform.uv.offset[axis] : 0;
+	}
 }
 
 /* Morph targets that move positions or normals and leave tangents as they are. */
@@ -55,9 +60,9 @@ static uint32_t targets_without_tangents(const nt_json_value *primitive)
 	return count;
 }
 
-/* Whether nothing but its tangents will ever depend on the vertices of a primitive with indices: whole triangles, since
- * indices that form none stay as they are, with normals, uncompressed, not moved, and texture coordinates as all take
- * them. */
+/* Whether an edit needs nothing of a primitive with indices but its tangents, once it is solved: the indices form whole
+ * triangles (others stay as they are), it has normals, no block of Draco and no targets, and no texture transform has
+ * to be looked at. */
 static bool is_disposable(const nt_json_value *primitive, const nt_mesh *mesh, uint64_t mode, uint64_t corners)
 {
 	return mode == NT_GLTF_TRIANGLES && corners % 3 == 0 && mesh->has_normals &&
@@ -89,16 +94,7 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->triangles = mode >= NT_GLTF_TRIANGLES;
 	mesh->slots = shading.slots;
 	mesh->unlit = shading.unlit;
-	for (int axis = 0; axis < 2; axis++) {
-		mesh->wrap[axis] = shading.wrap[axis];
-		mesh->wrap_offset[axis] =
-			shading.wrap[axis] == NT_WRAP_MIRRORED ? (float)shading.transform.uv.offset[axis] : 0;
-	}
-	mesh->texcoord_set = options->texcoord_set >= 0 ? (uint32_t)options->texcoord_set : shading.set;
-	mesh->texcoords_transformed = shading.transforms_differ || shading.transform.animated ||
-		shading.transform.turns;
-	mesh->texcoord_conflict = shading.conflict && options->texcoord_set < 0;
-	mesh->texcoord_other_set = shading.other_set;
+	describe_texcoords(mesh, attributes, &shading, options);
 	const nt_json_value *positions = nt_json_find(attributes, "POSITION"),
 		*indices = nt_json_find(primitive, "indices");
 	const uint64_t corners = positions ? claimed_count(document, indices ? indices : positions) : 0;
@@ -108,7 +104,6 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->compressed = nt_gltf_draco_of(primitive) != NULL;
 	mesh->has_polygons = mode == NT_GLTF_TRIANGLES && !mesh->compressed &&
 		nt_json_find(nt_json_find(primitive, "extensions"), "FB_ngon_encoding");
-	mesh->has_texcoords = has_texcoords(attributes, mesh->texcoord_set);
 	mesh->targets_without_tangents = targets_without_tangents(primitive);
 	/* to tell empty primitives; loading counts again */
 	mesh->face_count = corners < 3 ? 0 : (size_t)(mode == NT_GLTF_TRIANGLES ? corners / 3 : corners - 2);
@@ -150,7 +145,9 @@ static nt_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt_re
 	for (size_t i = 0; i < nt_json_count(meshes); i++) {
 		const nt_json_value *json = nt_json_at(meshes, i);
 		const nt_json_value *primitives = nt_json_find(json, "primitives");
-		const char *name = copy_name(&scene->arena, json);
+		size_t length = 0;
+		const char *name = nt_json_get_string(nt_json_find(json, "name"), &length);
+		name = nt_arena_text(&scene->arena, name ? name : "", name ? length : 0);
 		if (!name)
 			return nt_fail_memory(error);
 		for (size_t k = 0; k < nt_json_count(primitives); k++, mesh++) {

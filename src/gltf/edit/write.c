@@ -103,15 +103,6 @@ nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *option
 
 /* ---- what happens to each buffer ---- */
 
-/* Whether the user wants the output to have files beside it; standard output has none. */
-static bool keeps_files(const writing *c)
-{
-	const nt_buffers wish = c->options->buffers;
-	if (strcmp(c->options->path, "-") == 0)
-		return false;
-	return wish == NT_BUFFERS_LINK || wish == NT_BUFFERS_COPY;
-}
-
 static destination choose_destination(const writing *c, uint32_t index)
 {
 	const nt_gltf *document = c->document;
@@ -119,7 +110,9 @@ static destination choose_destination(const writing *c, uint32_t index)
 	/* The BIN chunk can be buffer 0 only, and only when the source's own chunk is not something else. */
 	const bool chunk_is_other = document->is_glb && document->glb.has_bin &&
 		document->buffer_count && document->buffers[0].storage != NT_GLTF_STORED_BIN;
-	const bool files = keeps_files(c);
+	/* beside the output, if the user wants that; standard output has none */
+	const nt_buffers wish = c->options->buffers;
+	const bool files = (wish == NT_BUFFERS_LINK || wish == NT_BUFFERS_COPY) && strcmp(c->options->path, "-") != 0;
 	const destination in_glb = index == 0 && !chunk_is_other ? TO_BIN_CHUNK : files ? TO_SIDECAR : TO_DATA_URI;
 	const destination moved = c->to_glb ? in_glb : c->embed ? TO_DATA_URI : TO_SIDECAR;
 	if (index >= document->buffer_count)
