@@ -10,7 +10,7 @@
 #include "topology/corners.h"
 
 /* What a triangle adds at each of its corners, which are told. */
-static void find_parts(const nt_sums *s, size_t t, uint32_t corners[3], nt_frame_sum parts[3])
+static void __attribute__((noinline)) find_parts(const nt_sums *s, size_t t, uint32_t corners[3], nt_frame_sum parts[3])
 {
 	const nmtan_mesh *mesh = s->solve->mesh;
 	nt_frame_sum *const to[3] = {&parts[0], &parts[1], &parts[2]};
@@ -47,54 +47,34 @@ static bool is_ill(const nt_sums *s, uint32_t id, int side)
 	return (s->vertex_flags[id] >> side & mask) == (NT_VERTEX_MET | NT_VERTEX_ILL);
 }
 
-/* By how much errors of what a triangle adds could move a sum of that direction: an error of its angle moves it by its
- * part across the direction, which a lone triangle has not. */
-static double movement_by(const nt_frame_sum *part, nt_dvec3 direction)
+/* Takes out of the sensitivity of a sum what a triangle's corner k added to it and cannot move its direction: an error
+ * of the angle moves it by the part across it, which a lone triangle has not. */
+static void ease(const nt_sums *s, size_t t, size_t k, nt_vertex_sum *sum)
 {
-	nt_dvec3 u = part->u;
-	const double across = nt_dvec3_normalise(&u) ? nt_dvec3_length(nt_dvec3_cross(u, direction)) : 0.0;
-	return part->sensitivity - part->stretch + across * part->stretch;
-}
-
-/* A triangle's share of the movements of ill-conditioned sums. */
-static void add_movements(const nt_sums *s, size_t t, int side, double *movements)
-{
-	const uint32_t *ids = s->ids + 3 * t;
 	nt_frame_sum parts[3];
 	uint32_t corners[3];
-	if (!is_ill(s, ids[0], side) && !is_ill(s, ids[1], side) && !is_ill(s, ids[2], side))
-		return;
 	find_parts(s, t, corners, parts);
-	for (size_t k = 0; k < 3; k++) {
-		const nt_vertex_sum *sum = &s->sums[side][ids[k]];
-		nt_dvec3 direction = {sum->x, sum->y, sum->z};
-		if (is_ill(s, ids[k], side) && nt_dvec3_normalise(&direction))
-			movements[ids[k]] += movement_by(&parts[k], direction);
-	}
+	const nt_dvec3 u = parts[k].u, direction = {sum->x, sum->y, sum->z};
+	const double lengths = nt_dvec3_length(u) * nt_dvec3_length(direction);
+	if (lengths > 0.0)
+		sum->sensitivity -= (1.0 - nt_dvec3_length(nt_dvec3_cross(u, direction)) / lengths) * parts[k].stretch;
 }
 
-nmtan_status nt_sums_judge_ill(const nt_sums *s)
+void nt_sums_judge_ill(const nt_sums *s)
 {
-	const size_t count = s->weld.count;
-	double *movements = nt_scratch_alloc(s->solve->scratch, count, 2 * sizeof *movements);
-	if (!movements)
-		return NMTAN_ERROR_MEMORY;
-	memset(movements, 0, 2 * count * sizeof *movements);
-	for (size_t t = 0; t < s->triangle_count; t++) {
-		const int side = (s->flags[t] & NT_SUM_POSITIVE) != 0;
-		if (!(s->flags[t] & NT_SUM_NONE))
-			add_movements(s, t, side, movements + (side ? count : 0));
+	for (size_t i = 0; i < 3 * s->triangle_count; i++) {
+		const int side = s->flags[i / 3] & NT_SUM_POSITIVE;
+		if (!(s->flags[i / 3] & NT_SUM_NONE) && is_ill(s, s->ids[i], side))
+			ease(s, i / 3, i % 3, &s->sums[side][s->ids[i]]);
 	}
-	for (uint32_t id = 0; id < count; id++)
+	for (uint32_t id = 0; id < s->weld.count; id++)
 		for (int side = 0; side < 2; side++) {
-			const nt_vertex_sum *sum = s->sums[side] ? &s->sums[side][id] : NULL;
-			if (!sum || !is_ill(s, id, side))
+			if (!is_ill(s, id, side))
 				continue;
-			const double length = nt_dvec3_length((nt_dvec3){sum->x, sum->y, sum->z});
-			if (movements[side * count + id] <= NT_WELL_CONDITIONED * length)
+			const nt_vertex_sum sum = s->sums[side][id];
+			if (sum.sensitivity <= NT_WELL_CONDITIONED * nt_dvec3_length((nt_dvec3){sum.x, sum.y, sum.z}))
 				s->vertex_flags[id] &= (uint8_t)~(NT_VERTEX_ILL << side);
 		}
-	return NMTAN_OK;
 }
 
 void nt_sums_orient(const nt_sums *s, size_t t)

@@ -101,9 +101,10 @@ static inline size_t nt_sums_corner(const nt_sums *s, size_t i)
 void nt_sums_do_hard(const nt_sums *s, size_t t, int lane, nt_sum_block *block);
 
 /* A second look at vertices that are ill-conditioned by what kernels add up, which takes all errors for errors across
- * the sum: NT_VERTEX_ILL goes where what can move the direction is within bounds. By angle, before results are
- * written. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
-nmtan_status nt_sums_judge_ill(const nt_sums *s);
+ * the sum: NT_VERTEX_ILL goes where what can move the direction is within bounds, and sensitivities are less by the
+ * rest. That is no more than 1e10 times the sum, or the result is lost, so that what is left is good. Before results
+ * are written. */
+void nt_sums_judge_ill(const nt_sums *s);
 
 /* Flags of the face of triangle t, two triangles for a quad, by the exact sign of what is stored. */
 void nt_sums_orient(const nt_sums *s, size_t t);

@@ -400,7 +400,7 @@ static nmtan_status solve_by_sums(const nt_solve *solve, nt_weight weight, size_
 	if (!status)
 		status = finish(&r, &finished);
 	if (!status && finished.ill && weight == NT_WEIGHT_ANGLE)
-		status = nt_sums_judge_ill(&s);
+		nt_sums_judge_ill(&s);
 	return status ? status : write_results(&r, &finished, ill_conditioned);
 }
 
