@@ -24,7 +24,7 @@ await test('both entries become ready, and are then alike', async () => {
 	assert.equal(inlined.isReady && external.isReady, true);
 	assert.deepEqual(Object.keys(inlined), Object.keys(external));
 });
-const { generateTangents, generateTangentsIndexed } = inlined;
+const { generateRepairedTangents, generateTangents, generateTangentsIndexed } = inlined;
 const goldens = triangleGoldens(`${data}/golden`);
 const up = {convention: 'mikktspace'}, raw = {...up, repair: false};
 
@@ -128,6 +128,26 @@ await test('a triangle without UV area: raw leaves the placeholder, repair puts 
 	assert.equal(r.counts.degenerateTexcoords, 1);
 });
 
+await test('repaired corners: units across the normal, one w in a triangle; raw ones that are that keep their bytes', () => {
+	let repaired = 0, kept = 0;
+	const isFrame = (t, n) => Math.abs(Math.hypot(t[0], t[1], t[2]) - 1) < 2 ** -18 && Math.abs(t[3]) === 1 &&
+		(Math.abs(Math.hypot(...n) - 1) > 2 ** -12 || Math.abs(t[0] * n[0] + t[1] * n[1] + t[2] * n[2]) < 2 ** -9);
+	for (const [name, g] of goldens) {
+		const made = generateRepairedTangents(g.positions, g.normals, g.texcoords), count = g.positions.length / 3;
+		const raw = g.tangents, indices = Uint32Array.from({length: count}, (_, i) => i);
+		const r = generateTangentsIndexed(indices, g.positions, g.normals, g.texcoords, up);
+		assert.ok(equalBytes(made, r.tangents), name);
+		for (let corner = 0; corner < count; corner++) {
+			const [t, before] = [made, raw].map((a) => rowAt(a, 4, corner)), n = rowAt(g.normals, 3, corner);
+			assert.ok(isFrame(t, n), `${name} ${corner}`);
+			assert.equal(t[3], made[4 * (corner - corner % 3) + 3], name);
+			repaired += !equalBytes(t, before);
+			kept += equalBytes(t, before);
+		}
+	}
+	assert.ok(repaired > 10 && kept > 1000, `${repaired} ${kept}`);
+});
+
 await test('the names of the counts are those of nmtan_counts, in order', () => {
 	const struct = readFileSync(header, 'utf8').match(/typedef struct nmtan_counts \{([^}]*)\}/)[1];
 	const names = [...struct.matchAll(/^\tsize_t (\w+);/gm)].map((match) => match[1]).slice(1);
@@ -202,10 +222,10 @@ await test('each function of index.d.ts is there, and no other', () => {
 		Object.keys(inlined).sort());
 });
 
-await test('the module imports nothing and has at most 60 KB compressed', async () => {
+await test('the module imports nothing and has at most 60 KiB compressed', async () => {
 	const { gzipSync } = await import('node:zlib');
 	const wasm = readFileSync(`${folder}/nmtan.wasm`);
 	assert.deepEqual(WebAssembly.Module.imports(await WebAssembly.compile(wasm)), []);
-	assert.ok(gzipSync(wasm, {level: 9}).length <= 60000, `${gzipSync(wasm, {level: 9}).length} bytes`);
+	assert.ok(gzipSync(wasm, {level: 9}).length <= 60 * 1024, `${gzipSync(wasm, {level: 9}).length} bytes`);
 });
 done();

@@ -125,19 +125,27 @@ function choose(value, choices, name) {
 	return number;
 }
 
-export function generateTangents(positions, normals, texcoords) {
+function cornerTangents(positions, normals, texcoords, noRepair) {
 	const from = attributes(positions, normals, texcoords);
 	const vertices = from.positions.count;
 	if (vertices % 3)
 		throw new TypeError(`nmtan: positions: ${vertices} vertices do not make triangles`);
 	return withMemory(() => {
-		const job = makeJob({faces: vertices / 3, vertices, noRepair: 1},
+		const job = makeJob({faces: vertices / 3, vertices, noRepair},
 			{...attributeBytes(vertices), tangents: vertices * 16}, from);
 		const status = wasm.corner_tangents();
 		if (status)
 			fail(status);
 		return floats(job.tangents, vertices * 4).slice();
 	});
+}
+
+export function generateTangents(positions, normals, texcoords) {
+	return cornerTangents(positions, normals, texcoords, 1);
+}
+
+export function generateRepairedTangents(positions, normals, texcoords) {
+	return cornerTangents(positions, normals, texcoords, 0);
 }
 
 function checkIndices(indices) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // nmtan with the WebAssembly in a file beside this one, for servers and bundlers that serve it as it is.
-import { generateTangents, generateTangentsIndexed, install } from './core.js';
+import { generateRepairedTangents, generateTangents, generateTangentsIndexed, install } from './core.js';
 
 async function load() {
 	const url = new URL('./nmtan.wasm', import.meta.url);
@@ -20,4 +20,4 @@ export const ready = load().then((compiled) => {
 	install(compiled);
 	isReady = true;
 });
-export { generateTangents, generateTangentsIndexed };
+export { generateRepairedTangents, generateTangents, generateTangentsIndexed };

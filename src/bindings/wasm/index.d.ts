@@ -57,6 +57,12 @@ export const isReady: boolean;
 export function generateTangents(positions: Attribute, normals: Attribute, texcoords: Attribute): Float32Array;
 
 /**
+ * The same, repaired: each tangent is a unit vector across its normal, and the corners of a triangle have one w, by the
+ * exact orientation of the triangle. Where the raw result is that already, the two are equal.
+ */
+export function generateRepairedTangents(positions: Attribute, normals: Attribute, texcoords: Attribute): Float32Array;
+
+/**
  * A tangent for each vertex of an indexed mesh, with copies of the vertices whose corners need different ones.
  * Throws TypeError for arrays or options that are wrong, RangeError where memory ends.
  */
