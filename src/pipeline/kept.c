@@ -77,6 +77,7 @@ static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh mesh, n
 	nt_scene own = *scene;
 	own.arena = *memory;
 	own.temporary = (nt_arena){0};
+	own.findings = (nt_finding_list){0}; /* what a load finds is said of meshes that are solved */
 	mesh.plan = (nt_mesh_plan){.pooled = mesh.plan.pooled}; /* a primitive costs what it uses */
 	size_t wrong = 0, judged = 0;
 	/* what cannot be read is copied as it is */
@@ -89,6 +90,7 @@ static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh mesh, n
 	*memory = own.arena;
 	nt_arena_clear(memory);
 	nt_arena_free(&own.temporary);
+	nt_finding_list_free(&own.findings);
 	return status == NT_ERROR_MEMORY ? status : NT_OK;
 }
 

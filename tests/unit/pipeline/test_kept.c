@@ -73,6 +73,31 @@ TEST(wrong_signs_are_told_where_they_are_kept_and_used)
 	}
 }
 
+/* Two slots with different texture transforms are a finding of meshes that are solved, not of those that are kept. */
+TEST(what_loads_find_is_theirs)
+{
+	enum { PRIMITIVES = 40 };
+	hand_file f = {0};
+	put_accessor(&f, positions, 4, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(&f, normals, 4, NT_GLTF_FLOAT, "VEC3");
+	put_accessor(&f, plain, 4, NT_GLTF_FLOAT, "VEC2");
+	put_accessor(&f, indices, 6, NT_GLTF_USHORT, "SCALAR");
+	put_accessor(&f, (const float[4][4]){{1, 0, 0, -1}, {1, 0, 0, -1}, {1, 0, 0, -1}, {1, 0, 0, -1}}, 4,
+		NT_GLTF_FLOAT, "VEC4");
+	char members[8192];
+	size_t length = (size_t)snprintf(members, sizeof members, "\"textures\":[{}],\"materials\":[{"
+		"\"normalTexture\":{\"index\":0},\"extensions\":{\"KHR_materials_clearcoat\":{"
+		"\"clearcoatFactor\":1,\"clearcoatNormalTexture\":{\"index\":0,\"extensions\":{"
+		"\"KHR_texture_transform\":{\"rotation\":1}}}}}}],\"meshes\":[{\"primitives\":[");
+	for (int i = 0; i < PRIMITIVES; i++)
+		length += (size_t)snprintf(members + length, sizeof members - length, "%s{\"attributes\":{\"POSITION\":0,"
+			"\"NORMAL\":1,\"TEXCOORD_0\":2,\"TANGENT\":4},\"indices\":3,\"material\":0}", i ? "," : "");
+	snprintf(members + length, sizeof members - length, "]}],");
+	put_glb("in.glb", &f, members);
+	assert_int_equal(convert_and_count((nt_settings){0}, NT_CODE_TAN_KEPT_SIGN), 2 * PRIMITIVES);
+	assert_int_equal(convert_and_count((nt_settings){0}, NT_CODE_TAN_UVSET_CONFLICT), 0);
+}
+
 TEST(repair_counts_what_it_changes)
 {
 	write_quad(NORMAL_MAP, plain, (float[4]){-1, -1, -1, 1});
