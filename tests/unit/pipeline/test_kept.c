@@ -91,7 +91,8 @@ TEST(what_loads_find_is_theirs)
 		"\"KHR_texture_transform\":{\"rotation\":1}}}}}}],\"meshes\":[{\"primitives\":[");
 	for (int i = 0; i < PRIMITIVES; i++)
 		length += (size_t)snprintf(members + length, sizeof members - length,
-			"%s{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2,\"TANGENT\":4},\"indices\":3,\"material\":0}", i ? "," : "");
+			"%s{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2,\"TANGENT\":4},"
+			"\"indices\":3,\"material\":0}", i ? "," : "");
 	snprintf(members + length, sizeof members - length, "]}],");
 	put_glb("in.glb", &f, members);
 	assert_int_equal(convert_and_count((nt_settings){0}, NT_CODE_TAN_KEPT_SIGN), 2 * PRIMITIVES);
