@@ -155,6 +155,7 @@ static nt_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt_re
 			mesh->name = name;
 			mesh->gltf_mesh = (uint32_t)i;
 			mesh->gltf_primitive = (uint32_t)k;
+			mesh->has_siblings = nt_json_count(primitives) > 1;
 			mesh->reachable = reached[i];
 			const nt_status status = describe_primitive(scene, document,
 				nt_json_at(primitives, k), mesh, options, error);

@@ -5,6 +5,8 @@
  */
 #include "pipeline/stages.h"
 
+#include <stdlib.h>
+#include "base/bits.h"
 #include "report/maker.h"
 #include "report/quads.h"
 
@@ -12,12 +14,20 @@
 static nt_status ask_tangents(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, bool *are_quads)
 {
 	nt_maker triangles = {.quads = false}, quads = {.quads = true};
+	uint64_t *border = NULL;
 	*are_quads = false;
-	nt_status status = nt_maker_compare(mesh, halves, threads, &triangles);
+	nt_status status = NT_OK;
+	if (mesh->has_siblings) {
+		border = nt_alloc(nt_bit_words(mesh->corner_count), sizeof *border);
+		status = border ? nt_maker_border(mesh, border) : NT_ERROR_MEMORY;
+	}
+	if (!status)
+		status = nt_maker_compare(mesh, halves, border, threads, &triangles);
 	if (!status && triangles.agreement < NT_MAKER_SHARE) {
-		status = nt_maker_compare(mesh, halves, threads, &quads);
+		status = nt_maker_compare(mesh, halves, border, threads, &quads);
 		*are_quads = !status && quads.agreement >= NT_MAKER_SHARE;
 	}
+	free(border);
 	return status;
 }
 

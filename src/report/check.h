@@ -42,6 +42,8 @@ typedef struct nt_check {
 	nt_stored stored;
 	const uint8_t *halves;    /* [triangle_count] enum nt_half: the faces that its tangents are of; NULL:
 	                             triangles */
+	const uint64_t *elsewhere; /* [corner_count] bits: corners whose tangents are the whole glTF mesh's, of which
+	                             this is one primitive; NULL: none */
 
 	/* by edges.c */
 	uint64_t *boundary;       /* [3 * triangle_count] bits: sides without a neighbour */

@@ -3,9 +3,12 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include "api/tangents.h"
 #include "base/angle.h"
+#include "base/bits.h"
 #include "base/dvec.h"
+#include "topology/corners.h"
 
 /* Halves of bytes' steps add up to that, of other tangents less. */
 static const double BYTE_DEGREES = 1.0, OTHER_DEGREES = 0.1, DEGREES = 57.29577951308232;
@@ -13,12 +16,65 @@ static const double BYTE_DEGREES = 1.0, OTHER_DEGREES = 0.1, DEGREES = 57.295779
 /* From here on no other maker is tried: the dialects of MikkTSpace differ at a few corners. */
 static const double CERTAIN = 0.99999;
 
+/* Each triangle at a vertex adds the number of its next vertex and takes that of the one before: around a closed fan
+ * nothing is left. The numbers are spread over 64 bits (splitmix64), so that nothing else adds up to 0. */
+static uint64_t spread(uint64_t id)
+{
+	id = (id + 1) * 0x9e3779b97f4a7c15;
+	id = (id ^ id >> 30) * 0xbf58476d1ce4e5b9;
+	id = (id ^ id >> 27) * 0x94d049bb133111eb;
+	return id ^ id >> 31;
+}
+
+nt_status nt_maker_border(const nt_mesh *mesh, uint64_t *border)
+{
+	nmtan_stored_uv stored;
+	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	size_t count = 0;
+	uint32_t *ids = nt_scratch_alloc(&scratch, mesh->corner_count, sizeof *ids);
+	uint64_t *left = NULL;
+	if (ids && !nt_weld_corners(&view, mesh->corner_count, &scratch, ids, &count))
+		left = nt_scratch_alloc(&scratch, count, sizeof *left);
+	if (left) {
+		memset(left, 0, count * sizeof *left);
+		for (size_t c = 0; c < mesh->corner_count; c++)
+			left[ids[c]] += spread(ids[c - c % 3 + (c + 1) % 3]) - spread(ids[c - c % 3 + (c + 2) % 3]);
+		memset(border, 0, nt_bit_words(mesh->corner_count) * sizeof *border);
+		for (size_t c = 0; c < mesh->corner_count; c++)
+			border[c / 64] |= (uint64_t)(left[ids[c]] != 0) << c % 64;
+	}
+	nt_scratch_free(&scratch);
+	return left ? NT_OK : NT_ERROR_MEMORY;
+}
+
+/* What was counted at corners. */
+typedef struct tally {
+	size_t judged, agreeing, inverted;
+	size_t by_degrees[2 * 180 + 1]; /* halves of a degree */
+} tally;
+
+static double share(const tally *t)
+{
+	return t->judged ? (double)t->agreeing / (double)t->judged : 0.0;
+}
+
+static void add(tally *to, const tally *from)
+{
+	to->judged += from->judged;
+	to->agreeing += from->agreeing;
+	to->inverted += from->inverted;
+	for (size_t i = 0; i < sizeof to->by_degrees / sizeof *to->by_degrees; i++)
+		to->by_degrees[i] += from->by_degrees[i];
+}
+
 /* Looks at the corners of triangles with an area in texture coordinates. */
-static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const float *fresh, nt_maker *maker)
+static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const uint64_t *border, const float *fresh,
+	nt_maker *maker)
 {
 	const double near = tan(maker->degrees / DEGREES) * tan(maker->degrees / DEGREES);
-	size_t judged = 0, agreeing = 0, inverted = 0;
-	size_t by_degrees[2 * 180 + 1] = {0}; /* halves of a degree */
+	tally inside = {0}, outside = {0};
 	for (size_t t = 0; t < mesh->face_count; t++) {
 		size_t v[3];
 		for (size_t k = 0; k < 3; k++)
@@ -27,25 +83,30 @@ static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const float *fr
 			view->texcoords + 2 * v[2]))
 			continue;
 		for (size_t k = 0; k < 3; k++) {
+			tally *of = border && nt_bit(border, 3 * t + k) ? &outside : &inside;
 			const nt_dvec3 a = nt_dvec3_load(mesh->tangents + 4 * v[k]);
 			const nt_dvec3 b = nt_dvec3_load(fresh + 4 * (3 * t + k));
 			const nt_dvec3 cross = nt_dvec3_cross(a, b);
 			const double dot = nt_dvec3_dot(a, b), square = nt_dvec3_dot(cross, cross);
-			judged++;
-			agreeing += dot > 0.0 && square <= near * dot * dot;
-			inverted += mesh->tangents[4 * v[k] + 3] * fresh[4 * (3 * t + k) + 3] < 0.0f;
-			by_degrees[square >= 0.0 ? (size_t)(2.0 * DEGREES * nt_angle(sqrt(square), dot)) : 360]++;
+			of->judged++;
+			of->agreeing += dot > 0.0 && square <= near * dot * dot;
+			of->inverted += mesh->tangents[4 * v[k] + 3] * fresh[4 * (3 * t + k) + 3] < 0.0f;
+			of->by_degrees[square >= 0.0 ? (size_t)(2.0 * DEGREES * nt_angle(sqrt(square), dot)) : 360]++;
 		}
 	}
-	maker->agreement = judged ? (double)agreeing / (double)judged : 0.0;
-	maker->inverted = 2 * inverted > judged;
-	size_t half = 0, below = by_degrees[0];
-	while (100 * below < 99 * judged)
-		below += by_degrees[++half];
+	maker->across = outside.judged && share(&outside) < NT_MAKER_SHARE && share(&inside) >= NT_MAKER_SHARE;
+	if (!maker->across)
+		add(&inside, &outside);
+	maker->agreement = share(&inside);
+	maker->inverted = 2 * inside.inverted > inside.judged;
+	size_t half = 0, below = inside.by_degrees[0];
+	while (100 * below < 99 * inside.judged)
+		below += inside.by_degrees[++half];
 	maker->most_degrees = 0.5 * (double)(half + 1);
 }
 
-nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, nt_maker *maker)
+nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
+	nt_maker *maker)
 {
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
@@ -58,12 +119,13 @@ nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, unsigned 
 	const nt_status status = nt_status_of(
 		nt_tangents_of_halves(&view, maker->quads ? halves : NULL, &options, &output, NULL));
 	if (!status)
-		compare(mesh, &view, output.tangents, maker);
+		compare(mesh, &view, border, output.tangents, maker);
 	free(output.tangents);
 	return status;
 }
 
-nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, nt_maker *maker)
+nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
+	nt_maker *maker)
 {
 	static const nmtan_method methods[] = {NMTAN_METHOD_MIKKTSPACE, NMTAN_METHOD_MIKKTSPACE_SORTED,
 		NMTAN_METHOD_AREA, NMTAN_METHOD_LENGYEL, NMTAN_METHOD_ROBUST};
@@ -74,7 +136,7 @@ nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, unsigned thr
 		nt_maker next = {.method = methods[i / 2], .quads = i % 2};
 		if (next.quads && !halves)
 			continue;
-		const nt_status status = nt_maker_compare(mesh, halves, threads, &next);
+		const nt_status status = nt_maker_compare(mesh, halves, border, threads, &next);
 		if (status)
 			return status;
 		if (i == 0)
@@ -99,8 +161,8 @@ void nt_maker_text(const nt_maker *maker, nt_buffer *out)
 		"MikkTSpace with its edges sorted"};
 	if (!maker->known)
 		return;
-	nt_buffer_format(out, "%s%s%s", methods[maker->method], maker->quads ? ", on quads" : "",
-		maker->inverted ? ", w inverted" : "");
+	nt_buffer_format(out, "%s%s%s%s", methods[maker->method], maker->quads ? ", on quads" : "",
+		maker->across ? ", across primitives" : "", maker->inverted ? ", w inverted" : "");
 	if (!nt_maker_is_mikktspace(maker) && maker->off_mikktspace > maker->degrees)
 		nt_buffer_format(out,
 			": a map baked in MikkTSpace is shown up to %g degrees off, but for 1 %% of the corners",

@@ -17,20 +17,30 @@ typedef struct nt_maker {
 	nmtan_method method;
 	bool quads;           /* on quads whose halves the file has */
 	bool inverted;        /* w is, nearly everywhere, the other one than nmtan's */
+	bool across;          /* known away from the primitive's border alone: of the whole glTF mesh */
 	double agreement;     /* share of the corners whose tangent is within `degrees` */
 	double degrees;       /* 0.1, or what the tangents' precision allows */
 	double most_degrees;  /* that 99 % of the corners are off at most */
 	double off_mikktspace; /* most_degrees of MikkTSpace on triangles */
 } nt_maker;
 
+/* Of a mesh with siblings, which corners are at its border: the triangles around the corner's vertex, welded as
+ * MikkTSpace does, are not a closed fan, so that some of them may be another primitive's. border
+ * [nt_bit_words(corner_count)] receives bits. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_maker_border(const nt_mesh *mesh, uint64_t *border);
+
 /* Compares a mesh's own tangents with those of a maker, whose method and quads are given and whose other members are
- * filled. `halves` [face_count]: enum nt_half, where quads is set. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, nt_maker *maker);
+ * filled. `halves` [face_count]: enum nt_half, where quads is set; `border` of nt_maker_border(); NULL: no corner.
+ * Where those at the border disagree and the others agree, only the others count. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
+	nt_maker *maker);
 
 /* Finds the maker of a mesh's own tangents: the first of MikkTSpace as published and sorted, area, lengyel and robust,
  * each on triangles and on quads, with which most corners agree, if these are NT_MAKER_SHARE of all. Where nearly all
- * agree no other is tried. `halves` [face_count]: enum nt_half; NULL: no quads. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, nt_maker *maker);
+ * agree no other is tried. `halves` [face_count]: enum nt_half; NULL: no quads; `border` as above. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
+	nt_maker *maker);
 
 /* Says who it is, if that is known: "MikkTSpace, on quads". */
 void nt_maker_text(const nt_maker *maker, nt_buffer *out);

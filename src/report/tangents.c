@@ -364,6 +364,7 @@ typedef struct direction_part {
 typedef struct direction_work {
 	const nt_check *check;
 	const float *fresh;
+	const uint64_t *without; /* bits: corners that are not looked at; NULL: none */
 	direction_part *parts;
 } direction_work;
 
@@ -402,13 +403,15 @@ static void check_direction_part(void *context, size_t item, unsigned slot)
 	work->parts[item] = (direction_part){.wrong = {.code = NT_CODE_TAN_DIRECTION_MISMATCH}};
 	for (size_t t = item * PART; t < part_end(work->check, item); t++)
 		for (size_t c = 3 * t; c < 3 * t + 3 && s->orientation[t] && s->flatness[t] == NT_SOUND; c++)
-			check_direction(work, c, &work->parts[item]);
+			if (!work->without || !nt_bit(work->without, nt_side_corner(s, c)))
+				check_direction(work, c, &work->parts[item]);
 }
 
-static nt_status check_directions(nt_check *check, const float *fresh)
+static nt_status check_directions(nt_check *check, const float *fresh, const uint64_t *without)
 {
 	const size_t parts = part_count(check);
-	const direction_work work = {check, fresh, nt_scratch_alloc(check->scratch, parts, sizeof *work.parts)};
+	const direction_work work = {check, fresh, without,
+		nt_scratch_alloc(check->scratch, parts, sizeof *work.parts)};
 	if (!work.parts)
 		return NT_ERROR_MEMORY;
 	nt_parallel_items(nt_thread_count(check->options->threads), parts, check_direction_part, (void *)&work);
@@ -437,7 +440,7 @@ static nt_status compare_with_fresh(nt_check *check)
 	const nt_mesh *mesh = check->mesh;
 	/* --across=mesh: as the mesh is solved with the others of its join */
 	if (mesh->plan.join && mesh->corner_tangents && mesh->decision != NT_DECISION_REPAIR)
-		return check_directions(check, mesh->corner_tangents);
+		return check_directions(check, mesh->corner_tangents, NULL);
 	float *fresh = nt_scratch_alloc(check->scratch, 4 * mesh->corner_count, sizeof *fresh);
 	if (!fresh)
 		return NT_ERROR_MEMORY;
@@ -446,7 +449,7 @@ static nt_status compare_with_fresh(nt_check *check)
 	const nmtan_options options = {.struct_bytes = sizeof options, .threads = check->options->threads};
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = fresh};
 	const nt_status status = nt_status_of(nt_tangents_of_halves(&view, check->halves, &options, &output, NULL));
-	return status ? status : check_directions(check, fresh);
+	return status ? status : check_directions(check, fresh, check->elsewhere);
 }
 
 /* ---- who made them ---- */
@@ -476,10 +479,18 @@ static nt_status find_maker(nt_check *check)
 			return NT_ERROR_MEMORY;
 		quads = nt_pair_quads(mesh, false, halves);
 	}
-	const nt_status status = nt_find_maker(mesh, quads ? halves : NULL, nt_thread_count(check->options->threads),
-		&check->facts->maker);
+	uint64_t *border = NULL;
+	nt_status status = NT_OK;
+	if (mesh->has_siblings) {
+		border = nt_scratch_alloc(check->scratch, nt_bit_words(mesh->corner_count), sizeof *border);
+		status = border ? nt_maker_border(mesh, border) : NT_ERROR_MEMORY;
+	}
+	if (!status)
+		status = nt_find_maker(mesh, quads ? halves : NULL, border, nt_thread_count(check->options->threads),
+			&check->facts->maker);
 	if (status)
 		return status;
+	check->elsewhere = check->facts->maker.across ? border : NULL;
 	check->halves = mesh->halves || (check->facts->maker.known && check->facts->maker.quads) ? halves : NULL;
 	return check->facts->maker.known && !nt_maker_is_mikktspace(&check->facts->maker) ? report_maker(check) : NT_OK;
 }

@@ -180,6 +180,7 @@ typedef struct nt_mesh {
 	size_t line;
 	uint32_t gltf_mesh;      /* indices in the source document, NT_NONE elsewhere */
 	uint32_t gltf_primitive;
+	bool has_siblings;       /* its glTF mesh has other primitives */
 	uint32_t gltf_material;  /* NT_NONE: none */
 	const char *gltf_material_name; /* NULL: none */
 

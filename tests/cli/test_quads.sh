@@ -137,6 +137,26 @@ is "$(gltf own.glb '(() => { const p = g.meshes[0].primitives[0], i = rows(p.ind
 		wrong += [a, b, d].some((v) => t[v][3] * area >= 0); /* v points down here */
 	} return wrong; })()')" 0
 
+# As Blender exports a mesh of several materials: solved as one, written as primitives.
+scene "tangents that were made for all primitives of a mesh are known away from the borders"
+inputs "" quads 0
+gltf cut.gltf parts 'const p = g.meshes[0].primitives[0], c = rows(p.indices).flat();
+	g.meshes[0].primitives = [c.slice(0, 432), c.slice(432)].map((i) => ({ ...p, indices: add("SCALAR", 5125, i) }));'
+gltf parts.gltf alone 'const [one, two] = g.meshes[0].primitives;
+	g.meshes = [one, two].map((p) => ({ primitives: [p] })); g.nodes = [{ mesh: 0 }, { mesh: 1 }]; g.scenes = [{ nodes: [0, 1] }]; g.scene = 0;'
+made='[(m["made_by"]["method"], m["made_by"]["faces"], m["made_by"]["across"]) for m in r["files"][0]["meshes"]]'
+run --check --only=all --fail-on=warning --report=p.json parts.gltf
+exits 0
+validates report p.json
+is "$(value p.json "$made")" "[('mikktspace', 'quads', 'mesh'), ('mikktspace', 'quads', 'mesh')]"
+is "$(value p.json '[f["code"] for f in r["files"][0]["findings"] if f["code"].startswith("TAN_DIR")]')" "[]"
+run --only=all --existing=replace --across=mesh parts.gltf whole.glb
+says "as 144 quads"
+same_places whole.glb obj.glb
+# two meshes were never solved as one
+run --check --only=all --report=p.json alone.gltf
+is "$(value p.json "$made")" "[('unknown', 'quads', 'primitive'), ('unknown', 'quads', 'primitive')]"
+
 scene "primitives over one buffer pair their own triangles, and --across=mesh all of them as one"
 quads 0 "" 50 >two.obj
 run -q two.obj two.glb

@@ -4,6 +4,7 @@
  * put on the triangles that a file has; the maker is found from these.
  */
 #include "report/maker.h"
+#include "base/bits.h"
 #include "report/quads.h"
 #include "surfaces.h"
 #include "test.h"
@@ -74,7 +75,7 @@ static void solve(const grid *g, nmtan_method method, bool quads, float (*tangen
 }
 
 /* Of the triangles with these tangents, each corner a vertex. */
-static nt_maker find(const grid *g, float (*tangents)[4], bool bytes, bool quads)
+static nt_maker find_with(const grid *g, float (*tangents)[4], bool bytes, bool quads, uint64_t *border)
 {
 	static float positions[CORNERS][3], normals[CORNERS][3], texcoords[CORNERS][2];
 	static uint8_t halves[2 * QUADS];
@@ -88,8 +89,13 @@ static nt_maker find(const grid *g, float (*tangents)[4], bool bytes, bool quads
 		.texcoords = texcoords[0], .tangents = tangents[0], .byte_tangents = bytes};
 	nt_maker maker;
 	assert_int_equal(nt_pair_quads(&mesh, false, halves), QUADS);
-	assert_int_equal(nt_find_maker(&mesh, quads ? halves : NULL, 1, &maker), NT_OK);
+	assert_int_equal(nt_find_maker(&mesh, quads ? halves : NULL, border, 1, &maker), NT_OK);
 	return maker;
+}
+
+static nt_maker find(const grid *g, float (*tangents)[4], bool bytes, bool quads)
+{
+	return find_with(g, tangents, bytes, quads, NULL);
 }
 
 /* The next grid on which the unfinished sort of MikkTSpace as published shows, or does not. */
@@ -226,6 +232,73 @@ TEST(tangents_that_are_no_numbers_are_nobodys)
 	for (size_t c = 0; c < CORNERS; c++)
 		tangents[c][0] = tangents[c][1] = tangents[c][2] = c % 2 ? NAN : 0;
 	assert_false(find(&g, tangents, false, true).known);
+}
+
+/* Six triangles around vertex 0, in both windings. One less, or other texture coordinates at one corner, and the fan is
+ * open; an edge that three triangles have leaves it closed for nobody. */
+TEST(corners_of_a_closed_fan_are_inside)
+{
+	float positions[8][3] = {{0}}, normals[8][3], texcoords[8][2];
+	for (size_t v = 0; v < 8; v++) {
+		if (v > 0) {
+			positions[v][0] = (float)cos((double)v);
+			positions[v][1] = (float)sin((double)v);
+		}
+		memcpy(normals[v], (float[]){0, 0, 1}, sizeof *normals);
+		memcpy(texcoords[v], positions[v], sizeof *texcoords);
+	}
+	for (uint32_t twin = 0; twin < 2; twin++) {
+		uint32_t triangles[3 * 7];
+		for (uint32_t t = 0; t < 6; t++)
+			memcpy(triangles + 3 * t,
+				(uint32_t[]){0, twin ? (t + 1) % 6 + 1 : t + 1, twin ? t + 1 : (t + 1) % 6 + 1},
+				3 * sizeof *triangles);
+		memcpy(triangles + 18, (uint32_t[]){0, 1, 7}, 3 * sizeof *triangles);
+		for (size_t count = 5; count < 8; count++) {
+			const nt_mesh mesh = {.face_count = count, .corner_count = 3 * count, .vertex_count = 8,
+				.source_vertex_count = 8, .positions = positions[0], .normals = normals[0],
+				.texcoords = texcoords[0], .indices = triangles};
+			uint64_t border[1];
+			assert_int_equal(nt_maker_border(&mesh, border), NT_OK);
+			for (size_t c = 0; c < 3 * count; c++)
+				assert_int_equal(nt_bit(border, c), c % 3 != 0 || count != 6);
+			triangles[3] = 7; /* at the place of 0 with other texture coordinates */
+			memcpy(positions[7], positions[0], sizeof *positions);
+			assert_int_equal(nt_maker_border(&mesh, border), NT_OK);
+			assert_true(nt_bit(border, 0) && nt_bit(border, 3));
+			triangles[3] = 0;
+		}
+	}
+}
+
+/* What another primitive changed at the border is not asked; what is wrong inside is not forgiven. */
+TEST(borders_do_not_hide_the_method)
+{
+	static grid g;
+	static float tangents[CORNERS][4];
+	uint64_t border[CORNERS / 64 + 1] = {0};
+	make_grid(&g, 1);
+	solve(&g, NMTAN_METHOD_MIKKTSPACE, true, tangents);
+	for (size_t c = 0; c < CORNERS / 2; c++) {
+		border[c / 64] |= (uint64_t)1 << c % 64;
+		if (c % 3 == 0)
+			turn(&g, c, 90, tangents[c]);
+	}
+	assert_false(find(&g, tangents, false, true).known);
+	nt_maker maker = find_with(&g, tangents, false, true, border);
+	assert_true(maker.known && maker.across && maker.quads && maker.agreement == 1.0);
+	nt_buffer text = {0};
+	nt_maker_text(&maker, &text);
+	nt_buffer_append(&text, "", 1);
+	assert_string_equal(text.data, "MikkTSpace, on quads, across primitives");
+	nt_buffer_free(&text);
+	for (size_t c = CORNERS / 2; c < CORNERS / 2 + 30; c++)
+		turn(&g, c, 90, tangents[c]);
+	assert_false(find_with(&g, tangents, false, true, border).known);
+	/* where all agree, all count */
+	solve(&g, NMTAN_METHOD_MIKKTSPACE, true, tangents);
+	maker = find_with(&g, tangents, false, true, border);
+	assert_true(maker.known && !maker.across);
 }
 
 int main(void)
