@@ -27,9 +27,9 @@ static nmtan_status check_attributes(nmtan_mesh *mesh)
 {
 	if (!mesh->positions || !mesh->normals || !mesh->texcoords)
 		return NMTAN_ERROR_ARGUMENT;
-	if (!nt_fill_stride(&mesh->position_stride_bytes, 3 * sizeof(float)) ||
-		!nt_fill_stride(&mesh->normal_stride_bytes, 3 * sizeof(float)) ||
-		!nt_fill_stride(&mesh->texcoord_stride_bytes, 2 * sizeof(float)) ||
+	if (!nt_fill_stride(&mesh->position_stride_bytes, 3 * sizeof(float), mesh->vertex_count) ||
+		!nt_fill_stride(&mesh->normal_stride_bytes, 3 * sizeof(float), mesh->vertex_count) ||
+		!nt_fill_stride(&mesh->texcoord_stride_bytes, 2 * sizeof(float), mesh->vertex_count) ||
 		!isfinite(nt_stored_v_offset(mesh)))
 		return NMTAN_ERROR_ARGUMENT;
 	return NMTAN_OK;

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/memory.h"
+#include "base/utf8.h"
 
 void *nt_buffer_extend(nt_buffer *buffer, size_t size)
 {
@@ -64,12 +65,14 @@ void nt_buffer_format(nt_buffer *buffer, const char *format, ...)
 
 void nt_buffer_clean(nt_buffer *buffer, const char *text)
 {
-	for (; *text; text++) {
-		const unsigned char c = (unsigned char)*text;
-		if (c < 0x20 || c == 0x7f)
-			nt_buffer_format(buffer, "\\x%02x", c);
-		else
-			nt_buffer_append(buffer, text, 1);
+	for (size_t length; *text; text += length) {
+		length = nt_utf8_length(text, SIZE_MAX);
+		const bool unsafe = nt_utf8_is_unsafe(text, length);
+		length = length ? length : 1;
+		if (!unsafe)
+			nt_buffer_append(buffer, text, length);
+		for (size_t i = 0; i < length && unsafe; i++)
+			nt_buffer_format(buffer, "\\x%02x", (unsigned char)text[i]);
 	}
 }
 

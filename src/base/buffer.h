@@ -30,7 +30,7 @@ static inline void nt_buffer_text(nt_buffer *buffer, const char *text)
 
 void nt_buffer_format(nt_buffer *buffer, const char *format, ...) NT_PRINTF(2, 3);
 
-/* Appends text that may come from a file, with control characters as \x1b: they must not reach a terminal. */
+/* Appends text that may come from a file. Bytes of what must not reach a terminal (nt_utf8_is_unsafe()) become \x1b. */
 void nt_buffer_clean(nt_buffer *buffer, const char *text);
 
 /* Appends `size` bytes and returns where they begin, not cleared; NULL when out of memory. The pointer is

@@ -325,9 +325,13 @@ void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), voi
 		work(&r);
 		return;
 	}
+	/* a thread that ends while it waits for helpers would keep the lock, and leave them a region that is gone */
+	int cancel;
+	pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, &cancel);
 	const unsigned looks = post(&r);
 	work(&r);
 	close_region(&r, looks);
+	pthread_setcancelstate(cancel, NULL);
 }
 
 #endif

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/utf8.h"
 
-#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
 
 size_t nt_utf8_length(const char *text, size_t size)
 {
@@ -18,4 +19,27 @@ size_t nt_utf8_length(const char *text, size_t size)
 	const bool surrogate = p[0] == 0xed && p[1] > 0x9f;
 	const bool beyond = p[0] == 0xf4 && p[1] > 0x8f;
 	return overlong || surrogate || beyond ? 0 : length;
+}
+
+bool nt_utf8_is_unsafe(const char *text, size_t length)
+{
+	const unsigned char *p = (const unsigned char *)text;
+	if (length < 2)
+		return length == 0 || p[0] < 0x20 || p[0] == 0x7f;
+	if (length == 2)
+		return p[0] == 0xc2 && p[1] < 0xa0;
+	const uint32_t code = length == 3 ? (p[0] & 0xfu) << 12 | (p[1] & 0x3fu) << 6 | (p[2] & 0x3fu) : 0;
+	return (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069) || code == 0xfffe ||
+	       code == 0xffff;
+}
+
+void nt_utf8_mask(char *text)
+{
+	for (size_t length; *text; text += length) {
+		length = nt_utf8_length(text, SIZE_MAX);
+		const bool unsafe = nt_utf8_is_unsafe(text, length);
+		length = length ? length : 1;
+		if (unsafe)
+			memset(text, '?', length);
+	}
 }

@@ -5,6 +5,7 @@
 #ifndef NT_BASE_UTF8_H
 #define NT_BASE_UTF8_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -14,6 +15,14 @@ extern "C" {
 /* The length of the sequence at the beginning of `text`, 0 where it is none (RFC 3629, table of section 4: no
  * overlong forms, no surrogates, nothing above U+10FFFF). size: of the text, above 0; SIZE_MAX: a NUL ends it. */
 size_t nt_utf8_length(const char *text, size_t size);
+
+/* Whether the sequence of `length` bytes at `text` must not reach a terminal or a page as it is: controls (C0, DEL,
+ * C1), what turns the direction of the text around it (U+202A to U+202E, U+2066 to U+2069), separators of lines
+ * (U+2028, U+2029), and U+FFFE and U+FFFF, which XML excludes. length 0, that it is no UTF-8, counts too. */
+bool nt_utf8_is_unsafe(const char *text, size_t length);
+
+/* Puts question marks where it must not, in place; for a signal handler too. */
+void nt_utf8_mask(char *text);
 
 #ifdef __cplusplus
 }

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "batch/depfile.h"
+#include "base/utf8.h"
 #include "batch/inputs.h"
 #include "cli/failures.h"
 #include "cli/manifest.h"
@@ -549,7 +550,9 @@ static void end_changed(const char *path, const char *change)
 	size_t size = 0;
 	for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
 		for (const char *c = parts[i]; *c && size < sizeof line - 1; c++)
-			line[size++] = (unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c;
+			line[size++] = *c;
+	line[size] = 0;
+	nt_utf8_mask(line);
 	line[size++] = '\n';
 	const ssize_t written = write(STDERR_FILENO, line, size);
 	(void)written;

@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include "base/utf8.h"
 
 bool nt_say(nt_buffer *text)
 {
@@ -26,9 +27,7 @@ static void say_plainly(const nt_error *error)
 	const char *file = strcmp(error->place.file, "-") == 0 ? "standard input" : error->place.file;
 	snprintf(line, sizeof line, "nmtan: %s%s%s", file, *file ? ": " : "",
 		error->message[0] ? error->message : nt_status_text(error->status));
-	for (char *c = line; *c; c++)
-		if ((unsigned char)*c < 0x20 || *c == 0x7f)
-			*c = '?';
+	nt_utf8_mask(line);
 	fprintf(stderr, "%s\n", line);
 }
 

@@ -187,9 +187,6 @@ static nt_status check_part(const whole *w, const nt_mesh *part, float *raw, nmt
 	nmtan_stored_uv stored;
 	nmtan_mesh view = nt_mesh_view(part, &stored);
 	stored.v_offset = w->stored_v_offset;
-	nt_fill_stride(&view.position_stride_bytes, 3 * sizeof(float));
-	nt_fill_stride(&view.normal_stride_bytes, 3 * sizeof(float));
-	nt_fill_stride(&view.texcoord_stride_bytes, 2 * sizeof(float));
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
 	const nt_solve rows = {.mesh = &view, .corner_count = part->corner_count, .threads = 1, .scratch = &scratch,

@@ -37,12 +37,14 @@ static inline const float *nt_texcoord(const nmtan_mesh *mesh, size_t vertex)
 	return nt_row(mesh->texcoords, mesh->texcoord_stride_bytes, vertex);
 }
 
-/* A row stride: 0 becomes the row's size; false where the stride cannot be. */
-static inline bool nt_fill_stride(size_t *stride_bytes, size_t row_bytes)
+/* A row stride: 0 becomes the row's size; false where the stride cannot be, or no array can have `count` such rows.
+ * A count above UINT32_MAX is nt_check_faces()'s. */
+static inline bool nt_fill_stride(size_t *stride_bytes, size_t row_bytes, size_t count)
 {
 	if (*stride_bytes == 0)
 		*stride_bytes = row_bytes;
-	return *stride_bytes >= row_bytes && *stride_bytes % sizeof(float) == 0;
+	return *stride_bytes >= row_bytes && *stride_bytes % sizeof(float) == 0 &&
+	       (count == 0 || count > UINT32_MAX || *stride_bytes <= PTRDIFF_MAX / count);
 }
 
 /* Corners of a face: 3 or 4. */

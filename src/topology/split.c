@@ -219,7 +219,7 @@ static bool read_arguments(split_arguments *a, const nmtan_mesh *mesh, const nmt
 	       (!options || nt_struct_read(&a->options, sizeof a->options, options)) &&
 	       nt_struct_read(&a->output, sizeof a->output, output) && has_places(&a->output) &&
 	       (a->mesh.normals || !a->output.vertex_tangents) &&
-	       nt_fill_stride(&a->mesh.normal_stride_bytes, 3 * sizeof(float));
+	       nt_fill_stride(&a->mesh.normal_stride_bytes, 3 * sizeof(float), a->mesh.vertex_count);
 }
 
 nmtan_status nmtan_split(const nmtan_mesh *mesh, const float *tangents, const nmtan_options *options,

@@ -54,6 +54,16 @@ TEST(strides_must_hold_a_row_and_keep_alignment)
 	mesh = square();
 	mesh.texcoord_stride_bytes = 30;
 	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
+	/* the last row would begin where the sum comes round to, before the array */
+	for (size_t i = 0; i < 3; i++) {
+		mesh = square();
+		size_t *const strides[] = {&mesh.position_stride_bytes, &mesh.normal_stride_bytes,
+			&mesh.texcoord_stride_bytes};
+		*strides[i] = SIZE_MAX - 31;
+		assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
+		*strides[i] = (size_t)PTRDIFF_MAX / 4 / 4 * 4 + 4;
+		assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
+	}
 }
 
 TEST(options_out_of_range_are_argument_errors)

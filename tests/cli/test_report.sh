@@ -239,7 +239,8 @@ exits 0
 ! grep -q "<failure" r.xml || wrong "a failure although the run passes"
 
 scene "JUnit, CSV, Markdown and SARIF survive names made to break them"
-nasty "$(printf '=1+1,"<script>&]]>|`x`\033[31m\377')" >n.obj
+# the last ones: U+FFFE, U+FFFF, CSI as one character, a name that is turned around
+nasty "$(printf '=1+1,"<script>&]]>|`x`\033[31m\377\357\277\276\357\277\277\302\233\342\200\256')" >n.obj
 for format in xml csv md sarif; do
 	run --check --report=r.$format n.obj
 	exits 0
@@ -251,6 +252,11 @@ rows = list(csv.reader(open(sys.argv[1], newline="", encoding="utf-8", errors="r
 assert {len(r) for r in rows} == {15}, rows
 assert not any(c[:1] in tuple("=+@") for r in rows for c in r), rows' r.csv || wrong "CSV is broken"
 ! grep -qE '<script|[^\\]\|`' r.md || wrong "markup in Markdown"
+run --check --uv-image=n n.obj
+python3 -c 'import sys, xml.etree.ElementTree as x; x.parse(sys.argv[1])' n/n-0.svg || wrong "SVG is not well formed"
+for file in r.xml r.md n/n-0.svg ../out.txt ../err.txt; do
+	! LC_ALL=C grep -qP '\xc2\x9b|\xe2\x80\xae|\xef\xbf[\xbe\xbf]' $file || wrong "$file shows what turns or ends a line"
+done
 
 scene "--list-codes names every code of the schema"
 run --list-codes

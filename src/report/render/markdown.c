@@ -7,6 +7,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "base/utf8.h"
 
 enum { MOST_FILES = 50, MOST_ROWS = 100, ROWS_OF_CODE = 5 };
 
@@ -23,8 +24,11 @@ void nt_markdown_text(const char *text, nt_buffer *out)
 			nt_buffer_text(out, "&amp;");
 		else if (strchr("\\`*_{}[]()#+-!|>~@", c))
 			nt_buffer_format(out, "\\%c", c);
+		else if (nt_utf8_is_unsafe(text, length = nt_utf8_length(text, SIZE_MAX)))
+			nt_buffer_text(out, "\xef\xbf\xbd");
 		else
-			length = nt_put_utf8(text, out);
+			nt_buffer_append(out, text, length);
+		length = length ? length : 1;
 	}
 }
 

@@ -178,7 +178,7 @@ void nt_xml_text(const char *text, nt_buffer *out)
 			nt_buffer_text(out, "&quot;");
 		else if (c == '\'')
 			nt_buffer_text(out, "&#39;");
-		else if ((c < 0x20 && c != '\n' && c != '\t') || c == 0x7f || length == 0)
+		else if (c != '\n' && c != '\t' && nt_utf8_is_unsafe(text, length))
 			nt_buffer_text(out, "\xef\xbf\xbd");
 		else
 			nt_buffer_append(out, text, length);

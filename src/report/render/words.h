@@ -78,7 +78,7 @@ void nt_json_box(const nt_box *box, nt_buffer *out);
 /* Text for a terminal: nt_buffer_clean(). */
 void nt_plain_text(const char *text, nt_buffer *out);
 
-/* Text for XML and HTML: markup escaped, control characters and bytes that are no UTF-8 replaced. */
+/* Text for XML and HTML: markup escaped, and U+FFFD for what is unsafe (nt_utf8_is_unsafe()). */
 void nt_xml_text(const char *text, nt_buffer *out);
 
 #endif

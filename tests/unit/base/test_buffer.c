@@ -24,6 +24,10 @@ TEST(control_characters_are_shown_as_numbers)
 	nt_buffer_clean(&buffer, "\x1b[31m\t\x7f\xc3\xa4 \n");
 	assert_string_equal(buffer.data, "\\x1b[31m\\x09\\x7f\xc3\xa4 \\x0a");
 	nt_buffer_free(&buffer);
+	/* CSI of eight bits as U+009B and as a byte, a name turned around, a line that ends */
+	nt_buffer_clean(&buffer, "\xc2\x9b\x9b" "a\xe2\x80\xaetxt\xe2\x81\xa6\xe2\x80\xa8\xd7\x90");
+	assert_string_equal(buffer.data, "\\xc2\\x9b\\x9ba\\xe2\\x80\\xaetxt\\xe2\\x81\\xa6\\xe2\\x80\\xa8\xd7\x90");
+	nt_buffer_free(&buffer);
 }
 
 TEST(exhausted_memory_is_remembered_and_keeps_what_came_before)

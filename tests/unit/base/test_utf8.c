@@ -36,6 +36,36 @@ TEST(four_bytes_end_at_10ffff)
 	assert_int_equal(nt_utf8_length("\xf5\x80\x80\x80", SIZE_MAX), 0);
 }
 
+/* Unicode's categories Cc, Zl, Zp, the bidirectional controls but for the marks, and XML 1.0, production 2. */
+TEST(unsafe_are_controls_turns_and_what_xml_excludes)
+{
+	static const struct { unsigned first, last; } unsafe[] = {{1, 0x1f}, {0x7f, 0x9f}, {0x2028, 0x202e},
+		{0x2066, 0x2069}, {0xfffe, 0xffff}};
+	for (unsigned code = 1; code < 0x110000; code++) {
+		if (code >= 0xd800 && code < 0xe000)
+			continue;
+		char text[5];
+		size_t length = 0;
+		if (code < 0x80)
+			text[length++] = (char)code;
+		else {
+			const unsigned more = code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+			text[length++] = (char)("\x00\xc0\xe0\xf0"[more] | code >> 6 * more);
+			for (unsigned i = more; i-- > 0;)
+				text[length++] = (char)(0x80 | (code >> 6 * i & 0x3f));
+		}
+		text[length] = 0;
+		assert_int_equal(nt_utf8_length(text, SIZE_MAX), length);
+		bool expected = false;
+		for (size_t i = 0; i < sizeof unsafe / sizeof *unsafe; i++)
+			expected |= code >= unsafe[i].first && code <= unsafe[i].last;
+		assert_int_equal(nt_utf8_is_unsafe(text, length), expected);
+	}
+	char line[] = "a\x1b\xc2\x9b\xff\xe2\x80\xae\xc3\xa4";
+	nt_utf8_mask(line);
+	assert_string_equal(line, "a???????\xc3\xa4");
+}
+
 TEST(a_cut_sequence_is_none)
 {
 	char *bytes = malloc(3); /* of its exact size, for the sanitizers */
