@@ -16,24 +16,46 @@
 #include "measure.h"
 #include "models.h"
 
-enum { SAMPLED = 3000, STEPS = 3, POINTS = STEPS * (STEPS + 1) / 2 };
+enum { POOLED = 3000, STEPS = 3, POINTS = STEPS * (STEPS + 1) / 2 };
 
 typedef struct sampled {
 	size_t triangle;
 	image_triangle baker;
 	double m[POINTS][3]; /* the field */
+	bool pooled;         /* one of those spread evenly over the model, whose errors go into pools */
+	bool raw_zero[3];    /* corners where MikkTSpace's raw tangent is zero */
 } sampled;
 
 typedef struct round_trip {
-	sampled *triangles; /* [count], spread evenly over the model */
+	sampled *triangles; /* [count] */
 	size_t count;
-	size_t own_groups; /* corners of these whose frame is MikkTSpace's own */
+	size_t pooled;     /* of them */
+	size_t own_groups; /* corners of the pooled ones whose frame is MikkTSpace's own */
 } round_trip;
+
+/* The largest error of all triangles, in the first convention, and its corner: the one whose frame errs most. */
+typedef struct worst_point {
+	double degrees;
+	size_t triangle, corner;
+	bool raw_zero;
+} worst_point;
 
 round_trip round_trip_make(const model *m);
 void round_trip_free(round_trip *r);
 
-/* Adds the errors of a shading to one pool for each convention. A triangle that is not there is left out. */
-void round_trip_judge(const round_trip *r, const shading *shader, measure_pool pools[IMAGE_CONVENTIONS]);
+/* Adds the errors of a shading to one pool for each convention, and returns the largest error. A triangle that is not
+ * there is left out. */
+worst_point round_trip_judge(const round_trip *r, const shading *shader, measure_pool pools[IMAGE_CONVENTIONS]);
+
+/* The errors of a shading at triangles whose baker has the sign of the other orientation, at all corners: halves of
+ * quads that are folded, or concave and cut outside. */
+typedef struct sign_errors {
+	measure_pool pool; /* degrees, in the first convention */
+	size_t triangles;
+	double uv_share; /* of the texture area */
+} sign_errors;
+
+/* Bakes with the frames of a file, whatever they are, and shades with those of another of the same triangles. */
+sign_errors round_trip_signs(const nt_owned *mesh, double size, const shading *baker, const shading *shader);
 
 #endif
