@@ -478,7 +478,8 @@ static void print_times(const bench *b, const row *r)
 static void print_rows(const bench *b)
 {
 	printf("| # | method | ns a triangle | 16 bits: median, 99.9 %% | 8 bits: median, 99.9 %% | maximum: "
-		"model, corner | nasty: wrong w | not unit | not perpendicular |\n|---|---|---|---|---|---|---|---|---|\n");
+		"model, corner | nasty: wrong w | not unit | not perpendicular |\n"
+		"|---|---|---|---|---|---|---|---|---|\n");
 	size_t number = 0;
 	for (const row *r = b->rows; r < b->rows + b->row_count; r++) {
 		if (!r->present)
@@ -544,9 +545,9 @@ static nt_owned write_quads(const bench *b, size_t number, const char *repair, f
 	path_of(b, glb, 'q', number, "glb");
 	path_of(b, ply, 'q', number, "ply");
 	*tangents = NULL;
-	if (files_run((const char *const[]){b->nmtan, "-q", "--only=all", "--existing=replace", repair, b->files[number],
-			glb, NULL}) < 0 ||
-		files_run((const char *const[]){b->nmtan, "-q", "--existing=keep", "--only=needed", glb, ply, NULL}) < 0)
+	if (files_run((const char *const[]){b->nmtan, "-q", "--only=all", "--existing=replace", repair,
+			b->files[number], glb, NULL}) < 0 ||
+		files_run((const char *const[]){b->nmtan, "-q", "--existing=keep", glb, ply, NULL}) < 0)
 		return (nt_owned){0};
 	return model_read_ply(ply, tangents);
 }
@@ -556,7 +557,8 @@ static nt_owned write_quads(const bench *b, size_t number, const char *repair, f
 static void print_quads(const bench *b)
 {
 	printf("A baker of quads with mikktspace.c's raw w, at halves of quads that are wound against it, B per pixel, "
-		"16 bits.\n\n| model | triangles | of the UV area | default: median, maximum | --repair=off: median, maximum |\n"
+		"16 bits.\n\n| model | triangles | of the UV area | default: median, maximum | --repair=off: median, "
+		"maximum |\n"
 		"|---|---|---|---|---|\n");
 	for (size_t m = 0; b->files && m < b->model_count; m++) {
 		float (*rows[2])[4];
@@ -645,8 +647,8 @@ static void judge(bench *b, const char *svg)
 		r->front_high = r->present && on_front(b, r, true);
 	}
 	print_machine(b);
-	printf("Degrees at %zu points, the maximum at %zu; of %zu corners around them the baker has MikkTSpace's own frame at %zu. "
-		"Nasty: %zu meshes with %zu corners. *: on a front.\n\n", points, all, 3 * (points / POINTS), own,
+	printf("Degrees at %zu points, the maximum at %zu; of %zu corners around them the baker has MikkTSpace's own "
+		"frame at %zu. Nasty: %zu meshes with %zu corners. *: on a front.\n\n", points, all, 3 * (points / POINTS), own,
 		b->nasty_count, b->nasty_corners);
 	print_rows(b);
 	print_conventions(b);
