@@ -647,9 +647,9 @@ static void judge(bench *b, const char *svg)
 		r->front_high = r->present && on_front(b, r, true);
 	}
 	print_machine(b);
-	printf("Degrees at %zu points, the maximum at %zu; of %zu corners around them the baker has MikkTSpace's own "
-		"frame at %zu. Nasty: %zu meshes with %zu corners. *: on a front.\n\n", points, all, 3 * (points / POINTS), own,
-		b->nasty_count, b->nasty_corners);
+	printf("Degrees at %zu points, the maximum at %zu; of %zu corners around them the baker has MikkTSpace's "
+		"own frame at %zu. Nasty: %zu meshes with %zu corners. *: on a front.\n\n", points, all,
+		3 * (points / POINTS), own, b->nasty_count, b->nasty_corners);
 	print_rows(b);
 	print_conventions(b);
 	print_lengyel(b);
