@@ -87,13 +87,15 @@ static nt_status fail_kind(const struct stat *status, const char *path, nt_error
 	return nt_error_in_file(error, path);
 }
 
-nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
+/* `referred`: a name that a document has, which must not make the run wait for whoever writes a pipe. */
+static nt_status open_file(nt_file *file, const char *path, bool referred, nt_error *error)
 {
 	*file = (nt_file){.data = no_bytes, .fd = -1};
-	const bool standard = strcmp(path, "-") == 0;
+	const bool standard = !referred && strcmp(path, "-") == 0;
+	const int flags = O_RDONLY | O_CLOEXEC | (referred ? O_NONBLOCK | O_NOCTTY : 0);
 	int fd;
 	do /* a file system over a network may be interrupted */
-		fd = standard ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : open(path, O_RDONLY | O_CLOEXEC);
+		fd = standard ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : open(path, flags);
 	while (fd < 0 && errno == EINTR);
 	struct stat status;
 	if (fd < 0 || fstat(fd, &status) != 0) {
@@ -101,6 +103,11 @@ nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
 		if (fd >= 0)
 			close(fd);
 		return nt_lookup_failed(path, number, error);
+	}
+	if (referred && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
+		close(fd);
+		nt_fail(error, NT_ERROR_MISSING, "cannot read: it is no regular file");
+		return nt_error_in_file(error, path);
 	}
 	if (!standard) {
 		file->device = (uint64_t)status.st_dev;
@@ -116,10 +123,20 @@ nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
 	return result;
 }
 
-nt_status nt_file_open_content(nt_file *file, const char *path, nt_error *error)
+nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
+{
+	return open_file(file, path, false, error);
+}
+
+nt_status nt_file_open_referred(nt_file *file, const char *path, nt_error *error)
+{
+	return open_file(file, path, true, error);
+}
+
+nt_status nt_file_open_content(nt_file *file, const char *path, bool referred, nt_error *error)
 {
 	static const char pointer[] = "version https://git-lfs.github.com/spec/";
-	const nt_status status = nt_file_open(file, path, error);
+	const nt_status status = open_file(file, path, referred, error);
 	if (status || file->size < sizeof pointer - 1 || memcmp(file->data, pointer, sizeof pointer - 1) != 0)
 		return status;
 	nt_file_close(file);

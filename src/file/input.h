@@ -23,9 +23,13 @@ typedef struct nt_file {
  * The error carries the name. Returns NT_OK, NT_ERROR_MISSING, NT_ERROR_IO or NT_ERROR_MEMORY. */
 nt_status nt_file_open(nt_file *file, const char *path, nt_error *error);
 
-/* The same for what has to be the file itself: where a checkout has only the pointer by which Git LFS stands for it,
- * NT_ERROR_MISSING says so. */
-nt_status nt_file_open_content(nt_file *file, const char *path, nt_error *error);
+/* The same for a name that a document has: only regular files, which nobody waits for; else NT_ERROR_MISSING. "-" is a
+ * file that is called so. */
+nt_status nt_file_open_referred(nt_file *file, const char *path, nt_error *error);
+
+/* The one (`referred`) or the other for what has to be the file itself: where a checkout has only the pointer by which
+ * Git LFS stands for it, NT_ERROR_MISSING says so. */
+nt_status nt_file_open_content(nt_file *file, const char *path, bool referred, nt_error *error);
 
 /* The same as nt_file_open() for a file that is no source of what is made, such as an output that is compared: not in
  * the trace (trace.h). */

@@ -327,7 +327,7 @@ static nt_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const char
 	nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length,
 		document->allow_outside, &path, error);
 	if (!status)
-		status = nt_file_open_content(&buffer->file, path, error);
+		status = nt_file_open_content(&buffer->file, path, true, error);
 	if (status)
 		return status;
 	buffer->path = path;

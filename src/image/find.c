@@ -21,7 +21,7 @@ enum { MOST_PARTS = 32 };
 typedef struct search {
 	const nt_image_places *places;
 	nt_buffer *path;
-	bool outside; /* something was there, where it may not be looked at */
+	bool outside; /* a name leads to where it may not be looked at */
 	nt_error *error;
 } search;
 
@@ -33,15 +33,21 @@ static nt_status is_file(const char *path, bool *is, nt_error *error)
 	return status;
 }
 
-/* Whether the file at s->path, named from `folder`, may be the one. */
+/* Whether the file at s->path, named from `folder`, may be the one. A name that leaves the folder by its text is
+ * refused before anybody looks: what is said must not tell whether something is there. */
 static nt_status accept(search *s, const char *folder, bool *accepted)
 {
+	*accepted = false;
+	if (!s->places->allow_outside && !nt_link_is_inside(s->path->data, folder)) {
+		s->outside = true;
+		return NT_OK;
+	}
 	nt_status status = is_file(s->path->data, accepted, s->error);
 	if (status || !*accepted || s->places->allow_outside)
 		return status;
 	char *real;
 	status = nt_lookup_real_found(s->path->data, &real, s->error);
-	*accepted = !status && real && nt_link_is_inside(s->path->data, folder) && nt_link_is_inside(real, folder);
+	*accepted = !status && real && nt_link_is_inside(real, folder);
 	s->outside |= !status && !*accepted;
 	free(real);
 	return status;
@@ -198,10 +204,8 @@ static nt_status try_as_named(search *s, const char *name, nt_buffer *folder, bo
 		return status;
 	const bool absolute = nt_link_is_absolute(name);
 	if (absolute && !s->places->allow_outside) {
-		bool there;
-		status = is_file(name, &there, s->error);
-		s->outside = !status && there;
-		return status;
+		s->outside = *name == '/'; /* other systems' names are nowhere here */
+		return NT_OK;
 	}
 	return try_name(s, folder->data, name, accepted);
 }

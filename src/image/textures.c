@@ -107,7 +107,7 @@ static nt_status inspect(nt_texture_source *s, nt_error *error)
 		s->type = nt_image_type_of_name(s->path);
 	if (s->found > NT_IMAGE_FOUND_ELSEWHERE)
 		return NT_OK;
-	const nt_status status = nt_file_open(&file, s->path, error);
+	const nt_status status = nt_file_open_referred(&file, s->path, error);
 	if (status)
 		return status;
 	s->type = nt_image_type_of_bytes(file.data, file.size);

@@ -85,7 +85,7 @@ static nt_status open_library(const request *q, const char *name, const char *pa
 		*reason = "leaves the folder of the OBJ by a symbolic link, which is followed only with "
 			"--allow-outside";
 	else if (!status)
-		status = nt_file_open_content(file, path, error);
+		status = nt_file_open_content(file, path, true, error);
 	if (status != NT_ERROR_MISSING)
 		return status;
 	*reason = error->message;

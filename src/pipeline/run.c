@@ -55,7 +55,7 @@ static nt_status open_scene(run *r)
 	begin_stage(r, NT_STAGE_MAP);
 	nt_status status = NT_OK;
 	if (!r->input_is_open)
-		status = nt_file_open_content(&r->input, r->input_path, r->error);
+		status = nt_file_open_content(&r->input, r->input_path, false, r->error);
 	if (status)
 		return status;
 	r->input_is_open = true;
@@ -151,6 +151,18 @@ static nt_status read_scene(run *r)
 	return status ? nt_error_in_file(r->error, r->input_path) : NT_OK;
 }
 
+/* What was read must not be overwritten: the input, and what it refers to. */
+static nt_status protect_inputs(const run *r, nt_output *output)
+{
+	nt_status status = nt_output_protect(output, r->input_path, "--in-place allows that", r->error);
+	for (size_t i = 0; i < r->summary->trace.count && !status; i++) {
+		const nt_trace_file *file = &r->summary->trace.files[i];
+		if (file->kind == NT_TRACE_READ && strcmp(file->path, r->input_path) != 0)
+			status = nt_output_protect(output, file->path, NULL, r->error);
+	}
+	return status;
+}
+
 /* With --check as if to a stream, of which nothing is written: what writers leave out is found there. */
 static nt_status write_scene(run *r)
 {
@@ -179,7 +191,7 @@ static nt_status write_scene(run *r)
 	if (!status && r->writer->format != NT_FORMAT_PLY)
 		status = nt_stage_quads(&r->scene, r->error);
 	if (!status && !s->in_place && !s->check)
-		status = nt_output_protect(output, r->input_path, "--in-place allows that", r->error);
+		status = protect_inputs(r, output);
 	if (!status)
 		status = r->writer->write(&r->scene, &options, output, r->error);
 	/* the input may still be read here, and its faults are its own */

@@ -174,6 +174,39 @@ is "$(gltf quad.gltf 'g.images')" undefined
 run --allow-outside in/quad.obj quad.gltf
 is "$(gltf quad.gltf 'g.images.length')" 2
 
+# Names that leave the folder are refused by their text: the message is one, whatever is there.
+for name in ../n.png ../gone.png "$PWD/n.png" /gone/n.png; do
+	printf 'newmtl m\nnorm %s\n' "$name" >in/m.mtl
+	run in/quad.obj quad.gltf
+	exits 0
+	grep -o ': image .*' ../err.txt | sed "s#$name#NAME#" >>said
+done
+is "$(sort -u said)" ": image cannot be read: NAME (it is outside of the folder of its MTL file, see --allow-outside) [IMAGE_MISSING]"
+
+scene "nobody waits for a pipe that a document names, and what a document names is not overwritten"
+cp "$data/plates.gltf" "$data/plates.bin" .
+quad 'norm f.png' 'map_Kd -mm 0 1 f.png'
+mkfifo f.png
+run quad.obj out.glb
+exits 0
+says "f.png"
+mv m.mtl before
+mkfifo m.mtl
+run quad.obj out.glb
+exits 0
+says "no regular file"
+rm m.mtl
+cp before m.mtl
+run quad.obj m.mtl --output-format=glb
+exits 2
+says "the same file as the input m.mtl"
+same m.mtl before
+mv plates.bin before
+mkfifo plates.bin
+run plates.gltf out.gltf
+exits 2
+says "no regular file"
+
 scene "a missing image leaves no reference, unless links are asked for"
 quad 'norm gone.png'
 run quad.obj quad.gltf

@@ -64,7 +64,7 @@ static nt_status open_image(moving *m, size_t index, const char *uri, size_t len
 	nt_status status = nt_uri_resolve(&m->edits->arena, m->edits->document->path, uri, length,
 		m->edits->document->allow_outside, &path, &error);
 	if (!status)
-		status = nt_file_open_content(&opened, path, &error);
+		status = nt_file_open_content(&opened, path, true, &error);
 	if (status == NT_ERROR_MEMORY || status == NT_ERROR_IO) {
 		*m->error = error;
 		snprintf(m->error->place.pointer, sizeof m->error->place.pointer, "/images/%zu", index);

@@ -72,6 +72,10 @@ TEST(outside_needs_leave)
 	assert_found("link.png", false, NT_IMAGE_OUTSIDE, "mtl/link.png");
 	assert_found("link.png", true, NT_IMAGE_FOUND, "mtl/link.png");
 	assert_found("../elsewhere/f.png", true, NT_IMAGE_FOUND, "elsewhere/f.png");
+	/* nobody learns from this whether it is there */
+	assert_found("../elsewhere/gone.png", false, NT_IMAGE_OUTSIDE, "elsewhere/gone.png");
+	assert_found("../elsewhere/f.png", false, NT_IMAGE_OUTSIDE, "elsewhere/f.png");
+	assert_found("/gone/gone.png", false, NT_IMAGE_OUTSIDE, "mtl/gone.png");
 	/* not there, but its last part is somewhere inside */
 	assert_found("../elsewhere/tex/f.png", false, NT_IMAGE_FOUND_ELSEWHERE, "mtl/tex/f.png");
 	char absolute[300];
