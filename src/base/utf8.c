@@ -33,6 +33,16 @@ bool nt_utf8_is_unsafe(const char *text, size_t length)
 	       code == 0xffff;
 }
 
+size_t nt_utf8_cut(const char *text, size_t most)
+{
+	size_t cut = strnlen(text, most);
+	if (text[cut])
+		for (size_t back = 1; back < 4 && back <= cut; back++)
+			if (nt_utf8_length(text + cut - back, SIZE_MAX) > back)
+				return cut - back;
+	return cut;
+}
+
 void nt_utf8_mask(char *text)
 {
 	for (size_t length; *text; text += length) {

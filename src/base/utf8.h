@@ -21,6 +21,9 @@ size_t nt_utf8_length(const char *text, size_t size);
  * (U+2028, U+2029), and U+FFFE and U+FFFF, which XML excludes. length 0, that it is no UTF-8, counts too. */
 bool nt_utf8_is_unsafe(const char *text, size_t length);
 
+/* How many bytes of a text, at most `most`, end where a sequence ends. */
+size_t nt_utf8_cut(const char *text, size_t most);
+
 /* Puts question marks where it must not, in place; for a signal handler too. */
 void nt_utf8_mask(char *text);
 

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/utf8.h"
 #include "scene/select.h"
 
 /* ---- facts that need no check ---- */
@@ -38,6 +39,18 @@ static const char *copy_text(nt_arena *arena, const char *text)
 	return nt_arena_text(arena, text ? text : "", text ? strlen(text) : 0);
 }
 
+/* Of a name, which each of thousands of primitives may have, what says enough. */
+static const char *copy_name(nt_arena *arena, const char *name)
+{
+	enum { MOST = 240, WITH_LENGTH = MOST + 40 };
+	const size_t length = strlen(name), cut = length > MOST ? nt_utf8_cut(name, MOST) : length;
+	if (cut == length)
+		return copy_text(arena, name);
+	char text[WITH_LENGTH];
+	snprintf(text, sizeof text, "%.*s... (%zu bytes)", (int)cut, name, length);
+	return copy_text(arena, text);
+}
+
 /* "normal texture, anisotropy: tangents are computed" */
 static const char *describe_why(nt_arena *arena, const nt_mesh *mesh, const char *decision)
 {
@@ -61,7 +74,7 @@ static bool describe_mesh(nt_report *report, const nt_mesh *mesh, const nt_repor
 {
 	const bool solve = mesh->decision == NT_DECISION_SOLVE && options->written == NT_FORMAT_UNKNOWN;
 	*facts = (nt_report_mesh){
-		.name = copy_text(&report->arena, mesh->name),
+		.name = copy_name(&report->arena, mesh->name),
 		.why = describe_why(&report->arena, mesh,
 			solve ? "tangents would be computed" : nt_decision_text(mesh->decision)),
 		.same_as = NT_NONE, .gltf_mesh = mesh->gltf_mesh, .gltf_primitive = mesh->gltf_primitive,

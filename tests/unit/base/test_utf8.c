@@ -66,6 +66,17 @@ TEST(unsafe_are_controls_turns_and_what_xml_excludes)
 	assert_string_equal(line, "a???????\xc3\xa4");
 }
 
+TEST(texts_are_cut_between_sequences)
+{
+	assert_int_equal(nt_utf8_cut("abc", 5), 3);
+	assert_int_equal(nt_utf8_cut("abc", 3), 3);
+	assert_int_equal(nt_utf8_cut("abc", 2), 2);
+	for (size_t most = 1; most < 5; most++)
+		assert_int_equal(nt_utf8_cut("a\xf0\x90\x80\x80" "b", most), 1);
+	assert_int_equal(nt_utf8_cut("a\xf0\x90\x80\x80" "b", 5), 5);
+	assert_int_equal(nt_utf8_cut("\xff\xff\xff", 2), 2); /* no UTF-8: anywhere */
+}
+
 TEST(a_cut_sequence_is_none)
 {
 	char *bytes = malloc(3); /* of its exact size, for the sanitizers */
