@@ -186,6 +186,12 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"to them.",
 		"Set their precision with --draco-bits, or use --draco=off.",
 		"converting any glTF with --draco=sequential --precision=byte"),
+	ROW(DRACO_SEQUENTIAL, INFO,
+		"the primitive is compressed by Draco's sequential method, which gives larger files",
+		"Edgebreaker was asked for, or the input has it. It takes time in the square of the triangles at one "
+		"vertex, which is bounded, and some meshes it does not give back as they are.",
+		"Nothing if the size does not matter. Else remove repeated triangles, and cut fans of thousands.",
+		"converting 100 000 times the same triangle, --draco=edgebreaker"),
 	ROW(NOT_VERIFIED, WARNING, "the output could not be verified, since tinygltf refuses the input, too",
 		"--verify reads the output with tinygltf, which refuses it. It refuses the input too, so the "
 		"reason was there before; nmtan keeps what has nothing to do with tangents. The detail has "

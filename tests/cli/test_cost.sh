@@ -51,6 +51,24 @@ run -q --only=all --existing=replace --draco=edgebreaker blocks.glb draco.glb
 within 8 300 -q --only=all --existing=replace draco.glb out.glb
 exits 0
 
+scene "$faces triangles at one place are compressed in linear time, and a finding says how"
+inputs repeated "$faces" repeated.obj
+run -q --only=all repeated.obj repeated.glb
+within 5 300 -q --only=all --existing=replace --draco=edgebreaker --verify --report=r.json --fail-on=never repeated.glb out.glb
+exits 0
+is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"].startswith("DRACO")]')" "['DRACO_SEQUENTIAL']"
+
+scene "a name of a megabyte is cut in reports"
+printf 'o %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n' \
+	"$(head -c 1000000 /dev/zero | tr '\0' x)" >long.obj
+run -q --only=all long.obj long.glb
+gltf long.glb many 'const p = g.meshes[0].primitives[0]; g.meshes[0].primitives = Array(1000).fill(p);'
+for report in r.json r.html r.txt r.sarif; do
+	within 3 200 -q --check --only=all --fail-on=never --report=$report many.gltf
+	[ "$(stat -c %s $report)" -lt 6000000 ] || wrong "$report has $(stat -c %s $report) bytes"
+done
+grep -q 'xxx\.\.\. (1000000 bytes)' r.json || wrong "the name is not cut"
+
 scene "a PLY header of $elements elements is read in linear time"
 inputs elements $elements e.ply
 within 15 300 e.ply out.ply

@@ -68,6 +68,10 @@ def hub(count, out):
         out.write(b'f %d/%d %d/%d %d/%d\n' % (a, a, b, b, c, c))
 
 
+def repeated(count, out):
+    out.write(b'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n' + b'f 1/1/1 2/2/1 3/3/1\n' * count)
+
+
 def edge(count, out):
     circle(count, out)
     out.write(b'v 0 0 0\nv 0 0 1\nvt 0 0\nvt 0 2\n')
@@ -173,4 +177,4 @@ with open(sys.argv[3], 'wb') as out:
         scene(count, out, side or 3)
     else:
         {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
-         'patches': patches}[kind](count, out)
+         'patches': patches, 'repeated': repeated}[kind](count, out)

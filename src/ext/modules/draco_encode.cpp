@@ -286,6 +286,22 @@ void join_points(draco::Mesh &mesh)
 		mesh.DeduplicatePointIds();
 }
 
+// Whether edgebreaker finds its edges in reasonable time: Draco looks for the other side of an edge among all sides
+// that begin at a vertex, so that triangles repeated or gathered there cost their square. A surface has 36 for each
+// vertex; the bound is a tenth of a second, and more for what is large.
+bool edges_are_found_soon(const draco::Mesh &mesh)
+{
+	const PointAttribute *positions = mesh.GetNamedAttribute(draco::GeometryAttribute::POSITION);
+	if (!positions)
+		return true;
+	std::vector<uint32_t> sides(positions->size(), 0);
+	uint64_t looks = 0;
+	for (draco::FaceIndex f(0); f < mesh.num_faces(); f++)
+		for (int k = 0; k < 3; k++)
+			looks += 2 * uint64_t{sides[positions->mapped_index(mesh.face(f)[k]).value()]++} + 1;
+	return looks < (uint64_t{1} << 28) + 256 * static_cast<uint64_t>(3 * mesh.num_faces());
+}
+
 // ---- encoding ----
 
 // A float as text that gives it back.
@@ -375,8 +391,11 @@ nt_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *err
 	nt::expect_back(expected, mesh, *made, numbers);
 	if (expected.mesh.face_count == 0)
 		return nt_fail(error, NT_ERROR_INPUT, "every face is degenerate: nothing to encode");
-	if (mesh.method == NT_DRACO_EDGEBREAKER)
+	if (mesh.method == NT_DRACO_EDGEBREAKER) {
 		join_points(*made);
+		if (!edges_are_found_soon(*made))
+			return nt_fail(error, NT_ERROR_INPUT, "too many triangles at one vertex for edgebreaker");
+	}
 
 	draco::ExpertEncoder encoder(*made);
 	set_options(encoder, mesh);

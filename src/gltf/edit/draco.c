@@ -187,7 +187,9 @@ static void report_users(const nt_gltf_recoding *r, nt_finding_list *findings, b
 		const bool wanted = r->options->draco > NT_DRACO_OFF || is_compressed(pool, i);
 		if (!compressed && wanted)
 			nt_finding_add(findings, NT_CODE_DRACO_PLAIN, place, 1, "%s", r->obstacle);
-		else if (compressed && r->options->precision != NT_PRECISION_FLOAT)
+		if (compressed && r->sequential_instead)
+			nt_finding_add(findings, NT_CODE_DRACO_SEQUENTIAL, place, 1, NULL);
+		if (compressed && r->options->precision != NT_PRECISION_FLOAT)
 			nt_finding_add(findings, NT_CODE_DRACO_PRECISION, place, 1, "%d bits",
 				nt_gltf_draco_bits(r->options->draco_bits, NT_DRACO_BITS_TANGENT));
 	}

@@ -32,6 +32,7 @@ typedef struct nt_gltf_recoding {
 	const char *obstacle; /* why it cannot be compressed; NULL: nothing is known to stand in the way */
 
 	bool encoded;
+	bool sequential_instead; /* edgebreaker does not take it, or does not give it back */
 	nt_draco_block block; /* where it is compressed */
 } nt_gltf_recoding;
 

@@ -74,6 +74,7 @@ static nt_status encode(nt_gltf_recoding *r, nt_error *error)
 	if (status && !nt_gltf_is_beside_mesh(status) && mesh.method != NT_DRACO_SEQUENTIAL) {
 		mesh.method = NT_DRACO_SEQUENTIAL;
 		status = nt_draco_encode(&mesh, &r->block, error);
+		r->sequential_instead = !status;
 	}
 	return status;
 }
