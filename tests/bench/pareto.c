@@ -34,7 +34,7 @@ enum { MOST_ROWS = 48, MOST_VARIANTS = 4, CALL_ROUNDS = 5, RUN_ROUNDS = 3, MOST_
 /* What a call is repeated for in a round, in seconds. */
 static const double ROUND = 0.01;
 
-/* Times that are nearer to each other are equal: two runs of this program differ by as much. */
+/* Times that are nearer to each other than that are taken as equal: one is not ahead by what a run may differ. */
 static const double SAME_TIME = 1.03;
 
 typedef enum kind {

@@ -65,7 +65,7 @@ recipe "$farm/parallel.sh" w --jobs 1
 says_not "was not prepared"
 unset CDPATH
 
-scene "GNU parallel: names of any kind; a failure is told, and its chunk alone is run by the next start"
+scene "GNU parallel: names of any kind; a failure is told, and each start makes what changed, and no more"
 take_hard
 clean
 prepare 5 || wrong "prepare: $?"
@@ -79,7 +79,14 @@ cp good.obj "as sets/mirrored_cube.obj"
 recipe "$farm/parallel.sh" "my work" --jobs 2
 exits 0
 is_clean
-is "$(ls "my work" | grep -c '\.2\.jsonl')" 1
+is "$(cat "my work"/*.2.jsonl | grep -c '"status":"done"')" 1
+cp "$data/quad.obj" "as sets/mirrored_cube.obj"
+recipe "$farm/parallel.sh" "my work" --jobs 2
+exits 0
+is "$(cat "my work"/*.3.jsonl | grep -c '"status":"done"')" 1
+recipe "$farm/parallel.sh" "my work" --jobs 2
+exits 0
+is "$(cat "my work"/*.4.jsonl | grep -c '"status":"done"')" 0
 
 scene "GNU parallel: a worker that is killed, and all of it that is, lose nothing"
 take_many
