@@ -219,7 +219,7 @@ static nt_status look_at_read(look *l, const nt_json_value *line, bool *same)
 		if (*same && i == 0)
 			*same = nt_same_file(&info, &l->making->input_info);
 		if (*same && !status && l->trace)
-			nt_trace_read(l->file.path.data, &info);
+			nt_trace_read(i == 0 ? l->making->input : l->file.path.data, &info);
 	}
 	return status;
 }

@@ -155,20 +155,6 @@ static nt_status look_at_files(const nt_making *making, struct stat *input, stru
 	return status;
 }
 
-/* Without a record: whether the output is at least as new as the input. In place there is one file and one time, which
- * says nothing. */
-static bool is_younger(const nt_making *making, const struct stat *output, nt_trace *trace)
-{
-	if (nt_same_file(&making->input_info, output) ||
-		nt_trace_modified(output) < nt_trace_modified(&making->input_info))
-		return false;
-	nt_trace *outer = nt_trace_use(trace);
-	nt_trace_read(making->input, &making->input_info);
-	nt_trace_written(making->output, NULL, output);
-	nt_trace_use(outer);
-	return true;
-}
-
 nt_status nt_update_look(nt_update *update, const char *input, const char *output, nt_update_job *job,
 	nt_settings *settings, bool *current, nt_trace *trace, nt_error *error)
 {
@@ -187,11 +173,9 @@ nt_status nt_update_look(nt_update *update, const char *input, const char *outpu
 		status = nt_record_look(job->record, &job->making, &freshness, trace, error);
 	if (status)
 		return status;
-	const bool unknown = freshness == NT_FRESH_UNKNOWN;
-	*current = o->look && (freshness == NT_FRESH_CURRENT ||
-		(unknown && !o->whole && is_younger(&job->making, &output_info, trace)));
+	*current = o->look && freshness == NT_FRESH_CURRENT;
 	if (o->look && settings->equal == NT_EQUAL_REPLACE)
-		settings->equal = unknown ? NT_EQUAL_TOUCH : NT_EQUAL_KEEP;
+		settings->equal = freshness == NT_FRESH_UNKNOWN ? NT_EQUAL_TOUCH : NT_EQUAL_KEEP;
 	settings->placing = append;
 	settings->placing_user = job;
 	return NT_OK;

@@ -15,7 +15,6 @@ typedef struct nt_update_options {
 	const char *record;  /* the record's file; NULL: .nmtan-record in `folder` */
 	const char *folder;  /* that of all outputs; NULL: each output's own */
 	bool dry_run;        /* records stay as they are */
-	bool whole;          /* all that an output was made of is asked for, which times do not tell */
 	const char *options; /* what shapes outputs, in words */
 } nt_update_options;
 

@@ -381,7 +381,7 @@ static nt_status begin_update(session *s, nt_error *error)
 	if (!c->update && !c->record)
 		return NT_OK;
 	const nt_update_options options = {.look = c->update, .by = (nt_update_by)c->update_by, .record = c->record,
-		.folder = c->directory, .dry_run = c->settings.dry_run, .whole = c->depfile != NULL,
+		.folder = c->directory, .dry_run = c->settings.dry_run,
 		.options = s->shaping.data ? s->shaping.data : ""};
 	return nt_update_begin(&s->update, &options, error);
 }
