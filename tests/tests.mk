@@ -237,6 +237,13 @@ build/aarch64/run_fast: $(aarch64_src) $(wildcard src/*/*.h src/*/*/*.h)
 	aarch64-linux-gnu-gcc -std=c11 -D_GNU_SOURCE -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math \
 		-pthread -Iinclude -Isrc -Itests/support -Wall -Wextra -o $@ $(aarch64_src) -lm
 
+# make conformance: build/conformance and its .zip, for programs that make or read tangents: tests/conformance/README.md.
+.PHONY: conformance
+conformance:
+	@mkdir -p build
+	@python3 -B tests/conformance/kit.py build/conformance
+	@echo "build/conformance and build/conformance.zip are made; build/conformance/README.md says how to use them"
+
 # make picture: the pictures of the README rendered anew: data/signs.png, at its top, and data/report.png.
 .PHONY: picture
 picture: $(B)/nmtan build/node/node_modules/gltf-validator/package.json
