@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: MIT
 #
 # tests/soak/conformance.sh BUILD_DIR...: the answers of the conformance kit against mikktspace.c as published, which
-# lies in the folder that $MIKKTSPACE names, and the card in three.js, right and with each mistake.
+# lies in the folder that $MIKKTSPACE names; the card in three.js, right and with each mistake; and what other programs
+# that are here score: build/conformance-results.md. ($GLTFPACK and $BLENDER name theirs.)
 set -u
 cd "$(dirname "$0")/../.." || exit 1
-status=0
+status=0 build=$1
 if [ -f "${MIKKTSPACE:-.}/mikktspace.c" ]; then
 	python3 -B tests/conformance/reference.py "$MIKKTSPACE" || status=1
 else
@@ -13,4 +14,37 @@ else
 fi
 make -s conformance build/clients/node_modules/three/package.json build/node/node_modules/gltf-validator/package.json
 node tests/conformance/card.mjs build/conformance/card.glb build build/conformance.png || status=1
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+page=build/conformance-results.md
+kit=build/conformance
+printf '# The conformance kit\n\n![the card in three.js](conformance.png)\n\n| program | published | sorted | fails (published) |\n|---|---|---|---|\n' >$page
+
+# peer NAME COMMAND: runs it with $out, and appends a row.
+peer() {
+	out=$work/$1
+	mkdir "$out"
+	eval "$2" >"$work/log" 2>&1 || true
+	local dialect scores=()
+	for dialect in published sorted; do
+		NMTAN=$PWD/$build/nmtan sh $kit/score.sh "$out" $dialect >"$work/$dialect"
+		scores+=("$(tail -1 "$work/$dialect")")
+	done
+	echo "| \`$2\` | ${scores[0]} | ${scores[1]} | $(sed -n 's/^FAIL  //p' "$work/published" | paste -sd, | sed 's/,/, /g; s/..*$/& /')|" >>$page
+}
+each='for f in $kit/[!c]*.glb; do'
+peer nmtan "$build/nmtan -q -d \$out $kit/[!c]*.glb"
+peer nmtan_sorted "$build/nmtan -q --method=mikktspace-sorted -d \$out $kit/[!c]*.glb"
+peer gltf_transform 'node tests/conformance/peers.mjs build/clients $kit $out'
+if gltfpack=$(command -v "${GLTFPACK:-gltfpack}"); then
+	peer gltfpack "$each $gltfpack -noq -kn -km -kv -gt -i \$f -o \$out/\${f##*/}; done"
+fi
+if blender=$(command -v "${BLENDER:-blender}"); then
+	peer blender "$blender -b --factory-startup --python tests/conformance/blender.py -- \$kit \$out"
+fi
+cat $page
+grep -q '/nmtan -q -d .*` | 12 passed, 0 failed | 11 passed, 1 failed | |$' $page || status=1
+grep -q '=mikktspace-sorted .*` | 11 passed, 1 failed | 12 passed, 0 failed | unfinished_sort |$' $page || status=1
+[ $status = 0 ] && echo "1 passed, 0 failed"
 exit $status
