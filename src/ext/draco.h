@@ -94,8 +94,7 @@ typedef struct nt_draco_block {
 	size_t point_count, face_count; /* as a decoder will see them */
 	uint32_t *sources; /* [point_count] sequential: the point of the input that each one is. NULL with
 	                      edgebreaker, which reorders points and splits them */
-	float (*bounds)[2][4]; /* [attribute_count] least and most of each component, as a decoder will see them, of
-	                          attributes that are quantized */
+	double (*bounds)[2][4]; /* [attribute_count] least and most of each component, as a decoder will see them */
 } nt_draco_block;
 
 static inline void nt_draco_block_free(nt_draco_block *block)

@@ -6,6 +6,7 @@
  */
 #include "gltf/accessor.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include "base/largest.h"
@@ -285,6 +286,20 @@ nt_json_value *nt_gltf_change_accessor(nt_gltf *document, uint64_t index)
 	if (index < document->kept_count)
 		document->kept[index].state = 0;
 	return nt_json_at(nt_gltf_root_member(document, "accessors"), (size_t)index);
+}
+
+void nt_gltf_state_bounds(nt_json *json, nt_json_value *accessor, size_t components, double bounds[2][4])
+{
+	static const char *const names[] = {"min", "max"};
+	for (size_t b = 0; b < 2; b++) {
+		nt_json_value *stated = nt_json_find(accessor, names[b]);
+		for (size_t k = 0; nt_json_count(stated) == components && k < components; k++) {
+			double old;
+			if (isfinite(bounds[b][k]) &&
+				!(nt_json_get_double(nt_json_at(stated, k), &old) && old == bounds[b][k]))
+				nt_json_set_double(json, nt_json_at(stated, k), bounds[b][k]);
+		}
+	}
 }
 
 /* ---- bytes ---- */

@@ -31,6 +31,10 @@ nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *fr
 /* The JSON of an accessor, NULL where there is none, that is going to be changed: it will be read anew. */
 nt_json_value *nt_gltf_change_accessor(nt_gltf *document, uint64_t index);
 
+/* Makes what an accessor says of its least and most values, if it does, that of the elements that are written:
+ * bounds as nt_component_bounds() has them. */
+void nt_gltf_state_bounds(nt_json *json, nt_json_value *accessor, size_t components, double bounds[2][4]);
+
 /* The bytes of an accessor's elements, `stride` apart; NULL where it has no view. */
 nt_status nt_gltf_elements(nt_gltf *document, const nt_gltf_accessor *accessor,
 	const unsigned char **elements, nt_error *error);

@@ -123,6 +123,26 @@ for three in "off three" "keep three" "off unlisted" "keep unlisted"; do
 	is "$(gltf three.glb 'new Set(g.meshes[0].primitives.map((p) => p.attributes.TEXCOORD_0)).size')" 2
 done
 
+# Encoders leave the bounds of what they were given, and decoders give something else.
+scene "bounds are those of what a decoder will see"
+run -q "$data/head.obj" head.glb
+run -q --only=all --existing=replace --draco=edgebreaker --draco-bits=7,7,7,12 head.glb packed.glb
+gltf packed.glb stale 'const p = g.meshes[0].primitives[0].attributes, of = (name) => g.accessors[p[name]];
+	Object.assign(of("NORMAL"), {min: [-1, -1, -1], max: [1, 1, 1]});
+	Object.assign(of("TANGENT"), {min: [-2, -2, -2, -2], max: [2, 2, 2, 2]});
+	for (const bound of [of("POSITION").min, of("POSITION").max]) bound[1] = Math.fround(1.001 * bound[1] + 0.001)'
+bounds='Object.values(g.meshes[0].primitives[0].attributes).map((i) => g.accessors[i]).map((a) => [a.min, a.max])'
+for choice in off keep sequential; do
+	run --only=all --existing=replace --draco=$choice --verify stale.gltf $choice.glb
+	exits 0
+done
+is "$(gltf keep.glb "$bounds.slice(0, 1)")" "$(gltf off.glb "$bounds.slice(0, 1)")"
+is "$(gltf keep.glb "$bounds.flat().filter((b) => b?.length > 2 && b.every((x) => Math.abs(x) === 2)).length")" 0
+valid off.glb
+run --only=all --existing=replace --draco=off --precision=byte --verify stale.gltf bytes.glb
+exits 0
+valid bytes.glb
+
 scene "--precision says that it does not reach into a block"
 run --draco=edgebreaker --draco-bits=14,12,12,16 --precision=short "$WORK/layouts/plain.gltf" packed.glb
 exits 0

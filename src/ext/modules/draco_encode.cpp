@@ -341,25 +341,11 @@ void set_options(draco::ExpertEncoder &encoder, const nt_draco_mesh &mesh)
 	encoder.SetSpeedOptions(mesh.speed, mesh.speed);
 }
 
-// Least and most of the values of a quantized attribute.
-void find_bounds(const nt_draco_attribute &a, size_t count, float (&bounds)[2][4])
-{
-	const float *values = static_cast<const float *>(a.data);
-	const size_t width = static_cast<size_t>(a.components);
-	std::copy_n(values, width, bounds[0]);
-	std::copy_n(values, width, bounds[1]);
-	for (size_t i = 1; i < count; i++)
-		for (size_t k = 0; k < width; k++) {
-			bounds[0][k] = std::min(bounds[0][k], values[i * width + k]);
-			bounds[1][k] = std::max(bounds[1][k], values[i * width + k]);
-		}
-}
-
 nt_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco_mesh &mesh, const nt_draco &decoded,
 	const std::vector<uint32_t> &sources, nt_draco_block *block, nt_error *error)
 {
 	block->bytes = static_cast<unsigned char *>(std::malloc(buffer.size()));
-	block->bounds = static_cast<float(*)[2][4]>(std::calloc(mesh.attribute_count, sizeof *block->bounds));
+	block->bounds = static_cast<double(*)[2][4]>(std::calloc(mesh.attribute_count, sizeof *block->bounds));
 	if (mesh.method == NT_DRACO_SEQUENTIAL)
 		block->sources = static_cast<uint32_t *>(std::malloc(4 * sources.size()));
 	if (!block->bytes || !block->bounds || (mesh.method == NT_DRACO_SEQUENTIAL && !block->sources)) {
@@ -371,8 +357,11 @@ nt_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco_mesh &mes
 		std::memcpy(block->sources, sources.data(), 4 * sources.size());
 	for (size_t i = 0; i < mesh.attribute_count; i++)
 		for (const nt_draco_attribute &a : decoded.attributes)
-			if (a.unique_id == mesh.attributes[i].unique_id && mesh.attributes[i].quantization.bits)
-				find_bounds(a, decoded.mesh.point_count, block->bounds[i]);
+			if (a.unique_id == mesh.attributes[i].unique_id) {
+				const auto width = static_cast<size_t>(a.components);
+				nt_component_bounds(a.data, width * nt_component_size(a.component_type),
+					decoded.mesh.point_count, a.component_type, width, block->bounds[i]);
+			}
 	block->size = buffer.size();
 	block->point_count = decoded.mesh.point_count;
 	block->face_count = decoded.mesh.face_count;

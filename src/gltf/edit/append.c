@@ -79,6 +79,38 @@ static nt_status add_elements_view(nt_appending *job, const nt_append_target *fr
 		NT_GLTF_ARRAY_BUFFER, stride != element ? stride : 0, view, job->error);
 }
 
+/* What an accessor says of its bounds becomes that of its values where these are new, or come from a decoder: the
+ * encoder may have moved them. Copies do not matter. */
+static nt_status settle_bounds(nt_appending *job, const nt_append_target *of, uint32_t accessor)
+{
+	const nt_gltf_accessor *a = &of->accessor;
+	const nt_gltf_override *override = of->override;
+	uint32_t stride = override ? override->width : a->sparse_count ? a->element_bytes : a->stride;
+	int type = (int)a->component_type;
+	const unsigned char *elements = NULL;
+	double bounds[2][4];
+	nt_status status = NT_OK;
+	if ((!override && !a->decoded && of->buffer < NT_GLTF_VIRTUAL) || a->components > 4 ||
+		a->element_bytes != a->components * a->component_bytes)
+		return NT_OK;
+	if (override) {
+		elements = override->values;
+		type = stride == 16 ? NT_GLTF_FLOAT : stride == 8 ? NT_GLTF_SHORT : NT_GLTF_BYTE;
+	} else if (a->sparse_count) {
+		unsigned char *baked = NULL;
+		status = copy_elements(job, of, stride, true, &baked);
+		elements = baked;
+	} else {
+		status = nt_gltf_elements(job->document, a, &elements, job->error);
+	}
+	if (status || !elements)
+		return status;
+	nt_component_bounds(elements, stride, override ? job->vertices->new_count : (size_t)a->count, type,
+		a->components, bounds);
+	nt_gltf_state_bounds(job->json, nt_gltf_change_accessor(job->document, accessor), a->components, bounds);
+	return NT_OK;
+}
+
 static nt_status clone_accessor(nt_appending *job, nt_append_target *from)
 {
 	uint32_t view;
@@ -93,7 +125,7 @@ static nt_status clone_accessor(nt_appending *job, nt_append_target *from)
 	nt_json_remove(job->json, clone, "byteOffset");
 	nt_json_remove(job->json, clone, "sparse");
 	nt_json_set_uint64(job->json, nt_json_put(job->json, clone, "count"), job->vertices->new_count);
-	return NT_OK;
+	return settle_bounds(job, from, from->clone);
 }
 
 static nt_status use_clone(void *context, nt_json_value *attributes, const char *name,
@@ -302,45 +334,6 @@ static nt_status append_to_block(nt_appending *job, const block *b, uint64_t pre
 
 /* ---- the whole ---- */
 
-/* Component k of a new tangent, by its size. */
-static double new_value(const nt_gltf_override *override, size_t v, size_t k)
-{
-	const size_t size = override->width / 4;
-	const unsigned char *at = override->values + v * override->width + k * size;
-	float real;
-	int16_t integer;
-	int8_t small;
-	switch (size) {
-	case sizeof small:
-		memcpy(&small, at, sizeof small);
-		return small;
-	case sizeof integer:
-		memcpy(&integer, at, sizeof integer);
-		return integer;
-	default:
-		memcpy(&real, at, sizeof real);
-		return real;
-	}
-}
-
-/* Bounds of values that were replaced: "min" or "max" of an accessor that has it. */
-static void set_bound(const nt_appending *job, const nt_append_target *from, const char *key, int sign)
-{
-	nt_json_value *bound = nt_json_find(nt_json_at(
-		nt_gltf_root_member(job->document, "accessors"), from->accessor.index), key);
-	if (nt_json_count(bound) != 4)
-		return;
-	for (size_t k = 0; k < 4; k++) {
-		double extreme = 0;
-		for (size_t v = 0; v < job->vertices->new_count; v++) {
-			const double value = new_value(from->override, v, k);
-			if (v == 0 || (sign < 0 ? value < extreme : value > extreme))
-				extreme = value;
-		}
-		nt_json_set_double(job->json, nt_json_at(bound, k), extreme);
-	}
-}
-
 static nt_status append_to_targets(nt_appending *job)
 {
 	if (job->target_count)
@@ -361,11 +354,8 @@ static nt_status append_to_targets(nt_appending *job)
 	for (size_t i = 0; !status && job->decoded_too && i < job->target_count; i++)
 		if (job->targets[i].accessor.decoded)
 			status = move_away(job, &job->targets[i]);
-	for (size_t i = 0; i < job->target_count; i++)
-		if (job->targets[i].override) {
-			set_bound(job, &job->targets[i], "min", -1);
-			set_bound(job, &job->targets[i], "max", 1);
-		}
+	for (size_t i = 0; !status && i < job->target_count; i++)
+		status = settle_bounds(job, &job->targets[i], job->targets[i].accessor.index);
 	for (size_t i = 0; !status && (nt_appended_count(job) || job->decoded_too) && i < job->target_count; i++) {
 		const nt_append_target *target = &job->targets[i];
 		nt_json_value *json = nt_gltf_change_accessor(job->document, target->accessor.index);

@@ -94,12 +94,15 @@ void nt_gltf_draco_describe(nt_gltf_recoding *r)
 	for (size_t i = 0; i < r->attribute_count; i++) {
 		const nt_draco_attribute *a = &r->attributes[i];
 		uint64_t accessor;
-		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &accessor))
+		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &accessor)) {
 			set_count(r->document, accessor, block->point_count);
-		else
+			nt_gltf_state_bounds(json, nt_gltf_change_accessor(r->document, accessor),
+				(size_t)a->components, block->bounds[i]);
+		} else {
 			nt_json_set_uint64(json, nt_json_put(json, attributes, r->names[i]),
 				nt_gltf_new_accessor(json, NT_NONE, NT_GLTF_FLOAT,
 					a->components == 3 ? "VEC3" : "VEC4", block->point_count, false));
+		}
 		nt_json_set_uint64(json, nt_json_put(json, nt_json_put(json, r->extension, "attributes"),
 			r->names[i]), a->unique_id);
 	}

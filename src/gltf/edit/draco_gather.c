@@ -280,17 +280,6 @@ static nt_status remove_runs(const nt_gltf_recoding *r, run *runs, size_t count,
 	return status;
 }
 
-/* Bounds become those of what a decoder will see; quantization moves values. */
-static void set_bounds(nt_gltf_recoding *r, size_t attribute, uint64_t accessor)
-{
-	nt_json_value *json = nt_json_at(nt_gltf_root_member(r->document, "accessors"), (size_t)accessor);
-	nt_json_value *bounds[2] = {nt_json_find(json, "min"), nt_json_find(json, "max")};
-	const size_t width = (size_t)r->attributes[attribute].components;
-	for (size_t b = 0; b < 2; b++)
-		for (size_t k = 0; k < width && nt_json_count(bounds[b]) == width; k++)
-			nt_json_set_double(r->json, nt_json_at(bounds[b], k), (double)r->block.bounds[attribute][b][k]);
-}
-
 static void put_extension(nt_gltf_recoding *r)
 {
 	nt_json *json = r->json;
@@ -311,11 +300,8 @@ nt_status nt_gltf_draco_take_out(nt_gltf_recoding *r, nt_error *error)
 	size_t count = 0;
 	uint64_t index;
 	for (size_t i = 0; i < r->attribute_count; i++)
-		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index)) {
-			if (r->attributes[i].quantization.bits)
-				set_bounds(r, i, index);
+		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
 			runs[count++] = detach(r, index);
-		}
 	if (nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &index))
 		runs[count++] = detach(r, index);
 	const nt_status status = remove_runs(r, runs, count, error);
