@@ -73,8 +73,15 @@ for wrapped in 'mirrored {}' 'shifted {KHR_texture_transform: {offset: [0.35, 0]
 		materials: [{normalTexture: {index: 0, extensions}}], extensionsUsed: ["KHR_texture_transform"]});
 		g.meshes[0].primitives[0].material = 0'
 done
-run --check --report=tiles.html --fail-on=never tiles.obj mirrored.gltf shifted.gltf far.obj
+sed 's/^vt 1.6 0.9/vt 900 900/' tiles.obj >farther.obj
+run --check --report=tiles.html --fail-on=never tiles.obj mirrored.gltf shifted.gltf far.obj farther.obj
 exists tiles.html
+
+# twelve findings of one code
+for i in $(seq 12); do
+	printf 'o %d\nv 0 0 0\nv %d 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf -3/-3 -2/-2 -1/-1\nf -3/-3 -3/-2 -1/-1\n' $i $i
+done >twelve.obj
+run --check --report=twelve.html --fail-on=never twelve.obj
 
 # a quad on the left half of the texture, with a normal map and a red base colour: files, of which one gets lost, and in the glTF
 mkdir tex
@@ -104,6 +111,15 @@ is "$(cat images.txt)" '"image":0,"file":"n.png"
 "image":0,"file":"n.png"
 "image":null,"file":null'
 rm tex/lost.png
+# w as it should be, and the reverse
+python3 "$ROOT/tests/support/images.py" write slope.png 32 32 '(128, 210, 220)'
+gltf half.gltf slope 'Object.assign(g, {images: [{uri: "slope.png"}], textures: [{source: 0}],
+	materials: [{normalTexture: {index: 0}}]}); g.meshes[0].primitives[0].material = 0'
+run -q slope.gltf right.gltf
+gltf right.gltf wrong 'const n = g.meshes[0].primitives[0].attributes.TANGENT, b = bytes[0];
+	for (let i = 0; i < g.accessors[n].count; i++) b.writeFloatLE(-b.readFloatLE(at(n, i) + 12), at(n, i) + 12)'
+run --check --diff --report=lit.html wrong.gltf right.gltf
+exists lit.html twelve.html
 run --check --report=below/ --fail-on=never red.gltf
 grep -aq '"file":"../tex/red.png"' below/red.gltf.html || wrong "a page in a folder does not find the image"
 run --check --report-format=html --fail-on=never red.gltf

@@ -10,7 +10,9 @@
 //   bad.html    meshes with nothing to show, and a position that is not finite
 //   diff.html   two squares, of which the second was mirrored in the old version
 //   pictures.html  a quad with a normal map and a base colour: a file, a lost one, in the page, of other texture coordinates
-//   tiles.html  two quads in neighbouring tiles: repeated, mirrored by the sampler, that with an offset, and over 500 tiles
+//   tiles.html  two quads in neighbouring tiles: repeated, mirrored by the sampler, that with an offset, over 500 tiles, over 900 x 900
+//   twelve.html twelve meshes with a triangle without area each
+//   lit.html    a quad with a normal map that leans up, with the wrong w in the old version
 //
 // Prints one line per check that fails, and the number of checks that passed.
 import {createRequire} from 'node:module';
@@ -45,8 +47,9 @@ const browser = await chromium.launch({timeout: 300000, executablePath: process.
 	args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist']});
 const complaints = [], requests = [];
 
-async function open(name, {hash = '', ...options} = {}) {
+async function open(name, {hash = '', before = () => {}, ...options} = {}) {
 	const page = await browser.newPage({viewport: {width: 1400, height: 900}, ...options});
+	await page.addInitScript(before);
 	page.setDefaultTimeout(120000);
 	const address = pathToFileURL(folder + '/' + name).href;
 	// pixels are read here, not by the page: Chromium would have them read otherwise
@@ -315,7 +318,7 @@ async function clickTexture(page, u, v) {
 	const page = await open('many.html'), rows = () => page.locator('#file-rows tr').count();
 	await expect(async () => await rows() === 500, async () => '500 rows: ' + await rows());
 	await expect(async () => (await page.locator('header').innerText()).length < 200, 'and a short header');
-	await expect(async () => (await page.locator('#file-rows tr >> nth=0').innerText()).includes('bad.obj'), 'the worst first');
+	await expect(async () => /bad.obj[^]*–\s+–\s+–\s+–\s+–\s+–$/.test(await page.locator('#file-rows tr >> nth=0').innerText()), 'the worst first, without counts that nobody made');
 	await page.click('[data-column=triangles] button');
 	await expect(async () => (await page.locator('#file-rows tr >> nth=0').innerText()).includes('head.obj') &&
 		await page.getAttribute('[data-column=triangles]', 'aria-sort') === 'descending', 'the largest first');
@@ -329,6 +332,9 @@ async function clickTexture(page, u, v) {
 	await page.waitForFunction(() => !document.querySelector('#overview').hidden);
 	await expect(async () => await rows() === 1, 'and back');
 	if (shots) { await page.fill('#file-text', ''); await rest(page); await page.screenshot({path: shots + '/many.png'}); }
+	await page.fill('#file-text', 'bad');
+	await page.click('#file-rows a');
+	await expect(async () => (await page.locator('#summary').innerText()).includes('could not be judged') && !await page.locator('#levels').isVisible(), 'its page has no counts either');
 	await page.close();
 }
 
@@ -382,8 +388,17 @@ async function clickTexture(page, u, v) {
 		if (file === 0) await expect(async () => (await note.textContent()).includes('count all tiles as one'), async () => 'and it says so: ' + await note.textContent());
 		if (shots) await page.screenshot({path: shots + '/tiles' + file + '.png'});
 	}
+	// over 500 tiles all of both lie on something
 	await page.evaluate(() => { location.hash = 'file-3'; });
-	await page.waitForFunction(() => document.querySelector('#layout-note').textContent.includes('too many tiles'));
+	await page.waitForFunction(() => document.querySelector('#title').textContent.endsWith('far.obj'));
+	await ready(page);
+	await rest(page);
+	const share = async () => await ask(page, 'overlapPixels') / (await ask(page, 'layout')).scale ** 2 / (0.8 * 499.2);
+	await expect(async () => await share() > 0.5, async () => 'all of a quad over 500 tiles is tinted: ' + await share());
+	await page.evaluate(() => { location.hash = 'file-4'; });
+	await page.waitForFunction(() => document.querySelector('#layout-note').textContent.includes('too many are in view'));
+	for (let i = 0; i < 30; i++) await page.locator('#layout').press('+');
+	await page.waitForFunction(() => document.querySelector('#layout-note').textContent.includes('count all tiles as one'));
 	await page.uncheck('#overlaps', {force: true});
 	await expect(async () => await note.textContent() === '', 'nothing is said of what is not shown');
 	await page.close();
@@ -407,9 +422,20 @@ async function clickTexture(page, u, v) {
 	await go(0, 'red.gltf');
 	await page.click('#layout-fit');
 	await rest(page);
-	await expect(async () => (await page.locator('#texture option').allTextContents()).join() === 'none,Normal map,Base colour', 'what can be chosen');
+	await expect(async () => (await page.locator('#texture option').allTextContents()).join() === 'No image,Normal map,Base colour', 'what can be chosen');
 	await expect(async () => await page.inputValue('#texture') === '0' && await colour() === 'blue', async () => 'the normal map lies below, is ' + await colour());
 	check(requests.length === 0, 'no file is asked for unless it is chosen');
+	// how much the islands hide of it
+	const inside = async () => {
+		const [x, y] = await page.evaluate(() => window.nmtanReport.place(0.25, 0.55)), box = await page.locator('#layout').boundingBox();
+		return colours(page, await page.locator('#layout').screenshot(), [[x / box.width, y / box.height]]).then(([c]) => c.map(Math.round));
+	};
+	const bare = c => c[0] > 140; // 128 at 0.85 over the grey
+	const veiled = await inside();
+	await page.fill('#fill', '0');
+	await expect(async () => bare(await inside()), async () => 'islands without fill show the image: ' + await inside());
+	await page.fill('#fill', '100');
+	await expect(async () => { const c = await inside(); return !bare(c) && c[0] < veiled[0] - 10; }, async () => 'full ones hide more of it than they do at first: ' + veiled + ', then ' + await inside());
 	await page.selectOption('#texture', '1');
 	await rest(page);
 	await expect(async () => await colour() === 'red' && await note.textContent() === '', async () => 'the base colour, from a file, is ' + await colour());
@@ -425,8 +451,8 @@ async function clickTexture(page, u, v) {
 	await go(2, 'inside.gltf');
 	await expect(async () => await colour() === 'red' && await note.textContent() === '', async () => 'a base colour in the page, is ' + await colour());
 	await go(3, 'other.gltf');
-	await expect(async () => (await page.locator('#texture option').allTextContents()).join() === 'none,Normal map', 'none of other texture coordinates');
-	check(requests.every(r => /\/tex\/(red|lost)\.png$/.test(r)) && requests.length === 2, 'only its images are asked for: ' + requests);
+	await expect(async () => (await page.locator('#texture option').allTextContents()).join() === 'No image,Normal map', 'none of other texture coordinates');
+	check(requests.every(r => /\/tex\/(red|lost)\.png$/.test(r)) && new Set(requests).size === 2, 'only its images are asked for: ' + requests);
 	requests.length = 0;
 	complaints.splice(0, complaints.length, ...complaints.filter(c => !c.includes('ERR_FILE_NOT_FOUND')));
 	await page.close();
@@ -505,15 +531,15 @@ async function clickTexture(page, u, v) {
 	});
 	const both = '0,2047,2 4094,2047,1', plain = '4094,2047,1';
 	check(tangents.join() === [plain, both, both, plain].join(), 'each version has the other one\'s tangents too: ' + tangents);
-	await expect(async () => await page.locator('#twin-layout h2').textContent() === 'Texture, old' && await page.inputValue('#mode') === '7', 'the heat map of both');
-	for (const [moved, canvas] of [['the twin', '#space'], ['the view', '#twin-space canvas']]) {
+	await expect(async () => await page.locator('#twin-layout h2').textContent() === 'Texture, old' && await page.inputValue('#mode') === '0' && await page.locator('#wipe').isVisible(), 'lit, with a wipe');
+	for (const [moved, canvas] of [['the twin', '#space'], ['the view', '#space + canvas']]) {
 		const was = await camera(page);
 		await page.focus(canvas);
 		await page.keyboard.press('ArrowLeft');
 		await rest(page);
 		await expect(async () => {
 			const {yaw} = await ask(page, 'camera'), twin = await ask(page, 'twin');
-			return await camera(page) !== was && yaw === twin.camera.yaw && twin.mode === 7;
+			return await camera(page) !== was && yaw === twin.camera.yaw && twin.mode === 0;
 		}, moved + ' follows');
 	}
 	// a wipe between them: the second square is red in the old version, blue in the new one, at the same place
@@ -572,6 +598,67 @@ async function clickTexture(page, u, v) {
 	await expect(async () => await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing hangs over');
 	if (shots) await page.screenshot({path: shots + '/diff.png'});
 	await page.close();
+}
+
+// ---- dents beside bumps ----
+
+{
+	const page = await open('lit.html');
+	const grey = async () => colours(page, await page.locator('#space-frame .canvas').screenshot(), [[0.47, 0.5], [0.53, 0.5]]).then(c => c.map(x => Math.round(x[1])));
+	let first;
+	await expect(async () => { const [old, now] = first = await grey(); return Math.abs(old - now) > 25; }, () => 'the wrong w is lit otherwise than the right one: ' + first);
+	await page.check('#flip', {force: true});
+	await expect(async () => { const [old, now] = await grey(); return Math.abs(old - first[1]) < 6 && Math.abs(now - first[0]) < 6; }, async () => 'with green flipped each is as the other was: ' + first + ', then ' + await grey());
+	await expect(async () => (await page.locator('#space-note').textContent()).includes('not in the file'), 'and that is said');
+	if (shots) await page.screenshot({path: shots + '/lit.png'});
+	await page.close();
+}
+
+// ---- more than ten, place after place, without WebGL, 400 pixels wide ----
+
+{
+	const page = await open('twelve.html'), rows = () => page.locator('[data-code=POS_DEGENERATE_TRIANGLE] .finding').count();
+	if (!await page.locator('[data-code=POS_DEGENERATE_TRIANGLE]').getAttribute('open')) await page.click('[data-code=POS_DEGENERATE_TRIANGLE] summary >> nth=0');
+	await expect(async () => await rows() === 10, async () => 'ten of a code: ' + await rows());
+	await page.click('[data-code=POS_DEGENERATE_TRIANGLE] .more');
+	await expect(async () => await rows() === 12, 'and all when asked');
+	await page.close();
+
+	const head = await open('head.html');
+	const finding = await head.evaluate(() => JSON.parse(document.querySelector('#data').textContent).files[0].findings.findIndex(f => f.at.length > 2));
+	await head.evaluate(finding => { location.hash = 'finding-' + finding; }, finding);
+	await expect(async () => /^\d+ places/.test(await head.locator('#spot-text').textContent()), 'a finding says how many places it has');
+	for (const [key, number] of [['n', 0], ['n', 1], ['p', 0], ['p', -1]]) {
+		await head.keyboard.press(key);
+		await rest(head);
+		const {spots, spot} = await selection(head), {target} = await ask(head, 'camera');
+		check(spot === (number + spots.length) % spots.length, key + ' goes to the next place, or back: ' + spot);
+		check(await head.evaluate(([t, target]) => {
+			const g = window.nmtanReport.geometry(), corners = [0, 1, 2].map(k => [0, 1, 2].map(i => g.origin[i] + g.positions[4 * g.indices[3 * t + k] + i] * g.step[i]));
+			return target.every((x, i) => x >= Math.min(...corners.map(c => c[i])) - 1e-6 && x <= Math.max(...corners.map(c => c[i])) + 1e-6);
+		}, [spots[spot], target]), 'and the camera looks there');
+	}
+	await head.close();
+
+	const flat = await open('head.html', {before: () => { HTMLCanvasElement.prototype.getContext = (get => function(kind, ...rest) { return kind === 'webgl2' ? null : get.call(this, kind, ...rest); })(HTMLCanvasElement.prototype.getContext); }});
+	await expect(async () => (await flat.locator('#space-empty').textContent()).includes('no WebGL 2') && !await flat.locator('#mode').isVisible(), 'without WebGL the model\'s place says so');
+	await flat.click('.finding >> nth=0');
+	await expect(async () => (await selection(flat))?.finding !== undefined, 'and findings are chosen all the same');
+	await flat.close();
+
+	for (const name of ['pictures.html#file-0', 'lit.html', 'many.html#file-0', 'two.html']) {
+		const [file, hash] = name.split('#'), narrow = await open(file, {viewport: {width: 400, height: 800}, hash: hash ? '#' + hash : ''});
+		const cut = () => narrow.evaluate(() => {
+			const c = document.createElement('canvas').getContext('2d');
+			return [...document.querySelectorAll('select')].filter(s => s.checkVisibility()).filter(s => {
+				c.font = getComputedStyle(s).font;
+				return s.id !== 'mesh' && Math.max(...[...s.options].map(o => c.measureText(o.text).width)) > s.clientWidth - 26;
+			}).map(s => s.id);
+		});
+		await expect(async () => (await cut()).length === 0, async () => 'selects are cut in ' + name + ': ' + await cut());
+		await expect(async () => await narrow.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing hangs over at 400');
+		await narrow.close();
+	}
 }
 
 check(complaints.length === 0, 'the console complains: ' + complaints.slice(0, 4).join('; '));

@@ -6,16 +6,17 @@
 // Frames are those of each version (authored) and of the other one at the same place (computed), so that their angle is the heat
 // map.
 
+const MOST_CHANGES = 100;
 const versions = ['old', 'new'];
 const unchanged = 'No finding is new or gone.';
 
 // Draws `to` as `from` is drawn, and the reverse. Only the fields that changed are copied: both may change before either is drawn.
 function link(from, to, fields) {
-	const known = {};
+	const text = (view, name) => JSON.stringify(view[name] ?? null), known = Object.fromEntries(fields.map(name => [name, text(from, name)]));
 	for (const [a, b] of [[from, to], [to, from]])
 		a.ondraw = () => {
 			if (!a.geometry || !b.geometry) return;
-			const changed = fields.map(name => [name, JSON.stringify(a[name] ?? null)]).filter(([name, value]) => value !== known[name]);
+			const changed = fields.map(name => [name, text(a, name)]).filter(([name, value]) => value !== known[name]);
 			if (!changed.length) return;
 			for (const [name, value] of changed) {
 				known[name] = value;
@@ -41,7 +42,7 @@ class Twin {
 		});
 		this.layout = new Layout(this.figures[0].canvas);
 		this.layout.onpick = (triangle, again) => this.pick(triangle, again, 'layout');
-		this.changes = element('div', {id: 'changes'}, ...data.diff.meshes.filter(m => m.changed).slice(0, MOST_ROWS).map((m, i) => this.change(m, i < 3)));
+		this.changes = element('div', {id: 'changes'}, ...data.diff.meshes.filter(m => m.changed).slice(0, MOST_CHANGES).map((m, i) => this.change(m, i < 3)));
 		$('groups').before(this.changes);
 	}
 
@@ -56,11 +57,11 @@ class Twin {
 		this.space = new Space(this.figures[1].canvas);
 		this.space.onpick = (triangle, again) => this.pick(triangle, again, 'space');
 		this.layout.oncoverage = (...window) => this.space.coverage(...window);
-		link(space, this.space, ['camera', 'mode', 'frame', 'other', 'layout', 'wipe', 'showSeams', 'showVectors', 'moving']);
-		for (const view of [space, this.space]) Object.assign(view, {mode: 7, frame: 0, other: 1, layout: 'side'});
+		link(space, this.space, ['camera', 'mode', 'frame', 'other', 'layout', 'wipe', 'flip', 'showSeams', 'showVectors', 'moving']);
+		// where w is wrong in one of them, dents are seen beside bumps; a map of angles is as red on both sides
+		for (const view of [space, this.space]) Object.assign(view, {mode: 0, frame: 0, other: -1, layout: 'wipe'});
 		$('arrange').setAttribute('aria-label', 'How the two versions are shown');
 		$('wipe').setAttribute('aria-label', 'Border between the old and the new version');
-		$('mode').value = 7;
 		if (this.mesh) this.load();
 	}
 

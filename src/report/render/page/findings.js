@@ -3,7 +3,7 @@
 // The list of findings of one file: grouped by code, the most severe first. Rows of a group are made when it is opened,
 // some hundred at a time.
 
-const MOST_ROWS = 100;
+const MOST_ROWS = 10, MORE_ROWS = 500;
 const words = {UV: 'UV', TAN: 'Tangent', POS: 'Position', NMAP: 'Normal map', MTL: 'MTL', W: 'w', NOT: 'not'};
 
 // UV_MIRROR_SEAM: "UV mirror seam"
@@ -69,8 +69,8 @@ class Findings {
 	fill(list, items, shown) {
 		list.replaceChildren(...items.slice(0, shown).map(x => this.row(x)));
 		if (items.length > shown)
-			list.append(element('li', {}, element('button', {type: 'button', class: 'more', onclick: () => this.fill(list, items, shown + 5 * MOST_ROWS)},
-				'Show ' + count(Math.min(5 * MOST_ROWS, items.length - shown)) + ' more of ' + count(items.length - shown))));
+			list.append(element('li', {}, element('button', {type: 'button', class: 'more', onclick: () => this.fill(list, items, shown + MORE_ROWS)},
+				items.length - shown <= MORE_ROWS ? 'Show ' + count(items.length - shown) + ' more' : 'Show ' + count(MORE_ROWS) + ' more of ' + count(items.length - shown))));
 	}
 
 	group(code, items, opened) {

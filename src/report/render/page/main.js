@@ -58,7 +58,7 @@ function resolve({finding, island, seam, triangle}) {
 		let triangles = local;
 		if (geometry && finding.seam !== null) triangles = trianglesOfSeam(geometry, finding.seam);
 		else if (geometry && finding.island !== null) triangles = trianglesOfIsland(geometry, finding.island);
-		return {triangles, seams, text: finding.message, related: []};
+		return {triangles, seams, spots: local, text: finding.message, related: []};
 	}
 	if (seam !== undefined) {
 		const [edges, closed, long, plane, a, b] = mesh.seamList[seam] || [];
@@ -90,8 +90,8 @@ async function choose(what, options = {}) {
 		history.replaceState(null, '', '#finding-' + what.finding.number);
 	}
 	selection = what;
-	const {triangles, seams, text, related} = mesh ? resolve(what) : {triangles: [], seams: [], text: what.finding.message, related: []};
-	selection.triangles = triangles;
+	const {triangles, seams, spots = [], text, related} = mesh ? resolve(what) : {triangles: [], seams: [], text: what.finding.message, related: []};
+	Object.assign(selection, {triangles, spots, spot: -1});
 	selection.island = what.island;
 	list.choose(what.finding || null, related);
 	layout.choose(triangles, seams);
@@ -104,6 +104,26 @@ async function choose(what, options = {}) {
 	$('selection').hidden = false;
 	$('selection-text').textContent = $('selection-text').title = text;
 	$('selection-show').hidden = !triangles.length;
+	tellSpot();
+}
+
+// The place of the finding that is shown, of those that the report has: it may have found more.
+function tellSpot() {
+	const {spots, spot, finding} = selection, more = finding && finding.count > spots.length;
+	$('spots').hidden = spots.length < 2 && !(spots.length && selection.triangles.length > 1);
+	$('spot-text').textContent = (spot < 0 ? '' : spot + 1 + ' / ') + plural(spots.length, 'place') + (more && finding.seam === null && finding.island === null ? ' of ' + count(finding.count) : '');
+}
+
+// Shows the next place of the chosen finding, or the one before.
+function goToSpot(step) {
+	const {spots, spot} = selection || {spots: []};
+	if (!spots.length) return;
+	selection.spot = (spot < 0 && step < 0 ? spots.length - 1 : spot + step + spots.length) % spots.length;
+	for (const view of [layout, space]) {
+		view?.choose([spots[selection.spot]], []);
+		view?.focus();
+	}
+	tellSpot();
 }
 
 function chooseNothing() {
@@ -173,6 +193,7 @@ function openFile(next, wanted) {
 	$('mesh').replaceChildren(...file.meshes.map(m => new Option(m.label + (m.same_as === null ? '' : ' (same geometry as ' + file.meshes[m.same_as].label + ')'), m.number)));
 	$('mesh-field').hidden = file.meshes.length < 2;
 	$('stage').hidden = !file.meshes.length;
+	$('list').querySelector('.toolbar').hidden = !!file.failure;
 	if (!twin) list.load(file);
 	const first = wanted || file.meshes.find(m => m.number === file.findings.find(x => x.mesh !== null && file.meshes[x.mesh].hasGeometry)?.mesh) ||
 		file.meshes.find(m => m.hasGeometry) || file.meshes[0];
@@ -223,7 +244,7 @@ function offerFrames() {
 	const option = (i, text) => { const o = new Option(text, i); o.disabled = !there[i]; return o; };
 	$('frame').replaceChildren(...FRAMES.map(([, name], i) => option(i, name)));
 	$('other').replaceChildren(new Option('nothing', -1), ...FRAMES.map(([, name], i) => option(i, name)));
-	if (!there[space.frame]) space.frame = (twin ? [0, 2] : [1, 0, 2]).find(i => there[i]) ?? 2;
+	if (!there[space.frame] && !(twin && space.mode === 0)) space.frame = (twin ? [0, 2] : [1, 0, 2]).find(i => there[i]) ?? 2;
 	if (space.other >= 0 && !there[space.other] && !twin) space.other = -1;
 	$('frame').value = space.frame;
 	$('other').value = space.other;
@@ -234,7 +255,10 @@ function describe() {
 	const wiped = twin?.arrange(space);
 	if (!geometry) return;
 	const mode = MODES[space.mode][0], two = twin ? twin.paired : space.other >= 0 && mode !== 'angle', parts = [];
-	if (mode === 'lit') parts.push(space.image ? 'Lit by the normal map.' : 'Lit with a test pattern of domes: ' + (mesh.pictures[0].file ? 'the normal map is not in this page.' : 'there is no normal map here.'));
+	const flips = mode === 'lit' && !!(space.image || twin?.space.image);
+	$('flip').closest('label').hidden = !flips;
+	if (flips && space.flip) parts.push('Green is flipped here, not in the file.');
+	else if (mode === 'lit') parts.push(space.image ? 'Lit by the normal map.' : 'Lit with a test pattern of domes: ' + (mesh.pictures[0].file ? 'the normal map is not in this page.' : 'there is no normal map here.'));
 	if (mode === 'angle') parts.push('The angle between the tangents ' + frameNames[FRAMES[space.frame][0]] + ' and those ' + ((space.other < 0 || space.other === 2) ? 'of screen derivatives' : frameNames[FRAMES[space.other][0]]) + '; 180° where the handedness differs.');
 	if (mode === 'angle' && twin) parts.push('Grey: the other version has no triangle here, or there are no tangents.');
 	if (mode === 'skew') parts.push('How far tangents lean out of the plane of the normal.');
@@ -263,7 +287,7 @@ let wanted = null; // by hand, else what the page has in itself
 // The images of the mesh.
 function offerPictures() {
 	const there = mesh.pictures.map(p => p.source || p.file);
-	$('texture').replaceChildren(new Option('none', -1), ...there.flatMap((source, i) => source ? [new Option(pictureNames[i], i)] : []));
+	$('texture').replaceChildren(new Option('No image', -1), ...there.flatMap((source, i) => source ? [new Option(pictureNames[i], i)] : []));
 	$('texture').closest('label').hidden = !there.some(source => source);
 	layout.shown = wanted === null || (wanted >= 0 && !there[wanted]) ? mesh.pictures.findIndex(p => p.source) : wanted;
 	$('texture').value = layout.shown;
@@ -272,14 +296,15 @@ function offerPictures() {
 // What is missing under the islands, and what is tinted.
 function noteLayout() {
 	const {overlaps, showOverlaps} = layout, repeated = showOverlaps && overlaps?.repeated;
+	$('fill').value = 100 * layout.opacity;
 	$('layout-note').textContent = (layout.missing ? 'No image: ' + layout.missing + ' is not beside this page, or this browser cannot show it. ' : '') +
-		(!showOverlaps || !overlaps ? '' : overlaps.repeated === null ? 'Overlaps of one tile with another are not shown: there are too many tiles.' :
+		(!showOverlaps || !overlaps ? '' : overlaps.repeated === null ? 'Overlaps of one tile with another are not shown: too many are in view; zoom in.' :
 		repeated ? 'Overlaps count all tiles as one, since the texture repeats.' : '');
 }
 
 function changeSpace(change) {
 	Object.assign(space, change);
-	if (twin && geometry && 'mode' in change) Object.assign(space, space.mode === 7 ? {frame: 0, other: 1} : {frame: framesThere()[0] ? 0 : 2, other: -1});
+	if (twin && geometry && 'mode' in change) Object.assign(space, space.mode === 7 ? {frame: 0, other: 1} : {frame: space.mode === 0 || framesThere()[0] ? 0 : 2, other: -1});
 	if ('frame' in change) space.vectorLines = null;
 	if (space.mode === 7 && (space.other < 0 || space.other === space.frame)) {
 		const there = framesThere();
@@ -292,7 +317,7 @@ function changeSpace(change) {
 
 // ---- start ----
 
-if (twin) { link(layout, twin.layout, ['view', 'fitted', 'shown', 'showOverlaps']); list.load(twin.changed); }
+if (twin) { link(layout, twin.layout, ['view', 'fitted', 'shown', 'showOverlaps', 'fill']); list.load(twin.changed); }
 layout.onpick = (triangle, again) => pick(triangle, again, 'layout');
 layout.onoverlaps = layout.onpicture = noteLayout;
 layout.onseam = seam => choose({seam}, {from: 'layout'});
@@ -301,13 +326,17 @@ MODES.forEach(([, name], i) => $('mode').append(new Option(name, i)));
 $('mode').addEventListener('change', e => changeSpace({mode: Number(e.target.value)}));
 $('frame').addEventListener('change', e => changeSpace({frame: Number(e.target.value)}));
 $('other').addEventListener('change', e => changeSpace({other: Number(e.target.value)}));
+$('flip').addEventListener('change', e => changeSpace({flip: e.target.checked}));
+$('fill').addEventListener('input', e => { layout.fill = e.target.value / 100; layout.draw(); });
 $('seams').addEventListener('change', e => changeSpace({showSeams: e.target.checked}));
 $('vectors').addEventListener('change', e => changeSpace({showVectors: e.target.checked}));
 $('texture').addEventListener('change', e => { wanted = layout.shown = Number(e.target.value); });
 $('overlaps').addEventListener('change', e => { layout.showOverlaps = e.target.checked; layout.draw(); noteLayout(); });
 $('layout-fit').addEventListener('click', () => layout.fit());
 $('space-fit').addEventListener('click', () => { if (geometry) space?.home(); });
-$('selection-show').addEventListener('click', () => { layout.focus(); space?.focus(); });
+$('selection-show').addEventListener('click', () => choose(selection));
+$('spot-before').addEventListener('click', () => goToSpot(-1));
+$('spot-next').addEventListener('click', () => goToSpot(1));
 $('selection-clear').addEventListener('click', chooseNothing);
 $('mesh').addEventListener('change', e => { chooseNothing(); openMesh(file.meshes[e.target.value]); });
 document.querySelectorAll('#arrange button').forEach(button => button.addEventListener('click', () => {
@@ -330,6 +359,7 @@ $('wipe').addEventListener('keydown', e => {
 document.addEventListener('keydown', e => {
 	const typing = /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName);
 	if (e.key === 'Escape' && selection) chooseNothing();
+	else if ((e.key === 'n' || e.key === 'p') && !typing) goToSpot(e.key === 'n' ? 1 : -1);
 	else if (e.key === '/' && !typing) { $($('file').hidden ? 'file-text' : 'text').focus(); e.preventDefault(); }
 	else if ((e.key === 'j' || e.key === 'k') && !typing && file && findings.length) {
 		const shown = [...document.querySelectorAll('.group[open] .finding')].map(b => findings[b.dataset.finding]);
@@ -342,8 +372,9 @@ function startSpace() {
 	try {
 		space = new Space($('space'));
 	} catch (failure) {
-		spaceFailure = 'No 3D view: ' + failure.message + '.';
+		spaceFailure = 'No 3D view: ' + failure.message + '. The findings and the texture view work without; overlaps are not tinted.';
 		empty('space-empty', spaceFailure);
+		document.body.classList.add('flat');
 		return;
 	}
 	space.onpick = (triangle, again) => pick(triangle, again, 'space');

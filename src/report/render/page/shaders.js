@@ -41,7 +41,7 @@ const signText = (which, frame) => which === 2 ? 'sideOf(' + frame + ')' : FRAME
 const surfaceFragment = (mode, frame, other, normals, textured) => `#version 300 es
 precision highp float;
 const int mode = ${mode}; const bool normals = ${normals}, textured = ${textured};
-uniform vec3 light, eye; uniform sampler2D bump; uniform mat3 map; uniform vec3 plain, mirrored, degenerate;
+uniform vec3 light, eye; uniform float green; uniform sampler2D bump; uniform mat3 map; uniform vec3 plain, mirrored, degenerate;
 in vec3 p, n; in vec2 st; in vec4 authored, computed;
 out vec4 colour;
 mat3 derived(vec3 normal) {
@@ -105,6 +105,7 @@ void main() {
 		colour = vec4(has ? shade(heat(abs(90.0 - degreesBetween(tangent, normal)), 30.0), shown) * 1.15 : missing, 1.0);
 	} else {
 		vec3 m = texture(bump, (map * vec3(st, 1.0)).xy).xyz * 2.0 - 1.0;
+		m.y *= green;
 		vec3 bumped = has && textured ? normalize(used * m) : normal;
 		if (dot(shown, normal) < 0.0) bumped = -bumped;
 		float diffuse = dot(bumped, light);

@@ -3,7 +3,7 @@
 // The mesh in space: WebGL2. One camera turns around a target; what is chosen is filled, and the camera is turned to a
 // side from which it is seen. Two frames can be looked at beside each other, or with a wipe between them.
 
-const MOST_REPETITIONS = 400;
+const MOST_REPEATED = 2e6; // triangles in other tiles that lie on what is seen: half a second
 const SELECTED = [1.0, 0.83, 0.1];
 const SEAM = [1.0, 0.58, 0.0];
 const AXES = [[0.93, 0.2, 0.2], [0.1, 0.72, 0.25], [0.25, 0.45, 1]];
@@ -30,10 +30,10 @@ function decodeDirection(codes, at) {
 class Space {
 	constructor(canvas) {
 		const gl = canvas.getContext('webgl2', {antialias: false, alpha: false});
-		if (!gl) throw new Error('this browser has no WebGL 2');
+		if (!gl) throw new Error('this browser has no WebGL 2, or it is turned off');
 		Object.assign(this, {gl, canvas, mode: 0, frame: 0, other: -1, layout: 'wipe', wipe: 0.5, showVectors: false,
 			showSeams: true, camera: {target: [0, 0, 0], distance: 3, yaw: 0.6, pitch: 0.35}, buffers: [], frames: 0,
-			part: [0, 1], moving: false, quality: 0.8, slow: 0, drawn: 0});
+			part: [0, 1], flip: false, moving: false, quality: 0.8, slow: 0, drawn: 0});
 		this.surfaces = new Map();
 		this.fill = this.program(surfaceVertex, fillFragment);
 		this.seen = this.program(surfaceVertex, seenFragment);
@@ -64,6 +64,8 @@ class Space {
 
 	// Of the mode, with a frame.
 	surface(frame) {
+		// a client lights what has no tangents by screen derivatives
+		if (this.mode === 0 && !this.geometry[FRAMES[frame][0]]) frame = 2;
 		const other = this.mode === 7 && this.other >= 0 ? this.other : 2, {normals, texcoords} = this.geometry;
 		const what = [this.mode, frame, other, !!normals, !!texcoords], key = what.join();
 		if (!this.surfaces.has(key)) this.surfaces.set(key, this.program(surfaceVertex, surfaceFragment(...what)));
@@ -293,30 +295,43 @@ class Space {
 		return {buffer, colour, width, height};
 	}
 
-	// Where the sampler repeats the mesh on a window of the texture, as maps, itself left out; null: at too many places.
-	// What it repeats is what it is asked for: texture coordinates behind the material's map.
-	repetitions(low, high) {
-		const {map, wrap} = this.mesh, g = this.geometry, all = uvBox(g);
-		const whole = mapBox(map, all.low, all.high);
+	// Draws the triangles that the sampler repeats on a window of the texture, those that lie there themselves left out; returns
+	// how many, or null: too many. What it repeats is what it is asked for: texture coordinates behind the material's map.
+	drawRepeated(low, high, draw) {
+		const {map, wrap} = this.mesh, g = this.geometry, uv = g.texcoords, all = uvBox(g);
+		const whole = mapBox(map, all.low, all.high), least = 1e-6 * (1 + Math.max(whole[1][0] - whole[0][0], whole[1][1] - whole[0][1]));
 		const window = mapBox(map, [0, 1].map(i => Math.max(low[i], all.low[i])), [0, 1].map(i => Math.min(high[i], all.high[i])));
-		const moves = [0, 1].map(axis => { // x: s x + t
-			const list = [], least = 1e-6 * (1 + whole[1][axis] - whole[0][axis]);
-			for (const s of wrap[axis] === 1 ? [1, -1] : [1]) {
-				const ends = [s * whole[0][axis], s * whole[1][axis]], step = wrap[axis] === 1 ? 2 : 1;
-				const first = Math.ceil((window[0][axis] - Math.max(...ends) + least) / step), last = Math.floor((window[1][axis] - Math.min(...ends) - least) / step);
-				if (wrap[axis] === 2) list.push([1, 0]);
-				else if (last - first > MOST_REPETITIONS) return null;
-				else for (let t = first; t <= last; t++) list.push([s, t * step]);
+		// of what lies from `from` to `to` along an axis: calls on(s, t) for each x: s x + t that is in the window
+		const eachMove = (axis, from, to, on) => {
+			if (wrap[axis] === 2) { on(1, 0); return; }
+			const step = wrap[axis] === 1 ? 2 : 1;
+			for (let s = 1; s >= (wrap[axis] === 1 ? -1 : 1); s -= 2) {
+				const last = Math.floor((window[1][axis] - (s < 0 ? -to : from) - least) / step);
+				for (let t = Math.ceil((window[0][axis] - (s < 0 ? -from : to) + least) / step); t <= last; t++) on(s, t * step);
 			}
-			return list;
-		});
-		if (!moves[0] || !moves[1] || moves[0].length * moves[1].length > MOST_REPETITIONS || moves[0].length * moves[1].length * g.triangles > 2e7) return null;
-		return moves[0].flatMap(([s, t]) => moves[1].filter(([r, q]) => s !== 1 || t !== 0 || r !== 1 || q !== 0)
-			.map(([r, q]) => mapAfter(mapBack(map), mapAfter([s, 0, t, 0, r, q], map))));
+		};
+		const corners = new Float32Array(6), batch = new Float32Array(6 * 65536);
+		let count = 0, filled = 0;
+		const flush = () => { if (filled) draw(batch.subarray(0, filled)); filled = 0; };
+		for (let t = 0; t < g.triangles && count <= MOST_REPEATED; t++) {
+			for (let k = 0; k < 3; k++) {
+				const v = 2 * g.indices[3 * t + k];
+				for (let i = 0; i < 2; i++) corners[2 * k + i] = map[3 * i] * uv[v] + map[3 * i + 1] * uv[v + 1] + map[3 * i + 2];
+			}
+			const [a, b, c, d, e, f] = corners;
+			eachMove(0, Math.min(a, c, e), Math.max(a, c, e), (s, x) => eachMove(1, Math.min(b, d, f), Math.max(b, d, f), (r, y) => {
+				if (count > MOST_REPEATED || s === 1 && x === 0 && r === 1 && y === 0) return;
+				count++;
+				for (let k = 0; k < 6; k += 2) { batch[filled++] = s * corners[k] + x; batch[filled++] = r * corners[k + 1] + y; }
+				if (filled === batch.length) flush();
+			}));
+		}
+		flush();
+		return count > MOST_REPEATED ? null : count;
 	}
 
 	// How often each pixel of a window of the texture is covered, as bytes of 64 for each time: red by the mesh where it
-	// lies, alpha by all that the sampler shows there. repeated: how many repetitions count; null: too many, none does.
+	// lies, alpha by all that the sampler shows there. repeated: how many triangles are there again; null: too many to be counted.
 	coverage(low, high, width, height) {
 		const gl = this.gl;
 		if (!this.geometry || !this.geometry.texcoords || width < 1 || height < 1) return null;
@@ -334,18 +349,27 @@ class Space {
 		gl.blendFunc(gl.ONE, gl.ONE);
 		gl.useProgram(this.cover.program);
 		const [x, y] = [0, 1].map(i => 2 / (high[i] - low[i])), window = [x, 0, -1 - x * low[0], 0, y, -1 - y * low[1]];
-		const repetitions = this.repetitions(low, high);
-		for (const map of [null, ...repetitions || []]) {
-			const m = map ? mapAfter(window, map) : window;
+		const place = (m, red) => {
 			gl.uniformMatrix3fv(this.cover.at.place, false, [m[0], m[3], 0, m[1], m[4], 0, m[2], m[5], 1]);
-			gl.uniform4f(this.cover.at.tint, map ? 0 : 0.25, 0, 0, 0.25);
-			this.drawElements(this.whole, this.geometry.indices.length);
-		}
+			gl.uniform4f(this.cover.at.tint, red, 0, 0, 0.25);
+		};
+		place(window, 0.25);
+		this.drawElements(this.whole, this.geometry.indices.length);
+		place(mapAfter(window, mapBack(this.mesh.map)), 0);
+		gl.bindVertexArray(this.again ||= gl.createVertexArray());
+		gl.bindBuffer(gl.ARRAY_BUFFER, this.againBuffer ||= gl.createBuffer());
+		gl.enableVertexAttribArray(2);
+		gl.vertexAttribPointer(2, 2, gl.FLOAT, false, 8, 0);
+		const repeated = this.drawRepeated(low, high, corners => {
+			gl.bufferData(gl.ARRAY_BUFFER, corners, gl.STREAM_DRAW);
+			gl.drawArrays(gl.TRIANGLES, 0, corners.length / 2);
+		});
+		gl.bindVertexArray(null);
 		gl.disable(gl.BLEND);
 		const pixels = new Uint8ClampedArray(4 * width * height);
 		gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
 		gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-		return {pixels, repeated: repetitions && repetitions.length};
+		return {pixels, repeated};
 	}
 
 	// ---- drawing ----
@@ -398,6 +422,7 @@ class Space {
 		this.use(surface, matrix);
 		gl.uniform3fv(at.light, unit(add(back, add(times(right, -0.35), times(up, 0.55)))));
 		gl.uniform3fv(at.eye, eye);
+		gl.uniform1f(at.green, this.flip && this.image ? -1 : 1);
 		gl.uniformMatrix3fv(at.map, false, [m[0], m[3], 0, m[1], m[4], 0, m[2], m[5], 1]);
 		for (const name of ['plain', 'mirrored', 'degenerate']) gl.uniform3fv(at[name], this.theme[name]);
 		gl.bindTexture(gl.TEXTURE_2D, this.bump);

@@ -12,6 +12,7 @@ class Layout {
 		this.chosen = null;
 		this.picture = -1; // of the mesh's pictures, that is wanted below the islands; -1: none
 		this.showOverlaps = true;
+		this.fill = null; // how opaque islands are, 0 to 1; null: as is best with an image below, or without
 		this.overlaps = null;
 		this.listen();
 		new ResizeObserver(() => { if (this.fitted) this.fit(); else this.draw(); }).observe(canvas);
@@ -28,6 +29,8 @@ class Layout {
 	}
 
 	// ---- the image below ----
+
+	get opacity() { return this.fill ?? (this.image ? 0.3 : 1); }
 
 	get shown() { return this.picture; }
 	set shown(picture) {
@@ -253,14 +256,14 @@ class Layout {
 		pattern.setTransform(new DOMMatrix().scale(1 / (scale * this.ratio)));
 		this.toTexture(c);
 		c.lineJoin = c.lineCap = 'round';
-		const under = this.image;
-		for (const shape of this.shapes) {
-			c.globalAlpha = under ? 0.32 : 1;
+		for (const shape of this.opacity ? this.shapes : []) {
+			c.globalAlpha = this.opacity;
 			c.fillStyle = shape.mirrored ? ink.mirroredFill : ink.plainFill;
 			c.fill(shape.path, 'nonzero');
-			c.globalAlpha = 1;
+			c.globalAlpha = Math.sqrt(this.opacity); // lines hide less than areas
 			if (shape.mirrored) { c.fillStyle = pattern; c.fill(shape.path, 'nonzero'); }
 		}
+		c.globalAlpha = 1;
 		c.lineWidth = (this.shapes.length > 600 ? 0.6 : 1.1) / scale;
 		for (const shape of this.shapes) {
 			c.strokeStyle = shape.mirrored ? ink.mirroredLine : ink.plainLine;
@@ -352,7 +355,9 @@ class Layout {
 		if (!this.showOverlaps || !this.oncoverage) return;
 		if (this.overlaps?.key === key) {
 			this.toPage(c);
+			c.globalAlpha = Math.sqrt(this.opacity);
 			c.drawImage(this.overlaps.canvas, 0, 0, this.width, this.height);
+			c.globalAlpha = 1;
 			return;
 		}
 		clearTimeout(this.timer);
@@ -372,7 +377,7 @@ class Layout {
 			pixels[i] = r;
 			pixels[i + 1] = g;
 			pixels[i + 2] = b;
-			pixels[i + 3] = twice ? (this.image ? 75 : 95) : 0;
+			pixels[i + 3] = twice ? 95 : 0;
 		}
 		const canvas = document.createElement('canvas');
 		canvas.width = w;
