@@ -174,6 +174,8 @@ const nt_option_row nt_option_rows[] = {
 		"findings that count as error, warning or info", FIELD(severity), false},
 	{"baseline", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
 		"an earlier JSON report: only what it does not have counts", FIELD(baseline), false},
+	{"path-prefix", 0, NT_OPTION_TEXT, "DIR", 0, 0, NULL,
+		"put DIR before the names of files in reports", FIELD(path_prefix), false},
 	{"max-issues", 0, NT_OPTION_NUMBER, "N", 0, 1000000000, "0",
 		"how many findings of a file are reported; 0: all", FIELD(max_issues), false},
 	{"uv-image", 0, NT_OPTION_TEXT, "DIR", 0, 0, NULL,

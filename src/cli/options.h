@@ -47,6 +47,7 @@ typedef struct nt_command {
 	const char *ignore;    /* CODE,CODE; NULL: nothing */
 	const char *severity;  /* CODE=LEVEL,CODE=LEVEL; NULL: none */
 	const char *baseline;  /* file; NULL: none */
+	const char *path_prefix; /* before the names of files in reports; NULL: nothing */
 	nt_words texture_paths;  /* those of the settings */
 	const char *bump_height; /* a number, parsed into the settings; NULL: the default */
 	const char *draco_bits; /* POS,NRM,UV,TAN, parsed into the settings; NULL: defaults */

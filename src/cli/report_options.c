@@ -120,6 +120,8 @@ static nt_status check_outputs(const nt_command *c, nt_error *error)
 	if (!judged && (c->report_format || c->max_issues))
 		return nt_fail(error, NT_ERROR_USAGE, "--%s needs --report or --check",
 			c->report_format ? "report-format" : "max-issues");
+	if (!judged && c->path_prefix)
+		return nt_fail(error, NT_ERROR_USAGE, "--path-prefix needs --report or --check");
 	if (!judged && c->baseline && c->fail_on == NT_FAIL_ON_NEVER)
 		return nt_fail(error, NT_ERROR_USAGE, "--baseline needs --report, --check or --fail-on");
 	return NT_OK;
@@ -135,6 +137,15 @@ static nt_status check_diff(const nt_command *c, nt_error *error)
 		return nt_fail(error, NT_ERROR_USAGE, "--%s and --diff exclude each other",
 			c->uv_image ? "uv-image" : c->baseline ? "baseline" : "max-issues");
 	return NT_OK;
+}
+
+/* Where the folder of the run has no name, files have the names that they were given. */
+static nt_status choose_names(nt_report_plan *plan, const nt_command *c, nt_error *error)
+{
+	const nt_status status =
+		nt_shown_paths_begin(&plan->paths, c->operands, plan->target.input_count, c->path_prefix, error);
+	plan->options.paths = status ? NULL : &plan->paths;
+	return status == NT_ERROR_MEMORY ? status : NT_OK;
 }
 
 nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, bool colour,
@@ -153,8 +164,10 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 		status = read_severities(&plan->options, command->severity, error);
 	if (!status)
 		status = choose_target(plan, command, colour, error);
+	if (!status && plan->wanted)
+		status = choose_names(plan, command, error);
 	if (!status && command->baseline) {
-		status = nt_baseline_open(&plan->baseline, command->baseline, error);
+		status = nt_baseline_open(&plan->baseline, command->baseline, &plan->paths, error);
 		plan->options.baseline = &plan->baseline;
 	}
 	if (!status && plan->target.path && plan->target.format == NT_REPORT_HTML &&
@@ -178,5 +191,6 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 void nt_report_plan_free(nt_report_plan *plan)
 {
 	nt_baseline_free(&plan->baseline);
+	nt_shown_paths_free(&plan->paths);
 	nt_buffer_free(&plan->folder);
 }

@@ -5,6 +5,7 @@
 #ifndef NT_PIPELINE_REPORT_FILE_H
 #define NT_PIPELINE_REPORT_FILE_H
 
+#include "report/baseline.h"
 #include "report/render/diff.h"
 
 /* Where a report goes. */
@@ -31,7 +32,7 @@ nt_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_re
 nt_status nt_report_uv_images(nt_report *const *reports, size_t count, const char *directory,
 	const nt_report_target *target, nt_error *error);
 
-/* Reads the fingerprints of a JSON report. The error names the file. */
-nt_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_error *error);
+/* Reads the findings of a JSON report, and looks which of its files are still there. The error names the report. */
+nt_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_shown_paths *paths, nt_error *error);
 
 #endif

@@ -7,6 +7,7 @@
  * solve that authored tangents are compared with.
  */
 #include "report/check.h"
+#include "report/digest.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -108,6 +109,7 @@ static void describe_surface(nt_check *check)
 	facts->checked_tangents = check->stored != NT_STORED_NONE;
 	facts->maker.agreement = -1.0;
 	facts->analysed = true;
+	facts->digest = nt_digest_surface(&check->surface);
 }
 
 /* ---- what pictures need ---- */
@@ -413,13 +415,24 @@ static nt_status locate_spots(nt_report *report, const nt_scene *scene)
 
 /* ---- the whole ---- */
 
-static nt_report *new_report(const char *path)
+void nt_report_show_path(const nt_report *report, const char *path, nt_buffer *out)
+{
+	nt_shown_path(report->paths, path, out);
+}
+
+static nt_report *new_report(const char *path, const nt_report_options *options)
 {
 	nt_report *report = nt_calloc(1, sizeof *report);
+	nt_buffer shown = {0};
 	if (!report)
 		return NULL;
+	report->paths = options ? options->paths : NULL;
 	report->path = copy_text(&report->arena, path);
-	if (!report->path) {
+	nt_report_show_path(report, path, &shown);
+	if (!shown.failed)
+		report->shown = copy_text(&report->arena, shown.data ? shown.data : "");
+	nt_buffer_free(&shown);
+	if (!report->path || !report->shown) {
 		nt_report_free(report);
 		return NULL;
 	}
@@ -449,7 +462,7 @@ nt_status nt_report_build(const nt_scene *scene, const nt_report_options *option
 	nt_report **report, nt_error *error)
 {
 	static const nt_report_options defaults;
-	*report = new_report(scene->path);
+	*report = new_report(scene->path, options);
 	if (!*report)
 		return nt_fail_memory(error);
 	const nt_status status = build(scene, options ? options : &defaults, *report, error);
@@ -464,9 +477,9 @@ nt_status nt_report_build(const nt_scene *scene, const nt_report_options *option
 		: nt_fail(error, status, "the report cannot be made: %s", nt_status_text(status));
 }
 
-nt_report *nt_report_of_error(const char *path, const nt_error *failure)
+nt_report *nt_report_of_error(const char *path, const nt_report_options *options, const nt_error *failure)
 {
-	nt_report *report = new_report(path);
+	nt_report *report = new_report(path, options);
 	if (!report)
 		return NULL;
 	report->failure = copy_text(&report->arena, failure->message);

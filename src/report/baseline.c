@@ -1,14 +1,26 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Baselines: the fingerprints of an earlier JSON report, so that only new findings count. A finding of one file is no
- * excuse for another: a fingerprint counts together with the file's name, as reports show it.
+ * Baselines: the findings of an earlier JSON report, so that only new ones count. A finding of one file is no excuse
+ * for another: a file is compared with what the baseline says of its name. There a finding is known by its
+ * fingerprint, in which the mesh's name is, else by its geometry. A file of a new name is compared by geometry with
+ * those of the baseline that are no longer there.
  */
-#include "report/report.h"
+#include "report/baseline.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash.h"
 #include "json/json.h"
+#include "report/pairs.h"
+
+/* What is known of all files that are gone. */
+enum { GONE = 0 };
+
+static int by_file(const void *a, const void *b)
+{
+	const nt_baseline_entry *x = a, *y = b;
+	return x->file < y->file ? -1 : x->file > y->file;
+}
 
 static int by_number(const void *a, const void *b)
 {
@@ -16,80 +28,141 @@ static int by_number(const void *a, const void *b)
 	return x < y ? -1 : x > y;
 }
 
-/* The 16 hexadecimal digits of a fingerprint. */
-static bool read_fingerprint(const nt_json_value *finding, uint64_t *fingerprint)
-{
-	size_t length;
-	const char *text = nt_json_get_string(nt_json_find(finding, "fingerprint"), &length);
-	if (!text || length != 16 || strspn(text, "0123456789abcdef") != 16)
-		return false;
-	*fingerprint = strtoull(text, NULL, 16);
-	return true;
-}
-
-const char *nt_shown_path(const char *path)
-{
-	const char *slash = strrchr(path, '/');
-	return path[0] == '/' && slash ? slash + 1 : path;
-}
-
-uint64_t nt_baseline_key(const char *file, uint64_t fingerprint)
+static uint64_t key_of_file(const char *file)
 {
 	while (file[0] == '.' && file[1] == '/')
 		file += 2;
-	return nt_hash_bytes(fingerprint, file, strlen(file));
+	return nt_hash_bytes(0, file, strlen(file)) | 1;
 }
 
-static nt_status read_findings(nt_baseline *baseline, size_t *capacity, const char *file,
-	const nt_json_value *findings, nt_error *error)
+/* 16 hexadecimal digits. */
+static bool read_digits(const nt_json_value *finding, const char *name, uint64_t *number)
+{
+	size_t length;
+	const char *text = nt_json_get_string(nt_json_find(finding, name), &length);
+	if (!text || length != 16 || strspn(text, "0123456789abcdef") != 16)
+		return false;
+	*number = strtoull(text, NULL, 16);
+	return true;
+}
+
+static nt_status read_findings(nt_baseline *baseline, size_t *capacity, uint64_t file, const nt_json_value *findings,
+	nt_error *error)
 {
 	const size_t count = nt_json_count(findings);
-	if (!nt_grow((void **)&baseline->keys, capacity, baseline->count + count, sizeof *baseline->keys))
+	if (!nt_grow((void **)&baseline->entries, capacity, baseline->count + count, sizeof *baseline->entries))
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < count; i++) {
-		uint64_t fingerprint;
-		if (!read_fingerprint(nt_json_at(findings, i), &fingerprint))
+		nt_baseline_entry entry = {.file = file};
+		if (!read_digits(nt_json_at(findings, i), "fingerprint", &entry.fingerprint))
 			return nt_fail(error, NT_ERROR_INPUT,
 				"finding %zu of the baseline has no fingerprint of 16 hexadecimal digits", i);
-		baseline->keys[baseline->count++] = nt_baseline_key(file, fingerprint);
+		/* reports of earlier versions have none */
+		read_digits(nt_json_at(findings, i), "geometry", &entry.geometry);
+		baseline->entries[baseline->count++] = entry;
 	}
 	return NT_OK;
 }
 
-static nt_status read_files(nt_baseline *baseline, const nt_json_value *root, nt_error *error)
+static nt_status read_files(nt_baseline *baseline, const nt_json_value *root, const nt_file_finder *finder,
+	nt_error *error)
 {
 	const char *report = nt_json_get_string(nt_json_find(root, "report"), NULL);
 	const nt_json_value *files = nt_json_find(root, "files");
 	if (!report || strcmp(report, "nmtan") != 0 || nt_json_type_of(files) != NT_JSON_ARRAY)
 		return nt_fail(error, NT_ERROR_INPUT, "the baseline is not a JSON report of nmtan");
 	size_t capacity = 0;
-	nt_status status = NT_OK;
+	baseline->files = nt_alloc(nt_json_count(files), sizeof *baseline->files);
+	nt_status status = baseline->files ? NT_OK : nt_fail_memory(error);
 	for (size_t i = 0; i < nt_json_count(files) && !status; i++) {
 		const nt_json_value *file = nt_json_at(files, i);
 		const char *name = nt_json_get_string(nt_json_find(file, "file"), NULL);
-		status = read_findings(baseline, &capacity, name ? name : "", nt_json_find(file, "findings"), error);
+		const uint64_t key = key_of_file(name ? name : "");
+		const bool gone = finder && name && !finder->is_there(finder->user, name);
+		baseline->files[baseline->file_count++] = gone ? GONE : key;
+		status = read_findings(baseline, &capacity, gone ? GONE : key, nt_json_find(file, "findings"), error);
 	}
 	return status;
 }
 
-nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, nt_error *error)
+nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, const nt_file_finder *finder,
+	nt_error *error)
 {
 	*baseline = (nt_baseline){0};
 	nt_json *document = NULL;
 	nt_status status = nt_json_parse(&document, text, size, NULL, error);
 	if (status)
 		return status;
-	status = read_files(baseline, nt_json_root(document), error);
+	status = read_files(baseline, nt_json_root(document), finder, error);
 	nt_json_free(document);
 	if (status)
 		nt_baseline_free(baseline);
-	else if (baseline->count)
-		qsort(baseline->keys, baseline->count, sizeof *baseline->keys, by_number);
+	if (baseline->count)
+		qsort(baseline->entries, baseline->count, sizeof *baseline->entries, by_file);
+	if (baseline->file_count)
+		qsort(baseline->files, baseline->file_count, sizeof *baseline->files, by_number);
 	return status;
 }
 
 void nt_baseline_free(nt_baseline *baseline)
 {
-	free(baseline->keys);
+	free(baseline->entries);
+	free(baseline->files);
 	*baseline = (nt_baseline){0};
+}
+
+/* ---- what is known ---- */
+
+/* The first entry of a file or of a later one. */
+static size_t find_entries(const nt_baseline *baseline, uint64_t file)
+{
+	size_t low = 0, high = baseline->count;
+	while (low < high) {
+		const size_t middle = (low + high) / 2;
+		if (baseline->entries[middle].file < file)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return low;
+}
+
+/* Both sides of a pair as one kind of thing. */
+static uint64_t fingerprint_of(const void *entries, size_t index)
+{
+	return ((const nt_baseline_entry *)entries)[index].fingerprint;
+}
+
+static uint64_t geometry_of(const void *entries, size_t index)
+{
+	return ((const nt_baseline_entry *)entries)[index].geometry;
+}
+
+bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report)
+{
+	const uint64_t own = key_of_file(report->shown);
+	const bool named = baseline->file_count &&
+		bsearch(&own, baseline->files, baseline->file_count, sizeof own, by_number);
+	const uint64_t file = named ? own : GONE;
+	const size_t first = find_entries(baseline, file), old_count = find_entries(baseline, file + 1) - first;
+	const nt_baseline_entry *old = baseline->entries ? baseline->entries + first : NULL;
+	nt_baseline_entry *new = nt_calloc(report->finding_count, sizeof *new);
+	uint32_t *partners = nt_alloc(report->finding_count, sizeof *partners);
+	bool *taken = nt_calloc(old_count, sizeof *taken);
+	bool made = new && partners && taken;
+	for (size_t i = 0; made && i < report->finding_count; i++) {
+		new[i].fingerprint = report->findings[i].fingerprint;
+		new[i].geometry = report->findings[i].geometry;
+		partners[i] = NT_NONE;
+	}
+	if (made && named)
+		made = !nt_pair(old, old_count, new, report->finding_count, fingerprint_of, partners, taken);
+	if (made)
+		made = !nt_pair(old, old_count, new, report->finding_count, geometry_of, partners, taken);
+	for (size_t i = 0; made && i < report->finding_count; i++)
+		report->findings[i].known = partners[i] != NT_NONE;
+	free(new);
+	free(partners);
+	free(taken);
+	return made;
 }

@@ -12,59 +12,15 @@
 #include "base/angle.h"
 #include "base/dvec.h"
 #include "base/hash.h"
+#include "report/pairs.h"
 
 static const double DEGREES = 57.29577951308232;
 
-/* ---- pairs ---- */
-
-typedef struct keyed {
-	uint64_t key;
-	uint32_t index;
-} keyed;
-
-static int by_key(const void *a, const void *b)
+static uint32_t *no_partners(size_t count)
 {
-	const keyed *x = a, *y = b;
-	if (x->key != y->key)
-		return x->key < y->key ? -1 : 1;
-	return x->index < y->index ? -1 : x->index > y->index;
-}
-
-/* For each of the new things the old one with its key, NT_NONE where there is none or others took it: equal keys are
- * paired one by one in their order, in time that many equal ones do not lengthen. Sorts both lists. */
-static void pair_keys(keyed *old, size_t old_count, keyed *new, size_t new_count, uint32_t *partners)
-{
-	if (old_count)
-		qsort(old, old_count, sizeof *old, by_key);
-	if (new_count)
-		qsort(new, new_count, sizeof *new, by_key);
-	size_t a = 0;
-	for (size_t b = 0; b < new_count; b++) {
-		while (a < old_count && old[a].key < new[b].key)
-			a++;
-		const bool found = a < old_count && old[a].key == new[b].key;
-		partners[new[b].index] = found ? old[a++].index : NT_NONE;
-	}
-}
-
-/* Lists keys of both versions, pairs them, and gives partners; NULL: out of memory. */
-static uint32_t *find_partners(const void *old, size_t old_count, const void *new, size_t new_count,
-	uint64_t (*key_of)(const void *things, size_t index))
-{
-	keyed *lists[2] = {nt_alloc(old_count, sizeof(keyed)), nt_alloc(new_count, sizeof(keyed))};
-	uint32_t *partners = nt_alloc(new_count, sizeof *partners);
-	if (lists[0] && lists[1] && partners) {
-		for (size_t i = 0; i < old_count; i++)
-			lists[0][i] = (keyed){key_of(old, i), (uint32_t)i};
-		for (size_t i = 0; i < new_count; i++)
-			lists[1][i] = (keyed){key_of(new, i), (uint32_t)i};
-		pair_keys(lists[0], old_count, lists[1], new_count, partners);
-	} else {
-		free(partners);
-		partners = NULL;
-	}
-	free(lists[0]);
-	free(lists[1]);
+	uint32_t *partners = nt_alloc(count, sizeof *partners);
+	for (size_t i = 0; partners && i < count; i++)
+		partners[i] = NT_NONE;
 	return partners;
 }
 
@@ -75,18 +31,26 @@ static uint64_t finding_key(const void *report, size_t index)
 	return ((const nt_report *)report)->findings[index].fingerprint;
 }
 
+static uint64_t finding_geometry(const void *report, size_t index)
+{
+	return ((const nt_report *)report)->findings[index].geometry;
+}
+
 static nt_status match_findings(nt_report_diff *diff)
 {
 	const nt_report *old = diff->reports[0], *new = diff->reports[1];
-	uint32_t *partners = find_partners(old, old->finding_count, new, new->finding_count, finding_key);
+	uint32_t *partners = no_partners(new->finding_count);
 	for (int i = 0; i < 2; i++)
 		diff->known[i] = nt_calloc(diff->reports[i]->finding_count, sizeof(bool));
-	const bool made = partners && diff->known[0] && diff->known[1];
-	for (size_t i = 0; made && i < new->finding_count; i++)
-		if (partners[i] != NT_NONE) {
-			diff->known[0][partners[i]] = diff->known[1][i] = true;
-			diff->unchanged++;
-		}
+	bool made = partners && diff->known[0] && diff->known[1];
+	/* what has another name now is known by its geometry */
+	const nt_key_of keys[] = {finding_key, finding_geometry};
+	for (int i = 0; i < 2 && made; i++)
+		made = !nt_pair(old, old->finding_count, new, new->finding_count, keys[i], partners, diff->known[0]);
+	for (size_t i = 0; made && i < new->finding_count; i++) {
+		diff->known[1][i] = partners[i] != NT_NONE;
+		diff->unchanged += diff->known[1][i];
+	}
 	free(partners);
 	for (int i = 0; made && i < 2; i++)
 		for (size_t k = 0; k < diff->reports[i]->finding_count; k++)
@@ -97,32 +61,31 @@ static nt_status match_findings(nt_report_diff *diff)
 
 /* ---- meshes ---- */
 
-static bool same_mesh(const nt_report_mesh *a, const nt_report_mesh *b)
-{
-	return strcmp(a->name, b->name) == 0 && a->gltf_primitive == b->gltf_primitive;
-}
-
 static uint64_t mesh_key(const void *report, size_t index)
 {
 	const nt_report_mesh *mesh = &((const nt_report *)report)->meshes[index];
 	return nt_hash_bytes(mesh->gltf_primitive, mesh->name, strlen(mesh->name));
 }
 
-/* Pairs what has one name. taken: [of the old report]. */
-static bool match_names(nt_report_diff *diff, bool *taken)
+static uint64_t mesh_digest(const void *report, size_t index)
 {
-	const nt_report *old = diff->reports[0], *new = diff->reports[1];
-	uint32_t *partners = find_partners(old, old->mesh_count, new, new->mesh_count, mesh_key);
-	for (size_t i = 0; partners && i < new->mesh_count; i++) {
-		const uint32_t partner = partners[i];
-		if (partner == NT_NONE || !same_mesh(&old->meshes[partner], &new->meshes[i]))
+	return ((const nt_report *)report)->meshes[index].digest;
+}
+
+/* What is left in both and follows each other, if it has as many triangles. */
+static void match_rest(const nt_report *old, const nt_report *new, uint32_t *partners, bool *taken)
+{
+	size_t next = 0;
+	for (size_t i = 0; i < new->mesh_count; i++) {
+		if (partners[i] != NT_NONE)
 			continue;
-		diff->meshes[i].meshes[0] = partner;
-		taken[partner] = true;
+		while (next < old->mesh_count && taken[next])
+			next++;
+		if (next == old->mesh_count || old->meshes[next].triangle_count != new->meshes[i].triangle_count)
+			continue;
+		partners[i] = (uint32_t)next;
+		taken[next] = true;
 	}
-	const bool made = partners != NULL;
-	free(partners);
-	return made;
 }
 
 static nt_status match_meshes(nt_report_diff *diff)
@@ -130,35 +93,23 @@ static nt_status match_meshes(nt_report_diff *diff)
 	const nt_report *old = diff->reports[0], *new = diff->reports[1];
 	diff->meshes = nt_calloc(old->mesh_count + new->mesh_count, sizeof *diff->meshes);
 	bool *taken = nt_calloc(old->mesh_count, sizeof *taken);
-	if (!diff->meshes || !taken) {
-		free(taken);
-		return NT_ERROR_MEMORY;
-	}
-	diff->mesh_count = new->mesh_count;
-	for (size_t i = 0; i < new->mesh_count; i++)
-		diff->meshes[i] = (nt_mesh_change){.meshes = {NT_NONE, (uint32_t)i}, .worst_degrees = NAN};
-	if (!match_names(diff, taken)) {
-		free(taken);
-		return NT_ERROR_MEMORY;
-	}
-	/* renamed ones follow each other in both */
-	size_t next = 0;
-	for (size_t i = 0; i < new->mesh_count; i++) {
-		if (diff->meshes[i].meshes[0] != NT_NONE)
-			continue;
-		while (next < old->mesh_count && taken[next])
-			next++;
-		if (next == old->mesh_count || old->meshes[next].triangle_count != new->meshes[i].triangle_count)
-			continue;
-		diff->meshes[i].meshes[0] = (uint32_t)next;
-		taken[next] = true;
-	}
-	for (size_t i = 0; i < old->mesh_count; i++)
+	uint32_t *partners = no_partners(new->mesh_count);
+	bool made = diff->meshes && taken && partners;
+	const nt_key_of keys[] = {mesh_key, mesh_digest};
+	for (int i = 0; i < 2 && made; i++)
+		made = !nt_pair(old, old->mesh_count, new, new->mesh_count, keys[i], partners, taken);
+	if (made)
+		match_rest(old, new, partners, taken);
+	for (size_t i = 0; made && i < new->mesh_count; i++)
+		diff->meshes[diff->mesh_count++] =
+			(nt_mesh_change){.meshes = {partners[i], (uint32_t)i}, .worst_degrees = NAN};
+	for (size_t i = 0; made && i < old->mesh_count; i++)
 		if (!taken[i])
 			diff->meshes[diff->mesh_count++] =
 				(nt_mesh_change){.meshes = {(uint32_t)i, NT_NONE}, .worst_degrees = NAN};
 	free(taken);
-	return NT_OK;
+	free(partners);
+	return made ? NT_OK : NT_ERROR_MEMORY;
 }
 
 /* ---- triangles ---- */
@@ -263,13 +214,16 @@ static void compare_triangles(nt_mesh_change *change, const nt_report_geometry *
 static nt_status compare_geometry(nt_mesh_change *change, const nt_report_geometry *a, const nt_report_geometry *b,
 	bool exchange)
 {
-	uint32_t *partners = find_partners(a, a->triangle_count, b, b->triangle_count, triangle_key);
-	for (size_t u = 0; partners && u < b->triangle_count; u++)
+	uint32_t *partners = no_partners(b->triangle_count);
+	bool *taken = nt_calloc(a->triangle_count, sizeof *taken);
+	const bool made = partners && taken &&
+		!nt_pair(a, a->triangle_count, b, b->triangle_count, triangle_key, partners, taken);
+	for (size_t u = 0; made && u < b->triangle_count; u++)
 		if (partners[u] != NT_NONE && same_place(a, partners[u], b, u))
 			compare_triangles(change, a, partners[u], b, u, exchange);
-	const nt_status status = partners ? NT_OK : NT_ERROR_MEMORY;
 	free(partners);
-	return status;
+	free(taken);
+	return made ? NT_OK : NT_ERROR_MEMORY;
 }
 
 /* Meshes of one geometry have it at the first of them. */

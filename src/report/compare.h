@@ -37,8 +37,8 @@ typedef struct nt_report_diff {
 /*
  * Compares two reports, made with keep_geometry, that stay until the diff is freed.
  *
- * Meshes are the same by name and glTF primitive, in their order; those left over by their order where they have as
- * many triangles. Findings are the same by fingerprint.
+ * Meshes are the same by name and glTF primitive, else by their triangles, else by their order where they have as many
+ * triangles. Findings are the same by fingerprint, else by geometry.
  *
  *   exchange  what a page shows: in the geometry of both reports `authored` becomes the tangents that are compared, and
  *             `computed` those of the other version at the same place, of a vertex's corners the one that turned most;

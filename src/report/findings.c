@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/name_table.h"
+#include "report/baseline.h"
+#include "report/digest.h"
 
 nt_box nt_box_empty(void)
 {
@@ -146,6 +148,7 @@ static void add_finding(nt_check *check, nt_report_finding *finding, nt_severity
 	nt_buffer_free(&sentence);
 	finding->fingerprint = fingerprint_of(finding,
 		finding->mesh == NT_NONE ? NULL : &report->meshes[finding->mesh], detail);
+	finding->geometry = nt_digest_finding(finding, detail);
 	if (!finding->message || !nt_grow((void **)&report->findings, check->finding_capacity,
 				       report->finding_count + 1, sizeof *finding)) {
 		check->failed = true;
@@ -278,40 +281,13 @@ static int by_severity(const void *a, const void *b)
 	return x->order < y->order ? -1 : x->order > y->order;
 }
 
-/* Marks findings that the baseline has, each of its entries once. */
-static bool apply_baseline(nt_report *report, const nt_baseline *baseline)
-{
-	bool *used = nt_calloc(baseline->count, sizeof *used);
-	if (!used)
-		return false;
-	for (size_t i = 0; i < report->finding_count; i++) {
-		const uint64_t wanted =
-			nt_baseline_key(nt_shown_path(report->path), report->findings[i].fingerprint);
-		size_t low = 0, high = baseline->count;
-		while (low < high) {
-			const size_t middle = (low + high) / 2;
-			if (baseline->keys[middle] < wanted)
-				low = middle + 1;
-			else
-				high = middle;
-		}
-		for (; low < baseline->count && baseline->keys[low] == wanted; low++) {
-			if (!used[low]) {
-				used[low] = report->findings[i].known = true;
-				break;
-			}
-		}
-	}
-	free(used);
-	return true;
-}
-
 nt_status nt_report_complete(nt_report *report, const nt_report_options *options)
 {
+	nt_digest_complete(report);
 	if (report->finding_count)
 		qsort(report->findings, report->finding_count, sizeof *report->findings, by_severity);
 	report->compared = options->baseline != NULL;
-	if (options->baseline && !apply_baseline(report, options->baseline))
+	if (options->baseline && !nt_baseline_apply(options->baseline, report))
 		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < report->finding_count; i++) {
 		if (report->findings[i].known)

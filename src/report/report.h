@@ -14,6 +14,7 @@
 
 #include "report/maker.h"
 #include "base/memory.h"
+#include "file/shown_path.h"
 #include "report/box.h"
 #include "report/codes.h"
 #include "scene/scene.h"
@@ -29,11 +30,8 @@ enum {
 /* The edges of the bins of nt_report_mesh.angle_histogram. */
 extern const double nt_angle_bins[NT_ANGLE_BINS];
 
-/* Earlier findings, each by its file and fingerprint; equal ones count as often as they stand there. */
-typedef struct nt_baseline {
-	uint64_t *keys; /* ascending: nt_baseline_key() */
-	size_t count;
-} nt_baseline;
+/* Earlier findings: baseline.h. */
+typedef struct nt_baseline nt_baseline;
 
 /* An image file's bytes, and its media type. */
 typedef struct nt_image {
@@ -56,6 +54,7 @@ typedef struct nt_report_options {
 	uint8_t severity[NT_CODE_COUNT]; /* 0: the table's; else 1 + nt_severity */
 	size_t max_findings;          /* findings kept; 0: all */
 	const nt_baseline *baseline;  /* NULL: none */
+	const nt_shown_paths *paths;  /* how files are named, while the report is there; NULL: as they are spelled */
 	bool keep_geometry;           /* for pictures: SVG and HTML */
 	bool keep_frames;             /* with geometry: the file's tangents, and computed ones, which are solved where
 	                                 no stage did */
@@ -102,6 +101,7 @@ typedef struct nt_report_finding {
 	nt_place_view place;  /* texts in the report's arena */
 	nt_box box;           /* around all occurrences */
 	uint64_t fingerprint;
+	uint64_t geometry;    /* the same without names: digest.h; 0: not known */
 	bool known;           /* the baseline has it */
 	uint32_t seam;        /* index into the mesh's seams, NT_NONE */
 	uint32_t island;      /* index into the mesh's islands, NT_NONE */
@@ -183,6 +183,7 @@ typedef struct nt_report_mesh {
 	uint32_t texcoord_set;
 	bool has_normals, has_texcoords, checked_tangents;
 	bool analysed;            /* false: not triangles, or nothing was loaded */
+	uint64_t digest;          /* of its triangles in space, whatever their order; 0: none */
 
 	size_t face_count, triangle_count;
 	size_t triangles[3];      /* mirrored, degenerate, normal: [orientation + 1] */
@@ -216,6 +217,8 @@ typedef struct nt_report_mesh {
 typedef struct nt_report {
 	nt_arena arena;
 	const char *path;
+	const char *shown;        /* the path as reports show it */
+	const nt_shown_paths *paths; /* not owned; NULL: none */
 	nt_format format;
 	const char *failure;      /* the input could not be checked: why; NULL */
 	nt_place_view failure_place;
@@ -242,7 +245,7 @@ nt_status nt_report_build(const nt_scene *scene, const nt_report_options *option
 	nt_report **report, nt_error *error);
 
 /* A report that says no more than that the input could not be read, or NULL when out of memory. */
-nt_report *nt_report_of_error(const char *path, const nt_error *failure);
+nt_report *nt_report_of_error(const char *path, const nt_report_options *options, const nt_error *failure);
 
 /* NULL is allowed. */
 void nt_report_free(nt_report *report);
@@ -250,17 +253,7 @@ void nt_report_free(nt_report *report);
 /* The most severe new finding. False when there is none. */
 bool nt_report_worst(const nt_report *report, nt_severity *worst);
 
-/*
- * Reads the findings of a JSON report. Returns NT_OK, NT_ERROR_INPUT when the text is no report of
- * nmtan, or NT_ERROR_MEMORY.
- */
-nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, nt_error *error);
-
-/* A path as reports show it: without its folders where it is absolute. */
-const char *nt_shown_path(const char *path);
-
-/* What a finding is known by: the file as reports show it and the finding's fingerprint. */
-uint64_t nt_baseline_key(const char *file, uint64_t fingerprint);
-void nt_baseline_free(nt_baseline *baseline);
+/* Appends a path as reports show it: see file/shown_path.h. */
+void nt_report_show_path(const nt_report *report, const char *path, nt_buffer *out);
 
 #endif

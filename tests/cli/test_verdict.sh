@@ -136,6 +136,59 @@ exits 0
 run --check --fail-on=warning --baseline=one.json two.obj
 exits 6
 
+# The names of a report's files.
+names() {
+	value "$1" '" ".join(f["file"] for f in r["files"])'
+}
+
+scene "two files of one name are two, wherever they are named from"
+mkdir -p a/b run
+halves 0.5 >a/m.obj
+cp a/m.obj a/b/m.obj
+run -q --check --fail-on=never --report=r.json "$PWD/a/m.obj" a/b/m.obj
+is "$(names r.json)" "a/m.obj a/b/m.obj"
+run -q --check --fail-on=never --path-prefix=art --report=r.json "$PWD/a/m.obj" a/b/../m.obj
+is "$(names r.json)" "art/a/m.obj art/a/m.obj"
+cd run || exit
+run -q --check --fail-on=never --report=r.json "$PWD/../a/m.obj" ../a/b/m.obj
+is "$(names r.json)" "m.obj b/m.obj"
+run -q --check --fail-on=never --report=r.sarif --path-prefix='my art/' "$PWD/../a/m.obj" ../a/b/m.obj
+is "$(value r.sarif '" ".join(sorted({x["locations"][0]["physicalLocation"]["artifactLocation"]["uri"]
+	for x in r["runs"][0]["results"]}))')" "my%20art/b/m.obj my%20art/m.obj"
+run -q --check --fail-on=never --report=one.json ../a/m.obj
+run --check --fail-on=warning --baseline=one.json ../a/m.obj ../a/b/m.obj
+exits 6
+says_not "m.obj and"
+cd ..
+run -q --check --fail-on=never --path-prefix=art --report=one.json a/m.obj
+run --check --fail-on=warning --baseline=one.json --path-prefix=art a/m.obj
+exits 0
+run --check --fail-on=warning --baseline=one.json --path-prefix=art a/m.obj a/b/m.obj
+exits 6
+run --path-prefix=art a/m.obj a.glb
+exits 1
+says "--path-prefix needs --report or --check"
+
+scene "objects and files that were renamed have no new findings"
+{ echo o head; halves 0.5; } >old.obj
+run -q --check --fail-on=never --report=old.json old.obj
+sed 's/^o .*/o Head.001/' old.obj >renamed
+grep -v '^o ' old.obj >dropped
+awk '$1 == "v" { $2 += 0.25 } 1' renamed >moved
+for name in renamed dropped moved; do
+	run --check --diff --report=r.json old.obj $name
+	is "$name $(value r.json '[len(r[k]) > 0 for k in ("new_findings", "gone_findings")]')" \
+		"$name $([ $name = moved ] && echo '[True, True]' || echo '[False, False]')"
+	cp old.obj kept
+	cp $name old.obj
+	run --check --fail-on=warning --baseline=old.json old.obj
+	exits $([ $name = moved ] && echo 6 || echo 0)
+	mv old.obj new.obj
+	run --check --fail-on=warning --baseline=old.json new.obj
+	exits $([ $name = moved ] && echo 6 || echo 0)
+	mv kept old.obj
+done
+
 scene "points and lines are not counted as triangles"
 gltf new points 'g.meshes = [{primitives: [{mode: 0, attributes: {POSITION: add("VEC3", 5126, Array(9).fill(0))}}]}];
 	g.nodes = [{mesh: 0}]'

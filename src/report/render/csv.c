@@ -44,7 +44,7 @@ static void put_spot(const nt_report_finding *finding, nt_buffer *out)
 
 static void put_row(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
-	put_cell(nt_shown_path(report->path), out);
+	put_cell(report->shown, out);
 	if (finding->mesh != NT_NONE)
 		nt_put_label(report, finding->mesh, put_cell, out);
 	else
@@ -64,7 +64,7 @@ void nt_write_csv(const nt_report_list *reports, nt_buffer *out)
 	for (size_t i = 0; i < reports->count; i++) {
 		const nt_report *report = reports->items[i];
 		if (report->failure) {
-			put_cell(nt_shown_path(report->path), out);
+			put_cell(report->shown, out);
 			nt_buffer_text(out, ",,error,1,");
 			put_cell(report->failure, out);
 			nt_buffer_text(out, ",,,,,,,,\r\n");

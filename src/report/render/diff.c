@@ -133,9 +133,9 @@ static void text_findings(const nt_report_diff *diff, int version, nt_buffer *ou
 
 static void write_text(const nt_report_diff *diff, nt_buffer *out)
 {
-	nt_buffer_clean(out, nt_shown_path(diff->reports[OLD]->path));
+	nt_buffer_clean(out, diff->reports[OLD]->shown);
 	nt_buffer_text(out, " -> ");
-	nt_buffer_clean(out, nt_shown_path(diff->reports[NEW]->path));
+	nt_buffer_clean(out, diff->reports[NEW]->shown);
 	nt_buffer_text(out, ": ");
 	put_summary(diff, out);
 	nt_buffer_text(out, "\n");
@@ -186,9 +186,9 @@ static void markdown_mesh(const nt_report_diff *diff, const nt_mesh_change *chan
 static void write_markdown(const nt_report_diff *diff, nt_buffer *out)
 {
 	nt_buffer_text(out, "**");
-	nt_markdown_text(nt_shown_path(diff->reports[OLD]->path), out);
+	nt_markdown_text(diff->reports[OLD]->shown, out);
 	nt_buffer_text(out, " \xe2\x86\x92 ");
-	nt_markdown_text(nt_shown_path(diff->reports[NEW]->path), out);
+	nt_markdown_text(diff->reports[NEW]->shown, out);
 	nt_buffer_text(out, "**: ");
 	put_summary(diff, out);
 	nt_buffer_text(out, "\n");
@@ -279,9 +279,9 @@ static void write_json(const nt_report_diff *diff, nt_buffer *out)
 	nt_buffer_format(out,
 		"{\n\t\"report\":\"nmtan-diff\",\n\t\"report_version\":1,\n\t\"generator\":\"nmtan %s\",\n\t",
 		NMTAN_VERSION_STRING);
-	json_member("old", nt_shown_path(diff->reports[OLD]->path), out);
+	json_member("old", diff->reports[OLD]->shown, out);
 	nt_buffer_text(out, ",\n\t");
-	json_member("new", nt_shown_path(diff->reports[NEW]->path), out);
+	json_member("new", diff->reports[NEW]->shown, out);
 	nt_buffer_format(out, ",\n\t\"unchanged_findings\":%zu", diff->unchanged);
 	json_findings(diff, NEW, "new_findings", out);
 	json_findings(diff, OLD, "gone_findings", out);

@@ -260,7 +260,7 @@ static void put_findings(const nt_report *report, budget *left, nt_buffer *out)
 static void put_head(const nt_report *report, nt_buffer *out)
 {
 	nt_buffer_text(out, "{\"name\":");
-	put_string(nt_shown_path(report->path), out);
+	put_string(report->shown, out);
 	nt_buffer_format(out, ",\"format\":\"%s\",\"counts\":[%zu,%zu,%zu],\"failure\":",
 		nt_input_format_name(report->format), report->by_severity[NT_SEVERITY_ERROR],
 		report->by_severity[NT_SEVERITY_WARNING], report->by_severity[NT_SEVERITY_INFO]);

@@ -89,10 +89,20 @@ static void put_doubles(nt_buffer *out, const char *name, const double *values, 
 	nt_buffer_text(out, "]");
 }
 
-static void put_place(nt_buffer *out, const char *name, const nt_place_view *place)
+/* 16 digits, null for 0. */
+static void put_digest(nt_buffer *out, const char *name, uint64_t digest)
 {
+	key(out, SAME_LINE, name);
+	nt_buffer_format(out, digest ? "\"%016llx\"" : "null", (unsigned long long)digest);
+}
+
+static void put_place(nt_buffer *out, const char *name, const nt_report *report, const nt_place_view *place)
+{
+	nt_buffer file = {0};
+	nt_report_show_path(report, place->file, &file);
 	open(out, name, "{");
-	put_text(out, "file", place->file[0] ? nt_shown_path(place->file) : NULL);
+	put_text(out, "file", place->file[0] && file.data ? file.data : NULL);
+	nt_buffer_free_into(&file, out);
 	key(out, SAME_LINE, "line");
 	nt_buffer_format(out, place->line ? "%zu" : "null", place->line);
 	key(out, SAME_LINE, "offset");
@@ -320,11 +330,11 @@ static void put_counts(nt_buffer *out, const nt_report_mesh *mesh)
 	put_float(out, "seam_length", mesh->seam_length);
 }
 
-static void put_mesh(nt_buffer *out, const nt_report_mesh *mesh)
+static void put_mesh(nt_buffer *out, const nt_report *report, const nt_report_mesh *mesh)
 {
 	nt_buffer_text(out, "{");
 	put_text(out, "name", mesh->name);
-	put_place(out, "place", &mesh->place);
+	put_place(out, "place", report, &mesh->place);
 	put_index(out, "gltf_mesh", mesh->gltf_mesh);
 	put_index(out, "gltf_primitive", mesh->gltf_primitive);
 	put_index(out, "same_as", mesh->same_as);
@@ -384,7 +394,7 @@ static void put_spot(nt_buffer *out, const nt_spot *spot)
 	nt_buffer_text(out, "}");
 }
 
-static void put_finding(nt_buffer *out, const nt_report_finding *finding)
+static void put_finding(nt_buffer *out, const nt_report *report, const nt_report_finding *finding)
 {
 	nt_buffer_text(out, "{");
 	put_text(out, "code", nt_code_info(finding->code)->name);
@@ -392,13 +402,13 @@ static void put_finding(nt_buffer *out, const nt_report_finding *finding)
 	put_text(out, "message", finding->message);
 	put_count(out, "count", finding->count);
 	put_count(out, "alike", finding->alike);
-	key(out, SAME_LINE, "fingerprint");
-	nt_buffer_format(out, "\"%016llx\"", (unsigned long long)finding->fingerprint);
+	put_digest(out, "fingerprint", finding->fingerprint);
+	put_digest(out, "geometry", finding->geometry);
 	put_bool(out, "known", finding->known);
 	put_index(out, "mesh", finding->mesh);
 	put_index(out, "seam", finding->seam);
 	put_index(out, "island", finding->island);
-	put_place(out, "place", &finding->place);
+	put_place(out, "place", report, &finding->place);
 	key(out, SAME_LINE, "box");
 	nt_json_box(&finding->box, out);
 	open(out, "numbers", "{");
@@ -422,7 +432,7 @@ static void put_failure(nt_buffer *out, const nt_report *report)
 	}
 	nt_buffer_text(out, "{");
 	put_text(out, "message", report->failure);
-	put_place(out, "place", &report->failure_place);
+	put_place(out, "place", report, &report->failure_place);
 	nt_buffer_text(out, "}");
 }
 
@@ -432,7 +442,7 @@ static void put_report(nt_buffer *out, const nt_report *report)
 	const nt_totals totals = nt_report_totals(&one);
 	nt_buffer_text(out, "{");
 	key(out, 3, "file");
-	nt_json_string(nt_shown_path(report->path), out);
+	nt_json_string(report->shown, out);
 	key(out, 3, "format");
 	nt_buffer_format(out, "\"%s\"", nt_input_format_name(report->format));
 	put_failure(out, report);
@@ -441,14 +451,14 @@ static void put_report(nt_buffer *out, const nt_report *report)
 	nt_buffer_text(out, "[");
 	for (size_t i = 0; i < report->mesh_count; i++) {
 		separate(out, 4);
-		put_mesh(out, &report->meshes[i]);
+		put_mesh(out, report, &report->meshes[i]);
 	}
 	nt_buffer_text(out, "]");
 	key(out, 3, "findings");
 	nt_buffer_text(out, "[");
 	for (size_t i = 0; i < report->finding_count; i++) {
 		separate(out, 4);
-		put_finding(out, &report->findings[i]);
+		put_finding(out, report, &report->findings[i]);
 	}
 	nt_buffer_text(out, "]");
 	close_with(out, 2, "}");

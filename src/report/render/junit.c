@@ -47,7 +47,7 @@ static void put_case(const nt_report_list *reports, const nt_report *report, nt_
 	size_t counts[2];
 	count_findings(reports, report, code, counts);
 	nt_buffer_text(out, "\t\t<testcase classname=\"");
-	nt_xml_text(nt_shown_path(report->path), out);
+	nt_xml_text(report->shown, out);
 	nt_buffer_format(out, "\" name=\"%s\"", row->name);
 	if (!counts[0] && !counts[1]) {
 		nt_buffer_text(out, "/>\n");
@@ -83,10 +83,10 @@ static size_t failed_cases(const nt_report_list *reports, const nt_report *repor
 static void put_suite(const nt_report_list *reports, const nt_report *report, nt_buffer *out)
 {
 	nt_buffer_text(out, "\t<testsuite name=\"");
-	nt_xml_text(nt_shown_path(report->path), out);
+	nt_xml_text(report->shown, out);
 	if (report->failure) {
 		nt_buffer_text(out, "\" tests=\"1\" failures=\"0\" errors=\"1\">\n\t\t<testcase classname=\"");
-		nt_xml_text(nt_shown_path(report->path), out);
+		nt_xml_text(report->shown, out);
 		nt_buffer_text(out, "\" name=\"can be read\">\n\t\t\t<error message=\"");
 		nt_xml_text(report->failure, out);
 		nt_buffer_text(out, "\"/>\n\t\t</testcase>\n\t</testsuite>\n");

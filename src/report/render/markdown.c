@@ -41,7 +41,7 @@ static void put_file_row(const nt_report *report, nt_buffer *out)
 		seams += report->meshes[i].seam_count;
 	}
 	nt_buffer_text(out, "| ");
-	nt_markdown_text(nt_shown_path(report->path), out);
+	nt_markdown_text(report->shown, out);
 	if (report->failure) {
 		nt_buffer_text(out, " | not judged: ");
 		nt_markdown_text(report->failure, out);
@@ -71,7 +71,7 @@ static void put_findings(const nt_report *report, size_t *rows, nt_buffer *out)
 {
 	size_t shown[NT_CODE_COUNT] = {0}, missing = report->dropped;
 	nt_buffer_text(out, "\n### ");
-	nt_markdown_text(nt_shown_path(report->path), out);
+	nt_markdown_text(report->shown, out);
 	nt_buffer_text(out, "\n\n| severity | code | where | finding |\n|---|---|---|---|\n");
 	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *finding = &report->findings[i];

@@ -30,7 +30,7 @@ static void put_uri(const char *path, nt_buffer *out)
 {
 	static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~/";
 	nt_buffer_text(out, "\"uri\": \"");
-	for (const char *p = nt_shown_path(path); *p; p++) {
+	for (const char *p = path; *p; p++) {
 		if (strchr(plain, *p))
 			nt_buffer_append(out, p, 1);
 		else
@@ -76,7 +76,7 @@ static void put_physical(const char *path, size_t line, nt_buffer *out)
 static void put_location(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
 	nt_buffer_text(out, "\"locations\": [{");
-	put_physical(report->path, line_of(finding), out);
+	put_physical(report->shown, line_of(finding), out);
 	if (finding->mesh != NT_NONE || finding->place.pointer[0]) {
 		nt_buffer label = {0};
 		if (finding->mesh != NT_NONE)
@@ -149,7 +149,7 @@ static void put_invocation(const nt_report_list *reports, nt_buffer *out)
 		nt_buffer_format(out, "%s\n\t\t\t{\"level\": \"error\", \"message\": {", count++ ? "," : "");
 		put_text("text", report->failure, out);
 		nt_buffer_text(out, "}, \"locations\": [{");
-		put_physical(report->path, report->failure_place.line ? report->failure_place.line : 1, out);
+		put_physical(report->shown, report->failure_place.line ? report->failure_place.line : 1, out);
 		nt_buffer_text(out, "}]}");
 	}
 	if (missing)

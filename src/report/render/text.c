@@ -140,7 +140,7 @@ static void write_report(const nt_report_list *reports, const nt_report *report,
 	const nt_report_list one = {.items = &report, .count = 1};
 	const nt_totals totals = nt_report_totals(&one);
 	paint(reports, bold, out);
-	nt_buffer_clean(out, nt_shown_path(report->path));
+	nt_buffer_clean(out, report->shown);
 	paint(reports, plain, out);
 	nt_buffer_text(out, ": ");
 	if (report->failure) {

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Baselines: earlier findings, of which new ones are told apart.
+ */
+#ifndef NT_REPORT_BASELINE_H
+#define NT_REPORT_BASELINE_H
+
+#include "report/report.h"
+
+typedef struct nt_baseline_entry {
+	uint64_t file;                  /* a key of its name as reports show it */
+	uint64_t fingerprint, geometry; /* geometry 0: not known */
+} nt_baseline_entry;
+
+/* Each entry is one finding: two equal ones excuse two. */
+struct nt_baseline {
+	nt_baseline_entry *entries; /* [count] by file */
+	size_t count;
+	uint64_t *files; /* [file_count] keys of those that are there, ascending */
+	size_t file_count;
+};
+
+/* Who knows whether a file of the baseline is still there. */
+typedef struct nt_file_finder {
+	bool (*is_there)(void *user, const char *shown);
+	void *user;
+} nt_file_finder;
+
+/*
+ * Reads the findings of a JSON report. finder NULL: all its files are there.
+ *
+ * Returns NT_OK, NT_ERROR_INPUT when the text is no report of nmtan, or NT_ERROR_MEMORY.
+ */
+nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, const nt_file_finder *finder,
+	nt_error *error);
+
+/* Marks the findings that the baseline has. False: out of memory. */
+bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report);
+
+void nt_baseline_free(nt_baseline *baseline);
+
+#endif

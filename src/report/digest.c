@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Digests of geometry: see digest.h. Exporters rename objects and leave out their names; positions stay. They are
+ * compared exactly: a digest is for what was not changed but for its name.
+ */
+#include "report/digest.h"
+
+#include "base/hash.h"
+
+/* Without the key of the process: digests are written. */
+static uint64_t mix(uint64_t a, uint64_t b)
+{
+	static const uint64_t key[NT_HASH_KEY_WORDS] = {UINT64_C(0x9e3779b97f4a7c15), UINT64_C(0xd1b54a32d192ed03)};
+	return nt_hash_words_by(key, a, b);
+}
+
+static uint64_t mix_text(uint64_t hash, const char *text)
+{
+	for (; *text; text++)
+		hash = mix(hash, (unsigned char)*text);
+	return hash;
+}
+
+static uint64_t mix_position(uint64_t hash, const float *p)
+{
+	return mix(mix(hash, nt_hash_floats(p[0], p[1])), nt_hash_floats(p[2], 0.0f));
+}
+
+/* A turned triangle is the same, a reversed one is not: each corner is mixed with the one after it. */
+uint64_t nt_digest_surface(const nt_surface *surface)
+{
+	uint64_t sum = 0;
+	for (size_t t = 0; t < surface->triangle_count; t++) {
+		uint64_t corners[3];
+		for (size_t k = 0; k < 3; k++)
+			corners[k] = mix_position(1, nt_side_position(surface, 3 * t + k));
+		sum += mix(corners[0], corners[1]) + mix(corners[1], corners[2]) + mix(corners[2], corners[0]);
+	}
+	return mix(sum, surface->triangle_count) | 1;
+}
+
+static bool has_places(const nt_report_finding *finding)
+{
+	return finding->box.minimum[0] <= finding->box.maximum[0];
+}
+
+uint64_t nt_digest_finding(const nt_report_finding *finding, const char *detail)
+{
+	uint64_t hash = mix_text(0, nt_code_info(finding->code)->name);
+	if (!has_places(finding))
+		return mix_text(hash, detail ? detail : "");
+	hash = mix_position(mix_position(hash, finding->box.minimum), finding->box.maximum);
+	for (unsigned i = 0; i < finding->spot_count; i++)
+		for (unsigned k = 0; k < finding->spots[i].corner_count; k++)
+			hash = mix_position(hash, finding->spots[i].positions[k]);
+	return hash;
+}
+
+void nt_digest_complete(nt_report *report)
+{
+	uint64_t file = 0;
+	for (size_t i = 0; i < report->mesh_count; i++)
+		file += report->meshes[i].digest;
+	for (size_t i = 0; i < report->finding_count; i++) {
+		nt_report_finding *finding = &report->findings[i];
+		const uint64_t whole = finding->mesh == NT_NONE ? file : report->meshes[finding->mesh].digest;
+		if (!has_places(finding))
+			finding->geometry = whole ? mix(finding->geometry, whole) : 0;
+	}
+}
