@@ -10,7 +10,7 @@
 #include "file/watch.h"
 #include "format/foreign.h"
 #include "gltf/sidecar.h"
-#include "gltf/verify.h"
+#include "gltf/verify/verify.h"
 #include "pipeline/stages.h"
 
 /* What the stages of one run share. */

@@ -38,6 +38,24 @@ sys.exit(child.returncode)' $((seconds * factor)) $((megabytes * factor)) "$WORK
 	status=$?
 	[ ! -s "$WORK/cost.txt" ] || wrong "$(cat "$WORK/cost.txt")"
 }
+
+# grows KIND COUNT WORDS...: COUNT, 2 COUNT and 4 COUNT of a kind take linear time; IN is the input, and where `prepare`
+# is a function, what that makes of it.
+grows() {
+	local kind=$1 count=$2 size files=()
+	shift 2
+	for size in 1 2 4; do
+		inputs "$kind" $((size * count)) $size.obj
+		files+=($size.obj)
+		if [ -n "$(type -t prepare)" ]; then
+			prepare $size.obj $size.glb
+			files[-1]=$size.glb
+		fi
+	done
+	command python3 "$ROOT/tests/support/growth.py" 8 $((factor))e-1 "${files[@]}" -- "$NMTAN" -q --fail-on=never "$@" \
+		>"$WORK/cost.txt" 2>&1 || wrong "$kind: $(cat "$WORK/cost.txt")"
+}
+
 # These have smaller inputs, too: what they see is seen in thousands.
 case $NMTAN in
 */release/*) factor=1 blocks=20000 elements=100000 materials=100000 strip=200000 faces=100000 windows=1500 parts=100000 ;;
@@ -57,6 +75,13 @@ run -q --only=all repeated.obj repeated.glb
 within 5 300 -q --only=all --existing=replace --draco=edgebreaker --verify --report=r.json --fail-on=never repeated.glb out.glb
 exits 0
 is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"].startswith("DRACO")]')" "['DRACO_SEQUENTIAL']"
+
+scene "triangles around one centre are read back in linear time"
+prepare() {
+	run -q --only=all "$1" "$2"
+}
+grows centre $((faces / 8)) --only=all --existing=replace --draco=edgebreaker --verify IN out.glb
+unset -f prepare
 
 scene "a name of a megabyte is cut in reports"
 printf 'o %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n' \

@@ -14,6 +14,8 @@ images    an OBJ of COUNT materials, and FILE.mtl beside it, with two images eac
 strip     an OBJ strip of COUNT quads
 hub       an OBJ of COUNT triangles around one point
 edge      an OBJ of COUNT triangles on one edge
+repeated  an OBJ of one triangle, COUNT times
+centre    an OBJ of COUNT triangles of three points each, all around one centre
 patches   an OBJ of COUNT quads, each an island of its own over the same texels, every other one mirrored
 """
 import json
@@ -70,6 +72,15 @@ def hub(count, out):
 
 def repeated(count, out):
     out.write(b'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n' + b'f 1/1/1 2/2/1 3/3/1\n' * count)
+
+
+def centre(count, out):
+    out.write(b'vt 0 0\nvt 1 0\nvt 0 1\n')
+    for i in range(3 * count):
+        angle = 2 * math.pi * (i // 3 / count + i % 3) / 3
+        out.write(b'v %.9g %.9g %d\n' % (math.cos(angle), math.sin(angle), 0))
+    for i in range(1, 3 * count, 3):
+        out.write(b'f %d/1 %d/2 %d/3\n' % (i, i + 1, i + 2))
 
 
 def edge(count, out):
@@ -177,4 +188,4 @@ with open(sys.argv[3], 'wb') as out:
         scene(count, out, side or 3)
     else:
         {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
-         'patches': patches, 'repeated': repeated}[kind](count, out)
+         'patches': patches, 'repeated': repeated, 'centre': centre}[kind](count, out)

@@ -4,7 +4,7 @@
  * numbers its vertices, or shares them. tinygltf's document is asked for the arrays of one mesh after the other; blocks
  * are decoded, and meshes compared, by several threads.
  */
-#include "gltf/verify.h"
+#include "gltf/verify/verify.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@
 #include "gltf/normalized.h"
 #include "gltf/primitive.h"
 #include "gltf/quantize.h"
-#include "gltf/verify_faces.h"
+#include "gltf/verify/faces.h"
 #include "gltf/view.h"
 
 /* ---- finding the files ---- */

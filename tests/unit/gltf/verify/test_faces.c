@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
 #include <math.h>
-#include "gltf/verify_faces.h"
+#include "gltf/verify/faces.h"
 
 enum { FACES = 3000 };
 
@@ -90,12 +90,45 @@ static void one_face_more_is_another_surface(void **state)
 	assert_true(first_missing(a, FACES - 1, b, FACES) != SIZE_MAX);
 }
 
+/* All have one centre and differ in where their corners stand, and in tangents. */
+static void make_concentric(nt_verify_corner *faces)
+{
+	for (int f = 0; f < FACES; f++)
+		for (int k = 0; k < 3; k++) {
+			const float turn = 6.2831853f * ((float)(f / 3) * 3 / FACES + (float)k) / 3;
+			faces[3 * f + k] = (nt_verify_corner){{30 * cosf(turn), 30 * sinf(turn), 0},
+				{(float)(f % 3), (float)k, 0, 1}};
+		}
+}
+
+static void triangles_with_one_centre_are_told_apart(void **state)
+{
+	(void)state;
+	make_concentric(a);
+	shuffle(a, b);
+	assert_true(first_missing(a, FACES, b, FACES) == SIZE_MAX);
+	const int f = FACES - 1 - 1234;
+	b[3 * f + 1].tangent[1] += 0.01f;
+	assert_int_equal(first_missing(a, FACES, b, FACES), 1234);
+	make_concentric(a);
+	shuffle(a, b);
+	b[3 * f + 2].position[0] += 0.05f;
+	b[3 * f].position[0] -= 0.05f; /* the centre stays */
+	assert_int_equal(first_missing(a, FACES, b, FACES), 1234);
+	/* not a number, in both */
+	make_concentric(a);
+	a[7].tangent[0] = a[8].position[0] = NAN;
+	shuffle(a, b);
+	assert_true(first_missing(a, FACES, b, FACES) == SIZE_MAX);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(order_and_first_corner_do_not_matter),
 		cmocka_unit_test(every_value_and_the_winding_matter),
 		cmocka_unit_test(one_face_more_is_another_surface),
+		cmocka_unit_test(triangles_with_one_centre_are_told_apart),
 	};
-	return cmocka_run_group_tests_name("gltf/verify_faces", tests, NULL, NULL);
+	return cmocka_run_group_tests_name("gltf/verify/faces", tests, NULL, NULL);
 }

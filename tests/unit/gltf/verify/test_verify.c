@@ -3,7 +3,7 @@
 #include "gltf/edit/edit.h"
 #include "gltf/load.h"
 #include "gltf/open.h"
-#include "gltf/verify.h"
+#include "gltf/verify/verify.h"
 #include "hand_gltf.h"
 
 #include <math.h>
@@ -181,5 +181,5 @@ int main(void)
 		cmocka_unit_test(tangents_of_targets_are_compared),
 		cmocka_unit_test(the_first_mesh_that_differs_is_told),
 	};
-	return cmocka_run_group_tests_name("gltf/verify", tests, make_folder, remove_empty_folder);
+	return cmocka_run_group_tests_name("gltf/verify/verify", tests, make_folder, remove_empty_folder);
 }

@@ -3,8 +3,8 @@
  * A second opinion on glTF output before it takes its name: another parser reads the files, and finds in
  * every corner the position and tangent that were to be written.
  */
-#ifndef NT_GLTF_VERIFY_H
-#define NT_GLTF_VERIFY_H
+#ifndef NT_GLTF_VERIFY_VERIFY_H
+#define NT_GLTF_VERIFY_VERIFY_H
 
 #include "file/output.h"
 #include "scene/scene.h"
