@@ -77,7 +77,7 @@ module_libs_tinygltf := -ltinygltf -lmeshoptimizer
 modules := draco meshopt openmesh png tiff tinygltf
 module_so := $(modules:%=$(B)/nmtan-%.so)
 module_obj := $(call objects,$(wildcard src/ext/modules/*.c src/ext/modules/*.cpp))
-module_files = $(B)/ext/modules/$(1).c%.o $(B)/ext/modules/$(1)_%.o $(if $(filter tinygltf,$(1)),$(B)/ext/modules/meshopt.c.o)
+module_files = $(B)/ext/modules/$(1).c%.o $(B)/ext/modules/$(1)_%.o $(if $(filter tinygltf,$(1)),$(B)/ext/modules/meshopt%.o)
 
 .PHONY: all
 all: $(B)/nmtan $(module_so) $(B)/libnmtan.a $(B)/libnmtan.so $(B)/completion.bash $(B)/completion.zsh $(B)/licences.txt

@@ -2,9 +2,10 @@
 /*
  * meshoptimizer's decoders for compressed views of glTF. They are safe on any bytes; what they give is garbage
  * then, which is checked like any other data. Sizes are checked before anything is allocated: no mode packs more
- * than 64 bytes of data into one.
+ * than 1024 bytes of data into one.
  *
- * meshoptimizer 0.18 knows version 0 of the vertex codec and no colour filter.
+ * meshoptimizer 0.18 knows version 0 of the vertex codec and no colour filter; version 1 and that filter are
+ * nmtan's own (modules/meshopt_vertex.c).
  */
 #ifndef NT_EXT_MESHOPT_H
 #define NT_EXT_MESHOPT_H
@@ -15,10 +16,10 @@
 extern "C" {
 #endif
 
-/* A view as EXT_meshopt_compression describes it. */
+/* A view as KHR_meshopt_compression describes it. */
 typedef struct nt_meshopt_view {
 	const char *mode;   /* ATTRIBUTES, TRIANGLES or INDICES */
-	const char *filter; /* NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL */
+	const char *filter; /* NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL or COLOR */
 	uint64_t stride, count;
 	uint64_t packed_size; /* bytes that are packed */
 } nt_meshopt_view;

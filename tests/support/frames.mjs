@@ -17,10 +17,10 @@ const widths = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
 const readers = { 5120: ['readInt8', 1, 127], 5121: ['readUInt8', 1, 255], 5122: ['readInt16LE', 2, 32767],
 	5123: ['readUInt16LE', 2, 65535], 5125: ['readUInt32LE', 4, 1], 5126: ['readFloatLE', 4, 1] };
 
-// All components of an accessor in one array; null where it is sparse or compressed.
+// All components of an accessor in one array; null where it is sparse.
 function values(file, number) {
 	const accessor = file.g.accessors[number], view = file.g.bufferViews?.[accessor.bufferView];
-	if (accessor.sparse || !view || view.extensions?.EXT_meshopt_compression)
+	if (accessor.sparse || !view)
 		return null;
 	const [method, size, most] = readers[accessor.componentType], width = widths[accessor.type];
 	const data = file.bytes[view.buffer], stride = view.byteStride ?? width * size;

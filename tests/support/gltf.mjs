@@ -6,12 +6,33 @@
 // They see g, the document; bytes, the buffers, which they may change and replace; rows(accessor), an accessor's rows of
 // numbers, by its number or itself; at(accessor, row), where one begins in its buffer; add(TYPE, COMPONENT TYPE, NUMBERS,
 // MEMBERS), which makes an accessor in the first buffer and gives its number; and open(FILE), another file with all of
-// these. The file "new" is a document with nothing in it.
+// these. The file "new" is a document with nothing in it. Where views are compressed by meshoptimizer, bytes has what
+// npm's decoder makes of them, in place of what a fallback buffer has.
+import { createRequire } from 'node:module';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
 
 const widths = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT4: 16 };
 const readers = { 5120: ['readInt8', 1], 5122: ['readInt16LE', 2], 5121: ['readUInt8', 1], 5123: ['readUInt16LE', 2], 5125: ['readUInt32LE', 4], 5126: ['readFloatLE', 4] };
+
+// npm's decoder, where it is installed.
+let decoder;
+try {
+	const modules = join(dirname(fileURLToPath(import.meta.url)), '../../build/node/package.json');
+	decoder = createRequire(modules)('meshoptimizer/decoder.cjs');
+	await decoder.ready;
+} catch { /* a file that needs it will say so */ }
+
+// What compresses a view; undefined: nothing.
+export const packing = (view) => view.extensions?.EXT_meshopt_compression ?? view.extensions?.KHR_meshopt_compression;
+
+// The bytes of a view that is compressed: data is those of the buffer that has them.
+export function unpack(packed, data) {
+	const { count, byteStride, byteOffset = 0, byteLength, mode, filter } = packed, out = new Uint8Array(count * byteStride);
+	decoder.decodeGltfBuffer(out, count, byteStride, data.subarray(byteOffset, byteOffset + byteLength), mode, filter);
+	return out;
+}
 
 const empty = '{"asset": {"version": "2.0"}, "buffers": [{"uri": "data:,"}], "bufferViews": [], "accessors": []}';
 
@@ -24,11 +45,23 @@ export function open(path) {
 	const bytes = new Proxy(loaded, { get: (target, name) => {
 		if (typeof name !== 'string' || !/^\d+$/.test(name))
 			return target[name];
-		const uri = g.buffers[name].uri;
-		return target[name] ??= uri === undefined ? chunk
+		return target[name] ??= unpacked(Number(name), stored(name));
+	} });
+	const stored = (number) => {
+		const uri = g.buffers[number].uri;
+		return uri === undefined ? Number(number) ? undefined : chunk
 			: uri.startsWith('data:') ? Buffer.from(uri.slice(uri.indexOf(',') + 1), 'base64')
 				: readFileSync(join(dirname(path), decodeURIComponent(uri)));
-	} });
+	};
+	const unpacked = (number, there) => {
+		const views = (g.bufferViews ?? []).filter((view) => view.buffer === number && packing(view));
+		const data = views.length ? Buffer.alloc(g.buffers[number].byteLength) : there;
+		if (views.length && there)
+			there.copy(data);
+		for (const view of views)
+			data.set(unpack(packing(view), bytes[packing(view).buffer]), view.byteOffset ?? 0);
+		return data;
+	};
 	const shape = (accessor) => {
 		const [method, size] = readers[accessor.componentType], width = widths[accessor.type];
 		return { method, size, width, stride: g.bufferViews[accessor.bufferView].byteStride ?? width * size };
@@ -52,7 +85,7 @@ export function open(path) {
 		const bufferView = g.bufferViews.push({ buffer: 0, byteOffset: begin, byteLength: data.length }) - 1;
 		return g.accessors.push({ bufferView, componentType, type, count: numbers.length / widths[type], ...more }) - 1;
 	};
-	return { g, bytes, rows, at, add };
+	return { g, bytes, stored, rows, at, add };
 }
 
 export default function answer([path, expression, ...statements], say) {

@@ -4,9 +4,11 @@
  */
 #include <meshoptimizer.h>
 #include <string.h>
+#include "ext/modules/meshopt_vertex.h"
 #include "ext/tables.h"
 
-enum { MAX_RATIO = 128, SLACK_BYTES = 65536 };
+/* Two bits of a block of version 1 say that 256 bytes are like those before them. */
+enum { MAX_RATIO = 1024, SLACK_BYTES = 65536 };
 
 /* What the extension's text demands of strides and counts, so that the decoders' assertions hold. */
 static nt_status check(const nt_meshopt_view *v, uint64_t size, const char *pointer, nt_error *error)
@@ -44,6 +46,8 @@ static nt_status apply_filter(const nt_meshopt_view *v, unsigned char *bytes, co
 		meshopt_decodeFilterQuat(bytes, count, stride);
 	} else if (strcmp(v->filter, "EXPONENTIAL") == 0) {
 		meshopt_decodeFilterExp(bytes, count, stride);
+	} else if (strcmp(v->filter, "COLOR") == 0 && (stride == 4 || stride == 8)) {
+		nt_meshopt_decode_colors(bytes, count, stride);
 	} else {
 		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
 			"filter \"%.30s\" with byteStride %zu, which nmtan does not decode", v->filter,
@@ -58,11 +62,9 @@ static nt_status unpack(const nt_meshopt_view *v, const unsigned char *packed, u
 	const size_t count = (size_t)v->count, stride = (size_t)v->stride, size = (size_t)v->packed_size;
 	const bool attributes = strcmp(v->mode, "ATTRIBUTES") == 0;
 	int result;
-	if (attributes) {
-		if (size && packed[0] == 0xA1)
-			return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
-				"version 1 of the vertex codec, which nmtan does not decode: write the file "
-				"without this compression, or with EXT_meshopt_compression, which has version 0");
+	if (attributes && size && packed[0] == NT_MESHOPT_VERTEX_1) {
+		result = nt_meshopt_decode_vertex_1(bytes, count, stride, packed, size) ? 0 : -1;
+	} else if (attributes) {
 		result = meshopt_decodeVertexBuffer(bytes, count, stride, packed, size);
 	} else if (strcmp(v->mode, "TRIANGLES") == 0) {
 		result = meshopt_decodeIndexBuffer(bytes, count, stride, packed, size);
