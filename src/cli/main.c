@@ -147,6 +147,7 @@ static int tell_run(session *s, nt_job *job)
 	int code = nt_exit_code(job->status);
 	const int least_failure = s->plan->target.style.least_failure;
 	const bool fails = !job->status && !c->diff && findings_fail(summary, least_failure);
+	const nt_style style = {s->style.colour, s->style.verbosity, fails || job->status};
 	/* a report on standard output says it better */
 	const char *report = s->plan->target.path;
 	if (s->style.verbosity >= 0 && !(report && strcmp(report, "-") == 0)) {
@@ -155,7 +156,7 @@ static int tell_run(session *s, nt_job *job)
 			nt_message_failure(&s->text, job, least_failure, s->style);
 		nt_message_findings(&s->text, &summary->findings, job->input,
 			infos ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING,
-			fails && !report ? least_failure - 1 : NT_SEVERITY_ERROR, s->style);
+			fails && !report ? least_failure - 1 : NT_SEVERITY_ERROR, style);
 	}
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
 	if (job->status) {

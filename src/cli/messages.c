@@ -65,25 +65,33 @@ static void append_sentence(nt_buffer *out, const nt_place_view *place, const ch
 	nt_buffer_format(out, " [%s]\n", nt_code_info(code)->name);
 }
 
+/* Where a run succeeds it has met no error. */
+static nt_severity shown_severity(const nt_finding *finding, nt_style style)
+{
+	const nt_severity severity = nt_finding_severity(finding);
+	return style.fails || severity < NT_SEVERITY_ERROR ? severity : NT_SEVERITY_WARNING;
+}
+
 static void append_finding(nt_buffer *out, const nt_finding *finding, const char *file, nt_style style)
 {
 	nt_buffer sentence = {0};
 	nt_code_sentence(finding->code, finding->count, finding->detail, &sentence);
-	append_sentence(out, &finding->place, file, finding->code, nt_code_info(finding->code)->severity,
+	append_sentence(out, &finding->place, file, finding->code, shown_severity(finding, style),
 		sentence.data ? sentence.data : "", style);
 	nt_buffer_free_into(&sentence, out);
 }
 
-/* All findings of one code, those beyond PLACES_SHOWN as a number. */
-static void append_code(nt_buffer *out, const nt_finding_list *findings, nt_code code, const char *file,
-	nt_style style)
+/* All findings of one code and severity, those beyond PLACES_SHOWN as a number. */
+static void append_code(nt_buffer *out, const nt_finding_list *findings, nt_code code, nt_severity severity,
+	const char *file, nt_style style)
 {
 	size_t shown = 0, left_out = 0;
 	for (size_t i = 0; i < findings->count; i++) {
-		if (findings->items[i].code != code)
+		const nt_finding *finding = &findings->items[i];
+		if (finding->code != code || shown_severity(finding, style) != severity)
 			continue;
 		if (shown < PLACES_SHOWN || style.verbosity > 0) {
-			append_finding(out, &findings->items[i], file, style);
+			append_finding(out, finding, file, style);
 			shown++;
 		} else {
 			left_out++;
@@ -91,7 +99,7 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, nt_code
 	}
 	if (left_out)
 		nt_buffer_format(out, "nmtan: %s: and %zu more [%s]; -v shows all\n",
-			nt_severity_name(nt_code_info(code)->severity), left_out, nt_code_info(code)->name);
+			nt_severity_name(severity), left_out, nt_code_info(code)->name);
 }
 
 void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, int least, int most,
@@ -99,8 +107,7 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 {
 	for (int severity = most; severity >= least; severity--)
 		for (int code = 0; code < NT_CODE_COUNT; code++)
-			if ((int)nt_code_info((nt_code)code)->severity == severity)
-				append_code(out, findings, (nt_code)code, file, style);
+			append_code(out, findings, (nt_code)code, (nt_severity)severity, file, style);
 }
 
 void nt_message_failure(nt_buffer *out, const nt_job *job, int least_failure, nt_style style)
@@ -161,7 +168,7 @@ static void append_findings_count(nt_buffer *out, const nt_summary *s)
 {
 	size_t counts[3] = {0};
 	for (size_t i = 0; !s->report && i < s->findings.count; i++)
-		counts[nt_code_info(s->findings.items[i].code)->severity]++;
+		counts[shown_severity(&s->findings.items[i], (nt_style){0})]++;
 	if (s->report)
 		memcpy(counts, s->report->by_severity, sizeof counts);
 	if (!counts[0] && !counts[1] && !counts[2]) {

@@ -16,6 +16,7 @@
 typedef struct nt_style {
 	bool colour;
 	int verbosity; /* as in nt_command */
+	bool fails;    /* what is told of ends with an exit code that is not 0 */
 } nt_style;
 
 /* "nmtan: file:line: message", "nmtan: file: at byte N: message" or "nmtan: file: /pointer: message". */

@@ -104,6 +104,12 @@ static inline bool nt_is_gltf(const nt_check *check)
 	return nt_format_is_gltf(nt_is_written(check) ? check->options->written : check->scene->format);
 }
 
+/* Whether what is wrong with texture coordinates may show in the light: other formats than glTF do not tell. */
+static inline bool nt_needs_tangents(const nt_check *check)
+{
+	return !nt_format_is_gltf(check->scene->format) || check->mesh->slots != 0;
+}
+
 /* The vertex as the source numbers it: copies that making normals appended are mapped back. */
 static inline uint32_t nt_source_vertex(const nt_mesh *mesh, uint32_t vertex)
 {

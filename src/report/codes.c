@@ -3,7 +3,8 @@
  * The table of findings and the few functions that read it: see codes.h.
  *
  * Severities: an error is data that breaks glTF's rules or certainly renders wrong; a warning is worth
- * a look in the DCC tool; an info says what is there (mirroring itself is legitimate).
+ * a look in the DCC tool; an info says what is there (mirroring itself is legitimate). What nobody would ever act on is
+ * a number of the mesh and no finding.
  */
 #include "report/codes.h"
 
@@ -209,13 +210,13 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"islands moved by a whole tile.",
 		"two triangles that share an edge and have the same UV at their third corners"),
 	ROW(UV_MIRROR_OVERLAP, INFO,
-		"mirrored island of {count} {triangle|triangles} lies on an unmirrored one",
-		"A mirrored island that shares its texture with its twin: the usual way to texture a symmetric "
+		"{count} {island shares|islands share} texels with mirrored ones",
+		"Mirrored islands that share their texture with a twin: the usual way to texture a symmetric "
 		"model at half the cost. Judged as the sampler wraps: repeated coordinates modulo 1, mirrored "
 		"ones folded, clamped ones as they stand.",
-		"Nothing. When baking, move the mirrored island by a whole tile so that only one is baked.",
+		"Nothing. When baking, move the mirrored islands by a whole tile so that only one of two is baked.",
 		"two separate quads with the same four UVs, the second one wound the other way"),
-	ROW(UV_MIRROR_LONE, WARNING,
+	ROW(UV_MIRROR_LONE, INFO,
 		"mirrored island of {count} {triangle|triangles} lies on no other",
 		"A mirrored island that shares its texture with nothing: mirroring gains nothing here, and "
 		"text or asymmetric detail in the texture shows reversed. Often an accident.",
@@ -231,14 +232,15 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"{count} {triangle has|triangles have} no area in UV space",
 		"The three texture coordinates are collinear: there is no direction in which u grows, so the "
 		"tangent comes from a neighbour or from the normal. A warning when such triangles are more "
-		"than 1 % of the mesh's area, where it can be seen.",
+		"than 1 % of the mesh's area, where it can be seen, unless a glTF's material uses no tangents.",
 		"Unwrap these triangles if they are visible and normal mapped.",
 		"one triangle with UVs (0,0), (1,0), (2,0)"),
 	ROW(UV_NEAR_DEGENERATE, INFO,
 		"{count} {triangle has|triangles have} nearly collinear texture coordinates",
 		"Rounding of the texture coordinates to float alone may turn the tangent of these triangles by "
 		"more than one degree: the finding gives the smallest relative determinant |det| / (|e1| |e2|) "
-		"and the largest bound of the angle. A warning when they are more than 1 % of the mesh's area.",
+		"and the largest bound of the angle. A warning when they are more than 1 % of the mesh's area, "
+		"unless a glTF's material uses no tangents.",
 		"Give the triangles more room in the UV layout, or keep islands near the origin.",
 		"a triangle with UVs (1000,0), (1001,0), (1000,0.0001)"),
 	ROW(UV_FOLDED_QUAD, WARNING,
@@ -288,7 +290,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(MESH_NON_MANIFOLD_EDGE, WARNING,
 		"{count} {edge belongs|edges belong} to more than two triangles",
 		"After vertices at one position are welded, three or more triangles meet at an edge. Which of "
-		"them are neighbours is then a matter of order, and programs differ in their tangents.",
+		"them are neighbours is then a matter of order, and programs differ in their tangents. An info where "
+		"nothing asks for tangents.",
 		"Separate the surfaces, or delete doubled and inner faces.",
 		"three triangles that share one edge"),
 	ROW(MESH_INCONSISTENT_WINDING, WARNING,
@@ -299,25 +302,28 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"triangles 0 1 2 and 0 1 3"),
 	ROW(MESH_NORMAL_NON_UNIT, WARNING, "{count} {normal is|normals are} not of unit length",
 		"The length differs from 1 by more than 0.00674, the tolerance of the Khronos validator. "
-		"nmtan makes tangents for the normal made unit; programs that take it as it is tilt them.",
+		"nmtan makes tangents for the normal made unit; programs that take it as it is tilt them. An info of "
+		"other formats than glTF: what is made of them has unit normals.",
 		"Normalise the normals on export.",
 		"a vertex with the normal (0,0,2)"),
 	ROW(MESH_NORMAL_ZERO, ERROR, "{count} {normal is|normals are} zero or not finite",
-		"A normal without a direction cannot be lit and has no tangent plane.",
+		"A normal without a direction cannot be lit and has no tangent plane. A warning of other formats than "
+		"glTF: what is made of them has another normal there.",
 		"Recalculate the normals, and remove triangles without area.",
 		"a vertex with the normal (0,0,0)"),
 	ROW(MESH_NORMAL_AGAINST_FACE, WARNING,
 		"{count} {triangle has|triangles have} normals that point against {its|their} winding",
 		"The corner normals lie on the back side of the triangle: it is lit as if seen from behind, "
-		"and the bitangent runs against v there.",
+		"and the bitangent runs against v there. An info where these are at most 1 % of the mesh's area: "
+		"slivers at sharp bends.",
 		"Flip the winding or recalculate the normals.",
 		"a counterclockwise triangle in the xy plane with the normal (0,0,-1)"),
 
 	ROW(TAN_MIRROR_SHARED_VERTEX, WARNING,
 		"{count} {vertex is|vertices are} shared by mirrored and unmirrored triangles",
 		"One vertex holds one tangent and one w, but the triangles on its two sides need opposite "
-		"signs. On conversion such vertices are split (info); on --check it is a warning, because "
-		"tangents stored in this file cannot be right on both sides.",
+		"signs: tangents stored in this file cannot be right on both sides. An info where it stores none or no "
+		"material uses them. A conversion splits such vertices and counts them.",
 		"Let nmtan split them: convert the file, with --existing=replace where it has tangents.",
 		"two triangles that share two vertices and mirror their UVs across them"),
 	ROW(TAN_MIXED_W_TRIANGLE, WARNING,
@@ -389,11 +395,12 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"A client must use flat normals then and ignore TANGENT, so none are written.",
 		"Export normals, or let nmtan make them: --normals=smooth or --normals=flat.",
 		"a glTF primitive with POSITION, TEXCOORD_0 and a normal-mapped material"),
-	ROW(TAN_NO_UV, ERROR, "tangents are needed but there are no texture coordinates",
-		"A normal map is asked for, but the mesh lacks the texture coordinates that the map is to be "
-		"looked up with; or tangents were to be made for an OBJ, PLY or Draco file, and no mesh of it "
-		"has texture coordinates.",
-		"Unwrap the mesh, or choose a set that exists with --uv.",
+	ROW(TAN_NO_UV, INFO, "there are no texture coordinates to make tangents by",
+		"No mesh of an OBJ, PLY or Draco file has texture coordinates: a scan, say, or a model without "
+		"textures. An error in a glTF whose material looks up a normal map, or shades by anisotropy, with "
+		"coordinates that the primitive lacks: no renderer can get that right. A warning where an OBJ's "
+		"material does: the output is without the map.",
+		"Nothing if no normal map is meant. Else unwrap the mesh, or choose a set that exists with --uv.",
 		"a normal-mapped glTF primitive without TEXCOORD_0"),
 	ROW(TAN_UVSET_CONFLICT, WARNING, "two textures want tangents of different texture coordinates",
 		"One TANGENT attribute serves one set of texture coordinates. The normal texture's set wins; "
@@ -433,11 +440,6 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"than 5 degrees between the two, and tells the largest angle.",
 		"If the normal map was baked for the whole mesh, use --across=mesh.",
 		"two squares of one mesh, of which the second's texture is sheared, with a material each"),
-	ROW(TAN_VERTEX_GROWTH, INFO, "{count} {vertex was|vertices were} added",
-		"A vertex is copied where its corners need different tangents or normals. The finding counts "
-		"by cause: mirrored texture coordinates, different tangent directions, normals that were made.",
-		"Nothing. Fewer mirror seams and hard edges cost fewer vertices.",
-		"converting two triangles that share two vertices and mirror their UVs"),
 	ROW(TAN_QUANTIZED, INFO, "{count} {tangent was|tangents were} stored as integers",
 		"--precision=short or byte rounds tangents to the nearest direction that normalized integers can "
 		"represent. The detail has the largest and the mean angle between what was computed and what is "
@@ -503,6 +505,11 @@ bool nt_code_find(const char *name, nt_code *code)
 		}
 	}
 	return false;
+}
+
+nt_severity nt_finding_severity(const nt_finding *finding)
+{
+	return finding->severity ? (nt_severity)(finding->severity - 1) : nt_code_info(finding->code)->severity;
 }
 
 static const char *const severity_names[] = {"info", "warning", "error"};

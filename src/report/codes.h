@@ -28,6 +28,9 @@ const nt_code_row *nt_code_info(nt_code code);
 /* The code with this public name; false when there is none. */
 bool nt_code_find(const char *name, nt_code *code);
 
+/* The severity of a scene's finding: its own, or that of the table. */
+nt_severity nt_finding_severity(const nt_finding *finding);
+
 /* "info", "warning" or "error". */
 const char *nt_severity_name(nt_severity severity);
 bool nt_severity_find(const char *name, nt_severity *severity);

@@ -198,7 +198,9 @@ static void join_results(nt_check *check, const bin_result *results, size_t coun
 	}
 	facts->non_manifold_edges = non_manifold.count;
 	facts->inconsistent_edges = inconsistent.count;
-	nt_check_report(check, &non_manifold, NULL);
+	/* of no matter to a surface without tangents */
+	const bool matters = check->mesh->texcoords && nt_needs_tangents(check);
+	nt_check_report_as(check, &non_manifold, matters ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO, NULL);
 	nt_check_report(check, &inconsistent, NULL);
 }
 

@@ -255,7 +255,7 @@ static void add_scene_finding(nt_check *check, const mesh_table *table, const nt
 		check->failed = true;
 		return;
 	}
-	add_finding(check, &finding, nt_code_info(found->code)->severity, found->detail);
+	add_finding(check, &finding, nt_finding_severity(found), found->detail);
 }
 
 nt_status nt_report_add_findings(nt_check *check, const nt_finding_list *all)

@@ -20,7 +20,7 @@
 /* Sine of the rounding error from which on a triangle counts as nearly degenerate: of one degree. */
 static const double NEAR_DEGENERATE_SINE = 0.017452406437283512;
 
-/* Share of the mesh's area from which on degenerate triangles are a warning. */
+/* Share of the mesh's area from which on degenerate triangles, and triangles lit from behind, are a warning. */
 static const double VISIBLE_SHARE = 0.01;
 
 /* The tolerance of the Khronos validator. */
@@ -238,9 +238,16 @@ static void find_determinants(nt_report_mesh *facts, float *values, size_t count
 	facts->relative_determinant[2] = greatest;
 }
 
+/* Below it they are slivers that nobody sees. */
 static nt_severity severity_by_share(const nt_check *check, double area)
 {
 	return area > VISIBLE_SHARE * check->total_area ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO;
+}
+
+/* Of texture coordinates, which matter where tangents do. */
+static nt_severity severity_of_texcoords(const nt_check *check, double area)
+{
+	return nt_needs_tangents(check) ? severity_by_share(check, area) : NT_SEVERITY_INFO;
 }
 
 static void sum_blocks(nt_check *check)
@@ -292,20 +299,21 @@ static void report_triangles(nt_check *check, triangle_part *all, size_t from_ne
 	nt_tally_number(no_area, "area_share", all->no_uv_area_sum / total);
 	nt_tally_number(no_area, "corners_from_neighbour", (double)from_neighbour);
 	nt_tally_number(no_area, "corners_from_normal", (double)from_normal);
-	nt_check_report_as(check, no_area, severity_by_share(check, all->no_uv_area_sum),
+	nt_check_report_as(check, no_area, severity_of_texcoords(check, all->no_uv_area_sum),
 		"%.3g %% of the area; %zu corners take a neighbour's tangent, %zu one made from their normal",
 		100.0 * all->no_uv_area_sum / total, from_neighbour, from_normal);
 
 	nt_tally_number(&all->near, "area_share", all->near_area / total);
 	nt_tally_number(&all->near, "least_relative_determinant", all->worst_determinant);
 	nt_tally_number(&all->near, "greatest_error_degrees", all->worst_bound);
-	nt_check_report_as(check, &all->near, severity_by_share(check, all->near_area),
+	nt_check_report_as(check, &all->near, severity_of_texcoords(check, all->near_area),
 		"relative determinant down to %.2g, error up to %.2g degrees", all->worst_determinant,
 		all->worst_bound);
 
 	nt_tally_number(&all->against, "area_share",
 		check->total_area > 0.0 ? all->against_area / check->total_area : 0.0);
-	nt_check_report(check, &all->against, NULL);
+	nt_check_report_as(check, &all->against, severity_by_share(check, all->against_area), "%.3g %% of the area",
+		100.0 * all->against_area / total);
 }
 
 static nt_status check_triangles(nt_check *check)
@@ -392,8 +400,11 @@ static nt_status check_vertices(nt_check *check)
 	nt_tally_number(&non_unit, "worst_length", worst);
 	nt_check_report(check, &position, NULL);
 	nt_check_report(check, &texcoord, NULL);
-	nt_check_report(check, &zero, NULL);
-	nt_check_report(check, &non_unit, "the worst has length %.4g", worst);
+	/* what is made of other formats has unit normals */
+	const bool stays = nt_format_is_gltf(check->scene->format);
+	nt_check_report_as(check, &zero, stays ? NT_SEVERITY_ERROR : NT_SEVERITY_WARNING, NULL);
+	nt_check_report_as(check, &non_unit, stays ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO,
+		"the worst has length %.4g", worst);
 	return NT_OK;
 }
 

@@ -30,9 +30,10 @@ static nt_status check_shared(nt_check *check)
 		if (sides[v] == (UNMIRRORED | MIRRORED))
 			nt_tally_vertex(check, &shared, (uint32_t)v, NAN);
 	nt_scratch_back(check->scratch, mark);
-	const bool split = nt_is_written(check) && check->mesh->split.vertex_tangents;
-	nt_check_report_as(check, &shared, split ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING, "%s",
-		split ? "they were split" : "");
+	/* who makes tangents splits them, too */
+	const bool stored = check->stored != NT_STORED_NONE;
+	nt_check_report_as(check, &shared, stored && nt_needs_tangents(check) ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO,
+		"%s", stored ? "their tangents are wrong on one side" : "");
 	return NT_OK;
 }
 
@@ -40,10 +41,7 @@ static void check_copies(nt_check *check)
 {
 	const nt_mesh *mesh = check->mesh;
 	nt_report_mesh *facts = check->facts;
-	nt_tally growth = {.code = NT_CODE_TAN_VERTEX_GROWTH};
-	for (size_t v = facts->vertices_before - mesh->unused_vertices; v < mesh->vertex_count; v++)
-		nt_tally_vertex(check, &growth, (uint32_t)v, NAN);
-	facts->added_normals = growth.count;
+	facts->added_normals = mesh->vertex_count - (facts->vertices_before - mesh->unused_vertices);
 	const float *tangents = mesh->split.vertex_tangents;
 	const size_t copies = nt_is_written(check) ? mesh->split.source_count : 0;
 	for (size_t i = 0; i < copies; i++) {
@@ -51,22 +49,16 @@ static void check_copies(nt_check *check)
 		const bool mirror = tangents &&
 			tangents[4 * source + 3] != tangents[4 * (mesh->vertex_count + i) + 3];
 		*(mirror ? &facts->added_mirror : &facts->added_direction) += 1;
-		nt_tally_vertex(check, &growth, (uint32_t)source, NAN);
 	}
 	facts->vertices_after = mesh->unused_vertices + mesh->vertex_count + copies;
-	if (!nt_is_written(check))
-		return;
-	nt_tally_number(&growth, "mirrored", (double)facts->added_mirror);
-	nt_tally_number(&growth, "direction", (double)facts->added_direction);
-	nt_tally_number(&growth, "normals", (double)facts->added_normals);
-	nt_check_report(check, &growth, "%zu by mirroring, %zu by direction, %zu by normals",
-		facts->added_mirror, facts->added_direction, facts->added_normals);
 }
 
 nt_status nt_check_growth(nt_check *check)
 {
+	/* what is split is counted by check_copies() */
+	const bool split = nt_is_written(check) && check->mesh->split.vertex_tangents;
 	const bool both = check->facts->triangles[0] && check->facts->triangles[2];
-	const nt_status status = both ? check_shared(check) : NT_OK;
+	const nt_status status = both && !split ? check_shared(check) : NT_OK;
 	if (!status)
 		check_copies(check);
 	return status;

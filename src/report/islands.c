@@ -458,12 +458,30 @@ static void report_island(nt_check *check, size_t index)
 	nt_check_report(check, &tally, "island %zu", index);
 }
 
+/* Islands that share texels are meant: one finding, which counts them. */
+static void report_overlapping(nt_check *check)
+{
+	nt_tally tally = {.code = NT_CODE_UV_MIRROR_OVERLAP};
+	size_t count = 0, mirrored = 0;
+	for (size_t k = 0; k < check->facts->island_count; k++) {
+		const nt_island *island = &check->facts->islands[k];
+		if (island->triangles[0] == 0 || code_of(island) != tally.code)
+			continue;
+		tally.island = count++ ? 0 : (uint32_t)k + 1;
+		mirrored += island->triangles[0];
+		tally_island(check, &tally, k);
+	}
+	tally.count = count;
+	nt_tally_number(&tally, "mirrored_triangles", (double)mirrored);
+	nt_check_report(check, &tally, NULL);
+}
+
 /* One finding per island; many of a kind beyond the first are one finding together. */
 static void report_islands(nt_check *check)
 {
-	static const nt_code codes[3] = {NT_CODE_UV_MIRROR_OVERLAP, NT_CODE_UV_MIRROR_LONE,
-		NT_CODE_UV_MIXED_WINDING_ISLAND};
-	for (int i = 0; i < 3; i++) {
+	static const nt_code codes[] = {NT_CODE_UV_MIRROR_LONE, NT_CODE_UV_MIXED_WINDING_ISLAND};
+	report_overlapping(check);
+	for (int i = 0; i < 2; i++) {
 		size_t seen = 0;
 		nt_tally rest = {.code = codes[i]};
 		for (size_t k = 0; k < check->facts->island_count; k++) {

@@ -120,12 +120,12 @@ static size_t tangent_count(const nt_check *check)
 	return check->stored == NT_STORED_CORNERS ? mesh->corner_count : mesh->vertex_count;
 }
 
-/* Tangents that no material uses cannot render wrong: then errors are warnings. */
+/* Tangents that no material uses cannot render wrong: then errors are warnings, and warnings infos. */
 static nt_severity severity_of(const nt_check *check, nt_code code)
 {
 	const nt_severity severity = nt_code_info(code)->severity;
 	const bool unused = nt_is_gltf(check) && check->mesh->slots == 0;
-	return unused && severity == NT_SEVERITY_ERROR ? NT_SEVERITY_WARNING : severity;
+	return unused && severity > NT_SEVERITY_INFO ? (nt_severity)(severity - 1) : severity;
 }
 
 /* On conversion: that tangents were kept although they are not usable. */
@@ -168,8 +168,8 @@ static nt_status check_each(nt_check *check)
 	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
 		nt_check_report_as(check, all[i], severity_of(check, all[i]->code), NULL);
 	report_kept(check, all, sizeof all / sizeof all[0]);
-	nt_check_report(check, &tt->not_orthogonal, "the worst is %.3g degrees off",
-		check->facts->worst_orthogonality);
+	nt_check_report_as(check, &tt->not_orthogonal, severity_of(check, tt->not_orthogonal.code),
+		"the worst is %.3g degrees off", check->facts->worst_orthogonality);
 	return NT_OK;
 }
 
@@ -333,7 +333,7 @@ static nt_status check_signs(nt_check *check)
 		st.reversed += work.parts[i].reversed;
 		st.untransformed += work.parts[i].untransformed;
 	}
-	nt_check_report(check, &st.mixed, NULL);
+	nt_check_report_as(check, &st.mixed, severity_of(check, NT_CODE_TAN_MIXED_W_TRIANGLE), NULL);
 	nt_check_report(check, &st.of_quad, NULL);
 	const double share = st.checked ? (double)st.wrong.count / (double)st.checked : 0.0;
 	nt_tally_number(&st.wrong, "share", share);
@@ -344,7 +344,8 @@ static nt_status check_signs(nt_check *check)
 	/* exporters disagree about texture transforms, and so do renderers: not an error */
 	const bool untransformed = st.untransformed > 0 && st.untransformed == st.wrong.count;
 	nt_check_report_as(check, &st.wrong,
-		untransformed ? NT_SEVERITY_WARNING : severity_of(check, NT_CODE_TAN_SIGN_MISMATCH),
+		untransformed ? severity_of(check, NT_CODE_TAN_MIXED_W_TRIANGLE)
+			      : severity_of(check, NT_CODE_TAN_SIGN_MISMATCH),
 		"%.3g %% of %zu%s", 100.0 * share, st.checked,
 		untransformed	     ? ", they were made without the texture transform"
 		: st.by_w == st.checked ? ", the convention is inverted"
@@ -430,7 +431,7 @@ static nt_status check_directions(nt_check *check, const float *fresh, const uin
 	nt_tally_number(&wrong, "share", share);
 	nt_tally_number(&wrong, "worst_degrees", worst);
 	nt_check_report_as(check, &wrong,
-		share > MISMATCH_SHARE ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO,
+		share > MISMATCH_SHARE ? severity_of(check, wrong.code) : NT_SEVERITY_INFO,
 		"%.3g %% of the corners, the worst by %.4g degrees", 100.0 * share, worst);
 	return NT_OK;
 }

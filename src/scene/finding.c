@@ -38,6 +38,29 @@ bool nt_keep_place(nt_arena *arena, const nt_place_view *place, nt_place_view *k
 		keep_text(arena, place->object, &kept->object);
 }
 
+static void add_finding(nt_finding_list *list, nt_finding finding, const nt_place *place)
+{
+	static const nt_place nowhere = {.offset = NT_NO_OFFSET};
+	finding.place = nt_view_place(place ? place : &nowhere);
+	const uint64_t hash = hash_finding(&finding);
+	uint32_t number;
+	for (size_t at = NT_HASH_BEGIN;
+		(number = nt_hash_index_next(&list->known, hash, &at)) != UINT32_MAX;)
+		if (same_finding(&list->items[number], &finding)) {
+			list->items[number].count += finding.count;
+			return;
+		}
+	if (list->count >= UINT32_MAX ||
+		!nt_grow((void **)&list->items, &list->capacity, list->count + 1, sizeof finding) ||
+		!nt_keep_place(&list->arena, &finding.place, &finding.place) ||
+		!keep_text(&list->arena, finding.detail, &finding.detail) ||
+		!nt_hash_index_add(&list->known, hash, (uint32_t)list->count)) {
+		list->failed = true;
+		return;
+	}
+	list->items[list->count++] = finding;
+}
+
 void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, size_t count,
 	const char *detail_format, ...)
 {
@@ -48,26 +71,14 @@ void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, 
 		vsnprintf(detail, sizeof detail, detail_format, arguments);
 		va_end(arguments);
 	}
-	static const nt_place nowhere = {.offset = NT_NO_OFFSET};
-	nt_finding finding = {.code = code, .count = count, .place = nt_view_place(place ? place : &nowhere),
-		.detail = detail};
-	const uint64_t hash = hash_finding(&finding);
-	uint32_t number;
-	for (size_t at = NT_HASH_BEGIN;
-		(number = nt_hash_index_next(&list->known, hash, &at)) != UINT32_MAX;)
-		if (same_finding(&list->items[number], &finding)) {
-			list->items[number].count += count;
-			return;
-		}
-	if (list->count >= UINT32_MAX ||
-		!nt_grow((void **)&list->items, &list->capacity, list->count + 1, sizeof finding) ||
-		!nt_keep_place(&list->arena, &finding.place, &finding.place) ||
-		!keep_text(&list->arena, detail, &finding.detail) ||
-		!nt_hash_index_add(&list->known, hash, (uint32_t)list->count)) {
-		list->failed = true;
-		return;
-	}
-	list->items[list->count++] = finding;
+	add_finding(list, (nt_finding){.code = code, .count = count, .detail = detail}, place);
+}
+
+void nt_finding_add_as(nt_finding_list *list, nt_code code, nt_severity severity, const nt_place *place,
+	const char *detail)
+{
+	add_finding(list, (nt_finding){.code = code, .severity = (uint8_t)(1 + severity), .count = 1, .detail = detail},
+		place);
 }
 
 void nt_finding_list_free(nt_finding_list *list)

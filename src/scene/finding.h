@@ -94,7 +94,6 @@ typedef enum nt_code {
 	NT_CODE_TAN_MORPH_TURNED,
 	NT_CODE_TAN_MORPH_HALFWAY,
 	NT_CODE_TAN_PRIMITIVE_BORDER,
-	NT_CODE_TAN_VERTEX_GROWTH,
 	NT_CODE_TAN_QUANTIZED,
 	NT_CODE_TAN_REPAIRED,
 	NT_CODE_TAN_EXISTING_BAD,
@@ -108,6 +107,7 @@ typedef enum nt_code {
 
 typedef struct nt_finding {
 	nt_code code;
+	uint8_t severity;    /* 0: the table's; else 1 + nt_severity */
 	nt_place_view place; /* of the first occurrence */
 	size_t count;        /* occurrences, at least 1 */
 	const char *detail;  /* the words that differ from case to case (a file name, a statement); may be
@@ -127,6 +127,10 @@ typedef struct nt_finding_list {
  * detail are the same. place and detail_format may be NULL. */
 void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, size_t count,
 	const char *detail_format, ...) NT_PRINTF(5, 6);
+
+/* The same of one that is found alone, with another severity than the table's. */
+void nt_finding_add_as(nt_finding_list *list, nt_code code, nt_severity severity, const nt_place *place,
+	const char *detail);
 
 void nt_finding_list_free(nt_finding_list *list);
 

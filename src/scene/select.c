@@ -14,6 +14,8 @@
  */
 #include "scene/select.h"
 
+#include <stdio.h>
+
 /* What is asked for, and what all meshes together are like. */
 typedef struct wishes {
 	nt_only only;
@@ -46,15 +48,19 @@ static bool any_has_texcoords(const nt_scene *scene)
 	return any;
 }
 
-/* glTF's materials say what needs tangents. Meshes of other formats should all have them; where others of the file can,
- * that one cannot may be meant. */
+/* A glTF whose material looks a map up with coordinates that are not there is wrong; what is made of other formats is
+ * without the map. Where no material asks for tangents, a scan say, nobody misses them, but where other meshes of the
+ * file have coordinates, that this one has none may not be meant. */
 static void report_no_texcoords(nt_scene *scene, const nt_mesh *mesh, bool others_have)
 {
-	if (!needs_tangents(mesh) && nt_format_is_gltf(scene->format))
+	const bool gltf = nt_format_is_gltf(scene->format);
+	char detail[64];
+	if (!needs_tangents(mesh) && gltf)
 		return;
+	snprintf(detail, sizeof detail, "a material needs set %u", mesh->texcoord_set);
 	if (needs_tangents(mesh))
-		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, nt_mesh_place(mesh, &(nt_place){0}), 1,
-			"texture coordinate set %u", mesh->texcoord_set);
+		nt_finding_add_as(&scene->findings, NT_CODE_TAN_NO_UV, gltf ? NT_SEVERITY_ERROR : NT_SEVERITY_WARNING,
+			nt_mesh_place(mesh, &(nt_place){0}), detail);
 	else if (!others_have)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, nt_mesh_place(mesh, &(nt_place){0}), 1,
 			"the file has none at all");

@@ -9,7 +9,7 @@ says "quad.obj: checked, 1 primitive, 1 info"
 says "quad_le.ply: checked, 1 primitive, no findings"
 only
 run --check "$data/plates.gltf"
-says "plates.gltf: checked, 3 primitives, 1 error, 1 warning"
+says "plates.gltf: checked, 3 primitives, 1 error, 4 infos"
 
 scene "findings at or above --fail-on make the exit code 6"
 cp "$data/mirrored_cube.obj" .

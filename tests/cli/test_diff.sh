@@ -45,15 +45,15 @@ scene "new findings decide the exit code, old ones do not"
 squares "1 2 3 4" >old.obj
 sed 's/^vt 1 1$/vt 1 0/' old.obj >flat.obj
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/3/1 3/2/1\n' >lone.obj
-run --check --diff --fail-on=warning old.obj lone.obj
+run --check --diff --fail-on=warning --severity=UV_MIRROR_LONE=warning old.obj lone.obj
 exits 6
 prints "new   warning  UV_MIRROR_LONE"
-run --check --diff --fail-on=warning lone.obj old.obj
+run --check --diff --fail-on=warning --severity=UV_MIRROR_LONE=warning lone.obj old.obj
 exits 0
 prints "gone  warning  UV_MIRROR_LONE"
-run --check --diff --fail-on=warning lone.obj lone.obj
+run --check --diff --fail-on=warning --severity=UV_MIRROR_LONE=warning lone.obj lone.obj
 exits 0
-run --check --diff --report=d.md --fail-on=warning old.obj lone.obj
+run --check --diff --report=d.md --fail-on=warning --severity=UV_MIRROR_LONE=warning old.obj lone.obj
 exits 6
 grep -q '^| warning | `UV_MIRROR_LONE` |' d.md || wrong "no row of the new finding"
 

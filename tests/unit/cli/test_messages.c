@@ -3,7 +3,7 @@
 #include "cli/messages.h"
 #include "test.h"
 
-static const nt_style plain = {false, 0}, verbose = {false, 1}, coloured = {true, 0};
+static const nt_style plain = {false, 0, true}, verbose = {false, 1, true}, coloured = {true, 0, true};
 
 static void says(nt_buffer *out, const char *expected)
 {

@@ -29,8 +29,11 @@ static void decide(const row *r)
 	scene.mesh_count = 1;
 	nt_select(&scene, r->only, r->existing, r->but & MADE_NORMALS);
 	char findings[100] = "";
-	for (size_t i = 0; i < scene.findings.count; i++)
-		strcat(strcat(findings, i ? " " : ""), nt_code_info(scene.findings.items[i].code)->name);
+	for (size_t i = 0; i < scene.findings.count; i++) {
+		const nt_finding *found = &scene.findings.items[i];
+		strcat(strcat(findings, i ? " " : ""), nt_severity_name(nt_finding_severity(found)));
+		strcat(strcat(findings, " "), nt_code_info(found->code)->name);
+	}
 	nt_finding_list_free(&scene.findings);
 	if (mesh.decision != r->expected || strcmp(findings, r->findings) != 0)
 		fail_msg("slots %u, but %u: %s; %s", r->slots, r->but, nt_decision_text(mesh.decision), findings);
@@ -58,7 +61,8 @@ static void decisions_are_those_of_the_table(void **state)
 		/* OBJ and PLY get tangents wherever there are texture coordinates */
 		{0, 0, NT_FORMAT_OBJ, AUTO, KEEP, NT_DECISION_SOLVE, ""},
 		{0, 0, NT_FORMAT_PLY, NT_ONLY_NEEDED, KEEP, NT_SKIP_NO_SLOT, ""},
-		{0, BARE, NT_FORMAT_PLY, AUTO, KEEP, NT_SKIP_NO_TEXCOORDS, "TAN_NO_UV"},
+		{0, BARE, NT_FORMAT_PLY, AUTO, KEEP, NT_SKIP_NO_TEXCOORDS, "info TAN_NO_UV"},
+		{N, BARE, NT_FORMAT_OBJ, AUTO, KEEP, NT_SKIP_NO_TEXCOORDS, "warning TAN_NO_UV"},
 		{0, BARE, NT_FORMAT_PLY, NT_ONLY_NEEDED, KEEP, NT_SKIP_NO_SLOT, ""},
 		/* existing tangents are kept, repaired or replaced; not lost where they cannot be computed anew */
 		{N, TANGENTS, GLTF, AUTO, KEEP, NT_SKIP_HAS_TANGENTS, ""},
@@ -69,12 +73,14 @@ static void decisions_are_those_of_the_table(void **state)
 		{N, TANGENTS | BARE, GLTF, AUTO, NT_EXISTING_REPLACE, NT_DECISION_REPAIR, ""},
 		{N, TANGENTS | NO_NORMALS, GLTF, AUTO, KEEP, NT_SKIP_HAS_TANGENTS, ""},
 		/* what is needed and lacks is a finding; what is not needed is not worth a word */
-		{N, NO_NORMALS, GLTF, AUTO, KEEP, NT_SKIP_NO_NORMALS, "TAN_NO_NORMAL"},
+		{N, NO_NORMALS, GLTF, AUTO, KEEP, NT_SKIP_NO_NORMALS, "warning TAN_NO_NORMAL"},
 		{N, NO_NORMALS | MADE_NORMALS, GLTF, AUTO, KEEP, NT_DECISION_SOLVE, ""},
-		{N, NO_NORMALS | BARE, GLTF, AUTO, KEEP, NT_SKIP_NO_TEXCOORDS, "TAN_NO_UV TAN_NO_NORMAL"},
+		{N, NO_NORMALS | BARE, GLTF, AUTO, KEEP, NT_SKIP_NO_TEXCOORDS,
+			"error TAN_NO_UV warning TAN_NO_NORMAL"},
 		{0, NO_NORMALS | BARE, GLTF, NT_ONLY_ALL, KEEP, NT_SKIP_NO_TEXCOORDS, ""},
 		/* so are slots that want different sets */
-		{N | NT_SLOT_ANISOTROPY, CONFLICT, NT_FORMAT_GLB, AUTO, KEEP, NT_DECISION_SOLVE, "TAN_UVSET_CONFLICT"},
+		{N | NT_SLOT_ANISOTROPY, CONFLICT, NT_FORMAT_GLB, AUTO, KEEP, NT_DECISION_SOLVE,
+			"warning TAN_UVSET_CONFLICT"},
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		decide(&rows[i]);
