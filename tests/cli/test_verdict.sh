@@ -170,14 +170,14 @@ run -q --check --fail-on=never --report=r.sarif --path-prefix='my art/' "$PWD/..
 is "$(value r.sarif '" ".join(sorted({x["locations"][0]["physicalLocation"]["artifactLocation"]["uri"]
 	for x in r["runs"][0]["results"]}))')" "my%20art/b/m.obj my%20art/m.obj"
 run -q --check --fail-on=never --report=one.json ../a/m.obj
-run --check --fail-on=warning --baseline=one.json ../a/m.obj ../a/b/m.obj
+run --check --fail-on=info --baseline=one.json ../a/m.obj ../a/b/m.obj
 exits 6
 says_not "m.obj and"
 cd ..
 run -q --check --fail-on=never --path-prefix=art --report=one.json a/m.obj
-run --check --fail-on=warning --baseline=one.json --path-prefix=art a/m.obj
+run --check --fail-on=info --baseline=one.json --path-prefix=art a/m.obj
 exits 0
-run --check --fail-on=warning --baseline=one.json --path-prefix=art a/m.obj a/b/m.obj
+run --check --fail-on=info --baseline=one.json --path-prefix=art a/m.obj a/b/m.obj
 exits 6
 run --path-prefix=art a/m.obj a.glb
 exits 1
@@ -195,10 +195,10 @@ for name in renamed dropped moved; do
 		"$name $([ $name = moved ] && echo '[True, True]' || echo '[False, False]')"
 	cp old.obj kept
 	cp $name old.obj
-	run --check --fail-on=warning --baseline=old.json old.obj
+	run --check --fail-on=info --baseline=old.json old.obj
 	exits $([ $name = moved ] && echo 6 || echo 0)
 	mv old.obj new.obj
-	run --check --fail-on=warning --baseline=old.json new.obj
+	run --check --fail-on=info --baseline=old.json new.obj
 	exits $([ $name = moved ] && echo 6 || echo 0)
 	mv kept old.obj
 done
