@@ -526,12 +526,20 @@ static nmtan_status pair_as_published(const nt_welded_mesh *m, const nt_grid *gr
 	return status;
 }
 
+/* The last run has three edges or more where its order matters, and one of each of its triangles: the largest lower end
+ * is the middle one of its triangles' representatives, since another edge has a larger lower end where it is the least. */
+enum { LEAST_TRIANGLES = 3 };
+
 /* Asks whether the order matters; `count` receives the edges of the run, or 0. */
 static nmtan_status ask(const nt_welded_mesh *m, nt_grid *grid, size_t *count, bool *limit)
 {
 	question q = {.mesh = m};
 	if (!nt_grid_make(m, NULL, &q.grid) && !make_grid_of_used(&q))
 		return NMTAN_ERROR_MEMORY;
+	if (m->triangle_count < LEAST_TRIANGLES) {
+		*limit = q.limit;
+		return NMTAN_OK;
+	}
 	const nt_scratch_mark mark = nt_scratch_here(m->scratch);
 	for (size_t triangles = FIRST_TRIANGLES; !q.run && !q.limit; triangles *= MORE) {
 		nt_scratch_back(m->scratch, mark);
