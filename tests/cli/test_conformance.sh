@@ -56,11 +56,11 @@ done
 mkdir none
 ! score none || wrong "nothing passes"
 
-# Lambert's law for each texel of each strip, B per pixel; a renderer that is right, and four that are not.
-scene "the card shows PASS to those who are right and FAIL to others"
+# Lambert's law for each texel of each strip; renderers that do as the card's page says, and those that do not.
+scene "the card says what a renderer does"
 make_kit
-is "$(PYTHONDONTWRITEBYTECODE=1 python3 - "$kit" <<'PY'
-import json, struct, sys, zlib
+PYTHONDONTWRITEBYTECODE=1 python3 - "$kit" >card.txt <<'PY'
+import json, math, struct, sys, zlib
 sys.path.insert(0, sys.argv[1])
 import kit
 data = open("kit/card.glb", "rb").read()
@@ -78,32 +78,59 @@ image = blob[view["byteOffset"]:view["byteOffset"] + view["byteLength"]]
 raw = zlib.decompress(image[image.index(b"IDAT") + 4:])
 width, height = struct.unpack(">II", image[16:24])
 
+def unit(v):
+	size = math.sqrt(sum(c * c for c in v))
+	return [c / size for c in v]
+
 def shade(strip, renderer, x, y):
 	p = g["meshes"][strip]["primitives"][0]["attributes"]
-	uv, t = rows(p["TEXCOORD_0"], 2), rows(p["TANGENT"], 4)[0]
-	u, v = (uv[0][i] + x * (uv[1][i] - uv[0][i]) + y * (uv[3][i] - uv[0][i]) for i in (0, 1))
+	place, uv, n, t = (rows(p[k], w) for k, w in (("POSITION", 3), ("TEXCOORD_0", 2), ("NORMAL", 3), ("TANGENT", 4)))
+	if renderer in ("no w", "no tangents"):
+		t = [(*row[:3], 1) for row in t]
+	if renderer == "no tangents":
+		t = [(1, 0, 0, 1)] * len(t)
+	# corners of the quad that x is in: left and right below, right and left above
+	first = 4 * (len(uv) > 4 and x > 0.5)
+	left, right = ((place[first + i][0] + 2) / 4 for i in (0, 1))
+	x = (x - left) / (right - left)
+	weights = ((1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y)
+	mixed = lambda values: [sum(w * values[first + i][k] for i, w in enumerate(weights)) for k in range(len(values[0]))]
+	u, v = mixed(uv)
 	at = int(v * height) * (3 * width + 1) + 1 + 3 * int(u * width)
-	n = [c / 127.5 - 1 for c in raw[at:at + 3]]
+	m = [c / 127.5 - 1 for c in raw[at:at + 3]]
 	if renderer == "green down":
-		n[1] = -n[1]
-	tangent = (1, 0) if renderer == "no tangents" else t[:2]
-	w = t[3] if renderer in ("right", "green down") else 1
-	normal = (n[0] * tangent[0] - n[1] * w * tangent[1], n[0] * tangent[1] + n[1] * w * tangent[0], n[2])
-	return max(0, sum(a * b for a, b in zip(normal, kit.LIGHT)))
+		m[1] = -m[1]
+	b = [[row[3] * c for c in kit.cross(n[i], row)] for i, row in enumerate(t)]
+	n, t, b = mixed(n), mixed(t), mixed(b)
+	if not renderer.startswith("by vertex"):
+		b = [t[3] * c for c in kit.cross(n, t)]
+	if renderer.endswith("units"):
+		n, t, b = unit(n), unit(t[:3]), unit(b)
+	return max(0, sum(a * c for a, c in zip(kit.combined((t, b, n), m), kit.LIGHT)))
 
 def reads(strip, renderer):
-	"""The word whose every dot differs from the ground around it, where the other one's do not."""
+	"""The word whose every dot is brighter than the ground around it; "?" where the other one can be seen."""
 	seen = ""
 	for begin, word in ((5, "PASS"), (37, "FAIL")):
-		dots = [shade(strip, renderer, (begin + 6 * k + at % 5 + .5) / 64, 1 - (4 + at // 5 + .5) / 16)
-			for k, letter in enumerate(word) for at, dot in enumerate(kit.FONT[letter]) if dot == "#"]
-		ground = shade(strip, renderer, .5, .5)
-		seen += word * (min(dots) > ground + .5) + "?" * (ground + .05 < max(dots) < ground + .5)
+		dots, ground = [], []
+		for k, letter in enumerate(word):
+			for at, dot in enumerate(kit.FONT[letter]):
+				(dots if dot == "#" else ground).append(
+					shade(strip, renderer, (begin + 6 * k + at % 5 + .5) / 64, 1 - (4 + at // 5 + .5) / 16))
+		seen += word if min(dots) > max(ground) + .2 else "?" * (max(dots) > max(ground) + .05)
 	return seen
 
-for renderer in ("right", "green down", "no w", "no tangents"):
-	print(renderer + ":", *(reads(strip, renderer) for strip in range(3)), end=". ")
+for renderer in ("right", "by vertex", "units", "by vertex, units"):
+	print(renderer + ":", *(reads(strip, renderer) for strip in range(5)))
+for renderer in ("green down", "no w", "no tangents"):
+	print(renderer + ":", *(reads(strip, renderer) for strip in range(3)))
 PY
-)" "right: PASS PASS PASS. green down: FAIL FAIL FAIL. no w: PASS FAIL PASS. no tangents: PASS PASS FAIL. "
+is "$(cat card.txt)" "right: PASS PASS PASS PASS PASS
+by vertex: PASS PASS PASS FAIL PASS
+units: PASS PASS PASS PASS FAIL
+by vertex, units: PASS PASS PASS FAIL FAIL
+green down: FAIL FAIL FAIL
+no w: PASS FAIL PASS
+no tangents: PASS PASS FAIL"
 
 done_testing

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 #
 # tests/soak/conformance.sh BUILD_DIR...: the answers of the conformance kit against mikktspace.c as published, which
-# lies in the folder that $MIKKTSPACE names; the card in three.js, right and with each mistake; and what other programs
-# that are here score: build/conformance-results.md. ($GLTFPACK and $BLENDER name theirs.)
+# lies in the folder that $MIKKTSPACE names; the card in three.js, right and with each mistake, and in Babylon.js; and
+# what other programs that are here score: build/conformance-results.md. ($GLTFPACK, $BLENDER and $ASSIMP name theirs.)
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 status=0 build=$1
@@ -13,13 +13,24 @@ else
 	echo "conformance.sh: \$MIKKTSPACE names no folder that has mikktspace.c, nothing was compared"
 fi
 make -s conformance build/clients/node_modules/three/package.json build/node/node_modules/gltf-validator/package.json
-node tests/conformance/card.mjs build/conformance/card.glb build build/conformance.png || status=1
+babylon=build/babylon/node_modules
+[ -d $babylon/babylonjs-loaders ] || npm install --prefix build/babylon --no-save --ignore-scripts --no-audit --no-fund \
+	--loglevel=error babylonjs@9.35.0 babylonjs-loaders@9.28.0 >/dev/null || babylon=
+node tests/conformance/card.mjs build/conformance/card.glb build build/conformance.png $babylon >build/conformance-card.txt ||
+	status=1
+cat build/conformance-card.txt
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 page=build/conformance-results.md
 kit=build/conformance
-printf '# The conformance kit\n\n![the card in three.js](conformance.png)\n\n| program | published | sorted | fails (published) |\n|---|---|---|---|\n' >$page
+{
+	printf '# The conformance kit\n\n'
+	grep ', as it is' build/conformance-card.txt | sed 's/.*/The card in &./'
+	printf '\n![the card in three.js](conformance.png) '
+	[ -z "$babylon" ] || printf '![the card in Babylon.js](conformance-babylon.png)'
+	printf '\n\n| program | published | sorted | fails (published) |\n|---|---|---|---|\n'
+} >$page
 
 # peer NAME COMMAND: runs it with $out, and appends a row.
 peer() {
@@ -36,12 +47,17 @@ peer() {
 each='for f in $kit/[!c]*.glb; do'
 peer nmtan "$build/nmtan -q -d \$out $kit/[!c]*.glb"
 peer nmtan_sorted "$build/nmtan -q --method=mikktspace-sorted -d \$out $kit/[!c]*.glb"
-peer gltf_transform 'node tests/conformance/peers.mjs build/clients $kit $out'
+for name in mikktspace three three-lengyel meshoptimizer meshoptimizer-compatible; do
+	peer $name "node tests/conformance/peers.mjs $name build/clients/node_modules \$kit \$out"
+done
 if gltfpack=$(command -v "${GLTFPACK:-gltfpack}"); then
 	peer gltfpack "$each $gltfpack -noq -kn -km -kv -gt -i \$f -o \$out/\${f##*/}; done"
 fi
 if blender=$(command -v "${BLENDER:-blender}"); then
 	peer blender "$blender -b --factory-startup --python tests/conformance/blender.py -- \$kit \$out"
+fi
+if assimp=$(command -v "${ASSIMP:-assimp}"); then
+	peer assimp "for f in \$kit/*.obj; do $assimp export \$f \$out/\$(basename \$f .obj).glb -fglb2 -cts; done"
 fi
 cat $page
 grep -q '/nmtan -q -d .*` | 12 passed, 0 failed | 11 passed, 1 failed | |$' $page || status=1
