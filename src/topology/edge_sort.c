@@ -526,8 +526,8 @@ static nmtan_status pair_as_published(const nt_welded_mesh *m, const nt_grid *gr
 	return status;
 }
 
-/* The last run has three edges or more where its order matters, and one of each of its triangles: the largest lower end
- * is the middle one of its triangles' representatives, since another edge has a larger lower end where it is the least. */
+/* Where the order of the last run matters, it has three edges or more, one of each of its triangles: the largest lower
+ * end is the middle one of their representatives, since another edge has a larger lower end where it is the least. */
 enum { LEAST_TRIANGLES = 3 };
 
 /* Asks whether the order matters; `count` receives the edges of the run, or 0. */
