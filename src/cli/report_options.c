@@ -79,6 +79,7 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 		[NT_FAIL_ON_WARNING] = NT_SEVERITY_WARNING, [NT_FAIL_ON_INFO] = NT_SEVERITY_INFO,
 		[NT_FAIL_ON_NEVER] = NT_SEVERITY_ERROR + 1};
 	target->style.least_failure = least[c->fail_on];
+	target->style.options = &plan->options;
 	/* who names a format wants to see it */
 	if (!target->path && c->settings.check && (c->verbosity >= 0 || c->report_format))
 		target->path = "-";

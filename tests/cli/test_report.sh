@@ -225,14 +225,42 @@ is "$(value r.sarif 'r["runs"][0]["invocations"][0]["executionSuccessful"]')" Fa
 is "$(value r.sarif 'r["runs"][0]["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"]')" \
 	"odd%20name%3F.obj"
 
+scene "SARIF is what the official schema says"
+official=$ROOT/build/node/node_modules/@microsoft/jest-sarif/lib/schemas/sarif-2.1.0-rtm.5.json
+if [ -f "$official" ]; then
+	nasty 'a"b\\<c>' >'odd name?.obj'
+	run -q --check --report=old.json 'odd name?.obj'
+	run -q --check --fail-on=never --baseline=old.json --report=r.sarif "$data/plates.gltf" 'odd name?.obj' nothing.obj
+	python3 "$report/schema.py" "$official" r.sarif || wrong "$(python3 "$report/schema.py" "$official" r.sarif)"
+	for wrong in 's/"level": "error"/"level": "bad"/' 's,odd%20,odd ,' 's,man:nmtan,a page of nmtan,' \
+		's/"text": /"words": /'; do
+		sed "$wrong" r.sarif >wrong.sarif
+		! python3 "$report/schema.py" "$official" wrong.sarif >/dev/null || wrong "the schema takes it: $wrong"
+	done
+else
+	skip_case "the schema is not installed (no network?)"
+fi
+
 scene "JUnit fails where the run fails, file by rule"
 run --check --severity=UV_MIRROR_SEAM=warning --fail-on=warning --report=r.xml "$data/head.obj" "$data/quad.obj"
 exits 6
 is "$(python3 -c 'import sys, xml.etree.ElementTree as x
 t = x.parse(sys.argv[1]).getroot()
 print([(s.get("name").split("/")[-1], s.get("failures"), [c.get("name") for c in s if c.find("failure") is not None])
-	for s in t], len(t[0]) == len(t[1]) == int(t[0].get("tests")))' r.xml)" \
+	for s in t], len(t[0]) - 1 == len(t[1]) - 1 == int(t[0].get("tests")))' r.xml)" \
 	"[('head.obj', '1', ['UV_MIRROR_SEAM']), ('quad.obj', '0', [])] True"
+# the cases are what can fail: errors here, and what was made one
+cases() {
+	python3 -c 'import sys, xml.etree.ElementTree as x
+print(*sorted(c.get("name") for c in x.parse(sys.argv[1]).getroot()[0] if c.tag == "testcase"))' r.xml
+}
+errors=$("$NMTAN" --list-codes | awk '$2 == "error" { print $1 }')
+run --check --severity=UV_MIRROR_SEAM=error --ignore="$(echo $errors | cut -d' ' -f1)" --report=r.xml "$data/quad.obj"
+is "$(cases)" "$(echo $(printf '%s\n' UV_MIRROR_SEAM 'can be read' $(echo $errors | cut -d' ' -f2-) | LC_ALL=C sort))"
+run --check --fail-on=never --report=r.xml "$data/head.obj" nothing.obj
+is "$(cases)" "can be read"
+grep -q 'errors="1"' r.xml || wrong "no error for a file that is not there"
+grep -q "UV_MIRROR_SEAM: .*, in " r.xml || wrong "what fails nothing is not told"
 run --check --report=r.xml "$data/head.obj"
 exits 0
 ! grep -q "<failure" r.xml || wrong "a failure although the run passes"

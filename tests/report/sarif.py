@@ -49,6 +49,8 @@ def main():
     need(len(set(ids)) == len(ids), 'rules are not unique')
     for rule in driver['rules']:
         need(rule['shortDescription']['text'] and rule['fullDescription']['text'] and rule['help']['text'], rule['id'])
+        need(rule['help']['markdown'] and re.match(r'[a-z]+:', rule['helpUri']), rule['id'])
+        need(len(rule['shortDescription']['text']) <= len(rule['fullDescription']['text']), rule['id'])
         need(rule['defaultConfiguration']['level'] in LEVELS, rule['id'])
     need(len(run['results']) <= 5000, 'too many results')
     for result in run['results']:

@@ -20,11 +20,24 @@ TYPES = {
     'integer': lambda v: isinstance(v, int) and not isinstance(v, bool),
 }
 KNOWN = {'$schema', '$defs', '$ref', 'title', 'description', 'type', 'enum', 'const', 'properties', 'required',
-         'additionalProperties', 'items', 'minItems', 'maxItems', 'minimum', 'pattern'}
+         'additionalProperties', 'items', 'minItems', 'maxItems', 'minimum', 'pattern',
+         # of draft-04, as SARIF's schema has them
+         'id', 'definitions', 'default', 'format', 'maximum', 'anyOf', 'oneOf', 'uniqueItems'}
+FORMATS = {
+    'uri': r"[A-Za-z][A-Za-z0-9+.-]*:(?:[A-Za-z0-9._~:/?#\[\]@!$&'()*+,;=-]|%[0-9A-Fa-f]{2})*",
+    'uri-reference': r"(?:[A-Za-z0-9._~:/?#\[\]@!$&'()*+,;=-]|%[0-9A-Fa-f]{2})*",
+    'date-time': r'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(?:\.\d+)?(?:Z|[+-]\d\d:\d\d)',
+}
 
 
 def same(a, b):
     return type(a) is type(b) and a == b
+
+
+def fits(root, schema, value, path):
+    faults = []
+    check(root, schema, value, path, faults)
+    return not faults
 
 
 def check(root, schema, value, path, faults):
@@ -47,8 +60,19 @@ def check(root, schema, value, path, faults):
         faults.append('%s: is %s, expected %s' % (path, value, schema['const']))
     if 'pattern' in schema and isinstance(value, str) and not re.search(schema['pattern'], value):
         faults.append('%s: %s does not match' % (path, value))
+    if 'format' in schema and isinstance(value, str) and not re.fullmatch(FORMATS[schema['format']], value):
+        faults.append('%s: %s is no %s' % (path, value, schema['format']))
+    for word, right in (('anyOf', lambda n: n >= 1), ('oneOf', lambda n: n == 1)):
+        if word in schema and not right(sum(fits(root, part, value, path) for part in schema[word])):
+            faults.append('%s: does not fit %s' % (path, word))
+    if 'maximum' in schema and TYPES['number'](value) and value > schema['maximum']:
+        faults.append('%s: %s is too large' % (path, value))
     if 'minimum' in schema and TYPES['number'](value) and value < schema['minimum']:
         faults.append('%s: %s is too small' % (path, value))
+    if schema.get('uniqueItems') and isinstance(value, list):
+        texts = [json.dumps(element, sort_keys=True) for element in value]
+        if len(set(texts)) != len(texts):
+            faults.append('%s: has an element twice' % path)
     if isinstance(value, dict):
         properties = schema.get('properties', {})
         for name in schema.get('required', []):
@@ -59,6 +83,8 @@ def check(root, schema, value, path, faults):
                 check(root, properties[name], member, path + '/' + name, faults)
             elif schema.get('additionalProperties', True) is False:
                 faults.append('%s: %s is not foreseen' % (path, name))
+            elif isinstance(schema.get('additionalProperties'), dict):
+                check(root, schema['additionalProperties'], member, path + '/' + name, faults)
     if isinstance(value, list):
         if not schema.get('minItems', 0) <= len(value) <= schema.get('maxItems', len(value)):
             faults.append('%s: has %d elements' % (path, len(value)))

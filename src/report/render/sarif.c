@@ -39,6 +39,41 @@ static void put_uri(const char *path, nt_buffer *out)
 	nt_buffer_text(out, "\"");
 }
 
+/* A text in Markdown, under a heading. */
+static void append_part(const char *heading, const char *text, nt_buffer *out)
+{
+	nt_buffer_format(out, "%s**%s**\n\n", out->size ? "\n\n" : "", heading);
+	nt_markdown_text(text, out);
+}
+
+static void put_help(const nt_code_row *row, nt_buffer *out)
+{
+	nt_buffer markdown = {0};
+	append_part("What it is", row->meaning, &markdown);
+	append_part("What to do", row->remedy, &markdown);
+	append_part("The smallest example", row->example, &markdown);
+	nt_buffer_text(out, "\"help\": {");
+	put_text("text", row->remedy, out);
+	nt_buffer_text(out, ", ");
+	put_text("markdown", markdown.data ? markdown.data : "", out);
+	nt_buffer_text(out, "}");
+	nt_buffer_free_into(&markdown, out);
+}
+
+/* The first sentence of the meaning, and all of it. */
+static void put_descriptions(const nt_code_row *row, nt_buffer *out)
+{
+	const char *stop = strstr(row->meaning, ". ");
+	nt_buffer first = {0};
+	nt_buffer_append(&first, row->meaning, stop ? (size_t)(stop - row->meaning) + 1 : strlen(row->meaning));
+	nt_buffer_text(out, "\"shortDescription\": {");
+	put_text("text", first.data ? first.data : "", out);
+	nt_buffer_text(out, "}, \"fullDescription\": {");
+	put_text("text", row->meaning, out);
+	nt_buffer_text(out, "}");
+	nt_buffer_free_into(&first, out);
+}
+
 static void put_rules(nt_buffer *out)
 {
 	nt_buffer_text(out, "\t\t\t\t\"rules\": [");
@@ -46,14 +81,13 @@ static void put_rules(nt_buffer *out)
 		const nt_code_row *row = nt_code_info((nt_code)i);
 		nt_buffer_format(out, "%s\n\t\t\t\t\t{", i ? "," : "");
 		put_text("id", row->name, out);
-		nt_buffer_text(out, ", \"shortDescription\": {");
-		put_text("text", row->name, out);
-		nt_buffer_text(out, "}, \"fullDescription\": {");
-		put_text("text", row->meaning, out);
-		nt_buffer_text(out, "}, \"help\": {");
-		put_text("text", row->remedy, out);
-		nt_buffer_format(out, "}, \"defaultConfiguration\": {\"level\": \"%s\"}}",
-			level_of(row->severity));
+		nt_buffer_text(out, ", ");
+		put_descriptions(row, out);
+		nt_buffer_text(out, ", ");
+		put_help(row, out);
+		/* where the program is, its manual is */
+		nt_buffer_format(out, ", \"helpUri\": \"man:nmtan-report(5)\", "
+			"\"defaultConfiguration\": {\"level\": \"%s\"}}", level_of(row->severity));
 	}
 	nt_buffer_text(out, "\n\t\t\t\t]\n");
 }
@@ -104,8 +138,11 @@ static void put_result(const nt_report *report, const nt_report_finding *finding
 	put_text("text", finding->message, out);
 	nt_buffer_text(out, "},\n\t\t\t\t");
 	put_location(report, finding, out);
-	nt_buffer_format(out, ",\n\t\t\t\t\"partialFingerprints\": {\"nmtan/v1\": \"%016llx\"}",
+	nt_buffer_format(out, ",\n\t\t\t\t\"partialFingerprints\": {\"nmtan/v1\": \"%016llx\"",
 		(unsigned long long)finding->fingerprint);
+	if (finding->geometry)
+		nt_buffer_format(out, ", \"geometry/v1\": \"%016llx\"", (unsigned long long)finding->geometry);
+	nt_buffer_text(out, "}");
 	if (has_baseline)
 		nt_buffer_format(out, ", \"baselineState\": \"%s\"", finding->known ? "unchanged" : "new");
 	nt_buffer_format(out, ", \"occurrenceCount\": %zu, \"properties\": {", finding->count);

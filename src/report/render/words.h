@@ -11,6 +11,7 @@
 typedef struct nt_report_style {
 	bool colour;       /* text: for a terminal */
 	int least_failure; /* JUnit: the nt_severity from which on a finding is a failure; 3: none */
+	const nt_report_options *options; /* JUnit: which severities codes have; NULL: the table's */
 	const char *index; /* HTML: the page that lists all files, as a URI; beside it are the parts that pages share.
 	                      NULL: there is none but this one */
 } nt_report_style;
