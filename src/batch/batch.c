@@ -89,7 +89,7 @@ static nt_status run_if_needed(progress *p, nt_job *job)
 	const nt_batch_options *options = p->options;
 	nt_outcome *outcome = job->outcome;
 	nt_settings own = *p->settings;
-	nt_update_job updated;
+	nt_update_job updated = {0};
 	bool current = false;
 	nt_status status = NT_OK;
 	nt_error_clear(&outcome->error);
@@ -101,7 +101,9 @@ static nt_status run_if_needed(progress *p, nt_job *job)
 	if (status || current)
 		return status;
 	nt_trace_free(&outcome->summary.trace);
-	return run_with_memory(p, job, &own);
+	status = run_with_memory(p, job, &own);
+	nt_update_done(&updated, status == NT_OK, &outcome->summary.trace);
+	return status;
 }
 
 static void tell(progress *p, nt_job *ended)

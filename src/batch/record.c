@@ -5,10 +5,12 @@
 #include "batch/record.h"
 
 #include <inttypes.h>
+#include <limits.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/buffer.h"
 #include "batch/record_file.h"
@@ -16,6 +18,7 @@
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
+#include "file/way.h"
 #include "json/json.h"
 #include "nmtan.h"
 #include "report/render/words.h"
@@ -32,29 +35,31 @@ enum { KNOWN_FOLDERS = 4 };
 struct nt_record {
 	nt_record_file file;
 	char *folder; /* absolute, links resolved */
+	bool tidy;
 	pthread_mutex_t lock; /* of what follows */
 	struct {
 		char *spelled, *real;
-	} known[KNOWN_FOLDERS]; /* folders as they were spelled lately, and where they are */
+		nt_buffer links; /* on the way to it, as in a line, each with a comma behind */
+	} known[KNOWN_FOLDERS];	 /* folders as they were spelled lately, and where they are */
 	size_t oldest;
+	nt_buffer renewed; /* lines */
 };
 
 /* ---- names ---- */
 
-/* What is below a file, and so will never be there, is where it is spelled. */
-static nt_status find_folder(nt_buffer *folder, const char *path, nt_error *error)
+typedef struct link_list {
+	const nt_record *record;
+	nt_buffer text;
+} link_list;
+
+static void add_link(void *user, const char *path, const char *target)
 {
-	nt_status status = nt_link_folder(folder, path, error);
-	if (status == NT_ERROR_MISSING) {
-		folder->size = 0;
-		status = nt_path_absolute(folder, path, error);
-		const char *slash = status ? NULL : strrchr(folder->data, '/');
-		if (slash && slash > folder->data)
-			folder->data[folder->size = (size_t)(slash - folder->data)] = '\0';
-	}
-	if (status)
-		nt_buffer_free(folder);
-	return status;
+	link_list *list = user;
+	nt_buffer_text(&list->text, "{\"uri\":\"");
+	nt_link_uri(&list->text, list->record->folder, path);
+	nt_buffer_text(&list->text, "\",\"to\":\"");
+	nt_uri_append_path(&list->text, target);
+	nt_buffer_text(&list->text, "\"},");
 }
 
 /* Which of the known folders has this spelling; KNOWN_FOLDERS: none. */
@@ -71,22 +76,46 @@ static size_t find_known(const nt_record *record, const char *path, size_t lengt
 static nt_status make_known(nt_record *record, const char *path, size_t length, size_t *found, nt_error *error)
 {
 	nt_buffer real = {0};
-	const nt_status status = find_folder(&real, path, error);
-	char *spelled = status ? NULL : strndup(path, length);
-	if (!spelled) {
+	link_list links = {.record = record};
+	char *spelled = strndup(path, length);
+	nt_status status = spelled ? nt_way_follow(&real, spelled, add_link, &links, error)
+				   : nt_fail_memory(error);
+	if (!status && links.text.failed)
+		status = nt_fail_memory(error);
+	if (status) {
+		free(spelled);
 		nt_buffer_free(&real);
-		return status ? status : nt_fail_memory(error);
+		nt_buffer_free(&links.text);
+		return status;
 	}
 	*found = record->oldest++ % KNOWN_FOLDERS;
 	free(record->known[*found].spelled);
 	free(record->known[*found].real);
+	nt_buffer_free(&record->known[*found].links);
 	record->known[*found].spelled = spelled;
 	record->known[*found].real = real.data;
+	record->known[*found].links = links.text;
 	return NT_OK;
 }
 
-/* Where the folder of a path is; neighbours mostly have the same. Appended. */
-static nt_status append_folder(nt_record *record, const char *path, nt_buffer *real, nt_error *error)
+/* Adds those that are not there yet. */
+static void append_links(nt_buffer *links, const nt_buffer *more)
+{
+	for (const char *link = more->data; link && *link;) {
+		const char *end = strchr(link, ',');
+		while (end[-1] != '}') /* between the members */
+			end = strchr(end + 1, ',');
+		const size_t length = (size_t)(end - link) + 1;
+		if (!links->data || !memmem(links->data, links->size, link, length))
+			nt_buffer_append(links, link, length);
+		link += length;
+	}
+}
+
+/* Where the folder of a path is; neighbours mostly have the same. Appended, as are the links on the way (NULL: not
+ * wanted). */
+static nt_status append_folder(
+	nt_record *record, const char *path, nt_buffer *real, nt_buffer *links, nt_error *error)
 {
 	const char *slash = strrchr(path, '/');
 	const size_t length = slash ? (size_t)(slash - path) + 1 : 0;
@@ -95,16 +124,19 @@ static nt_status append_folder(nt_record *record, const char *path, nt_buffer *r
 	const nt_status status = at < KNOWN_FOLDERS ? NT_OK : make_known(record, path, length, &at, error);
 	if (!status)
 		nt_buffer_text(real, record->known[at].real);
+	if (!status && links)
+		append_links(links, &record->known[at].links);
 	pthread_mutex_unlock(&record->lock);
 	return status;
 }
 
 /* Appends the URI of a file from the record's folder on. */
-static nt_status append_uri(nt_record *record, const char *path, nt_buffer *uri, nt_error *error)
+static nt_status append_uri(
+	nt_record *record, const char *path, nt_buffer *uri, nt_buffer *links, nt_error *error)
 {
 	nt_buffer real = {0};
 	const char *slash = strrchr(path, '/');
-	nt_status status = append_folder(record, path, &real, error);
+	nt_status status = append_folder(record, path, &real, links, error);
 	if (!status) {
 		nt_buffer_format(&real, "%s%s", real.size > 1 ? "/" : "", slash ? slash + 1 : path);
 		if (!real.failed)
@@ -118,10 +150,16 @@ static nt_status append_uri(nt_record *record, const char *path, nt_buffer *uri,
 
 /* ---- what a line says ---- */
 
+/* How a file or folder was. */
+typedef struct state {
+	uint64_t modified, changed, inode, noted;
+} state;
+
 typedef struct line_file {
 	nt_buffer path; /* that can be opened */
-	uint64_t size, modified, noted;
-	const char *digest; /* NULL: none; in the line */
+	uint64_t size;
+	state state;
+	const char *digest; /* in the line */
 } line_file;
 
 static bool read_path(const nt_record *record, const nt_json_value *uri, nt_buffer *path)
@@ -135,13 +173,20 @@ static bool read_path(const nt_record *record, const nt_json_value *uri, nt_buff
 	return text != NULL;
 }
 
+static bool read_state(const nt_json_value *value, state *then)
+{
+	return nt_json_get_uint64(nt_json_find(value, "modified"), &then->modified) &&
+	       nt_json_get_uint64(nt_json_find(value, "changed"), &then->changed) &&
+	       nt_json_get_uint64(nt_json_find(value, "inode"), &then->inode) &&
+	       nt_json_get_uint64(nt_json_find(value, "noted"), &then->noted);
+}
+
 static bool read_file(const nt_record *record, const nt_json_value *value, line_file *file)
 {
 	file->digest = nt_json_get_string(nt_json_find(value, "xxh128"), NULL);
-	return read_path(record, nt_json_find(value, "uri"), &file->path) &&
+	return file->digest && read_path(record, nt_json_find(value, "uri"), &file->path) &&
 	       nt_json_get_uint64(nt_json_find(value, "bytes"), &file->size) &&
-	       nt_json_get_uint64(nt_json_find(value, "modified"), &file->modified) &&
-	       nt_json_get_uint64(nt_json_find(value, "noted"), &file->noted);
+	       read_state(value, &file->state);
 }
 
 static bool is_text(const nt_json_value *value, const char *expected)
@@ -150,33 +195,56 @@ static bool is_text(const nt_json_value *value, const char *expected)
 	return text && strcmp(text, expected) == 0;
 }
 
-/* Of a file that was read: who changes it again has no reason to wait. */
-static bool may_have_changed_unseen(uint64_t modified, uint64_t noted)
+static bool is_recent(uint64_t changed, uint64_t noted)
 {
-	const int64_t tick = modified % 1000000000 ? fine_tick : coarse_tick;
-	return (int64_t)(noted - modified) < tick;
+	const int64_t tick = changed % 1000000000 ? fine_tick : coarse_tick;
+	return (int64_t)(noted - changed) < tick;
+}
+
+/* Of what was read: who changes it again has no reason to wait. */
+static bool may_have_changed_unseen(const state *then)
+{
+	return is_recent(then->modified, then->noted) || is_recent(then->changed, then->noted);
+}
+
+static state state_of(const struct stat *info)
+{
+	return (state){(uint64_t)nt_trace_modified(info), (uint64_t)nt_trace_changed(info),
+		(uint64_t)info->st_ino, (uint64_t)nt_trace_now()};
 }
 
 /* ---- looking ---- */
 
 typedef struct look {
-	const nt_record *record;
+	nt_record *record;
 	const nt_making *making;
 	nt_trace *trace;
 	nt_error *error;
+	nt_json *line;
+	bool renewed; /* the line has been changed */
 	line_file file;
 } look;
+
+/* What is the same is so in another state. */
+static void renew(look *l, nt_json_value *value, const state *now)
+{
+	nt_json_set_uint64(l->line, nt_json_put(l->line, value, "modified"), now->modified);
+	nt_json_set_uint64(l->line, nt_json_put(l->line, value, "changed"), now->changed);
+	nt_json_set_uint64(l->line, nt_json_put(l->line, value, "inode"), now->inode);
+	nt_json_set_uint64(l->line, nt_json_put(l->line, value, "noted"), now->noted);
+	l->renewed = true;
+}
 
 static nt_status has_digest(const line_file *file, bool *has, nt_error *error)
 {
 	char digest[NT_DIGEST_TEXT];
 	const nt_status status = nt_digest_of_file(file->path.data, digest, error);
-	*has = !status && file->digest && strcmp(digest, file->digest) == 0;
+	*has = !status && strcmp(digest, file->digest) == 0;
 	return status;
 }
 
 /* Whether a file is as it was; `info` receives how it is. `read`: it is one that was read. */
-static nt_status is_same(look *l, bool read, struct stat *info, bool *same)
+static nt_status is_same(look *l, nt_json_value *value, bool read, struct stat *info, bool *same)
 {
 	const line_file *file = &l->file;
 	*same = false;
@@ -185,12 +253,16 @@ static nt_status is_same(look *l, bool read, struct stat *info, bool *same)
 	nt_status status = nt_lookup_found(file->path.data, info, same, l->error);
 	if (status || !*same)
 		return status;
-	*same = (uint64_t)info->st_size == file->size;
-	const bool by_content = l->making->by == NT_UPDATE_BY_CONTENT && file->digest;
-	if (!by_content)
-		*same = *same && (uint64_t)nt_trace_modified(info) == file->modified;
-	if (*same && (by_content || (read && may_have_changed_unseen(file->modified, file->noted))))
+	const state now = state_of(info);
+	const bool by_content = l->making->by == NT_UPDATE_BY_CONTENT,
+		   touched = now.modified != file->state.modified;
+	const bool unsure = now.changed != file->state.changed || now.inode != file->state.inode ||
+			    (read && may_have_changed_unseen(&file->state));
+	*same = (uint64_t)info->st_size == file->size && (by_content || !touched);
+	if (*same && (by_content || unsure))
 		status = has_digest(file, same, l->error);
+	if (*same && !status && (touched || unsure))
+		renew(l, value, &now);
 	return status;
 }
 
@@ -206,15 +278,15 @@ static bool is_written_too(const nt_json_value *line, const nt_json_value *file)
 
 static nt_status look_at_read(look *l, const nt_json_value *line, bool *same)
 {
-	const nt_json_value *read = nt_json_find(line, "read");
+	nt_json_value *read = nt_json_find(line, "read");
 	nt_status status = NT_OK;
 	*same = nt_json_count(read) > 0;
 	for (size_t i = 0; i < nt_json_count(read) && *same && !status; i++) {
-		const nt_json_value *file = nt_json_at(read, i);
+		nt_json_value *file = nt_json_at(read, i);
 		struct stat info = l->making->input_info;
 		*same = read_file(l->record, file, &l->file);
 		if (*same && !is_written_too(line, file))
-			status = is_same(l, true, &info, same);
+			status = is_same(l, file, true, &info, same);
 		/* the first one is the input, by whatever name */
 		if (*same && i == 0)
 			*same = nt_same_file(&info, &l->making->input_info);
@@ -226,14 +298,14 @@ static nt_status look_at_read(look *l, const nt_json_value *line, bool *same)
 
 static nt_status look_at_written(look *l, const nt_json_value *line, bool *same)
 {
-	const nt_json_value *written = nt_json_find(line, "written");
+	nt_json_value *written = nt_json_find(line, "written");
 	nt_status status = NT_OK;
 	*same = nt_json_count(written) > 0;
 	for (size_t i = 0; i < nt_json_count(written) && *same && !status; i++) {
 		struct stat info;
 		*same = read_file(l->record, nt_json_at(written, i), &l->file);
 		if (*same)
-			status = is_same(l, false, &info, same);
+			status = is_same(l, nt_json_at(written, i), false, &info, same);
 		if (*same && !status && l->trace)
 			nt_trace_written(l->file.path.data, NULL, &info);
 	}
@@ -253,7 +325,82 @@ static nt_status look_at_missing(look *l, const nt_json_value *line, bool *same)
 			return nt_fail_memory(l->error);
 		if (*same)
 			status = nt_lookup_found(l->file.path.data, &info, &found, l->error);
-		*same = *same && !status && !found;
+		*same = *same && !status && !(found && S_ISREG(info.st_mode));
+		if (*same && found && l->trace)
+			nt_trace_missing(l->file.path.data);
+	}
+	return status;
+}
+
+static nt_status look_at_links(look *l, const nt_json_value *line, bool *same)
+{
+	const nt_json_value *links = nt_json_find(line, "links");
+	nt_buffer target = {0};
+	*same = links != NULL;
+	for (size_t i = 0; i < nt_json_count(links) && *same; i++) {
+		char text[PATH_MAX];
+		const nt_json_value *link = nt_json_at(links, i);
+		*same = read_path(l->record, nt_json_find(link, "uri"), &l->file.path);
+		const ssize_t size = *same && !l->file.path.failed
+					     ? readlink(l->file.path.data, text, sizeof text - 1)
+					     : -1;
+		target.size = 0;
+		if (size >= 0) {
+			text[size] = '\0';
+			nt_uri_append_path(&target, text);
+		}
+		*same = size >= 0 && !target.failed &&
+			is_text(nt_json_find(link, "to"), target.data);
+	}
+	const bool failed = target.failed || l->file.path.failed;
+	nt_buffer_free(&target);
+	return failed ? nt_fail_memory(l->error) : NT_OK;
+}
+
+/* Whether a search would find what it has found. */
+static nt_status search_again(look *l, nt_json_value *search, bool *same)
+{
+	struct stat info = {0};
+	state then;
+	char *slash = strrchr(l->file.path.data, '/'), *entry = NULL;
+	const char *found = nt_json_get_string(nt_json_find(search, "found"), NULL);
+	*slash = '\0';
+	if (stat(slash > l->file.path.data ? l->file.path.data : "/", &info) != 0)
+		info = (struct stat){0};
+	const state now = state_of(&info);
+	*same = read_state(search, &then);
+	nt_status status = NT_OK;
+	if (*same && (now.modified != then.modified || now.changed != then.changed ||
+			     now.inode != then.inode || may_have_changed_unseen(&then))) {
+		nt_buffer name = {0};
+		status = nt_lookup_any_case(
+			l->file.path.data, slash + 1, strlen(slash + 1), &entry, l->error);
+		nt_uri_append_path(&name, entry ? entry : "");
+		if (!status && name.failed)
+			status = nt_fail_memory(l->error);
+		*same = !status && (found ? entry && strcmp(name.data, found) == 0 : !entry);
+		if (*same)
+			renew(l, search, &now);
+		nt_buffer_free(&name);
+	}
+	*slash = '/';
+	nt_trace_searched(l->file.path.data, entry, &info);
+	free(entry);
+	return status;
+}
+
+static nt_status look_at_searched(look *l, const nt_json_value *line, bool *same)
+{
+	nt_json_value *searched = nt_json_find(line, "searched");
+	nt_status status = NT_OK;
+	*same = true;
+	for (size_t i = 0; i < nt_json_count(searched) && *same && !status; i++) {
+		nt_json_value *search = nt_json_at(searched, i);
+		*same = read_path(l->record, nt_json_find(search, "uri"), &l->file.path);
+		if (l->file.path.failed)
+			return nt_fail_memory(l->error);
+		if (*same)
+			status = search_again(l, search, same);
 	}
 	return status;
 }
@@ -266,35 +413,55 @@ static nt_status look_at(look *l, const nt_json_value *line, bool *same)
 	if (*same)
 		status = look_at_read(l, line, same);
 	if (!status && *same)
+		status = look_at_links(l, line, same);
+	if (!status && *same)
 		status = look_at_missing(l, line, same);
+	if (!status && *same)
+		status = look_at_searched(l, line, same);
 	if (!status && *same)
 		status = look_at_written(l, line, same);
 	nt_buffer_free(&l->file.path);
 	return status;
 }
 
-nt_status nt_record_look(nt_record *record, const nt_making *making, nt_freshness *freshness, nt_trace *trace,
-	nt_error *error)
+/* For nt_record_close(). */
+static nt_status keep_renewed(look *l)
+{
+	nt_buffer text = {0};
+	nt_status status = nt_json_dump(l->line, &text, l->error);
+	pthread_mutex_lock(&l->record->lock);
+	if (!status)
+		nt_buffer_format(&l->record->renewed, "%.*s\n", (int)text.size, text.data);
+	if (!status && l->record->renewed.failed)
+		status = nt_fail_memory(l->error);
+	pthread_mutex_unlock(&l->record->lock);
+	nt_buffer_free(&text);
+	return status;
+}
+
+nt_status nt_record_look(nt_record *record, const nt_making *making, nt_freshness *freshness,
+	nt_trace *trace, nt_error *error)
 {
 	nt_buffer key = {0};
 	nt_error ignored;
 	size_t length;
 	*freshness = NT_FRESH_UNKNOWN;
-	nt_status status = append_uri(record, making->output, &key, error);
+	nt_status status = append_uri(record, making->output, &key, NULL, error);
 	const char *text = status ? NULL : nt_record_file_find(&record->file, key.data, &length);
 	nt_buffer_free(&key);
 	if (!text)
 		return status;
-	nt_json *line = NULL;
 	*freshness = NT_FRESH_STALE;
-	if (nt_json_parse(&line, text, length, NULL, &ignored))
+	look l = {.record = record, .making = making, .trace = trace, .error = error};
+	if (nt_json_parse(&l.line, text, length, NULL, &ignored))
 		return ignored.status == NT_ERROR_MEMORY ? nt_fail_memory(error) : NT_OK;
 	bool same = false;
-	look l = {.record = record, .making = making, .trace = trace, .error = error};
 	nt_trace *outer = nt_trace_use(trace);
-	status = look_at(&l, nt_json_root(line), &same);
+	status = look_at(&l, nt_json_root(l.line), &same);
 	nt_trace_use(outer);
-	nt_json_free(line);
+	if (!status && same && l.renewed && record->tidy)
+		status = keep_renewed(&l);
+	nt_json_free(l.line);
 	if (!status && trace && trace->failed)
 		status = nt_fail_memory(error);
 	if (!status && same)
@@ -311,84 +478,155 @@ static nt_status digest_of(const nt_trace_file *file, char digest[NT_DIGEST_TEXT
 	struct stat info;
 	const nt_status status = nt_digest_of_file(path, digest, error);
 	*has = !status && digest[0] && stat(path, &info) == 0 && (uint64_t)info.st_size == file->size &&
-		nt_trace_modified(&info) == file->modified;
+		(uint64_t)info.st_ino == file->inode && nt_trace_modified(&info) == file->modified &&
+		nt_trace_changed(&info) == file->changed;
 	return status;
 }
 
-static nt_status append_file(nt_record *record, const nt_trace_file *file, nt_update_by by, nt_buffer *line,
-	bool *known, nt_error *error)
+/* A line on its way. */
+typedef struct writing {
+	nt_record *record;
+	const nt_trace *trace;
+	nt_error *error;
+	nt_buffer text, links;
+	bool known; /* the bytes of all files */
+} writing;
+
+static nt_status append_file(writing *w, const nt_trace_file *file)
 {
 	char digest[NT_DIGEST_TEXT];
-	nt_buffer_text(line, "{\"uri\":\"");
-	nt_status status = append_uri(record, file->path, line, error);
-	nt_buffer_format(line, "\",\"bytes\":%" PRIu64 ",\"modified\":%" PRId64 ",\"noted\":%" PRId64, file->size,
-		file->modified, file->noted);
-	if (!status && (by == NT_UPDATE_BY_CONTENT || (file->kind == NT_TRACE_READ &&
-			       may_have_changed_unseen((uint64_t)file->modified, (uint64_t)file->noted)))) {
-		status = digest_of(file, digest, known, error);
-		if (!status && *known)
-			nt_buffer_format(line, ",\"xxh128\":\"%s\"", digest);
+	nt_buffer *text = &w->text;
+	nt_buffer_text(text, "{\"uri\":\"");
+	nt_status status = append_uri(w->record, file->path, text,
+		file->kind == NT_TRACE_WRITTEN ? NULL : &w->links, w->error);
+	if (file->kind != NT_TRACE_SEARCHED)
+		nt_buffer_format(text, "\",\"bytes\":%" PRIu64, file->size);
+	else
+		nt_buffer_text(text, "\"");
+	nt_buffer_format(text,
+		",\"modified\":%" PRId64 ",\"changed\":%" PRId64 ",\"inode\":%" PRIu64
+		",\"noted\":%" PRId64,
+		file->modified, file->changed, file->inode, file->noted);
+	if (file->found) {
+		nt_buffer_text(text, ",\"found\":\"");
+		nt_uri_append_path(text, file->found);
+		nt_buffer_text(text, "\"");
 	}
-	nt_buffer_text(line, "}");
+	if (!status && file->kind != NT_TRACE_SEARCHED) {
+		status = digest_of(file, digest, &w->known, w->error);
+		if (digest[0])
+			nt_buffer_format(text, ",\"xxh128\":\"%s\"", digest);
+	}
+	nt_buffer_text(text, "}");
 	return status;
 }
 
-static nt_status append_files(nt_record *record, const nt_making *making, const nt_trace *trace, nt_trace_kind kind,
-	nt_buffer *line, bool *known, nt_error *error)
+static nt_status append_files(writing *w, const char *key, nt_trace_kind kind)
 {
+	const nt_trace *trace = w->trace;
 	nt_status status = NT_OK;
 	const char *comma = "";
-	for (size_t i = 0; i < trace->count && !status && *known; i++) {
+	nt_buffer_format(&w->text, ",\"%s\":[", key);
+	const size_t begin = w->text.size;
+	for (size_t i = 0; i < trace->count && !status && w->known; i++) {
 		const nt_trace_file *file = &trace->files[i];
 		if (file->kind != kind)
 			continue;
-		nt_buffer_text(line, comma);
+		nt_buffer_text(&w->text, comma);
 		comma = ",";
 		if (kind == NT_TRACE_MISSING) {
-			nt_buffer_text(line, "\"");
-			status = append_uri(record, file->path, line, error);
-			nt_buffer_text(line, "\"");
+			nt_buffer_text(&w->text, "\"");
+			status = append_uri(w->record, file->path, &w->text, &w->links, w->error);
+			nt_buffer_text(&w->text, "\"");
 		} else {
-			status = append_file(record, file, making->by, line, known, error);
+			status = append_file(w, file);
 		}
 	}
+	if (!w->known && kind == NT_TRACE_WRITTEN && !w->text.failed)
+		w->text.size = begin;
+	nt_buffer_text(&w->text, "]");
 	return status;
 }
 
-/* Of files that changed while they were read the line says that nothing was written, so that it never holds: without a
- * line the times would decide. */
-static nt_status make_line(nt_record *record, const nt_making *making, const nt_trace *trace, nt_buffer *line,
+/* The links that decided something, without a file that was read. */
+static nt_status find_ways(writing *w)
+{
+	const nt_trace *trace = w->trace;
+	nt_buffer real = {0};
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < trace->count && !status; i++) {
+		if (trace->files[i].kind != NT_TRACE_WAY)
+			continue;
+		nt_buffer path = {0};
+		nt_buffer_format(&path, "%s/", trace->files[i].path);
+		status = path.failed
+				 ? nt_fail_memory(w->error)
+				 : append_folder(w->record, path.data, &real, &w->links, w->error);
+		nt_buffer_free(&path);
+	}
+	nt_buffer_free(&real);
+	return status;
+}
+
+/* Of files that changed while they were read the line says that nothing was written, so that it never holds. */
+static nt_status make_line(writing *w, const nt_making *making)
+{
+	static const struct {
+		const char *key;
+		nt_trace_kind kind;
+	} lists[] = {{"read", NT_TRACE_READ}, {"missing", NT_TRACE_MISSING},
+		{"searched", NT_TRACE_SEARCHED}, {"written", NT_TRACE_WRITTEN}};
+	nt_buffer *text = &w->text;
+	nt_buffer_text(text, line_begin);
+	nt_status status = append_uri(w->record, making->output, text, NULL, w->error);
+	nt_buffer_format(text, "\",\"nmtan\":\"%s\",\"options\":", nmtan_version());
+	nt_json_string(making->options, text);
+	for (size_t i = 0; i < sizeof lists / sizeof *lists && !status; i++)
+		status = append_files(w, lists[i].key, lists[i].kind);
+	if (!status)
+		status = find_ways(w);
+	/* each has a comma behind it */
+	nt_buffer_format(text, ",\"links\":[%.*s]}\n", w->links.size ? (int)w->links.size - 1 : 0,
+		w->links.size ? w->links.data : "");
+	return status || !(text->failed || w->links.failed) ? status : nt_fail_memory(w->error);
+}
+
+nt_status nt_record_append(nt_record *record, const nt_making *making, const nt_trace *trace, nt_buffer *line,
 	nt_error *error)
 {
-	bool is_known = !trace->unsure, *known = &is_known;
-	nt_buffer_text(line, line_begin);
-	nt_status status = append_uri(record, making->output, line, error);
-	nt_buffer_format(line, "\",\"nmtan\":\"%s\",\"options\":", nmtan_version());
-	nt_json_string(making->options, line);
-	nt_buffer_text(line, ",\"read\":[");
+	writing w = {.record = record, .trace = trace, .error = error, .known = true};
+	nt_status status = make_line(&w, making);
 	if (!status)
-		status = append_files(record, making, trace, NT_TRACE_READ, line, known, error);
-	nt_buffer_text(line, "],\"missing\":[");
-	if (!status)
-		status = append_files(record, making, trace, NT_TRACE_MISSING, line, known, error);
-	nt_buffer_text(line, "],\"written\":[");
-	const size_t begin = line->size;
-	if (!status)
-		status = append_files(record, making, trace, NT_TRACE_WRITTEN, line, known, error);
-	if (!*known && !line->failed)
-		line->size = begin;
-	nt_buffer_text(line, "]}\n");
-	return status || !line->failed ? status : nt_fail_memory(error);
+		status = nt_record_file_append(&record->file, w.text.data, w.text.size, error);
+	nt_buffer_free(line);
+	*line = w.text;
+	nt_buffer_free(&w.links);
+	return status;
 }
 
-nt_status nt_record_append(nt_record *record, const nt_making *making, const nt_trace *trace, nt_error *error)
+void nt_record_placed(nt_record *record, const nt_buffer *line, const nt_trace *trace)
 {
-	nt_buffer line = {0};
-	nt_status status = make_line(record, making, trace, &line, error);
-	if (!status)
-		status = nt_record_file_append(&record->file, line.data, line.size, error);
-	nt_buffer_free(&line);
-	return status;
+	nt_error ignored; /* without the new state more is read another time, nothing else */
+	look l = {.record = record, .error = &ignored};
+	if (!line->size || nt_json_parse(&l.line, line->data, line->size - 1, NULL, &ignored))
+		return;
+	nt_json_value *written = nt_json_find(nt_json_root(l.line), "written");
+	for (size_t i = 0, at = 0; i < trace->count && at < nt_json_count(written); i++) {
+		const nt_trace_file *file = &trace->files[i];
+		struct stat info;
+		if (file->kind != NT_TRACE_WRITTEN)
+			continue;
+		/* unless somebody else was faster */
+		if (stat(file->path, &info) == 0 && (uint64_t)info.st_ino == file->inode &&
+			(uint64_t)info.st_size == file->size && nt_trace_modified(&info) == file->modified) {
+			const state now = state_of(&info);
+			renew(&l, nt_json_at(written, at), &now);
+		}
+		at++;
+	}
+	if (l.renewed)
+		keep_renewed(&l);
+	nt_json_free(l.line);
 }
 
 /* ---- opening ---- */
@@ -402,6 +640,7 @@ nt_status nt_record_open(nt_record **record, const char *path, bool tidy, nt_err
 	pthread_mutex_init(&made->lock, NULL);
 	nt_status status = nt_link_folder(&folder, path, error);
 	made->folder = folder.data;
+	made->tidy = tidy;
 	if (!status)
 		status = nt_record_file_open(&made->file, path, line_begin, tidy, error);
 	if (status)
@@ -415,12 +654,18 @@ void nt_record_close(nt_record *record)
 {
 	if (!record)
 		return;
+	nt_error ignored; /* without these lines more is read another time, nothing else */
+	if (record->renewed.size && !record->renewed.failed)
+		nt_record_file_append(
+			&record->file, record->renewed.data, record->renewed.size, &ignored);
+	nt_buffer_free(&record->renewed);
 	nt_record_file_close(&record->file);
 	pthread_mutex_destroy(&record->lock);
 	free(record->folder);
 	for (size_t i = 0; i < KNOWN_FOLDERS; i++) {
 		free(record->known[i].spelled);
 		free(record->known[i].real);
+		nt_buffer_free(&record->known[i].links);
 	}
 	free(record);
 }

@@ -7,19 +7,27 @@
  * processes may append at once. Files in it are URIs relative to its folder, so that a tree can be moved with its
  * record. A line is
  *
- *   {"output":"a.glb","nmtan":"0.1.0","options":"--method=area","read":[FILE,...],"missing":["a.mtl"],"written":[FILE]}
+ *   {"output":"a.glb","nmtan":"0.1.0","options":"--method=area","links":[{"uri":"../in","to":"v1"}],
+ *    "read":[FILE,...],"missing":["a.mtl"],"searched":[FOLDER,...],"written":[FILE]}
  *
- * where the first file that was read is the input and FILE is {"uri":"../a.obj","bytes":10,"modified":T,"noted":T}: T
- * are nanoseconds since 1970, and "noted" is when the file was opened. It has "xxh128", the digest of its bytes, where
- * contents are to be compared, and where a file that was read had changed so shortly before that it may have changed
- * again within one tick of its clock.
+ * where the first file that was read is the input and FILE is {"uri":"../v1/a.obj","bytes":10,STATE,"xxh128":D}.
+ * STATE is "modified":T,"changed":T,"inode":N,"noted":T: T are nanoseconds since 1970, of the last change of the bytes,
+ * of that of the inode, and of when the file was opened. Where the state is another one, and where a file that was read
+ * had changed so shortly before that it may have changed again within one tick of its clock, the digests of the bytes
+ * decide; when they are equal, a new line notes the new state.
+ *
+ * URIs go through no links; those that paths went through are in "links". FOLDER is {"uri":"../in/n.png",STATE,
+ * "found":"N.PNG"}: it was searched for the last part of the URI in any case, and is again if its state is another one.
+ * A line without "links" was written by a version that noted less, and holds for nothing.
  *
  * The line is written before the output is renamed. If a run is killed in between, the line does not match the output,
- * which is made again.
+ * which is made again. The rename changes the inode's time, so that another line follows, with all others of its kind,
+ * when the record is closed.
  */
 #ifndef NT_BATCH_RECORD_H
 #define NT_BATCH_RECORD_H
 
+#include "base/buffer.h"
 #include "file/trace.h"
 
 /* Whether two names are of one file. */
@@ -28,7 +36,7 @@ static inline bool nt_same_file(const struct stat *a, const struct stat *b)
 	return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
-/* What is compared beside sizes. */
+/* What is compared beside sizes: the state and, where only the inode changed, digests; or digests alone. */
 typedef enum nt_update_by { NT_UPDATE_BY_TIME, NT_UPDATE_BY_CONTENT } nt_update_by;
 
 typedef struct nt_record nt_record;
@@ -38,7 +46,7 @@ typedef struct nt_record nt_record;
  * folder) or NT_ERROR_MEMORY. */
 nt_status nt_record_open(nt_record **record, const char *path, bool tidy, nt_error *error);
 
-/* NULL is allowed. */
+/* Writes the lines of files that are the same in another state, if `tidy`, as far as that goes. NULL is allowed. */
 void nt_record_close(nt_record *record);
 
 typedef enum nt_freshness {
@@ -60,7 +68,11 @@ typedef struct nt_making {
 nt_status nt_record_look(nt_record *record, const nt_making *making, nt_freshness *freshness, nt_trace *trace,
 	nt_error *error);
 
-/* Appends a line for an output that is complete. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
-nt_status nt_record_append(nt_record *record, const nt_making *making, const nt_trace *trace, nt_error *error);
+/* Appends a line for an output that is complete, and says which. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
+nt_status nt_record_append(nt_record *record, const nt_making *making, const nt_trace *trace, nt_buffer *line,
+	nt_error *error);
+
+/* The output of a line, and what belongs to it, is in place. */
+void nt_record_placed(nt_record *record, const nt_buffer *line, const nt_trace *trace);
 
 #endif

@@ -19,7 +19,7 @@
 #include "file/output.h"
 
 /* Below so many superseded lines nothing is rewritten; how often a file may be replaced while we wait for it. */
-enum { FEW_LINES = 1000, MOST_ATTEMPTS = 100 };
+enum { FEW_LINES = 100, MOST_ATTEMPTS = 100 };
 
 static nt_status fail(const nt_record_file *file, int number, nt_error *error)
 {
@@ -224,7 +224,7 @@ nt_status nt_record_file_open(nt_record_file *file, const char *path, const char
 	if (!file->path)
 		return nt_fail_memory(error);
 	nt_status status = load(file, error);
-	if (!status && tidy && file->superseded_count > FEW_LINES && file->superseded_count > file->line_count)
+	if (!status && tidy && file->superseded_count > FEW_LINES && file->superseded_count > file->line_count / 2)
 		status = rewrite(file, error);
 	return status;
 }

@@ -24,7 +24,7 @@ typedef struct nt_record_file {
 } nt_record_file;
 
 /* Reads a file, which need not be there. Lines that do not begin with the prefix are passed over. With `tidy`, where
- * more lines are superseded than count, the others are written anew. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY;
+ * many lines are superseded, the others are written anew. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY;
  * close it after failure, too. */
 nt_status nt_record_file_open(nt_record_file *file, const char *path, const char *prefix, bool tidy, nt_error *error);
 void nt_record_file_close(nt_record_file *file);

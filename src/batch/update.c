@@ -137,8 +137,15 @@ void nt_update_end(nt_update *update)
 
 static nt_status append(void *user, const nt_trace *trace, nt_error *error)
 {
-	const nt_update_job *job = user;
-	return nt_record_append(job->record, &job->making, trace, error);
+	nt_update_job *job = user;
+	return nt_record_append(job->record, &job->making, trace, &job->line, error);
+}
+
+void nt_update_done(nt_update_job *job, bool well, const nt_trace *trace)
+{
+	if (well && job->record)
+		nt_record_placed(job->record, &job->line, trace);
+	nt_buffer_free(&job->line);
 }
 
 /* What a record can be about: regular files, of which the output need not be there yet. */

@@ -32,12 +32,13 @@ typedef struct nt_update_job {
 	nt_update *update;
 	nt_making making;
 	nt_record *record; /* NULL: the output is a stream, or the input is */
+	nt_buffer line;    /* that was written to it */
 } nt_update_job;
 
 /*
  * Decides whether an output is up to date, without reading the input. If it is not, changes `settings`: an output that
  * has its bytes already will keep its time of change where a record says what it was made of, else get a new one; and
- * the record will be written when the output is complete. `job` must live until the run has ended.
+ * the record will be written when the output is complete. `job` must live until nt_update_done().
  *
  *   trace  receives what the output was made of, as far as known, when it is up to date
  *
@@ -45,5 +46,8 @@ typedef struct nt_update_job {
  */
 nt_status nt_update_look(nt_update *update, const char *input, const char *output, nt_update_job *job,
 	nt_settings *settings, bool *current, nt_trace *trace, nt_error *error);
+
+/* The run of a job, or the look at it, has ended, `well` or not. */
+void nt_update_done(nt_update_job *job, bool well, const nt_trace *trace);
 
 #endif

@@ -106,6 +106,7 @@ static nt_status open_file(nt_file *file, const char *path, bool referred, nt_er
 	}
 	if (referred && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
 		close(fd);
+		nt_trace_missing(path);
 		nt_fail(error, NT_ERROR_MISSING, "cannot read: it is no regular file");
 		return nt_error_in_file(error, path);
 	}

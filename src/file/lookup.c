@@ -4,9 +4,12 @@
  */
 #include "file/lookup.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
+#include "base/buffer.h"
 #include "file/trace.h"
 
 nt_status nt_lookup_failed(const char *path, int number, nt_error *error)
@@ -31,33 +34,57 @@ nt_status nt_lookup(const char *path, struct stat *info, nt_error *error)
 	return stat(path, info) == 0 ? NT_OK : nt_lookup_failed(path, errno, error);
 }
 
-/* Passes on what is a fault. */
-static nt_status unless_missing(nt_status status, const nt_error *failure, nt_error *error)
-{
-	if (status == NT_OK || status == NT_ERROR_MISSING)
-		return NT_OK;
-	if (error)
-		*error = *failure;
-	return status;
-}
-
 nt_status nt_lookup_found(const char *path, struct stat *info, bool *found, nt_error *error)
 {
 	nt_error failure;
 	const nt_status status = nt_lookup(path, info, &failure);
 	*found = status == NT_OK;
-	return unless_missing(status, &failure, error);
+	if (status == NT_OK || status == NT_ERROR_MISSING)
+		return NT_OK;
+	if (error)
+		*error = failure;
+	return status;
+}
+
+static nt_status find_entry(
+	DIR *dir, const char *name, size_t length, char **entry, nt_error *error)
+{
+	for (const struct dirent *e; dir && (e = readdir(dir));) {
+		if (strlen(e->d_name) != length || strncasecmp(e->d_name, name, length) != 0 ||
+			(*entry && strcmp(e->d_name, *entry) > 0))
+			continue;
+		free(*entry);
+		*entry = strdup(e->d_name);
+		if (!*entry)
+			return nt_fail_memory(error);
+	}
+	return NT_OK;
+}
+
+nt_status nt_lookup_any_case(
+	const char *folder, const char *name, size_t length, char **entry, nt_error *error)
+{
+	struct stat info = {0}; /* as it was before it is read */
+	*entry = NULL;
+	DIR *dir = opendir(*folder ? folder : "/");
+	if (!dir && errno == ENOMEM)
+		return nt_fail_memory(error);
+	if (dir && fstat(dirfd(dir), &info) != 0)
+		info = (struct stat){0};
+	const nt_status status = find_entry(dir, name, length, entry, error);
+	if (dir)
+		closedir(dir);
+	nt_buffer path = {0};
+	nt_buffer_format(&path, "%s/%.*s", folder, (int)length, name);
+	if (!path.failed)
+		nt_trace_searched(path.data, *entry, &info);
+	const bool failed = path.failed;
+	nt_buffer_free(&path);
+	return status || !failed ? status : nt_fail_memory(error);
 }
 
 nt_status nt_lookup_real(const char *path, char **real, nt_error *error)
 {
 	*real = realpath(path, NULL);
 	return *real ? NT_OK : nt_lookup_failed(path, errno, error);
-}
-
-nt_status nt_lookup_real_found(const char *path, char **real, nt_error *error)
-{
-	nt_error failure;
-	const nt_status status = nt_lookup_real(path, real, &failure);
-	return unless_missing(status, &failure, error);
 }

@@ -21,10 +21,12 @@ nt_status nt_lookup(const char *path, struct stat *info, nt_error *error);
 /* The same, where a file that is missing is no fault and leaves the error alone: *found says which. */
 nt_status nt_lookup_found(const char *path, struct stat *info, bool *found, nt_error *error);
 
+/* The entry of a folder that is called `name` in some case (of ASCII), the first in the order of bytes; free(*entry).
+ * NULL: there is none, or no such folder. Noted as a search (trace.h). Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_lookup_any_case(
+	const char *folder, const char *name, size_t length, char **entry, nt_error *error);
+
 /* realpath(); free(*real). */
 nt_status nt_lookup_real(const char *path, char **real, nt_error *error);
-
-/* The same, where a file that is missing is no fault and leaves the error alone: *real is NULL then. */
-nt_status nt_lookup_real_found(const char *path, char **real, nt_error *error);
 
 #endif

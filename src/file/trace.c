@@ -32,6 +32,18 @@ int64_t nt_trace_modified(const struct stat *info)
 	return nanoseconds(info->st_mtim);
 }
 
+int64_t nt_trace_changed(const struct stat *info)
+{
+	return nanoseconds(info->st_ctim);
+}
+
+int64_t nt_trace_now(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_REALTIME, &now);
+	return nanoseconds(now);
+}
+
 static bool is_noted(const nt_trace *trace, uint64_t hash, nt_trace_kind kind, const char *path)
 {
 	size_t at = NT_HASH_BEGIN;
@@ -41,37 +53,44 @@ static bool is_noted(const nt_trace *trace, uint64_t hash, nt_trace_kind kind, c
 	return false;
 }
 
+static void free_file(nt_trace_file *file)
+{
+	free(file->path);
+	free(file->present);
+	free(file->found);
+}
+
 static bool add(nt_trace *trace, uint64_t hash, const nt_trace_file *file)
 {
 	if (!nt_grow((void **)&trace->files, &trace->capacity, trace->count + 1, sizeof *trace->files) ||
 		!nt_hash_index_add(&trace->index, hash, (uint32_t)trace->count))
 		return false;
-	trace->files[trace->count] = *file;
 	nt_trace_file *added = &trace->files[trace->count];
+	*added = *file;
 	added->path = strdup(file->path);
 	added->present = file->present ? strdup(file->present) : NULL;
-	if (added->path && (added->present || !file->present)) {
+	added->found = file->found ? strdup(file->found) : NULL;
+	if (added->path && (added->present || !file->present) && (added->found || !file->found)) {
 		trace->count++;
 		return true;
 	}
 	/* the index has a number that nothing stands behind */
-	free(added->path);
-	free(added->present);
+	free_file(added);
 	return false;
 }
 
-static void note(nt_trace_kind kind, const char *path, const char *present, const struct stat *info)
+static void note(nt_trace_kind kind, const char *path, const char *present, const char *found, const struct stat *info)
 {
 	nt_trace *trace = current;
 	if (!trace)
 		return;
-	struct timespec now;
-	clock_gettime(CLOCK_REALTIME, &now);
 	nt_trace_file file = {.path = (char *)(uintptr_t)path, .kind = kind, .present = (char *)(uintptr_t)present,
-		.noted = nanoseconds(now)};
+		.found = (char *)(uintptr_t)found, .noted = nt_trace_now()};
 	if (info) {
 		file.size = (uint64_t)info->st_size;
+		file.inode = (uint64_t)info->st_ino;
 		file.modified = nt_trace_modified(info);
+		file.changed = nt_trace_changed(info);
 	}
 	const uint64_t hash = nt_hash_bytes((uint64_t)kind, path, strlen(path));
 	pthread_mutex_lock(&lock);
@@ -82,29 +101,27 @@ static void note(nt_trace_kind kind, const char *path, const char *present, cons
 
 void nt_trace_read(const char *path, const struct stat *info)
 {
-	note(NT_TRACE_READ, path, NULL, info);
+	note(NT_TRACE_READ, path, NULL, NULL, info);
 }
 
 void nt_trace_missing(const char *path)
 {
-	note(NT_TRACE_MISSING, path, NULL, NULL);
-}
-
-void nt_trace_unsure(void)
-{
-	if (current)
-		current->unsure = true;
+	note(NT_TRACE_MISSING, path, NULL, NULL, NULL);
 }
 
 void nt_trace_written(const char *path, const char *present, const struct stat *info)
 {
-	note(NT_TRACE_WRITTEN, path, present, info);
+	note(NT_TRACE_WRITTEN, path, present, NULL, info);
 }
 
-static void free_file(nt_trace_file *file)
+void nt_trace_way(const char *path)
 {
-	free(file->path);
-	free(file->present);
+	note(NT_TRACE_WAY, path, NULL, NULL, NULL);
+}
+
+void nt_trace_searched(const char *path, const char *found, const struct stat *info)
+{
+	note(NT_TRACE_SEARCHED, path, NULL, found, info);
 }
 
 /* Nothing but these comes after them. Their numbers stay in the index, and are given again. */

@@ -3,6 +3,8 @@
  * What a run reads and writes, noted where it happens: nt_file_open() and the looking for files (lookup.h) note
  * what is read and what is missing, nt_output_commit() what is written. The caller of a run sets the
  * trace of its thread; functions in between need no argument for it.
+ *
+ * A later run can tell by it whether it would read the same: nothing that decides on a file goes unnoted.
  */
 #ifndef NT_FILE_TRACE_H
 #define NT_FILE_TRACE_H
@@ -13,17 +15,21 @@
 
 typedef enum nt_trace_kind {
 	NT_TRACE_READ,
-	NT_TRACE_MISSING, /* it was looked for, and would have been read */
-	NT_TRACE_WRITTEN
+	NT_TRACE_MISSING, /* it was looked for, and would have been read as a regular file */
+	NT_TRACE_WRITTEN,
+	NT_TRACE_SEARCHED, /* its folder was searched for its name in any case */
+	NT_TRACE_WAY       /* where the links on its way lead has decided something */
 } nt_trace_kind;
 
-/* A file as it was when it was opened, or as it will be when its set is in place. */
+/* A file as it was when it was opened, or as it will be when its set is in place; or a folder as it was searched. */
 typedef struct nt_trace_file {
 	char *path; /* as the run named it: relative to the current folder, or absolute */
 	nt_trace_kind kind;
-	char *present; /* where its bytes are when it is noted; NULL: under `path` */
-	uint64_t size;            /* 0 for what is missing */
-	int64_t modified, noted;  /* nanoseconds since 1970: last change of the file; when it was noted */
+	char *present; /* WRITTEN: where its bytes are when it is noted; NULL: under `path` */
+	char *found;   /* SEARCHED: the entry that has the name; NULL: none */
+	uint64_t size, inode;      /* 0 for what is missing */
+	int64_t modified, changed; /* nanoseconds since 1970: last change of the bytes, and of the inode */
+	int64_t noted;             /* when it was noted */
 } nt_trace_file;
 
 /* Zeroed: empty. A file is in it once for each kind, in the order of first use. */
@@ -31,7 +37,6 @@ typedef struct nt_trace {
 	nt_trace_file *files;
 	size_t count, capacity;
 	nt_hash_index index;
-	bool unsure; /* something was looked for by other means than a name: later runs cannot check for it */
 	bool failed; /* memory ran out: something is not in it */
 } nt_trace;
 
@@ -39,17 +44,20 @@ typedef struct nt_trace {
  * in one trace: each that helps a run and opens files has to be lent it. */
 nt_trace *nt_trace_use(nt_trace *trace);
 
-/* Notes a file that is read, looked for in vain, or about to be written: `present` has its bytes until it is in place.
- * Nothing happens where no trace is used. */
+/* Notes one; what is about to be written has its bytes in `present` until it is in place. Nothing happens where no
+ * trace is used. */
 void nt_trace_read(const char *path, const struct stat *info);
 void nt_trace_missing(const char *path);
 void nt_trace_written(const char *path, const char *present, const struct stat *info);
+void nt_trace_way(const char *path);
 
-/* Notes that something was looked for in vain under names that are not noted. */
-void nt_trace_unsure(void);
+/* `path` is a name in the folder that was searched; `info` is the folder's. */
+void nt_trace_searched(const char *path, const char *found, const struct stat *info);
 
-/* The time of the last change, in nanoseconds since 1970. */
+/* Times in nanoseconds since 1970: of the last change of a file's bytes, and of its inode; the present one. */
 int64_t nt_trace_modified(const struct stat *info);
+int64_t nt_trace_changed(const struct stat *info);
+int64_t nt_trace_now(void);
 
 /* Forgets what was written, for a run that is to be done again. */
 void nt_trace_forget_written(nt_trace *trace);

@@ -13,6 +13,7 @@
 #include <strings.h>
 #include "file/base64.h"
 #include "file/lookup.h"
+#include "file/way.h"
 
 enum { SHOWN = 200 }; /* characters of a URI that a message shows */
 
@@ -189,26 +190,27 @@ static size_t folder_length(const char *document)
 	return slash ? (size_t)(slash - document) + 1 : 0;
 }
 
-/* Whether the real path of `path` lies below the real path of the folder. */
-static nt_status check_links(const char *path, const char *folder, const char *uri, nt_error *error)
+/* Refuses a name that leaves the folder by a link, and one that is not there. */
+static nt_status check_links(
+	const char *path, const char *folder, const char *name, const char *uri, nt_error *error)
 {
-	char *real, *real_folder = NULL;
-	nt_status status = nt_lookup_real(path, &real, error);
-	if (status == NT_ERROR_IO || status == NT_ERROR_MISSING)
-		return nt_fail(error, status, "cannot open \"%.*s\": %s", SHOWN, uri, strerror(errno));
+	char *real_folder;
+	bool inside = true;
+	struct stat info;
+	nt_status status = nt_lookup_real(*folder ? folder : ".", &real_folder, error);
 	if (!status)
-		status = nt_lookup_real(*folder ? folder : ".", &real_folder, error);
-	if (!status) {
-		size_t length = strlen(real_folder);
-		if (length && real_folder[length - 1] == '/')
-			length--; /* the root */
-		if (strncmp(real, real_folder, length) != 0 || real[length] != '/')
-			status = nt_fail(error, NT_ERROR_INPUT,
-				"the URI \"%.*s\" leaves the folder of the file through a symbolic link "
-				"(refused unless --allow-outside)", SHOWN, uri);
-	}
+		status = nt_way_is_inside(real_folder, name, &inside, error);
+	if (!inside && !status)
+		status = nt_fail(error, NT_ERROR_INPUT,
+			"the URI \"%.*s\" leaves the folder of the file through a "
+			"symbolic link (refused unless --allow-outside)",
+			SHOWN, uri);
 	free(real_folder);
-	free(real);
+	if (!status)
+		status = nt_lookup(path, &info, error);
+	if (status == NT_ERROR_IO || status == NT_ERROR_MISSING)
+		return nt_fail(
+			error, status, "cannot open \"%.*s\": %s", SHOWN, uri, strerror(errno));
 	return status;
 }
 
@@ -238,7 +240,7 @@ nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri,
 	memcpy(full, document, folder);
 	memcpy(full + folder, name, name_length + 1);
 	*path = full;
-	return allow_outside ? NT_OK : check_links(full, folder_text, uri, error);
+	return allow_outside ? NT_OK : check_links(full, folder_text, name, uri, error);
 }
 
 void nt_uri_append_decoded(nt_buffer *text, const char *uri, size_t length)

@@ -5,15 +5,13 @@
  */
 #include "image/find.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/trace.h"
+#include "file/way.h"
 
 /* Of a name so many last parts are looked for: each is one more look into every folder. */
 enum { MOST_PARTS = 32 };
@@ -29,7 +27,10 @@ static nt_status is_file(const char *path, bool *is, nt_error *error)
 {
 	struct stat info;
 	const nt_status status = nt_lookup_found(path, &info, is, error);
-	*is = *is && S_ISREG(info.st_mode);
+	if (*is && !S_ISREG(info.st_mode)) {
+		*is = false;
+		nt_trace_missing(path);
+	}
 	return status;
 }
 
@@ -42,15 +43,13 @@ static nt_status accept(search *s, const char *folder, bool *accepted)
 		s->outside = true;
 		return NT_OK;
 	}
-	nt_status status = is_file(s->path->data, accepted, s->error);
-	if (status || !*accepted || s->places->allow_outside)
-		return status;
-	char *real;
-	status = nt_lookup_real_found(s->path->data, &real, s->error);
-	*accepted = !status && real && nt_link_is_inside(real, folder);
-	s->outside |= !status && !*accepted;
-	free(real);
-	return status;
+	bool inside = true;
+	nt_status status = NT_OK;
+	if (!s->places->allow_outside)
+		status = nt_way_is_inside(
+			folder, s->path->data + strlen(folder), &inside, s->error);
+	s->outside |= !inside;
+	return status || !inside ? status : is_file(s->path->data, accepted, s->error);
 }
 
 static nt_status try_name(search *s, const char *folder, const char *name, bool *accepted)
@@ -61,26 +60,6 @@ static nt_status try_name(search *s, const char *folder, const char *name, bool 
 }
 
 /* ---- without case ---- */
-
-/* The entry of a folder that is called so in some case, in a malloc'ed block; NULL: none. */
-static nt_status find_entry(const char *folder, const char *name, size_t length, char **entry, nt_error *error)
-{
-	*entry = NULL;
-	DIR *dir = opendir(*folder ? folder : "/");
-	if (!dir)
-		return errno == ENOMEM ? nt_fail_memory(error) : NT_OK;
-	nt_status status = NT_OK;
-	for (const struct dirent *e; !status && (e = readdir(dir));) {
-		if (strlen(e->d_name) != length || strncasecmp(e->d_name, name, length) != 0 ||
-			(*entry && strcmp(e->d_name, *entry) > 0))
-			continue;
-		free(*entry);
-		*entry = strdup(e->d_name);
-		status = *entry ? NT_OK : nt_fail_memory(error);
-	}
-	closedir(dir);
-	return status;
-}
 
 /* As try_name(), part by part; a name with ".." is left to that. */
 static nt_status try_any_case(search *s, const char *folder, const char *name, bool *accepted)
@@ -94,7 +73,8 @@ static nt_status try_any_case(search *s, const char *folder, const char *name, b
 		char *entry;
 		if (s->path->failed)
 			return nt_fail_memory(s->error);
-		status = find_entry(s->path->data ? s->path->data : "", name, length, &entry, s->error);
+		status = nt_lookup_any_case(
+			s->path->data ? s->path->data : "", name, length, &entry, s->error);
 		if (status || !entry)
 			return status;
 		nt_buffer_format(s->path, "/%s", entry);
@@ -158,6 +138,7 @@ static nt_status folder_at(const nt_image_places *places, size_t index, nt_buffe
 		status = file ? nt_link_folder(folder, file, &failure) : NT_ERROR_MISSING;
 	} else {
 		char *real;
+		nt_trace_way(places->folders[index - 2]);
 		status = nt_lookup_real(places->folders[index - 2], &real, &failure);
 		if (!status)
 			nt_buffer_text(folder, real);
@@ -225,7 +206,6 @@ nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buff
 		if (!status && !accepted)
 			status = try_folders(&s, part, try_any_case, &accepted);
 		if (!status && !accepted) {
-			nt_trace_unsure(); /* any case will do */
 			*found = s.outside ? NT_IMAGE_OUTSIDE : NT_IMAGE_MISSING;
 			path->size = 0;
 			nt_link_join(path, folder.size ? folder.data : "/",

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <strings.h>
 #include "file/input.h"
-#include "file/lookup.h"
 #include "file/relative_path.h"
+#include "file/way.h"
 #include "obj/mtl.h"
 
 /* What mtllib statements are read for. */
@@ -57,33 +57,24 @@ static char *path_beside(nt_scene *scene, const char *name)
 	return path;
 }
 
-/* Whether a path that does not say so leaves the folder of the OBJ by a symbolic link. */
-static nt_status leaves_by_link(const request *q, const char *path, bool *leaves, nt_error *error)
-{
-	char *real;
-	nt_buffer folder = {0};
-	nt_status status = nt_lookup_real(path, &real, error);
-	if (!status)
-		status = nt_link_folder(&folder, q->scene->path, error);
-	*leaves = !status && !nt_link_is_inside(real, folder.data);
-	free(real);
-	nt_buffer_free(&folder);
-	return status;
-}
-
 /* Opens a library; *reason, which may be the error's message, says why it is done without. */
 static nt_status open_library(const request *q, const char *name, const char *path, nt_file *file,
 	const char **reason, nt_error *error)
 {
 	const bool confined = !q->options->allow_outside;
-	bool leaves = false;
+	bool inside = true;
 	*reason = !*name ? "no file name" : confined ? outside_reason(name) : NULL;
 	if (*reason)
 		return NT_OK;
-	nt_status status = confined ? leaves_by_link(q, path, &leaves, error) : NT_OK;
-	if (!status && leaves)
-		*reason = "leaves the folder of the OBJ by a symbolic link, which is followed only with "
-			"--allow-outside";
+	nt_buffer folder = {0};
+	nt_status status = confined ? nt_link_folder(&folder, q->scene->path, error) : NT_OK;
+	if (!status && confined)
+		status = nt_way_is_inside(folder.data, name, &inside, error);
+	nt_buffer_free(&folder);
+	if (!status && !inside)
+		*reason = "leaves the folder of the OBJ by a symbolic link, which is followed only "
+			  "with "
+			  "--allow-outside";
 	else if (!status)
 		status = nt_file_open_content(file, path, true, error);
 	if (status != NT_ERROR_MISSING)

@@ -183,6 +183,30 @@ for name in ../n.png ../gone.png "$PWD/n.png" /gone/n.png; do
 done
 is "$(sort -u said)" ": image cannot be read: NAME (it is outside of the folder of its MTL file, see --allow-outside) [IMAGE_MISSING]"
 
+scene "a link inside the folder does not tell whether there is something outside that it leads to"
+mkdir in there
+cp "$data/bumps.png" there/n.png
+cp "$data/plates.bin" there/
+sed 's#plates.bin#l/plates.bin#' "$data/plates.gltf" >in/plates.gltf
+{ printf 'mtllib l/m.mtl\nmtllib m.mtl\nusemtl m\n' && grep '^[vf]' "$data/quad.obj"; } >in/quad.obj
+printf 'newmtl m\nnorm l/n.png\n' >in/m.mtl
+echo 'newmtl m' >there/m.mtl
+for target in ../there "$PWD/there" ../gone /gone ../in/../gone ../there/m.mtl; do
+	ln -sfn "$target" in/l
+	for name in quad plates; do
+		run in/$name.* out.gltf
+		grep -o 'm\.mtl: leaves.*\|: image.*\|the URI.*\|cannot.*' ../err.txt >>said
+	done
+done
+is "$(sort said | uniq -c | awk '{ print $1 }' | sort -u)" 6
+is "$(sort -u said | wc -l)" 3
+# what leads back in, is in
+ln -sfn "$PWD/in/../in/sub" in/l
+mkdir in/sub
+cp there/plates.bin in/sub
+run in/plates.gltf out.gltf
+exits 0
+
 scene "nobody waits for a pipe that a document names, and what a document names is not overwritten"
 cp "$data/plates.gltf" "$data/plates.bin" .
 quad 'norm f.png' 'map_Kd -mm 0 1 f.png'

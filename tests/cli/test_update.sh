@@ -212,11 +212,18 @@ says "nowhere"
 scene "a record's lines are as the schema says"
 take
 cp quad.obj $'\xff "%.obj'
+mkdir v1
+mv bumps.png v1/N.PNG
+ln -s v1 t,x
+sed -i 's|bumps.png|t,x/n.png|' mirrored_cube.mtl
 run --update --update-by=content -d out $inputs $'\xff "%.obj'
 exits 0
 run --update -d out --method=area quad.obj
-is "$(wc -l <out/.nmtan-record)" 5
+# each output once when it is complete and once when it has its name
+is "$(wc -l <out/.nmtan-record)" 10
 validates --lines record out/.nmtan-record
+grep -q '"links":\[{"uri":"../t%2Cx","to":"v1"}\]' out/.nmtan-record || wrong "$(cat out/.nmtan-record)"
+grep -q '"found":"N.PNG"' out/.nmtan-record || wrong "$(cat out/.nmtan-record)"
 
 scene "in place, a file is up to date as the last run left it"
 take
@@ -245,7 +252,7 @@ mkdir out
 printf '{"output":"q1.glb","nmtan' >out/.nmtan-record
 "$NMTAN" -q --update -d out q?.obj & "$NMTAN" -q --update -d out q1?.obj q2?.obj & "$NMTAN" -q --update -d out q3?.obj q40.obj &
 wait
-is "$(grep -c '^{"output":"q[0-9]*.glb","nmtan":.*}$' out/.nmtan-record)" 40
+is "$(grep -o '^{"output":"q[0-9]*.glb","nmtan":.*}$' out/.nmtan-record | cut -d'"' -f4 | sort | uniq -c | grep -c '^ *2 ')" 40
 run --update -d out q*.obj
 is "$(made)" "quad.obj "
 
@@ -356,6 +363,78 @@ run --update q.obj q.glb
 says_not "up to date"
 is "$(gltf q.glb 'g.images.length')" 1
 
+scene "whatever decides on what is read is seen, and what is as it was makes nothing"
+quad_with_map
+sed -i 's|n.png|tex/n.png|' q.mtl
+mkdir v1 v2 two other
+cp "$data/bumps.png" v1/n.png
+cp "$data/bumps.png" v2/n.png
+printf '\xff' | dd of=v2/n.png bs=1 seek=60 conv=notrunc 2>/dev/null
+cp v1/n.png two/a.png
+cp v2/n.png two/b.png
+touch -d "1 hour ago" v?/n.png two/*
+ln -s v1 tex
+swap() { mv two/a.png two/c && mv two/b.png two/a.png && mv two/c two/b.png; }
+later
+run --update q.obj q.glb
+while IFS='|' read -r change expected; do
+	eval "$change" 2>/dev/null
+	run --update q.obj q.glb
+	exits 0
+	is "$change: $(made)" "$change: ${expected:+q.obj }"
+	"$NMTAN" -q q.obj clean.glb
+	same q.glb clean.glb
+	run --update q.obj q.glb
+	is "$change, and again: $(made)" "$change, and again: "
+done <<'END'
+ln -sfn v2 tex|made
+rm tex; mkdir tex; ln -s ../two/a.png tex/n.png|made
+swap|made
+rm tex/n.png; mv two tex/; ln -s two/a.png tex/n.png|
+(cd tex; swap)|made
+ln -sf two/b.png tex/n.png|made
+rm tex/n.png; cp -p tex/two/a.png tex/n.png|made
+cp -p tex/two/b.png tex/n.png|made
+touch -r tex/n.png stamp; cp tex/n.png t; cat t >tex/n.png; touch -r stamp tex/n.png|
+cp -p q.mtl t; mv t q.mtl; chmod 600 q.obj|
+rm tex/n.png|made
+touch tex/other.png|
+mkdir tex/n.png|made
+rmdir tex/n.png; mkfifo tex/n.png|
+rm tex/n.png; ln -s ../../outside.png tex/n.png|
+ln -sf two/a.png tex/n.png|made
+mv tex/n.png tex/N.PNG|made
+touch tex/x|
+cp -p tex/two/b.png tex/N.png|
+mv tex/N.png tex/n.png|made
+cp -p q.glb t; mv t q.glb|
+cp -p q.glb t; dd if=q.obj of=t bs=1 count=9 seek=40 conv=notrunc; touch -r q.glb t; mv t q.glb|made
+rm .nmtan-record|made
+END
+rm -r q.glb tex .nmtan-record
+
+scene "one image that is missing makes nothing again, and the record does not grow"
+quad_with_map
+for i in $(seq 40); do cp q.obj q$i.obj; done
+later
+run --update -d . q*.obj
+later
+run --update -d . q*.obj
+is "$(made)" ""
+size=$(stat -c %s .nmtan-record)
+for i in 1 2 3; do
+	run --update -d . q*.obj
+	is "$(made)" ""
+	is "$(stat -c %s .nmtan-record)" "$size"
+done
+for i in $(seq 8); do
+	later
+	touch other
+	run --update -d . q*.obj
+	is "$(made)" ""
+done
+[ "$(wc -l <.nmtan-record)" -le 200 ] || wrong "$(wc -l <.nmtan-record) lines"
+
 case $BUILD in *sanitize*) folders=5 ;; *) folders=100 ;; esac
 scene "${folders}00 files that are up to date take less than half a second of the processors"
 for ((i = 0; i < 100; i++)); do cp "$data/quad.obj" in_$i.obj; done
@@ -418,7 +497,7 @@ exits 0
 same before .nmtan-record
 run --update quad.obj o.glb
 exits 0
-is "$(wc -l <.nmtan-record)" 1
+[ "$(wc -l <.nmtan-record)" -le 2 ] || wrong "$(wc -l <.nmtan-record) lines"
 
 scene "--no-clobber replaces no depfile and no manifest either"
 cp "$data/quad.obj" .

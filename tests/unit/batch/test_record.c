@@ -58,13 +58,16 @@ static void append(nt_update_by by)
 {
 	nt_record *record;
 	nt_trace trace = {0};
+	nt_buffer line = {0};
 	nt_error error;
 	unlink("record");
 	const nt_making making = making_of(by);
 	note(&trace);
 	assert_int_equal(nt_record_open(&record, "record", true, &error), NT_OK);
-	assert_int_equal(nt_record_append(record, &making, &trace, &error), NT_OK);
+	assert_int_equal(nt_record_append(record, &making, &trace, &line, &error), NT_OK);
+	nt_record_placed(record, &line, &trace);
 	nt_record_close(record);
+	nt_buffer_free(&line);
 	nt_trace_free(&trace);
 }
 
@@ -135,11 +138,12 @@ static void by_content_times_do_not_count(void **state)
 	put_files();
 	append(NT_UPDATE_BY_CONTENT);
 	assert_int_equal(utimensat(AT_FDCWD, "in/a.png", NULL, 0), 0);
-	assert_int_equal(look(NT_UPDATE_BY_CONTENT), NT_FRESH_CURRENT);
 	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+	assert_int_equal(look(NT_UPDATE_BY_CONTENT), NT_FRESH_CURRENT);
+	/* its new times are noted */
+	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_CURRENT);
 	put_old_file("in/a.png", "IMAGE");
 	assert_int_equal(look(NT_UPDATE_BY_CONTENT), NT_FRESH_STALE);
-	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_CURRENT);
 }
 
 static void what_changed_just_before_is_compared_by_content_too(void **state)
@@ -154,6 +158,86 @@ static void what_changed_just_before_is_compared_by_content_too(void **state)
 	put_text_file("in/a.png", "IMAGE");
 	assert_int_equal(utimensat(AT_FDCWD, "in/a.png", times, 0), 0);
 	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+}
+
+/* Nothing that mv and cp -p can do is unseen; what they do to equal bytes is noted, and no bytes are read again. */
+static void equal_sizes_and_times_are_not_equal_bytes(void **state)
+{
+	(void)state;
+	struct stat before, after;
+	for (size_t i = 0; i < 3; i++) {
+		const char *name = ((const char *const[]){"in/a.obj", "in/a.png", "out.glb"})[i];
+		put_files();
+		append(NT_UPDATE_BY_TIME);
+		assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_CURRENT);
+		put_old_file("other", i == 0 ? "MESH" : i == 1 ? "IMAGE" : "RESULT");
+		assert_int_equal(rename(name, "kept"), 0);
+		assert_int_equal(rename("other", name), 0);
+		assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+		put_files();
+		put_old_file(name, i == 0 ? "MESH" : i == 1 ? "IMAGE" : "RESULT");
+		assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+		put_files();
+		assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_CURRENT);
+		assert_int_equal(stat("record", &before), 0);
+		assert_int_equal(rename("kept", name), 0);
+		assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_CURRENT);
+		assert_int_equal(stat("record", &after), 0);
+		assert_true(after.st_size > before.st_size);
+		/* what was noted just now may have changed unseen, at most once more */
+		for (int k = 0; k < 20 && after.st_size != before.st_size; k++) {
+			usleep(5000);
+			before = after;
+			assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_CURRENT);
+			assert_int_equal(stat("record", &after), 0);
+		}
+		assert_int_equal(after.st_size, before.st_size);
+	}
+}
+
+/* in -> v1, whose a.png is missing; then v2. */
+static void the_links_on_the_way_to_a_file_count(void **state)
+{
+	(void)state;
+	put_files();
+	assert_int_equal(rename("in", "v1"), 0);
+	assert_int_equal(symlink("v1", "in"), 0);
+	append(NT_UPDATE_BY_TIME);
+	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_CURRENT);
+	/* all that was read is there by its real name, in the state that it had */
+	assert_int_equal(mkdir("v2", 0700), 0);
+	assert_int_equal(link("v1/a.obj", "v2/a.obj"), 0);
+	assert_int_equal(unlink("in"), 0);
+	assert_int_equal(symlink("v2", "in"), 0);
+	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+	assert_int_equal(unlink("in"), 0);
+	assert_int_equal(symlink("v1", "in"), 0);
+	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_CURRENT);
+	assert_int_equal(unlink("in"), 0);
+	assert_int_equal(rename("v1", "in"), 0);
+	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+	assert_int_equal(unlink("v2/a.obj"), 0);
+}
+
+/* Lines as they were before digests, inodes and links were noted. */
+static void lines_of_former_versions_hold_for_nothing(void **state)
+{
+	(void)state;
+	static const char *const parts[] = {"links", "inode", "changed", "xxh128"};
+	for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+		char text[8192] = "";
+		put_files();
+		append(NT_UPDATE_BY_TIME);
+		FILE *file = fopen("record", "r");
+		assert_non_null(file);
+		assert_true(fread(text, 1, sizeof text - 1, file) > 0);
+		fclose(file);
+		assert_non_null(strstr(text, parts[i]));
+		for (char *key = text; (key = strstr(key, parts[i]));)
+			*key = 'X';
+		put_text_file("record", text);
+		assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+	}
 }
 
 static void a_tree_can_be_moved_with_its_record(void **state)
@@ -184,16 +268,18 @@ static void an_exhausted_memory_is_told(void **state)
 		nt_error error;
 		nt_freshness freshness;
 		nt_trace trace = {0};
+		nt_buffer line = {0};
 		fail_allocations_from(n);
 		nt_status status = nt_record_open(&record, "record", true, &error);
 		if (!status)
 			status = nt_record_look(record, &making, &freshness, &trace, &error);
 		if (!status)
-			status = nt_record_append(record, &making, &noted, &error);
+			status = nt_record_append(record, &making, &noted, &line, &error);
 		failed = stop_failing_allocations();
 		assert_int_equal(status, failed ? NT_ERROR_MEMORY : NT_OK);
 		nt_trace_free(&trace);
 		nt_record_close(record);
+		nt_buffer_free(&line);
 		assert_true(n < 300);
 	}
 	nt_trace_free(&noted);
@@ -206,6 +292,9 @@ int main(void)
 		unit_test_inside_folder(any_file_that_differs_makes_it_stale),
 		unit_test_inside_folder(by_content_times_do_not_count),
 		unit_test_inside_folder(what_changed_just_before_is_compared_by_content_too),
+		unit_test_inside_folder(equal_sizes_and_times_are_not_equal_bytes),
+		unit_test_inside_folder(the_links_on_the_way_to_a_file_count),
+		unit_test_inside_folder(lines_of_former_versions_hold_for_nothing),
 		unit_test_inside_folder(a_tree_can_be_moved_with_its_record),
 		unit_test_inside_folder(an_exhausted_memory_is_told),
 	};

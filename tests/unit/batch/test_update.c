@@ -40,6 +40,7 @@ static bool is_current(const nt_update_options *options, nt_settings *settings, 
 		nt_trace_use(outer);
 		assert_int_equal(settings->placing(settings->placing_user, &made, &error), NT_OK);
 	}
+	nt_update_done(&job, make, &made);
 	nt_trace_free(&found);
 	nt_trace_free(&made);
 	nt_update_end(update);

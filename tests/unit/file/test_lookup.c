@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <unistd.h>
 #include "file/lookup.h"
+#include "file/trace.h"
 #include "folder.h"
 
 TEST(only_some_numbers_mean_missing)
@@ -43,18 +44,45 @@ TEST(files_are_found_or_missing_or_behind_a_fault)
 
 	char *real;
 	nt_error untouched = {.status = NT_OK};
-	assert_int_equal(nt_lookup_real_found("nowhere", &real, &untouched), NT_OK);
-	assert_null(real);
 	assert_int_equal(nt_lookup_found("nowhere", &info, &found, &untouched), NT_OK);
 	assert_int_equal(untouched.status, NT_OK);
-	assert_int_equal(nt_lookup_real_found("loop", &real, &untouched), NT_ERROR_IO);
-	assert_int_equal(untouched.status, NT_ERROR_IO);
 	assert_int_equal(nt_lookup_real("./there", &real, &error), NT_OK);
 	assert_string_equal(strrchr(real, '/'), "/there");
 	free(real);
 	assert_int_equal(nt_lookup_real("nowhere", &real, &error), NT_ERROR_MISSING);
 	assert_null(real);
 	assert_int_equal(nt_lookup_real("loop", &real, &error), NT_ERROR_IO);
+}
+
+static void entry_is(const char *folder, const char *name, const char *expected)
+{
+	nt_error error;
+	char *entry;
+	nt_trace trace = {0};
+	nt_trace *outer = nt_trace_use(&trace);
+	assert_int_equal(nt_lookup_any_case(folder, name, strlen(name), &entry, &error), NT_OK);
+	nt_trace_use(outer);
+	if (expected)
+		assert_string_equal(entry, expected);
+	else
+		assert_null(entry);
+	assert_int_equal(trace.count, 1);
+	assert_int_equal(trace.files[0].kind, NT_TRACE_SEARCHED);
+	assert_int_equal(trace.files[0].inode != 0, strcmp(folder, "d") == 0);
+	free(entry);
+	nt_trace_free(&trace);
+}
+
+TEST(a_name_is_found_in_any_case_and_the_first_of_several)
+{
+	assert_int_equal(mkdir("d", 0700), 0);
+	put_text_file("d/N.pNG", "");
+	put_text_file("d/N.png", "");
+	put_text_file("d/n.pn", "");
+	entry_is("d", "n.png", "N.pNG");
+	entry_is("d", "m.png", NULL);
+	entry_is("nowhere", "n.png", NULL);
+	entry_is("there", "n.png", NULL);
 }
 
 int main(void)
