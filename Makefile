@@ -56,8 +56,8 @@ NT_LDFLAGS := $(flags_$(config)) -pthread $(LDFLAGS)
 TOOL_LIBS := -Wl,-Bstatic -ljpeg -ldeflate -Wl,-Bdynamic -lm -ldl
 
 # The compute library: no files, no C++.
-core_src := src/base/status.c src/base/pages.c src/base/parallel.c src/base/pool.c src/base/cpu.c src/base/scratch.c \
-	src/base/struct_bytes.c src/base/largest.c src/base/counts.c src/base/hash.c \
+core_src := src/base/status.c src/base/deadline.c src/base/pages.c src/base/parallel.c src/base/pool.c \
+	src/base/cpu.c src/base/scratch.c src/base/struct_bytes.c src/base/largest.c src/base/counts.c src/base/hash.c \
 	$(foreach room,topology tangent tangent/fast tangent/sums api,$(wildcard src/$(room)/*.c))
 tool_src := $(filter-out $(core_src) src/cli/main.c src/bindings/% src/ext/modules/%,$(wildcard src/*/*.c src/*/*/*.c)) \
 	$(wildcard src/ext/*.cpp)
@@ -104,9 +104,10 @@ $(module_so): $(B)/nmtan-%.so: $(module_obj) $(B)/libmodule.a
 	$(CXX) $(NT_LDFLAGS) -shared -Wl,--exclude-libs,ALL -o $@ $(filter $(call module_files,$*),$^) $(B)/libmodule.a \
 		$(module_libs_$*)
 
-# What modules use of the tool; all of it without a state, but for the key of hashes, which each makes for itself.
-$(B)/libmodule.a: $(call objects,src/base/error.c src/base/hash.c src/base/pages.c src/ext/number.cpp src/ext/codec/pixels.c \
-		src/ext/modules/cxx.cpp)
+# What modules use of the tool; all of it without a state, but for the key of hashes, which each makes for itself, and
+# deadlines, of which they have none.
+$(B)/libmodule.a: $(call objects,src/base/error.c src/base/hash.c src/base/deadline.c src/base/pages.c \
+		src/ext/number.cpp src/ext/codec/pixels.c src/ext/modules/cxx.cpp)
 	rm -f $@ && $(AR) qcsD $@ $^
 
 $(B)/libnmtan.a: $(core_obj)

@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/deadline.h"
 #include "base/pages.h"
 
 enum {
@@ -39,7 +40,7 @@ void *nt_alloc(size_t count, size_t size)
 void *nt_calloc(size_t count, size_t size)
 {
 	size_t bytes;
-	if (!nt_size_mul(count, size, &bytes))
+	if (!nt_size_mul(count, size, &bytes) || nt_deadline_passed())
 		return NULL;
 	return calloc(bytes ? bytes : 1, 1);
 }
@@ -54,7 +55,7 @@ bool nt_grow(void **block, size_t *capacity, size_t needed, size_t size)
 	if (wanted < 16)
 		wanted = 16;
 	size_t bytes;
-	if (!nt_size_mul(wanted, size, &bytes))
+	if (!nt_size_mul(wanted, size, &bytes) || nt_deadline_passed())
 		return false;
 	void *grown = realloc(*block, bytes);
 	if (!grown)

@@ -12,6 +12,8 @@
  */
 #include "base/pool.h"
 
+#include "base/deadline.h"
+
 #ifdef NT_NO_THREADS
 
 unsigned nt_pool_processors(void)
@@ -53,6 +55,7 @@ typedef struct region {
 	atomic_uint next;    /* the first slot that nobody has taken; beyond `slots` when all are */
 	atomic_uint helpers; /* threads of the pool that are in it */
 	struct region *older;
+	const nt_deadline *deadline; /* the caller's */
 } region;
 
 static struct {
@@ -173,7 +176,9 @@ static void *run_thread(void *withheld)
 		const unsigned looks = pool.looks;
 		pthread_mutex_unlock(&pool.lock);
 		if (r) {
+			nt_deadline_use(r->deadline);
 			work(r);
+			nt_deadline_use(NULL);
 			leave_region(r);
 		}
 		if (alone)
@@ -320,7 +325,7 @@ void nt_pool_reserve(unsigned threads)
 
 void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), void *context)
 {
-	region r = {.body = body, .context = context, .slots = slots};
+	region r = {.body = body, .context = context, .slots = slots, .deadline = nt_own_deadline};
 	if (slots <= 1) {
 		work(&r);
 		return;

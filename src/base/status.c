@@ -38,6 +38,8 @@ const char *nt_status_text(nt_status status)
 		return "unsupported input";
 	case NT_ERROR_MODULE:
 		return "a module is missing";
+	case NT_ERROR_LIMIT:
+		return "a limit is reached";
 	case NT_ERROR_INTERNAL:
 		return "internal error";
 	default:

@@ -28,6 +28,7 @@ typedef enum nt_status {
 	NT_ERROR_INPUT,       /* a file breaks the rules of its format */
 	NT_ERROR_UNSUPPORTED, /* a file is sound but uses something that nmtan does not do */
 	NT_ERROR_MODULE,      /* a part of nmtan that is needed is not installed, or not the right one */
+	NT_ERROR_LIMIT,       /* more would be needed than the user allows */
 	NT_ERROR_INTERNAL     /* our mistake */
 } nt_status;
 

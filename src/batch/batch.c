@@ -47,8 +47,10 @@ static void enter_once_read(void *user, nt_stage stage)
 	r->inside = true;
 }
 
-static nt_status run(progress *p, nt_job *job, const nt_settings *settings)
+static nt_status run(progress *p, nt_job *job, nt_settings *settings)
 {
+	if (settings->max_memory)
+		settings->need = nt_need_of(job->input, settings, 0);
 	return p->options->run(job->input, job->output, settings, &job->outcome->summary, &job->outcome->error);
 }
 
@@ -183,7 +185,8 @@ void nt_batch_run(nt_batch *batch, const nt_settings *settings, const nt_batch_o
 	mallopt(M_TRIM_THRESHOLD, 1 << 20);
 #endif
 	/* one job at a time needs no gate: what is available is in six files of the system */
-	nt_gate_init(&p.gate, options->memory ? options->memory : jobs > 1 ? nt_memory_available() / 2 : 0);
+	nt_gate_init(&p.gate, options->memory ? options->memory : settings->max_memory ? settings->max_memory
+		: jobs > 1 ? nt_memory_available() / 2 : 0);
 	/* streams come last: a job for each could wait while no file is done */
 	nt_parallel_items(jobs, batch->count, run_file, &p);
 	if (p.deferred)

@@ -9,10 +9,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "batch/depfile.h"
+#include "base/parallel.h"
 #include "base/utf8.h"
 #include "batch/inputs.h"
 #include "cli/failures.h"
@@ -454,6 +456,14 @@ static void end_session(session *s)
 	nt_failures_free(&s->failures);
 }
 
+static nt_style style_of_late;
+
+static void end_late(const nt_error *error)
+{
+	nt_say_error(error, style_of_late);
+	_exit(NT_EXIT_LIMIT);
+}
+
 static int run_batch(const nt_command *command, nt_style style, const nt_report_plan *plan,
 	nt_batch *batch, nt_report_folder *folder)
 {
@@ -474,6 +484,9 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 		settings.on_stage = nt_progress_stage;
 		settings.on_stage_user = s.progress;
 	}
+	style_of_late = style;
+	if (batch->count == 1)
+		settings.too_late = end_late;
 	const nt_batch_options options = {.run = nt_run, .jobs = (unsigned)command->jobs,
 		.memory = command->memory, .update = s.update,
 		.fail_fast = command->fail_fast, .done = tell_job,
@@ -533,6 +546,20 @@ static int run(nt_command *command, nt_style style, bool colour_on_stdout)
 	nt_report_plan_free(&plan);
 	nt_inputs_free(&inputs);
 	return code;
+}
+
+/* What the system refuses from now on. Threads get their stacks all the same, of which they use little. */
+static void limit_memory(const nt_command *command)
+{
+	struct rlimit data, stack;
+	const uint64_t most = command->settings.max_memory;
+	if (!most || getrlimit(RLIMIT_DATA, &data) != 0 || getrlimit(RLIMIT_STACK, &stack) != 0)
+		return;
+	const uint64_t each = stack.rlim_cur == RLIM_INFINITY ? 2 << 20 : stack.rlim_cur;
+	const uint64_t whole = most + each * (nt_thread_count(command->settings.threads) + 1);
+	if (data.rlim_cur == RLIM_INFINITY || whole < data.rlim_cur)
+		data.rlim_cur = whole;
+	setrlimit(RLIMIT_DATA, &data);
 }
 
 static void end_exhausted(void)
@@ -598,6 +625,7 @@ int main(int argc, char **argv)
 	case NT_ACTION_COMPLETION_ZSH:
 		return print_text(nt_options_zsh, style);
 	default:
+		limit_memory(&command);
 		return run(&command, style, may_colour && isatty(STDOUT_FILENO));
 	}
 }

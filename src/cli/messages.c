@@ -276,25 +276,6 @@ void nt_message_meshes(nt_buffer *out, const nt_job *job)
 	}
 }
 
-const char *nt_stage_name(nt_stage stage)
-{
-	static const char *const names[NT_STAGE_COUNT] = {
-		[NT_STAGE_MAP] = "map",
-		[NT_STAGE_PARSE] = "parse",
-		[NT_STAGE_INDEX] = "index",
-		[NT_STAGE_DECODE] = "decode",
-		[NT_STAGE_TEXTURES] = "textures",
-		[NT_STAGE_NORMALS] = "normals",
-		[NT_STAGE_WELD] = "weld",
-		[NT_STAGE_TANGENTS] = "tangents",
-		[NT_STAGE_SPLIT] = "split",
-		[NT_STAGE_WRITE] = "write",
-		[NT_STAGE_VERIFY] = "verify",
-		[NT_STAGE_REPORT] = "report",
-	};
-	return names[stage];
-}
-
 void nt_message_timing(nt_buffer *out, const nt_summary *summary)
 {
 	double known = 0;

@@ -42,7 +42,4 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 /* A table of the stages' seconds. */
 void nt_message_timing(nt_buffer *out, const nt_summary *summary);
 
-/* How a stage is called: "tangents". */
-const char *nt_stage_name(nt_stage stage);
-
 #endif

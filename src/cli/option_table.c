@@ -183,6 +183,15 @@ const nt_option_row nt_option_rows[] = {
 	{"list-codes", 0, NT_OPTION_SET, NULL, NT_ACTION_LIST_CODES, 0, NULL,
 		"print what can be found, and end", FIELD(action), false},
 
+	{.kind = NT_OPTION_HEADING, .name = "Limits"},
+	{"max-triangles", 0, NT_OPTION_SIZE, "N", 0, 0, "none",
+		"refuse an input that says it has more triangles, counted once for each primitive that has them",
+		SETTING(max_triangles), false},
+	{"max-memory", 0, NT_OPTION_SIZE, "SIZE", 0, 0, "none",
+		"take at most SIZE of memory, files that are mapped not counted", SETTING(max_memory), false},
+	{"max-seconds", 0, NT_OPTION_TEXT, "N", 0, 0, "none",
+		"give up an input that is not done after N seconds, as 30 or 0.5", FIELD(max_seconds), false},
+
 	{.kind = NT_OPTION_HEADING, .name = "The run"},
 	{"threads", 'j', NT_OPTION_NUMBER, "N", 0, 1024, "0", "how many threads; 0: all processors",
 		SETTING(threads), false},

@@ -337,6 +337,19 @@ static nt_status parse_bump_height(parser *p)
 	return NT_OK;
 }
 
+static nt_status parse_max_seconds(parser *p)
+{
+	const char *word = p->command->max_seconds;
+	char *end;
+	if (!word)
+		return NT_OK;
+	p->command->settings.max_seconds = strtod(word, &end);
+	if (*end || !(p->command->settings.max_seconds > 0 && p->command->settings.max_seconds <= 1e9))
+		return nt_fail(p->error, NT_ERROR_USAGE, "--max-seconds: '%s' is not a number above 0, as 30 or 0.5",
+			word);
+	return NT_OK;
+}
+
 /* Options that contradict each other. */
 static nt_status check_clashes(parser *p)
 {
@@ -489,6 +502,8 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 	nt_status status = parse_draco(&p);
 	if (!status)
 		status = parse_bump_height(&p);
+	if (!status)
+		status = parse_max_seconds(&p);
 	if (!status)
 		status = check_clashes(&p);
 	if (!status)

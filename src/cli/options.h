@@ -49,6 +49,7 @@ typedef struct nt_command {
 	const char *baseline;  /* file; NULL: none */
 	const char *path_prefix; /* before the names of files in reports; NULL: nothing */
 	nt_words texture_paths;  /* those of the settings */
+	const char *max_seconds; /* a number, parsed into the settings; NULL: no limit */
 	const char *bump_height; /* a number, parsed into the settings; NULL: the default */
 	const char *draco_bits; /* POS,NRM,UV,TAN, parsed into the settings; NULL: defaults */
 	int max_issues;        /* 0: all */

@@ -56,6 +56,8 @@ int nt_exit_code(nt_status status)
 		return NT_EXIT_IO;
 	case NT_ERROR_INPUT:
 		return NT_EXIT_INPUT;
+	case NT_ERROR_LIMIT:
+		return NT_EXIT_LIMIT;
 	case NT_ERROR_UNSUPPORTED:
 	case NT_ERROR_MODULE:
 	case NT_ERROR_TOO_LARGE:
@@ -69,7 +71,7 @@ int nt_exit_code(nt_status status)
 int nt_exit_worse(int a, int b)
 {
 	static const int worst_first[] = {NT_EXIT_INTERNAL, NT_EXIT_IO, NT_EXIT_INPUT,
-		NT_EXIT_UNSUPPORTED, NT_EXIT_USAGE, NT_EXIT_FINDINGS};
+		NT_EXIT_UNSUPPORTED, NT_EXIT_LIMIT, NT_EXIT_USAGE, NT_EXIT_FINDINGS};
 	for (unsigned i = 0; i < sizeof worst_first / sizeof *worst_first; i++)
 		if (a == worst_first[i] || b == worst_first[i])
 			return worst_first[i];

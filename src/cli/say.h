@@ -23,13 +23,14 @@ enum nt_exit {
 	NT_EXIT_INPUT = 3,
 	NT_EXIT_INTERNAL = 4, /* out of memory too */
 	NT_EXIT_UNSUPPORTED = 5,
-	NT_EXIT_FINDINGS = 6
+	NT_EXIT_FINDINGS = 6,
+	NT_EXIT_LIMIT = 7
 };
 
 /* The exit code of a status. */
 int nt_exit_code(nt_status status);
 
-/* Of two exit codes the worse one, in the order 4, 2, 3, 5, 1, 6, 0. */
+/* Of two exit codes the worse one, in the order 4, 2, 3, 5, 7, 1, 6, 0. */
 int nt_exit_worse(int a, int b);
 
 #endif

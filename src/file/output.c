@@ -437,6 +437,11 @@ void nt_output_catch_signals(void)
 	nt_temporaries_catch_signals();
 }
 
+void nt_output_remove_temporaries(void)
+{
+	nt_temporaries_remove_all();
+}
+
 static void (*end_process)(void);
 
 static void remove_and_end(void)

@@ -157,6 +157,10 @@ void nt_output_abort(nt_output *output);
  * into a write error. Called once by the front end. */
 void nt_output_catch_signals(void);
 
+/* Removes the temporary files of all sets, for a process that ends: what is on its way to its place gets there first,
+ * and nothing sets out any more. */
+void nt_output_remove_temporaries(void);
+
 /* Has the temporary files removed and `end` called, which must not return, where the process cannot go on for want of
  * memory. */
 void nt_output_catch_exhaustion(void (*end)(void));

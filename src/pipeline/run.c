@@ -4,6 +4,8 @@
  */
 #include "pipeline/run.h"
 
+#include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/clock.h"
@@ -12,6 +14,7 @@
 #include "gltf/sidecar.h"
 #include "gltf/verify/verify.h"
 #include "pipeline/stages.h"
+#include "pipeline/timer.h"
 
 /* What the stages of one run share. */
 typedef struct run {
@@ -25,8 +28,9 @@ typedef struct run {
 	nt_read_options read_options;
 	nt_textures *textures; /* NULL: the output has none */
 	double stage_begin;
-	nt_stage stage;
-	bool input_is_open;
+	_Atomic(nt_stage) stage; /* the timer asks, too */
+	nt_timer timer;
+	bool input_is_open, placed; /* placed: the output */
 	nt_output_result result;
 } run;
 
@@ -48,6 +52,24 @@ static void begin_stage(void *user, nt_stage stage)
 	r->stage = stage;
 	if (r->settings->on_stage)
 		r->settings->on_stage(r->settings->on_stage_user, stage);
+}
+
+/* As the source says, before most of the work: each primitive has its own, and each instance where all become one
+ * mesh. */
+static nt_status check_triangles(const run *r)
+{
+	const nt_scene *scene = &r->scene;
+	const bool placed = r->read_options.world && scene->instance_count;
+	uint64_t count = 0;
+	for (size_t i = 0; i < (placed ? scene->instance_count : scene->mesh_count); i++) {
+		const nt_mesh *mesh = &scene->meshes[placed ? scene->instances[i].mesh : i];
+		count += mesh->triangles ? mesh->face_count : 0;
+		for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
+			count += mesh->face_sizes[f] == 4;
+	}
+	const uint64_t most = r->settings->max_triangles;
+	return !most || count <= most ? NT_OK : nt_fail(r->error, NT_ERROR_LIMIT,
+		"%" PRIu64 " triangles, --max-triangles is %" PRIu64, count, most);
 }
 
 static nt_status open_scene(run *r)
@@ -73,6 +95,8 @@ static nt_status open_scene(run *r)
 	}
 	r->scene.format = r->reader->format;
 	status = r->reader->open(&r->scene, &r->read_options, r->error);
+	if (!status)
+		status = check_triangles(r);
 	end_stage(r);
 	r->summary->seconds[NT_STAGE_INDEX] += r->scene.index_seconds;
 	r->summary->seconds[NT_STAGE_PARSE] -= r->scene.index_seconds;
@@ -95,8 +119,8 @@ static bool count_decisions(run *r)
 /* The record is written before the rename: if the run ends between the two, the output is made again. */
 static nt_status tell_placing(void *user, nt_error *error)
 {
-	const run *r = user;
-	if (r->summary->trace.failed)
+	run *r = user;
+	if (r->summary->trace.failed || !nt_timer_hold(&r->timer))
 		return nt_fail_memory(error);
 	return r->settings->placing
 		? r->settings->placing(r->settings->placing_user, &r->summary->trace, error) : NT_OK;
@@ -214,7 +238,10 @@ static nt_status write_scene(run *r)
 		nt_output_abort(output);
 		return status;
 	}
-	return nt_output_commit(output, r->error);
+	status = nt_output_commit(output, r->error);
+	nt_timer_release(&r->timer);
+	r->placed = !status;
+	return status;
 }
 
 /* Whether materials become those of a new glTF. */
@@ -280,6 +307,40 @@ static void forget_attempt(run *r)
 	nt_scene_init(&r->scene, r->input_path);
 }
 
+/* ---- limits ---- */
+
+static nt_status fail_late(const run *r, nt_error *error)
+{
+	return nt_fail(error, NT_ERROR_LIMIT, "not done after --max-seconds=%.9g (%s)%s", r->settings->max_seconds,
+		nt_stage_name(r->stage), r->placed ? "; the output stands" : "");
+}
+
+static void end_late(void *user)
+{
+	const run *r = user;
+	nt_error error;
+	fail_late(r, &error);
+	nt_error_in_file(&error, r->input_path);
+	r->settings->too_late(&error);
+}
+
+/* What a failure was for the user: that there was no memory can be a limit. */
+static nt_status name_limit(run *r, nt_status status)
+{
+	const nt_settings *s = r->settings;
+	if (!status)
+		return NT_OK;
+	if (nt_timer_end(&r->timer)) {
+		fail_late(r, r->error);
+	} else if (status == NT_ERROR_MEMORY && s->max_memory) {
+		nt_fail(r->error, NT_ERROR_LIMIT, "--max-memory=%" PRIu64 "M is not enough", s->max_memory >> 20);
+		if (s->need > s->max_memory && s->need != UINT64_MAX)
+			snprintf(r->error->message + strlen(r->error->message), 80,
+				": files like this take up to %" PRIu64 "M", (s->need >> 20) + 1);
+	}
+	return r->error->status;
+}
+
 nt_status nt_run(const char *input, const char *output, const nt_settings *settings,
 	nt_summary *summary, nt_error *error)
 {
@@ -299,11 +360,13 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 
 	nt_watch_forget();
 	nt_trace *outer = nt_trace_use(&summary->trace);
-	nt_status status = run_stages(&r);
+	nt_status status = nt_timer_begin(&r.timer, settings->max_seconds, settings->too_late ? end_late : NULL, &r)
+		? run_stages(&r) : nt_fail_memory(error);
 	for (unsigned attempt = 1; r.result.again && attempt < MOST_ATTEMPTS; attempt++) {
 		forget_attempt(&r);
 		status = run_stages(&r);
 	}
+	status = name_limit(&r, status);
 	if (status || settings->check)
 		status = nt_check_inputs(&r.scene, status, error);
 	summary->left = r.result.left;
@@ -312,7 +375,10 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 		begin_stage(&r, NT_STAGE_REPORT);
 		status = nt_stage_report(&r.scene, settings, r.writer ? r.writer->format : NT_FORMAT_UNKNOWN,
 			r.textures, status, summary, error);
+		if (status == NT_ERROR_MEMORY && nt_timer_end(&r.timer))
+			status = fail_late(&r, error);
 	}
+	nt_timer_end(&r.timer);
 
 	/* what was found belongs to the caller, also after a failure */
 	end_stage(&r);
@@ -343,6 +409,25 @@ void nt_summary_free(nt_summary *summary)
 	summary->lines = NULL;
 	summary->note = NULL;
 	summary->report = NULL;
+}
+
+const char *nt_stage_name(nt_stage stage)
+{
+	static const char *const names[NT_STAGE_COUNT] = {
+		[NT_STAGE_MAP] = "map",
+		[NT_STAGE_PARSE] = "parse",
+		[NT_STAGE_INDEX] = "index",
+		[NT_STAGE_DECODE] = "decode",
+		[NT_STAGE_TEXTURES] = "textures",
+		[NT_STAGE_NORMALS] = "normals",
+		[NT_STAGE_WELD] = "weld",
+		[NT_STAGE_TANGENTS] = "tangents",
+		[NT_STAGE_SPLIT] = "split",
+		[NT_STAGE_WRITE] = "write",
+		[NT_STAGE_VERIFY] = "verify",
+		[NT_STAGE_REPORT] = "report",
+	};
+	return names[stage];
 }
 
 void nt_run_catch_signals(void)

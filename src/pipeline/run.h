@@ -24,6 +24,9 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 
 void nt_summary_free(nt_summary *summary);
 
+/* How a stage is called: "tangents". */
+const char *nt_stage_name(nt_stage stage);
+
 /* Makes SIGINT, SIGTERM and SIGHUP remove the temporary files of all runs before they end the process, and turns
  * SIGPIPE into a write error. Called once, before the first run, by a front end that is the whole process. */
 void nt_run_catch_signals(void);

@@ -98,6 +98,14 @@ typedef struct nt_settings {
 	nt_status (*placing)(void *user, const nt_trace *trace, nt_error *error);
 	void *placing_user;
 
+	/* Limits; 0: none. See nmtan(1). */
+	uint64_t max_triangles; /* of what is read */
+	uint64_t max_memory;    /* bytes, of which a front end has the system refuse more */
+	double max_seconds;     /* of a run */
+	uint64_t need;          /* bytes that a run may take, as far as was guessed; 0: not known */
+	/* Ends the process, for a front end that is it: the run is late and does not end by itself. NULL: it may. */
+	void (*too_late)(const nt_error *error);
+
 	/* What a report is to hold; NULL: none is made. `written` is set by the run. */
 	const nt_report_options *report;
 

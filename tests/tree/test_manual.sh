@@ -52,7 +52,7 @@ exists expected printed
 equal expected printed
 
 scene "every exit code of help is in the manual"
-for code in 0 1 2 3 4 5 6; do
+for code in 0 1 2 3 4 5 6 7; do
 	sed -n '/^\.SH EXIT/,/^\.SH ENV/p' "$page" | grep -q "^\.B $code$" || wrong "$code is missing"
 done
 

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * When the work of a thread, and of the pool's threads that help it, is to end. From then on memory is refused, by
+ * which every step knows how to fail; long loops that ask for none ask here. Who sets deadlines says what the failure
+ * was.
+ */
+#ifndef NT_BASE_DEADLINE_H
+#define NT_BASE_DEADLINE_H
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct nt_deadline {
+	atomic_bool passed; /* stays so */
+} nt_deadline;
+
+extern _Thread_local const nt_deadline *nt_own_deadline; /* NULL: none */
+
+/* The deadline of this thread from now on. Returns the one that it had. */
+static inline const nt_deadline *nt_deadline_use(const nt_deadline *deadline)
+{
+	const nt_deadline *before = nt_own_deadline;
+	nt_own_deadline = deadline;
+	return before;
+}
+
+static inline bool nt_deadline_passed(void)
+{
+	const nt_deadline *own = nt_own_deadline;
+	return own && atomic_load_explicit(&own->passed, memory_order_relaxed);
+}
+
+#endif

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+# Limits for those who run what others send: what is beyond them ends in a clean way, with a status of its own.
+. "$ROOT/tests/support/cli.sh"
+
+# refused WORDS MESSAGE: exit code 7, the message, and nothing beside the input.
+refused() {
+	exits 7
+	says "$1"
+	only "${@:2}"
+}
+sanitized=true
+case $NMTAN in
+*/release/*) sanitized=false ;;
+esac
+
+scene "triangles are counted before the work, once for each primitive that has them"
+python3 "$ROOT/tests/support/cost_inputs.py" same 100 s.glb
+run --only=all --max-triangles=4000000 s.glb out.glb
+refused "s.glb: 4321800 triangles, --max-triangles is 4000000" s.glb
+run -q --only=all --max-triangles=4321800 s.glb out.glb
+exits 0
+
+scene "quads count twice, instances each, and --check has the same limit"
+cp "$data/quad.obj" "$data/plates.gltf" "$data/plates.bin" "$data/bumps.png" .
+run --max-triangles=1 quad.obj out.ply
+refused "quad.obj: 2 triangles, --max-triangles is 1" quad.obj plates.gltf plates.bin bumps.png
+run --check --max-triangles=1 quad.obj
+refused "quad.obj: 2 triangles" quad.obj plates.gltf plates.bin bumps.png
+gltf plates.gltf twice 'g.nodes.push(JSON.parse(JSON.stringify(g.nodes[0]))); g.scenes[0].nodes.push(g.nodes.length - 1)'
+run --max-triangles=1 --only=all plates.gltf out.ply
+first=$(grep -oE '[0-9]+ triangles' "$WORK/err.txt")
+run --max-triangles=1 --only=all twice.gltf out.ply
+[ "$(grep -oE '[0-9]+ triangles' "$WORK/err.txt" | grep -oE '[0-9]+')" -gt "${first%% *}" ] || wrong "the instance is not counted"
+
+scene "the others of many go on"
+cp "$data/quad.obj" "$data/head.obj" .
+run --max-triangles=10 -d out --manifest=m.jsonl quad.obj head.obj
+exits 7
+exists out/quad.glb
+[ ! -e out/head.glb ] || wrong "there is an output"
+is "$(python3 -c 'import json; print(sorted(json.loads(line)["exit_code"] for line in open("m.jsonl")))')" "[0, 7]"
+
+scene "a run that is late ends, without output, temporary files and report"
+python3 "$ROOT/tests/support/cost_inputs.py" windows 200 w.glb
+for words in "" --verify --bitangents; do
+	# shellcheck disable=SC2086
+	run --only=all --max-seconds=0.05 $words w.glb out.glb
+	refused "w.glb: not done after --max-seconds=0.05 (" w.glb
+done
+run --only=all --max-seconds=0.05 --check w.glb
+refused "w.glb: not done after --max-seconds=0.05 (" w.glb
+run -q --only=all --max-seconds=1000 "$data/quad.obj" out.glb
+exits 0
+
+scene "it ends in the midst of what it waits for"
+mkfifo pipe
+sleep 60 >pipe &
+sleeper=$!
+"$NMTAN" --max-seconds=0.2 - out.glb <pipe 2>"$WORK/err.txt"
+status=$?
+kill $sleeper
+refused "standard input: not done after --max-seconds=0.2" pipe
+
+scene "one that is late leaves the others"
+python3 "$ROOT/tests/support/cost_inputs.py" windows 200 w.glb
+cp "$data/quad.obj" .
+run --only=all --max-seconds=0.05 -d out w.glb quad.obj
+exits 7
+says "w.glb: not done after --max-seconds=0.05"
+is "$(ls -A out)" quad.glb
+
+scene "an output has its name or the run is late, whenever the time is over"
+cp "$data/plates.gltf" "$data/plates.bin" "$data/bumps.png" .
+run -q --only=all plates.gltf good.glb
+for i in $(seq 30); do
+	rm -f out.glb
+	run -q --only=all --max-seconds=0.00$((i / 2 % 10))$i plates.gltf out.glb
+	[ $status = 0 ] || [ $status = 7 ] || wrong "exit code $status"
+	if [ $status = 0 ]; then same out.glb good.glb; else [ ! -e out.glb ] || wrong "late, with an output"; fi
+done
+rm -f out.glb
+only plates.gltf plates.bin bumps.png good.glb
+
+scene "memory beyond the limit is refused"
+if $sanitized; then
+	skip_case "a sanitizer's shadow memory is beyond any limit"
+else
+	python3 "$ROOT/tests/support/cost_inputs.py" windows 200 w.glb
+	run --only=all --max-memory=24M w.glb out.glb
+	refused "w.glb: --max-memory=24M is not enough: files like this take up to 6" w.glb
+	run --only=all --max-memory=24M --report=r.json w.glb out.glb
+	exits 7
+	grep -q -- "--max-memory=24M is not enough" r.json || wrong "the report does not say so"
+	run -q --only=all --max-memory=600M w.glb out.glb
+	exits 0
+fi
+
+scene "limits that are no numbers"
+for words in --max-seconds=0 --max-seconds=-1 --max-seconds=1s --max-seconds=nan --max-triangles=-1 --max-memory=x; do
+	run $words in.glb out.glb
+	exits 1
+	says "${words%%=*}: '${words#*=}' is not"
+done
+
+done_testing
