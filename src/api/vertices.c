@@ -41,7 +41,7 @@ static void find_numbers(void *context, size_t begin, size_t end, unsigned threa
 	const vertex_split *job = context;
 	const uint32_t *indices = job->solve->mesh->indices, *ids = job->solve->known->ids;
 	for (size_t c = 3 * begin; c < 3 * end; c++)
-		__atomic_store_n(&job->found[indices[c]], ids[c], __ATOMIC_RELAXED);
+		nt_atomic_store(&job->found[indices[c]], ids[c], RELAXED);
 }
 
 /* A vertex with a NaN is another welded vertex at each corner. */
@@ -52,7 +52,7 @@ static void check_numbers(void *context, size_t begin, size_t end, unsigned thre
 	const uint32_t *indices = job->solve->mesh->indices, *ids = job->solve->known->ids;
 	for (size_t c = 3 * begin; c < 3 * end; c++)
 		if (job->numbers[indices[c]] != ids[c])
-			__atomic_store_n(&job->splitter->seen[indices[c]], SEEN_OPEN, __ATOMIC_RELAXED);
+			nt_atomic_store(&job->splitter->seen[indices[c]], SEEN_OPEN, RELAXED);
 }
 
 /* Which welded vertex each vertex of the mesh is. */

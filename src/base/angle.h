@@ -6,6 +6,8 @@
 #ifndef NT_BASE_ANGLE_H
 #define NT_BASE_ANGLE_H
 
+#include "base/compiler.h"
+
 /* A t in [0, 1], the nearest of eight parts, and its arc tangent. */
 typedef struct nt_tangent {
 	double t, base, arc;
@@ -50,7 +52,7 @@ static inline double nt_angle_by(nt_tangent tangent, double s, double c)
 /* The angle in [0, pi] of the point (c, s) on the unit circle, s >= 0, to 2^-50 of itself; 0 where both are 0.
  * Without a division or a branch, for vectors: the nearest k pi/16 is turned away, and what is left, |r| <= sin(pi/32),
  * has an arc sine whose first term left out is r^15 143/10240 < 2^-53 r. */
-static inline __attribute__((always_inline)) double nt_angle_on_circle(double s, double c)
+static inline NT_ALWAYS_INLINE double nt_angle_on_circle(double s, double c)
 {
 	const double half_pi = 1.57079632679489661923, pi = 3.14159265358979323846;
 	const double a = c < 0.0 ? -c : c;

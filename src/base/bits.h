@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include "base/compiler.h"
 
 /* Words for the bits [0, count). */
 static inline size_t nt_bit_words(size_t count)
@@ -30,8 +31,8 @@ static inline void nt_bit_clear(uint64_t *bits, size_t i)
 static inline void nt_bit_set(uint64_t *bits, size_t i)
 {
 	const uint64_t bit = (uint64_t)1 << i % 64;
-	if (!(__atomic_load_n(&bits[i / 64], __ATOMIC_RELAXED) & bit))
-		__atomic_fetch_or(&bits[i / 64], bit, __ATOMIC_RELAXED);
+	if (!(nt_atomic_load(&bits[i / 64], RELAXED) & bit))
+		nt_atomic_or(&bits[i / 64], bit, RELAXED);
 }
 
 /* The first set bit from `i` on; `count` where there is none before that. */
@@ -40,7 +41,7 @@ static inline size_t nt_bit_next(const uint64_t *bits, size_t i, size_t count)
 	while (i < count) {
 		const uint64_t left = bits[i / 64] >> i % 64;
 		if (left) {
-			i += (size_t)__builtin_ctzll(left);
+			i += (size_t)nt_trailing_zeros(left);
 			return i < count ? i : count;
 		}
 		i = (i / 64 + 1) * 64;
@@ -54,7 +55,7 @@ static inline uint32_t nt_bit_ranks(const uint64_t *bits, size_t count, uint32_t
 	uint32_t sum = 0;
 	for (size_t word = 0; word < nt_bit_words(count); word++) {
 		ranks[word] = sum;
-		sum += (uint32_t)__builtin_popcountll(bits[word]);
+		sum += (uint32_t)nt_count_bits(bits[word]);
 	}
 	return sum;
 }
@@ -62,7 +63,7 @@ static inline uint32_t nt_bit_ranks(const uint64_t *bits, size_t count, uint32_t
 /* How many bits before `i` are set. */
 static inline uint32_t nt_bit_rank(const uint64_t *bits, const uint32_t *ranks, size_t i)
 {
-	return ranks[i / 64] + (uint32_t)__builtin_popcountll(bits[i / 64] & (((uint64_t)1 << i % 64) - 1));
+	return ranks[i / 64] + (uint32_t)nt_count_bits(bits[i / 64] & (((uint64_t)1 << i % 64) - 1));
 }
 
 #endif

@@ -7,7 +7,7 @@
 #define NT_BASE_BORROWED_H
 
 #include <stdint.h>
-#include "base/memory.h"
+#include "base/size.h"
 #include "base/scratch.h"
 
 typedef struct nt_borrowed {

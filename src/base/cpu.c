@@ -4,6 +4,8 @@
  */
 #include "base/cpu.h"
 
+#include "base/compiler.h"
+
 /* glibc (2.33) tells what its loader has asked the processor already. Asking once more costs 10 us an instruction on a
  * virtual machine, and the compiler's way asks a dozen times before main(), needed or not. */
 #if defined(__x86_64__) && __has_include(<sys/platform/x86.h>)
@@ -45,10 +47,10 @@ bool nt_cpu_has(nt_isa isa)
 nt_isa nt_cpu_best(void)
 {
 	static nt_isa found = NT_ISA_AUTO;
-	nt_isa best = __atomic_load_n(&found, __ATOMIC_RELAXED);
+	nt_isa best = nt_atomic_load(&found, RELAXED);
 	if (best != NT_ISA_AUTO)
 		return best;
 	best = nt_cpu_has(NT_ISA_AVX512) ? NT_ISA_AVX512 : nt_cpu_has(NT_ISA_AVX2) ? NT_ISA_AVX2 : NT_ISA_BASELINE;
-	__atomic_store_n(&found, best, __ATOMIC_RELAXED);
+	nt_atomic_store(&found, best, RELAXED);
 	return best;
 }

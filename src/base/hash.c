@@ -25,7 +25,7 @@ void nt_hash_make_key(void)
 #endif
 	for (size_t i = 0; i < NT_HASH_KEY_WORDS; i++) {
 		const uint64_t word = nt_hash_words_by(digits + 2 * i, chance[0], chance[1]);
-		__atomic_store_n(&nt_hash_key_words[i], word | 1, __ATOMIC_RELEASE);
+		nt_atomic_store(&nt_hash_key_words[i], word | 1, RELEASE);
 	}
 }
 

@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+#include "base/compiler.h"
 
 #ifdef __cplusplus
 extern "C" { /* for src/ext */
@@ -24,21 +25,19 @@ void nt_hash_make_key(void);
 static inline void nt_hash_key(uint64_t key[NT_HASH_KEY_WORDS])
 {
 	/* the last word is stored last, and never 0 */
-	if (!__atomic_load_n(&nt_hash_key_words[NT_HASH_KEY_WORDS - 1], __ATOMIC_ACQUIRE))
+	if (!nt_atomic_load(&nt_hash_key_words[NT_HASH_KEY_WORDS - 1], ACQUIRE))
 		nt_hash_make_key();
 	for (size_t i = 0; i < NT_HASH_KEY_WORDS; i++)
-		key[i] = __atomic_load_n(&nt_hash_key_words[i], __ATOMIC_RELAXED);
+		key[i] = nt_atomic_load(&nt_hash_key_words[i], RELAXED);
 }
 
 /* The hash of two words. Slots may be made of any of its bits: after one product grids still have up to twice as many
  * probes as what is random (test_hash.c). */
 static inline uint64_t nt_hash_words_by(const uint64_t *key, uint64_t a, uint64_t b)
 {
-	const unsigned __int128 product = (unsigned __int128)(a ^ key[0]) * (b ^ key[1]);
-	a = (uint64_t)product ^ key[0];
-	b = (uint64_t)(product >> 64) ^ key[1];
-	const unsigned __int128 second = (unsigned __int128)a * b;
-	return (uint64_t)second ^ (uint64_t)(second >> 64);
+	a = nt_multiply(a ^ key[0], b ^ key[1], &b) ^ key[0];
+	a = nt_multiply(a, b ^ key[1], &b);
+	return a ^ b;
 }
 
 static inline uint64_t nt_hash_words(uint64_t a, uint64_t b)

@@ -1,31 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Memory with checked sizes: sizes that come from files are multiplied here and nowhere else.
+ * Memory, by sizes that are checked.
  */
 #ifndef NT_BASE_MEMORY_H
 #define NT_BASE_MEMORY_H
 
-#include <stdbool.h>
-#include <stddef.h>
-
-/* product = a * b, sum = a + b; false where that overflows (the result is then SIZE_MAX). */
-static inline bool nt_size_mul(size_t a, size_t b, size_t *product)
-{
-	if (__builtin_mul_overflow(a, b, product)) {
-		*product = (size_t)-1;
-		return false;
-	}
-	return true;
-}
-
-static inline bool nt_size_add(size_t a, size_t b, size_t *sum)
-{
-	if (__builtin_add_overflow(a, b, sum)) {
-		*sum = (size_t)-1;
-		return false;
-	}
-	return true;
-}
+#include "base/size.h"
 
 /* malloc(count * size) and calloc; NULL on overflow or exhaustion. A count of 0 gives a block that can
  * be freed. */

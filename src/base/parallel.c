@@ -5,7 +5,7 @@
  */
 #include "base/parallel.h"
 
-#include <stdatomic.h>
+#include "base/compiler.h"
 #include "base/pool.h"
 
 unsigned nt_thread_count(unsigned requested)
@@ -58,13 +58,13 @@ typedef struct item_job {
 	void (*body)(void *context, size_t item, unsigned slot);
 	void *context;
 	size_t count;
-	atomic_size_t next;
+	size_t next; /* atomic */
 } item_job;
 
 static void run_items(void *context, unsigned slot)
 {
 	item_job *job = context;
-	for (size_t i; (i = atomic_fetch_add_explicit(&job->next, 1, memory_order_relaxed)) < job->count;)
+	for (size_t i; (i = nt_atomic_add(&job->next, 1, RELAXED)) < job->count;)
 		job->body(job->context, i, slot);
 }
 

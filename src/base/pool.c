@@ -38,11 +38,11 @@ void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), voi
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
-#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <unistd.h>
+#include "base/compiler.h"
 
 /* Looks before sleeping: 80 microseconds at the 40 to 140 cycles of a pause, somewhat more than waking takes. After a
  * thread could not be made, the regions that do without before one is tried again. */
@@ -52,8 +52,8 @@ typedef struct region {
 	void (*body)(void *context, unsigned slot);
 	void *context;
 	unsigned slots;
-	atomic_uint next;    /* the first slot that nobody has taken; beyond `slots` when all are */
-	atomic_uint helpers; /* threads of the pool that are in it */
+	unsigned next;    /* atomic: the first slot that nobody has taken; beyond `slots` when all are */
+	unsigned helpers; /* atomic: threads of the pool that are in it */
 	struct region *older;
 	const nt_deadline *deadline; /* the caller's */
 } region;
@@ -70,8 +70,8 @@ static struct {
 	unsigned processors;   /* 0: not yet asked for */
 	bool watches_forks;
 	unsigned looks;        /* before sleeping, as the newest region wanted it */
-	atomic_ulong bell;     /* rung after each post: threads that look see it without the lock */
-	atomic_uint waiting;   /* callers that sleep until helpers leave */
+	unsigned long bell;    /* atomic: rung after each post: threads that look see it without the lock */
+	unsigned waiting;      /* atomic: callers that sleep until helpers leave */
 } pool = {.lock = PTHREAD_MUTEX_INITIALIZER, .posted = PTHREAD_COND_INITIALIZER,
 	.left = PTHREAD_COND_INITIALIZER};
 
@@ -98,7 +98,7 @@ static inline void pause_shortly(void)
 
 static void work(region *r)
 {
-	for (unsigned slot; (slot = atomic_fetch_add_explicit(&r->next, 1, memory_order_relaxed)) < r->slots;)
+	for (unsigned slot; (slot = nt_atomic_add(&r->next, 1, RELAXED)) < r->slots;)
 		r->body(r->context, slot);
 }
 
@@ -108,10 +108,10 @@ static void work(region *r)
 static region *enter_region(void)
 {
 	region *r = pool.newest;
-	while (r && atomic_load_explicit(&r->next, memory_order_relaxed) >= r->slots)
+	while (r && nt_atomic_load(&r->next, RELAXED) >= r->slots)
 		r = r->older;
 	if (r)
-		atomic_fetch_add_explicit(&r->helpers, 1, memory_order_relaxed);
+		nt_atomic_add(&r->helpers, 1, RELAXED);
 	return r;
 }
 
@@ -119,7 +119,7 @@ static region *enter_region(void)
  * sees this helper gone or the helper sees the caller wait: both orders are sequentially consistent. */
 static void leave_region(region *r)
 {
-	if (atomic_fetch_sub(&r->helpers, 1) != 1 || atomic_load(&pool.waiting) == 0)
+	if (nt_atomic_sub(&r->helpers, 1, SEQ_CST) != 1 || nt_atomic_load(&pool.waiting, SEQ_CST) == 0)
 		return;
 	pthread_mutex_lock(&pool.lock);
 	pthread_cond_broadcast(&pool.left);
@@ -128,7 +128,7 @@ static void leave_region(region *r)
 
 static void await_post(unsigned long bell, unsigned looks)
 {
-	while (looks-- > 0 && atomic_load_explicit(&pool.bell, memory_order_relaxed) == bell)
+	while (looks-- > 0 && nt_atomic_load(&pool.bell, RELAXED) == bell)
 		pause_shortly();
 }
 
@@ -168,7 +168,7 @@ static void *run_thread(void *withheld)
 {
 	give_back((int)(intptr_t)withheld);
 	for (;;) {
-		const unsigned long bell = atomic_load(&pool.bell);
+		const unsigned long bell = nt_atomic_load(&pool.bell, SEQ_CST);
 		pthread_mutex_lock(&pool.lock);
 		region *r = enter_region();
 		const unsigned long posts = pool.posts;
@@ -183,7 +183,7 @@ static void *run_thread(void *withheld)
 		}
 		if (alone)
 			await_post(bell, looks);
-		if (r || atomic_load_explicit(&pool.bell, memory_order_relaxed) != bell)
+		if (r || nt_atomic_load(&pool.bell, RELAXED) != bell)
 			continue;
 		pthread_mutex_lock(&pool.lock);
 		pool.sleeping++;
@@ -235,7 +235,7 @@ static void start_anew(void)
 	pool.posted = pool.left = (pthread_cond_t)PTHREAD_COND_INITIALIZER;
 	pool.newest = NULL;
 	pool.threads = pool.sleeping = pool.without = 0;
-	atomic_store(&pool.waiting, 0);
+	nt_atomic_store(&pool.waiting, 0, SEQ_CST);
 }
 
 /* With the lock: how many threads the pool lacks for a region, which the caller must then make. */
@@ -285,7 +285,7 @@ static unsigned post(region *r)
 		pthread_cond_signal(&pool.posted);
 	pthread_mutex_unlock(&pool.lock);
 	/* after the lock: who looks for it would only run into it */
-	atomic_fetch_add(&pool.bell, 1);
+	nt_atomic_add(&pool.bell, 1, SEQ_CST);
 	make_threads(lacking);
 	return looks;
 }
@@ -303,15 +303,15 @@ static void close_region(region *r, unsigned looks)
 	pthread_mutex_lock(&pool.lock);
 	unlink_region(r);
 	pthread_mutex_unlock(&pool.lock);
-	while (looks-- > 0 && atomic_load(&r->helpers) != 0)
+	while (looks-- > 0 && nt_atomic_load(&r->helpers, SEQ_CST) != 0)
 		pause_shortly();
-	if (atomic_load(&r->helpers) == 0)
+	if (nt_atomic_load(&r->helpers, SEQ_CST) == 0)
 		return;
 	pthread_mutex_lock(&pool.lock);
-	atomic_fetch_add(&pool.waiting, 1);
-	while (atomic_load(&r->helpers) != 0)
+	nt_atomic_add(&pool.waiting, 1, SEQ_CST);
+	while (nt_atomic_load(&r->helpers, SEQ_CST) != 0)
 		pthread_cond_wait(&pool.left, &pool.lock);
-	atomic_fetch_sub(&pool.waiting, 1);
+	nt_atomic_sub(&pool.waiting, 1, SEQ_CST);
 	pthread_mutex_unlock(&pool.lock);
 }
 

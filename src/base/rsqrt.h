@@ -11,8 +11,9 @@
 
 #include <stdint.h>
 #include <string.h>
+#include "base/compiler.h"
 
-static inline __attribute__((always_inline)) double nt_rsqrt_guess(double x)
+static inline NT_ALWAYS_INLINE double nt_rsqrt_guess(double x)
 {
 	uint64_t bits;
 	memcpy(&bits, &x, sizeof bits);
@@ -22,7 +23,7 @@ static inline __attribute__((always_inline)) double nt_rsqrt_guess(double x)
 }
 
 /* 1 / sqrt(x), good to 3 units in the last place. */
-static inline __attribute__((always_inline)) double nt_rsqrt(double x)
+static inline NT_ALWAYS_INLINE double nt_rsqrt(double x)
 {
 	const double half = 0.5 * x;
 	double y = nt_rsqrt_guess(x);
@@ -33,7 +34,7 @@ static inline __attribute__((always_inline)) double nt_rsqrt(double x)
 }
 
 /* sqrt(x) to five digits: for estimates. 0 of 0. */
-static inline __attribute__((always_inline)) double nt_sqrt_rough(double x)
+static inline NT_ALWAYS_INLINE double nt_sqrt_rough(double x)
 {
 	const double half = 0.5 * x;
 	double y = nt_rsqrt_guess(x);

@@ -8,7 +8,8 @@
 
 #include <stdint.h>
 #include <stdlib.h>
-#include "base/memory.h"
+#include "base/compiler.h"
+#include "base/size.h"
 #include "base/pages.h"
 
 enum { ALIGNMENT = 64, LEAST_BLOCK_BYTES = 64 * 1024 };
@@ -99,7 +100,7 @@ static struct nt_scratch_block *insert_block(nt_scratch *scratch, size_t bytes)
 }
 
 /* Not in line: it needs many registers, which all requests would have to save. */
-static void *__attribute__((noinline)) alloc_behind(nt_scratch *scratch, size_t bytes)
+static void *NT_NOINLINE alloc_behind(nt_scratch *scratch, size_t bytes)
 {
 	struct nt_scratch_block *block = scratch->current ? scratch->current->next : scratch->first;
 	for (; block; block = block->next) {

@@ -17,6 +17,7 @@
 #define NT_TANGENT_ACOS_H
 
 #include <math.h>
+#include "base/compiler.h"
 
 /* One term of the polynomial. Where the instruction set has FMA the rounding differs, and with it about one
  * bit in 2^53; the float that comes out is the same, which was tried for all of them as well. */
@@ -27,7 +28,7 @@
 #endif
 
 /* P. */
-static inline __attribute__((always_inline)) double nt_acos_terms(double z)
+static inline NT_ALWAYS_INLINE double nt_acos_terms(double z)
 {
 	double p = 0x1.ccdb4239f45a1p-6;
 	p = NT_ACOS_TERM(p, z, -0x1.a1e9daa4c0240p-9);

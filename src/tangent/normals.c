@@ -54,7 +54,7 @@ static nt_dvec3 lane(const double *x, const double *y, const double *z, size_t i
 }
 
 /* nt_dvec3_normalise() of `count` vectors. */
-static void normalise(double *restrict x, double *restrict y, double *restrict z, double *restrict usable, size_t count)
+static void normalise(double *NT_RESTRICT x, double *NT_RESTRICT y, double *NT_RESTRICT z, double *NT_RESTRICT usable, size_t count)
 {
 	for (size_t i = 0; i < count; i++) {
 		const nt_dvec3 v = {x[i], y[i], z[i]};
@@ -70,7 +70,7 @@ static void normalise(double *restrict x, double *restrict y, double *restrict z
 	}
 }
 
-static void measure_angles(face_block *restrict b, size_t corners)
+static void measure_angles(face_block *NT_RESTRICT b, size_t corners)
 {
 	/* both times the edges' lengths */
 	double sine[CORNERS], cosine[CORNERS], t[CORNERS], base[CORNERS], arc[CORNERS];
@@ -91,7 +91,7 @@ static void measure_angles(face_block *restrict b, size_t corners)
 		b->angles[i] = nt_angle_by((nt_tangent){t[i], base[i], arc[i]}, sine[i], cosine[i]);
 }
 
-static void measure(face_block *restrict b, size_t faces, size_t corners)
+static void measure(face_block *NT_RESTRICT b, size_t faces, size_t corners)
 {
 	for (size_t i = 0; i < faces; i++) {
 		const nt_dvec3 n = nt_dvec3_cross(lane(b->across[0][0], b->across[0][1], b->across[0][2], i),

@@ -119,7 +119,7 @@ static bool find_faulty(const repair_state *r, place *at)
 	while (face < mesh->face_count) {
 		const uint64_t left = r->faulty[face / 64] >> face % 64;
 		if (left) {
-			face += (size_t)__builtin_ctzll(left);
+			face += (size_t)nt_trailing_zeros(left);
 			break;
 		}
 		face = (face / 64 + 1) * 64;
@@ -316,7 +316,7 @@ static void repair_face(const repair_state *r, size_t number, size_t first)
 }
 
 /* What nearly all meshes do not need: not in line, since it saves many registers. */
-static nmtan_status __attribute__((noinline)) repair(const nt_solve *solve, const nmtan_counts *counts,
+static nmtan_status NT_NOINLINE repair(const nt_solve *solve, const nmtan_counts *counts,
 	const uint64_t *faulty)
 {
 	repair_state r = {.solve = solve, .faulty = faulty};

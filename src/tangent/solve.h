@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 #include <string.h>
+#include "base/compiler.h"
 #include "base/cpu.h"
 #include "base/scratch.h"
 #include "nmtan.h"
@@ -67,16 +68,13 @@ static inline size_t nt_next_flagged(const uint8_t *flags, size_t t, size_t coun
 		memcpy(&eight, flags + t, sizeof eight);
 		eight &= 0x0101010101010101u * mask;
 		if (eight)
-			return t + (size_t)(__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? __builtin_clzll(eight)
-										 : __builtin_ctzll(eight)) / 8;
+			break;
 	}
 	while (t < count && !(flags[t] & mask))
 		t++;
 	return t;
 }
 
-/* Flags that are compared at a time: a vector of SSE2 and of NEON. */
-typedef uint8_t nt_flag_lanes __attribute__((vector_size(16)));
 enum { NT_FLAG_WORD = 64 };
 
 /* A bit for each of `count` flags, at most NT_FLAG_WORD, that has a bit of `mask`; `neither` receives how many have
@@ -84,9 +82,11 @@ enum { NT_FLAG_WORD = 64 };
  * four, and the product has the sum of the bytes in its highest one. */
 static inline uint64_t nt_flagged(const uint8_t *flags, size_t count, uint8_t mask, uint8_t other, size_t *neither)
 {
+#if NT_VECTORS
+	typedef uint8_t nt_flag_lanes __attribute__((vector_size(16))); /* SSE2's, and NEON's */
 	const uint64_t ones = 0x0101010101010101u;
 	/* moves the lowest bit of byte i, in the order of memory, to bit i of the highest byte */
-	const uint64_t gather = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? 0x8040201008040201u : 0x0102040810204080u;
+	const uint64_t gather = NT_BIG_ENDIAN ? 0x8040201008040201u : 0x0102040810204080u;
 	uint8_t last[NT_FLAG_WORD];
 	if (count < NT_FLAG_WORD) {
 		memset(last, other, sizeof last);
@@ -111,6 +111,15 @@ static inline uint64_t nt_flagged(const uint8_t *flags, size_t count, uint8_t ma
 		flagged |= (eight & ones) * gather >> 56 << i;
 	}
 	return flagged;
+#else
+	uint64_t flagged = 0;
+	*neither = 0;
+	for (size_t i = 0; i < count; i++) {
+		flagged |= (uint64_t)((flags[i] & mask) != 0) << i;
+		*neither += !(flags[i] & (mask | other));
+	}
+	return flagged;
+#endif
 }
 
 /* Parts of a mesh in the order in which a solve is done with them. */

@@ -97,7 +97,7 @@ static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int o
 		bad |= (unsigned)(t[4 * k + 3] != w) << k;
 	for (size_t k = 0; open && bad != all && k < size; k++)
 		bad |= (unsigned)!nt_is_frame(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k))) << k;
-	if (__builtin_expect(!bad, 1))
+	if (NT_EXPECT(!bad, 1))
 		return false;
 	for (size_t k = 0; k < size; k++)
 		if (bad >> k & 1)
@@ -192,7 +192,7 @@ static void check_triangles(const search *job, size_t begin, size_t end, nmtan_c
 			: UINT64_MAX >> (WORD - count);
 		uint64_t faulty = 0;
 		for (uint64_t bits = suspects; bits; bits &= bits - 1) {
-			const int i = __builtin_ctzll(bits);
+			const int i = nt_trailing_zeros(bits);
 			faulty |= (uint64_t)check_triangle(solve, first + (size_t)i, counts) << i;
 		}
 		job->faulty[word] = faulty;

@@ -30,20 +30,20 @@ typedef struct nt_weighed {
 	double stretch; /* the part of it that changes the weight alone: errors of the angle */
 } nt_weighed;
 
-static inline __attribute__((always_inline)) nt_measured nt_measure(nt_dvec3 u, nt_dvec3 across)
+static inline NT_ALWAYS_INLINE nt_measured nt_measure(nt_dvec3 u, nt_dvec3 across)
 {
 	const double squared = nt_dvec3_dot(u, u);
 	return (nt_measured){u, across, squared, nt_sqrt_rough(squared), nt_sqrt_rough(nt_dvec3_dot(across, across))};
 }
 
-static inline __attribute__((always_inline)) double nt_measure_edge(nt_dvec3 e, int by_area)
+static inline NT_ALWAYS_INLINE double nt_measure_edge(nt_dvec3 e, int by_area)
 {
 	const double squared = nt_dvec3_dot(e, e);
 	return by_area ? squared * nt_rsqrt(squared) : nt_sqrt_rough(squared);
 }
 
 /* The unit vector along a normal, or zero; |n|^2 is inside nt_rsqrt()'s range for all floats but zeros. */
-static inline __attribute__((always_inline)) nt_dvec3 nt_weigh_normal(double x, double y, double z)
+static inline NT_ALWAYS_INLINE nt_dvec3 nt_weigh_normal(double x, double y, double z)
 {
 	const nt_dvec3 n = {x, y, z};
 	return nt_dvec3_scale(nt_rsqrt(nt_dvec3_dot(n, n)), n);
@@ -51,7 +51,7 @@ static inline __attribute__((always_inline)) nt_dvec3 nt_weigh_normal(double x, 
 
 /* Whether u has a direction across a normal, without which it is `across`: what is left where it runs along it is
  * noise. */
-static inline __attribute__((always_inline)) bool nt_is_across(const nt_measured *m, nt_dvec3 across)
+static inline NT_ALWAYS_INLINE bool nt_is_across(const nt_measured *m, nt_dvec3 across)
 {
 	return nt_dvec3_dot(across, across) > NT_PARALLEL * NT_PARALLEL * m->squared;
 }
@@ -62,7 +62,7 @@ static inline __attribute__((always_inline)) bool nt_is_across(const nt_measured
  * product along n, which does not cancel in needles as the cross product of projected edges does:
  * `sine` = |n . across|, or |across| without a normal.
  */
-static inline __attribute__((always_inline)) nt_weighed nt_weigh_corner(const nt_measured *m, nt_dvec3 n,
+static inline NT_ALWAYS_INLINE nt_weighed nt_weigh_corner(const nt_measured *m, nt_dvec3 n,
 	nt_dvec3 e, nt_dvec3 g, double e_length, double g_length, double sine, int by_area)
 {
 	const nt_dvec3 d = nt_dvec3_reject(n, m->u);
@@ -81,7 +81,7 @@ static inline __attribute__((always_inline)) nt_weighed nt_weigh_corner(const nt
 }
 
 /* The same for Lengyel's sum: dP/du as it is, u times the inverse determinant, without its part along n. */
-static inline __attribute__((always_inline)) nt_weighed nt_weigh_nothing(const nt_measured *m, nt_dvec3 n,
+static inline NT_ALWAYS_INLINE nt_weighed nt_weigh_nothing(const nt_measured *m, nt_dvec3 n,
 	double inverse)
 {
 	const double length = m->u_length * inverse;

@@ -6,6 +6,7 @@
 #include "topology/adjacency.h"
 
 #include <string.h>
+#include "base/compiler.h"
 #include "base/parallel.h"
 
 /* Corners by which a count is prefetched before it is needed, where counts may not be in the first-level cache. */
@@ -27,7 +28,7 @@ static void count_corners(uint32_t *counts, const uint32_t *ids, size_t count, b
 {
 	size_t i = 0;
 	for (; far && i + COUNT_AHEAD < count; i++) {
-		__builtin_prefetch(&counts[ids[i + COUNT_AHEAD]], 1);
+		NT_PREFETCH(&counts[ids[i + COUNT_AHEAD]], 1);
 		counts[ids[i]]++;
 	}
 	for (; i < count; i++)
@@ -56,7 +57,7 @@ static void count_ranges(void *context, size_t begin, size_t end, unsigned threa
 }
 
 /* Vertices of a block with more than `most` corners become hubs. Returns how deep the block is without them. */
-static uint32_t __attribute__((noinline)) mark_hubs(const nt_adjacency *a, size_t first, size_t count, uint32_t most,
+static uint32_t NT_NOINLINE mark_hubs(const nt_adjacency *a, size_t first, size_t count, uint32_t most,
 	const uint32_t *totals)
 {
 	uint32_t depth = 0;

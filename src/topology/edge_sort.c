@@ -11,8 +11,10 @@
 #include "topology/edge_sort.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/compiler.h"
 
 #define NONE NT_NO_NEIGHBOUR
 
@@ -115,21 +117,14 @@ static bool take_last(question *q, size_t triangles)
 	return true;
 }
 
-typedef float float4 __attribute__((vector_size(16)));
-typedef int int4 __attribute__((vector_size(16)));
-
 /* Whether the first float of one of BATCH_VERTICES rows is within bounds, from `begin` on. */
 static bool has_within(const float *rows, size_t step, float begin, float low, float high)
 {
-	const float4 begins = {begin}, middles = {0.5f * low + 0.5f * high}, halves = {0.5f * (high - low)};
-	const int4 no_sign = {INT32_MAX};
-	int4 within = {0};
-	for (size_t i = 0; i < BATCH_VERTICES; i++) {
-		float4 row;
-		memcpy(&row, rows + step * i, sizeof row);
-		within |= (float4)((int4)(row - begins - middles) & no_sign) <= halves;
-	}
-	return within[0];
+	const float middle = 0.5f * low + 0.5f * high, half = 0.5f * (high - low);
+	int within = 0;
+	for (size_t i = 0; i < BATCH_VERTICES; i++)
+		within |= fabsf(rows[step * i] - begin - middle) <= half;
+	return within;
 }
 
 /* Distances from the grid's begin between which cells are, and a little more; more than the whole grid where a cell is
@@ -184,14 +179,14 @@ static uint32_t fill_marks(const question *q, uint8_t marks[MARKS])
 	memset(marks, 0, count);
 	for (size_t word = 0; word <= q->mesh->vertex_count / 64; word++)
 		for (uint64_t bits = q->listed[word]; bits; bits &= bits - 1)
-			marks[(64 * word + (size_t)__builtin_ctzll(bits)) & (count - 1)] = 1;
+			marks[(64 * word + (size_t)nt_trailing_zeros(bits)) & (count - 1)] = 1;
 	return count - 1;
 }
 
 static inline bool has_marked(const uint8_t marks[MARKS], uint32_t mask, const uint32_t *vertices, size_t count)
 {
 	unsigned any = 0;
-#pragma GCC unroll 16
+	NT_UNROLL(16)
 	for (size_t i = 0; i < count; i++)
 		any |= marks[vertices[i] & mask];
 	return any;

@@ -4,8 +4,9 @@
 #include <float.h>
 #include <math.h>
 #include <string.h>
+#include "base/compiler.h"
 #include "base/parallel.h"
-#ifdef __SSE2__
+#if NT_VECTORS && defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
@@ -47,6 +48,7 @@ static unsigned longest_axis(const box *b)
 	return y > x && y > z ? 1 : z > x ? 2 : 0;
 }
 
+#if NT_VECTORS
 typedef float float4 __attribute__((vector_size(16)));
 typedef int int4 __attribute__((vector_size(16)));
 
@@ -91,6 +93,23 @@ static bool box_of_block(const nt_welded_mesh *mesh, size_t first, size_t end, b
 	memcpy(b->high, &high[0], sizeof b->high);
 	return !(unordered[0] | unordered[1] | unordered[2]);
 }
+#else
+static bool box_of_block(const nt_welded_mesh *mesh, size_t first, size_t end, box *b)
+{
+	int unordered = 0;
+	memcpy(b->low, mesh->positions + mesh->step * first, sizeof b->low);
+	memcpy(b->high, b->low, sizeof b->high);
+	for (size_t v = first; v < end; v++) {
+		const float *p = mesh->positions + mesh->step * v;
+		for (int i = 0; i < 3; i++) {
+			b->low[i] = p[i] < b->low[i] ? p[i] : b->low[i];
+			b->high[i] = p[i] > b->high[i] ? p[i] : b->high[i];
+			unordered |= p[i] != p[i];
+		}
+	}
+	return !unordered;
+}
+#endif
 
 /* The first vertex from there on that has this coordinate; there is one. */
 static uint32_t find_coordinate(const nt_welded_mesh *mesh, size_t first, int axis, float coordinate)
@@ -305,7 +324,7 @@ static void weld_cells(void *context, size_t begin, size_t end, unsigned thread)
 		const half cell = {w->entries + w->first_entry[c], w->vertices + w->first_vertex[c],
 			w->first_entry[c + 1] - w->first_entry[c], w->first_vertex[c + 1] - w->first_vertex[c]};
 		if (!weld_cell(w, &cell))
-			__atomic_store_n(&w->limit, true, __ATOMIC_RELAXED);
+			nt_atomic_store(&w->limit, true, RELAXED);
 	}
 }
 

@@ -39,12 +39,11 @@ static bool equal_keys(const nt_tangent_key *a, const nt_tangent_key *b)
 /* Two products instead of the four of nt_hash_words() for three words: 4 % of nmtan_vertex_tangents(). */
 static size_t hash_copy(const nt_splitter *s, const nt_vertex_copy *copy)
 {
-	uint64_t halves[2];
+	uint64_t halves[2], high;
 	memcpy(halves, copy->tangent.bits, sizeof halves);
-	const unsigned __int128 first = (unsigned __int128)(halves[0] ^ s->key[0]) * (halves[1] ^ s->key[1]);
-	const unsigned __int128 second =
-		(unsigned __int128)((uint64_t)first ^ (uint64_t)(first >> 64) ^ copy->original) * s->key[1];
-	return (size_t)((uint64_t)second ^ (uint64_t)(second >> 64));
+	const uint64_t first = nt_multiply(halves[0] ^ s->key[0], halves[1] ^ s->key[1], &high);
+	const uint64_t second = nt_multiply(first ^ high ^ copy->original, s->key[1], &high);
+	return (size_t)(second ^ high);
 }
 
 /* The slot of the table where a copy is or belongs. */

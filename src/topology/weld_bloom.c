@@ -84,12 +84,12 @@ static nt_weld_flags load_rows(const nt_welder *w, size_t begin, size_t end, uin
 enum { LOAD_AHEAD = 3 * NT_WELD_BATCH };
 
 /* Those of a batch. Always in line: gcc 12 drops a call of what does nothing but prefetch. */
-static inline __attribute__((always_inline)) void prefetch_attributes(const nmtan_mesh *mesh, size_t begin, size_t end)
+static inline NT_ALWAYS_INLINE void prefetch_attributes(const nmtan_mesh *mesh, size_t begin, size_t end)
 {
 	for (size_t v = begin; v < end; v += 4) {
-		__builtin_prefetch(nt_position(mesh, v));
-		__builtin_prefetch(nt_normal(mesh, v));
-		__builtin_prefetch(nt_texcoord(mesh, v));
+		NT_PREFETCH(nt_position(mesh, v));
+		NT_PREFETCH(nt_normal(mesh, v));
+		NT_PREFETCH(nt_texcoord(mesh, v));
 	}
 }
 
@@ -133,8 +133,8 @@ static void load_range(void *context, size_t begin, size_t end, unsigned thread)
 			find_unordered(f, first, last, marked);
 		found += mark_batch(f, f->places + first, last - first, marked, again);
 		if (found > MANY + (last - begin) / 8)
-			__atomic_store_n(&f->many, true, __ATOMIC_RELAXED);
-		if (__atomic_load_n(&f->many, __ATOMIC_RELAXED))
+			nt_atomic_store(&f->many, true, RELAXED);
+		if (nt_atomic_load(&f->many, RELAXED))
 			break;
 	}
 	f->begins[thread] = begin;

@@ -8,7 +8,7 @@
 #include <string.h>
 #include "base/hash.h"
 #include "topology/corners.h"
-#ifdef __SSE2__
+#if NT_VECTORS && defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
@@ -44,10 +44,12 @@ static inline uint64_t nt_weld_hash(const nt_weld_key *key, const nt_weld_row *r
 {
 	const uint64_t a = nt_weld_word(row, 0) ^ key->words[0], b = nt_weld_word(row, 1) ^ key->words[1];
 	const uint64_t c = nt_weld_word(row, 2) ^ key->words[2], d = nt_weld_word(row, 3) ^ key->words[3];
-	const unsigned __int128 sum = (unsigned __int128)a * b + (unsigned __int128)c * d;
-	return ((uint64_t)sum ^ (uint64_t)(sum >> 64)) * 0x9e3779b97f4a7c15u;
+	uint64_t high, more;
+	const uint64_t first = nt_multiply(a, b, &high), sum = first + nt_multiply(c, d, &more);
+	return (sum ^ (high + more + (sum < first))) * 0x9e3779b97f4a7c15u;
 }
 
+#if NT_VECTORS
 typedef float nt_weld_floats __attribute__((vector_size(16)));
 typedef int64_t nt_weld_flags __attribute__((vector_size(16)));
 
@@ -92,7 +94,7 @@ static inline void nt_weld_put(nt_weld_floats low, nt_weld_floats high, nt_weld_
 
 /* Where each byte of code is sent to a browser a row is loaded out of line: 240 bytes of the package. */
 #ifdef __wasm__
-#define NT_WELD_INLINE __attribute__((noinline, unused))
+#define NT_WELD_INLINE NT_NOINLINE __attribute__((unused))
 #else
 #define NT_WELD_INLINE inline
 #endif
@@ -118,6 +120,29 @@ static inline bool nt_weld_row_ordered(const nt_weld_row *row)
 	memcpy(values, row, sizeof values);
 	return nt_weld_ordered(nt_weld_unordered(values[0], values[1]));
 }
+#else
+typedef int nt_weld_flags; /* not 0: a value is NaN */
+
+static inline bool nt_weld_ordered(nt_weld_flags unordered)
+{
+	return unordered == 0;
+}
+
+static inline bool nt_weld_row_ordered(const nt_weld_row *row)
+{
+	const float *p = row->position, *n = row->normal, *t = row->texcoord;
+	return (p[0] == p[0]) & (p[1] == p[1]) & (p[2] == p[2]) & (n[0] == n[0]) & (n[1] == n[1]) & (n[2] == n[2]) &
+	       (t[0] == t[0]) & (t[1] == t[1]);
+}
+
+static inline nt_weld_flags nt_weld_load(const nmtan_mesh *mesh, size_t vertex, nt_weld_row *row)
+{
+	const float *p = nt_position(mesh, vertex), *n = nt_normal(mesh, vertex), *t = nt_texcoord(mesh, vertex);
+	*row = (nt_weld_row){{p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f}, {n[0] + 0.0f, n[1] + 0.0f, n[2] + 0.0f},
+		{t[0] + 0.0f, t[1] + 0.0f}};
+	return !nt_weld_row_ordered(row);
+}
+#endif
 
 static inline bool nt_weld_same(const nt_weld_row *a, const nt_weld_row *b)
 {

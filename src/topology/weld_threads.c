@@ -105,7 +105,7 @@ static void seek_batch(const range *in, const nt_weld_row *rows, const uint64_t 
 	const nt_welder *w = &in->welder;
 	const uint32_t number_mask = ((uint32_t)1 << (w->table_bits - 1)) - 1;
 	for (size_t i = 0; i < count; i++)
-		__builtin_prefetch(&w->table[nt_weld_slot(w, hashes[i])]);
+		NT_PREFETCH(&w->table[nt_weld_slot(w, hashes[i])]);
 	for (size_t i = 0; i < count; i++) {
 		if (places[i] != NEW)
 			continue;
@@ -135,7 +135,7 @@ static void seek_rows(void *context, size_t begin, size_t end, unsigned thread)
 		for (size_t i = 0; i < count; i++)
 			new_count += places[i] == NEW;
 	}
-	__atomic_add_fetch(&here->new_count, new_count, __ATOMIC_RELAXED);
+	nt_atomic_add(&here->new_count, new_count, RELAXED);
 }
 
 static bool seek_all(joint *j)

@@ -45,7 +45,7 @@ static inline void add_more(nt_record_more *record, const addition *add)
 }
 
 /* A corner of a hub, or of a vertex that an earlier range adds to. */
-static void __attribute__((noinline)) add_unusual(nt_fast *fast, unsigned range, uint32_t vertex,
+static void NT_NOINLINE add_unusual(nt_fast *fast, unsigned range, uint32_t vertex,
 	uint32_t cursor, int orient, nt_fan_entry entry, const addition *add)
 {
 	if (!(cursor & NT_CURSOR_HUB))
@@ -73,9 +73,9 @@ static inline void bin_corner(const nt_bins *bins, uint32_t *cursors, uint32_t v
 	const nt_int4 tag = {0, 0, 0, (int)(orient << 31 | lane << NT_BINNED_SHIFT)};
 	nt_int4 sum;
 	memcpy(&sum, add, sizeof sum);
-	sum |= tag;
-	__builtin_prefetch(&bins->sums[at + BIN_AHEAD], 1);
-	__builtin_prefetch(&bins->entries[NT_BINNED_ENTRY * (at + 2 * BIN_AHEAD)], 1);
+	sum = nt_or4(sum, tag);
+	NT_PREFETCH(&bins->sums[at + BIN_AHEAD], 1);
+	NT_PREFETCH(&bins->entries[NT_BINNED_ENTRY * (at + 2 * BIN_AHEAD)], 1);
 	memcpy(&bins->sums[at], &sum, sizeof sum);
 	nt_binned_store(bins->entries + NT_BINNED_ENTRY * at, next, previous);
 }
@@ -115,7 +115,7 @@ static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t
 /* Triangles with frames, lanes [i, end), up to the first with a corner whose cursor has a flag, but for ELSEWHERE if
  * `elsewhere` says so, or that has no narrow entry left: its lane, or `end`. Entries are moved as words, and nothing is
  * called, so that nearly all the loop needs is in registers. */
-static inline __attribute__((always_inline)) size_t add_usual(const nt_fast *fast, unsigned range, size_t first,
+static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned range, size_t first,
 	size_t i, size_t end, const uint32_t *ids, const lanes_out *out, bool elsewhere, bool is_narrow)
 {
 	const nt_adjacency *const adjacency = &fast->adjacency;
@@ -129,7 +129,7 @@ static inline __attribute__((always_inline)) size_t add_usual(const nt_fast *fas
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
 		if (is_narrow ? pa >= full || pb >= full || pc >= full
-			: __builtin_expect((pa | pb | pc) >= (elsewhere ? NT_CURSOR_SHARED : NT_CURSOR_FLAGGED), 0))
+			: NT_EXPECT((pa | pb | pc) >= (elsewhere ? NT_CURSOR_SHARED : NT_CURSOR_FLAGGED), 0))
 			break;
 		cursors[a] = pa + step;
 		cursors[b] = pb + step;
@@ -153,7 +153,7 @@ static inline __attribute__((always_inline)) size_t add_usual(const nt_fast *fas
 		memcpy(&bc, ids + 1, sizeof bc);
 		ab |= bits;
 		bc |= bits;
-		const uint64_t ca = bc >> 32 | ab << 32;
+		const uint64_t ca = NT_BIG_ENDIAN ? bc << 32 | ab >> 32 : bc >> 32 | ab << 32;
 		memcpy(elsewhere ? nt_adjacency_entry(adjacency, pa) : &entries[pa], &bc, sizeof bc);
 		memcpy(elsewhere ? nt_adjacency_entry(adjacency, pb) : &entries[pb], &ca, sizeof ca);
 		memcpy(elsewhere ? nt_adjacency_entry(adjacency, pc) : &entries[pc], &ab, sizeof ab);
@@ -161,19 +161,19 @@ static inline __attribute__((always_inline)) size_t add_usual(const nt_fast *fas
 	return i;
 }
 
-static size_t __attribute__((noinline)) add_here(const nt_fast *fast, unsigned range, size_t first, size_t i,
+static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, size_t first, size_t i,
 	size_t end, const uint32_t *ids, const lanes_out *out)
 {
 	return add_usual(fast, range, first, i, end, ids, out, false, false);
 }
 
-static size_t __attribute__((noinline)) add_narrow(const nt_fast *fast, unsigned range, size_t first, size_t i,
+static size_t NT_NOINLINE add_narrow(const nt_fast *fast, unsigned range, size_t first, size_t i,
 	size_t end, const uint32_t *ids, const lanes_out *out)
 {
 	return add_usual(fast, range, first, i, end, ids, out, false, true);
 }
 
-static size_t __attribute__((noinline)) add_elsewhere(const nt_fast *fast, unsigned range, size_t first, size_t i,
+static size_t NT_NOINLINE add_elsewhere(const nt_fast *fast, unsigned range, size_t first, size_t i,
 	size_t end, const uint32_t *ids, const lanes_out *out)
 {
 	return add_usual(fast, range, first, i, end, ids, out, true, false);
@@ -181,7 +181,7 @@ static size_t __attribute__((noinline)) add_elsewhere(const nt_fast *fast, unsig
 
 /* The same up to a corner of a hub or elsewhere. What is added to a vertex that an earlier range adds to is put aside,
  * without a branch: where triangles do not come in order such vertices are anywhere. */
-static size_t __attribute__((noinline)) add_shared(const nt_fast *fast, unsigned range, size_t first, size_t i,
+static size_t NT_NOINLINE add_shared(const nt_fast *fast, unsigned range, size_t first, size_t i,
 	size_t end, const uint32_t *ids, const lanes_out *out)
 {
 	static const nt_record nothing = {0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
@@ -241,7 +241,7 @@ static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t beg
 }
 
 /* The same into bins. */
-static void __attribute__((noinline)) bin_ordinary(const nt_fast *fast, unsigned range, size_t first, size_t begin,
+static void NT_NOINLINE bin_ordinary(const nt_fast *fast, unsigned range, size_t first, size_t begin,
 	size_t end, const uint32_t *ids, const lanes_out *out)
 {
 	const nt_bins bins = fast->bins;
@@ -269,7 +269,7 @@ static int any_record(const nt_fast *fast, int orient)
 
 /* Adds a triangle that is degenerate (voids in the fans) or has no frame (a corner in the fans, a note in the
  * records), or is ordinary but has values for which the bounds of the lanes do not hold. */
-static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range, size_t t, const uint32_t *v,
+static void NT_NOINLINE add_special(nt_fast *fast, unsigned range, size_t t, const uint32_t *v,
 	int lane, lanes_out *out)
 {
 	static const float zero[4] = {0};
@@ -342,39 +342,39 @@ static int missing_record(const nt_fast *fast, size_t first, size_t count)
 
 /* Scattered vertices: the rows of corner k of the batch after the next. A third at a time, since no more misses
  * than that can be under way. Always inline: to gcc 12 a function of prefetches alone has no effect, and goes. */
-static inline __attribute__((always_inline)) void prefetch_rows(const nt_fast *fast, size_t first, size_t end, size_t k)
+static inline NT_ALWAYS_INLINE void prefetch_rows(const nt_fast *fast, size_t first, size_t end, size_t k)
 {
 	const size_t far = first + 2 * NT_LANES < end ? first + 2 * NT_LANES : end;
 	const size_t count = end - far < NT_LANES ? end - far : NT_LANES;
 	uint32_t copy[3 * NT_LANES];
 	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, far, count, copy) + k;
 	for (size_t i = 0; i < count; i++)
-		__builtin_prefetch(&fast->rows[ids[3 * i]]);
+		NT_PREFETCH(&fast->rows[ids[3 * i]]);
 }
 
 /* Without bins, as in scattered quads: entries and records of a batch whose cursors were
  * prefetched a batch ago. */
-static inline __attribute__((always_inline)) void prefetch_places(const nt_fast *fast, const uint32_t *cursors,
+static inline NT_ALWAYS_INLINE void prefetch_places(const nt_fast *fast, const uint32_t *cursors,
 	const uint32_t *ids, size_t count)
 {
 	for (size_t i = 0; i < 3 * count; i++) {
 		if (!nt_adjacency_is_narrow(&fast->adjacency) && !(cursors[ids[i]] & NT_CURSOR_HUB))
-			__builtin_prefetch(nt_adjacency_entry(&fast->adjacency, cursors[ids[i]]), 1);
+			NT_PREFETCH(nt_adjacency_entry(&fast->adjacency, cursors[ids[i]]), 1);
 		for (int o = 0; o < 2; o++)
 			if (fast->records[o])
-				__builtin_prefetch(&fast->records[o][ids[i]], 1);
+				NT_PREFETCH(&fast->records[o][ids[i]], 1);
 	}
 }
 
 /* The cursors of a batch. */
-static inline __attribute__((always_inline)) void prefetch_cursors(const nt_fast *fast, const uint32_t *cursors,
+static inline NT_ALWAYS_INLINE void prefetch_cursors(const nt_fast *fast, const uint32_t *cursors,
 	size_t first, size_t end)
 {
 	const size_t count = end - first < NT_LANES ? end - first : NT_LANES;
 	uint32_t copy[3 * NT_LANES];
 	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
 	for (size_t i = 0; i < 3 * count; i++)
-		__builtin_prefetch(&cursors[ids[i]], 1);
+		NT_PREFETCH(&cursors[ids[i]], 1);
 }
 
 static void accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,

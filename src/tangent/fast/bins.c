@@ -144,9 +144,9 @@ static void add_corners(const nt_bins *b, size_t begin, size_t end, nt_record *c
 			: cursor & NT_CURSOR_HUB ? cursor + 1 : NT_CURSOR_HUB | (NT_FAN_DEPTH + 1);
 		nt_int4 sum;
 		memcpy(&sum, &b->sums[i], sizeof sum);
-		sum &= sum_bits;
+		sum = nt_and4(sum, sum_bits);
 		if (both && !(state & NT_STATE_NO_ANY))
-			sum &= not_local;
+			sum = nt_and4(sum, not_local);
 		nt_record_add(&to[state >> 31][vertex], sum);
 	}
 }

@@ -39,8 +39,8 @@ static inline void nt_binned_store(uint8_t *to, uint32_t next, uint32_t previous
 {
 	const uint64_t entry = (uint64_t)previous << NT_BINNED_VERTEX_BITS | next;
 	const uint32_t low = (uint32_t)entry, high = (uint32_t)(entry >> 24);
-	memcpy(to, &low, sizeof low);
-	memcpy(to + 3, &high, sizeof high);
+	memcpy(to, NT_BIG_ENDIAN ? &high : &low, sizeof low);
+	memcpy(to + 3, NT_BIG_ENDIAN ? &low : &high, sizeof high);
 }
 
 /* Reads the byte behind, too. */
@@ -49,6 +49,7 @@ static inline nt_fan_entry nt_binned_load(const uint8_t *from, uint32_t orient_b
 	const uint32_t mask = ((uint32_t)1 << NT_BINNED_VERTEX_BITS) - 1;
 	uint64_t entry;
 	memcpy(&entry, from, sizeof entry);
+	entry >>= NT_BIG_ENDIAN ? 8 : 0;
 	return (nt_fan_entry){((uint32_t)entry & mask) | orient_bit,
 		((uint32_t)(entry >> NT_BINNED_VERTEX_BITS) & mask) | orient_bit};
 }

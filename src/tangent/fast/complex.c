@@ -64,7 +64,7 @@ static size_t list_corners(const nt_complex *c, const uint32_t *triangles, size_
 		const uint32_t any = flags / NT_TRIANGLE_ANY % 2 * NT_COMPLEX_ANY, plus = flags % 2 * NT_COMPLEX_PLUS;
 		uint32_t copy[3];
 		const uint32_t *v = nt_triangle_vertices(&c->fast->triangles, t, 1, copy);
-#pragma GCC unroll 3
+		NT_UNROLL(3)
 		for (uint32_t k = 0; k < 3; k++) {
 			corners[n] = (listed_corner){4 * t + k + any + plus, v[k], v[(k + 1) % 3], v[(k + 2) % 3]};
 			n += nt_fast_record(c->fast, c->orient, v[k])->state / NT_RESULT_COMPLEX % 2;

@@ -80,13 +80,13 @@ static void pair_unsorted(const nt_complex *c, uint32_t begin, uint32_t end)
 	}
 }
 
-typedef uint32_t four_ids __attribute__((vector_size(16)));
-
 /* No edge occurs twice in one direction, so that each has one other at most, whatever the order. `fours`: corners / 4,
  * rounded up. */
-static inline __attribute__((always_inline)) void pair_plain(const nt_complex *c, uint32_t begin, uint32_t count,
+static inline NT_ALWAYS_INLINE void pair_plain(const nt_complex *c, uint32_t begin, uint32_t count,
 	int fours)
 {
+#if NT_VECTORS
+	typedef uint32_t four_ids __attribute__((vector_size(16)));
 	uint32_t *across = c->across + 2 * begin;
 	uint32_t ends[2][NT_FAN_DEPTH];
 	for (uint32_t i = 0; i < count; i++) {
@@ -114,6 +114,18 @@ static inline __attribute__((always_inline)) void pair_plain(const nt_complex *c
 	}
 	for (uint32_t i = 0; i < count; i++)
 		memcpy(across + 2 * i, pairs + 2 * i, 2 * sizeof *pairs);
+#else
+	uint32_t *across = c->across + 2 * begin, ends[2 * NT_FAN_DEPTH];
+	(void)fours;
+	memcpy(ends, across, 2 * count * sizeof *ends);
+	for (uint32_t i = 0; i < count; i++) {
+		across[2 * i] = across[2 * i + 1] = NT_NONE;
+		for (uint32_t j = 0; j < count; j++) {
+			across[2 * i] = ends[2 * i] == ends[2 * j + 1] ? begin + j : across[2 * i];
+			across[2 * i + 1] = ends[2 * i + 1] == ends[2 * j] ? begin + j : across[2 * i + 1];
+		}
+	}
+#endif
 }
 
 static void pair_vertex(const nt_complex *c, size_t v, uint32_t begin, uint32_t end)
@@ -156,7 +168,7 @@ static inline bool join_group(const nt_complex *c, uint32_t i, uint32_t seed, ui
 
 /* The group that begins at a corner, if that is free and has a frame. Corners form rows or rings: they are
  * followed both ways. `decides`: triangles without a frame have both orientations to choose from. */
-static inline __attribute__((always_inline)) void flood_group(const nt_complex *c, uint32_t seed, bool decides)
+static inline NT_ALWAYS_INLINE void flood_group(const nt_complex *c, uint32_t seed, bool decides)
 {
 	const uint32_t corner = c->corners[seed];
 	if (c->group[seed] != NT_NONE || corner & NT_COMPLEX_ANY)

@@ -66,6 +66,7 @@ static void solve_members(const nt_complex *c, const uint32_t *members, size_t c
 /* Adds all members. The angles of their weights are added too. */
 static void add_members(const part *p, nt_corner *sum)
 {
+#if NT_VECTORS
 	nt_float4 u, v;
 	memcpy(&u, sum->u, sizeof u);
 	memcpy(&v, sum->v, sizeof v);
@@ -82,6 +83,20 @@ static void add_members(const part *p, nt_corner *sum)
 	}
 	memcpy(sum->u, &u, sizeof u);
 	memcpy(sum->v, &v, sizeof v);
+#else
+	for (size_t i = 0; i < p->count; i++) {
+		const nt_corner *m = &p->solved[i];
+		if (m->kind == NT_CORNER_ANY)
+			continue;
+		for (int k = 0; k < 3; k++) {
+			sum->u[k] += m->angle * m->u[k];
+			sum->v[k] += m->angle * m->v[k];
+		}
+		sum->mag_s += m->angle * m->mag_s;
+		sum->mag_t += m->angle * m->mag_t;
+		sum->angle += m->angle;
+	}
+#endif
 }
 
 static void normalise_safe(float v[3])
@@ -163,7 +178,7 @@ static void write_corner(const nt_complex *c, uint32_t place, const nt_corner *r
 }
 
 /* The mark of a member's result, and of those of others at its vertex that have the same. */
-static uint32_t __attribute__((noinline)) mark_of(const nt_complex *c, uint32_t place, const nt_corner *r)
+static uint32_t NT_NOINLINE mark_of(const nt_complex *c, uint32_t place, const nt_corner *r)
 {
 	const nt_solve *solve = c->fast->solve;
 	if (!NT_FAST_PATHS || !nt_fast_judges(solve) || nt_is_surely_frame(r->u, nt_normal(solve->mesh,
@@ -304,7 +319,7 @@ static void sum_directions(void *context, size_t begin, size_t end, unsigned thr
 	const sum_context *s = context;
 	const directions *d = s->d;
 	for (size_t first = NT_LANES * begin; first < NT_LANES * end; first += NT_LANES) {
-		_Alignas(64) float lanes[6][NT_LANES] = {{0}}, sums[NT_CORNER_FLOATS][NT_LANES] = {{0}};
+		NT_ALIGNED(64) float lanes[6][NT_LANES] = {{0}}, sums[NT_CORNER_FLOATS][NT_LANES] = {{0}};
 		uint32_t own[2][NT_LANES] = {{0}};
 		const size_t count = d->count - first < NT_LANES ? d->count - first : NT_LANES;
 		for (size_t lane = 0; lane < count; lane++) {
@@ -490,7 +505,7 @@ static void add_to_batch(const nt_complex *c, nt_batch *b, uint32_t place)
 {
 	const uint32_t group = c->group[place], to = b->first + b->count++;
 	c->corners[to] = c->corners[place];
-	__builtin_prefetch(c->fast->solve->tangents + 4 * nt_complex_corner(c, c->corners[to]), 1);
+	NT_PREFETCH(c->fast->solve->tangents + 4 * nt_complex_corner(c, c->corners[to]), 1);
 	c->group[to] = group == NT_NONE ? NT_NONE : c->across[2 * group];
 }
 
@@ -521,7 +536,7 @@ nmtan_status nt_take_vertex(const nt_complex *c, nt_batch *b, size_t v)
 {
 	const uint32_t begin = nt_first_place(c, v), end = nt_last_place(c, v);
 	if (!c->single && v + AHEAD < c->vertex_count)
-		__builtin_prefetch(nt_fast_record(c->fast, 1, c->welded[v + AHEAD]));
+		NT_PREFETCH(nt_fast_record(c->fast, 1, c->welded[v + AHEAD]));
 	uint32_t groups[2] = {0}, kinds = 0;
 	for (uint32_t i = begin; i < end; i++) {
 		groups[(c->corners[i] & NT_COMPLEX_PLUS) != 0] += c->group[i] == i;

@@ -24,7 +24,7 @@ void nt_take_sums(const nt_complex *c, nt_summed *s, size_t v, const bool done[2
 		const uint32_t corner = c->corners[i], group = c->group[i];
 		if (group == NT_NONE)
 			continue;
-		__builtin_prefetch(c->fast->solve->tangents + 4 * nt_complex_corner(c, corner), 1);
+		NT_PREFETCH(c->fast->solve->tangents + 4 * nt_complex_corner(c, corner), 1);
 		s->corners[s->count] = corner;
 		s->group[s->count] = number[group - begin];
 		s->count += !done[(corner & NT_COMPLEX_PLUS) != 0];
@@ -38,7 +38,7 @@ void nt_load_rows(const nt_complex *c, const uint32_t *corners, size_t count, nt
 	const nt_triangles triangles = c->fast->triangles;
 	for (size_t i = 0; i < count; i++) {
 		const size_t t = (corners[i] & NT_COMPLEX_CORNER) >> 2;
-#pragma GCC unroll 3
+		NT_UNROLL(3)
 		for (unsigned k = 0; k < 3; k++)
 			nt_weld_load(&mesh, nt_vertex_of(&mesh, nt_triangle_corner(&triangles, t, k)),
 				&rows[3 * i + k]);

@@ -29,7 +29,7 @@
 /* Below the sign of a float: it is 2 or more, infinite, or NaN. */
 #define TWO 0x40000000u
 
-static inline __attribute__((always_inline)) uint32_t bits_of(float x)
+static inline NT_ALWAYS_INLINE uint32_t bits_of(float x)
 {
 	uint32_t bits;
 	memcpy(&bits, &x, sizeof bits);
@@ -37,14 +37,14 @@ static inline __attribute__((always_inline)) uint32_t bits_of(float x)
 }
 
 /* The upper halves of two floats. */
-static inline __attribute__((always_inline)) uint32_t halves_of(float low, float high)
+static inline NT_ALWAYS_INLINE uint32_t halves_of(float low, float high)
 {
 	return bits_of(low) >> 16 | (bits_of(high) & 0xffff0000u);
 }
 
 /* The bits of a state that vectors u and v have, and NT_STATE_SOUND where v is beyond somewhere and `sound` has the bit
  * of TWO. Comparisons would take the ports that multiply, which are the busiest here. */
-static inline __attribute__((always_inline)) uint32_t state_of(const float u[3], const float v[3], uint32_t sound)
+static inline NT_ALWAYS_INLINE uint32_t state_of(const float u[3], const float v[3], uint32_t sound)
 {
 	const uint32_t both = BEYOND << 16 | BEYOND;
 	const uint32_t a = halves_of(u[0], u[1]) + both, b = halves_of(u[2], v[0]) + both,
@@ -69,14 +69,14 @@ typedef struct corner_lanes {
 #define KEPT (WIDTH > 4 ? NT_LANES : 1)
 #define KEPT_AT(i) (WIDTH > 4 ? (i) : 0)
 typedef struct corner_parts {
-	_Alignas(64) float u[3][KEPT], e[3][KEPT], f[3][KEPT]; /* across the normal */
+	NT_ALIGNED(64) float u[3][KEPT], e[3][KEPT], f[3][KEPT]; /* across the normal */
 	float of_u[KEPT], of_e[KEPT], of_f[KEPT];              /* reciprocals of their lengths */
 	uint32_t sound[KEPT];
 } corner_parts;
 
 /* The angle between e and f: first its cosine; in the widest vectors then what tangent/acos.h calls z and s. */
 typedef struct corner_angles {
-	_Alignas(64) float cosine[NT_LANES];
+	NT_ALIGNED(64) float cosine[NT_LANES];
 #if WIDTH == 16
 	double z[NT_LANES], s[NT_LANES], begin[NT_LANES];
 #else
@@ -85,7 +85,7 @@ typedef struct corner_angles {
 } corner_angles;
 
 /* Each corner's edges without their part along n, and what makes them unit vectors. */
-static inline __attribute__((always_inline)) void project_edges(corner_lanes a, corner_parts *restrict p, int i)
+static inline NT_ALWAYS_INLINE void project_edges(corner_lanes a, corner_parts *NT_RESTRICT p, int i)
 {
 	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
 	const float e[3] = {a.e[0][i], a.e[1][i], a.e[2][i]};
@@ -101,7 +101,7 @@ static inline __attribute__((always_inline)) void project_edges(corner_lanes a, 
 }
 
 /* The same of the u directions. */
-static inline __attribute__((always_inline)) void project_u(corner_lanes a, corner_parts *restrict p, int i)
+static inline NT_ALWAYS_INLINE void project_u(corner_lanes a, corner_parts *NT_RESTRICT p, int i)
 {
 	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
 	const float os[3] = {a.u[0][i], a.u[1][i], a.u[2][i]};
@@ -114,8 +114,8 @@ static inline __attribute__((always_inline)) void project_u(corner_lanes a, corn
 }
 
 /* The cosine of each corner's angle, as seen along n. */
-static inline __attribute__((always_inline)) void find_cosine(const corner_parts *restrict p,
-	corner_angles *restrict angles, int i)
+static inline NT_ALWAYS_INLINE void find_cosine(const corner_parts *NT_RESTRICT p,
+	corner_angles *NT_RESTRICT angles, int i)
 {
 	const float er = p->of_e[KEPT_AT(i)], ex = er * p->e[0][KEPT_AT(i)], ey = er * p->e[1][KEPT_AT(i)],
 		ez = er * p->e[2][KEPT_AT(i)];
@@ -127,7 +127,7 @@ static inline __attribute__((always_inline)) void find_cosine(const corner_parts
 /* The angle up to what takes the square root, and the rest. In the widest vectors, nt_acos() as begin + asin(s), with
  * the signs and factors of its three cases in `begin` and s, which changes no bits: 40 of 530 cycles. In others stores
  * would cost more. NaN may become a number: of a corner that is not sound nothing is used. */
-static inline __attribute__((always_inline)) void begin_angle(corner_angles *restrict a, int i)
+static inline NT_ALWAYS_INLINE void begin_angle(corner_angles *NT_RESTRICT a, int i)
 {
 	const float c = a->cosine[i], size = fabsf(c) < 1.0f ? fabsf(c) : 1.0f;
 #if WIDTH == 16
@@ -141,7 +141,7 @@ static inline __attribute__((always_inline)) void begin_angle(corner_angles *res
 #endif
 }
 
-static inline __attribute__((always_inline)) float end_angle(const corner_angles *restrict a, int i)
+static inline NT_ALWAYS_INLINE float end_angle(const corner_angles *NT_RESTRICT a, int i)
 {
 #if WIDTH == 16
 	return (float)(a->begin[i] + NT_ACOS_TERM(a->s[i] * a->z[i], nt_acos_terms(a->z[i]), a->s[i]));
@@ -151,8 +151,8 @@ static inline __attribute__((always_inline)) float end_angle(const corner_angles
 }
 
 /* Each corner's unit directions and the bits of what holds for it. */
-static inline __attribute__((always_inline)) void finish_directions(corner_lanes a, const corner_parts *restrict p,
-	const corner_angles *restrict angles, bool more, int i)
+static inline NT_ALWAYS_INLINE void finish_directions(corner_lanes a, const corner_parts *NT_RESTRICT p,
+	const corner_angles *NT_RESTRICT angles, bool more, int i)
 {
 	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
 	const float ot[3] = {a.v[0][i], a.v[1][i], a.v[2][i]};
@@ -179,7 +179,7 @@ static inline __attribute__((always_inline)) void finish_directions(corner_lanes
 }
 
 /* Directions are weighted by the angle. */
-static inline __attribute__((always_inline)) void weigh_corner(corner_lanes a, const corner_angles *restrict angles,
+static inline NT_ALWAYS_INLINE void weigh_corner(corner_lanes a, const corner_angles *NT_RESTRICT angles,
 	const lanes_out *out, bool more, int i)
 {
 	const float w = end_angle(angles, i);

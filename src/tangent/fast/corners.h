@@ -26,7 +26,7 @@ typedef struct single_lanes {
 } single_lanes;
 
 /* Which of three values, by the corner. */
-static inline __attribute__((always_inline)) float choose(uint32_t k, float first, float second, float third)
+static inline NT_ALWAYS_INLINE float choose(uint32_t k, float first, float second, float third)
 {
 	return k == 0 ? first : k == 1 ? second : third;
 }
@@ -36,7 +36,7 @@ static const uint32_t in_order[3 * NT_LANES] = {THREE(0), THREE(1), THREE(2), TH
 	THREE(7), THREE(8), THREE(9), THREE(10), THREE(11), THREE(12), THREE(13), THREE(14), THREE(15)};
 
 /* The lanes behind the last corner repeat it. */
-static void load_singles(const nt_weld_row *rows, const uint32_t *corners, size_t count, single_lanes *restrict s)
+static void load_singles(const nt_weld_row *rows, const uint32_t *corners, size_t count, single_lanes *NT_RESTRICT s)
 {
 	gather_rows(rows, in_order, count < NT_LANES ? count : NT_LANES, s->in.row);
 	for (size_t lane = 0; lane < NT_LANES; lane++) {
@@ -48,28 +48,28 @@ static void load_singles(const nt_weld_row *rows, const uint32_t *corners, size_
 	}
 	/* the same without going by single floats: 325 cycles for 16 corners, not 350 */
 	for (int i = 0; NT_FAST_PATHS && i < NT_LANES; i++)
-#pragma GCC unroll 3
+		NT_UNROLL(3)
 		for (int c = 0; c < 3; c++)
 			s->n[c][i] =
 				choose(s->k[i], s->in.row[0][3 + c][i], s->in.row[1][3 + c][i], s->in.row[2][3 + c][i]);
 }
 
 /* v without its part along the unit normal n, normalised where it is not zero. */
-static inline __attribute__((always_inline)) void project3(const float n[3], float v[3])
+static inline NT_ALWAYS_INLINE void project3(const float n[3], float v[3])
 {
 	const float along = nt_dot3(n, v);
-#pragma GCC unroll 3
+	NT_UNROLL(3)
 	for (int c = 0; c < 3; c++)
 		v[c] = v[c] - along * n[c];
 	const int not_zero = (fabsf(v[0]) > FLT_MIN) | (fabsf(v[1]) > FLT_MIN) | (fabsf(v[2]) > FLT_MIN);
 	const float r = 1.0f / sqrtf(nt_dot3(v, v));
-#pragma GCC unroll 3
+	NT_UNROLL(3)
 	for (int c = 0; c < 3; c++)
 		v[c] = not_zero ? r * v[c] : v[c];
 }
 
 /* Directions and magnitudes: step 4, and step 8 but for the angle. */
-static void solve_single_frames(single_lanes *restrict s)
+static void solve_single_frames(single_lanes *NT_RESTRICT s)
 {
 	for (int i = 0; i < NT_LANES; i++) {
 		const float t21x = s->in.row[1][6][i] - s->in.row[0][6][i],
@@ -78,7 +78,7 @@ static void solve_single_frames(single_lanes *restrict s)
 			t31y = s->in.row[2][7][i] - s->in.row[0][7][i];
 		const float area = t21x * t31y - t21y * t31x, size = fabsf(area), sign = area > 0.0f ? 1.0f : -1.0f;
 		float os[3], ot[3];
-#pragma GCC unroll 3
+		NT_UNROLL(3)
 		for (int c = 0; c < 3; c++) {
 			const float d1 = s->in.row[1][c][i] - s->in.row[0][c][i],
 				d2 = s->in.row[2][c][i] - s->in.row[0][c][i];
@@ -88,7 +88,7 @@ static void solve_single_frames(single_lanes *restrict s)
 		const float ls = sqrtf(nt_dot3(os, os)), lt = sqrtf(nt_dot3(ot, ot));
 		const float rs = sign / ls, rt = sign / lt;
 		const float n[3] = {s->n[0][i], s->n[1][i], s->n[2][i]};
-#pragma GCC unroll 3
+		NT_UNROLL(3)
 		for (int c = 0; c < 3; c++) {
 			os[c] = ls > FLT_MIN ? rs * os[c] : 0.0f;
 			ot[c] = lt > FLT_MIN ? rt * ot[c] : 0.0f;
@@ -96,7 +96,7 @@ static void solve_single_frames(single_lanes *restrict s)
 		project3(n, os);
 		project3(n, ot);
 
-#pragma GCC unroll 3
+		NT_UNROLL(3)
 		for (int c = 0; c < 3; c++) {
 			s->u[c][i] = os[c];
 			s->v[c][i] = ot[c];
@@ -110,13 +110,13 @@ static void solve_single_frames(single_lanes *restrict s)
 }
 
 /* The angles between the edges, seen along the normal. In a loop of their own: see lanes.h. */
-static void solve_single_angles(single_lanes *restrict s)
+static void solve_single_angles(single_lanes *NT_RESTRICT s)
 {
 	for (int i = 0; i < NT_LANES; i++) {
 		const uint32_t k = s->k[i];
 		const float n[3] = {s->n[0][i], s->n[1][i], s->n[2][i]};
 		float e[3], f[3];
-#pragma GCC unroll 3
+		NT_UNROLL(3)
 		for (int c = 0; c < 3; c++) {
 			const float p0 = s->in.row[0][c][i], p1 = s->in.row[1][c][i], p2 = s->in.row[2][c][i];
 			const float at = choose(k, p0, p1, p2);
@@ -159,7 +159,7 @@ static void corner_sums(const nt_weld_row *rows, const uint32_t *list, size_t co
 	single_lanes s;
 	lanes_edges edges;
 	lanes_out out;
-	_Alignas(64) float e[3][NT_LANES], f[3][NT_LANES];
+	NT_ALIGNED(64) float e[3][NT_LANES], f[3][NT_LANES];
 	const corner_lanes corners = {.n = s.n, .u = out.u, .v = out.v, .e = e, .f = f, .turned = 1.0f,
 		.sum = out.sum[0]};
 	for (size_t first = 0; first < count; first += NT_LANES) {
@@ -167,7 +167,7 @@ static void corner_sums(const nt_weld_row *rows, const uint32_t *list, size_t co
 		EACH_LANE(NT_LANES) make_edges(&s.in, &edges, i);
 		EACH_LANE(NT_LANES) solve_frames(&s.in, &edges, &out, false, i);
 		EACH_LANE(NT_LANES)
-#pragma GCC unroll 3
+			NT_UNROLL(3)
 			for (int c = 0; c < 3; c++) {
 				e[c][i] = choose(s.k[i], edges.of[0][c][i], -edges.of[0][c][i], edges.of[1][c][i]);
 				f[c][i] = choose(s.k[i], edges.of[1][c][i], edges.of[2][c][i], edges.of[2][c][i]);

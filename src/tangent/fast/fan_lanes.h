@@ -17,7 +17,7 @@
 #ifdef __wasm__
 #define UNROLL
 #else
-#define UNROLL _Pragma("GCC unroll 8")
+#define UNROLL NT_UNROLL(8)
 #endif
 
 /* Entries of vertices that follow one another, from the first one's first: wide or narrow ones. */
@@ -38,26 +38,31 @@ static inline vertex_entries entries_at(const nt_adjacency *a, size_t vertex)
 
 /* Corner k of WIDTH vertices of so many corners; where one has fewer, voids above all numbers that accumulate gives to
  * voids. Of an entry the bits of `mask` count. The numbers of narrow entries are in the upper halves. */
-static inline __attribute__((always_inline)) void load_corners(vertex_entries entries, uint32_t k, lanes degree,
+static inline NT_ALWAYS_INLINE void load_corners(vertex_entries entries, uint32_t k, lanes degree,
 	lanes mask, lanes *next, lanes *previous)
 {
-	const lanes there = (lanes)(degree > k);
+	const lanes there = LANES_WHERE(degree > k);
 	if (entries.are_narrow) {
 		const lanes both = load_lanes(entries.narrow + k * entries.step);
 		*next = both << 16 & mask;
 		*previous = both & 0xffff0000u & mask;
 	} else {
 		const nt_fan_entry *from = entries.wide + k * NT_FAN_LANES;
+#if WIDTH > 1
 		const lanes low = load_lanes(from), high = load_lanes(from + WIDTH / 2);
 		*next = __builtin_shufflevector(low, high, EVEN) & mask;
 		*previous = __builtin_shufflevector(low, high, ODD) & mask;
+#else
+		*next = from->next & mask;
+		*previous = from->previous & mask;
+#endif
 	}
 	*next = (*next & there) | ((NT_ENTRY_VOID | 1u << 28 | k << 16 | k) & ~there);
 	*previous = (*previous & there) | ((NT_ENTRY_VOID | 3u << 28 | k << 16 | k) & ~there);
 }
 
 /* -1 for vertices at which a directed edge occurs twice, whatever the orientations in bit 31. */
-static lanes __attribute__((noinline)) find_twice(vertex_entries entries, uint32_t depth, lanes degree, lanes mask)
+static lanes NT_NOINLINE find_twice(vertex_entries entries, uint32_t depth, lanes degree, lanes mask)
 {
 	lanes twice = {0};
 	for (uint32_t b = 1; b < depth; b++) {
@@ -66,7 +71,8 @@ static lanes __attribute__((noinline)) find_twice(vertex_entries entries, uint32
 		for (uint32_t a = 0; a < b; a++) {
 			lanes other_next, other_previous;
 			load_corners(entries, a, degree, mask, &other_next, &other_previous);
-			twice |= (lanes)(next << 1 == other_next << 1) | (lanes)(previous << 1 == other_previous << 1);
+			twice |= LANES_WHERE(next << 1 == other_next << 1) |
+				LANES_WHERE(previous << 1 == other_previous << 1);
 		}
 	}
 	return twice;
@@ -75,7 +81,7 @@ static lanes __attribute__((noinline)) find_twice(vertex_entries entries, uint32
 /* The components of corners that are linked: bit j, times `unit`, of linked[i] for each later neighbour j. Those with
  * a bit of `voids` are none. By elimination: a corner hands its links to the later ones it is linked with; one that has
  * none when its turn comes is the last of its component. */
-static inline __attribute__((always_inline)) lanes count_components(lanes linked[NT_FAN_DEPTH], uint32_t depth,
+static inline NT_ALWAYS_INLINE lanes count_components(lanes linked[NT_FAN_DEPTH], uint32_t depth,
 	uint32_t unit, uint32_t voids)
 {
 	lanes count = {0};
@@ -97,7 +103,7 @@ static inline __attribute__((always_inline)) lanes count_components(lanes linked
  *   degree   corners of each vertex
  *   mask     the bits of entries that count
  */
-static inline __attribute__((always_inline)) lanes count_wide_fans_of(vertex_entries entries, const uint32_t depth,
+static inline NT_ALWAYS_INLINE lanes count_wide_fans_of(vertex_entries entries, const uint32_t depth,
 	lanes degree, lanes mask)
 {
 	lanes next[NT_FAN_DEPTH], previous[NT_FAN_DEPTH];
@@ -129,7 +135,7 @@ static inline __attribute__((always_inline)) lanes count_wide_fans_of(vertex_ent
 
 /* The same of narrow entries, as halves of lanes: next and previous of one corner are compared with previous and next
  * of another at once, and a lane has its links in either half. */
-static inline __attribute__((always_inline)) lanes count_narrow_fans_of(vertex_entries entries, const uint32_t depth,
+static inline NT_ALWAYS_INLINE lanes count_narrow_fans_of(vertex_entries entries, const uint32_t depth,
 	lanes degree, lanes mask)
 {
 	enum { BOTH = 0x10001, VOIDS = BOTH * (NT_ENTRY_VOID >> 16) };
@@ -139,7 +145,7 @@ static inline __attribute__((always_inline)) lanes count_narrow_fans_of(vertex_e
 	const lanes mask_of_halves = (mask & 0xffff0000u) | mask >> 16;
 	UNROLL
 	for (uint32_t k = 0; k < depth; k++) {
-		const lanes there = (lanes)(degree > k);
+		const lanes there = LANES_WHERE(degree > k);
 		const lanes both =
 			(load_lanes(entries.narrow + k * entries.step) & there) | ((0x70005000u + BOTH * k) & ~there);
 		entry[k] = both & mask_of_halves;
@@ -161,7 +167,7 @@ static inline __attribute__((always_inline)) lanes count_narrow_fans_of(vertex_e
 	return all_halves(distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
 }
 
-static inline __attribute__((always_inline)) lanes count_fans_of(vertex_entries entries, const uint32_t depth,
+static inline NT_ALWAYS_INLINE lanes count_fans_of(vertex_entries entries, const uint32_t depth,
 	lanes degree, lanes mask)
 {
 	return entries.are_narrow ? count_narrow_fans_of(entries, depth, degree, mask)
@@ -169,7 +175,7 @@ static inline __attribute__((always_inline)) lanes count_fans_of(vertex_entries 
 }
 
 /* The usual depths are worth a loop without branches each. */
-static inline __attribute__((always_inline)) lanes count_fans_at(vertex_entries entries, uint32_t depth, lanes degree,
+static inline NT_ALWAYS_INLINE lanes count_fans_at(vertex_entries entries, uint32_t depth, lanes degree,
 	lanes mask)
 {
 	switch (depth) {
@@ -186,13 +192,13 @@ static inline __attribute__((always_inline)) lanes count_fans_at(vertex_entries 
 	}
 }
 
-static lanes __attribute__((noinline)) count_wide_fans(const nt_fan_entry *entries, uint32_t depth,
+static lanes NT_NOINLINE count_wide_fans(const nt_fan_entry *entries, uint32_t depth,
 	lanes degree, lanes mask)
 {
 	return count_fans_at((vertex_entries){.wide = entries}, depth, degree, mask);
 }
 
-static lanes __attribute__((noinline)) count_narrow_fans(const uint32_t *entries, size_t step, uint32_t depth,
+static lanes NT_NOINLINE count_narrow_fans(const uint32_t *entries, size_t step, uint32_t depth,
 	lanes degree, lanes mask)
 {
 	return count_fans_at((vertex_entries){.are_narrow = true, .narrow = entries, .step = step}, depth,

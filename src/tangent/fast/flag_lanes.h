@@ -28,7 +28,7 @@ static void orient_quads(uint8_t *flags, size_t count, const float *area)
 
 /* Triangles whose UV area is exactly 0 whatever is rounded, as stored too, for two texture coordinates are the same or
  * all lie along an axis. Where there is another reason they stay uncertain. */
-static void __attribute__((noinline)) clear_flat(const lanes_in *in, uint8_t *flags, size_t count)
+static void NT_NOINLINE clear_flat(const lanes_in *in, uint8_t *flags, size_t count)
 {
 	const float (*a)[NT_LANES] = in->row[0] + 6, (*b)[NT_LANES] = in->row[1] + 6, (*c)[NT_LANES] = in->row[2] + 6;
 	for (size_t i = 0; i < count; i++) {
@@ -40,7 +40,7 @@ static void __attribute__((noinline)) clear_flat(const lanes_in *in, uint8_t *fl
 }
 
 /* Flags of lanes that are not plain; true where all of them are ordinary triangles with a frame. */
-static bool __attribute__((noinline)) classify_special(uint8_t *flags, size_t count, const lanes_in *in,
+static bool NT_NOINLINE classify_special(uint8_t *flags, size_t count, const lanes_in *in,
 	const lanes_out *out)
 {
 	int special = 0;
@@ -56,8 +56,8 @@ static bool __attribute__((noinline)) classify_special(uint8_t *flags, size_t co
 	return !special;
 }
 
-static inline __attribute__((always_inline)) void classify_plain(uint8_t *restrict flags, size_t count,
-	const lanes_out *restrict out)
+static inline NT_ALWAYS_INLINE void classify_plain(uint8_t *NT_RESTRICT flags, size_t count,
+	const lanes_out *NT_RESTRICT out)
 {
 	for (size_t i = 0; i < count; i++)
 		flags[i] = (uint8_t)((flags[i] & NT_TRIANGLE_SECOND) |

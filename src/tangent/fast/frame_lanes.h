@@ -21,11 +21,11 @@
 
 /* 16 triangles by component. */
 typedef struct lanes_in {
-	_Alignas(64) float row[3][8][NT_LANES]; /* corner, float of its nt_weld_row */
+	NT_ALIGNED(64) float row[3][8][NT_LANES]; /* corner, float of its nt_weld_row */
 } lanes_in;
 
 typedef struct lanes_out {
-	_Alignas(64) float u[3][NT_LANES], v[3][NT_LANES]; /* unit directions of the frames */
+	NT_ALIGNED(64) float u[3][NT_LANES], v[3][NT_LANES]; /* unit directions of the frames */
 	float length_u[NT_LANES], length_v[NT_LANES]; /* of the directions before they are made unit vectors */
 	float mag_u[NT_LANES], mag_v[NT_LANES];
 	float sum[3][4][NT_LANES];      /* corner, float of its nt_record */
@@ -45,13 +45,13 @@ typedef struct lanes_out {
 
 /* Of 16 triangles, the edges from corner 0 to 1, from 0 to 2 and from 1 to 2. */
 typedef struct lanes_edges {
-	_Alignas(64) float of[3][3][NT_LANES];
+	NT_ALIGNED(64) float of[3][3][NT_LANES];
 } lanes_edges;
 
-static inline __attribute__((always_inline)) void make_edges(const lanes_in *restrict in,
-	lanes_edges *restrict edges, int i)
+static inline NT_ALWAYS_INLINE void make_edges(const lanes_in *NT_RESTRICT in,
+	lanes_edges *NT_RESTRICT edges, int i)
 {
-#pragma GCC unroll 3
+	NT_UNROLL(3)
 	for (int c = 0; c < 3; c++) {
 		edges->of[0][c][i] = in->row[1][c][i] - in->row[0][c][i];
 		edges->of[1][c][i] = in->row[2][c][i] - in->row[0][c][i];
@@ -65,13 +65,13 @@ typedef struct uv_directions {
 	float s[3], t[3], s_length, t_length;
 } uv_directions;
 
-static inline __attribute__((always_inline)) uv_directions directions_of(const lanes_in *restrict in,
-	const lanes_edges *restrict edges, int i)
+static inline NT_ALWAYS_INLINE uv_directions directions_of(const lanes_in *NT_RESTRICT in,
+	const lanes_edges *NT_RESTRICT edges, int i)
 {
 	uv_directions d;
 	d.t21x = in->row[1][6][i] - in->row[0][6][i], d.t21y = in->row[1][7][i] - in->row[0][7][i];
 	d.t31x = in->row[2][6][i] - in->row[0][6][i], d.t31y = in->row[2][7][i] - in->row[0][7][i];
-#pragma GCC unroll 3
+	NT_UNROLL(3)
 	for (int c = 0; c < 3; c++) {
 		const float d1 = edges->of[0][c][i], d2 = edges->of[1][c][i];
 		d.s[c] = d.t31y * d1 - d.t21y * d2;
@@ -84,19 +84,19 @@ static inline __attribute__((always_inline)) uv_directions directions_of(const l
 
 /* 3 u (|p| + |r|) bounds the rounding of an area, the difference of p and r, u = 2^-24, and the difference is rounded
  * once more. */
-static inline __attribute__((always_inline)) float area_rounding(const uv_directions *d)
+static inline NT_ALWAYS_INLINE float area_rounding(const uv_directions *d)
 {
 	return 8 * HALF_ULP * (fabsf(d->t21x * d->t31y) + fabsf(d->t21y * d->t31x));
 }
 
 /* The frames of lanes [0, count). */
-static inline __attribute__((always_inline)) void solve_frames(const lanes_in *restrict in,
-	const lanes_edges *restrict edges, lanes_out *restrict out, bool more, int i)
+static inline NT_ALWAYS_INLINE void solve_frames(const lanes_in *NT_RESTRICT in,
+	const lanes_edges *NT_RESTRICT edges, lanes_out *NT_RESTRICT out, bool more, int i)
 {
 	const uv_directions d = directions_of(in, edges, i);
 	const float area = d.t21x * d.t31y - d.t21y * d.t31x, sign = copysignf(1.0f, area);
 	const float rs = sign / d.s_length, rt = sign / d.t_length;
-#pragma GCC unroll 3
+	NT_UNROLL(3)
 	for (int c = 0; c < 3; c++)
 		out->u[c][i] = rs * d.s[c], out->v[c][i] = rt * d.t[c];
 	out->length_u[i] = d.s_length, out->length_v[i] = d.t_length;
@@ -108,7 +108,7 @@ static inline __attribute__((always_inline)) void solve_frames(const lanes_in *r
 }
 
 /* Storing moves each v by u |v + offset| at most, an edge by twice that. */
-static void __attribute__((noinline)) doubt_stored(const lanes_in *restrict in, lanes_out *restrict out,
+static void NT_NOINLINE doubt_stored(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out,
 	float offset, int count)
 {
 	const float slack = offset != 0.0f ? 3 * HALF_ULP : 0.0f;
@@ -124,11 +124,11 @@ static void __attribute__((noinline)) doubt_stored(const lanes_in *restrict in, 
 }
 
 /* Tells triangles apart where not all of them are plain. */
-static void __attribute__((noinline)) tell_apart(const lanes_in *restrict in, lanes_out *restrict out, int count)
+static void NT_NOINLINE tell_apart(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out, int count)
 {
 	EACH_LANE(count) {
 		int same[3];
-#pragma GCC unroll 3
+		NT_UNROLL(3)
 		for (int k = 0; k < 3; k++) {
 			const float (*const a)[NT_LANES] = in->row[k], (*const b)[NT_LANES] = in->row[(k + 1) % 3];
 			same[k] = (a[0][i] == b[0][i]) & (a[1][i] == b[1][i]) & (a[2][i] == b[2][i]);

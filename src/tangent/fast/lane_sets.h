@@ -74,20 +74,41 @@ static inline bool any_lane(lanes a)
 	return _mm512_test_epi32_mask((__m512i)a, (__m512i)a) != 0;
 }
 #else
-typedef uint16_t lane_halves __attribute__((vector_size(4 * WIDTH)));
 typedef lanes lane_set;
-typedef lane_halves half_set;
 #define ALL_LANES ((lane_set){0} - 1)
+#if WIDTH > 1
+typedef uint16_t lane_halves __attribute__((vector_size(4 * WIDTH)));
+typedef lane_halves half_set;
 #define ALL_HALVES ((half_set){0} - 1)
 
-static inline lane_set differ(lane_set set, lanes a, lanes b)
+static inline lanes same_halves(lanes a, lanes b)
 {
-	return set & (lanes)(a != b);
+	return (lanes)((lane_halves)a == (lane_halves)b);
 }
 
 static inline half_set halves_differ(half_set set, lanes a, lanes b)
 {
 	return set & (lane_halves)((lane_halves)a != (lane_halves)b);
+}
+#else
+typedef lanes half_set;
+#define ALL_HALVES ALL_LANES
+
+static inline lanes same_halves(lanes a, lanes b)
+{
+	const lanes other = a ^ b;
+	return LANES_WHERE((other & 0xffff) == 0) >> 16 | LANES_WHERE(other >> 16 == 0) << 16;
+}
+
+static inline half_set halves_differ(half_set set, lanes a, lanes b)
+{
+	return set & ~same_halves(a, b);
+}
+#endif
+
+static inline lane_set differ(lane_set set, lanes a, lanes b)
+{
+	return set & LANES_WHERE(a != b);
 }
 
 static inline half_set common_halves(half_set a, half_set b)
@@ -97,7 +118,7 @@ static inline half_set common_halves(half_set a, half_set b)
 
 static inline lane_set having_bit(lanes a, uint32_t bit)
 {
-	return (lanes)((a & bit) != 0);
+	return LANES_WHERE((a & bit) != 0);
 }
 
 static inline lanes without_bit(lanes a, lane_set set, uint32_t bit)
@@ -112,29 +133,29 @@ static inline lanes with_bits(lanes a, lane_set set, lanes b)
 
 static inline lanes with_bit_where_same(lanes a, lanes b, lanes c, uint32_t halves)
 {
-	return a | ((lanes)((lane_halves)b == (lane_halves)c) & halves);
+	return a | (same_halves(b, c) & halves);
 }
 
 static inline lanes one_more_without(lanes count, lanes a, uint32_t bits)
 {
-	return count - (lanes)((a & bits) == 0);
-}
-
-static inline bool all_halves(half_set set)
-{
-	const lanes whole = (lanes)set;
-	uint32_t all = UINT32_MAX;
-	for (int i = 0; i < WIDTH; i++)
-		all &= whole[i];
-	return all == UINT32_MAX;
+	return count - LANES_WHERE((a & bits) == 0);
 }
 
 static inline bool any_lane(lanes a)
 {
+#if WIDTH > 1
 	uint32_t any = 0;
 	for (int i = 0; i < WIDTH; i++)
 		any |= a[i];
 	return any != 0;
+#else
+	return a != 0;
+#endif
+}
+
+static inline bool all_halves(half_set set)
+{
+	return !any_lane(~(lanes)set);
 }
 #endif
 

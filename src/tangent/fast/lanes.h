@@ -13,7 +13,7 @@
 #include "tangent/fast/lane_sets.h"
 
 /* Corner k of 16 triangles. */
-static inline __attribute__((always_inline)) corner_lanes corner_of(const lanes_in *in,
+static inline NT_ALWAYS_INLINE corner_lanes corner_of(const lanes_in *in,
 	const lanes_edges *edges, lanes_out *out, int k)
 {
 	return (corner_lanes){.n = in->row[k] + 3, .u = out->u, .v = out->v,
@@ -26,11 +26,11 @@ static inline __attribute__((always_inline)) corner_lanes corner_of(const lanes_
  * begun early whose square roots others wait for: in a single one there are more values under way than registers, and
  * in the order of corners the processor's queue is full of what waits. This order takes 490 cycles for 16 triangles on
  * an EPYC 9004 with AVX-512, others 500 to 550. */
-static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *restrict in, lanes_out *restrict out,
+static inline NT_ALWAYS_INLINE void solve_lanes(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out,
 	bool more, int count)
 {
 	if (count < WIDTH)
-		__builtin_unreachable(); /* keeps gcc 12 from warning of loops that are not entered */
+		NT_UNREACHABLE; /* keeps gcc 12 from warning of loops that are not entered */
 	lanes_edges edges;
 	corner_angles angles[3];
 	const corner_lanes a = corner_of(in, &edges, out, 0), b = corner_of(in, &edges, out, 1),
@@ -63,7 +63,7 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 		solve_frames(in, &edges, out, more, i);
 	}
 	const corner_lanes corners[3] = {a, b, c};
-#pragma GCC unroll 3
+	NT_UNROLL(3)
 	for (int k = 0; k < 3; k++)
 		EACH_LANE(count) {
 			corner_parts p;
@@ -73,7 +73,7 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 			finish_directions(corners[k], &p, &angles[k], more, i);
 			begin_angle(&angles[k], i);
 		}
-#pragma GCC unroll 3
+	NT_UNROLL(3)
 	for (int k = 0; k < 3; k++)
 		EACH_LANE(count) weigh_corner(corners[k], &angles[k], out, more, i);
 #endif
@@ -82,7 +82,7 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 }
 
 /* A single corner in each lane. */
-static inline __attribute__((always_inline)) void solve_corner(corner_lanes a)
+static inline NT_ALWAYS_INLINE void solve_corner(corner_lanes a)
 {
 	corner_angles angles;
 #if WIDTH > 4
@@ -120,7 +120,7 @@ static inline bool are_plain(const lanes_out *out, size_t corners, size_t count)
 }
 
 /* What is to be known of lanes that are solved: so many corners' sums say whether they are plain. */
-static inline void judge(const lanes_in *restrict in, lanes_out *restrict out, float offset, size_t corners,
+static inline void judge(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out, float offset, size_t corners,
 	size_t lane_count)
 {
 	out->plain = NT_FAST_PATHS && corners > 0 && are_plain(out, corners, lane_count);
@@ -130,7 +130,7 @@ static inline void judge(const lanes_in *restrict in, lanes_out *restrict out, f
 		doubt_stored(in, out, offset, (int)lane_count);
 }
 
-static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *restrict in, lanes_out *restrict out,
+static void NT_NOINLINE solve_lanes_plain(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out,
 	float offset, size_t count)
 {
 	const size_t lane_count = whole_lanes(count);
@@ -138,7 +138,7 @@ static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *restrict
 	judge(in, out, offset, 3, lane_count);
 }
 
-static void __attribute__((noinline)) solve_lanes_more(const lanes_in *in, lanes_out *out, float offset)
+static void NT_NOINLINE solve_lanes_more(const lanes_in *in, lanes_out *out, float offset)
 {
 	solve_lanes(in, out, true, NT_LANES);
 	for (int k = 0; k < 3; k++) {

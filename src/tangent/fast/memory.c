@@ -55,7 +55,7 @@ void nt_fast_plan_memory(const nt_fast *fast, bool binned, size_t least_bytes, n
  * has passed all the rows that it then overwrites. */
 bool nt_fast_place_records(nt_fast *fast, const bool orientations[2])
 {
-	_Static_assert(sizeof(nt_weld_row) == 2 * sizeof(nt_record), "a pair of records is as large as a row");
+	static_assert(sizeof(nt_weld_row) == 2 * sizeof(nt_record), "a pair of records is as large as a row");
 	const bool both = orientations[0] && orientations[1];
 	nt_record *records = both || fast->ranges.count == 1
 		? (nt_record *)fast->rows

@@ -38,7 +38,7 @@ enum {
 /* Contributions of a range that have to wait for earlier ranges'. Each has a cache line of its own, which no other
  * thread writes to. */
 typedef struct nt_deferred {
-	_Alignas(64) uint32_t *to; /* vertices, with NT_ENTRY_ORIENT; one more than can be counted may be written */
+	NT_ALIGNED(64) uint32_t *to; /* vertices, with NT_ENTRY_ORIENT; one more than can be counted may be written */
 	nt_record *add;
 	nt_record_more *more; /* or NULL */
 	size_t count;
@@ -129,7 +129,7 @@ static inline bool nt_fast_judges(const nt_solve *solve)
 /* A row gets NT_W_OPEN. */
 static inline void nt_fast_tell_open(const nt_solve *solve)
 {
-	__atomic_store_n(&solve->known->open, true, __ATOMIC_RELAXED);
+	nt_atomic_store(&solve->known->open, true, RELAXED);
 }
 
 /* Whether triangle t and t + 1 are halves of one quad. Not read from the flags, which belong to another thread

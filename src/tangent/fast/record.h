@@ -59,8 +59,25 @@ enum {
 #define NT_RESULT_PLACED 0x80000000u
 #define NT_RESULT_NUMBER (((uint32_t)1 << 28) - 1)
 
+/* The words of a record on their way: loaded and stored at once, if the compiler has vectors. */
+#if NT_VECTORS
 typedef float nt_float4 __attribute__((vector_size(16)));
 typedef int nt_int4 __attribute__((vector_size(16)));
+
+static inline nt_int4 nt_and4(nt_int4 a, nt_int4 b)
+{
+	return a & b;
+}
+
+static inline nt_int4 nt_or4(nt_int4 a, nt_int4 b)
+{
+	return a | b;
+}
+
+static inline uint32_t nt_state4(nt_int4 a)
+{
+	return (uint32_t)a[3];
+}
 
 /* Adds the sum, and keeps the bits of the state that both have. */
 static inline void nt_record_add(nt_record *record, nt_int4 add)
@@ -71,14 +88,44 @@ static inline void nt_record_add(nt_record *record, nt_int4 add)
 	const nt_int4 result = __builtin_shufflevector(sum, both, 0, 1, 2, 7);
 	memcpy(record, &result, sizeof result);
 }
+#else
+typedef struct nt_int4 {
+	int32_t x, y, z, state;
+} nt_int4;
+
+static inline nt_int4 nt_and4(nt_int4 a, nt_int4 b)
+{
+	return (nt_int4){a.x & b.x, a.y & b.y, a.z & b.z, a.state & b.state};
+}
+
+static inline nt_int4 nt_or4(nt_int4 a, nt_int4 b)
+{
+	return (nt_int4){a.x | b.x, a.y | b.y, a.z | b.z, a.state | b.state};
+}
+
+static inline uint32_t nt_state4(nt_int4 a)
+{
+	return (uint32_t)a.state;
+}
+
+static inline void nt_record_add(nt_record *record, nt_int4 add)
+{
+	nt_record sum;
+	memcpy(&sum, &add, sizeof sum);
+	record->x += sum.x, record->y += sum.y, record->z += sum.z;
+	record->state &= sum.state;
+}
+#endif
 
 static inline void nt_record_more_add(nt_record_more *record, const nt_record_more *add)
 {
-	nt_float4 old[2], new[2];
-	memcpy(old, record, sizeof old);
-	memcpy(new, add, sizeof new);
-	old[0] += new[0], old[1] += new[1];
-	memcpy(record, old, sizeof old);
+	enum { FLOATS = sizeof *record / sizeof(float) };
+	float sum[FLOATS], more[FLOATS];
+	memcpy(sum, record, sizeof sum);
+	memcpy(more, add, sizeof more);
+	for (int i = 0; i < FLOATS; i++)
+		sum[i] += more[i];
+	memcpy(record, sum, sizeof sum);
 }
 
 #endif

@@ -18,7 +18,7 @@
 #define STATES(bits) ((lanes){0, 0, 0, bits, 0, 0, 0, bits, 0, 0, 0, bits, 0, 0, 0, bits})
 #elif WIDTH == 8
 #define STATES(bits) ((lanes){0, 0, 0, bits, 0, 0, 0, bits})
-#else
+#elif WIDTH == 4
 #define STATES(bits) ((lanes){0, 0, 0, bits})
 #endif
 #define NO_STATE (NT_STATE_BASE | NT_STATE_ALL)
@@ -42,7 +42,7 @@ static inline bool any_of(const uint32_t *values, size_t used)
 	return any_lane(any);
 }
 
-static inline void read_states(size_t used, record_lanes *restrict r)
+static inline void read_states(size_t used, record_lanes *NT_RESTRICT r)
 {
 	for (size_t i = 0; i < used; i++) {
 		const uint32_t s = r->state[i];
@@ -60,12 +60,18 @@ static inline bool has_no_records(const nt_record *records, size_t used)
 {
 	lanes all = {0};
 	all = ~all;
+#if WIDTH > 1
 	for (size_t i = 0; i < used; i += WIDTH / 4)
 		all &= load_lanes(records + i);
 	return !any_lane((lanes)(~all & STATES(NT_STATE_EMPTY | NT_STATE_LOCAL)));
+#else
+	for (size_t i = 0; i < used; i++)
+		all &= records[i].state;
+	return !(~all & (NT_STATE_EMPTY | NT_STATE_LOCAL));
+#endif
 }
 
-static void load_records(const nt_record *restrict records, size_t used, record_lanes *restrict r)
+static void load_records(const nt_record *NT_RESTRICT records, size_t used, record_lanes *NT_RESTRICT r)
 {
 	for (size_t i = 0; i < used; i += WIDTH) {
 		lanes four[4];
@@ -79,7 +85,7 @@ static void load_records(const nt_record *restrict records, size_t used, record_
 	read_states(used, r);
 }
 
-static inline void normalise_records(size_t used, record_lanes *restrict r)
+static inline void normalise_records(size_t used, record_lanes *NT_RESTRICT r)
 {
 	for (size_t i = 0; i < used; i++) {
 		const float x = r->x[i], y = r->y[i], z = r->z[i];
@@ -95,24 +101,19 @@ static inline void normalise_records(size_t used, record_lanes *restrict r)
 static void load_normals(const nt_weld_row *rows, size_t count, size_t used, float normals[3][NT_LANES])
 {
 	for (size_t first = 0; first < used; first += WIDTH) {
+		const float *from[WIDTH]; /* of rows, from the third float on */
 		lanes four[4];
-		for (size_t j = 0; j < 4; j++) {
-			const float *parts[WIDTH / 4]; /* of rows, from the third float on */
-			for (size_t i = 0; i < WIDTH / 4; i++) {
-				const size_t row = first + j * (WIDTH / 4) + i;
-				parts[i] = (const float *)&rows[row < count ? row : count - 1] + 2;
-			}
-			four[j] = load_parts(parts);
-		}
-		turn(four);
+		for (size_t i = first; i < first + WIDTH; i++)
+			from[i - first] = (const float *)&rows[i < count ? i : count - 1] + 2;
+		load_turned(from, four);
 		for (size_t c = 0; c < 3; c++)
 			memcpy(normals[c] + first, &four[c + 1], sizeof *four);
 	}
 }
 
 /* Which results tangent/usable.c would not accept: triangles at other vertices need no look. */
-static inline void find_unusable(const float (*restrict normals)[NT_LANES], const record_lanes *restrict r,
-	uint32_t *restrict unusable, size_t used)
+static inline void find_unusable(const float (*NT_RESTRICT normals)[NT_LANES], const record_lanes *NT_RESTRICT r,
+	uint32_t *NT_RESTRICT unusable, size_t used)
 {
 	for (size_t i = 0; i < used; i++) {
 		const float t[3] = {r->x[i], r->y[i], r->z[i]};
@@ -122,8 +123,8 @@ static inline void find_unusable(const float (*restrict normals)[NT_LANES], cons
 }
 
 /* Stores `count` records, `step` apart. */
-static void store_records(nt_record *restrict records, size_t step, size_t count, size_t used,
-	const record_lanes *restrict r, const uint32_t *restrict state)
+static void store_records(nt_record *NT_RESTRICT records, size_t step, size_t count, size_t used,
+	const record_lanes *NT_RESTRICT r, const uint32_t *NT_RESTRICT state)
 {
 	nt_record copy[NT_LANES];
 	nt_record *to = count == used && step == 1 ? records : copy;
@@ -145,16 +146,11 @@ static inline void finish_groups(const nt_weld_row *rows, const uint32_t *vertic
 	uint32_t unusable[NT_LANES];
 	record_lanes r;
 	for (size_t i = 0; i < used; i += WIDTH) {
+		const float *from[WIDTH];
 		lanes four[4];
-		for (size_t j = 0; j < 4; j++) {
-			const float *normals_at[WIDTH / 4];
-			for (size_t k = 0; k < WIDTH / 4; k++) {
-				const size_t group = i + j * (WIDTH / 4) + k;
-				normals_at[k] = rows[vertices[group < count ? group : count - 1]].normal;
-			}
-			four[j] = load_parts(normals_at);
-		}
-		turn(four);
+		for (size_t k = i; k < i + WIDTH; k++)
+			from[k - i] = (const float *)&rows[vertices[k < count ? k : count - 1]] + 3;
+		load_turned(from, four);
 		for (size_t c = 0; c < 3; c++)
 			memcpy(normals[c] + i, &four[c], sizeof *four);
 	}

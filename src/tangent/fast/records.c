@@ -41,7 +41,7 @@ static void clear_chunk(const job *j, array *a, size_t chunk)
 		a->records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
 	if (a->more)
 		memset(a->more + begin, 0, count * sizeof *a->more);
-	__atomic_fetch_add(&a->chunks_cleared, 1, __ATOMIC_RELEASE);
+	nt_atomic_add(&a->chunks_cleared, 1, RELEASE);
 }
 
 /* Allocates the array if nobody has, and clears its first chunk. False: out of memory. */
@@ -67,9 +67,9 @@ static bool begin_array(job *j, array *a)
 static void clear_array(const job *j, array *a)
 {
 	const size_t chunks = (j->record_count + CHUNK - 1) / CHUNK;
-	for (size_t chunk; chunks > 1 && (chunk = __atomic_fetch_add(&a->chunks_begun, 1, __ATOMIC_RELAXED)) < chunks;)
+	for (size_t chunk; chunks > 1 && (chunk = nt_atomic_add(&a->chunks_begun, 1, RELAXED)) < chunks;)
 		clear_chunk(j, a, chunk);
-	while (__atomic_load_n(&a->chunks_cleared, __ATOMIC_ACQUIRE) < chunks)
+	while (nt_atomic_load(&a->chunks_cleared, ACQUIRE) < chunks)
 		nt_give_way();
 }
 

@@ -31,8 +31,8 @@ static void settle_more(nt_record_more *more, size_t count, const uint32_t *pres
 }
 
 /* Corners of the block's vertices, HUB for a hub; and the most of each WIDTH of them. */
-static void load_degrees(const nt_adjacency *a, size_t first, size_t count, size_t used, uint32_t *restrict degree,
-	uint32_t *restrict most)
+static void load_degrees(const nt_adjacency *a, size_t first, size_t count, size_t used, uint32_t *NT_RESTRICT degree,
+	uint32_t *NT_RESTRICT most)
 {
 	const size_t place = first - a->first_vertex;
 	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + place;
@@ -114,12 +114,12 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		mask[i] = r[0]->present[i] & r[1]->present[i] ? UINT32_MAX : NT_ENTRY_VERTEX;
 	for (size_t i = 0; i < used; i += WIDTH) {
 		const lanes degrees = load_lanes(degree + i), masks = load_lanes(mask + i),
-			hubs = (lanes)(degrees == HUB);
-		const lanes usual = degrees & ~hubs, mask_of = __builtin_shufflevector(masks, masks, UNTURNED);
+			hubs = LANES_WHERE(degrees == HUB);
+		const lanes usual = degrees & ~hubs, mask_of = out_of_turn(masks);
 		const lanes counted = (hubs & DOUBTFUL) | (nt_adjacency_is_narrow(a)
 			? count_narrow_fans(entries.narrow + i, entries.step, depths[i / WIDTH], usual, mask_of)
 			: count_wide_fans(entries.wide + i, depths[i / WIDTH], usual, mask_of));
-		const lanes turned = __builtin_shufflevector(counted, counted, TURNED);
+		const lanes turned = in_turn(counted);
 		memcpy(fan_count + i, &turned, sizeof turned);
 	}
 
@@ -152,10 +152,8 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	for (int o = 0; o < 2; o++) {
 		if (!sums[o])
 			continue;
-		if (!there[o] && !has_complex && count == used && fast->record_step == 1 && !fast->wants_more) {
-			for (size_t i = 0; i < used; i += WIDTH / 4)
-				memcpy(nt_fast_record(fast, o, (uint32_t)(first + i)), &(const lanes){0},
-					sizeof(lanes));
+		if (!there[o] && !has_complex && count == NT_LANES && fast->record_step == 1 && !fast->wants_more) {
+			memset(nt_fast_record(fast, o, (uint32_t)first), 0, NT_LANES * sizeof(nt_record));
 			continue;
 		}
 		const uint32_t sign = o ? NT_RESULT_PLUS : NT_RESULT_MINUS;

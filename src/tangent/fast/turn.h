@@ -17,7 +17,7 @@
 #endif
 
 /* Elements of two vectors, one after the other, for shuffles: every other 16-byte part; every other element; one
- * vector's elements in turned places, and out of them. */
+ * vector's elements in turned places, and out of them. Without vectors a lane is a value, and nothing is turned. */
 #if defined(__AVX512F__)
 #define WIDTH 16
 #define IN_PARTS(a, b, c, d) \
@@ -41,7 +41,7 @@
 #define ODD 1, 3, 5, 7, 9, 11, 13, 15
 #define TURNED 0, 2, 4, 6, 1, 3, 5, 7
 #define UNTURNED 0, 4, 1, 5, 2, 6, 3, 7
-#else
+#elif NT_VECTORS
 #define WIDTH 4
 #define IN_PARTS(a, b, c, d) a, b, c, d
 #define LOW_PAIRS 0, 2
@@ -50,26 +50,52 @@
 #define ODD 1, 3, 5, 7
 #define TURNED 0, 1, 2, 3
 #define UNTURNED TURNED
+#else
+#define WIDTH 1
 #endif
 
 /* The same four elements in every part: 0 to 3 of the first vector, 4 to 7 of the second. */
 #define IN_PART(part, a, b, c, d) FROM(part, a), FROM(part, b), FROM(part, c), FROM(part, d)
 #define FROM(part, i) ((part) + (i) % 4 + (i) / 4 * WIDTH)
 
+/* All bits of the lanes where a condition holds, 0 in the others. */
+#if WIDTH > 1
 typedef uint32_t lanes __attribute__((vector_size(4 * WIDTH)));
 typedef uint64_t lane_pairs __attribute__((vector_size(4 * WIDTH)));
+#define LANES_WHERE(condition) ((lanes)(condition))
+#else
+typedef uint32_t lanes;
+#define LANES_WHERE(condition) (0u - (uint32_t)(condition))
+#endif
 
-static inline __attribute__((always_inline)) lanes load_lanes(const void *from)
+static inline NT_ALWAYS_INLINE lanes load_lanes(const void *from)
 {
 	lanes result;
 	memcpy(&result, from, sizeof result);
 	return result;
 }
 
-/* One vector of four floats from each place. */
-static inline __attribute__((always_inline)) lanes load_parts(const float *const from[WIDTH / 4])
+/* Four rows of four floats, turned, in each part. */
+static inline NT_ALWAYS_INLINE void turn(lanes rows[4])
 {
-#if WIDTH == 4
+#if WIDTH > 1
+	const lanes ab01 = __builtin_shufflevector(rows[0], rows[1], IN_PARTS(0, 4, 1, 5));
+	const lanes ab23 = __builtin_shufflevector(rows[0], rows[1], IN_PARTS(2, 6, 3, 7));
+	const lanes cd01 = __builtin_shufflevector(rows[2], rows[3], IN_PARTS(0, 4, 1, 5));
+	const lanes cd23 = __builtin_shufflevector(rows[2], rows[3], IN_PARTS(2, 6, 3, 7));
+	rows[0] = (lanes)__builtin_shufflevector((lane_pairs)ab01, (lane_pairs)cd01, LOW_PAIRS);
+	rows[1] = (lanes)__builtin_shufflevector((lane_pairs)ab01, (lane_pairs)cd01, HIGH_PAIRS);
+	rows[2] = (lanes)__builtin_shufflevector((lane_pairs)ab23, (lane_pairs)cd23, LOW_PAIRS);
+	rows[3] = (lanes)__builtin_shufflevector((lane_pairs)ab23, (lane_pairs)cd23, HIGH_PAIRS);
+#else
+	(void)rows; /* one row is its components */
+#endif
+}
+
+/* One vector of four floats from each place. */
+static inline NT_ALWAYS_INLINE lanes load_parts(const float *const *from)
+{
+#if WIDTH <= 4
 	return load_lanes(from[0]);
 #else
 	nt_float4 parts[WIDTH / 4];
@@ -85,17 +111,31 @@ static inline __attribute__((always_inline)) lanes load_parts(const float *const
 #endif
 }
 
-/* Four rows of four floats, turned, in each part. */
-static inline __attribute__((always_inline)) void turn(lanes rows[4])
+/* Four floats of each of WIDTH rows, by component. */
+static inline NT_ALWAYS_INLINE void load_turned(const float *const rows[WIDTH], lanes four[4])
 {
-	const lanes ab01 = __builtin_shufflevector(rows[0], rows[1], IN_PARTS(0, 4, 1, 5));
-	const lanes ab23 = __builtin_shufflevector(rows[0], rows[1], IN_PARTS(2, 6, 3, 7));
-	const lanes cd01 = __builtin_shufflevector(rows[2], rows[3], IN_PARTS(0, 4, 1, 5));
-	const lanes cd23 = __builtin_shufflevector(rows[2], rows[3], IN_PARTS(2, 6, 3, 7));
-	rows[0] = (lanes)__builtin_shufflevector((lane_pairs)ab01, (lane_pairs)cd01, LOW_PAIRS);
-	rows[1] = (lanes)__builtin_shufflevector((lane_pairs)ab01, (lane_pairs)cd01, HIGH_PAIRS);
-	rows[2] = (lanes)__builtin_shufflevector((lane_pairs)ab23, (lane_pairs)cd23, LOW_PAIRS);
-	rows[3] = (lanes)__builtin_shufflevector((lane_pairs)ab23, (lane_pairs)cd23, HIGH_PAIRS);
+	for (size_t j = 0; j < 4; j++)
+		four[j] = WIDTH > 1 ? load_parts(rows + j * (WIDTH / 4)) : load_lanes(rows[0] + j);
+	turn(four);
+}
+
+/* One vector's elements in turned places, and out of them. */
+static inline lanes in_turn(lanes a)
+{
+#if WIDTH > 1
+	return __builtin_shufflevector(a, a, TURNED);
+#else
+	return a;
+#endif
+}
+
+static inline lanes out_of_turn(lanes a)
+{
+#if WIDTH > 1
+	return __builtin_shufflevector(a, a, UNTURNED);
+#else
+	return a;
+#endif
 }
 
 /* Where turn() leaves the row of a lane, and from where it takes it. */
@@ -117,7 +157,7 @@ static inline size_t whole_lanes(size_t count)
 }
 
 /* Four components of whole vectors of lanes become rows in turned places. */
-static inline __attribute__((always_inline)) void interleave(const float in[4][NT_LANES], size_t lane_count, float *out)
+static inline NT_ALWAYS_INLINE void interleave(const float in[4][NT_LANES], size_t lane_count, float *out)
 {
 	for (size_t i = 0; i < lane_count; i += WIDTH) {
 		lanes four[4];
@@ -129,23 +169,24 @@ static inline __attribute__((always_inline)) void interleave(const float in[4][N
 	}
 }
 
-#if WIDTH == 4
+#if WIDTH <= 4
 /* The rows of one corner of WIDTH triangles, by component, from `lane` on. */
-static inline __attribute__((always_inline)) void gather_corner(const nt_weld_row *rows, const uint32_t *ids,
+static inline NT_ALWAYS_INLINE void gather_corner(const nt_weld_row *rows, const uint32_t *ids,
 	size_t lane, float (*out)[NT_LANES])
 {
 	for (size_t half = 0; half < 8; half += 4) {
+		const float *from[WIDTH];
 		lanes four[4];
-		for (size_t j = 0; j < 4; j++)
-			four[j] = load_lanes((const float *)&rows[ids[3 * j]] + half);
-		turn(four);
+		for (size_t j = 0; j < WIDTH; j++)
+			from[j] = (const float *)&rows[ids[3 * j]] + half;
+		load_turned(from, four);
 		for (size_t j = 0; j < 4; j++)
 			memcpy(out[half + j] + lane, &four[j], sizeof four[j]);
 	}
 }
 #else
 /* As many rows as a vector holds: that of one triangle and, in the widest vectors, of the fourth one after it. */
-static inline __attribute__((always_inline)) lanes load_rows(const nt_weld_row *rows, const uint32_t *ids)
+static inline NT_ALWAYS_INLINE lanes load_rows(const nt_weld_row *rows, const uint32_t *ids)
 {
 	typedef uint32_t one_row __attribute__((vector_size(sizeof(nt_weld_row))));
 	one_row first;
@@ -160,7 +201,7 @@ static inline __attribute__((always_inline)) lanes load_rows(const nt_weld_row *
 }
 
 /* The rows of one corner of WIDTH triangles, by component, from `lane` on. */
-static inline __attribute__((always_inline)) void gather_corner(const nt_weld_row *rows, const uint32_t *ids,
+static inline NT_ALWAYS_INLINE void gather_corner(const nt_weld_row *rows, const uint32_t *ids,
 	size_t lane, float (*out)[NT_LANES])
 {
 	lanes low[4], high[4];
@@ -180,8 +221,8 @@ static inline __attribute__((always_inline)) void gather_corner(const nt_weld_ro
 #endif
 
 /* Rows of the corners of `count` triangles; up to `lane_count` the lanes behind repeat the last one. */
-static void __attribute__((noinline)) gather_lanes(const nt_weld_row *rows, const uint32_t *ids, size_t count,
-	size_t lane_count, float (*restrict out)[8][NT_LANES])
+static void NT_NOINLINE gather_lanes(const nt_weld_row *rows, const uint32_t *ids, size_t count,
+	size_t lane_count, float (*NT_RESTRICT out)[8][NT_LANES])
 {
 	uint32_t padded[3 * NT_LANES];
 	if (count < lane_count) {
@@ -196,7 +237,7 @@ static void __attribute__((noinline)) gather_lanes(const nt_weld_row *rows, cons
 
 /* The same for all lanes. */
 static inline void gather_rows(const nt_weld_row *rows, const uint32_t *ids, size_t count,
-	float (*restrict out)[8][NT_LANES])
+	float (*NT_RESTRICT out)[8][NT_LANES])
 {
 	gather_lanes(rows, ids, count, NT_LANES, out);
 }

@@ -92,14 +92,14 @@ static void write_special(nt_fast *fast, size_t t)
 
 /* The records of a later triangle of a scattered mesh; the last ones of the range ask twice. Always in line: gcc 12
  * drops a call of what does nothing but prefetch. */
-static inline __attribute__((always_inline)) void prefetch_records(const nt_fast *fast, size_t t, size_t end)
+static inline NT_ALWAYS_INLINE void prefetch_records(const nt_fast *fast, size_t t, size_t end)
 {
 	const size_t later = t + WRITE_AHEAD < end ? t + WRITE_AHEAD : end - 1;
 	const int orient = fast->flags[later] & NT_TRIANGLE_ORIENT;
 	uint32_t copy[3];
 	const uint32_t *v = nt_triangle_vertices(&fast->triangles, later, 1, copy);
 	for (int k = 0; fast->records[orient] && k < 3; k++)
-		__builtin_prefetch(nt_fast_record(fast, orient, v[k]));
+		NT_PREFETCH(nt_fast_record(fast, orient, v[k]));
 }
 
 /* Whether a corner is in a block of vertices with an open record. The blocks fit the first-level cache, or nearly so,
@@ -137,7 +137,7 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 }
 
 /* The signs of a triangle whose records have more than signs. */
-static inline __attribute__((always_inline)) void write_signs(const nt_fast *fast,
+static inline NT_ALWAYS_INLINE void write_signs(const nt_fast *fast,
 	const nt_triangles *triangles, size_t t)
 {
 	const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
@@ -178,7 +178,7 @@ static void write_tangents(nt_fast *fast, size_t begin, size_t end)
 		memcpy(tangents + 4 * nt_triangle_corner(&triangles, t, 0), &a, sizeof a);
 		memcpy(tangents + 4 * nt_triangle_corner(&triangles, t, 1), &b, sizeof b);
 		memcpy(tangents + 4 * nt_triangle_corner(&triangles, t, 2), &c, sizeof c);
-		if ((uint32_t)(a | b | c)[3] & (NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE))
+		if (nt_state4(nt_or4(nt_or4(a, b), c)) & (NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE))
 			write_signs(fast, &triangles, t);
 	}
 }
@@ -186,16 +186,15 @@ static void write_tangents(nt_fast *fast, size_t begin, size_t end)
 /* A bit for each of four triangles one of whose records is not just a result; given is the union of their bits. */
 static inline unsigned find_open(nt_int4 a, nt_int4 b, nt_int4 c, nt_int4 d)
 {
+#if NT_VECTORS && defined(__SSE2__)
 	const nt_int4 ab = __builtin_shufflevector(a, b, 2, 6, 3, 7), cd = __builtin_shufflevector(c, d, 2, 6, 3, 7);
 	const nt_int4 states = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-#ifdef __SSE2__
-	_Static_assert(NT_RESULT_COMPLEX << 1 == 1u << 31 && NT_RESULT_UNUSABLE << 31 == 1u << 31, "both become signs");
+	static_assert(NT_RESULT_COMPLEX << 1 == 1u << 31 && NT_RESULT_UNUSABLE << 31 == 1u << 31, "both become signs");
 	return (unsigned)__builtin_ia32_movmskps((nt_float4)(states << 1 | states << 31));
 #else
-	unsigned open = 0;
-	for (int i = 0; i < 4; i++)
-		open |= (unsigned)(((uint32_t)states[i] & (NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE)) != 0) << i;
-	return open;
+	const uint32_t mask = NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE;
+	return (unsigned)((nt_state4(a) & mask) != 0) | (unsigned)((nt_state4(b) & mask) != 0) << 1 |
+	       (unsigned)((nt_state4(c) & mask) != 0) << 2 | (unsigned)((nt_state4(d) & mask) != 0) << 3;
 #endif
 }
 
@@ -209,15 +208,15 @@ static inline nt_int4 copy_records(const char *from, unsigned shift, const uint3
 	memcpy(out, &a, sizeof a);
 	memcpy(out + 4, &b, sizeof b);
 	memcpy(out + 8, &c, sizeof c);
-	return a | b | c;
+	return nt_or4(nt_or4(a, b), c);
 }
 
 /* A bit for each of four triangles whose flags say that it is no usual one. */
 static inline unsigned find_special(const uint8_t *flags)
 {
 	/* moves the lowest bit of byte i, in the order of memory, to bit i of the highest byte */
-	const uint32_t gather = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? 0x08040201u : 0x01020408u;
-	_Static_assert(NT_TRIANGLE_ANY >> 1 == 1 && NT_TRIANGLE_DEGENERATE >> 2 == 1, "both become the lowest bit");
+	const uint32_t gather = NT_BIG_ENDIAN ? 0x08040201u : 0x01020408u;
+	static_assert(NT_TRIANGLE_ANY >> 1 == 1 && NT_TRIANGLE_DEGENERATE >> 2 == 1, "both become the lowest bit");
 	uint32_t four;
 	memcpy(&four, flags, sizeof four);
 	return ((four >> 1 | four >> 2) & 0x01010101u) * gather >> 24;
@@ -229,7 +228,7 @@ static inline unsigned find_special(const uint8_t *flags)
  * instead of 8.0; the 3 stores alone take 3 (Zen 4, in the cache). */
 static void write_plain(nt_fast *fast, size_t begin, size_t end)
 {
-	_Static_assert(sizeof(nt_record) == 1 << 4, "what is shifted");
+	static_assert(sizeof(nt_record) == 1 << 4, "what is shifted");
 	const char *const records[2] = {(const char *)fast->records[!fast->records[0]],
 		(const char *)fast->records[fast->records[1] != NULL]};
 	const unsigned shift = fast->record_step == 1 ? 4 : 5;
@@ -252,7 +251,7 @@ static void write_plain(nt_fast *fast, size_t begin, size_t end)
 			others |= (uint64_t)(find_open(a, b, c, d) | find_special(flags + t)) << (t - first);
 		}
 		for (; others; others &= others - 1) {
-			const size_t other = first + (size_t)__builtin_ctzll(others);
+			const size_t other = first + (size_t)nt_trailing_zeros(others);
 			if (flags[other] & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE))
 				write_special(fast, other);
 			else

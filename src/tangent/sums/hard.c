@@ -10,7 +10,7 @@
 #include "topology/corners.h"
 
 /* What a triangle adds at each of its corners, which are told. */
-static void __attribute__((noinline)) find_parts(const nt_sums *s, size_t t, uint32_t corners[3], nt_frame_sum parts[3])
+static void NT_NOINLINE find_parts(const nt_sums *s, size_t t, uint32_t corners[3], nt_frame_sum parts[3])
 {
 	const nmtan_mesh *mesh = s->solve->mesh;
 	nt_frame_sum *const to[3] = {&parts[0], &parts[1], &parts[2]};

@@ -16,17 +16,15 @@
 #include "tangent/sums/parts.h"
 #include "tangent/weigh.h"
 
-#define LANE_INLINE static inline __attribute__((always_inline))
+#define LANE_INLINE static inline NT_ALWAYS_INLINE
 #define LANES(i) for (int i = 0; i < NT_SUM_LANES; i++)
 
 /* Everything finite is below; so are products of three. */
 #define SUM_HUGE 1e100
 
-typedef double nt_double4 __attribute__((vector_size(32)));
-
 /* What goes from one step to the next, by lane. */
 typedef struct sum_lanes {
-	_Alignas(64) float row[3][8][NT_SUM_LANES]; /* corner, float of its nt_weld_row */
+	NT_ALIGNED(64) float row[3][8][NT_SUM_LANES]; /* corner, float of its nt_weld_row */
 	double uv[4][NT_SUM_LANES];    /* the texture edges bu, bv, cu, cv */
 	double edge[3][3][NT_SUM_LANES];
 	double u[3][NT_SUM_LANES], across[3][NT_SUM_LANES];
@@ -81,7 +79,7 @@ LANE_INLINE nt_dvec3 lane_floats(const float (*from)[NT_SUM_LANES], int i)
 }
 
 /* Directions and signs. */
-static void __attribute__((noinline)) sum_frames(sum_lanes *restrict l, nt_sum_block *restrict block,
+static void NT_NOINLINE sum_frames(sum_lanes *NT_RESTRICT l, nt_sum_block *NT_RESTRICT block,
 	double offset, double slack)
 {
 	LANES(i) {
@@ -145,7 +143,7 @@ LANE_INLINE double lane_product_difference(double a, double b, double c, double 
 }
 
 /* A second look, with residuals, at what cancels. */
-static void __attribute__((noinline)) sum_cancelled(sum_lanes *restrict l, nt_sum_block *restrict block)
+static void NT_NOINLINE sum_cancelled(sum_lanes *NT_RESTRICT l, nt_sum_block *NT_RESTRICT block)
 {
 	(void)block;
 	LANES(i) {
@@ -172,14 +170,14 @@ static void __attribute__((noinline)) sum_cancelled(sum_lanes *restrict l, nt_su
 }
 #else
 /* Without fused operations these lanes are hard. */
-static void sum_cancelled(sum_lanes *restrict l, nt_sum_block *restrict block)
+static void sum_cancelled(sum_lanes *NT_RESTRICT l, nt_sum_block *NT_RESTRICT block)
 {
 	LANES(i)
 		block->hard[i] += l->u_cancels[i] + l->across_cancels[i] + l->tie[i] + l->determinant_cancels[i];
 }
 #endif
 
-LANE_INLINE void sum_lengths(sum_lanes *restrict l, nt_sum_block *restrict block, int by_area)
+LANE_INLINE void sum_lengths(sum_lanes *NT_RESTRICT l, nt_sum_block *NT_RESTRICT block, int by_area)
 {
 	LANES(i) {
 		const nt_dvec3 u = nt_dvec3_scale(l->sign[i], lane_load(l->u, i));
@@ -196,7 +194,7 @@ LANE_INLINE void sum_lengths(sum_lanes *restrict l, nt_sum_block *restrict block
 	}
 }
 
-LANE_INLINE void sum_corner(sum_lanes *restrict l, nt_sum_block *restrict block, int k, nt_weight weight)
+LANE_INLINE void sum_corner(sum_lanes *NT_RESTRICT l, nt_sum_block *NT_RESTRICT block, int k, nt_weight weight)
 {
 	const int before = (k + 2) % 3, by_area = weight == NT_WEIGHT_AREA;
 	LANES(i) {
@@ -217,7 +215,7 @@ LANE_INLINE void sum_corner(sum_lanes *restrict l, nt_sum_block *restrict block,
 	}
 }
 
-LANE_INLINE void sum_corners(sum_lanes *restrict l, nt_sum_block *restrict block, nt_weight weight)
+LANE_INLINE void sum_corners(sum_lanes *NT_RESTRICT l, nt_sum_block *NT_RESTRICT block, nt_weight weight)
 {
 	sum_lengths(l, block, weight == NT_WEIGHT_AREA);
 	sum_corner(l, block, 0, weight);
@@ -230,17 +228,17 @@ LANE_INLINE void sum_corners(sum_lanes *restrict l, nt_sum_block *restrict block
 	}
 }
 
-static void __attribute__((noinline)) sum_corners_by_angle(sum_lanes *l, nt_sum_block *block)
+static void NT_NOINLINE sum_corners_by_angle(sum_lanes *l, nt_sum_block *block)
 {
 	sum_corners(l, block, NT_WEIGHT_ANGLE);
 }
 
-static void __attribute__((noinline)) sum_corners_by_area(sum_lanes *l, nt_sum_block *block)
+static void NT_NOINLINE sum_corners_by_area(sum_lanes *l, nt_sum_block *block)
 {
 	sum_corners(l, block, NT_WEIGHT_AREA);
 }
 
-static void __attribute__((noinline)) sum_corners_unweighted(sum_lanes *l, nt_sum_block *block)
+static void NT_NOINLINE sum_corners_unweighted(sum_lanes *l, nt_sum_block *block)
 {
 	sum_corners(l, block, NT_WEIGHT_NONE);
 }
@@ -311,6 +309,7 @@ static int sum_missing(const nt_sums *s, size_t first, size_t count)
 	return (seen & 1) && !s->sums[0] ? 0 : (seen & 2) && !s->sums[1] ? 1 : -1;
 }
 
+#if WIDTH > 1
 /* Four rows of four doubles, turned, in each 32-byte part of the vectors: see turn(). */
 #if WIDTH == 16
 enum { SUM_PARTS = 2 };
@@ -343,18 +342,32 @@ LANE_INLINE size_t turned_double_place(size_t lane)
 
 LANE_INLINE void sum_add_one(nt_vertex_sum *to, const nt_vertex_sum *add)
 {
-	nt_double4 sum, more;
+	typedef double four_doubles __attribute__((vector_size(32)));
+	four_doubles sum, more;
 	memcpy(&sum, to, sizeof sum);
 	memcpy(&more, add, sizeof more);
 	sum += more;
 	memcpy(to, &sum, sizeof sum);
 }
+#else
+LANE_INLINE size_t turned_double_place(size_t lane)
+{
+	return lane;
+}
+
+LANE_INLINE void sum_add_one(nt_vertex_sum *to, const nt_vertex_sum *add)
+{
+	to->x += add->x, to->y += add->y, to->z += add->z;
+	to->sensitivity += add->sensitivity;
+}
+#endif
 
 /* Adds the lanes to their vertices, in order; or aside, where the vertex belongs to an earlier range. */
-static void __attribute__((noinline)) sum_add(nt_sums *s, size_t first, size_t count, unsigned range,
+static void NT_NOINLINE sum_add(nt_sums *s, size_t first, size_t count, unsigned range,
 	const nt_sum_block *block)
 {
-	_Alignas(64) nt_vertex_sum rows[3][NT_SUM_LANES]; /* in turned places */
+	NT_ALIGNED(64) nt_vertex_sum rows[3][NT_SUM_LANES]; /* in turned places */
+#if WIDTH > 1
 	for (size_t k = 0; k < 3; k++)
 		for (size_t i = 0; i < NT_SUM_LANES; i += 4 * SUM_PARTS) {
 			double_lanes four[4];
@@ -367,6 +380,12 @@ static void __attribute__((noinline)) sum_add(nt_sums *s, size_t first, size_t c
 			for (size_t c = 0; c < 4; c++)
 				memcpy(rows[k] + i + SUM_PARTS * c, &four[c], sizeof four[c]);
 		}
+#else
+	for (size_t k = 0; k < 3; k++)
+		for (size_t i = 0; i < NT_SUM_LANES; i++)
+			rows[k][i] = (nt_vertex_sum){block->add[k][0][i], block->add[k][1][i], block->add[k][2][i],
+				block->add[k][3][i]};
+#endif
 	const uint32_t *ids = s->ids + 3 * first;
 	const bool alone = s->ranges == 1;
 	for (size_t i = 0; i < count; i++, ids += 3) {
@@ -393,9 +412,9 @@ LANE_INLINE void sum_prefetch(const nt_sums *s, size_t first, size_t end)
 	const nt_vertex_sum *sums = s->sums[1] ? s->sums[1] : s->sums[0];
 	const size_t far = first + 2 * NT_SUM_LANES;
 	for (size_t i = 3 * far; i < 3 * (far + NT_SUM_LANES) && i < 3 * end; i++) {
-		__builtin_prefetch(&s->weld.rows[s->ids[i]]);
+		NT_PREFETCH(&s->weld.rows[s->ids[i]]);
 		if (sums)
-			__builtin_prefetch(&sums[s->ids[i]], 1);
+			NT_PREFETCH(&sums[s->ids[i]], 1);
 	}
 }
 
@@ -433,7 +452,7 @@ typedef struct finish_lanes {
 } finish_lanes;
 
 /* Unit normals of `count` vertices; zero where they are not finite. */
-static void __attribute__((noinline)) finish_normals(const nt_weld_row *rows, size_t count, finish_lanes *restrict l)
+static void NT_NOINLINE finish_normals(const nt_weld_row *rows, size_t count, finish_lanes *NT_RESTRICT l)
 {
 	uint32_t ids[3 * NT_SUM_LANES];
 	for (uint32_t i = 0; i < NT_SUM_LANES; i++)
@@ -449,7 +468,7 @@ static void __attribute__((noinline)) finish_normals(const nt_weld_row *rows, si
 	}
 }
 
-static void __attribute__((noinline)) finish_solve(finish_lanes *restrict l, float sign)
+static void NT_NOINLINE finish_solve(finish_lanes *NT_RESTRICT l, float sign)
 {
 	LANES(i) {
 		const nt_dvec3 sum = lane_load(l->sum, i), n = lane_load(l->normal, i);
@@ -471,7 +490,7 @@ static void __attribute__((noinline)) finish_solve(finish_lanes *restrict l, flo
 	}
 }
 
-static void finish_load(const nt_sums *s, int side, size_t first, size_t count, finish_lanes *restrict l)
+static void finish_load(const nt_sums *s, int side, size_t first, size_t count, finish_lanes *NT_RESTRICT l)
 {
 	const nt_vertex_sum *sums = s->sums[side] + first;
 	nt_vertex_sum copy[NT_SUM_LANES];

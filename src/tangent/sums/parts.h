@@ -44,7 +44,7 @@ typedef struct nt_later {
 
 /* What 16 triangles add, and what they are. */
 typedef struct nt_sum_block {
-	_Alignas(64) double add[3][4][NT_SUM_LANES]; /* corner, double of its nt_vertex_sum */
+	NT_ALIGNED(64) double add[3][4][NT_SUM_LANES]; /* corner, double of its nt_vertex_sum */
 	double sign[NT_SUM_LANES];      /* exact orientation; only where not hard */
 	/* flags, 0 or not */
 	double plain[NT_SUM_LANES];     /* has area in space and UV, and weight at each corner */

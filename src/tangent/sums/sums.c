@@ -318,7 +318,7 @@ static void prefetch_results(const nt_sums *s, size_t t, size_t end)
 		return;
 	const nt_vertex_tangent *results = s->results[s->flags[t] & NT_SUM_POSITIVE];
 	for (size_t i = 3 * t; results && i < 3 * t + 3; i++)
-		__builtin_prefetch(&results[s->ids[i]]);
+		NT_PREFETCH(&results[s->ids[i]]);
 }
 
 typedef struct writing {
