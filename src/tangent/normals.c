@@ -54,7 +54,8 @@ static nt_dvec3 lane(const double *x, const double *y, const double *z, size_t i
 }
 
 /* nt_dvec3_normalise() of `count` vectors. */
-static void normalise(double *NT_RESTRICT x, double *NT_RESTRICT y, double *NT_RESTRICT z, double *NT_RESTRICT usable, size_t count)
+static void normalise(double *NT_RESTRICT x, double *NT_RESTRICT y, double *NT_RESTRICT z,
+	double *NT_RESTRICT usable, size_t count)
 {
 	for (size_t i = 0; i < count; i++) {
 		const nt_dvec3 v = {x[i], y[i], z[i]};
