@@ -241,6 +241,12 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		nt_buffer_format(out, ", rounded tangents by %.2g degrees at most, %.2g on average",
 			s->rounding.worst_radians * DEGREES,
 			s->rounding.sum_radians / (double)s->rounding.count * DEGREES);
+	if (s->morph_cost.bytes > s->morph_cost.mesh_bytes) {
+		nt_buffer_text(out, ", tangents of ");
+		append_count(out, s->morph_cost.targets, "morph target");
+		nt_buffer_format(out, " take %.3g MB, their meshes %.3g", (double)s->morph_cost.bytes * 1e-6,
+			(double)s->morph_cost.mesh_bytes * 1e-6);
+	}
 	if (settings->check)
 		append_findings_count(out, s);
 	else

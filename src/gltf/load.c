@@ -136,20 +136,23 @@ static nt_status check_inputs(const nt_mesh *mesh, const inputs *in, nt_error *e
 	return status;
 }
 
+static void normalise_vector(float *n)
+{
+	const double x = n[0], y = n[1], z = n[2], length = x * x + y * y + z * z;
+	if (!(length > 0))
+		return;
+	const double scale = 1 / __builtin_sqrt(length);
+	n[0] = (float)(x * scale);
+	n[1] = (float)(y * scale);
+	n[2] = (float)(z * scale);
+}
+
 /* Integer normals are normalised, after morph targets have added to what they stand for; float ones are taken as they
  * are. */
 static void normalise_quantized(const nt_gltf_accessor *accessor, float *normals, size_t count)
 {
-	for (size_t i = 0; accessor->component_type != NT_GLTF_FLOAT && i < count; i++) {
-		float *n = normals + i * 3;
-		const double x = n[0], y = n[1], z = n[2], length = x * x + y * y + z * z;
-		if (!(length > 0))
-			continue;
-		const double scale = 1 / __builtin_sqrt(length);
-		n[0] = (float)(x * scale);
-		n[1] = (float)(y * scale);
-		n[2] = (float)(z * scale);
-	}
+	for (size_t i = 0; accessor->component_type != NT_GLTF_FLOAT && i < count; i++)
+		normalise_vector(normals + 3 * i);
 }
 
 /* The bits of two pairs of floats. */
@@ -333,14 +336,17 @@ static nt_status add_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *me
 	return status;
 }
 
-/* Sums of unit normals are not unit. */
-static void normalise_vectors(float *vectors, size_t count)
+/* Sums of unit normals are not unit. Where nothing was added to a normal that is used as it is, so is the sum: the
+ * tangents there are the base's, bit for bit. */
+static void normalise_moved(const nt_gltf_accessor *accessor, const float *base, float *moved, size_t count)
 {
+	static const double unit = 1.0 / 2048; /* pipeline/unit_normals.c */
 	for (size_t i = 0; i < count; i++) {
-		float *n = vectors + 3 * i;
-		const double x = n[0], y = n[1], z = n[2], length = sqrt(x * x + y * y + z * z);
-		for (int k = 0; k < 3 && length > 0; k++)
-			n[k] = (float)(n[k] / length);
+		const float *b = base + 3 * i;
+		const double squared = (double)b[0] * b[0] + (double)b[1] * b[1] + (double)b[2] * b[2];
+		if (accessor->component_type != NT_GLTF_FLOAT || fabs(squared - 1) > unit ||
+			memcmp(b, moved + 3 * i, 3 * sizeof *b) != 0)
+			normalise_vector(moved + 3 * i);
 	}
 }
 
@@ -355,8 +361,8 @@ static const char *name_of_target(nt_scene *scene, const nt_gltf *document, cons
 }
 
 /* The mesh as each target moves it: their tangents differ from the base's. */
-static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const nt_compact *view,
-	const nt_json_value *primitive, nt_error *error)
+static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const inputs *in,
+	const nt_compact *view, const nt_json_value *primitive, nt_error *error)
 {
 	const nt_json_value *targets = nt_json_find(primitive, "targets");
 	const size_t count = nt_json_count(targets);
@@ -381,7 +387,7 @@ static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, 
 		if (status)
 			return status;
 		if (morph.normals)
-			normalise_vectors(morph.normals, mesh->vertex_count);
+			normalise_moved(&in->normals.accessor, mesh->normals, morph.normals, mesh->vertex_count);
 		/* one that moves a neighbour turns tangents at the border */
 		const nt_join *join = mesh->plan.join;
 		if (morph.positions || morph.normals || (join && i < join->target_count && join->moves[i]))
@@ -495,7 +501,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		status = find_vertex_bytes(document, primitive, &mesh->vertex_bytes, error);
 	/* a mesh in the world is written without its targets */
 	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
-		status = load_morphs(scene, document, mesh, &view, primitive, error);
+		status = load_morphs(scene, document, mesh, &in, &view, primitive, error);
 	if (!status && in.normals.exists)
 		normalise_quantized(&in.normals.accessor, mesh->normals, mesh->vertex_count);
 	if (status && error && !error->place.object[0]) {

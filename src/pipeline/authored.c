@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 #include "base/dvec.h"
+#include "gltf/morph_deltas.h"
 #include "report/quads.h"
 #include "topology/corners.h"
 
@@ -74,6 +75,17 @@ static bool face_is_valid(const nt_mesh *mesh, const nmtan_mesh *view, size_t fa
 	return w != 0.0f;
 }
 
+/* A target that does not turn a tangent that was solved does not turn the authored one either. */
+static void keep_unturned(const nt_mesh *mesh, size_t corner, const float *solved, const float *authored)
+{
+	for (size_t m = 0; m < mesh->morph_count; m++) {
+		float *moved = mesh->morphs[m].corner_tangents ? mesh->morphs[m].corner_tangents + 4 * corner : NULL;
+		if (moved && fabsf(moved[0] - solved[0]) <= NT_MORPH_LEAST &&
+			fabsf(moved[1] - solved[1]) <= NT_MORPH_LEAST && fabsf(moved[2] - solved[2]) <= NT_MORPH_LEAST)
+			memcpy(moved, authored, 3 * sizeof *moved);
+	}
+}
+
 void nt_restore_authored(nt_mesh *mesh, float *corner_tangents)
 {
 	nmtan_stored_uv stored;
@@ -83,9 +95,11 @@ void nt_restore_authored(nt_mesh *mesh, float *corner_tangents)
 		first += face_size(mesh, face++)) {
 		const size_t size = face_size(mesh, face);
 		const bool valid = face_is_valid(mesh, &view, face, first);
-		for (size_t c = first; valid && c < first + size; c++)
-			memcpy(corner_tangents + 4 * c, mesh->tangents + 4 * vertex_of(mesh, c),
-				4 * sizeof(float));
+		for (size_t c = first; valid && c < first + size; c++) {
+			const float *authored = mesh->tangents + 4 * vertex_of(mesh, c);
+			keep_unturned(mesh, c, corner_tangents + 4 * c, authored);
+			memcpy(corner_tangents + 4 * c, authored, 4 * sizeof(float));
+		}
 		mesh->replaced_tangents += valid ? 0 : size;
 	}
 }

@@ -386,6 +386,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 		summary->bytes_read = r.scene.read_of_source(r.scene.source);
 	summary->findings = r.scene.findings;
 	summary->rounding = r.scene.rounding;
+	summary->morph_cost = r.scene.morph_cost;
 	r.scene.findings = (nt_finding_list){0};
 	nt_scene_free(&r.scene);
 	nt_textures_free(r.textures);

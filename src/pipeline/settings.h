@@ -140,6 +140,7 @@ typedef struct nt_summary {
 	size_t appended_tangents;/* vertices added because tangents differ */
 	nmtan_counts counts;     /* of all solves */
 	nt_rounding rounding;    /* of tangents that were stored as integers */
+	nt_morph_cost morph_cost; /* of the targets whose tangents were written */
 	nt_finding_list findings;
 	uint64_t bytes_read;     /* of the inputs, as far as known; what is only copied is not */
 	uint64_t bytes_copied;   /* from an input to the output as they are */

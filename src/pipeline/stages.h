@@ -89,7 +89,7 @@ void nt_small_solves_end(nt_small_solves *small);
 enum { NT_LEAST_ALONE_CORNERS = 3 * 30000 };
 
 /* authored.c, for tangents.c and morphs.c: authored tangents that stay with --existing=repair. Of meshes with texture
- * coordinates the corners of faces whose tangents are all valid take theirs back after a solve. */
+ * coordinates the corners of faces whose tangents are all valid take theirs back after a solve, of targets too. */
 void nt_restore_authored(nt_mesh *mesh, float *corner_tangents);
 
 /* Without texture coordinates no solve is possible: each authored tangent stays or is mended by itself.

@@ -123,11 +123,14 @@ static nt_status solve_corners(nt_mesh *mesh, const nmtan_mesh *view,
 		nt_mend_untextured(mesh, view, output.tangents);
 		return NT_OK;
 	}
-	const nt_status status =
-		nt_status_of(nt_tangents_of_halves(view, mesh->halves, options, &output, counts));
-	if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
-		nt_restore_authored(mesh, output.tangents);
-	return status;
+	return nt_status_of(nt_tangents_of_halves(view, mesh->halves, options, &output, counts));
+}
+
+/* With --existing=repair what was solved, for targets too, gives way to what is there. */
+static void restore(nt_mesh *mesh)
+{
+	if (mesh->decision == NT_DECISION_REPAIR && mesh->tangents && mesh->texcoords)
+		nt_restore_authored(mesh, mesh->corner_tangents);
 }
 
 /* Splits with morph targets: wherever the base or a target needs it. */
@@ -248,18 +251,24 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 	stored.v_offset = stored_v_offset(job);
 	mesh->counts = (nmtan_counts)NMTAN_COUNTS_INIT;
 	const bool by_corner = mesh->decision == NT_DECISION_REPAIR || mesh->morph_count || mesh->halves;
-	if (!job->splits && by_corner)
-		return solve_corners(mesh, &view, options, &mesh->corner_tangents, &mesh->counts);
+	nt_status status;
+	if (!job->splits && by_corner) {
+		status = solve_corners(mesh, &view, options, &mesh->corner_tangents, &mesh->counts);
+		if (!status)
+			restore(mesh);
+		return status;
+	}
 
 	/* vertices take less memory than corners, so that they are split although nothing is written */
 	nmtan_split_output output = {.source_count = 0};
-	nt_status status;
 	if (by_corner || (job->triangulates && mesh->face_sizes)) {
 		status = solve_corners(mesh, &view, options, &mesh->corner_tangents, &mesh->counts);
 		if (!status && job->triangulates && mesh->face_sizes && options->repair == NMTAN_REPAIR_ON)
 			status = nt_cut_folded_quads(mesh, stored.v_offset, options->threads);
 		if (!status)
 			status = nt_morphs_solve(mesh, &view, options);
+		if (!status)
+			restore(mesh);
 		if (!status)
 			status = split_corners(mesh, options, &output);
 		free_corners(mesh);
@@ -283,8 +292,8 @@ static nt_status solve_join(const wishes *job, const nt_join *join, const nmtan_
 		nt_mesh *mesh = join->parts[i];
 		if (mesh->plan.transform_of)
 			continue;
-		if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
-			nt_restore_authored(mesh, mesh->corner_tangents);
+		if (!status)
+			restore(mesh);
 		if (!status && !job->splits)
 			continue;
 		nmtan_split_output output;

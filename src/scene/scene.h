@@ -280,6 +280,12 @@ typedef struct nt_rounding {
 	double worst_radians, sum_radians;
 } nt_rounding;
 
+/* What the tangents of morph targets take that are written, and what their meshes take without them. */
+typedef struct nt_morph_cost {
+	size_t targets;
+	uint64_t bytes, mesh_bytes;
+} nt_morph_cost;
+
 /* Where a face stands in a text. */
 typedef struct nt_face_place {
 	uint32_t mesh, face; /* face: number in the source, as face_polygon has it */
@@ -302,6 +308,7 @@ typedef struct nt_scene {
 	size_t join_count;
 	nt_finding_list findings;
 	nt_rounding rounding; /* of all meshes that were written */
+	nt_morph_cost morph_cost; /* the same */
 
 	bool solves_quads; /* what wrote the input solves tangents on quads: Blender */
 

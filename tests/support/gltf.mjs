@@ -64,7 +64,7 @@ export function open(path) {
 	};
 	const shape = (accessor) => {
 		const [method, size] = readers[accessor.componentType], width = widths[accessor.type];
-		return { method, size, width, stride: g.bufferViews[accessor.bufferView].byteStride ?? width * size };
+		return { method, size, width, stride: g.bufferViews[accessor.bufferView]?.byteStride ?? width * size };
 	};
 	const of = (accessor) => typeof accessor === 'number' ? g.accessors[accessor] : accessor;
 	const at = (number, row = 0) => {
@@ -72,10 +72,16 @@ export function open(path) {
 		return (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0) + row * shape(accessor).stride;
 	};
 	const rows = (number) => {
-		const accessor = of(number), { method, size, width } = shape(accessor);
-		const data = bytes[g.bufferViews[accessor.bufferView].buffer];
-		return Array.from({ length: accessor.count }, (_, row) =>
-			Array.from({ length: width }, (_, k) => data[method](at(number, row) + k * size)));
+		const accessor = of(number), { method, size, width } = shape(accessor), { sparse } = accessor;
+		const row = (bytes, at) => Array.from({ length: width }, (_, k) => bytes ? bytes[method](at + k * size) : 0);
+		const data = accessor.bufferView === undefined ? undefined : bytes[g.bufferViews[accessor.bufferView].buffer];
+		const all = Array.from({ length: accessor.count }, (_, i) => row(data, data && at(number, i)));
+		if (sparse) {
+			const { indices, values } = sparse, from = g.bufferViews[values.bufferView];
+			rows({ type: 'SCALAR', count: sparse.count, ...indices }).forEach(([i], k) => { all[i] = row(bytes[from.buffer],
+				(from.byteOffset ?? 0) + (values.byteOffset ?? 0) + k * width * size); });
+		}
+		return all;
 	};
 	const add = (type, componentType, numbers, more) => {
 		const [method, size] = readers[componentType], data = Buffer.alloc(numbers.length * size);

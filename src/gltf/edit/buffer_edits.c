@@ -75,9 +75,10 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 	edits->free_views = nt_alloc(edits->view_count, sizeof *edits->free_views);
 	edits->seen = nt_calloc(pools->accessor_count, sizeof *edits->seen);
 	edits->pinned = nt_calloc(pools->accessor_count, sizeof *edits->pinned);
+	edits->replaced = nt_calloc(pools->accessor_count, sizeof *edits->replaced);
 	edits->appended_by = nt_alloc(pools->accessor_count, sizeof *edits->appended_by);
-	if (!edits->seen || !edits->pinned || !edits->appended_by || !edits->buffers || !edits->virtuals ||
-		!edits->is_free || !edits->free_views ||
+	if (!edits->seen || !edits->pinned || !edits->replaced || !edits->appended_by || !edits->buffers ||
+		!edits->virtuals || !edits->is_free || !edits->free_views ||
 		!nt_byte_users_find(&edits->users, document, pools)) {
 		nt_edits_free(edits);
 		return nt_fail_memory(error);
@@ -105,6 +106,7 @@ void nt_edits_free(nt_buffer_edits *edits)
 	}
 	free(edits->seen);
 	free(edits->pinned);
+	free(edits->replaced);
 	free(edits->appended_by);
 	free(edits->is_free);
 	free(edits->free_views);

@@ -16,6 +16,7 @@
 #include "gltf/edit/append.h"
 #include "gltf/edit/draco_block.h"
 #include "gltf/edit/new_accessors.h"
+#include "gltf/morph_deltas.h"
 #include "gltf/primitive.h"
 #include "gltf/view.h"
 
@@ -129,18 +130,28 @@ static nt_status quantize_tangents(const nt_gltf_recoding *r, nt_error *error)
 }
 
 /* What is in the block leaves the buffers, and what is not grows beside it. */
-static nt_status store(nt_gltf_recoding *r, uint32_t buffer, nt_error *error)
+static nt_status store(nt_gltf_recoding *r, uint32_t buffer, nt_morph_cost *cost, nt_error *error)
 {
-	nt_status status = r->source ? NT_OK : nt_gltf_draco_take_out(r, error);
-	if (!status && r->outside && r->vertices->new_count > r->vertices->old_count)
-		status = nt_append_vertices(r->edits, buffer, r->pools, r->vertices, NULL, 0, false, error);
-	if (!status) {
-		nt_gltf_draco_describe(r);
-		status = nt_gltf_draco_store(r, buffer, error);
-	}
+	nt_gltf_override *overrides = nt_arena_alloc(r->arena, r->mesh->morph_count + 1, sizeof *overrides);
+	size_t override_count = 0;
+	const int bits = nt_gltf_draco_bits(r->options->draco_bits, NT_DRACO_BITS_TANGENT);
+	nt_status status = overrides ? NT_OK : nt_fail_memory(error);
+	if (!status && !r->source)
+		status = nt_gltf_draco_take_out(r, error);
 	if (!status && r->mesh->morph_count)
 		status = quantize_tangents(r, error);
-	return status ? status : nt_gltf_add_morphs(r->edits, buffer, r->vertices, 0, error);
+	if (!status)
+		status = nt_gltf_add_morphs(r->edits, buffer, r->pools, r->vertices, 0, nt_morph_least_of_bits(bits),
+			overrides, &override_count, cost, error);
+	if (!status && r->outside && r->vertices->new_count > r->vertices->old_count)
+		status = nt_append_vertices(r->edits, buffer, r->pools, r->vertices, overrides, override_count, false,
+			error);
+	if (status)
+		return status;
+	r->primitive = nt_pool_primitive(r->vertices->pool, 0); /* members have moved */
+	r->extension = nt_gltf_draco_of(r->primitive);
+	nt_gltf_draco_describe(r);
+	return nt_gltf_draco_store(r, buffer, error);
 }
 
 /* Whether the pool is one primitive, perhaps several times: with the same geometry and the same
@@ -232,7 +243,7 @@ nt_status nt_gltf_draco_look_up(nt_gltf_recoding *r, nt_buffer_edits *edits, nt_
 	return status;
 }
 
-nt_status nt_gltf_write_draco(nt_gltf_recoding *r, uint32_t buffer, nt_finding_list *findings, bool *done,
+nt_status nt_gltf_write_draco(nt_gltf_recoding *r, uint32_t buffer, nt_scene *scene, bool *done,
 	nt_error *error)
 {
 	r->primitive = nt_pool_primitive(r->vertices->pool, 0);
@@ -240,12 +251,12 @@ nt_status nt_gltf_write_draco(nt_gltf_recoding *r, uint32_t buffer, nt_finding_l
 	nt_status status = r->encoded || r->obstacle ? NT_OK : nt_gltf_draco_encode(r, error);
 	*done = !status && !r->obstacle;
 	if (*done)
-		status = store(r, buffer, error);
+		status = store(r, buffer, &scene->morph_cost, error);
 	nt_draco_block_free(&r->block);
 	if (status)
 		return status;
 	if (*done)
 		share_block(r);
-	report_users(r, findings, *done);
+	report_users(r, &scene->findings, *done);
 	return *done ? NT_OK : nt_gltf_draco_make_plain(r->edits, r->pools, r->vertices, error);
 }

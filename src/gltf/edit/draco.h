@@ -26,7 +26,7 @@ nt_status nt_gltf_draco_begin(nt_gltf_recoding *recoding, nt_gltf *document, nt_
  * *done false: plain, and what plain pools need is still to be done; the indices of those that were compressed count as
  * changed. buffer: of new views.
  */
-nt_status nt_gltf_write_draco(nt_gltf_recoding *recoding, uint32_t buffer, nt_finding_list *findings, bool *done,
+nt_status nt_gltf_write_draco(nt_gltf_recoding *recoding, uint32_t buffer, nt_scene *scene, bool *done,
 	nt_error *error);
 
 /* Makes the compressed users of a pool plain; their indices count as changed. */

@@ -22,6 +22,7 @@
 #include "gltf/edit/manifold.h"
 #include "gltf/edit/relocate.h"
 #include "gltf/extensions/geometry_metadata.h"
+#include "gltf/morph_deltas.h"
 #include "gltf/quantize.h"
 #include "gltf/view.h"
 
@@ -164,8 +165,6 @@ static nt_status add_set(const editing *e, uint32_t buffer, const nt_pool_vertic
 		nt_gltf_retype_tangents(e->edits->document, old, e->options->precision);
 	if (!status)
 		complete_tangents(e, vertices->pool, set, old);
-	if (!status)
-		status = nt_gltf_add_morphs(e->edits, buffer, vertices, set, e->error);
 	if (!status && e->options->bitangents)
 		status = nt_gltf_bitangents(vertices, set, &e->edits->arena, &bitangents, e->error);
 	if (!status && bitangents)
@@ -221,12 +220,19 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 		return status;
 
 	/* Tangents that are there keep their accessor, and their place where that will do. */
-	nt_gltf_override *overrides = nt_arena_alloc(e->of_window, pool->user_count, sizeof *overrides);
+	size_t most = pool->user_count;
+	for (uint32_t set = 0; set < pool->sets.count; set++)
+		most += nt_pool_set_mesh(pool, set)->morph_count;
+	nt_gltf_override *overrides = nt_arena_alloc(e->of_window, most, sizeof *overrides);
 	nt_gltf_old_tangents *old = nt_arena_alloc(e->of_window, pool->sets.count, sizeof *old);
 	if (!overrides || !old)
 		return nt_fail_memory(e->error);
 	size_t override_count;
 	status = settle_old_tangents(e, vertices, old, overrides, &override_count);
+	for (uint32_t set = 0; !status && set < pool->sets.count; set++)
+		status = nt_gltf_add_morphs(e->edits, buffer, e->pools, vertices, set,
+			nt_morph_least(e->options->precision), overrides, &override_count, &e->scene->morph_cost,
+			e->error);
 
 	/* The copied vertices, the indices that use them, and what is new. */
 	if (!status && (decoded_too || override_count || vertices->new_count > vertices->old_count))
@@ -270,7 +276,7 @@ static nt_status edit_pool(const editing *e, pool_edit *p, bool *plain)
 	const bool compressed = nt_gltf_has_draco(&p->pool);
 	bool done = false;
 	if (!status && p->for_draco)
-		status = nt_gltf_write_draco(&p->recoding, buffer, &e->scene->findings, &done, e->error);
+		status = nt_gltf_write_draco(&p->recoding, buffer, e->scene, &done, e->error);
 	else if (!status && compressed)
 		status = nt_gltf_draco_make_plain(e->edits, e->pools, &p->vertices, e->error);
 	if (!status)

@@ -273,11 +273,12 @@ static void set_any_tangent(nt_pool_set *set, size_t vertex, const float *normal
 		memcpy(set->morphs[k] + 3 * vertex, tangent, 3 * sizeof *tangent);
 }
 
+static const float up[3] = {0, 0, 1}; /* the normal that making normals gives such vertices */
+
 /* Vertices that no corner of a set uses have the tangent that splitting its first mesh gave them, or would have given
  * them. They stay undefined, so that others take them. */
 static nt_status set_unused(nt_pool_merge *m, const nt_mesh *mesh, nt_pool_set *set, nt_error *error)
 {
-	static const float up[3] = {0, 0, 1}; /* what making normals gives them */
 	nt_status status = mesh->pool_vertices && !set->normals
 		? nt_gltf_load_normals(m->pool.scene->source, mesh, m->arena, &set->source_normals, error) : NT_OK;
 	for (size_t v = 0; !status && v < m->vertices.old_count; v++) {
@@ -294,18 +295,20 @@ static nt_status set_unused(nt_pool_merge *m, const nt_mesh *mesh, nt_pool_set *
 	return status;
 }
 
-/* Copies that no corner of a set uses have what the vertex has that they copy. */
-static void set_unused_copies(const nt_pool_merge *m, nt_pool_set *set)
+/* Copies that no corner of a set uses have what a run on the output would give them: any tangent. */
+static void set_unused_copies(const nt_pool_merge *m, uint32_t number)
 {
+	nt_pool_set *set = &m->vertices.sets[number];
+	const nt_mesh *mesh = nt_pool_set_mesh(&m->pool, number);
+	const float *loaded = set->source_normals ? set->source_normals : mesh->normals;
 	for (size_t copy = m->vertices.old_count; copy < m->vertices.new_count; copy++) {
 		const size_t source = m->source[copy];
 		if (set->defined[copy])
 			continue;
-		memcpy(set->tangents + 4 * copy, set->tangents + 4 * source, 4 * sizeof(float));
 		if (set->normals)
 			memcpy(set->normals + 3 * copy, set->normals + 3 * source, 3 * sizeof(float));
-		for (size_t k = 0; k < set->morph_count; k++)
-			memcpy(set->morphs[k] + 3 * copy, set->morphs[k] + 3 * source, 3 * sizeof(float));
+		const float *normals = set->normals ? set->normals : loaded;
+		set_any_tangent(set, copy, normals ? normals + 3 * source : up);
 	}
 }
 
@@ -502,7 +505,7 @@ nt_status nt_pool_vertices_get(nt_vertex_pools *pools, size_t number, const nt_v
 	if (status)
 		return status;
 	for (uint32_t set = 0; set < pool->sets.count; set++)
-		set_unused_copies(m, &m->vertices.sets[set]);
+		set_unused_copies(m, set);
 	/* an edit may put other arrays in their place */
 	nt_pool_set *sets = nt_arena_alloc(tables, pool->sets.count, sizeof *sets);
 	if (!sets)

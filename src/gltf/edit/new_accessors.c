@@ -5,9 +5,12 @@
  */
 #include "gltf/edit/new_accessors.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include "base/vec.h"
 #include "gltf/accessor.h"
+#include "gltf/edit/old_tangents.h"
+#include "gltf/morph_deltas.h"
 
 uint32_t nt_gltf_new_accessor(nt_json *json, uint32_t view, uint32_t component_type, const char *type,
 	size_t count, bool normalized)
@@ -68,64 +71,283 @@ nt_status nt_gltf_bitangents(const nt_pool_vertices *vertices, uint32_t set, nt_
 	return NT_OK;
 }
 
-/* A target of every mesh of the set gets an attribute. */
-static void set_target(nt_json *json, const nt_vertex_pool *pool, uint32_t set, uint32_t target, const char *name,
-	uint32_t accessor)
+/* ---- morph targets ---- */
+
+/* TANGENT of one target. */
+typedef struct target_tangents {
+	uint32_t target, accessor; /* accessor: NT_NONE while there is none that is right */
+	nt_morph_storage storage;
+	const unsigned char *bytes;
+	uint64_t offset; /* of sparse ones, in the view that all of them have */
+	bool found;      /* it is in the document */
+	bool is_zero;
+} target_tangents;
+
+typedef struct target_job {
+	nt_buffer_edits *edits;
+	const nt_vertex_pools *pools;
+	const nt_pool_vertices *vertices;
+	uint32_t set, buffer;
+	target_tangents *list; /* [count] */
+	size_t count;
+	nt_arena scratch;      /* of one target */
+	nt_error *error;
+} target_job;
+
+/* An accessor of a target, of the user's primitive; NT_NONE: none. */
+static uint32_t find_in_target(const target_job *job, uint32_t user, uint32_t target, const char *name)
 {
-	for (uint32_t i = pool->sets.first[set]; i != NT_NONE; i = pool->sets.next[i]) {
-		nt_json_value *attributes =
-			nt_json_at(nt_json_find(nt_pool_primitive(pool, i), "targets"), target);
-		nt_json_set_uint64(json, nt_json_put(json, attributes, name), accessor);
-	}
+	const nt_json_value *attributes =
+		nt_json_at(nt_json_find(nt_pool_primitive(job->vertices->pool, user), "targets"), target);
+	uint64_t index;
+	return nt_json_get_uint64(nt_json_find(attributes, name), &index) && index < job->pools->accessor_count ?
+		(uint32_t)index : NT_NONE;
+}
+
+/* The type of a target's normals, where tangents may have it. */
+static uint32_t type_of_normals(const target_job *job, uint32_t target)
+{
+	const uint32_t index = find_in_target(job, job->vertices->pool->sets.first[job->set], target, "NORMAL");
+	nt_gltf_accessor a;
+	return index != NT_NONE && nt_gltf_get_accessor(job->edits->document, index, "", &a, NULL) == NT_OK &&
+			a.normalized && (a.component_type == NT_GLTF_BYTE || a.component_type == NT_GLTF_SHORT) ?
+		a.component_type : NT_GLTF_FLOAT;
 }
 
 /* Whether a target has these deltas already in all meshes of the set: then nothing has to be written. */
-static nt_status find_deltas(nt_buffer_edits *edits, const nt_pool_vertices *vertices, uint32_t set, uint32_t target,
-	const float *delta, bool *found)
+static nt_status find_deltas(target_job *job, uint32_t target, uint32_t type, const float *deltas, bool *found)
 {
+	const nt_pool_vertices *vertices = job->vertices;
 	const nt_vertex_pool *pool = vertices->pool;
 	nt_status status = NT_OK;
+	uint32_t known = NT_NONE;
 	*found = vertices->new_count == vertices->old_count;
-	for (uint32_t i = pool->sets.first[set]; *found && i != NT_NONE; i = pool->sets.next[i]) {
-		const nt_json_value *attributes =
-			nt_json_at(nt_json_find(nt_pool_primitive(pool, i), "targets"), target);
-		uint64_t index;
+	for (uint32_t i = pool->sets.first[job->set]; *found && i != NT_NONE; i = pool->sets.next[i]) {
+		const uint32_t index = find_in_target(job, i, target, "TANGENT");
 		nt_gltf_accessor accessor;
 		float *old;
-		*found = nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &index) &&
-			 nt_gltf_get_accessor(edits->document, index, "", &accessor, NULL) == NT_OK &&
-			 accessor.component_type == NT_GLTF_FLOAT && accessor.components == 3 &&
-			 accessor.count == vertices->new_count;
+		if (index != NT_NONE && index == known)
+			continue;
+		known = index;
+		*found = index != NT_NONE &&
+			nt_gltf_get_accessor(job->edits->document, index, "", &accessor, NULL) == NT_OK &&
+			accessor.component_type == type && accessor.components == 3 &&
+			accessor.count == vertices->new_count;
 		if (*found)
-			status = nt_gltf_floats(edits->document, &accessor, 3, 0, &edits->arena, &old, NULL);
-		*found = *found && !status && memcmp(old, delta, vertices->new_count * 3 * sizeof *old) == 0;
+			status = nt_gltf_floats(job->edits->document, &accessor, 3, 0, &job->scratch, &old, NULL);
+		*found = *found && !status && memcmp(old, deltas, vertices->new_count * 3 * sizeof *old) == 0;
 	}
 	return status == NT_ERROR_MEMORY ? status : NT_OK;
 }
 
-nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
-	uint32_t set, nt_error *error)
+/* What a target's tangents are, and whether the document has them. */
+static nt_status look_at_target(target_job *job, size_t m, float least)
 {
-	const nt_mesh *mesh = nt_pool_set_mesh(vertices->pool, set);
-	const float *base = vertices->sets[set].tangents;
+	const nt_pool_set *set = &job->vertices->sets[job->set];
+	const size_t count = job->vertices->new_count;
+	target_tangents *t = &job->list[m];
+	nt_arena_clear(&job->scratch);
+	float *deltas = nt_arena_alloc(&job->scratch, count, 3 * sizeof *deltas);
+	if (!deltas)
+		return NT_ERROR_MEMORY;
+	*t = (target_tangents){.accessor = NT_NONE,
+		.target = nt_pool_set_mesh(job->vertices->pool, job->set)->morphs[m].target};
+	uint32_t type = type_of_normals(job, t->target);
+	const size_t moved = nt_morph_deltas(set->morphs[m], set->tangents, count, least, &type, deltas);
+	const nt_status status = find_deltas(job, t->target, type, deltas, &t->found);
+	if (status || t->found)
+		return status;
+	t->is_zero = moved == 0;
+	t->storage = nt_morph_choose_storage(type, count, moved);
+	unsigned char *bytes = nt_arena_alloc(&job->edits->arena, t->storage.size, 1);
+	t->bytes = bytes;
+	if (!bytes)
+		return NT_ERROR_MEMORY;
+	memset(bytes, 0, t->storage.size);
+	nt_morph_store(&t->storage, deltas, count, bytes);
+	return NT_OK;
+}
+
+/* Counts the uses of accessors that targets of the document will not have any more. */
+static void count_replaced(const target_job *job)
+{
+	const nt_vertex_pool *pool = job->vertices->pool;
+	for (size_t m = 0; m < job->count; m++)
+		for (uint32_t i = pool->sets.first[job->set]; !job->list[m].found && i != NT_NONE;
+			i = pool->sets.next[i]) {
+			const uint32_t index = find_in_target(job, i, job->list[m].target, "TANGENT");
+			if (index != NT_NONE)
+				job->edits->replaced[job->pools->first_alias[index]]++;
+		}
+}
+
+/* Targets take over the accessor that they have where no use of it is left; nobody appends to it. */
+static nt_status take_over(const target_job *job, nt_gltf_override *overrides, size_t *override_count)
+{
+	const uint32_t first = job->vertices->pool->sets.first[job->set];
 	nt_status status = NT_OK;
-	for (size_t m = 0; !status && m < mesh->morph_count; m++) {
-		const float *moved = vertices->sets[set].morphs[m];
-		float *delta = nt_arena_alloc(&edits->arena, vertices->new_count, 3 * sizeof *delta);
-		uint32_t accessor = 0;
-		if (!delta)
-			return nt_fail_memory(error);
-		for (size_t v = 0; v < vertices->new_count; v++)
-			for (size_t k = 0; k < 3; k++)
-				delta[3 * v + k] = nt_morph_delta(moved[3 * v + k], base[4 * v + k]);
-		bool found;
-		if (find_deltas(edits, vertices, set, mesh->morphs[m].target, delta, &found))
-			return nt_fail_memory(error);
-		if (!found)
-			status = nt_gltf_add_floats(edits, buffer, delta, vertices->new_count, 3, &accessor, error);
-		if (!status && !found)
-			set_target(edits->document->json, vertices->pool, set, mesh->morphs[m].target, "TANGENT",
-				accessor);
+	for (size_t m = 0; !status && m < job->count; m++) {
+		target_tangents *t = &job->list[m];
+		const uint32_t index = t->found ? NT_NONE : find_in_target(job, first, t->target, "TANGENT");
+		const uint32_t alias = index == NT_NONE ? 0 : job->pools->first_alias[index];
+		if (index == NT_NONE || job->pools->foreign[alias] ||
+			job->edits->replaced[alias] != job->pools->attribute_users[alias])
+			continue;
+		job->edits->replaced[alias] = 0; /* no second target takes it */
+		t->accessor = index;
+		const nt_gltf_old_tangents old = {.accessors = &t->accessor, .count = 1};
+		status = nt_gltf_release_tangents(job->edits, &old, job->error);
+		overrides[(*override_count)++] = (nt_gltf_override){.accessor = index};
 	}
+	return status;
+}
+
+/* One view for all sparse ones. NT_NONE: there are none. */
+static nt_status add_sparse_view(target_job *job, uint32_t *view)
+{
+	uint64_t size = 0;
+	*view = NT_NONE;
+	for (size_t m = 0; m < job->count; m++)
+		if (job->list[m].bytes && job->list[m].storage.sparse) {
+			job->list[m].offset = size;
+			size += (job->list[m].storage.size + 3) / 4 * 4;
+		}
+	if (!size)
+		return NT_OK;
+	unsigned char *bytes = nt_arena_alloc(&job->edits->arena, (size_t)size, 1);
+	if (!bytes)
+		return nt_fail_memory(job->error);
+	memset(bytes, 0, (size_t)size);
+	for (size_t m = 0; m < job->count; m++)
+		if (job->list[m].bytes && job->list[m].storage.sparse)
+			memcpy(bytes + job->list[m].offset, job->list[m].bytes, job->list[m].storage.size);
+	return nt_edits_add_view(job->edits, job->buffer, bytes, (size_t)size, 0, 0, view, job->error);
+}
+
+static void set_view(nt_json *json, nt_json_value *object, uint32_t view, uint64_t offset)
+{
+	nt_json_set_uint64(json, nt_json_put(json, object, "bufferView"), view);
+	if (offset)
+		nt_json_set_uint64(json, nt_json_put(json, object, "byteOffset"), offset);
+}
+
+/* The accessor of a target, for what is stored in a view. */
+static void describe_target(const target_job *job, target_tangents *t, uint32_t view)
+{
+	nt_gltf *document = job->edits->document;
+	nt_json *json = document->json;
+	const nt_morph_storage *s = &t->storage;
+	const bool is_new = t->accessor == NT_NONE;
+	if (is_new)
+		t->accessor = nt_gltf_new_accessor(json, NT_NONE, s->type, "VEC3", job->vertices->new_count,
+			s->type != NT_GLTF_FLOAT);
+	nt_json_value *accessor = nt_gltf_change_accessor(document, t->accessor);
+	static const char *const gone[] = {"bufferView", "byteOffset", "sparse", "min", "max", "normalized"};
+	for (size_t k = 0; !is_new && k < sizeof gone / sizeof *gone; k++)
+		nt_json_remove(json, accessor, gone[k]);
+	if (!is_new) {
+		nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"), s->type);
+		nt_json_set_uint64(json, nt_json_put(json, accessor, "count"), job->vertices->new_count);
+		nt_json_set_string(json, nt_json_put(json, accessor, "type"), "VEC3", 4);
+	}
+	if (!is_new && s->type != NT_GLTF_FLOAT)
+		nt_json_set_bool(json, nt_json_put(json, accessor, "normalized"), true);
+	if (!s->sparse) {
+		set_view(json, accessor, view, 0);
+		return;
+	}
+	nt_json_value *sparse = nt_json_put(json, accessor, "sparse");
+	nt_json_set_object(json, sparse);
+	nt_json_set_uint64(json, nt_json_put(json, sparse, "count"), s->element_count);
+	nt_json_value *indices = nt_json_put(json, sparse, "indices");
+	nt_json_set_object(json, indices);
+	nt_json_set_uint64(json, nt_json_put(json, indices, "componentType"), s->index_type);
+	set_view(json, indices, view, t->offset);
+	nt_json_value *values = nt_json_put(json, sparse, "values");
+	nt_json_set_object(json, values);
+	set_view(json, values, view, t->offset + s->value_offset);
+}
+
+/* Those of one type that have nothing but zeros, and no accessor of their own, have one together. */
+static nt_status write_targets(target_job *job)
+{
+	nt_json *json = job->edits->document->json;
+	const nt_vertex_pool *pool = job->vertices->pool;
+	uint32_t sparse_view, zero = NT_NONE, zero_type = 0;
+	nt_status status = add_sparse_view(job, &sparse_view);
+	for (size_t m = 0; !status && m < job->count; m++) {
+		target_tangents *t = &job->list[m];
+		uint32_t view = sparse_view;
+		if (t->found)
+			continue;
+		const bool is_shared = t->is_zero && t->accessor == NT_NONE;
+		if (is_shared && zero != NT_NONE && zero_type == t->storage.type) {
+			t->accessor = zero;
+		} else {
+			if (!t->storage.sparse)
+				status = nt_edits_add_view(job->edits, job->buffer, t->bytes, t->storage.size,
+					NT_GLTF_ARRAY_BUFFER, t->storage.type == NT_GLTF_FLOAT ? 0 :
+					(uint32_t)t->storage.stride, &view, job->error);
+			describe_target(job, t, view);
+		}
+		if (is_shared) {
+			zero = t->accessor;
+			zero_type = t->storage.type;
+		}
+		for (uint32_t i = pool->sets.first[job->set]; i != NT_NONE; i = pool->sets.next[i])
+			nt_json_set_uint64(json, nt_json_put(json, nt_json_at(nt_json_find(nt_pool_primitive(pool, i),
+				"targets"), t->target), "TANGENT"), t->accessor);
+	}
+	return status;
+}
+
+/* What is written for targets, and what the set's first primitive takes without them. */
+static void add_cost(const target_job *job, nt_morph_cost *cost)
+{
+	const nt_vertex_pool *pool = job->vertices->pool;
+	const nt_json_value *primitive = nt_pool_primitive(pool, pool->sets.first[job->set]);
+	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
+	size_t vertex_bytes = nt_json_find(attributes, "TANGENT") ? 0 : 4 * sizeof(float);
+	nt_gltf_accessor a = {.count = 0};
+	uint64_t index;
+	for (size_t i = 0; i < nt_json_count(attributes); i++)
+		if (nt_json_get_uint64(nt_json_at(attributes, i), &index) &&
+			nt_gltf_get_accessor(job->edits->document, index, "", &a, NULL) == NT_OK)
+			vertex_bytes += a.element_bytes;
+	cost->mesh_bytes += vertex_bytes * job->vertices->new_count;
+	if (nt_json_get_uint64(nt_json_find(primitive, "indices"), &index) &&
+		nt_gltf_get_accessor(job->edits->document, index, "", &a, NULL) == NT_OK)
+		cost->mesh_bytes += a.count * a.element_bytes;
+	for (size_t m = 0; m < job->count; m++)
+		if (!job->list[m].found) {
+			cost->targets++;
+			cost->bytes += job->list[m].storage.size;
+		}
+}
+
+nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
+	const nt_pool_vertices *vertices, uint32_t set, float least, nt_gltf_override *overrides,
+	size_t *override_count, nt_morph_cost *cost, nt_error *error)
+{
+	target_job job = {.edits = edits, .pools = pools, .vertices = vertices, .set = set, .buffer = buffer,
+		.count = nt_pool_set_mesh(vertices->pool, set)->morph_count, .error = error};
+	if (!job.count)
+		return NT_OK;
+	job.list = nt_calloc(job.count, sizeof *job.list);
+	nt_status status = job.list ? NT_OK : NT_ERROR_MEMORY;
+	for (size_t m = 0; !status && m < job.count; m++)
+		status = look_at_target(&job, m, least);
+	if (status)
+		nt_fail_memory(error);
+	if (!status) {
+		count_replaced(&job);
+		status = take_over(&job, overrides, override_count);
+	}
+	if (!status)
+		status = write_targets(&job);
+	if (!status)
+		add_cost(&job, cost);
+	nt_arena_free(&job.scratch);
+	free(job.list);
 	return status;
 }

@@ -5,6 +5,7 @@
 #ifndef NT_GLTF_EDIT_NEW_ACCESSORS_H
 #define NT_GLTF_EDIT_NEW_ACCESSORS_H
 
+#include "gltf/edit/append_targets.h"
 #include "gltf/edit/buffer_edits.h"
 #include "gltf/edit/merge_splits.h"
 
@@ -28,8 +29,11 @@ void nt_gltf_set_attribute(nt_json *json, const nt_vertex_pool *pool, uint32_t s
 nt_status nt_gltf_bitangents(const nt_pool_vertices *vertices, uint32_t set, nt_arena *arena, float **result,
 	nt_error *error);
 
-/* TANGENT of the morph targets of a set's meshes: what to add to the base's. */
-nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
-	uint32_t set, nt_error *error);
+/* TANGENT of the morph targets of a set's meshes: what to add to the base's, which are final. Before vertices are
+ * appended: accessors to which nothing is to be appended then are added to the overrides, which have room for as many
+ * as the set's mesh has targets. least: as nt_morph_deltas() has it. What they take is added to the cost. */
+nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
+	const nt_pool_vertices *vertices, uint32_t set, float least, nt_gltf_override *overrides,
+	size_t *override_count, nt_morph_cost *cost, nt_error *error);
 
 #endif

@@ -13,6 +13,7 @@
 #include "ext/draco.h"
 #include "ext/tinygltf.h"
 #include "gltf/document.h"
+#include "gltf/morph_deltas.h"
 #include "gltf/normalized.h"
 #include "gltf/primitive.h"
 #include "gltf/quantize.h"
@@ -96,6 +97,7 @@ typedef struct primitive_view {
 	size_t packed_size;
 	uint32_t position_id, tangent_id; /* in the block; UINT32_MAX: outside of it */
 	nt_draco *block; /* decoded */
+	int tangent_bits; /* of its tangents; 0: they are not quantized by Draco */
 	nt_verify_tolerance tolerance;
 } primitive_view;
 
@@ -143,6 +145,7 @@ static nt_status decode_block(primitive_view *view, nt_error *error)
 			continue; /* outside of the block */
 		*arrays[i] = block_array(found, decoded->point_count);
 		*tolerances[i] = tolerance_of(found, decoded->point_count);
+		view->tangent_bits = found->quantization.bits; /* they are the last */
 	}
 	view->indices = (nt_reread_array){(const unsigned char *)decoded->indices, decoded->face_count * 3,
 		sizeof(uint32_t), NT_GLTF_UINT, 1, false};
@@ -212,12 +215,17 @@ static const unsigned char *element_at(const nt_reread_array *array, size_t vert
 	return vertex < array->count ? array->data + vertex * array->stride_bytes : NULL;
 }
 
+static nt_precision precision_of(const nt_reread_array *array)
+{
+	return array->component_type == NT_GLTF_SHORT ? NT_PRECISION_SHORT
+		: array->component_type == NT_GLTF_BYTE ? NT_PRECISION_BYTE : NT_PRECISION_FLOAT;
+}
+
 /* Whether an element holds a tangent: as it is, or rounded to the integers that it is stored as. */
 static bool tangent_matches(const nt_reread_array *array, const unsigned char *element, const float *tangent,
 	float rounded[4])
 {
-	const nt_precision precision = array->component_type == NT_GLTF_SHORT ? NT_PRECISION_SHORT
-		: array->component_type == NT_GLTF_BYTE ? NT_PRECISION_BYTE : NT_PRECISION_FLOAT;
+	const nt_precision precision = precision_of(array);
 	unsigned char bytes[4 * sizeof *rounded];
 	memcpy(rounded, tangent, 4 * sizeof *rounded);
 	nt_precision_round(precision, rounded, 1, NULL);
@@ -229,15 +237,20 @@ static bool tangent_matches(const nt_reread_array *array, const unsigned char *e
 static bool targets_match(const nt_mesh *mesh, const primitive_view *view, size_t vertex, size_t split,
 	const float *stored)
 {
+	const float least = view->tangent_bits ? nt_morph_least_of_bits(view->tangent_bits) :
+		nt_morph_least(precision_of(&view->tangents));
 	for (size_t m = 0; view->target_tangents && m < mesh->morph_count; m++) {
 		const nt_reread_array *array = &view->target_tangents[m];
 		const unsigned char *element = element_at(array, vertex);
-		const float *moved = mesh->morphs[m].vertex_tangents + 3 * split;
-		const float delta[3] = {nt_morph_delta(moved[0], stored[0]), nt_morph_delta(moved[1], stored[1]),
-			nt_morph_delta(moved[2], stored[2])};
-		if (!element || array->component_type != NT_GLTF_FLOAT || array->components != 3 ||
-			memcmp(element, delta, sizeof delta) != 0)
+		uint32_t type = (uint32_t)array->component_type;
+		float delta[3];
+		if (!element || array->components != 3 || (type != NT_GLTF_FLOAT && !array->normalized))
 			return false;
+		nt_morph_deltas(mesh->morphs[m].vertex_tangents + 3 * split, stored, 1, least, &type, delta);
+		for (size_t k = 0; k < 3; k++)
+			if (nt_component_value(element + k * nt_component_size(array->component_type),
+				array->component_type, array->normalized) != delta[k])
+				return false;
 	}
 	return true;
 }

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+# Tangents of morph targets take what the targets move: sparse where that is smaller, as integers where the targets'
+# normals are, in the accessors that are there. The judges are solves of the moved mesh and the Khronos validator.
+. "$ROOT/tests/support/cli.sh"
+mkdir -p "$WORK/in"
+python3 "$ROOT/tests/support/morph_files.py" "$WORK/in" || exit 1
+size() { stat -c %s "$1"; }
+# component type and number of sparse elements of each target's TANGENT, with how often they occur
+forms='(() => { const seen = {}; for (const t of g.meshes[0].primitives[0].targets) { const a = g.accessors[t.TANGENT],
+	key = `${a.componentType} ${a.normalized ?? false} ${a.sparse !== undefined} ${a.bufferView !== undefined}`;
+	seen[key] = (seen[key] ?? 0) + 1; } return seen; })()'
+# accessors that nothing refers to
+unused='(() => { const p = g.meshes[0].primitives[0], used = new Set([p.indices, ...Object.values(p.attributes),
+	...p.targets.flatMap(Object.values)]); return g.accessors.filter((_, i) => !used.has(i)).length; })()'
+
+scene "100 targets of 5 vertices each take a sixth of a file"
+run --verify "$WORK/in/sparse.gltf" sparse.glb
+exits 0
+valid sparse.glb
+[ "$(size sparse.glb)" -lt 1000000 ] || wrong "$(size sparse.glb) bytes"
+is "$(gltf sparse.glb "$forms")" '{"5126 false true false":100}'
+# each vertex and its six neighbours, at most
+is "$(gltf sparse.glb 'g.meshes[0].primitives[0].targets.every((t) => { const n = g.accessors[t.TANGENT].sparse.count;
+	return n > 5 && n <= 35; })')" true
+run --morph=drop "$WORK/in/moved.gltf" moved.glb
+python3 "$ROOT/tests/support/gltf_morphs.py" sparse.glb 7 moved.glb >"$WORK/err.txt" 2>&1 ||
+	wrong "$(cat "$WORK/err.txt")"
+for existing in repair replace; do
+	run --existing=$existing sparse.glb again.glb
+	same sparse.glb again.glb
+done
+
+scene "dense deltas that are there give way to sparse ones of bytes, and nothing of them is left"
+for existing in replace repair; do
+	run --verify --existing=$existing "$WORK/in/avatar.gltf" avatar.glb
+	exits 0
+	valid avatar.glb
+	is "$(gltf avatar.glb "$forms")" '{"5120 true true false":103}'
+	is "$(gltf avatar.glb "$unused")" 0
+	is "$(gltf avatar.glb 'g.accessors.length')" "$(gltf "$WORK/in/avatar.gltf" 'g.accessors.length')"
+done
+gltf "$WORK/in/avatar.gltf" bare 'for (const t of g.meshes[0].primitives[0].targets) delete t.TANGENT'
+run bare.gltf all.glb
+exits 0
+# all that is not TANGENT, and half of it
+[ "$(size avatar.glb)" -lt $((1905000 * 3 / 2)) ] || wrong "$(size avatar.glb) bytes"
+for options in --precision=byte --draco=sequential "--draco=edgebreaker --precision=float"; do
+	# shellcheck disable=SC2086
+	run --verify --existing=replace $options "$WORK/in/avatar.gltf" out.glb
+	exits 0
+	valid out.glb
+	is "$(gltf out.glb "$forms")" '{"5120 true true false":103}'
+done
+
+scene "targets that move nothing have one accessor together, of one element"
+run --verify "$WORK/in/still.gltf" still.glb
+exits 0
+valid still.glb
+is "$(gltf still.glb 'new Set(g.meshes[0].primitives[0].targets.map((t) => t.TANGENT)).size')" 1
+is "$(gltf still.glb 'g.accessors[g.meshes[0].primitives[0].targets[0].TANGENT].sparse.count')" 1
+
+# 180 degrees about z: T turns from (1, 0, 0) to (-1, 0, 0), a delta of -2, which integers do not have
+scene "deltas beyond 1 are floats, whatever the normals are"
+gltf "$data/morph.gltf" turned 'const p = g.meshes[0].primitives[0];
+	p.targets = [{POSITION: add("VEC3", 5126, rows(p.attributes.POSITION).flatMap(([x, y]) => [-2 * x, -2 * y, 0]),
+		{min: [-2, -2, 0], max: [0, 0, 0]}), NORMAL: add("VEC3", 5120, Array(16).fill(0), {normalized: true, count: 4})}];
+	g.bufferViews.at(-1).byteStride = 4;
+	g.extensionsUsed = ["KHR_mesh_quantization"], g.extensionsRequired = ["KHR_mesh_quantization"]'
+run --verify turned.gltf turned.glb
+exits 0
+valid turned.glb
+is "$(gltf turned.glb "$forms")" '{"5126 false false true":1}'
+is "$(gltf turned.glb 'new Set(rows(g.meshes[0].primitives[0].targets[0].TANGENT).map(String)).size')" 1
+is "$(gltf turned.glb 'rows(g.meshes[0].primitives[0].targets[0].TANGENT)[0]')" '[-2,0,0]'
+
+scene "a line says what targets take when it is more than the mesh"
+gltf "$data/morph.gltf" many 'const p = g.meshes[0].primitives[0];
+	p.targets = Array(20).fill(p.targets[0]);
+	delete g.meshes[0].weights'
+run many.gltf many.glb
+exits 0
+says "tangents of 20 morph targets take 0.00096 MB, their meshes 0.000204"
+run "$data/morph.gltf" one.glb
+says_not "morph target"
+
+# T of a quad is (1, 0, 0); the author has it 0.5 degrees off, and a target moves one of its two triangles
+scene "an authored tangent that a target does not turn has no delta"
+gltf "$WORK/in/still.gltf" authored 'const p = g.meshes[0].primitives[0];
+	p.attributes.TANGENT = add("VEC4", 5126,
+		rows(p.attributes.TEXCOORD_0).flatMap(() => [0.9999619, 0.0087265, 0, -1]))'
+run --existing=repair --verify authored.gltf authored.glb
+exits 0
+is "$(gltf authored.glb 'rows(g.meshes[0].primitives[0].targets[0].TANGENT).flat().every((x) => x === 0)')" true
+is "$(gltf authored.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT).every((t) => t[1] > 0.0087 && t[1] < 0.0088)')" true
+
+done_testing
