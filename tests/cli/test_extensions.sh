@@ -55,7 +55,7 @@ manifold_of() {
 		const whole = g.accessors[m.manifoldPrimitive.indices], s = whole.sparse;
 		const own = mesh.primitives.map((p) => g.accessors[p.indices]);
 		const must = (...all) => all.forEach((good, i) => { if (!good) throw new Error(`condition ${i}`); });
-		const before = flat(whole), after = [...before], merges = [g.accessors[m.mergeIndices], g.accessors[m.mergeValues]];
+		const before = flat({...whole, sparse: undefined}), after = [...before], merges = [g.accessors[m.mergeIndices], g.accessors[m.mergeValues]];
 		const [places, values] = [{...s.indices}, {...s.values, componentType: whole.componentType}].map((part) =>
 			flat({...part, type: "SCALAR", count: s.count}));
 		places.forEach((place, i) => { after[place] = values[i]; });
