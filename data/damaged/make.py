@@ -82,6 +82,7 @@ def glb():
     json_size = struct.unpack_from("<I", good(source), 12)[0]
     patch(source, "glb_magic.glb", 0, "<4s", b"glTf")
     patch(source, "glb_version.glb", 4, "<I", 3)
+    patch(source, "glb_old.glb", 4, "<I", 1)
     patch(source, "glb_length.glb", 8, "<I", len(good(source)) + 64)
     patch(source, "glb_chunk_length.glb", 12, "<I", 0x7ffffff0)
     patch(source, "glb_chunk_type.glb", 16, "<4s", b"JSOM")
@@ -99,6 +100,7 @@ def gltf():
 
     edit("syntax", '"scene": 0,', '"scene": 0')
     edit("version", '"version": "2.0"', '"version": "3.0"')
+    edit("old", '"version": "2.0"', '"version": "1.0"')
     edit("count_above", '"count": 6', '"count": 7')
     edit("count_negative", '"count": 6', '"count": -6')
     edit("count_fraction", '"count": 6', '"count": 6.5')

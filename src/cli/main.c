@@ -5,7 +5,9 @@
  */
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,6 +47,7 @@ typedef struct session {
 	nt_update *update; /* NULL: no records */
 	nt_depfile depfile;
 	bool no_depfile; /* a rule is missing in it */
+	bool unread;     /* who reads standard output has gone */
 	bool no_report;  /* it would replace a file of a job, or say nothing of one for want of memory */
 	nt_manifest manifest;
 	nt_summary total; /* of the times and sizes alone */
@@ -52,6 +55,12 @@ typedef struct session {
 	size_t count, current, untried; /* jobs: all, up to date, not tried */
 	int exit_code;
 } session;
+
+/* What a signal handler tells of a run of many. */
+static struct {
+	atomic_size_t count, ended, failed; /* jobs */
+	bool erases;                        /* a line of progress */
+} in_work;
 
 /* What a message of a run usually takes is there before the run: none fails because that took all memory. */
 enum { MESSAGE_BYTES = 16 * 1024 };
@@ -66,6 +75,20 @@ static void say_usage(const nt_error *error, nt_style style)
 	nt_buffer_free(&text);
 }
 
+/* Whether standard output is a pipe that nobody reads any more. */
+static bool reader_is_gone(void)
+{
+	struct pollfd out = {.fd = STDOUT_FILENO, .events = POLLOUT};
+	return poll(&out, 1, 0) == 1 && (out.revents & POLLERR);
+}
+
+/* Who reads the first lines alone (head) wants no message: the program ends as others do. */
+static void end_unread(void)
+{
+	signal(SIGPIPE, SIG_DFL);
+	raise(SIGPIPE);
+}
+
 /* Prints what was asked for; that it arrived is part of the success. */
 static int print_text(void (*make)(nt_buffer *out), nt_style style)
 {
@@ -76,6 +99,8 @@ static int print_text(void (*make)(nt_buffer *out), nt_style style)
 	const bool written = made && fwrite(text.data, 1, text.size, stdout) == text.size && fflush(stdout) == 0;
 	const int number = errno;
 	nt_buffer_free(&text);
+	if (!written && reader_is_gone())
+		end_unread();
 	if (written)
 		return NT_EXIT_DONE;
 	if (made)
@@ -160,6 +185,8 @@ static int tell_run(session *s, nt_job *job)
 			infos ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING,
 			fails && !report ? least_failure - 1 : NT_SEVERITY_ERROR, style);
 	}
+	else if (s->style.verbosity < 0 && !job->status && !c->settings.check)
+		nt_message_left_out(&s->text, job, s->plan->options.ignore);
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
 	if (job->status) {
 		nt_message_error(&s->text, &job->outcome->error, s->style);
@@ -185,6 +212,10 @@ static void note_end(void *user, const nt_job *job)
 	session *s = user;
 	const bool fails = !job->status && job->outcome && !s->command->diff &&
 		findings_fail(&job->outcome->summary, s->plan->target.style.least_failure);
+	in_work.ended += job->end != NT_JOB_UNTRIED;
+	in_work.failed += job->status != NT_OK;
+	if (!s->command->manifest)
+		return;
 	nt_manifest_add(&s->manifest, job, fails ? NT_EXIT_FINDINGS : nt_exit_code(job->status));
 }
 
@@ -274,6 +305,10 @@ static void tell_job(void *user, nt_job *job)
 /* Returns whether there is sense in writing more. */
 static bool tell_report_error(session *s, nt_error *error, const char *path)
 {
+	const bool unread = strcmp(path, "-") == 0 && reader_is_gone();
+	s->unread |= unread;
+	if (unread)
+		return true;
 	nt_error_in_output(error, path);
 	nt_say_error(error, s->style);
 	s->exit_code = nt_exit_worse(s->exit_code, nt_exit_code(error->status));
@@ -490,13 +525,17 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 	const nt_batch_options options = {.run = nt_run, .jobs = (unsigned)command->jobs,
 		.memory = command->memory, .update = s.update,
 		.fail_fast = command->fail_fast, .done = tell_job,
-		.ended = command->manifest ? note_end : NULL, .user = &s};
+		.ended = note_end, .user = &s};
+	in_work.erases = s.progress && isatty(STDERR_FILENO);
+	in_work.count = batch->count;
 	nt_batch_run(batch, &settings, &options);
 	nt_progress_stop(s.progress);
 	tell_report(&s);
 	tell_files(&s);
 	tell_end(&s);
 	end_session(&s);
+	if (s.unread)
+		end_unread();
 	return s.exit_code;
 }
 
@@ -562,6 +601,46 @@ static void limit_memory(const nt_command *command)
 	setrlimit(RLIMIT_DATA, &data);
 }
 
+static size_t put_number(char *text, size_t number)
+{
+	size_t size = 1;
+	for (size_t rest = number; rest > 9; rest /= 10)
+		size++;
+	for (size_t i = size; i-- > 0; number /= 10)
+		text[i] = (char)('0' + number % 10);
+	return size;
+}
+
+static size_t put_words(char *text, const char *words)
+{
+	const size_t size = strlen(words);
+	memcpy(text, words, size);
+	return size;
+}
+
+/* In a signal handler. */
+static void tell_interrupted(void)
+{
+	char line[160];
+	size_t size = 0;
+	const size_t failed = in_work.failed;
+	if (in_work.count < 2)
+		return;
+	size += put_words(line, in_work.erases ? "\r\033[Knmtan: " : "nmtan: ");
+	size += put_number(line + size, in_work.ended - failed);
+	size += put_words(line + size, " of ");
+	size += put_number(line + size, in_work.count);
+	size += put_words(line + size, " done");
+	if (failed) {
+		size += put_words(line + size, ", ");
+		size += put_number(line + size, failed);
+		size += put_words(line + size, " failed");
+	}
+	size += put_words(line + size, ", ended by a signal\n");
+	const ssize_t written = write(STDERR_FILENO, line, size);
+	(void)written;
+}
+
 static void end_exhausted(void)
 {
 	static const char line[] = "nmtan: out of memory\n";
@@ -599,7 +678,7 @@ int main(int argc, char **argv)
 	 * which temporary files are removed. */
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN);
-	nt_run_catch_signals();
+	nt_run_catch_signals(tell_interrupted);
 	nt_run_catch_exhaustion(end_exhausted);
 	nt_run_catch_faults(end_changed);
 

@@ -110,6 +110,28 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 			append_code(out, findings, (nt_code)code, (nt_severity)severity, file, style);
 }
 
+void nt_message_left_out(nt_buffer *out, const nt_job *job, const bool *ignore)
+{
+	static const nt_code codes[] = {NT_CODE_MTL_MISSING, NT_CODE_MATERIAL_UNKNOWN, NT_CODE_IMAGE_MISSING,
+		NT_CODE_IMAGE_TYPE, NT_CODE_IMAGE_DAMAGED, NT_CODE_MATERIAL_LOST, NT_CODE_REFERENCE_LOST};
+	const nt_finding_list *findings = &job->outcome->summary.findings;
+	size_t told = 0;
+	for (size_t c = 0; c < sizeof codes / sizeof *codes; c++) {
+		size_t count = 0;
+		for (size_t i = 0; i < findings->count; i++)
+			count += findings->items[i].code == codes[c] ? findings->items[i].count : 0;
+		if (!count || ignore[codes[c]])
+			continue;
+		nt_buffer_text(out, told ? ", " : "nmtan: ");
+		if (!told++) {
+			nt_buffer_clean(out, job->input);
+			nt_buffer_text(out, ": left out of the output: ");
+		}
+		nt_buffer_format(out, "%zu %s", count, nt_code_info(codes[c])->name);
+	}
+	nt_buffer_text(out, told ? "\n" : "");
+}
+
 void nt_message_failure(nt_buffer *out, const nt_job *job, int least_failure, nt_style style)
 {
 	const nt_report *report = job->outcome->summary.report;

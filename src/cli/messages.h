@@ -27,6 +27,10 @@ void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, int least, int most,
 	nt_style style);
 
+/* One line, of a quiet run too, where something of the input is not in the output, with the codes that say what but for
+ * those of ignore[code]. */
+void nt_message_left_out(nt_buffer *out, const nt_job *job, const bool *ignore);
+
 /* An output that was up to date. */
 void nt_message_current(nt_buffer *out, const nt_job *job);
 

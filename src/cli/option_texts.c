@@ -5,6 +5,7 @@
 #include "cli/option_table.h"
 #include "cli/options.h"
 #include "file/relative_path.h"
+#include "report/codes.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -90,6 +91,18 @@ static bool has_words(const nt_option_row *row)
 	return row->kind == NT_OPTION_CHOICE || row->kind == NT_OPTION_AUTO_NUMBER;
 }
 
+/* A list of codes, perhaps each with a severity. */
+static bool has_codes(const nt_option_row *row)
+{
+	return row->values && strncmp(row->values, "CODE", 4) == 0;
+}
+
+static void append_codes(nt_buffer *out)
+{
+	for (unsigned code = 0; code < NT_CODE_COUNT; code++)
+		nt_buffer_format(out, "%s%s", code ? " " : "", nt_code_info((nt_code)code)->name);
+}
+
 /* The words of a row with blanks between them; N, which stands for a number, is left out. */
 static void append_words(nt_buffer *out, const nt_option_row *row)
 {
@@ -108,7 +121,7 @@ void nt_options_bash(nt_buffer *out)
 	nt_buffer_text(out,
 		"# bash completion for nmtan, printed by nmtan --completion=bash\n"
 		"_nmtan()\n{\n"
-		"\tlocal word=${COMP_WORDS[COMP_CWORD]} option=${COMP_WORDS[COMP_CWORD-1]}\n"
+		"\tlocal word=${COMP_WORDS[COMP_CWORD]} option=${COMP_WORDS[COMP_CWORD-1]} list=\n"
 		"\tCOMPREPLY=()\n"
 		"\t# bash takes = for a word of its own\n"
 		"\tif [[ $word == = ]]; then\n\t\tword=\n"
@@ -126,12 +139,21 @@ void nt_options_bash(nt_buffer *out)
 			nt_buffer_text(out, "\t\tCOMPREPLY=($(compgen -W '");
 			append_words(out, row);
 			nt_buffer_text(out, "' -- \"$word\"))\n");
+		} else if (has_codes(row)) {
+			/* behind what is there of the list */
+			nt_buffer_text(out, "\t\t[[ $word == *,* ]] && list=${word%,*},\n"
+				"\t\tcompopt -o nospace\n\t\tCOMPREPLY=($(compgen -P \"$list\" -W '");
+			append_codes(out);
+			nt_buffer_text(out, "' -- \"${word##*,}\"))\n");
 		} else if (row->kind == NT_OPTION_TEXT || row->kind == NT_OPTION_LIST) {
 			nt_buffer_format(out, "\t\tCOMPREPLY=($(compgen -%c -- \"$word\"))\n",
 				strcmp(row->values, "DIR") == 0 ? 'd' : 'f');
 		}
 		nt_buffer_text(out, "\t\treturn ;;\n");
 	}
+	/* bash takes the = of CODE=LEVEL for a word of its own, too */
+	nt_buffer_text(out, "\t[A-Z]*_*)\n\t\tCOMPREPLY=($(compgen -W 'error warning info' -- \"$word\"))\n"
+		"\t\treturn ;;\n");
 	nt_buffer_text(out, "\tesac\n\tif [[ $word == -* ]]; then\n\t\tCOMPREPLY=($(compgen -W '");
 	bool first = true;
 	for (size_t i = 0; i < nt_option_row_count; i++) {
@@ -173,6 +195,9 @@ static void zsh_spec(nt_buffer *out, const nt_option_row *row, bool letter)
 		nt_buffer_format(out, ":%s:(", row->name);
 		append_words(out, row);
 		nt_buffer_text(out, ")");
+	} else if (has_codes(row)) {
+		nt_buffer_format(out, ":%s:_values -s , code ", row->values);
+		append_codes(out);
 	} else if (row->values) {
 		nt_buffer_format(out, ":%s:%s", row->values,
 			row->kind < NT_OPTION_TEXT               ? " "

@@ -432,9 +432,9 @@ void nt_output_abort(nt_output *output)
 	free(output);
 }
 
-void nt_output_catch_signals(void)
+void nt_output_catch_signals(void (*tell)(void))
 {
-	nt_temporaries_catch_signals();
+	nt_temporaries_catch_signals(tell);
 }
 
 void nt_output_remove_temporaries(void)

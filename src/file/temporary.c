@@ -299,9 +299,13 @@ void nt_temporaries_remove_all(void)
 			unlink(entry->path);
 }
 
+static void (*tell_end)(void);
+
 static void remove_and_end(int signal_number)
 {
 	nt_temporaries_remove_all();
+	if (tell_end)
+		tell_end();
 	/* end as if it had not been caught, so that a shell sees the signal */
 	sigset_t only;
 	sigemptyset(&only);
@@ -312,8 +316,9 @@ static void remove_and_end(int signal_number)
 	_exit(128 + signal_number);
 }
 
-void nt_temporaries_catch_signals(void)
+void nt_temporaries_catch_signals(void (*tell)(void))
 {
+	tell_end = tell;
 	struct sigaction action = {.sa_handler = remove_and_end};
 	sigemptyset(&action.sa_mask);
 	for (int i = 0; i < CAUGHT_COUNT; i++)

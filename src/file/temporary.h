@@ -47,6 +47,6 @@ void nt_temporary_discard(nt_temporary *temporary);
 void nt_temporaries_remove_all(void);
 
 /* See nt_output_catch_signals(). */
-void nt_temporaries_catch_signals(void);
+void nt_temporaries_catch_signals(void (*tell)(void));
 
 #endif

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "file/uri.h"
+#include "gltf/glb.h"
 
 bool nt_gltf_recognise(const unsigned char *bytes, size_t size)
 {
@@ -137,9 +138,10 @@ static nt_status check_version(const nt_gltf *document, nt_error *error)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, "/asset/version",
 			"%s, expected the version of glTF as a string",
 			nt_json_type_text(nt_json_find(asset, "version")));
+	const bool old = strncmp(version, "1.", 2) == 0 || strncmp(version, "0.", 2) == 0;
 	if (strncmp(version, "2.", 2) != 0)
 		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, "/asset/version",
-			"glTF version \"%.20s\", expected 2.0", version);
+			"glTF version \"%.20s\", expected 2.0%s", version, old ? NT_GLTF_OLD_ADVICE : "");
 	const char *minimum = nt_json_get_string(nt_json_find(asset, "minVersion"), NULL);
 	if (minimum && strcmp(minimum, "2.0") != 0)
 		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, "/asset/minVersion",

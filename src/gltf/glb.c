@@ -37,7 +37,7 @@ static nt_status read_header(const unsigned char *bytes, size_t size, size_t *en
 	const uint32_t version = read_u32(bytes + 4), length = read_u32(bytes + 8);
 	if (version != 2)
 		return nt_fail_offset(error, NT_ERROR_UNSUPPORTED, 4,
-			"GLB version %u, expected 2", version);
+			"GLB version %u, expected 2%s", version, version == 1 ? NT_GLTF_OLD_ADVICE : "");
 	if (length < HEADER_BYTES + CHUNK_HEAD_BYTES)
 		return nt_fail_offset(error, NT_ERROR_INPUT, 8,
 			"the GLB header declares %u bytes, too few for a JSON chunk", length);

@@ -66,4 +66,7 @@ uint64_t nt_glb_chunk_bytes(uint64_t size);
 nt_status nt_glb_write_chunk(nt_sink *sink, uint32_t type, const void *data, size_t size,
 	nt_error *error);
 
+/* What follows a message about version 1, which Cesium's converter still reads. */
+#define NT_GLTF_OLD_ADVICE "; the npm package gltf-pipeline converts it"
+
 #endif

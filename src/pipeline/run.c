@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include "base/clock.h"
 #include "file/watch.h"
 #include "format/foreign.h"
@@ -78,6 +79,10 @@ static nt_status open_scene(run *r)
 	nt_status status = NT_OK;
 	if (!r->input_is_open)
 		status = nt_file_open_content(&r->input, r->input_path, false, r->error);
+	struct stat info;
+	if (status && stat(r->input_path, &info) == 0 && S_ISDIR(info.st_mode))
+		strncat(r->error->message, "; -r takes the meshes in it",
+			sizeof r->error->message - strlen(r->error->message) - 1);
 	if (status)
 		return status;
 	r->input_is_open = true;
@@ -431,9 +436,9 @@ const char *nt_stage_name(nt_stage stage)
 	return names[stage];
 }
 
-void nt_run_catch_signals(void)
+void nt_run_catch_signals(void (*tell)(void))
 {
-	nt_output_catch_signals();
+	nt_output_catch_signals(tell);
 }
 
 void nt_run_catch_exhaustion(void (*end)(void))

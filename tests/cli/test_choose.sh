@@ -69,7 +69,10 @@ exits 0
 says "6 of 6 done"
 run -d out in
 exits 2
-says "in: cannot read: Is a directory"
+says "in: cannot read: Is a directory; -r takes the meshes in it"
+run --check .
+exits 2
+says "; -r takes the meshes in it"
 
 scene "patterns are compared with names, and with paths where they have a slash"
 mkdir -p in/x in/y

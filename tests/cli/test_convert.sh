@@ -18,6 +18,15 @@ run -q "$data/quad.obj" quad.glb
 exits 0
 silent
 
+scene "but for what is left out of the output"
+{ echo 'mtllib m.mtl'; echo 'usemtl b'; cat "$data/quad.obj"; } >q.obj
+printf 'newmtl b\nmap_Kd nowhere.png\ndisp h.png\n' >m.mtl
+run -q q.obj q.glb
+exits 0
+is "$(cat "$WORK/err.txt")" "nmtan: q.obj: left out of the output: 1 IMAGE_MISSING, 1 MATERIAL_LOST"
+run -q --ignore=IMAGE_MISSING,MATERIAL_LOST q.obj q.glb
+silent
+
 scene "vertices on a mirror seam are split, and no others"
 cp "$data/bumps.png" .
 run "$data/mirrored_cube.obj" cube.glb

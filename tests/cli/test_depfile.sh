@@ -74,7 +74,7 @@ take_hard
 {
 	echo "all: $(all_hard) plates.glb"
 	for i in "${!hard[@]}"; do
-		printf 'h%s.glb:\n\t@echo $@\n\t@"%s" -q --depfile=$@.d '"'%s'"' $@\n' $i "$NMTAN" "${hard[i]//\$/\$\$}"
+		printf 'h%s.glb:\n\t@echo $@\n\t@"%s" -q --ignore=MTL_MISSING --depfile=$@.d '"'%s'"' $@\n' $i "$NMTAN" "${hard[i]//\$/\$\$}"
 	done
 	printf '%%.glb: %%.gltf\n\t@echo $@\n\t@"%s" -q --depfile=$@.d $< $@\n' "$NMTAN"
 	echo '-include $(wildcard *.d)'

@@ -53,6 +53,29 @@ scene "help that cannot be written is an error"
 is $? 2
 says "standard output"
 
+scene "who reads the first line alone gets no message"
+# many more bytes than a pipe holds
+for ((i = 0; i < 300; i++)); do echo "$data/head.obj"; done >names
+for words in --list-codes "--help" "--check --report-format=json -q --files-from=names" \
+	"--check -q --manifest=- --files-from=names"; do
+	# the reader has gone before anything is written
+	{ sleep 0.2; "$NMTAN" $words 2>"$WORK/err.txt"; echo $? >code; } | true
+	is "$words: $(cat code) $(cat "$WORK/err.txt")" "$words: 141 "
+done
+
+scene "a run of many that is ended says what was done"
+cp "$data/quad.obj" one.obj
+cp one.obj two.obj
+mkfifo wait.obj
+env --default-signal=INT "$NMTAN" -d out -q nothing.obj one.obj two.obj wait.obj 2>err.txt &
+process=$!
+await test -s out/two.glb -a -s out/one.glb
+sleep 0.1
+kill -INT $process
+wait $process
+is $? 130
+grep -q "2 of 4 done, 1 failed, ended by a signal" err.txt || wrong "$(cat err.txt)"
+
 scene "bash completes options, values and files"
 "$NMTAN" --completion=bash >completion || wrong "exit code $?"
 touch mesh.obj
@@ -66,6 +89,9 @@ is "$(complete_words nmtan --method = le)" "lengyel "
 is "$(complete_words nmtan --uv = '')" "auto "
 is "$(complete_words nmtan --ver)" "--verify --verbose --version "
 is "$(complete_words nmtan mes)" "mesh.obj "
+is "$(complete_words nmtan --ignore = UV_MIRROR_L)" "UV_MIRROR_LONE "
+is "$(complete_words nmtan --severity = TAN_ZERO,UV_FOL)" "TAN_ZERO,UV_FOLDED_QUAD "
+is "$(complete_words nmtan --severity = UV_FOLDED_QUAD = e)" "error "
 
 scene "the zsh completion names every option of help"
 "$NMTAN" --completion=zsh >completion || wrong "exit code $?"

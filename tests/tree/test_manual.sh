@@ -17,15 +17,15 @@ well_formed() {
 }
 
 scene "every option of help is in the manual and no other"
-"$NMTAN" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+' | grep -oE -- '--[a-z-]+' | sort >table
+"$NMTAN" --help | grep -oE '^ +(-[a-zA-Z], )?--[a-z-]+' | grep -oE -- '--[a-z-]+' | sort >table
 plain | grep -E '^\.BR? .*--[a-z]' | grep -oE -- '--[a-z-]+' | grep -vE '^--$' | sort -u >all
 plain | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.TP' | grep -oE -- '--[a-z-]+' | sort >manual
 equal table manual
 
 scene "short forms and values are those of help"
-"$NMTAN" --help | grep -oE '^  -[a-z], --[a-z-]+' | tr -d ' ' | sort >table
+"$NMTAN" --help | grep -oE '^  -[a-zA-Z], --[a-z-]+' | tr -d ' ' | sort >table
 plain | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.TP' | tr -d '" ' |
-	grep -oE -- '-[a-z],--[a-z-]+' | sort >manual
+	grep -oE -- '-[a-zA-Z],--[a-z-]+' | sort >manual
 equal table manual
 "$NMTAN" --help | grep -oE -- '--[a-z-]+=[a-z|N]+[|][a-zN|]+' | sort >table
 plain | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.TP' | tr -d '" ' |
