@@ -12,8 +12,11 @@ NMTAN_IN ?= assets
 NMTAN_OUT ?= out
 NMTAN_FLAGS ?=
 
+# Another program makes other outputs.
+nmtan_program := $(shell command -v $(NMTAN) 2>/dev/null)
+
 define nmtan_rule
-$(NMTAN_OUT)/%.glb: $(NMTAN_IN)/%.$(1)
+$(NMTAN_OUT)/%.glb: $(NMTAN_IN)/%.$(1) $(nmtan_program)
 	@mkdir -p $$(@D)
 	$(NMTAN) -q $(NMTAN_FLAGS) --depfile=$$@.d $$< $$@
 endef

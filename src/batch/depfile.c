@@ -8,6 +8,7 @@
 #include "batch/depfile.h"
 
 #include <string.h>
+#include "batch/record.h"
 #include "file/output.h"
 #include "file/relative_path.h"
 
@@ -60,21 +61,72 @@ static nt_status append_name(nt_depfile *depfile, const char *path, bool relativ
 	return status;
 }
 
-/* The files that were read, each with `before` and `after` around it; without the first, which is the input. */
-static nt_status append_read(nt_depfile *depfile, const nt_trace *trace, bool relative, bool with_input,
-	const char *before, const char *after, nt_error *error)
+/* The folder of a path, or the first above that is there. */
+static bool find_folder(const char *path, nt_buffer *folder, struct stat *info)
+{
+	folder->size = 0;
+	nt_buffer_text(folder, path);
+	while (!folder->failed) {
+		const char *slash = strrchr(folder->data, '/');
+		folder->size = slash ? (size_t)(slash - folder->data) : 0;
+		folder->data[folder->size] = '\0';
+		if (!folder->size)
+			nt_buffer_text(folder, slash ? "/" : ".");
+		if (!folder->failed && stat(folder->data, info) == 0 && S_ISDIR(info->st_mode))
+			return true;
+		if (!slash)
+			break;
+	}
+	return false;
+}
+
+/* In such a folder each run leaves another time of change. */
+static bool is_written_to(const nt_trace *trace, const struct stat *info)
+{
+	nt_buffer folder = {0};
+	struct stat of_output;
+	bool is = false;
+	for (size_t i = 0; i < trace->count && !is; i++)
+		is = trace->files[i].kind == NT_TRACE_WRITTEN &&
+			find_folder(trace->files[i].path, &folder, &of_output) && nt_same_file(&of_output, info);
+	nt_buffer_free(&folder);
+	return is;
+}
+
+/* What an output depends on, each with a NUL behind it: files that were read, the input first, and the folders in which
+ * others were looked for in vain. */
+static nt_status list_dependencies(const nt_trace *trace, nt_buffer *list, nt_error *error)
+{
+	nt_buffer folder = {0};
+	struct stat info;
+	for (size_t i = 0; i < trace->count; i++)
+		if (trace->files[i].kind == NT_TRACE_READ)
+			nt_buffer_append(list, trace->files[i].path, strlen(trace->files[i].path) + 1);
+	const size_t begin = list->size;
+	for (size_t i = 0; i < trace->count; i++) {
+		const nt_trace_kind kind = trace->files[i].kind;
+		if ((kind != NT_TRACE_MISSING && kind != NT_TRACE_SEARCHED) ||
+			!find_folder(trace->files[i].path, &folder, &info) || is_written_to(trace, &info))
+			continue;
+		bool listed = false;
+		for (size_t at = begin; at < list->size && !listed; at += strlen(list->data + at) + 1)
+			listed = strcmp(list->data + at, folder.data) == 0;
+		if (!listed)
+			nt_buffer_append(list, folder.data, folder.size + 1);
+	}
+	nt_buffer_free_into(&folder, list);
+	return list->failed ? nt_fail_memory(error) : NT_OK;
+}
+
+/* Those from `at` on, each with `before` and `after` around it. */
+static nt_status append_list(nt_depfile *depfile, const nt_buffer *list, size_t at, bool relative, const char *before,
+	const char *after, nt_error *error)
 {
 	nt_status status = NT_OK;
-	bool first = true;
-	for (size_t i = 0; i < trace->count && !status; i++) {
-		if (trace->files[i].kind != NT_TRACE_READ)
-			continue;
-		if (!first || with_input) {
-			nt_buffer_text(&depfile->text, before);
-			status = append_name(depfile, trace->files[i].path, relative, error);
-			nt_buffer_text(&depfile->text, after);
-		}
-		first = false;
+	for (; at < list->size && !status; at += strlen(list->data + at) + 1) {
+		nt_buffer_text(&depfile->text, before);
+		status = append_name(depfile, list->data + at, relative, error);
+		nt_buffer_text(&depfile->text, after);
 	}
 	return status;
 }
@@ -82,13 +134,17 @@ static nt_status append_read(nt_depfile *depfile, const nt_trace *trace, bool re
 nt_status nt_depfile_add(nt_depfile *depfile, const char *output, const nt_trace *trace, nt_error *error)
 {
 	const bool relative = output[0] != '/';
-	nt_status status = append_name(depfile, output, relative, error);
+	nt_buffer list = {0};
+	nt_status status = list_dependencies(trace, &list, error);
+	if (!status)
+		status = append_name(depfile, output, relative, error);
 	nt_buffer_text(&depfile->text, ":");
 	if (!status)
-		status = append_read(depfile, trace, relative, true, " \\\n ", "", error);
+		status = append_list(depfile, &list, 0, relative, " \\\n ", "", error);
 	nt_buffer_text(&depfile->text, "\n");
-	if (!status)
-		status = append_read(depfile, trace, relative, false, "", ":\n", error);
+	if (!status && list.size)
+		status = append_list(depfile, &list, strlen(list.data) + 1, relative, "", ":\n", error);
+	nt_buffer_free(&list);
 	return status || !depfile->text.failed ? status : nt_fail_memory(error);
 }
 

@@ -41,7 +41,7 @@ static const char *status_of(const nt_job *job)
 	return job->status ? "failed" : job->outcome->summary.left ? "left" : "done";
 }
 
-/* Files of one kind; those that were written with their sizes. */
+/* Files of one kind; those that are there with their sizes. */
 static void append_files(nt_buffer *out, const char *key, const nt_trace *trace, nt_trace_kind kind)
 {
 	const char *comma = "";
@@ -52,7 +52,7 @@ static void append_files(nt_buffer *out, const char *key, const nt_trace *trace,
 			continue;
 		nt_buffer_text(out, comma);
 		comma = ",";
-		if (kind == NT_TRACE_MISSING) {
+		if (kind == NT_TRACE_MISSING || kind == NT_TRACE_SEARCHED) {
 			nt_json_string(file->path, out);
 			continue;
 		}
@@ -136,6 +136,7 @@ static void append_job(nt_buffer *out, const nt_job *job, const char *options, i
 	append_files(out, "outputs", trace, NT_TRACE_WRITTEN);
 	append_files(out, "dependencies", trace, NT_TRACE_READ);
 	append_files(out, "missing", trace, NT_TRACE_MISSING);
+	append_files(out, "searched", trace, NT_TRACE_SEARCHED);
 	if (job->status && job->outcome)
 		append_error(out, &job->outcome->error);
 	if (job->outcome && job->end == NT_JOB_RAN)

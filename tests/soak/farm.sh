@@ -115,6 +115,10 @@ else
 	echo "# changed" >>"as sets/mirrored_cube.mtl"
 	make_all
 	is "$(made)" 1
+
+	scene "Snakemake notices what the page says, and makes nothing twice"
+	snake() { snakemake -q -s "$farm/Snakefile" -c1 --rerun-triggers mtime --config in=in out=out nmtan=./program; }
+	notices 5 snake
 fi
 
 done_testing

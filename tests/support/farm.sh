@@ -48,3 +48,56 @@ END
 	chmod +x stopping.sh
 }
 await_stop() { await eval '[ "$(cat "my work/2.1.jsonl" 2>/dev/null | wc -l)" = 40 ]'; }
+
+# ---- what is noticed ----
+
+# What each line of the table in nmtan-farm(7) means for out/a.glb, which is made of in/a.obj, in/a.mtl and in/tex/n.png, by
+# ./program; in/gone.png is missing where the line is about that.
+event() {
+	case $1 in
+	"a file that was read gets a new time") touch in/v1/n.png ;;
+	"one becomes another of an earlier time") cp -p in/v2/n.png in/v1/n.png ;;
+	"one is deleted") rm in/v1/n.png ;;
+	"one that was missing arrives") cp -p in/v2/n.png in/gone.png ;;
+	"a link on the way to one is set anew") ln -sfn v2 in/tex ;;
+	"the output is deleted") rm out/a.glb ;;
+	"the output is changed") echo >>out/a.glb ;;
+	"the options change") flags=--method=area ;;
+	"another program of the same version") echo "# another" >>program ;;
+	"another version") echo "# another" >>program && sed -i 's/"nmtan":"/&0/' out/.nmtan-record 2>/dev/null ;;
+	*) wrong "no such event: $1" ;;
+	esac
+}
+
+# notices COLUMN COMMAND: whether the command, which makes out/a.glb with $flags, does so as the column says: after each event,
+# and not again.
+notices() {
+	local column=$1 line what expected flags
+	shift
+	sed -n '/^.SH WHAT IS NOTICED/,/^.fi/s/^\t\([a-z].*[a-z]\)  *\(yes\|no\)  *\(yes\|no\)  *\(yes\|no\)  *\(yes\|no\)$/\1|\2|\3|\4|\5/p' \
+		"$ROOT/man/nmtan-farm.7" | sed 's/  *|/|/' >table
+	[ "$(wc -l <table)" -ge 10 ] || wrong "there is no table"
+	while read -r line <&3; do
+		what=${line%%|*} flags=
+		expected=$(echo "$line" | cut -d'|' -f$column)
+		rm -rf in out log .ninja* .snakemake
+		mkdir -p in/v1 in/v2 out
+		{ printf 'mtllib a.mtl\nusemtl m\n' && grep '^[vf]' "$data/quad.obj"; } >in/a.obj
+		printf 'newmtl m\nnorm tex/n.png\n' >in/a.mtl
+		case $what in *missing*) echo 'map_Kd gone.png' >>in/a.mtl ;; esac
+		cp "$data/bumps.png" in/v1/n.png
+		cp "$data/bumps.png" in/v2/n.png
+		printf '\xff' | dd of=in/v2/n.png bs=1 seek=60 conv=notrunc 2>/dev/null
+		ln -s v1 in/tex
+		printf '#!/bin/sh\necho >>log\nexec "%s" "$@"\n' "$NMTAN" >program
+		chmod +x program
+		find in program -exec touch -h -d '1 hour ago' {} +
+		touch -d '2 hours ago' in/v2/n.png
+		"$@" >said 2>&1 && "$@" >>said 2>&1 || wrong "$what: $(tail -3 said)"
+		is "before, $what: $(wc -l <log)" "before, $what: 1"
+		later
+		event "$what"
+		"$@" >said 2>&1 && "$@" >>said 2>&1 || wrong "$what: $(tail -3 said)"
+		is "$what: $(wc -l <log)" "$what: $([ "$expected" = yes ] && echo 2 || echo 1)"
+	done 3<table
+}

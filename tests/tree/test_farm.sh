@@ -144,4 +144,17 @@ clean
 rm "o ut/.nmtan-record"
 diff -r clean "o ut" >difference || wrong "$(head -3 difference)"
 
+scene "--update notices what the page says, and makes nothing twice"
+update() { "$NMTAN" --update $flags in/a.obj out/a.glb 2>err && { grep -q "up to date" err || echo >>log; }; }
+notices 2 update
+
+scene "make notices what the page says, and makes nothing twice"
+printf 'NMTAN = ./program\nNMTAN_IN := in\nNMTAN_FLAGS = $(flags)\nall: out/a.glb\ninclude %s\n' "$farm/nmtan.mk" >Makefile
+make_all() { make flags="$flags"; }
+notices 3 make_all
+
+scene "Ninja notices what the page says, and makes nothing twice"
+ninja_all() { printf 'in/a.obj\0' | NMTAN=./program "$farm/nmtan-farm" ninja out in $flags >build.ninja && ninja; }
+notices 4 ninja_all
+
 done_testing

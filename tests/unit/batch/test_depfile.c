@@ -8,6 +8,7 @@
 #include "test.h"
 
 #include <stdio.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* Read in this order; NULL ends them. Another was looked for in vain. */
@@ -45,6 +46,29 @@ static void an_output_depends_on_what_was_read_and_that_on_nothing(void **state)
 	becomes("o.glb", READ("a.obj"), "o.glb: \\\n a.obj\n");
 	becomes("o.glb", READ("a.obj", "a.mtl", "t/n.png"),
 		"o.glb: \\\n a.obj \\\n a.mtl \\\n t/n.png\na.mtl:\nt/n.png:\n");
+}
+
+/* Not those that the run writes to, of which each run changes the time. */
+static void folders_in_which_something_is_missing_are_named_once(void **state)
+{
+	(void)state;
+	nt_depfile depfile = {0};
+	nt_trace trace;
+	nt_error error;
+	const struct stat info = {0};
+	assert_int_equal(mkdir("t", 0700), 0);
+	make_trace(&trace, READ("a.obj", "a.mtl"));
+	nt_trace *outer = nt_trace_use(&trace);
+	nt_trace_missing("t/none/below/n.png");
+	nt_trace_searched("t/n.png", NULL, &info);
+	nt_trace_missing("/none");
+	nt_trace_use(outer);
+	assert_int_equal(nt_depfile_add(&depfile, "o.glb", &trace, &error), NT_OK);
+	nt_buffer_append(&depfile.text, "", 1);
+	assert_int_equal(rmdir("t"), 0);
+	assert_string_equal(depfile.text.data, "o.glb: \\\n a.obj \\\n a.mtl \\\n t \\\n /\na.mtl:\nt:\n/:\n");
+	nt_depfile_free(&depfile);
+	nt_trace_free(&trace);
 }
 
 static void names_are_escaped(void **state)
@@ -127,6 +151,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(an_output_depends_on_what_was_read_and_that_on_nothing),
+		cmocka_unit_test(folders_in_which_something_is_missing_are_named_once),
 		cmocka_unit_test(names_are_escaped),
 		cmocka_unit_test(files_below_the_current_folder_are_named_as_the_output_is),
 		cmocka_unit_test(a_line_feed_has_no_spelling),

@@ -44,8 +44,8 @@ static const char *line_of(const nt_job *job, int exit_code)
 	",\"nmtan\":\"" NMTAN_VERSION_STRING "\",\"options\":\"--method=area\","
 #define FILES "\"outputs\":[{\"path\":\"o\\n.glb\",\"bytes\":7}]," \
 	"\"dependencies\":[{\"path\":\"a\\\".obj\",\"bytes\":7}]," \
-	"\"missing\":[\"a.mtl\"]"
-#define NO_FILES "\"outputs\":[],\"dependencies\":[],\"missing\":[]"
+	"\"missing\":[\"a.mtl\"],\"searched\":[]"
+#define NO_FILES "\"outputs\":[],\"dependencies\":[],\"missing\":[],\"searched\":[]"
 
 static void a_job_that_ran_has_its_files_and_numbers(void **state)
 {
