@@ -9,8 +9,8 @@
  *              accessors, wherever their bytes are (30; 105); 100 where there is or will be Draco (98; 207)
  *   Draco      256 for each byte (20 to 190)
  *
- * as "make bench-need" prints it. Images that are converted, polygons of many corners, and instances that become one
- * PLY are not seen.
+ * as "make bench-need" prints it. An OBJ's images that are converted are in need_images.c. Images that a report
+ * examines, polygons of many corners, and instances that become one PLY are not seen.
  */
 #include "batch/need.h"
 
@@ -83,7 +83,7 @@ static uint64_t need_of_bytes(const nt_file *file, const char *path, const nt_se
 	const nt_format_entry *entry = nt_format_of_input(file->data, file->size, path);
 	switch (entry ? entry->format : NT_FORMAT_UNKNOWN) {
 	case NT_FORMAT_OBJ:
-		return 10 * (uint64_t)file->size;
+		return plus(10 * (uint64_t)file->size, 1, nt_need_of_images(path, text, file->size, settings));
 	case NT_FORMAT_PLY:
 		return ply_need(text, file->size);
 	case NT_FORMAT_GLTF:
@@ -115,7 +115,7 @@ uint64_t nt_need_of(const char *input, const nt_settings *settings, uint64_t eno
 	if (!S_ISREG(info.st_mode))
 		return UINT64_MAX;
 	const nt_format_entry *named = nt_format_of_path(input);
-	const bool whole = named && named->format != NT_FORMAT_GLTF;
+	const bool whole = named && named->format != NT_FORMAT_GLTF && named->format != NT_FORMAT_OBJ;
 	if (whole && LEAST + MOST_BYTE_COST * (uint64_t)info.st_size <= enough)
 		return LEAST + MOST_BYTE_COST * (uint64_t)info.st_size;
 	if (nt_file_open_untraced(&file, input, &error))

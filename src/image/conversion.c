@@ -60,6 +60,20 @@ bool nt_conversion_is_identity(const nt_conversion *how)
 	return source != UINT32_MAX;
 }
 
+/* Alpha alone is looked at; of other channels it counts where they come from, and whether they change. */
+void nt_conversion_simplify(nt_conversion *how)
+{
+	how->height = 0;
+	how->clamp = false;
+	for (int k = 0; k < (how->packed ? 3 : 1); k++) {
+		nt_channel_map *map = &how->channels[k].map;
+		if (nt_channel_map_is_identity(map))
+			continue;
+		map->gain = 2;
+		map->base = map->exponent = 0;
+	}
+}
+
 /* ---- one image ---- */
 
 static void flip_green(nt_pixels *p)
@@ -114,15 +128,17 @@ static nt_status make_normals(const nt_conversion *how, nt_pixels *pixels, nt_er
 	return status;
 }
 
-static nt_status make_of_one(const nt_conversion *how, const nt_file *file, nt_converted *made, nt_error *error)
+static nt_status make_of_one(const nt_conversion *how, const nt_file *file, bool judged_only, nt_converted *made,
+	nt_error *error)
 {
 	nt_pixels pixels;
 	nt_status status = nt_image_decode(file->data, file->size, &pixels, error);
-	if (!status && how->heights)
+	if (!status && how->heights && !judged_only)
 		status = make_normals(how, &pixels, error);
 	if (!status)
 		status = flip(how, &pixels, &made->flipped, error);
-	if (!status && (how->png || how->heights || made->flipped))
+	made->made = !status && (how->png || how->heights || made->flipped);
+	if (made->made && !judged_only)
 		status = nt_encode_png(&pixels, &made->bytes, &made->size, error);
 	nt_pixels_free(&pixels);
 	return status;
@@ -247,8 +263,8 @@ static nt_status put_together(const packing *p, nt_pixels *to, nt_error *error)
 	return status;
 }
 
-static nt_status make_of_several(const nt_conversion *how, const nt_file *const files[4], nt_converted *made,
-	nt_error *error)
+static nt_status make_of_several(const nt_conversion *how, const nt_file *const files[4], bool judged_only,
+	nt_converted *made, nt_error *error)
 {
 	packing p = {.how = *how};
 	nt_pixels result = {0};
@@ -263,7 +279,8 @@ static nt_status make_of_several(const nt_conversion *how, const nt_file *const 
 		status = error->status;
 	if (!status)
 		status = judge_alpha(&p, made, error);
-	if (!status && (how->png || !is_there(&p, files))) {
+	made->made = !status && (how->png || !is_there(&p, files));
+	if (made->made && !judged_only) {
 		status = put_together(&p, &result, error);
 		if (!status)
 			status = nt_encode_png(&result, &made->bytes, &made->size, error);
@@ -274,9 +291,10 @@ static nt_status make_of_several(const nt_conversion *how, const nt_file *const 
 	return status;
 }
 
-nt_status nt_conversion_make(const nt_conversion *how, const nt_file *const files[4], nt_converted *made,
-	nt_error *error)
+nt_status nt_conversion_make(const nt_conversion *how, const nt_file *const files[4], bool judged_only,
+	nt_converted *made, nt_error *error)
 {
 	*made = (nt_converted){0};
-	return how->packed ? make_of_several(how, files, made, error) : make_of_one(how, files[0], made, error);
+	return how->packed ? make_of_several(how, files, judged_only, made, error)
+			   : make_of_one(how, files[0], judged_only, made, error);
 }

@@ -38,7 +38,8 @@ typedef struct nt_conversion {
 
 /* What it came to. */
 typedef struct nt_converted {
-	unsigned char *bytes; /* a PNG in a malloc'ed block; NULL: the file of the first channel is the result */
+	bool made;            /* a PNG; else the file of the first channel is the result */
+	unsigned char *bytes; /* of it, in a malloc'ed block; NULL: nothing was made, or it was only judged */
 	size_t size;
 	bool flipped;
 	nt_alpha_mode alpha;
@@ -54,15 +55,19 @@ bool nt_conversion_decodes(const nt_conversion *how);
 /* Whether packed channels are those of one image in their order, as they are. */
 bool nt_conversion_is_identity(const nt_conversion *how);
 
+/* Makes one of conversions of which the results differ in what their pixels are alone. */
+void nt_conversion_simplify(nt_conversion *how);
+
 /*
  * Makes it.
  *
  *   files  [4] of the channels, where they have a source; equal sources have equal files
+ *   judged_only  no pixels are made but those that show what it comes to
  *
  * Returns NT_OK, also with damaged channels, as long as one that is used is left (the error says what is wrong with the
  * last of them), or what nt_image_decode() and nt_encode_png() do.
  */
-nt_status nt_conversion_make(const nt_conversion *how, const nt_file *const files[4], nt_converted *made,
-	nt_error *error);
+nt_status nt_conversion_make(const nt_conversion *how, const nt_file *const files[4], bool judged_only,
+	nt_converted *made, nt_error *error);
 
 #endif

@@ -4,6 +4,7 @@
  */
 #include "image/image.h"
 
+#include <inttypes.h>
 #include <stdlib.h>
 
 /* Rows that show whether an image is grey, if it is not; how far a JPEG's red, green and blue of a grey may differ. */
@@ -12,6 +13,16 @@ enum { SAMPLE_ROWS = 8, JPEG_CHROMA = 6 };
 bool nt_image_is_decoded(nt_image_type type)
 {
 	return type == NT_IMAGE_PNG || type == NT_IMAGE_JPEG || (type >= NT_IMAGE_TGA && type <= NT_IMAGE_TIFF);
+}
+
+nt_status nt_check_pixels(uint64_t pixels, uint64_t most, uint64_t file_bytes, nt_error *error)
+{
+	enum { BYTE_PIXELS = 256 };
+	static const uint64_t standard = (uint64_t)1 << 34;
+	if (!most)
+		most = file_bytes > standard / BYTE_PIXELS ? BYTE_PIXELS * file_bytes : standard;
+	return pixels <= most ? NT_OK : nt_fail(error, NT_ERROR_LIMIT,
+		"images of %" PRIu64 " pixels are to be decoded and made, --max-pixels is %" PRIu64, pixels, most);
 }
 
 static nt_status decode_rows(const unsigned char *bytes, size_t size, uint32_t rows, nt_pixels *pixels, nt_error *error)

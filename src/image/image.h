@@ -19,6 +19,17 @@
 bool nt_image_is_decoded(nt_image_type type);
 
 /*
+ * Whether a run may decode and make so many pixels.
+ *
+ *   most        as the user has it; 0: 2^34, which is 1 024 maps of 4096 x 4096, or more for files that have a byte for
+ *               256 pixels, as all have that are not of one colour
+ *   file_bytes  of the images
+ *
+ * Returns NT_OK or NT_ERROR_LIMIT.
+ */
+nt_status nt_check_pixels(uint64_t pixels, uint64_t most, uint64_t file_bytes, nt_error *error);
+
+/*
  * Decodes PNG, JPEG, TGA, BMP, PSD, HDR and TIFF, told by content.
  *
  *   bytes, size  the file; any bytes

@@ -58,6 +58,7 @@ struct nt_textures {
 	size_t result_count, result_capacity;
 	nt_hash_index by_path, by_request, by_conversion; /* sources, requests and results */
 	nt_texture_rules rules;
+	uint64_t pixels;    /* decoded and made */
 	const char *beside; /* path next to which large results are in files; NULL: all are in memory */
 };
 
@@ -111,6 +112,9 @@ static nt_status inspect(nt_texture_source *s, nt_error *error)
 	if (status)
 		return status;
 	s->type = nt_image_type_of_bytes(file.data, file.size);
+	uint32_t sides[2];
+	nt_image_size(file.data, file.size, sides);
+	s->pixels = (uint64_t)sides[0] * sides[1];
 	s->identity = (nt_file){.size = file.size, .fd = -1, .device = file.device, .inode = file.inode};
 	nt_file_close(&file);
 	return NT_OK;
@@ -305,8 +309,8 @@ static char *name_of(const nt_conversion *how, const nt_texture *texture)
 {
 	const char *name = nt_last_part(texture->sources[0]->path), *dot = strrchr(name, '.');
 	nt_buffer text = {0};
-	nt_buffer_append(&text, name, texture->bytes && dot > name ? (size_t)(dot - name) : strlen(name));
-	if (texture->bytes)
+	nt_buffer_append(&text, name, texture->made && dot > name ? (size_t)(dot - name) : strlen(name));
+	if (texture->made)
 		nt_buffer_format(&text, "%s.png",
 			how->packed ? how->suffix
 			: texture->from_heights ? "-normal" : texture->flipped ? "-green-up" : "");
@@ -357,7 +361,9 @@ static nt_status plan_results(nt_textures *t, nt_error *error)
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < t->request_count && !status; i++) {
 		unsigned lost;
-		const nt_conversion how = conversion_of(t, &t->requests[i], &lost);
+		nt_conversion how = conversion_of(t, &t->requests[i], &lost);
+		if (t->rules.judged_only)
+			nt_conversion_simplify(&how);
 		uint32_t *number = &t->requests[i].result;
 		const uint64_t hash = nt_conversion_hash(&how);
 		size_t at = NT_HASH_BEGIN;
@@ -435,10 +441,11 @@ static void decode_result(const nt_textures *t, result *r)
 	opened files;
 	nt_status status = open_sources(texture, t, &r->how, &files, &r->error);
 	if (!status)
-		status = nt_conversion_make(&r->how, files.of_channels, &made, &r->error);
+		status = nt_conversion_make(&r->how, files.of_channels, t->rules.judged_only, &made, &r->error);
 	for (size_t i = 0; i < files.count; i++)
 		status = close_source(texture->sources[i], &files.files[i], status, &r->error);
 	void *map = made.size >= FILED_BYTES ? map_in_file(t->beside, made.bytes, made.size) : NULL;
+	texture->made = made.made;
 	texture->mapped = map != NULL;
 	texture->bytes = map ? map : made.bytes;
 	texture->size = made.size;
@@ -456,7 +463,7 @@ static void decode_result(const nt_textures *t, result *r)
 		nt_error_clear(&r->error);
 	texture->flipped = made.flipped;
 	texture->alpha = made.alpha;
-	texture->type = made.bytes ? NT_IMAGE_PNG : texture->sources[0]->type;
+	texture->type = made.made ? NT_IMAGE_PNG : texture->sources[0]->type;
 }
 
 static void make_result(void *context, size_t item, unsigned slot)
@@ -493,7 +500,7 @@ static nt_status join_results(nt_textures *t, nt_error *error)
 	for (size_t i = 0; i < t->result_count && !status; i++) {
 		result *r = &t->results[i];
 		const nt_texture *texture = &r->texture;
-		if (texture->bytes || texture->type == NT_IMAGE_OTHER)
+		if (texture->made || texture->type == NT_IMAGE_OTHER)
 			continue;
 		const uint64_t hash = nt_hash_bytes(0, &texture->sources[0], sizeof texture->sources[0]);
 		size_t at = NT_HASH_BEGIN;
@@ -507,16 +514,44 @@ static nt_status join_results(nt_textures *t, nt_error *error)
 	return status;
 }
 
+uint64_t nt_textures_pixels(const nt_textures *t, uint64_t *bytes)
+{
+	*bytes = 0;
+	for (size_t i = 0; i < t->source_count; i++)
+		*bytes += t->sources[i]->file.identity.size;
+	return t->pixels;
+}
+
+/* Each source counts for each result that it is decoded for, and where somebody wants to know whether it is grey. */
+static nt_status check_pixels(nt_textures *t, nt_error *error)
+{
+	uint64_t bytes, pixels = 0;
+	nt_textures_pixels(t, &bytes);
+	for (size_t i = 0; i < t->source_count; i++)
+		pixels += t->sources[i]->in_question && can_decode(&t->sources[i]->file)
+			? t->sources[i]->file.pixels : 0;
+	for (size_t i = 0; i < t->result_count; i++)
+		for (size_t k = 0; k < t->results[i].texture.source_count; k++)
+			pixels += nt_conversion_decodes(&t->results[i].how)
+				? t->results[i].texture.sources[k]->pixels : 0;
+	t->pixels = pixels;
+	return nt_check_pixels(pixels, t->rules.max_pixels, bytes, error);
+}
+
 nt_status nt_textures_make(nt_textures *t, const nt_texture_rules *rules, nt_error *error)
 {
 	t->rules = *rules;
 	const unsigned threads = nt_thread_count(rules->threads);
+	if (check_pixels(t, error))
+		return error->status;
 	nt_parallel_items(threads, t->source_count, look_for_grey, t);
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < t->source_count && !status; i++)
 		status = fatal(&t->sources[i]->error, error);
 	if (!status)
 		status = plan_results(t, error);
+	if (!status)
+		status = check_pixels(t, error);
 	if (status)
 		return status;
 	nt_parallel_items(threads, t->result_count, make_result, t);

@@ -50,6 +50,8 @@ typedef struct nt_texture_rules {
 	nt_texture_choice choice;
 	nt_flip flip;
 	unsigned threads;
+	uint64_t max_pixels; /* that are decoded and made; 0: as nt_check_pixels() has it */
+	bool judged_only;    /* nobody takes the bytes: images are decoded to see what becomes of them, and not made */
 } nt_texture_rules;
 
 /* A file that was requested. */
@@ -58,12 +60,13 @@ typedef struct nt_texture_source {
 	nt_image_found found;
 	nt_image_type type;   /* of the file; of a missing one, by its name */
 	nt_file identity;     /* of the file, closed: size, device and inode */
+	uint64_t pixels;      /* as the file's header says; 0: not known */
 } nt_texture_source;
 
 /* One result. Texts and bytes belong to the textures. */
 typedef struct nt_texture {
-	const nt_texture_source *sources[4]; /* [source_count] that it was made of; the first is it where bytes
-	                                        are NULL */
+	const nt_texture_source *sources[4]; /* [source_count] that it was made of; the first is it where nothing was
+	                                        made */
 	size_t source_count;
 	nt_image_type type;        /* of the result; NT_IMAGE_OTHER: there is none */
 	bool from_heights;         /* a height map became a normal map */
@@ -73,7 +76,8 @@ typedef struct nt_texture {
 	unsigned lost;             /* bits: channels of what is packed whose image is not there or damaged */
 	unsigned damaged;          /* of these, damaged ones */
 	const char *name;          /* what a file of it is called */
-	const unsigned char *bytes; /* [size] of a PNG that was made; NULL: the first source is the result */
+	bool made;                 /* a PNG; else the first source is the result */
+	const unsigned char *bytes; /* [size] of what was made; NULL: nothing, or it is only judged */
 	bool mapped;                /* bytes are in a file */
 	size_t size;
 	const char *failure;       /* why something was not decoded; NULL: it was, or did not have to be */
@@ -93,8 +97,12 @@ nt_status nt_textures_request(nt_textures *textures, const nt_image_places *plac
 size_t nt_textures_requests(const nt_textures *textures);
 
 /* Makes the results. An image that cannot be decoded is no failure, but one without result, or as it is where glTF
- * carries it. Returns NT_OK, NT_ERROR_IO, also when a file is not what it was, or NT_ERROR_MEMORY. */
+ * carries it. Returns NT_OK, NT_ERROR_IO, also when a file is not what it was, NT_ERROR_MEMORY or, before anything is
+ * decoded or made that would be too much, NT_ERROR_LIMIT. */
 nt_status nt_textures_make(nt_textures *textures, const nt_texture_rules *rules, nt_error *error);
+
+/* Pixels that this has decoded and made, and bytes of the files. */
+uint64_t nt_textures_pixels(const nt_textures *textures, uint64_t *bytes);
 
 /* The results, none before they are made; several requests may have one, and of results that are the same file one
  * stands for all. */

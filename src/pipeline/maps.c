@@ -29,6 +29,7 @@ typedef struct examination {
 	nt_hash_index known; /* identities of images */
 	uint64_t (*identities)[2];
 	size_t count, capacity;
+	uint64_t pixels, bytes; /* of images that are decoded, those of materials too */
 	examined open[MOST_OPEN];
 	size_t open_count;
 } examination;
@@ -134,6 +135,16 @@ static nt_status add_map(examination *e, const nt_mesh *mesh, nt_normal_map *map
 		nt_normal_map_close(map);
 		return nt_fail_memory(error);
 	}
+	uint32_t sides[2];
+	if (is_wanted(e, map) && nt_image_size(map->bytes, map->size, sides)) {
+		e->pixels += (uint64_t)sides[0] * sides[1];
+		e->bytes += map->size;
+	}
+	const nt_status status = nt_check_pixels(e->pixels, e->settings->max_pixels, e->bytes, error);
+	if (status) {
+		nt_normal_map_close(map);
+		return status;
+	}
 	e->identities[e->count][0] = map->identity[0];
 	e->identities[e->count++][1] = map->identity[1];
 	e->open[e->open_count++] = (examined){.map = *map, .mesh = mesh};
@@ -152,7 +163,7 @@ static nt_status take_map(examination *e, const nt_mesh *mesh, enum nt_slot slot
 	return status ? status : add_map(e, mesh, &map, error);
 }
 
-nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_error *error)
+nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, const nt_textures *textures, nt_error *error)
 {
 	const bool wanted = settings->check_maps == NT_CHECK_MAPS_ON ||
 		(settings->check_maps == NT_CHECK_MAPS_AUTO && settings->report);
@@ -161,6 +172,8 @@ nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_error *
 		return wanted ? nt_fail_memory(error) : NT_OK;
 	e->scene = scene;
 	e->settings = settings;
+	if (textures)
+		e->pixels = nt_textures_pixels(textures, &e->bytes);
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < scene->mesh_count && !status; i++) {
 		status = take_map(e, &scene->meshes[i], NT_SLOT_NORMAL, error);

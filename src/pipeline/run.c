@@ -281,7 +281,7 @@ static nt_status run_stages(run *r)
 	if (!status)
 		status = nt_tell_textures(&r->scene, r->settings, r->textures, r->error);
 	if (!status)
-		status = nt_stage_maps(&r->scene, r->settings, r->error);
+		status = nt_stage_maps(&r->scene, r->settings, r->textures, r->error);
 	if (!status && r->settings->list_meshes)
 		status = nt_stage_listing(&r->scene, r->summary, r->error);
 	if (!status && r->writer)

@@ -100,6 +100,7 @@ typedef struct nt_settings {
 
 	/* Limits; 0: none. See nmtan(1). */
 	uint64_t max_triangles; /* of what is read */
+	uint64_t max_pixels;    /* of images that are decoded and made; 0: as nt_check_pixels() has it */
 	uint64_t max_memory;    /* bytes, of which a front end has the system refuse more */
 	double max_seconds;     /* of a run */
 	uint64_t need;          /* bytes that a run may take, as far as was guessed; 0: not known */

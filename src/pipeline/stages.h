@@ -58,9 +58,9 @@ nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *set
 nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const nt_textures *textures,
 	nt_error *error);
 
-/* Examines normal maps, if settings->check_maps or a report wants that, and adds what is found. Returns NT_OK,
- * NT_ERROR_IO or NT_ERROR_MEMORY. */
-nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_error *error);
+/* Examines normal maps, if settings->check_maps or a report wants that, and adds what is found. textures: what was
+ * decoded before; NULL: nothing. Returns NT_OK, NT_ERROR_IO, NT_ERROR_MEMORY or NT_ERROR_LIMIT. */
+nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, const nt_textures *textures, nt_error *error);
 
 /* If an input changed during the run, reports only that; else returns `status`. */
 nt_status nt_check_inputs(nt_scene *scene, nt_status status, nt_error *error);

@@ -120,7 +120,10 @@ static void make_part(void *context, unsigned slot)
 		m->status[0] = nt_stage_tangents(m->scene, m->settings, m->output, m->summary, m->error);
 		return;
 	}
-	const nt_texture_rules rules = {m->settings->textures, m->settings->flip_green, m->settings->threads};
+	const nt_settings *s = m->settings;
+	const nt_texture_rules rules = {.choice = s->textures, .flip = s->flip_green, .threads = s->threads,
+		.max_pixels = s->max_pixels,
+		.judged_only = (s->check || s->dry_run) && !(s->report && s->report->keep_geometry)};
 	m->status[1] = nt_textures_make(m->textures, &rules, &m->texture_error);
 }
 
@@ -218,7 +221,7 @@ static void tell_request(const telling *t, const nt_map_request *w)
 	nt_map_request_settle(t->material, w, image ? image->lost : 0);
 	for (int k = 4; k-- > 0;)
 		first = w->maps[k] && w->maps[k]->request != NT_NONE ? w->maps[k] : first;
-	if (first && image->bytes)
+	if (first && image->made)
 		tell_made(t, first, image);
 }
 

@@ -130,6 +130,15 @@ within 6 800 -q i.obj i.gltf
 exits 0
 is "$(gltf i.gltf 'g.materials.length')" $blocks
 
+scene "images that are not written are decoded once, and not made"
+inputs bumps 40 b.obj
+for words in --check "--dry-run --report=r.json"; do
+	# shellcheck disable=SC2086
+	within 2 150 -q --fail-on=never $words b.obj $([ "$words" = --check ] || echo out.glb)
+	exits 0
+done
+is "$(value r.json '[f["code"] for f in r["files"][0]["findings"]].count("IMAGE_CONVERTED")')" 40
+
 scene "1 500 primitives over one set of accessors are judged and drawn once"
 inputs same 1500 s.glb
 within 15 300 --check --report=s.html --only=all --fail-on=never s.glb

@@ -40,6 +40,29 @@ exists out/quad.glb
 [ ! -e out/head.glb ] || wrong "there is an output"
 is "$(python3 -c 'import json; print(sorted(json.loads(line)["exit_code"] for line in open("m.jsonl")))')" "[0, 7]"
 
+scene "pixels of images are counted before any is decoded"
+python3 "$ROOT/tests/support/cost_inputs.py" bumps 3 b.obj 256
+# each is looked at to see whether it is grey, and then decoded for each result
+run --max-pixels=262143 b.obj out.gltf
+refused "b.obj: images of 262144 pixels are to be decoded and made, --max-pixels is 262143" b.obj b.obj.mtl b.obj.png
+run --max-pixels=65535 b.obj out.gltf
+refused "images of 65536 pixels" b.obj b.obj.mtl b.obj.png
+run -q --max-pixels=262144 b.obj out.gltf
+exits 0
+rm -r out.*
+cp "$data/plates.gltf" "$data/plates.bin" "$data/bumps.png" .
+run --check --check-maps=on --max-pixels=100 plates.gltf
+exits 7
+says "plates.gltf: images of "
+
+scene "500 maps of 4096 x 4096 are not too many, 60 times as many are"
+python3 "$ROOT/tests/support/cost_inputs.py" bumps 500 b.obj
+run --max-seconds=0.1 b.obj out.glb
+refused "not done after" b.obj b.obj.mtl b.obj.png
+python3 "$ROOT/tests/support/cost_inputs.py" bumps 30000 b.obj
+run b.obj out.glb
+refused "are to be decoded and made, --max-pixels is 17179869184" b.obj b.obj.mtl b.obj.png
+
 scene "a run that is late ends, without output, temporary files and report"
 python3 "$ROOT/tests/support/cost_inputs.py" windows 200 w.glb
 for words in "" --verify --bitangents; do

@@ -38,6 +38,34 @@ exits 0
 same before/n.png out/n.png
 is "$(ls out | wc -l)" 4
 
+scene "--check and a dry run, which make no image, say of images what a conversion says"
+images write h.tga 32 16 '(x * 8, x * 8, x * 8)'
+images write n.tga 32 16 "$bumps"
+images write opaque.png 4 4 '(9, 9, 9, 255)'
+images write clear.png 4 4 '(9, 7, 8, x * 80)'
+printf 'no image' >broken.tga
+head -c 400 h.tga >short.tga
+codes() {
+	value r.json 'sorted((f["code"], f.get("detail", f["message"])) for f in r["files"][0]["findings"] if f["code"].startswith(("IMAGE", "BUMP")))'
+}
+for lines in "map_Bump -bm 3 h.tga" "map_Bump h.tga|map_Kd clear.png" "norm n.tga|map_d clear.png|map_Kd opaque.png" \
+	"map_Kd opaque.png|map_d -imfchan m opaque.png" "map_Pr short.tga|map_Pm -imfchan g n.tga" "norm short.tga" \
+	"map_Kd -mm 0.1 0.5 opaque.png|map_Pr broken.tga"; do
+	for words in "" --flip-green=on --textures=keep --textures=png; do
+		mapfile -t split < <(tr '|' '\n' <<<"$lines")
+		quad "${split[@]}"
+		# shellcheck disable=SC2086
+		run --report=r.json $words quad.obj out.gltf
+		made=$(codes)
+		for how in "--check --as=gltf" "--dry-run"; do
+			# shellcheck disable=SC2086
+			run --report=r.json $words $how quad.obj $([ "$how" = --dry-run ] && echo dry.gltf)
+			is "$how $lines $words: $(codes)" "$how $lines $words: $made"
+		done
+	done
+done
+[ ! -e dry.gltf ] || wrong "a dry run wrote"
+
 scene "a name that is taken by another file stays with that"
 images write n.tga 32 16 "$bumps"
 images write n.png 2 2 '(1, 2, 3)'

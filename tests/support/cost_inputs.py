@@ -11,6 +11,8 @@ ranges    a GLB of COUNT primitives over one grid of SIDE (100) quads squared, e
 scene     a GLB of COUNT primitives, ten in a mesh, of SIDE (3) quads squared and with accessors of their own, of 50
           materials
 images    an OBJ of COUNT materials, and FILE.mtl beside it, with two images each that are not there
+bumps     an OBJ of COUNT materials, and FILE.mtl and FILE.png beside it: each makes other normals of one white PNG of
+          SIDE (4096) pixels squared and one bit
 strip     an OBJ strip of COUNT quads
 hub       an OBJ of COUNT triangles around one point
 edge      an OBJ of COUNT triangles on one edge
@@ -22,6 +24,7 @@ import json
 import math
 import struct
 import sys
+import zlib
 
 
 def elements(count, out):
@@ -46,6 +49,19 @@ def images(count, out):
     with open(sys.argv[3] + '.mtl', 'w') as materials:
         for i in range(count):
             materials.write('newmtl m%d\nmap_Kd c%d.png\nnorm n%d.png\n' % (i, i, i))
+
+
+def bumps(count, out, side):
+    images(count, out)
+    name = sys.argv[3]
+    with open(name + '.mtl', 'w') as materials:
+        for i in range(count):
+            materials.write('newmtl m%d\nmap_Bump -bm %d %s.png\n' % (i, i + 1, name))
+    rows = zlib.compress((b'\0' + b'\xff' * (side // 8)) * side, 9)
+    with open(name + '.png', 'wb') as png:
+        png.write(b'\x89PNG\r\n\x1a\n')
+        for kind, data in (b'IHDR', struct.pack('>IIBBBBB', side, side, 1, 0, 0, 0, 0)), (b'IDAT', rows), (b'IEND', b''):
+            png.write(struct.pack('>I', len(data)) + kind + data + struct.pack('>I', zlib.crc32(kind + data)))
 
 
 def strip(count, out):
@@ -186,6 +202,8 @@ with open(sys.argv[3], 'wb') as out:
         glb(count, out, side or 100, False, True)
     elif kind == 'scene':
         scene(count, out, side or 3)
+    elif kind == 'bumps':
+        bumps(count, out, side or 4096)
     else:
         {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
          'patches': patches, 'repeated': repeated, 'centre': centre}[kind](count, out)

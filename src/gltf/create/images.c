@@ -106,7 +106,7 @@ nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *outp
 /* The bytes of an image: those that were made, or its file. */
 static nt_status open_image(const nt_texture *image, nt_file *file, nt_error *error)
 {
-	if (image->bytes) {
+	if (image->made) {
 		*file = nt_file_of_bytes(image->bytes, image->size);
 		return NT_OK;
 	}
@@ -132,8 +132,9 @@ static nt_status write_file(nt_image_set *set, image_entry *entry, nt_output *ou
 	nt_sink *sink;
 	nt_file file;
 	nt_status status = path.failed ? nt_fail_memory(error) : NT_OK;
-	/* it is there: a link does */
-	if (status || (!entry->image->bytes && nt_file_is(&entry->image->sources[0]->identity, path.data))) {
+	/* it is there: a link does; or nobody has made it, and nothing is written */
+	const nt_texture *image = entry->image;
+	if (status || (image->made ? !image->bytes : nt_file_is(&image->sources[0]->identity, path.data))) {
 		nt_buffer_free(&path);
 		return status;
 	}
@@ -153,7 +154,7 @@ static nt_status write_file(nt_image_set *set, image_entry *entry, nt_output *ou
 
 static uint32_t add_embedded(image_entry *entry, const char *title, nt_model *model, uint64_t *buffer_size)
 {
-	const uint64_t size = entry->image->bytes ? entry->image->size : entry->image->sources[0]->identity.size;
+	const uint64_t size = entry->image->made ? entry->image->size : entry->image->sources[0]->identity.size;
 	entry->offset = (*buffer_size + 3) & ~(uint64_t)3;
 	*buffer_size = entry->offset + size;
 	const uint32_t view = nt_model_view(model, entry->offset, size, NT_GLTF_NO_TARGET);
@@ -164,7 +165,7 @@ static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_model *mode
 	uint64_t *buffer_size, nt_output *output, nt_error *error)
 {
 	entry->embedded = set->choice == NT_IMAGES_EMBED;
-	if (entry->image->bytes ? !entry->embedded : set->choice == NT_IMAGES_COPY) {
+	if (entry->image->made ? !entry->embedded : set->choice == NT_IMAGES_COPY) {
 		const nt_status status = write_file(set, entry, output, error);
 		if (status != NT_OK)
 			return status;
@@ -201,7 +202,7 @@ static void note_made(const nt_image_set *set, nt_output *output)
 	size_t count = 0;
 	for (size_t i = 0; i < set->entry_count; i++) {
 		const image_entry *entry = &set->entries[i];
-		if (!entry->used || !entry->image->bytes || count++ >= NAMES_SHOWN)
+		if (!entry->used || !entry->image->made || count++ >= NAMES_SHOWN)
 			continue;
 		nt_output_note(output, "%s", count == 1 ? ";" : ",");
 		for (size_t k = 0; k < entry->image->source_count; k++)

@@ -64,6 +64,28 @@ static void a_glb_counts_its_json_and_its_bytes(void **state)
 	assert_int_equal(need_of("long.glb"), MB + 12 * 4);
 }
 
+/* A height map and a TGA of colours, of 256 x 512; a PNG of colours is not converted, and what is elsewhere is not
+ * looked at. */
+static void an_obj_counts_the_largest_images_that_are_converted(void **state)
+{
+	(void)state;
+	static const char obj[] = "# head\nmtllib m.mtl\r\nv 0 0 0\n";
+	static const unsigned char png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D',
+		'R', 0, 0, 1, 0, 0, 0, 2, 0}, tga[] = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 24, 0};
+	static const char mtl[] = "newmtl a\n\tmap_Bump -bm 2 h.png \nmap_Bump h.png\nmap_Kd c.tga\n"
+		"map_Ke h.png\nmap_Pr ../need/h.png\nnorm none.png";
+	put_text_file("i.obj", obj);
+	put_file("h.png", png, sizeof png);
+	put_file("c.tga", tga, sizeof tga);
+	const nt_settings of_two = {.threads = 2}, of_one = {.threads = 1}, ply = {.output_format = NT_FORMAT_PLY};
+	const uint64_t bare = MB + 10 * strlen(obj);
+	assert_int_equal(nt_need_of(in_folder("i.obj"), &of_two, 1 << 30), bare);
+	put_text_file("m.mtl", mtl);
+	assert_int_equal(nt_need_of(in_folder("i.obj"), &of_two, 0), bare + 2 * 6 * 256 * 512);
+	assert_int_equal(nt_need_of(in_folder("i.obj"), &of_one, 1 << 30), bare + 6 * 256 * 512);
+	assert_int_equal(nt_need_of(in_folder("i.obj"), &ply, 0), bare);
+}
+
 /* Each half of these is a number, and what it would take: 2 * 2^63, 40 * 2^60. */
 static void what_is_claimed_beyond_64_bits_is_more_than_there_is(void **state)
 {
@@ -106,6 +128,7 @@ int main(void)
 		cmocka_unit_test(text_counts_by_its_bytes),
 		cmocka_unit_test(gltf_counts_by_its_accessors_wherever_their_bytes_are),
 		cmocka_unit_test(a_glb_counts_its_json_and_its_bytes),
+		cmocka_unit_test(an_obj_counts_the_largest_images_that_are_converted),
 		cmocka_unit_test(what_is_claimed_beyond_64_bits_is_more_than_there_is),
 		cmocka_unit_test(where_the_size_says_enough_nothing_is_opened),
 		cmocka_unit_test(what_has_no_size_is_alone_and_what_is_missing_is_nothing),

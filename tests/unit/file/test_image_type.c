@@ -84,6 +84,38 @@ TEST(sizes_stand_in_headers)
 	assert_int_equal(pixels[1], 0x258);
 }
 
+/* 3 wide, 2 high */
+TEST(sizes_of_all_formats)
+{
+	static const struct {
+		const char *bytes;
+		size_t size;
+	} rows[] = {
+#define ROW(text) {text, sizeof text - 1}
+		ROW("\0\0\2\0\0\0\0\0\0\0\0\0\3\0\2\0\30\0"),
+		ROW("BM    \0\0\0\0    \50\0\0\0\3\0\0\0\2\0\0\0"),
+		ROW("BM    \0\0\0\0    \50\0\0\0\3\0\0\0\376\377\377\377"), /* from the top */
+		ROW("BM    \0\0\0\0    \14\0\0\0\3\0\2\0\1\0\1\0"),
+		ROW("8BPS\0\1\0\0\0\0\0\0\0\3\0\0\0\2\0\0\0\3\0\10"),
+		ROW("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 3\n"),
+		ROW("II*\0\10\0\0\0\2\0\0\1\3\0\1\0\0\0\3\0\0\0\1\1\4\0\1\0\0\0\2\0\0\0"),
+		ROW("MM\0*\0\0\0\10\0\2\1\0\0\3\0\0\0\1\0\3\0\0\1\1\0\4\0\0\0\1\0\0\0\2"),
+	};
+	uint32_t pixels[2];
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		assert_true(nt_image_size((const unsigned char *)rows[i].bytes, rows[i].size, pixels));
+		assert_int_equal(pixels[0], 3);
+		assert_int_equal(pixels[1], 2);
+		/* in a block of its own, so that a sanitizer sees what is read behind it */
+		for (size_t size = 0; size < rows[i].size; size++) {
+			unsigned char *cut = malloc(size + !size);
+			memcpy(cut, rows[i].bytes, size);
+			nt_image_size(cut, size, pixels);
+			free(cut);
+		}
+	}
+}
+
 TEST(what_is_cut_short_or_empty_has_none)
 {
 	uint32_t pixels[2];

@@ -37,7 +37,7 @@ static nt_pixels make(const nt_conversion *how, const nt_file *a, const nt_file 
 	nt_error_clear(&error);
 	for (int k = 0; k < 4; k++)
 		files[k] = how->channels[k].source == 0 ? a : b;
-	assert_int_equal(nt_conversion_make(how, files, made, &error), NT_OK);
+	assert_int_equal(nt_conversion_make(how, files, false, made, &error), NT_OK);
 	if (made->bytes)
 		assert_int_equal(nt_image_decode(made->bytes, made->size, &pixels, &error), NT_OK);
 	free(made->bytes);
@@ -107,7 +107,7 @@ TEST(a_damaged_image_makes_its_channels_white)
 	const nt_conversion lost = {.packed = true, .channels = {take(1, NT_CHANNEL_BLUE)}};
 	const nt_file *const files[4] = {&b};
 	nt_error error;
-	assert_int_equal(nt_conversion_make(&lost, files, &made, &error), NT_ERROR_INPUT);
+	assert_int_equal(nt_conversion_make(&lost, files, false, &made, &error), NT_ERROR_INPUT);
 	assert_null(made.bytes);
 }
 
@@ -123,7 +123,7 @@ TEST(conversions_without_memory_are_an_error)
 		nt_converted made;
 		nt_error error;
 		fail_allocations_from(n);
-		const nt_status status = nt_conversion_make(&how, files, &made, &error);
+		const nt_status status = nt_conversion_make(&how, files, false, &made, &error);
 		failed = stop_failing_allocations();
 		assert_int_equal(status, failed ? NT_ERROR_MEMORY : NT_OK);
 		free(made.bytes);

@@ -42,7 +42,7 @@ static const nt_texture *result(const nt_textures *textures, uint32_t number)
 
 static nt_status make(nt_textures *textures, nt_error *error)
 {
-	const nt_texture_rules rules = {NT_TEXTURES_AUTO, NT_FLIP_OFF, 2};
+	const nt_texture_rules rules = {.threads = 2};
 	return nt_textures_make(textures, &rules, error);
 }
 
@@ -133,7 +133,7 @@ TEST(textures_without_memory_are_an_error)
 		const nt_image_places places = {.document = in_folder("m.mtl")};
 		const nt_texture_request what = {.kind = NT_TEXTURE_NORMALS_OR_HEIGHTS, .height = 0.1,
 			.channels = {{.name = "grey.tga", .map = {.channel = NT_CHANNEL_LUMINANCE, .gain = 1}}}};
-		const nt_texture_rules rules = {NT_TEXTURES_AUTO, NT_FLIP_OFF, 1};
+		const nt_texture_rules rules = {.threads = 1};
 		uint32_t number;
 		nt_error error;
 		fail_allocations_from(n);

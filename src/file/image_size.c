@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Sizes of images, where their formats have them: PNG in its first chunk (W3C PNG, 11.2.1), JPEG in the first frame
+ * header, behind other segments (ITU-T T.81, B.2.2), TIFF among the tags of its first directory (TIFF 6.0, section 2),
+ * HDR in the line behind its header, the others at fixed places.
+ */
+#include "file/image_type.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static uint64_t number_at(const unsigned char *p, size_t bytes, bool big_endian)
+{
+	uint64_t value = 0;
+	for (size_t i = 0; i < bytes; i++)
+		value = value << 8 | p[big_endian ? i : bytes - 1 - i];
+	return value;
+}
+
+static void size_of_jpeg(const unsigned char *bytes, size_t size, uint32_t pixels[2])
+{
+	size_t at = 2;
+	while (at + 9 < size && bytes[at] == 0xFF) {
+		const unsigned char marker = bytes[at + 1];
+		if (marker == 0xFF) { /* fill */
+			at++;
+			continue;
+		}
+		/* SOF0 to SOF15, without DHT, JPG and DAC, which lie among them */
+		if (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) {
+			pixels[0] = (uint32_t)number_at(bytes + at + 7, 2, true);
+			pixels[1] = (uint32_t)number_at(bytes + at + 5, 2, true);
+			return;
+		}
+		at += 2 + number_at(bytes + at + 2, 2, true);
+	}
+}
+
+/* Version 43 (BigTIFF) has 8 bytes where 42 has 4, and 2 for counts of tags. */
+static void size_of_tiff(const unsigned char *bytes, size_t size, uint32_t pixels[2])
+{
+	enum { WIDTH = 256, HEIGHT = 257, SHORT = 3 };
+	if (size < 16)
+		return;
+	const bool big_endian = bytes[0] == 'M', large = number_at(bytes + 2, 2, big_endian) == 43;
+	const size_t word = large ? 8 : 4, head = large ? 8 : 2, entry = large ? 20 : 12;
+	const uint64_t at = number_at(bytes + word, word, big_endian);
+	const uint64_t count = at < size - head ? number_at(bytes + at, head, big_endian) : 0;
+	for (uint64_t i = 0; i < count && size - at - head >= (i + 1) * entry; i++) {
+		const unsigned char *tag = bytes + at + head + i * entry;
+		const uint64_t name = number_at(tag, 2, big_endian), type = number_at(tag + 2, 2, big_endian);
+		if (name == WIDTH || name == HEIGHT)
+			pixels[name - WIDTH] =
+				(uint32_t)number_at(tag + entry - word, type == SHORT ? 2 : 4, big_endian);
+	}
+}
+
+/* "-Y 2 +X 3" behind an empty line */
+static void size_of_hdr(const unsigned char *bytes, size_t size, uint32_t pixels[2])
+{
+	const unsigned char *end = memmem(bytes, size, "\n\n", 2);
+	char line[32] = "";
+	if (!end)
+		return;
+	const size_t left = size - (size_t)(end + 2 - bytes);
+	memcpy(line, end + 2, left < sizeof line - 1 ? left : sizeof line - 1);
+	if (sscanf(line, "-Y %9u +X %9u", &pixels[1], &pixels[0]) != 2)
+		pixels[0] = 0;
+}
+
+/* With a header of 12 bytes in 2 bytes each; a negative height is that of an image from the top. */
+static void size_of_bmp(const unsigned char *bytes, uint32_t pixels[2])
+{
+	const bool old = number_at(bytes + 14, 4, false) == 12;
+	pixels[0] = (uint32_t)number_at(bytes + 18, old ? 2 : 4, false);
+	pixels[1] = (uint32_t)number_at(bytes + (old ? 20 : 22), old ? 2 : 4, false);
+	if (!old && pixels[1] > INT32_MAX)
+		pixels[1] = 0 - pixels[1];
+}
+
+bool nt_image_size(const unsigned char *bytes, size_t size, uint32_t pixels[2])
+{
+	enum { MOST_HEADER = 26 };
+	const nt_image_type type = nt_image_type_of_bytes(bytes, size);
+	pixels[0] = pixels[1] = 0;
+	if (type == NT_IMAGE_JPEG) {
+		size_of_jpeg(bytes, size, pixels);
+	} else if (type == NT_IMAGE_TIFF) {
+		size_of_tiff(bytes, size, pixels);
+	} else if (type == NT_IMAGE_HDR) {
+		size_of_hdr(bytes, size, pixels);
+	} else if (type == NT_IMAGE_BMP && size >= MOST_HEADER) {
+		size_of_bmp(bytes, pixels);
+	} else if (type == NT_IMAGE_TGA && size >= 16) {
+		pixels[0] = (uint32_t)number_at(bytes + 12, 2, false);
+		pixels[1] = (uint32_t)number_at(bytes + 14, 2, false);
+	} else if (type == NT_IMAGE_PNG && size >= 24 && memcmp(bytes + 12, "IHDR", 4) == 0) {
+		pixels[0] = (uint32_t)number_at(bytes + 16, 4, true);
+		pixels[1] = (uint32_t)number_at(bytes + 20, 4, true);
+	} else if (type == NT_IMAGE_PSD && size >= 22) {
+		pixels[0] = (uint32_t)number_at(bytes + 18, 4, true);
+		pixels[1] = (uint32_t)number_at(bytes + 14, 4, true);
+	}
+	if (pixels[0] && pixels[1])
+		return true;
+	pixels[0] = pixels[1] = 0;
+	return false;
+}
