@@ -119,7 +119,9 @@ run -q slope.gltf right.gltf
 gltf right.gltf wrong 'const n = g.meshes[0].primitives[0].attributes.TANGENT, b = bytes[0];
 	for (let i = 0; i < g.accessors[n].count; i++) b.writeFloatLE(-b.readFloatLE(at(n, i) + 12), at(n, i) + 12)'
 run --check --diff --report=lit.html wrong.gltf right.gltf
-exists lit.html twelve.html
+cp wrong.gltf "./-\$(touch broken)'.gltf"
+run --check --report=names.html --fail-on=never -- "-\$(touch broken)'.gltf"
+exists lit.html names.html twelve.html
 run --check --report=below/ --fail-on=never red.gltf
 grep -aq '"file":"../tex/red.png"' below/red.gltf.html || wrong "a page in a folder does not find the image"
 run --check --report-format=html --fail-on=never red.gltf

@@ -250,4 +250,83 @@ for pair in a.bin:FBX b.stl:STL c.dae:COLLADA d.usda:USD "e.tile:a tile of 3D Ti
 	says "${pair#*:} is not read"
 	grep -q "glTF\|GLB" "$WORK/err.txt" || wrong "it says nothing to bring instead"
 done
+# A normal-mapped square with tangents, m.gltf.
+mapped() {
+	printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1/1 2/2/1 3/3/1 4/4/1\n' >square.obj
+	run -q square.obj square.gltf
+	gltf square.gltf m 'Object.assign(g, {images: [{uri: "n.png"}], textures: [{source: 0}], materials: [{normalTexture: {index: 0}}]});
+		g.meshes[0].primitives[0].material = 0'
+	python3 "$ROOT/tests/support/images.py" write n.png 32 32 "(128, 128 + x, 255)"
+}
+
+# A map of bumps, their green as DirectX has it.
+green_down() {
+	python3 "$ROOT/tests/support/images.py" write "$1" 128 128 '(lambda u, v: (lambda r: tuple(round(127.5 + 127.5 * c / r) for c in (u, v, 1.5)))(
+		math.hypot(u, v, 1.5)) if u * u + v * v < 0.8 else (128, 128, 255))(x % 32 / 16 - 1, y % 32 / 16 - 1)'
+}
+
+scene "the first sentence: ready, or what is to be done again, the first step first"
+mapped
+said() { value r.json 'r["files"][0]["verdict"]'; }
+run --check -q --report=r.json --fail-on=never m.gltf
+is "$(said)" "Ready to use"
+echo 'f 1 2 3' >bad.obj
+run --check -q --report=r.json bad.obj
+is "$(said)" 'Not judged: face refers to "v" number 1, but the file has 0'
+gltf m.gltf worse 'const a = g.meshes[0].primitives[0].attributes; bytes[0].writeFloatLE(0, at(a.TANGENT, 0) + 12); bytes[0].writeFloatLE(NaN, at(a.TEXCOORD_0, 0))'
+run --check -q --report=r.json --fail-on=never worse.gltf
+is "$(said | cut -d';' -f1)" "Export again: 1 vertex has texture coordinates that are not finite"
+green_down n.png
+gltf m.gltf bad 'const n = g.meshes[0].primitives[0].attributes.TANGENT; bytes[0].writeFloatLE(0, at(n, 0) + 12)'
+run --check -q --report=r.json --fail-on=never bad.gltf
+is "$(said)" "Convert with nmtan: 1 tangent has a w that is neither 1 nor -1; and 1 more"
+run --check -q --report=r.json --fail-on=never --severity=TAN_BAD_W=warning bad.gltf
+is "$(said | cut -d: -f1-2)" "Bake again: normal map whose green points down"
+run --check -q --report-format=text --fail-on=never --severity=TAN_BAD_W=warning bad.gltf
+is "$(sed -n 2p "$WORK/out.txt")" "  $(said)"
+run --check -q --report-format=markdown --fail-on=never --severity=TAN_BAD_W=warning bad.gltf
+grep -q '^Bake again: normal map whose' "$WORK/out.txt" || wrong "Markdown does not say it"
+run --check -q --report=known.json --baseline=r.json --fail-on=never bad.gltf
+is "$(value known.json 'r["files"][0]["verdict"]')" "Ready to use"
+
+scene "what nmtan says that it repairs is gone after a run with the options that it names"
+mapped
+while IFS='|' read -r code edit; do
+	gltf m.gltf faulty "const p = g.meshes[0].primitives[0], a = p.attributes, n = a.TANGENT, b = bytes[0];
+		const t = f => { for (let i = 0; i < 4; i++) f([0, 1, 2, 3].map(k => b.readFloatLE(at(n, i) + 4 * k)), i)
+			.forEach((x, k) => b.writeFloatLE(x, at(n, i) + 4 * k)); }; $edit"
+	run --check -q --report=r.json --fail-on=never faulty.gltf
+	options=$(value r.json 'next((f["repair"] for f in r["files"][0]["findings"] if f["code"] == "'$code'"), "none")')
+	[ "$options" != none ] || wrong "no $code to repair"
+	run -q $options faulty.gltf repaired.gltf
+	exits 0
+	run --check -q --report=r.json --fail-on=never repaired.gltf
+	is "$code $(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "'$code'"]')" "$code []"
+done <<'END'
+TAN_SIGN_MISMATCH|t(v => [v[0], v[1], v[2], -v[3]])
+TAN_MIXED_W_TRIANGLE|t((v, i) => [v[0], v[1], v[2], i ? v[3] : -v[3]])
+TAN_DIRECTION_MISMATCH|t(v => [v[1], v[0], v[2], v[3]])
+TAN_NOT_ORTHOGONAL|t(v => [0.6, 0, 0.8, v[3]])
+TAN_PARALLEL_NORMAL|t(v => [0, 0, 1, v[3]])
+TAN_ZERO|t(v => [0, 0, 0, 1])
+TAN_NOT_FINITE|t(v => [NaN, 0, 0, 1])
+TAN_NON_UNIT|t(v => [2, 0, 0, v[3]])
+TAN_NON_UNIT|t(v => [2, 0, 0, v[3]]), delete p.material
+TAN_BAD_W|t(v => [1, 0, 0, 0])
+TAN_MORPH_MISSING|p.targets = [{POSITION: a.POSITION}]
+TAN_NO_NORMAL|delete a.NORMAL, delete a.TANGENT
+TAN_MISSING_REQUIRED|delete a.TANGENT, g.materials = [{extensions: {KHR_materials_anisotropy: {anisotropyStrength: 0.5}}}], g.extensionsUsed = ['KHR_materials_anisotropy']
+END
+# of an OBJ green is turned; a glTF's maps are not touched
+green_down n.png
+{ printf 'mtllib m.mtl\nusemtl m\n'; cat square.obj; } >m.obj
+printf 'newmtl m\nnorm n.png\n' >m.mtl
+run --check -q --report=r.json --fail-on=never m.obj
+is "$(value r.json '[f["repair"] for f in r["files"][0]["findings"] if f["code"] == "NMAP_GREEN_DOWN"]')" "['--flip-green=auto']"
+run -q --flip-green=auto m.obj turned.glb
+run --check -q --report=r.json --fail-on=never turned.glb
+is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "NMAP_GREEN_DOWN"]')" "[]"
+run --check -q --report=r.json --fail-on=never m.gltf
+is "$(value r.json '[f["repair"] for f in r["files"][0]["findings"] if f["code"] == "NMAP_GREEN_DOWN"]')" "[None]"
+
 done_testing

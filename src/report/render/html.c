@@ -5,12 +5,13 @@
  * What there is to read comes first, as JSON in a script element that is not run (#data), with every `<` written as
  * \u003c, so that no name can end the element:
  *
- *   files     [{name, format, failure, counts: [errors, warnings, infos], meshes, findings}]
+ *   files     [{name, format, verdict, failure, counts: [errors, warnings, infos], meshes, findings}]
  *             mesh:     {label, why, same_as, triangles, vertices, islands, box, facts: [[name, text]],
  *                       images: [{image, map: [6], file}] of normal map and base colour: numbers of images, and URIs,
  *                       or null, wrap: [nt_wrap, nt_wrap], seams: [[edges, closed, length, plane, unmirrored island,
  *                       mirrored island]], geometry: bool}
- *             finding:  {code, severity, count, known, message, mesh, seam, island, line, box, at: [triangle]}
+ *             finding:  {code, severity, count, known, message, mesh, seam, island, line, box, at: [triangle],
+ *                       repair: options of nmtan, not there where it cannot}
  *   codes     {CODE: {title, meaning, remedy}} of the findings that there are
  *   images    [data URI], which meshes number
  *   left_out  findings that have no place on the page
@@ -18,8 +19,8 @@
  *   diff      of two versions only: {unchanged, meshes: [{old, new, changed, label, rows: [[name, text]]}]}, where old
  *             and new are numbers of meshes or null; a finding is known where the other version has it
  *
- * The index of a folder of pages has `folder: true` and, of each file, {name, format, counts, failure, page, triangles,
- * islands, seams, layout: [path, path], meshes: [], findings: [{code, severity}]}, without equal findings.
+ * The index of a folder of pages has `folder: true` and, of each file, {name, format, verdict, counts, failure, page,
+ * triangles, islands, seams, layout: [path, path], meshes: [], findings: [{code, severity}]}, without equal findings.
  *
  * Then the page's script (the pages of a folder refer to one file with it, and to one with the style), then the
  * geometry of each mesh in an element of its own, #g-FILE-MESH, which is not looked at until the mesh is opened: a line
@@ -224,7 +225,15 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 
 /* ---- findings ---- */
 
-static void put_finding(const nt_report_finding *finding, bool known, nt_buffer *out)
+static void put_repair(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
+{
+	nt_buffer options = {0};
+	if (nt_repair_options(report, finding, &options))
+		nt_buffer_format(out, ",\"repair\":\"%s\"", options.data ? options.data : "");
+	nt_buffer_free_into(&options, out);
+}
+
+static void put_finding(const nt_report *report, const nt_report_finding *finding, bool known, nt_buffer *out)
 {
 	nt_buffer_format(out, "{\"code\":\"%s\",\"severity\":\"%s\",\"count\":%zu,\"known\":%s,\"message\":",
 		nt_code_info(finding->code)->name, nt_severity_name(finding->severity), finding->count,
@@ -240,7 +249,9 @@ static void put_finding(const nt_report_finding *finding, bool known, nt_buffer 
 	for (unsigned i = 0, any = 0; i < finding->spot_count; i++)
 		if (finding->spots[i].triangle != NT_NONE)
 			nt_buffer_format(out, any++ ? ",%u" : "%u", finding->spots[i].triangle);
-	nt_buffer_text(out, "]}");
+	nt_buffer_text(out, "]");
+	put_repair(report, finding, out);
+	nt_buffer_text(out, "}");
 }
 
 static void put_findings(const nt_report *report, budget *left, nt_buffer *out)
@@ -249,8 +260,9 @@ static void put_findings(const nt_report *report, budget *left, nt_buffer *out)
 	nt_buffer_text(out, "\"findings\":[");
 	for (; i < report->finding_count && left->findings > 0; i++, left->findings--) {
 		nt_buffer_text(out, i ? ",\n" : "\n");
-		put_finding(&report->findings[i], left->known ? left->known[i] : report->findings[i].known, out);
-		left->seen[report->findings[i].code] = true;
+		const nt_report_finding *finding = &report->findings[i];
+		put_finding(report, finding, left->known ? left->known[i] : finding->known, out);
+		left->seen[finding->code] = true;
 	}
 	left->left_out += report->finding_count - i + report->dropped;
 	nt_buffer_text(out, "]");
@@ -261,6 +273,8 @@ static void put_head(const nt_report *report, nt_buffer *out)
 {
 	nt_buffer_text(out, "{\"name\":");
 	put_string(report->shown, out);
+	nt_buffer_text(out, ",\"verdict\":");
+	nt_put_verdict(report, put_string, out);
 	nt_buffer_format(out, ",\"format\":\"%s\",\"counts\":[%zu,%zu,%zu],\"failure\":",
 		nt_input_format_name(report->format), report->by_severity[NT_SEVERITY_ERROR],
 		report->by_severity[NT_SEVERITY_WARNING], report->by_severity[NT_SEVERITY_INFO]);

@@ -394,12 +394,22 @@ static void put_spot(nt_buffer *out, const nt_spot *spot)
 	nt_buffer_text(out, "}");
 }
 
+/* Null where nmtan cannot repair it. */
+static void put_repair(nt_buffer *out, const nt_report *report, const nt_report_finding *finding)
+{
+	nt_buffer options = {0};
+	const bool can = nt_repair_options(report, finding, &options);
+	put_text(out, "repair", can ? options.data ? options.data : "" : NULL);
+	nt_buffer_free_into(&options, out);
+}
+
 static void put_finding(nt_buffer *out, const nt_report *report, const nt_report_finding *finding)
 {
 	nt_buffer_text(out, "{");
 	put_text(out, "code", nt_code_info(finding->code)->name);
 	put_text(out, "severity", nt_severity_name(finding->severity));
 	put_text(out, "message", finding->message);
+	put_repair(out, report, finding);
 	put_count(out, "count", finding->count);
 	put_count(out, "alike", finding->alike);
 	put_digest(out, "fingerprint", finding->fingerprint);
@@ -445,6 +455,8 @@ static void put_report(nt_buffer *out, const nt_report *report)
 	nt_json_string(report->shown, out);
 	key(out, 3, "format");
 	nt_buffer_format(out, "\"%s\"", nt_input_format_name(report->format));
+	key(out, 3, "verdict");
+	nt_put_verdict(report, nt_json_string, out);
 	put_failure(out, report);
 	put_totals(out, 3, &totals);
 	key(out, 3, "meshes");

@@ -72,6 +72,8 @@ static void put_findings(const nt_report *report, size_t *rows, nt_buffer *out)
 	size_t shown[NT_CODE_COUNT] = {0}, missing = report->dropped;
 	nt_buffer_text(out, "\n### ");
 	nt_markdown_text(report->shown, out);
+	nt_buffer_text(out, "\n\n");
+	nt_put_verdict(report, nt_markdown_text, out);
 	nt_buffer_text(out, "\n\n| severity | code | where | finding |\n|---|---|---|---|\n");
 	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *finding = &report->findings[i];

@@ -150,6 +150,8 @@ static void write_report(const nt_report_list *reports, const nt_report *report,
 		return;
 	}
 	nt_totals_text(&totals, out);
+	nt_buffer_text(out, "\n  ");
+	nt_put_verdict(report, nt_plain_text, out);
 	nt_buffer_text(out, "\n");
 	for (size_t i = 0; i < report->mesh_count; i++)
 		write_mesh(report, (uint32_t)i, out);

@@ -51,6 +51,13 @@ const char *nt_input_format_name(nt_format format);
 /* "1 error, 2 warnings, 0 infos", with the known ones where there are any. */
 void nt_totals_text(const nt_totals *totals, nt_buffer *out);
 
+/* The first thing to know of a report: that it is ready to use, or what is to be done and why. `put` writes a text of
+ * any bytes. */
+void nt_put_verdict(const nt_report *report, void (*put)(const char *text, nt_buffer *out), nt_buffer *out);
+
+/* Appends the options with which nmtan repairs a finding, which may be none; false: it cannot. */
+bool nt_repair_options(const nt_report *report, const nt_report_finding *finding, nt_buffer *out);
+
 /* The name a mesh is shown with: its object in words, its name or its number. Never empty. */
 void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out);
 

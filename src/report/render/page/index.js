@@ -46,11 +46,10 @@ class Overview {
 		const address = file.page || '#file-' + file.number;
 		const number = (n, kind) => element('td', {class: 'numeric ' + (n ? kind || '' : 'none')}, file.failure ? '–' : count(n));
 		const folder = file.name.slice(0, file.name.lastIndexOf('/') + 1);
-		const codes = [...new Set(file.findings.filter(x => x.severity !== 'info').map(x => x.code))].slice(0, 3).map(titleOf).join(', ');
 		return element('tr', {class: file.failure || file.counts[0] ? 'error' : file.counts[1] ? 'warning' : 'clean', onclick: () => { location.href = address; }},
 			element('td', {}, canvas),
 			element('td', {class: 'name'}, element('a', {href: address, onclick: e => e.stopPropagation()}, folder && element('span', {class: 'folder'}, folder), file.name.slice(folder.length)),
-				element('span', {class: 'note'}, file.failure || codes || (file.counts[2] ? 'notes only' : 'nothing to report'))),
+				element('span', {class: 'note'}, file.verdict)),
 			number(file.counts[0], 'error'), number(file.counts[1], 'warning'), number(file.counts[2], 'info'), number(file.triangles), number(file.islands), number(file.seams));
 	}
 

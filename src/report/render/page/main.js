@@ -189,7 +189,7 @@ function openFile(next, wanted) {
 	$('file').hidden = false;
 	$('title').replaceChildren(...(files.length > 1 || data.index ? [element('a', {href: data.index || '#'}, 'All files'), ' / '] : []), element('span', {}, file.name));
 	document.title = file.name + ' – nmtan report';
-	summary(file.counts, file.failure);
+	summary(file.counts, file);
 	$('mesh').replaceChildren(...file.meshes.map(m => new Option(m.label + (m.same_as === null ? '' : ' (same geometry as ' + file.meshes[m.same_as].label + ')'), m.number)));
 	$('mesh-field').hidden = file.meshes.length < 2;
 	$('stage').hidden = !file.meshes.length;
@@ -215,9 +215,13 @@ function openOverview() {
 	overview.show();
 }
 
-function summary(counts, failure) {
-	$('summary').replaceChildren(...(failure ? [element('span', {class: 'verdict error'}, 'could not be judged: ' + failure)] :
-		severities.map((severity, i) => element('span', {class: 'verdict ' + (counts[i] ? severity : 'none')}, plural(counts[i], severityName[severity])))));
+// The verdict is the first thing to be read; what could not be judged has no counts.
+function summary(counts, file) {
+	const level = !file ? null : file.failure || counts[0] ? 'error' : counts[1] ? 'warning' : 'good';
+	$('verdict').hidden = !file;
+	$('verdict').className = level;
+	$('verdict').textContent = $('verdict').title = file?.verdict || '';
+	$('summary').replaceChildren(...(file?.failure ? [] : severities.map((severity, i) => element('span', {class: 'verdict ' + (counts[i] ? severity : 'none')}, plural(counts[i], severityName[severity])))));
 }
 
 function follow() {
