@@ -60,3 +60,16 @@ uint64_t nt_hash_name(uint64_t seed, const char *name)
 	}
 	return hash;
 }
+
+uint64_t nt_hash_unkeyed(uint64_t seed, const void *bytes, size_t size)
+{
+	static const uint64_t key[NT_HASH_KEY_WORDS] = {UINT64_C(0x9e3779b97f4a7c15), UINT64_C(0xd1b54a32d192ed03)};
+	const unsigned char *p = bytes;
+	uint64_t hash = nt_hash_words_by(key, seed, size);
+	for (size_t left = size; left; left -= left < 16 ? left : 16, p += 16) {
+		uint64_t words[2] = {0, 0};
+		memcpy(words, p, left < 16 ? left : 16);
+		hash = nt_hash_words_by(key, hash ^ words[0], words[1]);
+	}
+	return hash;
+}

@@ -62,6 +62,9 @@ static inline uint64_t nt_hash_floats(float a, float b)
 /* A hash without a key, for names that are written. */
 uint64_t nt_hash_name(uint64_t seed, const char *name);
 
+/* The same of bytes, for digests that are compared with those of other runs. */
+uint64_t nt_hash_unkeyed(uint64_t seed, const void *bytes, size_t size);
+
 #ifdef __cplusplus
 }
 #endif

@@ -68,6 +68,18 @@ static nt_status run_stream(progress *p, nt_job *job, nt_settings *settings)
 	return status;
 }
 
+/* Once more, when nobody else runs. */
+static nt_status run_alone(progress *p, nt_job *job, nt_settings *settings)
+{
+	nt_gate_enter(&p->gate, UINT64_MAX);
+	nt_summary_free(&job->outcome->summary);
+	job->outcome->summary = (nt_summary){0};
+	nt_error_clear(&job->outcome->error);
+	const nt_status status = run(p, job, settings);
+	nt_gate_leave(&p->gate, UINT64_MAX);
+	return status;
+}
+
 /* Runs it when there is memory for it; one that has it all has all threads, too. */
 static nt_status run_with_memory(progress *p, nt_job *job, nt_settings *settings)
 {
@@ -76,12 +88,16 @@ static nt_status run_with_memory(progress *p, nt_job *job, nt_settings *settings
 	if (job->deferred)
 		return run_stream(p, job, settings);
 	const uint64_t need = nt_need_of(job->input, settings, p->gate.limit / p->jobs);
-	if (nt_gate_enter(&p->gate, need)) {
+	const bool alone = nt_gate_enter(&p->gate, need);
+	if (alone) {
 		settings->threads = p->threads;
 		nt_pool_reserve(p->jobs - 1 + p->threads - 1); /* the others wait */
 	}
-	const nt_status status = run(p, job, settings);
+	nt_status status = run(p, job, settings);
 	nt_gate_leave(&p->gate, need);
+	/* beside others there was too little; what one needs that had all of it is not there */
+	if (status == NT_ERROR_MEMORY && !alone)
+		status = run_alone(p, job, settings);
 	return status;
 }
 
@@ -126,17 +142,28 @@ static void tell(progress *p, nt_job *ended)
 	pthread_mutex_unlock(&p->lock);
 }
 
+static nt_status tell_refusal(const progress *p, nt_job *job)
+{
+	nt_outcome *outcome = job->outcome;
+	nt_fail(&outcome->error, NT_ERROR_USAGE, "%s", job->refused);
+	if (p->settings->report)
+		outcome->summary.report = nt_report_of_error(job->input, p->settings->report, &outcome->error);
+	return NT_ERROR_USAGE;
+}
+
 static void run_one(progress *p, nt_job *job)
 {
 	pthread_mutex_lock(&p->lock);
-	const bool stopped = p->stop;
+	const bool stopped = p->stop && !job->refused;
 	pthread_mutex_unlock(&p->lock);
 	if (stopped)
 		job->end = NT_JOB_UNTRIED;
 	else
 		job->outcome = nt_calloc(1, sizeof *job->outcome);
 	if (!stopped)
-		job->status = job->outcome ? run_if_needed(p, job) : NT_ERROR_MEMORY;
+		job->status = !job->outcome ? NT_ERROR_MEMORY
+			: job->refused      ? tell_refusal(p, job)
+					    : run_if_needed(p, job);
 	tell(p, job);
 }
 
@@ -147,7 +174,7 @@ static void run_file(void *context, size_t item, unsigned slot)
 	nt_job *job = &p->batch->jobs[item];
 	struct stat info;
 	/* a stream waits for who writes it, perhaps for ever */
-	job->deferred = p->batch->count > 1 && (strcmp(job->input, "-") == 0 ||
+	job->deferred = p->batch->count > 1 && !job->refused && (strcmp(job->input, "-") == 0 ||
 		(stat(job->input, &info) == 0 && (S_ISFIFO(info.st_mode) || S_ISSOCK(info.st_mode))));
 	if (!job->deferred) {
 		run_one(p, job);
@@ -187,6 +214,9 @@ void nt_batch_run(nt_batch *batch, const nt_settings *settings, const nt_batch_o
 	/* one job at a time needs no gate: what is available is in six files of the system */
 	nt_gate_init(&p.gate, options->memory ? options->memory : settings->max_memory ? settings->max_memory
 		: jobs > 1 ? nt_memory_available() / 2 : 0);
+	/* nothing begins where something has failed already */
+	for (size_t i = 0; i < batch->count && options->fail_fast; i++)
+		p.stop |= batch->jobs[i].refused != NULL;
 	/* streams come last: a job for each could wait while no file is done */
 	nt_parallel_items(jobs, batch->count, run_file, &p);
 	if (p.deferred)

@@ -29,6 +29,7 @@ typedef enum nt_job_end {
 typedef struct nt_job {
 	const char *input;
 	char *output; /* NULL: nothing is written */
+	char *refused; /* why it is not run: a usage error; NULL: it is */
 	nt_outcome *outcome; /* until the job has been told about; NULL: untried, or no memory for it */
 	nt_status status;
 	nt_job_end end;
@@ -56,14 +57,14 @@ nt_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t coun
  * none), a folder that has all inputs below it, the name below the output folder is the input's name below that one.
  * The folder is made when it is missing (not its parents, and not in a dry run), and those below it that are needed.
  *
- * Nothing runs when two inputs would have the same output, when an output would replace another input, or when an
- * input is not below `mirror`: NT_ERROR_USAGE. Else NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY.
+ * Jobs that would have the same output, and those whose output would replace another input, are refused one by one.
+ * Nothing runs when an input is not below `mirror`: NT_ERROR_USAGE. Else NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY.
  */
 nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count, const char *directory,
 	const char *mirror, const nt_settings *settings, nt_error *error);
 
-/* Prepares inputs that are replaced by their outputs. Nothing runs when one of them is there twice, also by another
- * name: NT_ERROR_USAGE. Else NT_OK or NT_ERROR_MEMORY. */
+/* Prepares inputs that are replaced by their outputs. Jobs are refused whose input is there twice, also by another
+ * name. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
 nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error);
 
 /* What runs a job: nt_run, or something else in tests. */

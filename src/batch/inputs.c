@@ -12,8 +12,10 @@
 #include <sys/stat.h>
 
 #include "base/buffer.h"
+#include "base/name_table.h"
 #include "file/input.h"
 #include "file/lookup.h"
+#include "file/relative_path.h"
 #include "format/format.h"
 
 /* A look through one folder and those below. */
@@ -198,6 +200,33 @@ nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, char separator
 	}
 	nt_file_close(&file);
 	return status;
+}
+
+nt_status nt_inputs_drop_repeated(nt_inputs *inputs, nt_error *error)
+{
+	nt_name_table seen = {0};
+	nt_arena texts = {0};
+	nt_buffer current = {0}, path = {0};
+	size_t kept = 0;
+	bool made = true;
+	/* where the folder has no name, all relative names will fail */
+	if (nt_path_absolute(&current, ".", error))
+		return error->status == NT_ERROR_MEMORY ? error->status : NT_OK;
+	for (size_t i = 0; i < inputs->count && made; i++) {
+		const size_t before = seen.count;
+		path.size = 0;
+		nt_path_join(&path, current.data, inputs->names[i]);
+		const char *text = path.failed ? NULL : nt_arena_text(&texts, path.data, path.size);
+		made = text && nt_name_add(&seen, text, path.size) != UINT32_MAX;
+		if (seen.count > before)
+			inputs->names[kept++] = inputs->names[i];
+	}
+	inputs->count = made ? kept : inputs->count;
+	nt_name_table_free(&seen);
+	nt_arena_free(&texts);
+	nt_buffer_free(&current);
+	nt_buffer_free(&path);
+	return made ? NT_OK : nt_fail_memory(error);
 }
 
 void nt_inputs_free(nt_inputs *inputs)

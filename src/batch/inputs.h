@@ -39,6 +39,10 @@ nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rul
 nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, char separator, const nt_folder_rules *rules,
 	nt_error *error);
 
+/* Takes away names that are there again, but for how "." and "..", and "//" are spelled. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_inputs_drop_repeated(nt_inputs *inputs, nt_error *error);
+
 void nt_inputs_free(nt_inputs *inputs);
 
 #endif

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Which output each of many inputs gets: see batch.h. Everything that can be refused is refused before anything runs.
+ * Which output each of many inputs gets: see batch.h. Everything that can be refused is refused before anything runs,
+ * and the other jobs go on.
  */
 #include "batch/batch.h"
 
 #include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -87,19 +90,39 @@ static int compare_outputs(const void *a, const void *b)
 	return order ? order : (x > y) - (x < y);
 }
 
+static nt_status refuse(nt_job *job, nt_error *error, const char *format, ...) NT_PRINTF(3, 4);
+
+static nt_status refuse(nt_job *job, nt_error *error, const char *format, ...)
+{
+	va_list arguments;
+	va_start(arguments, format);
+	if (!job->refused && vasprintf(&job->refused, format, arguments) < 0)
+		job->refused = NULL;
+	va_end(arguments);
+	return job->refused ? NT_OK : nt_fail_memory(error);
+}
+
+/* All of them: which one is meant? */
 static nt_status refuse_equal_outputs(const nt_batch *batch, nt_error *error)
 {
-	const nt_job **sorted = nt_alloc(batch->count, sizeof(const nt_job *));
+	static const char both[] = "'%s' and '%s' would both be written to '%s'";
+	nt_job **sorted = nt_alloc(batch->count, sizeof(nt_job *));
 	if (!sorted)
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < batch->count; i++)
 		sorted[i] = &batch->jobs[i];
-	qsort(sorted, batch->count, sizeof(const nt_job *), compare_outputs);
+	qsort(sorted, batch->count, sizeof(nt_job *), compare_outputs);
 	nt_status status = NT_OK;
-	for (size_t i = 1; i < batch->count && !status; i++)
-		if (strcmp(sorted[i - 1]->output, sorted[i]->output) == 0)
-			status = nt_fail(error, NT_ERROR_USAGE, "'%s' and '%s' would both be written to '%s'",
-				sorted[i - 1]->input, sorted[i]->input, sorted[i]->output);
+	for (size_t i = 1, first = 0; i < batch->count && !status; i++) {
+		if (strcmp(sorted[first]->output, sorted[i]->output) != 0) {
+			first = i;
+			continue;
+		}
+		nt_job *one = sorted[first], *other = sorted[i];
+		status = refuse(one, error, both, one->input, other->input, one->output);
+		if (!status)
+			status = refuse(other, error, both, other->input, one->input, one->output);
+	}
 	free(sorted);
 	return status;
 }
@@ -115,7 +138,26 @@ static int compare_identities(const void *a, const void *b)
 	const identity *x = a, *y = b;
 	if (x->device != y->device)
 		return x->device < y->device ? -1 : 1;
-	return (x->inode > y->inode) - (x->inode < y->inode);
+	if (x->inode != y->inode)
+		return x->inode < y->inode ? -1 : 1;
+	return (x->job > y->job) - (x->job < y->job);
+}
+
+/* A job other than `own` whose input is the file; NULL: none. */
+static const nt_job *find_reader(const nt_batch *batch, const identity *inputs, size_t count, const identity *own)
+{
+	size_t low = 0, high = count;
+	const identity least = {own->device, own->inode, 0};
+	while (low < high) {
+		const size_t middle = (low + high) / 2;
+		if (compare_identities(&inputs[middle], &least) < 0)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	low += low < count && inputs[low].job == own->job;
+	return low < count && inputs[low].device == own->device && inputs[low].inode == own->inode
+		? &batch->jobs[inputs[low].job] : NULL;
 }
 
 /* An output that is a file already must not be the input of another job: who reads it when? Its own
@@ -139,11 +181,11 @@ static nt_status refuse_foreign_inputs(const nt_batch *batch, nt_error *error)
 		if (status || !found_output)
 			continue;
 		const identity key = {info.st_dev, info.st_ino, i};
-		const identity *found = bsearch(&key, inputs, count, sizeof *inputs, compare_identities);
-		if (found && found->job != i && strcmp(batch->jobs[found->job].input, batch->jobs[i].input))
-			status = nt_fail(error, NT_ERROR_USAGE,
+		const nt_job *reader = find_reader(batch, inputs, count, &key);
+		if (reader)
+			status = refuse(&batch->jobs[i], error,
 				"'%s' would be written to '%s', which is the input '%s'", batch->jobs[i].input,
-				batch->jobs[i].output, batch->jobs[found->job].input);
+				batch->jobs[i].output, reader->input);
 	}
 	free(inputs);
 	return status;
@@ -254,7 +296,12 @@ nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count
 		status = refuse_equal_outputs(batch, error);
 	if (!status)
 		status = refuse_foreign_inputs(batch, error);
-	return status ? status : make_folders(batch, directory, mirror != NULL, settings, error);
+	size_t refused = 0;
+	while (refused < batch->count && batch->jobs[refused].refused)
+		refused++;
+	if (status || (count && refused == count))
+		return status;
+	return make_folders(batch, directory, mirror != NULL, settings, error);
 }
 
 nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
@@ -271,8 +318,10 @@ nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t c
 
 void nt_batch_free(nt_batch *batch)
 {
-	for (size_t i = 0; i < batch->count; i++)
+	for (size_t i = 0; i < batch->count; i++) {
 		free(batch->jobs[i].output);
+		free(batch->jobs[i].refused);
+	}
 	free(batch->jobs);
 	*batch = (nt_batch){0};
 }

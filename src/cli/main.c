@@ -513,6 +513,7 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 	nt_settings settings = command->settings;
 	settings.report = plan->wanted ? &plan->options : NULL;
 	settings.list_meshes = style.verbosity > 0;
+	settings.digests = command->manifest != NULL;
 	s.progress = nt_progress_start(style.verbosity < 0 ? NT_PROGRESS_OFF : command->progress,
 		batch->count ? batch->jobs[0].input : "", batch->count);
 	if (s.progress && batch->count == 1) {
@@ -554,6 +555,8 @@ static nt_status choose_inputs(nt_command *c, nt_inputs *inputs, nt_error *error
 		status = nt_inputs_add_list(inputs, c->files_from, '\n', &rules, error);
 	if (!status && c->files0_from)
 		status = nt_inputs_add_list(inputs, c->files0_from, '\0', &rules, error);
+	if (!status && !c->settings.check)
+		status = nt_inputs_drop_repeated(inputs, error);
 	c->operands = inputs->names;
 	c->operand_count = inputs->count;
 	return status;

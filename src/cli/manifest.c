@@ -12,7 +12,9 @@
 #include <unistd.h>
 
 #include "base/counts.h"
+#include "base/hash.h"
 #include "cli/messages.h"
+#include "file/input.h"
 #include "report/codes.h"
 #include "report/render/words.h"
 
@@ -41,8 +43,31 @@ static const char *status_of(const nt_job *job)
 	return job->status ? "failed" : job->outcome->summary.left ? "left" : "done";
 }
 
-/* Files of one kind; those that are there with their sizes. */
-static void append_files(nt_buffer *out, const char *key, const nt_trace *trace, nt_trace_kind kind)
+/* A new output is read once more, while the system still has it in memory. Streams are no more. */
+static void append_digest(nt_buffer *out, const char *path)
+{
+	char digest[NT_DIGEST_TEXT] = "";
+	struct stat info;
+	nt_error unused;
+	if (stat(path, &info) == 0 && S_ISREG(info.st_mode) && !nt_digest_of_file(path, digest, &unused) && digest[0]) {
+		nt_buffer_text(out, ",");
+		append_text(out, "xxh128", digest);
+	}
+}
+
+/* Of names, in their order. */
+static void append_missing_digest(nt_buffer *out, const nt_trace *trace)
+{
+	uint64_t digest = 0;
+	for (size_t i = 0; i < trace->count; i++)
+		if (trace->files[i].kind == NT_TRACE_MISSING)
+			digest = nt_hash_unkeyed(digest, trace->files[i].path, strlen(trace->files[i].path) + 1);
+	if (digest)
+		nt_buffer_format(out, ",\"missing_digest\":\"%016" PRIx64 "\"", digest);
+}
+
+/* Files of one kind; those that are there with their sizes, and with digests where that is wanted. */
+static void append_files(nt_buffer *out, const char *key, const nt_trace *trace, nt_trace_kind kind, bool digests)
 {
 	const char *comma = "";
 	nt_buffer_format(out, ",\"%s\":[", key);
@@ -59,6 +84,8 @@ static void append_files(nt_buffer *out, const char *key, const nt_trace *trace,
 		nt_buffer_text(out, "{");
 		append_text(out, "path", file->path);
 		append_number(out, "bytes", file->size);
+		if (digests)
+			append_digest(out, file->path);
 		nt_buffer_text(out, "}");
 	}
 	nt_buffer_text(out, "]");
@@ -114,6 +141,8 @@ static void append_run(nt_buffer *out, const nt_summary *s)
 	append_number(out, "split", s->appended_tangents);
 	append_number(out, "repaired", s->repaired);
 	append_number(out, "sorted_instead", s->counts.sorted_instead);
+	if (s->tangents_digest)
+		nt_buffer_format(out, ",\"tangents\":\"%016" PRIx64 "\"", s->tangents_digest);
 	append_number(out, "bytes_read", s->bytes_read);
 	append_number(out, "bytes_written", s->bytes_written);
 	nt_buffer_text(out, ",\"seconds\":{");
@@ -133,10 +162,11 @@ static void append_job(nt_buffer *out, const nt_job *job, const char *options, i
 	append_text(out, "nmtan", nmtan_version());
 	nt_buffer_text(out, ",");
 	append_text(out, "options", options);
-	append_files(out, "outputs", trace, NT_TRACE_WRITTEN);
-	append_files(out, "dependencies", trace, NT_TRACE_READ);
-	append_files(out, "missing", trace, NT_TRACE_MISSING);
-	append_files(out, "searched", trace, NT_TRACE_SEARCHED);
+	append_files(out, "outputs", trace, NT_TRACE_WRITTEN, job->end == NT_JOB_RAN && !job->status);
+	append_files(out, "dependencies", trace, NT_TRACE_READ, false);
+	append_files(out, "missing", trace, NT_TRACE_MISSING, false);
+	append_files(out, "searched", trace, NT_TRACE_SEARCHED, false);
+	append_missing_digest(out, trace);
 	if (job->status && job->outcome)
 		append_error(out, &job->outcome->error);
 	if (job->outcome && job->end == NT_JOB_RAN)

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include "base/clock.h"
+#include "base/hash.h"
 #include "file/watch.h"
 #include "format/foreign.h"
 #include "gltf/sidecar.h"
@@ -277,6 +278,12 @@ static nt_status run_stages(run *r)
 	if (!status) {
 		status = nt_tasks_do(&tasks, r->error);
 		nt_error_in_file(r->error, r->input_path);
+	}
+	for (size_t i = 0; i < r->scene.mesh_count && r->settings->digests; i++) {
+		const uint64_t digest = r->scene.meshes[i].tangents_digest;
+		if (digest)
+			r->summary->tangents_digest =
+				nt_hash_unkeyed(r->summary->tangents_digest, &digest, sizeof digest);
 	}
 	if (!status)
 		status = nt_tell_textures(&r->scene, r->settings, r->textures, r->error);

@@ -89,6 +89,7 @@ typedef struct nt_settings {
 	bool sync;
 	bool no_clobber;
 	bool list_meshes; /* summary->lines is wanted */
+	bool digests;     /* summary->tangents_digest is wanted */
 	bool in_place;
 	bool allow_outside;
 	nt_equal_choice equal; /* what becomes of an output that has its bytes already */
@@ -152,6 +153,7 @@ typedef struct nt_summary {
 	nt_mesh_line *lines; /* [line_count] in the order of the input; NULL unless asked for */
 	size_t line_count;
 	nt_trace trace;  /* which files were read, missed and written, after a failure too */
+	uint64_t tangents_digest; /* of those that were computed, in the order of the meshes; 0: none, or not wanted */
 	bool left;       /* the file has what it would get, and was left as it is */
 	char *note;      /* which files of the output have other names than they would, and why: "; ..."; NULL: none */
 } nt_summary;

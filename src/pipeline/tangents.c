@@ -14,6 +14,7 @@
 #include <string.h>
 #include "api/tangents.h"
 #include "base/counts.h"
+#include "base/hash.h"
 #include "base/pages.h"
 #include "base/parallel.h"
 
@@ -189,10 +190,13 @@ static void *keep_block(nt_arena *arena, void *block, size_t count, size_t size)
 }
 
 /* Takes over what was split; without copies a mesh keeps its own indices. */
-static nt_status keep_split(nt_mesh *mesh, const nmtan_split_output *output, nt_arena *arena)
+static nt_status keep_split(const wishes *job, nt_mesh *mesh, const nmtan_split_output *output, nt_arena *arena)
 {
 	nt_split *split = &mesh->split;
 	const size_t count = output->source_count;
+	if (job->settings->digests)
+		mesh->tangents_digest = nt_hash_unkeyed(0, split->vertex_tangents,
+			4 * sizeof(float) * (mesh->vertex_count + count));
 	split->source_count = count;
 	if (count == 0) {
 		free(split->indices);
@@ -280,7 +284,7 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 		status = nt_status_of(nt_vertex_tangents(&view, options, &request, &output, &mesh->counts));
 	}
 	if (!status)
-		return keep_split(mesh, &output, arena);
+		return keep_split(job, mesh, &output, arena);
 	drop_split(mesh);
 	return status;
 }
@@ -298,7 +302,7 @@ static nt_status solve_join(const wishes *job, const nt_join *join, const nmtan_
 			continue;
 		nmtan_split_output output;
 		if (!status && !(status = split_corners(mesh, options, &output)))
-			status = keep_split(mesh, &output, arena);
+			status = keep_split(job, mesh, &output, arena);
 		else
 			drop_split(mesh);
 		free_corners(mesh);

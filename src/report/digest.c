@@ -5,25 +5,24 @@
  */
 #include "report/digest.h"
 
+#include <string.h>
 #include "base/hash.h"
 
-/* Without the key of the process: digests are written. */
 static uint64_t mix(uint64_t a, uint64_t b)
 {
-	static const uint64_t key[NT_HASH_KEY_WORDS] = {UINT64_C(0x9e3779b97f4a7c15), UINT64_C(0xd1b54a32d192ed03)};
-	return nt_hash_words_by(key, a, b);
+	return nt_hash_unkeyed(a, &b, sizeof b);
 }
 
 static uint64_t mix_text(uint64_t hash, const char *text)
 {
-	for (; *text; text++)
-		hash = mix(hash, (unsigned char)*text);
-	return hash;
+	return nt_hash_unkeyed(hash, text, strlen(text));
 }
 
+/* 0 and -0 are one. */
 static uint64_t mix_position(uint64_t hash, const float *p)
 {
-	return mix(mix(hash, nt_hash_floats(p[0], p[1])), nt_hash_floats(p[2], 0.0f));
+	const float values[3] = {p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};
+	return nt_hash_unkeyed(hash, values, sizeof values);
 }
 
 /* A turned triangle is the same, a reversed one is not: each corner is mixed with the one after it. */

@@ -262,6 +262,7 @@ typedef struct nt_mesh {
 	size_t replaced_tangents; /* corners whose authored tangent was invalid, or is beside one that was, and is
 	                             another now */
 	nt_split split;
+	uint64_t tangents_digest; /* of split.vertex_tangents, where that is wanted; 0: not known */
 	bool merged;              /* the writer has merged them with those of the meshes that share its vertices */
 } nt_mesh;
 

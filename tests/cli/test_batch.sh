@@ -55,8 +55,6 @@ for jobs in 2 4; do
 	diff said1 said$jobs >difference || wrong "$(cat difference)"
 	diff -r out1 out$jobs >difference || wrong "$(cat difference)"
 done
-run --fail-fast -d fast1 bad.obj m1.obj m2.obj m1.obj
-exits 1
 run -j4 --jobs=1 --fail-fast -d fast1 bad.obj m1.obj m2.obj
 exits 3
 says "2 not tried"
@@ -114,7 +112,24 @@ for name in first second third b; do
 	same out/a.glb out/$name.glb
 done
 
-scene "two inputs with one output are refused before anything runs"
+scene "two inputs with one output are refused, the others go on, and what is there twice is one"
+mkdir x y
+cp "$data/quad.obj" x/a.obj
+cp "$data/plates.glb" y/a.glb
+cp "$data/quad.obj" x/b.obj
+cp "$data/quad_le.ply" y/b.ply
+cp "$data/quad.obj" one.obj
+run -q -d out --output-format=glb --manifest=m x/a.obj y/a.glb one.obj x/b.obj ./one.obj y/b.ply
+exits 1
+says "'x/a.obj' and 'y/a.glb' would both be written to 'out/a.glb'"
+says "'y/b.ply' and 'x/b.obj' would both be written to 'out/b.glb'"
+is "$(ls out)" one.glb
+is "$(wc -l <m)" 5
+run -d none --fail-fast x/a.obj y/a.glb one.obj
+exits 1
+says "0 of 3 done, 2 failed, 1 not tried"
+
+scene "when all inputs are refused nothing is made"
 mkdir x y
 cp "$data/quad.obj" x/a.obj
 cp "$data/plates.glb" y/a.glb

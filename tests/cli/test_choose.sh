@@ -109,8 +109,11 @@ cp "$data/quad.obj" a/m.obj
 cp "$data/plates.glb" b/deep/m.glb
 run -d o a/m.obj b/deep/m.glb
 exits 1
-run -d o --mirror=. a/m.obj ./b/../b/deep/m.glb "$PWD/a/m.obj"
+cp "$data/plates.glb" a/m.glb
+run -d o --mirror=. a/m.obj ./b/../b/deep/m.glb "$PWD/a/m.obj" a/m.glb
 exits 1
+rm a/m.glb
+says "1 of 3 done, 2 failed"
 says "would both be written to 'o/a/m.glb'"
 run -d o --mirror=. a/m.obj ./b/../b/deep/m.glb
 exits 0

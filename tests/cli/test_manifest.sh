@@ -34,6 +34,29 @@ for try in $(seq 20); do
 done
 is "$(value m "-1e-5 < $rest < 0.01")" True
 
+scene "digests tell whose tangents, outputs and missing files have changed"
+printf 'newmtl bumps\nKd 1 0 0\nmap_Kd none.png\n' >mirrored_cube.mtl
+cp "$data/mirrored_cube.obj" .
+digests() { value "$1" '[(l["tangents"], l["outputs"][0]["xxh128"], l["missing_digest"]) for l in m.values()][0]'; }
+run -q --manifest=m -d out mirrored_cube.obj
+validates --lines manifest m
+! command -v xxhsum >/dev/null ||
+	is "$(value m 'm["mirrored_cube.obj"]["outputs"][0]["xxh128"]')" "$(xxhsum -H2 out/mirrored_cube.glb | cut -d' ' -f1)"
+digests m >before
+change() { # what is another than before, as letters
+	run -q -j$1 --manifest=m -d out mirrored_cube.obj
+	digests m >now
+	python3 -c 'a, b = (eval(open(f).read()) for f in ("before", "now"))
+print("".join(c if x != y else "-" for c, x, y in zip("tom", a, b)))'
+}
+is "$(change 2)" "---"
+sed -i 's/Kd 1/Kd 0/' mirrored_cube.mtl
+is "$(change 1)" "-o-"
+sed -i 's/none/nowhere/' mirrored_cube.mtl
+is "$(change 1)" "-om"
+awk '$1 == "vt" { $2 = -$2 } 1' "$data/mirrored_cube.obj" >mirrored_cube.obj
+is "$(change 2)" "tom"
+
 scene "what was left, up to date or not tried has a line, too"
 cp "$data/quad.obj" a.obj
 cp "$data/quad.obj" c.obj

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "folder.h"
 #include "batch/batch.h"
+#include "batch/inputs.h"
 #include "test.h"
 
 #include <stdatomic.h>
@@ -50,16 +51,54 @@ static void outputs_have_the_name_of_the_input_and_the_ending_of_the_format(void
 	nt_batch_free(&batch);
 }
 
-static void what_would_be_overwritten_is_refused_before_anything_is_made(void **state)
+/* The jobs that are refused, as letters, and what is said of each. */
+static void refuses_jobs(nt_batch *batch, const char *expected, const char *message)
+{
+	for (size_t i = 0; i < batch->count; i++) {
+		assert_int_equal(batch->jobs[i].refused != NULL, expected[i] == 'x');
+		assert_true(!batch->jobs[i].refused || strstr(batch->jobs[i].refused, message));
+	}
+	nt_batch_free(batch);
+}
+
+static void jobs_that_would_overwrite_each_other_are_refused_and_no_others(void **state)
 {
 	(void)state;
-	refuses(INPUTS("x/a.obj", "b.obj", "y/a.glb"), "out2", NT_ERROR_USAGE, "x/a.obj");
-	refuses(INPUTS("x/a.obj", "b.obj", "y/a.glb"), "out2", NT_ERROR_USAGE, "y/a.glb");
-	assert_int_equal(access("out2", F_OK), -1);
+	const nt_settings settings = {0};
+	nt_batch batch;
+	nt_error error;
+	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.obj", "y/a.glb", "z/a.drc"), "out2", NULL,
+				 &settings, &error), NT_OK);
+	assert_non_null(strstr(batch.jobs[0].refused, "'x/a.obj' and 'y/a.glb'"));
+	assert_non_null(strstr(batch.jobs[3].refused, "'z/a.drc' and 'x/a.obj'"));
+	refuses_jobs(&batch, "x-xx", "would both be written to 'out2/a.glb'");
+	/* nothing is to be done, and nothing is made */
+	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "y/a.glb"), "out4", NULL, &settings, &error), NT_OK);
+	refuses_jobs(&batch, "xx", "");
+	assert_int_equal(access("out4", F_OK), -1);
 	/* another input */
 	put_text_file("a.glb", "glTF");
 	assert_int_equal(link("a.glb", "other.ply"), 0);
-	refuses(INPUTS("a.obj", "other.ply"), ".", NT_ERROR_USAGE, "other.ply");
+	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj", "other.ply", "b.obj"), ".", NULL, &settings, &error),
+		NT_OK);
+	refuses_jobs(&batch, "x--", "'a.obj' would be written to './a.glb', which is the input 'other.ply'");
+}
+
+static void names_that_are_there_again_are_dropped(void **state)
+{
+	(void)state;
+	nt_inputs inputs = {0};
+	nt_error error;
+	const nt_folder_rules rules = {0};
+	static const char *const names[] = {
+		"a.obj", "b.obj", "./a.obj", "x/../b.obj", "../a.obj", "/a.obj", "x//a.obj"};
+	for (size_t i = 0; i < 7; i++)
+		assert_int_equal(nt_inputs_add(&inputs, names[i], &rules, &error), NT_OK);
+	assert_int_equal(nt_inputs_drop_repeated(&inputs, &error), NT_OK);
+	assert_int_equal(inputs.count, 5);
+	assert_string_equal(inputs.names[0], "a.obj");
+	assert_string_equal(inputs.names[2], "../a.obj");
+	nt_inputs_free(&inputs);
 }
 
 static void in_place_the_output_is_the_input(void **state)
@@ -76,10 +115,10 @@ static void in_place_the_output_is_the_input(void **state)
 	nt_batch_free(&batch);
 	/* one file under two names: by which of them would it be read, and when? */
 	assert_int_equal(symlink("p.glb", "link.glb"), 0);
-	assert_int_equal(nt_batch_in_place(&batch, INPUTS("p.glb", "p.glb"), &error), NT_ERROR_USAGE);
-	nt_batch_free(&batch);
-	assert_int_equal(nt_batch_in_place(&batch, INPUTS("p.glb", "link.glb"), &error), NT_ERROR_USAGE);
-	nt_batch_free(&batch);
+	assert_int_equal(nt_batch_in_place(&batch, INPUTS("q.glb", "p.glb", "p.glb"), &error), NT_OK);
+	refuses_jobs(&batch, "-xx", "would both be written to 'p.glb'");
+	assert_int_equal(nt_batch_in_place(&batch, INPUTS("p.glb", "q.glb", "link.glb"), &error), NT_OK);
+	refuses_jobs(&batch, "x-x", "which is the input");
 }
 
 static void a_dry_run_makes_no_folder_and_a_file_is_none(void **state)
@@ -226,6 +265,45 @@ static void the_bound_of_memory_keeps_jobs_waiting(void **state)
 	}
 }
 
+/* Stands for nt_run where memory is for one at a time: has none at the first try, which waits for the other's. */
+static atomic_int tries[2];
+
+static nt_status hungry_run(const char *input, const char *output, const nt_settings *settings, nt_summary *summary,
+	nt_error *error)
+{
+	(void)output, (void)settings;
+	const int now = atomic_fetch_add(&running, 1) + 1, own = input[0] - 'a';
+	const bool first = tries[own]++ == 0;
+	summary->mesh_count++;
+	for (int i = 0; i < 15000 && first && !(tries[0] && tries[1]); i++)
+		usleep(2000);
+	atomic_fetch_sub(&running, 1);
+	if (first || input[1] == 'x')
+		return nt_fail_memory(error);
+	assert_int_equal(now, 1);
+	return NT_OK;
+}
+
+static void what_had_no_memory_beside_others_is_tried_again_alone(void **state)
+{
+	(void)state;
+	nt_batch batch;
+	nt_error error;
+	size_t ran = 0;
+	const nt_settings settings = {.threads = 2, .check = true};
+	put_text_file("a.obj", "");
+	put_text_file("bx.obj", "");
+	assert_int_equal(nt_batch_check(&batch, INPUTS("a.obj", "bx.obj"), &error), NT_OK);
+	nt_batch_run(&batch, &settings,
+		&(nt_batch_options){.run = hungry_run, .jobs = 2, .memory = 100 << 20, .done = pass, .user = &ran});
+	assert_int_equal(ran, 2);
+	assert_int_equal(batch.jobs[0].status, NT_OK);
+	assert_int_equal(batch.jobs[1].status, NT_ERROR_MEMORY);
+	assert_int_equal(tries[0], 2);
+	assert_int_equal(tries[1], 2);
+	nt_batch_free(&batch);
+}
+
 static void after_a_failure_no_further_job_begins_if_so_wished(void **state)
 {
 	(void)state;
@@ -262,11 +340,13 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(outputs_have_the_name_of_the_input_and_the_ending_of_the_format),
-		cmocka_unit_test(what_would_be_overwritten_is_refused_before_anything_is_made),
+		cmocka_unit_test(jobs_that_would_overwrite_each_other_are_refused_and_no_others),
+		cmocka_unit_test(names_that_are_there_again_are_dropped),
 		cmocka_unit_test(in_place_the_output_is_the_input),
 		cmocka_unit_test(a_dry_run_makes_no_folder_and_a_file_is_none),
 		cmocka_unit_test(every_input_runs_and_is_told_about_in_order),
 		cmocka_unit_test(the_bound_of_memory_keeps_jobs_waiting),
+		cmocka_unit_test(what_had_no_memory_beside_others_is_tried_again_alone),
 		cmocka_unit_test(after_a_failure_no_further_job_begins_if_so_wished),
 		cmocka_unit_test(one_input_has_all_threads),
 	};

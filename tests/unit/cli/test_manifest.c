@@ -44,7 +44,7 @@ static const char *line_of(const nt_job *job, int exit_code)
 	",\"nmtan\":\"" NMTAN_VERSION_STRING "\",\"options\":\"--method=area\","
 #define FILES "\"outputs\":[{\"path\":\"o\\n.glb\",\"bytes\":7}]," \
 	"\"dependencies\":[{\"path\":\"a\\\".obj\",\"bytes\":7}]," \
-	"\"missing\":[\"a.mtl\"],\"searched\":[]"
+	"\"missing\":[\"a.mtl\"],\"searched\":[],\"missing_digest\":\"01da7a59925b528c\""
 #define NO_FILES "\"outputs\":[],\"dependencies\":[],\"missing\":[],\"searched\":[]"
 
 static void a_job_that_ran_has_its_files_and_numbers(void **state)
