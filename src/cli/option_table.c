@@ -43,6 +43,9 @@ const nt_option_row nt_option_rows[] = {
 		SETTING(texcoord_set), false},
 	{"allow-outside", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"let the input refer to files outside its folder", SETTING(allow_outside), false},
+	{"confine", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
+		"do not look for an OBJ's images one folder up either; so it is where there are many inputs",
+		FIELD(confine), false},
 
 	{.kind = NT_OPTION_HEADING, .name = "Many inputs"},
 	{"directory", 'd', NT_OPTION_TEXT, "DIR", 0, 0, NULL,
@@ -97,11 +100,14 @@ const nt_option_row nt_option_rows[] = {
 	{"embed", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, ".gltf: buffers inside, as data URIs",
 		SETTING(embed), true},
 	{"buffers", 0, NT_OPTION_CHOICE, "link|copy|embed", NT_BUFFERS_LINK, 0,
-		"embed for .glb from .gltf, else link",
-		"glTF from glTF: what becomes of .bin files that nothing changed; embed: as --embed",
+		"embed for .glb from .gltf, else by folder",
+		"glTF from glTF: what becomes of .bin files that nothing changed; embed: as --embed; by folder: those "
+		"in the output's folder are linked, others copied",
 		SETTING(buffers), true},
 	{"images", 0, NT_OPTION_CHOICE, "link|embed|copy|none", NT_IMAGES_LINK, 0,
-		"link for .gltf, embed for .glb", "how the output comes by its images", SETTING(images),
+		"embed for .glb, else by folder",
+		"how the output comes by its images; by folder: those in the output's folder are linked, others copied",
+		SETTING(images),
 		true},
 	{"textures", 0, NT_OPTION_CHOICE, "auto|keep|png", NT_TEXTURES_AUTO, 0, "auto",
 		"images of an OBJ; auto: what glTF does not carry becomes PNG; keep: it is left out; png: all "

@@ -356,6 +356,7 @@ static nt_status check_clashes(parser *p)
 	static const char *const pairs[][3] = {
 		{"quiet", "verbose", "say opposite things"},
 		{"in-place", "no-clobber", "contradict each other"},
+		{"allow-outside", "confine", "contradict each other"},
 		/* what is not read has no findings */
 		{"update", "report", "do not go together: what is up to date is not read"},
 		{"update", "uv-image", "do not go together: what is up to date is not read"},
@@ -499,6 +500,9 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 	command->settings.texture_path_count = command->texture_paths.count;
 	if (command->texture_paths.count)
 		command->settings.texture_paths = command->texture_paths.items;
+	/* who converts one file means what it says; who converts many may not have read them */
+	command->settings.one_up = !command->confine && !command->directory && !command->settings.in_place &&
+		!list_option(command) && command->operand_count == (command->settings.check ? 1 : 2);
 	nt_status status = parse_draco(&p);
 	if (!status)
 		status = parse_bump_height(&p);

@@ -56,6 +56,7 @@ typedef struct nt_command {
 	const char *uv_image;  /* folder; NULL: none */
 	const char *directory; /* -d; NULL: none */
 	const char *mirror;    /* folder whose tree outputs keep; NULL: none */
+	bool confine;          /* nothing outside the input's folder, images one folder up neither */
 	const char *files_from, *files0_from; /* lists of inputs; NULL: none */
 	bool recursive;
 	nt_words include, exclude; /* patterns */

@@ -161,6 +161,13 @@ static nt_status open_temporary(nt_sink *sink, const char *beside, nt_error *err
 	return nt_error_in_file(error, sink->path);
 }
 
+bool nt_output_is_stream(const char *path)
+{
+	struct stat status;
+	return strcmp(path, "-") == 0 ||
+		(stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode));
+}
+
 /* Whether a path is taken, and by what. A link that leads nowhere, or round in a circle, is refused: what it stands for
  * is not known. */
 static nt_status look_at(const char *path, struct stat *status, bool *exists, nt_error *error)

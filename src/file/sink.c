@@ -11,6 +11,8 @@
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
+#include <linux/fs.h>
+#include <sys/ioctl.h>
 #include <sys/uio.h>
 #include <unistd.h>
 #include "base/memory.h"
@@ -112,12 +114,26 @@ nt_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error 
 	return NT_OK;
 }
 
+/* Whether the sink now has the blocks of a whole file, which costs nothing where the file system can (btrfs, XFS). */
+static bool share_blocks(nt_sink *sink, const nt_file *from)
+{
+	const off_t size = (off_t)from->size;
+	return from->fd >= 0 && sink->size == 0 && sink->temporary && ioctl(sink->fd, FICLONE, from->fd) == 0 &&
+		ftruncate(sink->fd, size) == 0 && lseek(sink->fd, size, SEEK_SET) == size;
+}
+
 /* A large range of a map comes and goes in parts, so that it does not fill the memory. */
 nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size, nt_error *error)
 {
 	if (offset > from->size || size > from->size - offset)
 		return nt_fail(error, NT_ERROR_INTERNAL, "a range to copy is outside of its file");
 	sink->copied += size;
+	if (size == from->size && size > 0 && share_blocks(sink, from)) {
+		sink->size = size;
+		if (sink->digest)
+			nt_digest_add(sink->digest, from->data, size);
+		return NT_OK;
+	}
 	if (size < COPIED_BYTES || !from->mapped || sink->dry)
 		return nt_sink_write(sink, from->data + offset, size, error);
 	nt_status status = NT_OK;

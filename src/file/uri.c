@@ -156,7 +156,7 @@ static bool has_scheme(const char *name)
 	return name[i] == ':';
 }
 
-static bool has_parent_step(const char *name)
+bool nt_uri_has_parent_step(const char *name)
 {
 	for (const char *part = name; *part;) {
 		const size_t length = strcspn(part, "/\\");
@@ -178,7 +178,7 @@ static const char *check_text(const char *name, size_t length, bool allow_outsid
 		return NULL;
 	if (name[0] == '/' || name[0] == '\\')
 		return "is an absolute path (refused unless --allow-outside)";
-	if (has_parent_step(name))
+	if (nt_uri_has_parent_step(name))
 		return "leaves the folder of the file (refused unless --allow-outside)";
 	return NULL;
 }

@@ -39,6 +39,9 @@ nt_status nt_uri_decode_data(const char *uri, size_t length, unsigned char **byt
 nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri, size_t length,
 	bool allow_outside, const char **path, nt_error *error);
 
+/* Whether a decoded name has a step "..", with "/" or "\\". */
+bool nt_uri_has_parent_step(const char *name);
+
 /* Appends the path that a relative URI without a scheme spells. */
 void nt_uri_append_decoded(nt_buffer *text, const char *uri, size_t length);
 

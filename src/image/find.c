@@ -8,9 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include "file/image_type.h"
+#include "file/input.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/trace.h"
+#include "file/uri.h"
 #include "file/way.h"
 
 /* Of a name so many last parts are looked for: each is one more look into every folder. */
@@ -57,6 +60,44 @@ static nt_status try_name(search *s, const char *folder, const char *name, bool 
 	s->path->size = 0;
 	nt_link_join(s->path, folder, name);
 	return s->path->failed ? nt_fail_memory(s->error) : accept(s, folder, accepted);
+}
+
+/* Whether a file is an image by its content; what cannot be opened is none. */
+static nt_status is_image(const char *path, bool *is, nt_error *error)
+{
+	nt_file file;
+	nt_error unused;
+	*is = false;
+	const nt_status status = nt_file_open_referred(&file, path, &unused);
+	if (status)
+		return status == NT_ERROR_MEMORY ? nt_fail_memory(error) : NT_OK;
+	*is = nt_image_type_of_bytes(file.data, file.size) != NT_IMAGE_OTHER;
+	nt_file_close(&file);
+	return NT_OK;
+}
+
+/* "../NAME" of a document in `folder`. Whatever else lies there is not told from what does not. */
+static nt_status try_one_up(search *s, const char *folder, const char *name, bool *accepted)
+{
+	const char *slash = strrchr(folder, '/');
+	const size_t length = slash ? (size_t)(slash - folder) : 0;
+	if ((strncmp(name, "../", 3) != 0 && strncmp(name, "..\\", 3) != 0) || nt_uri_has_parent_step(name + 3))
+		return NT_OK;
+	s->path->size = 0;
+	nt_link_join(s->path, folder, name);
+	char *above = strndup(folder, length);
+	if (s->path->failed || !above) {
+		free(above);
+		return nt_fail_memory(s->error);
+	}
+	bool inside = length > 0 && nt_link_is_inside(s->path->data, above);
+	nt_status status = inside ? nt_way_is_inside(above, s->path->data + length, &inside, s->error) : NT_OK;
+	if (!status && inside)
+		status = is_file(s->path->data, accepted, s->error);
+	if (!status && *accepted)
+		status = is_image(s->path->data, accepted, s->error);
+	free(above);
+	return status;
 }
 
 /* ---- without case ---- */
@@ -198,6 +239,8 @@ nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buff
 	search s = {.places = places, .path = path, .error = error};
 	bool accepted;
 	nt_status status = try_as_named(&s, name, &folder, &accepted);
+	if (!status && !accepted && places->one_up && folder.size)
+		status = try_one_up(&s, folder.data, name, &accepted);
 	*found = NT_IMAGE_FOUND;
 	if (!status && !accepted) {
 		*found = NT_IMAGE_FOUND_ELSEWHERE;

@@ -17,6 +17,7 @@ typedef struct nt_image_places {
 	const char *const *folders; /* [folder_count] of the user's choice */
 	size_t folder_count;
 	bool allow_outside;
+	bool one_up;                /* an image that is named "../NAME" is taken from the folder above */
 } nt_image_places;
 
 typedef enum nt_image_found {
@@ -30,6 +31,8 @@ typedef enum nt_image_found {
  * Looks for a file in this order; the first that exists is it.
  *
  * 1. the name as it is, from the document's folder; an absolute one only if that is allowed
+ *    with one_up also one that leads one folder up and no further, by links neither, not into the root, and that is
+ *    an image by its content
  * 2. in the document's folder, the input's and `folders`, in this order: the name's last parts, as many as lead to a
  *    file (of C:\art\tex\n.png: art/tex/n.png, tex/n.png, n.png)
  * 3. the same without regard to case (of ASCII); of several files the first in the order of bytes

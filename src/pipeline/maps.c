@@ -155,7 +155,8 @@ static nt_status add_map(examination *e, const nt_mesh *mesh, nt_normal_map *map
 static nt_status take_map(examination *e, const nt_mesh *mesh, enum nt_slot slot, nt_error *error)
 {
 	const nt_image_places searched = {.folders = e->settings->texture_paths,
-		.folder_count = e->settings->texture_path_count, .allow_outside = e->settings->allow_outside};
+		.folder_count = e->settings->texture_path_count, .allow_outside = e->settings->allow_outside,
+		.one_up = e->settings->one_up};
 	nt_normal_map map;
 	if (!(mesh->slots & slot))
 		return NT_OK;

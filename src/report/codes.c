@@ -29,6 +29,12 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"refers to where the file should be.",
 		"Put the image where the material looks for it, or name its folder with --texture-path.",
 		"an MTL with \"map_Kd missing.png\""),
+	ROW(LINK_LEAVES, WARNING, "reference leaves the folder of the output",
+		"A URI of the output begins with \"..\", as --images=link or --buffers=link asks, or because a buffer "
+		"that nothing needs cannot be copied. Other programs refuse such names, and moving the folder breaks "
+		"them.",
+		"Leave the option away: files are copied then.",
+		"nmtan --images=link a/in.gltf b/out.gltf"),
 	ROW(IMAGE_TYPE, WARNING, "image has a type that glTF does not carry",
 		"glTF carries PNG and JPEG (others by extension). TGA, BMP, PSD, HDR and TIFF become PNG, unless "
 		"--textures=keep is given; anything else is left out, or stays a file where a glTF refers to it.",

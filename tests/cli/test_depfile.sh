@@ -16,7 +16,7 @@ is "$(tail -2 d | tr '\n' ' ')" "mirrored_cube.mtl: bumps.png: "
 run --update -d out plates.gltf
 run --update --depfile=again -d out plates.gltf
 says "up to date"
-is "$(sed -n '1,/[^\\]$/p' again | tr -d '\\\n' | tr -s ' ')" "out/plates.gltf: plates.gltf plates.bin"
+is "$(sed -n '1,/[^\\]$/p' again | tr -d '\\\n' | tr -s ' ')" "out/plates.gltf: plates.gltf plates.bin bumps.png"
 run --depfile=absolute "$PWD/mirrored_cube.obj" "$PWD/out.glb"
 is "$(sed -n '1,/[^\\]$/p' absolute | tr -d '\\\n' | tr -s ' ')" \
 	"$PWD/out.glb: $PWD/mirrored_cube.obj $PWD/mirrored_cube.mtl $PWD/bumps.png"

@@ -194,8 +194,9 @@ done
 scene "links are kept right for the folder of the output"
 mkdir -p "in dir" out/deep
 cp "$WORK"/layouts/plain* "$WORK"/layouts/three* "in dir"
-run "in dir/three_buffers.gltf" out/deep/t.gltf
+run --images=link --buffers=link "in dir/three_buffers.gltf" out/deep/t.gltf
 exits 0
+says "/buffers/2: warning: reference leaves the folder of the output: as --buffers=link asks [LINK_LEAVES]"
 lossless "in dir/three_buffers.gltf" out/deep/t.gltf
 grep -q '"uri": "../../in%20dir/three_buffers%202.bin"' out/deep/t.gltf || wrong "the untouched buffer is not linked"
 run --existing=replace out/deep/t.gltf again.gltf
@@ -220,13 +221,27 @@ done
 scene "buffers are linked, copied or embedded"
 mkdir in out
 cp "$WORK"/layouts/three* in
-run in/three_buffers.gltf out/link.gltf
+run --buffers=link in/three_buffers.gltf out/link.gltf
 uris='g.buffers.map((b) => b.uri.slice(0, 40))'
 links=$(gltf out/link.gltf "$uris")
 linked=$(grep -o '\.\./in/' <<<"$links" | wc -l)
 [ "$linked" -gt 0 ] || wrong "nothing is linked: $links"
-run --buffers=link in/three_buffers.gltf out/again.gltf
-is "$(gltf out/again.gltf "$uris" | sed s/again/link/g)" "$links"
+# by default what would be outside is copied, and what is inside is linked
+run in/three_buffers.gltf out/again.gltf
+is "$(gltf out/again.gltf 'g.buffers.filter((b) => b.uri.includes("/")).length')" 0
+lossless in/three_buffers.gltf out/again.gltf
+mv in gone
+run --check --fail-on=never out/again.gltf
+exits 0
+mv gone in
+run in/three_buffers.gltf above.gltf
+is "$(gltf above.gltf 'g.buffers.filter((b) => b.uri.startsWith("in/")).length')" "$linked"
+says_not LINK_LEAVES
+# what is not there and not needed stays a link
+mkdir less && cp in/three_buffers* less && rm "less/three_buffers 2.bin"
+run less/three_buffers.gltf out/again.gltf
+exits 0
+says "/buffers/2: warning: reference leaves the folder of the output"
 run --buffers=copy in/three_buffers.gltf out/copy.gltf
 exits 0
 copies=$(gltf out/copy.gltf "$uris")

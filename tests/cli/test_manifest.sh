@@ -19,9 +19,9 @@ is "$(value m 'sorted((k, v["status"], v["exit_code"]) for k, v in m.items())')"
 is "$(value m 'm["bad.obj"]["error"]')" \
 	"{'message': 'face refers to \"v\" number 3, but the file has 2', 'file': 'bad.obj', 'line': 3}"
 is "$(value m '[d["path"] for d in m["plates.gltf"]["dependencies"]], [d["path"] for d in m["plates.gltf"]["outputs"]]')" \
-	"(['plates.gltf', 'plates.bin'], ['out/plates.gltf', 'out/plates.bin'])"
+	"(['plates.gltf', 'plates.bin', 'bumps.png'], ['out/plates.gltf', 'out/bumps.png', 'out/plates.bin'])"
 is "$(value m 'sum(d["bytes"] for d in m["plates.gltf"]["outputs"]), m["plates.gltf"]["bytes_written"]')" \
-	"($(cat out/plates.* | wc -c), $(cat out/plates.* | wc -c))"
+	"($(cat out/plates.* out/bumps.png | wc -c), $(cat out/plates.* out/bumps.png | wc -c))"
 is "$(value m 'm["mirrored_cube.obj"]["missing"], m["mirrored_cube.obj"]["findings"]["MTL_MISSING"]')" \
 	"(['mirrored_cube.mtl'], 1)"
 is "$(value m '[m["plates.gltf"][k] for k in ("triangles", "vertices_before", "vertices_after", "split", "options")]')" \

@@ -136,6 +136,13 @@ scene "the null device takes everything"
 run --output-format=glb "$data/head.obj" /dev/null
 exits 0
 [ -c /dev/null ] || wrong "/dev/null was replaced"
+# a device has nothing beside it
+run --output-format=gltf --images=copy --buffers=copy "$data/plates.gltf" /dev/null
+exits 0
+[ ! -e /dev/null.bin ] && [ ! -e /dev/bumps.png ] || wrong "there are files in /dev"
+run --output-format=gltf "$data/head.obj" /dev/null
+exits 1
+says "glTF with a .bin cannot go to a device; write glb, or use --embed"
 
 scene "a named pipe is written through"
 mkfifo pipe.glb

@@ -131,7 +131,7 @@ is "$(state o.gltf)" "$first"
 # with another result the file of the earlier one goes: this main file alone referred to it
 run --bitangents "$data/plates.gltf" o.gltf
 exits 0
-is "$(ls | wc -l)" 3
+is "$(ls | wc -l)" 4
 is "$(cat o.bin)" somebody
 run "$data/plates.gltf" o.gltf
 is "$(ls)" "$list"
@@ -141,7 +141,7 @@ scene "a .bin of ours is replaced under its own name, one that was changed since
 run --bitangents "$data/plates.gltf" o.gltf
 run "$data/plates.gltf" o.gltf
 exits 0
-only o.gltf o.bin
+only o.gltf o.bin bumps.png
 says_not "another file"
 is "$(xxhsum -H2 o.bin 2>/dev/null | cut -c1-32)" "$(command -v xxhsum >/dev/null && gltf o.gltf 'g.buffers[0].extras["nmtan:xxh128"]' | tr -d '"')"
 echo changed >>o.bin
@@ -155,7 +155,7 @@ scene "what is read back before the switch is what will be there"
 run --bitangents "$data/plates.gltf" o.gltf
 run --verify "$data/plates.gltf" o.gltf
 exits 0
-only o.gltf o.bin
+only o.gltf o.bin bumps.png
 echo somebody >o.bin
 run --verify --bitangents "$data/plates.gltf" o.gltf
 exits 0
@@ -188,7 +188,7 @@ mv a.gltf kept.gltf && mv a.bin o.bin && sed -i 's/"a\.bin"/"o.bin"/' kept.gltf
 before=$(state kept.gltf)
 run "$data/plates.gltf" o.gltf
 exits 0
-only kept.gltf o.gltf o.bin
+only kept.gltf o.gltf o.bin bumps.png
 run --bitangents "$data/plates.gltf" o.gltf
 exits 0
 is "$(state kept.gltf)" "$before"
@@ -211,7 +211,7 @@ run "$data/plates.gltf" fresh.gltf
 is "$(state o.gltf)" "$(state fresh.gltf)"
 run "$data/plates.gltf" o.gltf
 exits 0
-only o.gltf o.bin fresh.gltf fresh.bin
+only o.gltf o.bin fresh.gltf fresh.bin bumps.png
 
 scene "a sticky folder of somebody else's"
 outsider || place=
@@ -229,7 +229,7 @@ fi
 exits 2
 says "o.gltf: cannot write"
 is "$(state sticky/o.gltf)" "$before"
-is "$(ls -A sticky | tr '\n' ' ')" "o.bin o.gltf "
+is "$(ls -A sticky | tr '\n' ' ')" "bumps.png o.bin o.gltf "
 cd "$WORK/here" && rm -rf "$place"
 
 scene "images of one name from several inputs are all kept"

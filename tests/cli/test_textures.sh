@@ -182,9 +182,12 @@ exits 0
 says "IMAGE_MISSING"
 run --texture-path=a --texture-path=b in/quad.obj in/quad.gltf
 exits 0
-is "$(gltf in/quad.gltf 'g.images[0].uri')" ../a/n.png
-run --texture-path=b --texture-path=a in/quad.obj in/quad.gltf
+is "$(gltf in/quad.gltf 'g.images[0].uri')" n.png
+same in/n.png a/n.png
+rm in/n.png
+run --images=link --texture-path=b --texture-path=a in/quad.obj in/quad.gltf
 is "$(gltf in/quad.gltf 'g.images[0].uri')" ../b/sub/n.png
+says "n.png, as --images=link asks [LINK_LEAVES]"
 run --texture-path=nowhere in/quad.obj in/quad.gltf
 exits 1
 says "nowhere"
@@ -195,7 +198,7 @@ images write n.png 4 4 "$bumps"
 ln -s ../n.png in/link.png
 quad 'norm ../n.png' 'map_Kd link.png'
 mv quad.obj m.mtl in
-run in/quad.obj quad.gltf
+run --confine in/quad.obj quad.gltf
 exits 0
 says "--allow-outside"
 is "$(gltf quad.gltf 'g.images')" undefined
@@ -205,11 +208,47 @@ is "$(gltf quad.gltf 'g.images.length')" 2
 # Names that leave the folder are refused by their text: the message is one, whatever is there.
 for name in ../n.png ../gone.png "$PWD/n.png" /gone/n.png; do
 	printf 'newmtl m\nnorm %s\n' "$name" >in/m.mtl
-	run in/quad.obj quad.gltf
+	run --confine in/quad.obj quad.gltf
 	exits 0
 	grep -o ': image .*' ../err.txt | sed "s#$name#NAME#" >>said
 done
 is "$(sort -u said)" ": image cannot be read: NAME (it is outside of the folder of its MTL file, see --allow-outside) [IMAGE_MISSING]"
+
+scene "an image one folder up is taken where one file is converted"
+mkdir -p p/models p/textures far
+images write p/textures/t.png 4 4 "$bumps"
+images write far/n.png 4 4 "$bumps"
+quad 'norm ../textures/t.png'
+mv quad.obj m.mtl p/models
+run p/models/quad.obj out.glb
+exits 0
+is "$(gltf out.glb 'g.images.length')" 1
+run p/models/quad.obj p/models/quad.gltf
+is "$(gltf p/models/quad.gltf 'g.images[0].uri')" t.png
+same p/models/t.png p/textures/t.png
+rm p/models/t.png
+run --check --check-maps=on p/models/quad.obj
+says_not IMAGE_MISSING
+for way in "-d out" "-d out -r" --confine; do
+	case $way in --confine) run $way p/models/quad.obj out.glb ;; *-r) run $way p/models ;; *) run $way p/models/quad.obj ;; esac
+	exits 0
+	says "image cannot be read: ../textures/t.png (it is outside"
+done
+run --allow-outside --confine p/models/quad.obj out.glb
+exits 1
+# no further, by no link, no other file; and one message, whatever is there
+echo text >p/secret.txt
+ln -s ../far p/linked
+mkfifo p/pipe.png
+for name in ../secret.txt ../gone.txt ../../far/n.png ../../gone/n.png ../textures/../../far/n.png ../linked/n.png ../linked/gone.png \
+	../pipe.png ../textures; do
+	printf 'newmtl m\nnorm %s\n' "$name" >p/models/m.mtl
+	run p/models/quad.obj out.glb
+	exits 0
+	grep -o ': image .*' ../err.txt | sed "s#$name#NAME#" >>said
+done
+is "$(sort said | uniq -c | sed 's/^ *//')" \
+	"9 : image cannot be read: NAME (it is outside of the folder of its MTL file, see --allow-outside) [IMAGE_MISSING]"
 
 scene "a link inside the folder does not tell whether there is something outside that it leads to"
 mkdir in there

@@ -73,7 +73,7 @@ exits 0
 says "3 of 3 done, 3 of them up to date"
 is "$(made)" ""
 is "$(identity out/*)" "$before"
-for change in mirrored_cube.obj:mirrored_cube.obj mirrored_cube.mtl:mirrored_cube.obj bumps.png:mirrored_cube.obj \
+for change in mirrored_cube.obj:mirrored_cube.obj mirrored_cube.mtl:mirrored_cube.obj "bumps.png:mirrored_cube.obj plates.gltf" \
 	plates.bin:plates.gltf plates.gltf:plates.gltf; do
 	later
 	touch "${change%:*}"
@@ -122,10 +122,10 @@ run --update -d out $inputs
 is "$(made)" "mirrored_cube.obj "
 mv bumps.png away.png
 run --update -d out $inputs
-is "$(made)" "mirrored_cube.obj "
+is "$(made)" "mirrored_cube.obj plates.gltf "
 mv away.png bumps.png
 run --update -d out $inputs
-is "$(made)" "mirrored_cube.obj "
+is "$(made)" "mirrored_cube.obj plates.gltf "
 run --update -d out $inputs
 is "$(made)" ""
 

@@ -172,7 +172,7 @@ static nt_status plan_materials(composition *c, nt_error *error)
 	if (status == NT_OK)
 		status = nt_output_add(c->output, c->options.path, NT_ROLE_MAIN, &c->main, error);
 	if (status == NT_OK)
-		status = nt_image_set_add(c->images, c->model, &c->buffer_size, c->output, error);
+		status = nt_image_set_add(c->images, c->scene, c->model, &c->buffer_size, c->output, error);
 	for (size_t m = 0; m < c->scene->mesh_count && status == NT_OK; m++)
 		for (size_t p = 0; p < c->primitives[m].count; p++) {
 			const nt_new_primitive *primitive = &c->primitives[m].items[p];
@@ -427,9 +427,10 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 {
 	composition c = {.scene = scene, .options = *options, .output = output};
 	const bool alone = options->format == NT_FORMAT_GLB || options->embed;
-	if (!alone && strcmp(options->path, "-") == 0)
+	if (!alone && nt_output_is_stream(options->path))
 		return nt_fail(error, NT_ERROR_USAGE,
-			"glTF with a .bin cannot go to standard output; write glb, or use --embed");
+			"glTF with a .bin cannot go to %s; write glb, or use --embed",
+			strcmp(options->path, "-") == 0 ? "standard output" : "a device");
 
 	c.model = nt_model_create("nmtan " NMTAN_VERSION_STRING);
 	nt_status status = c.model ? NT_OK : nt_fail_memory(error);

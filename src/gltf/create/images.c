@@ -25,7 +25,7 @@ typedef struct image_entry {
 
 struct nt_image_set {
 	nt_write_options options;
-	nt_images choice; /* never the default */
+	nt_images choice; /* the default: linked in the output's folder, copied from elsewhere */
 	char *folder; /* of the output, absolute */
 	image_entry *entries; /* [entry_count] */
 	size_t entry_count;
@@ -56,8 +56,7 @@ nt_status nt_image_set_create(nt_image_set **set, const nt_write_options *option
 		return nt_fail_memory(error);
 	const bool alone = options->format == NT_FORMAT_GLB || options->embed;
 	(*set)->options = *options;
-	(*set)->choice = options->images != NT_IMAGES_DEFAULT
-		? options->images : alone ? NT_IMAGES_EMBED : NT_IMAGES_LINK;
+	(*set)->choice = options->images == NT_IMAGES_DEFAULT && alone ? NT_IMAGES_EMBED : options->images;
 	const nt_status status = fill(*set, error);
 	if (status) {
 		nt_image_set_free(*set);
@@ -161,11 +160,25 @@ static uint32_t add_embedded(image_entry *entry, const char *title, nt_model *mo
 	return nt_model_image_view(model, title, view, nt_image_media_type(entry->image->type));
 }
 
-static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_model *model,
+/* Whether a link to the file would leave the output's folder. */
+static bool is_outside(const nt_image_set *set, const nt_texture *image)
+{
+	const size_t length = strlen(set->folder);
+	const char *path = image->sources[0]->path;
+	const bool is_root = length == 1;
+	return !is_root && !(strncmp(path, set->folder, length) == 0 && path[length] == '/');
+}
+
+static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_scene *scene, nt_model *model,
 	uint64_t *buffer_size, nt_output *output, nt_error *error)
 {
 	entry->embedded = set->choice == NT_IMAGES_EMBED;
-	if (entry->image->made ? !entry->embedded : set->choice == NT_IMAGES_COPY) {
+	const bool leaves = !entry->image->made && is_outside(set, entry->image);
+	if (leaves && set->choice == NT_IMAGES_LINK)
+		nt_finding_add(&scene->findings, NT_CODE_LINK_LEAVES, NULL, 1, "%s, as --images=link asks",
+			entry->image->name);
+	if (entry->image->made ? !entry->embedded
+				: set->choice == NT_IMAGES_COPY || (set->choice == NT_IMAGES_DEFAULT && leaves)) {
 		const nt_status status = write_file(set, entry, output, error);
 		if (status != NT_OK)
 			return status;
@@ -215,13 +228,13 @@ static void note_made(const nt_image_set *set, nt_output *output)
 		nt_output_note(output, ", and %zu more", count - NAMES_SHOWN);
 }
 
-nt_status nt_image_set_add(nt_image_set *set, nt_model *model, uint64_t *buffer_size,
+nt_status nt_image_set_add(nt_image_set *set, nt_scene *scene, nt_model *model, uint64_t *buffer_size,
 	nt_output *output, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < set->entry_count && status == NT_OK; i++)
 		if (set->entries[i].used)
-			status = add_entry(set, &set->entries[i], model, buffer_size, output, error);
+			status = add_entry(set, &set->entries[i], scene, model, buffer_size, output, error);
 	if (status == NT_OK)
 		note_made(set, output);
 	return status;

@@ -25,8 +25,9 @@ void nt_image_set_free(nt_image_set *set);
 nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *output, nt_error *error);
 
 /* Adds what is used to the document: images and textures. Images that are embedded get their place at *buffer_size and
- * move it on. Others that need a file of their own are written. After all uses, once. */
-nt_status nt_image_set_add(nt_image_set *set, nt_model *model, uint64_t *buffer_size,
+ * move it on. Others that need a file of their own are written: what was made, what is to be copied, and by default
+ * what is outside of the output's folder. A link that leaves it is a finding of the scene. After all uses, once. */
+nt_status nt_image_set_add(nt_image_set *set, nt_scene *scene, nt_model *model, uint64_t *buffer_size,
 	nt_output *output, nt_error *error);
 
 /* What the alpha of a request's image does, where the request is for alpha. */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Images of an edited document. They are linked where they are, so that none is opened, unless they have
- * to move into the output or beside it. An image that cannot be read is a finding and stays a link.
+ * to move into the output or beside it: where that is wanted, or where the output's folder does not have them. An image
+ * that cannot be read is a finding and stays a link.
  */
 #include "gltf/edit/images.h"
 
@@ -14,9 +15,7 @@
 nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *document)
 {
 	const bool becomes_glb = options->format == NT_FORMAT_GLB && !document->is_glb;
-	if (options->images != NT_IMAGES_DEFAULT)
-		return options->images;
-	return becomes_glb ? NT_IMAGES_EMBED : NT_IMAGES_LINK;
+	return options->images == NT_IMAGES_DEFAULT && becomes_glb ? NT_IMAGES_EMBED : options->images;
 }
 
 /* ---- reading ---- */
@@ -188,9 +187,12 @@ nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_
 		size_t length;
 		if (!nt_gltf_external_uri(image, &length))
 			continue;
+		const bool leaves = !output->is_stream && nt_gltf_link_leaves(image, output->link_prefix);
+		if (choice == NT_IMAGES_LINK && leaves)
+			nt_gltf_tell_leaving(scene, "images", i, "as --images=link asks");
 		if (choice == NT_IMAGES_EMBED)
 			status = embed_image(&m, i, image);
-		else if (choice == NT_IMAGES_COPY)
+		else if ((choice == NT_IMAGES_COPY && !output->is_stream) || (choice == NT_IMAGES_DEFAULT && leaves))
 			status = copy_image(&m, i, image);
 		else
 			status = nt_gltf_link(m.json, image, output->link_prefix, error);

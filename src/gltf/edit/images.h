@@ -13,6 +13,7 @@ typedef struct nt_gltf_output {
 	const nt_write_options *options;
 	nt_output *set;          /* of files */
 	const char *link_prefix; /* from the output's folder to the input's, percent-encoded; "" */
+	bool is_stream;          /* there can be no files beside it */
 } nt_gltf_output;
 
 /* Files that were read and are still to be written. */
@@ -21,7 +22,8 @@ typedef struct nt_open_images {
 	size_t count, capacity;
 } nt_open_images;
 
-/* What the images option means for this output of a document. */
+/* What the images option means for this output of a document. The default is LINK where the output's folder has the
+ * file, and COPY elsewhere. */
 nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *document);
 
 /* Links, embeds or copies the document's images, as the options say. images: empty; what is open in it must
@@ -39,7 +41,14 @@ const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length);
 nt_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *to, const char **prefix,
 	nt_error *error);
 
+/* links.c. Whether the uri of a buffer or an image, with a prefix before it, leads out of the output's folder. Not
+ * where there is no prefix: it means then what it means in the input. */
+bool nt_gltf_link_leaves(const nt_json_value *object, const char *prefix);
+
 /* links.c. Puts the prefix before the uri of a buffer or an image, where that is relative. */
 nt_status nt_gltf_link(nt_json *json, nt_json_value *object, const char *prefix, nt_error *error);
+
+/* links.c. A finding about a uri that leads out of the output's folder: of an element of "buffers" or "images". */
+void nt_gltf_tell_leaving(nt_scene *scene, const char *array, size_t index, const char *why);
 
 #endif

@@ -4,6 +4,7 @@
  */
 #include "gltf/edit/images.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "file/relative_path.h"
@@ -50,6 +51,46 @@ static bool is_relative(const char *uri, size_t length)
 	while (first < length && !strchr("/?#", uri[first]))
 		first++;
 	return length > 0 && uri[0] != '/' && !memchr(uri, ':', first);
+}
+
+/* Whether the steps of a path lead out of the folder where they begin. */
+static bool leads_out(const char *path)
+{
+	size_t depth = 0;
+	for (const char *step = path; *step;) {
+		const size_t length = strcspn(step, "/\\");
+		const bool up = length == 2 && memcmp(step, "..", 2) == 0;
+		if (up && depth == 0)
+			return true;
+		if (up)
+			depth--;
+		else if (length > 1 || (length == 1 && *step != '.'))
+			depth++;
+		step += length + (step[length] != '\0');
+	}
+	return false;
+}
+
+bool nt_gltf_link_leaves(const nt_json_value *object, const char *prefix)
+{
+	size_t length;
+	const char *uri = nt_gltf_external_uri(object, &length);
+	if (!uri || !*prefix || !is_relative(uri, length))
+		return false;
+	nt_buffer path = {0};
+	nt_uri_append_decoded(&path, prefix, strlen(prefix));
+	nt_uri_append_decoded(&path, uri, length);
+	const bool leaves = path.failed || leads_out(path.data);
+	nt_buffer_free(&path);
+	return leaves;
+}
+
+void nt_gltf_tell_leaving(nt_scene *scene, const char *array, size_t index, const char *why)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	snprintf(place.pointer, sizeof place.pointer, "/%s/%zu", array, index);
+	nt_finding_add(&scene->findings, NT_CODE_LINK_LEAVES, &place, 1, "%s", why);
 }
 
 nt_status nt_gltf_link(nt_json *json, nt_json_value *object, const char *prefix, nt_error *error)

@@ -23,6 +23,7 @@
 
 /* An edited document on its way into files. */
 typedef struct writing {
+	nt_scene *scene;
 	nt_gltf *document;
 	nt_json *json;
 	nt_gltf_output output;
@@ -103,6 +104,12 @@ nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *option
 
 /* ---- what happens to each buffer ---- */
 
+static bool link_leaves(const writing *c, uint32_t index)
+{
+	const nt_json_value *buffer = nt_json_at(nt_gltf_root_member(c->document, "buffers"), index);
+	return !c->output.is_stream && nt_gltf_link_leaves(buffer, c->output.link_prefix);
+}
+
 static destination choose_destination(const writing *c, uint32_t index)
 {
 	const nt_gltf *document = c->document;
@@ -112,7 +119,7 @@ static destination choose_destination(const writing *c, uint32_t index)
 		document->buffer_count && document->buffers[0].storage != NT_GLTF_STORED_BIN;
 	/* beside the output, if the user wants that; standard output has none */
 	const nt_buffers wish = c->options->buffers;
-	const bool files = (wish == NT_BUFFERS_LINK || wish == NT_BUFFERS_COPY) && strcmp(c->options->path, "-") != 0;
+	const bool files = (wish == NT_BUFFERS_LINK || wish == NT_BUFFERS_COPY) && !c->output.is_stream;
 	const destination in_glb = index == 0 && !chunk_is_other ? TO_BIN_CHUNK : files ? TO_SIDECAR : TO_DATA_URI;
 	const destination moved = c->to_glb ? in_glb : c->embed ? TO_DATA_URI : TO_SIDECAR;
 	if (index >= document->buffer_count)
@@ -132,8 +139,9 @@ static destination choose_destination(const writing *c, uint32_t index)
 		if (edited || c->embed || (into_glb && !files))
 			return moved;
 		/* where the folder stays the same it is there already, as with images */
-		return c->options->buffers == NT_BUFFERS_COPY && *c->output.link_prefix && files ? TO_SIDECAR
-											  : LINKED;
+		if (wish == NT_BUFFERS_COPY && *c->output.link_prefix && files)
+			return TO_SIDECAR;
+		return wish == NT_BUFFERS_DEFAULT && link_leaves(c, index) ? TO_SIDECAR : LINKED;
 	default:
 		/* Buffer 0 of a .glb without a uri is the BIN chunk, so there has to be one. */
 		return into_glb && index == 0 && buffer->length <= EMPTY_BYTES ? TO_BIN_CHUNK : KEPT;
@@ -248,6 +256,28 @@ static nt_status open_source(writing *c, uint32_t index, destination what)
 		(unsigned long long)buffer->length, buffer->size);
 }
 
+/* Whether a buffer is copied only so that its uri stays in the output's folder. */
+static bool can_stay(const writing *c, uint32_t index)
+{
+	return index < c->document->buffer_count && c->document->buffers[index].storage == NT_GLTF_STORED_FILE &&
+		!nt_is_edited(c->buffers.buffers[index].from) && !c->embed && c->options->buffers == NT_BUFFERS_DEFAULT;
+}
+
+/* Opens what will be written. What nothing needs does not fail the input: where it cannot be read it stays a link. */
+static nt_status open_or_link(writing *c, uint32_t index, destination *what)
+{
+	nt_status status = open_source(c, index, *what);
+	if (status && status != NT_ERROR_MEMORY && *what == TO_SIDECAR && can_stay(c, index)) {
+		nt_gltf_tell_leaving(c->scene, "buffers", index, c->error ? c->error->message : "it cannot be read");
+		nt_error_clear(c->error);
+		*what = LINKED;
+		status = NT_OK;
+	} else if (*what == LINKED && c->options->buffers == NT_BUFFERS_LINK && link_leaves(c, index)) {
+		nt_gltf_tell_leaving(c->scene, "buffers", index, "as --buffers=link asks");
+	}
+	return status;
+}
+
 /* Settles every buffer but the BIN chunk; *bin receives whether there is one. */
 static nt_status settle_buffers(writing *c, bool *bin)
 {
@@ -256,8 +286,8 @@ static nt_status settle_buffers(writing *c, bool *bin)
 	*bin = false;
 	for (uint32_t i = 0; !status && i < c->buffers.buffer_count; i++) {
 		nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), i);
-		const destination what = choose_destination(c, i);
-		status = open_source(c, i, what);
+		destination what = choose_destination(c, i);
+		status = open_or_link(c, i, &what);
 		if (status)
 			break;
 		/* in place, what is linked to is what it was */
@@ -415,13 +445,13 @@ nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const 
 	nt_output *output, nt_error *error)
 {
 	nt_gltf *document = edits->document;
-	writing c = {.document = document, .json = document->json, .output = {options, output, ""},
+	writing c = {.scene = scene, .document = document, .json = document->json,
+		.output = {options, output, "", nt_output_is_stream(options->path)},
 		.options = options, .input = input_file(scene), .uris = {.relocated = &c.buffers},
 		.arena = &edits->arena, .error = error, .to_glb = options->format == NT_FORMAT_GLB,
 		.in_place = nt_output_is_in_place(output, options->path)};
 	c.same_container = c.to_glb == document->is_glb;
-	/* Standard output has no sidecars. */
-	c.embed = options->embed || (!c.to_glb && strcmp(options->path, "-") == 0);
+	c.embed = options->embed || (!c.to_glb && c.output.is_stream);
 	nt_status status = NT_OK;
 	if (has_external(document, "buffers") || has_external(document, "images"))
 		status = nt_gltf_link_prefix(c.arena, options->path, document->path, &c.output.link_prefix, error);

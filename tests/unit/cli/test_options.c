@@ -43,7 +43,7 @@ static void no_options_mean_the_defaults(void **state)
 	(void)state;
 	nt_command c;
 	accepts(&c, WORDS("in.obj", "out.glb"));
-	const nt_settings defaults = {.texcoord_set = -1, .draco_speed = NT_DRACO_SPEED};
+	const nt_settings defaults = {.texcoord_set = -1, .draco_speed = NT_DRACO_SPEED, .one_up = true};
 	assert_memory_equal(&c.settings, &defaults, sizeof defaults);
 	assert_int_equal(c.action, NT_ACTION_RUN);
 	assert_int_equal(c.verbosity, 0);

@@ -29,6 +29,8 @@ class ConversionError(RuntimeError):
 
 
 def _arguments(options):
+    if not options.get("allow_outside"):
+        options = {"confine": True, **options}
     for name, value in options.items():
         name = name.rstrip("_").replace("_", "-")
         values = value if isinstance(value, (list, tuple)) else [value]
@@ -44,7 +46,7 @@ def convert(input: Union[str, os.PathLike], output: Union[str, os.PathLike], *, 
     """Converts a file with the tool nmtan, as `nmtan INPUT OUTPUT --options` does.
 
     Options have the tool's names with _ for -: convert("a.obj", "a.glb", normals="smooth", verify=True); False and
-    None leave one out, a list repeats it. program: the tool, found along PATH, or a list with arguments before ours.
+    None leave one out, a list repeats it. confine=True is the default: who calls may not know the file. program: the tool, found along PATH, or a list with arguments before ours.
     Raises ConversionError where the tool ends with anything but 0, FileNotFoundError where there is no tool.
     """
     command = [program] if isinstance(program, (str, os.PathLike)) else list(program)

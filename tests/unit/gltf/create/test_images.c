@@ -78,13 +78,20 @@ static void linked_images_are_relative_to_the_output(void **state)
 {
 	nt_scene *scene = *state;
 	mkdir(in_folder("out"), 0777);
-	compose_images_well(scene, (nt_write_options){0}, "out/linked.gltf");
+	compose_images_well(scene, (nt_write_options){.images = NT_IMAGES_LINK}, "out/linked.gltf");
 	/* one image, used twice */
 	assert_file_says("out/linked.gltf", PARTS("\"uri\":\"../mtl/tex/a%20b.png\"",
 		"\"uri\":\"../mtl/n.jpg\"", "\"baseColorTexture\":{\"index\":0}",
 		"\"emissiveTexture\":{\"index\":0}", "\"normalTexture\":{\"index\":1}",
 		"\"textures\":[{\"source\":0},{\"source\":1}]"));
-	assert_int_equal(scene->findings.count, 0);
+	assert_int_equal(scene->findings.count, 2);
+	assert_int_equal(scene->findings.items[0].code, NT_CODE_LINK_LEAVES);
+	/* by default they are copied from there, and linked from above */
+	compose_images_well(scene, (nt_write_options){0}, "out/copied.gltf");
+	assert_file_says("out/copied.gltf", PARTS("\"uri\":\"a%20b.png\"", "\"uri\":\"n.jpg\""));
+	compose_images_well(scene, (nt_write_options){0}, "above.gltf");
+	assert_file_says("above.gltf", PARTS("\"uri\":\"mtl/tex/a%20b.png\"", "\"uri\":\"mtl/n.jpg\""));
+	assert_int_equal(scene->findings.count, 2);
 }
 
 static void embedded_images_lie_behind_the_geometry(void **state)
