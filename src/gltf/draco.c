@@ -6,6 +6,7 @@
  */
 #include "gltf/draco.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include "base/parallel.h"
@@ -28,6 +29,44 @@ nt_draco_quantization nt_gltf_draco_grid(const nt_gltf *document, uint32_t acces
 {
 	return document->grids && document->grids[accessor].bits ? document->grids[accessor] :
 		(nt_draco_quantization){.bits = bits};
+}
+
+const nt_draco_quantization *nt_gltf_draco_tangents_of(const nt_gltf *document, const nt_json_value *primitive)
+{
+	const nt_json_value *extension = nt_gltf_draco_of(primitive);
+	uint64_t view, id;
+	const nt_draco_mesh *block = nt_json_get_uint64(nt_json_find(extension, "bufferView"), &view) ?
+		nt_gltf_draco_block(document, view) : NULL;
+	const nt_draco_attribute *found = block &&
+			nt_json_get_uint64(nt_json_find(nt_json_find(extension, "attributes"), "TANGENT"), &id) ?
+		nt_draco_find(block, (uint32_t)id) : NULL;
+	return found ? &found->quantization : NULL;
+}
+
+/* What a decoder makes of a value, in Draco's arithmetic. */
+static float decoded_value(const nt_draco_quantization *q, size_t component, float value)
+{
+	const float most = (float)((1u << q->bits) - 1), step = q->range / most;
+	const float number = floorf((value - q->origin[component]) * (most / q->range) + 0.5f);
+	return number < 0 || number > most ? NAN : number * step + q->origin[component];
+}
+
+nt_draco_quantization nt_gltf_draco_tangent_grid(const nt_draco_quantization *source, const int *draco_bits)
+{
+	enum { MOST = 23 }; /* the number of the last cell is rounded up from 24 bits on */
+	nt_draco_quantization grid = {.bits = nt_gltf_draco_bits(draco_bits, NT_DRACO_BITS_TANGENT),
+		.explicit_box = true, .origin = {-1, -1, -1, -1}, .range = 2};
+	bool is_exact = source && source->bits > 0 && !source->octahedral;
+	for (size_t k = 0; is_exact && k < 4; k++)
+		is_exact = decoded_value(source, k, -1) == -1 && decoded_value(source, k, 1) == 1;
+	if (is_exact) {
+		grid = *source;
+		grid.explicit_box = true;
+	} else if (source && source->bits > grid.bits) {
+		grid.bits = source->bits;
+	}
+	grid.bits = grid.bits > MOST && !is_exact ? MOST : grid.bits;
+	return grid;
 }
 
 static void free_blocks(nt_gltf *document)

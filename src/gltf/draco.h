@@ -28,6 +28,13 @@ int nt_gltf_draco_bits(const int *draco_bits, nt_draco_bits which);
 /* How an accessor is quantized that was not: on the document's grid for it, or on its own with these bits. */
 nt_draco_quantization nt_gltf_draco_grid(const nt_gltf *document, uint32_t accessor, int bits);
 
+/* How a primitive's block has its tangents; NULL: it has none, or is not decoded. */
+const nt_draco_quantization *nt_gltf_draco_tangents_of(const nt_gltf *document, const nt_json_value *primitive);
+
+/* The grid of tangents that are encoded: the one that they have where it decodes to -1 and 1 exactly, as w has to be,
+ * else one of our own. source: NULL: they have none. */
+nt_draco_quantization nt_gltf_draco_tangent_grid(const nt_draco_quantization *source, const int *draco_bits);
+
 /* Whether it is not the mesh that keeps Draco from quantizing or encoding it. */
 static inline bool nt_gltf_is_beside_mesh(nt_status status)
 {

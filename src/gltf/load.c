@@ -206,6 +206,24 @@ static nt_status load_floats(nt_scene *scene, const nt_mesh *mesh, const nt_gltf
 				      floats, error);
 }
 
+static float step_of(const nt_draco_quantization *grid)
+{
+	return grid->bits ? grid->range / (float)((1u << grid->bits) - 1) : 0;
+}
+
+/* What Draco did to tangents, and will do to those that stay: nothing more where they keep their grid. */
+static void find_tangent_steps(const nt_scene *scene, nt_mesh *mesh, const nt_read_options *options)
+{
+	const nt_draco_quantization *source =
+		nt_gltf_draco_tangents_of(scene->source, nt_gltf_primitive_of(scene->source, mesh));
+	const nt_draco_quantization next = nt_gltf_draco_tangent_grid(source, options->draco_bits);
+	const bool stays = source && source->bits == next.bits && source->range == next.range &&
+		memcmp(source->origin, next.origin, sizeof next.origin) == 0;
+	mesh->tangent_step = source ? step_of(source) : 0;
+	mesh->tangent_margin = (mesh->plan.quantized || (source && options->draco != NT_DRACO_OFF)) && !stays ?
+		step_of(&next) : 0;
+}
+
 /* As they are stored, of all vertices of the pool. */
 static nt_status load_vertices(nt_scene *scene, nt_mesh *mesh, const inputs *in, nt_error *error)
 {
@@ -493,6 +511,8 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		status = load_faces(scene, document, mesh, primitive, &in, &view, error);
 	if (!status && mesh->texcoords)
 		status = flip_texcoords(scene, mesh, options->threads, error);
+	if (!status && mesh->tangents)
+		find_tangent_steps(scene, mesh, options);
 	if (!status && mesh->plan.quantized)
 		status = quantize(scene, mesh, &in, options, error);
 	if (!status)

@@ -17,6 +17,7 @@
 #include "gltf/morph_deltas.h"
 #include "report/quads.h"
 #include "topology/corners.h"
+#include "topology/reversed.h"
 
 static size_t vertex_of(const nt_mesh *mesh, size_t corner)
 {
@@ -29,50 +30,97 @@ static size_t face_size(const nt_mesh *mesh, size_t face)
 }
 
 /* Finite, of unit length (to the Khronos validator's tolerance), off perpendicular by no more than a degree, as
- * --check has it: half a degree comes from rounding to 8 bits. n may be NULL. */
-static bool is_valid(const float *t, const float *n)
+ * --check has it: half a degree comes from rounding to 8 bits. n may be NULL. margin: what storing it may do to a
+ * component, so that it is valid then too. */
+static bool is_valid(const float *t, const float *n, float margin)
 {
 	static const double sine = 0.017452406437283512;
 	const nt_dvec3 tangent = nt_dvec3_load(t),
 		       normal = n ? nt_dvec3_load(n) : (nt_dvec3){0, 0, 0};
 	const double length = nt_dvec3_length(tangent);
-	return fabs(length - 1.0) <= 0.00674 &&
-	       !(fabs(nt_dvec3_dot(tangent, normal)) > sine * length * nt_dvec3_length(normal));
+	return fabs(length - 1.0) <= 0.00674 - (double)margin &&
+	       !(fabs(nt_dvec3_dot(tangent, normal)) > (sine - (double)margin) * length * nt_dvec3_length(normal));
 }
 
-/* The sign that all corners of a face have for w; 0: they differ, or have none. */
-static float common_sign(const nt_mesh *mesh, size_t first, size_t size)
+/* w as it was meant: Draco's grid may not have -1 and 1. */
+static float sign_of(const nt_mesh *mesh, float w)
 {
-	const float w = mesh->tangents[4 * vertex_of(mesh, first) + 3];
+	return fabsf(fabsf(w) - 1) <= mesh->tangent_step ? copysignf(1, w) : w;
+}
+
+enum { MOST_CORNERS = 4 };
+
+/* The sign that all corners of a face have for w; 0: they differ, or have none. */
+static float common_sign(float tangents[][4], size_t size)
+{
+	const float w = tangents[0][3];
 	for (size_t k = 1; k < size; k++)
-		if (mesh->tangents[4 * vertex_of(mesh, first + k) + 3] != w)
+		if (tangents[k][3] != w)
 			return 0.0f;
 	return w == 1.0f || w == -1.0f ? w : 0.0f;
 }
 
-/* Whether the authored tangents can stay on a face: all valid, with one w, and that of the exact orientation of every
- * triangle that it is written as. */
-static bool face_is_valid(const nt_mesh *mesh, const nmtan_mesh *view, size_t face, size_t first)
+/* Whether a corner's tangent can be drawn, whatever its neighbours have. */
+static bool corner_is_valid(const nt_mesh *mesh, size_t corner, const float *tangent)
+{
+	const size_t vertex = vertex_of(mesh, corner);
+	return is_valid(tangent, mesh->normals ? mesh->normals + 3 * vertex : NULL, mesh->tangent_margin) &&
+		fabsf(tangent[3]) == 1;
+}
+
+/* Whether tangents can stay on a face: all valid, with one w, and that of the exact orientation of every triangle that
+ * it is written as, none of them reversed: what --check calls an error does not stay. */
+static bool face_is_valid(const nt_mesh *mesh, const nmtan_mesh *view, size_t face, size_t first,
+	float tangents[][4])
 {
 	const size_t size = face_size(mesh, face);
-	const float w = common_sign(mesh, first, size);
-	for (size_t k = 0; k < size; k++) {
-		const size_t vertex = vertex_of(mesh, first + k);
-		if (!is_valid(mesh->tangents + 4 * vertex, mesh->normals ? mesh->normals + 3 * vertex : NULL))
+	const float w = common_sign(tangents, size);
+	for (size_t k = 0; k < size; k++)
+		if (!corner_is_valid(mesh, first + k, tangents[k]))
 			return false;
-	}
 	uint32_t corners[2][3];
 	const unsigned count = nt_written_triangles(view, face, first, corners);
+	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
 	for (unsigned i = 0; i < count; i++) {
+		nt_tangent_triangle triangle;
 		const int sign = (mesh->solve_texcoords ? mesh->solve_sign : 1) *
 				 nmtan_orientation(mesh->texcoords + 2 * vertex_of(mesh, corners[i][0]),
 					 mesh->texcoords + 2 * vertex_of(mesh, corners[i][1]),
 					 mesh->texcoords + 2 * vertex_of(mesh, corners[i][2]));
+		for (size_t k = 0; k < 3; k++) {
+			const size_t vertex = vertex_of(mesh, corners[i][k]);
+			triangle.positions[k] = mesh->positions + 3 * vertex;
+			triangle.normals[k] = mesh->normals ? mesh->normals + 3 * vertex : NULL;
+			triangle.texcoords[k] = uv + 2 * vertex;
+			triangle.tangents[k] = tangents[corners[i][k] - first];
+		}
+		triangle.orientation = sign;
 		/* half of a folded quad may have the quad's */
+		if (sign != 0 && w == (float)sign && mesh->normals && nt_is_reversed(&triangle))
+			return false;
 		if (sign != 0 && w != (float)sign && w != (float)nt_folded_orientation(mesh, mesh->halves, first / 3))
 			return false;
 	}
 	return w != 0.0f;
+}
+
+/* What becomes of a face. */
+typedef enum face_fate { STAYS, IS_LEFT, IS_REPLACED } face_fate;
+
+/* A face is replaced where that makes it better: not where the solve gives what is there, as far as storing it shows,
+ * nor where it gives no valid one either and each corner is usable. A second run finds what the first one made. */
+static face_fate fate_of(const nt_mesh *mesh, const nmtan_mesh *view, size_t face, size_t first, float authored[][4],
+	float solved[][4])
+{
+	if (face_is_valid(mesh, view, face, first, authored))
+		return STAYS;
+	bool is_same = true, is_usable = true;
+	for (size_t k = 0; k < face_size(mesh, face); k++) {
+		for (size_t i = 0; i < 4; i++)
+			is_same &= fabsf(authored[k][i] - solved[k][i]) <= (i < 3 ? mesh->tangent_step : 0);
+		is_usable &= corner_is_valid(mesh, first + k, authored[k]);
+	}
+	return is_same || (is_usable && !face_is_valid(mesh, view, face, first, solved)) ? IS_LEFT : IS_REPLACED;
 }
 
 /* A target that does not turn a tangent that was solved does not turn the authored one either. */
@@ -90,17 +138,26 @@ void nt_restore_authored(nt_mesh *mesh, float *corner_tangents)
 {
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
-	mesh->replaced_tangents = 0;
+	mesh->replaced_tangents = mesh->left_tangents = 0;
 	for (size_t face = 0, first = 0; face < mesh->face_count;
 		first += face_size(mesh, face++)) {
 		const size_t size = face_size(mesh, face);
-		const bool valid = face_is_valid(mesh, &view, face, first);
-		for (size_t c = first; valid && c < first + size; c++) {
-			const float *authored = mesh->tangents + 4 * vertex_of(mesh, c);
-			keep_unturned(mesh, c, corner_tangents + 4 * c, authored);
-			memcpy(corner_tangents + 4 * c, authored, 4 * sizeof(float));
+		float authored[MOST_CORNERS][4], solved[MOST_CORNERS][4];
+		size_t turned = 0;
+		for (size_t k = 0; k < size; k++) {
+			memcpy(authored[k], mesh->tangents + 4 * vertex_of(mesh, first + k), sizeof authored[k]);
+			memcpy(solved[k], corner_tangents + 4 * (first + k), sizeof solved[k]);
+			const float w = sign_of(mesh, authored[k][3]);
+			turned += w != authored[k][3];
+			authored[k][3] = w;
 		}
-		mesh->replaced_tangents += valid ? 0 : size;
+		const face_fate fate = fate_of(mesh, &view, face, first, authored, solved);
+		mesh->replaced_tangents += fate == IS_REPLACED ? size : turned;
+		mesh->left_tangents += fate == IS_LEFT ? size : 0;
+		for (size_t k = 0; fate != IS_REPLACED && k < size; k++) {
+			keep_unturned(mesh, first + k, solved[k], authored[k]);
+			memcpy(corner_tangents + 4 * (first + k), authored[k], sizeof authored[k]);
+		}
 	}
 }
 
@@ -136,12 +193,15 @@ void nt_mend_untextured(nt_mesh *mesh, const nmtan_mesh *view, float *tangents)
 	for (size_t face = 0, first = 0; face < mesh->face_count;
 		first += face_size(mesh, face++)) {
 		const size_t size = face_size(mesh, face);
-		const float sign = mesh->tangents ? common_sign(mesh, first, size) : 0.0f;
+		float authored[MOST_CORNERS][4] = {{0}};
+		for (size_t k = 0; mesh->tangents && k < size; k++)
+			memcpy(authored[k], mesh->tangents + 4 * vertex_of(mesh, first + k), sizeof authored[k]);
+		const float sign = common_sign(authored, size);
 		for (size_t c = first; c < first + size; c++) {
 			const size_t vertex = vertex_of(mesh, c);
 			const float *t = mesh->tangents ? mesh->tangents + 4 * vertex : nothing;
 			float *to = tangents + 4 * c;
-			if (is_valid(t, view->normals + 3 * vertex))
+			if (is_valid(t, view->normals + 3 * vertex, mesh->tangent_margin))
 				memcpy(to, t, 3 * sizeof *to);
 			else
 				store(mend(t, unit_normal(view, vertex)), 0.0f, to);

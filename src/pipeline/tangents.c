@@ -463,6 +463,7 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 		{NT_CODE_TAN_MORPH_TURNED, mesh->morph_turned},
 		{NT_CODE_TAN_REPAIRED, nt_counts_repaired(c)},
 		{NT_CODE_TAN_EXISTING_REPAIRED, mesh->replaced_tangents},
+		{NT_CODE_TAN_EXISTING_LEFT, mesh->left_tangents},
 		{NT_CODE_TAN_QUADS_LIKELY, mesh->may_be_quads},
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)

@@ -468,6 +468,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"becomes 1 where the corners of a triangle do not agree; --existing=replace does the same there.",
 		"Nothing; --existing=keep leaves them as they are.",
 		"a triangle whose TANGENT is its NORMAL, converted with --existing=repair --only=all"),
+	ROW(TAN_EXISTING_LEFT, INFO, "{count} {corner has|corners have} a tangent that repair cannot make better",
+		"With --existing=repair a face that is not valid as a whole stays as it is where a solve gives what is "
+		"there, or no valid tangents either: a triangle without area in UV space may have corners of either w.",
+		"Unwrap these triangles.",
+		"a triangle without area in UV space between a mirrored and another triangle, converted twice"),
 	ROW(TAN_KEPT_SIGN, WARNING,
 		"{count} {triangle keeps|triangles keep} tangents whose bitangent runs the wrong way",
 		"The input's tangents stay, a material uses them, and w is not that of the texture coordinates: bumps "

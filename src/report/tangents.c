@@ -16,6 +16,7 @@
 #include "report/maker.h"
 #include "report/quads.h"
 #include "topology/orientation.h"
+#include "topology/reversed.h"
 
 /* Below this a tangent has no length; the tolerance of the Khronos validator for the others. */
 static const double ZERO_LENGTH = 1e-6, UNIT_TOLERANCE = 0.00674;
@@ -175,55 +176,21 @@ static nt_status check_each(nt_check *check)
 
 /* ---- signs ---- */
 
-/* At most cos 120 degrees between a tangent and where u grows, and a bitangent and where v does: reversed beyond what
- * averaging does. One of them alone says little: it may be far off where u and v grow almost the same way. */
-static const double REVERSED_COSINE = -0.5;
-
-/* dP/du and dP/dv of a triangle, but for their lengths. */
-static void directions_of_uv(const nt_surface *s, size_t t, nt_dvec3 *u, nt_dvec3 *v)
-{
-	const uint32_t c = (uint32_t)(3 * t);
-	const float *ta = nt_side_texcoord(s, c);
-	const float *tb = nt_side_texcoord(s, c + 1), *tc = nt_side_texcoord(s, c + 2);
-	const nt_dvec3 a = nt_dvec3_load(nt_side_position(s, c));
-	const nt_dvec3 d1 = nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, c + 1)), a);
-	const nt_dvec3 d2 = nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, c + 2)), a);
-	const double sign = s->orientation[t];
-	*v = nt_dvec3_sub(nt_dvec3_scale(sign * ((double)tb[0] - ta[0]), d2),
-		nt_dvec3_scale(sign * ((double)tc[0] - ta[0]), d1));
-	*u = nt_dvec3_sub(nt_dvec3_scale(sign * ((double)tc[1] - ta[1]), d1),
-		nt_dvec3_scale(sign * ((double)tb[1] - ta[1]), d2));
-}
-
-/* Whether all three tangents run against growing u and all bitangents against growing v although the normals agree with
- * the winding. Asked of triangles whose w is right. */
+/* Asked of triangles whose w is right. */
 static bool is_reversed(const nt_check *check, size_t t)
 {
 	const nt_surface *s = &check->surface;
-	nt_dvec3 u, v;
+	nt_tangent_triangle triangle = {.orientation = s->orientation[t]};
 	if (check->stored != NT_STORED_AUTHORED || !check->mesh->normals)
 		return false;
-	directions_of_uv(s, t, &u, &v);
-	/* nearly all triangles end here, without a root */
-	if (nt_dvec3_dot(nt_dvec3_load(nt_stored_tangent(check, nt_side_corner(s, 3 * t))), u) > 0.0 ||
-		!nt_dvec3_normalise(&u) || !nt_dvec3_normalise(&v))
-		return false;
-	const nt_dvec3 a = nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t)));
-	const nt_dvec3 face = nt_dvec3_cross(
-		nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t + 1))), a),
-		nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t + 2))), a));
-	for (size_t k = 0; k < 3; k++) {
-		const float *stored = nt_stored_tangent(check, nt_side_corner(s, 3 * t + k));
-		const nt_dvec3 normal =
-			nt_dvec3_load(check->mesh->normals + 3 * (size_t)nt_side_vertex(s, 3 * t + k));
-		nt_dvec3 tangent = nt_dvec3_load(stored);
-		nt_dvec3 bitangent = nt_dvec3_scale(stored[3], nt_dvec3_cross(normal, tangent));
-		if (!(nt_dvec3_dot(face, normal) > 0.0) || !nt_dvec3_normalise(&bitangent) ||
-			nt_dvec3_dot(bitangent, v) > REVERSED_COSINE || !nt_dvec3_normalise(&tangent) ||
-			nt_dvec3_dot(tangent, u) > REVERSED_COSINE)
-			return false;
+	for (uint32_t k = 0; k < 3; k++) {
+		const uint32_t side = (uint32_t)(3 * t) + k;
+		triangle.positions[k] = nt_side_position(s, side);
+		triangle.normals[k] = check->mesh->normals + 3 * (size_t)nt_side_vertex(s, side);
+		triangle.texcoords[k] = nt_side_texcoord(s, side);
+		triangle.tangents[k] = nt_stored_tangent(check, nt_side_corner(s, side));
 	}
-	return true;
+	return nt_is_reversed(&triangle);
 }
 
 typedef struct sign_tallies {

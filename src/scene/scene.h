@@ -222,6 +222,8 @@ typedef struct nt_mesh {
 	float *colors;           /* [vertex_count][4] linear RGBA; NULL: none */
 	float *tangents;         /* [vertex_count][4] authored, w for v up; NULL: none */
 	bool byte_tangents;      /* they are stored as bytes: within half a degree */
+	float tangent_step;      /* of Draco's grid that they lie on; 0: they are stored as they are */
+	float tangent_margin;    /* what a component of one that stays may change by when it is stored */
 	uint8_t *vertex_lacks;   /* [vertex_count] enum nt_lack bits; NULL: nothing lacks */
 	size_t face_count, corner_count;
 	uint8_t *face_sizes;     /* [face_count] 3 or 4; NULL: all triangles */
@@ -261,6 +263,7 @@ typedef struct nt_mesh {
 	nmtan_counts counts;
 	size_t replaced_tangents; /* corners whose authored tangent was invalid, or is beside one that was, and is
 	                             another now */
+	size_t left_tangents;     /* those that stay, as a solve gives no valid one either */
 	nt_split split;
 	uint64_t tangents_digest; /* of split.vertex_tangents, where that is wanted; 0: not known */
 	bool merged;              /* the writer has merged them with those of the meshes that share its vertices */

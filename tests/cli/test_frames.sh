@@ -136,6 +136,20 @@ done
 sound q.glb
 is "$(gltf q.glb 'JSON.stringify(rows(g.meshes[0].primitives[0].indices).flat())')" '[0,1,2,0,2,3]'
 
+# T and B of a quad are (1, 0, 0) and (0, 1, 0), w is 1; the author has both turned by 180 degrees.
+scene "tangents that are reversed with the right w are repaired: --check calls them an error"
+run "$data/quad.obj" quad.gltf
+gltf quad.gltf reversed 'const n = g.meshes[0].primitives[0].attributes.TANGENT, b = bytes[0];
+	for (let i = 0; i < g.accessors[n].count; i++)
+		for (let k = 0; k < 3; k++)
+			b.writeFloatLE(-rows(n)[i][k], at(n, i) + 4 * k)'
+run --check --only=all --report=r.json reversed.gltf
+is "$(found TAN_SIGN_MISMATCH)" 2
+run --existing=repair --only=all --report=r.json reversed.gltf out.gltf
+exits 0
+is "$(found TAN_EXISTING_REPAIRED)" 6
+is "$(tangents out.gltf)" "$(tangents quad.gltf)"
+
 scene "deltas of morph targets that are right stay where they are"
 for precision in float byte; do
 	run --precision=$precision "$ROOT/data/morph.gltf" m.glb

@@ -113,7 +113,7 @@ static bool accessors_are_own(const nt_gltf_recoding *r)
 }
 
 /* Targets add to what a decoder has of the tangents. They keep the order of the vertices. */
-static nt_status quantize_tangents(const nt_gltf_recoding *r, nt_error *error)
+static nt_status quantize_tangents(const nt_gltf_recoding *r, float *least, nt_error *error)
 {
 	nt_pool_vertices *vertices = r->vertices;
 	const nt_draco_attribute *tangents = r->attributes;
@@ -125,6 +125,7 @@ static nt_status quantize_tangents(const nt_gltf_recoding *r, nt_error *error)
 	const nt_draco_mesh mesh = {.method = NT_DRACO_SEQUENTIAL, .point_count = vertices->new_count,
 		.face_count = r->mesh->face_count, .indices = vertices->indices[0], .attributes = tangents,
 		.attribute_count = 1};
+	*least = nt_morph_least_of_bits(tangents->quantization.bits);
 	vertices->sets[0].tangents = quantized;
 	return nt_draco_quantize(&mesh, &quantized, error);
 }
@@ -134,14 +135,14 @@ static nt_status store(nt_gltf_recoding *r, uint32_t buffer, nt_morph_cost *cost
 {
 	nt_gltf_override *overrides = nt_arena_alloc(r->arena, r->mesh->morph_count + 1, sizeof *overrides);
 	size_t override_count = 0;
-	const int bits = nt_gltf_draco_bits(r->options->draco_bits, NT_DRACO_BITS_TANGENT);
+	float least = 0;
 	nt_status status = overrides ? NT_OK : nt_fail_memory(error);
 	if (!status && !r->source)
 		status = nt_gltf_draco_take_out(r, error);
 	if (!status && r->mesh->morph_count)
-		status = quantize_tangents(r, error);
+		status = quantize_tangents(r, &least, error);
 	if (!status)
-		status = nt_gltf_add_morphs(r->edits, buffer, r->pools, r->vertices, 0, nt_morph_least_of_bits(bits),
+		status = nt_gltf_add_morphs(r->edits, buffer, r->pools, r->vertices, 0, least,
 			overrides, &override_count, cost, error);
 	if (!status && r->outside && r->vertices->new_count > r->vertices->old_count)
 		status = nt_append_vertices(r->edits, buffer, r->pools, r->vertices, overrides, override_count, false,
@@ -200,9 +201,11 @@ static void report_users(const nt_gltf_recoding *r, nt_finding_list *findings, b
 			nt_finding_add(findings, NT_CODE_DRACO_PLAIN, place, 1, "%s", r->obstacle);
 		if (compressed && r->sequential_instead)
 			nt_finding_add(findings, NT_CODE_DRACO_SEQUENTIAL, place, 1, NULL);
-		if (compressed && r->options->precision != NT_PRECISION_FLOAT)
-			nt_finding_add(findings, NT_CODE_DRACO_PRECISION, place, 1, "%d bits",
-				nt_gltf_draco_bits(r->options->draco_bits, NT_DRACO_BITS_TANGENT));
+		const bool unreached = compressed && r->options->precision != NT_PRECISION_FLOAT;
+		for (size_t k = 0; unreached && k < r->attribute_count; k++)
+			if (strcmp(r->names[k], "TANGENT") == 0)
+				nt_finding_add(findings, NT_CODE_DRACO_PRECISION, place, 1, "%d bits",
+					r->attributes[k].quantization.bits);
 	}
 }
 

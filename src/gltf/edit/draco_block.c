@@ -26,11 +26,11 @@ void nt_gltf_draco_add(nt_gltf_recoding *r, const char *name, nt_draco_attribute
 
 /* An attribute of ours: takes the place and the id of one of that name, else it gets an id that is free. */
 static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind, int components,
-	const float *elements, int bits)
+	const float *elements, nt_draco_quantization grid)
 {
 	nt_draco_attribute attribute = {.kind = kind,
 		.component_type = NT_GLTF_FLOAT, .components = components,
-		.quantization = {.bits = bits}, .data = elements};
+		.quantization = grid, .data = elements};
 	for (size_t i = 0; i < r->attribute_count; i++) {
 		const uint32_t id = r->attributes[i].unique_id;
 		if (strcmp(r->names[i], name) == 0) {
@@ -67,13 +67,15 @@ nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *r, nt_error *error)
 void nt_gltf_draco_add_own(nt_gltf_recoding *r)
 {
 	const nt_pool_vertices *vertices = r->vertices;
-	const int bits = nt_gltf_draco_bits(r->options->draco_bits, NT_DRACO_BITS_TANGENT);
+	const int *bits = r->options->draco_bits;
 	if (vertices->sets[0].normals)
 		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, vertices->sets[0].normals,
-			nt_gltf_draco_bits(r->options->draco_bits, NT_DRACO_BITS_NORMAL));
-	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, vertices->sets[0].tangents, bits);
+			(nt_draco_quantization){.bits = nt_gltf_draco_bits(bits, NT_DRACO_BITS_NORMAL)});
+	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, vertices->sets[0].tangents,
+		nt_gltf_draco_tangent_grid(nt_gltf_draco_tangents_of(r->document, r->primitive), bits));
 	if (r->options->bitangents)
-		put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, NULL, bits);
+		put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, NULL,
+			(nt_draco_quantization){.bits = nt_gltf_draco_bits(bits, NT_DRACO_BITS_TANGENT)});
 }
 
 /* ---- in the document ---- */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Authored tangents of meshes without texture coordinates: what stays, and what the others become. The normal is along
- * z unless a case says otherwise.
+ * Authored tangents, first of meshes without texture coordinates: what stays, and what the others become. The normal is
+ * along z unless a case says otherwise.
  */
 #include "test.h"
 #include <math.h>
@@ -118,6 +118,62 @@ static void tangents_turn_with_their_normals(void **state)
 	expect(out[2], 0.6f, 0.8f, 0, -1);
 }
 
+/* ---- with texture coordinates ---- */
+
+/* What becomes of a triangle's authored tangents when a solve gives others. */
+static nt_mesh restore(float texcoords[3][2], float authored[3][4], float solved[3][4], float step)
+{
+	nt_mesh mesh = triangle(authored);
+	mesh.texcoords = texcoords[0];
+	mesh.tangent_step = step;
+	nt_restore_authored(&mesh, solved[0]);
+	return mesh;
+}
+
+/* Without area in UV space a solve may give corners of either w. */
+static void a_face_that_a_solve_makes_no_better_is_left(void **state)
+{
+	(void)state;
+	float line[3][2] = {{0, 0}, {1, 0}, {2, 0}};
+	float authored[3][4] = {{0, 1, 0, 1}, {0, 1, 0, 1}, {0, 1, 0, -1}};
+	float mixed[3][4] = {{1, 0, 0, 1}, {1, 0, 0, -1}, {1, 0, 0, 1}};
+	nt_mesh mesh = restore(line, authored, mixed, 0);
+	assert_true(mesh.left_tangents == 3 && mesh.replaced_tangents == 0);
+	assert_memory_equal(mixed, authored, sizeof mixed);
+	float valid[3][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}};
+	mesh = restore(line, authored, valid, 0);
+	assert_true(mesh.left_tangents == 0 && mesh.replaced_tangents == 3 && valid[0][0] == 1);
+	/* what cannot be drawn goes, whatever comes */
+	authored[1][0] = NAN;
+	float other[3][4] = {{1, 0, 0, 1}, {1, 0, 0, -1}, {1, 0, 0, 1}};
+	mesh = restore(line, authored, other, 0);
+	assert_true(mesh.replaced_tangents == 3 && other[1][0] == 1);
+}
+
+/* A step of 12 bits of 2 is 0.00049: what is 0.0001 beside -1 was meant to be -1, and is written anew. */
+static void signs_that_quantization_moved_are_signs(void **state)
+{
+	(void)state;
+	float square[3][2] = {{0, 0}, {1, 0}, {0, 1}}, solved[3][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}};
+	float authored[3][4] = {{0.9999f, 0.0141f, 0, 1}, {0.9999f, 0.0141f, 0, 1.0001f}, {0.9999f, 0.0141f, 0, 1}};
+	nt_mesh mesh = restore(square, authored, solved, 0);
+	assert_true(mesh.replaced_tangents == 3 && solved[1][1] == 0);
+	mesh = restore(square, authored, solved, 2.0f / 4095);
+	assert_true(mesh.replaced_tangents == 1 && solved[1][1] == 0.0141f && solved[1][3] == 1);
+}
+
+/* T and B run against u and v, and w is right. */
+static void reversed_tangents_do_not_stay(void **state)
+{
+	(void)state;
+	float square[3][2] = {{0, 0}, {1, 0}, {0, 1}}, solved[3][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}};
+	float authored[3][4] = {{-1, 0, 0, 1}, {-1, 0, 0, 1}, {-1, 0, 0, 1}};
+	assert_int_equal(restore(square, authored, solved, 0).replaced_tangents, 3);
+	for (size_t k = 0; k < 3; k++)
+		authored[k][0] = 0, authored[k][1] = 1; /* a right angle is what averaging may do */
+	assert_int_equal(restore(square, authored, solved, 0).replaced_tangents, 0);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -126,6 +182,9 @@ int main(void)
 		cmocka_unit_test(what_has_no_direction_gets_any),
 		cmocka_unit_test(a_sign_that_corners_do_not_share_becomes_one),
 		cmocka_unit_test(tangents_turn_with_their_normals),
+		cmocka_unit_test(a_face_that_a_solve_makes_no_better_is_left),
+		cmocka_unit_test(signs_that_quantization_moved_are_signs),
+		cmocka_unit_test(reversed_tangents_do_not_stay),
 	};
 	return cmocka_run_group_tests_name("pipeline/authored", tests, NULL, NULL);
 }
