@@ -5,16 +5,30 @@
 #include "file/watch.h"
 #include "pipeline/stages.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include "file/image_type.h"
 #include "file/relative_path.h"
 #include "format/normal_map.h"
+#include "image/reduce.h"
 #include "pipeline/joins.h"
+
+/* A base colour in a page: the pixels of its longer side; and a file that is small enough to be there as it is. */
+enum { PREVIEW_PIXELS = 1024, PREVIEW_BYTES = 1 << 16 };
+
+/* An image that a mesh before had. */
+typedef struct found_image {
+	struct found_image *next;
+	uint64_t identity[2];
+	nt_picture picture;
+	nt_image image;
+} found_image;
 
 /* Who finds images. */
 typedef struct finder {
 	const nt_textures *textures; /* NULL: none are made */
 	const char *page_folder;     /* NULL: files are not referred to */
+	found_image *found;
 } finder;
 
 /* What a conversion makes of a map of an OBJ; NULL: nothing, it is used as it is or not at all. */
@@ -61,32 +75,75 @@ static nt_status refer(nt_arena *arena, const char *page_folder, const char *pat
 	return failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
-/* An image of a mesh for the report, as it is after a conversion: a copy, of a base colour only where the page cannot
- * refer to its file. */
-static nt_status find_picture(const void *user, nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh,
+/* A copy of an image whose bytes a browser shows; of a base colour one that is small. What cannot be decoded is not
+ * there. */
+static nt_status keep_image(nt_arena *arena, const nt_normal_map *map, nt_picture picture, size_t most_bytes,
+	nt_image *image)
+{
+	const bool shown = map->type == NT_IMAGE_PNG || map->type == NT_IMAGE_JPEG;
+	if (shown && (picture == NT_PICTURE_NORMAL || map->size <= PREVIEW_BYTES))
+		return map->size <= most_bytes ? copy_image(arena, map->bytes, map->size, map->type, image) : NT_OK;
+	if (picture == NT_PICTURE_NORMAL || !nt_image_is_decoded(map->type))
+		return NT_OK;
+	unsigned char *small;
+	size_t size;
+	nt_error error;
+	nt_status status = nt_image_reduce(map->bytes, map->size, PREVIEW_PIXELS, &small, &size, &error);
+	if (!status && size <= most_bytes)
+		status = copy_image(arena, small, size, NT_IMAGE_JPEG, image);
+	free(small);
+	return status == NT_ERROR_MEMORY ? status : NT_OK;
+}
+
+/* The same image as a mesh before, or a new one, which is noted. */
+static nt_status find_image(finder *f, nt_arena *arena, const nt_normal_map *map, nt_picture picture,
+	size_t most_bytes, nt_image *image)
+{
+	found_image *found = f->found;
+	while (found && (found->picture != picture || found->identity[0] != map->identity[0] ||
+		found->identity[1] != map->identity[1]))
+		found = found->next;
+	if (found) {
+		*image = found->image;
+		image->again = true;
+		return NT_OK;
+	}
+	found = nt_arena_alloc(arena, 1, sizeof *found);
+	if (!found)
+		return NT_ERROR_MEMORY;
+	*found = (found_image){f->found, {map->identity[0], map->identity[1]}, picture, {0}};
+	f->found = found;
+	nt_status status = keep_image(arena, map, picture, most_bytes, &found->image);
+	if (!status && map->path && f->page_folder)
+		status = refer(arena, f->page_folder, map->path, &found->image);
+	*image = found->image;
+	return status;
+}
+
+/* An image of a mesh for the report, as it is after a conversion. */
+static nt_status find_picture(void *user, nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh,
 	nt_picture picture, size_t most_bytes, nt_image *image)
 {
-	const finder *f = user;
+	finder *f = user;
 	const enum nt_slot slot = picture == NT_PICTURE_NORMAL ? NT_SLOT_NORMAL : 0;
-	*image = (nt_image){0};
-	nt_normal_map_transform(scene, mesh, slot, image->transform);
 	const nt_texture *made = find_converted(f->textures, nt_normal_map_named(scene, mesh, slot));
-	if (made)
-		return made->size <= most_bytes
-			? copy_image(arena, made->bytes, made->size, NT_IMAGE_PNG, image) : NT_OK;
-	nt_normal_map map;
+	nt_normal_map map = {0};
 	nt_error error;
-	nt_status status = nt_normal_map_open(&map, scene, mesh, slot, NULL, &error);
-	const bool shown = map.type == NT_IMAGE_PNG || map.type == NT_IMAGE_JPEG;
-	if (!status && map.path && f->page_folder)
-		status = refer(arena, f->page_folder, map.path, image);
-	if (!status && shown && map.size <= most_bytes && (slot || !image->file))
-		status = copy_image(arena, map.bytes, map.size, map.type, image);
+	nt_status status = NT_OK;
+	*image = (nt_image){0};
+	if (made)
+		map = (nt_normal_map){.bytes = made->bytes, .size = made->size, .type = NT_IMAGE_PNG,
+			.identity = {0, (uint64_t)(uintptr_t)made->bytes}};
+	else
+		status = nt_normal_map_open(&map, scene, mesh, slot, NULL, &error);
+	if (!status && map.bytes)
+		status = find_image(f, arena, &map, picture, most_bytes, image);
+	nt_normal_map_transform(scene, mesh, slot, image->transform);
 	nt_normal_map_close(&map);
 	return status;
 }
 
-static nt_status find_map_size(const void *user, const nt_scene *scene, const nt_mesh *mesh, uint32_t pixels[2])
+static nt_status find_map_size(void *user, const nt_scene *scene, const nt_mesh *mesh, uint32_t pixels[2])
 {
 	(void)user;
 	nt_normal_map map;
@@ -140,7 +197,7 @@ nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_forma
 	}
 	nt_report_options options = *settings->report;
 	options.written = written;
-	const finder found_by = {textures, options.page_folder};
+	finder found_by = {textures, options.page_folder, NULL};
 	options.find_user = &found_by;
 	options.find_map_size = find_map_size;
 	if (options.keep_geometry)

@@ -222,7 +222,8 @@ static nt_status keep_pictures(nt_check *check, size_t most_bytes[NT_PICTURE_COU
 	for (nt_picture p = 0; p < NT_PICTURE_COUNT && options->find_picture && !status; p++) {
 		status = options->find_picture(options->find_user, &check->report->arena, check->scene, check->mesh, p,
 			most_bytes[p], &check->facts->pictures[p]);
-		most_bytes[p] -= check->facts->pictures[p].size;
+		if (!check->facts->pictures[p].again)
+			most_bytes[p] -= check->facts->pictures[p].size;
 	}
 	return status;
 }

@@ -41,6 +41,7 @@ typedef struct nt_image {
 	const char *file; /* URI of a file, relative to options.page_folder; NULL: none */
 	/* Where it is looked up: u' = t[0] u + t[1] v + t[2], v' = t[3] u + t[4] v + t[5], v pointing down. */
 	float transform[6];
+	bool again; /* a mesh before has the same bytes */
 } nt_image;
 
 /* Images of a mesh that a page shows under its islands. */
@@ -59,12 +60,12 @@ typedef struct nt_report_options {
 	bool keep_frames;             /* with geometry: the file's tangents, and computed ones, which are solved where
 	                                 no stage did */
 	bool measures;                /* texel density and stretch of islands, and what splitting costs */
-	const void *find_user; /* what the next ones get first */
+	void *find_user; /* what the next ones get first */
 	/* Gives the size of a mesh's normal map in pixels, 0 0 where it is not known. NULL: nobody can. */
-	nt_status (*find_map_size)(const void *user, const nt_scene *scene, const nt_mesh *mesh, uint32_t pixels[2]);
+	nt_status (*find_map_size)(void *user, const nt_scene *scene, const nt_mesh *mesh, uint32_t pixels[2]);
 	/* Gives a copy of an image of a mesh, in the arena, for HTML: no bytes where it has none or one of more
 	 * than most_bytes. NULL: nobody can. */
-	nt_status (*find_picture)(const void *user, nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh,
+	nt_status (*find_picture)(void *user, nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh,
 		nt_picture picture, size_t most_bytes, nt_image *image);
 	const char *page_folder;      /* absolute: where an HTML page will be; NULL: nobody knows */
 	unsigned threads;

@@ -86,7 +86,9 @@ run --check --report=twelve.html --fail-on=never twelve.obj
 # a quad on the left half of the texture, with a normal map and a red base colour: files, of which one gets lost, and in the glTF
 mkdir tex
 python3 "$ROOT/tests/support/images.py" write tex/red.png 8 8 '(255, 0, 0)'
-cp tex/red.png tex/lost.png
+# one that a browser shows and nmtan does not decode, and its copy, which gets lost
+printf 'GIF89a\1\0\1\0\200\0\0\377\0\0\0\0\0!\371\4\0\0\0\0\0,\0\0\0\0\1\0\1\0\0\2\2D\1\0;' >tex/red.gif
+cp tex/red.gif tex/lost.gif
 printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0 1\nf 1/1/1 2/2/1 3/3/1 4/4/1\n' >half.obj
 run -q half.obj half.gltf
 while read -r name set uri; do
@@ -96,21 +98,31 @@ while read -r name set uri; do
 		g.meshes[0].primitives[0].material = 0'
 done <<END
 red 0 tex/red.png
-lost 0 tex/lost.png
+file 0 tex/red.gif
+lost 0 tex/lost.gif
 inside 0 data:image/png;base64,$(base64 -w 0 tex/red.png)
 other 1 tex/red.png
 END
-run --check --report=pictures.html --fail-on=never red.gltf lost.gltf inside.gltf other.gltf
+run --check --report=pictures.html --fail-on=never red.gltf file.gltf lost.gltf inside.gltf other.gltf
 grep -ao '"image":[0-9nul]*,"map":[^]]*\],"file":[^}]*' pictures.html | sed 's/"map":[^]]*.,//' >images.txt
 is "$(cat images.txt)" '"image":0,"file":"n.png"
-"image":null,"file":"tex/red.png"
+"image":1,"file":"tex/red.png"
 "image":0,"file":"n.png"
-"image":null,"file":"tex/lost.png"
+"image":null,"file":"tex/red.gif"
+"image":0,"file":"n.png"
+"image":null,"file":"tex/lost.gif"
 "image":0,"file":"n.png"
 "image":1,"file":null
 "image":0,"file":"n.png"
 "image":null,"file":null'
-rm tex/lost.png
+rm tex/lost.gif
+# a large one is there small, also that of an OBJ's material, of a type that no browser shows
+python3 "$ROOT/tests/support/images.py" write large.tga 1500 750 '(x * y % 256, x // 6, y // 3)'
+{ printf 'mtllib large.mtl\nusemtl m\n'; cat half.obj; } >texture.obj
+printf 'newmtl m\nmap_Kd large.tga\n' >large.mtl
+run --check --report=small.html --fail-on=never texture.obj
+value small.html 'r["images"][0]' | sed 's/.*base64,//' | base64 -d >small.jpg
+is "$(python3 -c 'import sys; b = open("small.jpg", "rb").read(); i = b.index(b"\xff\xc0"); print(b[i+7]*256 + b[i+8], b[i+5]*256 + b[i+6])')" "1024 512"
 # w as it should be, and the reverse
 python3 "$ROOT/tests/support/images.py" write slope.png 32 32 '(128, 210, 220)'
 gltf half.gltf slope 'Object.assign(g, {images: [{uri: "slope.png"}], textures: [{source: 0}],

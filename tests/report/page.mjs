@@ -9,7 +9,8 @@
 //   pages/      index.html, and a page of each of head.obj, bad.obj, 30 quads and a name that tries to be a script
 //   bad.html    meshes with nothing to show, and a position that is not finite
 //   diff.html   two squares, of which the second was mirrored in the old version
-//   pictures.html  a quad with a normal map and a base colour: a file, a lost one, in the page, of other texture coordinates
+//   pictures.html  a quad with a normal map and a base colour: in the page, a file that nmtan does not decode, a lost one, a data URI, of
+//               other texture coordinates
 //   tiles.html  two quads in neighbouring tiles: repeated, mirrored by the sampler, that with an offset, over 500 tiles, over 900 x 900
 //   twelve.html twelve meshes with a triangle without area each
 //   lit.html    a quad with a normal map that leans up, with the wrong w in the old version, which names.html has by another name
@@ -357,6 +358,10 @@ async function clickTexture(page, u, v) {
 		}
 		return blue > 3000 && red > 3000;
 	}), 'with layouts');
+	await expect(() => page.evaluate(() => { // the head stands in the middle of its picture
+		const canvas = document.querySelector('#file-rows tr .thumb'), d = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+		return d[4 * (40 * 112 + 56) + 3] === 255 && d[3] === 0;
+	}), 'and models');
 	await page.fill('#file-text', 'broken');
 	await expect(async () => await rows() === 1 && await page.evaluate(() => window.broken === undefined), 'a name is text');
 	await page.click('#file-rows a');
@@ -442,21 +447,28 @@ async function clickTexture(page, u, v) {
 	await expect(async () => { const c = await inside(); return !bare(c) && c[0] < veiled[0] - 10; }, async () => 'full ones hide more of it than they do at first: ' + veiled + ', then ' + await inside());
 	await page.selectOption('#texture', '1');
 	await rest(page);
-	await expect(async () => await colour() === 'red' && await note.textContent() === '', async () => 'the base colour, from a file, is ' + await colour());
+	await expect(async () => await colour() === 'red' && await note.textContent() === '', async () => 'the base colour is ' + await colour());
+	check(requests.length === 0, 'it is in the page');
+	const model = async () => colours(page, await page.locator('#space').screenshot(), [[0.5, 0.5]]).then(([c]) => c[0] > c[1] + 60 ? 'red' : 'grey');
+	await expect(async () => await model() === 'red', async () => 'and on the model, is ' + await model());
+	await page.uncheck('#base', {force: true});
+	await expect(async () => await model() === 'grey', async () => 'which can do without, is ' + await model());
 	if (shots) await page.screenshot({path: shots + '/picture.png'});
 	await page.selectOption('#texture', '-1');
 	await rest(page);
 	await expect(async () => await colour() === 'grey', async () => 'none is none, is ' + await colour());
 	await page.selectOption('#texture', '1');
-	await go(1, 'lost.gltf');
-	const said = 'tex/lost.png is not beside this page';
+	await go(1, 'file.gltf');
+	await expect(async () => await colour() === 'red' && requests.length === 1, async () => 'a base colour from a file is ' + await colour());
+	await go(2, 'lost.gltf');
+	const said = 'tex/lost.gif is not beside this page';
 	await expect(async () => (await note.textContent()).includes(said) && await colour() === 'grey', async () => 'a file that is not there is said: ' + await note.textContent());
 	if (shots) await page.screenshot({path: shots + '/lost.png'});
-	await go(2, 'inside.gltf');
+	await go(3, 'inside.gltf');
 	await expect(async () => await colour() === 'red' && await note.textContent() === '', async () => 'a base colour in the page, is ' + await colour());
-	await go(3, 'other.gltf');
+	await go(4, 'other.gltf');
 	await expect(async () => (await page.locator('#texture option').allTextContents()).join() === 'No image,Normal map', 'none of other texture coordinates');
-	check(requests.every(r => /\/tex\/(red|lost)\.png$/.test(r)) && new Set(requests).size === 2, 'only its images are asked for: ' + requests);
+	check(requests.every(r => /\/tex\/(red|lost)\.gif$/.test(r)) && new Set(requests).size === 2, 'only its images are asked for: ' + requests);
 	requests.length = 0;
 	complaints.splice(0, complaints.length, ...complaints.filter(c => !c.includes('ERR_FILE_NOT_FOUND')));
 	await page.close();

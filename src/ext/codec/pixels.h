@@ -39,11 +39,19 @@ size_t nt_pixels_row_bytes(const nt_pixels *pixels);
 /* `rows`: how many are wanted from the top, at least 1; the height is that of what was decoded. */
 nt_status nt_decode_png(const unsigned char *bytes, size_t size, uint32_t rows, nt_pixels *pixels, nt_error *error);
 nt_status nt_decode_jpeg(const unsigned char *bytes, size_t size, uint32_t rows, nt_pixels *pixels, nt_error *error);
+/* Whole, or a half, a quarter or an eighth of it, whichever is least with a longer side of `least` or more: less is
+ * decoded then. */
+nt_status nt_decode_jpeg_small(const unsigned char *bytes, size_t size, uint32_t least, nt_pixels *pixels,
+	nt_error *error);
 nt_status nt_decode_tiff(const unsigned char *bytes, size_t size, nt_pixels *pixels, nt_error *error);
 /* TGA, BMP, PSD (the flattened image; 8 and 16 bits) and HDR, which becomes sRGB of 8 bits: white is 1. */
 nt_status nt_decode_stb(const unsigned char *bytes, size_t size, nt_pixels *pixels, nt_error *error);
 
 /* A PNG in a malloc'ed block. Same samples, same bytes. Returns NT_OK, NT_ERROR_MEMORY or NT_ERROR_INTERNAL. */
 nt_status nt_encode_png(const nt_pixels *pixels, unsigned char **bytes, size_t *size, nt_error *error);
+
+/* A JPEG of grey or RGB of 8 bits in a malloc'ed block; the same promise. quality: 1 to 100. Returns NT_OK,
+ * NT_ERROR_MEMORY, or NT_ERROR_INPUT: more than 65500 rows or columns. */
+nt_status nt_encode_jpeg(const nt_pixels *pixels, int quality, unsigned char **bytes, size_t *size, nt_error *error);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The outlines of a mesh's UV islands, small: for a list of many meshes.
+ * The outlines of a mesh's UV islands, and the mesh itself, small: for a list of many meshes.
  */
 #ifndef NT_REPORT_PACK_THUMB_H
 #define NT_REPORT_PACK_THUMB_H
@@ -14,5 +14,12 @@ enum { NT_THUMB_WIDTH = 208, NT_THUMB_HEIGHT = 144 };
  * windings. Of a layout of very many points only the first few thousand are there. v_down: of the texture coordinates.
  * Nothing where there are none. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_thumb(const nt_report_geometry *geometry, bool v_down, nt_buffer paths[2]);
+
+/* The pixels of a picture of a mesh. */
+enum { NT_MODEL_WIDTH = 112, NT_MODEL_HEIGHT = 80 };
+
+/* Draws a mesh from where the page first looks at it: a byte for each pixel, rows from the top, 0 where nothing is,
+ * else 1 (dark) to 255; appended, deflated. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_thumb_model(const nt_report_geometry *geometry, nt_buffer *out);
 
 #endif

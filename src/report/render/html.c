@@ -20,7 +20,8 @@
  *             and new are numbers of meshes or null; a finding is known where the other version has it
  *
  * The index of a folder of pages has `folder: true` and, of each file, {name, format, verdict, counts, failure, page,
- * triangles, islands, seams, layout: [path, path], meshes: [], findings: [{code, severity}]}, without equal findings.
+ * triangles, islands, seams, layout: [path, path], model: nt_thumb_model() as base64, meshes: [], findings: [{code,
+ * severity}]}, without equal findings.
  *
  * Then the page's script (the pages of a folder refer to one file with it, and to one with the style), then the
  * geometry of each mesh in an element of its own, #g-FILE-MESH, which is not looked at until the mesh is opened: a line
@@ -437,6 +438,23 @@ void nt_write_html(const nt_report_list *reports, nt_buffer *out)
 
 /* ---- the index of many pages ---- */
 
+/* The mesh of the most triangles. */
+static void put_model(const nt_report *report, nt_buffer *out)
+{
+	const nt_report_geometry *largest = NULL;
+	nt_buffer picture = {0};
+	for (size_t m = 0; m < report->mesh_count; m++)
+		if (has_geometry(&report->meshes[m]) &&
+			(!largest || report->meshes[m].geometry->triangle_count > largest->triangle_count))
+			largest = report->meshes[m].geometry;
+	if (largest && nt_thumb_model(largest, &picture))
+		out->failed = true;
+	nt_buffer_text(out, ",\"model\":\"");
+	put_base64(picture.data, picture.size, out);
+	nt_buffer_text(out, "\"");
+	nt_buffer_free_into(&picture, out);
+}
+
 /* The first layout. */
 static void put_thumb(const nt_report *report, nt_buffer *out)
 {
@@ -469,6 +487,7 @@ void nt_report_index_row(const nt_report *report, const char *page, nt_buffer *r
 	nt_buffer_format(rows, ",\"triangles\":%zu,\"islands\":%zu,\"seams\":%zu,\"layout\":", triangles,
 		islands, seams);
 	put_thumb(report, rows);
+	put_model(report, rows);
 	nt_buffer_text(rows, ",\"meshes\":[],\"findings\":[");
 	for (size_t i = 0, any = 0; i < report->finding_count; i++) {
 		const nt_report_finding *finding = &report->findings[i];

@@ -57,7 +57,7 @@ class Twin {
 		this.space = new Space(this.figures[1].canvas);
 		this.space.onpick = (triangle, again) => this.pick(triangle, again, 'space');
 		this.layout.oncoverage = (...window) => this.space.coverage(...window);
-		link(space, this.space, ['camera', 'mode', 'frame', 'other', 'layout', 'wipe', 'flip', 'showSeams', 'showVectors', 'moving']);
+		link(space, this.space, ['camera', 'mode', 'frame', 'other', 'layout', 'wipe', 'flip', 'showBase', 'showSeams', 'showVectors', 'moving']);
 		// where w is wrong in one of them, dents are seen beside bumps; a map of angles is as red on both sides
 		for (const view of [space, this.space]) Object.assign(view, {mode: 0, frame: 0, other: -1, layout: 'wipe'});
 		$('arrange').setAttribute('aria-label', 'How the two versions are shown');

@@ -17,7 +17,7 @@ function theme() {
 }
 
 function layoutInk() {
-	return (themeCache ||= {}).layout ||= {stage: colourOf('--stage'), grid: colourOf('--grid'), faint: colourOf('--grid-faint'), soft: colourOf('--soft'),
+	return (themeCache ||= {}).layout ||= {stage: colourOf('--stage'), model: colourOf('--model'), grid: colourOf('--grid'), faint: colourOf('--grid-faint'), soft: colourOf('--soft'),
 		plainFill: colourOf('--plain') + '66', plainLine: colourOf('--plain-line'), mirroredFill: colourOf('--mirrored') + '66',
 		mirroredLine: colourOf('--mirrored-line'), hatch: colourOf('--mirrored-line') + '99', overlap: rgb(colourOf('--twice')).map(x => 255 * x),
 		seam: colourOf('--seam'), label: colourOf('--label'), labelText: colourOf('--label-text'),
@@ -259,10 +259,11 @@ function describe() {
 	const wiped = twin?.arrange(space);
 	if (!geometry) return;
 	const mode = MODES[space.mode][0], two = twin ? twin.paired : space.other >= 0 && mode !== 'angle', parts = [];
-	const flips = mode === 'lit' && !!(space.image || twin?.space.image);
+	const flips = mode === 'lit' && !!(space.images.bump || twin?.space.images.bump);
 	$('flip').closest('label').hidden = !flips;
+	$('base').closest('label').hidden = mode !== 'lit' || !(space.images.base || twin?.space.images.base);
 	if (flips && space.flip) parts.push('Green is flipped here, not in the file.');
-	else if (mode === 'lit') parts.push(space.image ? 'Lit by the normal map.' : 'Lit with a test pattern of domes: ' + (mesh.pictures[0].file ? 'the normal map is not in this page.' : 'there is no normal map here.'));
+	else if (mode === 'lit') parts.push(space.images.bump ? 'Lit by the normal map.' : 'Lit with a test pattern of domes: ' + (mesh.pictures[0].file ? 'the normal map is not in this page.' : 'there is no normal map here.'));
 	if (mode === 'angle') parts.push('The angle between the tangents ' + frameNames[FRAMES[space.frame][0]] + ' and those ' + ((space.other < 0 || space.other === 2) ? 'of screen derivatives' : frameNames[FRAMES[space.other][0]]) + '; 180° where the handedness differs.');
 	if (mode === 'angle' && twin) parts.push('Grey: the other version has no triangle here, or there are no tangents.');
 	if (mode === 'skew') parts.push('How far tangents lean out of the plane of the normal.');
@@ -331,6 +332,7 @@ $('mode').addEventListener('change', e => changeSpace({mode: Number(e.target.val
 $('frame').addEventListener('change', e => changeSpace({frame: Number(e.target.value)}));
 $('other').addEventListener('change', e => changeSpace({other: Number(e.target.value)}));
 $('flip').addEventListener('change', e => changeSpace({flip: e.target.checked}));
+$('base').addEventListener('change', e => changeSpace({showBase: e.target.checked}));
 $('fill').addEventListener('input', e => { layout.fill = e.target.value / 100; layout.draw(); });
 $('seams').addEventListener('change', e => changeSpace({showSeams: e.target.checked}));
 $('vectors').addEventListener('change', e => changeSpace({showVectors: e.target.checked}));

@@ -32,16 +32,16 @@ void main() {
 }`;
 
 // A program for each mode and its frames: without a GPU a pixel pays for every branch and a triangle for every input that
-// the text has, taken or not. `normals` and `textured`: whether the mesh has normals and texture coordinates.
+// the text has, taken or not. `normals`, `textured`, `based`: whether the mesh has normals, texture coordinates, a base colour.
 //
 // The frame from screen derivatives: T and B as the gradients of u and v over the surface, with their common scale
 // taken out, so that a mirrored triangle gets a mirrored frame without stored data.
 const frameText = which => which === 2 ? 'derived(normal)' : 'stored(' + FRAMES[which][0] + ')';
 const signText = (which, frame) => which === 2 ? 'sideOf(' + frame + ')' : FRAMES[which][0] + '.w';
-const surfaceFragment = (mode, frame, other, normals, textured) => `#version 300 es
+const surfaceFragment = (mode, frame, other, normals, textured, based) => `#version 300 es
 precision highp float;
-const int mode = ${mode}; const bool normals = ${normals}, textured = ${textured};
-uniform vec3 light, eye; uniform float green; uniform sampler2D bump; uniform mat3 map; uniform vec3 plain, mirrored, degenerate;
+const int mode = ${mode}; const bool normals = ${normals}, textured = ${textured}, based = ${based};
+uniform vec3 light, eye; uniform float green; uniform sampler2D bump, base; uniform mat3 map, baseMap; uniform vec3 plain, mirrored, degenerate;
 in vec3 p, n; in vec2 st; in vec4 authored, computed;
 out vec4 colour;
 mat3 derived(vec3 normal) {
@@ -110,7 +110,8 @@ void main() {
 		if (dot(shown, normal) < 0.0) bumped = -bumped;
 		float diffuse = dot(bumped, light);
 		vec3 h = normalize(light + normalize(eye - p));
-		vec3 lit = vec3(0.76, 0.75, 0.73) * (0.2 + 0.8 * max(diffuse, 0.0)) + vec3(0.05, 0.06, 0.08) * max(-diffuse, 0.0);
+		vec3 paint = based && textured ? texture(base, (baseMap * vec3(st, 1.0)).xy).xyz : vec3(0.76, 0.75, 0.73);
+		vec3 lit = paint * (0.2 + 0.8 * max(diffuse, 0.0)) + vec3(0.05, 0.06, 0.08) * max(-diffuse, 0.0);
 		colour = vec4(lit + 0.18 * pow(max(dot(bumped, h), 0.0), 36.0), 1.0);
 	}
 }`;

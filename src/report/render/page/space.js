@@ -33,13 +33,14 @@ class Space {
 		if (!gl) throw new Error('this browser has no WebGL 2, or it is turned off');
 		Object.assign(this, {gl, canvas, mode: 0, frame: 0, other: -1, layout: 'wipe', wipe: 0.5, showVectors: false,
 			showSeams: true, camera: {target: [0, 0, 0], distance: 3, yaw: 0.6, pitch: 0.35}, buffers: [], frames: 0,
-			part: [0, 1], flip: false, moving: false, quality: 0.8, slow: 0, drawn: 0});
+			part: [0, 1], flip: false, showBase: true, moving: false, quality: 0.8, slow: 0, drawn: 0});
 		this.surfaces = new Map();
 		this.fill = this.program(surfaceVertex, fillFragment);
 		this.seen = this.program(surfaceVertex, seenFragment);
 		this.lines = this.program(lineVertex, lineFragment);
 		this.cover = this.program(coverVertex, coverFragment);
-		this.bump = gl.createTexture();
+		this.textures = {bump: gl.createTexture(), base: gl.createTexture()};
+		this.images = {};
 		this.listen();
 		new ResizeObserver(() => this.draw()).observe(canvas);
 	}
@@ -67,7 +68,7 @@ class Space {
 		// a client lights what has no tangents by screen derivatives
 		if (this.mode === 0 && !this.geometry[FRAMES[frame][0]]) frame = 2;
 		const other = this.mode === 7 && this.other >= 0 ? this.other : 2, {normals, texcoords} = this.geometry;
-		const what = [this.mode, frame, other, !!normals, !!texcoords], key = what.join();
+		const what = [this.mode, frame, other, !!normals, !!texcoords, this.mode === 0 && this.showBase && !!this.images.base], key = what.join();
 		if (!this.surfaces.has(key)) this.surfaces.set(key, this.program(surfaceVertex, surfaceFragment(...what)));
 		return this.surfaces.get(key);
 	}
@@ -119,31 +120,35 @@ class Space {
 			this.box = [0, 1, 2].map(i => g.step[i] * 65535);
 			this.extent = Math.hypot(...this.box) || 1;
 			this.centre = [0, 1, 2].map(i => g.origin[i] + this.box[i] / 2);
-			this.loadBump(mesh.pictures[0].source);
+			this.images = {};
+			this.fillTexture('bump', gl => { const {size, pixels} = domes(); gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, size, size, 0, gl.RGBA, gl.UNSIGNED_BYTE, pixels); });
+			this.loadImage('bump', mesh.pictures[0].source);
+			this.loadImage('base', mesh.pictures[1].source);
 			this.seamLines = this.lineArray(this.seamSegments(g.seams.map((_, i) => i), SEAM));
 			this.home();
 		}
 		this.draw();
 	}
 
-	texture(fill) {
-		const gl = this.gl;
-		gl.bindTexture(gl.TEXTURE_2D, this.bump);
+	// As the sampler of the normal map repeats it: wrap is 0 for repeated, 1 for mirrored, 2 for clamped.
+	fillTexture(name, fill) {
+		const gl = this.gl, wraps = [gl.REPEAT, gl.MIRRORED_REPEAT, gl.CLAMP_TO_EDGE];
+		gl.bindTexture(gl.TEXTURE_2D, this.textures[name]);
 		fill(gl);
 		gl.generateMipmap(gl.TEXTURE_2D);
 		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, wraps[this.mesh.wrap[0]]);
+		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, wraps[this.mesh.wrap[1]]);
 	}
 
-	loadBump(source) {
-		const {size, pixels} = domes(), mesh = this.mesh;
-		this.texture(gl => gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, size, size, 0, gl.RGBA, gl.UNSIGNED_BYTE, pixels));
-		this.image = null;
+	// Images in the page alone: a file beside it is not the page's to read.
+	loadImage(name, source) {
 		if (!source) return;
-		const image = new Image();
+		const image = new Image(), {mesh} = this;
 		image.onload = () => {
 			if (mesh !== this.mesh) return;
-			this.image = image;
-			this.texture(gl => gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, image));
+			this.images[name] = image;
+			this.fillTexture(name, gl => gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, image));
 			this.draw();
 			this.onimage?.();
 		};
@@ -417,15 +422,21 @@ class Space {
 	}
 
 	drawSurface(eye, matrix, frame) {
-		const gl = this.gl, surface = this.surface(frame), {at} = surface, g = this.geometry, m = this.mesh.map;
+		const gl = this.gl, surface = this.surface(frame), {at} = surface, g = this.geometry;
 		const [right, up, back] = axesOf(eye, this.camera.target);
 		this.use(surface, matrix);
 		gl.uniform3fv(at.light, unit(add(back, add(times(right, -0.35), times(up, 0.55)))));
 		gl.uniform3fv(at.eye, eye);
-		gl.uniform1f(at.green, this.flip && this.image ? -1 : 1);
-		gl.uniformMatrix3fv(at.map, false, [m[0], m[3], 0, m[1], m[4], 0, m[2], m[5], 1]);
+		gl.uniform1f(at.green, this.flip && this.images.bump ? -1 : 1);
+		for (const [name, m] of [['map', this.mesh.map], ['baseMap', this.mesh.pictures[1].map]])
+			gl.uniformMatrix3fv(at[name] ?? null, false, [m[0], m[3], 0, m[1], m[4], 0, m[2], m[5], 1]);
 		for (const name of ['plain', 'mirrored', 'degenerate']) gl.uniform3fv(at[name], this.theme[name]);
-		gl.bindTexture(gl.TEXTURE_2D, this.bump);
+		['bump', 'base'].forEach((name, unit) => {
+			gl.activeTexture(gl.TEXTURE0 + unit);
+			gl.bindTexture(gl.TEXTURE_2D, this.textures[name]);
+			gl.uniform1i(at[name] ?? null, unit);
+		});
+		gl.activeTexture(gl.TEXTURE0);
 		this.drawElements(this.whole, g.indices.length);
 	}
 
