@@ -461,6 +461,8 @@ void nt_options_defaults(nt_command *command)
 	command->settings.texcoord_set = -1;
 	command->settings.draco_speed = NT_DRACO_SPEED;
 	command->fail_on = NT_FAIL_ON_NEVER;
+	command->min_severity = NT_FAIL_ON_INFO;
+	command->max_issues = -1;
 }
 
 nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error)

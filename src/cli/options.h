@@ -52,7 +52,8 @@ typedef struct nt_command {
 	const char *max_seconds; /* a number, parsed into the settings; NULL: no limit */
 	const char *bump_height; /* a number, parsed into the settings; NULL: the default */
 	const char *draco_bits; /* POS,NRM,UV,TAN, parsed into the settings; NULL: defaults */
-	int max_issues;        /* 0: all */
+	int min_severity;      /* enum nt_fail_on, but never */
+	int max_issues;        /* 0: all; -1: as many as the report's format has by default */
 	const char *uv_image;  /* folder; NULL: none */
 	const char *directory; /* -d; NULL: none */
 	const char *mirror;    /* folder whose tree outputs keep; NULL: none */

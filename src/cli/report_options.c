@@ -66,6 +66,10 @@ static bool is_folder(const char *path)
 	return (length && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
 }
 
+/* The nt_severity that a word means. */
+static const int least_severity[] = {[NT_FAIL_ON_ERROR] = NT_SEVERITY_ERROR, [NT_FAIL_ON_WARNING] = NT_SEVERITY_WARNING,
+	[NT_FAIL_ON_INFO] = NT_SEVERITY_INFO, [NT_FAIL_ON_NEVER] = NT_SEVERITY_ERROR + 1};
+
 static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool colour,
 	nt_error *error)
 {
@@ -75,10 +79,7 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 	target->input_count = nt_command_is_many(c) ? c->operand_count : 1;
 	target->path = c->report;
 	/* what fails a run fails its tests */
-	static const int least[] = {[NT_FAIL_ON_ERROR] = NT_SEVERITY_ERROR,
-		[NT_FAIL_ON_WARNING] = NT_SEVERITY_WARNING, [NT_FAIL_ON_INFO] = NT_SEVERITY_INFO,
-		[NT_FAIL_ON_NEVER] = NT_SEVERITY_ERROR + 1};
-	target->style.least_failure = least[c->fail_on];
+	target->style.least_failure = least_severity[c->fail_on];
 	target->style.options = &plan->options;
 	/* who names a format wants to see it */
 	if (!target->path && c->settings.check && (c->verbosity >= 0 || c->report_format))
@@ -118,13 +119,14 @@ static nt_status check_outputs(const nt_command *c, nt_error *error)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"the mesh and the report cannot both go to standard output");
 	const bool judged = c->report || c->settings.check;
-	if (!judged && (c->report_format || c->max_issues))
+	if (!judged && (c->report_format || c->max_issues >= 0))
 		return nt_fail(error, NT_ERROR_USAGE, "--%s needs --report or --check",
 			c->report_format ? "report-format" : "max-issues");
 	if (!judged && c->path_prefix)
 		return nt_fail(error, NT_ERROR_USAGE, "--path-prefix needs --report or --check");
-	if (!judged && c->baseline && c->fail_on == NT_FAIL_ON_NEVER)
-		return nt_fail(error, NT_ERROR_USAGE, "--baseline needs --report, --check or --fail-on");
+	if (!judged && (c->baseline || c->min_severity != NT_FAIL_ON_INFO) && c->fail_on == NT_FAIL_ON_NEVER)
+		return nt_fail(error, NT_ERROR_USAGE, "--%s needs --report, --check or --fail-on",
+			c->baseline ? "baseline" : "min-severity");
 	return NT_OK;
 }
 
@@ -134,7 +136,7 @@ static nt_status check_diff(const nt_command *c, nt_error *error)
 		return NT_OK;
 	if (c->operand_count != 2)
 		return nt_fail(error, NT_ERROR_USAGE, "--diff compares two files, an old one and a new one");
-	if (c->uv_image || c->baseline || c->max_issues)
+	if (c->uv_image || c->baseline || c->max_issues >= 0)
 		return nt_fail(error, NT_ERROR_USAGE, "--%s and --diff exclude each other",
 			c->uv_image ? "uv-image" : c->baseline ? "baseline" : "max-issues");
 	return NT_OK;
@@ -149,13 +151,23 @@ static nt_status choose_names(nt_report_plan *plan, const nt_command *c, nt_erro
 	return status == NT_ERROR_MEMORY ? status : NT_OK;
 }
 
+/* People read a few findings; programs, and pages that unfold, take all. */
+static size_t most_findings(const nt_report_target *target, const nt_command *c)
+{
+	enum { MOST_READ = 10 };
+	const bool read = target->format == NT_REPORT_TEXT || target->format == NT_REPORT_MARKDOWN;
+	if (c->max_issues >= 0)
+		return (size_t)c->max_issues;
+	return target->path && read && !c->diff ? MOST_READ : 0;
+}
+
 nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, bool colour,
 	nt_error *error)
 {
 	*plan = (nt_report_plan){
 		.wanted = command->settings.check || command->report || command->ignore || command->severity ||
 			command->uv_image || command->fail_on != NT_FAIL_ON_NEVER};
-	plan->options.max_findings = (size_t)command->max_issues;
+	plan->options.min_severity = (nt_severity)least_severity[command->min_severity];
 	nt_status status = check_outputs(command, error);
 	if (!status)
 		status = check_diff(command, error);
@@ -165,6 +177,7 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 		status = read_severities(&plan->options, command->severity, error);
 	if (!status)
 		status = choose_target(plan, command, colour, error);
+	plan->options.max_findings = most_findings(&plan->target, command);
 	if (!status && plan->wanted)
 		status = choose_names(plan, command, error);
 	if (!status && command->baseline) {

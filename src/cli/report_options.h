@@ -18,9 +18,10 @@ typedef struct nt_report_plan {
 	nt_report_target target; /* its path is NULL where nothing is written */
 } nt_report_plan;
 
-/* Reads --ignore, --severity, --max-issues, --path-prefix, --baseline, --report and --report-format. With --check
- * there is always a report; without --report its text goes to standard output. With --fail-on there is one to judge
- * by. Returns NT_OK, NT_ERROR_USAGE, or what reading the baseline returned. The plan is to be freed either way. */
+/* Reads --ignore, --severity, --min-severity, --max-issues, --path-prefix, --baseline, --report and --report-format.
+ * With --check there is always a report; without --report its text goes to standard output. With --fail-on there is
+ * one to judge by. Returns NT_OK, NT_ERROR_USAGE, or what reading the baseline returned. The plan is to be freed
+ * either way. */
 nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, bool colour,
 	nt_error *error);
 void nt_report_plan_free(nt_report_plan *plan);

@@ -10,9 +10,10 @@
  *
  * A pixel counts where it and its neighbours are unit vectors that look out of the surface and lie close together:
  * padding and the borders of islands do not. The image is cut into blocks; a verdict needs many of them, and most of
- * their weight, to agree. And it is asked at several sizes, each half of the one before: where a fine grain of one
- * convention was painted over forms of the other (tinyrenderer's african head), the sizes contradict each other, and
- * there is no verdict.
+ * their weight, to agree. And it is asked at several sizes, each half of the one before. Most of those that have enough
+ * to tell must say the same and none the opposite: large forms veto what a fine grain says that was painted over them
+ * (tinyrenderer's african head, the rivets of DamagedHelmet). Then the map is mixed, if some blocks say up and others
+ * down, and is left as it is.
  */
 #include "image/examine.h"
 
@@ -22,7 +23,7 @@
 #include "base/memory.h"
 #include "image/image.h"
 
-enum { MOST_SIDE = 1024, LEAST_SIDE = 48, BLOCKS = 12, LEAST_BLOCKS = 12 };
+enum { MOST_SIDE = 1024, LEAST_SIDE = 48, BLOCKS = NT_GREEN_BLOCKS, LEAST_BLOCKS = 12 };
 
 /* Tuned on maps of known heights and on public ones: make bench, "green". */
 static const double least_correlation = 0.2, least_agreement = 0.75, least_curvature = 0.002;
@@ -203,7 +204,12 @@ typedef struct voice {
 	size_t blocks;
 } voice;
 
-static voice ask(const slopes *s)
+/* What each block says at all sizes: the sum of its correlations times their weights, and of these. */
+typedef struct block_sums {
+	double votes[BLOCKS * BLOCKS], weights[BLOCKS * BLOCKS];
+} block_sums;
+
+static voice ask(const slopes *s, block_sums *sums)
 {
 	double weight = 0, positive = 0, sum = 0;
 	voice v = {0};
@@ -214,6 +220,8 @@ static voice ask(const slopes *s)
 				continue;
 			/* a few sharp edges must not outvote the rest */
 			const double w = sqrt(sqrt(b.aa * b.bb) * (double)b.count);
+			sums->votes[row * BLOCKS + column] += w * b.ab / sqrt(b.aa * b.bb);
+			sums->weights[row * BLOCKS + column] += w;
 			weight += w;
 			positive += b.ab > 0 ? w : 0;
 			sum += w * b.ab / sqrt(b.aa * b.bb);
@@ -232,20 +240,40 @@ static bool is_sure(const voice *v)
 		v->agreement >= least_agreement;
 }
 
+/* Noise makes all correlations small, but not of two signs. */
+static bool supports(const voice *v)
+{
+	return is_sure(v) || (v->blocks >= LEAST_BLOCKS && fabs(v->correlation) >= least_correlation / 2 &&
+				     v->agreement >= 0.9);
+}
+
 /* Asks at every size. The figures are those of the size that is surest. */
 static void tell_green(slopes *s, nt_normal_facts *facts)
 {
-	bool up = false, down = false;
+	block_sums sums = {{0}, {0}};
+	size_t asked = 0, supporting[2] = {0, 0}, sure[2] = {0, 0}; /* up, down */
 	for (; s->width >= LEAST_SIDE && s->height >= LEAST_SIDE; halve(s)) {
-		const voice v = ask(s);
-		up |= is_sure(&v) && v.correlation > 0;
-		down |= is_sure(&v) && v.correlation < 0;
+		const voice v = ask(s, &sums);
+		asked += v.blocks >= LEAST_BLOCKS;
+		supporting[v.correlation < 0] += supports(&v);
+		sure[v.correlation < 0] += is_sure(&v);
 		if (v.blocks >= LEAST_BLOCKS && fabs(v.correlation) > fabs(facts->correlation)) {
 			facts->correlation = v.correlation;
 			facts->agreement = v.agreement;
 		}
 	}
-	facts->green = up == down ? NT_GREEN_UNKNOWN : up ? NT_GREEN_UP : NT_GREEN_DOWN;
+	for (size_t i = 0; i < BLOCKS * BLOCKS; i++) {
+		const double vote = sums.weights[i] > 0 ? sums.votes[i] / sums.weights[i] : 0;
+		facts->votes[i] = (int8_t)lrint(100 * vote);
+		facts->blocks_up += vote >= least_correlation;
+		facts->blocks_down += vote <= -least_correlation;
+	}
+	if (sure[0] && !sure[1] && 2 * supporting[0] > asked)
+		facts->green = NT_GREEN_UP;
+	else if (sure[1] && !sure[0] && 2 * supporting[1] > asked)
+		facts->green = NT_GREEN_DOWN;
+	else if (sure[1] || (facts->blocks_up >= LEAST_BLOCKS && facts->blocks_down >= LEAST_BLOCKS))
+		facts->green = NT_GREEN_MIXED;
 }
 
 nt_status nt_examine_normals(const nt_pixels *pixels, nt_normal_facts *facts, nt_error *error)

@@ -10,13 +10,20 @@
 typedef enum nt_green {
 	NT_GREEN_UNKNOWN, /* too little to tell by */
 	NT_GREEN_UP,      /* as glTF has it */
-	NT_GREEN_DOWN
+	NT_GREEN_DOWN,
+	NT_GREEN_MIXED    /* down in places, or at some sizes of detail alone */
 } nt_green;
+
+/* The map is looked at in so many columns, and rows, of blocks. */
+enum { NT_GREEN_BLOCKS = 12 };
 
 typedef struct nt_normal_facts {
 	nt_green green;
 	double correlation; /* of dp/dv and dq/du, from -1 to 1: see examine.c */
 	double agreement;   /* share of the blocks, by weight, whose sign is that of the correlation; 0 without any */
+	int8_t votes[NT_GREEN_BLOCKS * NT_GREEN_BLOCKS]; /* row by row from the top: the same of each block, over all
+	                                                    sizes, in percent; 0: it has nothing to tell */
+	size_t blocks_up, blocks_down; /* with votes of 20 % and more */
 	double not_unit;    /* share of the pixels whose length is more than a tenth from 1 */
 	double blue_below;  /* share of the pixels that point into the surface */
 	double banded;      /* share of the sloped pixels that lie in steps of one level: an 8-bit map of a

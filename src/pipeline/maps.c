@@ -5,6 +5,7 @@
  */
 #include "pipeline/stages.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include "base/parallel.h"
 #include "format/normal_map.h"
@@ -64,9 +65,14 @@ static void tell_facts(nt_finding_list *findings, const nt_place *place, const n
 			100 * f->blue_below);
 	if (f->not_unit > 0.01)
 		nt_finding_add(findings, NT_CODE_NMAP_NOT_UNIT, place, 1, "%.2g %% of the pixels", 100 * f->not_unit);
-	if (f->green == NT_GREEN_DOWN)
-		nt_finding_add(findings, NT_CODE_NMAP_GREEN_DOWN, place, 1, "correlation %.2f, %.0f %% agree",
-			f->correlation, 100 * f->agreement);
+	if (f->green == NT_GREEN_DOWN || f->green == NT_GREEN_MIXED) {
+		char detail[128];
+		snprintf(detail, sizeof detail, "correlation %.2f, %.0f %% agree; %zu blocks say up, %zu down",
+			f->correlation, 100 * f->agreement, f->blocks_up, f->blocks_down);
+		nt_finding_add_votes(findings,
+			f->green == NT_GREEN_DOWN ? NT_CODE_NMAP_GREEN_DOWN : NT_CODE_NMAP_GREEN_MIXED, place, detail,
+			f->votes, NT_GREEN_BLOCKS);
+	}
 	if (f->banded > 0.5)
 		nt_finding_add(findings, NT_CODE_NMAP_BANDED, place, 1, "%.0f %% of the slopes", 100 * f->banded);
 }

@@ -8,7 +8,7 @@
 
 #include <math.h>
 #include "report/report.h"
-#include "report/surface.h"
+#include "report/surface/surface.h"
 
 /* Two sides of one edge whose triangles are wound differently in UV space. */
 typedef struct nt_mirror_edge {
@@ -67,6 +67,7 @@ typedef struct nt_tally {
 	nt_number numbers[NT_NUMBER_COUNT];
 	unsigned number_count;
 	uint32_t seam, island; /* one more than the index; 0: none */
+	double share;          /* of the mesh that it concerns; 0: as many triangles as it has occurrences */
 } nt_tally;
 
 /* Each counts one occurrence. value is the number that was checked, or NAN. */

@@ -76,10 +76,16 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(NMAP_GREEN_DOWN, WARNING, "normal map whose green points down",
 		"glTF's normal maps have green up. Of a surface's map the slopes p = -x/z and q = y/z have "
 		"equal mixed derivatives, dp/dv = dq/du with rows counted down; in this one they are opposite. "
-		"The figures are their correlation (-1: green down, 1: up) and the share of the map that "
-		"agrees. Bumps and dents are exchanged along one direction.",
+		"The figures are their correlation (-1: green down, 1: up), the share of the map that agrees, and how "
+		"many of its 12 x 12 blocks say what. Bumps and dents are exchanged along one direction.",
 		"Invert the green channel; of an OBJ, --flip-green=auto does it.",
 		"a map baked for DirectX"),
+	ROW(NMAP_GREEN_MIXED, INFO, "normal map whose green points down in places, or in the grain alone",
+		"Some blocks of the map, or some sizes of its detail, say that green points down, and others that it "
+		"points up or nothing: a detail map or a decal of the other convention was painted in. No "
+		"convention is right for all of it, and --flip-green=auto leaves it.",
+		"Look whether dents and bumps are right where blocks say down; bake or paint these again.",
+		"a map of which one half was baked for DirectX"),
 	ROW(NMAP_NOT_UNIT, INFO, "normal map whose vectors are not of unit length",
 		"More than a hundredth of the pixels have a length that differs from 1 by more than a tenth: "
 		"padding, a map that was painted or blended, or no normal map at all. Renderers normalize them.",

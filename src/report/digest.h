@@ -6,7 +6,7 @@
 #define NT_REPORT_DIGEST_H
 
 #include "report/report.h"
-#include "report/surface.h"
+#include "report/surface/surface.h"
 
 /* Of a mesh's triangles in space, whatever their order and numbers. Never 0. */
 uint64_t nt_digest_surface(const nt_surface *surface);

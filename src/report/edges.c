@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
-#include "report/edge_bins.h"
+#include "report/surface/edge_bins.h"
 
 /* ---- islands by union and find, the lower number on top ---- */
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * From occurrences to findings: tallies keep the count, the box and the first few places; a reported
- * tally gets its sentence, its severity and its fingerprint. At the end findings are sorted, compared
- * with the baseline and cut to the number asked for.
+ * tally gets its sentence, its severity and its fingerprint. At the end findings are compared with the
+ * baseline, sorted and cut to the number asked for.
  */
 #include "report/check.h"
 
@@ -14,11 +14,6 @@
 #include "base/name_table.h"
 #include "report/baseline.h"
 #include "report/digest.h"
-
-nt_box nt_box_empty(void)
-{
-	return (nt_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-}
 
 /* Counts an occurrence and returns the spot to fill, NULL when there are enough. */
 static nt_spot *count_one(nt_tally *tally, double value)
@@ -135,10 +130,10 @@ static uint64_t fingerprint_of(const nt_report_finding *finding, const nt_report
 static void add_finding(nt_check *check, nt_report_finding *finding, nt_severity severity, const char *detail)
 {
 	nt_report *report = check->report;
-	if (check->options->ignore[finding->code])
-		return;
 	const uint8_t wish = check->options->severity[finding->code];
 	finding->severity = wish ? (nt_severity)(wish - 1) : severity;
+	if (check->options->ignore[finding->code] || finding->severity < check->options->min_severity)
+		return;
 	nt_buffer sentence = {0};
 	nt_code_sentence(finding->code, finding->count, detail, &sentence);
 	if (finding->alike > 1)
@@ -171,6 +166,8 @@ static void report_tally(nt_check *check, const nt_tally *tally, nt_severity sev
 		.count = tally->count,
 		.alike = check->alike,
 		.place = check->facts->place,
+		.share = tally->share > 0.0 ? tally->share
+					    : fmin(1.0, (double)tally->count / (double)check->surface.triangle_count),
 		.box = tally->box,
 		.seam = tally->seam ? tally->seam - 1 : NT_NONE,
 		.island = tally->island ? tally->island - 1 : NT_NONE,
@@ -247,10 +244,18 @@ static void add_scene_finding(nt_check *check, const mesh_table *table, const nt
 	nt_report_finding finding = {.code = found->code,
 		.mesh = find_mesh(table, &found->place),
 		.count = found->count,
+		.share = 1.0,
 		.box = nt_box_empty(),
 		.seam = NT_NONE,
 		.island = NT_NONE};
 	finding.alike = finding.mesh != NT_NONE;
+	if (found->votes) {
+		const size_t count = (size_t)found->votes_side * found->votes_side;
+		int8_t *votes = nt_arena_alloc(&check->report->arena, count, sizeof *votes);
+		finding.votes = votes ? memcpy(votes, found->votes, count) : NULL;
+		finding.votes_side = found->votes_side;
+		check->failed |= !votes;
+	}
 	if (!nt_keep_place(&check->report->arena, &found->place, &finding.place)) {
 		check->failed = true;
 		return;
@@ -269,36 +274,98 @@ nt_status nt_report_add_findings(nt_check *check, const nt_finding_list *all)
 	return made ? NT_OK : NT_ERROR_MEMORY;
 }
 
-static int by_severity(const void *a, const void *b)
+/* ---- which come first, and which are kept ---- */
+
+static void weigh_findings(nt_report *report)
+{
+	double most[2][3][NT_CODE_COUNT] = {{{0}}}, triangles = 0.0;
+	for (size_t i = 0; i < report->mesh_count; i++)
+		triangles += (double)report->meshes[i].triangle_count;
+	for (size_t i = 0; i < report->finding_count; i++) {
+		nt_report_finding *f = &report->findings[i];
+		if (f->mesh != NT_NONE && triangles > 0.0)
+			f->share *= (double)report->meshes[f->mesh].triangle_count / triangles;
+		double *group = &most[f->known][f->severity][f->code];
+		*group = fmax(*group, f->share);
+	}
+	for (size_t i = 0; i < report->finding_count; i++) {
+		nt_report_finding *f = &report->findings[i];
+		f->code_share = most[f->known][f->severity][f->code];
+	}
+}
+
+static int by_weight(const void *a, const void *b)
 {
 	const nt_report_finding *x = a, *y = b;
+	if (x->known != y->known)
+		return x->known ? 1 : -1;
 	if (x->severity != y->severity)
 		return x->severity > y->severity ? -1 : 1;
-	if (x->mesh != y->mesh)
-		return x->mesh + 1 < y->mesh + 1 ? -1 : 1; /* the file as a whole first */
+	if (x->code_share != y->code_share)
+		return x->code_share > y->code_share ? -1 : 1;
 	if (x->code != y->code)
 		return x->code < y->code ? -1 : 1;
+	if (x->share != y->share)
+		return x->share > y->share ? -1 : 1;
 	return x->order < y->order ? -1 : x->order > y->order;
+}
+
+static bool same_class(const nt_report_finding *a, const nt_report_finding *b)
+{
+	return a->known == b->known && a->severity == b->severity;
+}
+
+/* Keeps the first `most` findings, fewer than there are; of the last severity that is kept the first one of each code,
+ * then the second ones, so that a hundred seams do not hide what else there is. False: out of memory. */
+static bool keep_findings(nt_report *report, size_t most)
+{
+	nt_report_finding *f = report->findings;
+	const size_t count = report->finding_count;
+	size_t *ranks = nt_calloc(count, sizeof *ranks); /* [rank in its code] how many */
+	size_t begin = most, end, limit = 0;
+	if (!ranks)
+		return false;
+	while (begin > 0 && same_class(&f[begin - 1], &f[most]))
+		begin--;
+	for (end = begin; end < count && same_class(&f[end], &f[most]); end++) {
+		f[end].order = end > begin && f[end].code == f[end - 1].code ? f[end - 1].order + 1 : 0;
+		ranks[f[end].order]++;
+	}
+	size_t left = most - begin;
+	while (ranks[limit] <= left)
+		left -= ranks[limit++];
+	report->finding_count = begin;
+	for (size_t i = begin; i < count; i++) {
+		const bool last = i < end && f[i].order == limit && left > 0;
+		left -= last;
+		if (last || (i < end && f[i].order < limit))
+			f[report->finding_count++] = f[i];
+		else
+			report->dropped_by_code[f[i].code]++;
+	}
+	report->dropped = count - most;
+	free(ranks);
+	return true;
 }
 
 nt_status nt_report_complete(nt_report *report, const nt_report_options *options)
 {
 	nt_digest_complete(report);
-	if (report->finding_count)
-		qsort(report->findings, report->finding_count, sizeof *report->findings, by_severity);
 	report->compared = options->baseline != NULL;
 	if (options->baseline && !nt_baseline_apply(options->baseline, report))
 		return NT_ERROR_MEMORY;
+	weigh_findings(report);
+	if (report->finding_count)
+		qsort(report->findings, report->finding_count, sizeof *report->findings, by_weight);
 	for (size_t i = 0; i < report->finding_count; i++) {
 		if (report->findings[i].known)
 			report->known++;
 		else
 			report->by_severity[report->findings[i].severity]++;
 	}
-	if (options->max_findings && report->finding_count > options->max_findings) {
-		report->dropped = report->finding_count - options->max_findings;
-		report->finding_count = options->max_findings;
-	}
+	if (options->max_findings && report->finding_count > options->max_findings &&
+		!keep_findings(report, options->max_findings))
+		return NT_ERROR_MEMORY;
 	return NT_OK;
 }
 

@@ -445,6 +445,7 @@ static void tally_island(const nt_check *check, nt_tally *tally, size_t index)
 	nt_tally_triangle(check, tally, island->first_triangle, island->covered);
 	nt_box_join(&tally->box, &island->box);
 	tally->count = before + size_of(island);
+	tally->share += check->total_area > 0.0 ? island->area / check->total_area : 0.0;
 }
 
 static void report_island(nt_check *check, size_t index)
@@ -472,6 +473,7 @@ static void report_overlapping(nt_check *check)
 		tally_island(check, &tally, k);
 	}
 	tally.count = count;
+	tally.share = 1e-9; /* behind what there is something to do about */
 	nt_tally_number(&tally, "mirrored_triangles", (double)mirrored);
 	nt_check_report(check, &tally, NULL);
 }

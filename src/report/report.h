@@ -15,7 +15,7 @@
 #include "report/maker.h"
 #include "base/memory.h"
 #include "file/shown_path.h"
-#include "report/box.h"
+#include "report/surface/box.h"
 #include "report/codes.h"
 #include "scene/scene.h"
 
@@ -53,7 +53,8 @@ typedef struct nt_report_options {
 	                                 it was read */
 	bool ignore[NT_CODE_COUNT];
 	uint8_t severity[NT_CODE_COUNT]; /* 0: the table's; else 1 + nt_severity */
-	size_t max_findings;          /* findings kept; 0: all */
+	nt_severity min_severity;     /* findings below are not reported */
+	size_t max_findings;          /* findings kept, some of each code; 0: all */
 	const nt_baseline *baseline;  /* NULL: none */
 	const nt_shown_paths *paths;  /* how files are named, while the report is there; NULL: as they are spelled */
 	bool keep_geometry;           /* for pictures: SVG and HTML */
@@ -97,6 +98,9 @@ typedef struct nt_report_finding {
 	uint32_t mesh;        /* index into the report's meshes, NT_NONE: the file as a whole */
 	size_t count;         /* occurrences */
 	size_t order;         /* in which it was found */
+	/* Of the file's triangles, what it concerns: all of a texture or material; and the most of findings of its
+	 * code and severity. They say which come first. */
+	double share, code_share;
 	size_t alike;         /* meshes of this geometry that it holds for, the mesh itself included; 0: no mesh */
 	const char *message;  /* one sentence */
 	nt_place_view place;  /* texts in the report's arena */
@@ -109,6 +113,8 @@ typedef struct nt_report_finding {
 	nt_number *numbers;   /* [number_count] at most NT_NUMBER_COUNT */
 	nt_spot *spots;       /* [spot_count] at most NT_SPOT_COUNT */
 	unsigned number_count, spot_count;
+	const int8_t *votes;  /* [votes_side][votes_side] as in nt_finding, in the report's arena; NULL: none */
+	unsigned votes_side;
 } nt_report_finding;
 
 /* One edge of a seam: side 0 is the unmirrored one. Both sides go from the same end to the same end. */
@@ -225,9 +231,10 @@ typedef struct nt_report {
 	nt_place_view failure_place;
 	nt_report_mesh *meshes;
 	size_t mesh_count;
-	nt_report_finding *findings; /* most severe first, then by mesh and code */
+	nt_report_finding *findings; /* new ones first, the most severe, what concerns most; of one code together */
 	size_t finding_count;
 	size_t dropped;           /* findings beyond max_findings */
+	size_t dropped_by_code[NT_CODE_COUNT]; /* the same */
 	size_t by_severity[3];    /* findings, dropped ones too, that no baseline knows */
 	size_t known;             /* findings that the baseline knows */
 	bool compared;            /* there was a baseline */

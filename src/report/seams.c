@@ -14,7 +14,7 @@
 #include <string.h>
 #include "base/angle.h"
 #include "base/dvec.h"
-#include "report/chains.h"
+#include "report/surface/chains.h"
 
 /* A seam lies in a plane when its points keep within this part of the mesh's extent. */
 static const double PLANE_TOLERANCE = 1e-4;

@@ -425,7 +425,7 @@ static nt_status compare_with_fresh(nt_check *check)
 static nt_status report_maker(nt_check *check)
 {
 	const nt_maker *maker = &check->facts->maker;
-	nt_tally tally = {.code = NT_CODE_TAN_MADE_BY, .count = 1, .box = check->facts->box};
+	nt_tally tally = {.code = NT_CODE_TAN_MADE_BY, .count = 1, .box = check->facts->box, .share = 1.0};
 	nt_buffer text = {0};
 	nt_maker_text(maker, &text);
 	if (!text.failed)
@@ -471,19 +471,19 @@ static void check_presence(nt_check *check)
 	const bool present = check->facts->checked_tangents;
 	if (!nt_is_gltf(check))
 		return;
-	if (present && mesh->slots == 0) {
-		const nt_tally unused = {.code = NT_CODE_TAN_UNUSED, .count = 1, .box = check->facts->box};
-		nt_check_report(check, &unused, "%s",
-			check->stored == NT_STORED_AUTHORED ? "" : "with --only=needed it would get none");
+	if (check->stored == NT_STORED_AUTHORED && mesh->slots == 0) {
+		const nt_tally unused = {
+			.code = NT_CODE_TAN_UNUSED, .count = 1, .box = check->facts->box, .share = 1.0};
+		nt_check_report(check, &unused, NULL);
 	}
 	if (check->stored == NT_STORED_AUTHORED && mesh->slots != 0 && mesh->targets_without_tangents) {
 		const nt_tally morphs = {.code = NT_CODE_TAN_MORPH_MISSING,
-			.count = mesh->targets_without_tangents, .box = check->facts->box};
+			.count = mesh->targets_without_tangents, .box = check->facts->box, .share = 1.0};
 		nt_check_report(check, &morphs, NULL);
 	}
 	if (!present && mesh->slots != 0 && mesh->reachable) {
 		const nt_tally missing = {.code = NT_CODE_TAN_MISSING_REQUIRED, .count = 1,
-			.box = check->facts->box};
+			.box = check->facts->box, .share = 1.0};
 		const bool client_may_make = mesh->slots & NT_SLOT_NORMAL;
 		nt_check_report_as(check, &missing,
 			client_may_make ? NT_SEVERITY_INFO : NT_SEVERITY_ERROR, "%s",

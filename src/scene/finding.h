@@ -27,6 +27,7 @@ typedef enum nt_code {
 	NT_CODE_IMAGE_CONVERTED,
 	NT_CODE_BUMP_AS_NORMAL,
 	NT_CODE_NMAP_GREEN_DOWN,
+	NT_CODE_NMAP_GREEN_MIXED,
 	NT_CODE_NMAP_NOT_UNIT,
 	NT_CODE_NMAP_BLUE_BELOW_HALF,
 	NT_CODE_NMAP_OBJECT_SPACE,
@@ -114,6 +115,8 @@ typedef struct nt_finding {
 	size_t count;        /* occurrences, at least 1 */
 	const char *detail;  /* the words that differ from case to case (a file name, a statement); may be
 	                        empty */
+	const int8_t *votes; /* [votes_side][votes_side] of a normal map's blocks: see image/examine.h; NULL: none */
+	unsigned votes_side;
 } nt_finding;
 
 typedef struct nt_finding_list {
@@ -133,6 +136,10 @@ void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, 
 /* The same of one that is found alone, with another severity than the table's. */
 void nt_finding_add_as(nt_finding_list *list, nt_code code, nt_severity severity, const nt_place *place,
 	const char *detail);
+
+/* The same of a normal map, with what its blocks say, which is copied. */
+void nt_finding_add_votes(nt_finding_list *list, nt_code code, const nt_place *place, const char *detail,
+	const int8_t *votes, unsigned side);
 
 void nt_finding_list_free(nt_finding_list *list);
 

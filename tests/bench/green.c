@@ -102,7 +102,7 @@ static void synthetic(void)
 	size_t found_all = 0, wrong_all = 0, down_all = 0;
 	printf("%-10s %5s %9s %10s %11s %7s\n", "surface", "maps", "down told", "up told", "abstained", "wrong");
 	for (int family = 0; family < FAMILIES; family++) {
-		size_t counts[2][3] = {{0}};
+		size_t counts[2][4] = {{0}};
 		for (int i = 0; i < 2 * PER_FAMILY; i++) {
 			const bool down = i & 1;
 			nt_normal_facts facts;
@@ -118,7 +118,9 @@ static void synthetic(void)
 		printf("%-10s %5d %6zu/%d %7zu/%d %11zu %7zu\n", names[family], 2 * PER_FAMILY,
 			counts[1][NT_GREEN_DOWN], PER_FAMILY,
 			counts[0][NT_GREEN_UP], PER_FAMILY,
-			counts[0][NT_GREEN_UNKNOWN] + counts[1][NT_GREEN_UNKNOWN], wrong);
+			counts[0][NT_GREEN_UNKNOWN] + counts[1][NT_GREEN_UNKNOWN] + counts[0][NT_GREEN_MIXED] +
+				counts[1][NT_GREEN_MIXED],
+			wrong);
 		wrong_all += wrong;
 		if (family < FAMILIES - 1) {
 			found_all += counts[1][NT_GREEN_DOWN];
@@ -132,7 +134,7 @@ static void synthetic(void)
 
 static void real(const char *path)
 {
-	static const char *const verdicts[] = {"not told", "up", "down"};
+	static const char *const verdicts[] = {"not told", "up", "down", "mixed"};
 	nt_file file;
 	nt_error error;
 	nt_normal_facts facts;
@@ -144,8 +146,8 @@ static void real(const char *path)
 	if (status)
 		printf("%-48s %s\n", nt_last_part(path), error.message);
 	else
-		printf("%-48s %-9s correlation %5.2f, agreement %4.2f\n", nt_last_part(path), verdicts[facts.green],
-			facts.correlation, facts.agreement);
+		printf("%-48s %-9s correlation %5.2f, agreement %4.2f, blocks %3zu up, %3zu down\n", nt_last_part(path),
+			verdicts[facts.green], facts.correlation, facts.agreement, facts.blocks_up, facts.blocks_down);
 }
 
 int main(int argc, char **argv)

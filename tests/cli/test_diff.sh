@@ -58,7 +58,7 @@ exits 6
 grep -q '^| warning | `UV_MIRROR_LONE` |' d.md || wrong "no row of the new finding"
 
 scene "a page has both versions, what is new and gone, and names as text"
-{ echo 'o </script><script>window.broken=1</script>'; squares "2 1 4 3"; } >old.obj
+{ echo 'mtllib nowhere.mtl'; echo 'o </script><script>window.broken=1</script>'; squares "2 1 4 3"; } >old.obj
 sed 's/^f 5.*/f 5\/1\/1 6\/2\/1 7\/3\/1 8\/4\/1/' old.obj >new.obj
 run --check --diff --report=d.html old.obj new.obj
 exits 0

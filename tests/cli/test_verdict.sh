@@ -125,19 +125,51 @@ run --check --fail-on=warning m.obj
 exits 0
 prints "UV_MIRROR_LONE"
 
-scene "every seam is a finding of its own"
-{
+# Forty pairs of triangles with a mirror seam each.
+many() {
 	printf '%s\n' "vn 0 0 1" "vt 0 0" "vt 1 0" "vt .5 1"
 	for i in $(seq 0 2 78); do
 		printf 'v %s 0\n' "$i 0" "$((i + 1)) 0" "$i.5 1" "$i.5 -1"
 		echo "f -4/1/1 -3/2/1 -2/3/1"
 		echo "f -3/2/1 -4/1/1 -1/3/1"
 	done
-} >many.obj
+}
+
+scene "every seam is a finding of its own; people read ten findings, some of each code"
+many >many.obj
 run -q --check --report=r.json --fail-on=never many.obj
-is "$(findings r.json | grep -c UV_MIRROR_SEAM)" 40
+is "$(findings r.json)" "info UV_MIRROR_OVERLAP 40
+$(for i in $(seq 40); do echo info UV_MIRROR_SEAM 1; done)"
 run --check --fail-on=never many.obj
-prints "and 24 more UV_MIRROR_SEAM"
+is "$(grep -c '^  info .*UV_MIRROR_SEAM' ../out.txt) $(grep -c '^  info .*UV_MIRROR_OVERLAP' ../out.txt)" "9 1"
+prints "and 31 more: 31 UV_MIRROR_SEAM; --max-issues=0 shows all"
+run --check --fail-on=never --report=r.md many.obj
+is "$(grep -c '^| info .*UV_MIRROR_SEAM' r.md)" 9
+grep -q "^And 31 more: 31 UV_MIRROR_SEAM.$" r.md || wrong "no word of what is left out"
+run --check --fail-on=never --max-issues=0 many.obj
+is "$(grep -c '^  info .*UV_MIRROR_SEAM' ../out.txt)" 40
+run --check --fail-on=never --max-issues=0 --report=r.md many.obj
+is "$(grep -c '^| info .*UV_MIRROR_SEAM' r.md)" 40
+
+scene "--min-severity leaves out what is below, in every format"
+many >many.obj
+options="--check --severity=UV_MIRROR_OVERLAP=error --min-severity"
+for format in json csv md html txt xml sarif; do
+	run $options=info --max-issues=0 --report=all.$format many.obj
+	exits 6
+	run $options=warning --report=r.$format many.obj
+	exits 6
+	is "$format $(grep -o 'a seam of 1 edge' all.$format | wc -l) $(grep -c 'a seam of 1 edge' r.$format)" "$format 40 0"
+	grep -q "40 islands share" r.$format || wrong "$format has no error"
+done
+run --check --min-severity=error --fail-on=info many.obj # what is not reported does not count
+exits 0
+prints "0 errors, 0 warnings, 0 infos"
+run --min-severity=error many.obj many.glb
+exits 1
+says "--min-severity needs --report, --check or --fail-on"
+run --check --min-severity=never many.obj
+exits 1
 
 scene "a baseline of one file waives nothing in another"
 halves 0.5 >one.obj

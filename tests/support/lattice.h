@@ -9,7 +9,7 @@
 
 #include "test.h"
 #include <math.h>
-#include "report/surface.h"
+#include "report/surface/surface.h"
 
 enum { LATTICE_SIDE = 40, LATTICE_VERTICES = 90000, LATTICE_TRIANGLES = 110000, LATTICE_HUB = 5 };
 

@@ -11,6 +11,7 @@
  *                       or null, wrap: [nt_wrap, nt_wrap], seams: [[edges, closed, length, plane, unmirrored island,
  *                       mirrored island]], geometry: bool}
  *             finding:  {code, severity, count, known, message, mesh, seam, island, line, box, at: [triangle],
+ *                       votes: [[percent]] of a normal map's blocks, rows from the top, green up above 0; or null,
  *                       repair: options of nmtan, not there where it cannot}
  *   codes     {CODE: {title, meaning, remedy}} of the findings that there are
  *   images    [data URI], which meshes number
@@ -250,7 +251,8 @@ static void put_finding(const nt_report *report, const nt_report_finding *findin
 	for (unsigned i = 0, any = 0; i < finding->spot_count; i++)
 		if (finding->spots[i].triangle != NT_NONE)
 			nt_buffer_format(out, any++ ? ",%u" : "%u", finding->spots[i].triangle);
-	nt_buffer_text(out, "]");
+	nt_buffer_text(out, "],\"votes\":");
+	nt_json_votes(finding, out);
 	put_repair(report, finding, out);
 	nt_buffer_text(out, "}");
 }

@@ -430,7 +430,10 @@ static void put_finding(nt_buffer *out, const nt_report *report, const nt_report
 		separate(out, 5);
 		put_spot(out, &finding->spots[i]);
 	}
-	nt_buffer_text(out, "]}");
+	nt_buffer_text(out, "]");
+	key(out, SAME_LINE, "votes");
+	nt_json_votes(finding, out);
+	nt_buffer_text(out, "}");
 }
 
 static void put_failure(nt_buffer *out, const nt_report *report)

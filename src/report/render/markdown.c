@@ -9,7 +9,7 @@
 #include <string.h>
 #include "base/utf8.h"
 
-enum { MOST_FILES = 50, MOST_ROWS = 100, ROWS_OF_CODE = 5 };
+enum { MOST_FILES = 50, MOST_ROWS = 100 };
 
 void nt_markdown_text(const char *text, nt_buffer *out)
 {
@@ -66,26 +66,25 @@ void nt_markdown_finding(const nt_report *report, const nt_report_finding *findi
 	nt_buffer_text(out, " |\n");
 }
 
-/* Of one code in one file few are shown, the first of them the worst. */
 static void put_findings(const nt_report *report, size_t *rows, nt_buffer *out)
 {
-	size_t shown[NT_CODE_COUNT] = {0}, missing = report->dropped;
+	size_t missing = 0;
 	nt_buffer_text(out, "\n### ");
 	nt_markdown_text(report->shown, out);
 	nt_buffer_text(out, "\n\n");
 	nt_put_verdict(report, nt_markdown_text, out);
 	nt_buffer_text(out, "\n\n| severity | code | where | finding |\n|---|---|---|---|\n");
 	for (size_t i = 0; i < report->finding_count; i++) {
-		const nt_report_finding *finding = &report->findings[i];
-		if (*rows >= MOST_ROWS || shown[finding->code]++ >= ROWS_OF_CODE) {
+		if (*rows < MOST_ROWS) {
+			nt_markdown_finding(report, &report->findings[i], out);
+			++*rows;
+		} else {
 			missing++;
-			continue;
 		}
-		nt_markdown_finding(report, finding, out);
-		++*rows;
 	}
+	nt_dropped_text(report, "\nAnd ", ".\n", out);
 	if (missing)
-		nt_buffer_format(out, "\n%zu more findings are not shown.\n", missing);
+		nt_buffer_format(out, "\n%zu findings more do not fit.\n", missing);
 }
 
 /* Inputs that could not be read first, then by errors, warnings and infos. */

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-enum { SHOWN_SPOTS = 3, SHOWN_FINDINGS = 16 /* of one code */ };
+enum { SHOWN_SPOTS = 3 };
 
 static void paint(const nt_report_list *reports, const char *code, nt_buffer *out)
 {
@@ -155,17 +155,13 @@ static void write_report(const nt_report_list *reports, const nt_report *report,
 	nt_buffer_text(out, "\n");
 	for (size_t i = 0; i < report->mesh_count; i++)
 		write_mesh(report, (uint32_t)i, out);
-	size_t told[NT_CODE_COUNT] = {0};
+	bool told[NT_CODE_COUNT] = {false};
 	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *finding = &report->findings[i];
-		const size_t before = told[finding->code]++;
-		if (before < SHOWN_FINDINGS)
-			write_finding(reports, report, finding, before == 0, out);
+		write_finding(reports, report, finding, !told[finding->code], out);
+		told[finding->code] = true;
 	}
-	for (unsigned code = 0; code < NT_CODE_COUNT; code++)
-		if (told[code] > SHOWN_FINDINGS)
-			nt_buffer_format(out, "  and %zu more %s, which the other formats of reports tell\n",
-				told[code] - SHOWN_FINDINGS, nt_code_info((nt_code)code)->name);
+	nt_dropped_text(report, "  and ", "; --max-issues=0 shows all\n", out);
 }
 
 void nt_write_text(const nt_report_list *reports, nt_buffer *out)

@@ -48,6 +48,21 @@ void nt_totals_text(const nt_totals *totals, nt_buffer *out)
 		nt_buffer_format(out, ", %zu not shown", totals->dropped);
 }
 
+void nt_dropped_text(const nt_report *report, const char *before, const char *after, nt_buffer *out)
+{
+	if (!report->dropped)
+		return;
+	nt_buffer_format(out, "%s%zu more", before, report->dropped);
+	const char *comma = ": ";
+	for (unsigned code = 0; code < NT_CODE_COUNT; code++) {
+		if (!report->dropped_by_code[code])
+			continue;
+		nt_buffer_format(out, "%s%zu %s", comma, report->dropped_by_code[code], nt_code_info(code)->name);
+		comma = ", ";
+	}
+	nt_buffer_text(out, after);
+}
+
 const char *nt_island_kind_name(nt_island_kind kind)
 {
 	static const char *const names[] = {"normal", "mirrored", "mixed", "degenerate"};
@@ -156,6 +171,20 @@ void nt_json_box(const nt_box *box, nt_buffer *out)
 	nt_buffer_text(out, ",");
 	nt_json_floats(box->maximum, 3, out);
 	nt_buffer_text(out, "]");
+}
+
+void nt_json_votes(const nt_report_finding *finding, nt_buffer *out)
+{
+	const unsigned side = finding->votes_side;
+	if (!finding->votes) {
+		nt_buffer_text(out, "null");
+		return;
+	}
+	for (unsigned i = 0; i < side * side; i++) {
+		nt_buffer_text(out, i == 0 ? "[[" : i % side == 0 ? "],[" : ",");
+		nt_buffer_format(out, "%d", finding->votes[i]);
+	}
+	nt_buffer_text(out, "]]");
 }
 
 void nt_plain_text(const char *text, nt_buffer *out)

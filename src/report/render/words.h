@@ -58,6 +58,10 @@ void nt_put_verdict(const nt_report *report, void (*put)(const char *text, nt_bu
 /* Appends the options with which nmtan repairs a finding, which may be none; false: it cannot. */
 bool nt_repair_options(const nt_report *report, const nt_report_finding *finding, nt_buffer *out);
 
+/* What --max-issues left out, between the two texts: "3 more: 2 UV_MIRROR_SEAM, 1 TAN_UNUSED". Nothing where it left
+ * nothing out. */
+void nt_dropped_text(const nt_report *report, const char *before, const char *after, nt_buffer *out);
+
 /* The name a mesh is shown with: its object in words, its name or its number. Never empty. */
 void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out);
 
@@ -82,6 +86,9 @@ void nt_json_index(uint32_t index, nt_buffer *out);
 void nt_json_floats(const float *values, size_t count, nt_buffer *out);
 void nt_json_rows(const float *values, size_t count, size_t width, nt_buffer *out);
 void nt_json_box(const nt_box *box, nt_buffer *out);
+
+/* What the blocks of a normal map say, row by row; null where a finding has none. */
+void nt_json_votes(const nt_report_finding *finding, nt_buffer *out);
 
 /* Text for a terminal: nt_buffer_clean(). */
 void nt_plain_text(const char *text, nt_buffer *out);

@@ -86,20 +86,57 @@ TEST(nothing_is_told_by_weak_evidence)
 {
 	for (int green = -1; green <= 1; green += 2) {
 		assert_int_equal(facts_of(make(grid, green, 8)).green, NT_GREEN_UNKNOWN);
-		assert_int_equal(facts_of(make(swirl, green, 8)).green, NT_GREEN_UNKNOWN);
+		assert_int_equal(facts_of(make(swirl, green, 8)).green, NT_GREEN_MIXED);
 	}
 	const nt_normal_facts facts = facts_of(make(flat, 1, 8));
 	assert_int_equal(facts.green, NT_GREEN_UNKNOWN);
 	assert_true(facts.constant);
 }
 
-/* One half with green up and one with green down, as where two maps were joined. */
-TEST(halves_that_contradict_tell_nothing)
+/* Long waves, and grain upon them. */
+static void forms(double x, double y, double *p, double *q)
+{
+	const double a = 0.6 * cos(x / 9 + y / 11), b = 0.6 * cos(x / 10 - y / 9);
+	*p = a / 9 + b / 10;
+	*q = a / 11 - b / 9;
+}
+
+static void grain(double x, double y, double *p, double *q)
+{
+	*p = 0.02 * cos(x * 1.5 + y * 1.3);
+	*q = 0.02 * cos(x * 1.5 + y * 1.3);
+}
+
+/* What DamagedHelmet is like: forms with green up, and grain upon them with green down, whose curl is the larger. */
+static void opposed(double x, double y, double *p, double *q)
+{
+	double p2, q2;
+	forms(x, y, p, q);
+	grain(x, y, &p2, &q2);
+	*p += p2;
+	*q -= q2;
+}
+
+TEST(large_forms_veto_a_fine_grain)
+{
+	const nt_normal_facts facts = facts_of(make(opposed, 1, 16));
+	assert_true(facts.blocks_down > 100);
+	assert_int_equal(facts.green, NT_GREEN_MIXED);
+	assert_int_equal(facts_of(make(forms, 1, 16)).green, NT_GREEN_UP);
+	assert_int_equal(facts_of(make(grain, -1, 16)).green, NT_GREEN_DOWN);
+}
+
+/* One half with green up and one with green down, as where two maps were joined: the blocks say which. */
+TEST(halves_that_contradict_are_mixed)
 {
 	nt_pixels a = make(hills, 1, 8), b = make(hills, -1, 8);
 	memcpy(a.samples, b.samples, nt_pixels_row_bytes(&a) * SIDE / 2);
 	nt_pixels_free(&b);
-	assert_int_equal(facts_of(a).green, NT_GREEN_UNKNOWN);
+	const nt_normal_facts facts = facts_of(a);
+	assert_int_equal(facts.green, NT_GREEN_MIXED);
+	for (int i = 0; i < NT_GREEN_BLOCKS * NT_GREEN_BLOCKS; i++)
+		assert_true(i < NT_GREEN_BLOCKS * NT_GREEN_BLOCKS / 2 ? facts.votes[i] < -50 : facts.votes[i] > 50);
+	assert_int_equal(facts.blocks_up + facts.blocks_down, NT_GREEN_BLOCKS * NT_GREEN_BLOCKS);
 }
 
 TEST(shares_are_counted)

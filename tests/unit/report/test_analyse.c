@@ -292,6 +292,41 @@ TEST(options_ignore_reweigh_and_limit)
 	hand_free(h, report);
 }
 
+/* Lone mirrored triangles of area 1/2, 2 and 9/2, and one without an area in UV space, of 1/2. */
+TEST(what_concerns_most_comes_first_and_no_code_hides_another)
+{
+	static const uint32_t largest_first[3] = {2, 1, 0};
+	hand_mesh *h = hand_new();
+	for (uint32_t i = 0; i < 4; i++) {
+		const float size = i < 3 ? (float)i + 1 : 1, x = 10 * (float)i;
+		hand_vertex(h, x, 0, 0, x, 0);
+		hand_vertex(h, x + size, 0, 0, x - size * (i < 3), 0);
+		hand_vertex(h, x, size, 0, x, size);
+		hand_triangle(h, 3 * i, 3 * i + 1, 3 * i + 2);
+	}
+	nt_report_options options = {.severity[NT_CODE_UV_DEGENERATE_TRIANGLE] = 1 + NT_SEVERITY_INFO};
+	nt_report *report = hand_report(h, &options);
+	assert_int_equal(report->finding_count, 4);
+	for (size_t i = 0; i < 3; i++) {
+		assert_int_equal(report->findings[i].code, NT_CODE_UV_MIRROR_LONE);
+		assert_int_equal(report->findings[i].island, largest_first[i]);
+	}
+	for (options.max_findings = 1; options.max_findings < 4; options.max_findings++) {
+		nt_report_free(report);
+		report = hand_report(h, &options);
+		assert_int_equal(report->finding_count, options.max_findings);
+		assert_int_equal(report->dropped, 4 - options.max_findings);
+		const bool both = options.max_findings > 1;
+		assert_int_equal(report->dropped_by_code[NT_CODE_UV_DEGENERATE_TRIANGLE], !both);
+		assert_int_equal(report->dropped_by_code[NT_CODE_UV_MIRROR_LONE], both ? report->dropped : 2);
+	}
+	nt_report_free(report);
+	options.min_severity = NT_SEVERITY_WARNING;
+	report = hand_report(h, &options);
+	assert_int_equal(report->finding_count + report->by_severity[NT_SEVERITY_INFO], 0);
+	hand_free(h, report);
+}
+
 /* A baseline of one finding of a file. */
 static nt_baseline baseline_with(const char *file, const nt_report_finding *finding, const nt_file_finder *finder)
 {

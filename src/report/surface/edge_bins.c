@@ -9,7 +9,7 @@
  *
  * Time is linear but for the log of a point's valence.
  */
-#include "report/edge_bins.h"
+#include "report/surface/edge_bins.h"
 
 #include <stdlib.h>
 #include <string.h>

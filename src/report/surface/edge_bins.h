@@ -6,7 +6,7 @@
 #ifndef NT_REPORT_EDGE_BINS_H
 #define NT_REPORT_EDGE_BINS_H
 
-#include "report/surface.h"
+#include "report/surface/surface.h"
 
 /* A side as a bin lists it. */
 typedef struct nt_edge_side {

@@ -3,7 +3,7 @@
  * Points: vertices whose positions are equal, compared as floats (0 equals -0, NaN equals nothing, no epsilon),
  * numbered by the first side that begins at any of them.
  */
-#include "report/surface.h"
+#include "report/surface/surface.h"
 
 #include <string.h>
 #include "base/hash.h"

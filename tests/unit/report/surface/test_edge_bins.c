@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* All sides of a mesh come by their edges, in the order that sorting all of them at once gives. */
 #include "lattice.h"
-#include "report/edge_bins.h"
+#include "report/surface/edge_bins.h"
 
 typedef struct sorted_side {
 	uint32_t low, high, side;

@@ -5,7 +5,7 @@
 #ifndef NT_REPORT_CHAINS_H
 #define NT_REPORT_CHAINS_H
 
-#include "report/surface.h"
+#include "report/surface/surface.h"
 
 /* Chain i has the sides sides[first[i]] to sides[first[i + 1] - 1], one for each edge. A chain walks from
  * one edge to the next across the point they share; reversed[s] says that sides[s] is walked against its

@@ -10,7 +10,7 @@
  * the others (the last face of a Moebius strip), fans that only meet in a point. The pieces, and edges it
  * does not know, are then joined wherever exactly two ends meet, so that nothing is dropped.
  */
-#include "report/chains.h"
+#include "report/surface/chains.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -12,7 +12,10 @@ typedef struct nt_box {
 	float minimum[3], maximum[3];
 } nt_box;
 
-nt_box nt_box_empty(void); /* findings.c */
+static inline nt_box nt_box_empty(void)
+{
+	return (nt_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+}
 
 /* Coordinates that are not finite are passed over. */
 static inline void nt_box_add(nt_box *box, const float *position)

@@ -2,7 +2,7 @@
 /*
  * Triangles and what each is by itself: see surface.h. Points are found in points.c, edges in edge_bins.c.
  */
-#include "report/surface.h"
+#include "report/surface/surface.h"
 
 #include <math.h>
 #include "topology/corners.h"

@@ -10,7 +10,7 @@
 
 #include "base/bits.h"
 #include "base/scratch.h"
-#include "report/box.h"
+#include "report/surface/box.h"
 #include "scene/scene.h"
 
 /* Whether a triangle spans an area in space. */
