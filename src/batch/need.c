@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Guesses of memory: see need.h. Upper estimates for ordinary files; soups of unshared triangles need up to 7x.
+ * Guesses of memory: see need.h. Upper estimates, but for what says less of itself than it holds.
  * Measured with --verify and a report. By format, beside a megabyte:
  *
- *   OBJ        10 for each byte (ordinary files 1 to 7, corners that all differ 25)
+ *   OBJ        2 for each byte, 60 for each corner of a face, 140 for each vertex that these may be (30 to 65, with
+ *              vertices that all differ 190), 2300 for each change of material or object
  *   PLY        2 for each byte and 96 for each element that the header declares (50; 500)
  *   glTF, GLB  12 for each byte of JSON, 1 for each other byte, and 40 for each "count" in the JSON, which is that of
  *              accessors, wherever their bytes are (30; 105); 100 where there is or will be Draco (98; 207)
- *   Draco      256 for each byte (20 to 190)
+ *   Draco      1 for each byte, and by the header 120 for each triangle and 190 for each vertex (210 for one of each)
  *
  * as "make bench-need" prints it. An OBJ's images that are converted are in need_images.c. Images that a report
  * examines, polygons of many corners, and instances that become one PLY are not seen.
@@ -77,13 +78,102 @@ static uint64_t gltf_need(const char *text, size_t json_size, size_t size, const
 	return plus(12 * (uint64_t)json_size + (size - json_size), compressed ? 100 : 40, counts);
 }
 
+/* ---- OBJ ---- */
+
+/* What the lines of an OBJ begin with. */
+typedef struct obj_counts {
+	uint64_t corners, positions, texcoords, normals, changes;
+} obj_counts;
+
+static void count_line(obj_counts *counts, const char *line, const char *end)
+{
+	const char first = line < end ? *line : '\0', second = line + 1 < end ? line[1] : '\0';
+	counts->positions += first == 'v' && second == ' ';
+	counts->texcoords += first == 'v' && second == 't';
+	counts->normals += first == 'v' && second == 'n';
+	counts->changes += first == 'u' || first == 'o';
+	for (const char *c = line; first == 'f' && c + 1 < end; c++)
+		counts->corners += c[0] == ' ' && c[1] > ' ';
+}
+
+/* Whole lines of a part of the text. */
+static void count_lines(obj_counts *counts, const char *text, size_t size)
+{
+	const char *end = text + size, *next;
+	for (const char *line = text; (next = memchr(line, '\n', (size_t)(end - line))); line = next + 1)
+		count_line(counts, line, next);
+}
+
+/* Of a large file as many parts as tell what is in it. */
+static uint64_t obj_need(const char *text, size_t size)
+{
+	enum { PARTS = 64, PART = 1 << 16 };
+	obj_counts counts = {0};
+	const bool whole = size <= (size_t)PARTS * PART;
+	for (size_t i = 0; i < PARTS && !whole; i++)
+		count_lines(&counts, text + (size - PART) / (PARTS - 1) * i, PART);
+	if (whole)
+		count_lines(&counts, text, size);
+	const double scale = whole ? 1.0 : (double)size / (PARTS * (double)PART);
+	const double corners = scale * (double)counts.corners;
+	double vertices = scale * (double)counts.positions;
+	vertices *= counts.texcoords ? scale * (double)counts.texcoords : 1.0;
+	vertices *= counts.normals ? scale * (double)counts.normals : 1.0;
+	if (vertices > corners)
+		vertices = corners;
+	const double changes = scale * (double)counts.changes;
+	return (uint64_t)(2.0 * (double)size + 60.0 * corners + 140.0 * vertices + 2300.0 * changes);
+}
+
+/* ---- Draco ---- */
+
+/* A number of 7 bits a byte, the last of them below 128; 0 where it does not end. */
+static uint64_t varint_at(const unsigned char **at, const unsigned char *end)
+{
+	uint64_t number = 0;
+	for (unsigned shift = 0; *at < end && shift < 35; shift += 7) {
+		const unsigned char byte = *(*at)++;
+		number |= (uint64_t)(byte & 127) << shift;
+		if (byte < 128)
+			return number;
+	}
+	return 0;
+}
+
+/* By the header of a block of version 2.2 without metadata, which is what encoders have written since 2018: method 0 is
+ * sequential (faces, points), 1 edgebreaker (a byte, vertices, faces). Of others by its bytes. */
+static uint64_t draco_need(const unsigned char *bytes, size_t size)
+{
+	enum { HEAD = 11, MAJOR = 5, MINOR = 6, TYPE = 7, METHOD = 8, FLAGS = 10, MESH = 1, METADATA = 128 };
+	if (size < HEAD || memcmp(bytes, "DRACO", 5) != 0 || bytes[MAJOR] != 2 || bytes[MINOR] != 2 ||
+		bytes[TYPE] != MESH || bytes[METHOD] > 1 || (bytes[FLAGS] & METADATA))
+		return MOST_BYTE_COST * (uint64_t)size;
+	const unsigned char *at = bytes + HEAD + bytes[METHOD], *end = bytes + size;
+	const uint64_t first = varint_at(&at, end), second = varint_at(&at, end);
+	const uint64_t faces = bytes[METHOD] ? second : first, vertices = bytes[METHOD] ? first : second;
+	return size + 120 * faces + 190 * vertices;
+}
+
+/* Of all blocks among the bytes of a GLB: its JSON may say less of them than they do. */
+static uint64_t blocks_need(const unsigned char *bytes, size_t size)
+{
+	const unsigned char *end = bytes + size;
+	uint64_t need = 0;
+	for (const unsigned char *at = bytes; (at = memmem(at, (size_t)(end - at), "DRACO", 5)); at += 5) {
+		enum { MOST_HEAD = 32 };
+		const size_t left = (size_t)(end - at);
+		need = plus(need, 1, draco_need(at, left < MOST_HEAD ? left : MOST_HEAD));
+	}
+	return need;
+}
+
 static uint64_t need_of_bytes(const nt_file *file, const char *path, const nt_settings *settings)
 {
 	const char *text = (const char *)file->data;
 	const nt_format_entry *entry = nt_format_of_input(file->data, file->size, path);
 	switch (entry ? entry->format : NT_FORMAT_UNKNOWN) {
 	case NT_FORMAT_OBJ:
-		return plus(10 * (uint64_t)file->size, 1, nt_need_of_images(path, text, file->size, settings));
+		return plus(obj_need(text, file->size), 1, nt_need_of_images(path, text, file->size, settings));
 	case NT_FORMAT_PLY:
 		return ply_need(text, file->size);
 	case NT_FORMAT_GLTF:
@@ -96,10 +186,12 @@ static uint64_t need_of_bytes(const nt_file *file, const char *path, const nt_se
 		const unsigned char *b = file->data + LENGTH_AT;
 		const size_t length = b[0] | (size_t)b[1] << 8 | (size_t)b[2] << 16 | (size_t)b[3] << 24;
 		const size_t rest = file->size - HEAD;
-		return gltf_need(text + HEAD, length < rest ? length : rest, rest, settings);
+		const uint64_t said = gltf_need(text + HEAD, length < rest ? length : rest, rest, settings);
+		const uint64_t blocks = length < rest ? blocks_need(file->data + HEAD + length, rest - length) : 0;
+		return said > blocks ? said : blocks;
 	}
 	default:
-		return MOST_BYTE_COST * (uint64_t)file->size;
+		return draco_need(file->data, file->size);
 	}
 }
 
@@ -115,7 +207,8 @@ uint64_t nt_need_of(const char *input, const nt_settings *settings, uint64_t eno
 	if (!S_ISREG(info.st_mode))
 		return UINT64_MAX;
 	const nt_format_entry *named = nt_format_of_path(input);
-	const bool whole = named && named->format != NT_FORMAT_GLTF && named->format != NT_FORMAT_OBJ;
+	const bool whole = named && named->format != NT_FORMAT_GLTF && named->format != NT_FORMAT_OBJ &&
+		named->format != NT_FORMAT_DRC;
 	if (whole && LEAST + MOST_BYTE_COST * (uint64_t)info.st_size <= enough)
 		return LEAST + MOST_BYTE_COST * (uint64_t)info.st_size;
 	if (nt_file_open_untraced(&file, input, &error))

@@ -6,6 +6,7 @@
 #include "folder.h"
 #include "test.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -25,13 +26,57 @@ static void text_counts_by_its_bytes(void **state)
 	static const struct {
 		const char *name, *text;
 		uint64_t each, more;
-	} rows[] = {{"a.obj", "v 0 0 0\n", 10, 0}, {"a.drc", "DRACO...", 256, 0}, {"empty.obj", "", 10, 0},
+	} rows[] = {{"a.drc", "DRACO...", 256, 0}, {"empty.obj", "", 2, 0},
+		/* five corners, which are two vertices at most, four with texture coordinates, five with normals too */
+		{"v.obj", "v 0 0 0\nv 1 0 0\no b\nf 1 2 2\nusemtl m\nf 1 2  \n", 2, 5 * 60 + 2 * 140 + 2 * 2300},
+		{"vt.obj", "v 0 0 0\nv 1 0 0\nvt 0 0\nvt 1 1\nf 1/1 2/2 2/1\nf 1/1 2/2\n", 2, 5 * 60 + 4 * 140},
+		{"vn.obj", "v 0 0 0\nv 1 0 0\nvt 0 0\nvt 1 1\nvn 0 0 1\nvn 0 1 0\nf 1 2 2\nf 1 2\n", 2,
+			5 * 60 + 5 * 140},
 		{"a.ply", "ply\nformat ascii 1.0\nelement vertex 1000\nproperty float x\nelement face  20\nend_header\n"
 			"element vertex 7\n", 2, 96 * 1020}, {"open.ply", "ply\nelement ", 2, 0}};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
 		put_text_file(rows[i].name, rows[i].text);
 		assert_int_equal(need_of(rows[i].name), MB + rows[i].each * strlen(rows[i].text) + rows[i].more);
 	}
+}
+
+/* 300 faces and 200 vertices, as each method writes them; with metadata, and of an older version, by the bytes. */
+static void draco_counts_by_its_header(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *bytes;
+		size_t size;
+		bool told;
+	} rows[] = {{"DRACO\2\2\1\0\0\0\254\2\310\1", 15, true}, {"DRACO\2\2\1\1\0\0\0\310\1\254\2", 16, true},
+		{"DRACO\2\2\1\0\0\200\254\2\310\1", 15, false}, {"DRACO\2\1\1\0\0\0\254\2\310\1", 15, false}};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		put_file("d.drc", rows[i].bytes, rows[i].size);
+		assert_int_equal(need_of("d.drc"),
+			MB + (rows[i].told ? rows[i].size + 120 * 300 + 190 * 200 : 256 * rows[i].size));
+	}
+	/* two blocks of a GLB whose JSON says nothing of them */
+	static const char blocks[] = "DRACO\2\2\1\0\0\0\254\2\310\1 DRACO\2\2\1\0\0\0\254\2\310\1";
+	put_glb_file("d.glb", "{}  ", blocks, sizeof blocks - 1);
+	assert_in_range(need_of("d.glb"), MB + 2 * (120 * 300 + 190 * 200), MB + 2 * (120 * 300 + 190 * 200) + 100);
+	/* numbers that do not end */
+	put_file("d.drc", "DRACO\2\2\1\0\0\0\377\377", 13);
+	assert_int_equal(need_of("d.drc"), MB + 13);
+}
+
+/* A large file is judged by parts of it. */
+static void a_large_obj_is_sampled(void **state)
+{
+	(void)state;
+	enum { FACES = 600000, BYTES = 14 };
+	char *text = malloc(FACES * BYTES + 1);
+	assert_non_null(text);
+	for (size_t i = 0; i < FACES; i++)
+		memcpy(text + BYTES * i, i % 2 ? "f 1/1 2/2 3/3\n" : "v 100 200 300\n", BYTES);
+	put_file("large.obj", text, FACES * BYTES);
+	free(text);
+	const uint64_t expected = MB + 2 * FACES * BYTES + FACES / 2 * (3 * 60 + 140);
+	assert_in_range(need_of("large.obj"), expected - expected / 50, expected + expected / 50);
 }
 
 static void gltf_counts_by_its_accessors_wherever_their_bytes_are(void **state)
@@ -78,7 +123,7 @@ static void an_obj_counts_the_largest_images_that_are_converted(void **state)
 	put_file("h.png", png, sizeof png);
 	put_file("c.tga", tga, sizeof tga);
 	const nt_settings of_two = {.threads = 2}, of_one = {.threads = 1}, ply = {.output_format = NT_FORMAT_PLY};
-	const uint64_t bare = MB + 10 * strlen(obj);
+	const uint64_t bare = MB + 2 * strlen(obj);
 	assert_int_equal(nt_need_of(in_folder("i.obj"), &of_two, 1 << 30), bare);
 	put_text_file("m.mtl", mtl);
 	assert_int_equal(nt_need_of(in_folder("i.obj"), &of_two, 0), bare + 2 * 6 * 256 * 512);
@@ -126,6 +171,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(text_counts_by_its_bytes),
+		cmocka_unit_test(draco_counts_by_its_header),
+		cmocka_unit_test(a_large_obj_is_sampled),
 		cmocka_unit_test(gltf_counts_by_its_accessors_wherever_their_bytes_are),
 		cmocka_unit_test(a_glb_counts_its_json_and_its_bytes),
 		cmocka_unit_test(an_obj_counts_the_largest_images_that_are_converted),
