@@ -26,8 +26,11 @@
  * Until step 2 everything can be taken back, and is. From step 3 on a failure leaves a whole new set, under names
  * that say what they are: where link(2) or a rename is refused, the staging main file stays and the result says so.
  * The next run recognises what a killed run left: temporary files by their locks, a.bin and a.new-D.bin by the main
- * file's records or by their bytes. If step 2 fails, buffers that step 1 named are removed again; images are not, since
- * another run may use them already.
+ * file's records or by their bytes, and removes any a.new-D.bin of these bytes to which nothing refers. If step 2
+ * fails, buffers that step 1 named are removed again; images are not, since another run may use them already.
+ *
+ * Sets with sidecars are placed one after the other in a folder. If M is another one than when the names were chosen,
+ * they are chosen anew: otherwise two runs that write M at once would leave a sidecar that nobody refers to.
  *
  * Who may be replaced: M, because the user named it; a.bin in step 3, by the rules of sidecar.c. If a name was taken
  * since it was chosen, nothing is replaced, and the caller is told to try again.
@@ -39,6 +42,7 @@
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 static nt_status taken_meanwhile(nt_output *output, const char *path, nt_error *error)
@@ -247,15 +251,60 @@ static nt_status settle_names(nt_output *output, nt_error *error)
 	return status;
 }
 
+/* ---- one after the other ---- */
+
+static bool has_sidecars(const nt_output *output)
+{
+	const nt_sink *sink = output->first;
+	while (sink && !nt_sink_is_sidecar(sink))
+		sink = sink->next;
+	return sink && output->main && output->main->target;
+}
+
+/* Waits until no other set is being placed in the folder: a lock of the folder, which ends with its process. Below 0:
+ * the file system has none. */
+static int lock_folder(const nt_output *output)
+{
+	char folder[PATH_MAX];
+	const char *path = output->main->path;
+	const size_t length = (size_t)(nt_last_part(path) - path);
+	snprintf(folder, sizeof folder, "%.*s.", length < PATH_MAX - 2 ? (int)length : 0, path);
+	const int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	int result = -1;
+	do
+		result = fd < 0 ? -1 : flock(fd, LOCK_EX);
+	while (result != 0 && fd >= 0 && errno == EINTR);
+	if (result != 0 && fd >= 0)
+		close(fd);
+	return result == 0 ? fd : -1;
+}
+
+/* By the main file that was there the names of sidecars were chosen. */
+static bool main_is_unchanged(const nt_sink *main)
+{
+	struct stat status;
+	return main->there.inode ? nt_state_is(main->target, &main->there) : lstat(main->target, &status) != 0;
+}
+
 nt_status nt_output_place(nt_output *output, nt_error *error)
 {
 	sigset_t before;
+	const bool alone = has_sidecars(output);
+	const int lock = alone ? lock_folder(output) : -1;
 	nt_temporaries_hold(&before);
-	nt_status status = place_all(output, error);
+	nt_status status = NT_OK;
+	if (alone && output->main->temporary && !output->options.no_clobber && !main_is_unchanged(output->main))
+		status = taken_meanwhile(output, output->main->path, error);
+	if (!status)
+		status = place_all(output, error);
 	if (!status && output->staging)
 		status = settle_names(output, error);
 	else if (!status && output->main)
 		remove_superseded(output);
+	if (!status && lock >= 0 && !output->main->in_place && output->options.find_ownership)
+		nt_output_remove_stale_staging(output);
 	nt_temporaries_release(&before);
+	if (lock >= 0)
+		close(lock);
 	return status;
 }

@@ -203,6 +203,8 @@ static nt_status open_main(const nt_output *output, nt_sink *sink, nt_error *err
 		checked = check_existing(output, sink, &status, error);
 	if (checked)
 		return checked;
+	if (exists)
+		sink->there = nt_state_of(&status);
 	if (exists && !S_ISREG(status.st_mode)) {
 		if (sink->dry)
 			return NT_OK;
@@ -379,6 +381,8 @@ static const char *present_path(const nt_sink *sink)
 {
 	if (sink->naming == NT_NAMING_REPLACES && sink->staging_is_there)
 		return sink->staging;
+	if (sink->naming == NT_NAMING_USED)
+		return sink->target;
 	return sink->temporary ? nt_temporary_path(sink->temporary) : sink->target;
 }
 
@@ -398,6 +402,12 @@ nt_status nt_output_commit(nt_output *output, nt_error *error)
 	for (nt_sink *sink = output->first; sink && !status; sink = sink->next) {
 		if (nt_sink_is_sidecar(sink))
 			status = nt_output_settle(output, sink, error);
+		/* until now it was what others could read, whatever became of the file that is used */
+		if (sink->naming == NT_NAMING_USED && sink->temporary) {
+			nt_temporary_discard(sink->temporary);
+			sink->temporary = NULL;
+			sink->fd = -1;
+		}
 		if (!status && sink->in_place && sink->temporary)
 			status = nt_keep_attributes(sink->fd, sink->target, error);
 		if (!status)
@@ -429,12 +439,7 @@ void nt_output_abort(nt_output *output)
 	}
 	for (size_t i = 0; i < output->guarded_count; i++)
 		free(output->guarded[i].path);
-	for (size_t i = 0; i < output->ownership_count; i++) {
-		free(output->ownership[i].name);
-		free(output->ownership[i].digest);
-		free(output->ownership[i].before);
-	}
-	free(output->ownership);
+	nt_output_free_ownership(output);
 	free(output->guarded);
 	free(output);
 }

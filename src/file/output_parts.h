@@ -51,7 +51,7 @@ struct nt_sink {
 	/* of a settled sidecar */
 	bool settled, ours;
 	nt_naming naming;
-	nt_file_state there;      /* what has the name: USED, REPLACES */
+	nt_file_state there;      /* what has the name: USED, REPLACES; of a main file: what had it when it was added */
 	char *staging;            /* REPLACES: path of the staging name */
 	bool staging_is_there;    /* with these bytes */
 	bool supersedes;          /* a file named by its bytes, of the same wanted name and ours, goes */
@@ -105,6 +105,12 @@ bool nt_output_is_protected(const nt_output *output, const struct stat *status, 
 /* Appends the path of a file of ours that nothing refers to any more once the set is in place; one a call, *at begins
  * with 0; false: no more. */
 bool nt_output_superseded(const nt_output *output, size_t *at, nt_buffer *path);
+
+void nt_output_free_ownership(nt_output *output);
+
+/* Removes what killed runs left under staging names of the sidecars of this set, which is in place, if no document
+ * beside it needs that. Nobody else may be placing files in the folder. */
+void nt_output_remove_stale_staging(const nt_output *output);
 
 /* ---- same_file.c ---- */
 

@@ -19,7 +19,9 @@
  */
 #include "file/output_parts.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -115,6 +117,16 @@ nt_status nt_output_add_ownership(nt_output *output, const char *name, const cha
 	nt_ownership *record = &output->ownership[output->ownership_count++];
 	*record = (nt_ownership){strdup(name), strdup(digest), before ? strdup(before) : NULL};
 	return record->name && record->digest && (record->before || !before) ? NT_OK : nt_fail_memory(error);
+}
+
+void nt_output_free_ownership(nt_output *output)
+{
+	for (size_t i = 0; i < output->ownership_count; i++) {
+		free(output->ownership[i].name);
+		free(output->ownership[i].digest);
+		free(output->ownership[i].before);
+	}
+	free(output->ownership);
 }
 
 /* Asks the previous main file, once. */
@@ -237,6 +249,99 @@ static void note_superseded(const nt_output *output, nt_sink *sink)
 		sink->supersedes = true;
 		strcpy(sink->before, record->digest);
 	}
+}
+
+/* ---- what killed runs left ---- */
+
+/* The names in a folder, each with a NUL behind it; `staging`: only those of files for the time being. */
+static void list_folder(const char *folder, bool staging, nt_buffer *names)
+{
+	DIR *dir = opendir(folder);
+	for (const struct dirent *e; dir && (e = readdir(dir));)
+		if (!staging || strstr(e->d_name, for_the_time_being))
+			nt_buffer_append(names, e->d_name, strlen(e->d_name) + 1);
+	if (dir)
+		closedir(dir);
+}
+
+/* Whether a file has the name that a sidecar of this set has for the time being, by its own bytes. */
+static bool is_staging(const nt_output *output, const char *path)
+{
+	const char *name = nt_last_part(path);
+	char digest[NT_DIGEST_TEXT];
+	struct stat status;
+	nt_error ignored;
+	const nt_protected_file *file;
+	if (is_used(output, name) || lstat(path, &status) != 0 ||
+		!S_ISREG(status.st_mode) || nt_output_is_protected(output, &status, &file) ||
+		nt_digest_of_file(path, digest, &ignored))
+		return false;
+	for (const nt_sink *sink = output->first; sink; sink = sink->next)
+		if (sink->role == NT_ROLE_BUFFER && is_name(name, nt_last_part(sink->path), for_the_time_being, digest))
+			return true;
+	return false;
+}
+
+/* Whether a document refers to a file as its own. What cannot be read may do so. */
+static bool is_owner(const nt_output *output, const char *path, const char *name)
+{
+	nt_output other = {0};
+	nt_error ignored;
+	const bool is = output->options.find_ownership(&other, path, &ignored) || is_owned(&other, name, NULL);
+	nt_output_free_ownership(&other);
+	return is;
+}
+
+/* Only documents that are called as the main file but for the ending have sidecars of these names. */
+static bool is_needed(const nt_output *output, const char *folder, const char *name)
+{
+	const char *main = nt_last_part(output->main->path), *dot = strrchr(main, '.');
+	const size_t stem = dot ? (size_t)(dot - main) : strlen(main);
+	nt_buffer names = {0}, path = {0};
+	list_folder(folder, false, &names);
+	bool needed = names.failed;
+	for (size_t at = 0; at < names.size && !needed; at += strlen(names.data + at) + 1) {
+		const char *other = names.data + at;
+		struct stat status;
+		if (strncmp(other, main, stem) != 0 || other[stem] != '.' || strstr(other, for_the_time_being))
+			continue;
+		path.size = 0;
+		nt_buffer_format(&path, "%s%s", folder, other);
+		needed = path.failed || (stat(path.data, &status) == 0 && S_ISREG(status.st_mode) &&
+			is_owner(output, path.data, name));
+	}
+	nt_buffer_free(&names);
+	nt_buffer_free(&path);
+	return needed;
+}
+
+void nt_output_remove_stale_staging(const nt_output *output)
+{
+	/* those of the latest folder: listed once, or a batch would list it for each of its files */
+	static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+	static struct stat listed;
+	static nt_buffer names;
+	nt_buffer folder = {0}, path = {0};
+	struct stat status;
+	const size_t length = (size_t)(nt_last_part(output->main->path) - output->main->path);
+	nt_buffer_append(&folder, length ? output->main->path : "./", length ? length : 2);
+	pthread_mutex_lock(&lock);
+	if (folder.failed || stat(folder.data, &status) != 0)
+		status = listed;
+	if (status.st_dev != listed.st_dev || status.st_ino != listed.st_ino) {
+		nt_buffer_free(&names);
+		listed = status;
+		list_folder(folder.data, true, &names);
+	}
+	for (size_t at = 0; !folder.failed && at < names.size; at += strlen(names.data + at) + 1) {
+		path.size = 0;
+		nt_buffer_format(&path, "%s%s", folder.data, names.data + at);
+		if (!path.failed && is_staging(output, path.data) && !is_needed(output, folder.data, names.data + at))
+			unlink(path.data);
+	}
+	pthread_mutex_unlock(&lock);
+	nt_buffer_free(&folder);
+	nt_buffer_free(&path);
 }
 
 /* ---- choosing ---- */
@@ -375,12 +480,8 @@ nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
 	if (status)
 		return nt_error_in_file(error, sink->path);
 	sink->ours = true;
-	if (sink->naming == NT_NAMING_USED) {
+	if (sink->naming == NT_NAMING_USED)
 		status = check_used(output, sink, error);
-		nt_temporary_discard(sink->temporary);
-		sink->temporary = NULL;
-		sink->fd = -1;
-	}
 	sink->settled = true;
 	return status;
 }

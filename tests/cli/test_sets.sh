@@ -15,7 +15,7 @@ esac
 sweep() {
 	local mode=$1
 	shift
-	python3 "$sets" $mode --stride=$stride ${also:+--also=$also} "$NMTAN" "$calls" "$@" >"$WORK/sweep.txt" 2>&1 ||
+	python3 "$sets" $mode --stride=$stride ${also:+--also=$also} ${other:+--other=$other} "$NMTAN" "$calls" "$@" >"$WORK/sweep.txt" 2>&1 ||
 		wrong "$mode: $(cat "$WORK/sweep.txt")"
 	grep -q ' 0 bad$' "$WORK/sweep.txt" || wrong "$mode was not tried"
 }
@@ -307,6 +307,28 @@ for mode in kill fail power; do
 	sweep $mode before o.gltf -q -j1 --sync --buffers=copy --images=copy "$PWD/in/m.gltf" o.gltf
 done
 sweep kill before o.gltf -q -j1 --buffers=copy --images=copy "$PWD/in/m.gltf" o.gltf
+
+scene "killed anywhere, and then other options"
+many_files
+mkdir before
+(cd before && "$NMTAN" -q --bitangents --buffers=copy ../in/m.gltf o.gltf)
+other=--bitangents sweep kill before o.gltf -q -j1 --buffers=copy "$PWD/in/m.gltf" o.gltf
+# what another document needs, or is somebody's, stays
+cp before/o.bin before/o.new-0123456789abcdef.bin
+(cd before && NT_CALLS_FAIL=link:1 LD_PRELOAD=$calls ASAN_OPTIONS=${ASAN_OPTIONS-}:verify_asan_link_order=0 \
+	"$NMTAN" -q --buffers=copy ../in/m.gltf o.gltf && mv o.gltf o.vrm && ls >../names && "$NMTAN" -q --method=area --buffers=copy ../in/m.gltf o.gltf)
+for name in $(cat names); do exists before/$name; done
+rm before/o.vrm
+(cd before && "$NMTAN" -q --buffers=copy ../in/m.gltf o.gltf)
+is "$(ls before | grep new)" o.new-0123456789abcdef.bin
+
+scene "two that write one document at once leave one set, and no other file"
+grid_obj 40 >g.obj
+for ((i = 0; i < 12; i++)); do
+	"$NMTAN" -q --verify --method=area g.obj o.gltf 2>one & "$NMTAN" -q --verify --bitangents g.obj o.gltf 2>two
+	wait $! && [ ! -s one ] && [ ! -s two ] || wrong "round $i: $(cat one two)"
+	is "round $i: $(echo o*.bin)" "round $i: $(gltf o.gltf 'g.buffers[0].uri')"
+done
 
 scene "killed anywhere, where files cannot be linked"
 many_files

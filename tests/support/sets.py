@@ -3,7 +3,7 @@
 """sets.py kill|fail|power|state ...: whether an output set is whole, whatever cuts its making short.
 
     sets.py state MAIN
-    sets.py kill|fail|power [--stride=N] [--also=NAME:ERRNO] PROGRAM CALLS.SO BEFORE MAIN ARGUMENT...
+    sets.py kill|fail|power [--stride=N] [--also=NAME:ERRNO] [--other=ARGUMENT] PROGRAM CALLS.SO BEFORE MAIN ARGUMENT...
 
 "state" prints what a reader of MAIN gets: a hash of the document, without the names of its files, and of the bytes of all
 that it refers to; "nothing" where there is no MAIN; "broken: ..." where a file is missing or of another size.
@@ -11,7 +11,7 @@ that it refers to; "nothing" where there is no MAIN; "broken: ..." where a file 
 The others run PROGRAM with the arguments in copies of the folder BEFORE, once undisturbed, then
 
     kill   killed before each of its calls that change files: MAIN is the old or the new one, whole, and another run ends where
-           the undisturbed one did, with the same files in the folder
+           the undisturbed one did, with the same files in the folder, also one with the argument of --other
     fail   with each of those calls failing once: the same, with success only where MAIN is the new one
     power  with the power cut after each of its calls: of those since the last fsync of the folder any may be lost, and a file has
            what its last fsync saw; MAIN is the old or the new one
@@ -101,7 +101,7 @@ class Sweep:
         self.calls, self.before, self.main, self.also = os.path.abspath(calls), before, main, also
         self.room = tempfile.mkdtemp(dir=os.path.dirname(os.path.abspath(before)))
         self.folder = os.path.join(self.room, 'folder')
-        self.tried, self.bad = 0, []
+        self.tried, self.bad, self.other = 0, [], []
         self.old = state_of(in_folder(before), main)
 
     def restore(self):
@@ -116,7 +116,7 @@ class Sweep:
             environment['NT_CALLS_FAIL'] = self.also
         for key, value in how.items():
             environment['NT_CALLS_' + key] = str(value)
-        result = subprocess.run(self.command, cwd=self.folder, env=environment, stdin=subprocess.DEVNULL,
+        result = subprocess.run(self.command + (self.other if 'OTHER' in how else []), cwd=self.folder, env=environment, stdin=subprocess.DEVNULL,
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         self.said = result.stderr.decode(errors='replace').strip()
         return result.returncode
@@ -142,6 +142,11 @@ class Sweep:
 
     def kill(self, stride):
         count = len(self.undisturbed())
+        expected = self.new
+        if self.other:
+            self.restore()
+            self.run(OTHER=1)
+            expected, self.names = self.now(), names(self.folder)
         for n in range(1, count + 1, stride):
             self.restore()
             code, state = self.run(KILL=n), self.now()
@@ -149,9 +154,9 @@ class Sweep:
             self.judge(where + 'ends with %d' % code, code == KILLED)
             self.judge(where + state, state in (self.old, self.new))
             left = names(self.folder)
-            code = self.run()
+            code = self.run(OTHER=1)
             self.judge(where + 'the next run ends with %d: %s' % (code, self.said), code == 0)
-            self.judge(where + 'then ' + self.now(), self.now() == self.new)
+            self.judge(where + 'then ' + self.now(), self.now() == expected)
             self.judge(where + 'left %s, then there is %s, expected %s' % (left, names(self.folder), self.names),
                        names(self.folder) == self.names)
 
@@ -231,15 +236,18 @@ def main():
     if words[0] == 'state':
         print(state_of(in_folder(os.path.dirname(words[1]) or '.'), os.path.basename(words[1])))
         return 0
-    mode, stride, also = words.pop(0), 1, None
+    mode, stride, also, other = words.pop(0), 1, None, []
     while words[0].startswith('--'):
         key, value = words.pop(0).split('=', 1)
         if key == '--stride':
             stride = int(value)
+        elif key == '--other':
+            other = [value]
         else:
             also = value
     program, calls, before, file, *arguments = words
     sweep = Sweep(program, calls, before, file, arguments, also)
+    sweep.other = other
     getattr(sweep, mode)(stride)
     shutil.rmtree(sweep.room)
     print('%s: %d tried, %d bad' % (mode, sweep.tried, len(sweep.bad)))
