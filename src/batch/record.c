@@ -189,6 +189,46 @@ static bool read_file(const nt_record *record, const nt_json_value *value, line_
 	       read_state(value, &file->state);
 }
 
+/* ---- sealing ---- */
+
+static const char seal_begin[] = ",\"sum\":\"";
+enum { SEAL_BYTES = sizeof seal_begin - 1 + NT_DIGEST_TEXT - 1 + 2 };
+
+static bool digest_of_text(const char *text, size_t size, char digest[NT_DIGEST_TEXT])
+{
+	nt_digest *d = nt_digest_create();
+	if (!d)
+		return false;
+	nt_digest_add(d, text, size);
+	nt_digest_text(d, digest);
+	nt_digest_free(d);
+	return true;
+}
+
+/* Ends an object that lacks its last brace with a digest of itself: of a line that somebody damaged nothing holds. */
+static nt_status seal(nt_buffer *line, nt_error *error)
+{
+	char digest[NT_DIGEST_TEXT];
+	if (line->failed || !digest_of_text(line->data, line->size, digest))
+		return nt_fail_memory(error);
+	nt_buffer_format(line, "%s%s\"}\n", seal_begin, digest);
+	return line->failed ? nt_fail_memory(error) : NT_OK;
+}
+
+static nt_status is_sealed(const char *line, size_t length, bool *is, nt_error *error)
+{
+	char digest[NT_DIGEST_TEXT];
+	*is = length > SEAL_BYTES;
+	if (!*is)
+		return NT_OK;
+	if (!digest_of_text(line, length - SEAL_BYTES, digest))
+		return nt_fail_memory(error);
+	const char *end = line + length - SEAL_BYTES;
+	*is = memcmp(end, seal_begin, sizeof seal_begin - 1) == 0 &&
+		memcmp(end + sizeof seal_begin - 1, digest, NT_DIGEST_TEXT - 1) == 0;
+	return NT_OK;
+}
+
 static bool is_text(const nt_json_value *value, const char *expected)
 {
 	const char *text = nt_json_get_string(value, NULL);
@@ -428,10 +468,15 @@ static nt_status look_at(look *l, const nt_json_value *line, bool *same)
 static nt_status keep_renewed(look *l)
 {
 	nt_buffer text = {0};
+	nt_json_remove(l->line, nt_json_root(l->line), "sum");
 	nt_status status = nt_json_dump(l->line, &text, l->error);
+	if (!status && text.size) {
+		text.size--;
+		status = seal(&text, l->error);
+	}
 	pthread_mutex_lock(&l->record->lock);
 	if (!status)
-		nt_buffer_format(&l->record->renewed, "%.*s\n", (int)text.size, text.data);
+		nt_buffer_append(&l->record->renewed, text.data, text.size);
 	if (!status && l->record->renewed.failed)
 		status = nt_fail_memory(l->error);
 	pthread_mutex_unlock(&l->record->lock);
@@ -452,10 +497,13 @@ nt_status nt_record_look(nt_record *record, const nt_making *making, nt_freshnes
 	if (!text)
 		return status;
 	*freshness = NT_FRESH_STALE;
+	bool same;
+	status = is_sealed(text, length, &same, error);
+	if (status || !same)
+		return status;
 	look l = {.record = record, .making = making, .trace = trace, .error = error};
 	if (nt_json_parse(&l.line, text, length, NULL, &ignored))
 		return ignored.status == NT_ERROR_MEMORY ? nt_fail_memory(error) : NT_OK;
-	bool same = false;
 	nt_trace *outer = nt_trace_use(trace);
 	status = look_at(&l, nt_json_root(l.line), &same);
 	nt_trace_use(outer);
@@ -586,9 +634,11 @@ static nt_status make_line(writing *w, const nt_making *making)
 	if (!status)
 		status = find_ways(w);
 	/* each has a comma behind it */
-	nt_buffer_format(text, ",\"links\":[%.*s]}\n", w->links.size ? (int)w->links.size - 1 : 0,
+	nt_buffer_format(text, ",\"links\":[%.*s]", w->links.size ? (int)w->links.size - 1 : 0,
 		w->links.size ? w->links.data : "");
-	return status || !(text->failed || w->links.failed) ? status : nt_fail_memory(w->error);
+	if (!status && w->links.failed)
+		status = nt_fail_memory(w->error);
+	return status ? status : seal(text, w->error);
 }
 
 nt_status nt_record_append(nt_record *record, const nt_making *making, const nt_trace *trace, nt_buffer *line,

@@ -8,7 +8,7 @@
  * record. A line is
  *
  *   {"output":"a.glb","nmtan":"0.1.0","options":"--method=area","links":[{"uri":"../in","to":"v1"}],
- *    "read":[FILE,...],"missing":["a.mtl"],"searched":[FOLDER,...],"written":[FILE]}
+ *    "read":[FILE,...],"missing":["a.mtl"],"searched":[FOLDER,...],"written":[FILE],"sum":D}
  *
  * where the first file that was read is the input and FILE is {"uri":"../v1/a.obj","bytes":10,STATE,"xxh128":D}.
  * STATE is "modified":T,"changed":T,"inode":N,"noted":T: T are nanoseconds since 1970, of the last change of the bytes,
@@ -18,7 +18,8 @@
  *
  * URIs go through no links; those that paths went through are in "links". FOLDER is {"uri":"../in/n.png",STATE,
  * "found":"N.PNG"}: it was searched for the last part of the URI in any case, and is again if its state is another one.
- * A line without "links" was written by a version that noted less, and holds for nothing.
+ * "sum" is a digest of the line before it. A line without it is damaged, or was written by a version that noted less,
+ * and holds for nothing.
  *
  * The line is written before the output is renamed. If a run is killed in between, the line does not match the output,
  * which is made again. The rename changes the inode's time, so that another line follows, with all others of its kind,

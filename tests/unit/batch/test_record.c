@@ -219,11 +219,11 @@ static void the_links_on_the_way_to_a_file_count(void **state)
 	assert_int_equal(unlink("v2/a.obj"), 0);
 }
 
-/* Lines as they were before digests, inodes and links were noted. */
-static void lines_of_former_versions_hold_for_nothing(void **state)
+/* Lines as they were before they had a digest of themselves hold for nothing either. */
+static void lines_that_are_damaged_hold_for_nothing(void **state)
 {
 	(void)state;
-	static const char *const parts[] = {"links", "inode", "changed", "xxh128"};
+	static const char *const parts[] = {"links", "uri", "a.obj", "sum"};
 	for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
 		char text[8192] = "";
 		put_files();
@@ -294,7 +294,7 @@ int main(void)
 		unit_test_inside_folder(what_changed_just_before_is_compared_by_content_too),
 		unit_test_inside_folder(equal_sizes_and_times_are_not_equal_bytes),
 		unit_test_inside_folder(the_links_on_the_way_to_a_file_count),
-		unit_test_inside_folder(lines_of_former_versions_hold_for_nothing),
+		unit_test_inside_folder(lines_that_are_damaged_hold_for_nothing),
 		unit_test_inside_folder(a_tree_can_be_moved_with_its_record),
 		unit_test_inside_folder(an_exhausted_memory_is_told),
 	};
