@@ -215,17 +215,21 @@ static nt_status seal(nt_buffer *line, nt_error *error)
 	return line->failed ? nt_fail_memory(error) : NT_OK;
 }
 
+/* A line that was cut off must not take the place of a whole one. */
+static bool is_whole(const char *line, size_t length)
+{
+	return length > SEAL_BYTES && memcmp(line + length - SEAL_BYTES, seal_begin, sizeof seal_begin - 1) == 0;
+}
+
+/* Of a whole one. */
 static nt_status is_sealed(const char *line, size_t length, bool *is, nt_error *error)
 {
 	char digest[NT_DIGEST_TEXT];
-	*is = length > SEAL_BYTES;
-	if (!*is)
-		return NT_OK;
-	if (!digest_of_text(line, length - SEAL_BYTES, digest))
+	const size_t size = length - SEAL_BYTES;
+	*is = false;
+	if (!digest_of_text(line, size, digest))
 		return nt_fail_memory(error);
-	const char *end = line + length - SEAL_BYTES;
-	*is = memcmp(end, seal_begin, sizeof seal_begin - 1) == 0 &&
-		memcmp(end + sizeof seal_begin - 1, digest, NT_DIGEST_TEXT - 1) == 0;
+	*is = memcmp(line + size + sizeof seal_begin - 1, digest, NT_DIGEST_TEXT - 1) == 0;
 	return NT_OK;
 }
 
@@ -692,7 +696,7 @@ nt_status nt_record_open(nt_record **record, const char *path, bool tidy, nt_err
 	made->folder = folder.data;
 	made->tidy = tidy;
 	if (!status)
-		status = nt_record_file_open(&made->file, path, line_begin, tidy, error);
+		status = nt_record_file_open(&made->file, path, line_begin, is_whole, tidy, error);
 	if (status)
 		nt_record_close(made);
 	else

@@ -51,7 +51,7 @@ static nt_status add_line(nt_record_file *file, size_t offset, size_t length, nt
 	if (length <= head || memcmp(file->text + offset, file->prefix, head) != 0)
 		return NT_OK;
 	const char *end = memchr(key, '"', length - head);
-	if (!end)
+	if (!end || (file->is_whole && !file->is_whole(file->text + offset, length)))
 		return NT_OK;
 	const nt_record_line line = {offset, length, (size_t)(end - key)};
 	const uint64_t hash = nt_hash_bytes(0, key, line.key_length);
@@ -73,7 +73,7 @@ static void forget(nt_record_file *file)
 	free(file->text);
 	free(file->lines);
 	nt_hash_index_free(&file->index);
-	*file = (nt_record_file){.path = file->path, .prefix = file->prefix};
+	*file = (nt_record_file){.path = file->path, .prefix = file->prefix, .is_whole = file->is_whole};
 }
 
 /* A copy of the file's bytes: others append to it. What comes after the last line feed is half a line of a process
@@ -218,9 +218,10 @@ static nt_status rewrite(nt_record_file *file, nt_error *error)
 	return status;
 }
 
-nt_status nt_record_file_open(nt_record_file *file, const char *path, const char *prefix, bool tidy, nt_error *error)
+nt_status nt_record_file_open(nt_record_file *file, const char *path, const char *prefix,
+	bool (*is_whole)(const char *line, size_t length), bool tidy, nt_error *error)
 {
-	*file = (nt_record_file){.path = strdup(path), .prefix = prefix};
+	*file = (nt_record_file){.path = strdup(path), .prefix = prefix, .is_whole = is_whole};
 	if (!file->path)
 		return nt_fail_memory(error);
 	nt_status status = load(file, error);

@@ -16,6 +16,7 @@ typedef struct nt_record_line {
 typedef struct nt_record_file {
 	char *path;
 	const char *prefix; /* a constant */
+	bool (*is_whole)(const char *line, size_t length); /* NULL: every line is */
 	char *text;         /* as it was when it was read */
 	size_t size;
 	nt_record_line *lines; /* the last of each key */
@@ -23,10 +24,11 @@ typedef struct nt_record_file {
 	nt_hash_index index;
 } nt_record_file;
 
-/* Reads a file, which need not be there. Lines that do not begin with the prefix are passed over. With `tidy`, where
- * many lines are superseded, the others are written anew. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY;
+/* Reads a file, which need not be there. Lines that do not begin with the prefix or are not whole are passed over. With
+ * `tidy`, where many lines are superseded, the others are written anew. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY;
  * close it after failure, too. */
-nt_status nt_record_file_open(nt_record_file *file, const char *path, const char *prefix, bool tidy, nt_error *error);
+nt_status nt_record_file_open(nt_record_file *file, const char *path, const char *prefix,
+	bool (*is_whole)(const char *line, size_t length), bool tidy, nt_error *error);
 void nt_record_file_close(nt_record_file *file);
 
 /* The last line with a key when the file was read; NULL: none. */

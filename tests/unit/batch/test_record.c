@@ -236,7 +236,7 @@ static void lines_that_are_damaged_hold_for_nothing(void **state)
 		for (char *key = text; (key = strstr(key, parts[i]));)
 			*key = 'X';
 		put_text_file("record", text);
-		assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+		assert_true(look(NT_UPDATE_BY_TIME) != NT_FRESH_CURRENT);
 	}
 }
 
