@@ -138,9 +138,12 @@ const nt_option_row nt_option_rows[] = {
 	{"morph", 0, NT_OPTION_CHOICE, "bake|keep|drop", NT_MORPH_BAKE, 0, "bake",
 		"glTF morph targets of primitives that get tangents: compute their TANGENT, leave it as "
 		"it is, or take it away", SETTING(morphs), true},
-	{"precision", 0, NT_OPTION_CHOICE, "float|short|byte", NT_PRECISION_FLOAT, 0, "float",
-		"how glTF stores tangents; short and byte need KHR_mesh_quantization", SETTING(precision),
-		true},
+	{"precision", 0, NT_OPTION_CHOICE, "auto|float|short|byte", NT_PRECISION_AUTO, 0, "auto",
+		"how glTF stores tangents; short and byte need KHR_mesh_quantization; auto: float, beside normals "
+		"that meshoptimizer packed as these are", SETTING(precision), true},
+	{"meshopt", 0, NT_OPTION_CHOICE, "keep|off", NT_MESHOPT_KEEP, 0, "keep",
+		"views of glTF that meshoptimizer packed, where they change; keep: they are packed again, and so is "
+		"what is new; off: written plain", SETTING(meshopt), true},
 	{"bitangents", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(bitangents), true},
 	{"no-clobber", 'n', NT_OPTION_FLAG, NULL, 0, 0, NULL, "never replace a file",

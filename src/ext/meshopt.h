@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * meshoptimizer's decoders for compressed views of glTF. They are safe on any bytes; what they give is garbage
+ * meshoptimizer's codecs for compressed views of glTF. Decoders are safe on any bytes; what they give is garbage
  * then, which is checked like any other data. Sizes are checked before anything is allocated: no mode packs more
  * than 1024 bytes of data into one.
  *
@@ -44,6 +44,28 @@ nt_status nt_meshopt_check(const nt_meshopt_view *view, uint64_t size, const cha
  */
 nt_status nt_meshopt_unpack(const nt_meshopt_view *view, const unsigned char *packed, unsigned char *bytes,
 	const char *pointer, nt_error *error);
+
+/*
+ * The second half of that: applies the filter of a view that was checked to bytes that were unpacked without.
+ *
+ *   bytes  [count * stride]
+ *
+ * Returns NT_OK or NT_ERROR_UNSUPPORTED.
+ */
+nt_status nt_meshopt_filter(const nt_meshopt_view *view, unsigned char *bytes, const char *pointer, nt_error *error);
+
+/*
+ * Packs bytes to which the filter is still to be applied, with version 0 of the vertex codec, which all decoders know.
+ * What comes of it is decoded again and compared.
+ *
+ *   view  checked; packed_size is not looked at
+ *   bytes  [count * stride]
+ *   packed  receives what free() gives back
+ *
+ * Returns NT_OK, NT_ERROR_MEMORY, or NT_ERROR_INTERNAL where it is not what was packed.
+ */
+nt_status nt_meshopt_pack(const nt_meshopt_view *view, const unsigned char *bytes, unsigned char **packed,
+	size_t *size, nt_error *error);
 
 #ifdef __cplusplus
 }

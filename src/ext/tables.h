@@ -41,6 +41,8 @@ typedef struct nt_meshopt_table {
 	nt_module_head head;
 	__typeof__(nt_meshopt_check) *check;
 	__typeof__(nt_meshopt_unpack) *unpack;
+	__typeof__(nt_meshopt_filter) *filter;
+	__typeof__(nt_meshopt_pack) *pack;
 } nt_meshopt_table;
 
 typedef struct nt_openmesh_table {

@@ -46,6 +46,8 @@ typedef struct nt_reread_array {
 	size_t count, stride_bytes;
 	int component_type, components;
 	bool normalized;
+	const char *filter; /* of meshoptimizer, by which they came; NULL: none */
+	const unsigned char *unfiltered; /* what it was applied to, as far apart as the elements */
 } nt_reread_array;
 
 /*

@@ -35,6 +35,7 @@ typedef struct nt_gltf_buffer {
 	nt_file file;               /* of an external file: owned */
 	uint64_t *pages;            /* one bit for each NT_GLTF_PAGE bytes that were read; NULL: they are not counted */
 	const char *path;           /* of an external file */
+	uint32_t view;              /* of a virtual one: the view that it holds */
 } nt_gltf_buffer;
 
 /* Elements of an accessor that come from a compressed primitive. */

@@ -27,6 +27,7 @@ static const struct {
 	size_t bytes;
 	double most; /* the integer that is decoded to 1 */
 } kinds[] = {
+	[NT_PRECISION_AUTO] = {"float", NT_GLTF_FLOAT, 16, 1},
 	{"float", NT_GLTF_FLOAT, 16, 1},
 	{"short", NT_GLTF_SHORT, 8, 32767},
 	{"byte", NT_GLTF_BYTE, 4, 127},
@@ -42,9 +43,21 @@ uint32_t nt_precision_component_type(nt_precision precision)
 	return kinds[precision].component_type;
 }
 
-/* The best integer vector for a direction of unit length. */
-static nt_dvec3 nearest_direction(nt_dvec3 t, double most)
+bool nt_precision_has(const float *direction, double most)
 {
+	bool has = true;
+	for (size_t k = 0; has && k < 3; k++)
+		has = (float)(round(direction[k] * most) / most) == direction[k];
+	return has;
+}
+
+nt_dvec3 nt_nearest_direction(const float *direction, double most)
+{
+	nt_dvec3 t = nt_dvec3_load(direction);
+	if (nt_precision_has(direction, most))
+		return (nt_dvec3){round(t.x * most), round(t.y * most), round(t.z * most)};
+	if (!nt_dvec3_normalise(&t))
+		return (nt_dvec3){0, 0, 0};
 	const double from[3] = {floor(t.x * most), floor(t.y * most), floor(t.z * most)};
 	nt_dvec3 best = {0, 0, 0};
 	double best_cosine = -2;
@@ -72,13 +85,13 @@ static double angle_between(nt_dvec3 a, nt_dvec3 b)
 void nt_precision_round(nt_precision precision, float *tangents, size_t count, nt_rounding *cost)
 {
 	const double most = kinds[precision].most;
-	if (precision == NT_PRECISION_FLOAT)
+	if (precision <= NT_PRECISION_FLOAT)
 		return;
 	for (size_t i = 0; i < count; i++) {
 		float *tangent = tangents + 4 * i;
-		nt_dvec3 t = nt_dvec3_load(tangent), q = {0, 0, 0};
+		nt_dvec3 t = nt_dvec3_load(tangent);
+		const nt_dvec3 q = nt_nearest_direction(tangent, most);
 		if (nt_dvec3_normalise(&t)) {
-			q = nearest_direction(t, most);
 			const double angle = angle_between(t, q);
 			if (cost) {
 				cost->count++;
@@ -96,7 +109,7 @@ void nt_precision_round(nt_precision precision, float *tangents, size_t count, n
 void nt_precision_encode(nt_precision precision, const float *tangents, size_t count, unsigned char *bytes)
 {
 	const float most = (float)kinds[precision].most;
-	if (precision == NT_PRECISION_FLOAT)
+	if (precision <= NT_PRECISION_FLOAT)
 		memcpy(bytes, tangents, count * kinds[precision].bytes);
 	for (size_t i = 0; precision == NT_PRECISION_SHORT && i < 4 * count; i++) {
 		const int16_t value = (int16_t)lrintf(tangents[i] * most);

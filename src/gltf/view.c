@@ -110,19 +110,17 @@ void nt_gltf_view_changed(nt_gltf *document, uint64_t index)
 
 enum { MAX_STRIDE = 256 };
 
-typedef struct packed {
-	const char *extension;
-	uint64_t buffer, offset;
-	nt_meshopt_view view;
-} packed;
-
-static nt_status read_packed(const nt_json_value *view, const char *pointer, packed *p,
+static nt_status read_packing(const nt_json_value *view, const char *pointer, nt_gltf_packing *p,
 	nt_error *error)
 {
 	const nt_json_value *json = nt_gltf_compression_of(view, &p->extension);
 	const uint64_t limit = (uint64_t)1 << 53;
+	uint64_t buffer = 0, place = 0;
 	nt_status status = nt_gltf_uint(json, pointer, "buffer", UINT32_MAX - 1, NT_GLTF_REQUIRED,
-		&p->buffer, error);
+		&buffer, error);
+	nt_json_get_uint64(nt_json_find(view, "buffer"), &place);
+	p->buffer = (uint32_t)buffer;
+	p->place = (uint32_t)place;
 	if (!status)
 		status = nt_gltf_uint(json, pointer, "byteOffset", limit, 0, &p->offset, error);
 	if (!status)
@@ -141,52 +139,78 @@ static nt_status read_packed(const nt_json_value *view, const char *pointer, pac
 	return status;
 }
 
+nt_status nt_gltf_get_packing(const nt_gltf *document, uint32_t index, nt_gltf_packing *p, nt_error *error)
+{
+	char pointer[NT_GLTF_POINTER];
+	const nt_json_value *json;
+	*p = (nt_gltf_packing){.extension = NULL};
+	nt_status status = nt_gltf_element(document, "bufferViews", index, "", &json, error);
+	if (status || !nt_gltf_compression_of(json, &p->extension))
+		return status;
+	snprintf(pointer, sizeof pointer, "/bufferViews/%u/extensions/%s", index, p->extension);
+	return read_packing(json, pointer, p, error);
+}
+
+/* The bytes of a compressed view, `length` of them, which free() gives back. */
+static nt_status unpack_view(nt_gltf *document, uint32_t index, uint64_t length, const nt_meshopt_view *view,
+	const nt_gltf_packing *p, unsigned char **bytes, nt_error *error)
+{
+	char pointer[NT_GLTF_POINTER];
+	nt_gltf_buffer *buffer;
+	snprintf(pointer, sizeof pointer, "/bufferViews/%u/extensions/%s", index, p->extension);
+	nt_status status = nt_meshopt_check(view, length, pointer, error);
+	if (!status)
+		status = nt_gltf_open_buffer(document, p->buffer, pointer, &buffer, error);
+	if (status)
+		return status;
+	if (p->offset > buffer->size || view->packed_size > buffer->size - p->offset)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+			"bytes %llu to %llu, but buffer %u has %zu", (unsigned long long)p->offset,
+			(unsigned long long)(p->offset + view->packed_size), p->buffer, buffer->size);
+	*bytes = nt_alloc((size_t)length, 1);
+	if (!*bytes)
+		return nt_fail_memory(error);
+	nt_gltf_note_read(document, buffer, p->offset, view->packed_size);
+	status = nt_meshopt_unpack(view, buffer->bytes + p->offset, *bytes, pointer, error);
+	if (status)
+		free(*bytes);
+	return status;
+}
+
 nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER];
 	nt_gltf_pointer(pointer, "bufferViews", index);
 	nt_gltf_view view;
-	const nt_json_value *json;
-	packed p = {0};
-	nt_gltf_buffer *buffer;
+	nt_gltf_packing p;
+	unsigned char *bytes;
 	nt_status status = nt_gltf_get_view(document, index, pointer, &view, error);
-	if (!status)
-		status = nt_gltf_element(document, "bufferViews", index, pointer, &json, error);
 	if (status || !view.compression)
 		return status;
 	if (document->is_shared)
 		return nt_gltf_refuse(error);
-	snprintf(pointer, sizeof pointer, "/bufferViews/%u/extensions/%s", index, view.compression);
-	status = read_packed(json, pointer, &p, error);
+	if (!nt_grow((void **)&document->virtuals, &document->virtual_capacity, document->virtual_count + 1,
+		    sizeof *document->virtuals))
+		return nt_fail_memory(error);
+	status = nt_gltf_get_packing(document, index, &p, error);
 	if (!status)
-		status = nt_meshopt_check(&p.view, view.length, pointer, error);
-	if (!status)
-		status = nt_gltf_open_buffer(document, p.buffer, pointer, &buffer, error);
+		status = unpack_view(document, index, view.length, &p.view, &p, &bytes, error);
 	if (status)
 		return status;
-	if (p.offset > buffer->size || p.view.packed_size > buffer->size - p.offset)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-			"bytes %llu to %llu, but buffer %llu has %zu", (unsigned long long)p.offset,
-			(unsigned long long)(p.offset + p.view.packed_size), (unsigned long long)p.buffer,
-			buffer->size);
-
-	unsigned char *bytes = nt_alloc((size_t)view.length, 1);
-	if (!bytes || !nt_grow((void **)&document->virtuals, &document->virtual_capacity,
-			      document->virtual_count + 1, sizeof *document->virtuals)) {
-		free(bytes);
-		return nt_fail_memory(error);
-	}
-	nt_gltf_note_read(document, buffer, p.offset, p.view.packed_size);
-	status = nt_meshopt_unpack(&p.view, buffer->bytes + p.offset, bytes, pointer, error);
-	if (status) {
-		free(bytes);
-		return status;
-	}
 	document->virtuals[document->virtual_count] = (nt_gltf_buffer){.storage = NT_GLTF_STORED_NOWHERE,
 		.length = view.length, .described = true, .opened = true, .bytes = bytes,
-		.size = (size_t)view.length, .decoded = bytes};
+		.size = (size_t)view.length, .decoded = bytes, .view = index};
 	document->virtual_of[index] = NT_GLTF_VIRTUAL + (uint32_t)document->virtual_count++;
 	return NT_OK;
+}
+
+nt_status nt_gltf_unfiltered_view(nt_gltf *document, uint32_t index, unsigned char **bytes, nt_error *error)
+{
+	nt_gltf_packing p;
+	const nt_status status = nt_gltf_get_packing(document, index, &p, error);
+	nt_meshopt_view plain = p.view;
+	plain.filter = "NONE";
+	return status ? status : unpack_view(document, index, plain.count * plain.stride, &plain, &p, bytes, error);
 }
 
 /* ---- bytes ---- */

@@ -212,6 +212,7 @@ static nt_status write_scene(run *r)
 		.draco_bits = {s->draco_bits[0], s->draco_bits[1], s->draco_bits[2], s->draco_bits[3]},
 		.draco_speed = s->draco_speed,
 		.precision = s->precision,
+		.meshopt = s->meshopt,
 		.allow_outside = s->allow_outside,
 		.threads = s->threads,
 		.textures = r->textures,

@@ -70,6 +70,7 @@ typedef struct nt_settings {
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
 	int draco_speed;         /* 0 (smallest) to 10 */
 	nt_precision precision;
+	nt_meshopt_choice meshopt;
 	nt_format output_format; /* NT_FORMAT_UNKNOWN: by name */
 	int texcoord_set;        /* -1: auto */
 	unsigned threads;        /* 0: all */

@@ -71,7 +71,7 @@ static nt_status choose(const nt_settings *settings, const char *path, const nt_
 	if (settings->verify && (*writer)->format == NT_FORMAT_PLY)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"--verify reads glTF back; \"%s\" will be PLY", path);
-	if (settings->precision != NT_PRECISION_FLOAT && (*writer)->format == NT_FORMAT_PLY)
+	if (settings->precision > NT_PRECISION_FLOAT && (*writer)->format == NT_FORMAT_PLY)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"--precision is about glTF; \"%s\" will be PLY, whose tangents are floats",
 			path);

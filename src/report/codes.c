@@ -454,8 +454,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"two squares of one mesh, of which the second's texture is sheared, with a material each"),
 	ROW(TAN_QUANTIZED, INFO, "{count} {tangent was|tangents were} stored as integers",
 		"--precision=short or byte rounds tangents to the nearest direction that normalized integers can "
-		"represent. The detail has the largest and the mean angle between what was computed and what is "
-		"stored.",
+		"represent; so are they rounded where they go with normals that meshoptimizer packed as integers. The "
+		"detail has the largest and the mean angle between what was computed and what is stored.",
 		"Nothing if the angle is too small to be seen; else --precision=float.",
 		"converting any quad with --precision=byte"),
 	ROW(TAN_REPAIRED, INFO, "{count} {corner|corners} got a tangent that MikkTSpace could not give",

@@ -45,6 +45,7 @@ typedef enum nt_morph_choice {
 
 /* How tangents of glTF are stored, where Draco does not. */
 typedef enum nt_precision {
+	NT_PRECISION_AUTO, /* as the normals of the same view are, where meshoptimizer packed these; else float */
 	NT_PRECISION_FLOAT,
 	NT_PRECISION_SHORT, /* normalized integers: KHR_mesh_quantization */
 	NT_PRECISION_BYTE
@@ -70,6 +71,12 @@ typedef enum nt_draco_choice {
 	NT_DRACO_AS_SEQUENTIAL, /* all are compressed, plain ones too */
 	NT_DRACO_AS_EDGEBREAKER
 } nt_draco_choice;
+
+/* Views that meshoptimizer packed, where they change, and new ones that go with them. */
+typedef enum nt_meshopt_choice {
+	NT_MESHOPT_KEEP, /* are packed by the same extension, mode and filter */
+	NT_MESHOPT_OFF   /* are plain */
+} nt_meshopt_choice;
 
 /* Quantization of what was not quantized before, in bits: at most as many as ext/draco.h encodes. */
 enum { NT_DRACO_MOST_BITS = 24 };
@@ -112,6 +119,7 @@ typedef struct nt_write_options {
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
 	int draco_speed;    /* 0 (smallest) to 10 */
 	nt_precision precision;
+	nt_meshopt_choice meshopt;
 	bool allow_outside;
 	unsigned threads;   /* 0: all */
 	const struct nt_textures *textures; /* of a new document's materials: image/textures.h; NULL: none */

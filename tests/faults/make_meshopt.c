@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * make_meshopt FILE.glb: a unit quad whose attributes and indices are packed by meshoptimizer, with a material that
- * needs tangents.
+ * make_meshopt FILE.glb: two unit quads that mirror each other's texture coordinates, so that two vertices are split.
+ * Attributes and indices are packed by meshoptimizer, normals by the octahedral filter. The material needs tangents.
  */
 #include <meshoptimizer.h>
 #include <stdio.h>
@@ -20,30 +20,33 @@ static size_t add(const void *values, size_t count, size_t stride)
 
 int main(int count, char **arguments)
 {
-	static const float positions[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-	static const float normals[4][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
-	static const float texcoords[4][2] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-	static const unsigned indices[6] = {0, 1, 2, 0, 2, 3};
+	static const float positions[6][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}};
+	static const signed char normals[6][4] = {{0, 0, 127}, {0, 0, 127}, {0, 0, 127}, {0, 0, 127}, {0, 0, 127},
+		{0, 0, 127}};
+	static const float texcoords[6][2] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}, {0, 1}, {0, 0}};
+	static const unsigned indices[12] = {0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2};
 	size_t at[5] = {0};
-	add(positions, 4, 12);
+	add(positions, 6, 12);
 	at[1] = used;
-	add(normals, 4, 12);
+	add(normals, 6, 4);
 	at[2] = used;
-	add(texcoords, 4, 8);
+	add(texcoords, 6, 8);
 	at[3] = used;
-	used += meshopt_encodeIndexSequence(chunk + used, sizeof chunk - used, indices, 6);
+	meshopt_encodeIndexVersion(1);
+	used += meshopt_encodeIndexBuffer(chunk + used, sizeof chunk - used, indices, 12);
 	at[4] = used;
 	used = (used + 3) / 4 * 4;
 
 	static const struct {
 		size_t offset, size, stride, count;
 		const char *mode;
-	} views[4] = {{0, 48, 12, 4, "ATTRIBUTES"}, {48, 48, 12, 4, "ATTRIBUTES"}, {96, 32, 8, 4, "ATTRIBUTES"},
-		{128, 24, 4, 6, "INDICES"}};
+	} views[4] = {{0, 72, 12, 6, "ATTRIBUTES"}, {72, 24, 4, 6, "ATTRIBUTES\",\"filter\":\"OCTAHEDRAL"},
+		{96, 48, 8, 6, "ATTRIBUTES"}, {144, 24, 2, 12, "TRIANGLES"}};
 	char json[8192];
 	int length = snprintf(json, sizeof json, "{\"asset\":{\"version\":\"2.0\"},"
-		"\"extensionsUsed\":[\"EXT_meshopt_compression\"],\"extensionsRequired\":[\"EXT_meshopt_compression\"],"
-		"\"buffers\":[{\"byteLength\":%zu},{\"byteLength\":152,\"extensions\":"
+		"\"extensionsUsed\":[\"EXT_meshopt_compression\",\"KHR_mesh_quantization\"],"
+		"\"extensionsRequired\":[\"EXT_meshopt_compression\",\"KHR_mesh_quantization\"],"
+		"\"buffers\":[{\"byteLength\":%zu},{\"byteLength\":168,\"extensions\":"
 		"{\"EXT_meshopt_compression\":{\"fallback\":true}}}],\"bufferViews\":[", used);
 	for (int i = 0; i < 4; i++) {
 		char stride[40] = "";
@@ -56,10 +59,10 @@ int main(int count, char **arguments)
 			views[i].count, views[i].mode);
 	}
 	length += snprintf(json + length, sizeof json - (size_t)length, "],\"accessors\":["
-		"{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":4,\"min\":[0,0,0],"
-		"\"max\":[1,1,0]},{\"bufferView\":1,\"componentType\":5126,\"type\":\"VEC3\",\"count\":4},"
-		"{\"bufferView\":2,\"componentType\":5126,\"type\":\"VEC2\",\"count\":4},"
-		"{\"bufferView\":3,\"componentType\":5125,\"type\":\"SCALAR\",\"count\":6}],"
+		"{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":6,\"min\":[0,0,0],"
+		"\"max\":[2,1,0]},{\"bufferView\":1,\"componentType\":5120,\"normalized\":true,\"type\":\"VEC3\","
+		"\"count\":6},{\"bufferView\":2,\"componentType\":5126,\"type\":\"VEC2\",\"count\":6},"
+		"{\"bufferView\":3,\"componentType\":5123,\"type\":\"SCALAR\",\"count\":12}],"
 		"\"images\":[{\"uri\":\"bumps.png\"}],\"textures\":[{\"source\":0}],"
 		"\"materials\":[{\"normalTexture\":{\"index\":0}}],"
 		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},"

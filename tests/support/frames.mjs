@@ -7,11 +7,11 @@
 //   corners   of triangles with TANGENT, NORMAL and texture coordinates
 //   degree    more than one degree off perpendicular to the stored normal, made unit
 //   lean      more than 2^-10 (and what a normal within 2^-11 of unit length adds); with integer tangents their step
-//   unit      length off by more than 2e-6, integers: 0.00674
+//   unit      length off by more than 2e-6, integers and what an exponential filter gives: 0.00674
 //   w         w neither 1 nor -1
 //   mixed     triangles with two values of w
 //   wrong     triangles with one, but not that of their orientation
-import { open } from './gltf.mjs';
+import { open, packing } from './gltf.mjs';
 
 const widths = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
 const readers = { 5120: ['readInt8', 1, 127], 5121: ['readUInt8', 1, 255], 5122: ['readInt16LE', 2, 32767],
@@ -72,12 +72,14 @@ function countPrimitive(file, primitive, n) {
 	const uv = set !== null && a[`TEXCOORD_${set}`] !== undefined ? values(file, a[`TEXCOORD_${set}`]) : null;
 	if (!T || !N)
 		return;
+	const filter = packing(file.g.bufferViews[file.g.accessors[a.TANGENT].bufferView])?.filter;
+	const unit = filter === 'EXPONENTIAL' ? 0.00674 : 2e-6;
 	const type = file.g.accessors[a.TANGENT].componentType, step = type === 5126 ? 0 : 1 / readers[type][2];
 	const indices = primitive.indices === undefined ? Uint32Array.from({ length: N.length / 3 }, (_, i) => i) : values(file, primitive.indices);
 	for (const v of indices) {
 		const square = dot(T, 4 * v, T, 4 * v), normal = dot(N, 3 * v, N, 3 * v);
 		n.corners++;
-		n.unit += !(Math.abs(Math.sqrt(square) - 1) <= (step ? 0.00674 : 2e-6));
+		n.unit += !(Math.abs(Math.sqrt(square) - 1) <= (step ? 0.00674 : unit));
 		n.w += Math.abs(T[4 * v + 3]) !== 1;
 		if (!(normal > 0))
 			continue;

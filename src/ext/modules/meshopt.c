@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * meshoptimizer's decoders: see ext/meshopt.h.
+ * meshoptimizer's codecs: see ext/meshopt.h.
  */
 #include <meshoptimizer.h>
+#include <pthread.h>
+#include <stdlib.h>
 #include <string.h>
+#include "ext/modules/meshopt_triangles.h"
 #include "ext/modules/meshopt_vertex.h"
 #include "ext/tables.h"
 
@@ -34,8 +37,7 @@ static nt_status check(const nt_meshopt_view *v, uint64_t size, const char *poin
 	return NT_OK;
 }
 
-static nt_status apply_filter(const nt_meshopt_view *v, unsigned char *bytes, const char *pointer,
-	nt_error *error)
+static nt_status filter(const nt_meshopt_view *v, unsigned char *bytes, const char *pointer, nt_error *error)
 {
 	const size_t count = (size_t)v->count, stride = (size_t)v->stride;
 	if (strcmp(v->filter, "NONE") == 0)
@@ -74,11 +76,85 @@ static nt_status unpack(const nt_meshopt_view *v, const unsigned char *packed, u
 	if (result != 0)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"meshoptimizer cannot decode the view's %zu bytes", size);
-	return attributes ? apply_filter(v, bytes, pointer, error) : NT_OK;
+	return attributes ? filter(v, bytes, pointer, error) : NT_OK;
+}
+
+/* ---- packing ---- */
+
+/* The extensions know version 1 of the index codecs alone. It is a variable of the library. */
+static void choose_version(void)
+{
+	meshopt_encodeIndexVersion(1);
+}
+
+static uint32_t index_at(const unsigned char *bytes, size_t i, size_t stride)
+{
+	uint16_t narrow;
+	uint32_t wide;
+	memcpy(&narrow, bytes + i * stride, sizeof narrow);
+	if (stride == sizeof narrow)
+		return narrow;
+	memcpy(&wide, bytes + i * stride, sizeof wide);
+	return wide;
+}
+
+/* packed: room for `bound` bytes; 0: what that is. */
+static size_t encode(const nt_meshopt_view *v, const unsigned char *bytes, const uint32_t *indices,
+	unsigned char *packed, size_t bound)
+{
+	const size_t count = (size_t)v->count, stride = (size_t)v->stride;
+	if (strcmp(v->mode, "ATTRIBUTES") == 0)
+		return packed ? meshopt_encodeVertexBuffer(packed, bound, bytes, count, stride)
+			      : meshopt_encodeVertexBufferBound(count, stride);
+	if (strcmp(v->mode, "TRIANGLES") == 0)
+		return packed ? nt_meshopt_encode_triangles(indices, count / 3, packed)
+			      : nt_meshopt_triangles_bound(count / 3);
+	return packed ? meshopt_encodeIndexSequence(packed, bound, indices, count)
+		      : meshopt_encodeIndexSequenceBound(count, (size_t)UINT32_MAX + 1);
+}
+
+/* A decoder gives back what was packed. */
+static nt_status verify(const nt_meshopt_view *v, const unsigned char *bytes, const unsigned char *packed, size_t size,
+	nt_error *error)
+{
+	nt_meshopt_view plain = *v;
+	plain.filter = "NONE";
+	plain.packed_size = size;
+	unsigned char *back = malloc((size_t)(v->count * v->stride));
+	if (!back)
+		return nt_fail_memory(error);
+	const bool same = size && unpack(&plain, packed, back, "", NULL) == NT_OK &&
+		memcmp(back, bytes, (size_t)(v->count * v->stride)) == 0;
+	free(back);
+	return same ? NT_OK : nt_fail(error, NT_ERROR_INTERNAL, "a view that was packed does not hold what it should");
+}
+
+static nt_status pack(const nt_meshopt_view *v, const unsigned char *bytes, unsigned char **packed, size_t *size,
+	nt_error *error)
+{
+	static pthread_once_t chosen = PTHREAD_ONCE_INIT;
+	pthread_once(&chosen, choose_version);
+	const size_t count = strcmp(v->mode, "ATTRIBUTES") == 0 ? 0 : (size_t)v->count;
+	const size_t bound = encode(v, NULL, NULL, NULL, 0);
+	uint32_t *indices = malloc((count + 1) * sizeof *indices);
+	*packed = malloc(bound);
+	nt_status status = indices && *packed ? NT_OK : nt_fail_memory(error);
+	for (size_t i = 0; !status && i < count; i++)
+		indices[i] = index_at(bytes, i, (size_t)v->stride);
+	if (!status) {
+		*size = encode(v, bytes, indices, *packed, bound);
+		status = verify(v, bytes, *packed, *size, error);
+	}
+	free(indices);
+	if (status) {
+		free(*packed);
+		*packed = NULL;
+	}
+	return status;
 }
 
 static const char version[] = {'0' + MESHOPTIMIZER_VERSION / 1000, '.', '0' + MESHOPTIMIZER_VERSION / 100 % 10,
 	'0' + MESHOPTIMIZER_VERSION / 10 % 10, 0};
 
 const nt_meshopt_table nt_meshopt_module = {NT_MODULE_HEAD(nt_meshopt_table, "meshoptimizer", version, "MIT",
-	NULL), check, unpack};
+	NULL), check, unpack, filter, pack};

@@ -123,21 +123,27 @@ const unsigned char *buffer_bytes(const tinygltf::Model &document, uint64_t buff
 	return offset > data.size() || size > data.size() - offset ? nullptr : data.data() + offset;
 }
 
-// The bytes of a view that meshoptimizer packed, unpacked once; the message of what is wrong with it otherwise.
+// The bytes of a view that meshoptimizer packed, unpacked once, and behind them the same before the filter; the message
+// of what is wrong with it otherwise.
 const char *unpack(nt_reread &model, size_t index, size_t size, const unsigned char **bytes)
 {
 	const nt::packed_view &packed = model.packed.at(index);
 	std::vector<unsigned char> &unpacked = model.unpacked[index];
 	if (unpacked.empty()) {
-		const nt_meshopt_view view = {packed.mode.c_str(), packed.filter.c_str(), packed.stride, packed.count,
-			packed.size};
+		const nt_meshopt_view view = {packed.mode.c_str(), "NONE", packed.stride, packed.count, packed.size};
+		nt_meshopt_view filtered = view;
+		filtered.filter = packed.filter.c_str();
 		const unsigned char *from =
 			buffer_bytes(model.document, packed.buffer, packed.offset, packed.size);
 		if (!from || nt_meshopt_module.check(&view, size, "", nullptr) != NT_OK)
 			return "the buffer view is packed, and its packed bytes are not as it says";
-		std::vector<unsigned char> made(size + 1); // never empty
+		std::vector<unsigned char> made(2 * size + 1); // never empty
 		if (nt_meshopt_module.unpack(&view, from, made.data(), "", nullptr) != NT_OK)
 			return "meshoptimizer cannot unpack the buffer view";
+		std::memcpy(made.data() + size, made.data(), size);
+		if (packed.mode == "ATTRIBUTES" &&
+			nt_meshopt_module.filter(&filtered, made.data(), "", nullptr) != NT_OK)
+			return "the buffer view has an unknown filter";
 		unpacked = std::move(made);
 	}
 	*bytes = unpacked.data();
@@ -228,7 +234,13 @@ const char *resolve(nt_reread &model, int index, nt_reread_array *array)
 	} else if (accessor.count > most_zeros) {
 		return "the accessor has no buffer view";
 	}
-	*array = {bytes, accessor.count, stride, accessor.componentType, components, accessor.normalized};
+	*array = {bytes, accessor.count, stride, accessor.componentType, components, accessor.normalized, nullptr,
+		nullptr};
+	const auto packed = model.packed.find(static_cast<size_t>(accessor.bufferView));
+	if (bytes && !accessor.sparse.isSparse && packed != model.packed.end() && packed->second.filter != "NONE") {
+		array->filter = packed->second.filter.c_str();
+		array->unfiltered = bytes + size;
+	}
 	if (bytes && !accessor.sparse.isSparse)
 		return nullptr;
 	std::vector<unsigned char> rows(accessor.count * element + 1);

@@ -103,7 +103,7 @@ static uint32_t plan_attribute(composition *c, const nt_new_primitive *primitive
 	const int width = nt_attribute_width(attribute);
 	const nt_precision precision =
 		attribute == NT_ATTRIBUTE_TANGENT ? c->options.precision : NT_PRECISION_FLOAT;
-	const bool integers = precision != NT_PRECISION_FLOAT;
+	const bool integers = precision > NT_PRECISION_FLOAT;
 	const size_t row_bytes = integers ? nt_precision_bytes(precision) : (size_t)width * sizeof(float);
 	nt_model_accessor accessor = {
 		.view = add_block(c, primitive, attribute, (uint64_t)primitive->vertex_count * row_bytes),
@@ -273,7 +273,7 @@ static nt_status write_block(const composition *c, const block *b, byte_stream *
 {
 	if (b->attribute == NT_ATTRIBUTE_COUNT)
 		return nt_new_primitive_write_indices(b->primitive, stream_bytes, stream, error);
-	if (b->attribute != NT_ATTRIBUTE_TANGENT || c->options.precision == NT_PRECISION_FLOAT)
+	if (b->attribute != NT_ATTRIBUTE_TANGENT || c->options.precision <= NT_PRECISION_FLOAT)
 		return nt_new_primitive_write_attribute(b->primitive, b->attribute, stream_bytes, stream, error);
 	rounding_stream rounding = {.stream = stream, .precision = c->options.precision};
 	const nt_status status =

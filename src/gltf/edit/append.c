@@ -14,7 +14,8 @@
 #include <string.h>
 #include "gltf/accessor.h"
 #include "gltf/edit/append_targets.h"
-#include "gltf/view.h"
+#include "gltf/edit/new_accessors.h"
+#include "gltf/bytes/packed_views.h"
 
 /* ---- accessors that must keep their count ---- */
 
@@ -31,8 +32,9 @@ static bool must_pin(const nt_appending *job)
 	return false;
 }
 
-/* The elements of an accessor with the appended ones, `stride` apart; sparse values put in where `bake`. */
-static nt_status copy_elements(nt_appending *job, const nt_append_target *from, uint32_t stride, bool bake,
+/* The elements of an accessor with the appended ones, `stride` apart; sparse values put in where `bake`, as a packed
+ * view stores them where `stored`. */
+static nt_status copy_elements(nt_appending *job, const nt_append_target *from, uint32_t stride, bool bake, bool stored,
 	unsigned char **result)
 {
 	const nt_gltf_accessor *a = &from->accessor;
@@ -44,12 +46,14 @@ static nt_status copy_elements(nt_appending *job, const nt_append_target *from, 
 	*result = out;
 	if (from->override) {
 		for (size_t v = 0; v < count; v++)
-			memcpy(out + v * stride, from->override->values + v * from->override->width,
-				from->override->width);
+			memcpy(out + v * stride, (stored ? from->override->stored : from->override->values) +
+				v * from->override->width, from->override->width);
 		return NT_OK;
 	}
 	const unsigned char *elements = NULL;
 	nt_status status = nt_gltf_elements(job->document, a, &elements, job->error);
+	if (!status && stored)
+		status = nt_packed_bytes(job->edits, from->buffer, from->begin, &elements, job->error);
 	for (size_t v = 0; !status && elements && v < a->count; v++)
 		memcpy(out + v * stride, elements + v * a->stride, a->element_bytes);
 	if (!status && bake && a->sparse_count) {
@@ -65,18 +69,29 @@ static nt_status copy_elements(nt_appending *job, const nt_append_target *from, 
 	return status;
 }
 
-/* A new view with all elements of an accessor. */
-static nt_status add_elements_view(nt_appending *job, const nt_append_target *from, bool bake, uint32_t *view)
+/* All elements of an accessor go to a new place: of its own, or of others that are packed like it. */
+static nt_status add_elements(nt_appending *job, const nt_append_target *from, bool bake, nt_json_value *accessor)
 {
 	const uint32_t element = from->override ? from->override->width : from->accessor.element_bytes;
 	const uint32_t stride = (element + 3) / 4 * 4;
+	nt_gltf_packing packing = nt_packing_of(job->edits, from->accessor.view);
 	unsigned char *elements = NULL;
-	const nt_status status = copy_elements(job, from, stride, bake, &elements);
-	if (status)
-		return status;
-	const size_t size = job->vertices->new_count * stride;
-	return nt_edits_add_view(job->edits, job->buffer, elements, size,
-		NT_GLTF_ARRAY_BUFFER, stride != element ? stride : 0, view, job->error);
+	uint32_t view = 0;
+	uint64_t offset = 0;
+	/* a filter is one of whole elements */
+	const bool stored =
+		packing.extension && packing.view.stride == stride && !(bake && from->accessor.sparse_count);
+	if (!stored)
+		packing.view.filter = "NONE";
+	packing.view.stride = stride;
+	nt_status status = copy_elements(job, from, stride, bake, stored, &elements);
+	if (!status)
+		status = nt_packed_add(job->edits, job->buffer, &packing, elements,
+			job->vertices->new_count * stride, NT_GLTF_ARRAY_BUFFER, stride != element ? stride : 0, &view,
+			&offset, job->error);
+	if (!status)
+		nt_gltf_place_accessor(job->json, accessor, view, offset);
+	return status;
 }
 
 /* What an accessor says of its bounds becomes that of its values where these are new, or come from a decoder: the
@@ -98,7 +113,7 @@ static nt_status settle_bounds(nt_appending *job, const nt_append_target *of, ui
 		type = stride == 16 ? NT_GLTF_FLOAT : stride == 8 ? NT_GLTF_SHORT : NT_GLTF_BYTE;
 	} else if (a->sparse_count) {
 		unsigned char *baked = NULL;
-		status = copy_elements(job, of, stride, true, &baked);
+		status = copy_elements(job, of, stride, true, false, &baked);
 		elements = baked;
 	} else {
 		status = nt_gltf_elements(job->document, a, &elements, job->error);
@@ -113,19 +128,13 @@ static nt_status settle_bounds(nt_appending *job, const nt_append_target *of, ui
 
 static nt_status clone_accessor(nt_appending *job, nt_append_target *from)
 {
-	uint32_t view;
-	const nt_status status = add_elements_view(job, from, true, &view);
-	if (status)
-		return status;
 	nt_json_value *accessors = nt_gltf_root_member(job->document, "accessors");
 	from->clone = (uint32_t)nt_json_count(accessors);
 	nt_json_value *clone = nt_json_append(job->json, accessors);
 	nt_json_set_copy(job->json, clone, nt_json_at(accessors, from->accessor.index));
-	nt_json_set_uint64(job->json, nt_json_put(job->json, clone, "bufferView"), view);
-	nt_json_remove(job->json, clone, "byteOffset");
-	nt_json_remove(job->json, clone, "sparse");
+	const nt_status status = add_elements(job, from, true, clone);
 	nt_json_set_uint64(job->json, nt_json_put(job->json, clone, "count"), job->vertices->new_count);
-	return settle_bounds(job, from, from->clone);
+	return status ? status : settle_bounds(job, from, from->clone);
 }
 
 static nt_status use_clone(void *context, nt_json_value *attributes, const char *name,
@@ -182,6 +191,7 @@ typedef struct block {
 	uint32_t buffer, stride, width;
 	uint64_t begin, end;
 	bool overridden;
+	bool misfits; /* its vertices are not the elements of the packed view that has them */
 } block;
 
 /* The longest run of targets from `targets` on that share vertices. */
@@ -200,6 +210,13 @@ static block find_block(const nt_appending *job, nt_append_target *targets, size
 			b.width = (uint32_t)end;
 		b.overridden |= next->override != NULL;
 		b.count++;
+	}
+	const nt_gltf_packing packing = nt_packing_of(job->edits, targets->accessor.view);
+	if (packing.extension) {
+		/* what fills an element goes with it: a filter may need it */
+		b.misfits = packing.view.stride != b.stride;
+		b.begin -= b.begin % b.stride;
+		b.width = b.stride;
 	}
 	b.end = b.begin + (job->vertices->old_count - 1) * (uint64_t)b.stride + b.width;
 	return b;
@@ -224,15 +241,8 @@ static bool is_crowded(const block *b, const nt_append_target *next)
 /* Moves an accessor to a view of its own. */
 static nt_status move_away(nt_appending *job, const nt_append_target *moved)
 {
-	uint32_t view;
-	const nt_status status = add_elements_view(job, moved, false, &view);
-	if (status)
-		return status;
-	nt_json_value *json = nt_gltf_change_accessor(job->document, moved->accessor.index);
-	nt_json_set_uint64(job->json, nt_json_put(job->json, json, "bufferView"), view);
-	nt_json_remove(job->json, json, "byteOffset");
-	nt_json_remove(job->json, json, "sparse"); /* what was in the block had none */
-	return NT_OK;
+	/* what was in the block was not sparse */
+	return add_elements(job, moved, false, nt_gltf_change_accessor(job->document, moved->accessor.index));
 }
 
 static nt_status block_bytes(nt_appending *job, const block *b, const unsigned char **bytes)
@@ -246,7 +256,7 @@ static nt_status block_bytes(nt_appending *job, const block *b, const unsigned c
 		const unsigned char *elements;
 		status = nt_gltf_elements(job->document, &b->targets[i].accessor, &elements, job->error);
 		if (i == 0)
-			*bytes = elements;
+			*bytes = elements - (b->targets->begin - b->begin);
 	}
 	return status;
 }
@@ -285,8 +295,10 @@ static nt_status insert_vertices(nt_appending *job, const block *b, const unsign
 	return nt_edits_replace(job->edits, b->buffer, b->end, 0, out, added * b->stride, job->error);
 }
 
-/* Replaces the whole block: some of its values are new. */
-static nt_status replace_vertices(nt_appending *job, const block *b, const unsigned char *elements)
+/* Replaces the whole block: some of its values are new. What a reader will see as before stays as it is stored, since
+ * several elements of a packed view may mean the same. */
+static nt_status replace_vertices(nt_appending *job, const block *b, const unsigned char *decoded,
+	const unsigned char *elements)
 {
 	const size_t count = job->vertices->new_count, old_size = (size_t)(b->end - b->begin);
 	const size_t size = (count - 1) * b->stride + b->width;
@@ -300,9 +312,14 @@ static nt_status replace_vertices(nt_appending *job, const block *b, const unsig
 	for (size_t i = 0; i < b->count; i++) {
 		const nt_gltf_override *override = b->targets[i].override;
 		unsigned char *at = out + (b->targets[i].begin - b->begin);
+		const unsigned char *before = decoded + (b->targets[i].begin - b->begin);
 		for (size_t v = 0; override && v < count; v++) {
+			if (v < job->vertices->old_count && override->width == b->targets[i].accessor.element_bytes &&
+				memcmp(before + v * b->stride, override->values + v * override->width,
+					override->width) == 0)
+				continue;
 			memset(at + v * b->stride, 0, b->targets[i].accessor.element_bytes);
-			memcpy(at + v * b->stride, override->values + v * override->width,
+			memcpy(at + v * b->stride, override->stored + v * override->width,
 				override->width);
 		}
 	}
@@ -313,7 +330,7 @@ static nt_status append_to_block(nt_appending *job, const block *b, uint64_t pre
 	const nt_append_target *next)
 {
 	nt_status status = NT_OK;
-	if (b->begin < previous_end || is_crowded(b, next) ||
+	if (b->begin < previous_end || b->misfits || is_crowded(b, next) ||
 		nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end,
 					       job->edits->appended_by, nt_append_owner(job))) {
 		for (size_t i = 0; !status && i < b->count; i++)
@@ -321,15 +338,18 @@ static nt_status append_to_block(nt_appending *job, const block *b, uint64_t pre
 				status = move_away(job, &b->targets[i]);
 		return status;
 	}
-	const unsigned char *elements = NULL;
-	status = block_bytes(job, b, &elements);
+	const unsigned char *decoded = NULL, *elements = NULL;
+	status = block_bytes(job, b, &decoded);
+	elements = decoded;
+	if (!status)
+		status = nt_packed_bytes(job->edits, b->buffer, b->begin, &elements, job->error);
 	if (!status && !nt_append_note_edit(job, b->buffer, b->begin, b->end))
 		status = nt_fail_memory(job->error);
 	if (status)
 		return status;
 	if (nt_appended_count(job))
 		lengthen_views(job, b);
-	return b->overridden ? replace_vertices(job, b, elements) : insert_vertices(job, b, elements);
+	return b->overridden ? replace_vertices(job, b, decoded, elements) : insert_vertices(job, b, elements);
 }
 
 /* ---- the whole ---- */

@@ -6,14 +6,15 @@
 #define NT_GLTF_EDIT_APPEND_TARGETS_H
 
 #include "gltf/accessor.h"
-#include "gltf/edit/buffer_edits.h"
+#include "gltf/bytes/buffer_edits.h"
 #include "gltf/edit/merge_splits.h"
 
 /* An accessor whose values are replaced in place: elements of `width` bytes for every new vertex. Without values
  * nothing is appended to it: it will get a view of its own. */
 typedef struct nt_gltf_override {
 	uint32_t accessor;
-	const unsigned char *values;
+	const unsigned char *values; /* as readers have them */
+	const unsigned char *stored; /* before the filter of a packed view; the same where there is none */
 	uint32_t width;
 } nt_gltf_override;
 

@@ -201,7 +201,7 @@ static void report_users(const nt_gltf_recoding *r, nt_finding_list *findings, b
 			nt_finding_add(findings, NT_CODE_DRACO_PLAIN, place, 1, "%s", r->obstacle);
 		if (compressed && r->sequential_instead)
 			nt_finding_add(findings, NT_CODE_DRACO_SEQUENTIAL, place, 1, NULL);
-		const bool unreached = compressed && r->options->precision != NT_PRECISION_FLOAT;
+		const bool unreached = compressed && r->options->precision > NT_PRECISION_FLOAT;
 		for (size_t k = 0; unreached && k < r->attribute_count; k++)
 			if (strcmp(r->names[k], "TANGENT") == 0)
 				nt_finding_add(findings, NT_CODE_DRACO_PRECISION, place, 1, "%d bits",

@@ -6,7 +6,7 @@
 #define NT_GLTF_EDIT_DRACO_BLOCK_H
 
 #include "gltf/draco.h"
-#include "gltf/edit/buffer_edits.h"
+#include "gltf/bytes/buffer_edits.h"
 #include "gltf/edit/merge_splits.h"
 
 /* A primitive that is to be compressed. First comes what is known of it, then what was looked up in the

@@ -20,6 +20,7 @@
 #include "gltf/edit/new_accessors.h"
 #include "gltf/edit/old_tangents.h"
 #include "gltf/edit/manifold.h"
+#include "gltf/bytes/packed_views.h"
 #include "gltf/edit/relocate.h"
 #include "gltf/extensions/geometry_metadata.h"
 #include "gltf/morph_deltas.h"
@@ -33,6 +34,7 @@ typedef struct editing {
 	nt_vertex_pools *pools;
 	nt_buffer_edits *edits;
 	nt_arena *of_window; /* what is needed while the pools of one window are edited */
+	bool *quantized;     /* becomes true where tangents are stored as integers */
 	nt_error *error;
 } editing;
 
@@ -59,69 +61,76 @@ static bool stays(const nt_scene *scene, const nt_write_options *options, const 
 		return true;
 	return mesh->decision == NT_DECISION_REPAIR && !mesh->normals_made && !mesh->replaced_tangents &&
 		!mesh->morph_count && options->morphs != NT_MORPH_DROP && !options->bitangents &&
-		options->precision == NT_PRECISION_FLOAT && (options->draco == NT_DRACO_KEEP ||
+		options->precision <= NT_PRECISION_FLOAT && (options->draco == NT_DRACO_KEEP ||
 		(options->draco == NT_DRACO_OFF && !nt_gltf_draco_of(nt_gltf_primitive_of(scene->source, mesh))));
 }
 
 /* ---- values ---- */
 
-/* Rounds the tangents of all sets, so that what is derived from them fits what readers will see. */
-static nt_status round_tangents(const editing *e, nt_pool_vertices *vertices)
-{
-	const nt_precision precision = e->options->precision;
-	const size_t count = vertices->new_count;
-	for (uint32_t set = 0; precision != NT_PRECISION_FLOAT && set < vertices->pool->sets.count; set++) {
-		nt_rounding cost = {0};
-		if (vertices->borrowed) {
-			float *own = nt_arena_alloc(&e->edits->arena, count, 4 * sizeof *own);
-			if (!own)
-				return nt_fail_memory(e->error);
-			vertices->sets[set].tangents =
-				memcpy(own, vertices->sets[set].tangents, count * 4 * sizeof *own);
-		}
-		nt_precision_round(precision, vertices->sets[set].tangents, count, &cost);
-		nt_precision_report(e->scene, precision, &cost, 
-			nt_mesh_place(nt_pool_set_mesh(vertices->pool, set), &(nt_place){0}));
-	}
-	return NT_OK;
-}
+/* Tangents of a set as they will be stored. */
+typedef struct stored_tangents {
+	nt_gltf_packing packing; /* of new bytes */
+	nt_tangent_filter filter;
+	const unsigned char *values, *stored; /* as readers have them, and before the filter */
+	size_t element_bytes;
+} stored_tangents;
 
-/* Tangents as they are stored. */
-static nt_status stored_tangents(const editing *e, const nt_pool_vertices *vertices, uint32_t set,
-	const unsigned char **bytes)
+/* Rounds the tangents of a set, so that what is derived from them fits what readers will see. */
+static nt_status store_tangents(const editing *e, nt_pool_vertices *vertices, uint32_t set, stored_tangents *to)
 {
-	const nt_precision precision = e->options->precision;
-	*bytes = (const unsigned char *)vertices->sets[set].tangents;
-	if (precision == NT_PRECISION_FLOAT)
-		return NT_OK;
-	unsigned char *out = nt_arena_alloc(&e->edits->arena, vertices->new_count, nt_precision_bytes(precision));
-	if (!out)
+	const size_t count = vertices->new_count;
+	nt_arena *arena = &e->edits->arena;
+	nt_rounding cost = {0};
+	nt_status status = nt_packed_tangents(e->edits,
+		nt_json_find(nt_pool_primitive(vertices->pool, vertices->pool->sets.first[set]), "attributes"),
+		e->options->precision, &to->packing, &to->filter, e->error);
+	const nt_precision precision = to->filter.precision;
+	const bool filtered = strcmp(to->filter.filter, "NONE") != 0;
+	to->element_bytes = nt_precision_bytes(precision);
+	to->values = to->stored = (const unsigned char *)vertices->sets[set].tangents;
+	if (status || (precision == NT_PRECISION_FLOAT && !filtered))
+		return status;
+	float *tangents = vertices->sets[set].tangents;
+	if (vertices->borrowed) {
+		tangents = nt_arena_alloc(arena, count, 4 * sizeof *tangents);
+		if (tangents)
+			memcpy(tangents, vertices->sets[set].tangents, count * 4 * sizeof *tangents);
+	}
+	unsigned char *stored = nt_arena_alloc(arena, count, to->element_bytes);
+	unsigned char *values = filtered ? nt_arena_alloc(arena, count, to->element_bytes) : stored;
+	if (!tangents || !stored || !values)
 		return nt_fail_memory(e->error);
-	nt_precision_encode(precision, vertices->sets[set].tangents, vertices->new_count, out);
-	*bytes = out;
-	return NT_OK;
+	status = nt_tangents_store(&to->filter, tangents, count, stored, values, &cost, e->error);
+	if (!status)
+		nt_precision_report(e->scene, precision, &cost,
+			nt_mesh_place(nt_pool_set_mesh(vertices->pool, set), &(nt_place){0}));
+	vertices->sets[set].tangents = tangents;
+	to->values = values;
+	to->stored = stored;
+	*e->quantized |= precision > NT_PRECISION_FLOAT;
+	return status;
 }
 
 /* ---- one tangent set ---- */
 
 /* Tangents in new bytes: for the accessors that the set's meshes had, or for a new one. */
 static nt_status add_tangents(const editing *e, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
-	const nt_gltf_old_tangents *old)
+	const stored_tangents *new, const nt_gltf_old_tangents *old)
 {
 	nt_gltf *document = e->edits->document;
-	const nt_precision precision = e->options->precision;
-	const size_t count = vertices->new_count, element_bytes = nt_precision_bytes(precision);
-	const unsigned char *bytes;
+	const size_t count = vertices->new_count;
 	uint32_t view, accessor;
-	nt_status status = stored_tangents(e, vertices, set, &bytes);
-	if (!status && old->count) {
-		status = nt_edits_add_view(e->edits, buffer, bytes, count * element_bytes, NT_GLTF_ARRAY_BUFFER, 0,
-			&view, e->error);
+	uint64_t offset;
+	nt_status status;
+	if (old->count) {
+		status = nt_packed_add(e->edits, buffer, &new->packing, new->stored, count * new->element_bytes,
+			NT_GLTF_ARRAY_BUFFER, 0, &view, &offset, e->error);
 		if (!status)
-			nt_gltf_move_tangents(document, old, precision, view, count);
-	} else if (!status) {
-		status = nt_gltf_add_attribute(e->edits, buffer, bytes, count, element_bytes,
-			nt_precision_component_type(precision), "VEC4", &accessor, e->error);
+			nt_gltf_move_tangents(document, old, new->filter.precision, view, offset, count);
+	} else {
+		status = nt_gltf_add_attribute(e->edits, buffer, &new->packing, new->stored, count,
+			new->element_bytes, nt_precision_component_type(new->filter.precision), "VEC4", &accessor,
+			e->error);
 		if (!status)
 			nt_gltf_set_attribute(document->json, vertices->pool, set, "TANGENT", accessor);
 	}
@@ -141,11 +150,11 @@ static void complete_tangents(const editing *e, const nt_vertex_pool *pool, uint
 
 /* An attribute of floats, VEC3, for the whole set. */
 static nt_status add_vectors(const editing *e, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
-	const char *name, const float *vectors)
+	const nt_gltf_packing *packing, const char *name, const float *vectors)
 {
 	uint32_t accessor;
-	const nt_status status = nt_gltf_add_floats(e->edits, buffer, vectors, vertices->new_count, 3, &accessor,
-		e->error);
+	const nt_status status = nt_gltf_add_floats(e->edits, buffer, packing, vectors, vertices->new_count, 3,
+		&accessor, e->error);
 	if (!status)
 		nt_gltf_set_attribute(e->edits->document->json, vertices->pool, set, name, accessor);
 	return status;
@@ -153,22 +162,22 @@ static nt_status add_vectors(const editing *e, uint32_t buffer, const nt_pool_ve
 
 /* NORMAL where it was made, TANGENT where it is not already in place, _BITANGENT where asked for. */
 static nt_status add_set(const editing *e, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
-	const nt_gltf_old_tangents *old)
+	const stored_tangents *new, const nt_gltf_old_tangents *old)
 {
 	nt_status status = NT_OK;
 	float *bitangents = NULL;
 	if (vertices->sets[set].normals)
-		status = add_vectors(e, buffer, vertices, set, "NORMAL", vertices->sets[set].normals);
+		status = add_vectors(e, buffer, vertices, set, &new->packing, "NORMAL", vertices->sets[set].normals);
 	if (!status && !old->in_place)
-		status = add_tangents(e, buffer, vertices, set, old);
+		status = add_tangents(e, buffer, vertices, set, new, old);
 	if (!status && old->in_place)
-		nt_gltf_retype_tangents(e->edits->document, old, e->options->precision);
+		nt_gltf_retype_tangents(e->edits->document, old, new->filter.precision);
 	if (!status)
 		complete_tangents(e, vertices->pool, set, old);
 	if (!status && e->options->bitangents)
 		status = nt_gltf_bitangents(vertices, set, &e->edits->arena, &bitangents, e->error);
 	if (!status && bitangents)
-		status = add_vectors(e, buffer, vertices, set, "_BITANGENT", bitangents);
+		status = add_vectors(e, buffer, vertices, set, &new->packing, "_BITANGENT", bitangents);
 	return status;
 }
 
@@ -189,24 +198,21 @@ static nt_status choose_buffer(const editing *e, const nt_vertex_pool *pool, uin
 }
 
 /* What becomes of the TANGENT accessors that are there: new values for those that stay in place; the others
- * lose their bytes. old: [set]; overrides: room for every user. */
-static nt_status settle_old_tangents(const editing *e, const nt_pool_vertices *vertices, nt_gltf_old_tangents *old,
-	nt_gltf_override *overrides, size_t *count)
+ * lose their bytes. new, old: [set]; overrides: room for every user. */
+static nt_status settle_old_tangents(const editing *e, const nt_vertex_pool *pool, const stored_tangents *new,
+	nt_gltf_old_tangents *old, nt_gltf_override *overrides, size_t *count)
 {
-	const nt_vertex_pool *pool = vertices->pool;
-	const nt_precision precision = e->options->precision;
 	nt_status status = NT_OK;
 	*count = 0;
 	for (uint32_t set = 0; !status && set < pool->sets.count; set++) {
-		const unsigned char *values = NULL;
-		status = nt_gltf_find_tangents(e->edits, e->pools, pool, set, precision, e->of_window,
+		status = nt_gltf_find_tangents(e->edits, e->pools, pool, set, &new[set].filter, e->of_window,
 			&old[set], e->error);
-		if (!status)
-			status = old[set].in_place ? stored_tangents(e, vertices, set, &values) :
-						     nt_gltf_release_tangents(e->edits, &old[set], e->error);
+		if (!status && !old[set].in_place)
+			status = nt_gltf_release_tangents(e->edits, &old[set], e->error);
 		for (size_t i = 0; !status && i < old[set].count; i++)
 			overrides[(*count)++] = (nt_gltf_override){.accessor = old[set].accessors[i],
-				.values = values, .width = (uint32_t)nt_precision_bytes(precision)};
+				.values = old[set].in_place ? new[set].values : NULL, .stored = new[set].stored,
+				.width = (uint32_t)new[set].element_bytes};
 	}
 	return status;
 }
@@ -215,9 +221,12 @@ static nt_status settle_old_tangents(const editing *e, const nt_pool_vertices *v
 static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices *vertices, bool decoded_too)
 {
 	const nt_vertex_pool *pool = vertices->pool;
-	nt_status status = round_tangents(e, vertices);
-	if (status)
-		return status;
+	nt_status status = NT_OK;
+	stored_tangents *new = nt_arena_alloc(e->of_window, pool->sets.count, sizeof *new);
+	for (uint32_t set = 0; new && !status && set < pool->sets.count; set++)
+		status = store_tangents(e, vertices, set, &new[set]);
+	if (!new || status)
+		return status ? status : nt_fail_memory(e->error);
 
 	/* Tangents that are there keep their accessor, and their place where that will do. */
 	size_t most = pool->user_count;
@@ -228,10 +237,10 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 	if (!overrides || !old)
 		return nt_fail_memory(e->error);
 	size_t override_count;
-	status = settle_old_tangents(e, vertices, old, overrides, &override_count);
+	status = settle_old_tangents(e, pool, new, old, overrides, &override_count);
 	for (uint32_t set = 0; !status && set < pool->sets.count; set++)
 		status = nt_gltf_add_morphs(e->edits, buffer, e->pools, vertices, set,
-			nt_morph_least(e->options->precision), overrides, &override_count, &e->scene->morph_cost,
+			nt_tangent_filter_least(&new[set].filter), overrides, &override_count, &e->scene->morph_cost,
 			e->error);
 
 	/* The copied vertices, the indices that use them, and what is new. */
@@ -241,7 +250,7 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 	if (!status)
 		status = nt_gltf_write_indices(e->edits, buffer, e->pools, vertices, e->error);
 	for (uint32_t set = 0; !status && set < pool->sets.count; set++)
-		status = add_set(e, buffer, vertices, set, &old[set]);
+		status = add_set(e, buffer, vertices, set, &new[set], &old[set]);
 	return status;
 }
 
@@ -262,8 +271,7 @@ static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 		e->of_window, e->error);
 }
 
-/* *plain becomes true where it is not compressed. */
-static nt_status edit_pool(const editing *e, pool_edit *p, bool *plain)
+static nt_status edit_pool(const editing *e, pool_edit *p)
 {
 	/* One vertex for each tangent that a vertex has. */
 	uint32_t buffer = 0;
@@ -283,7 +291,6 @@ static nt_status edit_pool(const editing *e, pool_edit *p, bool *plain)
 		status = nt_gltf_follow_vertices(e->edits, buffer, e->scene, &p->vertices, done, e->error);
 	if (status || done)
 		return status;
-	*plain = true;
 	return edit_plain(e, buffer, &p->vertices, compressed);
 }
 
@@ -291,7 +298,7 @@ static nt_status edit_pool(const editing *e, pool_edit *p, bool *plain)
 
 /* Some pools from `first` on, which becomes the first of the next window. An error is that of the first pool that has
  * one. list: room for as many as the window. */
-static nt_status edit_window(const editing *e, pool_edit *window, nt_gltf_recoding **list, size_t *first, bool *plain)
+static nt_status edit_window(const editing *e, pool_edit *window, nt_gltf_recoding **list, size_t *first)
 {
 	nt_status status = NT_OK, unprepared = NT_OK;
 	size_t count = 0, block_count = 0;
@@ -306,7 +313,7 @@ static nt_status edit_window(const editing *e, pool_edit *window, nt_gltf_recodi
 	nt_gltf_draco_encode_all(list, block_count, nt_thread_count(e->options->threads));
 	for (size_t i = 0; !status && i < count; i++)
 		if (!window[i].stays)
-			status = edit_pool(e, &window[i], plain);
+			status = edit_pool(e, &window[i]);
 	for (size_t i = 0; i < count; i++)
 		nt_draco_block_free(&window[i].recoding.block);
 	*first += count;
@@ -320,13 +327,12 @@ static nt_status edit_pools(const editing *e)
 	const size_t size = e->pools->count < WINDOW ? e->pools->count : WINDOW;
 	pool_edit *window = nt_arena_alloc(&e->edits->arena, size, sizeof *window);
 	nt_gltf_recoding **list = nt_arena_alloc(&e->edits->arena, size, sizeof *list);
-	bool plain = false;
 	nt_status status = window && list ? NT_OK : nt_fail_memory(e->error);
 	for (size_t first = 0; !status && first < e->pools->count;)
-		status = edit_window(e, window, list, &first, &plain);
+		status = edit_window(e, window, list, &first);
 	nt_gltf_drop_draco(e->scene);
 	nt_gltf_drop_polygons(e->edits);
-	if (!status && plain && e->options->precision != NT_PRECISION_FLOAT) {
+	if (!status && *e->quantized) {
 		nt_gltf_list_extension(document, "extensionsUsed", NT_GLTF_QUANTIZATION);
 		nt_gltf_list_extension(document, "extensionsRequired", NT_GLTF_QUANTIZATION);
 	}
@@ -354,13 +360,14 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	if (!document->pools)
 		status = nt_vertex_pools_find(scene, &(nt_read_options){.morphs = options->morphs}, error);
 	if (!status)
-		status = nt_edits_create(&edits, document->pools, error);
+		status = nt_edits_create(&edits, document->pools, options->meshopt == NT_MESHOPT_KEEP, error);
 	if (!status && nt_geometry_totals(scene->source, &arena, &totals))
 		status = nt_fail_memory(error);
 
 	/* The edits, and with them the document. */
+	bool quantized = false;
 	const editing e = {.scene = scene, .options = options, .pools = document->pools, .edits = &edits,
-		.of_window = &of_window, .error = error};
+		.of_window = &of_window, .quantized = &quantized, .error = error};
 	if (!status)
 		status = edit_pools(&e);
 	nt_arena_free(&of_window);

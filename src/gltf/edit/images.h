@@ -6,7 +6,7 @@
 #define NT_GLTF_EDIT_IMAGES_H
 
 #include "file/output.h"
-#include "gltf/edit/buffer_edits.h"
+#include "gltf/bytes/buffer_edits.h"
 
 /* Where an edited document goes. */
 typedef struct nt_gltf_output {

@@ -12,8 +12,8 @@
 #include "base/largest.h"
 #include "gltf/accessor.h"
 #include "gltf/edit/new_accessors.h"
+#include "gltf/bytes/packed_views.h"
 #include "gltf/pointer.h"
-#include "gltf/view.h"
 
 /* New indices of one primitive, encoded. */
 typedef struct encoded {
@@ -65,16 +65,57 @@ static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices,
 	return NT_OK;
 }
 
-/* A new accessor over a new view. */
-static nt_status add_indices(nt_buffer_edits *edits, uint32_t buffer, const encoded *new, uint32_t *accessor,
-	nt_error *error)
+/* New indices are packed as those before them are; where there were none, as the positions are. */
+static nt_gltf_packing find_packing(const nt_buffer_edits *edits, const nt_json_value *primitive, const encoded *new)
 {
+	uint64_t of;
+	const nt_json_value *indices = nt_json_find(primitive, "indices");
+	const nt_json_value *like = indices ? indices : nt_json_find(nt_json_find(primitive, "attributes"), "POSITION");
+	nt_gltf_packing packing = {.extension = NULL};
+	if (nt_json_get_uint64(like, &of) && of < UINT32_MAX && new->width > 1)
+		packing = nt_packing_of_accessor(edits, (uint32_t)of);
+	if (!indices)
+		packing.view.mode = "TRIANGLES";
+	packing.view.filter = "NONE";
+	packing.view.stride = new->width;
+	return packing;
+}
+
+/* Indices in a new place: of an accessor that is there, or of a new one. */
+static nt_status add_indices(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_packing *packing,
+	const encoded *new, const nt_gltf_accessor *old, uint32_t *accessor, nt_error *error)
+{
+	nt_json *json = edits->document->json;
 	uint32_t view;
-	const nt_status status = nt_edits_add_view(edits, buffer, new->bytes, new->size,
-		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, error);
-	if (!status)
-		*accessor = nt_gltf_new_accessor(edits->document->json, view, new->type, "SCALAR", new->count, false);
-	return status;
+	uint64_t offset;
+	const nt_status status = nt_packed_add(edits, buffer, packing, new->bytes, new->size,
+		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, &offset, error);
+	if (status)
+		return status;
+	if (!old)
+		*accessor = nt_gltf_new_accessor(json, view, new->type, "SCALAR", new->count, false);
+	nt_json_value *object = nt_gltf_change_accessor(edits->document, old ? old->index : *accessor);
+	if (old || offset)
+		nt_gltf_place_accessor(json, object, view, offset);
+	if (old) {
+		nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), new->type);
+		nt_json_set_uint64(json, nt_json_put(json, object, "count"), new->count);
+		nt_json_remove(json, object, "min");
+		nt_json_remove(json, object, "max");
+	}
+	return NT_OK;
+}
+
+/* Whether indices go to where others were in a packed view, whose elements are all of a size. */
+static bool fits_packed(nt_buffer_edits *edits, const nt_gltf_packing *packing, const nt_gltf_view *view,
+	uint64_t begin, uint64_t size, const encoded *new)
+{
+	if (view->buffer < NT_GLTF_VIRTUAL || !packing->extension || new->width == packing->view.stride)
+		return true;
+	if (begin || size != view->length || new->width < 2)
+		return false;
+	nt_edits_of(edits, view->buffer)->new_stride = new->width;
+	return true;
 }
 
 /* Rewrites the accessor, all of whose users agree, where its bytes are its own; *done tells. */
@@ -95,7 +136,9 @@ static nt_status replace_indices(nt_buffer_edits *edits, uint32_t first_alias, c
 	const size_t pad = (size_t)((new->width - begin % new->width) % new->width);
 	if (view.offset % new->width || pad >= size || view.compression)
 		return NT_OK;
-	if (nt_byte_users_other(&edits->users, view.buffer, begin, begin + size, first_alias))
+	const nt_gltf_packing packing = nt_packing_of(edits, old->view);
+	if (nt_byte_users_other(&edits->users, view.buffer, begin, begin + size, first_alias) ||
+		!fits_packed(edits, &packing, &view, begin, size, new))
 		return NT_OK;
 	const unsigned char *bytes = new->bytes;
 	if (pad) {
@@ -117,25 +160,6 @@ static nt_status replace_indices(nt_buffer_edits *edits, uint32_t first_alias, c
 	nt_json_remove(json, accessor, "max");
 	*done = true;
 	return nt_edits_replace(edits, view.buffer, begin, size, bytes, new->size + pad, error);
-}
-
-/* Indices that were compressed get a view; the accessor stays. */
-static nt_status give_view(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_accessor *old,
-	const encoded *new, nt_error *error)
-{
-	nt_json *json = edits->document->json;
-	uint32_t view;
-	const nt_status status = nt_edits_add_view(edits, buffer, new->bytes, new->size,
-		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, error);
-	nt_json_value *accessor = nt_gltf_change_accessor(edits->document, old->index);
-	nt_json_set_uint64(json, nt_json_put(json, accessor, "bufferView"), view);
-	nt_json_remove(json, accessor, "byteOffset");
-	nt_json_remove(json, accessor, "sparse"); /* what was in the block had none */
-	nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"), new->type);
-	nt_json_set_uint64(json, nt_json_put(json, accessor, "count"), new->count);
-	nt_json_remove(json, accessor, "min");
-	nt_json_remove(json, accessor, "max");
-	return status;
 }
 
 /* A user's new indices. Users with equal ones in place of the same bytes follow the first of them. */
@@ -231,15 +255,20 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 		status = encode(&edits->arena, mesh, vertices->indices[user], vertices->borrowed,
 			tail_of(mesh, mode, old.count), vertices->new_count, old.component_type, &new, error);
 	/* in place where everybody who uses these indices will have the same new ones */
-	if (!status && leader->index != NT_NONE && leader->agreeing == pools->index_users[leader->first_alias]) {
-		if (old.decoded)
-			status = give_view(edits, buffer, &old, &new, error);
-		else
-			status = replace_indices(edits, leader->first_alias, &old, &new, &done, error);
-		done |= old.decoded != NULL;
-	}
+	const bool agree = leader->index != NT_NONE && leader->agreeing == pools->index_users[leader->first_alias];
+	if (!status && agree && !old.decoded)
+		status = replace_indices(edits, leader->first_alias, &old, &new, &done, error);
 	leader->accessor = leader->index;
-	return status || done ? status : add_indices(edits, buffer, &new, &leader->accessor, error);
+	if (status || done)
+		return status;
+	/* those that were compressed leave no bytes behind, and the accessor stays */
+	const nt_gltf_packing packing = find_packing(edits, nt_pool_primitive(vertices->pool, user), &new);
+	const bool stays = agree && (old.decoded || packing.extension);
+	if (stays && !old.decoded)
+		status = nt_packed_release(edits, old.view, old.offset,
+			old.count * nt_gltf_component_bytes(old.component_type), error);
+	return status ? status
+		      : add_indices(edits, buffer, &packing, &new, stays ? &old : NULL, &leader->accessor, error);
 }
 
 static nt_status edit_user(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,

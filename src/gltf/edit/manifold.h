@@ -5,7 +5,7 @@
 #ifndef NT_GLTF_EDIT_MANIFOLD_H
 #define NT_GLTF_EDIT_MANIFOLD_H
 
-#include "gltf/edit/buffer_edits.h"
+#include "gltf/bytes/buffer_edits.h"
 #include "gltf/edit/merge_splits.h"
 
 /* Writes the indices of all primitives of the glTF mesh that the pool's user `first` is in, where that is a manifold;

@@ -28,22 +28,31 @@ uint32_t nt_gltf_new_accessor(nt_json *json, uint32_t view, uint32_t component_t
 	return number;
 }
 
-nt_status nt_gltf_add_attribute(nt_buffer_edits *edits, uint32_t buffer, const void *elements, size_t count,
-	size_t element_bytes, uint32_t component_type, const char *type, uint32_t *accessor, nt_error *error)
+nt_status nt_gltf_add_attribute(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_packing *packing,
+	const void *elements, size_t count, size_t element_bytes, uint32_t component_type, const char *type,
+	uint32_t *accessor, nt_error *error)
 {
+	nt_json *json = edits->document->json;
+	nt_gltf_packing own = *packing;
 	uint32_t view;
-	const nt_status status = nt_edits_add_view(edits, buffer, elements, count * element_bytes,
-		NT_GLTF_ARRAY_BUFFER, 0, &view, error);
-	if (!status)
-		*accessor = nt_gltf_new_accessor(edits->document->json, view, component_type, type, count,
-			component_type != NT_GLTF_FLOAT);
-	return status;
+	uint64_t offset;
+	own.view.stride = element_bytes;
+	const nt_status status = nt_packed_add(edits, buffer, &own, elements, count * element_bytes,
+		NT_GLTF_ARRAY_BUFFER, 0, &view, &offset, error);
+	if (status)
+		return status;
+	*accessor = nt_gltf_new_accessor(json, view, component_type, type, count, component_type != NT_GLTF_FLOAT);
+	if (offset)
+		nt_gltf_place_accessor(json, nt_gltf_change_accessor(edits->document, *accessor), view, offset);
+	return NT_OK;
 }
 
-nt_status nt_gltf_add_floats(nt_buffer_edits *edits, uint32_t buffer, const float *elements, size_t count,
-	uint32_t width, uint32_t *accessor, nt_error *error)
+nt_status nt_gltf_add_floats(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_packing *packing,
+	const float *elements, size_t count, uint32_t width, uint32_t *accessor, nt_error *error)
 {
-	return nt_gltf_add_attribute(edits, buffer, elements, count, width * sizeof(float), NT_GLTF_FLOAT,
+	nt_gltf_packing own = *packing;
+	own.view.filter = "NONE";
+	return nt_gltf_add_attribute(edits, buffer, &own, elements, count, width * sizeof(float), NT_GLTF_FLOAT,
 		width == 3 ? "VEC3" : "VEC4", accessor, error);
 }
 
@@ -77,8 +86,9 @@ nt_status nt_gltf_bitangents(const nt_pool_vertices *vertices, uint32_t set, nt_
 typedef struct target_tangents {
 	uint32_t target, accessor; /* accessor: NT_NONE while there is none that is right */
 	nt_morph_storage storage;
+	nt_gltf_packing packing;
 	const unsigned char *bytes;
-	uint64_t offset; /* of sparse ones, in the view that all of them have */
+	uint64_t offset; /* in a view that it shares */
 	bool found;      /* it is in the document */
 	bool is_zero;
 } target_tangents;
@@ -112,6 +122,23 @@ static uint32_t type_of_normals(const target_job *job, uint32_t target)
 	return index != NT_NONE && nt_gltf_get_accessor(job->edits->document, index, "", &a, NULL) == NT_OK &&
 			a.normalized && (a.component_type == NT_GLTF_BYTE || a.component_type == NT_GLTF_SHORT) ?
 		a.component_type : NT_GLTF_FLOAT;
+}
+
+/* Where a target's deltas are packed, so are its tangents. There zeros take next to nothing: they are not sparse. */
+static void choose_storage(const target_job *job, target_tangents *t, uint32_t type, size_t moved)
+{
+	const size_t count = job->vertices->new_count;
+	const uint32_t first = job->vertices->pool->sets.first[job->set];
+	const uint32_t normals = find_in_target(job, first, t->target, "NORMAL");
+	t->storage = nt_morph_choose_storage(type, count, moved);
+	t->packing = nt_packing_of_accessor(job->edits,
+		normals != NT_NONE ? normals : find_in_target(job, first, t->target, "POSITION"));
+	t->packing.view.filter = "NONE";
+	t->packing.view.stride = t->storage.stride;
+	if (t->packing.extension) {
+		t->storage.sparse = false;
+		t->storage.size = count * t->storage.stride;
+	}
 }
 
 /* Whether a target has these deltas already in all meshes of the set: then nothing has to be written. */
@@ -158,7 +185,7 @@ static nt_status look_at_target(target_job *job, size_t m, float least)
 	if (status || t->found)
 		return status;
 	t->is_zero = moved == 0;
-	t->storage = nt_morph_choose_storage(type, count, moved);
+	choose_storage(job, t, type, moved);
 	unsigned char *bytes = nt_arena_alloc(&job->edits->arena, t->storage.size, 1);
 	t->bytes = bytes;
 	if (!bytes)
@@ -253,7 +280,7 @@ static void describe_target(const target_job *job, target_tangents *t, uint32_t 
 	if (!is_new && s->type != NT_GLTF_FLOAT)
 		nt_json_set_bool(json, nt_json_put(json, accessor, "normalized"), true);
 	if (!s->sparse) {
-		set_view(json, accessor, view, 0);
+		set_view(json, accessor, view, t->offset);
 		return;
 	}
 	nt_json_value *sparse = nt_json_put(json, accessor, "sparse");
@@ -285,9 +312,9 @@ static nt_status write_targets(target_job *job)
 			t->accessor = zero;
 		} else {
 			if (!t->storage.sparse)
-				status = nt_edits_add_view(job->edits, job->buffer, t->bytes, t->storage.size,
-					NT_GLTF_ARRAY_BUFFER, t->storage.type == NT_GLTF_FLOAT ? 0 :
-					(uint32_t)t->storage.stride, &view, job->error);
+				status = nt_packed_add(job->edits, job->buffer, &t->packing, t->bytes,
+					t->storage.size, NT_GLTF_ARRAY_BUFFER, t->storage.type == NT_GLTF_FLOAT ? 0 :
+					(uint32_t)t->storage.stride, &view, &t->offset, job->error);
 			describe_target(job, t, view);
 		}
 		if (is_shared) {

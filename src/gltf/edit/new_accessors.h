@@ -6,20 +6,21 @@
 #define NT_GLTF_EDIT_NEW_ACCESSORS_H
 
 #include "gltf/edit/append_targets.h"
-#include "gltf/edit/buffer_edits.h"
 #include "gltf/edit/merge_splits.h"
+#include "gltf/bytes/packed_views.h"
 
 /* Appends the JSON of an accessor; view NT_NONE: without one. Returns its number. */
 uint32_t nt_gltf_new_accessor(nt_json *json, uint32_t view, uint32_t component_type, const char *type,
 	size_t count, bool normalized);
 
-/* An attribute's accessor over a new view. */
-nt_status nt_gltf_add_attribute(nt_buffer_edits *edits, uint32_t buffer, const void *elements, size_t count,
-	size_t element_bytes, uint32_t component_type, const char *type, uint32_t *accessor, nt_error *error);
+/* An attribute's accessor over new elements. packing: with the filter to which they are made; its stride is theirs. */
+nt_status nt_gltf_add_attribute(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_packing *packing,
+	const void *elements, size_t count, size_t element_bytes, uint32_t component_type, const char *type,
+	uint32_t *accessor, nt_error *error);
 
-/* A VEC3 or VEC4 of floats. */
-nt_status nt_gltf_add_floats(nt_buffer_edits *edits, uint32_t buffer, const float *elements, size_t count,
-	uint32_t width, uint32_t *accessor, nt_error *error);
+/* A VEC3 or VEC4 of floats, to which no filter is applied. */
+nt_status nt_gltf_add_floats(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_packing *packing,
+	const float *elements, size_t count, uint32_t width, uint32_t *accessor, nt_error *error);
 
 /* Every primitive of a tangent set gets the attribute. */
 void nt_gltf_set_attribute(nt_json *json, const nt_vertex_pool *pool, uint32_t set, const char *name,

@@ -5,7 +5,7 @@
  * An accessor that only the meshes of one set use as TANGENT keeps its number. Elements of the same type are
  * replaced where they are, and so are interleaved ones that become smaller: their place between other
  * attributes stays as it is, since these are not ours to move. For another type the old bytes are taken
- * out and the accessor gets a new view; so it does where it was sparse, had no bytes or was compressed. What
+ * out and the accessor gets a new place; so it does where it was sparse, had no bytes or was compressed by Draco. What
  * others use too stays, and a new accessor is appended. Bytes that nobody uses are left in one case only:
  * interleaved tangents that become larger, whose slots could not go without another stride for attributes
  * that are to stay as they are.
@@ -13,9 +13,8 @@
 #include "gltf/edit/old_tangents.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include "gltf/accessor.h"
-#include "gltf/quantize.h"
-#include "gltf/view.h"
 
 uint32_t nt_gltf_tangent_of(const nt_vertex_pools *pools, const nt_vertex_pool *pool, size_t user)
 {
@@ -37,12 +36,15 @@ static bool is_own(const nt_vertex_pools *pools, uint32_t index, size_t known)
 }
 
 /* Whether the new elements go where the old ones are. */
-static bool fits_in_place(const nt_buffer_edits *edits, uint32_t index, nt_precision precision)
+static bool fits_in_place(const nt_buffer_edits *edits, uint32_t index, const nt_tangent_filter *filter)
 {
+	const nt_precision precision = filter->precision;
+	const nt_gltf_packing packing = nt_packing_of_accessor(edits, index);
 	nt_gltf_accessor a;
 	nt_gltf_view view;
 	if (nt_gltf_get_accessor(edits->document, index, "", &a, NULL) != NT_OK || a.view == NT_NONE ||
-		a.sparse_count || nt_gltf_get_view(edits->document, a.view, "", &view, NULL) != NT_OK)
+		a.sparse_count || nt_gltf_get_view(edits->document, a.view, "", &view, NULL) != NT_OK ||
+		strcmp(packing.extension ? packing.view.filter : "NONE", filter->filter) != 0)
 		return false;
 	if (a.component_type == nt_precision_component_type(precision) &&
 		(a.component_type == NT_GLTF_FLOAT || a.normalized))
@@ -79,7 +81,7 @@ static nt_status list_tangents(const nt_vertex_pools *pools, const nt_vertex_poo
 }
 
 nt_status nt_gltf_find_tangents(nt_buffer_edits *edits, const nt_vertex_pools *pools, const nt_vertex_pool *pool,
-	uint32_t set, nt_precision precision, nt_arena *arena, nt_gltf_old_tangents *old, nt_error *error)
+	uint32_t set, const nt_tangent_filter *filter, nt_arena *arena, nt_gltf_old_tangents *old, nt_error *error)
 {
 	uint32_t *list;
 	size_t count = 0;
@@ -95,7 +97,7 @@ nt_status nt_gltf_find_tangents(nt_buffer_edits *edits, const nt_vertex_pools *p
 			old->count = 0;
 			break;
 		}
-		old->in_place &= fits_in_place(edits, list[i], precision);
+		old->in_place &= fits_in_place(edits, list[i], filter);
 		old->accessors[old->count++] = list[i];
 	}
 	old->in_place &= old->count > 0;
@@ -109,7 +111,7 @@ nt_status nt_gltf_release_tangents(nt_buffer_edits *edits, const nt_gltf_old_tan
 		nt_gltf_accessor a;
 		status = nt_gltf_get_accessor(edits->document, old->accessors[i], "", &a, error);
 		if (!status && a.view != NT_NONE)
-			status = nt_edits_release(edits, a.view, a.offset,
+			status = nt_packed_release(edits, a.view, a.offset,
 				(a.count - 1) * a.stride + a.element_bytes, error);
 		if (!status && a.sparse_count)
 			status = nt_edits_release(edits, a.sparse_index_view, a.sparse_index_offset,
@@ -147,16 +149,15 @@ void nt_gltf_retype_tangents(nt_gltf *document, const nt_gltf_old_tangents *old,
 }
 
 void nt_gltf_move_tangents(nt_gltf *document, const nt_gltf_old_tangents *old, nt_precision precision,
-	uint32_t view, size_t count)
+	uint32_t view, uint64_t offset, size_t count)
 {
 	nt_json *json = document->json;
 	for (size_t i = 0; i < old->count; i++) {
 		nt_json_value *accessor = nt_gltf_change_accessor(document, old->accessors[i]);
-		nt_json_set_uint64(json, nt_json_put(json, accessor, "bufferView"), view);
+		nt_gltf_place_accessor(json, accessor, view, offset);
 		nt_json_set_uint64(json, nt_json_put(json, accessor, "count"), count);
 		set_type(json, accessor, precision);
-		static const char *const gone[] = {"byteOffset", "sparse", "min", "max"};
-		for (size_t k = 0; k < sizeof gone / sizeof *gone; k++)
-			nt_json_remove(json, accessor, gone[k]);
+		nt_json_remove(json, accessor, "min");
+		nt_json_remove(json, accessor, "max");
 	}
 }

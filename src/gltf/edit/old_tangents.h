@@ -5,7 +5,7 @@
 #ifndef NT_GLTF_EDIT_OLD_TANGENTS_H
 #define NT_GLTF_EDIT_OLD_TANGENTS_H
 
-#include "gltf/edit/buffer_edits.h"
+#include "gltf/bytes/packed_views.h"
 
 /* TANGENT accessors that a set's meshes have and nobody else uses. */
 typedef struct nt_gltf_old_tangents {
@@ -17,9 +17,9 @@ typedef struct nt_gltf_old_tangents {
 /* The TANGENT accessor of a user; NT_NONE: none. */
 uint32_t nt_gltf_tangent_of(const nt_vertex_pools *pools, const nt_vertex_pool *pool, size_t user);
 
-/* precision: of the new ones. What is found is in the arena. */
+/* filter: of the new ones. What is found is in the arena. */
 nt_status nt_gltf_find_tangents(nt_buffer_edits *edits, const nt_vertex_pools *pools, const nt_vertex_pool *pool,
-	uint32_t set, nt_precision precision, nt_arena *arena, nt_gltf_old_tangents *old, nt_error *error);
+	uint32_t set, const nt_tangent_filter *filter, nt_arena *arena, nt_gltf_old_tangents *old, nt_error *error);
 
 /* Takes their bytes out of the buffers, where nobody else refers to them. */
 nt_status nt_gltf_release_tangents(nt_buffer_edits *edits, const nt_gltf_old_tangents *old, nt_error *error);
@@ -29,6 +29,6 @@ void nt_gltf_retype_tangents(nt_gltf *document, const nt_gltf_old_tangents *old,
 
 /* Lets them refer to `count` elements in a new view. */
 void nt_gltf_move_tangents(nt_gltf *document, const nt_gltf_old_tangents *old, nt_precision precision,
-	uint32_t view, size_t count);
+	uint32_t view, uint64_t offset, size_t count);
 
 #endif

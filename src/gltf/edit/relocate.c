@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "gltf/document.h"
-#include "gltf/view.h"
+#include "gltf/bytes/packed_views.h"
 
 /* Of a free view that nothing new came for. */
 enum { FREE_VIEW_BYTES = 4 };
@@ -86,9 +86,11 @@ static nt_status place_additions(nt_buffer_edits *edits, nt_relocated_buffer *bu
 		const nt_buffer_addition *addition = &buffer->from->additions[i];
 		buffer->offsets[i] = (buffer->length + 3) / 4 * 4;
 		buffer->length = buffer->offsets[i] + addition->size;
-		if (addition->view != NT_NONE)
-			nt_json_set_uint64(json, nt_json_put(json, nt_json_at(views, addition->view),
-				"byteOffset"), buffer->offsets[i]);
+		if (addition->view == NT_NONE)
+			continue;
+		nt_json_value *view = nt_json_at(views, addition->view);
+		nt_json_set_uint64(json, nt_json_put(json, addition->packed ? nt_gltf_compression_of(view, NULL) : view,
+			"byteOffset"), buffer->offsets[i]);
 	}
 	return NT_OK;
 }
@@ -134,6 +136,20 @@ typedef struct moved_view {
 	uint64_t old_offset, new_offset;
 } moved_view;
 
+/* A packed view: its packed bytes, and its place. */
+static void move_packed(const nt_buffer_edits *edits, const nt_relocated_buffer *buffers, nt_json_value *view)
+{
+	nt_json_value *const objects[] = {nt_gltf_compression_of(view, NULL), view};
+	for (size_t k = 0; k < 2; k++) {
+		uint64_t buffer, offset = 0;
+		nt_json_get_uint64(nt_json_find(objects[k], "byteOffset"), &offset);
+		if (nt_json_get_uint64(nt_json_find(objects[k], "buffer"), &buffer) &&
+			buffer < edits->document->buffer_count)
+			set_offset(edits->document->json, objects[k], "byteOffset",
+				map_position(&buffers[buffer], offset));
+	}
+}
+
 static void move_views(nt_buffer_edits *edits, const nt_relocated_buffer *buffers, moved_view *moved)
 {
 	nt_json *json = edits->document->json;
@@ -141,13 +157,9 @@ static void move_views(nt_buffer_edits *edits, const nt_relocated_buffer *buffer
 	for (size_t i = 0; i < edits->view_count; i++) {
 		nt_json_value *object = nt_json_at(views, i);
 		nt_gltf_view view;
-		nt_json_value *packed = nt_gltf_compression_of(object, NULL);
-		uint64_t buffer, offset = 0;
-		if (packed && nt_json_get_uint64(nt_json_find(packed, "buffer"), &buffer) &&
-			buffer < edits->document->buffer_count) {
-			nt_json_get_uint64(nt_json_find(packed, "byteOffset"), &offset);
-			set_offset(json, packed, "byteOffset",
-				map_position(&buffers[buffer], offset));
+		if (nt_gltf_compression_of(object, NULL)) {
+			move_packed(edits, buffers, object);
+			continue;
 		}
 		if (moved[i].buffer || edits->is_free[i] ||
 			nt_gltf_get_view(edits->document, i, "", &view, NULL) != NT_OK ||
@@ -269,7 +281,7 @@ static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer
 	nt_status status = NT_OK;
 	uint64_t at = 0, released = 0, written = map_position(buffer, from->old_length);
 	if (from->old_length && index < NT_GLTF_VIRTUAL && document->buffers[index].storage == NT_GLTF_STORED_NOWHERE)
-		return put_zeros(to, from->old_length, error);
+		return put_zeros(to, buffer->length, error);
 	if (from->old_length)
 		status = nt_gltf_open_buffer(document, index, "/buffers", &source, error);
 	for (size_t i = 0; !status && i < from->edit_count; i++) {
@@ -312,15 +324,20 @@ static nt_status remove_compressed(nt_buffer_edits *edits, const nt_json_value *
 			    NT_OK;
 }
 
-/* A decompressed view whose bytes have changed is written plain. */
+/* A decompressed view whose bytes have changed is packed again or written plain. */
 static nt_status settle_virtual(nt_buffer_edits *edits, uint32_t index, moved_view *moved,
 	nt_error *error)
 {
 	nt_gltf *document = edits->document;
 	const uint32_t virtual = document->virtual_of[index];
+	nt_gltf_buffer *source = &document->virtuals[virtual - NT_GLTF_VIRTUAL];
+	const bool packs = nt_packing_of(edits, index).extension != NULL;
 	nt_relocated_buffer *plain = nt_arena_alloc(&edits->arena, 1, sizeof *plain);
 	nt_status status = plain ? order_edits(edits, virtual, plain, error) : nt_fail_memory(error);
 	nt_buffer bytes = {0};
+	/* nobody reads the view any more */
+	if (!status && packs)
+		status = nt_packed_bytes(edits, virtual, 0, &source->bytes, error);
 	if (!status)
 		status = put_buffer(document, plain, virtual, &(target){.memory = &bytes}, error);
 	const size_t size = bytes.size;
@@ -329,6 +346,9 @@ static nt_status settle_virtual(nt_buffer_edits *edits, uint32_t index, moved_vi
 			nt_buffer_free(&bytes);
 		return status ? status : nt_fail_memory(error);
 	}
+	*moved = (moved_view){plain, 0, 0};
+	if (packs)
+		return nt_packed_replace(edits, index, (const unsigned char *)bytes.data, size, error);
 	nt_json_value *view = nt_json_at(nt_gltf_root_member(document, "bufferViews"), index);
 	const char *name = "";
 	nt_json_value *packed = nt_gltf_compression_of(view, &name);
@@ -350,7 +370,6 @@ static nt_status settle_virtual(nt_buffer_edits *edits, uint32_t index, moved_vi
 	nt_json_remove(json, extensions, name);
 	if (nt_json_count(extensions) == 0)
 		nt_json_remove(json, view, "extensions");
-	*moved = (moved_view){plain, 0, 0};
 	return NT_OK;
 }
 
@@ -383,6 +402,8 @@ static nt_status relocate(nt_buffer_edits *edits, nt_relocated *result, moved_vi
 	for (uint32_t i = 0; !status && i < edits->view_count; i++)
 		if (virtual_of[i] != NT_NONE && nt_edits_of(edits, virtual_of[i])->edit_count)
 			status = settle_virtual(edits, i, &moved[i], error);
+	if (!status)
+		status = nt_packed_finish(edits, error);
 	bool moves = edits->document->virtual_count > 0;
 	*result = (nt_relocated){.document = edits->document, .buffer_count = edits->buffer_count,
 		.buffers = nt_arena_alloc(&edits->arena, edits->buffer_count, sizeof *result->buffers)};

@@ -6,7 +6,7 @@
 #define NT_GLTF_EDIT_RELOCATE_H
 
 #include "file/base64.h"
-#include "gltf/edit/buffer_edits.h"
+#include "gltf/bytes/buffer_edits.h"
 
 /* A buffer as it will be. */
 typedef struct nt_relocated_buffer {

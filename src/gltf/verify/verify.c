@@ -16,7 +16,7 @@
 #include "gltf/morph_deltas.h"
 #include "gltf/normalized.h"
 #include "gltf/primitive.h"
-#include "gltf/quantize.h"
+#include "gltf/tangent_filter.h"
 #include "gltf/verify/faces.h"
 #include "gltf/view.h"
 
@@ -104,8 +104,9 @@ typedef struct primitive_view {
 static nt_reread_array block_array(const nt_draco_attribute *attribute, size_t count)
 {
 	const size_t size = nt_component_size(attribute->component_type);
-	return (nt_reread_array){attribute->data, count, size * (size_t)attribute->components,
-		attribute->component_type, attribute->components, attribute->normalized};
+	return (nt_reread_array){.data = attribute->data, .count = count,
+		.stride_bytes = size * (size_t)attribute->components, .component_type = attribute->component_type,
+		.components = attribute->components, .normalized = attribute->normalized};
 }
 
 /* Half a step of the quantization, and what float arithmetic adds. */
@@ -147,8 +148,9 @@ static nt_status decode_block(primitive_view *view, nt_error *error)
 		*tolerances[i] = tolerance_of(found, decoded->point_count);
 		view->tangent_bits = found->quantization.bits; /* they are the last */
 	}
-	view->indices = (nt_reread_array){(const unsigned char *)decoded->indices, decoded->face_count * 3,
-		sizeof(uint32_t), NT_GLTF_UINT, 1, false};
+	view->indices = (nt_reread_array){.data = (const unsigned char *)decoded->indices,
+		.count = decoded->face_count * 3, .stride_bytes = sizeof(uint32_t), .component_type = NT_GLTF_UINT,
+		.components = 1};
 	return NT_OK;
 }
 
@@ -215,30 +217,40 @@ static const unsigned char *element_at(const nt_reread_array *array, size_t vert
 	return vertex < array->count ? array->data + vertex * array->stride_bytes : NULL;
 }
 
-static nt_precision precision_of(const nt_reread_array *array)
+/* How a vertex holds its tangent; of an unknown filter the bits are 0. */
+static nt_tangent_filter filter_of(const nt_reread_array *array, size_t vertex)
 {
-	return array->component_type == NT_GLTF_SHORT ? NT_PRECISION_SHORT
-		: array->component_type == NT_GLTF_BYTE ? NT_PRECISION_BYTE : NT_PRECISION_FLOAT;
+	nt_tangent_filter filter = {.filter = array->filter,
+		.precision = array->component_type == NT_GLTF_SHORT ? NT_PRECISION_SHORT
+			: array->component_type == NT_GLTF_BYTE ? NT_PRECISION_BYTE : NT_PRECISION_FLOAT};
+	if (array->filter)
+		filter.bits = nt_filter_bits(array->filter, array->unfiltered + vertex * array->stride_bytes, 1,
+			array->stride_bytes, array->component_type, 4);
+	return filter;
 }
 
-/* Whether an element holds a tangent: as it is, or rounded to the integers that it is stored as. */
-static bool tangent_matches(const nt_reread_array *array, const unsigned char *element, const float *tangent,
-	float rounded[4])
+/* Whether a vertex holds a tangent: as it is, or rounded to the integers that it is stored as, by a filter too. */
+static bool tangent_matches(const nt_reread_array *array, size_t vertex, const float *tangent, float rounded[4])
 {
-	const nt_precision precision = precision_of(array);
-	unsigned char bytes[4 * sizeof *rounded];
+	const unsigned char *element = element_at(array, vertex);
+	if (!element)
+		return false;
+	const nt_tangent_filter filter = filter_of(array, vertex);
+	const size_t size = nt_precision_bytes(filter.precision);
+	unsigned char stored[4 * sizeof *rounded], values[4 * sizeof *rounded];
 	memcpy(rounded, tangent, 4 * sizeof *rounded);
-	nt_precision_round(precision, rounded, 1, NULL);
-	nt_precision_encode(precision, rounded, 1, bytes);
-	return memcmp(element, bytes, nt_precision_bytes(precision)) == 0;
+	return (!array->filter || filter.bits) &&
+		nt_tangents_store(&filter, rounded, 1, stored, values, NULL, NULL) == NT_OK &&
+		memcmp(element, values, size) == 0;
 }
 
 /* Whether a vertex's targets say what leads from its stored tangent to theirs. */
 static bool targets_match(const nt_mesh *mesh, const primitive_view *view, size_t vertex, size_t split,
 	const float *stored)
 {
+	const nt_tangent_filter filter = filter_of(&view->tangents, vertex);
 	const float least = view->tangent_bits ? nt_morph_least_of_bits(view->tangent_bits) :
-		nt_morph_least(precision_of(&view->tangents));
+		nt_tangent_filter_least(&filter);
 	for (size_t m = 0; view->target_tangents && m < mesh->morph_count; m++) {
 		const nt_reread_array *array = &view->target_tangents[m];
 		const unsigned char *element = element_at(array, vertex);
@@ -274,14 +286,13 @@ static bool corner_matches(const nt_mesh *mesh, size_t corner, primitive_view *v
 	const size_t split = split_vertex(mesh, corner, &source);
 	const size_t vertex = vertex_at(view, view->corner++);
 	const unsigned char *position = element_at(&view->positions, vertex);
-	const unsigned char *tangent = element_at(&view->tangents, vertex);
 	if (!position || (view->positions.component_type == NT_GLTF_FLOAT &&
 				 memcmp(position, mesh->positions + 3 * source, 12) != 0))
 		return false;
 	if (!mesh->split.vertex_tangents || !mesh->normals)
 		return true;
 	float stored[4];
-	return tangent && tangent_matches(&view->tangents, tangent, mesh->split.vertex_tangents + 4 * split, stored) &&
+	return tangent_matches(&view->tangents, vertex, mesh->split.vertex_tangents + 4 * split, stored) &&
 		targets_match(mesh, view, vertex, split, stored);
 }
 

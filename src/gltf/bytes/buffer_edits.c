@@ -7,12 +7,11 @@
  * be empty; but they need not keep bytes that nobody reads. The bytes are taken out, and the number waits
  * for a new view: see take_view().
  */
-#include "gltf/edit/buffer_edits.h"
+#include "gltf/bytes/buffer_edits.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include "gltf/accessor.h"
-#include "gltf/view.h"
 
 /* Of insertions, where a view's user is unknown: it may be data of an extension that wants 8-byte alignment
  * (EXT_structural_metadata does). */
@@ -40,6 +39,17 @@ static nt_status decompress_attribute(void *context, nt_json_value *attributes, 
 					     nt_gltf_decompress_view(d->document, found.view, d->error);
 }
 
+/* Tangents may be replaced where they are. */
+static nt_status decompress_tangents(const nt_mesh *mesh, const nt_vertex_pools *pools, decompressing *d)
+{
+	uint64_t accessor;
+	const nt_json_value *attributes = nt_json_find(nt_gltf_primitive_of(d->document, mesh), "attributes");
+	if (!nt_gltf_is_solved(mesh) || !nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &accessor) ||
+		accessor >= pools->accessor_count)
+		return NT_OK;
+	return decompress_attribute(d, NULL, "TANGENT", (uint32_t)accessor);
+}
+
 /* Vertices are appended to all attributes of a pool, whoever of its users wants them. */
 static nt_status decompress_pools(nt_gltf *document, const nt_vertex_pools *pools, nt_error *error)
 {
@@ -52,18 +62,21 @@ static nt_status decompress_pools(nt_gltf *document, const nt_vertex_pools *pool
 			wanted = nt_gltf_is_solved(mesh) &&
 				(mesh->split.source_count || mesh->vertex_count > mesh->source_vertex_count);
 		}
-		for (uint32_t k = pools->first[i]; !status && wanted && k < pools->first[i + 1]; k++)
-			status = nt_gltf_visit_attributes(nt_gltf_primitive_of(document,
-				&pools->scene->meshes[pools->order[k]]), pools->accessor_count,
+		for (uint32_t k = pools->first[i]; !status && k < pools->first[i + 1]; k++) {
+			const nt_mesh *mesh = &pools->scene->meshes[pools->order[k]];
+			status = !wanted ? decompress_tangents(mesh, pools, &d)
+				: nt_gltf_visit_attributes(nt_gltf_primitive_of(document, mesh), pools->accessor_count,
 				decompress_attribute, &d);
+		}
 	}
 	return status;
 }
 
-nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_error *error)
+nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, bool keeps_packed, nt_error *error)
 {
 	nt_gltf *document = pools->scene->source;
-	*edits = (nt_buffer_edits){.document = document, .alignment = NT_EDITS_ALIGNMENT};
+	*edits = (nt_buffer_edits){.document = document, .alignment = NT_EDITS_ALIGNMENT,
+		.keeps_packed = keeps_packed};
 	const nt_status status = decompress_pools(document, pools, error);
 	if (status)
 		return status;
@@ -103,7 +116,11 @@ void nt_edits_free(nt_buffer_edits *edits)
 	for (size_t i = 0; edits->virtuals && i < edits->document->virtual_count; i++) {
 		free(edits->virtuals[i].edits);
 		free(edits->virtuals[i].additions);
+		free(edits->virtuals[i].unfiltered);
 	}
+	for (size_t i = 0; i < edits->packed_count; i++)
+		nt_buffer_free(&edits->packed[i].bytes);
+	free(edits->packed);
 	free(edits->seen);
 	free(edits->pinned);
 	free(edits->replaced);
@@ -133,9 +150,9 @@ nt_status nt_edits_replace(nt_buffer_edits *edits, uint32_t index, uint64_t at, 
 	const unsigned char *bytes, size_t size, nt_error *error)
 {
 	nt_edited_buffer *buffer = nt_edits_of(edits, index);
-	/* What is behind keeps its alignment. */
-	const size_t excess =
-		at + removed < buffer->old_length ? (size_t)((size - removed) % edits->alignment) : 0;
+	/* What is behind keeps its alignment; in a view that will be packed again there are whole elements. */
+	const bool pads = at + removed < buffer->old_length && (index < NT_GLTF_VIRTUAL || !edits->keeps_packed);
+	const size_t excess = pads ? (size_t)((size - removed) % edits->alignment) : 0;
 	if (excess) {
 		const size_t padded = size + edits->alignment - excess;
 		unsigned char *copy = nt_arena_alloc(&edits->arena, padded, 1);
@@ -153,15 +170,27 @@ nt_status nt_edits_replace(nt_buffer_edits *edits, uint32_t index, uint64_t at, 
 	return NT_OK;
 }
 
-nt_status nt_edits_add_bytes(nt_buffer_edits *edits, uint32_t index, uint32_t view, const void *bytes,
-	size_t size, nt_error *error)
+static nt_status add_bytes(nt_buffer_edits *edits, uint32_t index, const nt_buffer_addition *addition,
+	nt_error *error)
 {
 	nt_edited_buffer *buffer = &edits->buffers[index];
 	if (!nt_grow((void **)&buffer->additions, &buffer->addition_capacity,
 		buffer->addition_count + 1, sizeof *buffer->additions))
 		return nt_fail_memory(error);
-	buffer->additions[buffer->addition_count++] = (nt_buffer_addition){view, bytes, size};
+	buffer->additions[buffer->addition_count++] = *addition;
 	return NT_OK;
+}
+
+nt_status nt_edits_add_bytes(nt_buffer_edits *edits, uint32_t index, uint32_t view, const void *bytes,
+	size_t size, nt_error *error)
+{
+	return add_bytes(edits, index, &(nt_buffer_addition){view, bytes, size, false}, error);
+}
+
+nt_status nt_edits_add_packed(nt_buffer_edits *edits, uint32_t index, uint32_t view, const void *bytes, size_t size,
+	nt_error *error)
+{
+	return add_bytes(edits, index, &(nt_buffer_addition){view, bytes, size, true}, error);
 }
 
 /* The object of a new view: of a free one, with what else it says, or appended. */
@@ -179,6 +208,13 @@ static nt_json_value *take_view(nt_buffer_edits *edits, uint32_t *view)
 	nt_json_remove(json, object, "byteStride");
 	nt_json_remove(json, object, "target");
 	return object;
+}
+
+uint32_t nt_edits_new_view(nt_buffer_edits *edits)
+{
+	uint32_t view;
+	take_view(edits, &view);
+	return view;
 }
 
 nt_status nt_edits_add_view(nt_buffer_edits *edits, uint32_t index, const void *bytes, size_t size,

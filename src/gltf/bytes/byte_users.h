@@ -2,8 +2,8 @@
 /*
  * Who refers to which bytes: see byte_users.c.
  */
-#ifndef NT_GLTF_EDIT_BYTE_USERS_H
-#define NT_GLTF_EDIT_BYTE_USERS_H
+#ifndef NT_GLTF_BYTES_BYTE_USERS_H
+#define NT_GLTF_BYTES_BYTE_USERS_H
 
 #include "gltf/vertex_pools.h"
 

@@ -4,7 +4,7 @@
  * data, and views whose user is unknown. Sorted by buffer and begin, with the largest end so far beside each,
  * so that a question about a range looks at few of them.
  */
-#include "gltf/edit/byte_users.h"
+#include "gltf/bytes/byte_users.h"
 
 #include <stdlib.h>
 #include "gltf/accessor.h"
@@ -51,6 +51,17 @@ static bool add_accessor(nt_byte_users *users, nt_gltf *document, const nt_verte
 	return added;
 }
 
+/* Where a view lies that was decompressed, for readers that do not know the extension. */
+static bool add_place(nt_byte_users *users, const nt_json_value *view)
+{
+	uint64_t buffer, offset = 0, length;
+	if (!nt_json_get_uint64(nt_json_find(view, "buffer"), &buffer) ||
+		!nt_json_get_uint64(nt_json_find(view, "byteLength"), &length))
+		return true;
+	nt_json_get_uint64(nt_json_find(view, "byteOffset"), &offset);
+	return add_user(users, (uint32_t)buffer, offset, offset + length, NT_NONE);
+}
+
 /* The bytes behind a compressed view lie in another place than the view. */
 static bool add_compressed(nt_byte_users *users, const nt_json_value *view)
 {
@@ -94,6 +105,8 @@ static bool add_whole_views(nt_byte_users *users, nt_gltf *document, bool *view_
 			if (!known[i])
 				users->unknown = true;
 		}
+		if (document->virtual_of[i] != NT_NONE)
+			added = added && add_place(users, nt_json_at(views, i));
 		added = added && add_compressed(users, nt_json_at(views, i));
 	}
 	free(known);

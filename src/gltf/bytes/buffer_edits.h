@@ -4,10 +4,11 @@
  * source, and new views behind the end. Everything else is streamed from the source as it is, and every
  * offset in the JSON is moved by what was inserted before it.
  */
-#ifndef NT_GLTF_EDIT_BUFFER_EDITS_H
-#define NT_GLTF_EDIT_BUFFER_EDITS_H
+#ifndef NT_GLTF_BYTES_BUFFER_EDITS_H
+#define NT_GLTF_BYTES_BUFFER_EDITS_H
 
-#include "gltf/edit/byte_users.h"
+#include "gltf/bytes/byte_users.h"
+#include "gltf/view.h"
 
 /* What glTF itself has in buffers needs no more. */
 enum { NT_EDITS_ALIGNMENT = 4 };
@@ -25,6 +26,7 @@ typedef struct nt_buffer_addition {
 	uint32_t view; /* NT_NONE: of no view */
 	const unsigned char *bytes;
 	size_t size;
+	bool packed; /* they are what its extension refers to */
 } nt_buffer_addition;
 
 typedef struct nt_edited_buffer {
@@ -33,7 +35,18 @@ typedef struct nt_edited_buffer {
 	nt_buffer_addition *additions;
 	size_t addition_count, addition_capacity;
 	uint64_t old_length; /* 0 for a new buffer */
+
+	/* of a decompressed view that will be packed again */
+	unsigned char *unfiltered; /* its bytes before the filter, owned; NULL: nobody asked, or there is none */
+	uint32_t new_stride;       /* all of its elements are replaced by such of another size; 0: they are not */
 } nt_edited_buffer;
+
+/* A new view that will be packed. */
+typedef struct nt_packed_view {
+	nt_gltf_packing packing;
+	uint32_t view, target;
+	nt_buffer bytes; /* before the filter */
+} nt_packed_view;
 
 static inline bool nt_is_edited(const nt_edited_buffer *buffer)
 {
@@ -53,6 +66,9 @@ typedef struct nt_buffer_edits {
 	nt_byte_users users;        /* of the source */
 	uint32_t alignment;         /* insertions are multiples of this */
 	bool polygons_dropped;      /* a primitive lost FB_ngon_encoding */
+	bool keeps_packed;          /* views that meshoptimizer packed are packed again: packed_views.h */
+	nt_packed_view *packed;     /* [packed_count] new ones */
+	size_t packed_count, packed_capacity;
 
 	/* For appending to the attributes of one pool after the other. An attribute belongs to one pool, so that
 	 * nothing has to be emptied in between; bytes may be another pool's too. */
@@ -67,7 +83,7 @@ typedef struct nt_buffer_edits {
  * Starts with no edits. Compressed views that vertices will be appended to are decompressed first: edits
  * have to know them from the beginning. What is faulty and needed by nothing is passed over.
  */
-nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_error *error);
+nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, bool keeps_packed, nt_error *error);
 void nt_edits_free(nt_buffer_edits *edits);
 
 /* Replaces `removed` bytes of a source buffer by others, which must live as long as the edits. The
@@ -93,6 +109,13 @@ nt_edited_buffer *nt_edits_of(nt_buffer_edits *edits, uint32_t buffer);
 /* Adds bytes behind the end of a buffer: of a view, whose byteOffset will be set, or NT_NONE. */
 nt_status nt_edits_add_bytes(nt_buffer_edits *edits, uint32_t buffer, uint32_t view, const void *bytes, size_t size,
 	nt_error *error);
+
+/* The same of the packed bytes of a view, which its extension refers to. */
+nt_status nt_edits_add_packed(nt_buffer_edits *edits, uint32_t buffer, uint32_t view, const void *bytes, size_t size,
+	nt_error *error);
+
+/* The number of a new view, of which nothing is said yet. */
+uint32_t nt_edits_new_view(nt_buffer_edits *edits);
 
 /* Adds a view with these bytes behind the end of a buffer. target and stride: 0 for none. */
 nt_status nt_edits_add_view(nt_buffer_edits *edits, uint32_t buffer, const void *bytes, size_t size,

@@ -1,0 +1,325 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Views that meshoptimizer packed stay packed, by the extension, mode and filter that they have.
+ *
+ * Edits know a packed view as a virtual buffer, which was decompressed. What is put into it is what stands before its
+ * filter, since undoing a filter and applying it again would round what is there: a copied vertex is a copy of those
+ * bytes. New elements that go with a packed view are gathered in one new view for each kind of them, as gltfpack has
+ * them: a view costs more than many of its elements.
+ *
+ * A packed view names two buffers. One has the packed bytes. In the other a reader that does not know the extension
+ * finds the plain ones, if it has bytes at all; there the view takes the place that its new length needs.
+ */
+#include "gltf/bytes/packed_views.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "gltf/accessor.h"
+
+nt_gltf_packing nt_packing_of(const nt_buffer_edits *edits, uint32_t view)
+{
+	const nt_gltf *document = edits->document;
+	nt_gltf_packing p = {.extension = NULL};
+	if (!edits->keeps_packed || view >= edits->view_count || nt_gltf_get_packing(document, view, &p, NULL) ||
+		p.buffer >= document->buffer_count || p.place >= document->buffer_count)
+		return (nt_gltf_packing){.extension = NULL};
+	return p;
+}
+
+nt_gltf_packing nt_packing_of_accessor(const nt_buffer_edits *edits, uint32_t accessor)
+{
+	nt_gltf_accessor a;
+	if (nt_gltf_get_accessor(edits->document, accessor, "", &a, NULL) != NT_OK || a.view == NT_NONE)
+		return (nt_gltf_packing){.extension = NULL};
+	return nt_packing_of(edits, a.view);
+}
+
+nt_status nt_packed_bytes(nt_buffer_edits *edits, uint32_t buffer, uint64_t offset, const unsigned char **bytes,
+	nt_error *error)
+{
+	if (buffer < NT_GLTF_VIRTUAL || !edits->keeps_packed)
+		return NT_OK;
+	const uint32_t view = edits->document->virtuals[buffer - NT_GLTF_VIRTUAL].view;
+	nt_edited_buffer *edited = nt_edits_of(edits, buffer);
+	const nt_gltf_packing p = nt_packing_of(edits, view);
+	if (!edited->unfiltered && p.extension && strcmp(p.view.filter, "NONE") != 0) {
+		const nt_status status = nt_gltf_unfiltered_view(edits->document, view, &edited->unfiltered, error);
+		if (status)
+			return status;
+	}
+	if (edited->unfiltered)
+		*bytes = edited->unfiltered + offset;
+	return NT_OK;
+}
+
+/* ---- tangents ---- */
+
+/* An attribute that is packed, and how. */
+static bool find_packed_attribute(const nt_buffer_edits *edits, const nt_json_value *attributes, const char *name,
+	nt_gltf_accessor *a, nt_gltf_packing *packing)
+{
+	uint64_t index;
+	if (!nt_json_get_uint64(nt_json_find(attributes, name), &index) ||
+		nt_gltf_get_accessor(edits->document, index, "", a, NULL) != NT_OK || a->view == NT_NONE)
+		return false;
+	*packing = nt_packing_of(edits, a->view);
+	return packing->extension && strcmp(packing->view.mode, "ATTRIBUTES") == 0;
+}
+
+static nt_precision precision_of(const nt_gltf_accessor *a)
+{
+	if (!a->normalized)
+		return NT_PRECISION_FLOAT;
+	return a->component_type == NT_GLTF_BYTE ? NT_PRECISION_BYTE :
+		a->component_type == NT_GLTF_SHORT ? NT_PRECISION_SHORT : NT_PRECISION_FLOAT;
+}
+
+/* The bits of what an attribute's filter is applied to. */
+static nt_status find_bits(nt_buffer_edits *edits, const nt_gltf_accessor *a, const char *filter, int *bits,
+	nt_error *error)
+{
+	const unsigned char *elements = NULL;
+	nt_gltf_view view;
+	nt_status status = nt_gltf_elements(edits->document, a, &elements, error);
+	if (!status)
+		status = nt_gltf_get_view(edits->document, a->view, "", &view, error);
+	if (!status && elements)
+		status = nt_packed_bytes(edits, view.buffer, view.offset + a->offset, &elements, error);
+	*bits = status || !elements ? 0 : nt_filter_bits(filter, elements, (size_t)a->count, a->stride,
+		(int)a->component_type, a->components);
+	return status;
+}
+
+nt_status nt_packed_tangents(nt_buffer_edits *edits, const nt_json_value *attributes, nt_precision wanted,
+	nt_gltf_packing *packing, nt_tangent_filter *filter, nt_error *error)
+{
+	static const int most[] = {[NT_PRECISION_SHORT] = 16, [NT_PRECISION_BYTE] = 8};
+	nt_gltf_accessor a;
+	*filter = (nt_tangent_filter){.precision = wanted == NT_PRECISION_AUTO ? NT_PRECISION_FLOAT : wanted,
+		.filter = "NONE"};
+	const bool found = find_packed_attribute(edits, attributes, "TANGENT", &a, packing) ||
+		find_packed_attribute(edits, attributes, "NORMAL", &a, packing);
+	nt_status status = NT_OK;
+	if (found) {
+		const nt_precision own = precision_of(&a);
+		if (wanted == NT_PRECISION_AUTO)
+			filter->precision = own;
+		const bool integers = filter->precision != NT_PRECISION_FLOAT;
+		const char *kind = integers ? "OCTAHEDRAL" : "EXPONENTIAL";
+		if (strcmp(packing->view.filter, kind) == 0 && (integers || wanted == NT_PRECISION_AUTO))
+			filter->filter = kind;
+		if (filter->filter == kind && filter->precision == own)
+			status = find_bits(edits, &a, kind, &filter->bits, error);
+		if (filter->filter == kind && !filter->bits)
+			filter->bits = integers ? most[filter->precision] : 23;
+	} else if (!find_packed_attribute(edits, attributes, "POSITION", &a, packing)) {
+		*packing = (nt_gltf_packing){.extension = NULL};
+	}
+	packing->view.filter = filter->filter;
+	packing->view.stride = nt_precision_bytes(filter->precision);
+	return status;
+}
+
+/* ---- packing ---- */
+
+/* What a packed view's JSON says of its bytes. */
+static void describe(nt_json *json, nt_json_value *extension, const nt_gltf_packing *p, size_t count, size_t size)
+{
+	nt_json_set_uint64(json, nt_json_put(json, extension, "byteLength"), size);
+	nt_json_set_uint64(json, nt_json_put(json, extension, "byteStride"), p->view.stride);
+	const char *mode = nt_json_get_string(nt_json_find(extension, "mode"), NULL);
+	if (!mode || strcmp(mode, p->view.mode) != 0)
+		nt_json_set_string(json, nt_json_put(json, extension, "mode"), p->view.mode, strlen(p->view.mode));
+	nt_json_set_uint64(json, nt_json_put(json, extension, "count"), count);
+}
+
+/* The packed bytes of elements, and those after the filter where somebody reads them. Both are in the arena. */
+static nt_status pack(nt_buffer_edits *edits, nt_gltf_packing *p, const unsigned char *bytes, size_t count,
+	unsigned char **packed, size_t *packed_size, const unsigned char **plain, nt_error *error)
+{
+	if (strcmp(p->view.mode, "TRIANGLES") == 0 && count % 3)
+		p->view.mode = "INDICES";
+	p->view.count = count;
+	*packed = NULL;
+	*plain = bytes;
+	nt_status status = nt_meshopt_pack(&p->view, bytes, packed, packed_size, error);
+	if (!status && !nt_arena_adopt(&edits->arena, *packed))
+		status = nt_fail_memory(error);
+	if (status || edits->document->buffers[p->place].storage == NT_GLTF_STORED_NOWHERE)
+		return status;
+	const size_t size = count * (size_t)p->view.stride;
+	unsigned char *filtered = nt_arena_alloc(&edits->arena, size, 1);
+	if (!filtered)
+		return nt_fail_memory(error);
+	*plain = memcpy(filtered, bytes, size);
+	return nt_meshopt_filter(&p->view, filtered, "", error);
+}
+
+nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigned char *bytes, size_t size,
+	nt_error *error)
+{
+	nt_json *json = edits->document->json;
+	nt_json_value *object = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), view);
+	nt_gltf_packing p = nt_packing_of(edits, view);
+	const size_t old_size = (size_t)(p.view.count * p.view.stride), old_packed_size = (size_t)p.view.packed_size;
+	const uint32_t stride = nt_edits_of(edits, edits->document->virtual_of[view])->new_stride;
+	if (stride)
+		p.view.stride = stride;
+	const size_t count = size / (size_t)p.view.stride;
+	unsigned char *packed;
+	const unsigned char *plain;
+	size_t packed_size;
+	nt_status status = pack(edits, &p, bytes, count, &packed, &packed_size, &plain, error);
+	if (status)
+		return status;
+	uint64_t offset = 0;
+	nt_json_get_uint64(nt_json_find(object, "byteOffset"), &offset);
+	describe(json, nt_gltf_compression_of(object, NULL), &p, count, packed_size);
+	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), size);
+	nt_gltf_view_changed(edits->document, view);
+
+	/* where the old ones are, if these are nobody else's */
+	if (nt_byte_users_count(&edits->users, p.buffer, p.offset, p.offset + old_packed_size) == 1)
+		status = nt_edits_replace(edits, p.buffer, p.offset, old_packed_size, packed, packed_size, error);
+	else
+		status = nt_edits_add_packed(edits, p.buffer, view, packed, packed_size, error);
+	if (status)
+		return status;
+	if (nt_byte_users_count(&edits->users, p.place, offset, offset + old_size) == 1)
+		return nt_edits_replace(edits, p.place, offset, old_size, plain, size, error);
+	return nt_edits_add_bytes(edits, p.place, view, plain, size, error);
+}
+
+static const unsigned char nothing[1];
+
+/* A view that holds nothing any more is free for a new one. */
+static nt_status release_view(nt_buffer_edits *edits, uint32_t view, const nt_gltf_packing *p, uint64_t size,
+	nt_error *error)
+{
+	nt_json *json = edits->document->json;
+	nt_json_value *object = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), view);
+	uint64_t offset = 0;
+	nt_status status = NT_OK;
+	nt_json_get_uint64(nt_json_find(object, "byteOffset"), &offset);
+	if (nt_byte_users_count(&edits->users, p->buffer, p->offset, p->offset + p->view.packed_size) == 1)
+		status = nt_edits_replace(edits, p->buffer, p->offset, p->view.packed_size, nothing, 0, error);
+	if (!status && nt_byte_users_count(&edits->users, p->place, offset, offset + size) == 1)
+		status = nt_edits_replace(edits, p->place, offset, size, nothing, 0, error);
+	nt_json_remove(json, object, "extensions");
+	nt_json_set_uint64(json, nt_json_put(json, object, "buffer"), p->buffer);
+	edits->document->virtual_of[view] = NT_NONE;
+	nt_gltf_view_changed(edits->document, view);
+	edits->is_free[view] = true;
+	edits->free_views[edits->free_count++] = view;
+	return status;
+}
+
+nt_status nt_packed_release(nt_buffer_edits *edits, uint32_t index, uint64_t offset, uint64_t length, nt_error *error)
+{
+	nt_gltf_view view;
+	const nt_gltf_packing p = nt_packing_of(edits, index);
+	if (!p.extension || nt_gltf_get_view(edits->document, index, "", &view, NULL) != NT_OK)
+		return nt_edits_release(edits, index, offset, length, error);
+	if (view.buffer < NT_GLTF_VIRTUAL || length % p.view.stride ||
+		nt_byte_users_count(&edits->users, view.buffer, offset, offset + length) != 1)
+		return NT_OK;
+	const nt_json_value *object = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), index);
+	if (length < view.length)
+		return nt_edits_replace(edits, view.buffer, offset, length, nothing, 0, error);
+	return nt_json_count(nt_json_find(object, "extensions")) == 1
+		? release_view(edits, index, &p, view.length, error) : NT_OK;
+}
+
+/* ---- new views ---- */
+
+static bool is_same_kind(const nt_packed_view *a, const nt_gltf_packing *p, uint32_t target)
+{
+	const nt_gltf_packing *q = &a->packing;
+	return a->target == target && strcmp(q->extension, p->extension) == 0 && q->buffer == p->buffer &&
+		q->place == p->place && q->view.stride == p->view.stride && strcmp(q->view.mode, p->view.mode) == 0 &&
+		strcmp(q->view.filter, p->view.filter) == 0;
+}
+
+static nt_status find_packed(nt_buffer_edits *edits, const nt_gltf_packing *p, uint32_t target,
+	nt_packed_view **found, nt_error *error)
+{
+	for (size_t i = 0; i < edits->packed_count; i++)
+		if (is_same_kind(&edits->packed[i], p, target)) {
+			*found = &edits->packed[i];
+			return NT_OK;
+		}
+	if (!nt_grow((void **)&edits->packed, &edits->packed_capacity, edits->packed_count + 1,
+		    sizeof *edits->packed))
+		return nt_fail_memory(error);
+	nt_packed_view *made = &edits->packed[edits->packed_count++];
+	*made = (nt_packed_view){.packing = *p, .target = target};
+	made->view = nt_edits_new_view(edits);
+	*found = made;
+	return NT_OK;
+}
+
+nt_status nt_packed_add(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_packing *packing, const void *bytes,
+	size_t size, uint32_t target, uint32_t stride, uint32_t *view, uint64_t *offset, nt_error *error)
+{
+	*offset = 0;
+	if (!packing->extension)
+		return nt_edits_add_view(edits, buffer, bytes, size, target, stride, view, error);
+	nt_gltf_packing p = *packing;
+	if (strcmp(p.view.mode, "TRIANGLES") == 0 && size / p.view.stride % 3)
+		p.view.mode = "INDICES";
+	nt_packed_view *to = NULL;
+	const nt_status status = find_packed(edits, &p, target, &to, error);
+	if (status)
+		return status;
+	*view = to->view;
+	*offset = to->bytes.size;
+	nt_buffer_append(&to->bytes, bytes, size);
+	return to->bytes.failed ? nt_fail_memory(error) : NT_OK;
+}
+
+void nt_gltf_place_accessor(nt_json *json, nt_json_value *accessor, uint32_t view, uint64_t offset)
+{
+	nt_json_set_uint64(json, nt_json_put(json, accessor, "bufferView"), view);
+	nt_json_remove(json, accessor, "byteOffset");
+	nt_json_remove(json, accessor, "sparse");
+	if (offset)
+		nt_json_set_uint64(json, nt_json_put(json, accessor, "byteOffset"), offset);
+}
+
+static nt_status finish(nt_buffer_edits *edits, nt_packed_view *new, nt_error *error)
+{
+	nt_json *json = edits->document->json;
+	nt_json_value *object = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), new->view);
+	nt_gltf_packing *p = &new->packing;
+	const unsigned char *bytes = (const unsigned char *)new->bytes.data, *plain;
+	const size_t size = new->bytes.size, count = size / (size_t)p->view.stride;
+	unsigned char *packed;
+	size_t packed_size;
+	nt_status status = pack(edits, p, bytes, count, &packed, &packed_size, &plain, error);
+	if (status)
+		return status;
+	nt_json_set_uint64(json, nt_json_put(json, object, "buffer"), p->place);
+	nt_json_set_uint64(json, nt_json_put(json, object, "byteOffset"), 0);
+	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), size);
+	if (new->target == NT_GLTF_ARRAY_BUFFER)
+		nt_json_set_uint64(json, nt_json_put(json, object, "byteStride"), p->view.stride);
+	if (new->target)
+		nt_json_set_uint64(json, nt_json_put(json, object, "target"), new->target);
+	nt_json_value *extension = nt_json_put(json, nt_json_put(json, object, "extensions"), p->extension);
+	nt_json_set_uint64(json, nt_json_put(json, extension, "buffer"), p->buffer);
+	nt_json_set_uint64(json, nt_json_put(json, extension, "byteOffset"), 0);
+	describe(json, extension, p, count, packed_size);
+	if (strcmp(p->view.filter, "NONE") != 0)
+		nt_json_set_string(json, nt_json_put(json, extension, "filter"), p->view.filter,
+			strlen(p->view.filter));
+	status = nt_edits_add_packed(edits, p->buffer, new->view, packed, packed_size, error);
+	return status ? status : nt_edits_add_bytes(edits, p->place, new->view, plain, size, error);
+}
+
+nt_status nt_packed_finish(nt_buffer_edits *edits, nt_error *error)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < edits->packed_count; i++)
+		status = finish(edits, &edits->packed[i], error);
+	return status;
+}
