@@ -54,6 +54,9 @@ typedef struct nt_check {
 	nt_mirror_edge *mirror_edges; /* [mirror_edge_count] by their unmirrored sides, ascending */
 	size_t mirror_edge_count;
 	uint32_t *islands;        /* [triangle_count] NT_NONE: has no edges */
+	uint32_t *patches;        /* [triangle_count] parents of what is connected in UV space and of one orientation;
+	                             NULL: there is but one */
+	uint64_t *flipped;        /* by flips.c: [triangle_count] bits; NULL: none */
 	bool failed;              /* out of memory while reporting */
 } nt_check;
 
@@ -103,6 +106,12 @@ static inline bool nt_is_written(const nt_check *check)
 static inline bool nt_is_gltf(const nt_check *check)
 {
 	return nt_format_is_gltf(nt_is_written(check) ? check->options->written : check->scene->format);
+}
+
+/* The orientation that a triangle has for its surroundings: none where it is flipped. */
+static inline int nt_settled_orientation(const nt_check *check, size_t triangle)
+{
+	return check->flipped && nt_bit(check->flipped, triangle) ? 0 : check->surface.orientation[triangle];
 }
 
 /* Whether what is wrong with texture coordinates may show in the light: other formats than glTF do not tell. */
@@ -186,6 +195,7 @@ nt_status nt_check_geometry(nt_check *check); /* geometry.c: the surface's trian
                                                  triangles */
 nt_status nt_check_edges(nt_check *check);    /* edges.c: boundary, non-manifold, winding, islands' numbers */
 nt_status nt_check_islands(nt_check *check);  /* islands.c */
+nt_status nt_check_flips(nt_check *check);    /* flips.c: called by islands.c, once islands are measured */
 nt_status nt_check_seams(nt_check *check);    /* seams.c */
 nt_status nt_check_tangents(nt_check *check); /* tangents.c */
 nt_status nt_check_growth(nt_check *check);   /* growth.c: shared and copied vertices */

@@ -142,6 +142,18 @@ static void find_mirror(const nt_edge_side *sides, size_t count, mirror_list *li
 		list->failed = true;
 }
 
+/* Unites those of an edge of three and more that have one orientation. */
+static void unite_patches(const nt_check *check, const nt_edge_side *sides, size_t count)
+{
+	const nt_edge_side *last[3] = {NULL, NULL, NULL};
+	for (size_t i = 0; i < count && check->patches; i++) {
+		const nt_edge_side **before = &last[nt_edge_orientation(&sides[i]) + 1];
+		if (*before)
+			unite(check->patches, sides[i].side / 3, (*before)->side / 3);
+		*before = &sides[i];
+	}
+}
+
 static void check_edge(nt_check *check, const nt_edge_side *sides, size_t count, bin_result *result,
 	mirror_list *mirrors)
 {
@@ -165,6 +177,8 @@ static void check_edge(nt_check *check, const nt_edge_side *sides, size_t count,
 		unite(check->islands, sides[0].side / 3, sides[1].side / 3);
 	else
 		result->uv_seams++;
+	if (count > 2 || nt_sides_meet(&check->surface, sides[0].side, sides[1].side))
+		unite_patches(check, sides, count);
 }
 
 static void check_bin(void *context, size_t bin, const nt_edge_side *sides, size_t count, unsigned slot)
@@ -263,7 +277,12 @@ static nt_status allocate(nt_check *check)
 	memset(check->boundary, 0, words * sizeof *check->boundary);
 	for (size_t t = 0; t < triangles; t++)
 		check->islands[t] = (uint32_t)t;
-	return NT_OK;
+	if (!check->facts->triangles[0] || !check->facts->triangles[2])
+		return NT_OK;
+	check->patches = nt_scratch_alloc(check->scratch, triangles, sizeof *check->patches);
+	if (check->patches)
+		memcpy(check->patches, check->islands, triangles * sizeof *check->patches);
+	return check->patches ? NT_OK : NT_ERROR_MEMORY;
 }
 
 static nt_status check_bins(nt_check *check, const nt_edge_bins *bins)

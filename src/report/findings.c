@@ -249,6 +249,9 @@ static void add_scene_finding(nt_check *check, const mesh_table *table, const nt
 		.seam = NT_NONE,
 		.island = NT_NONE};
 	finding.alike = finding.mesh != NT_NONE;
+	if (finding.mesh != NT_NONE && found->count > 1)
+		finding.share = fmin(1.0, (double)found->count /
+			fmax(1.0, (double)check->report->meshes[finding.mesh].triangle_count));
 	if (found->votes) {
 		const size_t count = (size_t)found->votes_side * found->votes_side;
 		int8_t *votes = nt_arena_alloc(&check->report->arena, count, sizeof *votes);

@@ -21,7 +21,7 @@ static nt_status check_shared(nt_check *check)
 		return NT_ERROR_MEMORY;
 	memset(sides, 0, vertex_count);
 	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
-		const int sign = s->orientation[c / 3];
+		const int sign = nt_settled_orientation(check, c / 3);
 		if (sign)
 			sides[nt_side_vertex(s, c)] |= sign > 0 ? UNMIRRORED : MIRRORED;
 	}

@@ -94,13 +94,24 @@ static void measure_islands(nt_check *check)
 		nt_source_range(check->scene, facts->islands[i].minimum, facts->islands[i].maximum);
 }
 
+/* Without what is flipped in it, unless that is all. */
 static nt_island_kind kind_of(const nt_island *island)
 {
-	if (island->triangles[0] && island->triangles[2])
+	const bool mirrored = island->triangles[0] > island->flipped[0];
+	const bool normal = island->triangles[2] > island->flipped[2];
+	if (mirrored != normal)
+		return mirrored ? NT_ISLAND_MIRRORED : NT_ISLAND_NORMAL;
+	if (mirrored)
 		return NT_ISLAND_MIXED;
 	if (island->triangles[0])
 		return NT_ISLAND_MIRRORED;
 	return island->triangles[2] ? NT_ISLAND_NORMAL : NT_ISLAND_DEGENERATE;
+}
+
+/* Mirrored triangles that are not flipped alone. */
+static size_t mirrored_in(const nt_island *island)
+{
+	return island->triangles[0] - island->flipped[0];
 }
 
 /* ---- which mirrored triangles lie on unmirrored ones ---- */
@@ -142,7 +153,7 @@ static void take_samples(const nt_check *check, grid *g, size_t mirrored_count, 
 	const size_t stride = (mirrored_count + SAMPLE_COUNT - 1) / SAMPLE_COUNT;
 	size_t seen = 0;
 	for (size_t t = 0; t < s->triangle_count; t++) {
-		if (s->orientation[t] >= 0 || check->islands[t] == NT_NONE)
+		if (nt_settled_orientation(check, t) >= 0 || check->islands[t] == NT_NONE)
 			continue;
 		const bool first = !met[check->islands[t]];
 		met[check->islands[t]] = 1;
@@ -381,7 +392,7 @@ static void visit_vertices(const nt_check *check, bool mirrored, uint32_t *last,
 	memset(last, 0xff, check->mesh->vertex_count * sizeof *last);
 	for (size_t t = 0; t < s->triangle_count; t++) {
 		const uint32_t island = check->islands[t];
-		if (s->orientation[t] != (mirrored ? -1 : 1) || island == NT_NONE ||
+		if (nt_settled_orientation(check, t) != (mirrored ? -1 : 1) || island == NT_NONE ||
 			check->facts->islands[island].kind != NT_ISLAND_MIXED)
 			continue;
 		for (uint32_t side = (uint32_t)(3 * t); side < 3 * t + 3; side++) {
@@ -435,7 +446,7 @@ static size_t size_of(const nt_island *island)
 {
 	return code_of(island) == NT_CODE_UV_MIXED_WINDING_ISLAND
 		? island->triangles[0] + island->triangles[1] + island->triangles[2]
-		: island->triangles[0];
+		: mirrored_in(island);
 }
 
 static void tally_island(const nt_check *check, nt_tally *tally, size_t index)
@@ -466,14 +477,14 @@ static void report_overlapping(nt_check *check)
 	size_t count = 0, mirrored = 0;
 	for (size_t k = 0; k < check->facts->island_count; k++) {
 		const nt_island *island = &check->facts->islands[k];
-		if (island->triangles[0] == 0 || code_of(island) != tally.code)
+		if (mirrored_in(island) == 0 || code_of(island) != tally.code)
 			continue;
 		tally.island = count++ ? 0 : (uint32_t)k + 1;
-		mirrored += island->triangles[0];
+		mirrored += mirrored_in(island);
 		tally_island(check, &tally, k);
 	}
 	tally.count = count;
-	tally.share = 1e-9; /* behind what there is something to do about */
+	tally.share *= 0.1; /* there is nothing to be done */
 	nt_tally_number(&tally, "mirrored_triangles", (double)mirrored);
 	nt_check_report(check, &tally, NULL);
 }
@@ -488,7 +499,7 @@ static void report_islands(nt_check *check)
 		nt_tally rest = {.code = codes[i]};
 		for (size_t k = 0; k < check->facts->island_count; k++) {
 			const nt_island *island = &check->facts->islands[k];
-			if (island->triangles[0] == 0 || code_of(island) != codes[i])
+			if (mirrored_in(island) == 0 || code_of(island) != codes[i])
 				continue;
 			if (seen++ < NT_SINGLE_FINDINGS)
 				report_island(check, k);
@@ -511,14 +522,16 @@ nt_status nt_check_islands(nt_check *check)
 	if (!facts->islands)
 		return NT_ERROR_MEMORY;
 	measure_islands(check);
+	nt_status status = nt_check_flips(check);
 	size_t mirrored = 0;
 	for (size_t i = 0; i < facts->island_count; i++) {
 		nt_island *island = &facts->islands[i];
 		island->kind = kind_of(island);
 		facts->island_kinds[island->kind]++;
-		mirrored += island->triangles[0];
+		mirrored += mirrored_in(island);
 	}
-	nt_status status = mirrored ? find_covered(check, mirrored) : NT_OK;
+	if (!status && mirrored)
+		status = find_covered(check, mirrored);
 	if (!status && facts->island_kinds[NT_ISLAND_MIXED])
 		status = find_overlapping(check);
 	if (!status)

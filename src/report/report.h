@@ -156,6 +156,7 @@ typedef enum nt_island_kind {
 typedef struct nt_island {
 	nt_island_kind kind;
 	size_t triangles[3];  /* mirrored, degenerate, normal: [orientation + 1] */
+	size_t flipped[3];    /* of these: see flips.c */
 	double area;          /* in space */
 	double covered;       /* share of the mirrored triangles that lie on unmirrored ones, NaN: none */
 	double texel_density[2]; /* texels per unit: median by area, least; NaN: not measured, or the size is

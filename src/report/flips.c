@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Flipped triangles: a few that are wound against what lies around them. A patch is what is connected in UV space and
+ * of one orientation. One that is a small part of its island, in triangles and in area, is no fold but a mistake of one
+ * corner or a relaxed knot: one finding for each island, at the triangles themselves. So is an island of its own that
+ * lies inside a much larger one of the other orientation, unless its texels are those of a triangle there: then it is a
+ * mirrored detail.
+ *
+ * Needles whose orientation is nothing but the rounding of their coordinates are passed over: they are nearly
+ * degenerate, which geometry.c tells.
+ *
+ * What is flipped or a needle makes no mirror edge, no fold, no overlap and no shared vertex: its bit is set in
+ * check->flipped, and its mirror edges go.
+ */
+#include "report/check.h"
+
+#include <math.h>
+#include <string.h>
+#include "base/hash_index.h"
+
+/*
+ * Of the 1 244 islands of 431 public files that have both orientations and are not their own twins, the largest patch
+ * against the rest is either below these shares or, mostly, above a fifth: symmetric halves, strips folded over. One
+ * triangle is never less than a twentieth of an island of fewer than twenty, so that a single one counts up to a tenth.
+ */
+static const double FLIPPED_SHARE = 0.05, SINGLE_SHARE = 0.1;
+
+typedef struct patch {
+	uint32_t first;             /* triangle */
+	uint32_t triangles, slivers;
+	uint32_t sides;             /* that lie against the other orientation */
+	uint32_t host;              /* the largest island there; NT_NONE */
+	double area;
+	bool small, flipped;
+} patch;
+
+typedef struct patches {
+	uint32_t *numbers; /* [triangle_count] NT_NONE: no orientation */
+	patch *items;
+	uint32_t count;
+} patches;
+
+static size_t island_size(const nt_island *island)
+{
+	return island->triangles[0] + island->triangles[1] + island->triangles[2];
+}
+
+/* Whether rounding of the coordinates to float may turn the sign of the area: each edge is off by at most two half
+ * units in the last place along each axis. */
+static bool is_sliver(const nt_surface *s, size_t t)
+{
+	const float *a = nt_side_texcoord(s, 3 * t), *b = nt_side_texcoord(s, 3 * t + 1),
+		    *c = nt_side_texcoord(s, 3 * t + 2);
+	const double x1 = (double)b[0] - a[0], y1 = (double)b[1] - a[1], x2 = (double)c[0] - a[0],
+		     y2 = (double)c[1] - a[1];
+	double size = 0.0;
+	for (int i = 0; i < 2; i++)
+		size = fmax(size, fmax(fabs(a[i]), fmax(fabs(b[i]), fabs(c[i]))));
+	const double error = 2.0 * 0x1p-24 * size * (fabs(x1) + fabs(y1) + fabs(x2) + fabs(y2));
+	return fabs(x1 * y2 - x2 * y1) <= error;
+}
+
+/* From parents to numbers, which count by the lowest triangles. */
+static nt_status number_patches(nt_check *check, patches *p)
+{
+	const nt_surface *s = &check->surface;
+	p->numbers = check->patches;
+	p->count = 0;
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		const uint32_t parent = p->numbers[t];
+		if (!s->orientation[t] || check->islands[t] == NT_NONE)
+			p->numbers[t] = NT_NONE;
+		else
+			p->numbers[t] = parent == t ? p->count++ : p->numbers[parent];
+	}
+	p->items = nt_scratch_alloc(check->scratch, p->count, sizeof *p->items);
+	return p->items ? NT_OK : NT_ERROR_MEMORY;
+}
+
+static void measure_patches(const nt_check *check, patches *p)
+{
+	const nt_surface *s = &check->surface;
+	const nt_island *islands = check->facts->islands;
+	for (uint32_t i = 0; i < p->count; i++)
+		p->items[i] = (patch){.first = NT_NONE, .host = NT_NONE};
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		if (p->numbers[t] == NT_NONE)
+			continue;
+		patch *one = &p->items[p->numbers[t]];
+		one->first = one->first == NT_NONE ? (uint32_t)t : one->first;
+		one->triangles++;
+		one->slivers += is_sliver(s, t);
+		one->area += nt_triangle_area(s, t);
+	}
+	for (size_t i = 0; i < check->mirror_edge_count; i++) {
+		for (int side = 0; side < 2; side++) {
+			const uint32_t t = check->mirror_edges[i].sides[side] / 3;
+			const uint32_t other = check->islands[check->mirror_edges[i].sides[1 - side] / 3];
+			patch *one = p->numbers[t] == NT_NONE ? NULL : &p->items[p->numbers[t]];
+			if (!one || other == NT_NONE)
+				continue;
+			one->sides++;
+			if (one->host == NT_NONE || island_size(&islands[other]) > island_size(&islands[one->host]))
+				one->host = other;
+		}
+	}
+}
+
+static bool is_small(const patch *one, size_t triangles, double area)
+{
+	const double most = one->triangles == 1 ? SINGLE_SHARE : FLIPPED_SHARE;
+	return (double)one->triangles <= most * (double)triangles && one->area <= most * area;
+}
+
+/* Whether a patch is a whole island, which has texture coordinates of its own. */
+static bool is_island(const nt_check *check, const patch *one)
+{
+	return island_size(&check->facts->islands[check->islands[one->first]]) == one->triangles;
+}
+
+/* Whether a patch may be flipped, by itself. */
+static bool is_candidate(const nt_check *check, patch *one)
+{
+	const uint32_t own = check->islands[one->first];
+	const bool alone = is_island(check, one);
+	/* n triangles in a row have n + 2 outer sides */
+	if (alone && (one->host == NT_NONE || 2 * one->sides <= one->triangles + 2))
+		return false;
+	const nt_island *host = &check->facts->islands[alone ? one->host : own];
+	one->host = alone ? one->host : own;
+	return one->slivers == one->triangles || is_small(one, island_size(host) + (alone ? one->triangles : 0),
+		host->area + (alone ? one->area : 0.0));
+}
+
+/* What lies beside small patches alone is cut off by them, and not flipped itself. */
+static void choose_flipped(const nt_check *check, patches *p)
+{
+	for (uint32_t i = 0; i < p->count; i++)
+		p->items[i].small = is_candidate(check, &p->items[i]);
+	for (size_t i = 0; i < check->mirror_edge_count; i++) {
+		const uint32_t *sides = check->mirror_edges[i].sides;
+		for (int k = 0; k < 2; k++) {
+			const uint32_t number = p->numbers[sides[k] / 3], other = p->numbers[sides[1 - k] / 3];
+			if (number == NT_NONE || other == NT_NONE)
+				continue;
+			patch *one = &p->items[number];
+			one->flipped |= one->small && !p->items[other].small &&
+				one->host == check->islands[sides[1 - k] / 3];
+		}
+	}
+}
+
+/* ---- islands whose texels are those of another triangle ---- */
+
+static uint64_t hash_corners(const nt_surface *s, size_t t)
+{
+	uint64_t hash = 0; /* in any order */
+	for (size_t side = 3 * t; side < 3 * t + 3; side++)
+		hash += nt_hash_floats(nt_side_texcoord(s, side)[0], nt_side_texcoord(s, side)[1]);
+	return hash;
+}
+
+static nt_status spare_twins(const nt_check *check, patches *p)
+{
+	const nt_surface *s = &check->surface;
+	nt_hash_index candidates = {0};
+	bool failed = false;
+	for (size_t t = 0; t < s->triangle_count && !failed; t++)
+		if (p->numbers[t] != NT_NONE && p->items[p->numbers[t]].flipped &&
+			is_island(check, &p->items[p->numbers[t]]))
+			failed = !nt_hash_index_add(&candidates, hash_corners(s, t), (uint32_t)t);
+	for (size_t t = 0; t < s->triangle_count && candidates.count && !failed; t++) {
+		const uint64_t hash = hash_corners(s, t);
+		size_t at = NT_HASH_BEGIN;
+		for (uint32_t found; (found = nt_hash_index_next(&candidates, hash, &at)) != NT_NONE;)
+			if (s->orientation[t] + s->orientation[found] == 0 && hash_corners(s, found) == hash)
+				p->items[p->numbers[found]].flipped = false;
+	}
+	nt_hash_index_free(&candidates);
+	return failed ? NT_ERROR_MEMORY : NT_OK;
+}
+
+/* ---- what becomes of them ---- */
+
+static bool is_flipped(const nt_check *check, uint32_t side)
+{
+	return nt_bit(check->flipped, side / 3);
+}
+
+/* Mirror edges stay in their order. */
+static void drop_mirror_edges(nt_check *check)
+{
+	const size_t sides = 3 * check->surface.triangle_count;
+	size_t kept = 0;
+	for (size_t i = 0; i < check->mirror_edge_count; i++) {
+		const nt_mirror_edge edge = check->mirror_edges[i];
+		if (is_flipped(check, edge.sides[0]) || is_flipped(check, edge.sides[1])) {
+			nt_bit_clear(check->mirrors, edge.sides[0]);
+			nt_bit_clear(check->mirrors_against, edge.sides[0]);
+		} else {
+			check->mirror_edges[kept++] = edge;
+		}
+	}
+	check->mirror_edge_count = kept;
+	if (kept)
+		nt_bit_ranks(check->mirrors, sides, check->mirror_ranks);
+}
+
+static void report_flipped(nt_check *check, const patches *p)
+{
+	nt_report_mesh *facts = check->facts;
+	const nt_surface *s = &check->surface;
+	nt_tally tally = {.code = NT_CODE_UV_FLIPPED_TRIANGLE};
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		const patch *one = p->numbers[t] == NT_NONE ? NULL : &p->items[p->numbers[t]];
+		if (!one || !one->flipped)
+			continue;
+		nt_bit_set(check->flipped, t);
+		facts->islands[check->islands[t]].flipped[s->orientation[t] + 1]++;
+		if (is_sliver(s, t))
+			continue;
+		tally.island = tally.count == 0 || tally.island == one->host + 1 ? one->host + 1 : 0;
+		nt_tally_triangle(check, &tally, t, NAN);
+	}
+	nt_check_report(check, &tally, "%zu triangles", s->triangle_count);
+}
+
+nt_status nt_check_flips(nt_check *check)
+{
+	const size_t triangles = check->surface.triangle_count;
+	patches p;
+	if (!check->patches || !check->mirror_edge_count)
+		return NT_OK;
+	check->flipped = nt_scratch_alloc(check->scratch, nt_bit_words(triangles), sizeof *check->flipped);
+	nt_status status = check->flipped ? number_patches(check, &p) : NT_ERROR_MEMORY;
+	if (status)
+		return status;
+	memset(check->flipped, 0, nt_bit_words(triangles) * sizeof *check->flipped);
+	measure_patches(check, &p);
+	choose_flipped(check, &p);
+	status = spare_twins(check, &p);
+	if (status)
+		return status;
+	report_flipped(check, &p);
+	drop_mirror_edges(check);
+	return NT_OK;
+}

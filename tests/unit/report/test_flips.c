@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A few triangles that are wound against their surroundings, on a grid of 5 x 5 quads (50 triangles of one size) whose
+ * UVs are its positions.
+ */
+#include <math.h>
+#include "hand_mesh.h"
+
+enum { N = 5 };
+
+static uint32_t at(uint32_t x, uint32_t y)
+{
+	return y * (N + 1) + x;
+}
+
+static hand_mesh *make_grid(void)
+{
+	hand_mesh *h = hand_new();
+	for (int y = 0; y <= N; y++)
+		for (int x = 0; x <= N; x++)
+			hand_vertex(h, (float)x, (float)y, 0, (float)x, (float)y);
+	for (uint32_t y = 0; y < N; y++)
+		for (uint32_t x = 0; x < N; x++)
+			hand_quad(h, at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1));
+	h->mesh.wrap[0] = h->mesh.wrap[1] = NT_WRAP_CLAMP;
+	return h;
+}
+
+static void set_uv(hand_mesh *h, uint32_t vertex, float u, float v)
+{
+	h->texcoords[vertex][0] = u;
+	h->texcoords[vertex][1] = v;
+}
+
+/* Gives a triangle vertices of its own, with the coordinates of its corners in the order given. */
+static void cut_out(hand_mesh *h, uint32_t triangle, const float uv[3][2])
+{
+	for (uint32_t k = 0; k < 3; k++) {
+		uint32_t *vertex = &h->indices[3 * triangle + k];
+		const float *p = h->positions[*vertex];
+		*vertex = hand_vertex(h, p[0], p[1], p[2], uv[k][0], uv[k][1]);
+	}
+}
+
+/* What a mirrored part is told as, whatever its size. */
+static size_t mirror_findings(const nt_report *report)
+{
+	return hand_findings(report, NT_CODE_UV_MIRROR_SEAM) + hand_findings(report, NT_CODE_UV_MIRROR_OVERLAP) +
+		hand_findings(report, NT_CODE_UV_MIRROR_LONE) + hand_findings(report, NT_CODE_UV_MIXED_WINDING_ISLAND) +
+		hand_findings(report, NT_CODE_TAN_MIRROR_SHARED_VERTEX);
+}
+
+/* Like line 2289 of tinyrenderer's boggie/head.obj. */
+TEST(one_flipped_triangle_is_one_finding_at_its_own_place)
+{
+	hand_mesh *h = make_grid();
+	set_uv(h, at(N, 0), N - 0.75f, 0.75f); /* over the diagonal of its quad */
+	nt_report *report = hand_report(h, NULL);
+	const nt_report_finding *found = hand_finding(report, NT_CODE_UV_FLIPPED_TRIANGLE);
+	assert_string_equal(found->message, "1 of 50 triangles is flipped");
+	assert_int_equal(found->severity, NT_SEVERITY_WARNING);
+	assert_int_equal(found->spot_count, 1);
+	assert_int_equal(found->spots[0].triangle, 2 * (N - 1));
+	assert_int_equal(found->island, 0);
+	assert_int_equal(mirror_findings(report), 0);
+	assert_int_equal(report->meshes[0].triangles[0], 1);
+	assert_int_equal(report->meshes[0].seam_count, 0);
+	assert_int_equal(report->meshes[0].islands[0].kind, NT_ISLAND_NORMAL);
+	hand_free(h, report);
+}
+
+TEST(so_is_one_with_coordinates_of_its_own)
+{
+	static const uint32_t middle = 2 * (2 * N + 2); /* corners (2, 2), (3, 2), (3, 3) */
+	const float swapped[3][2] = {{2, 2}, {3, 3}, {3, 2}};
+	hand_mesh *h = make_grid();
+	cut_out(h, middle, swapped);
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->meshes[0].island_count, 2);
+	const nt_report_finding *found = hand_finding(report, NT_CODE_UV_FLIPPED_TRIANGLE);
+	assert_int_equal(found->count, 1);
+	assert_int_equal(found->spots[0].triangle, middle);
+	assert_int_equal(mirror_findings(report), 0);
+	hand_free(h, report);
+}
+
+/* The same triangle with the texels of another one: a mirrored detail, which is meant. */
+TEST(a_small_island_that_has_a_twin_is_mirrored)
+{
+	const float twin[3][2] = {{0, 0}, {1, 1}, {1, 0}};
+	hand_mesh *h = make_grid();
+	cut_out(h, 2 * (2 * N + 2), twin);
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE), 0);
+	assert_int_equal(hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP)->count, 1);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_SEAM), 1);
+	hand_free(h, report);
+}
+
+/* A column of 10 triangles folded over: a fifth of the island. */
+TEST(what_is_larger_is_a_fold)
+{
+	hand_mesh *h = make_grid();
+	for (uint32_t y = 0; y <= N; y++)
+		set_uv(h, at(N, y), N - 1.6f, (float)y);
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->meshes[0].triangles[0], 2 * N);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE), 0);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIXED_WINDING_ISLAND), 1);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_SEAM), 1);
+	hand_free(h, report);
+}
+
+/* A corner on the line between its neighbours but for one unit in the last place. */
+TEST(a_needle_whose_winding_is_rounding_is_nearly_degenerate_and_nothing_else)
+{
+	hand_mesh *h = make_grid();
+	set_uv(h, at(N, 0), nextafterf(N - 0.5f, 0), 0.5f);
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->meshes[0].triangles[0], 1);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE), 0);
+	assert_int_equal(hand_finding(report, NT_CODE_UV_NEAR_DEGENERATE)->count, 1);
+	assert_int_equal(mirror_findings(report), 0);
+	hand_free(h, report);
+}
+
+int main(void)
+{
+	return run_group("report/flips");
+}
