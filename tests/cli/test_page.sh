@@ -123,6 +123,13 @@ printf 'newmtl m\nmap_Kd large.tga\n' >large.mtl
 run --check --report=small.html --fail-on=never texture.obj
 value small.html 'r["images"][0]' | sed 's/.*base64,//' | base64 -d >small.jpg
 is "$(python3 -c 'import sys; b = open("small.jpg", "rb").read(); i = b.index(b"\xff\xc0"); print(b[i+7]*256 + b[i+8], b[i+5]*256 + b[i+6])')" "1024 512"
+# a finding with votes of blocks: up and down above, nothing and down below
+python3 -c 'import json, re
+text = open("pictures.html", encoding="utf-8").read()
+page = re.search(r"id=\"data\">(.*?)</script>", text, re.S)
+data = json.loads(page.group(1))
+data["files"][0]["findings"][0]["votes"] = [[90, -60], [5, -80]]
+open("votes.html", "w", encoding="utf-8").write(text[:page.start(1)] + json.dumps(data).replace("<", "\\u003c") + text[page.end(1):])'
 # w as it should be, and the reverse
 python3 "$ROOT/tests/support/images.py" write slope.png 32 32 '(128, 210, 220)'
 gltf half.gltf slope 'Object.assign(g, {images: [{uri: "slope.png"}], textures: [{source: 0}],

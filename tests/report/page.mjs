@@ -474,6 +474,21 @@ async function clickTexture(page, u, v) {
 	await page.close();
 }
 
+// ---- which way green points ----
+
+{
+	const page = await open('votes.html', {hash: '#finding-0'}), box = await page.locator('#layout').boundingBox();
+	const blocks = async () => {
+		const at = await page.evaluate(() => [[0.2, 0.2], [0.8, 0.2], [0.2, 0.8], [0.8, 0.8]].map(([u, v]) => window.nmtanReport.place(u, v)));
+		return colours(page, await page.locator('#layout').screenshot(), at.map(([x, y]) => [x / box.width, y / box.height]))
+			.then(list => list.map(c => c[1] > c[0] + 20 && c[1] > c[2] ? 'up' : c[0] > c[1] + 40 ? 'down' : '-').join());
+	};
+	await expect(async () => await blocks() === 'up,down,-,down' && (await page.locator('#layout-note').textContent()).includes('green points up'), async () => 'blocks are coloured as they vote: ' + await blocks());
+	await page.keyboard.press('Escape');
+	await expect(async () => await blocks() === '-,-,-,-', async () => 'while their finding is chosen: ' + await blocks());
+	await page.close();
+}
+
 // ---- fingers ----
 
 {

@@ -119,7 +119,7 @@ class Findings {
 		const shown = this.file.findings.filter(x => this.isShown(x)), groups = new Map();
 		for (const x of shown) groups.has(x.code) ? groups.get(x.code).push(x) : groups.set(x.code, [x]);
 		const worst = items => Math.min(...items.map(x => severities.indexOf(x.severity)));
-		const order = [...groups].sort((a, b) => worst(a[1]) - worst(b[1]) || b[1].length - a[1].length || (a[0] < b[0] ? -1 : 1));
+		const order = [...groups].sort((a, b) => worst(a[1]) - worst(b[1])); // else as the report has them: what matters more first
 		this.rows.clear();
 		const opened = code => this.opened.get(code) ?? (order.length <= 2 || shown.length <= 12 || order[0][0] === code);
 		$('groups').replaceChildren(...order.map(([code, items]) => this.group(code, items, opened(code) || items.includes(this.chosen))));

@@ -96,6 +96,7 @@ async function choose(what, options = {}) {
 	list.choose(what.finding || null, related);
 	layout.choose(triangles, seams);
 	space?.choose(triangles, seams);
+	showVotes(what.finding?.votes);
 	if (!options.still) {
 		if (options.from !== 'layout') layout.focus();
 		if (options.from !== 'space') space?.focus();
@@ -126,8 +127,17 @@ function goToSpot(step) {
 	tellSpot();
 }
 
+// The evidence for which way green points, on the normal map.
+function showVotes(votes) {
+	layout.votes = geometry?.texcoords ? votes || null : null;
+	if (layout.votes && mesh.pictures[0].source) layout.shown = Number($('texture').value = 0);
+	layout.draw();
+	noteLayout();
+}
+
 function chooseNothing() {
 	selection = null;
+	showVotes(null);
 	list.choose(null, []);
 	layout.choose([], []);
 	space?.choose([], []);
@@ -302,6 +312,10 @@ function offerPictures() {
 function noteLayout() {
 	const {overlaps, showOverlaps} = layout, repeated = showOverlaps && overlaps?.repeated;
 	$('fill').value = 100 * layout.opacity;
+	if (layout.votes) {
+		$('layout-note').textContent = 'Blocks of the normal map whose green points up (▲) or down (▼).';
+		return;
+	}
 	$('layout-note').textContent = (layout.missing ? 'No image: ' + layout.missing + ' is not beside this page, or this browser cannot show it. ' : '') +
 		(!showOverlaps || !overlaps ? '' : overlaps.repeated === null ? 'Overlaps of one tile with another are not shown: too many are in view; zoom in.' :
 		repeated ? 'Overlaps count all tiles as one, since the texture repeats.' : '');
@@ -408,6 +422,7 @@ window.nmtanReport = Object.freeze({
 	geometry: () => geometry,
 	selection: () => selection && {...selection, finding: selection.finding?.number, triangles: selection.triangles.length},
 	labels: () => layout.labels,
+	votes: () => layout.votes,
 	overlapPixels: () => layout.overlapPixels,
 	visible: () => space.visible(space.camera),
 	frames: () => space.frames,

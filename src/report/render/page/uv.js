@@ -3,6 +3,8 @@
 // The texture as islands lie on it: outlines of islands, filled, at any zoom. Shown as an image editor shows the texture: u to
 // the right, the top of the image above. Labels give way: one that would lie on another is left out until there is room.
 
+const LEAST_VOTE = 20; // percent, from which on a block counts
+
 class Layout {
 	constructor(canvas) {
 		this.canvas = canvas;
@@ -12,6 +14,7 @@ class Layout {
 		this.chosen = null;
 		this.picture = -1; // of the mesh's pictures, that is wanted below the islands; -1: none
 		this.showOverlaps = true;
+		this.votes = null; // of blocks of the normal map, rows from the top, in percent: green up above 0
 		this.fill = null; // how opaque islands are, 0 to 1; null: as is best with an image below, or without
 		this.overlaps = null;
 		this.listen();
@@ -19,6 +22,7 @@ class Layout {
 	}
 
 	load(mesh, geometry) {
+		this.votes = null;
 		this.mesh = mesh;
 		this.geometry = geometry && geometry.texcoords ? geometry : null;
 		this.chosen = null;
@@ -154,6 +158,12 @@ class Layout {
 
 	// Shows what is chosen, with its surroundings.
 	focus() {
+		if (this.votes) {
+			const [low, high] = mapBox(this.imageMap(), [0, 0], [1, 1]);
+			this.fitted = false;
+			this.fitBox(low, high, 0.9);
+			return;
+		}
 		if (!this.chosen || !(this.chosen.low[0] <= this.chosen.high[0])) return;
 		const {low, high} = this.chosen, extent = Math.max(this.high[0] - this.low[0], this.high[1] - this.low[1]);
 		const size = Math.max(high[0] - low[0], high[1] - low[1]), room = Math.max(0.004 * extent, size > 0.1 * extent ? 0.35 * size : size);
@@ -269,6 +279,36 @@ class Layout {
 			c.strokeStyle = shape.mirrored ? ink.mirroredLine : ink.plainLine;
 			c.stroke(shape.path);
 		}
+	}
+
+	// Where the normal map lies, of its repetitions the one in the middle of the mesh.
+	imageMap() {
+		const {map} = this.mesh, [low, high] = mapBox(map, this.low, this.high);
+		return mapAfter(mapBack(map), [1, 0, Math.floor((low[0] + high[0]) / 2), 0, 1, Math.floor((low[1] + high[1]) / 2)]);
+	}
+
+	// Which blocks of the normal map say that green points up, and which down, as far as they are sure.
+	drawVotes(c) {
+		const rows = this.votes, side = rows.length, m = this.imageMap(), {scale} = this.view;
+		this.toTexture(c);
+		c.transform(m[0], m[3], m[1], m[4], m[2], m[5]);
+		const each = draw => rows.forEach((row, r) => row.forEach((vote, k) => { if (Math.abs(vote) >= LEAST_VOTE) draw(vote, k / side, r / side); }));
+		each((vote, u, v) => {
+			c.fillStyle = vote > 0 ? '#1d9a4b' : '#d43c9c';
+			c.globalAlpha = 0.25 + 0.5 * Math.abs(vote) / 100;
+			c.fillRect(u, v, 1 / side, 1 / side);
+		});
+		c.globalAlpha = 1;
+		if (Math.sqrt(Math.abs(determinant(m))) * scale / side < 14) return;
+		this.toPage(c);
+		c.font = '600 12px ' + fontFamily();
+		c.textAlign = 'center';
+		c.textBaseline = 'middle';
+		c.fillStyle = '#ffffff';
+		each((vote, u, v) => {
+			const x = u + 0.5 / side, y = v + 0.5 / side;
+			c.fillText(vote > 0 ? '▲' : '▼', this.x(m[0] * x + m[1] * y + m[2]), this.y(m[3] * x + m[4] * y + m[5]));
+		});
 	}
 
 	// The triangles themselves, once they are large enough to be picked.
@@ -402,6 +442,7 @@ class Layout {
 		this.drawGrid(c, ink);
 		this.drawShapes(c, ink);
 		this.drawOverlaps(c, ink);
+		if (this.votes) this.drawVotes(c);
 		this.drawTriangles(c, ink);
 		this.drawChosen(c, ink);
 		this.drawSeams(c, ink);
