@@ -239,12 +239,13 @@ install: all $(B)/installed/nmtan
 	install -m 644 data/*.schema.json $(share)/nmtan/
 	install -m 644 $(filter-out $(farm_programs),$(wildcard data/farm/*)) $(share)/nmtan/farm/
 	install -m 755 $(farm_programs) $(share)/nmtan/farm/
+	ln -sf ../share/nmtan/farm/nmtan-farm $(bin)/nmtan-farm
 	install -m 644 LICENSE $(B)/licences.txt $(share)/doc/nmtan/
 	install -m 644 $(B)/completion.bash $(share)/bash-completion/completions/nmtan
 	install -m 644 $(B)/completion.zsh $(share)/zsh/site-functions/_nmtan
 
 uninstall:
-	rm -f $(bin)/nmtan $(modules:%=$(lib)/nmtan/nmtan-%.so) $(lib)/libnmtan.a $(lib)/$(so) $(lib)/$(so).0 $(lib)/$(so).$(VERSION) \
+	rm -f $(bin)/nmtan $(bin)/nmtan-farm $(modules:%=$(lib)/nmtan/nmtan-%.so) $(lib)/libnmtan.a $(lib)/$(so) $(lib)/$(so).0 $(lib)/$(so).$(VERSION) \
 		$(DESTDIR)$(PREFIX)/include/nmtan.h $(lib)/pkgconfig/nmtan.pc \
 		$(patsubst %,$(lib)/cmake/nmtan/%,$(cmake_files)) \
 		$(patsubst man/%,$(share)/man/man1/%,$(wildcard man/*.1)) \

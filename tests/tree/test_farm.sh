@@ -14,9 +14,15 @@ for i in 1 2 3 4; do
 	xargs -0 stat -c %s <w/$i.list0 | awk '{ sum += $1 } END { print sum }'
 done | sort -n >sums
 awk 'NR == 1 { least = $1 } END { exit !($1 < 1.05 * least) }' sums || wrong "$(tr '\n' ' ' <sums)"
-recipe "$farm/nmtan-farm" prepare w 4
+recipe "$farm/nmtan-farm" prepare in 4
 exits 1
-says "'w' is not empty"
+says "'in' is not empty"
+# again: what was there stays where it was, what is new goes to the lightest
+cp w/2.list0 two
+{ grep -zv 'in/40.obj' list0; printf 'in/new.obj\0'; } | "$farm/nmtan-farm" prepare w 4 -d out || wrong "exit code $?"
+is "$(cat w/[1-4].list0 | tr '\0' '\n' | sort | tr '\n' ' ')" \
+	"$({ grep -zv 'in/40.obj' list0; printf 'in/new.obj\0'; } | tr '\0' '\n' | sort | tr '\n' ' ')"
+is "$(tr '\0' '\n' <two | grep -v 'in/40.obj' | sort | comm -23 - <(tr '\0' '\n' <w/2.list0 | sort))" ""
 recipe "$farm/nmtan-farm" run
 exits 1
 says "run: missing a required argument: 'work'; see nmtan-farm --help"
@@ -103,6 +109,115 @@ exits 0
 is_clean
 # what the killed one had made was not made again
 is "$(cat "my work"/2.*.jsonl | grep -c '"status":"done"')" "$(tr -dc '\0' <"my work/2.list0" | wc -c)"
+
+scene "array jobs of Kubernetes and AWS Batch count from 0"
+cp "$data/quad.obj" a.obj
+cp "$data/head.obj" b.obj
+printf 'a.obj\0b.obj\0' | "$farm/nmtan-farm" prepare w 2 -d out || wrong "exit code $?"
+JOB_COMPLETION_INDEX=0 recipe "$farm/nmtan-farm" run w
+is "$(ls out w/*.jsonl | xargs)" "w/1.1.jsonl out: b.glb"
+AWS_BATCH_JOB_ARRAY_INDEX=1 recipe "$farm/nmtan-farm" run w
+is "$(ls out | xargs)" "a.glb b.glb"
+AWS_BATCH_JOB_ARRAY_INDEX=2 recipe "$farm/nmtan-farm" run w
+says "no chunk '3'"
+JOB_COMPLETION_INDEX='' recipe "$farm/nmtan-farm" run w
+says "no chunk ''"
+
+# What a cluster does with an Indexed Job: kubectl.py FILE runs the command of each index, here, and ends pods by -9 where
+# told to; a mount is the folder itself.
+kubectl() {
+	python3 - "$@" <<'END'
+import json, os, subprocess, sys
+job = json.load(open(sys.argv[1]))
+spec, pod = job['spec'], job['spec']['template']['spec']
+assert job['apiVersion'] == 'batch/v1' and job['kind'] == 'Job' and spec['completionMode'] == 'Indexed'
+assert pod['restartPolicy'] == 'Never' and pod['volumes'][0]['persistentVolumeClaim']['claimName'] == 'meshes'
+[box], [mount] = pod['containers'], pod['containers'][0]['volumeMounts']
+assert mount['name'] == pod['volumes'][0]['name'] and os.path.isdir(mount['mountPath'])
+[rule] = spec['podFailurePolicy']['rules']
+for index in range(spec['completions']):
+    for attempt in range(1 + spec['backoffLimitPerIndex']):
+        code = subprocess.run(box['command'], env={**os.environ, 'JOB_COMPLETION_INDEX': str(index)}).returncode
+        if code == 0 or (rule['action'] == 'FailIndex' and code in rule['onExitCodes']['values']):
+            break
+    print(index, attempt, code)
+END
+}
+
+scene "Kubernetes: an Indexed Job runs each chunk, again where a pod was ended, once where an input fails"
+take_hard
+clean
+prepare 3 || wrong "prepare: $?"
+recipe "$farm/nmtan-farm" kubernetes "my work" image meshes "$PWD/as sets"
+exits 1
+says "where the claim is mounted"
+"$farm/nmtan-farm" kubernetes "my work" image meshes "$PWD" >job.json || wrong "exit code $?"
+mkdir bin
+ln -s "$farm/nmtan-farm" bin/nmtan-farm
+printf '#!/bin/sh\n[ "$JOB_COMPLETION_INDEX" != 1 ] || [ -e ended ] || { touch ended; kill -9 $$; }\nexec "%s" "$@"\n' "$NMTAN" >pod.sh
+chmod +x pod.sh
+PATH=$PWD/bin:$PATH NMTAN=$PWD/pod.sh kubectl job.json >pods 2>"$WORK/err.txt" || wrong "kubectl"
+is "$(tr '\n' ' ' <pods)" "0 0 0 1 1 0 2 0 0 "
+recipe "$farm/nmtan-farm" merge "my work"
+exits 0
+is_clean
+printf 'v 0 0 0\nv 1 0 0\nf 1 2 3\n' >"as sets/mirrored_cube.obj"
+PATH=$PWD/bin:$PATH kubectl job.json >pods 2>"$WORK/err.txt" || wrong "kubectl"
+is "$(cut -d' ' -f2,3 pods | sort | uniq -c | xargs)" "2 0 0 1 0 3"
+
+scene "an object store: a machine without memory of the last run makes what has changed, and puts it"
+cat >rclone <<'END'
+#!/bin/sh
+mkdir -p "$2" "$3"
+[ "$1" = copy ] || rm -rf "$3" && mkdir -p "$3" && cp -r "$2/." "$3/"
+END
+chmod +x rclone
+export RCLONE=$PWD/rclone
+mkdir -p store/deep
+cp "$data"/mirrored_cube.* "$data/bumps.png" store/deep
+cp "$data/quad.obj" store
+"$NMTAN" -q -r -d clean --mirror=store store
+made() {
+	rm -rf scratch # another machine
+	recipe "$farm/nmtan-farm" store "$PWD/store" "$PWD/target" "$PWD/scratch"
+	exits ${1:-0}
+	grep -c '"status":"done"' scratch/manifest.jsonl
+}
+is "$(made)" 2
+diff -r -x .nmtan-record clean target >difference || wrong "$(cat difference)"
+is "$(made)" 0
+sed -i 's/^Kd.*/Kd 0 1 0/' store/deep/mirrored_cube.mtl
+is "$(made)" 1
+echo 'f 1 2 99' >>store/quad.obj
+is "$(made 3)" 0
+unset RCLONE
+
+scene "the manual's questions to the manifest are answered"
+if ! command -v jq >/dev/null; then
+	skip_case "jq is not installed"
+else
+	question() { # the Nth command of that section, as it stands
+		sed -n '/^\.SH WHAT THE MANIFEST SAYS/,/^\.SH GNU/p' "$ROOT/man/nmtan-farm.7" |
+			awk -v n="$1" '/^\.nf/ { k++; next } /^\.fi/ { on = 0 } k == n && !/^\./ && /./ { print }' |
+			sed -n '/^\t/p' | sed -e 's/\\-/-/g' -e 's/\\e/\\/g' >question.sh
+		bash question.sh
+	}
+	cp "$data/quad.obj" a.obj
+	cp "$data/mirrored_cube.obj" b.obj
+	for name in c d; do printf 'v 0 0 0\nf 1 2 3\n' >$name.obj; done
+	echo 'v x' >e.obj
+	printf '%s\0' ?.obj | "$farm/nmtan-farm" prepare work 1 -d out
+	recipe "$farm/nmtan-farm" run work 1
+	recipe "$farm/nmtan-farm" merge work
+	cp work/manifest.jsonl last.jsonl
+	awk '$1 == "vt" { $2 = -$2 } 1' "$data/mirrored_cube.obj" >b.obj
+	echo '# no other tangents' >>a.obj
+	recipe "$farm/nmtan-farm" run work 1
+	recipe "$farm/nmtan-farm" merge work
+	is "$(question 1)" b.obj
+	is "$(question 2 | grep -c ' [a-e].obj$')" 5
+	is "$(question 3 | cut -d' ' -f1 | xargs)" "2 1"
+fi
 
 scene "Ninja: build.ninja is written for names of any kind but line feeds, and makes again what changed"
 take_hard

@@ -18,7 +18,9 @@ exists $p/bin/nmtan $p/lib/libnmtan.a "$p/lib/libnmtan.so.$version" $p/include/n
 is "$(cd $p/share/nmtan && find . -type f -printf '%m %P\n' | sort -k 2)" "$(cd "$data" && {
 	ls farm/* | sed -e '/nmtan-farm$\|\.sh$/!s/^/644 /' -e '/^farm/s/^/755 /' && ls ./*.schema.json | sed 's|^\./|644 |'
 } | sort -k 2)"
-printf 'a.obj\0' | $p/share/nmtan/farm/nmtan-farm prepare work 1 || wrong "the installed nmtan-farm does not run"
+printf 'a.obj\0' | $p/bin/nmtan-farm prepare work 1 -d out || wrong "the installed nmtan-farm does not run"
+! command -v parallel >/dev/null || NMTAN=$PWD/$p/bin/nmtan $p/bin/nmtan-farm parallel work >"$WORK/out.txt" 2>&1
+grep -q '"status":"failed"' work/manifest.jsonl || ! command -v parallel >/dev/null || wrong "nmtan-farm finds no parallel.sh"
 is "$(readlink $p/lib/libnmtan.so)" libnmtan.so.0
 is "$(readlink $p/lib/libnmtan.so.0)" "libnmtan.so.$version"
 grep -q "^prefix=/opt/nmtan$" $p/lib/pkgconfig/nmtan.pc || wrong "nmtan.pc has another prefix"

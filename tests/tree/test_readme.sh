@@ -35,6 +35,32 @@ sed -n '/^\$ make demo$/,/^```$/p' "$readme" | sed '1d;$d' | clean >expected
 exists expected printed
 diff expected printed || wrong "prints something else"
 
+scene "the examples of the README run as they stand, twice"
+mkdir -p assets/sub bin
+cp "$data"/mirrored_cube.* "$data/bumps.png" assets/sub
+cp "$data/plates.glb" assets
+cp assets/plates.glb in.glb
+cp "$data/quad.obj" in.obj
+cp in.glb old.glb
+cp in.glb new.glb
+ln -s "$NMTAN" bin/nmtan
+ln -s "$ROOT/data/farm/nmtan-farm" bin/nmtan-farm
+sed -n '/^## Use/,/^## Formats/p; /^## Reports/,/^## Pipelines/p; /^## Pipelines/,/^## The library/p' "$readme" |
+	sed -n 's/^    \([a-z].*\)/\1/p' | sort -u >examples
+[ "$(wc -l <examples)" -ge 12 ] || wrong "$(wc -l <examples) examples"
+while IFS= read -r example; do
+	for time in first second; do
+		case $example in
+		*parallel*) command -v parallel >/dev/null || continue ;;
+		*jq*) command -v jq >/dev/null || continue ;;
+		esac
+		(PATH=$PWD/bin:$PATH bash -o pipefail -c "$example") >"$WORK/out.txt" 2>"$WORK/err.txt" </dev/null
+		status=$?
+		# the exit code of findings is what such an example is for
+		case $status:$example in 0:* | 6:*--check*) ;; *) wrong "$status, the $time time: $example" ;; esac
+	done
+done <examples
+
 # The anchors of a page's headings, as renderers make them.
 anchors() {
 	sed -n 's/^##* //p' "$1" | tr '[:upper:] ' '[:lower:]-' | sed "s/[^a-z0-9_-]//g"
