@@ -199,7 +199,9 @@ void nt_batch_run(nt_batch *batch, const nt_settings *settings, const nt_batch_o
 	unsigned jobs = options->jobs ? options->jobs : threads;
 	if (jobs > batch->count)
 		jobs = (unsigned)batch->count;
+	nt_readers readers = {0};
 	nt_settings each = *settings;
+	each.readers = batch->count > 1 ? &readers : NULL;
 	if (jobs)
 		each.threads = threads / jobs ? threads / jobs : 1;
 	progress p = {.batch = batch, .settings = &each, .options = options, .threads = threads, .jobs = jobs,
@@ -222,5 +224,6 @@ void nt_batch_run(nt_batch *batch, const nt_settings *settings, const nt_batch_o
 	if (p.deferred)
 		nt_parallel_items(jobs, batch->count, run_deferred, &p);
 	nt_gate_end(&p.gate);
+	nt_readers_free(&readers);
 	pthread_mutex_destroy(&p.lock);
 }

@@ -44,6 +44,7 @@
 #include <string.h>
 #include <sys/file.h>
 #include <unistd.h>
+#include "file/trace.h"
 
 static nt_status taken_meanwhile(nt_output *output, const char *path, nt_error *error)
 {
@@ -295,6 +296,13 @@ nt_status nt_output_place(nt_output *output, nt_error *error)
 	nt_status status = NT_OK;
 	if (alone && output->main->temporary && !output->options.no_clobber && !main_is_unchanged(output->main))
 		status = taken_meanwhile(output, output->main->path, error);
+	/* since it was added somebody else may have come to read it */
+	struct stat there;
+	if (!status && output->main && output->main->temporary && stat(output->main->target, &there) == 0 &&
+		nt_trace_is_read_elsewhere(&there)) {
+		nt_fail(error, NT_ERROR_IO, "refusing to write: another input of this run is made from it");
+		status = nt_error_in_file(error, output->main->path);
+	}
 	if (!status)
 		status = place_all(output, error);
 	if (!status && output->staging)

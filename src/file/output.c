@@ -112,6 +112,9 @@ static nt_status check_existing(const nt_output *output, nt_sink *sink, const st
 	if (S_ISDIR(status->st_mode))
 		return refuse(error, sink->path, "cannot write: it is a directory");
 	if (nt_output_is_protected(output, status, &file)) {
+		if (!file->path)
+			return refuse(error, sink->path,
+				"refusing to write: another input of this run is made from it");
 		nt_fail(error, NT_ERROR_IO, "refusing to write: it is the same file as the input %s%s%s",
 			strcmp(file->path, "-") == 0 ? "(standard input)" : file->path,
 			file->way_out ? "; " : "", file->way_out ? file->way_out : "");

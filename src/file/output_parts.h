@@ -100,6 +100,7 @@ nt_file_state nt_state_of(const struct stat *status);
 /* Whether a path, links followed, still is the file in that state. */
 bool nt_state_is(const char *path, const nt_file_state *state);
 
+/* `file`: its path is NULL where another run of the batch has read it. */
 bool nt_output_is_protected(const nt_output *output, const struct stat *status, const nt_protected_file **file);
 
 /* Appends the path of a file of ours that nothing refers to any more once the set is in place; one a call, *at begins

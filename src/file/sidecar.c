@@ -27,6 +27,7 @@
 #include <string.h>
 #include <unistd.h>
 #include "base/memory.h"
+#include "file/trace.h"
 
 /* A name's length in any file system; the digits of a digest that a name has; names that are tried. */
 enum { MOST_NAME_BYTES = 255, NAME_ROOM = 1024, NAME_DIGITS = 16, MOST_NUMBERS = 1000 };
@@ -55,7 +56,9 @@ bool nt_output_is_protected(const nt_output *output, const struct stat *status, 
 			*file = &output->guarded[i];
 			return true;
 		}
-	return false;
+	static const nt_protected_file elsewhere = {.path = NULL};
+	*file = &elsewhere;
+	return nt_trace_is_read_elsewhere(status);
 }
 
 /* ---- names ---- */

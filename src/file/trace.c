@@ -22,6 +22,69 @@ nt_trace *nt_trace_use(nt_trace *trace)
 	return before;
 }
 
+/* ---- what others read ---- */
+
+struct nt_read_file {
+	uint64_t device, inode;
+	unsigned reader; /* 0: several */
+};
+
+void nt_trace_share(nt_trace *trace, nt_readers *readers)
+{
+	pthread_mutex_lock(&lock);
+	trace->readers = readers;
+	trace->reader = readers ? ++readers->runs : 0;
+	pthread_mutex_unlock(&lock);
+}
+
+void nt_readers_free(nt_readers *readers)
+{
+	free(readers->files);
+	nt_hash_index_free(&readers->index);
+	*readers = (nt_readers){0};
+}
+
+static struct nt_read_file *find_read(const nt_readers *readers, const uint64_t key[2], uint64_t *hash)
+{
+	size_t at = NT_HASH_BEGIN;
+	*hash = nt_hash_bytes(0, key, 2 * sizeof *key);
+	for (uint32_t i; (i = nt_hash_index_next(&readers->index, *hash, &at)) != UINT32_MAX;)
+		if (readers->files[i].device == key[0] && readers->files[i].inode == key[1])
+			return &readers->files[i];
+	return NULL;
+}
+
+static bool add_read(nt_readers *readers, unsigned reader, const struct stat *info)
+{
+	uint64_t hash;
+	const uint64_t key[2] = {(uint64_t)info->st_dev, (uint64_t)info->st_ino};
+	struct nt_read_file *file = find_read(readers, key, &hash);
+	if (file) {
+		file->reader = file->reader == reader ? reader : 0;
+		return true;
+	}
+	if (!nt_grow((void **)&readers->files, &readers->capacity, readers->count + 1, sizeof *readers->files) ||
+		!nt_hash_index_add(&readers->index, hash, (uint32_t)readers->count))
+		return false;
+	readers->files[readers->count++] = (struct nt_read_file){key[0], key[1], reader};
+	return true;
+}
+
+bool nt_trace_is_read_elsewhere(const struct stat *info)
+{
+	if (!current || !current->readers)
+		return false;
+	uint64_t hash;
+	const uint64_t key[2] = {(uint64_t)info->st_dev, (uint64_t)info->st_ino};
+	pthread_mutex_lock(&lock);
+	const struct nt_read_file *file = find_read(current->readers, key, &hash);
+	const bool elsewhere = file && file->reader != current->reader;
+	pthread_mutex_unlock(&lock);
+	return elsewhere;
+}
+
+/* ---- times ---- */
+
 static int64_t nanoseconds(struct timespec time)
 {
 	return (int64_t)time.tv_sec * 1000000000 + time.tv_nsec;
@@ -95,7 +158,8 @@ static void note(nt_trace_kind kind, const char *path, const char *present, cons
 	const uint64_t hash = nt_hash_bytes((uint64_t)kind, path, strlen(path));
 	pthread_mutex_lock(&lock);
 	if (!trace->failed && !is_noted(trace, hash, kind, path))
-		trace->failed = !add(trace, hash, &file);
+		trace->failed = !add(trace, hash, &file) ||
+			(kind == NT_TRACE_READ && trace->readers && !add_read(trace->readers, trace->reader, info));
 	pthread_mutex_unlock(&lock);
 }
 

@@ -32,13 +32,31 @@ typedef struct nt_trace_file {
 	int64_t noted;             /* when it was noted */
 } nt_trace_file;
 
+/* Which files the runs of a batch have read, so that none of them overwrites what another one reads. Zeroed: none. */
+typedef struct nt_readers {
+	struct nt_read_file *files;
+	size_t count, capacity;
+	nt_hash_index index;
+	unsigned runs;
+} nt_readers;
+
+void nt_readers_free(nt_readers *readers);
+
 /* Zeroed: empty. A file is in it once for each kind, in the order of first use. */
 typedef struct nt_trace {
 	nt_trace_file *files;
 	size_t count, capacity;
 	nt_hash_index index;
 	bool failed; /* memory ran out: something is not in it */
+	nt_readers *readers; /* NULL: nobody wants to know; else what is read is there, too, */
+	unsigned reader;     /* as read by this one */
 } nt_trace;
+
+/* What is noted as read is from now on. Once for each run. */
+void nt_trace_share(nt_trace *trace, nt_readers *readers);
+
+/* Whether a run that shares with that of the trace that is used has read a file. */
+bool nt_trace_is_read_elsewhere(const struct stat *info);
 
 /* From now on this thread notes in `trace`; NULL: nowhere. Returns what it noted in before. Several threads may note
  * in one trace: each that helps a run and opens files has to be lent it. */

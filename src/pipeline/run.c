@@ -372,6 +372,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	nt_scene_init(&r.scene, input);
 
 	nt_watch_forget();
+	nt_trace_share(&summary->trace, settings->readers);
 	nt_trace *outer = nt_trace_use(&summary->trace);
 	nt_status status = nt_timer_begin(&r.timer, settings->max_seconds, settings->too_late ? end_late : NULL, &r)
 		? run_stages(&r) : nt_fail_memory(error);

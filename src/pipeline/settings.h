@@ -110,6 +110,8 @@ typedef struct nt_settings {
 	/* Ends the process, for a front end that is it: the run is late and does not end by itself. NULL: it may. */
 	void (*too_late)(const nt_error *error);
 
+	nt_readers *readers; /* what the other runs of a batch read is protected, too; NULL: there are none */
+
 	/* What a report is to hold; NULL: none is made. `written` is set by the run. */
 	const nt_report_options *report;
 

@@ -151,6 +151,20 @@ exits 0
 run "$data/plates.glb" expected.glb
 same a.glb expected.glb
 
+scene "what another input is made from is not overwritten"
+mkdir in
+{ echo "mtllib a.glb" && grep -v mtllib "$data/quad.obj"; } >b.obj
+cp "$data/quad.obj" in/a.obj
+echo "newmtl m" >a.glb
+cp a.glb before
+run -j1 -d . b.obj in/a.obj
+exits 2
+says "a.glb: refusing to write: another input of this run is made from it"
+same a.glb before
+exists b.glb
+run -j1 -d . in/a.obj
+exits 0
+
 scene "the folder is made but not its parents"
 run -d no/where "$data/quad.obj"
 exits 2

@@ -65,6 +65,31 @@ TEST(what_was_written_is_noted_anew_when_it_is_forgotten)
 	nt_trace_free(&trace);
 }
 
+TEST(what_another_run_has_read_is_known)
+{
+	nt_readers readers = {0};
+	nt_trace traces[2] = {0};
+	struct stat own = {.st_size = 1, .st_ino = 1}, both = {.st_size = 1, .st_ino = 2}, none = {.st_ino = 3};
+	for (size_t i = 0; i < 2; i++) {
+		nt_trace_share(&traces[i], &readers);
+		nt_trace_use(&traces[i]);
+		nt_trace_read("both", &both);
+		if (i == 0)
+			nt_trace_read("own", &own);
+	}
+	assert_true(nt_trace_is_read_elsewhere(&own));
+	assert_true(nt_trace_is_read_elsewhere(&both));
+	assert_false(nt_trace_is_read_elsewhere(&none));
+	nt_trace_use(&traces[0]);
+	nt_trace_read("own, by another name", &own);
+	assert_false(nt_trace_is_read_elsewhere(&own));
+	nt_trace_use(NULL);
+	assert_false(nt_trace_is_read_elsewhere(&own));
+	nt_trace_free(&traces[0]);
+	nt_trace_free(&traces[1]);
+	nt_readers_free(&readers);
+}
+
 TEST(an_exhausted_memory_is_remembered)
 {
 	const struct stat info = {.st_size = 1};
