@@ -217,6 +217,8 @@ is "$(value r.sarif '({l["fullyQualifiedName"] for x in r["runs"][0]["results"] 
 	for l in p.get("logicalLocations", []) if "fullyQualifiedName" in l} ==
 	{"/meshes/0/primitives/0", "/meshes/0/primitives/2"})')" \
 	"True"
+run --check --fail-on=never --severity=UV_MIRROR_SEAM=warning --min-severity=warning --report=r.sarif "$data/plates.gltf"
+is "$(value r.sarif 'sorted({x["level"] for x in r["runs"][0]["results"]})')" "['error', 'warning']"
 nasty 'a"b\\<c>' >'odd name?.obj'
 run --check --report=r.sarif 'odd name?.obj' nothing.obj
 exits 2
