@@ -13,6 +13,9 @@
 typedef struct nt_code_row {
 	const char *name;     /* UV_MIRROR_SEAM: what users write */
 	nt_severity severity; /* unless --severity, or the finding's own numbers, say otherwise */
+	/* The most severe that it gets in a game prop (glTF whose materials use tangents), a scan (no texture
+	 * coordinates) and an OBJ without materials: e, w, i, or - where it is not found there. */
+	char profiles[4];
 	/* One sentence without a full stop. {count} is the number of occurrences, {one|many} chooses by
 	 * it, {detail} is the finding's detail; without {detail} a detail that is not empty follows behind
 	 * a colon. */

@@ -287,6 +287,26 @@ for file in r.xml r.md n/n-0.svg ../out.txt ../err.txt; do
 	! LC_ALL=C grep -qP '\xc2\x9b|\xe2\x80\xae|\xef\xbf[\xbe\xbf]' $file || wrong "$file shows what turns or ends a line"
 done
 
+# Columns 2 to 4 of the table in nmtan-report(5).
+scene "a prop, a scan and an OBJ without materials have the findings that the manual says, or less"
+sed -n '/^ *prop  *scan/,/^\.ft/p' "$ROOT/man/nmtan-report.5" >profiles
+sed '/^vt/d; s|/[0-9]*/|//|g' "$data/head.obj" >scan.obj
+cp "$data/head.obj" plain.obj
+run -q "$data/transformed.gltf" prop.glb
+column=2
+for name in prop.glb scan.obj plain.obj; do
+	run -q --check --fail-on=never --report=r.json $name
+	value r.json '"\n".join(f["code"] + " " + f["severity"] for f in r["files"][0]["findings"])' >found
+	[ -s found ] || wrong "$name: nothing is found"
+	while read -r code severity; do
+		case $severity,$(awk -v c="$code" -v n=$column '$1 == c { print $n }' profiles) in
+		info,info | *,error | info,warning | warning,warning) ;;
+		*) wrong "$name: $severity $code" ;;
+		esac
+	done <found
+	column=$((column + 1))
+done
+
 scene "--list-codes names every code of the schema"
 run --list-codes
 exits 0

@@ -8,6 +8,15 @@ TEST(every_code_has_a_complete_row_and_is_found_by_its_name)
 		const nt_code_row *row = nt_code_info((nt_code)i);
 		assert_non_null(row->name);
 		assert_true(row->message && row->meaning && row->remedy && row->example);
+		/* somebody sees it, with the severity of the table or a higher one */
+		const char *severities = "-iwe", *worst = severities;
+		assert_int_equal(strlen(row->profiles), 3);
+		for (int profile = 0; profile < 3; profile++) {
+			const char *letter = strchr(severities, row->profiles[profile]);
+			assert_non_null(letter);
+			worst = letter > worst ? letter : worst;
+		}
+		assert_true(worst - severities >= 1 + (int)row->severity);
 		nt_code found;
 		assert_true(nt_code_find(row->name, &found));
 		assert_int_equal(found, i);
@@ -128,7 +137,13 @@ static const char manual_head[] =
 	".SH CODES\n"
 	"The severity in parentheses is the default;\n"
 	".B \\-\\-severity\n"
-	"changes it.\n";
+	"changes it. What nobody would act on is a number of a mesh in JSON, and no code: copied vertices, say.\n"
+	".PP\n"
+	"Who sees what, at worst: a game prop is a glTF whose materials use tangents, or what is made of an OBJ\n"
+	"that has a normal map; a scan is a mesh without texture coordinates; the last column is an OBJ that has\n"
+	"them, without materials; a dot means never.\n"
+	"Tangents that are made with\n.B \\-\\-repair=off\nhave findings of the first column.\n"
+	".PP\n.nf\n.ft CW\n";
 
 static const char manual_tail[] =
 	".SH SEE ALSO\n"
@@ -147,9 +162,25 @@ static void put_troff(const char *text, nt_buffer *out)
 	}
 }
 
+static const char *profile_word(char letter)
+{
+	for (nt_severity s = NT_SEVERITY_INFO; s <= NT_SEVERITY_ERROR; s++)
+		if (*nt_severity_name(s) == letter)
+			return nt_severity_name(s);
+	assert_int_equal(letter, '-');
+	return ".";
+}
+
 static void write_manual(nt_buffer *out)
 {
 	nt_buffer_format(out, manual_head, nmtan_version());
+	nt_buffer_text(out, "                             prop     scan     OBJ\n");
+	for (unsigned i = 0; i < NT_CODE_COUNT; i++) {
+		const nt_code_row *row = nt_code_info((nt_code)i);
+		nt_buffer_format(out, "%-28s %-8s %-8s %s\n", row->name, profile_word(row->profiles[0]),
+			profile_word(row->profiles[1]), profile_word(row->profiles[2]));
+	}
+	nt_buffer_text(out, ".ft\n.fi\n");
 	for (unsigned i = 0; i < NT_CODE_COUNT; i++) {
 		const nt_code_row *row = nt_code_info((nt_code)i);
 		nt_buffer_format(out, ".SS %s (%s)\n", row->name, nt_severity_name(row->severity));
