@@ -48,6 +48,8 @@ typedef struct nt_reread_array {
 	bool normalized;
 	const char *filter; /* of meshoptimizer, by which they came; NULL: none */
 	const unsigned char *unfiltered; /* what it was applied to, as far apart as the elements */
+	bool has_bounds;     /* min and max of the accessor, one number for each component */
+	double bounds[2][4];
 } nt_reread_array;
 
 /*
@@ -71,6 +73,10 @@ nt_status nt_reread_block(nt_reread *model, size_t mesh, size_t primitive, bool 
 
 /* The id that an attribute has in the block; false: it is not in it. */
 bool nt_reread_block_id(const nt_reread *model, size_t mesh, size_t primitive, const char *name, uint32_t *id);
+
+/* The first accessor with bytes, from `first` on, to which no primitive, animation, skin or extension refers; SIZE_MAX:
+ * there is none. Any number of an extension may be one. NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_reread_unused(const nt_reread *model, size_t first, size_t *accessor, nt_error *error);
 
 #ifdef __cplusplus
 }

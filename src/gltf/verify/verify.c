@@ -16,7 +16,9 @@
 #include "gltf/morph_deltas.h"
 #include "gltf/normalized.h"
 #include "gltf/primitive.h"
+#include "gltf/quantize.h"
 #include "gltf/tangent_filter.h"
+#include "gltf/vertex_pools.h"
 #include "gltf/verify/faces.h"
 #include "gltf/view.h"
 
@@ -144,7 +146,10 @@ static nt_status decode_block(primitive_view *view, nt_error *error)
 		const nt_draco_attribute *found = ids[i] != UINT32_MAX ? nt_draco_find(decoded, ids[i]) : NULL;
 		if (!found)
 			continue; /* outside of the block */
+		const nt_reread_array stated = *arrays[i];
 		*arrays[i] = block_array(found, decoded->point_count);
+		arrays[i]->has_bounds = stated.has_bounds;
+		memcpy(arrays[i]->bounds, stated.bounds, sizeof stated.bounds);
 		*tolerances[i] = tolerance_of(found, decoded->point_count);
 		view->tangent_bits = found->quantization.bits; /* they are the last */
 	}
@@ -244,6 +249,40 @@ static bool tangent_matches(const nt_reread_array *array, size_t vertex, const f
 		memcmp(element, values, size) == 0;
 }
 
+/* Whether a client can draw with a tangent that it has decoded: of unit length by the Khronos validator's tolerance, w
+ * 1 or -1. */
+static bool is_drawable(const float *t)
+{
+	const double squared = (double)t[0] * t[0] + (double)t[1] * t[1] + (double)t[2] * t[2];
+	return fabs(sqrt(squared) - 1) <= 0.00674 && fabsf(t[3]) == 1;
+}
+
+/* The same of an element; what was meant may be undrawable, as without --repair. */
+static bool stays_drawable(const nt_reread_array *array, size_t vertex, const float *meant)
+{
+	const unsigned char *element = element_at(array, vertex);
+	float t[4];
+	for (size_t k = 0; k < 4; k++)
+		t[k] = nt_component_value(element + k * nt_component_size(array->component_type),
+			array->component_type, array->normalized);
+	return is_drawable(t) || !is_drawable(meant);
+}
+
+/* Whether an accessor's bounds are those of its values, where it states any. */
+static bool bounds_hold(const nt_reread_array *array)
+{
+	double bounds[2][4];
+	if (!array->has_bounds || !array->data)
+		return true;
+	nt_component_bounds(array->data, array->stride_bytes, array->count, array->component_type,
+		(size_t)array->components, bounds);
+	for (size_t k = 0; k < (size_t)array->components; k++)
+		for (size_t b = 0; b < 2; b++)
+			if (isfinite(bounds[b][k]) && (float)array->bounds[b][k] != (float)bounds[b][k])
+				return false;
+	return true;
+}
+
 /* Whether a vertex's targets say what leads from its stored tangent to theirs. */
 static bool targets_match(const nt_mesh *mesh, const primitive_view *view, size_t vertex, size_t split,
 	const float *stored)
@@ -292,8 +331,26 @@ static bool corner_matches(const nt_mesh *mesh, size_t corner, primitive_view *v
 	if (!mesh->split.vertex_tangents || !mesh->normals)
 		return true;
 	float stored[4];
-	return tangent_matches(&view->tangents, vertex, mesh->split.vertex_tangents + 4 * split, stored) &&
+	const float *meant = mesh->split.vertex_tangents + 4 * split;
+	return tangent_matches(&view->tangents, vertex, meant, stored) &&
+		stays_drawable(&view->tangents, vertex, meant) &&
 		targets_match(mesh, view, vertex, split, stored);
+}
+
+static nt_status fail_bounds(const nt_mesh *mesh, const char *attribute, nt_error *error)
+{
+	nt_fail(error, NT_ERROR_INTERNAL, "the bounds of %s in the output, read back, are not those of its values",
+		attribute);
+	nt_mesh_place(mesh, &error->place);
+	return NT_ERROR_INTERNAL;
+}
+
+/* Positions that stay as they are have the bounds that the input states. */
+static nt_status check_bounds(const nt_mesh *mesh, const primitive_view *view, bool positions_too, nt_error *error)
+{
+	if (positions_too && !bounds_hold(&view->positions))
+		return fail_bounds(mesh, "POSITION", error);
+	return bounds_hold(&view->tangents) ? NT_OK : fail_bounds(mesh, "TANGENT", error);
 }
 
 static nt_status fail_corner(const nt_mesh *mesh, size_t corner, nt_error *error)
@@ -380,6 +437,8 @@ static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, 
 	for (size_t c = 0; c < count && status == NT_OK; c++) {
 		wanted[c] = wanted_corner(mesh, c);
 		if (!found_corner(view, c, &found[c]))
+			status = fail_corner(mesh, c, error);
+		else if (!is_drawable(found[c].tangent) && is_drawable(wanted[c].tangent))
 			status = fail_corner(mesh, c, error);
 		else
 			ordered &= nt_verify_close(&wanted[c], &found[c], &view->tolerance);
@@ -487,11 +546,16 @@ static nt_status open_checks(verification *v, nt_error *error)
 static nt_status compare_edited(const mesh_check *check, unsigned threads, nt_error *error)
 {
 	primitive_view *view = check->views;
+	nt_status status = view->packed ? NT_OK : check_bounds(check->mesh, view, check->mesh->compressed, error);
+	if (status != NT_OK)
+		return status;
 	if (!view->packed && check->mode == NT_GLTF_TRIANGLES && corner_count(view) == check->mesh->corner_count)
 		return compare_mesh(check->mesh, view, error);
 	if (!view->packed)
 		return counts_match(check->mesh, view) ? NT_OK : fail_corner(check->mesh, 0, error);
-	nt_status status = decode_block(view, error);
+	status = decode_block(view, error);
+	if (status == NT_OK)
+		status = check_bounds(check->mesh, view, true, error);
 	if (status == NT_OK)
 		status = compare_block(check->mesh, view, threads, error);
 	nt_draco_free(view->block);
@@ -526,6 +590,16 @@ static nt_status compare_all(verification *v, unsigned threads, nt_error *error)
 	return status;
 }
 
+/* What the document did not have, something refers to. */
+static nt_status check_accessors(const nt_gltf *document, const nt_reread *model, nt_error *error)
+{
+	size_t unused = SIZE_MAX;
+	const nt_status status = !document->pools ? NT_OK :
+		nt_reread_unused(model, document->pools->accessor_count, &unused, error);
+	return status != NT_OK || unused == SIZE_MAX ? status : nt_fail(error, NT_ERROR_INTERNAL,
+		"nothing in the output, read back, refers to accessor %zu, which is new", unused);
+}
+
 static nt_status compare_scene(const nt_scene *scene, nt_reread *model, unsigned threads, nt_error *error)
 {
 	verification v = {.scene = scene, .model = model,
@@ -537,6 +611,8 @@ static nt_status compare_scene(const nt_scene *scene, nt_reread *model, unsigned
 	nt_status status = compare_all(&v, nt_thread_count(threads), error);
 	if (status == NT_OK)
 		status = opened;
+	if (status == NT_OK && v.edited)
+		status = check_accessors(scene->source, model, error);
 	for (size_t i = 0; i < v.count; i++)
 		close_check(&v.checks[i]);
 	free(v.checks);
