@@ -4,6 +4,7 @@
 // side from which it is seen. Two frames can be looked at beside each other, or with a wipe between them.
 
 const MOST_REPEATED = 2e6; // triangles in other tiles that lie on what is seen: half a second
+const MOST_OUTLINED = 8; // as many as a finding has places
 const SELECTED = [1.0, 0.83, 0.1];
 const SEAM = [1.0, 0.58, 0.0];
 const AXES = [[0.93, 0.2, 0.2], [0.1, 0.72, 0.25], [0.25, 0.45, 1]];
@@ -213,9 +214,16 @@ class Space {
 			// one buffer for ever: a new one with the number of a deleted one is taken for that one by array objects
 			this.chosenElements = this.elements(indices, this.chosenElements);
 			this.chosen = {triangles, elements: this.chosenElements, count: indices.length,
-				lines: this.lineArray(this.seamSegments(seams, SELECTED))};
+				lines: this.lineArray(this.seamSegments(seams, SELECTED).concat(this.outlines(triangles)))};
 		}
 		this.draw();
+	}
+
+	// Of a few triangles, which may be too narrow to be seen.
+	outlines(triangles) {
+		const g = this.geometry;
+		return triangles.length > MOST_OUTLINED ? [] : triangles.flatMap(t => [0, 1, 2].flatMap(k =>
+			[...positionOf(g, g.indices[3 * t + k]), ...positionOf(g, g.indices[3 * t + (k + 1) % 3]), ...SELECTED]));
 	}
 
 	// The middle of the chosen triangles, how far they reach, and where they look.
