@@ -266,9 +266,11 @@ typedef struct nmtan_counts {
 	                                good as double arithmetic makes it */
 	size_t sorted_instead;       /* 1: the default method gave what NMTAN_METHOD_MIKKTSPACE_SORTED gives, since
 	                                the mesh is beyond the limits of "Results" */
+	size_t summed_instead;       /* with repair, MikkTSpace's methods: corners of hubs past the bound of
+	                                nmtan_tangents() */
 } nmtan_counts;
 
-#define NMTAN_COUNTS_INIT {sizeof(nmtan_counts), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+#define NMTAN_COUNTS_INIT {sizeof(nmtan_counts), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
 
 /* Bits of nmtan_output.corner_faults. A corner that was repaired has exactly one of the first six, the reason, and
  * may have one of the others. */
@@ -281,7 +283,8 @@ typedef enum nmtan_fault {
 	NMTAN_FAULT_LEANING = 32,    /* repaired_leaning */
 	NMTAN_FAULT_NO_AVERAGE = 64, /* repaired, and the triangles of its orientation around it have no average: the
 	                                direction is that of a neighbour, or any across the normal */
-	NMTAN_FAULT_ILL_CONDITIONED = 128 /* ill_conditioned; only with the robust method, also with repair off */
+	NMTAN_FAULT_ILL_CONDITIONED = 128, /* ill_conditioned; only with the robust method, also with repair off */
+	NMTAN_FAULT_SUMMED = 128     /* summed_instead; only with MikkTSpace's methods: the same bit */
 } nmtan_fault;
 
 /* Where results go. Each array has one row per corner, tightly packed. */
@@ -307,11 +310,14 @@ typedef struct nmtan_output {
  *   output   required; output->tangents too
  *   counts   may be NULL
  *
- * Time is linear in the number of corners, whatever the mesh looks like, but for one thing: where tangents around a
- * vertex are opposite, MikkTSpace may have a sum of its own for each direction among them, so that their number counts
- * times that of the vertex's corners; so it may, here, where many are more than a right angle apart. 20 000 quads
- * around a vertex whose halves are opposite take 1.6 s on one thread of an AMD EPYC, and 13 MB; MikkTSpace itself takes
- * 24 s and 700 MB for 10 000.
+ * Time is linear in the number of corners, whatever the mesh looks like. Where tangents around a vertex are opposite,
+ * MikkTSpace may have a sum of its own for each direction among them, so that their number counts times that of the
+ * vertex's corners; so it may, here, where many are more than a right angle apart. With repair this has a bound: 2^28
+ * such products in a mesh (8 192 quads around a vertex whose halves are opposite, which take MikkTSpace itself 16 s),
+ * and 256 for each corner. Past it a vertex of more than 128 corners has one tangent for those that hang together:
+ * their sum. counts.summed_instead and NMTAN_FAULT_SUMMED tell. Repair off keeps MikkTSpace's bytes, at their cost:
+ * 20 000 quads take 1.6 s on one thread of an AMD EPYC. An angular threshold below 180 degrees has no bound either: it
+ * takes MikkTSpace's own time and memory.
  *
  * Returns NMTAN_OK, NMTAN_ERROR_ARGUMENT, NMTAN_ERROR_INDEX, NMTAN_ERROR_FACE_SIZE,
  * NMTAN_ERROR_TOO_LARGE or NMTAN_ERROR_MEMORY.

@@ -85,6 +85,7 @@ typedef struct request {
 	nt_scratch_mark mark;
 	nmtan_timing timing; /* of this call */
 	bool sorted_instead;
+	size_t summed_instead;
 	double begin;
 	char memory[SMALL_BYTES]; /* of `own`: what few triangles need */
 } request;
@@ -148,8 +149,10 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 		/* bounds on the error of the determinants of `texcoords` say nothing about those of others */
 		.known = nt_has_stored_texcoords(&r->mesh) ? NULL : &r->known,
 		.repair = r->options.repair == NMTAN_REPAIR_ON,
+		.summed_instead = &r->summed_instead,
 		.sorted_instead = &r->sorted_instead};
 	r->sorted_instead = false;
+	r->summed_instead = 0;
 	r->mark = nt_scratch_here(scratch);
 	return NMTAN_OK;
 }
@@ -255,6 +258,7 @@ nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 		status = nt_repair(&r.solve, &met);
 	met.ill_conditioned = ill_conditioned;
 	met.sorted_instead = r.sorted_instead;
+	met.summed_instead = r.summed_instead;
 	end_request(&r);
 	end_counts(&met, counts);
 	return status;
@@ -276,6 +280,7 @@ static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_coun
 		status = nt_repair_and_split(&r->solve, counts, splitter);
 	counts->ill_conditioned = ill_conditioned;
 	counts->sorted_instead = r->sorted_instead;
+	counts->summed_instead = r->summed_instead;
 	return status;
 }
 

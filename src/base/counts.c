@@ -19,6 +19,7 @@ void nt_counts_add(nmtan_counts *sum, const nmtan_counts *part)
 	sum->repaired_leaning += part->repaired_leaning;
 	sum->ill_conditioned += part->ill_conditioned;
 	sum->sorted_instead += part->sorted_instead;
+	sum->summed_instead += part->summed_instead;
 }
 
 size_t nt_counts_repaired(const nmtan_counts *counts)

@@ -141,6 +141,7 @@ static void append_run(nt_buffer *out, const nt_summary *s)
 	append_number(out, "split", s->appended_tangents);
 	append_number(out, "repaired", s->repaired);
 	append_number(out, "sorted_instead", s->counts.sorted_instead);
+	append_number(out, "summed_instead", s->counts.summed_instead);
 	if (s->tangents_digest)
 		nt_buffer_format(out, ",\"tangents\":\"%016" PRIx64 "\"", s->tangents_digest);
 	append_number(out, "bytes_read", s->bytes_read);

@@ -257,6 +257,8 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	if (s->repaired)
 		nt_buffer_format(out, settings->check ? ", %zu tangents would be repaired"
 						      : ", repaired %zu of the tangents", s->repaired);
+	if (s->counts.summed_instead)
+		nt_buffer_format(out, ", %zu corners of hubs with one sum", s->counts.summed_instead);
 	if (s->counts.sorted_instead)
 		nt_buffer_format(out, ", %zu solved as mikktspace-sorted", s->counts.sorted_instead);
 	if (s->rounding.count)

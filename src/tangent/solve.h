@@ -149,6 +149,7 @@ typedef struct nt_solve {
 	float *bitangents;       /* [corner_count][3] or NULL */
 	float *magnitudes;       /* [corner_count][2] or NULL */
 	uint8_t *faults;         /* [corner_count] bits of nmtan_fault are added, or NULL */
+	size_t *summed_instead;  /* corners past the bound of fast/complex_solve.c are added to it; or NULL */
 	bool *sorted_instead;    /* set where MikkTSpace is sorted because of a limit, not by `sorted`; or NULL */
 } nt_solve;
 

@@ -39,18 +39,18 @@ sys.exit(child.returncode)' $((seconds * factor)) $((megabytes * factor)) "$WORK
 	[ ! -s "$WORK/cost.txt" ] || wrong "$(cat "$WORK/cost.txt")"
 }
 
-# grows KIND COUNT WORDS...: COUNT, 2 COUNT and 4 COUNT of a kind take linear time; IN is the input, and where `prepare`
-# is a function, what that makes of it.
+# grows KIND COUNT WORDS...: COUNT, 2 COUNT and 4 COUNT of a kind take linear time; IN is the input. With `first` set to
+# words, what nmtan makes of it by these.
+first=
 grows() {
 	local kind=$1 count=$2 size files=()
 	shift 2
 	for size in 1 2 4; do
-		inputs "$kind" $((size * count)) $size.obj
+		python3 "$ROOT/tests/support/cost_inputs.py" "$kind" $((size * count)) $size.obj
 		files+=($size.obj)
-		if [ -n "$(type -t prepare)" ]; then
-			prepare $size.obj $size.glb
-			files[-1]=$size.glb
-		fi
+		# shellcheck disable=SC2086
+		[ -z "$first" ] || run -q $first $size.obj $size.glb
+		[ -z "$first" ] || files[-1]=$size.glb
 	done
 	command python3 "$ROOT/tests/support/growth.py" 8 $((factor))e-1 "${files[@]}" -- "$NMTAN" -q --fail-on=never "$@" \
 		>"$WORK/cost.txt" 2>&1 || wrong "$kind: $(cat "$WORK/cost.txt")"
@@ -76,12 +76,17 @@ within 5 300 -q --only=all --existing=replace --draco=edgebreaker --verify --rep
 exits 0
 is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"].startswith("DRACO")]')" "['DRACO_SEQUENTIAL']"
 
-scene "triangles around one centre are read back in linear time"
-prepare() {
-	run -q --only=all "$1" "$2"
-}
-grows centre $((faces / 8)) --only=all --existing=replace --draco=edgebreaker --verify IN out.glb
-unset -f prepare
+scene "what was quadratic once grows as its input does"
+first=--only=all
+for kind in repeated centre; do
+	grows $kind $((faces / 8)) --only=all --existing=replace --draco=edgebreaker --verify IN out.glb
+done
+first=
+grows folded $((faces / 8)) IN out.ply
+grows bumps 10 --check IN
+for format in json html; do
+	grows names 250 --check --only=all --report=r.$format IN
+done
 
 scene "a name of a megabyte is cut in reports"
 printf 'o %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n' \
@@ -131,7 +136,7 @@ exits 0
 is "$(gltf i.gltf 'g.materials.length')" $blocks
 
 scene "images that are not written are decoded once, and not made"
-inputs bumps 40 b.obj
+python3 "$ROOT/tests/support/cost_inputs.py" bumps 40 b.obj
 for words in --check "--dry-run --report=r.json"; do
 	# shellcheck disable=SC2086
 	within 2 150 -q --fail-on=never $words b.obj $([ "$words" = --check ] || echo out.glb)

@@ -4,6 +4,7 @@
 
 elements  a PLY header of COUNT elements
 usemtl    an OBJ that changes its material COUNT times
+names     a GLB of COUNT primitives over one set of accessors, of a mesh whose name has 1000 COUNT bytes
 same      a GLB of COUNT primitives over one set of accessors, 43 218 triangles each
 windows   a GLB of COUNT primitives over one grid of SIDE (118) quads squared, each with another window of its 16-bit
           indices; the texture coordinates turn back at every fourth column, so that vertices are split
@@ -15,6 +16,7 @@ bumps     an OBJ of COUNT materials, and FILE.mtl and FILE.png beside it: each m
           SIDE (4096) pixels squared and one bit
 strip     an OBJ strip of COUNT quads
 hub       an OBJ of COUNT triangles around one point
+folded    an OBJ of COUNT quads around one point, whose halves have opposite tangents
 edge      an OBJ of COUNT triangles on one edge
 repeated  an OBJ of one triangle, COUNT times
 centre    an OBJ of COUNT triangles of three points each, all around one centre
@@ -22,6 +24,7 @@ patches   an OBJ of COUNT quads, each an island of its own over the same texels,
 """
 import json
 import math
+import os.path
 import struct
 import sys
 import zlib
@@ -43,7 +46,8 @@ def usemtl(count, out):
 
 
 def images(count, out):
-    out.write(b'mtllib %s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n' % sys.argv[3].encode())
+    out.write(b'mtllib %s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n' %
+              os.path.basename(sys.argv[3]).encode())
     for i in range(count):
         out.write(b'usemtl m%d\nf 1/1/1 2/2/1 3/3/1\n' % i)
     with open(sys.argv[3] + '.mtl', 'w') as materials:
@@ -56,7 +60,7 @@ def bumps(count, out, side):
     name = sys.argv[3]
     with open(name + '.mtl', 'w') as materials:
         for i in range(count):
-            materials.write('newmtl m%d\nmap_Bump -bm %d %s.png\n' % (i, i + 1, name))
+            materials.write('newmtl m%d\nmap_Bump -bm %d %s.png\n' % (i, i + 1, os.path.basename(name)))
     rows = zlib.compress((b'\0' + b'\xff' * (side // 8)) * side, 9)
     with open(name + '.png', 'wb') as png:
         png.write(b'\x89PNG\r\n\x1a\n')
@@ -84,6 +88,15 @@ def hub(count, out):
     for i in range(count):
         a, b, c = i + 1, (i + 1) % count + 1, count + 1
         out.write(b'f %d/%d %d/%d %d/%d\n' % (a, a, b, b, c, c))
+
+
+def folded(count, out):
+    out.write(b'v 0 0 0\nvt 0 0\nvn 0 0 1\n')
+    for i in range(count + 1):
+        side = -1 if i % 2 else 1
+        out.write(b'v %.9g 0 0\nvt %d 0\nv %d %.9g 0\nvt 0 %d\n' % (1 + i / 65536, side, i % 7, 1 + i / 65536, side))
+    for i in range(2, 2 * count + 2, 2):
+        out.write(b'f 1/1/1 %d/%d/1 %d/%d/1 %d/%d/1\n' % (i, i, i + 1, i + 1, i + 2, i + 2))
 
 
 def repeated(count, out):
@@ -134,7 +147,7 @@ def grid(side, windows):
     return arrays
 
 
-def glb(count, out, side, windows, ranges=False):
+def glb(count, out, side, windows, ranges=False, name=''):
     arrays, kind, width_bytes = grid(side, windows), *((5123, 2) if windows else (5125, 4))
     views, offset = [], 0
     for array in arrays:
@@ -154,7 +167,7 @@ def glb(count, out, side, windows, ranges=False):
                           'count': 3 * (triangles - (count if windows else 0))})
     primitives = [{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'material': 0,
                    'indices': 3 + i if windows or ranges else 3} for i in range(count)]
-    write_glb(out, {'meshes': [{'primitives': primitives}], 'materials': [{'normalTexture': {'index': 0}}],
+    write_glb(out, {'meshes': [{'name': name, 'primitives': primitives}], 'materials': [{'normalTexture': {'index': 0}}],
                     'accessors': accessors, 'bufferViews': views}, arrays)
 
 
@@ -196,6 +209,8 @@ kind, count, side = sys.argv[1], int(sys.argv[2]), int((sys.argv + [0])[4])
 with open(sys.argv[3], 'wb') as out:
     if kind == 'same':
         glb(count, out, 147, False)
+    elif kind == 'names':
+        glb(count, out, 3, False, name='x' * 1000 * count)
     elif kind == 'windows':
         glb(count, out, side or 118, True)
     elif kind == 'ranges':
@@ -206,4 +221,4 @@ with open(sys.argv[3], 'wb') as out:
         bumps(count, out, side or 4096)
     else:
         {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
-         'patches': patches, 'repeated': repeated, 'centre': centre}[kind](count, out)
+         'patches': patches, 'repeated': repeated, 'centre': centre, 'folded': folded}[kind](count, out)

@@ -15,7 +15,7 @@ const WORD = {faces: 0, vertices: 1, indices: 2, positions: 3, normals: 4, texco
 	sourceCapacity: 8, tangents: 9, method: 10, noRepair: 11, vDown: 12, sourceCount: 13, counts: 15};
 const COUNTS = ['degeneratePositions', 'degenerateTexcoords', 'mirrored', 'storedDifferently', 'foldedQuads',
 	'repairedZero', 'repairedNotFinite', 'repairedParallel', 'repairedSign', 'repairedUnassigned', 'repairedLeaning',
-	'illConditioned', 'sortedInstead'];
+	'illConditioned', 'sortedInstead', 'summedInstead'];
 
 const KEPT_BYTES = 2 ** 28;
 

@@ -33,6 +33,8 @@ export interface Counts {
 	repairedLeaning: number;
 	illConditioned: number;
 	sortedInstead: number;
+	/** Corners of hubs past the bound of MikkTSpace's work, which have one sum. */
+	summedInstead: number;
 }
 
 export interface IndexedTangents {

@@ -14,11 +14,20 @@
 #include "tangent/fast/complex_solve.h"
 
 #include <string.h>
+#include "base/deadline.h"
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "tangent/usable.h"
 #include "topology/corners.h"
+
+/*
+ * What it may cost where results are repaired: directions times members, of all large groups of a mesh. A quarter of
+ * a second on one thread (a nanosecond each), which 8 192 folded quads around a vertex take, and 256 for each corner
+ * more, so that time is linear. mikktspace.c takes 16 s and half a gigabyte for these quads: nobody has a mesh with
+ * more, whose bytes would be missed. The group whose turn it is then has one sum.
+ */
+static const uint64_t most_work = (uint64_t)1 << 28, most_work_of_corner = 256;
 
 /* Corners that the kernel gets; vertices by which records are prefetched before they are read. */
 enum { SOLVED = 128, AHEAD = 12 };
@@ -154,6 +163,8 @@ static const nt_corner *first_with_frame(const part *p)
 static bool is_one(const part *p, const nt_corner *axis)
 {
 	size_t left = p->count <= NT_LANES ? NT_LANES : p->count / 32;
+	if (left > (most_work >> 2) / p->count)
+		left = (size_t)((most_work >> 2) / p->count);
 	for (size_t i = 0; i < p->count; i++)
 		if (!is_near(&p->solved[i], axis) && (left-- == 0 || !belongs_to_all(p, &p->solved[i])))
 			return false;
@@ -173,6 +184,10 @@ static void write_corner(const nt_complex *c, uint32_t place, const nt_corner *r
 	memcpy(solve->tangents + 4 * corner, (float[4]){r->u[0], r->u[1], r->u[2], sign}, 4 * sizeof(float));
 	if (solve->bitangents)
 		memcpy(solve->bitangents + 3 * corner, r->v, 3 * sizeof(float));
+	if (r->kind == NT_CORNER_SUMMED && solve->summed_instead)
+		++*solve->summed_instead;
+	if (r->kind == NT_CORNER_SUMMED && solve->faults)
+		solve->faults[corner] |= NMTAN_FAULT_SUMMED;
 	if (solve->magnitudes)
 		memcpy(solve->magnitudes + 2 * corner, (float[2]){r->mag_s, r->mag_t}, 2 * sizeof(float));
 }
@@ -201,7 +216,8 @@ static void put_result(const nt_complex *c, const nt_batch *b, uint32_t place, c
 static nt_corner merge(const nt_corner *a, const nt_corner *b)
 {
 	bool equal = a->mag_s == b->mag_s && a->mag_t == b->mag_t;
-	nt_corner r = {.mag_s = 0.5f * (a->mag_s + b->mag_s), .mag_t = 0.5f * (a->mag_t + b->mag_t)};
+	nt_corner r = {.mag_s = 0.5f * (a->mag_s + b->mag_s), .mag_t = 0.5f * (a->mag_t + b->mag_t),
+		.kind = a->kind == NT_CORNER_SUMMED ? a->kind : b->kind};
 	for (int i = 0; i < 3; i++) {
 		equal = equal && a->u[i] == b->u[i] && a->v[i] == b->v[i];
 		r.u[i] = a->u[i] + b->u[i];
@@ -318,7 +334,7 @@ static void sum_directions(void *context, size_t begin, size_t end, unsigned thr
 	(void)thread;
 	const sum_context *s = context;
 	const directions *d = s->d;
-	for (size_t first = NT_LANES * begin; first < NT_LANES * end; first += NT_LANES) {
+	for (size_t first = NT_LANES * begin; first < NT_LANES * end && !nt_deadline_passed(); first += NT_LANES) {
 		NT_ALIGNED(64) float lanes[6][NT_LANES] = {{0}}, sums[NT_CORNER_FLOATS][NT_LANES] = {{0}};
 		uint32_t own[2][NT_LANES] = {{0}};
 		const size_t count = d->count - first < NT_LANES ? d->count - first : NT_LANES;
@@ -335,6 +351,7 @@ static void sum_directions(void *context, size_t begin, size_t end, unsigned thr
 			for (size_t i = 0; i < NT_CORNER_FLOATS; i++)
 				row[i] = sums[i][lane];
 			memcpy(&d->sums[first + lane], row, sizeof row);
+			d->sums[first + lane].kind = NT_CORNER_EXTREME;
 			finish(s->c, &d->sums[first + lane]);
 		}
 	}
@@ -368,16 +385,14 @@ static bool average_whole(const nt_complex *c, const nt_batch *b, const part *p,
 	return true;
 }
 
-/* Averages a group whose members may split. */
+/* Averages a group whose members may split; with NT_FAST_PATHS their directions are listed. */
 static void average_parts(const nt_complex *c, const nt_batch *b, const part *p, const nt_corner *whole, directions *d)
 {
 	const unsigned threads = p->count > SOLVED ? c->fast->solve->threads : 1;
-	if (NT_FAST_PATHS) {
-		list_directions(c, p, d);
+	if (NT_FAST_PATHS)
 		nt_parallel_ranges(threads, (d->count + NT_LANES - 1) / NT_LANES, 1, sum_directions,
 			&(sum_context){c, p, d});
-	}
-	for (size_t i = 0; i < p->count; i++) {
+	for (size_t i = 0; i < p->count && !nt_deadline_passed(); i++) {
 		/* a member without a frame belongs to all */
 		const bool any = p->solved[i].kind == NT_CORNER_ANY;
 		const nt_corner result = any ? *whole : NT_FAST_PATHS ? d->sums[d->number[i]] : average_own(c, p, i);
@@ -405,9 +420,21 @@ static void solve_groups(const nt_complex *c, const nt_batch *b, const uint32_t 
 	for (uint32_t first = 0, end; first < count; first = end) {
 		end = end_of_group(c, &all, first);
 		const part p = {members + first, solved + first, end - first};
-		if (!average_whole(c, b, &p, &whole))
-			average_parts(c, b, &p, &whole, &d);
+		if (average_whole(c, b, &p, &whole))
+			continue;
+		if (NT_FAST_PATHS)
+			list_directions(c, &p, &d);
+		average_parts(c, b, &p, &whole, &d);
 	}
+}
+
+static void put_sum(const nt_complex *c, const nt_batch *b, const part *p, const nt_corner *whole)
+{
+	nt_corner sum = *whole;
+	sum.kind = NT_CORNER_SUMMED;
+	const uint32_t mark = mark_of(c, p->members[0], whole);
+	for (size_t i = 0; i < p->count; i++)
+		put_result(c, b, p->members[i], &sum, mark);
 }
 
 static nmtan_status average_large_parts(const nt_complex *c, const nt_batch *b, const part *p, const nt_corner *whole)
@@ -420,8 +447,16 @@ static nmtan_status average_large_parts(const nt_complex *c, const nt_batch *b, 
 	};
 	if (!d.number || !d.of || !d.sums || !d.table)
 		return NMTAN_ERROR_MEMORY;
+	list_directions(c, p, &d);
+	const uint64_t work = (uint64_t)d.count * p->count;
+	const uint64_t most = most_work + most_work_of_corner * c->fast->solve->corner_count;
+	if (c->fast->solve->repair && work > most - c->fast->work) {
+		put_sum(c, b, p, whole);
+		return NMTAN_OK;
+	}
+	c->fast->work += work;
 	average_parts(c, b, p, whole, &d);
-	return NMTAN_OK;
+	return nt_deadline_passed() ? NMTAN_ERROR_MEMORY : NMTAN_OK;
 }
 
 /* A group of more members. */

@@ -64,6 +64,7 @@ typedef struct nt_fast {
 	nt_unsorted unsorted;    /* edges that are not paired as a vertex's corners alone would have it */
 	nt_triangle_ranges ranges;
 	nt_deferred *deferred;       /* [ranges]; NULL: there is one */
+	uint64_t work;           /* of large groups that may split, so far: complex_solve.c */
 } nt_fast;
 
 /* How many vertices are complex, with how many corners at most; of them those that are tangled, and most corners of one
@@ -82,9 +83,9 @@ typedef struct nt_corner {
 	uint32_t kind;
 } nt_corner;
 
-/* nt_corner.kind: u and v have length 1 up to 1e-5; they may not; there is no frame,
- * and no value means anything. */
-enum { NT_CORNER_UNIT, NT_CORNER_EXTREME, NT_CORNER_ANY };
+/* nt_corner.kind: u and v have length 1 up to 1e-5; they may not; there is no frame, and no value means anything; a
+ * result is the sum of a group that may split. */
+enum { NT_CORNER_UNIT, NT_CORNER_EXTREME, NT_CORNER_ANY, NT_CORNER_SUMMED };
 
 /* Floats of an nt_corner, the weight last: they come before its kind. */
 enum { NT_CORNER_FLOATS = 9 };

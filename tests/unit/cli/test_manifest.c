@@ -59,7 +59,8 @@ static void a_job_that_ran_has_its_files_and_numbers(void **state)
 	assert_memory_equal(line, BEGIN("a\\\".obj", "done", 0) FILES ",\"findings\":{},\"triangles\":8",
 		strlen(BEGIN("a\\\".obj", "done", 0) FILES ",\"findings\":{},\"triangles\":8"));
 	assert_non_null(strstr(line, ",\"vertices_before\":12,\"vertices_after\":15,\"split\":2,\"repaired\":0,"
-				     "\"sorted_instead\":0,\"bytes_read\":100,\"bytes_written\":200,\"seconds\":{"));
+				     "\"sorted_instead\":0,\"summed_instead\":0,\"bytes_read\":100,"
+				     "\"bytes_written\":200,\"seconds\":{"));
 	assert_non_null(strstr(line, "\"total\":0.500000}}\n"));
 	outcome.summary.left = true;
 	assert_non_null(strstr(line_of(&job, 6), "\"status\":\"left\",\"exit_code\":6,"));

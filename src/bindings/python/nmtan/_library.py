@@ -32,7 +32,7 @@ class Counts(Struct):
     _fields_ = [(name, c_size_t) for name in (
         "struct_bytes", "degenerate_positions", "degenerate_texcoords", "mirrored", "stored_differently",
         "folded_quads", "repaired_zero", "repaired_not_finite", "repaired_parallel", "repaired_sign",
-        "repaired_unassigned", "repaired_leaning", "ill_conditioned", "sorted_instead")]
+        "repaired_unassigned", "repaired_leaning", "ill_conditioned", "sorted_instead", "summed_instead")]
 
 
 class Output(Struct):
