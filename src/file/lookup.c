@@ -71,16 +71,21 @@ nt_status nt_lookup_any_case(
 		return nt_fail_memory(error);
 	if (dir && fstat(dirfd(dir), &info) != 0)
 		info = (struct stat){0};
-	const nt_status status = find_entry(dir, name, length, entry, error);
+	nt_status status = find_entry(dir, name, length, entry, error);
 	if (dir)
 		closedir(dir);
 	nt_buffer path = {0};
 	nt_buffer_format(&path, "%s/%.*s", folder, (int)length, name);
 	if (!path.failed)
 		nt_trace_searched(path.data, *entry, &info);
-	const bool failed = path.failed;
+	else if (!status)
+		status = nt_fail_memory(error);
 	nt_buffer_free(&path);
-	return status || !failed ? status : nt_fail_memory(error);
+	if (status) {
+		free(*entry);
+		*entry = NULL;
+	}
+	return status;
 }
 
 nt_status nt_lookup_real(const char *path, char **real, nt_error *error)
