@@ -19,7 +19,8 @@ static nt_image_places places_here(bool allow_outside)
 	snprintf(document, sizeof document, "%s", in_folder("mtl/m.mtl"));
 	snprintf(input, sizeof input, "%s", in_folder("obj/m.obj"));
 	snprintf(more, sizeof more, "%s", in_folder("more"));
-	return (nt_image_places){document, input, folders, 1, allow_outside};
+	return (nt_image_places){.document = document, .input = input, .folders = folders, .folder_count = 1,
+		.allow_outside = allow_outside};
 }
 
 /* What a name leads to, from the test's folder. */
