@@ -15,7 +15,13 @@ typedef struct nt_deadline {
 	atomic_bool passed; /* stays so */
 } nt_deadline;
 
-extern _Thread_local const nt_deadline *nt_own_deadline; /* NULL: none */
+/* NULL: none. As of a module, it is there from the start of each thread: no memory can be missing for it later. */
+#ifdef __ELF__
+#define NT_STATIC_TLS __attribute__((tls_model("initial-exec")))
+#else
+#define NT_STATIC_TLS
+#endif
+extern NT_STATIC_TLS _Thread_local const nt_deadline *nt_own_deadline;
 
 /* The deadline of this thread from now on. Returns the one that it had. */
 static inline const nt_deadline *nt_deadline_use(const nt_deadline *deadline)
