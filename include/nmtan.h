@@ -383,6 +383,13 @@ NMTAN_API nmtan_status nmtan_vertex_tangents(const nmtan_mesh *mesh, const nmtan
  */
 NMTAN_API int nmtan_orientation(const float a[2], const float b[2], const float c[2]);
 
+/*
+ * Whether this build, on this processor as it is set now, gives the bytes that "Results" promises: 1, or 0 where it
+ * was compiled with flags that reorder floats, where floats are flushed to zero, or out of memory. A few triangles
+ * are solved, which takes less than a millisecond.
+ */
+NMTAN_API int nmtan_self_test(void);
+
 #ifdef __cplusplus
 }
 #endif

@@ -187,8 +187,9 @@ static void end_counts(const nmtan_counts *own, nmtan_counts *given)
 
 /* Corner k of a half, as a corner of its quad. */
 static const uint8_t half_corners[][2][3] = {
-	[NT_HALF_ABC] = {{0, 1, 2}, {0, 2, 3}},
-	[NT_HALF_ABD] = {{0, 1, 3}, {1, 2, 3}},
+	{{0}, {0}}, /* NT_HALF_NONE */
+	{{0, 1, 2}, {0, 2, 3}}, /* NT_HALF_ABC */
+	{{0, 1, 3}, {1, 2, 3}}, /* NT_HALF_ABD */
 };
 
 /* Solves quads in the place of their halves, whose corners take the quads' results; nothing is known of these. */

@@ -34,7 +34,7 @@ static inline bool nt_borrowed_has(const nt_borrowed *memory, size_t count, size
 }
 
 /* count * size bytes aligned to 64, not cleared; NULL on overflow or exhaustion. */
-static inline void *nt_borrowed_alloc(nt_borrowed *memory, size_t count, size_t size)
+static inline nt_memory nt_borrowed_alloc(nt_borrowed *memory, size_t count, size_t size)
 {
 	if (!nt_borrowed_has(memory, count, size))
 		return nt_scratch_alloc(memory->scratch, count, size);

@@ -9,39 +9,56 @@
 #include <assert.h>
 #include <stdint.h>
 
-#if defined(__GNUC__) && !defined(NMTAN_PLAIN_C)
+/* Hints, which change no results. */
+#if defined(__GNUC__)
 #define NT_ALWAYS_INLINE __attribute__((always_inline))
 #define NT_NOINLINE __attribute__((noinline))
-#define NT_PREFETCH(...) __builtin_prefetch(__VA_ARGS__)
-#define NT_EXPECT(condition, value) __builtin_expect(condition, value)
-#define NT_UNREACHABLE __builtin_unreachable()
+#define NT_RESTRICT __restrict
 #define NT_PRAGMA(text) _Pragma(#text)
 #define NT_UNROLL(times) NT_PRAGMA(GCC unroll times)
-#define NT_BIG_ENDIAN (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__)
+#elif defined(_MSC_VER)
+#define NT_ALWAYS_INLINE __forceinline
+#define NT_NOINLINE __declspec(noinline)
 #define NT_RESTRICT __restrict
+#define NT_UNROLL(times)
 #else
 #define NT_ALWAYS_INLINE
 #define NT_NOINLINE
+#define NT_RESTRICT
+#define NT_UNROLL(times)
+#endif
+
+#if defined(__GNUC__) && !defined(NMTAN_PLAIN_C)
+#define NT_PREFETCH(...) __builtin_prefetch(__VA_ARGS__)
+#define NT_EXPECT(condition, value) __builtin_expect(condition, value)
+#define NT_UNREACHABLE __builtin_unreachable()
+#else
 #define NT_PREFETCH(...) ((void)0)
 #define NT_EXPECT(condition, value) (condition)
 #define NT_UNREACHABLE ((void)0)
-#define NT_UNROLL(times)
+#endif
+
 #if defined(__BYTE_ORDER__) && defined(__ORDER_BIG_ENDIAN__)
 #define NT_BIG_ENDIAN (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__)
 #else
 #define NT_BIG_ENDIAN 0
-#endif
-#if defined(__cplusplus)
-#define NT_RESTRICT
-#else
-#define NT_RESTRICT restrict
-#endif
 #endif
 
 #if defined(__cplusplus)
 #define NT_ALIGNED(bytes) alignas(bytes)
 #else
 #define NT_ALIGNED(bytes) _Alignas(bytes)
+#endif
+
+/* What becomes a pointer of any type: in C++ too. */
+#if defined(__cplusplus)
+struct nt_memory {
+	void *at;
+	nt_memory(void *memory) : at(memory) {}
+	template <class type> operator type *() const { return (type *)at; }
+};
+#else
+typedef void *nt_memory;
 #endif
 
 /* Vectors: gcc from 12 on, and clang. Lanes are single values elsewhere, and compilers make of them what they can. */
@@ -55,7 +72,7 @@
 #endif
 
 /* One thread needs no atomic operations, and plain C has none that C++ has too. */
-#if defined(__GNUC__) && !defined(NMTAN_PLAIN_C)
+#if defined(__GNUC__) && !defined(NT_NO_THREADS)
 #define nt_atomic_load(from, order) __atomic_load_n(from, __ATOMIC_##order)
 #define nt_atomic_store(to, value, order) __atomic_store_n(to, value, __ATOMIC_##order)
 #define nt_atomic_add(to, value, order) __atomic_fetch_add(to, value, __ATOMIC_##order)

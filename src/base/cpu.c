@@ -8,7 +8,7 @@
 
 /* glibc (2.33) tells what its loader has asked the processor already. Asking once more costs 10 us an instruction on a
  * virtual machine, and the compiler's way asks a dozen times before main(), needed or not. */
-#if defined(__x86_64__) && __has_include(<sys/platform/x86.h>)
+#if defined(__x86_64__) && !defined(__cplusplus) && __has_include(<sys/platform/x86.h>)
 #include <sys/platform/x86.h>
 
 /* As CPU_FEATURE_ACTIVE(), which shifts a signed 1 by 31 places for AVX512VL: a leaf has four registers. */

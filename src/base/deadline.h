@@ -7,9 +7,29 @@
 #ifndef NT_BASE_DEADLINE_H
 #define NT_BASE_DEADLINE_H
 
-#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
+
+/* The library alone has none. */
+#ifdef NT_NO_DEADLINES
+typedef struct nt_deadline nt_deadline;
+
+static inline const nt_deadline *nt_deadline_use(const nt_deadline *deadline)
+{
+	return deadline;
+}
+
+static inline const nt_deadline *nt_deadline_own(void)
+{
+	return NULL;
+}
+
+static inline bool nt_deadline_passed(void)
+{
+	return false;
+}
+#else
+#include <stdatomic.h>
 
 typedef struct nt_deadline {
 	atomic_bool passed; /* stays so */
@@ -31,10 +51,16 @@ static inline const nt_deadline *nt_deadline_use(const nt_deadline *deadline)
 	return before;
 }
 
+static inline const nt_deadline *nt_deadline_own(void)
+{
+	return nt_own_deadline;
+}
+
 static inline bool nt_deadline_passed(void)
 {
 	const nt_deadline *own = nt_own_deadline;
 	return own && atomic_load_explicit(&own->passed, memory_order_relaxed);
 }
+#endif
 
 #endif

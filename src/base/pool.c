@@ -325,7 +325,7 @@ void nt_pool_reserve(unsigned threads)
 
 void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), void *context)
 {
-	region r = {.body = body, .context = context, .slots = slots, .deadline = nt_own_deadline};
+	region r = {.body = body, .context = context, .slots = slots, .deadline = nt_deadline_own()};
 	if (slots <= 1) {
 		work(&r);
 		return;

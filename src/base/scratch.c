@@ -8,7 +8,6 @@
 
 #include <stdint.h>
 #include <stdlib.h>
-#include "base/compiler.h"
 #include "base/size.h"
 #include "base/pages.h"
 
@@ -28,8 +27,8 @@ struct nt_scratch_block {
 static void begin_block(struct nt_scratch_block *block, void *memory, size_t size_bytes, bool lent)
 {
 	const size_t gap = (ALIGNMENT - (uintptr_t)memory % ALIGNMENT) % ALIGNMENT;
-	*block = (struct nt_scratch_block){.memory = memory, .size_bytes = size_bytes, .first = (char *)memory + gap,
-		.room = (size_bytes - gap) / ALIGNMENT * ALIGNMENT, .lent = lent};
+	*block = (struct nt_scratch_block){.memory = (char *)memory, .size_bytes = size_bytes,
+		.first = (char *)memory + gap, .room = (size_bytes - gap) / ALIGNMENT * ALIGNMENT, .lent = lent};
 }
 
 static void *default_allocate(void *user, size_t size_bytes)
@@ -80,7 +79,7 @@ static struct nt_scratch_block *insert_block(nt_scratch *scratch, size_t bytes)
 		size_bytes = scratch->expected_bytes;
 	scratch->expected_bytes = 0;
 	const nmtan_allocator *from = &scratch->allocator;
-	struct nt_scratch_block *block = from->allocate(from->user, sizeof *block);
+	struct nt_scratch_block *block = (struct nt_scratch_block *)from->allocate(from->user, sizeof *block);
 	if (!block)
 		return NULL;
 	void *memory = from->allocate(from->user, size_bytes);
@@ -117,12 +116,12 @@ static void *NT_NOINLINE alloc_behind(nt_scratch *scratch, size_t bytes)
 	return take(block, bytes);
 }
 
-void *nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size)
+nt_memory nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size)
 {
 	size_t bytes;
 	if (!nt_size_mul(count, size, &bytes))
 		return NULL;
-	void *result = scratch->current ? take(scratch->current, bytes) : NULL;
+	void *const result = scratch->current ? take(scratch->current, bytes) : NULL;
 	return result ? result : alloc_behind(scratch, bytes);
 }
 
@@ -177,7 +176,7 @@ nmtan_workspace *nmtan_workspace_create(const nmtan_allocator *allocator)
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, allocator);
 	nmtan_workspace *workspace =
-		scratch.allocator.allocate(scratch.allocator.user, sizeof *workspace);
+		(nmtan_workspace *)scratch.allocator.allocate(scratch.allocator.user, sizeof *workspace);
 	if (workspace)
 		workspace->scratch = scratch;
 	return workspace;

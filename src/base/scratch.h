@@ -9,6 +9,7 @@
 #define NT_BASE_SCRATCH_H
 
 #include <stdbool.h>
+#include "base/compiler.h"
 #include "nmtan.h"
 
 typedef struct nt_scratch {
@@ -30,7 +31,7 @@ void nt_scratch_init(nt_scratch *scratch, const nmtan_allocator *allocator);
 void nt_scratch_lend(nt_scratch *scratch, void *memory, size_t size_bytes);
 
 /* count * size bytes aligned to 64, not cleared. NULL on overflow or exhaustion. */
-void *nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size);
+nt_memory nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size);
 
 /* Sets the least size of the first block that a scratch gets from its allocator. With many small blocks, malloc returns
  * pages to the system after each call, and the next call has to clear new ones. */

@@ -1,7 +1,29 @@
 # SPDX-License-Identifier: MIT
 #
 # make wasm: the npm package in build/npm (clang, lld and wasi-libc; wasm-opt where it is there). make python: a
-# wheel in build/python.
+# wheel in build/python. make amalgamation: the library as one C file in build/amalgamation.
+
+# The tool alone sets deadlines and makes normals. Kernels come before what chooses between them.
+amalgamation_src := $(filter-out src/base/deadline.c,$(filter src/base/% src/topology/%,$(core_src))) \
+	src/tangent/fast/kernel_baseline.c \
+	$(filter-out src/base/% src/topology/% src/tangent/normals.c src/tangent/%/kernel_baseline.c \
+		src/tangent/%/kernel_avx2.c src/tangent/%/kernel_avx512.c,$(core_src))
+
+.PHONY: amalgamation
+amalgamation: build/amalgamation/nmtan.c $(addprefix build/amalgamation/,nmtan.h CMakeLists.txt)
+
+build/amalgamation/nmtan.c: src/api/amalgamate.py src/api/amalgamation.in $(amalgamation_src) LICENSE \
+		$(wildcard src/base/*.h src/t*/*.h src/t*/*/*.h src/api/*.h)
+	@mkdir -p $(@D)
+	python3 -B $< $@ $(amalgamation_src)
+
+build/amalgamation/nmtan.h: include/nmtan.h
+	@mkdir -p $(@D)
+	cp $< $@
+
+build/amalgamation/CMakeLists.txt: src/api/amalgamation.cmake
+	@mkdir -p $(@D)
+	cp $< $@
 
 wasm_dir := src/bindings/wasm
 wasm_src := $(filter-out %/kernel_avx2.c %/kernel_avx512.c,$(core_src)) $(wildcard $(wasm_dir)/*.c)

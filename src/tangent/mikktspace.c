@@ -318,9 +318,10 @@ static nmtan_status pair_unsorted(state *s)
 			3 * sizeof *positions);
 	const nt_triangles triangles = {s->ids, s->cuts};
 	nt_unsorted unsorted;
-	const nmtan_status status = nt_find_unsorted(&(nt_welded_mesh){.triangles = &triangles,
+	const nt_welded_mesh mesh = {.triangles = &triangles,
 		.triangle_count = s->triangle_count, .vertex_count = s->vertex_count, .positions = positions,
-		.step = 3, .threads = s->solve->threads, .scratch = scratch}, scratch, &unsorted);
+		.step = 3, .threads = s->solve->threads, .scratch = scratch};
+	const nmtan_status status = nt_find_unsorted(&mesh, scratch, &unsorted);
 	for (size_t i = 0; i < unsorted.count; i++) {
 		const nt_unsorted_edge *e = &unsorted.edges[i];
 		s->triangles[sound_triangle(s, e->edge / 3)].neighbour[e->edge % 3] =
@@ -556,14 +557,12 @@ static void write_output(const state *s)
 	for (size_t c = 0; c < solve->corner_count; c++) {
 		const corner_frame *from = &s->frames[c];
 		const float w = !from->writes ? nt_unassigned_sign(solve) : from->orient ? 1.0f : -1.0f;
-		memcpy(solve->tangents + 4 * c, (float[4]){from->os.x, from->os.y, from->os.z, w},
-			4 * sizeof(float));
+		const float tangent[4] = {from->os.x, from->os.y, from->os.z, w};
+		memcpy(solve->tangents + 4 * c, tangent, sizeof tangent);
 		if (solve->bitangents)
-			memcpy(solve->bitangents + 3 * c,
-				(float[3]){from->ot.x, from->ot.y, from->ot.z}, 3 * sizeof(float));
+			memcpy(solve->bitangents + 3 * c, &from->ot, sizeof from->ot);
 		if (solve->magnitudes)
-			memcpy(solve->magnitudes + 2 * c, (float[2]){from->mag_s, from->mag_t},
-				2 * sizeof(float));
+			solve->magnitudes[2 * c] = from->mag_s, solve->magnitudes[2 * c + 1] = from->mag_t;
 	}
 }
 

@@ -28,11 +28,11 @@
 #include "topology/corners.h"
 
 /* What the sums at a vertex and its usable corners come to, for orientation -1 and +1. */
-typedef struct answers {
+typedef struct neighbour_answers {
 	float tangents[2][3], perpendicular[3]; /* unit; perpendicular to the normal */
 	bool averaged[2], borrowed[2];          /* 1 or 2 of the list above; neither: there is no tangent */
 	bool there[2];                          /* triangles or usable corners */
-} answers;
+} neighbour_answers;
 
 /* Triangles and usable corners at a vertex with an unusable corner, for orientation -1 and +1. */
 typedef struct neighbourhood {
@@ -40,7 +40,7 @@ typedef struct neighbourhood {
 	uint32_t usable[2]; /* the first usable corners, or NT_NO_ID */
 	union {
 		nt_frame_sum sums[2]; /* until all triangles are visited */
-		answers answers;
+		neighbour_answers answers;
 	};
 } neighbourhood;
 
@@ -210,7 +210,7 @@ static void visit_face(const repair_state *r, size_t face, size_t first, unsigne
 static void answer(const nt_solve *solve, neighbourhood *at)
 {
 	const nt_dvec3 n = at->normal;
-	answers a = {0};
+	neighbour_answers a = {0};
 	for (int side = 0; side < 2; side++) {
 		const bool weighs = at->sums[side].weights > 0.0, usable = at->usable[side] != NT_NO_ID;
 		nt_dvec3 t;
@@ -262,7 +262,7 @@ static const float *best_tangent(const repair_state *r, const face *f, size_t c,
 {
 	const nt_solve *solve = r->solve;
 	const neighbourhood *at = neighbourhood_of(r, c);
-	const answers *a = &at->answers;
+	const neighbour_answers *a = &at->answers;
 	if (solve->faults && !a->averaged[f->side])
 		solve->faults[c] |= NMTAN_FAULT_NO_AVERAGE;
 	if (a->averaged[f->side] || a->borrowed[f->side])

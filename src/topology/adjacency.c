@@ -53,7 +53,7 @@ static void count_ranges(void *context, size_t begin, size_t end, unsigned threa
 {
 	(void)thread;
 	for (size_t range = begin; range < end; range++)
-		count_range(context, range);
+		count_range((const counting *)context, range);
 }
 
 /* Vertices of a block with more than `most` corners become hubs. Returns how deep the block is without them. */

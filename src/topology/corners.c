@@ -39,7 +39,7 @@ nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count)
 /* nt_written_diagonal(); *solved receives the diagonal of the solve. */
 static int written_diagonal(const nmtan_mesh *mesh, size_t first, int *solved)
 {
-	static const float nowhere[2];
+	static const float nowhere[2] = {0};
 	const float *uv[4], *p[4];
 	for (size_t k = 0; k < 4; k++) {
 		const size_t vertex = nt_vertex_of(mesh, first + k);

@@ -45,7 +45,9 @@ static uint64_t *make_bits(const nt_welded_mesh *m)
 {
 	const size_t words = m->vertex_count / 64 + 1;
 	uint64_t *bits = nt_scratch_alloc(m->scratch, words, sizeof *bits);
-	return bits ? memset(bits, 0, words * sizeof *bits) : NULL;
+	if (bits)
+		memset(bits, 0, words * sizeof *bits);
+	return bits;
 }
 
 static bool is_degenerate(const nt_welded_mesh *m, const uint32_t v[3])

@@ -103,7 +103,7 @@ static bool has_inverted(const float *const positions[4], int diagonal)
 		       left = nt_dvec3_load(positions[(diagonal + 3) % 4]);
 	const nt_dvec3 along = nt_dvec3_sub(nt_dvec3_load(positions[diagonal + 2]), from);
 	const nt_dvec3 normal = nt_dvec3_cross(along, nt_dvec3_sub(left, right));
-	return (nt_dvec3_dot(nt_dvec3_cross(nt_dvec3_sub(right, from), along), normal) < 0) |
+	return (nt_dvec3_dot(nt_dvec3_cross(nt_dvec3_sub(right, from), along), normal) < 0) ||
 	       (nt_dvec3_dot(nt_dvec3_cross(along, nt_dvec3_sub(left, from)), normal) < 0);
 }
 

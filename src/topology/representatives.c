@@ -214,7 +214,7 @@ static size_t part_few(entry *entries, size_t count, const float *coordinates, s
  * last that is below, and so on. The order of all others, and which of them are swapped, decides in the end. */
 static size_t part_entries(entry *entries, size_t count, const float *coordinates, size_t step, float middle)
 {
-	if (MOST_COUNTED && count <= MOST_COUNTED)
+	if (MOST_COUNTED > 0 && count <= MOST_COUNTED)
 		return part_few(entries, count, coordinates, step, middle);
 	size_t left = 0, right = count;
 	for (;;) {

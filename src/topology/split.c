@@ -120,11 +120,11 @@ static void set_unused_tangent(const nmtan_mesh *mesh, size_t vertex, float *tan
 nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, size_t corner_count,
 	nmtan_split_output *output, nt_scratch *scratch)
 {
-	*s = (nt_splitter){.mesh = mesh, .corner_count = corner_count, .output = output, .scratch = scratch};
+	*s = (nt_splitter){.mesh = mesh, .output = output, .scratch = scratch, .corner_count = corner_count};
 	nt_hash_key(s->key);
-	s->tangents = output->vertex_tangents
-		? output->vertex_tangents
-		: nt_scratch_alloc(scratch, mesh->vertex_count, 4 * sizeof *s->tangents);
+	s->tangents = output->vertex_tangents;
+	if (!s->tangents)
+		s->tangents = nt_scratch_alloc(scratch, mesh->vertex_count, 4 * sizeof *s->tangents);
 	s->seen = nt_scratch_alloc(scratch, mesh->vertex_count, 1);
 	if (!s->tangents || !s->seen)
 		return NMTAN_ERROR_MEMORY;
@@ -179,7 +179,7 @@ void nt_splitter_end(nt_splitter *s)
 	if (s->output->indices && !s->indexed && !s->lazy)
 		copy_indices(s);
 	const uint8_t *at = s->seen, *const end = at + s->mesh->vertex_count;
-	for (; s->output->vertex_tangents && (at = memchr(at, 0, (size_t)(end - at))); at++)
+	for (; s->output->vertex_tangents && (at = (const uint8_t *)memchr(at, 0, (size_t)(end - at))); at++)
 		set_unused_tangent(s->mesh, (size_t)(at - s->seen), s->output->vertex_tangents + 4 * (at - s->seen));
 }
 

@@ -81,8 +81,8 @@ static const uint32_t *number_corners(nt_welder *w, size_t corner_count, unsigne
 	uint32_t *ids = nt_scratch_alloc(w->memory->scratch, corner_count, sizeof *ids);
 	if (!ids)
 		return NULL;
-	nt_parallel_ranges(ranges, corner_count, 1, copy_numbers,
-		&(copying){w->numbers, w->mesh->indices, ids});
+	copying c = {w->numbers, w->mesh->indices, ids};
+	nt_parallel_ranges(ranges, corner_count, 1, copy_numbers, &c);
 	return !w->unordered || !w->mesh->indices || number_unordered(w, corner_count, ids) ? ids : NULL;
 }
 

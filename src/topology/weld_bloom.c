@@ -197,10 +197,10 @@ static void number_listed(nt_welder *w, const nt_welder *listed)
 	uint32_t *const firsts = listed->numbers; /* takes the place of what has been read */
 	size_t classes = 0;
 	for (size_t l = 0; l < listed->item_count; l++) {
-		const uint32_t class = listed->numbers[l], v = listed->items[l];
-		if (class == classes)
+		const uint32_t found = listed->numbers[l], v = listed->items[l];
+		if (found == classes)
 			firsts[classes++] = v;
-		w->numbers[v] = firsts[class];
+		w->numbers[v] = firsts[found];
 	}
 }
 

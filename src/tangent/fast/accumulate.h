@@ -377,7 +377,7 @@ static inline NT_ALWAYS_INLINE void prefetch_cursors(const nt_fast *fast, const 
 		NT_PREFETCH(&cursors[ids[i]], 1);
 }
 
-static void accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
+static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
 	void *context)
 {
 	lanes_in in;

@@ -81,7 +81,9 @@ nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges,
 	const size_t corners = 3 * ranges->bounds[ranges->count];
 	nt_scratch *scratch = memory->scratch;
 	nt_bins b = {.vertex_bits = vertex_bits, .ranges = ranges->count, .count = count, .vertex_count = vertex_count};
-	b.sums = sums ? sums : nt_borrowed_alloc(memory, corners, sizeof *b.sums);
+	b.sums = sums;
+	if (!sums)
+		b.sums = nt_borrowed_alloc(memory, corners, sizeof *b.sums);
 	b.entries = nt_scratch_alloc(scratch, corners * NT_BINNED_ENTRY + 1, 1);
 	b.begins = nt_scratch_alloc(scratch, count, ranges->count * sizeof *b.begins);
 	b.seen = nt_scratch_alloc(scratch, ranges->count, sizeof *b.seen);

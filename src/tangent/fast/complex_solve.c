@@ -181,7 +181,8 @@ static void write_corner(const nt_complex *c, uint32_t place, const nt_corner *r
 	const uint32_t w = (c->corners[place] & NT_COMPLEX_PLUS ? NT_RESULT_PLUS : NT_RESULT_MINUS) | mark;
 	float sign;
 	memcpy(&sign, &w, sizeof sign);
-	memcpy(solve->tangents + 4 * corner, (float[4]){r->u[0], r->u[1], r->u[2], sign}, 4 * sizeof(float));
+	const float tangent[4] = {r->u[0], r->u[1], r->u[2], sign};
+	memcpy(solve->tangents + 4 * corner, tangent, sizeof tangent);
 	if (solve->bitangents)
 		memcpy(solve->bitangents + 3 * corner, r->v, 3 * sizeof(float));
 	if (r->kind == NT_CORNER_SUMMED && solve->summed_instead)
@@ -189,7 +190,7 @@ static void write_corner(const nt_complex *c, uint32_t place, const nt_corner *r
 	if (r->kind == NT_CORNER_SUMMED && solve->faults)
 		solve->faults[corner] |= NMTAN_FAULT_SUMMED;
 	if (solve->magnitudes)
-		memcpy(solve->magnitudes + 2 * corner, (float[2]){r->mag_s, r->mag_t}, 2 * sizeof(float));
+		solve->magnitudes[2 * corner] = r->mag_s, solve->magnitudes[2 * corner + 1] = r->mag_t;
 }
 
 /* The mark of a member's result, and of those of others at its vertex that have the same. */
@@ -363,8 +364,10 @@ static nt_corner average_own(const nt_complex *c, const part *p, size_t i)
 	const own_members o = find_own(c, p, i);
 	nt_corner sum = {.kind = NT_CORNER_EXTREME};
 	for (size_t j = 0; j < p->count; j++)
-		if (j - o.first < o.count || belong_together(&p->solved[i], &p->solved[j]))
-			add_members(&(part){p->members + j, p->solved + j, 1}, &sum);
+		if (j - o.first < o.count || belong_together(&p->solved[i], &p->solved[j])) {
+			const part one = {p->members + j, p->solved + j, 1};
+			add_members(&one, &sum);
+		}
 	finish(c, &sum);
 	return sum;
 }
@@ -389,9 +392,9 @@ static bool average_whole(const nt_complex *c, const nt_batch *b, const part *p,
 static void average_parts(const nt_complex *c, const nt_batch *b, const part *p, const nt_corner *whole, directions *d)
 {
 	const unsigned threads = p->count > SOLVED ? c->fast->solve->threads : 1;
+	sum_context context = {c, p, d};
 	if (NT_FAST_PATHS)
-		nt_parallel_ranges(threads, (d->count + NT_LANES - 1) / NT_LANES, 1, sum_directions,
-			&(sum_context){c, p, d});
+		nt_parallel_ranges(threads, (d->count + NT_LANES - 1) / NT_LANES, 1, sum_directions, &context);
 	for (size_t i = 0; i < p->count && !nt_deadline_passed(); i++) {
 		/* a member without a frame belongs to all */
 		const bool any = p->solved[i].kind == NT_CORNER_ANY;

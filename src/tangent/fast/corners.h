@@ -134,7 +134,7 @@ static void solve_single_angles(single_lanes *NT_RESTRICT s)
 		s->angle[i] = nt_acos(s->angle[i]);
 }
 
-static void corners(const nt_weld_row *rows, const uint32_t *list, size_t count, nt_corner *solved)
+static void kernel_corners(const nt_weld_row *rows, const uint32_t *list, size_t count, nt_corner *solved)
 {
 	single_lanes s;
 	float u[4 * NT_LANES], v[4 * NT_LANES]; /* rows in turned places */
@@ -154,7 +154,7 @@ static void corners(const nt_weld_row *rows, const uint32_t *list, size_t count,
 }
 
 /* What single corners add to their records, by the arithmetic of step 4. */
-static void corner_sums(const nt_weld_row *rows, const uint32_t *list, size_t count, nt_record *add)
+static void kernel_corner_sums(const nt_weld_row *rows, const uint32_t *list, size_t count, nt_record *add)
 {
 	single_lanes s;
 	lanes_edges edges;

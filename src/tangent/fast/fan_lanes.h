@@ -138,7 +138,7 @@ static inline NT_ALWAYS_INLINE lanes count_wide_fans_of(vertex_entries entries, 
 static inline NT_ALWAYS_INLINE lanes count_narrow_fans_of(vertex_entries entries, const uint32_t depth,
 	lanes degree, lanes mask)
 {
-	enum { BOTH = 0x10001, VOIDS = BOTH * (NT_ENTRY_VOID >> 16) };
+	static const uint32_t both_halves = 0x10001, voids = 0x10001 * (NT_ENTRY_VOID >> 16);
 	lanes entry[NT_FAN_DEPTH], plain[NT_FAN_DEPTH]; /* plain: without orientation */
 	lanes linked[NT_FAN_DEPTH];
 	half_set distinct = ALL_HALVES;
@@ -147,10 +147,11 @@ static inline NT_ALWAYS_INLINE lanes count_narrow_fans_of(vertex_entries entries
 	for (uint32_t k = 0; k < depth; k++) {
 		const lanes there = LANES_WHERE(degree > k);
 		const lanes both =
-			(load_lanes(entries.narrow + k * entries.step) & there) | ((0x70005000u + BOTH * k) & ~there);
+			(load_lanes(entries.narrow + k * entries.step) & there) |
+			((0x70005000u + both_halves * k) & ~there);
 		entry[k] = both & mask_of_halves;
-		plain[k] = both & ~(BOTH * (NT_ENTRY_ORIENT >> 16));
-		linked[k] = both & VOIDS;
+		plain[k] = both & ~(both_halves * (NT_ENTRY_ORIENT >> 16));
+		linked[k] = both & voids;
 	}
 	UNROLL
 	for (uint32_t b = 1; b < depth; b++) {
@@ -158,12 +159,12 @@ static inline NT_ALWAYS_INLINE lanes count_narrow_fans_of(vertex_entries entries
 		half_set from_others = ALL_HALVES; /* short chains, as above */
 		UNROLL
 		for (uint32_t a = 0; a < b; a++) {
-			linked[a] = with_bit_where_same(linked[a], entry[a], other_way, (uint32_t)BOTH << b);
+			linked[a] = with_bit_where_same(linked[a], entry[a], other_way, both_halves << b);
 			from_others = halves_differ(from_others, plain[a], plain[b]);
 		}
 		distinct = common_halves(distinct, from_others);
 	}
-	const lanes count = count_components(linked, depth, BOTH, VOIDS);
+	const lanes count = count_components(linked, depth, both_halves, voids);
 	return all_halves(distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
 }
 

@@ -135,11 +135,11 @@ static nmtan_status find_unsorted(nt_fast *fast, const nt_borrowed *memory)
 	nt_scratch_init(&lent, &scratch->allocator);
 	if (bytes >= LEAST_LENT_BYTES)
 		nt_scratch_lend(&lent, memory->begin, bytes);
-	const nmtan_status status = nt_find_unsorted(&(nt_welded_mesh){.triangles = &fast->triangles,
+	const nt_welded_mesh mesh = {.triangles = &fast->triangles,
 		.triangle_count = fast->triangle_count, .vertex_count = fast->vertex_count,
 		.positions = fast->rows->position, .step = sizeof *fast->rows / sizeof *fast->rows->position,
-		.threads = fast->solve->threads, .scratch = bytes >= LEAST_LENT_BYTES ? &lent : scratch},
-		scratch, &fast->unsorted);
+		.threads = fast->solve->threads, .scratch = bytes >= LEAST_LENT_BYTES ? &lent : scratch};
+	const nmtan_status status = nt_find_unsorted(&mesh, scratch, &fast->unsorted);
 	nt_scratch_free(&lent);
 	if (fast->unsorted.limit && fast->solve->sorted_instead)
 		*fast->solve->sorted_instead = true;
@@ -257,7 +257,7 @@ static void settle_bins(void *context, size_t begin, size_t end, unsigned thread
 static bool make_bins(run *r, unsigned ranges)
 {
 	const nt_fast *fast = r->fast;
-	const bool needed[2] = {fast->records[0], fast->records[1]};
+	const bool needed[2] = {fast->records[0] != NULL, fast->records[1] != NULL};
 	r->bins = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *r->bins);
 	for (unsigned i = 0; r->bins && i < ranges; i++)
 		if (nt_bin_make(&fast->bins, needed, fast->solve->scratch, &r->bins[i]))
@@ -325,20 +325,20 @@ static nmtan_status unsettle_unsorted(nt_fast *fast, nt_settled *settled)
 {
 	const nt_unsorted *unsorted = &fast->unsorted;
 	const size_t words = fast->vertex_count / 64 + 1;
-	uint64_t *new = nt_scratch_alloc(fast->solve->scratch, words, sizeof *new);
-	if (!new)
+	uint64_t *unsettled = nt_scratch_alloc(fast->solve->scratch, words, sizeof *unsettled);
+	if (!unsettled)
 		return NMTAN_ERROR_MEMORY;
-	memset(new, 0, words * sizeof *new);
+	memset(unsettled, 0, words * sizeof *unsettled);
 	for (size_t i = 0; i < 2 * unsorted->count; i++) {
 		const uint32_t edge = unsorted->edges[i / 2].edge, k = edge % 3;
 		const uint32_t vertex = nt_fast_vertex(fast, i % 2 ? edge - k + (k + 1) % 3 : edge);
 		if (unsettle(fast, vertex, settled))
-			new[vertex / 64] |= (uint64_t)1 << vertex % 64;
+			unsettled[vertex / 64] |= (uint64_t)1 << vertex % 64;
 	}
 	/* their corners are counted */
 	for (size_t i = 0; i < 3 * fast->triangle_count; i++) {
 		const uint32_t vertex = nt_fast_vertex(fast, i);
-		if (!(new[vertex / 64] >> vertex % 64 & 1) || fast->flags[i / 3] & NT_TRIANGLE_DEGENERATE)
+		if (!(unsettled[vertex / 64] >> vertex % 64 & 1) || fast->flags[i / 3] & NT_TRIANGLE_DEGENERATE)
 			continue;
 		uint32_t corners = 0;
 		for (int o = 0; o < 2; o++)
@@ -357,11 +357,11 @@ static nmtan_status unsettle_unsorted(nt_fast *fast, nt_settled *settled)
 static void tell_known(const nt_fast *fast)
 {
 	nt_known *known = fast->solve->known;
-	*known = (nt_known){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT, .suspect = NT_TRIANGLE_SUSPECT,
+	*known = (nt_known){.flags = fast->flags, .suspect = NT_TRIANGLE_SUSPECT, .positive = NT_TRIANGLE_ORIENT,
 		.doubtful = NT_TRIANGLE_UNCERTAIN, .flat = NT_TRIANGLE_ANY, .degenerate = NT_TRIANGLE_DEGENERATE,
-		.judged = NT_FAST_PATHS && nt_fast_judges(fast->solve) ? NT_TRIANGLE_COMPLEX : 0,
-		.open = known->open, .welded = fast->triangles.ids, .welded_count = fast->vertex_count,
-		.row_step = fast->record_step * sizeof(nt_record) / sizeof(float)};
+		.judged = (uint8_t)(NT_FAST_PATHS && nt_fast_judges(fast->solve) ? NT_TRIANGLE_COMPLEX : 0),
+		.open = known->open, .row_step = fast->record_step * sizeof(nt_record) / sizeof(float),
+		.welded = fast->triangles.ids, .welded_count = fast->vertex_count};
 	/* a record is x, y, z and, as state, the sign */
 	for (int orient = 0; orient < 2; orient++)
 		known->rows[orient] = fast->records[orient] ? &fast->records[orient]->x : NULL;
@@ -397,9 +397,8 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 {
 	assert(nt_fast_can(solve));
 	const nt_kernels *kernels = NT_CPU_TABLE(solve->isa, nt_kernels);
-	nt_fast fast = {.solve = solve, .sparse = solve->sparse,
-		.wants_more = solve->bitangents || solve->magnitudes,
-		.triangle_count = nt_triangle_count(solve->mesh, solve->corner_count)};
+	nt_fast fast = {.solve = solve, .triangle_count = nt_triangle_count(solve->mesh, solve->corner_count),
+		.wants_more = solve->bitangents || solve->magnitudes, .sparse = solve->sparse};
 	const bool binned = is_binned(&fast, plan->bin_bits);
 	nt_fast_memory memory;
 	nt_fast_plan_memory(&fast, binned, plan->least_borrowed_bytes, &memory);

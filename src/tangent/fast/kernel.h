@@ -8,5 +8,7 @@
 #include "tangent/fast/part_lanes.h"
 #include "tangent/fast/settle.h"
 
-const nt_kernels NT_KERNEL = {accumulate, settle, corners, NT_FAST_PATHS ? corner_sums : NULL,
-	NT_FAST_PATHS ? part_sums : NULL, NT_FAST_PATHS ? group_results : NULL};
+const nt_kernels NT_KERNEL = {kernel_accumulate, kernel_settle, kernel_corners,
+	NT_FAST_PATHS ? kernel_corner_sums : NULL,
+	NT_FAST_PATHS ? kernel_part_sums : NULL,
+	NT_FAST_PATHS ? kernel_group_results : NULL};

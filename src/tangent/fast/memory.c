@@ -57,9 +57,9 @@ bool nt_fast_place_records(nt_fast *fast, const bool orientations[2])
 {
 	static_assert(sizeof(nt_weld_row) == 2 * sizeof(nt_record), "a pair of records is as large as a row");
 	const bool both = orientations[0] && orientations[1];
-	nt_record *records = both || fast->ranges.count == 1
-		? (nt_record *)fast->rows
-		: nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *records);
+	nt_record *records = (nt_record *)fast->rows;
+	if (!both && fast->ranges.count > 1)
+		records = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *records);
 	for (int o = 0; o < 2; o++)
 		fast->records[o] = orientations[o] ? records + (both ? o : 0) : NULL;
 	fast->record_step = both ? 2 : 1;

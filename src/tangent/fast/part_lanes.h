@@ -59,7 +59,7 @@ static void add_part_lanes(const nt_corner *members, size_t count, const float d
 		memcpy(&sums[from + i][lane], &sum[i], sizeof sum[i]);
 }
 
-static void part_sums(const nt_corner *members, size_t count, const float directions[6][NT_LANES],
+static void kernel_part_sums(const nt_corner *members, size_t count, const float directions[6][NT_LANES],
 	const uint32_t own[2][NT_LANES], bool more, float sums[NT_CORNER_FLOATS][NT_LANES])
 {
 	for (size_t lane = 0; lane < NT_LANES; lane += WIDTH)

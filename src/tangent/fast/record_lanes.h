@@ -165,7 +165,7 @@ static inline void finish_groups(const nt_weld_row *rows, const uint32_t *vertic
 /* Results of groups from their sums. One that is its sum has the state NT_RESULT_PLUS, whatever its orientation, and
  * NT_RESULT_UNUSABLE where it is that; others have NT_RESULT_COMPLEX and NT_RESULT_UNUSABLE. There is room for whole
  * vectors, which hold sums throughout. */
-static void group_results(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results)
+static void kernel_group_results(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results)
 {
 	for (size_t first = 0; first < count; first += NT_LANES)
 		finish_groups(rows, vertices + first, count - first < NT_LANES ? count - first : NT_LANES,

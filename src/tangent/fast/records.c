@@ -134,8 +134,8 @@ nmtan_status nt_fast_add(nt_fast *fast, const nt_kernels *kernels)
 	const unsigned ranges = fast->ranges.count;
 	if (ranges > 1 && !make_deferred(fast))
 		return NMTAN_ERROR_MEMORY;
-	job j = {.fast = fast, .kernels = kernels, .lock = NT_LOCK_INIT,
-		.record_count = (fast->vertex_count + NT_LANES - 1) / NT_LANES * NT_LANES};
+	job j = {.fast = fast, .kernels = kernels,
+		.record_count = (fast->vertex_count + NT_LANES - 1) / NT_LANES * NT_LANES, .lock = NT_LOCK_INIT};
 	nt_parallel_ranges(ranges, ranges, 1, add_ranges, &j);
 	nt_lock_free(&j.lock);
 	if (j.failed)

@@ -172,8 +172,8 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		describe_complex(fast, a, first, used, complex, fan_count, settled);
 }
 
-static void settle(nt_fast *fast, const nt_adjacency *adjacency, nt_record *const sums[2], size_t begin, size_t end,
-	nt_settled *settled)
+static void kernel_settle(nt_fast *fast, const nt_adjacency *adjacency, nt_record *const sums[2], size_t begin,
+	size_t end, nt_settled *settled)
 {
 	for (size_t block = begin; block < end; block++)
 		settle_block(fast, adjacency, sums, block, settled);

@@ -12,13 +12,15 @@
 #include <stdint.h>
 #include <string.h>
 #include "tangent/fast/parts.h"
-#if defined(__AVX2__)
+#if defined(__AVX2__) || defined(NT_SET_AVX2)
 #include <immintrin.h>
 #endif
 
 /* Elements of two vectors, one after the other, for shuffles: every other 16-byte part; every other element; one
  * vector's elements in turned places, and out of them. Without vectors a lane is a value, and nothing is turned. */
-#if defined(__AVX512F__)
+#if !NT_VECTORS
+#define WIDTH 1
+#elif defined(__AVX512F__) || defined(NT_SET_AVX512)
 #define WIDTH 16
 #define IN_PARTS(a, b, c, d) \
 	IN_PART(0, a, b, c, d), IN_PART(4, a, b, c, d), IN_PART(8, a, b, c, d), IN_PART(12, a, b, c, d)
@@ -30,7 +32,7 @@
 #define ODD 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31
 #define TURNED 0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15
 #define UNTURNED TURNED
-#elif defined(__AVX2__)
+#elif defined(__AVX2__) || defined(NT_SET_AVX2)
 #define WIDTH 8
 #define IN_PARTS(a, b, c, d) IN_PART(0, a, b, c, d), IN_PART(4, a, b, c, d)
 #define LOW_PAIRS 0, 4, 2, 6
@@ -41,7 +43,7 @@
 #define ODD 1, 3, 5, 7, 9, 11, 13, 15
 #define TURNED 0, 2, 4, 6, 1, 3, 5, 7
 #define UNTURNED 0, 4, 1, 5, 2, 6, 3, 7
-#elif NT_VECTORS
+#else
 #define WIDTH 4
 #define IN_PARTS(a, b, c, d) a, b, c, d
 #define LOW_PAIRS 0, 2
@@ -50,8 +52,6 @@
 #define ODD 1, 3, 5, 7
 #define TURNED 0, 1, 2, 3
 #define UNTURNED TURNED
-#else
-#define WIDTH 1
 #endif
 
 /* The same four elements in every part: 0 to 3 of the first vector, 4 to 7 of the second. */

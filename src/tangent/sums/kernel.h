@@ -135,7 +135,7 @@ static void NT_NOINLINE sum_frames(sum_lanes *NT_RESTRICT l, nt_sum_block *NT_RE
 	}
 }
 
-#if defined(__FMA__) || defined(__ARM_FEATURE_FMA)
+#if defined(__FMA__) || defined(NT_SET_AVX2) || defined(__ARM_FEATURE_FMA)
 LANE_INLINE double lane_product_difference(double a, double b, double c, double d)
 {
 	const double product = c * d;

@@ -359,7 +359,7 @@ static void tell_known(const nt_sums *s, bool sparse)
 	nt_known *known = s->solve->known;
 	if (!known)
 		return;
-	*known = (nt_known){.flags = s->flags, .positive = NT_SUM_POSITIVE, .suspect = NT_SUM_SUSPECT,
+	*known = (nt_known){.flags = s->flags, .suspect = NT_SUM_SUSPECT, .positive = NT_SUM_POSITIVE,
 		.doubtful = NT_SUM_SUSPECT, .welded = s->weld.ids, .welded_count = s->weld.count};
 	if (!sparse)
 		return;
@@ -373,8 +373,9 @@ static nmtan_status write_results(run *r, const nt_sums_finished *finished, size
 {
 	nt_sums *s = r->s;
 	const nt_solve *solve = s->solve;
-	const writing w = {.r = r, .sparse = solve->sparse && solve->known && !s->corners,
-		.careful = finished->lost || finished->ill || s->corners || solve->bitangents || solve->magnitudes};
+	const writing w = {.r = r,
+		.careful = finished->lost || finished->ill || s->corners || solve->bitangents || solve->magnitudes,
+		.sparse = solve->sparse && solve->known && !s->corners};
 	r->ill = nt_scratch_alloc(solve->scratch, s->ranges, sizeof *r->ill);
 	if (!r->ill)
 		return NMTAN_ERROR_MEMORY;

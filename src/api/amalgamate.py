@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: MIT
+"""Makes one C file of the compute library: amalgamate.py TARGET SOURCE..., from the top folder.
+
+The text of the sources stays as it is, comments too, but for what one translation unit
+asks:
+- a header comes where it is first included, and all but the API is static;
+- names that two files have for their own get the name of their file behind them, and macros of a C file end with it;
+- functions that nothing calls go;
+- the kernels are compiled once for each instruction set: nmtan.c includes itself, and each time NT_PASS_NAME() makes
+  other names of theirs.
+"""
+import glob
+import os
+import re
+import sys
+
+HEAD = 'src/api/amalgamation.in'
+# Headers that depend on the instruction set: these, and what includes the first.
+KERNEL_ROOT, KERNEL_ALSO = 'tangent/fast/turn.h', ['tangent/acos.h']
+KERNEL_PLACE = 'src/tangent/fast/kernel_baseline.c'  # among the sources
+KERNELS = ['src/tangent/fast/kernel.h', 'src/tangent/sums/kernel.h']
+
+INCLUDE = re.compile(r'#include ([<"])(.+)[>"]')
+# What begins a function that others see, in the first column.
+FUNCTION = re.compile(r'(?!typedef|static|return|else|extern|enum|NMTAN_API|LANE_INLINE|struct \w+ \{)'
+	r'[a-z][\w ]*[ *]\**(nt_\w+)\(')
+DEFINITION = re.compile(r'^(?:const )?[\w ]+ (nt_\w+)(?:\[\w+\])+(?: = \{.*?^\t*\}+)?;\n', re.M | re.S)
+OWN = [re.compile(pattern, re.M) for pattern in (
+	r'^(?:static|LANE_INLINE) [^;={(]*?\b(\w+)\(',  # functions
+	r'^static [^;={(]*?\b(\w+)(?:\[[^=;]*)? = ',  # constants
+	r'^\} (\w+)(?: = .*)?;',  # structs, and variables of one
+	r'^typedef [^{};]*?\b(\w+)(?: __attribute__.*)?;',
+	r'^typedef (?:struct|enum|union) (\w+) \{')]
+ENUM = re.compile(r'^(?:typedef )?enum(?: \w+)? \{(.*?)\}', re.M | re.S)
+COMMENT = re.compile(r'/\*.*?\*/', re.S)
+
+
+def read(path):
+	with open(path, encoding='utf-8') as file:
+		return file.read()
+
+
+def own_names(text):
+	"""The names that a file defines for itself."""
+	plain = COMMENT.sub('', text)
+	names = {name for pattern in OWN for name in pattern.findall(plain)}
+	for body in ENUM.findall(plain):
+		names.update(re.findall(r'(?:^|,)\s*(\w+)', body))
+	return names
+
+
+def includes_of(name):
+	return [found[2] for found in map(INCLUDE.match, read('src/' + name).splitlines()) if found and found[1] == '"']
+
+
+def kernel_headers():
+	names = {os.path.relpath(path, 'src') for path in glob.glob('src/tangent/*/*.h')}
+	found = {KERNEL_ROOT, *KERNEL_ALSO}
+	while True:
+		more = {name for name in names - found if found & set(includes_of(name)) - set(KERNEL_ALSO)}
+		if not more:
+			return found
+		found |= more
+
+
+class Amalgamation:
+	def __init__(self, sources):
+		self.seen = {'nmtan.h'}
+		self.lines = []
+		self.includes = []
+		self.moved = {}  # what headers have external, by name: its definition comes in their place
+		counts = {}
+		for path in sources + glob.glob('src/t*/**/*.h', recursive=True):
+			text = read(path)
+			for name in own_names(text):
+				counts[name] = counts.get(name, 0) + 1
+			if path.endswith('.c'):
+				self.moved.update((found[1], 'static ' + found[0]) for found in DEFINITION.finditer(text))
+		self.shared = {name for name in counts if counts[name] > 1 and not name.startswith('nt_')}
+
+	def lines_of(self, path):
+		text = read(path)
+		for name in self.moved if path.endswith('.c') else ():
+			text = text.replace(self.moved[name][len('static '):], '')
+		lines = text.splitlines()
+		if lines[0].startswith('/* SPDX'):
+			lines = lines[1:]
+		guard = [i for i, line in enumerate(lines) if re.match(r'#ifndef NT_\w+_H$', line)]
+		return lines[:guard[0]] + lines[guard[0] + 2:-1] if guard else lines
+
+	def add(self, path, renamed=()):
+		self.lines += ['', '/* ---- ' + path + ' ---- */']
+		depth = 0
+		for line in self.lines_of(path):
+			depth += bool(re.match(r'#\s*if', line)) - bool(re.match(r'#\s*endif', line))
+			included = INCLUDE.match(line)
+			if included and included[1] == '"':
+				self.add_header(included[2], renamed)
+			elif included and depth == 0:
+				self.includes += [line] * (line not in self.includes)
+			else:
+				self.add_line(line, renamed)
+
+	def add_header(self, name, renamed=()):
+		if name not in self.seen:
+			self.seen.add(name)
+			self.add('src/' + name, renamed)
+
+	def add_line(self, line, renamed):
+		for pattern, name in renamed:
+			line = pattern.sub(name, line)
+		if re.search(r'\w \*\w+ = (context|left|given|memory)[;,]', line):
+			line = re.sub(r'= (context|left|right|given|memory)([;,])',
+				lambda found: '= ({}*){}{}'.format(re.match(r'\s*(.*?)\*', line)[1], found[1], found[2]), line)
+		external = re.match(r'extern (?:.* )?(\w+)(?:\[.*\])*;', line)
+		if external:
+			self.lines += self.moved.get(external[1], '').splitlines()
+		else:
+			self.lines.append('static ' + line if FUNCTION.match(line) else line)
+
+	def add_source(self, path):
+		text = read(path)
+		base = os.path.basename(path)[:-2]
+		self.add(path, [(re.compile(r'(?<![\w.])(?<!->)' + name + r'\b'), name + '_of_' + base)
+			for name in sorted(own_names(text) & self.shared)])
+		self.lines += ['#undef ' + name for name in re.findall(r'^#define (\w+)', text, re.M)
+			if self.is_elsewhere(name, path)]
+
+	@staticmethod
+	def is_elsewhere(name, path):
+		others = set(glob.glob('src/[abt]*/**/*.[ch]', recursive=True)) - {path}
+		return any(re.search(r'\b' + name + r'\b', read(other)) for other in others)
+
+	def add_kernels(self):
+		headers = kernel_headers()
+		for name in sorted(headers):
+			for other in includes_of(name):
+				if other not in headers:
+					self.add_header(other)
+		texts = [read('src/' + name) for name in sorted(headers)]
+		names = sorted(set().union(*map(own_names, texts)))
+		self.lines += ['', '/* ---- names of the kernels ---- */']
+		self.lines += ['#define {0} NT_PASS_NAME({0})'.format(name) for name in names]
+		self.lines += ['', '#define NT_KERNEL NT_PASS_NAME(nt_kernels)',
+			'#define NT_SUM_KERNEL NT_PASS_NAME(nt_sum_kernels)']
+		self.lines += ['@passes']
+		for path in KERNELS:
+			self.seen.add(path[len('src/'):])
+			self.add(path)
+		macros = {}
+		for name, value in re.findall(r'^#define (\w+)((?:.*\\\n)*.*)', '\n'.join(texts), re.M):
+			macros.setdefault(name, set()).add(value)
+		self.lines += ['#undef ' + name for name in sorted(macros) if len(macros[name]) > 1]
+		self.lines += ['@rest']
+
+	def text(self):
+		"""All of it, without the functions that nothing calls, and without pairs of empty lines."""
+		text = '\n'.join(self.lines) + '\n'
+		while True:
+			plain = COMMENT.sub('', text)
+			heads = re.findall(r'^static [^;={(]*?\b(nt_\w+)\(', plain, re.M)
+			unused = [name for name in set(heads)
+				if len(re.findall(r'\b' + name + r'\b', plain)) == heads.count(name)]
+			for name in unused:
+				text = re.sub(r'(?:^/\*(?:(?!\*/).)*\*/\n)?^static [^;={}()]*\b' + name +
+					r'\([^{};]*\)(?:;\n|\n\{\n.*?^\}\n)', '', text, flags=re.M | re.S)
+			if not unused:
+				return re.sub(r'\n\n\n+', '\n\n', text)
+
+
+def main():
+	target, sources = sys.argv[1], sys.argv[2:]
+	result = Amalgamation(sources)
+	for path in sources:
+		if path == KERNEL_PLACE:
+			result.add_kernels()
+		else:
+			result.add_source(path)
+	text = read(HEAD)
+	licence = ''.join((' * ' + line).rstrip() + '\n' for line in read('LICENSE').splitlines())
+	text = text.replace('@licence\n', licence).replace('@includes\n', '\n'.join(result.includes) + '\n')
+	body = result.text()
+	for name in ('passes', 'rest'):
+		part = re.search('@begin ' + name + '\n(.*?)@end\n', text, re.S)
+		text = text.replace(part[0], '')
+		body = body.replace('@' + name + '\n', part[1])
+	with open(target, 'w', encoding='utf-8') as file:
+		file.write(text + body + '#endif\n')
+
+
+main()

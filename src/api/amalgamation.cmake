@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: MIT
+# For add_subdirectory(): the target nmtan::nmtan, a static library of nmtan.c. NMTAN_THREADS=ON gives it threads.
+cmake_minimum_required(VERSION 3.13)
+project(nmtan LANGUAGES C)
+option(NMTAN_THREADS "options->threads means something" OFF)
+add_library(nmtan STATIC nmtan.c nmtan.h)
+add_library(nmtan::nmtan ALIAS nmtan)
+target_include_directories(nmtan PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
+set_target_properties(nmtan PROPERTIES POSITION_INDEPENDENT_CODE ON)
+if(UNIX)
+	target_link_libraries(nmtan PUBLIC m)
+endif()
+if(NMTAN_THREADS)
+	find_package(Threads REQUIRED)
+	target_compile_definitions(nmtan PRIVATE NMTAN_THREADS)
+	target_link_libraries(nmtan PUBLIC Threads::Threads)
+endif()

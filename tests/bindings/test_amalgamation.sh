@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+# build/amalgamation/nmtan.c by several compilers, with flags that change how floats are computed elsewhere: one digest
+# of the golden meshes for all. Other processors are in tests/soak/amalgamation.sh.
+. "$ROOT/tests/support/cli.sh"
+cd "$WORK" || exit 1
+make -C "$ROOT" -s amalgamation build/release/libnmtan.a >make.txt 2>&1 || wrong "$(tail -5 make.txt)"
+one=$ROOT/build/amalgamation
+mapfile -t goldens < <(find "$ROOT/data/golden" -name '*.nmtg' | LC_ALL=C sort)
+
+# digest COMMAND...: what the program prints that it builds of digest.c and nmtan.c, the sources being last.
+digest() {
+	"$@" -w -I"$one" "$ROOT/tests/api/digest.c" "$source" -o digest -lm 2>err.txt || { cat err.txt; return; }
+	./digest "${goldens[@]}"
+}
+source=$ROOT/build/release/libnmtan.a
+expected=$(digest gcc -pthread)
+source=$one/nmtan.c
+
+scene "the library passes its own test, and one file has at most 14 000 lines"
+[ "${expected#* }" = "self-test 1" ] || wrong "$expected"
+[ "$(wc -l <"$source")" -le 14000 ] || wrong "$(wc -l "$source")"
+
+while IFS='|' read -r name command; do
+	scene "$name: the same results"
+	if ! command -v "${command%% *}" >/dev/null; then
+		skip_case "${command%% *} is not here"
+		continue
+	fi
+	# shellcheck disable=SC2086
+	actual=$(digest $command)
+	[ "$actual" = "$expected" ] || wrong "$actual, not $expected"
+	[ "$name" != "gcc -Os" ] || [ "$(size digest | awk 'NR == 2 { print $1 }')" -le 300000 ] || wrong "$(size digest)"
+done <<END
+gcc -Os|gcc -std=c11 -Os
+gcc, fused operations and straight-line vectors|gcc -O2 -march=haswell -DNMTAN_ONE_SET
+gcc, C++17|g++ -std=c++17 -x c++ -O0
+clang, fused operations|clang -O1 -march=haswell -DNMTAN_ONE_SET
+clang as MSVC, plain C11|clang -std=c11 -fms-extensions -fms-compatibility -DNMTAN_PLAIN_C
+clang, C++17, threads|clang++ -std=c++17 -x c++ -O0 -pthread -DNMTAN_THREADS
+musl, static|musl-gcc -O0 -static
+END
+
+scene "flags that reorder floats are refused"
+for flags in -ffast-math -funsafe-math-optimizations -ffinite-math-only; do
+	! gcc $flags -fsyntax-only -I"$one" "$source" 2>err.txt || wrong "gcc $flags is taken"
+	grep -q "change the results" err.txt || wrong "$(cat err.txt)"
+done
+! command -v clang >/dev/null || ! clang -ffast-math -fsyntax-only -I"$one" "$source" 2>err.txt || wrong "clang"
+
+scene "nmtan_self_test() sees contraction"
+grep -v 'pragma GCC optimize' "$source" >nmtan.c
+source=$PWD/nmtan.c
+actual=$(digest gcc -O1 -mfma -ffp-contract=fast -DNMTAN_ONE_SET)
+[ "${actual#* }" = "self-test 0" ] || wrong "$actual"
+
+scene "add_subdirectory() finds nmtan::nmtan"
+mkdir -p project
+cat >project/CMakeLists.txt <<END
+cmake_minimum_required(VERSION 3.13)
+project(importer C)
+add_subdirectory("$one" nmtan)
+add_executable(importer "$ROOT/tests/api/digest.c")
+target_link_libraries(importer nmtan::nmtan)
+END
+if cmake -S project -B made >cmake.txt 2>&1 && cmake --build made >cmake.txt 2>&1; then
+	[ "$(made/importer "${goldens[@]}")" = "$expected" ] || wrong "another digest"
+else
+	wrong "$(tail -5 cmake.txt)"
+fi
+
+done_testing
