@@ -89,7 +89,7 @@ class Amalgamation:
 		return lines[:guard[0]] + lines[guard[0] + 2:-1] if guard else lines
 
 	def add(self, path, renamed=()):
-		self.lines += ['', '/* ---- ' + path + ' ---- */']
+		self.lines.append('/* ---- ' + path + ' ---- */')
 		depth = 0
 		for line in self.lines_of(path):
 			depth += bool(re.match(r'#\s*if', line)) - bool(re.match(r'#\s*endif', line))
