@@ -154,7 +154,7 @@ class Amalgamation:
 		self.lines += ['@rest']
 
 	def text(self):
-		"""All of it, without the functions that nothing calls, and without pairs of empty lines."""
+		"""All of it, without the functions that nothing calls, and without lines that are empty for nothing."""
 		text = '\n'.join(self.lines) + '\n'
 		while True:
 			plain = COMMENT.sub('', text)
@@ -165,7 +165,7 @@ class Amalgamation:
 				text = re.sub(r'(?:^/\*(?:(?!\*/).)*\*/\n)?^static [^;={}()]*\b' + name +
 					r'\([^{};]*\)(?:;\n|\n\{\n.*?^\}\n)', '', text, flags=re.M | re.S)
 			if not unused:
-				return re.sub(r'\n\n\n+', '\n\n', text)
+				return re.sub(r'\n\n+(?=/\* ---- )', '\n', re.sub(r'\n\n\n+', '\n\n', text))
 
 
 def main():
