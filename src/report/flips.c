@@ -19,9 +19,10 @@
 #include "base/hash_index.h"
 
 /*
- * Of the 1 244 islands of 431 public files that have both orientations and are not their own twins, the largest patch
- * against the rest is either below these shares or, mostly, above a fifth: symmetric halves, strips folded over. One
- * triangle is never less than a twentieth of an island of fewer than twenty, so that a single one counts up to a tenth.
+ * A choice, not a gap: of the 1 244 islands of 431 public files that have both orientations, 195 have a minority up to
+ * a twentieth, 322 up to a tenth, 180 up to a fifth, and the others are symmetric halves or strips folded over. Up to a
+ * twentieth an artist looks for the triangles, above that for the fold. One triangle is never less than a twentieth of
+ * an island of fewer than twenty, so that a single one counts up to a tenth.
  */
 static const double FLIPPED_SHARE = 0.05, SINGLE_SHARE = 0.1;
 
