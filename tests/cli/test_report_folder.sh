@@ -108,7 +108,7 @@ exits 2
 run --report=r/ --report-format=html m.obj m.glb
 exits 0
 only m.obj m.glb r
-is "$(ls r | sed 's/-[0-9a-f]*\./-N./' | tr '\n' ' ')" "index.html m.obj.html nmtan-N.css nmtan-N.js "
+is "$(ls r | sed 's/-[0-9a-f]*\./-N./' | sort | tr '\n' ' ')" "index.html m.obj.html nmtan-N.css nmtan-N.js "
 
 scene "pages share one script and one style, which are there first and never replace anything"
 cp "$data/quad.obj" m.obj
