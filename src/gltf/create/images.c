@@ -160,20 +160,11 @@ static uint32_t add_embedded(image_entry *entry, const char *title, nt_model *mo
 	return nt_model_image_view(model, title, view, nt_image_media_type(entry->image->type));
 }
 
-/* Whether a link to the file would leave the output's folder. */
-static bool is_outside(const nt_image_set *set, const nt_texture *image)
-{
-	const size_t length = strlen(set->folder);
-	const char *path = image->sources[0]->path;
-	const bool is_root = length == 1;
-	return !is_root && !(strncmp(path, set->folder, length) == 0 && path[length] == '/');
-}
-
 static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_scene *scene, nt_model *model,
 	uint64_t *buffer_size, nt_output *output, nt_error *error)
 {
 	entry->embedded = set->choice == NT_IMAGES_EMBED;
-	const bool leaves = !entry->image->made && is_outside(set, entry->image);
+	const bool leaves = !entry->image->made && !nt_link_is_inside(entry->image->sources[0]->path, set->folder);
 	if (leaves && set->choice == NT_IMAGES_LINK)
 		nt_finding_add(&scene->findings, NT_CODE_LINK_LEAVES, NULL, 1, "%s, as --images=link asks",
 			entry->image->name);
