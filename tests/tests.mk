@@ -20,7 +20,7 @@ WRAP := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=posix_memalign,--w
 
 $(B)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
-	$(CC) $(NT_CFLAGS) -Itests/support -DNT_DATA_DIR='"data"' -c -o $@ $<
+	$(CC) $(NT_CFLAGS) -Werror=implicit-function-declaration -Werror=incompatible-pointer-types -Itests/support -DNT_DATA_DIR='"data"' -c -o $@ $<
 
 $(unit_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(module_obj) $(B)/libtool.a $(B)/libnmtan.a
 	$(CXX) $(NT_LDFLAGS) $(WRAP) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lcmocka $(LINKED_LIBS) $(QUADMATH)
@@ -55,8 +55,13 @@ $(B)/tests/faults/sweep: $(B)/tests/faults/sweep.o
 $(B)/tests/faults/make_meshopt: $(B)/tests/faults/make_meshopt.o
 	$(CXX) $(NT_LDFLAGS) -o $@ $^ -lmeshoptimizer
 
+# What soak, fuzz and bench are made of compiles in every check; not what needs a peer's header.
+rest_obj := $(patsubst %.c,$(B)/%.o,$(filter-out tests/soak/published.c tests/bench/peer_%,$(wildcard \
+	$(foreach folder,bench fuzz soak stress,tests/$(folder)/*.c))))
+
 .PHONY: tests
-tests: $(unit_bin) $(api_bin) $(calls_so) $(if $(filter release debug clang,$(config)),$(faults_bin))
+tests: $(unit_bin) $(api_bin) $(calls_so) $(if $(filter release debug clang,$(config)),$(faults_bin)) \
+	$(if $(filter release,$(config)),$(rest_obj))
 
 .PHONY: unit
 unit: tests

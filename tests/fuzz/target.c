@@ -24,6 +24,7 @@
 #include "json_mutator.h"
 #include "mutate.h"
 #include "pipeline/run.h"
+#include "report/baseline.h"
 #include "report/render/render.h"
 
 size_t LLVMFuzzerMutate(uint8_t *bytes, size_t size, size_t room);
@@ -170,7 +171,7 @@ static void check_report(const nt_report *report)
 			text.size == 0)
 			wrong("report format %d: %s", format, error.message);
 		nt_baseline baseline = {0};
-		if (format == NT_REPORT_JSON && nt_baseline_read(&baseline, text.data, text.size, &error))
+		if (format == NT_REPORT_JSON && nt_baseline_read(&baseline, text.data, text.size, NULL, &error))
 			wrong("the JSON report cannot be read: %s", error.message);
 		nt_baseline_free(&baseline);
 		nt_buffer_free(&text);
