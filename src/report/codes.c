@@ -359,8 +359,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"reversed, and the normal map's green channel is inverted. The finding gives the share: 100 % "
 		"by w means that the exporter's convention is inverted, which is what happens when V is not "
 		"flipped; reversed tangents were made for other texture coordinates. A warning where no "
-		"material uses the tangents, and where they are right but for a texture transform that "
-		"mirrors.",
+		"material uses the tangents, where they are right but for a texture transform that mirrors, "
+		"and up to a thousandth of the triangles and of their area.",
 		"Compute the tangents again: nmtan --existing=replace.",
 		"a glTF quad, upright and not mirrored, with w = -1"),
 	ROW(TAN_DIRECTION_MISMATCH, WARNING, "w--",

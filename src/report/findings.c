@@ -69,6 +69,12 @@ void nt_tally_side(const nt_check *check, nt_tally *tally, uint32_t side, double
 
 void nt_tally_vertex(const nt_check *check, nt_tally *tally, uint32_t vertex, double value)
 {
+	const uint32_t source = nt_source_vertex(check->mesh, vertex);
+	for (unsigned i = 0; i < tally->spot_count; i++)
+		if (tally->spots[i].vertices[0] == source) {
+			tally->count++; /* of another corner: one spot is enough */
+			return;
+		}
 	add_vertex(check, tally, count_one(tally, value), vertex);
 }
 

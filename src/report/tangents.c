@@ -28,6 +28,9 @@ static const double PARALLEL_DEGREES = 1.0, ORTHOGONAL_DEGREES = 1.0, MISMATCH_D
 /* Share of corners from which on other directions are a warning. */
 static const double MISMATCH_SHARE = 0.01;
 
+/* Share of the triangles and of their area up to which wrong signs are a warning: a few slivers. */
+static const double SLIVER_SHARE = 0.001;
+
 const double nt_angle_bins[NT_ANGLE_BINS] = {1.0, 5.0, 15.0, 30.0, 60.0, 180.0};
 
 static const double DEGREES = 57.29577951308232;
@@ -197,6 +200,7 @@ typedef struct sign_tallies {
 	nt_tally mixed, wrong, of_quad;
 	size_t checked, by_w, reversed;
 	size_t untransformed; /* wrong, but right without the texture transform */
+	double wrong_area;
 } sign_tallies;
 
 /* Whether w is right for the file's own coordinates, where a texture transform turns them over. */
@@ -262,8 +266,10 @@ static void check_sign(const nt_check *check, size_t t, int orientation, sign_ta
 	st->by_w += by_w;
 	st->reversed += reversed;
 	st->untransformed += by_w && fits_untransformed(check, t, w[0]);
-	if (by_w || reversed)
+	if (by_w || reversed) {
 		nt_tally_triangle(check, &st->wrong, t, w[0]);
+		st->wrong_area += nt_triangle_area(s, t);
+	}
 }
 
 typedef struct sign_work {
@@ -299,6 +305,7 @@ static nt_status check_signs(nt_check *check)
 		st.by_w += work.parts[i].by_w;
 		st.reversed += work.parts[i].reversed;
 		st.untransformed += work.parts[i].untransformed;
+		st.wrong_area += work.parts[i].wrong_area;
 	}
 	nt_check_report_as(check, &st.mixed, severity_of(check, NT_CODE_TAN_MIXED_W_TRIANGLE), NULL);
 	nt_check_report(check, &st.of_quad, NULL);
@@ -310,9 +317,9 @@ static nt_status check_signs(nt_check *check)
 	nt_tally_number(&st.wrong, "right_without_transform", (double)st.untransformed);
 	/* exporters disagree about texture transforms, and so do renderers: not an error */
 	const bool untransformed = st.untransformed > 0 && st.untransformed == st.wrong.count;
+	const bool slivers = share <= SLIVER_SHARE && st.wrong_area <= SLIVER_SHARE * check->total_area;
 	nt_check_report_as(check, &st.wrong,
-		untransformed ? severity_of(check, NT_CODE_TAN_MIXED_W_TRIANGLE)
-			      : severity_of(check, NT_CODE_TAN_SIGN_MISMATCH),
+		severity_of(check, untransformed || slivers ? NT_CODE_TAN_MIXED_W_TRIANGLE : NT_CODE_TAN_SIGN_MISMATCH),
 		"%.3g %% of %zu%s", 100.0 * share, st.checked,
 		untransformed	     ? ", they were made without the texture transform"
 		: st.by_w == st.checked ? ", the convention is inverted"

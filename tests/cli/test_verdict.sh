@@ -321,6 +321,35 @@ grep -q '^Bake again: normal map whose' "$WORK/out.txt" || wrong "Markdown does 
 run --check -q --report=known.json --baseline=r.json --fail-on=never bad.gltf
 is "$(value known.json 'r["files"][0]["verdict"]')" "Ready to use"
 
+scene "wrong signs of a few slivers are a warning, of as few large triangles an error; a corner's vertex is one spot"
+mapped
+for size in 0.001 4; do
+	python3 - $size >many.obj <<-'END'
+		import sys
+		size, n = float(sys.argv[1]), 32
+		print("vn 0 0 1")
+		for y in range(n + 1):
+		    for x in range(n + 1):
+		        print(f"v {x} {y} 0\nvt {x / n} {y / n}")
+		i = lambda x, y: y * (n + 1) + x + 1
+		for y in range(n):
+		    for x in range(n):
+		        print("f", *(f"{k}/{k}/1" for k in (i(x, y), i(x + 1, y), i(x + 1, y + 1), i(x, y + 1))))
+		print(f"v 0 0 {size} v {size} 0 {size} v 0 {size} {size}".replace(" v", "\nv"))
+		print("vt 0 0\nvt 1 0\nvt 0 1\nf -3/-3/1 -2/-2/1 -1/-1/1")
+	END
+	run -q many.obj many.gltf
+	gltf many.gltf wrong 'Object.assign(g, {images: [{uri: "n.png"}], textures: [{source: 0}], materials: [{normalTexture: {index: 0}}]});
+		const p = g.meshes[0].primitives[0], n = p.attributes.TANGENT, last = g.accessors[n].count - 1, b = bytes[0];
+		p.material = 0;
+		for (let v = last - 2; v <= last; v++) b.writeFloatLE(-b.readFloatLE(at(n, v) + 12), at(n, v) + 12);
+		for (let c = 0; c < 3; c++) b.writeFloatLE([0, 1, 0][c], at(n, 200) + 4 * c)'
+	run --check -q --report=r.json --fail-on=never wrong.gltf
+	is "$size $(value r.json '[(f["severity"], f["count"]) for f in r["files"][0]["findings"] if f["code"] == "TAN_SIGN_MISMATCH"]')" \
+		"$size [('$([ $size = 4 ] && echo error || echo warning)', 1)]"
+	is "$(value r.json '[(f["count"], len(f["spots"])) for f in r["files"][0]["findings"] if f["code"] == "TAN_DIRECTION_MISMATCH"]')" "[(6, 1)]"
+done
+
 scene "what nmtan says that it repairs is gone after a run with the options that it names"
 mapped
 while IFS='|' read -r code edit; do
