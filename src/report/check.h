@@ -7,6 +7,7 @@
 #define NT_REPORT_CHECK_H
 
 #include <math.h>
+#include "report/codes.h"
 #include "report/report.h"
 #include "report/surface/surface.h"
 
@@ -118,6 +119,12 @@ static inline int nt_settled_orientation(const nt_check *check, size_t triangle)
 static inline bool nt_needs_tangents(const nt_check *check)
 {
 	return !nt_format_is_gltf(check->scene->format) || check->mesh->slots != 0;
+}
+
+/* Of a finding in texture coordinates: an info where no material needs tangents. */
+static inline nt_severity nt_texcoord_severity(const nt_check *check, nt_code code)
+{
+	return nt_needs_tangents(check) ? nt_code_info(code)->severity : NT_SEVERITY_INFO;
 }
 
 /* The vertex as the source numbers it: copies that making normals appended are mapped back. */

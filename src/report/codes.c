@@ -238,14 +238,16 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(UV_MIXED_WINDING_ISLAND, WARNING, "w-w",
 		"island of {count} {triangle|triangles} is folded: both windings are connected",
 		"Inside one connected island some triangles are wound the other way, and they do not lie on a "
-		"twin point by point: a fold. Texture is mirrored there and tangents flip within the island.",
+		"twin point by point: a fold. Texture is mirrored there and tangents flip within the island. An info "
+		"where no material of a glTF needs tangents.",
 		"Unfold the island (relax or unwrap it again), or cut it along the fold.",
 		"three quads in a row with u = 0, 1, 0.4, 1.4"),
 	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-w", "{count} of {detail} {is|are} flipped",
 		"A few triangles in a row are wound against their island, or have texture coordinates of their own "
 		"inside a large island of the other winding: at most 5 % of its triangles and area, or a single one up "
 		"to 10 %. Texture is mirrored there. They make no seam, fold or mirrored island. Needles whose winding "
-		"is rounding do not count: they are UV_NEAR_DEGENERATE.",
+		"is rounding do not count: they are UV_NEAR_DEGENERATE. An info where no material of a glTF needs "
+		"tangents.",
 		"Exchange two corners of these triangles in the UV editor, or relax the knot.",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
 	ROW(UV_DEGENERATE_TRIANGLE, INFO, "w-w",

@@ -223,7 +223,7 @@ static void report_flipped(nt_check *check, const patches *p)
 		tally.island = tally.count == 0 || tally.island == one->host + 1 ? one->host + 1 : 0;
 		nt_tally_triangle(check, &tally, t, NAN);
 	}
-	nt_check_report(check, &tally, "%zu triangles", s->triangle_count);
+	nt_check_report_as(check, &tally, nt_texcoord_severity(check, tally.code), "%zu triangles", s->triangle_count);
 }
 
 nt_status nt_check_flips(nt_check *check)

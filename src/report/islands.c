@@ -467,7 +467,7 @@ static void report_island(nt_check *check, size_t index)
 	nt_tally_number(&tally, "mirrored_triangles", (double)island->triangles[0]);
 	nt_tally_number(&tally, "unmirrored_triangles", (double)island->triangles[2]);
 	nt_tally_number(&tally, "covered_share", island->covered);
-	nt_check_report(check, &tally, "island %zu", index);
+	nt_check_report_as(check, &tally, nt_texcoord_severity(check, tally.code), "island %zu", index);
 }
 
 /* Islands that share texels are meant: one finding, which counts them. */
@@ -507,7 +507,8 @@ static void report_islands(nt_check *check)
 				tally_island(check, &rest, k);
 		}
 		if (seen > NT_SINGLE_FINDINGS)
-			nt_check_report(check, &rest, "%zu further islands, one finding together beyond the first %d",
+			nt_check_report_as(check, &rest, nt_texcoord_severity(check, rest.code),
+				"%zu further islands, one finding together beyond the first %d",
 				seen - NT_SINGLE_FINDINGS, NT_SINGLE_FINDINGS);
 	}
 }

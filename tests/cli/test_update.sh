@@ -318,8 +318,8 @@ run --update -d out --files-from=list
 exits 0
 is "$(ls -A out | grep -v '^in_[0-9]*\.glb$')" .nmtan-record
 diff -r clean out --exclude=.nmtan-record >difference || wrong "$(head -3 difference)"
-# each run that was killed may have been at one file for each of its two threads
-lines=$(sed 's/.*"output":"\([^"]*\)".*"read":\[{[^}]*"noted":\([0-9]*\).*/\1 \2/' out/.nmtan-record | sort -u | wc -l)
+# each run that was killed may have been at one file for each of its two threads; a line that was renewed has the file's time
+lines=$(sed 's/.*"output":"\([^"]*\)".*"written":\[{[^}]*"modified":\([0-9]*\).*/\1 \2/' out/.nmtan-record | sort -u | wc -l)
 [ "$lines" -ge 1000 ] && [ "$lines" -le $((1000 + kills * 2)) ] || wrong "$lines files were made in $kills runs"
 
 scene "a record, a manifest, a depfile and a report replace nothing that a run has read or written"

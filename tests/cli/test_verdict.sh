@@ -350,6 +350,22 @@ for size in 0.001 4; do
 	is "$(value r.json '[(f["count"], len(f["spots"])) for f in r["files"][0]["findings"] if f["code"] == "TAN_DIRECTION_MISMATCH"]')" "[(6, 1)]"
 done
 
+scene "a fold is a warning where a material needs tangents, an info where a glTF has none that does"
+mapped
+{
+	for x in 0 1 2 3; do printf "v $x 0 0\nv $x 1 0\n"; done
+	for u in 0 1 0.4 1.4; do printf "vt $u 0\nvt $u 1\n"; done
+	printf 'vn 0 0 1\nf 1/1/1 3/3/1 4/4/1 2/2/1\nf 3/3/1 5/5/1 6/6/1 4/4/1\nf 5/5/1 7/7/1 8/8/1 6/6/1\n'
+} >fold.obj
+run -q fold.obj fold.gltf
+gltf fold.gltf mapped 'Object.assign(g, {images: [{uri: "n.png"}], textures: [{source: 0}], materials: [{normalTexture: {index: 0}}]});
+	g.meshes[0].primitives[0].material = 0'
+for expected in fold.obj:warning fold.gltf:info mapped.gltf:warning; do
+	run --check -q --report=r.json --fail-on=never ${expected%:*}
+	is "$expected $(value r.json '[f["severity"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIXED_WINDING_ISLAND"]')" \
+		"$expected ['${expected#*:}']"
+done
+
 scene "what nmtan says that it repairs is gone after a run with the options that it names"
 mapped
 while IFS='|' read -r code edit; do

@@ -33,7 +33,7 @@ echo "$runs batches of 4 jobs with 4 threads: $([ $code = 0 ] && echo "no races"
 
 # The rooms that start threads (the lanes of tangent/fast compare every set and count, which takes too long here), and scripts.
 for part in unit/base/ unit/file/ unit/topology/ unit/obj/ unit/pipeline/ cli/test_batch \
-	cli/test_check cli/test_report; do
+	cli/test_check cli/test_report cli/test_limits; do
 	bash tests/run --only=$part build/tsan >"$work/said" 2>&1 || { code=1; sed -n '/^failed:/,$p' "$work/said"; }
 	echo "$part: $(tail -1 "$work/said")"
 done
