@@ -6,20 +6,24 @@
 
 #include "base/compiler.h"
 
-/* glibc (2.33) tells what its loader has asked the processor already. Asking once more costs 10 us an instruction on a
- * virtual machine, and the compiler's way asks a dozen times before main(), needed or not. */
-#if defined(__x86_64__) && !defined(__cplusplus) && __has_include(<sys/platform/x86.h>)
-#include <sys/platform/x86.h>
+#if defined(__x86_64__)
+#include <cpuid.h>
 
-/* As CPU_FEATURE_ACTIVE(), which shifts a signed 1 by 31 places for AVX512VL: a leaf has four registers. */
-static bool is_active(unsigned feature)
+/* FMA, all of `wanted` in leaf 7, and a system that keeps the registers of `saved`. With OSXSAVE there is leaf 7.
+ * The compiler's own way asks a dozen times before main(), needed or not, at 10 us each on a virtual machine; that of
+ * glibc is in no other library. */
+static bool has(unsigned wanted, unsigned saved)
 {
-	return __x86_get_cpuid_feature_leaf(feature / 128)->active_array[feature / 32 % 4] >> feature % 32 & 1;
+	unsigned a, b, c, d;
+	__cpuid(1, a, b, c, d);
+	if (~c & (bit_FMA | bit_OSXSAVE))
+		return false;
+	__asm__ volatile("xgetbv" : "=a"(a), "=d"(d) : "c"(0));
+	if (~a & saved)
+		return false;
+	__cpuid_count(7, 0, a, b, c, d);
+	return !(~b & wanted);
 }
-
-#define HAS(feature, name) is_active(x86_cpu_##feature)
-#elif defined(__x86_64__)
-#define HAS(feature, name) (__builtin_cpu_supports(name) != 0)
 #endif
 
 bool nt_cpu_has(nt_isa isa)
@@ -30,10 +34,9 @@ bool nt_cpu_has(nt_isa isa)
 		return true;
 #if defined(__x86_64__)
 	case NT_ISA_AVX2:
-		return HAS(AVX2, "avx2") && HAS(FMA, "fma");
+		return has(bit_AVX2, 0x6);
 	case NT_ISA_AVX512:
-		return HAS(AVX512F, "avx512f") && HAS(FMA, "fma") && HAS(AVX512BW, "avx512bw") &&
-		       HAS(AVX512DQ, "avx512dq") && HAS(AVX512VL, "avx512vl");
+		return has(bit_AVX512F | bit_AVX512BW | bit_AVX512DQ | bit_AVX512VL, 0xe6);
 #else
 	case NT_ISA_AVX2:
 	case NT_ISA_AVX512:
@@ -43,7 +46,7 @@ bool nt_cpu_has(nt_isa isa)
 	return false;
 }
 
-/* Asked once: that is five calls of another library. Threads that ask at the same time find the same. */
+/* Asked once. Threads that ask at the same time find the same. */
 nt_isa nt_cpu_best(void)
 {
 	static nt_isa found = NT_ISA_AUTO;

@@ -34,7 +34,6 @@ void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), voi
 
 #else
 
-#include <errno.h>
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
@@ -132,41 +131,28 @@ static void await_post(unsigned long bell, unsigned looks)
 		pause_shortly();
 }
 
-/* A new thread begins on another processor than its maker's, where there is one: a system that packs threads, as
- * virtual machines do, lets it wait there until the maker's time is up, 1.2 to 3 ms instead of 0.13. Returns the
- * processor that the thread has to be given back; -1: none. */
-static int begin_elsewhere(pthread_attr_t *attributes)
+/* A new thread goes to another processor than its maker's, where there is one: a system that packs threads, as virtual
+ * machines do, lets it wait there until the maker's time is up, 1.2 to 3 ms instead of 0.13. It is there once the first
+ * call returns; the second lets it go wherever its maker may. */
+static void send_elsewhere(pthread_t thread)
 {
-#ifdef __GLIBC__
-	cpu_set_t set;
+#ifdef __linux__
+	cpu_set_t all, others;
 	const int here = sched_getcpu();
-	if (here >= 0 && sched_getaffinity(0, sizeof set, &set) == 0 && CPU_ISSET(here, &set) && CPU_COUNT(&set) > 1) {
-		CPU_CLR(here, &set);
-		if (pthread_attr_setaffinity_np(attributes, sizeof set, &set) == 0)
-			return here;
-	}
-#else
-	(void)attributes;
-#endif
-	return -1;
-}
-
-static void give_back(int processor)
-{
-#ifdef __GLIBC__
-	cpu_set_t set;
-	if (processor < 0 || sched_getaffinity(0, sizeof set, &set) != 0)
+	if (here < 0 || sched_getaffinity(0, sizeof all, &all) != 0)
 		return;
-	CPU_SET(processor, &set);
-	sched_setaffinity(0, sizeof set, &set); /* a refusal leaves it the others */
+	others = all;
+	CPU_CLR(here, &others);
+	if (CPU_COUNT(&others) > 0 && pthread_setaffinity_np(thread, sizeof others, &others) == 0)
+		pthread_setaffinity_np(thread, sizeof all, &all);
 #else
-	(void)processor;
+	(void)thread;
 #endif
 }
 
-static void *run_thread(void *withheld)
+static void *run_thread(void *unused)
 {
-	give_back((int)(intptr_t)withheld);
+	(void)unused;
 	for (;;) {
 		const unsigned long bell = nt_atomic_load(&pool.bell, SEQ_CST);
 		pthread_mutex_lock(&pool.lock);
@@ -195,21 +181,6 @@ static void *run_thread(void *withheld)
 	return NULL;
 }
 
-/* Returns the error of pthread_create(). */
-static int begin_thread(bool elsewhere)
-{
-	pthread_attr_t attributes;
-	int error = pthread_attr_init(&attributes);
-	if (error)
-		return error;
-	pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
-	const int withheld = elsewhere ? begin_elsewhere(&attributes) : -1;
-	pthread_t thread;
-	error = pthread_create(&thread, &attributes, run_thread, (void *)(intptr_t)withheld);
-	pthread_attr_destroy(&attributes);
-	return error;
-}
-
 /* Signals are for the user's threads, but for those that an instruction raises. */
 static bool make_thread(void)
 {
@@ -221,11 +192,18 @@ static bool make_thread(void)
 	sigdelset(&all, SIGSEGV);
 	sigdelset(&all, SIGTRAP);
 	pthread_sigmask(SIG_SETMASK, &all, &before);
-	int error = begin_thread(true);
-	if (error && error != EAGAIN) /* a filter of system calls may refuse the choice of processors alone */
-		error = begin_thread(false);
+	pthread_attr_t attributes;
+	pthread_t thread;
+	bool made = pthread_attr_init(&attributes) == 0;
+	if (made) {
+		pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
+		made = pthread_create(&thread, &attributes, run_thread, NULL) == 0;
+		pthread_attr_destroy(&attributes);
+	}
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	return error == 0;
+	if (made)
+		send_elsewhere(thread);
+	return made;
 }
 
 /* In the child none of the pool's threads exists, and nobody holds the lock. */

@@ -16,7 +16,7 @@
 #include "nmtan.h"
 
 static atomic_uint threads_made;
-static atomic_bool creation_fails, affinity_fails;
+static atomic_bool creation_fails;
 
 int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *), void *argument);
 int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *), void *argument);
@@ -25,12 +25,6 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, v
 {
 	if (creation_fails)
 		return EAGAIN;
-#ifdef __GLIBC__
-	cpu_set_t set; /* all there can be where none was chosen */
-	if (affinity_fails && pthread_attr_getaffinity_np(attributes, sizeof set, &set) == 0 &&
-		CPU_COUNT(&set) < CPU_SETSIZE)
-		return EPERM;
-#endif
 	threads_made++;
 	return __real_pthread_create(thread, attributes, run, argument);
 }
@@ -196,18 +190,6 @@ TEST(threads_may_go_wherever_their_maker_may)
 	nt_pool_run(2, meet_anywhere, &m);
 	assert_false(m.missed);
 	assert_int_equal(m.fewest, nt_pool_processors());
-}
-
-static void meet_where_none_may_be_chosen(void)
-{
-	affinity_fails = true;
-	expect(two_slots_meet());
-}
-
-/* As under a filter of system calls that refuses sched_setaffinity(). */
-TEST(threads_begin_where_no_processor_may_be_chosen)
-{
-	in_a_child(meet_where_none_may_be_chosen);
 }
 
 TEST(callers_may_be_many)
