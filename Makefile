@@ -4,6 +4,7 @@
 #   make check    the same, then every test
 #   make          builds build/$(config)/nmtan, libnmtan.a and libnmtan.so
 #   make install PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=
+#   make install-lib  the library alone, which needs a C compiler and nothing else
 #   make deb      Debian packages in build/deb
 #   make soak     the heavy tests; make fuzz, make check-aarch64, make bench, make format, make lint, make clean
 #
@@ -218,12 +219,14 @@ farm_programs := data/farm/nmtan-farm $(wildcard data/farm/*.sh)
 cmake_files := nmtan-config.cmake nmtan-config-version.cmake
 names := sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(patsubst $(PREFIX)/%,$${prefix}/%,$(LIBDIR))|; s|@VERSION@|$(VERSION)|' \
 	-e 's|@TO_PREFIX@|$(shell realpath -ms --relative-to=$(LIBDIR)/cmake/nmtan $(PREFIX))|'
-.PHONY: install uninstall
-install: all $(B)/installed/nmtan
-	install -d $(bin) $(lib)/pkgconfig $(lib)/cmake/nmtan $(lib)/nmtan $(DESTDIR)$(PREFIX)/include $(share)/man/man1 \
-		$(share)/bash-completion/completions $(share)/zsh/site-functions $(share)/man/man7 $(share)/nmtan/farm $(share)/doc/nmtan
-	install -m 755 $(B)/installed/nmtan $(bin)/nmtan
-	install -m 644 $(module_so) $(lib)/nmtan/
+lib_pages := $(wildcard man/*.3 man/nmtan-engines.7)
+tool_pages := $(filter-out $(lib_pages),$(wildcard man/*.[157]))
+page = $(share)/man/man$(patsubst .%,%,$(suffix $(1)))/$(notdir $(1))
+pages = for page in $(1); do install -D -m 644 $$page $(share)/man/man$${page\#\#*.}/$${page\#\#*/} || exit 1; done
+
+.PHONY: install install-lib uninstall uninstall-lib
+install-lib: $(B)/libnmtan.a $(B)/libnmtan.so
+	install -d $(lib)/pkgconfig $(lib)/cmake/nmtan $(DESTDIR)$(PREFIX)/include
 	install -m 644 $(B)/libnmtan.a $(lib)/libnmtan.a
 	install -m 755 $(B)/$(so) $(lib)/$(so).$(VERSION)
 	ln -sf $(so).$(VERSION) $(lib)/$(so).0
@@ -232,10 +235,14 @@ install: all $(B)/installed/nmtan
 	$(names) src/api/nmtan.pc > $(lib)/pkgconfig/nmtan.pc
 	for file in $(cmake_files); do $(names) src/api/$$file > $(lib)/cmake/nmtan/$$file; done
 	chmod 644 $(lib)/pkgconfig/nmtan.pc $(patsubst %,$(lib)/cmake/nmtan/%,$(cmake_files))
-	for page in man/*.1; do install -m 644 $$page $(share)/man/man1/; done
-	for page in man/*.5; do [ ! -f $$page ] || { install -d $(share)/man/man5 && \
-		install -m 644 $$page $(share)/man/man5/; }; done
-	install -m 644 man/*.7 $(share)/man/man7/
+	$(call pages,$(lib_pages))
+
+install: all $(B)/installed/nmtan install-lib
+	install -d $(bin) $(lib)/nmtan $(share)/bash-completion/completions $(share)/zsh/site-functions $(share)/nmtan/farm \
+		$(share)/doc/nmtan
+	install -m 755 $(B)/installed/nmtan $(bin)/nmtan
+	install -m 644 $(module_so) $(lib)/nmtan/
+	$(call pages,$(tool_pages))
 	install -m 644 data/*.schema.json $(share)/nmtan/
 	install -m 644 $(filter-out $(farm_programs),$(wildcard data/farm/*)) $(share)/nmtan/farm/
 	install -m 755 $(farm_programs) $(share)/nmtan/farm/
@@ -244,13 +251,15 @@ install: all $(B)/installed/nmtan
 	install -m 644 $(B)/completion.bash $(share)/bash-completion/completions/nmtan
 	install -m 644 $(B)/completion.zsh $(share)/zsh/site-functions/_nmtan
 
-uninstall:
-	rm -f $(bin)/nmtan $(bin)/nmtan-farm $(modules:%=$(lib)/nmtan/nmtan-%.so) $(lib)/libnmtan.a $(lib)/$(so) $(lib)/$(so).0 $(lib)/$(so).$(VERSION) \
-		$(DESTDIR)$(PREFIX)/include/nmtan.h $(lib)/pkgconfig/nmtan.pc \
-		$(patsubst %,$(lib)/cmake/nmtan/%,$(cmake_files)) \
-		$(patsubst man/%,$(share)/man/man1/%,$(wildcard man/*.1)) \
-		$(patsubst man/%,$(share)/man/man5/%,$(wildcard man/*.5)) \
-		$(patsubst man/%,$(share)/man/man7/%,$(wildcard man/*.7)) \
+uninstall-lib:
+	rm -f $(lib)/libnmtan.a $(lib)/$(so) $(lib)/$(so).0 $(lib)/$(so).$(VERSION) $(DESTDIR)$(PREFIX)/include/nmtan.h \
+		$(lib)/pkgconfig/nmtan.pc $(patsubst %,$(lib)/cmake/nmtan/%,$(cmake_files)) \
+		$(foreach file,$(lib_pages),$(call page,$(file)))
+	[ ! -d $(lib)/cmake/nmtan ] || rmdir --ignore-fail-on-non-empty $(lib)/cmake/nmtan
+
+uninstall: uninstall-lib
+	rm -f $(bin)/nmtan $(bin)/nmtan-farm $(modules:%=$(lib)/nmtan/nmtan-%.so) \
+		$(foreach file,$(tool_pages),$(call page,$(file))) \
 		$(patsubst data/%,$(share)/nmtan/%,$(wildcard data/*.schema.json data/farm/*)) \
 		$(share)/doc/nmtan/LICENSE $(share)/doc/nmtan/licences.txt \
 		$(share)/bash-completion/completions/nmtan $(share)/zsh/site-functions/_nmtan

@@ -88,6 +88,7 @@ target_link_libraries(shared nmtan::nmtan)
 add_executable(static program.c)
 target_link_libraries(static nmtan::static)
 CMAKE
+cp project/CMakeLists.txt "$WORK"
 configure() {
 	cmake -S project -B "$1" -DCMAKE_PREFIX_PATH="$PWD/moved" -DWANTED="$2" >"$WORK/out.txt" 2>"$WORK/err.txt"
 }
@@ -104,6 +105,27 @@ says 'version: '"$version"
 rm moved/lib/$triplet/libnmtan.so.*
 configure gone "$version" && wrong "a library that is gone is found"
 says 'nmtan_FOUND to FALSE'
+
+scene "install-lib needs a C compiler and the headers of C alone; pkg-config, CMake and musl find what it installs"
+dpkg -L libc6-dev linux-libc-dev | grep '^/usr/include/.*\.h$' | xargs cp --parents -t . && mv usr/include headers
+mkdir tree && cp -r "$ROOT/Makefile" "$ROOT/src" "$ROOT/include" "$ROOT/man" "$ROOT/tests" tree
+alone="cc -nostdinc -isystem $(cc -print-file-name=include) -isystem $PWD/headers -isystem $PWD/headers/$triplet"
+echo '#include <draco/core/draco_types.h>' | $alone -E - >"$WORK/out.txt" 2>&1 && wrong "Draco's headers are found"
+make -s -C tree MAKEFLAGS= CC="$alone" CXX=false install-lib DESTDIR="$PWD" PREFIX=/moved LIBDIR=/moved/lib/$triplet \
+	>"$WORK/out.txt" 2>"$WORK/err.txt" || wrong "make install-lib failed"
+is "$(cd tree/build/release && find . -name '*.o' | cut -d/ -f2 | sort -u | tr '\n' ' ')" "api base tangent topology "
+# shellcheck disable=SC2046
+cc -o shared "$ROOT/tests/api/digest.c" $(PKG_CONFIG_PATH=moved/lib/$triplet/pkgconfig pkg-config \
+	"--define-variable=prefix=$PWD/moved" --cflags --libs nmtan) -lm || wrong "pkg-config finds nothing"
+expected=$(LD_LIBRARY_PATH=moved/lib/$triplet ./shared "$data"/golden/*.nmtg)
+is "${expected#* }" "self-test 1"
+mkdir project && cp "$WORK/CMakeLists.txt" project && cp "$ROOT/tests/api/digest.c" project/program.c
+configure built "${version%.*}" && cmake --build built >"$WORK/out.txt" 2>&1 || wrong "$(tail -3 "$WORK/out.txt")"
+is "$(built/static "$data"/golden/*.nmtg)" "$expected"
+musl-gcc -static -o musl -Imoved/include project/program.c moved/lib/$triplet/libnmtan.a || wrong "does not link with musl"
+is "$(./musl "$data"/golden/*.nmtg)" "$expected"
+make -s -C tree MAKEFLAGS= uninstall-lib DESTDIR="$PWD" PREFIX=/moved LIBDIR=/moved/lib/$triplet
+is "$(find moved -type f -o -type l)" ""
 
 scene "pkg-config names the library's folder, inside of the prefix or elsewhere"
 install_here install LIBDIR=/opt/nmtan/lib/$triplet
