@@ -89,11 +89,11 @@ static nt_status take_attributes(nt_scene *scene, nt_mesh *mesh, const nt_draco_
 		*to.rows = read_rows(scene, a, from->point_count, to.width, 1.0f);
 		if (!*to.rows)
 			return nt_fail_memory(error);
+		if (a->kind == NT_DRACO_COLOR) /* those of an OBJ or PLY: draco_encoder copies them */
+			nt_linearise(scene, mesh, from->point_count);
 		const nt_status status = check_finite(*to.rows, from->point_count, to.width, a->unique_id, error);
 		if (status)
 			return status;
-		if (a->kind == NT_DRACO_COLOR) /* those of an OBJ or PLY: draco_encoder copies them */
-			nt_linearise(mesh->colors, from->point_count);
 	}
 	return mesh->positions ? NT_OK
 			       : nt_fail(error, NT_ERROR_INPUT, "the Draco mesh has no positions");

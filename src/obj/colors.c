@@ -72,22 +72,22 @@ typedef struct painter {
 	bool mismatched;     /* some block was */
 } painter;
 
-static void doubt(const obj_file *file, size_t line, const char *what)
+static void doubt(const obj_file *file, size_t line, size_t count, const char *what)
 {
 	const nt_place place = nt_line_place(file->scene->path, line);
-	nt_finding_add(&file->scene->findings, NT_CODE_COLORS_DOUBTFUL, &place, 1, "#MRGB: %s", what);
+	nt_finding_add(&file->scene->findings, NT_CODE_COLORS_DOUBTFUL, &place, count, "%s", what);
 }
 
 static void check_count(painter *p)
 {
-	char what[80] = "and in other blocks";
+	char what[80] = "#MRGB: and in other blocks";
 	const size_t vertices = p->vertex - p->before;
 	if (p->count == vertices)
 		return;
 	if (!p->mismatched)
-		snprintf(what, sizeof what, "%zu colours for %zu vertices", p->count, vertices);
+		snprintf(what, sizeof what, "#MRGB: %zu colours for %zu vertices", p->count, vertices);
 	p->mismatched = true;
-	doubt(p->file, p->line, what);
+	doubt(p->file, p->line, 1, what);
 }
 
 static uint32_t next_color(painter *p)
@@ -144,14 +144,24 @@ static nt_status take_line(painter *p, const obj_chunk *chunk, const obj_mrgb_li
 	p->vertex = vertex;
 	p->count += line->count;
 	if (!line->sound)
-		doubt(p->file, number, "found something else, expected 8 hexadecimal digits for each vertex");
+		doubt(p->file, number, 1, "#MRGB: found something else, expected 8 hexadecimal digits for each vertex");
 	return status;
 }
 
-nt_status obj_join_mrgb(obj_file *file, nt_error *error)
+nt_status obj_join_colors(obj_file *file, nt_error *error)
 {
 	painter p = {.file = file};
 	nt_status status = NT_OK;
+	size_t bad = 0, line = 0;
+	for (size_t c = file->chunk_count; c-- > 0;) {
+		const obj_chunk *chunk = &file->chunks[c];
+		bad += chunk->bad_colors.count;
+		line = chunk->bad_colors.count ? chunk->first_line + chunk->bad_colors.line + 1 : line;
+	}
+	char what[64];
+	snprintf(what, sizeof what, "%zu of v not finite", bad);
+	if (bad)
+		doubt(file, line, bad, what);
 	if (file->has_colors)
 		return NT_OK;
 	for (size_t c = 0; c < file->chunk_count && !status; c++)

@@ -230,16 +230,6 @@ static nt_status read_property(const reader *r, enum action action, int which)
 	return NT_OK;
 }
 
-nt_material nt_mtl_default(const char *name)
-{
-	return (nt_material){
-		.name = name,
-		.base_color = {1, 1, 1, 1},
-		.roughness = 1,
-		.normal_scale = 1,
-	};
-}
-
 /* The statements of a material are all there. */
 static void end_material(reader *r)
 {
@@ -262,7 +252,7 @@ static nt_status begin_material(reader *r)
 			sizeof *mtl->definitions))
 		return nt_fail_memory(r->error);
 	nt_mtl_definition *d = &mtl->definitions[mtl->count++];
-	*d = (nt_mtl_definition){nt_mtl_default(name), raw_name, length};
+	*d = (nt_mtl_definition){nt_material_default(name), raw_name, length};
 	d->material.library = r->path;
 	d->material.line = r->line;
 	r->current = &d->material;

@@ -33,9 +33,6 @@ static inline nt_place nt_line_place(const char *path, size_t line)
 	return place;
 }
 
-/* A material as it is where nothing is said about it. */
-nt_material nt_mtl_default(const char *name);
-
 /*
  * Reads the libraries of one mtllib statement: one file name, blanks allowed, or several. What cannot be
  * read, or lies outside the folder of scene->path without options->allow_outside, is a finding.
@@ -115,7 +112,7 @@ typedef struct mtl_values {
 
 /*
  * Makes glTF's terms of what was said: see mtl_settle.c. `m` has its name and place and is otherwise
- * nt_mtl_default(). What is contradictory, doubtful or lost is a finding.
+ * nt_material_default(). What is contradictory, doubtful or lost is a finding.
  */
 void nt_mtl_settle(const mtl_values *said, nt_scene *scene, nt_material *m);
 

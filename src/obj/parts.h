@@ -83,6 +83,7 @@ typedef struct obj_chunk {
 	obj_rows rows[OBJ_KIND_COUNT];
 	float *colors; /* rows of 4 as written, as many as positions; NULL while no `v` has one */
 	size_t color_capacity;
+	obj_ignored bad_colors; /* that are not finite: white */
 	uint32_t *mrgb; /* colours in comments, 0xRRGGBB: colors.c */
 	size_t mrgb_count, mrgb_capacity;
 	obj_mrgb_line *mrgb_lines;
@@ -193,9 +194,9 @@ typedef struct obj_vertex {
 void obj_chunk_free(obj_chunk *chunk);
 void obj_chunk_free_rest(obj_chunk *chunk);
 
-/* Gives the vertices of the file the colours that stand in comments; what is wrong with those is a finding. Needs
- * guides. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status obj_join_mrgb(obj_file *file, nt_error *error);
+/* Gives the vertices of the file the colours that stand in comments; what is wrong with those or with
+ * those of `v` is a finding. Needs guides. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status obj_join_colors(obj_file *file, nt_error *error);
 
 /* Line of a face of the file, by reading its chunk again; 0: out of memory. before: how many v, vt and vn of
  * its chunk stand before it. */

@@ -312,7 +312,7 @@ static nt_status join(obj_file *file, nt_error *error)
 	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
 		if (!make_guide(file, kind))
 			return nt_fail_memory(error);
-	const nt_status status = obj_join_mrgb(file, error);
+	const nt_status status = obj_join_colors(file, error);
 	if (status)
 		return status;
 	file->face_sizes = nt_arena_alloc(&file->scene->arena, file->face_count, 1);

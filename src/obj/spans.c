@@ -140,16 +140,35 @@ static void define(nt_scene *scene, uint32_t number, const nt_mtl_definition *d)
 	*material = d->material;
 }
 
+/* Libraries of which no usemtl takes anything: all faces get the first material, as obj2gltf does. */
+static nt_status take_first(obj_file *file, const nt_mtl *mtl, nt_error *error)
+{
+	nt_scene *scene = file->scene;
+	scene->materials = nt_arena_alloc(&scene->arena, 1, sizeof *scene->materials);
+	if (!scene->materials)
+		return nt_fail_memory(error);
+	scene->material_count = 1;
+	*scene->materials = mtl->definitions[0].material;
+	for (size_t i = 0; i < file->span_count; i++)
+		file->spans[i].material = 0;
+	const nt_place place = nt_line_place(scene->materials->library, scene->materials->line);
+	nt_finding_add(&scene->findings, NT_CODE_MATERIAL_FIRST, &place, 1, "%.120s, the first of %zu",
+		scene->materials->name, mtl->count);
+	return NT_OK;
+}
+
 static nt_status make_materials(state *s, const nt_mtl *mtl)
 {
 	nt_scene *scene = s->file->scene;
+	if (!s->names.count && mtl->count)
+		return take_first(s->file, mtl, s->error);
 	scene->materials = nt_arena_alloc(&scene->arena, s->names.count, sizeof *scene->materials);
 	if (!scene->materials)
 		return nt_fail_memory(s->error);
 	for (size_t i = 0; i < s->names.count; i++) {
 		const nt_name *name = &s->names.names[i];
 		scene->materials[i] =
-			nt_mtl_default(nt_utf8_text(&scene->arena, name->text, name->length));
+			nt_material_default(nt_utf8_text(&scene->arena, name->text, name->length));
 		if (!scene->materials[i].name)
 			return nt_fail_memory(s->error);
 	}

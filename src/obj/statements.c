@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include "file/decimal.h"
+#include "scene/srgb.h"
 
 const char *const obj_ignored_names[OBJ_IGNORED_COUNT] = {
 	[OBJ_SMALL_FACE] = "f with fewer than 3 corners",
@@ -37,8 +38,9 @@ static inline const char *read_plain_numbers(const char *p, float *numbers, int 
 	return is_line_end(*p) ? p : NULL;
 }
 
-/* Reads numbers up to the end of the line, at most `most`; -1 after an error, else how many. */
-static int read_numbers(obj_reader *r, float *numbers, int most, const char *expected)
+/* Reads numbers up to the end of the line, at most `most`, of which `finite` must be so; -1 after an error, else how
+ * many. */
+static int read_numbers(obj_reader *r, float *numbers, int most, int finite, const char *expected)
 {
 	for (int count = 0;; count++) {
 		skip_blanks(r);
@@ -53,7 +55,7 @@ static int read_numbers(obj_reader *r, float *numbers, int most, const char *exp
 			obj_fail_expected(r, "a number");
 			return -1;
 		}
-		if (!isfinite(numbers[count])) {
+		if (count < finite && !isfinite(numbers[count])) {
 			obj_fail_expected(r, "a finite number");
 			return -1;
 		}
@@ -66,7 +68,7 @@ static inline int read_line(obj_reader *r, float *numbers, int usual, int most, 
 {
 	const char *p = read_plain_numbers(r->p, numbers, usual);
 	if (!p)
-		return read_numbers(r, numbers, most, expected);
+		return read_numbers(r, numbers, most, 3, expected);
 	r->p = p;
 	return usual;
 }
@@ -95,6 +97,8 @@ static nt_status store_color(obj_reader *r, const float *numbers, int count)
 		chunk->colors[i] = 1;
 	if (count >= 6)
 		memcpy(&chunk->colors[4 * last], numbers + 3, (size_t)(count - 3) * sizeof *numbers);
+	if (nt_color_mend(&chunk->colors[4 * last]) && !chunk->bad_colors.count++)
+		chunk->bad_colors.line = r->statement_line;
 	return NT_OK;
 }
 
@@ -103,8 +107,13 @@ static nt_status read_position(obj_reader *r)
 {
 	static const char expected[] = "3 coordinates, with a weight or a colour of 3 or 4 numbers";
 	obj_chunk *chunk = r->chunk;
+	const char *begin = r->p;
 	float numbers[7];
-	const int count = read_line(r, numbers, 3, 7, expected);
+	int count = read_line(r, numbers, 3, 7, expected);
+	if (count == 4 && !isfinite(numbers[3])) { /* it fails as others do */
+		r->p = begin;
+		count = read_numbers(r, numbers, 4, 4, expected);
+	}
 	if (count < 0)
 		return chunk->error.status;
 	if (count < 3 || count == 5)

@@ -7,7 +7,6 @@
 #include "pipeline/map_requests.h"
 #include "pipeline/stages.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
@@ -33,16 +32,6 @@ static nt_status each_material(nt_scene *scene, void *context, nt_error *error,
 	}
 	free(seen);
 	return status;
-}
-
-static nt_place place_of(const nt_scene *scene, const nt_material *m, size_t line)
-{
-	nt_place place;
-	nt_place_clear(&place);
-	snprintf(place.file, sizeof place.file, "%s", m->library ? m->library : scene->path);
-	place.line = line;
-	snprintf(place.object, sizeof place.object, "material \"%s\"", m->name ? m->name : "");
-	return place;
 }
 
 /* ---- requests ---- */
@@ -170,7 +159,7 @@ static void tell_elsewhere(const telling *t, const nt_place *place, const char *
 /* The image that a channel of a result came from. */
 static void tell_source(const telling *t, const nt_map *map, int channel, const nt_texture *image)
 {
-	const nt_place place = place_of(t->scene, t->material, map->line ? map->line : t->material->line);
+	const nt_place place = nt_material_place(t->scene, t->material, map->line);
 	const nt_texture_source *source = nt_textures_source(t->textures, map->request, channel);
 	const bool lost = image->packed ? image->lost >> channel & 1 : image->type == NT_IMAGE_OTHER;
 	const bool failed = image->failure && (!image->packed || image->damaged >> channel & 1);
@@ -191,7 +180,7 @@ static void tell_source(const telling *t, const nt_map *map, int channel, const 
 
 static void tell_made(const telling *t, const nt_map *map, const nt_texture *image)
 {
-	const nt_place place = place_of(t->scene, t->material, map->line ? map->line : t->material->line);
+	const nt_place place = nt_material_place(t->scene, t->material, map->line);
 	nt_finding_list *findings = &t->scene->findings;
 	if (image->packed)
 		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.100s: channels to %.120s",
@@ -228,7 +217,7 @@ static void tell_request(const telling *t, const nt_map_request *w)
 static void tell_normals(const telling *t, const nt_texture *image)
 {
 	nt_material *m = t->material;
-	const nt_place place = place_of(t->scene, m, m->normal_map.line);
+	const nt_place place = nt_material_place(t->scene, m, m->normal_map.line);
 	nt_finding_list *findings = &t->scene->findings;
 	const bool normals = !image || (image->type != NT_IMAGE_OTHER && !image->from_heights);
 	if (m->bump && t->settings->bump == NT_BUMP_AUTO && normals)
@@ -244,7 +233,7 @@ static void tell_misplaced(const telling *t)
 {
 	for (size_t i = 0; i < NT_MATERIAL_MAPS && t->textures; i++) {
 		const nt_map *map = &t->material->maps[i];
-		const nt_place place = place_of(t->scene, t->material, map->line);
+		const nt_place place = nt_material_place(t->scene, t->material, map->line);
 		if (map->name && map->request == NT_NONE && map != &t->material->normal_map)
 			nt_finding_add(&t->scene->findings, NT_CODE_MATERIAL_LOST, &place, 1,
 				"%.120s lies elsewhere than the map beside which it would be in one image", map->name);

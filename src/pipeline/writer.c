@@ -5,26 +5,14 @@
 #include "pipeline/stages.h"
 
 #include <string.h>
-#include "file/lookup.h"
+#include <sys/stat.h>
 
-/* What is under the name of an output. */
-typedef struct there {
-	bool stream; /* standard output, a pipe or a device, whose name need not say a format */
-	bool folder; /* what cp would write into */
-} there;
-
-static nt_status look(const char *path, there *t, nt_error *error)
+/* Whether cp would write into it. */
+static bool is_folder(const char *path)
 {
 	struct stat info;
-	bool found;
 	const size_t length = strlen(path);
-	*t = (there){.stream = strcmp(path, "-") == 0, .folder = length && path[length - 1] == '/'};
-	if (t->stream || t->folder)
-		return NT_OK;
-	const nt_status status = nt_lookup_found(path, &info, &found, error);
-	t->folder = !status && found && S_ISDIR(info.st_mode);
-	t->stream = !status && found && !t->folder && !S_ISREG(info.st_mode);
-	return status;
+	return (length && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
 }
 
 /* What a check judges: the conversion to --as, or to what a stream without a name would get. A glTF is judged as it
@@ -43,13 +31,9 @@ static nt_status choose(const nt_settings *settings, const char *path, const nt_
 		*writer = find_judged(settings, reader);
 		return NT_OK;
 	}
-	/* a name that says a format needs no look */
-	const bool named = settings->output_format != NT_FORMAT_UNKNOWN || nt_format_of_path(path);
-	there t = {0};
-	const nt_status status = named ? NT_OK : look(path, &t, error);
-	if (status)
-		return status;
-	const bool unnamed = !named && t.stream;
+	/* a name that says a format needs no look; that of a stream need not say one */
+	const bool unnamed = settings->output_format == NT_FORMAT_UNKNOWN && !nt_format_of_path(path) &&
+		nt_output_is_stream(path);
 	if (unnamed && !reader)
 		return NT_OK;
 	if (unnamed)
@@ -58,7 +42,7 @@ static nt_status choose(const nt_settings *settings, const char *path, const nt_
 		*writer = nt_format_find(settings->output_format);
 	else
 		*writer = nt_format_of_path(path);
-	if (!*writer && t.folder)
+	if (!*writer && is_folder(path))
 		return nt_fail(error, NT_ERROR_USAGE, "\"%s\" is a folder: to write into it use -d",
 			path);
 	if (!*writer)
@@ -79,7 +63,7 @@ static nt_status choose(const nt_settings *settings, const char *path, const nt_
 }
 
 /* What only a glTF made from a glTF can have. */
-static nt_status check_edit(const nt_settings *settings, const nt_format_entry *reader,
+static nt_status check_edit(const nt_settings *settings, const char *path, const nt_format_entry *reader,
 	const nt_format_entry *writer, nt_error *error)
 {
 	const bool edits = writer && writer->format != NT_FORMAT_PLY && nt_format_is_gltf(reader->format);
@@ -88,6 +72,10 @@ static nt_status check_edit(const nt_settings *settings, const nt_format_entry *
 			"--draco=%s compresses only glTF that is made from glTF, not %s made from %s",
 			settings->draco == NT_DRACO_AS_SEQUENTIAL ? "sequential" : "edgebreaker",
 			writer->name, reader->name);
+	if (writer && !settings->check && writer->format != NT_FORMAT_PLY && nt_output_is_stream(path) &&
+		(settings->images == NT_IMAGES_COPY || settings->buffers == NT_BUFFERS_COPY))
+		return nt_fail(error, NT_ERROR_USAGE, "--%s=copy: there are no files beside \"%s\"; use link or embed",
+			settings->images == NT_IMAGES_COPY ? "images" : "buffers", path);
 	/* taking images away would renumber what refers to them */
 	if (edits && settings->images == NT_IMAGES_NONE)
 		return nt_fail(error, NT_ERROR_USAGE,
@@ -99,5 +87,5 @@ nt_status nt_choose_writer(const nt_settings *settings, const char *path, const 
 	const nt_format_entry **writer, nt_error *error)
 {
 	const nt_status status = choose(settings, path, reader, writer, error);
-	return status || !reader ? status : check_edit(settings, reader, *writer, error);
+	return status || !reader ? status : check_edit(settings, path, reader, *writer, error);
 }

@@ -197,10 +197,12 @@ static nt_status make_materials(nt_scene *scene, const ply_header *header, nt_er
 		sizeof *scene->materials);
 	if (!scene->materials)
 		return nt_fail_memory(error);
-	for (size_t i = 0; i < header->texture_count; i++)
-		scene->materials[i] = (nt_material){.name = header->textures[i], .library = scene->path,
-			.base_color = {1.0f, 1.0f, 1.0f, 1.0f}, .roughness = 1.0f,
-			.normal_scale = 1.0f, .base_color_map = nt_map_of(header->textures[i])};
+	for (size_t i = 0; i < header->texture_count; i++) {
+		nt_material *material = &scene->materials[i];
+		*material = nt_material_default(header->textures[i]);
+		material->library = scene->path;
+		material->base_color_map = nt_map_of(header->textures[i]);
+	}
 	scene->material_count = header->texture_count;
 	return NT_OK;
 }

@@ -4,8 +4,8 @@
  * go; properties without one are passed over. Binary rows of fixed size are decoded column by column in
  * blocks that stay in the first-level cache, so that the choice of a type is made once per block.
  *
- * A mesh must be finite, as in OBJ: there is no tangent at NaN and glTF cannot store it. Points are
- * passed through as they are, and so are tangents, which the caller may want to check.
+ * A mesh must be finite, as in OBJ: there is no tangent at NaN and glTF cannot store it; of colours those are white
+ * that are not. Points are passed through as they are, and so are tangents, which the caller may want to check.
  */
 #include "ply/source.h"
 
@@ -298,7 +298,7 @@ nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *so
 		!add_attribute(&r, arena, roles->tangent, 4, false, &mesh->tangents))
 		return nt_fail_memory(error);
 	const size_t first_color = r.target_count;
-	if (!add_attribute(&r, arena, roles->color, 4, finite, &mesh->colors))
+	if (!add_attribute(&r, arena, roles->color, 4, false, &mesh->colors))
 		return nt_fail_memory(error);
 	/* integer colours become 0 to 1, float ones are taken as they are */
 	static const float largest[] = {[PLY_INT8] = 127.0f, [PLY_UINT8] = 255.0f,
@@ -317,7 +317,7 @@ nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *so
 	else
 		status = decode_fixed(&r);
 	if (!status && mesh->colors)
-		nt_linearise(mesh->colors, element->count);
+		nt_linearise(scene, mesh, element->count);
 	mesh->vertex_count = element->count;
 	return status;
 }

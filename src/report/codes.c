@@ -24,6 +24,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"usemtl names a material that no MTL file defines. It becomes a default material of that name.",
 		"Export the material library again, or correct the name.",
 		"an OBJ with \"usemtl ghost\" and no mtllib"),
+	ROW(MATERIAL_FIRST, INFO, "--i", "no usemtl: all faces have the first material of the library",
+		"The OBJ names a material library and takes no material of it. obj2gltf and others give the library's "
+		"first material to all faces then, and so does nmtan.",
+		"Nothing, or write usemtl before the faces.",
+		"an OBJ with \"mtllib m.mtl\" and no usemtl"),
 	ROW(IMAGE_MISSING, WARNING, "w--", "image cannot be read",
 		"A material refers to an image file that is not there. The output is without it; with --images=link it "
 		"refers to where the file should be.",
@@ -130,8 +135,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"an OBJ with a \"curv\" line"),
 	ROW(COLORS_DOUBTFUL, WARNING, "-ww", "colours of vertices are not what they should be",
 		"A block of #MRGB comments in an OBJ has more or fewer colours than there are vertices before "
-		"it, or something that is no colour. The last vertices before it got them; what is missing or "
-		"malformed is white.",
+		"it, or something that is no colour; or a vertex has a colour that is NaN or infinite. The last "
+		"vertices before a block got its colours; what is missing or malformed is white.",
 		"Export the mesh again.",
 		"#MRGB ff0000 (six digits) in an OBJ"),
 	ROW(POLYGON_DEGENERATE, WARNING, "-ww", "{count} {polygon|polygons} could not be triangulated properly",

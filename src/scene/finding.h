@@ -19,6 +19,7 @@ typedef enum nt_code {
 	/* what readers and writers report */
 	NT_CODE_MTL_MISSING,
 	NT_CODE_MATERIAL_UNKNOWN,
+	NT_CODE_MATERIAL_FIRST,
 	NT_CODE_IMAGE_MISSING,
 	NT_CODE_LINK_LEAVES,
 	NT_CODE_IMAGE_TYPE,

@@ -122,6 +122,21 @@ nmtan_mesh nt_mesh_view(const nt_mesh *mesh, nmtan_stored_uv *stored)
 	};
 }
 
+nt_material nt_material_default(const char *name)
+{
+	return (nt_material){.name = name, .base_color = {1, 1, 1, 1}, .roughness = 1, .normal_scale = 1};
+}
+
+nt_place nt_material_place(const nt_scene *scene, const nt_material *material, size_t line)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	snprintf(place.file, sizeof place.file, "%s", material->library ? material->library : scene->path);
+	place.line = line ? line : material->line;
+	snprintf(place.object, sizeof place.object, "material \"%s\"", material->name);
+	return place;
+}
+
 bool nt_material_takes_texcoords(const nt_material *material)
 {
 	bool takes = material->anisotropy != 0;

@@ -385,6 +385,12 @@ static inline uint32_t nt_mesh_pool_vertex(const nt_mesh *mesh, uint32_t vertex)
 	return mesh->pool_vertices ? mesh->pool_vertices[vertex] : vertex;
 }
 
+/* A material as it is where nothing is said about it: white and rough, and no metal, as glTF's own default is. */
+nt_material nt_material_default(const char *name);
+
+/* A place in it; line: 0 is its newmtl. */
+nt_place nt_material_place(const nt_scene *scene, const nt_material *material, size_t line);
+
 /* Whether anything of a material takes texture coordinates: maps and anisotropy. */
 bool nt_material_takes_texcoords(const nt_material *material);
 

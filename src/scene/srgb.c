@@ -51,11 +51,27 @@ int nt_srgb_byte(const nt_srgb *srgb, float linear)
 	return srgb->linear[low] == linear ? low : -1;
 }
 
-void nt_linearise(float *colors, size_t count)
+bool nt_color_mend(float color[4])
+{
+	if (color[0] * 0 + color[1] * 0 + color[2] * 0 + color[3] * 0 == 0)
+		return false;
+	color[0] = color[1] = color[2] = color[3] = 1;
+	return true;
+}
+
+void nt_linearise(nt_scene *scene, nt_mesh *mesh, size_t count)
 {
 	nt_srgb srgb;
 	nt_srgb_init(&srgb);
-	for (size_t i = 0; i < count; i++)
+	size_t bad = 0, first = 0;
+	for (size_t i = 0; i < count; i++) {
+		float *color = mesh->colors + 4 * i;
+		if (nt_color_mend(color) && !bad++)
+			first = i;
 		for (int k = 0; k < 3; k++)
-			colors[4 * i + (size_t)k] = nt_linear_from_srgb(&srgb, colors[4 * i + (size_t)k]);
+			color[k] = nt_linear_from_srgb(&srgb, color[k]);
+	}
+	if (bad)
+		nt_finding_add(&scene->findings, NT_CODE_COLORS_DOUBTFUL, nt_mesh_place(mesh, &(nt_place){0}), bad,
+			"%zu not finite, the first of vertex %zu", bad, first);
 }

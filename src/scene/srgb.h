@@ -7,7 +7,7 @@
 #ifndef NT_SCENE_SRGB_H
 #define NT_SCENE_SRGB_H
 
-#include <stddef.h>
+#include "scene/scene.h"
 
 /* The linear values of bytes, which most colours are. */
 typedef struct nt_srgb {
@@ -23,7 +23,10 @@ float nt_srgb_from_linear(float value);
 /* The byte that has exactly this linear value; -1: none. */
 int nt_srgb_byte(const nt_srgb *srgb, float linear);
 
-/* Makes linear colours of [count][4]; alpha stays. */
-void nt_linearise(float *colors, size_t count);
+/* Makes a colour white that is not finite; whether it was such a one. */
+bool nt_color_mend(float color[4]);
+
+/* Makes linear colours of a mesh's [count][4]; alpha stays. Those that are not finite become white, and a finding. */
+void nt_linearise(nt_scene *scene, nt_mesh *mesh, size_t count);
 
 #endif

@@ -47,4 +47,34 @@ run back.glb again.ply
 exits 0
 is "$(grep -ac '^property uchar red' again.ply)" 1
 
+scene "a colour that is not finite is white, and costs no more than itself"
+printf 'v %s\n' "0 0 0 1 0 0" "1 0 0 0 nan 0" "0 1 0 0 0 1 inf" "1 1 0 0 0 1" >nan.obj
+printf 'f %s\n' "1 2 3" "2 4 3" >>nan.obj
+run nan.obj nan.glb
+exits 0
+says "nan.obj:2: warning: colours of vertices are not what they should be: 2 of v not finite [COLORS_DOUBTFUL]"
+is "$(gltf nan.glb "$colors")" "[[1,0,0,1],[1,1,1,1],[1,1,1,1],[0,0,1,1]]"
+cat >nan.ply <<'END'
+ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+property float red
+property float green
+property float blue
+element face 1
+property list uchar int vertex_indices
+end_header
+0 0 0 1 0 0
+1 0 0 0 nan 0
+0 1 0 0 0 1
+3 0 1 2
+END
+run nan.ply ply.glb
+exits 0
+says "1 not finite, the first of vertex 1 [COLORS_DOUBTFUL]"
+is "$(gltf ply.glb "$colors")" "[[1,0,0,1],[1,1,1,1],[0,0,1,1]]"
+
 done_testing

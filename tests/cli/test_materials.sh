@@ -140,6 +140,29 @@ run --flip-green=auto quad.obj quad.glb
 exits 0
 is "$(gltf quad.glb 'g.images.length')" 1
 
+scene "a library of which no usemtl takes anything gives its first material"
+quad "Kd 1 0 0" "newmtl second" "Kd 0 1 0"
+sed -i /^usemtl/d quad.obj
+run -v --verify quad.obj quad.glb
+exits 0
+says 'm.mtl:1: info: no usemtl: all faces have the first material of the library: m, the first of 2 [MATERIAL_FIRST]'
+is "$(gltf quad.glb '[g.materials.length, g.materials[0].name, g.materials[0].pbrMetallicRoughness, g.meshes[0].primitives[0].material]')" \
+	'[1,"m",{"baseColorFactor":[1,0,0,1],"metallicFactor":0},0]'
+sed -i '$i usemtl ghost' quad.obj
+run quad.obj quad.glb
+is "$(gltf quad.glb 'g.materials[0].name')" ghost
+
+scene "what has no material gets a neutral one, since glTF's default is metal"
+grep -v '^mtllib\|^usemtl' "$data/quad.obj" >quad.obj
+grep -v '^vt' quad.obj | sed 's|^f .*|f 1 2 3 4|' >bare.obj
+cp "$data/quad_ascii.ply" quad.ply
+for file in quad.obj bare.obj quad.ply; do
+	run --verify "$file" "${file%.*}.gltf"
+	exits 0
+	is "$(gltf "${file%.*}.gltf" '[g.materials, g.meshes[0].primitives[0].material]')" \
+		'[[{"pbrMetallicRoughness":{"metallicFactor":0}}],0]'
+done
+
 scene "the same bytes for every number of threads"
 for i in 1 2 3 4; do images write "$i.tga" 64 $((i * 16)) '(x + y, x, y)'; done
 quad "map_Kd 1.tga" "map_d 2.tga" "map_Pr 3.tga" "map_Pm 4.tga" "map_Ke 2.tga"

@@ -93,6 +93,16 @@ done
 only a.glb out
 rmdir out || wrong "something was written"
 
+scene "what has no files beside it gets no copies"
+cp "$data/plates.glb" a.glb
+for words in "--images=copy a.glb - --output-format=glb" "--buffers=copy a.glb /dev/null" \
+	"--images=copy $data/quad.obj - --output-format=glb"; do
+	run $words
+	exits 1
+	says "=copy: there are no files beside"
+done
+only a.glb
+
 scene "a link to the output stays a link"
 ln -s real.glb link.glb
 echo old >real.glb
@@ -137,7 +147,7 @@ run --output-format=glb "$data/head.obj" /dev/null
 exits 0
 [ -c /dev/null ] || wrong "/dev/null was replaced"
 # a device has nothing beside it
-run --output-format=gltf --images=copy --buffers=copy "$data/plates.gltf" /dev/null
+run --output-format=gltf "$data/plates.gltf" /dev/null
 exits 0
 [ ! -e /dev/null.bin ] && [ ! -e /dev/bumps.png ] || wrong "there are files in /dev"
 run --output-format=gltf "$data/head.obj" /dev/null

@@ -187,7 +187,7 @@ same in/n.png a/n.png
 rm in/n.png
 run --images=link --texture-path=b --texture-path=a in/quad.obj in/quad.gltf
 is "$(gltf in/quad.gltf 'g.images[0].uri')" ../b/sub/n.png
-says "n.png, as --images=link asks [LINK_LEAVES]"
+says "m.mtl:2: material \"m\": warning: reference leaves the folder of the output: n.png, as --images=link asks [LINK_LEAVES]"
 run --texture-path=nowhere in/quad.obj in/quad.gltf
 exits 1
 says "nowhere"

@@ -6,7 +6,8 @@
  * One glTF mesh per mesh, one node per instance, one primitive per material of a mesh. The document is
  * planned first, so that all sizes and places are known and its JSON (model.h) is complete, then the
  * buffer is streamed: geometry as primitive.h has it, embedded images behind. Only materials and images that
- * something uses are written; a primitive without texture coordinates gets its material without textures.
+ * something uses are written; a primitive without texture coordinates gets its material without textures. What has no
+ * material gets a neutral one, since glTF's default is metal.
  */
 #include "gltf/create/create.h"
 
@@ -46,7 +47,8 @@ typedef struct composition {
 
 	nt_new_primitives *primitives;           /* [mesh_count] */
 	primitive_record **records;     /* [mesh_count][primitives] */
-	uint32_t (*materials)[2];  /* [material_count] in the document, without and with textures */
+	nt_material neutral;       /* of primitives without material */
+	uint32_t (*materials)[2];  /* [material_count + 1] in the document, without and with textures; last: neutral */
 	block *blocks;
 	size_t block_count;
 	uint64_t buffer_size;
@@ -66,10 +68,11 @@ static nt_status plan_primitives(composition *c, nt_error *error)
 	nt_scene *scene = c->scene;
 	c->primitives = nt_arena_alloc(&c->arena, scene->mesh_count, sizeof *c->primitives);
 	c->records = nt_arena_alloc(&c->arena, scene->mesh_count, sizeof *c->records);
-	c->materials = nt_arena_alloc(&c->arena, scene->material_count, sizeof *c->materials);
+	c->materials = nt_arena_alloc(&c->arena, scene->material_count + 1, sizeof *c->materials);
 	if (!c->primitives || !c->records || !c->materials)
 		return nt_fail_memory(error);
-	memset(c->materials, 0xff, scene->material_count * sizeof *c->materials);
+	memset(c->materials, 0xff, (scene->material_count + 1) * sizeof *c->materials);
+	c->neutral = nt_material_default("");
 	size_t count = 0;
 	for (size_t m = 0; m < scene->mesh_count; m++) {
 		const nt_status status = nt_new_primitives_make(&scene->meshes[m], &c->arena, &c->primitives[m], error);
@@ -150,12 +153,24 @@ static void plan_geometry(composition *c)
 		}
 }
 
+static nt_material *material_of(composition *c, const nt_new_primitive *primitive)
+{
+	return primitive->material == NT_NONE ? &c->neutral : &c->scene->materials[primitive->material];
+}
+
 /* Which of a material's two versions a primitive gets: with what takes texture coordinates, where both have something
  * to do with them. */
-static bool is_textured(const composition *c, const nt_new_primitive *primitive)
+static bool is_textured(composition *c, const nt_new_primitive *primitive)
 {
-	const nt_material *material = &c->scene->materials[primitive->material];
-	return nt_new_primitive_has(primitive, NT_ATTRIBUTE_TEXCOORD) && nt_material_takes_texcoords(material);
+	return nt_new_primitive_has(primitive, NT_ATTRIBUTE_TEXCOORD) &&
+		nt_material_takes_texcoords(material_of(c, primitive));
+}
+
+/* Where the number of that version is. */
+static uint32_t *number_of(composition *c, const nt_new_primitive *primitive)
+{
+	const size_t count = c->scene->material_count;
+	return &c->materials[primitive->material == NT_NONE ? count : primitive->material][is_textured(c, primitive)];
 }
 
 static nt_status plan_materials(composition *c, nt_error *error)
@@ -164,9 +179,8 @@ static nt_status plan_materials(composition *c, nt_error *error)
 	for (size_t m = 0; m < c->scene->mesh_count; m++)
 		for (size_t p = 0; p < c->primitives[m].count && status == NT_OK; p++) {
 			const nt_new_primitive *primitive = &c->primitives[m].items[p];
-			if (primitive->material != NT_NONE && is_textured(c, primitive))
-				status = nt_new_material_use(&c->scene->materials[primitive->material], c->images,
-					c->output, error);
+			if (is_textured(c, primitive))
+				status = nt_new_material_use(material_of(c, primitive), c->images, c->output, error);
 		}
 	/* The main file comes before its sidecars, and is none of the images that it refers to. */
 	if (status == NT_OK)
@@ -176,13 +190,10 @@ static nt_status plan_materials(composition *c, nt_error *error)
 	for (size_t m = 0; m < c->scene->mesh_count && status == NT_OK; m++)
 		for (size_t p = 0; p < c->primitives[m].count; p++) {
 			const nt_new_primitive *primitive = &c->primitives[m].items[p];
-			if (primitive->material == NT_NONE)
-				continue;
-			const bool textured = is_textured(c, primitive);
-			uint32_t *known = &c->materials[primitive->material][textured];
+			uint32_t *known = number_of(c, primitive);
 			if (*known == NT_MODEL_NONE)
-				*known = nt_new_material_add(&c->scene->materials[primitive->material],
-					textured ? c->images : NULL, c->model);
+				*known = nt_new_material_add(material_of(c, primitive),
+					is_textured(c, primitive) ? c->images : NULL, c->model);
 		}
 	return status;
 }
@@ -216,10 +227,7 @@ static nt_status plan_scene(composition *c, nt_error *error)
 			const primitive_record *record = &c->records[m][p];
 			nt_model_attribute attributes[NT_ATTRIBUTE_COUNT];
 			const size_t count = list_attributes(record, attributes);
-			const uint32_t material = primitive->material == NT_NONE ? NT_MODEL_NONE
-				: c->materials[primitive->material][is_textured(c, primitive)];
-			nt_model_primitive(c->model, attributes, count, record->indices,
-				material);
+			nt_model_primitive(c->model, attributes, count, record->indices, *number_of(c, primitive));
 		}
 	}
 	for (size_t i = 0; i < scene->instance_count; i++) {

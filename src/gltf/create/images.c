@@ -16,6 +16,8 @@
 /* What becomes of one result of the textures. */
 typedef struct image_entry {
 	const nt_texture *image;
+	const nt_material *material; /* the first that uses it */
+	size_t line;                 /* there */
 	bool used, embedded;
 	bool wants[2];       /* a texture that repeats, one that is clamped */
 	uint64_t offset;     /* in the buffer, where it is embedded */
@@ -83,7 +85,8 @@ static image_entry *entry_of(const nt_image_set *set, uint32_t request)
 	return &set->entries[nt_textures_result(set->options.textures, request)];
 }
 
-nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *output, nt_error *error)
+nt_status nt_image_set_use(nt_image_set *set, const nt_material *material, const nt_map *map, nt_output *output,
+	nt_error *error)
 {
 	image_entry *entry = entry_of(set, map->request);
 	/* only who asks for links gets one that leads to nothing */
@@ -94,6 +97,8 @@ nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *outp
 	if (entry->used)
 		return NT_OK;
 	entry->used = true;
+	entry->material = material;
+	entry->line = map->line;
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < entry->image->source_count && !status; i++)
 		status = nt_output_protect(output, entry->image->sources[i]->path, NULL, error);
@@ -165,9 +170,11 @@ static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_scene *scen
 {
 	entry->embedded = set->choice == NT_IMAGES_EMBED;
 	const bool leaves = !entry->image->made && !nt_link_is_inside(entry->image->sources[0]->path, set->folder);
-	if (leaves && set->choice == NT_IMAGES_LINK)
-		nt_finding_add(&scene->findings, NT_CODE_LINK_LEAVES, NULL, 1, "%s, as --images=link asks",
+	if (leaves && set->choice == NT_IMAGES_LINK) {
+		const nt_place place = nt_material_place(scene, entry->material, entry->line);
+		nt_finding_add(&scene->findings, NT_CODE_LINK_LEAVES, &place, 1, "%s, as --images=link asks",
 			entry->image->name);
+	}
 	if (entry->image->made ? !entry->embedded
 				: set->choice == NT_IMAGES_COPY || (set->choice == NT_IMAGES_DEFAULT && leaves)) {
 		const nt_status status = write_file(set, entry, output, error);

@@ -20,9 +20,10 @@ nt_status nt_image_set_create(nt_image_set **set, const nt_write_options *option
 /* NULL is allowed. */
 void nt_image_set_free(nt_image_set *set);
 
-/* Says that the document uses the image that a map's request led to, and protects its file from the output. NT_NONE and
- * images without result are passed over. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *output, nt_error *error);
+/* Says that the document uses the image that the request of a material's map led to, and protects its file from the
+ * output. NT_NONE and images without result are passed over. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_image_set_use(nt_image_set *set, const nt_material *material, const nt_map *map, nt_output *output,
+	nt_error *error);
 
 /* Adds what is used to the document: images and textures. Images that are embedded get their place at *buffer_size and
  * move it on. Others that need a file of their own are written: what was made, what is to be copied, and by default

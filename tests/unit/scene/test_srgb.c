@@ -36,8 +36,16 @@ static void values_are_those_of_the_standard(void **state)
 		assert_true(fabsf(nt_srgb_from_linear(pairs[i][1]) - pairs[i][0]) < 1e-5f);
 	}
 	assert_true(isnan(nt_linear_from_srgb(&srgb, NAN)));
-	float colors[] = {0.5f, 1, 0, 0.5f};
-	nt_linearise(colors, 1);
+	float colors[] = {0.5f, 1, 0, 0.5f, 0, 0, INFINITY, 0.5f, 0, 0, 0, NAN};
+	nt_scene scene;
+	nt_scene_init(&scene, "t");
+	nt_linearise(&scene, &(nt_mesh){.name = "", .gltf_mesh = NT_NONE, .colors = colors}, 3);
+	for (int i = 4; i < 12; i++)
+		assert_true(colors[i] == 1);
+	assert_int_equal(scene.findings.count, 1);
+	assert_int_equal(scene.findings.items[0].count, 2);
+	nt_finding_list_free(&scene.findings);
+	nt_scene_free(&scene);
 	assert_true(colors[0] == nt_linear_from_srgb(&srgb, 0.5f) && colors[1] == 1 && colors[2] == 0 &&
 		colors[3] == 0.5f);
 }
