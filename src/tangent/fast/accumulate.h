@@ -49,7 +49,7 @@ static void NT_NOINLINE add_unusual(nt_fast *fast, unsigned range, uint32_t vert
 	uint32_t cursor, int orient, nt_fan_entry entry, const addition *add)
 {
 	if (!(cursor & NT_CURSOR_HUB))
-		nt_adjacency_store(&fast->adjacency, cursor, entry);
+		*nt_adjacency_entry(&fast->adjacency, cursor) = entry;
 	if (cursor & NT_CURSOR_SHARED) {
 		nt_deferred *d = &fast->deferred[range];
 		const size_t i = d->count++;
@@ -90,12 +90,12 @@ static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orien
 			entry.next & NT_ENTRY_VERTEX, entry.previous & NT_ENTRY_VERTEX, add.sum);
 		return;
 	}
-	const uint32_t place = nt_adjacency_next(a, &a->cursors[range * a->vertex_count + vertex]);
+	const uint32_t place = nt_adjacency_next(&a->cursors[range * a->vertex_count + vertex]);
 	if (place >= NT_CURSOR_SHARED) {
 		add_unusual(fast, range, vertex, place, orient, entry, &add);
 		return;
 	}
-	nt_adjacency_store(a, place, entry);
+	*nt_adjacency_entry(a, place) = entry;
 	add_record(&fast->records[orient][vertex], add.sum);
 	if (fast->wants_more)
 		add_more(&fast->more[orient][vertex], &add);
@@ -113,14 +113,12 @@ static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t
 }
 
 /* Triangles with frames, lanes [i, end), up to the first with a corner whose cursor has a flag, but for ELSEWHERE if
- * `elsewhere` says so, or that has no narrow entry left: its lane, or `end`. Entries are moved as words, and nothing is
+ * `elsewhere` says so: its lane, or `end`. Entries are moved as words, and nothing is
  * called, so that nearly all the loop needs is in registers. */
 static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned range, size_t first,
-	size_t i, size_t end, const uint32_t *ids, const lanes_out *out, bool elsewhere, bool is_narrow)
+	size_t i, size_t end, const uint32_t *ids, const lanes_out *out, bool elsewhere)
 {
 	const nt_adjacency *const adjacency = &fast->adjacency;
-	const uint32_t step = is_narrow ? adjacency->step : NT_FAN_LANES, full = NT_FAN_DEPTH * step;
-	uint32_t *const narrow = adjacency->narrow;
 	uint32_t *const cursors = adjacency->cursors + range * adjacency->vertex_count;
 	nt_fan_entry *const entries = adjacency->entries;
 	nt_record *const records[2] = {fast->records[0], fast->records[1]};
@@ -128,25 +126,17 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 	for (ids += 3 * i; i < end; i++, ids += 3) {
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
-		if (is_narrow ? pa >= full || pb >= full || pc >= full
-			: NT_EXPECT((pa | pb | pc) >= (elsewhere ? NT_CURSOR_SHARED : NT_CURSOR_FLAGGED), 0))
+		if (NT_EXPECT((pa | pb | pc) >= (elsewhere ? NT_CURSOR_SHARED : NT_CURSOR_FLAGGED), 0))
 			break;
-		cursors[a] = pa + step;
-		cursors[b] = pb + step;
-		cursors[c] = pc + step;
+		cursors[a] = pa + NT_FAN_LANES;
+		cursors[b] = pb + NT_FAN_LANES;
+		cursors[c] = pc + NT_FAN_LANES;
 		const size_t orient = flags[i] & NT_TRIANGLE_ORIENT;
 		nt_record *const to = records[orient];
 		const float *add = out->add[0] + turned_rows[i];
 		add_record(to + a, add);
 		add_record(to + b, add + 4 * NT_LANES);
 		add_record(to + c, add + 8 * NT_LANES);
-		if (is_narrow) {
-			const uint32_t both = -(uint32_t)orient & 0x80008000u;
-			narrow[pa] = b | c << 16 | both;
-			narrow[pb] = c | a << 16 | both;
-			narrow[pc] = a | b << 16 | both;
-			continue;
-		}
 		const uint64_t bits = -(uint64_t)orient & ((uint64_t)NT_ENTRY_ORIENT << 32 | NT_ENTRY_ORIENT);
 		uint64_t ab, bc;
 		memcpy(&ab, ids, sizeof ab);
@@ -164,19 +154,13 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, size_t first, size_t i,
 	size_t end, const uint32_t *ids, const lanes_out *out)
 {
-	return add_usual(fast, range, first, i, end, ids, out, false, false);
-}
-
-static size_t NT_NOINLINE add_narrow(const nt_fast *fast, unsigned range, size_t first, size_t i,
-	size_t end, const uint32_t *ids, const lanes_out *out)
-{
-	return add_usual(fast, range, first, i, end, ids, out, false, true);
+	return add_usual(fast, range, first, i, end, ids, out, false);
 }
 
 static size_t NT_NOINLINE add_elsewhere(const nt_fast *fast, unsigned range, size_t first, size_t i,
 	size_t end, const uint32_t *ids, const lanes_out *out)
 {
-	return add_usual(fast, range, first, i, end, ids, out, true, false);
+	return add_usual(fast, range, first, i, end, ids, out, true);
 }
 
 /* The same up to a corner of a hub or elsewhere. What is added to a vertex that an earlier range adds to is put aside,
@@ -225,8 +209,7 @@ static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t beg
 {
 	for (size_t i = begin; i < end;) {
 		if (!fast->wants_more)
-			i = (nt_adjacency_is_narrow(&fast->adjacency) ? add_narrow : add_here)(fast, range,
-				first, i, end, ids, out);
+			i = add_here(fast, range, first, i, end, ids, out);
 		if (i < end && !fast->wants_more && fast->deferred)
 			i = add_shared(fast, range, first, i, end, ids, out);
 		if (i < end && !fast->wants_more && fast->adjacency.rest)
@@ -291,10 +274,10 @@ static void NT_NOINLINE add_special(nt_fast *fast, unsigned range, size_t t, con
 		uint32_t *cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
 		for (int k = 0; k < 3; k++) {
 			const nt_adjacency *a = &fast->adjacency;
-			const uint32_t place = nt_adjacency_next(a, &cursors[v[k]]);
-			const uint32_t number = NT_ENTRY_VOID | 2 * ((place & NT_CURSOR_PLACE) / a->step);
+			const uint32_t place = nt_adjacency_next(&cursors[v[k]]);
+			const uint32_t number = NT_ENTRY_VOID | 2 * ((place & NT_CURSOR_PLACE) / NT_FAN_LANES);
 			if (!(place & NT_CURSOR_HUB))
-				nt_adjacency_store(a, place, (nt_fan_entry){number, number + 1});
+				*nt_adjacency_entry(a, place) = (nt_fan_entry){number, number + 1};
 		}
 		return;
 	}
@@ -358,7 +341,7 @@ static inline NT_ALWAYS_INLINE void prefetch_places(const nt_fast *fast, const u
 	const uint32_t *ids, size_t count)
 {
 	for (size_t i = 0; i < 3 * count; i++) {
-		if (!nt_adjacency_is_narrow(&fast->adjacency) && !(cursors[ids[i]] & NT_CURSOR_HUB))
+		if (!(cursors[ids[i]] & NT_CURSOR_HUB))
 			NT_PREFETCH(nt_adjacency_entry(&fast->adjacency, cursors[ids[i]]), 1);
 		for (int o = 0; o < 2; o++)
 			if (fast->records[o])

@@ -43,8 +43,7 @@
 
 /* Each thread has cursors of its own for all vertices, which are then gone over together: the more threads, the more
  * triangles each must have. Two need fewer: their halves take 10 to 18 % more processor time than the whole. */
-static const nt_fast_plan usual = {.grain = 65536, .least_two = 30000, .least_borrowed_bytes = 65536,
-	.most_narrow = NT_NARROW_LIMIT};
+static const nt_fast_plan usual = {.grain = 65536, .least_two = 30000, .least_borrowed_bytes = 65536};
 
 typedef struct run {
 	nt_fast *fast;
@@ -165,8 +164,8 @@ static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, con
 	nt_fast_memory *memory)
 {
 	const nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count,
-		plan->most_places ? plan->most_places : NT_ADJACENCY_PLACES, plan->most_narrow, memory->rows,
-		&memory->borrowed, &fast->adjacency);
+		plan->most_places ? plan->most_places : NT_ADJACENCY_PLACES, memory->rows, &memory->borrowed,
+		&fast->adjacency);
 	if (status)
 		return status;
 	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);

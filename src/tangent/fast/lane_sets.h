@@ -49,13 +49,6 @@ static inline lanes with_bits(lanes a, lane_set set, lanes b)
 	return (lanes)_mm512_mask_or_epi32((__m512i)a, set, (__m512i)a, (__m512i)b);
 }
 
-/* a with the bits of both halves in those halves in which b and c are the same; they were not there. */
-static inline lanes with_bit_where_same(lanes a, lanes b, lanes c, uint32_t halves)
-{
-	return (lanes)_mm512_mask_add_epi16((__m512i)a, _mm512_cmpeq_epi16_mask((__m512i)b, (__m512i)c), (__m512i)a,
-		_mm512_set1_epi32((int)halves));
-}
-
 /* One more where a has none of the bits. */
 static inline lanes one_more_without(lanes count, lanes a, uint32_t bits)
 {
@@ -81,11 +74,6 @@ typedef uint16_t lane_halves __attribute__((vector_size(4 * WIDTH)));
 typedef lane_halves half_set;
 #define ALL_HALVES ((half_set){0} - 1)
 
-static inline lanes same_halves(lanes a, lanes b)
-{
-	return (lanes)((lane_halves)a == (lane_halves)b);
-}
-
 static inline half_set halves_differ(half_set set, lanes a, lanes b)
 {
 	return set & (lane_halves)((lane_halves)a != (lane_halves)b);
@@ -94,15 +82,10 @@ static inline half_set halves_differ(half_set set, lanes a, lanes b)
 typedef lanes half_set;
 #define ALL_HALVES ALL_LANES
 
-static inline lanes same_halves(lanes a, lanes b)
-{
-	const lanes other = a ^ b;
-	return LANES_WHERE((other & 0xffff) == 0) >> 16 | LANES_WHERE(other >> 16 == 0) << 16;
-}
-
 static inline half_set halves_differ(half_set set, lanes a, lanes b)
 {
-	return set & ~same_halves(a, b);
+	const lanes other = a ^ b;
+	return set & (LANES_WHERE((other & 0xffff) != 0) >> 16 | LANES_WHERE(other >> 16 != 0) << 16);
 }
 #endif
 
@@ -129,11 +112,6 @@ static inline lanes without_bit(lanes a, lane_set set, uint32_t bit)
 static inline lanes with_bits(lanes a, lane_set set, lanes b)
 {
 	return a | (set & b);
-}
-
-static inline lanes with_bit_where_same(lanes a, lanes b, lanes c, uint32_t halves)
-{
-	return a | (same_halves(b, c) & halves);
 }
 
 static inline lanes one_more_without(lanes count, lanes a, uint32_t bits)

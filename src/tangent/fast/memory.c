@@ -9,7 +9,7 @@
  *   ids, flags, cuts   1-8    scratch
  *   rows               1-5    borrowed where there is memory, see has_room_for_rows(); binned: scratch
  *   cursors            3-5    as the rows
- *   entries            3-5    borrowed, and scratch for the rest; narrow ones in one of the two
+ *   entries            3-5    borrowed, and scratch for the rest
  *   sums of bins       4-5    the output: 16 bytes a corner, as many as it has
  *   entries of bins    4-5    scratch
  *   records            4-8    scratch; binned: that of the rows, see nt_fast_place_records()
@@ -75,15 +75,14 @@ nt_borrowed nt_fast_left_memory(const nt_fast *fast)
 	const struct {
 		const void *memory;
 		size_t bytes;
-	} arrays[4] = {
+	} arrays[] = {
 		{fast->rows, binned ? 0 : fast->vertex_count * sizeof *fast->rows},
 		{binned ? (const void *)fast->bins.entries : a->entries,
 			binned ? 3 * fast->triangle_count * NT_BINNED_ENTRY : a->entry_count * sizeof *a->entries},
 		{a->rest, a->rest_count * sizeof *a->rest},
-		{a->narrow, nt_adjacency_is_narrow(a) ? NT_FAN_DEPTH * a->step * sizeof *a->narrow : 0},
 	};
 	nt_borrowed largest = nt_borrow(NULL, 0, solve->scratch);
-	for (int i = 0; i < 4; i++) {
+	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
 		const uintptr_t at = (uintptr_t)arrays[i].memory - (uintptr_t)solve->tangents;
 		const bool in_output = at < output_bytes(solve);
 		if (!in_output && arrays[i].bytes > (size_t)(largest.end - largest.begin))
