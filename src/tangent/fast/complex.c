@@ -16,7 +16,6 @@
  *
  * What is left gathers in batches:
  *
- *   sums      where no group splits they are the results                            complex_sums.c
  *   solve     the corners of other groups, in lanes                                 corners.h
  *   average   and write                                                             complex_solve.c
  *
@@ -161,7 +160,7 @@ static void solve_range(void *context, size_t begin, size_t end, unsigned thread
 		status = nt_take_vertex(w->c, batch, v);
 	}
 	if (!status)
-		status = nt_finish_batch(w->c, batch);
+		status = nt_solve_batch(w->c, batch);
 	if (status)
 		w->status = status;
 }
@@ -187,7 +186,7 @@ static nmtan_status solve_tangled(const nt_complex *c, nt_batch *batch)
 		nt_find_groups(&window, v);
 		status = status ? status : nt_take_vertex(&window, batch, v);
 	}
-	return status ? status : nt_finish_batch(&window, batch);
+	return status ? status : nt_solve_batch(&window, batch);
 }
 
 static nmtan_status solve_vertices(const nt_complex *c, size_t most_tangled)

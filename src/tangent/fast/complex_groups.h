@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Complex vertices: their corners, and the groups of these. complex.c is the recipe, complex_groups.c finds the
- * groups, complex_sums.c or complex_solve.c averages and writes them.
+ * groups, complex_solve.c averages and writes them.
  */
 #ifndef NT_TANGENT_FAST_COMPLEX_GROUPS_H
 #define NT_TANGENT_FAST_COMPLEX_GROUPS_H

@@ -59,6 +59,21 @@ static size_t table_size(size_t members)
 
 /* Solving */
 
+/* The three rows of each corner's triangle, from the mesh. */
+static void load_rows(const nt_complex *c, const uint32_t *corners, size_t count, nt_weld_row *rows)
+{
+	/* copies, which no store to a row may change */
+	const nmtan_mesh mesh = *c->fast->solve->mesh;
+	const nt_triangles triangles = c->fast->triangles;
+	for (size_t i = 0; i < count; i++) {
+		const size_t t = (corners[i] & NT_COMPLEX_CORNER) >> 2;
+		NT_UNROLL(3)
+		for (unsigned k = 0; k < 3; k++)
+			nt_weld_load(&mesh, nt_vertex_of(&mesh, nt_triangle_corner(&triangles, t, k)),
+				&rows[3 * i + k]);
+	}
+}
+
 static void solve_members(const nt_complex *c, const uint32_t *members, size_t count, nt_corner *solved)
 {
 	uint32_t corners[SOLVED];
@@ -67,7 +82,7 @@ static void solve_members(const nt_complex *c, const uint32_t *members, size_t c
 		const size_t n = count - first < SOLVED ? count - first : SOLVED;
 		for (size_t i = 0; i < n; i++)
 			corners[i] = c->corners[members[first + i]];
-		nt_load_rows(c, corners, n, rows);
+		load_rows(c, corners, n, rows);
 		c->kernels->corners(rows, corners, n, solved + first);
 	}
 }
@@ -531,13 +546,6 @@ nmtan_status nt_solve_batch(const nt_complex *c, nt_batch *b)
 	return NMTAN_OK;
 }
 
-nmtan_status nt_finish_batch(const nt_complex *c, nt_batch *b)
-{
-	if (NT_FAST_PATHS && b->summed.count > 0)
-		nt_write_sums(c, &b->summed);
-	return nt_solve_batch(c, b);
-}
-
 /* Moves a corner to the batch. Its group's number stands in the place of an edge, which is of no use any more. */
 static void add_to_batch(const nt_complex *c, nt_batch *b, uint32_t place)
 {
@@ -586,10 +594,6 @@ nmtan_status nt_take_vertex(const nt_complex *c, nt_batch *b, size_t v)
 		write_frameless(c, v, done);
 	if (done[0] && done[1])
 		return NMTAN_OK;
-	if (NT_FAST_PATHS && sum && end - begin <= NT_FAN_DEPTH) {
-		nt_take_sums(c, &b->summed, v, done);
-		return NMTAN_OK;
-	}
 	if (b->count + (end - begin) > NT_BATCH && nt_solve_batch(c, b))
 		return NMTAN_ERROR_MEMORY;
 	if (b->count == 0)

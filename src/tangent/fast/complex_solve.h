@@ -5,7 +5,7 @@
 #ifndef NT_TANGENT_FAST_COMPLEX_SOLVE_H
 #define NT_TANGENT_FAST_COMPLEX_SOLVE_H
 
-#include "tangent/fast/complex_sums.h"
+#include "tangent/fast/complex_groups.h"
 
 /* Corners that are solved at a time, but for a vertex that has more. */
 enum { NT_BATCH = 512 };
@@ -15,7 +15,6 @@ enum { NT_BATCH = 512 };
 typedef struct nt_batch {
 	uint32_t first, count; /* places */
 	uint32_t group_count;  /* groups are numbered from 0 in the order in which they begin */
-	nt_summed summed;      /* those of groups that are their sums are not among them */
 	nt_corner *results;    /* [capacity] where the halves of quads have to meet; NULL: there are no quads */
 } nt_batch;
 
@@ -30,8 +29,5 @@ nmtan_status nt_take_vertex(const nt_complex *c, nt_batch *batch, size_t v);
 
 /* Solves all groups of a batch and writes its corners; then it is empty. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
 nmtan_status nt_solve_batch(const nt_complex *c, nt_batch *batch);
-
-/* The same, with those of groups that are their sums. */
-nmtan_status nt_finish_batch(const nt_complex *c, nt_batch *batch);
 
 #endif

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The third pass: single corners for complex.c, 16 at a time. Each comes with the three rows of its triangle, which
- * complex_sums.c has loaded again because the welded ones are overwritten by now. Its triangle's frame is made anew, so
+ * complex_solve.c has loaded again because the welded ones are overwritten by now. Its triangle's frame is made anew, so
  * that there is nothing to keep.
  *
- * In corners() every value reaches the output, the extreme ones too: all of steps 4 and 8 is done as the definition
- * does it. In corner_sums() it is known that none is extreme. Included by kernel.h.
+ * Every value reaches the output, the extreme ones too: all of steps 4 and 8 is done as the definition does it. Included
+ * by kernel.h.
  */
 #ifndef NT_TANGENT_FAST_CORNERS_H
 #define NT_TANGENT_FAST_CORNERS_H
@@ -150,32 +150,6 @@ static void kernel_corners(const nt_weld_row *rows, const uint32_t *list, size_t
 			solved[i].angle = s.angle[i];
 			solved[i].kind = s.kind[i];
 		}
-	}
-}
-
-/* What single corners add to their records, by the arithmetic of step 4. */
-static void kernel_corner_sums(const nt_weld_row *rows, const uint32_t *list, size_t count, nt_record *add)
-{
-	single_lanes s;
-	lanes_edges edges;
-	lanes_out out;
-	NT_ALIGNED(64) float e[3][NT_LANES], f[3][NT_LANES];
-	const corner_lanes corners = {.n = s.n, .u = out.u, .v = out.v, .e = e, .f = f, .turned = 1.0f,
-		.sum = out.sum[0]};
-	for (size_t first = 0; first < count; first += NT_LANES) {
-		load_singles(rows + 3 * first, list + first, count - first, &s);
-		EACH_LANE(NT_LANES) make_edges(&s.in, &edges, i);
-		EACH_LANE(NT_LANES) solve_frames(&s.in, &edges, &out, false, i);
-		EACH_LANE(NT_LANES)
-			NT_UNROLL(3)
-			for (int c = 0; c < 3; c++) {
-				e[c][i] = choose(s.k[i], edges.of[0][c][i], -edges.of[0][c][i], edges.of[1][c][i]);
-				f[c][i] = choose(s.k[i], edges.of[1][c][i], edges.of[2][c][i], edges.of[2][c][i]);
-			}
-		solve_corner(corners);
-		interleave(out.sum[0], NT_LANES, out.add[0]);
-		for (size_t i = 0; i < NT_LANES; i++)
-			memcpy(&add[first + i], out.add[0] + 4 * turned_place(i), sizeof *add);
 	}
 }
 

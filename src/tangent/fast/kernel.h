@@ -9,6 +9,4 @@
 #include "tangent/fast/settle.h"
 
 const nt_kernels NT_KERNEL = {kernel_accumulate, kernel_settle, kernel_corners,
-	NT_FAST_PATHS ? kernel_corner_sums : NULL,
-	NT_FAST_PATHS ? kernel_part_sums : NULL,
-	NT_FAST_PATHS ? kernel_group_results : NULL};
+	NT_FAST_PATHS ? kernel_part_sums : NULL};

@@ -81,30 +81,6 @@ static inline NT_ALWAYS_INLINE void solve_lanes(const lanes_in *NT_RESTRICT in, 
 		interleave(out->sum[k], (size_t)count, out->add[k]);
 }
 
-/* A single corner in each lane. */
-static inline NT_ALWAYS_INLINE void solve_corner(corner_lanes a)
-{
-	corner_angles angles;
-#if WIDTH > 4
-	corner_parts p;
-	EACH_LANE(NT_LANES) project_edges(a, &p, i);
-	EACH_LANE(NT_LANES) project_u(a, &p, i);
-	EACH_LANE(NT_LANES) find_cosine(&p, &angles, i);
-	EACH_LANE(NT_LANES) begin_angle(&angles, i);
-	EACH_LANE(NT_LANES) finish_directions(a, &p, &angles, false, i);
-#else
-	EACH_LANE(NT_LANES) {
-		corner_parts p;
-		project_edges(a, &p, i);
-		project_u(a, &p, i);
-		find_cosine(&p, &angles, i);
-		finish_directions(a, &p, &angles, false, i);
-		begin_angle(&angles, i);
-	}
-#endif
-	EACH_LANE(NT_LANES) weigh_corner(a, &angles, NULL, false, i);
-}
-
 /* Whether all lanes are plain. */
 static inline bool are_plain(const lanes_out *out, size_t corners, size_t count)
 {

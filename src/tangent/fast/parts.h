@@ -105,15 +105,11 @@ typedef struct nt_kernels {
 	/* Solves corners as nt_complex has them, given with the three rows of each one's triangle. `solved` has room
 	 * for a multiple of NT_LANES. */
 	void (*corners)(const nt_weld_row *rows, const uint32_t *corners, size_t count, nt_corner *solved);
-	/* The same: what they add to their records. NULL without fast paths. */
-	void (*corner_sums)(const nt_weld_row *rows, const uint32_t *corners, size_t count, nt_record *add);
 	/* Sums of a group's members for each of NT_LANES directions, u and then v: of those that belong together with
 	 * it, and of the own[1] ones from own[0] on. The first NT_CORNER_FLOATS of an nt_corner are added up, or,
 	 * without `more`, those of u. NULL without fast paths. */
 	void (*part_sums)(const nt_corner *members, size_t count, const float directions[6][NT_LANES],
 		const uint32_t own[2][NT_LANES], bool more, float sums[NT_CORNER_FLOATS][NT_LANES]);
-	/* Turns the sums of groups, given with the rows of their vertices, into results. NULL without fast paths. */
-	void (*group_results)(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results);
 } nt_kernels;
 
 extern const nt_kernels nt_kernels_baseline;

@@ -138,38 +138,4 @@ static void store_records(nt_record *NT_RESTRICT records, size_t step, size_t co
 		records[step * i] = copy[i];
 }
 
-/* Results of up to NT_LANES groups from their sums: for complex_sums.c. */
-static inline void finish_groups(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results)
-{
-	const size_t used = whole_lanes(count);
-	float normals[3][NT_LANES];
-	uint32_t unusable[NT_LANES];
-	record_lanes r;
-	for (size_t i = 0; i < used; i += WIDTH) {
-		const float *from[WIDTH];
-		lanes four[4];
-		for (size_t k = i; k < i + WIDTH; k++)
-			from[k - i] = (const float *)&rows[vertices[k < count ? k : count - 1]] + 3;
-		load_turned(from, four);
-		for (size_t c = 0; c < 3; c++)
-			memcpy(normals[c] + i, &four[c], sizeof *four);
-	}
-	load_records(results, used, &r);
-	normalise_records(used, &r);
-	find_unusable(normals, &r, unusable, used);
-	for (size_t i = 0; i < used; i++)
-		r.state[i] = r.sound[i] ? NT_RESULT_PLUS | unusable[i] : NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE;
-	store_records(results, 1, used, used, &r, r.state);
-}
-
-/* Results of groups from their sums. One that is its sum has the state NT_RESULT_PLUS, whatever its orientation, and
- * NT_RESULT_UNUSABLE where it is that; others have NT_RESULT_COMPLEX and NT_RESULT_UNUSABLE. There is room for whole
- * vectors, which hold sums throughout. */
-static void kernel_group_results(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results)
-{
-	for (size_t first = 0; first < count; first += NT_LANES)
-		finish_groups(rows, vertices + first, count - first < NT_LANES ? count - first : NT_LANES,
-			results + first);
-}
-
 #endif
