@@ -2,8 +2,8 @@
 /*
  * Averages of groups at complex vertices: steps 7 to 10 of the spec page. Corners are solved SOLVED at a time in the
  * order of groups. Most groups do not split: their members' directions lie within a half-space. Otherwise each
- * direction has a sum of its own, which is that of all members with this direction: 16 directions at a time
- * (part_lanes.h), in large groups by several threads. So it costs directions times members.
+ * direction has a sum of its own, which is that of all members with this direction: in large groups by several threads.
+ * So it costs directions times members.
  *
  * Sums of nearly the same members share no work: from the first member on that only one of them has, each adds all the
  * others again, since floats do not associate. Half of a quad whose halves have opposite directions is such a case: its
@@ -22,8 +22,8 @@
 #include "topology/corners.h"
 
 /*
- * What it may cost where results are repaired: directions times members, of all large groups of a mesh. A quarter of
- * a second on one thread (a nanosecond each), which 8 192 folded quads around a vertex take, and 256 for each corner
+ * What it may cost where results are repaired: directions times members, of all large groups of a mesh. Less than half
+ * a second on one thread (1.5 ns each), which 8 192 folded quads around a vertex take, and 256 for each corner
  * more, so that time is linear. mikktspace.c takes 16 s and half a gigabyte for these quads: nobody has a mesh with
  * more, whose bytes would be missed. The group whose turn it is then has one sum.
  */
@@ -87,8 +87,19 @@ static void solve_members(const nt_complex *c, const uint32_t *members, size_t c
 	}
 }
 
-/* Adds all members. The angles of their weights are added too. */
-static void add_members(const part *p, nt_corner *sum)
+/* Members that belong together with one of them although their directions do not: of its face. */
+typedef struct own_members {
+	uint32_t first, count; /* indices; 0: there are none but by direction */
+} own_members;
+
+/* Whether two members of a group are averaged together for their directions: step 7 with the default threshold. */
+static inline bool belong_together(const nt_corner *a, const nt_corner *b)
+{
+	return nt_dot3(a->u, b->u) > -1.0f && nt_dot3(a->v, b->v) > -1.0f;
+}
+
+/* Adds all members, or those that belong together with `one`. The angles of their weights are added too. */
+static inline NT_ALWAYS_INLINE void add_members(const part *p, const nt_corner *one, own_members own, nt_corner *sum)
 {
 #if NT_VECTORS
 	nt_float4 u, v;
@@ -96,7 +107,7 @@ static void add_members(const part *p, nt_corner *sum)
 	memcpy(&v, sum->v, sizeof v);
 	for (size_t i = 0; i < p->count; i++) {
 		const nt_corner *m = &p->solved[i];
-		if (m->kind == NT_CORNER_ANY)
+		if (m->kind == NT_CORNER_ANY || (one && i - own.first >= own.count && !belong_together(one, m)))
 			continue;
 		nt_float4 mu, mv;
 		memcpy(&mu, m->u, sizeof mu);
@@ -110,7 +121,7 @@ static void add_members(const part *p, nt_corner *sum)
 #else
 	for (size_t i = 0; i < p->count; i++) {
 		const nt_corner *m = &p->solved[i];
-		if (m->kind == NT_CORNER_ANY)
+		if (m->kind == NT_CORNER_ANY || (one && i - own.first >= own.count && !belong_together(one, m)))
 			continue;
 		for (int k = 0; k < 3; k++) {
 			sum->u[k] += m->angle * m->u[k];
@@ -140,12 +151,6 @@ static void finish(const nt_complex *c, nt_corner *total)
 		total->mag_s /= total->angle;
 		total->mag_t /= total->angle;
 	}
-}
-
-/* Whether two members of a group are averaged together for their directions: step 7 with the default threshold. */
-static bool belong_together(const nt_corner *a, const nt_corner *b)
-{
-	return nt_dot3(a->u, b->u) > -1.0f && nt_dot3(a->v, b->v) > -1.0f;
 }
 
 /* Two unit vectors less than 89.4 degrees from a third one, the axis, have a dot product of at least
@@ -302,11 +307,6 @@ static bool belongs_by_face(const nt_complex *c, const part *p, size_t first, si
 	       !belong_together(&p->solved[first], &p->solved[second]);
 }
 
-/* Members that belong together with member i although their directions do not: of its face. */
-typedef struct own_members {
-	uint32_t first, count; /* indices; 0: there are none but by direction */
-} own_members;
-
 static own_members find_own(const nt_complex *c, const part *p, size_t i)
 {
 	const size_t first = i > 0 && belongs_by_face(c, p, i - 1, i) ? i - 1 : i;
@@ -344,47 +344,18 @@ typedef struct sum_context {
 	const directions *d;
 } sum_context;
 
-/* Averages for directions NT_LANES * [begin, end). */
+/* Averages for directions [begin, end). */
 static void sum_directions(void *context, size_t begin, size_t end, unsigned thread)
 {
 	(void)thread;
 	const sum_context *s = context;
-	const directions *d = s->d;
-	for (size_t first = NT_LANES * begin; first < NT_LANES * end && !nt_deadline_passed(); first += NT_LANES) {
-		NT_ALIGNED(64) float lanes[6][NT_LANES] = {{0}}, sums[NT_CORNER_FLOATS][NT_LANES] = {{0}};
-		uint32_t own[2][NT_LANES] = {{0}};
-		const size_t count = d->count - first < NT_LANES ? d->count - first : NT_LANES;
-		for (size_t lane = 0; lane < count; lane++) {
-			const nt_corner *m = &s->p->solved[d->of[first + lane]];
-			for (size_t i = 0; i < 3; i++)
-				lanes[i][lane] = m->u[i], lanes[3 + i][lane] = m->v[i];
-			const own_members o = find_own(s->c, s->p, d->of[first + lane]);
-			own[0][lane] = o.first, own[1][lane] = o.count;
-		}
-		s->c->kernels->part_sums(s->p->solved, s->p->count, lanes, own, s->c->more, sums);
-		for (size_t lane = 0; lane < count; lane++) {
-			float row[NT_CORNER_FLOATS];
-			for (size_t i = 0; i < NT_CORNER_FLOATS; i++)
-				row[i] = sums[i][lane];
-			memcpy(&d->sums[first + lane], row, sizeof row);
-			d->sums[first + lane].kind = NT_CORNER_EXTREME;
-			finish(s->c, &d->sums[first + lane]);
-		}
+	for (size_t i = begin; i < end && !nt_deadline_passed(); i++) {
+		const uint32_t first = s->d->of[i];
+		nt_corner *sum = &s->d->sums[i];
+		*sum = (nt_corner){.kind = NT_CORNER_EXTREME};
+		add_members(s->p, &s->p->solved[first], find_own(s->c, s->p, first), sum);
+		finish(s->c, sum);
 	}
-}
-
-/* The short code for the same: the average of those that belong together with member i. */
-static nt_corner average_own(const nt_complex *c, const part *p, size_t i)
-{
-	const own_members o = find_own(c, p, i);
-	nt_corner sum = {.kind = NT_CORNER_EXTREME};
-	for (size_t j = 0; j < p->count; j++)
-		if (j - o.first < o.count || belong_together(&p->solved[i], &p->solved[j])) {
-			const part one = {p->members + j, p->solved + j, 1};
-			add_members(&one, &sum);
-		}
-	finish(c, &sum);
-	return sum;
 }
 
 /* Groups */
@@ -393,7 +364,7 @@ static nt_corner average_own(const nt_complex *c, const part *p, size_t i)
 static bool average_whole(const nt_complex *c, const nt_batch *b, const part *p, nt_corner *whole)
 {
 	*whole = (nt_corner){.kind = NT_CORNER_EXTREME};
-	add_members(p, whole);
+	add_members(p, NULL, (own_members){0}, whole);
 	finish(c, whole);
 	if (!is_one(p, first_with_frame(p)))
 		return false;
@@ -403,17 +374,16 @@ static bool average_whole(const nt_complex *c, const nt_batch *b, const part *p,
 	return true;
 }
 
-/* Averages a group whose members may split; with NT_FAST_PATHS their directions are listed. */
+/* Averages a group whose members may split, and whose directions are listed. */
 static void average_parts(const nt_complex *c, const nt_batch *b, const part *p, const nt_corner *whole, directions *d)
 {
 	const unsigned threads = p->count > SOLVED ? c->fast->solve->threads : 1;
 	sum_context context = {c, p, d};
-	if (NT_FAST_PATHS)
-		nt_parallel_ranges(threads, (d->count + NT_LANES - 1) / NT_LANES, 1, sum_directions, &context);
+	nt_parallel_ranges(threads, d->count, NT_LANES, sum_directions, &context);
 	for (size_t i = 0; i < p->count && !nt_deadline_passed(); i++) {
 		/* a member without a frame belongs to all */
 		const bool any = p->solved[i].kind == NT_CORNER_ANY;
-		const nt_corner result = any ? *whole : NT_FAST_PATHS ? d->sums[d->number[i]] : average_own(c, p, i);
+		const nt_corner result = any ? *whole : d->sums[d->number[i]];
 		put_result(c, b, p->members[i], &result, mark_of(c, p->members[i], &result));
 	}
 }
@@ -440,8 +410,7 @@ static void solve_groups(const nt_complex *c, const nt_batch *b, const uint32_t 
 		const part p = {members + first, solved + first, end - first};
 		if (average_whole(c, b, &p, &whole))
 			continue;
-		if (NT_FAST_PATHS)
-			list_directions(c, &p, &d);
+		list_directions(c, &p, &d);
 		average_parts(c, b, &p, &whole, &d);
 	}
 }

@@ -5,8 +5,6 @@
  */
 #include "tangent/fast/accumulate.h"
 #include "tangent/fast/corners.h"
-#include "tangent/fast/part_lanes.h"
 #include "tangent/fast/settle.h"
 
-const nt_kernels NT_KERNEL = {kernel_accumulate, kernel_settle, kernel_corners,
-	NT_FAST_PATHS ? kernel_part_sums : NULL};
+const nt_kernels NT_KERNEL = {kernel_accumulate, kernel_settle, kernel_corners};

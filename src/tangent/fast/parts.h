@@ -87,9 +87,6 @@ typedef struct nt_corner {
  * result is the sum of a group that may split. */
 enum { NT_CORNER_UNIT, NT_CORNER_EXTREME, NT_CORNER_ANY, NT_CORNER_SUMMED };
 
-/* Floats of an nt_corner, the weight last: they come before its kind. */
-enum { NT_CORNER_FLOATS = 9 };
-
 /* The passes of one instruction set. */
 typedef struct nt_kernels {
 	/* Solves triangles [begin, end) of a range and adds them to their vertices, or to the bins where
@@ -105,11 +102,6 @@ typedef struct nt_kernels {
 	/* Solves corners as nt_complex has them, given with the three rows of each one's triangle. `solved` has room
 	 * for a multiple of NT_LANES. */
 	void (*corners)(const nt_weld_row *rows, const uint32_t *corners, size_t count, nt_corner *solved);
-	/* Sums of a group's members for each of NT_LANES directions, u and then v: of those that belong together with
-	 * it, and of the own[1] ones from own[0] on. The first NT_CORNER_FLOATS of an nt_corner are added up, or,
-	 * without `more`, those of u. NULL without fast paths. */
-	void (*part_sums)(const nt_corner *members, size_t count, const float directions[6][NT_LANES],
-		const uint32_t own[2][NT_LANES], bool more, float sums[NT_CORNER_FLOATS][NT_LANES]);
 } nt_kernels;
 
 extern const nt_kernels nt_kernels_baseline;
