@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The third pass: single corners for complex.c, 16 at a time. Each comes with the three rows of its triangle, which
- * complex_solve.c has loaded again because the welded ones are overwritten by now. Its triangle's frame is made anew, so
- * that there is nothing to keep.
+ * complex_solve.c has loaded again because the welded ones are overwritten by now. Its triangle's frame is made anew,
+ * so that there is nothing to keep.
  *
- * Every value reaches the output, the extreme ones too: all of steps 4 and 8 is done as the definition does it. Included
- * by kernel.h.
+ * Every value reaches the output, the extreme ones too: all of steps 4 and 8 is done as the definition does it.
+ * Included by kernel.h.
  */
 #ifndef NT_TANGENT_FAST_CORNERS_H
 #define NT_TANGENT_FAST_CORNERS_H

@@ -56,8 +56,9 @@ static lanes NT_NOINLINE find_twice(const nt_fan_entry *entries, uint32_t depth,
 	return twice;
 }
 
-/* The components of corners that are linked: bit j of linked[i] for each later neighbour j. Voids are none. By elimination: a corner hands its links to the later ones it is linked with; one that has
- * none when its turn comes is the last of its component. */
+/* The components of corners that are linked: bit j of linked[i] for each later neighbour j. Voids are none. By
+ * elimination: a corner hands its links to the later ones it is linked with; one that has none when its turn comes is
+ * the last of its component. */
 static inline NT_ALWAYS_INLINE lanes count_components(lanes linked[NT_FAN_DEPTH], uint32_t depth)
 {
 	lanes count = {0};
