@@ -66,6 +66,7 @@ typedef struct nt_sums {
 	uint8_t *vertex_flags;         /* [weld.count] */
 	bool scattered;                /* neighbouring triangles have vertices far apart: prefetch */
 	unsigned ranges;
+	size_t *begins;                /* [ranges + 1] their first triangles */
 	uint16_t *owners;              /* [weld.count] the first range that touches the vertex */
 	nt_later **later;              /* [ranges] */
 	size_t *later_counts;          /* [ranges] */

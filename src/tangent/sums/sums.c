@@ -38,13 +38,22 @@ enum { TRIANGLE_GRAIN = 32768, WELD_GRAIN = 3 * 65536, BLOCK_GRAIN = 2048, MOST_
 /* Triangles by which the results of a scattered mesh are prefetched before they are read. */
 enum { WRITE_AHEAD = 16 };
 
-/* The first triangle of a range; halves of a quad stay together. */
-static size_t range_begin(const nt_sums *s, unsigned range)
+/* Cuts the triangles into ranges, never a quad: before threads change flags, which lie beside the ends of others. */
+static nmtan_status cut_ranges(nt_sums *s)
 {
-	size_t t = s->triangle_count / s->ranges * range + s->triangle_count % s->ranges * range / s->ranges;
-	while (s->corners && t < s->triangle_count && (s->flags[t] & NT_SUM_SECOND))
-		t++;
-	return t;
+	s->ranges = nt_parallel_slots(s->solve->threads, s->triangle_count, TRIANGLE_GRAIN);
+	if (s->ranges > MOST_RANGES)
+		s->ranges = MOST_RANGES;
+	s->begins = nt_scratch_alloc(s->solve->scratch, s->ranges + 1, sizeof *s->begins);
+	if (!s->begins)
+		return NMTAN_ERROR_MEMORY;
+	for (unsigned r = 0; r <= s->ranges; r++) {
+		size_t t = s->triangle_count / s->ranges * r + s->triangle_count % s->ranges * r / s->ranges;
+		while (s->corners && t < s->triangle_count && (s->flags[t] & NT_SUM_SECOND))
+			t++;
+		s->begins[r] = t;
+	}
+	return NMTAN_OK;
 }
 
 /* Triangles of a mesh with quads: their corners, vertices, and which are second halves. */
@@ -97,11 +106,11 @@ static nmtan_status make_owners(nt_sums *s)
 		return NMTAN_ERROR_MEMORY;
 	memset(s->owners, 0xff, s->weld.count * sizeof *s->owners);
 	for (unsigned r = s->ranges; r-- > 0;)
-		for (size_t i = 3 * range_begin(s, r); i < 3 * range_begin(s, r + 1); i++)
+		for (size_t i = 3 * s->begins[r]; i < 3 * s->begins[r + 1]; i++)
 			s->owners[s->ids[i]] = (uint16_t)r;
 	for (unsigned r = 0; r < s->ranges; r++) {
 		size_t count = 0;
-		for (size_t i = 3 * range_begin(s, r), end = 3 * range_begin(s, r + 1); r > 0 && i < end; i++)
+		for (size_t i = 3 * s->begins[r]; r > 0 && i < 3 * s->begins[r + 1]; i++)
 			count += s->owners[s->ids[i]] != r;
 		s->later_counts[r] = 0;
 		s->later[r] = nt_scratch_alloc(scratch, count, sizeof **s->later);
@@ -140,10 +149,8 @@ static nmtan_status prepare(nt_sums *s, nt_borrowed *memory)
 	if (status || (status = make_triangles(s)))
 		return status;
 	s->scattered = nt_is_scattered(s->ids, 3 * s->triangle_count, s->weld.count);
-	s->ranges = nt_parallel_slots(s->solve->threads, s->triangle_count, TRIANGLE_GRAIN);
-	if (s->ranges > MOST_RANGES)
-		s->ranges = MOST_RANGES;
-	return s->ranges > 1 ? make_owners(s) : NMTAN_OK;
+	status = cut_ranges(s);
+	return !status && s->ranges > 1 ? make_owners(s) : status;
 }
 
 /* Summing */
@@ -171,8 +178,7 @@ static void sum_ranges(void *context, size_t begin, size_t end, unsigned thread)
 	const run *r = context;
 	for (size_t range = begin; range < end; range++) {
 		int side;
-		r->kernels->accumulate(r->s, range_begin(r->s, (unsigned)range), range_begin(r->s, (unsigned)range + 1),
-			(unsigned)range, &side);
+		r->kernels->accumulate(r->s, r->s->begins[range], r->s->begins[range + 1], (unsigned)range, &side);
 	}
 }
 
@@ -349,7 +355,7 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned threa
 	const writing *w = context;
 	const nt_sums *s = w->r->s;
 	for (size_t range = begin; range < end; range++)
-		w->r->ill[range] = write_range(w, range_begin(s, (unsigned)range), range_begin(s, (unsigned)range + 1));
+		w->r->ill[range] = write_range(w, s->begins[range], s->begins[range + 1]);
 }
 
 /* Tells the check for unusable tangents what it need not look at: a plain triangle has weight at its corners, so
