@@ -17,6 +17,8 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
+#include <string.h>
 
 /* sum + error = a + b, exactly (Knuth). */
 static inline double nt_two_sum(double a, double b, double *error)
@@ -26,6 +28,28 @@ static inline double nt_two_sum(double a, double b, double *error)
 	*error = (a - (sum - part)) + (b - part);
 	return sum;
 }
+
+/* a b + c, rounded once. MinGW's fma() rounds twice; this one adds the errors of product and sums rounded to odd
+ * (S. Boldo, G. Melquiond, "Emulation of a FMA and Correctly Rounded Sums", 2008). */
+#if defined(__MINGW32__) && !defined(__FMA__)
+static inline double nt_fma(double a, double b, double c)
+{
+	const double product = a * b, as = a * 0x1.0000002p27, bs = b * 0x1.0000002p27;
+	const double ah = as - (as - a), al = a - ah, bh = bs - (bs - b), bl = b - bh;
+	double tail, low, error;
+	const double rest = nt_two_sum(c, al * bl - (((product - ah * bh) - al * bh) - ah * bl), &tail);
+	const double sum = nt_two_sum(product, rest, &low);
+	double odd = nt_two_sum(low, tail, &error);
+	uint64_t bits;
+	memcpy(&bits, &odd, sizeof bits);
+	if (error != 0.0 && !(bits & 1))
+		bits += (error > 0.0) == (odd > 0.0) ? 1 : UINT64_MAX;
+	memcpy(&odd, &bits, sizeof bits);
+	return sum + odd;
+}
+#else
+#define nt_fma fma
+#endif
 
 /* Whether difference is exactly b - a: an exact difference gives both operands back. False for NaN. */
 static inline bool nt_is_difference(double difference, float a, float b)
@@ -43,8 +67,8 @@ static inline void nt_difference(double result[2], float a, float b)
 static inline double nt_product_difference(double a, double b, double c, double d)
 {
 	const double product = c * d;
-	const double residual = fma(-c, d, product);
-	return fma(a, b, -product) + residual;
+	const double residual = nt_fma(-c, d, product);
+	return nt_fma(a, b, -product) + residual;
 }
 
 enum { NT_PRODUCT_TERMS = 8 }; /* of a product of two differences */
@@ -57,7 +81,7 @@ static inline size_t nt_product_terms(double *terms, const double x[2], const do
 		for (int k = 0; k < 2; k++) {
 			const double product = x[i] * y[k];
 			terms[n++] = sign * product;
-			terms[n++] = sign * fma(x[i], y[k], -product);
+			terms[n++] = sign * nt_fma(x[i], y[k], -product);
 		}
 	}
 	return n;

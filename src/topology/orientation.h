@@ -21,7 +21,7 @@ int nt_orientation_slow(const float a[2], const float b[2], const float c[2]);
 /* The same for equal products p = fl(bu cv) = fl(bv cu) of exact differences: the residuals decide. */
 static inline int nt_orientation_residual(double bu, double bv, double cu, double cv, double p)
 {
-	const double left = fma(bu, cv, -p), right = fma(bv, cu, -p);
+	const double left = nt_fma(bu, cv, -p), right = nt_fma(bv, cu, -p);
 	return p == 0.0 ? 0 : (left > right) - (left < right);
 }
 
