@@ -46,6 +46,7 @@ static nt_status open_named(nt_normal_map *map, const nt_scene *scene, const nt_
 	nt_image_places places = searched ? *searched : (nt_image_places){0};
 	places.document = m->library ? m->library : scene->path;
 	places.input = scene->path;
+	places.given = map_of(m, slot)->given;
 	nt_buffer path = {0};
 	nt_image_found found;
 	nt_status status = nt_image_find(&places, map_of(m, slot)->name, &path, &found, error);

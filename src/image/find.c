@@ -238,7 +238,16 @@ nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buff
 	nt_buffer folder = {0};
 	search s = {.places = places, .path = path, .error = error};
 	bool accepted;
-	nt_status status = try_as_named(&s, name, &folder, &accepted);
+	nt_status status = NT_OK;
+	if (places->given) {
+		*found = NT_IMAGE_FOUND;
+		status = nt_link_folder(&folder, name, error);
+		if (!status)
+			nt_path_join(path, folder.data, nt_last_part(name));
+		nt_buffer_free(&folder);
+		return status || !path->failed ? status : nt_fail_memory(error);
+	}
+	status = try_as_named(&s, name, &folder, &accepted);
 	if (!status && !accepted && places->one_up && folder.size)
 		status = try_one_up(&s, folder.data, name, &accepted);
 	*found = NT_IMAGE_FOUND;

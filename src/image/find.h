@@ -17,6 +17,7 @@ typedef struct nt_image_places {
 	const char *const *folders; /* [folder_count] of the user's choice */
 	size_t folder_count;
 	bool allow_outside;
+	bool given;                 /* names are paths of the user's, and nothing else is looked for */
 	bool one_up;                /* an image that is named "../NAME" is taken from the folder above */
 } nt_image_places;
 

@@ -194,11 +194,13 @@ static nt_conversion wanted(const nt_texture_request *what, const uint32_t sourc
 nt_status nt_textures_request(nt_textures *t, const nt_image_places *places, const nt_texture_request *what,
 	uint32_t *number, nt_error *error)
 {
+	static const nt_image_places given = {.document = "", .given = true};
 	uint32_t sources[4] = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
 	nt_status status = NT_OK;
 	for (int k = 0; k < (what->kind == NT_TEXTURE_PACKED ? 4 : 1) && !status; k++)
 		if (what->channels[k].name)
-			status = find_source(t, places, what->channels[k].name, &sources[k], error);
+			status = find_source(t, what->channels[k].given ? &given : places, what->channels[k].name,
+				&sources[k], error);
 	if (status)
 		return status;
 	const nt_conversion how = wanted(what, sources);

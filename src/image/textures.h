@@ -33,6 +33,7 @@ typedef enum nt_texture_kind {
 typedef struct nt_texture_channel {
 	bool used;          /* somebody samples it */
 	const char *name;   /* of the image; NULL: it is white */
+	bool given;         /* a path of the user's */
 	nt_channel_map map;
 } nt_texture_channel;
 

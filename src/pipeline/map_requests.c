@@ -26,7 +26,7 @@ static nt_channel_map channel_map(const nt_map *map, nt_channel otherwise)
 static void put_number(nt_map_request *w, int channel, nt_map *map, nt_channel otherwise)
 {
 	w->maps[channel] = map;
-	w->what.channels[channel] = (nt_texture_channel){true, map->name, channel_map(map, otherwise)};
+	w->what.channels[channel] = (nt_texture_channel){true, map->name, map->given, channel_map(map, otherwise)};
 }
 
 /* A channel without a map is white where somebody samples it. */
@@ -39,7 +39,8 @@ static void put_white(nt_map_request *w, int channel, bool used)
 static void put_colors(nt_map_request *w, nt_map *map)
 {
 	for (int k = 0; k < 3; k++) {
-		w->what.channels[k] = (nt_texture_channel){true, map->name, channel_map(map, (nt_channel)k)};
+		w->what.channels[k] = (nt_texture_channel){true, map->name, map->given,
+			channel_map(map, (nt_channel)k)};
 		w->what.channels[k].map.channel = (nt_channel)k;
 	}
 	w->maps[0] = map;

@@ -156,12 +156,22 @@ static void plan_options_of(run *r)
 		(s->draco == NT_DRACO_KEEP && s->normals != NT_NORMALS_AUTO));
 }
 
+/* Whether materials become those of a new glTF. */
+static bool makes_document(const run *r)
+{
+	return r->writer && r->writer->format != NT_FORMAT_PLY && !nt_format_is_gltf(r->scene.format);
+}
+
 static nt_status read_scene(run *r)
 {
 	nt_status status = open_scene(r);
 	if (status)
 		return nt_error_in_file(r->error, r->input_path);
 	status = nt_choose_writer(r->settings, r->output_path, r->reader, &r->writer, r->error);
+	if (status)
+		return status;
+
+	status = nt_stage_given_maps(&r->scene, r->settings, makes_document(r), r->error);
 	if (status)
 		return status;
 
@@ -251,13 +261,6 @@ static nt_status write_scene(run *r)
 	return status;
 }
 
-/* Whether materials become those of a new glTF. */
-static bool makes_document(const run *r)
-{
-	return r->writer && r->writer->format != NT_FORMAT_PLY && r->scene.format != NT_FORMAT_GLTF &&
-	       r->scene.format != NT_FORMAT_GLB;
-}
-
 static nt_status run_stages(run *r)
 {
 	nt_status status = nt_choose_writer(r->settings, r->output_path, NULL, &r->writer, r->error);
@@ -270,6 +273,7 @@ static nt_status run_stages(run *r)
 	if (!status)
 		status = read_scene(r);
 	if (!status && makes_document(r)) {
+		nt_propose_normal_map(&r->scene, r->settings);
 		begin_stage(r, NT_STAGE_TEXTURES);
 		status = nt_stage_textures(&r->scene, r->settings, r->output_path, &r->textures, r->error);
 	}

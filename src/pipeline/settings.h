@@ -29,6 +29,16 @@ typedef enum nt_bump {
 	NT_BUMP_IGNORE
 } nt_bump;
 
+/* Images that the user names. */
+typedef enum nt_given {
+	NT_GIVEN_BASE_COLOR,
+	NT_GIVEN_NORMAL,
+	NT_GIVEN_METALLIC_ROUGHNESS,
+	NT_GIVEN_OCCLUSION,
+	NT_GIVEN_EMISSIVE,
+	NT_GIVEN_COUNT
+} nt_given;
+
 /* Whether normal maps are decoded to be examined. */
 typedef enum nt_check_maps {
 	NT_CHECK_MAPS_AUTO, /* for a report, files of at most 16 MB */
@@ -81,6 +91,7 @@ typedef struct nt_settings {
 	nt_check_maps check_maps;
 	const char *const *texture_paths; /* [texture_path_count] folders */
 	size_t texture_path_count;
+	const char *given_maps[NT_GIVEN_COUNT]; /* paths; NULL: none */
 	bool bitangents;
 	bool embed;
 	bool verify;   /* read the output back with tinygltf before it takes its name */

@@ -44,6 +44,14 @@ nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, unsigned threads, n
 nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
 	nt_summary *summary, nt_error *error);
 
+/* Takes the images that the settings name, for a scene with one material or none. Returns NT_OK, NT_ERROR_IO,
+ * NT_ERROR_MEMORY or, where the scene or the output has no place for them or one is no image, NT_ERROR_USAGE. */
+nt_status nt_stage_given_maps(nt_scene *scene, const nt_settings *settings, bool makes_document, nt_error *error);
+
+/* A finding, where the input is one person's, has texture coordinates and no normal map, and an image beside it is
+ * called after it as one. */
+void nt_propose_normal_map(nt_scene *scene, const nt_settings *settings);
+
 /* Finds the images of materials for a document that is made anew, and notes in the materials which they are. output:
  * its path, which stays. *textures is to be freed after failure too. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
 nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const char *output, nt_textures **textures,

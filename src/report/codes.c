@@ -79,6 +79,12 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"was taken instead.",
 		"Correct the material where that is not what was meant.",
 		"an MTL with \"d 0\""),
+	ROW(NMAP_BESIDE, WARNING, "w--", "no normal map, but an image beside the input is named like one",
+		"An OBJ, PLY or Draco file with texture coordinates names no normal map, and in its folder is an image "
+		"with its name and an ending of normal maps: _nm_tangent, _normal, _nrm, _nm, _n, _ddn and the like. "
+		"It is not used. It is looked for where one input is named.",
+		"If it is the normal map: --normal-map=FILE.",
+		"head.obj beside head_n.png"),
 	ROW(NMAP_GREEN_DOWN, WARNING, "w--", "normal map whose green points down",
 		"glTF's normal maps have green up. Of a surface's map the slopes p = -x/z and q = y/z have "
 		"equal mixed derivatives, dp/dv = dq/du with rows counted down; in this one they are opposite. "

@@ -133,7 +133,8 @@ nt_place nt_material_place(const nt_scene *scene, const nt_material *material, s
 	nt_place_clear(&place);
 	snprintf(place.file, sizeof place.file, "%s", material->library ? material->library : scene->path);
 	place.line = line ? line : material->line;
-	snprintf(place.object, sizeof place.object, "material \"%s\"", material->name);
+	if (material->name[0])
+		snprintf(place.object, sizeof place.object, "material \"%s\"", material->name);
 	return place;
 }
 

@@ -64,6 +64,7 @@ typedef struct nt_map {
 	float base, gain;            /* colours: for each channel */
 	float exponent;              /* 0: it is no map of exponents */
 	float factor;
+	bool given;                  /* the user named the file: its name is a path as any */
 } nt_map;
 
 /* A map whose samples themselves are meant. */

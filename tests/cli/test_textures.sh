@@ -192,6 +192,74 @@ run --texture-path=nowhere in/quad.obj in/quad.gltf
 exits 1
 says "nowhere"
 
+scene "images that are named on the command line are those of a file without material, wherever they are"
+mkdir in art
+for name in c n o e; do images write art/$name.png 4 4 "(10 * x, 20 * y, 200)"; done
+images write art/orm.png 4 4 "(9, 10 * x, 20 * y)"
+grep -v "^mtllib\|^usemtl" "$data/quad.obj" >in/quad.obj
+cp "$data/quad_ascii.ply" in/quad.ply
+for file in quad.obj quad.ply; do
+	run --verify --base-color=art/c.png --normal-map=art/n.png --metallic-roughness="$PWD/art/orm.png" \
+		--occlusion=art/o.png --emissive=art/e.png in/$file "in/$file.glb"
+	exits 0
+	is "$(gltf "in/$file.glb" 'Object.entries(g.materials[0]).map(([k, v]) => [k, v, g.images.map((i) => i.name)[v.index]])')" \
+		'[["emissiveFactor",[1,1,1],null],["emissiveTexture",{"index":1},"e"],["normalTexture",{"index":3},"n"],["occlusionTexture",{"index":2},"o-orm"],["pbrMetallicRoughness",{"baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":2}},null]]'
+	images embedded "in/$file.glb" 2 made.png
+	is "$(images rows made.png "rows[1][3]")" "[30, 30, 20]"
+	is "$(gltf "in/$file.glb" 'g.meshes[0].primitives[0].attributes.TANGENT !== undefined')" true
+done
+run --only=needed --normal-map=art/n.png in/quad.obj in/needed.glb
+is "$(gltf in/needed.glb 'g.meshes[0].primitives[0].attributes.TANGENT !== undefined')" true
+run --normal-map=art/n.png in/quad.obj in/copied.gltf
+is "$(gltf in/copied.gltf 'g.images[0].uri')" n.png
+same in/n.png art/n.png
+run --images=link --normal-map=art/n.png in/quad.obj in/linked.gltf
+is "$(gltf in/linked.gltf 'g.images[0].uri')" ../art/n.png
+run --bump=height --normal-map=art/c.png in/quad.obj in/heights.glb
+says "c.png became c-normal.png"
+
+scene "they replace the maps of the only material, and go nowhere else"
+images write n.png 4 4 "(10 * x, 20 * y, 200)"
+images write o.png 4 4 "(90, 20 * y, 200)"
+quad "Kd 1 0 0" "norm -s -1 1 1 o.png" "map_d o.png"
+run --images=link quad.obj old.gltf
+run --images=link --normal-map=n.png --base-color=n.png quad.obj new.gltf
+exits 0
+is "$(gltf new.gltf '[g.images[0].uri, g.materials[0].alphaMode, g.materials[0].pbrMetallicRoughness.baseColorFactor]')" '["n.png",null,[1,0,0,1]]'
+is "$(gltf new.gltf 'g.materials[0].normalTexture.extensions')" "$(gltf old.gltf 'g.materials[0].normalTexture.extensions')"
+same old.bin new.bin
+refused() {
+	local said=$1
+	shift
+	run "$@"
+	exits 1
+	says "$said"
+}
+refused "--normal-map: 'gone.png' is not there" --normal-map=gone.png quad.obj new.gltf
+refused "--emissive: 'quad.obj' is no image" --emissive=quad.obj quad.obj new.gltf
+refused "--occlusion is for glTF made from OBJ, PLY or Draco" --occlusion=n.png old.gltf new.gltf
+refused "--normal-map is for glTF made" --normal-map=n.png quad.obj new.ply
+printf 'newmtl two\n' >>m.mtl
+sed 's/^f .*/f 1\/1 2\/2 3\/3\nusemtl two\nf 1\/1 3\/3 4\/4/' quad.obj >two.obj
+refused "--base-color is for an input with one material or none; it has 2" --base-color=n.png two.obj new.gltf
+
+scene "what is called like a normal map of the input is proposed, and not taken"
+grep -v "^mtllib\|^usemtl" "$data/quad.obj" >head.obj
+for name in head.png head2_n.png headn.png head_n.txt head_diffuse.png; do cp "$data/bumps.png" $name; done
+run head.obj head.glb
+says_not NMAP_BESIDE
+for name in Head_NM_Tangent.tga head_normal.png head-nrm.jpg head_ddn.png head_n.png; do
+	cp "$data/bumps.png" $name
+	run head.obj head.glb
+	says "head.obj: warning: no normal map, but an image beside the input is named like one: $name [NMAP_BESIDE]"
+	is "$(gltf head.glb '"images" in g')" false
+	run -d out head.obj
+	says_not NMAP_BESIDE
+	run --normal-map=$name head.obj head.glb
+	says_not NMAP_BESIDE
+	rm $name
+done
+
 scene "what lies outside is not looked at without leave"
 mkdir in
 images write n.png 4 4 "$bumps"
