@@ -57,7 +57,7 @@ NT_LDFLAGS := $(flags_$(config)) -pthread $(LDFLAGS)
 TOOL_LIBS := -Wl,-Bstatic -ljpeg -ldeflate -Wl,-Bdynamic -lm -ldl
 
 # The compute library: no files, no C++.
-core_src := src/base/status.c src/base/deadline.c src/base/pages.c src/base/parallel.c src/base/pool.c \
+core_src := src/base/words.c src/base/deadline.c src/base/pages.c src/base/parallel.c src/base/pool.c \
 	src/base/cpu.c src/base/scratch.c src/base/struct_bytes.c src/base/largest.c src/base/counts.c src/base/hash.c \
 	$(foreach room,topology tangent tangent/fast tangent/sums api,$(wildcard src/$(room)/*.c))
 tool_src := $(filter-out $(core_src) src/cli/main.c src/bindings/% src/ext/modules/%,$(wildcard src/*/*.c src/*/*/*.c)) \

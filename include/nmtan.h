@@ -2,76 +2,33 @@
 /*
  * nmtan.h - tangent frames for normal-mapped meshes: arrays in, arrays out, no files. C11 and C++17.
  *
- * nmtan_tangents() computes one tangent per face corner, nmtan_split() says which vertices must be
- * duplicated so that every vertex has one tangent, nmtan_vertex_tangents() does both at once, and
- * nmtan_orientation() tells how a triangle's texture coordinates are wound, exactly.
+ * A triangle as glTF has it, v pointing down, in interleaved vertices:
  *
- * Two quads side by side, cut into triangles; the texture of the right one is mirrored:
- *
- *     static const float positions[] = {0,0,0, 1,0,0, 1,1,0, 0,1,0, 2,0,0, 2,1,0};
- *     static const float normals[] = {0,0,1, 0,0,1, 0,0,1, 0,0,1, 0,0,1, 0,0,1};
- *     static const float texcoords[] = {0,0, 1,0, 1,1, 0,1, 0,0, 0,1};
- *     static const uint32_t triangles[] = {0,1,2, 0,2,3, 1,4,5, 1,5,2};
- *     uint32_t indices[12], sources[12];
- *     float tangents[6 + 12][4];
+ *     struct vertex {
+ *         float position[3], normal[3], texcoord[2];
+ *     } vertices[] = {{{0, 0, 0}, {0, 0, 1}, {0, 1}}, {{1, 0, 0}, {0, 0, 1}, {1, 1}}, {{1, 1, 0}, {0, 0, 1}, {1, 0}}};
+ *     uint32_t triangles[] = {0, 1, 2}, indices[3], sources[3];
+ *     float tangents[3 + 3][4];
  *     nmtan_mesh mesh = NMTAN_MESH_INIT;
- *     mesh.face_count = 4; mesh.vertex_count = 6; mesh.indices = triangles;
- *     mesh.positions = positions; mesh.normals = normals; mesh.texcoords = texcoords;
+ *     mesh.face_count = 1; mesh.vertex_count = 3; mesh.indices = triangles; mesh.v_down = 1;
+ *     mesh.positions = vertices->position; mesh.normals = vertices->normal; mesh.texcoords = vertices->texcoord;
+ *     mesh.position_stride_bytes = mesh.normal_stride_bytes = mesh.texcoord_stride_bytes = sizeof *vertices;
  *     nmtan_split_output output = NMTAN_SPLIT_OUTPUT_INIT;
- *     output.indices = indices; output.sources = sources; output.source_capacity = 12;
+ *     output.indices = indices; output.sources = sources; output.source_capacity = 3;
  *     output.vertex_tangents = tangents[0];
  *     nmtan_status status = nmtan_vertex_tangents(&mesh, NULL, &output, NULL);
  *
- * Now output.source_count is 2: vertices 6 and 7 are copies of sources[0] = 1 and sources[1] = 2, the
- * right quad uses them in `indices`, and their tangent is (-1, 0, 0) with w = -1. On the left it is (1, 0, 0)
- * with w = 1.
+ * Each vertex has a tangent now: T, of unit length, along which u grows, and w = +1 or -1. The bitangent is
+ * B = cross(N, T) * w. Here T is (1, 0, 0) and w is 1. Where corners of one vertex need different tangents, as at the
+ * edge of mirrored texture, the vertex is copied: output.source_count says how many copies are appended, `sources` of
+ * which vertices they are, and `indices` uses them. Append the same copies to all your vertices.
  *
- * The frame: T is a unit vector along which the texture's u grows, N the corner's normal, and the
- * bitangent is B = cross(N, T) * w with w = +1 or -1. Where the normal agrees with the winding, B
- * runs along growing v. V POINTS UP here, as it does in bakers, OBJ and PLY. Texture coordinates of
- * glTF have v pointing down: pass (u, -v), which is exact, and store the w you get.
+ * V POINTS UP unless mesh.v_down says that it points down: up in bakers, OBJ and PLY, down in glTF and most engines'
+ * files. Whichever it is, B then runs along growing v of v up, as MikkTSpace, glTF and bakers of normal maps mean it
+ * ("green up"); for maps with green down negate w.
  *
- * Results: the default method is byte-identical to MikkTSpace (M. Mikkelsen, "Simulation of Wrinkled
- * Surfaces Revisited", 2008; the reference implementation, mikktspace.c as published) wherever MikkTSpace's answer is
- * usable; where it is not, it is repaired (see nmtan_repair). The same input gives the same bytes on every machine,
- * thread count and instruction set.
- *
- * The sort of edges of mikktspace.c leaves the edges of one vertex unsorted. This moves the tangents at some corners of
- * about one ordinary mesh in a hundred, by up to 90 degrees. Bakers and most engines ship the file as it is; the
- * rewrites of Blender and three.js sort all edges, and so does NMTAN_METHOD_MIKKTSPACE_SORTED. The default gives the
- * sorted answer too, and counts.sorted_instead tells, where what the file gives depends on more than is followed here:
- * - a position of a face is not finite, or a coordinate reaches FLT_MAX / 2 in magnitude: mikktspace.c does not weld
- *   some of these corners;
- * - the triangles have more than 2^28 corners;
- * - mikktspace.c halves a part of the mesh more than 128 times to find equal corners: usual meshes need about 40;
- *   more is needed only by points that are closer together than 2^-40 of the mesh, at distances of many sizes;
- * - its sort looks at each edge more than 64 times on average, which only edges in an order made for it need.
- *
- * Structs: one that begins with struct_bytes may gain members at its end in a later version. Initialise it
- * with its macro (NMTAN_MESH_INIT and so on), or set struct_bytes to its sizeof and all else to zero: zero is
- * the default of every member. A program compiled with an older header passes a smaller struct: the members
- * it lacks have their defaults, and nothing behind struct_bytes is read or written. A program compiled
- * with a newer header passes a larger struct: this works while the bytes that the library does not know are
- * zero; otherwise it asks for what this library cannot do, which is NMTAN_ERROR_ARGUMENT. So is a struct_bytes
- * that is 0, no multiple of sizeof(size_t) or above 4096.
- *
- * Memory: a call keeps no pointer to the caller's data. Inputs are only read. Outputs belong to the
- * caller and have the room that their comments state; they may not overlap inputs or each other unless a
- * comment allows it. Scratch comes from options->allocator, or malloc, but that of a few triangles from the
- * stack; it is released before the call returns, unless a workspace keeps it for the next one.
- *
- * Threads: every function may be called from several threads at once, as long as they do not share
- * outputs, counts, timing or a workspace. There is no global state but a pool of threads: the first call that
- * is large enough for options->threads > 1 makes them, later calls in any thread share them, and they sleep in
- * between, with signals blocked. They never call the caller's allocator. Where none can be made the
- * caller's thread does all. Processes made by fork() may go on calling, whatever their parent was doing.
- *
- * Errors: a status, never an exit, never a message on a stream. Arguments, faces and indices are checked
- * before anything is computed. After an error the contents of outputs and counts are unspecified, scratch
- * is released, and a workspace can be used again.
- *
- * Not promised: the bits of a NaN, with repair off; the bytes of a later version, but for what MikkTSpace
- * determines; anything after an allocator has thrown or jumped.
+ * nmtan_vertex_tangents() gives tangents of vertices, nmtan_tangents() those of the corners of faces; nmtan_split()
+ * leads from the second to the first. What all promise (bytes, structs, memory, threads, errors) is at the end.
  */
 #ifndef NMTAN_H
 #define NMTAN_H
@@ -95,63 +52,33 @@ extern "C" {
 #define NMTAN_API
 #endif
 
-/* What a call reports. Later versions may add values. */
-typedef enum nmtan_status {
-	NMTAN_OK = 0,
-	NMTAN_ERROR_ARGUMENT,  /* a required pointer is NULL; a struct_bytes, a stride, an enum or a number
-	                          is out of range */
-	NMTAN_ERROR_INDEX,     /* an index is not below vertex_count, or without indices there are more corners
-	                          than vertices */
-	NMTAN_ERROR_FACE_SIZE, /* a face has neither 3 nor 4 corners */
-	NMTAN_ERROR_TOO_LARGE, /* more than NMTAN_MAX_FACES faces or 2^32 - 1 vertices, or copies of vertices for
-	                          which source_capacity is too small */
-	NMTAN_ERROR_MEMORY     /* the allocator returned NULL, or a size overflows size_t */
-} nmtan_status;
+/* Described further down; the first example needs none of them. */
+typedef struct nmtan_stored_uv nmtan_stored_uv;
+typedef struct nmtan_options nmtan_options;
+typedef struct nmtan_counts nmtan_counts;
 
-/* Static English text for a status, "unknown status" for any other number. Never NULL. */
-NMTAN_API const char *nmtan_status_text(nmtan_status status);
-
-/* Version of the library that runs, as "0.1.0". */
-NMTAN_API const char *nmtan_version(void);
+/* ---- a mesh, and tangents for its vertices ---- */
 
 /* Faces of one mesh: 2^29 - 1, the limit of MikkTSpace's corner numbers (face * 4 + corner). */
 #define NMTAN_MAX_FACES ((size_t)536870911)
-
-/*
- * For callers that store other texture coordinates than they pass in. What a renderer reads from the file
- * decides which way a triangle is wound; where rounding or a transform lies between that and
- * nmtan_mesh.texcoords, a very thin triangle may be wound differently. Repair then takes the sign of w from
- * the coordinates described here. Nothing else uses them.
- */
-typedef struct nmtan_stored_uv {
-	size_t struct_bytes; /* sizeof(nmtan_stored_uv): see "Structs" */
-
-	/* The float v + v_offset is stored; finite. -1: OBJ's v becomes 1 - v in glTF, which is -(v - 1).
-	 * 1: the v that was negated for glTF becomes 1 + v in PLY. 0: v as it stands. */
-	float v_offset;
-
-	/* For nmtan_mesh.texcoords that a transform has scaled and turned (KHR_texture_transform): the coordinates
-	 * before it, to which v_offset applies, and whether the transform reverses their orientation (not 0). */
-	int mirrored;
-	const float *texcoords; /* [vertex_count][2], v up, tightly packed; NULL: no transform, and
-	                           `mirrored` is not looked at */
-} nmtan_stored_uv;
-
-#define NMTAN_STORED_UV_INIT {sizeof(nmtan_stored_uv), 0.0f, 0, NULL}
 
 /*
  * A mesh: faces of 3 or 4 corners over vertices. Corner c of the mesh is corner c - first(f) of its
  * face f, where first(f) is the sum of the sizes of the faces before f; without face_sizes corner
  * 3 * f + k is corner k of triangle f.
  *
+ * Attribute arrays hold vertex_count rows; stride_bytes is the distance between rows, a multiple of
+ * 4 and at least the row's size; 0 means tightly packed. Any float value is accepted, NaN and
+ * infinities too. Normals are used as given and should have unit length: counts.normals_not_unit.
+ *
+ * OBJ, FBX and USD number normals and texture coordinates apart from positions. Where normal_count or texcoord_count is
+ * not 0, that array has so many rows of its own, and corner c has row normal_indices[c] of it, or row c where that is
+ * NULL; `indices` and vertex_count are those of positions. Vertices come into being then: each combination of rows that
+ * a corner uses is one, and mesh->stored may have no texcoords.
+ *
  * With repair all corners of a quad have one w, the sign of its UV area. Both triangles of a quad have this sign,
  * unless its outline crosses itself in UV space or is concave there and cut along the outer diagonal: then the
  * smaller one needs the other sign, and nmtan_orientation() tells.
- *
- * Attribute arrays hold vertex_count rows; stride_bytes is the distance between rows, a multiple of
- * 4 and at least the row's size; 0 means tightly packed. Any float value is accepted, NaN and
- * infinities too. Normals are used as given and should have unit length. With repair T is within 2^-10 of
- * perpendicular to a normal with |n|^2 within 2^-11 of 1; of any other it is only known not to be parallel.
  */
 typedef struct nmtan_mesh {
 	size_t struct_bytes;       /* sizeof(nmtan_mesh): see "Structs" */
@@ -164,13 +91,78 @@ typedef struct nmtan_mesh {
 	size_t position_stride_bytes;
 	const float *normals; /* [vertex_count][3], required */
 	size_t normal_stride_bytes;
-	const float *texcoords; /* [vertex_count][2], v up, required */
+	const float *texcoords; /* [vertex_count][2], required */
 	size_t texcoord_stride_bytes;
 
 	const nmtan_stored_uv *stored; /* NULL, for nearly all callers: texcoords are stored as they stand */
+
+	size_t v_down;              /* 0: v points up in texcoords; 1: down, as in glTF */
+	const uint16_t *indices16;  /* [corner count], in the place of `indices`; NULL: there are none */
+	const uint32_t *normal_indices;   /* [corner count] row of normals of each corner; NULL: see above */
+	const uint32_t *texcoord_indices; /* [corner count] row of texcoords of each corner */
+	size_t normal_count;        /* rows of normals; 0: one for each vertex */
+	size_t texcoord_count;      /* rows of texcoords; 0: one for each vertex */
 } nmtan_mesh;
 
-#define NMTAN_MESH_INIT {sizeof(nmtan_mesh), 0, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, NULL}
+#define NMTAN_MESH_INIT \
+	{sizeof(nmtan_mesh), 0, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, NULL, 0, NULL, NULL, NULL, 0, 0}
+
+/* What a call reports. Later versions may add values. */
+typedef enum nmtan_status {
+	NMTAN_OK = 0,
+	NMTAN_ERROR_ARGUMENT,  /* a required pointer is NULL; a struct_bytes, a stride, an enum or a number
+	                          is out of range; members contradict each other */
+	NMTAN_ERROR_INDEX,     /* an index is not below the count of its rows, or without indices there are more
+	                          corners than rows */
+	NMTAN_ERROR_FACE_SIZE, /* a face has neither 3 nor 4 corners */
+	NMTAN_ERROR_TOO_LARGE, /* more than NMTAN_MAX_FACES faces or 2^32 - 1 vertices, with copies too */
+	NMTAN_ERROR_MEMORY,    /* the allocator returned NULL, or a size overflows size_t */
+	NMTAN_ERROR_CAPACITY   /* source_capacity is too small; source_count is what is needed */
+} nmtan_status;
+
+/* Static English text for a status, "unknown status" for any other number. Never NULL. */
+NMTAN_API const char *nmtan_status_text(nmtan_status status);
+
+/* Where a split goes. Nothing is appended past source_capacity; the corner count is always enough. Where vertices come
+ * into being (see nmtan_mesh) all of them are appended, to none: vertex_count counts as 0 here, sources[i] is a corner
+ * that vertex i stands for, `indices` is required, copy_counts must be NULL. */
+typedef struct nmtan_split_output {
+	size_t struct_bytes;  /* sizeof(nmtan_split_output): see "Structs" */
+	uint32_t *indices;    /* [corner count]: the vertex of each corner after the split. NULL: no vertex is
+	                         split, each has the tangent of its first corner, and what would have been
+	                         needed is counted; sources must be NULL then, and source_capacity 0 */
+	uint32_t *sources;    /* [source_capacity]: sources[i] is the vertex of which vertex
+	                         vertex_count + i is a copy. May be NULL where source_capacity is 0 */
+	size_t source_capacity;
+	size_t source_count;  /* written by the call: how many vertices were appended; also with
+	                         NMTAN_ERROR_CAPACITY, which leaves all else unspecified */
+	float *vertex_tangents; /* [vertex_count + source_capacity][4]: the tangent of each vertex after the
+	                           split. A vertex without corners gets a unit vector perpendicular to its
+	                           normal and w = 1. Required, but for nmtan_split() */
+	uint32_t *copy_counts;  /* [vertex_count], may be NULL: how many copies each vertex gets */
+	size_t vertex_tangent_stride_bytes; /* from one row of vertex_tangents to the next; 0: tightly packed */
+	size_t split_count;     /* written by the call: vertices whose corners have different tangents */
+} nmtan_split_output;
+
+#define NMTAN_SPLIT_OUTPUT_INIT {sizeof(nmtan_split_output), NULL, NULL, 0, 0, NULL, NULL, 0, 0}
+
+/*
+ * Computes a tangent for every vertex of the mesh, and finds the vertices that must be copied: nmtan_tangents()
+ * and nmtan_split() in one, with the same result in less time and memory.
+ *
+ *   mesh     required
+ *   options  NULL for defaults
+ *   output   required; output->vertex_tangents too. output->indices may not be the array that mesh->indices
+ *            points to
+ *   counts   may be NULL
+ *
+ * Returns NMTAN_OK, NMTAN_ERROR_ARGUMENT, NMTAN_ERROR_INDEX, NMTAN_ERROR_FACE_SIZE, NMTAN_ERROR_TOO_LARGE,
+ * NMTAN_ERROR_MEMORY or NMTAN_ERROR_CAPACITY.
+ */
+NMTAN_API nmtan_status nmtan_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
+	nmtan_split_output *output, nmtan_counts *counts);
+
+/* ---- options, and what is counted ---- */
 
 /* How the triangles around a vertex are averaged. */
 typedef enum nmtan_method {
@@ -197,35 +189,12 @@ typedef enum nmtan_repair {
 	NMTAN_REPAIR_OFF     /* the method's raw result */
 } nmtan_repair;
 
-/* The caller's allocator. Both functions are required; blocks are aligned for any C type, as malloc's are.
- * Only the thread that makes the call calls them. This struct does not grow. */
-typedef struct nmtan_allocator {
-	void *(*allocate)(void *user, size_t size_bytes);           /* NULL result: out of memory */
-	void (*release)(void *user, void *block, size_t size_bytes); /* block is never NULL */
-	void *user;
-} nmtan_allocator;
-
-/* Scratch memory that is kept between calls. One call at a time may use a workspace. */
+typedef struct nmtan_allocator nmtan_allocator;
+typedef struct nmtan_timing nmtan_timing;
 typedef struct nmtan_workspace nmtan_workspace;
+typedef struct nmtan_jobs nmtan_jobs;
 
-/* A new, empty workspace that grows on use. allocator may be NULL (malloc) and is copied; what its `user`
- * points to must outlive the workspace. Returns NULL when memory is exhausted. */
-NMTAN_API nmtan_workspace *nmtan_workspace_create(const nmtan_allocator *allocator);
-
-/* Frees a workspace and all it holds; NULL is allowed. */
-NMTAN_API void nmtan_workspace_destroy(nmtan_workspace *workspace);
-
-/* Where the time of calls went, in seconds of the wall clock. Calls add to it; the caller sets it to zero. */
-typedef struct nmtan_timing {
-	size_t struct_bytes; /* sizeof(nmtan_timing): see "Structs" */
-	double weld;         /* finding equal vertices; 0 where the method does not tell */
-	double solve;        /* the rest of the method, and repair */
-	double split;        /* nmtan_vertex_tangents() only */
-} nmtan_timing;
-
-#define NMTAN_TIMING_INIT {sizeof(nmtan_timing), 0.0, 0.0, 0.0}
-
-/* Options. Where a function takes a pointer to them, NULL means the defaults, which are all zero. */
+/* Where a function takes a pointer to options, NULL means the defaults, which are all zero. */
 typedef struct nmtan_options {
 	size_t struct_bytes;              /* sizeof(nmtan_options): see "Structs" */
 	nmtan_method method;
@@ -237,10 +206,11 @@ typedef struct nmtan_options {
 	nmtan_timing *timing;             /* NULL, or where nmtan_tangents() and nmtan_vertex_tangents()
 	                                     add what their steps took */
 	nmtan_workspace *workspace;       /* NULL: scratch is allocated and released by the call */
+	const nmtan_jobs *jobs;           /* NULL: threads of the library's own. Else the caller's */
 } nmtan_options;
 
 #define NMTAN_OPTIONS_INIT \
-	{sizeof(nmtan_options), NMTAN_METHOD_MIKKTSPACE, NMTAN_REPAIR_ON, 0.0f, 0, NULL, NULL, NULL}
+	{sizeof(nmtan_options), NMTAN_METHOD_MIKKTSPACE, NMTAN_REPAIR_ON, 0.0f, 0, NULL, NULL, NULL, NULL}
 
 /* What a solve met and what repair did, in corners unless it says otherwise. Each call writes it anew. */
 typedef struct nmtan_counts {
@@ -267,10 +237,15 @@ typedef struct nmtan_counts {
 	size_t sorted_instead;       /* 1: the default method gave what NMTAN_METHOD_MIKKTSPACE_SORTED gives, since
 	                                the mesh is beyond the limits of "Results" */
 	size_t summed_instead;       /* with repair, MikkTSpace's methods: corners of hubs past the bound of
-	                                nmtan_tangents() */
+	                                "Work" */
+	size_t normals_not_unit;     /* vertices with |n|^2 not within 2^-11 of 1: with repair T is within 2^-10 of
+	                                perpendicular to all other normals; to these it is only known not
+	                                to be parallel */
 } nmtan_counts;
 
-#define NMTAN_COUNTS_INIT {sizeof(nmtan_counts), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+#define NMTAN_COUNTS_INIT {sizeof(nmtan_counts), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+
+/* ---- tangents of corners ---- */
 
 /* Bits of nmtan_output.corner_faults. A corner that was repaired has exactly one of the first six, the reason, and
  * may have one of the others. */
@@ -287,7 +262,7 @@ typedef enum nmtan_fault {
 	NMTAN_FAULT_SUMMED = 128     /* summed_instead; only with MikkTSpace's methods: the same bit */
 } nmtan_fault;
 
-/* Where results go. Each array has one row per corner, tightly packed. */
+/* Where results go. Each array has one row per corner, tightly packed, but for tangents with a stride. */
 typedef struct nmtan_output {
 	size_t struct_bytes; /* sizeof(nmtan_output): see "Structs" */
 	float *tangents;     /* [corner count][4], required: T and w */
@@ -298,9 +273,10 @@ typedef struct nmtan_output {
 	                        reports them; 1 with the other methods and at repaired corners */
 	uint8_t *corner_faults; /* [corner count], may be NULL: bits of nmtan_fault, what was wrong with each corner;
 	                           0: nothing, and with the default method the bytes are MikkTSpace's */
+	size_t tangent_stride_bytes; /* from one row of tangents to the next; 0: tightly packed */
 } nmtan_output;
 
-#define NMTAN_OUTPUT_INIT {sizeof(nmtan_output), NULL, NULL, NULL, NULL}
+#define NMTAN_OUTPUT_INIT {sizeof(nmtan_output), NULL, NULL, NULL, NULL, 0}
 
 /*
  * Computes a tangent for every corner of the mesh.
@@ -310,71 +286,26 @@ typedef struct nmtan_output {
  *   output   required; output->tangents too
  *   counts   may be NULL
  *
- * Time is linear in the number of corners, whatever the mesh looks like. Where tangents around a vertex are opposite,
- * MikkTSpace may have a sum of its own for each direction among them, so that their number counts times that of the
- * vertex's corners; so it may, here, where many are more than a right angle apart. With repair this has a bound: 2^28
- * such products in a mesh (8 192 quads around a vertex whose halves are opposite, which take MikkTSpace itself 16 s),
- * and 256 for each corner. Past it a vertex of more than 128 corners has one tangent for those that hang together:
- * their sum. counts.summed_instead and NMTAN_FAULT_SUMMED tell. Repair off keeps MikkTSpace's bytes, at their cost:
- * 20 000 quads take 1.6 s on one thread of an AMD EPYC. An angular threshold below 180 degrees has no bound either: it
- * takes MikkTSpace's own time and memory.
- *
  * Returns NMTAN_OK, NMTAN_ERROR_ARGUMENT, NMTAN_ERROR_INDEX, NMTAN_ERROR_FACE_SIZE,
  * NMTAN_ERROR_TOO_LARGE or NMTAN_ERROR_MEMORY.
  */
 NMTAN_API nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nmtan_output *output, nmtan_counts *counts);
 
-/* Where a split goes. Nothing is appended past source_capacity; the corner count is always enough. */
-typedef struct nmtan_split_output {
-	size_t struct_bytes;  /* sizeof(nmtan_split_output): see "Structs" */
-	uint32_t *indices;    /* [corner count]: the vertex of each corner after the split. May be the array that
-	                         mesh->indices points to. Required, but for nmtan_split() where sources and
-	                         vertex_tangents are NULL too: it then only counts */
-	uint32_t *sources;    /* [source_capacity]: sources[i] is the vertex of which vertex
-	                         vertex_count + i is a copy. May be NULL where source_capacity is 0 */
-	size_t source_capacity;
-	size_t source_count;  /* written by the call: how many vertices were appended */
-	float *vertex_tangents; /* [vertex_count + source_capacity][4], may be NULL: the tangent of each
-	                           vertex after the split. A vertex without corners gets a unit vector
-	                           perpendicular to its normal and w = 1 */
-	uint32_t *copy_counts;  /* [vertex_count], may be NULL: how many copies each vertex gets */
-} nmtan_split_output;
-
-#define NMTAN_SPLIT_OUTPUT_INIT {sizeof(nmtan_split_output), NULL, NULL, 0, 0, NULL, NULL}
-
 /*
  * Finds the vertices whose corners have different tangents and gives each further tangent a copy of
  * the vertex. The tangent of a vertex's first corner keeps its index; copies are appended in corner
  * order. Two tangents are the same when their four floats are equal (0 equals -0) or both NaN.
  *
- *   mesh      required; texcoords may be NULL, normals too where vertex_tangents is NULL
- *   tangents  [corner count][4], required
- *   options   NULL for defaults; threads, allocator and workspace are used
- *   output    required
+ *   mesh      required; positions and texcoords may be NULL, normals too where vertex_tangents is NULL
+ *   tangents  [corner count][4], tightly packed, required
+ *   options   NULL for defaults; allocator and workspace are used
+ *   output    required; its indices may be the array that mesh->indices points to
  *
- * Time is linear in the number of corners and copies.
- *
- * Returns the statuses of nmtan_tangents(); NMTAN_ERROR_TOO_LARGE also when there are more copies than
- * source_capacity or more than 2^32 - 1 vertices with them.
+ * Time is linear in the number of corners and copies. Returns the statuses of nmtan_vertex_tangents().
  */
 NMTAN_API nmtan_status nmtan_split(const nmtan_mesh *mesh, const float *tangents,
 	const nmtan_options *options, nmtan_split_output *output);
-
-/*
- * nmtan_tangents() and nmtan_split() in one: the same result in less time and memory, for callers that
- * want vertices.
- *
- *   mesh     required
- *   options  NULL for defaults
- *   output   required; output->vertex_tangents too. output->indices may not be the array that mesh->indices
- *            points to
- *   counts   may be NULL
- *
- * Returns the statuses of nmtan_split().
- */
-NMTAN_API nmtan_status nmtan_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
-	nmtan_split_output *output, nmtan_counts *counts);
 
 /*
  * The exact sign of the determinant (b - a) x (c - a) of three texture coordinates: +1 where they are
@@ -383,12 +314,125 @@ NMTAN_API nmtan_status nmtan_vertex_tangents(const nmtan_mesh *mesh, const nmtan
  */
 NMTAN_API int nmtan_orientation(const float a[2], const float b[2], const float c[2]);
 
+/* ---- memory, threads, time ---- */
+
+/* The caller's allocator. Both functions are required; blocks are aligned for any C type, as malloc's are.
+ * Only the thread that makes the call calls them. This struct does not grow. */
+typedef struct nmtan_allocator {
+	void *(*allocate)(void *user, size_t size_bytes);           /* NULL result: out of memory */
+	void (*release)(void *user, void *block, size_t size_bytes); /* block is never NULL */
+	void *user;
+} nmtan_allocator;
+
+/* A new, empty workspace: scratch memory that is kept between calls, grows on use, and that one call at a time may use.
+ * allocator may be NULL (malloc) and is copied; what its `user` points to must outlive the workspace. Returns NULL when
+ * memory is exhausted. */
+NMTAN_API nmtan_workspace *nmtan_workspace_create(const nmtan_allocator *allocator);
+
+/* Frees a workspace and all it holds; NULL is allowed. */
+NMTAN_API void nmtan_workspace_destroy(nmtan_workspace *workspace);
+
+/* The caller's threads. run() calls job(context, i) once for each i below count, on any threads, several at a time or
+ * one after the other, and returns when all have returned. Jobs call neither back nor the allocator; how many there
+ * are follows from options->threads, not what they compute. This struct does not grow. */
+typedef struct nmtan_jobs {
+	void (*run)(void *user, unsigned count, void (*job)(void *context, unsigned i), void *context);
+	void *user;
+} nmtan_jobs;
+
+/* Ends the library's threads and returns when they have ended. No other call may run; a later one makes new threads. */
+NMTAN_API void nmtan_end_threads(void);
+
+/* Where the time of calls went, in seconds of the wall clock. Calls add to it; the caller sets it to zero. */
+typedef struct nmtan_timing {
+	size_t struct_bytes; /* sizeof(nmtan_timing): see "Structs" */
+	double weld;         /* finding equal vertices; 0 where the method does not tell */
+	double solve;        /* the rest of the method, and repair */
+	double split;        /* nmtan_vertex_tangents() only */
+} nmtan_timing;
+
+#define NMTAN_TIMING_INIT {sizeof(nmtan_timing), 0.0, 0.0, 0.0}
+
+/*
+ * For callers that store other texture coordinates than they pass in. What a renderer reads from the file
+ * decides which way a triangle is wound; where rounding or a transform lies between that and
+ * nmtan_mesh.texcoords, a very thin triangle may be wound differently. Repair then takes the sign of w from
+ * the coordinates described here. Nothing else uses them.
+ */
+typedef struct nmtan_stored_uv {
+	size_t struct_bytes; /* sizeof(nmtan_stored_uv): see "Structs" */
+
+	/* The float v + v_offset is stored, v pointing up; finite. -1: OBJ's v becomes 1 - v in glTF, which is
+	 * -(v - 1). 1: the v that was negated for glTF becomes 1 + v in PLY. 0: v as it stands. */
+	float v_offset;
+
+	/* For nmtan_mesh.texcoords that a transform has scaled and turned (KHR_texture_transform): the coordinates
+	 * before it, to which v_offset applies, and whether the transform reverses their orientation (not 0). */
+	int mirrored;
+	const float *texcoords; /* [vertex_count][2], v up whatever mesh.v_down is, tightly packed; NULL: no
+	                           transform, and `mirrored` is not looked at */
+} nmtan_stored_uv;
+
+#define NMTAN_STORED_UV_INIT {sizeof(nmtan_stored_uv), 0.0f, 0, NULL}
+
+/* Version of the library that runs, as "0.1.0". */
+NMTAN_API const char *nmtan_version(void);
+
 /*
  * Whether this build, on this processor as it is set now, gives the bytes that "Results" promises: 1, or 0 where it
  * was compiled with flags that reorder floats, where floats are flushed to zero, or out of memory. A few triangles
  * are solved, which takes less than a millisecond.
  */
 NMTAN_API int nmtan_self_test(void);
+
+/* ---- the contract ----
+ *
+ * Results: the default method is byte-identical to MikkTSpace (M. Mikkelsen, "Simulation of Wrinkled
+ * Surfaces Revisited", 2008; the reference implementation, mikktspace.c as published) wherever MikkTSpace's answer is
+ * usable; where it is not, it is repaired (see nmtan_repair). The same input gives the same bytes on every machine,
+ * thread count and instruction set. v_down is exact: the bytes are those of v negated.
+ *
+ * The sort of edges of mikktspace.c leaves the edges of one vertex unsorted. This moves the tangents at some corners of
+ * about one ordinary mesh in a hundred, by up to 90 degrees. Bakers and most engines ship the file as it is; the
+ * rewrites of Blender and three.js sort all edges, and so does NMTAN_METHOD_MIKKTSPACE_SORTED. The default gives the
+ * sorted answer too, and counts.sorted_instead tells, where what the file gives depends on more than is followed here:
+ * - a position of a face is not finite, or a coordinate reaches FLT_MAX / 2 in magnitude: mikktspace.c does not weld
+ *   some of these corners;
+ * - the triangles have more than 2^28 corners;
+ * - mikktspace.c halves a part of the mesh more than 128 times to find equal corners: usual meshes need about 40;
+ *   more is needed only by points that are closer together than 2^-40 of the mesh, at distances of many sizes;
+ * - its sort looks at each edge more than 64 times on average, which only edges in an order made for it need.
+ *
+ * Work: time is linear in the number of corners. Thousands of opposite tangents around one vertex make MikkTSpace
+ * quadratic; with repair such a vertex of more than 128 corners has one sum past 2^28 products in a mesh and 256 for
+ * each corner (counts.summed_instead). Repair off and thresholds below 180 degrees have no bound.
+ *
+ * Structs: one that begins with struct_bytes may gain members at its end in a later version. Initialise it
+ * with its macro (NMTAN_MESH_INIT and so on), or set struct_bytes to its sizeof and all else to zero: zero is
+ * the default of every member. A program compiled with an older header passes a smaller struct: the members
+ * it lacks have their defaults, and nothing behind struct_bytes is read or written. A program compiled
+ * with a newer header passes a larger struct: this works while the bytes that the library does not know are
+ * zero; otherwise it asks for what this library cannot do, which is NMTAN_ERROR_ARGUMENT. So is a struct_bytes
+ * that is 0, no multiple of sizeof(size_t) or above 4096.
+ *
+ * Memory: a call keeps no pointer to the caller's data. Inputs are only read. Outputs belong to the
+ * caller and have the room that their comments state; they may not overlap inputs or each other unless a
+ * comment allows it. Scratch comes from options->allocator, or malloc, but that of a few triangles from the
+ * stack; it is released before the call returns, unless a workspace keeps it for the next one.
+ *
+ * Threads: every function but nmtan_end_threads() may be called from several threads at once, as long as they do not
+ * share outputs, counts, timing or a workspace. There is no global state but a pool of threads: the first call that
+ * is large enough for options->threads > 1 and has no options->jobs makes them, later calls in any thread share them,
+ * and they sleep in between, with signals blocked. They never call the caller's allocator. Where none can be made the
+ * caller's thread does all. Processes made by fork() may go on calling, whatever their parent was doing.
+ *
+ * Errors: a status, never an exit, never a message on a stream. Arguments, faces and indices are checked
+ * before anything is computed. After an error the contents of outputs and counts are unspecified (but see
+ * NMTAN_ERROR_CAPACITY), scratch is released, and a workspace can be used again.
+ *
+ * Not promised: the bits of a NaN, with repair off; the bytes of a later version, but for what MikkTSpace
+ * determines; anything after an allocator or jobs have thrown or jumped.
+ */
 
 #ifdef __cplusplus
 }

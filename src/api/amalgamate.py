@@ -5,7 +5,7 @@ The text of the sources stays as it is, comments too, but for what one translati
 asks:
 - a header comes where it is first included, and all but the API is static;
 - names that two files have for their own get the name of their file behind them, and macros of a C file end with it;
-- functions that nothing calls go;
+- functions that nothing calls go, and what is compiled for the tool alone (NT_NO_DEADLINES is always set);
 - the kernels are compiled once for each instruction set: nmtan.c includes itself, and each time NT_PASS_NAME() makes
   other names of theirs.
 """
@@ -79,7 +79,7 @@ class Amalgamation:
 		self.shared = {name for name in counts if counts[name] > 1 and not name.startswith('nt_')}
 
 	def lines_of(self, path):
-		text = read(path)
+		text = re.sub(r'#ifdef NT_NO_DEADLINES\n(.*?)#else\n.*?#endif\n', r'\1', read(path), flags=re.S)
 		for name in self.moved if path.endswith('.c') else ():
 			text = text.replace(self.moved[name][len('static '):], '')
 		lines = text.splitlines()
@@ -158,7 +158,7 @@ class Amalgamation:
 		text = '\n'.join(self.lines) + '\n'
 		while True:
 			plain = COMMENT.sub('', text)
-			heads = re.findall(r'^static [^;={(]*?\b(nt_\w+)\(', plain, re.M)
+			heads = re.findall(r'^static [^;={(]*?\b(\w+)\(', plain, re.M)
 			unused = [name for name in set(heads)
 				if len(re.findall(r'\b' + name + r'\b', plain)) == heads.count(name)]
 			for name in unused:

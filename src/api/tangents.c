@@ -9,27 +9,37 @@
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
+#include "api/split.h"
 #include "api/vertices.h"
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/parallel.h"
+#include "base/pool.h"
 #include "base/struct_bytes.h"
+#include "base/vec.h"
 #include "tangent/fast/fast.h"
 #include "tangent/repair.h"
 #include "tangent/solve.h"
 #include "tangent/sums/sums.h"
 #include "topology/corners.h"
+#include "topology/plain.h"
 
 /* No stage shares fewer corners among threads. */
 enum { LEAST_SHARED_CORNERS = 1 << 14 };
+
+static size_t normal_rows(const nmtan_mesh *mesh)
+{
+	return nt_row_count(mesh, mesh->normal_count, mesh->normal_indices);
+}
 
 static nmtan_status check_attributes(nmtan_mesh *mesh)
 {
 	if (!mesh->positions || !mesh->normals || !mesh->texcoords)
 		return NMTAN_ERROR_ARGUMENT;
 	if (!nt_fill_stride(&mesh->position_stride_bytes, 3 * sizeof(float), mesh->vertex_count) ||
-		!nt_fill_stride(&mesh->normal_stride_bytes, 3 * sizeof(float), mesh->vertex_count) ||
-		!nt_fill_stride(&mesh->texcoord_stride_bytes, 2 * sizeof(float), mesh->vertex_count) ||
+		!nt_fill_stride(&mesh->normal_stride_bytes, 3 * sizeof(float), normal_rows(mesh)) ||
+		!nt_fill_stride(&mesh->texcoord_stride_bytes, 2 * sizeof(float),
+			nt_row_count(mesh, mesh->texcoord_count, mesh->texcoord_indices)) ||
 		!isfinite(nt_stored_v_offset(mesh)))
 		return NMTAN_ERROR_ARGUMENT;
 	return NMTAN_OK;
@@ -38,7 +48,7 @@ static nmtan_status check_attributes(nmtan_mesh *mesh)
 static nmtan_status check_options(const nmtan_options *options)
 {
 	const float degrees = options->angular_threshold_degrees;
-	if ((unsigned)options->method > NMTAN_METHOD_MIKKTSPACE_SORTED ||
+	if ((options->jobs && !options->jobs->run) || (unsigned)options->method > NMTAN_METHOD_MIKKTSPACE_SORTED ||
 		(unsigned)options->repair > NMTAN_REPAIR_OFF || !(degrees >= 0.0f && degrees <= 180.0f))
 		return NMTAN_ERROR_ARGUMENT;
 	return NMTAN_OK;
@@ -77,13 +87,15 @@ enum { ONE_BLOCK_CORNERS = 3 * 32768, ONE_BLOCK_BYTES = 22 };
 /* One call: the checked input, and the scratch where the caller gave none. begin_request() sets what is needed. */
 typedef struct request {
 	nmtan_options options;
-	nmtan_mesh mesh;
+	nmtan_mesh mesh;        /* plain */
+	const uint32_t *corners; /* what nt_make_plain() says */
 	nmtan_stored_uv stored; /* of mesh */
 	nt_known known;
 	nt_solve solve;
 	nt_scratch own;
 	nt_scratch_mark mark;
 	nmtan_timing timing; /* of this call */
+	const nmtan_jobs *jobs_before; /* of this thread */
 	bool sorted_instead;
 	size_t summed_instead;
 	double begin;
@@ -113,6 +125,21 @@ static nt_scratch *begin_own_scratch(request *r, size_t corner_count)
 	if (!r->options.allocator && corner_count < ONE_BLOCK_CORNERS)
 		nt_scratch_expect(&r->own, ONE_BLOCK_BYTES * corner_count);
 	return &r->own;
+}
+
+static void end_request(request *r)
+{
+	nt_pool_use(r->jobs_before);
+	nmtan_timing sum;
+	if (r->options.timing && nt_struct_read(&sum, sizeof sum, r->options.timing)) {
+		sum.weld += r->timing.weld;
+		sum.split += r->timing.split;
+		sum.solve += nt_seconds() - r->begin - r->timing.weld - r->timing.split;
+		nt_struct_write(r->options.timing, &sum, sizeof sum);
+	}
+	nt_scratch_back(r->solve.scratch, r->mark);
+	if (r->solve.scratch == &r->own)
+		nt_scratch_free(&r->own);
 }
 
 /* Checks everything before anything is computed, and fills in what was left to defaults. */
@@ -154,21 +181,11 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 	r->sorted_instead = false;
 	r->summed_instead = 0;
 	r->mark = nt_scratch_here(scratch);
-	return NMTAN_OK;
-}
-
-static void end_request(request *r)
-{
-	nmtan_timing sum;
-	if (r->options.timing && nt_struct_read(&sum, sizeof sum, r->options.timing)) {
-		sum.weld += r->timing.weld;
-		sum.split += r->timing.split;
-		sum.solve += nt_seconds() - r->begin - r->timing.weld - r->timing.split;
-		nt_struct_write(r->options.timing, &sum, sizeof sum);
-	}
-	nt_scratch_back(r->solve.scratch, r->mark);
-	if (r->solve.scratch == &r->own)
-		nt_scratch_free(&r->own);
+	r->jobs_before = nt_pool_use(r->options.jobs);
+	status = nt_make_plain(&r->mesh, corner_count, scratch, &r->corners);
+	if (status)
+		end_request(r);
+	return status;
 }
 
 /* Counts of this call, all zero; false where the caller's struct has no size. */
@@ -179,10 +196,32 @@ static bool begin_counts(nmtan_counts *own, const nmtan_counts *given)
 	return sound;
 }
 
-static void end_counts(const nmtan_counts *own, nmtan_counts *given)
+typedef struct normal_count {
+	const nmtan_mesh *mesh;
+	size_t not_unit; /* atomic */
+} normal_count;
+
+static void count_normals(void *context, size_t begin, size_t end, unsigned slot)
 {
-	if (given)
-		nt_struct_write(given, own, sizeof *own);
+	(void)slot;
+	normal_count *job = context;
+	size_t not_unit = 0;
+	for (size_t v = begin; v < end; v++)
+		not_unit += !nt_is_unit_normal(nt_normal(job->mesh, v));
+	nt_atomic_add(&job->not_unit, not_unit, RELAXED);
+}
+
+static void end_counts(const request *r, nmtan_counts *met, size_t ill_conditioned, nmtan_counts *given)
+{
+	if (!given)
+		return;
+	normal_count normals = {&r->mesh, 0};
+	nt_parallel_ranges(r->solve.threads, r->mesh.vertex_count, LEAST_SHARED_CORNERS, count_normals, &normals);
+	met->normals_not_unit = normals.not_unit;
+	met->ill_conditioned = ill_conditioned;
+	met->sorted_instead = r->sorted_instead;
+	met->summed_instead = r->summed_instead;
+	nt_struct_write(given, met, sizeof *met);
 }
 
 /* Corner k of a half, as a corner of its quad. */
@@ -237,13 +276,15 @@ nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	nmtan_output to;
 	nmtan_counts met;
 	if (!mesh || !output || !nt_struct_read(&to, sizeof to, output) || !to.tangents ||
-		!begin_counts(&met, counts) || !nt_cpu_has(implementation->isa))
+		!nt_fill_stride(&to.tangent_stride_bytes, NT_TANGENT_BYTES, 0) || !begin_counts(&met, counts) ||
+		!nt_cpu_has(implementation->isa))
 		return NMTAN_ERROR_ARGUMENT;
 	request r;
 	nmtan_status status = begin_request(&r, mesh, options, implementation);
 	if (status)
 		return status;
-	r.solve.tangents = to.tangents;
+	r.solve.tangents = to.tangent_stride_bytes == NT_TANGENT_BYTES ? to.tangents :
+		(float *)nt_scratch_alloc(r.solve.scratch, r.solve.corner_count, NT_TANGENT_BYTES);
 	r.solve.bitangents = to.bitangents;
 	r.solve.magnitudes = to.magnitudes;
 	r.solve.faults = to.corner_faults;
@@ -252,16 +293,17 @@ nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 
 	/* the method's own answer, then what a renderer can use */
 	size_t ill_conditioned = 0;
-	if (r.solve.corner_count > 0)
+	if (!r.solve.tangents)
+		status = NMTAN_ERROR_MEMORY;
+	else if (r.solve.corner_count > 0)
 		status = implementation->halves ? solve_quads(&r, implementation->halves, &ill_conditioned)
 						: run_method(&r.solve, r.options.method, &ill_conditioned);
 	if (!status && r.solve.corner_count > 0)
 		status = nt_repair(&r.solve, &met);
-	met.ill_conditioned = ill_conditioned;
-	met.sorted_instead = r.sorted_instead;
-	met.summed_instead = r.summed_instead;
+	if (!status)
+		nt_put_tangents(to.tangents, to.tangent_stride_bytes, r.solve.tangents, r.solve.corner_count);
+	end_counts(&r, &met, ill_conditioned, counts);
 	end_request(&r);
-	end_counts(&met, counts);
 	return status;
 }
 
@@ -272,52 +314,49 @@ nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options
 	return nt_tangents(mesh, options, &best, output, counts);
 }
 
-static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_counts *counts)
-{
-	size_t ill_conditioned = 0;
-	r->solve.sparse = r->solve.known && !r->mesh.face_sizes;
-	nmtan_status status = run_method(&r->solve, r->options.method, &ill_conditioned);
-	if (!status)
-		status = nt_repair_and_split(&r->solve, counts, splitter);
-	counts->ill_conditioned = ill_conditioned;
-	counts->sorted_instead = r->sorted_instead;
-	counts->summed_instead = r->summed_instead;
-	return status;
-}
-
 nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_vertex_request *wanted, nmtan_split_output *output, nmtan_counts *counts)
 {
-	nmtan_split_output to;
+	nt_split_places places;
 	nmtan_counts met;
-	if (!mesh || !output || !nt_struct_read(&to, sizeof to, output) || !to.indices || !to.vertex_tangents ||
-		(to.source_capacity && !to.sources) || !begin_counts(&met, counts))
+	nmtan_mesh given;
+	if (!mesh || !output || !nt_struct_read(&given, sizeof given, mesh) ||
+		!nt_split_read(&places, &given, output) || !places.given.vertex_tangents || !begin_counts(&met, counts))
 		return NMTAN_ERROR_ARGUMENT;
-	to.source_count = 0;
 	request r;
 	const nt_implementation best = {.isa = NT_ISA_AUTO};
-	nmtan_status status = begin_request(&r, mesh, options, &best);
+	nmtan_status status = begin_request(&r, &given, options, &best);
 	if (status)
 		return status;
+	nt_scratch *scratch = r.solve.scratch;
 	nt_splitter splitter;
+	size_t ill_conditioned = 0;
+	status = nt_split_begin(&places, &r.mesh, r.solve.corner_count, r.corners, scratch);
 	r.solve.passed = wanted->passed;
 	r.solve.user = wanted->user;
-	r.solve.spare = to.vertex_tangents; /* the split fills it at the end */
+	r.solve.spare = places.own.vertex_tangents; /* the split fills it at the end */
 	r.solve.spare_bytes =
-		(r.mesh.vertex_count + (wanted->lends_copies ? to.source_capacity : 0)) * 4 * sizeof(float);
-	r.solve.tangents = nt_scratch_alloc(r.solve.scratch, r.solve.corner_count, 4 * sizeof(float));
-	status = r.solve.tangents ? nt_splitter_begin(&splitter, &r.mesh, r.solve.corner_count, &to,
-					    r.solve.scratch)
-				  : NMTAN_ERROR_MEMORY;
+		(r.mesh.vertex_count + (wanted->lends_copies ? places.own.source_capacity : 0)) * NT_TANGENT_BYTES;
+	r.solve.tangents = nt_scratch_alloc(scratch, r.solve.corner_count, NT_TANGENT_BYTES);
+	if (!status)
+		status = r.solve.tangents ? nt_splitter_begin(&splitter, &r.mesh, r.solve.corner_count, &places.own,
+						    scratch)
+					  : NMTAN_ERROR_MEMORY;
 	splitter.lazy = wanted->lazy_indices;
 	splitter.threads = r.solve.threads;
-	if (!status && r.solve.corner_count > 0)
-		status = solve_vertices(&r, &splitter, &met);
-	if (!status)
+	if (!status && r.solve.corner_count > 0) {
+		r.solve.sparse = r.solve.known && !r.mesh.face_sizes;
+		status = run_method(&r.solve, r.options.method, &ill_conditioned);
+		if (!status)
+			status = nt_repair_and_split(&r.solve, &met, &splitter);
+	}
+	if (!status) {
 		nt_splitter_end(&splitter);
+		status = nt_split_end(&places, &r.mesh);
+	}
+	end_counts(&r, &met, ill_conditioned, counts);
 	end_request(&r);
-	nt_struct_write(output, &to, sizeof to);
-	end_counts(&met, counts);
+	nt_struct_write(output, &places.given, sizeof places.given);
 	return status;
 }
 

@@ -38,6 +38,13 @@
 #define NT_UNREACHABLE ((void)0)
 #endif
 
+/* Thread-local memory that is there from the start of each thread, of a module too: it cannot be missing later. */
+#ifdef __ELF__
+#define NT_STATIC_TLS __attribute__((tls_model("initial-exec")))
+#else
+#define NT_STATIC_TLS
+#endif
+
 #if defined(__BYTE_ORDER__) && defined(__ORDER_BIG_ENDIAN__)
 #define NT_BIG_ENDIAN (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__)
 #else
@@ -71,14 +78,20 @@ typedef void *nt_memory;
 #define NT_VECTORS 0
 #endif
 
-/* One thread needs no atomic operations, and plain C has none that C++ has too. */
-#if defined(__GNUC__) && !defined(NT_NO_THREADS)
+/* Who may run on other threads: the pool's, or those of the caller's jobs. One thread needs no atomic operations, and
+ * plain C has none that C++ has too. */
+#if defined(NT_NO_THREADS) && !defined(NMTAN_JOBS)
+#define NT_ONE_THREAD 1
+#else
+#define NT_ONE_THREAD 0
+#endif
+#if defined(__GNUC__) && !NT_ONE_THREAD
 #define nt_atomic_load(from, order) __atomic_load_n(from, __ATOMIC_##order)
 #define nt_atomic_store(to, value, order) __atomic_store_n(to, value, __ATOMIC_##order)
 #define nt_atomic_add(to, value, order) __atomic_fetch_add(to, value, __ATOMIC_##order)
 #define nt_atomic_sub(to, value, order) __atomic_fetch_sub(to, value, __ATOMIC_##order)
 #define nt_atomic_or(to, value, order) __atomic_fetch_or(to, value, __ATOMIC_##order)
-#elif defined(NT_NO_THREADS)
+#elif NT_ONE_THREAD
 #define nt_atomic_load(from, order) (*(from))
 #define nt_atomic_store(to, value, order) ((void)(*(to) = (value)))
 #define nt_atomic_add(to, value, order) ((*(to) += (value)) - (value))

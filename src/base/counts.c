@@ -20,6 +20,7 @@ void nt_counts_add(nmtan_counts *sum, const nmtan_counts *part)
 	sum->ill_conditioned += part->ill_conditioned;
 	sum->sorted_instead += part->sorted_instead;
 	sum->summed_instead += part->summed_instead;
+	sum->normals_not_unit += part->normals_not_unit;
 }
 
 size_t nt_counts_repaired(const nmtan_counts *counts)

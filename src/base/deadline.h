@@ -30,17 +30,13 @@ static inline bool nt_deadline_passed(void)
 }
 #else
 #include <stdatomic.h>
+#include "base/compiler.h"
 
 typedef struct nt_deadline {
 	atomic_bool passed; /* stays so */
 } nt_deadline;
 
-/* NULL: none. As of a module, it is there from the start of each thread: no memory can be missing for it later. */
-#ifdef __ELF__
-#define NT_STATIC_TLS __attribute__((tls_model("initial-exec")))
-#else
-#define NT_STATIC_TLS
-#endif
+/* NULL: none. */
 extern NT_STATIC_TLS _Thread_local const nt_deadline *nt_own_deadline;
 
 /* The deadline of this thread from now on. Returns the one that it had. */

@@ -12,9 +12,69 @@
  */
 #include "base/pool.h"
 
+#include <stdbool.h>
+#include "base/compiler.h"
 #include "base/deadline.h"
 
+/* ---- threads of the caller ---- */
+
+typedef void region_body(void *context, unsigned slot);
+
+#if NT_ONE_THREAD
+
+const nmtan_jobs *nt_pool_use(const nmtan_jobs *jobs)
+{
+	return jobs;
+}
+
+#else
+
+static NT_STATIC_TLS __thread const nmtan_jobs *own_jobs;
+
+const nmtan_jobs *nt_pool_use(const nmtan_jobs *jobs)
+{
+	const nmtan_jobs *before = own_jobs;
+	own_jobs = jobs;
+	return before;
+}
+
+typedef struct given_region {
+	const nmtan_jobs *jobs;
+	region_body *body;
+	void *context;
+	unsigned next; /* atomic: slots begin in their order, whatever the order of jobs */
+} given_region;
+
+static void run_job(void *context, unsigned i)
+{
+	(void)i;
+	given_region *r = context;
+	const nmtan_jobs *before = nt_pool_use(r->jobs);
+	r->body(r->context, nt_atomic_add(&r->next, 1, RELAXED));
+	nt_pool_use(before);
+}
+
+#endif
+
+/* Whether the caller's threads have done it. */
+static bool run_given(unsigned slots, region_body *body, void *context)
+{
+#if !NT_ONE_THREAD
+	if (own_jobs && slots > 1) {
+		given_region r = {own_jobs, body, context, 0};
+		own_jobs->run(own_jobs->user, slots, run_job, &r);
+		return true;
+	}
+#endif
+	(void)slots, (void)body, (void)context;
+	return false;
+}
+
 #ifdef NT_NO_THREADS
+
+void nmtan_end_threads(void)
+{
+}
 
 unsigned nt_pool_processors(void)
 {
@@ -28,7 +88,8 @@ void nt_pool_reserve(unsigned threads)
 
 void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), void *context)
 {
-	for (unsigned slot = 0; slot < slots; slot++)
+	const bool given = run_given(slots, body, context);
+	for (unsigned slot = 0; !given && slot < slots; slot++)
 		body(context, slot);
 }
 
@@ -37,11 +98,9 @@ void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), voi
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <unistd.h>
-#include "base/compiler.h"
 
 /* Looks before sleeping: 80 microseconds at the 40 to 140 cycles of a pause, somewhat more than waking takes. After a
  * thread could not be made, the regions that do without before one is tried again. */
@@ -71,6 +130,9 @@ static struct {
 	unsigned looks;        /* before sleeping, as the newest region wanted it */
 	unsigned long bell;    /* atomic: rung after each post: threads that look see it without the lock */
 	unsigned waiting;      /* atomic: callers that sleep until helpers leave */
+	unsigned made;         /* threads that are */
+	pthread_t ids[NT_POOL_MOST];
+	bool ending;           /* they shall end */
 } pool = {.lock = PTHREAD_MUTEX_INITIALIZER, .posted = PTHREAD_COND_INITIALIZER,
 	.left = PTHREAD_COND_INITIALIZER};
 
@@ -160,7 +222,10 @@ static void *run_thread(void *unused)
 		const unsigned long posts = pool.posts;
 		const bool alone = !r || !r->older;
 		const unsigned looks = pool.looks;
+		const bool ending = pool.ending;
 		pthread_mutex_unlock(&pool.lock);
+		if (ending)
+			return NULL;
 		if (r) {
 			nt_deadline_use(r->deadline);
 			work(r);
@@ -192,18 +257,16 @@ static bool make_thread(void)
 	sigdelset(&all, SIGSEGV);
 	sigdelset(&all, SIGTRAP);
 	pthread_sigmask(SIG_SETMASK, &all, &before);
-	pthread_attr_t attributes;
 	pthread_t thread;
-	bool made = pthread_attr_init(&attributes) == 0;
-	if (made) {
-		pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
-		made = pthread_create(&thread, &attributes, run_thread, NULL) == 0;
-		pthread_attr_destroy(&attributes);
-	}
+	const bool made = pthread_create(&thread, NULL, run_thread, NULL) == 0;
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	if (made)
-		send_elsewhere(thread);
-	return made;
+	if (!made)
+		return false;
+	send_elsewhere(thread);
+	pthread_mutex_lock(&pool.lock);
+	pool.ids[pool.made++] = thread;
+	pthread_mutex_unlock(&pool.lock);
+	return true;
 }
 
 /* In the child none of the pool's threads exists, and nobody holds the lock. */
@@ -212,7 +275,7 @@ static void start_anew(void)
 	pool.lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
 	pool.posted = pool.left = (pthread_cond_t)PTHREAD_COND_INITIALIZER;
 	pool.newest = NULL;
-	pool.threads = pool.sleeping = pool.without = 0;
+	pool.threads = pool.sleeping = pool.without = pool.made = 0;
 	nt_atomic_store(&pool.waiting, 0, SEQ_CST);
 }
 
@@ -293,6 +356,20 @@ static void close_region(region *r, unsigned looks)
 	pthread_mutex_unlock(&pool.lock);
 }
 
+void nmtan_end_threads(void)
+{
+	pthread_mutex_lock(&pool.lock);
+	pool.ending = true;
+	pool.posts++;
+	pthread_cond_broadcast(&pool.posted);
+	pthread_mutex_unlock(&pool.lock);
+	nt_atomic_add(&pool.bell, 1, SEQ_CST);
+	for (unsigned i = 0; i < pool.made; i++)
+		pthread_join(pool.ids[i], NULL);
+	pool.made = pool.threads = 0;
+	pool.ending = false;
+}
+
 void nt_pool_reserve(unsigned threads)
 {
 	pthread_mutex_lock(&pool.lock);
@@ -303,6 +380,8 @@ void nt_pool_reserve(unsigned threads)
 
 void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), void *context)
 {
+	if (run_given(slots, body, context))
+		return;
 	region r = {.body = body, .context = context, .slots = slots, .deadline = nt_deadline_own()};
 	if (slots <= 1) {
 		work(&r);

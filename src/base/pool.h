@@ -13,11 +13,17 @@
 #ifndef NT_BASE_POOL_H
 #define NT_BASE_POOL_H
 
+#include "nmtan.h"
+
 /* Threads of the pool beside those of its users. */
 enum { NT_POOL_MOST = 255 };
 
 /* Processors that this process may use, at least 1; 1 without threads. A system call. */
 unsigned nt_pool_processors(void);
+
+/* From now on the regions of this thread, and those within them, go to the caller's threads; NULL: to the pool's.
+ * Returns what it was before. */
+const nmtan_jobs *nt_pool_use(const nmtan_jobs *jobs);
 
 /* Makes at least so many threads: for a region that starts while others of the pool are known to wait. */
 void nt_pool_reserve(unsigned threads);

@@ -23,17 +23,42 @@ static nmtan_status count_corners(const nmtan_mesh *mesh, size_t *corner_count)
 	return wrong ? NMTAN_ERROR_FACE_SIZE : NMTAN_OK;
 }
 
+/* Corners that have so many rows; NULL: corner c has row c. */
+static nmtan_status check_indices(const uint32_t *indices, size_t corner_count, size_t rows)
+{
+	if (!indices)
+		return corner_count > rows ? NMTAN_ERROR_INDEX : NMTAN_OK;
+	return corner_count > 0 && nt_largest(indices, corner_count) >= rows ? NMTAN_ERROR_INDEX : NMTAN_OK;
+}
+
+static nmtan_status check_short_indices(const uint16_t *indices, size_t corner_count, size_t rows)
+{
+	uint16_t most = 0;
+	for (size_t c = 0; c < corner_count; c++)
+		most = indices[c] > most ? indices[c] : most;
+	return corner_count > 0 && most >= rows ? NMTAN_ERROR_INDEX : NMTAN_OK;
+}
+
+/* An attribute with numbers of its own. */
+static nmtan_status check_own(const uint32_t *indices, size_t corner_count, size_t rows)
+{
+	return !rows && !indices ? NMTAN_OK : check_indices(indices, corner_count, rows);
+}
+
 nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count)
 {
-	if (mesh->face_count > NMTAN_MAX_FACES || mesh->vertex_count > UINT32_MAX)
+	if (mesh->face_count > NMTAN_MAX_FACES || mesh->vertex_count > UINT32_MAX ||
+		mesh->normal_count > UINT32_MAX || mesh->texcoord_count > UINT32_MAX)
 		return NMTAN_ERROR_TOO_LARGE;
-	const nmtan_status status = count_corners(mesh, corner_count);
-	if (status)
-		return status;
-	if (!mesh->indices)
-		return *corner_count > mesh->vertex_count ? NMTAN_ERROR_INDEX : NMTAN_OK;
-	const uint32_t most = nt_largest(mesh->indices, *corner_count);
-	return *corner_count > 0 && most >= mesh->vertex_count ? NMTAN_ERROR_INDEX : NMTAN_OK;
+	if ((mesh->indices && mesh->indices16) || (nt_makes_vertices(mesh) && nt_has_stored_texcoords(mesh)))
+		return NMTAN_ERROR_ARGUMENT;
+	nmtan_status status = count_corners(mesh, corner_count);
+	if (!status)
+		status = mesh->indices16 ? check_short_indices(mesh->indices16, *corner_count, mesh->vertex_count)
+					 : check_indices(mesh->indices, *corner_count, mesh->vertex_count);
+	if (!status)
+		status = check_own(mesh->normal_indices, *corner_count, mesh->normal_count);
+	return status ? status : check_own(mesh->texcoord_indices, *corner_count, mesh->texcoord_count);
 }
 
 /* nt_written_diagonal(); *solved receives the diagonal of the solve. */

@@ -22,6 +22,18 @@ static inline size_t nt_vertex_of(const nmtan_mesh *mesh, size_t corner)
 	return mesh->indices ? mesh->indices[corner] : corner;
 }
 
+/* Whether normals or texture coordinates have numbers of their own: see nmtan_mesh and plain.h. */
+static inline bool nt_makes_vertices(const nmtan_mesh *mesh)
+{
+	return mesh->normal_count || mesh->normal_indices || mesh->texcoord_count || mesh->texcoord_indices;
+}
+
+/* Rows of an attribute, of which `own` is the mesh's count of them. */
+static inline size_t nt_row_count(const nmtan_mesh *mesh, size_t own, const uint32_t *indices)
+{
+	return own || indices ? own : mesh->vertex_count;
+}
+
 static inline const float *nt_position(const nmtan_mesh *mesh, size_t vertex)
 {
 	return nt_row(mesh->positions, mesh->position_stride_bytes, vertex);
@@ -127,8 +139,8 @@ size_t nt_written_diagonals(const nmtan_mesh *mesh, uint8_t *diagonals);
 /* The same triangles as they are written: those that w has to fit. */
 unsigned nt_written_triangles(const nmtan_mesh *mesh, size_t face, size_t first, uint32_t corners[2][3]);
 
-/* Checks that face sizes are 3 or 4 and indices below vertex_count, and counts the corners. Returns
- * NMTAN_OK, NMTAN_ERROR_TOO_LARGE, NMTAN_ERROR_FACE_SIZE or NMTAN_ERROR_INDEX. */
+/* Checks that face sizes are 3 or 4 and indices below the counts of their rows, and counts the corners. Returns
+ * NMTAN_OK, NMTAN_ERROR_ARGUMENT, NMTAN_ERROR_TOO_LARGE, NMTAN_ERROR_FACE_SIZE or NMTAN_ERROR_INDEX. */
 nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count);
 
 /*

@@ -13,7 +13,6 @@
 #include <string.h>
 #include "base/dvec.h"
 #include "base/parallel.h"
-#include "base/struct_bytes.h"
 #include "topology/corners.h"
 
 #define NO_COPY UINT32_MAX
@@ -93,11 +92,12 @@ static nmtan_status take_copy(nt_splitter *s, uint32_t original, const nt_tangen
 	s->copies[s->copy_count] = (nt_vertex_copy){original, *key};
 	uint32_t *copy = &s->table[find_slot(s, &s->copies[s->copy_count])];
 	if (*copy == NO_COPY) {
-		if ((s->output->indices && s->copy_count >= s->output->source_capacity) ||
-			s->mesh->vertex_count + s->copy_count >= UINT32_MAX)
+		if (s->mesh->vertex_count + s->copy_count >= UINT32_MAX)
 			return NMTAN_ERROR_TOO_LARGE;
-		if (s->output->indices)
+		if (s->copy_count < s->output->source_capacity)
 			s->output->sources[s->copy_count] = original;
+		s->output->split_count += !(s->seen[original] & NT_SEEN_SPLIT);
+		s->seen[original] |= NT_SEEN_SPLIT;
 		if (s->output->copy_counts)
 			s->output->copy_counts[original]++;
 		*copy = (uint32_t)s->copy_count++;
@@ -121,6 +121,7 @@ nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, size_t co
 	nmtan_split_output *output, nt_scratch *scratch)
 {
 	*s = (nt_splitter){.mesh = mesh, .output = output, .scratch = scratch, .corner_count = corner_count};
+	output->source_count = output->split_count = 0;
 	nt_hash_key(s->key);
 	s->tangents = output->vertex_tangents;
 	if (!s->tangents)
@@ -163,10 +164,10 @@ nmtan_status nt_splitter_differs(nt_splitter *s, uint32_t vertex, const float *t
 	const nmtan_status status = take_copy(s, vertex, &key, &vertex);
 	if (status)
 		return status;
+	if (!s->output->indices || vertex - s->mesh->vertex_count >= s->output->source_capacity)
+		return NMTAN_OK;
 	if (s->output->vertex_tangents)
 		memcpy(s->output->vertex_tangents + 4 * (size_t)vertex, tangent, 4 * sizeof(float));
-	if (!s->output->indices)
-		return NMTAN_OK;
 	if (!s->indexed)
 		copy_indices(s);
 	s->output->indices[corner] = vertex;
@@ -181,67 +182,4 @@ void nt_splitter_end(nt_splitter *s)
 	const uint8_t *at = s->seen, *const end = at + s->mesh->vertex_count;
 	for (; s->output->vertex_tangents && (at = (const uint8_t *)memchr(at, 0, (size_t)(end - at))); at++)
 		set_unused_tangent(s->mesh, (size_t)(at - s->seen), s->output->vertex_tangents + 4 * (at - s->seen));
-}
-
-static nmtan_status split_mesh(nt_splitter *s, const float *tangents)
-{
-	for (size_t c = 0; c < s->corner_count; c++) {
-		const nmtan_status status =
-			nt_splitter_take(s, (uint32_t)nt_vertex_of(s->mesh, c), tangents + 4 * c, c);
-		if (status)
-			return status;
-	}
-	nt_splitter_end(s);
-	return NMTAN_OK;
-}
-
-/* What the caller gave, of whatever version: see base/struct_bytes.h. */
-typedef struct split_arguments {
-	nmtan_mesh mesh;
-	nmtan_options options;
-	nmtan_split_output output;
-} split_arguments;
-
-/* Without indices only copies are counted. */
-static bool has_places(const nmtan_split_output *output)
-{
-	if (!output->indices)
-		return !output->sources && !output->source_capacity && !output->vertex_tangents;
-	return output->sources || output->source_capacity == 0;
-}
-
-static bool read_arguments(split_arguments *a, const nmtan_mesh *mesh, const nmtan_options *options,
-	const nmtan_split_output *output)
-{
-	a->options = (nmtan_options)NMTAN_OPTIONS_INIT;
-	return nt_struct_read(&a->mesh, sizeof a->mesh, mesh) &&
-	       (!options || nt_struct_read(&a->options, sizeof a->options, options)) &&
-	       nt_struct_read(&a->output, sizeof a->output, output) && has_places(&a->output) &&
-	       (a->mesh.normals || !a->output.vertex_tangents) &&
-	       nt_fill_stride(&a->mesh.normal_stride_bytes, 3 * sizeof(float), a->mesh.vertex_count);
-}
-
-nmtan_status nmtan_split(const nmtan_mesh *mesh, const float *tangents, const nmtan_options *options,
-	nmtan_split_output *output)
-{
-	split_arguments a;
-	if (!mesh || !tangents || !output || !read_arguments(&a, mesh, options, output))
-		return NMTAN_ERROR_ARGUMENT;
-	size_t corner_count;
-	nmtan_status status = nt_check_faces(&a.mesh, &corner_count);
-	if (status)
-		return status;
-
-	nt_scratch own;
-	nt_scratch_init(&own, a.options.allocator);
-	nt_scratch *scratch = a.options.workspace ? &a.options.workspace->scratch : &own;
-	const nt_scratch_mark mark = nt_scratch_here(scratch);
-	nt_splitter s;
-	status = nt_splitter_begin(&s, &a.mesh, corner_count, &a.output, scratch);
-	if (!status)
-		status = split_mesh(&s, tangents);
-	nt_scratch_back(scratch, mark);
-	nt_scratch_free(&own);
-	nt_struct_write(output, &a.output, sizeof a.output);
-	return status;
 }

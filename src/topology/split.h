@@ -22,6 +22,8 @@ typedef struct nt_vertex_copy {
 	nt_tangent_key tangent;
 } nt_vertex_copy;
 
+enum { NT_SEEN_SPLIT = 128 }; /* in nt_splitter.seen: the vertex has a copy */
+
 typedef struct nt_splitter {
 	const nmtan_mesh *mesh; /* strides are filled in, indices checked */
 	nmtan_split_output *output;
@@ -31,7 +33,7 @@ typedef struct nt_splitter {
 	bool lazy;              /* output->indices is left alone when no vertex is split */
 	bool indexed;           /* output->indices holds the mesh's indices */
 	float *tangents;        /* [vertex_count][4] of the vertices' first corners */
-	uint8_t *seen;          /* [vertex_count] tangents is set */
+	uint8_t *seen;          /* [vertex_count] not 0: tangents is set */
 	nt_vertex_copy *copies; /* [copy_capacity] */
 	size_t copy_count, copy_capacity;
 	uint64_t key[NT_HASH_KEY_WORDS];
@@ -48,8 +50,8 @@ nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, size_t co
 nmtan_status nt_splitter_differs(nt_splitter *s, uint32_t vertex, const float *tangent, size_t corner);
 
 /* The next corner in order, of that vertex, has this tangent. Corners whose vertex is known to have one
- * tangent only may be left out once that is in `tangents` and `seen`. Returns NMTAN_OK, NMTAN_ERROR_MEMORY or
- * NMTAN_ERROR_TOO_LARGE. */
+ * tangent only may be left out once that is in `tangents` and `seen`. Copies past
+ * source_capacity are only counted. Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE. */
 static inline nmtan_status nt_splitter_take(nt_splitter *s, uint32_t vertex, const float *tangent,
 	size_t corner)
 {

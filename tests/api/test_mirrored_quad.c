@@ -110,7 +110,7 @@ TEST(copies_are_counted_before_there_is_room_for_them)
 	assert_int_equal(split.source_count, 3);
 	assert_memory_equal(copy_counts, expected, sizeof expected);
 	split.source_capacity = 2;
-	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], &mikktspace, &split), NMTAN_ERROR_TOO_LARGE);
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], &mikktspace, &split), NMTAN_ERROR_CAPACITY);
 }
 
 /* nmtan_vertex_tangents() counts them too. */

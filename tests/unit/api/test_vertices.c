@@ -140,7 +140,7 @@ static void arguments_are_checked(void **state)
 	out.vertex_tangents = &tangents[0][0];
 	assert_int_equal(nmtan_vertex_tangents(&mesh, NULL, &out, NULL), NMTAN_OK);
 	assert_int_equal(nmtan_vertex_tangents(NULL, NULL, &out, NULL), NMTAN_ERROR_ARGUMENT);
-	out.indices = NULL;
+	out.indices = NULL; /* nothing is split, then there are no sources */
 	assert_int_equal(nmtan_vertex_tangents(&mesh, NULL, &out, NULL), NMTAN_ERROR_ARGUMENT);
 }
 
