@@ -8,9 +8,6 @@
 #include "base/parallel.h"
 #include "topology/corners.h"
 
-/* Triangles that are written before those of them that need more are. */
-enum { BATCH = 64 };
-
 /* Triangles by which the records of a scattered mesh are prefetched before they are read. */
 enum { WRITE_AHEAD = 16 };
 
@@ -183,84 +180,6 @@ static void write_tangents(nt_fast *fast, size_t begin, size_t end)
 	}
 }
 
-/* A bit for each of four triangles one of whose records is not just a result; given is the union of their bits. */
-static inline unsigned find_open(nt_int4 a, nt_int4 b, nt_int4 c, nt_int4 d)
-{
-#if NT_VECTORS && defined(__SSE2__)
-	const nt_int4 ab = __builtin_shufflevector(a, b, 2, 6, 3, 7), cd = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-	const nt_int4 states = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-	static_assert(NT_RESULT_COMPLEX << 1 == 1u << 31 && NT_RESULT_UNUSABLE << 31 == 1u << 31, "both become signs");
-	return (unsigned)__builtin_ia32_movmskps((nt_float4)(states << 1 | states << 31));
-#else
-	const uint32_t mask = NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE;
-	return (unsigned)((nt_state4(a) & mask) != 0) | (unsigned)((nt_state4(b) & mask) != 0) << 1 |
-	       (unsigned)((nt_state4(c) & mask) != 0) << 2 | (unsigned)((nt_state4(d) & mask) != 0) << 3;
-#endif
-}
-
-/* Copies the records of a triangle to its corners; returns the union of their bits. */
-static inline nt_int4 copy_records(const char *from, unsigned shift, const uint32_t *v, float *out)
-{
-	nt_int4 a, b, c;
-	memcpy(&a, from + ((size_t)v[0] << shift), sizeof a);
-	memcpy(&b, from + ((size_t)v[1] << shift), sizeof b);
-	memcpy(&c, from + ((size_t)v[2] << shift), sizeof c);
-	memcpy(out, &a, sizeof a);
-	memcpy(out + 4, &b, sizeof b);
-	memcpy(out + 8, &c, sizeof c);
-	return nt_or4(nt_or4(a, b), c);
-}
-
-/* A bit for each of four triangles whose flags say that it is no usual one. */
-static inline unsigned find_special(const uint8_t *flags)
-{
-	/* moves the lowest bit of byte i, in the order of memory, to bit i of the highest byte */
-	const uint32_t gather = NT_BIG_ENDIAN ? 0x08040201u : 0x01020408u;
-	static_assert(NT_TRIANGLE_ANY >> 1 == 1 && NT_TRIANGLE_DEGENERATE >> 2 == 1, "both become the lowest bit");
-	uint32_t four;
-	memcpy(&four, flags, sizeof four);
-	return ((four >> 1 | four >> 2) & 0x01010101u) * gather >> 24;
-}
-
-/* The same without quads: no triangles share corners, so that what some of them need can wait. Of BATCH triangles at a
- * time all corners get their records, without a branch, and then come those for which this was not the result. On
- * makehuman_body, where these are few, it takes 5.0 cycles a triangle instead of the 7.0 of one loop, on Lantern 6.5
- * instead of 8.0; the 3 stores alone take 3 (Zen 4, in the cache). */
-static void write_plain(nt_fast *fast, size_t begin, size_t end)
-{
-	static_assert(sizeof(nt_record) == 1 << 4, "what is shifted");
-	const char *const records[2] = {(const char *)fast->records[!fast->records[0]],
-		(const char *)fast->records[fast->records[1] != NULL]};
-	const unsigned shift = fast->record_step == 1 ? 4 : 5;
-	const nt_triangles uncut = {.ids = fast->triangles.ids};
-	const uint32_t *v = uncut.ids + 3 * begin;
-	const uint8_t *const flags = fast->flags;
-	float *out = fast->solve->tangents + 12 * begin;
-	size_t t = begin;
-	while (t + 4 <= end) {
-		const size_t first = t, last = end - first < BATCH ? end - 3 : first + BATCH;
-		uint64_t others = 0;
-		for (; t < last; t += 4, v += 12, out += 48) {
-			const nt_int4 a = copy_records(records[flags[t] & NT_TRIANGLE_ORIENT], shift, v, out);
-			const nt_int4 b =
-				copy_records(records[flags[t + 1] & NT_TRIANGLE_ORIENT], shift, v + 3, out + 12);
-			const nt_int4 c =
-				copy_records(records[flags[t + 2] & NT_TRIANGLE_ORIENT], shift, v + 6, out + 24);
-			const nt_int4 d =
-				copy_records(records[flags[t + 3] & NT_TRIANGLE_ORIENT], shift, v + 9, out + 36);
-			others |= (uint64_t)(find_open(a, b, c, d) | find_special(flags + t)) << (t - first);
-		}
-		for (; others; others &= others - 1) {
-			const size_t other = first + (size_t)nt_trailing_zeros(others);
-			if (flags[other] & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE))
-				write_special(fast, other);
-			else
-				write_signs(fast, &uncut, other);
-		}
-	}
-	write_tangents(fast, t, end);
-}
-
 /* For a sparse solve where each record is the result, and usable: suspects have their flags from step 4. Looking at all
  * triangles' records takes 6 of the 68 ms of processor time of a conversion of 980 000 triangles. */
 static void write_suspects(nt_fast *fast, size_t begin, size_t end)
@@ -281,7 +200,7 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned threa
 	nt_fast *fast = w->fast;
 	void (*write)(nt_fast *, size_t, size_t) = NT_FAST_PATHS && fast->sparse && !w->has_open ? write_suspects
 		: fast->wants_more || fast->sparse ? write_triangles
-		: fast->triangles.cuts || fast->scattered ? write_tangents : write_plain;
+		: write_tangents;
 	for (size_t range = begin; range < end; range++)
 		write(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
 }
