@@ -12,9 +12,6 @@
 /* Corners by which a count is prefetched before it is needed, where counts may not be in the first-level cache. */
 enum { COUNT_AHEAD = 48, NEAR_VERTICES = 1 << 14 };
 
-/* Of entries that do not fit the borrowed memory, less than one in so many may lie elsewhere. */
-enum { PART_ELSEWHERE = 2 };
-
 /* Triangles whose vertices are looked up at a time. */
 enum { BATCH = 16 };
 
@@ -114,36 +111,6 @@ static size_t place_blocks(nt_adjacency *a, size_t most_places)
 	return place;
 }
 
-/* Entries from a block on lie elsewhere. */
-static void move_blocks(nt_adjacency *a, size_t block)
-{
-	for (unsigned r = 0; r < a->ranges; r++)
-		for (size_t v = block * NT_FAN_LANES; v < a->vertex_count; v++)
-			a->cursors[r * a->vertex_count + v] |= NT_CURSOR_ELSEWHERE;
-}
-
-/* Memory for `count` entries. If the borrowed memory is just too small for them the last blocks go to the scratch:
- * their corners take longer, but where rows and most entries fill an output, an uneven mesh needs no second one. */
-static bool alloc_entries(nt_adjacency *a, size_t count, nt_borrowed *memory)
-{
-	size_t fit = (size_t)(memory->end - memory->begin) / sizeof *a->entries;
-	fit -= fit > 0; /* one more is allocated, so that there is always something to point to */
-	size_t block = (a->vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES;
-	a->entry_count = count;
-	if (count > fit && count - fit < count / PART_ELSEWHERE) {
-		while (a->block_begin[block] > fit)
-			block--;
-		a->entry_count = a->block_begin[block];
-		a->rest_count = count - a->entry_count;
-		a->rest = nt_scratch_alloc(memory->scratch, a->rest_count, sizeof *a->rest);
-		if (!a->rest)
-			return false;
-		move_blocks(a, block);
-	}
-	a->entries = nt_borrowed_alloc(memory, a->entry_count + 1, sizeof *a->entries);
-	return a->entries;
-}
-
 nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_ranges *ranges,
 	size_t vertex_count, size_t most_places, nt_borrowed *cursor_memory, nt_borrowed *memory,
 	nt_adjacency *adjacency)
@@ -161,5 +128,8 @@ nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_
 
 	counting c = {triangles, ranges, a};
 	nt_parallel_ranges(ranges->count, ranges->count, 1, count_ranges, &c);
-	return alloc_entries(a, place_blocks(a, most_places), memory) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	a->entry_count = place_blocks(a, most_places);
+	/* one more, so that there is always something to point to */
+	a->entries = nt_borrowed_alloc(memory, a->entry_count + 1, sizeof *a->entries);
+	return a->entries ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }

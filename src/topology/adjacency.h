@@ -26,11 +26,10 @@ typedef struct nt_fan_entry {
  * flags above. */
 #define NT_CURSOR_HUB ((uint32_t)1 << 31)       /* a hub: in the place's stead is how many corners it has in all */
 #define NT_CURSOR_SHARED ((uint32_t)1 << 30)    /* an earlier range has corners of this vertex too */
-#define NT_CURSOR_ELSEWHERE ((uint32_t)1 << 29) /* the place is in `rest` */
 #define NT_CURSOR_PLACE (((uint32_t)1 << 28) - 1)
 
 /* Cursors from here on have a flag. */
-#define NT_CURSOR_FLAGGED NT_CURSOR_ELSEWHERE
+#define NT_CURSOR_FLAGGED NT_CURSOR_SHARED
 
 typedef struct nt_adjacency {
 	size_t first_vertex, vertex_count; /* the first is a multiple of NT_FAN_LANES */
@@ -38,9 +37,7 @@ typedef struct nt_adjacency {
 	uint32_t *cursors;     /* [ranges][vertex_count] */
 	uint32_t *block_begin; /* [blocks + 1] index of a block's first entry */
 	size_t *shared_counts; /* [ranges] corners whose cursor is SHARED */
-	nt_fan_entry *entries; /* places below entry_count */
-	nt_fan_entry *rest;    /* [rest_count] those above: what the memory of the others did not hold */
-	size_t rest_count;
+	nt_fan_entry *entries; /* [entry_count] */
 	size_t entry_count;
 } nt_adjacency;
 
@@ -56,18 +53,16 @@ static inline uint32_t nt_adjacency_next(uint32_t *cursor)
 	return place;
 }
 
-/* A place, which may have the flag ELSEWHERE. */
-static inline nt_fan_entry *nt_adjacency_entry(const nt_adjacency *a, uint32_t place)
+/* That of a cursor, whatever its flags. */
+static inline nt_fan_entry *nt_adjacency_entry(const nt_adjacency *a, uint32_t cursor)
 {
-	const size_t number = place & NT_CURSOR_PLACE;
-	return place & NT_CURSOR_ELSEWHERE ? &a->rest[number - a->entry_count] : &a->entries[number];
+	return &a->entries[cursor & NT_CURSOR_PLACE];
 }
 
 /* The first entry of a block. */
 static inline const nt_fan_entry *nt_adjacency_block(const nt_adjacency *a, size_t block)
 {
-	const size_t number = a->block_begin[block];
-	return a->rest && number >= a->entry_count ? &a->rest[number - a->entry_count] : &a->entries[number];
+	return &a->entries[a->block_begin[block]];
 }
 
 /*

@@ -112,11 +112,10 @@ static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t
 			addition_of(out, k, turned_place((size_t)lane)));
 }
 
-/* Triangles with frames, lanes [i, end), up to the first with a corner whose cursor has a flag, but for ELSEWHERE if
- * `elsewhere` says so: its lane, or `end`. Entries are moved as words, and nothing is
- * called, so that nearly all the loop needs is in registers. */
-static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned range, size_t first,
-	size_t i, size_t end, const uint32_t *ids, const lanes_out *out, bool elsewhere)
+/* Triangles with frames, lanes [i, end), up to the first with a corner whose cursor has a flag: its lane, or `end`.
+ * Entries are moved as words, and nothing is called, so that nearly all the loop needs is in registers. */
+static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
+	const uint32_t *ids, const lanes_out *out)
 {
 	const nt_adjacency *const adjacency = &fast->adjacency;
 	uint32_t *const cursors = adjacency->cursors + range * adjacency->vertex_count;
@@ -126,7 +125,7 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 	for (ids += 3 * i; i < end; i++, ids += 3) {
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
-		if (NT_EXPECT((pa | pb | pc) >= (elsewhere ? NT_CURSOR_SHARED : NT_CURSOR_FLAGGED), 0))
+		if (NT_EXPECT((pa | pb | pc) >= NT_CURSOR_FLAGGED, 0))
 			break;
 		cursors[a] = pa + NT_FAN_LANES;
 		cursors[b] = pb + NT_FAN_LANES;
@@ -144,26 +143,14 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 		ab |= bits;
 		bc |= bits;
 		const uint64_t ca = NT_BIG_ENDIAN ? bc << 32 | ab >> 32 : bc >> 32 | ab << 32;
-		memcpy(elsewhere ? nt_adjacency_entry(adjacency, pa) : &entries[pa], &bc, sizeof bc);
-		memcpy(elsewhere ? nt_adjacency_entry(adjacency, pb) : &entries[pb], &ca, sizeof ca);
-		memcpy(elsewhere ? nt_adjacency_entry(adjacency, pc) : &entries[pc], &ab, sizeof ab);
+		memcpy(&entries[pa], &bc, sizeof bc);
+		memcpy(&entries[pb], &ca, sizeof ca);
+		memcpy(&entries[pc], &ab, sizeof ab);
 	}
 	return i;
 }
 
-static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, size_t first, size_t i,
-	size_t end, const uint32_t *ids, const lanes_out *out)
-{
-	return add_usual(fast, range, first, i, end, ids, out, false);
-}
-
-static size_t NT_NOINLINE add_elsewhere(const nt_fast *fast, unsigned range, size_t first, size_t i,
-	size_t end, const uint32_t *ids, const lanes_out *out)
-{
-	return add_usual(fast, range, first, i, end, ids, out, true);
-}
-
-/* The same up to a corner of a hub or elsewhere. What is added to a vertex that an earlier range adds to is put aside,
+/* The same up to a corner of a hub. What is added to a vertex that an earlier range adds to is put aside,
  * without a branch: where triangles do not come in order such vertices are anywhere. */
 static size_t NT_NOINLINE add_shared(const nt_fast *fast, unsigned range, size_t first, size_t i,
 	size_t end, const uint32_t *ids, const lanes_out *out)
@@ -173,7 +160,7 @@ static size_t NT_NOINLINE add_shared(const nt_fast *fast, unsigned range, size_t
 	nt_deferred *const deferred = &fast->deferred[range];
 	size_t count = deferred->count;
 	for (ids += 3 * i; i < end; i++, ids += 3) {
-		if ((cursors[ids[0]] | cursors[ids[1]] | cursors[ids[2]]) & (NT_CURSOR_HUB | NT_CURSOR_ELSEWHERE))
+		if ((cursors[ids[0]] | cursors[ids[1]] | cursors[ids[2]]) & NT_CURSOR_HUB)
 			break;
 		const size_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT;
 		const uint32_t bit = (uint32_t)orient << 31;
@@ -212,8 +199,6 @@ static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t beg
 			i = add_here(fast, range, first, i, end, ids, out);
 		if (i < end && !fast->wants_more && fast->deferred)
 			i = add_shared(fast, range, first, i, end, ids, out);
-		if (i < end && !fast->wants_more && fast->adjacency.rest)
-			i = add_elsewhere(fast, range, first, i, end, ids, out);
 		if (i == end)
 			return;
 		do {

@@ -9,7 +9,7 @@
  *   ids, flags, cuts   1-8    scratch
  *   rows               1-5    borrowed where there is memory, see has_room_for_rows(); binned: scratch
  *   cursors            3-5    as the rows
- *   entries            3-5    borrowed, and scratch for the rest
+ *   entries            3-5    borrowed
  *   sums of bins       4-5    the output: 16 bytes a corner, as many as it has
  *   entries of bins    4-5    scratch
  *   records            4-8    scratch; binned: that of the rows, see nt_fast_place_records()
@@ -79,7 +79,6 @@ nt_borrowed nt_fast_left_memory(const nt_fast *fast)
 		{fast->rows, binned ? 0 : fast->vertex_count * sizeof *fast->rows},
 		{binned ? (const void *)fast->bins.entries : a->entries,
 			binned ? 3 * fast->triangle_count * NT_BINNED_ENTRY : a->entry_count * sizeof *a->entries},
-		{a->rest, a->rest_count * sizeof *a->rest},
 	};
 	nt_borrowed largest = nt_borrow(NULL, 0, solve->scratch);
 	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
