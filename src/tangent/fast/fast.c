@@ -272,11 +272,6 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 	if (!r.settled)
 		return NMTAN_ERROR_MEMORY;
 	memset(r.settled, 0, ranges * sizeof *r.settled);
-	if (NT_FAST_PATHS && fast->sparse) {
-		fast->open = nt_scratch_alloc(fast->solve->scratch, (fast->vertex_count + NT_LANES - 1) / NT_LANES, 1);
-		if (!fast->open)
-			return NMTAN_ERROR_MEMORY;
-	}
 	if (fast->bins.cursors) {
 		if (!make_bins(&r, ranges))
 			return NMTAN_ERROR_MEMORY;
@@ -310,8 +305,6 @@ static bool unsettle(nt_fast *fast, uint32_t vertex, nt_settled *settled)
 		if (fast->records[o])
 			nt_fast_record(fast, o, vertex)->state = complex ? state | NT_RESULT_TANGLED
 									 : NT_RESULT_COMPLEX | NT_RESULT_TANGLED;
-	if (fast->open)
-		fast->open[vertex / NT_LANES] = true;
 	settled->complex_count += !complex;
 	settled->tangled_count++;
 	settled->tangled_corners += corners;
@@ -368,7 +361,7 @@ static void tell_known(const nt_fast *fast)
 
 static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, const nt_settled *settled)
 {
-	nt_fast_write(fast, settled);
+	nt_fast_write(fast);
 	nt_borrowed left = nt_fast_left_memory(fast);
 	const nmtan_status status = settled->complex_count > 0
 		? nt_fast_complex(fast, kernels, settled, &left) : NMTAN_OK;

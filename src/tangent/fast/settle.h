@@ -143,8 +143,6 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	const bool has_complex = any_of(complex, used);
 	if (has_unusable)
 		nt_fast_tell_open(fast->solve);
-	if (NT_FAST_PATHS && fast->open)
-		fast->open[block] = has_complex | has_unusable;
 	/* from here on the rows may be overwritten */
 	for (int o = 0; o < 2; o++) {
 		if (!sums[o])

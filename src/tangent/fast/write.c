@@ -99,13 +99,6 @@ static inline NT_ALWAYS_INLINE void prefetch_records(const nt_fast *fast, size_t
 		NT_PREFETCH(nt_fast_record(fast, orient, v[k]));
 }
 
-/* Whether a corner is in a block of vertices with an open record. The blocks fit the first-level cache, or nearly so,
- * where records do not. */
-static inline bool is_near_open(const nt_fast *fast, const uint32_t *v)
-{
-	return fast->open[v[0] / NT_LANES] | fast->open[v[1] / NT_LANES] | fast->open[v[2] / NT_LANES];
-}
-
 /* Every corner of [begin, end) gets its vertex's record and its orientation's sign, which complex.c takes as they are
  * where that is the result; in a sparse solve those of suspects only. */
 static void write_triangles(nt_fast *fast, size_t begin, size_t end)
@@ -114,8 +107,6 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 		uint8_t *flags = &fast->flags[t];
 		uint32_t copy[3];
 		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
-		if (NT_FAST_PATHS && fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT) && !is_near_open(fast, v))
-			continue;
 		if (fast->scattered)
 			prefetch_records(fast, t, end);
 		if (*flags & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
@@ -180,36 +171,18 @@ static void write_tangents(nt_fast *fast, size_t begin, size_t end)
 	}
 }
 
-/* For a sparse solve where each record is the result, and usable: suspects have their flags from step 4. Looking at all
- * triangles' records takes 6 of the 68 ms of processor time of a conversion of 980 000 triangles. */
-static void write_suspects(nt_fast *fast, size_t begin, size_t end)
-{
-	for (size_t t = begin; (t = nt_next_flagged(fast->flags, t, end, NT_TRIANGLE_SUSPECT)) < end; t++)
-		write_triangles(fast, t, t + 1);
-}
-
-typedef struct writing {
-	nt_fast *fast;
-	bool has_open; /* a record that is not the result, or not usable */
-} writing;
-
 static void write_ranges(void *context, size_t begin, size_t end, unsigned thread)
 {
 	(void)thread;
-	const writing *w = context;
-	nt_fast *fast = w->fast;
-	void (*write)(nt_fast *, size_t, size_t) = NT_FAST_PATHS && fast->sparse && !w->has_open ? write_suspects
-		: fast->wants_more || fast->sparse ? write_triangles
-		: write_tangents;
+	nt_fast *fast = context;
 	for (size_t range = begin; range < end; range++)
-		write(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
+		(fast->wants_more || fast->sparse ? write_triangles : write_tangents)(fast, fast->ranges.bounds[range],
+			fast->ranges.bounds[range + 1]);
 }
 
-void nt_fast_write(nt_fast *fast, const nt_settled *settled)
+void nt_fast_write(nt_fast *fast)
 {
-	const nt_known *known = fast->solve->known;
-	writing w = {fast, .has_open = settled->complex_count > 0 || (known && known->open)};
-	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, write_ranges, &w);
+	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, write_ranges, fast);
 }
 
 void nt_fast_write_rest(nt_fast *fast)
