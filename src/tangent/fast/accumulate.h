@@ -150,39 +150,6 @@ static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, size_t f
 	return i;
 }
 
-/* The same up to a corner of a hub. What is added to a vertex that an earlier range adds to is put aside,
- * without a branch: where triangles do not come in order such vertices are anywhere. */
-static size_t NT_NOINLINE add_shared(const nt_fast *fast, unsigned range, size_t first, size_t i,
-	size_t end, const uint32_t *ids, const lanes_out *out)
-{
-	static const nt_record nothing = {0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
-	uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
-	nt_deferred *const deferred = &fast->deferred[range];
-	size_t count = deferred->count;
-	for (ids += 3 * i; i < end; i++, ids += 3) {
-		if ((cursors[ids[0]] | cursors[ids[1]] | cursors[ids[2]]) & NT_CURSOR_HUB)
-			break;
-		const size_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT;
-		const uint32_t bit = (uint32_t)orient << 31;
-		for (size_t k = 0; k < 3; k++) {
-			const uint32_t vertex = ids[k], place = cursors[vertex];
-			const bool shared = place & NT_CURSOR_SHARED;
-			cursors[vertex] = place + NT_FAN_LANES;
-			fast->adjacency.entries[place & NT_CURSOR_PLACE] =
-				(nt_fan_entry){ids[(k + 1) % 3] | bit, ids[(k + 2) % 3] | bit};
-			nt_record *const own = &fast->records[orient][vertex],
-				*const to = shared ? &deferred->add[count] : own;
-			nt_record sum = *(shared ? &nothing : own);
-			add_record(&sum, out->add[k] + turned_rows[i]);
-			*to = sum;
-			deferred->to[count] = vertex | bit;
-			count += shared;
-		}
-	}
-	deferred->count = count;
-	return i;
-}
-
 /* Whether a corner of a triangle is at a hub. */
 static inline bool has_hub(const nt_fast *fast, unsigned range, const uint32_t *v)
 {
@@ -197,8 +164,6 @@ static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t beg
 	for (size_t i = begin; i < end;) {
 		if (!fast->wants_more)
 			i = add_here(fast, range, first, i, end, ids, out);
-		if (i < end && !fast->wants_more && fast->deferred)
-			i = add_shared(fast, range, first, i, end, ids, out);
 		if (i == end)
 			return;
 		do {
@@ -320,39 +285,13 @@ static inline NT_ALWAYS_INLINE void prefetch_rows(const nt_fast *fast, size_t fi
 		NT_PREFETCH(&fast->rows[ids[3 * i]]);
 }
 
-/* Without bins, as in scattered quads: entries and records of a batch whose cursors were
- * prefetched a batch ago. */
-static inline NT_ALWAYS_INLINE void prefetch_places(const nt_fast *fast, const uint32_t *cursors,
-	const uint32_t *ids, size_t count)
-{
-	for (size_t i = 0; i < 3 * count; i++) {
-		if (!(cursors[ids[i]] & NT_CURSOR_HUB))
-			NT_PREFETCH(nt_adjacency_entry(&fast->adjacency, cursors[ids[i]]), 1);
-		for (int o = 0; o < 2; o++)
-			if (fast->records[o])
-				NT_PREFETCH(&fast->records[o][ids[i]], 1);
-	}
-}
-
-/* The cursors of a batch. */
-static inline NT_ALWAYS_INLINE void prefetch_cursors(const nt_fast *fast, const uint32_t *cursors,
-	size_t first, size_t end)
-{
-	const size_t count = end - first < NT_LANES ? end - first : NT_LANES;
-	uint32_t copy[3 * NT_LANES];
-	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
-	for (size_t i = 0; i < 3 * count; i++)
-		NT_PREFETCH(&cursors[ids[i]], 1);
-}
-
 static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
 	void *context)
 {
 	lanes_in in;
 	lanes_out out;
 	const float offset = nt_stored_v_offset(fast->solve->mesh);
-	const bool scattered = fast->scattered, direct = !fast->bins.cursors;
-	const uint32_t *cursors = direct ? fast->adjacency.cursors + range * fast->adjacency.vertex_count : NULL;
+	const bool scattered = fast->scattered;
 	for (size_t first = begin, count; first < end; first += count) {
 		count = end - first < NT_LANES ? end - first : NT_LANES;
 		if (first + count < end && (fast->flags[first + count] & NT_TRIANGLE_SECOND))
@@ -362,8 +301,6 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 		uint32_t copy[3 * NT_LANES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
 		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : whole_lanes(count), in.row);
-		if (scattered && direct)
-			prefetch_places(fast, cursors, ids, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 1);
 		if (fast->wants_more)
@@ -372,8 +309,6 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 			solve_lanes_plain(&in, &out, offset, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 2);
-		if (scattered && direct)
-			prefetch_cursors(fast, cursors, first + count, end);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
 		for (int missing; (missing = missing_record(fast, first, count)) >= 0;)
 			if (!make(fast, missing, context))
