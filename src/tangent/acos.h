@@ -27,9 +27,12 @@
 #define NT_ACOS_TERM(p, z, coefficient) ((p) * (z) + (coefficient))
 #endif
 
-/* P. */
-static inline NT_ALWAYS_INLINE double nt_acos_terms(double z)
+static inline float nt_acos(float c)
 {
+	const double pi = 3.14159265358979323846;
+	const double x = (double)c, a = fabs(x);
+	const double z = a <= 0.5 ? x * x : (1.0 - a) * 0.5;
+	const double s = a <= 0.5 ? x : sqrt(z);
 	double p = 0x1.ccdb4239f45a1p-6;
 	p = NT_ACOS_TERM(p, z, -0x1.a1e9daa4c0240p-9);
 	p = NT_ACOS_TERM(p, z, 0x1.02bc50399d2b2p-6);
@@ -39,16 +42,8 @@ static inline NT_ALWAYS_INLINE double nt_acos_terms(double z)
 	p = NT_ACOS_TERM(p, z, 0x1.f1c82fafb0b11p-6);
 	p = NT_ACOS_TERM(p, z, 0x1.6db6d8ab0fd67p-5);
 	p = NT_ACOS_TERM(p, z, 0x1.33333335f1756p-4);
-	return NT_ACOS_TERM(p, z, 0x1.5555555554e25p-3);
-}
-
-static inline float nt_acos(float c)
-{
-	const double pi = 3.14159265358979323846;
-	const double x = (double)c, a = fabs(x);
-	const double z = a <= 0.5 ? x * x : (1.0 - a) * 0.5;
-	const double s = a <= 0.5 ? x : sqrt(z);
-	const double asin_s = NT_ACOS_TERM(s * z, nt_acos_terms(z), s);
+	p = NT_ACOS_TERM(p, z, 0x1.5555555554e25p-3);
+	const double asin_s = NT_ACOS_TERM(s * z, p, s);
 	const double far = x < 0.0 ? pi - 2.0 * asin_s : 2.0 * asin_s;
 	return (float)(a <= 0.5 ? pi * 0.5 - asin_s : far);
 }

@@ -65,106 +65,35 @@ typedef struct corner_lanes {
 	float (*sum)[NT_LANES], (*extra)[NT_LANES]; /* as in lanes_out */
 } corner_lanes;
 
-/* What is made of them on the way. Narrow vectors do not need it for longer than a corner takes: see solve_lanes(). */
-#define KEPT (WIDTH > 4 ? NT_LANES : 1)
-#define KEPT_AT(i) (WIDTH > 4 ? (i) : 0)
-typedef struct corner_parts {
-	NT_ALIGNED(64) float u[3][KEPT], e[3][KEPT], f[3][KEPT]; /* across the normal */
-	float of_u[KEPT], of_e[KEPT], of_f[KEPT];              /* reciprocals of their lengths */
-	uint32_t sound[KEPT];
-} corner_parts;
-
-/* The angle between e and f: first its cosine; in the widest vectors then what tangent/acos.h calls z and s. */
-typedef struct corner_angles {
-	NT_ALIGNED(64) float cosine[NT_LANES];
-#if WIDTH == 16
-	double z[NT_LANES], s[NT_LANES], begin[NT_LANES];
-#else
-	float clamped[NT_LANES];
-#endif
-} corner_angles;
-
-/* Each corner's edges without their part along n, and what makes them unit vectors. */
-static inline NT_ALWAYS_INLINE void project_edges(corner_lanes a, corner_parts *NT_RESTRICT p, int i)
+/* Each corner's unit directions, the bits of what holds for it, and the cosine of its angle as seen along n, at most 1.
+ * NaN may become a number: of a corner that is not sound nothing is used. */
+static inline NT_ALWAYS_INLINE void find_directions(corner_lanes a, float *NT_RESTRICT cosines, bool more, int i)
 {
 	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
 	const float e[3] = {a.e[0][i], a.e[1][i], a.e[2][i]};
 	const float f[3] = {a.f[0][i], a.f[1][i], a.f[2][i]};
+	const float os[3] = {a.u[0][i], a.u[1][i], a.u[2][i]};
+	const float ot[3] = {a.v[0][i], a.v[1][i], a.v[2][i]};
+	/* across the normal */
 	const float ne = n[0] * e[0] + n[1] * e[1] + n[2] * e[2];
 	const float nf = n[0] * f[0] + n[1] * f[1] + n[2] * f[2];
+	const float nu = n[0] * os[0] + n[1] * os[1] + n[2] * os[2];
+	const float nv = n[0] * ot[0] + n[1] * ot[1] + n[2] * ot[2];
 	const float ex = e[0] - ne * n[0], ey = e[1] - ne * n[1], ez = e[2] - ne * n[2];
 	const float fx = f[0] - nf * n[0], fy = f[1] - nf * n[1], fz = f[2] - nf * n[2];
-	p->of_e[KEPT_AT(i)] = a.turned / sqrtf(ex * ex + ey * ey + ez * ez);
-	p->of_f[KEPT_AT(i)] = 1.0f / sqrtf(fx * fx + fy * fy + fz * fz);
-	p->e[0][KEPT_AT(i)] = ex, p->e[1][KEPT_AT(i)] = ey, p->e[2][KEPT_AT(i)] = ez;
-	p->f[0][KEPT_AT(i)] = fx, p->f[1][KEPT_AT(i)] = fy, p->f[2][KEPT_AT(i)] = fz;
-}
-
-/* The same of the u directions. */
-static inline NT_ALWAYS_INLINE void project_u(corner_lanes a, corner_parts *NT_RESTRICT p, int i)
-{
-	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
-	const float os[3] = {a.u[0][i], a.u[1][i], a.u[2][i]};
-	const float nu = n[0] * os[0] + n[1] * os[1] + n[2] * os[2];
 	const float ux = os[0] - nu * n[0], uy = os[1] - nu * n[1], uz = os[2] - nu * n[2];
-	const float uu = ux * ux + uy * uy + uz * uz;
-	p->of_u[KEPT_AT(i)] = 1.0f / sqrtf(uu);
-	p->sound[KEPT_AT(i)] = bits_of(uu) + WELL_INSIDE;
-	p->u[0][KEPT_AT(i)] = ux, p->u[1][KEPT_AT(i)] = uy, p->u[2][KEPT_AT(i)] = uz;
-}
-
-/* The cosine of each corner's angle, as seen along n. */
-static inline NT_ALWAYS_INLINE void find_cosine(const corner_parts *NT_RESTRICT p,
-	corner_angles *NT_RESTRICT angles, int i)
-{
-	const float er = p->of_e[KEPT_AT(i)], ex = er * p->e[0][KEPT_AT(i)], ey = er * p->e[1][KEPT_AT(i)],
-		ez = er * p->e[2][KEPT_AT(i)];
-	const float fr = p->of_f[KEPT_AT(i)], fx = fr * p->f[0][KEPT_AT(i)], fy = fr * p->f[1][KEPT_AT(i)],
-		fz = fr * p->f[2][KEPT_AT(i)];
-	angles->cosine[i] = ex * fx + ey * fy + ez * fz;
-}
-
-/* The angle up to what takes the square root, and the rest. In the widest vectors, nt_acos() as begin + asin(s), with
- * the signs and factors of its three cases in `begin` and s, which changes no bits: 40 of 530 cycles. In others stores
- * would cost more. NaN may become a number: of a corner that is not sound nothing is used. */
-static inline NT_ALWAYS_INLINE void begin_angle(corner_angles *NT_RESTRICT a, int i)
-{
-	const float c = a->cosine[i], size = fabsf(c) < 1.0f ? fabsf(c) : 1.0f;
-#if WIDTH == 16
-	const double pi = 3.14159265358979323846;
-	const double x = c, z = (1.0f - size) * 0.5f, root = sqrt(z);
-	a->z[i] = size > 0.5f ? z : x * x;
-	a->s[i] = size > 0.5f ? copysign(root + root, x) : -x;
-	a->begin[i] = size > 0.5f ? (c < 0.0f ? pi : 0.0) : pi * 0.5;
-#else
-	a->clamped[i] = copysignf(size, c);
-#endif
-}
-
-static inline NT_ALWAYS_INLINE float end_angle(const corner_angles *NT_RESTRICT a, int i)
-{
-#if WIDTH == 16
-	return (float)(a->begin[i] + NT_ACOS_TERM(a->s[i] * a->z[i], nt_acos_terms(a->z[i]), a->s[i]));
-#else
-	return nt_acos(a->clamped[i]);
-#endif
-}
-
-/* Each corner's unit directions and the bits of what holds for it. */
-static inline NT_ALWAYS_INLINE void finish_directions(corner_lanes a, const corner_parts *NT_RESTRICT p,
-	const corner_angles *NT_RESTRICT angles, bool more, int i)
-{
-	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
-	const float ot[3] = {a.v[0][i], a.v[1][i], a.v[2][i]};
-	const float nv = n[0] * ot[0] + n[1] * ot[1] + n[2] * ot[2];
 	const float v[3] = {ot[0] - nv * n[0], ot[1] - nv * n[1], ot[2] - nv * n[2]};
-	const float ur = p->of_u[KEPT_AT(i)],
-		whole[3] = {p->u[0][KEPT_AT(i)], p->u[1][KEPT_AT(i)], p->u[2][KEPT_AT(i)]};
-	const float u[3] = {ur * whole[0], ur * whole[1], ur * whole[2]};
+
+	const float er = a.turned / sqrtf(ex * ex + ey * ey + ez * ez);
+	const float fr = 1.0f / sqrtf(fx * fx + fy * fy + fz * fz);
+	const float cosine = (er * ex) * (fr * fx) + (er * ey) * (fr * fy) + (er * ez) * (fr * fz);
+	cosines[i] = copysignf(fabsf(cosine) < 1.0f ? fabsf(cosine) : 1.0f, cosine);
+	const float uu = ux * ux + uy * uy + uz * uz, ur = 1.0f / sqrtf(uu);
+	const float u[3] = {ur * ux, ur * uy, ur * uz};
 	/* with this square of u the definition normalises as well; the product of an edge without length is NaN; v is
 	 * as long as it is: see BEYOND */
 	const uint32_t sound =
-		p->sound[KEPT_AT(i)] & ~(bits_of(v[0]) | bits_of(v[1]) | bits_of(v[2]) | bits_of(angles->cosine[i]));
+		(bits_of(uu) + WELL_INSIDE) & ~(bits_of(v[0]) | bits_of(v[1]) | bits_of(v[2]) | bits_of(cosine));
 	const uint32_t state = state_of(u, v, sound);
 	a.sum[0][i] = u[0];
 	a.sum[1][i] = u[1];
@@ -179,10 +108,10 @@ static inline NT_ALWAYS_INLINE void finish_directions(corner_lanes a, const corn
 }
 
 /* Directions are weighted by the angle. */
-static inline NT_ALWAYS_INLINE void weigh_corner(corner_lanes a, const corner_angles *NT_RESTRICT angles,
+static inline NT_ALWAYS_INLINE void weigh_corner(corner_lanes a, const float *NT_RESTRICT cosines,
 	const lanes_out *out, bool more, int i)
 {
-	const float w = end_angle(angles, i);
+	const float w = nt_acos(cosines[i]);
 	a.sum[0][i] *= w;
 	a.sum[1][i] *= w;
 	a.sum[2][i] *= w;
