@@ -6,7 +6,7 @@
 #ifndef NT_TANGENT_FAST_FAN_LANES_H
 #define NT_TANGENT_FAST_FAN_LANES_H
 
-#include "tangent/fast/lane_sets.h"
+#include "tangent/fast/turn.h"
 #include "topology/adjacency.h"
 
 /* The degree of a hub, whose fans are not looked at; more fans than a vertex has. */
@@ -19,6 +19,18 @@
 #else
 #define UNROLL NT_UNROLL(8)
 #endif
+
+/* The 16-bit halves of a set in which a and b differ: all bits of such a half, 0 in the others. */
+static inline lanes halves_differ(lanes set, lanes a, lanes b)
+{
+#if WIDTH > 1
+	typedef uint16_t lane_halves __attribute__((vector_size(4 * WIDTH)));
+	return set & (lanes)((lane_halves)a != (lane_halves)b);
+#else
+	const lanes other = a ^ b;
+	return set & (LANES_WHERE((other & 0xffff) != 0) >> 16 | LANES_WHERE(other >> 16 != 0) << 16);
+#endif
+}
 
 /* Corner k of WIDTH vertices of so many corners; where one has fewer, voids above all numbers that accumulate gives to
  * voids. Of an entry the bits of `mask` count. */
@@ -67,8 +79,8 @@ static inline NT_ALWAYS_INLINE lanes count_components(lanes linked[NT_FAN_DEPTH]
 		const lanes mine = linked[a];
 		UNROLL
 		for (uint32_t b = a + 1; b < depth; b++)
-			linked[b] = with_bits(linked[b], having_bit(mine, 1u << b), mine);
-		count = one_more_without(count, mine, ((1u << depth) - (2u << a)) | NT_ENTRY_VOID);
+			linked[b] |= LANES_WHERE((mine & 1u << b) != 0) & mine;
+		count -= LANES_WHERE((mine & (((1u << depth) - (2u << a)) | NT_ENTRY_VOID)) == 0);
 	}
 	return count;
 }
@@ -87,7 +99,7 @@ static inline NT_ALWAYS_INLINE lanes count_fans_of(const nt_fan_entry *entries, 
 	lanes linked[NT_FAN_DEPTH];
 	lanes halves[NT_FAN_DEPTH]; /* those of next and of previous in which vertices differ most, without
 	                               orientation */
-	half_set distinct = ALL_HALVES;
+	lanes distinct = ~(lanes){0};
 	UNROLL
 	for (uint32_t k = 0; k < depth; k++) {
 		load_corners(entries, k, degree, mask, &next[k], &previous[k]);
@@ -97,17 +109,17 @@ static inline NT_ALWAYS_INLINE lanes count_fans_of(const nt_fan_entry *entries, 
 	/* links across shared edges; edges whose low halves differ are not the same */
 	UNROLL
 	for (uint32_t b = 0; b < depth; b++) {
-		half_set from_earlier = ALL_HALVES; /* short chains: one for all took 15 to 40 cycles more a block */
+		lanes from_earlier = ~(lanes){0}; /* short chains: one for all took 15 to 40 cycles more a block */
 		UNROLL
 		for (uint32_t a = 0; a < b; a++) {
-			const lane_set apart = differ(differ(ALL_LANES, next[a], previous[b]), next[b], previous[a]);
-			linked[a] = without_bit(linked[a], apart, 1u << b);
+			const lanes apart = LANES_WHERE(next[a] != previous[b]) & LANES_WHERE(next[b] != previous[a]);
+			linked[a] &= ~(apart & 1u << b);
 			from_earlier = halves_differ(from_earlier, halves[a], halves[b]);
 		}
-		distinct = common_halves(distinct, from_earlier);
+		distinct &= from_earlier;
 	}
 	const lanes count = count_components(linked, depth);
-	return all_halves(distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
+	return !any_lane(~distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
 }
 
 /* The usual depths are worth a loop without branches each. */
