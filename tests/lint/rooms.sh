@@ -24,6 +24,11 @@ while IFS= read -r place; do
 done < <(git ls-files -z '*.c' '*.h' '*.cpp' '*.hpp' 2>/dev/null | xargs -0r awk '
 	length > 64 { gsub(/\t/, "        "); if (length > 120) print FILENAME ":" FNR }')
 
+while IFS= read -r place; do
+	fault "$place: a blank at the end, or spaces where .editorconfig has tabs"
+done < <(git ls-files -z '*.c' '*.h' '*.cpp' '*.sh' '*.py' '*.mk' Makefile 2>/dev/null | xargs -0r awk '
+	/[ \t]$/ || (FILENAME ~ /\.c(pp)?$/ && /^    /) { print FILENAME ":" FNR }')
+
 calls='(^|[^a-zA-Z0-9_.>])(abort|exit|_exit|_Exit|quick_exit|printf|puts|putchar|perror|vprintf)[[:space:]]*\(|fprintf[[:space:]]*\([[:space:]]*std|std::(cout|cerr)'
 while IFS= read -r file; do
 	# Comments may speak of printf; code may not call it.

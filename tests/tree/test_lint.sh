@@ -61,6 +61,14 @@ lint 1
 prints "src/base/a.c:3: a line of more than 120 columns"
 ! grep -q "a.c:2" "$WORK/out.txt" || wrong "120 columns are found"
 
+scene "what .editorconfig says of blanks is kept"
+table base:-
+holds base/a.c 'int x; \n    int y;\n\tint z;'
+lint 1
+prints "src/base/a.c:2: a blank at the end"
+prints "src/base/a.c:3: a blank at the end"
+! grep -q "a.c:4" "$WORK/out.txt" || wrong "a tab is found"
+
 scene "circles of headers, of files and of rooms are found"
 table base:- file:ply ply:file
 holds file/a.h '#include "file/b.h"'

@@ -15,6 +15,7 @@ mv "$tree/data/debian" "$tree/debian"
 rm "$tree/debian/build.sh"
 (cd "$tree" && MAKEFLAGS= dpkg-buildpackage --build=binary --unsigned-changes --no-pre-clean) >"$WORK/out.txt" 2>&1 ||
 	wrong "$(tail -30 "$WORK/out.txt")"
+grep -q '^[1-9][0-9]* passed, 0 failed' "$WORK/out.txt" || wrong "the build runs no test"
 ! grep -q ' -o [^ ]*/weld\.c\.o' "$WORK/out.txt" || wrong "what is built was built again"
 lintian --fail-on error,warning "$deb"/*.changes >"$WORK/out.txt" 2>"$WORK/err.txt" || wrong "$(tail -30 "$WORK/out.txt")"
 for package in nmtan libnmtan0 libnmtan-dev; do
@@ -57,12 +58,13 @@ done
 run "$data/head.obj" head.glb
 cmp head.glb root/tmp/head.glb || wrong "the package's tool has other bytes"
 
-printf '%s\n' '#include <nmtan.h>' '#include <stdio.h>' 'int main(void) { puts(nmtan_version()); return 0; }' >program.c
 export PKG_CONFIG_LIBDIR=$PWD/root/usr/lib/$triplet/pkgconfig PKG_CONFIG_SYSROOT_DIR=$PWD/root \
 	PKG_CONFIG_SYSTEM_INCLUDE_PATH=/ PKG_CONFIG_SYSTEM_LIBRARY_PATH=/
-# shellcheck disable=SC2046
-cc -o program program.c $(pkg-config --cflags --libs nmtan) || wrong "a program does not build with libnmtan-dev"
-is "$(LD_LIBRARY_PATH=root/usr/lib/$triplet ./program)" "$version"
+(cd "$tree" && LD_LIBRARY_PATH=$OLDPWD/root/usr/lib/$triplet AUTOPKGTEST_TMP=$OLDPWD sh debian/tests/library) >"$WORK/out.txt" 2>&1 ||
+	wrong "debian/tests/library: $(cat "$WORK/out.txt")"
+mkdir bin && ln -s "$NMTAN" bin/nmtan
+(cd "$tree" && PATH=$OLDPWD/bin:$PATH AUTOPKGTEST_TMP=$OLDPWD sh -eu debian/tests/convert) >"$WORK/out.txt" 2>&1 ||
+	wrong "debian/tests/convert: $(cat "$WORK/out.txt")"
 
 in_root --purge nmtan-farm nmtan libnmtan-dev libnmtan0
 is "$(find root/usr \( -name '*nmtan*' -o -name '*.pc' \))" ""

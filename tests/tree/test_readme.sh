@@ -66,8 +66,8 @@ anchors() {
 	sed -n 's/^##* //p' "$1" | tr '[:upper:] ' '[:lower:]-' | sed "s/[^a-z0-9_-]//g"
 }
 
-scene "the links of README and measurements lead to files of the tree, and to headings in them"
-for page in "$readme" "$ROOT/tests/bench/README.md"; do
+scene "the links of README, measurements and .github lead to files of the tree, and to headings in them"
+for page in "$readme" "$ROOT"/tests/bench/README.md "$ROOT"/.github/*.md; do
 	grep -oE '\]\([^)]+\)' "$page" | sed 's/^](//; s/)$//' | while IFS= read -r link; do
 		case $link in http*) continue ;; \#*) target=$page ;; *) target=$(dirname "$page")/${link%%#*} ;; esac
 		[ -e "$target" ] || echo "$link"
@@ -75,6 +75,18 @@ for page in "$readme" "$ROOT/tests/bench/README.md"; do
 	done
 done >missing
 is "$(cat missing)" ""
+
+scene "the hook of pre-commit takes the files that the tool reads, and fails where one has an error"
+hook=$ROOT/.pre-commit-hooks.yaml
+entry=$(sed -n 's/^  entry: nmtan //p' "$hook")
+ls "$data" "$data/damaged" | grep -E "$(sed -n 's/^  files: //p' "$hook")" | sed 's/.*\.//' | sort -u | tr '\n' ' ' >types
+is "$(cat types)" "glb gltf obj ply "
+# shellcheck disable=SC2086
+run $entry "$data/quad.obj" "$data/quad_le.ply"
+exits 0
+# shellcheck disable=SC2086
+run $entry "$data/quad.obj" "$data/damaged/glb_old.glb"
+[ "$status" != 0 ] || wrong "a damaged file passes"
 
 scene "every target of make that README and measurements name is there"
 grep -ohE '(`|^    |^\$ )make [a-z]+(-[a-z]+)*' "$readme" "$ROOT/tests/bench/README.md" | sed "s/.*make //" | sort -u | while read -r target; do

@@ -286,7 +286,7 @@ static nt_status write_block(const composition *c, const block *b, byte_stream *
 	rounding_stream rounding = {.stream = stream, .precision = c->options.precision};
 	const nt_status status =
 		nt_new_primitive_write_attribute(b->primitive, b->attribute, stream_rounded, &rounding, error);
-	nt_precision_report(c->scene, c->options.precision, &rounding.cost, 
+	nt_precision_report(c->scene, c->options.precision, &rounding.cost,
 		nt_mesh_place(b->primitive->mesh, &(nt_place){0}));
 	return status;
 }

@@ -41,7 +41,7 @@ static nt_status fill(nt_image_set *set, nt_error *error)
 	if (!set->entries)
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < set->entry_count; i++)
-		set->entries[i] = (image_entry){.image = nt_textures_at(set->options.textures, i), 
+		set->entries[i] = (image_entry){.image = nt_textures_at(set->options.textures, i),
 			.textures = {NT_MODEL_NONE, NT_MODEL_NONE}};
 	const nt_status status = nt_link_folder(&folder, set->options.path, error);
 	set->folder = folder.data;
