@@ -71,7 +71,7 @@ unit: tests
 build/node/node_modules/gltf-validator/package.json: tests/support/package.json tests/support/package-lock.json
 	@mkdir -p build/node
 	@cp tests/support/package.json tests/support/package-lock.json build/node/
-	@echo "Installing gltf-validator, gltfpack, meshoptimizer and playwright-core (npm) into build/node"
+	@echo "Installing gltf-validator, gltfpack, meshoptimizer, playwright-core and axe-core (npm) into build/node"
 	@npm ci --prefix build/node --no-audit --no-fund --loglevel=error >/dev/null || \
 		echo "npm cannot install them: the tests that need it will be skipped"
 	@[ ! -f $@ ] || touch $@

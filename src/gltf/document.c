@@ -325,6 +325,8 @@ static nt_status place_error(nt_error *error, nt_status status, const char *poin
 static nt_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const char *uri, size_t length,
 	nt_error *error)
 {
+	nt_error ignored; /* who wants none here: below, an error carries the status */
+	error = error ? error : &ignored;
 	const char *path;
 	nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length,
 		document->allow_outside, &path, error);

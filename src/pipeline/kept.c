@@ -72,7 +72,7 @@ static size_t count_wrong_of(const nt_mesh *mesh, nt_arena *arena, unsigned thre
 }
 
 /* Looks at one mesh as if it were alone; `memory` is empty before and after. */
-static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh mesh, nt_arena *memory)
+static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh mesh, nt_arena *memory, nt_error *error)
 {
 	nt_scene own = *scene;
 	own.arena = *memory;
@@ -80,8 +80,7 @@ static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh mesh, n
 	own.findings = (nt_finding_list){0}; /* what a load finds is said of meshes that are solved */
 	mesh.plan = (nt_mesh_plan){.pooled = mesh.plan.pooled}; /* a primitive costs what it uses */
 	size_t wrong = 0, judged = 0;
-	/* what cannot be read is copied as it is */
-	const nt_status status = tasks->reader->load(&own, &mesh, tasks->options, NULL);
+	const nt_status status = tasks->reader->load(&own, &mesh, tasks->options, error);
 	if (!status && mesh.tangents && mesh.texcoords)
 		wrong = count_wrong_of(&mesh, &own.arena, tasks->settings->threads, &judged);
 	if (wrong)
@@ -91,7 +90,7 @@ static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh mesh, n
 	nt_arena_clear(memory);
 	nt_arena_free(&own.temporary);
 	nt_finding_list_free(&own.findings);
-	return status == NT_ERROR_MEMORY ? status : NT_OK;
+	return nt_may_be_left(status) ? NT_OK : status;
 }
 
 nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error)
@@ -100,7 +99,7 @@ nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error)
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->mesh_count; i++)
 		if (nt_format_is_gltf(scene->format) && nt_mesh_is_kept_and_used(&scene->meshes[i]))
-			status = look_at(scene, tasks, scene->meshes[i], &memory);
+			status = look_at(scene, tasks, scene->meshes[i], &memory, error);
 	nt_arena_free(&memory);
-	return status ? nt_fail_memory(error) : NT_OK;
+	return status;
 }

@@ -112,8 +112,14 @@ void nt_turn_untextured(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan
  * NT_ERROR_MEMORY. */
 nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads);
 
-/* kept.c, for tasks.c. Adds what is wrong with w of tangents that are kept and used. Returns NT_OK or
- * NT_ERROR_MEMORY. */
+/* Whether a mesh that nobody solves may be left as it is: it could be loaded, or it is there and cannot be. */
+static inline bool nt_may_be_left(nt_status load)
+{
+	return load != NT_ERROR_MEMORY && load != NT_ERROR_MISSING && load != NT_ERROR_IO;
+}
+
+/* kept.c, for tasks.c. Adds what is wrong with w of tangents that are kept and used. Returns NT_OK, NT_ERROR_MEMORY,
+ * or NT_ERROR_MISSING or NT_ERROR_IO where their file cannot be opened. */
 nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error);
 
 /* halves.c. Decides which triangles of a mesh with normals are solved as quads. Returns NT_OK or NT_ERROR_MEMORY. */

@@ -58,7 +58,7 @@ static nt_status load_for_report(window *w, nt_mesh *mesh)
 	if (mesh->plan.same_as && !mesh->plan.same_as->positions) /* that one could not be read */
 		return NT_OK;
 	const nt_status status = w->tasks->reader->load(&w->scene, mesh, w->tasks->options, w->error);
-	if (!status || w->tasks->settings->check || status == NT_ERROR_MEMORY)
+	if (!status || w->tasks->settings->check || !nt_may_be_left(status))
 		return status;
 	mesh->positions = NULL;
 	nt_error_clear(w->error);

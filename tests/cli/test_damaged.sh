@@ -26,6 +26,20 @@ for file in "$data"/damaged/*.obj "$data"/damaged/*.ply "$data"/damaged/*.glb "$
 	grep -q "^${file##*/}	" "$ROOT/tests/cli/damaged.tsv" || wrong "${file##*/} is not in damaged.tsv"
 done
 
+scene "a glTF whose tangents are kept and whose .bin is not there is an error, whatever is asked"
+run -q "$data/mirrored_cube.obj" kept.gltf
+run -q --only=all "$data/plates.gltf" many.gltf
+rm -f kept.bin many.bin
+for name in kept many; do
+	for options in "o.gltf" "o.glb" "--buffers=link o.gltf" "--only=all o.glb" "--report=r.json o.gltf" "--existing=replace o.gltf" "--check"; do
+		run $name.gltf $options
+		exits 2
+		says "$name.bin"
+		[ ! -e o.gltf ] && [ ! -e o.glb ] || wrong "$options: there is an output"
+		rm -f o.gltf o.glb
+	done
+done
+
 scene "what a file refers to in vain never comes to mean what is added"
 # accessor 3 has no bytes
 base='const xyz = [0, 0, 0, 1, 0, 0, 0, 1, 0], up = [0, 0, 1, 0, 0, 1, 0, 0, 1];

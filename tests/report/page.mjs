@@ -700,6 +700,23 @@ async function clickTexture(page, u, v) {
 	}
 }
 
+// ---- for everybody ----
+
+const asked = requests.length; // an index asks for its own style and script
+const axe = createRequire(modules + '/').resolve('axe-core/axe.min.js');
+for (const name of ['head.html', 'diff.html', 'pictures.html#file-0', 'pages/index.html'])
+	for (const look of [{}, {colorScheme: 'dark', viewport: {width: 400, height: 800}}]) {
+		const [file, hash] = name.split('#'), page = await open(file, {...look, hash: hash ? '#' + hash : '', bypassCSP: true});
+		await page.locator('.finding').first().click({timeout: 2000}).catch(() => {}); // an index has none
+		await rest(page);
+		await page.addScriptTag({path: axe});
+		const {violations} = await page.evaluate(() => window.axe.run({preload: false}));
+		check(violations.length === 0, `axe on ${name} ${JSON.stringify(look)}: ` +
+			violations.map(v => v.id + ' ' + v.nodes.map(n => n.target.join(' ')).slice(0, 3)).join('; '));
+		await page.close();
+	}
+requests.length = asked;
+
 check(complaints.length === 0, 'the console complains: ' + complaints.slice(0, 4).join('; '));
 check(requests.length === 0, 'it asks for: ' + requests.slice(0, 3));
 await browser.close();
