@@ -80,7 +80,7 @@ build/node/node_modules/gltf-validator/package.json: tests/support/package.json 
 build/clients/node_modules/three/package.json: tests/bindings/package.json tests/bindings/package-lock.json
 	@mkdir -p build/clients
 	@cp tests/bindings/package.json tests/bindings/package-lock.json build/clients/
-	@echo "Installing three, glTF-Transform, esbuild and others (npm) into build/clients"
+	@echo "Installing three, glTF-Transform, bundlers and others (npm) into build/clients"
 	@npm ci --prefix build/clients --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null
 	@touch $@
 

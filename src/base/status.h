@@ -21,6 +21,7 @@ typedef enum nt_status {
 	NT_ERROR_FACE_SIZE = NMTAN_ERROR_FACE_SIZE,
 	NT_ERROR_TOO_LARGE = NMTAN_ERROR_TOO_LARGE,
 	NT_ERROR_MEMORY = NMTAN_ERROR_MEMORY,
+	NT_ERROR_CAPACITY = NMTAN_ERROR_CAPACITY,
 	/* far above, so that nmtan_status may grow */
 	NT_ERROR_USAGE = 64,  /* command line: wrong or contradictory words */
 	NT_ERROR_IO,          /* a file cannot be read or written */

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
 # make wasm: the npm package in build/npm (clang, lld and wasi-libc; wasm-opt where it is there). make python: a
-# wheel in build/python. make amalgamation: the library as one C file in build/amalgamation.
+# wheel and a source distribution in build/python. make amalgamation: the library as one C file in build/amalgamation.
 
 # The tool alone sets deadlines and makes normals. Kernels come before what chooses between them.
 amalgamation_src := $(filter-out src/base/deadline.c,$(filter src/base/% src/topology/%,$(core_src))) \
@@ -58,7 +58,7 @@ build/npm/package.json: $(wasm_dir)/package.json include/nmtan.h
 	@mkdir -p $(@D)
 	sed 's/"version": "0.0.0"/"version": "$(VERSION)"/' $< >$@.part && mv $@.part $@
 
-npm_copies := $(addprefix build/npm/,index.js external.js core.js index.d.ts README.md)
+npm_copies := $(addprefix build/npm/,index.js external.js external.node.js core.js index.d.ts README.md)
 $(npm_copies): build/npm/%: $(wasm_dir)/%
 	@mkdir -p $(@D)
 	cp $< $@
@@ -73,12 +73,15 @@ wasm: $(npm_copies) $(addprefix build/npm/,LICENSE package.json wasm.js nmtan.wa
 
 -include $(wasm_obj:.o=.d)
 
-# The wheel's library needs no debugging information.
+# The wheel's library needs no debugging information; the source distribution has the library as one C file.
 python_src := $(wildcard src/bindings/python/nmtan/*) src/bindings/python/wheel.py
 .PHONY: python
-python: build/python/nmtan.whl
+python: build/python/nmtan.whl build/python/nmtan.tar.gz
 
 build/python/nmtan.whl: $(python_src) $(B)/libnmtan.so include/nmtan.h LICENSE
 	@rm -rf $(@D) && mkdir -p $(@D)
 	strip -o $(@D)/libnmtan.so.0 $(B)/libnmtan.so
-	ln -s "$$(basename "$$(python3 src/bindings/python/wheel.py $(VERSION) $(@D)/libnmtan.so.0 LICENSE $(@D))")" $@
+	ln -s "$$(basename "$$(python3 -B src/bindings/python/wheel.py $(@D)/libnmtan.so.0 $(@D))")" $@
+
+build/python/nmtan.tar.gz: build/python/nmtan.whl build/amalgamation/nmtan.c
+	ln -sf "$$(basename "$$(python3 -B src/bindings/python/wheel.py --sdist build/amalgamation/nmtan.c $(@D))")" $@

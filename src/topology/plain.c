@@ -10,6 +10,13 @@
 
 enum { KEY_FLOATS = 8 };
 
+/* JavaScript brings 32-bit indices of vertices, and is spared the code for others. */
+#ifdef __wasm__
+enum { OTHER_INDICES = 0 };
+#else
+enum { OTHER_INDICES = 1 };
+#endif
+
 static bool widen_indices(nmtan_mesh *mesh, size_t corner_count, nt_scratch *scratch)
 {
 	uint32_t *indices = nt_scratch_alloc(scratch, corner_count, sizeof *indices);
@@ -130,9 +137,9 @@ static bool turn_texcoords(nmtan_mesh *mesh, nt_scratch *scratch)
 nmtan_status nt_make_plain(nmtan_mesh *mesh, size_t corner_count, nt_scratch *scratch, const uint32_t **corners)
 {
 	*corners = NULL;
-	if (mesh->indices16 && !widen_indices(mesh, corner_count, scratch))
+	if (OTHER_INDICES && mesh->indices16 && !widen_indices(mesh, corner_count, scratch))
 		return NMTAN_ERROR_MEMORY;
-	if (nt_makes_vertices(mesh)) {
+	if (OTHER_INDICES && nt_makes_vertices(mesh)) {
 		const nmtan_status status = make_vertices(mesh, corner_count, scratch, corners);
 		if (status)
 			return status;

@@ -3,7 +3,8 @@
 // node clients.mjs PACKAGE MODULES PLAYWRIGHT FOLDER FILE...: real programs with the npm package in them. FOLDER takes
 // what is built; each FILE is a GLB or glTF that nmtan wrote with --repair=off, or a repaired.glb.
 import assert from 'node:assert/strict';
-import { writeFileSync } from 'node:fs';
+import { execFileSync } from 'node:child_process';
+import { copyFileSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { pathToFileURL } from 'node:url';
 import { equalBytes, triangleGoldens } from './golden.mjs';
@@ -71,9 +72,84 @@ await test('a bundle of esbuild\'s loads and works', async () => {
 	assert.deepEqual([...await answer].slice(0, 4).map((x) => x + 0), [1, 0, 0, 1]);
 });
 
+// A project that has installed the package.
+mkdirSync(`${folder}/node_modules`);
+symlinkSync(npm, `${folder}/node_modules/nmtan`);
+const external = `${folder}/external.mjs`, places = {};
+writeFileSync(external, `import { ready, generateTangents } from 'nmtan/external';
+	export const answer = ready.then(() => generateTangents([0,0,0, 1,0,0, 0,1,0], [0,0,1, 0,0,1, 0,0,1], [0,0, 1,0, 0,1]));`);
+for (const name of ['esbuild', 'rollup', 'webpack']) {
+	places[name] = `${folder}/${name}`;
+	mkdirSync(places[name]);
+	if (name !== 'webpack') // which brings the file itself
+		copyFileSync(`${npm}/nmtan.wasm`, `${places[name]}/nmtan.wasm`);
+}
+const bundlers = {
+	esbuild: async (outfile) => (await peer('esbuild')).build({entryPoints: [external], outfile, bundle: true, format: 'esm',
+		platform: 'browser', target: 'es2022', logLevel: 'silent'}),
+	rollup: async (file) => {
+		const { rollup } = await peer('rollup'), { nodeResolve } = await peer('@rollup/plugin-node-resolve');
+		const made = await rollup({input: external, plugins: [nodeResolve({browser: true})],
+			onwarn: (warning) => assert.fail(warning.message)});
+		await made.write({file, format: 'es'});
+	},
+	webpack: async (file) => {
+		const { default: webpack } = await peer('webpack');
+		const stats = await new Promise((resolve, reject) => webpack({entry: external, mode: 'development', devtool: false,
+			target: ['web', 'es2022'], experiments: {outputModule: true}, output: {path: places.webpack, filename: 'bundle.mjs',
+				publicPath: `${pathToFileURL(places.webpack)}/`, library: {type: 'module'}}},
+		(error, found) => (error ? reject(error) : resolve(found))));
+		assert.deepEqual(stats.toJson().errors, []);
+		assert.ok(readFileSync(file).length > 0);
+	},
+};
+for (const [name, make] of Object.entries(bundlers))
+	await test(`nmtan/external in a bundle of ${name}'s for browsers`, async () => {
+		const file = `${places[name]}/bundle.mjs`;
+		await make(file);
+		assert.doesNotMatch(readFileSync(file, 'utf8'), /node:/);
+		const fetched = globalThis.fetch;
+		globalThis.fetch = async (url) => new Response(readFileSync(new URL(url))); // Node's has no files
+		try {
+			const { answer } = await import(pathToFileURL(file).href);
+			assert.deepEqual([...await answer].slice(0, 4).map((x) => x + 0), [1, 0, 0, 1]);
+		} finally {
+			globalThis.fetch = fetched;
+		}
+	});
+
+await test('TypeScript takes what the functions take, and nothing else', () => {
+	writeFileSync(`${folder}/types.mts`, `import { generateCornerTangents, generateTangents, generateTangentsIndexed, ready } from 'nmtan';
+		import type { Counts } from 'nmtan/external';
+		const f = new Float32Array(9), all = {array: f, stride: 9, offset: 1};
+		const t: Float32Array = generateTangents(f, [0, 0, 1], all, {vDown: true});
+		const r = generateTangentsIndexed(new Uint16Array(3), all, new Int8Array(9), f, {faceSizes: [3], angularThreshold: 90,
+			method: 'mikktspace-sorted', repair: false});
+		const counts: Counts = r.counts, n: number = counts.normalsNotUnit;
+		const faults: Uint8Array | undefined = generateCornerTangents(null, f, f, f, {cornerFaults: true}).cornerFaults;
+		export const done: Promise<void> = ready.then(() => console.log(t, n, faults));
+		// @ts-expect-error
+		generateTangentsIndexed([0], f, f, f, {convention: 'gltf'});
+		// @ts-expect-error
+		generateTangentsIndexed([0], f, f, f, {method: 'best'});
+		// @ts-expect-error
+		generateTangents(f, f, f, {repair: true});
+		// @ts-expect-error
+		generateTangents(f, f, new BigInt64Array(2));
+		// @ts-expect-error
+		generateTangentsIndexed([0], f, f, f, {vDown: 1});
+		// @ts-expect-error
+		generateTangentsIndexed(null, f, f, f);`);
+	try {
+		execFileSync(process.execPath, [`${modules}/node_modules/typescript/bin/tsc`, '--noEmit', '--strict', '--module', 'nodenext',
+			'--target', 'es2022', '--typeRoots', `${folder}/none`, `${folder}/types.mts`], {encoding: 'utf8'});
+	} catch (error) {
+		assert.fail(error.stdout);
+	}
+});
+
 await test('three.js draws the same pixels with it as with its own module', async () => {
 	const here = new URL('page.js', import.meta.url).pathname;
-	const { readFileSync } = await import('node:fs');
 	await bundle({contents: readFileSync(here, 'utf8'), resolveDir: folder}, `${folder}/page.js`, 'iife');
 	writeFileSync(`${folder}/page.html`, '<!doctype html><script src="page.js"></script>');
 	const { chromium } = createRequire(`${playwright}/`)('playwright-core');

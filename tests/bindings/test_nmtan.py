@@ -92,10 +92,10 @@ def test_split_of_corners_is_the_same():
         assert (a == b).all()
 
 
-def test_convention():
+def test_v_down():
     down = TEXCOORDS * [1, -1] + [0, 1]
     before = down.copy()
-    found = nmtan.tangents(POSITIONS, NORMALS, down, FACES, convention="gltf")
+    found = nmtan.tangents(POSITIONS, NORMALS, down, FACES, v_down=True)
     assert (found == nmtan.tangents(POSITIONS, NORMALS, TEXCOORDS, FACES)).all()
     assert (down == before).all()
 
@@ -148,7 +148,10 @@ WRONG = {
     "an index above 32 bits": (dict(faces=[[0, 1, 2 ** 32]]), "out of range"),
     "indices that are no integers": (dict(faces=[[0.0, 1.0, 2.0]]), "integers"),
     "a method": (dict(method="best"), "method: one of"),
-    "a convention": (dict(convention="dx"), "convention: one of"),
+    "unsigned normals": (dict(normals=NORMALS.astype(np.uint8)), "normals: floats are expected, or int8"),
+    "a face of five corners": (dict(faces=[0, 1, 2, 3, 4], face_sizes=[5]), "face_sizes: one row of 3 and 4"),
+    "sizes of fewer corners": (dict(faces=FACES.ravel(), face_sizes=[3, 4]), "face_sizes: they make 7 corners, there are 12"),
+    "rows of faces with sizes": (dict(face_sizes=[3] * 4), r"faces: shape \[corners\] is expected"),
     "threads": (dict(threads=-1), "threads"),
     "a threshold": (dict(angular_threshold=181.0), "argument"),
 }
@@ -160,6 +163,48 @@ def test_refused(function, name):
     change, text = WRONG[name]
     with pytest.raises(ValueError, match=text):
         function(**{**dict(positions=POSITIONS, normals=NORMALS, texcoords=TEXCOORDS, faces=FACES), **change})
+
+
+@pytest.mark.parametrize("function", [nmtan.tangents, nmtan.vertex_tangents])
+def test_the_old_word_names_the_new_one(function):
+    with pytest.raises(TypeError, match="convention: it is v_down now"):
+        function(POSITIONS, NORMALS, TEXCOORDS, FACES, convention="gltf")
+    with pytest.raises(TypeError, match="v_down: True or False"):
+        function(POSITIONS, NORMALS, TEXCOORDS, FACES, v_down="gltf")
+    with pytest.raises(TypeError):
+        function(POSITIONS, NORMALS, TEXCOORDS, FACES, vdown=True)
+
+
+def test_normals_of_signed_integers():
+    slanted = np.tile(np.float64([100, 30, 70]), (6, 1))
+    unit = slanted / np.linalg.norm(slanted[0])
+    expected = nmtan.tangents(POSITIONS, unit, TEXCOORDS, FACES)
+    for kind, most in ((np.int8, 127), (np.int16, 32767)):
+        result = nmtan.corner_tangents(POSITIONS, np.round(slanted / 127 * most).astype(kind), TEXCOORDS, FACES)
+        assert np.abs(result.tangents - expected).max() < 1e-4
+        assert result.counts.normals_not_unit == 0
+    assert nmtan.corner_tangents(POSITIONS, slanted, TEXCOORDS, FACES).counts.normals_not_unit == 6
+    minus = nmtan.tangents(POSITIONS, (-128 * NORMALS).astype(np.int8), TEXCOORDS, FACES)
+    assert minus.tobytes() == nmtan.tangents(POSITIONS, -NORMALS, TEXCOORDS, FACES).tobytes()
+
+
+def test_mixed_faces():
+    faces, sizes = [0, 1, 2, 3, 1, 4, 5, 1, 5, 2], [4, 3, 3]
+    assert (nmtan.tangents(POSITIONS, NORMALS, TEXCOORDS, faces, face_sizes=sizes) == [LEFT] * 4 + [RIGHT] * 6).all()
+    result = nmtan.vertex_tangents(POSITIONS, NORMALS, TEXCOORDS, faces, face_sizes=sizes)
+    assert result.sources.tolist() == [1, 2] and result.faces.tolist() == [0, 1, 2, 3, 6, 4, 5, 6, 5, 7]
+    corners = nmtan.tangents(POSITIONS, NORMALS, TEXCOORDS, faces, face_sizes=sizes)
+    assert nmtan.split(faces, corners, 6, face_sizes=sizes).faces.tolist() == result.faces.tolist()
+    soup = [array[faces] for array in (POSITIONS, NORMALS, TEXCOORDS)]
+    assert (nmtan.tangents(*soup, face_sizes=sizes) == corners).all()
+
+
+def test_what_is_known_of_corners():
+    result = nmtan.corner_tangents(POSITIONS, NORMALS, TEXCOORDS, FACES)
+    assert (result.tangents == nmtan.tangents(POSITIONS, NORMALS, TEXCOORDS, FACES)).all()
+    assert (result.bitangents == [0, 1, 0]).all() and not result.faults.any() and result.counts.mirrored == 2
+    flat = nmtan.corner_tangents(POSITIONS, NORMALS, 0 * TEXCOORDS, FACES)
+    assert (flat.faults & 16 == 16).all() and flat.counts.repaired_unassigned == 12  # NMTAN_FAULT_UNASSIGNED
 
 
 def test_refused_without_faces():
@@ -284,6 +329,9 @@ def test_convert_fails_as_the_tool_does(tmp_path):
     with pytest.raises(nmtan.ConversionError, match="unknown option") as caught:
         convert("a.obj", "a.glb", no_such_option=True)
     assert caught.value.exit_code == 1 and caught.value.conversion is None
+    for paths in (("-", "a.glb"), ("a.obj", "-")):
+        with pytest.raises(ValueError, match="put: the path of a file"):
+            convert(*paths)
     with pytest.raises(FileNotFoundError):
         nmtan.convert("a.obj", "a.glb", program="/no/such/nmtan")
 

@@ -19,6 +19,44 @@ rm -f "$ROOT/build/python/nmtan.whl"
 make -C "$ROOT" -s python >make.txt 2>&1 || wrong "$(tail -5 make.txt)"
 cmp -s first.whl "$ROOT/build/python/nmtan.whl" || wrong "they differ"
 
+scene "the wheel's tag names the newest glibc that its library asks for"
+newest=$(objdump -T "$ROOT/build/python/libnmtan.so.0" | grep -o 'GLIBC_2\.[0-9]*' | sort -uV | tail -1 | tr . _)
+is "$(basename "$(readlink -f "$ROOT/build/python/nmtan.whl")")" \
+	"nmtan-$(sed -n 's/.*VERSION_STRING "\(.*\)"/\1/p' "$ROOT/include/nmtan.h")-py3-none-manylinux_${newest#GLIBC_}_$(uname -m).whl"
+
+scene "mypy --strict passes for the module and for who uses it"
+if command -v mypy >/dev/null && [ -n "$python" ]; then
+	cat >user.py <<'END'
+import numpy as np
+import nmtan
+
+rows = np.zeros((3, 3), np.float32)
+result: nmtan.VertexTangents = nmtan.vertex_tangents(rows, rows, rows[:, :2], [[0, 1, 2]], v_down=True)
+mirrored: int = nmtan.corner_tangents(rows, rows, rows[:, :2], face_sizes=[3]).counts.mirrored
+print(result.apply(rows).shape, result.tangents.dtype, mirrored, nmtan.version())
+print(nmtan.convert("a.obj", "a.glb", verify=True).outputs)
+END
+	MYPYPATH=$ROOT/src/bindings/python mypy --strict --python-executable "$python" --cache-dir "$WORK/mypy" user.py \
+		"$ROOT/src/bindings/python/nmtan" >mypy.txt 2>&1 || wrong "$(cat mypy.txt)"
+	sed -i 's/v_down=True/convention="gltf"/' user.py
+	! MYPYPATH=$ROOT/src/bindings/python mypy --strict --python-executable "$python" --cache-dir "$WORK/mypy" user.py >mypy.txt 2>&1 ||
+		wrong "the old word is taken"
+else
+	skip_case "no mypy, or no numpy"
+fi
+
+scene "the source distribution builds the wheel, whose module has the same tangents"
+python3 -B -c 'import sys, tarfile; tarfile.open(sys.argv[1]).extractall("sdist")' "$ROOT/build/python/nmtan.tar.gz" || wrong "no archive"
+cd sdist/nmtan-* || wrong "$(ls sdist)"
+CC="cc -DNMTAN_ONE_SET" python3 -B -c 'import wheel; print(wheel.build_wheel(".")); print(wheel.build_sdist("."))' >out.txt 2>&1 || wrong "$(cat out.txt)"
+cmp -s nmtan-*.tar.gz "$ROOT/build/python/nmtan.tar.gz" || wrong "it is not the same from itself"
+python3 -m zipfile -e nmtan-*.whl "$WORK/own"
+cd "$WORK" || exit 1
+[ -z "$python" ] || PYTHONPATH=$WORK/own "$python" -B -c 'import numpy, nmtan
+assert nmtan.__file__.startswith("'"$WORK"'")
+print(nmtan.tangents([[0,0,0],[1,0,0],[0,1,0]], [[0,0,1]]*3, [[0,0],[1,0],[0,1]]).tolist()[0])' >out.txt 2>&1 || wrong "$(cat out.txt)"
+[ -z "$python" ] || is "$(cat out.txt)" "[1.0, 0.0, 0.0, 1.0]"
+
 if [ -z "$python" ]; then
 	scene "the module's tests"
 	skip_case "no Python with numpy and pytest (python3-numpy, python3-pytest)"

@@ -15,7 +15,7 @@ make -C "$ROOT" -s wasm >make.txt 2>&1 || wrong "$(tail -5 make.txt)"
 scene "npm packs the module, its types and the licence, and nothing else"
 (cd "$ROOT/build/npm" && npm pack --dry-run --json 2>/dev/null) >pack.json
 node -e 'for (const file of JSON.parse(require("fs").readFileSync("pack.json"))[0].files) console.log(file.path)' | sort >names.txt
-printf '%s\n' LICENSE README.md core.js external.js index.d.ts index.js nmtan.wasm package.json wasm.js | sort |
+printf '%s\n' LICENSE README.md core.js external.js external.node.js index.d.ts index.js nmtan.wasm package.json wasm.js | sort |
 	diff - names.txt >diff.txt || wrong "$(cat diff.txt)"
 finish_case
 

@@ -18,15 +18,15 @@ await test('before it is ready a call says so', async () => {
 });
 
 const inlined = await import(url('index.js'));
-const external = await import(url('external.js'));
+const external = await import(url('external.node.js'));
 await test('both entries become ready, and are then alike', async () => {
 	await Promise.all([inlined.ready, external.ready]);
 	assert.equal(inlined.isReady && external.isReady, true);
 	assert.deepEqual(Object.keys(inlined), Object.keys(external));
 });
-const { generateRepairedTangents, generateTangents, generateTangentsIndexed } = inlined;
+const { generateCornerTangents, generateRepairedTangents, generateTangents, generateTangentsIndexed } = inlined;
 const goldens = triangleGoldens(`${data}/golden`);
-const up = {convention: 'mikktspace'}, raw = {...up, repair: false};
+const up = {}, raw = {repair: false};
 
 await test('corners: the bytes of every golden of triangles', () => {
 	assert.ok(goldens.size > 20);
@@ -93,7 +93,7 @@ await test('the example of nmtan.h: two copies, and the tangents that theory giv
 
 await test('glTF\'s v points down: the same quads with 1 - v have the same tangents', () => {
 	const down = {...quads, texcoords: quads.texcoords.map((x, i) => (i % 2 ? 1 - x : x))};
-	assert.deepEqual(solve(down), solve(quads, up));
+	assert.deepEqual(solve(down, {vDown: true}), solve(quads, up));
 	assert.deepEqual(down.texcoords, quads.texcoords.map((x, i) => (i % 2 ? 1 - x : x)), 'the input was changed');
 });
 
@@ -108,6 +108,55 @@ await test('interleaved arrays, plain arrays and both widths of indices give the
 	for (const Type of [Uint8Array, Uint16Array, Uint32Array, Int32Array, Array])
 		assert.deepEqual([...solve({...quads, indices: Type.from(quads.indices)}, up).indices], [...solve(quads, up).indices]);
 	assert.ok(solve({...quads, indices: Uint16Array.from(quads.indices)}, up).indices instanceof Uint16Array);
+});
+
+await test('v down is v negated, through every function', () => {
+	const down = {...quads, texcoords: quads.texcoords.map((x, i) => (i % 2 ? -x : x))}, {positions, normals} = quads;
+	assert.deepEqual(solve(down, {vDown: true}), solve(quads, {vDown: false}));
+	assert.deepEqual(solve(quads), solve(quads, {vDown: false}));
+	const soup = [quads.indices.flatMap((v) => positions.slice(3 * v, 3 * v + 3)), quads.indices.flatMap((v) => normals.slice(3 * v, 3 * v + 3))];
+	const uvs = (m) => quads.indices.flatMap((v) => m.texcoords.slice(2 * v, 2 * v + 2));
+	for (const make of [generateTangents, generateRepairedTangents]) {
+		assert.deepEqual(make(...soup, uvs(down), {vDown: true}), make(...soup, uvs(quads)));
+		assert.deepEqual([...make(...soup, uvs(down))].filter((_, i) => i % 4 === 3), [1, 1, 1, 1, 1, 1, -1, -1, -1, -1, -1, -1].map((w) => -w));
+	}
+});
+
+await test('quads, corners of indexed meshes, bitangents and faults', () => {
+	const faceSizes = [4, 4], indices = [0, 1, 2, 3, 1, 4, 5, 2];
+	const r = generateCornerTangents(indices, quads.positions, quads.normals, quads.texcoords,
+		{faceSizes, bitangents: true, cornerFaults: true});
+	assert.deepEqual([...r.tangents].map((x) => x + 0), [left, left, left, left, right, right, right, right].flat());
+	assert.deepEqual([...r.bitangents].map((x) => x + 0), Array(8).fill([0, 1, 0]).flat());
+	assert.deepEqual([...r.cornerFaults], Array(8).fill(0));
+	assert.equal(r.counts.mirrored, 2);
+	const split = solve({...quads, indices}, {faceSizes});
+	assert.deepEqual([...split.sources], [1, 2]);
+	assert.deepEqual([...split.indices], [0, 1, 2, 3, 6, 4, 5, 7]);
+	const flat = generateCornerTangents(null, quads.positions.slice(0, 9), quads.normals.slice(0, 9), Array(6).fill(0), {cornerFaults: true});
+	assert.deepEqual([...flat.cornerFaults].map((bits) => bits & 16), [16, 16, 16]); // NMTAN_FAULT_UNASSIGNED
+	assert.equal(flat.bitangents, undefined);
+});
+
+await test('a threshold below the angle between two triangles keeps their tangents apart', () => {
+	// on the second triangle u runs along (2, 1), on the first one along (1, 0)
+	const m = {positions: [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0], normals: Array(4).fill([0, 0, 1]).flat(),
+		texcoords: [0, 0, 1, 0, 1, 1, 0, 2], indices: [0, 1, 2, 0, 2, 3]};
+	assert.equal(solve(m).sources.length, 0);
+	assert.equal(solve(m, {angularThreshold: 10}).sources.length, 2);
+});
+
+await test('normals of signed integers are normalized, and made unit where they are not', () => {
+	const slanted = [100, 30, 70], length = Math.hypot(...slanted), normals = Array(6).fill(slanted).flat();
+	const expected = solve({...quads, normals: normals.map((x) => x / length)}, up);
+	for (const [Type, most] of [[Int8Array, 127], [Int16Array, 32767]]) {
+		const r = solve({...quads, normals: Type.from(normals, (x) => Math.round(x / 127 * most))}, up);
+		r.tangents.forEach((x, i) => assert.ok(Math.abs(x - expected.tangents[i]) < 1e-4, `${Type.name} ${i}`));
+		assert.equal(r.counts.normalsNotUnit, 0);
+	}
+	assert.equal(solve({...quads, normals: normals}, up).counts.normalsNotUnit, 6);
+	const minus = solve({...quads, normals: Int8Array.from(quads.normals, (x) => -128 * x)}, up);
+	assert.deepEqual(minus.tangents, solve({...quads, normals: quads.normals.map((x) => -x)}, up).tangents);
 });
 
 await test('methods: each gives the flat quads their tangents; robust has none that is ill-conditioned', () => {
@@ -162,6 +211,8 @@ const wrong = [
 	['normals of another length', {normals: [0, 0, 1]}, TypeError, /normals: 1 vertices, positions has 6/],
 	['a stride below the row', {texcoords: {array: quads.texcoords, stride: 1}}, TypeError, /stride/],
 	['an offset behind the array', {texcoords: {array: quads.texcoords, offset: 99}}, TypeError, /texcoords/],
+	['positions that are words', {positions: Array(18).fill('1')}, TypeError, /array of numbers/],
+	['unsigned normals', {normals: Uint8Array.from(quads.normals)}, TypeError, /normals: floats are expected, or an Int8Array/],
 	['64-bit integers', {positions: new BigInt64Array(18)}, TypeError, /array of numbers/],
 	['an index too large', {indices: [0, 1, 6]}, TypeError, /index/],
 	['a negative index', {indices: [0, 1, -1]}, TypeError, /indices\[2\]: -1/],
@@ -174,9 +225,16 @@ for (const [name, change, type, text] of wrong)
 		assert.throws(() => solve({...quads, ...change}, up), (error) => error instanceof type && text.test(error.message));
 		assert.deepEqual([...solve(quads, up).sources], [1, 2]); // and all is well afterwards
 	});
-await test('refused: a method and a convention that are none', () => {
-	assert.throws(() => solve(quads, {method: 'best'}), /method: one of mikktspace/);
-	assert.throws(() => solve(quads, {convention: 'dx'}), /convention: one of/);
+await test('refused: options that are none, or of another type', () => {
+	for (const [options, text] of [[{method: 'best'}, /method: one of mikktspace/], [{method: 1}, /method: string/],
+		[{convention: 'gltf'}, /convention: the option is vDown now/], [{vdown: true}, /no "vdown", but method, repair, vDown/],
+		[{vDown: 1}, /vDown: boolean/], [{repair: 'off'}, /repair: boolean/], [{angularThreshold: 181}, /angularThreshold/],
+		[{angularThreshold: NaN}, /angularThreshold/], [{faceSizes: [3, 5, 4]}, /faceSizes: an array of 3 and 4/],
+		[{faceSizes: [3, 3, 3]}, /faceSizes: they make 9 corners, indices has 12/], [{faceSizes: 4}, /faceSizes: object/],
+		[{cornerFaults: true}, /no "cornerFaults"/], [null, /options: an object/], ['gltf', /options: an object/]])
+		assert.throws(() => solve(quads, options), (error) => error instanceof TypeError && text.test(error.message), text);
+	assert.throws(() => generateTangents(quads.positions.slice(0, 9), quads.normals.slice(0, 9), [0, 0, 1, 0, 1, 1], {repair: true}),
+		/no "repair", but vDown/);
 	assert.throws(() => generateTangents([0, 0, 0], [0, 0, 1], [0, 0]), /do not make triangles/);
 });
 

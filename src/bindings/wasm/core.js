@@ -5,17 +5,17 @@
 // back after a call that failed or needed more than KEPT_BYTES.
 
 const METHODS = ['mikktspace', 'area', 'lengyel', 'robust', 'mikktspace-sorted'];
-const CONVENTIONS = ['mikktspace', 'gltf'];
 const STATUS = ['', 'an argument is out of range', 'an index is not below the number of vertices',
-	'a face has not three corners', 'the mesh is too large', 'out of memory'];
+	'a face has neither 3 nor 4 corners', 'the mesh is too large', 'out of memory'];
 const OUT_OF_MEMORY = 5, TOO_LARGE = 4;
 
 // Words of a job: where each stands. The counts follow their struct_bytes.
-const WORD = {faces: 0, vertices: 1, indices: 2, positions: 3, normals: 4, texcoords: 5, splitIndices: 6, sources: 7,
-	sourceCapacity: 8, tangents: 9, method: 10, noRepair: 11, vDown: 12, sourceCount: 13, counts: 15};
+const WORD = {faces: 0, vertices: 1, indices: 2, positions: 3, normals: 4, texcoords: 5, faceSizes: 6, splitIndices: 7,
+	sources: 8, sourceCapacity: 9, tangents: 10, bitangents: 11, cornerFaults: 12, method: 13, noRepair: 14, vDown: 15,
+	angularThreshold: 16, sourceCount: 17, counts: 19};
 const COUNTS = ['degeneratePositions', 'degenerateTexcoords', 'mirrored', 'storedDifferently', 'foldedQuads',
 	'repairedZero', 'repairedNotFinite', 'repairedParallel', 'repairedSign', 'repairedUnassigned', 'repairedLeaning',
-	'illConditioned', 'sortedInstead', 'summedInstead'];
+	'illConditioned', 'sortedInstead', 'summedInstead', 'normalsNotUnit'];
 
 const KEPT_BYTES = 2 ** 28;
 
@@ -61,15 +61,18 @@ function allocate(bytes) {
 
 const floats = (address, length) => new Float32Array(wasm.memory.buffer, address, length);
 const words = (address, length) => new Uint32Array(wasm.memory.buffer, address, length);
+const bytesAt = (address, length) => new Uint8Array(wasm.memory.buffer, address, length);
 
 function isArrayLike(value) {
 	return Array.isArray(value) || (ArrayBuffer.isView(value) && typeof value.length === 'number');
 }
 
+const isNumber = (value) => typeof value === 'number';
+
 // {array, stride, offset, count} of an attribute: numbers one behind the other, or rows `stride` numbers apart.
 function attribute(value, name, size) {
 	const {array, stride = size, offset = 0} = isArrayLike(value) ? {array: value} : value ?? {};
-	if (!isArrayLike(array) || typeof array[0] === 'bigint')
+	if (!isArrayLike(array) || typeof array[0] === 'bigint' || (Array.isArray(array) && !array.every(isNumber)))
 		throw new TypeError(`nmtan: ${name}: an array of numbers is expected, or {array, stride, offset}`);
 	if (!Number.isInteger(stride) || stride < size || !Number.isInteger(offset) || offset < 0)
 		throw new TypeError(`nmtan: ${name}: stride must be a whole number from ${size}, offset one from 0`);
@@ -90,8 +93,26 @@ function put(address, from, size) {
 			to[row * size + k] = from.array[at + k];
 }
 
+// Normals as numbers: signed integers of 8 and 16 bits are normalized, as glTF has them, and made unit as the tool does.
+function normalAttribute(value) {
+	const given = attribute(value, 'normals', 3), {array, stride, offset, count} = given;
+	if ([Uint8Array, Uint8ClampedArray, Uint16Array].some((type) => array instanceof type))
+		throw new TypeError('nmtan: normals: floats are expected, or an Int8Array or Int16Array, which is normalized');
+	const most = array instanceof Int8Array ? 127 : array instanceof Int16Array ? 32767 : 0;
+	if (!most)
+		return given;
+	const made = new Float32Array(3 * count);
+	for (let row = 0; row < count; row++) {
+		const n = [0, 1, 2].map((k) => Math.fround(Math.max(array[offset + row * stride + k] / most, -1)));
+		const squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+		const length = Math.abs(squared - 1) <= 2 ** -11 || !squared ? 1 : Math.sqrt(squared);
+		made.set(n.map((x) => x / length), 3 * row);
+	}
+	return {array: made, stride: 3, offset: 0, count};
+}
+
 function attributes(positions, normals, texcoords) {
-	const all = {positions: attribute(positions, 'positions', 3), normals: attribute(normals, 'normals', 3),
+	const all = {positions: attribute(positions, 'positions', 3), normals: normalAttribute(normals),
 		texcoords: attribute(texcoords, 'texcoords', 2)};
 	const count = all.positions.count;
 	for (const name of ['normals', 'texcoords'])
@@ -113,46 +134,55 @@ function makeJob(numbers, bytes, from) {
 	job.fill(0);
 	for (const name in values)
 		job[WORD[name]] = values[name];
+	floats(job.byteOffset, job.length)[WORD.angularThreshold] = numbers.angularThreshold;
 	return values;
 }
 
 const attributeBytes = (vertices) => ({positions: vertices * 12, normals: vertices * 12, texcoords: vertices * 8});
 
-function choose(value, choices, name) {
-	const number = choices.indexOf(value);
-	if (number < 0)
-		throw new TypeError(`nmtan: ${name}: one of ${choices.join(', ')} is expected, not ${String(value)}`);
-	return number;
+const TYPES = {method: 'string', repair: 'boolean', vDown: 'boolean', angularThreshold: 'number', faceSizes: 'object',
+	bitangents: 'boolean', cornerFaults: 'boolean'};
+const OF_MESH = ['method', 'repair', 'vDown', 'angularThreshold', 'faceSizes'];
+
+// The options as words of a job, and faceSizes. What is not one of `names` is an error.
+function readOptions(options, names) {
+	if (typeof options !== 'object' || options === null)
+		throw new TypeError(`nmtan: options: an object is expected, not ${String(options)}`);
+	for (const [name, value] of Object.entries(options)) {
+		if (name === 'convention')
+			throw new TypeError("nmtan: convention: the option is vDown now: true for 'gltf'; v points up without it");
+		if (!names.includes(name))
+			throw new TypeError(`nmtan: options: there is no "${name}", but ${names.join(', ')}`);
+		if (value !== undefined && typeof value !== TYPES[name])
+			throw new TypeError(`nmtan: ${name}: ${TYPES[name]} is expected, not ${String(value)}`);
+	}
+	const {method = 'mikktspace', repair = true, vDown = false, angularThreshold = 180, faceSizes} = options;
+	if (!METHODS.includes(method))
+		throw new TypeError(`nmtan: method: one of ${METHODS.join(', ')} is expected, not ${method}`);
+	if (!(angularThreshold > 0 && angularThreshold <= 180))
+		throw new TypeError(`nmtan: angularThreshold: more than 0 and at most 180 degrees, not ${angularThreshold}`);
+	return {faceSizes, words: {method: METHODS.indexOf(method), noRepair: repair ? 0 : 1, vDown: vDown ? 1 : 0,
+		angularThreshold}};
 }
 
-function cornerTangents(positions, normals, texcoords, noRepair) {
-	const from = attributes(positions, normals, texcoords);
-	const vertices = from.positions.count;
-	if (vertices % 3)
-		throw new TypeError(`nmtan: positions: ${vertices} vertices do not make triangles`);
-	return withMemory(() => {
-		const job = makeJob({faces: vertices / 3, vertices, noRepair},
-			{...attributeBytes(vertices), tangents: vertices * 16}, from);
-		const status = wasm.corner_tangents();
-		if (status)
-			fail(status);
-		return floats(job.tangents, vertices * 4).slice();
-	});
-}
-
-export function generateTangents(positions, normals, texcoords) {
-	return cornerTangents(positions, normals, texcoords, 1);
-}
-
-export function generateRepairedTangents(positions, normals, texcoords) {
-	return cornerTangents(positions, normals, texcoords, 0);
+// How many faces so many corners make.
+function countFaces(faceSizes, corners, name) {
+	if (faceSizes === undefined) {
+		if (corners % 3)
+			throw new TypeError(`nmtan: ${name}: ${corners} do not make triangles`);
+		return corners / 3;
+	}
+	if (!isArrayLike(faceSizes) || !Array.prototype.every.call(faceSizes, (size) => size === 3 || size === 4))
+		throw new TypeError('nmtan: faceSizes: an array of 3 and 4 is expected');
+	const sum = Array.prototype.reduce.call(faceSizes, (all, size) => all + size, 0);
+	if (sum !== corners)
+		throw new TypeError(`nmtan: faceSizes: they make ${sum} corners, ${name} has ${corners}`);
+	return faceSizes.length;
 }
 
 function checkIndices(indices) {
 	if (!isArrayLike(indices) || indices instanceof Float32Array || indices instanceof Float64Array)
 		throw new TypeError('nmtan: indices: an array of whole numbers is expected');
-	if (indices.length % 3)
-		throw new TypeError(`nmtan: indices: ${indices.length} do not make triangles`);
 }
 
 function putIndices(address, indices, vertices) {
@@ -171,30 +201,77 @@ function takeIndices(address, count, vertices, like) {
 	return small ? Uint16Array.from(found) : found.slice();
 }
 
+const sizesBytes = (faceSizes) => (faceSizes === undefined ? {} : {faceSizes: faceSizes.length});
+
+function putFaces(job, faceSizes, indices, vertices) {
+	if (faceSizes !== undefined)
+		bytesAt(job.faceSizes, faceSizes.length).set(faceSizes);
+	if (indices)
+		putIndices(job.indices, indices, vertices);
+}
+
+function readCounts() {
+	const written = words(wasm.job() >>> 0, WORD.counts + COUNTS.length);
+	return Object.fromEntries(COUNTS.map((name, i) => [name, written[WORD.counts + i]]));
+}
+
+export function generateCornerTangents(indices, positions, normals, texcoords, options = {}) {
+	const {faceSizes, words: chosen} = readOptions(options, [...OF_MESH, 'bitangents', 'cornerFaults']);
+	if (indices)
+		checkIndices(indices);
+	const from = attributes(positions, normals, texcoords);
+	const vertices = from.positions.count, corners = indices ? indices.length : vertices;
+	const faces = countFaces(faceSizes, corners, indices ? 'indices' : 'positions: vertices');
+	const wanted = {...(indices ? {indices: corners * 4} : {}), ...sizesBytes(faceSizes), tangents: corners * 16,
+		...(options.bitangents ? {bitangents: corners * 12} : {}), ...(options.cornerFaults ? {cornerFaults: corners} : {})};
+	return withMemory(() => {
+		const job = makeJob({...chosen, faces, vertices}, {...attributeBytes(vertices), ...wanted}, from);
+		putFaces(job, faceSizes, indices, vertices);
+		const status = wasm.corner_tangents();
+		if (status)
+			fail(status);
+		return {
+			tangents: floats(job.tangents, corners * 4).slice(),
+			...(options.bitangents ? {bitangents: floats(job.bitangents, corners * 3).slice()} : {}),
+			...(options.cornerFaults ? {cornerFaults: bytesAt(job.cornerFaults, corners).slice()} : {}),
+			counts: readCounts(),
+		};
+	});
+}
+
+// As the package mikktspace has it.
+function ofSoup(positions, normals, texcoords, options, repair) {
+	readOptions(options, ['vDown']);
+	return generateCornerTangents(null, positions, normals, texcoords, {...options, repair}).tangents;
+}
+
+export function generateTangents(positions, normals, texcoords, options = {}) {
+	return ofSoup(positions, normals, texcoords, options, false);
+}
+
+export function generateRepairedTangents(positions, normals, texcoords, options = {}) {
+	return ofSoup(positions, normals, texcoords, options, true);
+}
+
 export function generateTangentsIndexed(indices, positions, normals, texcoords, options = {}) {
+	const {faceSizes, words: chosen} = readOptions(options, OF_MESH);
 	checkIndices(indices);
 	const from = attributes(positions, normals, texcoords);
-	const {method = 'mikktspace', repair = true, convention = 'gltf'} = options;
-	const chosen = {method: choose(method, METHODS, 'method'), noRepair: repair ? 0 : 1,
-		vDown: choose(convention, CONVENTIONS, 'convention')};
-	const vertices = from.positions.count, corners = indices.length;
+	const vertices = from.positions.count, corners = indices.length, faces = countFaces(faceSizes, corners, 'indices');
 	return withMemory(() => {
-		const job = makeJob({...chosen, faces: corners / 3, vertices, sourceCapacity: corners},
-			{...attributeBytes(vertices), indices: corners * 4, splitIndices: corners * 4, sources: corners * 4,
-				tangents: (vertices + corners) * 16}, from);
-		putIndices(job.indices, indices, vertices);
+		const job = makeJob({...chosen, faces, vertices, sourceCapacity: corners},
+			{...attributeBytes(vertices), ...sizesBytes(faceSizes), indices: corners * 4, splitIndices: corners * 4,
+				sources: corners * 4, tangents: (vertices + corners) * 16}, from);
+		putFaces(job, faceSizes, indices, vertices);
 		const status = wasm.vertex_tangents();
 		if (status)
 			fail(status);
-		const written = words(wasm.job() >>> 0, WORD.counts + COUNTS.length);
-		const copies = written[WORD.sourceCount];
-		const counts = {};
-		COUNTS.forEach((name, i) => { counts[name] = written[WORD.counts + i]; });
+		const copies = words(wasm.job() >>> 0, WORD.counts)[WORD.sourceCount];
 		return {
 			tangents: floats(job.tangents, (vertices + copies) * 4).slice(),
 			indices: takeIndices(job.splitIndices, corners, vertices + copies, indices),
 			sources: words(job.sources, copies).slice(),
-			counts,
+			counts: readCounts(),
 		};
 	});
 }

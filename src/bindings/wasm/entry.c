@@ -9,17 +9,20 @@
 
 /* Words of 32 bits in this order: core.js writes and reads them by their number. */
 typedef struct nt_wasm_job {
-	size_t face_count;       /* triangles */
+	size_t face_count;
 	size_t vertex_count;
-	const uint32_t *indices; /* [3 * face_count] */
-	const float *positions, *normals;
-	float *texcoords;        /* v is negated in place where it points down */
-	uint32_t *split_indices; /* [3 * face_count] */
+	const uint32_t *indices; /* [corner count]; NULL: corner c is vertex c */
+	const float *positions, *normals, *texcoords;
+	const uint8_t *face_sizes; /* [face_count]; NULL: triangles */
+	uint32_t *split_indices; /* [corner count] */
 	uint32_t *sources;       /* [source_capacity] */
 	size_t source_capacity;
-	float *tangents;         /* [vertex_count + source_capacity][4] */
+	float *tangents;         /* [vertex_count + source_capacity][4], or of corners */
+	float *bitangents;       /* of corners, or NULL */
+	uint8_t *corner_faults;  /* of corners, or NULL */
 	uint32_t method, repair; /* nmtan_method, nmtan_repair */
-	uint32_t v_down;         /* not 0: texture coordinates as glTF has them */
+	uint32_t v_down;
+	float angular_threshold_degrees;
 	size_t source_count;     /* written */
 	nmtan_counts counts;     /* written */
 } nt_wasm_job;
@@ -45,6 +48,8 @@ static nmtan_mesh job_mesh(void)
 	mesh.face_count = job.face_count;
 	mesh.vertex_count = job.vertex_count;
 	mesh.indices = job.indices;
+	mesh.face_sizes = job.face_sizes;
+	mesh.v_down = job.v_down;
 	mesh.positions = job.positions;
 	mesh.normals = job.normals;
 	mesh.texcoords = job.texcoords;
@@ -56,6 +61,7 @@ static nmtan_options job_options(void)
 	nmtan_options options = NMTAN_OPTIONS_INIT;
 	options.method = (nmtan_method)job.method;
 	options.repair = (nmtan_repair)job.repair;
+	options.angular_threshold_degrees = job.angular_threshold_degrees;
 	options.threads = 1;
 	return options;
 }
@@ -67,15 +73,15 @@ __attribute__((export_name("corner_tangents"))) nmtan_status nt_wasm_corner_tang
 	const nmtan_options options = job_options();
 	nmtan_output output = NMTAN_OUTPUT_INIT;
 	output.tangents = job.tangents;
-	return nmtan_tangents(&mesh, &options, &output, NULL);
+	output.bitangents = job.bitangents;
+	output.corner_faults = job.corner_faults;
+	job.counts = (nmtan_counts)NMTAN_COUNTS_INIT;
+	return nmtan_tangents(&mesh, &options, &output, &job.counts);
 }
 
 /* A tangent for each vertex, and vertices where one is not enough. */
 __attribute__((export_name("vertex_tangents"))) nmtan_status nt_wasm_vertex_tangents(void)
 {
-	if (job.v_down)
-		for (size_t i = 0; i < job.vertex_count; i++)
-			job.texcoords[2 * i + 1] = -job.texcoords[2 * i + 1];
 	const nmtan_mesh mesh = job_mesh();
 	const nmtan_options options = job_options();
 	nmtan_split_output output = NMTAN_SPLIT_OUTPUT_INIT;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // nmtan with the WebAssembly inside, for every page, worker, bundler and Node.
-import { generateRepairedTangents, generateTangents, generateTangentsIndexed, install } from './core.js';
+import { generateCornerTangents, generateRepairedTangents, generateTangents, generateTangentsIndexed, install } from './core.js';
 import { wasm } from './wasm.js'; // base64
 
 export let isReady = false;
@@ -9,4 +9,4 @@ export const ready = WebAssembly.compile(Uint8Array.from(atob(wasm), (c) => c.ch
 	install(compiled);
 	isReady = true;
 });
-export { generateRepairedTangents, generateTangents, generateTangentsIndexed };
+export { generateCornerTangents, generateRepairedTangents, generateTangents, generateTangentsIndexed };

@@ -5,7 +5,7 @@ import json
 import os
 import subprocess
 import tempfile
-from typing import Any, Dict, List, NamedTuple, Sequence, Union
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Union
 
 
 class Conversion(NamedTuple):
@@ -23,12 +23,12 @@ class Conversion(NamedTuple):
 class ConversionError(RuntimeError):
     """The tool ended with an error: exit_code, message, and the conversion where the tool came that far."""
 
-    def __init__(self, message, exit_code, conversion=None):
+    def __init__(self, message: str, exit_code: int, conversion: Optional[Conversion] = None) -> None:
         super().__init__(message)
         self.exit_code, self.conversion = exit_code, conversion
 
 
-def _arguments(options):
+def _arguments(options: Dict[str, Any]) -> Iterator[str]:
     if not options.get("allow_outside"):
         options = {"confine": True, **options}
     for name, value in options.items():
@@ -41,15 +41,20 @@ def _arguments(options):
                 yield f"--{name}={one}"
 
 
-def convert(input: Union[str, os.PathLike], output: Union[str, os.PathLike], *, program: Union[str, Sequence[str]] = "nmtan",
-            **options: Any) -> Conversion:
+def convert(input: Union[str, "os.PathLike[str]"], output: Union[str, "os.PathLike[str]"], *,
+            program: Union[str, "os.PathLike[str]", Sequence[str]] = "nmtan", **options: Any) -> Conversion:
     """Converts a file with the tool nmtan, as `nmtan INPUT OUTPUT --options` does.
 
     Options have the tool's names with _ for -: convert("a.obj", "a.glb", normals="smooth", verify=True); False and
-    None leave one out, a list repeats it. confine=True is the default: who calls may not know the file. program: the tool, found along PATH, or a list with arguments before ours.
-    Raises ConversionError where the tool ends with anything but 0, FileNotFoundError where there is no tool.
+    None leave one out, a list repeats it. confine=True is the default: who calls may not know the file.
+    program: the tool, found along PATH, or a list with arguments before ours.
+    Raises ValueError where a path is "-", ConversionError where the tool ends with anything but 0, FileNotFoundError
+    where there is no tool.
     """
-    command = [program] if isinstance(program, (str, os.PathLike)) else list(program)
+    for name, path in (("input", input), ("output", output)):
+        if os.fspath(path) == "-":
+            raise ValueError(f"{name}: the path of a file is expected: standard input and output are not passed on")
+    command = [os.fspath(program)] if isinstance(program, (str, os.PathLike)) else list(program)
     with tempfile.TemporaryDirectory() as folder:
         manifest = os.path.join(folder, "manifest")
         run = subprocess.run([*command, *_arguments(options), f"--manifest={manifest}", "--", os.fspath(input),
@@ -60,9 +65,9 @@ def convert(input: Union[str, os.PathLike], output: Union[str, os.PathLike], *, 
             with open(manifest, encoding="utf-8", errors="replace") as file:
                 lines = file.read().splitlines()
     line = json.loads(lines[0]) if lines else None
-    conversion = line and Conversion(line["input"], line["status"], line["exit_code"],
-                                     [entry["path"] for entry in line["outputs"]],
-                                     [entry["path"] for entry in line["dependencies"]], line["findings"], line)
-    if run.returncode:
+    conversion = None if line is None else Conversion(
+        line["input"], line["status"], line["exit_code"], [entry["path"] for entry in line["outputs"]],
+        [entry["path"] for entry in line["dependencies"]], line["findings"], line)
+    if run.returncode or conversion is None:
         raise ConversionError(run.stderr.strip() or f"nmtan ended with {run.returncode}", run.returncode, conversion)
     return conversion

@@ -3,7 +3,9 @@
 
 import ctypes
 import os
-from ctypes import POINTER, c_char_p, c_double, c_float, c_int, c_size_t, c_uint, c_uint8, c_uint32, c_void_p
+from ctypes import POINTER, c_char_p, c_float, c_int, c_size_t, c_uint, c_uint8, c_uint32, c_void_p
+
+from typing import Any, Dict, List, Tuple
 
 float_p, uint8_p, uint32_p = POINTER(c_float), POINTER(c_uint8), POINTER(c_uint32)
 
@@ -11,7 +13,7 @@ float_p, uint8_p, uint32_p = POINTER(c_float), POINTER(c_uint8), POINTER(c_uint3
 class Struct(ctypes.Structure):
     """A struct of nmtan.h: struct_bytes is its size, and zero is the default of all else."""
 
-    def __init__(self, **members):
+    def __init__(self, **members: Any) -> None:
         super().__init__(struct_bytes=ctypes.sizeof(type(self)), **members)
 
 
@@ -19,7 +21,8 @@ class Mesh(Struct):
     _fields_ = [("struct_bytes", c_size_t), ("face_count", c_size_t), ("vertex_count", c_size_t),
                 ("face_sizes", uint8_p), ("indices", uint32_p), ("positions", float_p),
                 ("position_stride_bytes", c_size_t), ("normals", float_p), ("normal_stride_bytes", c_size_t),
-                ("texcoords", float_p), ("texcoord_stride_bytes", c_size_t), ("stored", c_void_p)]
+                ("texcoords", float_p), ("texcoord_stride_bytes", c_size_t), ("stored", c_void_p),
+                ("v_down", c_size_t)]
 
 
 class Options(Struct):
@@ -32,11 +35,12 @@ class Counts(Struct):
     _fields_ = [(name, c_size_t) for name in (
         "struct_bytes", "degenerate_positions", "degenerate_texcoords", "mirrored", "stored_differently",
         "folded_quads", "repaired_zero", "repaired_not_finite", "repaired_parallel", "repaired_sign",
-        "repaired_unassigned", "repaired_leaning", "ill_conditioned", "sorted_instead", "summed_instead")]
+        "repaired_unassigned", "repaired_leaning", "ill_conditioned", "sorted_instead", "summed_instead", "normals_not_unit")]
 
 
 class Output(Struct):
-    _fields_ = [("struct_bytes", c_size_t), ("tangents", float_p), ("bitangents", float_p), ("magnitudes", float_p)]
+    _fields_ = [("struct_bytes", c_size_t), ("tangents", float_p), ("bitangents", float_p), ("magnitudes", float_p),
+                ("corner_faults", uint8_p)]
 
 
 class SplitOutput(Struct):
@@ -44,11 +48,11 @@ class SplitOutput(Struct):
                 ("source_capacity", c_size_t), ("source_count", c_size_t), ("vertex_tangents", float_p)]
 
 
-def load():
+def load() -> ctypes.CDLL:
     """The library beside this file, where a wheel has it, or else the system's."""
     own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libnmtan.so.0")
     library = ctypes.CDLL(own if os.path.exists(own) else "libnmtan.so.0")
-    signatures = {
+    signatures: Dict[str, Tuple[Any, List[Any]]] = {
         "nmtan_tangents": (c_int, [POINTER(Mesh), POINTER(Options), POINTER(Output), POINTER(Counts)]),
         "nmtan_split": (c_int, [POINTER(Mesh), float_p, POINTER(Options), POINTER(SplitOutput)]),
         "nmtan_vertex_tangents": (c_int, [POINTER(Mesh), POINTER(Options), POINTER(SplitOutput), POINTER(Counts)]),
