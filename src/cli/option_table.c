@@ -138,8 +138,8 @@ const nt_option_row nt_option_rows[] = {
 		"how far white is above black in a height map, as a share of its width; times -bm",
 		FIELD(bump_height), true},
 	{"flip-green", 0, NT_OPTION_CHOICE, "off|auto|on", NT_FLIP_OFF, 0, "off",
-		"normal maps of an OBJ whose green points down are turned to glTF's convention; auto: where "
-		"that is certain; on: all",
+		"normal maps whose green points down are turned to glTF's convention, a glTF's PNG and JPEG too; auto: "
+		"where that is certain; on: all",
 		SETTING(flip_green), true},
 	{"draco", 0, NT_OPTION_CHOICE, "keep|off|sequential|edgebreaker", NT_DRACO_KEEP, 0, "keep",
 		"glTF primitives that get tangents; keep: compressed ones are compressed again; off: "

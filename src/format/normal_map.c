@@ -139,7 +139,7 @@ static nt_status open_uri(nt_normal_map *map, nt_gltf *document, const char *uri
 	}
 	const char *path;
 	const nt_status status =
-		nt_uri_resolve(&document->arena, document->path, uri, length, false, &path, error);
+		nt_uri_resolve(&document->arena, document->path, uri, length, document->allow_outside, &path, error);
 	return status ? status : open_file(map, path, error);
 }
 
@@ -164,14 +164,10 @@ static uint64_t set_of(const nt_json_value *info)
 	return set;
 }
 
-static nt_status open_of_document(nt_normal_map *map, nt_gltf *document, const nt_mesh *mesh, enum nt_slot slot,
-	nt_error *error)
+static nt_status open_of_document(nt_normal_map *map, nt_gltf *document, const nt_json_value *image, nt_error *error)
 {
-	const nt_json_value *image = image_of(document, mesh, slot);
 	size_t length;
 	uint64_t view;
-	if (!slot && set_of(info_of(document, mesh, slot)) != mesh->texcoord_set)
-		return NT_OK;
 	const char *uri = nt_json_get_string(nt_json_find(image, "uri"), &length);
 	if (uri)
 		return without_map(open_uri(map, document, uri, length, error));
@@ -213,6 +209,15 @@ void nt_normal_map_transform(const nt_scene *scene, const nt_mesh *mesh, enum nt
 			memcpy(t, identity, sizeof identity);
 }
 
+/* It has bytes and a type, or nothing. */
+static void settle(nt_normal_map *map)
+{
+	if (map->bytes)
+		map->type = nt_image_type_of_bytes(map->bytes, map->size);
+	else
+		nt_normal_map_close(map);
+}
+
 nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot,
 	const nt_image_places *searched, nt_error *error)
 {
@@ -221,12 +226,18 @@ nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt
 	const bool gltf = nt_format_is_gltf(scene->format);
 	if (!gltf && slot != NT_SLOT_CLEARCOAT_NORMAL)
 		status = open_of_materials(map, scene, mesh, slot, searched, error);
-	else if (gltf && scene->source)
-		status = open_of_document(map, scene->source, mesh, slot, error);
-	if (map->bytes)
-		map->type = nt_image_type_of_bytes(map->bytes, map->size);
-	else
-		nt_normal_map_close(map);
+	else if (gltf && scene->source && (slot || set_of(info_of(scene->source, mesh, slot)) == mesh->texcoord_set))
+		status = open_of_document(map, scene->source, image_of(scene->source, mesh, slot), error);
+	settle(map);
+	return status;
+}
+
+nt_status nt_normal_map_open_image(nt_normal_map *map, nt_gltf *document, size_t image, nt_error *error)
+{
+	*map = (nt_normal_map){0};
+	const nt_status status =
+		open_of_document(map, document, nt_json_at(nt_gltf_root_member(document, "images"), image), error);
+	settle(map);
 	return status;
 }
 

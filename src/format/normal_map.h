@@ -10,7 +10,7 @@
 #include "file/image_type.h"
 #include "file/input.h"
 #include "image/find.h"
-#include "scene/scene.h"
+#include "gltf/document.h"
 
 typedef struct nt_normal_map {
 	const unsigned char *bytes;
@@ -33,6 +33,9 @@ typedef struct nt_normal_map {
 nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot,
 	const nt_image_places *searched, nt_error *error);
 void nt_normal_map_close(nt_normal_map *map);
+
+/* The same of an image of a glTF by its number. */
+nt_status nt_normal_map_open_image(nt_normal_map *map, nt_gltf *document, size_t image, nt_error *error);
 
 /* Where the map of a slot is looked up, at texture coordinates whose v points down: u' = t[0] u + t[1] v + t[2], v' =
  * t[3] u + t[4] v + t[5]. What says nothing, or nothing that is a number, moves nothing. */

@@ -7,8 +7,10 @@
 
 #include <string.h>
 
-/* --bump-height where nobody says it. */
-static const double default_bump_height = 1.0 / 64;
+double nt_bump_height(const nt_settings *settings)
+{
+	return settings->bump_height > 0 ? settings->bump_height : 1.0 / 64;
+}
 
 static bool has(const nt_map *map)
 {
@@ -145,7 +147,7 @@ static void request_normals(nt_material *m, const nt_settings *settings, nt_map_
 	nt_map_request *w = begin(requests, count, kind_of_normals(m, settings->bump), NULL);
 	put_number(w, 0, &m->normal_map, NT_CHANNEL_LUMINANCE);
 	w->what.clamp = m->normal_map.placement.clamp;
-	w->what.height = (settings->bump_height > 0 ? settings->bump_height : default_bump_height) * m->normal_scale;
+	w->what.height = nt_bump_height(settings) * m->normal_scale;
 }
 
 size_t nt_map_requests(nt_material *m, const nt_settings *settings, nt_map_request requests[NT_MATERIAL_MAPS])

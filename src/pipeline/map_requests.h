@@ -13,6 +13,9 @@ typedef struct nt_map_request {
 	nt_texture_request what;
 } nt_map_request;
 
+/* How far white is above black, as the settings or by default. */
+double nt_bump_height(const nt_settings *settings);
+
 /* Fills `requests` for the maps that a material has; returns how many there are. */
 size_t nt_map_requests(nt_material *material, const nt_settings *settings, nt_map_request requests[NT_MATERIAL_MAPS]);
 

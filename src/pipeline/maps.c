@@ -20,6 +20,7 @@ typedef struct examined {
 	nt_normal_map map;
 	const nt_mesh *mesh; /* the first that uses it */
 	bool decoded;        /* and no height map */
+	bool heights;        /* of a glTF, which has normals alone: it is one */
 	nt_normal_facts facts;
 	nt_error error;
 } examined;
@@ -50,6 +51,7 @@ static void examine(void *context, size_t item, unsigned slot)
 	if (is_wanted(e, &x->map))
 		x->decoded = nt_examine_image(x->map.bytes, x->map.size, &x->facts, &x->error) == NT_OK &&
 			!x->facts.heights;
+	x->heights = x->facts.heights && nt_format_is_gltf(e->scene->format);
 }
 
 /* ---- what is to be said ---- */
@@ -90,6 +92,8 @@ static void tell(const examination *e, const examined *x)
 		nt_finding_add(findings, NT_CODE_NMAP_NOT_EXAMINED, place, 1, "%.200s", x->error.message);
 	else if (x->error.status)
 		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, place, 1, "normal map (%.200s)", x->error.message);
+	if (x->heights)
+		nt_finding_add(findings, NT_CODE_NMAP_HEIGHTS, place, 1, NULL);
 	if (!x->decoded)
 		return;
 	tell_facts(findings, place, &x->facts);

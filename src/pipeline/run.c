@@ -13,8 +13,10 @@
 #include "base/hash.h"
 #include "file/watch.h"
 #include "format/foreign.h"
+#include "format/turned_maps.h"
 #include "gltf/sidecar.h"
 #include "gltf/verify/verify.h"
+#include "pipeline/map_requests.h"
 #include "pipeline/stages.h"
 #include "pipeline/timer.h"
 
@@ -29,6 +31,7 @@ typedef struct run {
 	const nt_format_entry *reader, *writer; /* writer: NULL where --check judges the input as it is */
 	nt_read_options read_options;
 	nt_textures *textures; /* NULL: the output has none */
+	nt_turned_images turned;
 	double stage_begin;
 	_Atomic(nt_stage) stage; /* the timer asks, too */
 	nt_timer timer;
@@ -226,6 +229,7 @@ static nt_status write_scene(run *r)
 		.allow_outside = s->allow_outside,
 		.threads = s->threads,
 		.textures = r->textures,
+		.turned = &r->turned,
 	};
 	nt_output *output = NULL;
 	nt_status status = nt_output_create(&output, &output_options, r->error);
@@ -259,6 +263,15 @@ static nt_status write_scene(run *r)
 	nt_timer_release(&r->timer);
 	r->placed = !status;
 	return status;
+}
+
+static nt_status turn_maps(run *r)
+{
+	const nt_settings *s = r->settings;
+	begin_stage(r, NT_STAGE_TEXTURES);
+	return nt_turned_maps_make(&r->scene, &(nt_turning){.flip = s->flip_green,
+		.heights = s->bump == NT_BUMP_HEIGHT, .height = nt_bump_height(s), .max_pixels = s->max_pixels,
+		.threads = s->threads}, &r->turned, r->error);
 }
 
 static nt_status run_stages(run *r)
@@ -296,6 +309,9 @@ static nt_status run_stages(run *r)
 		status = nt_stage_maps(&r->scene, r->settings, r->textures, r->error);
 	if (!status && r->settings->list_meshes)
 		status = nt_stage_listing(&r->scene, r->summary, r->error);
+	if (!status && r->writer && nt_writer_edits(r->reader, r->writer) &&
+		(r->settings->flip_green || r->settings->bump == NT_BUMP_HEIGHT))
+		status = turn_maps(r);
 	if (!status && r->writer)
 		status = write_scene(r);
 	return status;
@@ -313,6 +329,7 @@ static void forget_attempt(run *r)
 	nt_scene_free(&r->scene);
 	nt_textures_free(r->textures);
 	r->textures = NULL;
+	nt_turned_maps_free(&r->turned);
 	nt_summary_free(s);
 	memset(s, 0, sizeof *s);
 	memcpy(s->seconds, seconds, sizeof seconds);
@@ -408,6 +425,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	r.scene.findings = (nt_finding_list){0};
 	nt_scene_free(&r.scene);
 	nt_textures_free(r.textures);
+	nt_turned_maps_free(&r.turned);
 	nt_file_close(&r.input);
 	nt_trace_use(outer);
 	summary->total_seconds = nt_seconds() - begin;

@@ -66,6 +66,15 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"If it is a normal map, write norm instead, or use --bump=normal; if it is a height map, use "
 		"--bump=height.",
 		"an MTL with \"map_Bump n.png\""),
+	ROW(NMAP_NOT_TURNED, WARNING, "w--", "normal map is not turned",
+		"--flip-green and --bump turn PNG and JPEG of a glTF. What is in KTX2 or WebP, or beside such an image "
+		"of the same texture, stays as it is.",
+		"Turn it before it is compressed.",
+		"a KTX2 in normalTexture, and --flip-green=on"),
+	ROW(NMAP_HEIGHTS, WARNING, "w--", "normal map that is a height map",
+		"Every pixel of a normalTexture is grey. As a normal map that tilts the surface one way everywhere.",
+		"--bump=height makes a normal map of it.",
+		"a grey PNG in normalTexture"),
 	ROW(MATERIAL_LOST, WARNING, "w--",
 		"{count} {property of a material is|properties of materials are} not carried over",
 		"A texture, a texture's place or a layer that a material names is not in the output, which "

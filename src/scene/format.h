@@ -122,6 +122,7 @@ typedef struct nt_write_options {
 	nt_meshopt_choice meshopt;
 	bool allow_outside;
 	unsigned threads;   /* 0: all */
+	const struct nt_turned_images *turned; /* of a glTF: gltf/turned_images.h; NULL: none */
 	const struct nt_textures *textures; /* of a new document's materials: image/textures.h; NULL: none */
 } nt_write_options;
 

@@ -489,6 +489,116 @@ prints "NMAP_GREEN_DOWN"
 run quad.glb again.glb
 same quad.glb again.glb
 
+# changed.py IN OUT STATEMENTS: the document g of IN after them.
+cat >"$WORK/changed.py" <<'END'
+import copy, json, sys
+g = json.load(open(sys.argv[1]))
+exec(sys.argv[3])
+json.dump(g, open(sys.argv[2], "w"))
+END
+changed() { python3 "$WORK/changed.py" "$@"; }
+
+scene "a glTF's normal maps are turned, wherever their bytes are, and nothing else changes"
+hills up.png 1
+hills down.png -1
+quad 'norm down.png'
+run --flip-green=auto quad.obj direct.glb
+images embedded direct.glb 0 turned.png
+run quad.obj quad.glb
+run quad.obj quad.gltf
+run --embed --images=embed quad.gltf data.gltf
+for file in quad.glb data.gltf; do
+	run --verify --flip-green=auto $file out.${file#*.}
+	exits 0
+	run --flip-green=auto out.${file#*.} again.${file#*.}
+	same out.${file#*.} again.${file#*.}
+done
+images embedded out.glb 0 made.png
+same made.png turned.png
+[ "$(gltf out.gltf 'g.images[0].uri')" = "data:image/png;base64,$(base64 -w0 turned.png)" ] || wrong "another data URI"
+run --verify -v --flip-green=auto quad.gltf out.gltf
+exits 0
+says "/materials/0/normalTexture: info: image was converted: green turned up [IMAGE_CONVERTED]"
+same down-green-up.png turned.png
+sed 's/down-green-up.png/down.png/' out.gltf >undone.gltf
+# the record of who owns the .bin goes with a link to it
+sed 's/,"extras":{"nmtan[^}]*}//' quad.gltf >plain.gltf
+same plain.gltf undone.gltf
+mkdir elsewhere
+run --flip-green=auto --images=embed quad.gltf elsewhere/out.glb
+is "$(ls elsewhere)" out.glb
+run --flip-green=on --images=copy out.gltf elsewhere/back.gltf
+images rows down.png rows >expected.txt
+images rows elsewhere/down-green-up-green-up.png rows >back.txt
+same expected.txt back.txt
+quad 'norm up.png'
+run quad.obj up.gltf
+run up.gltf plain.gltf
+run --flip-green=auto up.gltf auto.gltf
+same plain.gltf auto.gltf
+
+scene "what else samples the image of a normal map keeps it"
+hills down.png -1
+quad 'norm down.png'
+run quad.obj quad.gltf
+changed quad.gltf shared.gltf 'm = g["materials"]; m[0]["occlusionTexture"] = {"index": 0}
+g["textures"].append({"source": 0, "name": "second"})
+m.append({"normalTexture": {"index": 1}, "extensions": {"KHR_materials_clearcoat": {"clearcoatNormalTexture": {"index": 0}}}})
+g["images"][0]["name"] = "n"; g["extensionsUsed"] = ["KHR_materials_clearcoat"]'
+run --verify --flip-green=auto shared.gltf out.gltf
+exits 0
+is "$(gltf out.gltf '[g.images, g.textures, g.materials]')" '[[{"name":"n","uri":"down.png"},{"name":"n","uri":"down-green-up.png"}],[{"source":0},{"source":1,"name":"second"},{"source":1}],[{"name":"m","normalTexture":{"index":2},"pbrMetallicRoughness":{"metallicFactor":0},"occlusionTexture":{"index":0}},{"normalTexture":{"index":1},"extensions":{"KHR_materials_clearcoat":{"clearcoatNormalTexture":{"index":2}}}}]]'
+echo "$PWD/out.gltf" >pairs
+valid --pairs pairs
+
+scene "KTX2 and WebP are named as not turned, what is damaged as that"
+hills down.png -1
+quad 'norm down.png'
+run quad.obj quad.gltf
+printf '\253KTX 20\273\r\n\032\n%080d' 0 >n.ktx2
+changed quad.gltf basis.gltf 'g["images"].append({"uri": "n.ktx2"}); g["extensionsUsed"] = ["KHR_texture_basisu"]
+g["textures"][0]["extensions"] = {"KHR_texture_basisu": {"source": 1}}'
+run basis.gltf plain.gltf
+run --flip-green=on basis.gltf out.gltf
+exits 0
+says "/materials/0/normalTexture: warning: normal map is not turned: KTX2 [NMAP_NOT_TURNED]"
+same plain.gltf out.gltf
+changed quad.gltf bare.gltf 'g["images"][0]["uri"] = "n.ktx2"'
+run --flip-green=on bare.gltf out.gltf
+says "normal map is not turned: KTX2 [NMAP_NOT_TURNED]"
+head -c 300 down.png >short.png
+changed quad.gltf short.gltf 'g["images"][0]["uri"] = "short.png"'
+run --flip-green=on short.gltf out.gltf
+exits 0
+says "IMAGE_DAMAGED"
+run --max-pixels=1000 --flip-green=on quad.gltf out.gltf
+exits 7
+
+scene "a height map in the place of a glTF's normal map is a finding, and made a normal map if asked for"
+images write h.png 16 16 '16 * (x * y % 16)'
+cp "$data/grey.jpg" .
+for file in h.png grey.jpg; do
+	quad "norm $file"
+	run quad.obj direct.glb
+	images embedded direct.glb 0 normals.png
+	run --bump=normal quad.obj quad.glb
+	run --check quad.glb
+	prints "NMAP_HEIGHTS"
+	prints "--bump=height"
+	run --flip-green=on quad.glb still.glb
+	run quad.glb plain.glb
+	same still.glb plain.glb
+	run --verify --bump=height quad.glb out.glb
+	exits 0
+	images embedded out.glb 0 made.png
+	same made.png normals.png
+	is "$(gltf out.glb 'g.images[0].mimeType')" image/png
+	run --check out.glb
+	grep -q NMAP_HEIGHTS "$WORK/out.txt" && wrong "it is none any more"
+	run --bump=height out.glb again.glb
+	same out.glb again.glb
+done
+
 scene "the normal map of a clearcoat is examined, too, and once where both are one"
 hills n.png -1
 hills up.png 1

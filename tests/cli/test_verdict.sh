@@ -404,6 +404,9 @@ run -q --flip-green=auto m.obj turned.glb
 run --check -q --report=r.json --fail-on=never turned.glb
 is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "NMAP_GREEN_DOWN"]')" "[]"
 run --check -q --report=r.json --fail-on=never m.gltf
-is "$(value r.json '[f["repair"] for f in r["files"][0]["findings"] if f["code"] == "NMAP_GREEN_DOWN"]')" "[None]"
+is "$(value r.json '[f["repair"] for f in r["files"][0]["findings"] if f["code"] == "NMAP_GREEN_DOWN"]')" "['--flip-green=auto']"
+run -q --flip-green=auto m.gltf turned.gltf
+run --check -q --report=r.json --fail-on=never turned.gltf
+is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "NMAP_GREEN_DOWN"]')" "[]"
 
 done_testing

@@ -25,6 +25,7 @@
 #include "gltf/extensions/geometry_metadata.h"
 #include "gltf/morph_deltas.h"
 #include "gltf/quantize.h"
+#include "gltf/turned_images.h"
 #include "gltf/view.h"
 
 /* What every pool's edit needs. */
@@ -342,7 +343,7 @@ static nt_status edit_pools(const editing *e)
 nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_output *output, nt_error *error)
 {
 	/* Nothing to be done: the input as it is. */
-	bool written = false, all_stay = true;
+	bool written = false, all_stay = !options->turned || !options->turned->count;
 	nt_status status = NT_OK;
 	for (size_t i = 0; all_stay && i < scene->mesh_count; i++)
 		all_stay = stays(scene, options, &scene->meshes[i]);

@@ -10,7 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include "file/image_type.h"
+#include "file/relative_path.h"
 #include "file/uri.h"
+#include "gltf/turned_images.h"
 
 nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *document)
 {
@@ -131,6 +133,64 @@ static nt_status embed_image(moving *m, size_t index, nt_json_value *image)
 							     embed_as_data(m, image, file, type);
 }
 
+/* A file of an image beside the output, under this name where that is to be had. */
+static nt_status write_beside(moving *m, nt_json_value *image, const nt_file *file, const char *name)
+{
+	const char *folder_end = strrchr(m->output->options->path, '/');
+	const size_t folder = folder_end ? (size_t)(folder_end - m->output->options->path) + 1 : 0;
+	nt_buffer path = {0}, uri = {0};
+	nt_sink *sink;
+	nt_buffer_append(&path, m->output->options->path, folder);
+	nt_buffer_text(&path, name);
+	nt_status status = path.failed ? nt_fail_memory(m->error)
+		: nt_output_add(m->output->set, path.data, NT_ROLE_IMAGE, &sink, m->error);
+	nt_buffer_free(&path);
+	if (!status)
+		status = nt_sink_copy(sink, file, 0, file->size, m->error);
+	if (!status)
+		status = nt_output_settle(m->output->set, sink, m->error);
+	if (status)
+		return status;
+	nt_uri_append_path(&uri, nt_sink_name(sink, false));
+	const bool failed = uri.failed;
+	if (!failed)
+		nt_json_set_string(m->json, nt_json_put(m->json, image, "uri"), uri.data, uri.size);
+	nt_buffer_free(&uri);
+	return failed ? nt_fail_memory(m->error) : NT_OK;
+}
+
+/* New pixels take the place of the old ones: in a view, a data URI or a file. */
+static nt_status place_turned(moving *m, nt_json_value *image, const nt_turned_image *turned)
+{
+	static const char type[] = "image/png";
+	const bool to_glb = m->output->options->format == NT_FORMAT_GLB;
+	const bool embeds = nt_gltf_images_choice(m->output->options, m->edits->document) == NT_IMAGES_EMBED;
+	const nt_file file = nt_file_of_bytes(turned->bytes, turned->size);
+	size_t length;
+	uint64_t view;
+	const char *uri = nt_gltf_external_uri(image, &length), *path;
+	if (nt_json_find(image, "mimeType"))
+		nt_json_set_string(m->json, nt_json_put(m->json, image, "mimeType"), type, sizeof type - 1);
+	if (uri && !embeds && !m->output->is_stream) {
+		nt_status status = nt_uri_resolve(&m->edits->arena, m->edits->document->path, uri, length, true, &path,
+			m->error);
+		const char *name = status ? "" : nt_last_part(path), *dot = strrchr(name, '.');
+		nt_buffer text = {0};
+		nt_buffer_format(&text, "%.*s%s.png", dot ? (int)(dot - name) : (int)strlen(name), name,
+			turned->suffix);
+		if (!status)
+			status = text.failed ? nt_fail_memory(m->error) : write_beside(m, image, &file, text.data);
+		nt_buffer_free(&text);
+		return status;
+	}
+	if (!to_glb && nt_json_find(image, "uri"))
+		return embed_as_data(m, image, &file, type);
+	nt_status status = NT_OK;
+	if (turned->replaces && nt_json_get_uint64(nt_json_find(image, "bufferView"), &view))
+		status = nt_edits_release_view(m->edits, (uint32_t)view, 1, m->error);
+	return status ? status : embed_in_view(m, image, &file, type);
+}
+
 /* Copies an image beside the output, under its own name where that is to be had. */
 static nt_status copy_image(moving *m, size_t index, nt_json_value *image)
 {
@@ -147,29 +207,16 @@ static nt_status copy_image(moving *m, size_t index, nt_json_value *image)
 		m->edits->document->allow_outside, &source, m->error);
 	if (status)
 		return status;
-	const char *slash = strrchr(source, '/'), *name = slash ? slash + 1 : source;
-	const char *folder_end = strrchr(m->output->options->path, '/');
-	const size_t folder = folder_end ? (size_t)(folder_end - m->output->options->path) + 1 : 0;
-	char *path = nt_arena_alloc(&m->edits->arena, folder + strlen(name) + 1, 1);
-	if (!path)
-		return nt_fail_memory(m->error);
-	memcpy(path, m->output->options->path, folder);
-	strcpy(path + folder, name);
-	nt_sink *sink;
-	status = nt_output_add(m->output->set, path, NT_ROLE_IMAGE, &sink, m->error);
-	if (!status)
-		status = nt_sink_copy(sink, file, 0, file->size, m->error);
-	if (!status)
-		status = nt_output_settle(m->output->set, sink, m->error);
-	if (status)
-		return status;
-	nt_buffer new_uri = {0};
-	nt_uri_append_path(&new_uri, nt_sink_name(sink, false));
-	const bool failed = new_uri.failed;
-	if (!failed)
-		nt_json_set_string(m->json, nt_json_put(m->json, image, "uri"), new_uri.data, new_uri.size);
-	nt_buffer_free(&new_uri);
-	return failed ? nt_fail_memory(m->error) : NT_OK;
+	return write_beside(m, image, file, nt_last_part(source));
+}
+
+static const nt_turned_image *find_turned(const moving *m, size_t index)
+{
+	const nt_turned_images *turned = m->output->options->turned;
+	for (size_t i = 0; turned && i < turned->count; i++)
+		if (turned->items[i].image == index)
+			return &turned->items[i];
+	return NULL;
 }
 
 nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_gltf_output *output,
@@ -184,7 +231,12 @@ nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_
 	for (size_t i = 0; !status && i < count; i++) {
 		/* embedding may give the root its first view, which moves the root's members */
 		nt_json_value *image = nt_json_at(nt_gltf_root_member(document, "images"), i);
+		const nt_turned_image *turned = find_turned(&m, i);
 		size_t length;
+		if (turned) {
+			status = place_turned(&m, image, turned);
+			continue;
+		}
 		if (!nt_gltf_external_uri(image, &length))
 			continue;
 		const bool leaves = !output->is_stream && nt_gltf_link_leaves(image, output->link_prefix);

@@ -19,7 +19,7 @@ typedef struct repair {
 #define BAKE(code)             [NT_CODE_##code] = {ACTION_BAKE, NULL}
 #define CONVERT(code, options) [NT_CODE_##code] = {ACTION_CONVERT, options}
 
-static const char replace[] = "--existing=replace", turn_green[] = "--flip-green=auto";
+static const char replace[] = "--existing=replace";
 
 /* What is not here is to be looked at. */
 static const repair repairs[NT_CODE_COUNT] = {
@@ -34,7 +34,8 @@ static const repair repairs[NT_CODE_COUNT] = {
 	EXPORT(MESH_NORMAL_AGAINST_FACE), EXPORT(TAN_NO_UV), EXPORT(TAN_UVSET_CONFLICT),
 	EXPORT(TAN_UV_TRANSFORM_ANIMATED), EXPORT(TAN_MORPH_TURNED), EXPORT(TAN_MORPH_HALFWAY),
 
-	[NT_CODE_NMAP_GREEN_DOWN] = {ACTION_BAKE, turn_green},
+	[NT_CODE_NMAP_GREEN_DOWN] = {ACTION_BAKE, "--flip-green=auto"},
+	[NT_CODE_NMAP_HEIGHTS] = {ACTION_BAKE, "--bump=height"},
 	BAKE(NMAP_GREEN_MIXED), BAKE(NMAP_NOT_UNIT), BAKE(NMAP_BLUE_BELOW_HALF), BAKE(NMAP_OBJECT_SPACE),
 	BAKE(NMAP_CONSTANT), BAKE(NMAP_BANDED), BAKE(NMAP_SRGB), BAKE(NMAP_JPEG),
 
@@ -51,7 +52,7 @@ static const repair repairs[NT_CODE_COUNT] = {
 bool nt_repair_options(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
 	const char *options = repairs[finding->code].options;
-	if (!options || (options == turn_green && report->format != NT_FORMAT_OBJ))
+	if (!options)
 		return false;
 	nt_buffer_text(out, options);
 	/* what no material asks for stays as it is, unless it is asked for */

@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Normal maps of a glTF turned: see turned_maps.h. An image is decoded once, however many materials have it as a
+ * normal map. Whoever else samples it keeps it: textures are counted by who refers to them, as normal map and at all,
+ * and where the two differ the material gets a texture of its own. Extensions whose textures are not called ...Texture
+ * are not seen; a texture that nobody is seen to use counts as theirs.
+ */
+#include "format/turned_maps.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "base/parallel.h"
+#include "format/normal_map.h"
+#include "gltf/document.h"
+#include "image/image.h"
+
+static const char *const slot_names[2] = {"normalTexture", "clearcoatNormalTexture"};
+
+/* A normal map of a material. */
+typedef struct use {
+	uint32_t material, texture, image;
+	int slot;   /* of slot_names */
+	bool clamp; /* its sampler does */
+} use;
+
+/* An image of them. */
+typedef struct job {
+	uint32_t image;
+	use first;
+	nt_normal_map map;
+	nt_conversion how;
+	nt_converted made;
+	nt_error error;
+} job;
+
+typedef struct turning {
+	nt_scene *scene;
+	nt_gltf *document;
+	const nt_turning *how;
+	use *uses;
+	job *jobs;
+	size_t use_count, job_count, texture_count;
+	size_t *all, *turned; /* [texture_count] who refers to a texture; of them, normal maps that are turned */
+	nt_turned_images *images;
+} turning;
+
+static nt_json_value *texture_at(const turning *t, uint32_t index)
+{
+	return nt_json_at(nt_gltf_root_member(t->document, "textures"), index);
+}
+
+static nt_json_value *info_at(const turning *t, uint32_t material, int slot)
+{
+	nt_json_value *m = nt_json_at(nt_gltf_root_member(t->document, "materials"), material);
+	if (slot)
+		m = nt_json_find(nt_json_find(m, "extensions"), "KHR_materials_clearcoat");
+	return nt_json_find(m, slot_names[slot]);
+}
+
+/* The index that a member has, below a count. */
+static bool get_index(const nt_json_value *object, const char *name, size_t count, uint32_t *index)
+{
+	uint64_t value;
+	if (!nt_json_get_uint64(nt_json_find(object, name), &value) || value >= count)
+		return false;
+	*index = (uint32_t)value;
+	return true;
+}
+
+static void tell(const turning *t, const use *u, nt_code code, const char *what)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	snprintf(place.pointer, sizeof place.pointer, "/materials/%u/%s%s", u->material,
+		u->slot ? "extensions/KHR_materials_clearcoat/" : "", slot_names[u->slot]);
+	nt_finding_add(&t->scene->findings, code, &place, 1, "%.200s", what);
+}
+
+/* ---- which ---- */
+
+static bool clamps(const turning *t, const nt_json_value *texture)
+{
+	enum { CLAMP_TO_EDGE = 33071 };
+	const nt_json_value *samplers = nt_gltf_root_member(t->document, "samplers");
+	uint32_t sampler;
+	uint64_t wrap = 0;
+	if (get_index(texture, "sampler", nt_json_count(samplers), &sampler))
+		nt_json_get_uint64(nt_json_find(nt_json_at(samplers, sampler), "wrapS"), &wrap);
+	return wrap == CLAMP_TO_EDGE;
+}
+
+static void find_use(turning *t, uint32_t material, int slot)
+{
+	use u = {.material = material, .slot = slot};
+	if (!get_index(info_at(t, material, slot), "index", t->texture_count, &u.texture))
+		return;
+	const nt_json_value *texture = texture_at(t, u.texture);
+	for (nt_image_type type = NT_IMAGE_KTX2; type <= NT_IMAGE_WEBP; type++)
+		if (nt_json_find(nt_json_find(texture, "extensions"), nt_image_extension(type))) {
+			tell(t, &u, NT_CODE_NMAP_NOT_TURNED, nt_image_type_name(type));
+			return;
+		}
+	if (!get_index(texture, "source", nt_json_count(nt_gltf_root_member(t->document, "images")), &u.image))
+		return;
+	u.clamp = clamps(t, texture);
+	size_t j = 0;
+	while (j < t->job_count && t->jobs[j].image != u.image)
+		j++;
+	if (j == t->job_count)
+		t->jobs[t->job_count++] = (job){.image = u.image, .first = u};
+	t->uses[t->use_count++] = u;
+}
+
+/* Counts who refers to textures, below one value. */
+static void count_users(const turning *t, const nt_json_value *value)
+{
+	static const char ending[] = "Texture";
+	for (size_t i = 0; i < nt_json_count(value); i++) {
+		size_t length = 0;
+		const char *key = nt_json_key(value, i, &length);
+		const nt_json_value *member = nt_json_at(value, i);
+		uint32_t texture;
+		if (key && length >= sizeof ending - 1 && strcmp(key + length + 1 - sizeof ending, ending) == 0 &&
+			get_index(member, "index", t->texture_count, &texture))
+			t->all[texture]++;
+		count_users(t, member);
+	}
+}
+
+/* ---- pixels ---- */
+
+static nt_status open_jobs(const turning *t, nt_error *error)
+{
+	uint64_t pixels = 0, bytes = 0;
+	nt_status status = NT_OK;
+	for (size_t j = 0; j < t->job_count && !status; j++) {
+		job *x = &t->jobs[j];
+		uint32_t sides[2];
+		status = nt_normal_map_open_image(&x->map, t->document, x->image, error);
+		if (status || !x->map.bytes || !nt_image_size(x->map.bytes, x->map.size, sides))
+			continue;
+		pixels += 2 * (uint64_t)sides[0] * sides[1];
+		bytes += x->map.size;
+	}
+	return status ? status : nt_check_pixels(pixels, t->how->max_pixels, bytes, error);
+}
+
+static void make(void *context, size_t item, unsigned slot)
+{
+	(void)slot;
+	const turning *t = context;
+	job *x = &t->jobs[item];
+	bool grey = false;
+	nt_error_clear(&x->error);
+	if (!x->map.bytes || !nt_image_is_decoded(x->map.type) ||
+		nt_image_is_grey(x->map.bytes, x->map.size, &grey, &x->error))
+		return;
+	x->how = (nt_conversion){.channels = {{.used = true, .map = {.channel = NT_CHANNEL_LUMINANCE, .gain = 1}}},
+		.flip = grey ? NT_FLIP_OFF : t->how->flip, .heights = grey && t->how->heights,
+		.height = t->how->height, .clamp = x->first.clamp};
+	const nt_file file = nt_file_of_bytes(x->map.bytes, x->map.size);
+	if (x->how.heights || x->how.flip)
+		nt_conversion_make(&x->how, (const nt_file *const[4]){&file}, false, &x->made, &x->error);
+}
+
+static nt_status tell_job(const turning *t, const job *x, nt_error *error)
+{
+	char text[80];
+	const bool fatal = x->error.status == NT_ERROR_MEMORY || x->error.status == NT_ERROR_MODULE;
+	if (fatal)
+		*error = x->error;
+	else if (x->error.status)
+		tell(t, &x->first, NT_CODE_IMAGE_DAMAGED, x->error.message);
+	else if (x->map.bytes && !nt_image_is_decoded(x->map.type))
+		tell(t, &x->first, NT_CODE_NMAP_NOT_TURNED, nt_image_type_name(x->map.type));
+	snprintf(text, sizeof text, "%s", x->how.heights ? "height map to normal map" : "green turned up");
+	if (x->made.made)
+		tell(t, &x->first, NT_CODE_IMAGE_CONVERTED, text);
+	return fatal ? x->error.status : NT_OK;
+}
+
+/* ---- the document ---- */
+
+/* Whether every texture of an image is of turned normal maps alone. */
+static bool is_free(const turning *t, uint32_t image)
+{
+	for (uint32_t i = 0; i < t->texture_count; i++) {
+		uint32_t source;
+		if (get_index(texture_at(t, i), "source", SIZE_MAX, &source) && source == image &&
+			(!t->all[i] || t->all[i] != t->turned[i]))
+			return false;
+	}
+	return true;
+}
+
+/* Appends a copy of an element to an array of the root; its number. */
+static uint32_t append_copy(const turning *t, const char *array, uint32_t of)
+{
+	nt_json *json = t->document->json;
+	nt_json_value *elements = nt_gltf_root_member(t->document, array);
+	nt_json_append(json, elements);
+	const size_t last = nt_json_count(elements) - 1;
+	nt_json_set_copy(json, nt_json_at(elements, last), nt_json_at(elements, of));
+	return (uint32_t)last;
+}
+
+/* The textures of an image that is turned take another image; those that others use, too, stay, and get a twin. */
+static void refer(const turning *t, uint32_t from, uint32_t to)
+{
+	nt_json *json = t->document->json;
+	for (uint32_t i = 0; i < t->texture_count; i++) {
+		uint32_t source, texture = i;
+		if (!t->turned[i] || !get_index(texture_at(t, i), "source", SIZE_MAX, &source) || source != from)
+			continue;
+		if (t->all[i] != t->turned[i])
+			texture = append_copy(t, "textures", i);
+		nt_json_set_uint64(json, nt_json_put(json, texture_at(t, texture), "source"), to);
+		for (const use *u = t->uses; texture != i && u < t->uses + t->use_count; u++)
+			if (u->texture == i)
+				nt_json_set_uint64(json, nt_json_put(json, info_at(t, u->material, u->slot), "index"),
+					texture);
+	}
+}
+
+static nt_status take_job(const turning *t, job *x, nt_error *error)
+{
+	nt_turned_images *images = t->images;
+	const nt_status status = tell_job(t, x, error);
+	if (status || !x->made.made)
+		return status;
+	if (!nt_grow((void **)&images->items, &images->capacity, images->count + 1, sizeof *images->items))
+		return nt_fail_memory(error);
+	nt_turned_image *image = &images->items[images->count++];
+	*image = (nt_turned_image){.image = x->image, .replaces = is_free(t, x->image),
+		.suffix = x->how.heights ? "-normal" : "-green-up", .bytes = x->made.bytes, .size = x->made.size};
+	x->made.bytes = NULL;
+	if (!image->replaces) {
+		image->image = append_copy(t, "images", x->image);
+		refer(t, x->image, image->image);
+	}
+	return nt_json_failed(t->document->json) ? nt_fail_memory(error) : NT_OK;
+}
+
+nt_status nt_turned_maps_make(nt_scene *scene, const nt_turning *how, nt_turned_images *turned, nt_error *error)
+{
+	turning t = {.scene = scene, .document = scene->source, .how = how, .images = turned};
+	const nt_json_value *materials = nt_gltf_root_member(t.document, "materials");
+	const size_t count = nt_json_count(materials);
+	t.texture_count = nt_json_count(nt_gltf_root_member(t.document, "textures"));
+	t.uses = nt_calloc(2 * count, sizeof *t.uses);
+	t.jobs = nt_calloc(2 * count, sizeof *t.jobs);
+	t.all = nt_calloc(2 * t.texture_count, sizeof *t.all);
+	nt_status status = t.uses && t.jobs && t.all ? NT_OK : nt_fail_memory(error);
+	for (uint32_t m = 0; m < count && !status; m++)
+		for (int slot = 0; slot < 2; slot++)
+			find_use(&t, m, slot);
+	if (!status)
+		status = open_jobs(&t, error);
+	if (!status) {
+		t.turned = t.all + t.texture_count;
+		count_users(&t, materials);
+		nt_parallel_items(nt_thread_count(how->threads), t.job_count, make, &t);
+	}
+	for (size_t j = 0; j < t.job_count && !status; j++)
+		for (const use *u = t.uses; u < t.uses + t.use_count && t.jobs[j].made.made; u++)
+			t.turned[u->texture] += u->image == t.jobs[j].image;
+	for (size_t j = 0; j < t.job_count && !status; j++)
+		status = take_job(&t, &t.jobs[j], error);
+	for (size_t j = 0; j < t.job_count; j++) {
+		nt_normal_map_close(&t.jobs[j].map);
+		free(t.jobs[j].made.bytes);
+	}
+	free(t.uses);
+	free(t.jobs);
+	free(t.all);
+	return status;
+}
+
+void nt_turned_maps_free(nt_turned_images *turned)
+{
+	for (size_t i = 0; i < turned->count; i++)
+		free(turned->items[i].bytes);
+	free(turned->items);
+	*turned = (nt_turned_images){0};
+}
