@@ -124,6 +124,7 @@ configure built "${version%.*}" && cmake --build built >"$WORK/out.txt" 2>&1 || 
 is "$(built/static "$data"/golden/*.nmtg)" "$expected"
 musl-gcc -static -o musl -Imoved/include project/program.c moved/lib/$triplet/libnmtan.a || wrong "does not link with musl"
 is "$(./musl "$data"/golden/*.nmtg)" "$expected"
+exists moved/share/man/man7/nmtan-engines.7
 make -s -C tree MAKEFLAGS= uninstall-lib DESTDIR="$PWD" PREFIX=/moved LIBDIR=/moved/lib/$triplet
 is "$(find moved -type f -o -type l)" ""
 

@@ -63,6 +63,14 @@ sed -e 's/\\-/-/g' "$mtl" | grep -oE -- '--[a-z-]+' | sort -u >named
 "$NMTAN" --help | grep -oE -- '--[a-z-]+' | sort -u >options
 is "$(comm -23 named options)" ""
 
+scene "the page for importers is well formed and has a row and a section with sources for each engine"
+engines=$ROOT/man/nmtan-engines.7
+well_formed "$engines"
+text "$engines" | sed -n '/^engine|/,/^\.TE/p' | sed '1d;$d;s/|.*//' >rows
+text "$engines" | grep -A1 '^\.TP' | sed -n 's/^\.B //p' >sections
+equal rows sections
+is "$(wc -l <rows) $(grep -c 'Sources:' "$engines")" "8 8"
+
 scene "the page about many machines has each file and command of the recipes, and no other"
 farm=$ROOT/man/nmtan-farm.7
 text "$farm" | sed -n '/^\.SH FILES/,/^\.PP/p' | grep -o '[A-Za-z-]*\.sh\|nmtan-farm\|nmtan\.mk\|Snakefile' | sort -u >manual
