@@ -215,11 +215,6 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Nothing if the size does not matter; --draco=off then avoids the warning. Else give the primitive "
 		"accessors of its own, and separate triangles.",
 		"converting two normal-mapped primitives with one POSITION accessor, --draco=sequential"),
-	ROW(DRACO_PRECISION, WARNING, "w--", "--precision does not reach tangents that Draco compresses",
-		"Tangents in a Draco block are floats that Draco quantizes itself, so that --precision does not apply "
-		"to them.",
-		"Set their precision with --draco-bits, or use --draco=off.",
-		"converting any glTF with --draco=sequential --precision=byte"),
 	ROW(DRACO_SEQUENTIAL, INFO, "i--",
 		"the primitive is compressed by Draco's sequential method, which gives larger files",
 		"Edgebreaker was asked for, or the input has it. It takes time in the square of the triangles at one "

@@ -143,16 +143,64 @@ run --only=all --existing=replace --draco=off --precision=byte --verify stale.gl
 exits 0
 valid bytes.glb
 
-scene "--precision says that it does not reach into a block"
-run --draco=edgebreaker --draco-bits=14,12,12,16 --precision=short "$WORK/layouts/plain.gltf" packed.glb
+scene "--precision does not reach into a block, and what asks for it is refused"
+run --draco=edgebreaker --draco-bits=14,12,12,16 "$WORK/layouts/plain.gltf" packed.glb
 exits 0
-says "warning: --precision does not reach tangents that Draco compresses: 16 bits [DRACO_PRECISION]"
-run --precision=short --existing=replace packed.glb again.glb
-exits 0
-says "[DRACO_PRECISION]"
+for precision in float short byte; do
+	run --draco=edgebreaker --precision=$precision "$WORK/layouts/plain.gltf" again.glb
+	exits 1
+	says "/meshes/0/primitives/0: --precision does not reach tangents that Draco compresses: --draco-bits says how many"
+	run --precision=$precision --existing=replace packed.glb again.glb
+	exits 1
+	[ ! -e again.glb ] || wrong "there is an output"
+done
 run --precision=short --existing=replace --draco=off packed.glb again.glb
 exits 0
-says_not DRACO_PRECISION
+is "$(gltf again.glb 'g.accessors[g.meshes[0].primitives[0].attributes.TANGENT].componentType')" 5122
+run --precision=short packed.glb kept.glb
+exits 0
+same packed.glb kept.glb
+
+scene "primitives that stay keep their blocks byte for byte"
+# changed.py IN OUT STATEMENTS: the document g of a .glb and its chunk b after them
+cat >changed.py <<'END'
+import json, struct, sys
+data = open(sys.argv[1], "rb").read()
+size = struct.unpack_from("<I", data, 12)[0]
+g, b = json.loads(data[20:20 + size]), data[28 + size:]
+def block(p):
+    v = g["bufferViews"][p["extensions"]["KHR_draco_mesh_compression"]["bufferView"]]
+    return b[v.get("byteOffset", 0):v.get("byteOffset", 0) + v["byteLength"]]
+exec(sys.argv[3])
+END
+printf '%s\n' "v 0 0 0" "v 1 0 0" "v 0 1 0" "v 1 1 1" "vt 0 0" "vt 1 0" "vt 0 1" "vt 1 1" "o a" "f 1/1 2/2 3/3" "f 2/2 4/4 3/3" \
+	"o b" "f 2/1 1/2 3/3" "f 3/3 1/2 4/4" >two.obj
+run two.obj two.glb
+for method in edgebreaker sequential; do
+	run --existing=replace --only=all --draco=$method two.glb both.glb
+	exits 0
+	# the second has a material that needs tangents, the first has none
+	python3 changed.py both.glb x 'g["materials"] = [{"normalTexture": {"index": 0}}]; g["textures"] = [{"source": 0}]
+g["images"] = [{"uri": "n.png"}]
+for m, p in enumerate(m["primitives"][0] for m in g["meshes"]):
+    p.pop("material", None)
+    if m: p["material"] = 0
+text = json.dumps(g).encode(); text += b" " * (-len(text) % 4)
+open("mixed.glb", "wb").write(struct.pack("<III", 0x46546C67, 2, 28 + len(text) + len(b)) + struct.pack("<II", len(text), 0x4E4F534A) + text
+    + struct.pack("<II", len(b), 0x004E4942) + b)'
+	run --existing=replace --draco-bits=14,12,12,20 --verify mixed.glb out.glb
+	exits 0
+	for file in mixed out; do
+		python3 changed.py $file.glb x 'open(sys.argv[1] + ".first", "wb").write(block(g["meshes"][0]["primitives"][0]))
+open(sys.argv[1] + ".second", "wb").write(block(g["meshes"][1]["primitives"][0]))'
+	done
+	same mixed.glb.first out.glb.first
+	# repair that repairs nothing, and a second run with what is there, change nothing
+	for words in --existing=keep --existing=repair; do
+		run $words out.glb again.glb
+		same out.glb again.glb
+	done
+done
 
 scene "--draco-speed: smaller or faster, the same content, 5 unless told"
 grid_obj 40 >grid.obj

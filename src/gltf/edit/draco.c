@@ -201,11 +201,6 @@ static void report_users(const nt_gltf_recoding *r, nt_finding_list *findings, b
 			nt_finding_add(findings, NT_CODE_DRACO_PLAIN, place, 1, "%s", r->obstacle);
 		if (compressed && r->sequential_instead)
 			nt_finding_add(findings, NT_CODE_DRACO_SEQUENTIAL, place, 1, NULL);
-		const bool unreached = compressed && r->options->precision > NT_PRECISION_FLOAT;
-		for (size_t k = 0; unreached && k < r->attribute_count; k++)
-			if (strcmp(r->names[k], "TANGENT") == 0)
-				nt_finding_add(findings, NT_CODE_DRACO_PRECISION, place, 1, "%d bits",
-					r->attributes[k].quantization.bits);
 	}
 }
 
@@ -237,6 +232,10 @@ nt_status nt_gltf_draco_look_up(nt_gltf_recoding *r, nt_buffer_edits *edits, nt_
 	r->edits = edits;
 	if (status || r->obstacle)
 		return status;
+	if (options->precision != NT_PRECISION_AUTO)
+		return nt_fail_pointer(error, NT_ERROR_USAGE, nt_mesh_place(r->mesh, &(nt_place){0})->pointer,
+			"--precision does not reach tangents that Draco compresses: --draco-bits says how many bits "
+			"they get, --draco=off writes them plain");
 	if (r->extension) {
 		r->source = nt_gltf_draco_block(r->document, r->view);
 		status = nt_gltf_draco_gather_block(r, error);
