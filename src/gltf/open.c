@@ -81,8 +81,12 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	if (attributes && nt_json_type_of(attributes) != NT_JSON_OBJECT)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"\"attributes\" is %s, expected an object", nt_json_type_text(attributes));
+	/* a mode that glTF lacks is explained by an extension (EXT_primitive_voxels), and is none of triangles */
+	enum { LAST_MODE = 6 };
+	const bool explained = nt_json_count(nt_json_find(primitive, "extensions")) > 0;
 	uint64_t mode;
-	nt_status status = nt_gltf_uint(primitive, pointer, "mode", 6, NT_GLTF_TRIANGLES, &mode, error);
+	nt_status status = nt_gltf_uint(primitive, pointer, "mode", explained ? UINT32_MAX : LAST_MODE,
+		NT_GLTF_TRIANGLES, &mode, error);
 	nt_gltf_shading shading;
 	if (!status)
 		status = nt_gltf_find_slots(document, primitive, pointer, &shading, error);
@@ -91,7 +95,7 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->gltf_material = shading.material;
 	mesh->gltf_material_name = nt_json_get_string(nt_json_find(
 		nt_json_at(nt_gltf_root_member(document, "materials"), shading.material), "name"), NULL);
-	mesh->triangles = mode >= NT_GLTF_TRIANGLES;
+	mesh->triangles = mode >= NT_GLTF_TRIANGLES && mode <= LAST_MODE;
 	mesh->slots = shading.slots;
 	mesh->unlit = shading.unlit;
 	describe_texcoords(mesh, attributes, &shading, options);

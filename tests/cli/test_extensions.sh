@@ -158,4 +158,26 @@ for place in 'g.meshes[0].primitives[0]' 'g.meshes[0]'; do
 	done
 done
 
+scene "a primitive whose mode an extension explains is left as it is, another unknown mode is refused"
+python3 - "$data/plates.gltf" <<'END'
+import json, sys
+g = json.load(open(sys.argv[1]))
+p = g["meshes"][0]["primitives"]
+p.append(dict(p[0], mode=2147483647, extensions={"EXT_primitive_voxels": {"shape": 0}}))
+g["extensionsUsed"] = g.get("extensionsUsed", []) + ["EXT_primitive_voxels"]
+json.dump(g, open("voxels.gltf", "w"))
+del p[-1]["extensions"]
+json.dump(g, open("unknown.gltf", "w"))
+END
+cp "$data"/plates.bin "$data/bumps.png" .
+run --verify voxels.gltf out.gltf
+exits 0
+is "$(gltf out.gltf 'g.meshes[0].primitives[3]')" "$(gltf voxels.gltf 'g.meshes[0].primitives[3]')"
+is "$(gltf out.gltf 'g.meshes[0].primitives[0].attributes.TANGENT !== undefined')" true
+run --check --only=all --fail-on=never voxels.gltf
+exits 0
+run unknown.gltf out.gltf
+exits 3
+says "/meshes/0/primitives/3/mode: 2147483647, expected at most 6"
+
 done_testing
