@@ -6,9 +6,6 @@
 #include <string.h>
 #include "base/compiler.h"
 #include "base/parallel.h"
-#if NT_VECTORS && defined(__SSE2__)
-#include <emmintrin.h>
-#endif
 
 #define NONE UINT32_MAX
 
@@ -48,52 +45,7 @@ static unsigned longest_axis(const box *b)
 	return y > x && y > z ? 1 : z > x ? 2 : 0;
 }
 
-#if NT_VECTORS
-typedef float float4 __attribute__((vector_size(16)));
-typedef int int4 __attribute__((vector_size(16)));
-
-/* By name where that is one operation and not four. The second value where the first is NaN. */
-static inline float4 least4(float4 a, float4 b)
-{
-#ifdef __SSE2__
-	return (float4)_mm_min_ps((__m128)a, (__m128)b);
-#else
-	const int4 less = a < b;
-	return (float4)(((int4)a & less) | ((int4)b & ~less));
-#endif
-}
-
 /* The box of vertices [first, end); false where a coordinate is NaN. */
-static bool box_of_block(const nt_welded_mesh *mesh, size_t first, size_t end, box *b)
-{
-	enum { CHAINS = 4 };
-	float4 low[CHAINS], high[CHAINS]; /* of the coordinates, and of their negatives */
-	int4 unordered = {0};
-	memcpy(&low[0], mesh->positions + mesh->step * first, sizeof *low);
-	for (size_t c = 0; c < CHAINS; c++)
-		low[c] = low[0], high[c] = -low[0];
-	size_t v = first;
-	while (v < end) {
-		const size_t step = end - v < CHAINS ? 1 : CHAINS;
-		for (size_t c = 0; c < step; c++) {
-			float4 p;
-			memcpy(&p, mesh->positions + mesh->step * (v + c), sizeof p);
-			low[c] = least4(p, low[c]);
-			high[c] = least4(-p, high[c]);
-			unordered |= p != p;
-		}
-		v += step;
-	}
-	for (size_t c = 1; c < CHAINS; c++) {
-		low[0] = least4(low[c], low[0]);
-		high[0] = least4(high[c], high[0]);
-	}
-	high[0] = -high[0];
-	memcpy(b->low, &low[0], sizeof b->low);
-	memcpy(b->high, &high[0], sizeof b->high);
-	return !(unordered[0] | unordered[1] | unordered[2]);
-}
-#else
 static bool box_of_block(const nt_welded_mesh *mesh, size_t first, size_t end, box *b)
 {
 	int unordered = 0;
@@ -109,7 +61,6 @@ static bool box_of_block(const nt_welded_mesh *mesh, size_t first, size_t end, b
 	}
 	return !unordered;
 }
-#endif
 
 /* The first vertex from there on that has this coordinate; there is one. */
 static uint32_t find_coordinate(const nt_welded_mesh *mesh, size_t first, int axis, float coordinate)
