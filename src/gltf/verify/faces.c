@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The comparison of faces.h. The triangles of one list are in a tree, which halves space along what tells them apart: of
- * each of the seven values of a corner the sum, the least and the most of a triangle's three, whichever corner comes
+ * The comparison of faces.h. The triangles of one list are in a tree, which halves space along what tells them apart:
+ * of each of the seven values of a corner the sum, the least and the most of a triangle's three, whichever corner comes
  * first. Each triangle of the other list goes down wherever the one that is the same may be. What they leave open is
  * which corner has which value. Both lists are asked, so that none has more than the other.
  */
