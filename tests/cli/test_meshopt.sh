@@ -110,6 +110,18 @@ pack packed.glb -cc
 run -q --verify --meshopt=off packed.glb out.glb
 exits 0
 is "$(gltf out.glb "$kinds")" "plain  "
+# what does not change itself has the bounds of what is decoded, whatever the encoder said of it
+gltf bare.gltf both 'const [mesh] = g.meshes, copy = structuredClone(mesh);
+	for (const p of copy.primitives) delete p.material;
+	g.meshes.push(copy); g.nodes.push({mesh: 1, translation: [2, 0, 0]}); g.scenes[0].nodes.push(g.nodes.length - 1)'
+cp both.gltf bare.gltf
+pack both.glb -cc -vpf -kn
+gltf both.glb moved 'for (const a of g.accessors) if (a.min) a.min[0] -= 1e-3, a.max[0] += 1e-3'
+run -q --verify --meshopt=off moved.gltf out.glb
+exits 0
+is "$(gltf out.glb "$kinds")" "plain  "
+valid out.glb
+bare
 run -q --verify --precision=float packed.glb out.glb
 sound packed.glb out.glb
 is "$(gltf out.glb 'g.accessors[g.meshes[0].primitives[0].attributes.TANGENT].componentType')" 5126

@@ -80,8 +80,8 @@ function judgePrimitive(file, primitive, fault) {
 		3 * block.faces !== g.accessors[primitive.indices].count))
 		fault(`the block has ${block.points} points and ${block.faces} faces, its accessors others`);
 	for (const name of ['POSITION', 'TANGENT']) {
-		const number = primitive.attributes[name], accessor = g.accessors[number];
-		if (number === undefined || (!block?.has(name) && (accessor.bufferView === undefined || accessor.sparse)))
+		const number = primitive.attributes[name], accessor = g.accessors?.[number];
+		if (!accessor || (!block?.has(name) && (accessor.bufferView === undefined || accessor.sparse)))
 			continue;
 		const stored = block?.has(name) ? block.attribute(name) : rows(file, number);
 		/* of plain ones the validator judges; those that nobody solved keep their block, and the input's bounds */

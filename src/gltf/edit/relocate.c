@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "gltf/accessor.h"
 #include "gltf/document.h"
 #include "gltf/bytes/packed_views.h"
 
@@ -390,6 +391,32 @@ static void drop_unneeded_compression(nt_gltf *document)
 	}
 }
 
+/* What a filter moved has other bounds than the encoder said, which everybody sees once the view is plain. Accessors of
+ * vertices that were changed have theirs; `seen` says which these are. */
+static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
+{
+	nt_gltf *document = edits->document;
+	nt_status status = NT_OK;
+	for (uint32_t i = 0; !status && document->virtual_count && i < document->pools->accessor_count; i++) {
+		nt_gltf_accessor a;
+		const unsigned char *elements;
+		double bounds[2][4];
+		const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "accessors"), i);
+		if (edits->seen[i] || !nt_json_find(json, "min") ||
+			nt_gltf_get_accessor(document, i, "", &a, NULL) || a.view >= edits->view_count ||
+			a.sparse_count || document->virtual_of[a.view] == NT_NONE || a.components > 4 ||
+			a.element_bytes != a.components * a.component_bytes || nt_packing_of(edits, a.view).extension ||
+			!nt_edits_of(edits, document->virtual_of[a.view])->edit_count)
+			continue;
+		status = nt_gltf_elements(document, &a, &elements, error);
+		if (status)
+			continue;
+		nt_component_bounds(elements, a.stride, (size_t)a.count, (int)a.component_type, a.components, bounds);
+		nt_gltf_state_bounds(document->json, nt_gltf_change_accessor(document, i), a.components, bounds);
+	}
+	return status;
+}
+
 /* ---- the whole ---- */
 
 /* moved: [view_count] */
@@ -398,7 +425,7 @@ static nt_status relocate(nt_buffer_edits *edits, nt_relocated *result, moved_vi
 	/* Edits come to an end: views that were decompressed and edited go into buffers, those that have lost all get
 	 * a few bytes. */
 	const uint32_t *virtual_of = edits->document->virtual_of;
-	nt_status status = NT_OK;
+	nt_status status = settle_bounds(edits, error);
 	for (uint32_t i = 0; !status && i < edits->view_count; i++)
 		if (virtual_of[i] != NT_NONE && nt_edits_of(edits, virtual_of[i])->edit_count)
 			status = settle_virtual(edits, i, &moved[i], error);
