@@ -208,7 +208,7 @@ static void count_normals(void *context, size_t begin, size_t end, unsigned slot
 	size_t not_unit = 0;
 	for (size_t v = begin; v < end; v++)
 		not_unit += !nt_is_unit_normal(nt_normal(job->mesh, v));
-	nt_atomic_add(&job->not_unit, not_unit, RELAXED);
+	(void)nt_atomic_add(&job->not_unit, not_unit, RELAXED);
 }
 
 static void end_counts(const request *r, nmtan_counts *met, size_t ill_conditioned, nmtan_counts *given)

@@ -29,11 +29,13 @@
 #endif
 
 #if defined(__GNUC__) && !defined(NMTAN_PLAIN_C)
-#define NT_PREFETCH(...) __builtin_prefetch(__VA_ARGS__)
+#define NT_PREFETCH(at) __builtin_prefetch(at)
+#define NT_PREFETCH_TO_WRITE(at) __builtin_prefetch(at, 1)
 #define NT_EXPECT(condition, value) __builtin_expect(condition, value)
 #define NT_UNREACHABLE __builtin_unreachable()
 #else
-#define NT_PREFETCH(...) ((void)0)
+#define NT_PREFETCH(at) ((void)(at))
+#define NT_PREFETCH_TO_WRITE(at) ((void)(at))
 #define NT_EXPECT(condition, value) (condition)
 #define NT_UNREACHABLE ((void)0)
 #endif

@@ -25,7 +25,7 @@ static void count_corners(uint32_t *counts, const uint32_t *ids, size_t count, b
 {
 	size_t i = 0;
 	for (; far && i + COUNT_AHEAD < count; i++) {
-		NT_PREFETCH(&counts[ids[i + COUNT_AHEAD]], 1);
+		NT_PREFETCH_TO_WRITE(&counts[ids[i + COUNT_AHEAD]]);
 		counts[ids[i]]++;
 	}
 	for (; i < count; i++)

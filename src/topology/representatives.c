@@ -32,7 +32,7 @@ typedef struct weld {
 	entry *entries;
 	uint32_t *vertices;
 	uint16_t number[NT_CELLS]; /* of each cell that has a corner, from 1 on; 0: none */
-	size_t cell_count;
+	uint32_t cell_count;
 	uint32_t *first_entry, *first_vertex; /* [cell_count + 2] by number */
 	uint32_t *found;
 	bool limit; /* set by any thread */

@@ -38,7 +38,7 @@ static bool grow_table(nt_welder *w, unsigned bits)
 		const size_t left = w->row_count - begin, count = left < NT_WELD_BATCH ? left : NT_WELD_BATCH;
 		for (size_t i = 0; i < count; i++) {
 			hashes[i] = nt_weld_hash(&w->key, &w->rows[begin + i]);
-			NT_PREFETCH(&w->table[nt_weld_slot(w, hashes[i])], 1);
+			NT_PREFETCH_TO_WRITE(&w->table[nt_weld_slot(w, hashes[i])]);
 		}
 		for (size_t i = 0; i < count; i++) {
 			if (w->unordered && !nt_weld_row_ordered(&w->rows[begin + i]))
@@ -105,7 +105,7 @@ static inline nt_weld_flags load_item(const nt_welder *w, const nmtan_mesh *mesh
 {
 	const nt_weld_flags unordered = nt_weld_load(mesh, vertex, row);
 	*hash = nt_weld_hash(&w->key, row);
-	NT_PREFETCH(&w->table[nt_weld_slot(w, *hash)], 1);
+	NT_PREFETCH_TO_WRITE(&w->table[nt_weld_slot(w, *hash)]);
 	return unordered;
 }
 

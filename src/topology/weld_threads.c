@@ -135,7 +135,7 @@ static void seek_rows(void *context, size_t begin, size_t end, unsigned thread)
 		for (size_t i = 0; i < count; i++)
 			new_count += places[i] == NEW;
 	}
-	nt_atomic_add(&here->new_count, new_count, RELAXED);
+	(void)nt_atomic_add(&here->new_count, new_count, RELAXED);
 }
 
 static bool seek_all(joint *j)

@@ -33,7 +33,7 @@ while IFS='|' read -r name command; do
 done <<END
 gcc -Os|gcc -std=c11 -Os
 gcc, fused operations and straight-line vectors|gcc -O2 -march=haswell -DNMTAN_ONE_SET
-gcc, C++17|g++ -std=c++17 -x c++ -O0
+gcc, C++17, threads of the caller|g++ -std=c++17 -x c++ -O0 -DNMTAN_JOBS
 clang, fused operations|clang -O1 -march=haswell -DNMTAN_ONE_SET
 clang as MSVC, plain C11|clang -std=c11 -fms-extensions -fms-compatibility -DNMTAN_PLAIN_C
 clang, C++17, threads|clang++ -std=c++17 -x c++ -O0 -pthread -DNMTAN_THREADS
@@ -47,11 +47,26 @@ for flags in -ffast-math -funsafe-math-optimizations -ffinite-math-only; do
 done
 ! command -v clang >/dev/null || ! clang -ffast-math -fsyntax-only -I"$one" "$source" 2>err.txt || wrong "clang"
 
-scene "nmtan_self_test() sees contraction"
+scene "no warnings, in plain C neither"
+for define in ONE_SET PLAIN_C THREADS; do
+	for compiler in gcc clang; do
+		! command -v $compiler >/dev/null || $compiler -std=c11 -Wall -Wextra -Werror -fsyntax-only -DNMTAN_$define -I"$one" \
+			"$source" >err.txt 2>&1 || wrong "$compiler -DNMTAN_$define: $(head -20 err.txt)"
+	done
+done
+
+scene "nmtan_self_test() sees contraction, and optimizations of clang's that have no macro"
+all=("${goldens[@]}")
+goldens=("${goldens[0]}")
+if command -v clang >/dev/null; then
+	actual=$(digest clang -O0 -funsafe-math-optimizations)
+	[ "${actual#* }" = "self-test 0" ] || wrong "clang: $actual"
+fi
 grep -v 'pragma GCC optimize' "$source" >nmtan.c
 source=$PWD/nmtan.c
-actual=$(digest gcc -O2 -mfma -ffp-contract=fast -DNMTAN_ONE_SET)
+actual=$(digest gcc -O1 -mfma -ffp-contract=fast -DNMTAN_ONE_SET)
 [ "${actual#* }" = "self-test 0" ] || wrong "$actual"
+goldens=("${all[@]}")
 
 scene "add_subdirectory() finds nmtan::nmtan"
 mkdir -p project

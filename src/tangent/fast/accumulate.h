@@ -74,8 +74,8 @@ static inline void bin_corner(const nt_bins *bins, uint32_t *cursors, uint32_t v
 	nt_int4 sum;
 	memcpy(&sum, add, sizeof sum);
 	sum = nt_or4(sum, tag);
-	NT_PREFETCH(&bins->sums[at + BIN_AHEAD], 1);
-	NT_PREFETCH(&bins->entries[NT_BINNED_ENTRY * (at + 2 * BIN_AHEAD)], 1);
+	NT_PREFETCH_TO_WRITE(&bins->sums[at + BIN_AHEAD]);
+	NT_PREFETCH_TO_WRITE(&bins->entries[NT_BINNED_ENTRY * (at + 2 * BIN_AHEAD)]);
 	memcpy(&bins->sums[at], &sum, sizeof sum);
 	nt_binned_store(bins->entries + NT_BINNED_ENTRY * at, next, previous);
 }

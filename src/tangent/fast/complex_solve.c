@@ -520,7 +520,7 @@ static void add_to_batch(const nt_complex *c, nt_batch *b, uint32_t place)
 {
 	const uint32_t group = c->group[place], to = b->first + b->count++;
 	c->corners[to] = c->corners[place];
-	NT_PREFETCH(c->fast->solve->tangents + 4 * nt_complex_corner(c, c->corners[to]), 1);
+	NT_PREFETCH_TO_WRITE(c->fast->solve->tangents + 4 * nt_complex_corner(c, c->corners[to]));
 	c->group[to] = group == NT_NONE ? NT_NONE : c->across[2 * group];
 }
 

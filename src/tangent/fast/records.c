@@ -41,7 +41,7 @@ static void clear_chunk(const job *j, array *a, size_t chunk)
 		a->records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
 	if (a->more)
 		memset(a->more + begin, 0, count * sizeof *a->more);
-	nt_atomic_add(&a->chunks_cleared, 1, RELEASE);
+	(void)nt_atomic_add(&a->chunks_cleared, 1, RELEASE);
 }
 
 /* Allocates the array if nobody has, and clears its first chunk. False: out of memory. */

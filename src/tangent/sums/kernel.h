@@ -348,7 +348,7 @@ LANE_INLINE void sum_prefetch(const nt_sums *s, size_t first, size_t end)
 	for (size_t i = 3 * far; i < 3 * (far + NT_SUM_LANES) && i < 3 * end; i++) {
 		NT_PREFETCH(&s->weld.rows[s->ids[i]]);
 		if (sums)
-			NT_PREFETCH(&sums[s->ids[i]], 1);
+			NT_PREFETCH_TO_WRITE(&sums[s->ids[i]]);
 	}
 }
 
