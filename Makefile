@@ -219,13 +219,20 @@ farm_programs := data/farm/nmtan-farm $(wildcard data/farm/*.sh)
 cmake_files := nmtan-config.cmake nmtan-config-version.cmake
 names := sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(patsubst $(PREFIX)/%,$${prefix}/%,$(LIBDIR))|; s|@VERSION@|$(VERSION)|' \
 	-e 's|@TO_PREFIX@|$(shell realpath -ms --relative-to=$(LIBDIR)/cmake/nmtan $(PREFIX))|'
-lib_pages := $(wildcard man/*.3 man/nmtan-engines.7)
+# The header's pages, one for each function; without Python there are none.
+open := (
+man3 := $(shell command -v python3 >/dev/null && { echo build/man3/nmtan.3 && \
+	sed -n 's,^NMTAN_API [^$(open)]*\(nmtan_[a-z_]*\)$(open).*,build/man3/\1.3,p' include/nmtan.h; })
+build/man3/nmtan.3: src/api/man3.py include/nmtan.h
+	python3 -B $^ $(@D)
+$(filter-out build/man3/nmtan.3,$(man3)): build/man3/nmtan.3 ;
+lib_pages := man/nmtan-engines.7 $(man3)
 tool_pages := $(filter-out $(lib_pages),$(wildcard man/*.[157]))
 page = $(share)/man/man$(patsubst .%,%,$(suffix $(1)))/$(notdir $(1))
 pages = for page in $(1); do install -D -m 644 $$page $(share)/man/man$${page\#\#*.}/$${page\#\#*/} || exit 1; done
 
 .PHONY: install install-lib uninstall uninstall-lib
-install-lib: $(B)/libnmtan.a $(B)/libnmtan.so
+install-lib: $(B)/libnmtan.a $(B)/libnmtan.so $(man3)
 	install -d $(lib)/pkgconfig $(lib)/cmake/nmtan $(DESTDIR)$(PREFIX)/include
 	install -m 644 $(B)/libnmtan.a $(lib)/libnmtan.a
 	install -m 755 $(B)/$(so) $(lib)/$(so).$(VERSION)

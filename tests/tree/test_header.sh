@@ -53,4 +53,22 @@ c++ -std=c++17 $strict -I"$ROOT/include" -o program ../program.cpp "$BUILD/libnm
 ./program >printed || wrong "exit code $?"
 diff ../expected printed || wrong "prints something else"
 
+scene "each function has a page for man, which says what the header says; without its comment there is none"
+make -C "$ROOT" -s build/man3/nmtan.3 >make.txt 2>&1 || wrong "$(tail -5 make.txt)"
+is "$(cd "$ROOT/build/man3" && echo *.3)" "$(cd "$ROOT" && { echo nmtan.3 && sed -n 's/^NMTAN_API .*\(nmtan_[a-z_]*\)(.*/\1.3/p' include/nmtan.h; } |
+	LC_ALL=C sort | tr '\n' ' ' | sed 's/ $//')"
+for page in "$ROOT"/build/man3/*.3; do
+	if command -v man >/dev/null; then
+		MANWIDTH=100 man --warnings -E UTF-8 -l "$page" 2>&1 >text.txt | head -3 | grep . && wrong "$page"
+	fi
+done
+if command -v man >/dev/null; then
+	MANWIDTH=200 man -E UTF-8 -l "$ROOT/build/man3/nmtan_vertex_tangents.3" | col -b >text.txt
+	for said in "nmtan_vertex_tangents - computes a tangent for every vertex" "0: v points up in texcoords" NMTAN_ERROR_CAPACITY; do
+		grep -q "$said" text.txt || wrong "no $said"
+	done
+fi
+sed '/^NMTAN_API nmtan_status nmtan_tangents/i int between;' "$header" >without.h
+! python3 -B "$ROOT/src/api/man3.py" without.h pages 2>err.txt || wrong "a function without a comment"
+grep -q "no comment in front of {'nmtan_tangents'}" err.txt || wrong "$(cat err.txt)"
 done_testing

@@ -14,7 +14,7 @@ p=root/opt/nmtan
 exists $p/bin/nmtan $p/lib/libnmtan.a "$p/lib/libnmtan.so.$version" $p/include/nmtan.h \
 	$p/lib/pkgconfig/nmtan.pc $p/lib/cmake/nmtan/nmtan-config.cmake $p/share/man/man1/nmtan.1 \
 	$p/share/bash-completion/completions/nmtan $p/share/zsh/site-functions/_nmtan $p/share/man/man7/nmtan-farm.7 \
-	$p/share/man/man7/nmtan-mtl.7
+	$p/share/man/man7/nmtan-mtl.7 $p/share/man/man3/nmtan.3 $p/share/man/man3/nmtan_vertex_tangents.3
 is "$(cd $p/share/nmtan && find . -type f -printf '%m %P\n' | sort -k 2)" "$(cd "$data" && {
 	ls farm/* | sed -e '/nmtan-farm$\|\.sh$/!s/^/644 /' -e '/^farm/s/^/755 /' && ls ./*.schema.json | sed 's|^\./|644 |'
 } | sort -k 2)"
