@@ -79,20 +79,6 @@ static nt_weld_flags load_rows(const nt_welder *w, size_t begin, size_t end, uin
 	return unordered;
 }
 
-/* Vertices by which attributes are prefetched. What processors prefetch by themselves ends with a page of 4 KB: at
- * every 128th vertex or so one of the three arrays has come to another. */
-enum { LOAD_AHEAD = 3 * NT_WELD_BATCH };
-
-/* Those of a batch. Always in line: gcc 12 drops a call of what does nothing but prefetch. */
-static inline NT_ALWAYS_INLINE void prefetch_attributes(const nmtan_mesh *mesh, size_t begin, size_t end)
-{
-	for (size_t v = begin; v < end; v += 4) {
-		NT_PREFETCH(nt_position(mesh, v));
-		NT_PREFETCH(nt_normal(mesh, v));
-		NT_PREFETCH(nt_texcoord(mesh, v));
-	}
-}
-
 /* Whoever holds a NaN gets place 0, as if it had been found. */
 static void find_unordered(const bloom_filter *f, size_t begin, size_t end, uint32_t *marked)
 {
@@ -127,8 +113,6 @@ static void load_range(void *context, size_t begin, size_t end, unsigned thread)
 	size_t found = 0;
 	for (size_t first = begin, last; first < end; first = last) {
 		last = end - first < NT_WELD_BATCH ? end : first + NT_WELD_BATCH;
-		if (end - first >= LOAD_AHEAD + NT_WELD_BATCH)
-			prefetch_attributes(f->w->mesh, first + LOAD_AHEAD, first + LOAD_AHEAD + NT_WELD_BATCH);
 		if (!nt_weld_ordered(load_rows(f->w, first, last, f->places)))
 			find_unordered(f, first, last, marked);
 		found += mark_batch(f, f->places + first, last - first, marked, again);

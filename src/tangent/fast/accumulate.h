@@ -250,17 +250,7 @@ static int missing_record(const nt_fast *fast, size_t first, size_t count)
 {
 	if (fast->bins.cursors || (fast->records[0] && fast->records[1]))
 		return -1;
-	/* nearly always all have the one orientation that there are records of: eight flags at a time */
-	const uint64_t ones = 0x0101010101010101u, there = ones * (fast->records[1] ? NT_TRIANGLE_ORIENT : 0);
-	const uint64_t others = ones * (NT_TRIANGLE_ORIENT | NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE);
-	size_t i = 0;
-	for (uint64_t eight; NT_FAST_PATHS && fast->records[there != 0] && count - i >= sizeof eight;
-		i += sizeof eight) {
-		memcpy(&eight, fast->flags + first + i, sizeof eight);
-		if ((eight ^ there) & others)
-			break;
-	}
-	for (; i < count; i++) {
+	for (size_t i = 0; i < count; i++) {
 		const uint8_t flags = fast->flags[first + i];
 		int orient = flags & NT_TRIANGLE_ORIENT;
 		if (flags & NT_TRIANGLE_DEGENERATE)
@@ -309,7 +299,7 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 			solve_lanes_plain(&in, &out, offset, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 2);
-		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
+		const bool ordinary = classify_lanes(fast, first, count, &out);
 		for (int missing; (missing = missing_record(fast, first, count)) >= 0;)
 			if (!make(fast, missing, context))
 				return;
