@@ -69,15 +69,13 @@ static void compare_golden(const char *path, const nt_golden *golden, void *cont
 	compare(&mesh, golden->corner_count, NULL);
 }
 
-static void goldens_split_the_same(void **state)
+TEST(goldens_split_the_same)
 {
-	(void)state;
 	assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", compare_golden, NULL), 46);
 }
 
-static void nasty_meshes_split_the_same(void **state)
+TEST(nasty_meshes_split_the_same)
 {
-	(void)state;
 	for (uint64_t seed = 0; seed < 3000; seed++) {
 		nt_nasty nasty;
 		nt_nasty_make(seed, &nasty);
@@ -90,9 +88,8 @@ static void nasty_meshes_split_the_same(void **state)
 }
 
 /* A torus-like grid, closed in u by a seam, mirrored in a strip: clean but for the mirror edges. */
-static void clean_grid_with_a_mirror_splits_the_same(void **state)
+TEST(clean_grid_with_a_mirror_splits_the_same)
 {
-	(void)state;
 	enum { N = 64 };
 	static float positions[(N + 1) * (N + 1)][3], normals[(N + 1) * (N + 1)][3];
 	static float texcoords[(N + 1) * (N + 1)][2];
@@ -124,9 +121,8 @@ static void clean_grid_with_a_mirror_splits_the_same(void **state)
 	split_free(&s);
 }
 
-static void arguments_are_checked(void **state)
+TEST(arguments_are_checked)
 {
-	(void)state;
 	float rows[3][8] = {{0}, {1}, {0, 1}};
 	uint32_t indices[3], sources[3];
 	float tangents[6][4];
@@ -146,11 +142,5 @@ static void arguments_are_checked(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(goldens_split_the_same),
-		cmocka_unit_test(nasty_meshes_split_the_same),
-		cmocka_unit_test(clean_grid_with_a_mirror_splits_the_same),
-		cmocka_unit_test(arguments_are_checked),
-	};
-	return cmocka_run_group_tests_name("api/vertices", tests, NULL, NULL);
+	return run_group("api/vertices");
 }

@@ -7,9 +7,8 @@
 
 static nt_deadline deadline;
 
-static void memory_is_refused_from_then_on(void **state)
+TEST(memory_is_refused_from_then_on)
 {
-	(void)state;
 	void *block = NULL;
 	size_t capacity = 0;
 	nt_arena arena = {0};
@@ -41,9 +40,8 @@ static void note_passed(void *context, size_t item, unsigned slot)
 }
 
 /* Of the thread that asks for help, and of no other. */
-static void threads_that_help_have_it(void **state)
+TEST(threads_that_help_have_it)
 {
-	(void)state;
 	enum { ITEMS = 1000 };
 	static bool passed[ITEMS];
 	atomic_store(&deadline.passed, true);
@@ -58,9 +56,5 @@ static void threads_that_help_have_it(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(memory_is_refused_from_then_on),
-		cmocka_unit_test(threads_that_help_have_it),
-	};
-	return cmocka_run_group_tests_name("base/deadline", tests, NULL, NULL);
+	return run_group("base/deadline");
 }

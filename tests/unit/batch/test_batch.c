@@ -23,9 +23,8 @@ static void refuses(const char *const *inputs, size_t count, const char *folder,
 	nt_batch_free(&batch);
 }
 
-static void outputs_have_the_name_of_the_input_and_the_ending_of_the_format(void **state)
+TEST(outputs_have_the_name_of_the_input_and_the_ending_of_the_format)
 {
-	(void)state;
 	nt_settings settings = {0};
 	nt_batch batch;
 	nt_error error;
@@ -61,9 +60,8 @@ static void refuses_jobs(nt_batch *batch, const char *expected, const char *mess
 	nt_batch_free(batch);
 }
 
-static void jobs_that_would_overwrite_each_other_are_refused_and_no_others(void **state)
+TEST(jobs_that_would_overwrite_each_other_are_refused_and_no_others)
 {
-	(void)state;
 	const nt_settings settings = {0};
 	nt_batch batch;
 	nt_error error;
@@ -84,9 +82,8 @@ static void jobs_that_would_overwrite_each_other_are_refused_and_no_others(void 
 	refuses_jobs(&batch, "x--", "'a.obj' would be written to './a.glb', which is the input 'other.ply'");
 }
 
-static void names_that_are_there_again_are_dropped(void **state)
+TEST(names_that_are_there_again_are_dropped)
 {
-	(void)state;
 	nt_inputs inputs = {0};
 	nt_error error;
 	const nt_folder_rules rules = {0};
@@ -101,9 +98,8 @@ static void names_that_are_there_again_are_dropped(void **state)
 	nt_inputs_free(&inputs);
 }
 
-static void in_place_the_output_is_the_input(void **state)
+TEST(in_place_the_output_is_the_input)
 {
-	(void)state;
 	nt_batch batch;
 	nt_error error;
 	put_text_file("p.glb", "glTF");
@@ -121,9 +117,8 @@ static void in_place_the_output_is_the_input(void **state)
 	refuses_jobs(&batch, "x-x", "which is the input");
 }
 
-static void a_dry_run_makes_no_folder_and_a_file_is_none(void **state)
+TEST(a_dry_run_makes_no_folder_and_a_file_is_none)
 {
-	(void)state;
 	const nt_settings settings = {.dry_run = true};
 	nt_batch batch;
 	nt_error error;
@@ -178,9 +173,8 @@ static void pass(void *user, nt_job *job)
 	++*(size_t *)user;
 }
 
-static void every_input_runs_and_is_told_about_in_order(void **state)
+TEST(every_input_runs_and_is_told_about_in_order)
 {
-	(void)state;
 	nt_batch batch;
 	nt_error error;
 	for (unsigned threads = 1; threads <= 8; threads += 3) {
@@ -228,9 +222,8 @@ static nt_status watched_run(const char *input, const char *output, const nt_set
 	return NT_OK;
 }
 
-static void the_bound_of_memory_keeps_jobs_waiting(void **state)
+TEST(the_bound_of_memory_keeps_jobs_waiting)
 {
-	(void)state;
 	static char names[12][20];
 	const char *inputs[12];
 	static char bytes[2000000];
@@ -284,9 +277,8 @@ static nt_status hungry_run(const char *input, const char *output, const nt_sett
 	return NT_OK;
 }
 
-static void what_had_no_memory_beside_others_is_tried_again_alone(void **state)
+TEST(what_had_no_memory_beside_others_is_tried_again_alone)
 {
-	(void)state;
 	nt_batch batch;
 	nt_error error;
 	size_t ran = 0;
@@ -304,9 +296,8 @@ static void what_had_no_memory_beside_others_is_tried_again_alone(void **state)
 	nt_batch_free(&batch);
 }
 
-static void after_a_failure_no_further_job_begins_if_so_wished(void **state)
+TEST(after_a_failure_no_further_job_begins_if_so_wished)
 {
-	(void)state;
 	nt_batch batch;
 	nt_error error;
 	const nt_settings settings = {.threads = 1, .check = true};
@@ -322,9 +313,8 @@ static void after_a_failure_no_further_job_begins_if_so_wished(void **state)
 	nt_batch_free(&batch);
 }
 
-static void one_input_has_all_threads(void **state)
+TEST(one_input_has_all_threads)
 {
-	(void)state;
 	nt_batch batch;
 	nt_error error;
 	run_log l = {0};
@@ -338,17 +328,5 @@ static void one_input_has_all_threads(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(outputs_have_the_name_of_the_input_and_the_ending_of_the_format),
-		cmocka_unit_test(jobs_that_would_overwrite_each_other_are_refused_and_no_others),
-		cmocka_unit_test(names_that_are_there_again_are_dropped),
-		cmocka_unit_test(in_place_the_output_is_the_input),
-		cmocka_unit_test(a_dry_run_makes_no_folder_and_a_file_is_none),
-		cmocka_unit_test(every_input_runs_and_is_told_about_in_order),
-		cmocka_unit_test(the_bound_of_memory_keeps_jobs_waiting),
-		cmocka_unit_test(what_had_no_memory_beside_others_is_tried_again_alone),
-		cmocka_unit_test(after_a_failure_no_further_job_begins_if_so_wished),
-		cmocka_unit_test(one_input_has_all_threads),
-	};
-	return cmocka_run_group_tests_name("batch/batch", tests, enter_folder, leave_folder);
+	return run_group_within("batch/batch", enter_folder, leave_folder);
 }

@@ -40,18 +40,16 @@ static void becomes(const char *output, const char *const *read, const char *exp
 	nt_trace_free(&trace);
 }
 
-static void an_output_depends_on_what_was_read_and_that_on_nothing(void **state)
+TEST(an_output_depends_on_what_was_read_and_that_on_nothing)
 {
-	(void)state;
 	becomes("o.glb", READ("a.obj"), "o.glb: \\\n a.obj\n");
 	becomes("o.glb", READ("a.obj", "a.mtl", "t/n.png"),
 		"o.glb: \\\n a.obj \\\n a.mtl \\\n t/n.png\na.mtl:\nt/n.png:\n");
 }
 
 /* Not those that the run writes to, of which each run changes the time. */
-static void folders_in_which_something_is_missing_are_named_once(void **state)
+TEST(folders_in_which_something_is_missing_are_named_once)
 {
-	(void)state;
 	nt_depfile depfile = {0};
 	nt_trace trace;
 	nt_error error;
@@ -71,18 +69,16 @@ static void folders_in_which_something_is_missing_are_named_once(void **state)
 	nt_trace_free(&trace);
 }
 
-static void names_are_escaped(void **state)
+TEST(names_are_escaped)
 {
-	(void)state;
 	becomes("o.glb", READ("a b.obj"), "o.glb: \\\n a\\ b.obj\n");
 	becomes("o#.glb", READ("c:d.obj"), "o\\#.glb: \\\n c\\:d.obj\n");
 	becomes("$o", READ("a\\b\\ c"), "$$o: \\\n a\\b\\\\\\ c\n");
 	becomes("%o*", READ("\\"), "%o*: \\\n \\\n");
 }
 
-static void files_below_the_current_folder_are_named_as_the_output_is(void **state)
+TEST(files_below_the_current_folder_are_named_as_the_output_is)
 {
-	(void)state;
 	char here[1024], inside[1100], expected[2300];
 	assert_non_null(getcwd(here, sizeof here));
 	snprintf(inside, sizeof inside, "%s/sub/a.obj", here);
@@ -91,9 +87,8 @@ static void files_below_the_current_folder_are_named_as_the_output_is(void **sta
 	becomes("/o.glb", READ(inside), expected);
 }
 
-static void a_line_feed_has_no_spelling(void **state)
+TEST(a_line_feed_has_no_spelling)
 {
-	(void)state;
 	nt_depfile depfile = {0};
 	nt_trace trace;
 	nt_error error;
@@ -104,9 +99,8 @@ static void a_line_feed_has_no_spelling(void **state)
 	nt_trace_free(&trace);
 }
 
-static void it_is_written_whole_and_not_over_an_input(void **state)
+TEST(it_is_written_whole_and_not_over_an_input)
 {
-	(void)state;
 	nt_depfile depfile = {0};
 	nt_trace trace;
 	nt_error error;
@@ -128,9 +122,8 @@ static void it_is_written_whole_and_not_over_an_input(void **state)
 	nt_trace_free(&trace);
 }
 
-static void an_exhausted_memory_is_told(void **state)
+TEST(an_exhausted_memory_is_told)
 {
-	(void)state;
 	nt_trace trace;
 	make_trace(&trace, READ("a.obj", "/x/a.mtl"));
 	bool failed = true;
@@ -149,14 +142,5 @@ static void an_exhausted_memory_is_told(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(an_output_depends_on_what_was_read_and_that_on_nothing),
-		cmocka_unit_test(folders_in_which_something_is_missing_are_named_once),
-		cmocka_unit_test(names_are_escaped),
-		cmocka_unit_test(files_below_the_current_folder_are_named_as_the_output_is),
-		cmocka_unit_test(a_line_feed_has_no_spelling),
-		cmocka_unit_test(it_is_written_whole_and_not_over_an_input),
-		cmocka_unit_test(an_exhausted_memory_is_told),
-	};
-	return cmocka_run_group_tests_name("batch/depfile", tests, enter_folder, leave_folder);
+	return run_group_within("batch/depfile", enter_folder, leave_folder);
 }

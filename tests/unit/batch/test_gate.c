@@ -32,9 +32,8 @@ static void *use(void *need_of)
 	return NULL;
 }
 
-static void what_is_inside_is_never_more_than_the_limit_but_for_one_alone(void **state)
+TEST(what_is_inside_is_never_more_than_the_limit_but_for_one_alone)
 {
-	(void)state;
 	static const uint64_t needs[] = {10, 40, 60, 100, 1, 101, UINT64_MAX / 4};
 	enum { COUNT = sizeof needs / sizeof *needs };
 	pthread_t threads[COUNT];
@@ -73,9 +72,8 @@ static uint64_t arrived(void)
 	return count;
 }
 
-static void who_fits_does_not_pass_who_waits(void **state)
+TEST(who_fits_does_not_pass_who_waits)
 {
-	(void)state;
 	pthread_t large, small;
 	nt_gate_init(&gate, 100);
 	atomic_store(&inside, 0);
@@ -99,9 +97,5 @@ static void who_fits_does_not_pass_who_waits(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(what_is_inside_is_never_more_than_the_limit_but_for_one_alone),
-		cmocka_unit_test(who_fits_does_not_pass_who_waits),
-	};
-	return cmocka_run_group_tests_name("batch/gate", tests, NULL, NULL);
+	return run_group("batch/gate");
 }

@@ -24,9 +24,8 @@ static void are(nt_inputs *inputs, const char *expected)
 	nt_inputs_free(inputs);
 }
 
-static void names_are_taken_as_they_are_and_folders_only_if_wished(void **state)
+TEST(names_are_taken_as_they_are_and_folders_only_if_wished)
 {
-	(void)state;
 	nt_inputs inputs = {0};
 	nt_error error;
 	assert_int_equal(mkdir("d", 0700), 0);
@@ -51,9 +50,8 @@ static void names_are_taken_as_they_are_and_folders_only_if_wished(void **state)
 	are(&inputs, "d/B/c.ply d/B/z.glb d/a.obj d/link.OBJ ");
 }
 
-static void patterns_choose_in_folders(void **state)
+TEST(patterns_choose_in_folders)
 {
-	(void)state;
 	nt_inputs inputs = {0};
 	nt_error error;
 	const char *const plys[] = {"*.ply", "out/*"}, *const no_b[] = {"B"};
@@ -65,9 +63,8 @@ static void patterns_choose_in_folders(void **state)
 	are(&inputs, "d/a.obj d/link.OBJ d/out/a.glb ");
 }
 
-static void lists_have_a_name_a_line_or_one_before_each_nul(void **state)
+TEST(lists_have_a_name_a_line_or_one_before_each_nul)
 {
-	(void)state;
 	nt_inputs inputs = {0};
 	nt_error error;
 	put_text_file("lines", "\nb.obj\n\na b.obj\n-\nlast");
@@ -87,9 +84,8 @@ static void lists_have_a_name_a_line_or_one_before_each_nul(void **state)
 	nt_inputs_free(&inputs);
 }
 
-static void an_exhausted_memory_is_told(void **state)
+TEST(an_exhausted_memory_is_told)
 {
-	(void)state;
 	bool failed = true;
 	for (size_t n = 0; failed; n++) {
 		nt_inputs inputs = {0};
@@ -107,11 +103,5 @@ static void an_exhausted_memory_is_told(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(names_are_taken_as_they_are_and_folders_only_if_wished),
-		cmocka_unit_test(patterns_choose_in_folders),
-		cmocka_unit_test(lists_have_a_name_a_line_or_one_before_each_nul),
-		cmocka_unit_test(an_exhausted_memory_is_told),
-	};
-	return cmocka_run_group_tests_name("batch/inputs", tests, enter_folder, leave_folder);
+	return run_group_within("batch/inputs", enter_folder, leave_folder);
 }

@@ -20,9 +20,8 @@ static uint64_t need_of(const char *name)
 }
 
 /* Of text that is no glTF: its bytes, a PLY's also by the elements of its header. */
-static void text_counts_by_its_bytes(void **state)
+TEST(text_counts_by_its_bytes)
 {
-	(void)state;
 	static const struct {
 		const char *name, *text;
 		uint64_t each, more;
@@ -41,9 +40,8 @@ static void text_counts_by_its_bytes(void **state)
 }
 
 /* 300 faces and 200 vertices, as each method writes them; with metadata, and of an older version, by the bytes. */
-static void draco_counts_by_its_header(void **state)
+TEST(draco_counts_by_its_header)
 {
-	(void)state;
 	static const struct {
 		const char *bytes;
 		size_t size;
@@ -65,9 +63,8 @@ static void draco_counts_by_its_header(void **state)
 }
 
 /* A large file is judged by parts of it. */
-static void a_large_obj_is_sampled(void **state)
+TEST(a_large_obj_is_sampled)
 {
-	(void)state;
 	enum { FACES = 600000, BYTES = 14 };
 	char *text = malloc(FACES * BYTES + 1);
 	assert_non_null(text);
@@ -79,9 +76,8 @@ static void a_large_obj_is_sampled(void **state)
 	assert_in_range(need_of("large.obj"), expected - expected / 50, expected + expected / 50);
 }
 
-static void gltf_counts_by_its_accessors_wherever_their_bytes_are(void **state)
+TEST(gltf_counts_by_its_accessors_wherever_their_bytes_are)
 {
-	(void)state;
 	static const char plain[] = "{\"accessors\":[{\"count\": 600 },{ \"count\"\n:30}],\"bufferViews\":[]}";
 	static const char draco[] =
 		"{\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],\"accessors\":[{\"count\":600}]}";
@@ -93,9 +89,8 @@ static void gltf_counts_by_its_accessors_wherever_their_bytes_are(void **state)
 	assert_int_equal(nt_need_of(in_folder("a.gltf"), &compress, 0), MB + 12 * strlen(plain) + 100 * 630);
 }
 
-static void a_glb_counts_its_json_and_its_bytes(void **state)
+TEST(a_glb_counts_its_json_and_its_bytes)
 {
-	(void)state;
 	static const char json[] = "{\"accessors\":[{\"count\":600}]}  ", more[] = "\"count\":99999";
 	struct stat info;
 	put_glb_file("a.glb", json, more, sizeof more - 1);
@@ -111,9 +106,8 @@ static void a_glb_counts_its_json_and_its_bytes(void **state)
 
 /* A height map and a TGA of colours, of 256 x 512; a PNG of colours is not converted, and what is elsewhere is not
  * looked at. */
-static void an_obj_counts_the_largest_images_that_are_converted(void **state)
+TEST(an_obj_counts_the_largest_images_that_are_converted)
 {
-	(void)state;
 	static const char obj[] = "# head\nmtllib m.mtl\r\nv 0 0 0\n";
 	static const unsigned char png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D',
 		'R', 0, 0, 1, 0, 0, 0, 2, 0}, tga[] = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 24, 0};
@@ -132,9 +126,8 @@ static void an_obj_counts_the_largest_images_that_are_converted(void **state)
 }
 
 /* Each half of these is a number, and what it would take: 2 * 2^63, 40 * 2^60. */
-static void what_is_claimed_beyond_64_bits_is_more_than_there_is(void **state)
+TEST(what_is_claimed_beyond_64_bits_is_more_than_there_is)
 {
-	(void)state;
 	static const char *const rows[][2] = {
 		{"sum.gltf", "{\"accessors\":[{\"count\":9223372036854775808},{\"count\":9223372036854775808}]}"},
 		{"product.gltf", "{\"accessors\":[{\"count\":1152921504606846976}]}"},
@@ -146,9 +139,8 @@ static void what_is_claimed_beyond_64_bits_is_more_than_there_is(void **state)
 	}
 }
 
-static void where_the_size_says_enough_nothing_is_opened(void **state)
+TEST(where_the_size_says_enough_nothing_is_opened)
 {
-	(void)state;
 	const nt_settings settings = {0};
 	put_text_file("tiny.glb", "glTF");
 	assert_int_equal(nt_need_of(in_folder("tiny.glb"), &settings, 2 * MB), MB + 256 * 4);
@@ -157,9 +149,8 @@ static void where_the_size_says_enough_nothing_is_opened(void **state)
 	assert_int_equal(nt_need_of(in_folder("tiny.gltf"), &settings, 2 * MB), MB + 12 * 17 + 40 * 1000000);
 }
 
-static void what_has_no_size_is_alone_and_what_is_missing_is_nothing(void **state)
+TEST(what_has_no_size_is_alone_and_what_is_missing_is_nothing)
 {
-	(void)state;
 	assert_int_equal(need_of("nowhere.obj"), 0);
 	assert_int_equal(mkfifo(in_folder("pipe.obj"), 0600), 0);
 	assert_true(need_of("pipe.obj") == UINT64_MAX);
@@ -169,16 +160,5 @@ static void what_has_no_size_is_alone_and_what_is_missing_is_nothing(void **stat
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(text_counts_by_its_bytes),
-		cmocka_unit_test(draco_counts_by_its_header),
-		cmocka_unit_test(a_large_obj_is_sampled),
-		cmocka_unit_test(gltf_counts_by_its_accessors_wherever_their_bytes_are),
-		cmocka_unit_test(a_glb_counts_its_json_and_its_bytes),
-		cmocka_unit_test(an_obj_counts_the_largest_images_that_are_converted),
-		cmocka_unit_test(what_is_claimed_beyond_64_bits_is_more_than_there_is),
-		cmocka_unit_test(where_the_size_says_enough_nothing_is_opened),
-		cmocka_unit_test(what_has_no_size_is_alone_and_what_is_missing_is_nothing),
-	};
-	return cmocka_run_group_tests_name("batch/need", tests, make_folder, remove_folder);
+	return run_group_within("batch/need", make_folder, remove_folder);
 }

@@ -22,9 +22,8 @@ static void finds(const nt_record_file *file, const char *key, const char *expec
 	assert_memory_equal(line, expected, length);
 }
 
-static void the_last_whole_line_of_a_key_counts(void **state)
+TEST(the_last_whole_line_of_a_key_counts)
 {
-	(void)state;
 	nt_record_file file;
 	nt_error error;
 	assert_int_equal(nt_record_file_open(&file, in_folder("none"), prefix, NULL, true, &error), NT_OK);
@@ -48,9 +47,8 @@ static void the_last_whole_line_of_a_key_counts(void **state)
 	nt_record_file_close(&file);
 }
 
-static void what_cannot_be_written_or_read_is_told(void **state)
+TEST(what_cannot_be_written_or_read_is_told)
 {
-	(void)state;
 	nt_record_file file;
 	nt_error error;
 	assert_int_equal(nt_record_file_open(&file, in_folder("no/r"), prefix, NULL, true, &error), NT_OK);
@@ -61,9 +59,8 @@ static void what_cannot_be_written_or_read_is_told(void **state)
 	nt_record_file_close(&file);
 }
 
-static void an_exhausted_memory_is_told(void **state)
+TEST(an_exhausted_memory_is_told)
 {
-	(void)state;
 	nt_error error;
 	put_text_file("m", "{\"k\":\"a\",1}\n{\"k\":\"b\",2}\n");
 	bool failed = true;
@@ -80,10 +77,5 @@ static void an_exhausted_memory_is_told(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(the_last_whole_line_of_a_key_counts),
-		cmocka_unit_test(what_cannot_be_written_or_read_is_told),
-		cmocka_unit_test(an_exhausted_memory_is_told),
-	};
-	return cmocka_run_group_tests_name("batch/record_file", tests, make_folder, remove_folder);
+	return run_group_within("batch/record_file", make_folder, remove_folder);
 }

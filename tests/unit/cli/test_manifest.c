@@ -47,9 +47,8 @@ static const char *line_of(const nt_job *job, int exit_code)
 	"\"missing\":[\"a.mtl\"],\"searched\":[],\"missing_digest\":\"01da7a59925b528c\""
 #define NO_FILES "\"outputs\":[],\"dependencies\":[],\"missing\":[],\"searched\":[]"
 
-static void a_job_that_ran_has_its_files_and_numbers(void **state)
+TEST(a_job_that_ran_has_its_files_and_numbers)
 {
-	(void)state;
 	nt_outcome outcome = {.summary = {.triangle_count = 8, .vertex_count = 12, .appended_normals = 1,
 				      .appended_tangents = 2, .bytes_read = 100, .bytes_written = 200,
 				      .total_seconds = 0.5}};
@@ -67,9 +66,8 @@ static void a_job_that_ran_has_its_files_and_numbers(void **state)
 	nt_trace_free(&outcome.summary.trace);
 }
 
-static void one_that_did_not_run_has_what_is_known(void **state)
+TEST(one_that_did_not_run_has_what_is_known)
 {
-	(void)state;
 	nt_outcome outcome = {0};
 	note(&outcome.summary.trace);
 	const nt_job current = {.input = "a", .outcome = &outcome, .end = NT_JOB_CURRENT};
@@ -82,9 +80,8 @@ static void one_that_did_not_run_has_what_is_known(void **state)
 	assert_string_equal(line_of(&exhausted, 4), BEGIN("c", "failed", 4) NO_FILES "}\n");
 }
 
-static void a_failure_has_its_place(void **state)
+TEST(a_failure_has_its_place)
 {
-	(void)state;
 	nt_outcome outcome = {.error = {.status = NT_ERROR_INPUT, .message = "no \"v\"",
 				      .place = {.file = "a.mtl", .line = 3, .offset = 0, .pointer = "/a",
 				      	.object = "mesh"}}};
@@ -106,9 +103,8 @@ static void refuses(const nt_batch *batch, const char *path, nt_status expected)
 	nt_manifest_close(&manifest, &error);
 }
 
-static void only_a_manifest_is_replaced(void **state)
+TEST(only_a_manifest_is_replaced)
 {
-	(void)state;
 	char output[] = "o.glb";
 	nt_job job = {.input = "a.obj", .output = output};
 	const nt_batch batch = {&job, 1};
@@ -123,9 +119,8 @@ static void only_a_manifest_is_replaced(void **state)
 	assert_null(strstr(line_of(&job, 0), "earlier"));
 }
 
-static void what_cannot_be_written_is_told_at_the_end(void **state)
+TEST(what_cannot_be_written_is_told_at_the_end)
 {
-	(void)state;
 	const nt_batch none = {0};
 	const nt_job job = {.input = "a", .end = NT_JOB_UNTRIED};
 	nt_manifest manifest;
@@ -138,9 +133,8 @@ static void what_cannot_be_written_is_told_at_the_end(void **state)
 }
 
 /* What most lines take is there from the start, so that the failure itself can be told. */
-static void a_line_needs_no_memory(void **state)
+TEST(a_line_needs_no_memory)
 {
-	(void)state;
 	const nt_batch none = {0};
 	const nt_job job = {.input = "a", .status = NT_ERROR_MEMORY, .end = NT_JOB_RAN};
 	nt_manifest manifest;
@@ -158,13 +152,5 @@ static void a_line_needs_no_memory(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_job_that_ran_has_its_files_and_numbers),
-		cmocka_unit_test(one_that_did_not_run_has_what_is_known),
-		cmocka_unit_test(a_failure_has_its_place),
-		cmocka_unit_test(only_a_manifest_is_replaced),
-		cmocka_unit_test(what_cannot_be_written_is_told_at_the_end),
-		cmocka_unit_test(a_line_needs_no_memory),
-	};
-	return cmocka_run_group_tests_name("cli/manifest", tests, enter_folder, leave_folder);
+	return run_group_within("cli/manifest", enter_folder, leave_folder);
 }

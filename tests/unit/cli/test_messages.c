@@ -21,9 +21,8 @@ static void fails_with(nt_error *error, const char *file, nt_style style, const 
 	says(&out, expected);
 }
 
-static void an_error_stands_behind_its_line_offset_or_pointer(void **state)
+TEST(an_error_stands_behind_its_line_offset_or_pointer)
 {
-	(void)state;
 	nt_error error;
 	nt_fail_line(&error, NT_ERROR_INPUT, 12, "vertex 9 of 8");
 	fails_with(&error, "a.obj", plain, "nmtan: a.obj:12: vertex 9 of 8\n");
@@ -40,9 +39,8 @@ static void an_error_stands_behind_its_line_offset_or_pointer(void **state)
 	fails_with(&error, "a\tb", plain, "nmtan: a\\x09b: found '\\x1b[2J\\x0d\\x0a\\x7f\xc3\xa9'\n");
 }
 
-static void findings_come_worst_first_and_grouped(void **state)
+TEST(findings_come_worst_first_and_grouped)
 {
-	(void)state;
 	nt_finding_list findings = {0};
 	nt_place place;
 	nt_place_clear(&place);
@@ -66,9 +64,8 @@ static void findings_come_worst_first_and_grouped(void **state)
 	nt_finding_list_free(&findings);
 }
 
-static void success_is_one_line_that_accounts_for_everything(void **state)
+TEST(success_is_one_line_that_accounts_for_everything)
 {
-	(void)state;
 	nt_buffer out = {0};
 	nt_settings settings = {0};
 	char output[] = "b.glb";
@@ -102,9 +99,8 @@ static void success_is_one_line_that_accounts_for_everything(void **state)
 	says(&out, "nmtan: a.obj: checked, 3 primitives, 3 tangents would be repaired, no findings, 0 s\n");
 }
 
-static void a_list_has_a_line_for_each_mesh(void **state)
+TEST(a_list_has_a_line_for_each_mesh)
 {
-	(void)state;
 	nt_buffer out = {0};
 	nt_mesh_line lines[] = {
 		{.decision = NT_DECISION_SOLVE, .triangle_count = 4, .vertex_count = 6, .appended = 2},
@@ -124,9 +120,8 @@ static void a_list_has_a_line_for_each_mesh(void **state)
 		   "nmtan: a.glb: tangents are computed (the same as an earlier one's), 4 triangles, 6 vertices\n");
 }
 
-static void timing_names_every_stage(void **state)
+TEST(timing_names_every_stage)
 {
-	(void)state;
 	nt_buffer out = {0};
 	nt_summary summary = {.total_seconds = 2, .bytes_read = 5000000000u};
 	summary.seconds[NT_STAGE_PARSE] = 1.5;
@@ -142,9 +137,8 @@ static void timing_names_every_stage(void **state)
 	nt_buffer_free(&out);
 }
 
-static void of_many_exit_codes_the_worst_counts(void **state)
+TEST(of_many_exit_codes_the_worst_counts)
 {
-	(void)state;
 	/* The order of the issue. */
 	static const int order[] = {4, 2, 3, 5, 6, 0};
 	for (unsigned i = 0; i < 6; i++)
@@ -164,13 +158,5 @@ static void of_many_exit_codes_the_worst_counts(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(an_error_stands_behind_its_line_offset_or_pointer),
-		cmocka_unit_test(findings_come_worst_first_and_grouped),
-		cmocka_unit_test(success_is_one_line_that_accounts_for_everything),
-		cmocka_unit_test(a_list_has_a_line_for_each_mesh),
-		cmocka_unit_test(timing_names_every_stage),
-		cmocka_unit_test(of_many_exit_codes_the_worst_counts),
-	};
-	return cmocka_run_group_tests_name("cli/messages", tests, NULL, NULL);
+	return run_group("cli/messages");
 }

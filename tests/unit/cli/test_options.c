@@ -38,9 +38,8 @@ static void refuses(const char *text, const char *const *words)
 		fail_msg("'%s' does not say '%s'", error.message, text);
 }
 
-static void no_options_mean_the_defaults(void **state)
+TEST(no_options_mean_the_defaults)
 {
-	(void)state;
 	nt_command c;
 	accepts(&c, WORDS("in.obj", "out.glb"));
 	const nt_settings defaults = {.texcoord_set = -1, .draco_speed = NT_DRACO_SPEED, .one_up = true};
@@ -55,9 +54,8 @@ static void no_options_mean_the_defaults(void **state)
 
 #define FIELD(name) offsetof(nt_command, name), sizeof(((nt_command *)0)->name)
 
-static void every_option_sets_its_field(void **state)
+TEST(every_option_sets_its_field)
 {
-	(void)state;
 	static const struct {
 		const char *word;
 		size_t offset, size;
@@ -122,9 +120,8 @@ static void every_option_sets_its_field(void **state)
 	assert_int_equal(c.fail_on, NT_FAIL_ON_INFO);
 }
 
-static void a_size_is_a_number_and_what_it_counts(void **state)
+TEST(a_size_is_a_number_and_what_it_counts)
 {
-	(void)state;
 	static const struct {
 		const char *word;
 		uint64_t bytes;
@@ -143,9 +140,8 @@ static void a_size_is_a_number_and_what_it_counts(void **state)
 		refuses("is not a size", WORDS("--memory", wrong[i], "a", "b"));
 }
 
-static void values_stand_behind_equals_or_in_the_next_word(void **state)
+TEST(values_stand_behind_equals_or_in_the_next_word)
 {
-	(void)state;
 	nt_command c;
 	accepts(&c, WORDS("--threads", "7", "a", "b"));
 	assert_int_equal(c.settings.threads, 7);
@@ -163,9 +159,8 @@ static void values_stand_behind_equals_or_in_the_next_word(void **state)
 	assert_int_equal(c.settings.texcoord_set, -1);
 }
 
-static void options_and_names_may_mix_and_two_dashes_end_options(void **state)
+TEST(options_and_names_may_mix_and_two_dashes_end_options)
 {
-	(void)state;
 	nt_command c;
 	accepts(&c, WORDS("a", "-v", "b", "--timing"));
 	assert_int_equal(c.operand_count, 2);
@@ -177,9 +172,8 @@ static void options_and_names_may_mix_and_two_dashes_end_options(void **state)
 	assert_string_equal(c.operands[0], "-");
 }
 
-static void unknown_options_are_refused_by_name(void **state)
+TEST(unknown_options_are_refused_by_name)
 {
-	(void)state;
 	refuses("'--frobnicate'", WORDS("--frobnicate", "a", "b"));
 	refuses("'--frobnicate'", WORDS("--frobnicate=3", "a", "b"));
 	refuses("'--thread'", WORDS("--thread=3", "a", "b"));
@@ -188,9 +182,8 @@ static void unknown_options_are_refused_by_name(void **state)
 	refuses("'--Threads'", WORDS("--Threads=3", "a", "b"));
 }
 
-static void bad_values_are_refused_whole(void **state)
+TEST(bad_values_are_refused_whole)
 {
-	(void)state;
 	refuses("'8x'", WORDS("--threads=8x", "a", "b"));
 	refuses("'-1'", WORDS("--threads=-1", "a", "b"));
 	refuses("'-1'", WORDS("--threads", "-1", "a", "b"));
@@ -223,9 +216,8 @@ static void bad_values_are_refused_whole(void **state)
 	refuses("''", WORDS("--verify=", "a", "b"));
 }
 
-static void options_that_contradict_each_other_are_refused(void **state)
+TEST(options_that_contradict_each_other_are_refused)
 {
-	(void)state;
 	refuses("--quiet and --verbose", WORDS("-q", "-v", "a", "b"));
 	refuses("--in-place and --no-clobber", WORDS("-n", "--in-place", "a"));
 	refuses("--directory", WORDS("--check", "-d", "x", "a"));
@@ -239,9 +231,8 @@ static void options_that_contradict_each_other_are_refused(void **state)
 	refuses("--draco=off", WORDS("--draco=off", "--draco-bits=14,12,12,12", "a", "b"));
 }
 
-static void of_choices_the_last_counts_but_names_and_lists_stand_once(void **state)
+TEST(of_choices_the_last_counts_but_names_and_lists_stand_once)
 {
-	(void)state;
 	nt_command c;
 	accepts(&c, WORDS("--method=area", "--method=lengyel", "-j2", "-j3", "a", "b"));
 	assert_int_equal(c.settings.method, NMTAN_METHOD_LENGYEL);
@@ -252,9 +243,8 @@ static void of_choices_the_last_counts_but_names_and_lists_stand_once(void **sta
 	refuses("--directory is there twice", WORDS("-d", "x", "-dy", "a"));
 }
 
-static void names_must_be_as_many_as_the_form_takes(void **state)
+TEST(names_must_be_as_many_as_the_form_takes)
 {
-	(void)state;
 	nt_command c;
 	nt_error error;
 	assert_int_equal(parse(&c, &error, (const char *const[]){NULL}), NT_ERROR_USAGE);
@@ -268,9 +258,8 @@ static void names_must_be_as_many_as_the_form_takes(void **state)
 	accepts(&c, WORDS("--check", "-"));
 }
 
-static void help_and_version_ask_for_no_names(void **state)
+TEST(help_and_version_ask_for_no_names)
 {
-	(void)state;
 	nt_command c;
 	accepts(&c, WORDS("--help"));
 	assert_int_equal(c.action, NT_ACTION_HELP);
@@ -281,9 +270,8 @@ static void help_and_version_ask_for_no_names(void **state)
 	refuses("'--nope'", WORDS("--help", "--nope"));
 }
 
-static void texts_name_every_option_that_is_not_hidden(void **state)
+TEST(texts_name_every_option_that_is_not_hidden)
 {
-	(void)state;
 	void (*const texts[])(nt_buffer *) = {nt_options_help, nt_options_bash, nt_options_zsh};
 	for (size_t t = 0; t < 3; t++) {
 		nt_buffer out = {0};
@@ -304,9 +292,8 @@ static void texts_name_every_option_that_is_not_hidden(void **state)
 	}
 }
 
-static void help_lines_fit_a_terminal(void **state)
+TEST(help_lines_fit_a_terminal)
 {
-	(void)state;
 	nt_buffer out = {0};
 	nt_options_help(&out);
 	size_t width = 0;
@@ -328,9 +315,8 @@ static void shapes(const char *expected, const char *const *words)
 	nt_buffer_free(&text);
 }
 
-static void options_that_shape_outputs_are_spelled_in_one_way(void **state)
+TEST(options_that_shape_outputs_are_spelled_in_one_way)
 {
-	(void)state;
 	shapes("", WORDS("a", "b.glb"));
 	shapes("", WORDS("-j3", "--method=mikktspace", "--uv=auto", "--in-place", "--sync", "--verify",
 		"--update", "-v",
@@ -344,21 +330,5 @@ static void options_that_shape_outputs_are_spelled_in_one_way(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(no_options_mean_the_defaults),
-		cmocka_unit_test(every_option_sets_its_field),
-		cmocka_unit_test(a_size_is_a_number_and_what_it_counts),
-		cmocka_unit_test(values_stand_behind_equals_or_in_the_next_word),
-		cmocka_unit_test(options_and_names_may_mix_and_two_dashes_end_options),
-		cmocka_unit_test(unknown_options_are_refused_by_name),
-		cmocka_unit_test(bad_values_are_refused_whole),
-		cmocka_unit_test(options_that_contradict_each_other_are_refused),
-		cmocka_unit_test(of_choices_the_last_counts_but_names_and_lists_stand_once),
-		cmocka_unit_test(names_must_be_as_many_as_the_form_takes),
-		cmocka_unit_test(help_and_version_ask_for_no_names),
-		cmocka_unit_test(texts_name_every_option_that_is_not_hidden),
-		cmocka_unit_test(options_that_shape_outputs_are_spelled_in_one_way),
-		cmocka_unit_test(help_lines_fit_a_terminal),
-	};
-	return cmocka_run_group_tests_name("cli/options", tests, NULL, NULL);
+	return run_group("cli/options");
 }

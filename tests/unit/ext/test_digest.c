@@ -17,16 +17,14 @@ static void assert_digest(const char *text, const char *expected)
 	nt_digest_free(d);
 }
 
-static void digest_is_that_of_xxhsum(void **state)
+TEST(digest_is_that_of_xxhsum)
 {
-	(void)state;
 	assert_digest("", "99aa06d3014798d86001c324468d497f");
 	assert_digest("somebody\n", "da44bf30a9ce9c985c29cf2b20168f87");
 }
 
-static void digest_does_not_depend_on_the_pieces(void **state)
+TEST(digest_does_not_depend_on_the_pieces)
 {
-	(void)state;
 	unsigned char bytes[5000];
 	char whole[NT_DIGEST_TEXT], pieces[NT_DIGEST_TEXT];
 	for (size_t i = 0; i < sizeof bytes; i++)
@@ -46,9 +44,8 @@ static void digest_does_not_depend_on_the_pieces(void **state)
 	assert_string_equal(whole, pieces);
 }
 
-static void digest_without_memory_is_none(void **state)
+TEST(digest_without_memory_is_none)
 {
-	(void)state;
 	for (size_t n = 0; n < 2; n++) {
 		fail_allocations_from(n);
 		nt_digest *d = nt_digest_create();
@@ -60,10 +57,5 @@ static void digest_without_memory_is_none(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(digest_is_that_of_xxhsum),
-		cmocka_unit_test(digest_does_not_depend_on_the_pieces),
-		cmocka_unit_test(digest_without_memory_is_none),
-	};
-	return cmocka_run_group_tests_name("ext/digest", tests, NULL, NULL);
+	return run_group("ext/digest");
 }

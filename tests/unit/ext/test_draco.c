@@ -103,9 +103,8 @@ static void end_coded(coded *c)
 	nt_draco_block_free(&c->block);
 }
 
-static void sequential_without_quantization_is_exact(void **state)
+TEST(sequential_without_quantization_is_exact)
 {
-	(void)state;
 	coded c;
 	code_grid(&c, NT_DRACO_SEQUENTIAL, 0);
 	assert_int_equal(c.block.point_count, POINTS - 1); /* the last one is not used */
@@ -139,9 +138,8 @@ static double tangent_error(const float (*tangents)[4], const float *back, size_
 	return worst;
 }
 
-static void twelve_bits_keep_tangents_and_their_sign(void **state)
+TEST(twelve_bits_keep_tangents_and_their_sign)
 {
-	(void)state;
 	coded c;
 	code_grid(&c, NT_DRACO_SEQUENTIAL, 12);
 	const nt_draco_attribute *tangents = nt_draco_find(c.mesh, 7);
@@ -157,9 +155,8 @@ static void twelve_bits_keep_tangents_and_their_sign(void **state)
 }
 
 /* Of an integer n: n * step, rounded, plus the box's origin, rounded, on every machine. */
-static void floats_are_multiplied_then_added(void **state)
+TEST(floats_are_multiplied_then_added)
 {
-	(void)state;
 	static const uint32_t ids[] = {0, 2, 7};
 	size_t differ = 0; /* from what one rounding gives */
 	for (int bits = 12; bits <= 16; bits++) {
@@ -181,9 +178,8 @@ static void floats_are_multiplied_then_added(void **state)
 	assert_true(differ > 100);
 }
 
-static void second_encoding_in_the_same_box_moves_nothing(void **state)
+TEST(second_encoding_in_the_same_box_moves_nothing)
 {
-	(void)state;
 	grid g;
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 11);
 	nt_draco_block first = encoded(&g.mesh);
@@ -216,9 +212,8 @@ static void second_encoding_in_the_same_box_moves_nothing(void **state)
 	nt_draco_block_free(&second);
 }
 
-static void edgebreaker_keeps_every_sound_face(void **state)
+TEST(edgebreaker_keeps_every_sound_face)
 {
-	(void)state;
 	for (int bits = 0; bits <= 14; bits += 7) {
 		coded c;
 		code_grid(&c, NT_DRACO_EDGEBREAKER, bits); /* which compares the set of faces */
@@ -230,9 +225,8 @@ static void edgebreaker_keeps_every_sound_face(void **state)
 	}
 }
 
-static void non_manifold_meshes_survive_edgebreaker(void **state)
+TEST(non_manifold_meshes_survive_edgebreaker)
 {
-	(void)state;
 	static const float positions[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {9, 9, 9},
 		{9, 8, 9}, {8, 9, 9}};
 	/* three faces on one edge, one of them twice, and one apart */
@@ -246,9 +240,8 @@ static void non_manifold_meshes_survive_edgebreaker(void **state)
 }
 
 /* The grid's last points told as copies: the block is that of points which have the same values of their own. */
-static void copied_points_have_the_values_of_others(void **state)
+TEST(copied_points_have_the_values_of_others)
 {
-	(void)state;
 	for (int method = NT_DRACO_SEQUENTIAL; method <= NT_DRACO_EDGEBREAKER; method++) {
 		enum { OWN = POINTS - 20 };
 		uint32_t copied[POINTS - OWN];
@@ -282,9 +275,8 @@ static void copied_points_have_the_values_of_others(void **state)
 }
 
 /* Three points for each face: equal ones become one again. */
-static void equal_points_are_joined_by_edgebreaker(void **state)
+TEST(equal_points_are_joined_by_edgebreaker)
 {
-	(void)state;
 	enum { SOUP = 3 * (FACES - 1) };
 	grid g;
 	make_grid(&g, NT_DRACO_EDGEBREAKER, 0);
@@ -320,9 +312,8 @@ static void equal_points_are_joined_by_edgebreaker(void **state)
 }
 
 /* The extremes of what a decoder gives back. */
-static void bounds_are_those_of_the_decoded_values(void **state)
+TEST(bounds_are_those_of_the_decoded_values)
 {
-	(void)state;
 	coded c;
 	code_grid(&c, NT_DRACO_EDGEBREAKER, 9);
 	for (size_t i = 0; i < 4; i++) {
@@ -350,9 +341,8 @@ static nt_status quantize_grid(const grid *g, float (*values)[3 * POINTS])
 	return nt_draco_quantize(&three, to, &error);
 }
 
-static void quantized_values_are_those_that_are_decoded(void **state)
+TEST(quantized_values_are_those_that_are_decoded)
 {
-	(void)state;
 	for (int bits = 4; bits <= 14; bits += 5) {
 		grid g;
 		make_grid(&g, NT_DRACO_SEQUENTIAL, bits);
@@ -406,9 +396,8 @@ static void encoding_ends(const grid *g, nt_status expected, const char *message
 	nt_draco_block_free(&block);
 }
 
-static void what_cannot_be_encoded_is_refused(void **state)
+TEST(what_cannot_be_encoded_is_refused)
 {
-	(void)state;
 	grid g;
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
 	g.tangents[3][2] = NAN;
@@ -476,9 +465,8 @@ static nt_status decode_status(const unsigned char *bytes, size_t size, size_t m
 	return status;
 }
 
-static void damaged_streams_are_refused(void **state)
+TEST(damaged_streams_are_refused)
 {
-	(void)state;
 	nt_error error;
 	static const struct {
 		const char *bytes;
@@ -551,9 +539,8 @@ static size_t mutate(const unsigned char *bytes, size_t size, unsigned count, ui
 	return good;
 }
 
-static void mutated_streams_do_no_harm(void **state)
+TEST(mutated_streams_do_no_harm)
 {
-	(void)state;
 	uint32_t seed = 2463534242u;
 	size_t good = 0;
 	for (int method = 0; method < 2; method++)
@@ -583,9 +570,8 @@ static unsigned char *read_model(const char *name, size_t *size)
 	return bytes;
 }
 
-static void shared_models_decode_and_round_trip(void **state)
+TEST(shared_models_decode_and_round_trip)
 {
-	(void)state;
 	/* a cube, the bunny's published counts, and what car.drc's head declares */
 	static const struct {
 		const char *name;
@@ -618,21 +604,5 @@ static void shared_models_decode_and_round_trip(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(sequential_without_quantization_is_exact),
-		cmocka_unit_test(twelve_bits_keep_tangents_and_their_sign),
-		cmocka_unit_test(floats_are_multiplied_then_added),
-		cmocka_unit_test(second_encoding_in_the_same_box_moves_nothing),
-		cmocka_unit_test(edgebreaker_keeps_every_sound_face),
-		cmocka_unit_test(copied_points_have_the_values_of_others),
-		cmocka_unit_test(equal_points_are_joined_by_edgebreaker),
-		cmocka_unit_test(bounds_are_those_of_the_decoded_values),
-		cmocka_unit_test(quantized_values_are_those_that_are_decoded),
-		cmocka_unit_test(non_manifold_meshes_survive_edgebreaker),
-		cmocka_unit_test(what_cannot_be_encoded_is_refused),
-		cmocka_unit_test(damaged_streams_are_refused),
-		cmocka_unit_test(mutated_streams_do_no_harm),
-		cmocka_unit_test(shared_models_decode_and_round_trip),
-	};
-	return cmocka_run_group_tests_name("ext/draco", tests, NULL, NULL);
+	return run_group("ext/draco");
 }

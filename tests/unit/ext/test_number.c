@@ -19,9 +19,8 @@ static const char *double_text(double value)
 	return text;
 }
 
-static void json_numbers_are_short_and_have_a_point(void **state)
+TEST(json_numbers_are_short_and_have_a_point)
 {
-	(void)state;
 	assert_string_equal(float_text(0), "0.0");
 	assert_string_equal(float_text(-0.0f), "-0.0");
 	assert_string_equal(float_text(1), "1.0");
@@ -42,9 +41,8 @@ static void json_numbers_are_short_and_have_a_point(void **state)
 	assert_string_equal(double_text((double)INFINITY), "null");
 }
 
-static void json_numbers_read_back(void **state)
+TEST(json_numbers_read_back)
 {
-	(void)state;
 	uint64_t bits = 1;
 	for (int i = 0; i < 100000; i++) {
 		bits = bits * 6364136223846793005u + 1442695040888963407u;
@@ -65,9 +63,5 @@ static void json_numbers_read_back(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(json_numbers_are_short_and_have_a_point),
-		cmocka_unit_test(json_numbers_read_back),
-	};
-	return cmocka_run_group_tests_name("ext/number", tests, NULL, NULL);
+	return run_group("ext/number");
 }

@@ -74,9 +74,8 @@ static nt_walks boundary_of(const nt_halfedges *mesh, const uint32_t (*triangles
 	return chains_of(mesh, marked, triangles);
 }
 
-static void strip_has_one_boundary_loop_in_order(void **state)
+TEST(strip_has_one_boundary_loop_in_order)
 {
-	(void)state;
 	nt_halfedges *mesh = built(6, strip, COUNT(strip));
 	const uint32_t *left_out;
 	assert_int_equal(nt_halfedges_left_out(mesh, &left_out), 0);
@@ -102,9 +101,8 @@ static const uint32_t cube[][3] = {
 	{1, 3, 7}, {1, 7, 5}, /* x = 1 */
 };
 
-static void closed_seams_are_walked_round(void **state)
+TEST(closed_seams_are_walked_round)
 {
-	(void)state;
 	nt_halfedges *mesh = built(8, cube, COUNT(cube));
 	/* the rim of z = 1: 4-5-7-6, marked in no particular order and from either side */
 	uint8_t marked[36] = {0};
@@ -133,9 +131,8 @@ static void closed_seams_are_walked_round(void **state)
 	nt_halfedges_free(mesh);
 }
 
-static void open_chain_is_ordered_from_end_to_end(void **state)
+TEST(open_chain_is_ordered_from_end_to_end)
 {
-	(void)state;
 	nt_halfedges *mesh = built(8, cube, COUNT(cube));
 	uint8_t marked[36] = {0};
 	marked[side_between(cube, 12, 7, 6)] = 1;
@@ -153,9 +150,8 @@ static void open_chain_is_ordered_from_end_to_end(void **state)
 	nt_halfedges_free(mesh);
 }
 
-static void moebius_strip_loses_nothing(void **state)
+TEST(moebius_strip_loses_nothing)
 {
-	(void)state;
 	/* Five triangles (i, i+1, i+2) mod 5, every other one turned: the strip closes with a twist, and
 	 * since 5 is odd the last and the first use an edge in the same direction. */
 	static const uint32_t band[][3] = {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 0, 4}, {4, 0, 1}};
@@ -172,9 +168,8 @@ static void moebius_strip_loses_nothing(void **state)
 	nt_halfedges_free(mesh);
 }
 
-static void degenerate_and_third_triangles_are_left_out(void **state)
+TEST(degenerate_and_third_triangles_are_left_out)
 {
-	(void)state;
 	static const uint32_t soup[][3] = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {2, 2, 3}, {1, 0, 5}};
 	nt_halfedges *mesh = built(6, soup, COUNT(soup));
 	const uint32_t *left_out;
@@ -183,9 +178,8 @@ static void degenerate_and_third_triangles_are_left_out(void **state)
 	nt_halfedges_free(mesh);
 }
 
-static void fans_that_touch_in_a_vertex_have_loops_of_their_own(void **state)
+TEST(fans_that_touch_in_a_vertex_have_loops_of_their_own)
 {
-	(void)state;
 	static const uint32_t bowtie[][3] = {{0, 1, 2}, {0, 3, 4}};
 	nt_halfedges *mesh = built(5, bowtie, COUNT(bowtie));
 	nt_walks loops = boundary_of(mesh, bowtie, COUNT(bowtie));
@@ -196,9 +190,8 @@ static void fans_that_touch_in_a_vertex_have_loops_of_their_own(void **state)
 	nt_halfedges_free(mesh);
 }
 
-static void empty_mesh_and_bad_index_are_handled(void **state)
+TEST(empty_mesh_and_bad_index_are_handled)
 {
-	(void)state;
 	nt_halfedges *mesh = built(0, strip, 0);
 	nt_walks walks = boundary_of(mesh, strip, 0);
 	assert_int_equal(walks.count, 0);
@@ -241,23 +234,12 @@ static double build_hub(size_t spokes)
 	return seconds;
 }
 
-static void hub_is_not_quadratic(void **state)
+TEST(hub_is_not_quadratic)
 {
-	(void)state;
 	assert_true(grows_slowly(build_hub, 7500));
 }
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(strip_has_one_boundary_loop_in_order),
-		cmocka_unit_test(closed_seams_are_walked_round),
-		cmocka_unit_test(open_chain_is_ordered_from_end_to_end),
-		cmocka_unit_test(moebius_strip_loses_nothing),
-		cmocka_unit_test(degenerate_and_third_triangles_are_left_out),
-		cmocka_unit_test(fans_that_touch_in_a_vertex_have_loops_of_their_own),
-		cmocka_unit_test(empty_mesh_and_bad_index_are_handled),
-		cmocka_unit_test(hub_is_not_quadratic),
-	};
-	return cmocka_run_group_tests_name("ext/openmesh", tests, NULL, NULL);
+	return run_group("ext/openmesh");
 }

@@ -45,9 +45,8 @@ static nt_status open_text(nt_reread **reread, const char *text, named_bytes *fi
 	return nt_reread_open(reread, (const unsigned char *)text, strlen(text), file ? find_bytes : NULL, file, error);
 }
 
-static void reread_finds_attributes_in_sidecars(void **state)
+TEST(reread_finds_attributes_in_sidecars)
 {
-	(void)state;
 	named_bytes file = triangle_bytes();
 	nt_reread *reread;
 	nt_error error;
@@ -94,9 +93,8 @@ static nt_status status_after(const char *old, const char *new, nt_error *error)
 	return status;
 }
 
-static void reread_checks_accessors_against_views_and_buffers(void **state)
+TEST(reread_checks_accessors_against_views_and_buffers)
 {
-	(void)state;
 	nt_error error;
 	assert_int_equal(status_after("", "", &error), NT_OK);
 	static const char *const changes[][2] = {{"\"count\":3", "\"count\":4"},
@@ -131,9 +129,8 @@ static nt_reread *open_packed(named_bytes *file, size_t packed, size_t offset, c
 }
 
 /* Bounds as they are stated, and accessors that only a target, or an extension, refers to. */
-static void bounds_and_uses_are_told(void **state)
+TEST(bounds_and_uses_are_told)
 {
-	(void)state;
 	named_bytes file = triangle_bytes();
 	char text[sizeof triangle + 400], *end = strstr(strcpy(text, triangle), ",\"asset\"") - 1;
 	const char *const rest = strstr(triangle, ",\"asset\"") - 1;
@@ -161,9 +158,8 @@ static void bounds_and_uses_are_told(void **state)
 	nt_reread_free(reread);
 }
 
-static void packed_views_are_unpacked(void **state)
+TEST(packed_views_are_unpacked)
 {
-	(void)state;
 	named_bytes file = {.name = "a.bin", .size = sizeof file.bytes};
 	unsigned char packed[sizeof file.bytes];
 	const size_t size = meshopt_encodeVertexBuffer(packed, sizeof packed, positions, 3, 12);
@@ -194,9 +190,8 @@ static void packed_views_are_unpacked(void **state)
 }
 
 /* Other people's numbers may be any; what is in quotes is none. */
-static void numbers_beyond_double_are_taken(void **state)
+TEST(numbers_beyond_double_are_taken)
 {
-	(void)state;
 	static const char *const texts[] = {
 		"{\"asset\":{\"version\":\"2.0\"},\"extras\":{\"n\":1e400,\"m\":[-1E+999,1e-999],\"s\":\"\\\"1e400\"}}",
 		"{\"asset\":{\"version\":\"2.0\"},\"extras\":1e400,"
@@ -212,9 +207,8 @@ static void numbers_beyond_double_are_taken(void **state)
 	}
 }
 
-static void deep_json_is_refused_before_it_is_parsed(void **state)
+TEST(deep_json_is_refused_before_it_is_parsed)
 {
-	(void)state;
 	enum { DEPTH = 100000 };
 	char *text = calloc(DEPTH + 1, 1);
 	memset(text, '[', DEPTH);
@@ -228,13 +222,5 @@ static void deep_json_is_refused_before_it_is_parsed(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(reread_finds_attributes_in_sidecars),
-		cmocka_unit_test(reread_checks_accessors_against_views_and_buffers),
-		cmocka_unit_test(bounds_and_uses_are_told),
-		cmocka_unit_test(packed_views_are_unpacked),
-		cmocka_unit_test(numbers_beyond_double_are_taken),
-		cmocka_unit_test(deep_json_is_refused_before_it_is_parsed),
-	};
-	return cmocka_run_group_tests_name("ext/tinygltf", tests, NULL, NULL);
+	return run_group("ext/tinygltf");
 }

@@ -7,9 +7,8 @@
 
 #include <string.h>
 
-static void names_are_relative_to_the_folder_of_the_run_or_of_the_inputs(void **state)
+TEST(names_are_relative_to_the_folder_of_the_run_or_of_the_inputs)
 {
-	(void)state;
 	static const struct {
 		const char *inputs[3], *prefix, *path, *shown;
 	} rows[] = {
@@ -51,9 +50,8 @@ static void names_are_relative_to_the_folder_of_the_run_or_of_the_inputs(void **
 	}
 }
 
-static void without_paths_names_are_as_they_are_spelled(void **state)
+TEST(without_paths_names_are_as_they_are_spelled)
 {
-	(void)state;
 	nt_buffer shown = {0};
 	nt_shown_path(NULL, "../a.obj", &shown);
 	assert_string_equal(shown.data, "../a.obj");
@@ -62,9 +60,5 @@ static void without_paths_names_are_as_they_are_spelled(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(names_are_relative_to_the_folder_of_the_run_or_of_the_inputs),
-		cmocka_unit_test(without_paths_names_are_as_they_are_spelled),
-	};
-	return cmocka_run_group_tests_name("file/shown_path", tests, NULL, NULL);
+	return run_group("file/shown_path");
 }

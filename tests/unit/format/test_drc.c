@@ -47,9 +47,8 @@ static nt_draco_block encoded(const nt_draco_mesh *mesh)
 	return block;
 }
 
-static void quad_becomes_a_mesh_of_two_triangles(void **state)
+TEST(quad_becomes_a_mesh_of_two_triangles)
 {
-	(void)state;
 	nt_draco_block block = encoded(&quad);
 	nt_scene scene;
 	nt_error error;
@@ -74,9 +73,8 @@ static void quad_becomes_a_mesh_of_two_triangles(void **state)
 	nt_draco_block_free(&block);
 }
 
-static void mesh_without_positions_is_refused(void **state)
+TEST(mesh_without_positions_is_refused)
 {
-	(void)state;
 	nt_draco_mesh bare = quad;
 	bare.attributes++;
 	bare.attribute_count--;
@@ -90,9 +88,8 @@ static void mesh_without_positions_is_refused(void **state)
 }
 
 /* As OBJ and PLY: glTF cannot store it, and a PLY of it could not be read again. */
-static void values_that_are_not_finite_are_refused(void **state)
+TEST(values_that_are_not_finite_are_refused)
 {
-	(void)state;
 	nt_draco_block block = encoded(&quad);
 	/* every float of the file that is 2.0 or 0.25, the greatest position and the last coordinate, in turn */
 	size_t refused = 0;
@@ -114,9 +111,8 @@ static void values_that_are_not_finite_are_refused(void **state)
 	nt_draco_block_free(&block);
 }
 
-static void truncated_files_are_refused(void **state)
+TEST(truncated_files_are_refused)
 {
-	(void)state;
 	nt_draco_block block = encoded(&quad);
 	nt_error error;
 	for (size_t size = 5; size < block.size; size++) {
@@ -132,11 +128,5 @@ static void truncated_files_are_refused(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(quad_becomes_a_mesh_of_two_triangles),
-		cmocka_unit_test(mesh_without_positions_is_refused),
-		cmocka_unit_test(values_that_are_not_finite_are_refused),
-		cmocka_unit_test(truncated_files_are_refused),
-	};
-	return cmocka_run_group_tests_name("format/drc", tests, NULL, NULL);
+	return run_group("format/drc");
 }

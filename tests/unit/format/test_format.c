@@ -8,9 +8,8 @@ static void is_called(const nt_format_entry *entry, const char *name)
 	assert_string_equal(entry ? entry->name : "", name);
 }
 
-static void format_of_a_name_is_its_extension_in_any_case(void **state)
+TEST(format_of_a_name_is_its_extension_in_any_case)
 {
-	(void)state;
 	static const char *const rows[][2] = {{"a.obj", "obj"}, {"dir.gltf/a.PLY", "ply"}, {"a.obj.gltf", "gltf"},
 		{".glb", "glb"}, {"a.drc", "drc"}, {"dir.gltf/a", ""}, {"a.gltf2", ""}, {"a.", ""}, {"-", ""},
 		{"", ""}};
@@ -18,9 +17,8 @@ static void format_of_a_name_is_its_extension_in_any_case(void **state)
 		is_called(nt_format_of_path(rows[i][0]), rows[i][1]);
 }
 
-static void format_of_an_input_is_its_content_before_its_name(void **state)
+TEST(format_of_an_input_is_its_content_before_its_name)
 {
-	(void)state;
 	static const struct {
 		const char *bytes;
 		size_t size;
@@ -32,9 +30,8 @@ static void format_of_an_input_is_its_content_before_its_name(void **state)
 			rows[i].name);
 }
 
-static void every_format_is_found_by_its_number(void **state)
+TEST(every_format_is_found_by_its_number)
 {
-	(void)state;
 	const char *const paths[] = {"a.obj", "a.ply", "a.gltf", "a.glb", "a.drc"};
 	for (size_t i = 0; i < 5; i++) {
 		const nt_format_entry *entry = nt_format_of_path(paths[i]);
@@ -47,10 +44,5 @@ static void every_format_is_found_by_its_number(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(format_of_a_name_is_its_extension_in_any_case),
-		cmocka_unit_test(format_of_an_input_is_its_content_before_its_name),
-		cmocka_unit_test(every_format_is_found_by_its_number),
-	};
-	return cmocka_run_group_tests_name("format/format", tests, NULL, NULL);
+	return run_group("format/format");
 }

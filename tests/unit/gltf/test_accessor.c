@@ -55,9 +55,8 @@ static void check_accessor(nt_gltf *document, uint32_t index, uint64_t count)
 	assert_null(a.decoded);
 }
 
-static void accessors_stay_until_they_are_changed(void **state)
+TEST(accessors_stay_until_they_are_changed)
 {
-	(void)state;
 	nt_scene scene;
 	nt_error error;
 	assert_int_equal(open_bytes(&scene, document_text, sizeof document_text - 1,
@@ -78,9 +77,8 @@ static void accessors_stay_until_they_are_changed(void **state)
 }
 
 /* Every count up to some vectors, at every alignment: as bytes, the lowest first. */
-static void indices_are_stored_and_read(void **state)
+TEST(indices_are_stored_and_read)
 {
-	(void)state;
 	static const uint32_t types[] = {5121, 5123, 5125}, widths[] = {1, 2, 4};
 	enum { MOST = 40 };
 	for (size_t k = 0; k < 3; k++)
@@ -111,9 +109,5 @@ static void indices_are_stored_and_read(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(accessors_stay_until_they_are_changed),
-		cmocka_unit_test(indices_are_stored_and_read),
-	};
-	return cmocka_run_group_tests_name("gltf/accessor", tests, NULL, NULL);
+	return run_group("gltf/accessor");
 }

@@ -91,9 +91,8 @@ static void walk_folder(const char *folder, counts *tally)
 	closedir(directory);
 }
 
-static void every_file_is_read_or_refused_with_a_place(void **state)
+TEST(every_file_is_read_or_refused_with_a_place)
 {
-	(void)state;
 	counts tally = {.verbose = getenv("NT_VERBOSE") != NULL};
 	for (size_t i = 0; i < 2; i++)
 		walk_folder(roots[i], &tally);
@@ -109,8 +108,5 @@ static void every_file_is_read_or_refused_with_a_place(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(every_file_is_read_or_refused_with_a_place),
-	};
-	return cmocka_run_group_tests_name("gltf/corpus", tests, NULL, NULL);
+	return run_group("gltf/corpus");
 }

@@ -119,9 +119,8 @@ static const struct {
 };
 
 /* Each is found with its kind and its place, and nothing else is. */
-static void references_are_found_with_kind_and_place(void **state)
+TEST(references_are_found_with_kind_and_place)
 {
-	(void)state;
 	for (size_t i = 0; i < sizeof references / sizeof *references; i++) {
 		const nt_gltf_growing own = references[i].kind;
 		char path[256];
@@ -141,9 +140,8 @@ static void references_are_found_with_kind_and_place(void **state)
 }
 
 /* A view of a buffer that is not there has no bytes, also when an edit has added a buffer of that number. */
-static void an_added_buffer_is_not_what_the_file_refers_to(void **state)
+TEST(an_added_buffer_is_not_what_the_file_refers_to)
 {
-	(void)state;
 	static const char text[] =
 		"{\"asset\":{\"version\":\"2.0\"},\"bufferViews\":[{\"buffer\":0,\"byteLength\":4}]}";
 	nt_scene scene;
@@ -163,9 +161,5 @@ static void an_added_buffer_is_not_what_the_file_refers_to(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(references_are_found_with_kind_and_place),
-		cmocka_unit_test(an_added_buffer_is_not_what_the_file_refers_to),
-	};
-	return cmocka_run_group_tests_name("gltf/dangling", tests, NULL, NULL);
+	return run_group("gltf/dangling");
 }

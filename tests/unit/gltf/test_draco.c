@@ -87,17 +87,15 @@ static void decode_with(unsigned threads)
 	nt_buffer_free(&json);
 }
 
-static void blocks_are_decoded_ahead_on_several_threads(void **state)
+TEST(blocks_are_decoded_ahead_on_several_threads)
 {
-	(void)state;
 	for (unsigned threads = 1; threads <= 8; threads *= 2)
 		decode_with(threads);
 }
 
 /* w is -1 or 1 in every file, and bytes of 1 say so to every decoder. */
-static void the_grid_of_tangents_has_both_signs(void **state)
+TEST(the_grid_of_tangents_has_both_signs)
 {
-	(void)state;
 	static const float tangents[3][4] = {{1, 0, 0, 1}, {0, -1, 0, -1}, {0.6f, 0, -0.8f, 1}};
 	static const uint32_t face[3] = {0, 1, 2};
 	for (int bits = 2; bits <= 24; bits++) {
@@ -122,9 +120,5 @@ static void the_grid_of_tangents_has_both_signs(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(blocks_are_decoded_ahead_on_several_threads),
-		cmocka_unit_test(the_grid_of_tangents_has_both_signs),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return run_group("gltf/draco");
 }

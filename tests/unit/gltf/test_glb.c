@@ -12,9 +12,8 @@ static nt_status parse(const char *bytes, size_t size, nt_glb *glb, nt_arena *ar
 	return status;
 }
 
-static void chunks_are_found_and_extra_ones_kept(void **state)
+TEST(chunks_are_found_and_extra_ones_kept)
 {
-	(void)state;
 	/* the first padded with NULs: a quirk; the second not padded: another */
 	static const char file[] = "glTF\2\0\0\0\x3D\0\0\0\4\0\0\0JSON{}\0\0\5\0\0\0BIN\0" "12345\4\0\0\0XTRAabcd"
 		"\4\0\0\0BIN\0" "6789trailing";
@@ -34,9 +33,8 @@ static void chunks_are_found_and_extra_ones_kept(void **state)
 	nt_arena_free(&arena);
 }
 
-static void faults_have_their_offset(void **state)
+TEST(faults_have_their_offset)
 {
-	(void)state;
 	static const struct {
 		const char *bytes;
 		size_t size;
@@ -59,9 +57,8 @@ static void faults_have_their_offset(void **state)
 }
 
 /* Writes a GLB through a sink and reads it back. */
-static void written_container_is_padded_and_sized(void **state)
+TEST(written_container_is_padded_and_sized)
 {
-	(void)state;
 	nt_error error;
 	nt_output *output;
 	nt_sink *sink;
@@ -83,9 +80,8 @@ static void written_container_is_padded_and_sized(void **state)
 	nt_file_close(&file);
 }
 
-static void four_gigabytes_are_refused(void **state)
+TEST(four_gigabytes_are_refused)
 {
-	(void)state;
 	nt_error error;
 	assert_int_equal(nt_glb_begin(NULL, 2, true, UINT32_MAX - 20, 0, &error), NT_ERROR_UNSUPPORTED);
 	assert_int_equal(nt_glb_begin(NULL, 2, true, UINT64_MAX, 0, &error), NT_ERROR_UNSUPPORTED);
@@ -93,11 +89,5 @@ static void four_gigabytes_are_refused(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(chunks_are_found_and_extra_ones_kept),
-		cmocka_unit_test(faults_have_their_offset),
-		cmocka_unit_test(written_container_is_padded_and_sized),
-		cmocka_unit_test(four_gigabytes_are_refused),
-	};
-	return cmocka_run_group_tests_name("gltf/glb", tests, make_folder, remove_folder);
+	return run_group_within("gltf/glb", make_folder, remove_folder);
 }

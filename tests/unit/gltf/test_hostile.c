@@ -59,9 +59,8 @@ static void copy_sidecars(const char *seed)
 		return; /* the seed has none */
 }
 
-static void damaged_files_end_with_a_status(void **state)
+TEST(damaged_files_end_with_a_status)
 {
-	(void)state;
 	const char *wanted = getenv("NT_MUTATIONS");
 	const size_t rounds = (wanted ? (size_t)atoi(wanted) : 600) / SEED_COUNT;
 	counts tally = {0};
@@ -93,8 +92,5 @@ static void damaged_files_end_with_a_status(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(damaged_files_end_with_a_status),
-	};
-	return cmocka_run_group_tests_name("gltf/hostile", tests, make_folder, remove_folder);
+	return run_group_within("gltf/hostile", make_folder, remove_folder);
 }

@@ -75,9 +75,8 @@ static void joins_are(const char *letters, const char *expected)
 	nt_scene_free(&scene);
 }
 
-static void joins_are_those_of_the_table(void **state)
+TEST(joins_are_those_of_the_table)
 {
-	(void)state;
 	static const char *const rows[][2] = {
 		/* kinds are sets and transforms */
 		{"nn", "0 1"}, {"n1", ""}, {"nt", ""}, {"nttn", "0 3, 1 2"}, {"n n", ""}, {"nn nn", "0 1, 2 3"},
@@ -116,9 +115,8 @@ static void results_are(const char *letters, const char *joins, const char *expe
 }
 
 /* All primitives of a letter have the same geometry. */
-static void the_same_geometry_contributes_once(void **state)
+TEST(the_same_geometry_contributes_once)
 {
-	(void)state;
 	results_are("nnn", "", "-00");
 	results_are("nn.", "0 2", "-0");
 	results_are("n..", "0 1", "-");
@@ -134,9 +132,8 @@ static void the_same_geometry_contributes_once(void **state)
 }
 
 /* What is only compared may not cost many times the solve, which is of one triangle here. */
-static void a_comparison_is_not_dear(void **state)
+TEST(a_comparison_is_not_dear)
 {
-	(void)state;
 	joins_are("nb", "0 1");
 	compared = true;
 	joins_are("nb", "");
@@ -146,9 +143,8 @@ static void a_comparison_is_not_dear(void **state)
 
 /* A mesh whose primitives all have transforms of their own, with as many that take part in every join: their square is
  * 10^8. */
-static void many_kinds_cost_linear_time(void **state)
+TEST(many_kinds_cost_linear_time)
 {
-	(void)state;
 	enum { KINDS = 10000 };
 	nt_buffer json = {0};
 	nt_scene scene;
@@ -173,11 +169,5 @@ static void many_kinds_cost_linear_time(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(joins_are_those_of_the_table),
-		cmocka_unit_test(the_same_geometry_contributes_once),
-		cmocka_unit_test(a_comparison_is_not_dear),
-		cmocka_unit_test(many_kinds_cost_linear_time),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return run_group("gltf/joins");
 }

@@ -104,9 +104,8 @@ static void check_with(unsigned threads)
 	nt_buffer_free(&json);
 }
 
-static void meshes_are_loaded_by_several_threads(void **state)
+TEST(meshes_are_loaded_by_several_threads)
 {
-	(void)state;
 	check_with(1);
 	check_with(2);
 	check_with(MOST_THREADS);
@@ -114,8 +113,5 @@ static void meshes_are_loaded_by_several_threads(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(meshes_are_loaded_by_several_threads),
-	};
-	return cmocka_run_group_tests_name("gltf/load", tests, NULL, NULL);
+	return run_group("gltf/load");
 }

@@ -6,9 +6,8 @@
 #include "test.h"
 
 /* 8 units in the last place of a number near 1 are nothing, 9 are something. */
-static void deltas_of_rounding_are_zero(void **state)
+TEST(deltas_of_rounding_are_zero)
 {
-	(void)state;
 	static const float ulp = 0x1p-24f;
 	const float base[8] = {0, 1, 0, 1, 0, 1, 0, 1}, moved[6] = {8 * ulp, 1, 0, 9 * ulp, 1, 0};
 	float deltas[6];
@@ -19,9 +18,8 @@ static void deltas_of_rounding_are_zero(void **state)
 }
 
 /* 0.6 is 76.2 of 127 steps and 19660.2 of 32767. */
-static void integers_round_and_end_at_one(void **state)
+TEST(integers_round_and_end_at_one)
 {
-	(void)state;
 	const float base[4] = {0, 0, 0, 1}, moved[3] = {0.6f, -1, 0}, far[3] = {0.6f, -1.01f, 0};
 	float delta[3];
 	uint32_t type = NT_GLTF_BYTE;
@@ -37,9 +35,8 @@ static void integers_round_and_end_at_one(void **state)
 }
 
 /* Of 100 elements of 12 bytes the 3 that are not zero take 3 numbers, padded to 4, and 36 bytes. */
-static void few_are_stored_sparse(void **state)
+TEST(few_are_stored_sparse)
 {
-	(void)state;
 	float deltas[300] = {0};
 	unsigned char bytes[40] = {0};
 	deltas[3 * 7] = 1;
@@ -61,10 +58,5 @@ static void few_are_stored_sparse(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(deltas_of_rounding_are_zero),
-		cmocka_unit_test(integers_round_and_end_at_one),
-		cmocka_unit_test(few_are_stored_sparse),
-	};
-	return cmocka_run_group_tests_name("gltf/morph_deltas", tests, NULL, NULL);
+	return run_group("gltf/morph_deltas");
 }

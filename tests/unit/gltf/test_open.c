@@ -87,9 +87,8 @@ static void check_triangles(const char *primitive, const uint32_t *expected, siz
 	close_text(&f);
 }
 
-static void all_kinds_of_indices_are_read(void **state)
+TEST(all_kinds_of_indices_are_read)
 {
-	(void)state;
 	const uint32_t expected[] = {0, 1, 2, 0, 2, 3};
 	for (int accessor = 3; accessor <= 5; accessor++) {
 		char primitive[256];
@@ -100,9 +99,8 @@ static void all_kinds_of_indices_are_read(void **state)
 }
 
 /* glTF 2.0, 3.7.2.1: strip triangle i is (i, i+1+i%2, i+2-i%2), fan triangle i is (i+1, i+2, 0). */
-static void strips_and_fans_become_triangles(void **state)
+TEST(strips_and_fans_become_triangles)
 {
-	(void)state;
 	check_triangles(QUAD_ATTRIBUTES ",\"mode\":5", (const uint32_t[]){0, 1, 2, 1, 3, 2}, 6);
 	check_triangles(QUAD_ATTRIBUTES ",\"mode\":6", (const uint32_t[]){1, 2, 0, 2, 3, 0}, 6);
 	/* the chain 0 1 2 0 2 3 */
@@ -110,9 +108,8 @@ static void strips_and_fans_become_triangles(void **state)
 		(const uint32_t[]){0, 1, 2, 1, 0, 2, 2, 0, 2, 0, 3, 2}, 12);
 }
 
-static void texcoords_have_v_up(void **state)
+TEST(texcoords_have_v_up)
 {
-	(void)state;
 	fixture f;
 	nt_mesh *mesh = load_quad(&f, QUAD_ATTRIBUTES, "");
 	assert_int_equal(mesh->vertex_count, 4);
@@ -130,9 +127,8 @@ static void texcoords_have_v_up(void **state)
 	close_text(&f);
 }
 
-static void faults_have_their_pointer(void **state)
+TEST(faults_have_their_pointer)
 {
-	(void)state;
 	static const char attribute[] = "/meshes/0/primitives/0/attributes/POSITION";
 	static const char *const rows[][2] = {{"\"attributes\":{\"NORMAL\":1}", "/meshes/0/primitives/0"},
 		{"\"attributes\":{\"POSITION\":9}", attribute}, {"\"attributes\":{\"POSITION\":-1}", attribute},
@@ -165,9 +161,8 @@ static nt_status load_positions(fixture *f, const char *view, const char *access
 
 #define FLOATS(view, count) "\"bufferView\":" view ",\"componentType\":5126,\"type\":\"VEC3\",\"count\":" count
 
-static void counts_offsets_and_strides_are_checked(void **state)
+TEST(counts_offsets_and_strides_are_checked)
 {
-	(void)state;
 	static const char view[] = "\"buffer\":0,\"byteLength\":36", vec3[] = FLOATS("0", "3");
 	static const struct {
 		const char *view, *accessor, *pointer;
@@ -206,9 +201,8 @@ static void check_positions(const char *view, const char *accessor, const void *
 	close_text(&f);
 }
 
-static void quantized_interleaved_and_sparse_values_are_decoded(void **state)
+TEST(quantized_interleaved_and_sparse_values_are_decoded)
 {
-	(void)state;
 	/* KHR_mesh_quantization: max(c / 127, -1) and so on */
 	const int8_t bytes[12] = {127, -127, -128, 99, 0, 1, 2, 99, 64, -64, 3, 99};
 	check_positions("\"buffer\":0,\"byteLength\":12,\"byteStride\":4", "\"bufferView\":0,"
@@ -233,9 +227,8 @@ static void quantized_interleaved_and_sparse_values_are_decoded(void **state)
 		(const float[]){0, 0, 0, 1.5f, 2.5f, 3.5f, 0, 0, 0});
 }
 
-static void sparse_elements_are_checked(void **state)
+TEST(sparse_elements_are_checked)
 {
-	(void)state;
 	const char *accessor = "\"componentType\":5126,\"type\":\"VEC3\",\"count\":3,\"sparse\":{"
 		"\"count\":2,\"indices\":{\"bufferView\":0,\"componentType\":5121},"
 		"\"values\":{\"bufferView\":0,\"byteOffset\":4}}";
@@ -250,9 +243,8 @@ static void sparse_elements_are_checked(void **state)
 	}
 }
 
-static void zeros_without_backing_are_limited(void **state)
+TEST(zeros_without_backing_are_limited)
 {
-	(void)state;
 	fixture f;
 	assert_int_equal(load_positions(&f, "\"buffer\":0,\"byteLength\":4", "\"componentType\":5126,"
 		"\"type\":\"VEC3\",\"count\":4000000000", "abcd", 4), NT_ERROR_UNSUPPORTED);
@@ -275,9 +267,8 @@ static void check_material(const char *materials, const char *primitive, unsigne
 	close_text(&f);
 }
 
-static void materials_become_slots(void **state)
+TEST(materials_become_slots)
 {
-	(void)state;
 	const char *const mine = "\"material\":0";
 	check_material("{}", mine, 0, 0, false);
 	check_material("{\"normalTexture\":{\"index\":0}}", mine, NT_SLOT_NORMAL, 0, false);
@@ -307,9 +298,8 @@ static void load_transformed(fixture *f, const char *transform, const char *more
 	load_quad(f, QUAD_ATTRIBUTES ",\"material\":0", materials);
 }
 
-static void texture_transforms_turn_and_scale(void **state)
+TEST(texture_transforms_turn_and_scale)
 {
-	(void)state;
 	fixture f;
 	load_transformed(&f, "\"offset\":[0.5,0.25]", "");
 	assert_null(f.scene.meshes[0].solve_texcoords);
@@ -339,9 +329,8 @@ static void texture_transforms_turn_and_scale(void **state)
 	close_text(&f);
 }
 
-static void animated_transforms_are_a_finding(void **state)
+TEST(animated_transforms_are_a_finding)
 {
-	(void)state;
 	fixture f;
 	const char *animation = ",\"animations\":[{\"channels\":[{\"target\":{\"extensions\":{"
 		"\"KHR_animation_pointer\":{\"pointer\":\"/materials/0/normalTexture/extensions/"
@@ -358,9 +347,8 @@ static void animated_transforms_are_a_finding(void **state)
 	close_text(&f);
 }
 
-static void scenes_decide_what_is_reached(void **state)
+TEST(scenes_decide_what_is_reached)
 {
-	(void)state;
 	static const struct {
 		const char *more;
 		bool reached;
@@ -384,9 +372,8 @@ static void scenes_decide_what_is_reached(void **state)
 	}
 }
 
-static void instances_have_world_matrices(void **state)
+TEST(instances_have_world_matrices)
 {
-	(void)state;
 	const nt_read_options options = {.texcoord_set = -1, .world = true};
 	fixture f;
 	/* parent: turned by 90 degrees about z (x to y), then moved by (10, 0, 0); child: scaled by 2 and moved
@@ -403,9 +390,8 @@ static void instances_have_world_matrices(void **state)
 	close_text(&f);
 }
 
-static void what_is_not_read_is_not_checked(void **state)
+TEST(what_is_not_read_is_not_checked)
 {
-	(void)state;
 	fixture f;
 	load_quad(&f, QUAD_ATTRIBUTES, ",\"cameras\":[7],\"skins\":{},\"images\":[{\"uri\":\"../../etc/passwd\"}],"
 		"\"animations\":[{\"channels\":9}],\"materials\":[3]");
@@ -413,9 +399,8 @@ static void what_is_not_read_is_not_checked(void **state)
 }
 
 /* The other buffers do not exist, or say nothing; nobody asks for them. */
-static void buffers_are_opened_only_when_wanted(void **state)
+TEST(buffers_are_opened_only_when_wanted)
 {
-	(void)state;
 	fixture f = {0};
 	nt_buffer_text(&f.text, "{\"asset\":{\"version\":\"2.0\"}," QUAD_ACCESSORS "," QUAD_VIEWS ",\"meshes\":[{"
 		"\"primitives\":[{" QUAD_ATTRIBUTES "}]}],\"buffers\":[");
@@ -431,22 +416,5 @@ static void buffers_are_opened_only_when_wanted(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(all_kinds_of_indices_are_read),
-		cmocka_unit_test(strips_and_fans_become_triangles),
-		cmocka_unit_test(texcoords_have_v_up),
-		cmocka_unit_test(faults_have_their_pointer),
-		cmocka_unit_test(counts_offsets_and_strides_are_checked),
-		cmocka_unit_test(quantized_interleaved_and_sparse_values_are_decoded),
-		cmocka_unit_test(sparse_elements_are_checked),
-		cmocka_unit_test(zeros_without_backing_are_limited),
-		cmocka_unit_test(materials_become_slots),
-		cmocka_unit_test(texture_transforms_turn_and_scale),
-		cmocka_unit_test(animated_transforms_are_a_finding),
-		cmocka_unit_test(scenes_decide_what_is_reached),
-		cmocka_unit_test(instances_have_world_matrices),
-		cmocka_unit_test(what_is_not_read_is_not_checked),
-		cmocka_unit_test(buffers_are_opened_only_when_wanted),
-	};
-	return cmocka_run_group_tests_name("gltf/open", tests, NULL, NULL);
+	return run_group("gltf/open");
 }

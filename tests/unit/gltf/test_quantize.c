@@ -3,9 +3,8 @@
 #include <math.h>
 #include "gltf/quantize.h"
 
-static void axes_and_signs_are_exact(void **state)
+TEST(axes_and_signs_are_exact)
 {
-	(void)state;
 	float tangents[3][4] = {{1, 0, 0, 1}, {0, -1, 0, -1}, {0, 0, 1, -1}};
 	const float same[3][4] = {{1, 0, 0, 1}, {0, -1, 0, -1}, {0, 0, 1, -1}};
 	const int16_t shorts[3][4] = {{32767, 0, 0, 32767}, {0, -32767, 0, -32767}, {0, 0, 32767, -32767}};
@@ -25,9 +24,8 @@ static void axes_and_signs_are_exact(void **state)
 
 /* (3, 4, 0) / 5 of 32767 is (19660.2, 26213.6, 0). The nearest vector, (19660, 26214), is off by
  * |4 * 19660 - 3 * 26214| = 2; (19660, 26213) by 1, with a sine of 1 / (5 * 32766.4) = 6.104e-6. */
-static void the_nearest_direction_is_taken_not_the_nearest_vector(void **state)
+TEST(the_nearest_direction_is_taken_not_the_nearest_vector)
 {
-	(void)state;
 	float row[4] = {0.6f, 0.8f, 0, 1};
 	int16_t out[4];
 	nt_rounding cost = {0};
@@ -43,9 +41,8 @@ static void the_nearest_direction_is_taken_not_the_nearest_vector(void **state)
 
 /* 127 / sqrt 3 = 73.32: (73, 73, 73) has the direction and a length of 126.44 / 127 = 1 - 0.0044;
  * (74, 74, 74) has it too and is too long by 0.0092. */
-static void lengths_stay_within_the_validators_tolerance(void **state)
+TEST(lengths_stay_within_the_validators_tolerance)
 {
-	(void)state;
 	float row[4] = {-0.57735027f, 0.57735027f, 0.57735027f, 1};
 	int8_t out[4];
 	nt_rounding cost = {0};
@@ -71,9 +68,8 @@ static void lengths_stay_within_the_validators_tolerance(void **state)
 	}
 }
 
-static void what_has_no_direction_becomes_zero(void **state)
+TEST(what_has_no_direction_becomes_zero)
 {
-	(void)state;
 	float tangents[3][4] = {{0, 0, 0, 1}, {NAN, 0, 1, -1}, {1, 0, 0, NAN}};
 	int8_t out[3][4];
 	nt_rounding cost = {0};
@@ -85,11 +81,5 @@ static void what_has_no_direction_becomes_zero(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(axes_and_signs_are_exact),
-		cmocka_unit_test(the_nearest_direction_is_taken_not_the_nearest_vector),
-		cmocka_unit_test(lengths_stay_within_the_validators_tolerance),
-		cmocka_unit_test(what_has_no_direction_becomes_zero),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return run_group("gltf/quantize");
 }

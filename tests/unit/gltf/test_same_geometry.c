@@ -71,9 +71,8 @@ static void expect(const char *primitives, const int *same, size_t count, const 
 
 static const nt_read_options defaults = {.texcoord_set = -1};
 
-static void equal_accessors_and_materials_that_turn_alike_are_the_same(void **state)
+TEST(equal_accessors_and_materials_that_turn_alike_are_the_same)
 {
-	(void)state;
 	expect(P(ALL, ",\"material\":0") "," P(ALL, ",\"material\":0") ","
 		P("\"NORMAL\":1,\"TEXCOORD_0\":2,\"POSITION\":4", ",\"material\":1") ","
 		P(ALL, ",\"material\":2") "," P(ALL, ",\"material\":2") ","
@@ -81,9 +80,8 @@ static void equal_accessors_and_materials_that_turn_alike_are_the_same(void **st
 		(const int[]){-1, 0, 0, -1, 3, -1}, 6, &defaults);
 }
 
-static void other_corners_are_not_the_same(void **state)
+TEST(other_corners_are_not_the_same)
 {
-	(void)state;
 	expect(P(ALL, ",\"material\":0") "," P(ALL, ",\"material\":0,\"indices\":3") ","
 		P(ALL, ",\"material\":0,\"mode\":5") "," P(ALL, ",\"material\":0,\"mode\":4") ","
 		P(ALL, ",\"material\":0,\"indices\":3") ","
@@ -92,9 +90,8 @@ static void other_corners_are_not_the_same(void **state)
 		(const int[]){-1, -1, -1, 0, 1, -1, -1}, 7, &defaults);
 }
 
-static void targets_count_where_they_are_baked(void **state)
+TEST(targets_count_where_they_are_baked)
 {
-	(void)state;
 	static const char primitives[] = P(ALL, ",\"material\":0,\"targets\":[{\"POSITION\":5}]") ","
 		P(ALL, ",\"material\":0,\"targets\":[{\"POSITION\":1}]") ","
 		P(ALL, ",\"material\":0,\"targets\":[{\"NORMAL\":5}]") ","
@@ -104,9 +101,8 @@ static void targets_count_where_they_are_baked(void **state)
 	expect(primitives, (const int[]){-1, 0, 0, 0, 0}, 5, &keep);
 }
 
-static void a_faulty_reference_is_like_nothing_else(void **state)
+TEST(a_faulty_reference_is_like_nothing_else)
 {
-	(void)state;
 	expect(P("\"POSITION\":0,\"NORMAL\":99,\"TEXCOORD_0\":2", ",\"material\":0") ","
 		P("\"POSITION\":0,\"NORMAL\":99,\"TEXCOORD_0\":2", ",\"material\":0") ","
 		P("\"POSITION\":0,\"NORMAL\":-1,\"TEXCOORD_0\":2", ",\"material\":0") ","
@@ -114,9 +110,8 @@ static void a_faulty_reference_is_like_nothing_else(void **state)
 		(const int[]){-1, -1, -1, -1}, 4, &defaults);
 }
 
-static void what_is_loaded_is_shared_and_not_copied(void **state)
+TEST(what_is_loaded_is_shared_and_not_copied)
 {
-	(void)state;
 	nt_error error;
 	open_with(P(ALL, ",\"material\":0,\"indices\":3") "," P(ALL, ",\"material\":1,\"indices\":3"), &defaults);
 	for (size_t i = 0; i < 2; i++)
@@ -134,9 +129,8 @@ static void what_is_loaded_is_shared_and_not_copied(void **state)
 }
 
 /* Many primitives in one file, in linear time: n compared with each other would be 10^10. */
-static void a_hundred_thousand_primitives_are_no_burden(void **state)
+TEST(a_hundred_thousand_primitives_are_no_burden)
 {
-	(void)state;
 	enum { COUNT = 100000 };
 	nt_buffer primitives = {0};
 	for (int i = 0; i < COUNT; i++)
@@ -153,13 +147,5 @@ static void a_hundred_thousand_primitives_are_no_burden(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(equal_accessors_and_materials_that_turn_alike_are_the_same),
-		cmocka_unit_test(other_corners_are_not_the_same),
-		cmocka_unit_test(targets_count_where_they_are_baked),
-		cmocka_unit_test(a_faulty_reference_is_like_nothing_else),
-		cmocka_unit_test(what_is_loaded_is_shared_and_not_copied),
-		cmocka_unit_test(a_hundred_thousand_primitives_are_no_burden),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return run_group("gltf/same_geometry");
 }

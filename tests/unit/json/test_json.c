@@ -45,9 +45,8 @@ static void check_refused(const char *text, size_t size, uint64_t offset)
 	assert_int_equal(error.place.offset, offset);
 }
 
-static void text_comes_back_as_it_was(void **state)
+TEST(text_comes_back_as_it_was)
 {
-	(void)state;
 	static const char *const texts[] = {
 		"{}",
 		"[]",
@@ -72,9 +71,8 @@ static void text_comes_back_as_it_was(void **state)
 	}
 }
 
-static void faults_are_refused_with_their_place(void **state)
+TEST(faults_are_refused_with_their_place)
 {
-	(void)state;
 	check_refused("", 0, 0);
 	check_refused("{]", 2, 1);
 	check_refused("{\"a\":1", 6, 6);
@@ -116,9 +114,8 @@ static void faults_are_refused_with_their_place(void **state)
 	check_refused("[\"a\0b\"]", 7, 3);
 }
 
-static void duplicate_key_in_large_object_is_found(void **state)
+TEST(duplicate_key_in_large_object_is_found)
 {
-	(void)state;
 	nt_buffer text = {0};
 	nt_buffer_text(&text, "{");
 	for (int i = 0; i < 1000; i++)
@@ -129,9 +126,8 @@ static void duplicate_key_in_large_object_is_found(void **state)
 	nt_buffer_free(&text);
 }
 
-static void nesting_is_capped(void **state)
+TEST(nesting_is_capped)
 {
-	(void)state;
 	char text[2 * NT_JSON_MAX_DEPTH + 2];
 	memset(text, '[', NT_JSON_MAX_DEPTH + 1);
 	memset(text + NT_JSON_MAX_DEPTH + 1, ']', NT_JSON_MAX_DEPTH + 1);
@@ -142,9 +138,8 @@ static void nesting_is_capped(void **state)
 	nt_json_free(document);
 }
 
-static void what_is_foreign_is_so_within_its_member_alone(void **state)
+TEST(what_is_foreign_is_so_within_its_member_alone)
 {
-	(void)state;
 	check_refused("{\"extras\":{},\"b\":1e400}", 23, 17);
 	check_refused("{\"extra\":1e400}", 15, 9);
 	check_refused("[{\"extras\":{\"a\":1,\"a\":2}},{\"a\":1,\"a\":2}]", 40, 36);
@@ -185,9 +180,8 @@ static nt_json_value *walk(nt_json *document, const char *path)
 	return value;
 }
 
-static void edits_change_their_members_alone(void **state)
+TEST(edits_change_their_members_alone)
 {
-	(void)state;
 	static const edit edits[] = {
 		/* a value of its own */
 		{"{ \"a\" : 1.0E0 , \"b\":\"\\/\" }", "", "b", "7", "{ \"a\" : 1.0E0 , \"b\":7 }"},
@@ -225,9 +219,8 @@ static void edits_change_their_members_alone(void **state)
 	}
 }
 
-static void several_edits_of_one_container(void **state)
+TEST(several_edits_of_one_container)
 {
-	(void)state;
 	nt_json *document = parse("{\n  \"a\": [\n    1E0,\n    2E0,\n    3E0,\n    4E0\n  ]\n}\n");
 	nt_json_value *a = nt_json_find(nt_json_root(document), "a");
 	nt_json_remove_at(document, a, 1);
@@ -256,9 +249,8 @@ static void several_edits_of_one_container(void **state)
 }
 
 /* White space is repeated for new members, but not without bound. */
-static void long_white_space_is_not_repeated(void **state)
+TEST(long_white_space_is_not_repeated)
 {
-	(void)state;
 	nt_buffer text = {0};
 	nt_buffer_text(&text, "[");
 	memset(nt_buffer_extend(&text, 100000), ' ', 100000);
@@ -275,9 +267,8 @@ static void long_white_space_is_not_repeated(void **state)
 	nt_buffer_free(&out);
 }
 
-static void numbers_have_checked_types(void **state)
+TEST(numbers_have_checked_types)
 {
-	(void)state;
 	static const struct {
 		const char *text;
 		bool whole, real;
@@ -299,9 +290,8 @@ static void numbers_have_checked_types(void **state)
 }
 
 /* Some are kept as numbers, some as text. */
-static void integers_of_all_sizes_are_set(void **state)
+TEST(integers_of_all_sizes_are_set)
 {
-	(void)state;
 	static const uint64_t numbers[] = {0, 7, 0xFFFFFFFFFFFFu, 0x1000000000000u, UINT64_MAX};
 	nt_json *document = parse("{\"old\":[1,2,3,4,5],\"end\":0}");
 	nt_json_value *root = nt_json_root(document);
@@ -340,9 +330,8 @@ static nt_status count_piece(void *user, const char *text, size_t size)
 }
 
 /* Strings, whose quotes are put back, begin and end everywhere in the pieces. */
-static void long_text_comes_in_pieces(void **state)
+TEST(long_text_comes_in_pieces)
 {
-	(void)state;
 	nt_buffer text = {0};
 	nt_buffer_text(&text, "[");
 	for (unsigned i = 0; i < 30000; i++)
@@ -361,9 +350,8 @@ static void long_text_comes_in_pieces(void **state)
 	nt_buffer_free(&text);
 }
 
-static void look_ups_of_nothing_give_nothing(void **state)
+TEST(look_ups_of_nothing_give_nothing)
 {
-	(void)state;
 	nt_json *document = parse("{\"a\":{\"b\":[10,\"x\"]}}");
 	const nt_json_value *root = nt_json_root(document);
 	const nt_json_value *b = nt_json_find(nt_json_find(root, "a"), "b");
@@ -382,9 +370,8 @@ static void look_ups_of_nothing_give_nothing(void **state)
 	nt_json_free(document);
 }
 
-static void escapes_are_what_they_stand_for(void **state)
+TEST(escapes_are_what_they_stand_for)
 {
-	(void)state;
 	nt_json *document = parse("{\"\\u006be\\u0000y\":\""
 		"\\\"\\\\\\/\\b\\f\\n\\r\\t|\\u0041\\u00e9\\uA041\\ud83d\\uDE00\\uffff\\u0000.\"}");
 	static const char expected[] = "\"\\/\b\f\n\r\t|A\xC3\xA9\xEA\x81\x81\xF0\x9F\x98\x80\xEF\xBF\xBF\0.";
@@ -400,9 +387,8 @@ static void escapes_are_what_they_stand_for(void **state)
 
 /* Each object after each other one: keys that are the same, fewer, more, in another order, longer, shorter, or spelled
  * otherwise, where an escape and a key that says the same without one are to be told apart. */
-static void objects_after_others_have_their_own_keys(void **state)
+TEST(objects_after_others_have_their_own_keys)
 {
-	(void)state;
 	enum { MOST = 4 };
 	static const struct {
 		const char *text;
@@ -456,9 +442,8 @@ static void objects_after_others_have_their_own_keys(void **state)
 	nt_json_free(parse("[{\"extras\":{\"a\":1,\"a\":2}},{\"extras\":{\"a\":1,\"a\":2}}]"));
 }
 
-static void changes_keep_the_order_of_the_rest(void **state)
+TEST(changes_keep_the_order_of_the_rest)
 {
-	(void)state;
 	nt_json *document = parse("{\"z\":1,\"y\":{\"deep\":[1,2]},\"x\":3}");
 	nt_json_value *root = nt_json_root(document);
 	const nt_json_value *deep = nt_json_at(nt_json_find(nt_json_find(root, "y"), "deep"), 1);
@@ -482,9 +467,8 @@ static void changes_keep_the_order_of_the_rest(void **state)
 	nt_json_free(document);
 }
 
-static void equality_looks_at_values_and_order(void **state)
+TEST(equality_looks_at_values_and_order)
 {
-	(void)state;
 	nt_json *document = parse("[{\"a\":1,\"b\":2},{\"a\":1.0,\"b\":2},{\"b\":2,\"a\":1},{\"a\":1}]");
 	const nt_json_value *root = nt_json_root(document);
 	assert_true(nt_json_equal(nt_json_at(root, 0), nt_json_at(root, 1)));
@@ -517,9 +501,8 @@ static nt_status edit_all(nt_buffer *out, nt_error *error)
 	return status;
 }
 
-static void every_allocation_may_fail(void **state)
+TEST(every_allocation_may_fail)
 {
-	(void)state;
 	size_t count = 0;
 	for (nt_status status = NT_ERROR_MEMORY; status; count++) {
 		nt_buffer out = {0};
@@ -538,9 +521,8 @@ static void every_allocation_may_fail(void **state)
 	assert_true(count > 6);
 }
 
-static void what_is_no_number_becomes_null_and_is_copied(void **state)
+TEST(what_is_no_number_becomes_null_and_is_copied)
 {
-	(void)state;
 	nt_json *document = parse("[1,2]");
 	nt_json_value *root = nt_json_root(document);
 	nt_json_set_double(document, nt_json_at(root, 0), (double)NAN);
@@ -552,25 +534,5 @@ static void what_is_no_number_becomes_null_and_is_copied(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(text_comes_back_as_it_was),
-		cmocka_unit_test(faults_are_refused_with_their_place),
-		cmocka_unit_test(duplicate_key_in_large_object_is_found),
-		cmocka_unit_test(nesting_is_capped),
-		cmocka_unit_test(what_is_foreign_is_so_within_its_member_alone),
-		cmocka_unit_test(edits_change_their_members_alone),
-		cmocka_unit_test(several_edits_of_one_container),
-		cmocka_unit_test(long_white_space_is_not_repeated),
-		cmocka_unit_test(numbers_have_checked_types),
-		cmocka_unit_test(integers_of_all_sizes_are_set),
-		cmocka_unit_test(long_text_comes_in_pieces),
-		cmocka_unit_test(look_ups_of_nothing_give_nothing),
-		cmocka_unit_test(escapes_are_what_they_stand_for),
-		cmocka_unit_test(objects_after_others_have_their_own_keys),
-		cmocka_unit_test(changes_keep_the_order_of_the_rest),
-		cmocka_unit_test(every_allocation_may_fail),
-		cmocka_unit_test(what_is_no_number_becomes_null_and_is_copied),
-		cmocka_unit_test(equality_looks_at_values_and_order),
-	};
-	return cmocka_run_group_tests_name("json/json", tests, NULL, NULL);
+	return run_group("json/json");
 }

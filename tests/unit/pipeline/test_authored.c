@@ -37,9 +37,8 @@ static void expect(const float *t, float x, float y, float z, float w)
 				y, z, w);
 }
 
-static void valid_tangents_keep_their_bytes(void **state)
+TEST(valid_tangents_keep_their_bytes)
 {
-	(void)state;
 	/* half a degree off, and 0.5 % too long: what the validator and --check accept */
 	float tangents[3][4] = {{1, 0, 0, -1}, {0, 1.005f, 0, -1}, {0.99996f, 0, 0.0087f, -1}},
 	      out[3][4];
@@ -48,9 +47,8 @@ static void valid_tangents_keep_their_bytes(void **state)
 	assert_memory_equal(out, tangents, sizeof out);
 }
 
-static void invalid_tangents_become_the_nearest_across_the_normal(void **state)
+TEST(invalid_tangents_become_the_nearest_across_the_normal)
 {
-	(void)state;
 	float tangents[3][4] = {{0, 0.6f, 0.8f, -1}, {0, 0, 1, -1}, {0, -3, 0, -1}}, out[3][4];
 	nt_mesh mesh = triangle(tangents);
 	assert_int_equal(mend(&mesh, out), 3);
@@ -66,9 +64,8 @@ static void invalid_tangents_become_the_nearest_across_the_normal(void **state)
 	assert_int_equal(mend(&mesh, again), 0);
 }
 
-static void what_has_no_direction_gets_any(void **state)
+TEST(what_has_no_direction_gets_any)
 {
-	(void)state;
 	static const float bad[] = {0, NAN, INFINITY, 1e-40f};
 	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
 		float tangents[3][4] = {{1, 0, 0, 1}, {bad[i], 0, 0, 1}, {1, 0, 0, 1}}, out[3][4];
@@ -78,9 +75,8 @@ static void what_has_no_direction_gets_any(void **state)
 	}
 }
 
-static void a_sign_that_corners_do_not_share_becomes_one(void **state)
+TEST(a_sign_that_corners_do_not_share_becomes_one)
 {
-	(void)state;
 	static const float signs[][3] = {
 		{1, -1, 1}, {-1, -1, 0}, {0, 0, 0}, {-1, NAN, -1}, {2, 2, 2}};
 	for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
@@ -99,9 +95,8 @@ static void a_sign_that_corners_do_not_share_becomes_one(void **state)
 }
 
 /* About x by 60 degrees, about y by 90, and by half a turn, where the way is not determined. */
-static void tangents_turn_with_their_normals(void **state)
+TEST(tangents_turn_with_their_normals)
 {
-	(void)state;
 	float tangents[3][4] = {{0, 1, 0, -1}, {1, 0, 0, -1}, {0.6f, 0.8f, 0, -1}}, out[3][4];
 	float moved_normals[3][3] = {{0, -0.8660254f, 0.5f}, {1, 0, 0}, {0, 0, -1}};
 	nt_mesh mesh = triangle(tangents);
@@ -131,9 +126,8 @@ static nt_mesh restore(float texcoords[3][2], float authored[3][4], float solved
 }
 
 /* Without area in UV space a solve may give corners of either w. */
-static void a_face_that_a_solve_makes_no_better_is_left(void **state)
+TEST(a_face_that_a_solve_makes_no_better_is_left)
 {
-	(void)state;
 	float line[3][2] = {{0, 0}, {1, 0}, {2, 0}};
 	float authored[3][4] = {{0, 1, 0, 1}, {0, 1, 0, 1}, {0, 1, 0, -1}};
 	float mixed[3][4] = {{1, 0, 0, 1}, {1, 0, 0, -1}, {1, 0, 0, 1}};
@@ -151,9 +145,8 @@ static void a_face_that_a_solve_makes_no_better_is_left(void **state)
 }
 
 /* A step of 12 bits of 2 is 0.00049: what is 0.0001 beside -1 was meant to be -1, and is written anew. */
-static void signs_that_quantization_moved_are_signs(void **state)
+TEST(signs_that_quantization_moved_are_signs)
 {
-	(void)state;
 	float square[3][2] = {{0, 0}, {1, 0}, {0, 1}}, solved[3][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}};
 	float authored[3][4] = {{0.9999f, 0.0141f, 0, 1}, {0.9999f, 0.0141f, 0, 1.0001f}, {0.9999f, 0.0141f, 0, 1}};
 	nt_mesh mesh = restore(square, authored, solved, 0);
@@ -163,9 +156,8 @@ static void signs_that_quantization_moved_are_signs(void **state)
 }
 
 /* T and B run against u and v, and w is right. */
-static void reversed_tangents_do_not_stay(void **state)
+TEST(reversed_tangents_do_not_stay)
 {
-	(void)state;
 	float square[3][2] = {{0, 0}, {1, 0}, {0, 1}}, solved[3][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}};
 	float authored[3][4] = {{-1, 0, 0, 1}, {-1, 0, 0, 1}, {-1, 0, 0, 1}};
 	assert_int_equal(restore(square, authored, solved, 0).replaced_tangents, 3);
@@ -176,15 +168,5 @@ static void reversed_tangents_do_not_stay(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(valid_tangents_keep_their_bytes),
-		cmocka_unit_test(invalid_tangents_become_the_nearest_across_the_normal),
-		cmocka_unit_test(what_has_no_direction_gets_any),
-		cmocka_unit_test(a_sign_that_corners_do_not_share_becomes_one),
-		cmocka_unit_test(tangents_turn_with_their_normals),
-		cmocka_unit_test(a_face_that_a_solve_makes_no_better_is_left),
-		cmocka_unit_test(signs_that_quantization_moved_are_signs),
-		cmocka_unit_test(reversed_tangents_do_not_stay),
-	};
-	return cmocka_run_group_tests_name("pipeline/authored", tests, NULL, NULL);
+	return run_group("pipeline/authored");
 }

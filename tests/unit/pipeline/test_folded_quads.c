@@ -14,9 +14,8 @@ static const char text[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 3 0 0
 static const nt_settings settings = {.texcoord_set = -1, .dry_run = true, .threads = 1,
 	.output_format = NT_FORMAT_GLB};
 
-static void odd_normals_and_folded_quads_are_counted(void **state)
+TEST(odd_normals_and_folded_quads_are_counted)
 {
-	(void)state;
 	put_text_file("in.obj", text);
 	nt_summary summary = convert_file("in.obj", "out.glb", settings);
 	assert_int_equal(summary.triangle_count, 3);
@@ -27,9 +26,8 @@ static void odd_normals_and_folded_quads_are_counted(void **state)
 	nt_summary_free(&summary);
 }
 
-static void failed_allocations_end_the_run(void **state)
+TEST(failed_allocations_end_the_run)
 {
-	(void)state;
 	put_text_file("in.obj", text);
 	size_t failures = 0;
 	for (bool failed = true; failed; failures++) {
@@ -47,9 +45,5 @@ static void failed_allocations_end_the_run(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(odd_normals_and_folded_quads_are_counted),
-		cmocka_unit_test(failed_allocations_end_the_run),
-	};
-	return cmocka_run_group_tests_name("pipeline/folded_quads", tests, make_folder, remove_folder);
+	return run_group_within("pipeline/folded_quads", make_folder, remove_folder);
 }

@@ -200,9 +200,8 @@ static const nt_settings across = {.across = NT_ACROSS_MESH, .threads = 1};
 
 static surface sheet;
 
-static void bytes_are_those_of_one_primitive(void **state)
+TEST(bytes_are_those_of_one_primitive)
 {
-	(void)state;
 	result r, one;
 	put_joined("one.glb", &sheet, 0, "");
 	put_three("three.glb", &sheet, mapped, NULL, NULL);
@@ -229,9 +228,8 @@ static void bytes_are_those_of_one_primitive(void **state)
 	}
 }
 
-static void those_without_need_contribute_and_stay_as_they_are(void **state)
+TEST(those_without_need_contribute_and_stay_as_they_are)
 {
-	(void)state;
 	result r, one;
 	put_joined("one.glb", &sheet, 0, "");
 	convert(&one, "one.glb", across);
@@ -247,9 +245,8 @@ static void those_without_need_contribute_and_stay_as_they_are(void **state)
 	close_result(&one);
 }
 
-static void texture_transforms_divide(void **state)
+TEST(texture_transforms_divide)
 {
-	(void)state;
 	result r, one;
 	/* 3 and 4 are the same but for the offset, which does nothing to directions; 2 has no say */
 	put_three("three.glb", &sheet, (int[]){3, 2, 4}, NULL, NULL);
@@ -275,9 +272,8 @@ static void texture_transforms_divide(void **state)
 }
 
 /* The first primitive's accessors in a second mesh, alone, and in a third with the same neighbours. */
-static void shared_geometry_gets_tangents_of_its_own(void **state)
+TEST(shared_geometry_gets_tangents_of_its_own)
 {
-	(void)state;
 	result r, one, apart;
 	hand_file f = {0};
 	nt_buffer primitives = {0};
@@ -309,9 +305,8 @@ static void shared_geometry_gets_tangents_of_its_own(void **state)
 	close_result(&apart);
 }
 
-static void targets_are_solved_as_one_too(void **state)
+TEST(targets_are_solved_as_one_too)
 {
-	(void)state;
 	result r, one;
 	surface moved = sheet;
 	/* the first stays: in its target there is nothing */
@@ -341,9 +336,8 @@ static void targets_are_solved_as_one_too(void **state)
 
 /* As most exporters write it: one list of vertices, of which each primitive uses some. At the borders all use the same
  * ones, and have the same tangents there: one TANGENT, and no copies but those that one primitive needs. */
-static void shared_vertices_are_not_split_at_borders(void **state)
+TEST(shared_vertices_are_not_split_at_borders)
 {
-	(void)state;
 	static part joined;
 	result r, one;
 	hand_file f = {0};
@@ -382,9 +376,8 @@ static void shared_vertices_are_not_split_at_borders(void **state)
 	close_result(&one);
 }
 
-static void failed_allocations_end_the_run(void **state)
+TEST(failed_allocations_end_the_run)
 {
-	(void)state;
 	const nt_report_options report = {0};
 	surface small;
 	memset(&small, 0, sizeof small);
@@ -400,9 +393,8 @@ static void failed_allocations_end_the_run(void **state)
 	assert_true(exhaust_memory(in_folder("three.glb"), settings) > 100);
 }
 
-static void same_for_others_and_for_checks(void **state)
+TEST(same_for_others_and_for_checks)
 {
-	(void)state;
 	result r;
 	/* nothing to join: the bytes are those of the default */
 	put_joined("one.glb", &sheet, 0, "");
@@ -444,9 +436,8 @@ static void put_sheared(double k)
 	put_mesh("border.glb", &f, &primitives);
 }
 
-static void a_report_tells_borders_that_would_change(void **state)
+TEST(a_report_tells_borders_that_would_change)
 {
-	(void)state;
 	const double pi = 3.14159265358979323846;
 	const nt_report_options report = {0};
 	for (double k = 0.01; k < 2; k *= 2) {
@@ -491,9 +482,8 @@ static size_t mismatches(nt_across how)
 	return count;
 }
 
-static void a_check_judges_by_the_same_rule(void **state)
+TEST(a_check_judges_by_the_same_rule)
 {
-	(void)state;
 	result r;
 	put_sheared(4);
 	convert(&r, "border.glb", across);
@@ -511,17 +501,5 @@ static int set_up(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(bytes_are_those_of_one_primitive),
-		cmocka_unit_test(those_without_need_contribute_and_stay_as_they_are),
-		cmocka_unit_test(texture_transforms_divide),
-		cmocka_unit_test(shared_geometry_gets_tangents_of_its_own),
-		cmocka_unit_test(shared_vertices_are_not_split_at_borders),
-		cmocka_unit_test(failed_allocations_end_the_run),
-		cmocka_unit_test(targets_are_solved_as_one_too),
-		cmocka_unit_test(same_for_others_and_for_checks),
-		cmocka_unit_test(a_report_tells_borders_that_would_change),
-		cmocka_unit_test(a_check_judges_by_the_same_rule),
-	};
-	return cmocka_run_group_tests(tests, set_up, remove_folder);
+	return run_group_within("pipeline/joins", set_up, remove_folder);
 }

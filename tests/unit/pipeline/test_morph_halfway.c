@@ -103,9 +103,8 @@ static void angle_is(const grid *g, double expected)
 	assert_int_equal(triangles, expected > 0 ? 2 * g->columns : 0);
 }
 
-static void shear_is_off_by_the_half_angle(void **state)
+TEST(shear_is_off_by_the_half_angle)
 {
-	(void)state;
 	grid g;
 	make_grid(&g, 1);
 	/* y grows by k x: m = (1, k) */
@@ -120,9 +119,8 @@ static void shear_is_off_by_the_half_angle(void **state)
 	angle_is(&g, 0);
 }
 
-static void a_quarter_turn_is_exact_unless_it_stretches(void **state)
+TEST(a_quarter_turn_is_exact_unless_it_stretches)
 {
-	(void)state;
 	grid g;
 	make_grid(&g, 1);
 	map(&g, 0, 1, -1, 0);
@@ -134,9 +132,8 @@ static void a_quarter_turn_is_exact_unless_it_stretches(void **state)
 	angle_is(&g, theory(90, 0.5));
 }
 
-static void a_half_turn_leaves_no_direction(void **state)
+TEST(a_half_turn_leaves_no_direction)
 {
-	(void)state;
 	grid g;
 	make_grid(&g, 1);
 	map(&g, -1, 0, 0, -1);
@@ -172,9 +169,8 @@ static void bend(grid *g, double width)
 	}
 }
 
-static void a_bend_that_keeps_lengths_is_exact(void **state)
+TEST(a_bend_that_keeps_lengths_is_exact)
 {
-	(void)state;
 	grid g;
 	make_grid(&g, 20);
 	bend(&g, 1);
@@ -188,9 +184,8 @@ static void a_bend_that_keeps_lengths_is_exact(void **state)
 	angle_is(&g, 0);
 }
 
-static void the_finding_names_the_target(void **state)
+TEST(the_finding_names_the_target)
 {
-	(void)state;
 	grid g;
 	size_t triangles = 0;
 	char detail[256] = "";
@@ -204,12 +199,5 @@ static void the_finding_names_the_target(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(shear_is_off_by_the_half_angle),
-		cmocka_unit_test(a_quarter_turn_is_exact_unless_it_stretches),
-		cmocka_unit_test(a_half_turn_leaves_no_direction),
-		cmocka_unit_test(a_bend_that_keeps_lengths_is_exact),
-		cmocka_unit_test(the_finding_names_the_target),
-	};
-	return cmocka_run_group_tests(tests, make_folder, remove_folder);
+	return run_group_within("pipeline/morph_halfway", make_folder, remove_folder);
 }

@@ -90,24 +90,21 @@ static void check_baked(void)
 	close_result(&r);
 }
 
-static void baked_deltas_lead_to_the_moved_mesh(void **state)
+TEST(baked_deltas_lead_to_the_moved_mesh)
 {
-	(void)state;
 	check_baked();
 }
 
 /* A renderer adds deltas to what the integers stand for, and then makes the sum unit. */
-static void deltas_are_added_to_integer_normals_as_they_are(void **state)
+TEST(deltas_are_added_to_integer_normals_as_they_are)
 {
-	(void)state;
 	write_input(true);
 	check_baked();
 	write_input(false);
 }
 
-static void kept_targets_are_as_they_were(void **state)
+TEST(kept_targets_are_as_they_were)
 {
-	(void)state;
 	result r;
 	convert(&r, NT_MORPH_KEEP);
 	rows_are(&r, tangent_of(&r.scene, 0, 0, -1), 4, (float[]){1, 0, 0, 1});
@@ -117,9 +114,8 @@ static void kept_targets_are_as_they_were(void **state)
 	close_result(&r);
 }
 
-static void dropped_targets_have_none(void **state)
+TEST(dropped_targets_have_none)
 {
-	(void)state;
 	result r;
 	convert(&r, NT_MORPH_DROP);
 	rows_are(&r, tangent_of(&r.scene, 0, 0, -1), 4, (float[]){1, 0, 0, 1});
@@ -130,9 +126,8 @@ static void dropped_targets_have_none(void **state)
 	close_result(&r);
 }
 
-static void triangles_seen_from_behind_are_counted(void **state)
+TEST(triangles_seen_from_behind_are_counted)
 {
-	(void)state;
 	result r;
 	convert(&r, NT_MORPH_BAKE);
 	assert_int_equal(r.turned, 4);
@@ -177,9 +172,8 @@ static void write_hub(void)
 
 /* Compared one with another the corners of the hub would be 5 * 10^9 pairs, twice: when it is split, and when
  * rows are found for what was split. */
-static void a_hub_of_a_hundred_thousand_tangents_is_no_burden(void **state)
+TEST(a_hub_of_a_hundred_thousand_tangents_is_no_burden)
 {
-	(void)state;
 	write_hub();
 	const clock_t begin = clock();
 	nt_summary summary = convert_file("hub.glb", "out.glb", (nt_settings){.threads = 1});
@@ -199,13 +193,5 @@ static int set_up(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(baked_deltas_lead_to_the_moved_mesh),
-		cmocka_unit_test(deltas_are_added_to_integer_normals_as_they_are),
-		cmocka_unit_test(kept_targets_are_as_they_were),
-		cmocka_unit_test(a_hub_of_a_hundred_thousand_tangents_is_no_burden),
-		cmocka_unit_test(dropped_targets_have_none),
-		cmocka_unit_test(triangles_seen_from_behind_are_counted),
-	};
-	return cmocka_run_group_tests(tests, set_up, remove_folder);
+	return run_group_within("pipeline/morphs", set_up, remove_folder);
 }

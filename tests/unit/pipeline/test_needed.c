@@ -86,9 +86,8 @@ static void run(const char *which, size_t *begin, size_t *end, size_t expected_s
 	assert_true(read <= (all + 2) * PAGE && read + 3 * PAGE >= all * PAGE);
 }
 
-static void one_primitive_of_a_hundred_is_read(void **state)
+TEST(one_primitive_of_a_hundred_is_read)
 {
-	(void)state;
 	size_t begin, end;
 	run("one", &begin, &end, 1);
 	/* Every page of its own, as many for the JSON as that is long (what is before the first primitive,
@@ -99,9 +98,8 @@ static void one_primitive_of_a_hundred_is_read(void **state)
 	assert_true(count_touched(0, map_size) <= own + first / PAGE + 2);
 }
 
-static void nothing_is_read_where_nothing_is_needed(void **state)
+TEST(nothing_is_read_where_nothing_is_needed)
 {
-	(void)state;
 	size_t begin, end;
 	run("none", &begin, &end, 0);
 	const size_t first = begin - 37 * (end - begin);
@@ -110,9 +108,5 @@ static void nothing_is_read_where_nothing_is_needed(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(one_primitive_of_a_hundred_is_read),
-		cmocka_unit_test(nothing_is_read_where_nothing_is_needed),
-	};
-	return cmocka_run_group_tests_name("pipeline/needed", tests, make_folder, remove_folder);
+	return run_group_within("pipeline/needed", make_folder, remove_folder);
 }

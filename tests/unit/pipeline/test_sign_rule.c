@@ -190,9 +190,8 @@ static rule_count judge_all(const char *const *patterns)
 	return count;
 }
 
-static void bitangents_run_along_minus_v_in_our_own_data(void **state)
+TEST(bitangents_run_along_minus_v_in_our_own_data)
 {
-	(void)state;
 	/* not transformed.gltf: its mirrored square has the sign of what the transform makes of the coordinates,
 	 * see test_small_models.sh */
 	static const char *const patterns[] = {"data/*.obj", "data/*.ply", "data/[!t]*.gltf", "data/*.glb", NULL};
@@ -209,9 +208,8 @@ static void need_shared(void)
 	skip();
 }
 
-static void authored_tangents_obey_the_same_rule(void **state)
+TEST(authored_tangents_obey_the_same_rule)
 {
-	(void)state;
 	need_shared();
 	static const char *const authored[] = {
 		"../shared/models/gltf/SheenCloth/glTF_Binary/SheenCloth.glb",
@@ -232,9 +230,8 @@ static void authored_tangents_obey_the_same_rule(void **state)
 /* SheenCloth's normal texture is sampled through KHR_texture_transform with the scale (30, -30), which its
  * authored tangents ignore. Ours honour it: against the coordinates as they stand, every bitangent is
  * reversed and every w negated. */
-static void mirroring_texture_transforms_reverse_the_sign(void **state)
+TEST(mirroring_texture_transforms_reverse_the_sign)
 {
-	(void)state;
 	need_shared();
 	rule_count count = {0};
 	judge_conversion("../shared/models/gltf/SheenCloth/glTF_Binary/SheenCloth.glb", &count);
@@ -245,9 +242,8 @@ static void mirroring_texture_transforms_reverse_the_sign(void **state)
 
 /* Where texture directions spin around a vertex its average can lie more than 90 degrees from one of
  * its triangles; w is right all the same. */
-static void w_is_exact_on_damaged_geometry(void **state)
+TEST(w_is_exact_on_damaged_geometry)
 {
-	(void)state;
 	need_shared();
 	static const char *const patterns[] = {"../shared/models/obj/*geract.obj", "../shared/models/obj/spot.obj",
 		"../shared/models/obj/doomcone*.obj", "../shared/models/obj/obliterated.obj",
@@ -259,11 +255,5 @@ static void w_is_exact_on_damaged_geometry(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(bitangents_run_along_minus_v_in_our_own_data),
-		cmocka_unit_test(authored_tangents_obey_the_same_rule),
-		cmocka_unit_test(mirroring_texture_transforms_reverse_the_sign),
-		cmocka_unit_test(w_is_exact_on_damaged_geometry),
-	};
-	return cmocka_run_group_tests_name("pipeline/sign_rule", tests, make_folder, remove_folder);
+	return run_group_within("pipeline/sign_rule", make_folder, remove_folder);
 }

@@ -11,9 +11,8 @@ static void add(nt_finding_list *list, nt_code code, const char *object, size_t 
 	nt_finding_add(list, code, &place, count, "%s", detail);
 }
 
-static void equal_findings_are_one_with_the_sum_of_their_counts(void **state)
+TEST(equal_findings_are_one_with_the_sum_of_their_counts)
 {
-	(void)state;
 	nt_finding_list list = {0};
 	add(&list, NT_CODE_TAN_ZERO, "a", 1, "x");
 	add(&list, NT_CODE_TAN_ZERO, "b", 1, "x");
@@ -35,9 +34,8 @@ static void equal_findings_are_one_with_the_sum_of_their_counts(void **state)
 }
 
 /* A finding has its texts itself: the caller's are gone when it is shown. */
-static void places_are_kept(void **state)
+TEST(places_are_kept)
 {
-	(void)state;
 	nt_finding_list list = {0};
 	nt_place place = {.file = "a.obj", .line = 3, .offset = 4, .pointer = "/meshes/5", .object = "mesh 5"};
 	char detail[] = "norm";
@@ -60,9 +58,8 @@ static void places_are_kept(void **state)
 }
 
 /* Compared one with another these would be 2 * 10^10 pairs of texts. */
-static void two_hundred_thousand_objects_are_no_burden(void **state)
+TEST(two_hundred_thousand_objects_are_no_burden)
 {
-	(void)state;
 	enum { COUNT = 200000 };
 	nt_finding_list list = {0};
 	const clock_t begin = clock();
@@ -81,10 +78,5 @@ static void two_hundred_thousand_objects_are_no_burden(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(equal_findings_are_one_with_the_sum_of_their_counts),
-		cmocka_unit_test(places_are_kept),
-		cmocka_unit_test(two_hundred_thousand_objects_are_no_burden),
-	};
-	return cmocka_run_group_tests_name("scene/finding", tests, NULL, NULL);
+	return run_group("scene/finding");
 }

@@ -62,9 +62,8 @@ static void assert_proper_everywhere(const double (*plane)[2], size_t count)
 	}
 }
 
-static void convex_polygon_becomes_a_fan_in_order(void **state)
+TEST(convex_polygon_becomes_a_fan_in_order)
 {
-	(void)state;
 	const float points[6][3] = {{2, 0, 0}, {1, 2, 0}, {-1, 2, 0}, {-2, 0, 0}, {-1, -2, 0}, {1, -2, 0}};
 	const uint32_t expected[12] = {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5};
 	uint32_t triangles[12];
@@ -84,9 +83,8 @@ static void convex_polygon_becomes_a_fan_in_order(void **state)
  * Corner 1: triangle (0,1,2) holds no corner but its own (3 is above its edge 0-2: 1 > 1/4), an ear.
  * Corner 2 then turns right from 0 over 2 to 3? (4,1)x(1,1) = 4*1 - 1*1 = 3 > 0: left, (0,2,3) an ear.
  * (0,3,4) is left. */
-static void shapes_of_few_corners_are_proper(void **state)
+TEST(shapes_of_few_corners_are_proper)
 {
-	(void)state;
 	const double plane[5][2] = {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {0, 4}};
 	assert_proper_everywhere(plane, 5);
 	/* the same begun at corner 1: a fan from there leaves the polygon */
@@ -171,9 +169,8 @@ static double cut(size_t count)
 }
 
 /* Ears of these that come one at a time made a version without the queue cubic. */
-static void time_grows_little_faster_than_corners(void **state)
+TEST(time_grows_little_faster_than_corners)
 {
-	(void)state;
 	static const struct {
 		maker make;
 		size_t least;
@@ -197,9 +194,8 @@ static bool finish(const float (*points)[3], size_t count)
 	return sound;
 }
 
-static void degenerate_polygons_are_finished_and_not_sound(void **state)
+TEST(degenerate_polygons_are_finished_and_not_sound)
 {
-	(void)state;
 	static const struct {
 		size_t count;
 		float points[6][3];
@@ -233,9 +229,8 @@ static double sum_areas(const float (*points)[3], const uint32_t *triangles, siz
 }
 
 /* The repeated corner costs its own empty triangle and nothing else. */
-static void repeated_point_leaves_the_rest_proper(void **state)
+TEST(repeated_point_leaves_the_rest_proper)
 {
-	(void)state;
 	const float points[5][3] = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 	uint32_t triangles[9];
 	bool sound = true;
@@ -244,9 +239,8 @@ static void repeated_point_leaves_the_rest_proper(void **state)
 }
 
 /* Far from the origin and tiny, or huge: the plane is found relative to the first corner. */
-static void size_and_distance_do_not_matter(void **state)
+TEST(size_and_distance_do_not_matter)
 {
-	(void)state;
 	const float shape[5][2] = {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {0, 4}};
 	const float scales[3] = {1e-30f, 1e30f, 0.0625f}, offsets[3] = {0, 0, 100000};
 	for (int k = 0; k < 3; k++) {
@@ -263,9 +257,8 @@ static void size_and_distance_do_not_matter(void **state)
 /* 20 000 random polygons, few of them simple, on a coarse grid of points so that touching, repeated
  * and collinear corners abound: always finished, and what is called sound has no triangle that is
  * empty or turned. */
-static void sound_results_have_no_turned_triangle(void **state)
+TEST(sound_results_have_no_turned_triangle)
 {
-	(void)state;
 	uint32_t seed = 1;
 	size_t sound_count = 0;
 	for (int round = 0; round < 20000; round++) {
@@ -296,14 +289,5 @@ static void sound_results_have_no_turned_triangle(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(convex_polygon_becomes_a_fan_in_order),
-		cmocka_unit_test(shapes_of_few_corners_are_proper),
-		cmocka_unit_test(time_grows_little_faster_than_corners),
-		cmocka_unit_test(degenerate_polygons_are_finished_and_not_sound),
-		cmocka_unit_test(repeated_point_leaves_the_rest_proper),
-		cmocka_unit_test(size_and_distance_do_not_matter),
-		cmocka_unit_test(sound_results_have_no_turned_triangle),
-	};
-	return cmocka_run_group_tests_name("scene/polygon", tests, NULL, NULL);
+	return run_group("scene/polygon");
 }

@@ -44,9 +44,8 @@ static void decide(const row *r)
 #define AUTO NT_ONLY_AUTO
 #define KEEP NT_EXISTING_KEEP
 
-static void decisions_are_those_of_the_table(void **state)
+TEST(decisions_are_those_of_the_table)
 {
-	(void)state;
 	static const row rows[] = {
 		/* glTF needs a slot */
 		{N, 0, GLTF, AUTO, KEEP, NT_DECISION_SOLVE, ""},
@@ -86,9 +85,8 @@ static void decisions_are_those_of_the_table(void **state)
 		decide(&rows[i]);
 }
 
-static void every_decision_has_its_words(void **state)
+TEST(every_decision_has_its_words)
 {
-	(void)state;
 	for (int i = 0; i < NT_DECISION_COUNT; i++)
 		assert_string_not_equal(nt_decision_text((nt_decision)i), "unknown");
 	assert_string_equal(nt_decision_text(NT_DECISION_COUNT), "unknown");
@@ -96,9 +94,5 @@ static void every_decision_has_its_words(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(decisions_are_those_of_the_table),
-		cmocka_unit_test(every_decision_has_its_words),
-	};
-	return cmocka_run_group_tests_name("scene/select", tests, NULL, NULL);
+	return run_group("scene/select");
 }

@@ -7,9 +7,8 @@
 #include <float.h>
 #include <math.h>
 
-static void bytes_come_back(void **state)
+TEST(bytes_come_back)
 {
-	(void)state;
 	nt_srgb srgb;
 	nt_srgb_init(&srgb);
 	for (int i = 0; i < 256; i++) {
@@ -23,9 +22,8 @@ static void bytes_come_back(void **state)
 	assert_int_equal(nt_srgb_byte(&srgb, NAN), -1);
 }
 
-static void values_are_those_of_the_standard(void **state)
+TEST(values_are_those_of_the_standard)
 {
-	(void)state;
 	nt_srgb srgb;
 	nt_srgb_init(&srgb);
 	static const float pairs[][2] = {{0, 0}, {1, 1}, {0.5f, 0.21404114f}, {0.04045f, 0.0031308f},
@@ -51,9 +49,8 @@ static void values_are_those_of_the_standard(void **state)
 }
 
 /* 12.92 * -1.7e38 and ((1e20 + 0.055) / 1.055)^2.4 are no floats: PLY and glTF allow no infinite colour. */
-static void finite_stays_finite(void **state)
+TEST(finite_stays_finite)
 {
-	(void)state;
 	nt_srgb srgb;
 	nt_srgb_init(&srgb);
 	assert_true(nt_srgb_from_linear(-1.7e38f) == -FLT_MAX);
@@ -64,10 +61,5 @@ static void finite_stays_finite(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(bytes_come_back),
-		cmocka_unit_test(values_are_those_of_the_standard),
-		cmocka_unit_test(finite_stays_finite),
-	};
-	return cmocka_run_group_tests_name("scene/srgb", tests, NULL, NULL);
+	return run_group("scene/srgb");
 }

@@ -14,9 +14,8 @@ static float float_of(uint32_t bits)
 	return value;
 }
 
-static void rounds_as_libm_does(void **state)
+TEST(rounds_as_libm_does)
 {
-	(void)state;
 	const uint32_t one = 0x3f800000, step = getenv("NT_ACOS_ALL") ? 1 : 997;
 	size_t wrong = 0;
 	for (uint32_t sign = 0; sign < 2; sign++)
@@ -27,9 +26,8 @@ static void rounds_as_libm_does(void **state)
 	assert_int_equal(wrong, 0);
 }
 
-static void ends_and_nan(void **state)
+TEST(ends_and_nan)
 {
-	(void)state;
 	assert_true(nt_acos(1.0f) == 0.0f);
 	assert_true(nt_acos(-1.0f) == (float)M_PI);
 	assert_true(nt_acos(0.0f) == (float)M_PI_2);
@@ -38,9 +36,5 @@ static void ends_and_nan(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(rounds_as_libm_does),
-		cmocka_unit_test(ends_and_nan),
-	};
-	return cmocka_run_group_tests_name("tangent/acos", tests, NULL, NULL);
+	return run_group("tangent/acos");
 }

@@ -43,9 +43,8 @@ static void assert_along(const float *t, double x, double y)
 	assert_true(t[2] == 0.0f && t[3] == 1.0f);
 }
 
-static void area_weighs_angle_times_both_edges(void **state)
+TEST(area_weighs_angle_times_both_edges)
 {
-	(void)state;
 	float t[4];
 	solve(NMTAN_METHOD_AREA, 3, 1, t);
 	assert_along(t, 1, 9);
@@ -53,9 +52,8 @@ static void area_weighs_angle_times_both_edges(void **state)
 	assert_along(t, 1, 1e-6);
 }
 
-static void lengyel_weighs_by_texture_density(void **state)
+TEST(lengyel_weighs_by_texture_density)
 {
-	(void)state;
 	float t[4];
 	solve(NMTAN_METHOD_LENGYEL, 3, 1, t);
 	assert_along(t, 1, 1);
@@ -63,9 +61,8 @@ static void lengyel_weighs_by_texture_density(void **state)
 	assert_along(t, 1, 5);
 }
 
-static void robust_weighs_by_angle_alone(void **state)
+TEST(robust_weighs_by_angle_alone)
 {
-	(void)state;
 	float t[4];
 	solve(NMTAN_METHOD_ROBUST, 3, 1, t);
 	assert_along(t, 1, 1);
@@ -79,9 +76,8 @@ static void robust_weighs_by_angle_alone(void **state)
  * (2 d + h) (1, 0) - d (2, 1) = (h, -d): the first component is left after 22 bits cancel, and the
  * tangent is (2^-22, -1) but for 2^-45. A float product loses it whole.
  */
-static void robust_keeps_what_is_left_of_a_needle(void **state)
+TEST(robust_keeps_what_is_left_of_a_needle)
 {
-	(void)state;
 	const float d = 1.0f / 4096, h = 1.0f / 4096 / 4194304;
 	const float positions[3][3] = {{0, 0, 0}, {1, 0, 0}, {2, 1, 0}};
 	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
@@ -104,9 +100,8 @@ static void robust_keeps_what_is_left_of_a_needle(void **state)
 
 /* Exponents so far apart that differences need two doubles: b - a = (2^60 - 2^-60, 0), c - a the same in
  * v. u = (1, 0, 0). */
-static void robust_takes_differences_that_no_double_holds(void **state)
+TEST(robust_takes_differences_that_no_double_holds)
 {
-	(void)state;
 	const float big = 1152921504606846976.0f, small = 1.0f / 1152921504606846976.0f; /* 2^60, 2^-60 */
 	const float positions[3][3] = {{small, 0, 0}, {big, 0, 0}, {small, big, 0}};
 	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
@@ -123,9 +118,8 @@ static void robust_takes_differences_that_no_double_holds(void **state)
 }
 
 /* dP/du along the normal but for 2^-30: what is left in the plane is right, and counted. */
-static void robust_counts_what_is_lost(void **state)
+TEST(robust_counts_what_is_lost)
 {
-	(void)state;
 	const float d = 1.0f / 1073741824;
 	const float positions[3][3] = {{0, 0, 0}, {d, 0, 1}, {0, 1, 0}};
 	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
@@ -145,13 +139,5 @@ static void robust_counts_what_is_lost(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(area_weighs_angle_times_both_edges),
-		cmocka_unit_test(lengyel_weighs_by_texture_density),
-		cmocka_unit_test(robust_weighs_by_angle_alone),
-		cmocka_unit_test(robust_keeps_what_is_left_of_a_needle),
-		cmocka_unit_test(robust_takes_differences_that_no_double_holds),
-		cmocka_unit_test(robust_counts_what_is_lost),
-	};
-	return cmocka_run_group_tests_name("tangent/frames", tests, NULL, NULL);
+	return run_group("tangent/frames");
 }

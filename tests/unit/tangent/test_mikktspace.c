@@ -43,9 +43,8 @@ static void compare_file(const char *path, const nt_golden *golden, void *contex
 	free(output.tangents);
 }
 
-static void goldens_are_byte_identical(void **state)
+TEST(goldens_are_byte_identical)
 {
-	(void)state;
 	for (int i = 0; i < 2; i++) {
 		comparison c = {i ? NMTAN_METHOD_MIKKTSPACE_SORTED : NMTAN_METHOD_MIKKTSPACE, false, 0, 0};
 		assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", compare_file, &c), 46);
@@ -53,9 +52,8 @@ static void goldens_are_byte_identical(void **state)
 	}
 }
 
-static void each_dialect_has_its_bytes(void **state)
+TEST(each_dialect_has_its_bytes)
 {
-	(void)state;
 	enum { FILES = 18 };
 	static const char *const folders[] = {NT_DATA_DIR "/golden/edge_sort/published",
 		NT_DATA_DIR "/golden/edge_sort/sorted"};
@@ -68,9 +66,8 @@ static void each_dialect_has_its_bytes(void **state)
 }
 
 /* A position that is not finite, of a corner or of no corner, by the definition and the fast path. */
-static void limits_are_counted(void **state)
+TEST(limits_are_counted)
 {
-	(void)state;
 	float positions[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {NAN, 0, 0}}, tangents[3][4];
 	const float normals[4][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 	const float texcoords[4][2] = {{0, 0}, {1, 0}, {0, 1}, {0, 0}};
@@ -95,10 +92,5 @@ static void limits_are_counted(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(goldens_are_byte_identical),
-		cmocka_unit_test(each_dialect_has_its_bytes),
-		cmocka_unit_test(limits_are_counted),
-	};
-	return cmocka_run_group_tests_name("tangent/mikktspace", tests, NULL, NULL);
+	return run_group("tangent/mikktspace");
 }

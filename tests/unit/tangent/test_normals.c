@@ -26,9 +26,8 @@ static void assert_near(const float *n, float x, float y, float z)
 }
 
 /* Both corner angles are 90 degrees: the edge's normal is the bisector. */
-static void smooth_normals_meet_across_separate_vertices(void **state)
+TEST(smooth_normals_meet_across_separate_vertices)
 {
-	(void)state;
 	float n[8][4];
 	const float h = sqrtf(0.5f);
 	make(NULL, n);
@@ -40,9 +39,8 @@ static void smooth_normals_meet_across_separate_vertices(void **state)
 	assert_near(n[5], 1, 0, 0);
 }
 
-static void groups_keep_apart_and_group_zero_is_flat(void **state)
+TEST(groups_keep_apart_and_group_zero_is_flat)
 {
-	(void)state;
 	const uint32_t apart[2] = {1, 2}, flat[2] = {0, 0};
 	const uint32_t *both[2] = {apart, flat};
 	for (int i = 0; i < 2; i++) {
@@ -57,9 +55,8 @@ static void groups_keep_apart_and_group_zero_is_flat(void **state)
 
 /* A cube's corner: one face is cut into two triangles at it, which must not weigh twice. With angle weights
  * the normal is the diagonal (1,1,1)/sqrt 3. */
-static void angle_weights_do_not_depend_on_the_cut(void **state)
+TEST(angle_weights_do_not_depend_on_the_cut)
 {
-	(void)state;
 	const float p[12][3] = {{0, 0, 0}, {0, -1, 0}, {-1, 0, 0}, /* z = 0, first half would be 45 */
 		{0, 0, 0}, {0, 0, -1}, {0, -1, -1}, {0, 0, 0}, {0, -1, -1}, {0, -1, 0}, /* x = 0, cut */
 		{0, 0, 0}, {-1, 0, 0}, {0, 0, -1}};                                    /* y = 0 */
@@ -77,9 +74,8 @@ static void angle_weights_do_not_depend_on_the_cut(void **state)
 		assert_true(fabsf(fabsf(n[0][i]) - d) < 1e-6f);
 }
 
-static void faces_without_area_give_a_unit_vector(void **state)
+TEST(faces_without_area_give_a_unit_vector)
 {
-	(void)state;
 	const float p[3][3] = {{1, 1, 1}, {1, 1, 1}, {2, 2, 2}};
 	const nmtan_mesh sliver = {.struct_bytes = sizeof sliver, .face_count = 1, .vertex_count = 3,
 		.positions = &p[0][0],
@@ -127,9 +123,8 @@ static void add_share(const nmtan_mesh *m, size_t first, size_t size, size_t k, 
 }
 
 /* More faces than are worked out together, of both sizes and several groups. */
-static void many_faces_are_what_the_formula_says(void **state)
+TEST(many_faces_are_what_the_formula_says)
 {
-	(void)state;
 	enum { FACES = 150, VERTICES = 60 };
 	float p[VERTICES][3];
 	uint32_t indices[4 * FACES], smoothing[FACES];
@@ -168,9 +163,8 @@ static void many_faces_are_what_the_formula_says(void **state)
 
 /* A bumpy sheet of 10 x 10 quads, each triangle there twice, once reversed, from each corner in turn: at every position
  * the face normals cancel, and each corner has its own face's. */
-static void where_faces_cancel_corners_have_their_faces(void **state)
+TEST(where_faces_cancel_corners_have_their_faces)
 {
-	(void)state;
 	enum { N = 10, SIDE = N + 1, FACES = 4 * N * N };
 	float p[SIDE * SIDE][3], n[3 * FACES][4];
 	uint32_t indices[3 * FACES], (*const triangles)[3] = (uint32_t (*)[3])indices;
@@ -204,13 +198,5 @@ static void where_faces_cancel_corners_have_their_faces(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(smooth_normals_meet_across_separate_vertices),
-		cmocka_unit_test(groups_keep_apart_and_group_zero_is_flat),
-		cmocka_unit_test(angle_weights_do_not_depend_on_the_cut),
-		cmocka_unit_test(faces_without_area_give_a_unit_vector),
-		cmocka_unit_test(many_faces_are_what_the_formula_says),
-		cmocka_unit_test(where_faces_cancel_corners_have_their_faces),
-	};
-	return cmocka_run_group_tests_name("tangent/normals", tests, NULL, NULL);
+	return run_group("tangent/normals");
 }

@@ -537,9 +537,8 @@ static void try_mesh(const soup *s, const char *name, bool regular)
 	forget();
 }
 
-static void properties_hold_on_surfaces(void **state)
+TEST(properties_hold_on_surfaces)
 {
-	(void)state;
 	broken = 0;
 	for (int surface = 0; surface < NT_SURFACE_COUNT; surface++) {
 		nt_owned grid = nt_surface_grid((nt_surface)surface, 10, 8, 0.2, 7);
@@ -551,9 +550,8 @@ static void properties_hold_on_surfaces(void **state)
 	assert_int_equal(broken, 0);
 }
 
-static void properties_hold_on_random_soups(void **state)
+TEST(properties_hold_on_random_soups)
 {
-	(void)state;
 	broken = 0;
 	for (uint64_t seed = 0; seed < 40; seed++) {
 		char name[32];
@@ -574,9 +572,8 @@ static void try_golden(const char *path, const nt_golden *golden, void *context)
 	soup_free(&s);
 }
 
-static void properties_hold_on_golden_meshes(void **state)
+TEST(properties_hold_on_golden_meshes)
 {
-	(void)state;
 	broken = 0;
 	nt_golden_each(NT_DATA_DIR "/golden", try_golden, NULL);
 	assert_int_equal(broken, 0);
@@ -603,18 +600,16 @@ static size_t try_folder(const char *folder)
 	return count;
 }
 
-static void properties_hold_on_meshes_of_data_and_kept_cases(void **state)
+TEST(properties_hold_on_meshes_of_data_and_kept_cases)
 {
-	(void)state;
 	broken = 0;
 	assert_true(try_folder(NT_DATA_DIR) > 0);
 	try_folder(NT_DATA_DIR "/properties");
 	assert_int_equal(broken, 0);
 }
 
-static void properties_hold_on_real_models(void **state)
+TEST(properties_hold_on_real_models)
 {
-	(void)state;
 	broken = 0;
 	if (try_folder("../shared/models/obj") == 0) {
 		print_message("no models in ../shared/models/obj\n");
@@ -625,12 +620,5 @@ static void properties_hold_on_real_models(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(properties_hold_on_surfaces),
-		cmocka_unit_test(properties_hold_on_random_soups),
-		cmocka_unit_test(properties_hold_on_golden_meshes),
-		cmocka_unit_test(properties_hold_on_meshes_of_data_and_kept_cases),
-		cmocka_unit_test(properties_hold_on_real_models),
-	};
-	return cmocka_run_group_tests_name("tangent/properties", tests, NULL, NULL);
+	return run_group("tangent/properties");
 }

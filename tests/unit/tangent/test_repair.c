@@ -125,18 +125,16 @@ static void leaning_answers_of_the_reference_are_counted(const char *path, const
 	free(output.tangents);
 }
 
-static void the_reference_leans_on_68_corners(void **state)
+TEST(the_reference_leans_on_68_corners)
 {
-	(void)state;
 	size_t sums[2] = {0, 0};
 	assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", leaning_answers_of_the_reference_are_counted, sums), 46);
 	assert_int_equal(sums[0], 68);
 	assert_int_equal(sums[1], 68);
 }
 
-static void promises_hold_on_every_golden_mesh(void **state)
+TEST(promises_hold_on_every_golden_mesh)
 {
-	(void)state;
 	tally sum = {0};
 	assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", check_golden, &sum), 46);
 	assert_true(sum.repaired > 0);
@@ -176,9 +174,8 @@ static void check_scaled_grid(float uv_scale, float scale)
 	}
 }
 
-static void frames_survive_extreme_scales(void **state)
+TEST(frames_survive_extreme_scales)
 {
-	(void)state;
 	for (int exponent = -30; exponent <= 30; exponent += 5) {
 		check_scaled_grid(powf(10.0f, (float)exponent), 1.0f);
 		check_scaled_grid(1.0f, powf(10.0f, (float)exponent));
@@ -188,9 +185,8 @@ static void frames_survive_extreme_scales(void **state)
 
 /* All texture coordinates equal: no direction is right, but the answer is a unit vector perpendicular to
  * the normal, for every normal. */
-static void missing_texture_space_gives_a_perpendicular(void **state)
+TEST(missing_texture_space_gives_a_perpendicular)
 {
-	(void)state;
 	for (int i = 0; i < 200; i++) {
 		const float a = (float)i * 0.7f, z = (float)(i % 21 - 10) / 10.0f;
 		const float r = sqrtf(1.0f - z * z);
@@ -213,9 +209,8 @@ static void missing_texture_space_gives_a_perpendicular(void **state)
 
 /* Vertices that differ in the sign of a zero alone are one vertex, which has one tangent: that of the first normal,
  * whichever it is. Each corner has no average. */
-static void missing_texture_space_gives_equal_vertices_one_tangent(void **state)
+TEST(missing_texture_space_gives_equal_vertices_one_tangent)
 {
-	(void)state;
 	for (int zeros = 0; zeros < 3; zeros++) {
 		const float positions[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}, texcoords[4][2] = {{0, 0}};
 		const float normals[4][3] = {{zeros == 1 ? -0.0f : 0.0f, 0.6f, 0.8f}, {0, 0, -1}, {0.6f, 0.8f, 0},
@@ -252,9 +247,8 @@ static nmtan_mesh three_mesh(const three *t)
 /* The triangle lies across N = (.8, .6, 0), beside which MikkTSpace's placeholder (1, 0, 0) leans by .8. In float its
  * UV determinant is 0, exactly it is 1.05 * .3 - .9 * .35 in the floats next to these, whose sign the integers of the
  * oracle know. */
-static void a_triangle_without_a_float_determinant_is_repaired(void **state)
+TEST(a_triangle_without_a_float_determinant_is_repaired)
 {
-	(void)state;
 	const three plain = {{{0, 0, 0}, {-.6f, .8f, 0}, {0, 0, 1}}, {{.8f, .6f, 0}, {.8f, .6f, 0}, {.8f, .6f, 0}},
 		{{0, 0}, {1.05f, -.9f}, {.35f, -.3f}}};
 	three swapped = plain;
@@ -291,9 +285,8 @@ static void a_triangle_without_a_float_determinant_is_repaired(void **state)
 /* A torus at scales where MikkTSpace's determinants are 0 or its directions vanish, and its mirrored twin. 0.02
  * degrees: what rounding 16 by 16 texture coordinates to floats of any scale may do to a direction is below 0.0001,
  * the corners that stay MikkTSpace's own are within this. */
-static void twins_at_tiny_scales_are_repaired_alike(void **state)
+TEST(twins_at_tiny_scales_are_repaired_alike)
 {
-	(void)state;
 	const float scales[][2] = {{1, 1}, {1e-18f, 1}, {1e-30f, 1}, {1, 1e-25f}};
 	for (int i = 0; i < 4; i++) {
 		nt_owned torus = nt_surface_grid(NT_TORUS, 16, 16, 0, 1);
@@ -334,9 +327,8 @@ static void twins_at_tiny_scales_are_repaired_alike(void **state)
 /* A sliver in v that turns when 1 is taken from it. det = (v3 - v1) - (v2 - v1) / 2 with v1 = 0 is positive for
  * v2 = 2.75 and v3 = 1.45 units of 2^-24; v - 1 has steps of one unit, so that they become 3 and 1, and the
  * determinant -0.5. */
-static void stored_texture_coordinates_decide_the_sign(void **state)
+TEST(stored_texture_coordinates_decide_the_sign)
 {
-	(void)state;
 	const float positions[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 	const float unit = 5.9604645e-8f;
@@ -361,9 +353,8 @@ static void stored_texture_coordinates_decide_the_sign(void **state)
 /* u is scaled by 3 and rounded. In units of 2^-23 b is at u = 1 + 3 and c at 0.875 + 2.5, with v = 1 and 0.875:
  * det = 0.875 * 3 - 2.5 = 0.125 is positive. Floats from 2 to 4 have steps of 2 units: 3 b = 3 + 9 is a tie
  * and becomes 3 + 8, 3 c = 2.625 + 7.5 becomes 2.625 + 8, and the determinant 0.875 * 8 - 8 = -1. */
-static void coordinates_before_a_transform_decide_the_sign(void **state)
+TEST(coordinates_before_a_transform_decide_the_sign)
 {
-	(void)state;
 	const float positions[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 	const float unit = 1.1920929e-7f;
@@ -403,9 +394,8 @@ static void coordinates_before_a_transform_decide_the_sign(void **state)
 /* With the fourth corner at (.75, .5) the shorter diagonal is 1-3, and the determinants of (0,0) (1,0) (.75,.5) and
  * (1,0) (1,1) (.75,.5) are .5 and .25. At (1.25, .5) the second is -.25, and along 0-2 they are 1 and -.75: the outline
  * crosses itself. An arrowhead does not: along its shorter diagonal, which lies outside, they are 16 and -2. */
-static void folded_quad_takes_the_sign_of_its_larger_half(void **state)
+TEST(folded_quad_takes_the_sign_of_its_larger_half)
 {
-	(void)state;
 	const float positions[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 	const float normals[4][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 	float texcoords[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0.75f, 0.5f}};
@@ -435,17 +425,5 @@ static void folded_quad_takes_the_sign_of_its_larger_half(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(promises_hold_on_every_golden_mesh),
-		cmocka_unit_test(the_reference_leans_on_68_corners),
-		cmocka_unit_test(frames_survive_extreme_scales),
-		cmocka_unit_test(missing_texture_space_gives_a_perpendicular),
-		cmocka_unit_test(missing_texture_space_gives_equal_vertices_one_tangent),
-		cmocka_unit_test(a_triangle_without_a_float_determinant_is_repaired),
-		cmocka_unit_test(twins_at_tiny_scales_are_repaired_alike),
-		cmocka_unit_test(stored_texture_coordinates_decide_the_sign),
-		cmocka_unit_test(coordinates_before_a_transform_decide_the_sign),
-		cmocka_unit_test(folded_quad_takes_the_sign_of_its_larger_half),
-	};
-	return cmocka_run_group_tests_name("tangent/repair", tests, NULL, NULL);
+	return run_group("tangent/repair");
 }

@@ -46,15 +46,13 @@ static void compare_golden(const char *path, const nt_golden *golden, void *cont
 		compare_paths(&mesh, golden->corner_count, (float)offset, NMTAN_REPAIR_ON);
 }
 
-static void known_faces_need_no_look_on_goldens(void **state)
+TEST(known_faces_need_no_look_on_goldens)
 {
-	(void)state;
 	assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", compare_golden, NULL), 46);
 }
 
-static void known_faces_need_no_look_on_nasty_meshes(void **state)
+TEST(known_faces_need_no_look_on_nasty_meshes)
 {
-	(void)state;
 	for (uint64_t seed = 0; seed < 3000; seed++) {
 		nt_nasty nasty;
 		nt_nasty_make(seed, &nasty);
@@ -65,9 +63,8 @@ static void known_faces_need_no_look_on_nasty_meshes(void **state)
 }
 
 /* Triangles so thin in v that storing it turns some of them: around the bound, on both sides. */
-static void slivers_around_the_bound_are_told_exactly(void **state)
+TEST(slivers_around_the_bound_are_told_exactly)
 {
-	(void)state;
 	enum { COUNT = 4096 };
 	float (*positions)[3] = malloc(3 * COUNT * sizeof *positions);
 	float (*normals)[3] = malloc(3 * COUNT * sizeof *normals);
@@ -129,9 +126,8 @@ static bool runs_along(const float t[4], const float n[3])
 
 /* Normals of every length that a float has. In float, T less N (N . T) is T where N is tiny, which may run along N,
  * and N itself where N is large; squares are zero and infinite there. */
-static void tangents_are_not_parallel_to_normals_of_any_length(void **state)
+TEST(tangents_are_not_parallel_to_normals_of_any_length)
 {
-	(void)state;
 	static const float directions[][3] = {{1, 0, 0}, {-1, 0, 1e-4f}, {1, 1e-3f, 0}, {1, 1, 0}, {0.3f, 0.4f, 1}};
 	const float positions[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 	const float texcoords[3][2] = {{0, 0}, {1, 0}, {0, 1}};
@@ -169,11 +165,5 @@ static void tangents_are_not_parallel_to_normals_of_any_length(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(known_faces_need_no_look_on_goldens),
-		cmocka_unit_test(known_faces_need_no_look_on_nasty_meshes),
-		cmocka_unit_test(slivers_around_the_bound_are_told_exactly),
-		cmocka_unit_test(tangents_are_not_parallel_to_normals_of_any_length),
-	};
-	return cmocka_run_group_tests_name("tangent/usable", tests, NULL, NULL);
+	return run_group("tangent/usable");
 }

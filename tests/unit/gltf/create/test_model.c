@@ -56,9 +56,8 @@ static nt_model *triangle_model(uint32_t material)
 	return model;
 }
 
-static void empty_document_is_an_asset_and_nothing_else(void **state)
+TEST(empty_document_is_an_asset_and_nothing_else)
 {
-	(void)state;
 	static const char whole[] = "{\"asset\":{\"generator\":\"nmtan test\",\"version\":\"2.0\"}}";
 	nt_model *model = new_model();
 	nt_model_text text;
@@ -68,9 +67,8 @@ static void empty_document_is_an_asset_and_nothing_else(void **state)
 	model_says(model, 0, NT_MODEL_FILE, NULL, PARTS(whole));
 }
 
-static void document_has_exact_bounds_and_no_empty_objects(void **state)
+TEST(document_has_exact_bounds_and_no_empty_objects)
 {
-	(void)state;
 	nt_model *model = triangle_model(NT_MODEL_NONE);
 	model_says(model, 42, NT_MODEL_FILE, "a%20b.bin", PARTS(
 		"\"buffers\":[{\"byteLength\":42,\"uri\":\"a%20b.bin\"}]}", "\"min\":[0.0,0.0,-2.5]",
@@ -78,9 +76,8 @@ static void document_has_exact_bounds_and_no_empty_objects(void **state)
 		"\"max\":[0.10000000149011612,1.0,0.0]", "!null", "!matrix"));
 }
 
-static void names_in_latin_1_become_utf_8(void **state)
+TEST(names_in_latin_1_become_utf_8)
 {
-	(void)state;
 	nt_model *model = new_model();
 	/* 0xe9: Latin-1's e with acute; c3 a9 is the same in UTF-8; c0 80 is no UTF-8 */
 	const nt_model_material material = {.name = "\xe9 \xc3\xa9 \xc0\x80 \"\\",
@@ -92,9 +89,8 @@ static void names_in_latin_1_become_utf_8(void **state)
 		"\"baseColorFactor\":[0.8,0.1,1.0,1.0]", "\"metallicFactor\":0.0", "!roughness")); /* glTF's default */
 }
 
-static void control_characters_are_escaped(void **state)
+TEST(control_characters_are_escaped)
 {
-	(void)state;
 	nt_model *model = new_model();
 	const nt_model_material material = {.name = "a\b\t\n\f\r\x01\x1f\x7f", .base_color = {1, 1, 1, 1},
 		.metallic = 1,
@@ -104,9 +100,8 @@ static void control_characters_are_escaped(void **state)
 		"\"materials\":[{\"name\":\"a\\b\\t\\n\\f\\r\\u0001\\u001f\x7f\"}]"));
 }
 
-static void primitives_follow_their_mesh(void **state)
+TEST(primitives_follow_their_mesh)
 {
-	(void)state;
 	nt_model *model = new_model();
 	for (uint32_t m = 0; m < 2; m++) {
 		assert_int_equal(nt_model_mesh(model, m ? "b" : ""), m);
@@ -128,9 +123,8 @@ static void primitives_follow_their_mesh(void **state)
 		"1e-05,0.0,0.0,1.0],\"mesh\":1,\"name\":\"n\"}],\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}]}"));
 }
 
-static void bright_emission_needs_the_extension(void **state)
+TEST(bright_emission_needs_the_extension)
 {
-	(void)state;
 	nt_model *model = new_model();
 	nt_model_material material = {.base_color = {1, 1, 1, 0.5f}, .metallic = 1, .roughness = 1,
 		.emissive = {4, 2, 0}, .alpha_mode = NT_ALPHA_BLEND, .normal_scale = 0.5f, NO_TEXTURES};
@@ -149,9 +143,8 @@ static void bright_emission_needs_the_extension(void **state)
 		"{\"extensions\":{\"KHR_texture_basisu\":{\"source\":1}}}]"));
 }
 
-static void layers_are_extensions(void **state)
+TEST(layers_are_extensions)
 {
-	(void)state;
 	nt_model *model = new_model();
 	nt_model_material material = {.base_color = {1, 1, 1, 1}, .metallic = 0, .roughness = 0.5f, .normal_scale = 1,
 		.alpha_mode = NT_ALPHA_MASK, .clearcoat = 0.5f, .clearcoat_roughness = 0.25f, .sheen = 0.75f,
@@ -174,9 +167,8 @@ static void layers_are_extensions(void **state)
 		"\"KHR_materials_ior\",\"KHR_materials_sheen\"]", "!extensionsRequired"));
 }
 
-static void embedded_text_is_cut_where_the_base64_goes(void **state)
+TEST(embedded_text_is_cut_where_the_base64_goes)
 {
-	(void)state;
 	nt_model *model = triangle_model(NT_MODEL_NONE);
 	nt_model_text text;
 	assert_int_equal(nt_model_json(model, 42, NT_MODEL_EMBEDDED, NULL, &text, NULL), NT_OK);
@@ -190,9 +182,8 @@ static void embedded_text_is_cut_where_the_base64_goes(void **state)
 	nt_model_free(model);
 }
 
-static void what_is_moved_or_clamped_says_so(void **state)
+TEST(what_is_moved_or_clamped_says_so)
 {
-	(void)state;
 	nt_model *model = new_model();
 	const uint32_t image = nt_model_image_uri(model, "n", "n.png");
 	nt_model_material material = {.base_color = {1, 1, 1, 1}, .metallic = 1, .roughness = 1, .normal_scale = 0.5f,
@@ -211,9 +202,8 @@ static void what_is_moved_or_clamped_says_so(void **state)
 		"{\"extensions\":{\"EXT_texture_webp\":{\"source\":0}},\"sampler\":0}]"));
 }
 
-static void misuse_is_reported_at_the_end(void **state)
+TEST(misuse_is_reported_at_the_end)
 {
-	(void)state;
 	nt_model *model = new_model();
 	nt_model_primitive(model, NULL, 0, NT_MODEL_NONE, NT_MODEL_NONE); /* of no mesh */
 	nt_model_text text;
@@ -225,17 +215,5 @@ static void misuse_is_reported_at_the_end(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(empty_document_is_an_asset_and_nothing_else),
-		cmocka_unit_test(document_has_exact_bounds_and_no_empty_objects),
-		cmocka_unit_test(names_in_latin_1_become_utf_8),
-		cmocka_unit_test(control_characters_are_escaped),
-		cmocka_unit_test(primitives_follow_their_mesh),
-		cmocka_unit_test(bright_emission_needs_the_extension),
-		cmocka_unit_test(layers_are_extensions),
-		cmocka_unit_test(what_is_moved_or_clamped_says_so),
-		cmocka_unit_test(embedded_text_is_cut_where_the_base64_goes),
-		cmocka_unit_test(misuse_is_reported_at_the_end),
-	};
-	return cmocka_run_group_tests_name("gltf/create/model", tests, NULL, NULL);
+	return run_group("gltf/create/model");
 }

@@ -230,9 +230,8 @@ static void check_tangents(const nt_mesh *a, const nt_mesh *b, double degrees)
 static sheet source;
 
 /* Every view changes. Those of the output are all packed, or all plain. */
-static void meshopt_gives_what_plain_gives(void **state)
+TEST(meshopt_gives_what_plain_gives)
 {
-	(void)state;
 	write_plain(&source, "plain.glb");
 	write_meshopt(&source, accessors_with_views, PRIMITIVE, "packed.glb");
 	solve("plain.glb", "plain_out.glb", NT_DRACO_KEEP);
@@ -271,9 +270,8 @@ static sheet even_sheet(void)
 }
 
 /* Nothing is split, so that nothing has to be unpacked; --verify does. */
-static void meshopt_views_that_do_not_change_stay_packed(void **state)
+TEST(meshopt_views_that_do_not_change_stay_packed)
 {
-	(void)state;
 	sheet even = even_sheet();
 	write_meshopt(&even, accessors_with_views, PRIMITIVE, "packed.glb");
 	solve("packed.glb", "packed_out.glb", NT_DRACO_KEEP);
@@ -286,9 +284,8 @@ static void meshopt_views_that_do_not_change_stay_packed(void **state)
 }
 
 /* u runs along x and v, which glTF has down, along y: T = x, N = z and B = -y, so that w = -1. */
-static void packed_tangents_that_are_valid_stay_packed(void **state)
+TEST(packed_tangents_that_are_valid_stay_packed)
 {
-	(void)state;
 	static const int8_t tangent[4] = {127, 0, 0, -127};
 	sheet even = even_sheet();
 	for (int v = 0; v < VERTICES; v++)
@@ -309,9 +306,8 @@ static void packed_tangents_that_are_valid_stay_packed(void **state)
 
 /* Splitting the first primitive gives the second, which gets no tangents, new vertices too: in all of its
  * attributes. */
-static void meshopt_views_of_others_in_the_pool_grow(void **state)
+TEST(meshopt_views_of_others_in_the_pool_grow)
 {
-	(void)state;
 	write_meshopt(&source, accessors_with_views, TWO_PRIMITIVES, "packed.glb");
 	solve("packed.glb", "packed_out.glb", NT_DRACO_KEEP);
 	loaded in, out;
@@ -371,9 +367,8 @@ static double half_step(double range, int bits)
 	return range / ((1 << bits) - 1) * 0.5 + 1e-6;
 }
 
-static void explicit_methods_compress_plain_primitives(void **state)
+TEST(explicit_methods_compress_plain_primitives)
 {
-	(void)state;
 	write_plain(&source, "in.glb");
 	solve("in.glb", "plain.glb", NT_DRACO_OFF);
 	solve("in.glb", "out.glb", NT_DRACO_AS_SEQUENTIAL);
@@ -403,9 +398,8 @@ static void explicit_methods_compress_plain_primitives(void **state)
 	unload(&out);
 }
 
-static void explicit_methods_replace_the_one_of_the_source(void **state)
+TEST(explicit_methods_replace_the_one_of_the_source)
 {
-	(void)state;
 	const struct {
 		nt_draco_method before, after;
 		nt_draco_choice choice;
@@ -448,9 +442,8 @@ static int compare_floats(const void *a, const void *b)
 }
 
 /* Edgebreaker reorders: the positions of all corners are the same as a set. */
-static void draco_keeps_every_value(void **state)
+TEST(draco_keeps_every_value)
 {
-	(void)state;
 	check_draco(NT_DRACO_SEQUENTIAL);
 	check_draco(NT_DRACO_EDGEBREAKER);
 	loaded in, out;
@@ -469,9 +462,8 @@ static void draco_keeps_every_value(void **state)
 }
 
 /* Byte for byte damage in the packed data is refused or gives some mesh, with indices that are checked. */
-static void damaged_blocks_are_harmless(void **state)
+TEST(damaged_blocks_are_harmless)
 {
-	(void)state;
 	for (int kind = 0; kind < 2; kind++) {
 		if (kind)
 			write_meshopt(&source, accessors_with_views, PRIMITIVE, "good.glb");
@@ -504,15 +496,5 @@ static int set_up(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(meshopt_gives_what_plain_gives),
-		cmocka_unit_test(meshopt_views_that_do_not_change_stay_packed),
-		cmocka_unit_test(packed_tangents_that_are_valid_stay_packed),
-		cmocka_unit_test(meshopt_views_of_others_in_the_pool_grow),
-		cmocka_unit_test(draco_keeps_every_value),
-		cmocka_unit_test(explicit_methods_compress_plain_primitives),
-		cmocka_unit_test(explicit_methods_replace_the_one_of_the_source),
-		cmocka_unit_test(damaged_blocks_are_harmless),
-	};
-	return cmocka_run_group_tests_name("gltf/edit/compressed", tests, set_up, remove_folder);
+	return run_group_within("gltf/edit/compressed", set_up, remove_folder);
 }

@@ -53,9 +53,8 @@ static void assert_embedded(const char *name)
 }
 
 /* Also where the file has the name of a data URI without its data, or with the first of its characters. */
-static void buffers_are_encoded_where_they_belong(void **state)
+TEST(buffers_are_encoded_where_they_belong)
 {
-	(void)state;
 	assert_embedded("plain");
 	assert_embedded("data:application/octet-stream;base64,");
 	assert_embedded("data:application/gltf-buffer;base64,A");
@@ -63,9 +62,8 @@ static void buffers_are_encoded_where_they_belong(void **state)
 
 /* The text is made twice where a sidecar gets its name in two steps: the second run replaces the first one's
  * out/in.bin, while the other buffer is a data URI in both texts. */
-static void data_is_in_every_text(void **state)
+TEST(data_is_in_every_text)
 {
-	(void)state;
 	const nt_settings settings = {.buffers = NT_BUFFERS_COPY, .verify = true};
 	assert_int_equal(mkdir(in_folder("out"), 0777), 0);
 	put_triangle("first");
@@ -87,9 +85,5 @@ static void data_is_in_every_text(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(buffers_are_encoded_where_they_belong),
-		cmocka_unit_test(data_is_in_every_text),
-	};
-	return cmocka_run_group_tests_name("gltf/edit/data_uris", tests, make_folder, remove_folder);
+	return run_group_within("gltf/edit/data_uris", make_folder, remove_folder);
 }

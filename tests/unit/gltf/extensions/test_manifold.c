@@ -7,9 +7,8 @@
 static uint32_t corners[] = {3, 1, 4};
 static const uint32_t merged[] = {0, 1, 2};
 
-static void corners_that_differ_are_merged(void **state)
+TEST(corners_that_differ_are_merged)
 {
-	(void)state;
 	const nt_manifold m = {.corner_count = 3, .corners = corners, .merged = merged};
 	nt_arena arena = {0};
 	uint32_t *places, *vertices;
@@ -21,9 +20,8 @@ static void corners_that_differ_are_merged(void **state)
 	nt_arena_free(&arena);
 }
 
-static void a_manifold_without_merges_has_none(void **state)
+TEST(a_manifold_without_merges_has_none)
 {
-	(void)state;
 	const nt_manifold m = {.corner_count = 3, .corners = corners, .merged = corners};
 	nt_arena arena = {0};
 	uint32_t *places, *vertices;
@@ -40,9 +38,5 @@ static void a_manifold_without_merges_has_none(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(corners_that_differ_are_merged),
-		cmocka_unit_test(a_manifold_without_merges_has_none),
-	};
-	return cmocka_run_group_tests_name("gltf/extensions/manifold", tests, NULL, NULL);
+	return run_group("gltf/extensions/manifold");
 }

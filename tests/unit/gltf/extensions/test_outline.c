@@ -24,30 +24,26 @@ static void assert_edges(const uint32_t *edges, size_t count, const nt_copied_tr
 static const uint32_t vertices[] = {0, 2, 1, 4, 5, 3}, sources[] = {1, 2};
 static const nt_copied_triangles pair = {.vertices = vertices, .corner_count = 6, .old_count = 4, .sources = sources};
 
-static void shared_edge_becomes_two(void **state)
+TEST(shared_edge_becomes_two)
 {
-	(void)state;
 	assert_edges((uint32_t[]){1, 2}, 1, &pair, (uint32_t[]){1, 2, 4, 5}, 2);
 	assert_edges((uint32_t[]){2, 1}, 1, &pair, (uint32_t[]){2, 1, 5, 4}, 2);
 }
 
-static void edge_of_a_copy_follows_it(void **state)
+TEST(edge_of_a_copy_follows_it)
 {
-	(void)state;
 	assert_edges((uint32_t[]){3, 1, 0, 1}, 2, &pair, (uint32_t[]){3, 4, 0, 1}, 2);
 }
 
-static void edge_of_no_triangle_stays(void **state)
+TEST(edge_of_no_triangle_stays)
 {
-	(void)state;
 	assert_edges((uint32_t[]){0, 3, 0, 0}, 2, &pair, (uint32_t[]){0, 3, 0, 0}, 2);
 	assert_edges(NULL, 0, &pair, NULL, 0);
 }
 
 /* A third triangle over 1 2, on the first one's vertices: the pair is there once. */
-static void sides_with_the_same_ends_are_one_edge(void **state)
+TEST(sides_with_the_same_ends_are_one_edge)
 {
-	(void)state;
 	const uint32_t three[] = {0, 2, 1, 4, 5, 3, 2, 1, 3};
 	const nt_copied_triangles t = {.vertices = three, .corner_count = 9, .old_count = 4, .sources = sources};
 	assert_edges((uint32_t[]){1, 2}, 1, &t, (uint32_t[]){1, 2, 4, 5}, 2);
@@ -55,11 +51,5 @@ static void sides_with_the_same_ends_are_one_edge(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(shared_edge_becomes_two),
-		cmocka_unit_test(edge_of_a_copy_follows_it),
-		cmocka_unit_test(edge_of_no_triangle_stays),
-		cmocka_unit_test(sides_with_the_same_ends_are_one_edge),
-	};
-	return cmocka_run_group_tests_name("gltf/extensions/outline", tests, NULL, NULL);
+	return run_group("gltf/extensions/outline");
 }

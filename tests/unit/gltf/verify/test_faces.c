@@ -39,18 +39,16 @@ static size_t first_missing(const nt_verify_corner *a, size_t a_faces, const nt_
 
 static nt_verify_corner a[3 * FACES], b[3 * FACES];
 
-static void order_and_first_corner_do_not_matter(void **state)
+TEST(order_and_first_corner_do_not_matter)
 {
-	(void)state;
 	make(a);
 	shuffle(a, b);
 	assert_true(first_missing(a, FACES, b, FACES) == SIZE_MAX);
 	assert_true(first_missing(NULL, 0, NULL, 0) == SIZE_MAX);
 }
 
-static void every_value_and_the_winding_matter(void **state)
+TEST(every_value_and_the_winding_matter)
 {
-	(void)state;
 	for (int change = 0; change < 5; change++) {
 		make(a);
 		shuffle(a, b);
@@ -78,9 +76,8 @@ static void every_value_and_the_winding_matter(void **state)
 	}
 }
 
-static void one_face_more_is_another_surface(void **state)
+TEST(one_face_more_is_another_surface)
 {
-	(void)state;
 	make(a);
 	shuffle(a, b);
 	assert_true(first_missing(a, FACES - 1, b, FACES) != SIZE_MAX);
@@ -101,9 +98,8 @@ static void make_concentric(nt_verify_corner *faces)
 		}
 }
 
-static void triangles_with_one_centre_are_told_apart(void **state)
+TEST(triangles_with_one_centre_are_told_apart)
 {
-	(void)state;
 	make_concentric(a);
 	shuffle(a, b);
 	assert_true(first_missing(a, FACES, b, FACES) == SIZE_MAX);
@@ -124,11 +120,5 @@ static void triangles_with_one_centre_are_told_apart(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(order_and_first_corner_do_not_matter),
-		cmocka_unit_test(every_value_and_the_winding_matter),
-		cmocka_unit_test(one_face_more_is_another_surface),
-		cmocka_unit_test(triangles_with_one_centre_are_told_apart),
-	};
-	return cmocka_run_group_tests_name("gltf/verify/faces", tests, NULL, NULL);
+	return run_group("gltf/verify/faces");
 }

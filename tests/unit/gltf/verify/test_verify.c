@@ -33,9 +33,8 @@ static nt_status verify_after(const char *name, void (*spoil)(hand_scene *), nt_
 	return status;
 }
 
-static void good_output_is_good(void **state)
+TEST(good_output_is_good)
 {
-	(void)state;
 	nt_error error;
 	assert_int_equal(verify_after("a b.glb", NULL, &error), NT_OK);
 	assert_int_equal(verify_after("a b.gltf", NULL, &error), NT_OK); /* its .bin has no name yet */
@@ -60,9 +59,8 @@ static void turn_the_diagonal(hand_scene *hand)
 	hand->mesh.face_diagonals = other;
 }
 
-static void every_difference_is_told(void **state)
+TEST(every_difference_is_told)
 {
-	(void)state;
 	nt_error error;
 	assert_int_equal(verify_after("a.glb", change_last_tangent, &error), NT_ERROR_INTERNAL);
 	assert_non_null(strstr(error.message, "corner 6 of mesh \"hand\""));
@@ -119,9 +117,8 @@ static void close_edited(edited *p)
 	nt_file_close(&p->file);
 }
 
-static void tangents_of_targets_are_compared(void **state)
+TEST(tangents_of_targets_are_compared)
 {
-	(void)state;
 	static const struct {
 		nt_precision precision;
 		nt_draco_choice draco;
@@ -145,9 +142,8 @@ static void tangents_of_targets_are_compared(void **state)
 }
 
 /* Whatever thread is done first. */
-static void the_first_mesh_that_differs_is_told(void **state)
+TEST(the_first_mesh_that_differs_is_told)
 {
-	(void)state;
 	static const nt_draco_choice ways[] = {NT_DRACO_OFF, NT_DRACO_AS_SEQUENTIAL, NT_DRACO_AS_EDGEBREAKER};
 	for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
 		const char *path = in_folder("a.glb");
@@ -175,11 +171,5 @@ static void the_first_mesh_that_differs_is_told(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(good_output_is_good),
-		cmocka_unit_test(every_difference_is_told),
-		cmocka_unit_test(tangents_of_targets_are_compared),
-		cmocka_unit_test(the_first_mesh_that_differs_is_told),
-	};
-	return cmocka_run_group_tests_name("gltf/verify/verify", tests, make_folder, remove_empty_folder);
+	return run_group_within("gltf/verify/verify", make_folder, remove_empty_folder);
 }

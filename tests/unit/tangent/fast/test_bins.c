@@ -127,23 +127,20 @@ static void check(unsigned ranges, bool both)
 	nt_scratch_free(&scratch);
 }
 
-static void sums_are_in_triangle_order_with_one_range(void **state)
+TEST(sums_are_in_triangle_order_with_one_range)
 {
-	(void)state;
 	check(1, false);
 	check(1, true);
 }
 
-static void sums_are_in_triangle_order_with_several_ranges(void **state)
+TEST(sums_are_in_triangle_order_with_several_ranges)
 {
-	(void)state;
 	check(3, false);
 	check(3, true);
 }
 
-static void bins_stay_within_their_bits(void **state)
+TEST(bins_stay_within_their_bits)
 {
-	(void)state;
 	for (size_t vertices = 1; vertices < (size_t)1 << 28; vertices *= 2) {
 		assert_in_range(nt_bins_bits(vertices), 4, NT_BINNED_BITS);
 		assert_true(nt_bins_bits(vertices) == NT_BINNED_BITS || vertices >> nt_bins_bits(vertices) < 512);
@@ -152,10 +149,5 @@ static void bins_stay_within_their_bits(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(sums_are_in_triangle_order_with_one_range),
-		cmocka_unit_test(sums_are_in_triangle_order_with_several_ranges),
-		cmocka_unit_test(bins_stay_within_their_bits),
-	};
-	return cmocka_run_group_tests_name("tangent/fast/bins", tests, NULL, NULL);
+	return run_group("tangent/fast/bins");
 }

@@ -32,9 +32,8 @@ static bool compare_wide_fan(int bits, int turn, bool middle_first, size_t *diff
 	return two;
 }
 
-static void antiparallel_directions_are_byte_identical(void **state)
+TEST(antiparallel_directions_are_byte_identical)
 {
-	(void)state;
 	size_t differences = 0;
 	for (int bits = 1; bits <= 24; bits++)
 		for (int turn = 0; turn < 3; turn++)
@@ -75,9 +74,8 @@ static size_t compare_short_fan(uint32_t random)
 
 /* Of such directions angles do not tell whether their product is -1. These fans, eight of 70 000, would be solved
  * wrongly if they did. */
-static void short_directions_are_byte_identical(void **state)
+TEST(short_directions_are_byte_identical)
 {
-	(void)state;
 	static const uint32_t seeds[] = {2098508433, 921525665, 2118292457, 4254900097, 1290134337, 3088173105,
 		3896388217, 3648777353};
 	size_t differences = 0;
@@ -137,9 +135,8 @@ static size_t compare_hub(const hub *h, bool more)
 	return differences;
 }
 
-static void hubs_are_byte_identical(void **state)
+TEST(hubs_are_byte_identical)
 {
-	(void)state;
 	static const size_t rims[] = {8, 13, 100, 300, RIM_MOST};
 	hub *h = malloc(sizeof *h);
 	size_t differences = 0;
@@ -191,9 +188,8 @@ static size_t compare_many_hubs(hub *h, bool quads, bool large, bool more)
 }
 
 /* They come in windows: some together, some alone. */
-static void many_hubs_are_byte_identical(void **state)
+TEST(many_hubs_are_byte_identical)
 {
-	(void)state;
 	hub *h = malloc(sizeof *h);
 	size_t differences = 0;
 	for (unsigned i = 0; i < 8; i++)
@@ -246,17 +242,15 @@ static size_t solve_turning_hub(float turn, bool once)
 }
 
 /* Sums for each direction, which take quadratic time, take memory, too. */
-static void few_directions_aside_do_not_split_a_hub(void **state)
+TEST(few_directions_aside_do_not_split_a_hub)
 {
-	(void)state;
 	const size_t bytes = solve_turning_hub(0, false);
 	assert_int_equal(solve_turning_hub(1.9f, true), bytes);
 	assert_true(solve_turning_hub(6, false) > bytes);
 }
 
-static void every_failed_allocation_of_a_hub_is_told(void **state)
+TEST(every_failed_allocation_of_a_hub_is_told)
 {
-	(void)state;
 	hub *h = malloc(sizeof *h);
 	make_hub(1, RIM_MOST, false, false, h);
 	nt_result r = nt_result_make(h->corners);
@@ -271,13 +265,5 @@ static void every_failed_allocation_of_a_hub_is_told(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(antiparallel_directions_are_byte_identical),
-		cmocka_unit_test(short_directions_are_byte_identical),
-		cmocka_unit_test(hubs_are_byte_identical),
-		cmocka_unit_test(many_hubs_are_byte_identical),
-		cmocka_unit_test(few_directions_aside_do_not_split_a_hub),
-		cmocka_unit_test(every_failed_allocation_of_a_hub_is_told),
-	};
-	return cmocka_run_group_tests_name("tangent/fast/complex", tests, NULL, NULL);
+	return run_group("tangent/fast/complex");
 }

@@ -32,9 +32,8 @@ static void compare_golden(const char *path, const nt_golden *golden, void *cont
 	c->differences += nt_compare_variants(path, &mesh, golden->corner_count, &expected, false);
 }
 
-static void goldens_are_byte_identical(void **state)
+TEST(goldens_are_byte_identical)
 {
-	(void)state;
 	for (int sorted = 0; sorted < 2; sorted++) {
 		golden_comparison c = {.sorted = sorted};
 		assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", compare_golden, &c), 46);
@@ -104,9 +103,8 @@ enum { NASTY_COUNT = 500 };
 enum { NASTY_COUNT = 2000 };
 #endif
 
-static void nasty_meshes_are_byte_identical(void **state)
+TEST(nasty_meshes_are_byte_identical)
 {
-	(void)state;
 	const uint64_t from = environment("NT_NASTY_FROM", 0), count = environment("NT_NASTY_COUNT", NASTY_COUNT);
 	size_t wrong = 0;
 	for (uint64_t seed = from; seed < from + count && wrong < 10; seed++)
@@ -152,9 +150,8 @@ static void join(joined *j, const nt_nasty *part, float unit)
 	j->mesh.face_count += m.face_count;
 }
 
-static void nasty_meshes_joined_are_byte_identical(void **state)
+TEST(nasty_meshes_joined_are_byte_identical)
 {
-	(void)state;
 	static const unsigned threads[] = {1, 2, 4};
 	joined j = {.mesh = {.struct_bytes = sizeof j.mesh}};
 	for (uint64_t seed = 0; seed < 400; seed++) {
@@ -292,9 +289,8 @@ static void compare_scattered(grid g)
 	free(indices);
 }
 
-static void scattered_meshes_are_byte_identical(void **state)
+TEST(scattered_meshes_are_byte_identical)
 {
-	(void)state;
 	compare_scattered((grid){.mixed = true, .lost = true});
 	compare_scattered((grid){.quads = true, .mixed = true, .lost = true});
 	compare_scattered((grid){.lost = true});
@@ -360,9 +356,8 @@ static void compare_calls(const nmtan_mesh *mesh, nmtan_repair repair)
 	nt_result_free(&got);
 }
 
-static void unusable_vertices_are_byte_identical(void **state)
+TEST(unusable_vertices_are_byte_identical)
 {
-	(void)state;
 	float p[HOPELESS_VERTICES][3], n[HOPELESS_VERTICES][3], t[HOPELESS_VERTICES][2];
 	unsigned indices[6 * (HOPELESS_CELLS + 1)];
 	for (hopeless kind = ALONG_U; kind <= ONE_POINT; kind++)
@@ -386,9 +381,8 @@ enum { SHEET = 9, MIDDLE = 4 };
 static const float misjudged[3][2] = {{0.0827391148f, 0.0331479087f}, {0.00360275805f, 0.00178954005f},
 	{0.000188201055f, 0.000436497037f}};
 
-static void what_is_around_faults_is_seen(void **state)
+TEST(what_is_around_faults_is_seen)
 {
-	(void)state;
 	for (int by_sign = 0; by_sign < 2; by_sign++) {
 		float p[SHEET * SHEET + 2][3] = {{0}}, n[SHEET * SHEET + 2][3] = {{0}}, t[SHEET * SHEET + 2][2] = {{0}};
 		unsigned indices[6 * (SHEET - 1) * (SHEET - 1) + 3], count = 0;
@@ -426,9 +420,8 @@ static void what_is_around_faults_is_seen(void **state)
 /* Beside an ordinary sheet, triangles that give nothing: of an area that is too small for floats, with two corners at
  * one position, with texture coordinates along a line or two that are the same. Some have an orientation all the same,
  * and repair takes their directions. One gives a direction along a normal. */
-static void what_gave_nothing_is_around_faults(void **state)
+TEST(what_gave_nothing_is_around_faults)
 {
-	(void)state;
 	enum { SIDE = 5, CELLS_HERE = (SIDE - 1) * (SIDE - 1), OWN = SIDE * SIDE, VERTICES = OWN + 16, MID = OWN / 2 };
 	static const struct {
 		unsigned char at[3];
@@ -469,9 +462,8 @@ static void what_gave_nothing_is_around_faults(void **state)
 
 /* Beside a sheet, triangles without a UV area, most of whose corners have nothing around them: these take a tangent of
  * their triangle's first corner that has one with a part across their normal, or what the normal alone says. */
-static void what_is_bare_takes_from_its_triangle(void **state)
+TEST(what_is_bare_takes_from_its_triangle)
 {
-	(void)state;
 	enum { SIDE = 6, OWN = SIDE * SIDE, VERTICES = OWN + 9 };
 	static const unsigned added[][3] = {{1, 0, OWN}, {OWN, 0, OWN + 1}, {OWN + 1, 0, OWN + 2},
 		{OWN + 3, OWN + 4, OWN + 5},
@@ -507,9 +499,8 @@ static void what_is_bare_takes_from_its_triangle(void **state)
 
 /* Scratch comes in blocks of 64 KiB, so the meshes are made large enough for many of them: a grid beside
  * which every nasty mesh is placed. */
-static void every_failed_allocation_is_told(void **state)
+TEST(every_failed_allocation_is_told)
 {
-	(void)state;
 	enum { SIDE = 150 };
 	const size_t corners = 6 * SIDE * SIDE;
 	float *p = malloc(corners * 12), *n = malloc(corners * 12), *t = malloc(corners * 8);
@@ -546,16 +537,5 @@ static void every_failed_allocation_is_told(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(goldens_are_byte_identical),
-		cmocka_unit_test(nasty_meshes_are_byte_identical),
-		cmocka_unit_test(nasty_meshes_joined_are_byte_identical),
-		cmocka_unit_test(scattered_meshes_are_byte_identical),
-		cmocka_unit_test(unusable_vertices_are_byte_identical),
-		cmocka_unit_test(what_is_around_faults_is_seen),
-		cmocka_unit_test(what_gave_nothing_is_around_faults),
-		cmocka_unit_test(what_is_bare_takes_from_its_triangle),
-		cmocka_unit_test(every_failed_allocation_is_told),
-	};
-	return cmocka_run_group_tests_name("tangent/fast/fast", tests, NULL, NULL);
+	return run_group("tangent/fast/fast");
 }

@@ -73,9 +73,8 @@ static shape make_hub(size_t flat)
 	return s;
 }
 
-static void hubs_take_at_most_40_bytes_a_triangle(void **state)
+TEST(hubs_take_at_most_40_bytes_a_triangle)
 {
-	(void)state;
 	for (size_t flat = 0; flat < 1000; flat += 300) {
 		shape hub = make_hub(flat);
 		assert_true(solve_bytes(&hub) <= 40);
@@ -106,9 +105,8 @@ static shape make_opposite_quads(size_t quads)
  * list of these corners for each. Beside the 40 bytes there are a vertex a triangle (a row of 32), the directions of
  * members, their sums and the results of halves (40 each), numbers (24 at most), and what the scratch's blocks have
  * left. */
-static void opposite_quads_take_memory_by_their_number(void **state)
+TEST(opposite_quads_take_memory_by_their_number)
 {
-	(void)state;
 	for (size_t quads = 4000; quads < 10000; quads *= 2) {
 		shape hub = make_opposite_quads(quads);
 		assert_true(solve_bytes(&hub) <= 40 + 32 + 3 * 40 + 24 + 40);
@@ -132,16 +130,14 @@ static shape make_square(size_t period)
 	return s;
 }
 
-static void clean_meshes_take_at_most_16_bytes_a_triangle(void **state)
+TEST(clean_meshes_take_at_most_16_bytes_a_triangle)
 {
-	(void)state;
 	shape square = make_square(1000);
 	assert_true(solve_bytes(&square) <= 16);
 }
 
-static void mirrored_meshes_take_at_most_40_bytes_a_triangle(void **state)
+TEST(mirrored_meshes_take_at_most_40_bytes_a_triangle)
 {
-	(void)state;
 	for (size_t period = 1; period < 6; period++) {
 		shape square = make_square(period);
 		assert_true(solve_bytes(&square) <= 40);
@@ -150,11 +146,5 @@ static void mirrored_meshes_take_at_most_40_bytes_a_triangle(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(hubs_take_at_most_40_bytes_a_triangle),
-		cmocka_unit_test(clean_meshes_take_at_most_16_bytes_a_triangle),
-		cmocka_unit_test(mirrored_meshes_take_at_most_40_bytes_a_triangle),
-		cmocka_unit_test(opposite_quads_take_memory_by_their_number),
-	};
-	return cmocka_run_group_tests_name("tangent/fast/memory", tests, NULL, NULL);
+	return run_group("tangent/fast/memory");
 }

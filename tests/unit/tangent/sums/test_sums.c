@@ -53,17 +53,15 @@ static void compare_golden(const char *path, const nt_golden *golden, void *cont
 	compare_paths(&mesh, golden->corner_count);
 }
 
-static void all_paths_give_the_same_bytes_on_goldens(void **state)
+TEST(all_paths_give_the_same_bytes_on_goldens)
 {
-	(void)state;
 	assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", compare_golden, NULL), 46);
 }
 
 /* Large enough for several threads; every seventh vertex has a denormal, an infinity or a far exponent, so
  * that lanes are hard here and there, and every fifth column is mirrored. */
-static void all_paths_give_the_same_bytes_on_a_large_mesh(void **state)
+TEST(all_paths_give_the_same_bytes_on_a_large_mesh)
 {
-	(void)state;
 	static const float odd[4] = {1e-44f, 1e30f, -1e-30f, INFINITY};
 	nt_owned grid = nt_surface_grid(NT_TORUS, 210, 200, 0.3, 3);
 	compare_paths(&grid.mesh, grid.corner_count);
@@ -83,9 +81,8 @@ static void all_paths_give_the_same_bytes_on_a_large_mesh(void **state)
 
 /* A plane grid of quads: some cells have their texture turned over in one half (folded), some have a corner of
  * theirs collapsed, some normals are zero or not numbers, and every third row is mirrored. */
-static void all_paths_give_the_same_bytes_on_quads(void **state)
+TEST(all_paths_give_the_same_bytes_on_quads)
 {
-	(void)state;
 	enum { N = 190 };
 	nt_owned grid = nt_surface_grid(NT_TORUS, N, N, 0.2, 5);
 	uint8_t *sizes = malloc(grid.corner_count);
@@ -124,10 +121,5 @@ static void all_paths_give_the_same_bytes_on_quads(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(all_paths_give_the_same_bytes_on_goldens),
-		cmocka_unit_test(all_paths_give_the_same_bytes_on_a_large_mesh),
-		cmocka_unit_test(all_paths_give_the_same_bytes_on_quads),
-	};
-	return cmocka_run_group_tests_name("tangent/sums/sums", tests, NULL, NULL);
+	return run_group("tangent/sums/sums");
 }
