@@ -123,7 +123,7 @@ TEST(tangents_of_targets_are_compared)
 		nt_precision precision;
 		nt_draco_choice draco;
 	} ways[] = {{NT_PRECISION_FLOAT, NT_DRACO_KEEP}, {NT_PRECISION_SHORT, NT_DRACO_KEEP},
-		{NT_PRECISION_BYTE, NT_DRACO_KEEP}, {NT_PRECISION_FLOAT, NT_DRACO_AS_SEQUENTIAL}};
+		{NT_PRECISION_BYTE, NT_DRACO_KEEP}, {NT_PRECISION_AUTO, NT_DRACO_AS_SEQUENTIAL}};
 	for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
 		const char *path = in_folder("a.glb");
 		const nt_write_options options = {.path = path, .format = NT_FORMAT_GLB,
