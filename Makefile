@@ -174,6 +174,7 @@ $(call objects_of,ext/codec/stb.c): FILE_FLAGS += -ftrivial-auto-var-init=zero \
 
 include tests/tests.mk
 include src/bindings/bindings.mk
+include src/bindings/tool/tool.mk
 
 $(B)/licences.txt: src/ext/licences.sh
 	@mkdir -p $(@D)

@@ -7,13 +7,19 @@
 #include "report/render/page_assets.h"
 
 #define FILE_BYTES(file) ".incbin \"src/report/render/page/" file "\"\n"
+#ifdef __wasm__
+#define SECTION(name) ".section .rodata." #name ",\"\",@\n"
+#define END(name) ".size " #name ", . - " #name "\n"
+#else
+#define SECTION(name) ".pushsection .rodata\n"
+#define END(name) ".popsection\n"
+#endif
 #define EMBED(name, files)                             \
-	__asm__(".pushsection .rodata\n"               \
+	__asm__(SECTION(name)                          \
 		".global " #name "\n"                  \
 		".hidden " #name "\n" #name ":\n"      \
 		files                                  \
-		".byte 0\n"                            \
-		".popsection\n")
+		".byte 0\n" END(name))
 
 EMBED(nt_page_style, FILE_BYTES("page.css"));
 EMBED(nt_page_body, FILE_BYTES("page.html"));
