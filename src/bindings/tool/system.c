@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The system calls that emscripten's C library lacks, or makes otherwise than the tool needs: what fstat() says of a file
- * that was renamed, times of less than a second, links, and bytes that are on the disk. Each calls a function of the
- * object `system` that nmtan.js gives to the module; a page gives none, and its files in memory know a second best.
+ * The system calls that emscripten's C library lacks, or makes otherwise than the tool needs: what fstat() says of a
+ * file that was renamed, times of less than a second, links, and bytes that are on the disk. Each calls a function of
+ * the object `system` that nmtan.js gives to the module; a page gives none, and its files in memory know a second best.
  */
 #include <emscripten.h>
 #include <errno.h>
@@ -45,7 +45,8 @@ EM_JS(int, read_status, (const char *path, int fd, int follow, double *fields), 
 		} else {
 			var a = path ? FS.stat(name, !follow) : stream.node.node_ops.getattr(stream.node);
 			var time = a.mtime.getTime();
-			s = [a.dev, a.ino, 0, a.mode, a.nlink, a.uid, a.gid, a.size, Math.floor(time / 1000), time % 1000 * 1e6];
+			s = [a.dev, a.ino, 0, a.mode, a.nlink, a.uid, a.gid, a.size,
+				Math.floor(time / 1000), time % 1000 * 1e6];
 		}
 		for (var i = 0; i < s.length; i++)
 			HEAPF64[(fields >> 3) + i] = s[i];
