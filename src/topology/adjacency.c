@@ -9,9 +9,6 @@
 #include "base/compiler.h"
 #include "base/parallel.h"
 
-/* Corners by which a count is prefetched before it is needed, where counts may not be in the first-level cache. */
-enum { COUNT_AHEAD = 48, NEAR_VERTICES = 1 << 14 };
-
 /* Triangles whose vertices are looked up at a time. */
 enum { BATCH = 16 };
 
@@ -20,17 +17,6 @@ typedef struct counting {
 	const nt_triangle_ranges *ranges;
 	const nt_adjacency *adjacency;
 } counting;
-
-static void count_corners(uint32_t *counts, const uint32_t *ids, size_t count, bool far)
-{
-	size_t i = 0;
-	for (; far && i + COUNT_AHEAD < count; i++) {
-		NT_PREFETCH_TO_WRITE(&counts[ids[i + COUNT_AHEAD]]);
-		counts[ids[i]]++;
-	}
-	for (; i < count; i++)
-		counts[ids[i]]++;
-}
 
 static void count_range(const counting *c, size_t range)
 {
@@ -41,8 +27,9 @@ static void count_range(const counting *c, size_t range)
 	for (size_t t = c->ranges->bounds[range]; t < end; t += step) {
 		uint32_t copy[3 * BATCH];
 		step = c->triangles->cuts && end - t > BATCH ? BATCH : end - t;
-		count_corners(counts, nt_triangle_vertices(c->triangles, t, step, copy), 3 * step,
-			c->adjacency->vertex_count > NEAR_VERTICES);
+		const uint32_t *ids = nt_triangle_vertices(c->triangles, t, step, copy);
+		for (size_t i = 0; i < 3 * step; i++)
+			counts[ids[i]]++;
 	}
 }
 
