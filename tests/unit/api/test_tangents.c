@@ -31,9 +31,8 @@ static nmtan_status solve(nt_isa isa)
 	return nt_tangents(&mesh, NULL, &implementation, &output, NULL);
 }
 
-static void instruction_set_that_the_processor_lacks_is_an_argument_error(void **state)
+TEST(instruction_set_that_the_processor_lacks_is_an_argument_error)
 {
-	(void)state;
 	for (int isa = NT_ISA_AUTO; isa <= NT_ISA_AVX512 + 1; isa++)
 		assert_int_equal(solve((nt_isa)isa), nt_cpu_has((nt_isa)isa) ? NMTAN_OK : NMTAN_ERROR_ARGUMENT);
 	assert_int_equal(solve((nt_isa)9), NMTAN_ERROR_ARGUMENT);
@@ -48,9 +47,8 @@ static long minor_faults(void)
 
 /* Calls without a workspace: malloc keeps what one call gave back for the next, since it is nearly all in one block. A
  * strip, mirrored at each column. */
-static void a_second_call_has_no_fresh_pages(void **state)
+TEST(a_second_call_has_no_fresh_pages)
 {
-	(void)state;
 	enum { MOST = 30000 };
 	float *rows = calloc(MOST + 2, 8 * sizeof *rows), *tangents = malloc((size_t)MOST * 48);
 	uint32_t *corners = malloc((size_t)MOST * 12);
@@ -128,9 +126,8 @@ static void make_random_faces(random_faces *f, uint64_t seed)
 }
 
 /* Halves of quads have the bytes of the quads' corners, those of folded and of degenerate ones too. */
-static void halves_have_the_bytes_of_their_quads(void **state)
+TEST(halves_have_the_bytes_of_their_quads)
 {
-	(void)state;
 	static random_faces f;
 	static float of_faces[4 * FACES][4], of_halves[6 * FACES][4];
 	for (uint64_t seed = 1; seed <= 2000; seed++) {
@@ -153,9 +150,8 @@ static void halves_have_the_bytes_of_their_quads(void **state)
 }
 
 /* None of them halves: what nmtan_tangents() says of the triangles. */
-static void no_halves_are_triangles(void **state)
+TEST(no_halves_are_triangles)
 {
-	(void)state;
 	static random_faces f;
 	static float of_faces[6 * FACES][4], of_halves[6 * FACES][4];
 	make_random_faces(&f, 1);
@@ -174,10 +170,5 @@ static void no_halves_are_triangles(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(halves_have_the_bytes_of_their_quads),
-		cmocka_unit_test(no_halves_are_triangles),
-		cmocka_unit_test(a_second_call_has_no_fresh_pages),
-		cmocka_unit_test(instruction_set_that_the_processor_lacks_is_an_argument_error)};
-	return cmocka_run_group_tests_name("api/tangents", tests, NULL, NULL);
+	return run_group("api/tangents");
 }

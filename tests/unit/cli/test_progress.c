@@ -33,9 +33,8 @@ static size_t lines_of(const char *path)
 	return lines;
 }
 
-static void the_clock_of_the_day_is_not_asked(void **state)
+TEST(the_clock_of_the_day_is_not_asked)
 {
-	(void)state;
 	fflush(stderr);
 	const int kept = dup(STDERR_FILENO);
 	assert_non_null(freopen(in_folder("log"), "w", stderr));
@@ -55,6 +54,5 @@ static void the_clock_of_the_day_is_not_asked(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {cmocka_unit_test(the_clock_of_the_day_is_not_asked)};
-	return cmocka_run_group_tests_name("cli/progress", tests, make_folder, remove_folder);
+	return run_group_within("cli/progress", make_folder, remove_folder);
 }

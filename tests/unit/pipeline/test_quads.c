@@ -185,9 +185,8 @@ static void solve(float (*tangents)[4])
 static written repaired, raw;
 static float solved[4 * QUADS][4];
 
-static void simple_quads_are_written_inside_and_w_fits_each_triangle(void **state)
+TEST(simple_quads_are_written_inside_and_w_fits_each_triangle)
 {
-	(void)state;
 	const size_t crossed = put_quads();
 	nt_settings settings = {.output_format = NT_FORMAT_GLB, .verify = true};
 	nt_summary summary = convert_file("in.obj", "out.glb", settings);
@@ -219,6 +218,5 @@ static void simple_quads_are_written_inside_and_w_fits_each_triangle(void **stat
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {cmocka_unit_test(simple_quads_are_written_inside_and_w_fits_each_triangle)};
-	return cmocka_run_group_tests_name("pipeline/quads", tests, make_folder, remove_folder);
+	return run_group_within("pipeline/quads", make_folder, remove_folder);
 }

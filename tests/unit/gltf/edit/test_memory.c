@@ -14,9 +14,8 @@ static void fail_each(const char *input, nt_settings settings)
 	assert_int_equal(count_in_folder(), 0);
 }
 
-static void allocations_of_every_kind_of_edit_may_fail(void **state)
+TEST(allocations_of_every_kind_of_edit_may_fail)
 {
-	(void)state;
 	fail_each(NT_DATA_DIR "/sparse.gltf", (nt_settings){.output_format = NT_FORMAT_GLB});
 	fail_each(NT_DATA_DIR "/morph.gltf", (nt_settings){.output_format = NT_FORMAT_GLTF, .embed = true});
 	fail_each(NT_DATA_DIR "/plates.gltf", (nt_settings){.output_format = NT_FORMAT_GLTF, .buffers = NT_BUFFERS_COPY,
@@ -28,6 +27,5 @@ static void allocations_of_every_kind_of_edit_may_fail(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = {cmocka_unit_test(allocations_of_every_kind_of_edit_may_fail)};
-	return cmocka_run_group_tests_name("gltf/edit/memory", tests, make_folder, remove_folder);
+	return run_group_within("gltf/edit/memory", make_folder, remove_folder);
 }
