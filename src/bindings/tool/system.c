@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <sys/file.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/xattr.h>
 #include <unistd.h>
@@ -169,6 +170,13 @@ static int refuse(void)
 {
 	errno = ENOTSUP;
 	return -1;
+}
+
+/* Blocks that files share. Emscripten's own ends the process. */
+int ioctl(int fd, int request, ...)
+{
+	(void)fd, (void)request;
+	return refuse();
 }
 
 /* Room for a file: its writes find out. */

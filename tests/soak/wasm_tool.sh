@@ -1,0 +1,93 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+#
+# tests/soak/wasm_tool.sh BUILD: the tool of the npm package (src/bindings/tool) does what BUILD's does: files, messages,
+# reports and exit codes are the same, for data, ../shared/models and goldens, and for commands that use more of the system
+# than one file in and out. A run over files in memory, as a page makes it, gives the same bytes. Builds the package, and
+# installs emscripten for it.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+native=$PWD/$1/nmtan package=$PWD/build/npm-tool
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+make -s wasm-tool >"$work/make.log" 2>&1 || { tail -n 20 "$work/make.log" | cut -c1-300; echo "wasm_tool.sh: cannot be built"; exit 1; }
+checked=0 faults=0
+
+# both NAME COMMAND: runs the command twice in folders of their own; nmtan is either tool there. Times are left out.
+both() {
+	local name=$1 tool
+	for tool in native npm; do
+		rm -rf "$work/$tool" && mkdir "$work/$tool"
+		(
+			cd "$work/$tool" || exit 1
+			if [ $tool = native ]; then
+				nmtan() { "$native" "$@"; }
+			else
+				nmtan() { node "$package/nmtan.js" "$@"; }
+			fi
+			eval "$2" >out 2>err
+			echo $? >status
+			sed -i -E 's/[0-9.e-]+ s$//; s/[0-9.e-]+ s(,|;)/\1/' err
+			find . -name .nmtan-record -delete
+			[ -z "$(find . -name '*.tmp')" ] || echo "temporary files are left" >>err
+		)
+	done
+	checked=$((checked + 1))
+	diff -r "$work/native" "$work/npm" >"$work/difference" || {
+		faults=$((faults + 1))
+		echo "wasm_tool.sh: $name:"
+		head -n 5 "$work/difference" | cut -c1-200
+	}
+}
+
+while IFS= read -r file; do
+	both "$file" "nmtan '$PWD/$file' out.glb --report=json:report.json"
+done < <(find -L data ../shared/models ../shared/golden -size -2M \
+	\( -name '*.obj' -o -name '*.glb' -o -name '*.gltf' -o -name '*.ply' -o -name '*.drc' \) | sort)
+
+cube=$PWD/data/mirrored_cube.obj
+both "a pipe" "nmtan - - --to=glb <'$cube' | cat >piped.glb"
+both "standard input" "nmtan - out.glb <'$cube'"
+both "standard output" "nmtan '$cube' -"
+both "a set" "nmtan '$cube' out.gltf && nmtan out.gltf out.gltf --existing=replace"
+both "PLY" "nmtan '$cube' out.ply && nmtan out.ply again.glb"
+both "Draco, compared" "nmtan '$cube' out.glb --draco && nmtan --verify out.glb again.glb"
+both "a folder" "cp '$PWD'/data/*.obj '$PWD'/data/*.mtl . && nmtan -d made -- *.obj"
+both "brought up to date" "cp '$cube' a.obj; nmtan --update -d made a.obj; nmtan --update -d made a.obj; touch a.obj; nmtan --update -d made a.obj"
+both "a difference" "nmtan '$cube' a.glb; nmtan '$cube' b.glb --method=area; nmtan --diff a.glb b.glb"
+both "checked" "nmtan --check '$cube' && nmtan --check --fail-on=info '$cube'"
+both "every report" "for kind in json sarif html csv markdown junit text; do nmtan --check --report=\$kind:report.\$kind '$cube'; done"
+both "no clobber" "echo mine >out.glb; nmtan --no-clobber '$cube' out.glb"
+both "in place" "nmtan '$cube' a.glb && chmod 640 a.glb && nmtan a.glb a.glb --existing=replace && stat -c %a a.glb"
+both "not there" "nmtan missing.obj out.glb"
+both "a wrong option" "nmtan --wrong"
+both "help" "nmtan --help"
+
+cat >"$work/memory.cjs" <<'END'
+const {readFileSync} = require('node:fs');
+const create = require(process.argv[2] + '/nmtan-tool.js');
+(async () => {
+	const source = readFileSync(process.argv[2] + '/run.js');
+	const {run} = await import('data:text/javascript;base64,' + source.toString('base64'));
+	const module = new WebAssembly.Module(readFileSync(process.argv[2] + '/nmtan-tool.wasm'));
+	const files = Object.fromEntries(['mirrored_cube.obj', 'mirrored_cube.mtl', 'bumps.png'].map((name) =>
+		[name, readFileSync('data/' + name)]));
+	const made = await run(create, module, {argv: ['mirrored_cube.obj', 'out.glb'], files});
+	const refused = await run(create, module, {argv: ['missing.obj', 'out.glb'], files});
+	if (Object.keys(made.files).join() !== 'out.glb' || made.status !== 0 || refused.status === 0 ||
+		!refused.stderr.includes('missing.obj') || Object.keys(refused.files).length)
+		throw new Error(JSON.stringify([made, refused]).slice(0, 300));
+	process.stdout.write(made.files['out.glb']);
+})();
+END
+"$native" -q "$cube" "$work/out.glb"
+checked=$((checked + 1))
+node "$work/memory.cjs" "$PWD/build/web-tool" >"$work/memory.glb" && cmp "$work/memory.glb" "$work/out.glb" ||
+	{ faults=$((faults + 1)); echo "wasm_tool.sh: files in memory"; }
+
+# A start, the best of five, below 150 ms; the package at most 6 MB.
+best=$(for _ in 1 2 3 4 5; do begin=$(date +%s%N); node "$package/nmtan.js" --version >/dev/null; echo $((($(date +%s%N) - begin) / 1000000)); done | sort -n | head -n 1)
+size=$(tar -czf - -C "$package" . | wc -c)
+[ "$best" -lt 150 ] && [ "$size" -lt 6000000 ] || { faults=$((faults + 1)); echo "wasm_tool.sh: a start takes $best ms, the package $size bytes"; }
+echo "wasm_tool.sh: $checked runs compared, $faults differ; a start takes $best ms, the package $size bytes"
+[ $faults = 0 ]
