@@ -26,34 +26,26 @@ static bool has(unsigned wanted, unsigned saved)
 }
 #endif
 
-bool nt_cpu_has(nt_isa isa)
-{
-	switch (isa) {
-	case NT_ISA_AUTO:
-	case NT_ISA_BASELINE:
-		return true;
-#if defined(__x86_64__)
-	case NT_ISA_AVX2:
-		return has(bit_AVX2, 0x6);
-	case NT_ISA_AVX512:
-		return has(bit_AVX512F | bit_AVX512BW | bit_AVX512DQ | bit_AVX512VL, 0xe6);
-#else
-	case NT_ISA_AVX2:
-	case NT_ISA_AVX512:
-		return false;
-#endif
-	}
-	return false;
-}
-
-/* Asked once. Threads that ask at the same time find the same. */
+/* Asked once: on a virtual machine each question takes some microseconds. Threads that ask at the same time find the
+ * same. */
 nt_isa nt_cpu_best(void)
 {
 	static nt_isa found = NT_ISA_AUTO;
 	nt_isa best = nt_atomic_load(&found, RELAXED);
 	if (best != NT_ISA_AUTO)
 		return best;
-	best = nt_cpu_has(NT_ISA_AVX512) ? NT_ISA_AVX512 : nt_cpu_has(NT_ISA_AVX2) ? NT_ISA_AVX2 : NT_ISA_BASELINE;
+	best = NT_ISA_BASELINE;
+#if defined(__x86_64__)
+	if (has(bit_AVX2, 0x6))
+		best = has(bit_AVX512F | bit_AVX512BW | bit_AVX512DQ | bit_AVX512VL, 0xe6) ? NT_ISA_AVX512
+			: NT_ISA_AVX2;
+#endif
 	nt_atomic_store(&found, best, RELAXED);
 	return best;
+}
+
+/* Each set has those before it. */
+bool nt_cpu_has(nt_isa isa)
+{
+	return isa <= nt_cpu_best();
 }
