@@ -89,6 +89,14 @@ for index_offset in none 0 5; do
 	done
 done
 
+scene "positions beside a block are the input's, whose bounds are no fault of ours"
+run -q "$data/mirrored_cube.obj" plain.gltf
+run -q --draco=sequential --existing=replace plain.gltf packed.gltf
+gltf packed.gltf beside 'const p = g.meshes[0].primitives[0];
+	delete p.extensions.KHR_draco_mesh_compression.attributes.POSITION; g.accessors[p.attributes.POSITION].max = [9, 9, 9]'
+run -q --verify --existing=replace --only=all beside.gltf o.gltf
+exits 0
+
 scene "a fan of one triangle has as many corners as vertices, in another order"
 run "$data/quad.obj" quad.gltf
 gltf quad.gltf fan 'const p = g.meshes[0].primitives[0];

@@ -6,12 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
+#include "file/image_type.h"
 #include "image/image.h"
 
 size_t LLVMFuzzerMutate(uint8_t *bytes, size_t size, size_t room);
 
-/* Larger images are decoded, and no more. */
-enum { MOST_PIXELS = 1 << 16 };
+/* Larger images are decoded, and no more; still larger ones a run refuses by its --max-pixels, not the decoder. */
+enum { MOST_PIXELS = 1 << 16, MOST_DECODED = 1 << 25 };
 
 static void require(bool good, const char *what, const nt_error *error)
 {
@@ -57,7 +58,11 @@ void fuzz_image(const uint8_t *bytes, size_t size)
 {
 	nt_pixels pixels;
 	nt_error error;
+	uint32_t sides[2];
 	nt_error_clear(&error);
+	nt_image_size(bytes, size, sides);
+	if ((uint64_t)sides[0] * sides[1] > MOST_DECODED)
+		return;
 	const nt_status status = nt_image_decode(bytes, size, &pixels, &error);
 	require(status != NT_ERROR_INTERNAL && (!status || strlen(error.message) >= 8), "no words", &error);
 	require(!status == (pixels.samples != NULL), "samples after a failure, or none", &error);

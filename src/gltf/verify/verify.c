@@ -555,7 +555,7 @@ static nt_status compare_edited(const mesh_check *check, unsigned threads, nt_er
 		return counts_match(check->mesh, view) ? NT_OK : fail_corner(check->mesh, 0, error);
 	status = decode_block(view, error);
 	if (status == NT_OK)
-		status = check_bounds(check->mesh, view, true, error);
+		status = check_bounds(check->mesh, view, view->position_id != UINT32_MAX, error);
 	if (status == NT_OK)
 		status = compare_block(check->mesh, view, threads, error);
 	nt_draco_free(view->block);
