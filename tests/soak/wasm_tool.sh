@@ -41,22 +41,22 @@ both() {
 }
 
 while IFS= read -r file; do
-	both "$file" "nmtan '$PWD/$file' out.glb --report=json:report.json"
+	both "$file" "nmtan '$PWD/$file' out.glb --report=report.json"
 done < <(find -L data ../shared/models ../shared/golden -size -2M \
 	\( -name '*.obj' -o -name '*.glb' -o -name '*.gltf' -o -name '*.ply' -o -name '*.drc' \) | sort)
 
 cube=$PWD/data/mirrored_cube.obj
-both "a pipe" "nmtan - - --to=glb <'$cube' | cat >piped.glb"
+both "a pipe" "nmtan -q - - <'$cube' | cat >piped.glb"
 both "standard input" "nmtan - out.glb <'$cube'"
 both "standard output" "nmtan '$cube' -"
 both "a set" "nmtan '$cube' out.gltf && nmtan out.gltf out.gltf --existing=replace"
 both "PLY" "nmtan '$cube' out.ply && nmtan out.ply again.glb"
-both "Draco, compared" "nmtan '$cube' out.glb --draco && nmtan --verify out.glb again.glb"
+both "Draco, compared" "nmtan '$cube' a.glb; nmtan a.glb out.glb --draco=edgebreaker --existing=replace; nmtan --verify out.glb again.glb --existing=replace"
 both "a folder" "cp '$PWD'/data/*.obj '$PWD'/data/*.mtl . && nmtan -d made -- *.obj"
 both "brought up to date" "cp '$cube' a.obj; nmtan --update -d made a.obj; nmtan --update -d made a.obj; touch a.obj; nmtan --update -d made a.obj"
-both "a difference" "nmtan '$cube' a.glb; nmtan '$cube' b.glb --method=area; nmtan --diff a.glb b.glb"
+both "a difference" "nmtan '$cube' a.glb; nmtan '$cube' b.glb --method=area; nmtan --check --diff a.glb b.glb"
 both "checked" "nmtan --check '$cube' && nmtan --check --fail-on=info '$cube'"
-both "every report" "for kind in json sarif html csv markdown junit text; do nmtan --check --report=\$kind:report.\$kind '$cube'; done"
+both "every report" "for kind in json sarif html csv markdown junit text; do nmtan --check --report=report.\$kind --report-format=\$kind '$cube'; done"
 both "no clobber" "echo mine >out.glb; nmtan --no-clobber '$cube' out.glb"
 both "in place" "nmtan '$cube' a.glb && chmod 640 a.glb && nmtan a.glb a.glb --existing=replace && stat -c %a a.glb"
 both "not there" "nmtan missing.obj out.glb"
