@@ -85,3 +85,5 @@ build/python/nmtan.whl: $(python_src) $(B)/libnmtan.so include/nmtan.h LICENSE
 
 build/python/nmtan.tar.gz: build/python/nmtan.whl build/amalgamation/nmtan.c
 	ln -sf "$$(basename "$$(python3 -B src/bindings/python/wheel.py --sdist build/amalgamation/nmtan.c $(@D))")" $@
+
+include src/bindings/web/web.mk

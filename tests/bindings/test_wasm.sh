@@ -19,26 +19,6 @@ printf '%s\n' LICENSE README.md core.js external.js external.node.js index.d.ts 
 	diff - names.txt >diff.txt || wrong "$(cat diff.txt)"
 finish_case
 
-# Runs a program that speaks TAP, each case under a prefix.
-cases_of() {
-	local prefix=$1 line
-	shift
-	node "$@" >"$WORK/tap.txt" 2>&1
-	local ended=$?
-	while IFS= read -r line; do
-		case $line in
-		"ok - "*) scene "$prefix: ${line#ok - }" ;;
-		"not ok - "*)
-			scene "$prefix: ${line#not ok - }"
-			wrong "$(grep "^#" "$WORK/tap.txt" | head -30)"
-			;;
-		esac
-	done <"$WORK/tap.txt"
-	scene "$prefix: ends with 0"
-	[ $ended = 0 ] && grep -q '^1\.\.' "$WORK/tap.txt" || wrong "$(tail -20 "$WORK/tap.txt" | sed "s,^,# ,")"
-	finish_case
-}
-
 cases_of wasm "$ROOT/tests/bindings/wasm.mjs" "$ROOT/build/npm" "$data" "$ROOT/include/nmtan.h"
 
 modules=$ROOT/build/clients

@@ -185,6 +185,26 @@ grid_obj() {
 	}'
 }
 
+# cases_of PREFIX PROGRAM ARGUMENTS...: what node says in TAP, each case under a prefix.
+cases_of() {
+	local prefix=$1 line
+	shift
+	node "$@" >"$WORK/tap.txt" 2>&1
+	local ended=$?
+	while IFS= read -r line; do
+		case $line in
+		"ok - "*) scene "$prefix: ${line#ok - }" ;;
+		"not ok - "*)
+			scene "$prefix: ${line#not ok - }"
+			wrong "$(grep "^#" "$WORK/tap.txt" | head -30)"
+			;;
+		esac
+	done <"$WORK/tap.txt"
+	scene "$prefix: ends with 0"
+	[ $ended = 0 ] && grep -q '^1\.\.' "$WORK/tap.txt" || wrong "$(tail -20 "$WORK/tap.txt" | sed "s,^,# ,")"
+	finish_case
+}
+
 done_testing() {
 	finish_case
 	echo "1..$cases"
