@@ -62,7 +62,7 @@ static void tell_facts(nt_finding_list *findings, const nt_place *place, const n
 		nt_finding_add(findings, NT_CODE_NMAP_CONSTANT, place, 1, NULL);
 	if (f->object_space)
 		nt_finding_add(findings, NT_CODE_NMAP_OBJECT_SPACE, place, 1, NULL);
-	else if (f->blue_below > 0.001)
+	else if (f->blue_below > 0.01)
 		nt_finding_add(findings, NT_CODE_NMAP_BLUE_BELOW_HALF, place, 1, "%.2g %% of the pixels",
 			100 * f->blue_below);
 	if (f->not_unit > 0.01)

@@ -114,7 +114,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a normal map whose blue channel was overwritten"),
 	ROW(NMAP_BLUE_BELOW_HALF, WARNING, "w--", "normal map with vectors that point into the surface",
 		"Pixels of a tangent-space map point out of the surface: blue is above one half. More than one "
-		"in a thousand do not.",
+		"in a hundred do not.",
 		"Bake the map again with a larger cage, or look for painted pixels.",
 		"a map with a pixel of (128, 128, 0)"),
 	ROW(NMAP_OBJECT_SPACE, WARNING, "w--", "normal map in object space",
@@ -373,10 +373,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"{count} {triangle has|triangles have} a bitangent that runs the wrong way",
 		"In glTF the bitangent cross(N, T) * w runs along -dP/dv, that is, w is +1 where the stored "
 		"UVs have a negative determinant. Here w is the opposite, or T and the bitangent are both "
-		"reversed, and the normal map's green channel is inverted. The finding gives the share: 100 % "
+		"reversed, and the normal map's green channel is inverted; its red one where T alone is reversed. The "
+		"finding gives the share: 100 % "
 		"by w means that the exporter's convention is inverted, which is what happens when V is not "
-		"flipped; reversed tangents were made for other texture coordinates. A warning where no "
-		"material uses the tangents, where they are right but for a texture transform that mirrors, "
+		"flipped; reversed tangents were made for other texture coordinates. An info where no "
+		"material uses the tangents; a warning where they are right but for a texture transform that mirrors, "
 		"and up to a thousandth of the triangles and of their area.",
 		"Compute the tangents again: nmtan --existing=replace.",
 		"a glTF quad, upright and not mirrored, with w = -1"),

@@ -124,12 +124,14 @@ static size_t tangent_count(const nt_check *check)
 	return check->stored == NT_STORED_CORNERS ? mesh->corner_count : mesh->vertex_count;
 }
 
-/* Tangents that no material uses cannot render wrong: then errors are warnings, and warnings infos. */
+/* Tangents that no material uses cannot render wrong: infos, but warnings where glTF itself is broken. */
 static nt_severity severity_of(const nt_check *check, nt_code code)
 {
-	const nt_severity severity = nt_code_info(code)->severity;
-	const bool unused = nt_is_gltf(check) && check->mesh->slots == 0;
-	return unused && severity > NT_SEVERITY_INFO ? (nt_severity)(severity - 1) : severity;
+	const bool broken = code == NT_CODE_TAN_NOT_FINITE || code == NT_CODE_TAN_ZERO ||
+		code == NT_CODE_TAN_NON_UNIT || code == NT_CODE_TAN_BAD_W;
+	if (nt_is_gltf(check) && check->mesh->slots == 0)
+		return broken ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO;
+	return nt_code_info(code)->severity;
 }
 
 /* On conversion: that tangents were kept although they are not usable. */
@@ -179,11 +181,13 @@ static nt_status check_each(nt_check *check)
 
 /* ---- signs ---- */
 
-/* Asked of triangles whose w is right. */
-static bool is_reversed(const nt_check *check, size_t t)
+/* Of triangles whose w is right, sign 1: whether T and the bitangent are reversed. Where w is wrong, sign -1: whether T
+ * alone is. */
+static bool is_reversed(const nt_check *check, size_t t, float sign)
 {
 	const nt_surface *s = &check->surface;
 	nt_tangent_triangle triangle = {.orientation = s->orientation[t]};
+	float tangents[3][4];
 	if (check->stored != NT_STORED_AUTHORED || !check->mesh->normals)
 		return false;
 	for (uint32_t k = 0; k < 3; k++) {
@@ -191,7 +195,9 @@ static bool is_reversed(const nt_check *check, size_t t)
 		triangle.positions[k] = nt_side_position(s, side);
 		triangle.normals[k] = check->mesh->normals + 3 * (size_t)nt_side_vertex(s, side);
 		triangle.texcoords[k] = nt_side_texcoord(s, side);
-		triangle.tangents[k] = nt_stored_tangent(check, nt_side_corner(s, side));
+		memcpy(tangents[k], nt_stored_tangent(check, nt_side_corner(s, side)), sizeof tangents[k]);
+		tangents[k][3] *= sign;
+		triangle.tangents[k] = tangents[k];
 	}
 	return nt_is_reversed(&triangle);
 }
@@ -199,6 +205,7 @@ static bool is_reversed(const nt_check *check, size_t t)
 typedef struct sign_tallies {
 	nt_tally mixed, wrong, of_quad;
 	size_t checked, by_w, reversed;
+	size_t by_t; /* of those by w: T is reversed, and the bitangent is right */
 	size_t untransformed; /* wrong, but right without the texture transform */
 	double wrong_area;
 } sign_tallies;
@@ -262,8 +269,9 @@ static void check_sign(const nt_check *check, size_t t, int orientation, sign_ta
 		nt_tally_triangle(check, &st->of_quad, t, w[0]);
 		return;
 	}
-	const bool reversed = !by_w && is_reversed(check, t);
+	const bool turned = is_reversed(check, t, by_w ? -1.0f : 1.0f), reversed = !by_w && turned;
 	st->by_w += by_w;
+	st->by_t += by_w && turned;
 	st->reversed += reversed;
 	st->untransformed += by_w && fits_untransformed(check, t, w[0]);
 	if (by_w || reversed) {
@@ -304,6 +312,7 @@ static nt_status check_signs(nt_check *check)
 		st.checked += work.parts[i].checked;
 		st.by_w += work.parts[i].by_w;
 		st.reversed += work.parts[i].reversed;
+		st.by_t += work.parts[i].by_t;
 		st.untransformed += work.parts[i].untransformed;
 		st.wrong_area += work.parts[i].wrong_area;
 	}
@@ -313,7 +322,7 @@ static nt_status check_signs(nt_check *check)
 	nt_tally_number(&st.wrong, "share", share);
 	nt_tally_number(&st.wrong, "judged_triangles", (double)st.checked);
 	nt_tally_number(&st.wrong, "wrong_w", (double)st.by_w);
-	nt_tally_number(&st.wrong, "reversed_tangents", (double)st.reversed);
+	nt_tally_number(&st.wrong, "reversed_tangents", (double)(st.reversed + st.by_t));
 	nt_tally_number(&st.wrong, "right_without_transform", (double)st.untransformed);
 	/* exporters disagree about texture transforms, and so do renderers: not an error */
 	const bool untransformed = st.untransformed > 0 && st.untransformed == st.wrong.count;
@@ -322,6 +331,7 @@ static nt_status check_signs(nt_check *check)
 		severity_of(check, untransformed || slivers ? NT_CODE_TAN_MIXED_W_TRIANGLE : NT_CODE_TAN_SIGN_MISMATCH),
 		"%.3g %% of %zu%s", 100.0 * share, st.checked,
 		untransformed	     ? ", they were made without the texture transform"
+		: 2 * st.by_t > st.wrong.count ? ", T is reversed with w: red is inverted, not green"
 		: st.by_w == st.checked ? ", the convention is inverted"
 		: st.by_w == 0	     ? ", the tangents are reversed too"
 				     : "");

@@ -63,7 +63,7 @@ TEST(unused_tangents_are_told_and_cannot_be_errors)
 		h->tangents[v][3] = -1.0f;
 	nt_report *report = hand_report(h, NULL);
 	hand_finding(report, NT_CODE_TAN_UNUSED);
-	assert_int_equal(hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH)->severity, NT_SEVERITY_WARNING);
+	assert_int_equal(hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH)->severity, NT_SEVERITY_INFO);
 	assert_true(hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH)->numbers[0].value == 1.0); /* all */
 	hand_free(h, report);
 }
@@ -97,6 +97,8 @@ TEST(each_kind_of_bad_tangent_has_its_code)
 			"100 % of 2, the convention is inverted"},
 		{{-1, 0, 0, 1}, 0, 3, NT_CODE_TAN_SIGN_MISMATCH, NT_SEVERITY_ERROR, 2, 2, 6,
 			"100 % of 2, the tangents are reversed too"},
+		{{-1, 0, 0, -1}, 0, 3, NT_CODE_TAN_SIGN_MISMATCH, NT_SEVERITY_ERROR, 2, 2, 6,
+			"100 % of 2, T is reversed with w: red is inverted, not green"},
 		{{1.0067f, 0, 0, 1}, 1, 1, NT_CODE_COUNT, 0, 0, 0, 0, ""}, /* within the validator's tolerance */
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
