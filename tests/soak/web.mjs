@@ -156,7 +156,7 @@ await page.evaluate(() => {
 });
 await drop('million.obj');
 await state('busy');
-await page.waitForFunction(() => document.querySelector('progress').value > 0 || /Tangents|Reading/.test(document.getElementById('stage').textContent));
+await page.waitForFunction(() => document.querySelector('progress').value > 0 || /read|Tangents/.test(document.getElementById('stage').textContent));
 check(await page.evaluate(() => window.gap) < 500, `the page waited ${await page.evaluate(() => window.gap)} ms`);
 await page.click('#cancel');
 await state('empty');

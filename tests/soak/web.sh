@@ -14,7 +14,7 @@ mkdir "$t/in" && cd "$t/in" || exit 1
 data=$OLDPWD/data
 cp "$data"/{head.obj,plates.glb,plates.gltf,plates.bin,bumps.png} .
 "$nmtan" -q --draco=edgebreaker --only=all --existing=replace plates.glb draco.glb
-head -c 20000 draco.glb >damaged.glb
+head -c 900 draco.glb >damaged.glb
 truncate -s 2200000000 large.glb
 cp head.obj '<img src=x onerror=window.broken=1>.obj'
 cp head.obj -- "-'\"\$(x).obj"
