@@ -14,7 +14,7 @@ const server = createServer(({url}, response) => {
 }).listen(0);
 const browser = await chromium.launch({executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
 	args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist']});
-const page = await browser.newPage({viewport: {width: 1360, height: 780}});
+const page = await browser.newPage({viewport: {width: 1260, height: 560}});
 await page.goto(`http://localhost:${server.address().port}/`);
 await page.setInputFiles('#choose-files', mesh);
 await page.waitForSelector('[data-state=report]');
