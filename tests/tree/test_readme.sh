@@ -90,7 +90,7 @@ run $entry "$data/quad.obj" "$data/damaged/glb_old.glb"
 
 scene "every target of make that README and measurements name is there"
 grep -ohE '(`|^    |^\$ )make [a-z]+(-[a-z]+)*' "$readme" "$ROOT/tests/bench/README.md" | sed "s/.*make //" | sort -u | while read -r target; do
-	grep -qE "^(\.PHONY:.* )?$target( |:|\$)" "$ROOT/Makefile" "$ROOT"/tests/tests.mk "$ROOT"/src/bindings/bindings.mk || echo "$target"
+	grep -qE "^(\.PHONY:.* )?$target( |:|\$)" "$ROOT/Makefile" "$ROOT"/tests/tests.mk "$ROOT"/src/bindings/*.mk "$ROOT"/src/bindings/*/*.mk || echo "$target"
 done >missing
 is "$(cat missing)" ""
 
