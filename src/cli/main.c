@@ -500,6 +500,30 @@ static void end_late(const nt_error *error)
 	_exit(NT_EXIT_LIMIT);
 }
 
+static struct rlimit data_before;
+
+/* What the system refuses from now on. Threads get their stacks all the same, of which they use little. */
+static void limit_memory(const nt_command *command)
+{
+	struct rlimit data, stack;
+	const uint64_t most = command->settings.max_memory;
+	if (!most || getrlimit(RLIMIT_DATA, &data) != 0 || getrlimit(RLIMIT_STACK, &stack) != 0)
+		return;
+	const uint64_t each = stack.rlim_cur == RLIM_INFINITY ? 2 << 20 : stack.rlim_cur;
+	data_before = data;
+	const uint64_t whole = most + each * (nt_thread_count(command->settings.threads) + 1);
+	if (data.rlim_cur == RLIM_INFINITY || whole < data.rlim_cur)
+		data.rlim_cur = whole;
+	setrlimit(RLIMIT_DATA, &data);
+}
+
+/* For what is told of the runs: what they have given back, a thread's heap may keep. */
+static void lift_memory_limit(const nt_command *command)
+{
+	if (command->settings.max_memory && data_before.rlim_cur)
+		setrlimit(RLIMIT_DATA, &data_before);
+}
+
 static int run_batch(const nt_command *command, nt_style style, const nt_report_plan *plan,
 	nt_batch *batch, nt_report_folder *folder)
 {
@@ -531,6 +555,7 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 	in_work.erases = s.progress && isatty(STDERR_FILENO);
 	in_work.count = batch->count;
 	nt_batch_run(batch, &settings, &options);
+	lift_memory_limit(command);
 	nt_progress_stop(s.progress);
 	tell_report(&s);
 	tell_files(&s);
@@ -589,20 +614,6 @@ static int run(nt_command *command, nt_style style, bool colour_on_stdout)
 	nt_report_plan_free(&plan);
 	nt_inputs_free(&inputs);
 	return code;
-}
-
-/* What the system refuses from now on. Threads get their stacks all the same, of which they use little. */
-static void limit_memory(const nt_command *command)
-{
-	struct rlimit data, stack;
-	const uint64_t most = command->settings.max_memory;
-	if (!most || getrlimit(RLIMIT_DATA, &data) != 0 || getrlimit(RLIMIT_STACK, &stack) != 0)
-		return;
-	const uint64_t each = stack.rlim_cur == RLIM_INFINITY ? 2 << 20 : stack.rlim_cur;
-	const uint64_t whole = most + each * (nt_thread_count(command->settings.threads) + 1);
-	if (data.rlim_cur == RLIM_INFINITY || whole < data.rlim_cur)
-		data.rlim_cur = whole;
-	setrlimit(RLIMIT_DATA, &data);
 }
 
 static size_t put_number(char *text, size_t number)
