@@ -378,7 +378,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"by w means that the exporter's convention is inverted, which is what happens when V is not "
 		"flipped; reversed tangents were made for other texture coordinates. An info where no "
 		"material uses the tangents; a warning where they are right but for a texture transform that mirrors, "
-		"and up to a thousandth of the triangles and of their area.",
+		"and up to two thousandths of the triangles and of their area.",
 		"Compute the tangents again: nmtan --existing=replace.",
 		"a glTF quad, upright and not mirrored, with w = -1"),
 	ROW(TAN_DIRECTION_MISMATCH, WARNING, "w--",

@@ -29,7 +29,7 @@ static const double PARALLEL_DEGREES = 1.0, ORTHOGONAL_DEGREES = 1.0, MISMATCH_D
 static const double MISMATCH_SHARE = 0.01;
 
 /* Share of the triangles and of their area up to which wrong signs are a warning: a few slivers. */
-static const double SLIVER_SHARE = 0.001;
+static const double SLIVER_SHARE = 0.002;
 
 const double nt_angle_bins[NT_ANGLE_BINS] = {1.0, 5.0, 15.0, 30.0, 60.0, 180.0};
 
