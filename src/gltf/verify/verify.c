@@ -472,6 +472,7 @@ typedef struct mesh_check {
 	primitive_view *views; /* [view_count] the primitives that it became */
 	size_t view_count;
 	uint64_t mode; /* of an edited document's primitive */
+	bool decoded; /* its positions were in a block of the input */
 	nt_status status;
 } mesh_check;
 
@@ -512,8 +513,14 @@ static nt_status open_composed(const verification *v, mesh_check *check, size_t 
 static nt_status open_edited(const verification *v, mesh_check *check, nt_error *error)
 {
 	const nt_mesh *mesh = check->mesh;
+	const nt_gltf *document = v->scene->source;
+	const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
+	uint64_t positions;
 	check->mode = NT_GLTF_TRIANGLES;
-	nt_json_get_uint64(nt_json_find(nt_gltf_primitive_of(v->scene->source, mesh), "mode"), &check->mode);
+	nt_json_get_uint64(nt_json_find(primitive, "mode"), &check->mode);
+	check->decoded = document->decoded &&
+		nt_json_get_uint64(nt_json_find(nt_json_find(primitive, "attributes"), "POSITION"), &positions) &&
+		positions < document->accessor_count && document->decoded[positions].elements;
 	const nt_status status = open_primitive(v->model, mesh->gltf_mesh, mesh->gltf_primitive, check->views, error);
 	return status == NT_OK ? open_targets(v->model, mesh, check->views, error) : status;
 }
@@ -546,7 +553,7 @@ static nt_status open_checks(verification *v, nt_error *error)
 static nt_status compare_edited(const mesh_check *check, unsigned threads, nt_error *error)
 {
 	primitive_view *view = check->views;
-	nt_status status = view->packed ? NT_OK : check_bounds(check->mesh, view, check->mesh->compressed, error);
+	nt_status status = view->packed ? NT_OK : check_bounds(check->mesh, view, check->decoded, error);
 	if (status != NT_OK)
 		return status;
 	if (!view->packed && check->mode == NT_GLTF_TRIANGLES && corner_count(view) == check->mesh->corner_count)
