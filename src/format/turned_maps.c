@@ -2,8 +2,9 @@
 /*
  * Normal maps of a glTF turned: see turned_maps.h. An image is decoded once, however many materials have it as a
  * normal map. Whoever else samples it keeps it: textures are counted by who refers to them, as normal map and at all,
- * and where the two differ the material gets a texture of its own. Extensions whose textures are not called ...Texture
- * are not seen; a texture that nobody is seen to use counts as theirs.
+ * and where the two differ the material gets a texture of its own. VRM 0 says in the root what shaders sample, normal
+ * maps once more. Other extensions whose textures are not called ...Texture are not seen; a texture that nobody is seen
+ * to use counts as theirs.
  */
 #include "format/turned_maps.h"
 
@@ -15,12 +16,16 @@
 #include "gltf/document.h"
 #include "image/image.h"
 
-static const char *const slot_names[2] = {"normalTexture", "clearcoatNormalTexture"};
+/* Where slots are, and what they are called there. */
+enum { CLEARCOAT = 1, VRM, SLOT_COUNT };
+static const char *const slots[SLOT_COUNT][3] = {{"materials", "", "normalTexture"},
+	{"materials", "extensions/KHR_materials_clearcoat/", "clearcoatNormalTexture"},
+	{"extensions/VRM/materialProperties", "textureProperties/", "_BumpMap"}};
 
 /* A normal map of a material. */
 typedef struct use {
 	uint32_t material, texture, image;
-	int slot;   /* of slot_names */
+	int slot;   /* of slots */
 	bool clamp; /* its sampler does */
 } use;
 
@@ -50,19 +55,25 @@ static nt_json_value *texture_at(const turning *t, uint32_t index)
 	return nt_json_at(nt_gltf_root_member(t->document, "textures"), index);
 }
 
-static nt_json_value *info_at(const turning *t, uint32_t material, int slot)
+/* The texture's number of a slot. */
+static nt_json_value *number_at(const turning *t, uint32_t material, int slot)
 {
 	nt_json_value *m = nt_json_at(nt_gltf_root_member(t->document, "materials"), material);
-	if (slot)
+	if (slot == VRM) {
+		m = nt_json_find(nt_gltf_root_member(t->document, "extensions"), "VRM");
+		m = nt_json_find(nt_json_at(nt_json_find(m, "materialProperties"), material), "textureProperties");
+		return nt_json_find(m, slots[slot][2]);
+	}
+	if (slot == CLEARCOAT)
 		m = nt_json_find(nt_json_find(m, "extensions"), "KHR_materials_clearcoat");
-	return nt_json_find(m, slot_names[slot]);
+	return nt_json_find(nt_json_find(m, slots[slot][2]), "index");
 }
 
-/* The index that a member has, below a count. */
-static bool get_index(const nt_json_value *object, const char *name, size_t count, uint32_t *index)
+/* The index that a value is, below a count. */
+static bool get_index(const nt_json_value *number, size_t count, uint32_t *index)
 {
 	uint64_t value;
-	if (!nt_json_get_uint64(nt_json_find(object, name), &value) || value >= count)
+	if (!nt_json_get_uint64(number, &value) || value >= count)
 		return false;
 	*index = (uint32_t)value;
 	return true;
@@ -72,8 +83,8 @@ static void tell(const turning *t, const use *u, nt_code code, const char *what)
 {
 	nt_place place;
 	nt_place_clear(&place);
-	snprintf(place.pointer, sizeof place.pointer, "/materials/%u/%s%s", u->material,
-		u->slot ? "extensions/KHR_materials_clearcoat/" : "", slot_names[u->slot]);
+	const char *const *slot = slots[u->slot];
+	snprintf(place.pointer, sizeof place.pointer, "/%s/%u/%s%s", slot[0], u->material, slot[1], slot[2]);
 	nt_finding_add(&t->scene->findings, code, &place, 1, "%.200s", what);
 }
 
@@ -85,7 +96,7 @@ static bool clamps(const turning *t, const nt_json_value *texture)
 	const nt_json_value *samplers = nt_gltf_root_member(t->document, "samplers");
 	uint32_t sampler;
 	uint64_t wrap = 0;
-	if (get_index(texture, "sampler", nt_json_count(samplers), &sampler))
+	if (get_index(nt_json_find(texture, "sampler"), nt_json_count(samplers), &sampler))
 		nt_json_get_uint64(nt_json_find(nt_json_at(samplers, sampler), "wrapS"), &wrap);
 	return wrap == CLAMP_TO_EDGE;
 }
@@ -93,7 +104,7 @@ static bool clamps(const turning *t, const nt_json_value *texture)
 static void find_use(turning *t, uint32_t material, int slot)
 {
 	use u = {.material = material, .slot = slot};
-	if (!get_index(info_at(t, material, slot), "index", t->texture_count, &u.texture))
+	if (!get_index(number_at(t, material, slot), t->texture_count, &u.texture))
 		return;
 	const nt_json_value *texture = texture_at(t, u.texture);
 	for (nt_image_type type = NT_IMAGE_KTX2; type <= NT_IMAGE_WEBP; type++)
@@ -101,7 +112,8 @@ static void find_use(turning *t, uint32_t material, int slot)
 			tell(t, &u, NT_CODE_NMAP_NOT_TURNED, nt_image_type_name(type));
 			return;
 		}
-	if (!get_index(texture, "source", nt_json_count(nt_gltf_root_member(t->document, "images")), &u.image))
+	const size_t image_count = nt_json_count(nt_gltf_root_member(t->document, "images"));
+	if (!get_index(nt_json_find(texture, "source"), image_count, &u.image))
 		return;
 	u.clamp = clamps(t, texture);
 	size_t j = 0;
@@ -112,8 +124,8 @@ static void find_use(turning *t, uint32_t material, int slot)
 	t->uses[t->use_count++] = u;
 }
 
-/* Counts who refers to textures, below one value. */
-static void count_users(const turning *t, const nt_json_value *value)
+/* Counts who refers to textures, below one value; whether its members are numbers of textures, as VRM's are. */
+static void count_users(const turning *t, const nt_json_value *value, bool numbers)
 {
 	static const char ending[] = "Texture";
 	for (size_t i = 0; i < nt_json_count(value); i++) {
@@ -121,10 +133,12 @@ static void count_users(const turning *t, const nt_json_value *value)
 		const char *key = nt_json_key(value, i, &length);
 		const nt_json_value *member = nt_json_at(value, i);
 		uint32_t texture;
-		if (key && length >= sizeof ending - 1 && strcmp(key + length + 1 - sizeof ending, ending) == 0 &&
-			get_index(member, "index", t->texture_count, &texture))
+		const bool info = key && length >= sizeof ending - 1 &&
+			strcmp(key + length + 1 - sizeof ending, ending) == 0;
+		const nt_json_value *number = numbers ? member : info ? nt_json_find(member, "index") : NULL;
+		if (get_index(number, t->texture_count, &texture))
 			t->all[texture]++;
-		count_users(t, member);
+		count_users(t, member, key && (!strcmp(key, "textureProperties") || !strcmp(key, "meta")));
 	}
 }
 
@@ -187,7 +201,7 @@ static bool is_free(const turning *t, uint32_t image)
 {
 	for (uint32_t i = 0; i < t->texture_count; i++) {
 		uint32_t source;
-		if (get_index(texture_at(t, i), "source", SIZE_MAX, &source) && source == image &&
+		if (get_index(nt_json_find(texture_at(t, i), "source"), SIZE_MAX, &source) && source == image &&
 			(!t->all[i] || t->all[i] != t->turned[i]))
 			return false;
 	}
@@ -211,15 +225,15 @@ static void refer(const turning *t, uint32_t from, uint32_t to)
 	nt_json *json = t->document->json;
 	for (uint32_t i = 0; i < t->texture_count; i++) {
 		uint32_t source, texture = i;
-		if (!t->turned[i] || !get_index(texture_at(t, i), "source", SIZE_MAX, &source) || source != from)
+		if (!t->turned[i] || !get_index(nt_json_find(texture_at(t, i), "source"), SIZE_MAX, &source) ||
+			source != from)
 			continue;
 		if (t->all[i] != t->turned[i])
 			texture = append_copy(t, "textures", i);
 		nt_json_set_uint64(json, nt_json_put(json, texture_at(t, texture), "source"), to);
 		for (const use *u = t->uses; texture != i && u < t->uses + t->use_count; u++)
 			if (u->texture == i)
-				nt_json_set_uint64(json, nt_json_put(json, info_at(t, u->material, u->slot), "index"),
-					texture);
+				nt_json_set_uint64(json, number_at(t, u->material, u->slot), texture);
 	}
 }
 
@@ -248,18 +262,19 @@ nt_status nt_turned_maps_make(nt_scene *scene, const nt_turning *how, nt_turned_
 	const nt_json_value *materials = nt_gltf_root_member(t.document, "materials");
 	const size_t count = nt_json_count(materials);
 	t.texture_count = nt_json_count(nt_gltf_root_member(t.document, "textures"));
-	t.uses = nt_calloc(2 * count, sizeof *t.uses);
-	t.jobs = nt_calloc(2 * count, sizeof *t.jobs);
+	t.uses = nt_calloc(SLOT_COUNT * count, sizeof *t.uses);
+	t.jobs = nt_calloc(SLOT_COUNT * count, sizeof *t.jobs);
 	t.all = nt_calloc(2 * t.texture_count, sizeof *t.all);
 	nt_status status = t.uses && t.jobs && t.all ? NT_OK : nt_fail_memory(error);
 	for (uint32_t m = 0; m < count && !status; m++)
-		for (int slot = 0; slot < 2; slot++)
+		for (int slot = 0; slot < SLOT_COUNT; slot++)
 			find_use(&t, m, slot);
 	if (!status)
 		status = open_jobs(&t, error);
 	if (!status) {
 		t.turned = t.all + t.texture_count;
-		count_users(&t, materials);
+		count_users(&t, materials, false);
+		count_users(&t, nt_json_find(nt_gltf_root_member(t.document, "extensions"), "VRM"), false);
 		nt_parallel_items(nt_thread_count(how->threads), t.job_count, make, &t);
 	}
 	for (size_t j = 0; j < t.job_count && !status; j++)

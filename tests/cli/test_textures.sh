@@ -550,6 +550,18 @@ exits 0
 is "$(gltf out.gltf '[g.images, g.textures, g.materials]')" '[[{"name":"n","uri":"down.png"},{"name":"n","uri":"down-green-up.png"}],[{"source":0},{"source":1,"name":"second"},{"source":1}],[{"name":"m","normalTexture":{"index":2},"pbrMetallicRoughness":{"metallicFactor":0},"occlusionTexture":{"index":0}},{"normalTexture":{"index":1},"extensions":{"KHR_materials_clearcoat":{"clearcoatNormalTexture":{"index":2}}}}]]'
 echo "$PWD/out.gltf" >pairs
 valid --pairs pairs
+# VRM 0 has numbers of textures in the root; of these _BumpMap is a normal map. Of VRM 1 mtoon has textures in the material.
+changed quad.gltf vrm.gltf 'm = g["materials"]; m[0]["extensions"] = {"VRMC_materials_mtoon": {"matcapTexture": {"index": 0}}}
+g["extensionsUsed"] = ["VRM", "VRMC_materials_mtoon"]; g["textures"].append({"source": 0})
+m.append({"normalTexture": {"index": 1}})
+g["extensions"] = {"VRM": {"meta": {"texture": 0}, "materialProperties": [{"textureProperties": {"_BumpMap": 0}},
+{"textureProperties": {"_MainTex": 1, "_BumpMap": 1}}, {"textureProperties": {"_BumpMap": 1}}]}}'
+run --verify --flip-green=auto vrm.gltf out.gltf
+exits 0
+is "$(gltf out.gltf '[g.textures, g.materials.map(m => [m.normalTexture.index, m.extensions]), g.extensions.VRM]')" '[[{"source":0},{"source":0},{"source":1},{"source":1}],[[2,{"VRMC_materials_mtoon":{"matcapTexture":{"index":0}}}],[3,null]],{"meta":{"texture":0},"materialProperties":[{"textureProperties":{"_BumpMap":2}},{"textureProperties":{"_MainTex":1,"_BumpMap":3}},{"textureProperties":{"_BumpMap":1}}]}]'
+changed quad.gltf vrm.gltf 'g["extensions"] = {"VRM": {"materialProperties": [{"textureProperties": {"_BumpMap": 0}}]}}'
+run --flip-green=auto vrm.gltf out.gltf
+is "$(gltf out.gltf '[g.images, g.textures, g.extensions.VRM.materialProperties]')" '[[{"name":"down","uri":"down-green-up.png"}],[{"source":0}],[{"textureProperties":{"_BumpMap":0}}]]'
 
 scene "KTX2 and WebP are named as not turned, what is damaged as that"
 hills down.png -1
