@@ -47,10 +47,7 @@ typedef struct nt_meshopt_table {
 
 typedef struct nt_openmesh_table {
 	nt_module_head head;
-	__typeof__(nt_halfedges_build) *build;
-	__typeof__(nt_halfedges_free) *free;
-	__typeof__(nt_halfedges_left_out) *left_out;
-	__typeof__(nt_halfedges_chains) *chains;
+	__typeof__(nt_walk_marked) *walk;
 } nt_openmesh_table;
 
 typedef struct nt_tinygltf_table {

@@ -88,7 +88,6 @@ static bool any_fork(const ends *e, const nt_marks *marks, uint8_t *degree)
 typedef struct vicinity {
 	uint32_t *triangles; /* [triangle_count][3] points, renumbered */
 	uint32_t *origin;    /* [triangle_count] triangle of the surface */
-	uint32_t *points;    /* [point_count] point of the surface */
 	size_t triangle_count, point_count;
 	uint8_t *marked;     /* [3 * triangle_count] */
 } vicinity;
@@ -113,17 +112,14 @@ static nt_status find_vicinity(const ends *e, const nt_marks *marks, nt_scratch 
 		}
 	v->triangles = nt_scratch_alloc(scratch, 3 * v->triangle_count, sizeof *v->triangles);
 	v->origin = nt_scratch_alloc(scratch, v->triangle_count, sizeof *v->origin);
-	v->points = nt_scratch_alloc(scratch, 3 * v->triangle_count, sizeof *v->points);
 	v->marked = nt_scratch_alloc(scratch, 3 * v->triangle_count, 1);
-	if (!v->triangles || !v->origin || !v->points || !v->marked)
+	if (!v->triangles || !v->origin || !v->marked)
 		return NT_ERROR_MEMORY;
 	for (size_t n = 0, t = 0; (t = nt_bit_next(near, t, s->triangle_count)) < s->triangle_count; n++, t++) {
 		for (size_t k = 0; k < 3; k++) {
 			const uint32_t point = nt_side_point(s, 3 * t + k);
-			if (number[point] == NT_NONE) {
-				number[point] = (uint32_t)v->point_count;
-				v->points[v->point_count++] = point;
-			}
+			if (number[point] == NT_NONE)
+				number[point] = (uint32_t)v->point_count++;
 			v->triangles[3 * n + k] = number[point];
 			v->marked[3 * n + k] = nt_bit(marks->sides, 3 * t + k);
 		}
@@ -134,72 +130,34 @@ static nt_status find_vicinity(const ends *e, const nt_marks *marks, nt_scratch 
 
 /* ---- OpenMesh's walks as runs ---- */
 
-/* The side of the surface that a side of the vicinity is, NT_NONE for NT_OPEN. */
-static uint32_t original_side(const vicinity *v, uint32_t side)
-{
-	return side == NT_OPEN ? NT_NONE : 3 * v->origin[side / 3] + side % 3;
-}
-
 static void add_run(runs *r, const ends *e, size_t first, bool closed)
 {
 	const size_t count = r->side_count - first;
-	if (count == 0)
-		return;
 	const uint32_t a = r->sides[first], b = r->sides[r->side_count - 1];
 	r->items[r->count++] = (run){.first = first, .count = count, .closed = closed,
 		.ends = {r->reversed[first] ? end_of(e, a) : begin_of(e, a),
 			r->reversed[r->side_count - 1] ? begin_of(e, b) : end_of(e, b)}};
 }
 
-static void take_walk(const ends *e, const vicinity *v, const nt_walks *walks, size_t walk, const nt_marks *marks,
-	uint64_t *taken, runs *r)
-{
-	const size_t first = r->side_count;
-	bool whole = true;
-	for (size_t step = walks->first[walk]; step < walks->first[walk + 1]; step++) {
-		/* the marked one of the step's two sides */
-		uint32_t side = original_side(v, walks->left[step]);
-		if (side == NT_NONE || !nt_bit(marks->sides, side))
-			side = original_side(v, walks->right[step]);
-		if (side != NT_NONE && !nt_bit(marks->sides, side))
-			side = NT_NONE;
-		if (side == NT_NONE || nt_bit(taken, side)) {
-			whole = false;
-			continue;
-		}
-		nt_bit_set(taken, side);
-		r->sides[r->side_count] = side;
-		r->reversed[r->side_count++] = nt_side_point(e->s, side) != v->points[walks->from[step]];
-	}
-	if (whole || r->side_count - first <= 1) {
-		add_run(r, e, first, whole && walks->closed[walk]);
-		return;
-	}
-	/* cannot be, but then each edge is a run of its own: joining puts them together */
-	const size_t end = r->side_count;
-	for (size_t i = first; i < end; i++) {
-		r->side_count = i + 1;
-		add_run(r, e, i, false);
-	}
-}
+typedef struct walk_taking {
+	const ends *e;
+	const vicinity *v;
+	uint64_t *taken;
+	runs *r;
+} walk_taking;
 
-static nt_status take_walks(const ends *e, const vicinity *v, const nt_marks *marks, uint64_t *taken, runs *r,
-	size_t *left_out, nt_error *error)
+static void take_walk(void *context, const uint32_t *steps, size_t count, bool closed)
 {
-	nt_halfedges *mesh = NULL;
-	nt_status status = nt_halfedges_build(&mesh, v->point_count, v->triangles,
-		v->triangle_count, error);
-	if (status)
-		return status;
-	const uint32_t *unused;
-	*left_out = nt_halfedges_left_out(mesh, &unused);
-	nt_walks walks = {0};
-	status = nt_halfedges_chains(mesh, v->marked, &walks, error);
-	for (size_t w = 0; !status && w < walks.count; w++)
-		take_walk(e, v, &walks, w, marks, taken, r);
-	nt_walks_free(&walks);
-	nt_halfedges_free(mesh);
-	return status;
+	const walk_taking *t = context;
+	runs *r = t->r;
+	const size_t first = r->side_count;
+	for (size_t i = 0; i < count; i++) {
+		const uint32_t near = steps[i] / 2, side = 3 * t->v->origin[near / 3] + near % 3;
+		nt_bit_set(t->taken, side);
+		r->sides[r->side_count] = side;
+		r->reversed[r->side_count++] = steps[i] % 2;
+	}
+	add_run(r, t->e, first, closed);
 }
 
 /* ---- joining ---- */
@@ -346,8 +304,10 @@ nt_status nt_chains_trace(const nt_surface *surface, const nt_marks *marks, nt_s
 	if (marks->conflicts || any_fork(&e, marks, degree)) {
 		vicinity v;
 		status = find_vicinity(&e, marks, scratch, &v);
+		walk_taking taking = {&e, &v, taken, &r};
 		if (!status)
-			status = take_walks(&e, &v, marks, taken, &r, &chains->left_out, error);
+			status = nt_walk_marked(&(nt_walked_mesh){v.point_count, v.triangle_count, v.triangles,
+				v.marked}, take_walk, &taking, &chains->left_out, error);
 		if (status)
 			return status;
 	}

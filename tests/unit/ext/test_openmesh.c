@@ -6,39 +6,53 @@
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
-static nt_halfedges *built(size_t vertex_count, const uint32_t (*triangles)[3], size_t count)
+enum { MOST_STEPS = 16 };
+
+/* The walks, as vertices where steps begin and end. */
+typedef struct walks {
+	const nt_walked_mesh *mesh;
+	size_t count, left_out, step_count;
+	size_t ends[MOST_STEPS]; /* step behind the last one of a walk */
+	bool closed[MOST_STEPS];
+	uint32_t sides[MOST_STEPS], from[MOST_STEPS], to[MOST_STEPS];
+	bool is_large; /* only counted */
+} walks;
+
+/* Steps are of marked sides and connected; a closed walk ends where it begins. */
+static void take(void *context, const uint32_t *steps, size_t count, bool closed)
 {
-	nt_halfedges *mesh;
-	nt_error error;
-	assert_int_equal(nt_halfedges_build(&mesh, vertex_count, &triangles[0][0], count, &error),
-		NT_OK);
-	return mesh;
+	walks *w = context;
+	uint32_t first = 0, before = 0;
+	assert_true(count > 0);
+	for (size_t i = 0; i < count; i++) {
+		const uint32_t side = steps[i] / 2, a = w->mesh->triangles[side],
+			b = w->mesh->triangles[side % 3 == 2 ? side - 2 : side + 1];
+		const uint32_t from = steps[i] % 2 ? b : a;
+		assert_true(w->mesh->marked[side]);
+		if (i > 0)
+			assert_int_equal(from, before);
+		else
+			first = from;
+		before = steps[i] % 2 ? a : b;
+		if (w->is_large)
+			continue;
+		w->sides[w->step_count] = side;
+		w->from[w->step_count] = from;
+		w->to[w->step_count++] = before;
+	}
+	assert_true(!closed || before == first);
+	w->closed[w->count] = closed;
+	w->ends[w->count++] = w->is_large ? count : w->step_count;
 }
 
-/* Walks are connected, end where they say, and each step's sides name its two vertices. */
-static void assert_sound(const nt_walks *walks, const uint32_t (*triangles)[3])
+static walks walks_of(const uint32_t (*triangles)[3], size_t count, size_t vertex_count, const uint8_t *marked)
 {
-	const uint32_t *corners = &triangles[0][0];
-	for (size_t w = 0; w < walks->count; w++) {
-		assert_true(walks->first[w] < walks->first[w + 1]);
-		for (size_t s = walks->first[w]; s < walks->first[w + 1]; s++) {
-			const uint32_t l = walks->left[s], r = walks->right[s];
-			assert_true(l != NT_OPEN || r != NT_OPEN);
-			if (l != NT_OPEN) {
-				assert_int_equal(corners[l], walks->from[s]);
-				assert_int_equal(corners[l / 3 * 3 + (l + 1) % 3], walks->to[s]);
-			}
-			if (r != NT_OPEN) {
-				assert_int_equal(corners[r], walks->to[s]);
-				assert_int_equal(corners[r / 3 * 3 + (r + 1) % 3], walks->from[s]);
-			}
-			if (s > walks->first[w])
-				assert_int_equal(walks->from[s], walks->to[s - 1]);
-		}
-		const size_t begin = walks->first[w], end = walks->first[w + 1] - 1;
-		if (walks->closed[w])
-			assert_int_equal(walks->from[begin], walks->to[end]);
-	}
+	const nt_walked_mesh mesh = {vertex_count, count, &triangles[0][0], marked};
+	walks w = {.mesh = &mesh};
+	nt_error error;
+	assert_int_equal(nt_walk_marked(&mesh, take, &w, &w.left_out, &error), NT_OK);
+	w.mesh = NULL;
+	return w;
 }
 
 /* 3-4-5
@@ -46,49 +60,35 @@ static void assert_sound(const nt_walks *walks, const uint32_t (*triangles)[3])
  * 0-1-2 */
 static const uint32_t strip[][3] = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}};
 
-static uint32_t side_between(const uint32_t (*triangles)[3], size_t count, uint32_t a, uint32_t b)
+/* The side from a to b; as many as there are: none. */
+static size_t side_between(const uint32_t (*triangles)[3], size_t count, uint32_t a, uint32_t b)
 {
-	for (uint32_t s = 0; s < 3 * count; s++)
-		if (triangles[s / 3][s % 3] == a && triangles[s / 3][(s + 1) % 3] == b)
-			return s;
-	return NT_OPEN;
-}
-
-/* The chains of marked sides. */
-static nt_walks chains_of(const nt_halfedges *mesh, const uint8_t *marked, const uint32_t (*triangles)[3])
-{
-	nt_walks walks;
-	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NT_OK);
-	assert_sound(&walks, triangles);
-	return walks;
+	size_t s = 0;
+	while (s < 3 * count && (triangles[s / 3][s % 3] != a || triangles[s / 3][(s + 1) % 3] != b))
+		s++;
+	return s;
 }
 
 /* The walks along sides that no other is opposite to. */
-static nt_walks boundary_of(const nt_halfedges *mesh, const uint32_t (*triangles)[3], size_t count)
+static walks boundary_of(const uint32_t (*triangles)[3], size_t count, size_t vertex_count)
 {
 	uint8_t marked[64] = {0};
 	assert_true(3 * count <= sizeof marked);
 	for (size_t s = 0; s < 3 * count; s++)
 		marked[s] = side_between(triangles, count, triangles[s / 3][(s + 1) % 3], triangles[s / 3][s % 3]) ==
-			NT_OPEN;
-	return chains_of(mesh, marked, triangles);
+			3 * count;
+	return walks_of(triangles, count, vertex_count, marked);
 }
 
 TEST(strip_has_one_boundary_loop_in_order)
 {
-	nt_halfedges *mesh = built(6, strip, COUNT(strip));
-	const uint32_t *left_out;
-	assert_int_equal(nt_halfedges_left_out(mesh, &left_out), 0);
-	nt_walks loops = boundary_of(mesh, strip, COUNT(strip));
+	const walks loops = boundary_of(strip, COUNT(strip), 6);
+	assert_int_equal(loops.left_out, 0);
 	assert_int_equal(loops.count, 1);
 	assert_true(loops.closed[0]);
 	static const uint32_t expected[] = {0, 1, 2, 5, 4, 3};
-	assert_int_equal(loops.first[1], 6);
+	assert_int_equal(loops.ends[0], 6);
 	assert_memory_equal(loops.from, expected, sizeof expected);
-	for (size_t step = 0; step < 6; step++)
-		assert_int_equal(loops.right[step], NT_OPEN);
-	nt_walks_free(&loops);
-	nt_halfedges_free(mesh);
 }
 
 /* A closed box: corner b has x = bit 0, y = bit 1, z = bit 2. */
@@ -103,112 +103,93 @@ static const uint32_t cube[][3] = {
 
 TEST(closed_seams_are_walked_round)
 {
-	nt_halfedges *mesh = built(8, cube, COUNT(cube));
 	/* the rim of z = 1: 4-5-7-6, marked in no particular order and from either side */
 	uint8_t marked[36] = {0};
 	marked[side_between(cube, 12, 7, 6)] = 1;
 	marked[side_between(cube, 12, 5, 4)] = 1;
 	marked[side_between(cube, 12, 5, 7)] = 1;
 	marked[side_between(cube, 12, 4, 6)] = 1;
-	nt_walks walks = chains_of(mesh, marked, cube);
-	assert_int_equal(walks.count, 1);
-	assert_true(walks.closed[0]);
-	static const uint32_t rim[] = {4, 5, 7, 6}; /* lowest side: 6, which is 4-5 of triangle 2 */
-	assert_int_equal(walks.first[1], 4);
-	assert_int_equal(walks.left[0], 6);
-	assert_memory_equal(walks.from, rim, sizeof rim);
-	nt_walks_free(&walks);
+	walks w = walks_of(cube, 12, 8, marked);
+	assert_int_equal(w.count, 1);
+	assert_true(w.closed[0]);
+	static const uint32_t rim[] = {4, 5, 7, 6}; /* lowest side of the edges: 6, which is 4-5 of triangle 2 */
+	assert_int_equal(w.ends[0], 4);
+	assert_memory_equal(w.from, rim, sizeof rim);
 
 	/* the rim and one upright edge: vertex 4 is a junction, so the rim begins there */
 	marked[side_between(cube, 12, 0, 4)] = 1;
-	walks = chains_of(mesh, marked, cube);
-	assert_int_equal(walks.count, 2);
-	assert_true(walks.closed[0]);
-	assert_int_equal(walks.from[0], 4);
-	assert_false(walks.closed[1]);
-	assert_int_equal(walks.first[2] - walks.first[1], 1);
-	nt_walks_free(&walks);
-	nt_halfedges_free(mesh);
+	w = walks_of(cube, 12, 8, marked);
+	assert_int_equal(w.count, 2);
+	assert_true(w.closed[0]);
+	assert_int_equal(w.from[0], 4);
+	assert_false(w.closed[1]);
+	assert_int_equal(w.ends[1] - w.ends[0], 1);
 }
 
 TEST(open_chain_is_ordered_from_end_to_end)
 {
-	nt_halfedges *mesh = built(8, cube, COUNT(cube));
 	uint8_t marked[36] = {0};
 	marked[side_between(cube, 12, 7, 6)] = 1;
 	marked[side_between(cube, 12, 1, 5)] = 1;
 	marked[side_between(cube, 12, 5, 7)] = 1;
-	nt_walks walks = chains_of(mesh, marked, cube);
-	assert_int_equal(walks.count, 1);
-	assert_false(walks.closed[0]);
+	const walks w = walks_of(cube, 12, 8, marked);
+	assert_int_equal(w.count, 1);
+	assert_false(w.closed[0]);
 	/* lowest side: 7, 5-7 of triangle 2, so the chain runs 1-5-7-6 */
 	static const uint32_t expected[] = {1, 5, 7};
-	assert_int_equal(walks.first[1], 3);
-	assert_memory_equal(walks.from, expected, sizeof expected);
-	assert_int_equal(walks.to[2], 6);
-	nt_walks_free(&walks);
-	nt_halfedges_free(mesh);
+	assert_int_equal(w.ends[0], 3);
+	assert_memory_equal(w.from, expected, sizeof expected);
+	assert_int_equal(w.to[2], 6);
 }
 
-TEST(moebius_strip_loses_nothing)
+TEST(moebius_strip_leaves_its_last_triangle)
 {
 	/* Five triangles (i, i+1, i+2) mod 5, every other one turned: the strip closes with a twist, and
 	 * since 5 is odd the last and the first use an edge in the same direction. */
 	static const uint32_t band[][3] = {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 0, 4}, {4, 0, 1}};
-	nt_halfedges *mesh = built(5, band, COUNT(band));
-	const uint32_t *left_out;
-	assert_int_equal(nt_halfedges_left_out(mesh, &left_out), 1);
-	assert_int_equal(left_out[0], 4); /* uses 0-1 again, as triangle 0 does */
 	uint8_t marked[15] = {0};
-	marked[14] = 1; /* a side of the triangle left out is not lost */
-	nt_walks walks = chains_of(mesh, marked, band);
-	assert_int_equal(walks.count, 1);
-	assert_int_equal(walks.left[0], 14);
-	nt_walks_free(&walks);
-	nt_halfedges_free(mesh);
+	marked[14] = marked[3] = 1; /* the first is of the triangle left out: the caller has it */
+	const walks w = walks_of(band, COUNT(band), 5, marked);
+	assert_int_equal(w.left_out, 1);
+	assert_int_equal(w.count, 1);
+	assert_int_equal(w.sides[0], 3);
 }
 
 TEST(degenerate_and_third_triangles_are_left_out)
 {
 	static const uint32_t soup[][3] = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {2, 2, 3}, {1, 0, 5}};
-	nt_halfedges *mesh = built(6, soup, COUNT(soup));
-	const uint32_t *left_out;
-	assert_int_equal(nt_halfedges_left_out(mesh, &left_out), 3);
-	assert_memory_equal(left_out, ((uint32_t[]){2, 3, 4}), 12);
-	nt_halfedges_free(mesh);
+	uint8_t marked[15];
+	memset(marked, 1, sizeof marked);
+	const walks w = walks_of(soup, COUNT(soup), 6, marked);
+	assert_int_equal(w.left_out, 3);
+	assert_int_equal(w.step_count, 5); /* the edges of the first two */
 }
 
 TEST(fans_that_touch_in_a_vertex_have_loops_of_their_own)
 {
 	static const uint32_t bowtie[][3] = {{0, 1, 2}, {0, 3, 4}};
-	nt_halfedges *mesh = built(5, bowtie, COUNT(bowtie));
-	nt_walks loops = boundary_of(mesh, bowtie, COUNT(bowtie));
+	const walks loops = boundary_of(bowtie, COUNT(bowtie), 5);
 	assert_int_equal(loops.count, 2);
-	assert_int_equal(loops.first[1], 3);
-	assert_int_equal(loops.first[2], 6);
-	nt_walks_free(&loops);
-	nt_halfedges_free(mesh);
+	assert_int_equal(loops.ends[0], 3);
+	assert_int_equal(loops.ends[1], 6);
 }
 
 TEST(empty_mesh_and_bad_index_are_handled)
 {
-	nt_halfedges *mesh = built(0, strip, 0);
-	nt_walks walks = boundary_of(mesh, strip, 0);
-	assert_int_equal(walks.count, 0);
-	nt_walks_free(&walks);
-	nt_halfedges_free(mesh);
+	assert_int_equal(boundary_of(strip, 0, 0).count, 0);
 
 	nt_error error;
-	assert_int_equal(nt_halfedges_build(&mesh, 5, &strip[0][0], 4, &error), NT_ERROR_INDEX);
-	assert_null(mesh);
+	nt_walked_mesh bad = {5, 4, &strip[0][0], NULL};
+	size_t left_out;
+	assert_int_equal(nt_walk_marked(&bad, take, NULL, &left_out, &error), NT_ERROR_INDEX);
 	assert_non_null(strstr(error.message, "vertex 5 of 5"));
-	assert_int_equal(nt_halfedges_build(&mesh, 5, &strip[0][0], SIZE_MAX / 3, &error),
-		NT_ERROR_TOO_LARGE);
+	bad.triangle_count = SIZE_MAX / 3;
+	assert_int_equal(nt_walk_marked(&bad, take, NULL, &left_out, &error), NT_ERROR_TOO_LARGE);
 }
 
 /* One vertex with many triangles, given in an order that hops around: without care each of them costs
  * a walk around the vertex, and 60 000 took 16 s. */
-static double build_hub(size_t spokes)
+static double walk_hub(size_t spokes)
 {
 	uint32_t(*triangles)[3] = malloc(sizeof *triangles * spokes);
 	uint8_t *rim = calloc(spokes, 3);
@@ -219,16 +200,13 @@ static double build_hub(size_t spokes)
 		triangles[i][2] = 0;
 		rim[3 * i] = 1;
 	}
+	const nt_walked_mesh mesh = {spokes + 1, spokes, &triangles[0][0], rim};
+	walks loops = {.mesh = &mesh, .is_large = true};
 	const clock_t begin = clock();
-	nt_halfedges *mesh = built(spokes + 1, (const uint32_t(*)[3])triangles, spokes);
-	nt_walks loops;
-	assert_int_equal(nt_halfedges_chains(mesh, rim, &loops, NULL), NT_OK);
+	assert_int_equal(nt_walk_marked(&mesh, take, &loops, &loops.left_out, NULL), NT_OK);
 	const double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
 	assert_int_equal(loops.count, 1);
-	assert_int_equal(loops.first[1], spokes);
-	assert_sound(&loops, (const uint32_t(*)[3])triangles);
-	nt_walks_free(&loops);
-	nt_halfedges_free(mesh);
+	assert_int_equal(loops.ends[0], spokes);
 	free(triangles);
 	free(rim);
 	return seconds;
@@ -236,7 +214,7 @@ static double build_hub(size_t spokes)
 
 TEST(hub_is_not_quadratic)
 {
-	assert_true(grows_slowly(build_hub, 7500));
+	assert_true(grows_slowly(walk_hub, 7500));
 }
 
 int main(void)
