@@ -31,8 +31,9 @@ typedef struct use {
 
 /* An image of them. */
 typedef struct job {
-	uint32_t image;
 	use first;
+	bool shared;   /* something else uses it */
+	uint32_t copy; /* its number then; 0: none yet */
 	nt_normal_map map;
 	nt_conversion how;
 	nt_converted made;
@@ -44,9 +45,10 @@ typedef struct turning {
 	nt_gltf *document;
 	const nt_turning *how;
 	use *uses;
-	job *jobs;
-	size_t use_count, job_count, texture_count;
+	job *jobs, **job_of; /* job_of: [image_count] NULL: no normal map */
+	size_t use_count, job_count, texture_count, image_count;
 	size_t *all, *turned; /* [texture_count] who refers to a texture; of them, normal maps that are turned */
+	size_t *twins;        /* [texture_count] what these refer to instead, where all are not turned; 0: none yet */
 	nt_turned_images *images;
 } turning;
 
@@ -112,15 +114,13 @@ static void find_use(turning *t, uint32_t material, int slot)
 			tell(t, &u, NT_CODE_NMAP_NOT_TURNED, nt_image_type_name(type));
 			return;
 		}
-	const size_t image_count = nt_json_count(nt_gltf_root_member(t->document, "images"));
-	if (!get_index(nt_json_find(texture, "source"), image_count, &u.image))
+	if (!get_index(nt_json_find(texture, "source"), t->image_count, &u.image))
 		return;
 	u.clamp = clamps(t, texture);
-	size_t j = 0;
-	while (j < t->job_count && t->jobs[j].image != u.image)
-		j++;
-	if (j == t->job_count)
-		t->jobs[t->job_count++] = (job){.image = u.image, .first = u};
+	if (!t->job_of[u.image]) {
+		t->jobs[t->job_count].first = u;
+		t->job_of[u.image] = &t->jobs[t->job_count++];
+	}
 	t->uses[t->use_count++] = u;
 }
 
@@ -151,7 +151,7 @@ static nt_status open_jobs(const turning *t, nt_error *error)
 	for (size_t j = 0; j < t->job_count && !status; j++) {
 		job *x = &t->jobs[j];
 		uint32_t sides[2];
-		status = nt_normal_map_open_image(&x->map, t->document, x->image, error);
+		status = nt_normal_map_open_image(&x->map, t->document, x->first.image, error);
 		if (status || !x->map.bytes || !nt_image_size(x->map.bytes, x->map.size, sides))
 			continue;
 		pixels += 2 * (uint64_t)sides[0] * sides[1];
@@ -196,16 +196,16 @@ static nt_status tell_job(const turning *t, const job *x, nt_error *error)
 
 /* ---- the document ---- */
 
-/* Whether every texture of an image is of turned normal maps alone. */
-static bool is_free(const turning *t, uint32_t image)
+/* Images keep what they have unless every texture of theirs is of turned normal maps alone. */
+static void find_shared(const turning *t)
 {
-	for (uint32_t i = 0; i < t->texture_count; i++) {
-		uint32_t source;
-		if (get_index(nt_json_find(texture_at(t, i), "source"), SIZE_MAX, &source) && source == image &&
+	uint32_t image;
+	for (const use *u = t->uses; u < t->uses + t->use_count; u++)
+		t->turned[u->texture] += t->job_of[u->image]->made.made;
+	for (uint32_t i = 0; i < t->texture_count; i++)
+		if (get_index(nt_json_find(texture_at(t, i), "source"), t->image_count, &image) && t->job_of[image] &&
 			(!t->all[i] || t->all[i] != t->turned[i]))
-			return false;
-	}
-	return true;
+			t->job_of[image]->shared = true;
 }
 
 /* Appends a copy of an element to an array of the root; its number. */
@@ -219,22 +219,17 @@ static uint32_t append_copy(const turning *t, const char *array, uint32_t of)
 	return (uint32_t)last;
 }
 
-/* The textures of an image that is turned take another image; those that others use, too, stay, and get a twin. */
-static void refer(const turning *t, uint32_t from, uint32_t to)
+/* The texture takes the image's copy; one that others use, too, stays, and gets a twin. */
+static void refer(const turning *t, const use *u)
 {
 	nt_json *json = t->document->json;
-	for (uint32_t i = 0; i < t->texture_count; i++) {
-		uint32_t source, texture = i;
-		if (!t->turned[i] || !get_index(nt_json_find(texture_at(t, i), "source"), SIZE_MAX, &source) ||
-			source != from)
-			continue;
-		if (t->all[i] != t->turned[i])
-			texture = append_copy(t, "textures", i);
-		nt_json_set_uint64(json, nt_json_put(json, texture_at(t, texture), "source"), to);
-		for (const use *u = t->uses; texture != i && u < t->uses + t->use_count; u++)
-			if (u->texture == i)
-				nt_json_set_uint64(json, number_at(t, u->material, u->slot), texture);
-	}
+	size_t *twin = &t->twins[u->texture];
+	if (t->all[u->texture] != t->turned[u->texture] && !*twin)
+		*twin = append_copy(t, "textures", u->texture);
+	nt_json_set_uint64(json, nt_json_put(json, texture_at(t, *twin ? (uint32_t)*twin : u->texture), "source"),
+		t->job_of[u->image]->copy);
+	if (*twin)
+		nt_json_set_uint64(json, number_at(t, u->material, u->slot), *twin);
 }
 
 static nt_status take_job(const turning *t, job *x, nt_error *error)
@@ -246,14 +241,12 @@ static nt_status take_job(const turning *t, job *x, nt_error *error)
 	if (!nt_grow((void **)&images->items, &images->capacity, images->count + 1, sizeof *images->items))
 		return nt_fail_memory(error);
 	nt_turned_image *image = &images->items[images->count++];
-	*image = (nt_turned_image){.image = x->image, .replaces = is_free(t, x->image),
+	*image = (nt_turned_image){.image = x->first.image, .replaces = !x->shared,
 		.suffix = x->how.heights ? "-normal" : "-green-up", .bytes = x->made.bytes, .size = x->made.size};
 	x->made.bytes = NULL;
-	if (!image->replaces) {
-		image->image = append_copy(t, "images", x->image);
-		refer(t, x->image, image->image);
-	}
-	return nt_json_failed(t->document->json) ? nt_fail_memory(error) : NT_OK;
+	if (x->shared)
+		image->image = x->copy = append_copy(t, "images", x->first.image);
+	return NT_OK;
 }
 
 nt_status nt_turned_maps_make(nt_scene *scene, const nt_turning *how, nt_turned_images *turned, nt_error *error)
@@ -262,10 +255,12 @@ nt_status nt_turned_maps_make(nt_scene *scene, const nt_turning *how, nt_turned_
 	const nt_json_value *materials = nt_gltf_root_member(t.document, "materials");
 	const size_t count = nt_json_count(materials);
 	t.texture_count = nt_json_count(nt_gltf_root_member(t.document, "textures"));
+	t.image_count = nt_json_count(nt_gltf_root_member(t.document, "images"));
 	t.uses = nt_calloc(SLOT_COUNT * count, sizeof *t.uses);
 	t.jobs = nt_calloc(SLOT_COUNT * count, sizeof *t.jobs);
-	t.all = nt_calloc(2 * t.texture_count, sizeof *t.all);
-	nt_status status = t.uses && t.jobs && t.all ? NT_OK : nt_fail_memory(error);
+	t.job_of = nt_calloc(t.image_count, sizeof *t.job_of);
+	t.all = nt_calloc(3 * t.texture_count, sizeof *t.all);
+	nt_status status = t.uses && t.jobs && t.job_of && t.all ? NT_OK : nt_fail_memory(error);
 	for (uint32_t m = 0; m < count && !status; m++)
 		for (int slot = 0; slot < SLOT_COUNT; slot++)
 			find_use(&t, m, slot);
@@ -273,21 +268,25 @@ nt_status nt_turned_maps_make(nt_scene *scene, const nt_turning *how, nt_turned_
 		status = open_jobs(&t, error);
 	if (!status) {
 		t.turned = t.all + t.texture_count;
+		t.twins = t.turned + t.texture_count;
 		count_users(&t, materials, false);
 		count_users(&t, nt_json_find(nt_gltf_root_member(t.document, "extensions"), "VRM"), false);
 		nt_parallel_items(nt_thread_count(how->threads), t.job_count, make, &t);
+		find_shared(&t);
 	}
 	for (size_t j = 0; j < t.job_count && !status; j++)
-		for (const use *u = t.uses; u < t.uses + t.use_count && t.jobs[j].made.made; u++)
-			t.turned[u->texture] += u->image == t.jobs[j].image;
-	for (size_t j = 0; j < t.job_count && !status; j++)
 		status = take_job(&t, &t.jobs[j], error);
+	for (const use *u = t.uses; u < t.uses + t.use_count && !status; u++)
+		if (t.job_of[u->image]->copy)
+			refer(&t, u);
+	status = !status && nt_json_failed(t.document->json) ? nt_fail_memory(error) : status;
 	for (size_t j = 0; j < t.job_count; j++) {
 		nt_normal_map_close(&t.jobs[j].map);
 		free(t.jobs[j].made.bytes);
 	}
 	free(t.uses);
 	free(t.jobs);
+	free(t.job_of);
 	free(t.all);
 	return status;
 }

@@ -84,6 +84,7 @@ done
 first=
 grows folded $((faces / 8)) IN out.ply
 grows bumps 10 --check IN
+grows turned $((blocks / 5)) --flip-green=on IN out.glb
 for format in json html; do
 	grows names 250 --check --only=all --report=r.$format IN
 done

@@ -14,6 +14,7 @@ scene     a GLB of COUNT primitives, ten in a mesh, of SIDE (3) quads squared an
 images    an OBJ of COUNT materials, and FILE.mtl beside it, with two images each that are not there
 bumps     an OBJ of COUNT materials, and FILE.mtl and FILE.png beside it: each makes other normals of one white PNG of
           SIDE (4096) pixels squared and one bit
+turned    a GLB of COUNT materials, each with a texture and an image of its own, as normal map and as emissive
 strip     an OBJ strip of COUNT quads
 hub       an OBJ of COUNT triangles around one point
 folded    an OBJ of COUNT quads around one point, whose halves have opposite tangents
@@ -22,6 +23,7 @@ repeated  an OBJ of one triangle, COUNT times
 centre    an OBJ of COUNT triangles of three points each, all around one centre
 patches   an OBJ of COUNT quads, each an island of its own over the same texels, every other one mirrored
 """
+import base64
 import json
 import math
 import os.path
@@ -61,11 +63,8 @@ def bumps(count, out, side):
     with open(name + '.mtl', 'w') as materials:
         for i in range(count):
             materials.write('newmtl m%d\nmap_Bump -bm %d %s.png\n' % (i, i + 1, os.path.basename(name)))
-    rows = zlib.compress((b'\0' + b'\xff' * (side // 8)) * side, 9)
-    with open(name + '.png', 'wb') as png:
-        png.write(b'\x89PNG\r\n\x1a\n')
-        for kind, data in (b'IHDR', struct.pack('>IIBBBBB', side, side, 1, 0, 0, 0, 0)), (b'IDAT', rows), (b'IEND', b''):
-            png.write(struct.pack('>I', len(data)) + kind + data + struct.pack('>I', zlib.crc32(kind + data)))
+    with open(name + '.png', 'wb') as image:
+        image.write(png(side, 0, 1, b'\xff' * (side // 8)))
 
 
 def strip(count, out):
@@ -171,6 +170,13 @@ def glb(count, out, side, windows, ranges=False, name=''):
                     'accessors': accessors, 'bufferViews': views}, arrays)
 
 
+def png(side, color, bits, row):
+    chunks = ((b'IHDR', struct.pack('>IIBBBBB', side, side, bits, color, 0, 0, 0)),
+              (b'IDAT', zlib.compress((b'\0' + row) * side, 9)), (b'IEND', b''))
+    return b'\x89PNG\r\n\x1a\n' + b''.join(struct.pack('>I', len(data)) + kind + data +
+                                           struct.pack('>I', zlib.crc32(kind + data)) for kind, data in chunks)
+
+
 def scene(count, out, side):
     arrays, accessors, views, chunks, meshes = grid(side, True), [], [], [], []
     vertices, offset = (side + 1) ** 2, 0
@@ -193,12 +199,25 @@ def scene(count, out, side):
                     'bufferViews': views}, chunks)
 
 
+def turned(count, out):
+    arrays = grid(1, False)
+    image = {'uri': 'data:image/png;base64,' + base64.b64encode(png(1, 2, 8, b'\x80\xa0\xf0')).decode()}
+    accessors = [{'bufferView': k, 'componentType': 5126 if k < 3 else 5125, 'count': 4 if k < 3 else 6,
+                  'type': ('VEC3', 'VEC3', 'VEC2', 'SCALAR')[k]} for k in range(4)]
+    accessors[0] |= {'min': [0, 0, 0], 'max': [1, 1, 0]}
+    primitive = {'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'indices': 3, 'material': 0}
+    views = [{'buffer': 0, 'byteOffset': sum(map(len, arrays[:k])), 'byteLength': len(arrays[k])} for k in range(4)]
+    write_glb(out, {'meshes': [{'primitives': [primitive]}], 'accessors': accessors, 'bufferViews': views,
+                    'materials': [{'normalTexture': {'index': i}, 'emissiveTexture': {'index': i}} for i in range(count)],
+                    'textures': [{'source': i} for i in range(count)], 'images': [image] * count}, arrays)
+
+
 def write_glb(out, document, chunks):
     count = len(document['meshes'])
     binary = b''.join(chunks)
-    document |= {'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': list(range(count))}],
-                 'nodes': [{'mesh': i} for i in range(count)], 'textures': [{'source': 0}],
-                 'images': [{'uri': 'n.png'}], 'buffers': [{'byteLength': len(binary)}]}
+    document = {'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': list(range(count))}],
+                'nodes': [{'mesh': i} for i in range(count)], 'textures': [{'source': 0}],
+                'images': [{'uri': 'n.png'}], 'buffers': [{'byteLength': len(binary)}]} | document
     text = json.dumps(document, separators=(',', ':')).encode()
     text += b' ' * (-len(text) % 4)
     out.write(struct.pack('<4sIIII', b'glTF', 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A))
@@ -221,4 +240,5 @@ with open(sys.argv[3], 'wb') as out:
         bumps(count, out, side or 4096)
     else:
         {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
-         'patches': patches, 'repeated': repeated, 'centre': centre, 'folded': folded}[kind](count, out)
+         'patches': patches, 'repeated': repeated, 'centre': centre, 'folded': folded,
+         'turned': turned}[kind](count, out)
