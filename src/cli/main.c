@@ -181,9 +181,7 @@ static int tell_run(session *s, nt_job *job)
 		const bool infos = c->settings.check || s->style.verbosity > 0;
 		if (fails && !report)
 			nt_message_failure(&s->text, job, least_failure, s->style);
-		const nt_severity least = infos ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING;
-		const nt_severity wanted = s->plan->options.min_severity;
-		nt_message_findings(&s->text, &summary->findings, job->input, least > wanted ? least : wanted,
+		nt_message_findings(&s->text, &summary->findings, job->input, infos, s->plan->options.min_severity,
 			fails && !report ? least_failure - 1 : NT_SEVERITY_ERROR, style);
 	}
 	else if (s->style.verbosity < 0 && !job->status && !c->settings.check)

@@ -102,12 +102,13 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, nt_code
 			nt_severity_name(severity), left_out, nt_code_info(code)->name);
 }
 
-void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, int least, int most,
-	nt_style style)
+void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, bool infos, int least,
+	int most, nt_style style)
 {
 	for (int severity = most; severity >= least; severity--)
 		for (int code = 0; code < NT_CODE_COUNT; code++)
-			append_code(out, findings, (nt_code)code, (nt_severity)severity, file, style);
+			if (infos || severity || code == NT_CODE_NMAP_BESIDE)
+				append_code(out, findings, (nt_code)code, (nt_severity)severity, file, style);
 }
 
 void nt_message_left_out(nt_buffer *out, const nt_job *job, const bool *ignore)

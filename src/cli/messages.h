@@ -22,10 +22,10 @@ typedef struct nt_style {
 /* "nmtan: file:line: message", "nmtan: file: at byte N: message" or "nmtan: file: /pointer: message". */
 void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 
-/* Findings of the severities from `most` down to `least` (nt_severity), a few of each code:
- * "nmtan: file:line: warning: sentence [CODE]". */
-void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, int least, int most,
-	nt_style style);
+/* Findings of the severities from `most` down to `least` (nt_severity), a few of each code; without `infos`, of these
+ * what is proposed alone: "nmtan: file:line: warning: sentence [CODE]". */
+void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, bool infos, int least,
+	int most, nt_style style);
 
 /* One line, of a quiet run too, where something of the input is not in the output, with the codes that say what but for
  * those of ignore[code]. */

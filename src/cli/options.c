@@ -502,8 +502,9 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 	command->settings.texture_path_count = command->texture_paths.count;
 	if (command->texture_paths.count)
 		command->settings.texture_paths = command->texture_paths.items;
-	/* who converts one file means what it says; who converts many may not have read them */
-	command->settings.one_up = !command->confine && !command->directory && !command->settings.in_place &&
+	/* Who converts one file means what it says: images may be one folder up, and one beside it is proposed. Who
+	 * converts many may not have read them. */
+	command->settings.own_input = !command->confine && !command->directory && !command->settings.in_place &&
 		!list_option(command) && command->operand_count == (command->settings.check ? 1 : 2);
 	nt_status status = parse_draco(&p);
 	if (!status)

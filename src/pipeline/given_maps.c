@@ -132,7 +132,7 @@ void nt_propose_normal_map(nt_scene *scene, const nt_settings *settings)
 	const size_t length = dot ? (size_t)(dot - name) : strlen(name);
 	char *folder = strndup(scene->path, (size_t)(name - scene->path));
 	char found[256] = "";
-	DIR *dir = settings->one_up && settings->images != NT_IMAGES_NONE && length && folder && wants_normals(scene)
+	DIR *dir = settings->own_input && settings->images != NT_IMAGES_NONE && length && folder && wants_normals(scene)
 		? opendir(*folder ? folder : ".") : NULL;
 	for (const struct dirent *entry; dir && (entry = readdir(dir));)
 		if (is_alike(entry->d_name, name, length) && (!*found || strcmp(entry->d_name, found) < 0))

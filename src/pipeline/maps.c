@@ -166,7 +166,7 @@ static nt_status take_map(examination *e, const nt_mesh *mesh, enum nt_slot slot
 {
 	const nt_image_places searched = {.folders = e->settings->texture_paths,
 		.folder_count = e->settings->texture_path_count, .allow_outside = e->settings->allow_outside,
-		.one_up = e->settings->one_up};
+		.one_up = e->settings->own_input};
 	nt_normal_map map;
 	if (!(mesh->slots & slot))
 		return NT_OK;

@@ -104,7 +104,7 @@ typedef struct nt_settings {
 	bool digests;     /* summary->tangents_digest is wanted */
 	bool in_place;
 	bool allow_outside;
-	bool one_up;      /* images of an OBJ may lie in the folder above it */
+	bool own_input;   /* the one input that the user names: see options.c */
 	nt_equal_choice equal; /* what becomes of an output that has its bytes already */
 
 	/* Called when the output is complete and about to take its name, with what was read and written; it keeps its

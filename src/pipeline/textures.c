@@ -46,7 +46,7 @@ static nt_status request_material(nt_scene *scene, nt_material *m, void *context
 	const requesting *w = context;
 	const nt_image_places places = {.document = m->library ? m->library : scene->path, .input = scene->path,
 		.folders = w->settings->texture_paths, .folder_count = w->settings->texture_path_count,
-		.allow_outside = w->settings->allow_outside, .one_up = w->settings->one_up};
+		.allow_outside = w->settings->allow_outside, .one_up = w->settings->own_input};
 	nt_map_request requests[NT_MATERIAL_MAPS];
 	const size_t count = nt_map_requests(m, w->settings, requests);
 	nt_status status = NT_OK;

@@ -88,7 +88,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"was taken instead.",
 		"Correct the material where that is not what was meant.",
 		"an MTL with \"d 0\""),
-	ROW(NMAP_BESIDE, WARNING, "w--", "no normal map, but an image beside the input is named like one",
+	ROW(NMAP_BESIDE, INFO, "i--", "no normal map, but an image beside the input is named like one",
 		"An OBJ, PLY or Draco file with texture coordinates names no normal map, and in its folder is an image "
 		"with its name and an ending of normal maps: _nm_tangent, _normal, _nrm, _nm, _n, _ddn and the like. "
 		"It is not used. It is looked for where one input is named.",

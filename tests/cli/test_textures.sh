@@ -251,9 +251,13 @@ says_not NMAP_BESIDE
 for name in Head_NM_Tangent.tga head_normal.png head-nrm.jpg head_ddn.png head_n.png; do
 	cp "$data/bumps.png" $name
 	run head.obj head.glb
-	says "head.obj: warning: no normal map, but an image beside the input is named like one: $name [NMAP_BESIDE]"
+	says "head.obj: info: no normal map, but an image beside the input is named like one: $name [NMAP_BESIDE]"
 	is "$(gltf head.glb '"images" in g')" false
 	run -d out head.obj
+	says_not NMAP_BESIDE
+	run --fail-on=warning head.obj head.glb
+	exits 0
+	run --min-severity=warning head.obj head.glb
 	says_not NMAP_BESIDE
 	run --normal-map=$name head.obj head.glb
 	says_not NMAP_BESIDE
