@@ -22,7 +22,7 @@
 #include "gltf/edit/manifold.h"
 #include "gltf/bytes/packed_views.h"
 #include "gltf/edit/relocate.h"
-#include "gltf/extensions/geometry_metadata.h"
+#include "gltf/extensions/references.h"
 #include "gltf/morph_deltas.h"
 #include "gltf/quantize.h"
 #include "gltf/turned_images.h"
@@ -354,16 +354,13 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 
 	/* Which bytes may change, and what refers to nothing. */
 	nt_gltf *document = scene->source;
-	nt_arena arena = {0}, of_window = {0};
+	nt_arena of_window = {0};
 	nt_buffer_edits edits = {0};
-	nt_geometry_total *totals = NULL;
 	nt_gltf_find_dangling(document);
 	if (!document->pools)
 		status = nt_vertex_pools_find(scene, &(nt_read_options){.morphs = options->morphs}, error);
 	if (!status)
 		status = nt_edits_create(&edits, document->pools, options->meshopt == NT_MESHOPT_KEEP, error);
-	if (!status && nt_geometry_totals(scene->source, &arena, &totals))
-		status = nt_fail_memory(error);
 
 	/* The edits, and with them the document. */
 	bool quantized = false;
@@ -372,11 +369,10 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	if (!status)
 		status = edit_pools(&e);
 	nt_arena_free(&of_window);
-	if (!status && nt_geometry_metadata_follow(scene, totals, &arena))
-		status = nt_fail_memory(error);
+	if (edits.vertices_copied)
+		nt_extension_scenes(scene);
 	if (!status)
 		status = nt_gltf_write_document(scene, &edits, options, output, error);
 	nt_edits_free(&edits);
-	nt_arena_free(&arena);
 	return status;
 }

@@ -109,6 +109,7 @@ nt_status nt_gltf_follow_vertices(nt_buffer_edits *edits, uint32_t buffer, nt_sc
 	nt_status status = NT_OK;
 	if (vertices->new_count == vertices->old_count && !compressed)
 		return NT_OK;
+	edits->vertices_copied |= vertices->new_count != vertices->old_count;
 	for (size_t i = 0; !status && i < pool->user_count; i++) {
 		const nt_mesh *mesh = nt_pool_mesh(pool, i);
 		nt_json_value *primitive = nt_pool_primitive(pool, i);

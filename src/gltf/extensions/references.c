@@ -134,3 +134,19 @@ nt_status nt_extension_references(nt_scene *scene, const nt_mesh *mesh, size_t o
 	free(s.own);
 	return failed ? NT_ERROR_MEMORY : NT_OK;
 }
+
+void nt_extension_scenes(nt_scene *scene)
+{
+	static const char name[] = "FB_geometry_metadata";
+	const nt_gltf *document = scene->source;
+	const nt_json_value *scenes = nt_gltf_root_member(document, "scenes");
+	for (size_t i = 0; i < nt_json_count(scenes); i++) {
+		if (!nt_json_find(nt_json_find(nt_json_at(scenes, i), "extensions"), name))
+			continue;
+		nt_place place;
+		nt_place_clear(&place);
+		snprintf(place.file, sizeof place.file, "%s", document->path);
+		snprintf(place.pointer, sizeof place.pointer, "/scenes/%zu/extensions/%s", i, name);
+		nt_finding_add(&scene->findings, NT_CODE_EXTENSION_STALE, &place, 1, "vertexCount of %s", name);
+	}
+}

@@ -12,4 +12,7 @@
  * NT_ERROR_MEMORY. */
 nt_status nt_extension_references(nt_scene *scene, const nt_mesh *mesh, size_t old_count, bool with_mesh);
 
+/* Vertices were copied: adds a finding for each scene with FB_geometry_metadata, which counts them. */
+void nt_extension_scenes(nt_scene *scene);
+
 #endif
