@@ -513,4 +513,14 @@ exits 0
 is "$(stat -c '%n %i %y' *)" "$before"
 says "left as it is"
 
+scene "blocks that the file system shares are not written, and what follows comes behind them"
+run -q "$data/quad.obj" quad.gltf
+gltf quad.gltf in 'delete g.meshes[0].primitives[0].attributes.TANGENT'
+run -q --only=all in.gltf out.gltf
+exits 0
+NT_CALLS_CLONE=1 NT_CALLS_COUNT=made run_under_calls -q --only=all in.gltf shared.gltf
+exits 0
+is "$(grep -c ioctl made)" 1
+same shared.bin out.bin
+
 done_testing

@@ -7,6 +7,7 @@
  *   NT_CALLS_KEEP=NAME:NAME     files of these names, in whatever folder, get no other name and no other file gets
  *                               theirs: what the system says of files that are immutable, or of others in a sticky
  *                               folder
+ *   NT_CALLS_CLONE=1            FICLONE has the file system share blocks, for which they are copied here
  *   NT_CALLS_COUNT=FILE         the names of all calls in their order, at the end
  *   NT_CALLS_TRACE=DIR          DIR/log has each call that changes names or makes something lasting, after it
  *                               succeeded; what fsync makes lasting of a file is copied to DIR/NUMBER
@@ -23,6 +24,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/types.h>
 #include <sys/uio.h>
@@ -157,6 +159,18 @@ CALL(int, fchown, (int fd, uid_t user, gid_t group), (fd, user, group))
 CALL(int, fsetxattr, (int fd, const char *name, const void *value, size_t size, int flags),
 	(fd, name, value, size, flags))
 CALL(int, mkdir, (const char *path, mode_t mode), (path, mode))
+
+int ioctl(int fd, unsigned long request, ...)
+{
+	va_list arguments;
+	va_start(arguments, request);
+	const int from = va_arg(arguments, int);
+	va_end(arguments);
+	if (!getenv("NT_CALLS_CLONE"))
+		return REAL(ioctl)(fd, request, from);
+	const off_t size = lseek(from, 0, SEEK_END);
+	return enter("ioctl") && copy_file_range(from, &(off_t){0}, fd, &(off_t){0}, (size_t)size, 0) == size ? 0 : -1;
+}
 
 int open(const char *path, int flags, ...)
 {
