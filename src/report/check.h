@@ -57,7 +57,8 @@ typedef struct nt_check {
 	uint32_t *islands;        /* [triangle_count] NT_NONE: has no edges */
 	uint32_t *patches;        /* [triangle_count] parents of what is connected in UV space and of one orientation;
 	                             NULL: there is but one */
-	uint64_t *flipped;        /* by flips.c: [triangle_count] bits; NULL: none */
+	uint64_t *flipped, *twins; /* by flips.c: [triangle_count] bits; NULL: none. Twins are mirrored triangles of
+	                             mixed islands that lie point by point on an unmirrored one, in space too */
 	bool failed;              /* out of memory while reporting */
 } nt_check;
 
@@ -122,9 +123,9 @@ static inline bool nt_needs_tangents(const nt_check *check)
 }
 
 /* Of a finding in texture coordinates: an info where no material needs tangents. */
-static inline nt_severity nt_texcoord_severity(const nt_check *check, nt_code code)
+static inline nt_severity nt_texcoord_severity(const nt_check *check, nt_severity severity)
 {
-	return nt_needs_tangents(check) ? nt_code_info(code)->severity : NT_SEVERITY_INFO;
+	return nt_needs_tangents(check) ? severity : NT_SEVERITY_INFO;
 }
 
 /* The vertex as the source numbers it: copies that making normals appended are mapped back. */

@@ -260,9 +260,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-w", "{count} of {detail} {is|are} flipped",
 		"A few triangles in a row are wound against their island, or have texture coordinates of their own "
 		"inside a large island of the other winding: at most 5 % of its triangles and area, or a single one up "
-		"to 10 %. Texture is mirrored there. They make no seam, fold or mirrored island. Needles whose winding "
-		"is rounding do not count: they are UV_NEAR_DEGENERATE. An info where no material of a glTF needs "
-		"tangents.",
+		"to 10 %, where all that is wound so is at most a quarter. Texture is mirrored there. They make no "
+		"seam, fold or mirrored island. Needles whose winding is rounding are UV_NEAR_DEGENERATE instead. An "
+		"info where no material of a glTF needs tangents.",
 		"Exchange two corners of these triangles in the UV editor, or relax the knot.",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
 	ROW(UV_DEGENERATE_TRIANGLE, INFO, "w-w",

@@ -244,12 +244,6 @@ static nt_severity severity_by_share(const nt_check *check, double area)
 	return area > VISIBLE_SHARE * check->total_area ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO;
 }
 
-/* Of texture coordinates, which matter where tangents do. */
-static nt_severity severity_of_texcoords(const nt_check *check, double area)
-{
-	return nt_needs_tangents(check) ? severity_by_share(check, area) : NT_SEVERITY_INFO;
-}
-
 static void sum_blocks(nt_check *check)
 {
 	const nt_surface *s = &check->surface;
@@ -299,14 +293,14 @@ static void report_triangles(nt_check *check, triangle_part *all, size_t from_ne
 	nt_tally_number(no_area, "area_share", all->no_uv_area_sum / total);
 	nt_tally_number(no_area, "corners_from_neighbour", (double)from_neighbour);
 	nt_tally_number(no_area, "corners_from_normal", (double)from_normal);
-	nt_check_report_as(check, no_area, severity_of_texcoords(check, all->no_uv_area_sum),
+	nt_check_report_as(check, no_area, nt_texcoord_severity(check, severity_by_share(check, all->no_uv_area_sum)),
 		"%.3g %% of the area; %zu corners take a neighbour's tangent, %zu one made from their normal",
 		100.0 * all->no_uv_area_sum / total, from_neighbour, from_normal);
 
 	nt_tally_number(&all->near, "area_share", all->near_area / total);
 	nt_tally_number(&all->near, "least_relative_determinant", all->worst_determinant);
 	nt_tally_number(&all->near, "greatest_error_degrees", all->worst_bound);
-	nt_check_report_as(check, &all->near, severity_of_texcoords(check, all->near_area),
+	nt_check_report_as(check, &all->near, nt_texcoord_severity(check, severity_by_share(check, all->near_area)),
 		"relative determinant down to %.2g, error up to %.2g degrees", all->worst_determinant,
 		all->worst_bound);
 

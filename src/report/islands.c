@@ -10,7 +10,8 @@
  * its cell, so that many stacked layers cost no more than one.
  *
  * An island with both windings is a fold, unless its mirrored part lies point by point on its own
- * unmirrored part: then it is a symmetric model whose halves share the coordinates of the middle line.
+ * unmirrored part: then it is a symmetric model whose halves share the coordinates of the middle line, or a doubled
+ * sheet.
  */
 #include "report/check.h"
 
@@ -363,16 +364,17 @@ static uv_key *find_key(const uv_table *table, uint64_t hash, const float *uv, u
 }
 
 /* Notes an unmirrored corner, or counts a mirrored one: in counts[1] when an unmirrored corner at another
- * point has its coordinates, in counts[0] when none has. Points of the fold itself say nothing. */
-static void meet_corner(const nt_surface *s, uint32_t side, uint32_t island, bool mirrored, uv_table *table,
+ * point has its coordinates, in counts[0] when none has. Points of the fold itself say nothing, but of a twin. */
+static void meet_corner(const nt_check *check, uint32_t side, uint32_t island, bool mirrored, uv_table *table,
 	size_t *counts)
 {
+	const nt_surface *s = &check->surface;
 	const uint32_t point = nt_side_point(s, side);
 	const float *uv = nt_side_texcoord(s, side);
 	const uint64_t hash = nt_hash_words(nt_hash_floats(uv[0], uv[1]), island);
 	uv_key *key = find_key(table, hash, uv, island);
 	if (mirrored) {
-		if (!key || key->point != point)
+		if (!key || key->point != point || (check->twins && nt_bit(check->twins, side / 3)))
 			counts[2 * island + (key != NULL)]++;
 	} else if (key) {
 		key->point = key->point == point ? point : NT_NONE;
@@ -398,7 +400,7 @@ static void visit_vertices(const nt_check *check, bool mirrored, uint32_t *last,
 		for (uint32_t side = (uint32_t)(3 * t); side < 3 * t + 3; side++) {
 			uint32_t *met = &last[nt_side_vertex(s, side)];
 			if (*met != island)
-				meet_corner(s, side, island, mirrored, table, counts);
+				meet_corner(check, side, island, mirrored, table, counts);
 			*met = island;
 		}
 	}
@@ -467,7 +469,8 @@ static void report_island(nt_check *check, size_t index)
 	nt_tally_number(&tally, "mirrored_triangles", (double)island->triangles[0]);
 	nt_tally_number(&tally, "unmirrored_triangles", (double)island->triangles[2]);
 	nt_tally_number(&tally, "covered_share", island->covered);
-	nt_check_report_as(check, &tally, nt_texcoord_severity(check, tally.code), "island %zu", index);
+	nt_check_report_as(check, &tally, nt_texcoord_severity(check, nt_code_info(tally.code)->severity), "island %zu",
+		index);
 }
 
 /* Islands that share texels are meant: one finding, which counts them. */
@@ -507,7 +510,7 @@ static void report_islands(nt_check *check)
 				tally_island(check, &rest, k);
 		}
 		if (seen > NT_SINGLE_FINDINGS)
-			nt_check_report_as(check, &rest, nt_texcoord_severity(check, rest.code),
+			nt_check_report_as(check, &rest, nt_texcoord_severity(check, nt_code_info(rest.code)->severity),
 				"%zu further islands, one finding together beyond the first %d",
 				seen - NT_SINGLE_FINDINGS, NT_SINGLE_FINDINGS);
 	}

@@ -97,6 +97,36 @@ TEST(a_small_island_that_has_a_twin_is_mirrored)
 	hand_free(h, report);
 }
 
+/* All of it, or one quad of it, which would be few enough to be flipped. */
+TEST(the_back_of_a_doubled_sheet_shares_texels)
+{
+	for (uint32_t doubled = 2; doubled <= 2 * N * N; doubled += 2 * N * N - 2) {
+		hand_mesh *h = make_grid();
+		for (const uint32_t *i = h->indices; i < h->indices + 3 * doubled; i += 3)
+			hand_triangle(h, i[0], i[2], i[1]);
+		nt_report *report = hand_report(h, NULL);
+		assert_int_equal(hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE), 0);
+		assert_int_equal(hand_findings(report, NT_CODE_UV_MIXED_WINDING_ISLAND), 0);
+		assert_int_equal(hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP)->numbers[0].value, doubled);
+		hand_free(h, report);
+	}
+}
+
+/* 20 triangles before the fold, 29 behind it, and one there that runs back. */
+TEST(what_is_wound_like_two_fifths_of_its_island_is_not_flipped)
+{
+	hand_mesh *h = make_grid();
+	for (uint32_t y = 0; y <= N; y++)
+		for (uint32_t x = 2; x <= N; x++)
+			set_uv(h, at(x, y), 4.0f - (float)x, (float)y);
+	set_uv(h, at(N, 0), -0.25f, 0.75f);
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->meshes[0].triangles[0], 29);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE), 0);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIXED_WINDING_ISLAND), 1);
+	hand_free(h, report);
+}
+
 /* A column of 10 triangles folded over: a fifth of the island. */
 TEST(what_is_larger_is_a_fold)
 {
