@@ -541,6 +541,25 @@ run up.gltf plain.gltf
 run --flip-green=auto up.gltf auto.gltf
 same plain.gltf auto.gltf
 
+# colour.jpg: 16 x 16, four squares of one colour each, 4:4:4; sharp 0.35 (libjpeg-turbo through libvips) decodes them as
+# (128, 127, 254), (200, 60, 219), (90, 180, 230) and (128, 40, 210)
+scene "a JPEG in colour becomes a PNG of what other decoders see, green turned"
+cp "$data/colour.jpg" .
+quad 'norm colour.jpg'
+run quad.obj quad.gltf
+run quad.obj quad.glb
+for ending in gltf glb; do
+	run --verify --flip-green=on quad.$ending out.$ending
+	exits 0
+done
+is "$(gltf out.gltf 'g.images[0]')" '{"name":"colour","uri":"colour-green-up.png"}'
+is "$(gltf out.glb 'g.images[0].mimeType')" image/png
+images embedded out.glb 0 made.png
+same colour-green-up.png made.png
+is "$(images rows made.png '[8 * [rows[y][0]] + 8 * [rows[y][8]] == rows[y] == rows[y - y % 8] for y in range(16)] == 16 * [True]')" True
+is "$(images rows made.png '[rows[0][0], rows[0][8], rows[8][0], rows[8][8]]')" \
+	"[[128, 128, 254], [200, 195, 219], [90, 75, 230], [128, 215, 210]]"
+
 scene "what else samples the image of a normal map keeps it"
 hills down.png -1
 quad 'norm down.png'
@@ -572,16 +591,20 @@ hills down.png -1
 quad 'norm down.png'
 run quad.obj quad.gltf
 printf '\253KTX 20\273\r\n\032\n%080d' 0 >n.ktx2
-changed quad.gltf basis.gltf 'g["images"].append({"uri": "n.ktx2"}); g["extensionsUsed"] = ["KHR_texture_basisu"]
-g["textures"][0]["extensions"] = {"KHR_texture_basisu": {"source": 1}}'
-run basis.gltf plain.gltf
-run --flip-green=on basis.gltf out.gltf
-exits 0
-says "/materials/0/normalTexture: warning: normal map is not turned: KTX2 [NMAP_NOT_TURNED]"
-same plain.gltf out.gltf
-changed quad.gltf bare.gltf 'g["images"][0]["uri"] = "n.ktx2"'
-run --flip-green=on bare.gltf out.gltf
-says "normal map is not turned: KTX2 [NMAP_NOT_TURNED]"
+base64 -d >n.webp <<<UklGRkQAAABXRUJQVlA4TDcAAAAvD8ADAB8gJCBOiYb4nw0SCBD+iyRoUCMkIBb5f0b3QJ7/MO8CHBBmG01ykpO89xlE9D8Kvk0/AA==
+for type in "KTX2 n.ktx2 KHR_texture_basisu" "WebP n.webp EXT_texture_webp"; do
+	read -r type name extension <<<"$type"
+	changed quad.gltf other.gltf "g['images'].append({'uri': '$name'}); g['extensionsUsed'] = ['$extension']
+g['textures'][0]['extensions'] = {'$extension': {'source': 1}}"
+	run other.gltf plain.gltf
+	run --flip-green=on other.gltf out.gltf
+	exits 0
+	says "/materials/0/normalTexture: warning: normal map is not turned: $type [NMAP_NOT_TURNED]"
+	same plain.gltf out.gltf
+	changed quad.gltf bare.gltf "g['images'][0]['uri'] = '$name'"
+	run --flip-green=on bare.gltf out.gltf
+	says "normal map is not turned: $type [NMAP_NOT_TURNED]"
+done
 head -c 300 down.png >short.png
 changed quad.gltf short.gltf 'g["images"][0]["uri"] = "short.png"'
 run --flip-green=on short.gltf out.gltf
