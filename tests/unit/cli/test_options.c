@@ -42,7 +42,7 @@ TEST(no_options_mean_the_defaults)
 {
 	nt_command c;
 	accepts(&c, WORDS("in.obj", "out.glb"));
-	const nt_settings defaults = {.texcoord_set = -1, .draco_speed = NT_DRACO_SPEED, .one_up = true};
+	const nt_settings defaults = {.texcoord_set = -1, .draco_speed = NT_DRACO_SPEED, .own_input = true};
 	assert_memory_equal(&c.settings, &defaults, sizeof defaults);
 	assert_int_equal(c.action, NT_ACTION_RUN);
 	assert_int_equal(c.verbosity, 0);
