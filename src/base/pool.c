@@ -5,16 +5,13 @@
  * A region lives on its caller's stack and is linked into the pool's list while slots of it may be free. Caller
  * and helpers take slots from one counter. The lock covers the list and the counts, never a body; a region is
  * entered by two short critical sections and, if a thread sleeps, one wake-up.
- *
- * Who waits looks first and sleeps later. The regions of a solve follow one another within microseconds, and
- * waking a thread takes some 50 in a virtual machine. Looking pays while there is a processor for each thread;
- * with more threads than processors nobody looks.
  */
 #include "base/pool.h"
 
 #include <stdbool.h>
 #include "base/compiler.h"
 #include "base/deadline.h"
+#include "base/lock.h"
 
 /* ---- threads of the caller ---- */
 
@@ -102,9 +99,10 @@ void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), voi
 #include <stdint.h>
 #include <unistd.h>
 
-/* Looks before sleeping: 80 microseconds at the 40 to 140 cycles of a pause, somewhat more than waking takes. After a
- * thread could not be made, the regions that do without before one is tried again. */
-enum { MOST_LOOKS = 4000, REGIONS_WITHOUT = 100 };
+/* How often a caller gives way to its helpers before it sleeps: for somewhat longer than waking it takes, 50
+ * microseconds in a virtual machine. After a thread could not be made, the regions that do without before one is tried
+ * again. */
+enum { MOST_LOOKS = 200, REGIONS_WITHOUT = 100 };
 
 typedef struct region {
 	void (*body)(void *context, unsigned slot);
@@ -124,11 +122,7 @@ static struct {
 	unsigned threads;      /* made, or about to be */
 	unsigned sleeping;     /* of them, waiting for `posted` */
 	unsigned without;      /* regions to go before a thread is tried again */
-	unsigned long posts;   /* regions linked so far */
-	unsigned processors;   /* 0: not yet asked for */
 	bool watches_forks;
-	unsigned looks;        /* before sleeping, as the newest region wanted it */
-	unsigned long bell;    /* atomic: rung after each post: threads that look see it without the lock */
 	unsigned waiting;      /* atomic: callers that sleep until helpers leave */
 	unsigned made;         /* threads that are */
 	pthread_t ids[NT_POOL_MOST];
@@ -145,16 +139,6 @@ unsigned nt_pool_processors(void)
 #endif
 	const long online = sysconf(_SC_NPROCESSORS_ONLN);
 	return online > 0 ? (unsigned)online : 1;
-}
-
-/* Leaves the processor's other thread, if it has one, the units. */
-static inline void pause_shortly(void)
-{
-#if defined(__x86_64__) || defined(__i386__)
-	__builtin_ia32_pause();
-#elif defined(__aarch64__)
-	__asm__ volatile("yield");
-#endif
 }
 
 static void work(region *r)
@@ -187,12 +171,6 @@ static void leave_region(region *r)
 	pthread_mutex_unlock(&pool.lock);
 }
 
-static void await_post(unsigned long bell, unsigned looks)
-{
-	while (looks-- > 0 && nt_atomic_load(&pool.bell, RELAXED) == bell)
-		pause_shortly();
-}
-
 /* A new thread goes to another processor than its maker's, where there is one: a system that packs threads, as virtual
  * machines do, lets it wait there until the maker's time is up, 1.2 to 3 ms instead of 0.13. It is there once the first
  * call returns; the second lets it go wherever its maker may. */
@@ -215,34 +193,23 @@ static void send_elsewhere(pthread_t thread)
 static void *run_thread(void *unused)
 {
 	(void)unused;
-	for (;;) {
-		const unsigned long bell = nt_atomic_load(&pool.bell, SEQ_CST);
-		pthread_mutex_lock(&pool.lock);
+	pthread_mutex_lock(&pool.lock);
+	while (!pool.ending) {
 		region *r = enter_region();
-		const unsigned long posts = pool.posts;
-		const bool alone = !r || !r->older;
-		const unsigned looks = pool.looks;
-		const bool ending = pool.ending;
-		pthread_mutex_unlock(&pool.lock);
-		if (ending)
-			return NULL;
-		if (r) {
-			nt_deadline_use(r->deadline);
-			work(r);
-			nt_deadline_use(NULL);
-			leave_region(r);
-		}
-		if (alone)
-			await_post(bell, looks);
-		if (r || nt_atomic_load(&pool.bell, RELAXED) != bell)
-			continue;
-		pthread_mutex_lock(&pool.lock);
-		pool.sleeping++;
-		while (pool.posts == posts)
+		if (!r) {
+			pool.sleeping++;
 			pthread_cond_wait(&pool.posted, &pool.lock);
-		pool.sleeping--;
+			pool.sleeping--;
+			continue;
+		}
 		pthread_mutex_unlock(&pool.lock);
+		nt_deadline_use(r->deadline);
+		work(r);
+		nt_deadline_use(NULL);
+		leave_region(r);
+		pthread_mutex_lock(&pool.lock);
 	}
+	pthread_mutex_unlock(&pool.lock);
 	return NULL;
 }
 
@@ -294,7 +261,6 @@ static unsigned reserve_threads(unsigned slots)
 	pool.watches_forks = true;
 	const unsigned lacking = wanted - pool.threads;
 	pool.threads = wanted;
-	pool.processors = nt_pool_processors();
 	return lacking;
 }
 
@@ -312,23 +278,17 @@ static void make_threads(unsigned count)
 
 /* ---- the callers ---- */
 
-/* Returns how long the caller may look for its helpers to leave. */
-static unsigned post(region *r)
+static void post(region *r)
 {
 	pthread_mutex_lock(&pool.lock);
 	const unsigned lacking = reserve_threads(r->slots);
 	r->older = pool.newest;
 	pool.newest = r;
-	pool.posts++;
-	const unsigned looks = pool.looks = r->slots <= pool.processors ? MOST_LOOKS : 0;
 	const unsigned wakes = pool.sleeping < r->slots - 1 ? pool.sleeping : r->slots - 1;
 	for (unsigned i = 0; i < wakes; i++)
 		pthread_cond_signal(&pool.posted);
 	pthread_mutex_unlock(&pool.lock);
-	/* after the lock: who looks for it would only run into it */
-	nt_atomic_add(&pool.bell, 1, SEQ_CST);
 	make_threads(lacking);
-	return looks;
 }
 
 static void unlink_region(const region *r)
@@ -339,13 +299,13 @@ static void unlink_region(const region *r)
 	*link = r->older;
 }
 
-static void close_region(region *r, unsigned looks)
+static void close_region(region *r)
 {
 	pthread_mutex_lock(&pool.lock);
 	unlink_region(r);
 	pthread_mutex_unlock(&pool.lock);
-	while (looks-- > 0 && nt_atomic_load(&r->helpers, SEQ_CST) != 0)
-		pause_shortly();
+	for (unsigned i = 0; i < MOST_LOOKS && nt_atomic_load(&r->helpers, SEQ_CST) != 0; i++)
+		nt_give_way();
 	if (nt_atomic_load(&r->helpers, SEQ_CST) == 0)
 		return;
 	pthread_mutex_lock(&pool.lock);
@@ -360,10 +320,8 @@ void nmtan_end_threads(void)
 {
 	pthread_mutex_lock(&pool.lock);
 	pool.ending = true;
-	pool.posts++;
 	pthread_cond_broadcast(&pool.posted);
 	pthread_mutex_unlock(&pool.lock);
-	nt_atomic_add(&pool.bell, 1, SEQ_CST);
 	for (unsigned i = 0; i < pool.made; i++)
 		pthread_join(pool.ids[i], NULL);
 	pool.made = pool.threads = 0;
@@ -390,9 +348,9 @@ void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), voi
 	/* a thread that ends while it waits for helpers would keep the lock, and leave them a region that is gone */
 	int cancel;
 	pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, &cancel);
-	const unsigned looks = post(&r);
+	post(&r);
 	work(&r);
-	close_region(&r, looks);
+	close_region(&r);
 	pthread_setcancelstate(cancel, NULL);
 }
 
