@@ -271,7 +271,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"tangent comes from a neighbour or from the normal. A warning when such triangles are more "
 		"than 1 % of the mesh's area, where it can be seen, unless a glTF's material uses no tangents.",
 		"Unwrap these triangles if they are visible and normal mapped.",
-		"one triangle with UVs (0,0), (1,0), (2,0)"),
+		"two triangles, of which one has UVs (0,0), (1,0), (2,0)"),
 	ROW(UV_NEAR_DEGENERATE, INFO, "w-w",
 		"{count} {triangle has|triangles have} nearly collinear texture coordinates",
 		"Rounding of the texture coordinates to float alone may turn the tangent of these triangles by "
@@ -289,9 +289,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Straighten the quad in the UV editor, or triangulate it.",
 		"a quad with UVs (0,0), (1,1), (1,0), (0,1): a bowtie"),
 	ROW(UV_UNMAPPED, WARNING, "w-w", "no triangle has an area in UV space: all {count} {is|are} unmapped",
-		"All texture coordinates are alike, or on a line. Tangents are made from normals, and mean nothing.",
+		"All texture coordinates are alike, or on a line. Tangents are made from normals, and mean nothing. An "
+		"info where no material of a glTF needs tangents.",
 		"Unwrap the mesh.",
-		"a quad whose corners have one vt, converted"),
+		"a quad whose corners have one vt"),
 	ROW(UV_ROUNDED_AWAY, INFO, "--i",
 		"{count} {triangle changes|triangles change} orientation when v becomes 1 - v",
 		"glTF stores 1 - v, which rounds: tiny triangles lose their area or turn over. w is right for "

@@ -244,7 +244,7 @@ static uint32_t find_mesh(const mesh_table *table, const nt_place_view *place)
 static void add_scene_finding(nt_check *check, const mesh_table *table, const nt_finding *found)
 {
 	/* the solve counts these too, but does not know where they are: geometry.c does */
-	if (found->code == NT_CODE_UV_DEGENERATE_TRIANGLE ||
+	if (found->code == NT_CODE_UV_DEGENERATE_TRIANGLE || found->code == NT_CODE_UV_UNMAPPED ||
 		found->code == NT_CODE_POS_DEGENERATE_TRIANGLE)
 		return;
 	nt_report_finding finding = {.code = found->code,

@@ -293,9 +293,15 @@ static void report_triangles(nt_check *check, triangle_part *all, size_t from_ne
 	nt_tally_number(no_area, "area_share", all->no_uv_area_sum / total);
 	nt_tally_number(no_area, "corners_from_neighbour", (double)from_neighbour);
 	nt_tally_number(no_area, "corners_from_normal", (double)from_normal);
-	nt_check_report_as(check, no_area, nt_texcoord_severity(check, severity_by_share(check, all->no_uv_area_sum)),
-		"%.3g %% of the area; %zu corners take a neighbour's tangent, %zu one made from their normal",
-		100.0 * all->no_uv_area_sum / total, from_neighbour, from_normal);
+	const nt_severity severity = nt_texcoord_severity(check, severity_by_share(check, all->no_uv_area_sum));
+	if (no_area->count == check->surface.triangle_count) {
+		no_area->code = NT_CODE_UV_UNMAPPED;
+		nt_check_report_as(check, no_area, severity, NULL);
+	} else {
+		nt_check_report_as(check, no_area, severity,
+			"%.3g %% of the area; %zu corners take a neighbour's tangent, %zu one made from their normal",
+			100.0 * all->no_uv_area_sum / total, from_neighbour, from_normal);
+	}
 
 	nt_tally_number(&all->near, "area_share", all->near_area / total);
 	nt_tally_number(&all->near, "least_relative_determinant", all->worst_determinant);
