@@ -1,28 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Averages of groups at complex vertices: steps 7 to 10 of the spec page. Corners are solved SOLVED at a time in the
- * order of groups. Most groups do not split: their members' directions lie within a half-space. Otherwise each
- * direction has a sum of its own, which is that of all members with this direction: in large groups by several threads.
- * So it costs directions times members.
+ * order of groups. Most groups do not split: their members' directions lie within a half-space. Otherwise each member
+ * has a sum of its own, in large groups by several threads, which costs the square of the members.
  *
  * Sums of nearly the same members share no work: from the first member on that only one of them has, each adds all the
- * others again, since floats do not associate. Half of a quad whose halves have opposite directions is such a case: its
- * other half belongs to it, but to no other member of its direction. Many directions are one without quads: dot
- * products round to -1 up to 7e-4 beside the opposite direction, so that 16 000 directions at random around a vertex
- * have 9900 different sets of members. MikkTSpace has as many sums, and no shorter way to their bytes is known.
+ * others again, since floats do not associate. MikkTSpace has as many sums, and no shorter way to their bytes is known.
  */
 #include "tangent/fast/complex_solve.h"
 
 #include <string.h>
 #include "base/deadline.h"
-#include "base/hash.h"
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "tangent/usable.h"
 #include "topology/corners.h"
 
 /*
- * What it may cost where results are repaired: directions times members, of all large groups of a mesh. Less than half
+ * What it may cost where results are repaired: squares of members, of all large groups of a mesh. Less than half
  * a second on one thread (1.5 ns each), which 8 192 folded quads around a vertex take, and 256 for each corner
  * more, so that time is linear. mikktspace.c takes 16 s and half a gigabyte for these quads: nobody has a mesh with
  * more, whose bytes would be missed. The group whose turn it is then has one sum.
@@ -38,24 +33,6 @@ typedef struct part {
 	const nt_corner *solved; /* [count] */
 	size_t count;
 } part;
-
-/* The different directions of a group's members. */
-typedef struct directions {
-	uint32_t *number; /* [members] of the direction that each has */
-	uint32_t *of;     /* [count] the first member that has it */
-	nt_corner *sums;  /* [count] averages of those that belong together with it */
-	uint32_t *table;  /* [table_size(members)] numbers by hash; NT_NONE: free */
-	size_t count;
-} directions;
-
-/* A power of two. */
-static size_t table_size(size_t members)
-{
-	size_t size = 2;
-	while (size < 2 * members)
-		size *= 2;
-	return size;
-}
 
 /* Solving */
 
@@ -279,20 +256,6 @@ static void write_quads(const nt_complex *c, const nt_batch *b)
 
 /* Parts of groups */
 
-/* Bits, so that members of one direction have equal sums. */
-static bool have_one_direction(const nt_corner *a, const nt_corner *b)
-{
-	return memcmp(a->u, b->u, sizeof a->u) == 0 && memcmp(a->v, b->v, sizeof a->v) == 0;
-}
-
-static uint64_t hash_direction(const nt_corner *m)
-{
-	uint64_t words[3];
-	memcpy(words, m->u, sizeof m->u);
-	memcpy((char *)words + sizeof m->u, m->v, sizeof m->v);
-	return nt_hash_words(nt_hash_words(words[0], words[1]), words[2]);
-}
-
 static uint32_t triangle_of(const nt_complex *c, const part *p, size_t i)
 {
 	return (c->corners[p->members[i]] & NT_COMPLEX_CORNER) >> 2;
@@ -315,45 +278,23 @@ static own_members find_own(const nt_complex *c, const part *p, size_t i)
 	return (own_members){(uint32_t)first, none ? 0 : (uint32_t)(last + 1 - first)};
 }
 
-static void list_directions(const nt_complex *c, const part *p, directions *d)
-{
-	const size_t mask = table_size(p->count) - 1;
-	memset(d->table, 0xff, (mask + 1) * sizeof *d->table);
-	d->count = 0;
-	for (size_t i = 0; i < p->count; i++) {
-		const nt_corner *m = &p->solved[i];
-		if (m->kind == NT_CORNER_ANY)
-			continue;
-		d->number[i] = (uint32_t)d->count;
-		if (find_own(c, p, i).count == 0) {
-			size_t at = (size_t)hash_direction(m) & mask;
-			while (d->table[at] != NT_NONE && !have_one_direction(&p->solved[d->of[d->table[at]]], m))
-				at = (at + 1) & mask;
-			if (d->table[at] == NT_NONE)
-				d->table[at] = (uint32_t)d->count;
-			d->number[i] = d->table[at];
-		}
-		if (d->number[i] == d->count)
-			d->of[d->count++] = (uint32_t)i;
-	}
-}
-
 typedef struct sum_context {
 	const nt_complex *c;
 	const part *p;
-	const directions *d;
+	nt_corner *sums; /* [members] averages of those that belong together with each */
 } sum_context;
 
-/* Averages for directions [begin, end). */
-static void sum_directions(void *context, size_t begin, size_t end, unsigned thread)
+/* Averages for members [begin, end). */
+static void sum_members(void *context, size_t begin, size_t end, unsigned thread)
 {
 	(void)thread;
 	const sum_context *s = context;
 	for (size_t i = begin; i < end && !nt_deadline_passed(); i++) {
-		const uint32_t first = s->d->of[i];
-		nt_corner *sum = &s->d->sums[i];
+		nt_corner *sum = &s->sums[i];
 		*sum = (nt_corner){.kind = NT_CORNER_EXTREME};
-		add_members(s->p, &s->p->solved[first], find_own(s->c, s->p, first), sum);
+		if (s->p->solved[i].kind == NT_CORNER_ANY)
+			continue;
+		add_members(s->p, &s->p->solved[i], find_own(s->c, s->p, i), sum);
 		finish(s->c, sum);
 	}
 }
@@ -374,17 +315,17 @@ static bool average_whole(const nt_complex *c, const nt_batch *b, const part *p,
 	return true;
 }
 
-/* Averages a group whose members may split, and whose directions are listed. */
-static void average_parts(const nt_complex *c, const nt_batch *b, const part *p, const nt_corner *whole, directions *d)
+/* Averages a group whose members may split. sums: [p->count]. */
+static void average_parts(const nt_complex *c, const nt_batch *b, const part *p, const nt_corner *whole,
+	nt_corner *sums)
 {
 	const unsigned threads = p->count > SOLVED ? c->fast->solve->threads : 1;
-	sum_context context = {c, p, d};
-	nt_parallel_ranges(threads, d->count, NT_LANES, sum_directions, &context);
+	sum_context context = {c, p, sums};
+	nt_parallel_ranges(threads, p->count, NT_LANES, sum_members, &context);
 	for (size_t i = 0; i < p->count && !nt_deadline_passed(); i++) {
 		/* a member without a frame belongs to all */
-		const bool any = p->solved[i].kind == NT_CORNER_ANY;
-		const nt_corner result = any ? *whole : d->sums[d->number[i]];
-		put_result(c, b, p->members[i], &result, mark_of(c, p->members[i], &result));
+		const nt_corner *result = p->solved[i].kind == NT_CORNER_ANY ? whole : &sums[i];
+		put_result(c, b, p->members[i], result, mark_of(c, p->members[i], result));
 	}
 }
 
@@ -401,17 +342,13 @@ static uint32_t end_of_group(const nt_complex *c, const part *all, uint32_t firs
 static void solve_groups(const nt_complex *c, const nt_batch *b, const uint32_t *members, uint32_t count)
 {
 	nt_corner solved[SOLVED + NT_LANES], sums[SOLVED], whole;
-	uint32_t number[SOLVED], of[SOLVED], table[2 * SOLVED];
-	directions d = {number, of, sums, table, 0};
 	const part all = {members, solved, count};
 	solve_members(c, members, count, solved);
 	for (uint32_t first = 0, end; first < count; first = end) {
 		end = end_of_group(c, &all, first);
 		const part p = {members + first, solved + first, end - first};
-		if (average_whole(c, b, &p, &whole))
-			continue;
-		list_directions(c, &p, &d);
-		average_parts(c, b, &p, &whole, &d);
+		if (!average_whole(c, b, &p, &whole))
+			average_parts(c, b, &p, &whole, sums);
 	}
 }
 
@@ -426,23 +363,17 @@ static void put_sum(const nt_complex *c, const nt_batch *b, const part *p, const
 
 static nmtan_status average_large_parts(const nt_complex *c, const nt_batch *b, const part *p, const nt_corner *whole)
 {
-	directions d = {
-		.number = nt_borrowed_alloc(c->memory, p->count, sizeof *d.number),
-		.of = nt_borrowed_alloc(c->memory, p->count, sizeof *d.of),
-		.sums = nt_borrowed_alloc(c->memory, p->count, sizeof *d.sums),
-		.table = nt_borrowed_alloc(c->memory, table_size(p->count), sizeof *d.table),
-	};
-	if (!d.number || !d.of || !d.sums || !d.table)
+	nt_corner *sums = nt_borrowed_alloc(c->memory, p->count, sizeof *sums);
+	if (!sums)
 		return NMTAN_ERROR_MEMORY;
-	list_directions(c, p, &d);
-	const uint64_t work = (uint64_t)d.count * p->count;
+	const uint64_t work = (uint64_t)p->count * p->count;
 	const uint64_t most = most_work + most_work_of_corner * c->fast->solve->corner_count;
 	if (c->fast->solve->repair && work > most - c->fast->work) {
 		put_sum(c, b, p, whole);
 		return NMTAN_OK;
 	}
 	c->fast->work += work;
-	average_parts(c, b, p, whole, &d);
+	average_parts(c, b, p, whole, sums);
 	return nt_deadline_passed() ? NMTAN_ERROR_MEMORY : NMTAN_OK;
 }
 
