@@ -351,9 +351,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a vertex with the normal (0,0,0)"),
 	ROW(MESH_NORMAL_AGAINST_FACE, WARNING, "www",
 		"{count} {triangle has|triangles have} normals that point against {its|their} winding",
-		"The corner normals lie on the back side of the triangle: it is lit as if seen from behind, "
-		"and the bitangent runs against v there. An info where these are at most 1 % of the mesh's area: "
-		"slivers at sharp bends.",
+		"All three corner normals lie on the back side of the triangle: it is lit as if seen from behind, "
+		"and the bitangent runs against v there. An info where these are at most 1 % of the mesh's area.",
 		"Flip the winding or recalculate the normals.",
 		"a counterclockwise triangle in the xy plane with the normal (0,0,-1)"),
 

@@ -128,13 +128,15 @@ static void check_texcoords(const triangle_work *work, size_t t, const uint32_t 
 	}
 }
 
-/* Whether the normals of the corners, summed, point to the back. */
+/* Whether the normals of all corners point to the back, and with them what is interpolated at each pixel. Where one
+ * does not, a part is lit from the front: what smooth normals do at sharp bends. */
 static bool is_against_normals(const float *normals, const uint32_t v[3], nt_dvec3 d1, nt_dvec3 d2)
 {
-	nt_dvec3 sum = {0, 0, 0};
+	const nt_dvec3 face = nt_dvec3_cross(d1, d2);
 	for (size_t k = 0; k < 3; k++)
-		sum = nt_dvec3_add(sum, nt_dvec3_load(normals + 3 * (size_t)v[k]));
-	return nt_dvec3_dot(nt_dvec3_cross(d1, d2), sum) < 0.0;
+		if (!(nt_dvec3_dot(face, nt_dvec3_load(normals + 3 * (size_t)v[k])) < 0.0))
+			return false;
+	return true;
 }
 
 static void check_triangle(const triangle_work *work, size_t t, triangle_part *part)
