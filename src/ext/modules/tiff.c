@@ -197,7 +197,9 @@ static nt_status decode(TIFF *tiff, source *s, nt_pixels *pixels, nt_error *erro
 	if (status)
 		return status;
 	const bool direct = is_direct(tiff, channels, bits);
-	if ((uint64_t)width * height / 8 / MOST_RATIO > (uint64_t)s->size + SLACK_BYTES)
+	/* a bit for each pixel, but all of channels that nobody looks at, for which the library has room, too */
+	const double least = (double)width * height * (channels > 4 ? (double)channels * bits : 1);
+	if (least / 8 / MOST_RATIO > (double)s->size + SLACK_BYTES)
 		return nt_fail(error, NT_ERROR_INPUT, "TIFF: %zu bytes cannot hold %u x %u pixels", s->size,
 			width, height);
 	status = nt_pixels_create(pixels, width, height, direct ? channels : 4, direct ? bits : 8, error);

@@ -417,6 +417,13 @@ TEST(decode_refuses_sizes_before_it_asks_for_memory)
 	nt_error error;
 	assert_int_equal(nt_image_decode(png, sizeof png, &p, &error), NT_ERROR_INPUT);
 	assert_string_equal(error.message, "PNG: 44 bytes cannot hold 42 x 5963792 pixels");
+	/* a TIFF of 18 761 channels of 16 bits, which libtiff would make room for: 769 MB */
+	static const uint16_t tags[][6] = {{256, 3, 1, 0, 5}, {257, 3, 1, 0, 4099}, {258, 3, 1, 0, 16},
+		{259, 3, 1, 0, 8}, {262, 3, 1, 0, 1}, {273, 4, 1, 0, 8}, {277, 3, 1, 0, 18761}, {279, 4, 1, 0, 39}};
+	unsigned char tiff[10 + sizeof tags + 4] = "II*\0\010\0\0\0\010";
+	memcpy(tiff + 10, tags, sizeof tags);
+	assert_int_equal(nt_image_decode(tiff, sizeof tiff, &p, &error), NT_ERROR_INPUT);
+	assert_string_equal(error.message, "TIFF: 110 bytes cannot hold 5 x 4099 pixels");
 }
 
 /* A JPEG of SIDE x SIDE black pixels whose scan has the blocks' first coefficients alone, or all; malloc'ed. */
