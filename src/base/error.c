@@ -83,6 +83,15 @@ nt_status nt_fail_pointer(nt_error *error, nt_status status, const char *pointer
 	return status;
 }
 
+nt_status nt_fail_file(nt_error *error, nt_status status, const char *file, const char *format, ...)
+{
+	va_list arguments;
+	va_start(arguments, format);
+	fill(error, status, format, arguments);
+	va_end(arguments);
+	return nt_error_in_file(error, file);
+}
+
 nt_status nt_fail_memory(nt_error *error)
 {
 	return nt_fail(error, NT_ERROR_MEMORY, "out of memory");

@@ -57,6 +57,9 @@ nt_place_view nt_view_place(const nt_place *place);
  * `return nt_fail(error, ...)`. error may be NULL. */
 nt_status nt_fail(nt_error *error, nt_status status, const char *format, ...) NT_PRINTF(3, 4);
 
+/* The same with the name of a file; error may not be NULL. */
+nt_status nt_fail_file(nt_error *error, nt_status status, const char *file, const char *format, ...) NT_PRINTF(4, 5);
+
 /* The same with a line, a byte offset or a JSON pointer. The name of the file is set by whoever knows
  * it (nt_error_in_file). */
 nt_status nt_fail_line(nt_error *error, nt_status status, size_t line, const char *format, ...)

@@ -51,10 +51,9 @@ static nt_status append_name(nt_depfile *depfile, const char *path, bool relativ
 {
 	nt_buffer shown = {0};
 	nt_status status = append_shown(depfile, path, relative, &shown, error);
-	if (!status && strpbrk(shown.data, "\n\r")) {
-		nt_fail(error, NT_ERROR_UNSUPPORTED, "a name with a line feed cannot be in a depfile");
-		status = nt_error_in_file(error, path);
-	}
+	if (!status && strpbrk(shown.data, "\n\r"))
+		status = nt_fail_file(error, NT_ERROR_UNSUPPORTED, path,
+			"a name with a line feed cannot be in a depfile");
 	if (!status)
 		append_escaped(&depfile->text, shown.data);
 	nt_buffer_free(&shown);

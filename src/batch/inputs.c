@@ -42,8 +42,7 @@ static nt_status fail_folder(const char *path, int number, nt_error *error)
 {
 	if (number == ENOMEM)
 		return nt_fail_memory(error);
-	nt_fail(error, NT_ERROR_IO, "cannot read the folder: %s", strerror(number));
-	return nt_error_in_file(error, path);
+	return nt_fail_file(error, NT_ERROR_IO, path, "cannot read the folder: %s", strerror(number));
 }
 
 /* ---- what is taken ---- */
@@ -188,10 +187,9 @@ nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, char separator
 	if (status)
 		return status;
 	const char *text = (const char *)file.data;
-	if (separator && memchr(text, '\0', file.size)) {
-		nt_fail(error, NT_ERROR_INPUT, "a list with a NUL in it, expected one name a line (see --files0-from)");
-		status = nt_error_in_file(error, path);
-	}
+	if (separator && memchr(text, '\0', file.size))
+		status = nt_fail_file(error, NT_ERROR_INPUT, path,
+			"a list with a NUL in it, expected one name a line (see --files0-from)");
 	for (size_t at = 0; at < file.size && !status;) {
 		const char *end = memchr(text + at, separator, file.size - at);
 		const size_t length = end ? (size_t)(end - text) - at : file.size - at;

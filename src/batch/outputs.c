@@ -198,17 +198,14 @@ static nt_status make_folder(const char *directory, const nt_settings *settings,
 	const nt_status status = nt_lookup_found(directory, &info, &found, error);
 	if (status || (found && S_ISDIR(info.st_mode)))
 		return status;
-	if (found) {
-		nt_fail(error, NT_ERROR_IO, "is not a folder");
-		return nt_error_in_file(error, directory);
-	}
+	if (found)
+		return nt_fail_file(error, NT_ERROR_IO, directory, "is not a folder");
 	if (settings->dry_run)
 		return NT_OK;
 	/* another process may have been faster */
 	if (mkdir(directory, 0777) == 0 || (errno == EEXIST && stat(directory, &info) == 0 && S_ISDIR(info.st_mode)))
 		return settings->sync ? nt_output_sync_name(directory, error) : NT_OK;
-	nt_fail(error, NT_ERROR_IO, "cannot make the folder: %s", strerror(errno));
-	return nt_error_in_file(error, directory);
+	return nt_fail_file(error, NT_ERROR_IO, directory, "cannot make the folder: %s", strerror(errno));
 }
 
 /* Outputs in a tree below the folder that is like the inputs' below the root. The names are compared as they are

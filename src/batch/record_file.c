@@ -25,8 +25,7 @@ static nt_status fail(const nt_record_file *file, int number, nt_error *error)
 {
 	if (number == ENOMEM)
 		return nt_fail_memory(error);
-	nt_fail(error, NT_ERROR_IO, "cannot write the record: %s", strerror(number));
-	return nt_error_in_file(error, file->path);
+	return nt_fail_file(error, NT_ERROR_IO, file->path, "cannot write the record: %s", strerror(number));
 }
 
 /* ---- reading ---- */
@@ -108,10 +107,8 @@ static nt_status load(nt_record_file *file, nt_error *error)
 		at = (size_t)(end - file->text) + 1;
 	}
 	const size_t head = strlen(file->prefix), known = file->size < head ? file->size : head;
-	if (!status && known && !file->line_count && memcmp(file->text, file->prefix, known) != 0) {
-		nt_fail(error, NT_ERROR_IO, "refusing to write: it is no record");
-		status = nt_error_in_file(error, file->path);
-	}
+	if (!status && known && !file->line_count && memcmp(file->text, file->prefix, known) != 0)
+		status = nt_fail_file(error, NT_ERROR_IO, file->path, "refusing to write: it is no record");
 	return status;
 }
 

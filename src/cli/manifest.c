@@ -203,20 +203,15 @@ static nt_status refuse_foreign(const nt_manifest *manifest, const nt_batch *bat
 	if (stat(manifest->path, &info) != 0)
 		return NT_OK;
 	for (size_t i = 0; i < batch->count; i++)
-		if (stat(batch->jobs[i].input, &input) == 0 && nt_same_file(&input, &info)) {
-			nt_fail(error, NT_ERROR_IO, "refusing to write: it is the same file as the input %s",
-				batch->jobs[i].input);
-			return nt_error_in_file(error, manifest->path);
-		}
+		if (stat(batch->jobs[i].input, &input) == 0 && nt_same_file(&input, &info))
+			return nt_fail_file(error, NT_ERROR_IO, manifest->path,
+				"refusing to write: it is the same file as the input %s", batch->jobs[i].input);
 	const int fd = S_ISREG(info.st_mode) ? open(manifest->path, O_RDONLY | O_CLOEXEC) : -1;
 	const bool ours = fd < 0 || is_ours(fd);
 	if (fd >= 0)
 		close(fd);
-	if (!ours) {
-		nt_fail(error, NT_ERROR_IO, "refusing to write: the file exists already and is no manifest");
-		return nt_error_in_file(error, manifest->path);
-	}
-	return NT_OK;
+	return ours ? NT_OK : nt_fail_file(error, NT_ERROR_IO, manifest->path,
+		"refusing to write: the file exists already and is no manifest");
 }
 
 nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options, const nt_batch *batch,

@@ -50,8 +50,8 @@ static nt_status taken_meanwhile(nt_output *output, const char *path, nt_error *
 {
 	if (output->options.result)
 		output->options.result->again = true;
-	nt_fail(error, NT_ERROR_IO, "refusing to write: the name was taken, or its file changed, meanwhile");
-	return nt_error_in_file(error, path);
+	return nt_fail_file(error, NT_ERROR_IO, path,
+		"refusing to write: the name was taken, or its file changed, meanwhile");
 }
 
 /* ---- folders ---- */
@@ -192,15 +192,6 @@ static bool link_stable(const nt_sink *sink)
 	return renamed;
 }
 
-static void note_staging(const nt_output *output, int number)
-{
-	nt_buffer *note = output->options.result ? &output->options.result->note : NULL;
-	for (const nt_sink *sink = output->first; sink && note; sink = sink->next)
-		if (sink->staging)
-			nt_buffer_format(note, "; the data of %s stays in %s (%s)", nt_sink_name(sink, false),
-				nt_sink_name(sink, true), strerror(number));
-}
-
 /* The staging name by which a run that was killed before step 5 left the file that has the name now, or had it. */
 static void unlink_second_name(const nt_sink *sink)
 {
@@ -242,7 +233,12 @@ static nt_status settle_names(nt_output *output, nt_error *error)
 	if (status)
 		return status;
 	if (!linked || place_main(output, output->main, &ignored)) {
-		note_staging(output, linked ? errno : number);
+		const char *why = strerror(linked ? errno : number);
+		nt_buffer *note = output->options.result ? &output->options.result->note : NULL;
+		for (const nt_sink *sink = output->first; sink && note; sink = sink->next)
+			if (sink->staging)
+				nt_buffer_format(note, "; the data of %s stays in %s (%s)", nt_sink_name(sink, false),
+					nt_sink_name(sink, true), why);
 		return NT_OK;
 	}
 	status = sync_step(output, error);
@@ -253,14 +249,6 @@ static nt_status settle_names(nt_output *output, nt_error *error)
 }
 
 /* ---- one after the other ---- */
-
-static bool has_sidecars(const nt_output *output)
-{
-	const nt_sink *sink = output->first;
-	while (sink && !nt_sink_is_sidecar(sink))
-		sink = sink->next;
-	return sink && output->main && output->main->target;
-}
 
 /* Waits until no other set is being placed in the folder: a lock of the folder, which ends with its process. Below 0:
  * the file system has none. */
@@ -290,7 +278,10 @@ static bool main_is_unchanged(const nt_sink *main)
 nt_status nt_output_place(nt_output *output, nt_error *error)
 {
 	sigset_t before;
-	const bool alone = has_sidecars(output);
+	const nt_sink *sidecar = output->first;
+	while (sidecar && !nt_sink_is_sidecar(sidecar))
+		sidecar = sidecar->next;
+	const bool alone = sidecar && output->main && output->main->target;
 	const int lock = alone ? lock_folder(output) : -1;
 	nt_temporaries_hold(&before);
 	nt_status status = NT_OK;
@@ -299,10 +290,9 @@ nt_status nt_output_place(nt_output *output, nt_error *error)
 	/* since it was added somebody else may have come to read it */
 	struct stat there;
 	if (!status && output->main && output->main->temporary && stat(output->main->target, &there) == 0 &&
-		nt_trace_is_read_elsewhere(&there)) {
-		nt_fail(error, NT_ERROR_IO, "refusing to write: another input of this run is made from it");
-		status = nt_error_in_file(error, output->main->path);
-	}
+		nt_trace_is_read_elsewhere(&there))
+		status = nt_fail_file(error, NT_ERROR_IO, output->main->path,
+			"refusing to write: another input of this run is made from it");
 	if (!status)
 		status = place_all(output, error);
 	if (!status && output->staging)

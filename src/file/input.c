@@ -48,12 +48,10 @@ static nt_status read_all(nt_file *file, int fd, const char *path, nt_error *err
 			break;
 		size += (size_t)count;
 	}
-	if (size) {
-		file->data = data;
-		file->size = size;
-	} else {
+	if (!size)
 		free(data);
-	}
+	file->data = size ? data : no_bytes;
+	file->size = size;
 	return NT_OK;
 }
 
@@ -79,14 +77,6 @@ static bool map_all(nt_file *file, int fd, const char *path, const struct stat *
 	return true;
 }
 
-static nt_status fail_kind(const struct stat *status, const char *path, nt_error *error)
-{
-	if (S_ISDIR(status->st_mode))
-		return nt_lookup_failed(path, EISDIR, error);
-	nt_fail(error, NT_ERROR_IO, "cannot read: it is a device");
-	return nt_error_in_file(error, path);
-}
-
 /* `referred`: a name that a document has, which must not make the run wait for whoever writes a pipe. */
 static nt_status open_file(nt_file *file, const char *path, bool referred, nt_error *error)
 {
@@ -107,8 +97,7 @@ static nt_status open_file(nt_file *file, const char *path, bool referred, nt_er
 	if (referred && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
 		close(fd);
 		nt_trace_missing(path);
-		nt_fail(error, NT_ERROR_MISSING, "cannot read: it is no regular file");
-		return nt_error_in_file(error, path);
+		return nt_fail_file(error, NT_ERROR_MISSING, path, "cannot read: it is no regular file");
 	}
 	if (!standard) {
 		file->device = (uint64_t)status.st_dev;
@@ -119,7 +108,9 @@ static nt_status open_file(nt_file *file, const char *path, bool referred, nt_er
 		return NT_OK;
 	const bool readable = standard || S_ISREG(status.st_mode) || S_ISFIFO(status.st_mode) ||
 		S_ISSOCK(status.st_mode);
-	const nt_status result = readable ? read_all(file, fd, path, error) : fail_kind(&status, path, error);
+	const nt_status result = readable ? read_all(file, fd, path, error)
+		: S_ISDIR(status.st_mode) ? nt_lookup_failed(path, EISDIR, error)
+		: nt_fail_file(error, NT_ERROR_IO, path, "cannot read: it is a device");
 	close(fd);
 	return result;
 }
@@ -141,8 +132,8 @@ nt_status nt_file_open_content(nt_file *file, const char *path, bool referred, n
 	if (status || file->size < sizeof pointer - 1 || memcmp(file->data, pointer, sizeof pointer - 1) != 0)
 		return status;
 	nt_file_close(file);
-	nt_fail(error, NT_ERROR_MISSING, "Git LFS's pointer to the file, not the file itself: git lfs pull brings it");
-	return nt_error_in_file(error, path);
+	return nt_fail_file(error, NT_ERROR_MISSING, path,
+		"Git LFS's pointer to the file, not the file itself: git lfs pull brings it");
 }
 
 nt_status nt_file_open_untraced(nt_file *file, const char *path, nt_error *error)

@@ -22,12 +22,6 @@
 #include "file/trace.h"
 #include "file/watch.h"
 
-static nt_status refuse(nt_error *error, const char *path, const char *why)
-{
-	nt_fail(error, NT_ERROR_IO, "%s", why);
-	return nt_error_in_file(error, path);
-}
-
 nt_status nt_output_create(nt_output **output, const nt_output_options *options, nt_error *error)
 {
 	*output = nt_calloc(1, sizeof **output);
@@ -79,8 +73,7 @@ static nt_status refuse_in_place(const char *path, const struct stat *status, nt
 	const char *refusal = nt_in_place_refusal(path, status);
 	if (!refusal)
 		return NT_OK;
-	nt_fail(error, NT_ERROR_IO, "refusing to write in place: %s", refusal);
-	return nt_error_in_file(error, path);
+	return nt_fail_file(error, NT_ERROR_IO, path, "refusing to write in place: %s", refusal);
 }
 
 nt_status nt_output_check_in_place(const nt_output_options *options, const char *path, nt_error *error)
@@ -110,16 +103,16 @@ static nt_status check_existing(const nt_output *output, nt_sink *sink, const st
 {
 	const nt_protected_file *file;
 	if (S_ISDIR(status->st_mode))
-		return refuse(error, sink->path, "cannot write: it is a directory");
-	if (nt_output_is_protected(output, status, &file)) {
-		if (!file->path)
-			return refuse(error, sink->path,
-				"refusing to write: another input of this run is made from it");
-		nt_fail(error, NT_ERROR_IO, "refusing to write: it is the same file as the input %s%s%s",
+		return nt_fail_file(error, NT_ERROR_IO, sink->path, "cannot write: it is a directory");
+	const bool is_protected = nt_output_is_protected(output, status, &file);
+	if (is_protected && !file->path)
+		return nt_fail_file(error, NT_ERROR_IO, sink->path,
+			"refusing to write: another input of this run is made from it");
+	if (is_protected)
+		return nt_fail_file(error, NT_ERROR_IO, sink->path,
+			"refusing to write: it is the same file as the input %s%s%s",
 			strcmp(file->path, "-") == 0 ? "(standard input)" : file->path,
 			file->way_out ? "; " : "", file->way_out ? file->way_out : "");
-		return nt_error_in_file(error, sink->path);
-	}
 	if (!S_ISREG(status->st_mode))
 		return NT_OK;
 	if (output->options.no_clobber)
@@ -133,7 +126,7 @@ static nt_status check_twins(const nt_output *output, const nt_sink *sink, nt_er
 {
 	for (const nt_sink *other = output->first; other; other = other->next)
 		if (!nt_sink_is_sidecar(other) && other->target && strcmp(other->target, sink->target) == 0)
-			return refuse(error, sink->path,
+			return nt_fail_file(error, NT_ERROR_IO, sink->path,
 				"refusing to write: another file of this output has the same name");
 	return NT_OK;
 }
@@ -186,9 +179,11 @@ static nt_status look_at(const char *path, struct stat *status, bool *exists, nt
 		return NT_OK;
 	const int number = errno;
 	if (is_link && (number == ENOENT || number == ENOTDIR))
-		return refuse(error, path, "refusing to write: it is a symbolic link that leads nowhere");
+		return nt_fail_file(error, NT_ERROR_IO, path,
+			"refusing to write: it is a symbolic link that leads nowhere");
 	if (number == ELOOP)
-		return refuse(error, path, "refusing to write: it is a symbolic link that leads back to itself");
+		return nt_fail_file(error, NT_ERROR_IO, path,
+			"refusing to write: it is a symbolic link that leads back to itself");
 	return number == ENOENT || number == ENOTDIR ? NT_OK : nt_sink_fail(error, path, number);
 }
 

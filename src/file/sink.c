@@ -34,8 +34,7 @@ nt_status nt_sink_fail(nt_error *error, const char *path, int number)
 
 nt_status nt_sink_refuse_existing(nt_error *error, const char *path)
 {
-	nt_fail(error, NT_ERROR_IO, "refusing to write: the file exists already");
-	return nt_error_in_file(error, path);
+	return nt_fail_file(error, NT_ERROR_IO, path, "refusing to write: the file exists already");
 }
 
 /* Without it ext4 reserves room for each of its blocks when that is written: 6.4 ms instead of 4.6 for 35 MB. A

@@ -168,8 +168,7 @@ nt_status nt_watch_check(nt_error *error)
 	}
 	if (!change)
 		return NT_OK;
-	nt_fail(error, NT_ERROR_IO, "%s", change);
-	return nt_error_in_file(error, path);
+	return nt_fail_file(error, NT_ERROR_IO, path, "%s", change);
 }
 
 bool nt_watch_touch(const void *bytes, size_t size)

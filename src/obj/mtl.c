@@ -293,10 +293,8 @@ nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *b
 	mtl_values said = {0};
 	reader r = {.scene = scene, .path = path, .mtl = mtl, .said = &said, .line = 1, .error = error};
 	const char *p = (const char *)bytes, *const end = p + size;
-	if (memchr(bytes, '\0', size)) {
-		nt_fail(error, NT_ERROR_INPUT, "a byte 0 in it, expected a material library in text");
-		return nt_error_in_file(error, path);
-	}
+	if (memchr(bytes, '\0', size))
+		return nt_fail_file(error, NT_ERROR_INPUT, path, "a byte 0 in it, expected a material library in text");
 	if (size >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0)
 		p += 3;
 	while (p < end) {
