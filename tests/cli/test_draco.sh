@@ -173,6 +173,7 @@ def block(p):
     return b[v.get("byteOffset", 0):v.get("byteOffset", 0) + v["byteLength"]]
 exec(sys.argv[3])
 END
+size() { stat -c %s "$1"; }
 printf '%s\n' "v 0 0 0" "v 1 0 0" "v 0 1 0" "v 1 1 1" "vt 0 0" "vt 1 0" "vt 0 1" "vt 1 1" "o a" "f 1/1 2/2 3/3" "f 2/2 4/4 3/3" \
 	"o b" "f 2/1 1/2 3/3" "f 3/3 1/2 4/4" >two.obj
 run two.obj two.glb
@@ -195,6 +196,12 @@ open("mixed.glb", "wb").write(struct.pack("<III", 0x46546C67, 2, 28 + len(text) 
 open(sys.argv[1] + ".second", "wb").write(block(g["meshes"][1]["primitives"][0]))'
 	done
 	same mixed.glb.first out.glb.first
+	# a second run leaves nothing of the first one's blocks, and changes nothing unless it takes another order
+	run --existing=replace --only=all --draco=$method both.glb again.glb
+	[ $method = edgebreaker ] || same both.glb again.glb
+	[ "$(size again.glb)" -lt $(($(size both.glb) + 100)) ] || wrong "it is larger"
+	run --existing=replace --only=all --draco=off both.glb off.glb
+	is "$(gltf off.glb 'g.buffers[0].byteLength')" $((10 * (12 + 12 + 8 + 16) + 2 * 12 + 2 * 4)) # 4: views that are left
 	# repair that repairs nothing, and a second run with what is there, change nothing
 	for words in --existing=keep --existing=repair; do
 		run $words out.glb again.glb
@@ -205,7 +212,6 @@ done
 scene "--draco-speed: smaller or faster, the same content, 5 unless told"
 grid_obj 40 >grid.obj
 run -q grid.obj grid.glb
-size() { stat -c %s "$1"; }
 for method in edgebreaker sequential; do
 	for level in 0 5 10; do
 		run -q --only=all --existing=replace --draco=$method --draco-speed=$level --verify grid.glb $level.glb

@@ -59,7 +59,7 @@ static nt_status make_plain(nt_buffer_edits *edits, nt_vertex_pools *pools, nt_j
 	if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &index) &&
 		nt_gltf_get_view(document, index, "", &view, NULL) == NT_OK &&
 		nt_gltf_draco_release(pools, index, 1))
-		status = nt_edits_release(edits, (uint32_t)index, 0, view.length, error);
+		status = nt_edits_release(edits, (uint32_t)index, NT_DRACO_HEAD, view.length - NT_DRACO_HEAD, error);
 	nt_json_remove(document->json, extensions, "KHR_draco_mesh_compression");
 	if (nt_json_count(extensions) == 0)
 		nt_json_remove(document->json, primitive, "extensions");

@@ -141,7 +141,8 @@ nt_status nt_gltf_draco_store(nt_gltf_recoding *r, uint32_t buffer, nt_error *er
 	if (status)
 		return status;
 	if (r->source && nt_gltf_draco_release(r->pools, r->view, r->vertices->pool->user_count) &&
-		nt_byte_users_count(&r->edits->users, view.buffer, view.offset, view.offset + view.length) == 1)
+		nt_byte_users_count(&r->edits->users, view.buffer, view.offset + NT_DRACO_HEAD,
+			view.offset + view.length) == 1)
 		return nt_edits_replace(r->edits, view.buffer, view.offset, view.length, bytes, r->block.size, error);
 	uint32_t number;
 	status = nt_edits_add_view(r->edits, buffer, bytes, r->block.size, 0, 0, &number, error);

@@ -55,6 +55,9 @@ void nt_gltf_draco_add_own(nt_gltf_recoding *recoding);
  * block. */
 void nt_gltf_draco_describe(nt_gltf_recoding *recoding);
 
+/* All blocks begin with DRAC, which views that an earlier run left free share (relocate.c): that stays for them. */
+enum { NT_DRACO_HEAD = 4 };
+
 /* So many primitives do not refer to a block any more. Whether nobody does. */
 bool nt_gltf_draco_release(nt_vertex_pools *pools, uint64_t view, size_t count);
 
