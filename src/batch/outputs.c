@@ -5,6 +5,7 @@
  */
 #include "batch/batch.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -86,8 +87,26 @@ static char *output_name(const char *input, const char *below, const char *direc
 static int compare_outputs(const void *a, const void *b)
 {
 	const nt_job *x = *(const nt_job *const *)a, *y = *(const nt_job *const *)b;
-	const int order = strcmp(x->output, y->output);
+	const int loosely = strcasecmp(x->output, y->output), order = loosely ? loosely : strcmp(x->output, y->output);
 	return order ? order : (x > y) - (x < y);
+}
+
+/* Whether one file has names that differ by case; asked where the input is, since outputs may not be there. */
+static bool ignores_case(const char *input)
+{
+	struct stat one, other;
+	char *changed = strdup(input);
+	for (char *c = changed ? changed + (nt_last_part(input) - input) : NULL; c && *c; c++)
+		*c = (char)(isupper((unsigned char)*c) ? tolower((unsigned char)*c) : toupper((unsigned char)*c));
+	const bool same = changed && strcmp(changed, input) != 0 && lstat(input, &one) == 0 &&
+		lstat(changed, &other) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+	free(changed);
+	return same;
+}
+
+static bool same_output(const nt_job *x, const nt_job *y)
+{
+	return strcasecmp(x->output, y->output) == 0 && (strcmp(x->output, y->output) == 0 || ignores_case(y->input));
 }
 
 static nt_status refuse(nt_job *job, nt_error *error, const char *format, ...) NT_PRINTF(3, 4);
@@ -114,7 +133,7 @@ static nt_status refuse_equal_outputs(const nt_batch *batch, nt_error *error)
 	qsort(sorted, batch->count, sizeof(nt_job *), compare_outputs);
 	nt_status status = NT_OK;
 	for (size_t i = 1, first = 0; i < batch->count && !status; i++) {
-		if (strcmp(sorted[first]->output, sorted[i]->output) != 0) {
+		if (!same_output(sorted[first], sorted[i])) {
 			first = i;
 			continue;
 		}

@@ -125,6 +125,16 @@ says "'x/a.obj' and 'y/a.glb' would both be written to 'out/a.glb'"
 says "'y/b.ply' and 'x/b.obj' would both be written to 'out/b.glb'"
 is "$(ls out)" one.glb
 is "$(wc -l <m)" 5
+cp x/a.obj y/A.OBJ
+run -q -d cases x/a.obj y/A.OBJ
+exits 0
+is "$(ls cases | wc -l)" 2
+# where case makes no difference: the file has its other name
+ln x/a.obj x/A.OBJ
+run -q -d same x/a.obj y/A.OBJ
+exits 1
+says "'x/a.obj' and 'y/A.OBJ' would both be written to"
+rm y/A.OBJ x/A.OBJ
 run -d none --fail-fast x/a.obj y/a.glb one.obj
 exits 1
 says "0 of 3 done, 2 failed, 1 not tried"
