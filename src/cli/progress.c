@@ -2,7 +2,7 @@
 /*
  * Progress: see progress.h. On a terminal the line replaces itself, beginning after a second, since a
  * line that flashes by only disturbs. --progress=on without a terminal is for logs: a line for each stage of one file,
- * or one every ten seconds for many.
+ * or one every ten seconds for many. Where there are no threads, stages and ends of files are the clock.
  */
 #include "cli/progress.h"
 
@@ -27,8 +27,8 @@ struct nt_progress {
 	size_t files, ended, failed;
 	uint64_t bytes; /* read and written by those that have ended */
 	nt_stage stage;
-	double begin; /* by nt_seconds() */
-	bool terminal;
+	double begin, next; /* by nt_seconds(): the start, and when the clock draws */
+	bool terminal, has_thread;
 	bool drawn; /* the line stands on the terminal */
 	bool stop;
 	char last[256]; /* without a terminal: what was printed last */
@@ -80,6 +80,14 @@ static void draw(nt_progress *p)
 	nt_buffer_free(&line);
 }
 
+static void draw_in_time(nt_progress *p)
+{
+	if (nt_seconds() < p->next || (!p->terminal && p->files <= 1))
+		return;
+	draw(p);
+	p->next += p->terminal ? 0 : SECONDS_PER_LOG_LINE;
+}
+
 /* By the clock that nobody sets: pthread_cond_init() has been told so. */
 static void wait_a_tick(nt_progress *p)
 {
@@ -94,16 +102,12 @@ static void wait_a_tick(nt_progress *p)
 static void *watch(void *user)
 {
 	nt_progress *p = user;
-	double next = p->begin + (p->terminal ? SECONDS_BEFORE_FIRST : SECONDS_PER_LOG_LINE);
 	pthread_mutex_lock(&p->mutex);
 	while (!p->stop) {
 		wait_a_tick(p);
-		if (p->stop || nt_seconds() < next || (!p->terminal && p->files <= 1))
-			continue;
-		draw(p);
-		next += p->terminal ? 0 : SECONDS_PER_LOG_LINE;
+		if (!p->stop)
+			draw_in_time(p);
 	}
-	erase(p);
 	pthread_mutex_unlock(&p->mutex);
 	return NULL;
 }
@@ -120,18 +124,14 @@ nt_progress *nt_progress_start(int mode, const char *label, size_t files)
 	p->files = files;
 	p->terminal = terminal;
 	p->begin = nt_seconds();
+	p->next = p->begin + (terminal ? SECONDS_BEFORE_FIRST : SECONDS_PER_LOG_LINE);
 	pthread_mutex_init(&p->mutex, NULL);
 	pthread_condattr_t monotonic;
 	pthread_condattr_init(&monotonic);
 	pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
 	pthread_cond_init(&p->wake, &monotonic);
 	pthread_condattr_destroy(&monotonic);
-	if (pthread_create(&p->thread, NULL, watch, p) != 0) {
-		pthread_cond_destroy(&p->wake);
-		pthread_mutex_destroy(&p->mutex);
-		free(p);
-		return NULL;
-	}
+	p->has_thread = pthread_create(&p->thread, NULL, watch, p) == 0;
 	return p;
 }
 
@@ -144,6 +144,8 @@ void nt_progress_stage(void *progress, nt_stage stage)
 	p->stage = stage;
 	if (!p->terminal)
 		draw(p);
+	else if (!p->has_thread)
+		draw_in_time(p);
 	pthread_mutex_unlock(&p->mutex);
 }
 
@@ -155,6 +157,8 @@ void nt_progress_file(nt_progress *p, uint64_t bytes, bool failed)
 	p->ended++;
 	p->bytes += bytes;
 	p->failed += failed;
+	if (!p->has_thread)
+		draw_in_time(p);
 	pthread_mutex_unlock(&p->mutex);
 }
 
@@ -179,8 +183,10 @@ void nt_progress_stop(nt_progress *p)
 	pthread_mutex_lock(&p->mutex);
 	p->stop = true;
 	pthread_cond_signal(&p->wake);
+	erase(p);
 	pthread_mutex_unlock(&p->mutex);
-	pthread_join(p->thread, NULL);
+	if (p->has_thread)
+		pthread_join(p->thread, NULL);
 	pthread_cond_destroy(&p->wake);
 	pthread_mutex_destroy(&p->mutex);
 	free(p);
