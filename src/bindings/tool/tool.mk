@@ -20,10 +20,10 @@ tool_wasm_src := $(filter-out %/kernel_avx2.c %/kernel_avx512.c,$(core_src)) $(t
 	$(wildcard src/ext/modules/*.c src/ext/modules/*.cpp $(tool_dir)/*.c)
 tool_wasm_obj := $(patsubst %,$(T)/%.o,$(tool_wasm_src))
 
-$(T)/src/%.c.o: src/%.c $(S)/.complete
+$(T)/src/%.c.o: src/%.c $(S)/.complete $(T)/flags
 	@mkdir -p $(@D)
 	$(EMCC) -std=c11 $(ours) $(TOOL_LEVEL) -c -o $@ $<
-$(T)/src/%.cpp.o: src/%.cpp $(S)/.complete
+$(T)/src/%.cpp.o: src/%.cpp $(S)/.complete $(T)/flags
 	@mkdir -p $(@D)
 	$(EMCC) -std=c++17 $(ours) -c -o $@ $<
 
@@ -62,13 +62,17 @@ foreign_obj := $(patsubst $(S)/%,$(T)/foreign/%.o,$(foreach library,draco meshop
 foreign_flags := $(tool_flags) -w -isystem $(T)/include/stb -isystem $(T)/include -isystem $(S)/zlib/unpacked -isystem $(S)/libjpeg-turbo/unpacked -isystem $(S)/libzstd/unpacked/lib \
 	-isystem $(S)/draco/unpacked/src -isystem $(S)/openmesh/unpacked/src -isystem $(S)/libdeflate/unpacked -isystem $(S)/tinygltf/unpacked \
 	-isystem $(S)/tiff/unpacked/libtiff -DZSTD_DISABLE_ASM
-$(T)/foreign/%.c.o: $(S)/%.c
+# Other flags make other objects.
+$(T)/flags: FORCE
+	@mkdir -p $(@D)
+	@echo '$(ours) $(foreign_flags)' | cmp -s - $@ || echo '$(ours) $(foreign_flags)' >$@
+$(T)/foreign/%.c.o: $(S)/%.c $(T)/flags
 	@mkdir -p $(@D)
 	$(EMCC) $(foreign_flags) -c -o $@ $<
-$(T)/foreign/%.cc.o: $(S)/%.cc
+$(T)/foreign/%.cc.o: $(S)/%.cc $(T)/flags
 	@mkdir -p $(@D)
 	$(EMCC) -std=c++17 $(foreign_flags) -c -o $@ $<
-$(T)/foreign/%.cpp.o: $(S)/%.cpp
+$(T)/foreign/%.cpp.o: $(S)/%.cpp $(T)/flags
 	@mkdir -p $(@D)
 	$(EMCC) -std=c++17 $(foreign_flags) -c -o $@ $<
 
@@ -79,14 +83,15 @@ $(T)/libforeign.a: $(foreign_obj)
 
 # Memory that was grown is not given back before the run ends. The tool ends by exit(), which runs what is registered.
 tool_link := $(tool_flags) -sALLOW_MEMORY_GROWTH -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=64MB -sTOTAL_STACK=8MB -sEXIT_RUNTIME \
-	-sMODULARIZE -sEXPORT_NAME=createNmtan -sINVOKE_RUN=0 -sEXPORTED_RUNTIME_METHODS=callMain,FS,ENV -sDYNAMIC_EXECUTION=0
+	-sMODULARIZE -sEXPORT_NAME=createNmtan -sINVOKE_RUN=0 -sEXPORTED_RUNTIME_METHODS=callMain,FS,ENV '-sDEFAULT_LIBRARY_FUNCS_TO_INCLUDE=$$ERRNO_CODES' \
+	-sDYNAMIC_EXECUTION=0
 
-$(T)/node/nmtan-tool.js: $(tool_wasm_obj) $(T)/libforeign.a
+$(T)/node/nmtan-tool.js: $(tool_wasm_obj) $(T)/libforeign.a $(tool_dir)/tool.mk
 	@mkdir -p $(@D)
-	$(EMCC) $(tool_link) -sENVIRONMENT=node -sNODERAWFS -o $@ $^
-$(T)/web/nmtan-tool.js: $(tool_wasm_obj) $(T)/libforeign.a
+	$(EMCC) $(tool_link) -sENVIRONMENT=node -sNODERAWFS -o $@ $(filter %.o %.a,$^)
+$(T)/web/nmtan-tool.js: $(tool_wasm_obj) $(T)/libforeign.a $(tool_dir)/tool.mk
 	@mkdir -p $(@D)
-	$(EMCC) $(tool_link) -sENVIRONMENT=web,worker,node -o $@ $^
+	$(EMCC) $(tool_link) -sENVIRONMENT=web,worker,node -o $@ $(filter %.o %.a,$^)
 
 # The package: the library's files, and beside them the tool, which nothing of the library loads.
 tool_package := build/npm-tool

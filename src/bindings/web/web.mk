@@ -12,10 +12,10 @@ web_files := index.html app.css app.js files.js zip.js worker.js report.html rep
 web: wasm-tool
 	@$(MAKE) --no-print-directory build/web/sw.js
 
-# A script for workers that import. What system.c says of errors, emscripten puts in where node is alone.
+# A script for workers that import.
 build/web/tool.js: build/web-tool/nmtan-tool.js
 	@mkdir -p $(@D)
-	{ echo 'const ERRNO_CODES = {EIO: 29, ENOSYS: 52};' && cat $< && echo 'export default createNmtan;'; } >$@.part && mv $@.part $@
+	{ cat $< && echo 'export default createNmtan;'; } >$@.part && mv $@.part $@
 build/web/tool.wasm: build/web-tool/nmtan-tool.wasm
 
 $(addprefix build/web/,index.html app.css app.js files.js zip.js worker.js): build/web/%: $(web_dir)/%
@@ -32,6 +32,9 @@ build/web/report.js: $(web_scripts) src/report/render/page_assets.c
 build/web/report.html: $(web_dir)/report.html $(web_page)/page.html
 	@mkdir -p $(@D)
 	{ cat $^ && printf '</body>\n</html>\n'; } >$@.part && mv $@.part $@
+
+# What is made by these rules is made by them as they are now.
+$(addprefix build/web/,$(web_files)): $(web_dir)/web.mk
 
 # Another version is another cache: its name is of the bytes.
 build/web/sw.js: $(web_dir)/sw.js $(addprefix build/web/,$(web_files))
