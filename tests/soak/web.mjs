@@ -150,6 +150,8 @@ await accessible('an error');
 
 await page.evaluate(() => {
 	window.gap = 0;
+	window.stages = new Set();
+	new MutationObserver(() => window.stages.add(document.getElementById('stage').textContent)).observe(document.getElementById('stage'), {childList: true});
 	let last = performance.now();
 	const tick = () => { const now = performance.now(); window.gap = Math.max(window.gap, now - last); last = now; requestAnimationFrame(tick); };
 	tick();
@@ -169,6 +171,9 @@ native('--check', '--fail-on=never', '--threads=1', `--report=${out}/million.htm
 console.log(`a million triangles: ${seconds} s from the drop to the model, natively ${(Date.now() - start) / 1000} s with one thread; the longest wait of the page ` +
 	`${Math.round(await page.evaluate(() => window.gap))} ms`);
 check(page.workers().length === 0, 'no worker is left');
+await saved();
+const stages = await page.evaluate(() => [...window.stages].join(' '));
+check(/Starting… read million\.obj… (Opening… )?Reading… .*Tangents….* Report….* Writing…/.test(stages), 'progress: ' + stages);
 
 // ---- keys, colours, a narrow window, no network ----
 

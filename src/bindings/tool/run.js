@@ -3,34 +3,17 @@
 // run(createNmtan, module, request): one run of the tool over files in memory, for a page's worker; README.md. A run has an
 // instance of its own, whose memory goes with it.
 
-function makeFolders(FS, path) {
-	const names = path.split('/').slice(1, -1);
-	names.reduce((above, name) => {
-		const folder = `${above}/${name}`;
-		if (!FS.analyzePath(folder).exists)
-			FS.mkdir(folder);
-		return folder;
-	}, '');
-}
-
-// [path, bytes] of all files below a folder.
-function* filesBelow(FS, folder) {
-	for (const name of FS.readdir(folder)) {
-		const path = `${folder}/${name}`;
-		if (name === '.' || name === '..')
-			continue;
-		if (FS.isDir(FS.stat(path).mode))
-			yield* filesBelow(FS, path);
-		else
-			yield [path, FS.readFile(path)];
+// [path, bytes] of what was written below a folder: files that came in are of the first second of time.
+const GIVEN = 1;
+function* written(FS, top, folder = top) {
+	for (const name of FS.readdir(folder).filter((name) => name !== '.' && name !== '..').sort()) {
+		const path = `${folder}/${name}`, {mode, mtime} = FS.stat(path);
+		if (FS.isDir(mode))
+			yield* written(FS, top, path);
+		else if (mtime.getTime() !== GIVEN)
+			yield [path.slice(top.length + 1), FS.readFile(path)];
 	}
 }
-
-const joined = (pieces) => {
-	const bytes = new Uint8Array(pieces.reduce((sum, piece) => sum + piece.length, 0));
-	pieces.reduce((at, piece) => (bytes.set(piece, at), at + piece.length), 0);
-	return bytes;
-};
 
 // Bytes of a stream, one at a time as the file system brings them.
 class Gathered {
@@ -49,40 +32,40 @@ class Gathered {
 	}
 	get bytes() {
 		this.flush();
-		return joined(this.pieces);
+		const bytes = new Uint8Array(this.pieces.reduce((sum, piece) => sum + piece.length, 0));
+		this.pieces.reduce((at, piece) => (bytes.set(piece, at), at + piece.length), 0);
+		return bytes;
 	}
 }
 
-export async function run(createNmtan, module, {argv, files = {}, stdin = new Uint8Array(0), folder = '/work'}) {
-	const out = new Gathered(), err = new Gathered();
+export async function run(createNmtan, module, {argv, files = {}, stdin = new Uint8Array(0), folder = '', say}) {
+	const out = new Gathered(), lines = [];
 	let at = 0;
-	const tool = await createNmtan({
+	const {FS, callMain} = await createNmtan({
 		thisProgram: 'nmtan',
 		instantiateWasm: (imports, done) => {
 			WebAssembly.instantiate(module, imports).then((instance) => done(instance, module));
 			return {};
 		},
-		preRun: ({FS}) => FS.init(() => (at < stdin.length ? stdin[at++] : null), out.put, err.put),
+		preRun: ({FS}) => FS.init(() => (at < stdin.length ? stdin[at++] : null), out.put),
+		printErr: say ?? ((line) => lines.push(line + '\n')),
 		quit: (status, reason) => {
 			throw reason;
 		},
 	});
-	const {FS} = tool;
-	FS.mkdir(folder);
 	for (const [name, bytes] of Object.entries(files)) {
-		const path = `${folder}/${name}`;
-		makeFolders(FS, path);
-		FS.writeFile(path, bytes);
+		const path = `/in/${name}`;
+		try {
+			FS.mkdirTree(path.slice(0, path.lastIndexOf('/')));
+			FS.writeFile(path, bytes, {canOwn: true});
+			FS.utime(path, GIVEN, GIVEN);
+		} catch {
+			throw new Error(`“${name}” cannot be beside the other files.`);
+		}
 	}
-	FS.chdir(folder);
-	const status = tool.callMain(argv);
-	const results = {};
-	for (const [path, bytes] of filesBelow(FS, folder))
-		if (files[path.slice(folder.length + 1)] === undefined || !same(bytes, files[path.slice(folder.length + 1)]))
-			results[path.slice(folder.length + 1)] = bytes;
-	return {status, files: results, stdout: out.bytes, stderr: new TextDecoder().decode(err.bytes)};
-}
-
-function same(a, b) {
-	return a.length === b.length && a.every((byte, i) => byte === b[i]);
+	FS.mkdirTree('/out');
+	FS.mkdirTree(`/in/${folder}`);
+	FS.chdir(`/in/${folder}`);
+	const status = callMain(argv);
+	return {status, files: Object.fromEntries([...written(FS, '/in'), ...written(FS, '/out')]), stdout: out.bytes, stderr: lines.join('')};
 }

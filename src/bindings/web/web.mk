@@ -6,7 +6,7 @@
 web_dir := src/bindings/web
 web_page := src/report/render/page
 web_scripts := $(addprefix $(web_page)/,$(shell grep -o '[a-z]*\.js' src/report/render/page_assets.c))
-web_files := index.html app.css app.js files.js zip.js worker.js report.html report.css report.js tool.js tool.wasm head.obj
+web_files := index.html app.css app.js files.js zip.js worker.js run.js report.html report.css report.js tool.js tool.wasm head.obj
 
 .PHONY: web
 web: wasm-tool
@@ -17,11 +17,12 @@ build/web/tool.js: build/web-tool/nmtan-tool.js
 	@mkdir -p $(@D)
 	{ cat $< && echo 'export default createNmtan;'; } >$@.part && mv $@.part $@
 build/web/tool.wasm: build/web-tool/nmtan-tool.wasm
+build/web/run.js: build/web-tool/run.js
 
 $(addprefix build/web/,index.html app.css app.js files.js zip.js worker.js): build/web/%: $(web_dir)/%
 build/web/report.css: $(web_page)/page.css
 build/web/head.obj: data/head.obj
-$(addprefix build/web/,index.html app.css app.js files.js zip.js worker.js report.css head.obj tool.wasm):
+$(addprefix build/web/,index.html app.css app.js files.js zip.js worker.js report.css head.obj tool.wasm run.js):
 	@mkdir -p $(@D)
 	cp $< $@
 

@@ -2,9 +2,9 @@
 //
 // One job of the tool: {tool: compiled WebAssembly, files: [{path, blob}], options, save: null or {format, name}} comes
 // in; {stage}s go out while it runs, then {names, report} of a check, or {name, blob, said} of what is to be saved, or
-// {failure}. The tool has a file system in memory, with the files in /in. The page ends the worker after its job, which
-// gives back all memory.
+// {failure}. The page ends the worker after its job, which gives back all memory.
 import createTool from './tool.js';
+import {run} from './run.js';
 import {Refusal, checkSize, cleanPath, isHidden, isMesh, isZip} from './files.js';
 import {openZip, writeZip} from './zip.js';
 
@@ -41,41 +41,6 @@ function commonFolder(paths) {
 	return folder;
 }
 
-async function start(compiled, bytes, folder) {
-	const said = [];
-	const tool = await createTool({
-		noInitialRun: true,
-		instantiateWasm(imports, done) { WebAssembly.instantiate(compiled, imports).then(instance => done(instance, compiled)); return {}; },
-		print() {},
-		printErr(line) {
-			const stage = /: (map|parse|decode|textures|normals|tangents|write|report)$/.exec(line);
-			if (stage) postMessage({stage: stage[1]});
-			else said.push(line.replace(/^nmtan: /, '').replaceAll('/out/', ''));
-		},
-	});
-	for (const [path, content] of bytes) {
-		const at = '/in/' + path;
-		try {
-			tool.FS.mkdirTree(at.slice(0, at.lastIndexOf('/')));
-			tool.FS.writeFile(at, content, {canOwn: true});
-		} catch {
-			throw new Refusal(`“${path}” cannot be beside the other files.`);
-		}
-	}
-	bytes.clear();
-	tool.FS.mkdirTree('/out');
-	tool.FS.chdir('/in/' + folder);
-	return {tool, said};
-}
-
-// What the tool wrote, in the order of names.
-function written(fs, folder = '/out') {
-	return fs.readdir(folder).filter(name => name !== '.' && name !== '..').sort().flatMap(name => {
-		const path = folder + '/' + name;
-		return fs.isDir(fs.stat(path).mode) ? written(fs, path) : [{path: path.slice('/out/'.length), bytes: fs.readFile(path)}];
-	});
-}
-
 function outputArguments({format, name}, count) {
 	const files = format === 'gltf' ? ['--images=copy', '--buffers=copy'] : [];
 	return count > 1 ? ['-d', '/out', '--mirror=.', '--output-format=' + format, ...files] : ['-o', '/out/' + name + '.' + format, ...files];
@@ -83,13 +48,20 @@ function outputArguments({format, name}, count) {
 
 async function work({tool: compiled, files, options, save}) {
 	const bytes = await read(files), meshes = meshesOf([...bytes.keys()]), folder = commonFolder(meshes);
-	const names = meshes.map(path => path.slice(folder.length)), {tool, said} = await start(compiled, bytes, folder);
-	const task = save ? outputArguments(save, names.length) : ['--check', '--report=/report.html', '--fail-on=never'];
-	const status = tool.callMain([...task, '--progress=on', ...options, '--', ...names]);
+	const names = meshes.map(path => path.slice(folder.length)), said = [];
+	const task = save ? outputArguments(save, names.length) : ['--check', '--report=/out/report.html', '--fail-on=never'];
+	const {status, files: made} = await run(createTool, compiled, {
+		argv: [...task, '--progress=on', ...options, '--', ...names], files: Object.fromEntries(bytes), folder,
+		say(line) {
+			const stage = /: (map|parse|decode|textures|normals|tangents|write|report)$|^nmtan: (\d+ of \d+ files)/.exec(line)?.slice(1).find(word => word);
+			if (stage) postMessage({stage});
+			else said.push(line.replace(/^nmtan: /, '').replaceAll('/out/', ''));
+		},
+	});
 	if (status === STATUS_MEMORY) throw new RangeError();
 	if (status !== STATUS_OK && status !== STATUS_FINDINGS && (save || names.length === 1)) throw new Refusal(said.join('\n'));
-	if (!save) return {names, report: tool.FS.readFile('/report.html', {encoding: 'utf8'})};
-	const results = written(tool.FS), [first] = results;
+	if (!save) return {names, report: new TextDecoder().decode(made['report.html'])};
+	const results = Object.entries(made).map(([path, bytes]) => ({path, bytes})), [first] = results;
 	return results.length === 1 ? {name: first.path, blob: new Blob([first.bytes]), said} : {name: save.name + '.zip', blob: writeZip(results), said};
 }
 
