@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# What of the page needs no WebAssembly: its archives, and that the files that make it are there. The page in a browser:
-# tests/soak/web.sh.
+# What of the page and of the tool for Node needs no WebAssembly: the page's archives, and Windows' paths. The page in a
+# browser: tests/soak/web.sh. The tool: tests/soak/wasm_tool.sh.
 . "$ROOT/tests/support/cli.sh"
 
 if ! command -v node >/dev/null 2>&1; then
@@ -17,7 +17,13 @@ with zipfile.ZipFile(sys.argv[1], "w") as z:
     z.writestr("a/stored.txt", "stored")
     z.writestr("a/letter.txt", "abcdefghij" * 10000, zipfile.ZIP_DEFLATED)
     z.writestr("a/f\u00fcnf.obj", "v\n")' "$WORK/python.zip"
-cases_of zip "$ROOT/tests/bindings/zip.mjs" "$ROOT/src/bindings/web" "$WORK/python.zip" "$WORK/ours.zip"
+# old versions of node do not see by themselves that scripts are modules
+cp -r "$ROOT/src/bindings/web" "$ROOT/src/bindings/tool" "$WORK"
+echo '{"type": "module"}' >"$WORK/package.json"
+cases_of zip "$ROOT/tests/bindings/zip.mjs" "$WORK/web" "$WORK/python.zip" "$WORK/ours.zip"
+
+mkdir "$WORK/drives"
+cases_of windows "$ROOT/tests/bindings/windows.mjs" "$WORK/tool" "$WORK/drives"
 
 scene "Python reads the archive that the page wrote"
 is "$(python3 -c 'import sys, zipfile

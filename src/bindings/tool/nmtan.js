@@ -6,6 +6,7 @@
 import fs from 'node:fs';
 import {createRequire} from 'node:module';
 import tty from 'node:tty';
+import {cwd, install, words} from './windows.js';
 
 const create = createRequire(import.meta.url)('./nmtan-tool.cjs');
 const wasmBinary = fs.readFileSync(new URL('./nmtan-tool.wasm', import.meta.url));
@@ -31,6 +32,10 @@ fs.writeSync = patient(fs.writeSync);
 // The tool closes what it was started with; node needs it still, and a second descriptor may stand for the same.
 const {closeSync} = fs;
 fs.closeSync = (fd) => fd > 2 && closeSync(fd);
+
+const windows = process.platform === 'win32';
+if (windows)
+	install(fs);
 
 const fields = (s) => [s.dev, s.ino & 0xffffffffn, s.ino >> 32n, s.mode, s.nlink, s.uid, s.gid, s.size,
 	s.mtimeNs / 1000000000n, s.mtimeNs % 1000000000n, s.ctimeNs / 1000000000n, s.ctimeNs % 1000000000n].map(Number);
@@ -58,4 +63,6 @@ const tool = await create({
 });
 for (let fd = 0; fd < 3; fd++)
 	tool.FS.streams[fd].tty = tty.isatty(fd);
-process.exitCode = tool.callMain(process.argv.slice(2));
+if (windows)
+	tool.FS.cwd = cwd;
+process.exitCode = tool.callMain(windows ? words(fs, process.argv.slice(2)) : process.argv.slice(2));

@@ -97,8 +97,8 @@ $(T)/web/nmtan-tool.js: $(tool_wasm_obj) $(T)/libforeign.a $(tool_dir)/tool.mk
 tool_package := build/npm-tool
 $(tool_package)/nmtan-tool.cjs: $(T)/node/nmtan-tool.js
 	cp $< $@ && cp $(T)/node/nmtan-tool.wasm $(@D)/
-$(tool_package)/nmtan.js: $(tool_dir)/nmtan.js
-	cp $< $@ && chmod 755 $@
+$(tool_package)/nmtan.js: $(tool_dir)/nmtan.js $(tool_dir)/windows.js
+	cp $^ $(@D)/ && chmod 755 $@
 $(tool_package)/package.json: $(wasm_dir)/package.json $(tool_dir)/package.mjs build/npm/package.json
 	@mkdir -p $(@D)
 	cp $(npm_copies) $(addprefix build/npm/,LICENSE wasm.js nmtan.wasm) $(@D)/
