@@ -10,8 +10,6 @@
  */
 #include "topology/edge_sort.h"
 
-#include <float.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/compiler.h"
@@ -24,7 +22,7 @@ enum { FIRST_TRIANGLES = 4, MORE = 4 };
 /* Corners that are looked up at a time. */
 enum { BATCH_TRIANGLES = 8, BATCH = 3 * BATCH_TRIANGLES };
 
-enum { MARKS = 1 << 15, BATCH_VERTICES = 16 };
+enum { MARKS = 1 << 15 };
 
 static size_t corner_count(const nt_welded_mesh *m)
 {
@@ -119,52 +117,19 @@ static bool take_last(question *q, size_t triangles)
 	return true;
 }
 
-/* Whether the first float of one of BATCH_VERTICES rows is within bounds, from `begin` on. */
-static bool has_within(const float *rows, size_t step, float begin, float low, float high)
-{
-	const float middle = 0.5f * low + 0.5f * high, half = 0.5f * (high - low);
-	int within = 0;
-	for (size_t i = 0; i < BATCH_VERTICES; i++)
-		within |= fabsf(rows[step * i] - begin - middle) <= half;
-	return within;
-}
-
-/* Distances from the grid's begin between which cells are, and a little more; more than the whole grid where a cell is
- * too small a number to be exact. */
-static void bound_cells(const nt_grid *grid, size_t first, size_t last, float *low, float *high)
-{
-	const float extent = grid->high - grid->low, size = extent / (float)NT_CELLS;
-	const bool exact = size > FLT_MIN;
-	*low = exact ? ((float)first - 1) * size : -extent;
-	*high = exact ? ((float)last + 2) * size : 2 * extent;
-}
-
 static bool list_vertices(question *q)
 {
 	const nt_welded_mesh *m = q->mesh;
 	const float *coordinates = m->positions + q->grid.axis;
 	uint64_t wanted[NT_CELLS / 64] = {0};
-	size_t first = NT_CELLS, last = 0;
-	float low, high;
 	q->listed = make_bits(m);
 	if (!q->listed)
 		return false;
-	for (size_t i = 0; i < q->member_count; i++) {
-		const unsigned cell = nt_grid_cell(&q->grid, coordinates[m->step * q->members[i]]);
-		add(wanted, cell);
-		first = cell < first ? cell : first;
-		last = cell > last ? cell : last;
-	}
-	bound_cells(&q->grid, first, last, &low, &high);
-	for (size_t begin = 0; begin < m->vertex_count; begin += BATCH_VERTICES) {
-		const size_t left = m->vertex_count - begin, count = left < BATCH_VERTICES ? left : BATCH_VERTICES;
-		if (count == BATCH_VERTICES &&
-			!has_within(coordinates + m->step * begin, m->step, q->grid.low, low, high))
-			continue;
-		for (size_t v = begin; v < begin + count; v++)
-			if (has(wanted, nt_grid_cell(&q->grid, coordinates[m->step * v])))
-				add(q->listed, (uint32_t)v);
-	}
+	for (size_t i = 0; i < q->member_count; i++)
+		add(wanted, nt_grid_cell(&q->grid, coordinates[m->step * q->members[i]]));
+	for (size_t v = 0; v < m->vertex_count; v++)
+		if (has(wanted, nt_grid_cell(&q->grid, coordinates[m->step * v])))
+			add(q->listed, (uint32_t)v);
 	/* so that it is known whether they have corners */
 	for (int i = 0; i < 6; i++)
 		add(q->listed, q->grid.extremes[i]);

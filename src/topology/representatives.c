@@ -130,43 +130,10 @@ static box box_of(const nt_welded_mesh *mesh, const half *h)
 	return b;
 }
 
-/* Entries that are parted without branches, which would be guessed wrong half of the time; vertices that need not be
- * halved because it is known what comes of it. None where each byte of code is sent to a browser. */
-#ifdef __wasm__
-enum { MOST_COUNTED = 0, FORESEEN_VERTICES = 0 };
-#else
-enum { MOST_COUNTED = 1024, FORESEEN_VERTICES = 2 };
-#endif
-
-static size_t part_few(entry *entries, size_t count, const float *coordinates, size_t step, float middle)
-{
-	uint8_t is_below[MOST_COUNTED + 1];
-	uint16_t above[MOST_COUNTED + 1], below[MOST_COUNTED + 1];
-	size_t left_count = 0, swaps = 0, others = 0;
-	for (size_t i = 0; i < count; i++)
-		left_count += is_below[i] = coordinates[step * entries[i].vertex] < middle;
-	for (size_t i = 0; i < left_count; i++) {
-		above[swaps] = (uint16_t)i;
-		swaps += !is_below[i];
-	}
-	for (size_t i = count; i-- > left_count;) {
-		below[others] = (uint16_t)i;
-		others += is_below[i];
-	}
-	for (size_t i = 0; i < swaps; i++) {
-		const entry swapped = entries[above[i]];
-		entries[above[i]] = entries[below[i]];
-		entries[below[i]] = swapped;
-	}
-	return left_count;
-}
-
 /* Swaps entries until those below the middle come first, and only those that have to: the first that is above with the
  * last that is below, and so on. The order of all others, and which of them are swapped, decides in the end. */
 static size_t part_entries(entry *entries, size_t count, const float *coordinates, size_t step, float middle)
 {
-	if (MOST_COUNTED > 0 && count <= MOST_COUNTED)
-		return part_few(entries, count, coordinates, step, middle);
 	size_t left = 0, right = count;
 	for (;;) {
 		while (left < right && coordinates[step * entries[left].vertex] < middle)
@@ -213,25 +180,6 @@ static void halve(const weld *w, const half *whole, const float *coordinates, fl
 	*left = (half){whole->entries, whole->vertices, entries, vertices};
 }
 
-/* What halving two vertices leads to, without doing it: an entry on its side stays where it is, and the first place of
- * either side gets the last entry of the other one if it is not. */
-static void weld_two(const weld *w, const half *part, const float *coordinates, float middle)
-{
-	const uint32_t one = part->vertices[0], other = part->vertices[1];
-	const bool is_first = coordinates[w->mesh->step * one] < middle;
-	const uint32_t left = is_first ? one : other, right = is_first ? other : one;
-	const entry *e = part->entries;
-	size_t left_count = 0, last_left = 0, last_right = 0;
-	for (size_t i = 0; i < part->entry_count; i++) {
-		left_count += e[i].vertex == left;
-		last_left = e[i].vertex == left ? i : last_left;
-	}
-	for (size_t i = 0; i <= left_count; i++)
-		last_right = e[i].vertex == right ? i : last_right;
-	w->found[left] = e[e[0].vertex == left ? 0 : last_left].corner;
-	w->found[right] = e[last_right].corner;
-}
-
 /* False: it would have to be halved too often. */
 static bool weld_cell(const weld *w, const half *cell)
 {
@@ -248,11 +196,6 @@ static bool weld_cell(const weld *w, const half *cell)
 		const float *coordinates;
 		float middle;
 		while (part.vertex_count > 1 && find_middle(w->mesh, &part, &coordinates, &middle)) {
-			if (part.vertex_count == FORESEEN_VERTICES) {
-				weld_two(w, &part, coordinates, middle);
-				part.entry_count = 0;
-				break;
-			}
 			if (++halvings > NT_HALVINGS)
 				return false;
 			halve(w, &part, coordinates, middle, &part, &right);
