@@ -12,8 +12,8 @@
  * padding and the borders of islands do not. The image is cut into blocks; a verdict needs many of them, and most of
  * their weight, to agree. And it is asked at several sizes, each half of the one before. Most of those that have enough
  * to tell must say the same and none the opposite: large forms veto what a fine grain says that was painted over them
- * (tinyrenderer's african head, the rivets of DamagedHelmet). Then the map is mixed, if some blocks say up and others
- * down, and is left as it is.
+ * (tinyrenderer's african head, the rivets of DamagedHelmet). Then the map is mixed, as it is if a sixth of its blocks
+ * say up and as many down (fewer are rings around what was painted, and streaks of padding), and is left as it is.
  */
 #include "image/examine.h"
 
@@ -23,7 +23,7 @@
 #include "base/memory.h"
 #include "image/image.h"
 
-enum { MOST_SIDE = 1024, LEAST_SIDE = 48, BLOCKS = NT_GREEN_BLOCKS, LEAST_BLOCKS = 12 };
+enum { MOST_SIDE = 1024, LEAST_SIDE = 48, BLOCKS = NT_GREEN_BLOCKS, LEAST_BLOCKS = 12, LEAST_MIXED = 24 };
 
 /* Tuned on maps of known heights and on public ones: make bench, "green". */
 static const double least_correlation = 0.2, least_agreement = 0.75, least_curvature = 0.002;
@@ -272,7 +272,7 @@ static void tell_green(slopes *s, nt_normal_facts *facts)
 		facts->green = NT_GREEN_UP;
 	else if (sure[1] && !sure[0] && 2 * supporting[1] > asked)
 		facts->green = NT_GREEN_DOWN;
-	else if (sure[1] || (facts->blocks_up >= LEAST_BLOCKS && facts->blocks_down >= LEAST_BLOCKS))
+	else if (sure[1] || (facts->blocks_up >= LEAST_MIXED && facts->blocks_down >= LEAST_MIXED))
 		facts->green = NT_GREEN_MIXED;
 }
 

@@ -139,6 +139,21 @@ TEST(halves_that_contradict_are_mixed)
 	assert_int_equal(facts.blocks_up + facts.blocks_down, NT_GREEN_BLOCKS * NT_GREEN_BLOCKS);
 }
 
+/* Flat but for an eighth of the map above and below, which contradict: rings around what was painted, say. */
+TEST(a_map_with_next_to_no_relief_is_not_mixed)
+{
+	nt_pixels p = make(flat, 1, 8), up = make(hills, 1, 8), down = make(hills, -1, 8);
+	const size_t size = nt_pixels_row_bytes(&p) * SIDE, part = size / 8;
+	memcpy(p.samples, up.samples, part);
+	memcpy((char *)p.samples + size - part, (char *)down.samples + size - part, part);
+	nt_pixels_free(&up);
+	nt_pixels_free(&down);
+	const nt_normal_facts facts = facts_of(p);
+	assert_in_range(facts.blocks_up, 12, 24);
+	assert_in_range(facts.blocks_down, 12, 24);
+	assert_int_equal(facts.green, NT_GREEN_UNKNOWN);
+}
+
 TEST(shares_are_counted)
 {
 	nt_pixels p = make(hills, 1, 8);
