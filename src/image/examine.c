@@ -31,6 +31,9 @@ static const double least_correlation = 0.2, least_agreement = 0.75, least_curva
 /* Normals that point less out of the surface than this have no reliable slope; neighbours differ by less than that. */
 static const float least_z = 0.2f, most_jump = 0.5f;
 
+/* A slope of five levels of 8 bits. */
+static const float most_flat = 0.04f;
+
 /* The map at one size. */
 typedef struct slopes {
 	size_t width, height;
@@ -284,8 +287,12 @@ nt_status nt_examine_normals(const nt_pixels *pixels, nt_normal_facts *facts, nt
 	tally t = {0};
 	slopes s;
 	facts->constant = is_constant(pixels);
-	if (facts->constant)
+	if (facts->constant) {
+		float n[3];
+		read_normal(pixels, 0, 0, n);
+		facts->tilted = !(fabsf(n[0]) <= most_flat * n[2] && fabsf(n[1]) <= most_flat * n[2]);
 		return NT_OK;
+	}
 	count_pixels(pixels, &t);
 	const double counted = t.counted ? (double)t.counted : 1;
 	facts->not_unit = (double)t.not_unit / counted;

@@ -28,7 +28,7 @@ typedef struct nt_normal_facts {
 	double blue_below;  /* share of the pixels that point into the surface */
 	double banded;      /* share of the sloped pixels that lie in steps of one level: an 8-bit map of a
 	                       smooth surface */
-	bool constant;      /* all pixels are alike */
+	bool constant, tilted; /* all pixels are alike; they are not those of a flat surface */
 	bool object_space;  /* unit vectors into all directions */
 	bool heights;       /* grey pixels alone: a height map, of which nothing else is told */
 	bool srgb;          /* the file says that its samples are sRGB */

@@ -59,7 +59,8 @@ static void examine(void *context, size_t item, unsigned slot)
 static void tell_facts(nt_finding_list *findings, const nt_place *place, const nt_normal_facts *f)
 {
 	if (f->constant)
-		nt_finding_add(findings, NT_CODE_NMAP_CONSTANT, place, 1, NULL);
+		nt_finding_add_as(findings, NT_CODE_NMAP_CONSTANT, f->tilted ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO,
+			place, f->tilted ? "it tilts all of the surface one way" : "");
 	if (f->object_space)
 		nt_finding_add(findings, NT_CODE_NMAP_OBJECT_SPACE, place, 1, NULL);
 	else if (f->blue_below > 0.01)

@@ -122,9 +122,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"object space. glTF's are in tangent space.",
 		"Bake the map in tangent space.",
 		"a map whose vectors are the normals of a sphere"),
-	ROW(NMAP_CONSTANT, INFO, "i--", "normal map of one colour",
-		"All pixels are alike: the map says nothing, and costs a texture.",
-		"Take it out of the material.",
+	ROW(NMAP_CONSTANT, INFO, "w--", "normal map of one colour",
+		"All pixels are alike: the map says nothing, and costs a texture. A warning where the colour is not "
+		"that of a flat surface, about (128, 128, 255): the surface is lit as if it were tilted.",
+		"Take it out of the material, or bake it again.",
 		"a map of (128, 128, 255) alone"),
 	ROW(NMAP_BANDED, INFO, "i--", "normal map of 8 bits on a smooth surface",
 		"Most of the sloped pixels lie in runs of one value with steps of one level between them: "

@@ -684,9 +684,11 @@ while IFS='|' read -r code width formula; do
 	images write map.png $width $width "$formula"
 	quad 'norm map.png'
 	run --check quad.obj
-	prints $code
+	prints "$code"
 done <<END
-NMAP_CONSTANT|8|(128, 128, 255)
+info      NMAP_CONSTANT|8|(131, 124, 255)
+warning   NMAP_CONSTANT|8|(140, 128, 254)
+warning   NMAP_CONSTANT|8|(127, 128, 129)
 NMAP_OBJECT_SPACE|64|tuple(int(127.5 + 127 * v) for v in $sphere)
 NMAP_NOT_UNIT|64|(128 + x, 128 + y, 255)
 END
