@@ -30,8 +30,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Nothing, or write usemtl before the faces.",
 		"an OBJ with \"mtllib m.mtl\" and no usemtl"),
 	ROW(IMAGE_MISSING, WARNING, "w--", "image cannot be read",
-		"A material refers to an image file that is not there. The output is without it; with --images=link it "
-		"refers to where the file should be.",
+		"A material refers to an image file that is not there. The output is without it, or, of a glTF, has "
+		"the same name; with --images=link it refers to where the file should be.",
 		"Put the image where the material looks for it, or name its folder with --texture-path.",
 		"an MTL with \"map_Kd missing.png\""),
 	ROW(LINK_LEAVES, WARNING, "w--", "reference leaves the folder of the output",

@@ -196,11 +196,31 @@ cp pointer bumps.png
 run plates.gltf out.glb
 exits 0
 says "/images/0: warning: image cannot be read: Git LFS's pointer"
-echo "no image" >bumps.png
-run plates.gltf out.glb
-exits 0
-says "/images/0: warning: image has a type that glTF does not carry: it stays a file [IMAGE_TYPE]"
-only a.{obj,ply,glb,gltf,drc} pointer plates.gltf plates.bin bumps.png mirrored_cube.{obj,mtl} out.glb
+# what is not there keeps its name; what is no image is copied, and so is one that the texture cannot have without an extension
+mkdir there
+for format in glb gltf; do
+	run plates.gltf there/out.$format
+	is "$(gltf there/out.$format 'g.images')" '[{"uri":"bumps.png"}]'
+done
+only a.{obj,ply,glb,gltf,drc} pointer plates.gltf plates.bin bumps.png mirrored_cube.{obj,mtl} out.glb there
+for text in "no image" "RIFF....WEBP"; do
+	echo "$text" >bumps.png
+	run plates.gltf out.glb
+	exits 0
+	says "/images/0: warning: image has a type that glTF does not carry: it stays a file [IMAGE_TYPE]"
+	rm -r there && mkdir there
+	run plates.gltf there/out.glb
+	is "$(gltf there/out.glb 'g.images[0].uri')" bumps.png
+	same bumps.png there/bumps.png
+done
+
+scene "a PLY of points is a PLY, and no glTF"
+printf 'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 1 2\n' >p.ply
+run p.ply q.ply
+same p.ply q.ply
+run p.ply q.glb
+exits 5
+says "p.ply: found no faces, expected a mesh"
 
 scene "progress is shown when it is asked for and never in the output"
 run --progress=on "$data/head.obj" -

@@ -83,6 +83,8 @@ static nt_status plan_primitives(composition *c, nt_error *error)
 			return nt_fail_memory(error);
 		count += c->primitives[m].count;
 	}
+	if (!count)
+		return nt_fail(error, NT_ERROR_UNSUPPORTED, "found no faces, expected a mesh");
 	c->blocks = nt_arena_alloc(&c->arena, count * (NT_ATTRIBUTE_COUNT + 1), sizeof *c->blocks);
 	return c->blocks ? NT_OK : nt_fail_memory(error);
 }

@@ -2,7 +2,7 @@
 /*
  * Images of an edited document. They are linked where they are, so that none is opened, unless they have
  * to move into the output or beside it: where that is wanted, or where the output's folder does not have them. An image
- * that cannot be read is a finding and stays a link.
+ * that cannot be read is a finding and keeps its name, since clients refuse names that leave a folder.
  */
 #include "gltf/edit/images.h"
 
@@ -32,11 +32,12 @@ typedef struct moving {
 	nt_error *error;
 } moving;
 
-/* By content; NULL: not a kind that glTF or its extensions carry. */
-static const char *media_type(const nt_file *file)
+/* By content; NULL: not a kind that glTF or extensions of the document carry. */
+static const char *media_type(const nt_gltf *document, const nt_file *file)
 {
 	const nt_image_type type = nt_image_type_of_bytes(file->data, file->size);
-	if (nt_image_is_carried(type))
+	const char *extension = nt_image_extension(type);
+	if (nt_image_is_carried(type) && (!extension || nt_gltf_uses(document, extension)))
 		return nt_image_media_type(type);
 	if (file->size >= 12 && memcmp(file->data + 4, "ftypavif", 8) == 0)
 		return "image/avif"; /* EXT_texture_avif */
@@ -54,18 +55,19 @@ static void report(moving *m, size_t index, nt_code code, const char *text)
 }
 
 /* Opens the file of an image; a finding and *file NULL where that is not possible. */
-static nt_status open_image(moving *m, size_t index, const char *uri, size_t length,
-	const nt_file **file)
+static nt_status open_image(moving *m, size_t index, const nt_json_value *image, const nt_file **file,
+	const char **path)
 {
 	*file = NULL;
-	const char *path;
+	size_t length;
+	const char *uri = nt_gltf_external_uri(image, &length);
 	nt_file opened;
 	nt_error error;
 	nt_error_clear(&error);
 	nt_status status = nt_uri_resolve(&m->edits->arena, m->edits->document->path, uri, length,
-		m->edits->document->allow_outside, &path, &error);
+		m->edits->document->allow_outside, path, &error);
 	if (!status)
-		status = nt_file_open_content(&opened, path, true, &error);
+		status = nt_file_open_content(&opened, *path, true, &error);
 	if (status == NT_ERROR_MEMORY || status == NT_ERROR_IO) {
 		*m->error = error;
 		snprintf(m->error->place.pointer, sizeof m->error->place.pointer, "/images/%zu", index);
@@ -114,23 +116,6 @@ static nt_status embed_as_data(moving *m, nt_json_value *image, const nt_file *f
 	const bool failed = uri.failed;
 	nt_buffer_free(&uri);
 	return failed ? nt_fail_memory(m->error) : NT_OK;
-}
-
-static nt_status embed_image(moving *m, size_t index, nt_json_value *image)
-{
-	size_t length;
-	const char *uri = nt_gltf_external_uri(image, &length);
-	const nt_file *file;
-	const nt_status status = open_image(m, index, uri, length, &file);
-	if (status)
-		return status;
-	const char *type = file ? media_type(file) : NULL;
-	if (file && !type)
-		report(m, index, NT_CODE_IMAGE_TYPE, "it stays a file");
-	if (!type)
-		return nt_gltf_link(m->json, image, m->output->link_prefix, m->error);
-	return m->output->options->format == NT_FORMAT_GLB ? embed_in_view(m, image, file, type) :
-							     embed_as_data(m, image, file, type);
 }
 
 /* A file of an image beside the output, under this name where that is to be had. */
@@ -194,20 +179,29 @@ static nt_status place_turned(moving *m, nt_json_value *image, const nt_turned_i
 /* Copies an image beside the output, under its own name where that is to be had. */
 static nt_status copy_image(moving *m, size_t index, nt_json_value *image)
 {
-	size_t length;
-	const char *uri = nt_gltf_external_uri(image, &length);
 	if (!*m->output->link_prefix)
 		return NT_OK; /* it is there already */
 	const nt_file *file;
-	nt_status status = open_image(m, index, uri, length, &file);
-	if (status || !file)
-		return status ? status : nt_gltf_link(m->json, image, m->output->link_prefix, m->error);
 	const char *source;
-	status = nt_uri_resolve(&m->edits->arena, m->edits->document->path, uri, length,
-		m->edits->document->allow_outside, &source, m->error);
-	if (status)
+	const nt_status status = open_image(m, index, image, &file, &source);
+	return status || !file ? status : write_beside(m, image, file, nt_last_part(source));
+}
+
+static nt_status embed_image(moving *m, size_t index, nt_json_value *image)
+{
+	const nt_file *file;
+	const char *source;
+	const nt_status status = open_image(m, index, image, &file, &source);
+	if (status || !file)
 		return status;
-	return write_beside(m, image, file, nt_last_part(source));
+	const char *type = media_type(m->edits->document, file);
+	if (!type) {
+		report(m, index, NT_CODE_IMAGE_TYPE, "it stays a file");
+		return m->output->is_stream ? nt_gltf_link(m->json, image, m->output->link_prefix, m->error)
+			: copy_image(m, index, image);
+	}
+	return m->output->options->format == NT_FORMAT_GLB ? embed_in_view(m, image, file, type) :
+							     embed_as_data(m, image, file, type);
 }
 
 static const nt_turned_image *find_turned(const moving *m, size_t index)
