@@ -19,6 +19,7 @@ enum { MOST_AUTO_BYTES = 16 << 20, MOST_OPEN = 16 };
 typedef struct examined {
 	nt_normal_map map;
 	const nt_mesh *mesh; /* the first that uses it */
+	const char *use;     /* what a glTF's material calls it; "" of others */
 	bool decoded;        /* and no height map */
 	bool heights;        /* of a glTF, which has normals alone: it is one */
 	nt_normal_facts facts;
@@ -56,7 +57,7 @@ static void examine(void *context, size_t item, unsigned slot)
 
 /* ---- what is to be said ---- */
 
-static void tell_facts(nt_finding_list *findings, const nt_place *place, const nt_normal_facts *f)
+static void tell_facts(nt_finding_list *findings, const nt_place *place, const char *use, const nt_normal_facts *f)
 {
 	if (f->constant)
 		nt_finding_add_as(findings, NT_CODE_NMAP_CONSTANT, f->tilted ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO,
@@ -70,8 +71,8 @@ static void tell_facts(nt_finding_list *findings, const nt_place *place, const n
 		nt_finding_add(findings, NT_CODE_NMAP_NOT_UNIT, place, 1, "%.2g %% of the pixels", 100 * f->not_unit);
 	if (f->green == NT_GREEN_DOWN || f->green == NT_GREEN_MIXED) {
 		char detail[128];
-		snprintf(detail, sizeof detail, "correlation %.2f, %.0f %% agree; %zu blocks say up, %zu down",
-			f->correlation, 100 * f->agreement, f->blocks_up, f->blocks_down);
+		snprintf(detail, sizeof detail, "%scorrelation %.2f, %.0f %% agree; %zu blocks say up, %zu down",
+			use, f->correlation, 100 * f->agreement, f->blocks_up, f->blocks_down);
 		nt_finding_add_votes(findings,
 			f->green == NT_GREEN_DOWN ? NT_CODE_NMAP_GREEN_DOWN : NT_CODE_NMAP_GREEN_MIXED, place, detail,
 			f->votes, NT_GREEN_BLOCKS);
@@ -97,7 +98,7 @@ static void tell(const examination *e, const examined *x)
 		nt_finding_add(findings, NT_CODE_NMAP_HEIGHTS, place, 1, NULL);
 	if (!x->decoded)
 		return;
-	tell_facts(findings, place, &x->facts);
+	tell_facts(findings, place, x->use, &x->facts);
 	if (x->facts.srgb)
 		nt_finding_add(findings, NT_CODE_NMAP_SRGB, place, 1, NULL);
 	if (x->map.type == NT_IMAGE_JPEG)
@@ -134,7 +135,7 @@ static bool is_known(const examination *e, const uint64_t identity[2], uint64_t 
 	return false;
 }
 
-static nt_status add_map(examination *e, const nt_mesh *mesh, nt_normal_map *map, nt_error *error)
+static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot, nt_normal_map *map, nt_error *error)
 {
 	const uint64_t hash = nt_hash_bytes(0, map->identity, sizeof map->identity);
 	if (!map->bytes || is_known(e, map->identity, hash)) {
@@ -158,7 +159,9 @@ static nt_status add_map(examination *e, const nt_mesh *mesh, nt_normal_map *map
 	}
 	e->identities[e->count][0] = map->identity[0];
 	e->identities[e->count++][1] = map->identity[1];
-	e->open[e->open_count++] = (examined){.map = *map, .mesh = mesh};
+	const char *use = !nt_format_is_gltf(e->scene->format) ? ""
+		: slot == NT_SLOT_NORMAL ? "normalTexture, " : "clearcoatNormalTexture, ";
+	e->open[e->open_count++] = (examined){.map = *map, .mesh = mesh, .use = use};
 	return e->open_count == MOST_OPEN ? flush(e, error) : NT_OK;
 }
 
@@ -172,7 +175,7 @@ static nt_status take_map(examination *e, const nt_mesh *mesh, enum nt_slot slot
 	if (!(mesh->slots & slot))
 		return NT_OK;
 	const nt_status status = nt_normal_map_open(&map, e->scene, mesh, slot, &searched, error);
-	return status ? status : add_map(e, mesh, &map, error);
+	return status ? status : add_map(e, mesh, slot, &map, error);
 }
 
 nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, const nt_textures *textures, nt_error *error)

@@ -649,7 +649,7 @@ coat='const of = (name) => g.textures.findIndex((t) => g.images[t.source].name =
 for pair in n:1 up:0; do
 	gltf quad.gltf coated "const asked = '${pair%:*}';" "$coat"
 	run --check --report-format=json coated.gltf
-	is "$(grep -c '"NMAP_GREEN_DOWN"' "$WORK/out.txt")" ${pair#*:}
+	is "$(grep -c '"message.*down: clearcoatNormalTexture, correlation -' "$WORK/out.txt")" ${pair#*:}
 done
 
 scene "a normal map that --texture-path finds is examined"
