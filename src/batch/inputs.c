@@ -168,17 +168,6 @@ nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rul
 	return status;
 }
 
-/* A listed name, which ends where the list says. */
-static nt_status add_listed(nt_inputs *inputs, const char *text, size_t length, const nt_folder_rules *rules,
-	nt_error *error)
-{
-	if (!length)
-		return NT_OK;
-	const bool dash = length == 1 && *text == '-';
-	const char *name = nt_arena_text(&inputs->arena, dash ? "./-" : text, dash ? 3 : length);
-	return name ? nt_inputs_add(inputs, name, rules, error) : nt_fail_memory(error);
-}
-
 nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, char separator, const nt_folder_rules *rules,
 	nt_error *error)
 {
@@ -193,7 +182,10 @@ nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, char separator
 	for (size_t at = 0; at < file.size && !status;) {
 		const char *end = memchr(text + at, separator, file.size - at);
 		const size_t length = end ? (size_t)(end - text) - at : file.size - at;
-		status = add_listed(inputs, text + at, length, rules, error);
+		const bool dash = length == 1 && text[at] == '-';
+		const char *name = nt_arena_text(&inputs->arena, dash ? "./-" : text + at, dash ? 3 : length);
+		if (length)
+			status = name ? nt_inputs_add(inputs, name, rules, error) : nt_fail_memory(error);
 		at += length + 1;
 	}
 	nt_file_close(&file);

@@ -62,16 +62,6 @@ static void add_link(void *user, const char *path, const char *target)
 	nt_buffer_text(&list->text, "\"},");
 }
 
-/* Which of the known folders has this spelling; KNOWN_FOLDERS: none. */
-static size_t find_known(const nt_record *record, const char *path, size_t length)
-{
-	size_t i = 0;
-	while (i < KNOWN_FOLDERS && !(record->known[i].spelled && strlen(record->known[i].spelled) == length &&
-					     memcmp(record->known[i].spelled, path, length) == 0))
-		i++;
-	return i;
-}
-
 /* Looks where a folder is, and forgets another one. */
 static nt_status make_known(nt_record *record, const char *path, size_t length, size_t *found, nt_error *error)
 {
@@ -120,7 +110,10 @@ static nt_status append_folder(
 	const char *slash = strrchr(path, '/');
 	const size_t length = slash ? (size_t)(slash - path) + 1 : 0;
 	pthread_mutex_lock(&record->lock);
-	size_t at = find_known(record, path, length);
+	size_t at = 0;
+	while (at < KNOWN_FOLDERS && !(record->known[at].spelled && strlen(record->known[at].spelled) == length &&
+					     memcmp(record->known[at].spelled, path, length) == 0))
+		at++;
 	const nt_status status = at < KNOWN_FOLDERS ? NT_OK : make_known(record, path, length, &at, error);
 	if (!status)
 		nt_buffer_text(real, record->known[at].real);
@@ -279,14 +272,6 @@ static void renew(look *l, nt_json_value *value, const state *now)
 	l->renewed = true;
 }
 
-static nt_status has_digest(const line_file *file, bool *has, nt_error *error)
-{
-	char digest[NT_DIGEST_TEXT];
-	const nt_status status = nt_digest_of_file(file->path.data, digest, error);
-	*has = !status && strcmp(digest, file->digest) == 0;
-	return status;
-}
-
 /* Whether a file is as it was; `info` receives how it is. `read`: it is one that was read. */
 static nt_status is_same(look *l, nt_json_value *value, bool read, struct stat *info, bool *same)
 {
@@ -303,109 +288,93 @@ static nt_status is_same(look *l, nt_json_value *value, bool read, struct stat *
 	const bool unsure = now.changed != file->state.changed || now.inode != file->state.inode ||
 			    (read && may_have_changed_unseen(&file->state));
 	*same = (uint64_t)info->st_size == file->size && (by_content || !touched);
-	if (*same && (by_content || unsure))
-		status = has_digest(file, same, l->error);
+	if (*same && (by_content || unsure)) {
+		char digest[NT_DIGEST_TEXT];
+		status = nt_digest_of_file(file->path.data, digest, l->error);
+		*same = !status && strcmp(digest, file->digest) == 0;
+	}
 	if (*same && !status && (touched || unsure))
 		renew(l, value, &now);
 	return status;
 }
 
-/* Whether a file that was read is one that was written, so that it is judged as that. */
-static bool is_written_too(const nt_json_value *line, const nt_json_value *file)
-{
-	const nt_json_value *written = nt_json_find(line, "written");
-	for (size_t i = 0; i < nt_json_count(written); i++)
-		if (nt_json_equal(nt_json_find(nt_json_at(written, i), "uri"), nt_json_find(file, "uri")))
-			return true;
-	return false;
-}
+/* ---- what lists of a line have ---- */
 
-static nt_status look_at_read(look *l, const nt_json_value *line, bool *same)
+static nt_status look_at_read(look *l, nt_json_value *file, bool first, bool *same)
 {
-	nt_json_value *read = nt_json_find(line, "read");
+	const nt_json_value *written = nt_json_find(nt_json_root(l->line), "written");
+	struct stat info = l->making->input_info;
 	nt_status status = NT_OK;
-	*same = nt_json_count(read) > 0;
-	for (size_t i = 0; i < nt_json_count(read) && *same && !status; i++) {
-		nt_json_value *file = nt_json_at(read, i);
-		struct stat info = l->making->input_info;
-		*same = read_file(l->record, file, &l->file);
-		if (*same && !is_written_too(line, file))
-			status = is_same(l, file, true, &info, same);
-		/* the first one is the input, by whatever name */
-		if (*same && i == 0)
-			*same = nt_same_file(&info, &l->making->input_info);
-		if (*same && !status && l->trace)
-			nt_trace_read(i == 0 ? l->making->input : l->file.path.data, &info);
-	}
+	bool is_written = false; /* too, so that it is judged as that */
+	for (size_t i = 0; i < nt_json_count(written) && !is_written; i++)
+		is_written = nt_json_equal(nt_json_find(nt_json_at(written, i), "uri"), nt_json_find(file, "uri"));
+	*same = read_file(l->record, file, &l->file);
+	if (*same && !is_written)
+		status = is_same(l, file, true, &info, same);
+	/* the first one is the input, by whatever name */
+	if (*same && first)
+		*same = nt_same_file(&info, &l->making->input_info);
+	if (*same && !status && l->trace)
+		nt_trace_read(first ? l->making->input : l->file.path.data, &info);
 	return status;
 }
 
-static nt_status look_at_written(look *l, const nt_json_value *line, bool *same)
+static nt_status look_at_written(look *l, nt_json_value *file, bool first, bool *same)
 {
-	nt_json_value *written = nt_json_find(line, "written");
+	struct stat info;
 	nt_status status = NT_OK;
-	*same = nt_json_count(written) > 0;
-	for (size_t i = 0; i < nt_json_count(written) && *same && !status; i++) {
-		struct stat info;
-		*same = read_file(l->record, nt_json_at(written, i), &l->file);
-		if (*same)
-			status = is_same(l, nt_json_at(written, i), false, &info, same);
-		if (*same && !status && l->trace)
-			nt_trace_written(l->file.path.data, NULL, &info);
-	}
+	(void)first;
+	*same = read_file(l->record, file, &l->file);
+	if (*same)
+		status = is_same(l, file, false, &info, same);
+	if (*same && !status && l->trace)
+		nt_trace_written(l->file.path.data, NULL, &info);
 	return status;
 }
 
-static nt_status look_at_missing(look *l, const nt_json_value *line, bool *same)
+static nt_status look_at_missing(look *l, nt_json_value *uri, bool first, bool *same)
 {
-	const nt_json_value *missing = nt_json_find(line, "missing");
+	struct stat info;
+	bool found = false;
 	nt_status status = NT_OK;
-	*same = true;
-	for (size_t i = 0; i < nt_json_count(missing) && *same && !status; i++) {
-		struct stat info;
-		bool found;
-		*same = read_path(l->record, nt_json_at(missing, i), &l->file.path);
-		if (l->file.path.failed)
-			return nt_fail_memory(l->error);
-		if (*same)
-			status = nt_lookup_found(l->file.path.data, &info, &found, l->error);
-		*same = *same && !status && !(found && S_ISREG(info.st_mode));
-		if (*same && found && l->trace)
-			nt_trace_missing(l->file.path.data);
-	}
+	(void)first;
+	*same = read_path(l->record, uri, &l->file.path);
+	if (l->file.path.failed)
+		return nt_fail_memory(l->error);
+	if (*same)
+		status = nt_lookup_found(l->file.path.data, &info, &found, l->error);
+	*same = *same && !status && !(found && S_ISREG(info.st_mode));
+	if (*same && found && l->trace)
+		nt_trace_missing(l->file.path.data);
 	return status;
 }
 
-static nt_status look_at_links(look *l, const nt_json_value *line, bool *same)
+static nt_status look_at_link(look *l, nt_json_value *link, bool first, bool *same)
 {
-	const nt_json_value *links = nt_json_find(line, "links");
+	char text[PATH_MAX];
 	nt_buffer target = {0};
-	*same = links != NULL;
-	for (size_t i = 0; i < nt_json_count(links) && *same; i++) {
-		char text[PATH_MAX];
-		const nt_json_value *link = nt_json_at(links, i);
-		*same = read_path(l->record, nt_json_find(link, "uri"), &l->file.path);
-		const ssize_t size = *same && !l->file.path.failed
-					     ? readlink(l->file.path.data, text, sizeof text - 1)
-					     : -1;
-		target.size = 0;
-		if (size >= 0) {
-			text[size] = '\0';
-			nt_uri_append_path(&target, text);
-		}
-		*same = size >= 0 && !target.failed &&
-			is_text(nt_json_find(link, "to"), target.data);
+	(void)first;
+	*same = read_path(l->record, nt_json_find(link, "uri"), &l->file.path);
+	const ssize_t size = *same && !l->file.path.failed ? readlink(l->file.path.data, text, sizeof text - 1) : -1;
+	if (size >= 0) {
+		text[size] = '\0';
+		nt_uri_append_path(&target, text);
 	}
+	*same = size >= 0 && !target.failed && is_text(nt_json_find(link, "to"), target.data);
 	const bool failed = target.failed || l->file.path.failed;
 	nt_buffer_free(&target);
 	return failed ? nt_fail_memory(l->error) : NT_OK;
 }
 
 /* Whether a search would find what it has found. */
-static nt_status search_again(look *l, nt_json_value *search, bool *same)
+static nt_status look_at_search(look *l, nt_json_value *search, bool first, bool *same)
 {
 	struct stat info = {0};
 	state then;
+	(void)first;
+	*same = read_path(l->record, nt_json_find(search, "uri"), &l->file.path);
+	if (!*same || l->file.path.failed)
+		return *same ? nt_fail_memory(l->error) : NT_OK;
 	char *slash = strrchr(l->file.path.data, '/'), *entry = NULL;
 	const char *found = nt_json_get_string(nt_json_find(search, "found"), NULL);
 	*slash = '\0';
@@ -433,37 +402,23 @@ static nt_status search_again(look *l, nt_json_value *search, bool *same)
 	return status;
 }
 
-static nt_status look_at_searched(look *l, const nt_json_value *line, bool *same)
-{
-	nt_json_value *searched = nt_json_find(line, "searched");
-	nt_status status = NT_OK;
-	*same = true;
-	for (size_t i = 0; i < nt_json_count(searched) && *same && !status; i++) {
-		nt_json_value *search = nt_json_at(searched, i);
-		*same = read_path(l->record, nt_json_find(search, "uri"), &l->file.path);
-		if (l->file.path.failed)
-			return nt_fail_memory(l->error);
-		if (*same)
-			status = search_again(l, search, same);
-	}
-	return status;
-}
-
 static nt_status look_at(look *l, const nt_json_value *line, bool *same)
 {
+	static const struct {
+		const char *key;
+		size_t least;
+		nt_status (*look_at_one)(look *l, nt_json_value *value, bool first, bool *same);
+	} lists[] = {{"read", 1, look_at_read}, {"links", 0, look_at_link}, {"missing", 0, look_at_missing},
+		{"searched", 0, look_at_search}, {"written", 1, look_at_written}};
+	nt_status status = NT_OK;
 	*same = is_text(nt_json_find(line, "nmtan"), nmtan_version()) &&
 		is_text(nt_json_find(line, "options"), l->making->options);
-	nt_status status = NT_OK;
-	if (*same)
-		status = look_at_read(l, line, same);
-	if (!status && *same)
-		status = look_at_links(l, line, same);
-	if (!status && *same)
-		status = look_at_missing(l, line, same);
-	if (!status && *same)
-		status = look_at_searched(l, line, same);
-	if (!status && *same)
-		status = look_at_written(l, line, same);
+	for (size_t k = 0; k < sizeof lists / sizeof *lists && *same && !status; k++) {
+		nt_json_value *list = nt_json_find(line, lists[k].key);
+		*same = list && nt_json_count(list) >= lists[k].least;
+		for (size_t i = 0; i < nt_json_count(list) && *same && !status; i++)
+			status = lists[k].look_at_one(l, nt_json_at(list, i), i == 0, same);
+	}
 	nt_buffer_free(&l->file.path);
 	return status;
 }

@@ -114,16 +114,6 @@ static nt_status load(nt_record_file *file, nt_error *error)
 
 /* ---- the lock ---- */
 
-static bool lock_whole(int fd)
-{
-	struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
-	int result;
-	do
-		result = fcntl(fd, F_OFD_SETLKW, &lock);
-	while (result < 0 && errno == EINTR);
-	return result == 0;
-}
-
 /* Opens the file for appending, made where it is not there, and waits for its lock. *locked: it was to be had. Below
  * 0, with errno: failed. */
 static int open_locked(const nt_record_file *file, bool *locked)
@@ -133,7 +123,10 @@ static int open_locked(const nt_record_file *file, bool *locked)
 		if (fd < 0)
 			return fd;
 		struct stat here, there;
-		*locked = lock_whole(fd);
+		struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+		do
+			*locked = fcntl(fd, F_OFD_SETLKW, &lock) == 0;
+		while (!*locked && errno == EINTR);
 		if (!*locked || (fstat(fd, &here) == 0 && stat(file->path, &there) == 0 &&
 			here.st_ino == there.st_ino && here.st_dev == there.st_dev))
 			return fd;

@@ -30,15 +30,6 @@ struct nt_update {
 
 /* ---- records ---- */
 
-static nt_record *find(const nt_update *update, uint64_t hash, const char *path)
-{
-	size_t at = NT_HASH_BEGIN;
-	for (uint32_t i; (i = nt_hash_index_next(&update->index, hash, &at)) != UINT32_MAX;)
-		if (strcmp(update->records[i].path, path) == 0)
-			return update->records[i].record;
-	return NULL;
-}
-
 /* Takes the path over. */
 static nt_status open_one(nt_update *update, uint64_t hash, char *path, nt_record **record, nt_error *error)
 {
@@ -62,24 +53,18 @@ static nt_status get(nt_update *update, char *path, nt_record **record, nt_error
 {
 	const uint64_t hash = nt_hash_bytes(0, path, strlen(path));
 	pthread_mutex_lock(&update->lock);
-	*record = find(update, hash, path);
 	nt_status status = NT_OK;
+	size_t at = NT_HASH_BEGIN;
+	*record = NULL;
+	for (uint32_t i; !*record && (i = nt_hash_index_next(&update->index, hash, &at)) != UINT32_MAX;)
+		if (strcmp(update->records[i].path, path) == 0)
+			*record = update->records[i].record;
 	if (*record)
 		free(path);
 	else
 		status = open_one(update, hash, path, record, error);
 	pthread_mutex_unlock(&update->lock);
 	return status;
-}
-
-/* Of the outputs in a folder, named with its slash or by nothing. */
-static nt_status get_of_folder(nt_update *update, const char *folder, size_t length, nt_record **record,
-	nt_error *error)
-{
-	nt_buffer path = {0};
-	nt_buffer_append(&path, folder, length);
-	nt_buffer_format(&path, "%s%s", length && folder[length - 1] != '/' ? "/" : "", record_name);
-	return path.failed ? nt_fail_memory(error) : get(update, path.data, record, error);
 }
 
 static nt_status get_of_output(nt_update *update, const char *output, nt_record **record, nt_error *error)
@@ -89,19 +74,13 @@ static nt_status get_of_output(nt_update *update, const char *output, nt_record 
 		char *path = strdup(o->record);
 		return path ? get(update, path, record, error) : nt_fail_memory(error);
 	}
+	/* of a folder, named with its slash or by nothing */
 	const char *slash = strrchr(output, '/'), *folder = o->folder ? o->folder : output;
-	return get_of_folder(update, folder,
-		o->folder ? strlen(folder) : slash ? (size_t)(slash - output) + 1 : 0, record, error);
-}
-
-static nt_status find_folder_of(const char *path, nt_error *error)
-{
-	struct stat info;
-	const char *slash = strrchr(path, '/');
-	char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup("./");
-	const nt_status status = folder ? nt_lookup(folder, &info, error) : nt_fail_memory(error);
-	free(folder);
-	return status;
+	const size_t length = o->folder ? strlen(folder) : slash ? (size_t)(slash - output) + 1 : 0;
+	nt_buffer path = {0};
+	nt_buffer_append(&path, folder, length);
+	nt_buffer_format(&path, "%s%s", length && folder[length - 1] != '/' ? "/" : "", record_name);
+	return path.failed ? nt_fail_memory(error) : get(update, path.data, record, error);
 }
 
 nt_status nt_update_begin(nt_update **update, const nt_update_options *options, nt_error *error)
@@ -113,9 +92,15 @@ nt_status nt_update_begin(nt_update **update, const nt_update_options *options, 
 	(*update)->options = *options;
 	pthread_mutex_init(&(*update)->lock, NULL);
 	/* the only one can be refused before anything runs; the folder of -d may be still to come, in a dry run */
-	nt_status status = options->record ? find_folder_of(options->record, error) : NT_OK;
-	if (status)
-		return status;
+	if (options->record) {
+		struct stat info;
+		const char *slash = strrchr(options->record, '/');
+		char *folder = slash ? strndup(options->record, (size_t)(slash - options->record) + 1) : strdup("./");
+		const nt_status status = folder ? nt_lookup(folder, &info, error) : nt_fail_memory(error);
+		free(folder);
+		if (status)
+			return status;
+	}
 	return options->record || options->folder ? get_of_output(*update, "", &record, error) : NT_OK;
 }
 

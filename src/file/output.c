@@ -121,16 +121,6 @@ static nt_status check_existing(const nt_output *output, nt_sink *sink, const st
 	return sink->in_place ? refuse_in_place(sink->path, status, error) : NT_OK;
 }
 
-/* Two files of one set must not end at one place. */
-static nt_status check_twins(const nt_output *output, const nt_sink *sink, nt_error *error)
-{
-	for (const nt_sink *other = output->first; other; other = other->next)
-		if (!nt_sink_is_sidecar(other) && other->target && strcmp(other->target, sink->target) == 0)
-			return nt_fail_file(error, NT_ERROR_IO, sink->path,
-				"refusing to write: another file of this output has the same name");
-	return NT_OK;
-}
-
 /* Creates the temporary beside a path and explains why it cannot. */
 static nt_status open_temporary(nt_sink *sink, const char *beside, nt_error *error)
 {
@@ -212,8 +202,11 @@ static nt_status open_main(const nt_output *output, nt_sink *sink, nt_error *err
 	sink->target = exists ? realpath(sink->path, NULL) : strdup(sink->path);
 	if (!sink->target)
 		return nt_sink_fail(error, sink->path, errno);
-	checked = check_twins(output, sink, error);
-	return checked || sink->dry ? checked : open_temporary(sink, sink->target, error);
+	for (const nt_sink *other = output->first; other; other = other->next)
+		if (!nt_sink_is_sidecar(other) && other->target && strcmp(other->target, sink->target) == 0)
+			return nt_fail_file(error, NT_ERROR_IO, sink->path,
+				"refusing to write: another file of this output has the same name");
+	return sink->dry ? NT_OK : open_temporary(sink, sink->target, error);
 }
 
 static void free_sink(nt_sink *sink)
@@ -384,16 +377,6 @@ static const char *present_path(const nt_sink *sink)
 	return sink->temporary ? nt_temporary_path(sink->temporary) : sink->target;
 }
 
-/* Under the names that they are going to have. Renaming and linking keep size and time. */
-static void note_written(const nt_output *output)
-{
-	struct stat status;
-	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		if (sink->target && sink->role != NT_ROLE_STAGING && stat(present_path(sink), &status) == 0)
-			nt_trace_written(nt_sink_is_sidecar(sink) ? sink->target : sink->path,
-				present_path(sink), &status);
-}
-
 nt_status nt_output_commit(nt_output *output, nt_error *error)
 {
 	nt_status status = NT_OK;
@@ -414,7 +397,12 @@ nt_status nt_output_commit(nt_output *output, nt_error *error)
 	if (!status)
 		status = leave_equal(output, error);
 	if (!status && !output->options.dry_run) {
-		note_written(output);
+		/* under the names that they are going to have: renaming and linking keep size and time */
+		struct stat info;
+		for (const nt_sink *sink = output->first; sink; sink = sink->next)
+			if (sink->target && sink->role != NT_ROLE_STAGING && stat(present_path(sink), &info) == 0)
+				nt_trace_written(nt_sink_is_sidecar(sink) ? sink->target : sink->path,
+					present_path(sink), &info);
 		if (output->options.placing)
 			status = output->options.placing(output->options.placing_user, error);
 	}

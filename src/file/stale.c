@@ -58,15 +58,6 @@ static bool is_first_look(const struct stat *status)
 	return !known;
 }
 
-static void remove_stale(int folder, const char *name)
-{
-	const int fd = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-	if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) == 0)
-		unlinkat(folder, name, 0);
-	if (fd >= 0)
-		close(fd);
-}
-
 void nt_temporaries_clean(const char *path)
 {
 	/* mostly that of the file before: not asked for again, which over a network would cost as much as a file */
@@ -80,9 +71,15 @@ void nt_temporaries_clean(const char *path)
 	DIR *folder = opendir(path);
 	if (!folder)
 		return;
-	const bool local = is_local(dirfd(folder));
-	for (const struct dirent *entry; (entry = readdir(folder));)
-		if (nt_temporary_is_lockable(entry->d_name, local))
-			remove_stale(dirfd(folder), entry->d_name);
+	const int at = dirfd(folder);
+	const bool local = is_local(at);
+	for (const struct dirent *entry; (entry = readdir(folder));) {
+		const int fd = nt_temporary_is_lockable(entry->d_name, local)
+			? openat(at, entry->d_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC) : -1;
+		if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) == 0)
+			unlinkat(at, entry->d_name, 0);
+		if (fd >= 0)
+			close(fd);
+	}
 	closedir(folder);
 }
