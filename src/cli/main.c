@@ -515,13 +515,6 @@ static void limit_memory(const nt_command *command)
 	setrlimit(RLIMIT_DATA, &data);
 }
 
-/* For what is told of the runs: what they have given back, a thread's heap may keep. */
-static void lift_memory_limit(const nt_command *command)
-{
-	if (command->settings.max_memory && data_before.rlim_cur)
-		setrlimit(RLIMIT_DATA, &data_before);
-}
-
 static int run_batch(const nt_command *command, nt_style style, const nt_report_plan *plan,
 	nt_batch *batch, nt_report_folder *folder)
 {
@@ -553,7 +546,9 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 	in_work.erases = s.progress && isatty(STDERR_FILENO);
 	in_work.count = batch->count;
 	nt_batch_run(batch, &settings, &options);
-	lift_memory_limit(command);
+	/* for what is told of the runs: what they have given back, a thread's heap may keep */
+	if (command->settings.max_memory && data_before.rlim_cur)
+		setrlimit(RLIMIT_DATA, &data_before);
 	nt_progress_stop(s.progress);
 	tell_report(&s);
 	tell_files(&s);
@@ -624,32 +619,19 @@ static size_t put_number(char *text, size_t number)
 	return size;
 }
 
-static size_t put_words(char *text, const char *words)
-{
-	const size_t size = strlen(words);
-	memcpy(text, words, size);
-	return size;
-}
-
 /* In a signal handler. */
 static void tell_interrupted(void)
 {
+	const size_t failed = in_work.failed, numbers[] = {in_work.ended - failed, in_work.count, failed};
+	const char *const words[] = {" of ", " done, ", &" failed, ended by a signal\n"[failed ? 0 : 9]};
 	char line[160];
-	size_t size = 0;
-	const size_t failed = in_work.failed;
 	if (in_work.count < 2)
 		return;
-	size += put_words(line, in_work.erases ? "\r\033[Knmtan: " : "nmtan: ");
-	size += put_number(line + size, in_work.ended - failed);
-	size += put_words(line + size, " of ");
-	size += put_number(line + size, in_work.count);
-	size += put_words(line + size, " done");
-	if (failed) {
-		size += put_words(line + size, ", ");
-		size += put_number(line + size, failed);
-		size += put_words(line + size, " failed");
+	size_t size = (size_t)(stpcpy(line, in_work.erases ? "\r\033[Knmtan: " : "nmtan: ") - line);
+	for (size_t i = 0; i < 3; i++) {
+		size += i < 2 || failed ? put_number(line + size, numbers[i]) : 0;
+		size = (size_t)(stpcpy(line + size, words[i]) - line);
 	}
-	size += put_words(line + size, ", ended by a signal\n");
 	const ssize_t written = write(STDERR_FILENO, line, size);
 	(void)written;
 }

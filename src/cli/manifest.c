@@ -34,15 +34,6 @@ static void append_number(nt_buffer *out, const char *key, uint64_t number)
 	nt_buffer_format(out, ",\"%s\":%" PRIu64, key, number);
 }
 
-static const char *status_of(const nt_job *job)
-{
-	if (job->end == NT_JOB_UNTRIED)
-		return "untried";
-	if (job->end == NT_JOB_CURRENT)
-		return "up-to-date";
-	return job->status ? "failed" : job->outcome->summary.left ? "left" : "done";
-}
-
 /* A new output is read once more, while the system still has it in memory. Streams are no more. */
 static void append_digest(nt_buffer *out, const char *path)
 {
@@ -158,8 +149,9 @@ static void append_job(nt_buffer *out, const nt_job *job, const char *options, i
 	const nt_trace *trace = job->outcome ? &job->outcome->summary.trace : &nothing;
 	nt_buffer_text(out, "{");
 	append_text(out, "input", job->input);
-	nt_buffer_format(out, ",\"status\":\"%s\"", status_of(job));
-	nt_buffer_format(out, ",\"exit_code\":%d,", exit_code);
+	nt_buffer_format(out, ",\"status\":\"%s\",\"exit_code\":%d,", job->end == NT_JOB_UNTRIED ? "untried"
+		: job->end == NT_JOB_CURRENT ? "up-to-date" : job->status ? "failed"
+		: job->outcome->summary.left ? "left" : "done", exit_code);
 	append_text(out, "nmtan", nmtan_version());
 	nt_buffer_text(out, ",");
 	append_text(out, "options", options);

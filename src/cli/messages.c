@@ -72,15 +72,6 @@ static nt_severity shown_severity(const nt_finding *finding, nt_style style)
 	return style.fails || severity < NT_SEVERITY_ERROR ? severity : NT_SEVERITY_WARNING;
 }
 
-static void append_finding(nt_buffer *out, const nt_finding *finding, const char *file, nt_style style)
-{
-	nt_buffer sentence = {0};
-	nt_code_sentence(finding->code, finding->count, finding->detail, &sentence);
-	append_sentence(out, &finding->place, file, finding->code, shown_severity(finding, style),
-		sentence.data ? sentence.data : "", style);
-	nt_buffer_free_into(&sentence, out);
-}
-
 /* All findings of one code and severity, those beyond PLACES_SHOWN as a number. */
 static void append_code(nt_buffer *out, const nt_finding_list *findings, nt_code code, nt_severity severity,
 	const char *file, nt_style style)
@@ -90,12 +81,15 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, nt_code
 		const nt_finding *finding = &findings->items[i];
 		if (finding->code != code || shown_severity(finding, style) != severity)
 			continue;
-		if (shown < PLACES_SHOWN || style.verbosity > 0) {
-			append_finding(out, finding, file, style);
-			shown++;
-		} else {
+		if (shown == PLACES_SHOWN && style.verbosity <= 0) {
 			left_out++;
+			continue;
 		}
+		nt_buffer sentence = {0};
+		nt_code_sentence(code, finding->count, finding->detail, &sentence);
+		append_sentence(out, &finding->place, file, code, severity, sentence.data ? sentence.data : "", style);
+		nt_buffer_free_into(&sentence, out);
+		shown++;
 	}
 	if (left_out)
 		nt_buffer_format(out, "nmtan: %s: and %zu more [%s]; -v shows all\n",
@@ -222,18 +216,6 @@ void nt_message_current(nt_buffer *out, const nt_job *job)
 	nt_buffer_text(out, ": up to date\n");
 }
 
-/* Triangles that were solved as quads. */
-static void append_quads(nt_buffer *out, const nt_summary *s)
-{
-	if (!s->quad_count)
-		return;
-	nt_buffer_text(out, " (as ");
-	append_count(out, s->quad_count, "quad");
-	nt_buffer_text(out, " and ");
-	append_count(out, s->triangle_count - 2 * s->quad_count, "triangle");
-	nt_buffer_text(out, ")");
-}
-
 void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings)
 {
 	const nt_summary *s = &job->outcome->summary;
@@ -252,7 +234,13 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	if (s->solved_count && !settings->check) {
 		nt_buffer_text(out, ", ");
 		append_count(out, s->triangle_count, "triangle");
-		append_quads(out, s);
+		if (s->quad_count) {
+			nt_buffer_text(out, " (as ");
+			append_count(out, s->quad_count, "quad");
+			nt_buffer_text(out, " and ");
+			append_count(out, s->triangle_count - 2 * s->quad_count, "triangle");
+			nt_buffer_text(out, ")");
+		}
 		append_vertices(out, s);
 	}
 	if (s->repaired)

@@ -223,36 +223,27 @@ void nt_options_zsh(nt_buffer *out)
 
 /* ---- what shapes outputs ---- */
 
-/* The word of a choice by its number. */
-static void append_choice(nt_buffer *out, const char *values, int number)
-{
-	for (; number > 0; number--)
-		values += strcspn(values, "|") + 1;
-	nt_buffer_append(out, values, strcspn(values, "|"));
-}
-
-/* Folders count as what they are, wherever the program is run. */
-static void append_folder(nt_buffer *out, const char *name)
-{
-	nt_error unused;
-	nt_buffer path = {0};
-	nt_buffer_text(out, nt_path_absolute(&path, name, &unused) ? name : path.data);
-	nt_buffer_free(&path);
-}
-
 static void append_shaping(nt_buffer *out, const nt_option_row *row, const void *field)
 {
 	nt_buffer_format(out, "%s--%s", out->size ? " " : "", row->name);
 	if (row->kind == NT_OPTION_CHOICE) {
 		nt_buffer_text(out, "=");
-		append_choice(out, row->values, *(const int *)field - row->first);
+		const char *word = row->values;
+		for (int number = *(const int *)field - row->first; number > 0; number--)
+			word += strcspn(word, "|") + 1;
+		nt_buffer_append(out, word, strcspn(word, "|"));
 	} else if (row->kind == NT_OPTION_TEXT) {
 		nt_buffer_format(out, "=%s", *(const char *const *)field);
 	} else if (row->kind == NT_OPTION_LIST) {
 		const nt_words *words = field;
 		for (size_t i = 0; i < words->count; i++) {
-			nt_buffer_format(out, "%s%s=", i ? " --" : "", i ? row->name : "");
-			append_folder(out, words->items[i]);
+			/* folders count as what they are, wherever the program is run */
+			nt_error unused;
+			nt_buffer path = {0};
+			const bool named = nt_path_absolute(&path, words->items[i], &unused) != NT_OK;
+			nt_buffer_format(out, "%s%s=%s", i ? " --" : "", i ? row->name : "",
+				named ? words->items[i] : path.data);
+			nt_buffer_free(&path);
 		}
 	} else if (row->kind == NT_OPTION_SIZE) {
 		nt_buffer_format(out, "=%" PRIu64, *(const uint64_t *)field);

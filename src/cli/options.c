@@ -32,14 +32,6 @@ static const nt_option_row *find_long(const char *name, size_t length)
 	return NULL;
 }
 
-static const nt_option_row *find_letter(char letter)
-{
-	for (size_t i = 0; i < nt_option_row_count; i++)
-		if (nt_option_rows[i].letter && nt_option_rows[i].letter == letter)
-			return &nt_option_rows[i];
-	return NULL;
-}
-
 /* The number of a word in "one|two|three", -1 when it is none of them. */
 static int choice_of(const char *values, const char *word)
 {
@@ -256,8 +248,10 @@ static nt_status parse_long(parser *p, const char *word, const char *next, int *
 static nt_status parse_short(parser *p, const char *word, const char *next, int *used)
 {
 	for (const char *letter = word + 1; *letter; letter++) {
-		const nt_option_row *row = find_letter(*letter);
-		if (!row) {
+		const nt_option_row *row = nt_option_rows, *end = row + nt_option_row_count;
+		while (row < end && row->letter != *letter)
+			row++;
+		if (row == end) {
 			/* A whole character, should it be one of several bytes. */
 			int bytes = 1;
 			while (((unsigned char)letter[bytes] & 0xc0) == 0x80)

@@ -43,26 +43,20 @@ static void erase(nt_progress *p)
 	p->drawn = false;
 }
 
-/* How far, how fast, and how long still: as long for each file as so far. */
-static void describe_files(const nt_progress *p, double seconds, nt_buffer *line)
-{
-	nt_buffer_format(line, "%zu of %zu files", p->ended, p->files);
-	if (p->failed)
-		nt_buffer_format(line, ", %zu failed", p->failed);
-	if (seconds > 0 && p->ended)
-		nt_buffer_format(line, ", %.3g files/s, %.1f MB, %.0f s left", (double)p->ended / seconds,
-			(double)p->bytes / 1e6, seconds / (double)p->ended * (double)(p->files - p->ended));
-}
-
 static void draw(nt_progress *p)
 {
 	nt_buffer line = {0};
 	const double seconds = nt_seconds() - p->begin;
-	if (p->files > 1) {
-		describe_files(p, seconds, &line);
-	} else {
+	if (p->files <= 1) {
 		nt_buffer_clean(&line, p->label);
 		nt_buffer_format(&line, ": %s", nt_stage_name(p->stage));
+	} else {
+		nt_buffer_format(&line, "%zu of %zu files", p->ended, p->files);
+		if (p->failed)
+			nt_buffer_format(&line, ", %zu failed", p->failed);
+		if (seconds > 0 && p->ended) /* as long for each file as so far */
+			nt_buffer_format(&line, ", %.3g files/s, %.1f MB, %.0f s left", (double)p->ended / seconds,
+				(double)p->bytes / 1e6, seconds / (double)p->ended * (double)(p->files - p->ended));
 	}
 	if (line.failed || !line.data) {
 		nt_buffer_free(&line);
@@ -88,23 +82,18 @@ static void draw_in_time(nt_progress *p)
 	p->next += p->terminal ? 0 : SECONDS_PER_LOG_LINE;
 }
 
-/* By the clock that nobody sets: pthread_cond_init() has been told so. */
-static void wait_a_tick(nt_progress *p)
-{
-	struct timespec until;
-	clock_gettime(CLOCK_MONOTONIC, &until);
-	until.tv_nsec += TICK_NANOSECONDS;
-	until.tv_sec += until.tv_nsec / 1000000000;
-	until.tv_nsec %= 1000000000;
-	pthread_cond_timedwait(&p->wake, &p->mutex, &until);
-}
-
 static void *watch(void *user)
 {
 	nt_progress *p = user;
 	pthread_mutex_lock(&p->mutex);
 	while (!p->stop) {
-		wait_a_tick(p);
+		/* by the clock that nobody sets: pthread_cond_init() has been told so */
+		struct timespec until;
+		clock_gettime(CLOCK_MONOTONIC, &until);
+		until.tv_nsec += TICK_NANOSECONDS;
+		until.tv_sec += until.tv_nsec / 1000000000;
+		until.tv_nsec %= 1000000000;
+		pthread_cond_timedwait(&p->wake, &p->mutex, &until);
 		if (!p->stop)
 			draw_in_time(p);
 	}

@@ -59,13 +59,6 @@ static nt_status read_severities(nt_report_options *options, const char *list, n
 	return NT_OK;
 }
 
-static bool is_folder(const char *path)
-{
-	struct stat info;
-	const size_t length = strlen(path);
-	return (length && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
-}
-
 /* The nt_severity that a word means. */
 static const int least_severity[] = {[NT_FAIL_ON_ERROR] = NT_SEVERITY_ERROR, [NT_FAIL_ON_WARNING] = NT_SEVERITY_WARNING,
 	[NT_FAIL_ON_INFO] = NT_SEVERITY_INFO, [NT_FAIL_ON_NEVER] = NT_SEVERITY_ERROR + 1};
@@ -87,7 +80,9 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 	if (!target->path)
 		return NT_OK;
 	const bool dash = strcmp(target->path, "-") == 0;
-	target->folder = c->report && !dash && is_folder(c->report);
+	struct stat info;
+	target->folder = c->report && !dash && ((*c->report && c->report[strlen(c->report) - 1] == '/') ||
+		(stat(c->report, &info) == 0 && S_ISDIR(info.st_mode)));
 	if (target->folder && c->report_format && c->report_format - 1 != NT_REPORT_HTML)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"a report in a folder is HTML; for another format, --report names a file");
@@ -142,28 +137,10 @@ static nt_status check_diff(const nt_command *c, nt_error *error)
 	return NT_OK;
 }
 
-/* Where the folder of the run has no name, files have the names that they were given. */
-static nt_status choose_names(nt_report_plan *plan, const nt_command *c, nt_error *error)
-{
-	const nt_status status =
-		nt_shown_paths_begin(&plan->paths, c->operands, plan->target.input_count, c->path_prefix, error);
-	plan->options.paths = status ? NULL : &plan->paths;
-	return status == NT_ERROR_MEMORY ? status : NT_OK;
-}
-
-/* People read a few findings; programs, and pages that unfold, take all. */
-static size_t most_findings(const nt_report_target *target, const nt_command *c)
-{
-	enum { MOST_READ = 10 };
-	const bool read = target->format == NT_REPORT_TEXT || target->format == NT_REPORT_MARKDOWN;
-	if (c->max_issues >= 0)
-		return (size_t)c->max_issues;
-	return target->path && read && !c->diff ? MOST_READ : 0;
-}
-
 nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, bool colour,
 	nt_error *error)
 {
+	enum { MOST_READ = 10 };
 	*plan = (nt_report_plan){
 		.wanted = command->settings.check || command->report || command->ignore || command->severity ||
 			command->uv_image || command->fail_on != NT_FAIL_ON_NEVER};
@@ -177,28 +154,36 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 		status = read_severities(&plan->options, command->severity, error);
 	if (!status)
 		status = choose_target(plan, command, colour, error);
-	plan->options.max_findings = most_findings(&plan->target, command);
-	if (!status && plan->wanted)
-		status = choose_names(plan, command, error);
+	/* people read a few findings; programs, and pages that unfold, take all */
+	const nt_report_target *target = &plan->target;
+	const bool read = target->format == NT_REPORT_TEXT || target->format == NT_REPORT_MARKDOWN;
+	plan->options.max_findings = command->max_issues >= 0 ? (size_t)command->max_issues
+		: target->path && read && !command->diff ? MOST_READ : 0;
+	if (!status && plan->wanted) {
+		status = nt_shown_paths_begin(&plan->paths, command->operands, target->input_count,
+			command->path_prefix, error);
+		plan->options.paths = status ? NULL : &plan->paths;
+		if (status != NT_ERROR_MEMORY)
+			status = NT_OK; /* where the run's folder has no name, files are called as they were given */
+	}
 	if (!status && command->baseline) {
 		status = nt_baseline_open(&plan->baseline, command->baseline, &plan->paths, error);
 		plan->options.baseline = &plan->baseline;
 	}
-	if (!status && plan->target.path && plan->target.format == NT_REPORT_HTML &&
-		strcmp(plan->target.path, "-") != 0) {
+	const bool page_wanted = target->path && target->format == NT_REPORT_HTML;
+	if (!status && page_wanted && strcmp(target->path, "-") != 0) {
 		nt_buffer page = {0};
-		nt_buffer_text(&page, plan->target.path);
-		while (plan->target.folder && page.size > 1 && page.data[page.size - 1] == '/')
+		nt_buffer_text(&page, target->path);
+		while (target->folder && page.size > 1 && page.data[page.size - 1] == '/')
 			page.size--;
-		nt_buffer_text(&page, plan->target.folder ? "/page" : "");
+		nt_buffer_text(&page, target->folder ? "/page" : "");
 		status = page.failed ? nt_fail_memory(error) : nt_link_folder(&plan->folder, page.data, error);
 		plan->options.page_folder = plan->folder.data;
 		nt_buffer_free(&page);
 	}
-	plan->options.measures = plan->target.path && plan->target.format == NT_REPORT_JSON && !command->diff;
-	plan->options.keep_geometry = command->uv_image || command->diff ||
-		(plan->target.path && plan->target.format == NT_REPORT_HTML);
-	plan->options.keep_frames = plan->target.path && plan->target.format == NT_REPORT_HTML && !command->diff;
+	plan->options.measures = target->path && target->format == NT_REPORT_JSON && !command->diff;
+	plan->options.keep_geometry = command->uv_image || command->diff || page_wanted;
+	plan->options.keep_frames = page_wanted && !command->diff;
 	return status;
 }
 

@@ -20,25 +20,21 @@ bool nt_say(nt_buffer *text)
 	return whole;
 }
 
-/* Without memory the place is the file alone, and what must not reach a terminal is a question mark. */
-static void say_plainly(const nt_error *error)
-{
-	char line[sizeof error->place.file + sizeof error->message + 16];
-	const char *file = strcmp(error->place.file, "-") == 0 ? "standard input" : error->place.file;
-	snprintf(line, sizeof line, "nmtan: %s%s%s", file, *file ? ": " : "",
-		error->message[0] ? error->message : nt_status_text(error->status));
-	nt_utf8_mask(line);
-	fprintf(stderr, "%s\n", line);
-}
-
 void nt_say_error(const nt_error *error, nt_style style)
 {
 	nt_buffer text = {0};
 	nt_message_error(&text, error, style);
-	if (text.failed)
-		say_plainly(error);
-	else
+	if (text.failed) {
+		/* the place is the file alone, and what must not reach a terminal is a question mark */
+		char line[sizeof error->place.file + sizeof error->message + 16];
+		const char *file = strcmp(error->place.file, "-") == 0 ? "standard input" : error->place.file;
+		snprintf(line, sizeof line, "nmtan: %s%s%s", file, *file ? ": " : "",
+			error->message[0] ? error->message : nt_status_text(error->status));
+		nt_utf8_mask(line);
+		fprintf(stderr, "%s\n", line);
+	} else {
 		nt_say(&text);
+	}
 	nt_buffer_free(&text);
 }
 
