@@ -3,8 +3,8 @@
  * A faulty file may refer to accessors, views or buffers that it does not have, where nobody looks: in a mesh of no
  * scene, a skin, an image. What an edit adds takes the next numbers, and such a reference would come to mean it. So the
  * lowest number of each kind that is referred to in vain is noted before anything is added, and the file is refused if
- * it is taken. Known are the places below: those of glTF 2.0, of the extensions in Khronos' repository of glTF, and of
- * some others that are in use. Elements of other arrays (images, materials ...) are never added.
+ * it is taken. Known are the places below: those of glTF 2.0 and of the extensions that are in use. Elements of other
+ * arrays (images, materials ...) are never added.
  */
 #include "gltf/document.h"
 
@@ -25,15 +25,11 @@ static const place places[] = {
 	{"accessors/*/bufferView", NT_GLTF_VIEWS},
 	{"accessors/*/sparse/indices/bufferView", NT_GLTF_VIEWS},
 	{"accessors/*/sparse/values/bufferView", NT_GLTF_VIEWS},
-	{"accessors/*/extensions/MPEG_accessor_timed/bufferView", NT_GLTF_VIEWS},
 	{"animations/*/samplers/*/input", NT_GLTF_ACCESSORS},
 	{"animations/*/samplers/*/output", NT_GLTF_ACCESSORS},
 	{"bufferViews/*/buffer", NT_GLTF_BUFFERS},
 	{"bufferViews/*/extensions/EXT_meshopt_compression/buffer", NT_GLTF_BUFFERS},
 	{"bufferViews/*/extensions/KHR_meshopt_compression/buffer", NT_GLTF_BUFFERS},
-	{"cameras/*/extensions/MPEG_viewport_recommended/viewports/*/translation", NT_GLTF_ACCESSORS},
-	{"cameras/*/extensions/MPEG_viewport_recommended/viewports/*/rotation", NT_GLTF_ACCESSORS},
-	{"cameras/*/extensions/MPEG_viewport_recommended/viewports/*/parameters", NT_GLTF_ACCESSORS},
 	{"images/*/bufferView", NT_GLTF_VIEWS},
 	{"meshes/*/primitives/*/attributes/*", NT_GLTF_ACCESSORS},
 	{"meshes/*/primitives/*/indices", NT_GLTF_ACCESSORS},
@@ -51,14 +47,8 @@ static const place places[] = {
 	{"meshes/*/extensions/EXT_mesh_manifold/mergeIndices", NT_GLTF_ACCESSORS},
 	{"meshes/*/extensions/EXT_mesh_manifold/mergeValues", NT_GLTF_ACCESSORS},
 	{"meshes/*/extensions/EXT_mesh_primitive_restart/primitiveGroups/*/indices", NT_GLTF_ACCESSORS},
-	{"meshes/*/extensions/MPEG_mesh_linking/correspondence", NT_GLTF_ACCESSORS},
-	{"meshes/*/extensions/MPEG_mesh_linking/pose", NT_GLTF_ACCESSORS},
-	{"meshes/*/extensions/MPEG_mesh_linking/weights", NT_GLTF_ACCESSORS},
 	{"nodes/*/extensions/EXT_mesh_gpu_instancing/attributes/*", NT_GLTF_ACCESSORS},
-	{"nodes/*/extensions/GRIFFEL_bim_data/bufferView", NT_GLTF_VIEWS},
-	{"nodes/*/extensions/MPEG_audio_spatial/sources/*/accessors/*", NT_GLTF_ACCESSORS},
 	{"skins/*/inverseBindMatrices", NT_GLTF_ACCESSORS},
-	{"textures/*/extensions/MPEG_texture_video/accessor", NT_GLTF_ACCESSORS},
 	{"extensions/EXT_feature_metadata/featureTables/*/properties/*/bufferView", NT_GLTF_VIEWS},
 	{"extensions/EXT_feature_metadata/featureTables/*/properties/*/arrayOffsetBufferView", NT_GLTF_VIEWS},
 	{"extensions/EXT_feature_metadata/featureTables/*/properties/*/stringOffsetBufferView", NT_GLTF_VIEWS},
@@ -68,12 +58,6 @@ static const place places[] = {
 	{"extensions/EXT_structural_metadata/propertyTables/*/properties/*/stringOffsets", NT_GLTF_VIEWS},
 	{"extensions/KHR_audio/audio/*/bufferView", NT_GLTF_VIEWS},
 	{"extensions/KHR_audio_emitter/audio/*/bufferView", NT_GLTF_VIEWS},
-	{"extensions/KHR_techniques_webgl/shaders/*/bufferView", NT_GLTF_VIEWS},
-	{"extensions/MPEG_animation_timing/accessor", NT_GLTF_ACCESSORS},
-	{"extensions/MPEG_audio_spatial/sources/*/accessors/*", NT_GLTF_ACCESSORS},
-	{"extensions/MSFT_audio_emitter/clips/*/bufferView", NT_GLTF_VIEWS},
-	{"extensions/NV_materials_mdl/modules/*/bufferView", NT_GLTF_VIEWS},
-	{"extensions/NV_materials_mdl/bsdfMeasurements/*/bufferView", NT_GLTF_VIEWS},
 };
 
 enum { STARS = 4 }; /* at most, in a path */
@@ -82,7 +66,7 @@ enum { STARS = 4 }; /* at most, in a path */
 
 static size_t count_in_file(const nt_gltf *document, nt_gltf_growing kind)
 {
-	return kind == NT_GLTF_ACCESSORS ? document->kept_count :
+	return kind == NT_GLTF_ACCESSORS ? document->file_accessor_count :
 		kind == NT_GLTF_VIEWS ? document->view_count : document->buffer_count;
 }
 
