@@ -15,9 +15,6 @@
 #include "gltf/pointer.h"
 #include "gltf/view.h"
 
-/* Of a kept accessor's type. */
-enum { NORMALIZED = 128 };
-
 /* Indices that an accessor without a bufferView may have: nothing in the file backs their number. */
 enum { UNBACKED_INDICES = 65536 };
 
@@ -216,11 +213,11 @@ static void use_decoded(const nt_gltf_decoded *decoded, nt_gltf_accessor *access
 	accessor->sparse_count = 0;
 }
 
-/* As the JSON has it. */
-static nt_status read_accessor(nt_gltf *document, uint64_t index, const char *from, nt_gltf_accessor *accessor,
-	nt_error *error)
+nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_accessor *accessor, nt_error *error)
 {
 	const nt_json_value *json;
+	*accessor = (nt_gltf_accessor){.view = NT_NONE};
 	nt_status status = nt_gltf_element(document, "accessors", index, from, &json, error);
 	if (status)
 		return status;
@@ -233,58 +230,13 @@ static nt_status read_accessor(nt_gltf *document, uint64_t index, const char *fr
 	const nt_json_value *sparse = nt_json_find(json, "sparse");
 	if (!status && sparse)
 		status = check_sparse(document, sparse, pointer, accessor, error);
-	return status;
-}
-
-/* Notes what was read, unless another thread does so. A reader that sees that it is known sees the rest. */
-static void keep(nt_gltf_kept_accessor *kept, const nt_gltf_accessor *a)
-{
-	uint8_t unknown = 0;
-	if (a->sparse_count || a->offset > UINT32_MAX || a->stride > UINT8_MAX ||
-		a->element_bytes != a->component_bytes * a->components || /* columns with padding */
-		!__atomic_compare_exchange_n(&kept->state, &unknown, 1, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
-		return;
-	kept->view = a->view;
-	kept->offset = (uint32_t)a->offset;
-	kept->count = (uint32_t)a->count;
-	kept->type = (uint8_t)(a->component_type - NT_GLTF_BYTE + (a->normalized ? NORMALIZED : 0));
-	kept->components = (uint8_t)a->components;
-	kept->stride = (uint8_t)a->stride;
-	__atomic_store_n(&kept->state, NT_GLTF_KEPT, __ATOMIC_RELEASE);
-}
-
-static void take(const nt_gltf_kept_accessor *kept, uint32_t index, nt_gltf_accessor *a)
-{
-	const uint32_t type = NT_GLTF_BYTE + kept->type % NORMALIZED, bytes = nt_gltf_component_bytes(type);
-	*a = (nt_gltf_accessor){.index = index, .component_type = type, .component_bytes = bytes,
-		.components = kept->components, .element_bytes = bytes * kept->components,
-		.normalized = kept->type >= NORMALIZED, .count = kept->count, .view = kept->view,
-		.offset = kept->offset,
-		.stride = kept->stride};
-}
-
-nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
-	nt_gltf_accessor *accessor, nt_error *error)
-{
-	nt_gltf_kept_accessor *const kept = index < document->kept_count ? &document->kept[index] : NULL;
-	nt_status status = NT_OK;
-	if (kept && __atomic_load_n(&kept->state, __ATOMIC_ACQUIRE) == NT_GLTF_KEPT) {
-		take(kept, (uint32_t)index, accessor);
-	} else {
-		*accessor = (nt_gltf_accessor){.view = NT_NONE};
-		status = read_accessor(document, index, from, accessor, error);
-		if (!status && kept)
-			keep(kept, accessor);
-	}
 	if (!status && document->decoded && index < document->accessor_count)
 		use_decoded(&document->decoded[index], accessor);
 	return status;
 }
 
-nt_json_value *nt_gltf_change_accessor(nt_gltf *document, uint64_t index)
+nt_json_value *nt_gltf_accessor_json(const nt_gltf *document, uint64_t index)
 {
-	if (index < document->kept_count)
-		document->kept[index].state = 0;
 	return nt_json_at(nt_gltf_root_member(document, "accessors"), (size_t)index);
 }
 

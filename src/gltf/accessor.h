@@ -28,8 +28,8 @@ typedef struct nt_gltf_accessor {
 nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_accessor *accessor, nt_error *error);
 
-/* The JSON of an accessor, NULL where there is none, that is going to be changed: it will be read anew. */
-nt_json_value *nt_gltf_change_accessor(nt_gltf *document, uint64_t index);
+/* The JSON of an accessor, NULL where there is none. */
+nt_json_value *nt_gltf_accessor_json(const nt_gltf *document, uint64_t index);
 
 /* Makes what an accessor says of its least and most values, if it does, that of the elements that are written:
  * bounds as nt_component_bounds() has them. */

@@ -197,9 +197,8 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 		document->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
 		document->virtual_of = nt_alloc(document->view_count, sizeof *document->virtual_of);
 		document->views = nt_alloc(document->view_count, sizeof *document->views);
-		document->kept_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
-		document->kept = nt_calloc(document->kept_count, sizeof *document->kept);
-		if (!document->buffers || !document->virtual_of || !document->views || !document->kept)
+		document->file_accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
+		if (!document->buffers || !document->virtual_of || !document->views)
 			status = nt_fail_memory(error);
 		for (size_t i = 0; !status && i < document->view_count; i++) {
 			document->virtual_of[i] = NT_NONE;
@@ -257,7 +256,6 @@ void nt_gltf_free(void *source)
 	free(document->virtuals);
 	free(document->virtual_of);
 	free(document->views);
-	free(document->kept);
 	free(document->decoded);
 	free(document->floats);
 	free(document->grids);

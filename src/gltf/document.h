@@ -63,16 +63,6 @@ typedef struct nt_gltf_view {
 	const char *compression; /* the extension that compresses it; NULL: none, or already undone */
 } nt_gltf_view;
 
-enum { NT_GLTF_KEPT = 2 };
-
-/* An accessor as it was read once, not sparse and its numbers not too large: accessor.c. */
-typedef struct nt_gltf_kept_accessor {
-	uint32_t view, offset, count;
-	uint8_t type; /* component type, from NT_GLTF_BYTE on; normalized: 128 more */
-	uint8_t components, stride;
-	uint8_t state; /* 0: it is not known; 1: a thread fills it; NT_GLTF_KEPT: it is known */
-} nt_gltf_kept_accessor;
-
 /* The arrays that elements may be added to. */
 typedef enum nt_gltf_growing {
 	NT_GLTF_ACCESSORS,
@@ -103,8 +93,7 @@ typedef struct nt_gltf {
 	uint32_t *virtual_of;      /* [view_count] the buffer a view was decompressed to; NT_NONE */
 	nt_gltf_view *views;       /* [view_count] as they were read once; buffer NT_NONE: not yet. view.h */
 	size_t view_count;
-	nt_gltf_kept_accessor *kept; /* [kept_count] accessors of the source */
-	size_t kept_count;
+	size_t file_accessor_count; /* accessors of the source */
 	nt_gltf_decoded *decoded;  /* [accessor_count] what Draco gave; NULL until there is something */
 	size_t accessor_count;
 	nt_gltf_floats_of *floats; /* [accessors] NULL until one is asked for */

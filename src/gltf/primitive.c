@@ -69,8 +69,6 @@ static bool same_bytes(nt_gltf_accessor a, nt_gltf_accessor b)
 static uint32_t claimed_view(const nt_gltf *document, const nt_json_value *accessors, uint32_t index)
 {
 	uint64_t view;
-	if (index < document->kept_count && document->kept[index].state == NT_GLTF_KEPT)
-		return document->kept[index].view;
 	return nt_json_get_uint64(nt_json_find(nt_json_at(accessors, index), "bufferView"), &view) &&
 			view < document->view_count ?
 		(uint32_t)view : NT_NONE;

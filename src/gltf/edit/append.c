@@ -122,7 +122,7 @@ static nt_status settle_bounds(nt_appending *job, const nt_append_target *of, ui
 		return status;
 	nt_component_bounds(elements, stride, override ? job->vertices->new_count : (size_t)a->count, type,
 		a->components, bounds);
-	nt_gltf_state_bounds(job->json, nt_gltf_change_accessor(job->document, accessor), a->components, bounds);
+	nt_gltf_state_bounds(job->json, nt_gltf_accessor_json(job->document, accessor), a->components, bounds);
 	return NT_OK;
 }
 
@@ -242,7 +242,7 @@ static bool is_crowded(const block *b, const nt_append_target *next)
 static nt_status move_away(nt_appending *job, const nt_append_target *moved)
 {
 	/* what was in the block was not sparse */
-	return add_elements(job, moved, false, nt_gltf_change_accessor(job->document, moved->accessor.index));
+	return add_elements(job, moved, false, nt_gltf_accessor_json(job->document, moved->accessor.index));
 }
 
 static nt_status block_bytes(nt_appending *job, const block *b, const unsigned char **bytes)
@@ -378,7 +378,7 @@ static nt_status append_to_targets(nt_appending *job)
 		status = settle_bounds(job, &job->targets[i], job->targets[i].accessor.index);
 	for (size_t i = 0; !status && (nt_appended_count(job) || job->decoded_too) && i < job->target_count; i++) {
 		const nt_append_target *target = &job->targets[i];
-		nt_json_value *json = nt_gltf_change_accessor(job->document, target->accessor.index);
+		nt_json_value *json = nt_gltf_accessor_json(job->document, target->accessor.index);
 		nt_json_set_uint64(job->json, nt_json_put(job->json, json, "count"),
 			job->vertices->new_count);
 		if (target->accessor.sparse_count && nt_appended_count(job))

@@ -135,7 +135,7 @@ nt_status nt_append_sparse(nt_appending *job, const nt_append_target *from)
 		return nt_fail_memory(job->error);
 	nt_gltf_store_indices(r.elements, r.count, width, numbers);
 
-	nt_json_value *sparse = nt_json_find(nt_gltf_change_accessor(job->document, a->index), "sparse");
+	nt_json_value *sparse = nt_json_find(nt_gltf_accessor_json(job->document, a->index), "sparse");
 	nt_json_set_uint64(job->json, nt_json_put(job->json, sparse, "count"), r.count);
 	if (type != a->sparse_index_type)
 		nt_json_set_uint64(job->json, nt_json_put(job->json, nt_json_find(sparse, "indices"),

@@ -83,7 +83,7 @@ void nt_gltf_draco_add_own(nt_gltf_recoding *r)
 /* All elements of the accessor are in the block. */
 static void set_count(nt_gltf *document, uint64_t accessor, size_t count)
 {
-	nt_json_value *json = nt_gltf_change_accessor(document, accessor);
+	nt_json_value *json = nt_gltf_accessor_json(document, accessor);
 	nt_json_remove(document->json, json, "sparse");
 	nt_json_set_uint64(document->json, nt_json_put(document->json, json, "count"), count);
 }
@@ -98,7 +98,7 @@ void nt_gltf_draco_describe(nt_gltf_recoding *r)
 		uint64_t accessor;
 		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &accessor)) {
 			set_count(r->document, accessor, block->point_count);
-			nt_gltf_state_bounds(json, nt_gltf_change_accessor(r->document, accessor),
+			nt_gltf_state_bounds(json, nt_gltf_accessor_json(r->document, accessor),
 				(size_t)a->components, block->bounds[i]);
 		} else {
 			nt_json_set_uint64(json, nt_json_put(json, attributes, r->names[i]),
@@ -115,7 +115,7 @@ void nt_gltf_draco_describe(nt_gltf_recoding *r)
 		r->extension = nt_gltf_draco_of(r->primitive); /* members have moved */
 	}
 	set_count(r->document, indices, block->face_count * 3);
-	nt_json_value *accessor = nt_gltf_change_accessor(r->document, indices);
+	nt_json_value *accessor = nt_gltf_accessor_json(r->document, indices);
 	nt_json_get_uint64(nt_json_find(accessor, "componentType"), &type);
 	const uint32_t wide = nt_gltf_index_type(block->point_count, (uint32_t)type);
 	if (wide != type)

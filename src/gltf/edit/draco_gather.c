@@ -229,7 +229,7 @@ static run detach(const nt_gltf_recoding *r, uint64_t index)
 	nt_gltf_view view = {0};
 	nt_gltf_get_accessor(r->document, index, "", &a, NULL);
 	nt_gltf_get_view(r->document, a.view, "", &view, NULL);
-	nt_json_value *json = nt_gltf_change_accessor(r->document, index);
+	nt_json_value *json = nt_gltf_accessor_json(r->document, index);
 	nt_json_remove(r->json, json, "bufferView");
 	nt_json_remove(r->json, json, "byteOffset");
 	const uint64_t begin = view.offset + a.offset;

@@ -94,7 +94,7 @@ static nt_status add_indices(nt_buffer_edits *edits, uint32_t buffer, const nt_g
 		return status;
 	if (!old)
 		*accessor = nt_gltf_new_accessor(json, view, new->type, "SCALAR", new->count, false);
-	nt_json_value *object = nt_gltf_change_accessor(edits->document, old ? old->index : *accessor);
+	nt_json_value *object = nt_gltf_accessor_json(edits->document, old ? old->index : *accessor);
 	if (old || offset)
 		nt_gltf_place_accessor(json, object, view, offset);
 	if (old) {
@@ -149,7 +149,7 @@ static nt_status replace_indices(nt_buffer_edits *edits, uint32_t first_alias, c
 		memcpy(padded + pad, new->bytes, new->size);
 		bytes = padded;
 	}
-	nt_json_value *accessor = nt_gltf_change_accessor(edits->document, old->index);
+	nt_json_value *accessor = nt_gltf_accessor_json(edits->document, old->index);
 	if (pad)
 		nt_json_set_uint64(json, nt_json_put(json, accessor, "byteOffset"), old->offset + pad);
 	if (new->type != old->component_type)

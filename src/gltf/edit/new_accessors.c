@@ -43,7 +43,7 @@ nt_status nt_gltf_add_attribute(nt_buffer_edits *edits, uint32_t buffer, const n
 		return status;
 	*accessor = nt_gltf_new_accessor(json, view, component_type, type, count, component_type != NT_GLTF_FLOAT);
 	if (offset)
-		nt_gltf_place_accessor(json, nt_gltf_change_accessor(edits->document, *accessor), view, offset);
+		nt_gltf_place_accessor(json, nt_gltf_accessor_json(edits->document, *accessor), view, offset);
 	return NT_OK;
 }
 
@@ -268,7 +268,7 @@ static void describe_target(const target_job *job, target_tangents *t, uint32_t 
 	if (is_new)
 		t->accessor = nt_gltf_new_accessor(json, NT_NONE, s->type, "VEC3", job->vertices->new_count,
 			s->type != NT_GLTF_FLOAT);
-	nt_json_value *accessor = nt_gltf_change_accessor(document, t->accessor);
+	nt_json_value *accessor = nt_gltf_accessor_json(document, t->accessor);
 	static const char *const gone[] = {"bufferView", "byteOffset", "sparse", "min", "max", "normalized"};
 	for (size_t k = 0; !is_new && k < sizeof gone / sizeof *gone; k++)
 		nt_json_remove(json, accessor, gone[k]);

@@ -140,7 +140,7 @@ static void set_type(nt_json *json, nt_json_value *accessor, nt_precision precis
 void nt_gltf_retype_tangents(nt_gltf *document, const nt_gltf_old_tangents *old, nt_precision precision)
 {
 	for (size_t i = 0; i < old->count; i++) {
-		nt_json_value *accessor = nt_gltf_change_accessor(document, old->accessors[i]);
+		nt_json_value *accessor = nt_gltf_accessor_json(document, old->accessors[i]);
 		uint64_t type = 0;
 		nt_json_get_uint64(nt_json_find(accessor, "componentType"), &type);
 		if (type != nt_precision_component_type(precision))
@@ -153,7 +153,7 @@ void nt_gltf_move_tangents(nt_gltf *document, const nt_gltf_old_tangents *old, n
 {
 	nt_json *json = document->json;
 	for (size_t i = 0; i < old->count; i++) {
-		nt_json_value *accessor = nt_gltf_change_accessor(document, old->accessors[i]);
+		nt_json_value *accessor = nt_gltf_accessor_json(document, old->accessors[i]);
 		nt_gltf_place_accessor(json, accessor, view, offset);
 		nt_json_set_uint64(json, nt_json_put(json, accessor, "count"), count);
 		set_type(json, accessor, precision);

@@ -198,7 +198,6 @@ static void move_accessors(const nt_buffer_edits *edits, const moved_view *moved
 	const size_t view_count = edits->view_count;
 	nt_json *json = edits->document->json;
 	nt_json_value *accessors = nt_gltf_root_member(edits->document, "accessors");
-	memset(edits->document->kept, 0, edits->document->kept_count * sizeof *edits->document->kept);
 	for (size_t i = 0; i < nt_json_count(accessors); i++) {
 		nt_json_value *accessor = nt_json_at(accessors, i);
 		move_in_view(json, accessor, moved, view_count);
@@ -412,7 +411,7 @@ static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 		if (status)
 			continue;
 		nt_component_bounds(elements, a.stride, (size_t)a.count, (int)a.component_type, a.components, bounds);
-		nt_gltf_state_bounds(document->json, nt_gltf_change_accessor(document, i), a.components, bounds);
+		nt_gltf_state_bounds(document->json, nt_gltf_accessor_json(document, i), a.components, bounds);
 	}
 	return status;
 }
