@@ -229,6 +229,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"KHR_animation_pointer.",
 		"Correct the input if it has a fault and programs that use tinygltf are to read it.",
 		"a glTF with a skin without inverseBindMatrices, --verify"),
+	ROW(MESH_NOT_READ, ERROR, "e--", "the geometry is faulty and was not judged",
+		"A conversion leaves a primitive that needs no tangents as it is, even one that cannot be read. The "
+		"detail says what is wrong with it; --check fails there.",
+		"Export the mesh again.",
+		"a primitive without a material whose indices go beyond its vertices, converted with --report"),
 
 	ROW(UV_MIRROR_SEAM, INFO, "i-i",
 		"texture coordinates are mirrored across a seam of {count} {edge|edges}",

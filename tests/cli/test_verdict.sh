@@ -350,6 +350,17 @@ for size in 0.001 4; do
 	is "$(value r.json '[(f["count"], len(f["spots"])) for f in r["files"][0]["findings"] if f["code"] == "TAN_DIRECTION_MISMATCH"]')" "[(6, 1)]"
 done
 
+scene "what a conversion keeps and cannot read is not ready to use"
+mapped
+gltf square.gltf faulty 'delete g.meshes[0].primitives[0].material; bytes[0].writeUInt8(250, at(g.meshes[0].primitives[0].indices, 1))'
+run --report=r.json faulty.gltf out.gltf
+exits 0
+says "warning: the geometry is faulty and was not judged"
+is "$(value r.json '(lambda f: (f["verdict"][:57], f["totals"]["errors"]))(r["files"][0])')" \
+	"('Export again: the geometry is faulty and was not judged: ', 1)"
+run -q --fail-on=error faulty.gltf out.gltf
+exits 6
+
 scene "a fold is a warning where a material needs tangents, an info where a glTF has none that does"
 mapped
 {
