@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 # web.sh BUILD: the page of make web in Chromium, with files that are dropped: see web.mjs. NT_HELMET names a DamagedHelmet.glb,
-# which gltfpack makes worse before it is dropped; without it that case is left out.
+# which is dropped as it is and as gltfpack makes it worse; without it both cases are left out.
 nmtan=$PWD/$1/nmtan
 t=$(mktemp -d)
 trap 'rm -rf "$t"' EXIT
@@ -14,6 +14,7 @@ head -c 900 draco.glb >damaged.glb
 truncate -s 2200000000 large.glb
 cp head.obj '<img src=x onerror=window.broken=1>.obj'
 cp head.obj -- "-'\"\$(x).obj"
+[ -z "${NT_HELMET-}" ] || cp "$NT_HELMET" Helmet.glb
 [ -z "${NT_HELMET-}" ] || node "$OLDPWD/build/node/node_modules/gltfpack/cli.js" -noq -gt -i "$NT_HELMET" -o DamagedHelmet.glb >/dev/null
 python3 "$OLDPWD/tests/support/images.py" write colour.tga 64 64 '(x * 4, y * 4, 128)'
 { echo "mtllib set.mtl"; cat head.obj; } | sed '0,/^f /s//usemtl skin\nf /' >set.obj

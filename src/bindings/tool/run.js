@@ -20,10 +20,7 @@ class Gathered {
 	pieces = [];
 	piece = [];
 	put = (byte) => {
-		if (byte === null)
-			return;
-		this.piece.push(byte & 255);
-		if (this.piece.length === 65536)
+		if (byte !== null && this.piece.push(byte & 255) === 65536)
 			this.flush();
 	};
 	flush() {
@@ -38,8 +35,12 @@ class Gathered {
 	}
 }
 
-export async function run(createNmtan, module, {argv, files = {}, stdin = new Uint8Array(0), folder = '', say}) {
-	const out = new Gathered(), lines = [];
+export async function run(createNmtan, module, {argv, files = {}, stdin = new Uint8Array(0), folder = '', say = () => {}}) {
+	const out = new Gathered(), err = new Gathered(), line = [], text = (bytes) => new TextDecoder().decode(Uint8Array.from(bytes));
+	const hear = (byte) => {
+		err.put(byte);
+		byte === 10 ? say(text(line.splice(0))) : line.push(byte);
+	};
 	let at = 0;
 	const {FS, callMain} = await createNmtan({
 		thisProgram: 'nmtan',
@@ -47,8 +48,7 @@ export async function run(createNmtan, module, {argv, files = {}, stdin = new Ui
 			WebAssembly.instantiate(module, imports).then((instance) => done(instance, module));
 			return {};
 		},
-		preRun: ({FS}) => FS.init(() => (at < stdin.length ? stdin[at++] : null), out.put),
-		printErr: say ?? ((line) => lines.push(line + '\n')),
+		preRun: ({FS}) => FS.init(() => (at < stdin.length ? stdin[at++] : null), out.put, hear),
 		quit: (status, reason) => {
 			throw reason;
 		},
@@ -63,9 +63,8 @@ export async function run(createNmtan, module, {argv, files = {}, stdin = new Ui
 			throw new Error(`“${name}” cannot be beside the other files.`);
 		}
 	}
-	FS.mkdirTree('/out');
-	FS.mkdirTree(`/in/${folder}`);
+	['/out', `/in/${folder}`].forEach((path) => FS.mkdirTree(path));
 	FS.chdir(`/in/${folder}`);
 	const status = callMain(argv);
-	return {status, files: Object.fromEntries([...written(FS, '/in'), ...written(FS, '/out')]), stdout: out.bytes, stderr: lines.join('')};
+	return {status, files: Object.fromEntries([...written(FS, '/in'), ...written(FS, '/out')]), stdout: out.bytes, stderr: text(err.bytes)};
 }
