@@ -166,10 +166,8 @@ int ioctl(int fd, unsigned long request, ...)
 	va_start(arguments, request);
 	const int from = va_arg(arguments, int);
 	va_end(arguments);
-	if (!getenv("NT_CALLS_CLONE"))
-		return REAL(ioctl)(fd, request, from);
-	const off_t size = lseek(from, 0, SEEK_END);
-	return enter("ioctl") && copy_file_range(from, &(off_t){0}, fd, &(off_t){0}, (size_t)size, 0) == size ? 0 : -1;
+	const off_t size = getenv("NT_CALLS_CLONE") && enter("ioctl") ? lseek(from, 0, SEEK_END) : -1;
+	return size >= 0 && copy_file_range(from, &(off_t){0}, fd, &(off_t){0}, (size_t)size, 0) == size ? 0 : -1;
 }
 
 int open(const char *path, int flags, ...)

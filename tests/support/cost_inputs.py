@@ -146,7 +146,7 @@ def grid(side, windows):
     return arrays
 
 
-def glb(count, out, side, windows, ranges=False, name=''):
+def glb(count, out, side, windows, ranges=False, name='', more={}):
     arrays, kind, width_bytes = grid(side, windows), *((5123, 2) if windows else (5125, 4))
     views, offset = [], 0
     for array in arrays:
@@ -167,7 +167,7 @@ def glb(count, out, side, windows, ranges=False, name=''):
     primitives = [{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'material': 0,
                    'indices': 3 + i if windows or ranges else 3} for i in range(count)]
     write_glb(out, {'meshes': [{'name': name, 'primitives': primitives}], 'materials': [{'normalTexture': {'index': 0}}],
-                    'accessors': accessors, 'bufferViews': views}, arrays)
+                    'accessors': accessors, 'bufferViews': views} | more, arrays)
 
 
 def png(side, color, bits, row):
@@ -200,16 +200,10 @@ def scene(count, out, side):
 
 
 def turned(count, out):
-    arrays = grid(1, False)
     image = {'uri': 'data:image/png;base64,' + base64.b64encode(png(1, 2, 8, b'\x80\xa0\xf0')).decode()}
-    accessors = [{'bufferView': k, 'componentType': 5126 if k < 3 else 5125, 'count': 4 if k < 3 else 6,
-                  'type': ('VEC3', 'VEC3', 'VEC2', 'SCALAR')[k]} for k in range(4)]
-    accessors[0] |= {'min': [0, 0, 0], 'max': [1, 1, 0]}
-    primitive = {'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'indices': 3, 'material': 0}
-    views = [{'buffer': 0, 'byteOffset': sum(map(len, arrays[:k])), 'byteLength': len(arrays[k])} for k in range(4)]
-    write_glb(out, {'meshes': [{'primitives': [primitive]}], 'accessors': accessors, 'bufferViews': views,
-                    'materials': [{'normalTexture': {'index': i}, 'emissiveTexture': {'index': i}} for i in range(count)],
-                    'textures': [{'source': i} for i in range(count)], 'images': [image] * count}, arrays)
+    glb(1, out, 1, False, more={
+        'materials': [{'normalTexture': {'index': i}, 'emissiveTexture': {'index': i}} for i in range(count)],
+        'textures': [{'source': i} for i in range(count)], 'images': [image] * count})
 
 
 def write_glb(out, document, chunks):

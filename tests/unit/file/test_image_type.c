@@ -9,20 +9,18 @@ static nt_image_type type_of(const char *bytes, size_t size)
 
 TEST(type_is_told_by_signature)
 {
-	assert_int_equal(type_of("\x89PNG\r\n\x1a\n", 8), NT_IMAGE_PNG);
-	assert_int_equal(type_of("\x89PNG\r\n\x1a\n", 7), NT_IMAGE_OTHER);
-	assert_int_equal(type_of("\xff\xd8\xff\xe0", 4), NT_IMAGE_JPEG);
-	assert_int_equal(type_of("\xabKTX 20\xbb\r\n\x1a\n", 12), NT_IMAGE_KTX2);
-	assert_int_equal(type_of("\xabKTX 11\xbb\r\n\x1a\n", 12), NT_IMAGE_OTHER);
-	assert_int_equal(type_of("RIFF\0\0\0\0WEBP", 12), NT_IMAGE_WEBP);
-	assert_int_equal(type_of("RIFF\0\0\0\0WAVE", 12), NT_IMAGE_OTHER);
-	assert_int_equal(type_of("BM\0\0", 4), NT_IMAGE_BMP);
-	assert_int_equal(type_of("II*\0", 4), NT_IMAGE_TIFF);
-	assert_int_equal(type_of("MM\0*", 4), NT_IMAGE_TIFF);
-	assert_int_equal(type_of("#?RADIANCE\n", 11), NT_IMAGE_HDR);
-	assert_int_equal(type_of("8BPS", 4), NT_IMAGE_PSD);
-	assert_int_equal(type_of("\x76\x2f\x31\x01", 4), NT_IMAGE_EXR);
-	assert_int_equal(type_of("", 0), NT_IMAGE_OTHER);
+	static const struct {
+		const char *bytes;
+		size_t size;
+		nt_image_type type;
+	} rows[] = {{"\x89PNG\r\n\x1a\n", 8, NT_IMAGE_PNG}, {"\x89PNG\r\n\x1a\n", 7, NT_IMAGE_OTHER},
+		{"\xff\xd8\xff\xe0", 4, NT_IMAGE_JPEG}, {"\xabKTX 20\xbb\r\n\x1a\n", 12, NT_IMAGE_KTX2},
+		{"\xabKTX 11\xbb\r\n\x1a\n", 12, NT_IMAGE_OTHER}, {"RIFF\0\0\0\0WEBP", 12, NT_IMAGE_WEBP},
+		{"RIFF\0\0\0\0WAVE", 12, NT_IMAGE_OTHER}, {"BM\0\0", 4, NT_IMAGE_BMP}, {"II*\0", 4, NT_IMAGE_TIFF},
+		{"MM\0*", 4, NT_IMAGE_TIFF}, {"#?RADIANCE\n", 11, NT_IMAGE_HDR}, {"8BPS", 4, NT_IMAGE_PSD},
+		{"\x76\x2f\x31\x01", 4, NT_IMAGE_EXR}, {"", 0, NT_IMAGE_OTHER}};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+		assert_int_equal(type_of(rows[i].bytes, rows[i].size), rows[i].type);
 }
 
 TEST(type_of_a_tga_is_told_by_its_header)
@@ -41,17 +39,15 @@ TEST(type_of_a_tga_is_told_by_its_header)
 
 TEST(type_of_a_name_is_its_ending_in_any_case)
 {
-	assert_int_equal(nt_image_type_of_name("a.b/c.PNG"), NT_IMAGE_PNG);
-	assert_int_equal(nt_image_type_of_name("c.jpg"), NT_IMAGE_JPEG);
-	assert_int_equal(nt_image_type_of_name("c.Jpeg"), NT_IMAGE_JPEG);
-	assert_int_equal(nt_image_type_of_name("c.ktx2"), NT_IMAGE_KTX2);
-	assert_int_equal(nt_image_type_of_name("c.ktx"), NT_IMAGE_OTHER);
-	assert_int_equal(nt_image_type_of_name("c.webp"), NT_IMAGE_WEBP);
-	assert_int_equal(nt_image_type_of_name("c.tga"), NT_IMAGE_TGA);
-	assert_int_equal(nt_image_type_of_name("c.TIF"), NT_IMAGE_TIFF);
-	assert_int_equal(nt_image_type_of_name("c.xcf"), NT_IMAGE_OTHER);
-	assert_int_equal(nt_image_type_of_name("png"), NT_IMAGE_OTHER);
-	assert_int_equal(nt_image_type_of_name("c."), NT_IMAGE_OTHER);
+	static const struct {
+		const char *name;
+		nt_image_type type;
+	} rows[] = {{"a.b/c.PNG", NT_IMAGE_PNG}, {"c.jpg", NT_IMAGE_JPEG}, {"c.Jpeg", NT_IMAGE_JPEG},
+		{"c.ktx2", NT_IMAGE_KTX2}, {"c.ktx", NT_IMAGE_OTHER}, {"c.webp", NT_IMAGE_WEBP},
+		{"c.tga", NT_IMAGE_TGA}, {"c.TIF", NT_IMAGE_TIFF}, {"c.xcf", NT_IMAGE_OTHER},
+		{"png", NT_IMAGE_OTHER}, {"c.", NT_IMAGE_OTHER}};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+		assert_int_equal(nt_image_type_of_name(rows[i].name), rows[i].type);
 }
 
 TEST(core_types_need_no_extension)
