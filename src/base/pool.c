@@ -291,18 +291,13 @@ static void post(region *r)
 	make_threads(lacking);
 }
 
-static void unlink_region(const region *r)
+static void close_region(region *r)
 {
+	pthread_mutex_lock(&pool.lock);
 	region **link = &pool.newest;
 	while (*link != r)
 		link = &(*link)->older;
 	*link = r->older;
-}
-
-static void close_region(region *r)
-{
-	pthread_mutex_lock(&pool.lock);
-	unlink_region(r);
 	pthread_mutex_unlock(&pool.lock);
 	for (unsigned i = 0; i < MOST_LOOKS && nt_atomic_load(&r->helpers, SEQ_CST) != 0; i++)
 		nt_give_way();

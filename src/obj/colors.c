@@ -19,15 +19,6 @@ static const uint32_t white = 0xffffff;
 
 /* ---- reading ---- */
 
-/* One colour; false: these are no 8 digits. */
-static bool read_entry(const char *p, uint32_t *color)
-{
-	char digits[MRGB_DIGITS + 1] = "";
-	memcpy(digits, p, MRGB_DIGITS);
-	*color = (uint32_t)strtoul(digits, NULL, 16) & white;
-	return strspn(digits, "0123456789ABCDEFabcdef") == MRGB_DIGITS;
-}
-
 nt_status obj_read_mrgb(obj_reader *r)
 {
 	obj_chunk *chunk = r->chunk;
@@ -42,11 +33,11 @@ nt_status obj_read_mrgb(obj_reader *r)
 	while (end > p && is_blank(end[-1]))
 		end--;
 	for (; p < end; p += MRGB_DIGITS) {
-		uint32_t color;
-		if (end - p < MRGB_DIGITS || !read_entry(p, &color)) {
-			color = white;
-			sound = false;
-		}
+		char digits[MRGB_DIGITS + 1] = "";
+		memcpy(digits, p, end - p < MRGB_DIGITS ? (size_t)(end - p) : MRGB_DIGITS);
+		const bool whole = strspn(digits, "0123456789ABCDEFabcdef") == MRGB_DIGITS;
+		const uint32_t color = whole ? (uint32_t)strtoul(digits, NULL, 16) & white : white;
+		sound &= whole;
 		if (!obj_reserve(chunk, (void **)&chunk->mrgb, &chunk->mrgb_capacity, chunk->mrgb_count, sizeof color))
 			return obj_fail_memory(r);
 		chunk->mrgb[chunk->mrgb_count++] = color;
@@ -90,15 +81,6 @@ static void check_count(painter *p)
 	doubt(p->file, p->line, 1, what);
 }
 
-static uint32_t next_color(painter *p)
-{
-	while (p->color == p->file->chunks[p->chunk].mrgb_count) {
-		p->chunk++;
-		p->color = 0;
-	}
-	return p->file->chunks[p->chunk].mrgb[p->color++];
-}
-
 /* The colours of a chunk's vertices, white before any has one; NULL: out of memory. */
 static float *colors_of(obj_chunk *chunk)
 {
@@ -118,7 +100,10 @@ static nt_status end_block(painter *p, nt_error *error)
 		return NT_OK;
 	check_count(p);
 	for (size_t i = 0; i < p->count; i++) {
-		const uint32_t color = next_color(p), number = (uint32_t)(p->vertex - vertices + i);
+		for (; p->color == p->file->chunks[p->chunk].mrgb_count; p->chunk++)
+			p->color = 0;
+		const uint32_t color = p->file->chunks[p->chunk].mrgb[p->color++];
+		const uint32_t number = (uint32_t)(p->vertex - vertices + i);
 		if (i >= vertices || color == white)
 			continue;
 		p->file->has_colors = true;

@@ -90,16 +90,6 @@ static nt_status read_corner(obj_reader *r, obj_corner *corner)
 	return status;
 }
 
-static nt_status store_polygon(obj_reader *r, size_t size)
-{
-	obj_chunk *chunk = r->chunk;
-	if (!nt_grow((void **)&chunk->polygons, &chunk->polygon_capacity, chunk->polygon_count + 1,
-			sizeof *chunk->polygons))
-		return obj_fail_memory(r);
-	chunk->polygons[chunk->polygon_count++] = (obj_polygon){chunk->face_count, size, r->statement_line};
-	return NT_OK;
-}
-
 /* The number of a corner among the distinct ones of this object that were seen lately; where it is not
  * there it takes the place of `next`, the next free number. */
 static inline uint32_t number_corner(const obj_reader *r, const obj_corner *distinct, size_t next,
@@ -172,9 +162,10 @@ static nt_status end_face(obj_reader *r, size_t first_corner, size_t first_disti
 	if (!obj_reserve(chunk, (void **)&chunk->face_sizes, &chunk->face_capacity, chunk->face_count, 1))
 		return obj_fail_memory(r);
 	if (size >= OBJ_POLYGON) {
-		const nt_status status = store_polygon(r, size);
-		if (status)
-			return status;
+		if (!nt_grow((void **)&chunk->polygons, &chunk->polygon_capacity, chunk->polygon_count + 1,
+				sizeof *chunk->polygons))
+			return obj_fail_memory(r);
+		chunk->polygons[chunk->polygon_count++] = (obj_polygon){chunk->face_count, size, r->statement_line};
 	}
 	chunk->face_sizes[chunk->face_count++] = (uint8_t)(size < OBJ_POLYGON ? size : OBJ_POLYGON);
 	return NT_OK;

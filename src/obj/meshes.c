@@ -122,16 +122,6 @@ static void set_vertices(const builder *b, nt_mesh *mesh, size_t first)
 		b->lacks[i] &= (uint8_t)partly;
 }
 
-static bool normals_lack(const nt_mesh *mesh)
-{
-	if (!mesh->normals)
-		return true;
-	for (size_t i = 0; mesh->vertex_lacks && i < mesh->vertex_count; i++)
-		if (mesh->vertex_lacks[i] & NT_LACKS_NORMAL)
-			return true;
-	return false;
-}
-
 /* ---- faces ---- */
 
 /* What a mesh's faces are, counted. */
@@ -309,7 +299,10 @@ static nt_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 	mesh->primitives = nt_arena_alloc(arena, spans, sizeof *mesh->primitives);
 	if (spans > 1)
 		mesh->face_primitive = nt_arena_alloc(arena, n.faces, sizeof *mesh->face_primitive);
-	if (file->uses_smoothing && normals_lack(mesh)) {
+	bool lacking = !mesh->normals;
+	for (size_t i = 0; file->uses_smoothing && mesh->vertex_lacks && i < mesh->vertex_count && !lacking; i++)
+		lacking = mesh->vertex_lacks[i] & NT_LACKS_NORMAL;
+	if (file->uses_smoothing && lacking) {
 		mesh->face_smoothing = nt_arena_alloc(arena, n.faces, sizeof *mesh->face_smoothing);
 		if (!mesh->face_smoothing)
 			return nt_fail_memory(b->error);

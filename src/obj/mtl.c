@@ -277,16 +277,6 @@ static nt_status read_statement(reader *r)
 	return NT_OK;
 }
 
-/* "# Blender 3.2.1 MTL File: ...": see mtl_settle.c. Older ones have no number there. */
-static void read_comment(reader *r)
-{
-	static const char name[] = "Blender ";
-	const size_t length = sizeof name - 1;
-	if ((size_t)(r->end - r->text) > length && strncmp(r->text, name, length) == 0 && r->text[length] >= '0' &&
-		r->text[length] <= '9')
-		r->said->blender = true;
-}
-
 nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *bytes, size_t size,
 	nt_mtl *mtl, nt_error *error)
 {
@@ -317,8 +307,10 @@ nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *b
 		const nt_status status = r.word_length && !comment ? read_statement(&r) : NT_OK;
 		if (status)
 			return status;
-		if (comment)
-			read_comment(&r);
+		/* "# Blender 3.2.1 MTL File: ...": see mtl_settle.c. Older ones have no number there. */
+		if (comment && r.end - r.text > 8 && memcmp(r.text, "Blender ", 8) == 0 && r.text[8] >= '0' &&
+			r.text[8] <= '9')
+			r.said->blender = true;
 		p = line_end + 1;
 		if (line_end < end && *line_end == '\r' && p < end && *p == '\n')
 			p++;

@@ -20,13 +20,6 @@ typedef struct request {
 	nt_error *error;
 } request;
 
-static void report_missing(const request *q, const char *name, const char *reason)
-{
-	const nt_place place = nt_line_place(q->scene->path, q->line);
-	nt_finding_add(&q->scene->findings, NT_CODE_MTL_MISSING, &place, 1, "%.120s: %.120s", name, reason);
-	q->mtl->incomplete = true;
-}
-
 /* Why a file name may not be followed, NULL where it may. */
 static const char *outside_reason(const char *name)
 {
@@ -100,11 +93,13 @@ static nt_status read_library(const request *q, const char *text, size_t length,
 		*q->error = failure;
 	if (status)
 		return status;
-	if (reason) {
-		if (!quiet)
-			report_missing(q, name, reason);
-		return NT_OK;
+	if (reason && !quiet) {
+		const nt_place place = nt_line_place(q->scene->path, q->line);
+		nt_finding_add(&q->scene->findings, NT_CODE_MTL_MISSING, &place, 1, "%.120s: %.120s", name, reason);
+		q->mtl->incomplete = true;
 	}
+	if (reason)
+		return NT_OK;
 	*found = true;
 	status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
 	nt_file_close(&file);

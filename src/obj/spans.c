@@ -91,16 +91,6 @@ static bool read_event(state *s, const obj_chunk *chunk, const obj_event *event)
 	return true;
 }
 
-static bool read_stretches(state *s)
-{
-	obj_file *file = s->file;
-	for (size_t c = 0; c < file->chunk_count; c++)
-		for (size_t i = 0; i < file->chunks[c].event_count; i++)
-			if (!read_event(s, &file->chunks[c], &file->chunks[c].events[i]))
-				return false;
-	return end_stretch(s, file->face_count, file->corner_count);
-}
-
 /* ---- materials ---- */
 
 /* Reads every library once. */
@@ -274,7 +264,12 @@ nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_err
 	nt_mtl mtl = {0};
 	if (file->face_count == 0)
 		return fail_empty(file, error);
-	nt_status status = read_stretches(&s) ? NT_OK : nt_fail_memory(error);
+	bool read = true;
+	for (size_t c = 0; c < file->chunk_count; c++)
+		for (size_t i = 0; i < file->chunks[c].event_count && read; i++)
+			read = read_event(&s, &file->chunks[c], &file->chunks[c].events[i]);
+	read = read && end_stretch(&s, file->face_count, file->corner_count);
+	nt_status status = read ? NT_OK : nt_fail_memory(error);
 	if (!status)
 		status = read_libraries(&s, options, &mtl);
 	if (!status)

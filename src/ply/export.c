@@ -44,28 +44,11 @@ static size_t mesh_vertex(const nt_mesh *mesh, size_t vertex)
 	return vertex < mesh->vertex_count ? vertex : mesh->split.sources[vertex - mesh->vertex_count];
 }
 
-/* The tangents of the vertices: computed, else authored, else NULL. */
-static const float *tangent_of(const nt_mesh *mesh, size_t vertex)
-{
-	if (mesh->split.vertex_tangents)
-		return mesh->split.vertex_tangents + 4 * vertex;
-	return mesh->tangents ? mesh->tangents + 4 * mesh_vertex(mesh, vertex) : NULL;
-}
-
 /* Alpha as a byte divided by 255; -1: it is none. */
 static int alpha_byte(float alpha)
 {
 	const float scaled = alpha * 255.0f;
 	return scaled >= 0.0f && scaled <= 255.5f && rintf(scaled) / 255.0f == alpha ? (int)rintf(scaled) : -1;
-}
-
-/* Whether all colours come from sRGB bytes. */
-static bool are_bytes(const nt_mesh *mesh, const nt_srgb *srgb)
-{
-	bool bytes = true;
-	for (size_t i = 0; i < 4 * mesh->vertex_count && bytes; i++)
-		bytes = (i % 4 == 3 ? alpha_byte(mesh->colors[i]) : nt_srgb_byte(srgb, mesh->colors[i])) >= 0;
-	return bytes;
 }
 
 static layout find_layout(const nt_scene *scene, bool bitangents)
@@ -80,7 +63,10 @@ static layout find_layout(const nt_scene *scene, bool bitangents)
 		l.texcoords |= mesh->texcoords != NULL;
 		l.tangents |= mesh->split.vertex_tangents || mesh->tangents;
 		l.colors |= mesh->colors != NULL;
-		l.byte_colors = l.byte_colors && (!mesh->colors || are_bytes(mesh, &l.srgb));
+		/* whether all of them come from sRGB bytes */
+		for (size_t k = 0; mesh->colors && k < 4 * mesh->vertex_count && l.byte_colors; k++)
+			l.byte_colors = (k % 4 == 3 ? alpha_byte(mesh->colors[k])
+				: nt_srgb_byte(&l.srgb, mesh->colors[k])) >= 0;
 		l.vertex_count += vertices_of(mesh);
 		l.face_count += mesh->face_count;
 	}
@@ -131,14 +117,6 @@ static nt_dvec3 combine(const nt_dvec3 *columns, const float *v)
 {
 	return nt_dvec3_add(nt_dvec3_add(nt_dvec3_scale(v[0], columns[0]), nt_dvec3_scale(v[1], columns[1])),
 		nt_dvec3_scale(v[2], columns[2]));
-}
-
-static void place_position(const placement *p, const float *from, float *to)
-{
-	if (p->identity)
-		memcpy(to, from, 3 * sizeof *to);
-	else
-		nt_dvec3_store(nt_dvec3_add(combine(p->columns, from), p->columns[3]), to);
 }
 
 /* A matrix that flattens leaves some normals without a direction: they stay what they are. */
@@ -198,7 +176,10 @@ static nt_status put_vertex(ply_output *out, const layout *l, const placement *p
 {
 	const size_t v = mesh_vertex(mesh, vertex);
 	float position[3], normal[3] = {0}, uv[2] = {0}, tangent[4] = {0}, bitangent[3];
-	place_position(p, mesh->positions + 3 * v, position);
+	if (p->identity)
+		memcpy(position, mesh->positions + 3 * v, sizeof position);
+	else
+		nt_dvec3_store(nt_dvec3_add(combine(p->columns, mesh->positions + 3 * v), p->columns[3]), position);
 	if (!are_finite(position, 3))
 		return fail_not_finite(mesh, "position", v, are_finite(mesh->positions + 3 * v, 3), error);
 	ply_put_floats(out, position, 3);
@@ -220,7 +201,8 @@ static nt_status put_vertex(ply_output *out, const layout *l, const placement *p
 		return fail_not_finite(mesh, "texture coordinate", v, false, error);
 	if (l->texcoords)
 		ply_put_floats(out, uv, 2);
-	const float *own = tangent_of(mesh, vertex);
+	const float *own = mesh->split.vertex_tangents ? mesh->split.vertex_tangents + 4 * vertex
+		: mesh->tangents ? mesh->tangents + 4 * v : NULL;
 	if (own)
 		place_tangent(p, mesh->normals ? normal : NULL, own, tangent);
 	if (l->tangents)

@@ -524,17 +524,6 @@ static nt_status write_body(plan *p)
 	return status;
 }
 
-static void report_cuts(const plan *p)
-{
-	const nt_mesh *mesh = p->mesh;
-	if (p->n.cut_polygons > 0)
-		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, nt_mesh_place(mesh, &(nt_place){0}),
-			p->n.cut_polygons, NULL);
-	if (replaces_strips(p))
-		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, nt_mesh_place(mesh, &(nt_place){0}),
-			p->source->strips->count, "triangle strips");
-}
-
 static nt_status write_changed(plan *p, bool bitangents)
 {
 	const nt_status status = ply_number_vertices(&p->n, p->mesh, p->source)
@@ -545,7 +534,12 @@ static nt_status write_changed(plan *p, bool bitangents)
 	const ply_element *faces = p->source->face ? p->source->face : p->source->strips;
 	if (faces)
 		plan_index_type(p, faces);
-	report_cuts(p);
+	if (p->n.cut_polygons > 0)
+		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, nt_mesh_place(p->mesh, &(nt_place){0}),
+			p->n.cut_polygons, NULL);
+	if (replaces_strips(p))
+		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, nt_mesh_place(p->mesh, &(nt_place){0}),
+			p->source->strips->count, "triangle strips");
 	write_header(p);
 	return write_body(p);
 }

@@ -74,16 +74,6 @@ static bool is_too_small(struct jpeg_decompress_struct *jpeg, size_t size)
 				  blocks / 8 > size;
 }
 
-/* Of a half, a quarter and an eighth the least whose longer side is `least` or more. */
-static void reduce(struct jpeg_decompress_struct *jpeg, uint32_t least)
-{
-	for (jpeg->scale_denom = 8; jpeg->scale_denom > 1; jpeg->scale_denom /= 2) {
-		jpeg_calc_output_dimensions(jpeg);
-		if (jpeg->output_width >= least || jpeg->output_height >= least)
-			return;
-	}
-}
-
 static void decode(decoder *d, const unsigned char *bytes, size_t size, uint32_t rows, uint32_t least)
 {
 	struct jpeg_decompress_struct *jpeg = &d->jpeg;
@@ -100,8 +90,12 @@ static void decode(decoder *d, const unsigned char *bytes, size_t size, uint32_t
 	}
 	jpeg->out_color_space = jpeg->num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
 	jpeg->dct_method = JDCT_ISLOW;
-	reduce(jpeg, least);
-	jpeg_calc_output_dimensions(jpeg);
+	/* of a half, a quarter and an eighth the least whose longer side is `least` or more */
+	jpeg->scale_denom = 16;
+	do {
+		jpeg->scale_denom /= 2;
+		jpeg_calc_output_dimensions(jpeg);
+	} while (jpeg->scale_denom > 1 && jpeg->output_width < least && jpeg->output_height < least);
 	const uint32_t width = jpeg->output_width, height = jpeg->output_height;
 	const bool all = rows >= height;
 	const unsigned channels = jpeg->num_components == 1 ? 1 : 3;

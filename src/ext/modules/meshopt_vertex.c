@@ -143,14 +143,6 @@ static void turn_words(const unsigned char *deltas, size_t count, size_t stride,
 	}
 }
 
-static bool are_modes(const unsigned char *modes, size_t count)
-{
-	bool known = true;
-	for (size_t i = 0; known && i < count; i++)
-		known = modes[i] <= 1 || (modes[i] & 15) == 2;
-	return known;
-}
-
 /* ---- the whole ---- */
 
 static bool decode_block(cursor *from, size_t count, size_t stride, const unsigned char *modes, unsigned char *last,
@@ -183,7 +175,9 @@ bool nt_meshopt_decode_vertex_1(unsigned char *bytes, size_t count, size_t strid
 	unsigned char last[MAX_STRIDE];
 	memcpy(last, packed + size - tail, stride);
 	cursor from = {packed + 1, packed + size - padded};
-	bool sound = are_modes(modes, stride / 4);
+	bool sound = true;
+	for (size_t i = 0; sound && i < stride / 4; i++)
+		sound = modes[i] <= 1 || (modes[i] & 15) == 2;
 	for (size_t i = 0; sound && i < count; i += most)
 		sound = decode_block(
 			&from, count - i < most ? count - i : most, stride, modes, last, bytes + i * stride);
