@@ -122,15 +122,6 @@ nt_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error 
 /* Appends a range of an input. */
 nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size, nt_error *error);
 
-/*
- * Reserves the next `size` bytes of a file: they are written to *part, while another thread writes what comes behind
- * them to the sink. If the file is not new, or has a digest, *part is NULL, and all has to be written in order.
- */
-nt_status nt_sink_reserve_range(nt_sink *sink, uint64_t size, nt_sink **part, nt_error *error);
-
-/* Ends a part, of which all bytes were written or some in vain. */
-nt_status nt_sink_end_part(nt_sink *part, nt_error *error);
-
 /* Flushes the file of the set that will have the name `path` and says where it is for the time being; NULL when
  * the set has no such file or writes it through. */
 nt_status nt_output_written(nt_output *output, const char *path, const char **temporary,

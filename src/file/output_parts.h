@@ -36,8 +36,6 @@ struct nt_sink {
 	nt_role role;
 	bool shared_fd;           /* standard output: not ours to close */
 	bool dry;                 /* counts bytes and drops them */
-	bool is_part;             /* of the file of another sink, which has path and fd: nt_sink_reserve_range() */
-	off_t at;                 /* of a part: where in the file its next bytes go */
 	bool in_place;            /* the main file: it is the input's */
 	bool placed;              /* its temporary file has a name */
 	uint64_t size;

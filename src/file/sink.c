@@ -62,12 +62,9 @@ static nt_status write_parts(nt_sink *sink, struct iovec parts[2], nt_error *err
 {
 	while (parts[0].iov_len || parts[1].iov_len) {
 		const struct iovec *const first = parts[0].iov_len ? parts : parts + 1;
-		const int left = parts[0].iov_len ? 2 : 1;
-		const ssize_t count = sink->is_part
-			? pwritev(sink->fd, first, left, sink->at) : writev(sink->fd, first, left);
+		const ssize_t count = writev(sink->fd, first, parts[0].iov_len ? 2 : 1);
 		if (count >= 0) {
 			advance(parts, (size_t)count);
-			sink->at += count;
 		} else if (errno == EAGAIN) {
 			poll(&(struct pollfd){.fd = sink->fd, .events = POLLOUT}, 1, -1);
 		} else if (errno == EFAULT && nt_watch_touch(parts[1].iov_base, parts[1].iov_len)) {
@@ -142,39 +139,6 @@ nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t
 		status = nt_sink_write(sink, from->data + offset, part, error);
 		nt_file_release(from, offset, part);
 	}
-	return status;
-}
-
-nt_status nt_sink_reserve_range(nt_sink *sink, uint64_t size, nt_sink **part, nt_error *error)
-{
-	*part = NULL;
-	if (!sink->temporary || sink->digest || size > INT64_MAX - sink->size)
-		return NT_OK;
-	const nt_status status = nt_sink_flush(sink, error);
-	if (status)
-		return status;
-	if (lseek(sink->fd, (off_t)size, SEEK_CUR) < 0)
-		return nt_sink_fail(error, sink->path, errno);
-	nt_sink *added = nt_calloc(1, sizeof *added);
-	unsigned char *buffer = nt_alloc(NT_SINK_BUFFER_BYTES, 1);
-	if (!added || !buffer) {
-		free(added);
-		free(buffer);
-		return nt_fail_memory(error);
-	}
-	*added = (nt_sink){.fd = sink->fd, .shared_fd = true, .is_part = true, .at = (off_t)sink->size,
-		.path = sink->path,
-		.buffer = buffer};
-	*part = added;
-	sink->size += size;
-	return NT_OK;
-}
-
-nt_status nt_sink_end_part(nt_sink *part, nt_error *error)
-{
-	const nt_status status = nt_sink_flush(part, error);
-	free(part->buffer);
-	free(part);
 	return status;
 }
 

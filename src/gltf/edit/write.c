@@ -47,9 +47,6 @@ typedef enum destination {
 	TO_SIDECAR /* a file beside the output */
 } destination;
 
-/* From which length on the JSON of a .glb is made while another thread writes what comes behind it. */
-enum { APART_BYTES = 256 * 1024 };
-
 /* Zeros that a .glb may begin with because the source's first buffer has no data. */
 enum { EMPTY_BYTES = 1 << 24 };
 
@@ -325,70 +322,28 @@ static uint64_t other_bytes(const nt_gltf *document)
 	return sum;
 }
 
-/* What a .glb consists of. */
-typedef struct glb_parts {
-	const writing *c;
-	const nt_buffer *text;
-	uint64_t length; /* of the JSON */
-	bool bin, raw;   /* the BIN chunk is buffer 0, or no buffer, and stays what it is */
-	uint64_t size;   /* of the BIN chunk */
-	nt_sink *json, *rest;
-	nt_status statuses[2]; /* of both */
-	nt_error errors[2];
-} glb_parts;
-
-static nt_status write_rest(const glb_parts *p, nt_error *error)
-{
-	const nt_gltf *document = p->c->document;
-	nt_status status = nt_glb_end_json(p->rest, p->length, p->bin || p->raw, p->size, error);
-	if (!status && p->bin)
-		status = nt_relocated_write(&p->c->buffers, 0, &p->c->input, p->rest, error);
-	if (!status && p->raw)
-		status = nt_sink_copy(p->rest, &p->c->input, document->glb.bin.offset, document->glb.bin.size, error);
-	if (!status && (p->bin || p->raw))
-		status = nt_glb_end_bin(p->rest, p->size, error);
-	for (size_t i = 0; !status && document->is_glb && i < document->glb.other_count; i++) {
-		const nt_glb_chunk *chunk = &document->glb.others[i];
-		status = nt_glb_write_chunk(p->rest, chunk->type, document->bytes + chunk->offset, chunk->size, error);
-	}
-	return status;
-}
-
-static void write_part(void *context, size_t item, unsigned thread)
-{
-	(void)thread;
-	glb_parts *p = context;
-	nt_error *const error = &p->errors[item];
-	p->statuses[item] = item == 0 ? write_rest(p, error) : nt_data_uris_write(&p->c->uris, p->text, p->json, error);
-}
-
-/* The text is made while another thread writes what is behind it. */
-static nt_status write_apart(glb_parts *p)
-{
-	nt_parallel_items(nt_thread_count(p->c->options->threads), 2, write_part, p);
-	const nt_status ended = nt_sink_end_part(p->json, p->statuses[1] ? &(nt_error){0} : &p->errors[1]);
-	if (!p->statuses[1])
-		p->statuses[1] = ended;
-	const unsigned failed = p->statuses[1] ? 1 : 0;
-	if (p->statuses[failed] && p->c->error)
-		*p->c->error = p->errors[failed];
-	return p->statuses[failed];
-}
-
+/* bin: the BIN chunk is buffer 0. */
 static nt_status write_glb(const writing *c, const nt_buffer *text, uint64_t length, bool bin, nt_sink *sink)
 {
 	const nt_gltf *document = c->document;
-	const bool raw = !bin && document->is_glb && document->glb.has_bin;
-	glb_parts p = {.c = c, .text = text, .length = length, .bin = bin, .raw = raw, .rest = sink,
-		.size = bin ? c->buffers.buffers[0].length : raw ? document->glb.bin.size : 0};
-	nt_status status = nt_glb_begin(sink, length, bin || raw, p.size, other_bytes(document), c->error);
-	if (!status && length >= APART_BYTES && !c->uris.count && nt_thread_count(c->options->threads) > 1)
-		status = nt_sink_reserve_range(sink, length, &p.json, c->error);
-	if (!status && p.json)
-		return write_apart(&p);
+	const bool raw = !bin && document->is_glb && document->glb.has_bin; /* it is no buffer, and stays */
+	const uint64_t size = bin ? c->buffers.buffers[0].length : raw ? document->glb.bin.size : 0;
+	nt_status status = nt_glb_begin(sink, length, bin || raw, size, other_bytes(document), c->error);
 	if (!status)
 		status = nt_data_uris_write(&c->uris, text, sink, c->error);
-	return status ? status : write_rest(&p, c->error);
+	if (!status)
+		status = nt_glb_end_json(sink, length, bin || raw, size, c->error);
+	if (!status && bin)
+		status = nt_relocated_write(&c->buffers, 0, &c->input, sink, c->error);
+	if (!status && raw)
+		status = nt_sink_copy(sink, &c->input, document->glb.bin.offset, document->glb.bin.size, c->error);
+	if (!status && (bin || raw))
+		status = nt_glb_end_bin(sink, size, c->error);
+	for (size_t i = 0; !status && document->is_glb && i < document->glb.other_count; i++) {
+		const nt_glb_chunk *chunk = &document->glb.others[i];
+		status = nt_glb_write_chunk(sink, chunk->type, document->bytes + chunk->offset, chunk->size, c->error);
+	}
+	return status;
 }
 
 /* The document with the names that its sidecars have in it. */

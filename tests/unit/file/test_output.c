@@ -229,66 +229,6 @@ TEST(output_bytes_are_the_same_for_small_and_large_writes)
 	free(bytes);
 }
 
-/* "head", what is reserved, and "tail" with a copy behind it; the order of writing is another one. */
-TEST(output_has_a_reserved_range_where_it_belongs)
-{
-	enum { SIZE = 3000000, COPIED = 2000000 };
-	unsigned char *bytes = malloc(SIZE);
-	assert_non_null(bytes);
-	for (size_t i = 0; i < SIZE; i++)
-		bytes[i] = (unsigned char)(i * 2654435761u >> 13);
-	put_file("in", bytes, SIZE);
-	nt_error error;
-	nt_file file, written;
-	assert_int_equal(nt_file_open(&file, in_folder("in"), &error), NT_OK);
-	/* from 0 on the pages of both files meet behind what is there by then, from 1 on they do not */
-	for (size_t from = 0; from < 2; from++) {
-		const size_t reserved = SIZE - 8 - (4096 - (4 + 4 + SIZE - 8) % 4096) % 4096;
-		nt_output *output = start(NULL);
-		nt_sink *sink = add(output, in_folder("out"), NT_ROLE_MAIN), *part;
-		assert_int_equal(nt_sink_write(sink, "head", 4, &error), NT_OK);
-		assert_int_equal(nt_sink_reserve_range(sink, reserved, &part, &error), NT_OK);
-		assert_non_null(part);
-		assert_int_equal(nt_sink_write(sink, "tail", 4, &error), NT_OK);
-		assert_int_equal(nt_sink_copy(sink, &file, from, COPIED, &error), NT_OK);
-		for (size_t done = 0, step = 0; done < reserved; done += step) { /* 1, 3 ... 2^21 - 1 */
-			step = 2 * step + 1 < reserved - done ? 2 * step + 1 : reserved - done;
-			assert_int_equal(nt_sink_write(part, bytes + done, step, &error), NT_OK);
-		}
-		assert_int_equal(nt_sink_end_part(part, &error), NT_OK);
-		assert_int_equal(nt_output_size(output), 8 + reserved + COPIED);
-		assert_int_equal(nt_output_copied(output), COPIED);
-		assert_int_equal(nt_output_commit(output, &error), NT_OK);
-		assert_int_equal(nt_file_open(&written, in_folder("out"), &error), NT_OK);
-		assert_int_equal(written.size, 8 + reserved + COPIED);
-		assert_memory_equal(written.data, "head", 4);
-		assert_int_equal(memcmp(written.data + 4, bytes, reserved), 0);
-		assert_memory_equal(written.data + 4 + reserved, "tail", 4);
-		assert_int_equal(memcmp(written.data + 8 + reserved, bytes + from, COPIED), 0);
-		nt_file_close(&written);
-	}
-	nt_file_close(&file);
-	free(bytes);
-}
-
-/* What is no file of its own, or has a digest, is written in its order. */
-TEST(output_reserves_nothing_where_bytes_come_in_their_order)
-{
-	nt_error error;
-	nt_sink *part;
-	nt_output *output = start(NULL);
-	assert_int_equal(nt_sink_reserve_range(add(output, "/dev/null", NT_ROLE_MAIN), 4, &part, &error), NT_OK);
-	assert_null(part);
-	nt_sink *buffer = add(output, in_folder("out.bin"), NT_ROLE_BUFFER);
-	assert_int_equal(nt_sink_reserve_range(buffer, 4, &part, &error), NT_OK);
-	assert_null(part);
-	nt_output_abort(output);
-	output = start(&(nt_output_options){.dry_run = true});
-	assert_int_equal(nt_sink_reserve_range(add(output, in_folder("out"), NT_ROLE_MAIN), 4, &part, &error), NT_OK);
-	assert_null(part);
-	nt_output_abort(output);
-}
-
 /* Room that was announced is there before the bytes, where the file system gives any, and is no part of the file. */
 TEST(output_has_its_bytes_whatever_was_announced)
 {
