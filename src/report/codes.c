@@ -335,13 +335,14 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"{count} {edge belongs|edges belong} to more than two triangles",
 		"After vertices at one position are welded, three or more triangles meet at an edge. Which of "
 		"them are neighbours is then a matter of order, and programs differ in their tangents. An info where "
-		"nothing asks for tangents.",
+		"nothing asks for tangents, and up to a thousandth of the mesh's area.",
 		"Separate the surfaces, or delete doubled and inner faces.",
 		"three triangles that share one edge"),
 	ROW(MESH_INCONSISTENT_WINDING, WARNING, "www",
 		"{count} {edge has|edges have} two triangles that run along it in the same direction",
 		"The two triangles at these edges face opposite sides. A flipped face, or a surface that has "
-		"one side only (a Moebius strip), which cannot be wound consistently.",
+		"one side only (a Moebius strip), which cannot be wound consistently. An info up to a thousandth of "
+		"the mesh's area: slivers.",
 		"Recalculate the normals outside, or flip the faces that are wrong.",
 		"triangles 0 1 2 and 0 1 3"),
 	ROW(MESH_NORMAL_NON_UNIT, WARNING, "wii", "{count} {normal is|normals are} not of unit length",

@@ -55,7 +55,11 @@ enum { AHEAD = 16 };
 typedef struct bin_result {
 	size_t edges, boundary, uv_seams;
 	nt_tally non_manifold, inconsistent;
+	double areas[2]; /* of the triangles at inconsistent and at non-manifold edges */
 } bin_result;
+
+/* Share of the mesh's area up to which nobody sees those: slivers. */
+static const double SLIVER_SHARE = 0.001;
 
 /* By one thread, in no order. */
 typedef struct mirror_list {
@@ -163,10 +167,12 @@ static void check_edge(nt_check *check, const nt_edge_side *sides, size_t count,
 		nt_bit_set(check->boundary, sides[0].side);
 		return;
 	}
-	if (count > 2)
-		nt_tally_side(check, &result->non_manifold, sides[0].side, (double)count);
-	else if (nt_edge_same_way(&sides[0], &sides[1]))
-		nt_tally_side(check, &result->inconsistent, sides[0].side, (double)count);
+	const bool bad = count > 2 || nt_edge_same_way(&sides[0], &sides[1]);
+	if (bad)
+		nt_tally_side(check, count > 2 ? &result->non_manifold : &result->inconsistent, sides[0].side,
+			(double)count);
+	for (size_t i = 0; bad && i < count; i++)
+		result->areas[count > 2] += nt_triangle_area(&check->surface, sides[i].side / 3);
 	if (!check->mesh->texcoords)
 		return;
 	if (count > 2 || nt_edge_orientation(&sides[0]) != nt_edge_orientation(&sides[1]))
@@ -203,19 +209,23 @@ static void join_results(nt_check *check, const bin_result *results, size_t coun
 	nt_report_mesh *facts = check->facts;
 	nt_tally non_manifold = {.code = NT_CODE_MESH_NON_MANIFOLD_EDGE};
 	nt_tally inconsistent = {.code = NT_CODE_MESH_INCONSISTENT_WINDING};
+	double areas[2] = {0.0, 0.0};
 	for (size_t bin = 0; bin < count; bin++) {
 		facts->edge_count += results[bin].edges;
 		facts->boundary_edges += results[bin].boundary;
 		facts->uv_seam_edges += results[bin].uv_seams;
 		nt_tally_join(&non_manifold, &results[bin].non_manifold);
 		nt_tally_join(&inconsistent, &results[bin].inconsistent);
+		areas[0] += results[bin].areas[0];
+		areas[1] += results[bin].areas[1];
 	}
 	facts->non_manifold_edges = non_manifold.count;
 	facts->inconsistent_edges = inconsistent.count;
+	const double least = SLIVER_SHARE * check->total_area;
 	/* of no matter to a surface without tangents */
-	const bool matters = check->mesh->texcoords && nt_needs_tangents(check);
+	const bool matters = check->mesh->texcoords && nt_needs_tangents(check) && areas[1] > least;
 	nt_check_report_as(check, &non_manifold, matters ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO, NULL);
-	nt_check_report(check, &inconsistent, NULL);
+	nt_check_report_as(check, &inconsistent, areas[0] > least ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO, NULL);
 }
 
 /* One list of mirror edges, by their unmirrored sides. */
