@@ -20,10 +20,10 @@ tool_wasm_src := $(filter-out %/kernel_avx2.c %/kernel_avx512.c,$(core_src)) $(t
 	$(wildcard src/ext/modules/*.c src/ext/modules/*.cpp $(tool_dir)/*.c)
 tool_wasm_obj := $(patsubst %,$(T)/%.o,$(tool_wasm_src))
 
-$(T)/src/%.c.o: src/%.c $(S)/.complete $(T)/flags
+$(T)/src/%.c.o: src/%.c $(S)/.complete $(T)/flags $(wildcard $(tool_dir)/system/*)
 	@mkdir -p $(@D)
 	$(EMCC) -std=c11 $(ours) $(TOOL_LEVEL) -c -o $@ $<
-$(T)/src/%.cpp.o: src/%.cpp $(S)/.complete $(T)/flags
+$(T)/src/%.cpp.o: src/%.cpp $(S)/.complete $(T)/flags $(wildcard $(tool_dir)/system/*)
 	@mkdir -p $(@D)
 	$(EMCC) -std=c++17 $(ours) -c -o $@ $<
 
