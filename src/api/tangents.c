@@ -332,8 +332,6 @@ nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *opt
 	nt_splitter splitter;
 	size_t ill_conditioned = 0;
 	status = nt_split_begin(&places, &r.mesh, r.solve.corner_count, r.corners, scratch);
-	r.solve.passed = wanted->passed;
-	r.solve.user = wanted->user;
 	r.solve.spare = places.own.vertex_tangents; /* the split fills it at the end */
 	r.solve.spare_bytes =
 		(r.mesh.vertex_count + (wanted->lends_copies ? places.own.source_capacity : 0)) * NT_TANGENT_BYTES;

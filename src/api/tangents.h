@@ -11,8 +11,6 @@
 typedef struct nt_vertex_request {
 	bool lends_copies; /* room for copies in vertex_tangents may serve as scratch */
 	bool lazy_indices; /* with source_count 0 output->indices is not written: they are the mesh's own */
-	void (*passed)(void *user, nt_mesh_part part); /* see nt_solve */
-	void *user;
 } nt_vertex_request;
 
 /* nmtan_vertex_tangents() with a request. */

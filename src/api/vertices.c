@@ -189,9 +189,5 @@ nmtan_status nt_repair_and_split(const nt_solve *solve, nmtan_counts *counts, nt
 	const nmtan_status status = nt_repair(solve, counts);
 	if (status)
 		return status;
-	if (!solve->known || !solve->known->ids)
-		return split_rows(solve, splitter);
-	if (solve->passed)
-		solve->passed(solve->user, NT_PART_INDICES);
-	return split_shared(solve, splitter);
+	return solve->known && solve->known->ids ? split_shared(solve, splitter) : split_rows(solve, splitter);
 }

@@ -213,29 +213,6 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 	return NT_OK;
 }
 
-static void release_in(const nt_file *file, const void *bytes, size_t size)
-{
-	if (bytes)
-		nt_file_release_pages(file, bytes, size);
-	else
-		nt_file_release(file, 0, file->size);
-}
-
-void nt_gltf_release_pages(const nt_scene *scene, const void *bytes, size_t size)
-{
-	enum { WORTH_BYTES = 256 * 1024 }; /* a system call, and a look at all buffers */
-	const nt_gltf *document = scene->source;
-	if (bytes && size < WORTH_BYTES)
-		return;
-	if (scene->file)
-		release_in(scene->file, bytes, size);
-	for (size_t i = 0; i < document->buffer_count; i++) {
-		const nt_gltf_buffer *buffer = &document->buffers[i];
-		if (buffer->opened && buffer->storage == NT_GLTF_STORED_FILE)
-			release_in(&buffer->file, bytes, size);
-	}
-}
-
 void nt_gltf_free(void *source)
 {
 	nt_gltf *document = source;

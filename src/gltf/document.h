@@ -123,10 +123,6 @@ bool nt_glb_recognise(const unsigned char *bytes, size_t size);
 /* For nt_scene.free_source. */
 void nt_gltf_free(void *document);
 
-/* nt_file_release_pages() for the file that has the bytes: the scene's own or one of its .bin files; bytes NULL:
- * for all of them. The scene is a glTF. */
-void nt_gltf_release_pages(const nt_scene *scene, const void *bytes, size_t size);
-
 /* A member of the root: NULL where there is none. */
 nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name);
 

@@ -192,8 +192,6 @@ static nt_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, unsigned threads
 		return nt_fail_memory(error);
 	flipping f = {stored, mesh->texcoords};
 	nt_parallel_ranges(count < 2 * GRAIN ? 1 : nt_thread_count(threads), count, GRAIN, flip_range, &f);
-	if (!mesh->plan.pooled)
-		nt_gltf_release_pages(scene, stored, count * 2 * sizeof(float));
 	return NT_OK;
 }
 

@@ -231,15 +231,10 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	scene->source = document;
 	scene->free_source = nt_gltf_free;
 	scene->read_of_source = count_read;
-	scene->release_pages = nt_gltf_release_pages;
 	scene->format = document->is_glb ? NT_FORMAT_GLB : NT_FORMAT_GLTF;
 	const char *generator =
 		nt_json_get_string(nt_json_find(nt_gltf_root_member(document, "asset"), "generator"), NULL);
 	scene->solves_quads = generator && strstr(generator, "Blender");
-	/* the JSON has a copy of its text */
-	nt_gltf_release_pages(scene, scene->bytes,
-		document->is_glb ? document->glb.json.offset + document->glb.json.size :
-		scene->byte_count);
 
 	/* The meshes, and which of them a scene shows. */
 	size_t count = 0;

@@ -30,7 +30,6 @@ typedef struct wishes {
 	bool round_trip;    /* the output stores 1 - v */
 	bool triangulates;  /* the output has triangles where the input has quads */
 	bool splits;        /* something is written, or judged as if it were */
-	bool releases;      /* the input is not read again after the solve */
 } wishes;
 
 /* What a thread solves small meshes with. */
@@ -38,7 +37,6 @@ typedef struct solver {
 	nmtan_workspace *workspace; /* NULL: none */
 	nt_arena arena;             /* results, until the scene takes them over */
 	nt_arena temporary;         /* the same of temporary meshes */
-	size_t corners;             /* that it solved */
 } solver;
 
 struct nt_small_solves {
@@ -64,9 +62,7 @@ static wishes wishes_of(nt_scene *scene, const nt_settings *settings, nt_format 
 	return (wishes){.scene = scene, .settings = settings,
 		.round_trip = output != NT_FORMAT_UNKNOWN &&
 		nt_format_is_gltf(scene->format) != nt_format_is_gltf(output),
-		.triangulates = nt_format_is_gltf(output), .splits = output != NT_FORMAT_UNKNOWN,
-		.releases = scene->release_pages && nt_format_is_gltf(output) && !settings->report &&
-			!settings->verify};
+		.triangulates = nt_format_is_gltf(output), .splits = output != NT_FORMAT_UNKNOWN};
 }
 
 static bool is_solved(const nt_mesh *mesh)
@@ -79,12 +75,6 @@ static bool is_item(const nt_mesh *mesh)
 {
 	return mesh->plan.join ? mesh->plan.join->first == mesh : is_solved(mesh) && !nt_mesh_is_solved_ahead(mesh);
 }
-
-typedef struct mesh_bytes {
-	const nt_scene *scene;
-	const nt_mesh *mesh;
-	unsigned threads;
-} mesh_bytes;
 
 /* What v is added to when it is stored: nothing where the format stays, else see nmtan_stored_uv. */
 static float stored_v_offset(const wishes *job)
@@ -215,39 +205,6 @@ static nt_status keep_split(const wishes *job, nt_mesh *mesh, const nmtan_split_
 	return NT_ERROR_MEMORY;
 }
 
-typedef struct releasing {
-	const nt_scene *scene;
-	const void *bytes;
-} releasing;
-
-static void release_range(void *context, size_t begin, size_t end, unsigned slot)
-{
-	(void)slot;
-	const releasing *r = context;
-	r->scene->release_pages(r->scene, (const char *)r->bytes + begin, end - begin);
-}
-
-static void release_bytes(const mesh_bytes *of, const void *bytes, size_t size)
-{
-	enum { GRAIN = 2 << 20 };
-	releasing r = {of->scene, bytes};
-	if (bytes)
-		nt_parallel_ranges(of->threads, size, GRAIN, release_range, &r);
-}
-
-/* The input's pages that a solve is done with: glTF that is made from glTF is copied by the kernel. */
-static void release_part(void *user, nt_mesh_part part)
-{
-	const mesh_bytes *of = user;
-	const nt_mesh *mesh = of->mesh;
-	if (part == NT_PART_ATTRIBUTES) {
-		release_bytes(of, mesh->positions, 3 * sizeof(float) * mesh->vertex_count);
-		release_bytes(of, mesh->normals, 3 * sizeof(float) * mesh->vertex_count);
-	} else {
-		release_bytes(of, mesh->indices, sizeof(uint32_t) * mesh->corner_count);
-	}
-}
-
 static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_options *options, nt_arena *arena)
 {
 	nmtan_stored_uv stored;
@@ -277,10 +234,8 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 			status = split_corners(mesh, options, &output);
 		free_corners(mesh);
 	} else if (!(status = make_split(mesh, &mesh->split, &output))) {
-		mesh_bytes bytes = {job->scene, mesh, nt_thread_count(options->threads)};
 		/* small ones have a workspace, whose pages are there */
-		const nt_vertex_request request = {.lazy_indices = true, .lends_copies = !options->workspace,
-			.passed = job->releases ? release_part : NULL, .user = &bytes};
+		const nt_vertex_request request = {.lazy_indices = true, .lends_copies = !options->workspace};
 		status = nt_status_of(nt_vertex_tangents(&view, options, &request, &output, &mesh->counts));
 	}
 	if (!status)
@@ -377,7 +332,6 @@ nt_status nt_small_solve(nt_small_solves *small, nt_mesh *mesh, unsigned slot)
 	/* without a workspace it is only slower */
 	if (!own->workspace)
 		own->workspace = nmtan_workspace_create(NULL);
-	own->corners += corners_of(mesh);
 	return solve_item(&small->wishes, mesh, 1, own->workspace, mesh->plan.temporary ? &own->temporary : &own->arena,
 		NULL);
 }
@@ -385,16 +339,11 @@ nt_status nt_small_solve(nt_small_solves *small, nt_mesh *mesh, unsigned slot)
 void nt_small_solves_end(nt_small_solves *small)
 {
 	const wishes *job = &small->wishes;
-	size_t corners = 0;
 	for (unsigned i = 0; i < small->slots; i++) {
-		corners += small->solvers[i].corners;
 		nmtan_workspace_destroy(small->solvers[i].workspace);
 		nt_arena_join(&job->scene->arena, &small->solvers[i].arena);
 		nt_arena_join(&job->scene->temporary, &small->solvers[i].temporary);
 	}
-	/* what passed while they were solved is too little each time to be let go of */
-	if (job->releases && corners >= LARGE_CORNERS)
-		job->scene->release_pages(job->scene, NULL, 0);
 	free(small);
 }
 

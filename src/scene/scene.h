@@ -322,9 +322,6 @@ typedef struct nt_scene {
 	void (*free_source)(void *source);
 	uint64_t (*read_of_source)(const void *source); /* bytes of the input and its files that were read, as far as
 	                                                   the reader knows; NULL: all of the input */
-	/* Releases the pages of these bytes of the input or its files, with NULL of all of them, since they will hardly
-	 * be read again; NULL: nobody cares. */
-	void (*release_pages)(const struct nt_scene *scene, const void *bytes, size_t size);
 	/* Finds faces, which come sorted by mesh and face, in the text: fills line and corners, these in an arena.
 	 * The text is read again for it. NULL: there are no lines. */
 	nt_status (*locate_faces)(const struct nt_scene *scene, nt_face_place *faces, size_t count,

@@ -90,9 +90,6 @@ static inline uint64_t nt_flagged(const uint8_t *flags, size_t count, uint8_t ma
 	return flagged;
 }
 
-/* Parts of a mesh in the order in which a solve is done with them. */
-typedef enum nt_mesh_part { NT_PART_ATTRIBUTES, NT_PART_INDICES } nt_mesh_part;
-
 typedef struct nt_solve {
 	const nmtan_mesh *mesh;  /* strides are never 0 */
 	size_t corner_count;
@@ -110,9 +107,6 @@ typedef struct nt_solve {
 	/* Memory that is filled or let go of after the method is done: it may serve as scratch. */
 	void *spare;
 	size_t spare_bytes;
-	/* Called when a part of the mesh will hardly be read again; may be NULL. */
-	void (*passed)(void *user, nt_mesh_part part);
-	void *user;
 	float *tangents;         /* [corner_count][4] */
 	float *bitangents;       /* [corner_count][3] or NULL */
 	float *magnitudes;       /* [corner_count][2] or NULL */

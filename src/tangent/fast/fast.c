@@ -111,8 +111,6 @@ static nmtan_status weld(const nt_fast *fast, unsigned ranges, nt_fast_memory *m
 	const double begin = solve->timing ? nt_seconds() : 0;
 	const nmtan_status status = nt_weld_mesh(solve->mesh, solve->corner_count, ranges, memory->rows,
 		&memory->borrowed, result);
-	if (solve->passed)
-		solve->passed(solve->user, NT_PART_ATTRIBUTES);
 	if (solve->timing)
 		solve->timing->weld += nt_seconds() - begin;
 	return status;
