@@ -167,18 +167,6 @@ void nt_file_close(nt_file *file)
 	*file = (nt_file){.data = no_bytes, .fd = -1};
 }
 
-void nt_file_release_pages(const nt_file *file, const void *bytes, size_t size)
-{
-	const uintptr_t map = (uintptr_t)file->data, at = (uintptr_t)bytes;
-	if (!file->mapped || at < map || at - map > file->size || size > file->size - (at - map))
-		return;
-	/* whole pages only: the others hold something else too */
-	const size_t page = (size_t)sysconf(_SC_PAGESIZE);
-	const size_t begin = (at - map + page - 1) / page * page, end = (at - map + size) / page * page;
-	if (begin < end)
-		madvise((void *)(map + begin), end - begin, MADV_DONTNEED); /* a refusal changes nothing */
-}
-
 /* Advice on the whole pages that hold a range. */
 static void advise(const nt_file *file, size_t offset, size_t size, int advice)
 {

@@ -40,10 +40,6 @@ void nt_file_close(nt_file *file);
 /* Bytes of the caller, as a file. */
 nt_file nt_file_of_bytes(const unsigned char *bytes, size_t size);
 
-/* Releases the pages of bytes of a mapped file, which no longer count as memory of this process; they come back when
- * they are read. Bytes that are not in the map are left alone. */
-void nt_file_release_pages(const nt_file *file, const void *bytes, size_t size);
-
 /* Brings the pages of a range of a mapped file in at once, which costs less than a fault for every few of them,
  * and lets go of them again, so that a file that is copied does not fill the memory. Nothing is lost: what is
  * read afterwards comes back. For files that are not mapped, and kernels that cannot, nothing happens. */

@@ -222,8 +222,9 @@ static void parse_chunks(void *context, size_t begin, size_t end, unsigned slot)
 		if (chunk->error.status)
 			atomic_store(&job->failed, true);
 		/* text is half of what a conversion would hold, and only names are read again */
-		if (file->scene->file)
-			nt_file_release_pages(file->scene->file, chunk->begin, (size_t)(chunk->end - chunk->begin));
+		if (file->scene->file && chunk->begin != file->tail)
+			nt_file_release(file->scene->file, (size_t)(chunk->begin - (const char *)file->scene->bytes),
+				(size_t)(chunk->end - chunk->begin));
 	}
 	obj_chunk_free(&work);
 }
