@@ -15,8 +15,7 @@
 #include "gltf/load.h"
 #include "gltf/open.h"
 #include "obj/read.h"
-#include "ply/read.h"
-#include "ply/write.h"
+#include "ply/ply.h"
 
 static nt_status write_gltf(nt_scene *scene, const nt_write_options *options,
 	nt_output *output, nt_error *error)

@@ -9,7 +9,7 @@
  * anything is allocated, each list before it is read, each index before it is used. An error in an
  * ASCII body has its line, in a binary body its byte offset.
  */
-#include "ply/read.h"
+#include "ply/ply.h"
 
 #include <stdio.h>
 #include <stdlib.h>

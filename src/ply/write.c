@@ -2,7 +2,7 @@
 /*
  * Writing PLY begins and ends here: see write.h.
  */
-#include "ply/write.h"
+#include "ply/ply.h"
 
 #include "ply/encode.h"
 

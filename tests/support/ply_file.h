@@ -7,7 +7,7 @@
 #define NT_TEST_PLY_FILE_H
 
 #include "test.h"
-#include "ply/read.h"
+#include "ply/ply.h"
 #include "ply/value.h"
 
 typedef struct reading {

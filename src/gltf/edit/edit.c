@@ -22,7 +22,7 @@
 #include "gltf/edit/manifold.h"
 #include "gltf/bytes/packed_views.h"
 #include "gltf/edit/relocate.h"
-#include "gltf/extensions/references.h"
+#include "gltf/extensions/extensions.h"
 #include "gltf/morph_deltas.h"
 #include "gltf/quantize.h"
 #include "gltf/turned_images.h"

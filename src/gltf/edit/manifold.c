@@ -11,7 +11,7 @@
 #include "base/largest.h"
 #include "gltf/accessor.h"
 #include "gltf/edit/new_accessors.h"
-#include "gltf/extensions/manifold.h"
+#include "gltf/extensions/extensions.h"
 
 static const char name[] = "EXT_mesh_manifold";
 

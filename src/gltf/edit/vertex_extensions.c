@@ -10,8 +10,7 @@
 #include "gltf/document.h"
 #include "gltf/edit/manifold.h"
 #include "gltf/edit/new_accessors.h"
-#include "gltf/extensions/outline.h"
-#include "gltf/extensions/references.h"
+#include "gltf/extensions/extensions.h"
 #include "gltf/pointer.h"
 
 static const char outline_name[] = "CESIUM_primitive_outline", polygons_name[] = "FB_ngon_encoding";

@@ -5,7 +5,7 @@
  * manifold stays what it was, a copy being at the place of its vertex; what changes is which indices of the primitives
  * differ from its own.
  */
-#include "gltf/extensions/manifold.h"
+#include "gltf/extensions/extensions.h"
 
 #include <string.h>
 #include "gltf/accessor.h"

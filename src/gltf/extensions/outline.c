@@ -4,7 +4,7 @@
  * both. A triangle whose vertices were copied has other numbers, so that each edge becomes all the pairs that its sides
  * have now; an edge that no triangle has stays as it is. By sorting: n log n in edges and corners.
  */
-#include "gltf/extensions/outline.h"
+#include "gltf/extensions/extensions.h"
 
 #include <stdlib.h>
 #include <string.h>

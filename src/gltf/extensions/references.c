@@ -5,7 +5,7 @@
  * were vertices, which is none of the primitive's own attributes: those grow with it. The number may be another thing,
  * a mode, say: the finding is a warning to look.
  */
-#include "gltf/extensions/references.h"
+#include "gltf/extensions/extensions.h"
 
 #include <stdio.h>
 #include <stdlib.h>

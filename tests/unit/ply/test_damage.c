@@ -4,7 +4,7 @@
  * byte replaced, and memory that ends.
  */
 #include "fail_alloc.h"
-#include "ply/read.h"
+#include "ply/ply.h"
 #include "ply_file.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
  * Faces are in test_faces.c, files that are wrong in test_damage.c.
  */
 #include "file/input.h"
-#include "ply/read.h"
+#include "ply/ply.h"
 #include "ply_file.h"
 
 #include <dirent.h>

@@ -6,7 +6,7 @@
 #include "fail_alloc.h"
 #include "file/input.h"
 #include "folder.h"
-#include "ply/write.h"
+#include "ply/ply.h"
 #include "ply_file.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "fail_alloc.h"
-#include "gltf/extensions/manifold.h"
+#include "gltf/extensions/extensions.h"
 #include "test.h"
 
 /* Three corners of a triangle: of 3, which the manifold merges with 0, of 1, and of 4, a copy of 2. */

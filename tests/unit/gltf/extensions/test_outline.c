@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "gltf/extensions/outline.h"
+#include "gltf/extensions/extensions.h"
 #include "test.h"
 
 static void assert_edges(const uint32_t *edges, size_t count, const nt_copied_triangles *t, const uint32_t *expected,
