@@ -56,7 +56,7 @@ struct nt_textures {
 	size_t request_count, request_capacity;
 	result *results;
 	size_t result_count, result_capacity;
-	nt_hash_index by_path, by_request, by_conversion; /* sources, requests and results */
+	nt_hash_index by_path, by_conversion; /* sources and results */
 	nt_texture_rules rules;
 	uint64_t pixels;    /* decoded and made */
 	const char *beside; /* path next to which large results are in files; NULL: all are in memory */
@@ -91,7 +91,6 @@ void nt_textures_free(nt_textures *t)
 	free(t->results);
 	free(t->name_sources);
 	nt_hash_index_free(&t->by_path);
-	nt_hash_index_free(&t->by_request);
 	nt_hash_index_free(&t->by_conversion);
 	nt_name_table_free(&t->names);
 	nt_arena_free(&t->arena);
@@ -206,13 +205,8 @@ nt_status nt_textures_request(nt_textures *t, const nt_image_places *places, con
 	const nt_conversion how = wanted(what, sources);
 	if (what->kind == NT_TEXTURE_NORMALS_OR_HEIGHTS)
 		t->sources[sources[0]]->in_question = true;
-	const uint64_t hash = nt_conversion_hash(&how) + (uint64_t)what->kind;
-	for (size_t at = NT_HASH_BEGIN; (*number = nt_hash_index_next(&t->by_request, hash, &at)) != UINT32_MAX;)
-		if (t->requests[*number].kind == what->kind && nt_conversion_equal(&t->requests[*number].how, &how))
-			return NT_OK;
 	*number = (uint32_t)t->request_count;
-	if (!nt_grow((void **)&t->requests, &t->request_capacity, t->request_count + 1, sizeof *t->requests) ||
-		!nt_hash_index_add(&t->by_request, hash, *number))
+	if (!nt_grow((void **)&t->requests, &t->request_capacity, t->request_count + 1, sizeof *t->requests))
 		return nt_fail_memory(error);
 	t->requests[t->request_count++] = (request){.kind = what->kind, .how = how};
 	return NT_OK;
@@ -235,8 +229,7 @@ static nt_status open_source(const nt_texture_source *s, nt_file *file, nt_error
 	if (file->size == s->identity.size && file->device == s->identity.device && file->inode == s->identity.inode)
 		return NT_OK;
 	nt_file_close(file);
-	nt_fail(error, NT_ERROR_IO, "the image changed while it was read");
-	return nt_error_in_file(error, s->path);
+	return nt_fail_file(error, NT_ERROR_IO, s->path, "the image changed while it was read");
 }
 
 static nt_status close_source(const nt_texture_source *s, nt_file *file, nt_status status, nt_error *error)
@@ -245,8 +238,7 @@ static nt_status close_source(const nt_texture_source *s, nt_file *file, nt_stat
 	nt_file_close(file);
 	if (intact)
 		return status;
-	nt_fail(error, NT_ERROR_IO, "the image became shorter while it was read");
-	return nt_error_in_file(error, s->path);
+	return nt_fail_file(error, NT_ERROR_IO, s->path, "the image became shorter while it was read");
 }
 
 static void look_for_grey(void *context, size_t item, unsigned slot)

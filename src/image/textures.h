@@ -89,8 +89,8 @@ typedef struct nt_texture {
 nt_textures *nt_textures_create(const char *beside);
 void nt_textures_free(nt_textures *textures); /* NULL is allowed */
 
-/* Requests an image of names in a material. The same request has the same number. Returns NT_OK, also for what is not
- * found, NT_ERROR_IO or NT_ERROR_MEMORY. */
+/* Requests an image of names in a material. Returns NT_OK, also for what is not found, NT_ERROR_IO or
+ * NT_ERROR_MEMORY. */
 nt_status nt_textures_request(nt_textures *textures, const nt_image_places *places, const nt_texture_request *request,
 	uint32_t *number, nt_error *error);
 

@@ -134,10 +134,8 @@ static nt_status look_for_mark(const char *path, bool *ours, nt_error *error)
 	const int number = errno;
 	if (fd >= 0)
 		close(fd);
-	if (size < 0) {
-		nt_fail(error, NT_ERROR_IO, "cannot read what is to be replaced: %s", strerror(number));
-		return nt_error_in_file(error, path);
-	}
+	if (size < 0)
+		return nt_fail_file(error, NT_ERROR_IO, path, "cannot read what is to be replaced: %s", strerror(number));
 	*ours = memmem(head, (size_t)size, nt_html_mark, strlen(nt_html_mark)) != NULL;
 	return NT_OK;
 }
@@ -158,8 +156,7 @@ static nt_status check_page(const nt_report_folder *folder, const char *path, nt
 		ours = !(folder->inputs[i].device == info.st_dev && folder->inputs[i].inode == info.st_ino);
 	if (ours)
 		return NT_OK;
-	nt_fail(error, NT_ERROR_IO, "refusing to write: it is no page of a report that nmtan made");
-	return nt_error_in_file(error, path);
+	return nt_fail_file(error, NT_ERROR_IO, path, "refusing to write: it is no page of a report that nmtan made");
 }
 
 static nt_status check_pages(const nt_report_folder *folder, nt_error *error)
@@ -204,10 +201,9 @@ static nt_status find_part(const char *path, const char *text, bool *there, nt_e
 	nt_status status = nt_file_open_untraced(&file, path, error);
 	if (status)
 		return status;
-	if (file.size != strlen(text) || memcmp(file.data, text, file.size) != 0) {
-		nt_fail(error, NT_ERROR_IO, "refusing to write: it is no part of a report that nmtan made");
-		status = nt_error_in_file(error, path);
-	}
+	if (file.size != strlen(text) || memcmp(file.data, text, file.size) != 0)
+		status = nt_fail_file(error, NT_ERROR_IO, path,
+			"refusing to write: it is no part of a report that nmtan made");
 	nt_file_close(&file);
 	return status;
 }

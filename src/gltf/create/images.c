@@ -47,8 +47,7 @@ static nt_status fill(nt_image_set *set, nt_error *error)
 	set->folder = folder.data;
 	if (status != NT_ERROR_MISSING)
 		return status;
-	nt_fail(error, NT_ERROR_IO, "cannot write: the folder does not exist");
-	return nt_error_in_file(error, set->options.path);
+	return nt_fail_file(error, NT_ERROR_IO, set->options.path, "cannot write: the folder does not exist");
 }
 
 nt_status nt_image_set_create(nt_image_set **set, const nt_write_options *options, nt_error *error)
@@ -119,8 +118,7 @@ static nt_status open_image(const nt_texture *image, nt_file *file, nt_error *er
 	if (status || file->size == source->identity.size)
 		return status;
 	nt_file_close(file);
-	nt_fail(error, NT_ERROR_IO, "the image changed while it was read");
-	return nt_error_in_file(error, source->path);
+	return nt_fail_file(error, NT_ERROR_IO, source->path, "the image changed while it was read");
 }
 
 static void close_image(const nt_texture *image, nt_file *file)
