@@ -135,7 +135,8 @@ static nt_status look_for_mark(const char *path, bool *ours, nt_error *error)
 	if (fd >= 0)
 		close(fd);
 	if (size < 0)
-		return nt_fail_file(error, NT_ERROR_IO, path, "cannot read what is to be replaced: %s", strerror(number));
+		return nt_fail_file(error, NT_ERROR_IO, path, "cannot read what is to be replaced: %s",
+			strerror(number));
 	*ours = memmem(head, (size_t)size, nt_html_mark, strlen(nt_html_mark)) != NULL;
 	return NT_OK;
 }
