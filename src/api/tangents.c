@@ -27,17 +27,13 @@
 /* No stage shares fewer corners among threads. */
 enum { LEAST_SHARED_CORNERS = 1 << 14 };
 
-static size_t normal_rows(const nmtan_mesh *mesh)
-{
-	return nt_row_count(mesh, mesh->normal_count, mesh->normal_indices);
-}
-
 static nmtan_status check_attributes(nmtan_mesh *mesh)
 {
 	if (!mesh->positions || !mesh->normals || !mesh->texcoords)
 		return NMTAN_ERROR_ARGUMENT;
 	if (!nt_fill_stride(&mesh->position_stride_bytes, 3 * sizeof(float), mesh->vertex_count) ||
-		!nt_fill_stride(&mesh->normal_stride_bytes, 3 * sizeof(float), normal_rows(mesh)) ||
+		!nt_fill_stride(&mesh->normal_stride_bytes, 3 * sizeof(float),
+			nt_row_count(mesh, mesh->normal_count, mesh->normal_indices)) ||
 		!nt_fill_stride(&mesh->texcoord_stride_bytes, 2 * sizeof(float),
 			nt_row_count(mesh, mesh->texcoord_count, mesh->texcoord_indices)) ||
 		!isfinite(nt_stored_v_offset(mesh)))

@@ -31,21 +31,9 @@ uint32_t nt_gltf_index_type(uint64_t most, uint32_t least)
 	return least != NT_GLTF_UINT && most <= 0xFFFF ? NT_GLTF_USHORT : NT_GLTF_UINT;
 }
 
-/* Most indices have 16 bits: eight at a time. */
-typedef uint16_t eight_short __attribute__((vector_size(16)));
-typedef uint32_t eight_wide __attribute__((vector_size(32)));
-enum { LITTLE_ENDIAN_16 = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ };
-
 void nt_gltf_store_indices(const uint32_t *indices, size_t count, uint32_t width, unsigned char *bytes)
 {
-	size_t i = 0;
-	for (; LITTLE_ENDIAN_16 && width == 2 && i + 8 <= count; i += 8) {
-		eight_wide wide;
-		memcpy(&wide, indices + i, sizeof wide);
-		const eight_short narrow = __builtin_convertvector(wide, eight_short);
-		memcpy(bytes + 2 * i, &narrow, sizeof narrow);
-	}
-	for (; i < count; i++)
+	for (size_t i = 0; i < count; i++)
 		for (uint32_t k = 0; k < width; k++)
 			bytes[i * width + k] = (unsigned char)(indices[i] >> 8 * k);
 }
@@ -409,14 +397,7 @@ nt_status nt_gltf_shared_floats(nt_gltf *document, const nt_gltf_accessor *acces
 /* elements: NULL gives zeros. */
 static void widen(const unsigned char *elements, uint32_t type, uint32_t stride, size_t count, uint32_t *out)
 {
-	size_t i = 0;
-	for (; LITTLE_ENDIAN_16 && elements && type == NT_GLTF_USHORT && stride == 2 && i + 8 <= count; i += 8) {
-		eight_short narrow;
-		memcpy(&narrow, elements + 2 * i, sizeof narrow);
-		const eight_wide wide = __builtin_convertvector(narrow, eight_wide);
-		memcpy(out + i, &wide, sizeof wide);
-	}
-	for (; i < count; i++)
+	for (size_t i = 0; i < count; i++)
 		out[i] = elements ? read_unsigned(elements + i * stride, type) : 0;
 }
 

@@ -155,10 +155,6 @@ static void normalise_quantized(const nt_gltf_accessor *accessor, float *normals
 		normalise_vector(normals + 3 * i);
 }
 
-/* The bits of two pairs of floats. */
-typedef uint32_t two_texcoords __attribute__((vector_size(16)));
-#define SIGN 0x80000000u
-
 typedef struct flipping {
 	const float *from;
 	float *to;
@@ -168,14 +164,7 @@ static void flip_range(void *context, size_t begin, size_t end, unsigned thread)
 {
 	(void)thread;
 	const flipping *f = context;
-	size_t i = begin;
-	for (; i + 2 <= end; i += 2) {
-		two_texcoords pair;
-		memcpy(&pair, f->from + 2 * i, sizeof pair);
-		pair ^= (two_texcoords){0, SIGN, 0, SIGN};
-		memcpy(f->to + 2 * i, &pair, sizeof pair);
-	}
-	for (; i < end; i++) {
+	for (size_t i = begin; i < end; i++) {
 		f->to[2 * i] = f->from[2 * i];
 		f->to[2 * i + 1] = -f->from[2 * i + 1];
 	}

@@ -37,7 +37,6 @@
 #include "base/name_table.h"
 #include "report/pack/pack.h"
 #include "report/pack/thumb.h"
-#include "report/render/page_assets.h"
 #include "report/render/render.h"
 
 /* What one page holds. Triangles take 10 to 20 bytes of it; where the meshes have more together, each gets its share
