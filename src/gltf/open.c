@@ -235,6 +235,9 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	const char *generator =
 		nt_json_get_string(nt_json_find(nt_gltf_root_member(document, "asset"), "generator"), NULL);
 	scene->solves_quads = generator && strstr(generator, "Blender");
+	if (scene->file) /* the JSON has a copy of its text */
+		nt_file_release(scene->file, document->glb.json.offset, document->is_glb ?
+			document->glb.json.size : scene->byte_count);
 
 	/* The meshes, and which of them a scene shows. */
 	size_t count = 0;
