@@ -167,7 +167,8 @@ static void take_samples(const nt_check *check, grid *g, size_t mirrored_count, 
 			.u = nt_wrap_coordinate(g->mesh, 0, ((double)a[0] + b[0] + c[0]) / 3.0),
 			.v = nt_wrap_coordinate(g->mesh, 1, ((double)a[1] + b[1] + c[1]) / 3.0),
 			.weight = -uv_area(a, b, c),
-			.island = check->islands[t]};
+			.island = check->islands[t],
+			.found = check->twins && nt_bit(check->twins, t)};
 	}
 }
 
