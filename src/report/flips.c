@@ -163,8 +163,8 @@ static uint64_t hash_corners(const nt_surface *s, size_t t, bool points)
 {
 	uint64_t hash = 0;
 	for (size_t side = 3 * t; side < 3 * t + 3; side++)
-		hash += points ? nt_hash_words(nt_side_point(s, side), 0)
-			: nt_hash_floats(nt_side_texcoord(s, side)[0], nt_side_texcoord(s, side)[1]);
+		hash += nt_hash_words(points ? nt_side_point(s, side)
+			: nt_hash_floats(nt_side_texcoord(s, side)[0], nt_side_texcoord(s, side)[1]), 0);
 	return hash;
 }
 
