@@ -174,27 +174,43 @@ static bool may_have_twins(const nt_check *check, const patch *one)
 	return one->flipped || (check->surface.orientation[one->first] < 0 && one->sides >= one->triangles);
 }
 
+/* What a triangle of this orientation is known by. With `points` it lies where its twin lies. */
+static uint64_t key_of(const nt_surface *s, size_t t, int orientation, bool points)
+{
+	const uint64_t key = hash_corners(s, t, false) + (uint64_t)orientation;
+	return points ? nt_hash_words(key, hash_corners(s, t, true)) : key;
+}
+
+/* A key stands once in the table, however many triangles have it; its first one is marked where a twin is met. */
 static nt_status find_twins(nt_check *check, patches *p)
 {
 	const nt_surface *s = &check->surface;
-	nt_hash_index candidates = {0};
-	bool failed = false;
-	for (size_t t = 0; t < s->triangle_count && !failed; t++)
-		if (p->numbers[t] != NT_NONE && may_have_twins(check, &p->items[p->numbers[t]]))
-			failed = !nt_hash_index_add(&candidates, hash_corners(s, t, false), (uint32_t)t);
-	for (size_t t = 0; t < s->triangle_count && candidates.count && !failed; t++) {
-		const uint64_t hash = hash_corners(s, t, false);
-		size_t at = NT_HASH_BEGIN;
-		for (uint32_t found; (found = nt_hash_index_next(&candidates, hash, &at)) != NT_NONE;) {
-			patch *one = &p->items[p->numbers[found]];
-			if (s->orientation[t] + s->orientation[found] != 0 || hash_corners(s, found, false) != hash ||
-				(!is_island(check, one) && hash_corners(s, found, true) != hash_corners(s, t, true)))
-				continue;
-			nt_bit_set(check->twins, found);
-			one->flipped = false;
+	nt_hash_index keys = {0};
+	bool failed = false, any[2] = {false, false};
+	for (int pass = 0; pass < 3 && !failed; pass++)
+		for (size_t t = 0; t < s->triangle_count && !failed && (pass == 0 || keys.count); t++) {
+			patch *one = p->numbers[t] == NT_NONE ? NULL : &p->items[p->numbers[t]];
+			for (int points = 0; points < 2 && !failed; points++) {
+				if (pass == 1 ? !any[points] : !one || !may_have_twins(check, one) ||
+						points == is_island(check, one))
+					continue;
+				const uint64_t key = key_of(s, t, pass == 1 ? -s->orientation[t] : s->orientation[t],
+					points);
+				size_t at = NT_HASH_BEGIN;
+				const uint32_t first = nt_hash_index_next(&keys, key, &at);
+				any[points] |= pass == 0;
+				if (pass == 0 && first == NT_NONE) {
+					failed = !nt_hash_index_add(&keys, key, (uint32_t)t);
+				} else if (pass == 1 && first != NT_NONE) {
+					nt_bit_set(check->twins, first);
+				} else if (pass == 2 && nt_bit(check->twins, first)) {
+					nt_bit_set(check->twins, t);
+				}
+			}
 		}
-	}
-	nt_hash_index_free(&candidates);
+	for (size_t t = 0; (t = nt_bit_next(check->twins, t, s->triangle_count)) < s->triangle_count; t++)
+		p->items[p->numbers[t]].flipped = false;
+	nt_hash_index_free(&keys);
 	return failed ? NT_ERROR_MEMORY : NT_OK;
 }
 

@@ -83,6 +83,7 @@ for kind in repeated centre; do
 done
 first=
 grows folded $((faces / 8)) IN out.ply
+grows tiles $((faces / 8)) --check --report=r.json IN
 grows bumps 10 --check IN
 grows turned $((blocks / 5)) --flip-green=on IN out.glb
 for format in json html; do

@@ -17,6 +17,7 @@ bumps     an OBJ of COUNT materials, and FILE.mtl and FILE.png beside it: each m
 turned    a GLB of COUNT materials, each with a texture and an image of its own, as normal map and as emissive
 strip     an OBJ strip of COUNT quads
 hub       an OBJ of COUNT triangles around one point
+tiles     an OBJ of COUNT quads in a row, all with the same texels, every other one mirrored
 folded    an OBJ of COUNT quads around one point, whose halves have opposite tangents
 edge      an OBJ of COUNT triangles on one edge
 repeated  an OBJ of one triangle, COUNT times
@@ -96,6 +97,14 @@ def folded(count, out):
         out.write(b'v %.9g 0 0\nvt %d 0\nv %d %.9g 0\nvt 0 %d\n' % (1 + i / 65536, side, i % 7, 1 + i / 65536, side))
     for i in range(2, 2 * count + 2, 2):
         out.write(b'f 1/1/1 %d/%d/1 %d/%d/1 %d/%d/1\n' % (i, i, i + 1, i + 1, i + 2, i + 2))
+
+
+def tiles(count, out):
+    for i in range(count + 1):
+        out.write(b'v %d 0 0\nvt %d 0\nv %d 1 0\nvt %d 1\n' % (i, i % 2, i, i % 2))
+    for i in range(1, 2 * count + 1, 2):
+        out.write(b'f %d/%d %d/%d %d/%d\nf %d/%d %d/%d %d/%d\n' % (i, i, i + 2, i + 2, i + 1, i + 1,
+                                                              i + 1, i + 1, i + 2, i + 2, i + 3, i + 3))
 
 
 def repeated(count, out):
@@ -235,4 +244,4 @@ with open(sys.argv[3], 'wb') as out:
     else:
         {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
          'patches': patches, 'repeated': repeated, 'centre': centre, 'folded': folded,
-         'turned': turned}[kind](count, out)
+         'tiles': tiles, 'turned': turned}[kind](count, out)
