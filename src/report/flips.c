@@ -168,7 +168,7 @@ static uint64_t hash_corners(const nt_surface *s, size_t t, bool points)
 	return hash;
 }
 
-/* The sides of a triangle that is doubled lie against its twin: a patch of n such has more than n of them. */
+/* The sides of a doubled triangle lie against its twin: a patch of n such triangles has n outer sides or more. */
 static bool may_have_twins(const nt_check *check, const patch *one)
 {
 	return one->flipped || (check->surface.orientation[one->first] < 0 && one->sides >= one->triangles);
