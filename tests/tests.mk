@@ -255,3 +255,17 @@ picture: $(B)/nmtan build/node/node_modules/gltf-validator/package.json
 	@sh tests/picture/run.sh $< build/picture
 	@$< --check -q --report=build/picture/report.html data/head.obj
 	@node tests/picture/report.mjs build/picture/report.html build/node data/report.png
+
+# make mutate ROOM=gltf N=40 SEED=1: how many of N random faults in a room's sources the tests notice.
+ROOM ?= all
+N ?= 40
+SEED ?= 1
+.PHONY: mutate
+mutate: build/node/node_modules/gltf-validator/package.json
+	@python3 -B tests/soak/mutate.py $(ROOM) $(N) $(SEED)
+
+# make oracle FOLDERS="data ../shared": this tree beside the one that the house is rebuilt against.
+FOLDERS ?= data $(wildcard ../shared)
+.PHONY: oracle
+oracle: all
+	@python3 -B tests/soak/oracle.py $(FOLDERS)
