@@ -48,7 +48,12 @@ typedef struct obj_polygon {
 
 /* Statements that are not used, by number; obj_ignored_names has their words. The last one stands for
  * all that OBJ does not define. */
-enum { OBJ_IGNORED_COUNT = 36, OBJ_UNKNOWN = OBJ_IGNORED_COUNT - 1, OBJ_SMALL_FACE = 0 };
+enum {
+	OBJ_IGNORED_COUNT = 37,
+	OBJ_UNKNOWN = OBJ_IGNORED_COUNT - 1,
+	OBJ_NUL_LINE = OBJ_UNKNOWN - 1,
+	OBJ_SMALL_FACE = 0
+};
 extern const char *const obj_ignored_names[OBJ_IGNORED_COUNT];
 
 typedef struct obj_ignored {

@@ -20,6 +20,7 @@ const char *const obj_ignored_names[OBJ_IGNORED_COUNT] = {
 	"l", "p", "vp", "deg", "bmat", "step", "cstype", "curv", "curv2", "surf", "parm", "trim", "hole",
 	"scrv", "sp", "end", "con", "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj",
 	"trace_obj", "ctech", "stech", "usemap", "maplib", "call", "csh", "bsp", "bzp", "cdc", "cdp",
+	[OBJ_NUL_LINE] = "line of NUL bytes",
 	[OBJ_UNKNOWN] = "unknown statement",
 };
 
@@ -228,15 +229,28 @@ static void skip_statement(obj_reader *r, bool comment)
  * so that a file of another kind is not taken for an OBJ without faces. */
 static nt_status read_other(obj_reader *r, const char *word, size_t length)
 {
+	/* ZBrush ends files with a line of NUL alone. Many are what a write that failed leaves of a file. */
+	enum { MOST_NULS = 64 };
+	if (*word == '\0') {
+		const char *p = word;
+		while ((*p == '\0' || is_blank(*p)) && p - word < MOST_NULS)
+			p++;
+		if (is_line_end(*p)) {
+			r->p = p;
+			obj_ignore(r, OBJ_NUL_LINE);
+			return NT_OK;
+		}
+	}
 	for (size_t i = 0; i < length; i++)
 		if ((unsigned char)word[i] < 0x20 || (unsigned char)word[i] >= 0x7F) {
 			r->p = word;
 			return obj_fail_expected(r, "a statement of an OBJ file");
 		}
 	size_t which = OBJ_SMALL_FACE + 1;
-	while (which < OBJ_UNKNOWN && (strlen(obj_ignored_names[which]) != length ||
+	while (which < OBJ_NUL_LINE && (strlen(obj_ignored_names[which]) != length ||
 					      memcmp(obj_ignored_names[which], word, length) != 0))
 		which++;
+	which = which == OBJ_NUL_LINE ? OBJ_UNKNOWN : which;
 	if (which == OBJ_UNKNOWN && !r->chunk->unknown) {
 		r->chunk->unknown = word;
 		r->chunk->unknown_length = length;

@@ -5,11 +5,13 @@
 #include "ply/encode.h"
 
 #include <assert.h>
+#include <math.h>
+#include <stdio.h>
 
 enum { DRAIN_BYTES = 64 * 1024 };
 
 /* The low bytes of a number in the order of the encoding. */
-static unsigned char *store_bits(const ply_output *out, uint32_t bits, size_t size, unsigned char *to)
+static unsigned char *store_bits(const ply_output *out, uint64_t bits, size_t size, unsigned char *to)
 {
 	for (size_t i = 0; i < size; i++)
 		to[out->encoding == PLY_BIG ? size - 1 - i : i] = (unsigned char)(bits >> 8 * i);
@@ -31,6 +33,31 @@ void ply_put_floats(ply_output *out, const float *values, size_t count)
 		}
 	}
 	nt_buffer_append(&out->buffer, bytes, (size_t)(end - bytes));
+}
+
+void ply_put_value(ply_output *out, float value, ply_type type)
+{
+	const bool ascii = out->encoding == PLY_ASCII;
+	char text[NT_FLOAT_TEXT], *end = text;
+	if (type < PLY_FLOAT32) {
+		const double clamped = value < -1 ? -1 : value > 1 ? 1 : value;
+		const int32_t number = (int32_t)rint(clamped * ply_one(type));
+		end += ascii ? snprintf(text, sizeof text, "%d", (int)number) : 0;
+		if (!ascii)
+			end = (char *)store_bits(out, (uint32_t)number, ply_size(type), (unsigned char *)text);
+	} else if (ascii) {
+		end = nt_write_float(text, value);
+	} else if (type == PLY_FLOAT32) {
+		uint32_t bits;
+		memcpy(&bits, &value, sizeof bits);
+		end = (char *)store_bits(out, bits, sizeof bits, (unsigned char *)text);
+	} else {
+		const double number = value;
+		uint64_t bits;
+		memcpy(&bits, &number, sizeof bits);
+		end = (char *)store_bits(out, bits, sizeof bits, (unsigned char *)text);
+	}
+	nt_buffer_append(&out->buffer, text, (size_t)(end - text));
 }
 
 void ply_put_integer(ply_output *out, uint32_t value, ply_type type)

@@ -14,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "base/parallel.h"
+#include "base/name_table.h"
 #include "ply/source.h"
 
 bool nt_ply_recognise(const unsigned char *bytes, size_t size)
@@ -139,6 +140,34 @@ static void report_unused(nt_scene *scene, const ply_source *source)
 	}
 }
 
+/* Whether a property becomes part of the mesh. */
+static bool is_used(const ply_source *source, const ply_element *element, int number)
+{
+	const int *roles = (const int *)&source->roles;
+	if (element != source->vertex)
+		return number == source->face_indices || number == source->face_texcoords;
+	for (size_t i = 0; i < sizeof source->roles / sizeof *roles; i++)
+		if (roles[i] == number)
+			return true;
+	return false;
+}
+
+/* Names the properties that a file of another format will not have. */
+static nt_status list_left_out(nt_scene *scene, const ply_source *source, nt_error *error)
+{
+	const ply_element *const elements[] = {source->vertex, source->face};
+	nt_buffer text = {0};
+	for (size_t e = 0; e < 2; e++)
+		for (size_t i = 0; elements[e] && i < elements[e]->property_count; i++)
+			if (!is_used(source, elements[e], (int)i))
+				nt_buffer_format(&text, "%s%s %s", scene->left_out_count++ ? ", " : "",
+					elements[e]->name, elements[e]->properties[i].name);
+	if (!text.failed && scene->left_out_count)
+		scene->left_out = nt_utf8_text(&scene->arena, text.data, text.size);
+	nt_buffer_free(&text);
+	return scene->left_out || !scene->left_out_count ? NT_OK : nt_fail_memory(error);
+}
+
 static nt_status read_element(nt_scene *scene, nt_mesh *mesh, ply_source *source,
 	const ply_element *element, ply_cursor *cursor, bool *have_vertices, nt_error *error)
 {
@@ -237,6 +266,8 @@ nt_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_error 
 		status = make_scene(scene, error);
 	if (!status)
 		status = make_materials(scene, &source->header, error);
+	if (!status)
+		status = list_left_out(scene, source, error);
 	if (!status) {
 		report_unused(scene, source);
 		status = read_body(scene, scene->meshes, source, options->threads, error);

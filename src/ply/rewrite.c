@@ -32,10 +32,11 @@ typedef struct plan {
 	ply_numbering n;
 
 	bool new_normals, new_tangents, new_bitangents;
-	bool *dropped;           /* [properties of vertex] replaced by new values */
-	bool drops_any;
-	const char *extra_names[PLY_MOST_FLOATS];
-	size_t extra_count;
+	int *instead;            /* [properties of vertex] which of the new values takes its place, KEPT or DROPPED */
+	bool changes_any;
+	const char *names[PLY_MOST_FLOATS]; /* of the new values */
+	bool appended[PLY_MOST_FLOATS];     /* as new properties behind the others */
+	size_t value_count;
 
 	ply_type index_type;     /* of the faces written */
 	span *spans;             /* of the element with most properties */
@@ -44,15 +45,32 @@ typedef struct plan {
 
 /* What changes in the header. */
 
-/* A name may be there more than once; a reader could take what stays for what is new. */
-static void add_extras(plan *p, const char *const *names, size_t count)
+enum { KEPT = -1, DROPPED = -2 };
+
+/* New values take the place and the type of properties that are there under their names: all of them, or none.
+ * integers: their types may be signed integers, too. A name may be there more than once; a reader could take what stays
+ * for what is new. */
+static void add_values(plan *p, const char *const *names, size_t count, bool integers)
 {
 	const ply_element *vertex = p->source->vertex;
+	bool in_place = true;
 	for (size_t i = 0; i < count; i++) {
-		p->extra_names[p->extra_count++] = names[i];
+		const int found = ply_find_property(vertex, names[i]);
+		const ply_property *property = found == PLY_NO_PROPERTY ? NULL : &vertex->properties[found];
+		in_place &= property && !property->list &&
+			(property->type >= PLY_FLOAT32 || (integers && ply_is_signed(property->type)));
+	}
+	for (size_t i = 0; i < count; i++) {
+		p->names[p->value_count] = names[i];
+		p->appended[p->value_count] = !in_place;
+		int instead = in_place ? (int)p->value_count : DROPPED;
 		for (size_t k = 0; k < vertex->property_count; k++)
-			if (strcmp(vertex->properties[k].name, names[i]) == 0)
-				p->drops_any = p->dropped[k] = true;
+			if (strcmp(vertex->properties[k].name, names[i]) == 0) {
+				p->instead[k] = instead;
+				p->changes_any = true;
+				instead = DROPPED;
+			}
+		p->value_count++;
 	}
 }
 
@@ -67,20 +85,22 @@ static nt_status plan_properties(plan *p, bool bitangents)
 		const size_t count = p->source->header.elements[i].property_count;
 		most = count > most ? count : most;
 	}
-	p->dropped = nt_calloc(vertex->property_count, sizeof *p->dropped);
+	p->instead = nt_alloc(vertex->property_count, sizeof *p->instead);
 	p->spans = nt_alloc(most, sizeof *p->spans);
 	p->row_offsets = nt_alloc(p->n.row_count, sizeof *p->row_offsets);
-	if (!p->dropped || !p->spans || !p->row_offsets)
+	if (!p->instead || !p->spans || !p->row_offsets)
 		return nt_fail_memory(p->error);
+	for (size_t i = 0; i < vertex->property_count; i++)
+		p->instead[i] = KEPT;
 	/* bitangents of other tangents must not stay */
 	p->new_bitangents = p->new_tangents && p->mesh->normals &&
 		(bitangents || ply_find_property(vertex, "bx") != PLY_NO_PROPERTY);
 	if (p->new_normals)
-		add_extras(p, normals, 3);
+		add_values(p, normals, 3, true);
 	if (p->new_tangents)
-		add_extras(p, tangents, 4);
+		add_values(p, tangents, 4, false);
 	if (p->new_bitangents)
-		add_extras(p, bitangent_names, 3);
+		add_values(p, bitangent_names, 3, false);
 	return NT_OK;
 }
 
@@ -145,12 +165,13 @@ static void write_property(const plan *p, const ply_element *element, size_t num
 		nt_buffer_format(&p->out->buffer, "property list %s %s %s%s",
 			ply_type_name(property->count_type), ply_type_name(p->index_type),
 			property->name, p->source->header.newline);
-	else if (element != p->source->vertex || !p->dropped[number])
+	else if (element != p->source->vertex || p->instead[number] != DROPPED)
 		nt_buffer_append(&p->out->buffer, line, size);
 	if (element == p->source->vertex && number + 1 == element->property_count)
-		for (size_t i = 0; i < p->extra_count; i++)
-			nt_buffer_format(&p->out->buffer, "property float %s%s", p->extra_names[i],
-				p->source->header.newline);
+		for (size_t i = 0; i < p->value_count; i++)
+			if (p->appended[i])
+				nt_buffer_format(&p->out->buffer, "property float %s%s", p->names[i],
+					p->source->header.newline);
 }
 
 /* Walks the lines of the source's header once more. */
@@ -247,11 +268,11 @@ static void end_row(const plan *p)
 
 /* Vertices. */
 
-static void write_extras(const plan *p, size_t vertex)
+/* The new values of a vertex, in the order of their names. */
+static void find_values(const plan *p, size_t vertex, float values[PLY_MOST_FLOATS])
 {
 	const float *normals = p->mesh->normals;
 	const float *n = normals ? normals + 3 * ply_mesh_vertex(&p->n, vertex) : NULL;
-	float values[PLY_MOST_FLOATS];
 	size_t count = 0;
 	if (p->new_normals) {
 		memcpy(values, n, 3 * sizeof *values);
@@ -263,24 +284,38 @@ static void write_extras(const plan *p, size_t vertex)
 		count += 4;
 		if (p->new_bitangents)
 			nt_bitangent(n, t, values + count);
-		count += p->new_bitangents ? 3 : 0;
 	}
-	ply_put_floats(p->out, values, count);
 }
 
-/* The row at the cursor without what is dropped; spans are set when something is. */
-static void write_kept(const plan *p, const unsigned char *begin, const unsigned char *end)
+/* A value of the row as it is, where the new one is the same number. */
+static bool is_same(const plan *p, const ply_property *property, span old, float value)
 {
-	if (!p->drops_any) {
+	float number;
+	if (p->cursor.encoding != PLY_ASCII)
+		number = ply_load_float(old.begin, property->type, ply_swaps(p->cursor.encoding));
+	else if (!ply_read_float(old.begin, old.end, &number))
+		return false;
+	return memcmp(&number, &value, sizeof value) == 0;
+}
+
+/* The row at the cursor with new values in it; spans are set when there are any. */
+static void write_row(const plan *p, const unsigned char *begin, const unsigned char *end, const float *values)
+{
+	if (!p->changes_any) {
 		write_span(p, begin, end);
 		return;
 	}
 	bool first = true;
 	for (size_t i = 0; i < p->source->vertex->property_count; i++) {
-		if (p->dropped[i])
+		const ply_property *property = &p->source->vertex->properties[i];
+		const int number = p->instead[i];
+		if (number == DROPPED)
 			continue;
 		write_gap(p, first);
-		write_span(p, p->spans[i].begin, p->spans[i].end);
+		if (number == KEPT || is_same(p, property, p->spans[i], values[number]))
+			write_span(p, p->spans[i].begin, p->spans[i].end);
+		else
+			ply_put_value(p->out, values[number], property->type);
 		first = false;
 	}
 }
@@ -292,22 +327,28 @@ static nt_status write_vertex(plan *p, size_t vertex)
 	if (ascii)
 		ply_next_row(&p->cursor);
 	const unsigned char *begin = p->cursor.at, *end;
-	if (ascii && !p->drops_any) {
+	if (ascii && !p->changes_any) {
 		end = begin;
 		while (end < p->cursor.end && !ply_is_line_end(*end))
 			end++;
 		p->cursor.at = end;
 		while (end > begin && ply_is_blank(end[-1]))
 			end--;
-	} else if (!ascii && !element->has_list && !p->drops_any) {
+	} else if (!ascii && !element->has_list && !p->changes_any) {
 		p->cursor.at = end = begin + element->row_bytes;
 	} else {
 		if (!span_row(p, element))
 			return fail_changed(p);
 		end = p->cursor.at;
 	}
-	write_kept(p, begin, end);
-	write_extras(p, vertex);
+	float values[PLY_MOST_FLOATS];
+	find_values(p, vertex, values);
+	write_row(p, begin, end, values);
+	size_t appended = 0;
+	for (size_t i = 0; i < p->value_count; i++)
+		if (p->appended[i])
+			values[appended++] = values[i];
+	ply_put_floats(p->out, values, appended);
 	end_row(p);
 	return ply_drain(p->out, p->error);
 }
@@ -561,7 +602,7 @@ nt_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply
 		return ply_put_bytes(out, scene->bytes, scene->byte_count, error);
 	const nt_status status = write_changed(&p, options->bitangents);
 	ply_numbering_free(&p.n);
-	free(p.dropped);
+	free(p.instead);
 	free(p.spans);
 	free(p.row_offsets);
 	return status;

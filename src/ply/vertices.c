@@ -301,11 +301,8 @@ nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *so
 	if (!add_attribute(&r, arena, roles->color, 4, false, &mesh->colors))
 		return nt_fail_memory(error);
 	/* integer colours become 0 to 1, float ones are taken as they are */
-	static const float largest[] = {[PLY_INT8] = 127.0f, [PLY_UINT8] = 255.0f,
-		[PLY_INT16] = 32767.0f, [PLY_UINT16] = 65535.0f, [PLY_INT32] = 2147483647.0f,
-		[PLY_UINT32] = 4294967295.0f, [PLY_FLOAT32] = 1.0f, [PLY_FLOAT64] = 1.0f};
 	for (size_t i = first_color; i < r.target_count; i++)
-		r.targets[i].divisor = largest[element->properties[r.targets[i].property].type];
+		r.targets[i].divisor = (float)ply_one(element->properties[r.targets[i].property].type);
 	if (mesh->colors && roles->color[3] == PLY_NO_PROPERTY)
 		for (size_t i = 0; i < element->count; i++)
 			mesh->colors[4 * i + 3] = 1.0f;

@@ -193,8 +193,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"those that it has.",
 		"Nothing; normalise the normals on export to be rid of the finding.",
 		"an OBJ triangle with \"vn 0 0 .5\""),
-	ROW(REFERENCE_LOST, WARNING, "w--", "{count} {reference is|references are} not in the output",
-		"Something the input refers to has no place in the output's format.",
+	ROW(REFERENCE_LOST, WARNING, "w--", "{count} {part of the input is|parts of the input are} not in the output",
+		"Something that the input has or refers to has no place in the output's format, or none that nmtan "
+		"knows: animations in PLY, a PLY's property \"quality\" in glTF.",
 		"Choose another output format, or add it again by hand.",
 		"a glTF with animations that is written as PLY"),
 

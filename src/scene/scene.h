@@ -317,6 +317,10 @@ typedef struct nt_scene {
 
 	bool solves_quads; /* what wrote the input solves tangents on quads: Blender */
 
+	const char *left_out; /* names of what the source has for vertices and faces, and the scene has not; NULL:
+	                         nothing */
+	size_t left_out_count;
+
 	/* What a reader keeps for the writer of the same format, and the input's bytes. */
 	void *source;
 	void (*free_source)(void *source);

@@ -27,6 +27,17 @@ is "$(cat "$WORK/err.txt")" "nmtan: q.obj: left out of the output: 1 IMAGE_MISSI
 run -q --ignore=IMAGE_MISSING,MATERIAL_LOST q.obj q.glb
 silent
 
+scene "and properties of a PLY that glTF has no place for"
+sed 's/^property float x$/property float quality\n&/; /^end_header/q' "$data/quad_ascii.ply" >q.ply
+sed '1,/^end_header/d; /^[0-9]* [0-9]* [0-9]* [0-9]*$/!{/^[34] /!s/^/0.5 /}' "$data/quad_ascii.ply" >>q.ply
+run -q q.ply q.glb
+exits 0
+is "$(cat "$WORK/err.txt")" "nmtan: q.ply: left out of the output: 1 REFERENCE_LOST"
+run q.ply q.glb
+says "1 part of the input is not in the output: vertex quality"
+run -q q.ply again.ply
+silent
+
 scene "vertices on a mirror seam are split, and no others"
 cp "$data/bumps.png" .
 run "$data/mirrored_cube.obj" cube.glb

@@ -97,11 +97,11 @@ TEST(indices_out_of_range_are_named)
 TEST(bytes_that_are_no_text_are_refused)
 {
 	reading r;
-	open_bytes(&r, "v 0 0 0\n\0\0\0\n", 12, 1);
+	open_bytes(&r, "v 0 0 0\n\0\0x\n", 12, 1);
 	assert_int_equal(r.status, NT_ERROR_INPUT);
 	assert_int_equal(r.error.place.line, 2);
 	assert_string_equal(r.error.message,
-		"found \"\\x00\\x00\\x00\", expected a statement of an OBJ file");
+		"found \"\\x00\\x00x\", expected a statement of an OBJ file");
 	close_reading(&r);
 	open_bytes(&r, "v 0 0\0000\n", 9, 1);
 	assert_int_equal(r.status, NT_ERROR_INPUT);
@@ -113,6 +113,25 @@ TEST(bytes_that_are_no_text_are_refused)
 	close_reading(&r);
 	assert_fails("\xFF\xFEv\n", 1, "found \"\\xff\\xfev\", expected a statement of an OBJ file");
 	assert_fails("# fine\n\x7F" "ELF\n", 2, "found \"\\x7fELF\", expected a statement of an OBJ file");
+}
+
+/* A line of a few NUL, which ZBrush writes, is counted; a hole in a file is none. */
+TEST(lines_of_nul_alone_are_passed_over)
+{
+	static const char text[] = TRIANGLE "\0\nf 1 2 3\n\0 \0\r\n";
+	char hole[4096 + sizeof text] = {0};
+	reading r;
+	open_bytes(&r, text, sizeof text - 1, 1);
+	assert_int_equal(r.status, NT_OK);
+	assert_int_equal(r.scene.findings.count, 1);
+	assert_int_equal(r.scene.findings.items[0].code, NT_CODE_STATEMENT_IGNORED);
+	assert_int_equal(r.scene.findings.items[0].count, 2);
+	assert_int_equal(r.scene.findings.items[0].place.line, 4);
+	close_reading(&r);
+	memcpy(hole + 4096, "\n" TRIANGLE "f 1 2 3\n", sizeof "\n" TRIANGLE "f 1 2 3\n");
+	open_bytes(&r, hole, 4096 + strlen("\n" TRIANGLE "f 1 2 3\n"), 1);
+	assert_int_equal(r.status, NT_ERROR_INPUT);
+	close_reading(&r);
 }
 
 /* Whatever a file is cut to, it is read or refused with a line; the sanitizers watch. */

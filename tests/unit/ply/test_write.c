@@ -151,6 +151,7 @@ TEST(split_vertices_are_appended_with_all_properties)
 		"100 3 0 1 2 .5\r\n101 3 4 5 3 .25\r\n");
 }
 
+/* Where they are and as they are typed. */
 TEST(old_tangents_and_bitangents_are_replaced)
 {
 	static const char *const input = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float tx\n"
@@ -163,10 +164,29 @@ TEST(old_tangents_and_bitangents_are_replaced)
 	assert_true(r.scene.meshes->has_tangents);
 	SET_SPLIT(&r, 0, NULL, 0, 1, 2);
 	/* B = (0,0,1) x (k,0,0) = (0,k,0); -0 comes from 0 * 0 - 1 * 0 in x */
-	assert_written(&r, false, HEAD("3") NORMAL TANGENT
-		BITANGENT "element face 1\n" LIST "end_header\n"
-		"0 0 0 0 0 1 0 0 0 1 0 0 0\n1 0 0 0 0 1 1 0 0 1 0 1 0\n0 1 0 0 0 1 2 0 0 1 0 2 0\n"
-		"3 0 1 2\n");
+	assert_written(&r, false, "ply\nformat ascii 1.0\nelement vertex 3\nproperty float tx\n" XYZ BITANGENT
+		"property double ty\nproperty float tz\nproperty float tw\n" NORMAL "element face 1\n" LIST
+		"end_header\n0 0 0 0 0 0 0 0 0 1 0 0 1\n1 1 0 0 0 1 0 0 0 1 0 0 1\n"
+		"2 0 1 0 0 2 0 0 0 1 0 0 1\n3 0 1 2\n");
+}
+
+/* Normals that are made take the type of those that are there: of char 1 is 127. Those that stay keep their bytes, and
+ * integers are no tangents. */
+TEST(new_values_keep_place_and_type)
+{
+	static const char *const input = "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ
+		"property char nx\nproperty short ny\nproperty double nz\nproperty char tx\nproperty char ty\n"
+		"property char tz\nproperty char tw\nelement face 1\n" LIST
+		"end_header\n0 0 0 0 0 0 1 2 3 4\n1 0 0 0 0 1.50 1 2 3 4\n0 1 0 0 0 0 1 2 3 4\n3 0 1 2\n";
+	reading r;
+	open_text(&r, input);
+	nt_mesh *mesh = r.scene.meshes;
+	mesh->normals = (float[]){1, 0, 0, 0, 0, 1.5f, 0.6f, -0.8f, 0};
+	mesh->normals_made = true;
+	SET_SPLIT(&r, 0, NULL, 0, 1, 2);
+	assert_written(&r, false, "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ
+		"property char nx\nproperty short ny\nproperty double nz\n" TANGENT "element face 1\n" LIST
+		"end_header\n0 0 0 127 0 0 0 0 0 1\n1 0 0 0 0 1.50 1 0 0 1\n0 1 0 76 -26214 0 2 0 0 1\n3 0 1 2\n");
 }
 
 TEST(normals_that_were_made_are_written)
