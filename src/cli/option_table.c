@@ -34,6 +34,10 @@ const nt_option_row nt_option_rows[] = {
 		"glTF: each primitive is solved by itself, or those of a mesh that share texture coordinates as "
 		"one, as bakers do",
 		SETTING(across), false},
+	{"transform", 0, NT_OPTION_CHOICE, "bake|keep", NT_TRANSFORM_BAKE, 0, "bake",
+		"if a material transforms texture coordinates; bake: tangents follow the result; keep: they follow "
+		"those of the file, for a renderer that turns TANGENT itself",
+		SETTING(transform), false},
 	{"quads", 0, NT_OPTION_CHOICE, "auto|off|pairs", NT_QUADS_AUTO, 0, "auto",
 		"glTF: triangles that are solved as quads, as bakers do; auto: where FB_ngon_encoding or the input's "
 		"own tangents say so; pairs: each triangle with the next one where both make a quad",

@@ -86,6 +86,7 @@ typedef struct nt_gltf {
 	bool is_glb;
 	nt_glb glb;
 	bool allow_outside;
+	bool keeps_transforms;   /* texture transforms turn no tangents: set before meshes are described */
 	nt_gltf_buffer *buffers; /* [buffer_count] */
 	size_t buffer_count;
 	nt_gltf_buffer *virtuals;  /* [virtual_count] decompressed views; buffer NT_GLTF_VIRTUAL + i */

@@ -87,6 +87,11 @@ static nt_status read_transform(const nt_gltf *document, const nt_json_value *te
 	if (!status)
 		status = read_pair(json, place, "offset", uv->offset, error);
 	uv->offset[1] = -uv->offset[1];
+	if (document->keeps_transforms) {
+		uv->rotation = 0;
+		uv->scale[0] = uv->scale[1] = 1;
+		return status;
+	}
 	transform->animated = is_animated(document, place);
 	transform->turns = transform->animated || uv->rotation != 0 || uv->scale[0] != 1 || uv->scale[1] != 1;
 	return status;

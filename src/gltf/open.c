@@ -228,6 +228,7 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	nt_status status = nt_gltf_create(&document, scene, options->allow_outside, error);
 	if (status)
 		return status;
+	document->keeps_transforms = options->keeps_transforms;
 	scene->source = document;
 	scene->free_source = nt_gltf_free;
 	scene->read_of_source = count_read;

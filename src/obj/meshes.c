@@ -331,8 +331,9 @@ static nt_status set_name(builder *b, nt_mesh *mesh, size_t m)
 
 /* What its materials ask for: slots, how normal maps are sampled. Where several differ, they are mirrored alike (see
  * spans.c), which is all that tangents know of. */
-static nt_status set_slots(nt_scene *scene, nt_mesh *mesh, nt_error *error)
+static nt_status set_slots(const obj_file *file, nt_mesh *mesh, nt_error *error)
 {
+	nt_scene *scene = file->scene;
 	nt_uv_transform transform = {.scale = {1, 1}};
 	bool clamps = false, repeats = false;
 	for (size_t i = 0, maps = 0; i < mesh->primitive_count; i++) {
@@ -356,7 +357,7 @@ static nt_status set_slots(nt_scene *scene, nt_mesh *mesh, nt_error *error)
 	}
 	for (int axis = 0; axis < 2; axis++)
 		mesh->wrap[axis] = clamps && !repeats ? NT_WRAP_CLAMP : NT_WRAP_REPEAT;
-	return mesh->texcoords && (transform.scale[0] != 1 || transform.scale[1] != 1)
+	return mesh->texcoords && !file->keeps_transforms && (transform.scale[0] != 1 || transform.scale[1] != 1)
 		? nt_mesh_transform(mesh, &transform, &scene->arena, error) : NT_OK;
 }
 
@@ -379,7 +380,7 @@ static nt_status make_mesh(builder *b, size_t m)
 	const nt_status face_status = set_faces(b, mesh, m);
 	if (face_status)
 		return face_status;
-	const nt_status slot_status = set_slots(file->scene, mesh, b->error);
+	const nt_status slot_status = set_slots(file, mesh, b->error);
 	if (slot_status)
 		return slot_status;
 	nt_instance *instance = &file->scene->instances[m];

@@ -155,6 +155,7 @@ typedef struct obj_file {
 	obj_polygon *polygons;
 	size_t polygon_count;
 	bool uses_smoothing;
+	bool keeps_transforms; /* of nt_read_options */
 
 	obj_mesh *meshes; /* [mesh_count + 1]: behind the last one, where the file ends */
 	size_t mesh_count;

@@ -363,7 +363,8 @@ nt_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error 
 {
 	/* a file of a chunk or two is read before a second thread has begun */
 	const bool small = scene->byte_count <= 2 * CHUNK_BYTES;
-	obj_file file = {.scene = scene, .threads = small ? 1 : nt_thread_count(options->threads)};
+	obj_file file = {.scene = scene, .threads = small ? 1 : nt_thread_count(options->threads),
+		.keeps_transforms = options->keeps_transforms};
 	scene->format = NT_FORMAT_OBJ;
 	nt_status status = split(&file, error);
 	if (!status)

@@ -385,6 +385,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	r.read_options = (nt_read_options){.texcoord_set = settings->texcoord_set,
 		.allow_outside = settings->allow_outside, .morphs = settings->morphs,
 		.report = settings->report != NULL, .across = settings->across == NT_ACROSS_MESH,
+		.keeps_transforms = settings->transform == NT_TRANSFORM_KEEP,
 		.threads = settings->threads,
 		.draco = settings->draco};
 	memcpy(r.read_options.draco_bits, settings->draco_bits, sizeof r.read_options.draco_bits);

@@ -72,6 +72,7 @@ typedef struct nt_settings {
 	nt_existing existing;
 	nt_normals normals;
 	nt_across across;
+	nt_transform_choice transform;
 	nt_quads quads;
 	nt_images images;
 	nt_buffers buffers;

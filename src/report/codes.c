@@ -392,9 +392,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(TAN_DIRECTION_MISMATCH, WARNING, "w--",
 		"{count} {corner has a tangent|corners have tangents} more than 30 degrees off",
 		"Compared with a fresh MikkTSpace solve of the same mesh. The histogram of angles says what "
-		"kind of difference it is: all near 90 degrees means u and v exchanged or a rotated UV "
-		"transform, a broad one means tangents of other texture coordinates. An info below 1 % of the "
-		"corners.",
+		"kind of difference it is: all near 90 degrees means u and v exchanged, a broad one means tangents of "
+		"other texture coordinates. The finding says so if they are right without the material's texture "
+		"transform: Blender's exporter, glTF-Transform and gltfpack write those, and most renderers show them "
+		"turned (nmtan-engines(7)). An info below 1 % of the corners.",
 		"Compute the tangents again, or select the UV set they were made for with --uv.",
 		"a quad in the xy plane with tangents along y"),
 	ROW(TAN_NOT_ORTHOGONAL, WARNING, "w--",

@@ -146,7 +146,18 @@ nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64
 	}
 	maker->off_mikktspace = off_mikktspace;
 	maker->known = maker->agreement >= NT_MAKER_SHARE;
-	return NT_OK;
+	if (maker->known || !mesh->solve_texcoords)
+		return NT_OK;
+	nt_mesh plain = *mesh;
+	plain.solve_texcoords = NULL;
+	nt_maker of_plain;
+	const nt_status status = nt_find_maker(&plain, halves, border, threads, &of_plain);
+	if (!status && of_plain.known) {
+		*maker = of_plain;
+		maker->untransformed = true;
+		maker->off_mikktspace = off_mikktspace;
+	}
+	return status;
 }
 
 bool nt_maker_is_mikktspace(const nt_maker *maker)
@@ -161,8 +172,9 @@ void nt_maker_text(const nt_maker *maker, nt_buffer *out)
 		"MikkTSpace with its edges sorted"};
 	if (!maker->known)
 		return;
-	nt_buffer_format(out, "%s%s%s%s", methods[maker->method], maker->quads ? ", on quads" : "",
-		maker->across ? ", across primitives" : "", maker->inverted ? ", w inverted" : "");
+	nt_buffer_format(out, "%s%s%s%s%s", methods[maker->method], maker->quads ? ", on quads" : "",
+		maker->across ? ", across primitives" : "",
+		maker->untransformed ? ", without the texture transform" : "", maker->inverted ? ", w inverted" : "");
 	if (!nt_maker_is_mikktspace(maker) && maker->off_mikktspace > maker->degrees)
 		nt_buffer_format(out,
 			": a map baked in MikkTSpace is shown up to %g degrees off, but for 1 %% of the corners",

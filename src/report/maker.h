@@ -17,6 +17,7 @@ typedef struct nt_maker {
 	nmtan_method method;
 	bool quads;           /* on quads whose halves the file has */
 	bool inverted;        /* w is, nearly everywhere, the other one than nmtan's */
+	bool untransformed;   /* of texture coordinates that the material's transform did not turn */
 	bool across;          /* known away from the primitive's border alone: of the whole glTF mesh */
 	double agreement;     /* share of the corners whose tangent is within `degrees` */
 	double degrees;       /* 0.1, or what the tangents' precision allows */
@@ -37,7 +38,8 @@ nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, const uin
 
 /* Finds the maker of a mesh's own tangents: the first of MikkTSpace as published and sorted, area, lengyel and robust,
  * each on triangles and on quads, with which most corners agree, if these are NT_MAKER_SHARE of all. Where nearly all
- * agree no other is tried. `halves` [face_count]: enum nt_half; NULL: no quads; `border` as above. Returns NT_OK or
+ * agree no other is tried; if none is it and a texture transform turns the mesh's coordinates, all are tried on
+ * those of the file. `halves` [face_count]: enum nt_half; NULL: no quads; `border` as above. Returns NT_OK or
  * NT_ERROR_MEMORY. */
 nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
 	nt_maker *maker);

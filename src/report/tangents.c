@@ -416,7 +416,8 @@ static nt_status check_directions(nt_check *check, const float *fresh, const uin
 	nt_tally_number(&wrong, "worst_degrees", worst);
 	nt_check_report_as(check, &wrong,
 		share > MISMATCH_SHARE ? severity_of(check, wrong.code) : NT_SEVERITY_INFO,
-		"%.3g %% of the corners, the worst by %.4g degrees", 100.0 * share, worst);
+		"%.3g %% of the corners, the worst by %.4g degrees%s", 100.0 * share, worst,
+		check->facts->maker.untransformed ? ", they were made without the texture transform" : "");
 	return NT_OK;
 }
 

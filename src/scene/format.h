@@ -36,6 +36,12 @@ typedef enum nt_quads {
 	NT_QUADS_PAIRS /* each triangle with the next one where they have an edge in common */
 } nt_quads;
 
+/* Whose directions tangents follow if a material's texture transform turns or scales its coordinates. */
+typedef enum nt_transform_choice {
+	NT_TRANSFORM_BAKE, /* of the coordinates that a sampler sees */
+	NT_TRANSFORM_KEEP  /* of those in the file: a renderer turns TANGENT itself */
+} nt_transform_choice;
+
 /* TANGENT of the morph targets of primitives that get tangents. */
 typedef enum nt_morph_choice {
 	NT_MORPH_BAKE, /* what to add to the base's, by a solve of the mesh as the target moves it */
@@ -97,6 +103,7 @@ typedef struct nt_read_options {
 	bool world;         /* the output is one mesh in the world: instances and colours are wanted too */
 	nt_morph_choice morphs; /* targets are loaded where they are to be baked */
 	bool report;        /* meshes that get no tangents are loaded too, to be checked */
+	bool keeps_transforms; /* NT_TRANSFORM_KEEP */
 	bool across;        /* and those that contribute to others: NT_ACROSS_MESH */
 	bool checks_kept;   /* kept tangents are checked against a solve with others */
 	bool edits;         /* the output is the source's document, edited */

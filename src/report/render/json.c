@@ -274,11 +274,11 @@ static void put_maker(nt_buffer *out, const nt_maker *maker)
 	open(out, "made_by", "{");
 	separate(out, SAME_LINE);
 	nt_buffer_format(out,
-		"\"method\":\"%s\",\"faces\":\"%s\",\"across\":\"%s\",\"w\":\"%s\","
+		"\"method\":\"%s\",\"faces\":\"%s\",\"across\":\"%s\",\"transform\":\"%s\",\"w\":\"%s\","
 		"\"agreement\":%.6g,\"within_degrees\":%g}",
 		maker->known ? methods[maker->method] : "unknown", maker->quads ? "quads" : "triangles",
-		maker->across ? "mesh" : "primitive", maker->inverted ? "inverted" : "right", maker->agreement,
-		maker->degrees);
+		maker->across ? "mesh" : "primitive", maker->untransformed ? "keep" : "bake",
+		maker->inverted ? "inverted" : "right", maker->agreement, maker->degrees);
 }
 
 /* What splitting costs, and the texture that density is measured by. */
