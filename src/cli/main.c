@@ -89,16 +89,14 @@ static void end_unread(void)
 	raise(SIGPIPE);
 }
 
-/* Prints what was asked for; that it arrived is part of the success. */
-static int print_text(void (*make)(nt_buffer *out), nt_style style)
+/* Prints and frees what was asked for; that it arrived is part of the success. */
+static int print_text(nt_buffer *text, nt_style style)
 {
-	nt_buffer text = {0};
 	nt_error error;
-	make(&text);
-	const bool made = !text.failed;
-	const bool written = made && fwrite(text.data, 1, text.size, stdout) == text.size && fflush(stdout) == 0;
+	const bool made = !text->failed;
+	const bool written = made && fwrite(text->data, 1, text->size, stdout) == text->size && fflush(stdout) == 0;
 	const int number = errno;
-	nt_buffer_free(&text);
+	nt_buffer_free(text);
 	if (!written && reader_is_gone())
 		end_unread();
 	if (written)
@@ -109,11 +107,6 @@ static int print_text(void (*make)(nt_buffer *out), nt_style style)
 		nt_fail_memory(&error);
 	nt_say_error(&error, style);
 	return nt_exit_code(error.status);
-}
-
-static void version_text(nt_buffer *out)
-{
-	nt_buffer_format(out, "nmtan %s\n", nmtan_version());
 }
 
 static void libraries_text(nt_buffer *out)
@@ -176,15 +169,14 @@ static int tell_run(session *s, nt_job *job)
 	const bool fails = !job->status && !c->diff && findings_fail(summary, least_failure);
 	const nt_style style = {s->style.colour, s->style.verbosity, fails || job->status};
 	/* a report on standard output says it better */
-	const char *report = s->plan->target.path;
-	if (s->style.verbosity >= 0 && !(report && strcmp(report, "-") == 0)) {
+	const bool shown = s->plan->target.path && strcmp(s->plan->target.path, "-") == 0;
+	if (fails && !shown)
+		nt_message_failure(&s->text, summary->report, job->input, NULL, least_failure, s->style);
+	if (s->style.verbosity >= 0 && !shown) {
 		const bool infos = c->settings.check || s->style.verbosity > 0;
-		if (fails && !report)
-			nt_message_failure(&s->text, job, least_failure, s->style);
-		nt_message_findings(&s->text, &summary->findings, job->input, infos, s->plan->options.min_severity,
-			fails && !report ? least_failure - 1 : NT_SEVERITY_ERROR, style);
-	}
-	else if (s->style.verbosity < 0 && !job->status && !c->settings.check)
+		nt_message_findings(&s->text, &summary->findings, summary->report, s->plan->options.ignore, job->input,
+			infos, s->plan->options.min_severity, fails ? least_failure - 1 : NT_SEVERITY_ERROR, style);
+	} else if (s->style.verbosity < 0 && !job->status && !c->settings.check)
 		nt_message_left_out(&s->text, job, s->plan->options.ignore);
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
 	if (job->status) {
@@ -331,6 +323,9 @@ static void tell_diff(session *s)
 	for (int severity = target.style.least_failure; severity <= NT_SEVERITY_ERROR; severity++)
 		if (diff.by_severity[1][severity])
 			s->exit_code = nt_exit_worse(s->exit_code, NT_EXIT_FINDINGS);
+	if (!target.path || strcmp(target.path, "-") != 0)
+		nt_message_failure(&s->text, s->reports[1], s->command->operands[1], diff.known[1],
+			target.style.least_failure, s->style);
 	target.diff = &diff;
 	if (target.path && nt_report_to_file(s->reports, s->report_count, &target, &error))
 		tell_report_error(s, &error, target.path);
@@ -687,19 +682,32 @@ int main(int argc, char **argv)
 		return NT_EXIT_USAGE;
 	}
 	style.verbosity = command.verbosity;
+	nt_buffer text = {0};
 	switch (command.action) {
 	case NT_ACTION_HELP:
-		return print_text(nt_options_help, style);
+		nt_options_help(&text);
+		break;
 	case NT_ACTION_VERSION:
-		return print_text(style.verbosity > 0 ? libraries_text : version_text, style);
+		if (style.verbosity > 0)
+			libraries_text(&text);
+		else
+			nt_buffer_format(&text, "nmtan %s\n", nmtan_version());
+		break;
 	case NT_ACTION_LIST_CODES:
-		return print_text(nt_codes_list, style);
+		nt_codes_list(&text);
+		break;
+	case NT_ACTION_EXPLAIN:
+		nt_options_explain(command.explain, &text);
+		break;
 	case NT_ACTION_COMPLETION_BASH:
-		return print_text(nt_options_bash, style);
+		nt_options_bash(&text);
+		break;
 	case NT_ACTION_COMPLETION_ZSH:
-		return print_text(nt_options_zsh, style);
+		nt_options_zsh(&text);
+		break;
 	default:
 		limit_memory(&command);
 		return run(&command, style, may_colour && isatty(STDOUT_FILENO));
 	}
+	return print_text(&text, style);
 }

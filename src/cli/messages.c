@@ -5,6 +5,7 @@
 #include "cli/messages.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/counts.h"
@@ -72,14 +73,14 @@ static nt_severity shown_severity(const nt_finding *finding, nt_style style)
 	return style.fails || severity < NT_SEVERITY_ERROR ? severity : NT_SEVERITY_WARNING;
 }
 
-/* All findings of one code and severity, those beyond PLACES_SHOWN as a number. */
-static void append_code(nt_buffer *out, const nt_finding_list *findings, nt_code code, nt_severity severity,
-	const char *file, nt_style style)
+/* All findings of one code and severity but for `old` ones, those beyond PLACES_SHOWN as a number. */
+static void append_code(nt_buffer *out, const nt_finding_list *findings, const bool *old, nt_code code,
+	nt_severity severity, const char *file, nt_style style)
 {
 	size_t shown = 0, left_out = 0;
 	for (size_t i = 0; i < findings->count; i++) {
 		const nt_finding *finding = &findings->items[i];
-		if (finding->code != code || shown_severity(finding, style) != severity)
+		if (finding->code != code || shown_severity(finding, style) != severity || old[i])
 			continue;
 		if (shown == PLACES_SHOWN && style.verbosity <= 0) {
 			left_out++;
@@ -96,13 +97,36 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, nt_code
 			nt_severity_name(severity), left_out, nt_code_info(code)->name);
 }
 
-void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, bool infos, int least,
-	int most, nt_style style)
+/* Which findings a report knows from its baseline: those that it has as they are, and those of codes of which a check
+ * finds the places, if all are known. */
+static void find_old(const nt_finding_list *findings, const nt_report *report, bool *old)
 {
+	bool has_known[NT_CODE_COUNT] = {false}, has_new[NT_CODE_COUNT] = {false};
+	for (size_t i = 0; report && i < report->finding_count; i++) {
+		const nt_report_finding *f = &report->findings[i];
+		if (f->noted != NT_NONE)
+			old[f->noted] = f->known;
+		else
+			*(f->known ? &has_known[f->code] : &has_new[f->code]) = true;
+	}
+	for (size_t i = 0; i < findings->count; i++)
+		old[i] |= has_known[findings->items[i].code] && !has_new[findings->items[i].code];
+}
+
+void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report, const bool *ignore,
+	const char *file, bool infos, int least, int most, nt_style style)
+{
+	bool *old = nt_calloc(findings->count, sizeof *old);
+	if (!old) {
+		out->failed = true;
+		return;
+	}
+	find_old(findings, report, old);
 	for (int severity = most; severity >= least; severity--)
 		for (int code = 0; code < NT_CODE_COUNT; code++)
-			if (infos || severity || code == NT_CODE_NMAP_BESIDE)
-				append_code(out, findings, (nt_code)code, (nt_severity)severity, file, style);
+			if ((infos || severity || code == NT_CODE_NMAP_BESIDE) && !ignore[code])
+				append_code(out, findings, old, (nt_code)code, (nt_severity)severity, file, style);
+	free(old);
 }
 
 void nt_message_left_out(nt_buffer *out, const nt_job *job, const bool *ignore)
@@ -127,17 +151,16 @@ void nt_message_left_out(nt_buffer *out, const nt_job *job, const bool *ignore)
 	nt_buffer_text(out, told ? "\n" : "");
 }
 
-void nt_message_failure(nt_buffer *out, const nt_job *job, int least_failure, nt_style style)
+void nt_message_failure(nt_buffer *out, const nt_report *report, const char *file, const bool *known, int least_failure,
+	nt_style style)
 {
-	const nt_report *report = job->outcome->summary.report;
 	size_t shown = 0, more = 0;
 	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *found = &report->findings[i];
-		if (found->known || (int)found->severity < least_failure)
+		if ((known ? known[i] : found->known) || (int)found->severity < least_failure)
 			continue;
 		if (shown++ < PLACES_SHOWN || style.verbosity > 0)
-			append_sentence(out, &found->place, job->input, found->code, found->severity,
-				found->message, style);
+			append_sentence(out, &found->place, file, found->code, found->severity, found->message, style);
 		else
 			more++;
 	}
@@ -189,7 +212,10 @@ static void append_findings_count(nt_buffer *out, const nt_summary *s)
 	if (s->report)
 		memcpy(counts, s->report->by_severity, sizeof counts);
 	if (!counts[0] && !counts[1] && !counts[2]) {
-		nt_buffer_text(out, ", no findings");
+		size_t known = 0;
+		for (int severity = 0; s->report && severity < 3; severity++)
+			known += s->report->known[severity];
+		nt_buffer_format(out, known ? ", nothing new, %zu known" : ", no findings", known);
 		return;
 	}
 	for (int severity = NT_SEVERITY_ERROR; severity >= NT_SEVERITY_INFO; severity--)

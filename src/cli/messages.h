@@ -23,9 +23,10 @@ typedef struct nt_style {
 void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 
 /* Findings of the severities from `most` down to `least` (nt_severity), a few of each code; without `infos`, of these
- * what is proposed alone: "nmtan: file:line: warning: sentence [CODE]". */
-void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, bool infos, int least,
-	int most, nt_style style);
+ * what is proposed alone: "nmtan: file:line: warning: sentence [CODE]". What a report of them ignores or knows from its
+ * baseline is left out; NULL: there is none. */
+void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report, const bool *ignore,
+	const char *file, bool infos, int least, int most, nt_style style);
 
 /* One line, of a quiet run too, where something of the input is not in the output, with the codes that say what but for
  * those of ignore[code]. */
@@ -37,8 +38,10 @@ void nt_message_current(nt_buffer *out, const nt_job *job);
 /* A line for each mesh of the summary's list: what was decided and why, triangles, vertices. */
 void nt_message_meshes(nt_buffer *out, const nt_job *job);
 
-/* The findings for which a run fails, from the severity `least_failure` on; the job has a report. */
-void nt_message_failure(nt_buffer *out, const nt_job *job, int least_failure, nt_style style);
+/* The findings for which a run fails: those of a report from the severity `least_failure` on that are not known.
+ * known: [findings] which are; NULL: as each says. */
+void nt_message_failure(nt_buffer *out, const nt_report *report, const char *file, const bool *known, int least_failure,
+	nt_style style);
 
 /* One line: what happened. */
 void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings);

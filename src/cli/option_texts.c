@@ -85,6 +85,21 @@ void nt_options_usage(nt_buffer *out)
 		"       nmtan --help lists the options\n");
 }
 
+void nt_options_explain(const char *word, nt_buffer *out)
+{
+	bool chosen[NT_CODE_COUNT] = {false}, first = true;
+	nt_error unused;
+	nt_match_codes("explain", word, chosen, &unused);
+	for (unsigned code = 0; code < NT_CODE_COUNT; code++) {
+		const nt_code_row *row = nt_code_info((nt_code)code);
+		if (!chosen[code])
+			continue;
+		nt_buffer_format(out, "%s%s (%s)\n  %s\n  Remedy: %s\n  Smallest example: %s\n", first ? "" : "\n",
+			row->name, nt_severity_name(row->severity), row->meaning, row->remedy, row->example);
+		first = false;
+	}
+}
+
 /* What may be completed as a value: the words of a choice; nothing for numbers; files elsewhere. */
 static bool has_words(const nt_option_row *row)
 {
@@ -152,7 +167,7 @@ void nt_options_bash(nt_buffer *out)
 		nt_buffer_text(out, "\t\treturn ;;\n");
 	}
 	/* bash takes the = of CODE=LEVEL for a word of its own, too */
-	nt_buffer_text(out, "\t[A-Z]*_*)\n\t\tCOMPREPLY=($(compgen -W 'error warning info' -- \"$word\"))\n"
+	nt_buffer_text(out, "\t[A-Z]*_*)\n\t\tCOMPREPLY=($(compgen -W 'error warning info off' -- \"$word\"))\n"
 		"\t\treturn ;;\n");
 	nt_buffer_text(out, "\tesac\n\tif [[ $word == -* ]]; then\n\t\tCOMPREPLY=($(compgen -W '");
 	bool first = true;

@@ -8,7 +8,9 @@
  */
 #include "cli/options.h"
 #include "cli/option_table.h"
+#include "report/codes.h"
 
+#include <fnmatch.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -197,23 +199,47 @@ static size_t distance_of(const char *a, size_t a_length, const char *b, size_t 
 	return rows[a_length % 3][b_length];
 }
 
-/* The option that was probably meant: one that begins so, or at most a third of the letters away. NULL: none. */
-static const nt_option_row *find_nearest(const char *name, size_t length)
+static const char *option_name(size_t number)
 {
-	const nt_option_row *nearest = NULL;
+	const nt_option_row *row = &nt_option_rows[number];
+	return row->kind == NT_OPTION_HEADING || !row->help ? "" : row->name;
+}
+
+static const char *code_name(size_t number)
+{
+	return nt_code_info((nt_code)number)->name;
+}
+
+/* The name that was probably meant: one that begins so, or at most a third of the letters away. NULL: none. */
+static const char *find_nearest(const char *name, size_t length, const char *(*name_of)(size_t number), size_t count)
+{
+	const char *nearest = NULL;
 	size_t least = length / 3 + 1;
-	for (size_t i = 0; i < nt_option_row_count; i++) {
-		const nt_option_row *row = &nt_option_rows[i];
-		if (row->kind == NT_OPTION_HEADING || !row->help)
-			continue;
-		const bool begins = length >= 3 && strncmp(row->name, name, length) == 0;
-		const size_t distance = begins ? 0 : distance_of(name, length, row->name, strlen(row->name));
+	for (size_t i = 0; i < count; i++) {
+		const char *other = name_of(i);
+		const bool begins = length >= 3 && strncmp(other, name, length) == 0;
+		const size_t distance = begins ? 0 : distance_of(name, length, other, strlen(other));
 		if (distance < least) {
 			least = distance;
-			nearest = row;
+			nearest = other;
 		}
 	}
 	return nearest;
+}
+
+nt_status nt_match_codes(const char *option, const char *word, bool chosen[NT_CODE_COUNT], nt_error *error)
+{
+	bool found = false;
+	for (size_t code = 0; code < NT_CODE_COUNT; code++) {
+		const bool matches = fnmatch(word, code_name(code), 0) == 0;
+		chosen[code] |= matches;
+		found |= matches;
+	}
+	if (found)
+		return NT_OK;
+	const char *nearest = find_nearest(word, strlen(word), code_name, NT_CODE_COUNT);
+	return nt_fail(error, NT_ERROR_USAGE, "--%s: '%s' is no code of a finding; %s%s%s", option, word,
+		nearest ? "did you mean " : "--list-codes shows them all", nearest ? nearest : "", nearest ? "?" : "");
 }
 
 /* --name, --name=value, --name value. *used becomes 2 where the next word belongs to it. */
@@ -223,9 +249,9 @@ static nt_status parse_long(parser *p, const char *word, const char *next, int *
 	const size_t length = strcspn(name, "=");
 	const nt_option_row *row = find_long(name, length);
 	if (!row) {
-		const nt_option_row *nearest = find_nearest(name, length);
+		const char *nearest = find_nearest(name, length, option_name, nt_option_row_count);
 		return nt_fail(p->error, NT_ERROR_USAGE, "unknown option '%.*s'%s%s%s", (int)length + 2, word,
-			nearest ? "; did you mean --" : "", nearest ? nearest->name : "", nearest ? "?" : "");
+			nearest ? "; did you mean --" : "", nearest ? nearest : "", nearest ? "?" : "");
 	}
 	const char *value = name[length] ? name + length + 1 : NULL;
 	if (!row->values) {
@@ -491,6 +517,11 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 	command->operand_count = (size_t)(kept - first);
 	if (command->settings.check && !given(&p, "fail-on"))
 		command->fail_on = NT_FAIL_ON_ERROR;
+	bool chosen[NT_CODE_COUNT] = {false};
+	if (command->action == NT_ACTION_RUN && command->explain) {
+		command->action = NT_ACTION_EXPLAIN;
+		return nt_match_codes("explain", command->explain, chosen, error);
+	}
 	if (command->action != NT_ACTION_RUN)
 		return NT_OK;
 	command->settings.texture_path_count = command->texture_paths.count;

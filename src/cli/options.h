@@ -17,6 +17,7 @@ enum nt_action {
 	NT_ACTION_HELP,
 	NT_ACTION_VERSION,
 	NT_ACTION_LIST_CODES,
+	NT_ACTION_EXPLAIN,
 	NT_ACTION_COMPLETION_BASH,
 	NT_ACTION_COMPLETION_ZSH
 };
@@ -44,6 +45,7 @@ typedef struct nt_command {
 	bool timing;
 	const char *report;    /* file, "-"; NULL: none */
 	int report_format;     /* 1 + nt_report_format; 0: by name */
+	const char *explain;   /* CODE, or a pattern; NULL: nothing */
 	const char *ignore;    /* CODE,CODE; NULL: nothing */
 	const char *severity;  /* CODE=LEVEL,CODE=LEVEL; NULL: none */
 	const char *baseline;  /* file; NULL: none */
@@ -98,6 +100,13 @@ void nt_options_shaping(const nt_command *command, nt_buffer *out);
 /* What --help prints, and the two lines that follow a mistake. */
 void nt_options_help(nt_buffer *out);
 void nt_options_usage(nt_buffer *out);
+
+/* Sets what a word means, which is the code of a finding or a pattern with * and ?. An unknown one is NT_ERROR_USAGE,
+ * which names the option and, if there is one, the code that was probably meant. */
+nt_status nt_match_codes(const char *option, const char *word, bool chosen[NT_CODE_COUNT], nt_error *error);
+
+/* Appends what there is to know of the codes that a word of nt_match_codes() means. */
+void nt_options_explain(const char *word, nt_buffer *out);
 
 /* Completion scripts for the two shells. */
 void nt_options_bash(nt_buffer *out);

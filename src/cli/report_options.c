@@ -21,22 +21,13 @@ static bool next_word(const char **list, char *word, size_t size)
 	return true;
 }
 
-static nt_status unknown_code(const char *option, const char *word, nt_error *error)
-{
-	return nt_fail(error, NT_ERROR_USAGE,
-		"--%s: '%s' is no code of a finding; --list-codes shows them all", option, word);
-}
-
 static nt_status read_ignored(nt_report_options *options, const char *list, nt_error *error)
 {
 	char word[128];
-	while (next_word(&list, word, sizeof word)) {
-		nt_code code;
-		if (!nt_code_find(word, &code))
-			return unknown_code("ignore", word, error);
-		options->ignore[code] = true;
-	}
-	return NT_OK;
+	nt_status status = NT_OK;
+	while (!status && next_word(&list, word, sizeof word))
+		status = nt_match_codes("ignore", word, options->ignore, error);
+	return status;
 }
 
 static nt_status read_severities(nt_report_options *options, const char *list, nt_error *error)
@@ -44,17 +35,23 @@ static nt_status read_severities(nt_report_options *options, const char *list, n
 	char word[128];
 	while (next_word(&list, word, sizeof word)) {
 		char *level = strchr(word, '=');
-		nt_code code;
-		nt_severity severity;
+		bool chosen[NT_CODE_COUNT] = {false};
+		nt_severity severity = NT_SEVERITY_INFO;
 		if (!level)
 			return nt_fail(error, NT_ERROR_USAGE, "--severity: '%s' is not CODE=LEVEL", word);
 		*level++ = '\0';
-		if (!nt_code_find(word, &code))
-			return unknown_code("severity", word, error);
-		if (!nt_severity_find(level, &severity))
+		if (nt_match_codes("severity", word, chosen, error))
+			return error->status;
+		const bool off = strcmp(level, "off") == 0;
+		if (!off && !nt_severity_find(level, &severity))
 			return nt_fail(error, NT_ERROR_USAGE,
-				"--severity: '%s' is none of: error warning info", level);
-		options->severity[code] = (uint8_t)(1 + severity);
+				"--severity: '%s' is none of: error warning info off", level);
+		for (size_t code = 0; code < NT_CODE_COUNT; code++) {
+			if (!chosen[code])
+				continue;
+			options->ignore[code] = off;
+			options->severity[code] = (uint8_t)(1 + severity);
+		}
 	}
 	return NT_OK;
 }
@@ -73,7 +70,6 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 	target->path = c->report;
 	/* what fails a run fails its tests */
 	target->style.least_failure = least_severity[c->fail_on];
-	target->style.options = &plan->options;
 	/* who names a format wants to see it */
 	if (!target->path && c->settings.check && (c->verbosity >= 0 || c->report_format))
 		target->path = "-";
@@ -149,9 +145,9 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 	if (!status)
 		status = check_diff(command, error);
 	if (!status)
-		status = read_ignored(&plan->options, command->ignore, error);
-	if (!status)
 		status = read_severities(&plan->options, command->severity, error);
+	if (!status) /* last: a later level does not bring back what is ignored */
+		status = read_ignored(&plan->options, command->ignore, error);
 	if (!status)
 		status = choose_target(plan, command, colour, error);
 	/* people read a few findings; programs, and pages that unfold, take all */

@@ -175,6 +175,7 @@ static void report_tally(nt_check *check, const nt_tally *tally, nt_severity sev
 		.share = tally->share > 0.0 ? tally->share
 					    : fmin(1.0, (double)tally->count / (double)check->surface.triangle_count),
 		.box = tally->box,
+		.noted = NT_NONE,
 		.seam = tally->seam ? tally->seam - 1 : NT_NONE,
 		.island = tally->island ? tally->island - 1 : NT_NONE,
 		.number_count = tally->number_count,
@@ -241,8 +242,9 @@ static uint32_t find_mesh(const mesh_table *table, const nt_place_view *place)
 	return number == UINT32_MAX ? NT_NONE : table->meshes[number];
 }
 
-static void add_scene_finding(nt_check *check, const mesh_table *table, const nt_finding *found)
+static void add_scene_finding(nt_check *check, const mesh_table *table, const nt_finding_list *all, uint32_t noted)
 {
+	const nt_finding *found = &all->items[noted];
 	/* the solve counts these too, but does not know where they are: geometry.c does */
 	if (found->code == NT_CODE_UV_DEGENERATE_TRIANGLE || found->code == NT_CODE_UV_UNMAPPED ||
 		found->code == NT_CODE_POS_DEGENERATE_TRIANGLE)
@@ -251,6 +253,7 @@ static void add_scene_finding(nt_check *check, const mesh_table *table, const nt
 		.mesh = find_mesh(table, &found->place),
 		.count = found->count,
 		.share = 1.0,
+		.noted = noted,
 		.box = nt_box_empty(),
 		.seam = NT_NONE,
 		.island = NT_NONE};
@@ -277,7 +280,7 @@ nt_status nt_report_add_findings(nt_check *check, const nt_finding_list *all)
 	mesh_table table = {0};
 	const bool made = make_mesh_table(check->report, &table);
 	for (size_t i = 0; made && i < all->count; i++)
-		add_scene_finding(check, &table, &all->items[i]);
+		add_scene_finding(check, &table, all, (uint32_t)i);
 	nt_name_table_free(&table.keys);
 	free(table.meshes);
 	return made ? NT_OK : NT_ERROR_MEMORY;
@@ -347,12 +350,13 @@ static bool keep_findings(nt_report *report, size_t most)
 	for (size_t i = begin; i < count; i++) {
 		const bool last = i < end && f[i].order == limit && left > 0;
 		left -= last;
-		if (last || (i < end && f[i].order < limit))
+		if (last || (i < end && f[i].order < limit)) {
 			f[report->finding_count++] = f[i];
-		else
+		} else if (!f[i].known) {
 			report->dropped_by_code[f[i].code]++;
+			report->dropped++;
+		}
 	}
-	report->dropped = count - most;
 	free(ranks);
 	return true;
 }
@@ -367,14 +371,14 @@ nt_status nt_report_complete(nt_report *report, const nt_report_options *options
 	if (report->finding_count)
 		qsort(report->findings, report->finding_count, sizeof *report->findings, by_weight);
 	for (size_t i = 0; i < report->finding_count; i++) {
-		if (report->findings[i].known)
-			report->known++;
-		else
-			report->by_severity[report->findings[i].severity]++;
+		const nt_report_finding *f = &report->findings[i];
+		++*(f->known ? &report->known[f->severity] : &report->by_severity[f->severity]);
 	}
 	if (options->max_findings && report->finding_count > options->max_findings &&
 		!keep_findings(report, options->max_findings))
 		return NT_ERROR_MEMORY;
+	while (report->new_count < report->finding_count && !report->findings[report->new_count].known)
+		report->new_count++;
 	return NT_OK;
 }
 

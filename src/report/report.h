@@ -108,6 +108,7 @@ typedef struct nt_report_finding {
 	uint64_t fingerprint;
 	uint64_t geometry;    /* the same without names: digest.h; 0: not known */
 	bool known;           /* the baseline has it */
+	uint32_t noted;       /* index into the scene's findings, NT_NONE: a check found it */
 	uint32_t seam;        /* index into the mesh's seams, NT_NONE */
 	uint32_t island;      /* index into the mesh's islands, NT_NONE */
 	nt_number *numbers;   /* [number_count] at most NT_NUMBER_COUNT */
@@ -234,10 +235,11 @@ typedef struct nt_report {
 	size_t mesh_count;
 	nt_report_finding *findings; /* new ones first, the most severe, what concerns most; of one code together */
 	size_t finding_count;
-	size_t dropped;           /* findings beyond max_findings */
+	size_t new_count;         /* of the findings, those that no baseline knows: the first ones */
+	size_t dropped;           /* new findings beyond max_findings */
 	size_t dropped_by_code[NT_CODE_COUNT]; /* the same */
 	size_t by_severity[3];    /* findings, dropped ones too, that no baseline knows */
-	size_t known;             /* findings that the baseline knows */
+	size_t known[3];          /* by severity: findings that the baseline knows */
 	bool compared;            /* there was a baseline */
 } nt_report;
 

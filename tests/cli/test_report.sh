@@ -111,6 +111,53 @@ for end in '\n' '\r' '\r\n'; do
 		for s in f["spots"] if f["code"] == "UV_UNMAPPED"]')" "[8]"
 done
 
+# A triangle whose texture coordinates are on a line: with --severity=UV_UNMAPPED=error one error, of line 7.
+flat() {
+	printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nvt 1 0\nf 1/1/1 2/2/1 3/1/1\n'
+}
+strict="--check --severity=UV_UNMAPPED=error,TAN_REPAIRED=off"
+
+scene "lines are those of compilers, and GitHub's commands are escaped: % and ends of lines, in names commas and colons, too"
+flat >'a,b%c:d.obj'
+echo 'f 1 2 3' >bad.obj
+run $strict --report-format=lines 'a,b%c:d.obj' bad.obj
+exits 3
+is "$(cat ../out.txt)" 'a,b%c:d.obj:7: error: UV_UNMAPPED: no triangle has an area in UV space: all 1 is unmapped
+bad.obj:1: error: face refers to "v" number 1, but the file has 0'
+run $strict --report-format=github 'a,b%c:d.obj' bad.obj
+is "$(cat ../out.txt)" '::error file=a%2Cb%25c%3Ad.obj,line=7,title=UV_UNMAPPED::no triangle has an area in UV space: all 1 is unmapped
+::error file=bad.obj,line=1,title=not judged::face refers to "v" number 1, but the file has 0'
+cp 'a,b%c:d.obj' $'e\r\nf.obj'
+run --check --report-format=github --severity=UV_UNMAPPED=warning --path-prefix=art $'e\r\nf.obj'
+exits 0
+prints '::warning file=art/e%0D%0Af.obj,line=7,title=UV_UNMAPPED::no triangle'
+{ sed 's/^f/usemtl 5%\nf/' 'a,b%c:d.obj'; } >m.obj # of the sentence % alone
+run --check --report-format=github m.obj
+prints '::warning file=m.obj,line=7,title=MATERIAL_UNKNOWN::material is defined by no material library: 5%25'
+run --check --report-format=lines --report=log.txt m.obj
+grep -q '^m.obj:7: warning: MATERIAL_UNKNOWN: ' log.txt || wrong "not written to a file"
+run --check --report-format=github "$data/plates.gltf" # no lines, several meshes
+grep -qE '^::error file=[^,]*plates.gltf,title=TAN_[A-Z_]*::.*, in mesh' ../out.txt || wrong "no mesh is named"
+
+scene "a quiet run that fails by what it found says what"
+flat >m.obj
+for words in "$strict -q m.obj" "$strict -q --report=r.json m.obj" "$strict --report=r.json m.obj" \
+	"-q --severity=UV_UNMAPPED=error --fail-on=error m.obj m.glb"; do
+	run $words
+	exits 6
+	says "nmtan: m.obj: error: no triangle has an area in UV space: all 1 is unmapped [UV_UNMAPPED]"
+done
+run $strict -q --report-format=text m.obj # which says it
+exits 6
+[ ! -s ../err.txt ] || wrong "said twice"
+run --check -q m.obj
+exits 0
+silent
+sed 's/^vt 1 0/vt 1 0\nvt 0 1/; s,3/1/1,3/3/1,' m.obj >sound.obj
+run $strict -q --diff sound.obj m.obj
+exits 6
+says "nmtan: m.obj: error: no triangle has an area"
+
 scene "exit codes follow the report, what is ignored and what is reweighed"
 cp "$data/head.obj" .
 run --check --fail-on=info head.obj
@@ -124,9 +171,26 @@ run --check --severity=UV_MIRROR_SEAM=error head.obj
 exits 6
 run --check --severity=NORMALS_MADE=error,NORMALS_MADE=info --fail-on=warning head.obj
 exits 0
-run --check --ignore=UV_MIRROR head.obj
+for word in UV_MIRROR 'UV_MIRROR*X' uv_mirror_seam; do
+	for option in ignore severity explain; do
+		run --check "--$option=$word$([ $option != severity ] || echo =error)" head.obj
+		exits 1
+		says "--$option: '$word' is no code"
+	done
+done
+run --explain=UV_MIROR_SEAM
 exits 1
-says "'UV_MIRROR' is no code"
+says "did you mean UV_MIRROR_SEAM?"
+run --check --fail-on=info --ignore='UV_*,[NT]*,MTL_MISSING' head.obj # also NORMALS_MADE, TAN_NO_UV
+exits 0
+run --check --severity='UV_MIRROR_*=error' head.obj
+exits 6
+run --check --severity='*=error,UV_*=off,NORMALS_MADE=info' --ignore=MTL_MISSING head.obj
+exits 0
+run --check --severity='UV_*=off,UV_MIRROR_SEAM=error' head.obj # the last one counts
+exits 6
+run --check --severity='UV_MIRROR_SEAM=error' --ignore='UV_*' head.obj # but not against --ignore
+exits 0
 run --check --severity=UV_MIRROR_SEAM=bad head.obj
 exits 1
 run --check --report=r.xyz head.obj
@@ -145,6 +209,35 @@ echo '{}' >broken.json
 run --check --baseline=broken.json head.obj
 exits 3
 says "broken.json"
+
+scene "what the baseline knows is counted, and not printed as new"
+flat >m.obj
+echo 'usemtl none' | cat - m.obj >n.obj && mv n.obj m.obj
+run $strict -q --fail-on=never --report=old.json m.obj
+is "$(value old.json '[(f["code"], f["severity"]) for f in r["files"][0]["findings"]][:2]')" \
+	"[('UV_UNMAPPED', 'error'), ('MATERIAL_UNKNOWN', 'warning')]"
+run $strict --baseline=old.json m.obj
+exits 0
+prints "Nothing new: 1 known error, 1 known warning"
+! grep -q "UV_UNMAPPED\|MATERIAL_UNKNOWN" ../out.txt || wrong "what is known is in the text"
+run $strict --baseline=old.json --report=r.md m.obj
+says_not "MATERIAL_UNKNOWN"
+grep -q '^Nothing new: 1 known error, 1 known warning$' r.md || wrong "$(cat r.md)"
+! grep -q "UV_UNMAPPED\|MATERIAL_UNKNOWN\|severity" r.md || wrong "what is known is in Markdown"
+for format in lines github; do
+	run $strict --baseline=old.json --report-format=$format m.obj
+	exits 0
+	[ ! -s ../out.txt ] || wrong "$(cat ../out.txt)"
+	says "nothing new, 2 known,"
+done
+run -q --severity=UV_UNMAPPED=error --fail-on=error --baseline=old.json m.obj m.glb
+exits 0
+sed 's/usemtl none/usemtl other/' m.obj >n.obj && mv n.obj m.obj
+run $strict --baseline=old.json --max-issues=1 m.obj # what is left out is new
+prints "MATERIAL_UNKNOWN"
+! grep -q " more: " ../out.txt || wrong "what is known counts as left out"
+run $strict --baseline=old.json --report=r.json m.obj
+says "other [MATERIAL_UNKNOWN]"
 
 scene "--max-issues drops the least severe and says so"
 run --check --max-issues=1 --severity=UV_MIRROR_SEAM=warning --report=r.json "$data/head.obj"
@@ -248,26 +341,17 @@ else
 	skip_case "the schema is not installed (no network?)"
 fi
 
-scene "JUnit fails where the run fails, file by rule"
+scene "JUnit has a case for each file, which fails where the run fails"
 run --check --severity=UV_MIRROR_SEAM=warning --fail-on=warning --report=r.xml "$data/head.obj" "$data/quad.obj"
 exits 6
 is "$(python3 -c 'import sys, xml.etree.ElementTree as x
 t = x.parse(sys.argv[1]).getroot()
-print([(s.get("name").split("/")[-1], s.get("failures"), [c.get("name") for c in s if c.find("failure") is not None])
-	for s in t], len(t[0]) - 1 == len(t[1]) - 1 == int(t[0].get("tests")))' r.xml)" \
-	"[('head.obj', '1', ['UV_MIRROR_SEAM']), ('quad.obj', '0', [])] True"
-# the cases are what can fail: errors here, and what was made one
-cases() {
-	python3 -c 'import sys, xml.etree.ElementTree as x
-print(*sorted(c.get("name") for c in x.parse(sys.argv[1]).getroot()[0] if c.tag == "testcase"))' r.xml
-}
-errors=$("$NMTAN" --list-codes | awk '$2 == "error" { print $1 }')
-run --check --severity=UV_MIRROR_SEAM=error --ignore="$(echo $errors | cut -d' ' -f1)" --report=r.xml "$data/quad.obj"
-is "$(cases)" "$(echo $(printf '%s\n' UV_MIRROR_SEAM 'can be read' $(echo $errors | cut -d' ' -f2-) | LC_ALL=C sort))"
+print([(s.get("tests"), s.get("failures"), s.get("errors")) for s in (t, t[0])], [(c.get("name").split("/")[-1], c.find("failure").get("type")
+	if c.find("failure") is not None else None) for c in t[0]])' r.xml)" \
+	"[('2', '1', '0'), ('2', '1', '0')] [('head.obj', 'UV_MIRROR_SEAM'), ('quad.obj', None)]"
 run --check --fail-on=never --report=r.xml "$data/head.obj" nothing.obj
-is "$(cases)" "can be read"
-grep -q 'errors="1"' r.xml || wrong "no error for a file that is not there"
-grep -q "UV_MIRROR_SEAM: .*, in " r.xml || wrong "what fails nothing is not told"
+grep -q 'tests="2" failures="0" errors="1"' r.xml || wrong "no error for a file that is not there"
+grep -q "UV_MIRROR_SEAM: " r.xml || wrong "what fails nothing is not told"
 run --check --report=r.xml "$data/head.obj"
 exits 0
 ! grep -q "<failure" r.xml || wrong "a failure although the run passes"
@@ -278,6 +362,11 @@ nasty "$(printf '=1+1,"<script>&]]>|`x`\033[31m\377\357\277\276\357\277\277\302\
 for format in xml csv md sarif; do
 	run --check --report=r.$format n.obj
 	exits 0
+done
+for format in lines github; do
+	run --check --report-format=$format n.obj
+	exits 0
+	! LC_ALL=C grep -qP '\x1b|\xc2\x9b|\xe2\x80\xae|\xef\xbf[\xbe\xbf]' ../out.txt || wrong "$format shows what turns or ends a line"
 done
 python3 "$report/sarif.py" r.sarif >/dev/null || wrong "SARIF is not valid"
 python3 -c 'import sys, xml.etree.ElementTree as x; x.parse(sys.argv[1])' r.xml || wrong "XML is not well formed"

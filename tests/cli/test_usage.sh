@@ -15,6 +15,18 @@ run --version
 exits 0
 is "$(cat "$WORK/out.txt")" "nmtan $(sed -n 's/^#define NMTAN_VERSION_STRING "\(.*\)"/\1/p' "$ROOT/include/nmtan.h")"
 
+scene "a code is explained as the table has it, or all that a pattern means"
+run --explain=UV_MIRROR_SEAM
+exits 0
+is "$(sed 's/: .*/:/; 2s/.*/meaning/' ../out.txt)" "UV_MIRROR_SEAM (info)
+meaning
+  Remedy:
+  Smallest example:"
+[ ! -s ../err.txt ] || wrong "wrote to standard error"
+is "$(sed -n '2s/^  //p' ../out.txt)" "$("$NMTAN" --list-codes | sed -n 's/^UV_MIRROR_SEAM  *info  *//p')"
+run --explain='UV_MIRROR_*'
+is "$(grep -c '^UV_MIRROR_[A-Z]* (' ../out.txt)" "$("$NMTAN" --list-codes | grep -c '^UV_MIRROR_')"
+
 scene "no words at all are a mistake, told on standard error"
 run
 exits 1
@@ -92,6 +104,7 @@ is "$(complete_words nmtan mes)" "mesh.obj "
 is "$(complete_words nmtan --ignore = UV_MIRROR_L)" "UV_MIRROR_LONE "
 is "$(complete_words nmtan --severity = TAN_ZERO,UV_FOL)" "TAN_ZERO,UV_FOLDED_QUAD "
 is "$(complete_words nmtan --severity = UV_FOLDED_QUAD = e)" "error "
+is "$(complete_words nmtan --explain = UV_FOL)" "UV_FOLDED_QUAD "
 
 scene "the zsh completion names every option of help"
 "$NMTAN" --completion=zsh >completion || wrong "exit code $?"

@@ -122,7 +122,7 @@ static void put_totals(nt_buffer *out, int indent, const nt_totals *totals)
 	put_count(out, "errors", totals->by_severity[NT_SEVERITY_ERROR]);
 	put_count(out, "warnings", totals->by_severity[NT_SEVERITY_WARNING]);
 	put_count(out, "infos", totals->by_severity[NT_SEVERITY_INFO]);
-	put_count(out, "known", totals->known);
+	put_count(out, "known", nt_known_count(totals));
 	put_count(out, "dropped", totals->dropped);
 	nt_buffer_text(out, "}");
 	key(out, indent, "truncated");

@@ -55,12 +55,11 @@ static void put_file_row(const nt_report *report, nt_buffer *out)
 
 void nt_markdown_finding(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
-	nt_buffer_format(out, "| %s%s | `%s` | ", nt_severity_name(finding->severity),
-		finding->known ? " (known)" : "", nt_code_info(finding->code)->name);
+	nt_buffer_format(out, "| %s | `%s` | ", nt_severity_name(finding->severity), nt_code_info(finding->code)->name);
 	if (finding->mesh != NT_NONE)
 		nt_put_label(report, finding->mesh, nt_markdown_text, out);
-	if (finding->spot_count && finding->spots[0].line)
-		nt_buffer_format(out, ", line %zu", finding->spots[0].line);
+	if (nt_finding_line(finding))
+		nt_buffer_format(out, ", line %zu", nt_finding_line(finding));
 	nt_buffer_text(out, " | ");
 	nt_markdown_text(finding->message, out);
 	nt_buffer_text(out, " |\n");
@@ -73,8 +72,10 @@ static void put_findings(const nt_report *report, size_t *rows, nt_buffer *out)
 	nt_markdown_text(report->shown, out);
 	nt_buffer_text(out, "\n\n");
 	nt_put_verdict(report, nt_markdown_text, out);
-	nt_buffer_text(out, "\n\n| severity | code | where | finding |\n|---|---|---|---|\n");
-	for (size_t i = 0; i < report->finding_count; i++) {
+	nt_buffer_text(out, "\n");
+	if (report->new_count)
+		nt_buffer_text(out, "\n| severity | code | where | finding |\n|---|---|---|---|\n");
+	for (size_t i = 0; i < report->new_count; i++) {
 		if (*rows < MOST_ROWS) {
 			nt_markdown_finding(report, &report->findings[i], out);
 			++*rows;

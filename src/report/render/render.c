@@ -19,6 +19,8 @@ static const struct {
 	[NT_REPORT_CSV] = {"csv", ".csv", nt_write_csv},
 	[NT_REPORT_MARKDOWN] = {"markdown", ".md", nt_write_markdown},
 	[NT_REPORT_HTML] = {"html", ".html .htm", nt_write_html},
+	[NT_REPORT_LINES] = {"lines", NULL, nt_write_lines},
+	[NT_REPORT_GITHUB] = {"github", NULL, nt_write_github},
 };
 
 /* Whether a list of extensions separated by spaces has the one that the path ends in. */

@@ -16,6 +16,8 @@ typedef enum nt_report_format {
 	NT_REPORT_CSV,      /* a row per finding */
 	NT_REPORT_MARKDOWN, /* for comments on pull requests */
 	NT_REPORT_HTML,     /* one page with UV layouts and the meshes in space */
+	NT_REPORT_LINES,    /* a line per finding, as compilers print */
+	NT_REPORT_GITHUB,   /* the same as commands of GitHub's workflows */
 	NT_REPORT_FORMAT_COUNT
 } nt_report_format;
 

@@ -92,14 +92,6 @@ static void put_rules(nt_buffer *out)
 	nt_buffer_text(out, "\n\t\t\t\t]\n");
 }
 
-static size_t line_of(const nt_report_finding *finding)
-{
-	for (unsigned i = 0; i < finding->spot_count; i++)
-		if (finding->spots[i].line)
-			return finding->spots[i].line;
-	return finding->place.line ? finding->place.line : 1;
-}
-
 static void put_physical(const char *path, size_t line, nt_buffer *out)
 {
 	nt_buffer_text(out, "\"physicalLocation\": {\"artifactLocation\": {");
@@ -109,8 +101,9 @@ static void put_physical(const char *path, size_t line, nt_buffer *out)
 
 static void put_location(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
+	const size_t line = nt_finding_line(finding);
 	nt_buffer_text(out, "\"locations\": [{");
-	put_physical(report->shown, line_of(finding), out);
+	put_physical(report->shown, line ? line : 1, out);
 	if (finding->mesh != NT_NONE || finding->place.pointer[0]) {
 		nt_buffer label = {0};
 		if (finding->mesh != NT_NONE)

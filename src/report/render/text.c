@@ -118,7 +118,7 @@ static void write_finding(const nt_report_list *reports, const nt_report *report
 	paint(reports, plain, out);
 	nt_buffer_text(out, "  ");
 	nt_buffer_clean(out, finding->message);
-	nt_buffer_text(out, finding->known ? " (known)\n" : "\n");
+	nt_buffer_text(out, "\n");
 	if (finding->mesh != NT_NONE && report->mesh_count > 1) {
 		nt_buffer_text(out, "            in ");
 		nt_put_label(report, finding->mesh, nt_plain_text, out);
@@ -156,7 +156,7 @@ static void write_report(const nt_report_list *reports, const nt_report *report,
 	for (size_t i = 0; i < report->mesh_count; i++)
 		write_mesh(report, (uint32_t)i, out);
 	bool told[NT_CODE_COUNT] = {false};
-	for (size_t i = 0; i < report->finding_count; i++) {
+	for (size_t i = 0; i < report->new_count; i++) {
 		const nt_report_finding *finding = &report->findings[i];
 		write_finding(reports, report, finding, !told[finding->code], out);
 		told[finding->code] = true;

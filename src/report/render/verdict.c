@@ -75,6 +75,21 @@ static const nt_report_finding *find_first(const nt_report *report, nt_severity 
 	return first;
 }
 
+/* "Ready to use", or "Nothing new: 1 known error, 2 known warnings". */
+static void append_nothing_new(const size_t known[3], nt_buffer *out)
+{
+	const char *before = "Nothing new: ";
+	for (int severity = NT_SEVERITY_ERROR; severity >= NT_SEVERITY_WARNING; severity--) {
+		if (!known[severity])
+			continue;
+		nt_buffer_format(out, "%s%zu known %s%s", before, known[severity],
+			nt_severity_name((nt_severity)severity), known[severity] == 1 ? "" : "s");
+		before = ", ";
+	}
+	if (!known[NT_SEVERITY_ERROR] && !known[NT_SEVERITY_WARNING])
+		nt_buffer_text(out, "Ready to use");
+}
+
 static void append_verdict(const nt_report *report, nt_buffer *out)
 {
 	static const char *const verbs[] = {"Look at this", "Convert with nmtan", "Bake again", "Export again"};
@@ -85,7 +100,7 @@ static void append_verdict(const nt_report *report, nt_buffer *out)
 		return;
 	}
 	if (!all) {
-		nt_buffer_text(out, "Ready to use");
+		append_nothing_new(report->known, out);
 		return;
 	}
 	const nt_report_finding *first = find_first(report, errors ? NT_SEVERITY_ERROR : NT_SEVERITY_WARNING);

@@ -22,12 +22,18 @@ nt_totals nt_report_totals(const nt_report_list *reports)
 	nt_totals totals = {0};
 	for (size_t i = 0; i < reports->count; i++) {
 		const nt_report *report = reports->items[i];
-		for (int severity = 0; severity < 3; severity++)
+		for (int severity = 0; severity < 3; severity++) {
 			totals.by_severity[severity] += report->by_severity[severity];
-		totals.known += report->known;
+			totals.known[severity] += report->known[severity];
+		}
 		totals.dropped += report->dropped;
 	}
 	return totals;
+}
+
+size_t nt_known_count(const nt_totals *totals)
+{
+	return totals->known[0] + totals->known[1] + totals->known[2];
 }
 
 static void counted(size_t count, const char *noun, nt_buffer *out)
@@ -42,8 +48,8 @@ void nt_totals_text(const nt_totals *totals, nt_buffer *out)
 	counted(totals->by_severity[NT_SEVERITY_WARNING], "warning", out);
 	nt_buffer_text(out, ", ");
 	counted(totals->by_severity[NT_SEVERITY_INFO], "info", out);
-	if (totals->known)
-		nt_buffer_format(out, ", %zu known from the baseline", totals->known);
+	if (nt_known_count(totals))
+		nt_buffer_format(out, ", %zu known from the baseline", nt_known_count(totals));
 	if (totals->dropped)
 		nt_buffer_format(out, ", %zu not shown", totals->dropped);
 }
@@ -73,6 +79,24 @@ const char *nt_input_format_name(nt_format format)
 {
 	static const char *const names[] = {"unknown", "obj", "ply", "gltf", "glb", "drc"};
 	return names[format];
+}
+
+size_t nt_finding_line(const nt_report_finding *finding)
+{
+	for (unsigned i = 0; i < finding->spot_count; i++)
+		if (finding->spots[i].line)
+			return finding->spots[i].line;
+	return finding->place.line;
+}
+
+void nt_put_sentence(const nt_report *report, const nt_report_finding *finding,
+	void (*put)(const char *text, nt_buffer *out), nt_buffer *out)
+{
+	put(finding->message, out);
+	if (finding->mesh == NT_NONE || report->mesh_count == 1)
+		return;
+	nt_buffer_text(out, ", in ");
+	nt_put_label(report, finding->mesh, put, out);
 }
 
 void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out)

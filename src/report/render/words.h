@@ -11,7 +11,6 @@
 typedef struct nt_report_style {
 	bool colour;       /* text: for a terminal */
 	int least_failure; /* JUnit: the nt_severity from which on a finding is a failure; 3: none */
-	const nt_report_options *options; /* JUnit: which severities codes have; NULL: the table's */
 	const char *index; /* HTML: the page that lists all files, as a URI; beside it are the parts that pages share.
 	                      NULL: there is none but this one */
 } nt_report_style;
@@ -39,14 +38,16 @@ typedef struct nt_report_list {
 /* Hands on what a large document has so far, if it is `least` bytes or more. */
 void nt_list_flush(const nt_report_list *reports, size_t least, nt_buffer *out);
 
-/* New findings of all reports, by severity; known and dropped ones. */
+/* New findings of all reports, by severity; known ones, and new ones that were dropped. */
 typedef struct nt_totals {
-	size_t by_severity[3], known, dropped;
+	size_t by_severity[3], known[3], dropped;
 } nt_totals;
 nt_totals nt_report_totals(const nt_report_list *reports);
 
 const char *nt_island_kind_name(nt_island_kind kind);
 const char *nt_input_format_name(nt_format format);
+
+size_t nt_known_count(const nt_totals *totals);
 
 /* "1 error, 2 warnings, 0 infos", with the known ones where there are any. */
 void nt_totals_text(const nt_totals *totals, nt_buffer *out);
@@ -61,6 +62,13 @@ bool nt_repair_options(const nt_report *report, const nt_report_finding *finding
 /* What --max-issues left out, between the two texts: "3 more: 2 UV_MIRROR_SEAM, 1 TAN_UNUSED". Nothing where it left
  * nothing out. */
 void nt_dropped_text(const nt_report *report, const char *before, const char *after, nt_buffer *out);
+
+/* The line of a text where a finding begins, of its first face that has one; 0: none. */
+size_t nt_finding_line(const nt_report_finding *finding);
+
+/* Appends its sentence, and the mesh where the file has several. */
+void nt_put_sentence(const nt_report *report, const nt_report_finding *finding,
+	void (*put)(const char *text, nt_buffer *out), nt_buffer *out);
 
 /* The name a mesh is shown with: its object in words, its name or its number. Never empty. */
 void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out);

@@ -15,6 +15,8 @@ void nt_write_junit(const nt_report_list *reports, nt_buffer *out);
 void nt_write_csv(const nt_report_list *reports, nt_buffer *out);
 void nt_write_markdown(const nt_report_list *reports, nt_buffer *out);
 void nt_write_html(const nt_report_list *reports, nt_buffer *out);
+void nt_write_lines(const nt_report_list *reports, nt_buffer *out);
+void nt_write_github(const nt_report_list *reports, nt_buffer *out);
 
 /* The HTML page that lists files by the rows that nt_report_index_row() made. */
 void nt_write_html_index(const nt_buffer *rows, nt_buffer *out);

@@ -357,7 +357,7 @@ TEST(baseline_knows_old_findings_each_as_often_as_it_has_them)
 	report = hand_report(h, &options);
 	assert_true(hand_finding(report, NT_CODE_TAN_ZERO)->known);
 	assert_false(hand_finding(report, NT_CODE_TAN_PARALLEL_NORMAL)->known);
-	assert_int_equal(report->known, 1);
+	assert_int_equal(report->known[NT_SEVERITY_ERROR], 1);
 	nt_baseline_free(&baseline);
 	assert_int_equal(nt_baseline_read(&baseline, "{}", 2, NULL, &error), NT_ERROR_INPUT);
 	assert_int_equal(nt_baseline_read(&baseline, "{", 1, NULL, &error), NT_ERROR_INPUT);
@@ -383,7 +383,7 @@ TEST(baseline_entries_count_once_each)
 	nt_report_free(report);
 	const nt_report_options options = {.baseline = &baseline};
 	report = hand_report(h, &options);
-	assert_int_equal(report->known, 1);
+	assert_int_equal(report->known[NT_SEVERITY_INFO], 1);
 	nt_baseline_free(&baseline);
 	hand_free(h, report);
 }
@@ -414,7 +414,7 @@ TEST(baseline_knows_geometry_where_names_have_changed)
 		h->positions[1][0] += rows[i].moved;
 		const nt_report_options options = {.baseline = &baseline};
 		report = hand_report(h, &options);
-		assert_int_equal(report->known, rows[i].known);
+		assert_int_equal(report->known[NT_SEVERITY_ERROR], rows[i].known);
 		nt_baseline_free(&baseline);
 		hand_free(h, report);
 	}

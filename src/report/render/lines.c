@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A line per new finding, for a log: as compilers print them, which editors and CI services recognise, or as workflow
+ * commands, of which GitHub makes annotations.
+ */
+#include "report/render/writers.h"
+
+#include <string.h>
+#include "base/utf8.h"
+
+/* What one line says. */
+typedef struct log_line {
+	const char *file;
+	size_t number; /* in the file; 0: it has no lines, or it is not known */
+	nt_severity severity;
+	const char *code; /* NULL: the file could not be judged */
+	const char *text;
+} log_line;
+
+static void put_raw(const char *text, nt_buffer *out)
+{
+	nt_buffer_text(out, text);
+}
+
+static void put_each(const nt_report_list *reports, void (*put)(const log_line *line, nt_buffer *out), nt_buffer *out)
+{
+	for (size_t i = 0; i < reports->count; i++) {
+		const nt_report *report = reports->items[i];
+		if (report->failure)
+			put(&(log_line){report->shown, report->failure_place.line, NT_SEVERITY_ERROR, NULL,
+				report->failure}, out);
+		for (size_t k = 0; k < report->new_count; k++) {
+			const nt_report_finding *finding = &report->findings[k];
+			nt_buffer text = {0};
+			nt_put_sentence(report, finding, put_raw, &text);
+			put(&(log_line){report->shown, nt_finding_line(finding), finding->severity,
+				nt_code_info(finding->code)->name, text.data ? text.data : ""}, out);
+			nt_buffer_free_into(&text, out);
+		}
+	}
+}
+
+/* ---- as compilers print ---- */
+
+static void put_compiler_line(const log_line *line, nt_buffer *out)
+{
+	nt_buffer_clean(out, line->file);
+	if (line->number)
+		nt_buffer_format(out, ":%zu", line->number);
+	nt_buffer_format(out, ": %s: ", nt_severity_name(line->severity));
+	if (line->code)
+		nt_buffer_format(out, "%s: ", line->code);
+	nt_buffer_clean(out, line->text);
+	nt_buffer_text(out, "\n");
+}
+
+void nt_write_lines(const nt_report_list *reports, nt_buffer *out)
+{
+	put_each(reports, put_compiler_line, out);
+}
+
+/* ---- for GitHub ---- */
+
+/* A property ends at a comma or a colon, a command at the end of its line. What else must not reach a terminal is
+ * shown as \x1b. */
+static void put_escaped(const char *text, bool property, nt_buffer *out)
+{
+	for (size_t length; *text; text += length) {
+		char one[8] = "";
+		length = nt_utf8_length(text, SIZE_MAX);
+		length = length ? length : 1;
+		if (strchr(property ? "%\r\n:," : "%\r\n", *text))
+			nt_buffer_format(out, "%%%02X", (unsigned char)*text);
+		else
+			nt_buffer_clean(out, memcpy(one, text, length));
+	}
+}
+
+static void put_command(const log_line *line, nt_buffer *out)
+{
+	static const char *const commands[] = {"notice", "warning", "error"};
+	nt_buffer_format(out, "::%s file=", commands[line->severity]);
+	put_escaped(line->file, true, out);
+	if (line->number)
+		nt_buffer_format(out, ",line=%zu", line->number);
+	nt_buffer_format(out, ",title=%s::", line->code ? line->code : "not judged");
+	put_escaped(line->text, false, out);
+	nt_buffer_text(out, "\n");
+}
+
+void nt_write_github(const nt_report_list *reports, nt_buffer *out)
+{
+	put_each(reports, put_command, out);
+}
