@@ -211,15 +211,6 @@ build/bench/torus.obj: $(B)/tests/bench/make_obj
 	@mkdir -p $(@D)
 	$< 700 >$@.part && mv $@.part $@
 
-# make bench-draco: size and time of Draco's levels.
-build/bench/torus_350.obj: $(B)/tests/bench/make_obj
-	@mkdir -p $(@D)
-	$< 350 >$@.part && mv $@.part $@
-
-.PHONY: bench-draco
-bench: bench-draco
-bench-draco: build/bench/torus_350.obj $(B)/nmtan $(module_so)
-	@sh tests/bench/draco.sh $(B)/nmtan $< build/bench/draco
 
 .PHONY: bench-obj
 bench-obj: build/bench/torus.obj $(B)/nmtan

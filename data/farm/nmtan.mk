@@ -28,4 +28,4 @@ $(foreach ending,obj ply gltf glb,$(eval $(call nmtan_rule,$(ending))))
 
 .PHONY: nmtan-update
 nmtan-update:
-	$(NMTAN) --update -r -d $(NMTAN_OUT) --mirror=$(NMTAN_IN) $(NMTAN_FLAGS) $(NMTAN_IN)
+	$(NMTAN) --update -r -d $(NMTAN_OUT) --keep-tree=$(NMTAN_IN) $(NMTAN_FLAGS) $(NMTAN_IN)

@@ -11,7 +11,7 @@ shift 3
 rclone=${RCLONE:-rclone}
 mkdir -p "$scratch/in" "$scratch/out" || exit 2
 "$rclone" sync "$source" "$scratch/in" && "$rclone" copy "$target" "$scratch/out" || exit 2
-(cd "$scratch" && exec "${NMTAN:-nmtan}" --update --update-by=content -r -d out --mirror=in --manifest=manifest.jsonl "$@" in)
+(cd "$scratch" && exec "${NMTAN:-nmtan}" --update=content -r -d out --keep-tree=in --manifest=manifest.jsonl "$@" in)
 status=$?
 "$rclone" copy "$scratch/out" "$target" || exit 2
 exit $status

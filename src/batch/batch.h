@@ -53,15 +53,15 @@ nt_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t coun
 
 /*
  * Prepares inputs whose outputs get their names in a folder: the input's name with the ending of
- * settings->output_format; without that .ply for PLY, .gltf for .gltf and .glb for all others. With `mirror` (NULL:
+ * settings->output_format; without that .ply for PLY, .gltf for .gltf and .glb for all others. With `tree` (NULL:
  * none), a folder that has all inputs below it, the name below the output folder is the input's name below that one.
  * The folder is made when it is missing (not its parents, and not in a dry run), and those below it that are needed.
  *
  * Jobs that would have the same output, and those whose output would replace another input, are refused one by one.
- * Nothing runs when an input is not below `mirror`: NT_ERROR_USAGE. Else NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY.
+ * Nothing runs when an input is not below `tree`: NT_ERROR_USAGE. Else NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY.
  */
 nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count, const char *directory,
-	const char *mirror, const nt_settings *settings, nt_error *error);
+	const char *tree, const nt_settings *settings, nt_error *error);
 
 /* Prepares inputs that are replaced by their outputs. Jobs are refused whose input is there twice, also by another
  * name. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */

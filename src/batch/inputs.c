@@ -168,7 +168,7 @@ nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rul
 	return status;
 }
 
-nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, char separator, const nt_folder_rules *rules,
+nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, const nt_folder_rules *rules,
 	nt_error *error)
 {
 	nt_file file;
@@ -176,9 +176,8 @@ nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, char separator
 	if (status)
 		return status;
 	const char *text = (const char *)file.data;
-	if (separator && memchr(text, '\0', file.size))
-		status = nt_fail_file(error, NT_ERROR_INPUT, path,
-			"a list with a NUL in it, expected one name a line (see --files0-from)");
+	/* as find -print0 has it; no name contains one */
+	const char separator = file.size && memchr(text, '\0', file.size) ? '\0' : '\n';
 	for (size_t at = 0; at < file.size && !status;) {
 		const char *end = memchr(text + at, separator, file.size - at);
 		const size_t length = end ? (size_t)(end - text) - at : file.size - at;

@@ -33,11 +33,10 @@ typedef struct nt_folder_rules {
  * are not followed below it. Returns NT_OK, NT_ERROR_IO (a folder that cannot be read) or NT_ERROR_MEMORY. */
 nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rules *rules, nt_error *error);
 
-/* Adds the names in a file, or from standard input ("-"), that are separated by `separator`, a line feed or NUL. They
- * are relative to the current folder; empty ones are passed over, and "-" is a file. Returns as nt_inputs_add(), or
- * NT_ERROR_MISSING; NT_ERROR_INPUT for a NUL in a list of lines. */
-nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, char separator, const nt_folder_rules *rules,
-	nt_error *error);
+/* Adds the names in a file, or from standard input ("-"). They are separated by NUL if the file contains one, else by
+ * line feeds. They are relative to the current folder; empty ones are passed over, and "-" is a file. Returns as
+ * nt_inputs_add(), or NT_ERROR_MISSING. */
+nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, const nt_folder_rules *rules, nt_error *error);
 
 /* Takes away names that are there again, but for how "." and "..", and "//" are spelled. Returns NT_OK or
  * NT_ERROR_MEMORY. */

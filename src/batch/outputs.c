@@ -229,13 +229,13 @@ static nt_status make_folder(const char *directory, const nt_settings *settings,
 
 /* Outputs in a tree below the folder that is like the inputs' below the root. The names are compared as they are
  * spelled: a tree of links is a tree. */
-static nt_status name_mirrored(nt_batch *batch, const char *directory, const char *mirror, nt_format wanted,
+static nt_status name_in_tree(nt_batch *batch, const char *directory, const char *tree, nt_format wanted,
 	nt_error *error)
 {
 	nt_buffer current = {0}, root = {0}, path = {0};
 	nt_status status = nt_path_absolute(&current, ".", error);
 	if (!status)
-		status = nt_path_absolute(&root, mirror, error);
+		status = nt_path_absolute(&root, tree, error);
 	for (size_t i = 0; i < batch->count && !status; i++) {
 		nt_job *job = &batch->jobs[i];
 		path.size = 0;
@@ -245,8 +245,8 @@ static nt_status name_mirrored(nt_batch *batch, const char *directory, const cha
 			break;
 		}
 		if (!nt_link_is_inside(path.data, root.data)) {
-			status = nt_fail(error, NT_ERROR_USAGE, "'%s' is not below '%s', as --mirror asks", job->input,
-				mirror);
+			status = nt_fail(error, NT_ERROR_USAGE, "'%s' is not below '%s', as --keep-tree asks",
+				job->input, tree);
 			break;
 		}
 		const char *below = path.data + (root.size > 1 ? root.size + 1 : 1);
@@ -260,11 +260,11 @@ static nt_status name_mirrored(nt_batch *batch, const char *directory, const cha
 	return status;
 }
 
-static nt_status name_outputs(nt_batch *batch, const char *directory, const char *mirror, nt_format wanted,
+static nt_status name_outputs(nt_batch *batch, const char *directory, const char *tree, nt_format wanted,
 	nt_error *error)
 {
-	if (mirror)
-		return name_mirrored(batch, directory, mirror, wanted, error);
+	if (tree)
+		return name_in_tree(batch, directory, tree, wanted, error);
 	for (size_t i = 0; i < batch->count; i++) {
 		nt_job *job = &batch->jobs[i];
 		job->output = output_name(job->input, nt_last_part(job->input), directory, wanted);
@@ -303,11 +303,11 @@ static nt_status make_folders(const nt_batch *batch, const char *directory, bool
 }
 
 nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count, const char *directory,
-	const char *mirror, const nt_settings *settings, nt_error *error)
+	const char *tree, const nt_settings *settings, nt_error *error)
 {
 	nt_status status = nt_batch_check(batch, inputs, count, error);
 	if (!status)
-		status = name_outputs(batch, directory, mirror, settings->output_format, error);
+		status = name_outputs(batch, directory, tree, settings->output_format, error);
 	if (!status)
 		status = refuse_equal_outputs(batch, error);
 	if (!status)
@@ -317,7 +317,7 @@ nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count
 		refused++;
 	if (status || (count && refused == count))
 		return status;
-	return make_folders(batch, directory, mirror != NULL, settings, error);
+	return make_folders(batch, directory, tree != NULL, settings, error);
 }
 
 nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)

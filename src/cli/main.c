@@ -332,11 +332,10 @@ static void tell_diff(session *s)
 	nt_report_diff_free(&diff);
 }
 
-/* Writes the report and the pictures of all inputs where they were asked for. */
+/* Writes the report of all inputs if it was asked for. */
 static void tell_report(session *s)
 {
 	const nt_report_target *target = &s->plan->target;
-	const char *images = s->command->uv_image;
 	nt_error error;
 	/* what had no memory for its report has been told */
 	bool all = !s->no_report;
@@ -345,11 +344,9 @@ static void tell_report(session *s)
 	if (s->command->diff)
 		tell_diff(s);
 	else if (all && s->folder && nt_report_folder_end(s->folder, &error))
-		all = tell_report_error(s, &error, target->path);
+		tell_report_error(s, &error, target->path);
 	else if (all && !s->folder && target->path && nt_report_to_file(s->reports, s->report_count, target, &error))
-		all = tell_report_error(s, &error, target->path);
-	if (all && images && nt_report_uv_images(s->reports, s->report_count, images, target, &error))
-		tell_report_error(s, &error, images);
+		tell_report_error(s, &error, target->path);
 }
 
 /* The files that are complete only now. A depfile without rules would be one of no outputs. */
@@ -391,7 +388,7 @@ static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 	if (c->settings.check)
 		return nt_batch_check(batch, c->operands, c->operand_count, error);
 	if (c->directory)
-		return nt_batch_into(batch, c->operands, c->operand_count, c->directory, c->mirror, &c->settings,
+		return nt_batch_into(batch, c->operands, c->operand_count, c->directory, c->keep_tree, &c->settings,
 			error);
 	const char *input = c->operands[0], *output = c->operands[c->operand_count - 1];
 	/* the same file twice says the same thing */
@@ -412,7 +409,8 @@ static nt_status begin_update(session *s, nt_error *error)
 	const nt_command *c = s->command;
 	if (!c->update && !c->record)
 		return NT_OK;
-	const nt_update_options options = {.look = c->update, .by = (nt_update_by)c->update_by, .record = c->record,
+	const nt_update_options options = {.look = c->update != 0,
+		.by = c->update ? (nt_update_by)(c->update - 1) : NT_UPDATE_BY_TIME, .record = c->record,
 		.folder = c->directory, .dry_run = c->settings.dry_run,
 		.options = s->shaping.data ? s->shaping.data : ""};
 	return nt_update_begin(&s->update, &options, error);
@@ -455,7 +453,7 @@ static nt_status check_own(const nt_command *c, const nt_batch *batch, nt_error 
 /* Memory for what is said and for the reports, and what else may be refused. */
 static nt_status begin_session(session *s, const nt_batch *batch, nt_error *error)
 {
-	const bool kept = (s->plan->target.path && !s->folder) || s->command->uv_image || s->command->diff;
+	const bool kept = (s->plan->target.path && !s->folder) || s->command->diff;
 	if (kept)
 		s->reports = nt_calloc(s->count, sizeof *s->reports);
 	if ((!s->reports && kept) || !nt_buffer_reserve(&s->text, MESSAGE_BYTES))
@@ -566,9 +564,7 @@ static nt_status choose_inputs(nt_command *c, nt_inputs *inputs, nt_error *error
 	for (size_t i = 0; i < c->operand_count && !status; i++)
 		status = nt_inputs_add(inputs, c->operands[i], &rules, error);
 	if (!status && c->files_from)
-		status = nt_inputs_add_list(inputs, c->files_from, '\n', &rules, error);
-	if (!status && c->files0_from)
-		status = nt_inputs_add_list(inputs, c->files0_from, '\0', &rules, error);
+		status = nt_inputs_add_list(inputs, c->files_from, &rules, error);
 	if (!status && !c->settings.check)
 		status = nt_inputs_drop_repeated(inputs, error);
 	c->operands = inputs->names;

@@ -13,6 +13,7 @@ typedef enum nt_option_kind {
 	NT_OPTION_FLAG,        /* bool becomes true */
 	NT_OPTION_SET,         /* int becomes `first` */
 	NT_OPTION_CHOICE,      /* int becomes `first` + the number of the word in `values` */
+	NT_OPTION_MAYBE_CHOICE,/* the same, or `first` without a word, which follows = and nothing else */
 	NT_OPTION_NUMBER,      /* int becomes 0..most */
 	NT_OPTION_AUTO_NUMBER, /* the same; -1 for the word auto */
 	NT_OPTION_SIZE,        /* uint64_t becomes so many bytes */

@@ -45,7 +45,8 @@ static void help_row(nt_buffer *out, const nt_option_row *row)
 		snprintf(left, sizeof left, "      --%s", row->name);
 	if (row->values) {
 		const size_t used = strlen(left);
-		snprintf(left + used, sizeof left - used, "=%s", row->values);
+		snprintf(left + used, sizeof left - used, row->kind == NT_OPTION_MAYBE_CHOICE ? "[=%s]" : "=%s",
+			row->values);
 	}
 	nt_buffer_text(out, left);
 	if (strlen(left) + 2 > HELP_COLUMN)
@@ -103,7 +104,8 @@ void nt_options_explain(const char *word, nt_buffer *out)
 /* What may be completed as a value: the words of a choice; nothing for numbers; files elsewhere. */
 static bool has_words(const nt_option_row *row)
 {
-	return row->kind == NT_OPTION_CHOICE || row->kind == NT_OPTION_AUTO_NUMBER;
+	return row->kind == NT_OPTION_CHOICE || row->kind == NT_OPTION_MAYBE_CHOICE ||
+		row->kind == NT_OPTION_AUTO_NUMBER;
 }
 
 /* A list of codes, perhaps each with a severity. */
@@ -136,11 +138,11 @@ void nt_options_bash(nt_buffer *out)
 	nt_buffer_text(out,
 		"# bash completion for nmtan, printed by nmtan --completion=bash\n"
 		"_nmtan()\n{\n"
-		"\tlocal word=${COMP_WORDS[COMP_CWORD]} option=${COMP_WORDS[COMP_CWORD-1]} list=\n"
+		"\tlocal word=${COMP_WORDS[COMP_CWORD]} option=${COMP_WORDS[COMP_CWORD-1]} list= value=\n"
 		"\tCOMPREPLY=()\n"
 		"\t# bash takes = for a word of its own\n"
-		"\tif [[ $word == = ]]; then\n\t\tword=\n"
-		"\telif [[ $option == = ]]; then\n\t\toption=${COMP_WORDS[COMP_CWORD-2]}\n\tfi\n"
+		"\tif [[ $word == = ]]; then\n\t\tword= value=1\n"
+		"\telif [[ $option == = ]]; then\n\t\toption=${COMP_WORDS[COMP_CWORD-2]} value=1\n\tfi\n"
 		"\tcase $option in\n");
 	for (size_t i = 0; i < nt_option_row_count; i++) {
 		const nt_option_row *row = &nt_option_rows[i];
@@ -150,6 +152,12 @@ void nt_options_bash(nt_buffer *out)
 		if (row->letter)
 			nt_buffer_format(out, " | -%c", row->letter);
 		nt_buffer_text(out, ")\n");
+		if (row->kind == NT_OPTION_MAYBE_CHOICE) {
+			nt_buffer_text(out, "\t\tif [[ $value ]]; then\n\t\t\tCOMPREPLY=($(compgen -W '");
+			append_words(out, row);
+			nt_buffer_text(out, "' -- \"$word\"))\n\t\t\treturn\n\t\tfi ;;\n");
+			continue;
+		}
 		if (has_words(row)) {
 			nt_buffer_text(out, "\t\tCOMPREPLY=($(compgen -W '");
 			append_words(out, row);
@@ -175,7 +183,8 @@ void nt_options_bash(nt_buffer *out)
 		const nt_option_row *row = &nt_option_rows[i];
 		if (!shown(row))
 			continue;
-		nt_buffer_format(out, "%s--%s%s", first ? "" : " ", row->name, row->values ? "=" : "");
+		nt_buffer_format(out, "%s--%s%s", first ? "" : " ", row->name,
+			row->values && row->kind != NT_OPTION_MAYBE_CHOICE ? "=" : "");
 		first = false;
 	}
 	nt_buffer_text(out,
@@ -203,11 +212,12 @@ static void zsh_spec(nt_buffer *out, const nt_option_row *row, bool letter)
 	if (letter)
 		nt_buffer_format(out, "\t'-%c%s[", row->letter, row->values ? "+" : "");
 	else
-		nt_buffer_format(out, "\t'--%s%s[", row->name, row->values ? "=" : "");
+		nt_buffer_format(out, "\t'--%s%s[", row->name,
+			row->kind == NT_OPTION_MAYBE_CHOICE ? "=-" : row->values ? "=" : "");
 	append_zsh(out, row->help);
 	nt_buffer_text(out, "]");
 	if (has_words(row)) {
-		nt_buffer_format(out, ":%s:(", row->name);
+		nt_buffer_format(out, "%s:%s:(", row->kind == NT_OPTION_MAYBE_CHOICE ? ":" : "", row->name);
 		append_words(out, row);
 		nt_buffer_text(out, ")");
 	} else if (has_codes(row)) {
@@ -262,7 +272,7 @@ static void append_shaping(nt_buffer *out, const nt_option_row *row, const void 
 		}
 	} else if (row->kind == NT_OPTION_SIZE) {
 		nt_buffer_format(out, "=%" PRIu64, *(const uint64_t *)field);
-	} else if (row->kind != NT_OPTION_FLAG) {
+	} else if (row->kind != NT_OPTION_FLAG && row->kind != NT_OPTION_SET) {
 		nt_buffer_format(out, "=%d", *(const int *)field);
 	}
 }

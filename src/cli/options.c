@@ -2,7 +2,7 @@
 /*
  * The parser of the command line: see options.h. The options are in option_table.c.
  *
- * No option takes an optional value, names are not abbreviated, and a number is a whole word of digits:
+ * Only --update takes an optional value (after =), names are not abbreviated, and a number is a whole word of digits:
  * what is not understood is refused with the word that was wrong, because a tool that guesses turns a
  * slip of the finger into a wrong file.
  */
@@ -92,7 +92,7 @@ static uint64_t size_of(const char *word)
 
 static nt_status refuse_value(parser *p, const nt_option_row *row, const char *word)
 {
-	if (row->kind == NT_OPTION_CHOICE) {
+	if (row->kind == NT_OPTION_CHOICE || row->kind == NT_OPTION_MAYBE_CHOICE) {
 		char list[128];
 		snprintf(list, sizeof list, "%s", row->values);
 		for (char *c = list; *c; c++)
@@ -140,7 +140,8 @@ static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 		memcpy(field, &value, sizeof value);
 		break;
 	case NT_OPTION_CHOICE:
-		value = choice_of(row->values, word);
+	case NT_OPTION_MAYBE_CHOICE:
+		value = word ? choice_of(row->values, word) : 0;
 		if (value < 0)
 			return refuse_value(p, row, word);
 		value += row->first;
@@ -260,7 +261,7 @@ static nt_status parse_long(parser *p, const char *word, const char *next, int *
 				row->name, value);
 		return apply(p, row, NULL);
 	}
-	if (!value) {
+	if (!value && row->kind != NT_OPTION_MAYBE_CHOICE) {
 		if (!next)
 			return nt_fail(p->error, NT_ERROR_USAGE, "--%s needs a value: %s", row->name,
 				row->values);
@@ -335,8 +336,6 @@ static nt_status parse_draco(parser *p)
 	}
 	if (p->command->draco_bits && p->command->settings.draco == NT_DRACO_OFF)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--draco=off leaves nothing for --draco-bits");
-	if (given(p, "draco-speed") && p->command->settings.draco == NT_DRACO_OFF)
-		return nt_fail(p->error, NT_ERROR_USAGE, "--draco=off leaves nothing for --draco-speed");
 	return NT_OK;
 }
 
@@ -376,10 +375,8 @@ static nt_status check_clashes(parser *p)
 	static const char *const pairs[][3] = {
 		{"quiet", "verbose", "say opposite things"},
 		{"in-place", "no-clobber", "contradict each other"},
-		{"allow-outside", "confine", "contradict each other"},
 		/* what is not read has no findings */
 		{"update", "report", "do not go together: what is up to date is not read"},
-		{"update", "uv-image", "do not go together: what is up to date is not read"},
 	};
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
 		if (given(p, pairs[i][0]) && given(p, pairs[i][1]))
@@ -389,28 +386,17 @@ static nt_status check_clashes(parser *p)
 		if (p->command->settings.check && nt_option_rows[i].writes && p->given[i])
 			return nt_fail(p->error, NT_ERROR_USAGE,
 				"--check writes no mesh, so --%s has no meaning", nt_option_rows[i].name);
-	static const char *const needs[][2] = {{"mirror", "directory"}, {"include", "recursive"},
-		{"exclude", "recursive"}, {"update-by", "update"}};
+	static const char *const needs[][2] = {{"keep-tree", "directory"}, {"include", "recursive"},
+		{"exclude", "recursive"}};
 	for (size_t i = 0; i < sizeof needs / sizeof *needs; i++)
 		if (given(p, needs[i][0]) && !given(p, needs[i][1]))
 			return nt_fail(p->error, NT_ERROR_USAGE, "--%s needs --%s", needs[i][0], needs[i][1]);
 	nt_settings *s = &p->command->settings;
-	if (s->as != NT_FORMAT_UNKNOWN && !s->check)
-		return nt_fail(p->error, NT_ERROR_USAGE, "--as is about --check; --output-format says what is written");
 	if (p->command->diff && !s->check)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--diff is about --check");
 	const char *into = p->command->directory ? "directory" : s->in_place ? "in-place" : NULL;
 	if (p->command->output && into)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--output and --%s both say where to write", into);
-	if (s->embed && given(p, "buffers") && s->buffers != NT_BUFFERS_EMBED)
-		return nt_fail(p->error, NT_ERROR_USAGE,
-			"--embed and --buffers=%s contradict each other",
-			s->buffers == NT_BUFFERS_COPY ? "copy" : "link");
-	if (s->embed && s->output_format != NT_FORMAT_UNKNOWN && s->output_format != NT_FORMAT_GLTF)
-		return nt_fail(p->error, NT_ERROR_USAGE,
-			"--embed is about .gltf, --output-format says '%s'",
-			s->output_format == NT_FORMAT_GLB ? "glb" : "ply");
-	s->embed |= s->buffers == NT_BUFFERS_EMBED;
 	return NT_OK;
 }
 
@@ -422,7 +408,7 @@ bool nt_command_is_many(const nt_command *command)
 /* Which option names more inputs than the words do; NULL: none. */
 static const char *list_option(const nt_command *c)
 {
-	return c->files_from ? "files-from" : c->files0_from ? "files0-from" : c->recursive ? "recursive" : NULL;
+	return c->files_from ? "files-from" : c->recursive ? "recursive" : NULL;
 }
 
 /* Too few or too many names. */
@@ -434,7 +420,7 @@ static nt_status check_count(const parser *p)
 	if (list_option(c) && !many)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--%s is for many inputs: use -d DIR, --in-place or --check",
 			list_option(c));
-	if (count == 0 && !c->files_from && !c->files0_from)
+	if (count == 0 && !c->files_from)
 		return nt_fail(p->error, NT_ERROR_USAGE, "no input is named");
 	if (!many && count == 1)
 		return nt_fail(p->error, NT_ERROR_USAGE, "no output is named after '%s'", c->operands[0]);
@@ -461,13 +447,13 @@ static nt_status check_dashes(const parser *p)
 	if (dashes && (c->directory || c->settings.in_place))
 		return nt_fail(p->error, NT_ERROR_USAGE, "'-' has no name to write under: not with --%s",
 			c->directory ? "directory" : "in-place");
-	if (dashes + is_dash(c->files_from) + is_dash(c->files0_from) > 1)
+	if (dashes + is_dash(c->files_from) > 1)
 		return nt_fail(p->error, NT_ERROR_USAGE, "'-' can be read once only");
 	if (many || !is_dash(c->operands[1]))
 		return NT_OK;
-	if (c->settings.output_format == NT_FORMAT_GLTF && !c->settings.embed)
+	if (c->settings.output_format == NT_FORMAT_GLTF && c->settings.buffers != NT_BUFFERS_EMBED)
 		return nt_fail(p->error, NT_ERROR_USAGE,
-			"'-' has no place for the .bin of --output-format=gltf: add --embed");
+			"'-' has no place for the .bin of --output-format=gltf: add --buffers=embed");
 	if (c->depfile)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--depfile is about files; '-' is none");
 	if (c->settings.verify)
@@ -479,7 +465,7 @@ void nt_options_defaults(nt_command *command)
 {
 	memset(command, 0, sizeof *command);
 	command->settings.texcoord_set = -1;
-	command->settings.draco_speed = NT_DRACO_SPEED;
+	command->settings.outside = NT_OUTSIDE_ROOT;
 	command->fail_on = NT_FAIL_ON_NEVER;
 	command->min_severity = NT_FAIL_ON_INFO;
 	command->max_issues = -1;
@@ -529,8 +515,9 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 		command->settings.texture_paths = command->texture_paths.items;
 	/* Who converts one file means what it says: images may be one folder up, and one beside it is proposed. Who
 	 * converts many may not have read them. */
-	command->settings.own_input = !command->confine && !command->directory && !command->settings.in_place &&
-		!list_option(command) && command->operand_count == (command->settings.check ? 1 : 2);
+	command->settings.own_input = command->settings.outside != NT_OUTSIDE_NO && !command->directory &&
+		!command->settings.in_place && !list_option(command) &&
+		command->operand_count == (command->settings.check ? 1 : 2);
 	nt_status status = parse_draco(&p);
 	if (!status)
 		status = parse_bump_height(&p);

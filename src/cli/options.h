@@ -56,21 +56,18 @@ typedef struct nt_command {
 	const char *draco_bits; /* POS,NRM,UV,TAN, parsed into the settings; NULL: defaults */
 	int min_severity;      /* enum nt_fail_on, but never */
 	int max_issues;        /* 0: all; -1: as many as the report's format has by default */
-	const char *uv_image;  /* folder; NULL: none */
 	const char *directory; /* -d; NULL: none */
-	const char *mirror;    /* folder whose tree outputs keep; NULL: none */
-	bool confine;          /* nothing outside the input's folder, images one folder up neither */
-	const char *files_from, *files0_from; /* lists of inputs; NULL: none */
+	const char *keep_tree; /* folder whose tree outputs keep; NULL: none */
+	const char *files_from; /* list of inputs; NULL: none */
 	bool recursive;
 	nt_words include, exclude; /* patterns */
 	int jobs;              /* inputs at a time; 0: as threads */
 	uint64_t memory;       /* bytes for them; 0: of what is available */
-	bool update;           /* leave alone what is up to date */
-	int update_by;         /* nt_update_by */
+	int update;            /* leave alone what is up to date: 1 + nt_update_by; 0: no */
 	const char *record;    /* file; NULL: by default */
 	const char *depfile;   /* file; NULL: none */
 	const char *manifest;  /* file, "-"; NULL: none */
-	int fail_fast;         /* stop after a failure: 0, 1 */
+	bool fail_fast;        /* stop after a failure */
 	bool diff;             /* of two inputs */
 	const char *output;    /* -o, also the last operand; NULL: none */
 	const char **operands; /* in argv, which is reordered for it */

@@ -127,9 +127,9 @@ static nt_status check_diff(const nt_command *c, nt_error *error)
 		return NT_OK;
 	if (c->operand_count != 2)
 		return nt_fail(error, NT_ERROR_USAGE, "--diff compares two files, an old one and a new one");
-	if (c->uv_image || c->baseline || c->max_issues >= 0)
+	if (c->baseline || c->max_issues >= 0)
 		return nt_fail(error, NT_ERROR_USAGE, "--%s and --diff exclude each other",
-			c->uv_image ? "uv-image" : c->baseline ? "baseline" : "max-issues");
+			c->baseline ? "baseline" : "max-issues");
 	return NT_OK;
 }
 
@@ -139,7 +139,7 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 	enum { MOST_READ = 10 };
 	*plan = (nt_report_plan){
 		.wanted = command->settings.check || command->report || command->ignore || command->severity ||
-			command->uv_image || command->fail_on != NT_FAIL_ON_NEVER};
+			command->fail_on != NT_FAIL_ON_NEVER};
 	plan->options.min_severity = (nt_severity)least_severity[command->min_severity];
 	nt_status status = check_outputs(command, error);
 	if (!status)
@@ -178,7 +178,7 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 		nt_buffer_free(&page);
 	}
 	plan->options.measures = target->path && target->format == NT_REPORT_JSON && !command->diff;
-	plan->options.keep_geometry = command->uv_image || command->diff || page_wanted;
+	plan->options.keep_geometry = command->diff || page_wanted;
 	plan->options.keep_frames = page_wanted && !command->diff;
 	return status;
 }

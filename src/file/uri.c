@@ -177,9 +177,9 @@ static const char *check_text(const char *name, size_t length, bool allow_outsid
 	if (allow_outside)
 		return NULL;
 	if (name[0] == '/' || name[0] == '\\')
-		return "is an absolute path (refused unless --allow-outside)";
+		return "is an absolute path (refused without --outside=yes)";
 	if (nt_uri_has_parent_step(name))
-		return "leaves the folder of the file (refused unless --allow-outside)";
+		return "leaves the folder of the file (refused without --outside=yes)";
 	return NULL;
 }
 
@@ -203,7 +203,7 @@ static nt_status check_links(
 	if (!inside && !status)
 		status = nt_fail(error, NT_ERROR_INPUT,
 			"the URI \"%.*s\" leaves the folder of the file through a "
-			"symbolic link (refused unless --allow-outside)",
+			"symbolic link (refused without --outside=yes)",
 			SHOWN, uri);
 	free(real_folder);
 	if (!status)

@@ -24,12 +24,12 @@ typedef struct request {
 static const char *outside_reason(const char *name)
 {
 	if (name[0] == '/')
-		return "an absolute path, which is followed only with --allow-outside";
+		return "an absolute path, which is followed only with --outside=yes";
 	if (((name[0] | 0x20) >= 'a' && (name[0] | 0x20) <= 'z') && name[1] == ':')
 		return "a path with a drive letter";
 	for (const char *part = name; part;) {
 		if (strncmp(part, "..", 2) == 0 && (part[2] == '/' || part[2] == '\0'))
-			return "leaves the folder of the OBJ, which is followed only with --allow-outside";
+			return "leaves the folder of the OBJ, which is followed only with --outside=yes";
 		part = strchr(part, '/');
 		if (part)
 			part++;
@@ -66,8 +66,7 @@ static nt_status open_library(const request *q, const char *name, const char *pa
 	nt_buffer_free(&folder);
 	if (!status && !inside)
 		*reason = "leaves the folder of the OBJ by a symbolic link, which is followed only "
-			  "with "
-			  "--allow-outside";
+			  "with --outside=yes";
 	else if (!status)
 		status = nt_file_open_content(file, path, true, error);
 	if (status != NT_ERROR_MISSING)

@@ -169,7 +169,8 @@ static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot,
 static nt_status take_map(examination *e, const nt_mesh *mesh, enum nt_slot slot, nt_error *error)
 {
 	const nt_image_places searched = {.folders = e->settings->texture_paths,
-		.folder_count = e->settings->texture_path_count, .allow_outside = e->settings->allow_outside,
+		.folder_count = e->settings->texture_path_count,
+		.allow_outside = e->settings->outside == NT_OUTSIDE_YES,
 		.one_up = e->settings->own_input};
 	nt_normal_map map;
 	if (!(mesh->slots & slot))

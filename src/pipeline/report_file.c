@@ -60,55 +60,6 @@ nt_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_re
 	return status;
 }
 
-/* DIR/NAME-MESH.svg */
-static bool image_name(nt_buffer *name, const char *directory, const char *input, uint32_t mesh)
-{
-	const char *slash = strrchr(input, '/');
-	const char *base = slash ? slash + 1 : input;
-	const char *dot = strrchr(base, '.');
-	const size_t stem = dot && dot != base ? (size_t)(dot - base) : strlen(base);
-	nt_buffer_format(name, "%s/%.*s-%u.svg", directory, (int)stem, base, mesh);
-	return !name->failed;
-}
-
-static nt_status write_image(nt_output *output, const nt_report *report, uint32_t mesh,
-	const char *directory, nt_error *error)
-{
-	if (!report->meshes[mesh].geometry || !report->meshes[mesh].geometry->texcoords)
-		return NT_OK;
-	nt_buffer name = {0};
-	nt_sink *sink = NULL;
-	bool drawn;
-	nt_status status = image_name(&name, directory, report->path, mesh)
-		? nt_output_add(output, name.data, NT_ROLE_MAIN, &sink, error)
-		: nt_fail_memory(error);
-	if (!status)
-		status = nt_report_write_uv(report, mesh, &drawn, to_sink, sink, error);
-	nt_buffer_free(&name);
-	return status;
-}
-
-nt_status nt_report_uv_images(nt_report *const *reports, size_t count, const char *directory,
-	const nt_report_target *target, nt_error *error)
-{
-	if (mkdir(directory, 0777) && errno != EEXIST)
-		return nt_fail(error, NT_ERROR_IO, "cannot make the folder \"%s\": %s", directory,
-			strerror(errno));
-	const nt_output_options options = {.no_clobber = target->no_clobber};
-	nt_output *output = NULL;
-	nt_status status = nt_output_create(&output, &options, error);
-	for (size_t i = 0; i < target->input_count && !status; i++)
-		status = nt_output_protect(output, target->inputs[i], NULL, error);
-	for (size_t i = 0; i < count && !status; i++)
-		for (size_t m = 0; reports[i] && m < reports[i]->mesh_count && !status; m++)
-			status = write_image(output, reports[i], (uint32_t)m, directory, error);
-	if (status) {
-		nt_output_abort(output);
-		return status;
-	}
-	return nt_output_commit(output, error);
-}
-
 /* Whether a file that a baseline names is still there; standard input always is. */
 static bool is_there(void *user, const char *shown)
 {

@@ -27,11 +27,6 @@ typedef struct nt_report_target {
 nt_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_report_target *target,
 	nt_error *error);
 
-/* Writes the UV layout of every mesh that has one to directory/NAME-MESH.svg, NAME being the input's name without
- * its ending. The folder is made where it is missing. target->path is not used. Returns as above. */
-nt_status nt_report_uv_images(nt_report *const *reports, size_t count, const char *directory,
-	const nt_report_target *target, nt_error *error);
-
 /* Reads the findings of a JSON report, and looks which of its files are still there. The error names the report. */
 nt_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_shown_paths *paths, nt_error *error);
 

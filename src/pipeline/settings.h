@@ -64,7 +64,7 @@ typedef enum nt_stage {
 } nt_stage;
 
 /* Everything a run can be told. Zero-initialised means the defaults of the command line, but for
- * texcoord_set, whose default is -1. */
+ * texcoord_set, whose default is -1, and outside, whose default is root. */
 typedef struct nt_settings {
 	nmtan_method method;
 	nmtan_repair repair;
@@ -79,10 +79,9 @@ typedef struct nt_settings {
 	nt_draco_choice draco;
 	nt_morph_choice morphs;
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
-	int draco_speed;         /* 0 (smallest) to 10 */
 	nt_precision precision;
 	nt_meshopt_choice meshopt;
-	nt_format output_format; /* NT_FORMAT_UNKNOWN: by name */
+	nt_format output_format; /* NT_FORMAT_UNKNOWN: by name; with check: see writer.c */
 	int texcoord_set;        /* -1: auto */
 	unsigned threads;        /* 0: all */
 	nt_texture_choice textures;
@@ -94,17 +93,15 @@ typedef struct nt_settings {
 	size_t texture_path_count;
 	const char *given_maps[NT_GIVEN_COUNT]; /* paths; NULL: none */
 	bool bitangents;
-	bool embed;
 	bool verify;   /* read the output back with tinygltf before it takes its name */
 	bool dry_run;  /* do everything but write */
 	bool check;    /* a report only: no output */
-	nt_format as;  /* with check: the format whose conversion is judged; NT_FORMAT_UNKNOWN: see run.c */
 	bool sync;
 	bool no_clobber;
 	bool list_meshes; /* summary->lines is wanted */
 	bool digests;     /* summary->tangents_digest is wanted */
 	bool in_place;
-	bool allow_outside;
+	nt_outside outside;
 	bool own_input;   /* the one input that the user names: see options.c */
 	nt_equal_choice equal; /* what becomes of an output that has its bytes already */
 

@@ -46,7 +46,7 @@ static nt_status request_material(nt_scene *scene, nt_material *m, void *context
 	const requesting *w = context;
 	const nt_image_places places = {.document = m->library ? m->library : scene->path, .input = scene->path,
 		.folders = w->settings->texture_paths, .folder_count = w->settings->texture_path_count,
-		.allow_outside = w->settings->allow_outside, .one_up = w->settings->own_input};
+		.allow_outside = w->settings->outside == NT_OUTSIDE_YES, .one_up = w->settings->own_input};
 	nt_map_request requests[NT_MATERIAL_MAPS];
 	const size_t count = nt_map_requests(m, w->settings, requests);
 	nt_status status = NT_OK;
@@ -166,7 +166,7 @@ static void tell_source(const telling *t, const nt_map *map, int channel, const 
 	nt_finding_list *findings = &t->scene->findings;
 	if (source->found == NT_IMAGE_OUTSIDE)
 		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1,
-			"%.120s (it is outside of the folder of its MTL file, see --allow-outside)", map->name);
+			"%.120s (it is outside of the folder of its MTL file, see --outside=yes)", map->name);
 	else if (source->found == NT_IMAGE_MISSING)
 		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1, "%.120s", map->name);
 	else if (failed)

@@ -15,12 +15,12 @@ static bool is_folder(const char *path)
 	return (length && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
 }
 
-/* What a check judges: the conversion to --as, or to what a stream without a name would get. A glTF is judged as it
- * is, since it can hold tangents already. */
+/* What a check judges: the conversion to --output-format, or to what a stream without a name would get. Without
+ * --output-format a glTF is judged as it is, since it can hold tangents already. */
 static const nt_format_entry *find_judged(const nt_settings *settings, const nt_format_entry *reader)
 {
-	if (settings->as != NT_FORMAT_UNKNOWN)
-		return nt_format_find(settings->as);
+	if (settings->output_format != NT_FORMAT_UNKNOWN)
+		return nt_format_find(settings->output_format);
 	return reader && !nt_format_is_gltf(reader->format) ? nt_format_unnamed(reader) : NULL;
 }
 

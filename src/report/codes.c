@@ -291,7 +291,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"{count} {quad crosses itself|quads cross themselves} in UV space",
 		"Cut along either diagonal, its triangles are wound in opposite directions. Written as two triangles, "
 		"in a glTF, each gets its own sign and vertices of its own. MikkTSpace, and with it a bake of quads, "
-		"has one sign for both, that of the larger one: --repair=off writes that. PLY keeps the quad and this "
+		"has one sign for both, that of the larger one: --raw writes that. PLY keeps the quad and this "
 		"sign, and the smaller triangle is lit from the wrong side.",
 		"Straighten the quad in the UV editor, or triangulate it.",
 		"a quad with UVs (0,0), (1,1), (1,0), (0,1): a bowtie"),
@@ -496,7 +496,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(TAN_REPAIRED, INFO, "i-i", "{count} {corner|corners} got a tangent that MikkTSpace could not give",
 		"MikkTSpace leaves zero vectors, defaults or mixed signs at degenerate triangles. nmtan "
 		"replaced them by the nearest usable frame.",
-		"Nothing; --repair=off gives the raw result. Degenerate triangles are the cause.",
+		"Nothing; --raw gives the raw result. Degenerate triangles are the cause.",
 		"converting one triangle with UVs (0,0), (1,0), (2,0)"),
 	ROW(TAN_EXISTING_BAD, WARNING, "w--", "{count} {tangent|tangents} that were kept are invalid",
 		"--existing=keep leaves authored tangents as they are, and some of them are not usable.",

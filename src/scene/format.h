@@ -63,8 +63,15 @@ typedef enum nt_buffers {
 	NT_BUFFERS_DEFAULT, /* EMBED where a .gltf becomes a .glb, else LINK */
 	NT_BUFFERS_LINK,    /* the files where they are */
 	NT_BUFFERS_COPY,    /* beside the output */
-	NT_BUFFERS_EMBED    /* data URIs, of a .glb the first one as BIN chunk: the same as nt_write_options.embed */
+	NT_BUFFERS_EMBED    /* data URIs, of a .glb the first one as BIN chunk; new buffers of a .gltf too */
 } nt_buffers;
+
+/* Files that an input refers to outside its own folder. */
+typedef enum nt_outside {
+	NT_OUTSIDE_NO,
+	NT_OUTSIDE_ROOT, /* images of the only OBJ of a run, one folder up */
+	NT_OUTSIDE_YES
+} nt_outside;
 
 /* NONE: for new documents; a document that is edited keeps its images. */
 typedef enum nt_images { NT_IMAGES_DEFAULT, NT_IMAGES_LINK, NT_IMAGES_EMBED, NT_IMAGES_COPY,
@@ -94,9 +101,6 @@ typedef enum nt_draco_bits {
 	NT_DRACO_BITS_COUNT
 } nt_draco_bits;
 
-/* Draco's level, from 0 (smallest blocks) to 10 (fastest), where nobody says another. */
-enum { NT_DRACO_SPEED = 5 };
-
 typedef struct nt_read_options {
 	int texcoord_set;   /* -1: the set that the material's slot asks for; else TEXCOORD_n */
 	bool allow_outside; /* URIs may leave the folder of the input */
@@ -117,14 +121,12 @@ typedef struct nt_read_options {
 typedef struct nt_write_options {
 	nt_format format;   /* of the output */
 	const char *path;   /* of the output, "-" for standard output */
-	bool embed;         /* .gltf: buffers as data URIs */
 	bool bitangents;
 	nt_images images;
 	nt_buffers buffers;
 	nt_draco_choice draco;
 	nt_morph_choice morphs;
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
-	int draco_speed;    /* 0 (smallest) to 10 */
 	nt_precision precision;
 	nt_meshopt_choice meshopt;
 	bool allow_outside;

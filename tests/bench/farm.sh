@@ -44,8 +44,8 @@ row() {
 	awk -v name="$name" -v count="$count" -v ns=$(($(date +%s%N) - begin)) \
 		'BEGIN { printf "%-58s %7.2f s %9.0f files/s\n", name, ns / 1e9, count * 1e9 / ns }'
 }
-once() { "$NMTAN" -q "$@" -d out --mirror=in --files0-from=list0; }
-prepare() { rm -rf work && "$farm/nmtan-farm" prepare work "$1" -d out --mirror=in --threads=1 <list0; }
+once() { "$NMTAN" -q "$@" -d out --keep-tree=in --files-from=list0; }
+prepare() { rm -rf work && "$farm/nmtan-farm" prepare work "$1" -d out --keep-tree=in --threads=1 <list0; }
 on_slurm() {
 	"$farm/slurm.sh" work --cpus-per-task=1
 	await_jobs

@@ -539,14 +539,14 @@ static void print_lengyel(const bench *b)
 }
 
 /* A model as nmtan writes it, its quads solved as quads; NULL tangents: it does not. */
-static nt_owned write_quads(const bench *b, size_t number, const char *repair, float (**tangents)[4])
+static nt_owned write_quads(const bench *b, size_t number, const char *raw, float (**tangents)[4])
 {
 	char glb[512], ply[512];
 	path_of(b, glb, 'q', number, "glb");
 	path_of(b, ply, 'q', number, "ply");
 	*tangents = NULL;
-	if (files_run((const char *const[]){b->nmtan, "-q", "--only=all", "--existing=replace", repair,
-			b->files[number], glb, NULL}) < 0 ||
+	if (files_run((const char *const[]){b->nmtan, "-q", "--only=all", "--existing=replace",
+			b->files[number], glb, raw, NULL}) < 0 ||
 		files_run((const char *const[]){b->nmtan, "-q", "--existing=keep", glb, ply, NULL}) < 0)
 		return (nt_owned){0};
 	return model_read_ply(ply, tangents);
@@ -557,13 +557,13 @@ static nt_owned write_quads(const bench *b, size_t number, const char *repair, f
 static void print_quads(const bench *b)
 {
 	printf("A baker of quads with mikktspace.c's raw w, at halves of quads that are wound against it, B per pixel, "
-		"16 bits.\n\n| model | triangles | of the UV area | default: median, maximum | --repair=off: median, "
+		"16 bits.\n\n| model | triangles | of the UV area | default: median, maximum | --raw: median, "
 		"maximum |\n"
 		"|---|---|---|---|---|\n");
 	for (size_t m = 0; b->files && m < b->model_count; m++) {
 		float (*rows[2])[4];
-		nt_owned meshes[2] = {write_quads(b, m, "--repair=off", &rows[0]),
-			write_quads(b, m, "--repair=on", &rows[1])};
+		nt_owned meshes[2] = {write_quads(b, m, "--raw", &rows[0]),
+			write_quads(b, m, NULL, &rows[1])};
 		if (rows[0] && rows[1] && meshes[0].corner_count == meshes[1].corner_count) {
 			shading s[2];
 			for (int i = 0; i < 2; i++) {

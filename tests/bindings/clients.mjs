@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // node clients.mjs PACKAGE MODULES PLAYWRIGHT FOLDER FILE...: real programs with the npm package in them. FOLDER takes
-// what is built; each FILE is a GLB or glTF that nmtan wrote with --repair=off, or a repaired.glb.
+// what is built; each FILE is a GLB or glTF that nmtan wrote with --raw, or a repaired.glb.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { copyFileSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from 'node:fs';

@@ -44,8 +44,8 @@ for name in cube torus repaired; do
 	# a triangle without UV area, whose tangents raw MikkTSpace leaves to whoever writes them
 	[ $name = repaired ] && { cat "$WORK/clients/torus.obj" && echo "f 30/30/30 55/30/30 56/30/30"; } >"$WORK/clients/repaired.obj"
 	run "$WORK/clients/$name.obj" "$WORK/clients/first.glb"
-	[ $name = repaired ] && repair=on || repair=off
-	run --repair=$repair --only=all --existing=replace "$WORK/clients/first.glb" "$WORK/clients/$name.glb"
+	[ $name = repaired ] && raw= || raw=--raw
+	run $raw --only=all --existing=replace "$WORK/clients/first.glb" "$WORK/clients/$name.glb"
 done
 cases_of client "$ROOT/tests/bindings/clients.mjs" "$ROOT/build/npm" "$modules" "$ROOT/build/node" "$WORK/clients" \
 	"$WORK/clients/cube.glb" "$WORK/clients/torus.glb" "$WORK/clients/repaired.glb"

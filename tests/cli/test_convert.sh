@@ -85,7 +85,7 @@ exits 0
 run head.obj head.gltf
 exits 0
 exists head.gltf head.bin
-run --embed head.obj embedded.gltf
+run --buffers=embed head.obj embedded.gltf
 exits 0
 run --output-format=glb head.obj unnamed
 exits 0

@@ -209,35 +209,6 @@ open(sys.argv[1] + ".second", "wb").write(block(g["meshes"][1]["primitives"][0])
 	done
 done
 
-scene "--draco-speed: smaller or faster, the same content, 5 unless told"
-grid_obj 40 >grid.obj
-run -q grid.obj grid.glb
-for method in edgebreaker sequential; do
-	for level in 0 5 10; do
-		run -q --only=all --existing=replace --draco=$method --draco-speed=$level --verify grid.glb $level.glb
-		exits 0
-	done
-	run -q --only=all --existing=replace --draco=$method grid.glb default.glb
-	same default.glb 5.glb
-	[ $method = sequential ] || [ "$(size 0.glb)" -lt "$(size 5.glb)" -a "$(size 5.glb)" -lt "$(size 10.glb)" ] ||
-		wrong "sizes $(size 0.glb), $(size 5.glb), $(size 10.glb)"
-done
-cmp -s 0.glb 10.glb && wrong "the level changes nothing"
-# sequential keeps the order, so that what is decoded, behind the old block, has the same bytes
-for level in 0 10; do
-	run -q --only=all --existing=replace --draco=off $level.glb plain_$level.gltf
-	exits 0
-	tail -c 80000 plain_$level.bin >tail_$level
-done
-is "$(size tail_0)" 80000
-same tail_0 tail_10
-run --draco-speed=11 grid.glb out.glb
-exits 1
-says "--draco-speed"
-run --draco=off --draco-speed=3 grid.glb out.glb
-exits 1
-says "--draco=off leaves nothing for --draco-speed"
-
 scene "blocks are decoded on several threads: the bytes, and what is wrong and where, do not depend on how many"
 for method in sequential edgebreaker; do
 	run -q --only=all --existing=replace --draco=$method "$data/plates.glb" three.glb

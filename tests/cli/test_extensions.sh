@@ -81,7 +81,7 @@ merges_copies() {
 scene "EXT_mesh_manifold: the manifold stays one, its merges follow"
 manifold_gltf in
 is "$(manifold_of in.gltf)" "manifold 4 4"
-run --only=all --embed in.gltf out.gltf
+run --only=all --buffers=embed in.gltf out.gltf
 exits 0
 says_not EXTENSION_STALE
 [ "$(gltf out.gltf 'rows(g.meshes[0].primitives[0].attributes.POSITION).length')" -gt 13 ] || wrong "nothing is copied"
@@ -91,7 +91,7 @@ is "$(gltf out.gltf "$corners" | md5sum)" "$(gltf in.gltf "$corners" | md5sum)"
 is "$(gltf out.gltf 'g.meshes[0].primitives.map((p) => rows(p.attributes.TANGENT).length > 13)')" "[true,true]"
 valid out.gltf
 # where Draco cannot hold what primitives share, they are plain
-run --existing=replace --only=all --embed --draco=sequential in.gltf out.gltf
+run --existing=replace --only=all --buffers=embed --draco=sequential in.gltf out.gltf
 says DRACO_PLAIN
 says_not EXTENSION_STALE
 merges_copies out.gltf

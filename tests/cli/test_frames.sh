@@ -108,7 +108,7 @@ is "$(gltf q.glb "($corners)(1, 2)")" \
 	'0,1:-0.894427,0.447214,0,-1 1,0:-0.894427,0.447214,0,-1 1,1:-0.894427,0.447214,0,-1'
 is "$(gltf q.glb 'g.accessors[g.meshes[0].primitives[0].attributes.POSITION].count')" 9
 # everything else has the bytes that the quads have
-run --repair=off q.obj raw.glb
+run --raw q.obj raw.glb
 for range in '0, 1' '2, 4'; do
 	is "$(gltf q.glb "($corners)($range)")" "$(gltf raw.glb "($corners)($range)")"
 done

@@ -21,7 +21,7 @@ for input in "$WORK"/layouts/*.gl*; do
 	esac
 	run "$WORK/layouts/plain.gltf" reference.gltf
 	exits 0
-	for words in same/a.gltf other/b.glb "--embed same/c.gltf" "--bitangents other/d.gltf"; do
+	for words in same/a.gltf other/b.glb "--buffers=embed same/c.gltf" "--bitangents other/d.gltf"; do
 		# shellcheck disable=SC2086
 		run --existing=replace "$input" $words
 		exits 0
@@ -201,10 +201,10 @@ lossless "in dir/three_buffers.gltf" out/deep/t.gltf
 grep -q '"uri": "../../in%20dir/three_buffers%202.bin"' out/deep/t.gltf || wrong "the untouched buffer is not linked"
 run --existing=replace out/deep/t.gltf again.gltf
 exits 0
-run --existing=replace --embed out/deep/t.gltf again.gltf
+run --existing=replace --buffers=embed out/deep/t.gltf again.gltf
 exits 3
 says "leaves the folder"
-run --existing=replace --embed --allow-outside out/deep/t.gltf again.gltf
+run --existing=replace --buffers=embed --outside=yes out/deep/t.gltf again.gltf
 exits 0
 
 scene "URIs that are not relative stay as they are"
@@ -251,7 +251,7 @@ rm out/link* out/again*
 is "$(ls out | wc -l)" 4
 run --buffers=embed in/three_buffers.gltf out/embed.gltf
 exits 0
-run --embed in/three_buffers.gltf out/old.gltf
+run --buffers=embed in/three_buffers.gltf out/old.gltf
 same out/embed.gltf out/old.gltf
 lossless in/three_buffers.gltf out/embed.gltf
 # nothing to be done, but the folder is another

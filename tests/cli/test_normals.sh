@@ -95,7 +95,7 @@ scene "flat normals of a cube of eight vertices make three of each"
 		echo "f $1/1 $3/1 $4/1"
 	done
 } >c.obj
-run --normals=flat --repair=off c.obj c.ply
+run --normals=flat --raw c.obj c.ply
 exits 0
 is "$(grep -a '^element vertex' c.ply)" "element vertex 24"
 

@@ -152,7 +152,7 @@ exits 0
 [ ! -e /dev/null.bin ] && [ ! -e /dev/bumps.png ] || wrong "there are files in /dev"
 run --output-format=gltf "$data/head.obj" /dev/null
 exits 1
-says "glTF with a .bin cannot go to a device; write glb, or use --embed"
+says "glTF with a .bin cannot go to a device; write glb, or use --buffers=embed"
 
 scene "a named pipe is written through"
 mkfifo pipe.glb

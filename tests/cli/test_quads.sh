@@ -116,7 +116,7 @@ run --check --diff cut.gltf again.glb
 prints "0 of 1 meshes changed"
 
 scene "the smaller half of a folded quad may have the sign of the quad"
-inputs --repair=off quads 0 85
+inputs --raw quads 0 85
 codes='sorted(f["code"] for f in r["files"][0]["findings"] if f["code"].startswith("TAN_"))'
 run --check --only=all --report=f.json cut.gltf
 exits 0
@@ -126,7 +126,7 @@ exits 6
 is "$(value f.json "'TAN_QUAD_SIGN' in $codes, 'TAN_SIGN_MISMATCH' in $codes")" "(False, True)"
 run --only=all --existing=repair cut.gltf repair.glb
 same_places repair.glb obj.glb
-run --only=all --existing=replace --repair=off cut.gltf raw.glb
+run --only=all --existing=replace --raw cut.gltf raw.glb
 same_places raw.glb obj.glb
 # what is solved anew follows the triangle
 run --only=all --existing=replace cut.gltf own.glb

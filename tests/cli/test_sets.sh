@@ -176,7 +176,7 @@ run "$data/plates.gltf" a.gltf
 mkdir sub
 run --buffers=link a.gltf sub/a.glb
 run --buffers=link a.gltf sub/a.gltf
-run --embed --existing=replace a.gltf b.gltf
+run --buffers=embed --existing=replace a.gltf b.gltf
 for file in sub/a.glb sub/a.gltf b.gltf; do
 	! grep -q nmtan:xxh128 $file || wrong "$file claims a.bin"
 done

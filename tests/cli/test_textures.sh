@@ -57,7 +57,7 @@ for lines in "map_Bump -bm 3 h.tga" "map_Bump h.tga|map_Kd clear.png" "norm n.tg
 		# shellcheck disable=SC2086
 		run --report=r.json $words quad.obj out.gltf
 		made=$(codes)
-		for how in "--check --as=gltf" "--dry-run"; do
+		for how in "--check --output-format=gltf" "--dry-run"; do
 			# shellcheck disable=SC2086
 			run --report=r.json $words $how quad.obj $([ "$how" = --dry-run ] && echo dry.gltf)
 			is "$how $lines $words: $(codes)" "$how $lines $words: $made"
@@ -270,21 +270,21 @@ images write n.png 4 4 "$bumps"
 ln -s ../n.png in/link.png
 quad 'norm ../n.png' 'map_Kd link.png'
 mv quad.obj m.mtl in
-run --confine in/quad.obj quad.gltf
+run --outside=no in/quad.obj quad.gltf
 exits 0
-says "--allow-outside"
+says "--outside=yes"
 is "$(gltf quad.gltf 'g.images')" undefined
-run --allow-outside in/quad.obj quad.gltf
+run --outside=yes in/quad.obj quad.gltf
 is "$(gltf quad.gltf 'g.images.length')" 2
 
 # Names that leave the folder are refused by their text: the message is one, whatever is there.
 for name in ../n.png ../gone.png "$PWD/n.png" /gone/n.png; do
 	printf 'newmtl m\nnorm %s\n' "$name" >in/m.mtl
-	run --confine in/quad.obj quad.gltf
+	run --outside=no in/quad.obj quad.gltf
 	exits 0
 	grep -o ': image .*' ../err.txt | sed "s#$name#NAME#" >>said
 done
-is "$(sort -u said)" ": image cannot be read: NAME (it is outside of the folder of its MTL file, see --allow-outside) [IMAGE_MISSING]"
+is "$(sort -u said)" ": image cannot be read: NAME (it is outside of the folder of its MTL file, see --outside=yes) [IMAGE_MISSING]"
 
 scene "an image one folder up is taken where one file is converted"
 mkdir -p p/models p/textures far
@@ -301,13 +301,11 @@ same p/models/t.png p/textures/t.png
 rm p/models/t.png
 run --check --check-maps=on p/models/quad.obj
 says_not IMAGE_MISSING
-for way in "-d out" "-d out -r" --confine; do
-	case $way in --confine) run $way p/models/quad.obj out.glb ;; *-r) run $way p/models ;; *) run $way p/models/quad.obj ;; esac
+for way in "-d out" "-d out -r" --outside=no; do
+	case $way in --outside=no) run $way p/models/quad.obj out.glb ;; *-r) run $way p/models ;; *) run $way p/models/quad.obj ;; esac
 	exits 0
 	says "image cannot be read: ../textures/t.png (it is outside"
 done
-run --allow-outside --confine p/models/quad.obj out.glb
-exits 1
 # no further, by no link, no other file; and one message, whatever is there
 echo text >p/secret.txt
 ln -s ../far p/linked
@@ -320,7 +318,7 @@ for name in ../secret.txt ../gone.txt ../../far/n.png ../../gone/n.png ../textur
 	grep -o ': image .*' ../err.txt | sed "s#$name#NAME#" >>said
 done
 is "$(sort said | uniq -c | sed 's/^ *//')" \
-	"9 : image cannot be read: NAME (it is outside of the folder of its MTL file, see --allow-outside) [IMAGE_MISSING]"
+	"9 : image cannot be read: NAME (it is outside of the folder of its MTL file, see --outside=yes) [IMAGE_MISSING]"
 
 scene "a link inside the folder does not tell whether there is something outside that it leads to"
 mkdir in there
@@ -510,7 +508,7 @@ run --flip-green=auto quad.obj direct.glb
 images embedded direct.glb 0 turned.png
 run quad.obj quad.glb
 run quad.obj quad.gltf
-run --embed --images=embed quad.gltf data.gltf
+run --buffers=embed --images=embed quad.gltf data.gltf
 for file in quad.glb data.gltf; do
 	run --verify --flip-green=auto $file out.${file#*.}
 	exits 0
@@ -642,7 +640,7 @@ scene "the normal map of a clearcoat is examined, too, and once where both are o
 hills n.png -1
 hills up.png 1
 quad 'norm up.png' 'map_Kd n.png'
-run --embed quad.obj quad.gltf
+run --buffers=embed quad.obj quad.gltf
 coat='const of = (name) => g.textures.findIndex((t) => g.images[t.source].name === name);
 	const clearcoatNormalTexture = {index: of(asked)};
 	g.materials[0].extensions = {KHR_materials_clearcoat: {clearcoatFactor: 1, clearcoatNormalTexture}}'

@@ -173,20 +173,20 @@ is "$(made)" "now.obj "
 
 scene "by content, a file that was touched is the same, and one of the same time is not"
 take
-run --update --update-by=content -d out $inputs
+run --update=content -d out $inputs
 exits 0
 later
 touch $inputs bumps.png out/*
-run --update --update-by=content -d out $inputs
+run --update=content -d out $inputs
 is "$(made)" ""
 stamp=$(stat -c %y quad.obj)
 sed -i 's/^v 1/v 3/' quad.obj
 touch -d "$stamp" quad.obj
-run --update --update-by=content -d out $inputs
+run --update=content -d out $inputs
 is "$(made)" "quad.obj "
-run --update-by=content -d out quad.obj
+run --update=bytes -d out quad.obj
 exits 1
-says "--update-by needs --update"
+says "--update: 'bytes' is none of: time content"
 
 scene "a record can be elsewhere, and be written by a run that makes everything"
 take
@@ -216,7 +216,7 @@ mkdir v1
 mv bumps.png v1/N.PNG
 ln -s v1 t,x
 sed -i 's|bumps.png|t,x/n.png|' mirrored_cube.mtl
-run --update --update-by=content -d out $inputs $'\xff "%.obj'
+run --update=content -d out $inputs $'\xff "%.obj'
 exits 0
 run --update -d out --method=area quad.obj
 # each output once when it is complete and once when it has its name
@@ -445,10 +445,10 @@ later
 # Milliseconds of the processors.
 took() {
 	local TIMEFORMAT='%U %S'
-	{ time "$NMTAN" -q --update -d out --mirror=. --files-from=list; } 2>&1 | awk 'END { printf "%d", 1000 * ($1 + $2) }'
+	{ time "$NMTAN" -q --update -d out --keep-tree=. --files-from=list; } 2>&1 | awk 'END { printf "%d", 1000 * ($1 + $2) }'
 }
 made=$(took)
-run --update -d out --mirror=. --files-from=list
+run --update -d out --keep-tree=. --files-from=list
 exits 0
 says "${folders}00 of ${folders}00 done, ${folders}00 of them up to date"
 case $BUILD in

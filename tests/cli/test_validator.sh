@@ -7,7 +7,7 @@ for input in quad.obj mirrored_cube.obj head.obj quad_ascii.ply quad_le.ply quad
 	scene "$input gives valid glTF in every form"
 	cp "$data"/*.png "$data"/*.mtl "$data"/*.bin .
 	mkdir out
-	for words in "out/a.glb" "out/b.gltf" "--embed out/c.gltf" "--bitangents out/d.glb" \
+	for words in "out/a.glb" "out/b.gltf" "--buffers=embed out/c.gltf" "--bitangents out/d.glb" \
 		"--images=embed out/e.gltf" "--images=copy out/f.gltf" "--buffers=copy out/g.gltf" \
 		"--method=lengyel out/h.glb" "--method=area --normals=flat out/i.glb"; do
 		# shellcheck disable=SC2086

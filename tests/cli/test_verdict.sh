@@ -37,24 +37,21 @@ cp "$data/mirrored_cube.obj" "$data/head.obj" "$data/quad_le.ply" .
 for pair in mirrored_cube.obj:glb head.obj:gltf head.obj:ply quad_le.ply:ply quad_le.ply:glb; do
 	in=${pair%:*} as=${pair#*:}
 	run -q --report=converted.json "$in" "out.$as"
-	run -q --check --fail-on=never "--as=$as" --report=checked.json "$in"
+	run -q --check --fail-on=never "--output-format=$as" --report=checked.json "$in"
 	exits 0
 	is "$(findings checked.json)" "$(findings converted.json)"
 done
 run -q --check --report=default.json --fail-on=never mirrored_cube.obj
-run -q --check --report=glb.json --as=glb --fail-on=never mirrored_cube.obj
+run -q --check --report=glb.json --output-format=glb --fail-on=never mirrored_cube.obj
 same default.json glb.json
 
 scene "--check writes nothing, whichever target it is for"
 cp "$data/quad.obj" .
 for as in ply gltf glb; do
-	run --check "--as=$as" quad.obj
+	run --check "--output-format=$as" quad.obj
 	exits 0
 done
 only quad.obj
-run --as=ply quad.obj out.ply
-exits 1
-says "--as is about --check"
 
 scene "what a material loses is a warning of the check, too"
 cp "$data/quad.obj" .

@@ -17,7 +17,7 @@ make_inputs() {
 	python3 "$ROOT/tests/support/cost_inputs.py" windows 20 windows.glb 12 || return 1
 	printf 'quad.obj\nplates.glb\n' >list
 	manifold_gltf manifold || return 1
-	"$NMTAN" -q --update --update-by=content plates.gltf current.gltf || return 1
+	"$NMTAN" -q --update=content plates.gltf current.gltf || return 1
 	make_images &&
 	"$NMTAN" -q --draco=sequential plates.gltf draco.glb && "$NMTAN" -q --draco=edgebreaker morph.gltf edge.gltf &&
 		"$NMTAN" -q morph.gltf morph.glb && "$faults/make_meshopt" meshopt.glb
@@ -68,12 +68,11 @@ cases() {
 		many | $cube quad.obj plates.glb | many | -d out mirrored_cube.obj quad.obj plates.glb
 		update | $cube quad.obj | many | --update -d out mirrored_cube.obj quad.obj
 		update, in place | $plates || --update --in-place plates.gltf
-		update, by content | $plates current.gltf current.bin .nmtan-record || -q --update --update-by=content plates.gltf current.gltf
+		update, by content | $plates current.gltf current.bin .nmtan-record || -q --update=content plates.gltf current.gltf
 		depfile and manifest | $cube | report=m.jsonl | --depfile=d --manifest=m.jsonl mirrored_cube.obj o.glb
 		a bound of memory | quad.obj $plates | many | --jobs=2 --memory=1M -d out quad.obj plates.gltf
 		a list | list quad.obj plates.glb | many | --fail-fast -d out --files-from=list
-		a folder | quad.obj plates.glb | many | -r -d out --mirror=. --exclude=x .
-		pictures | $cube || --check --uv-image=uv mirrored_cube.obj
+		a folder | quad.obj plates.glb | many | -r -d out --keep-tree=. --exclude=x .
 		difference | $cube quad.obj | many | --check --diff mirrored_cube.obj quad.obj
 		difference as a page | $cube quad.obj | many report=r.html | --check --diff --report=r.html mirrored_cube.obj quad.obj
 		verdict | $cube || --fail-on=info mirrored_cube.obj o.glb

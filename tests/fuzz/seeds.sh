@@ -35,9 +35,9 @@ for file in data/*.gltf data/quad.obj data/mirrored_cube.obj data/quad_wedge.ply
 		"$nmtan" -q --only=all --existing=replace --draco=$draco "$seeds/glb/$name.glb" "$seeds/glb/${name}_$draco.glb" || true
 	done
 done
-"$nmtan" -q "$seeds/glb/meshopt.glb" "$seeds/gltf/meshopt.gltf" --embed || true
+"$nmtan" -q "$seeds/glb/meshopt.glb" "$seeds/gltf/meshopt.gltf" --buffers=embed || true
 for name in quad morph skin; do
-	"$nmtan" -q --embed "$seeds/glb/${name}_edgebreaker.glb" "$seeds/gltf/${name}_edgebreaker.gltf"
+	"$nmtan" -q --buffers=embed "$seeds/glb/${name}_edgebreaker.glb" "$seeds/gltf/${name}_edgebreaker.gltf"
 	"$nmtan" -q "$seeds/glb/$name.glb" "$seeds/ply/$name.ply"
 done
 

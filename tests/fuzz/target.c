@@ -141,13 +141,13 @@ static nt_status run(const char *path, const char *output, const nt_settings *se
 	if (verbose)
 		fprintf(stderr,
 			"%s: check %d format %d only %d existing %d normals %d across %d draco %d morphs %d method "
-			"%d images %d buffers %d precision %d embed %d bitangents %d verify %d threads %u: "
+			"%d images %d buffers %d precision %d bitangents %d verify %d threads %u: "
 			"status %d %s:%zu:%lld %s: %s\n",
 			path, settings->check, (int)settings->output_format, (int)settings->only,
 			(int)settings->existing,
 			(int)settings->normals, (int)settings->across, (int)settings->draco, (int)settings->morphs,
 			(int)settings->method, (int)settings->images, (int)settings->buffers, (int)settings->precision,
-			settings->embed, settings->bitangents, settings->verify, settings->threads, (int)status,
+			settings->bitangents, settings->verify, settings->threads, (int)status,
 			error->place.file, error->place.line, (long long)error->place.offset, error->place.pointer,
 			error->message);
 	if (status == NT_ERROR_INTERNAL || (status && strlen(error->message) < 8))

@@ -67,7 +67,7 @@ for build in "$@"; do
 	way "$build glb" glb
 	way "$build gltf" gltf --only=all
 	way "$build gltf, replaced, bitangents" gltf --only=all --existing=replace --bitangents
-	way "$build gltf, embedded" gltf --only=all --embed --images=embed
+	way "$build gltf, embedded" gltf --only=all --buffers=embed --images=embed
 	way "$build gltf, images copied" gltf --images=copy
 	way "$build glb, no images, smooth normals" glb --only=all --images=none --normals=smooth
 	way "$build glb, flat normals, verified" glb --only=all --normals=flat --verify

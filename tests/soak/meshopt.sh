@@ -28,14 +28,14 @@ while IFS= read -r file; do
 		node "$answer" meshopt views "$t/views" "$in" >/dev/null && "$views" "$t/views" >"$t/said" ||
 			fault "$(tail -1 "$t/said")"
 		out=$t/w/out.${in##*.}
-		"$nmtan" -q --verify --only=all --existing=replace --allow-outside "$in" "$out" 2>"$t/said" ||
+		"$nmtan" -q --verify --only=all --existing=replace --outside=yes "$in" "$out" 2>"$t/said" ||
 			{ fault "$(cat "$t/said")"; continue; }
 		node "$answer" meshopt same "$in" "$out" >"$t/said" || fault "$(head -1 "$t/said")"
 		counts=$(node "$answer" frames "$out")
 		[[ $counts =~ \ (unit|w|mixed|wrong)\ [1-9] ]] && fault "$counts"
 		node "$answer" validate "$out" "$in" >"$t/said" || fault "$(head -1 "$t/said")"
-		"$nmtan" -q --existing=repair --only=all --allow-outside "$out" "$t/w/one.glb" 2>/dev/null
-		"$nmtan" -q --existing=repair --only=all --allow-outside "$t/w/one.glb" "$t/w/two.glb" 2>/dev/null
+		"$nmtan" -q --existing=repair --only=all --outside=yes "$out" "$t/w/one.glb" 2>/dev/null
+		"$nmtan" -q --existing=repair --only=all --outside=yes "$t/w/one.glb" "$t/w/two.glb" 2>/dev/null
 		cmp -s "$t/w/one.glb" "$t/w/two.glb" || fault "a second repair differs"
 		before=$((before + $(stat -c %s "$in"))) after=$((after + $(stat -c %s "$out")))
 	done

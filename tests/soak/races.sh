@@ -21,7 +21,7 @@ mkdir "$work/in" && cp -r data "$work/in/"
 chmod -R u+w "$work/in"
 find "$work/in" -type f -size +2M -delete
 runs=0
-for options in "--mirror=in -d out --only=all --existing=replace" "--mirror=in -d compressed --draco=edgebreaker --report=r.html" \
+for options in "--keep-tree=in -d out --only=all --existing=replace" "--keep-tree=in -d compressed --draco=edgebreaker --report=r.html" \
 	"--check --report=r.json" "--check --across=mesh --report=r.sarif"; do
 	# shellcheck disable=SC2086
 	(cd "$work" && exec "$OLDPWD/build/tsan/nmtan" -q --recursive --jobs=4 --threads=4 $options in) >"$work/said" 2>&1

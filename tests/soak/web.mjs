@@ -124,7 +124,7 @@ await opened('folder');
 check((await inReport('#file-rows tr').count()) === 2, 'two meshes are two rows');
 await accessible('two meshes');
 const two = unpack(await saved());
-execFileSync(nmtan, ['-q', '-d', join(out, 'two-native'), '--mirror=.', '--output-format=glb', 'another.obj', 'plates.gltf'], {cwd: join(folder, 'folder')});
+execFileSync(nmtan, ['-q', '-d', join(out, 'two-native'), '--keep-tree=.', '--output-format=glb', 'another.obj', 'plates.gltf'], {cwd: join(folder, 'folder')});
 check(equal(two, join(out, 'two-native')).status === 0, 'two files: ' + equal(two, join(out, 'two-native')).stdout);
 
 // options

@@ -24,8 +24,8 @@ take_many() {
 	count=$((count + 400))
 }
 list() { find "as sets" \( -name '*.obj' -o -name '*.gltf' \) -print0; }
-clean() { list | "$NMTAN" -q -d clean --mirror="as sets" --files0-from=- || wrong "exit code $?"; }
-prepare() { list | "$farm/nmtan-farm" prepare "my work" "$1" -d "o ut" --mirror="as sets" "${@:2}"; }
+clean() { list | "$NMTAN" -q -d clean --keep-tree="as sets" --files-from=- || wrong "exit code $?"; }
+prepare() { list | "$farm/nmtan-farm" prepare "my work" "$1" -d "o ut" --keep-tree="as sets" "${@:2}"; }
 is_clean() {
 	diff -r clean "o ut" >difference || wrong "$(head -3 difference)"
 	is "$(wc -l <"my work/manifest.jsonl")" $count
@@ -43,7 +43,7 @@ case "$*" in *"/2.list0 "*) mkdir first 2>/dev/null || exec "$TOOL" "$@" ;; *) e
 mkfifo "as sets/pipe.obj"
 { head -z -n 40 "my work/2.list0" && printf 'as sets/pipe.obj\0'; } >first/list0
 echo $$ >first/pid
-exec "$TOOL" "${@/#--files0-from=*/--files0-from=first/list0}"
+exec "$TOOL" "${@/#--files-from=*/--files-from=first/list0}"
 END
 	chmod +x stopping.sh
 }

@@ -65,7 +65,7 @@ class Fuzz:
     # ---- runs ----
 
     def command(self, out, *more):
-        return [self.nmtan, '-q', '--images=embed', '-r', '-d', out, '--mirror=in', *self.options, *more, 'in']
+        return [self.nmtan, '-q', '--images=embed', '-r', '-d', out, '--keep-tree=in', *self.options, *more, 'in']
 
     def update(self):
         """The lines of the manifest by input."""

@@ -176,7 +176,7 @@ export RCLONE=$PWD/rclone
 mkdir -p store/deep
 cp "$data"/mirrored_cube.* "$data/bumps.png" store/deep
 cp "$data/quad.obj" store
-"$NMTAN" -q -r -d clean --mirror=store store
+"$NMTAN" -q -r -d clean --keep-tree=store store
 made() {
 	rm -rf scratch # another machine
 	recipe "$farm/nmtan-farm" store "$PWD/store" "$PWD/target" "$PWD/scratch"
@@ -225,7 +225,7 @@ recipe sh -c 'find "as sets" -name "*.obj" -print0 | "$0" ninja "o ut" "as sets"
 exits 1
 says "a name with a line feed cannot be in a build.ninja"
 rm "as sets/-sub dir/"$'line\nfeed.obj'
-list | "$NMTAN" -q --output-format=glb --method=area -d clean --mirror="as sets" --files0-from=-
+list | "$NMTAN" -q --output-format=glb --method=area -d clean --keep-tree="as sets" --files-from=-
 list | "$farm/nmtan-farm" ninja "o ut" "as sets" --method=area >build.ninja
 ninja >made 2>&1 || wrong "$(cat made)"
 diff -r clean "o ut" >difference || wrong "$(head -3 difference)"

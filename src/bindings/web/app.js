@@ -156,7 +156,7 @@ function offer() {
 	$('save').textContent = advised.length ? 'Repair and save' : 'Save';
 	const quoted = text => /^[\w.,:@%+/=-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
 	$('command').textContent = ['nmtan', ...options, ...names.length === 1 ? [quoted(names[0]), quoted(stem() + '.' + format)] :
-		['-d', 'DIR', '--mirror=.', '--output-format=' + format, 'INPUT...']].join(' ');
+		['-d', 'DIR', '--keep-tree=.', '--output-format=' + format, 'INPUT...']].join(' ');
 }
 
 async function save() {

@@ -43,7 +43,7 @@ function commonFolder(paths) {
 
 function outputArguments({format, name}, count) {
 	const files = format === 'gltf' ? ['--images=copy', '--buffers=copy'] : [];
-	return count > 1 ? ['-d', '/out', '--mirror=.', '--output-format=' + format, ...files] : ['-o', '/out/' + name + '.' + format, ...files];
+	return count > 1 ? ['-d', '/out', '--keep-tree=.', '--output-format=' + format, ...files] : ['-o', '/out/' + name + '.' + format, ...files];
 }
 
 async function work({tool: compiled, files, options, save}) {

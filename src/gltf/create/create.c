@@ -436,10 +436,10 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 	nt_error *error)
 {
 	composition c = {.scene = scene, .options = *options, .output = output};
-	const bool alone = options->format == NT_FORMAT_GLB || options->embed;
+	const bool alone = options->format == NT_FORMAT_GLB || options->buffers == NT_BUFFERS_EMBED;
 	if (!alone && nt_output_is_stream(options->path))
 		return nt_fail(error, NT_ERROR_USAGE,
-			"glTF with a .bin cannot go to %s; write glb, or use --embed",
+			"glTF with a .bin cannot go to %s; write glb, or use --buffers=embed",
 			strcmp(options->path, "-") == 0 ? "standard output" : "a device");
 
 	c.model = nt_model_create("nmtan " NMTAN_VERSION_STRING);
@@ -459,7 +459,8 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 		status = plan_scene(&c, error);
 	if (status == NT_OK)
 		status = options->format == NT_FORMAT_GLB ? write_glb(&c, c.main, error)
-			: options->embed ? write_embedded(&c, c.main, error) : write_with_bin(&c, c.main, error);
+			: options->buffers == NT_BUFFERS_EMBED ? write_embedded(&c, c.main, error)
+			: write_with_bin(&c, c.main, error);
 	nt_image_set_free(c.images);
 	nt_model_free(c.model);
 	nt_arena_free(&c.arena);

@@ -55,7 +55,7 @@ nt_status nt_image_set_create(nt_image_set **set, const nt_write_options *option
 	*set = nt_calloc(1, sizeof **set);
 	if (!*set)
 		return nt_fail_memory(error);
-	const bool alone = options->format == NT_FORMAT_GLB || options->embed;
+	const bool alone = options->format == NT_FORMAT_GLB || options->buffers == NT_BUFFERS_EMBED;
 	(*set)->options = *options;
 	(*set)->choice = options->images == NT_IMAGES_DEFAULT && alone ? NT_IMAGES_EMBED : options->images;
 	const nt_status status = fill(*set, error);

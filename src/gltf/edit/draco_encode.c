@@ -58,6 +58,10 @@ static bool order_is_kept(const nt_gltf_recoding *r)
 	return true;
 }
 
+/* Draco's own default. Of an edgebreaker torus of 245 000 triangles level 4 makes 0.85 of the bytes in 1.07 of the
+ * time, level 8 twice the bytes in 0.69; with many seams level 6 makes up to a quarter more. */
+enum { DRACO_SPEED = 5 };
+
 /* Edgebreaker does not give every mesh back; the other method has nothing to lose. */
 static nt_status encode(nt_gltf_recoding *r, nt_error *error)
 {
@@ -68,7 +72,7 @@ static nt_status encode(nt_gltf_recoding *r, nt_error *error)
 		.indices = r->vertices->indices[0],
 		.attributes = r->attributes,
 		.attribute_count = r->attribute_count,
-		.speed = r->options->draco_speed,
+		.speed = DRACO_SPEED,
 	};
 	nt_status status = nt_draco_encode(&mesh, &r->block, error);
 	if (status && !nt_gltf_is_beside_mesh(status) && mesh.method != NT_DRACO_SEQUENTIAL) {

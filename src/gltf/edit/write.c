@@ -84,7 +84,7 @@ nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *option
 	if (buffers || images)
 		status = nt_gltf_link_prefix(&arena, options->path, scene->path, &prefix, error);
 	const bool moves = *prefix && (buffers || images);
-	const bool embeds = (options->embed && buffers) || (choice == NT_IMAGES_EMBED && images);
+	const bool embeds = (options->buffers == NT_BUFFERS_EMBED && buffers) || (choice == NT_IMAGES_EMBED && images);
 	nt_arena_free(&arena);
 	if (status || !same_container || moves || embeds)
 		return status;
@@ -406,7 +406,7 @@ nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const 
 		.arena = &edits->arena, .error = error, .to_glb = options->format == NT_FORMAT_GLB,
 		.in_place = nt_output_is_in_place(output, options->path)};
 	c.same_container = c.to_glb == document->is_glb;
-	c.embed = options->embed || (!c.to_glb && c.output.is_stream);
+	c.embed = options->buffers == NT_BUFFERS_EMBED || (!c.to_glb && c.output.is_stream);
 	nt_status status = NT_OK;
 	if (has_external(document, "buffers") || has_external(document, "images"))
 		status = nt_gltf_link_prefix(c.arena, options->path, document->path, &c.output.link_prefix, error);

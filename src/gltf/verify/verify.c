@@ -257,7 +257,7 @@ static bool is_drawable(const float *t)
 	return fabs(sqrt(squared) - 1) <= 0.00674 && fabsf(t[3]) == 1;
 }
 
-/* The same of an element; what was meant may be undrawable, as without --repair. */
+/* The same of an element; what was meant may be undrawable, as with --raw. */
 static bool stays_drawable(const nt_reread_array *array, size_t vertex, const float *meant)
 {
 	const unsigned char *element = element_at(array, vertex);

@@ -71,17 +71,3 @@ nt_status nt_report_write_index(const nt_buffer *rows, nt_report_sink sink, void
 	nt_buffer_free(&out);
 	return status;
 }
-
-nt_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,
-	void *user, nt_error *error)
-{
-	nt_buffer out = {0};
-	*drawn = nt_write_uv_svg(report, mesh, &out);
-	nt_status status = NT_OK;
-	if (out.failed)
-		status = nt_fail_memory(error);
-	else if (*drawn)
-		status = sink(user, out.data, out.size, error);
-	nt_buffer_free(&out);
-	return status;
-}

@@ -49,9 +49,4 @@ void nt_report_index_row(const nt_report *report, const char *page, nt_buffer *r
 /* Writes the index whose rows were made by nt_report_index_row(). Statuses as above. */
 nt_status nt_report_write_index(const nt_buffer *rows, nt_report_sink sink, void *user, nt_error *error);
 
-/* Writes the UV layout of one mesh as SVG. *drawn receives false, and nothing is written, where it has no
- * texture coordinates; the report must have been built with keep_geometry. Statuses as above. */
-nt_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,
-	void *user, nt_error *error);
-
 #endif

@@ -28,8 +28,4 @@ extern const char nt_page_style[], nt_page_body[], nt_page_script[];
 void nt_markdown_text(const char *text, nt_buffer *out);
 void nt_markdown_finding(const nt_report *report, const nt_report_finding *finding, nt_buffer *out);
 
-/* The UV layout of a mesh. False, and nothing appended, where it has no texture coordinates or its geometry
- * was not kept. */
-bool nt_write_uv_svg(const nt_report *report, uint32_t mesh, nt_buffer *out);
-
 #endif

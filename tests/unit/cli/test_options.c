@@ -42,7 +42,7 @@ TEST(no_options_mean_the_defaults)
 {
 	nt_command c;
 	accepts(&c, WORDS("in.obj", "out.glb"));
-	const nt_settings defaults = {.texcoord_set = -1, .draco_speed = NT_DRACO_SPEED, .own_input = true};
+	const nt_settings defaults = {.texcoord_set = -1, .outside = NT_OUTSIDE_ROOT, .own_input = true};
 	assert_memory_equal(&c.settings, &defaults, sizeof defaults);
 	assert_int_equal(c.action, NT_ACTION_RUN);
 	assert_int_equal(c.verbosity, 0);
@@ -66,7 +66,7 @@ TEST(every_option_sets_its_field)
 		{"--existing=repair", FIELD(settings.existing), NT_EXISTING_REPAIR},
 		{"--method=lengyel", FIELD(settings.method), NMTAN_METHOD_LENGYEL},
 		{"--method=area", FIELD(settings.method), NMTAN_METHOD_AREA},
-		{"--repair=off", FIELD(settings.repair), NMTAN_REPAIR_OFF},
+		{"--raw", FIELD(settings.repair), NMTAN_REPAIR_OFF},
 		{"--normals=smooth", FIELD(settings.normals), NT_NORMALS_SMOOTH},
 		{"--normals=flat", FIELD(settings.normals), NT_NORMALS_FLAT},
 		{"--across=mesh", FIELD(settings.across), NT_ACROSS_MESH},
@@ -75,8 +75,7 @@ TEST(every_option_sets_its_field)
 		{"--images=link", FIELD(settings.images), NT_IMAGES_LINK},
 		{"--images=copy", FIELD(settings.images), NT_IMAGES_COPY},
 		{"--buffers=copy", FIELD(settings.buffers), NT_BUFFERS_COPY},
-		{"--buffers=embed", FIELD(settings.embed), true},
-		{"--embed", FIELD(settings.embed), true},
+		{"--buffers=embed", FIELD(settings.buffers), NT_BUFFERS_EMBED},
 		{"--textures=png", FIELD(settings.textures), NT_TEXTURES_PNG},
 		{"--bump=ignore", FIELD(settings.bump), NT_BUMP_IGNORE},
 		{"--draco=off", FIELD(settings.draco), NT_DRACO_OFF},
@@ -86,7 +85,9 @@ TEST(every_option_sets_its_field)
 		{"--output-format=gltf", FIELD(settings.output_format), NT_FORMAT_GLTF},
 		{"--output-format=ply", FIELD(settings.output_format), NT_FORMAT_PLY},
 		{"--output-format=glb", FIELD(settings.output_format), NT_FORMAT_GLB},
-		{"--allow-outside", FIELD(settings.allow_outside), true},
+		{"--outside=no", FIELD(settings.outside), NT_OUTSIDE_NO},
+		{"--outside=root", FIELD(settings.outside), NT_OUTSIDE_ROOT},
+		{"--outside=yes", FIELD(settings.outside), NT_OUTSIDE_YES},
 		{"--bitangents", FIELD(settings.bitangents), true},
 		{"--sync", FIELD(settings.sync), true},
 		{"--verify", FIELD(settings.verify), true},
@@ -94,6 +95,10 @@ TEST(every_option_sets_its_field)
 		{"-n", FIELD(settings.no_clobber), true},
 		{"--check", FIELD(settings.check), true},
 		{"--timing", FIELD(timing), true},
+		{"--update", FIELD(update), 1 + NT_UPDATE_BY_TIME},
+		{"--update=time", FIELD(update), 1 + NT_UPDATE_BY_TIME},
+		{"--update=content", FIELD(update), 1 + NT_UPDATE_BY_CONTENT},
+		{"--fail-fast", FIELD(fail_fast), true},
 		{"--progress=off", FIELD(progress), NT_PROGRESS_OFF},
 		{"-v", FIELD(verbosity), 1},
 		{"-q", FIELD(verbosity), -1},
@@ -214,6 +219,12 @@ TEST(bad_values_are_refused_whole)
 	refuses("-d needs a value", WORDS("a", "b", "-d"));
 	refuses("'yes'", WORDS("--verify=yes", "a", "b"));
 	refuses("''", WORDS("--verify=", "a", "b"));
+	/* a value that may be left out is never the next word */
+	nt_command c;
+	accepts(&c, WORDS("--update", "content", "b"));
+	assert_int_equal(c.operand_count, 2);
+	assert_int_equal(c.update, 1 + NT_UPDATE_BY_TIME);
+	refuses("'' is none of: time content", WORDS("--update=", "a", "b"));
 }
 
 TEST(options_that_contradict_each_other_are_refused)
@@ -223,11 +234,8 @@ TEST(options_that_contradict_each_other_are_refused)
 	refuses("--directory", WORDS("--check", "-d", "x", "a"));
 	refuses("--in-place", WORDS("--check", "--in-place", "a"));
 	refuses("--dry-run", WORDS("--dry-run", "--check", "a"));
-	refuses("--output-format", WORDS("--output-format=ply", "--check", "a"));
-	refuses("'glb'", WORDS("--embed", "--output-format=glb", "a", "b"));
-	refuses("--embed", WORDS("--output-format=gltf", "a", "-"));
+	refuses("--buffers=embed", WORDS("--output-format=gltf", "a", "-"));
 	refuses("--verify", WORDS("--verify", "a", "-"));
-	refuses("--buffers=copy", WORDS("--embed", "--buffers=copy", "a", "b"));
 	refuses("--draco=off", WORDS("--draco=off", "--draco-bits=14,12,12,12", "a", "b"));
 }
 
@@ -282,7 +290,8 @@ TEST(texts_name_every_option_that_is_not_hidden)
 			char word[64];
 			if (row->kind == NT_OPTION_HEADING)
 				continue;
-			snprintf(word, sizeof word, "--%s%s", row->name, t && row->values ? "=" : "");
+			snprintf(word, sizeof word, "--%s%s", row->name,
+				t && row->values && row->kind != NT_OPTION_MAYBE_CHOICE ? "=" : "");
 			if (row->help)
 				assert_non_null(strstr(out.data, word));
 			else
@@ -318,12 +327,12 @@ static void shapes(const char *expected, const char *const *words)
 TEST(options_that_shape_outputs_are_spelled_in_one_way)
 {
 	shapes("", WORDS("a", "b.glb"));
-	shapes("", WORDS("-j3", "--method=mikktspace", "--uv=auto", "--in-place", "--sync", "--verify",
-		"--update", "-v",
+	shapes("", WORDS("-j3", "--method=mikktspace", "--uv=auto", "--outside=root", "--in-place", "--sync",
+		"--verify", "--update", "-v",
 			   "--jobs=2", "a"));
-	shapes("--method=robust --allow-outside --output-format=glb --draco-bits=12,12,12,12",
+	shapes("--method=robust --raw --outside=yes --output-format=glb --draco-bits=12,12,12,12",
 		WORDS("--draco-bits", "12,12,12,12", "a", "--output-format=gltf", "--output-format=glb", "b",
-			"--allow-outside",
+			"--raw", "--outside=yes",
 			"--method=robust"));
 	shapes("--uv=0 --bitangents", WORDS("--bitangents", "--uv=0", "--bitangents", "a", "b.glb"));
 }

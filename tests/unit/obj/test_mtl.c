@@ -347,7 +347,7 @@ TEST(nothing_outside_the_folder_is_read)
 		open_obj(&r, path, text, false);
 		assert_int_equal(r.scene.findings.count, 1);
 		assert_int_equal(r.scene.findings.items[0].code, NT_CODE_MTL_MISSING);
-		assert_non_null(strstr(r.scene.findings.items[0].detail, "--allow-outside"));
+		assert_non_null(strstr(r.scene.findings.items[0].detail, "--outside=yes"));
 		assert_null(r.scene.materials[0].library);
 		close_reading(&r);
 		open_obj(&r, path, text, true);

@@ -154,7 +154,7 @@ static const char manual_head[] =
 	"Who sees what, at worst: a game prop is a glTF whose materials use tangents, or what is made of an OBJ\n"
 	"that has a normal map; a scan is a mesh without texture coordinates; the last column is an OBJ that has\n"
 	"them, without materials; a dot means never.\n"
-	"Tangents that are made with\n.B \\-\\-repair=off\nhave findings of the first column.\n"
+	"Tangents that are made with\n.B \\-\\-raw\nhave findings of the first column.\n"
 	".PP\n.nf\n.ft CW\n";
 
 static const char manual_tail[] =

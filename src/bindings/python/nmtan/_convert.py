@@ -29,9 +29,7 @@ class ConversionError(RuntimeError):
 
 
 def _arguments(options: Dict[str, Any]) -> Iterator[str]:
-    if not options.get("allow_outside"):
-        options = {"confine": True, **options}
-    for name, value in options.items():
+    for name, value in {"outside": "no", **options}.items():
         name = name.rstrip("_").replace("_", "-")
         values = value if isinstance(value, (list, tuple)) else [value]
         for one in values:
@@ -46,7 +44,7 @@ def convert(input: Union[str, "os.PathLike[str]"], output: Union[str, "os.PathLi
     """Converts a file with the tool nmtan, as `nmtan INPUT OUTPUT --options` does.
 
     Options have the tool's names with _ for -: convert("a.obj", "a.glb", normals="smooth", verify=True); False and
-    None leave one out, a list repeats it. confine=True is the default: who calls may not know the file.
+    None leave one out, a list repeats it. outside="no" is the default: who calls may not know the file.
     program: the tool, found along PATH, or a list with arguments before ours.
     Raises ValueError where a path is "-", ConversionError where the tool ends with anything but 0, FileNotFoundError
     where there is no tool.

@@ -33,7 +33,8 @@ static void one_primitive_is_the_same_in_every_container(void **state)
 	nt_scene *scene = *state;
 	static const char *const names[] = {"one.gltf", "one embedded.gltf", "one.glb"};
 	for (size_t i = 0; i < COUNT(names); i++) {
-		compose_well(scene, (nt_write_options){.embed = i == 1, .bitangents = true}, names[i]);
+		compose_well(scene, (nt_write_options){.buffers = i == 1 ? NT_BUFFERS_EMBED : NT_BUFFERS_DEFAULT,
+			.bitangents = true}, names[i]);
 		opened file = open_back(names[i]);
 		assert_whole(&file, hand.tangents);
 		assert_floats(&file, 0, "_BITANGENT", out_bitangents, 6, 3);

@@ -45,7 +45,8 @@ static int tear_down(void **state)
 /* As the pipeline does it. The images here are no images, and none is looked into. */
 static nt_status compose_with_images(nt_scene *scene, nt_write_options options, const char *name, nt_error *error)
 {
-	const nt_settings settings = {.images = options.images, .allow_outside = options.allow_outside,
+	const nt_settings settings = {.images = options.images,
+		.outside = options.allow_outside ? NT_OUTSIDE_YES : NT_OUTSIDE_NO,
 		.bump = NT_BUMP_NORMAL};
 	const nt_texture_rules rules = {.threads = 1};
 	nt_textures *textures;

@@ -39,7 +39,7 @@ static bool has_text(const nt_file *file, const char *text)
 static void assert_embedded(const char *name)
 {
 	put_triangle(name);
-	run("in.gltf", "embedded.gltf", (nt_settings){.embed = true, .verify = true});
+	run("in.gltf", "embedded.gltf", (nt_settings){.buffers = NT_BUFFERS_EMBED, .verify = true});
 	run("in.gltf", "linked.gltf", (nt_settings){.verify = true});
 	run("embedded.gltf", "a.glb", (nt_settings){0});
 	run("linked.gltf", "b.glb", (nt_settings){0});

@@ -17,7 +17,8 @@ static void fail_each(const char *input, nt_settings settings)
 TEST(allocations_of_every_kind_of_edit_may_fail)
 {
 	fail_each(NT_DATA_DIR "/sparse.gltf", (nt_settings){.output_format = NT_FORMAT_GLB});
-	fail_each(NT_DATA_DIR "/morph.gltf", (nt_settings){.output_format = NT_FORMAT_GLTF, .embed = true});
+	fail_each(NT_DATA_DIR "/morph.gltf",
+		(nt_settings){.output_format = NT_FORMAT_GLTF, .buffers = NT_BUFFERS_EMBED});
 	fail_each(NT_DATA_DIR "/plates.gltf", (nt_settings){.output_format = NT_FORMAT_GLTF, .buffers = NT_BUFFERS_COPY,
 		.bitangents = true, .precision = NT_PRECISION_BYTE});
 	fail_each(NT_DATA_DIR "/plates.glb", (nt_settings){.output_format = NT_FORMAT_GLB,

@@ -100,7 +100,7 @@ static void compressed_triangles_lose_it(void **state)
 {
 	(void)state;
 	put_file_of((int[]){SPLITS_OTHERS}, 1, EXTENSION);
-	expect((nt_settings){.threads = 1, .draco = NT_DRACO_AS_EDGEBREAKER, .draco_speed = 5}, 1, 0, 0);
+	expect((nt_settings){.threads = 1, .draco = NT_DRACO_AS_EDGEBREAKER}, 1, 0, 0);
 }
 
 /* What is listed without need is not ours to take away. */
