@@ -98,15 +98,28 @@ static size_t place_blocks(nt_adjacency *a, size_t most_places)
 	return place;
 }
 
+/* Cursors of vertices that have narrow entries, and the memory for these. */
+static bool make_narrow(nt_adjacency *a, nt_borrowed *memory)
+{
+	for (size_t v = 0; v < a->vertex_count; v++)
+		a->cursors[v] = (uint32_t)v;
+	/* an odd number of cache lines: a vertex's entries are not all in one set of a cache */
+	a->step = (uint32_t)((a->vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES | 1) * NT_FAN_LANES;
+	a->narrow = nt_borrowed_alloc(memory, NT_FAN_DEPTH * (size_t)a->step, sizeof *a->narrow);
+	return a->narrow;
+}
+
 nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_ranges *ranges,
-	size_t vertex_count, size_t most_places, nt_borrowed *cursor_memory, nt_borrowed *memory,
+	size_t vertex_count, size_t most_places, size_t most_narrow, nt_borrowed *cursor_memory, nt_borrowed *memory,
 	nt_adjacency *adjacency)
 {
 	const size_t blocks = (vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES;
-	*adjacency = (nt_adjacency){.vertex_count = vertex_count, .ranges = ranges->count};
+	*adjacency = (nt_adjacency){.vertex_count = vertex_count, .ranges = ranges->count, .step = NT_FAN_LANES};
 	nt_adjacency *a = adjacency;
 	/* readers load whole vectors of cursors */
 	a->cursors = nt_borrowed_alloc(cursor_memory, vertex_count * ranges->count + NT_FAN_LANES, sizeof *a->cursors);
+	if (a->cursors && NT_NARROW_LIMIT > 0 && ranges->count == 1 && vertex_count <= most_narrow)
+		return make_narrow(a, memory) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 	a->block_begin = nt_borrowed_alloc(cursor_memory, blocks + 1, sizeof *a->block_begin);
 	a->shared_counts = nt_scratch_alloc(memory->scratch, ranges->count, sizeof *a->shared_counts);
 	if (!a->cursors || !a->block_begin || !a->shared_counts)

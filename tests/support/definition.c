@@ -94,11 +94,13 @@ size_t nt_compare_variants(const char *name, const nmtan_mesh *mesh, size_t corn
 	static const unsigned threads[] = {2, 3, 8};
 	static const nt_fast_plan few_places = {.grain = 1, .most_places = 200},
 		bins = {.grain = 1, .bin_bits = 4}, larger_bins = {.grain = 1, .bin_bits = 5},
-		two = {.grain = SIZE_MAX, .least_two = 2};
+		two = {.grain = SIZE_MAX, .least_two = 2},
+		narrow = {.grain = 1, .most_narrow = NT_NARROW_LIMIT};
+	static const nt_fast_plan *const small[2] = {&nt_usual_plan, &narrow};
 	size_t differences = 0;
 	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
-		if (nt_cpu_has(isa))
-			differences += nt_compare_run(name, mesh, corners, expected, more, isa, 1, &nt_usual_plan);
+		for (int i = 0; nt_cpu_has(isa) && i < 2; i++)
+			differences += nt_compare_run(name, mesh, corners, expected, more, isa, 1, small[i]);
 	for (int i = 0; i < 3; i++)
 		differences += nt_compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i],
 			&nt_usual_plan);

@@ -49,7 +49,7 @@ static void NT_NOINLINE add_unusual(nt_fast *fast, unsigned range, uint32_t vert
 	uint32_t cursor, int orient, nt_fan_entry entry, const addition *add)
 {
 	if (!(cursor & NT_CURSOR_HUB))
-		*nt_adjacency_entry(&fast->adjacency, cursor) = entry;
+		nt_adjacency_store(&fast->adjacency, cursor, entry);
 	if (cursor & NT_CURSOR_SHARED) {
 		nt_deferred *d = &fast->deferred[range];
 		const size_t i = d->count++;
@@ -90,12 +90,12 @@ static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orien
 			entry.next & NT_ENTRY_VERTEX, entry.previous & NT_ENTRY_VERTEX, add.sum);
 		return;
 	}
-	const uint32_t place = nt_adjacency_next(&a->cursors[range * a->vertex_count + vertex]);
+	const uint32_t place = nt_adjacency_next(a, &a->cursors[range * a->vertex_count + vertex]);
 	if (place >= NT_CURSOR_SHARED) {
 		add_unusual(fast, range, vertex, place, orient, entry, &add);
 		return;
 	}
-	*nt_adjacency_entry(a, place) = entry;
+	nt_adjacency_store(a, place, entry);
 	add_record(&fast->records[orient][vertex], add.sum);
 	if (fast->wants_more)
 		add_more(&fast->more[orient][vertex], &add);
@@ -112,12 +112,15 @@ static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t
 			addition_of(out, k, turned_place((size_t)lane)));
 }
 
-/* Triangles with frames, lanes [i, end), up to the first with a corner whose cursor has a flag: its lane, or `end`.
- * Entries are moved as words, and nothing is called, so that nearly all the loop needs is in registers. */
-static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
-	const uint32_t *ids, const lanes_out *out)
+/* Triangles with frames, lanes [i, end), up to the first with a corner whose cursor has a flag, or that has no narrow
+ * entry left: its lane, or `end`. Entries are moved as words, and nothing is called, so that nearly all the loop needs
+ * is in registers. */
+static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned range, size_t first, size_t i,
+	size_t end, const uint32_t *ids, const lanes_out *out, bool is_narrow)
 {
 	const nt_adjacency *const adjacency = &fast->adjacency;
+	const uint32_t step = is_narrow ? adjacency->step : NT_FAN_LANES, full = NT_FAN_DEPTH * step;
+	uint32_t *const narrow = adjacency->narrow;
 	uint32_t *const cursors = adjacency->cursors + range * adjacency->vertex_count;
 	nt_fan_entry *const entries = adjacency->entries;
 	nt_record *const records[2] = {fast->records[0], fast->records[1]};
@@ -125,17 +128,25 @@ static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, size_t f
 	for (ids += 3 * i; i < end; i++, ids += 3) {
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
-		if (NT_EXPECT((pa | pb | pc) >= NT_CURSOR_FLAGGED, 0))
+		if (is_narrow ? pa >= full || pb >= full || pc >= full
+			: NT_EXPECT((pa | pb | pc) >= NT_CURSOR_FLAGGED, 0))
 			break;
-		cursors[a] = pa + NT_FAN_LANES;
-		cursors[b] = pb + NT_FAN_LANES;
-		cursors[c] = pc + NT_FAN_LANES;
+		cursors[a] = pa + step;
+		cursors[b] = pb + step;
+		cursors[c] = pc + step;
 		const size_t orient = flags[i] & NT_TRIANGLE_ORIENT;
 		nt_record *const to = records[orient];
 		const float *add = out->add[0] + turned_rows[i];
 		add_record(to + a, add);
 		add_record(to + b, add + 4 * NT_LANES);
 		add_record(to + c, add + 8 * NT_LANES);
+		if (is_narrow) {
+			const uint32_t both = -(uint32_t)orient & 0x80008000u;
+			narrow[pa] = b | c << 16 | both;
+			narrow[pb] = c | a << 16 | both;
+			narrow[pc] = a | b << 16 | both;
+			continue;
+		}
 		const uint64_t bits = -(uint64_t)orient & ((uint64_t)NT_ENTRY_ORIENT << 32 | NT_ENTRY_ORIENT);
 		uint64_t ab, bc;
 		memcpy(&ab, ids, sizeof ab);
@@ -147,6 +158,51 @@ static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, size_t f
 		memcpy(&entries[pb], &ca, sizeof ca);
 		memcpy(&entries[pc], &ab, sizeof ab);
 	}
+	return i;
+}
+
+static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
+	const uint32_t *ids, const lanes_out *out)
+{
+	return add_usual(fast, range, first, i, end, ids, out, false);
+}
+
+static size_t NT_NOINLINE add_narrow(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
+	const uint32_t *ids, const lanes_out *out)
+{
+	return add_usual(fast, range, first, i, end, ids, out, true);
+}
+
+/* The same up to a corner of a hub. What is added to a vertex that an earlier range adds to is put aside,
+ * without a branch: where triangles do not come in order such vertices are anywhere. */
+static size_t NT_NOINLINE add_shared(const nt_fast *fast, unsigned range, size_t first, size_t i,
+	size_t end, const uint32_t *ids, const lanes_out *out)
+{
+	static const nt_record nothing = {0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+	uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
+	nt_deferred *const deferred = &fast->deferred[range];
+	size_t count = deferred->count;
+	for (ids += 3 * i; i < end; i++, ids += 3) {
+		if ((cursors[ids[0]] | cursors[ids[1]] | cursors[ids[2]]) & NT_CURSOR_HUB)
+			break;
+		const size_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT;
+		const uint32_t bit = (uint32_t)orient << 31;
+		for (size_t k = 0; k < 3; k++) {
+			const uint32_t vertex = ids[k], place = cursors[vertex];
+			const bool shared = place & NT_CURSOR_SHARED;
+			cursors[vertex] = place + NT_FAN_LANES;
+			fast->adjacency.entries[place & NT_CURSOR_PLACE] =
+				(nt_fan_entry){ids[(k + 1) % 3] | bit, ids[(k + 2) % 3] | bit};
+			nt_record *const own = &fast->records[orient][vertex],
+				*const to = shared ? &deferred->add[count] : own;
+			nt_record sum = *(shared ? &nothing : own);
+			add_record(&sum, out->add[k] + turned_rows[i]);
+			*to = sum;
+			deferred->to[count] = vertex | bit;
+			count += shared;
+		}
+	}
+	deferred->count = count;
 	return i;
 }
 
@@ -163,7 +219,10 @@ static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t beg
 {
 	for (size_t i = begin; i < end;) {
 		if (!fast->wants_more)
-			i = add_here(fast, range, first, i, end, ids, out);
+			i = (nt_adjacency_is_narrow(&fast->adjacency) ? add_narrow : add_here)(fast, range,
+				first, i, end, ids, out);
+		if (i < end && !fast->wants_more && fast->deferred)
+			i = add_shared(fast, range, first, i, end, ids, out);
 		if (i == end)
 			return;
 		do {
@@ -224,10 +283,10 @@ static void NT_NOINLINE add_special(nt_fast *fast, unsigned range, size_t t, con
 		uint32_t *cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
 		for (int k = 0; k < 3; k++) {
 			const nt_adjacency *a = &fast->adjacency;
-			const uint32_t place = nt_adjacency_next(&cursors[v[k]]);
-			const uint32_t number = NT_ENTRY_VOID | 2 * ((place & NT_CURSOR_PLACE) / NT_FAN_LANES);
+			const uint32_t place = nt_adjacency_next(a, &cursors[v[k]]);
+			const uint32_t number = NT_ENTRY_VOID | 2 * ((place & NT_CURSOR_PLACE) / a->step);
 			if (!(place & NT_CURSOR_HUB))
-				*nt_adjacency_entry(a, place) = (nt_fan_entry){number, number + 1};
+				nt_adjacency_store(a, place, (nt_fan_entry){number, number + 1});
 		}
 		return;
 	}
@@ -250,7 +309,17 @@ static int missing_record(const nt_fast *fast, size_t first, size_t count)
 {
 	if (fast->bins.cursors || (fast->records[0] && fast->records[1]))
 		return -1;
-	for (size_t i = 0; i < count; i++) {
+	/* nearly always all have the one orientation that there are records of: eight flags at a time */
+	const uint64_t ones = 0x0101010101010101u, there = ones * (fast->records[1] ? NT_TRIANGLE_ORIENT : 0);
+	const uint64_t others = ones * (NT_TRIANGLE_ORIENT | NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE);
+	size_t i = 0;
+	for (uint64_t eight; NT_FAST_PATHS && fast->records[there != 0] && count - i >= sizeof eight;
+		i += sizeof eight) {
+		memcpy(&eight, fast->flags + first + i, sizeof eight);
+		if ((eight ^ there) & others)
+			break;
+	}
+	for (; i < count; i++) {
 		const uint8_t flags = fast->flags[first + i];
 		int orient = flags & NT_TRIANGLE_ORIENT;
 		if (flags & NT_TRIANGLE_DEGENERATE)
@@ -275,13 +344,39 @@ static inline NT_ALWAYS_INLINE void prefetch_rows(const nt_fast *fast, size_t fi
 		NT_PREFETCH(&fast->rows[ids[3 * i]]);
 }
 
+/* Without bins, as in scattered quads: entries and records of a batch whose cursors were
+ * prefetched a batch ago. */
+static inline NT_ALWAYS_INLINE void prefetch_places(const nt_fast *fast, const uint32_t *cursors,
+	const uint32_t *ids, size_t count)
+{
+	for (size_t i = 0; i < 3 * count; i++) {
+		if (!nt_adjacency_is_narrow(&fast->adjacency) && !(cursors[ids[i]] & NT_CURSOR_HUB))
+			NT_PREFETCH_TO_WRITE(nt_adjacency_entry(&fast->adjacency, cursors[ids[i]]));
+		for (int o = 0; o < 2; o++)
+			if (fast->records[o])
+				NT_PREFETCH_TO_WRITE(&fast->records[o][ids[i]]);
+	}
+}
+
+/* The cursors of a batch. */
+static inline NT_ALWAYS_INLINE void prefetch_cursors(const nt_fast *fast, const uint32_t *cursors,
+	size_t first, size_t end)
+{
+	const size_t count = end - first < NT_LANES ? end - first : NT_LANES;
+	uint32_t copy[3 * NT_LANES];
+	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
+	for (size_t i = 0; i < 3 * count; i++)
+		NT_PREFETCH_TO_WRITE(&cursors[ids[i]]);
+}
+
 static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
 	void *context)
 {
 	lanes_in in;
 	lanes_out out;
 	const float offset = nt_stored_v_offset(fast->solve->mesh);
-	const bool scattered = fast->scattered;
+	const bool scattered = fast->scattered, direct = !fast->bins.cursors;
+	const uint32_t *cursors = direct ? fast->adjacency.cursors + range * fast->adjacency.vertex_count : NULL;
 	for (size_t first = begin, count; first < end; first += count) {
 		count = end - first < NT_LANES ? end - first : NT_LANES;
 		if (first + count < end && (fast->flags[first + count] & NT_TRIANGLE_SECOND))
@@ -291,6 +386,8 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 		uint32_t copy[3 * NT_LANES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
 		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : whole_lanes(count), in.row);
+		if (scattered && direct)
+			prefetch_places(fast, cursors, ids, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 1);
 		if (fast->wants_more)
@@ -299,7 +396,9 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 			solve_lanes_plain(&in, &out, offset, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 2);
-		const bool ordinary = classify_lanes(fast, first, count, &out);
+		if (scattered && direct)
+			prefetch_cursors(fast, cursors, first + count, end);
+		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
 		for (int missing; (missing = missing_record(fast, first, count)) >= 0;)
 			if (!make(fast, missing, context))
 				return;

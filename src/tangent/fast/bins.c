@@ -110,7 +110,7 @@ void nt_bins_orientations(const nt_bins *bins, bool orientations[2])
 nmtan_status nt_bin_make(const nt_bins *bins, const bool needed[2], nt_scratch *scratch, nt_bin *bin)
 {
 	const size_t vertices = (size_t)1 << bins->vertex_bits;
-	*bin = (nt_bin){.adjacency = {.ranges = 1}};
+	*bin = (nt_bin){.adjacency = {.ranges = 1, .step = NT_FAN_LANES}};
 	nt_adjacency *a = &bin->adjacency;
 	a->cursors = nt_scratch_alloc(scratch, vertices, sizeof *a->cursors);
 	a->block_begin = nt_scratch_alloc(scratch, vertices / NT_FAN_LANES + 1, sizeof *a->block_begin);

@@ -6,7 +6,7 @@
 #ifndef NT_TANGENT_FAST_FAN_LANES_H
 #define NT_TANGENT_FAST_FAN_LANES_H
 
-#include "tangent/fast/turn.h"
+#include "tangent/fast/lane_sets.h"
 #include "topology/adjacency.h"
 
 /* The degree of a hub, whose fans are not looked at; more fans than a vertex has. */
@@ -20,39 +20,49 @@
 #define UNROLL NT_UNROLL(8)
 #endif
 
-/* The 16-bit halves of a set in which a and b differ: all bits of such a half, 0 in the others. */
-static inline lanes halves_differ(lanes set, lanes a, lanes b)
+/* Entries of vertices that follow one another, from the first one's first: wide or narrow ones. */
+typedef struct vertex_entries {
+	bool are_narrow;
+	const nt_fan_entry *wide;
+	const uint32_t *narrow;
+	size_t step;
+} vertex_entries;
+
+static inline vertex_entries entries_at(const nt_adjacency *a, size_t vertex)
 {
-#if WIDTH > 1
-	typedef uint16_t lane_halves __attribute__((vector_size(4 * WIDTH)));
-	return set & (lanes)((lane_halves)a != (lane_halves)b);
-#else
-	const lanes other = a ^ b;
-	return set & (LANES_WHERE((other & 0xffff) != 0) >> 16 | LANES_WHERE(other >> 16 != 0) << 16);
-#endif
+	if (nt_adjacency_is_narrow(a))
+		return (vertex_entries){.are_narrow = true, .narrow = a->narrow + vertex, .step = a->step};
+	return (vertex_entries){.wide = nt_adjacency_block(a, vertex / NT_FAN_LANES) + vertex % NT_FAN_LANES,
+		.step = NT_FAN_LANES};
 }
 
 /* Corner k of WIDTH vertices of so many corners; where one has fewer, voids above all numbers that accumulate gives to
- * voids. Of an entry the bits of `mask` count. */
-static inline NT_ALWAYS_INLINE void load_corners(const nt_fan_entry *entries, uint32_t k, lanes degree,
+ * voids. Of an entry the bits of `mask` count. The numbers of narrow entries are in the upper halves. */
+static inline NT_ALWAYS_INLINE void load_corners(vertex_entries entries, uint32_t k, lanes degree,
 	lanes mask, lanes *next, lanes *previous)
 {
 	const lanes there = LANES_WHERE(degree > k);
-	const nt_fan_entry *from = entries + k * NT_FAN_LANES;
+	if (entries.are_narrow) {
+		const lanes both = load_lanes(entries.narrow + k * entries.step);
+		*next = both << 16 & mask;
+		*previous = both & 0xffff0000u & mask;
+	} else {
+		const nt_fan_entry *from = entries.wide + k * NT_FAN_LANES;
 #if WIDTH > 1
-	const lanes low = load_lanes(from), high = load_lanes(from + WIDTH / 2);
-	*next = __builtin_shufflevector(low, high, EVEN) & mask;
-	*previous = __builtin_shufflevector(low, high, ODD) & mask;
+		const lanes low = load_lanes(from), high = load_lanes(from + WIDTH / 2);
+		*next = __builtin_shufflevector(low, high, EVEN) & mask;
+		*previous = __builtin_shufflevector(low, high, ODD) & mask;
 #else
-	*next = from->next & mask;
-	*previous = from->previous & mask;
+		*next = from->next & mask;
+		*previous = from->previous & mask;
 #endif
+	}
 	*next = (*next & there) | ((NT_ENTRY_VOID | 1u << 28 | k << 16 | k) & ~there);
 	*previous = (*previous & there) | ((NT_ENTRY_VOID | 3u << 28 | k << 16 | k) & ~there);
 }
 
 /* -1 for vertices at which a directed edge occurs twice, whatever the orientations in bit 31. */
-static lanes NT_NOINLINE find_twice(const nt_fan_entry *entries, uint32_t depth, lanes degree, lanes mask)
+static lanes NT_NOINLINE find_twice(vertex_entries entries, uint32_t depth, lanes degree, lanes mask)
 {
 	lanes twice = {0};
 	for (uint32_t b = 1; b < depth; b++) {
@@ -68,10 +78,11 @@ static lanes NT_NOINLINE find_twice(const nt_fan_entry *entries, uint32_t depth,
 	return twice;
 }
 
-/* The components of corners that are linked: bit j of linked[i] for each later neighbour j. Voids are none. By
- * elimination: a corner hands its links to the later ones it is linked with; one that has none when its turn comes is
- * the last of its component. */
-static inline NT_ALWAYS_INLINE lanes count_components(lanes linked[NT_FAN_DEPTH], uint32_t depth)
+/* The components of corners that are linked: bit j, times `unit`, of linked[i] for each later neighbour j. Those with
+ * a bit of `voids` are none. By elimination: a corner hands its links to the later ones it is linked with; one that has
+ * none when its turn comes is the last of its component. */
+static inline NT_ALWAYS_INLINE lanes count_components(lanes linked[NT_FAN_DEPTH], uint32_t depth,
+	uint32_t unit, uint32_t voids)
 {
 	lanes count = {0};
 	UNROLL
@@ -79,8 +90,8 @@ static inline NT_ALWAYS_INLINE lanes count_components(lanes linked[NT_FAN_DEPTH]
 		const lanes mine = linked[a];
 		UNROLL
 		for (uint32_t b = a + 1; b < depth; b++)
-			linked[b] |= LANES_WHERE((mine & 1u << b) != 0) & mine;
-		count -= LANES_WHERE((mine & (((1u << depth) - (2u << a)) | NT_ENTRY_VOID)) == 0);
+			linked[b] = with_bits(linked[b], having_bit(mine, unit << b), mine);
+		count = one_more_without(count, mine, unit * ((1u << depth) - (2u << a)) | voids);
 	}
 	return count;
 }
@@ -92,14 +103,14 @@ static inline NT_ALWAYS_INLINE lanes count_components(lanes linked[NT_FAN_DEPTH]
  *   degree   corners of each vertex
  *   mask     the bits of entries that count
  */
-static inline NT_ALWAYS_INLINE lanes count_fans_of(const nt_fan_entry *entries, const uint32_t depth,
+static inline NT_ALWAYS_INLINE lanes count_wide_fans_of(vertex_entries entries, const uint32_t depth,
 	lanes degree, lanes mask)
 {
 	lanes next[NT_FAN_DEPTH], previous[NT_FAN_DEPTH];
 	lanes linked[NT_FAN_DEPTH];
 	lanes halves[NT_FAN_DEPTH]; /* those of next and of previous in which vertices differ most, without
 	                               orientation */
-	lanes distinct = ~(lanes){0};
+	half_set distinct = ALL_HALVES;
 	UNROLL
 	for (uint32_t k = 0; k < depth; k++) {
 		load_corners(entries, k, degree, mask, &next[k], &previous[k]);
@@ -109,21 +120,64 @@ static inline NT_ALWAYS_INLINE lanes count_fans_of(const nt_fan_entry *entries, 
 	/* links across shared edges; edges whose low halves differ are not the same */
 	UNROLL
 	for (uint32_t b = 0; b < depth; b++) {
-		lanes from_earlier = ~(lanes){0}; /* short chains: one for all took 15 to 40 cycles more a block */
+		half_set from_earlier = ALL_HALVES; /* short chains: one for all took 15 to 40 cycles more a block */
 		UNROLL
 		for (uint32_t a = 0; a < b; a++) {
-			const lanes apart = LANES_WHERE(next[a] != previous[b]) & LANES_WHERE(next[b] != previous[a]);
-			linked[a] &= ~(apart & 1u << b);
+			const lane_set apart = differ(differ(ALL_LANES, next[a], previous[b]), next[b], previous[a]);
+			linked[a] = without_bit(linked[a], apart, 1u << b);
 			from_earlier = halves_differ(from_earlier, halves[a], halves[b]);
 		}
-		distinct &= from_earlier;
+		distinct = common_halves(distinct, from_earlier);
 	}
-	const lanes count = count_components(linked, depth);
-	return !any_lane(~distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
+	const lanes count = count_components(linked, depth, 1, NT_ENTRY_VOID);
+	return all_halves(distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
+}
+
+/* The same of narrow entries, as halves of lanes: next and previous of one corner are compared with previous and next
+ * of another at once, and a lane has its links in either half. */
+static inline NT_ALWAYS_INLINE lanes count_narrow_fans_of(vertex_entries entries, const uint32_t depth,
+	lanes degree, lanes mask)
+{
+	static const uint32_t both_halves = 0x10001, voids = 0x10001 * (NT_ENTRY_VOID >> 16);
+	lanes entry[NT_FAN_DEPTH], plain[NT_FAN_DEPTH]; /* plain: without orientation */
+	lanes linked[NT_FAN_DEPTH];
+	half_set distinct = ALL_HALVES;
+	const lanes mask_of_halves = (mask & 0xffff0000u) | mask >> 16;
+	UNROLL
+	for (uint32_t k = 0; k < depth; k++) {
+		const lanes there = LANES_WHERE(degree > k);
+		const lanes both =
+			(load_lanes(entries.narrow + k * entries.step) & there) |
+			((0x70005000u + both_halves * k) & ~there);
+		entry[k] = both & mask_of_halves;
+		plain[k] = both & ~(both_halves * (NT_ENTRY_ORIENT >> 16));
+		linked[k] = both & voids;
+	}
+	UNROLL
+	for (uint32_t b = 1; b < depth; b++) {
+		const lanes other_way = entry[b] << 16 | entry[b] >> 16;
+		half_set from_others = ALL_HALVES; /* short chains, as above */
+		UNROLL
+		for (uint32_t a = 0; a < b; a++) {
+			linked[a] = with_bit_where_same(linked[a], entry[a], other_way, both_halves << b);
+			from_others = halves_differ(from_others, plain[a], plain[b]);
+		}
+		distinct = common_halves(distinct, from_others);
+	}
+	const lanes count = count_components(linked, depth, both_halves, voids);
+	return all_halves(distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
+}
+
+static inline NT_ALWAYS_INLINE lanes count_fans_of(vertex_entries entries, const uint32_t depth,
+	lanes degree, lanes mask)
+{
+	return entries.are_narrow ? count_narrow_fans_of(entries, depth, degree, mask)
+		: count_wide_fans_of(entries, depth, degree, mask);
 }
 
 /* The usual depths are worth a loop without branches each. */
-static lanes NT_NOINLINE count_fans(const nt_fan_entry *entries, uint32_t depth, lanes degree, lanes mask)
+static inline NT_ALWAYS_INLINE lanes count_fans_at(vertex_entries entries, uint32_t depth, lanes degree,
+	lanes mask)
 {
 	switch (depth) {
 #ifndef __wasm__
@@ -137,6 +191,19 @@ static lanes NT_NOINLINE count_fans(const nt_fan_entry *entries, uint32_t depth,
 #endif
 	default: return count_fans_of(entries, depth, degree, mask);
 	}
+}
+
+static lanes NT_NOINLINE count_wide_fans(const nt_fan_entry *entries, uint32_t depth,
+	lanes degree, lanes mask)
+{
+	return count_fans_at((vertex_entries){.wide = entries}, depth, degree, mask);
+}
+
+static lanes NT_NOINLINE count_narrow_fans(const uint32_t *entries, size_t step, uint32_t depth,
+	lanes degree, lanes mask)
+{
+	return count_fans_at((vertex_entries){.are_narrow = true, .narrow = entries, .step = step}, depth,
+		degree, mask);
 }
 
 #endif

@@ -43,7 +43,8 @@
 
 /* Each thread has cursors of its own for all vertices, which are then gone over together: the more threads, the more
  * triangles each must have. Two need fewer: their halves take 10 to 18 % more processor time than the whole. */
-static const nt_fast_plan usual = {.grain = 65536, .least_two = 30000, .least_borrowed_bytes = 65536};
+static const nt_fast_plan usual = {.grain = 65536, .least_two = 30000, .least_borrowed_bytes = 65536,
+	.most_narrow = NT_NARROW_LIMIT};
 
 typedef struct run {
 	nt_fast *fast;
@@ -162,8 +163,8 @@ static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, con
 	nt_fast_memory *memory)
 {
 	const nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count,
-		plan->most_places ? plan->most_places : NT_ADJACENCY_PLACES, memory->rows, &memory->borrowed,
-		&fast->adjacency);
+		plan->most_places ? plan->most_places : NT_ADJACENCY_PLACES, plan->most_narrow, memory->rows,
+		&memory->borrowed, &fast->adjacency);
 	if (status)
 		return status;
 	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
@@ -270,6 +271,11 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 	if (!r.settled)
 		return NMTAN_ERROR_MEMORY;
 	memset(r.settled, 0, ranges * sizeof *r.settled);
+	if (NT_FAST_PATHS && fast->sparse) {
+		fast->open = nt_scratch_alloc(fast->solve->scratch, (fast->vertex_count + NT_LANES - 1) / NT_LANES, 1);
+		if (!fast->open)
+			return NMTAN_ERROR_MEMORY;
+	}
 	if (fast->bins.cursors) {
 		if (!make_bins(&r, ranges))
 			return NMTAN_ERROR_MEMORY;
@@ -303,6 +309,8 @@ static bool unsettle(nt_fast *fast, uint32_t vertex, nt_settled *settled)
 		if (fast->records[o])
 			nt_fast_record(fast, o, vertex)->state = complex ? state | NT_RESULT_TANGLED
 									 : NT_RESULT_COMPLEX | NT_RESULT_TANGLED;
+	if (fast->open)
+		fast->open[vertex / NT_LANES] = true;
 	settled->complex_count += !complex;
 	settled->tangled_count++;
 	settled->tangled_corners += corners;
@@ -359,7 +367,7 @@ static void tell_known(const nt_fast *fast)
 
 static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, const nt_settled *settled)
 {
-	nt_fast_write(fast);
+	nt_fast_write(fast, settled);
 	nt_borrowed left = nt_fast_left_memory(fast);
 	const nmtan_status status = settled->complex_count > 0
 		? nt_fast_complex(fast, kernels, settled, &left) : NMTAN_OK;

@@ -26,8 +26,22 @@ static void orient_quads(uint8_t *flags, size_t count, const float *area)
 	}
 }
 
+/* Triangles whose UV area is exactly 0 whatever is rounded, as stored too, for two texture coordinates are the same or
+ * all lie along an axis. Where there is another reason they stay uncertain. */
+static void NT_NOINLINE clear_flat(const lanes_in *in, uint8_t *flags, size_t count)
+{
+	const float (*a)[NT_LANES] = in->row[0] + 6, (*b)[NT_LANES] = in->row[1] + 6, (*c)[NT_LANES] = in->row[2] + 6;
+	for (size_t i = 0; i < count; i++) {
+		const int ab_u = a[0][i] == b[0][i], ac_u = a[0][i] == c[0][i], bc_u = b[0][i] == c[0][i];
+		const int ab_v = a[1][i] == b[1][i], ac_v = a[1][i] == c[1][i], bc_v = b[1][i] == c[1][i];
+		const int flat = (ab_u & ab_v) | (ac_u & ac_v) | (bc_u & bc_v) | (ab_u & ac_u) | (ab_v & ac_v);
+		flags[i] &= (uint8_t)~(flat ? NT_TRIANGLE_UNCERTAIN : 0);
+	}
+}
+
 /* Flags of lanes that are not plain; true where all of them are ordinary triangles with a frame. */
-static bool NT_NOINLINE classify_special(uint8_t *flags, size_t count, const lanes_out *out)
+static bool NT_NOINLINE classify_special(uint8_t *flags, size_t count, const lanes_in *in,
+	const lanes_out *out)
 {
 	int special = 0;
 	for (size_t i = 0; i < count; i++)
@@ -37,6 +51,8 @@ static bool NT_NOINLINE classify_special(uint8_t *flags, size_t count, const lan
 				     (out->frameless[i] ? NT_TRIANGLE_ANY : 0) |
 				     (out->degenerate[i] ? NT_TRIANGLE_DEGENERATE : 0) |
 				     (out->doubt[i] < 0.0f && !out->frameless[i] ? 0 : NT_TRIANGLE_UNCERTAIN));
+	if (NT_FAST_PATHS && special)
+		clear_flat(in, flags, count);
 	return !special;
 }
 
@@ -50,12 +66,13 @@ static inline NT_ALWAYS_INLINE void classify_plain(uint8_t *NT_RESTRICT flags, s
 }
 
 /* Flags of the lanes; true where all of them are ordinary triangles with a frame. */
-static inline bool classify_lanes(const nt_fast *fast, size_t first, size_t count, const lanes_out *out)
+static inline bool classify_lanes(const nt_fast *fast, size_t first, size_t count, const lanes_in *in,
+	const lanes_out *out)
 {
 	uint8_t *flags = fast->flags + first;
 	bool ordinary = out->plain;
 	if (!NT_FAST_PATHS || !ordinary)
-		ordinary = classify_special(flags, count, out);
+		ordinary = classify_special(flags, count, in, out);
 	else if (count == NT_LANES)
 		classify_plain(flags, NT_LANES, out);
 	else

@@ -75,10 +75,11 @@ nt_borrowed nt_fast_left_memory(const nt_fast *fast)
 	const struct {
 		const void *memory;
 		size_t bytes;
-	} arrays[] = {
+	} arrays[4] = {
 		{fast->rows, binned ? 0 : fast->vertex_count * sizeof *fast->rows},
 		{binned ? (const void *)fast->bins.entries : a->entries,
 			binned ? 3 * fast->triangle_count * NT_BINNED_ENTRY : a->entry_count * sizeof *a->entries},
+		{a->narrow, nt_adjacency_is_narrow(a) ? NT_FAN_DEPTH * a->step * sizeof *a->narrow : 0},
 	};
 	nt_borrowed largest = nt_borrow(NULL, 0, solve->scratch);
 	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {

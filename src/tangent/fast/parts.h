@@ -57,6 +57,8 @@ typedef struct nt_fast {
 	nt_record_more *more[2];     /* [vertex_count] the same for the optional outputs */
 	bool wants_more;
 	bool sparse;             /* step 6 leaves out corners whose result is their record */
+	uint8_t *open;           /* [blocks] of NT_LANES vertices, of a sparse solve: whether a record is not the
+	                            result, or not usable */
 	bool scattered;          /* neighbouring triangles have vertices far apart: prefetch */
 	nt_bins bins;            /* of a scattered mesh: its corners on their way to the records */
 	nt_unsorted unsorted;    /* edges that are not paired as a vertex's corners alone would have it */
@@ -163,7 +165,7 @@ nmtan_status nt_fast_add(nt_fast *fast, const nt_kernels *kernels);
 
 /* Every corner gets the result of its vertex; with fast->sparse those of suspects only. Marks triangles COMPLEX
  * and COPY. */
-void nt_fast_write(nt_fast *fast);
+void nt_fast_write(nt_fast *fast, const nt_settled *settled);
 
 /* Writes what a sparse solve left out. */
 void nt_fast_write_rest(nt_fast *fast);

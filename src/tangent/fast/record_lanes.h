@@ -9,7 +9,8 @@
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
-#include "tangent/fast/turn.h"
+#include "tangent/fast/lane_sets.h"
+#include "tangent/fast/parts.h"
 #include "tangent/usable.h"
 
 /* The lanes of records that hold their states, with those bits; 0 in the others. */

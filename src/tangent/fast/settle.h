@@ -36,9 +36,9 @@ static void load_degrees(const nt_adjacency *a, size_t first, size_t count, size
 {
 	const size_t place = first - a->first_vertex;
 	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + place;
-	const uint32_t begin = a->block_begin[place / NT_FAN_LANES];
+	const uint32_t begin = nt_adjacency_is_narrow(a) ? (uint32_t)place : a->block_begin[place / NT_FAN_LANES];
 	/* places of a block are few enough for floats to be divided as integers are */
-	const float corners_a_place = 1.0f / NT_FAN_LANES;
+	const float corners_a_place = 1.0f / (float)a->step;
 	for (uint32_t v = 0; v < used; v += WIDTH) {
 		int deepest = 0;
 		for (uint32_t i = v; i < v + WIDTH; i++) {
@@ -61,8 +61,8 @@ static void describe_complex(const nt_fast *fast, const nt_adjacency *a, size_t 
 {
 	const size_t place = first - a->first_vertex;
 	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + place;
-	const nt_fan_entry *entries = nt_adjacency_block(a, place / NT_FAN_LANES);
-	const size_t begin = a->block_begin[place / NT_FAN_LANES];
+	const vertex_entries entries = entries_at(a, place);
+	const size_t begin = nt_adjacency_is_narrow(a) ? place : a->block_begin[place / NT_FAN_LANES];
 	for (size_t i = 0; i < used; i++) {
 		if (!complex[i])
 			continue;
@@ -72,8 +72,9 @@ static void describe_complex(const nt_fast *fast, const nt_adjacency *a, size_t 
 		if (cursors[lane] & NT_CURSOR_HUB)
 			corners = places;
 		else
-			for (size_t e = lane; e < places - begin; e += NT_FAN_LANES)
-				corners += !(entries[e].next & NT_ENTRY_VOID);
+			for (size_t e = lane; e < places - begin; e += entries.step)
+				corners += !(entries.are_narrow ? entries.narrow[e] & NT_ENTRY_VOID >> 16
+					: entries.wide[e].next & NT_ENTRY_VOID);
 		for (int o = 0; o < 2; o++)
 			if (fast->records[o])
 				nt_fast_record(fast, o, (uint32_t)(first + lane))->state |= corners | tangled *
@@ -93,7 +94,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	const size_t first = block * NT_LANES, left = fast->vertex_count - first;
 	const size_t count = left < NT_LANES ? left : NT_LANES;
 	const size_t used = whole_lanes(count);
-	const nt_fan_entry *entries = nt_adjacency_block(a, (first - a->first_vertex) / NT_FAN_LANES);
+	const vertex_entries entries = entries_at(a, first - a->first_vertex);
 	uint32_t degree[NT_LANES], mask[NT_LANES], fan_count[NT_LANES], complex[NT_LANES], unsound[NT_LANES];
 	uint32_t depths[NT_LANES / WIDTH], unusable[2][NT_LANES] = {{0}};
 	record_lanes own[2];
@@ -115,7 +116,9 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		const lanes degrees = load_lanes(degree + i), masks = load_lanes(mask + i),
 			hubs = LANES_WHERE(degrees == HUB);
 		const lanes usual = degrees & ~hubs, mask_of = out_of_turn(masks);
-		const lanes counted = (hubs & DOUBTFUL) | count_fans(entries + i, depths[i / WIDTH], usual, mask_of);
+		const lanes counted = (hubs & DOUBTFUL) | (nt_adjacency_is_narrow(a)
+			? count_narrow_fans(entries.narrow + i, entries.step, depths[i / WIDTH], usual, mask_of)
+			: count_wide_fans(entries.wide + i, depths[i / WIDTH], usual, mask_of));
 		const lanes turned = in_turn(counted);
 		memcpy(fan_count + i, &turned, sizeof turned);
 	}
@@ -143,6 +146,8 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	const bool has_complex = any_of(complex, used);
 	if (has_unusable)
 		nt_fast_tell_open(fast->solve);
+	if (NT_FAST_PATHS && fast->open)
+		fast->open[block] = has_complex | has_unusable;
 	/* from here on the rows may be overwritten */
 	for (int o = 0; o < 2; o++) {
 		if (!sums[o])

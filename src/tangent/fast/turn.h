@@ -9,7 +9,6 @@
 #ifndef NT_TANGENT_FAST_TURN_H
 #define NT_TANGENT_FAST_TURN_H
 
-#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 #include "tangent/fast/parts.h"
@@ -74,19 +73,6 @@ static inline NT_ALWAYS_INLINE lanes load_lanes(const void *from)
 	lanes result;
 	memcpy(&result, from, sizeof result);
 	return result;
-}
-
-/* Whether a lane is not 0. */
-static inline bool any_lane(lanes a)
-{
-#if WIDTH > 1
-	uint32_t any = 0;
-	for (int i = 0; i < WIDTH; i++)
-		any |= a[i];
-	return any != 0;
-#else
-	return a != 0;
-#endif
 }
 
 /* Four rows of four floats, turned, in each part. */

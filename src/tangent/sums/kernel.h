@@ -309,33 +309,99 @@ static int sum_missing(const nt_sums *s, size_t first, size_t count)
 	return (seen & 1) && !s->sums[0] ? 0 : (seen & 2) && !s->sums[1] ? 1 : -1;
 }
 
+#if WIDTH > 1
+/* Four rows of four doubles, turned, in each 32-byte part of the vectors: see turn(). */
+#if WIDTH == 16
+enum { SUM_PARTS = 2 };
+#define IN_DOUBLES(a, b, c, d) DOUBLES(0, a, b, c, d), DOUBLES(4, a, b, c, d)
+#else
+enum { SUM_PARTS = 1 };
+#define IN_DOUBLES(a, b, c, d) DOUBLES(0, a, b, c, d)
+#endif
+#define DOUBLES(part, a, b, c, d) DOUBLE(part, a), DOUBLE(part, b), DOUBLE(part, c), DOUBLE(part, d)
+#define DOUBLE(part, i) ((part) + (i) % 4 + (i) / 4 * 4 * SUM_PARTS)
+typedef double double_lanes __attribute__((vector_size(32 * SUM_PARTS)));
+
+LANE_INLINE void turn_doubles(double_lanes rows[4])
+{
+	const double_lanes ab02 = __builtin_shufflevector(rows[0], rows[1], IN_DOUBLES(0, 4, 2, 6));
+	const double_lanes ab13 = __builtin_shufflevector(rows[0], rows[1], IN_DOUBLES(1, 5, 3, 7));
+	const double_lanes cd02 = __builtin_shufflevector(rows[2], rows[3], IN_DOUBLES(0, 4, 2, 6));
+	const double_lanes cd13 = __builtin_shufflevector(rows[2], rows[3], IN_DOUBLES(1, 5, 3, 7));
+	rows[0] = __builtin_shufflevector(ab02, cd02, IN_DOUBLES(0, 1, 4, 5));
+	rows[1] = __builtin_shufflevector(ab13, cd13, IN_DOUBLES(0, 1, 4, 5));
+	rows[2] = __builtin_shufflevector(ab02, cd02, IN_DOUBLES(2, 3, 6, 7));
+	rows[3] = __builtin_shufflevector(ab13, cd13, IN_DOUBLES(2, 3, 6, 7));
+}
+
+LANE_INLINE size_t turned_double_place(size_t lane)
+{
+	const size_t in_vectors = lane % (4 * SUM_PARTS);
+	return lane - in_vectors + in_vectors % 4 * SUM_PARTS + in_vectors / 4;
+}
+
+LANE_INLINE void sum_add_one(nt_vertex_sum *to, const nt_vertex_sum *add)
+{
+	typedef double four_doubles __attribute__((vector_size(32)));
+	four_doubles sum, more;
+	memcpy(&sum, to, sizeof sum);
+	memcpy(&more, add, sizeof more);
+	sum += more;
+	memcpy(to, &sum, sizeof sum);
+}
+#else
+LANE_INLINE size_t turned_double_place(size_t lane)
+{
+	return lane;
+}
+
 LANE_INLINE void sum_add_one(nt_vertex_sum *to, const nt_vertex_sum *add)
 {
 	to->x += add->x, to->y += add->y, to->z += add->z;
 	to->sensitivity += add->sensitivity;
 }
+#endif
 
 /* Adds the lanes to their vertices, in order; or aside, where the vertex belongs to an earlier range. */
 static void NT_NOINLINE sum_add(nt_sums *s, size_t first, size_t count, unsigned range,
 	const nt_sum_block *block)
 {
+	NT_ALIGNED(64) nt_vertex_sum rows[3][NT_SUM_LANES]; /* in turned places */
+#if WIDTH > 1
+	for (size_t k = 0; k < 3; k++)
+		for (size_t i = 0; i < NT_SUM_LANES; i += 4 * SUM_PARTS) {
+			double_lanes four[4];
+			for (size_t c = 0; c < 4; c++) {
+				double_lanes one; /* copied to an element it would go by halves (gcc 12, AVX2) */
+				memcpy(&one, block->add[k][c] + i, sizeof one);
+				four[c] = one;
+			}
+			turn_doubles(four);
+			for (size_t c = 0; c < 4; c++)
+				memcpy(rows[k] + i + SUM_PARTS * c, &four[c], sizeof four[c]);
+		}
+#else
+	for (size_t k = 0; k < 3; k++)
+		for (size_t i = 0; i < NT_SUM_LANES; i++)
+			rows[k][i] = (nt_vertex_sum){block->add[k][0][i], block->add[k][1][i], block->add[k][2][i],
+				block->add[k][3][i]};
+#endif
 	const uint32_t *ids = s->ids + 3 * first;
 	const bool alone = s->ranges == 1;
 	for (size_t i = 0; i < count; i++, ids += 3) {
 		const uint8_t flags = s->flags[first + i];
+		const size_t place = turned_double_place(i);
 		if (flags & NT_SUM_NONE)
 			continue;
 		nt_vertex_sum *to = s->sums[flags & NT_SUM_POSITIVE];
 		for (size_t k = 0; k < 3; k++) {
-			const nt_vertex_sum add = {block->add[k][0][i], block->add[k][1][i], block->add[k][2][i],
-				block->add[k][3][i]};
 			if (alone || s->owners[ids[k]] == range) {
-				sum_add_one(to + ids[k], &add);
+				sum_add_one(to + ids[k], &rows[k][place]);
 				continue;
 			}
 			nt_later *later = &s->later[range][s->later_counts[range]++];
 			later->to = to + ids[k];
-			later->add = add;
+			later->add = rows[k][place];
 		}
 	}
 }

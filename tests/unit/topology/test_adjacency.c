@@ -74,8 +74,8 @@ TEST(borrowed_memory_of_any_size_gives_the_same_places)
 		const nt_triangles triangles = {.ids = ids};
 		const nt_triangle_ranges cut = {i % 2 ? 3 : 1, bounds[i % 2]};
 		nt_adjacency a;
-		assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, NT_ADJACENCY_PLACES, &none, &memory,
-			&a), NMTAN_OK);
+		assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, NT_ADJACENCY_PLACES, 0, &none,
+			&memory, &a), NMTAN_OK);
 		for (unsigned r = 0; r < cut.count; r++)
 			fill(&a, r, cut.bounds[r], cut.bounds[r + 1]);
 		assert_in_range(check_entries(&a, NT_ADJACENCY_PLACES), 1, VERTICES - 1);
@@ -97,7 +97,7 @@ TEST(places_that_do_not_suffice_leave_hubs)
 		const nt_triangles triangles = {.ids = ids};
 		const nt_triangle_ranges cut = {3, bounds};
 		nt_adjacency a;
-		assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, most, &memory, &memory, &a),
+		assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, most, 0, &memory, &memory, &a),
 			NMTAN_OK);
 		assert_in_range(a.block_begin[BLOCKS], 0, most);
 		for (unsigned r = 0; r < 3; r++)
@@ -108,6 +108,50 @@ TEST(places_that_do_not_suffice_leave_hubs)
 		nt_scratch_free(&scratch);
 	}
 	assert_in_range(hubs, 1, VERTICES - 1);
+}
+
+/* Narrow entries are there for whoever is no hub; a hub knows how many corners it has. */
+TEST(few_vertices_need_not_be_counted)
+{
+	make_ids();
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	nt_borrowed memory = nt_borrow(NULL, 0, &scratch);
+	const size_t bounds[3] = {0, 100, TRIANGLES};
+	const nt_triangles triangles = {.ids = ids};
+	nt_adjacency a;
+	assert_int_equal(nt_adjacency_make(&triangles, &(nt_triangle_ranges){2, bounds}, VERTICES, NT_ADJACENCY_PLACES,
+		NT_NARROW_LIMIT, &memory, &memory, &a), NMTAN_OK);
+	assert_null(a.narrow); /* two ranges */
+	const nt_triangle_ranges whole = {1, bounds + 1};
+	assert_int_equal(nt_adjacency_make(&triangles, &whole, VERTICES, NT_ADJACENCY_PLACES, VERTICES - 1, &memory,
+		&memory, &a), NMTAN_OK);
+	assert_null(a.narrow); /* a vertex too many */
+	assert_int_equal(nt_adjacency_make(&triangles, &whole, VERTICES, NT_ADJACENCY_PLACES, VERTICES, &memory,
+		&memory, &a), NMTAN_OK);
+	assert_non_null(a.narrow);
+	assert_true(a.step >= VERTICES && a.step / NT_FAN_LANES % 2 == 1);
+	uint32_t degrees[VERTICES] = {0}, hubs = 0;
+	for (uint32_t i = 0; i < 3 * TRIANGLES; i++) {
+		const uint32_t v = ids[i], place = nt_adjacency_next(&a, &a.cursors[v]);
+		assert_int_equal((place & NT_CURSOR_HUB) != 0, degrees[v] >= NT_FAN_DEPTH);
+		if (!(place & NT_CURSOR_HUB))
+			nt_adjacency_store(&a, place, (nt_fan_entry){(uint32_t)1 << 31 | i, (uint32_t)1 << 30 | v});
+		degrees[v]++;
+	}
+	for (uint32_t v = 0; v < VERTICES; v++)
+		if (degrees[v] > NT_FAN_DEPTH) {
+			hubs++;
+			assert_int_equal(a.cursors[v], NT_CURSOR_HUB | degrees[v]);
+		} else {
+			assert_int_equal(a.cursors[v], degrees[v] * a.step + v);
+			degrees[v] = 0;
+		}
+	assert_in_range(hubs, 1, VERTICES - 1);
+	for (uint32_t i = 0; i < 3 * TRIANGLES; i++)
+		if (!(a.cursors[ids[i]] & NT_CURSOR_HUB))
+			assert_int_equal(a.narrow[degrees[ids[i]]++ * a.step + ids[i]], 0x40008000 | ids[i] << 16 | i);
+	nt_scratch_free(&scratch);
 }
 
 int main(void)

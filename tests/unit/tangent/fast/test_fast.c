@@ -47,7 +47,8 @@ TEST(goldens_are_byte_identical)
 /* With repair, which relies on what the fast path knows of its result, by vertices and by groups. */
 static size_t compare_repairs(const char *name, const nmtan_mesh *mesh, size_t corners)
 {
-	static const nt_fast_plan plans[] = {{.grain = 1}, {.grain = 1, .bin_bits = 4}};
+	static const nt_fast_plan plans[] = {{.grain = 1}, {.grain = 1, .bin_bits = 4},
+		{.grain = 1, .most_narrow = NT_NARROW_LIMIT}};
 	enum { PLANS = sizeof plans / sizeof *plans };
 	nt_result results[PLANS + 1]; /* the definition's is the last */
 	nmtan_counts counts[PLANS + 1];
