@@ -8,6 +8,7 @@
  */
 #include "cli/options.h"
 #include "cli/option_table.h"
+#include "file/lookup.h"
 #include "report/codes.h"
 
 #include <fnmatch.h>
@@ -112,6 +113,21 @@ static nt_status refuse_empty(parser *p, const nt_option_row *row)
 	return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '' is no %s", row->name, row->values);
 }
 
+/* Names of files that the system does not take: what is made of them step by step would take long. */
+static nt_status refuse_long(parser *p, const char *word)
+{
+	return nt_fail(p->error, NT_ERROR_USAGE, "'%.40s...' has %zu bytes, which no file's name has", word, strlen(word));
+}
+
+static bool is_name(const nt_option_row *row)
+{
+	static const char *const names[] = {"FILE", "DIR", "ROOT", "GLOB"};
+	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+		if (row->values && strcmp(row->values, names[i]) == 0)
+			return true;
+	return false;
+}
+
 static nt_status append_word(parser *p, const nt_option_row *row, nt_words *words, const char *word)
 {
 	if (!*word)
@@ -130,6 +146,8 @@ static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 	int value = row->first;
 	uint64_t size;
 	p->given[row - nt_option_rows] = true;
+	if (word && is_name(row) && nt_name_is_too_long(word))
+		return refuse_long(p, word);
 	switch (row->kind) {
 	case NT_OPTION_HEADING:
 		break;
@@ -485,7 +503,7 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 		int used = 1;
 		nt_status status = NT_OK;
 		if (!options || word[0] != '-' || !word[1])
-			argv[kept++] = word;
+			status = nt_name_is_too_long(argv[kept++] = word) ? refuse_long(&p, word) : NT_OK;
 		else if (strcmp(word, "--") == 0)
 			options = false;
 		else if (word[1] == '-')

@@ -6,6 +6,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -24,9 +25,15 @@ nt_status nt_lookup_failed(const char *path, int number, nt_error *error)
 		nt_fail_memory(error);
 	else
 		nt_fail(error, NT_ERROR_IO, "cannot read: %s", strerror(number));
-	if (error->status == NT_ERROR_MISSING)
+	/* what has too long a name will not come to be */
+	if (error->status == NT_ERROR_MISSING && number != ENAMETOOLONG)
 		nt_trace_missing(path);
 	return nt_error_in_file(error, path);
+}
+
+bool nt_name_is_too_long(const char *name)
+{
+	return strnlen(name, PATH_MAX) == PATH_MAX;
 }
 
 nt_status nt_lookup(const char *path, struct stat *info, nt_error *error)

@@ -15,6 +15,8 @@
 
 nt_status nt_link_folder(nt_buffer *text, const char *path, nt_error *error)
 {
+	if (nt_name_is_too_long(path))
+		return nt_lookup_failed(path, ENAMETOOLONG, error);
 	const char *slash = strrchr(path, '/');
 	char *folder = slash ? strndup(path, (size_t)(slash - path) + (slash == path)) : strdup(".");
 	if (!folder)

@@ -231,6 +231,10 @@ nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri,
 					 "the URI \"%.*s\" has a scheme; only data: and relative names are read",
 			SHOWN, uri);
 
+	if (nt_name_is_too_long(name))
+		return nt_fail(error, NT_ERROR_MISSING, "the URI \"%.*s\" has %zu bytes, which no file's name has", SHOWN,
+			uri, name_length);
+
 	/* An absolute name, allowed here, stands for itself. */
 	const size_t folder = name[0] == '/' ? 0 : folder_length(document);
 	char *full = nt_arena_alloc(arena, folder + name_length + 1, 1);

@@ -93,6 +93,8 @@ static nt_status follow(way *w, const char *path, nt_error *error)
 nt_status nt_way_follow(
 	nt_buffer *real, const char *path, nt_way_link link, void *user, nt_error *error)
 {
+	if (nt_name_is_too_long(path))
+		return nt_lookup_failed(path, ENAMETOOLONG, error);
 	way w = {.real = real, .link = link, .user = user};
 	char *current = path[0] == '/' ? NULL : getcwd(NULL, 0);
 	if (path[0] != '/' && !current)

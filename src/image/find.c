@@ -247,6 +247,11 @@ nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buff
 		nt_buffer_free(&folder);
 		return status || !path->failed ? status : nt_fail_memory(error);
 	}
+	if (nt_name_is_too_long(name)) {
+		*found = NT_IMAGE_MISSING;
+		nt_buffer_text(path, name);
+		return path->failed ? nt_fail_memory(error) : NT_OK;
+	}
 	status = try_as_named(&s, name, &folder, &accepted);
 	if (!status && !accepted && places->one_up && folder.size)
 		status = try_one_up(&s, folder.data, name, &accepted);

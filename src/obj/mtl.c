@@ -323,5 +323,7 @@ nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *b
 void nt_mtl_free(nt_mtl *mtl)
 {
 	free(mtl->definitions);
+	free(mtl->files);
+	nt_hash_index_free(&mtl->file_index);
 	*mtl = (nt_mtl){0};
 }

@@ -6,6 +6,7 @@
 #define NT_OBJ_MTL_H
 
 #include <string.h>
+#include "base/hash_index.h"
 #include "scene/scene.h"
 
 /* One newmtl. */
@@ -21,6 +22,12 @@ typedef struct nt_mtl {
 	nt_mtl_definition *definitions;
 	size_t count, capacity;
 	bool incomplete; /* a library could not be read */
+	/* which files have been read: each is, once, by however many names it is named */
+	struct nt_mtl_file {
+		uint64_t device, inode;
+	} *files;
+	size_t file_count, file_capacity;
+	nt_hash_index file_index;
 } nt_mtl;
 
 /* A line of a text. */

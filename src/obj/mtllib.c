@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 #include "file/input.h"
+#include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/way.h"
 #include "obj/mtl.h"
@@ -56,7 +57,7 @@ static nt_status open_library(const request *q, const char *name, const char *pa
 {
 	const bool confined = !q->options->allow_outside;
 	bool inside = true;
-	*reason = !*name ? "no file name" : confined ? outside_reason(name) : NULL;
+	*reason = !*name ? "no file name" : nt_name_is_too_long(name) ? "a name that is too long for any file" : confined ? outside_reason(name) : NULL;
 	if (*reason)
 		return NT_OK;
 	nt_buffer folder = {0};
@@ -72,6 +73,24 @@ static nt_status open_library(const request *q, const char *name, const char *pa
 	if (status != NT_ERROR_MISSING)
 		return status;
 	*reason = error->message;
+	return NT_OK;
+}
+
+/* Notes that a file is read; *before: it has been. */
+static nt_status note_file(nt_mtl *mtl, const nt_file *file, bool *before, nt_error *error)
+{
+	const struct nt_mtl_file id = {file->device, file->inode};
+	const uint64_t hash = nt_hash_bytes(0, &id, sizeof id);
+	size_t at = NT_HASH_BEGIN;
+	*before = false;
+	for (uint32_t i; !*before && (i = nt_hash_index_next(&mtl->file_index, hash, &at)) != UINT32_MAX;)
+		*before = mtl->files[i].device == id.device && mtl->files[i].inode == id.inode;
+	if (*before)
+		return NT_OK;
+	if (!nt_grow((void **)&mtl->files, &mtl->file_capacity, mtl->file_count + 1, sizeof *mtl->files) ||
+		!nt_hash_index_add(&mtl->file_index, hash, (uint32_t)mtl->file_count))
+		return nt_fail_memory(error);
+	mtl->files[mtl->file_count++] = id;
 	return NT_OK;
 }
 
@@ -100,7 +119,10 @@ static nt_status read_library(const request *q, const char *text, size_t length,
 	if (reason)
 		return NT_OK;
 	*found = true;
-	status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
+	bool before;
+	status = note_file(q->mtl, &file, &before, q->error);
+	if (!status && !before)
+		status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
 	nt_file_close(&file);
 	return status;
 }

@@ -39,15 +39,15 @@ sys.exit(child.returncode)' $((seconds * factor)) $((megabytes * factor)) "$WORK
 	[ ! -s "$WORK/cost.txt" ] || wrong "$(cat "$WORK/cost.txt")"
 }
 
-# grows KIND COUNT WORDS...: COUNT, 2 COUNT and 4 COUNT of a kind take linear time; IN is the input. With `first` set to
-# words, what nmtan makes of it by these.
-first=
+# grows KIND COUNT WORDS...: COUNT, 2 COUNT and 4 COUNT of a kind take linear time; IN is the input, whose name ends with
+# `ending`. With `first` set to words, what nmtan makes of it by these.
+first= ending=obj
 grows() {
 	local kind=$1 count=$2 size files=()
 	shift 2
 	for size in 1 2 4; do
-		python3 "$ROOT/tests/support/cost_inputs.py" "$kind" $((size * count)) $size.obj
-		files+=($size.obj)
+		python3 "$ROOT/tests/support/cost_inputs.py" "$kind" $((size * count)) $size.$ending
+		files+=($size.$ending)
 		# shellcheck disable=SC2086
 		[ -z "$first" ] || run -q $first $size.obj $size.glb
 		[ -z "$first" ] || files[-1]=$size.glb
@@ -89,6 +89,14 @@ grows turned $((blocks / 5)) --flip-green=on IN out.glb
 for format in json html; do
 	grows names 250 --check --only=all --report=r.$format IN
 done
+
+scene "a library that has many names is read once, and names that no file can have are not followed"
+grows libraries 500 IN out.glb
+for ending in obj ply glb; do
+	grows slashes 200000 --images=embed IN out.glb
+	grows slashes 200000 --images=embed --allow-outside IN out.glb
+done
+ending=obj
 
 scene "a name of a megabyte is cut in reports"
 printf 'o %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n' \

@@ -12,6 +12,8 @@ ranges    a GLB of COUNT primitives over one grid of SIDE (100) quads squared, e
 scene     a GLB of COUNT primitives, ten in a mesh, of SIDE (3) quads squared and with accessors of their own, of 50
           materials
 images    an OBJ of COUNT materials, and FILE.mtl beside it, with two images each that are not there
+libraries an OBJ that names one library by COUNT names, and FILE.mtl beside it with COUNT materials
+slashes   an OBJ, or a PLY or glTF by the name of FILE, that names library or images with COUNT slashes
 bumps     an OBJ of COUNT materials, and FILE.mtl and FILE.png beside it: each makes other normals of one white PNG of
           SIDE (4096) pixels squared and one bit
 turned    a GLB of COUNT materials, each with a texture and an image of its own, as normal map and as emissive
@@ -56,6 +58,31 @@ def images(count, out):
     with open(sys.argv[3] + '.mtl', 'w') as materials:
         for i in range(count):
             materials.write('newmtl m%d\nmap_Kd c%d.png\nnorm n%d.png\n' % (i, i, i))
+
+
+def libraries(count, out):
+    name = os.path.basename(sys.argv[3]).encode() + b'.mtl'
+    out.write(b'mtllib' + b''.join(b' ' + b'./' * (i % 8) + name for i in range(count)) +
+              b'\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nusemtl m0\nf 1/1/1 2/2/1 3/3/1\n')
+    with open(sys.argv[3] + '.mtl', 'w') as materials:
+        for i in range(count):
+            materials.write('newmtl m%d\nKd 0 1 0\nmap_Kd x.png\n' % i)
+
+
+def slashes(count, out):
+    name = 'a/' * count
+    if sys.argv[3].endswith('.obj'):
+        out.write(b'mtllib %sm.mtl\nmtllib %s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n'
+                  b'usemtl m0\nf 1/1/1 2/2/1 3/3/1\n' % (name.encode(), os.path.basename(sys.argv[3]).encode()))
+        with open(sys.argv[3] + '.mtl', 'w') as materials:
+            materials.write('newmtl m0\nmap_Kd %sx.png\n' % name)
+    elif sys.argv[3].endswith('.ply'):
+        out.write(b'ply\nformat ascii 1.0\ncomment TextureFile %sx.png\nelement vertex 3\n' % name.encode() +
+                  b''.join(b'property float %c\n' % c for c in b'xyzst') +
+                  b'element face 1\nproperty list uchar int vertex_indices\nend_header\n'
+                  b'0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n')
+    else:
+        glb(1, out, 1, False, more={'images': [{'uri': name + 'x.png'}]})
 
 
 def bumps(count, out, side):
@@ -244,4 +271,4 @@ with open(sys.argv[3], 'wb') as out:
     else:
         {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
          'patches': patches, 'repeated': repeated, 'centre': centre, 'folded': folded,
-         'tiles': tiles, 'turned': turned}[kind](count, out)
+         'tiles': tiles, 'turned': turned, 'libraries': libraries, 'slashes': slashes}[kind](count, out)

@@ -264,6 +264,12 @@ TEST(names_must_be_as_many_as_the_form_takes)
 	refuses("'-'", WORDS("--in-place", "-"));
 	refuses("'-'", WORDS("--check", "-", "-"));
 	accepts(&c, WORDS("--check", "-"));
+	char name[5000] = "";
+	memset(name, '/', sizeof name - 1);
+	refuses("4999 bytes", WORDS("a", name));
+	refuses("4999 bytes", WORDS("a", "b.glb", "--report", name));
+	name[4095] = '\0';
+	accepts(&c, WORDS("a", name));
 }
 
 TEST(help_and_version_ask_for_no_names)
