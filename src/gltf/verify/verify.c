@@ -345,12 +345,14 @@ static nt_status fail_bounds(const nt_mesh *mesh, const char *attribute, nt_erro
 	return NT_ERROR_INTERNAL;
 }
 
-/* Positions that stay as they are have the bounds that the input states. */
+/* Positions that stay as they are have the bounds that the input states, which exporters round. So have tangents that
+ * were looked at and all kept. */
 static nt_status check_bounds(const nt_mesh *mesh, const primitive_view *view, bool positions_too, nt_error *error)
 {
+	const bool kept = mesh->decision == NT_DECISION_REPAIR && !mesh->replaced_tangents;
 	if (positions_too && !bounds_hold(&view->positions))
 		return fail_bounds(mesh, "POSITION", error);
-	return bounds_hold(&view->tangents) ? NT_OK : fail_bounds(mesh, "TANGENT", error);
+	return kept || bounds_hold(&view->tangents) ? NT_OK : fail_bounds(mesh, "TANGENT", error);
 }
 
 static nt_status fail_corner(const nt_mesh *mesh, size_t corner, nt_error *error)
