@@ -236,6 +236,8 @@ void nt_gltf_free(void *source)
 	free(document->decoded);
 	free(document->floats);
 	free(document->grids);
+	free(document->lod_wishes);
+	nt_name_table_free(&document->animated);
 	free(document->buffers);
 	nt_json_free(document->json);
 	nt_arena_free(&document->arena);

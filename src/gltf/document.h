@@ -8,6 +8,7 @@
 #ifndef NT_GLTF_DOCUMENT_H
 #define NT_GLTF_DOCUMENT_H
 
+#include "base/name_table.h"
 #include "ext/gltf_numbers.h"
 #include "file/input.h"
 #include "gltf/glb.h"
@@ -105,6 +106,9 @@ typedef struct nt_gltf {
 	                                        bits 0: on their own. NULL: all of them */
 	struct nt_vertex_pools *pools; /* who shares vertices: edit/vertex_pools.h; NULL until that is found */
 	void (*free_pools)(void *pools); /* set with them */
+	nt_name_table animated;  /* pointers of texture transforms that an animation turns or scales: materials.c */
+	bool animated_known;     /* then these are all */
+	void **lod_wishes;       /* [materials] what those with levels of detail ask for; NULL: no such material yet */
 	bool dangling_known;     /* then these are, as the file had them: dangling.h */
 	nt_gltf_dangling dangling[NT_GLTF_GROWING];
 	bool is_shared;          /* several threads load: nothing is opened, decompressed or decoded, what would have

@@ -9,6 +9,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include "gltf/pointer.h"
 
 /* What all materials together want, per slot. */
 typedef struct wishes {
@@ -46,29 +47,37 @@ static nt_status read_pair(const nt_json_value *transform, const char *pointer, 
 	return status;
 }
 
-/* Whether an animation turns or scales this transform (KHR_animation_pointer). */
-static bool is_animated(const nt_gltf *document, const char *pointer)
+/* Lists the transforms that an animation turns or scales (KHR_animation_pointer). */
+static nt_status find_animated(nt_gltf *document, nt_error *error)
 {
+	static const char *const members[] = {"/rotation", "/scale"};
 	const nt_json_value *animations = nt_gltf_root_member(document, "animations");
-	const size_t length = strlen(pointer);
+	if (document->animated_known)
+		return NT_OK;
+	if (document->is_shared)
+		return nt_gltf_refuse(error);
 	for (size_t i = 0; i < nt_json_count(animations); i++) {
 		const nt_json_value *channels = nt_json_find(nt_json_at(animations, i), "channels");
 		for (size_t k = 0; k < nt_json_count(channels); k++) {
 			const nt_json_value *extensions = nt_json_find(
 				nt_json_find(nt_json_at(channels, k), "target"), "extensions");
+			size_t length = 0;
 			const char *target = nt_json_get_string(nt_json_find(
-				nt_json_find(extensions, "KHR_animation_pointer"), "pointer"), NULL);
-			if (target && strncmp(target, pointer, length) == 0 &&
-				(strcmp(target + length, "/rotation") == 0 ||
-					strcmp(target + length, "/scale") == 0))
-				return true;
+				nt_json_find(extensions, "KHR_animation_pointer"), "pointer"), &length);
+			for (size_t m = 0; m < 2 && target; m++) {
+				const size_t end = strlen(members[m]);
+				if (length > end && memcmp(target + length - end, members[m], end) == 0 &&
+					nt_name_add(&document->animated, target, length - end) == UINT32_MAX)
+					return nt_fail_memory(error);
+			}
 		}
 	}
-	return false;
+	document->animated_known = true;
+	return NT_OK;
 }
 
 /* The transform of a textureInfo, and the texture coordinate set, which it may override. */
-static nt_status read_transform(const nt_gltf *document, const nt_json_value *texture,
+static nt_status read_transform(nt_gltf *document, const nt_json_value *texture,
 	const char *pointer, nt_gltf_transform *transform, uint64_t *set, nt_error *error)
 {
 	char place[NT_GLTF_POINTER * 2];
@@ -92,7 +101,9 @@ static nt_status read_transform(const nt_gltf *document, const nt_json_value *te
 		uv->scale[0] = uv->scale[1] = 1;
 		return status;
 	}
-	transform->animated = is_animated(document, place);
+	if (!status)
+		status = find_animated(document, error);
+	transform->animated = nt_name_find(&document->animated, place, strlen(place)) != UINT32_MAX;
 	transform->turns = transform->animated || uv->rotation != 0 || uv->scale[0] != 1 || uv->scale[1] != 1;
 	return status;
 }
@@ -123,7 +134,7 @@ static void read_wrap(const nt_gltf *document, const nt_json_value *info, nt_wra
 	}
 }
 
-static nt_status note_texture(const nt_gltf *document, wishes *all, int slot,
+static nt_status note_texture(nt_gltf *document, wishes *all, int slot,
 	const nt_json_value *texture, const char *material, const char *path, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER];
@@ -155,7 +166,7 @@ static nt_status note_texture(const nt_gltf *document, wishes *all, int slot,
 	return NT_OK;
 }
 
-static nt_status note_slots(const nt_gltf *document, wishes *all, const nt_json_value *material, const char *pointer,
+static nt_status note_slots(nt_gltf *document, wishes *all, const nt_json_value *material, const char *pointer,
 	nt_error *error)
 {
 	const nt_json_value *extensions = nt_json_find(material, "extensions");
@@ -182,6 +193,69 @@ static nt_status note_slots(const nt_gltf *document, wishes *all, const nt_json_
 	return status;
 }
 
+/* What more materials want. */
+static void unite(wishes *all, const wishes *more)
+{
+	for (int slot = 0; slot < 3; slot++) {
+		if (!more->wants[slot])
+			continue;
+		if (!all->wants[slot]) {
+			all->wants[slot] = true;
+			all->set[slot] = more->set[slot];
+			all->transform[slot] = more->transform[slot];
+			memcpy(all->wrap[slot], more->wrap[slot], sizeof all->wrap[slot]);
+		}
+		if (all->set[slot] != more->set[slot] || more->mixed[slot]) {
+			all->mixed[slot] = true;
+			all->mixed_set[slot] = all->set[slot] != more->set[slot] ? more->set[slot] : more->mixed_set[slot];
+		}
+		all->mixed_transform[slot] |= more->mixed_transform[slot] ||
+			!same_transform(&all->transform[slot], &more->transform[slot]);
+		all->transform[slot].animated |= more->transform[slot].animated;
+	}
+	all->slots |= more->slots;
+	all->material_count += more->material_count;
+	all->unlit_count += more->unlit_count;
+}
+
+static nt_status note_material(nt_gltf *document, wishes *all, uint64_t index, const char *from,
+	bool levels, nt_error *error);
+
+/* A material with its levels of detail, which are many: they are read once, however many primitives have it. */
+static nt_status note_levels(nt_gltf *document, wishes *all, uint64_t index, const nt_json_value *ids, const char *from,
+	nt_error *error)
+{
+	if (!document->lod_wishes && document->is_shared)
+		return nt_gltf_refuse(error);
+	if (!document->lod_wishes)
+		document->lod_wishes = nt_calloc(nt_json_count(nt_gltf_root_member(document, "materials")),
+			sizeof *document->lod_wishes);
+	if (!document->lod_wishes)
+		return nt_fail_memory(error);
+	wishes *known = document->lod_wishes[index];
+	if (!known && document->is_shared)
+		return nt_gltf_refuse(error);
+	if (!known) {
+		known = nt_arena_alloc(&document->arena, 1, sizeof *known);
+		if (!known)
+			return nt_fail_memory(error);
+		*known = (wishes){0};
+		nt_status status = note_material(document, known, index, from, false, error);
+		for (size_t i = 0; !status && i < nt_json_count(ids); i++) {
+			char pointer[NT_GLTF_POINTER];
+			uint64_t id;
+			nt_gltf_pointer(pointer, "materials", index);
+			if (nt_json_get_uint64(nt_json_at(ids, i), &id))
+				status = note_material(document, known, id, pointer, false, error);
+		}
+		if (status)
+			return status;
+		document->lod_wishes[index] = known;
+	}
+	unite(all, known);
+	return NT_OK;
+}
+
 static nt_status note_material(nt_gltf *document, wishes *all, uint64_t index, const char *from,
 	bool levels, nt_error *error)
 {
@@ -189,18 +263,14 @@ static nt_status note_material(nt_gltf *document, wishes *all, uint64_t index, c
 	nt_status status = nt_gltf_element(document, "materials", index, from, &material, error);
 	if (status)
 		return status;
+	const nt_json_value *ids = !levels ? NULL
+		: nt_json_find(nt_json_find(nt_json_find(material, "extensions"), "MSFT_lod"), "ids");
+	if (nt_json_count(ids))
+		return note_levels(document, all, index, ids, from, error);
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "/materials/%llu", (unsigned long long)index);
+	nt_gltf_pointer(pointer, "materials", index);
 	all->material_count++;
-	status = note_slots(document, all, material, pointer, error);
-	const nt_json_value *ids = nt_json_find(
-		nt_json_find(nt_json_find(material, "extensions"), "MSFT_lod"), "ids");
-	for (size_t i = 0; !status && levels && i < nt_json_count(ids); i++) {
-		uint64_t id;
-		if (nt_json_get_uint64(nt_json_at(ids, i), &id))
-			status = note_material(document, all, id, pointer, false, error);
-	}
-	return status;
+	return note_slots(document, all, material, pointer, error);
 }
 
 static nt_status note_variants(nt_gltf *document, wishes *all, const nt_json_value *primitive,

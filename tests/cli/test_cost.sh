@@ -86,6 +86,9 @@ grows folded $((faces / 8)) IN out.ply
 grows tiles $((faces / 8)) --check --report=r.json IN
 grows bumps 10 --check IN
 grows turned $((blocks / 5)) --flip-green=on IN out.glb
+for kind in animated levels; do
+	grows $kind $((blocks / 5)) IN out.glb
+done
 for format in json html; do
 	grows names 250 --check --only=all --report=r.$format IN
 done
@@ -94,7 +97,7 @@ scene "a library that has many names is read once, and names that no file can ha
 grows libraries 500 IN out.glb
 for ending in obj ply glb; do
 	grows slashes 200000 --images=embed IN out.glb
-	grows slashes 200000 --images=embed --allow-outside IN out.glb
+	grows slashes 200000 --images=embed --outside=yes IN out.glb
 done
 ending=obj
 

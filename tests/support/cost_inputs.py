@@ -16,6 +16,8 @@ libraries an OBJ that names one library by COUNT names, and FILE.mtl beside it w
 slashes   an OBJ, or a PLY or glTF by the name of FILE, that names library or images with COUNT slashes
 bumps     an OBJ of COUNT materials, and FILE.mtl and FILE.png beside it: each makes other normals of one white PNG of
           SIDE (4096) pixels squared and one bit
+animated  a GLB of COUNT materials, each with a texture transform, and an animation of COUNT others
+levels    a GLB of COUNT primitives of one material with COUNT levels of detail
 turned    a GLB of COUNT materials, each with a texture and an image of its own, as normal map and as emissive
 strip     an OBJ strip of COUNT quads
 hub       an OBJ of COUNT triangles around one point
@@ -182,7 +184,7 @@ def grid(side, windows):
     return arrays
 
 
-def glb(count, out, side, windows, ranges=False, name='', more={}):
+def glb(count, out, side, windows, ranges=False, name='', more={}, materials=None):
     arrays, kind, width_bytes = grid(side, windows), *((5123, 2) if windows else (5125, 4))
     views, offset = [], 0
     for array in arrays:
@@ -200,7 +202,7 @@ def glb(count, out, side, windows, ranges=False, name='', more={}):
     for i in range(0 if ranges else count if windows else 1):
         accessors.append({'bufferView': 3, 'byteOffset': 3 * width_bytes * i, 'componentType': kind, 'type': 'SCALAR',
                           'count': 3 * (triangles - (count if windows else 0))})
-    primitives = [{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'material': 0,
+    primitives = [{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'material': materials[i] if materials else 0,
                    'indices': 3 + i if windows or ranges else 3} for i in range(count)]
     write_glb(out, {'meshes': [{'name': name, 'primitives': primitives}], 'materials': [{'normalTexture': {'index': 0}}],
                     'accessors': accessors, 'bufferViews': views} | more, arrays)
@@ -242,6 +244,22 @@ def turned(count, out):
         'textures': [{'source': i} for i in range(count)], 'images': [image] * count})
 
 
+def animated(count, out):
+    texture = [{'index': 0, 'extensions': {'KHR_texture_transform': {'rotation': i + 1}}} for i in range(count)]
+    channels = [{'sampler': 0, 'target': {'path': 'pointer', 'extensions': {'KHR_animation_pointer': {
+        'pointer': '/materials/%d/emissiveTexture/extensions/KHR_texture_transform/rotation' % i}}}} for i in range(count)]
+    glb(count, out, 1, False, more={'materials': [{'normalTexture': t} for t in texture],
+                                    'animations': [{'channels': channels, 'samplers': []}],
+                                    'extensionsUsed': ['KHR_texture_transform', 'KHR_animation_pointer']},
+        materials=range(count))
+
+
+def levels(count, out):
+    glb(count, out, 1, False, more={'materials': [
+        {'normalTexture': {'index': 0}, 'extensions': {'MSFT_lod': {'ids': list(range(1, count))}}}] +
+        [{'normalTexture': {'index': 0}}] * (count - 1), 'extensionsUsed': ['MSFT_lod']})
+
+
 def write_glb(out, document, chunks):
     count = len(document['meshes'])
     binary = b''.join(chunks)
@@ -271,4 +289,5 @@ with open(sys.argv[3], 'wb') as out:
     else:
         {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
          'patches': patches, 'repeated': repeated, 'centre': centre, 'folded': folded,
-         'tiles': tiles, 'turned': turned, 'libraries': libraries, 'slashes': slashes}[kind](count, out)
+         'tiles': tiles, 'turned': turned, 'libraries': libraries, 'slashes': slashes,
+         'animated': animated, 'levels': levels}[kind](count, out)
