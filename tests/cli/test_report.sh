@@ -373,7 +373,14 @@ python3 -c 'import sys, xml.etree.ElementTree as x; x.parse(sys.argv[1])' r.xml 
 python3 -c 'import csv, sys
 rows = list(csv.reader(open(sys.argv[1], newline="", encoding="utf-8", errors="replace")))
 assert {len(r) for r in rows} == {15}, rows
-assert not any(c[:1] in tuple("=+@") for r in rows for c in r), rows' r.csv || wrong "CSV is broken"
+assert not any(c[:1] in tuple("=+@") for r in rows for c in r), rows' r.csv ||
+	wrong "CSV is broken"
+nasty "$(printf 'a"\033[31m\342\200\256b')" >u.obj
+for format in csv md xml; do
+	run --check --report=r.$format u.obj
+	! LC_ALL=C grep -q "$(printf '\033\|\342\200\256')" r.$format || wrong "r.$format has bytes that a terminal obeys"
+done
+grep -qF 'a""\x1b[31m\xe2\x80\xaeb' r.csv || wrong "$(cat r.csv)"
 ! grep -qE '<script|[^\\]\|`' r.md || wrong "markup in Markdown"
 for file in r.xml r.md ../out.txt ../err.txt; do
 	! LC_ALL=C grep -qP '\xc2\x9b|\xe2\x80\xae|\xef\xbf[\xbe\xbf]' $file || wrong "$file shows what turns or ends a line"

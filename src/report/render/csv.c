@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * CSV (RFC 4180): a row per finding, for spreadsheets. Names come from files, so a cell that a spreadsheet
- * would take for a formula gets an apostrophe in front.
+ * CSV (RFC 4180): a row per finding, for spreadsheets. Names come from files, so that what must not reach a terminal is
+ * shown as in text, and a cell that a spreadsheet would take for a formula gets an apostrophe in front.
  */
 #include "report/render/writers.h"
 
@@ -9,15 +9,19 @@
 
 static void put_cell(const char *text, nt_buffer *out)
 {
+	nt_buffer clean = {0};
+	nt_buffer_clean(&clean, text);
 	nt_buffer_text(out, "\"");
 	if (*text && strchr("=+-@\t\r", *text))
 		nt_buffer_text(out, "'");
-	while (*text) {
-		if (*text == '"')
+	for (size_t at = 0, length; at < clean.size; at += length) {
+		if (clean.data[at] == '"')
 			nt_buffer_text(out, "\"");
-		text += nt_put_utf8(text, out);
+		length = 1 + strcspn(clean.data + at + 1, "\"");
+		nt_buffer_append(out, clean.data + at, length);
 	}
 	nt_buffer_text(out, "\",");
+	nt_buffer_free_into(&clean, out);
 }
 
 /* Nothing, or numbers of the first place: line, triangle, x, y, z, u, v. */

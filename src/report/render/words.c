@@ -119,16 +119,6 @@ void nt_put_label(const nt_report *report, uint32_t mesh, void (*put)(const char
 	nt_buffer_free_into(&label, out);
 }
 
-size_t nt_put_utf8(const char *text, nt_buffer *out)
-{
-	const size_t length = nt_utf8_length(text, SIZE_MAX);
-	if (length)
-		nt_buffer_append(out, text, length);
-	else
-		nt_buffer_text(out, "\xef\xbf\xbd");
-	return length ? length : 1;
-}
-
 void nt_json_string(const char *text, nt_buffer *out)
 {
 	nt_buffer_text(out, "\"");

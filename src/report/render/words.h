@@ -77,10 +77,6 @@ void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out);
 void nt_put_label(const nt_report *report, uint32_t mesh, void (*put)(const char *text, nt_buffer *out),
 	nt_buffer *out);
 
-/* One character of a text that may be any bytes: as it is where it is UTF-8, else U+FFFD. Returns its length in the
- * text, which is not at its end. */
-size_t nt_put_utf8(const char *text, nt_buffer *out);
-
 /* A JSON string with its quotes; bytes that are no UTF-8 become U+FFFD. */
 void nt_json_string(const char *text, nt_buffer *out);
 
