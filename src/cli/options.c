@@ -116,7 +116,8 @@ static nt_status refuse_empty(parser *p, const nt_option_row *row)
 /* Names of files that the system does not take: what is made of them step by step would take long. */
 static nt_status refuse_long(parser *p, const char *word)
 {
-	return nt_fail(p->error, NT_ERROR_USAGE, "'%.40s...' has %zu bytes, which no file's name has", word, strlen(word));
+	return nt_fail(p->error, NT_ERROR_USAGE, "'%.40s...' has %zu bytes, which no file's name has", word,
+		strlen(word));
 }
 
 static bool is_name(const nt_option_row *row)

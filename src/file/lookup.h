@@ -15,8 +15,8 @@
  */
 nt_status nt_lookup_failed(const char *path, int number, nt_error *error);
 
-/* Whether a name is longer than any path that the system takes. Those who follow a name step by step ask this first: the
- * steps of a long one take quadratic time. */
+/* Whether a name is longer than any path that the system takes. Whoever follows a name step by step asks this first:
+ * the steps of a long one take quadratic time. */
 bool nt_name_is_too_long(const char *name);
 
 /* stat(). Returns NT_OK or what nt_lookup_failed() says. */

@@ -232,8 +232,8 @@ nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri,
 			SHOWN, uri);
 
 	if (nt_name_is_too_long(name))
-		return nt_fail(error, NT_ERROR_MISSING, "the URI \"%.*s\" has %zu bytes, which no file's name has", SHOWN,
-			uri, name_length);
+		return nt_fail(error, NT_ERROR_MISSING, "the URI \"%.*s\" has %zu bytes, which no file's name has",
+			SHOWN, uri, name_length);
 
 	/* An absolute name, allowed here, stands for itself. */
 	const size_t folder = name[0] == '/' ? 0 : folder_length(document);

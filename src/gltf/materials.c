@@ -207,7 +207,8 @@ static void unite(wishes *all, const wishes *more)
 		}
 		if (all->set[slot] != more->set[slot] || more->mixed[slot]) {
 			all->mixed[slot] = true;
-			all->mixed_set[slot] = all->set[slot] != more->set[slot] ? more->set[slot] : more->mixed_set[slot];
+			all->mixed_set[slot] = all->set[slot] != more->set[slot] ? more->set[slot]
+				: more->mixed_set[slot];
 		}
 		all->mixed_transform[slot] |= more->mixed_transform[slot] ||
 			!same_transform(&all->transform[slot], &more->transform[slot]);

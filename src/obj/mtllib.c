@@ -57,7 +57,9 @@ static nt_status open_library(const request *q, const char *name, const char *pa
 {
 	const bool confined = !q->options->allow_outside;
 	bool inside = true;
-	*reason = !*name ? "no file name" : nt_name_is_too_long(name) ? "a name that is too long for any file" : confined ? outside_reason(name) : NULL;
+	*reason = !*name ? "no file name"
+		: nt_name_is_too_long(name) ? "a name that is too long for any file"
+		: confined ? outside_reason(name) : NULL;
 	if (*reason)
 		return NT_OK;
 	nt_buffer folder = {0};
