@@ -30,6 +30,7 @@ typedef struct nt_job {
 	const char *input;
 	char *output; /* NULL: nothing is written */
 	char *refused; /* why it is not run: a usage error; NULL: it is */
+	bool reason_is_told; /* another job is refused for the same reason, and says it */
 	nt_outcome *outcome; /* until the job has been told about; NULL: untried, or no memory for it */
 	nt_status status;
 	nt_job_end end;
@@ -55,9 +56,9 @@ nt_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t coun
  * Prepares inputs whose outputs get their names in a folder: the input's name with the ending of
  * settings->output_format; without that .ply for PLY, .gltf for .gltf and .glb for all others. With `tree` (NULL:
  * none), a folder that has all inputs below it, the name below the output folder is the input's name below that one.
- * The folder is made when it is missing (not its parents, and not in a dry run), and those below it that are needed.
+ * The folder is made when it is missing (not in a dry run), with its parents, and those below it that are needed.
  *
- * Jobs that would have the same output, and those whose output would replace another input, are refused one by one.
+ * Jobs that would have the same output, and those whose output would replace another input, are refused.
  * Nothing runs when an input is not below `tree`: NT_ERROR_USAGE. Else NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY.
  */
 nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count, const char *directory,

@@ -7,7 +7,6 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +15,7 @@
 #include "base/buffer.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
+#include "file/uri.h"
 #include "format/format.h"
 
 nt_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
@@ -109,22 +109,78 @@ static bool same_output(const nt_job *x, const nt_job *y)
 	return strcasecmp(x->output, y->output) == 0 && (strcmp(x->output, y->output) == 0 || ignores_case(y->input));
 }
 
-static nt_status refuse(nt_job *job, nt_error *error, const char *format, ...) NT_PRINTF(3, 4);
-
-static nt_status refuse(nt_job *job, nt_error *error, const char *format, ...)
+static nt_status refuse(nt_job *job, const nt_buffer *reason, nt_error *error)
 {
-	va_list arguments;
-	va_start(arguments, format);
-	if (!job->refused && vasprintf(&job->refused, format, arguments) < 0)
-		job->refused = NULL;
-	va_end(arguments);
+	if (!job->refused && !reason->failed)
+		job->refused = strdup(reason->data);
 	return job->refused ? NT_OK : nt_fail_memory(error);
 }
 
-/* All of them: which one is meant? */
-static nt_status refuse_equal_outputs(const nt_batch *batch, nt_error *error)
+/* The folder that all inputs are in or below, as they are spelled; "ROOT": none that their spelling tells. */
+static void append_common_folder(nt_buffer *out, const nt_batch *batch)
 {
-	static const char both[] = "'%s' and '%s' would both be written to '%s'";
+	const char *first = batch->jobs[0].input;
+	size_t common = (size_t)(nt_last_part(first) - first);
+	for (size_t i = 1; i < batch->count; i++) {
+		size_t same = 0;
+		while (same < common && batch->jobs[i].input[same] == first[same])
+			same++;
+		while (same && first[same - 1] != '/')
+			same--;
+		common = same;
+	}
+	bool below = true;
+	for (size_t i = 0; i < batch->count; i++)
+		below &= (common || batch->jobs[i].input[0] != '/') &&
+			!nt_uri_has_parent_step(batch->jobs[i].input + common);
+	if (below && common)
+		nt_buffer_append(out, first, common > 1 ? common - 1 : 1);
+	else
+		nt_buffer_text(out, below ? "." : "ROOT");
+}
+
+static bool same_folder(const nt_job *x, const nt_job *y)
+{
+	const size_t length = (size_t)(nt_last_part(x->input) - x->input);
+	return length == (size_t)(nt_last_part(y->input) - y->input) && memcmp(x->input, y->input, length) == 0;
+}
+
+static int compare_jobs(const void *a, const void *b)
+{
+	const nt_job *x = *(nt_job *const *)a, *y = *(nt_job *const *)b;
+	return (x > y) - (x < y);
+}
+
+/* Refuses jobs with one output: all of them, since which one is meant? The reason is one for all. */
+static nt_status refuse_clash(const nt_batch *batch, nt_job **jobs, size_t count, bool tree_helps, nt_error *error)
+{
+	enum { NAMED = 3 };
+	nt_buffer reason = {0};
+	const size_t named = count > NAMED ? NAMED - 1 : count;
+	qsort(jobs, count, sizeof *jobs, compare_jobs);
+	for (size_t i = 0; i < named; i++) {
+		nt_buffer_format(&reason, "%s'%s'", !i ? "" : i + 1 < count ? ", " : " and ", jobs[i]->input);
+		tree_helps &= !i || !same_folder(jobs[0], jobs[i]);
+	}
+	if (named < count)
+		nt_buffer_format(&reason, " and %zu more", count - named);
+	nt_buffer_format(&reason, " would %s be written to '%s'", count == 2 ? "both" : "all", jobs[0]->output);
+	if (tree_helps) {
+		nt_buffer_text(&reason, "; --keep-tree=");
+		append_common_folder(&reason, batch);
+		nt_buffer_text(&reason, " keeps the folders of inputs");
+	}
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < count && !status; i++) {
+		jobs[i]->reason_is_told = i > 0;
+		status = refuse(jobs[i], &reason, error);
+	}
+	nt_buffer_free(&reason);
+	return status;
+}
+
+static nt_status refuse_equal_outputs(const nt_batch *batch, bool tree_helps, nt_error *error)
+{
 	nt_job **sorted = nt_alloc(batch->count, sizeof(nt_job *));
 	if (!sorted)
 		return nt_fail_memory(error);
@@ -132,15 +188,11 @@ static nt_status refuse_equal_outputs(const nt_batch *batch, nt_error *error)
 		sorted[i] = &batch->jobs[i];
 	qsort(sorted, batch->count, sizeof(nt_job *), compare_outputs);
 	nt_status status = NT_OK;
-	for (size_t i = 1, first = 0; i < batch->count && !status; i++) {
-		if (!same_output(sorted[first], sorted[i])) {
-			first = i;
-			continue;
-		}
-		nt_job *one = sorted[first], *other = sorted[i];
-		status = refuse(one, error, both, one->input, other->input, one->output);
-		if (!status)
-			status = refuse(other, error, both, other->input, one->input, one->output);
+	for (size_t first = 0, end; first < batch->count && !status; first = end) {
+		for (end = first + 1; end < batch->count && same_output(sorted[first], sorted[end]);)
+			end++;
+		if (end - first > 1)
+			status = refuse_clash(batch, sorted + first, end - first, tree_helps, error);
 	}
 	free(sorted);
 	return status;
@@ -201,10 +253,13 @@ static nt_status refuse_foreign_inputs(const nt_batch *batch, nt_error *error)
 			continue;
 		const identity key = {info.st_dev, info.st_ino, i};
 		const nt_job *reader = find_reader(batch, inputs, count, &key);
-		if (reader)
-			status = refuse(&batch->jobs[i], error,
-				"'%s' would be written to '%s', which is the input '%s'", batch->jobs[i].input,
-				batch->jobs[i].output, reader->input);
+		if (!reader)
+			continue;
+		nt_buffer reason = {0};
+		nt_buffer_format(&reason, "'%s' would be written to '%s', which is the input '%s'",
+			batch->jobs[i].input, batch->jobs[i].output, reader->input);
+		status = refuse(&batch->jobs[i], &reason, error);
+		nt_buffer_free(&reason);
 	}
 	free(inputs);
 	return status;
@@ -274,29 +329,33 @@ static nt_status name_outputs(nt_batch *batch, const char *directory, const char
 	return NT_OK;
 }
 
-/* The folders of an output below the one that is there already, `known` characters long. */
-static nt_status make_folders_below(char *output, size_t known, const nt_settings *settings, nt_error *error)
+/* The folders of a path but for its last part; `known` characters long are those that are there. */
+static nt_status make_folders_of(char *path, size_t known, const nt_settings *settings, nt_error *error)
 {
 	nt_status status = NT_OK;
-	for (char *slash = strchr(output + known, '/'); slash && !status; slash = strchr(slash + 1, '/')) {
+	for (char *slash = strchr(path + known, '/'); slash && !status; slash = strchr(slash + 1, '/')) {
 		*slash = '\0';
-		status = make_folder(output, settings, error);
+		if (slash > path)
+			status = make_folder(path, settings, error);
 		*slash = '/';
 	}
 	return status;
 }
 
-static nt_status make_folders(const nt_batch *batch, const char *directory, bool mirrored,
+static nt_status make_folders(const nt_batch *batch, const char *directory, bool as_tree,
 	const nt_settings *settings, nt_error *error)
 {
-	nt_status status = make_folder(directory, settings, error);
+	nt_buffer path = {0};
+	nt_buffer_format(&path, "%s/", directory);
+	nt_status status = path.failed ? nt_fail_memory(error) : make_folders_of(path.data, 0, settings, error);
+	nt_buffer_free(&path);
 	const char *last = "";
-	for (size_t i = 0; i < batch->count && mirrored && !settings->dry_run && !status; i++) {
+	for (size_t i = 0; i < batch->count && as_tree && !settings->dry_run && !status; i++) {
 		char *output = batch->jobs[i].output;
 		const size_t length = (size_t)(nt_last_part(output) - output);
 		/* neighbours are mostly of one folder */
 		if (strncmp(last, output, length) != 0 || strchr(last + length, '/'))
-			status = make_folders_below(output, strlen(directory) + 1, settings, error);
+			status = make_folders_of(output, strlen(directory) + 1, settings, error);
 		last = output;
 	}
 	return status;
@@ -309,7 +368,7 @@ nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count
 	if (!status)
 		status = name_outputs(batch, directory, tree, settings->output_format, error);
 	if (!status)
-		status = refuse_equal_outputs(batch, error);
+		status = refuse_equal_outputs(batch, !tree, error);
 	if (!status)
 		status = refuse_foreign_inputs(batch, error);
 	size_t refused = 0;
@@ -328,7 +387,7 @@ nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t c
 		status = batch->jobs[i].output ? NT_OK : nt_fail_memory(error);
 	}
 	if (!status)
-		status = refuse_equal_outputs(batch, error);
+		status = refuse_equal_outputs(batch, false, error);
 	return status ? status : refuse_foreign_inputs(batch, error);
 }
 

@@ -23,6 +23,9 @@ static nt_failure_group *group_of(nt_failures *failures, const char *reason)
 void nt_failures_add(nt_failures *failures, const nt_job *job)
 {
 	failures->count++;
+	failures->refused += job->refused != NULL;
+	if (job->refused)
+		return;
 	const nt_error *error = job->outcome ? &job->outcome->error : NULL;
 	nt_failure_group *group =
 		group_of(failures, error && error->message[0] ? error->message : nt_status_text(job->status));
@@ -36,7 +39,7 @@ void nt_failures_add(nt_failures *failures, const nt_job *job)
 static void append_group(nt_buffer *out, const nt_failure_group *group)
 {
 	size_t named = 0;
-	nt_buffer_format(out, "nmtan:   %zu: ", group->count);
+	nt_buffer_format(out, "nmtan:   %zu file%s: ", group->count, group->count == 1 ? "" : "s");
 	nt_buffer_clean(out, group->reason);
 	for (size_t i = 0; i < NT_FAILURE_NAMES; i++)
 		if (group->names[i]) {
@@ -50,7 +53,7 @@ static void append_group(nt_buffer *out, const nt_failure_group *group)
 
 void nt_failures_append(nt_buffer *out, const nt_failures *failures, const char *manifest)
 {
-	size_t shown = 0;
+	size_t shown = failures->refused;
 	for (size_t i = 0; i < failures->group_count; i++) {
 		append_group(out, &failures->groups[i]);
 		shown += failures->groups[i].count;

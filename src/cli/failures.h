@@ -20,6 +20,7 @@ typedef struct nt_failure_group {
 typedef struct nt_failures {
 	nt_failure_group groups[NT_FAILURE_GROUPS];
 	size_t group_count, count;
+	size_t refused; /* of these, before anything ran; each reason has been told once */
 } nt_failures;
 
 /* Counts a job that failed. What there is no memory for counts as a further reason. */

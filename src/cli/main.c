@@ -180,7 +180,8 @@ static int tell_run(session *s, nt_job *job)
 		nt_message_left_out(&s->text, job, s->plan->options.ignore);
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
 	if (job->status) {
-		nt_message_error(&s->text, &job->outcome->error, s->style);
+		if (!job->reason_is_told)
+			nt_message_error(&s->text, &job->outcome->error, s->style);
 	} else {
 		if (s->style.verbosity >= 0)
 			nt_message_success(&s->text, job, &c->settings);
@@ -374,7 +375,7 @@ static void tell_end(session *s)
 			nt_buffer_format(&s->text, ", %zu failed", failed);
 		if (s->untried)
 			nt_buffer_format(&s->text, ", %zu not tried", s->untried);
-		nt_buffer_text(&s->text, failed ? ":\n" : "\n");
+		nt_buffer_text(&s->text, failed > s->failures.refused ? ":\n" : "\n");
 		nt_failures_append(&s->text, &s->failures, s->command->manifest);
 	}
 	if (s->command->timing)

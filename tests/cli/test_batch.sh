@@ -18,7 +18,7 @@ exists out/quad.glb out/plates.glb
 is "$(ls out | wc -l)" 2
 says "bad.obj:3:"
 says "2 of 4 done, 2 failed:"
-says "  1: no such file: missing.obj"
+says "  1 file: no such file: missing.obj"
 run -q -d out missing.obj "$data/quad.obj"
 exits 2
 says "missing.obj"
@@ -48,7 +48,7 @@ for jobs in 1 2 4; do
 	run -j4 --jobs=$jobs -d out$jobs $inputs
 	exits 2
 	says "6 of 9 done, 3 failed:"
-	says "  2: no such file: missing.obj, gone.obj"
+	says "  2 files: no such file: missing.obj, gone.obj"
 	sed -e 's/, [0-9.e-]* s$//' -e "s/out$jobs/out/" "$WORK/err.txt" >said$jobs
 done
 for jobs in 2 4; do
@@ -122,7 +122,8 @@ cp "$data/quad.obj" one.obj
 run -q -d out --output-format=glb --manifest=m x/a.obj y/a.glb one.obj x/b.obj ./one.obj y/b.ply
 exits 1
 says "'x/a.obj' and 'y/a.glb' would both be written to 'out/a.glb'"
-says "'y/b.ply' and 'x/b.obj' would both be written to 'out/b.glb'"
+says "'x/b.obj' and 'y/b.ply' would both be written to 'out/b.glb'; --keep-tree=. keeps the folders of inputs"
+is "$(wc -l <"$WORK/err.txt")" 3 # a line for each clash, and the sum
 is "$(ls out)" one.glb
 is "$(wc -l <m)" 5
 cp x/a.obj y/A.OBJ
@@ -175,14 +176,19 @@ exists b.glb
 run -j1 -d . in/a.obj
 exits 0
 
-scene "the folder is made but not its parents"
-run -d no/where "$data/quad.obj"
-exits 2
-says "no/where"
+scene "the folder is made, and its parents, but no file becomes one"
+run -d new/a/b// "$data/quad.obj"
+exits 0
+is "$(find new -type f)" new/a/b/quad.glb
+run -d "$PWD/abs/a" "$data/quad.obj"
+exits 0
 echo >file
 run -d file "$data/quad.obj"
 exits 2
 says "file"
-only file
+run -d file/deeper "$data/quad.obj"
+exits 2
+says "file: is not a folder"
+only abs file new
 
 done_testing

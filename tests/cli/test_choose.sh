@@ -143,8 +143,8 @@ done
 run -j2 -d out missing1.obj missing2.obj missing3.obj missing4.obj missing5.obj bad*.obj
 exits 2
 says "0 of 17 done, 17 failed:"
-says "nmtan:   5: no such file: missing1.obj, missing2.obj, missing3.obj and 2 more"
-is "$(grep -c '^nmtan:   1: ' "$WORK/err.txt")" 9
+says "nmtan:   5 files: no such file: missing1.obj, missing2.obj, missing3.obj and 2 more"
+is "$(grep -c '^nmtan:   1 file: ' "$WORK/err.txt")" 9
 says "nmtan:   3 for other reasons; all of them are told above"
 
 scene "ten thousand names are few bytes"

@@ -67,9 +67,26 @@ TEST(jobs_that_would_overwrite_each_other_are_refused_and_no_others)
 	nt_error error;
 	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.obj", "y/a.glb", "z/a.drc"), "out2", NULL,
 				 &settings, &error), NT_OK);
-	assert_non_null(strstr(batch.jobs[0].refused, "'x/a.obj' and 'y/a.glb'"));
-	assert_non_null(strstr(batch.jobs[3].refused, "'z/a.drc' and 'x/a.obj'"));
-	refuses_jobs(&batch, "x-xx", "would both be written to 'out2/a.glb'");
+	assert_false(batch.jobs[0].reason_is_told);
+	assert_true(batch.jobs[2].reason_is_told && batch.jobs[3].reason_is_told);
+	refuses_jobs(&batch, "x-xx",
+		"'x/a.obj', 'y/a.glb' and 'z/a.drc' would all be written to 'out2/a.glb'; --keep-tree=. ");
+	/* what helps: a folder that all inputs are below, by their spelling, and nothing for those of one folder */
+	static const struct {
+		const char *a, *b, *said;
+	} clashes[] = {{"m/x/a.obj", "m/y/a.obj", "'o/a.glb'; --keep-tree=m keeps"},
+		{"/m/x/a.obj", "/m/y/a.obj", "'o/a.glb'; --keep-tree=/m keeps"},
+		{"/x/a.obj", "/y/a.obj", "'o/a.glb'; --keep-tree=/ keeps"},
+		{"mx/a.obj", "my/a.obj", "'o/a.glb'; --keep-tree=. keeps"},
+		{"x/a.obj", "/y/a.obj", "'o/a.glb'; --keep-tree=ROOT keeps"},
+		{"../x/a.obj", "y/a.obj", "'o/a.glb'; --keep-tree=ROOT keeps"},
+		{"../x/a.obj", "../y/a.obj", "'o/a.glb'; --keep-tree=.. keeps"}, {"x/a.obj", "x/a.drc", "'o/a.glb'"}};
+	for (size_t i = 0; i < sizeof clashes / sizeof *clashes; i++) {
+		assert_int_equal(nt_batch_into(&batch, INPUTS(clashes[i].a, clashes[i].b), "o", NULL, &settings,
+			&error), NT_OK);
+		assert_true(strlen(clashes[i].said) > 10 || !strstr(batch.jobs[0].refused, "--keep"));
+		refuses_jobs(&batch, "xx", clashes[i].said);
+	}
 	/* nothing is to be done, and nothing is made */
 	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "y/a.glb"), "out4", NULL, &settings, &error), NT_OK);
 	refuses_jobs(&batch, "xx", "");
@@ -127,7 +144,7 @@ TEST(a_dry_run_makes_no_folder_and_a_file_is_none)
 	assert_int_equal(access("out3", F_OK), -1);
 	put_text_file("file", "");
 	refuses(INPUTS("a.obj"), "file", NT_ERROR_IO, "");
-	refuses(INPUTS("a.obj"), "no/where", NT_ERROR_IO, "");
+	refuses(INPUTS("a.obj"), "file/where", NT_ERROR_IO, "is not a folder");
 }
 
 /* Stands for the one of run.c, so that this test stands without it. */
