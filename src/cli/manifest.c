@@ -106,14 +106,10 @@ static void append_error(nt_buffer *out, const nt_error *error)
 	nt_buffer_text(out, "}");
 }
 
-/* How often each code was found. */
-static void append_findings(nt_buffer *out, const nt_finding_list *findings)
+static void append_codes(nt_buffer *out, const char *key, const size_t counts[NT_CODE_COUNT])
 {
-	size_t counts[NT_CODE_COUNT] = {0};
 	const char *comma = "";
-	for (size_t i = 0; i < findings->count; i++)
-		counts[findings->items[i].code] += findings->items[i].count;
-	nt_buffer_text(out, ",\"findings\":{");
+	nt_buffer_format(out, ",\"%s\":{", key);
 	for (int code = 0; code < NT_CODE_COUNT; code++)
 		if (counts[code]) {
 			nt_buffer_format(out, "%s\"%s\":%zu", comma, nt_code_info((nt_code)code)->name, counts[code]);
@@ -125,7 +121,11 @@ static void append_findings(nt_buffer *out, const nt_finding_list *findings)
 /* What a run found and did. */
 static void append_run(nt_buffer *out, const nt_summary *s)
 {
-	append_findings(out, &s->findings);
+	size_t found[NT_CODE_COUNT] = {0};
+	for (size_t i = 0; i < s->findings.count; i++)
+		found[s->findings.items[i].code] += s->findings.items[i].count;
+	append_codes(out, "findings", found);
+	append_codes(out, "fixed", s->fixed);
 	append_number(out, "triangles", s->triangle_count);
 	append_number(out, "vertices_before", s->vertex_count);
 	append_number(out, "vertices_after", s->vertex_count + s->appended_normals + s->appended_tangents);

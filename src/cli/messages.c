@@ -225,6 +225,21 @@ static void append_findings_count(nt_buffer *out, const nt_summary *s)
 		}
 }
 
+/* What --fix did, by the codes of the findings. */
+static void append_fixed(nt_buffer *out, const nt_summary *s, const nt_settings *settings)
+{
+	bool first = true;
+	for (unsigned code = 0; code < NT_CODE_COUNT; code++) {
+		if (!s->fixed[code])
+			continue;
+		nt_buffer_format(out, "%s%s in ", first ? ", fixed " : ", ", nt_code_info((nt_code)code)->name);
+		append_count(out, s->fixed[code], code == NT_CODE_NMAP_GREEN_DOWN ? "normal map" : "primitive");
+		first = false;
+	}
+	if (settings->fix && first)
+		nt_buffer_text(out, ", nothing to fix");
+}
+
 /* "nmtan: a.obj -> b.glb" */
 static void append_job(nt_buffer *out, const nt_job *job)
 {
@@ -272,6 +287,7 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	if (s->repaired)
 		nt_buffer_format(out, settings->check ? ", %zu tangents would be repaired"
 						      : ", repaired %zu of the tangents", s->repaired);
+	append_fixed(out, s, settings);
 	if (s->counts.summed_instead)
 		nt_buffer_format(out, ", %zu corners of hubs with one sum", s->counts.summed_instead);
 	if (s->counts.sorted_instead)

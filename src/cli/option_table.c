@@ -22,6 +22,10 @@ const nt_option_row nt_option_rows[] = {
 		SETTING(only), false},
 	{"existing", 0, NT_OPTION_CHOICE, "keep|repair|replace", NT_EXISTING_KEEP, 0, "keep",
 		"what happens to tangents that the input has", SETTING(existing), false},
+	{"fix", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
+		"repair what --check calls an error or a warning, if it is proven: tangents, and normal maps whose "
+		"green points down",
+		SETTING(fix), true},
 	{"method", 0, NT_OPTION_CHOICE, "mikktspace|area|lengyel|robust|mikktspace-sorted", NMTAN_METHOD_MIKKTSPACE, 0,
 		"mikktspace", "how triangles are averaged", SETTING(method), false},
 	{"raw", 0, NT_OPTION_SET, NULL, NMTAN_REPAIR_OFF, 0, NULL,

@@ -393,6 +393,9 @@ static nt_status check_clashes(parser *p)
 {
 	static const char *const pairs[][3] = {
 		{"quiet", "verbose", "say opposite things"},
+		{"check", "fix", "exclude each other: what is repaired before it is judged always passes"},
+		{"fix", "existing", "contradict each other: --fix decides for each primitive"},
+		{"fix", "flip-green", "contradict each other: --fix turns the maps that need it"},
 		{"in-place", "no-clobber", "contradict each other"},
 		/* what is not read has no findings */
 		{"update", "report", "do not go together: what is up to date is not read"},

@@ -32,6 +32,7 @@ typedef struct run {
 	nt_read_options read_options;
 	nt_textures *textures; /* NULL: the output has none */
 	nt_turned_images turned;
+	nt_fixes fixes; /* empty without --fix */
 	double stage_begin;
 	_Atomic(nt_stage) stage; /* the timer asks, too */
 	nt_timer timer;
@@ -178,6 +179,8 @@ static nt_status read_scene(run *r)
 	if (status)
 		return status;
 
+	for (size_t i = 0; i < r->fixes.mesh_count && i < r->scene.mesh_count; i++)
+		r->scene.meshes[i].fix = r->fixes.meshes[i];
 	/* glTF without normals is left alone unless normals are asked for; the other formats get them */
 	nt_select(&r->scene, r->settings->only, r->settings->existing,
 		!nt_format_is_gltf(r->reader->format) || r->settings->normals != NT_NORMALS_AUTO);
@@ -339,6 +342,62 @@ static void forget_attempt(run *r)
 	nt_scene_init(&r->scene, r->input_path);
 }
 
+static void set_read_options(run *r, const nt_settings *settings)
+{
+	r->settings = settings;
+	r->read_options = (nt_read_options){.texcoord_set = settings->texcoord_set,
+		.allow_outside = settings->outside == NT_OUTSIDE_YES, .morphs = settings->morphs,
+		.report = settings->report != NULL, .across = settings->across == NT_ACROSS_MESH,
+		.keeps_transforms = settings->transform == NT_TRANSFORM_KEEP,
+		.threads = settings->threads,
+		.draco = settings->draco};
+	memcpy(r->read_options.draco_bits, settings->draco_bits, sizeof r->read_options.draco_bits);
+}
+
+/* What an input that changed is, a later stage says. */
+static nt_status make_report(run *r, nt_status status)
+{
+	if (status || r->settings->check)
+		status = nt_check_inputs(&r->scene, status, r->error);
+	if (!r->settings->report)
+		return status;
+	begin_stage(r, NT_STAGE_REPORT);
+	return nt_stage_report(&r->scene, r->settings, r->writer ? r->writer->format : NT_FORMAT_UNKNOWN, r->textures,
+		status, r->summary, r->error);
+}
+
+/* --fix: the input is judged as --check does, and what is to be repaired becomes settings and marks of meshes. What
+ * the user ignores, or calls an info, is left. */
+static nt_status plan_fixes(run *r, nt_settings *fixed)
+{
+	const nt_settings *wished = r->settings;
+	nt_report_options options = {0};
+	if (wished->report) {
+		memcpy(options.ignore, wished->report->ignore, sizeof options.ignore);
+		memcpy(options.severity, wished->report->severity, sizeof options.severity);
+	}
+	nt_settings judged = *wished;
+	judged.check = true;
+	judged.report = &options;
+	judged.check_maps = NT_CHECK_MAPS_ON;
+	judged.list_meshes = judged.digests = judged.in_place = judged.verify = false;
+	set_read_options(r, &judged);
+	nt_status status = make_report(r, run_stages(r));
+	if (!status && nt_fixes_make(&r->fixes, r->summary->report))
+		status = nt_fail_memory(r->error);
+	*fixed = *wished;
+	if (status) {
+		nt_report_free(r->summary->report);
+		r->summary->report = NULL;
+	} else {
+		forget_attempt(r);
+	}
+	if (r->fixes.turns_maps)
+		fixed->flip_green = NT_FLIP_AUTO;
+	set_read_options(r, fixed);
+	return status;
+}
+
 /* ---- limits ---- */
 
 static nt_status fail_late(const run *r, nt_error *error)
@@ -378,15 +437,9 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 {
 	memset(summary, 0, sizeof *summary);
 	nt_error_clear(error);
-	run r = {.input_path = input, .output_path = output, .settings = settings, .summary = summary,
-		.error = error};
-	r.read_options = (nt_read_options){.texcoord_set = settings->texcoord_set,
-		.allow_outside = settings->outside == NT_OUTSIDE_YES, .morphs = settings->morphs,
-		.report = settings->report != NULL, .across = settings->across == NT_ACROSS_MESH,
-		.keeps_transforms = settings->transform == NT_TRANSFORM_KEEP,
-		.threads = settings->threads,
-		.draco = settings->draco};
-	memcpy(r.read_options.draco_bits, settings->draco_bits, sizeof r.read_options.draco_bits);
+	nt_settings fixed;
+	run r = {.input_path = input, .output_path = output, .summary = summary, .error = error};
+	set_read_options(&r, settings);
 	const double begin = nt_seconds();
 	r.stage_begin = begin;
 	nt_scene_init(&r.scene, input);
@@ -395,23 +448,22 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	nt_trace_share(&summary->trace, settings->readers);
 	nt_trace *outer = nt_trace_use(&summary->trace);
 	nt_status status = nt_timer_begin(&r.timer, settings->max_seconds, settings->too_late ? end_late : NULL, &r)
-		? run_stages(&r) : nt_fail_memory(error);
+		? NT_OK : nt_fail_memory(error);
+	if (!status && settings->fix)
+		status = plan_fixes(&r, &fixed);
+	if (!status)
+		status = run_stages(&r);
 	for (unsigned attempt = 1; r.result.again && attempt < MOST_ATTEMPTS; attempt++) {
 		forget_attempt(&r);
 		status = run_stages(&r);
 	}
 	status = name_limit(&r, status);
-	if (status || settings->check)
-		status = nt_check_inputs(&r.scene, status, error);
+	status = make_report(&r, status);
+	if (settings->report && status == NT_ERROR_MEMORY && nt_timer_end(&r.timer))
+		status = fail_late(&r, error);
 	summary->left = r.result.left;
 	summary->note = r.result.note.data;
-	if (settings->report) {
-		begin_stage(&r, NT_STAGE_REPORT);
-		status = nt_stage_report(&r.scene, settings, r.writer ? r.writer->format : NT_FORMAT_UNKNOWN,
-			r.textures, status, summary, error);
-		if (status == NT_ERROR_MEMORY && nt_timer_end(&r.timer))
-			status = fail_late(&r, error);
-	}
+	memcpy(summary->fixed, r.fixes.counts, sizeof summary->fixed);
 	nt_timer_end(&r.timer);
 
 	/* what was found belongs to the caller, also after a failure */
@@ -425,6 +477,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	nt_scene_free(&r.scene);
 	nt_textures_free(r.textures);
 	nt_turned_maps_free(&r.turned);
+	nt_fixes_free(&r.fixes);
 	nt_file_close(&r.input);
 	nt_trace_use(outer);
 	summary->total_seconds = nt_seconds() - begin;

@@ -70,6 +70,7 @@ typedef struct nt_settings {
 	nmtan_repair repair;
 	nt_only only;
 	nt_existing existing;
+	bool fix;      /* repair what a check of the input calls error or warning, as far as that is proven: fix.c */
 	nt_normals normals;
 	nt_across across;
 	nt_transform_choice transform;
@@ -167,6 +168,7 @@ typedef struct nt_summary {
 	size_t line_count;
 	nt_trace trace;  /* which files were read, missed and written, after a failure too */
 	uint64_t tangents_digest; /* of those that were computed, in the order of the meshes; 0: none, or not wanted */
+	size_t fixed[NT_CODE_COUNT]; /* with fix: primitives and images repaired, by the code of the finding */
 	bool left;       /* the file has what it would get, and was left as it is */
 	char *note;      /* which files of the output have other names than they would, and why: "; ..."; NULL: none */
 } nt_summary;

@@ -122,6 +122,18 @@ static inline bool nt_may_be_left(nt_status load)
  * or NT_ERROR_MISSING or NT_ERROR_IO where their file cannot be opened. */
 nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error);
 
+/* fix.c. What --fix does, found by a check of the input. */
+typedef struct nt_fixes {
+	uint8_t *meshes; /* [mesh_count] their nt_mesh.fix */
+	size_t mesh_count;
+	bool turns_maps;
+	size_t counts[NT_CODE_COUNT]; /* primitives and images by the code of the finding */
+} nt_fixes;
+
+/* *fixes is to be freed after failure too. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_fixes_make(nt_fixes *fixes, const nt_report *report);
+void nt_fixes_free(nt_fixes *fixes);
+
 /* halves.c. Decides which triangles of a mesh with normals are solved as quads. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_find_halves(nt_scene *scene, nt_mesh *mesh, nt_quads choice, unsigned threads);
 

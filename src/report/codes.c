@@ -10,233 +10,242 @@
 
 #include <assert.h>
 #include <string.h>
+#include <strings.h>
+#include "base/utf8.h"
 
-#define ROW(name, severity, profiles, message, meaning, remedy, example) \
-	[NT_CODE_##name] = {#name, NT_SEVERITY_##severity, profiles, message, meaning, remedy, example}
+#define ROW(name, severity, profiles, advice, repair, message, meaning, remedy, example) \
+	[NT_CODE_##name] = {#name, NT_SEVERITY_##severity, profiles, NT_ADVICE_##advice, repair, message, meaning, \
+		remedy, example}
 
 static const nt_code_row code_table[NT_CODE_COUNT] = {
-	ROW(MTL_MISSING, WARNING, "--w", "material library cannot be read",
+	ROW(MTL_MISSING, WARNING, "--w", EXPORT, NULL, "material library cannot be read",
 		"The OBJ names an MTL file that is not there. The meshes are converted, their materials get "
 		"default values.",
 		"Put the MTL file beside the OBJ, or take the mtllib line out.",
 		"an OBJ with \"mtllib nowhere.mtl\""),
-	ROW(MATERIAL_UNKNOWN, WARNING, "--w", "material is defined by no material library",
+	ROW(MATERIAL_UNKNOWN, WARNING, "--w", EXPORT, NULL, "material is defined by no material library",
 		"usemtl names a material that no MTL file defines. It becomes a default material of that name.",
 		"Export the material library again, or correct the name.",
 		"an OBJ with \"usemtl ghost\" and no mtllib"),
-	ROW(MATERIAL_FIRST, INFO, "--i", "no usemtl: all faces have the first material of the library",
+	ROW(MATERIAL_FIRST, INFO, "--i", LOOK, NULL, "no usemtl: all faces have the first material of the library",
 		"The OBJ names a material library and takes no material of it. obj2gltf and others give the library's "
 		"first material to all faces then, and so does nmtan.",
 		"Nothing, or write usemtl before the faces.",
 		"an OBJ with \"mtllib m.mtl\" and no usemtl"),
-	ROW(IMAGE_MISSING, WARNING, "w--", "image cannot be read",
+	ROW(IMAGE_MISSING, WARNING, "w--", EXPORT, NULL, "image cannot be read",
 		"A material refers to an image file that is not there. The output is without it, or, of a glTF, has "
 		"the same name; with --images=link it refers to where the file should be.",
 		"Put the image where the material looks for it, or name its folder with --texture-path.",
 		"an MTL with \"map_Kd missing.png\""),
-	ROW(LINK_LEAVES, WARNING, "w--", "reference leaves the folder of the output",
+	ROW(LINK_LEAVES, WARNING, "w--", LOOK, NULL, "reference leaves the folder of the output",
 		"A URI of the output begins with \"..\", as --images=link or --buffers=link asks, or because a buffer "
 		"that nothing needs cannot be copied. Other programs refuse such names, and moving the folder breaks "
 		"them.",
 		"Leave the option away: files are copied then.",
 		"nmtan --images=link a/in.gltf b/out.gltf"),
-	ROW(IMAGE_TYPE, WARNING, "w--", "image has a type that glTF does not carry",
+	ROW(IMAGE_TYPE, WARNING, "w--", EXPORT, NULL, "image has a type that glTF does not carry",
 		"glTF carries PNG and JPEG (others by extension). TGA, BMP, PSD, HDR and TIFF become PNG, unless "
 		"--textures=keep is given; anything else is left out, or stays a file where a glTF refers to it.",
 		"Convert the image to PNG and name that in the material.",
 		"an MTL with \"map_Kd wood.exr\""),
-	ROW(IMAGE_DAMAGED, WARNING, "w--", "image cannot be decoded",
+	ROW(IMAGE_DAMAGED, WARNING, "w--", EXPORT, NULL, "image cannot be decoded",
 		"An image had to be decoded, to be converted or to see whether it is a height map, and that "
 		"failed. What glTF carries is used as it is, anything else is left out.",
 		"Write the image again.",
 		"a TGA that ends before its last pixel"),
-	ROW(IMAGE_ELSEWHERE, WARNING, "w--", "image was found elsewhere",
+	ROW(IMAGE_ELSEWHERE, WARNING, "w--", EXPORT, NULL, "image was found elsewhere",
 		"The file that a material names is not there, but one whose path ends alike is: in the folder "
 		"of the material library or of the OBJ, in a folder of --texture-path, or under a name in "
 		"another case.",
 		"If it is the wrong one, correct the name in the material.",
 		"an MTL with \"map_Kd C:/art/wood.png\" beside wood.png"),
-	ROW(IMAGE_CONVERTED, INFO, "i--", "image was converted",
+	ROW(IMAGE_CONVERTED, INFO, "i--", LOOK, NULL, "image was converted",
 		"An image was converted to what glTF carries: another type to PNG, a height map to a normal map.",
 		"Nothing. --textures and --bump say what is converted, --bump-height how high heights are.",
 		"an MTL with \"map_Kd wood.tga\""),
-	ROW(BUMP_AS_NORMAL, WARNING, "w--", "bump map was taken as a normal map",
+	ROW(BUMP_AS_NORMAL, WARNING, "w--", LOOK, NULL, "bump map was taken as a normal map",
 		"map_Bump and bump are height maps by definition, but most files put a normal map there. An "
 		"image whose pixels are not all grey is taken as one.",
 		"If it is a normal map, write norm instead, or use --bump=normal; if it is a height map, use "
 		"--bump=height.",
 		"an MTL with \"map_Bump n.png\""),
-	ROW(NMAP_NOT_TURNED, WARNING, "w--", "normal map is not turned",
+	ROW(NMAP_NOT_TURNED, WARNING, "w--", LOOK, NULL, "normal map is not turned",
 		"--flip-green and --bump turn PNG and JPEG of a glTF. What is in KTX2 or WebP, or beside such an image "
 		"of the same texture, stays as it is.",
 		"Turn it before it is compressed.",
 		"a KTX2 in normalTexture, and --flip-green=on"),
-	ROW(NMAP_HEIGHTS, WARNING, "w--", "normal map that is a height map",
+	ROW(NMAP_HEIGHTS, WARNING, "w--", CONVERT, "--bump=height", "normal map that is a height map",
 		"Every pixel of a normalTexture is grey. As a normal map that tilts the surface one way everywhere.",
-		"--bump=height makes a normal map of it.",
+		"Make a normal map of it.",
 		"a grey PNG in normalTexture"),
-	ROW(MATERIAL_LOST, WARNING, "w--",
+	ROW(MATERIAL_LOST, WARNING, "w--", LOOK, NULL,
 		"{count} {property of a material is|properties of materials are} not carried over",
 		"A texture, a texture's place or a layer that a material names is not in the output, which "
 		"will look different. The detail names the statement.",
 		"Set it again in the output, or bake it into a texture that is carried over.",
 		"an MTL with \"disp height.png\""),
-	ROW(MATERIAL_DOUBTFUL, WARNING, "w--",
+	ROW(MATERIAL_DOUBTFUL, WARNING, "w--", EXPORT, NULL,
 		"{count} {property of a material is|properties of materials are} not taken at {its|their} word",
 		"Properties of a material contradict each other, or say what programs write without meaning "
 		"it: d 0, which would make all of it invisible, a black Kd beside a map. The detail says what "
 		"was taken instead.",
 		"Correct the material where that is not what was meant.",
 		"an MTL with \"d 0\""),
-	ROW(NMAP_BESIDE, INFO, "i--", "no normal map, but an image beside the input is named like one",
+	ROW(NMAP_BESIDE, INFO, "i--", LOOK, NULL, "no normal map, but an image beside the input is named like one",
 		"An OBJ, PLY or Draco file with texture coordinates names no normal map, and in its folder is an image "
 		"with its name and an ending of normal maps: _nm_tangent, _normal, _nrm, _nm, _n, _ddn and the like. "
 		"It is not used. It is looked for where one input is named.",
 		"If it is the normal map: --normal-map=FILE.",
 		"head.obj beside head_n.png"),
-	ROW(NMAP_GREEN_DOWN, WARNING, "w--", "normal map whose green points down",
+	ROW(NMAP_GREEN_DOWN, WARNING, "w--", CONVERT, "--fix", "normal map whose green points down",
 		"glTF's normal maps have green up. Of a surface's map the slopes p = -x/z and q = y/z have "
 		"equal mixed derivatives, dp/dv = dq/du with rows counted down; in this one they are opposite. "
 		"The figures are their correlation (-1: green down, 1: up), the share of the map that agrees, and how "
 		"many of its 12 x 12 blocks say what. Bumps and dents are exchanged along one direction.",
-		"Invert the green channel; of an OBJ, --flip-green=auto does it.",
+		"Invert the green channel.",
 		"a map baked for DirectX"),
-	ROW(NMAP_GREEN_MIXED, INFO, "i--", "normal map whose green points down in places, or in the grain alone",
+	ROW(NMAP_GREEN_MIXED, INFO, "i--", BAKE, NULL,
+		"normal map whose green points down in places, or in the grain alone",
 		"Some blocks of the map, or some sizes of its detail, say that green points down, and others that it "
 		"points up or nothing: a detail map or a decal of the other convention was painted in. No "
 		"convention is right for all of it, and --flip-green=auto leaves it.",
 		"Look whether dents and bumps are right where blocks say down; bake or paint these again.",
 		"a map of which one half was baked for DirectX"),
-	ROW(NMAP_NOT_UNIT, INFO, "i--", "normal map whose vectors are not of unit length",
+	ROW(NMAP_NOT_UNIT, INFO, "i--", BAKE, NULL, "normal map whose vectors are not of unit length",
 		"More than a hundredth of the pixels have a length that differs from 1 by more than a tenth: "
 		"padding, a map that was painted or blended, or no normal map at all. Renderers normalize them.",
 		"Normalize the map after editing.",
 		"a normal map whose blue channel was overwritten"),
-	ROW(NMAP_BLUE_BELOW_HALF, WARNING, "w--", "normal map with vectors that point into the surface",
+	ROW(NMAP_BLUE_BELOW_HALF, WARNING, "w--", BAKE, NULL, "normal map with vectors that point into the surface",
 		"Pixels of a tangent-space map point out of the surface: blue is above one half. More than one "
 		"in a hundred do not.",
 		"Bake the map again with a larger cage, or look for painted pixels.",
 		"a map with a pixel of (128, 128, 0)"),
-	ROW(NMAP_OBJECT_SPACE, WARNING, "w--", "normal map in object space",
+	ROW(NMAP_OBJECT_SPACE, WARNING, "w--", BAKE, NULL, "normal map in object space",
 		"The vectors have unit length and point into all directions, as in a map that was baked in "
 		"object space. glTF's are in tangent space.",
 		"Bake the map in tangent space.",
 		"a map whose vectors are the normals of a sphere"),
-	ROW(NMAP_CONSTANT, INFO, "w--", "normal map of one colour",
+	ROW(NMAP_CONSTANT, INFO, "w--", BAKE, NULL, "normal map of one colour",
 		"All pixels are alike: the map says nothing, and costs a texture. A warning where the colour is not "
 		"that of a flat surface, about (128, 128, 255): the surface is lit as if it were tilted.",
 		"Take it out of the material, or bake it again.",
 		"a map of (128, 128, 255) alone"),
-	ROW(NMAP_BANDED, INFO, "i--", "normal map of 8 bits on a smooth surface",
+	ROW(NMAP_BANDED, INFO, "i--", BAKE, NULL, "normal map of 8 bits on a smooth surface",
 		"Most of the sloped pixels lie in runs of one value with steps of one level between them: "
 		"reflections show bands.",
 		"Bake with 16 bits, or with dithering.",
 		"an 8-bit map of a large sphere"),
-	ROW(NMAP_SRGB, INFO, "i--", "normal map that is marked as sRGB",
+	ROW(NMAP_SRGB, INFO, "i--", BAKE, NULL, "normal map that is marked as sRGB",
 		"The PNG says that its samples are sRGB. glTF's loaders ignore it; others convert the values, "
 		"which bends every normal.",
 		"Export the map as linear, or raw, data.",
 		"a PNG with an sRGB chunk in normalTexture"),
-	ROW(NMAP_JPEG, INFO, "i--", "normal map compressed as JPEG",
+	ROW(NMAP_JPEG, INFO, "i--", BAKE, NULL, "normal map compressed as JPEG",
 		"JPEG averages colours over 2 x 2 pixels and adds rings at edges, which light shows.",
 		"Use PNG.",
 		"a JPEG in normalTexture"),
-	ROW(NMAP_NOT_EXAMINED, INFO, "i--", "normal map was not examined",
+	ROW(NMAP_NOT_EXAMINED, INFO, "i--", LOOK, NULL, "normal map was not examined",
 		"KTX2 and WebP are not decoded here, and files above 16 MB only with --check-maps=on.",
 		"Nothing, or --check-maps=on.",
 		"a KTX2 in normalTexture"),
-	ROW(STATEMENT_IGNORED, INFO, "iii", "{count} {statement was|statements were} not used",
+	ROW(STATEMENT_IGNORED, INFO, "iii", LOOK, NULL, "{count} {statement was|statements were} not used",
 		"The input has a statement, element or property that nmtan does not know or does not need.",
 		"Nothing, unless you expected it to matter.",
 		"an OBJ with a \"curv\" line"),
-	ROW(COLORS_DOUBTFUL, WARNING, "-ww", "colours of vertices are not what they should be",
+	ROW(COLORS_DOUBTFUL, WARNING, "-ww", EXPORT, NULL, "colours of vertices are not what they should be",
 		"A block of #MRGB comments in an OBJ has more or fewer colours than there are vertices before "
 		"it, or something that is no colour; or a vertex has a colour that is NaN or infinite. The last "
 		"vertices before a block got its colours; what is missing or malformed is white.",
 		"Export the mesh again.",
 		"#MRGB ff0000 (six digits) in an OBJ"),
-	ROW(POLYGON_DEGENERATE, WARNING, "-ww", "{count} {polygon|polygons} could not be triangulated properly",
+	ROW(POLYGON_DEGENERATE, WARNING, "-ww", EXPORT, NULL,
+		"{count} {polygon|polygons} could not be triangulated properly",
 		"A face of five or more corners crosses itself, is collinear or not finite. It was cut into "
 		"triangles, but they may overlap.",
 		"Cut the polygon in the modelling tool.",
 		"an OBJ face of five corners in the order of a star"),
-	ROW(POLYGON_CUT, INFO, "-ii", "{count} {polygon was|polygons were} written as triangles",
+	ROW(POLYGON_CUT, INFO, "-ii", LOOK, NULL, "{count} {polygon was|polygons were} written as triangles",
 		"The triangles of these polygons (or strips) need different tangents at one corner, but a vertex has "
 		"only one. PLY output keeps polygons where it can; these became triangles.",
 		"Nothing, unless the polygons matter: then cut or unwrap them differently.",
 		"a PLY pentagon with one corner's texture coordinates mirrored"),
-	ROW(NORMALS_MADE, INFO, "i-i", "normals were missing and have been made",
+	ROW(NORMALS_MADE, INFO, "i-i", LOOK, NULL, "normals were missing and have been made",
 		"Tangents need normals, which the input lacks, or which have no direction: (0, 0, 0). For OBJ they are "
 		"made by its smoothing groups, for PLY smooth, for glTF only if --normals asks for them; a glTF keeps "
 		"normals that have no direction, and its tangents are made for smooth ones.",
 		"Export normals if these are not what you want.",
 		"a PLY triangle with s and t but no nx, ny, nz"),
-	ROW(NORMALS_REPLACED, INFO, "i-i", "{count} {normal|normals} of the input {was|were} replaced",
+	ROW(NORMALS_REPLACED, INFO, "i-i", LOOK, NULL, "{count} {normal|normals} of the input {was|were} replaced",
 		"--normals=replace-flat or replace-smooth asks for it. The finding counts corners that had a normal.",
 		"Nothing; --normals=flat and smooth make only those that are missing.",
 		"a PLY triangle with nx, ny, nz and --normals=replace-flat"),
-	ROW(NORMALS_CANCELLED, WARNING, "w-w", "{count} made {normal is|normals are} flat: the faces around cancel out",
+	ROW(NORMALS_CANCELLED, WARNING, "w-w", EXPORT, NULL,
+		"{count} made {normal is|normals are} flat: the faces around cancel out",
 		"The faces of one smoothing group at these corners look in opposite directions, as on a sheet whose "
 		"triangles are there twice, once reversed. The sum of their normals is nothing but rounding; the "
 		"corners have the normals of their own faces.",
 		"Give front and back smoothing groups of their own, export normals, or take the back away and make the "
 		"material double-sided.",
 		"an OBJ triangle and its reverse, without vn"),
-	ROW(NORMALS_NOT_THERE, WARNING, "-ww", "faces refer to normals, but the file has none",
+	ROW(NORMALS_NOT_THERE, WARNING, "-ww", EXPORT, NULL, "faces refer to normals, but the file has none",
 		"The file has faces with numbers of normals and not a single vn. Normals are made as if the "
 		"numbers were not there.",
 		"Export the normals, or faces without them.",
 		"an OBJ triangle of corners like 1/1/1 without vn"),
-	ROW(NORMALS_SCALED, INFO, "i-i", "{count} {normal was|normals were} made unit for the tangents",
+	ROW(NORMALS_SCALED, INFO, "i-i", LOOK, NULL, "{count} {normal was|normals were} made unit for the tangents",
 		"The length differs from 1 by more than 2^-12. Tangents lie across the unit normal, which is what "
 		"renderers make of it. An OBJ's or PLY's normals are stored unit in a new glTF, a glTF keeps "
 		"those that it has.",
 		"Nothing; normalise the normals on export to be rid of the finding.",
 		"an OBJ triangle with \"vn 0 0 .5\""),
-	ROW(REFERENCE_LOST, WARNING, "w--", "{count} {part of the input is|parts of the input are} not in the output",
+	ROW(REFERENCE_LOST, WARNING, "w--", LOOK, NULL,
+		"{count} {part of the input is|parts of the input are} not in the output",
 		"Something that the input has or refers to has no place in the output's format, or none that nmtan "
 		"knows: animations in PLY, a PLY's property \"quality\" in glTF.",
 		"Choose another output format, or add it again by hand.",
 		"a glTF with animations that is written as PLY"),
 
-	ROW(EXTENSION_STALE, WARNING, "w--", "{detail} refers to vertices, and vertices were copied",
+	ROW(EXTENSION_STALE, WARNING, "w--", LOOK, NULL, "{detail} refers to vertices, and vertices were copied",
 		"Vertices that need several tangents are copied, and attributes and indices follow. This "
 		"extension seems to refer to vertices as well, in a way that nmtan does not know or cannot "
 		"follow, and was left as it is.",
 		"Make what the extension holds again from the output, or split the vertices before nmtan does.",
 		"a primitive whose extension names an accessor with one element for each vertex"),
-	ROW(POLYGONS_DROPPED, INFO, "i--", "{detail} is not in the output: it would not say the same polygons",
+	ROW(POLYGONS_DROPPED, INFO, "i--", LOOK, NULL,
+		"{detail} is not in the output: it would not say the same polygons",
 		"The extension marks triangles that follow each other as one polygon where their first index is "
 		"equal. A first vertex that needs several tangents is copied, or Draco gives triangles another order.",
 		"Nothing, unless polygons are read from the output; the input still has them.",
 		"two triangles with equal first index and a mirror seam between them, marked by FB_ngon_encoding"),
-	ROW(DRACO_PLAIN, WARNING, "w--", "the primitive is written without Draco compression",
+	ROW(DRACO_PLAIN, WARNING, "w--", LOOK, NULL, "the primitive is written without Draco compression",
 		"--draco asks for compression, or the input's primitive is compressed, but a Draco block cannot hold "
 		"what it has now: vertices shared with other primitives, strips or fans, sparse accessors, or "
 		"vertices that no face uses and whose order matters. The detail says which.",
 		"Nothing if the size does not matter; --draco=off then avoids the warning. Else give the primitive "
 		"accessors of its own, and separate triangles.",
 		"converting two normal-mapped primitives with one POSITION accessor, --draco=sequential"),
-	ROW(DRACO_SEQUENTIAL, INFO, "i--",
+	ROW(DRACO_SEQUENTIAL, INFO, "i--", LOOK, NULL,
 		"the primitive is compressed by Draco's sequential method, which gives larger files",
 		"Edgebreaker was asked for, or the input has it. It takes time in the square of the triangles at one "
 		"vertex, which is bounded, and some meshes it does not give back as they are.",
 		"Nothing if the size does not matter. Else remove repeated triangles, and cut fans of thousands.",
 		"converting 100 000 times the same triangle, --draco=edgebreaker"),
-	ROW(NOT_VERIFIED, WARNING, "www", "the output could not be verified, since tinygltf refuses the input, too",
+	ROW(NOT_VERIFIED, WARNING, "www", LOOK, NULL,
+		"the output could not be verified, since tinygltf refuses the input, too",
 		"--verify reads the output with tinygltf, which refuses it. It refuses the input too, so the "
 		"reason was there before; nmtan keeps what has nothing to do with tangents. The detail has "
 		"tinygltf's message. It refuses some valid documents as well, such as those with "
 		"KHR_animation_pointer.",
 		"Correct the input if it has a fault and programs that use tinygltf are to read it.",
 		"a glTF with a skin without inverseBindMatrices, --verify"),
-	ROW(MESH_NOT_READ, ERROR, "e--", "the geometry is faulty and was not judged",
+	ROW(MESH_NOT_READ, ERROR, "e--", EXPORT, NULL, "the geometry is faulty and was not judged",
 		"A conversion leaves a primitive that needs no tangents as it is, even one that cannot be read. The "
 		"detail says what is wrong with it; --check fails there.",
 		"Export the mesh again.",
 		"a primitive without a material whose indices go beyond its vertices, converted with --report"),
 
-	ROW(UV_MIRROR_SEAM, INFO, "i-i",
+	ROW(UV_MIRROR_SEAM, INFO, "i-i", EXPORT, NULL,
 		"texture coordinates are mirrored across a seam of {count} {edge|edges}",
 		"The two triangles at each of these edges are wound in opposite directions in UV space, so w "
 		"changes its sign here and vertices cannot be shared. Legitimate and frequent, but the place "
@@ -244,27 +253,27 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Nothing if the mirroring is meant. Keep the seam off prominent edges, and bake with mirrored "
 		"islands moved by a whole tile.",
 		"two triangles that share an edge and have the same UV at their third corners"),
-	ROW(UV_MIRROR_OVERLAP, INFO, "i-i",
+	ROW(UV_MIRROR_OVERLAP, INFO, "i-i", EXPORT, NULL,
 		"{count} {island shares|islands share} texels with mirrored ones",
 		"Mirrored islands that share their texture with a twin: the usual way to texture a symmetric "
 		"model at half the cost. Judged as the sampler wraps: repeated coordinates modulo 1, mirrored "
 		"ones folded, clamped ones as they stand.",
 		"Nothing. When baking, move the mirrored islands by a whole tile so that only one of two is baked.",
 		"two separate quads with the same four UVs, the second one wound the other way"),
-	ROW(UV_MIRROR_LONE, INFO, "i-i",
+	ROW(UV_MIRROR_LONE, INFO, "i-i", EXPORT, NULL,
 		"mirrored island of {count} {triangle|triangles} lies on no other",
 		"A mirrored island that shares its texture with nothing: mirroring gains nothing here, and "
 		"text or asymmetric detail in the texture shows reversed. Often an accident.",
 		"Flip the island in the UV editor unless the texture was painted for it.",
 		"one triangle whose UVs are clockwise"),
-	ROW(UV_MIXED_WINDING_ISLAND, WARNING, "w-w",
+	ROW(UV_MIXED_WINDING_ISLAND, WARNING, "w-w", EXPORT, NULL,
 		"island of {count} {triangle|triangles} is folded: both windings are connected",
 		"Inside one connected island some triangles are wound the other way, and they do not lie on a "
 		"twin point by point: a fold. Texture is mirrored there and tangents flip within the island. An info "
 		"where no material of a glTF needs tangents.",
 		"Unfold the island (relax or unwrap it again), or cut it along the fold.",
 		"three quads in a row with u = 0, 1, 0.4, 1.4"),
-	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-w", "{count} of {detail} {is|are} flipped",
+	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-w", EXPORT, NULL, "{count} of {detail} {is|are} flipped",
 		"A few triangles in a row are wound against their island, or have texture coordinates of their own "
 		"inside a large island of the other winding: at most 5 % of its triangles and area, or a single one up "
 		"to 10 %, where all that is wound so is at most a quarter. Texture is mirrored there. They make no "
@@ -272,14 +281,14 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"info where no material of a glTF needs tangents.",
 		"Exchange two corners of these triangles in the UV editor, or relax the knot.",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
-	ROW(UV_DEGENERATE_TRIANGLE, INFO, "w-w",
+	ROW(UV_DEGENERATE_TRIANGLE, INFO, "w-w", EXPORT, NULL,
 		"{count} {triangle has|triangles have} no area in UV space",
 		"The three texture coordinates are collinear: there is no direction in which u grows, so the "
 		"tangent comes from a neighbour or from the normal. A warning when such triangles are more "
 		"than 1 % of the mesh's area, where it can be seen, unless a glTF's material uses no tangents.",
 		"Unwrap these triangles if they are visible and normal mapped.",
 		"two triangles, of which one has UVs (0,0), (1,0), (2,0)"),
-	ROW(UV_NEAR_DEGENERATE, INFO, "w-w",
+	ROW(UV_NEAR_DEGENERATE, INFO, "w-w", EXPORT, NULL,
 		"{count} {triangle has|triangles have} nearly collinear texture coordinates",
 		"Rounding of the texture coordinates to float alone may turn the tangent of these triangles by "
 		"more than one degree: the finding gives the smallest relative determinant |det| / (|e1| |e2|) "
@@ -287,7 +296,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"unless a glTF's material uses no tangents.",
 		"Give the triangles more room in the UV layout, or keep islands near the origin.",
 		"a triangle with UVs (1000,0), (1001,0), (1000,0.0001)"),
-	ROW(UV_FOLDED_QUAD, WARNING, "--w",
+	ROW(UV_FOLDED_QUAD, WARNING, "--w", EXPORT, NULL,
 		"{count} {quad crosses itself|quads cross themselves} in UV space",
 		"Cut along either diagonal, its triangles are wound in opposite directions. Written as two triangles, "
 		"in a glTF, each gets its own sign and vertices of its own. MikkTSpace, and with it a bake of quads, "
@@ -295,89 +304,91 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"sign, and the smaller triangle is lit from the wrong side.",
 		"Straighten the quad in the UV editor, or triangulate it.",
 		"a quad with UVs (0,0), (1,1), (1,0), (0,1): a bowtie"),
-	ROW(UV_UNMAPPED, WARNING, "w-w", "no triangle has an area in UV space: all {count} {is|are} unmapped",
+	ROW(UV_UNMAPPED, WARNING, "w-w", EXPORT, NULL,
+		"no triangle has an area in UV space: all {count} {is|are} unmapped",
 		"All texture coordinates are alike, or on a line. Tangents are made from normals, and mean nothing. An "
 		"info where no material of a glTF needs tangents.",
 		"Unwrap the mesh.",
 		"a quad whose corners have one vt"),
-	ROW(UV_ROUNDED_AWAY, INFO, "--i",
+	ROW(UV_ROUNDED_AWAY, INFO, "--i", EXPORT, NULL,
 		"{count} {triangle changes|triangles change} orientation when v becomes 1 - v",
 		"glTF stores 1 - v, which rounds: tiny triangles lose their area or turn over. w is right for "
 		"the coordinates as stored.",
 		"Give the triangles more room, or keep v near 1.",
 		"an OBJ triangle with UVs (0,0), (1,0), (0,1e-9)"),
-	ROW(UV_NOT_FINITE, ERROR, "e-e",
+	ROW(UV_NOT_FINITE, ERROR, "e-e", EXPORT, NULL,
 		"{count} {vertex has texture coordinates|vertices have texture coordinates} that are not finite",
 		"NaN or infinity. Nothing can be textured there.",
 		"Export the mesh again.",
 		"a PLY vertex with s = nan"),
-	ROW(UV_MISSING, WARNING, "--w", "the mesh has no texture coordinates and gets no tangents",
+	ROW(UV_MISSING, WARNING, "--w", EXPORT, NULL, "the mesh has no texture coordinates and gets no tangents",
 		"OBJ, PLY and Draco meshes get tangents wherever there are texture coordinates; other meshes "
 		"of the file have some. Where no mesh has, or a material's normal map needs them, "
 		"that is TAN_NO_UV.",
 		"Unwrap the mesh if it is to be normal mapped; else --only=needed, or --ignore=UV_MISSING.",
 		"an OBJ with two objects of which one has faces like 1 2 3"),
-	ROW(UV_NOT_THERE, WARNING, "-ww", "faces refer to texture coordinates, but the file has none",
+	ROW(UV_NOT_THERE, WARNING, "-ww", EXPORT, NULL, "faces refer to texture coordinates, but the file has none",
 		"The file has faces with numbers of texture coordinates and not a single vt. It is read as if "
 		"the numbers were not there, so that it gets no tangents.",
 		"Export the texture coordinates, or faces without them.",
 		"an OBJ triangle of corners like 1/1 without vt"),
 
-	ROW(POS_DEGENERATE_TRIANGLE, INFO, "iii", "{count} {triangle has|triangles have} no area",
+	ROW(POS_DEGENERATE_TRIANGLE, INFO, "iii", EXPORT, NULL, "{count} {triangle has|triangles have} no area",
 		"Corners coincide or are collinear. The triangle cannot be seen, and MikkTSpace gives its "
 		"corners the tangents of a neighbour.",
 		"Remove it, or merge its vertices.",
 		"a triangle with two corners at one position"),
-	ROW(POS_NOT_FINITE, ERROR, "eee", "{count} {vertex has a position|vertices have positions} that are not finite",
+	ROW(POS_NOT_FINITE, ERROR, "eee", EXPORT, NULL,
+		"{count} {vertex has a position|vertices have positions} that are not finite",
 		"NaN or infinity. The triangles there cannot be drawn.",
 		"Export the mesh again.",
 		"a PLY vertex with x = inf"),
-	ROW(MESH_NON_MANIFOLD_EDGE, WARNING, "wiw",
+	ROW(MESH_NON_MANIFOLD_EDGE, WARNING, "wiw", EXPORT, NULL,
 		"{count} {edge belongs|edges belong} to more than two triangles",
 		"After vertices at one position are welded, three or more triangles meet at an edge. Which of "
 		"them are neighbours is then a matter of order, and programs differ in their tangents. An info where "
 		"nothing asks for tangents, and up to a thousandth of the mesh's area.",
 		"Separate the surfaces, or delete doubled and inner faces.",
 		"three triangles that share one edge"),
-	ROW(MESH_INCONSISTENT_WINDING, WARNING, "www",
+	ROW(MESH_INCONSISTENT_WINDING, WARNING, "www", EXPORT, NULL,
 		"{count} {edge has|edges have} two triangles that run along it in the same direction",
 		"The two triangles at these edges face opposite sides. A flipped face, or a surface that has "
 		"one side only (a Moebius strip), which cannot be wound consistently. An info up to a thousandth of "
 		"the mesh's area: slivers.",
 		"Recalculate the normals outside, or flip the faces that are wrong.",
 		"triangles 0 1 2 and 0 1 3"),
-	ROW(MESH_NORMAL_NON_UNIT, WARNING, "wii", "{count} {normal is|normals are} not of unit length",
+	ROW(MESH_NORMAL_NON_UNIT, WARNING, "wii", EXPORT, NULL, "{count} {normal is|normals are} not of unit length",
 		"The length differs from 1 by more than 0.00674, the tolerance of the Khronos validator. "
 		"nmtan makes tangents for the normal made unit; programs that take it as it is tilt them. An info of "
 		"other formats than glTF: what is made of them has unit normals.",
 		"Normalise the normals on export.",
 		"a vertex with the normal (0,0,2)"),
-	ROW(MESH_NORMAL_ZERO, ERROR, "eww", "{count} {normal is|normals are} zero or not finite",
+	ROW(MESH_NORMAL_ZERO, ERROR, "eww", EXPORT, NULL, "{count} {normal is|normals are} zero or not finite",
 		"A normal without a direction cannot be lit and has no tangent plane. A warning of other formats than "
 		"glTF: what is made of them has another normal there.",
 		"Recalculate the normals, and remove triangles without area.",
 		"a vertex with the normal (0,0,0)"),
-	ROW(MESH_NORMAL_AGAINST_FACE, WARNING, "www",
+	ROW(MESH_NORMAL_AGAINST_FACE, WARNING, "www", EXPORT, NULL,
 		"{count} {triangle has|triangles have} normals that point against {its|their} winding",
 		"All three corner normals lie on the back side of the triangle: it is lit as if seen from behind, "
 		"and the bitangent runs against v there. An info where these are at most 1 % of the mesh's area.",
 		"Flip the winding or recalculate the normals.",
 		"a counterclockwise triangle in the xy plane with the normal (0,0,-1)"),
 
-	ROW(TAN_MIRROR_SHARED_VERTEX, WARNING, "w--",
+	ROW(TAN_MIRROR_SHARED_VERTEX, WARNING, "w--", CONVERT, "--fix",
 		"{count} {vertex is|vertices are} shared by mirrored and unmirrored triangles",
 		"One vertex holds one tangent and one w, but the triangles on its two sides need opposite "
 		"signs: tangents stored in this file cannot be right on both sides. An info where it stores none or no "
 		"material uses them. A conversion splits such vertices and counts them.",
-		"Let nmtan split them: convert the file, with --existing=replace where it has tangents.",
+		"Split them.",
 		"two triangles that share two vertices and mirror their UVs across them"),
-	ROW(TAN_MIXED_W_TRIANGLE, WARNING, "w--",
+	ROW(TAN_MIXED_W_TRIANGLE, WARNING, "w--", CONVERT, "--fix",
 		"{count} {triangle has|triangles have} corners with different w",
 		"The three corners must agree: where w changes its sign inside a triangle the interpolated "
 		"bitangent passes through zero and the shading breaks.",
-		"Compute the tangents again: nmtan --existing=replace.",
+		"Compute the tangents again.",
 		"a triangle with w = 1, 1, -1"),
-	ROW(TAN_SIGN_MISMATCH, ERROR, "e--",
+	ROW(TAN_SIGN_MISMATCH, ERROR, "e--", CONVERT, "--fix",
 		"{count} {triangle has|triangles have} a bitangent that runs the wrong way",
 		"In glTF the bitangent cross(N, T) * w runs along -dP/dv, that is, w is +1 where the stored "
 		"UVs have a negative determinant. Here w is the opposite, or T and the bitangent are both "
@@ -387,90 +398,97 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"flipped; reversed tangents were made for other texture coordinates. An info where no "
 		"material uses the tangents; a warning where they are right but for a texture transform that mirrors, "
 		"and up to two thousandths of the triangles and of their area.",
-		"Compute the tangents again: nmtan --existing=replace.",
+		"Compute the tangents again.",
 		"a glTF quad, upright and not mirrored, with w = -1"),
-	ROW(TAN_DIRECTION_MISMATCH, WARNING, "w--",
+	ROW(TAN_DIRECTION_MISMATCH, WARNING, "w--", LOOK, "--existing=replace",
 		"{count} {corner has a tangent|corners have tangents} more than 30 degrees off",
 		"Compared with a fresh MikkTSpace solve of the same mesh. The histogram of angles says what "
 		"kind of difference it is: all near 90 degrees means u and v exchanged, a broad one means tangents of "
 		"other texture coordinates. The finding says so if they are right without the material's texture "
 		"transform: Blender's exporter, glTF-Transform and gltfpack write those, and most renderers show them "
 		"turned (nmtan-engines(7)). An info below 1 % of the corners.",
-		"Compute the tangents again, or select the UV set they were made for with --uv.",
+		"Select the UV set that they were made for with --uv; or, if the map was baked with MikkTSpace, "
+		"compute them again.",
 		"a quad in the xy plane with tangents along y"),
-	ROW(TAN_NOT_ORTHOGONAL, WARNING, "w--",
+	ROW(TAN_NOT_ORTHOGONAL, WARNING, "w--", CONVERT, "--fix",
 		"{count} {tangent is|tangents are} more than one degree off perpendicular to {its|their} normal",
 		"The frame is sheared. Renderers differ in whether they straighten it, so the model looks "
 		"different in each.",
-		"Compute the tangents again: nmtan --existing=replace.",
+		"Compute the tangents again.",
 		"a vertex with N = (0,0,1) and T = (0.8,0,0.6)"),
-	ROW(TAN_PARALLEL_NORMAL, ERROR, "e--", "{count} {tangent is|tangents are} parallel to {its|their} normal",
+	ROW(TAN_PARALLEL_NORMAL, ERROR, "e--", CONVERT, "--fix",
+		"{count} {tangent is|tangents are} parallel to {its|their} normal",
 		"Within one degree of the normal or its opposite: the bitangent is zero or noise, and the "
 		"normal map has no direction there.",
-		"Compute the tangents again: nmtan --existing=replace.",
+		"Compute the tangents again.",
 		"a vertex with N = T = (0,0,1)"),
-	ROW(TAN_ZERO, ERROR, "e--", "{count} {tangent has|tangents have} no length",
+	ROW(TAN_ZERO, ERROR, "e--", CONVERT, "--fix", "{count} {tangent has|tangents have} no length",
 		"What many tools write for sliver triangles. Normalising it gives NaN in the shader: black or "
 		"flashing pixels.",
-		"Compute the tangents again: nmtan --existing=replace.",
+		"Compute the tangents again.",
 		"a vertex with T = (0,0,0,1)"),
-	ROW(TAN_NOT_FINITE, ERROR, "e--", "{count} {tangent is|tangents are} not finite",
+	ROW(TAN_NOT_FINITE, ERROR, "e--", CONVERT, "--fix", "{count} {tangent is|tangents are} not finite",
 		"NaN or infinity in one of the four numbers.",
-		"Compute the tangents again: nmtan --existing=replace.",
+		"Compute the tangents again.",
 		"a vertex with T = (NaN,0,0,1)"),
-	ROW(TAN_NON_UNIT, ERROR, "e--", "{count} {tangent is|tangents are} not of unit length",
+	ROW(TAN_NON_UNIT, ERROR, "e--", CONVERT, "--fix", "{count} {tangent is|tangents are} not of unit length",
 		"The length differs from 1 by more than 0.00674, the tolerance of the Khronos validator, which "
 		"calls it an error.",
-		"Compute the tangents again: nmtan --existing=replace.",
+		"Compute the tangents again.",
 		"a vertex with T = (2,0,0,1)"),
-	ROW(TAN_BAD_W, ERROR, "e--", "{count} {tangent has a w that is|tangents have a w that is} neither 1 nor -1",
+	ROW(TAN_BAD_W, ERROR, "e--", CONVERT, "--fix",
+		"{count} {tangent has a w that is|tangents have a w that is} neither 1 nor -1",
 		"w is a sign. Any other value scales or removes the bitangent.",
-		"Compute the tangents again: nmtan --existing=replace.",
+		"Compute the tangents again.",
 		"a vertex with T = (1,0,0,0)"),
-	ROW(TAN_MISSING_REQUIRED, ERROR, "e--", "the material needs tangents and there are none",
+	ROW(TAN_MISSING_REQUIRED, ERROR, "e--", CONVERT, "--fix", "the material needs tangents and there are none",
 		"Clearcoat normal maps and anisotropy demand a tangent space: TANGENT, or a normalTexture from "
 		"which a client can make it. Here there is neither. Where a normalTexture lets the client make "
 		"tangents this is an info: clients differ in how well they do it.",
-		"Convert the file with nmtan.",
+		"Make them.",
 		"a material with KHR_materials_anisotropy on a primitive with NORMAL only"),
-	ROW(TAN_UNUSED, INFO, "i--", "the mesh has tangents that no material uses",
+	ROW(TAN_UNUSED, INFO, "i--", CONVERT, "--existing=drop", "the mesh has tangents that no material uses",
 		"Without a normal texture, clearcoat normal texture or anisotropy nothing reads them: 16 bytes "
 		"per vertex for nothing.",
-		"Drop the attribute, or check whether a normal map got lost.",
+		"If no normal map got lost, drop the attribute.",
 		"a glTF primitive with TANGENT and the default material"),
-	ROW(TAN_NO_NORMAL, WARNING, "w--", "tangents are needed but there are no normals",
+	ROW(TAN_NO_NORMAL, WARNING, "w--", CONVERT, "--normals=smooth",
+		"tangents are needed but there are no normals",
 		"A client must use flat normals then and ignore TANGENT, so none are written.",
-		"Export normals, or let nmtan make them: --normals=smooth or --normals=flat.",
+		"Export normals; or make them, with --normals=flat or, if the surface is smooth, so.",
 		"a glTF primitive with POSITION, TEXCOORD_0 and a normal-mapped material"),
-	ROW(TAN_NO_UV, INFO, "eii", "there are no texture coordinates to make tangents by",
+	ROW(TAN_NO_UV, INFO, "eii", EXPORT, NULL, "there are no texture coordinates to make tangents by",
 		"No mesh of an OBJ, PLY or Draco file has texture coordinates: a scan, say, or a model without "
 		"textures. An error in a glTF whose material looks up a normal map, or shades by anisotropy, with "
 		"coordinates that the primitive lacks: no renderer can get that right. A warning where an OBJ's "
 		"material does: the output is without the map.",
 		"Nothing if no normal map is meant. Else unwrap the mesh, or choose a set that exists with --uv.",
 		"a normal-mapped glTF primitive without TEXCOORD_0"),
-	ROW(TAN_UVSET_CONFLICT, WARNING, "w--", "two textures want tangents of different texture coordinates",
+	ROW(TAN_UVSET_CONFLICT, WARNING, "w--", EXPORT, NULL,
+		"two textures want tangents of different texture coordinates",
 		"One TANGENT attribute serves one set of texture coordinates. The normal texture's set wins; "
 		"the other texture is lit in a wrong frame.",
 		"Use one UV set for the normal, clearcoat normal and anisotropy textures.",
 		"normalTexture with texCoord 0 and clearcoatNormalTexture with texCoord 1"),
-	ROW(TAN_UV_TRANSFORM_ANIMATED, WARNING, "w--", "the texture transform of a normal map is animated",
+	ROW(TAN_UV_TRANSFORM_ANIMATED, WARNING, "w--", EXPORT, NULL,
+		"the texture transform of a normal map is animated",
 		"Tangents follow the transform at rest. When an animation rotates it they no longer fit.",
 		"Do not animate the rotation of a normal texture's transform.",
 		"KHR_animation_pointer on a normalTexture's KHR_texture_transform"),
-	ROW(TAN_MORPH_MISSING, WARNING, "w--", "{count} morph {target has|targets have} no tangents",
+	ROW(TAN_MORPH_MISSING, WARNING, "w--", CONVERT, "--fix",
+		"{count} morph {target has|targets have} no tangents",
 		"The base mesh has TANGENT, so clients no longer compute tangents for its morph targets; "
 		"without deltas of their own the targets are lit with the base's tangents.",
-		"Convert the file with nmtan, which writes the deltas.",
+		"Write the deltas.",
 		"a primitive with TANGENT and a target with POSITION only"),
-	ROW(TAN_MORPH_TURNED, WARNING, "w--",
+	ROW(TAN_MORPH_TURNED, WARNING, "w--", EXPORT, NULL,
 		"{count} {triangle is|triangles are} turned to the other side of {its|their} normals by a morph target",
 		"Morph targets have no w of their own. Where one turns a triangle over and its normals do not follow, "
 		"the bitangent that w gives runs the wrong way, and bumps look like dents while the target acts. The "
 		"finding counts a triangle once for each target that turns it.",
 		"Let the target move the normals too, or leave the triangle on its side.",
 		"a flat triangle with normals along z and a target that moves x to -x"),
-	ROW(TAN_MORPH_HALFWAY, WARNING, "w--",
+	ROW(TAN_MORPH_HALFWAY, WARNING, "w--", EXPORT, NULL,
 		"{count} {triangle has|triangles have} wrong tangents when a morph target acts by half",
 		"Clients add the deltas of TANGENT times the weight. That is exact at weights 0 and 1; between "
 		"them it is not where a target stretches what it turns. At weight 0.5 it is more than 5 "
@@ -479,67 +497,72 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"tangent by more than 5 degrees are not looked at.",
 		"Add a target for the pose in between, so that none turns the surface far.",
 		"a square whose target turns it by a quarter and doubles its width"),
-	ROW(TAN_PRIMITIVE_BORDER, INFO, "i--",
+	ROW(TAN_PRIMITIVE_BORDER, INFO, "i--", CONVERT, "--across=mesh",
 		"{count} {tangent|tangents} at borders to other primitives would turn if the mesh were solved as one",
 		"glTF defines tangents per primitive. A baker computes them over the whole object, so that a "
 		"mesh which is divided by material shows a seam where the surface goes on with the same "
 		"normals and texture coordinates. The finding counts corners whose tangents differ by more "
 		"than 5 degrees between the two, and tells the largest angle.",
-		"If the normal map was baked for the whole mesh, use --across=mesh.",
+		"If the normal map was baked for the whole mesh, solve it so.",
 		"two squares of one mesh, of which the second's texture is sheared, with a material each"),
-	ROW(TAN_QUANTIZED, INFO, "i-i", "{count} {tangent was|tangents were} stored as integers",
+	ROW(TAN_QUANTIZED, INFO, "i-i", CONVERT, "--precision=float",
+		"{count} {tangent was|tangents were} stored as integers",
 		"--precision=short or byte rounds tangents to the nearest direction that normalized integers can "
 		"represent; so are they rounded where they go with normals that meshoptimizer packed as integers. The "
 		"detail has the largest and the mean angle between what was computed and what is stored.",
 		"Nothing if the angle is too small to be seen; else --precision=float.",
 		"converting any quad with --precision=byte"),
-	ROW(TAN_REPAIRED, INFO, "i-i", "{count} {corner|corners} got a tangent that MikkTSpace could not give",
+	ROW(TAN_REPAIRED, INFO, "i-i", LOOK, NULL,
+		"{count} {corner|corners} got a tangent that MikkTSpace could not give",
 		"MikkTSpace leaves zero vectors, defaults or mixed signs at degenerate triangles. nmtan "
 		"replaced them by the nearest usable frame.",
 		"Nothing; --raw gives the raw result. Degenerate triangles are the cause.",
 		"converting one triangle with UVs (0,0), (1,0), (2,0)"),
-	ROW(TAN_EXISTING_BAD, WARNING, "w--", "{count} {tangent|tangents} that were kept are invalid",
+	ROW(TAN_EXISTING_BAD, WARNING, "w--", CONVERT, "--fix",
+		"{count} {tangent|tangents} that were kept are invalid",
 		"--existing=keep leaves authored tangents as they are, and some of them are not usable.",
-		"Use --existing=repair or --existing=replace.",
+		"Repair them.",
 		"converting a normal-mapped glTF with a tangent (0,0,0,1)"),
-	ROW(TAN_EXISTING_REPAIRED, INFO, "i--", "{count} {corner|corners} got another tangent than the input has",
+	ROW(TAN_EXISTING_REPAIRED, INFO, "i--", LOOK, NULL,
+		"{count} {corner|corners} got another tangent than the input has",
 		"With --existing=repair a face with an invalid tangent gets those that are computed. Without texture "
 		"coordinates nothing can be computed: what is invalid becomes the unit vector across the "
 		"normal that is nearest to it, or any across the normal where it has no direction, and w "
 		"becomes 1 where the corners of a triangle do not agree; --existing=replace does the same there.",
 		"Nothing; --existing=keep leaves them as they are.",
 		"a triangle whose TANGENT is its NORMAL, converted with --existing=repair --only=all"),
-	ROW(TAN_EXISTING_LEFT, INFO, "i--",
+	ROW(TAN_EXISTING_LEFT, INFO, "i--", LOOK, NULL,
 		"{count} {corner has|corners have} a tangent that repair cannot make better",
 		"With --existing=repair a face that is not valid as a whole stays as it is where a solve gives what is "
 		"there, or no valid tangents either: a triangle without area in UV space may have corners of either w.",
 		"Unwrap these triangles.",
 		"a triangle without area in UV space between a mirrored and another triangle, converted twice"),
-	ROW(TAN_KEPT_SIGN, WARNING, "w--",
+	ROW(TAN_KEPT_SIGN, WARNING, "w--", CONVERT, "--fix",
 		"{count} {triangle keeps|triangles keep} tangents whose bitangent runs the wrong way",
 		"The input's tangents stay, a material uses them, and w is not that of the texture coordinates: bumps "
 		"look like dents there. On --check this is TAN_SIGN_MISMATCH, which looks at compressed primitives "
 		"too.",
-		"Convert with --existing=repair, or --existing=replace.",
+		"Repair them.",
 		"DamagedHelmet after gltfpack -gt, converted"),
-	ROW(TAN_MADE_BY, INFO, "i--", "the tangents are not those of MikkTSpace, which most maps are baked with",
+	ROW(TAN_MADE_BY, INFO, "i--", CONVERT, "--existing=replace",
+		"the tangents are not those of MikkTSpace, which most maps are baked with",
 		"The input's tangents are compared with those of the methods that exporters and engines use, on "
 		"triangles and on the quads that these are halves of. A normal map is right with the tangents that "
 		"it was baked with, and most are baked with MikkTSpace.",
-		"Where the map was baked with MikkTSpace and the tangents are others, --existing=replace.",
+		"If the map was baked with MikkTSpace, replace these tangents.",
 		"DamagedHelmet, converted with --method=area and checked"),
-	ROW(TAN_QUAD_SIGN, INFO, "i--",
+	ROW(TAN_QUAD_SIGN, INFO, "i--", LOOK, NULL,
 		"{count} {triangle has|triangles have} the sign of the folded quad of which {it is|they are} the "
 		"smaller half",
 		"The tangents were solved on quads. A quad whose halves are wound in opposite directions in texture "
 		"space has one orientation to MikkTSpace, that of the larger half.",
 		"Nothing where the map was baked on quads too; --existing=replace gives each half its own sign.",
 		"a quad with one corner folded over its diagonal in texture space, from Blender"),
-	ROW(TAN_QUADS_LIKELY, INFO, "i--",
+	ROW(TAN_QUADS_LIKELY, INFO, "i--", CONVERT, "--quads=pairs",
 		"{count} {pair|pairs} of triangles may have been {one quad|quads} when the map was baked",
 		"The program that wrote the input solves tangents on quads and writes their halves as triangles. "
 		"Without tangents in the input nothing proves that the map was baked so.",
-		"Use --quads=pairs if the normal map was baked in that program.",
+		"If the normal map was baked in that program, solve quads.",
 		"a grid from Blender without tangents, converted with --only=all"),
 };
 
@@ -582,6 +605,97 @@ bool nt_severity_find(const char *name, nt_severity *severity)
 	}
 	return false;
 }
+
+/* ---- commands ---- */
+
+bool nt_code_mends(nt_code code)
+{
+	const char *repair = nt_code_info(code)->repair;
+	return repair && strcmp(repair, "--fix") == 0;
+}
+
+/* A word of a shell: as it is if nothing in it is special, else in quotes. False: a terminal would not take it. */
+static bool put_word(const char *text, nt_buffer *out)
+{
+	static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.,:@%+/=-";
+	for (const char *c = text; *c;) {
+		const size_t length = nt_utf8_length(c, SIZE_MAX);
+		if (nt_utf8_is_unsafe(c, length))
+			return false;
+		c += length;
+	}
+	if (strspn(text, plain) == strlen(text)) {
+		nt_buffer_text(out, text);
+		return true;
+	}
+	nt_buffer_text(out, "'");
+	for (; *text; text++)
+		if (*text == '\'')
+			nt_buffer_text(out, "'\\''");
+		else
+			nt_buffer_append(out, text, 1);
+	nt_buffer_text(out, "'");
+	return true;
+}
+
+/* in.glb: "in-repaired.glb"; head.obj: "head.glb". */
+static void put_output(const char *input, nt_buffer *out)
+{
+	static const char *const kept[] = {".gltf", ".glb", ".ply"};
+	const char *slash = strrchr(input, '/'), *dot = strrchr(slash ? slash : input, '.');
+	const char *ending = ".glb", *suffix = "";
+	for (size_t i = 0; dot && i < sizeof kept / sizeof *kept; i++)
+		if (strcasecmp(dot, kept[i]) == 0) {
+			ending = dot;
+			suffix = "-repaired";
+		}
+	nt_buffer_append(out, input, dot ? (size_t)(dot - input) : strlen(input));
+	nt_buffer_format(out, "%s%s", suffix, ending);
+}
+
+/* A name that begins with a dash is no option; "-" itself is a stream. */
+static bool put_path(const char *name, nt_buffer *out)
+{
+	nt_buffer path = {0};
+	nt_buffer_format(&path, "%s%s", name[0] == '-' && name[1] ? "./" : "", name);
+	const bool put = path.data && put_word(path.data, out);
+	nt_buffer_free_into(&path, out);
+	return put;
+}
+
+void nt_command_text(const char *options, const char *input, const char *output, nt_buffer *out)
+{
+	nt_buffer made = {0};
+	if (input && !output && strcmp(input, "-") == 0)
+		nt_buffer_text(&made, "OUT.glb");
+	else if (input && !output)
+		put_output(input, &made);
+	nt_buffer_format(out, "nmtan%s%s ", *options ? " " : "", options);
+	const size_t before = out->size;
+	bool put = input && *input && put_path(input, out);
+	nt_buffer_text(out, " ");
+	put = put && (output || made.data) && put_path(output ? output : made.data, out);
+	if (!put) {
+		out->size = before;
+		nt_buffer_text(out, "IN OUT");
+	}
+	nt_buffer_free_into(&made, out);
+}
+
+void nt_remedy_text(nt_code code, const char *options, const char *input, nt_buffer *out)
+{
+	const char *remedy = nt_code_info(code)->remedy;
+	const size_t length = strlen(remedy);
+	if (!options) {
+		nt_buffer_text(out, remedy);
+		return;
+	}
+	nt_buffer_append(out, remedy, length - (length && remedy[length - 1] == '.'));
+	nt_buffer_text(out, ": ");
+	nt_command_text(options, input, NULL, out);
+}
+
+/* ---- sentences ---- */
 
 /* Appends what stands for the braces [open, close): {count}, {detail} or {one|many}. */
 static void expand_braces(const char *open, const char *close, size_t count, const char *detail,

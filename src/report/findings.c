@@ -132,6 +132,21 @@ static uint64_t fingerprint_of(const nt_report_finding *finding, const nt_report
 	return hash;
 }
 
+/* What the code's row says, if the mesh has what that takes. */
+static const char *repair_of(const nt_report *report, const nt_report_finding *finding)
+{
+	static const char replace[] = "--existing=replace";
+	const char *repair = nt_code_info(finding->code)->repair;
+	const nt_report_mesh *mesh = finding->mesh == NT_NONE ? NULL : &report->meshes[finding->mesh];
+	if (!repair || !mesh)
+		return repair;
+	const bool fixes = nt_code_mends(finding->code) && finding->code != NT_CODE_NMAP_GREEN_DOWN;
+	if (fixes && (!mesh->has_normals || (!mesh->has_texcoords && finding->code == NT_CODE_TAN_MISSING_REQUIRED)))
+		return NULL;
+	/* what no material asks for stays as it is, unless it is asked for */
+	return strcmp(repair, replace) == 0 && !mesh->slots ? "--existing=replace --only=all" : repair;
+}
+
 /* Completes and appends a finding whose code, place, count, box, numbers and spots are set. */
 static void add_finding(nt_check *check, nt_report_finding *finding, nt_severity severity, const char *detail)
 {
@@ -155,6 +170,7 @@ static void add_finding(nt_check *check, nt_report_finding *finding, nt_severity
 		check->failed = true;
 		return;
 	}
+	finding->repair = repair_of(report, finding);
 	finding->order = report->finding_count;
 	report->findings[report->finding_count++] = *finding;
 }

@@ -201,6 +201,7 @@ typedef struct nt_mesh {
 	bool texcoord_conflict;  /* another slot of it asks for another set: texcoord_other_set */
 	uint32_t texcoord_other_set;
 	uint32_t targets_without_tangents; /* morph targets that move it and have no TANGENT */
+	uint8_t fix;             /* nt_existing of this mesh, whatever --only and --existing say; 0: theirs */
 	nt_decision decision;
 	nt_mesh_plan plan;
 

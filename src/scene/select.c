@@ -90,19 +90,20 @@ static nt_decision decide(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 		return NT_SKIP_NOT_TRIANGLES;
 	if (mesh->face_count == 0)
 		return NT_SKIP_EMPTY;
-	nt_decision decision = decide_by_wish(mesh, w->only, knows_materials);
+	const nt_existing existing = mesh->fix ? (nt_existing)mesh->fix : w->existing;
+	nt_decision decision = mesh->fix ? NT_DECISION_OPEN : decide_by_wish(mesh, w->only, knows_materials);
 	if (decision != NT_DECISION_OPEN)
 		return decision;
 	if (mesh->texcoord_conflict)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, nt_mesh_place(mesh, &(nt_place){0}), 1,
 			"sets %u and %u", mesh->texcoord_set, mesh->texcoord_other_set);
-	if (mesh->has_tangents && w->existing == NT_EXISTING_KEEP)
+	if (mesh->has_tangents && existing == NT_EXISTING_KEEP)
 		return NT_SKIP_HAS_TANGENTS;
 	decision = decide_by_attributes(scene, mesh, w);
 	if (decision != NT_DECISION_OPEN)
 		return decision;
 	/* what cannot be computed anew is not thrown away either */
-	const bool repair = w->existing == NT_EXISTING_REPAIR || !mesh->has_texcoords;
+	const bool repair = existing == NT_EXISTING_REPAIR || !mesh->has_texcoords;
 	return mesh->has_tangents && repair ? NT_DECISION_REPAIR : NT_DECISION_SOLVE;
 }
 

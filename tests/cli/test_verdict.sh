@@ -308,15 +308,44 @@ is "$(said | cut -d';' -f1)" "Export again: 1 vertex has texture coordinates tha
 green_down n.png
 gltf m.gltf bad 'const n = g.meshes[0].primitives[0].attributes.TANGENT; bytes[0].writeFloatLE(0, at(n, 0) + 12)'
 run --check -q --report=r.json --fail-on=never bad.gltf
-is "$(said)" "Convert with nmtan: 1 tangent has a w that is neither 1 nor -1; and 1 more"
+is "$(said)" "Convert with nmtan: 1 tangent has a w that is neither 1 nor -1; and 1 more: nmtan --fix bad.gltf bad-repaired.gltf"
 run --check -q --report=r.json --fail-on=never --severity=TAN_BAD_W=warning bad.gltf
-is "$(said | cut -d: -f1-2)" "Bake again: normal map whose green points down"
+is "$(said | cut -d: -f1-2)" "Convert with nmtan: normal map whose green points down"
 run --check -q --report-format=text --fail-on=never --severity=TAN_BAD_W=warning bad.gltf
 is "$(sed -n 2p "$WORK/out.txt")" "  $(said)"
 run --check -q --report-format=markdown --fail-on=never --severity=TAN_BAD_W=warning bad.gltf
-grep -q '^Bake again: normal map whose' "$WORK/out.txt" || wrong "Markdown does not say it"
+grep -q '^Convert with nmtan: normal map whose' "$WORK/out.txt" || wrong "Markdown does not say it"
 run --check -q --report=known.json --baseline=r.json --fail-on=never bad.gltf
 is "$(value known.json 'r["files"][0]["verdict"]')" "Nothing new: 1 known error, 1 known warning"
+
+scene "--fix repairs what is wrong and leaves the rest; what it did is said; a second run changes nothing"
+mapped
+green_down n.png
+# three squares over one map, the second of which has w = 0 and the third tangents of another direction: no fault for certain
+gltf m.gltf three 'const p = g.meshes[0].primitives[0], a = p.attributes, v = rows(a.TANGENT);
+	p.attributes = {...a, TANGENT: add("VEC4", 5126, v.flat(), {})};
+	for (const change of [t => [t[0], t[1], t[2], 0], t => [t[1], t[0], t[2], t[3]]])
+		g.meshes[0].primitives.push({...p, attributes: {...a, TANGENT: add("VEC4", 5126, v.map(change).flat(), {})}})'
+run --fix --manifest=m.json three.gltf fixed.gltf
+exits 0
+says "fixed NMAP_GREEN_DOWN in 1 normal map, TAN_BAD_W in 1 primitive"
+says "1 of 3 primitives"
+is "$(value m.json 'r["fixed"]')" "{'NMAP_GREEN_DOWN': 1, 'TAN_BAD_W': 1}"
+is "$(gltf fixed.gltf '[1, 2].map(i => rows(g.meshes[0].primitives[i].attributes.TANGENT)[0])')" "$(gltf three.gltf '(t => [t(0), t(2)])(i => rows(g.meshes[0].primitives[i].attributes.TANGENT)[0])')"
+run -q --check --report=r.json --fail-on=never fixed.gltf
+is "$(value r.json 'sorted({f["code"] for f in r["files"][0]["findings"] if f["severity"] != "info"})')" "['TAN_DIRECTION_MISMATCH']"
+run --fix --manifest=m.json fixed.gltf again.gltf
+says "nothing to fix"
+is "$(value m.json 'r["fixed"]')" "{}"
+same fixed.gltf again.gltf
+# what the user calls an info is left; an info alone is no reason
+run --fix --ignore=NMAP_GREEN_DOWN --severity=TAN_BAD_W=info three.gltf left.gltf
+says "nothing to fix"
+for options in "--check three.gltf" "--existing=keep three.gltf a.glb" "--flip-green=on three.gltf a.glb"; do
+	run --fix $options
+	exits 1
+done
+says "--fix turns the maps that need it"
 
 scene "wrong signs of a few slivers are a warning, of as few large triangles an error; a corner's vertex is one spot"
 mapped
@@ -374,19 +403,26 @@ for expected in fold.obj:warning fold.gltf:info mapped.gltf:warning; do
 		"$expected ['${expected#*:}']"
 done
 
-scene "what nmtan says that it repairs is gone after a run with the options that it names"
+# Runs the command that report r.json has for code $1, as it stands; what it writes is `repaired`.
+repairs() {
+	local command
+	command=$(value r.json 'next((f["repair"] or "none" for f in r["files"][0]["findings"] if f["code"] == "'$1'"), "none")')
+	[ "$command" != none ] || wrong "no $1 to repair"
+	repaired=${command##* }
+	eval "run ${command#nmtan }"
+	exits 0
+	run --check -q --report=r.json --fail-on=never "$repaired"
+	is "$1 $(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "'$1'"]')" "$1 []"
+}
+
+scene "what nmtan says that it repairs is gone after the command that it names"
 mapped
 while IFS='|' read -r code edit; do
 	gltf m.gltf faulty "const p = g.meshes[0].primitives[0], a = p.attributes, n = a.TANGENT, b = bytes[0];
 		const t = f => { for (let i = 0; i < 4; i++) f([0, 1, 2, 3].map(k => b.readFloatLE(at(n, i) + 4 * k)), i)
 			.forEach((x, k) => b.writeFloatLE(x, at(n, i) + 4 * k)); }; $edit"
 	run --check -q --report=r.json --fail-on=never faulty.gltf
-	options=$(value r.json 'next((f["repair"] for f in r["files"][0]["findings"] if f["code"] == "'$code'"), "none")')
-	[ "$options" != none ] || wrong "no $code to repair"
-	run -q $options faulty.gltf repaired.gltf
-	exits 0
-	run --check -q --report=r.json --fail-on=never repaired.gltf
-	is "$code $(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "'$code'"]')" "$code []"
+	repairs $code
 done <<'END'
 TAN_SIGN_MISMATCH|t(v => [v[0], v[1], v[2], -v[3]])
 TAN_MIXED_W_TRIANGLE|t((v, i) => [v[0], v[1], v[2], i ? v[3] : -v[3]])
@@ -402,17 +438,13 @@ TAN_MORPH_MISSING|p.targets = [{POSITION: a.POSITION}]
 TAN_NO_NORMAL|delete a.NORMAL, delete a.TANGENT
 TAN_MISSING_REQUIRED|delete a.TANGENT, g.materials = [{extensions: {KHR_materials_anisotropy: {anisotropyStrength: 0.5}}}], g.extensionsUsed = ['KHR_materials_anisotropy']
 END
-# of an OBJ green is turned; a glTF's maps are not touched
 green_down n.png
 { printf 'mtllib m.mtl\nusemtl m\n'; cat square.obj; } >m.obj
 printf 'newmtl m\nnorm n.png\n' >m.mtl
 run --check -q --report=r.json --fail-on=never m.obj
-is "$(value r.json '[f["repair"] for f in r["files"][0]["findings"] if f["code"] == "NMAP_GREEN_DOWN"]')" "['--flip-green=auto']"
-run -q --flip-green=auto m.obj turned.glb
-run --check -q --report=r.json --fail-on=never turned.glb
-is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "NMAP_GREEN_DOWN"]')" "[]"
+repairs NMAP_GREEN_DOWN
 run --check -q --report=r.json --fail-on=never m.gltf
-is "$(value r.json '[f["repair"] for f in r["files"][0]["findings"] if f["code"] == "NMAP_GREEN_DOWN"]')" "['--flip-green=auto']"
+repairs NMAP_GREEN_DOWN
 run -q --flip-green=auto m.gltf turned.gltf
 run --check -q --report=r.json --fail-on=never turned.gltf
 is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "NMAP_GREEN_DOWN"]')" "[]"

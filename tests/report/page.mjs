@@ -643,13 +643,13 @@ async function clickTexture(page, u, v) {
 	await expect(async () => (await page.locator('#space-note').textContent()).includes('not in the file'), 'and that is said');
 	// the command that repairs it, of each version by its own name
 	const command = page.locator('[data-code=TAN_SIGN_MISMATCH] .command');
-	await expect(async () => await command.locator('code').innerText() === 'nmtan --existing=replace wrong.gltf wrong-repaired.gltf', async () => 'a command repairs it: ' + await command.locator('code').innerText());
+	await expect(async () => await command.locator('code').innerText() === 'nmtan --fix wrong.gltf wrong-repaired.gltf', async () => 'a command repairs it: ' + await command.locator('code').innerText());
 	await command.locator('button').click();
 	await expect(async () => await command.locator('button').innerText() === 'Copied' || await page.evaluate(() => getSelection().toString()).then(t => t.startsWith('nmtan ')), 'and is copied, or marked');
 	if (shots) await page.screenshot({path: shots + '/lit.png'});
 	await page.close();
 	const named = await open('names.html'), words = () => named.locator('.command code').innerText();
-	await expect(async () => await words() === String.raw`nmtan --existing=replace './-$(touch broken)'\''.gltf' './-$(touch broken)'\''-repaired.gltf'`, async () => 'a name is one word of a shell: ' + await words());
+	await expect(async () => await words() === String.raw`nmtan --fix './-$(touch broken)'\''.gltf' './-$(touch broken)'\''-repaired.gltf'`, async () => 'a name is one word of a shell: ' + await words());
 	await named.close();
 }
 

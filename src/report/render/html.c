@@ -12,7 +12,7 @@
  *                       mirrored island]], geometry: bool}
  *             finding:  {code, severity, count, known, message, mesh, seam, island, line, box, at: [triangle],
  *                       votes: [[percent]] of a normal map's blocks, rows from the top, green up above 0; or null,
- *                       repair: options of nmtan, not there where it cannot}
+ *                       repair: the command, not there if nmtan cannot repair it}
  *   codes     {CODE: {title, meaning, remedy}} of the findings that there are
  *   images    [data URI], which meshes number
  *   left_out  findings that have no place on the page
@@ -228,10 +228,13 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 
 static void put_repair(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
-	nt_buffer options = {0};
-	if (nt_repair_options(report, finding, &options))
-		nt_buffer_format(out, ",\"repair\":\"%s\"", options.data ? options.data : "");
-	nt_buffer_free_into(&options, out);
+	nt_buffer command = {0};
+	if (!finding->repair)
+		return;
+	nt_command_text(finding->repair, report->shown, NULL, &command);
+	nt_buffer_text(out, ",\"repair\":");
+	put_string(command.data ? command.data : "", out);
+	nt_buffer_free_into(&command, out);
 }
 
 static void put_finding(const nt_report *report, const nt_report_finding *finding, bool known, nt_buffer *out)

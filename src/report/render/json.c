@@ -397,10 +397,11 @@ static void put_spot(nt_buffer *out, const nt_spot *spot)
 /* Null where nmtan cannot repair it. */
 static void put_repair(nt_buffer *out, const nt_report *report, const nt_report_finding *finding)
 {
-	nt_buffer options = {0};
-	const bool can = nt_repair_options(report, finding, &options);
-	put_text(out, "repair", can ? options.data ? options.data : "" : NULL);
-	nt_buffer_free_into(&options, out);
+	nt_buffer command = {0};
+	if (finding->repair)
+		nt_command_text(finding->repair, report->shown, NULL, &command);
+	put_text(out, "repair", command.data);
+	nt_buffer_free_into(&command, out);
 }
 
 static void put_finding(nt_buffer *out, const nt_report *report, const nt_report_finding *finding)

@@ -46,18 +46,21 @@ static void append_part(const char *heading, const char *text, nt_buffer *out)
 	nt_markdown_text(text, out);
 }
 
-static void put_help(const nt_code_row *row, nt_buffer *out)
+static void put_help(nt_code code, nt_buffer *out)
 {
-	nt_buffer markdown = {0};
+	const nt_code_row *row = nt_code_info(code);
+	nt_buffer markdown = {0}, remedy = {0};
+	nt_remedy_text(code, row->repair, NULL, &remedy);
 	append_part("What it is", row->meaning, &markdown);
-	append_part("What to do", row->remedy, &markdown);
+	append_part("What to do", remedy.data ? remedy.data : "", &markdown);
 	append_part("The smallest example", row->example, &markdown);
 	nt_buffer_text(out, "\"help\": {");
-	put_text("text", row->remedy, out);
+	put_text("text", remedy.data ? remedy.data : "", out);
 	nt_buffer_text(out, ", ");
 	put_text("markdown", markdown.data ? markdown.data : "", out);
 	nt_buffer_text(out, "}");
 	nt_buffer_free_into(&markdown, out);
+	nt_buffer_free_into(&remedy, out);
 }
 
 /* The first sentence of the meaning, and all of it. */
@@ -84,7 +87,7 @@ static void put_rules(nt_buffer *out)
 		nt_buffer_text(out, ", ");
 		put_descriptions(row, out);
 		nt_buffer_text(out, ", ");
-		put_help(row, out);
+		put_help((nt_code)i, out);
 		/* where the program is, its manual is */
 		nt_buffer_format(out, ", \"helpUri\": \"man:nmtan-report(5)\", "
 			"\"defaultConfiguration\": {\"level\": \"%s\"}}", level_of(row->severity));

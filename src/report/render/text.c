@@ -130,7 +130,9 @@ static void write_finding(const nt_report_list *reports, const nt_report *report
 		nt_buffer_text(out, "            and others\n");
 	if (remedy) {
 		paint(reports, dim, out);
-		nt_buffer_format(out, "            %s\n", nt_code_info(finding->code)->remedy);
+		nt_buffer_text(out, "            ");
+		nt_remedy_text(finding->code, finding->repair, report->shown, out);
+		nt_buffer_text(out, "\n");
 		paint(reports, plain, out);
 	}
 }

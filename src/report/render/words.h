@@ -56,9 +56,6 @@ void nt_totals_text(const nt_totals *totals, nt_buffer *out);
  * any bytes. */
 void nt_put_verdict(const nt_report *report, void (*put)(const char *text, nt_buffer *out), nt_buffer *out);
 
-/* Appends the options with which nmtan repairs a finding, which may be none; false: it cannot. */
-bool nt_repair_options(const nt_report *report, const nt_report_finding *finding, nt_buffer *out);
-
 /* What --max-issues left out, between the two texts: "3 more: 2 UV_MIRROR_SEAM, 1 TAN_UNUSED". Nothing where it left
  * nothing out. */
 void nt_dropped_text(const nt_report *report, const char *before, const char *after, nt_buffer *out);

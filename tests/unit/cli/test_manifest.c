@@ -55,8 +55,8 @@ TEST(a_job_that_ran_has_its_files_and_numbers)
 	nt_job job = {.input = "a\".obj", .outcome = &outcome, .end = NT_JOB_RAN};
 	note(&outcome.summary.trace);
 	const char *line = line_of(&job, 0);
-	assert_memory_equal(line, BEGIN("a\\\".obj", "done", 0) FILES ",\"findings\":{},\"triangles\":8",
-		strlen(BEGIN("a\\\".obj", "done", 0) FILES ",\"findings\":{},\"triangles\":8"));
+	assert_memory_equal(line, BEGIN("a\\\".obj", "done", 0) FILES ",\"findings\":{},\"fixed\":{},\"triangles\":8",
+		strlen(BEGIN("a\\\".obj", "done", 0) FILES ",\"findings\":{},\"fixed\":{},\"triangles\":8"));
 	assert_non_null(strstr(line, ",\"vertices_before\":12,\"vertices_after\":15,\"split\":2,\"repaired\":0,"
 				     "\"sorted_instead\":0,\"summed_instead\":0,\"bytes_read\":100,"
 				     "\"bytes_written\":200,\"seconds\":{"));

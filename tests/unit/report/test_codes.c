@@ -41,6 +41,26 @@ TEST(sentences_count_and_carry_the_detail)
 	sentence_is(NT_CODE_MTL_MISSING, 1, "a.mtl", "material library cannot be read: a.mtl");
 }
 
+static void command_is(const char *options, const char *input, const char *output, const char *expected)
+{
+	nt_buffer out = {0};
+	nt_command_text(options, input, output, &out);
+	assert_string_equal(out.data, expected);
+	nt_buffer_free(&out);
+}
+
+TEST(commands_are_words_of_a_shell)
+{
+	command_is("--fix", "a/in.glb", NULL, "nmtan --fix a/in.glb a/in-repaired.glb");
+	command_is("--fix", "a.b/in.GLTF", "out.glb", "nmtan --fix a.b/in.GLTF out.glb");
+	command_is("", "head.obj", NULL, "nmtan head.obj head.glb");
+	command_is("--fix", "a.b/in", NULL, "nmtan --fix a.b/in a.b/in.glb");
+	command_is("--fix", "-it's.ply", NULL, "nmtan --fix './-it'\\''s.ply' './-it'\\''s-repaired.ply'");
+	command_is("--fix", "-", NULL, "nmtan --fix - OUT.glb");
+	command_is("--fix", "a\nb.glb", NULL, "nmtan --fix IN OUT");
+	command_is("--fix", NULL, NULL, "nmtan --fix IN OUT");
+}
+
 TEST(severities_have_names)
 {
 	nt_severity severity;
@@ -97,7 +117,8 @@ static const char manual_head[] =
 	"again\\(rq, \\(lqBake again\\(rq, \\(lqConvert with nmtan\\(rq or, for what has no rule,\n"
 	"\\(lqLook at this\\(rq. Errors count before warnings; of these what is to be exported again comes first, "
 	"since all else is made\nfrom it.\n"
-	".B repair\nof a finding has the options with which nmtan repairs it; it is null where nmtan cannot.\n"
+	".B repair\nof a finding has the command that repairs it; it is null if nmtan cannot. The verdict and the\n"
+	"remedy end with it.\n"
 	".IP\n.B made_by\nof a mesh whose tangents are the input's says whose they are: the\n.B method\n"
 	"(MikkTSpace as published and sorted, area, lengyel and robust are tried) and the\n.B faces\n"
 	"(triangles, or the quads that these are halves of) with which the largest share of the corners,\n"
@@ -198,7 +219,10 @@ static void write_manual(nt_buffer *out)
 		nt_buffer_format(out, ".SS %s (%s)\n", row->name, nt_severity_name(row->severity));
 		put_troff(row->meaning, out);
 		nt_buffer_text(out, "\n.br\n.I Remedy:\n");
-		put_troff(row->remedy, out);
+		nt_buffer remedy = {0};
+		nt_remedy_text((nt_code)i, row->repair, NULL, &remedy);
+		put_troff(remedy.data, out);
+		nt_buffer_free(&remedy);
 		nt_buffer_text(out, "\n.br\n.I Smallest example:\n");
 		put_troff(row->example, out);
 		nt_buffer_text(out, ".\n");

@@ -12,18 +12,6 @@ const titleOf = code => {
 	return text[0].toUpperCase() + text.slice(1);
 };
 
-// A word of a shell: as it is where nothing in it is special, else in quotes. Null: a name that a terminal would not take as it stands.
-const shellWord = text => /[\u0000-\u001f\u007f-\u009f\u200e\u200f\u202a-\u202e\u2066-\u2069\ufffd]/.test(text) ? null :
-	/^[\w.,:@%+/=-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
-
-// The command that repairs a finding, into a file beside the input, or null.
-function repairCommand(x) {
-	if (x.repair === undefined) return null;
-	const [, stem, ending] = /^(.*?)(\.[^./]*)?$/s.exec(x.file.name), path = name => name.startsWith('-') ? './' + name : name;
-	const words = [path(x.file.name), path(stem + '-repaired' + (['gltf', 'ply'].includes(x.file.format) ? ending || '' : '.glb'))].map(shellWord);
-	return words.includes(null) ? null : ['nmtan', x.repair, ...words].filter(word => word).join(' ');
-}
-
 class Findings {
 	constructor(onchoose) {
 		this.onchoose = onchoose;
@@ -93,7 +81,7 @@ class Findings {
 				element('span', {class: 'number'}, count(items.length)), element('code', {}, code)),
 			element('p', {class: 'remedy'}, row.remedy || ''),
 			element('details', {class: 'about'}, element('summary', {}, 'What it means'), row.meaning || ''), list);
-		const command = repairCommand(items.find(x => x.repair !== undefined) || {});
+		const command = items.find(x => x.repair)?.repair;
 		if (command) group.insertBefore(this.command(command), group.querySelector('.about'));
 		const needed = items.indexOf(this.chosen) + 1;
 		const fill = () => { if (group.open && !list.firstChild) this.fill(list, items, Math.max(MOST_ROWS, needed)); };
