@@ -35,7 +35,7 @@ typedef struct cut_mesh {
 static bool is_folded(const nmtan_mesh *view, const uint8_t *diagonals, size_t face, size_t first,
 	uint32_t halves[2][3])
 {
-	bool folded = false;
+	nt_fold folded = NT_NOT_FOLDED;
 	if (view->face_sizes[face] == 4) {
 		for (int i = 0; i < 6; i++)
 			halves[i / 3][i % 3] = (uint32_t)first + nt_quad_triangles[diagonals[face]][i / 3][i % 3];

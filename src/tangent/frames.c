@@ -41,37 +41,64 @@ int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], b
 	return nt_has_stored_texcoords(mesh) && mesh->stored->mirrored ? -sign : sign;
 }
 
-/* The sign of a quad whose halves have the given, different, non-zero signs. */
-static int larger_half(const nmtan_mesh *mesh, uint32_t corners[2][3], bool stored, const int signs[2])
+/* Twice the area of a triangle in UV space, and the sum of the products behind it. */
+static double measure_area(float t[3][2], double *magnitude)
 {
-	float t[2][3][2];
-	load_texcoords(mesh, corners[0], stored, t[0]);
-	load_texcoords(mesh, corners[1], stored, t[1]);
-	const int larger = nt_compare_area(t[0][0], t[0][1], t[0][2], t[1][0], t[1][1], t[1][2]);
-	return larger >= 0 ? signs[0] : signs[1];
+	const double left = ((double)t[1][0] - t[0][0]) * ((double)t[2][1] - t[0][1]);
+	const double right = ((double)t[1][1] - t[0][1]) * ((double)t[2][0] - t[0][0]);
+	*magnitude = fabs(left) + fabs(right);
+	return fabs(left - right);
 }
 
-int nt_cut_orientation(const nmtan_mesh *mesh, uint32_t corners[2][3], unsigned count, bool stored, bool *folded)
+/* Which half of a quad has the larger area in UV space: 1 the first, -1 the second, 0: they are equal. *even: they are,
+ * as far as MikkTSpace's floats can tell, which makes four roundings of each. */
+static int compare_halves(const nmtan_mesh *mesh, uint32_t corners[2][3], bool stored, bool *even)
+{
+	float t[2][3][2];
+	double magnitudes[2];
+	load_texcoords(mesh, corners[0], stored, t[0]);
+	load_texcoords(mesh, corners[1], stored, t[1]);
+	const double first = measure_area(t[0], &magnitudes[0]), second = measure_area(t[1], &magnitudes[1]);
+	*even = fabs(first - second) <= 0x1p-22 * (magnitudes[0] + magnitudes[1]);
+	return nt_compare_area(t[0][0], t[0][1], t[0][2], t[1][0], t[1][1], t[1][2]);
+}
+
+/* The orientation of a quad whose halves have the given, different signs. */
+static int choose_half(const nmtan_mesh *mesh, uint32_t corners[2][3], bool stored, const int signs[2], nt_fold *fold)
+{
+	const bool collapsed[2] = {nt_is_collapsed(mesh, corners[0]), nt_is_collapsed(mesh, corners[1])};
+	if (collapsed[0] != collapsed[1])
+		return signs[collapsed[0]];
+	if (!signs[0] || !signs[1])
+		return signs[0] + signs[1];
+	bool even;
+	const int larger = compare_halves(mesh, corners, stored, &even);
+	*fold = even && !collapsed[0] ? NT_FOLDED_EVENLY : NT_FOLDED;
+	return signs[larger < 0];
+}
+
+int nt_cut_orientation(const nmtan_mesh *mesh, uint32_t corners[2][3], unsigned count, bool stored, nt_fold *fold)
 {
 	int signs[2] = {nt_triangle_orientation(mesh, corners[0], stored), 0};
 	int sign = signs[0];
-	bool differ = false;
+	nt_fold is = NT_NOT_FOLDED;
 	if (count == 2) {
 		signs[1] = nt_triangle_orientation(mesh, corners[1], stored);
-		differ = signs[0] * signs[1] < 0;
-		sign = differ ? larger_half(mesh, corners, stored, signs) : signs[0] ? signs[0] : signs[1];
+		is = signs[0] * signs[1] < 0 ? NT_FOLDED : NT_NOT_FOLDED;
+		if (signs[0] != signs[1])
+			sign = choose_half(mesh, corners, stored, signs, &is);
 	}
-	if (folded)
-		*folded = differ;
+	if (fold)
+		*fold = is;
 	return sign || !stored || !nt_has_stored(mesh)
 		? sign : nt_cut_orientation(mesh, corners, count, false, NULL);
 }
 
-int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool stored, bool *folded)
+int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool stored, nt_fold *fold)
 {
 	uint32_t corners[2][3];
 	const unsigned count = nt_face_triangles(mesh, face, first, corners);
-	return nt_cut_orientation(mesh, corners, count, stored, folded);
+	return nt_cut_orientation(mesh, corners, count, stored, fold);
 }
 
 bool nt_outline_crosses(const nmtan_mesh *mesh, size_t first)

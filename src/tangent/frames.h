@@ -52,15 +52,22 @@ nt_dvec3 nt_unit_normal(const nmtan_mesh *mesh, size_t vertex);
 /* The exact orientation of one triangle, v up; `stored`: of its stored texture coordinates. */
 int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], bool stored);
 
+/* Whether the halves of a quad have different orientations. */
+typedef enum nt_fold {
+	NT_NOT_FOLDED,
+	NT_FOLDED,
+	NT_FOLDED_EVENLY /* and neither is the quad's: both are visible, with one area in UV space as floats have it */
+} nt_fold;
+
 /*
- * The exact orientation of a face, v up: +1, -1, or 0 where it has none. A quad takes the sign of its
- * larger half. `folded` (may be NULL) tells whether the halves differ; `stored`: decided by the stored
- * texture coordinates first.
+ * The exact orientation of a face, v up: +1, -1, or 0: it has none. A quad takes the sign of its larger half in UV
+ * space, the first if they are equal; a half of which two corners are at one position has no vote beside one that is
+ * visible. `fold` may be NULL; `stored`: the stored texture coordinates decide first.
  */
-int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool stored, bool *folded);
+int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool stored, nt_fold *fold);
 
 /* The same of a face that is cut into `count` triangles. */
-int nt_cut_orientation(const nmtan_mesh *mesh, uint32_t corners[2][3], unsigned count, bool stored, bool *folded);
+int nt_cut_orientation(const nmtan_mesh *mesh, uint32_t corners[2][3], unsigned count, bool stored, nt_fold *fold);
 
 /* Whether the outline of the quad with that first corner crosses itself in UV space, as stored: along either diagonal
  * it is cut into halves of different orientations. */

@@ -36,7 +36,8 @@ typedef struct neighbour_answers {
 
 /* Triangles and usable corners at a vertex with an unusable corner, for orientation -1 and +1. */
 typedef struct neighbourhood {
-	nt_dvec3 normal;    /* unit or zero: of the first unusable corner */
+	const float *given; /* the normal of the first unusable corner */
+	nt_dvec3 normal;    /* the same; unit or zero */
 	uint32_t usable[2]; /* the first usable corners, or NT_NO_ID */
 	union {
 		nt_frame_sum sums[2]; /* until all triangles are visited */
@@ -61,7 +62,7 @@ static bool is_open(const repair_state *r, size_t c)
 	return r->ids[r->welded[c]] != NT_NO_ID;
 }
 
-/* Whether a corner of a faulty face is usable. Such a face is a suspect: its rows are there. */
+/* Whether a corner of a faulty face or of a quad is usable: their rows are there. */
 static bool is_usable(const nt_solve *solve, size_t c)
 {
 	uint32_t w;
@@ -69,7 +70,8 @@ static bool is_usable(const nt_solve *solve, size_t c)
 	return w << 1;
 }
 
-/* The exact orientation of a face with that first corner, by what is known of it. */
+/* The exact orientation of a face with that first corner, by what is known of it. A quad that is folded evenly has that
+ * of its usable corners. */
 static int orientation_of(const repair_state *r, size_t face, size_t first)
 {
 	const nmtan_mesh *mesh = r->solve->mesh;
@@ -80,14 +82,27 @@ static int orientation_of(const repair_state *r, size_t face, size_t first)
 	for (size_t c = first; c < first + faulty; c++)
 		if (!is_usable(r->solve, c) && signbit(r->solve->tangents[4 * c + 3]))
 			return 0;
-	return nt_face_orientation(mesh, face, first, true, NULL);
+	nt_fold fold;
+	const int orientation = nt_face_orientation(mesh, face, first, true, &fold);
+	for (size_t c = first; fold == NT_FOLDED_EVENLY && c < first + 4; c++)
+		if (is_usable(r->solve, c))
+			return (int)r->solve->tangents[4 * c + 3];
+	return orientation;
 }
 
-/* A usable corner's tangent, perpendicular to n; false where it has no such part. */
-static bool borrow_tangent(const nt_solve *solve, uint32_t c, nt_dvec3 n, nt_dvec3 *tangent)
+/* Rounds an answer to floats; false: it is not usable beside the normal as it is given. A direction that runs along the
+ * normal, but for noise, may come out of the sums as one across it. */
+static bool store_answer(const neighbourhood *at, nt_dvec3 answer, float tangent[3])
 {
-	*tangent = nt_dvec3_reject(n, nt_dvec3_load(nt_corner_tangent(solve, c)));
-	return nt_dvec3_dot(*tangent, *tangent) > NT_PARALLEL_SINE_SQUARED && nt_dvec3_normalise(tangent);
+	nt_dvec3_store(answer, tangent);
+	return nt_is_frame(tangent, at->given);
+}
+
+/* A usable corner's tangent, perpendicular to the normal; false: it has no such part. */
+static bool borrow_tangent(const nt_solve *solve, uint32_t c, const neighbourhood *at, float tangent[3])
+{
+	nt_dvec3 t = nt_dvec3_reject(at->normal, nt_dvec3_load(nt_corner_tangent(solve, c)));
+	return nt_dvec3_dot(t, t) > NT_PARALLEL_SINE_SQUARED && nt_dvec3_normalise(&t) && store_answer(at, t, tangent);
 }
 
 /* Gives a corner the tangent t and its sign. */
@@ -169,9 +184,10 @@ static nmtan_status number_vertices(repair_state *r, size_t unusable)
 		for (size_t c = at.first; c < at.first + nt_face_size(solve->mesh, at.face); c++) {
 			if (is_open(r, c) || is_usable(solve, c))
 				continue;
-			const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
+			const size_t vertex = nt_vertex_of(solve->mesh, c);
 			r->ids[r->welded[c]] = (uint32_t)r->id_count;
-			r->neighbourhoods[r->id_count++] = (neighbourhood){.normal = n, .usable = {NT_NO_ID, NT_NO_ID}};
+			r->neighbourhoods[r->id_count++] = (neighbourhood){.given = nt_normal(solve->mesh, vertex),
+				.normal = nt_unit_normal(solve->mesh, vertex), .usable = {NT_NO_ID, NT_NO_ID}};
 		}
 	return NMTAN_OK;
 }
@@ -209,18 +225,17 @@ static void visit_face(const repair_state *r, size_t face, size_t first, unsigne
 /* Sums become answers. */
 static void answer(const nt_solve *solve, neighbourhood *at)
 {
-	const nt_dvec3 n = at->normal;
 	neighbour_answers a = {0};
 	for (int side = 0; side < 2; side++) {
 		const bool weighs = at->sums[side].weights > 0.0, usable = at->usable[side] != NT_NO_ID;
 		nt_dvec3 t;
 		a.there[side] = usable || weighs;
-		a.averaged[side] = weighs && nt_sum_tangent(&at->sums[side], n, &t);
-		a.borrowed[side] = !a.averaged[side] && usable && borrow_tangent(solve, at->usable[side], n, &t);
-		if (a.averaged[side] || a.borrowed[side])
-			nt_dvec3_store(t, a.tangents[side]);
+		a.averaged[side] = weighs && nt_sum_tangent(&at->sums[side], at->normal, &t) &&
+				   store_answer(at, t, a.tangents[side]);
+		a.borrowed[side] = !a.averaged[side] && usable &&
+				   borrow_tangent(solve, at->usable[side], at, a.tangents[side]);
 	}
-	nt_dvec3_store(nt_dvec3_perpendicular(n), a.perpendicular);
+	nt_dvec3_store(nt_dvec3_perpendicular(at->normal), a.perpendicular);
 	at->answers = a;
 }
 
@@ -267,13 +282,9 @@ static const float *best_tangent(const repair_state *r, const face *f, size_t c,
 		solve->faults[c] |= NMTAN_FAULT_NO_AVERAGE;
 	if (a->averaged[f->side] || a->borrowed[f->side])
 		return a->tangents[f->side];
-	for (size_t k = 0; k < f->size; k++) {
-		nt_dvec3 t;
-		if (f->usable[k] && borrow_tangent(solve, (uint32_t)(f->first + k), at->normal, &t)) {
-			nt_dvec3_store(t, own);
+	for (size_t k = 0; k < f->size; k++)
+		if (f->usable[k] && borrow_tangent(solve, (uint32_t)(f->first + k), at, own))
 			return own;
-		}
-	}
 	const bool other = !f->orientation && (a->averaged[!f->side] || a->borrowed[!f->side]);
 	return other ? a->tangents[!f->side] : a->perpendicular;
 }

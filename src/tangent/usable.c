@@ -108,19 +108,6 @@ static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int o
 
 /* What a face is like */
 
-static inline unsigned is_same(const float *p, const float *q)
-{
-	return (p[0] == q[0]) & (p[1] == q[1]) & (p[2] == q[2]);
-}
-
-static bool is_degenerate(const nmtan_mesh *mesh, const uint32_t c[3])
-{
-	const float *p[3];
-	for (int k = 0; k < 3; k++)
-		p[k] = nt_position(mesh, nt_vertex_of(mesh, c[k]));
-	return is_same(p[0], p[1]) | is_same(p[1], p[2]) | is_same(p[2], p[0]);
-}
-
 /* Adds what a triangle is like to the counts; returns its exact orientation, as stored if it has one there. */
 static int count_triangle(const nmtan_mesh *mesh, const uint32_t corners[3], nmtan_counts *counts)
 {
@@ -133,18 +120,23 @@ static int count_triangle(const nmtan_mesh *mesh, const uint32_t corners[3], nmt
 }
 
 /* The same for a quad, cut as it is solved. The sign of the larger half is that of the quad's area, whichever way it is
- * cut. */
-static int count_quad(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_counts *counts)
+ * cut. If both are equal, the method's sign is as good as the other. */
+static int count_quad(const nt_solve *solve, size_t face, size_t first, nmtan_counts *counts)
 {
+	const nmtan_mesh *mesh = solve->mesh;
 	uint32_t corners[2][3];
-	bool folded;
+	nt_fold fold;
 	nt_face_triangles(mesh, face, first, corners);
 	count_triangle(mesh, corners[0], counts);
 	count_triangle(mesh, corners[1], counts);
-	counts->degenerate_positions += is_degenerate(mesh, corners[0]) && is_degenerate(mesh, corners[1]);
-	const int orientation = nt_cut_orientation(mesh, corners, 2, true, &folded);
-	counts->folded_quads += folded && nt_outline_crosses(mesh, first);
-	return orientation;
+	counts->degenerate_positions += nt_is_collapsed(mesh, corners[0]) && nt_is_collapsed(mesh, corners[1]);
+	const int orientation = nt_cut_orientation(mesh, corners, 2, true, &fold);
+	counts->folded_quads += fold && nt_outline_crosses(mesh, first);
+	if (fold != NT_FOLDED_EVENLY || !solve->repair)
+		return orientation;
+	take_marks(solve->tangents + 4 * first, 4);
+	const float w = majority_sign(solve->tangents + 4 * first, 4);
+	return w != 0.0f ? (int)w : orientation;
 }
 
 /* Suspects */
@@ -174,7 +166,7 @@ static bool check_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts
 	} else {
 		const uint32_t c = (uint32_t)(3 * t), corners[3] = {c, c + 1, c + 2};
 		orientation = count_triangle(mesh, corners, counts);
-		counts->degenerate_positions += is_degenerate(mesh, corners);
+		counts->degenerate_positions += nt_is_collapsed(mesh, corners);
 	}
 	return solve->repair &&
 		has_unusable(solve, 3 * t, 3, orientation, NT_FAST_PATHS && known && known->judged, counts);
@@ -217,11 +209,11 @@ static void check_quads(const search *job, size_t begin, size_t end, nmtan_count
 		}
 		int orientation;
 		if (quad) {
-			orientation = count_quad(mesh, face, first, counts);
+			orientation = count_quad(solve, face, first, counts);
 		} else {
 			const uint32_t c = (uint32_t)first, corners[3] = {c, c + 1, c + 2};
 			orientation = count_triangle(mesh, corners, counts);
-			counts->degenerate_positions += is_degenerate(mesh, corners);
+			counts->degenerate_positions += nt_is_collapsed(mesh, corners);
 		}
 		if (solve->repair && has_unusable(solve, first, nt_face_size(mesh, face), orientation, false, counts))
 			job->faulty[face / WORD] |= (uint64_t)1 << face % WORD;

@@ -49,6 +49,18 @@ static inline const float *nt_texcoord(const nmtan_mesh *mesh, size_t vertex)
 	return nt_row(mesh->texcoords, mesh->texcoord_stride_bytes, vertex);
 }
 
+/* Whether two corners of a triangle are at one position. */
+static inline bool nt_is_collapsed(const nmtan_mesh *mesh, const uint32_t corners[3])
+{
+	const float *p[3];
+	unsigned same = 0;
+	for (int k = 0; k < 3; k++)
+		p[k] = nt_position(mesh, nt_vertex_of(mesh, corners[k]));
+	for (int k = 0, next = 1; k < 3; k++, next = (next + 1) % 3)
+		same |= (p[k][0] == p[next][0]) & (p[k][1] == p[next][1]) & (p[k][2] == p[next][2]);
+	return same;
+}
+
 /* A row stride: 0 becomes the row's size; false where the stride cannot be, or no array can have `count` such rows.
  * A count above UINT32_MAX is nt_check_faces()'s. */
 static inline bool nt_fill_stride(size_t *stride_bytes, size_t row_bytes, size_t count)

@@ -466,8 +466,8 @@ static unsigned count_threads(void)
 	return threads;
 }
 
-/* Waits until no more than `most` threads are left, and returns how many there are. A thread that was joined still stands
- * in /proc until the kernel has run its last steps. */
+/* Waits until no more than `most` threads are left, and returns how many there are. A thread that was joined still
+ * stands in /proc until the kernel has run its last steps. */
 static unsigned settle_threads(unsigned most, unsigned patience_milliseconds)
 {
 	unsigned threads = count_threads();

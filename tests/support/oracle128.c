@@ -318,13 +318,27 @@ static integer uv_determinant(const oracle *o, const size_t c[3])
 	return determinant(a[0], b[0], d[0], a[1], b[1], d[1]);
 }
 
-/* A face has one orientation: that of the half with the larger area when they differ. */
+static bool equal_rows(const float *a, const float *b)
+{
+	return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+static bool is_collapsed(const oracle *o, const size_t c[3])
+{
+	const float *p[3] = {position(o->mesh, c[0]), position(o->mesh, c[1]), position(o->mesh, c[2])};
+	return equal_rows(p[0], p[1]) || equal_rows(p[1], p[2]) || equal_rows(p[2], p[0]);
+}
+
+/* A face has one orientation: that of its visible half, if the other one has two corners at one place; else that of the
+ * half with the larger area if they differ. */
 static int face_sign(const oracle *o, size_t triangles[2][3], int count)
 {
 	const integer first = uv_determinant(o, triangles[0]);
 	if (count == 1)
 		return sign_of(first);
 	const integer second = uv_determinant(o, triangles[1]);
+	if (sign_of(first) != sign_of(second) && is_collapsed(o, triangles[0]) != is_collapsed(o, triangles[1]))
+		return sign_of(is_collapsed(o, triangles[0]) ? second : first);
 	if (sign_of(first) * sign_of(second) >= 0)
 		return sign_of(first) ? sign_of(first) : sign_of(second);
 	return is_negative(subtract(absolute(first), absolute(second))) ? sign_of(second) : sign_of(first);
@@ -414,11 +428,6 @@ static int sign_in_float(const float *a, const float *b, const float *c)
 	return det > 0x1p-126f ? 1 : det < -0x1p-126f ? -1 : 0;
 }
 
-static bool equal_rows(const float *a, const float *b)
-{
-	return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-}
-
 /* Its corners and orientation; NULL: not wanted. */
 static oracle_triangle *begin_triangle(oracle *o, const size_t c[3], int side, int sign)
 {
@@ -428,19 +437,19 @@ static oracle_triangle *begin_triangle(oracle *o, const size_t c[3], int side, i
 	o->triangles++;
 	*to = (oracle_triangle){.sign = sign, .side = side ? 1 : -1, .largest = INFINITY,
 		.largest_square = INFINITY};
-	const float *p[3];
 	to->float_sign = sign_in_float(texcoord(o->mesh, c[0]), texcoord(o->mesh, c[1]), texcoord(o->mesh, c[2]));
 	for (int k = 0; k < 3; k++) {
 		to->corner[k] = c[k];
 		to->vertex[k] = o->vertex[c[k]];
-		p[k] = position(o->mesh, c[k]);
 	}
-	to->sound = !equal_rows(p[0], p[1]) && !equal_rows(p[1], p[2]) && !equal_rows(p[2], p[0]);
+	to->sound = !is_collapsed(o, c);
 	return to;
 }
 
-static void add_triangle(oracle *o, const size_t c[3], int side)
+/* A triangle of a face of that orientation. */
+static void add_triangle(oracle *o, const size_t c[3], int face)
 {
+	const int side = face > 0;
 	const nmtan_mesh *m = o->mesh;
 	const integer det = uv_determinant(o, c);
 	const int sign = sign_of(det);
@@ -493,8 +502,10 @@ static void add_triangle(oracle *o, const size_t c[3], int side)
 			sine * length(e) * length(g)) / squares : 0;
 		const quad factor = o->weight == ORACLE_AREA ? length(e) * length(g) : 1;
 		sums *s = &o->sum[o->vertex[c[k]]][side];
-		add_direction(o->weight, u, n, factor, angle, angle_condition, &s->t, &s->spread_t);
-		add_direction(o->weight, v, n, factor, angle, angle_condition, &s->b, &s->spread_b);
+		if (face) {
+			add_direction(o->weight, u, n, factor, angle, angle_condition, &s->t, &s->spread_t);
+			add_direction(o->weight, v, n, factor, angle, angle_condition, &s->b, &s->spread_b);
+		}
 		const float *raw = normal(m, c[k]);
 		const double off = (double)raw[0] * raw[0] + (double)raw[1] * raw[1] + (double)raw[2] * raw[2] - 1;
 		if (given)
@@ -532,7 +543,7 @@ static bool solve(const nmtan_mesh *mesh, oracle_weight weight, oracle_corner *c
 		const int count = cut_face(&o, first, size, triangles);
 		const int sign = face_sign(&o, triangles, count);
 		for (int i = 0; i < count; i++)
-			add_triangle(&o, triangles[i], sign > 0);
+			add_triangle(&o, triangles[i], sign);
 		for (size_t c = first; c < first + size; c++)
 			corners[c].sign = sign;
 		first += size;
