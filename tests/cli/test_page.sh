@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# The HTML report in a real browser, and the UV pictures.
+# The HTML report in a real browser, alone and in the page of make web.
 . "$ROOT/tests/support/cli.sh"
 modules=$ROOT/build/node
 
@@ -151,7 +151,10 @@ cmp large.html large.1.html || wrong "one thread writes another page"
 if ! $browses; then
 	:
 elif [ -f "$modules/node_modules/playwright-core/package.json" ] && command -v chromium >/dev/null 2>&1; then
-	node "$ROOT/tests/report/page.mjs" "$modules" . >page.txt 2>&1 || wrong "$(head -c 3000 page.txt)"
+	web=$ROOT/build/web
+	env -u MAKEFLAGS make -s -C "$ROOT" build/web/report.html build/web/report.css build/web/report.js >make.txt 2>&1 ||
+		wrong "make web: $(cat make.txt)"
+	node "$ROOT/tests/report/page.mjs" "$modules" . "$web" >page.txt 2>&1 || wrong "$(head -c 3000 page.txt)"
 else
 	skip_case "chromium or playwright-core is not installed"
 fi

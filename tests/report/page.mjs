@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// page.mjs MODULES FOLDER: opens HTML reports in Chromium and does what readers do. The pages are those of test_page.sh:
+// page.mjs MODULES FOLDER [WEB]: opens HTML reports in Chromium and does what readers do. The pages are those of test_page.sh:
 //
 //   two.html    object "plain" (unmirrored, u 0 to 0.4) and object "</script>..." (mirrored, u 0.6 to 1)
 //   head.html   data/head.obj, whose mirror seams lie in x = 0
@@ -15,11 +15,14 @@
 //   twelve.html twelve meshes with a triangle without area each
 //   lit.html    a quad with a normal map that leans up, with the wrong w in the old version, which names.html has by another name
 //
+// With WEB, the folder of make web, its report shows the same.
+//
 // Prints one line per check that fails, and the number of checks that passed.
+import {readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {pathToFileURL} from 'node:url';
 
-const [modules, folder, shots] = process.argv.slice(2);
+const [modules, folder, web, shots] = process.argv.slice(2);
 const {chromium} = createRequire(modules + '/')('playwright-core');
 let passed = 0, failed = 0;
 
@@ -698,6 +701,65 @@ async function clickTexture(page, u, v) {
 		await expect(async () => await narrow.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing hangs over at 400');
 		await narrow.close();
 	}
+}
+
+// ---- the page of make web ----
+
+// The report of a page in the frame of make web, as src/bindings/web/app.js puts it there.
+async function openFramed(name) {
+	const page = await browser.newPage({viewport: {width: 1400, height: 900}}), origin = 'http://nmtan.test/';
+	page.setDefaultTimeout(120000);
+	page.on('console', m => { if (m.type() === 'error') complaints.push('framed ' + name + ': ' + m.text()); });
+	page.on('pageerror', e => complaints.push('framed ' + name + ': ' + e.message));
+	const types = {html: 'text/html', css: 'text/css', js: 'text/javascript'};
+	await page.route(origin + '**', route => {
+		const path = new URL(route.request().url()).pathname.slice(1);
+		route.fulfill({contentType: types[path.split('.').pop()], body: readFileSync(web + '/' + path)});
+	});
+	await page.goto(origin + 'report.html');
+	await page.evaluate(html => {
+		const content = html.slice(html.indexOf('<script type="application/json"'));
+		const report = new DOMParser().parseFromString(content, 'text/html'), script = document.createElement('script');
+		document.body.append(...report.querySelectorAll('script[type="application/json"], script[id^="g-"]'));
+		document.body.append(Object.assign(script, {src: 'report.js'}));
+		return new Promise((done, failed) => Object.assign(script, {onload: done, onerror: failed}));
+	}, readFileSync(folder + '/' + name, 'utf8'));
+	await ready(page);
+	return page;
+}
+
+// All text of a page, hidden or not, but that of scripts.
+const text = page => page.evaluate(() => {
+	const body = document.body.cloneNode(true);
+	body.querySelectorAll('script').forEach(script => script.remove());
+	return body.textContent.replace(/\s+/g, ' ').trim();
+});
+
+for (const name of web ? ['two.html', 'head.html', 'many.html', 'diff.html'] : []) {
+	const pages = [await open(name), await openFramed(name)];
+	const both = async what => {
+		await Promise.all(pages.map(rest));
+		const [own, framed] = await Promise.all(pages.map(text));
+		const at = [...own].findIndex((letter, i) => letter !== framed[i]);
+		check(own === framed, `${name}, ${what}: make web's page has “${framed.slice(at < 0 ? own.length : at).slice(0, 80)}”`);
+	};
+	await both('as it opens');
+	const {files, findings} = await pages[0].evaluate(() => {
+		const data = JSON.parse(document.getElementById('data').textContent);
+		return {files: data.files.length, findings: data.files.reduce((sum, file) => sum + file.findings.length, 0)};
+	});
+	const hashes = [...Array(Math.min(files, 2)).keys()].map(i => '#file-' + i).concat([...Array(Math.min(findings, 2)).keys()].map(i => '#finding-' + i), '#');
+	for (const hash of hashes) {
+		for (const page of pages) await page.evaluate(hash => { location.hash = hash; }, hash);
+		await both(hash);
+	}
+	const modes = await pages[0].locator('#mode').isVisible()
+		? await pages[0].locator('#mode option').evaluateAll(options => options.map(option => option.value)) : [];
+	for (const mode of modes) {
+		for (const page of pages) await page.selectOption('#mode', mode);
+		await both('mode ' + mode);
+	}
+	for (const page of pages) await page.close();
 }
 
 // ---- for everybody ----

@@ -30,9 +30,10 @@ build/web/report.js: $(web_scripts) src/report/render/page_assets.c
 	@mkdir -p $(@D)
 	{ printf "'use strict';\n(() => {\n" && cat $(web_scripts) && printf '})();\n'; } >$@.part && mv $@.part $@
 
+# Not of $^, which has this file too: see below.
 build/web/report.html: $(web_dir)/report.html $(web_page)/page.html
 	@mkdir -p $(@D)
-	{ cat $^ && printf '</body>\n</html>\n'; } >$@.part && mv $@.part $@
+	{ cat $(web_dir)/report.html $(web_page)/page.html && printf '</body>\n</html>\n'; } >$@.part && mv $@.part $@
 
 # What is made by these rules is made by them as they are now.
 $(addprefix build/web/,$(web_files)): $(web_dir)/web.mk
