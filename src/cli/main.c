@@ -684,6 +684,9 @@ int main(int argc, char **argv)
 	case NT_ACTION_HELP:
 		nt_options_help(&text);
 		break;
+	case NT_ACTION_FIRST_HELP:
+		nt_options_first_help(&text);
+		break;
 	case NT_ACTION_VERSION:
 		if (style.verbosity > 0)
 			libraries_text(&text);

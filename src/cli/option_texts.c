@@ -59,15 +59,51 @@ static void help_row(nt_buffer *out, const nt_option_row *row)
 	nt_buffer_text(out, "\n");
 }
 
+static const char usage[] =
+	"nmtan adds tangents to meshes. It reads OBJ, PLY, glTF, GLB and DRC and writes\n"
+	"glTF, GLB and PLY.\n\n"
+	"  nmtan [options] INPUT OUTPUT\n"
+	"  nmtan [options] -d DIR INPUT...       convert many files, several at once\n"
+	"  nmtan [options] --in-place INPUT...   the same, each file in its place\n"
+	"  nmtan --check [options] INPUT...      report what is wrong, write no mesh\n\n";
+
+static const char exit_codes[] =
+	"\nExit code: 0 done, 1 usage, 2 cannot read or write, 3 invalid input, 4 out of\n"
+	"memory or internal error, 5 unsupported, 6 findings (--fail-on), 7 a limit.\n";
+
+/* What people ask first: examples, and the ten options that they use. */
+void nt_options_first_help(nt_buffer *out)
+{
+	nt_buffer_text(out, usage);
+	nt_buffer_text(out,
+		"Examples:\n"
+		"  nmtan head.obj head.glb                  an OBJ with materials and images\n"
+		"  nmtan in.glb out.glb                     the primitives that need tangents\n"
+		"  nmtan --check in.glb                     what is wrong with a file\n"
+		"  nmtan --check --report=in.html in.glb    the same, as a page with pictures\n"
+		"  nmtan --fix in.glb out.glb               repair what is wrong\n"
+		"  nmtan --quads=pairs in.glb out.glb       the normal map was baked on quads\n"
+		"  nmtan --normal-map=n.png in.ply out.glb  a normal map and no material\n"
+		"  nmtan --update -r -d out assets          a folder; again, only what changed\n"
+		"\nOptions:\n"
+		"  --fix                           do what the report advises, and only that\n"
+		"  --existing=keep|repair|replace  tangents of the input (default: keep)\n"
+		"  --normals=smooth|flat|...       how to make missing normals\n"
+		"  --quads=pairs                   solve pairs of triangles as quads\n"
+		"  --normal-map=FILE               the normal map of a mesh without a material\n"
+		"  -d DIR                          write each input into DIR\n"
+		"  -r                              take folders as the meshes in them\n"
+		"  --report=FILE                   write a report: .txt .json .html .sarif ...\n"
+		"  --fail-on=error|warning|info    exit with 6 on such findings\n"
+		"  -q                              print only errors\n"
+		"\nnmtan --help prints all options, man nmtan explains them.\n");
+	nt_buffer_text(out, exit_codes);
+}
+
 void nt_options_help(nt_buffer *out)
 {
-	nt_buffer_text(out,
-		"nmtan puts tangents on meshes: OBJ, PLY, glTF, GLB and DRC in, glTF, GLB and PLY out.\n\n"
-		"  nmtan [options] INPUT OUTPUT\n"
-		"  nmtan [options] -d DIR INPUT...    many files, several at once\n"
-		"  nmtan [options] --in-place INPUT...\n"
-		"  nmtan --check [options] INPUT...   reads and judges, writes no mesh\n\n"
-		"- is standard input or output (GLB or PLY). -- ends the options.\n");
+	nt_buffer_text(out, usage);
+	nt_buffer_text(out, "- is standard input or output (GLB or PLY). -- ends the options.\n");
 	for (size_t i = 0; i < nt_option_row_count; i++) {
 		const nt_option_row *row = &nt_option_rows[i];
 		if (row->kind == NT_OPTION_HEADING)
@@ -75,15 +111,13 @@ void nt_options_help(nt_buffer *out)
 		else if (row->help)
 			help_row(out, row);
 	}
-	nt_buffer_text(out,
-		"\nExit code: 0 done, 1 usage, 2 cannot read or write, 3 invalid input, 4 out of memory or\n"
-		"internal, 5 unsupported, 6 findings at or above --fail-on.\n");
+	nt_buffer_text(out, exit_codes);
 }
 
 void nt_options_usage(nt_buffer *out)
 {
 	nt_buffer_text(out, "usage: nmtan [options] INPUT OUTPUT\n"
-		"       nmtan --help lists the options\n");
+		"       nmtan -h shows examples, nmtan --help all options\n");
 }
 
 void nt_options_explain(const char *word, nt_buffer *out)

@@ -308,6 +308,8 @@ static nt_status parse_short(parser *p, const char *word, const char *next, int 
 		if (!row->values) {
 			if (apply(p, row, NULL))
 				return p->error->status;
+			if (*letter == 'h')
+				p->command->action = NT_ACTION_FIRST_HELP; /* one screen; --help has all */
 			continue;
 		}
 		if (letter[1])

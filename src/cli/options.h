@@ -15,6 +15,7 @@
 enum nt_action {
 	NT_ACTION_RUN,
 	NT_ACTION_HELP,
+	NT_ACTION_FIRST_HELP,
 	NT_ACTION_VERSION,
 	NT_ACTION_LIST_CODES,
 	NT_ACTION_EXPLAIN,
@@ -94,8 +95,9 @@ bool nt_command_is_many(const nt_command *command);
 /* Appends the options on which the bytes of outputs depend, in one way for each meaning; defaults are left out. */
 void nt_options_shaping(const nt_command *command, nt_buffer *out);
 
-/* What --help prints, and the two lines that follow a mistake. */
+/* What --help prints, the one screen of -h, and the two lines that follow a mistake. */
 void nt_options_help(nt_buffer *out);
+void nt_options_first_help(nt_buffer *out);
 void nt_options_usage(nt_buffer *out);
 
 /* Sets what a word means, which is the code of a finding or a pattern with * and ?. An unknown one is NT_ERROR_USAGE,
