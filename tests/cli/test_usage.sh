@@ -6,9 +6,35 @@ scene "help goes to standard output and succeeds"
 run --help
 exits 0
 prints "--threads"
+prints "7 a limit"
 [ ! -s "$WORK/err.txt" ] || wrong "help wrote to standard error"
+
+scene "-h is one screen, whose options exist and whose eight examples run as they stand"
 run -h
 exits 0
+[ ! -s "$WORK/err.txt" ] || wrong "help wrote to standard error"
+cp "$WORK/out.txt" first
+is "$(awk 'length > 80' first)" ""
+[ "$(wc -l <first)" -le 45 ] || wrong "$(wc -l <first) lines"
+is "$(sed -n 's/^  \(-[^ ]*\).*/\1/p' first | wc -l)" 10
+"$NMTAN" --help >all
+for word in $(grep -oE -- ' --[a-z-]+' first | sort -u); do
+	grep -qE -- "$word( |=|\[|$)" all || wrong "$word is no option"
+done
+cp "$data/head.obj" head.obj
+cp "$data/transformed.gltf" "$data"/*.png .
+"$NMTAN" -q transformed.gltf in.glb
+"$NMTAN" -q "$data/quad_le.ply" in.ply
+mv bumps.png n.png
+mkdir assets
+cp "$data/quad.obj" assets/
+sed -n '/^Examples/,/^$/s/^  \(nmtan .*[^ ]\)   *.*/\1/p' first >examples
+is "$(wc -l <examples)" 8
+while read -r program words; do
+	run $words
+	exits 0
+done <examples
+exists head.glb out.glb in.html assets
 
 scene "the version is one line"
 run --version

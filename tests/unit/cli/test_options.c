@@ -278,7 +278,7 @@ TEST(help_and_version_ask_for_no_names)
 	accepts(&c, WORDS("--help"));
 	assert_int_equal(c.action, NT_ACTION_HELP);
 	accepts(&c, WORDS("-h"));
-	assert_int_equal(c.action, NT_ACTION_HELP);
+	assert_int_equal(c.action, NT_ACTION_FIRST_HELP);
 	accepts(&c, WORDS("--version", "a"));
 	assert_int_equal(c.action, NT_ACTION_VERSION);
 	refuses("'--nope'", WORDS("--help", "--nope"));
