@@ -225,7 +225,7 @@ const nt_option_row nt_option_rows[] = {
 	{"version", 0, NT_OPTION_SET, NULL, NT_ACTION_VERSION, 0, NULL,
 		"print the version and exit; with -v: the libraries too", FIELD(action), false},
 	{"help", 'h', NT_OPTION_SET, NULL, NT_ACTION_HELP, 0, NULL,
-		"-h: print one screen; --help: print all options; and exit", FIELD(action), false},
+		"print all options and exit; -h: print one screen", FIELD(action), false},
 	/* Hidden: for the Makefile. */
 	{"completion", 0, NT_OPTION_CHOICE, "bash|zsh", NT_ACTION_COMPLETION_BASH, 0, NULL, NULL,
 		FIELD(action), false},
