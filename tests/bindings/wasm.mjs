@@ -204,7 +204,39 @@ await test('the names of the counts are those of nmtan_counts, in order', () => 
 		names.map((name) => name.replace(/_(.)/g, (whole, letter) => letter.toUpperCase())));
 });
 
+// an array that has an element by a getter, which does `body` first
+const watched = (array, body) => Object.defineProperty([...array], 1, {get: () => { body(); return array[1]; }, enumerable: true});
+// a typed array that tells its length, and how to make another, only after `body`
+function typed(array, body) {
+	return new (class extends Float32Array {
+		get length() { body(); return super.length; }
+		static get [Symbol.species]() { body(); return Float32Array; }
+	})(array);
+}
+
+await test('a getter that calls a function of the package does not disturb the call that it is in', () => {
+	const m = {...quads, indices: [0, 1, 2, 3, 1, 4, 5, 2]};
+	let calls = 0;
+	const other = () => { calls++; generateTangents([9, 9, 9, 8, 9, 9, 9, 8, 9], [0, 0, 1, 0, 0, 1, 0, 0, 1], [0, 0, 1, 0, 0, 1]); };
+	for (const name of ['positions', 'normals', 'texcoords', 'indices'])
+		assert.deepEqual(solve({...m, [name]: watched(m[name], other)}, {...up, faceSizes: watched([4, 4], other)}),
+			solve(m, {...up, faceSizes: [4, 4]}), name);
+	for (const name of ['positions', 'normals', 'texcoords'])
+		assert.deepEqual(solve({...quads, [name]: {get array() { other(); return typed([0, ...quads[name]], other); }, offset: 1}}),
+			solve(quads), name);
+	const given = {get cornerFaults() { other(); return true; }, get vDown() { other(); return true; }};
+	const corners = (options) => generateCornerTangents(quads.indices, quads.positions, quads.normals, quads.texcoords, options);
+	assert.deepEqual(corners(given), corners({cornerFaults: true, vDown: true}));
+	assert.ok(calls > 10, `${calls}`);
+});
+
+const hole = (array, at) => { const copy = [...array]; delete copy[at]; return copy; };
 const wrong = [
+	['positions with a hole', {positions: hole(quads.positions, 4)}, TypeError, /positions: an array of numbers/],
+	['normals with a hole', {normals: hole(quads.normals, 0)}, TypeError, /normals: an array of numbers/],
+	['texcoords with a hole', {texcoords: hole(quads.texcoords, 3)}, TypeError, /texcoords: an array of numbers/],
+	['indices with a hole', {indices: hole([0, 1, 2], 2)}, TypeError, /indices\[2\]: undefined/],
+	['an empty array that should have something', {indices: Array(3)}, TypeError, /indices\[0\]: undefined/],
 	['positions that are no array', {positions: 7}, TypeError, /positions: an array/],
 	['positions that are missing', {positions: undefined}, TypeError, /positions: an array/],
 	['positions that are not threes', {positions: [1, 2]}, TypeError, /positions: 2 numbers/],

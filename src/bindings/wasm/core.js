@@ -63,20 +63,38 @@ const floats = (address, length) => new Float32Array(wasm.memory.buffer, address
 const words = (address, length) => new Uint32Array(wasm.memory.buffer, address, length);
 const bytesAt = (address, length) => new Uint8Array(wasm.memory.buffer, address, length);
 
-function isArrayLike(value) {
-	return Array.isArray(value) || (ArrayBuffer.isView(value) && typeof value.length === 'number');
-}
+const isArray = (value) => Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView));
 
-const isNumber = (value) => typeof value === 'number';
+// The caller's code must not run while the module's memory has arrays of a call: a getter that calls a function of this
+// package would put its own there. So all that may run some is read before: options, and the elements of arrays, which
+// become typed ones. Elements of typed arrays are no code, and lengths are asked of the type, not of the object.
+const lengthOf = Object.getOwnPropertyDescriptor(Object.getPrototypeOf(Uint8Array).prototype, 'length').get;
+const length = (array) => (Array.isArray(array) ? array.length : lengthOf.call(array));
+
+// A typed array: `array` if it is one, else numbers of a type that holds them. Holes are no numbers.
+function readNumbers(array, Type, message) {
+	if (!Array.isArray(array))
+		return array;
+	const read = new Type(array.length);
+	for (let i = 0; i < read.length; i++) {
+		const value = array[i];
+		if (typeof value !== 'number')
+			throw new TypeError(`nmtan: ${message(i, value)}`);
+		read[i] = value;
+	}
+	return read;
+}
 
 // {array, stride, offset, count} of an attribute: numbers one behind the other, or rows `stride` numbers apart.
 function attribute(value, name, size) {
-	const {array, stride = size, offset = 0} = isArrayLike(value) ? {array: value} : value ?? {};
-	if (!isArrayLike(array) || typeof array[0] === 'bigint' || (Array.isArray(array) && !array.every(isNumber)))
-		throw new TypeError(`nmtan: ${name}: an array of numbers is expected, or {array, stride, offset}`);
+	const {array: given, stride = size, offset = 0} = isArray(value) ? {array: value} : value ?? {};
+	const expected = () => `${name}: an array of numbers is expected, or {array, stride, offset}`;
+	if (!isArray(given) || given instanceof BigInt64Array || given instanceof BigUint64Array)
+		throw new TypeError(`nmtan: ${expected()}`);
+	const array = readNumbers(given, Float32Array, expected);
 	if (!Number.isInteger(stride) || stride < size || !Number.isInteger(offset) || offset < 0)
 		throw new TypeError(`nmtan: ${name}: stride must be a whole number from ${size}, offset one from 0`);
-	const left = array.length - offset;
+	const left = length(array) - offset;
 	if (stride === size && (left < 0 || left % size))
 		throw new TypeError(`nmtan: ${name}: ${left} numbers, which is no multiple of ${size}`);
 	return {array, stride, offset, count: stride === size ? left / size : Math.max(0, Math.floor((left - size) / stride) + 1)};
@@ -84,8 +102,8 @@ function attribute(value, name, size) {
 
 function put(address, from, size) {
 	const to = floats(address, from.count * size);
-	if (from.stride === size) {
-		to.set(from.offset ? from.array.slice(from.offset) : from.array);
+	if (from.stride === size && !from.offset) {
+		to.set(from.array);
 		return;
 	}
 	for (let row = 0, at = from.offset; row < from.count; row++, at += from.stride)
@@ -144,10 +162,11 @@ const TYPES = {method: 'string', repair: 'boolean', vDown: 'boolean', angularThr
 	bitangents: 'boolean', cornerFaults: 'boolean'};
 const OF_MESH = ['method', 'repair', 'vDown', 'angularThreshold', 'faceSizes'];
 
-// The options as words of a job, and faceSizes. What is not one of `names` is an error.
-function readOptions(options, names) {
-	if (typeof options !== 'object' || options === null)
-		throw new TypeError(`nmtan: options: an object is expected, not ${String(options)}`);
+// The options as words of a job, and those that are no words. What is not one of `names` is an error.
+function readOptions(given, names) {
+	if (typeof given !== 'object' || given === null)
+		throw new TypeError(`nmtan: options: an object is expected, not ${String(given)}`);
+	const options = {...given};
 	for (const [name, value] of Object.entries(options)) {
 		if (name === 'convention')
 			throw new TypeError("nmtan: convention: the option is vDown now: true for 'gltf'; v points up without it");
@@ -161,8 +180,21 @@ function readOptions(options, names) {
 		throw new TypeError(`nmtan: method: one of ${METHODS.join(', ')} is expected, not ${method}`);
 	if (!(angularThreshold > 0 && angularThreshold <= 180))
 		throw new TypeError(`nmtan: angularThreshold: more than 0 and at most 180 degrees, not ${angularThreshold}`);
-	return {faceSizes, words: {method: METHODS.indexOf(method), noRepair: repair ? 0 : 1, vDown: vDown ? 1 : 0,
-		angularThreshold}};
+	return {faceSizes: readFaceSizes(faceSizes), bitangents: options.bitangents, cornerFaults: options.cornerFaults,
+		words: {method: METHODS.indexOf(method), noRepair: repair ? 0 : 1, vDown: vDown ? 1 : 0, angularThreshold}};
+}
+
+function readFaceSizes(faceSizes) {
+	const expected = () => 'faceSizes: an array of 3 and 4 is expected';
+	if (faceSizes === undefined)
+		return undefined;
+	if (!isArray(faceSizes))
+		throw new TypeError(`nmtan: ${expected()}`);
+	const read = readNumbers(faceSizes, Float64Array, expected);
+	for (let i = 0; i < length(read); i++)
+		if (read[i] !== 3 && read[i] !== 4)
+			throw new TypeError(`nmtan: ${expected()}`);
+	return read;
 }
 
 // How many faces so many corners make.
@@ -172,23 +204,26 @@ function countFaces(faceSizes, corners, name) {
 			throw new TypeError(`nmtan: ${name}: ${corners} do not make triangles`);
 		return corners / 3;
 	}
-	if (!isArrayLike(faceSizes) || !Array.prototype.every.call(faceSizes, (size) => size === 3 || size === 4))
-		throw new TypeError('nmtan: faceSizes: an array of 3 and 4 is expected');
-	const sum = Array.prototype.reduce.call(faceSizes, (all, size) => all + size, 0);
+	const count = length(faceSizes);
+	let sum = 0;
+	for (let i = 0; i < count; i++)
+		sum += faceSizes[i];
 	if (sum !== corners)
 		throw new TypeError(`nmtan: faceSizes: they make ${sum} corners, ${name} has ${corners}`);
-	return faceSizes.length;
+	return count;
 }
 
-function checkIndices(indices) {
-	if (!isArrayLike(indices) || indices instanceof Float32Array || indices instanceof Float64Array)
+function readIndices(indices, vertices) {
+	if (!isArray(indices) || indices instanceof Float32Array || indices instanceof Float64Array)
 		throw new TypeError('nmtan: indices: an array of whole numbers is expected');
+	return readNumbers(indices, Float64Array, (i, value) =>
+		`indices[${i}]: ${String(value)} is not the number of a vertex below ${vertices}`);
 }
 
 function putIndices(address, indices, vertices) {
-	const to = words(address, indices.length);
+	const to = words(address, length(indices));
 	to.set(indices);
-	if (Array.isArray(indices) || indices.BYTES_PER_ELEMENT > 4 || indices instanceof Int32Array)
+	if (![Uint8Array, Uint8ClampedArray, Uint16Array, Uint32Array].some((type) => indices instanceof type))
 		for (let i = 0; i < to.length; i++)
 			if (to[i] !== indices[i])
 				throw new TypeError(`nmtan: indices[${i}]: ${indices[i]} is not the number of a vertex below ${vertices}`);
@@ -201,11 +236,11 @@ function takeIndices(address, count, vertices, like) {
 	return small ? Uint16Array.from(found) : found.slice();
 }
 
-const sizesBytes = (faceSizes) => (faceSizes === undefined ? {} : {faceSizes: faceSizes.length});
+const sizesBytes = (faceSizes) => (faceSizes === undefined ? {} : {faceSizes: length(faceSizes)});
 
 function putFaces(job, faceSizes, indices, vertices) {
 	if (faceSizes !== undefined)
-		bytesAt(job.faceSizes, faceSizes.length).set(faceSizes);
+		bytesAt(job.faceSizes, length(faceSizes)).set(faceSizes);
 	if (indices)
 		putIndices(job.indices, indices, vertices);
 }
@@ -215,15 +250,15 @@ function readCounts() {
 	return Object.fromEntries(COUNTS.map((name, i) => [name, written[WORD.counts + i]]));
 }
 
-export function generateCornerTangents(indices, positions, normals, texcoords, options = {}) {
-	const {faceSizes, words: chosen} = readOptions(options, [...OF_MESH, 'bitangents', 'cornerFaults']);
-	if (indices)
-		checkIndices(indices);
+export function generateCornerTangents(given, positions, normals, texcoords, options = {}) {
+	const {faceSizes, bitangents, cornerFaults, words: chosen} =
+		readOptions(options, [...OF_MESH, 'bitangents', 'cornerFaults']);
 	const from = attributes(positions, normals, texcoords);
-	const vertices = from.positions.count, corners = indices ? indices.length : vertices;
+	const vertices = from.positions.count;
+	const indices = given && readIndices(given, vertices), corners = indices ? length(indices) : vertices;
 	const faces = countFaces(faceSizes, corners, indices ? 'indices' : 'positions: vertices');
 	const wanted = {...(indices ? {indices: corners * 4} : {}), ...sizesBytes(faceSizes), tangents: corners * 16,
-		...(options.bitangents ? {bitangents: corners * 12} : {}), ...(options.cornerFaults ? {cornerFaults: corners} : {})};
+		...(bitangents ? {bitangents: corners * 12} : {}), ...(cornerFaults ? {cornerFaults: corners} : {})};
 	return withMemory(() => {
 		const job = makeJob({...chosen, faces, vertices}, {...attributeBytes(vertices), ...wanted}, from);
 		putFaces(job, faceSizes, indices, vertices);
@@ -232,8 +267,8 @@ export function generateCornerTangents(indices, positions, normals, texcoords, o
 			fail(status);
 		return {
 			tangents: floats(job.tangents, corners * 4).slice(),
-			...(options.bitangents ? {bitangents: floats(job.bitangents, corners * 3).slice()} : {}),
-			...(options.cornerFaults ? {cornerFaults: bytesAt(job.cornerFaults, corners).slice()} : {}),
+			...(bitangents ? {bitangents: floats(job.bitangents, corners * 3).slice()} : {}),
+			...(cornerFaults ? {cornerFaults: bytesAt(job.cornerFaults, corners).slice()} : {}),
 			counts: readCounts(),
 		};
 	});
@@ -253,11 +288,11 @@ export function generateRepairedTangents(positions, normals, texcoords, options 
 	return ofSoup(positions, normals, texcoords, options, true);
 }
 
-export function generateTangentsIndexed(indices, positions, normals, texcoords, options = {}) {
+export function generateTangentsIndexed(given, positions, normals, texcoords, options = {}) {
 	const {faceSizes, words: chosen} = readOptions(options, OF_MESH);
-	checkIndices(indices);
 	const from = attributes(positions, normals, texcoords);
-	const vertices = from.positions.count, corners = indices.length, faces = countFaces(faceSizes, corners, 'indices');
+	const vertices = from.positions.count, indices = readIndices(given, vertices), corners = length(indices);
+	const faces = countFaces(faceSizes, corners, 'indices');
 	return withMemory(() => {
 		const job = makeJob({...chosen, faces, vertices, sourceCapacity: corners},
 			{...attributeBytes(vertices), ...sizesBytes(faceSizes), indices: corners * 4, splitIndices: corners * 4,
@@ -269,7 +304,7 @@ export function generateTangentsIndexed(indices, positions, normals, texcoords, 
 		const copies = words(wasm.job() >>> 0, WORD.counts)[WORD.sourceCount];
 		return {
 			tangents: floats(job.tangents, (vertices + copies) * 4).slice(),
-			indices: takeIndices(job.splitIndices, corners, vertices + copies, indices),
+			indices: takeIndices(job.splitIndices, corners, vertices + copies, given),
 			sources: words(job.sources, copies).slice(),
 			counts: readCounts(),
 		};
