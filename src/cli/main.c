@@ -417,23 +417,78 @@ static nt_status begin_update(session *s, nt_error *error)
 	return nt_update_begin(&s->update, &options, error);
 }
 
-static nt_status same_path(const char *a, const char *b, bool *same, nt_error *error)
+/* A file that an option has written: what is there now, or where it will be. */
+typedef struct own_file {
+	const char *option, *path;
+	bool is_there, is_regular;
+	struct stat info;
+	nt_buffer place; /* its folder, of which the links are followed, and its name */
+} own_file;
+
+/* False: the folder is none, or memory is exhausted. */
+static bool find_place(nt_buffer *place, const char *path)
 {
-	nt_buffer paths[2] = {{0}, {0}};
-	*same = false;
-	if (strcmp(nt_last_part(a), nt_last_part(b)) != 0)
-		return NT_OK;
-	nt_status status = nt_path_absolute(&paths[0], a, error);
-	if (!status)
-		status = nt_path_absolute(&paths[1], b, error);
-	*same = !status && strcmp(paths[0].data, paths[1].data) == 0;
-	nt_buffer_free(&paths[0]);
-	nt_buffer_free(&paths[1]);
-	return status;
+	nt_error ignored; /* whoever opens the file will meet it again, and say it */
+	if (nt_link_folder(place, path, &ignored))
+		return false;
+	nt_buffer_format(place, "/%s", nt_last_part(path));
+	return !place->failed;
 }
 
-/* What a run writes beside its outputs is none of them, and with --no-clobber new. */
-static nt_status check_own(const nt_command *c, const nt_batch *batch, nt_error *error)
+/* Whether a path names the file: by any link of any kind. Devices and pipes may be named twice. */
+static bool is_own(const own_file *own, const char *path, nt_error *error)
+{
+	struct stat info;
+	if (own->is_there)
+		return own->is_regular && stat(path, &info) == 0 && nt_same_file(&own->info, &info);
+	nt_buffer place = {0};
+	const bool same = strcmp(nt_last_part(own->path), nt_last_part(path)) == 0 && find_place(&place, path) &&
+		own->place.data && strcmp(own->place.data, place.data) == 0;
+	if (place.failed)
+		nt_fail_memory(error);
+	nt_buffer_free(&place);
+	return same;
+}
+
+/* Files that would replace one another, or an input, are refused before anything is read. batch: NULL: its jobs are not
+ * known yet. */
+static nt_status check_pairs(const nt_command *c, const nt_batch *batch, nt_error *error)
+{
+	const bool is_pair = !c->settings.check && !nt_command_is_many(c) && c->operand_count == 2;
+	own_file own[] = {{.option = "--report", .path = c->report}, {.option = "--manifest", .path = c->manifest},
+		{.option = "--depfile", .path = c->depfile}, {.option = "--record", .path = c->record},
+		{.option = "an output", .path = is_pair ? c->operands[1] : NULL}};
+	const size_t count = sizeof own / sizeof *own;
+	nt_error_clear(error);
+	for (size_t i = 0; i < count && !error->status; i++) {
+		if (!own[i].path || strcmp(own[i].path, "-") == 0)
+			continue;
+		own[i].is_there = stat(own[i].path, &own[i].info) == 0;
+		own[i].is_regular = own[i].is_there && S_ISREG(own[i].info.st_mode);
+		if (!own[i].is_there && !find_place(&own[i].place, own[i].path) && own[i].place.failed)
+			nt_fail_memory(error);
+		for (size_t k = 0; k < i && !error->status; k++)
+			if (own[k].path && strcmp(own[k].path, "-") != 0 && is_own(&own[k], own[i].path, error))
+				nt_fail(error, NT_ERROR_USAGE, "%s and %s are both '%s'", own[k].option, own[i].option,
+					own[i].path);
+		/* an output has its own words for an input, and may be one */
+		for (size_t k = 0; batch && k < batch->count && i + 1 < count && !error->status; k++) {
+			const nt_job *job = &batch->jobs[k];
+			if (job->output && is_own(&own[i], job->output, error))
+				nt_fail(error, NT_ERROR_USAGE, "%s and an output are both '%s'", own[i].option,
+					own[i].path);
+			else if (own[i].is_there && !error->status && is_own(&own[i], job->input, error))
+				nt_fail_file(error, NT_ERROR_IO, own[i].path,
+					"refusing to write: it is the same file as the input %s", job->input);
+		}
+	}
+	for (size_t i = 0; i < count; i++)
+		nt_buffer_free(&own[i].place);
+	return error->status;
+}
+
+/* What a run writes beside its outputs is new with --no-clobber. */
+static nt_status check_own(const nt_command *c, nt_error *error)
 {
 	const char *const files[] = {c->depfile, c->manifest};
 	const nt_output_options options = {.no_clobber = c->settings.no_clobber};
@@ -441,13 +496,6 @@ static nt_status check_own(const nt_command *c, const nt_batch *batch, nt_error 
 	for (size_t i = 0; i < sizeof files / sizeof *files && !status; i++)
 		if (files[i] && strcmp(files[i], "-") != 0)
 			status = nt_output_check_clobber(&options, files[i], error);
-	for (size_t i = 0; i < batch->count && c->record && !status; i++) {
-		bool same = false;
-		if (batch->jobs[i].output)
-			status = same_path(c->record, batch->jobs[i].output, &same, error);
-		if (same)
-			return nt_fail(error, NT_ERROR_USAGE, "--record and an output are both '%s'", c->record);
-	}
 	return status;
 }
 
@@ -463,9 +511,9 @@ static nt_status begin_session(session *s, const nt_batch *batch, nt_error *erro
 	if (s->shaping.failed)
 		return nt_fail_memory(error);
 	const char *options = s->shaping.data ? s->shaping.data : "";
-	if (check_own(s->command, batch, error))
+	if (check_own(s->command, error))
 		return error->status;
-	if (s->command->manifest && nt_manifest_open(&s->manifest, s->command->manifest, options, batch, error))
+	if (s->command->manifest && nt_manifest_open(&s->manifest, s->command->manifest, options, error))
 		return error->status;
 	return begin_update(s, error);
 }
@@ -580,11 +628,15 @@ static int run(nt_command *command, nt_style style, bool colour_on_stdout)
 	nt_report_plan plan = {0};
 	nt_report_folder folder = {0};
 	nt_error error;
-	nt_status status = choose_inputs(command, &inputs, &error);
+	nt_status status = check_pairs(command, NULL, &error);
+	if (!status)
+		status = choose_inputs(command, &inputs, &error);
 	if (!status)
 		status = nt_report_plan_make(&plan, command, colour_on_stdout, &error);
 	if (!status)
 		status = prepare(&batch, command, &error);
+	if (!status)
+		status = check_pairs(command, &batch, &error);
 	if (!status && plan.target.folder)
 		status = nt_report_folder_begin(&folder, &plan.target, &error);
 	int code = nt_exit_code(status);

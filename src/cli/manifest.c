@@ -184,20 +184,11 @@ static bool is_ours(int fd)
 	return count <= 0 || (count == (ssize_t)sizeof bytes && memcmp(bytes, begin, sizeof bytes) == 0);
 }
 
-static nt_status refuse_foreign(const nt_manifest *manifest, const nt_batch *batch, nt_error *error)
+static nt_status refuse_foreign(const nt_manifest *manifest, nt_error *error)
 {
-	struct stat info, input;
-	for (size_t i = 0; i < batch->count; i++)
-		if (batch->jobs[i].output && strcmp(batch->jobs[i].output, manifest->path) == 0) {
-			nt_fail(error, NT_ERROR_USAGE, "--manifest and an output are both '%s'", manifest->path);
-			return error->status;
-		}
+	struct stat info;
 	if (stat(manifest->path, &info) != 0)
 		return NT_OK;
-	for (size_t i = 0; i < batch->count; i++)
-		if (stat(batch->jobs[i].input, &input) == 0 && nt_same_file(&input, &info))
-			return nt_fail_file(error, NT_ERROR_IO, manifest->path,
-				"refusing to write: it is the same file as the input %s", batch->jobs[i].input);
 	const int fd = S_ISREG(info.st_mode) ? open(manifest->path, O_RDONLY | O_CLOEXEC) : -1;
 	const bool ours = fd < 0 || is_ours(fd);
 	if (fd >= 0)
@@ -206,12 +197,11 @@ static nt_status refuse_foreign(const nt_manifest *manifest, const nt_batch *bat
 		"refusing to write: the file exists already and is no manifest");
 }
 
-nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options, const nt_batch *batch,
-	nt_error *error)
+nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options, nt_error *error)
 {
 	*manifest = (nt_manifest){.path = path, .options = options, .fd = -1};
 	const bool standard = strcmp(path, "-") == 0;
-	if (!standard && refuse_foreign(manifest, batch, error))
+	if (!standard && refuse_foreign(manifest, error))
 		return error->status;
 	if (!nt_buffer_reserve(&manifest->line, LINE_BYTES))
 		return nt_fail_memory(error);

@@ -16,10 +16,9 @@ typedef struct nt_manifest {
 	nt_error error;      /* the first that came about */
 } nt_manifest;
 
-/* Begins a file anew, which must not be one of the inputs. Returns NT_OK, NT_ERROR_IO, NT_ERROR_USAGE or
+/* Begins a file anew: an earlier manifest, or none, is there. Returns NT_OK, NT_ERROR_IO, NT_ERROR_USAGE or
  * NT_ERROR_MEMORY; close it after failure, too. */
-nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options, const nt_batch *batch,
-	nt_error *error);
+nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options, nt_error *error);
 
 /* Appends the line of a job that has ended, in one piece. What goes wrong is kept for nt_manifest_close(). */
 void nt_manifest_add(nt_manifest *manifest, const nt_job *job, int exit_code);

@@ -69,7 +69,7 @@ says "2 of 2 done"
 same a.glb expected.glb
 same b.glb expected.glb
 run --in-place --report=b.glb --report-format=text a.glb b.glb
-exits 2
+exits 1
 same b.glb expected.glb
 run --in-place a.glb b.glb a.glb
 exits 0
@@ -78,6 +78,42 @@ cp "$data/quad.obj" .
 run --in-place quad.obj
 exits 1
 same quad.obj "$data/quad.obj"
+
+scene "two files that would be one are refused before anything is read, however they are spelled"
+mkdir folder
+ln -s folder link
+touch there.json
+ln there.json hard.json
+ln -s there.json soft.json
+options="--report= --manifest= --depfile= --record= -o"
+for names in "new.glb ./new.glb" "folder/new.json link/new.json" "there.json hard.json" "soft.json $PWD/there.json"; do
+	for one in $options; do
+		for other in $options; do
+			[ "$one" != "$other" ] || continue
+			output=no.glb
+			[ $one != -o ] && [ $other != -o ] || output=
+			run --report-format=json $one${names% *} $other${names#* } nothing.obj $output
+			exits 1
+			says "are both '"
+			says_not nothing.obj
+		done
+	done
+done
+cp "$data/quad.obj" .
+for option in --report= --manifest= --depfile= --record=; do
+	[ $option != --report= ] && format= || format=--report-format=json
+	run -d folder $format ${option}link/quad.glb quad.obj nothing.obj
+	exits 1
+	says "${option%=} and an output are both 'link/quad.glb'"
+	ln -f quad.obj input.json
+	run $format ${option}input.json quad.obj no.glb
+	exits 2
+	says "input.json: refusing to write: it is the same file as the input quad.obj"
+done
+is "$(ls folder)" ""
+[ ! -s there.json ] || wrong "$(cat there.json)"
+run --report-format=json --report=/dev/null --manifest=/dev/null quad.obj no.glb
+exits 0
 
 scene "what stands in the way of an output is said with the way out"
 cp "$data/plates.glb" a.glb

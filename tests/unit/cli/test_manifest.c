@@ -27,10 +27,9 @@ static void note(nt_trace *trace)
 static const char *line_of(const nt_job *job, int exit_code)
 {
 	static char text[4096];
-	const nt_batch none = {0};
 	nt_manifest manifest;
 	nt_error error;
-	assert_int_equal(nt_manifest_open(&manifest, "m", "--method=area", &none, &error), NT_OK);
+	assert_int_equal(nt_manifest_open(&manifest, "m", "--method=area", &error), NT_OK);
 	nt_manifest_add(&manifest, job, exit_code);
 	assert_int_equal(nt_manifest_close(&manifest, &error), NT_OK);
 	FILE *file = fopen("m", "r");
@@ -93,11 +92,11 @@ TEST(a_failure_has_its_place)
 	assert_non_null(strstr(line_of(&job, 3), ",\"error\":{\"message\":\"bad\"},"));
 }
 
-static void refuses(const nt_batch *batch, const char *path, nt_status expected)
+static void refuses(const char *path, nt_status expected)
 {
 	nt_manifest manifest;
 	nt_error error;
-	assert_int_equal(nt_manifest_open(&manifest, path, "", batch, &error), expected);
+	assert_int_equal(nt_manifest_open(&manifest, path, "", &error), expected);
 	if (expected == NT_ERROR_IO)
 		assert_string_equal(error.place.file, path);
 	nt_manifest_close(&manifest, &error);
@@ -105,27 +104,20 @@ static void refuses(const nt_batch *batch, const char *path, nt_status expected)
 
 TEST(only_a_manifest_is_replaced)
 {
-	char output[] = "o.glb";
-	nt_job job = {.input = "a.obj", .output = output};
-	const nt_batch batch = {&job, 1};
-	put_text_file("a.obj", "");
+	const nt_job job = {.input = "a.obj", .end = NT_JOB_UNTRIED};
 	put_text_file("notes", "mine");
-	refuses(&batch, "a.obj", NT_ERROR_IO);
-	refuses(&batch, "o.glb", NT_ERROR_USAGE);
-	refuses(&batch, "notes", NT_ERROR_IO);
-	refuses(&batch, "no/m", NT_ERROR_IO);
+	refuses("notes", NT_ERROR_IO);
+	refuses("no/m", NT_ERROR_IO);
 	put_text_file("m", "{\"input\":\"earlier\"}\n");
-	job.end = NT_JOB_UNTRIED;
 	assert_null(strstr(line_of(&job, 0), "earlier"));
 }
 
 TEST(what_cannot_be_written_is_told_at_the_end)
 {
-	const nt_batch none = {0};
 	const nt_job job = {.input = "a", .end = NT_JOB_UNTRIED};
 	nt_manifest manifest;
 	nt_error error;
-	assert_int_equal(nt_manifest_open(&manifest, "/dev/full", "", &none, &error), NT_OK);
+	assert_int_equal(nt_manifest_open(&manifest, "/dev/full", "", &error), NT_OK);
 	nt_manifest_add(&manifest, &job, 0);
 	nt_manifest_add(&manifest, &job, 0);
 	assert_int_equal(nt_manifest_close(&manifest, &error), NT_ERROR_IO);
@@ -135,15 +127,14 @@ TEST(what_cannot_be_written_is_told_at_the_end)
 /* What most lines take is there from the start, so that the failure itself can be told. */
 TEST(a_line_needs_no_memory)
 {
-	const nt_batch none = {0};
 	const nt_job job = {.input = "a", .status = NT_ERROR_MEMORY, .end = NT_JOB_RAN};
 	nt_manifest manifest;
 	nt_error error;
 	fail_allocations_from(0);
-	assert_int_equal(nt_manifest_open(&manifest, "m", "", &none, &error), NT_ERROR_MEMORY);
+	assert_int_equal(nt_manifest_open(&manifest, "m", "", &error), NT_ERROR_MEMORY);
 	stop_failing_allocations();
 	nt_manifest_close(&manifest, &error);
-	assert_int_equal(nt_manifest_open(&manifest, "m", "", &none, &error), NT_OK);
+	assert_int_equal(nt_manifest_open(&manifest, "m", "", &error), NT_OK);
 	fail_allocations_from(0);
 	nt_manifest_add(&manifest, &job, 4);
 	assert_false(stop_failing_allocations());
