@@ -11,6 +11,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include "gltf/accessor.h"
 #include "gltf/document.h"
 #include "gltf/draco.h"
 #include "gltf/materials.h"
@@ -69,6 +70,31 @@ static bool is_disposable(const nt_json_value *primitive, const nt_mesh *mesh, u
 		!mesh->texcoords_transformed && !nt_json_find(primitive, "targets") && !mesh->compressed;
 }
 
+/* Whether there are tangents, and whether they can be read. If not, nobody stops for what a solve may replace. */
+static nt_status describe_tangents(nt_scene *scene, nt_gltf *document, const nt_json_value *attributes,
+	uint64_t position_count, nt_mesh *mesh, nt_error *out_of_memory)
+{
+	const nt_json_value *reference = nt_json_find(attributes, "TANGENT");
+	mesh->has_tangents = reference != NULL;
+	if (!reference)
+		return NT_OK;
+	uint64_t index = UINT64_MAX;
+	nt_gltf_accessor accessor;
+	nt_error error;
+	nt_error_clear(&error);
+	nt_json_get_uint64(reference, &index);
+	if (index >= UINT32_MAX)
+		nt_fail(&error, NT_ERROR_INPUT, "%s, expected an accessor's number", nt_json_type_text(reference));
+	else if (!nt_gltf_get_accessor(document, index, "", &accessor, &error) && accessor.components != 4)
+		nt_fail(&error, NT_ERROR_INPUT, "accessor %u has %u components, expected 4", accessor.index,
+			accessor.components);
+	else if (!error.status && accessor.count != position_count)
+		nt_fail(&error, NT_ERROR_INPUT, "accessor %u has %llu elements, POSITION has %llu", accessor.index,
+			(unsigned long long)accessor.count, (unsigned long long)position_count);
+	mesh->tangents_fault = error.status ? nt_arena_text(&scene->arena, error.message, strlen(error.message)) : NULL;
+	return error.status && !mesh->tangents_fault ? nt_fail_memory(out_of_memory) : NT_OK;
+}
+
 static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	const nt_json_value *primitive, nt_mesh *mesh, const nt_read_options *options, nt_error *error)
 {
@@ -104,7 +130,10 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	const uint64_t corners = positions ? claimed_count(document, indices ? indices : positions) : 0;
 	mesh->has_positions = positions != NULL;
 	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;
-	mesh->has_tangents = nt_json_find(attributes, "TANGENT") != NULL;
+	status = describe_tangents(scene, document, attributes, positions ? claimed_count(document, positions) : 0, mesh,
+		error);
+	if (status)
+		return status;
 	mesh->compressed = nt_gltf_draco_of(primitive) != NULL;
 	mesh->has_polygons = mode == NT_GLTF_TRIANGLES && !mesh->compressed &&
 		nt_json_find(nt_json_find(primitive, "extensions"), "FB_ngon_encoding");

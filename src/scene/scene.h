@@ -191,6 +191,7 @@ typedef struct nt_mesh {
 	bool reachable;          /* false: no scene shows it */
 	bool unlit;              /* every material of it is unlit */
 	bool has_positions, has_normals, has_texcoords, has_tangents; /* texcoords: the set that is used */
+	const char *tangents_fault; /* why the tangents that it has cannot be read; NULL: they can */
 	uint32_t texcoord_set;   /* number of that set */
 	nt_wrap wrap[2];         /* along u and v, of the texture that tangents serve */
 	float wrap_offset[2];    /* of its transform, v up, where it is mirrored: elsewhere an offset moves all alike */

@@ -436,6 +436,11 @@ TAN_NON_UNIT|t(v => [2, 0, 0, v[3]]), delete p.material
 TAN_BAD_W|t(v => [1, 0, 0, 0])
 TAN_MORPH_MISSING|p.targets = [{POSITION: a.POSITION}]
 TAN_NO_NORMAL|delete a.NORMAL, delete a.TANGENT
+TAN_NO_NORMAL|delete a.NORMAL
+TAN_ACCESSOR|g.accessors[n].type = 'VEC3'
+TAN_ACCESSOR|g.accessors[n].count = 3
+TAN_ACCESSOR|g.accessors[n].byteOffset = 1000
+TAN_ACCESSOR|a.TANGENT = 99
 TAN_MISSING_REQUIRED|delete a.TANGENT, g.materials = [{extensions: {KHR_materials_anisotropy: {anisotropyStrength: 0.5}}}], g.extensionsUsed = ['KHR_materials_anisotropy']
 END
 green_down n.png
