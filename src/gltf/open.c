@@ -130,8 +130,8 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	const uint64_t corners = positions ? claimed_count(document, indices ? indices : positions) : 0;
 	mesh->has_positions = positions != NULL;
 	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;
-	status = describe_tangents(scene, document, attributes, positions ? claimed_count(document, positions) : 0, mesh,
-		error);
+	status = describe_tangents(scene, document, attributes, positions ? claimed_count(document, positions) : 0,
+		mesh, error);
 	if (status)
 		return status;
 	mesh->compressed = nt_gltf_draco_of(primitive) != NULL;

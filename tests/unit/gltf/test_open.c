@@ -288,8 +288,9 @@ TEST(materials_become_slots)
 		"\"VRMC_materials_mtoon\":{}}}", mine, NT_SLOT_NORMAL, 0, false);
 	check_material("{\"extensions\":{\"KHR_materials_unlit\":{},\"VRMC_materials_mtoon\":{}}}", mine, 0, 0, false);
 	/* that of VRM 0 is in the root */
-	check_material("{\"extensions\":{\"KHR_materials_unlit\":{}}}],\"extensions\":{\"VRM\":{\"materialProperties\":"
-		"[{\"textureProperties\":{\"_BumpMap\":0}}]}},\"extras\":[0", mine, NT_SLOT_NORMAL, 0, false);
+	check_material("{\"extensions\":{\"KHR_materials_unlit\":{}}}],\"extensions\":{\"VRM\":{"
+		"\"materialProperties\":[{\"textureProperties\":{\"_BumpMap\":0}}]}},\"extras\":[0",
+		mine, NT_SLOT_NORMAL, 0, false);
 	check_material("{}],\"extensions\":{\"VRM\":{\"materialProperties\":"
 		"[{\"textureProperties\":{\"_MainTex\":0}}]}},\"extras\":[0", mine, 0, 0, false);
 	check_material("{},{\"normalTexture\":{\"index\":0}}", "\"material\":0,\"extensions\":{"
@@ -302,8 +303,9 @@ TEST(materials_become_slots)
 TEST(vrm_0_mirrors_a_normal_map_by_its_main_texture)
 {
 	fixture f;
-	load_quad(&f, QUAD_ATTRIBUTES ",\"material\":0", ",\"materials\":[{}],\"extensions\":{\"VRM\":{\"materialProperties\":"
-		"[{\"textureProperties\":{\"_BumpMap\":0},\"vectorProperties\":{\"_MainTex\":[0,0,-1,1]}}]}}");
+	load_quad(&f, QUAD_ATTRIBUTES ",\"material\":0", ",\"materials\":[{}],\"extensions\":{\"VRM\":{"
+		"\"materialProperties\":[{\"textureProperties\":{\"_BumpMap\":0},"
+		"\"vectorProperties\":{\"_MainTex\":[0,0,-1,1]}}]}}");
 	assert_int_equal(f.scene.meshes[0].solve_sign, -1);
 	close_text(&f);
 }
