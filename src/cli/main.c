@@ -53,6 +53,7 @@ typedef struct session {
 	nt_summary total; /* of the times and sizes alone */
 	nt_failures failures;
 	size_t count, current, untried; /* jobs: all, up to date, not tried */
+	size_t solved, unchanged, wrong; /* outputs: with new tangents, without; with wrong ones that were kept */
 	int exit_code;
 } session;
 
@@ -175,7 +176,8 @@ static int tell_run(session *s, nt_job *job)
 	if (s->style.verbosity >= 0 && !shown) {
 		const bool infos = c->settings.check || s->style.verbosity > 0;
 		nt_message_findings(&s->text, &summary->findings, summary->report, s->plan->options.ignore, job->input,
-			infos, s->plan->options.min_severity, fails ? least_failure - 1 : NT_SEVERITY_ERROR, style);
+			job->output, infos, s->plan->options.min_severity,
+			fails ? least_failure - 1 : NT_SEVERITY_ERROR, style);
 	} else if (s->style.verbosity < 0 && !job->status && !c->settings.check)
 		nt_message_left_out(&s->text, job, s->plan->options.ignore);
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
@@ -188,6 +190,9 @@ static int tell_run(session *s, nt_job *job)
 		if (fails)
 			code = NT_EXIT_FINDINGS;
 	}
+	s->solved += !job->status && summary->solved_count;
+	s->unchanged += !job->status && !summary->solved_count;
+	s->wrong += !job->status && summary->keeps_wrong;
 	add_times(&s->total, summary);
 	add_page(s, summary->report, &code);
 	if (s->reports)
@@ -363,11 +368,26 @@ static void tell_files(session *s)
 		tell_report_error(s, &error, c->depfile);
 }
 
+/* What came of those that are done. */
+static void append_outcomes(session *s)
+{
+	const size_t counts[] = {s->solved, s->unchanged, s->wrong};
+	const char *const words[] = {"got tangents", "unchanged", s->wrong == 1 ? "keeps wrong tangents"
+										: "keep wrong tangents"};
+	const char *before = "; ";
+	for (int i = 0; i < 3; i++) {
+		if (!counts[i])
+			continue;
+		nt_buffer_format(&s->text, "%s%zu %s", before, counts[i], words[i]);
+		before = ", ";
+	}
+}
+
 /* After the last of many: how many failed, and why; and the times. */
 static void tell_end(session *s)
 {
 	const size_t failed = s->failures.count, count = s->count;
-	if (count != 1 && (failed || s->style.verbosity >= 0)) {
+	if (count != 1 && (failed || s->wrong || s->style.verbosity >= 0)) {
 		nt_buffer_format(&s->text, "nmtan: %zu of %zu done", count - failed - s->untried, count);
 		if (s->current)
 			nt_buffer_format(&s->text, ", %zu of them up to date", s->current);
@@ -375,6 +395,8 @@ static void tell_end(session *s)
 			nt_buffer_format(&s->text, ", %zu failed", failed);
 		if (s->untried)
 			nt_buffer_format(&s->text, ", %zu not tried", s->untried);
+		if (!s->command->settings.check)
+			append_outcomes(s);
 		nt_buffer_text(&s->text, failed > s->failures.refused ? ":\n" : "\n");
 		nt_failures_append(&s->text, &s->failures, s->command->manifest);
 	}

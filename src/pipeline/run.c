@@ -398,6 +398,20 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 	return status;
 }
 
+/* Whether tangents stayed of which a stage or the report found that they are wrong. */
+static bool keeps_wrong(const nt_summary *summary)
+{
+	bool any = false;
+	for (size_t i = 0; i < summary->findings.count; i++)
+		any |= summary->findings.items[i].code == NT_CODE_TAN_KEPT_SIGN;
+	for (size_t i = 0; summary->report && i < summary->report->finding_count; i++) {
+		const nt_report_finding *f = &summary->report->findings[i];
+		any |= f->mesh != NT_NONE && f->severity > NT_SEVERITY_INFO && nt_code_mends(f->code) &&
+			f->code != NT_CODE_NMAP_GREEN_DOWN && f->code != NT_CODE_TAN_MISSING_REQUIRED;
+	}
+	return any;
+}
+
 /* ---- limits ---- */
 
 static nt_status fail_late(const run *r, nt_error *error)
@@ -473,6 +487,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->findings = r.scene.findings;
 	summary->rounding = r.scene.rounding;
 	summary->morph_cost = r.scene.morph_cost;
+	summary->keeps_wrong = !settings->check && keeps_wrong(summary);
 	r.scene.findings = (nt_finding_list){0};
 	nt_scene_free(&r.scene);
 	nt_textures_free(r.textures);

@@ -347,6 +347,25 @@ for options in "--check three.gltf" "--existing=keep three.gltf a.glb" "--flip-g
 done
 says "--fix turns the maps that need it"
 
+scene "wrong tangents that are kept are told with the command that repairs them, and counted of many, with -q too"
+mapped
+gltf m.gltf wrong 'const n = g.meshes[0].primitives[0].attributes.TANGENT; for (let i = 0; i < 4; i++) bytes[0].writeFloatLE(-bytes[0].readFloatLE(at(n, i) + 12), at(n, i) + 12)'
+run wrong.gltf out.glb
+exits 0
+says "[TAN_KEPT_SIGN]: nmtan --fix wrong.gltf out.glb"
+run --fix wrong.gltf out.glb
+says "fixed TAN_SIGN_MISMATCH in 1 primitive"
+says_not "TAN_KEPT_SIGN"
+for quiet in "" -q; do
+	run $quiet -d out square.obj m.gltf wrong.gltf
+	exits 0
+	says "nmtan: 3 of 3 done; 1 got tangents, 2 unchanged, 1 keeps wrong tangents"
+done
+run -q --report=r.json -d out square.obj wrong.gltf
+says "nmtan: 2 of 2 done; 1 got tangents, 1 unchanged, 1 keeps wrong tangents"
+run -q --fix -d out square.obj m.gltf wrong.gltf
+silent
+
 scene "wrong signs of a few slivers are a warning, of as few large triangles an error; a corner's vertex is one spot"
 mapped
 for size in 0.001 4; do

@@ -51,12 +51,14 @@ TEST(findings_come_worst_first_and_grouped)
 	}
 	const bool ignore[NT_CODE_COUNT] = {false};
 	nt_buffer out = {0};
-	nt_message_findings(&out, &findings, NULL, ignore, "a.obj", false, NT_SEVERITY_INFO, NT_SEVERITY_ERROR, plain);
+	nt_message_findings(&out, &findings, NULL, ignore, "a.obj", NULL, false,
+		NT_SEVERITY_INFO, NT_SEVERITY_ERROR, plain);
 	assert_says(out.data, PARTS("nmtan: a.obj:1: warning: ", "nmtan: a.obj:5: warning: ", "!a.obj:6:",
 		"nmtan: warning: and 3 more [MATERIAL_UNKNOWN]", "!NORMALS_MADE"));
 	nt_buffer_free(&out);
 
-	nt_message_findings(&out, &findings, NULL, ignore, "a.obj", true, NT_SEVERITY_INFO, NT_SEVERITY_ERROR, verbose);
+	nt_message_findings(&out, &findings, NULL, ignore, "a.obj", NULL, true,
+		NT_SEVERITY_INFO, NT_SEVERITY_ERROR, verbose);
 	const char *warning = strstr(out.data, "a.obj:8: warning: ");
 	const char *info = strstr(out.data, "a.obj:1: info: ");
 	assert_true(warning && info && warning < info);
