@@ -408,7 +408,9 @@ static void tell_end(session *s)
 
 static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 {
-	if (c->settings.check)
+	if (c->settings.check && c->output)
+		return nt_batch_pair(batch, c->operands[0], c->output, error);
+	if (c->settings.check && !c->directory && !c->settings.in_place)
 		return nt_batch_check(batch, c->operands, c->operand_count, error);
 	if (c->directory)
 		return nt_batch_into(batch, c->operands, c->operand_count, c->directory, c->keep_tree, &c->settings,
@@ -430,7 +432,7 @@ static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 static nt_status begin_update(session *s, nt_error *error)
 {
 	const nt_command *c = s->command;
-	if (!c->update && !c->record)
+	if ((!c->update && !c->record) || c->settings.check)
 		return NT_OK;
 	const nt_update_options options = {.look = c->update != 0,
 		.by = c->update ? (nt_update_by)(c->update - 1) : NT_UPDATE_BY_TIME, .record = c->record,
@@ -636,7 +638,7 @@ static nt_status choose_inputs(nt_command *c, nt_inputs *inputs, nt_error *error
 		status = nt_inputs_add(inputs, c->operands[i], &rules, error);
 	if (!status && c->files_from)
 		status = nt_inputs_add_list(inputs, c->files_from, &rules, error);
-	if (!status && !c->settings.check)
+	if (!status && (c->directory || c->settings.in_place))
 		status = nt_inputs_drop_repeated(inputs, error);
 	c->operands = inputs->names;
 	c->operand_count = inputs->count;

@@ -28,6 +28,7 @@ typedef struct run {
 	nt_error *error;
 	nt_file input;
 	nt_scene scene;
+	bool nowhere; /* judged as if written to a stream */
 	const nt_format_entry *reader, *writer; /* writer: NULL where --check judges the input as it is */
 	nt_read_options read_options;
 	nt_textures *textures; /* NULL: the output has none */
@@ -152,7 +153,7 @@ static void plan_options_of(run *r)
 	const nt_settings *s = r->settings;
 	nt_read_options *o = &r->read_options;
 	o->edits = nt_writer_edits(r->reader, r->writer);
-	o->checks_kept = o->across && s->check && s->report;
+	o->checks_kept = o->across && s->check && s->report && !r->writer;
 	o->only_results = o->edits && !s->check && !s->report && !s->verify && !s->bitangents && !o->across &&
 		s->draco <= NT_DRACO_OFF && s->normals == NT_NORMALS_AUTO && !s->list_meshes;
 	/* primitives, or normals that are made for some that are compressed */
@@ -209,7 +210,7 @@ static nt_status protect_inputs(const run *r, nt_output *output)
 	return status;
 }
 
-/* With --check as if to a stream, of which nothing is written: what writers leave out is found there. */
+/* A check does all but write, for what writers leave out is found there. */
 static nt_status write_scene(run *r)
 {
 	begin_stage(r, NT_STAGE_WRITE);
@@ -218,10 +219,10 @@ static nt_status write_scene(run *r)
 	const bool dry = output_options.dry_run;
 	const nt_write_options options = {
 		.format = r->writer->format,
-		.path = s->check ? "-" : r->output_path,
+		.path = r->output_path,
 		.bitangents = s->bitangents,
 		.images = s->images,
-		.buffers = s->check ? NT_BUFFERS_EMBED : s->buffers,
+		.buffers = r->nowhere ? NT_BUFFERS_EMBED : s->buffers,
 		.draco = s->draco,
 		.morphs = s->morphs,
 		.draco_bits = {s->draco_bits[0], s->draco_bits[1], s->draco_bits[2], s->draco_bits[3]},
@@ -236,7 +237,7 @@ static nt_status write_scene(run *r)
 	nt_status status = nt_output_create(&output, &output_options, r->error);
 	if (!status && r->writer->format != NT_FORMAT_PLY)
 		status = nt_stage_quads(&r->scene, r->error);
-	if (!status && !s->in_place && !s->check)
+	if (!status && !s->in_place && !r->nowhere)
 		status = protect_inputs(r, output);
 	if (!status)
 		status = r->writer->write(&r->scene, &options, output, r->error);
@@ -380,9 +381,15 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 	judged.check = true;
 	judged.report = &options;
 	judged.check_maps = NT_CHECK_MAPS_ON;
-	judged.list_meshes = judged.digests = judged.in_place = judged.verify = false;
+	judged.list_meshes = judged.digests = judged.in_place = judged.verify = judged.no_clobber = false;
+	judged.output_format = NT_FORMAT_UNKNOWN;
+	const char *output = r->output_path;
+	r->output_path = "-";
+	r->nowhere = true;
 	set_read_options(r, &judged);
 	nt_status status = make_report(r, run_stages(r));
+	r->output_path = output;
+	r->nowhere = false;
 	if (!status && nt_fixes_make(&r->fixes, r->summary->report))
 		status = nt_fail_memory(r->error);
 	*fixed = *wished;
@@ -452,7 +459,8 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	memset(summary, 0, sizeof *summary);
 	nt_error_clear(error);
 	nt_settings fixed;
-	run r = {.input_path = input, .output_path = output, .summary = summary, .error = error};
+	run r = {.input_path = input, .output_path = output ? output : "-", .nowhere = !output, .summary = summary,
+		.error = error};
 	set_read_options(&r, settings);
 	const double begin = nt_seconds();
 	r.stage_begin = begin;
@@ -475,7 +483,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	status = make_report(&r, status);
 	if (settings->report && status == NT_ERROR_MEMORY && nt_timer_end(&r.timer))
 		status = fail_late(&r, error);
-	summary->left = r.result.left;
+	summary->left = r.result.left && !settings->check;
 	summary->note = r.result.note.data;
 	memcpy(summary->fixed, r.fixes.counts, sizeof summary->fixed);
 	nt_timer_end(&r.timer);

@@ -97,6 +97,7 @@ typedef struct nt_settings {
 	bool verify;   /* read the output back with tinygltf before it takes its name */
 	bool dry_run;  /* do everything but write */
 	bool check;    /* a report only: no output */
+	bool converts; /* with check: a glTF is judged as it would be written, not as it is */
 	bool sync;
 	bool no_clobber;
 	bool list_meshes; /* summary->lines is wanted */
