@@ -44,7 +44,7 @@
 /* Each thread has cursors of its own for all vertices, which are then gone over together: the more threads, the more
  * triangles each must have. Two need fewer: their halves take 10 to 18 % more processor time than the whole. */
 static const nt_fast_plan usual = {.grain = 65536, .least_two = 30000, .least_borrowed_bytes = 65536,
-	.most_narrow = NT_NARROW_LIMIT};
+	.most_narrow = NT_NARROW_LIMIT, .small = true};
 
 typedef struct run {
 	nt_fast *fast;
@@ -266,6 +266,13 @@ static bool make_bins(run *r, unsigned ranges)
 static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled *sum)
 {
 	const unsigned ranges = fast->ranges.count;
+	if (fast->small) {
+		*sum = (nt_settled){0};
+		mark_undecided(fast);
+		kernels->settle(fast, &fast->adjacency, fast->records, 0,
+			(fast->vertex_count + NT_LANES - 1) / NT_LANES, sum);
+		return NMTAN_OK;
+	}
 	run r = {.fast = fast, .kernels = kernels};
 	r.settled = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *r.settled);
 	if (!r.settled)
@@ -368,11 +375,12 @@ static void tell_known(const nt_fast *fast)
 static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, const nt_settled *settled)
 {
 	nt_fast_write(fast, settled);
-	nt_borrowed left = nt_fast_left_memory(fast);
-	const nmtan_status status = settled->complex_count > 0
-		? nt_fast_complex(fast, kernels, settled, &left) : NMTAN_OK;
-	if (status)
-		return status;
+	if (settled->complex_count > 0) {
+		nt_borrowed left = nt_fast_left_memory(fast);
+		const nmtan_status status = nt_fast_complex(fast, kernels, settled, &left);
+		if (status)
+			return status;
+	}
 	if (fast->solve->known)
 		tell_known(fast);
 	/* these corners are copied from others, which must have been written */
@@ -391,22 +399,46 @@ bool nt_fast_can(const nt_solve *solve)
 	       3 * nt_triangle_count(solve->mesh, solve->corner_count) < NT_ADJACENCY_LIMIT;
 }
 
+/* Steps 1 to 4 of few triangles. */
+static nmtan_status add_small(nt_fast *fast, const nt_kernels *kernels, bool *welded)
+{
+	const nt_borrowed none = nt_borrow(NULL, 0, fast->solve->scratch);
+	nmtan_status status = nt_fast_weld_small(fast, welded);
+	if (!status && *welded && !fast->solve->sorted)
+		status = find_unsorted(fast, &none);
+	if (!status && *welded)
+		nt_fast_add_small(fast, kernels);
+	return status;
+}
+
+/* Steps 1 to 4. */
+static nmtan_status add(nt_fast *fast, const nt_kernels *kernels, const nt_fast_plan *plan)
+{
+	const bool binned = is_binned(fast, plan->bin_bits);
+	nt_fast_memory memory;
+	nt_fast_plan_memory(fast, binned, plan->least_borrowed_bytes, &memory);
+
+	/* which corners are one vertex, and which triangles each thread does */
+	const nmtan_status status = prepare(fast, plan, &memory);
+	if (status)
+		return status;
+	/* each vertex's sums over its corners, one for each orientation */
+	return binned ? fill_bins(fast, kernels, plan->bin_bits, &memory)
+		: add_to_records(fast, kernels, plan, &memory);
+}
+
 nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan)
 {
 	assert(nt_fast_can(solve));
 	const nt_kernels *kernels = NT_CPU_TABLE(solve->isa, nt_kernels);
 	nt_fast fast = {.solve = solve, .triangle_count = nt_triangle_count(solve->mesh, solve->corner_count),
 		.wants_more = solve->bitangents || solve->magnitudes, .sparse = solve->sparse};
-	const bool binned = is_binned(&fast, plan->bin_bits);
-	nt_fast_memory memory;
-	nt_fast_plan_memory(&fast, binned, plan->least_borrowed_bytes, &memory);
-
-	/* which corners are one vertex, and which triangles each thread does */
-	nmtan_status status = prepare(&fast, plan, &memory);
-	/* each vertex's sums over its corners, one for each orientation */
-	if (!status)
-		status = binned ? fill_bins(&fast, kernels, plan->bin_bits, &memory)
-				: add_to_records(&fast, kernels, plan, &memory);
+	bool added = false;
+	nmtan_status status = NMTAN_OK;
+	if (plan->small && nt_fast_is_small(&fast))
+		status = add_small(&fast, kernels, &added);
+	if (!status && !added)
+		status = add(&fast, kernels, plan);
 	if (status)
 		return status;
 	if (!fast.records[0] && !fast.records[1]) {
