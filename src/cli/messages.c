@@ -197,6 +197,15 @@ static void append_count(nt_buffer *out, size_t count, const char *noun)
 	nt_buffer_format(out, "%zu %s%s", count, noun, count == 1 ? "" : "s");
 }
 
+/* "0.1 ms" at least, "12.3 ms", "1.23 s": three digits of what takes longer. */
+static void append_seconds(nt_buffer *out, double seconds)
+{
+	const bool short_time = seconds < 0.9995;
+	const double shown = seconds < 1e-4 ? 0.1 : short_time ? seconds * 1e3 : seconds;
+	const int digits = shown < 9.995 && !short_time ? 2 : shown < 99.95 ? 1 : 0;
+	nt_buffer_format(out, ", %.*f %s", digits, shown, short_time ? "ms" : "s");
+}
+
 static void append_vertices(nt_buffer *out, const nt_summary *s)
 {
 	const size_t added = s->appended_normals + s->appended_tangents;
@@ -307,9 +316,10 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		}
 		append_vertices(out, s);
 	}
-	if (s->repaired)
-		nt_buffer_format(out, settings->check ? ", %zu tangents would be repaired"
-						      : ", repaired %zu of the tangents", s->repaired);
+	if (s->repaired) {
+		nt_buffer_text(out, settings->check ? ", would repair " : ", repaired ");
+		append_count(out, s->repaired, "tangent");
+	}
 	append_fixed(out, s, settings);
 	if (s->counts.summed_instead)
 		nt_buffer_format(out, ", %zu corners of hubs with one sum", s->counts.summed_instead);
@@ -329,7 +339,7 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		append_findings_count(out, s);
 	else
 		append_skipped(out, s);
-	nt_buffer_format(out, ", %.3g s", s->total_seconds);
+	append_seconds(out, s->total_seconds);
 	if (s->note && !settings->check && !settings->dry_run)
 		nt_buffer_clean(out, s->note);
 	nt_buffer_text(out, "\n");

@@ -83,7 +83,7 @@ const nt_option_row nt_option_rows[] = {
 		"no value): a file is unchanged if its size and time of change are; content: if its bytes are",
 		FIELD(update), true},
 	{"record", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
-		"note in FILE what outputs are made of; without it, --update uses .nmtan-record beside the outputs",
+		"note in FILE what outputs are made of (with --update the default is .nmtan-record beside them)",
 		FIELD(record), true},
 	{"write-if-changed", 0, NT_OPTION_SET, NULL, NT_EQUAL_KEEP, 0, NULL,
 		"keep an output's time of change if its bytes are the same", SETTING(equal), true},

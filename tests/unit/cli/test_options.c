@@ -274,10 +274,10 @@ TEST(names_must_be_as_many_as_the_form_takes)
 	nt_command c;
 	nt_error error;
 	assert_int_equal(parse(&c, &error, (const char *const[]){NULL}), NT_ERROR_USAGE);
-	refuses("'a'", WORDS("a"));
+	refuses("OUTPUT is missing: nmtan a OUT.glb", WORDS("a"));
 	refuses("'c'", WORDS("a", "b", "c"));
-	refuses("no input", WORDS("--check"));
-	refuses("no input", WORDS("-d", "x"));
+	refuses("INPUT is missing", WORDS("--check"));
+	refuses("INPUT is missing", WORDS("-d", "x"));
 	refuses("'-'", WORDS("-d", "x", "-"));
 	refuses("'-'", WORDS("--in-place", "-"));
 	refuses("'-'", WORDS("--check", "-", "-"));
