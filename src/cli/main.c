@@ -524,7 +524,7 @@ static nt_status check_own(const nt_command *c, nt_error *error)
 }
 
 /* Memory for what is said and for the reports, and what else may be refused. */
-static nt_status begin_session(session *s, const nt_batch *batch, nt_error *error)
+static nt_status begin_session(session *s, nt_error *error)
 {
 	const bool kept = (s->plan->target.path && !s->folder) || s->command->diff;
 	if (kept)
@@ -587,7 +587,7 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 	session s = {.command = command, .plan = plan, .folder = folder, .style = style, .count = batch->count,
 		.manifest = {.fd = -1}};
 	nt_error error;
-	if (begin_session(&s, batch, &error)) {
+	if (begin_session(&s, &error)) {
 		end_session(&s);
 		nt_say_error(&error, style);
 		return nt_exit_code(error.status);

@@ -48,17 +48,18 @@ static void describe_texcoords(nt_mesh *mesh, const nt_json_value *attributes, c
 	}
 }
 
-/* Morph targets that move positions or normals and leave tangents as they are. */
-static uint32_t targets_without_tangents(const nt_json_value *primitive)
+/* Morph targets that move positions or normals, and those of them that leave tangents as they are. */
+static void count_targets(const nt_json_value *primitive, nt_mesh *mesh)
 {
 	const nt_json_value *targets = nt_json_find(primitive, "targets");
-	uint32_t count = 0;
+	mesh->moving_targets = mesh->targets_without_tangents = 0;
 	for (size_t i = 0; i < nt_json_count(targets); i++) {
 		const nt_json_value *target = nt_json_at(targets, i);
-		const bool moves = nt_json_find(target, "POSITION") || nt_json_find(target, "NORMAL");
-		count += moves && !nt_json_find(target, "TANGENT");
+		if (!nt_json_find(target, "POSITION") && !nt_json_find(target, "NORMAL"))
+			continue;
+		mesh->moving_targets++;
+		mesh->targets_without_tangents += !nt_json_find(target, "TANGENT");
 	}
-	return count;
 }
 
 /* Whether an edit needs nothing of a primitive with indices but its tangents, once it is solved: the indices form whole
@@ -137,7 +138,7 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->compressed = nt_gltf_draco_of(primitive) != NULL;
 	mesh->has_polygons = mode == NT_GLTF_TRIANGLES && !mesh->compressed &&
 		nt_json_find(nt_json_find(primitive, "extensions"), "FB_ngon_encoding");
-	mesh->targets_without_tangents = targets_without_tangents(primitive);
+	count_targets(primitive, mesh);
 	/* to tell empty primitives; loading counts again */
 	mesh->face_count = corners < 3 ? 0 : (size_t)(mode == NT_GLTF_TRIANGLES ? corners / 3 : corners - 2);
 	mesh->plan.disposable = indices && is_disposable(primitive, mesh, mode, corners);

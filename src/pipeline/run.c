@@ -61,22 +61,30 @@ static void begin_stage(void *user, nt_stage stage)
 		r->settings->on_stage(r->settings->on_stage_user, stage);
 }
 
-/* As the source says, before most of the work: each primitive has its own, and each instance where all become one
- * mesh. */
+/* As the source says, before most of the work: each primitive has its own, once more for each morph target that is
+ * baked, and each instance where all become one mesh. */
 static nt_status check_triangles(const run *r)
 {
 	const nt_scene *scene = &r->scene;
 	const bool placed = r->read_options.world && scene->instance_count;
-	uint64_t count = 0;
-	for (size_t i = 0; i < (placed ? scene->instance_count : scene->mesh_count); i++) {
-		const nt_mesh *mesh = &scene->meshes[placed ? scene->instances[i].mesh : i];
-		count += mesh->triangles ? mesh->face_count : 0;
-		for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
-			count += mesh->face_sizes[f] == 4;
-	}
 	const uint64_t most = r->settings->max_triangles;
-	return !most || count <= most ? NT_OK : nt_fail(r->error, NT_ERROR_LIMIT,
-		"%" PRIu64 " triangles, --max-triangles is %" PRIu64, count, most);
+	const bool bakes = r->writer && !r->settings->check && !r->read_options.world &&
+		r->settings->morphs == NT_MORPH_BAKE;
+	uint64_t count = 0, of_targets = 0;
+	for (size_t i = 0; most && i < (placed ? scene->instance_count : scene->mesh_count); i++) {
+		const nt_mesh *mesh = &scene->meshes[placed ? scene->instances[i].mesh : i];
+		uint64_t triangles = mesh->triangles ? mesh->face_count : 0;
+		for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
+			triangles += mesh->face_sizes[f] == 4;
+		count += triangles;
+		of_targets += bakes && nt_mesh_is_wanted(mesh) ? triangles * mesh->moving_targets : 0;
+	}
+	if (count + of_targets <= most)
+		return NT_OK;
+	nt_fail(r->error, NT_ERROR_LIMIT, of_targets
+		? "%" PRIu64 " triangles with those of morph targets, --max-triangles is %" PRIu64
+		: "%" PRIu64 " triangles, --max-triangles is %" PRIu64, count + of_targets, most);
+	return nt_error_in_file(r->error, r->input_path);
 }
 
 static nt_status open_scene(run *r)
@@ -106,8 +114,6 @@ static nt_status open_scene(run *r)
 	}
 	r->scene.format = r->reader->format;
 	status = r->reader->open(&r->scene, &r->read_options, r->error);
-	if (!status)
-		status = check_triangles(r);
 	end_stage(r);
 	r->summary->seconds[NT_STAGE_INDEX] += r->scene.index_seconds;
 	r->summary->seconds[NT_STAGE_PARSE] -= r->scene.index_seconds;
@@ -185,6 +191,9 @@ static nt_status read_scene(run *r)
 	/* glTF without normals is left alone unless normals are asked for; the other formats get them */
 	nt_select(&r->scene, r->settings->only, r->settings->existing,
 		!nt_format_is_gltf(r->reader->format) || r->settings->normals != NT_NORMALS_AUTO);
+	status = check_triangles(r);
+	if (status)
+		return status;
 	/* what needs nothing may be left alone wherever it is */
 	if (count_decisions(r) && r->settings->in_place) {
 		const nt_output_options options = output_options_of(r);

@@ -201,7 +201,8 @@ typedef struct nt_mesh {
 	bool has_polygons;       /* FB_ngon_encoding: triangles that follow each other with one first index are one */
 	bool texcoord_conflict;  /* another slot of it asks for another set: texcoord_other_set */
 	uint32_t texcoord_other_set;
-	uint32_t targets_without_tangents; /* morph targets that move it and have no TANGENT */
+	uint32_t moving_targets; /* morph targets that move its positions or normals */
+	uint32_t targets_without_tangents; /* of them those that have no TANGENT */
 	uint8_t fix;             /* nt_existing of this mesh, whatever --only and --existing say; 0: theirs */
 	nt_decision decision;
 	nt_mesh_plan plan;
