@@ -2,13 +2,18 @@
 #
 #   make demo     installs what is missing, builds, puts tangents on a mesh from data/ and shows it
 #   make check    the same, then every test
-#   make          builds build/$(config)/nmtan, libnmtan.a and libnmtan.so
+#   make          builds build/$(config)/nmtan, libnmtan.a and libnmtan.so; V=1 shows the commands
 #   make install PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=
 #   make install-lib  the library alone, which needs a C compiler and nothing else
 #   make deb      Debian packages in build/deb
 #   make soak     the heavy tests; make fuzz, make check-aarch64, make bench, make format, make lint, make clean
 #
 # config=release (default) | debug | sanitize | tsan | clang | clang-sanitize | fuzz
+
+# Quiet, as make demo is. Someone who builds sees one line, and what the compiler says.
+ifneq ($(V),1)
+MAKEFLAGS += --silent
+endif
 
 config ?= release
 PREFIX ?= /usr/local
@@ -81,6 +86,9 @@ module_obj := $(call objects,$(wildcard src/ext/modules/*.c src/ext/modules/*.cp
 module_files = $(B)/ext/modules/$(1).c%.o $(B)/ext/modules/$(1)_%.o $(if $(filter tinygltf,$(1)),$(B)/ext/modules/meshopt%.o)
 
 .PHONY: all
+ifeq ($(MAKECMDGOALS),)
+$(info Building $(B)/nmtan)
+endif
 all: $(B)/nmtan $(module_so) $(B)/libnmtan.a $(B)/libnmtan.so $(B)/completion.bash $(B)/completion.zsh $(B)/licences.txt
 
 # The tool has no shared library but the system's. What it takes of the C++ library (std::to_chars) is linked in; modules

@@ -88,6 +88,8 @@ if (process.env.NT_DRIVES) {
 		fs.writeFileSync('list', 'C:\\a.obj\r\n\r\nb\\-c.obj\r\n-d.obj');
 		assert.deepEqual(words(fs, ['--files-from=\\missing']), ['--files-from=/C:/missing']);
 		assert.deepEqual(words(fs, ['-d', 'out', '--files-from=list']), ['-d', 'out', '/C:/a.obj', 'b/-c.obj', './-d.obj']);
+		fs.writeFileSync('list', 'C:\\a.obj\0b\\c d.obj\0-e.obj\0');
+		assert.deepEqual(words(fs, ['--files-from=list']), ['/C:/a.obj', 'b/c d.obj', './-e.obj']);
 	});
 
 	await test('files', () => {

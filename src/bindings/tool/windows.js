@@ -37,8 +37,11 @@ function checkNew(name) {
 export const words = (fs, given) => given.flatMap((word) => {
 	const [, list] = /^--files-from=(.+)/s.exec(word) ?? [];
 	try {
-		return !list ? inside(word) : String(fs.readFileSync(list === '-' ? 0 : outside(inside(list)))).split(/\r?\n/)
-			.filter((line) => line).map((line) => inside(line).replace(/^-/, './-'));
+		if (!list)
+			return inside(word);
+		const names = String(fs.readFileSync(list === '-' ? 0 : outside(inside(list))));
+		return names.split(names.includes('\0') ? '\0' : /\r?\n/).filter((name) => name)
+			.map((name) => inside(name).replace(/^-/, './-'));
 	} catch {
 		return inside(word);
 	}
