@@ -317,11 +317,14 @@ static nmtan_status pair_unsorted(state *s)
 		memcpy(positions + 3 * (size_t)s->ids[c], nt_position(s->mesh, nt_vertex_of(s->mesh, c)),
 			3 * sizeof *positions);
 	const nt_triangles triangles = {s->ids, s->cuts};
-	nt_unsorted unsorted;
+	nt_unsorted unsorted = {.edges = NULL};
+	nt_edge_tail tail;
 	const nt_welded_mesh mesh = {.triangles = &triangles,
 		.triangle_count = s->triangle_count, .vertex_count = s->vertex_count, .positions = positions,
 		.step = 3, .threads = s->solve->threads, .scratch = scratch};
-	const nmtan_status status = nt_find_unsorted(&mesh, scratch, &unsorted);
+	nmtan_status status = nt_edge_tail_make(&mesh, &tail);
+	if (!status)
+		status = nt_find_unsorted(&mesh, &tail, scratch, &unsorted);
 	for (size_t i = 0; i < unsorted.count; i++) {
 		const nt_unsorted_edge *e = &unsorted.edges[i];
 		s->triangles[sound_triangle(s, e->edge / 3)].neighbour[e->edge % 3] =

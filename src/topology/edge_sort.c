@@ -3,49 +3,55 @@
  * Two questions. Does the order of the last run matter? Most often it has less than three edges, or no two between the
  * same vertices. The run belongs to the vertex that has the largest lower end of all edges; both ends of its edges
  * have a corner behind that, so that the last triangles are looked at, and more of them until such an edge is
- * among them. Their vertices' representatives are found from the corners of the cells that they are in.
+ * among them. The representative of a vertex is one of its corners; only where that leaves the question open is it
+ * found, from the corners of its cell.
  *
  * And if it does: which order? That of the published quicksort, of which only those parts are sorted that hold edges of
  * the run.
  */
 #include "topology/edge_sort.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/compiler.h"
 
 #define NONE NT_NO_NEIGHBOUR
 
-/* Triangles at the end that are looked at first, and how many times more the next time. */
-enum { FIRST_TRIANGLES = 4, MORE = 4 };
+/* Triangles at the end that are looked at first, and how many times more the next time: nearly always a dozen are
+ * enough. In few triangles everything is near, and to look again costs little. */
+enum { FIRST_TRIANGLES = 12, FIRST_OF_FEW = 4, MORE = 4 };
 
-/* Corners that are looked up at a time. */
-enum { BATCH_TRIANGLES = 8, BATCH = 3 * BATCH_TRIANGLES };
+/* Of so few triangles all corners are listed. */
+enum { LEAST_WATCHED = 16, FEW = 1024 };
 
-enum { MARKS = 1 << 15 };
+/* Vertices of the last triangles, whose cells have numbers of a byte. If they have more, all edges are looked at. */
+enum { MOST_MEMBERS = 255, LEAST_SLOT_BITS = 6 };
+
+/* If the order of the last run matters, it has three edges or more, one of each of its triangles: the largest lower
+ * end is the middle one of their representatives, since another edge has a larger lower end where it is the least. */
+enum { LEAST_EDGES = 3 };
 
 static size_t corner_count(const nt_welded_mesh *m)
 {
 	return 3 * m->triangle_count;
 }
 
-static bool has(const uint64_t *bits, uint32_t vertex)
+static bool has(const uint64_t *bits, uint32_t bit)
 {
-	return bits[vertex / 64] >> vertex % 64 & 1;
+	return bits[bit / 64] >> bit % 64 & 1;
 }
 
-static void add(uint64_t *bits, uint32_t vertex)
+static void add(uint64_t *bits, uint32_t bit)
 {
-	bits[vertex / 64] |= (uint64_t)1 << vertex % 64;
+	bits[bit / 64] |= (uint64_t)1 << bit % 64;
 }
 
 static uint64_t *make_bits(const nt_welded_mesh *m)
 {
 	const size_t words = m->vertex_count / 64 + 1;
 	uint64_t *bits = nt_scratch_alloc(m->scratch, words, sizeof *bits);
-	if (bits)
-		memset(bits, 0, words * sizeof *bits);
-	return bits;
+	return bits ? memset(bits, 0, words * sizeof *bits) : NULL;
 }
 
 static bool is_degenerate(const nt_welded_mesh *m, const uint32_t v[3])
@@ -66,180 +72,372 @@ static const uint32_t *vertices_of(const nt_welded_mesh *m, size_t triangle, uin
 	return nt_triangle_vertices(m->triangles, triangle, 1, copy);
 }
 
-/* The last run */
+/* The last triangles */
 
-/* Edges whose lower end is one vertex, in the order of triangles, and then in others. */
-typedef struct run_edge {
-	uint32_t edge, high; /* high: representative of the higher end */
-	bool forward;        /* from the lower end to the higher one */
-	uint32_t neighbour;
-} run_edge;
-
-typedef struct question {
-	const nt_welded_mesh *mesh;
-	nt_grid grid;
-	uint32_t first;    /* the least corner of the last triangles */
-	uint64_t *last;    /* vertices of the last triangles */
-	uint32_t *members; /* [member_count] the same */
-	size_t member_count;
-	uint64_t *listed;  /* vertices of their cells */
-	uint32_t *corners; /* [corner_count] all corners of these, ascending 3 * triangle + k */
-	size_t corner_count;
-	uint32_t *found;   /* their representatives */
-	uint32_t lowest;   /* the largest lower end of an edge between members, or NONE */
-	run_edge *run;
-	size_t run_count;
-	bool limit;
-} question;
-
-/* Takes triangles from the end; halves of a quad stay together. */
-static bool take_last(question *q, size_t triangles)
+/* Where the number of a member is, or NONE. */
+static uint32_t *slot_of(const nt_edge_tail *tail, uint32_t vertex)
 {
-	const nt_welded_mesh *m = q->mesh;
+	uint32_t at = vertex * 0x9e3779b1u >> tail->slot_shift;
+	while (tail->slots[at] != NONE && tail->members[tail->slots[at]].vertex != vertex)
+		at = (at + 1) & (UINT32_MAX >> tail->slot_shift);
+	return &tail->slots[at];
+}
+
+/* Takes triangles from the end; halves of a quad stay together. False when out of memory. */
+static bool take_last(const nt_welded_mesh *m, size_t triangles, nt_edge_tail *tail)
+{
 	size_t first = m->triangle_count > triangles ? m->triangle_count - triangles : 0;
 	if (first > 0 && nt_is_cut_between(m->triangles, first - 1))
 		first--;
-	q->members = nt_scratch_alloc(m->scratch, m->triangle_count - first, 3 * sizeof *q->members);
-	q->last = make_bits(m);
-	if (!q->members || !q->last)
+	const size_t most = 3 * (m->triangle_count - first);
+	unsigned bits = LEAST_SLOT_BITS;
+	while ((size_t)1 << bits < 2 * most)
+		bits++;
+	tail->slot_shift = 32 - bits;
+	tail->slots = nt_scratch_alloc(m->scratch, (size_t)1 << bits, sizeof *tail->slots);
+	tail->members = nt_scratch_alloc(m->scratch, most, sizeof *tail->members);
+	tail->are_members = make_bits(m);
+	if (!tail->cells)
+		tail->cells = nt_scratch_alloc(m->scratch, NT_CELLS, 1);
+	if (!tail->members || !tail->slots || !tail->are_members || !tail->cells)
 		return false;
-	q->first = (uint32_t)nt_triangle_corner(m->triangles, first, 0);
-	q->member_count = 0;
+	memset(tail->slots, 0xff, sizeof *tail->slots << bits);
+	tail->triangles = triangles;
+	tail->first = (uint32_t)nt_triangle_corner(m->triangles, first, 0);
+	tail->member_count = 0;
 	for (size_t t = first; t < m->triangle_count; t++) {
 		uint32_t copy[3];
 		const uint32_t *v = vertices_of(m, t, copy);
 		for (int k = 0; k < 3; k++) {
-			if (!has(q->last, v[k]))
-				q->members[q->member_count++] = v[k];
-			add(q->last, v[k]);
+			uint32_t *slot = slot_of(tail, v[k]);
+			if (*slot == NONE) {
+				*slot = (uint32_t)tail->member_count;
+				tail->members[tail->member_count++] = (nt_edge_member){.vertex = v[k], .low = NONE};
+				add(tail->are_members, v[k]);
+			}
 		}
 	}
 	return true;
 }
 
-static bool list_vertices(question *q)
+/* Says which corners to look for: all of the members' cells. */
+static void watch_cells(const nt_welded_mesh *m, nt_edge_tail *tail)
 {
-	const nt_welded_mesh *m = q->mesh;
-	const float *coordinates = m->positions + q->grid.axis;
-	uint64_t wanted[NT_CELLS / 64] = {0};
-	q->listed = make_bits(m);
-	if (!q->listed)
-		return false;
-	for (size_t i = 0; i < q->member_count; i++)
-		add(wanted, nt_grid_cell(&q->grid, coordinates[m->step * q->members[i]]));
+	const nt_grid *grid = &tail->grid;
+	/* twice a cell, so that no rounding can leave one of it out */
+	const float near = (grid->high - grid->low) * (2.0f / NT_CELLS) + FLT_MIN;
+	unsigned count = 0;
+	memset(tail->cells, 0, NT_CELLS);
+	tail->low = grid->high;
+	tail->high = grid->low;
+	for (size_t i = 0; i < tail->member_count; i++) {
+		const float here = nt_welded_position(m, tail->members[i].vertex)[grid->axis];
+		uint8_t *cell = &tail->cells[nt_grid_cell(grid, here)];
+		*cell = *cell ? *cell : (uint8_t)++count;
+		tail->low = here - near < tail->low ? here - near : tail->low;
+		tail->high = here + near > tail->high ? here + near : tail->high;
+	}
+}
+
+/* The box of rows that have corners, since others made that of all, or may have. */
+static void use_box_of_used(const nt_welded_mesh *m, nt_edge_tail *tail)
+{
+	tail->is_box_used = true;
+	tail->limit = !nt_grid_of_used(m, &tail->grid);
+}
+
+static size_t first_triangles(const nt_welded_mesh *m)
+{
+	return m->triangle_count < FEW ? FIRST_OF_FEW : FIRST_TRIANGLES;
+}
+
+nmtan_status nt_edge_tail_make(const nt_welded_mesh *m, nt_edge_tail *tail)
+{
+	*tail = (nt_edge_tail){.limit = corner_count(m) > NT_EDGE_SORT_CORNERS};
+	if (m->triangle_count < LEAST_WATCHED || tail->limit)
+		return NMTAN_OK;
+	const size_t batches = m->triangle_count / NT_EDGE_BATCH + 1;
+	nt_box *boxes = nt_scratch_alloc(m->scratch, m->vertex_count / NT_BOX_ROWS + 1, sizeof *boxes);
+	tail->batches = nt_scratch_alloc(m->scratch, batches, 1);
+	if (!boxes || !tail->batches)
+		return NMTAN_ERROR_MEMORY;
+	memset(tail->batches, 0, batches);
+	if (!nt_grid_make(m, boxes, &tail->grid))
+		use_box_of_used(m, tail);
+	if (tail->limit) {
+		tail->batches = NULL;
+		return NMTAN_OK;
+	}
+	if (!take_last(m, first_triangles(m), tail))
+		return NMTAN_ERROR_MEMORY;
+	watch_cells(m, tail);
+	return NMTAN_OK;
+}
+
+/* Their corners */
+
+/* An edge between members a and b. */
+typedef struct link {
+	uint32_t a, b;
+} link;
+
+typedef struct question {
+	const nt_welded_mesh *mesh;
+	nt_edge_tail *tail;
+	nt_welded_corner *corners; /* [corner_count] as 3 * triangle + k, ascending */
+	uint8_t *cells;            /* [corner_count] the number of each one's cell */
+	size_t corner_count;
+	nt_welded_corner *chosen;  /* [corner_count] those of one cell; NULL: not made */
+	nt_welded_point *points;   /* [corner_count] */
+	link *links;               /* [link_count] */
+	size_t link_count;
+} question;
+
+/* Set in the number of a vertex that makes the box. */
+enum { EXTREME = 256 };
+
+/* The number of a coordinate's cell; 0: no member is in it. */
+static inline uint8_t number_of(const nt_edge_tail *tail, float coordinate)
+{
+	return coordinate >= tail->low && coordinate <= tail->high
+		? tail->cells[nt_grid_cell(&tail->grid, coordinate)] : 0;
+}
+
+/* Notes the batches that have corners in members' cells by vertices, of which nearly all are elsewhere, if the
+ * triangles
+ * come in no order or nobody has noted any. Returns the numbers of the vertices' cells; NULL when out of memory. */
+static uint16_t *look_through(const nt_welded_mesh *m, nt_edge_tail *tail)
+{
+	uint16_t *numbers = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *numbers);
+	const float *coordinates = m->positions + tail->grid.axis;
+	if (!numbers)
+		return NULL;
 	for (size_t v = 0; v < m->vertex_count; v++)
-		if (has(wanted, nt_grid_cell(&q->grid, coordinates[m->step * v])))
-			add(q->listed, (uint32_t)v);
-	/* so that it is known whether they have corners */
-	for (int i = 0; i < 6; i++)
-		add(q->listed, q->grid.extremes[i]);
-	return true;
-}
-
-/* Marks vertices in a map of bytes that fits the first-level cache: a byte stands for several vertices. Returns what of
- * a vertex's number is the byte's. */
-static uint32_t fill_marks(const question *q, uint8_t marks[MARKS])
-{
-	uint32_t count = 64;
-	while (count < q->mesh->vertex_count && count < MARKS)
-		count *= 2;
-	memset(marks, 0, count);
-	for (size_t word = 0; word <= q->mesh->vertex_count / 64; word++)
-		for (uint64_t bits = q->listed[word]; bits; bits &= bits - 1)
-			marks[(64 * word + (size_t)nt_trailing_zeros(bits)) & (count - 1)] = 1;
-	return count - 1;
-}
-
-static inline bool has_marked(const uint8_t marks[MARKS], uint32_t mask, const uint32_t *vertices, size_t count)
-{
-	unsigned any = 0;
-	NT_UNROLL(16)
-	for (size_t i = 0; i < count; i++)
-		any |= marks[vertices[i] & mask];
-	return any;
-}
-
-/* Lists at most `capacity` corners of listed vertices; returns how many there are. */
-static size_t list_corners(const question *q, uint32_t *corners, size_t capacity)
-{
-	const nt_welded_mesh *m = q->mesh;
-	uint8_t marks[MARKS];
-	size_t count = 0;
-	const uint32_t mask = fill_marks(q, marks);
-	for (size_t t = 0; t < m->triangle_count; t += BATCH_TRIANGLES) {
-		uint32_t copy[BATCH];
-		const size_t left = m->triangle_count - t, triangles = left < BATCH_TRIANGLES ? left : BATCH_TRIANGLES;
-		const uint32_t *v = nt_triangle_vertices(m->triangles, t, triangles, copy);
-		if (triangles == BATCH_TRIANGLES && !has_marked(marks, mask, v, BATCH))
-			continue;
-		for (size_t i = 0; i < 3 * triangles; i++)
-			if (marks[v[i] & mask] && has(q->listed, v[i])) {
-				if (count < capacity)
-					corners[count] = (uint32_t)(3 * t + i);
-				count++;
-			}
-	}
-	return count;
-}
-
-/* Whether the vertices that make the box have corners. */
-static bool is_box_used(const question *q)
-{
-	const nt_welded_mesh *m = q->mesh;
+		numbers[v] = tail->cells[nt_grid_cell(&tail->grid, coordinates[m->step * v])];
+	for (int e = 0; e < 6 && !tail->is_box_used; e++)
+		numbers[tail->grid.extremes[e]] |= EXTREME;
 	unsigned met = 0;
-	for (size_t i = 0; i < q->corner_count && met != 63; i++) {
-		uint32_t copy[3];
-		const uint32_t v = vertices_of(m, q->corners[i] / 3, copy)[q->corners[i] % 3];
-		for (unsigned e = 0; e < 6; e++)
-			met |= (unsigned)(v == q->grid.extremes[e]) << e;
+	for (size_t t = 0, batch = 0, count; t < m->triangle_count; t += count, batch++) {
+		uint32_t copy[3 * NT_EDGE_BATCH];
+		count = m->triangle_count - t < NT_EDGE_BATCH ? m->triangle_count - t : NT_EDGE_BATCH;
+		const uint32_t *v = nt_triangle_vertices(m->triangles, t, count, copy);
+		unsigned any = 0;
+		NT_UNROLL(16)
+		for (size_t i = 0; i < 3 * count; i++)
+			any |= numbers[v[i]];
+		tail->batches[batch] = (uint8_t)any != 0;
+		for (size_t i = 0; any & EXTREME && met != 63 && i < 3 * count; i++)
+			for (unsigned e = 0; e < 6; e++)
+				met |= (unsigned)(v[i] == tail->grid.extremes[e]) << e;
 	}
-	return met == 63;
+	tail->is_box_used = tail->is_box_used || met == 63;
+	return numbers;
 }
 
-/* A mesh of which some rows have no corner: the box is that of the others. False when out of memory. */
-static bool make_grid_of_used(question *q)
+static size_t count_batches(const question *q)
+{
+	const size_t all = q->mesh->triangle_count / NT_EDGE_BATCH + 1;
+	size_t count = 0;
+	for (size_t i = 0; i < all && q->tail->batches; i++)
+		count += q->tail->batches[i];
+	return q->tail->batches ? count : all;
+}
+
+/* The triangles of a batch: corners in members' cells. */
+static void list_batch(question *q, const uint16_t *numbers, size_t first, size_t count)
 {
 	const nt_welded_mesh *m = q->mesh;
-	uint64_t *used = make_bits(m);
-	if (!used)
-		return false;
-	for (size_t t = 0; t < m->triangle_count; t++) {
-		uint32_t copy[3];
-		const uint32_t *v = vertices_of(m, t, copy);
-		for (int k = 0; k < 3; k++)
-			add(used, v[k]);
+	uint32_t copy[3 * NT_EDGE_BATCH];
+	const uint32_t *v = nt_triangle_vertices(m->triangles, first, count, copy);
+	for (size_t i = 0; i < 3 * count; i++) {
+		const uint8_t number = numbers
+			? (uint8_t)numbers[v[i]] : number_of(q->tail, nt_welded_position(m, v[i])[q->tail->grid.axis]);
+		q->corners[q->corner_count] = (nt_welded_corner){v[i], (uint32_t)(3 * first + i)};
+		q->cells[q->corner_count] = number;
+		q->corner_count += number != 0;
 	}
-	q->limit = !nt_grid_make(m, used, &q->grid);
+}
+
+/* Corners that are compared at a time. */
+enum { STEP = sizeof(uint64_t) };
+
+/* Lists the corners in members' cells. False when out of memory. */
+static bool list_corners(question *q)
+{
+	enum { MANY = 8 };
+	const nt_welded_mesh *m = q->mesh;
+	nt_edge_tail *tail = q->tail;
+	uint16_t *numbers = NULL;
+	if (tail->batches && (!tail->is_watched || count_batches(q) > m->triangle_count / NT_EDGE_BATCH / MANY) &&
+		!(numbers = look_through(m, tail)))
+		return false;
+	const size_t most = count_batches(q) * 3 * NT_EDGE_BATCH + STEP;
+	q->corners = nt_scratch_alloc(m->scratch, most, sizeof *q->corners);
+	q->cells = nt_scratch_alloc(m->scratch, most, sizeof *q->cells);
+	q->chosen = NULL;
+	q->corner_count = 0;
+	if (!q->corners || !q->cells)
+		return false;
+	for (size_t t = 0, batch = 0, count; t < m->triangle_count; t += count, batch++) {
+		count = m->triangle_count - t < NT_EDGE_BATCH ? m->triangle_count - t : NT_EDGE_BATCH;
+		if (!tail->batches || tail->batches[batch])
+			list_batch(q, numbers, t, count);
+	}
+	memset(q->cells + q->corner_count, 0, STEP);
 	return true;
 }
 
-/* Lists the corners of the cells of the last triangles' vertices. */
-static bool list_cells(question *q)
+/* Finds between which corners the representatives of members are, and the edges between members. False when out of
+ * memory. */
+static bool link_members(question *q)
 {
-	enum { FIRST_CAPACITY = 1024 };
-	size_t capacity = FIRST_CAPACITY;
-	if (!list_vertices(q))
+	const nt_welded_mesh *m = q->mesh;
+	const nt_edge_tail *tail = q->tail;
+	q->links = nt_scratch_alloc(m->scratch, 3 * q->corner_count, sizeof *q->links);
+	if (!q->links)
 		return false;
+	q->link_count = 0;
+	size_t last = SIZE_MAX;
+	bool degenerate = false;
+	for (size_t i = 0; i < q->corner_count; i++) {
+		if (!has(tail->are_members, q->corners[i].vertex))
+			continue;
+		const size_t t = q->corners[i].corner / 3, k = q->corners[i].corner % 3;
+		const uint32_t number = *slot_of(tail, q->corners[i].vertex);
+		const uint32_t corner = (uint32_t)nt_triangle_corner(m->triangles, t, (unsigned)k);
+		nt_edge_member *member = &tail->members[number];
+		member->low = corner < member->low ? corner : member->low;
+		member->high = corner > member->high ? corner : member->high;
+		uint32_t copy[3];
+		const uint32_t *v = vertices_of(m, t, copy), next = v[k < 2 ? k + 1 : 0];
+		if (!has(tail->are_members, next))
+			continue;
+		degenerate = t == last ? degenerate : is_degenerate(m, v);
+		last = t;
+		if (!degenerate)
+			q->links[q->link_count++] = (link){number, *slot_of(tail, next)};
+	}
+	return true;
+}
+
+/* Representatives, as far as they are needed */
+
+/* Finds the representative of a member. */
+static nmtan_status find_member(question *q, nt_edge_member *member)
+{
+	const nt_welded_mesh *m = q->mesh;
+	if (!q->chosen) {
+		q->chosen = nt_scratch_alloc(m->scratch, q->corner_count + 1, sizeof *q->chosen);
+		q->points = nt_scratch_alloc(m->scratch, q->corner_count, sizeof *q->points);
+		if (!q->chosen || !q->points)
+			return NMTAN_ERROR_MEMORY;
+	}
+	const uint8_t number = number_of(q->tail, nt_welded_position(m, member->vertex)[q->tail->grid.axis]);
+	const uint64_t low_bits = UINT64_MAX / 255 * 127, numbers = UINT64_MAX / 255 * number;
+	size_t count = 0;
+	for (size_t i = 0; i < q->corner_count; i += STEP) {
+		uint64_t cells;
+		memcpy(&cells, q->cells + i, sizeof cells);
+		cells ^= numbers;
+		/* the upper bits of bytes that are 0 */
+		cells = ~(((cells & low_bits) + low_bits) | cells | low_bits);
+		for (size_t k = 0; cells && k < STEP; k++) {
+			q->chosen[count] = q->corners[i + k];
+			count += q->cells[i + k] == number;
+		}
+	}
+	uint32_t found;
+	if (!nt_find_representative(m, q->chosen, count, member->vertex, q->points, &found)) {
+		q->tail->limit = true;
+		return NMTAN_OK;
+	}
+	member->low = member->high = (uint32_t)nt_triangle_corner(m->triangles, found / 3, found % 3);
+	return NMTAN_OK;
+}
+
+/* Whether an edge may be in the last run, with `low` as its lower end, which is at least `least`. */
+static bool may_run(const nt_edge_member *low, const nt_edge_member *high, uint32_t least)
+{
+	return high->high > (low->low > least ? low->low : least) && low->high >= least;
+}
+
+/* How many edges the last run may have if its order matters: three or more, two of them between the same vertices; 0:
+ * it cannot. */
+static size_t most_edges(const question *q, uint32_t least)
+{
+	nt_edge_member *members = q->tail->members;
+	for (size_t i = 0; i < q->tail->member_count; i++)
+		members[i].edges = 0;
+	for (const link *l = q->links; l < q->links + q->link_count; l++) {
+		nt_edge_member *a = &members[l->a], *b = &members[l->b];
+		a->edges += may_run(a, b, least);
+		b->edges += may_run(b, a, least);
+	}
+	size_t most = 0;
+	for (uint32_t i = 0; i < q->tail->member_count; i++) {
+		if (members[i].edges < LEAST_EDGES || members[i].edges <= most)
+			continue;
+		for (size_t k = 0; k < q->tail->member_count; k++)
+			members[k].is_met = false;
+		bool twins = false;
+		for (const link *l = q->links; l < q->links + q->link_count && !twins; l++) {
+			nt_edge_member *other = l->a == i ? &members[l->b] : &members[l->a];
+			if ((l->a != i && l->b != i) || !may_run(&members[i], other, least))
+				continue;
+			twins = other->is_met;
+			other->is_met = true;
+		}
+		most = twins ? members[i].edges : most;
+	}
+	return most;
+}
+
+/* The edge of members, not both of them known, whose lower end may be the largest; NULL: none can be as large as one
+ * that
+ * is. `least` receives what the largest lower end is at least. */
+static const link *find_open(const question *q, uint32_t *least)
+{
+	const nt_edge_member *members = q->tail->members;
+	const link *open = NULL;
+	uint32_t most = 0;
+	*least = 0;
+	for (const link *l = q->links; l < q->links + q->link_count; l++) {
+		const nt_edge_member *a = &members[l->a], *b = &members[l->b];
+		const uint32_t low = a->low < b->low ? a->low : b->low, high = a->high < b->high ? a->high : b->high;
+		*least = low > *least ? low : *least;
+		if (high >= most && (a->low < a->high || b->low < b->high)) {
+			most = high;
+			open = l;
+		}
+	}
+	return most >= *least ? open : NULL;
+}
+
+/* Asks whether the order matters; `enough` receives false if more triangles are to be looked at, and `count` how many
+ * edges the run has, or 0. */
+static nmtan_status ask_members(question *q, bool *enough, size_t *count)
+{
 	for (;;) {
-		q->corners = nt_scratch_alloc(q->mesh->scratch, capacity, sizeof *q->corners);
-		if (!q->corners)
-			return false;
-		q->corner_count = list_corners(q, q->corners, capacity);
-		if (q->corner_count <= capacity)
-			return true;
-		capacity = q->corner_count;
+		uint32_t least;
+		const link *open = find_open(q, &least);
+		*enough = least >= q->tail->first;
+		*count = *enough ? most_edges(q, least) : 0;
+		if (!open || (*enough && *count == 0))
+			return NMTAN_OK;
+		nt_edge_member *a = &q->tail->members[open->a], *b = &q->tail->members[open->b];
+		nt_edge_member *lower = a->high < b->high ? a : b, *other = lower == a ? b : a;
+		const nmtan_status status = find_member(q, lower->low < lower->high ? lower : other);
+		if (status || q->tail->limit)
+			return status;
 	}
 }
 
-static nmtan_status find_representatives(const nt_welded_mesh *m, const nt_grid *grid, const uint32_t *corners,
-	size_t count, uint32_t **found, bool *limit)
-{
-	*found = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof **found);
-	const nt_representatives_end end =
-		*found ? nt_representatives(m, grid, corners, count, *found) : NT_REPRESENTATIVES_NO_MEMORY;
-	*limit |= end == NT_REPRESENTATIVES_LIMIT;
-	return end == NT_REPRESENTATIVES_NO_MEMORY ? NMTAN_ERROR_MEMORY : NMTAN_OK;
-}
+/* Edges whose lower end is one vertex, in the order of triangles, and then in others. */
+typedef struct run_edge {
+	uint32_t edge, high; /* high: representative of the higher end */
+	bool forward;	     /* from the lower end to the higher one */
+	uint32_t neighbour;
+} run_edge;
 
 /* Ends of an edge as their representatives. */
 static run_edge ends_of(const uint32_t *found, const uint32_t v[3], uint32_t edge, uint32_t *low)
@@ -247,57 +445,6 @@ static run_edge ends_of(const uint32_t *found, const uint32_t v[3], uint32_t edg
 	const uint32_t k = edge % 3, tail = found[v[k]], head = found[v[k < 2 ? k + 1 : 0]];
 	*low = tail < head ? tail : head;
 	return (run_edge){edge, tail < head ? head : tail, tail < head, NONE};
-}
-
-/* Finds the largest lower end of edges between the last triangles' vertices, and lists its edges. */
-static bool list_run(question *q)
-{
-	const nt_welded_mesh *m = q->mesh;
-	q->run = nt_scratch_alloc(m->scratch, q->corner_count, sizeof *q->run);
-	if (!q->run)
-		return false;
-	q->lowest = NONE;
-	q->run_count = 0;
-	for (size_t i = 0; i < q->corner_count; i++) {
-		const uint32_t edge = q->corners[i];
-		uint32_t copy[3], low;
-		const uint32_t *v = vertices_of(m, edge / 3, copy);
-		if (!has(q->last, v[edge % 3]) || !has(q->last, v[(edge + 1) % 3]) || is_degenerate(m, v))
-			continue;
-		const run_edge e = ends_of(q->found, v, edge, &low);
-		if (q->lowest == NONE || low > q->lowest) {
-			q->lowest = low;
-			q->run_count = 0;
-		}
-		if (low == q->lowest)
-			q->run[q->run_count++] = e;
-	}
-	return true;
-}
-
-/* One try with so many triangles; `run` is not NULL where they were enough. */
-static nmtan_status try_last(question *q, size_t triangles)
-{
-	nmtan_status status = NMTAN_ERROR_MEMORY;
-	q->run = NULL;
-	if (!take_last(q, triangles) || !list_cells(q))
-		return status;
-	if (!is_box_used(q)) {
-		if (!make_grid_of_used(q))
-			return status;
-		if (q->limit)
-			return NMTAN_OK;
-		if (!list_cells(q))
-			return status;
-	}
-	status = find_representatives(q->mesh, &q->grid, q->corners, q->corner_count, &q->found, &q->limit);
-	if (status || q->limit)
-		return status;
-	if (!list_run(q))
-		return NMTAN_ERROR_MEMORY;
-	if (q->first > 0 && (q->lowest == NONE || q->lowest < q->first))
-		q->run = NULL;
-	return NMTAN_OK;
 }
 
 /* Pairs */
@@ -345,15 +492,6 @@ static void pair_run(run_edge *run, size_t count, bool published)
 	}
 }
 
-/* Whether the order may matter. */
-static bool has_equal(const run_edge *run, size_t count)
-{
-	for (size_t i = 1; i < count; i++)
-		if (run[i].high == run[i - 1].high)
-			return count > 2;
-	return false;
-}
-
 /* The published order */
 
 typedef struct key_edge {
@@ -367,8 +505,7 @@ typedef struct key_range {
 } key_range;
 
 /* The published quicksort's step: smaller keys come before `*left_end`, larger ones from `*right_begin` on. */
-static void part_keys(key_edge *keys, const key_range *range, uint32_t pivot, size_t *left_end,
-	size_t *right_begin)
+static void part_keys(key_edge *keys, const key_range *range, uint32_t pivot, size_t *left_end, size_t *right_begin)
 {
 	size_t left = range->begin, right = range->end; /* the latter one behind the reference's */
 	do {
@@ -427,15 +564,15 @@ static bool sort_largest(key_edge *keys, size_t count, uint32_t largest)
 	return true;
 }
 
-/* Puts the run, of `count` edges, into the published order. False: out of memory. */
-static bool order_run(const nt_welded_mesh *m, const uint32_t *found, run_edge *run, size_t count, bool *limit)
+/* Makes the keys of all edges; returns how many there are. `largest`, and how many have it. */
+static size_t make_keys(
+	const nt_welded_mesh *m, const uint32_t *found, key_edge *keys, uint32_t *largest, size_t *run_count)
 {
-	key_edge *keys = nt_scratch_alloc(m->scratch, corner_count(m), sizeof *keys);
-	if (!keys)
-		return false;
 	size_t key_count = 0;
-	uint32_t copy[3], low, largest = 0;
+	*largest = 0;
+	*run_count = 0;
 	for (size_t t = 0; t < m->triangle_count; t++) {
+		uint32_t copy[3], low;
 		const uint32_t *v = vertices_of(m, t, copy);
 		if (is_degenerate(m, v))
 			continue;
@@ -443,15 +580,13 @@ static bool order_run(const nt_welded_mesh *m, const uint32_t *found, run_edge *
 			const uint32_t edge = (uint32_t)(3 * t + k);
 			ends_of(found, v, edge, &low);
 			keys[key_count++] = (key_edge){low, edge};
-			largest = low > largest ? low : largest;
+			if (low >= *largest) {
+				*run_count = low > *largest ? 1 : *run_count + 1;
+				*largest = low;
+			}
 		}
 	}
-	*limit = !sort_largest(keys, key_count, largest);
-	for (size_t i = 0; i < count; i++) {
-		const uint32_t edge = keys[key_count - count + i].edge;
-		run[i] = ends_of(found, vertices_of(m, edge / 3, copy), edge, &low);
-	}
-	return true;
+	return key_count;
 }
 
 /* Pairs the run as published, and as if it were sorted; keeps the edges that differ. */
@@ -466,73 +601,87 @@ static void pair_both(const run_edge *run, run_edge *published, run_edge *sorted
 	qsort(sorted, count, sizeof *sorted, compare_edges);
 	for (size_t i = 0; i < count; i++)
 		if (published[i].neighbour != sorted[i].neighbour)
-			unsorted->edges[unsorted->count++] =
-				(nt_unsorted_edge){published[i].edge, published[i].neighbour};
+			unsorted->edges[unsorted->count++] = (nt_unsorted_edge){
+				published[i].edge, published[i].neighbour};
 }
 
-/* The order matters: finds it, with all representatives. `count`: edges of the run. */
-static nmtan_status pair_as_published(const nt_welded_mesh *m, const nt_grid *grid, size_t count,
-	nt_unsorted *unsorted)
+/* The order matters, or may: finds it, with all representatives. */
+static nmtan_status pair_as_published(const nt_welded_mesh *m, const nt_grid *grid, nt_unsorted *unsorted)
 {
-	run_edge *run = nt_scratch_alloc(m->scratch, count, 3 * sizeof *run);
-	if (!run)
-		return NMTAN_ERROR_MEMORY;
 	const nt_scratch_mark mark = nt_scratch_here(m->scratch);
-	uint32_t *found;
-	nmtan_status status = find_representatives(m, grid, NULL, corner_count(m), &found, &unsorted->limit);
-	if (!status && !unsorted->limit && !order_run(m, found, run, count, &unsorted->limit))
-		status = NMTAN_ERROR_MEMORY;
-	nt_scratch_back(m->scratch, mark);
-	if (!status && !unsorted->limit)
+	uint32_t *found = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *found);
+	const nt_representatives_end end = found ? nt_representatives(m, grid, found) : NT_REPRESENTATIVES_NO_MEMORY;
+	unsorted->limit = end == NT_REPRESENTATIVES_LIMIT;
+	key_edge *keys = end == NT_REPRESENTATIVES_FOUND ? nt_scratch_alloc(m->scratch, corner_count(m), sizeof *keys)
+							 : NULL;
+	uint32_t copy[3], low, largest;
+	size_t count = 0;
+	const size_t key_count = keys ? make_keys(m, found, keys, &largest, &count) : 0;
+	run_edge *run = keys ? nt_scratch_alloc(m->scratch, count + 1, 3 * sizeof *run) : NULL;
+	if (run && count >= LEAST_EDGES)
+		unsorted->limit = !sort_largest(keys, key_count, largest);
+	for (size_t i = 0; run && i < count; i++) {
+		const uint32_t edge = keys[key_count - count + i].edge;
+		run[i] = ends_of(found, vertices_of(m, edge / 3, copy), edge, &low);
+	}
+	if (run && count >= LEAST_EDGES && !unsorted->limit)
 		pair_both(run, run + count, run + 2 * count, count, unsorted);
-	return status;
+	nt_scratch_back(m->scratch, mark);
+	return run || unsorted->limit ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }
 
-/* Where the order of the last run matters, it has three edges or more, one of each of its triangles: the largest lower
- * end is the middle one of their representatives, since another edge has a larger lower end where it is the least. */
-enum { LEAST_TRIANGLES = 3 };
+/* The whole */
 
-/* Asks whether the order matters; `count` receives the edges of the run, or 0. */
-static nmtan_status ask(const nt_welded_mesh *m, nt_grid *grid, size_t *count, bool *limit)
+/* Asks whether the order matters; `count` receives how many edges the run has, or may have, or 0. */
+static nmtan_status ask(const nt_welded_mesh *m, nt_edge_tail *tail, size_t *count)
 {
-	question q = {.mesh = m};
-	if (!nt_grid_make(m, NULL, &q.grid) && !make_grid_of_used(&q))
-		return NMTAN_ERROR_MEMORY;
-	if (m->triangle_count < LEAST_TRIANGLES) {
-		*limit = q.limit;
+	question q = {.mesh = m, .tail = tail};
+	if (!tail->batches && !tail->limit)
+		use_box_of_used(m, tail);
+	if (m->triangle_count < LEAST_EDGES || tail->limit)
 		return NMTAN_OK;
-	}
-	const nt_scratch_mark mark = nt_scratch_here(m->scratch);
-	for (size_t triangles = FIRST_TRIANGLES; !q.run && !q.limit; triangles *= MORE) {
-		nt_scratch_back(m->scratch, mark);
-		const nmtan_status status = try_last(&q, triangles);
-		if (status)
+	for (size_t triangles = first_triangles(m);; triangles *= MORE) {
+		if (tail->triangles != triangles) {
+			if (!take_last(m, triangles, tail))
+				return NMTAN_ERROR_MEMORY;
+			watch_cells(m, tail);
+			tail->is_watched = false;
+		}
+		if (!list_corners(&q))
+			return NMTAN_ERROR_MEMORY;
+		if (!tail->is_box_used) {
+			use_box_of_used(m, tail);
+			if (tail->limit)
+				return NMTAN_OK;
+			watch_cells(m, tail);
+			tail->is_watched = false;
+			if (!list_corners(&q))
+				return NMTAN_ERROR_MEMORY;
+		}
+		bool enough;
+		const nmtan_status status = link_members(&q) ? ask_members(&q, &enough, count) : NMTAN_ERROR_MEMORY;
+		if (status || enough || tail->limit)
 			return status;
+		*count = m->triangle_count;
+		if (MORE * 3 * triangles > MOST_MEMBERS)
+			return NMTAN_OK;
 	}
-	*limit = q.limit;
-	*grid = q.grid;
-	if (q.limit)
-		return NMTAN_OK;
-	const size_t run_count = q.run_count;
-	qsort(q.run, run_count, sizeof *q.run, compare_ends);
-	*count = has_equal(q.run, run_count) ? run_count : 0;
-	return NMTAN_OK;
 }
 
-nmtan_status nt_find_unsorted(const nt_welded_mesh *mesh, nt_scratch *memory, nt_unsorted *unsorted)
+nmtan_status nt_find_unsorted(const nt_welded_mesh *mesh, nt_edge_tail *tail, nt_scratch *memory, nt_unsorted *unsorted)
 {
-	*unsorted = (nt_unsorted){.limit = corner_count(mesh) > NT_EDGE_SORT_CORNERS};
-	if (mesh->triangle_count == 0 || unsorted->limit)
+	*unsorted = (nt_unsorted){.edges = NULL};
+	if (mesh->triangle_count == 0)
 		return NMTAN_OK;
 	const nt_scratch_mark mark = nt_scratch_here(mesh->scratch);
-	nt_grid grid;
 	size_t count = 0;
-	const nmtan_status status = ask(mesh, &grid, &count, &unsorted->limit);
+	nmtan_status status = ask(mesh, tail, &count);
 	nt_scratch_back(mesh->scratch, mark);
-	if (status || count == 0)
+	unsorted->limit = tail->limit;
+	if (status || count == 0 || tail->limit)
 		return status;
 	unsorted->edges = nt_scratch_alloc(memory, count, sizeof *unsorted->edges);
-	return unsorted->edges ? pair_as_published(mesh, &grid, count, unsorted) : NMTAN_ERROR_MEMORY;
+	return unsorted->edges ? pair_as_published(mesh, &tail->grid, unsorted) : NMTAN_ERROR_MEMORY;
 }
 
 bool nt_unsorted_neighbour(const nt_unsorted *unsorted, uint32_t edge, uint32_t *neighbour)

@@ -16,22 +16,57 @@
 
 /* What is paired where edges are unsorted. */
 typedef struct nt_unsorted_edge {
-	uint32_t edge;      /* 3 * triangle + k: from corner k to the next */
+	uint32_t edge;	    /* 3 * triangle + k: from corner k to the next */
 	uint32_t neighbour; /* triangle on its other side, or NT_NO_NEIGHBOUR */
 } nt_unsorted_edge;
 
 typedef struct nt_unsorted {
 	nt_unsorted_edge *edges; /* [count] ascending: those that are paired otherwise than if they were sorted */
 	size_t count;
-	bool limit;              /* positions or work are beyond a limit: what is published is not known, count is 0 */
+	bool limit; /* positions or work are beyond a limit: what is published is not known, count is 0 */
 } nt_unsorted;
 
 /* Keys that are looked at to find the order of the last run, for each edge. */
 enum { NT_EDGE_SORT_VISITS = 64 };
 
-/* Expected linear time; where the order of the run does not matter, about that of reading the mesh. The result's edges
- * come from `memory`, which may be that of the mesh. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
-nmtan_status nt_find_unsorted(const nt_welded_mesh *mesh, nt_scratch *memory, nt_unsorted *unsorted);
+/* A vertex of the last triangles. */
+typedef struct nt_edge_member {
+	uint32_t vertex, low, high; /* its representative is between these corners; equal: it is known */
+	uint32_t edges;             /* that the last run may have, with this as the lower end */
+	bool is_met;
+} nt_edge_member;
+
+/* Triangles of a batch. */
+enum { NT_EDGE_BATCH = 16 };
+
+/* The last triangles, which decide whether the order matters, and what has to be known of the mesh for that: corners
+ * whose coordinate on the axis of the grid is near one of theirs. */
+typedef struct nt_edge_tail {
+	nt_grid grid;
+	bool limit;              /* see nt_unsorted */
+	bool is_box_used;        /* the box is that of rows that have corners */
+	bool is_watched;         /* batches are written, and is_box_used */
+	uint8_t *batches;        /* [triangles / NT_EDGE_BATCH + 1] not 0: there may be a corner from `low` to `high`;
+	                            NULL: in few triangles, all */
+	float low, high;
+	uint8_t *cells;          /* [NT_CELLS] the number of each that has a member, from 1 on; of others 0 */
+	size_t triangles;
+	uint32_t first;          /* their least corner */
+	unsigned slot_shift;
+	uint32_t *slots;         /* [2^(32 - slot_shift)] a hash table of members */
+	nt_edge_member *members; /* [member_count] */
+	size_t member_count;
+	uint64_t *are_members;   /* a bit for each vertex */
+} nt_edge_tail;
+
+/* Begins: says what to look for, in memory of the mesh. Who passes all corners meanwhile may note batches, and then
+ * sets is_watched if the grid's extremes have corners. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_edge_tail_make(const nt_welded_mesh *mesh, nt_edge_tail *tail);
+
+/* Ends. Expected linear time; if the order of the run does not matter, a fraction of the time of reading the mesh. The
+ * result's edges come from `memory`, which may be that of the mesh. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_find_unsorted(
+	const nt_welded_mesh *mesh, nt_edge_tail *tail, nt_scratch *memory, nt_unsorted *unsorted);
 
 /* The neighbour across an edge as published; false: it is the same as if all were sorted. */
 bool nt_unsorted_neighbour(const nt_unsorted *unsorted, uint32_t edge, uint32_t *neighbour);

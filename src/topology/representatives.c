@@ -2,308 +2,298 @@
 #include "topology/representatives.h"
 
 #include <float.h>
-#include <math.h>
 #include <string.h>
 #include "base/compiler.h"
 #include "base/parallel.h"
+#if NT_VECTORS && defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
-#define NONE UINT32_MAX
+/* Cells for a thread at least, and triangles whose vertices are looked up at a time. */
+enum { LEAST_CELLS = 128, BATCH = 16 };
 
-/* Cells for a thread at least, and vertices whose box is found at a time. */
-enum { LEAST_CELLS = 128, BLOCK = 64 };
+/* Boxes */
 
-typedef struct entry {
-	uint32_t vertex, corner;
-} entry;
+/* Adds rows [first, end), or those of vertices[first, end), to a box; false if a coordinate is NaN. */
+static inline NT_ALWAYS_INLINE bool add_rows(
+	const float *rows, size_t step, const uint32_t *vertices, size_t first, size_t end, nt_box *box)
+{
+#if NT_VECTORS && defined(__SSE2__)
+	__m128 low = _mm_loadu_ps(box->low), high = _mm_loadu_ps(box->high), unordered = _mm_setzero_ps();
+	for (size_t i = first; i < end; i++) {
+		const __m128 p = _mm_loadu_ps(rows + step * (vertices ? vertices[i] : i));
+		low = _mm_min_ps(low, p);
+		high = _mm_max_ps(high, p);
+		unordered = _mm_or_ps(unordered, _mm_cmpunord_ps(p, p));
+	}
+	_mm_storeu_ps(box->low, low);
+	_mm_storeu_ps(box->high, high);
+	return !(_mm_movemask_ps(unordered) & 7);
+#else
+	int unordered = 0;
+	for (size_t i = first; i < end; i++) {
+		const float *p = rows + step * (vertices ? vertices[i] : i);
+		for (int k = 0; k < 3; k++) {
+			box->low[k] = p[k] < box->low[k] ? p[k] : box->low[k];
+			box->high[k] = p[k] > box->high[k] ? p[k] : box->high[k];
+			unordered |= p[k] != p[k];
+		}
+	}
+	return !unordered;
+#endif
+}
 
-/* Corners of a cell, or of a part of it, and the vertices that they have. */
-typedef struct half {
-	entry *entries;
-	uint32_t *vertices;
-	size_t entry_count, vertex_count;
-} half;
-
-typedef struct box {
-	float low[3], high[3];
-} box;
-
-typedef struct weld {
-	const nt_welded_mesh *mesh;
-	entry *entries;
-	uint32_t *vertices;
-	uint16_t number[NT_CELLS]; /* of each cell that has a corner, from 1 on; 0: none */
-	uint32_t cell_count;
-	uint32_t *first_entry, *first_vertex; /* [cell_count + 2] by number */
-	uint32_t *found;
-	bool limit; /* set by any thread */
-} weld;
+static const nt_box nothing = {{FLT_MAX, FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX, -FLT_MAX}};
 
 /* The rule by which the published weld chooses an axis. */
-static unsigned longest_axis(const box *b)
+static unsigned longest_axis(const nt_box *b)
 {
 	const float x = b->high[0] - b->low[0], y = b->high[1] - b->low[1], z = b->high[2] - b->low[2];
 	return y > x && y > z ? 1 : z > x ? 2 : 0;
 }
 
-/* The box of vertices [first, end); false where a coordinate is NaN. */
-static bool box_of_block(const nt_welded_mesh *mesh, size_t first, size_t end, box *b)
+/* Makes the grid of a box, but for its extremes. */
+static bool set_grid(const nt_box *b, nt_grid *grid)
 {
-	int unordered = 0;
-	memcpy(b->low, mesh->positions + mesh->step * first, sizeof b->low);
-	memcpy(b->high, b->low, sizeof b->high);
-	for (size_t v = first; v < end; v++) {
-		const float *p = mesh->positions + mesh->step * v;
-		for (int i = 0; i < 3; i++) {
-			b->low[i] = p[i] < b->low[i] ? p[i] : b->low[i];
-			b->high[i] = p[i] > b->high[i] ? p[i] : b->high[i];
-			unordered |= p[i] != p[i];
-		}
-	}
-	return !unordered;
-}
-
-/* The first vertex from there on that has this coordinate; there is one. */
-static uint32_t find_coordinate(const nt_welded_mesh *mesh, size_t first, int axis, float coordinate)
-{
-	while (mesh->positions[mesh->step * first + (size_t)axis] != coordinate)
-		first++;
-	return (uint32_t)first;
-}
-
-/* Makes the box; `where` is in which block, or of which vertex, each side is. */
-static bool find_box(const nt_welded_mesh *mesh, const uint64_t *used, box *b, size_t where[6])
-{
-	const size_t step = used ? 1 : BLOCK;
-	for (size_t v = 0; v < mesh->vertex_count; v += step) {
-		box block;
-		if (used && !(used[v / 64] >> v % 64 & 1))
-			continue;
-		const size_t left = mesh->vertex_count - v;
-		if (!box_of_block(mesh, v, v + (left < step ? left : step), &block))
-			return false;
-		for (int i = 0; i < 3; i++) {
-			if (block.low[i] < b->low[i])
-				b->low[i] = block.low[i], where[2 * i] = v;
-			if (block.high[i] > b->high[i])
-				b->high[i] = block.high[i], where[2 * i + 1] = v;
-		}
-	}
 	for (int i = 0; i < 3; i++)
 		if (!(b->low[i] > -FLT_MAX / 2 && b->high[i] < FLT_MAX / 2))
 			return false;
+	grid->axis = longest_axis(b);
+	grid->low = b->low[grid->axis];
+	grid->high = b->high[grid->axis];
 	return true;
 }
 
-bool nt_grid_make(const nt_welded_mesh *mesh, const uint64_t *used, nt_grid *grid)
+/* The first vertex with that coordinate, which is a side of the box. */
+static uint32_t find_extreme(const nt_welded_mesh *mesh, const nt_box *boxes, int axis, bool high, float coordinate)
 {
-	box b = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
-	size_t where[6];
-	if (!find_box(mesh, used, &b, where))
+	size_t block = 0;
+	while ((high ? boxes[block].high : boxes[block].low)[axis] != coordinate)
+		block++;
+	size_t v = block * NT_BOX_ROWS;
+	while (mesh->positions[mesh->step * v + (size_t)axis] != coordinate)
+		v++;
+	return (uint32_t)v;
+}
+
+bool nt_grid_make(const nt_welded_mesh *mesh, nt_box *boxes, nt_grid *grid)
+{
+	nt_box all = nothing;
+	bool ordered = true;
+	for (size_t v = 0; v < mesh->vertex_count; v += NT_BOX_ROWS) {
+		nt_box *box = &boxes[v / NT_BOX_ROWS];
+		const size_t left = mesh->vertex_count - v;
+		*box = nothing;
+		ordered &= add_rows(
+			mesh->positions, mesh->step, NULL, v, v + (left < NT_BOX_ROWS ? left : NT_BOX_ROWS), box);
+		for (int i = 0; i < 4; i++) {
+			all.low[i] = box->low[i] < all.low[i] ? box->low[i] : all.low[i];
+			all.high[i] = box->high[i] > all.high[i] ? box->high[i] : all.high[i];
+		}
+	}
+	if (!ordered || !set_grid(&all, grid))
 		return false;
 	for (int i = 0; i < 6; i++)
-		grid->extremes[i] = find_coordinate(mesh, where[i], i / 2, i % 2 ? b.high[i / 2] : b.low[i / 2]);
-	grid->axis = longest_axis(&b);
-	grid->low = b.low[grid->axis];
-	grid->high = b.high[grid->axis];
+		grid->extremes[i] = find_extreme(mesh, boxes, i / 2, i % 2, i % 2 ? all.high[i / 2] : all.low[i / 2]);
 	return true;
 }
 
-unsigned nt_grid_cell(const nt_grid *grid, float coordinate)
+bool nt_grid_of_used(const nt_welded_mesh *mesh, nt_grid *grid)
 {
-	const float cell = (float)NT_CELLS * ((coordinate - grid->low) / (grid->high - grid->low));
-	/* NaN, of a box without extent, is cell 0 */
-	return cell >= (float)NT_CELLS ? NT_CELLS - 1 : cell > 0.0f ? (unsigned)cell : 0;
-}
-
-static box box_of(const nt_welded_mesh *mesh, const half *h)
-{
-	box b;
-	memcpy(b.low, nt_welded_position(mesh, h->vertices[0]), sizeof b.low);
-	memcpy(b.high, b.low, sizeof b.high);
-	for (size_t i = 1; i < h->vertex_count; i++) {
-		const float *p = nt_welded_position(mesh, h->vertices[i]);
-		for (int k = 0; k < 3; k++) {
-			b.low[k] = p[k] < b.low[k] ? p[k] : b.low[k];
-			b.high[k] = p[k] > b.high[k] ? p[k] : b.high[k];
-		}
+	nt_box all = nothing;
+	bool ordered = true;
+	for (size_t t = 0, count; t < mesh->triangle_count; t += count) {
+		uint32_t copy[3 * BATCH];
+		count = mesh->triangle_count - t < BATCH ? mesh->triangle_count - t : BATCH;
+		const uint32_t *ids = nt_triangle_vertices(mesh->triangles, t, count, copy);
+		ordered &= add_rows(mesh->positions, mesh->step, ids, 0, 3 * count, &all);
 	}
-	return b;
+	return ordered && set_grid(&all, grid);
 }
 
-/* Swaps entries until those below the middle come first, and only those that have to: the first that is above with the
- * last that is below, and so on. The order of all others, and which of them are swapped, decides in the end. */
-static size_t part_entries(entry *entries, size_t count, const float *coordinates, size_t step, float middle)
+/* Halving */
+
+/* A part of a cell that is still to be halved. */
+typedef struct part {
+	nt_welded_point *points;
+	size_t count;
+	unsigned halvings;
+} part;
+
+/* Where a part is halved, and along which axis; false: nothing is left to halve. */
+static bool find_middle(const part *p, unsigned *axis, float *middle)
 {
-	size_t left = 0, right = count;
-	for (;;) {
-		while (left < right && coordinates[step * entries[left].vertex] < middle)
-			left++;
-		while (left < right && !(coordinates[step * entries[right - 1].vertex] < middle))
-			right--;
-		if (left >= right)
-			return left;
-		const entry swapped = entries[left];
-		entries[left++] = entries[--right];
-		entries[right] = swapped;
-	}
+	enum { STEP = sizeof *p->points / sizeof *p->points->position };
+	nt_box b = nothing;
+	(void)add_rows(p->points->position, STEP, NULL, 0, p->count, &b);
+	*axis = longest_axis(&b);
+	*middle = 0.5f * (b.high[*axis] + b.low[*axis]);
+	return *middle < b.high[*axis] && *middle > b.low[*axis];
 }
 
-static size_t part_vertices(uint32_t *vertices, size_t count, const float *coordinates, size_t step, float middle)
+enum { WORD = 64 };
+
+/* Bits of at most 64 points that are on the wrong side: those not below from the first on, those below from the last.
+ * */
+static uint64_t find_wrong(const nt_welded_point *points, size_t count, unsigned axis, float middle, bool below)
+{
+	uint64_t bits = 0;
+	if (below)
+		for (size_t i = 0; i < count; i++)
+			bits |= (uint64_t)(points[count - 1 - i].position[axis] < middle) << i;
+	else
+		for (size_t i = 0; i < count; i++)
+			bits |= (uint64_t) !(points[i].position[axis] < middle) << i;
+	return bits;
+}
+
+/* Swaps points until those below the middle come first, and only those that have to: the first that is above with the
+ * last that is below, and so on. The order of all others, and which of them are swapped, decides in the end. Returns
+ * how many are below. */
+static size_t part_points(nt_welded_point *points, size_t count, unsigned axis, float middle)
 {
 	size_t below = 0;
-	for (size_t i = 0; i < count; i++) {
-		const uint32_t v = vertices[i];
-		vertices[i] = vertices[below];
-		vertices[below] = v;
-		below += coordinates[step * v] < middle;
+	for (size_t i = 0; i < count; i++)
+		below += points[i].position[axis] < middle;
+	size_t left = 0,
+	       right = count; /* behind the points that `low` is of, and the first of those that `high` is of */
+	for (uint64_t low = 0, high = 0;;) {
+		for (; !low; left += WORD) {
+			if (left >= below)
+				return below;
+			low = find_wrong(points + left, below - left < WORD ? below - left : WORD, axis, middle, false);
+		}
+		for (; !high; right -= WORD) {
+			const size_t some = right - below < WORD ? right - below : WORD;
+			high = find_wrong(points + (right - some), some, axis, middle, true);
+		}
+		for (; low && high; low &= low - 1, high &= high - 1) {
+			nt_welded_point *const a = &points[left - WORD + (size_t)nt_trailing_zeros(low)];
+			nt_welded_point *const b = &points[right + WORD - 1 - (size_t)nt_trailing_zeros(high)];
+			const nt_welded_point swapped = *a;
+			*a = *b;
+			*b = swapped;
+		}
 	}
-	return below;
 }
 
-/* Where a part is halved; false where nothing is left to halve. */
-static bool find_middle(const nt_welded_mesh *mesh, const half *part, const float **coordinates, float *middle)
+static void load_points(
+	const nt_welded_mesh *mesh, const nt_welded_corner *corners, size_t count, nt_welded_point *points)
 {
-	const box b = box_of(mesh, part);
-	const unsigned axis = longest_axis(&b);
-	*middle = 0.5f * (b.high[axis] + b.low[axis]);
-	*coordinates = mesh->positions + axis;
-	return *middle < b.high[axis] && *middle > b.low[axis];
+	for (size_t i = 0; i < count; i++) {
+		memcpy(points[i].position, nt_welded_position(mesh, corners[i].vertex), sizeof points->position);
+		points[i].index = (uint32_t)i;
+	}
 }
 
-static void halve(const weld *w, const half *whole, const float *coordinates, float middle, half *left, half *right)
+bool nt_find_representative(const nt_welded_mesh *mesh, const nt_welded_corner *corners, size_t count, uint32_t vertex,
+	nt_welded_point *points, uint32_t *found)
 {
-	const size_t step = w->mesh->step;
-	const size_t entries = part_entries(whole->entries, whole->entry_count, coordinates, step, middle);
-	const size_t vertices = part_vertices(whole->vertices, whole->vertex_count, coordinates, step, middle);
-	*right = (half){whole->entries + entries, whole->vertices + vertices, whole->entry_count - entries,
-		whole->vertex_count - vertices};
-	*left = (half){whole->entries, whole->vertices, entries, vertices};
+	const float *const position = nt_welded_position(mesh, vertex);
+	part p = {points, count, 0};
+	unsigned axis;
+	float middle;
+	load_points(mesh, corners, count, points);
+	while (find_middle(&p, &axis, &middle)) {
+		if (++p.halvings > NT_HALVINGS)
+			return false;
+		const size_t below = part_points(p.points, p.count, axis, middle);
+		p = position[axis] < middle ? (part){p.points, below, p.halvings}
+					    : (part){p.points + below, p.count - below, p.halvings};
+	}
+	while (corners[p.points->index].vertex != vertex)
+		p.points++;
+	*found = corners[p.points->index].corner;
+	return true;
 }
+
+/* All cells */
+
+typedef struct weld {
+	const nt_welded_mesh *mesh;
+	nt_welded_corner *corners; /* in their cells, in order */
+	nt_welded_point *points;   /* [threads][most corners of a cell] */
+	size_t most;
+	uint32_t first[NT_CELLS + 1];
+	uint32_t *found;
+	bool limit; /* set by any thread */
+} weld;
 
 /* False: it would have to be halved too often. */
-static bool weld_cell(const weld *w, const half *cell)
+static bool weld_cell(const weld *w, const nt_welded_corner *corners, size_t count, nt_welded_point *points)
 {
-	struct {
-		half part;
-		unsigned halvings;
-	} waiting[NT_HALVINGS + 1];
-	size_t count = 0;
-	waiting[count].part = *cell;
-	waiting[count++].halvings = 0;
-	while (count > 0) {
-		half part = waiting[--count].part, right;
-		unsigned halvings = waiting[count].halvings;
-		const float *coordinates;
+	part waiting[NT_HALVINGS + 1];
+	size_t waiting_count = 0;
+	load_points(w->mesh, corners, count, points);
+	waiting[waiting_count++] = (part){points, count, 0};
+	while (waiting_count > 0) {
+		part p = waiting[--waiting_count];
+		unsigned axis;
 		float middle;
-		while (part.vertex_count > 1 && find_middle(w->mesh, &part, &coordinates, &middle)) {
-			if (++halvings > NT_HALVINGS)
+		while (find_middle(&p, &axis, &middle)) {
+			if (++p.halvings > NT_HALVINGS)
 				return false;
-			halve(w, &part, coordinates, middle, &part, &right);
-			waiting[count].part = right;
-			waiting[count++].halvings = halvings;
+			const size_t below = part_points(p.points, p.count, axis, middle);
+			waiting[waiting_count++] = (part){p.points + below, p.count - below, p.halvings};
+			p.count = below;
 		}
-		if (part.vertex_count == 1)
-			part.entry_count = 1;
-		for (size_t i = part.entry_count; i-- > 0;)
-			w->found[part.entries[i].vertex] = part.entries[i].corner;
+		for (size_t i = p.count; i-- > 0;)
+			w->found[corners[p.points[i].index].vertex] = corners[p.points[i].index].corner;
 	}
 	return true;
 }
 
 static void weld_cells(void *context, size_t begin, size_t end, unsigned thread)
 {
-	(void)thread;
 	weld *w = context;
-	for (size_t c = begin + 1; c <= end; c++) {
-		const half cell = {w->entries + w->first_entry[c], w->vertices + w->first_vertex[c],
-			w->first_entry[c + 1] - w->first_entry[c], w->first_vertex[c + 1] - w->first_vertex[c]};
-		if (!weld_cell(w, &cell))
+	for (size_t c = begin; c < end; c++) {
+		const size_t count = w->first[c + 1] - w->first[c];
+		if (count > 0 && !weld_cell(w, w->corners + w->first[c], count, w->points + thread * w->most))
 			nt_atomic_store(&w->limit, true, RELAXED);
 	}
 }
 
-static uint32_t corner_at(const uint32_t *corners, size_t i)
-{
-	return corners ? corners[i] : (uint32_t)i;
-}
-
-static uint32_t vertex_at(const nt_welded_mesh *mesh, uint32_t corner)
-{
-	return mesh->triangles->ids[nt_triangle_corner(mesh->triangles, corner / 3, corner % 3)];
-}
-
-/* Turns counts into where things begin. */
-static void add_up(uint32_t *counts, size_t cell_count)
-{
-	uint32_t sum = 0;
-	for (size_t c = 1; c <= cell_count + 1; c++) {
-		const uint32_t count = counts[c];
-		counts[c] = sum;
-		sum += count;
-	}
-}
-
-/* Moves where things begin back, after each cell has been filled. */
-static void move_back(uint32_t *ends, size_t cell_count)
-{
-	memmove(ends + 2, ends + 1, cell_count * sizeof *ends);
-	ends[1] = 0;
-}
-
-/* Puts entries and vertices into their cells, the former in order. */
-static bool fill_cells(weld *w, const nt_grid *grid, const uint32_t *corners, size_t count)
+/* Puts corners into their cells, in order. */
+static bool fill_cells(weld *w, const nt_grid *grid)
 {
 	const nt_welded_mesh *mesh = w->mesh;
-	const size_t most = mesh->vertex_count < count ? mesh->vertex_count : count;
-	const size_t cells = most < NT_CELLS ? most : NT_CELLS;
-	uint16_t *cell_of = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *cell_of);
-	uint32_t *met = nt_scratch_alloc(mesh->scratch, most, sizeof *met);
-	w->vertices = nt_scratch_alloc(mesh->scratch, most, sizeof *w->vertices);
-	w->entries = nt_scratch_alloc(mesh->scratch, count, sizeof *w->entries);
-	w->first_entry = nt_scratch_alloc(mesh->scratch, 2 * (cells + 2), sizeof *w->first_entry);
-	if (!cell_of || !met || !w->vertices || !w->entries || !w->first_entry)
+	const size_t count = 3 * mesh->triangle_count;
+	uint16_t *cells = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *cells);
+	w->corners = nt_scratch_alloc(mesh->scratch, count, sizeof *w->corners);
+	if (!cells || !w->corners)
 		return false;
-	w->first_vertex = w->first_entry + cells + 2;
-	memset(w->first_entry, 0, 2 * (cells + 2) * sizeof *w->first_entry);
-	size_t met_count = 0;
-	for (size_t i = 0; i < count; i++)
-		w->found[vertex_at(mesh, corner_at(corners, i))] = NONE;
-	for (size_t i = 0; i < count; i++) {
-		const uint32_t v = vertex_at(mesh, corner_at(corners, i));
-		if (w->found[v] == NONE) {
-			uint16_t *number =
-				&w->number[nt_grid_cell(grid, nt_welded_position(mesh, v)[grid->axis])];
-			if (*number == 0)
-				*number = (uint16_t)++w->cell_count;
-			w->found[v] = 0;
-			met[met_count++] = v;
-			cell_of[v] = *number;
-			w->first_vertex[*number]++;
-		}
-		w->first_entry[cell_of[v]]++;
+	for (size_t v = 0; v < mesh->vertex_count; v++)
+		cells[v] = (uint16_t)nt_grid_cell(grid, mesh->positions[mesh->step * v + grid->axis]);
+	uint32_t copy[3], counts[NT_CELLS] = {0};
+	for (size_t t = 0; t < mesh->triangle_count; t++) {
+		const uint32_t *v = nt_triangle_vertices(mesh->triangles, t, 1, copy);
+		for (int k = 0; k < 3; k++)
+			counts[cells[v[k]]]++;
 	}
-	add_up(w->first_entry, w->cell_count);
-	add_up(w->first_vertex, w->cell_count);
-	for (size_t i = 0; i < met_count; i++)
-		w->vertices[w->first_vertex[cell_of[met[i]]]++] = met[i];
-	for (size_t i = 0; i < count; i++) {
-		const uint32_t corner = corner_at(corners, i), v = vertex_at(mesh, corner);
-		w->entries[w->first_entry[cell_of[v]]++] = (entry){v,
-			(uint32_t)nt_triangle_corner(mesh->triangles, corner / 3, corner % 3)};
+	w->first[0] = 0;
+	for (size_t c = 0; c < NT_CELLS; c++) {
+		w->most = counts[c] > w->most ? counts[c] : w->most;
+		w->first[c + 1] = w->first[c] + counts[c];
+		counts[c] = w->first[c];
 	}
-	move_back(w->first_entry, w->cell_count);
-	move_back(w->first_vertex, w->cell_count);
-	return true;
+	for (size_t t = 0; t < mesh->triangle_count; t++) {
+		const uint32_t *v = nt_triangle_vertices(mesh->triangles, t, 1, copy);
+		for (unsigned k = 0; k < 3; k++)
+			w->corners[counts[cells[v[k]]]++] = (nt_welded_corner){
+				v[k], (uint32_t)nt_triangle_corner(mesh->triangles, t, k)};
+	}
+	const unsigned slots = nt_parallel_slots(mesh->threads, NT_CELLS, LEAST_CELLS);
+	w->points = nt_scratch_alloc(mesh->scratch, slots * w->most, sizeof *w->points);
+	return w->points;
 }
 
-nt_representatives_end nt_representatives(const nt_welded_mesh *mesh, const nt_grid *grid, const uint32_t *corners,
-	size_t count, uint32_t *found)
+nt_representatives_end nt_representatives(const nt_welded_mesh *mesh, const nt_grid *grid, uint32_t *found)
 {
 	const nt_scratch_mark mark = nt_scratch_here(mesh->scratch);
 	weld w = {.mesh = mesh, .found = found};
-	const bool filled = fill_cells(&w, grid, corners, count);
+	const bool filled = fill_cells(&w, grid);
 	if (filled)
-		nt_parallel_ranges(corners ? 1 : mesh->threads, w.cell_count, LEAST_CELLS, weld_cells, &w);
+		nt_parallel_ranges(mesh->threads, NT_CELLS, LEAST_CELLS, weld_cells, &w);
 	nt_scratch_back(mesh->scratch, mark);
 	return !filled ? NT_REPRESENTATIVES_NO_MEMORY : w.limit ? NT_REPRESENTATIVES_LIMIT : NT_REPRESENTATIVES_FOUND;
 }

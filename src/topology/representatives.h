@@ -25,7 +25,7 @@ typedef struct nt_welded_mesh {
 	size_t triangle_count, vertex_count;
 	const float *positions; /* [vertex_count] rows of three floats, of numbers that no corner has too; three
 	                           floats behind the last one can be read */
-	size_t step;            /* floats from one row to the next */
+	size_t step;		/* floats from one row to the next */
 	unsigned threads;
 	nt_scratch *scratch;
 } nt_welded_mesh;
@@ -35,6 +35,14 @@ static inline const float *nt_welded_position(const nt_welded_mesh *mesh, uint32
 	return mesh->positions + mesh->step * vertex;
 }
 
+/* The box of some rows; the last of each four is of no use. */
+typedef struct nt_box {
+	float low[4], high[4];
+} nt_box;
+
+/* Rows of a block, whose box is kept: blocks that are far from a cell need no look. */
+enum { NT_BOX_ROWS = 32 };
+
 /* Cells lie along one axis of the box. */
 typedef struct nt_grid {
 	unsigned axis;
@@ -42,27 +50,56 @@ typedef struct nt_grid {
 	uint32_t extremes[6]; /* vertices that have the least and the largest coordinate on each axis */
 } nt_grid;
 
-/* The box of the vertices that have a bit in `used` (NULL: all); at least one has. False where one of their coordinates
- * is not finite or not below FLT_MAX / 2: the published weld leaves some of these unwelded. */
-bool nt_grid_make(const nt_welded_mesh *mesh, const uint64_t *used, nt_grid *grid);
+/*
+ * The box of all rows of a mesh. False if one of their coordinates is not finite or not below FLT_MAX / 2: the
+ * published
+ * weld leaves some of these unwelded.
+ *
+ *   boxes   [vertex_count / NT_BOX_ROWS + 1] receives those of blocks of rows
+ */
+bool nt_grid_make(const nt_welded_mesh *mesh, nt_box *boxes, nt_grid *grid);
 
 /* The cell of a coordinate on the grid's axis, below NT_CELLS. */
-unsigned nt_grid_cell(const nt_grid *grid, float coordinate);
+static inline unsigned nt_grid_cell(const nt_grid *grid, float coordinate)
+{
+	const float cell = (float)NT_CELLS * ((coordinate - grid->low) / (grid->high - grid->low));
+	/* NaN, of a box without extent, is cell 0 */
+	const float from_zero = cell > 0.0f ? cell : 0.0f, last = (float)(NT_CELLS - 1);
+	return (unsigned)(int)(from_zero < last ? from_zero : last);
+}
 
-/* How it ends. LIMIT: a cell would have to be halved more than NT_HALVINGS times. */
+/* The same as nt_grid_make() for the rows that have corners alone; without extremes. */
+bool nt_grid_of_used(const nt_welded_mesh *mesh, nt_grid *grid);
+
+/* A corner, and its vertex. */
+typedef struct nt_welded_corner {
+	uint32_t vertex, corner;
+} nt_welded_corner;
+
+/* A corner on its way: `index` says which. */
+typedef struct nt_welded_point {
+	float position[3];
+	uint32_t index;
+} nt_welded_point;
+
+/*
+ * Finds the corner that stands for a vertex. False: its cell would have to be halved more than NT_HALVINGS times.
+ *
+ *   corners   [count] all those of its cell, in the order of triangles
+ *   points    [count] of the caller
+ */
+bool nt_find_representative(const nt_welded_mesh *mesh, const nt_welded_corner *corners, size_t count, uint32_t vertex,
+	nt_welded_point *points, uint32_t *found);
+
+/* How the search for all of them ends. LIMIT: a cell would have to be halved more than NT_HALVINGS times. */
 typedef enum nt_representatives_end {
 	NT_REPRESENTATIVES_FOUND,
 	NT_REPRESENTATIVES_LIMIT,
 	NT_REPRESENTATIVES_NO_MEMORY
 } nt_representatives_end;
 
-/*
- * Finds the corner of the mesh that stands for each vertex of the corners given.
- *
- *   corners   [count] ascending 3 * triangle + k: all corners of the cells that they are in; NULL: all there are
- *   found     [vertex_count] receives the representatives of the vertices that these corners have
- */
-nt_representatives_end nt_representatives(const nt_welded_mesh *mesh, const nt_grid *grid, const uint32_t *corners,
-	size_t count, uint32_t *found);
+/* Finds the corner of the mesh that stands for each vertex: found[vertex_count], not written for vertices that have
+ * none. */
+nt_representatives_end nt_representatives(const nt_welded_mesh *mesh, const nt_grid *grid, uint32_t *found);
 
 #endif

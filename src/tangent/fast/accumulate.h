@@ -369,6 +369,34 @@ static inline NT_ALWAYS_INLINE void prefetch_cursors(const nt_fast *fast, const 
 		NT_PREFETCH_TO_WRITE(&cursors[ids[i]]);
 }
 
+#if WIDTH > 1
+typedef float lane_floats __attribute__((vector_size(4 * WIDTH)));
+#else
+typedef float lane_floats;
+#endif
+
+/* Has the sign bit of lanes outside of an interval: that of a difference. */
+static inline lanes outside_of(const float *x, float low, float high)
+{
+	lane_floats at;
+	memcpy(&at, x, sizeof at);
+	const lane_floats above = at - low, below = high - at;
+	return load_lanes(&above) | load_lanes(&below);
+}
+
+/* Notes triangles with a corner near the last ones (topology/edge_sort.h). A batch may lie in two ranges. */
+static inline void note_near(const nt_edge_tail *tail, const lanes_in *in, size_t first, size_t count)
+{
+	lanes outside = ~(lanes){0};
+	for (size_t i = 0; i < whole_lanes(count); i += WIDTH)
+		for (int k = 0; k < 3; k++)
+			outside &= outside_of(in->row[k][tail->grid.axis] + i, tail->low, tail->high);
+	if (any_lane(~outside & 0x80000000u)) {
+		nt_atomic_store(&tail->batches[first / NT_EDGE_BATCH], 1, RELAXED);
+		nt_atomic_store(&tail->batches[(first + count - 1) / NT_EDGE_BATCH], 1, RELAXED);
+	}
+}
+
 static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
 	void *context)
 {
@@ -386,6 +414,8 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 		uint32_t copy[3 * NT_LANES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
 		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : whole_lanes(count), in.row);
+		if (direct && fast->tail.batches)
+			note_near(&fast->tail, &in, first, count);
 		if (scattered && direct)
 			prefetch_places(fast, cursors, ids, count);
 		if (scattered)

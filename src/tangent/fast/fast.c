@@ -44,7 +44,7 @@
 /* Each thread has cursors of its own for all vertices, which are then gone over together: the more threads, the more
  * triangles each must have. Two need fewer: their halves take 10 to 18 % more processor time than the whole. */
 static const nt_fast_plan usual = {.grain = 65536, .least_two = 30000, .least_borrowed_bytes = 65536,
-	.most_narrow = NT_NARROW_LIMIT, .small = true};
+	.most_narrow = NT_NARROW_LIMIT};
 
 typedef struct run {
 	nt_fast *fast;
@@ -124,6 +124,15 @@ static unsigned count_ranges(const nt_fast *fast, const nt_fast_plan *plan)
 	return ranges == 1 && two ? 2 : ranges;
 }
 
+/* What the published sort of edges is asked from. */
+static nt_welded_mesh welded_mesh(const nt_fast *fast, nt_scratch *scratch)
+{
+	return (nt_welded_mesh){.triangles = &fast->triangles, .triangle_count = fast->triangle_count,
+		.vertex_count = fast->vertex_count, .positions = fast->rows->position,
+		.step = sizeof *fast->rows / sizeof *fast->rows->position, .threads = fast->solve->threads,
+		.scratch = scratch};
+}
+
 /* Asks what the published sort of edges leaves, in memory that is not in use yet. */
 static nmtan_status find_unsorted(nt_fast *fast, const nt_borrowed *memory)
 {
@@ -133,15 +142,22 @@ static nmtan_status find_unsorted(nt_fast *fast, const nt_borrowed *memory)
 	nt_scratch_init(&lent, &scratch->allocator);
 	if (bytes >= LEAST_LENT_BYTES)
 		nt_scratch_lend(&lent, memory->begin, bytes);
-	const nt_welded_mesh mesh = {.triangles = &fast->triangles,
-		.triangle_count = fast->triangle_count, .vertex_count = fast->vertex_count,
-		.positions = fast->rows->position, .step = sizeof *fast->rows / sizeof *fast->rows->position,
-		.threads = fast->solve->threads, .scratch = bytes >= LEAST_LENT_BYTES ? &lent : scratch};
-	const nmtan_status status = nt_find_unsorted(&mesh, scratch, &fast->unsorted);
+	const nt_welded_mesh mesh = welded_mesh(fast, bytes >= LEAST_LENT_BYTES ? &lent : scratch);
+	const nmtan_status status = nt_find_unsorted(&mesh, &fast->tail, scratch, &fast->unsorted);
 	nt_scratch_free(&lent);
 	if (fast->unsorted.limit && fast->solve->sorted_instead)
 		*fast->solve->sorted_instead = true;
 	return status;
+}
+
+/* Batches have been noted; whether the vertices that make the box have corners. */
+static void tell_watched(nt_fast *fast)
+{
+	nt_edge_tail *tail = &fast->tail;
+	bool used = tail->batches;
+	for (int i = 0; i < 6 && used && !tail->is_box_used; i++)
+		used = nt_adjacency_has_corners(&fast->adjacency, tail->grid.extremes[i]);
+	tail->is_watched = tail->is_box_used = used;
 }
 
 static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_memory *memory)
@@ -151,8 +167,10 @@ static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_mem
 	nmtan_status status = weld(fast, ranges, memory, &welded);
 	if (!status)
 		status = make_triangles(fast, &welded);
-	if (!status && !fast->solve->sorted)
-		status = find_unsorted(fast, &memory->borrowed);
+	if (!status && !fast->solve->sorted) {
+		const nt_welded_mesh mesh = welded_mesh(fast, fast->solve->scratch);
+		status = nt_edge_tail_make(&mesh, &fast->tail);
+	}
 	return status ? status : make_ranges(fast, ranges);
 }
 
@@ -193,7 +211,10 @@ static void fill_ranges(void *context, size_t begin, size_t end, unsigned thread
 /* By way of bins, which take the place of the adjacency. */
 static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned bin_bits, nt_fast_memory *memory)
 {
-	const nmtan_status status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
+	nmtan_status status = fast->solve->sorted ? NMTAN_OK : find_unsorted(fast, &memory->borrowed);
+	if (status)
+		return status;
+	status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
 		bin_bits ? bin_bits : nt_bins_bits(fast->vertex_count), memory->bin_sums, &memory->borrowed,
 		&fast->bins);
 	if (status)
@@ -266,13 +287,6 @@ static bool make_bins(run *r, unsigned ranges)
 static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled *sum)
 {
 	const unsigned ranges = fast->ranges.count;
-	if (fast->small) {
-		*sum = (nt_settled){0};
-		mark_undecided(fast);
-		kernels->settle(fast, &fast->adjacency, fast->records, 0,
-			(fast->vertex_count + NT_LANES - 1) / NT_LANES, sum);
-		return NMTAN_OK;
-	}
 	run r = {.fast = fast, .kernels = kernels};
 	r.settled = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *r.settled);
 	if (!r.settled)
@@ -375,12 +389,11 @@ static void tell_known(const nt_fast *fast)
 static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, const nt_settled *settled)
 {
 	nt_fast_write(fast, settled);
-	if (settled->complex_count > 0) {
-		nt_borrowed left = nt_fast_left_memory(fast);
-		const nmtan_status status = nt_fast_complex(fast, kernels, settled, &left);
-		if (status)
-			return status;
-	}
+	nt_borrowed left = nt_fast_left_memory(fast);
+	const nmtan_status status = settled->complex_count > 0
+		? nt_fast_complex(fast, kernels, settled, &left) : NMTAN_OK;
+	if (status)
+		return status;
 	if (fast->solve->known)
 		tell_known(fast);
 	/* these corners are copied from others, which must have been written */
@@ -399,46 +412,26 @@ bool nt_fast_can(const nt_solve *solve)
 	       3 * nt_triangle_count(solve->mesh, solve->corner_count) < NT_ADJACENCY_LIMIT;
 }
 
-/* Steps 1 to 4 of few triangles. */
-static nmtan_status add_small(nt_fast *fast, const nt_kernels *kernels, bool *welded)
-{
-	const nt_borrowed none = nt_borrow(NULL, 0, fast->solve->scratch);
-	nmtan_status status = nt_fast_weld_small(fast, welded);
-	if (!status && *welded && !fast->solve->sorted)
-		status = find_unsorted(fast, &none);
-	if (!status && *welded)
-		nt_fast_add_small(fast, kernels);
-	return status;
-}
-
-/* Steps 1 to 4. */
-static nmtan_status add(nt_fast *fast, const nt_kernels *kernels, const nt_fast_plan *plan)
-{
-	const bool binned = is_binned(fast, plan->bin_bits);
-	nt_fast_memory memory;
-	nt_fast_plan_memory(fast, binned, plan->least_borrowed_bytes, &memory);
-
-	/* which corners are one vertex, and which triangles each thread does */
-	const nmtan_status status = prepare(fast, plan, &memory);
-	if (status)
-		return status;
-	/* each vertex's sums over its corners, one for each orientation */
-	return binned ? fill_bins(fast, kernels, plan->bin_bits, &memory)
-		: add_to_records(fast, kernels, plan, &memory);
-}
-
 nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan)
 {
 	assert(nt_fast_can(solve));
 	const nt_kernels *kernels = NT_CPU_TABLE(solve->isa, nt_kernels);
 	nt_fast fast = {.solve = solve, .triangle_count = nt_triangle_count(solve->mesh, solve->corner_count),
 		.wants_more = solve->bitangents || solve->magnitudes, .sparse = solve->sparse};
-	bool added = false;
-	nmtan_status status = NMTAN_OK;
-	if (plan->small && nt_fast_is_small(&fast))
-		status = add_small(&fast, kernels, &added);
-	if (!status && !added)
-		status = add(&fast, kernels, plan);
+	const bool binned = is_binned(&fast, plan->bin_bits);
+	nt_fast_memory memory;
+	nt_fast_plan_memory(&fast, binned, plan->least_borrowed_bytes, &memory);
+
+	/* which corners are one vertex, and which triangles each thread does */
+	nmtan_status status = prepare(&fast, plan, &memory);
+	/* each vertex's sums over its corners, one for each orientation */
+	if (!status)
+		status = binned ? fill_bins(&fast, kernels, plan->bin_bits, &memory)
+				: add_to_records(&fast, kernels, plan, &memory);
+	if (!status && !binned && !solve->sorted) {
+		tell_watched(&fast);
+		status = find_unsorted(&fast, &memory.borrowed);
+	}
 	if (status)
 		return status;
 	if (!fast.records[0] && !fast.records[1]) {

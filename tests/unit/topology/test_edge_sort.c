@@ -18,13 +18,21 @@ static void place(void)
 		positions[v][0] = (float)v;
 }
 
-static nmtan_status ask(const uint32_t *ids, size_t triangles, size_t vertices, nt_scratch *scratch,
-	nt_unsorted *unsorted)
+static nmtan_status ask(
+	const uint32_t *ids, size_t triangles, size_t vertices, nt_scratch *scratch, nt_unsorted *unsorted)
 {
 	const nt_triangles all = {.ids = ids};
-	const nt_welded_mesh mesh = {.triangles = &all, .triangle_count = triangles, .vertex_count = vertices,
-		.positions = positions[0], .step = 3, .threads = 1, .scratch = scratch};
-	return nt_find_unsorted(&mesh, scratch, unsorted);
+	const nt_welded_mesh mesh = {.triangles = &all,
+		.triangle_count = triangles,
+		.vertex_count = vertices,
+		.positions = positions[0],
+		.step = 3,
+		.threads = 1,
+		.scratch = scratch};
+	nt_edge_tail tail;
+	const nmtan_status status = nt_edge_tail_make(&mesh, &tail);
+	*unsorted = (nt_unsorted){.edges = NULL};
+	return status ? status : nt_find_unsorted(&mesh, &tail, scratch, unsorted);
 }
 
 static void expect(const uint32_t *ids, size_t triangles, size_t vertices, const nt_unsorted_edge *edges, size_t count)
@@ -84,8 +92,8 @@ TEST(three_equal_edges_meet_from_the_end)
 TEST(equal_edges_that_are_apart_do_not_meet)
 {
 	static const uint32_t ids[] = {C, A, B, C, A, D, C, B, A, C, D, A};
-	static const nt_unsorted_edge edges[] = {{1, NT_NO_NEIGHBOUR}, {4, NT_NO_NEIGHBOUR}, {7, NT_NO_NEIGHBOUR},
-		{10, NT_NO_NEIGHBOUR}};
+	static const nt_unsorted_edge edges[] = {
+		{1, NT_NO_NEIGHBOUR}, {4, NT_NO_NEIGHBOUR}, {7, NT_NO_NEIGHBOUR}, {10, NT_NO_NEIGHBOUR}};
 	place();
 	expect(ids, 4, 4, edges, 4);
 }
@@ -128,21 +136,24 @@ TEST(positions_that_are_not_welded_are_a_limit)
 	assert_false(is_limit(three, 3, 3));
 }
 
-/* See test_representatives.c: each halving parts one point from the others. */
+/* See test_representatives.c: each halving parts one point from the others. The last triangles are those of the three
+ * that are parted last, so that it shows which of their corners come first. */
 TEST(too_many_halvings_are_a_limit)
 {
-	enum { POINTS = 201 };
-	uint32_t ids[POINTS + 3];
+	enum { POINTS = 201, CORNERS = POINTS + 3, LAST = 9 };
+	uint32_t ids[CORNERS + LAST];
 	place();
-	for (uint32_t v = 0; v < POINTS + 3; v++) {
-		ids[v] = POINTS + 2 - v; /* what is far away comes first: the last triangles are asked about */
+	for (uint32_t v = 0; v < CORNERS; v++) {
+		ids[v] = v;
 		positions[v][0] = v < POINTS ? 0 : 0x1p110f;
 		positions[v][1] = ldexpf(1 - (float)v / 65536, 100 - (int)v);
 	}
-	assert_true(is_limit(ids, (POINTS + 3) / 3, POINTS + 3));
+	for (uint32_t i = 0; i < LAST; i++)
+		ids[CORNERS + i] = POINTS - 3 + three[i];
+	assert_true(is_limit(ids, (CORNERS + LAST) / 3, CORNERS));
 	for (uint32_t v = 0; v < 100; v++)
 		positions[v][0] = 0x1p109f;
-	assert_false(is_limit(ids, (POINTS + 3) / 3, POINTS + 3));
+	assert_false(is_limit(ids, (CORNERS + LAST) / 3, CORNERS));
 }
 
 /* Memory that says nothing useful. */
@@ -160,8 +171,8 @@ static void *take_dirty(void *user, size_t bytes)
 TEST(size_does_not_matter)
 {
 	enum { VERTICES = 255, TRIANGLES = VERTICES / 3 + 2, SIZES = 6 };
-	static const float steps[SIZES] = {1, FLT_MAX / VERTICES * 0.999f, 0x1p-149f, 0x1p-148f, 10 * 0x1p-149f,
-		0x1p-120f};
+	static const float steps[SIZES] = {
+		1, FLT_MAX / VERTICES * 0.999f, 0x1p-149f, 0x1p-148f, 10 * 0x1p-149f, 0x1p-120f};
 	static const nt_unsorted_edge expected[] = {{253, NT_NO_NEIGHBOUR}, {256, 86}, {259, 85}};
 	uint32_t ids[3 * TRIANGLES];
 	for (uint32_t i = 0; i < VERTICES; i++)

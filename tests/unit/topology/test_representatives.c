@@ -10,15 +10,22 @@ enum { MOST = 20000 };
 
 static float positions[MOST + 1][3]; /* three floats behind the last one can be read */
 
-static nt_welded_mesh mesh_of(const nt_triangles *triangles, size_t triangle_count, size_t vertices,
-	nt_scratch *scratch)
+static nt_box boxes[MOST / NT_BOX_ROWS + 1];
+
+static nt_welded_mesh mesh_of(
+	const nt_triangles *triangles, size_t triangle_count, size_t vertices, nt_scratch *scratch)
 {
-	return (nt_welded_mesh){.triangles = triangles, .triangle_count = triangle_count, .vertex_count = vertices,
-		.positions = positions[0], .step = 3, .threads = 1, .scratch = scratch};
+	return (nt_welded_mesh){.triangles = triangles,
+		.triangle_count = triangle_count,
+		.vertex_count = vertices,
+		.positions = positions[0],
+		.step = 3,
+		.threads = 1,
+		.scratch = scratch};
 }
 
-static nt_representatives_end find(const uint32_t *ids, size_t triangles, size_t vertices, unsigned threads,
-	uint32_t *found)
+static nt_representatives_end find(
+	const uint32_t *ids, size_t triangles, size_t vertices, unsigned threads, uint32_t *found)
 {
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
@@ -26,8 +33,8 @@ static nt_representatives_end find(const uint32_t *ids, size_t triangles, size_t
 	nt_welded_mesh mesh = mesh_of(&all, triangles, vertices, &scratch);
 	mesh.threads = threads;
 	nt_grid grid;
-	assert_true(nt_grid_make(&mesh, NULL, &grid));
-	const nt_representatives_end end = nt_representatives(&mesh, &grid, NULL, 3 * triangles, found);
+	assert_true(nt_grid_make(&mesh, boxes, &grid));
+	const nt_representatives_end end = nt_representatives(&mesh, &grid, found);
 	nt_scratch_free(&scratch);
 	return end;
 }
@@ -87,18 +94,18 @@ TEST(the_box_is_that_of_used_vertices)
 {
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	const nt_triangles none = {0};
-	const nt_welded_mesh mesh = mesh_of(&none, 0, 4, &scratch);
+	const nt_triangles first_three = {.ids = (uint32_t[]){0, 1, 2}};
+	const nt_welded_mesh mesh = mesh_of(&first_three, 1, 4, &scratch);
 	nt_grid grid;
 	put(0, -1, 0, 0);
 	put(1, 0, 2, 0);
 	put(2, 1, 1, 0);
 	put(3, 0, 1, 50);
-	assert_true(nt_grid_make(&mesh, NULL, &grid));
+	assert_true(nt_grid_make(&mesh, boxes, &grid));
 	assert_int_equal(grid.axis, 2);
 	assert_true(grid.low == 0 && grid.high == 50);
-	const uint64_t first_three = 7;
-	assert_true(nt_grid_make(&mesh, &first_three, &grid));
+	assert_memory_equal(grid.extremes, ((uint32_t[]){0, 2, 0, 1, 0, 3}), sizeof grid.extremes);
+	assert_true(nt_grid_of_used(&mesh, &grid));
 	assert_int_equal(grid.axis, 0); /* y is as long, and not longer */
 	assert_true(grid.low == -1 && grid.high == 1);
 	assert_int_equal(nt_grid_cell(&grid, -1), 0);
@@ -107,11 +114,11 @@ TEST(the_box_is_that_of_used_vertices)
 	static const float wrong[] = {NAN, INFINITY, -INFINITY, FLT_MAX / 2, -FLT_MAX / 2};
 	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
 		put(3, 0, wrong[i], 0);
-		assert_false(nt_grid_make(&mesh, NULL, &grid));
-		assert_true(nt_grid_make(&mesh, &first_three, &grid));
+		assert_false(nt_grid_make(&mesh, boxes, &grid));
+		assert_true(nt_grid_of_used(&mesh, &grid));
 	}
 	put(3, 0, nextafterf(FLT_MAX / 2, 0), 0);
-	assert_true(nt_grid_make(&mesh, NULL, &grid));
+	assert_true(nt_grid_make(&mesh, boxes, &grid));
 	nt_scratch_free(&scratch);
 }
 
@@ -149,14 +156,42 @@ TEST(every_failed_allocation_is_told)
 		nt_scratch_init(&scratch, &allocator);
 		const nt_welded_mesh mesh = mesh_of(&all, MOST, MOST, &scratch);
 		nt_grid grid;
-		assert_true(nt_grid_make(&mesh, NULL, &grid));
-		end = nt_representatives(&mesh, &grid, NULL, 3 * MOST, found);
+		assert_true(nt_grid_make(&mesh, boxes, &grid));
+		end = nt_representatives(&mesh, &grid, found);
 		assert_true(end == NT_REPRESENTATIVES_FOUND || end == NT_REPRESENTATIVES_NO_MEMORY);
 		nt_scratch_free(&scratch);
 	}
 	assert_in_range(allowed, 4, 100);
 	for (uint32_t v = 0; v < MOST; v++)
 		assert_int_equal(ids[found[v]], v);
+}
+
+/* 300 vertices of a lattice, each with some of 6 000 corners, so that parts of more than 64 corners are halved. */
+TEST(one_is_found_as_all_are)
+{
+	enum { VERTICES = 300, TRIANGLES = 2000 };
+	static uint32_t ids[3 * TRIANGLES], found[VERTICES];
+	static nt_welded_corner corners[3 * TRIANGLES];
+	static nt_welded_point points[3 * TRIANGLES];
+	uint32_t seed = 1;
+	for (uint32_t i = 0; i < 3 * TRIANGLES; i++) {
+		seed = seed * 1664525 + 1013904223;
+		ids[i] = i < VERTICES ? i : (seed >> 8) % VERTICES;
+	}
+	for (uint32_t v = 0; v < VERTICES; v++)
+		put(v, v % 7 == 0 ? 20 : 0, (float)(v / 7 % 9), (float)(v % 5));
+	assert_int_equal(find(ids, TRIANGLES, VERTICES, 1, found), NT_REPRESENTATIVES_FOUND);
+	const nt_triangles all = {.ids = ids};
+	const nt_welded_mesh mesh = mesh_of(&all, TRIANGLES, VERTICES, NULL);
+	for (uint32_t v = 0; v < VERTICES; v++) {
+		size_t count = 0;
+		uint32_t one;
+		for (uint32_t i = 0; i < 3 * TRIANGLES; i++)
+			if (positions[ids[i]][0] == positions[v][0])
+				corners[count++] = (nt_welded_corner){ids[i], i};
+		assert_true(nt_find_representative(&mesh, corners, count, v, points, &one));
+		assert_int_equal(one, found[v]);
+	}
 }
 
 int main(void)
