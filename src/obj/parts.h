@@ -89,6 +89,7 @@ typedef struct obj_chunk {
 	float *colors; /* rows of 4 as written, as many as positions; NULL while no `v` has one */
 	size_t color_capacity;
 	obj_ignored bad_colors; /* that are not finite: white */
+	obj_ignored bad_rows[OBJ_KIND_COUNT]; /* of vt and vn, that are not finite: zeros */
 	uint32_t *mrgb; /* colours in comments, 0xRRGGBB: colors.c */
 	size_t mrgb_count, mrgb_capacity;
 	obj_mrgb_line *mrgb_lines;

@@ -353,6 +353,20 @@ static void free_file(obj_file *file)
 	free(file->vertices);
 }
 
+/* vt or vn that were not finite, with the line of the first. */
+static void report_bad_rows(const obj_file *file, int kind, nt_code code, const char *what)
+{
+	size_t count = 0, line = 0;
+	for (size_t c = file->chunk_count; c-- > 0;) {
+		const obj_ignored *bad = &file->chunks[c].bad_rows[kind];
+		count += bad->count;
+		line = bad->count ? file->chunks[c].first_line + bad->line + 1 : line;
+	}
+	const nt_place place = nt_line_place(file->scene->path, line);
+	if (count)
+		nt_finding_add(&file->scene->findings, code, &place, count, "%s", what);
+}
+
 static void add_file_finding(nt_scene *scene, nt_code code)
 {
 	const nt_place place = nt_line_place(scene->path, 0);
@@ -377,6 +391,8 @@ nt_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error 
 	if (!status)
 		status = obj_make_vertices(&file, error);
 	scene->index_seconds = nt_seconds() - begin;
+	report_bad_rows(&file, OBJ_VT, NT_CODE_UV_NOT_FINITE, "vt that become 0 0");
+	report_bad_rows(&file, OBJ_VN, NT_CODE_MESH_NORMAL_ZERO, "vn that are computed from faces");
 	if (!status && file.lacks[OBJ_VT])
 		add_file_finding(scene, NT_CODE_UV_NOT_THERE);
 	if (!status && file.lacks[OBJ_VN])

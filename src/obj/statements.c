@@ -6,7 +6,8 @@
  *
  * Forgiving where exporters differ: blanks and tabs anywhere, CRLF and lone CR, `\` before a line end,
  * comments behind a statement, trailing slashes ("3/"), statements of OBJ that say nothing about
- * polygons. Strict where a guess could be wrong: numbers, their count, their finiteness, index 0.
+ * polygons; vt and vn that are not finite, which become zeros and a finding. Strict where a guess could be wrong:
+ * numbers, their count, positions that are not finite, index 0.
  */
 #include "obj/line.h"
 
@@ -64,12 +65,30 @@ static int read_numbers(obj_reader *r, float *numbers, int most, int finite, con
 	}
 }
 
-/* The same, with the quick way for the usual number of them tried first. */
-static inline int read_line(obj_reader *r, float *numbers, int usual, int most, const char *expected)
+/* A vt or vn that is not finite becomes zeros: one of them is no reason to refuse the file. */
+static void mend_row(obj_reader *r, int kind, float *numbers)
+{
+	obj_ignored *bad = &r->chunk->bad_rows[kind];
+	bool sound = true;
+	for (size_t k = 0; k < obj_widths[kind]; k++)
+		sound &= isfinite(numbers[k]) != 0;
+	if (sound)
+		return;
+	memset(numbers, 0, obj_widths[kind] * sizeof *numbers);
+	if (!bad->count++)
+		bad->line = r->statement_line;
+}
+
+/* The same, with the quick way for the usual number of them tried first, in which all are finite. */
+static inline int read_line(obj_reader *r, int kind, float *numbers, int usual, int most, const char *expected)
 {
 	const char *p = read_plain_numbers(r->p, numbers, usual);
-	if (!p)
-		return read_numbers(r, numbers, most, 3, expected);
+	if (!p) {
+		const int count = read_numbers(r, numbers, most, kind == OBJ_V ? 3 : 0, expected);
+		if (kind != OBJ_V && count >= usual)
+			mend_row(r, kind, numbers);
+		return count;
+	}
 	r->p = p;
 	return usual;
 }
@@ -110,7 +129,7 @@ static nt_status read_position(obj_reader *r)
 	obj_chunk *chunk = r->chunk;
 	const char *begin = r->p;
 	float numbers[7];
-	int count = read_line(r, numbers, 3, 7, expected);
+	int count = read_line(r, OBJ_V, numbers, 3, 7, expected);
 	if (count == 4 && !isfinite(numbers[3])) { /* it fails as others do */
 		r->p = begin;
 		count = read_numbers(r, numbers, 4, 4, expected);
@@ -128,7 +147,7 @@ static nt_status read_texcoord(obj_reader *r)
 {
 	obj_chunk *chunk = r->chunk;
 	float numbers[3] = {0, 0, 0};
-	const int count = read_line(r, numbers, 2, 3, "at most 3 texture coordinates");
+	const int count = read_line(r, OBJ_VT, numbers, 2, 3, "at most 3 texture coordinates");
 	if (count < 0)
 		return chunk->error.status;
 	if (count == 0)
@@ -141,7 +160,7 @@ static nt_status read_normal(obj_reader *r)
 {
 	obj_chunk *chunk = r->chunk;
 	float numbers[3];
-	const int count = read_line(r, numbers, 3, 3, "3 components of a normal and no more");
+	const int count = read_line(r, OBJ_VN, numbers, 3, 3, "3 components of a normal and no more");
 	if (count < 0)
 		return chunk->error.status;
 	if (count < 3)

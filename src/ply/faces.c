@@ -41,6 +41,8 @@ typedef struct builder {
 	ply_wedges wedges;
 	float (*points)[3];
 	size_t point_capacity;
+	size_t unsound; /* rows with a texcoord that is not finite */
+	nt_place first_unsound;
 	size_t skipped;
 	nt_place first_skipped;
 } builder;
@@ -238,14 +240,8 @@ static nt_status load_uvs(builder *b, const unsigned char *at, size_t count, ply
 	if (!nt_grow((void **)&b->uvs, &b->uv_capacity, count, sizeof *b->uvs))
 		return nt_fail_memory(b->error);
 	b->uv_count = count;
-	for (size_t k = 0; k < count; k++) {
-		const unsigned char *value = at + k * ply_size(type);
-		b->uvs[k] = ply_load_float(value, type, b->swap);
-		if (!isfinite(b->uvs[k]))
-			return ply_fail_at(b->cursor, value, b->error,
-				"%s %zu: a value of list \"texcoord\" is not finite, expected a finite number",
-				b->element->name, b->row);
-	}
+	for (size_t k = 0; k < count; k++)
+		b->uvs[k] = ply_load_float(at + k * ply_size(type), type, b->swap);
 	return NT_OK;
 }
 
@@ -304,8 +300,6 @@ static nt_status read_value(builder *b, int number, size_t k, const unsigned cha
 			status = take_index(b, k, integer, begin);
 	} else if (number == b->texcoords_property) {
 		after = ply_read_float(begin, end, &b->uvs[k]);
-		if (after && !isfinite(b->uvs[k]))
-			return fail_text(b, begin, "a finite number in list", property);
 	} else if (number == b->texture_property) {
 		after = ply_read_integer(begin, end, &integer);
 		if (after)
@@ -385,6 +379,18 @@ static nt_status take_run(builder *b)
 	return NT_OK;
 }
 
+/* Texture coordinates of the row that are not finite become 0. */
+static void mend_uvs(builder *b)
+{
+	bool sound = true;
+	for (size_t k = 0; k < b->uv_count; k++) {
+		sound &= isfinite(b->uvs[k]) != 0;
+		b->uvs[k] = isfinite(b->uvs[k]) ? b->uvs[k] : 0.0f;
+	}
+	if (!sound && !b->unsound++)
+		b->first_unsound = place_of_row(b);
+}
+
 static nt_status read_any_row(builder *b)
 {
 	const bool ascii = b->cursor->encoding == PLY_ASCII;
@@ -392,6 +398,8 @@ static nt_status read_any_row(builder *b)
 	if (b->cursor->at == b->cursor->end)
 		return ply_fail_end(b->cursor, b->element, b->row, b->error);
 	nt_status status = ascii ? read_row(b) : load_row(b);
+	if (!status)
+		mend_uvs(b);
 	if (!status)
 		status = b->element == b->source->strips ? add_strips(b) : add_polygon(b);
 	b->row++;
@@ -457,6 +465,8 @@ static nt_status finish(builder *b)
 	mesh->face_sizes = b->sizes;
 	mesh->face_polygon = b->polygons;
 	mesh->face_primitive = mesh->primitive_count > 1 ? b->primitives : NULL;
+	if (b->unsound)
+		nt_finding_add(&b->scene->findings, NT_CODE_UV_NOT_FINITE, &b->first_unsound, b->unsound, "faces");
 	if (b->skipped)
 		nt_finding_add(&b->scene->findings, NT_CODE_STATEMENT_IGNORED, &b->first_skipped,
 			b->skipped, "faces of fewer than three corners");

@@ -4,8 +4,9 @@
  * go; properties without one are passed over. Binary rows of fixed size are decoded column by column in
  * blocks that stay in the first-level cache, so that the choice of a type is made once per block.
  *
- * A mesh must be finite, as in OBJ: there is no tangent at NaN and glTF cannot store it; of colours those are white
- * that are not. Points are passed through as they are, and so are tangents, which the caller may want to check.
+ * Positions of a mesh must be finite, as in OBJ. Normals and texture coordinates that are not become zeros, with a
+ * finding, and colours white, since glTF cannot store NaN. Points are passed through as they are, and so are tangents,
+ * which the caller may want to check.
  */
 #include "ply/source.h"
 
@@ -17,12 +18,14 @@
 /* Positions, normals, texture coordinates, colours, tangents. */
 enum { MOST_TARGETS = 3 + 3 + 2 + 4 + 4, BLOCK_ROWS = 512 };
 
+typedef enum finiteness { ANY, MENDED, REFUSED } finiteness;
+
 typedef struct target {
 	int property;
 	float *values;   /* of the first row */
 	size_t stride;   /* in floats */
 	float divisor;   /* integer colours: their largest value */
-	bool finite;     /* other values are refused */
+	finiteness other; /* what becomes of other values */
 } target;
 
 typedef struct reader {
@@ -31,6 +34,7 @@ typedef struct reader {
 	nt_error *error;
 	target targets[MOST_TARGETS];
 	size_t target_count;
+	bool *unsound; /* set where values are to be mended */
 } reader;
 
 static bool is_finite(float value)
@@ -40,7 +44,7 @@ static bool is_finite(float value)
 
 /* Allocates an array of `width` floats per row and makes it the target of as many properties. */
 static bool add_attribute(reader *r, nt_arena *arena, const int *properties, size_t width,
-	bool finite, float **array)
+	finiteness other, float **array)
 {
 	*array = NULL;
 	if (properties[0] == PLY_NO_PROPERTY)
@@ -49,7 +53,7 @@ static bool add_attribute(reader *r, nt_arena *arena, const int *properties, siz
 	for (size_t i = 0; *array && i < width; i++)
 		if (properties[i] != PLY_NO_PROPERTY)
 			r->targets[r->target_count++] =
-				(target){properties[i], *array + i, width, 1.0f, finite};
+				(target){properties[i], *array + i, width, 1.0f, other};
 	return *array != NULL;
 }
 
@@ -89,6 +93,9 @@ static nt_status check_column(const reader *r, const target *t, size_t first, si
 		bad |= !is_finite(values[i * t->stride]);
 	if (!bad)
 		return NT_OK;
+	*r->unsound = true;
+	if (t->other == MENDED)
+		return NT_OK;
 	size_t row = 0;
 	while (is_finite(values[row * t->stride]))
 		row++;
@@ -106,7 +113,7 @@ static nt_status decode_fixed(const reader *r)
 		const size_t rows = count - first < BLOCK_ROWS ? count - first : BLOCK_ROWS;
 		for (size_t i = 0; !status && i < r->target_count; i++) {
 			decode_column(r, &r->targets[i], r->cursor->at, first, rows);
-			if (r->targets[i].finite)
+			if (r->targets[i].other != ANY)
 				status = check_column(r, &r->targets[i], first, rows);
 		}
 	}
@@ -125,8 +132,11 @@ static nt_status decode_value(const reader *r, size_t row, size_t number, const 
 		if (t->property != (int)number)
 			continue;
 		const float value = ply_load_float(at, property->type, swap) / t->divisor;
-		if (t->finite && !is_finite(value))
-			return fail_not_finite(r, row, property, at);
+		if (t->other != ANY && !is_finite(value)) {
+			if (t->other == REFUSED)
+				return fail_not_finite(r, row, property, at);
+			*r->unsound = true;
+		}
 		t->values[row * t->stride] = value;
 	}
 	return NT_OK;
@@ -197,8 +207,11 @@ static nt_status read_line(const reader *r, size_t row, const target *by_propert
 		const unsigned char *after = t->values ? ply_read_float(at, end, &value) : ply_skip_value(at, end);
 		if (!after || after == at)
 			return fail_value(r, row, property, at, "a number for property");
-		if (t->finite && !is_finite(value))
-			return fail_value(r, row, property, at, "a finite number for property");
+		if (t->other != ANY && !is_finite(value)) {
+			if (t->other == REFUSED)
+				return fail_value(r, row, property, at, "a finite number for property");
+			*r->unsound = true;
+		}
 		if (t->values)
 			t->values[row * t->stride] = t->divisor == 1.0f ? value : value / t->divisor;
 		at = after;
@@ -220,7 +233,7 @@ static inline const char *read_plain_line(const char *at, const char *end, size_
 		if (!at || at == end)
 			return NULL;
 		const target *t = &by_property[i];
-		if (t->finite && !is_finite(value))
+		if (t->other != ANY && !is_finite(value))
 			return NULL;
 		if (t->values)
 			t->values[row * t->stride] = t->divisor == 1.0f ? value : value / t->divisor;
@@ -281,6 +294,23 @@ static nt_status read_lines(const reader *r)
 	return status;
 }
 
+/* Rows of normals or texture coordinates that are not finite become zeros. */
+static void mend_rows(nt_scene *scene, float *values, size_t width, size_t count, nt_code code)
+{
+	size_t bad = 0, first = 0;
+	for (size_t row = 0; values && row < count; row++) {
+		bool sound = true;
+		for (size_t k = 0; k < width; k++)
+			sound &= is_finite(values[row * width + k]);
+		if (sound)
+			continue;
+		memset(values + row * width, 0, width * sizeof *values);
+		first = bad++ ? first : row;
+	}
+	if (bad)
+		nt_finding_add(&scene->findings, code, NULL, bad, "vertex %zu is the first", first);
+}
+
 nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *source,
 	ply_cursor *cursor, nt_error *error)
 {
@@ -289,16 +319,18 @@ nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *so
 	nt_status status = ply_check_count(cursor, element, error);
 	if (status)
 		return status;
-	reader r = {.element = element, .cursor = cursor, .error = error};
+	bool unsound = false;
+	reader r = {.element = element, .cursor = cursor, .error = error, .unsound = &unsound};
 	nt_arena *arena = &scene->arena;
-	const bool finite = source->face || source->strips;
-	if (!add_attribute(&r, arena, roles->position, 3, finite, &mesh->positions) ||
-		!add_attribute(&r, arena, roles->normal, 3, finite, &mesh->normals) ||
-		!add_attribute(&r, arena, roles->texcoord, 2, finite, &mesh->texcoords) ||
-		!add_attribute(&r, arena, roles->tangent, 4, false, &mesh->tangents))
+	const bool mesh_of_faces = source->face || source->strips;
+	const finiteness other = mesh_of_faces ? MENDED : ANY;
+	if (!add_attribute(&r, arena, roles->position, 3, mesh_of_faces ? REFUSED : ANY, &mesh->positions) ||
+		!add_attribute(&r, arena, roles->normal, 3, other, &mesh->normals) ||
+		!add_attribute(&r, arena, roles->texcoord, 2, other, &mesh->texcoords) ||
+		!add_attribute(&r, arena, roles->tangent, 4, ANY, &mesh->tangents))
 		return nt_fail_memory(error);
 	const size_t first_color = r.target_count;
-	if (!add_attribute(&r, arena, roles->color, 4, false, &mesh->colors))
+	if (!add_attribute(&r, arena, roles->color, 4, ANY, &mesh->colors))
 		return nt_fail_memory(error);
 	/* integer colours become 0 to 1, float ones are taken as they are */
 	for (size_t i = first_color; i < r.target_count; i++)
@@ -313,6 +345,10 @@ nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *so
 		status = decode_listed(&r);
 	else
 		status = decode_fixed(&r);
+	if (!status && unsound) {
+		mend_rows(scene, mesh->normals, 3, element->count, NT_CODE_MESH_NORMAL_ZERO);
+		mend_rows(scene, mesh->texcoords, 2, element->count, NT_CODE_UV_NOT_FINITE);
+	}
 	if (!status && mesh->colors)
 		nt_linearise(scene, mesh, element->count);
 	mesh->vertex_count = element->count;

@@ -316,9 +316,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"the coordinates as stored.",
 		"Give the triangles more room, or keep v near 1.",
 		"an OBJ triangle with UVs (0,0), (1,0), (0,1e-9)"),
-	ROW(UV_NOT_FINITE, ERROR, "e-e", EXPORT, NULL,
+	ROW(UV_NOT_FINITE, ERROR, "eee", EXPORT, NULL,
 		"{count} {vertex has texture coordinates|vertices have texture coordinates} that are not finite",
-		"NaN or infinity. Nothing can be textured there.",
+		"NaN or infinity. Nothing can be textured there. In a mesh of another format than glTF they become "
+		"(0, 0).",
 		"Export the mesh again.",
 		"a PLY vertex with s = nan"),
 	ROW(UV_MISSING, WARNING, "--w", EXPORT, NULL, "the mesh has no texture coordinates and gets no tangents",
@@ -365,7 +366,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a vertex with the normal (0,0,2)"),
 	ROW(MESH_NORMAL_ZERO, ERROR, "eww", EXPORT, NULL, "{count} {normal is|normals are} zero or not finite",
 		"A normal without a direction cannot be lit and has no tangent plane. A warning of other formats than "
-		"glTF: what is made of them has another normal there.",
+		"glTF, unless it is NaN or infinite: what is made of them has another normal there.",
 		"Recalculate the normals, and remove triangles without area.",
 		"a vertex with the normal (0,0,0)"),
 	ROW(MESH_NORMAL_AGAINST_FACE, WARNING, "www", EXPORT, NULL,

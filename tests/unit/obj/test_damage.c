@@ -54,9 +54,28 @@ TEST(numbers_that_are_not_finite_are_refused)
 	assert_fails("v inf 0 0\n", 1, "found \"inf\", expected a finite number");
 	assert_fails("v 0 -nan 0\n", 1, "found \"-nan\", expected a finite number");
 	assert_fails("v 0 0 1e39\n", 1, "found \"1e39\", expected a finite number");
-	assert_fails("vt NaN 0\n", 1, "found \"NaN\", expected a finite number");
-	assert_fails("vn 0 0 +Inf\n", 1, "found \"+Inf\", expected a finite number");
 	assert_fails("v 0 0 0 nan\n", 1, "found \"nan\", expected a finite number");
+}
+
+/* One such vt or vn does not cost the file; the finding has the line of the first and the number of all. */
+TEST(texcoords_and_normals_that_are_not_finite_become_zeros)
+{
+	reading r;
+	open_text(&r, TRIANGLE "vt 0.5 0.5\nvt NaN 0\nvt 1 1e39\nvn 0 0 +Inf\nvn 0 1 0\nvt 1 0 nan\n"
+		"f 1/1/1 2/2/2 3/3/2\n");
+	const nt_mesh *m = &r.scene.meshes[0];
+	const float texcoords[3][2] = {{0.5f, 0.5f}}, normals[3][3] = {{0}, {0, 1, 0}, {0, 1, 0}};
+	assert_memory_equal(m->texcoords, texcoords, sizeof texcoords);
+	assert_memory_equal(m->normals, normals, sizeof normals);
+	assert_int_equal(r.scene.findings.count, 2);
+	const nt_finding *uv = &r.scene.findings.items[0], *normal = &r.scene.findings.items[1];
+	assert_int_equal(uv->code, NT_CODE_UV_NOT_FINITE);
+	assert_int_equal(uv->count, 2);
+	assert_int_equal(uv->place.line, 5);
+	assert_int_equal(normal->code, NT_CODE_MESH_NORMAL_ZERO);
+	assert_int_equal(normal->count, 1);
+	assert_int_equal(normal->place.line, 7);
+	close_reading(&r);
 }
 
 TEST(indices_out_of_range_are_named)

@@ -93,8 +93,6 @@ TEST(meshes_must_be_finite)
 		"vertex 1: found \"nan\", expected a finite number for property \"y\"");
 	assert_refused(HEAD("3") FACES("1") "0 0 0\n1 0 1e39\n0 1 0\n3 0 1 2\n", 11,
 		"vertex 1: found \"1e39\", expected a finite number for property \"z\"");
-	assert_refused(HEAD("3") WEDGES POINTS "3 0 1 2 6 0 0 1 0 -inf 1\n3 0 1 2 0\n", 14,
-		"face 0: found \"-inf\", expected a finite number in list \"texcoord\"");
 	for (int with_list = 0; with_list < 2; with_list++) {
 		image m = {0};
 		put_text(&m, "ply\nformat binary_little_endian 1.0\nelement vertex 600\n" XYZ);
@@ -114,6 +112,49 @@ TEST(meshes_must_be_finite)
 	open_text(&r, HEAD("3") "property float tx\nproperty float ty\nproperty float tz\n"
 		"property float tw\n" FACES("1") "0 0 0 nan 0 0 1\n1 0 0 1 0 0 1\n0 1 0 1 0 0 1\n3 0 1 2\n");
 	assert_true(isnan(r.mesh->tangents[0]));
+	close_reading(&r);
+}
+
+/* One such texture coordinate or normal does not cost the file. */
+TEST(texcoords_and_normals_that_are_not_finite_become_zeros)
+{
+	static const char names[] = "property float nx\nproperty float ny\nproperty float nz\nproperty float s\n"
+		"property float t\n";
+	for (int form = 0; form < 3; form++) { /* lines, rows of fixed size, rows with a list */
+		static const float rows[3][8] = {{0, 0, 0, 0, 0, 1, 0.5f, 0.25f}, {1, 0, 0, 0, NAN, 1, 1, INFINITY},
+			{0, 1, 0, 0, 0, 1, NAN, 1}};
+		image m = {0};
+		reading r;
+		put_text(&m, form ? "ply\nformat binary_little_endian 1.0\n" : "ply\nformat ascii 1.0\n");
+		put_text(&m, "element vertex 3\n" XYZ);
+		put_text(&m, names);
+		put_text(&m, form == 2 ? "property list uchar int stuff\n" : "");
+		put_text(&m, "element face 1\nproperty list uchar uchar vertex_indices\nend_header\n");
+		for (int v = 0; v < 3; v++) {
+			for (int k = 0; form == 0 && k < 8; k++)
+				m.size += (size_t)sprintf((char *)m.bytes + m.size, "%g%c", rows[v][k],
+					k < 7 ? ' ' : '\n');
+			if (form)
+				memcpy(m.bytes + m.size, rows[v], sizeof rows[v]);
+			m.size += form ? sizeof rows[v] + (form == 2) : 0;
+		}
+		memcpy(m.bytes + m.size, form ? "\3\0\1\2\0\0\0\0" : "3 0 1 2\n", 8);
+		m.size += form ? 4 : 8;
+		open_sound(&r, m.bytes, m.size);
+		const float texcoords[3][2] = {{0.5f, 0.25f}}, normals[3][3] = {{0, 0, 1}, {0}, {0, 0, 1}};
+		assert_memory_equal(r.mesh->texcoords, texcoords, sizeof texcoords);
+		assert_memory_equal(r.mesh->normals, normals, sizeof normals);
+		assert_int_equal(r.scene.findings.count, 2);
+		assert_int_equal(r.scene.findings.items[0].code, NT_CODE_MESH_NORMAL_ZERO);
+		assert_int_equal(r.scene.findings.items[0].count, 1);
+		assert_int_equal(r.scene.findings.items[1].code, NT_CODE_UV_NOT_FINITE);
+		assert_int_equal(r.scene.findings.items[1].count, 2);
+		close_reading(&r);
+	}
+	reading r;
+	open_text(&r, HEAD("3") WEDGES POINTS "3 0 1 2 6 0 0 1 0 -inf 1\n3 0 1 2 0\n");
+	assert_int_equal(r.scene.findings.count, 1);
+	assert_int_equal(r.scene.findings.items[0].code, NT_CODE_UV_NOT_FINITE);
 	close_reading(&r);
 }
 
