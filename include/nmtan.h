@@ -394,8 +394,12 @@ NMTAN_API int nmtan_self_test(void);
  *
  * The sort of edges of mikktspace.c leaves the edges of one vertex unsorted. This moves the tangents at some corners of
  * about one ordinary mesh in a hundred, by up to 90 degrees. Bakers and most engines ship the file as it is; the
- * rewrites of Blender and three.js sort all edges, and so does NMTAN_METHOD_MIKKTSPACE_SORTED. The default gives the
- * sorted answer too, and counts.sorted_instead tells, where what the file gives depends on more than is followed here:
+ * rewrites of Blender and three.js sort all edges, and so does NMTAN_METHOD_MIKKTSPACE_SORTED. The sort also shifts a
+ * 32-bit number right by 32 on ordinary meshes, which C leaves undefined: "as published" means the number itself, which
+ * x86 makes of it, on every machine.
+ *
+ * The default gives the sorted answer, and counts.sorted_instead tells, where what the file gives depends on more than
+ * is followed here:
  * - a position of a face is not finite, or a coordinate reaches FLT_MAX / 2 in magnitude: mikktspace.c does not weld
  *   some of these corners;
  * - the triangles have more than 2^28 corners;

@@ -49,9 +49,9 @@ static inline double nt_angle_by(nt_tangent tangent, double s, double c)
 	return s <= largest && a <= largest ? angle : 0.0;
 }
 
-/* The angle in [0, pi] of the point (c, s) on the unit circle, s >= 0, to 2^-50 of itself; 0 where both are 0.
- * Without a division or a branch, for vectors: the nearest k pi/16 is turned away, and what is left, |r| <= sin(pi/32),
- * has an arc sine whose first term left out is r^15 143/10240 < 2^-53 r. */
+/* The angle in [0, pi] of the point (c, s) on the unit circle, s >= 0, to 2^-50 of itself; of (0, 0) a right one, as
+ * acos(0) is. Without a division or a branch, for vectors: the nearest k pi/16 is turned away, and what is left,
+ * |r| <= sin(pi/32), has an arc sine whose first term left out is r^15 143/10240 < 2^-53 r. */
 static inline NT_ALWAYS_INLINE double nt_angle_on_circle(double s, double c)
 {
 	const double half_pi = 1.57079632679489661923, pi = 3.14159265358979323846;
@@ -73,7 +73,7 @@ static inline NT_ALWAYS_INLINE double nt_angle_on_circle(double s, double c)
 	const double series = 1.0 / 6 + q * (3.0 / 40 + q * (5.0 / 112 + q * (35.0 / 1152 + q * (63.0 / 2816 +
 			q * (231.0 / 13312)))));
 	const double turned = arc + (r + r * (q * series));
-	const double first = s <= a ? turned : half_pi - turned;
+	const double first = s < a ? turned : half_pi - turned;
 	return c < 0.0 ? pi - first : first;
 }
 

@@ -1,21 +1,25 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The largest of many numbers: see largest.h. Sixteen at a time, in four vectors of which none waits for the one
- * before: 3 million take 0.44 ms instead of 1.5.
+ * The largest of many numbers, and whether all are below a limit: see largest.h.
  */
 #include "base/largest.h"
 
 uint32_t nt_largest(const uint32_t *values, size_t count)
 {
-	enum { LANES = 16 };
-	uint32_t lanes[LANES] = {0}, largest = 0;
-	size_t i = 0;
-	for (; count - i >= LANES; i += LANES)
-		for (size_t lane = 0; lane < LANES; lane++)
-			lanes[lane] = values[i + lane] > lanes[lane] ? values[i + lane] : lanes[lane];
-	for (size_t lane = 0; lane < LANES; lane++)
-		largest = lanes[lane] > largest ? lanes[lane] : largest;
-	for (; i < count; i++)
+	uint32_t largest = 0;
+	for (size_t i = 0; i < count; i++)
 		largest = values[i] > largest ? values[i] : largest;
 	return largest;
+}
+
+/* Up to 2^31 the highest bit of a difference tells, and of all differences at once: vectors of SSE2 do not compare
+ * numbers without a sign. */
+bool nt_all_below(const uint32_t *values, size_t count, uint32_t limit)
+{
+	if (limit > (uint32_t)1 << 31)
+		return count == 0 || nt_largest(values, count) < limit;
+	uint32_t beyond = 0;
+	for (size_t i = 0; i < count; i++)
+		beyond |= values[i] | (limit - 1 - values[i]);
+	return !(beyond >> 31);
 }

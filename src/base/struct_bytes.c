@@ -4,13 +4,11 @@
  */
 #include "base/struct_bytes.h"
 
-#include <string.h>
-
 /* Far more than any struct will ever need: what is larger has not been initialised, and its tail may not be
  * there to be looked at. */
 enum { MOST_BYTES = 4096 };
 
-bool nt_struct_read(void *ours, size_t our_bytes, const void *given)
+bool nt_struct_read_other(void *ours, size_t our_bytes, const void *given)
 {
 	size_t bytes;
 	memcpy(&bytes, given, sizeof bytes);

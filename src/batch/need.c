@@ -7,7 +7,8 @@
  *              vertices that all differ 190), 2300 for each change of material or object
  *   PLY        2 for each byte and 96 for each element that the header declares (50; 500)
  *   glTF, GLB  12 for each byte of JSON, 1 for each other byte, and 40 for each "count" in the JSON, which is that of
- *              accessors, wherever their bytes are (30; 105); 100 where there is or will be Draco (98; 207)
+ *              accessors, wherever their bytes are (30; 105); 100 where there is or will be Draco (98; 207); and 60
+ *              for each element of a morph target, however many share an accessor
  *   Draco      1 for each byte, and by the header 120 for each triangle and 190 for each vertex (210 for one of each)
  *
  * as "make bench-need" prints it. An OBJ's images that are converted are in need_images.c. Images that a report
@@ -15,9 +16,11 @@
  */
 #include "batch/need.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/memory.h"
 #include "file/input.h"
 #include "file/lookup.h"
 #include "format/format.h"
@@ -64,9 +67,79 @@ static uint64_t ply_need(const char *text, size_t size)
 	return plus(2 * (uint64_t)size, 96, elements);
 }
 
+/* ---- morph targets ---- */
+
+/* A walk through JSON that nobody has checked: its strings and brackets. */
+typedef struct walk {
+	const char *at, *end;
+	int depth; /* of brackets around `at` */
+} walk;
+
+/* Goes to the next key, or to the end of brackets below `depth`: false. */
+static bool next_key(walk *w, int depth, const char **key, size_t *length)
+{
+	while (w->at < w->end && w->depth >= depth) {
+		const char c = *w->at++;
+		w->depth += (c == '{' || c == '[') - (c == '}' || c == ']');
+		if (c != '"')
+			continue;
+		*key = w->at;
+		while (w->at < w->end && *w->at != '"')
+			w->at += 1 + (*w->at == '\\');
+		*length = w->at < w->end ? (size_t)(w->at - *key) : 0;
+		w->at += w->at < w->end;
+		while (w->at < w->end && strchr(" \t\r\n", *w->at) && *w->at)
+			w->at++;
+		if (w->at < w->end && *w->at == ':')
+			return true;
+	}
+	return false;
+}
+
+static bool is_key(const char *key, size_t length, const char *name)
+{
+	return length == strlen(name) && memcmp(key, name, length) == 0;
+}
+
+/* The elements that morph targets have, once for each target that has them: targets may share an accessor. */
+static uint64_t target_elements(const char *text, const char *end)
+{
+	enum { ROOT = 1, ACCESSOR = 3 };
+	uint64_t *counts = NULL, sum = 0;
+	size_t count = 0, capacity = 0, length;
+	const char *key;
+	bool known = true;
+	for (walk w = {text, end, 0}; known && next_key(&w, w.at == text ? 0 : ROOT, &key, &length);) {
+		if (w.depth != ROOT || !is_key(key, length, "accessors"))
+			continue;
+		/* an accessor without a count is none, and its file is refused */
+		while (known && next_key(&w, ROOT + 1 - (w.depth == ROOT), &key, &length)) {
+			if (w.depth < ACCESSOR)
+				break;
+			known = w.depth != ACCESSOR || !is_key(key, length, "count") ||
+				nt_grow((void **)&counts, &capacity, count + 1, sizeof *counts);
+			if (known && w.depth == ACCESSOR && is_key(key, length, "count"))
+				counts[count++] = number_after(w.at, end, ": \t\r\n");
+		}
+	}
+	for (walk w = {text, end, 0}; known && next_key(&w, 0, &key, &length);) {
+		if (!is_key(key, length, "targets"))
+			continue;
+		const int depth = w.depth;
+		while (next_key(&w, depth, &key, &length) && w.depth > depth)
+			if (is_key(key, length, "POSITION") || is_key(key, length, "NORMAL")) {
+				const uint64_t index = number_after(w.at, end, ": \t\r\n");
+				sum = plus(sum, 1, index < count ? counts[index] : 0);
+			}
+	}
+	free(counts);
+	return sum;
+}
+
 static uint64_t gltf_need(const char *text, size_t json_size, size_t size, const nt_settings *settings)
 {
-	static const char count[] = "\"count\"", draco[] = "KHR_draco_mesh_compression";
+	enum { TARGET_COST = 60 };
+	static const char count[] = "\"count\"", target[] = "\"targets\"", draco[] = "KHR_draco_mesh_compression";
 	const char *const end = text + json_size;
 	const bool compressed = settings->draco == NT_DRACO_AS_SEQUENTIAL ||
 		settings->draco == NT_DRACO_AS_EDGEBREAKER || memmem(text, json_size, draco, sizeof draco - 1);
@@ -75,7 +148,9 @@ static uint64_t gltf_need(const char *text, size_t json_size, size_t size, const
 		at += sizeof count - 1;
 		counts = plus(counts, 1, number_after(at, end, ": \t\r\n"));
 	}
-	return plus(12 * (uint64_t)json_size + (size - json_size), compressed ? 100 : 40, counts);
+	const bool bakes = settings->morphs == NT_MORPH_BAKE && memmem(text, json_size, target, sizeof target - 1);
+	const uint64_t need = plus(12 * (uint64_t)json_size + (size - json_size), compressed ? 100 : 40, counts);
+	return plus(need, TARGET_COST, bakes ? target_elements(text, end) : 0);
 }
 
 /* ---- OBJ ---- */

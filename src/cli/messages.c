@@ -53,7 +53,7 @@ void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style)
 }
 
 static void append_sentence(nt_buffer *out, const nt_place_view *place, const char *file, nt_code code,
-	nt_severity severity, const char *sentence, nt_style style)
+	nt_severity severity, const char *sentence, const char *command, nt_style style)
 {
 	static const char *const colours[] = {
 		[NT_SEVERITY_INFO] = "\033[36m", [NT_SEVERITY_WARNING] = "\033[1;33m",
@@ -63,7 +63,7 @@ static void append_sentence(nt_buffer *out, const nt_place_view *place, const ch
 	nt_buffer_format(out, "%s%s:%s ", colour(style, colours[severity]), nt_severity_name(severity),
 		colour(style, "\033[0m"));
 	nt_buffer_clean(out, sentence);
-	nt_buffer_format(out, " [%s]\n", nt_code_info(code)->name);
+	nt_buffer_format(out, " [%s]%s%s\n", nt_code_info(code)->name, command ? ": " : "", command ? command : "");
 }
 
 /* Where a run succeeds it has met no error. */
@@ -73,9 +73,26 @@ static nt_severity shown_severity(const nt_finding *finding, nt_style style)
 	return style.fails || severity < NT_SEVERITY_ERROR ? severity : NT_SEVERITY_WARNING;
 }
 
-/* All findings of one code and severity but for `old` ones, those beyond PLACES_SHOWN as a number. */
+/* What is told without -v although it is an info: what to do, which the file does not say. */
+static bool is_proposed(nt_code code)
+{
+	return code == NT_CODE_NMAP_BESIDE || code == NT_CODE_TAN_QUADS_LIKELY;
+}
+
+/* The command that repairs a finding, if it is told with one. */
+static void append_command(nt_buffer *out, const nt_finding *finding, nt_severity severity, const char *file,
+	const char *output)
+{
+	const char *repair = finding->repair ? finding->repair : nt_code_info(finding->code)->repair;
+	const bool in_place = output && strcmp(file, output) == 0;
+	if (repair && (severity > NT_SEVERITY_INFO || is_proposed(finding->code)))
+		nt_command_text(repair, file, in_place ? NULL : output, out);
+}
+
+/* All findings of one code and severity but for `old` ones, those beyond PLACES_SHOWN as a number. The first has the
+ * command. */
 static void append_code(nt_buffer *out, const nt_finding_list *findings, const bool *old, nt_code code,
-	nt_severity severity, const char *file, nt_style style)
+	nt_severity severity, const char *file, const char *output, nt_style style)
 {
 	size_t shown = 0, left_out = 0;
 	for (size_t i = 0; i < findings->count; i++) {
@@ -86,10 +103,14 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, const b
 			left_out++;
 			continue;
 		}
-		nt_buffer sentence = {0};
+		nt_buffer sentence = {0}, command = {0};
 		nt_code_sentence(code, finding->count, finding->detail, &sentence);
-		append_sentence(out, &finding->place, file, code, severity, sentence.data ? sentence.data : "", style);
+		if (!shown)
+			append_command(&command, finding, severity, file, output);
+		append_sentence(out, &finding->place, file, code, severity, sentence.data ? sentence.data : "",
+			command.data, style);
 		nt_buffer_free_into(&sentence, out);
+		nt_buffer_free_into(&command, out);
 		shown++;
 	}
 	if (left_out)
@@ -114,7 +135,7 @@ static void find_old(const nt_finding_list *findings, const nt_report *report, b
 }
 
 void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report, const bool *ignore,
-	const char *file, bool infos, int least, int most, nt_style style)
+	const char *file, const char *output, bool infos, int least, int most, nt_style style)
 {
 	bool *old = nt_calloc(findings->count, sizeof *old);
 	if (!old) {
@@ -124,8 +145,9 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 	find_old(findings, report, old);
 	for (int severity = most; severity >= least; severity--)
 		for (int code = 0; code < NT_CODE_COUNT; code++)
-			if ((infos || severity || code == NT_CODE_NMAP_BESIDE) && !ignore[code])
-				append_code(out, findings, old, (nt_code)code, (nt_severity)severity, file, style);
+			if ((infos || severity || is_proposed((nt_code)code)) && !ignore[code])
+				append_code(out, findings, old, (nt_code)code, (nt_severity)severity, file, output,
+					style);
 	free(old);
 }
 
@@ -160,7 +182,8 @@ void nt_message_failure(nt_buffer *out, const nt_report *report, const char *fil
 		if ((known ? known[i] : found->known) || (int)found->severity < least_failure)
 			continue;
 		if (shown++ < PLACES_SHOWN || style.verbosity > 0)
-			append_sentence(out, &found->place, file, found->code, found->severity, found->message, style);
+			append_sentence(out, &found->place, file, found->code, found->severity, found->message, NULL,
+				style);
 		else
 			more++;
 	}
@@ -172,6 +195,15 @@ void nt_message_failure(nt_buffer *out, const nt_report *report, const char *fil
 static void append_count(nt_buffer *out, size_t count, const char *noun)
 {
 	nt_buffer_format(out, "%zu %s%s", count, noun, count == 1 ? "" : "s");
+}
+
+/* "0.1 ms" at least, "12.3 ms", "1.23 s": three digits of what takes longer. */
+static void append_seconds(nt_buffer *out, double seconds)
+{
+	const bool short_time = seconds < 0.9995;
+	const double shown = seconds < 1e-4 ? 0.1 : short_time ? seconds * 1e3 : seconds;
+	const int digits = shown < 9.995 && !short_time ? 2 : shown < 99.95 ? 1 : 0;
+	nt_buffer_format(out, ", %.*f %s", digits, shown, short_time ? "ms" : "s");
 }
 
 static void append_vertices(nt_buffer *out, const nt_summary *s)
@@ -284,9 +316,10 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		}
 		append_vertices(out, s);
 	}
-	if (s->repaired)
-		nt_buffer_format(out, settings->check ? ", %zu tangents would be repaired"
-						      : ", repaired %zu of the tangents", s->repaired);
+	if (s->repaired) {
+		nt_buffer_text(out, settings->check ? ", would repair " : ", repaired ");
+		append_count(out, s->repaired, "tangent");
+	}
 	append_fixed(out, s, settings);
 	if (s->counts.summed_instead)
 		nt_buffer_format(out, ", %zu corners of hubs with one sum", s->counts.summed_instead);
@@ -306,7 +339,7 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		append_findings_count(out, s);
 	else
 		append_skipped(out, s);
-	nt_buffer_format(out, ", %.3g s", s->total_seconds);
+	append_seconds(out, s->total_seconds);
 	if (s->note && !settings->check && !settings->dry_run)
 		nt_buffer_clean(out, s->note);
 	nt_buffer_text(out, "\n");

@@ -23,10 +23,11 @@ typedef struct nt_style {
 void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 
 /* Findings of the severities from `most` down to `least` (nt_severity), a few of each code; without `infos`, of these
- * what is proposed alone: "nmtan: file:line: warning: sentence [CODE]". What a report of them ignores or knows from its
- * baseline is left out; NULL: there is none. */
+ * what is proposed alone: "nmtan: file:line: warning: sentence [CODE]", and the command, if one repairs it, with
+ * `output` (NULL: a name beside the file). What a report of them ignores or knows from its baseline is left out; NULL:
+ * there is none. */
 void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report, const bool *ignore,
-	const char *file, bool infos, int least, int most, nt_style style);
+	const char *file, const char *output, bool infos, int least, int most, nt_style style);
 
 /* One line, of a quiet run too, where something of the input is not in the output, with the codes that say what but for
  * those of ignore[code]. */

@@ -22,18 +22,18 @@ const nt_option_row nt_option_rows[] = {
 		"have them", SETTING(only), false},
 	{"existing", 0, NT_OPTION_CHOICE, "keep|repair|replace", NT_EXISTING_KEEP, 0, "keep",
 		"tangents of the input; keep: keep them; repair: replace invalid ones; replace: replace all",
-		SETTING(existing), false},
+		SETTING(existing), true},
 	{"fix", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"repair what --check calls an error or a warning, if it is proven: tangents, and normal maps whose "
 		"green points down", SETTING(fix), true},
 	{"method", 0, NT_OPTION_CHOICE, "mikktspace|area|lengyel|robust|mikktspace-sorted", NMTAN_METHOD_MIKKTSPACE, 0,
-		"mikktspace", "how to average the triangles around a vertex", SETTING(method), false},
+		"mikktspace", "how to average the triangles around a vertex", SETTING(method), true},
 	{"raw", 0, NT_OPTION_SET, NULL, NMTAN_REPAIR_OFF, 0, NULL,
 		"write the method's raw result, unusable tangents too; use it if the map was baked on folded quads",
-		SETTING(repair), false},
+		SETTING(repair), true},
 	{"normals", 0, NT_OPTION_CHOICE, "auto|flat|smooth|replace-flat|replace-smooth", NT_NORMALS_AUTO, 0, "auto",
 		"how to make missing normals; auto: of OBJ by smoothing group, of PLY smooth, of glTF none; "
-		"replace-flat, replace-smooth: replace the input's normals too", SETTING(normals), false},
+		"replace-flat, replace-smooth: replace the input's normals too", SETTING(normals), true},
 	{"across", 0, NT_OPTION_CHOICE, "primitive|mesh", NT_ACROSS_PRIMITIVE, 0, "primitive",
 		"glTF: solve each primitive alone, or all primitives of a mesh that share texture coordinates as "
 		"one, as bakers do", SETTING(across), false},
@@ -83,7 +83,7 @@ const nt_option_row nt_option_rows[] = {
 		"no value): a file is unchanged if its size and time of change are; content: if its bytes are",
 		FIELD(update), true},
 	{"record", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
-		"note in FILE what outputs are made of; without it, --update uses .nmtan-record beside the outputs",
+		"note in FILE what outputs are made of (with --update the default is .nmtan-record beside them)",
 		FIELD(record), true},
 	{"write-if-changed", 0, NT_OPTION_SET, NULL, NT_EQUAL_KEEP, 0, NULL,
 		"keep an output's time of change if its bytes are the same", SETTING(equal), true},
@@ -94,8 +94,8 @@ const nt_option_row nt_option_rows[] = {
 	{"output", 'o', NT_OPTION_TEXT, "FILE", 0, 0, NULL,
 		"name the output, in place of the second name", FIELD(output), true},
 	{"output-format", 0, NT_OPTION_CHOICE, "ply|gltf|glb", NT_FORMAT_PLY, 0, "by name",
-		"format of the output; with --check: judge the conversion to it; without it PLY is judged as ply, OBJ "
-		"and Draco as glb, a glTF as it is", SETTING(output_format), false},
+		"format of the output; with --check: judge the conversion to it; without it a PLY is judged as ply, an "
+		"OBJ or Draco file as glb", SETTING(output_format), true},
 	{"in-place", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"replace each input by its output; with -d: allow outputs to replace inputs",
 		SETTING(in_place), true},
@@ -127,7 +127,7 @@ const nt_option_row nt_option_rows[] = {
 		"the same: use FILE as the emitted colour", SETTING(given_maps[NT_GIVEN_EMISSIVE]), false},
 	{"bump", 0, NT_OPTION_CHOICE, "auto|height|normal|ignore", NT_BUMP_AUTO, 0, "auto",
 		"images of map_Bump and bump; auto: grey ones are height maps, others normal maps; height: convert "
-		"all to normal maps; ignore: leave them out", SETTING(bump), false},
+		"all to normal maps; ignore: leave them out", SETTING(bump), true},
 	{"bump-height", 0, NT_OPTION_TEXT, "SHARE", 0, 0, "1/64",
 		"height of white above black in a height map, as a share of its width; -bm multiplies it",
 		FIELD(bump_height), true},

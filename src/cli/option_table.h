@@ -33,7 +33,7 @@ typedef struct nt_option_row {
 	const char *standard; /* the default, in words; NULL: none or off */
 	const char *help;     /* NULL: a hidden option */
 	size_t offset;        /* of the field in nt_command */
-	bool writes;          /* about writing, so that --check refuses it */
+	bool writes;          /* says what is written, and where: with --check, what a glTF becomes is judged */
 } nt_option_row;
 
 enum { NT_MOST_OPTIONS = 128 };

@@ -399,23 +399,21 @@ static nt_status check_clashes(parser *p)
 		{"fix", "existing", "contradict each other: --fix decides for each primitive"},
 		{"fix", "flip-green", "contradict each other: --fix turns the maps that need it"},
 		{"in-place", "no-clobber", "contradict each other"},
-		/* what is not read has no findings */
-		{"update", "report", "do not go together: what is up to date is not read"},
 	};
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
 		if (given(p, pairs[i][0]) && given(p, pairs[i][1]))
 			return nt_fail(p->error, NT_ERROR_USAGE, "--%s and --%s %s", pairs[i][0], pairs[i][1],
 				pairs[i][2]);
-	for (size_t i = 0; i < nt_option_row_count; i++)
-		if (p->command->settings.check && nt_option_rows[i].writes && p->given[i])
-			return nt_fail(p->error, NT_ERROR_USAGE,
-				"--check writes no mesh, so --%s has no meaning", nt_option_rows[i].name);
 	static const char *const needs[][2] = {{"keep-tree", "directory"}, {"include", "recursive"},
 		{"exclude", "recursive"}};
 	for (size_t i = 0; i < sizeof needs / sizeof *needs; i++)
 		if (given(p, needs[i][0]) && !given(p, needs[i][1]))
 			return nt_fail(p->error, NT_ERROR_USAGE, "--%s needs --%s", needs[i][0], needs[i][1]);
 	nt_settings *s = &p->command->settings;
+	/* what is not read has no findings */
+	if (p->command->update && p->command->report && !s->check)
+		return nt_fail(p->error, NT_ERROR_USAGE,
+			"--update and --report do not go together: what is up to date is not read");
 	if (p->command->diff && !s->check)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--diff is about --check");
 	const char *into = p->command->directory ? "directory" : s->in_place ? "in-place" : NULL;
@@ -445,9 +443,12 @@ static nt_status check_count(const parser *p)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--%s is for many inputs: use -d DIR, --in-place or --check",
 			list_option(c));
 	if (count == 0 && !c->files_from)
-		return nt_fail(p->error, NT_ERROR_USAGE, "no input is named");
+		return nt_fail(p->error, NT_ERROR_USAGE, "INPUT is missing");
 	if (!many && count == 1)
-		return nt_fail(p->error, NT_ERROR_USAGE, "no output is named after '%s'", c->operands[0]);
+		return nt_fail(p->error, NT_ERROR_USAGE, "OUTPUT is missing: nmtan %s OUT.glb, or -d DIR",
+			c->operands[0]);
+	if (c->settings.check && c->output && (count > 1 || list_option(c)))
+		return nt_fail(p->error, NT_ERROR_USAGE, "--output names the output of one input; for many use -d DIR");
 	if (!many && count > 2)
 		return nt_fail(p->error, NT_ERROR_USAGE,
 			"'%s' is one name too many; for many inputs use -d DIR or --in-place", c->operands[2]);
@@ -522,11 +523,12 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 	}
 	const int first = argc > 0 ? 1 : 0;
 	command->operands = (const char **)(void *)(argv + first);
-	if (command->output) /* -o and its value left room for it */
+	if (command->output && !command->settings.check) /* -o and its value left room for it */
 		argv[kept++] = (char *)(uintptr_t)command->output;
 	command->operand_count = (size_t)(kept - first);
 	if (command->settings.check && !given(&p, "fail-on"))
 		command->fail_on = NT_FAIL_ON_ERROR;
+	command->settings.dry_run |= command->settings.check;
 	bool chosen[NT_CODE_COUNT] = {false};
 	if (command->action == NT_ACTION_RUN && command->explain) {
 		command->action = NT_ACTION_EXPLAIN;
@@ -537,6 +539,8 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 	command->settings.texture_path_count = command->texture_paths.count;
 	if (command->texture_paths.count)
 		command->settings.texture_paths = command->texture_paths.items;
+	for (size_t i = 0; i < nt_option_row_count && command->settings.check; i++)
+		command->settings.converts |= nt_option_rows[i].writes && p.given[i];
 	/* Who converts one file means what it says: images may be one folder up, and one beside it is proposed. Who
 	 * converts many may not have read them. */
 	command->settings.own_input = command->settings.outside != NT_OUTSIDE_NO && !command->directory &&

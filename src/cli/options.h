@@ -70,7 +70,7 @@ typedef struct nt_command {
 	const char *manifest;  /* file, "-"; NULL: none */
 	bool fail_fast;        /* stop after a failure */
 	bool diff;             /* of two inputs */
-	const char *output;    /* -o, also the last operand; NULL: none */
+	const char *output;    /* -o, but with --check also the last operand; NULL: none */
 	const char **operands; /* in argv, which is reordered for it */
 	size_t operand_count;
 } nt_command;

@@ -105,7 +105,8 @@ static nt_status find_inputs(nt_gltf *document, const nt_mesh *mesh, const nt_js
 	if (!status)
 		status = find_attribute(document, mesh, attributes, in->texcoord_name, 2, 2,
 			&in->texcoords, error);
-	if (!status)
+	in->tangents.exists = false;
+	if (!status && !mesh->tangents_fault)
 		status = find_attribute(document, mesh, attributes, "TANGENT", 4, 4, &in->tangents, error);
 	if (!status && options->world)
 		status = find_attribute(document, mesh, attributes, "COLOR_0", 3, 4, &in->colors, error);

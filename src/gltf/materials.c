@@ -134,6 +134,23 @@ static void read_wrap(const nt_gltf *document, const nt_json_value *info, nt_wra
 	}
 }
 
+/* A material samples this set in the slot. */
+static void note_use(wishes *all, int slot, uint32_t set, const nt_gltf_transform *transform)
+{
+	if (!all->wants[slot]) {
+		all->wants[slot] = true;
+		all->set[slot] = set;
+		all->transform[slot] = *transform;
+		return;
+	}
+	if (all->set[slot] != set) {
+		all->mixed[slot] = true;
+		all->mixed_set[slot] = set;
+	}
+	all->mixed_transform[slot] |= !same_transform(&all->transform[slot], transform);
+	all->transform[slot].animated |= transform->animated;
+}
+
 static nt_status note_texture(nt_gltf *document, wishes *all, int slot,
 	const nt_json_value *texture, const char *material, const char *path, nt_error *error)
 {
@@ -150,27 +167,38 @@ static nt_status note_texture(nt_gltf *document, wishes *all, int slot,
 	if (status)
 		return status;
 	all->slots |= 1u << slot;
-	if (!all->wants[slot]) {
-		all->wants[slot] = true;
-		all->set[slot] = (uint32_t)set;
-		all->transform[slot] = transform;
+	if (!all->wants[slot])
 		read_wrap(document, texture, all->wrap[slot]);
-		return NT_OK;
-	}
-	if (all->set[slot] != set) {
-		all->mixed[slot] = true;
-		all->mixed_set[slot] = (uint32_t)set;
-	}
-	all->mixed_transform[slot] |= !same_transform(&all->transform[slot], &transform);
-	all->transform[slot].animated |= transform.animated;
+	note_use(all, slot, (uint32_t)set, &transform);
 	return NT_OK;
 }
 
-static nt_status note_slots(nt_gltf *document, wishes *all, const nt_json_value *material, const char *pointer,
-	nt_error *error)
+/* VRM 0: the root says what MToon samples, whatever the material says for other shaders. A normal map lies as the main
+ * texture does, whose vector is an offset and a scale. Returns whether the material has one. */
+static bool note_vrm_map(const nt_gltf *document, wishes *all, uint64_t index)
+{
+	const nt_json_value *vrm = nt_json_find(nt_gltf_root_member(document, "extensions"), "VRM");
+	const nt_json_value *material = nt_json_at(nt_json_find(vrm, "materialProperties"), (size_t)index);
+	if (!nt_json_find(nt_json_find(material, "textureProperties"), "_BumpMap"))
+		return false;
+	const nt_json_value *vector = nt_json_find(nt_json_find(material, "vectorProperties"), "_MainTex");
+	nt_gltf_transform transform = {.uv = {.scale = {1, 1}}};
+	for (size_t k = 0; k < 2 && nt_json_count(vector) == 4 && !document->keeps_transforms; k++)
+		nt_json_get_double(nt_json_at(vector, 2 + k), &transform.uv.scale[k]);
+	transform.turns = transform.uv.scale[0] != 1 || transform.uv.scale[1] != 1;
+	all->slots |= NT_SLOT_NORMAL;
+	note_use(all, 0, 0, &transform);
+	return true;
+}
+
+static nt_status note_slots(nt_gltf *document, wishes *all, const nt_json_value *material, uint64_t index,
+	const char *pointer, nt_error *error)
 {
 	const nt_json_value *extensions = nt_json_find(material, "extensions");
-	if (nt_json_find(extensions, "KHR_materials_unlit")) {
+	if (note_vrm_map(document, all, index))
+		return NT_OK;
+	/* MToon of VRM 1 takes precedence over its fallback */
+	if (nt_json_find(extensions, "KHR_materials_unlit") && !nt_json_find(extensions, "VRMC_materials_mtoon")) {
 		all->unlit_count++;
 		return NT_OK;
 	}
@@ -271,7 +299,7 @@ static nt_status note_material(nt_gltf *document, wishes *all, uint64_t index, c
 	char pointer[NT_GLTF_POINTER];
 	nt_gltf_pointer(pointer, "materials", index);
 	all->material_count++;
-	return note_slots(document, all, material, pointer, error);
+	return note_slots(document, all, material, index, pointer, error);
 }
 
 static nt_status note_variants(nt_gltf *document, wishes *all, const nt_json_value *primitive,

@@ -11,6 +11,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include "gltf/accessor.h"
 #include "gltf/document.h"
 #include "gltf/draco.h"
 #include "gltf/materials.h"
@@ -47,17 +48,18 @@ static void describe_texcoords(nt_mesh *mesh, const nt_json_value *attributes, c
 	}
 }
 
-/* Morph targets that move positions or normals and leave tangents as they are. */
-static uint32_t targets_without_tangents(const nt_json_value *primitive)
+/* Morph targets that move positions or normals, and those of them that leave tangents as they are. */
+static void count_targets(const nt_json_value *primitive, nt_mesh *mesh)
 {
 	const nt_json_value *targets = nt_json_find(primitive, "targets");
-	uint32_t count = 0;
+	mesh->moving_targets = mesh->targets_without_tangents = 0;
 	for (size_t i = 0; i < nt_json_count(targets); i++) {
 		const nt_json_value *target = nt_json_at(targets, i);
-		const bool moves = nt_json_find(target, "POSITION") || nt_json_find(target, "NORMAL");
-		count += moves && !nt_json_find(target, "TANGENT");
+		if (!nt_json_find(target, "POSITION") && !nt_json_find(target, "NORMAL"))
+			continue;
+		mesh->moving_targets++;
+		mesh->targets_without_tangents += !nt_json_find(target, "TANGENT");
 	}
-	return count;
 }
 
 /* Whether an edit needs nothing of a primitive with indices but its tangents, once it is solved: the indices form whole
@@ -67,6 +69,31 @@ static bool is_disposable(const nt_json_value *primitive, const nt_mesh *mesh, u
 {
 	return mode == NT_GLTF_TRIANGLES && corners % 3 == 0 && mesh->has_normals &&
 		!mesh->texcoords_transformed && !nt_json_find(primitive, "targets") && !mesh->compressed;
+}
+
+/* Whether there are tangents, and whether they can be read. If not, nobody stops for what a solve may replace. */
+static nt_status describe_tangents(nt_scene *scene, nt_gltf *document, const nt_json_value *attributes,
+	uint64_t position_count, nt_mesh *mesh, nt_error *out_of_memory)
+{
+	const nt_json_value *reference = nt_json_find(attributes, "TANGENT");
+	mesh->has_tangents = reference != NULL;
+	if (!reference)
+		return NT_OK;
+	uint64_t index = UINT64_MAX;
+	nt_gltf_accessor accessor;
+	nt_error error;
+	nt_error_clear(&error);
+	nt_json_get_uint64(reference, &index);
+	if (index >= UINT32_MAX)
+		nt_fail(&error, NT_ERROR_INPUT, "%s, expected an accessor's number", nt_json_type_text(reference));
+	else if (!nt_gltf_get_accessor(document, index, "", &accessor, &error) && accessor.components != 4)
+		nt_fail(&error, NT_ERROR_INPUT, "accessor %u has %u components, expected 4", accessor.index,
+			accessor.components);
+	else if (!error.status && accessor.count != position_count)
+		nt_fail(&error, NT_ERROR_INPUT, "accessor %u has %llu elements, POSITION has %llu", accessor.index,
+			(unsigned long long)accessor.count, (unsigned long long)position_count);
+	mesh->tangents_fault = error.status ? nt_arena_text(&scene->arena, error.message, strlen(error.message)) : NULL;
+	return error.status && !mesh->tangents_fault ? nt_fail_memory(out_of_memory) : NT_OK;
 }
 
 static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
@@ -104,11 +131,14 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	const uint64_t corners = positions ? claimed_count(document, indices ? indices : positions) : 0;
 	mesh->has_positions = positions != NULL;
 	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;
-	mesh->has_tangents = nt_json_find(attributes, "TANGENT") != NULL;
+	status = describe_tangents(scene, document, attributes, positions ? claimed_count(document, positions) : 0,
+		mesh, error);
+	if (status)
+		return status;
 	mesh->compressed = nt_gltf_draco_of(primitive) != NULL;
 	mesh->has_polygons = mode == NT_GLTF_TRIANGLES && !mesh->compressed &&
 		nt_json_find(nt_json_find(primitive, "extensions"), "FB_ngon_encoding");
-	mesh->targets_without_tangents = targets_without_tangents(primitive);
+	count_targets(primitive, mesh);
 	/* to tell empty primitives; loading counts again */
 	mesh->face_count = corners < 3 ? 0 : (size_t)(mode == NT_GLTF_TRIANGLES ? corners / 3 : corners - 2);
 	mesh->plan.disposable = indices && is_disposable(primitive, mesh, mode, corners);

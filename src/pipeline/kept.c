@@ -1,15 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Tangents that stay as they are although a material uses them: whether w is right is asked of indices, texture
- * coordinates and w alone, exactly. What only a decoder can tell is left to --check: it would take longer than copying
- * the file.
+ * coordinates and w alone, exactly; whether a renderer can use them at all, of tangents and normals. What only a
+ * decoder can tell is left to --check: it would take longer than copying the file.
  */
 #include "pipeline/stages.h"
 
+#include <string.h>
 #include "base/parallel.h"
 #include "report/quads.h"
+#include "report/report.h"
 
-/* The sign of w at all corners of a triangle; 0: they differ, or are none. */
+/* The sign of w at all corners of a triangle; 0: some have none; MIXED: they differ. */
+enum { MIXED = 2 };
+
 static int common_sign(const nt_mesh *mesh, const size_t v[3])
 {
 	int signs[3];
@@ -17,7 +21,9 @@ static int common_sign(const nt_mesh *mesh, const size_t v[3])
 		const float w = mesh->tangents[4 * v[k] + 3];
 		signs[k] = (w > 0.0f) - (w < 0.0f);
 	}
-	return signs[0] == signs[1] && signs[1] == signs[2] ? signs[0] : 0;
+	if (!signs[0] || !signs[1] || !signs[2])
+		return 0;
+	return signs[0] == signs[1] && signs[1] == signs[2] ? signs[0] : MIXED;
 }
 
 typedef struct sign_count {
@@ -71,6 +77,40 @@ static size_t count_wrong_of(const nt_mesh *mesh, nt_arena *arena, unsigned thre
 	return 2 * others > wrong ? wrong : others;
 }
 
+typedef struct fault_count {
+	const nt_mesh *mesh;
+	size_t faulty; /* added to by any thread */
+} fault_count;
+
+static void count_faulty_range(void *context, size_t begin, size_t end, unsigned slot)
+{
+	fault_count *c = context;
+	size_t faulty = 0;
+	(void)slot;
+	for (size_t v = begin; v < end; v++)
+		faulty += !nt_renders(c->mesh->tangents + 4 * v, c->mesh->normals + 3 * v);
+	__atomic_fetch_add(&c->faulty, faulty, __ATOMIC_RELAXED);
+}
+
+/* Tangents that no renderer can use, of vertices that a triangle uses. */
+static size_t count_faulty(const nt_mesh *mesh, nt_arena *arena, unsigned threads)
+{
+	enum { GRAIN = 1 << 16 };
+	fault_count c = {.mesh = mesh};
+	nt_parallel_ranges(nt_thread_count(threads), mesh->vertex_count, GRAIN, count_faulty_range, &c);
+	uint8_t *met = c.faulty && mesh->indices ? nt_arena_alloc(arena, mesh->vertex_count, 1) : NULL;
+	if (!met)
+		return c.faulty;
+	memset(met, 0, mesh->vertex_count);
+	c.faulty = 0;
+	for (size_t i = 0; i < 3 * mesh->face_count; i++) {
+		const size_t v = mesh->indices[i];
+		c.faulty += !met[v] && !nt_renders(mesh->tangents + 4 * v, mesh->normals + 3 * v);
+		met[v] = 1;
+	}
+	return c.faulty;
+}
+
 /* Looks at one mesh as if it were alone; `memory` is empty before and after. */
 static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh mesh, nt_arena *memory, nt_error *error)
 {
@@ -79,10 +119,15 @@ static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh mesh, n
 	own.temporary = (nt_arena){0};
 	own.findings = (nt_finding_list){0}; /* what a load finds is said of meshes that are solved */
 	mesh.plan = (nt_mesh_plan){.pooled = mesh.plan.pooled}; /* a primitive costs what it uses */
-	size_t wrong = 0, judged = 0;
+	size_t wrong = 0, judged = 0, faulty = 0;
 	const nt_status status = tasks->reader->load(&own, &mesh, tasks->options, error);
 	if (!status && mesh.tangents && mesh.texcoords)
 		wrong = count_wrong_of(&mesh, &own.arena, tasks->settings->threads, &judged);
+	if (!status && mesh.tangents && mesh.normals)
+		faulty = count_faulty(&mesh, &own.arena, tasks->settings->threads);
+	if (faulty)
+		nt_finding_add(&scene->findings, NT_CODE_TAN_EXISTING_BAD, nt_mesh_place(&mesh, &(nt_place){0}), faulty,
+			NULL);
 	if (wrong)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_KEPT_SIGN, nt_mesh_place(&mesh, &(nt_place){0}), wrong,
 			"%.3g %% of %zu", 100.0 * (double)wrong / (double)judged, judged);

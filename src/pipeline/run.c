@@ -28,6 +28,7 @@ typedef struct run {
 	nt_error *error;
 	nt_file input;
 	nt_scene scene;
+	bool nowhere; /* judged as if written to a stream */
 	const nt_format_entry *reader, *writer; /* writer: NULL where --check judges the input as it is */
 	nt_read_options read_options;
 	nt_textures *textures; /* NULL: the output has none */
@@ -60,22 +61,30 @@ static void begin_stage(void *user, nt_stage stage)
 		r->settings->on_stage(r->settings->on_stage_user, stage);
 }
 
-/* As the source says, before most of the work: each primitive has its own, and each instance where all become one
- * mesh. */
+/* As the source says, before most of the work: each primitive has its own, once more for each morph target that is
+ * baked, and each instance where all become one mesh. */
 static nt_status check_triangles(const run *r)
 {
 	const nt_scene *scene = &r->scene;
 	const bool placed = r->read_options.world && scene->instance_count;
-	uint64_t count = 0;
-	for (size_t i = 0; i < (placed ? scene->instance_count : scene->mesh_count); i++) {
-		const nt_mesh *mesh = &scene->meshes[placed ? scene->instances[i].mesh : i];
-		count += mesh->triangles ? mesh->face_count : 0;
-		for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
-			count += mesh->face_sizes[f] == 4;
-	}
 	const uint64_t most = r->settings->max_triangles;
-	return !most || count <= most ? NT_OK : nt_fail(r->error, NT_ERROR_LIMIT,
-		"%" PRIu64 " triangles, --max-triangles is %" PRIu64, count, most);
+	const bool bakes = r->writer && !r->settings->check && !r->read_options.world &&
+		r->settings->morphs == NT_MORPH_BAKE;
+	uint64_t count = 0, of_targets = 0;
+	for (size_t i = 0; most && i < (placed ? scene->instance_count : scene->mesh_count); i++) {
+		const nt_mesh *mesh = &scene->meshes[placed ? scene->instances[i].mesh : i];
+		uint64_t triangles = mesh->triangles ? mesh->face_count : 0;
+		for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
+			triangles += mesh->face_sizes[f] == 4;
+		count += triangles;
+		of_targets += bakes && nt_mesh_is_wanted(mesh) ? triangles * mesh->moving_targets : 0;
+	}
+	if (count + of_targets <= most)
+		return NT_OK;
+	nt_fail(r->error, NT_ERROR_LIMIT, of_targets
+		? "%" PRIu64 " triangles with those of morph targets, --max-triangles is %" PRIu64
+		: "%" PRIu64 " triangles, --max-triangles is %" PRIu64, count + of_targets, most);
+	return nt_error_in_file(r->error, r->input_path);
 }
 
 static nt_status open_scene(run *r)
@@ -105,8 +114,6 @@ static nt_status open_scene(run *r)
 	}
 	r->scene.format = r->reader->format;
 	status = r->reader->open(&r->scene, &r->read_options, r->error);
-	if (!status)
-		status = check_triangles(r);
 	end_stage(r);
 	r->summary->seconds[NT_STAGE_INDEX] += r->scene.index_seconds;
 	r->summary->seconds[NT_STAGE_PARSE] -= r->scene.index_seconds;
@@ -152,7 +159,7 @@ static void plan_options_of(run *r)
 	const nt_settings *s = r->settings;
 	nt_read_options *o = &r->read_options;
 	o->edits = nt_writer_edits(r->reader, r->writer);
-	o->checks_kept = o->across && s->check && s->report;
+	o->checks_kept = o->across && s->check && s->report && !r->writer;
 	o->only_results = o->edits && !s->check && !s->report && !s->verify && !s->bitangents && !o->across &&
 		s->draco <= NT_DRACO_OFF && s->normals == NT_NORMALS_AUTO && !s->list_meshes;
 	/* primitives, or normals that are made for some that are compressed */
@@ -184,6 +191,9 @@ static nt_status read_scene(run *r)
 	/* glTF without normals is left alone unless normals are asked for; the other formats get them */
 	nt_select(&r->scene, r->settings->only, r->settings->existing,
 		!nt_format_is_gltf(r->reader->format) || r->settings->normals != NT_NORMALS_AUTO);
+	status = check_triangles(r);
+	if (status)
+		return status;
 	/* what needs nothing may be left alone wherever it is */
 	if (count_decisions(r) && r->settings->in_place) {
 		const nt_output_options options = output_options_of(r);
@@ -209,7 +219,7 @@ static nt_status protect_inputs(const run *r, nt_output *output)
 	return status;
 }
 
-/* With --check as if to a stream, of which nothing is written: what writers leave out is found there. */
+/* A check does all but write, for what writers leave out is found there. */
 static nt_status write_scene(run *r)
 {
 	begin_stage(r, NT_STAGE_WRITE);
@@ -218,10 +228,10 @@ static nt_status write_scene(run *r)
 	const bool dry = output_options.dry_run;
 	const nt_write_options options = {
 		.format = r->writer->format,
-		.path = s->check ? "-" : r->output_path,
+		.path = r->output_path,
 		.bitangents = s->bitangents,
 		.images = s->images,
-		.buffers = s->check ? NT_BUFFERS_EMBED : s->buffers,
+		.buffers = r->nowhere ? NT_BUFFERS_EMBED : s->buffers,
 		.draco = s->draco,
 		.morphs = s->morphs,
 		.draco_bits = {s->draco_bits[0], s->draco_bits[1], s->draco_bits[2], s->draco_bits[3]},
@@ -236,7 +246,7 @@ static nt_status write_scene(run *r)
 	nt_status status = nt_output_create(&output, &output_options, r->error);
 	if (!status && r->writer->format != NT_FORMAT_PLY)
 		status = nt_stage_quads(&r->scene, r->error);
-	if (!status && !s->in_place && !s->check)
+	if (!status && !s->in_place && !r->nowhere)
 		status = protect_inputs(r, output);
 	if (!status)
 		status = r->writer->write(&r->scene, &options, output, r->error);
@@ -380,9 +390,15 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 	judged.check = true;
 	judged.report = &options;
 	judged.check_maps = NT_CHECK_MAPS_ON;
-	judged.list_meshes = judged.digests = judged.in_place = judged.verify = false;
+	judged.list_meshes = judged.digests = judged.in_place = judged.verify = judged.no_clobber = false;
+	judged.output_format = NT_FORMAT_UNKNOWN;
+	const char *output = r->output_path;
+	r->output_path = "-";
+	r->nowhere = true;
 	set_read_options(r, &judged);
 	nt_status status = make_report(r, run_stages(r));
+	r->output_path = output;
+	r->nowhere = false;
 	if (!status && nt_fixes_make(&r->fixes, r->summary->report))
 		status = nt_fail_memory(r->error);
 	*fixed = *wished;
@@ -396,6 +412,20 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 		fixed->flip_green = NT_FLIP_AUTO;
 	set_read_options(r, fixed);
 	return status;
+}
+
+/* Whether tangents stayed of which a stage or the report found that they are wrong. */
+static bool keeps_wrong(const nt_summary *summary)
+{
+	bool any = false;
+	for (size_t i = 0; i < summary->findings.count; i++)
+		any |= summary->findings.items[i].code == NT_CODE_TAN_KEPT_SIGN;
+	for (size_t i = 0; summary->report && i < summary->report->finding_count; i++) {
+		const nt_report_finding *f = &summary->report->findings[i];
+		any |= f->mesh != NT_NONE && f->severity > NT_SEVERITY_INFO && nt_code_mends(f->code) &&
+			f->code != NT_CODE_NMAP_GREEN_DOWN && f->code != NT_CODE_TAN_MISSING_REQUIRED;
+	}
+	return any;
 }
 
 /* ---- limits ---- */
@@ -438,7 +468,8 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	memset(summary, 0, sizeof *summary);
 	nt_error_clear(error);
 	nt_settings fixed;
-	run r = {.input_path = input, .output_path = output, .summary = summary, .error = error};
+	run r = {.input_path = input, .output_path = output ? output : "-", .nowhere = !output, .summary = summary,
+		.error = error};
 	set_read_options(&r, settings);
 	const double begin = nt_seconds();
 	r.stage_begin = begin;
@@ -461,7 +492,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	status = make_report(&r, status);
 	if (settings->report && status == NT_ERROR_MEMORY && nt_timer_end(&r.timer))
 		status = fail_late(&r, error);
-	summary->left = r.result.left;
+	summary->left = r.result.left && !settings->check;
 	summary->note = r.result.note.data;
 	memcpy(summary->fixed, r.fixes.counts, sizeof summary->fixed);
 	nt_timer_end(&r.timer);
@@ -473,6 +504,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->findings = r.scene.findings;
 	summary->rounding = r.scene.rounding;
 	summary->morph_cost = r.scene.morph_cost;
+	summary->keeps_wrong = !settings->check && keeps_wrong(summary);
 	r.scene.findings = (nt_finding_list){0};
 	nt_scene_free(&r.scene);
 	nt_textures_free(r.textures);

@@ -12,7 +12,7 @@
  * Runs one input.
  *
  *   input     path, or "-" for standard input
- *   output    path, or "-" for standard output; NULL with settings->check
+ *   output    path, or "-" for standard output; with settings->check where it would be, NULL: nowhere in particular
  *   settings  required
  *   summary   required; freed by nt_summary_free, after failure too
  *   error     required

@@ -97,6 +97,7 @@ typedef struct nt_settings {
 	bool verify;   /* read the output back with tinygltf before it takes its name */
 	bool dry_run;  /* do everything but write */
 	bool check;    /* a report only: no output */
+	bool converts; /* with check: a glTF is judged as it would be written, not as it is */
 	bool sync;
 	bool no_clobber;
 	bool list_meshes; /* summary->lines is wanted */
@@ -169,6 +170,7 @@ typedef struct nt_summary {
 	nt_trace trace;  /* which files were read, missed and written, after a failure too */
 	uint64_t tangents_digest; /* of those that were computed, in the order of the meshes; 0: none, or not wanted */
 	size_t fixed[NT_CODE_COUNT]; /* with fix: primitives and images repaired, by the code of the finding */
+	bool keeps_wrong; /* tangents of the output are known to be wrong */
 	bool left;       /* the file has what it would get, and was left as it is */
 	char *note;      /* which files of the output have other names than they would, and why: "; ..."; NULL: none */
 } nt_summary;

@@ -52,13 +52,14 @@ static bool needs_all(const nt_tasks *t)
 	return t->writer && !nt_writer_edits(t->reader, t->writer) && t->reader->format != t->writer->format;
 }
 
-/* For the report alone: a mesh that cannot be read fails a check, but no conversion that does not need it. */
+/* For the report alone. A mesh that cannot be read fails the check of a file, but no conversion that does not need
+ * it. */
 static nt_status load_for_report(window *w, nt_mesh *mesh)
 {
 	if (mesh->plan.same_as && !mesh->plan.same_as->positions) /* that one could not be read */
 		return NT_OK;
 	const nt_status status = w->tasks->reader->load(&w->scene, mesh, w->tasks->options, w->error);
-	if (!status || w->tasks->settings->check || !nt_may_be_left(status))
+	if (!status || !w->tasks->writer || !nt_may_be_left(status))
 		return status;
 	nt_finding_add(&w->scene.findings, NT_CODE_MESH_NOT_READ, nt_mesh_place(mesh, &(nt_place){0}), 1, "%.200s",
 		w->error->message);

@@ -15,33 +15,31 @@ static bool is_folder(const char *path)
 	return (length && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
 }
 
-/* What a check judges: the conversion to --output-format, or to what a stream without a name would get. Without
- * --output-format a glTF is judged as it is, since it can hold tangents already. */
-static const nt_format_entry *find_judged(const nt_settings *settings, const nt_format_entry *reader)
+/* The format of an output without a name, as a check without -o and -d has it. A glTF that is not to be converted is
+ * judged as it is, since it can hold tangents already. */
+static const nt_format_entry *find_unnamed(const nt_settings *settings, const nt_format_entry *reader)
 {
-	if (settings->output_format != NT_FORMAT_UNKNOWN)
-		return nt_format_find(settings->output_format);
-	return reader && !nt_format_is_gltf(reader->format) ? nt_format_unnamed(reader) : NULL;
+	if (!settings->check || !nt_format_is_gltf(reader->format))
+		return nt_format_unnamed(reader);
+	return settings->converts ? nt_format_find(reader->format) : NULL;
 }
 
 static nt_status choose(const nt_settings *settings, const char *path, const nt_format_entry *reader,
 	const nt_format_entry **writer, nt_error *error)
 {
-	if (settings->check) {
-		*writer = find_judged(settings, reader);
-		return NT_OK;
-	}
 	/* a name that says a format needs no look; that of a stream need not say one */
 	const bool unnamed = settings->output_format == NT_FORMAT_UNKNOWN && !nt_format_of_path(path) &&
 		nt_output_is_stream(path);
 	if (unnamed && !reader)
 		return NT_OK;
 	if (unnamed)
-		*writer = nt_format_unnamed(reader);
+		*writer = find_unnamed(settings, reader);
 	else if (settings->output_format != NT_FORMAT_UNKNOWN)
 		*writer = nt_format_find(settings->output_format);
 	else
 		*writer = nt_format_of_path(path);
+	if (!*writer && unnamed)
+		return NT_OK;
 	if (!*writer && is_folder(path))
 		return nt_fail(error, NT_ERROR_USAGE, "\"%s\" is a folder: to write into it use -d",
 			path);

@@ -453,6 +453,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"per vertex for nothing.",
 		"If no normal map got lost, drop the attribute.",
 		"a glTF primitive with TANGENT and the default material"),
+	ROW(TAN_ACCESSOR, ERROR, "e--", CONVERT, "--fix", "tangents that cannot be read",
+		"TANGENT of a glTF primitive is not an accessor of as many VEC4 as there are positions, or its place "
+		"is outside of its buffer view. A renderer refuses the file or shows the mesh without normal map.",
+		"Compute the tangents.",
+		"a glTF quad whose TANGENT is a VEC3 accessor"),
 	ROW(TAN_NO_NORMAL, WARNING, "w--", CONVERT, "--normals=smooth",
 		"tangents are needed but there are no normals",
 		"A client must use flat normals then and ignore TANGENT, so none are written.",

@@ -12,6 +12,7 @@
 #include "report/check.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/dvec.h"
@@ -300,9 +301,16 @@ static void report_triangles(nt_check *check, triangle_part *all, size_t from_ne
 		no_area->code = NT_CODE_UV_UNMAPPED;
 		nt_check_report_as(check, no_area, severity, NULL);
 	} else {
-		nt_check_report_as(check, no_area, severity,
-			"%.3g %% of the area; %zu corners take a neighbour's tangent, %zu one made from their normal",
-			100.0 * all->no_uv_area_sum / total, from_neighbour, from_normal);
+		/* each triangle has three, so that one of both is there */
+		char neighbours[80] = "", normals[80] = "";
+		if (from_neighbour)
+			snprintf(neighbours, sizeof neighbours, "%zu %s a neighbour's tangent", from_neighbour,
+				from_neighbour == 1 ? "corner takes" : "corners take");
+		if (from_normal)
+			snprintf(normals, sizeof normals, "%zu %s a tangent made from the normal", from_normal,
+				from_normal == 1 ? "corner gets" : "corners get");
+		nt_check_report_as(check, no_area, severity, "%.3g %% of the area; %s%s%s",
+			100.0 * all->no_uv_area_sum / total, neighbours, *neighbours && *normals ? ", " : "", normals);
 	}
 
 	nt_tally_number(&all->near, "area_share", all->near_area / total);

@@ -177,6 +177,6 @@ void nt_maker_text(const nt_maker *maker, nt_buffer *out)
 		maker->untransformed ? ", without the texture transform" : "", maker->inverted ? ", w inverted" : "");
 	if (!nt_maker_is_mikktspace(maker) && maker->off_mikktspace > maker->degrees)
 		nt_buffer_format(out,
-			": a map baked in MikkTSpace is shown up to %g degrees off, but for 1 %% of the corners",
+			": 99 %% of the corners are within %g degrees of MikkTSpace",
 			maker->off_mikktspace);
 }

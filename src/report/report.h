@@ -265,6 +265,11 @@ void nt_report_free(nt_report *report);
 /* The most severe new finding. False when there is none. */
 bool nt_report_worst(const nt_report *report, nt_severity *worst);
 
+/* Whether a renderer can use a tangent [4] with a normal [3]: it is finite, of unit length and not parallel to the
+ * normal, and w is a sign. If not, a finding says why: TAN_NOT_FINITE, TAN_ZERO, TAN_NON_UNIT, TAN_BAD_W or
+ * TAN_PARALLEL_NORMAL. */
+bool nt_renders(const float *tangent, const float *normal);
+
 /* Appends a path as reports show it: see file/shown_path.h. */
 void nt_report_show_path(const nt_report *report, const char *path, nt_buffer *out);
 

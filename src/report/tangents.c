@@ -116,6 +116,20 @@ static void check_tangent(nt_check *check, tangent_tallies *tt, uint32_t vertex,
 	check_angle(check, tt, vertex, tangent);
 }
 
+/* Less than a degree from the normal, squared: the cosine's share of both lengths. */
+static const float PARALLEL_COSINE_SQUARED = 0.99969541f;
+
+bool nt_renders(const float *tangent, const float *normal)
+{
+	const float squared = tangent[0] * tangent[0] + tangent[1] * tangent[1] + tangent[2] * tangent[2];
+	const float least = (float)((1.0 - UNIT_TOLERANCE) * (1.0 - UNIT_TOLERANCE));
+	const float most = (float)((1.0 + UNIT_TOLERANCE) * (1.0 + UNIT_TOLERANCE));
+	const float along = tangent[0] * normal[0] + tangent[1] * normal[1] + tangent[2] * normal[2];
+	const float both = squared * (normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+	return (squared >= least) & (squared <= most) & (fabsf(tangent[3]) == 1.0f) &
+	       !(along * along > PARALLEL_COSINE_SQUARED * both);
+}
+
 static size_t tangent_count(const nt_check *check)
 {
 	const nt_mesh *mesh = check->mesh;

@@ -93,6 +93,7 @@ typedef enum nt_code {
 	NT_CODE_TAN_BAD_W,
 	NT_CODE_TAN_MISSING_REQUIRED,
 	NT_CODE_TAN_UNUSED,
+	NT_CODE_TAN_ACCESSOR,
 	NT_CODE_TAN_NO_NORMAL,
 	NT_CODE_TAN_NO_UV,
 	NT_CODE_TAN_UVSET_CONFLICT,
@@ -120,6 +121,7 @@ typedef struct nt_finding {
 	size_t count;        /* occurrences, at least 1 */
 	const char *detail;  /* the words that differ from case to case (a file name, a statement); may be
 	                        empty */
+	const char *repair;  /* options that repair this one; NULL: those of the table */
 	const int8_t *votes; /* [votes_side][votes_side] of a normal map's blocks: see image/examine.h; NULL: none */
 	unsigned votes_side;
 } nt_finding;

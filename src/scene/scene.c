@@ -74,6 +74,7 @@ void nt_mesh_share(nt_mesh *mesh)
 	mesh->texcoords_transformed = own.texcoords_transformed;
 	mesh->texcoord_conflict = own.texcoord_conflict;
 	mesh->texcoord_other_set = own.texcoord_other_set;
+	mesh->moving_targets = own.moving_targets;
 	mesh->targets_without_tangents = own.targets_without_tangents;
 	mesh->decision = own.decision;
 	mesh->plan.same_as = own.plan.same_as;

@@ -9,8 +9,8 @@
  * gets tangents unless the user asks for less.
  *
  * A mesh that should get tangents and lacks normals or texture coordinates is skipped with a finding: glTF
- * clients shade it flat and ignore tangents in the first case, and have no direction in the second. Where it has
- * tangents all the same, those of them that are invalid can be mended.
+ * clients shade it flat and ignore tangents in the first case, and have no direction in the second. If it has
+ * tangents and normals all the same, those of them that are invalid can be mended.
  */
 #include "scene/select.h"
 
@@ -68,12 +68,18 @@ static void report_no_texcoords(nt_scene *scene, const nt_mesh *mesh, bool other
 		nt_finding_add(&scene->findings, NT_CODE_UV_MISSING, nt_mesh_place(mesh, &(nt_place){0}), 1, NULL);
 }
 
+/* glTF: without NORMAL a client ignores TANGENT (specification, 3.7.2.1). */
+static bool has_tangents_that_count(const nt_mesh *mesh)
+{
+	return mesh->has_tangents && mesh->has_normals;
+}
+
 /* Whether the mesh has what a solve takes, or what mending takes that has to do without texture coordinates; if not,
  * what is missing first. */
 static nt_decision decide_by_attributes(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 {
 	const bool lacks_normals = !mesh->has_normals && !w->make_normals;
-	const bool lacks_texcoords = !mesh->has_texcoords && !mesh->has_tangents;
+	const bool lacks_texcoords = !mesh->has_texcoords && !has_tangents_that_count(mesh);
 	if (lacks_texcoords)
 		report_no_texcoords(scene, mesh, w->any_texcoords);
 	if (lacks_normals && needs_tangents(mesh))
@@ -97,14 +103,15 @@ static nt_decision decide(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 	if (mesh->texcoord_conflict)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, nt_mesh_place(mesh, &(nt_place){0}), 1,
 			"sets %u and %u", mesh->texcoord_set, mesh->texcoord_other_set);
-	if (mesh->has_tangents && existing == NT_EXISTING_KEEP)
+	if (has_tangents_that_count(mesh) && existing == NT_EXISTING_KEEP)
 		return NT_SKIP_HAS_TANGENTS;
 	decision = decide_by_attributes(scene, mesh, w);
 	if (decision != NT_DECISION_OPEN)
 		return decision;
 	/* what cannot be computed anew is not thrown away either */
 	const bool repair = existing == NT_EXISTING_REPAIR || !mesh->has_texcoords;
-	return mesh->has_tangents && repair ? NT_DECISION_REPAIR : NT_DECISION_SOLVE;
+	return has_tangents_that_count(mesh) && !mesh->tangents_fault && repair ? NT_DECISION_REPAIR
+									       : NT_DECISION_SOLVE;
 }
 
 void nt_select(nt_scene *scene, nt_only only, nt_existing existing, bool make_normals)
@@ -113,6 +120,9 @@ void nt_select(nt_scene *scene, nt_only only, nt_existing existing, bool make_no
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
 		mesh->decision = decide(scene, mesh, &w);
+		if (mesh->tangents_fault && mesh->decision != NT_DECISION_SOLVE)
+			nt_finding_add(&scene->findings, NT_CODE_TAN_ACCESSOR, nt_mesh_place(mesh, &(nt_place){0}), 1,
+				"%s", mesh->tangents_fault);
 	}
 }
 

@@ -60,17 +60,18 @@ static inline NT_ALWAYS_INLINE bool nt_is_across(const nt_measured *m, nt_dvec3 
  * The corner with unit or zero normal n between edge e, to the next vertex, and edge g, from the previous
  * one, of those lengths. Its angle is seen along n; the sine is the part of the triangle's cross
  * product along n, which does not cancel in needles as the cross product of projected edges does:
- * `sine` = |n . across|, or |across| without a normal.
+ * `sine` = |n . across|, or |across| without a normal. An edge along n is seen as a point, and its angle as a right
+ * one, as MikkTSpace has it; an edge without length has none.
  */
 static inline NT_ALWAYS_INLINE nt_weighed nt_weigh_corner(const nt_measured *m, nt_dvec3 n,
 	nt_dvec3 e, nt_dvec3 g, double e_length, double g_length, double sine, int by_area)
 {
 	const nt_dvec3 d = nt_dvec3_reject(n, m->u);
 	const double squared = nt_dvec3_dot(d, d);
-	const double usable = nt_is_across(m, d) ? 1.0 : 0.0;
+	const double lengths = e_length * g_length;
+	const double usable = nt_is_across(m, d) & (lengths > 0.0) ? 1.0 : 0.0;
 	const double cosine = nt_dvec3_dot(n, e) * nt_dvec3_dot(n, g) - nt_dvec3_dot(e, g);
 	const double turn = nt_rsqrt(sine * sine + cosine * cosine);
-	const double lengths = e_length * g_length;
 	/* how much an error of the projections moves the angle */
 	const double condition = (fabs(cosine) * m->across_length + sine * lengths) * turn * turn;
 	const double factor = by_area ? usable * lengths : usable;

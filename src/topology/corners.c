@@ -28,7 +28,7 @@ static nmtan_status check_indices(const uint32_t *indices, size_t corner_count, 
 {
 	if (!indices)
 		return corner_count > rows ? NMTAN_ERROR_INDEX : NMTAN_OK;
-	return corner_count > 0 && nt_largest(indices, corner_count) >= rows ? NMTAN_ERROR_INDEX : NMTAN_OK;
+	return nt_all_below(indices, corner_count, (uint32_t)rows) ? NMTAN_OK : NMTAN_ERROR_INDEX;
 }
 
 static nmtan_status check_short_indices(const uint16_t *indices, size_t corner_count, size_t rows)

@@ -17,7 +17,7 @@ exits 2
 exists out/quad.glb out/plates.glb
 is "$(ls out | wc -l)" 2
 says "bad.obj:3:"
-says "2 of 4 done, 2 failed:"
+says "2 of 4 done, 2 failed"
 says "  1 file: no such file: missing.obj"
 run -q -d out missing.obj "$data/quad.obj"
 exits 2
@@ -47,7 +47,7 @@ inputs="m1.obj bad.obj m2.obj missing.obj m3.obj m4.obj m5.obj gone.obj m6.obj"
 for jobs in 1 2 4; do
 	run -j4 --jobs=$jobs -d out$jobs $inputs
 	exits 2
-	says "6 of 9 done, 3 failed:"
+	says "6 of 9 done, 3 failed"
 	says "  2 files: no such file: missing.obj, gone.obj"
 	sed -e 's/, [0-9.e-]* s$//' -e "s/out$jobs/out/" "$WORK/err.txt" >said$jobs
 done

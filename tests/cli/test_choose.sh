@@ -129,11 +129,11 @@ scene "--fail-fast stops after a failure, a run without it does not"
 for i in 1 3 4 5; do cp "$data/quad.obj" $i.obj; done
 run --fail-fast -j1 -d out 1.obj 2.obj 3.obj 4.obj 5.obj
 exits 2
-says "1 of 5 done, 1 failed, 3 not tried:"
+says "1 of 5 done, 1 failed, 3 not tried"
 is "$(ls out)" 1.glb
 run -j1 -d out 1.obj 2.obj 3.obj 4.obj 5.obj
 exits 2
-says "4 of 5 done, 1 failed:"
+says "4 of 5 done, 1 failed"
 
 scene "failures are grouped by what was wrong, ten lines at most"
 for i in $(seq 12); do
@@ -142,7 +142,7 @@ for i in $(seq 12); do
 done
 run -j2 -d out missing1.obj missing2.obj missing3.obj missing4.obj missing5.obj bad*.obj
 exits 2
-says "0 of 17 done, 17 failed:"
+says "0 of 17 done, 17 failed"
 says "nmtan:   5 files: no such file: missing1.obj, missing2.obj, missing3.obj and 2 more"
 is "$(grep -c '^nmtan:   1 file: ' "$WORK/err.txt")" 9
 says "nmtan:   3 for other reasons; all of them are told above"

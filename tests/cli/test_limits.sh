@@ -32,6 +32,19 @@ first=$(grep -oE '[0-9]+ triangles' "$WORK/err.txt")
 run --max-triangles=1 --only=all twice.gltf out.ply
 [ "$(grep -oE '[0-9]+ triangles' "$WORK/err.txt" | grep -oE '[0-9]+')" -gt "${first%% *}" ] || wrong "the instance is not counted"
 
+scene "a morph target that is baked has the triangles once more"
+python3 "$ROOT/tests/support/cost_inputs.py" targets 100 t.glb 20
+run --max-triangles=80799 t.glb out.glb
+refused "t.glb: 80800 triangles with those of morph targets, --max-triangles is 80799" t.glb
+for words in --max-triangles=80800 "--max-triangles=800 --morph=keep" "--max-triangles=800 --morph=drop" \
+	"--max-triangles=800 --output-format=ply"; do
+	# shellcheck disable=SC2086
+	run -q $words t.glb -o out.glb
+	exits 0
+done
+run -q --check --max-triangles=800 t.glb
+exits 0
+
 scene "the others of many go on"
 cp "$data/quad.obj" "$data/head.obj" .
 run --max-triangles=10 -d out --manifest=m.jsonl quad.obj head.obj

@@ -32,26 +32,157 @@ exits 0
 run -q m.obj e.glb
 exits 0
 
-scene "checking an OBJ or PLY says what converting it says"
-cp "$data/mirrored_cube.obj" "$data/head.obj" "$data/quad_le.ply" .
-for pair in mirrored_cube.obj:glb head.obj:gltf head.obj:ply quad_le.ply:ply quad_le.ply:glb; do
-	in=${pair%:*} as=${pair#*:}
-	run -q --report=converted.json "$in" "out.$as"
-	run -q --check --fail-on=never "--output-format=$as" --report=checked.json "$in"
-	exits 0
-	is "$(findings checked.json)" "$(findings converted.json)"
-done
-run -q --check --report=default.json --fail-on=never mirrored_cube.obj
-run -q --check --report=glb.json --output-format=glb --fail-on=never mirrored_cube.obj
-same default.json glb.json
+# A map of bumps, their green as DirectX has it.
+green_down() {
+	python3 "$ROOT/tests/support/images.py" write "$1" 128 128 '(lambda u, v: (lambda r: tuple(round(127.5 + 127.5 * c / r) for c in (u, v, 1.5)))(
+		math.hypot(u, v, 1.5)) if u * u + v * v < 0.8 else (128, 128, 255))(x % 32 / 16 - 1, y % 32 / 16 - 1)'
+}
 
-scene "--check writes nothing, whichever target it is for"
-cp "$data/quad.obj" .
-for as in ply gltf glb; do
-	run --check "--output-format=$as" quad.obj
+# in/: materials that lose something, wrong tangents and none, morph targets, quantized and compressed ones.
+faulty_inputs() {
+	mkdir in up
+	cp "$data"/{mirrored_cube.obj,plates.gltf,plates.bin,transformed.gltf,morph.gltf,quantized.gltf,quad_wedge.ply} in
+	printf 'newmtl bumps\nnorm green.png\nmap_Kd ../up/up.png\nmap_Ks gone.png\nmap_Ke wood.tga\ndecal d.png\n' >in/mirrored_cube.mtl
+	green_down in/green.png
+	cp "$data/bumps.png" up/up.png
+	cp "$data/colour.jpg" in/wood.tga
+	sed '/^v[nt]/d; s|/[0-9/]*||g' "$data/head.obj" >in/scan.obj
+	run -q --only=all --normals=flat in/plates.gltf kept.gltf
+	gltf kept.gltf in/kept 'const p = g.meshes[0].primitives[0].attributes.TANGENT, w = v => at(p, v) + 12;
+		for (let v = 0; v < 3; v++) bytes[0].writeFloatLE(-bytes[0].readFloatLE(w(v)), w(v));
+		bytes[0].writeFloatLE(NaN, at(p, 1));
+		g.images = [{uri: "../up/up.png"}, {uri: "green.png"}]; g.textures = [{source: 1}, {source: 0}]'
+	run -q --draco=edgebreaker --only=all in/plates.gltf in/packed.glb
+	rm kept.*
+}
+
+# Of each file what is found; of no glTF where $2 is empty; without the codes $3.
+found() {
+	value "$1" '"\n".join("%s: %s %s %s %s" % (f["file"], x["severity"], x["code"], x["count"], x["message"]) for f in r["files"]
+		if "'"$2"'" or ".gl" not in f["file"] for x in f["findings"] if x["code"] not in "'"${3:-}"'")'
+}
+
+# Each option of help but those that ask for something else than a run, or for other words about it. Inputs: of in/ all,
+# its glTF, or what the words name. w: it says how to write; without it a glTF is judged as it is, unless -d says where to.
+scene "a check with the options of a conversion finds what that finds, and writes nothing"
+faulty_inputs
+printf '%s\n' in/*.gltf >names
+run -q --check --fail-on=never --report=old.json in/kept.gltf in/scan.obj
+mv old.json old
+while IFS='|' read -r words inputs writes; do
+	case $inputs in
+	all) inputs=$(echo in/*.obj in/*.gltf in/*.glb in/*.ply) ;;
+	glTF) inputs=$(echo in/*.gltf in/*.glb) ;;
+	esac
+	where="-d out" conversion=$words
+	case $words in
+	--output=* | --in-place | --directory* | --keep-tree*) where= ;;
+	--update*) conversion= ;; # with which there is no report
+	esac
+	cp -R in kept
+	"$NMTAN" --check -q $words --fail-on=never $where --report=checked.json $inputs 2>../err.txt || wrong "--check $words: $?"
+	"$NMTAN" --check -q $words --fail-on=never --report=alone.json $inputs 2>../err.txt || wrong "--check $words: $?"
+	is "$words: $(diff -r in kept) $(echo *)" "$words:  alone.json checked.json in kept names old up"
+	"$NMTAN" -q $conversion --fail-on=never $where --report=converted.json $inputs 2>../err.txt || wrong "$words: $?"
+	cmp -s checked.json converted.json ||
+		is "$words: $(found checked.json all)" "$words: $(found converted.json all)"
+	placed="IMAGE_MISSING LINK_LEAVES" # depend on where the output is
+	is "$words: $(found alone.json "$writes" "$placed")" "$words: $(found converted.json "$writes" "$placed")"
+	rm -rf ./*.json in out out.glb rec dep
+	mv kept in
+	name=${words%%[ =]*}
+	echo "${name#--}" >>../told
+done <<'END'
+--only=all|all
+--existing=keep|all|w
+--existing=repair|all|w
+--existing=replace|all|w
+--method=area|all|w
+--raw|all|w
+--normals=replace-smooth|all|w
+--across=mesh|all
+--quads=pairs|all
+--transform=keep|all
+--uv=0|all
+--outside=yes|all
+--outside=no|all
+--directory=out|all|w
+--keep-tree=in -d out|all|w
+--files-from=names|
+--recursive in|
+--include=*.gltf -r in|
+--exclude=*.obj -r in|
+--fail-fast|all
+--jobs=1|all
+--memory=1G|all
+--update|all|w
+--record=rec|all|w
+--write-if-changed|all|w
+--depfile=dep|all|w
+--output=out.glb|in/kept.gltf|w
+--output-format=gltf|all|w
+--output-format=ply|all|w
+--in-place|glTF|w
+--buffers=link|all|w
+--buffers=copy|all|w
+--images=link|all|w
+--images=copy|all|w
+--images=embed|all|w
+--textures=keep|all|w
+--textures=png|all|w
+--texture-path=up|all
+--base-color=up/up.png|in/mirrored_cube.obj
+--normal-map=in/green.png|in/mirrored_cube.obj
+--metallic-roughness=up/up.png|in/mirrored_cube.obj
+--occlusion=up/up.png|in/mirrored_cube.obj
+--emissive=up/up.png|in/mirrored_cube.obj
+--bump=height|all|w
+--bump-height=0.1|all|w
+--flip-green=on|all|w
+--flip-green=auto|all|w
+--draco=off|all|w
+--draco=edgebreaker|glTF|w
+--draco-bits=9,9,9,12 --draco=sequential|glTF|w
+--morph=drop|all|w
+--precision=byte|glTF|w
+--meshopt=off|all|w
+--bitangents|all|w
+--no-clobber|all|w
+--sync|all|w
+--verify|glTF|w
+--dry-run|all|w
+--check-maps=off|all
+--ignore=UV_*|all
+--severity=TAN_*=error|all
+--baseline=old|all
+--path-prefix=art|all
+--min-severity=warning|all
+--max-issues=1|all
+--max-triangles=1M|all
+--max-pixels=1G|all
+--max-memory=4G|all
+--max-seconds=600|all
+--threads=1|all
+--manifest=/dev/null|all
+END
+other="check completion diff explain fail-on fix help list-codes progress quiet report report-format timing verbose version"
+is "$(sort -u ../told | tr '\n' ' ')" "$("$NMTAN" --help | sed -n 's/^ \{2,6\}\(-[a-zA-Z], \)*--\([a-z-]*\).*/\2/p' | sort |
+	grep -vxF "$(tr ' ' '\n' <<<$other)" | tr '\n' ' ')"
+
+scene "a glTF that is not to be written is judged as it is"
+cp "$data"/plates.{gltf,bin} .
+for words in "" --only=all --across=mesh --threads=1; do
+	run -q --check $words plates.gltf
+	exits 6
+	says TAN_MISSING_REQUIRED
+done
+for words in --existing=keep --output-format=gltf "-d out" "-o out.glb" --in-place; do
+	run -q --check $words plates.gltf
 	exits 0
 done
-only quad.obj
+run --check -o out.glb plates.gltf other.gltf
+exits 1
+says "--output names the output of one input"
 
 scene "what a material loses is a warning of the check, too"
 cp "$data/quad.obj" .
@@ -263,8 +394,6 @@ says "d.glb"
 run -o a.glb -d . quad.obj
 exits 1
 says "--output and --directory"
-run --check -o a.glb quad.obj
-exits 1
 
 scene "formats that are not read are named, with what to export instead"
 printf 'Kaydara FBX Binary  \0' >a.bin
@@ -286,12 +415,6 @@ mapped() {
 	gltf square.gltf m 'Object.assign(g, {images: [{uri: "n.png"}], textures: [{source: 0}], materials: [{normalTexture: {index: 0}}]});
 		g.meshes[0].primitives[0].material = 0'
 	python3 "$ROOT/tests/support/images.py" write n.png 32 32 "(128, 128 + x, 255)"
-}
-
-# A map of bumps, their green as DirectX has it.
-green_down() {
-	python3 "$ROOT/tests/support/images.py" write "$1" 128 128 '(lambda u, v: (lambda r: tuple(round(127.5 + 127.5 * c / r) for c in (u, v, 1.5)))(
-		math.hypot(u, v, 1.5)) if u * u + v * v < 0.8 else (128, 128, 255))(x % 32 / 16 - 1, y % 32 / 16 - 1)'
 }
 
 scene "the first sentence: ready, or what is to be done again, the first step first"
@@ -346,6 +469,25 @@ for options in "--check three.gltf" "--existing=keep three.gltf a.glb" "--flip-g
 	exits 1
 done
 says "--fix turns the maps that need it"
+
+scene "wrong tangents that are kept are told with the command that repairs them, and counted of many, with -q too"
+mapped
+gltf m.gltf wrong 'const n = g.meshes[0].primitives[0].attributes.TANGENT; for (let i = 0; i < 4; i++) bytes[0].writeFloatLE(-bytes[0].readFloatLE(at(n, i) + 12), at(n, i) + 12)'
+run wrong.gltf out.glb
+exits 0
+says "[TAN_KEPT_SIGN]: nmtan --fix wrong.gltf out.glb"
+run --fix wrong.gltf out.glb
+says "fixed TAN_SIGN_MISMATCH in 1 primitive"
+says_not "TAN_KEPT_SIGN"
+for quiet in "" -q; do
+	run $quiet -d out square.obj m.gltf wrong.gltf
+	exits 0
+	says "nmtan: 3 of 3 done; 1 got tangents, 2 unchanged, 1 keeps wrong tangents"
+done
+run -q --report=r.json -d out square.obj wrong.gltf
+says "nmtan: 2 of 2 done; 1 got tangents, 1 unchanged, 1 keeps wrong tangents"
+run -q --fix -d out square.obj m.gltf wrong.gltf
+silent
 
 scene "wrong signs of a few slivers are a warning, of as few large triangles an error; a corner's vertex is one spot"
 mapped
@@ -436,6 +578,11 @@ TAN_NON_UNIT|t(v => [2, 0, 0, v[3]]), delete p.material
 TAN_BAD_W|t(v => [1, 0, 0, 0])
 TAN_MORPH_MISSING|p.targets = [{POSITION: a.POSITION}]
 TAN_NO_NORMAL|delete a.NORMAL, delete a.TANGENT
+TAN_NO_NORMAL|delete a.NORMAL
+TAN_ACCESSOR|g.accessors[n].type = 'VEC3'
+TAN_ACCESSOR|g.accessors[n].count = 3
+TAN_ACCESSOR|g.accessors[n].byteOffset = 1000
+TAN_ACCESSOR|a.TANGENT = 99
 TAN_MISSING_REQUIRED|delete a.TANGENT, g.materials = [{extensions: {KHR_materials_anisotropy: {anisotropyStrength: 0.5}}}], g.extensionsUsed = ['KHR_materials_anisotropy']
 END
 green_down n.png

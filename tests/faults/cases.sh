@@ -79,7 +79,7 @@ cases() {
 		a folder of pages | $cube quad.obj | many report=pages/ | --check --report=pages/ mirrored_cube.obj quad.obj
 		convert and report | $cube | report=r.html | --report=r.html mirrored_cube.obj o.glb
 	END
-	for format in text json html sarif csv markdown junit; do
+	for format in text json html sarif csv markdown junit lines github; do
 		echo "$format | $cube | report=r | --check --report=r --report-format=$format mirrored_cube.obj"
 	done
 }

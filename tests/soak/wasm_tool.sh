@@ -56,7 +56,7 @@ both "a folder" "cp '$PWD'/data/*.obj '$PWD'/data/*.mtl . && nmtan -d made -- *.
 both "brought up to date" "cp '$cube' a.obj; nmtan --update -d made a.obj; nmtan --update -d made a.obj; touch a.obj; nmtan --update -d made a.obj"
 both "a difference" "nmtan '$cube' a.glb; nmtan '$cube' b.glb --method=area; nmtan --check --diff a.glb b.glb"
 both "checked" "nmtan --check '$cube' && nmtan --check --fail-on=info '$cube'"
-both "every report" "for kind in json sarif html csv markdown junit text; do nmtan --check --report=report.\$kind --report-format=\$kind '$cube'; done"
+both "every report" "for kind in json sarif html csv markdown junit lines github text; do nmtan --check --report=report.\$kind --report-format=\$kind '$cube'; done"
 both "no clobber" "echo mine >out.glb; nmtan --no-clobber '$cube' out.glb"
 both "in place" "nmtan '$cube' a.glb && chmod 640 a.glb && nmtan a.glb a.glb --existing=replace && stat -c %a a.glb"
 both "not there" "nmtan missing.obj out.glb"

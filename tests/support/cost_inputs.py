@@ -17,6 +17,7 @@ slashes   an OBJ, or a PLY or glTF by the name of FILE, that names library or im
 bumps     an OBJ of COUNT materials, and FILE.mtl and FILE.png beside it: each makes other normals of one white PNG of
           SIDE (4096) pixels squared and one bit
 animated  a GLB of COUNT materials, each with a texture transform, and an animation of COUNT others
+targets   a GLB of one grid of SIDE (48) quads squared with COUNT morph targets, which all share one accessor
 levels    a GLB of COUNT primitives of one material with COUNT levels of detail
 turned    a GLB of COUNT materials, each with a texture and an image of its own, as normal map and as emissive
 strip     an OBJ strip of COUNT quads
@@ -184,7 +185,7 @@ def grid(side, windows):
     return arrays
 
 
-def glb(count, out, side, windows, ranges=False, name='', more={}, materials=None):
+def glb(count, out, side, windows, ranges=False, name='', more={}, materials=None, change=dict):
     arrays, kind, width_bytes = grid(side, windows), *((5123, 2) if windows else (5125, 4))
     views, offset = [], 0
     for array in arrays:
@@ -204,7 +205,7 @@ def glb(count, out, side, windows, ranges=False, name='', more={}, materials=Non
                           'count': 3 * (triangles - (count if windows else 0))})
     primitives = [{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'material': materials[i] if materials else 0,
                    'indices': 3 + i if windows or ranges else 3} for i in range(count)]
-    write_glb(out, {'meshes': [{'name': name, 'primitives': primitives}], 'materials': [{'normalTexture': {'index': 0}}],
+    write_glb(out, {'meshes': [{'name': name, 'primitives': [change(p) for p in primitives]}], 'materials': [{'normalTexture': {'index': 0}}],
                     'accessors': accessors, 'bufferViews': views} | more, arrays)
 
 
@@ -260,6 +261,12 @@ def levels(count, out):
         [{'normalTexture': {'index': 0}}] * (count - 1), 'extensionsUsed': ['MSFT_lod']})
 
 
+def targets(count, out, side):
+    def moved(primitive):
+        return dict(primitive, targets=[{'POSITION': 1, 'NORMAL': 0}] * count)
+    glb(1, out, side, False, change=moved)
+
+
 def write_glb(out, document, chunks):
     count = len(document['meshes'])
     binary = b''.join(chunks)
@@ -284,6 +291,8 @@ with open(sys.argv[3], 'wb') as out:
         glb(count, out, side or 100, False, True)
     elif kind == 'scene':
         scene(count, out, side or 3)
+    elif kind == 'targets':
+        targets(count, out, side or 48)
     elif kind == 'bumps':
         bumps(count, out, side or 4096)
     else:

@@ -95,7 +95,7 @@ size_t nt_compare_variants(const char *name, const nmtan_mesh *mesh, size_t corn
 	static const nt_fast_plan few_places = {.grain = 1, .most_places = 200},
 		bins = {.grain = 1, .bin_bits = 4}, larger_bins = {.grain = 1, .bin_bits = 5},
 		two = {.grain = SIZE_MAX, .least_two = 2},
-		narrow = {.grain = 1, .most_narrow = NT_NARROW_LIMIT};
+		narrow = {.grain = 1, .most_narrow = NT_NARROW_LIMIT, .small = true};
 	static const nt_fast_plan *const small[2] = {&nt_usual_plan, &narrow};
 	size_t differences = 0;
 	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)

@@ -497,7 +497,9 @@ static void add_triangle(oracle *o, const size_t c[3], int face)
 		quad sine = dot(n, n) > 0 ? dot(n, across) : length(across);
 		sine = sine < 0 ? -sine : sine + 0; /* no -0: atan2(-0, -1) is -pi */
 		const quad squares = sine * sine + cosine * cosine;
-		const quad angle = squares > 0 ? arc_tangent(sine, cosine) : 0;
+		/* of an edge along the normal MikkTSpace takes acos(0) */
+		const quad point = length(e) > 0 && length(g) > 0 ? arc_tangent(1, 0) : 0;
+		const quad angle = squares > 0 ? arc_tangent(sine, cosine) : point;
 		const quad angle_condition = squares > 0 ? ((cosine < 0 ? -cosine : cosine) * length(across) +
 			sine * length(e) * length(g)) / squares : 0;
 		const quad factor = o->weight == ORACLE_AREA ? length(e) * length(g) : 1;

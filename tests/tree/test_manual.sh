@@ -17,7 +17,7 @@ well_formed() {
 }
 
 scene "every option of help is in the manual and no other"
-"$NMTAN" --help | grep -oE '^ +(-[a-zA-Z], )?--[a-z-]+' | grep -oE -- '--[a-z-]+' | sort >table
+"$NMTAN" --help | grep -oE '^ {2,6}(-[a-zA-Z], )?--[a-z-]+' | grep -oE -- '--[a-z-]+' | sort >table
 plain | grep -E '^\.BR? .*--[a-z]' | grep -oE -- '--[a-z-]+' | grep -vE '^--$' | sort -u >all
 plain | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.T[PQ]' | grep -oE -- '--[a-z-]+' | sort >manual
 equal table manual

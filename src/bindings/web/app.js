@@ -16,7 +16,7 @@ const SMALL_BYTES = 1e6, PATIENCE_MS = 400; // what is small is done before a ba
 
 let files = []; // what is open: [{path, blob}]
 let names = []; // of its meshes, as the report has them
-let advised = []; // options that repair what the report found
+let advised = false; // whether --fix repairs what the report found
 let stop = () => {}; // ends the worker that is at work
 let newest = 0;
 
@@ -129,19 +129,16 @@ async function showReport(html) {
 	});
 	takeDrops(page);
 	setTheme(document.documentElement.dataset.theme || '');
-	const errors = content.files.flatMap(file => file.findings).filter(finding => finding.severity !== 'info');
-	advised = [...new Set(errors.flatMap(finding => (finding.repair || '').split(' ')))].filter(option => option);
-	if (advised.includes('--existing=replace')) advised = advised.filter(option => option !== '--existing=repair');
+	advised = content.files.flatMap(file => file.findings).some(finding => finding.severity !== 'info' && finding.repair?.startsWith('nmtan --fix '));
 	document.title = names.length === 1 ? names[0] + ' – nmtan' : 'nmtan';
 }
 
 // ---- saving ----
 
-// Those chosen by hand, and those that the report advises where nothing was.
+// Those chosen by hand, and what the report advises unless the tangents are decided by hand.
 function chosenOptions() {
 	const chosen = [...new FormData(actions)].filter(([, value]) => value).map(([name, value]) => `--${name}=${value}`);
-	const name = option => option.split('=')[0];
-	return [...chosen, ...advised.filter(option => !chosen.some(other => name(other) === name(option)))];
+	return advised && !$('actions').elements.existing.value ? ['--fix', ...chosen] : chosen;
 }
 
 // The output's name without its ending; not the input's own.
@@ -153,7 +150,7 @@ function stem() {
 
 function offer() {
 	const options = chosenOptions(), format = $('format').value;
-	$('save').textContent = advised.length ? 'Repair and save' : 'Save';
+	$('save').textContent = chosenOptions().includes('--fix') ? 'Repair and save' : 'Save';
 	const quoted = text => /^[\w.,:@%+/=-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
 	$('command').textContent = ['nmtan', ...options, ...names.length === 1 ? [quoted(names[0]), quoted(stem() + '.' + format)] :
 		['-d', 'DIR', '--keep-tree=.', '--output-format=' + format, 'INPUT...']].join(' ');

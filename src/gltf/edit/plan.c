@@ -16,16 +16,20 @@ static bool is_loaded(const nt_mesh *mesh, const nt_read_options *options)
 		((options->report || options->across) && mesh->triangles && mesh->has_positions);
 }
 
-/* --morph=drop: before anything asks which accessors are used, and which are not there. They keep their numbers. */
-static void drop_target_tangents(const nt_scene *scene)
+/* Tangents that go before anything asks which accessors are used, and which are not there: those that cannot be read
+ * and are solved anew, and with --morph=drop those of targets. Accessors keep their numbers. */
+static void drop_tangents(const nt_scene *scene, nt_morph_choice morphs)
 {
 	const nt_gltf *document = scene->source;
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
-		if (!nt_mesh_is_wanted(mesh))
+		if (!nt_mesh_is_wanted(mesh) || !(mesh->tangents_fault || morphs == NT_MORPH_DROP))
 			continue;
-		nt_json_value *targets = nt_json_find(nt_gltf_primitive_of(document, mesh), "targets");
-		for (size_t t = 0; t < nt_json_count(targets); t++)
+		nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
+		if (mesh->tangents_fault)
+			nt_json_remove(document->json, nt_json_find(primitive, "attributes"), "TANGENT");
+		nt_json_value *targets = nt_json_find(primitive, "targets");
+		for (size_t t = 0; morphs == NT_MORPH_DROP && t < nt_json_count(targets); t++)
 			nt_json_remove(document->json, nt_json_at(targets, t), "TANGENT");
 	}
 }
@@ -68,8 +72,8 @@ nt_status nt_gltf_plan(nt_scene *scene, const nt_read_options *options, nt_error
 		any = is_loaded(&scene->meshes[i], options);
 	if (!any)
 		return NT_OK;
-	if (options->edits && options->morphs == NT_MORPH_DROP)
-		drop_target_tangents(scene);
+	if (options->edits)
+		drop_tangents(scene, options->morphs);
 	nt_status status = nt_vertex_pools_find(scene, options, error);
 	if (!status)
 		status = nt_gltf_find_same(scene, options, error);

@@ -40,9 +40,9 @@ static void write_islands(const nt_report_mesh *mesh, nt_buffer *out)
 		if (mesh->island_kinds[kind])
 			nt_buffer_format(out, ", %zu %s", mesh->island_kinds[kind],
 				nt_island_kind_name((nt_island_kind)kind));
-	nt_buffer_format(out, "; %zu mirror seam%s", mesh->seam_count, mesh->seam_count == 1 ? "" : "s");
 	if (mesh->seam_count)
-		nt_buffer_format(out, " of length %.4g", mesh->seam_length);
+		nt_buffer_format(out, "; %zu mirror seam%s of length %.4g", mesh->seam_count,
+			mesh->seam_count == 1 ? "" : "s", mesh->seam_length);
 	if (mesh->maker.known) {
 		nt_buffer_text(out, "; tangents of ");
 		nt_maker_text(&mesh->maker, out);
@@ -63,8 +63,12 @@ static void write_mesh(const nt_report *report, uint32_t index, nt_buffer *out)
 		nt_buffer_text(out, ", no texture coordinates\n");
 		return;
 	}
-	nt_buffer_format(out, ", %zu mirrored (%.3g %% of the area), %zu degenerate (%.3g %%)\n    ",
-		mesh->triangles[0], share(mesh->areas, 0), mesh->triangles[1], share(mesh->areas, 1));
+	if (mesh->triangles[0])
+		nt_buffer_format(out, ", %zu mirrored (%.3g %% of the area)", mesh->triangles[0],
+			share(mesh->areas, 0));
+	if (mesh->triangles[1])
+		nt_buffer_format(out, ", %zu degenerate (%.3g %%)", mesh->triangles[1], share(mesh->areas, 1));
+	nt_buffer_text(out, "\n    ");
 	write_islands(mesh, out);
 	if (mesh->vertices_after != mesh->vertices_before)
 		nt_buffer_format(out, "; %zu vertices became %zu", mesh->vertices_before,

@@ -44,7 +44,7 @@
 /* Each thread has cursors of its own for all vertices, which are then gone over together: the more threads, the more
  * triangles each must have. Two need fewer: their halves take 10 to 18 % more processor time than the whole. */
 static const nt_fast_plan usual = {.grain = 65536, .least_two = 30000, .least_borrowed_bytes = 65536,
-	.most_narrow = NT_NARROW_LIMIT};
+	.most_narrow = NT_NARROW_LIMIT, .small = true};
 
 typedef struct run {
 	nt_fast *fast;
@@ -160,6 +160,13 @@ static void tell_watched(nt_fast *fast)
 	tail->is_watched = tail->is_box_used = used;
 }
 
+/* What the published sort of edges is asked from, before sums note what they pass. */
+static nmtan_status make_tail(nt_fast *fast)
+{
+	const nt_welded_mesh mesh = welded_mesh(fast, fast->solve->scratch);
+	return fast->solve->sorted ? NMTAN_OK : nt_edge_tail_make(&mesh, &fast->tail);
+}
+
 static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_memory *memory)
 {
 	const unsigned ranges = count_ranges(fast, plan);
@@ -167,10 +174,8 @@ static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_mem
 	nmtan_status status = weld(fast, ranges, memory, &welded);
 	if (!status)
 		status = make_triangles(fast, &welded);
-	if (!status && !fast->solve->sorted) {
-		const nt_welded_mesh mesh = welded_mesh(fast, fast->solve->scratch);
-		status = nt_edge_tail_make(&mesh, &fast->tail);
-	}
+	if (!status)
+		status = make_tail(fast);
 	return status ? status : make_ranges(fast, ranges);
 }
 
@@ -287,6 +292,13 @@ static bool make_bins(run *r, unsigned ranges)
 static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled *sum)
 {
 	const unsigned ranges = fast->ranges.count;
+	if (fast->small) {
+		*sum = (nt_settled){0};
+		mark_undecided(fast);
+		kernels->settle(fast, &fast->adjacency, fast->records, 0,
+			(fast->vertex_count + NT_LANES - 1) / NT_LANES, sum);
+		return NMTAN_OK;
+	}
 	run r = {.fast = fast, .kernels = kernels};
 	r.settled = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *r.settled);
 	if (!r.settled)
@@ -389,11 +401,12 @@ static void tell_known(const nt_fast *fast)
 static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, const nt_settled *settled)
 {
 	nt_fast_write(fast, settled);
-	nt_borrowed left = nt_fast_left_memory(fast);
-	const nmtan_status status = settled->complex_count > 0
-		? nt_fast_complex(fast, kernels, settled, &left) : NMTAN_OK;
-	if (status)
-		return status;
+	if (settled->complex_count > 0) {
+		nt_borrowed left = nt_fast_left_memory(fast);
+		const nmtan_status status = nt_fast_complex(fast, kernels, settled, &left);
+		if (status)
+			return status;
+	}
 	if (fast->solve->known)
 		tell_known(fast);
 	/* these corners are copied from others, which must have been written */
@@ -412,26 +425,57 @@ bool nt_fast_can(const nt_solve *solve)
 	       3 * nt_triangle_count(solve->mesh, solve->corner_count) < NT_ADJACENCY_LIMIT;
 }
 
+/* The question, once they have. */
+static nmtan_status ask_tail(nt_fast *fast, const nt_borrowed *memory)
+{
+	if (fast->solve->sorted)
+		return NMTAN_OK;
+	tell_watched(fast);
+	return find_unsorted(fast, memory);
+}
+
+/* Steps 1 to 4 of few triangles. */
+static nmtan_status add_small(nt_fast *fast, const nt_kernels *kernels, bool *welded)
+{
+	const nt_borrowed none = nt_borrow(NULL, 0, fast->solve->scratch);
+	nmtan_status status = nt_fast_weld_small(fast, welded);
+	if (!status && *welded)
+		status = make_tail(fast);
+	if (status || !*welded)
+		return status;
+	nt_fast_add_small(fast, kernels);
+	return ask_tail(fast, &none);
+}
+
+/* Steps 1 to 4. */
+static nmtan_status add(nt_fast *fast, const nt_kernels *kernels, const nt_fast_plan *plan)
+{
+	const bool binned = is_binned(fast, plan->bin_bits);
+	nt_fast_memory memory;
+	nt_fast_plan_memory(fast, binned, plan->least_borrowed_bytes, &memory);
+
+	/* which corners are one vertex, and which triangles each thread does */
+	nmtan_status status = prepare(fast, plan, &memory);
+	if (status)
+		return status;
+	/* each vertex's sums over its corners, one for each orientation */
+	status = binned ? fill_bins(fast, kernels, plan->bin_bits, &memory)
+		: add_to_records(fast, kernels, plan, &memory);
+	return status || binned ? status : ask_tail(fast, &memory.borrowed);
+}
+
 nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan)
 {
 	assert(nt_fast_can(solve));
 	const nt_kernels *kernels = NT_CPU_TABLE(solve->isa, nt_kernels);
 	nt_fast fast = {.solve = solve, .triangle_count = nt_triangle_count(solve->mesh, solve->corner_count),
 		.wants_more = solve->bitangents || solve->magnitudes, .sparse = solve->sparse};
-	const bool binned = is_binned(&fast, plan->bin_bits);
-	nt_fast_memory memory;
-	nt_fast_plan_memory(&fast, binned, plan->least_borrowed_bytes, &memory);
-
-	/* which corners are one vertex, and which triangles each thread does */
-	nmtan_status status = prepare(&fast, plan, &memory);
-	/* each vertex's sums over its corners, one for each orientation */
-	if (!status)
-		status = binned ? fill_bins(&fast, kernels, plan->bin_bits, &memory)
-				: add_to_records(&fast, kernels, plan, &memory);
-	if (!status && !binned && !solve->sorted) {
-		tell_watched(&fast);
-		status = find_unsorted(&fast, &memory.borrowed);
-	}
+	bool added = false;
+	nmtan_status status = NMTAN_OK;
+	if (plan->small && nt_fast_is_small(&fast))
+		status = add_small(&fast, kernels, &added);
+	if (!status && !added)
+		status = add(&fast, kernels, plan);
 	if (status)
 		return status;
 	if (!fast.records[0] && !fast.records[1]) {

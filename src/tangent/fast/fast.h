@@ -14,6 +14,7 @@ typedef struct nt_fast_plan {
 	                      0: none */
 	unsigned bin_bits; /* log2 of the vertices of a bin, from 4 on; 0: bins where the mesh is scattered */
 	size_t least_borrowed_bytes; /* smaller outputs do not serve as scratch */
+	bool small;              /* few triangles: small.c */
 	size_t most_places;      /* for corners and padding, see adjacency.h; 0: NT_ADJACENCY_PLACES */
 	size_t most_narrow;      /* vertices of a mesh whose corners are not counted first, see there */
 } nt_fast_plan;

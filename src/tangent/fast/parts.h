@@ -65,6 +65,7 @@ typedef struct nt_fast {
 	nt_unsorted unsorted;    /* edges that are not paired as a vertex's corners alone would have it */
 	nt_triangle_ranges ranges;
 	nt_deferred *deferred;       /* [ranges]; NULL: there is one */
+	void *small;                 /* of small.c */
 	uint64_t work;           /* of large groups that may split, so far: complex_solve.c */
 } nt_fast;
 
@@ -155,6 +156,20 @@ static inline size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigne
  * corners, all of them usable, and a determinant whose sign is beyond doubt. */
 enum { NT_TRIANGLE_SUSPECT = NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_COMPLEX |
 			     NT_TRIANGLE_UNCERTAIN };
+
+/* Steps 1 to 4 of few triangles: small.c */
+
+enum { NT_SMALL_TRIANGLES = 16 };
+
+/* Whether a mesh is for it: triangles, tangents only. */
+bool nt_fast_is_small(const nt_fast *fast);
+
+/* Welds the vertices, and makes the places of corners and one range. A mesh with a NaN is not welded, and `fast` means
+ * nothing then. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_fast_weld_small(nt_fast *fast, bool *welded);
+
+/* Then all triangles are added to the records of their vertices. */
+void nt_fast_add_small(nt_fast *fast, const nt_kernels *kernels);
 
 /* Step 4 without bins: records.c */
 

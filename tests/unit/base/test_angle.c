@@ -45,7 +45,7 @@ TEST(angle_of_a_point_on_the_circle_is_atan2)
 		const double t = ldexp(1.25, e), length = hypot(t, 1);
 		assert_true(fabs(nt_angle_on_circle(t / length, 1 / length) / atan(t) - 1) < 0x1p-50);
 	}
-	assert_true(nt_angle_on_circle(0, 0) == 0.0);
+	assert_true(nt_angle_on_circle(0, 0) == 1.57079632679489661923);
 	assert_true(nt_angle_on_circle(0, -1) == 3.14159265358979323846);
 }
 

@@ -89,6 +89,25 @@ TEST(gltf_counts_by_its_accessors_wherever_their_bytes_are)
 	assert_int_equal(nt_need_of(in_folder("a.gltf"), &compress, 0), MB + 12 * strlen(plain) + 100 * 630);
 }
 
+/* Each target has the elements of its accessors, which it may share; what only looks like a target has none. */
+TEST(morph_targets_count_as_often_as_they_are)
+{
+	static const char json[] = "{\"targets\":[],\"accessors\":[{\"count\":7,\"sparse\":{\"count\":99}},"
+		"{\"x\":\"\\\"count\\\":5\",\"count\" : 600}],\"meshes\":[{\"primitives\":["
+		"{\"attributes\":{\"POSITION\":1},\"targets\":[{\"POSITION\":1,\"NORMAL\": 0},{\"POSITION\":1},"
+		"{\"TEXCOORD_0\":1}]},{\"targets\":[{\"POSITION\":1}, {\"POSITION\":9}]}]}]}";
+	const uint64_t plain = MB + 12 * strlen(json) + 40 * (7 + 99 + 600);
+	put_text_file("m.gltf", json);
+	assert_int_equal(need_of("m.gltf"), plain + 60 * (3 * 600 + 7));
+	const nt_settings keep = {.morphs = NT_MORPH_KEEP};
+	assert_int_equal(nt_need_of(in_folder("m.gltf"), &keep, 0), plain);
+	/* cut anywhere */
+	for (size_t size = 1; size < sizeof json - 1; size++) {
+		put_file("cut.gltf", json, size);
+		assert_true(need_of("cut.gltf") >= MB);
+	}
+}
+
 TEST(a_glb_counts_its_json_and_its_bytes)
 {
 	static const char json[] = "{\"accessors\":[{\"count\":600}]}  ", more[] = "\"count\":99999";

@@ -51,12 +51,14 @@ TEST(findings_come_worst_first_and_grouped)
 	}
 	const bool ignore[NT_CODE_COUNT] = {false};
 	nt_buffer out = {0};
-	nt_message_findings(&out, &findings, NULL, ignore, "a.obj", false, NT_SEVERITY_INFO, NT_SEVERITY_ERROR, plain);
+	nt_message_findings(&out, &findings, NULL, ignore, "a.obj", NULL, false,
+		NT_SEVERITY_INFO, NT_SEVERITY_ERROR, plain);
 	assert_says(out.data, PARTS("nmtan: a.obj:1: warning: ", "nmtan: a.obj:5: warning: ", "!a.obj:6:",
 		"nmtan: warning: and 3 more [MATERIAL_UNKNOWN]", "!NORMALS_MADE"));
 	nt_buffer_free(&out);
 
-	nt_message_findings(&out, &findings, NULL, ignore, "a.obj", true, NT_SEVERITY_INFO, NT_SEVERITY_ERROR, verbose);
+	nt_message_findings(&out, &findings, NULL, ignore, "a.obj", NULL, true,
+		NT_SEVERITY_INFO, NT_SEVERITY_ERROR, verbose);
 	const char *warning = strstr(out.data, "a.obj:8: warning: ");
 	const char *info = strstr(out.data, "a.obj:1: info: ");
 	assert_true(warning && info && warning < info);
@@ -80,7 +82,7 @@ TEST(success_is_one_line_that_accounts_for_everything)
 	char expected[256];
 	snprintf(expected, sizeof expected,
 		"nmtan: a.obj -> b.glb: 2 of 3 primitives, 12 triangles, 20 -> 25 vertices "
-		"(+4 where tangents differ, +1 where made normals differ), skipped 1 (%s), 0.25 s\n",
+		"(+4 where tangents differ, +1 where made normals differ), skipped 1 (%s), 250 ms\n",
 		nt_decision_text(NT_SKIP_NO_TEXCOORDS));
 	says(&out, expected);
 
@@ -88,7 +90,7 @@ TEST(success_is_one_line_that_accounts_for_everything)
 	job = (nt_job){.input = "-", .output = stream, .outcome = &outcome};
 	*summary = (nt_summary){.mesh_count = 1, .solved_count = 1, .triangle_count = 1, .vertex_count = 3};
 	nt_message_success(&out, &job, &settings);
-	says(&out, "nmtan: standard input -> standard output: 1 primitive, 1 triangle, 3 vertices, 0 s\n");
+	says(&out, "nmtan: standard input -> standard output: 1 primitive, 1 triangle, 3 vertices, 0.1 ms\n");
 
 	/* every primitive is judged, whichever would get tangents */
 	job = (nt_job){.input = "a.obj", .outcome = &outcome};
@@ -97,7 +99,28 @@ TEST(success_is_one_line_that_accounts_for_everything)
 	summary->skipped[NT_SKIP_NO_TEXCOORDS] = 2;
 	settings.check = true;
 	nt_message_success(&out, &job, &settings);
-	says(&out, "nmtan: a.obj: checked, 3 primitives, 3 tangents would be repaired, no findings, 0 s\n");
+	says(&out, "nmtan: a.obj: checked, 3 primitives, would repair 3 tangents, no findings, 0.1 ms\n");
+}
+
+TEST(times_are_numbers_for_people)
+{
+	static const struct {
+		double seconds;
+		const char *shown;
+	} rows[] = {{0, "0.1 ms"}, {7.41e-05, "0.1 ms"}, {0.00164, "1.6 ms"}, {0.09994, "99.9 ms"},
+		{0.09996, "100 ms"},
+		{0.9994, "999 ms"}, {0.9996, "1.00 s"}, {9.994, "9.99 s"}, {12.34, "12.3 s"}, {1234.5, "1234 s"}};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		nt_buffer out = {0};
+		nt_settings settings = {.check = true};
+		nt_outcome outcome = {.summary = {.mesh_count = 1, .total_seconds = rows[i].seconds}};
+		const nt_job job = {.input = "a.obj", .outcome = &outcome};
+		char expected[128];
+		nt_message_success(&out, &job, &settings);
+		snprintf(expected, sizeof expected, "nmtan: a.obj: checked, 1 primitive, no findings, %s\n",
+			rows[i].shown);
+		says(&out, expected);
+	}
 }
 
 TEST(a_list_has_a_line_for_each_mesh)

@@ -231,12 +231,30 @@ TEST(options_that_contradict_each_other_are_refused)
 {
 	refuses("--quiet and --verbose", WORDS("-q", "-v", "a", "b"));
 	refuses("--in-place and --no-clobber", WORDS("-n", "--in-place", "a"));
-	refuses("--directory", WORDS("--check", "-d", "x", "a"));
-	refuses("--in-place", WORDS("--check", "--in-place", "a"));
-	refuses("--dry-run", WORDS("--dry-run", "--check", "a"));
+	refuses("--output names the output of one input", WORDS("--check", "-o", "x", "a", "b"));
+	refuses("--update and --report", WORDS("--update", "--report=r.json", "a", "b"));
 	refuses("--buffers=embed", WORDS("--output-format=gltf", "a", "-"));
 	refuses("--verify", WORDS("--verify", "a", "-"));
 	refuses("--draco=off", WORDS("--draco=off", "--draco-bits=14,12,12,12", "a", "b"));
+}
+
+/* What says how to write a glTF has it judged as that would write it; what only says how to judge has not. */
+TEST(a_check_takes_what_a_conversion_takes)
+{
+	static const struct {
+		const char *word;
+		bool converts;
+	} rows[] = {{"--only=all", false}, {"--uv=1", false}, {"--quads=pairs", false}, {"--across=mesh", false},
+		{"--outside=yes", false}, {"--threads=2", false}, {"--existing=keep", true}, {"--raw", true},
+		{"--output-format=glb", true}, {"-ox.glb", true}, {"-dx", true}, {"--in-place", true}, {"-n", true},
+		{"--update", true}, {"--dry-run", true}, {"--verify", true}};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		nt_command c;
+		accepts(&c, WORDS("--check", rows[i].word, "a"));
+		assert_int_equal(c.operand_count, 1);
+		if (c.settings.converts != rows[i].converts)
+			fail_msg("%s", rows[i].word);
+	}
 }
 
 TEST(of_choices_the_last_counts_but_names_and_lists_stand_once)
@@ -256,10 +274,10 @@ TEST(names_must_be_as_many_as_the_form_takes)
 	nt_command c;
 	nt_error error;
 	assert_int_equal(parse(&c, &error, (const char *const[]){NULL}), NT_ERROR_USAGE);
-	refuses("'a'", WORDS("a"));
+	refuses("OUTPUT is missing: nmtan a OUT.glb", WORDS("a"));
 	refuses("'c'", WORDS("a", "b", "c"));
-	refuses("no input", WORDS("--check"));
-	refuses("no input", WORDS("-d", "x"));
+	refuses("INPUT is missing", WORDS("--check"));
+	refuses("INPUT is missing", WORDS("-d", "x"));
 	refuses("'-'", WORDS("-d", "x", "-"));
 	refuses("'-'", WORDS("--in-place", "-"));
 	refuses("'-'", WORDS("--check", "-", "-"));

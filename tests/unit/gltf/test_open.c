@@ -283,11 +283,31 @@ TEST(materials_become_slots)
 		"{\"index\":0}}}}", mine, NT_SLOT_CLEARCOAT_NORMAL | NT_SLOT_ANISOTROPY, 1, true);
 	check_material("{\"normalTexture\":{\"index\":0},\"extensions\":{\"KHR_materials_unlit\":{}}}",
 		mine, 0, 0, false);
+	/* MToon of VRM 1 samples the map although the fallback is unlit */
+	check_material("{\"normalTexture\":{\"index\":0},\"extensions\":{\"KHR_materials_unlit\":{},"
+		"\"VRMC_materials_mtoon\":{}}}", mine, NT_SLOT_NORMAL, 0, false);
+	check_material("{\"extensions\":{\"KHR_materials_unlit\":{},\"VRMC_materials_mtoon\":{}}}", mine, 0, 0, false);
+	/* that of VRM 0 is in the root */
+	check_material("{\"extensions\":{\"KHR_materials_unlit\":{}}}],\"extensions\":{\"VRM\":{"
+		"\"materialProperties\":[{\"textureProperties\":{\"_BumpMap\":0}}]}},\"extras\":[0",
+		mine, NT_SLOT_NORMAL, 0, false);
+	check_material("{}],\"extensions\":{\"VRM\":{\"materialProperties\":"
+		"[{\"textureProperties\":{\"_MainTex\":0}}]}},\"extras\":[0", mine, 0, 0, false);
 	check_material("{},{\"normalTexture\":{\"index\":0}}", "\"material\":0,\"extensions\":{"
 		"\"KHR_materials_variants\":{\"mappings\":[{\"material\":0},{\"material\":1}]}}",
 		NT_SLOT_NORMAL, 0, false);
 	check_material("{\"extensions\":{\"MSFT_lod\":{\"ids\":[1]}}},{\"normalTexture\":{\"index\":0}}",
 		mine, NT_SLOT_NORMAL, 0, false);
+}
+
+TEST(vrm_0_mirrors_a_normal_map_by_its_main_texture)
+{
+	fixture f;
+	load_quad(&f, QUAD_ATTRIBUTES ",\"material\":0", ",\"materials\":[{}],\"extensions\":{\"VRM\":{"
+		"\"materialProperties\":[{\"textureProperties\":{\"_BumpMap\":0},"
+		"\"vectorProperties\":{\"_MainTex\":[0,0,-1,1]}}]}}");
+	assert_int_equal(f.scene.meshes[0].solve_sign, -1);
+	close_text(&f);
 }
 
 static void load_transformed(fixture *f, const char *transform, const char *more)

@@ -28,30 +28,56 @@ static const struct {
 } cases[] = {
 	{"right", NORMAL_MAP, plain, {1, 1, 1, 1}, 0},
 	{"inverted", NORMAL_MAP, plain, {-1, -1, -1, -1}, 2},
-	{"one triangle", NORMAL_MAP, plain, {-1, -1, -1, 1}, 1},
+	{"one triangle, and the other has two signs", NORMAL_MAP, plain, {-1, -1, -1, 1}, 2},
 	{"inverted, and no material uses it", "\"materials\":[{}],", plain, {-1, -1, -1, -1}, 0},
 	{"right without the texture transform", TURNED, plain, {1, 1, 1, 1}, 2},
 	{"right with it", TURNED, plain, {-1, -1, -1, -1}, 0},
 	{"a folded quad's own sign", NORMAL_MAP, folded, {1, 1, 1, 1}, 0},
 	{"the sign of its smaller half", NORMAL_MAP, folded, {-1, -1, -1, -1}, 1},
+	{"two signs in a triangle", NORMAL_MAP, plain, {1, -1, 1, 1}, 1},
+	{"two signs in both", NORMAL_MAP, plain, {-1, 1, 1, 1}, 2},
 };
 
-static void write_quad(const char *material, const float (*texcoords)[2], const float w[4])
+/* A tangent of the second corner, which one triangle uses. */
+static const struct {
+	const char *name;
+	float tangent[4];
+	size_t faulty;
+} faults[] = {
+	{"zero", {0, 0, 0, 1}, 1},
+	{"not a number", {NAN, 0, 0, 1}, 1},
+	{"w is none", {1, 0, 0, NAN}, 1},
+	{"w is 0", {1, 0, 0, 0}, 1},
+	{"w is nearly a sign", {1, 0, 0, 0.998f}, 1},
+	{"twice as long", {2, 0, 0, 1}, 1},
+	{"along the normal", {0, 0, 1, 1}, 1},
+	{"half a degree from it", {0.0087265f, 0, 0.9999619f, 1}, 1},
+	{"two degrees from it", {0.0348995f, 0, 0.9993908f, 1}, 0},
+	{"as long as bytes make it", {1.006f, 0, 0, 1}, 0},
+	{"longer", {1.008f, 0, 0, 1}, 1},
+};
+
+static void write_tangents(const char *material, const float (*texcoords)[2], const float (*tangents)[4])
 {
-	float tangents[4][4];
 	hand_file f = {0};
 	put_accessor(&f, positions, 4, NT_GLTF_FLOAT, "VEC3");
 	put_accessor(&f, normals, 4, NT_GLTF_FLOAT, "VEC3");
 	put_accessor(&f, texcoords, 4, NT_GLTF_FLOAT, "VEC2");
 	put_accessor(&f, indices, 6, NT_GLTF_USHORT, "SCALAR");
-	for (int v = 0; w && v < 4; v++)
-		memcpy(tangents[v], (float[4]){1, 0, 0, w[v]}, sizeof tangents[v]);
-	if (w)
+	if (tangents)
 		put_accessor(&f, tangents, 4, NT_GLTF_FLOAT, "VEC4");
 	char members[1024];
 	snprintf(members, sizeof members, "%s\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,"
-		"\"TEXCOORD_0\":2%s},\"indices\":3,\"material\":0}]}],", material, w ? ",\"TANGENT\":4" : "");
+		"\"TEXCOORD_0\":2%s},\"indices\":3,\"material\":0}]}],", material, tangents ? ",\"TANGENT\":4" : "");
 	put_glb("in.glb", &f, members);
+}
+
+static void write_quad(const char *material, const float (*texcoords)[2], const float w[4])
+{
+	float tangents[4][4];
+	for (int v = 0; w && v < 4; v++)
+		memcpy(tangents[v], (float[4]){1, 0, 0, w[v]}, sizeof tangents[v]);
+	write_tangents(material, texcoords, w ? tangents : NULL);
 }
 
 static size_t convert_and_count(nt_settings settings, nt_code code)
@@ -69,6 +95,20 @@ TEST(wrong_signs_are_told_where_they_are_kept_and_used)
 		const size_t wrong = convert_and_count((nt_settings){0}, NT_CODE_TAN_KEPT_SIGN);
 		if (wrong != cases[i].wrong)
 			fail_msg("%s: %zu wrong, expected %zu", cases[i].name, wrong, cases[i].wrong);
+		assert_true(same_files("in.glb", "out.glb"));
+	}
+}
+
+/* What --check calls errors. */
+TEST(tangents_that_no_renderer_can_use_are_told)
+{
+	for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {
+		float tangents[4][4] = {{1, 0, 0, 1}, {0}, {1, 0, 0, 1}, {1, 0, 0, 1}};
+		memcpy(tangents[1], faults[i].tangent, sizeof tangents[1]);
+		write_tangents(NORMAL_MAP, plain, tangents);
+		const size_t plainly = convert_and_count((nt_settings){0}, NT_CODE_TAN_EXISTING_BAD);
+		if (plainly != faults[i].faulty)
+			fail_msg("%s: %zu faulty, expected %zu", faults[i].name, plainly, faults[i].faulty);
 		assert_true(same_files("in.glb", "out.glb"));
 	}
 }

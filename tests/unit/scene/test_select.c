@@ -5,7 +5,7 @@
 
 /* How a mesh differs from a reachable one of triangles with everything a solve takes. */
 enum { UNLIT = 1, HIDDEN = 2, LINES = 4, EMPTY = 8, BARE = 16, NO_NORMALS = 32, TANGENTS = 64, CONFLICT = 128,
-	MADE_NORMALS = 256 };
+	MADE_NORMALS = 256, UNREADABLE = 512 | 64 };
 
 typedef struct row {
 	unsigned slots, but;
@@ -20,7 +20,8 @@ static void decide(const row *r)
 {
 	nt_mesh mesh = {.name = "", .slots = r->slots, .triangles = !(r->but & LINES), .reachable = !(r->but & HIDDEN),
 		.has_positions = true, .has_normals = !(r->but & NO_NORMALS), .has_texcoords = !(r->but & BARE),
-		.has_tangents = r->but & TANGENTS, .unlit = r->but & UNLIT, .face_count = !(r->but & EMPTY),
+		.has_tangents = r->but & TANGENTS, .tangents_fault = r->but & (UNREADABLE & ~TANGENTS) ? "" : NULL,
+		.unlit = r->but & UNLIT, .face_count = !(r->but & EMPTY),
 		.texcoord_conflict = r->but & CONFLICT, .texcoord_other_set = r->but & CONFLICT ? 1 : 0};
 	nt_scene scene;
 	nt_scene_init(&scene, "test");
@@ -70,7 +71,17 @@ TEST(decisions_are_those_of_the_table)
 		{N, TANGENTS | BARE, GLTF, AUTO, KEEP, NT_SKIP_HAS_TANGENTS, ""},
 		{N, TANGENTS | BARE, GLTF, AUTO, NT_EXISTING_REPAIR, NT_DECISION_REPAIR, ""},
 		{N, TANGENTS | BARE, GLTF, AUTO, NT_EXISTING_REPLACE, NT_DECISION_REPAIR, ""},
-		{N, TANGENTS | NO_NORMALS, GLTF, AUTO, KEEP, NT_SKIP_HAS_TANGENTS, ""},
+		/* without normals a client ignores tangents */
+		{N, TANGENTS | NO_NORMALS, GLTF, AUTO, KEEP, NT_SKIP_NO_NORMALS, "warning TAN_NO_NORMAL"},
+		{N, TANGENTS | NO_NORMALS | MADE_NORMALS, GLTF, AUTO, KEEP, NT_DECISION_SOLVE, ""},
+		{N, TANGENTS | NO_NORMALS | MADE_NORMALS, GLTF, AUTO, NT_EXISTING_REPAIR, NT_DECISION_SOLVE, ""},
+		{N, TANGENTS | NO_NORMALS | BARE, GLTF, AUTO, KEEP, NT_SKIP_NO_TEXCOORDS,
+			"error TAN_NO_UV warning TAN_NO_NORMAL"},
+		/* what cannot be read is told unless it is replaced */
+		{N, UNREADABLE, GLTF, AUTO, KEEP, NT_SKIP_HAS_TANGENTS, "error TAN_ACCESSOR"},
+		{N, UNREADABLE, GLTF, AUTO, NT_EXISTING_REPAIR, NT_DECISION_SOLVE, ""},
+		{N, UNREADABLE, GLTF, AUTO, NT_EXISTING_REPLACE, NT_DECISION_SOLVE, ""},
+		{0, UNREADABLE, GLTF, AUTO, KEEP, NT_SKIP_NO_SLOT, "error TAN_ACCESSOR"},
 		/* what is needed and lacks is a finding; what is not needed is not worth a word */
 		{N, NO_NORMALS, GLTF, AUTO, KEEP, NT_SKIP_NO_NORMALS, "warning TAN_NO_NORMAL"},
 		{N, NO_NORMALS | MADE_NORMALS, GLTF, AUTO, KEEP, NT_DECISION_SOLVE, ""},

@@ -117,6 +117,35 @@ TEST(robust_takes_differences_that_no_double_holds)
 		assert_true(tangents[c][0] == 1.0f && tangents[c][1] == 0.0f && tangents[c][3] == 1.0f);
 }
 
+/*
+ * The second triangle has an edge along the normal, which MikkTSpace sees as a point: its corner there weighs acos(0).
+ * At the first vertex the first one has a right angle and u along x, the second u along y: with q1 = (0, 1, .5) at
+ * (.25, 1) and q2 = (0, 0, 1) at (-1, .5), 1.125 dP/du = .5 q1 - q2 = (0, .5, -.75). So T is (1, 1) / sqrt 2.
+ * Whichever corners the triangles begin with.
+ */
+TEST(an_edge_along_the_normal_weighs_a_right_angle)
+{
+	const float positions[4][3] = {{0, 0, 0}, {1, 0, 0.25f}, {0, 1, 0.5f}, {0, 0, 1}};
+	const float texcoords[4][2] = {{0, 0}, {1, 0}, {0.25f, 1}, {-1, 0.5f}};
+	const uint32_t indices[] = {0, 1, 2, 0, 2, 3, 1, 2, 0, 3, 0, 2, 2, 0, 1, 2, 3, 0};
+	const float normals[4][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+	for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_MIKKTSPACE_SORTED; method++)
+		for (int i = 0; i < 3 && method != NMTAN_METHOD_AREA && method != NMTAN_METHOD_LENGYEL; i++) {
+			const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 2, .vertex_count = 4,
+				.indices = indices + 6 * i, .positions = positions[0], .normals = normals[0],
+				.texcoords = texcoords[0]};
+			const nmtan_options options = {.struct_bytes = sizeof options, .method = (nmtan_method)method};
+			float tangents[6][4];
+			const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents[0]};
+			nmtan_counts counts = NMTAN_COUNTS_INIT;
+			assert_int_equal(nmtan_tangents(&mesh, &options, &output, &counts), NMTAN_OK);
+			assert_int_equal(counts.ill_conditioned, 0);
+			for (int c = 0; c < 6; c++)
+				if (mesh.indices[c] == 0)
+					assert_along(tangents[c], 1, 1);
+		}
+}
+
 /* dP/du along the normal but for 2^-30: what is left in the plane is right, and counted. */
 TEST(robust_counts_what_is_lost)
 {

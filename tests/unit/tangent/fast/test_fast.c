@@ -48,7 +48,7 @@ TEST(goldens_are_byte_identical)
 static size_t compare_repairs(const char *name, const nmtan_mesh *mesh, size_t corners)
 {
 	static const nt_fast_plan plans[] = {{.grain = 1}, {.grain = 1, .bin_bits = 4},
-		{.grain = 1, .most_narrow = NT_NARROW_LIMIT}};
+		{.grain = 1, .most_narrow = NT_NARROW_LIMIT, .small = true}};
 	enum { PLANS = sizeof plans / sizeof *plans };
 	nt_result results[PLANS + 1]; /* the definition's is the last */
 	nmtan_counts counts[PLANS + 1];

@@ -8,6 +8,7 @@
 #include "api/tangents.h"
 #include "base/cpu.h"
 #include "golden.h"
+#include "oracle128.h"
 #include "surfaces.h"
 
 static void solve(const nmtan_mesh *mesh, nmtan_options options, nt_implementation implementation,
@@ -117,6 +118,36 @@ TEST(all_paths_give_the_same_bytes_on_quads)
 	nt_owned_free(&grid);
 	free(indices);
 	free(sizes);
+}
+
+/* A lattice with normals along its axes: edges along a normal, edges without length, triangles seen from the side. All
+ * paths give the same bytes, and robust the oracle's answer. */
+TEST(edges_along_normals_weigh_a_right_angle_on_all_paths)
+{
+	enum { TRIANGLES = 999, CORNERS = 3 * TRIANGLES };
+	static float p[CORNERS][3], n[CORNERS][3], t[CORNERS][2];
+	nt_random random = nt_random_seed(3);
+	for (size_t c = 0; c < CORNERS; c++) {
+		for (int k = 0; k < 3; k++)
+			p[c][k] = (float)nt_random_below(&random, 3);
+		for (int k = 0; k < 2; k++)
+			t[c][k] = (float)nt_random_below(&random, 3);
+		n[c][nt_random_below(&random, 3)] = nt_random_below(&random, 2) ? 1 : -1;
+	}
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = TRIANGLES, .vertex_count = CORNERS,
+		.positions = p[0], .normals = n[0], .texcoords = t[0]};
+	compare_paths(&mesh, CORNERS);
+	static float tangents[CORNERS][4];
+	static oracle_corner exact[CORNERS];
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = NMTAN_METHOD_ROBUST};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents[0]};
+	assert_int_equal(nmtan_tangents(&mesh, &options, &output, NULL), NMTAN_OK);
+	assert_true(oracle_solve(&mesh, ORACLE_ANGLE, exact));
+	size_t judged = 0;
+	for (size_t c = 0; c < CORNERS; c++)
+		for (int k = 0; k < 3 && exact[c].sign && exact[c].condition < 16777216.0; k++, judged++)
+			assert_true(fabs(tangents[c][k] - exact[c].t[k]) <= 1.0 / 8388608);
+	assert_true(judged > CORNERS);
 }
 
 int main(void)
