@@ -107,6 +107,7 @@ static nt_status run_if_needed(progress *p, nt_job *job)
 	const nt_batch_options *options = p->options;
 	nt_outcome *outcome = job->outcome;
 	nt_settings own = *p->settings;
+	own.root = job->root;
 	nt_update_job updated = {0};
 	bool current = false;
 	nt_status status = NT_OK;
@@ -116,11 +117,12 @@ static nt_status run_if_needed(progress *p, nt_job *job)
 			&outcome->summary.trace, &outcome->error);
 	if (current)
 		job->end = NT_JOB_CURRENT;
-	if (status || current)
-		return status;
-	nt_trace_free(&outcome->summary.trace);
-	status = run_with_memory(p, job, &own);
-	nt_update_done(&updated, status == NT_OK, &outcome->summary.trace);
+	const bool runs = !status && !current;
+	if (runs) {
+		nt_trace_free(&outcome->summary.trace);
+		status = run_with_memory(p, job, &own);
+	}
+	nt_update_done(&updated, runs && !status, &outcome->summary.trace);
 	return status;
 }
 

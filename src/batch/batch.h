@@ -28,6 +28,7 @@ typedef enum nt_job_end {
 /* One input, and what became of it. */
 typedef struct nt_job {
 	const char *input;
+	const char *root; /* the folder of the user's that it is below, for settings.root; NULL: none */
 	char *output; /* NULL: nothing is written */
 	char *refused; /* why it is not run: a usage error; NULL: it is */
 	bool reason_is_told; /* another job is refused for the same reason, and says it */

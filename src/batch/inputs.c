@@ -23,17 +23,20 @@ typedef struct walk {
 	nt_inputs *inputs;
 	const nt_folder_rules *rules;
 	nt_error *error;
+	const char *root;        /* the folder that was named */
 	size_t root_length;      /* of the path up to and with the slash behind the folder that was named */
 	struct stat leave_out;
 	bool has_leave_out;
 } walk;
 
 /* Takes a name that stays. */
-static nt_status add(nt_inputs *inputs, const char *name, nt_error *error)
+static nt_status add(nt_inputs *inputs, const char *name, const char *root, nt_error *error)
 {
-	if (!name || !nt_grow((void **)(uintptr_t)&inputs->names, &inputs->capacity, inputs->count + 1,
-		sizeof *inputs->names))
+	const size_t count = inputs->count + 1;
+	if (!name || !nt_grow((void **)(uintptr_t)&inputs->names, &inputs->capacity, count, sizeof *inputs->names) ||
+		!nt_grow((void **)(uintptr_t)&inputs->roots, &inputs->root_capacity, count, sizeof *inputs->roots))
 		return nt_fail_memory(error);
+	inputs->roots[inputs->count] = root;
 	inputs->names[inputs->count++] = name;
 	return NT_OK;
 }
@@ -120,7 +123,7 @@ static nt_status visit(walk *w, nt_buffer *path)
 		return errno == EIO || errno == ENOMEM ? fail_folder(path->data, errno, w->error) : NT_OK;
 	if (!S_ISREG(info.st_mode))
 		return NT_OK;
-	return add(w->inputs, nt_arena_text(&w->inputs->arena, path->data, path->size), w->error);
+	return add(w->inputs, nt_arena_text(&w->inputs->arena, path->data, path->size), w->root, w->error);
 }
 
 static nt_status look_through(walk *w, nt_buffer *path)
@@ -154,8 +157,8 @@ nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rul
 	if (status)
 		return status;
 	if (!found || !S_ISDIR(info.st_mode))
-		return add(inputs, name, error);
-	walk w = {.inputs = inputs, .rules = rules, .error = error};
+		return add(inputs, name, NULL, error);
+	walk w = {.inputs = inputs, .rules = rules, .root = name, .error = error};
 	if (rules->leave_out)
 		status = nt_lookup_found(rules->leave_out, &w.leave_out, &w.has_leave_out, error);
 	if (status)
@@ -207,8 +210,10 @@ nt_status nt_inputs_drop_repeated(nt_inputs *inputs, nt_error *error)
 		nt_path_join(&path, current.data, inputs->names[i]);
 		const char *text = path.failed ? NULL : nt_arena_text(&texts, path.data, path.size);
 		made = text && nt_name_add(&seen, text, path.size) != UINT32_MAX;
-		if (seen.count > before)
-			inputs->names[kept++] = inputs->names[i];
+		if (seen.count == before)
+			continue;
+		inputs->roots[kept] = inputs->roots[i];
+		inputs->names[kept++] = inputs->names[i];
 	}
 	inputs->count = made ? kept : inputs->count;
 	nt_name_table_free(&seen);
@@ -222,5 +227,6 @@ void nt_inputs_free(nt_inputs *inputs)
 {
 	nt_arena_free(&inputs->arena);
 	free(inputs->names);
+	free(inputs->roots);
 	*inputs = (nt_inputs){0};
 }

@@ -13,7 +13,8 @@
 typedef struct nt_inputs {
 	nt_arena arena;
 	const char **names;
-	size_t count, capacity;
+	const char **roots; /* the folder that was named and has the input in or below it; NULL: the input was named */
+	size_t count, capacity, root_capacity;
 } nt_inputs;
 
 /*

@@ -12,6 +12,7 @@
 #include "base/buffer.h"
 #include "base/memory.h"
 #include "file/lookup.h"
+#include "file/relative_path.h"
 
 static const char record_name[] = ".nmtan-record";
 
@@ -131,6 +132,7 @@ void nt_update_done(nt_update_job *job, bool well, const nt_trace *trace)
 	if (well && job->record)
 		nt_record_placed(job->record, &job->line, trace);
 	nt_buffer_free(&job->line);
+	nt_buffer_free(&job->options);
 }
 
 /* What a record can be about: regular files, of which the output need not be there yet. */
@@ -156,7 +158,16 @@ nt_status nt_update_look(nt_update *update, const char *input, const char *outpu
 	*job = (nt_update_job){.update = update,
 		.making = {.input = input, .output = output, .options = o->options, .by = o->by}};
 	*current = false;
-	nt_status status = look_at_files(&job->making, &job->making.input_info, &output_info, &regular, &made, error);
+	nt_status status;
+	/* images may lie below it */
+	if (settings->root) {
+		nt_buffer_format(&job->options, "%s%s--keep-tree=", o->options, *o->options ? " " : "");
+		status = nt_path_absolute(&job->options, settings->root, error);
+		if (status || job->options.failed)
+			return status ? status : nt_fail_memory(error);
+		job->making.options = job->options.data;
+	}
+	status = look_at_files(&job->making, &job->making.input_info, &output_info, &regular, &made, error);
 	if (status || !regular)
 		return status;
 	nt_freshness freshness = NT_FRESH_STALE;

@@ -33,6 +33,7 @@ typedef struct nt_update_job {
 	nt_making making;
 	nt_record *record; /* NULL: the output is a stream, or the input is */
 	nt_buffer line;    /* that was written to it */
+	nt_buffer options; /* of this one, if they differ from those of all */
 } nt_update_job;
 
 /*

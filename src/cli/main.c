@@ -143,6 +143,7 @@ static void add_times(nt_summary *total, const nt_summary *one)
 	total->bytes_copied += one->bytes_copied;
 	total->bytes_written += one->bytes_written;
 	total->same_count += one->same_count;
+	total->bare_materials += one->bare_materials;
 	for (int reason = 0; reason < NT_DECISION_COUNT; reason++)
 		total->skipped[reason] += one->skipped[reason];
 }
@@ -397,6 +398,9 @@ static void tell_end(session *s)
 			nt_buffer_format(&s->text, ", %zu not tried", s->untried);
 		if (!s->command->settings.check)
 			append_outcomes(s);
+		if (s->total.bare_materials)
+			nt_buffer_format(&s->text, ", %zu material%s without any image", s->total.bare_materials,
+				s->total.bare_materials == 1 ? "" : "s");
 		nt_buffer_text(&s->text, failed > s->failures.refused ? ":\n" : "\n");
 		nt_failures_append(&s->text, &s->failures, s->command->manifest);
 	}
@@ -406,7 +410,7 @@ static void tell_end(session *s)
 		s->exit_code = nt_exit_worse(s->exit_code, NT_EXIT_INTERNAL);
 }
 
-static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
+static nt_status prepare_jobs(nt_batch *batch, const nt_command *c, nt_error *error)
 {
 	if (c->settings.check && c->output)
 		return nt_batch_pair(batch, c->operands[0], c->output, error);
@@ -426,6 +430,15 @@ static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"'-' is a terminal here: send the output to a file or a pipe");
 	return nt_batch_pair(batch, input, output, error);
+}
+
+/* roots: of the operands; NULL: they were named one by one. */
+static nt_status prepare(nt_batch *batch, const nt_command *c, const char *const *roots, nt_error *error)
+{
+	const nt_status status = prepare_jobs(batch, c, error);
+	for (size_t i = 0; i < batch->count; i++)
+		batch->jobs[i].root = c->keep_tree ? c->keep_tree : roots ? roots[i] : NULL;
+	return status;
 }
 
 /* The records, if any. */
@@ -658,7 +671,7 @@ static int run(nt_command *command, nt_style style, bool colour_on_stdout)
 	if (!status)
 		status = nt_report_plan_make(&plan, command, colour_on_stdout, &error);
 	if (!status)
-		status = prepare(&batch, command, &error);
+		status = prepare(&batch, command, inputs.roots, &error);
 	if (!status)
 		status = check_pairs(command, &batch, &error);
 	if (!status && plan.target.folder)

@@ -151,6 +151,19 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 	free(old);
 }
 
+/* Materials that have lost all of their images. */
+static void append_bare(nt_buffer *out, const char *before, const nt_summary *s)
+{
+	if (!s->bare_materials)
+		return;
+	nt_buffer_format(out, "%smaterial \"", before);
+	nt_buffer_clean(out, s->bare_material);
+	if (s->bare_materials == 1)
+		nt_buffer_text(out, "\" has none of its images");
+	else
+		nt_buffer_format(out, "\" and %zu more have none of their images", s->bare_materials - 1);
+}
+
 void nt_message_left_out(nt_buffer *out, const nt_job *job, const bool *ignore)
 {
 	static const nt_code codes[] = {NT_CODE_MTL_MISSING, NT_CODE_MATERIAL_UNKNOWN, NT_CODE_IMAGE_MISSING,
@@ -170,6 +183,8 @@ void nt_message_left_out(nt_buffer *out, const nt_job *job, const bool *ignore)
 		}
 		nt_buffer_format(out, "%zu %s", count, nt_code_info(codes[c])->name);
 	}
+	if (told)
+		append_bare(out, "; ", &job->outcome->summary);
 	nt_buffer_text(out, told ? "\n" : "");
 }
 
@@ -339,6 +354,7 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		append_findings_count(out, s);
 	else
 		append_skipped(out, s);
+	append_bare(out, ", ", s);
 	append_seconds(out, s->total_seconds);
 	if (s->note && !settings->check && !settings->dry_run)
 		nt_buffer_clean(out, s->note);

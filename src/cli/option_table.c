@@ -49,8 +49,9 @@ const nt_option_row nt_option_rows[] = {
 		"the set of texture coordinates; auto: the one that the material uses",
 		SETTING(texcoord_set), false},
 	{"outside", 0, NT_OPTION_CHOICE, "no|root|yes", NT_OUTSIDE_NO, 0, "root",
-		"files outside the input's folder; no: refuse them; root: allow images of a single OBJ one folder "
-		"up; yes: allow all", SETTING(outside), false},
+		"files outside the input's folder; no: refuse them; root: allow images of an OBJ below the folder "
+		"above it and below a folder that is named with -r or --keep-tree; yes: allow all",
+		SETTING(outside), false},
 
 	{.kind = NT_OPTION_HEADING, .name = "Many inputs"},
 	{"directory", 'd', NT_OPTION_TEXT, "DIR", 0, 0, NULL,

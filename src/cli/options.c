@@ -541,9 +541,8 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 		command->settings.texture_paths = command->texture_paths.items;
 	for (size_t i = 0; i < nt_option_row_count && command->settings.check; i++)
 		command->settings.converts |= nt_option_rows[i].writes && p.given[i];
-	/* Who converts one file means what it says: images may be one folder up, and one beside it is proposed. Who
-	 * converts many may not have read them. */
-	command->settings.own_input = command->settings.outside != NT_OUTSIDE_NO && !command->directory &&
+	/* Of one input an image beside it is proposed. */
+	command->settings.own_input = !command->directory &&
 		!command->settings.in_place && !list_option(command) &&
 		command->operand_count == (command->settings.check ? 1 : 2);
 	nt_status status = parse_draco(&p);

@@ -22,7 +22,9 @@ enum { MOST_PARTS = 32 };
 typedef struct search {
 	const nt_image_places *places;
 	nt_buffer *path;
-	bool outside; /* a name leads to where it may not be looked at */
+	nt_buffer above, root; /* folders in and below which images may be, too; empty: none, or not asked for */
+	bool bounded;          /* they have been asked for */
+	bool outside; /* a name leads to where nobody may look */
 	nt_error *error;
 } search;
 
@@ -35,31 +37,6 @@ static nt_status is_file(const char *path, bool *is, nt_error *error)
 		nt_trace_missing(path);
 	}
 	return status;
-}
-
-/* Whether the file at s->path, named from `folder`, may be the one. A name that leaves the folder by its text is
- * refused before anybody looks: what is said must not tell whether something is there. */
-static nt_status accept(search *s, const char *folder, bool *accepted)
-{
-	*accepted = false;
-	if (!s->places->allow_outside && !nt_link_is_inside(s->path->data, folder)) {
-		s->outside = true;
-		return NT_OK;
-	}
-	bool inside = true;
-	nt_status status = NT_OK;
-	if (!s->places->allow_outside)
-		status = nt_way_is_inside(
-			folder, s->path->data + strlen(folder), &inside, s->error);
-	s->outside |= !inside;
-	return status || !inside ? status : is_file(s->path->data, accepted, s->error);
-}
-
-static nt_status try_name(search *s, const char *folder, const char *name, bool *accepted)
-{
-	s->path->size = 0;
-	nt_link_join(s->path, folder, name);
-	return s->path->failed ? nt_fail_memory(s->error) : accept(s, folder, accepted);
 }
 
 /* Whether a file is an image by its content; what cannot be opened is none. */
@@ -76,35 +53,85 @@ static nt_status is_image(const char *path, bool *is, nt_error *error)
 	return NT_OK;
 }
 
-/* "../NAME" of a document in `folder`. Whatever else lies there is not told from what does not. */
-static nt_status try_one_up(search *s, const char *folder, const char *name, bool *accepted)
+/* The folders in and below which images may be beside the one where they are looked for; asked for by the first name
+ * that leaves that. */
+static nt_status find_bounds(search *s)
 {
-	const char *slash = strrchr(folder, '/');
-	const size_t length = slash ? (size_t)(slash - folder) : 0;
-	if ((strncmp(name, "../", 3) != 0 && strncmp(name, "..\\", 3) != 0) || nt_uri_has_parent_step(name + 3))
+	const nt_image_places *p = s->places;
+	nt_error failure;
+	nt_status status = NT_OK;
+	char *real = NULL;
+	if (s->bounded || p->confined)
 		return NT_OK;
+	s->bounded = true;
+	if (p->input)
+		status = nt_link_folder(&s->above, p->input, &failure);
+	char *slash = !status && s->above.size ? strrchr(s->above.data, '/') : NULL;
+	if (slash)
+		*slash = '\0';
+	if (!slash || slash == s->above.data)
+		nt_buffer_free(&s->above);
+	if (p->root && (!status || status == NT_ERROR_MISSING)) {
+		nt_trace_way(p->root);
+		status = nt_lookup_real(p->root, &real, &failure);
+	}
+	if (real && strcmp(real, "/") != 0)
+		nt_buffer_text(&s->root, real);
+	free(real);
+	if (s->root.failed || s->above.failed)
+		return nt_fail_memory(s->error);
+	if (status && status != NT_ERROR_MISSING)
+		*s->error = failure;
+	return status == NT_ERROR_MISSING ? NT_OK : status;
+}
+
+/* A folder by whose leave one may look at the path, which was found from `folder`; NULL: there is none. A path
+ * that leaves a folder by its text does so before anybody looks: what is said must not tell whether something is there.
+ * A link that leaves one may lead to another one. */
+static nt_status find_bound(search *s, const char *folder, const char *path, const char **bound)
+{
+	nt_status status = NT_OK;
+	*bound = NULL;
+	for (int i = 0; i < 3 && !*bound && !status; i++) {
+		if (i == 1)
+			status = find_bounds(s);
+		const char *leave = status ? NULL : i == 0 ? folder : i == 1 ? s->root.data : s->above.data;
+		bool inside = leave && nt_link_is_inside(path, leave);
+		if (inside)
+			status = nt_way_is_inside(leave, path + strlen(leave), &inside, s->error);
+		if (!status && inside)
+			*bound = leave;
+	}
+	return status;
+}
+
+/* Whether the file at s->path, named from `folder`, may be the one. */
+static nt_status accept(search *s, const char *folder, bool *accepted)
+{
+	const char *bound = folder;
+	*accepted = false;
+	nt_status status = s->places->allow_outside ? NT_OK : find_bound(s, folder, s->path->data, &bound);
+	s->outside |= !bound;
+	if (!status && bound)
+		status = is_file(s->path->data, accepted, s->error);
+	if (!status && *accepted && bound == s->above.data)
+		status = is_image(s->path->data, accepted, s->error);
+	return status;
+}
+
+static nt_status try_name(search *s, const char *folder, const char *name, bool *accepted)
+{
 	s->path->size = 0;
 	nt_link_join(s->path, folder, name);
-	char *above = strndup(folder, length);
-	if (s->path->failed || !above) {
-		free(above);
-		return nt_fail_memory(s->error);
-	}
-	bool inside = length > 0 && nt_link_is_inside(s->path->data, above);
-	nt_status status = inside ? nt_way_is_inside(above, s->path->data + length, &inside, s->error) : NT_OK;
-	if (!status && inside)
-		status = is_file(s->path->data, accepted, s->error);
-	if (!status && *accepted)
-		status = is_image(s->path->data, accepted, s->error);
-	free(above);
-	return status;
+	return s->path->failed ? nt_fail_memory(s->error) : accept(s, folder, accepted);
 }
 
 /* ---- without case ---- */
 
-/* As try_name(), part by part; a name with ".." is left to that. */
+/* As try_name(), part by part. No folder is searched that a link leads out to. */
 static nt_status try_any_case(search *s, const char *folder, const char *name, bool *accepted)
 {
+	const char *bound = folder;
 	*accepted = false;
 	s->path->size = 0;
 	nt_buffer_text(s->path, strcmp(folder, "/") == 0 ? "" : folder);
@@ -122,6 +149,12 @@ static nt_status try_any_case(search *s, const char *folder, const char *name, b
 		free(entry);
 		name += length;
 		name += strspn(name, "/");
+		if (*name && !s->path->failed && !s->places->allow_outside) {
+			status = find_bound(s, folder, s->path->data, &bound);
+			s->outside |= !bound;
+			if (status || !bound)
+				return status;
+		}
 	}
 	if (!status)
 		status = s->path->failed ? nt_fail_memory(s->error) : accept(s, folder, accepted);
@@ -225,11 +258,30 @@ static nt_status try_as_named(search *s, const char *name, nt_buffer *folder, bo
 	if (status || !folder->size)
 		return status;
 	const bool absolute = nt_link_is_absolute(name);
-	if (absolute && !s->places->allow_outside) {
+	if (absolute && (*name != '/' || s->places->confined) && !s->places->allow_outside) {
 		s->outside = *name == '/'; /* other systems' names are nowhere here */
 		return NT_OK;
 	}
 	return try_name(s, folder->data, name, accepted);
+}
+
+/* The same without regard to case, for a name that leaves the document's folder: from the folder that it is below. */
+static nt_status try_as_named_any_case(search *s, const char *name, const char *folder, bool *accepted)
+{
+	nt_buffer joined = {0};
+	*accepted = false;
+	if (nt_link_is_absolute(name) && *name != '/')
+		return NT_OK;
+	nt_link_join(&joined, folder, name);
+	if (joined.failed)
+		return nt_fail_memory(s->error);
+	nt_status status = s->places->allow_outside ? NT_OK : find_bounds(s);
+	const char *const folders[] = {s->root.data, s->above.data};
+	for (size_t i = 0; i < 2 && !*accepted && !status; i++)
+		if (folders[i] && nt_link_is_inside(joined.data, folders[i]))
+			status = try_any_case(s, folders[i], joined.data + strlen(folders[i]) + 1, accepted);
+	nt_buffer_free(&joined);
+	return status;
 }
 
 nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buffer *path, nt_image_found *found,
@@ -247,19 +299,14 @@ nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buff
 		nt_buffer_free(&folder);
 		return status || !path->failed ? status : nt_fail_memory(error);
 	}
-	if (nt_name_is_too_long(name)) {
-		*found = NT_IMAGE_MISSING;
-		nt_buffer_text(path, name);
-		return path->failed ? nt_fail_memory(error) : NT_OK;
-	}
 	status = try_as_named(&s, name, &folder, &accepted);
-	if (!status && !accepted && places->one_up && folder.size)
-		status = try_one_up(&s, folder.data, name, &accepted);
 	*found = NT_IMAGE_FOUND;
 	if (!status && !accepted) {
 		*found = NT_IMAGE_FOUND_ELSEWHERE;
 		char *part = portable_part(name);
 		status = part ? try_folders(&s, part, try_name, &accepted) : nt_fail_memory(error);
+		if (!status && !accepted && folder.size)
+			status = try_as_named_any_case(&s, name, folder.data, &accepted);
 		if (!status && !accepted)
 			status = try_folders(&s, part, try_any_case, &accepted);
 		if (!status && !accepted) {
@@ -272,5 +319,7 @@ nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buff
 		free(part);
 	}
 	nt_buffer_free(&folder);
+	nt_buffer_free(&s.above);
+	nt_buffer_free(&s.root);
 	return status;
 }

@@ -170,8 +170,8 @@ static nt_status take_map(examination *e, const nt_mesh *mesh, enum nt_slot slot
 {
 	const nt_image_places searched = {.folders = e->settings->texture_paths,
 		.folder_count = e->settings->texture_path_count,
-		.allow_outside = e->settings->outside == NT_OUTSIDE_YES,
-		.one_up = e->settings->own_input};
+		.root = e->settings->root, .confined = e->settings->outside == NT_OUTSIDE_NO,
+		.allow_outside = e->settings->outside == NT_OUTSIDE_YES};
 	nt_normal_map map;
 	if (!(mesh->slots & slot))
 		return NT_OK;

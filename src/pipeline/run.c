@@ -315,7 +315,7 @@ static nt_status run_stages(run *r)
 				nt_hash_unkeyed(r->summary->tangents_digest, &digest, sizeof digest);
 	}
 	if (!status)
-		status = nt_tell_textures(&r->scene, r->settings, r->textures, r->error);
+		status = nt_tell_textures(&r->scene, r->settings, r->textures, r->summary, r->error);
 	if (!status)
 		status = nt_stage_maps(&r->scene, r->settings, r->textures, r->error);
 	if (!status && r->settings->list_meshes)

@@ -104,6 +104,7 @@ typedef struct nt_settings {
 	bool digests;     /* summary->tangents_digest is wanted */
 	bool in_place;
 	nt_outside outside;
+	const char *root; /* with NT_OUTSIDE_ROOT: the folder of the user's that the input is below; NULL: none */
 	bool own_input;   /* the one input that the user names: see options.c */
 	nt_equal_choice equal; /* what becomes of an output that has its bytes already */
 
@@ -172,6 +173,8 @@ typedef struct nt_summary {
 	size_t fixed[NT_CODE_COUNT]; /* with fix: primitives and images repaired, by the code of the finding */
 	bool keeps_wrong; /* tangents of the output are known to be wrong */
 	bool left;       /* the file has what it would get, and was left as it is */
+	size_t bare_materials;   /* that name images, none of which is in the output */
+	char bare_material[100]; /* the first of them */
 	char *note;      /* which files of the output have other names than they would, and why: "; ..."; NULL: none */
 } nt_summary;
 

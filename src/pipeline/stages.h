@@ -61,10 +61,11 @@ nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const 
 nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *settings, nt_format output,
 	nt_textures *textures, nt_summary *summary, nt_error *error);
 
-/* Adds what is to be said about the images of materials to the findings; textures: NULL where they were not looked at.
+/* Adds what is to be said about the images of materials to the findings, and counts materials that have none left;
+ * textures: NULL where they were not looked at.
  * Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const nt_textures *textures,
-	nt_error *error);
+	nt_summary *summary, nt_error *error);
 
 /* Examines normal maps, if settings->check_maps or a report wants that, and adds what is found. textures: what was
  * decoded before; NULL: nothing. Returns NT_OK, NT_ERROR_IO, NT_ERROR_MEMORY or NT_ERROR_LIMIT. */

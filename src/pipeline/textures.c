@@ -7,12 +7,14 @@
 #include "pipeline/map_requests.h"
 #include "pipeline/stages.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
+#include "file/uri.h"
 
 /* Calls body once for each material that a mesh with texture coordinates uses, in the order of the meshes. */
 static nt_status each_material(nt_scene *scene, void *context, nt_error *error,
@@ -46,7 +48,8 @@ static nt_status request_material(nt_scene *scene, nt_material *m, void *context
 	const requesting *w = context;
 	const nt_image_places places = {.document = m->library ? m->library : scene->path, .input = scene->path,
 		.folders = w->settings->texture_paths, .folder_count = w->settings->texture_path_count,
-		.allow_outside = w->settings->outside == NT_OUTSIDE_YES, .one_up = w->settings->own_input};
+		.root = w->settings->root, .confined = w->settings->outside == NT_OUTSIDE_NO,
+		.allow_outside = w->settings->outside == NT_OUTSIDE_YES};
 	nt_map_request requests[NT_MATERIAL_MAPS];
 	const size_t count = nt_map_requests(m, w->settings, requests);
 	nt_status status = NT_OK;
@@ -140,33 +143,41 @@ typedef struct telling {
 	nt_scene *scene;
 	const nt_textures *textures;
 	const nt_settings *settings;
+	nt_summary *summary;
 	nt_material *material;
+	size_t images, lost; /* that the material names, and those of them that are not in the output */
 } telling;
 
-/* Where it is, from the folder of the material library. */
+/* Where it is, from the folder of the material library, as files are named. */
 static void tell_elsewhere(const telling *t, const nt_place *place, const char *name, const char *path)
 {
 	nt_buffer folder = {0}, relative = {0};
 	nt_error unused;
+	nt_buffer uri = {0};
 	if (nt_link_folder(&folder, place->file, &unused) == NT_OK)
-		nt_link_uri(&relative, folder.data, path);
+		nt_link_uri(&uri, folder.data, path);
+	if (uri.size && !uri.failed)
+		nt_uri_append_decoded(&relative, uri.data, uri.size);
 	nt_finding_add(&t->scene->findings, NT_CODE_IMAGE_ELSEWHERE, place, 1, "%.100s is %.140s", name,
-		relative.data ? relative.data : path);
+		relative.data && !relative.failed ? relative.data : path);
 	nt_buffer_free(&folder);
 	nt_buffer_free(&relative);
+	nt_buffer_free(&uri);
 }
 
 /* The image that a channel of a result came from. */
-static void tell_source(const telling *t, const nt_map *map, int channel, const nt_texture *image)
+static void tell_source(telling *t, const nt_map *map, int channel, const nt_texture *image)
 {
 	const nt_place place = nt_material_place(t->scene, t->material, map->line);
 	const nt_texture_source *source = nt_textures_source(t->textures, map->request, channel);
 	const bool lost = image->packed ? image->lost >> channel & 1 : image->type == NT_IMAGE_OTHER;
 	const bool failed = image->failure && (!image->packed || image->damaged >> channel & 1);
 	nt_finding_list *findings = &t->scene->findings;
+	t->images++;
+	t->lost += source->found > NT_IMAGE_FOUND_ELSEWHERE || failed || lost;
 	if (source->found == NT_IMAGE_OUTSIDE)
 		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1,
-			"%.120s (it is outside of the folder of its MTL file, see --outside=yes)", map->name);
+			"%.110s (it is outside of the folders where it may be; --outside=yes allows it)", map->name);
 	else if (source->found == NT_IMAGE_MISSING)
 		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1, "%.120s", map->name);
 	else if (failed)
@@ -192,7 +203,7 @@ static void tell_made(const telling *t, const nt_map *map, const nt_texture *ima
 }
 
 /* The images of one request. */
-static void tell_request(const telling *t, const nt_map_request *w)
+static void tell_request(telling *t, const nt_map_request *w)
 {
 	const nt_map *first = NULL;
 	const nt_texture *image = NULL;
@@ -246,6 +257,7 @@ static nt_status tell_material(nt_scene *scene, nt_material *m, void *context, n
 	telling *t = context;
 	t->scene = scene;
 	t->material = m;
+	t->images = t->lost = 0;
 	nt_map_request requests[NT_MATERIAL_MAPS];
 	const size_t count = t->textures ? nt_map_requests(m, t->settings, requests) : 0;
 	const bool requested = t->textures && m->normal_map.request != NT_NONE;
@@ -254,13 +266,15 @@ static nt_status tell_material(nt_scene *scene, nt_material *m, void *context, n
 	tell_misplaced(t);
 	for (size_t i = 0; i < count; i++)
 		tell_request(t, &requests[i]);
+	if (t->images && t->lost == t->images && !t->summary->bare_materials++)
+		snprintf(t->summary->bare_material, sizeof t->summary->bare_material, "%s", m->name);
 	return NT_OK;
 }
 
 nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const nt_textures *textures,
-	nt_error *error)
+	nt_summary *summary, nt_error *error)
 {
-	telling t = {.textures = textures, .settings = settings};
+	telling t = {.textures = textures, .settings = settings, .summary = summary};
 	if (settings->images == NT_IMAGES_NONE)
 		return NT_OK;
 	return each_material(scene, &t, error, tell_material);

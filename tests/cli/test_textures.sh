@@ -284,64 +284,124 @@ for name in ../n.png ../gone.png "$PWD/n.png" /gone/n.png; do
 	exits 0
 	grep -o ': image .*' ../err.txt | sed "s#$name#NAME#" >>said
 done
-is "$(sort -u said)" ": image cannot be read: NAME (it is outside of the folder of its MTL file, see --outside=yes) [IMAGE_MISSING]"
+said=": image cannot be read: NAME (it is outside of the folders where it may be; --outside=yes allows it) [IMAGE_MISSING]"
+is "$(sort -u said)" "$said"
 
-scene "an image one folder up is taken where one file is converted"
-mkdir -p p/models p/textures far
-images write p/textures/t.png 4 4 "$bumps"
-images write far/n.png 4 4 "$bumps"
-quad 'norm ../textures/t.png'
-mv quad.obj m.mtl p/models
-run p/models/quad.obj out.glb
+# As most studios have it: obj beside tex, and what all projects share.
+studio() {
+	mkdir -p s/p/obj s/p/tex s/shared
+	images write s/p/tex/Wood.png 4 4 "$bumps"
+	images write "s/p/tex/wood n.png" 4 4 "$bumps"
+	images write s/shared/n.png 4 4 "$bumps"
+	quad "$@"
+	mv quad.obj m.mtl s/p/obj
+}
+
+scene "the images of an OBJ lie below the folder above it, in one run or another"
+studio 'map_Kd ../tex/Wood.png' 'norm ../tex/wood n.png'
+cp s/p/obj/quad.obj s/p/obj/two.obj
+run s/p/obj/quad.obj one.glb
 exits 0
-is "$(gltf out.glb 'g.images.length')" 1
-run p/models/quad.obj p/models/quad.gltf
-is "$(gltf p/models/quad.gltf 'g.images[0].uri')" t.png
-same p/models/t.png p/textures/t.png
-rm p/models/t.png
-run --check --check-maps=on p/models/quad.obj
-says_not IMAGE_MISSING
-for way in "-d out" "-d out -r" --outside=no; do
-	case $way in --outside=no) run $way p/models/quad.obj out.glb ;; *-r) run $way p/models ;; *) run $way p/models/quad.obj ;; esac
+is "$(gltf one.glb 'g.images.length')" 2
+for way in "-d OUT s/p/obj/quad.obj" "-d OUT s/p/obj/quad.obj s/p/obj/two.obj" "-d OUT -r s" "-d OUT -r s/p/obj" \
+	"-d OUT/s/p/obj --keep-tree=s/p/obj -r s" "-d OUT --keep-tree=s s/p/obj/quad.obj" "-o OUT/quad.glb s/p/obj/quad.obj"; do
+	mkdir -p OUT
+	run $way
 	exits 0
-	says "image cannot be read: ../textures/t.png (it is outside"
+	says_not IMAGE_
+	same "$(find OUT -name quad.glb)" one.glb
+	rm -r OUT
 done
-# no further, by no link, no other file; and one message, whatever is there
-echo text >p/secret.txt
-ln -s ../far p/linked
-mkfifo p/pipe.png
-for name in ../secret.txt ../gone.txt ../../far/n.png ../../gone/n.png ../textures/../../far/n.png ../linked/n.png ../linked/gone.png \
-	../pipe.png ../textures; do
-	printf 'newmtl m\nnorm %s\n' "$name" >p/models/m.mtl
-	run p/models/quad.obj out.glb
+run --check --check-maps=on s/p/obj/quad.obj
+says_not IMAGE_MISSING
+run s/p/obj/quad.obj s/p/obj/quad.gltf
+is "$(gltf s/p/obj/quad.gltf 'g.images[0].uri + g.images[1].uri')" "Wood.pngwood%20n.png"
+same s/p/obj/Wood.png s/p/tex/Wood.png
+rm s/p/obj/*.gltf s/p/obj/*.bin s/p/obj/*.png
+run --outside=no -r -d OUT s
+says "image cannot be read: ../tex/Wood.png (it is outside of the folders where it may be; --outside=yes allows it)"
+says "material \"m\" has none of its images"
+says "2 of 2 done"
+says ", 2 materials without any image"
+run -q --outside=no s/p/obj/quad.obj lost.glb
+is "$(cat "$WORK/err.txt")" 'nmtan: s/p/obj/quad.obj: left out of the output: 2 IMAGE_MISSING; material "m" has none of its images'
+
+scene "and anywhere below the folder that the user names"
+studio 'norm ../../shared/n.png'
+for way in "-d OUT s/p/obj/quad.obj" "-d OUT -r s/p" "-d OUT --keep-tree=s/p s/p/obj/quad.obj"; do
+	run $way
+	says "image cannot be read: ../../shared/n.png (it is outside"
+	rm -r OUT
+done
+for way in "-d OUT -r s" "-d OUT --keep-tree=s s/p/obj/quad.obj" "-d OUT --keep-tree=. -r s/p" "-d OUT --outside=yes s/p/obj/quad.obj"; do
+	run $way
+	exits 0
+	says_not IMAGE_
+	is "$(gltf "$(find OUT -name quad.glb)" 'g.images.length')" 1
+	rm -r OUT
+done
+# a folder that is named later lets an output be made again
+run --update -d OUT s/p/obj/quad.obj
+run --update -d OUT s/p/obj/quad.obj
+says "up to date"
+run --update -r -d OUT --include=quad.obj s
+says_not "up to date"
+run --update -r -d OUT --include=quad.obj "$PWD/s"
+says "up to date"
+rm -r OUT
+
+scene "a name in another case is told as what it is"
+studio 'map_Kd ../tex/wood.PNG' 'norm ../TEX/Wood N.png'
+run s/p/obj/quad.obj out.glb
+exits 0
+is "$(gltf out.glb 'g.images.length')" 2
+says "../tex/wood.PNG is ../tex/Wood.png [IMAGE_ELSEWHERE]"
+says "../TEX/Wood N.png is ../tex/wood n.png [IMAGE_ELSEWHERE]"
+
+scene "no further up, by no link, no other file; and one message, whatever is there"
+studio
+mkdir far
+images write far/n.png 4 4 "$bumps"
+echo text >s/p/secret.txt
+ln -s ../../far s/p/linked
+mkfifo s/p/pipe.png
+for name in ../../../far/n.png ../../gone/n.png ../tex/../../../far/n.png ../linked/n.png ../linked/gone.png ../LINKED/n.png \
+	../LINKED/gone.png /etc/passwd /gone; do
+	printf 'newmtl m\nnorm %s\n' "$name" >s/p/obj/m.mtl
+	run s/p/obj/quad.obj out.glb
 	exits 0
 	grep -o ': image .*' ../err.txt | sed "s#$name#NAME#" >>said
 done
-is "$(sort said | uniq -c | sed 's/^ *//')" \
-	"9 : image cannot be read: NAME (it is outside of the folder of its MTL file, see --outside=yes) [IMAGE_MISSING]"
+is "$(sort said | uniq -c | sed 's/^ *//')" "9 $said"
+for name in ../secret.txt ../gone.txt ../pipe.png ../tex; do
+	printf 'newmtl m\nnorm %s\n' "$name" >s/p/obj/m.mtl
+	run s/p/obj/quad.obj out.glb
+	grep -o ': image .*' ../err.txt | sed "s#$name#NAME#" >>missing
+done
+is "$(sort missing | uniq -c | sed 's/^ *//')" "4 : image cannot be read: NAME [IMAGE_MISSING]"
 
 scene "a link inside the folder does not tell whether there is something outside that it leads to"
-mkdir in there
+mkdir -p d/in there
 cp "$data/bumps.png" there/n.png
 cp "$data/plates.bin" there/
-sed 's#plates.bin#l/plates.bin#' "$data/plates.gltf" >in/plates.gltf
-{ printf 'mtllib l/m.mtl\nmtllib m.mtl\nusemtl m\n' && grep '^[vf]' "$data/quad.obj"; } >in/quad.obj
-printf 'newmtl m\nnorm l/n.png\n' >in/m.mtl
+sed 's#plates.bin#l/plates.bin#' "$data/plates.gltf" >d/in/plates.gltf
+{ printf 'mtllib l/m.mtl\nmtllib m.mtl\nusemtl m\n' && grep '^[vf]' "$data/quad.obj"; } >d/in/quad.obj
+printf 'newmtl m\nnorm l/n.png\n' >d/in/m.mtl
 echo 'newmtl m' >there/m.mtl
-for target in ../there "$PWD/there" ../gone /gone ../in/../gone ../there/m.mtl; do
-	ln -sfn "$target" in/l
+for target in ../../there "$PWD/there" ../../gone /gone ../../d/../gone ../../there/m.mtl; do
+	ln -sfn "$target" d/in/l
 	for name in quad plates; do
-		run in/$name.* out.gltf
+		run d/in/$name.* out.gltf
 		grep -o 'm\.mtl: leaves.*\|: image.*\|the URI.*\|cannot.*' ../err.txt >>said
 	done
 done
 is "$(sort said | uniq -c | awk '{ print $1 }' | sort -u)" 6
 is "$(sort -u said | wc -l)" 3
 # what leads back in, is in
-ln -sfn "$PWD/in/../in/sub" in/l
-mkdir in/sub
-cp there/plates.bin in/sub
-run in/plates.gltf out.gltf
+ln -sfn "$PWD/d/in/../in/sub" d/in/l
+mkdir d/in/sub
+cp there/plates.bin d/in/sub
+run d/in/plates.gltf out.gltf
 exits 0
 
 scene "nobody waits for a pipe that a document names, and what a document names is not overwritten"

@@ -50,9 +50,10 @@ static nt_status compose_with_images(nt_scene *scene, nt_write_options options, 
 		.bump = NT_BUMP_NORMAL};
 	const nt_texture_rules rules = {.threads = 1};
 	nt_textures *textures;
+	nt_summary summary = {0};
 	assert_int_equal(nt_stage_textures(scene, &settings, in_folder("o"), &textures, error), NT_OK);
 	assert_int_equal(nt_textures_make(textures, &rules, error), NT_OK);
-	assert_int_equal(nt_tell_textures(scene, &settings, textures, error), NT_OK);
+	assert_int_equal(nt_tell_textures(scene, &settings, textures, &summary, error), NT_OK);
 	options.textures = textures;
 	const nt_status status = compose(scene, options, name, error);
 	nt_textures_free(textures);
