@@ -395,7 +395,7 @@ static nt_status check_clashes(parser *p)
 {
 	static const char *const pairs[][3] = {
 		{"quiet", "verbose", "say opposite things"},
-		{"check", "fix", "exclude each other: what is repaired before it is judged always passes"},
+		{"check", "fix", "exclude each other: a repaired file always passes"},
 		{"fix", "existing", "contradict each other: --fix decides for each primitive"},
 		{"fix", "flip-green", "contradict each other: --fix turns the maps that need it"},
 		{"in-place", "no-clobber", "contradict each other"},
@@ -413,7 +413,7 @@ static nt_status check_clashes(parser *p)
 	/* what is not read has no findings */
 	if (p->command->update && p->command->report && !s->check)
 		return nt_fail(p->error, NT_ERROR_USAGE,
-			"--update and --report do not go together: what is up to date is not read");
+			"--update and --report do not go together: a report needs inputs that --update skips");
 	if (p->command->diff && !s->check)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--diff is about --check");
 	const char *into = p->command->directory ? "directory" : s->in_place ? "in-place" : NULL;

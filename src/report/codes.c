@@ -45,12 +45,12 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"nmtan --images=link a/in.gltf b/out.gltf"),
 	ROW(IMAGE_TYPE, WARNING, "w--", EXPORT, NULL, "image has a type that glTF does not carry",
 		"glTF carries PNG and JPEG (others by extension). TGA, BMP, PSD, HDR and TIFF become PNG, unless "
-		"--textures=keep is given; anything else is left out, or stays a file where a glTF refers to it.",
+		"--textures=keep is given; anything else is left out, or stays a file if a glTF refers to it.",
 		"Convert the image to PNG and name that in the material.",
 		"an MTL with \"map_Kd wood.exr\""),
 	ROW(IMAGE_DAMAGED, WARNING, "w--", EXPORT, NULL, "image cannot be decoded",
-		"An image had to be decoded, to be converted or to see whether it is a height map, and that "
-		"failed. What glTF carries is used as it is, anything else is left out.",
+		"An image had to be decoded, to be converted or to see whether it is a height map, and that failed. "
+		"PNG and JPEG are used as they are, other types are left out.",
 		"Write the image again.",
 		"a TGA that ends before its last pixel"),
 	ROW(IMAGE_ELSEWHERE, WARNING, "w--", EXPORT, NULL, "image was found elsewhere",
@@ -70,8 +70,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"--bump=height.",
 		"an MTL with \"map_Bump n.png\""),
 	ROW(NMAP_NOT_TURNED, WARNING, "w--", LOOK, NULL, "normal map is not turned",
-		"--flip-green and --bump turn PNG and JPEG of a glTF. What is in KTX2 or WebP, or beside such an image "
-		"of the same texture, stays as it is.",
+		"--flip-green and --bump turn PNG and JPEG of a glTF. KTX2 and WebP stay as they are, and so does the "
+		"PNG or JPEG of a texture that has one of these too.",
 		"Turn it before it is compressed.",
 		"a KTX2 in normalTexture, and --flip-green=on"),
 	ROW(NMAP_HEIGHTS, WARNING, "w--", CONVERT, "--bump=height", "normal map that is a height map",
@@ -89,27 +89,27 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Properties of a material contradict each other, or say what programs write without meaning "
 		"it: d 0, which would make all of it invisible, a black Kd beside a map. The detail says what "
 		"was taken instead.",
-		"Correct the material where that is not what was meant.",
+		"Correct the material if something else was meant.",
 		"an MTL with \"d 0\""),
 	ROW(NMAP_BESIDE, INFO, "i--", LOOK, NULL, "no normal map, but an image beside the input is named like one",
-		"An OBJ, PLY or Draco file with texture coordinates names no normal map, and in its folder is an image "
-		"with its name and an ending of normal maps: _nm_tangent, _normal, _nrm, _nm, _n, _ddn and the like. "
-		"It is not used. It is looked for where one input is named.",
+		"An OBJ, PLY or Draco file with texture coordinates names no normal map, and in its folder is an "
+		"image with its name and an ending of normal maps: _nm_tangent, _normal, _nrm, _nm, _n, _ddn and the "
+		"like. nmtan does not use it by itself, and looks for it only if one input is named.",
 		"If it is the normal map: --normal-map=FILE.",
 		"head.obj beside head_n.png"),
 	ROW(NMAP_GREEN_DOWN, WARNING, "w--", CONVERT, "--fix", "normal map whose green points down",
-		"glTF's normal maps have green up. Of a surface's map the slopes p = -x/z and q = y/z have "
-		"equal mixed derivatives, dp/dv = dq/du with rows counted down; in this one they are opposite. "
-		"The figures are their correlation (-1: green down, 1: up), the share of the map that agrees, and how "
-		"many of its 12 x 12 blocks say what. Bumps and dents are exchanged along one direction.",
+		"glTF's normal maps have green up. The slopes p = -x/z and q = y/z of a real surface have equal mixed "
+		"derivatives, dp/dv = dq/du with rows counted down; in this map they are opposite. The figures are "
+		"their correlation (-1: green down, 1: up), the share of the map that agrees, and how many of its 12 "
+		"x 12 blocks say what. Bumps and dents are exchanged along one direction.",
 		"Invert the green channel.",
 		"a map baked for DirectX"),
 	ROW(NMAP_GREEN_MIXED, INFO, "i--", BAKE, NULL,
-		"normal map whose green points down in places, or in the grain alone",
+		"parts or details of the normal map say that green points down, others that it points up",
 		"Some blocks of the map, or some sizes of its detail, say that green points down, and others that it "
 		"points up or nothing: a detail map or a decal of the other convention was painted in. No "
 		"convention is right for all of it, and --flip-green=auto leaves it.",
-		"Look whether dents and bumps are right where blocks say down; bake or paint these again.",
+		"Look at the blocks that say down. If their dents and bumps are exchanged, bake or paint them again.",
 		"a map of which one half was baked for DirectX"),
 	ROW(NMAP_NOT_UNIT, INFO, "i--", BAKE, NULL, "normal map whose vectors are not of unit length",
 		"More than a hundredth of the pixels have a length that differs from 1 by more than a tenth: "
@@ -127,8 +127,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Bake the map in tangent space.",
 		"a map whose vectors are the normals of a sphere"),
 	ROW(NMAP_CONSTANT, INFO, "w--", BAKE, NULL, "normal map of one colour",
-		"All pixels are alike: the map says nothing, and costs a texture. A warning where the colour is not "
-		"that of a flat surface, about (128, 128, 255): the surface is lit as if it were tilted.",
+		"All pixels are alike: the map says nothing, and costs a texture. A warning if the colour is not that "
+		"of a flat surface, about (128, 128, 255): the surface is lit as if it were tilted.",
 		"Take it out of the material, or bake it again.",
 		"a map of (128, 128, 255) alone"),
 	ROW(NMAP_BANDED, INFO, "i--", BAKE, NULL, "normal map of 8 bits on a smooth surface",
@@ -167,7 +167,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"an OBJ face of five corners in the order of a star"),
 	ROW(POLYGON_CUT, INFO, "-ii", LOOK, NULL, "{count} {polygon was|polygons were} written as triangles",
 		"The triangles of these polygons (or strips) need different tangents at one corner, but a vertex has "
-		"only one. PLY output keeps polygons where it can; these became triangles.",
+		"only one. PLY output keeps polygons if it can; these became triangles.",
 		"Nothing, unless the polygons matter: then cut or unwrap them differently.",
 		"a PLY pentagon with one corner's texture coordinates mirrored"),
 	ROW(NORMALS_MADE, INFO, "i-i", LOOK, NULL, "normals were missing and have been made",
@@ -197,7 +197,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"The length differs from 1 by more than 2^-12. Tangents lie across the unit normal, which is what "
 		"renderers make of it. An OBJ's or PLY's normals are stored unit in a new glTF, a glTF keeps "
 		"those that it has.",
-		"Nothing; normalise the normals on export to be rid of the finding.",
+		"Harmless. To silence it, export unit normals.",
 		"an OBJ triangle with \"vn 0 0 .5\""),
 	ROW(REFERENCE_LOST, WARNING, "w--", LOOK, NULL,
 		"{count} {part of the input is|parts of the input are} not in the output",
@@ -214,8 +214,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a primitive whose extension names an accessor with one element for each vertex"),
 	ROW(POLYGONS_DROPPED, INFO, "i--", LOOK, NULL,
 		"{detail} is not in the output: it would not say the same polygons",
-		"The extension marks triangles that follow each other as one polygon where their first index is "
-		"equal. A first vertex that needs several tangents is copied, or Draco gives triangles another order.",
+		"The extension marks triangles that follow each other as one polygon if their first index is equal. A "
+		"first vertex that needs several tangents is copied, or Draco gives triangles another order.",
 		"Nothing, unless polygons are read from the output; the input still has them.",
 		"two triangles with equal first index and a mirror seam between them, marked by FB_ngon_encoding"),
 	ROW(DRACO_PLAIN, WARNING, "w--", LOOK, NULL, "the primitive is written without Draco compression",
@@ -247,9 +247,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 
 	ROW(UV_MIRROR_SEAM, INFO, "i-i", EXPORT, NULL,
 		"texture coordinates are mirrored across a seam of {count} {edge|edges}",
-		"The two triangles at each of these edges are wound in opposite directions in UV space, so w "
-		"changes its sign here and vertices cannot be shared. Legitimate and frequent, but the place "
-		"where normal maps show seams first. There is one finding for each loop or chain.",
+		"The two triangles at each of these edges are wound in opposite directions in UV space, so w changes "
+		"its sign here and vertices cannot be shared. Legitimate and frequent, but normal maps show seams "
+		"here first. There is one finding for each loop or chain.",
 		"Nothing if the mirroring is meant. Keep the seam off prominent edges, and bake with mirrored "
 		"islands moved by a whole tile.",
 		"two triangles that share an edge and have the same UV at their third corners"),
@@ -261,31 +261,31 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Nothing. When baking, move the mirrored islands by a whole tile so that only one of two is baked.",
 		"two separate quads with the same four UVs, the second one wound the other way"),
 	ROW(UV_MIRROR_LONE, INFO, "i-i", EXPORT, NULL,
-		"mirrored island of {count} {triangle|triangles} lies on no other",
+		"mirrored island ({count} {triangle|triangles}) that shares no texels with an unmirrored one",
 		"A mirrored island that shares its texture with nothing: mirroring gains nothing here, and "
 		"text or asymmetric detail in the texture shows reversed. Often an accident.",
 		"Flip the island in the UV editor unless the texture was painted for it.",
 		"one triangle whose UVs are clockwise"),
 	ROW(UV_MIXED_WINDING_ISLAND, WARNING, "w-w", EXPORT, NULL,
 		"island of {count} {triangle|triangles} is folded: both windings are connected",
-		"Inside one connected island some triangles are wound the other way, and they do not lie on a "
-		"twin point by point: a fold. Texture is mirrored there and tangents flip within the island. An info "
-		"where no material of a glTF needs tangents.",
+		"Inside one connected island some triangles are wound the other way, and they do not lie on a twin "
+		"point by point: a fold. Texture is mirrored there and tangents flip within the island. An info if no "
+		"material of a glTF needs tangents.",
 		"Unfold the island (relax or unwrap it again), or cut it along the fold.",
 		"three quads in a row with u = 0, 1, 0.4, 1.4"),
 	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-w", EXPORT, NULL, "{count} of {detail} {is|are} flipped",
 		"A few triangles in a row are wound against their island, or have texture coordinates of their own "
-		"inside a large island of the other winding: at most 5 % of its triangles and area, or a single one up "
-		"to 10 %, where all that is wound so is at most a quarter. Texture is mirrored there. They make no "
-		"seam, fold or mirrored island. Needles whose winding is rounding are UV_NEAR_DEGENERATE instead. An "
-		"info where no material of a glTF needs tangents.",
+		"inside a large island of the other winding: at most 5 % of its triangles and area, or a single one "
+		"up to 10 %, if all triangles that are wound so are at most a quarter. Texture is mirrored there. "
+		"They make no seam, fold or mirrored island. Needles whose winding is rounding are UV_NEAR_DEGENERATE "
+		"instead. An info if no material of a glTF needs tangents.",
 		"Exchange two corners of these triangles in the UV editor, or relax the knot.",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
 	ROW(UV_DEGENERATE_TRIANGLE, INFO, "w-w", EXPORT, NULL,
 		"{count} {triangle has|triangles have} no area in UV space",
-		"The three texture coordinates are collinear: there is no direction in which u grows, so the "
-		"tangent comes from a neighbour or from the normal. A warning when such triangles are more "
-		"than 1 % of the mesh's area, where it can be seen, unless a glTF's material uses no tangents.",
+		"The three texture coordinates are collinear: there is no direction in which u grows, so the tangent "
+		"comes from a neighbour or from the normal. A warning when such triangles are more than 1 % of the "
+		"mesh's area, unless a glTF's material uses no tangents.",
 		"Unwrap these triangles if they are visible and normal mapped.",
 		"two triangles, of which one has UVs (0,0), (1,0), (2,0)"),
 	ROW(UV_NEAR_DEGENERATE, INFO, "w-w", EXPORT, NULL,
@@ -306,8 +306,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a quad with UVs (0,0), (1,1), (1,0), (0,1): a bowtie"),
 	ROW(UV_UNMAPPED, WARNING, "w-w", EXPORT, NULL,
 		"no triangle has an area in UV space: all {count} {is|are} unmapped",
-		"All texture coordinates are alike, or on a line. Tangents are made from normals, and mean nothing. An "
-		"info where no material of a glTF needs tangents.",
+		"All texture coordinates are alike, or on a line. Tangents are made from normals, and mean nothing. "
+		"An info if no material of a glTF needs tangents.",
 		"Unwrap the mesh.",
 		"a quad whose corners have one vt"),
 	ROW(UV_ROUNDED_AWAY, INFO, "--i", EXPORT, NULL,
@@ -323,9 +323,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Export the mesh again.",
 		"a PLY vertex with s = nan"),
 	ROW(UV_MISSING, WARNING, "--w", EXPORT, NULL, "the mesh has no texture coordinates and gets no tangents",
-		"OBJ, PLY and Draco meshes get tangents wherever there are texture coordinates; other meshes "
-		"of the file have some. Where no mesh has, or a material's normal map needs them, "
-		"that is TAN_NO_UV.",
+		"An OBJ, PLY or Draco mesh gets tangents if it has texture coordinates. This one has none, other "
+		"meshes of the file have some. TAN_NO_UV is reported instead if no mesh has any, or if a material's "
+		"normal map needs them.",
 		"Unwrap the mesh if it is to be normal mapped; else --only=needed, or --ignore=UV_MISSING.",
 		"an OBJ with two objects of which one has faces like 1 2 3"),
 	ROW(UV_NOT_THERE, WARNING, "-ww", EXPORT, NULL, "faces refer to texture coordinates, but the file has none",
@@ -346,9 +346,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a PLY vertex with x = inf"),
 	ROW(MESH_NON_MANIFOLD_EDGE, WARNING, "wiw", EXPORT, NULL,
 		"{count} {edge belongs|edges belong} to more than two triangles",
-		"After vertices at one position are welded, three or more triangles meet at an edge. Which of "
-		"them are neighbours is then a matter of order, and programs differ in their tangents. An info where "
-		"nothing asks for tangents, and up to a thousandth of the mesh's area.",
+		"After vertices at one position are welded, three or more triangles meet at an edge. Which of them "
+		"are neighbours is then a matter of order, and programs differ in their tangents. An info if nothing "
+		"asks for tangents, and up to a thousandth of the mesh's area.",
 		"Separate the surfaces, or delete doubled and inner faces.",
 		"three triangles that share one edge"),
 	ROW(MESH_INCONSISTENT_WINDING, WARNING, "www", EXPORT, NULL,
@@ -371,34 +371,33 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a vertex with the normal (0,0,0)"),
 	ROW(MESH_NORMAL_AGAINST_FACE, WARNING, "www", EXPORT, NULL,
 		"{count} {triangle has|triangles have} normals that point against {its|their} winding",
-		"All three corner normals lie on the back side of the triangle: it is lit as if seen from behind, "
-		"and the bitangent runs against v there. An info where these are at most 1 % of the mesh's area.",
+		"All three corner normals lie on the back side of the triangle: it is lit as if seen from behind, and "
+		"the bitangent runs against v there. An info if these are at most 1 % of the mesh's area.",
 		"Flip the winding or recalculate the normals.",
 		"a counterclockwise triangle in the xy plane with the normal (0,0,-1)"),
 
 	ROW(TAN_MIRROR_SHARED_VERTEX, WARNING, "w--", CONVERT, "--fix",
 		"{count} {vertex is|vertices are} shared by mirrored and unmirrored triangles",
-		"One vertex holds one tangent and one w, but the triangles on its two sides need opposite "
-		"signs: tangents stored in this file cannot be right on both sides. An info where it stores none or no "
-		"material uses them. A conversion splits such vertices and counts them.",
+		"One vertex holds one tangent and one w, but the triangles on its two sides need opposite signs: "
+		"tangents stored in this file cannot be right on both sides. An info if it stores none or no material "
+		"uses them. A conversion splits such vertices and counts them.",
 		"Split them.",
 		"two triangles that share two vertices and mirror their UVs across them"),
 	ROW(TAN_MIXED_W_TRIANGLE, WARNING, "w--", CONVERT, "--fix",
 		"{count} {triangle has|triangles have} corners with different w",
-		"The three corners must agree: where w changes its sign inside a triangle the interpolated "
-		"bitangent passes through zero and the shading breaks.",
+		"The three corners must agree: if w changes its sign inside a triangle, the interpolated bitangent "
+		"passes through zero and the shading breaks.",
 		"Compute the tangents again.",
 		"a triangle with w = 1, 1, -1"),
 	ROW(TAN_SIGN_MISMATCH, ERROR, "e--", CONVERT, "--fix",
 		"{count} {triangle has|triangles have} a bitangent that runs the wrong way",
-		"In glTF the bitangent cross(N, T) * w runs along -dP/dv, that is, w is +1 where the stored "
-		"UVs have a negative determinant. Here w is the opposite, or T and the bitangent are both "
-		"reversed, and the normal map's green channel is inverted; its red one where T alone is reversed. The "
-		"finding gives the share: 100 % "
-		"by w means that the exporter's convention is inverted, which is what happens when V is not "
-		"flipped; reversed tangents were made for other texture coordinates. An info where no "
-		"material uses the tangents; a warning where they are right but for a texture transform that mirrors, "
-		"and up to two thousandths of the triangles and of their area.",
+		"In glTF the bitangent cross(N, T) * w runs along -dP/dv, that is, w is +1 if the stored UVs have a "
+		"negative determinant. Here w is the opposite, or T and the bitangent are both reversed, and the "
+		"normal map's green channel is inverted; its red one if T alone is reversed. The finding gives the "
+		"share: 100 % by w means that the exporter's convention is inverted, which is what happens when V is "
+		"not flipped; reversed tangents were made for other texture coordinates. An info if no material uses "
+		"the tangents; a warning if only a mirroring texture transform makes them wrong, and up to two "
+		"thousandths of the triangles and of their area.",
 		"Compute the tangents again.",
 		"a glTF quad, upright and not mirrored, with w = -1"),
 	ROW(TAN_DIRECTION_MISMATCH, WARNING, "w--", LOOK, "--existing=replace",
@@ -424,7 +423,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Compute the tangents again.",
 		"a vertex with N = T = (0,0,1)"),
 	ROW(TAN_ZERO, ERROR, "e--", CONVERT, "--fix", "{count} {tangent has|tangents have} no length",
-		"What many tools write for sliver triangles. Normalising it gives NaN in the shader: black or "
+		"Many tools write this for sliver triangles. Normalising it gives NaN in the shader: black or "
 		"flashing pixels.",
 		"Compute the tangents again.",
 		"a vertex with T = (0,0,0,1)"),
@@ -443,9 +442,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Compute the tangents again.",
 		"a vertex with T = (1,0,0,0)"),
 	ROW(TAN_MISSING_REQUIRED, ERROR, "e--", CONVERT, "--fix", "the material needs tangents and there are none",
-		"Clearcoat normal maps and anisotropy demand a tangent space: TANGENT, or a normalTexture from "
-		"which a client can make it. Here there is neither. Where a normalTexture lets the client make "
-		"tangents this is an info: clients differ in how well they do it.",
+		"Clearcoat normal maps and anisotropy demand a tangent space: TANGENT, or a normalTexture from which "
+		"a client can make it. Here there is neither. If a normalTexture lets the client make tangents, this "
+		"is an info: clients differ in how well they do it.",
 		"Make them.",
 		"a material with KHR_materials_anisotropy on a primitive with NORMAL only"),
 	ROW(TAN_UNUSED, INFO, "i--", CONVERT, "--existing=drop", "the mesh has tangents that no material uses",
@@ -466,8 +465,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(TAN_NO_UV, INFO, "eii", EXPORT, NULL, "there are no texture coordinates to make tangents by",
 		"No mesh of an OBJ, PLY or Draco file has texture coordinates: a scan, say, or a model without "
 		"textures. An error in a glTF whose material looks up a normal map, or shades by anisotropy, with "
-		"coordinates that the primitive lacks: no renderer can get that right. A warning where an OBJ's "
-		"material does: the output is without the map.",
+		"coordinates that the primitive lacks: no renderer can get that right. A warning if an OBJ's material "
+		"does: the output is without the map.",
 		"Nothing if no normal map is meant. Else unwrap the mesh, or choose a set that exists with --uv.",
 		"a normal-mapped glTF primitive without TEXCOORD_0"),
 	ROW(TAN_UVSET_CONFLICT, WARNING, "w--", EXPORT, NULL,
@@ -489,33 +488,33 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a primitive with TANGENT and a target with POSITION only"),
 	ROW(TAN_MORPH_TURNED, WARNING, "w--", EXPORT, NULL,
 		"{count} {triangle is|triangles are} turned to the other side of {its|their} normals by a morph target",
-		"Morph targets have no w of their own. Where one turns a triangle over and its normals do not follow, "
-		"the bitangent that w gives runs the wrong way, and bumps look like dents while the target acts. The "
-		"finding counts a triangle once for each target that turns it.",
+		"Morph targets have no w of their own. If a target turns a triangle over and its normals do not "
+		"follow, the bitangent that w gives runs the wrong way, and bumps look like dents while the target "
+		"acts. The finding counts a triangle once for each target that turns it.",
 		"Let the target move the normals too, or leave the triangle on its side.",
 		"a flat triangle with normals along z and a target that moves x to -x"),
 	ROW(TAN_MORPH_HALFWAY, WARNING, "w--", EXPORT, NULL,
 		"{count} {triangle has|triangles have} wrong tangents when a morph target acts by half",
-		"Clients add the deltas of TANGENT times the weight. That is exact at weights 0 and 1; between "
-		"them it is not where a target stretches what it turns. At weight 0.5 it is more than 5 "
-		"degrees from the tangents of the mesh as it then is. The detail names the target and the "
-		"largest angle; 90 degrees means that a tangent and its delta cancel. Targets that turn no "
-		"tangent by more than 5 degrees are not looked at.",
+		"Clients add the deltas of TANGENT times the weight. That is exact at weights 0 and 1; between them "
+		"it is not if a target stretches what it turns. At weight 0.5 it is more than 5 degrees from the "
+		"tangents of the mesh as it then is. The detail names the target and the largest angle; 90 degrees "
+		"means that a tangent and its delta cancel. Targets that turn no tangent by more than 5 degrees are "
+		"not looked at.",
 		"Add a target for the pose in between, so that none turns the surface far.",
 		"a square whose target turns it by a quarter and doubles its width"),
 	ROW(TAN_PRIMITIVE_BORDER, INFO, "i--", CONVERT, "--across=mesh",
 		"{count} {tangent|tangents} at borders to other primitives would turn if the mesh were solved as one",
-		"glTF defines tangents per primitive. A baker computes them over the whole object, so that a "
-		"mesh which is divided by material shows a seam where the surface goes on with the same "
-		"normals and texture coordinates. The finding counts corners whose tangents differ by more "
-		"than 5 degrees between the two, and tells the largest angle.",
+		"glTF defines tangents per primitive. A baker computes them over the whole object, so that a mesh "
+		"which is divided by material shows a seam although the surface goes on with the same normals and "
+		"texture coordinates. The finding counts corners whose tangents differ by more than 5 degrees between "
+		"the two, and tells the largest angle.",
 		"If the normal map was baked for the whole mesh, solve it so.",
 		"two squares of one mesh, of which the second's texture is sheared, with a material each"),
 	ROW(TAN_QUANTIZED, INFO, "i-i", CONVERT, "--precision=float",
 		"{count} {tangent was|tangents were} stored as integers",
 		"--precision=short or byte rounds tangents to the nearest direction that normalized integers can "
-		"represent; so are they rounded where they go with normals that meshoptimizer packed as integers. The "
-		"detail has the largest and the mean angle between what was computed and what is stored.",
+		"represent; they are rounded too if meshopt compresses their normals as integers. The detail has the "
+		"largest and the mean angle between what was computed and what is stored.",
 		"Nothing if the angle is too small to be seen; else --precision=float.",
 		"converting any quad with --precision=byte"),
 	ROW(TAN_REPAIRED, INFO, "i-i", LOOK, NULL,
@@ -532,15 +531,15 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(TAN_EXISTING_REPAIRED, INFO, "i--", LOOK, NULL,
 		"{count} {corner|corners} got another tangent than the input has",
 		"With --existing=repair a face with an invalid tangent gets those that are computed. Without texture "
-		"coordinates nothing can be computed: what is invalid becomes the unit vector across the "
-		"normal that is nearest to it, or any across the normal where it has no direction, and w "
-		"becomes 1 where the corners of a triangle do not agree; --existing=replace does the same there.",
+		"coordinates nothing can be computed: an invalid tangent becomes the nearest unit vector across the "
+		"normal, or any across the normal if it has no direction, and w becomes 1 if the corners of a "
+		"triangle do not agree; --existing=replace does the same there.",
 		"Nothing; --existing=keep leaves them as they are.",
 		"a triangle whose TANGENT is its NORMAL, converted with --existing=repair --only=all"),
 	ROW(TAN_EXISTING_LEFT, INFO, "i--", LOOK, NULL,
 		"{count} {corner has|corners have} a tangent that repair cannot make better",
-		"With --existing=repair a face that is not valid as a whole stays as it is where a solve gives what is "
-		"there, or no valid tangents either: a triangle without area in UV space may have corners of either w.",
+		"With --existing=repair a face that is not valid as a whole stays as it is if a solve gives the same "
+		"tangents, or no valid ones either: a triangle without area in UV space may have corners of either w.",
 		"Unwrap these triangles.",
 		"a triangle without area in UV space between a mirrored and another triangle, converted twice"),
 	ROW(TAN_KEPT_SIGN, WARNING, "w--", CONVERT, "--fix",
@@ -562,7 +561,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"smaller half",
 		"The tangents were solved on quads. A quad whose halves are wound in opposite directions in texture "
 		"space has one orientation to MikkTSpace, that of the larger half.",
-		"Nothing where the map was baked on quads too; --existing=replace gives each half its own sign.",
+		"Nothing if the map was baked on quads too; --existing=replace gives each half its own sign.",
 		"a quad with one corner folded over its diagonal in texture space, from Blender"),
 	ROW(TAN_QUADS_LIKELY, INFO, "i--", CONVERT, "--quads=pairs",
 		"{count} {pair|pairs} of triangles may have been {one quad|quads} when the map was baked",

@@ -399,7 +399,7 @@ nt_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *err
 		mesh.face_count, error);
 	if (status != NT_OK || !nt::came_back(expected, decoded))
 		return nt_fail(error, NT_ERROR_INTERNAL,
-			"what Draco encoded does not decode to what it was given");
+			"Draco does not decode its own block to the values that it encoded");
 	return hand_over(buffer, mesh, decoded, sources, block, error);
 }
 
