@@ -173,39 +173,6 @@ static size_t NT_NOINLINE add_narrow(const nt_fast *fast, unsigned range, size_t
 	return add_usual(fast, range, first, i, end, ids, out, true);
 }
 
-/* The same up to a corner of a hub. What is added to a vertex that an earlier range adds to is put aside,
- * without a branch: where triangles do not come in order such vertices are anywhere. */
-static size_t NT_NOINLINE add_shared(const nt_fast *fast, unsigned range, size_t first, size_t i,
-	size_t end, const uint32_t *ids, const lanes_out *out)
-{
-	static const nt_record nothing = {0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
-	uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
-	nt_deferred *const deferred = &fast->deferred[range];
-	size_t count = deferred->count;
-	for (ids += 3 * i; i < end; i++, ids += 3) {
-		if ((cursors[ids[0]] | cursors[ids[1]] | cursors[ids[2]]) & NT_CURSOR_HUB)
-			break;
-		const size_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT;
-		const uint32_t bit = (uint32_t)orient << 31;
-		for (size_t k = 0; k < 3; k++) {
-			const uint32_t vertex = ids[k], place = cursors[vertex];
-			const bool shared = place & NT_CURSOR_SHARED;
-			cursors[vertex] = place + NT_FAN_LANES;
-			fast->adjacency.entries[place & NT_CURSOR_PLACE] =
-				(nt_fan_entry){ids[(k + 1) % 3] | bit, ids[(k + 2) % 3] | bit};
-			nt_record *const own = &fast->records[orient][vertex],
-				*const to = shared ? &deferred->add[count] : own;
-			nt_record sum = *(shared ? &nothing : own);
-			add_record(&sum, out->add[k] + turned_rows[i]);
-			*to = sum;
-			deferred->to[count] = vertex | bit;
-			count += shared;
-		}
-	}
-	deferred->count = count;
-	return i;
-}
-
 /* Whether a corner of a triangle is at a hub. */
 static inline bool has_hub(const nt_fast *fast, unsigned range, const uint32_t *v)
 {
@@ -221,8 +188,6 @@ static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t beg
 		if (!fast->wants_more)
 			i = (nt_adjacency_is_narrow(&fast->adjacency) ? add_narrow : add_here)(fast, range,
 				first, i, end, ids, out);
-		if (i < end && !fast->wants_more && fast->deferred)
-			i = add_shared(fast, range, first, i, end, ids, out);
 		if (i == end)
 			return;
 		do {
@@ -344,31 +309,6 @@ static inline NT_ALWAYS_INLINE void prefetch_rows(const nt_fast *fast, size_t fi
 		NT_PREFETCH(&fast->rows[ids[3 * i]]);
 }
 
-/* Without bins, as in scattered quads: entries and records of a batch whose cursors were
- * prefetched a batch ago. */
-static inline NT_ALWAYS_INLINE void prefetch_places(const nt_fast *fast, const uint32_t *cursors,
-	const uint32_t *ids, size_t count)
-{
-	for (size_t i = 0; i < 3 * count; i++) {
-		if (!nt_adjacency_is_narrow(&fast->adjacency) && !(cursors[ids[i]] & NT_CURSOR_HUB))
-			NT_PREFETCH_TO_WRITE(nt_adjacency_entry(&fast->adjacency, cursors[ids[i]]));
-		for (int o = 0; o < 2; o++)
-			if (fast->records[o])
-				NT_PREFETCH_TO_WRITE(&fast->records[o][ids[i]]);
-	}
-}
-
-/* The cursors of a batch. */
-static inline NT_ALWAYS_INLINE void prefetch_cursors(const nt_fast *fast, const uint32_t *cursors,
-	size_t first, size_t end)
-{
-	const size_t count = end - first < NT_LANES ? end - first : NT_LANES;
-	uint32_t copy[3 * NT_LANES];
-	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
-	for (size_t i = 0; i < 3 * count; i++)
-		NT_PREFETCH_TO_WRITE(&cursors[ids[i]]);
-}
-
 #if WIDTH > 1
 typedef float lane_floats __attribute__((vector_size(4 * WIDTH)));
 #else
@@ -403,8 +343,7 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 	lanes_in in;
 	lanes_out out;
 	const float offset = nt_stored_v_offset(fast->solve->mesh);
-	const bool scattered = fast->scattered, direct = !fast->bins.cursors;
-	const uint32_t *cursors = direct ? fast->adjacency.cursors + range * fast->adjacency.vertex_count : NULL;
+	const bool scattered = fast->scattered;
 	for (size_t first = begin, count; first < end; first += count) {
 		count = end - first < NT_LANES ? end - first : NT_LANES;
 		if (first + count < end && (fast->flags[first + count] & NT_TRIANGLE_SECOND))
@@ -414,10 +353,8 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 		uint32_t copy[3 * NT_LANES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
 		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : whole_lanes(count), in.row);
-		if (direct && fast->tail.batches)
+		if (!fast->bins.cursors && fast->tail.batches)
 			note_near(&fast->tail, &in, first, count);
-		if (scattered && direct)
-			prefetch_places(fast, cursors, ids, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 1);
 		if (fast->wants_more)
@@ -426,8 +363,6 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 			solve_lanes_plain(&in, &out, offset, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 2);
-		if (scattered && direct)
-			prefetch_cursors(fast, cursors, first + count, end);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
 		for (int missing; (missing = missing_record(fast, first, count)) >= 0;)
 			if (!make(fast, missing, context))

@@ -6,7 +6,7 @@
 #ifndef NT_TANGENT_FAST_FAN_LANES_H
 #define NT_TANGENT_FAST_FAN_LANES_H
 
-#include "tangent/fast/lane_sets.h"
+#include "tangent/fast/turn.h"
 #include "topology/adjacency.h"
 
 /* The degree of a hub, whose fans are not looked at; more fans than a vertex has. */
@@ -19,6 +19,18 @@
 #else
 #define UNROLL NT_UNROLL(8)
 #endif
+
+/* The 16-bit halves in which a and b are the same: all bits of such a half, 0 in the others. */
+static inline lanes same_halves(lanes a, lanes b)
+{
+#if WIDTH > 1
+	typedef uint16_t lane_halves __attribute__((vector_size(4 * WIDTH)));
+	return (lanes)((lane_halves)a == (lane_halves)b);
+#else
+	const lanes other = a ^ b;
+	return LANES_WHERE((other & 0xffff) == 0) >> 16 | LANES_WHERE(other >> 16 == 0) << 16;
+#endif
+}
 
 /* Entries of vertices that follow one another, from the first one's first: wide or narrow ones. */
 typedef struct vertex_entries {
@@ -90,8 +102,8 @@ static inline NT_ALWAYS_INLINE lanes count_components(lanes linked[NT_FAN_DEPTH]
 		const lanes mine = linked[a];
 		UNROLL
 		for (uint32_t b = a + 1; b < depth; b++)
-			linked[b] = with_bits(linked[b], having_bit(mine, unit << b), mine);
-		count = one_more_without(count, mine, unit * ((1u << depth) - (2u << a)) | voids);
+			linked[b] |= LANES_WHERE((mine & unit << b) != 0) & mine;
+		count -= LANES_WHERE((mine & (unit * ((1u << depth) - (2u << a)) | voids)) == 0);
 	}
 	return count;
 }
@@ -110,7 +122,7 @@ static inline NT_ALWAYS_INLINE lanes count_wide_fans_of(vertex_entries entries, 
 	lanes linked[NT_FAN_DEPTH];
 	lanes halves[NT_FAN_DEPTH]; /* those of next and of previous in which vertices differ most, without
 	                               orientation */
-	half_set distinct = ALL_HALVES;
+	lanes distinct = ~(lanes){0};
 	UNROLL
 	for (uint32_t k = 0; k < depth; k++) {
 		load_corners(entries, k, degree, mask, &next[k], &previous[k]);
@@ -120,17 +132,17 @@ static inline NT_ALWAYS_INLINE lanes count_wide_fans_of(vertex_entries entries, 
 	/* links across shared edges; edges whose low halves differ are not the same */
 	UNROLL
 	for (uint32_t b = 0; b < depth; b++) {
-		half_set from_earlier = ALL_HALVES; /* short chains: one for all took 15 to 40 cycles more a block */
+		lanes from_earlier = ~(lanes){0}; /* short chains: one for all took 15 to 40 cycles more a block */
 		UNROLL
 		for (uint32_t a = 0; a < b; a++) {
-			const lane_set apart = differ(differ(ALL_LANES, next[a], previous[b]), next[b], previous[a]);
-			linked[a] = without_bit(linked[a], apart, 1u << b);
-			from_earlier = halves_differ(from_earlier, halves[a], halves[b]);
+			const lanes apart = LANES_WHERE(next[a] != previous[b]) & LANES_WHERE(next[b] != previous[a]);
+			linked[a] &= ~(apart & 1u << b);
+			from_earlier &= ~same_halves(halves[a], halves[b]);
 		}
-		distinct = common_halves(distinct, from_earlier);
+		distinct &= from_earlier;
 	}
 	const lanes count = count_components(linked, depth, 1, NT_ENTRY_VOID);
-	return all_halves(distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
+	return !any_lane(~distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
 }
 
 /* The same of narrow entries, as halves of lanes: next and previous of one corner are compared with previous and next
@@ -141,7 +153,7 @@ static inline NT_ALWAYS_INLINE lanes count_narrow_fans_of(vertex_entries entries
 	static const uint32_t both_halves = 0x10001, voids = 0x10001 * (NT_ENTRY_VOID >> 16);
 	lanes entry[NT_FAN_DEPTH], plain[NT_FAN_DEPTH]; /* plain: without orientation */
 	lanes linked[NT_FAN_DEPTH];
-	half_set distinct = ALL_HALVES;
+	lanes distinct = ~(lanes){0};
 	const lanes mask_of_halves = (mask & 0xffff0000u) | mask >> 16;
 	UNROLL
 	for (uint32_t k = 0; k < depth; k++) {
@@ -156,16 +168,16 @@ static inline NT_ALWAYS_INLINE lanes count_narrow_fans_of(vertex_entries entries
 	UNROLL
 	for (uint32_t b = 1; b < depth; b++) {
 		const lanes other_way = entry[b] << 16 | entry[b] >> 16;
-		half_set from_others = ALL_HALVES; /* short chains, as above */
+		lanes from_others = ~(lanes){0}; /* short chains, as above */
 		UNROLL
 		for (uint32_t a = 0; a < b; a++) {
-			linked[a] = with_bit_where_same(linked[a], entry[a], other_way, both_halves << b);
-			from_others = halves_differ(from_others, plain[a], plain[b]);
+			linked[a] |= same_halves(entry[a], other_way) & both_halves << b;
+			from_others &= ~same_halves(plain[a], plain[b]);
 		}
-		distinct = common_halves(distinct, from_others);
+		distinct &= from_others;
 	}
 	const lanes count = count_components(linked, depth, both_halves, voids);
-	return all_halves(distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
+	return !any_lane(~distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
 }
 
 static inline NT_ALWAYS_INLINE lanes count_fans_of(vertex_entries entries, const uint32_t depth,

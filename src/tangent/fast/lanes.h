@@ -10,7 +10,6 @@
 #include <string.h>
 #include "tangent/fast/corner_lanes.h"
 #include "tangent/fast/frame_lanes.h"
-#include "tangent/fast/lane_sets.h"
 
 /* Corner k of 16 triangles. */
 static inline NT_ALWAYS_INLINE corner_lanes corner_of(const lanes_in *in,

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
-#include "tangent/fast/lane_sets.h"
+#include "tangent/fast/turn.h"
 #include "tangent/fast/parts.h"
 #include "tangent/usable.h"
 

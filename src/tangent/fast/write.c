@@ -323,23 +323,8 @@ static void copy_corner(const nt_solve *solve, size_t to, size_t from)
 		memcpy(solve->magnitudes + 2 * to, solve->magnitudes + 2 * from, 2 * sizeof(float));
 }
 
-/* What a corner of a degenerate triangle has to be copied for, by the vertex's records: nothing where these have been
- * written; a result of complex.c (COMPLEX); or that of the orientation that comes first (COPY). */
-static unsigned copy_reason(const nt_fast *fast, uint32_t vertex)
-{
-	if (!NT_FAST_PATHS)
-		return NT_TRIANGLE_COPY;
-	uint32_t state[2] = {NT_RESULT_NONE, NT_RESULT_NONE};
-	for (int o = 0; o < 2; o++)
-		if (fast->records[o])
-			state[o] = nt_fast_record(fast, o, vertex)->state;
-	if ((state[0] | state[1]) & NT_RESULT_COMPLEX)
-		return NT_TRIANGLE_COMPLEX;
-	return (state[0] == NT_RESULT_NONE || state[1] == NT_RESULT_NONE) ? 0 : NT_TRIANGLE_COPY;
-}
-
 /* The first corners, among the sound triangles, of the vertices of all triangles that copy: [vertex_count], UINT32_MAX
- * where there is none, or where there is nothing to copy. Those of other vertices are not there. */
+ * where there is none. Those of other vertices are not there. */
 static uint32_t *find_first_corners(const nt_fast *fast)
 {
 	uint32_t *first = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *first);
@@ -348,21 +333,14 @@ static uint32_t *find_first_corners(const nt_fast *fast)
 		return NULL;
 	memset(wanted, 0, fast->vertex_count);
 	size_t left = 0;
-	unsigned reasons = 0;
 	for (size_t t = next_copy(fast, 0); t < fast->triangle_count; t = next_copy(fast, t + 1))
 		for (size_t i = 3 * t; i < 3 * t + 3; i++) {
 			const uint32_t v = nt_fast_vertex(fast, i);
-			const unsigned reason = copy_reason(fast, v);
-			left += reason && !wanted[v];
-			wanted[v] = reason != 0;
-			reasons |= reason;
+			left += !wanted[v];
+			wanted[v] = true;
 			first[v] = UINT32_MAX;
 		}
-	/* sound triangles with a complex vertex have the flag */
-	const bool among_complex = !(reasons & NT_TRIANGLE_COPY);
 	for (size_t t = 0; left > 0 && t < fast->triangle_count; t++) {
-		if (among_complex && (t = nt_fast_next_flagged(fast, t, NT_TRIANGLE_COMPLEX)) == fast->triangle_count)
-			break;
 		uint32_t copy[3];
 		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
 		if (!(wanted[v[0]] | wanted[v[1]] | wanted[v[2]]) || fast->flags[t] & NT_TRIANGLE_DEGENERATE)
