@@ -249,7 +249,7 @@ static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode)
 static nt_status make_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, unsigned threads, nt_error *error)
 {
 	/* a glTF keeps the normals that it has, unless others are asked for */
-	const bool keeps = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
+	const bool keeps = nt_format_is_gltf(scene->format);
 	nt_status status = keeps ? NT_OK : nt_mark_directionless(scene, mesh, threads);
 	if (!status)
 		status = make_lacking(scene, mesh, mode);

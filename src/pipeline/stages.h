@@ -35,8 +35,8 @@ typedef struct nt_tasks {
 nt_status nt_tasks_do(const nt_tasks *tasks, nt_error *error);
 
 /* Makes the normals that meshes lack (all of them when `mode` says replace); vertices whose corners get
- * different normals are split, copies appended. Sets mesh->normals_made where something was made. Then gives each mesh
- * solve_normals where its normals are not of unit length. */
+ * different normals are split, copies appended. Sets mesh->normals_made where something was made. Then makes
+ * unit what is not: see unit_normals.c. */
 nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, unsigned threads, nt_error *error);
 
 /* Solves and splits every mesh whose decision says so; counts and findings go to the summary. Large
@@ -142,7 +142,7 @@ nt_status nt_find_halves(nt_scene *scene, nt_mesh *mesh, nt_quads choice, unsign
  * NT_ERROR_MEMORY. */
 nt_status nt_mark_directionless(nt_scene *scene, nt_mesh *mesh, unsigned threads);
 
-/* Makes mesh->solve_normals where normals are not of unit length. */
+/* Makes normals unit that are not: in mesh->solve_normals if it is a glTF, which keeps those that it has. */
 nt_status nt_make_unit_normals(nt_scene *scene, nt_mesh *mesh, unsigned threads);
 
 #endif

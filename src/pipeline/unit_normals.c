@@ -3,11 +3,11 @@
  * Unit normals, for the stage that makes normals: the one normal of a vertex is what is written, made unit, and
  * tangents have to lie across that. Most meshes have nothing but normals of unit length and are only looked at.
  *
- * A length is 1 where |n|^2 is within 2^-11 of it: such normals are used as they are, so that rounding them anew
- * changes no tangent. Others are made unit for the solve, here and in the same way for every format; the writers of
- * new documents store them unit, and a glTF that is made from a glTF keeps what it has. One without a
- * direction counts as lacking where the output gets new normals; in a glTF it stays, and tangents are made
- * for the smooth normal of the faces around it.
+ * A length is 1 if |n|^2 is within 2^-11 of it: such normals are used as they are, so that rounding them again
+ * changes no tangent. Others are made unit, here and in the same way for every format. The normals that are solved are
+ * those that are written; but a glTF that is made from a glTF keeps what it has, and so does a PLY whose normals are
+ * integers. One without a direction counts as lacking if the output gets new normals; in a glTF it stays, and tangents
+ * are made for the smooth normal of the faces around it.
  */
 #include "pipeline/stages.h"
 
@@ -88,13 +88,13 @@ static float (*make_smooth(const nt_mesh *mesh))[4]
 }
 
 /* Vertices without a direction take the smooth normal of their first corner. */
-static nt_status replace_directionless(nt_mesh *mesh)
+static nt_status replace_directionless(nt_mesh *mesh, float *normals)
 {
 	float (*corners)[4] = make_smooth(mesh);
 	if (!corners)
 		return NT_ERROR_MEMORY;
 	for (size_t c = 0; c < mesh->corner_count; c++) {
-		float *n = mesh->solve_normals + 3 * (mesh->indices ? mesh->indices[c] : c);
+		float *n = normals + 3 * (mesh->indices ? mesh->indices[c] : c);
 		if (has_direction(n))
 			continue;
 		memcpy(n, corners[c], 3 * sizeof *n);
@@ -108,13 +108,13 @@ nt_status nt_make_unit_normals(nt_scene *scene, nt_mesh *mesh, unsigned threads)
 {
 	if (!has_odd(mesh, threads))
 		return NT_OK;
-	mesh->solve_normals = nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->vertex_count, 3 * sizeof(float));
-	if (!mesh->solve_normals)
+	float *normals = nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->vertex_count, 3 * sizeof *normals);
+	if (!normals)
 		return NT_ERROR_MEMORY;
-	memcpy(mesh->solve_normals, mesh->normals, mesh->vertex_count * 3 * sizeof(float));
+	memcpy(normals, mesh->normals, mesh->vertex_count * 3 * sizeof *normals);
 	size_t directionless = 0;
 	for (size_t v = 0; v < mesh->vertex_count; v++) {
-		float *n = mesh->solve_normals + 3 * v;
+		float *n = normals + 3 * v;
 		nt_dvec3 d = nt_dvec3_load(n);
 		if (nt_is_unit_normal(n))
 			continue;
@@ -125,5 +125,6 @@ nt_status nt_make_unit_normals(nt_scene *scene, nt_mesh *mesh, unsigned threads)
 		nt_dvec3_store(d, n);
 		mesh->scaled_normals++;
 	}
-	return directionless ? replace_directionless(mesh) : NT_OK;
+	*(nt_format_is_gltf(scene->format) ? &mesh->solve_normals : &mesh->normals) = normals;
+	return directionless ? replace_directionless(mesh, normals) : NT_OK;
 }

@@ -34,6 +34,12 @@ static bool is_written(const nt_mesh *mesh)
 	return mesh->triangles && mesh->positions && mesh->face_count > 0;
 }
 
+/* The normals that tangents are made for. */
+static const float *normals_of(const nt_mesh *mesh)
+{
+	return mesh->solve_normals ? mesh->solve_normals : mesh->normals;
+}
+
 static size_t vertices_of(const nt_mesh *mesh)
 {
 	return mesh->vertex_count + mesh->split.source_count;
@@ -184,7 +190,7 @@ static nt_status put_vertex(ply_output *out, const layout *l, const placement *p
 		return fail_not_finite(mesh, "position", v, are_finite(mesh->positions + 3 * v, 3), error);
 	ply_put_floats(out, position, 3);
 	if (mesh->normals)
-		place_normal(p, mesh->normals + 3 * v, normal);
+		place_normal(p, normals_of(mesh) + 3 * v, normal);
 	if (!are_finite(normal, 3))
 		return fail_not_finite(mesh, "normal", v, false, error);
 	if (l->normals)

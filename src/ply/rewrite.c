@@ -585,6 +585,19 @@ static nt_status write_changed(plan *p, bool bitangents)
 	return write_body(p);
 }
 
+/* Whether the vertices' normals are floats, which hold unit vectors. */
+static bool has_float_normals(const ply_element *vertex)
+{
+	static const char *const names[] = {"nx", "ny", "nz"};
+	bool floats = true;
+	for (size_t i = 0; i < 3; i++) {
+		const int found = ply_find_property(vertex, names[i]);
+		floats &= found != PLY_NO_PROPERTY && !vertex->properties[found].list &&
+			vertex->properties[found].type >= PLY_FLOAT32;
+	}
+	return floats;
+}
+
 nt_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply_output *out,
 	nt_error *error)
 {
@@ -593,7 +606,7 @@ nt_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply
 	const ply_header *header = &source->header;
 	const unsigned char *body = scene->bytes + header->body;
 	plan p = {.scene = scene, .mesh = mesh, .source = source, .out = out, .error = error,
-		.new_normals = mesh->normals_made,
+		.new_normals = mesh->normals_made || (mesh->scaled_normals && has_float_normals(source->vertex)),
 		.new_tangents = mesh->split.vertex_tangents != NULL,
 		.cursor = {.begin = scene->bytes, .at = body, .end = scene->bytes + scene->byte_count,
 			.body = body, .body_line = header->body_line, .encoding = header->encoding}};

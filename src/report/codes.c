@@ -195,8 +195,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"an OBJ triangle of corners like 1/1/1 without vn"),
 	ROW(NORMALS_SCALED, INFO, "i-i", LOOK, NULL, "{count} {normal was|normals were} made unit for the tangents",
 		"The length differs from 1 by more than 2^-12. Tangents lie across the unit normal, which is what "
-		"renderers make of it. An OBJ's or PLY's normals are stored unit in a new glTF, a glTF keeps "
-		"those that it has.",
+		"renderers make of it. The output has the unit normal too, but a glTF that is made from a glTF, or a "
+		"PLY from a PLY whose normals are integers, keeps those that it has.",
 		"Harmless. To silence it, export unit normals.",
 		"an OBJ triangle with \"vn 0 0 .5\""),
 	ROW(REFERENCE_LOST, WARNING, "w--", LOOK, NULL,

@@ -215,9 +215,9 @@ typedef struct nt_mesh {
 	size_t vertex_bytes;     /* of a vertex with all its attributes and a tangent, as it is stored; 0: not known */
 	float *positions;        /* [vertex_count][3] */
 	float *normals;          /* [vertex_count][3]; NULL: none */
-	float *solve_normals;    /* [vertex_count][3] of unit length: what tangents are made for, where normals are
-	                            not; NULL: normals themselves */
-	size_t scaled_normals;   /* of them, those whose normal has another length */
+	float *solve_normals;    /* [vertex_count][3] of unit length: what tangents are made for, if normals are
+	                            not and stay; NULL: normals themselves */
+	size_t scaled_normals;   /* normals that were made unit, there or in their place */
 	size_t replaced_normals; /* and those whose normal has no direction */
 	float *texcoords;        /* [vertex_count][2], v up; NULL: none */
 	float *solve_texcoords;  /* [vertex_count][2] as a texture transform turns and scales them: what
