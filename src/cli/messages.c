@@ -85,7 +85,7 @@ static void append_command(nt_buffer *out, const nt_finding *finding, nt_severit
 {
 	const char *repair = finding->repair ? finding->repair : nt_code_info(finding->code)->repair;
 	const bool in_place = output && strcmp(file, output) == 0;
-	if (repair && (severity > NT_SEVERITY_INFO || is_proposed(finding->code)))
+	if (repair && !finding->stays && (severity > NT_SEVERITY_INFO || is_proposed(finding->code)))
 		nt_command_text(repair, file, in_place ? NULL : output, out);
 }
 

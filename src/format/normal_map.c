@@ -11,6 +11,7 @@
 #include "gltf/document.h"
 #include "gltf/view.h"
 #include "image/find.h"
+#include "image/image.h"
 
 /* What is wrong with a map takes it away, and no more; its bytes stay NULL. */
 static nt_status without_map(nt_status status)
@@ -122,10 +123,18 @@ static const nt_json_value *info_of(const nt_gltf *document, const nt_mesh *mesh
 			"clearcoatNormalTexture");
 }
 
-static const nt_json_value *image_of(const nt_gltf *document, const nt_mesh *mesh, enum nt_slot slot)
+static const nt_json_value *image_of(const nt_gltf *document, const nt_mesh *mesh, enum nt_slot slot,
+	nt_normal_map *map)
 {
 	const nt_json_value *texture = element(nt_gltf_root_member(document, "textures"),
 		nt_json_find(info_of(document, mesh, slot), "index"));
+	const nt_json_value *extensions = nt_json_find(texture, "extensions");
+	uint64_t number = 0;
+	nt_json_get_uint64(source_of(texture), &number);
+	map->image = (uint32_t)number;
+	map->turnable = true;
+	for (nt_image_type type = NT_IMAGE_KTX2; type <= NT_IMAGE_WEBP; type++)
+		map->turnable &= !nt_json_find(extensions, nt_image_extension(type));
 	return element(nt_gltf_root_member(document, "images"), source_of(texture));
 }
 
@@ -212,22 +221,24 @@ void nt_normal_map_transform(const nt_scene *scene, const nt_mesh *mesh, enum nt
 /* It has bytes and a type, or nothing. */
 static void settle(nt_normal_map *map)
 {
-	if (map->bytes)
+	if (map->bytes) {
 		map->type = nt_image_type_of_bytes(map->bytes, map->size);
-	else
+		map->turnable &= nt_image_is_decoded(map->type);
+	} else {
 		nt_normal_map_close(map);
+	}
 }
 
 nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot,
 	const nt_image_places *searched, nt_error *error)
 {
-	*map = (nt_normal_map){0};
+	*map = (nt_normal_map){.turnable = true};
 	nt_status status = NT_OK;
 	const bool gltf = nt_format_is_gltf(scene->format);
 	if (!gltf && slot != NT_SLOT_CLEARCOAT_NORMAL)
 		status = open_of_materials(map, scene, mesh, slot, searched, error);
 	else if (gltf && scene->source && (slot || set_of(info_of(scene->source, mesh, slot)) == mesh->texcoord_set))
-		status = open_of_document(map, scene->source, image_of(scene->source, mesh, slot), error);
+		status = open_of_document(map, scene->source, image_of(scene->source, mesh, slot, map), error);
 	settle(map);
 	return status;
 }

@@ -16,6 +16,8 @@ typedef struct nt_normal_map {
 	const unsigned char *bytes;
 	size_t size;
 	nt_image_type type;
+	uint32_t image;         /* of a glTF: its number */
+	bool turnable;          /* --flip-green turns it: a PNG or JPEG, of a glTF without another form beside it */
 	uint64_t identity[2];   /* which image it is: equal for two meshes that share it */
 	nt_file file;           /* owned, where it is a file */
 	char *path;             /* the same */

@@ -109,12 +109,15 @@ static void find_use(turning *t, uint32_t material, int slot)
 	if (!get_index(number_at(t, material, slot), t->texture_count, &u.texture))
 		return;
 	const nt_json_value *texture = texture_at(t, u.texture);
+	const bool has_source = get_index(nt_json_find(texture, "source"), t->image_count, &u.image);
+	if (t->how->images && (!has_source || u.image >= t->how->image_count || !t->how->images[u.image]))
+		return;
 	for (nt_image_type type = NT_IMAGE_KTX2; type <= NT_IMAGE_WEBP; type++)
 		if (nt_json_find(nt_json_find(texture, "extensions"), nt_image_extension(type))) {
 			tell(t, &u, NT_CODE_NMAP_NOT_TURNED, nt_image_type_name(type));
 			return;
 		}
-	if (!get_index(nt_json_find(texture, "source"), t->image_count, &u.image))
+	if (!has_source)
 		return;
 	u.clamp = clamps(t, texture);
 	if (!t->job_of[u.image]) {

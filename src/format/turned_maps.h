@@ -11,6 +11,8 @@
 
 typedef struct nt_turning {
 	nt_flip flip;        /* of those that are normal maps */
+	const bool *images;  /* [image_count] which images may be; NULL: all */
+	size_t image_count;
 	bool heights;        /* grey images are height maps */
 	double height;       /* see image/heights.h */
 	uint64_t max_pixels; /* see nt_check_pixels() */

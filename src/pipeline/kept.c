@@ -6,6 +6,7 @@
  */
 #include "pipeline/stages.h"
 
+#include <stdio.h>
 #include <string.h>
 #include "base/parallel.h"
 #include "report/quads.h"
@@ -112,8 +113,9 @@ static size_t count_faulty(const nt_mesh *mesh, nt_arena *arena, unsigned thread
 }
 
 /* Looks at one mesh as if it were alone; `memory` is empty before and after. */
-static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh mesh, nt_arena *memory, nt_error *error)
+static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh *to, nt_arena *memory, nt_error *error)
 {
+	nt_mesh mesh = *to;
 	nt_scene own = *scene;
 	own.arena = *memory;
 	own.temporary = (nt_arena){0};
@@ -129,8 +131,10 @@ static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh mesh, n
 		nt_finding_add(&scene->findings, NT_CODE_TAN_EXISTING_BAD, nt_mesh_place(&mesh, &(nt_place){0}), faulty,
 			NULL);
 	if (wrong)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_KEPT_SIGN, nt_mesh_place(&mesh, &(nt_place){0}), wrong,
-			"%.3g %% of %zu", 100.0 * (double)wrong / (double)judged, judged);
+		nt_judge_w(&mesh);
+	to->signs = judged && !wrong ? NT_SIGN_RIGHT : mesh.signs;
+	to->wrong_w = wrong;
+	to->judged_w = judged;
 	*memory = own.arena;
 	nt_arena_clear(memory);
 	nt_arena_free(&own.temporary);
@@ -144,7 +148,23 @@ nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error)
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->mesh_count; i++)
 		if (nt_format_is_gltf(scene->format) && nt_mesh_is_kept_and_used(&scene->meshes[i]))
-			status = look_at(scene, tasks, scene->meshes[i], &memory, error);
+			status = look_at(scene, tasks, &scene->meshes[i], &memory, error);
 	nt_arena_free(&memory);
 	return status;
+}
+
+void nt_tell_kept(nt_scene *scene)
+{
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[i];
+		char detail[160];
+		if (!mesh->wrong_w || mesh->pair)
+			continue;
+		snprintf(detail, sizeof detail, "%.3g %% of %zu%s", 100.0 * (double)mesh->wrong_w /
+			(double)mesh->judged_w, mesh->judged_w, nt_doubt_text(mesh->doubt));
+		nt_finding_put(&scene->findings, (nt_finding){.code = NT_CODE_TAN_KEPT_SIGN, .count = mesh->wrong_w,
+			.detail = detail, .stays = mesh->halved,
+			.repair = mesh->doubt == NT_DOUBT_UNDECODABLE ? "--existing=replace" : NULL},
+			nt_mesh_place(mesh, &(nt_place){0}));
+	}
 }

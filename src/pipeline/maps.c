@@ -7,6 +7,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include "base/parallel.h"
 #include "format/normal_map.h"
 #include "image/examine.h"
@@ -15,8 +16,19 @@
 /* What --check-maps=auto decodes; how many images are open at a time. */
 enum { MOST_AUTO_BYTES = 16 << 20, MOST_OPEN = 16 };
 
-/* One image. */
+/* What is known of an image once it is closed. */
+typedef struct known_map {
+	uint64_t identity[2];
+	const nt_mesh *mesh;    /* the first that uses it */
+	const char *use;
+	nt_normal_facts *facts; /* of one whose green points down */
+	bool examined, decodable, turnable, paired;
+	nt_green green;
+} known_map;
+
+/* One image that is open. */
 typedef struct examined {
+	size_t number;       /* in the examination's maps */
 	nt_normal_map map;
 	const nt_mesh *mesh; /* the first that uses it */
 	const char *use;     /* what a glTF's material calls it; "" of others */
@@ -30,8 +42,9 @@ typedef struct examination {
 	nt_scene *scene;
 	const nt_settings *settings;
 	nt_hash_index known; /* identities of images */
-	uint64_t (*identities)[2];
+	known_map *maps;
 	size_t count, capacity;
+	bool told; /* what is found; else only pairs are */
 	uint64_t pixels, bytes; /* of images that are decoded, those of materials too */
 	examined open[MOST_OPEN];
 	size_t open_count;
@@ -39,7 +52,7 @@ typedef struct examination {
 
 static bool is_wanted(const examination *e, const nt_normal_map *map)
 {
-	return nt_image_is_decoded(map->type) &&
+	return nt_image_is_decoded(map->type) && e->settings->check_maps != NT_CHECK_MAPS_OFF &&
 	       (e->settings->check_maps == NT_CHECK_MAPS_ON || map->size <= MOST_AUTO_BYTES);
 }
 
@@ -57,6 +70,19 @@ static void examine(void *context, size_t item, unsigned slot)
 
 /* ---- what is to be said ---- */
 
+static void tell_green(nt_finding_list *findings, nt_code code, const nt_place *place, const char *use,
+	const nt_normal_facts *f, bool stays)
+{
+	char detail[128];
+	int8_t *votes = nt_arena_alloc(&findings->arena, sizeof f->votes, 1);
+	snprintf(detail, sizeof detail, "%scorrelation %.2f, %.0f %% agree; %zu blocks say up, %zu down", use,
+		f->correlation, 100 * f->agreement, f->blocks_up, f->blocks_down);
+	findings->failed |= !votes;
+	if (votes)
+		nt_finding_put(findings, (nt_finding){.code = code, .count = 1, .detail = detail, .stays = stays,
+			.votes = memcpy(votes, f->votes, sizeof f->votes), .votes_side = NT_GREEN_BLOCKS}, place);
+}
+
 static void tell_facts(nt_finding_list *findings, const nt_place *place, const char *use, const nt_normal_facts *f)
 {
 	if (f->constant)
@@ -69,14 +95,8 @@ static void tell_facts(nt_finding_list *findings, const nt_place *place, const c
 			100 * f->blue_below);
 	if (f->not_unit > 0.01)
 		nt_finding_add(findings, NT_CODE_NMAP_NOT_UNIT, place, 1, "%.2g %% of the pixels", 100 * f->not_unit);
-	if (f->green == NT_GREEN_DOWN || f->green == NT_GREEN_MIXED) {
-		char detail[128];
-		snprintf(detail, sizeof detail, "%scorrelation %.2f, %.0f %% agree; %zu blocks say up, %zu down",
-			use, f->correlation, 100 * f->agreement, f->blocks_up, f->blocks_down);
-		nt_finding_add_votes(findings,
-			f->green == NT_GREEN_DOWN ? NT_CODE_NMAP_GREEN_DOWN : NT_CODE_NMAP_GREEN_MIXED, place, detail,
-			f->votes, NT_GREEN_BLOCKS);
-	}
+	if (f->green == NT_GREEN_MIXED)
+		tell_green(findings, NT_CODE_NMAP_GREEN_MIXED, place, use, f, false);
 	if (f->banded > 0.5)
 		nt_finding_add(findings, NT_CODE_NMAP_BANDED, place, 1, "%.0f %% of the slopes", 100 * f->banded);
 }
@@ -105,7 +125,42 @@ static void tell(const examination *e, const examined *x)
 		nt_finding_add(findings, NT_CODE_NMAP_JPEG, place, 1, NULL);
 }
 
+/* Maps whose green points down, but for those of pairs and those that are turned. */
+static void tell_down(const examination *e)
+{
+	const nt_scene *scene = e->scene;
+	const bool turns = e->settings->flip_green != NT_FLIP_OFF && (!e->settings->check || e->settings->converts);
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		for (int slot = 0; slot < 2; slot++) {
+			const nt_mesh_map *map = &scene->meshes[i].normal_maps[slot];
+			if (map->number && scene->meshes[i].pair)
+				e->maps[map->number - 1].paired = true;
+		}
+	for (size_t i = 0; i < e->count; i++) {
+		const known_map *map = &e->maps[i];
+		if (map->facts && !map->paired && !(turns && map->turnable))
+			tell_green(&e->scene->findings, NT_CODE_NMAP_GREEN_DOWN,
+				nt_mesh_place(map->mesh, &(nt_place){0}), map->use, map->facts, !map->turnable);
+	}
+}
+
 /* ---- the images ---- */
+
+/* What stays of an image; memory for its facts can be refused. */
+static bool keep_facts(examination *e, const examined *x)
+{
+	known_map *map = &e->maps[x->number];
+	map->examined = x->facts.heights || x->decoded;
+	map->green = x->decoded ? x->facts.green : NT_GREEN_UNKNOWN;
+	map->decodable = nt_image_is_decoded(x->map.type) && !x->error.status;
+	map->turnable = x->map.turnable;
+	if (map->green != NT_GREEN_DOWN)
+		return true;
+	map->facts = nt_alloc(1, sizeof *map->facts);
+	if (map->facts)
+		*map->facts = x->facts;
+	return map->facts != NULL;
+}
 
 static nt_status flush(examination *e, nt_error *error)
 {
@@ -117,7 +172,9 @@ static nt_status flush(examination *e, nt_error *error)
 		if (failure->status == NT_ERROR_MEMORY || (failure->status == NT_ERROR_MODULE && wanted)) {
 			*error = *failure;
 			status = failure->status;
-		} else {
+		} else if (!keep_facts(e, &e->open[i])) {
+			status = nt_fail_memory(error);
+		} else if (e->told) {
 			tell(e, &e->open[i]);
 		}
 		nt_normal_map_close(&e->open[i].map);
@@ -126,28 +183,28 @@ static nt_status flush(examination *e, nt_error *error)
 	return status;
 }
 
-static bool is_known(const examination *e, const uint64_t identity[2], uint64_t hash)
+/* The number of a map; UINT32_MAX: it is new. */
+static uint32_t find_known(const examination *e, const uint64_t identity[2], uint64_t hash)
 {
 	size_t at = NT_HASH_BEGIN;
 	for (uint32_t i; (i = nt_hash_index_next(&e->known, hash, &at)) != UINT32_MAX;)
-		if (e->identities[i][0] == identity[0] && e->identities[i][1] == identity[1])
-			return true;
-	return false;
+		if (e->maps[i].identity[0] == identity[0] && e->maps[i].identity[1] == identity[1])
+			return i;
+	return UINT32_MAX;
 }
 
-static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot, nt_normal_map *map, nt_error *error)
+static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot, nt_normal_map *map, uint32_t number,
+	uint64_t hash, nt_error *error)
 {
-	const uint64_t hash = nt_hash_bytes(0, map->identity, sizeof map->identity);
-	if (!map->bytes || is_known(e, map->identity, hash)) {
-		nt_normal_map_close(map);
-		return NT_OK;
-	}
-	if (!nt_grow((void **)&e->identities, &e->capacity, e->count + 1, sizeof *e->identities) ||
-		!nt_hash_index_add(&e->known, hash, (uint32_t)e->count)) {
+	uint32_t sides[2];
+	if (!nt_grow((void **)&e->maps, &e->capacity, number + 1, sizeof *e->maps) ||
+		!nt_hash_index_add(&e->known, hash, number)) {
 		nt_normal_map_close(map);
 		return nt_fail_memory(error);
 	}
-	uint32_t sides[2];
+	const char *use = !nt_format_is_gltf(e->scene->format) ? ""
+		: slot == NT_SLOT_NORMAL ? "normalTexture, " : "clearcoatNormalTexture, ";
+	e->maps[e->count++] = (known_map){.identity = {map->identity[0], map->identity[1]}, .mesh = mesh, .use = use};
 	if (is_wanted(e, map) && nt_image_size(map->bytes, map->size, sides)) {
 		e->pixels += (uint64_t)sides[0] * sides[1];
 		e->bytes += map->size;
@@ -157,16 +214,12 @@ static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot,
 		nt_normal_map_close(map);
 		return status;
 	}
-	e->identities[e->count][0] = map->identity[0];
-	e->identities[e->count++][1] = map->identity[1];
-	const char *use = !nt_format_is_gltf(e->scene->format) ? ""
-		: slot == NT_SLOT_NORMAL ? "normalTexture, " : "clearcoatNormalTexture, ";
-	e->open[e->open_count++] = (examined){.map = *map, .mesh = mesh, .use = use};
+	e->open[e->open_count++] = (examined){.number = number, .map = *map, .mesh = mesh, .use = use};
 	return e->open_count == MOST_OPEN ? flush(e, error) : NT_OK;
 }
 
 /* The map of a slot, if the mesh has it. */
-static nt_status take_map(examination *e, const nt_mesh *mesh, enum nt_slot slot, nt_error *error)
+static nt_status take_map(examination *e, nt_mesh *mesh, enum nt_slot slot, nt_error *error)
 {
 	const nt_image_places searched = {.folders = e->settings->texture_paths,
 		.folder_count = e->settings->texture_path_count,
@@ -175,21 +228,38 @@ static nt_status take_map(examination *e, const nt_mesh *mesh, enum nt_slot slot
 	nt_normal_map map;
 	if (!(mesh->slots & slot))
 		return NT_OK;
-	const nt_status status = nt_normal_map_open(&map, e->scene, mesh, slot, &searched, error);
-	return status ? status : add_map(e, mesh, slot, &map, error);
+	nt_status status = nt_normal_map_open(&map, e->scene, mesh, slot, &searched, error);
+	if (status || !map.bytes)
+		return status;
+	const uint64_t hash = nt_hash_bytes(0, map.identity, sizeof map.identity);
+	const uint32_t found = find_known(e, map.identity, hash);
+	const uint32_t number = found == UINT32_MAX ? (uint32_t)e->count : found;
+	mesh->normal_maps[slot == NT_SLOT_CLEARCOAT_NORMAL] = (nt_mesh_map){.number = number + 1, .image = map.image};
+	if (found == UINT32_MAX)
+		return add_map(e, mesh, slot, &map, number, hash, error);
+	nt_normal_map_close(&map);
+	return NT_OK;
 }
 
-nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, const nt_textures *textures, nt_error *error)
+/* Meshes get what is known of their maps. */
+static void share_facts(const examination *e)
 {
-	const bool wanted = settings->check_maps == NT_CHECK_MAPS_ON ||
-		(settings->check_maps == NT_CHECK_MAPS_AUTO && settings->report);
-	examination *e = wanted ? nt_calloc(1, sizeof *e) : NULL;
-	if (!e)
-		return wanted ? nt_fail_memory(error) : NT_OK;
-	e->scene = scene;
-	e->settings = settings;
-	if (textures)
-		e->pixels = nt_textures_pixels(textures, &e->bytes);
+	for (size_t i = 0; i < e->scene->mesh_count; i++)
+		for (int slot = 0; slot < 2; slot++) {
+			nt_mesh_map *map = &e->scene->meshes[i].normal_maps[slot];
+			if (!map->number)
+				continue;
+			const known_map *known = &e->maps[map->number - 1];
+			map->green = (uint8_t)known->green;
+			map->examined = known->examined;
+			map->decodable = known->decodable;
+			map->turnable = known->turnable;
+		}
+}
+
+static nt_status examine_all(examination *e, nt_error *error)
+{
+	nt_scene *scene = e->scene;
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < scene->mesh_count && !status; i++) {
 		status = take_map(e, &scene->meshes[i], NT_SLOT_NORMAL, error);
@@ -197,8 +267,36 @@ nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, const nt_t
 			status = take_map(e, &scene->meshes[i], NT_SLOT_CLEARCOAT_NORMAL, error);
 	}
 	const nt_status flushed = flush(e, error);
+	if (status || flushed)
+		return status ? status : flushed;
+	share_facts(e);
+	if (nt_format_is_gltf(scene->format) && nt_find_pairs(scene, e->settings, e->count))
+		return nt_fail_memory(error);
+	if (e->told)
+		tell_down(e);
+	return NT_OK;
+}
+
+nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, const nt_textures *textures, nt_error *error)
+{
+	const bool told = settings->check_maps == NT_CHECK_MAPS_ON ||
+		(settings->check_maps == NT_CHECK_MAPS_AUTO && settings->report);
+	examination *e = told || nt_any_inverted(scene) ? nt_calloc(1, sizeof *e) : NULL;
+	if (!e) {
+		nt_tell_kept(scene);
+		return told || nt_any_inverted(scene) ? nt_fail_memory(error) : NT_OK;
+	}
+	e->scene = scene;
+	e->settings = settings;
+	e->told = told;
+	if (textures)
+		e->pixels = nt_textures_pixels(textures, &e->bytes);
+	const nt_status status = examine_all(e, error);
+	nt_tell_kept(scene);
+	for (size_t i = 0; i < e->count; i++)
+		free(e->maps[i].facts);
 	nt_hash_index_free(&e->known);
-	free(e->identities);
+	free(e->maps);
 	free(e);
-	return status ? status : flushed;
+	return status;
 }

@@ -282,7 +282,8 @@ static nt_status turn_maps(run *r)
 	begin_stage(r, NT_STAGE_TEXTURES);
 	return nt_turned_maps_make(&r->scene, &(nt_turning){.flip = s->flip_green,
 		.heights = s->bump == NT_BUMP_HEIGHT, .height = nt_bump_height(s), .max_pixels = s->max_pixels,
-		.threads = s->threads}, &r->turned, r->error);
+		.images = r->fixes.images, .image_count = r->fixes.image_count, .threads = s->threads}, &r->turned,
+		r->error);
 }
 
 static nt_status run_stages(run *r)
@@ -388,6 +389,7 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 	}
 	nt_settings judged = *wished;
 	judged.check = true;
+	judged.converts = false;
 	judged.report = &options;
 	judged.check_maps = NT_CHECK_MAPS_ON;
 	judged.list_meshes = judged.digests = judged.in_place = judged.verify = judged.no_clobber = false;
@@ -399,7 +401,7 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 	nt_status status = make_report(r, run_stages(r));
 	r->output_path = output;
 	r->nowhere = false;
-	if (!status && nt_fixes_make(&r->fixes, r->summary->report))
+	if (!status && nt_fixes_make(&r->fixes, &r->scene, r->summary->report))
 		status = nt_fail_memory(r->error);
 	*fixed = *wished;
 	if (status) {

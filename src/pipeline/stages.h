@@ -67,7 +67,8 @@ nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *set
 nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const nt_textures *textures,
 	nt_summary *summary, nt_error *error);
 
-/* Examines normal maps, if settings->check_maps or a report wants that, and adds what is found. textures: what was
+/* Examines normal maps, if settings->check_maps, a report or a mesh with inverted w wants that, and adds what is found
+ * of them, and of tangents that are kept. textures: what was
  * decoded before; NULL: nothing. Returns NT_OK, NT_ERROR_IO, NT_ERROR_MEMORY or NT_ERROR_LIMIT. */
 nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, const nt_textures *textures, nt_error *error);
 
@@ -119,23 +120,35 @@ static inline bool nt_may_be_left(nt_status load)
 	return load != NT_ERROR_MEMORY && load != NT_ERROR_MISSING && load != NT_ERROR_IO;
 }
 
-/* kept.c, for tasks.c. Adds what is wrong with w of tangents that are kept and used. Returns NT_OK, NT_ERROR_MEMORY,
+/* kept.c, for tasks.c. Counts what is wrong with w of tangents that are kept and used, which nt_tell_kept() says once
+ * pairs are known. Returns NT_OK, NT_ERROR_MEMORY,
  * or NT_ERROR_MISSING or NT_ERROR_IO where their file cannot be opened. */
 nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error);
+void nt_tell_kept(nt_scene *scene);
+
+/* pairs.c. Sets mesh->signs of a loaded mesh with authored tangents and a normal map. */
+void nt_judge_w(nt_mesh *mesh);
+bool nt_any_inverted(const nt_scene *scene);
+
+/* Sets pair and doubted of meshes whose normal maps are known, of which there are map_count, and adds what is found.
+ * Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_find_pairs(nt_scene *scene, const nt_settings *settings, size_t map_count);
 
 /* fix.c. What --fix does, found by a check of the input. */
 typedef struct nt_fixes {
 	uint8_t *meshes; /* [mesh_count] their nt_mesh.fix */
 	size_t mesh_count;
+	bool *images; /* [image_count] of a glTF whose green is turned; NULL: of another format */
+	size_t image_count;
 	bool turns_maps;
 	size_t counts[NT_CODE_COUNT]; /* primitives and images by the code of the finding */
 } nt_fixes;
 
 /* *fixes is to be freed after failure too. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_fixes_make(nt_fixes *fixes, const nt_report *report);
+nt_status nt_fixes_make(nt_fixes *fixes, const nt_scene *scene, const nt_report *report);
 void nt_fixes_free(nt_fixes *fixes);
 
-/* halves.c. Decides which triangles of a mesh with normals are solved as quads. Returns NT_OK or NT_ERROR_MEMORY. */
+/* quads.c. Decides which triangles of a mesh with normals are solved as quads. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_find_halves(nt_scene *scene, nt_mesh *mesh, nt_quads choice, unsigned threads);
 
 /* unit_normals.c, for normals.c. Vertices whose normal has no direction lack it. Both return NT_OK or

@@ -121,6 +121,8 @@ static void load_small(void *context, size_t item, unsigned thread)
 	alone.temporary = own->temporary;
 	nt_status status = w->tasks->reader->load(&alone, mesh, &w->of_one, NULL);
 	if (!status && ahead)
+		nt_judge_w(mesh);
+	if (!status && ahead)
 		status = nt_make_unit_normals(&alone, mesh, 1);
 	if (!status && ahead)
 		status = nt_find_halves(&alone, mesh, w->tasks->settings->quads, 1);
@@ -217,6 +219,9 @@ static nt_status do_window(window *w)
 	t->begin_stage(t->run, NT_STAGE_DECODE);
 	if (t->reader->load)
 		status = load_meshes(w);
+	for (size_t i = 0; !status && i < w->scene.mesh_count; i++)
+		if (!nt_mesh_is_solved_ahead(&w->scene.meshes[i]))
+			nt_judge_w(&w->scene.meshes[i]);
 	t->begin_stage(t->run, NT_STAGE_NORMALS);
 	if (!status)
 		status = nt_stage_normals(&w->scene, t->settings->normals, t->settings->threads, w->error);

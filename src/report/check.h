@@ -72,6 +72,7 @@ typedef struct nt_tally {
 	nt_number numbers[NT_NUMBER_COUNT];
 	unsigned number_count;
 	uint32_t seam, island; /* one more than the index; 0: none */
+	const char *repair;    /* options that repair this one; NULL: those of the table */
 	double share;          /* of the mesh that it concerns; 0: as many triangles as it has occurrences */
 } nt_tally;
 

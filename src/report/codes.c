@@ -549,6 +549,14 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"too.",
 		"Repair them.",
 		"DamagedHelmet after gltfpack -gt, converted"),
+	ROW(TAN_GREEN_PAIR, INFO, "w--", LOOK, "--existing=repair --flip-green=auto",
+		"w is inverted on all triangles and green points down in the normal map, which cancel",
+		"The exporter turned both around (Unity's do). Renderers show the surface right; to repair one of the "
+		"two alone turns bumps into dents. It stands in the place of TAN_SIGN_MISMATCH and NMAP_GREEN_DOWN, "
+		"and only if all meshes over the map, and all maps of these meshes, agree. A warning if a conversion "
+		"changes one half.",
+		"Nothing. For a program that reads the map or the tangents alone, change both.",
+		"a glTF square with w = -1 and a map that was baked for DirectX"),
 	ROW(TAN_MADE_BY, INFO, "i--", CONVERT, "--existing=replace",
 		"the tangents are not those of MikkTSpace, which most maps are baked with",
 		"The input's tangents are compared with those of the methods that exporters and engines use, on "

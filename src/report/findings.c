@@ -170,7 +170,8 @@ static void add_finding(nt_check *check, nt_report_finding *finding, nt_severity
 		check->failed = true;
 		return;
 	}
-	finding->repair = repair_of(report, finding);
+	if (!finding->repair && !finding->stays)
+		finding->repair = repair_of(report, finding);
 	finding->order = report->finding_count;
 	report->findings[report->finding_count++] = *finding;
 }
@@ -192,6 +193,7 @@ static void report_tally(nt_check *check, const nt_tally *tally, nt_severity sev
 					    : fmin(1.0, (double)tally->count / (double)check->surface.triangle_count),
 		.box = tally->box,
 		.noted = NT_NONE,
+		.repair = tally->repair,
 		.seam = tally->seam ? tally->seam - 1 : NT_NONE,
 		.island = tally->island ? tally->island - 1 : NT_NONE,
 		.number_count = tally->number_count,
@@ -268,6 +270,8 @@ static void add_scene_finding(nt_check *check, const mesh_table *table, const nt
 	nt_report_finding finding = {.code = found->code,
 		.mesh = find_mesh(table, &found->place),
 		.count = found->count,
+		.repair = found->repair,
+		.stays = found->stays,
 		.share = 1.0,
 		.noted = noted,
 		.box = nt_box_empty(),

@@ -103,6 +103,7 @@ typedef struct nt_report_finding {
 	double share, code_share;
 	size_t alike;         /* meshes of this geometry that it holds for, the mesh itself included; 0: no mesh */
 	const char *message;  /* one sentence */
+	bool stays;           /* nothing here repairs it, whatever its code's row says */
 	const char *repair;   /* options with which nmtan repairs it: see nt_code_row; NULL: it cannot */
 	nt_place_view place;  /* texts in the report's arena */
 	nt_box box;           /* around all occurrences */

@@ -341,14 +341,20 @@ static nt_status check_signs(nt_check *check)
 	/* exporters disagree about texture transforms, and so do renderers: not an error */
 	const bool untransformed = st.untransformed > 0 && st.untransformed == st.wrong.count;
 	const bool slivers = share <= SLIVER_SHARE && st.wrong_area <= SLIVER_SHARE * check->total_area;
+	const bool judged = check->stored == NT_STORED_AUTHORED;
+	if (judged && check->mesh->pair)
+		return NT_OK; /* the map cancels it: TAN_GREEN_PAIR */
+	const nt_doubt doubt = judged ? check->mesh->doubt : NT_DOUBT_NONE;
+	st.wrong.repair = doubt == NT_DOUBT_UNDECODABLE ? "--existing=replace" : NULL;
 	nt_check_report_as(check, &st.wrong,
 		severity_of(check, untransformed || slivers ? NT_CODE_TAN_MIXED_W_TRIANGLE : NT_CODE_TAN_SIGN_MISMATCH),
-		"%.3g %% of %zu%s", 100.0 * share, st.checked,
+		"%.3g %% of %zu%s%s", 100.0 * share, st.checked,
 		untransformed	     ? ", they were made without the texture transform"
 		: 2 * st.by_t > st.wrong.count ? ", T is reversed with w: red is inverted, not green"
 		: st.by_w == st.checked ? ", the convention is inverted"
 		: st.by_w == 0	     ? ", the tangents are reversed too"
-				     : "");
+				     : "",
+		nt_doubt_text(doubt));
 	return NT_OK;
 }
 

@@ -38,7 +38,7 @@ bool nt_keep_place(nt_arena *arena, const nt_place_view *place, nt_place_view *k
 		keep_text(arena, place->object, &kept->object);
 }
 
-static void add_finding(nt_finding_list *list, nt_finding finding, const nt_place *place)
+void nt_finding_put(nt_finding_list *list, nt_finding finding, const nt_place *place)
 {
 	static const nt_place nowhere = {.offset = NT_NO_OFFSET};
 	finding.place = nt_view_place(place ? place : &nowhere);
@@ -71,14 +71,14 @@ void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, 
 		vsnprintf(detail, sizeof detail, detail_format, arguments);
 		va_end(arguments);
 	}
-	add_finding(list, (nt_finding){.code = code, .count = count, .detail = detail}, place);
+	nt_finding_put(list, (nt_finding){.code = code, .count = count, .detail = detail}, place);
 }
 
 void nt_finding_add_as(nt_finding_list *list, nt_code code, nt_severity severity, const nt_place *place,
 	const char *detail)
 {
-	add_finding(list, (nt_finding){.code = code, .severity = (uint8_t)(1 + severity), .count = 1, .detail = detail},
-		place);
+	nt_finding_put(list,
+		(nt_finding){.code = code, .severity = (uint8_t)(1 + severity), .count = 1, .detail = detail}, place);
 }
 
 void nt_finding_add_votes(nt_finding_list *list, nt_code code, const nt_place *place, const char *detail,
@@ -87,7 +87,7 @@ void nt_finding_add_votes(nt_finding_list *list, nt_code code, const nt_place *p
 	int8_t *copy = nt_arena_alloc(&list->arena, (size_t)side * side, sizeof *copy);
 	list->failed |= !copy;
 	if (copy)
-		add_finding(list, (nt_finding){.code = code, .count = 1, .detail = detail, .votes_side = side,
+		nt_finding_put(list, (nt_finding){.code = code, .count = 1, .detail = detail, .votes_side = side,
 			.votes = memcpy(copy, votes, (size_t)side * side)}, place);
 }
 

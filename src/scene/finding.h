@@ -108,6 +108,7 @@ typedef enum nt_code {
 	NT_CODE_TAN_EXISTING_REPAIRED,
 	NT_CODE_TAN_EXISTING_LEFT,
 	NT_CODE_TAN_KEPT_SIGN,
+	NT_CODE_TAN_GREEN_PAIR,
 	NT_CODE_TAN_MADE_BY,
 	NT_CODE_TAN_QUAD_SIGN,
 	NT_CODE_TAN_QUADS_LIKELY,
@@ -122,6 +123,7 @@ typedef struct nt_finding {
 	const char *detail;  /* the words that differ from case to case (a file name, a statement); may be
 	                        empty */
 	const char *repair;  /* options that repair this one; NULL: those of the table */
+	bool stays;          /* nothing here repairs this one, whatever the table says */
 	const int8_t *votes; /* [votes_side][votes_side] of a normal map's blocks: see image/examine.h; NULL: none */
 	unsigned votes_side;
 } nt_finding;
@@ -139,6 +141,9 @@ typedef struct nt_finding_list {
  * detail are the same. place and detail_format may be NULL. */
 void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, size_t count,
 	const char *detail_format, ...) NT_PRINTF(5, 6);
+
+/* The same of a finding whose members but for its place are set; texts are copied, `repair` is not. */
+void nt_finding_put(nt_finding_list *list, nt_finding finding, const nt_place *place);
 
 /* The same of one that is found alone, with another severity than the table's. */
 void nt_finding_add_as(nt_finding_list *list, nt_code code, nt_severity severity, const nt_place *place,

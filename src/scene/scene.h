@@ -174,6 +174,35 @@ typedef struct nt_mesh_plan {
 	bool temporary;          /* what it holds lies in scene->temporary, and is gone once the writer has merged it */
 } nt_mesh_plan;
 
+/* Whether w of authored tangents is that of the texture coordinates. */
+typedef enum nt_signs {
+	NT_SIGN_OPEN,     /* nobody has looked, or there are none */
+	NT_SIGN_NONE,     /* no triangle says */
+	NT_SIGN_RIGHT,    /* of some triangles at least */
+	NT_SIGN_INVERTED  /* of none, but for slivers, and T is not reversed as well */
+} nt_signs;
+
+/* Why it is not known whether a normal map cancels inverted w. */
+typedef enum nt_doubt { NT_DOUBT_NONE, NT_DOUBT_UNEXAMINED, NT_DOUBT_UNDECODABLE } nt_doubt;
+
+/* What a finding about inverted w says then. */
+static inline const char *nt_doubt_text(nt_doubt doubt)
+{
+	static const char *const texts[] = {"",
+		"; if green points down in its normal map, which was not examined, the two cancel",
+		"; if green points down in its normal map, which cannot be decoded here, the two cancel"};
+	return texts[doubt];
+}
+
+/* A normal map of a mesh, as far as it was examined. */
+typedef struct nt_mesh_map {
+	uint32_t number; /* one more than which of the scene's; 0: there is none, or it is not known */
+	uint32_t image;  /* of the glTF */
+	uint8_t green;   /* nt_green of image/examine.h */
+	bool examined, decodable; /* it was decoded; it could be */
+	bool turnable;   /* --flip-green turns it */
+} nt_mesh_map;
+
 typedef struct nt_mesh {
 	/* what it is called and where it stands */
 	const char *name;     /* object or mesh name; "" where there is none */
@@ -206,6 +235,14 @@ typedef struct nt_mesh {
 	uint8_t fix;             /* nt_existing of this mesh, whatever --only and --existing say; 0: theirs */
 	nt_decision decision;
 	nt_mesh_plan plan;
+
+	/* what tangents and normal maps are together: pipeline/pairs.c */
+	nt_signs signs;
+	size_t wrong_w, judged_w; /* triangles of kept tangents, whose w is wrong, and that say */
+	nt_mesh_map normal_maps[2]; /* the normal map, and that of the clearcoat */
+	uint32_t pair;           /* number of a pair that it is in: its w and its maps are inverted; 0: none */
+	bool halved;             /* this run changes one half of such a pair alone */
+	nt_doubt doubt;          /* w is inverted, and a map that is not known may be, too */
 
 	/* geometry: filled by load(). Arrays belong to the scene's arena or point into the input. */
 	size_t vertex_count;
@@ -359,7 +396,7 @@ static inline bool nt_mesh_is_wanted(const nt_mesh *mesh)
 static inline bool nt_mesh_is_kept_and_used(const nt_mesh *mesh)
 {
 	return mesh->decision == NT_SKIP_HAS_TANGENTS && mesh->slots && mesh->reachable && mesh->triangles &&
-	       mesh->has_positions && mesh->has_texcoords && !mesh->compressed;
+	       mesh->has_positions && mesh->has_normals && mesh->has_texcoords && !mesh->compressed;
 }
 
 /* Before the stages that make normals and solve: whether a mesh was solved as soon as it was loaded. It has results

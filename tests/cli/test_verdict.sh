@@ -32,9 +32,9 @@ exits 0
 run -q m.obj e.glb
 exits 0
 
-# A map of bumps, their green as DirectX has it.
+# A map of bumps, their green times $2: as DirectX has it by default, -1: as glTF has it.
 green_down() {
-	python3 "$ROOT/tests/support/images.py" write "$1" 128 128 '(lambda u, v: (lambda r: tuple(round(127.5 + 127.5 * c / r) for c in (u, v, 1.5)))(
+	python3 "$ROOT/tests/support/images.py" write "$1" 128 128 '(lambda u, v: (lambda r: tuple(round(127.5 + 127.5 * c / r) for c in (u, v * ('"${2-1}"'), 1.5)))(
 		math.hypot(u, v, 1.5)) if u * u + v * v < 0.8 else (128, 128, 255))(x % 32 / 16 - 1, y % 32 / 16 - 1)'
 }
 
@@ -469,6 +469,69 @@ for options in "--check three.gltf" "--existing=keep three.gltf a.glb" "--flip-g
 	exits 1
 done
 says "--fix turns the maps that need it"
+
+# Inverted w and a map whose green points down cancel, if all that is over the map, and all maps of that, agree.
+scene "w and green that are both inverted are shown right: one finding, left by --fix; in anything mixed both are repaired"
+mapped
+green_down down.png
+green_down up.png -1
+green_down mixed.png "1 if x < 64 else -1"
+python3 - <<'END'
+import struct
+open("map.ktx2", "wb").write(b"\xabKTX 20\xbb\r\n\x1a\n" + struct.pack("<9I", 0, 1, 4, 4, 0, 0, 1, 1, 0) + bytes(64))
+END
+while IFS='|' read -r name edit found fixed; do
+	gltf m.gltf pair "g.images = [{uri: 'down.png'}, {uri: 'up.png'}]; g.textures = [{source: 0}, {source: 1}];
+		const p = g.meshes[0].primitives[0], a = p.attributes, v = rows(a.TANGENT);
+		const square = (change, material) => ({...p, material, attributes: {...a, TANGENT: add('VEC4', 5126, v.map(change).flat(), {})}});
+		const inverted = t => [t[0], t[1], t[2], -t[3]], right = t => t, zero = t => [0, 0, 0, -t[3]];
+		g.materials.push(structuredClone(g.materials[0]));
+		g.meshes[0].primitives = [square(inverted, 0), square(inverted, 1)]; $edit"
+	run --check -q --report=r.json --fail-on=never pair.gltf
+	is "$name: $(value r.json '" ".join("%s=%s" % (f["code"], f["count"]) for f in sorted(r["files"][0]["findings"], key=lambda f: f["code"]) if f["severity"] != "info" or f["code"] == "TAN_GREEN_PAIR")')" "$name: $found"
+	run --fix pair.gltf fixed.gltf
+	exits 0
+	says "$fixed"
+	[ "$fixed" != "nothing to fix" ] || same pair.gltf fixed.gltf
+	run --check -q --report=r.json --fail-on=never fixed.gltf
+	is "$name: $(value r.json '[f["code"] for f in r["files"][0]["findings"] if "--fix" in (f["repair"] or "") and f["severity"] != "info"]')" "$name: []"
+	run --fix fixed.gltf again.gltf
+	says "nothing to fix"
+	same fixed.gltf again.gltf
+done <<'END'
+two materials over one map|;|TAN_GREEN_PAIR=2|nothing to fix
+a map of each, both down|g.materials[1].normalTexture.index = 1; g.images[1].uri = 'down.png'|TAN_GREEN_PAIR=2|nothing to fix
+a map of each, one up|g.materials[1].normalTexture.index = 1|TAN_GREEN_PAIR=1 TAN_SIGN_MISMATCH=2|fixed TAN_SIGN_MISMATCH in 1 primitive
+one map, and w of one mesh is right|g.meshes[0].primitives[1] = square(right, 1)|NMAP_GREEN_DOWN=1 TAN_SIGN_MISMATCH=2|fixed NMAP_GREEN_DOWN in 1 normal map, TAN_SIGN_MISMATCH in 1 primitive
+one map, and one mesh has no tangents|delete g.meshes[0].primitives[1].attributes.TANGENT|NMAP_GREEN_DOWN=1 TAN_SIGN_MISMATCH=2|fixed NMAP_GREEN_DOWN in 1 normal map, TAN_SIGN_MISMATCH in 1 primitive
+a mixed map|g.images[0].uri = 'mixed.png'|TAN_SIGN_MISMATCH=2 TAN_SIGN_MISMATCH=2|fixed TAN_SIGN_MISMATCH in 2 primitives
+a map whose green points up|g.images[0].uri = 'up.png'|TAN_SIGN_MISMATCH=2 TAN_SIGN_MISMATCH=2|fixed TAN_SIGN_MISMATCH in 2 primitives
+a clearcoat map that points up|g.materials[0].extensions = {KHR_materials_clearcoat: {clearcoatFactor: 1, clearcoatNormalTexture: {index: 1}}}; g.extensionsUsed = ['KHR_materials_clearcoat']; g.meshes[0].primitives.pop()|NMAP_GREEN_DOWN=1 TAN_SIGN_MISMATCH=2|fixed NMAP_GREEN_DOWN in 1 normal map, TAN_SIGN_MISMATCH in 1 primitive
+another fault in one of them|g.meshes[0].primitives[1] = square(zero, 1)|TAN_GREEN_PAIR=2 TAN_ZERO=4|fixed TAN_ZERO in 1 primitive
+a map that is not decoded|g.images[0].uri = 'map.ktx2'; g.extensionsUsed = ['KHR_texture_basisu']; g.textures[0] = {extensions: {KHR_texture_basisu: {source: 0}}}|TAN_SIGN_MISMATCH=2 TAN_SIGN_MISMATCH=2|nothing to fix
+END
+run --check pair.gltf
+prints "which cannot be decoded here, the two cancel"
+prints "nmtan --existing=replace pair.gltf pair-repaired.gltf"
+
+scene "a conversion that changes one half of the pair warns and names the other; a plain one is silent"
+mapped
+green_down n.png
+gltf m.gltf pair 'const n = g.meshes[0].primitives[0].attributes.TANGENT; for (let i = 0; i < 4; i++) bytes[0].writeFloatLE(-bytes[0].readFloatLE(at(n, i) + 12), at(n, i) + 12)'
+run pair.gltf out.glb
+says_not "warning"
+for options in --existing=replace --existing=repair; do
+	run $options pair.gltf out.glb
+	says "[TAN_GREEN_PAIR]: nmtan $options --flip-green=auto pair.gltf out.glb"
+done
+run --flip-green=auto pair.gltf out.glb
+says "[TAN_GREEN_PAIR]: nmtan --existing=repair --flip-green=auto pair.gltf out.glb"
+run --existing=repair --flip-green=auto pair.gltf out.glb
+says_not "warning"
+run --check --fail-on=warning out.glb
+exits 0
+run --check-maps=off pair.gltf out.glb
+says "which was not examined, the two cancel [TAN_KEPT_SIGN]: nmtan --fix pair.gltf out.glb"
 
 scene "wrong tangents that are kept are told with the command that repairs them, and counted of many, with -q too"
 mapped
