@@ -9,8 +9,12 @@
  */
 #include "gltf/open.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
+#include "file/lookup.h"
+#include "file/uri.h"
 #include "gltf/accessor.h"
 #include "gltf/document.h"
 #include "gltf/draco.h"
@@ -247,6 +251,62 @@ static nt_status place_meshes(nt_scene *scene, const nt_gltf *document, nt_error
 	return nt_gltf_walk_world(document, place_mesh, &world, error);
 }
 
+/* Whether the file of a buffer can be opened; a name that is refused is nobody's file. */
+static nt_status look_for_file(nt_gltf *document, size_t index, bool *missing, nt_error *failure)
+{
+	size_t length = 0;
+	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "buffers"), index);
+	const char *uri = nt_json_get_string(nt_json_find(json, "uri"), &length), *path;
+	struct stat info;
+	*missing = false;
+	if (!uri || nt_uri_is_data(uri, length))
+		return NT_OK;
+	nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length, document->allow_outside,
+		&path, failure);
+	if (!status && document->allow_outside)
+		status = nt_lookup(path, &info, failure);
+	if (!status && access(path, R_OK) != 0)
+		status = nt_fail(failure, NT_ERROR_IO, "cannot open \"%.120s\": %s", uri, strerror(errno));
+	*missing = status == NT_ERROR_MISSING || status == NT_ERROR_IO;
+	return status == NT_ERROR_MEMORY ? status : NT_OK;
+}
+
+/* Refuses a document without all of its files, whether a run needs them or not: its output would be as broken. What a
+ * buffer of EXT_meshopt_compression falls back to has no URI. */
+static nt_status look_for_buffers(nt_scene *scene, nt_gltf *document, nt_error *error)
+{
+	enum { NAMED = 3 };
+	size_t count = 0;
+	nt_place first = {.offset = NT_NO_OFFSET};
+	nt_buffer names = {0};
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < document->buffer_count && !status; i++) {
+		nt_error failure;
+		bool missing;
+		nt_place place;
+		status = look_for_file(document, i, &missing, &failure);
+		if (status || !missing)
+			continue;
+		nt_place_clear(&place);
+		snprintf(place.pointer, sizeof place.pointer, "/buffers/%zu", i);
+		nt_finding_add(&scene->findings, NT_CODE_BUFFER_MISSING, &place, 1, "%.240s", failure.message);
+		const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "buffers"), i);
+		first = count ? first : place;
+		if (count++ < NAMED)
+			nt_buffer_format(&names, "%s\"%.80s\"", count > 1 ? ", " : "",
+				nt_json_get_string(nt_json_find(json, "uri"), NULL));
+	}
+	if (status || names.failed)
+		status = nt_fail_memory(error);
+	else if (count)
+		status = nt_fail(error, NT_ERROR_MISSING, "%s cannot be opened: %s%s",
+			count == 1 ? "a buffer" : "buffers", names.data, count > NAMED ? " and others" : "");
+	if (count && status == NT_ERROR_MISSING)
+		error->place = first;
+	nt_buffer_free(&names);
+	return status;
+}
+
 static uint64_t count_read(const void *source)
 {
 	return nt_gltf_bytes_read(source);
@@ -282,7 +342,9 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 		return nt_fail_memory(error);
 	memset(reached, 0, mesh_count * sizeof *reached);
 	scene->mesh_count = count;
-	status = nt_gltf_separate_draco(document, error);
+	status = look_for_buffers(scene, document, error);
+	if (!status)
+		status = nt_gltf_separate_draco(document, error);
 	if (!status)
 		status = nt_gltf_reach(document, reached, mesh_count, error);
 	if (!status)

@@ -32,6 +32,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"first material to all faces then, and so does nmtan.",
 		"Nothing, or write usemtl before the faces.",
 		"an OBJ with \"mtllib m.mtl\" and no usemtl"),
+	ROW(BUFFER_MISSING, ERROR, "e--", EXPORT, NULL, "buffer cannot be opened",
+		"A buffer of the glTF has a URI, and no file that can be read is there. Nothing is converted or "
+		"judged, whether the buffer is needed or not: the output would be as broken. The exit code is 2.",
+		"Put the file beside the glTF under the name that its URI has.",
+		"a glTF whose .bin was not copied with it"),
 	ROW(IMAGE_MISSING, WARNING, "w--", EXPORT, NULL, "image cannot be read",
 		"A material refers to an image file that is not there. The output is without it, or, of a glTF, has "
 		"the same name; with --images=link it refers to where the file should be.",

@@ -23,7 +23,7 @@ scene "but for what is left out of the output"
 printf 'newmtl b\nmap_Kd nowhere.png\ndisp h.png\n' >m.mtl
 run -q q.obj q.glb
 exits 0
-is "$(cat "$WORK/err.txt")" "nmtan: q.obj: left out of the output: 1 IMAGE_MISSING, 1 MATERIAL_LOST"
+is "$(cat "$WORK/err.txt")" "nmtan: q.obj: left out of the output: 1 IMAGE_MISSING, 1 MATERIAL_LOST; material \"b\" has none of its images"
 run -q --ignore=IMAGE_MISSING,MATERIAL_LOST q.obj q.glb
 silent
 
@@ -183,6 +183,27 @@ same a.glb b.glb
 run "$data/quad_ascii.ply" a.ply
 LC_ALL=de_DE.UTF-8 LANG=de_DE.UTF-8 run "$data/quad_ascii.ply" b.ply
 same a.ply b.ply
+
+scene "a buffer that is missing ends every way with 2, quiet or not, needed or not"
+mkdir a
+# nothing needs tangents, and nothing but a link would be written
+node -e 'const g = JSON.parse(fs.readFileSync(process.argv[1])); for (const m of g.materials) delete m.normalTexture;
+	g.buffers.push({uri: "not%20there.bin", byteLength: 4}, {byteLength: 4, extensions: {EXT_meshopt_compression: {fallback: true}}});
+	fs.writeFileSync("a/in.gltf", JSON.stringify(g))' "$data/plates.gltf"
+for way in "a/in.gltf a/out.gltf" "a/in.gltf out.gltf" "a/in.gltf out.glb" "--check a/in.gltf" "-q a/in.gltf a/out.gltf" \
+	"-q --only=all a/in.gltf out.glb" "--buffers=link -q a/in.gltf out.gltf"; do
+	run $way
+	exits 2
+	says 'buffers cannot be opened: "plates.bin", "not%20there.bin"'
+	case $way in *-q*|*--check*) ;; *) says '/buffers/1: error: buffer cannot be opened: ' ;; esac
+done
+cp "$data/plates.bin" a
+run -q a/in.gltf out.gltf
+exits 2
+is "$(cat "$WORK/err.txt")" 'nmtan: a/in.gltf: /buffers/1: a buffer cannot be opened: "not%20there.bin"'
+printf '\0\0\0\0' >"a/not there.bin"
+run -q a/in.gltf out.gltf
+exits 0
 
 scene "a pointer of Git LFS is not the file"
 printf '%s\n' 'version https://git-lfs.github.com/spec/v1' "oid sha256:$(printf '%064d' 7)" 'size 39043' >pointer
