@@ -106,14 +106,6 @@ static nt_status take_name(nt_output *output, nt_sink *sink, const char *name, n
 	return errno == EEXIST ? taken_meanwhile(output, name, error) : nt_sink_fail(error, name, errno);
 }
 
-/* Whether the file that a sink uses is one of this very set. */
-static bool is_of_set(const nt_output *output, const nt_sink *sink)
-{
-	for (const nt_sink *other = output->first; other != sink; other = other->next)
-		if (nt_sink_is_sidecar(other) && strcmp(nt_sink_name(other, false), nt_sink_name(sink, false)) == 0)
-			return true;
-	return false;
-}
 
 static nt_status place_sidecar(nt_output *output, nt_sink *sink, nt_error *error)
 {
@@ -122,7 +114,7 @@ static nt_status place_sidecar(nt_output *output, nt_sink *sink, nt_error *error
 	case NT_NAMING_NEW:
 		return take_name(output, sink, sink->target, error);
 	case NT_NAMING_USED:
-		if (is_of_set(output, sink))
+		if (sink->is_of_set)
 			return NT_OK;
 		if (!nt_state_is(sink->target, &sink->there))
 			return taken_meanwhile(output, sink->target, error);
@@ -169,7 +161,7 @@ static nt_status place_all(nt_output *output, nt_error *error)
 	/* buffers that have a name go again; the main file that would refer to them is not there */
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
 		if (sink->role == NT_ROLE_BUFFER && sink->placed)
-			unlink(sink->staging ? sink->staging : sink->target);
+			nt_temporary_remove_name(sink->temporary, sink->staging ? sink->staging : sink->target);
 	return status;
 }
 

@@ -48,7 +48,8 @@ nt_status nt_output_protect(nt_output *output, const char *path, const char *way
 	}
 	output->guarded[output->guarded_count++] =
 		(nt_protected_file){status.st_dev, status.st_ino, copy, way_out};
-	return NT_OK;
+	return nt_hash_index_add(&output->guards, nt_hash_of_file(status.st_dev, status.st_ino),
+		(uint32_t)output->guarded_count - 1) ? NT_OK : nt_fail_memory(error);
 }
 
 /* ---- adding ---- */
@@ -121,14 +122,27 @@ static nt_status check_existing(const nt_output *output, nt_sink *sink, const st
 	return sink->in_place ? refuse_in_place(sink->path, status, error) : NT_OK;
 }
 
+/* So many files of a set stay open, each with its own lock. Those behind them have one lock together, that of a file
+ * which is there for nothing else: sets may have more files than a process may have open. */
+enum { MOST_OPEN = 32 };
+
+static int create_temporary(nt_output *output, nt_sink *sink, const char *beside)
+{
+	const bool is_led = nt_sink_is_sidecar(sink) && output->sidecar_count++ >= MOST_OPEN;
+	if (is_led && !output->leader && nt_temporary_create(beside, 0600, NULL, &output->leader) < 0)
+		return -1;
+	const unsigned mode = sink->in_place ? 0600 : 0666;
+	return nt_temporary_create(beside, mode, is_led ? output->leader : NULL, &sink->temporary);
+}
+
 /* Creates the temporary beside a path and explains why it cannot. */
-static nt_status open_temporary(nt_sink *sink, const char *beside, nt_error *error)
+static nt_status open_temporary(nt_output *output, nt_sink *sink, const char *beside, nt_error *error)
 {
 	const size_t folder_length = (size_t)(nt_last_part(beside) - beside);
 	char *folder = folder_length ? strndup(beside, folder_length) : strdup("./");
 	if (!folder)
 		return nt_fail_memory(error);
-	sink->fd = nt_temporary_create(beside, sink->in_place ? 0600 : 0666, &sink->temporary);
+	sink->fd = create_temporary(output, sink, beside);
 	const int number = errno;
 	if (sink->fd >= 0) {
 		nt_temporaries_clean(folder);
@@ -177,7 +191,7 @@ static nt_status look_at(const char *path, struct stat *status, bool *exists, nt
 	return number == ENOENT || number == ENOTDIR ? NT_OK : nt_sink_fail(error, path, number);
 }
 
-static nt_status open_main(const nt_output *output, nt_sink *sink, nt_error *error)
+static nt_status open_main(nt_output *output, nt_sink *sink, nt_error *error)
 {
 	if (strcmp(sink->path, "-") == 0) {
 		sink->fd = STDOUT_FILENO;
@@ -206,7 +220,7 @@ static nt_status open_main(const nt_output *output, nt_sink *sink, nt_error *err
 		if (!nt_sink_is_sidecar(other) && other->target && strcmp(other->target, sink->target) == 0)
 			return nt_fail_file(error, NT_ERROR_IO, sink->path,
 				"refusing to write: another file of this output has the same name");
-	return sink->dry ? NT_OK : open_temporary(sink, sink->target, error);
+	return sink->dry ? NT_OK : open_temporary(output, sink, sink->target, error);
 }
 
 static void free_sink(nt_sink *sink)
@@ -222,19 +236,19 @@ static void free_sink(nt_sink *sink)
 	free(sink);
 }
 
-static nt_status open_sink(const nt_output *output, nt_sink *sink, nt_error *error)
+static nt_status open_sink(nt_output *output, nt_sink *sink, nt_error *error)
 {
 	if (nt_sink_is_sidecar(sink)) {
 		sink->digest = nt_digest_create();
 		if (!sink->digest)
 			return nt_fail_memory(error);
-		return sink->dry ? NT_OK : open_temporary(sink, sink->path, error);
+		return sink->dry ? NT_OK : open_temporary(output, sink, sink->path, error);
 	}
 	if (sink->role != NT_ROLE_STAGING)
 		return open_main(output, sink, error);
 	/* the same file as the main file, so it was checked with that */
 	sink->target = strdup(output->main->target);
-	return sink->target ? open_temporary(sink, sink->target, error) : nt_fail_memory(error);
+	return sink->target ? open_temporary(output, sink, sink->target, error) : nt_fail_memory(error);
 }
 
 static void append_sink(nt_output *output, nt_sink *sink)
@@ -260,8 +274,10 @@ nt_status nt_output_add(nt_output *output, const char *path, nt_role role, nt_si
 	added->dry = output->options.dry_run;
 	added->path = strdup(path);
 	added->buffer = nt_alloc(NT_SINK_BUFFER_BYTES, 1);
-	const nt_status status = added->path && added->buffer ? open_sink(output, added, error)
-								 : nt_fail_memory(error);
+	nt_status status = added->path && added->buffer ? open_sink(output, added, error)
+							: nt_fail_memory(error);
+	if (!status && !nt_sink_is_sidecar(added) && added->target)
+		status = nt_output_note_name(output, added, added->path, error);
 	if (status) {
 		free_sink(added);
 		return status;
@@ -423,6 +439,10 @@ void nt_output_abort(nt_output *output)
 		free_sink(sink);
 		sink = next;
 	}
+	nt_temporary_discard(output->leader);
+	free(output->named);
+	nt_hash_index_free(&output->names);
+	nt_hash_index_free(&output->guards);
 	for (size_t i = 0; i < output->guarded_count; i++)
 		free(output->guarded[i].path);
 	nt_output_free_ownership(output);

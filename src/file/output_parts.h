@@ -7,6 +7,7 @@
 #define NT_FILE_OUTPUT_PARTS_H
 
 #include <sys/stat.h>
+#include "base/hash_index.h"
 #include "file/output.h"
 #include "file/relative_path.h"
 #include "file/temporary.h"
@@ -47,7 +48,7 @@ struct nt_sink {
 	char *target;             /* where it goes: where symbolic links lead, or a settled sidecar's name; NULL when
 	                             written through */
 	/* of a settled sidecar */
-	bool settled, ours;
+	bool settled, ours, is_of_set; /* is_of_set: the file that it uses is another one of this very set */
 	nt_naming naming;
 	nt_file_state there;      /* what has the name: USED, REPLACES; of a main file: what had it when it was added */
 	char *staging;            /* REPLACES: path of the staging name */
@@ -70,8 +71,14 @@ typedef struct nt_ownership {
 struct nt_output {
 	nt_output_options options;
 	nt_sink *first, *last, *main, *staging;
+	nt_temporary *leader; /* of the sidecars behind the first MOST_OPEN; NULL: none yet */
+	size_t sidecar_count;
+	nt_sink **named; /* by the names that they have or will have, those of sidecars for the time being, too */
+	size_t named_count, named_capacity;
+	nt_hash_index names;
 	nt_protected_file *guarded;
 	size_t guarded_count, guarded_capacity;
+	nt_hash_index guards;
 	nt_ownership *ownership; /* what the previous main file records */
 	size_t ownership_count, ownership_capacity;
 	bool ownership_known;
@@ -83,7 +90,7 @@ nt_status nt_sink_fail(nt_error *error, const char *path, int number);
 nt_status nt_sink_refuse_existing(nt_error *error, const char *path);
 nt_status nt_sink_flush(nt_sink *sink, nt_error *error);
 
-/* Flushes, synchronises where that is asked for, and closes. */
+/* Flushes, synchronises where that is asked for, and closes; a second call does nothing. */
 nt_status nt_sink_finish(nt_sink *sink, bool sync, nt_error *error);
 
 /* ---- sidecar.c ---- */
@@ -97,6 +104,11 @@ nt_file_state nt_state_of(const struct stat *status);
 
 /* Whether a path, links followed, still is the file in that state. */
 bool nt_state_is(const char *path, const nt_file_state *state);
+
+/* Notes a name that a file of the set has. */
+nt_status nt_output_note_name(nt_output *output, nt_sink *sink, const char *path, nt_error *error);
+
+uint64_t nt_hash_of_file(dev_t device, ino_t inode);
 
 /* `file`: its path is NULL where another run of the batch has read it. */
 bool nt_output_is_protected(const nt_output *output, const struct stat *status, const nt_protected_file **file);

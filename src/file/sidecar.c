@@ -49,9 +49,17 @@ bool nt_state_is(const char *path, const nt_file_state *state)
 	       status.st_mtim.tv_nsec == state->modified.tv_nsec;
 }
 
+uint64_t nt_hash_of_file(dev_t device, ino_t inode)
+{
+	const uint64_t key[2] = {(uint64_t)device, (uint64_t)inode};
+	return nt_hash_bytes(0, key, sizeof key);
+}
+
 bool nt_output_is_protected(const nt_output *output, const struct stat *status, const nt_protected_file **file)
 {
-	for (size_t i = 0; i < output->guarded_count; i++)
+	const uint64_t hash = nt_hash_of_file(status->st_dev, status->st_ino);
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t i; (i = nt_hash_index_next(&output->guards, hash, &at)) != UINT32_MAX;)
 		if (output->guarded[i].device == status->st_dev && output->guarded[i].inode == status->st_ino) {
 			*file = &output->guarded[i];
 			return true;
@@ -193,12 +201,30 @@ static bool is_intact(const nt_output *output, const char *path, const char *dig
 	       strcmp(text, digest) == 0;
 }
 
+/* A file's name, or a sidecar's for the time being. */
+static bool has_name(const nt_sink *sink, const char *name)
+{
+	const char *own = nt_sink_is_sidecar(sink) ? sink->target : sink->path;
+	return strcmp(nt_last_part(own), name) == 0 ||
+		(sink->staging && strcmp(nt_last_part(sink->staging), name) == 0);
+}
+
+nt_status nt_output_note_name(nt_output *output, nt_sink *sink, const char *path, nt_error *error)
+{
+	const char *name = nt_last_part(path);
+	if (!nt_grow((void **)&output->named, &output->named_capacity, output->named_count + 1, sizeof(nt_sink *)) ||
+		!nt_hash_index_add(&output->names, nt_hash_name(0, name), (uint32_t)output->named_count))
+		return nt_fail_memory(error);
+	output->named[output->named_count++] = sink;
+	return NT_OK;
+}
+
 /* Whether a sidecar of this set is called so, for good or for a time. */
 static bool is_used(const nt_output *output, const char *name)
 {
-	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		if (nt_sink_is_sidecar(sink) && (strcmp(nt_sink_name(sink, false), name) == 0 ||
-							  strcmp(nt_sink_name(sink, true), name) == 0))
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t i; (i = nt_hash_index_next(&output->names, nt_hash_name(0, name), &at)) != UINT32_MAX;)
+		if (nt_sink_is_sidecar(output->named[i]) && has_name(output->named[i], name))
 			return true;
 	return false;
 }
@@ -354,14 +380,10 @@ typedef enum verdict { FREE, EQUAL, OTHER } verdict;
 /* Another file of the set with that name: the main file, or a sidecar that has chosen it. */
 static const nt_sink *find_in_set(const nt_output *output, const nt_sink *sink, const char *name)
 {
-	for (const nt_sink *other = output->first; other; other = other->next) {
-		const bool named = nt_sink_is_sidecar(other)
-			? other->settled && other != sink : other->target != NULL;
-		if (named &&
-			(strcmp(nt_last_part(nt_sink_is_sidecar(other) ? other->target : other->path), name) == 0 ||
-				     (other->staging && strcmp(nt_last_part(other->staging), name) == 0)))
-			return other;
-	}
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t i; (i = nt_hash_index_next(&output->names, nt_hash_name(0, name), &at)) != UINT32_MAX;)
+		if (output->named[i] != sink && has_name(output->named[i], name))
+			return output->named[i];
 	return NULL;
 }
 
@@ -456,6 +478,7 @@ static nt_status check_used(nt_output *output, nt_sink *sink, nt_error *error)
 {
 	const char *name = nt_last_part(sink->target);
 	const nt_sink *other = find_in_set(output, sink, name);
+	sink->is_of_set = other && nt_sink_is_sidecar(other) && strcmp(nt_sink_name(other, false), name) == 0;
 	if (other) {
 		sink->ours = other->ours;
 		return NT_OK;
@@ -475,7 +498,7 @@ nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
 	if (sink->dry) {
 		sink->settled = sink->ours = true;
 		sink->target = strdup(sink->path);
-		return sink->target ? NT_OK : nt_fail_memory(error);
+		return sink->target ? nt_output_note_name(output, sink, sink->target, error) : nt_fail_memory(error);
 	}
 	nt_status status = nt_sink_flush(sink, error);
 	if (!status)
@@ -486,6 +509,17 @@ nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
 	if (sink->naming == NT_NAMING_USED)
 		status = check_used(output, sink, error);
 	sink->settled = true;
+	/* nothing is written to it any more: of many, only the lists take memory and descriptors */
+	nt_digest_free(sink->digest);
+	free(sink->buffer);
+	sink->digest = NULL;
+	sink->buffer = NULL;
+	if (!status)
+		status = nt_output_note_name(output, sink, sink->target, error);
+	if (!status && sink->staging)
+		status = nt_output_note_name(output, sink, sink->staging, error);
+	if (!status && nt_temporary_is_led(sink->temporary))
+		status = nt_sink_finish(sink, output->options.sync, error);
 	return status;
 }
 

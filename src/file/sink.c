@@ -144,14 +144,20 @@ nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t
 
 nt_status nt_sink_finish(nt_sink *sink, bool sync, nt_error *error)
 {
+	if (sink->fd < 0)
+		return NT_OK;
 	const nt_status status = nt_sink_flush(sink, error);
 	if (status)
 		return status;
 	if (sync && sink->temporary && fsync(sink->fd) != 0)
 		return nt_sink_fail(error, sink->path, errno);
-	if (sink->shared_fd || sink->fd < 0)
+	if (sink->shared_fd)
 		return NT_OK;
-	/* closing tells what the disk refused (NFS); a temporary file keeps its lock */
+	/* closing tells what the disk refused (NFS); a temporary file keeps its lock, or has that of another one */
+	if (sink->temporary && nt_temporary_is_led(sink->temporary)) {
+		sink->fd = -1;
+		return nt_temporary_close(sink->temporary) ? NT_OK : nt_sink_fail(error, sink->path, errno);
+	}
 	const int fd = sink->temporary ? fcntl(sink->fd, F_DUPFD_CLOEXEC, 0) : sink->fd;
 	if (!sink->temporary)
 		sink->fd = -1;

@@ -3,7 +3,8 @@
  * Removing what killed processes left in a folder: see temporary.h. Whoever makes a temporary file keeps a lock of it
  * (flock) until it has its name; the system takes the lock of a process that is gone. So a file that can be locked is
  * stale, if its owner's lock would be seen here: the folder is on a disk of this machine alone, or the owner ran on
- * this very kernel, whose number for its boot is in the name.
+ * this very kernel, whose number for its boot is in the name. A file of a large set has the lock of another one: of its
+ * leader.
  */
 #include "file/temporary.h"
 
@@ -58,6 +59,17 @@ static bool is_first_look(const struct stat *status)
 	return !known;
 }
 
+/* A file with its lock; LOCKED: another process has that; -1: there is no such file. */
+enum { LOCKED = -2 };
+static int open_stale(int folder, const char *name)
+{
+	const int fd = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+	if (fd < 0 || flock(fd, LOCK_EX | LOCK_NB) == 0)
+		return fd;
+	close(fd);
+	return LOCKED;
+}
+
 void nt_temporaries_clean(const char *path)
 {
 	/* mostly that of the file before: not asked for again, which over a network would cost as much as a file */
@@ -74,12 +86,17 @@ void nt_temporaries_clean(const char *path)
 	const int at = dirfd(folder);
 	const bool local = is_local(at);
 	for (const struct dirent *entry; (entry = readdir(folder));) {
-		const int fd = nt_temporary_is_lockable(entry->d_name, local)
-			? openat(at, entry->d_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC) : -1;
-		if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) == 0)
+		if (!nt_temporary_is_lockable(entry->d_name, local))
+			continue;
+		char leader[NT_TEMPORARY_NAME];
+		const int leads = nt_temporary_leader_of(entry->d_name, leader) ? open_stale(at, leader) : -1;
+		const int fd = leads != LOCKED ? open_stale(at, entry->d_name) : -1;
+		if (fd >= 0)
 			unlinkat(at, entry->d_name, 0);
 		if (fd >= 0)
 			close(fd);
+		if (leads >= 0)
+			close(leads);
 	}
 	closedir(folder);
 }

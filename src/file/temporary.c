@@ -5,14 +5,17 @@
  * The list is plain and guarded by a spin lock. Who takes the lock blocks the signals in its own thread
  * first, so the handler never waits for the thread it interrupted; it may wait for others: for those that hold, and
  * for the lock, which it keeps: from then on nobody creates, renames or holds anything. A fault cannot be blocked: each
- * thread knows what it has itself. Only unlink, poll, signal calls and lock-free atomics run in the handler; all of
+ * thread knows what it has itself. Only unlinkat, poll, signal calls and lock-free atomics run in the handler; all of
  * them are async-signal-safe.
+ *
+ * Files are made, renamed and removed by the descriptor of their folder: somebody may move that meanwhile.
  */
 #include "file/temporary.h"
 
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <pthread.h>
 #include <signal.h>
@@ -27,10 +30,21 @@
 /* What is tried before giving up on a free name: names of ended processes with our number are rare. */
 enum { MOST_ATTEMPTS = 1000, BOOT_DIGITS = 32 };
 
+/* One that has temporary files. */
+typedef struct folder {
+	struct folder *next;
+	int fd;
+	unsigned files;
+	dev_t device;
+	ino_t inode;
+} folder;
+
 struct nt_temporary {
 	nt_temporary *next, *previous;
-	bool renamed;
-	int fd; /* holds the lock */
+	bool renamed, led;
+	int fd;         /* holds the lock; below 0: closed */
+	folder *folder; /* NULL: names are whole paths */
+	const char *name; /* in the folder */
 	char path[];
 };
 
@@ -41,6 +55,7 @@ static const char name_head[] = ".nmtan-", name_tail[] = ".tmp";
 
 static atomic_flag list_lock = ATOMIC_FLAG_INIT;
 static nt_temporary *list;
+static folder *folders;
 static atomic_uint holders;
 static atomic_bool ending; /* a signal has come */
 static _Thread_local volatile unsigned own_holds; /* of the holders */
@@ -128,14 +143,95 @@ static const char *boot_number(void)
 	return boot;
 }
 
-/* Name `attempt` beside target: hidden, of a length that any file system has, the target's own name left out. */
-static void name_beside(char *path, size_t capacity, const char *target, unsigned attempt)
+/* How many bytes of a path are its folder's, with the slash. */
+static size_t folder_length(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* Name `attempt` beside target: hidden, of a length that any file system has, the target's own name left out. What
+ * tells the leader from others of its process stands behind a dash. */
+static void name_beside(char *path, size_t capacity, const char *target, unsigned attempt, const nt_temporary *leader)
 {
 	static atomic_uint counter;
-	const char *slash = strrchr(target, '/');
-	const int folder_length = slash ? (int)(slash - target) + 1 : 0;
-	snprintf(path, capacity, "%.*s%s%s-%ld-%u.%u%s", folder_length, target, name_head, boot_number(),
-		(long)getpid(), atomic_fetch_add(&counter, 1), attempt, name_tail);
+	const char *number = leader ? strrchr(leader->path, '-') : "";
+	const size_t length = strlen(number);
+	snprintf(path, capacity, "%.*s%s%s-%ld-%u.%u%.*s%s", (int)folder_length(target), target, name_head,
+		boot_number(), (long)getpid(), atomic_fetch_add(&counter, 1), attempt,
+		(int)(length ? length - strlen(name_tail) : 0), number, name_tail);
+}
+
+bool nt_temporary_leader_of(const char *name, char leader[NT_TEMPORARY_NAME])
+{
+	/* head, boot, "-PID", "-NUMBER" and what the leader has in place of that */
+	const char *process = strchr(name + strlen(name_head), '-');
+	const char *own = process ? strchr(process + 1, '-') : NULL, *number = own ? strchr(own + 1, '-') : NULL;
+	return number &&
+		snprintf(leader, NT_TEMPORARY_NAME, "%.*s%s", (int)(own - name), name, number) < NT_TEMPORARY_NAME;
+}
+
+/* ---- folders ---- */
+
+/* Descriptor for a file's own calls. */
+static int folder_of(const nt_temporary *entry)
+{
+	return entry->folder ? entry->folder->fd : AT_FDCWD;
+}
+
+static const char *name_in(const nt_temporary *entry, const char *path)
+{
+	return entry->folder ? path + folder_length(path) : path;
+}
+
+/* The folder that a path has now; with the list locked. NULL: it cannot be opened, or memory is exhausted. A browser's
+ * files have no folders to hold. */
+static folder *open_folder(const char *path)
+{
+#ifdef __EMSCRIPTEN__
+	(void)path;
+	return NULL;
+#else
+	char text[PATH_MAX];
+	struct stat status;
+	const size_t length = folder_length(path);
+	if (length >= sizeof text)
+		return NULL;
+	memcpy(text, length ? path : ".", length ? length : 1);
+	text[length ? length : 1] = '\0';
+	const int fd = open(text, O_PATH | O_DIRECTORY | O_CLOEXEC);
+	if (fd < 0 || fstat(fd, &status) != 0) {
+		if (fd >= 0)
+			close(fd);
+		return NULL;
+	}
+	for (folder *known = folders; known; known = known->next)
+		if (known->device == status.st_dev && known->inode == status.st_ino) {
+			close(fd);
+			known->files++;
+			return known;
+		}
+	folder *opened = malloc(sizeof *opened);
+	if (!opened) {
+		close(fd);
+		return NULL;
+	}
+	*opened = (folder){folders, fd, 1, status.st_dev, status.st_ino};
+	folders = opened;
+	return opened;
+#endif
+}
+
+static void close_folder(folder *opened)
+{
+	if (!opened || --opened->files)
+		return;
+	folder **at = &folders;
+	while (*at != opened)
+		at = &(*at)->next;
+	*at = opened->next;
+	close(opened->fd);
+	free(opened);
 }
 
 bool nt_temporary_is_lockable(const char *name, bool local)
@@ -157,19 +253,21 @@ bool nt_temporary_is_lockable(const char *name, bool local)
 static bool open_locked(nt_temporary *entry, const char *from, unsigned mode)
 {
 	struct stat status;
-	entry->fd = from ? open(from, O_RDONLY | O_CLOEXEC)
-			 : open(entry->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, (mode_t)mode);
+	const int at = folder_of(entry);
+	from = from ? name_in(entry, from) : NULL;
+	entry->fd = from ? openat(at, from, O_RDONLY | O_CLOEXEC)
+			 : openat(at, entry->name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, (mode_t)mode);
 	if (entry->fd < 0)
 		return false;
 	/* where there are no locks, nobody takes the file for stale; `from` is this run's mostly, which has its lock */
 	const bool refused = flock(entry->fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 	const bool known = !from && !refused && fstat(entry->fd, &status) == 0;
-	if (from ? link(from, entry->path) == 0 : known && status.st_nlink > 0)
+	if (from ? linkat(at, from, at, entry->name, 0) == 0 : known && status.st_nlink > 0)
 		return true;
 	const int number = from ? errno : EEXIST;
 	/* nobody else removes a file that is locked here */
 	if (!from && !refused && !known)
-		unlink(entry->path);
+		unlinkat(at, entry->name, 0);
 	close(entry->fd);
 	errno = number;
 	return false;
@@ -191,23 +289,41 @@ static bool make_listed(nt_temporary *entry, const char *from, unsigned mode)
 	return made;
 }
 
-static int make(const char *target, const char *from, unsigned mode, nt_temporary **temporary)
+/* A file's folder, opened or given back. */
+static void change_folder(nt_temporary *entry, bool open)
 {
-	const size_t capacity = strlen(target) + BOOT_DIGITS + 80;
+	sigset_t before;
+	lock_list(&before);
+	if (open)
+		entry->folder = open_folder(entry->path);
+	else
+		close_folder(entry->folder);
+	unlock_list(&before);
+}
+
+static int make(const char *target, const char *from, unsigned mode, const nt_temporary *leader,
+	nt_temporary **temporary)
+{
+	const size_t capacity = strlen(target) + NT_TEMPORARY_NAME;
 	nt_temporary *entry = calloc(1, sizeof *entry + capacity);
 	if (!entry) {
 		errno = ENOMEM;
 		return -1;
 	}
 	bool made = false;
+	memcpy(entry->path, target, folder_length(target));
+	change_folder(entry, true);
+	entry->led = leader;
 	for (unsigned attempt = 0; !made && attempt < MOST_ATTEMPTS; attempt++) {
-		name_beside(entry->path, capacity, target, attempt);
+		name_beside(entry->path, capacity, target, attempt, leader);
+		entry->name = name_in(entry, entry->path);
 		made = make_listed(entry, from, mode);
 		if (!made && errno != EEXIST)
 			break;
 	}
 	if (!made) {
 		const int kept = errno;
+		change_folder(entry, false);
 		free(entry);
 		errno = kept;
 		return -1;
@@ -216,14 +332,26 @@ static int make(const char *target, const char *from, unsigned mode, nt_temporar
 	return entry->fd;
 }
 
-int nt_temporary_create(const char *target, unsigned mode, nt_temporary **temporary)
+int nt_temporary_create(const char *target, unsigned mode, const nt_temporary *leader, nt_temporary **temporary)
 {
-	return make(target, NULL, mode, temporary);
+	return make(target, NULL, mode, leader, temporary);
+}
+
+bool nt_temporary_close(nt_temporary *temporary)
+{
+	const int fd = temporary->fd;
+	temporary->fd = -1;
+	return close(fd) == 0 || errno == EINTR;
+}
+
+bool nt_temporary_is_led(const nt_temporary *temporary)
+{
+	return temporary->led;
 }
 
 bool nt_temporary_link(const char *from, const char *target, nt_temporary **temporary)
 {
-	return make(target, from, 0, temporary) >= 0;
+	return make(target, from, 0, NULL, temporary) >= 0;
 }
 
 const char *nt_temporary_path(const nt_temporary *temporary)
@@ -232,39 +360,46 @@ const char *nt_temporary_path(const nt_temporary *temporary)
 }
 
 /* Where there is neither such a rename nor a second link: an empty file takes the name, and is ours to replace. */
-static bool rename_to_reserved_name(const char *from, const char *to)
+static bool rename_to_reserved_name(int at, const char *from, const char *to)
 {
-	const int fd = open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+	const int fd = openat(at, to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
 	if (fd < 0)
 		return false;
 	close(fd);
-	if (rename(from, to) == 0)
+	if (renameat(at, from, at, to) == 0)
 		return true;
 	const int kept = errno;
-	unlink(to);
+	unlinkat(at, to, 0);
 	errno = kept;
 	return false;
 }
 
 /* Rename that fails with EEXIST; by other means where the file system has no such rename. */
-static bool rename_to_free_name(const char *from, const char *to)
+static bool rename_to_free_name(int at, const char *from, const char *to)
 {
-	if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0)
+	if (renameat2(at, from, at, to, RENAME_NOREPLACE) == 0)
 		return true;
 	if (errno != EINVAL && errno != ENOSYS)
 		return false;
-	if (link(from, to) == 0) {
-		unlink(from);
+	if (linkat(at, from, at, to, 0) == 0) {
+		unlinkat(at, from, 0);
 		return true;
 	}
-	return errno != EEXIST && rename_to_reserved_name(from, to);
+	return errno != EEXIST && rename_to_reserved_name(at, from, to);
 }
 
 bool nt_temporary_rename(nt_temporary *temporary, const char *target, bool replace)
 {
-	temporary->renamed = replace ? rename(temporary->path, target) == 0
-				     : rename_to_free_name(temporary->path, target);
+	const int at = folder_of(temporary);
+	const char *name = name_in(temporary, target);
+	temporary->renamed = replace ? renameat(at, temporary->name, at, name) == 0
+				     : rename_to_free_name(at, temporary->name, name);
 	return temporary->renamed;
+}
+
+void nt_temporary_remove_name(const nt_temporary *temporary, const char *target)
+{
+	unlinkat(folder_of(temporary), name_in(temporary, target), 0);
 }
 
 void nt_temporary_discard(nt_temporary *temporary)
@@ -274,15 +409,17 @@ void nt_temporary_discard(nt_temporary *temporary)
 	sigset_t before;
 	lock_list(&before);
 	if (!temporary->renamed)
-		unlink(temporary->path);
+		unlinkat(folder_of(temporary), temporary->name, 0);
 	if (temporary->previous)
 		temporary->previous->next = temporary->next;
 	else
 		list = temporary->next;
 	if (temporary->next)
 		temporary->next->previous = temporary->previous;
+	close_folder(temporary->folder);
 	unlock_list(&before);
-	close(temporary->fd);
+	if (temporary->fd >= 0)
+		close(temporary->fd);
 	free(temporary);
 }
 
@@ -296,7 +433,7 @@ void nt_temporaries_remove_all(void)
 	spin();
 	for (const nt_temporary *entry = list; entry; entry = entry->next)
 		if (!entry->renamed)
-			unlink(entry->path);
+			unlinkat(folder_of(entry), entry->name, 0);
 }
 
 static void (*tell_end)(void);

@@ -12,15 +12,28 @@
 
 typedef struct nt_temporary nt_temporary;
 
-/* Creates a new file beside `target`, open for reading and writing; its mode is less the umask. Returns its descriptor,
+/* Creates a new file beside `target`, open for reading and writing; its mode is less the umask. The folder is the one
+ * that has the path now, wherever that is moved. `leader`: another one of that folder, whose lock will do for both, so
+ * that nt_temporary_close() is allowed; it has to be discarded later. NULL: none. Returns its descriptor,
  * which nt_temporary_discard() closes; -1 with errno set otherwise (ENOMEM included). */
-int nt_temporary_create(const char *target, unsigned mode, nt_temporary **temporary);
+int nt_temporary_create(const char *target, unsigned mode, const nt_temporary *leader, nt_temporary **temporary);
+
+/* Closes the descriptor of a file that has a leader: of many files, few are open. False, with errno: the system had not
+ * written all of it. */
+bool nt_temporary_close(nt_temporary *temporary);
+
+/* Whether its descriptor may be closed. */
+bool nt_temporary_is_led(const nt_temporary *temporary);
 
 /* A second name beside `target` for the file `from`. False, with errno, where the file system has no links. */
 bool nt_temporary_link(const char *from, const char *target, nt_temporary **temporary);
 
 /* Where it is. */
 const char *nt_temporary_path(const nt_temporary *temporary);
+
+/* The name of a file's leader, which is in the same folder; false: it has none. */
+enum { NT_TEMPORARY_NAME = 160 };
+bool nt_temporary_leader_of(const char *name, char leader[NT_TEMPORARY_NAME]);
 
 /* Whether a name is that of a temporary file, and its owner, if it still runs, has a lock that this process meets: on a
  * disk of this machine alone (`local`), or of this boot. */
@@ -35,9 +48,12 @@ void nt_temporaries_clean(const char *folder);
 void nt_temporaries_hold(sigset_t *before);
 void nt_temporaries_release(const sigset_t *before);
 
-/* Gives the file its name; while held. `replace`: an existing file may go; otherwise that is EEXIST. On failure errno
- * is set and the file stays what it was. */
+/* Gives the file the name that ends `target`, in its folder; while held. `replace`: an existing file may go; otherwise
+ * that is EEXIST. On failure errno is set and the file stays what it was. */
 bool nt_temporary_rename(nt_temporary *temporary, const char *target, bool replace);
+
+/* Takes that name away again. */
+void nt_temporary_remove_name(const nt_temporary *temporary, const char *target);
 
 /* Frees the entry and removes the file, where it has not been renamed. NULL is allowed. */
 void nt_temporary_discard(nt_temporary *temporary);

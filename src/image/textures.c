@@ -417,7 +417,7 @@ static void note_failure(result *r)
 static void *map_in_file(const char *beside, const unsigned char *bytes, size_t size)
 {
 	nt_temporary *temporary;
-	const int fd = beside ? nt_temporary_create(beside, 0600, &temporary) : -1;
+	const int fd = beside ? nt_temporary_create(beside, 0600, NULL, &temporary) : -1;
 	if (fd < 0)
 		return NULL;
 	size_t done = 0;

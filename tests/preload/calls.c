@@ -12,8 +12,9 @@
  *   NT_CALLS_TRACE=DIR          DIR/log has each call that changes names or makes something lasting, after it
  *                               succeeded; what fsync makes lasting of a file is copied to DIR/NUMBER
  *
- * A rename is logged as it is; all paths are as the program gave them. fsync is not passed on: no test looks at the
- * disk itself, and it would take most of the time. Programs under test run with one thread.
+ * A rename is logged as it is; all paths are as the program gave them, below a folder's descriptor, too. fsync is not
+ * passed on: no test looks at the disk itself, and it would take most of the time. Programs under test run with one
+ * thread.
  */
 #include <dlfcn.h>
 #include <errno.h>
@@ -135,10 +136,10 @@ static void note_sync(int fd)
 	note("sync-file\t%llu\t%u\n", (unsigned long long)status.st_ino, number);
 }
 
-static void note_name(const char *what, const char *path)
+static void note_name(const char *what, int folder, const char *path)
 {
 	struct stat status;
-	if (getenv("NT_CALLS_TRACE") && lstat(path, &status) == 0)
+	if (getenv("NT_CALLS_TRACE") && fstatat(folder, path, &status, AT_SYMLINK_NOFOLLOW) == 0)
 		note("%s\t%s\t%llu\n", what, path, (unsigned long long)status.st_ino);
 }
 
@@ -180,7 +181,21 @@ int open(const char *path, int flags, ...)
 		return REAL(open)(path, flags);
 	const int fd = enter("open") ? REAL(open)(path, flags, mode) : -1;
 	if (fd >= 0)
-		note_name("create", path);
+		note_name("create", AT_FDCWD, path);
+	return fd;
+}
+
+int openat(int folder, const char *path, int flags, ...)
+{
+	va_list arguments;
+	va_start(arguments, flags);
+	const mode_t mode = flags & O_CREAT ? va_arg(arguments, mode_t) : 0;
+	va_end(arguments);
+	if (!(flags & O_CREAT))
+		return REAL(openat)(folder, path, flags);
+	const int fd = enter("open") ? REAL(openat)(folder, path, flags, mode) : -1;
+	if (fd >= 0)
+		note_name("create", folder, path);
 	return fd;
 }
 
@@ -205,6 +220,12 @@ int rename(const char *from, const char *to)
 	return renamed(allowed ? REAL(rename)(from, to) : -1, from, to);
 }
 
+int renameat(int from_folder, const char *from, int to_folder, const char *to)
+{
+	const bool allowed = enter("rename") && !is_kept(from) && !is_kept(to);
+	return renamed(allowed ? REAL(renameat)(from_folder, from, to_folder, to) : -1, from, to);
+}
+
 int renameat2(int from_folder, const char *from, int to_folder, const char *to, unsigned flags)
 {
 	const bool allowed = enter("renameat2") && !is_kept(from) && !is_kept(to);
@@ -215,7 +236,24 @@ int link(const char *from, const char *to)
 {
 	const int result = enter("link") && !is_kept(from) ? REAL(link)(from, to) : -1;
 	if (result == 0)
-		note_name("link", to);
+		note_name("link", AT_FDCWD, to);
+	return result;
+}
+
+int linkat(int from_folder, const char *from, int to_folder, const char *to, int flags)
+{
+	const int result =
+		enter("link") && !is_kept(from) ? REAL(linkat)(from_folder, from, to_folder, to, flags) : -1;
+	if (result == 0)
+		note_name("link", to_folder, to);
+	return result;
+}
+
+int unlinkat(int folder, const char *path, int flags)
+{
+	const int result = enter("unlink") && !is_kept(path) ? REAL(unlinkat)(folder, path, flags) : -1;
+	if (result == 0)
+		note("unlink\t%s\n", path);
 	return result;
 }
 

@@ -14,6 +14,7 @@ scene     a GLB of COUNT primitives, ten in a mesh, of SIDE (3) quads squared an
 images    an OBJ of COUNT materials, and FILE.mtl beside it, with two images each that are not there
 libraries an OBJ that names one library by COUNT names, and FILE.mtl beside it with COUNT materials
 slashes   an OBJ, or a PLY or glTF by the name of FILE, that names library or images with COUNT slashes
+colors    an OBJ of COUNT materials, and FILE.mtl and FILE.0.tga and so on beside it, with an image of one pixel each
 bumps     an OBJ of COUNT materials, and FILE.mtl and FILE.png beside it: each makes other normals of one white PNG of
           SIDE (4096) pixels squared and one bit
 animated  a GLB of COUNT materials, each with a texture transform, and an animation of COUNT others
@@ -86,6 +87,16 @@ def slashes(count, out):
                   b'0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n')
     else:
         glb(1, out, 1, False, more={'images': [{'uri': name + 'x.png'}]})
+
+
+def colors(count, out):
+    images(count, out)
+    name = sys.argv[3]
+    with open(name + '.mtl', 'w') as materials:
+        for i in range(count):
+            materials.write('newmtl m%d\nmap_Kd %s.%d.tga\n' % (i, os.path.basename(name), i))
+            with open('%s.%d.tga' % (name, i), 'wb') as image:
+                image.write(b'\0\0\2' + bytes(9) + struct.pack('<HHBBBBB', 1, 1, 24, 32, i % 256, i // 256, 1))
 
 
 def bumps(count, out, side):
@@ -298,5 +309,5 @@ with open(sys.argv[3], 'wb') as out:
     else:
         {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
          'patches': patches, 'repeated': repeated, 'centre': centre, 'folded': folded,
-         'tiles': tiles, 'turned': turned, 'libraries': libraries, 'slashes': slashes,
+         'tiles': tiles, 'turned': turned, 'libraries': libraries, 'slashes': slashes, 'colors': colors,
          'animated': animated, 'levels': levels}[kind](count, out)

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/hash_index.h"
 #include "file/image_type.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
@@ -22,6 +23,13 @@ nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *
 
 /* ---- reading ---- */
 
+/* Where a file went: images that name it, by whatever name, have it together. */
+typedef struct moved_file {
+	uint64_t device, inode;
+	uint32_t view;   /* NT_NONE: into none */
+	const char *uri; /* NULL: not beside the output */
+} moved_file;
+
 /* Where the images of a document go. */
 typedef struct moving {
 	nt_scene *scene;
@@ -29,6 +37,9 @@ typedef struct moving {
 	nt_json *json;
 	const nt_gltf_output *output;
 	nt_open_images *images;
+	moved_file *moved; /* [moved_count] */
+	size_t moved_count, moved_capacity;
+	nt_hash_index moved_index;
 	nt_error *error;
 } moving;
 
@@ -54,56 +65,79 @@ static void report(moving *m, size_t index, nt_code code, const char *text)
 	nt_finding_add(&m->scene->findings, code, &place, 1, "%s", text);
 }
 
-/* Opens the file of an image; a finding and *file NULL where that is not possible. */
-static nt_status open_image(moving *m, size_t index, const nt_json_value *image, const nt_file **file,
+/* Opens the file of an image; *opened is false, after a finding, where that is not possible. */
+static nt_status open_image(moving *m, size_t index, const nt_json_value *image, nt_file *file, bool *opened,
 	const char **path)
 {
-	*file = NULL;
 	size_t length;
 	const char *uri = nt_gltf_external_uri(image, &length);
-	nt_file opened;
 	nt_error error;
 	nt_error_clear(&error);
 	nt_status status = nt_uri_resolve(&m->edits->arena, m->edits->document->path, uri, length,
 		m->edits->document->allow_outside, path, &error);
 	if (!status)
-		status = nt_file_open_content(&opened, *path, true, &error);
+		status = nt_file_open_content(file, *path, true, &error);
+	*opened = status == NT_OK;
 	if (status == NT_ERROR_MEMORY || status == NT_ERROR_IO) {
 		*m->error = error;
 		snprintf(m->error->place.pointer, sizeof m->error->place.pointer, "/images/%zu", index);
 		return status;
 	}
-	if (status) {
+	if (status)
 		report(m, index, NT_CODE_IMAGE_MISSING, error.message);
-		return NT_OK;
-	}
-	nt_open_images *images = m->images;
-	if (!nt_grow((void **)&images->files, &images->capacity, images->count + 1, sizeof *images->files)) {
-		nt_file_close(&opened);
+	return NT_OK;
+}
+
+/* What became of a file that an earlier image names, too; NULL: none does. */
+static const moved_file *find_moved(const moving *m, const nt_file *file)
+{
+	const uint64_t key[2] = {file->device, file->inode}, hash = nt_hash_bytes(0, key, sizeof key);
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t i; (i = nt_hash_index_next(&m->moved_index, hash, &at)) != UINT32_MAX;)
+		if (m->moved[i].device == file->device && m->moved[i].inode == file->inode)
+			return &m->moved[i];
+	return NULL;
+}
+
+static nt_status note_moved(moving *m, const nt_file *file, uint32_t view, const char *uri)
+{
+	const uint64_t key[2] = {file->device, file->inode};
+	if (!nt_grow((void **)&m->moved, &m->moved_capacity, m->moved_count + 1, sizeof *m->moved) ||
+		!nt_hash_index_add(&m->moved_index, nt_hash_bytes(0, key, sizeof key), (uint32_t)m->moved_count))
 		return nt_fail_memory(m->error);
-	}
-	images->files[images->count] = opened;
-	*file = &images->files[images->count++];
+	m->moved[m->moved_count++] = (moved_file){file->device, file->inode, view, uri};
+	return NT_OK;
+}
+
+/* Keeps a file open until the output is written. */
+static nt_status keep_open(moving *m, const nt_file *file)
+{
+	nt_open_images *images = m->images;
+	if (!nt_grow((void **)&images->files, &images->capacity, images->count + 1, sizeof *images->files))
+		return nt_fail_memory(m->error);
+	images->files[images->count++] = *file;
 	return NT_OK;
 }
 
 /* ---- moving ---- */
 
-static nt_status embed_in_view(moving *m, nt_json_value *image, const nt_file *file,
-	const char *type)
+static void refer_to_view(moving *m, nt_json_value *image, uint32_t view, const char *type)
 {
-	uint32_t buffer, view;
-	nt_status status =
-		nt_edits_choose_buffer(m->edits, 0, &buffer, m->error);
-	if (!status)
-		status = nt_edits_add_view(m->edits, buffer, file->data, file->size, 0, 0,
-			&view, m->error);
-	if (status)
-		return status;
 	nt_json_remove(m->json, image, "uri");
 	nt_json_set_string(m->json, nt_json_put(m->json, image, "mimeType"), type, strlen(type));
 	nt_json_set_uint64(m->json, nt_json_put(m->json, image, "bufferView"), view);
-	return NT_OK;
+}
+
+static nt_status embed_in_view(moving *m, nt_json_value *image, const nt_file *file, const char *type, uint32_t *view)
+{
+	uint32_t buffer;
+	nt_status status =
+		nt_edits_choose_buffer(m->edits, 0, &buffer, m->error);
+	if (!status)
+		status = nt_edits_add_view(m->edits, buffer, file->data, file->size, 0, 0, view, m->error);
+	if (!status)
+		refer_to_view(m, image, *view, type);
+	return status;
 }
 
 static nt_status embed_as_data(moving *m, nt_json_value *image, const nt_file *file,
@@ -173,44 +207,95 @@ static nt_status place_turned(moving *m, nt_json_value *image, const nt_turned_i
 	nt_status status = NT_OK;
 	if (turned->replaces && nt_json_get_uint64(nt_json_find(image, "bufferView"), &view))
 		status = nt_edits_release_view(m->edits, (uint32_t)view, 1, m->error);
-	return status ? status : embed_in_view(m, image, &file, type);
+	uint32_t new_view;
+	return status ? status : embed_in_view(m, image, &file, type, &new_view);
 }
 
-/* Copies an image beside the output, under its own name where that is to be had. */
+/* Copies an image's file beside the output, under its own name where that is to be had; one that is there already is
+ * referred to. */
+static nt_status copy_file(moving *m, nt_json_value *image, const nt_file *file, const char *path)
+{
+	const moved_file *known = find_moved(m, file);
+	size_t length;
+	if (known && known->uri) {
+		nt_json_set_string(m->json, nt_json_put(m->json, image, "uri"), known->uri, strlen(known->uri));
+		return NT_OK;
+	}
+	const nt_status status = write_beside(m, image, file, nt_last_part(path));
+	if (status)
+		return status;
+	const char *uri = nt_json_get_string(nt_json_find(image, "uri"), &length);
+	uri = nt_arena_text(&m->edits->arena, uri, length);
+	return uri ? note_moved(m, file, NT_NONE, uri) : nt_fail_memory(m->error);
+}
+
 static nt_status copy_image(moving *m, size_t index, nt_json_value *image)
 {
 	if (!*m->output->link_prefix)
 		return NT_OK; /* it is there already */
-	const nt_file *file;
-	const char *source;
-	const nt_status status = open_image(m, index, image, &file, &source);
-	return status || !file ? status : write_beside(m, image, file, nt_last_part(source));
+	nt_file file;
+	const char *path;
+	bool opened;
+	nt_status status = open_image(m, index, image, &file, &opened, &path);
+	if (!opened)
+		return status;
+	status = copy_file(m, image, &file, path);
+	nt_file_close(&file);
+	return status;
+}
+
+static nt_status embed_file(moving *m, size_t index, nt_json_value *image, const nt_file *file, const char *path,
+	bool *is_kept)
+{
+	const char *type = media_type(m->edits->document, file);
+	*is_kept = false;
+	if (!type) {
+		report(m, index, NT_CODE_IMAGE_TYPE, "it stays a file");
+		return m->output->is_stream ? nt_gltf_link(m->json, image, m->output->link_prefix, m->error)
+			: *m->output->link_prefix ? copy_file(m, image, file, path) : NT_OK;
+	}
+	if (m->output->options->format != NT_FORMAT_GLB)
+		return embed_as_data(m, image, file, type);
+	const moved_file *known = find_moved(m, file);
+	if (known && known->view != NT_NONE) {
+		refer_to_view(m, image, known->view, type);
+		return NT_OK;
+	}
+	uint32_t view;
+	nt_status status = keep_open(m, file);
+	if (status)
+		return status;
+	*is_kept = true;
+	status = embed_in_view(m, image, file, type, &view);
+	return status ? status : note_moved(m, file, view, NULL);
 }
 
 static nt_status embed_image(moving *m, size_t index, nt_json_value *image)
 {
-	const nt_file *file;
-	const char *source;
-	const nt_status status = open_image(m, index, image, &file, &source);
-	if (status || !file)
+	nt_file file;
+	const char *path;
+	bool opened, is_kept;
+	nt_status status = open_image(m, index, image, &file, &opened, &path);
+	if (!opened)
 		return status;
-	const char *type = media_type(m->edits->document, file);
-	if (!type) {
-		report(m, index, NT_CODE_IMAGE_TYPE, "it stays a file");
-		return m->output->is_stream ? nt_gltf_link(m->json, image, m->output->link_prefix, m->error)
-			: copy_image(m, index, image);
-	}
-	return m->output->options->format == NT_FORMAT_GLB ? embed_in_view(m, image, file, type) :
-							     embed_as_data(m, image, file, type);
+	status = embed_file(m, index, image, &file, path, &is_kept);
+	if (!is_kept)
+		nt_file_close(&file);
+	return status;
 }
 
-static const nt_turned_image *find_turned(const moving *m, size_t index)
+/* The turned images by their numbers; NULL: there are none. */
+static nt_status list_turned(const nt_turned_images *turned, size_t count, const nt_turned_image ***list,
+	nt_error *error)
 {
-	const nt_turned_images *turned = m->output->options->turned;
-	for (size_t i = 0; turned && i < turned->count; i++)
-		if (turned->items[i].image == index)
-			return &turned->items[i];
-	return NULL;
+	*list = NULL;
+	if (!turned || !turned->count)
+		return NT_OK;
+	*list = nt_calloc(count, sizeof **list);
+	for (size_t i = 0; *list && i < turned->count; i++)
+		if (turned->items[i].image < count && !(*list)[turned->items[i].image])
+			(*list)[turned->items[i].image] = &turned->items[i];
+	return *list ? NT_OK : nt_fail_memory(error);
 }
 
 nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_gltf_output *output,
@@ -221,11 +306,12 @@ nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_
 		.error = error};
 	const nt_images choice = nt_gltf_images_choice(output->options, document);
 	const size_t count = nt_json_count(nt_gltf_root_member(document, "images"));
-	nt_status status = NT_OK;
+	const nt_turned_image **turned_of;
+	nt_status status = list_turned(output->options->turned, count, &turned_of, error);
 	for (size_t i = 0; !status && i < count; i++) {
 		/* embedding may give the root its first view, which moves the root's members */
 		nt_json_value *image = nt_json_at(nt_gltf_root_member(document, "images"), i);
-		const nt_turned_image *turned = find_turned(&m, i);
+		const nt_turned_image *turned = turned_of ? turned_of[i] : NULL;
 		size_t length;
 		if (turned) {
 			status = place_turned(&m, image, turned);
@@ -243,6 +329,9 @@ nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_
 		else
 			status = nt_gltf_link(m.json, image, output->link_prefix, error);
 	}
+	free(turned_of);
+	free(m.moved);
+	nt_hash_index_free(&m.moved_index);
 	return status;
 }
 

@@ -10,16 +10,25 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 enum { PATIENCE_SECONDS = 20 };
 
+/* As in_folder(), for a second path in one call. */
+static const char *in_folder_a(const char *name)
+{
+	static char path[400];
+	snprintf(path, sizeof path, "%s", in_folder(name));
+	return path;
+}
+
 /* A temporary file in the folder. */
 static nt_temporary *make_file(void)
 {
 	nt_temporary *made = NULL;
-	if (nt_temporary_create(in_folder("out.glb"), 0600, &made) < 0)
+	if (nt_temporary_create(in_folder("out.glb"), 0600, NULL, &made) < 0)
 		_exit(2);
 	return made;
 }
@@ -132,6 +141,67 @@ TEST(stale_files_are_those_that_nobody_has_locked)
 	assert_false(nt_temporary_is_lockable(".nmtan-1-0-0.tmp", true));
 	nt_temporary_discard(alive);
 	nt_temporary_discard(second);
+}
+
+static void move_and_end(void)
+{
+	nt_temporary *made;
+	if (nt_temporary_create(in_folder("ending/out.glb"), 0600, NULL, &made) < 0 ||
+		rename(in_folder_a("ending"), in_folder("ended")))
+		_exit(2);
+	nt_temporaries_remove_all();
+}
+
+/* Who moves the folder takes along what is being written in it. */
+TEST(a_folder_may_be_moved)
+{
+	nt_temporary *first, *second;
+	sigset_t before;
+	assert_int_equal(mkdir(in_folder("old"), 0700), 0);
+	assert_true(nt_temporary_create(in_folder("old/a.glb"), 0600, NULL, &first) >= 0);
+	assert_true(nt_temporary_create(in_folder("old/b.glb"), 0600, NULL, &second) >= 0);
+	assert_int_equal(rename(in_folder_a("old"), in_folder("new")), 0);
+	/* another one of this name is not it */
+	assert_int_equal(mkdir(in_folder("old"), 0700), 0);
+	nt_temporaries_hold(&before);
+	assert_true(nt_temporary_rename(first, in_folder("old/a.glb"), false));
+	nt_temporaries_release(&before);
+	nt_temporary_discard(first);
+	nt_temporary_discard(second);
+	assert_int_equal(access(in_folder("new/a.glb"), F_OK), 0);
+	assert_int_equal(unlink(in_folder("new/a.glb")), 0);
+	assert_int_equal(rmdir(in_folder("new")), 0); /* nothing else is in it */
+	assert_int_equal(rmdir(in_folder("old")), 0);
+	/* a signal has them removed there, too */
+	assert_int_equal(mkdir(in_folder("ending"), 0700), 0);
+	assert_true(child_ends(move_and_end));
+	assert_int_equal(rmdir(in_folder("ended")), 0);
+}
+
+static void clean_led(void)
+{
+	nt_temporaries_clean(in_folder("led/"));
+}
+
+TEST(a_leader_has_the_lock_of_others)
+{
+	nt_temporary *leader, *led;
+	char name[NT_TEMPORARY_NAME];
+	assert_int_equal(mkdir(in_folder("led"), 0700), 0);
+	assert_true(nt_temporary_create(in_folder("led/a.png"), 0600, NULL, &leader) >= 0);
+	assert_true(nt_temporary_create(in_folder("led/b.png"), 0600, leader, &led) >= 0);
+	assert_true(nt_temporary_close(led));
+	assert_true(nt_temporary_leader_of(strrchr(nt_temporary_path(led), '/') + 1, name));
+	assert_string_equal(name, strrchr(nt_temporary_path(leader), '/') + 1);
+	assert_false(nt_temporary_leader_of(name, name));
+	assert_true(child_ends(clean_led));
+	assert_int_equal(access(nt_temporary_path(leader), F_OK), 0);
+	assert_int_equal(access(nt_temporary_path(led), F_OK), 0);
+	nt_temporary_discard(leader);
+	assert_true(child_ends(clean_led));
+	assert_int_equal(access(nt_temporary_path(led), F_OK), -1);
+	nt_temporary_discard(led);
+	assert_int_equal(rmdir(in_folder("led")), 0);
 }
 
 int main(void)
