@@ -12,6 +12,7 @@
 #include "api/split.h"
 #include "api/vertices.h"
 #include "base/clock.h"
+#include "base/counts.h"
 #include "base/cpu.h"
 #include "base/parallel.h"
 #include "base/pool.h"
@@ -227,8 +228,10 @@ static const uint8_t half_corners[][2][3] = {
 	{{0, 1, 3}, {1, 2, 3}}, /* NT_HALF_ABD */
 };
 
-/* Solves quads in the place of their halves, whose corners take the quads' results; nothing is known of these. */
-static nmtan_status solve_quads(request *r, const uint8_t *halves, size_t *ill_conditioned)
+/* Solves quads in the place of their halves, whose corners take the quads' results. They are repaired as quads, so that
+ * both halves of a folded one have its baker's sign. Nothing is known of the halves; `repaired` receives what was
+ * repaired. */
+static nmtan_status solve_quads(request *r, const uint8_t *halves, size_t *ill_conditioned, nmtan_counts *repaired)
 {
 	const nmtan_mesh *mesh = &r->mesh;
 	nt_scratch *scratch = r->solve.scratch;
@@ -254,7 +257,14 @@ static nmtan_status solve_quads(request *r, const uint8_t *halves, size_t *ill_c
 	quads.face_sizes = sizes;
 	solve.mesh = &quads;
 	solve.known = r->solve.known = NULL;
-	const nmtan_status status = run_method(&solve, r->options.method, ill_conditioned);
+	solve.bitangents = solve.magnitudes = NULL;
+	solve.faults = NULL;
+	nmtan_status status = run_method(&solve, r->options.method, ill_conditioned);
+	if (!status && solve.repair)
+		status = nt_repair(&solve, repaired);
+	r->solve.repair = false;
+	repaired->degenerate_positions = repaired->degenerate_texcoords = repaired->mirrored = 0;
+	repaired->stored_differently = repaired->folded_quads = 0;
 	const float *from = solve.tangents;
 	for (size_t t = 0, parts; !status && t < mesh->face_count; t += parts) {
 		parts = halves[t] == NT_HALF_NONE ? 1 : 2;
@@ -289,13 +299,15 @@ nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 
 	/* the method's own answer, then what a renderer can use */
 	size_t ill_conditioned = 0;
+	nmtan_counts of_quads = NMTAN_COUNTS_INIT;
 	if (!r.solve.tangents)
 		status = NMTAN_ERROR_MEMORY;
 	else if (r.solve.corner_count > 0)
-		status = implementation->halves ? solve_quads(&r, implementation->halves, &ill_conditioned)
+		status = implementation->halves ? solve_quads(&r, implementation->halves, &ill_conditioned, &of_quads)
 						: run_method(&r.solve, r.options.method, &ill_conditioned);
 	if (!status && r.solve.corner_count > 0)
 		status = nt_repair(&r.solve, &met);
+	nt_counts_add(&met, &of_quads);
 	if (!status)
 		nt_put_tangents(to.tangents, to.tangent_stride_bytes, r.solve.tangents, r.solve.corner_count);
 	end_counts(&r, &met, ill_conditioned, counts);

@@ -574,7 +574,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"smaller half",
 		"The tangents were solved on quads. A quad whose halves are wound in opposite directions in texture "
 		"space has one orientation to MikkTSpace, that of the larger half.",
-		"Nothing if the map was baked on quads too; --existing=replace gives each half its own sign.",
+		"Nothing if the map was baked on quads too; --existing=replace --quads=off solves the triangles.",
 		"a quad with one corner folded over its diagonal in texture space, from Blender"),
 	ROW(TAN_QUADS_LIKELY, INFO, "i--", CONVERT, "--quads=pairs",
 		"{count} {pair|pairs} of triangles may have been {one quad|quads} when the map was baked",

@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <string.h>
+#include "report/quads.h"
 
 enum { UNMIRRORED = 1, MIRRORED = 2 };
 
@@ -21,7 +22,9 @@ static nt_status check_shared(nt_check *check)
 		return NT_ERROR_MEMORY;
 	memset(sides, 0, vertex_count);
 	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
-		const int sign = nt_settled_orientation(check, c / 3);
+		/* both halves of a folded quad may have the quad's tangents */
+		const int folded = nt_folded_orientation(check->mesh, check->halves, c / 3);
+		const int sign = folded ? folded : nt_settled_orientation(check, c / 3);
 		if (sign)
 			sides[nt_side_vertex(s, c)] |= sign > 0 ? UNMIRRORED : MIRRORED;
 	}

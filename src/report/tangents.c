@@ -473,18 +473,19 @@ static nt_status report_maker(nt_check *check)
 	return failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
-/* Finds the maker, and the faces that the mesh is to be compared on. */
-static nt_status find_maker(nt_check *check)
+/* Whether pairs of triangles are to be looked for, of which it is not known yet whether they were solved as quads. */
+static bool looks_for_quads(const nt_check *check)
+{
+	return !check->mesh->halves && check->options->quads == NT_QUADS_AUTO && !check->mesh->face_sizes;
+}
+
+/* Finds the maker, and the faces that the mesh is to be compared on. `pairs`: room for halves, if these are looked for;
+ * later checks ask for them. */
+static nt_status find_maker(nt_check *check, uint8_t *pairs)
 {
 	const nt_mesh *mesh = check->mesh;
-	uint8_t *halves = mesh->halves;
-	size_t quads = mesh->quad_count;
-	if (!halves && check->options->quads == NT_QUADS_AUTO && !mesh->face_sizes) {
-		halves = nt_scratch_alloc(check->scratch, mesh->face_count, 1);
-		if (!halves)
-			return NT_ERROR_MEMORY;
-		quads = nt_pair_quads(mesh, false, halves);
-	}
+	uint8_t *halves = pairs ? pairs : mesh->halves;
+	const size_t quads = pairs ? nt_pair_quads(mesh, false, pairs) : mesh->quad_count;
 	uint64_t *border = NULL;
 	nt_status status = NT_OK;
 	if (mesh->has_siblings) {
@@ -533,15 +534,19 @@ static void check_presence(nt_check *check)
 nt_status nt_check_tangents(nt_check *check)
 {
 	const nt_mesh *mesh = check->mesh;
+	const bool compared = check->facts->checked_tangents && check->stored == NT_STORED_AUTHORED &&
+			      mesh->texcoords && mesh->normals;
+	uint8_t *pairs = NULL;
+	if (compared && looks_for_quads(check) && !(pairs = nt_scratch_alloc(check->scratch, mesh->face_count, 1)))
+		return NT_ERROR_MEMORY;
 	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
 	check_presence(check);
 	nt_status status = NT_OK;
+	check->halves = mesh->halves;
 	if (check->facts->checked_tangents) {
-		const bool compared = check->stored == NT_STORED_AUTHORED && mesh->texcoords && mesh->normals;
 		status = check_each(check);
-		check->halves = mesh->halves;
 		if (!status && compared)
-			status = find_maker(check);
+			status = find_maker(check, pairs);
 		if (!status && mesh->texcoords)
 			status = check_signs(check);
 		if (!status && compared)

@@ -126,10 +126,19 @@ exits 6
 is "$(value f.json "'TAN_QUAD_SIGN' in $codes, 'TAN_SIGN_MISMATCH' in $codes")" "(False, True)"
 run --only=all --existing=repair cut.gltf repair.glb
 same_places repair.glb obj.glb
-run --only=all --existing=replace --raw cut.gltf raw.glb
-same_places raw.glb obj.glb
-# what is solved anew follows the triangle
-run --only=all --existing=replace cut.gltf own.glb
+warnings='sorted(f["code"] for f in r["files"][0]["findings"] if f["severity"] == "warning" and f["code"].startswith("TAN_"))'
+# what is solved on quads has the baker's sign, too, however it is known that there are quads
+for words in "--existing=replace" "--existing=replace --raw" "--existing=replace --quads=pairs"; do
+	run --only=all $words cut.gltf own.glb
+	exits 0
+	same_places own.glb obj.glb
+done
+run --only=all --quads=pairs bare.gltf own.glb
+same_places own.glb obj.glb
+run -q --check --only=all --fail-on=never --report=f.json own.glb
+is "$(value f.json "$warnings")" "[]"
+# on triangles each half has its own
+run --only=all --existing=replace --quads=off cut.gltf own.glb
 is "$(gltf own.glb '(() => { const p = g.meshes[0].primitives[0], i = rows(p.indices).flat(),
 	[u, t] = ["TEXCOORD_0", "TANGENT"].map((name) => rows(p.attributes[name])); let wrong = 0;
 	for (let c = 0; c < i.length; c += 3) {
