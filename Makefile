@@ -149,7 +149,8 @@ lanes := -O3 -fno-trapping-math
 ifeq ($(config),debug)
 lanes :=
 endif
-$(call objects_of,tangent/fast/kernel_baseline.c tangent/sums/kernel_baseline.c): FILE_FLAGS := $(lanes)
+$(call objects_of,tangent/fast/kernel_baseline.c tangent/sums/kernel_baseline.c topology/edge_sort.c \
+	topology/representatives.c): FILE_FLAGS := $(lanes)
 ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
 $(call objects_of,tangent/fast/kernel_avx2.c tangent/sums/kernel_avx2.c): FILE_FLAGS := $(lanes) -mavx2 -mfma
 $(call objects_of,tangent/fast/kernel_avx512.c tangent/sums/kernel_avx512.c): FILE_FLAGS := $(lanes) \

@@ -124,19 +124,24 @@ static bool take_last(const nt_welded_mesh *m, size_t triangles, nt_edge_tail *t
 static void watch_cells(const nt_welded_mesh *m, nt_edge_tail *tail)
 {
 	const nt_grid *grid = &tail->grid;
-	/* twice a cell, so that no rounding can leave one of it out */
-	const float near = (grid->high - grid->low) * (2.0f / NT_CELLS) + FLT_MIN;
 	unsigned count = 0;
 	memset(tail->cells, 0, NT_CELLS);
-	tail->low = grid->high;
-	tail->high = grid->low;
+	memset(tail->bins, 0, sizeof tail->bins);
+	/* a little less than there are, so that no rounding makes one more: less than half a cell */
+	tail->scale = ((float)NT_EDGE_BINS - 0.1f) / (grid->high - grid->low);
+	tail->scale = tail->scale <= FLT_MAX ? tail->scale : 0;
 	for (size_t i = 0; i < tail->member_count; i++) {
-		const float here = nt_welded_position(m, tail->members[i].vertex)[grid->axis];
-		uint8_t *cell = &tail->cells[nt_grid_cell(grid, here)];
-		*cell = *cell ? *cell : (uint8_t)++count;
-		tail->low = here - near < tail->low ? here - near : tail->low;
-		tail->high = here + near > tail->high ? here + near : tail->high;
+		const unsigned cell = nt_grid_cell(grid, nt_welded_position(m, tail->members[i].vertex)[grid->axis]);
+		if (tail->cells[cell])
+			continue;
+		tail->cells[cell] = (uint8_t)++count;
+		const unsigned bin = cell / 2, beside = cell % 2 ? bin + 1 : bin - 1;
+		tail->bins[bin / 32] |= (uint32_t)1 << bin % 32;
+		if (beside < NT_EDGE_BINS)
+			tail->bins[beside / 32] |= (uint32_t)1 << beside % 32;
 	}
+	if (tail->scale == 0)
+		tail->bins[0] |= 1;
 }
 
 /* The box of rows that have corners, since others made that of all, or may have. */
@@ -156,16 +161,14 @@ nmtan_status nt_edge_tail_make(const nt_welded_mesh *m, nt_edge_tail *tail)
 	*tail = (nt_edge_tail){.limit = corner_count(m) > NT_EDGE_SORT_CORNERS};
 	if (m->triangle_count < LEAST_WATCHED || tail->limit)
 		return NMTAN_OK;
-	const size_t batches = m->triangle_count / NT_EDGE_BATCH + 1;
 	nt_box *boxes = nt_scratch_alloc(m->scratch, m->vertex_count / NT_BOX_ROWS + 1, sizeof *boxes);
-	tail->batches = nt_scratch_alloc(m->scratch, batches, 1);
-	if (!boxes || !tail->batches)
+	tail->near = nt_scratch_alloc(m->scratch, m->triangle_count, 1);
+	if (!boxes || !tail->near)
 		return NMTAN_ERROR_MEMORY;
-	memset(tail->batches, 0, batches);
 	if (!nt_grid_make(m, boxes, &tail->grid))
 		use_box_of_used(m, tail);
 	if (tail->limit) {
-		tail->batches = NULL;
+		tail->near = NULL;
 		return NMTAN_OK;
 	}
 	if (!take_last(m, first_triangles(m), tail))
@@ -193,69 +196,35 @@ typedef struct question {
 	size_t link_count;
 } question;
 
-/* Set in the number of a vertex that makes the box. */
-enum { EXTREME = 256 };
-
-/* The number of a coordinate's cell; 0: no member is in it. */
-static inline uint8_t number_of(const nt_edge_tail *tail, float coordinate)
+/* Notes which triangles are near, if nobody has, and whether the vertices that make the box have corners. */
+static void note_near(const nt_welded_mesh *m, nt_edge_tail *tail)
 {
-	return coordinate >= tail->low && coordinate <= tail->high
-		? tail->cells[nt_grid_cell(&tail->grid, coordinate)] : 0;
-}
-
-/* Notes the batches that have corners in members' cells by vertices, of which nearly all are elsewhere, if the
- * triangles
- * come in no order or nobody has noted any. Returns the numbers of the vertices' cells; NULL when out of memory. */
-static uint16_t *look_through(const nt_welded_mesh *m, nt_edge_tail *tail)
-{
-	uint16_t *numbers = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *numbers);
-	const float *coordinates = m->positions + tail->grid.axis;
-	if (!numbers)
-		return NULL;
-	for (size_t v = 0; v < m->vertex_count; v++)
-		numbers[v] = tail->cells[nt_grid_cell(&tail->grid, coordinates[m->step * v])];
-	for (int e = 0; e < 6 && !tail->is_box_used; e++)
-		numbers[tail->grid.extremes[e]] |= EXTREME;
 	unsigned met = 0;
-	for (size_t t = 0, batch = 0, count; t < m->triangle_count; t += count, batch++) {
-		uint32_t copy[3 * NT_EDGE_BATCH];
-		count = m->triangle_count - t < NT_EDGE_BATCH ? m->triangle_count - t : NT_EDGE_BATCH;
-		const uint32_t *v = nt_triangle_vertices(m->triangles, t, count, copy);
-		unsigned any = 0;
-		NT_UNROLL(16)
-		for (size_t i = 0; i < 3 * count; i++)
-			any |= numbers[v[i]];
-		tail->batches[batch] = (uint8_t)any != 0;
-		for (size_t i = 0; any & EXTREME && met != 63 && i < 3 * count; i++)
-			for (unsigned e = 0; e < 6; e++)
-				met |= (unsigned)(v[i] == tail->grid.extremes[e]) << e;
+	for (size_t t = 0; t < m->triangle_count; t++) {
+		uint32_t copy[3], near = 0;
+		const uint32_t *v = vertices_of(m, t, copy);
+		for (int k = 0; k < 3; k++)
+			near |= nt_edge_is_near(tail, nt_welded_position(m, v[k])[tail->grid.axis]);
+		tail->near[t] = (uint8_t)near;
+		for (int i = 0; i < 18 && !tail->is_box_used; i++)
+			met |= (unsigned)(v[i % 3] == tail->grid.extremes[i / 3]) << i / 3;
 	}
 	tail->is_box_used = tail->is_box_used || met == 63;
-	return numbers;
 }
 
-static size_t count_batches(const question *q)
+/* The next triangle from t on that is near. */
+static size_t next_near(const nt_welded_mesh *m, const nt_edge_tail *tail, size_t t)
 {
-	const size_t all = q->mesh->triangle_count / NT_EDGE_BATCH + 1;
-	size_t count = 0;
-	for (size_t i = 0; i < all && q->tail->batches; i++)
-		count += q->tail->batches[i];
-	return q->tail->batches ? count : all;
-}
-
-/* The triangles of a batch: corners in members' cells. */
-static void list_batch(question *q, const uint16_t *numbers, size_t first, size_t count)
-{
-	const nt_welded_mesh *m = q->mesh;
-	uint32_t copy[3 * NT_EDGE_BATCH];
-	const uint32_t *v = nt_triangle_vertices(m->triangles, first, count, copy);
-	for (size_t i = 0; i < 3 * count; i++) {
-		const uint8_t number = numbers
-			? (uint8_t)numbers[v[i]] : number_of(q->tail, nt_welded_position(m, v[i])[q->tail->grid.axis]);
-		q->corners[q->corner_count] = (nt_welded_corner){v[i], (uint32_t)(3 * first + i)};
-		q->cells[q->corner_count] = number;
-		q->corner_count += number != 0;
+	if (!tail->near)
+		return t;
+	for (uint64_t some; t + sizeof some <= m->triangle_count; t += sizeof some) {
+		memcpy(&some, tail->near + t, sizeof some);
+		if (some != 0)
+			break;
 	}
+	while (t < m->triangle_count && !tail->near[t])
+		t++;
+	return t;
 }
 
 /* Corners that are compared at a time. */
@@ -264,26 +233,31 @@ enum { STEP = sizeof(uint64_t) };
 /* Lists the corners in members' cells. False when out of memory. */
 static bool list_corners(question *q)
 {
-	enum { MANY = 8 };
 	const nt_welded_mesh *m = q->mesh;
 	nt_edge_tail *tail = q->tail;
-	uint16_t *numbers = NULL;
-	if (tail->batches && (!tail->is_watched || count_batches(q) > m->triangle_count / NT_EDGE_BATCH / MANY) &&
-		!(numbers = look_through(m, tail)))
-		return false;
-	const size_t most = count_batches(q) * 3 * NT_EDGE_BATCH + STEP;
-	q->corners = nt_scratch_alloc(m->scratch, most, sizeof *q->corners);
-	q->cells = nt_scratch_alloc(m->scratch, most, sizeof *q->cells);
+	if (tail->near && !tail->is_noted)
+		note_near(m, tail);
+	size_t most = tail->near ? 0 : m->triangle_count;
+	for (size_t t = 0; tail->near && t < m->triangle_count; t++)
+		most += tail->near[t];
+	q->corners = nt_scratch_alloc(m->scratch, 3 * most + STEP, sizeof *q->corners);
+	q->cells = nt_scratch_alloc(m->scratch, 3 * most + STEP, sizeof *q->cells);
 	q->chosen = NULL;
-	q->corner_count = 0;
 	if (!q->corners || !q->cells)
 		return false;
-	for (size_t t = 0, batch = 0, count; t < m->triangle_count; t += count, batch++) {
-		count = m->triangle_count - t < NT_EDGE_BATCH ? m->triangle_count - t : NT_EDGE_BATCH;
-		if (!tail->batches || tail->batches[batch])
-			list_batch(q, numbers, t, count);
+	const nt_grid grid = tail->grid;
+	size_t count = 0;
+	for (size_t t = next_near(m, tail, 0); t < m->triangle_count; t = next_near(m, tail, t + 1)) {
+		uint32_t copy[3];
+		const uint32_t *v = vertices_of(m, t, copy);
+		for (uint32_t k = 0; k < 3; k++) {
+			q->corners[count] = (nt_welded_corner){v[k], (uint32_t)(3 * t) + k};
+			q->cells[count] = tail->cells[nt_grid_cell(&grid, nt_welded_position(m, v[k])[grid.axis])];
+			count += q->cells[count] != 0;
+		}
 	}
-	memset(q->cells + q->corner_count, 0, STEP);
+	q->corner_count = count;
+	memset(q->cells + count, 0, STEP);
 	return true;
 }
 
@@ -332,7 +306,9 @@ static nmtan_status find_member(question *q, nt_edge_member *member)
 		if (!q->chosen || !q->points)
 			return NMTAN_ERROR_MEMORY;
 	}
-	const uint8_t number = number_of(q->tail, nt_welded_position(m, member->vertex)[q->tail->grid.axis]);
+	const nt_grid *grid = &q->tail->grid;
+	const uint8_t number =
+		q->tail->cells[nt_grid_cell(grid, nt_welded_position(m, member->vertex)[grid->axis])];
 	const uint64_t low_bits = UINT64_MAX / 255 * 127, numbers = UINT64_MAX / 255 * number;
 	size_t count = 0;
 	for (size_t i = 0; i < q->corner_count; i += STEP) {
@@ -636,7 +612,7 @@ static nmtan_status pair_as_published(const nt_welded_mesh *m, const nt_grid *gr
 static nmtan_status ask(const nt_welded_mesh *m, nt_edge_tail *tail, size_t *count)
 {
 	question q = {.mesh = m, .tail = tail};
-	if (!tail->batches && !tail->limit)
+	if (!tail->near && !tail->limit)
 		use_box_of_used(m, tail);
 	if (m->triangle_count < LEAST_EDGES || tail->limit)
 		return NMTAN_OK;
@@ -645,7 +621,7 @@ static nmtan_status ask(const nt_welded_mesh *m, nt_edge_tail *tail, size_t *cou
 			if (!take_last(m, triangles, tail))
 				return NMTAN_ERROR_MEMORY;
 			watch_cells(m, tail);
-			tail->is_watched = false;
+			tail->is_noted = false;
 		}
 		if (!list_corners(&q))
 			return NMTAN_ERROR_MEMORY;
@@ -654,7 +630,7 @@ static nmtan_status ask(const nt_welded_mesh *m, nt_edge_tail *tail, size_t *cou
 			if (tail->limit)
 				return NMTAN_OK;
 			watch_cells(m, tail);
-			tail->is_watched = false;
+			tail->is_noted = false;
 			if (!list_corners(&q))
 				return NMTAN_ERROR_MEMORY;
 		}

@@ -150,14 +150,17 @@ static nmtan_status find_unsorted(nt_fast *fast, const nt_borrowed *memory)
 	return status;
 }
 
-/* Batches have been noted; whether the vertices that make the box have corners. */
-static void tell_watched(nt_fast *fast)
+/* Near triangles have been noted; whether the vertices that make the box have corners. */
+static void tell_noted(nt_fast *fast)
 {
 	nt_edge_tail *tail = &fast->tail;
-	bool used = tail->batches;
-	for (int i = 0; i < 6 && used && !tail->is_box_used; i++)
-		used = nt_adjacency_has_corners(&fast->adjacency, tail->grid.extremes[i]);
-	tail->is_watched = tail->is_box_used = used;
+	bool used = tail->near;
+	for (int i = 0; i < 6 && used && !tail->is_box_used; i++) {
+		const uint32_t extreme = tail->grid.extremes[i];
+		used = fast->bins.cursors ? nt_bins_have_corners(&fast->bins, extreme)
+					  : nt_adjacency_has_corners(&fast->adjacency, extreme);
+	}
+	tail->is_noted = tail->is_box_used = used;
 }
 
 /* What the published sort of edges is asked from, before sums note what they pass. */
@@ -216,10 +219,7 @@ static void fill_ranges(void *context, size_t begin, size_t end, unsigned thread
 /* By way of bins, which take the place of the adjacency. */
 static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned bin_bits, nt_fast_memory *memory)
 {
-	nmtan_status status = fast->solve->sorted ? NMTAN_OK : find_unsorted(fast, &memory->borrowed);
-	if (status)
-		return status;
-	status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
+	const nmtan_status status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
 		bin_bits ? bin_bits : nt_bins_bits(fast->vertex_count), memory->bin_sums, &memory->borrowed,
 		&fast->bins);
 	if (status)
@@ -430,7 +430,7 @@ static nmtan_status ask_tail(nt_fast *fast, const nt_borrowed *memory)
 {
 	if (fast->solve->sorted)
 		return NMTAN_OK;
-	tell_watched(fast);
+	tell_noted(fast);
 	return find_unsorted(fast, memory);
 }
 
@@ -461,7 +461,8 @@ static nmtan_status add(nt_fast *fast, const nt_kernels *kernels, const nt_fast_
 	/* each vertex's sums over its corners, one for each orientation */
 	status = binned ? fill_bins(fast, kernels, plan->bin_bits, &memory)
 		: add_to_records(fast, kernels, plan, &memory);
-	return status || binned ? status : ask_tail(fast, &memory.borrowed);
+	/* sums of bins lie in the output */
+	return status ? status : ask_tail(fast, binned ? &memory.none : &memory.borrowed);
 }
 
 nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan)
