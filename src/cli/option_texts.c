@@ -161,7 +161,7 @@ static void append_words(nt_buffer *out, const nt_option_row *row)
 		const size_t length = strcspn(v, "|");
 		if (!(length == 1 && *v == 'N')) {
 			nt_buffer_text(out, v == row->values ? "" : " ");
-			nt_buffer_append(out, v, length);
+			nt_buffer_append(out, v, length > 2 && v[length - 2] == ':' ? length - 1 : length);
 		}
 		v += length + (v[length] == '|');
 	}

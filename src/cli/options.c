@@ -35,21 +35,6 @@ static const nt_option_row *find_long(const char *name, size_t length)
 	return NULL;
 }
 
-/* The number of a word in "one|two|three", -1 when it is none of them. */
-static int choice_of(const char *values, const char *word)
-{
-	const size_t length = strlen(word);
-	int number = 0;
-	for (const char *v = values;; number++) {
-		const size_t here = strcspn(v, "|");
-		if (here == length && memcmp(v, word, length) == 0)
-			return number;
-		if (!v[here])
-			return -1;
-		v += here + 1;
-	}
-}
-
 /* A whole word of digits, at most `most`; -1 for anything else. */
 static int number_of(const char *word, int most)
 {
@@ -64,6 +49,25 @@ static int number_of(const char *word, int most)
 			return -1;
 	}
 	return number;
+}
+
+/* The number of a word among the values; -1: it is none. For a value that ends in :N *count becomes N, up to most. */
+static int choice_of(const char *values, const char *word, int most, int *count)
+{
+	const size_t length = strlen(word);
+	int number = 0;
+	for (const char *v = values;; number++) {
+		const size_t here = strcspn(v, "|");
+		if (here == length && memcmp(v, word, length) == 0 && v[here - 1] != 'N')
+			return number;
+		if (here > 2 && v[here - 2] == ':' && strncmp(v, word, here - 1) == 0) {
+			*count = number_of(word + here - 1, most);
+			return *count < 0 ? -1 : number;
+		}
+		if (!v[here])
+			return -1;
+		v += here + 1;
+	}
 }
 
 /* "64M": a whole number, and what it counts, as GNU's tools have it: nothing for bytes; K, M, G, T or KiB, MiB, GiB,
@@ -144,7 +148,7 @@ static nt_status append_word(parser *p, const nt_option_row *row, nt_words *word
 static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 {
 	char *field = (char *)p->command + row->offset;
-	int value = row->first;
+	int value = row->first, count = -1;
 	uint64_t size;
 	p->given[row - nt_option_rows] = true;
 	if (word && is_name(row) && nt_name_is_too_long(word))
@@ -160,9 +164,11 @@ static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 		break;
 	case NT_OPTION_CHOICE:
 	case NT_OPTION_MAYBE_CHOICE:
-		value = word ? choice_of(row->values, word) : 0;
+		value = word ? choice_of(row->values, word, row->most, &count) : 0;
 		if (value < 0)
 			return refuse_value(p, row, word);
+		if (count >= 0)
+			memcpy(field + sizeof value, &count, sizeof count);
 		value += row->first;
 		memcpy(field, &value, sizeof value);
 		break;

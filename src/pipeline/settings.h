@@ -12,13 +12,15 @@
 #include "scene/format.h"
 #include "scene/select.h"
 
-/* Where normals are missing; the last two replace authored ones, too. */
+/* If normals are missing; the last three replace authored ones, too. */
 typedef enum nt_normals {
 	NT_NORMALS_AUTO,
 	NT_NORMALS_FLAT,
 	NT_NORMALS_SMOOTH,
+	NT_NORMALS_ANGLE,
 	NT_NORMALS_REPLACE_FLAT,
-	NT_NORMALS_REPLACE_SMOOTH
+	NT_NORMALS_REPLACE_SMOOTH,
+	NT_NORMALS_REPLACE_ANGLE
 } nt_normals;
 
 /* What map_Bump and bump name. */
@@ -72,6 +74,7 @@ typedef struct nt_settings {
 	nt_existing existing;
 	bool fix;      /* repair what a check of the input calls error or warning, as far as that is proven: fix.c */
 	nt_normals normals;
+	int normals_degrees; /* of those by ANGLE: faces that meet at less share a normal */
 	nt_across across;
 	nt_transform_choice transform;
 	nt_quads quads;

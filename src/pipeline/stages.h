@@ -37,7 +37,7 @@ nt_status nt_tasks_do(const nt_tasks *tasks, nt_error *error);
 /* Makes the normals that meshes lack (all of them when `mode` says replace); vertices whose corners get
  * different normals are split, copies appended. Sets mesh->normals_made where something was made. Then makes
  * unit what is not: see unit_normals.c. */
-nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, unsigned threads, nt_error *error);
+nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, int degrees, unsigned threads, nt_error *error);
 
 /* Solves and splits every mesh whose decision says so; counts and findings go to the summary. Large
  * meshes take all threads one after the other, small ones run side by side. */

@@ -408,7 +408,6 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 		{NT_CODE_UV_FOLDED_QUAD, c->folded_quads},
 		{NT_CODE_UV_ROUNDED_AWAY, c->stored_differently},
 		{NT_CODE_NORMALS_SCALED, mesh->scaled_normals},
-		{NT_CODE_NORMALS_MADE, mesh->replaced_normals},
 		{NT_CODE_TAN_MORPH_TURNED, mesh->morph_turned},
 		{NT_CODE_TAN_REPAIRED, nt_counts_repaired(c)},
 		{NT_CODE_TAN_EXISTING_REPAIRED, mesh->replaced_tangents},
@@ -418,6 +417,9 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		if (rows[i].count)
 			nt_finding_add(list, rows[i].code, nt_mesh_place(mesh, &(nt_place){0}), rows[i].count, NULL);
+	if (mesh->replaced_normals)
+		nt_finding_add(list, NT_CODE_NORMALS_MADE, nt_mesh_place(mesh, &(nt_place){0}), mesh->replaced_normals,
+			"for the tangents alone, NORMAL keeps its zeros");
 	for (size_t m = 0; m < mesh->morph_count; m++)
 		add_halfway(list, mesh, &mesh->morphs[m]);
 }

@@ -224,7 +224,8 @@ static nt_status do_window(window *w)
 			nt_judge_w(&w->scene.meshes[i]);
 	t->begin_stage(t->run, NT_STAGE_NORMALS);
 	if (!status)
-		status = nt_stage_normals(&w->scene, t->settings->normals, t->settings->threads, w->error);
+		status = nt_stage_normals(&w->scene, t->settings->normals, t->settings->normals_degrees,
+			t->settings->threads, w->error);
 	if (!status)
 		status = nt_gltf_quantize_made_normals(&w->scene, t->options, w->error);
 	t->begin_stage(t->run, NT_STAGE_TANGENTS);
