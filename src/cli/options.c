@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the parser remembers: which rows were given. */
+/* The parser's memory: which rows were given. */
 typedef struct parser {
 	nt_command *command;
 	nt_error *error;
@@ -547,7 +547,7 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 		command->settings.texture_paths = command->texture_paths.items;
 	for (size_t i = 0; i < nt_option_row_count && command->settings.check; i++)
 		command->settings.converts |= nt_option_rows[i].writes && p.given[i];
-	/* Of one input an image beside it is proposed. */
+	/* For one input an image beside it is proposed. */
 	command->settings.own_input = !command->directory &&
 		!command->settings.in_place && !list_option(command) &&
 		command->operand_count == (command->settings.check ? 1 : 2);

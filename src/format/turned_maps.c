@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Normal maps of a glTF turned: see turned_maps.h. An image is decoded once, however many materials have it as a
- * normal map. Whoever else samples it keeps it: textures are counted by who refers to them, as normal map and at all,
+ * normal map. Other materials keep the image: textures are counted by who refers to them, as normal map and at all,
  * and where the two differ the material gets a texture of its own. VRM 0 says in the root what shaders sample, normal
  * maps once more. Other extensions whose textures are not called ...Texture are not seen; a texture that nobody is seen
  * to use counts as theirs.
@@ -16,7 +16,7 @@
 #include "gltf/document.h"
 #include "image/image.h"
 
-/* Where slots are, and what they are called there. */
+/* Places and names of slots. */
 enum { CLEARCOAT = 1, VRM, SLOT_COUNT };
 static const char *const slots[SLOT_COUNT][3] = {{"materials", "", "normalTexture"},
 	{"materials", "extensions/KHR_materials_clearcoat/", "clearcoatNormalTexture"},

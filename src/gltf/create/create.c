@@ -6,8 +6,8 @@
  * One glTF mesh per mesh, one node per instance, one primitive per material of a mesh. The document is
  * planned first, so that all sizes and places are known and its JSON (model.h) is complete, then the
  * buffer is streamed: geometry as primitive.h has it, embedded images behind. Only materials and images that
- * something uses are written; a primitive without texture coordinates gets its material without textures. What has no
- * material gets a neutral one, since glTF's default is metal.
+ * something uses are written; a primitive without texture coordinates gets its material without textures. A mesh
+ * without a material gets a neutral one, since glTF's default is metal.
  */
 #include "gltf/create/create.h"
 
@@ -54,7 +54,7 @@ typedef struct composition {
 	uint64_t buffer_size;
 } composition;
 
-/* Where the buffer's bytes go. */
+/* The destination of the buffer's bytes. */
 typedef struct byte_stream {
 	nt_sink *sink;
 	nt_base64 *base64; /* NULL: as they are */
@@ -168,7 +168,7 @@ static bool is_textured(composition *c, const nt_new_primitive *primitive)
 		nt_material_takes_texcoords(material_of(c, primitive));
 }
 
-/* Where the number of that version is. */
+/* The place of that version's number. */
 static uint32_t *number_of(composition *c, const nt_new_primitive *primitive)
 {
 	const size_t count = c->scene->material_count;
@@ -447,10 +447,10 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 	if (scene->left_out)
 		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, NULL, scene->left_out_count, "%.200s",
 			scene->left_out);
-	/* What becomes of each mesh. */
+	/* The primitives made of each mesh. */
 	if (status == NT_OK)
 		status = plan_primitives(&c, error);
-	/* Where everything lies in the buffer. */
+	/* The layout of the buffer. */
 	if (status == NT_OK) {
 		plan_geometry(&c);
 		status = plan_materials(&c, error);
