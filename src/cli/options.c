@@ -77,11 +77,10 @@ static uint64_t size_of(const char *word)
 	static const char units[] = "KMGT";
 	uint64_t number = 0;
 	const char *at = word;
-	for (; *at >= '0' && *at <= '9'; at++) {
-		if (number > (UINT64_MAX >> 40) / 10 - 1)
+	for (; *at >= '0' && *at <= '9'; at++)
+		if (__builtin_mul_overflow(number, 10, &number) ||
+			__builtin_add_overflow(number, (uint64_t)(*at - '0'), &number))
 			return UINT64_MAX;
-		number = number * 10 + (uint64_t)(*at - '0');
-	}
 	if (at == word)
 		return UINT64_MAX;
 	if (!*at)
@@ -91,7 +90,8 @@ static uint64_t size_of(const char *word)
 	if (!unit || (*at == 'k' && binary) || (!binary && strcmp(at + 1, "B") != 0))
 		return UINT64_MAX;
 	for (const char *u = units; u <= unit; u++)
-		number *= binary ? 1024 : 1000;
+		if (__builtin_mul_overflow(number, binary ? 1024 : 1000, &number))
+			return UINT64_MAX;
 	return number;
 }
 

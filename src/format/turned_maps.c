@@ -153,12 +153,13 @@ static nt_status open_jobs(const turning *t, nt_error *error)
 	nt_status status = NT_OK;
 	for (size_t j = 0; j < t->job_count && !status; j++) {
 		job *x = &t->jobs[j];
-		uint32_t sides[2];
 		status = nt_normal_map_open_image(&x->map, t->document, x->first.image, error);
-		if (status || !x->map.bytes || !nt_image_size(x->map.bytes, x->map.size, sides))
+		const uint64_t work = status || !x->map.bytes ? 0 : nt_image_work(x->map.bytes, x->map.size);
+		if (!work)
 			continue;
-		pixels += 2 * (uint64_t)sides[0] * sides[1];
+		pixels += 2 * work;
 		bytes += x->map.size;
+		status = nt_check_image(work, t->how->max_pixels, x->map.size, NULL, error);
 	}
 	return status ? status : nt_check_pixels(pixels, t->how->max_pixels, bytes, error);
 }

@@ -516,10 +516,39 @@ uint64_t nt_textures_pixels(const nt_textures *t, uint64_t *bytes)
 	return t->pixels;
 }
 
+/* What is decoded counts as often as a decoder goes over it, for which the whole file has to be seen. */
+static nt_status count_work(const nt_textures *t, nt_error *error)
+{
+	bool *decoded = nt_calloc(t->source_count, sizeof *decoded);
+	nt_status status = decoded ? NT_OK : nt_fail_memory(error);
+	for (size_t i = 0; i < t->source_count && !status; i++)
+		decoded[i] = t->sources[i]->in_question;
+	for (size_t i = 0; i < t->result_count && !status; i++)
+		for (int k = 0; k < 4 && nt_conversion_decodes(&t->results[i].how); k++)
+			if (t->results[i].how.channels[k].used && t->results[i].how.channels[k].source != UINT32_MAX)
+				decoded[t->results[i].how.channels[k].source] = true;
+	for (size_t i = 0; i < t->source_count && !status; i++) {
+		nt_texture_source *s = &t->sources[i]->file;
+		nt_file file;
+		nt_error ignored; /* who decodes it meets it again, and says it */
+		if (!decoded[i] || !can_decode(s))
+			continue;
+		if ((s->type == NT_IMAGE_JPEG || s->type == NT_IMAGE_TIFF) && !open_source(s, &file, &ignored)) {
+			s->pixels = nt_image_work(file.data, file.size);
+			nt_file_close(&file);
+		}
+		status = nt_check_image(s->pixels, t->rules.max_pixels, s->identity.size, s->path, error);
+	}
+	free(decoded);
+	return status;
+}
+
 /* Each source counts for each result that it is decoded for, and where somebody wants to know whether it is grey. */
 static nt_status check_pixels(nt_textures *t, nt_error *error)
 {
 	uint64_t bytes, pixels = 0;
+	if (count_work(t, error))
+		return error->status;
 	nt_textures_pixels(t, &bytes);
 	for (size_t i = 0; i < t->source_count; i++)
 		pixels += t->sources[i]->in_question && can_decode(&t->sources[i]->file)

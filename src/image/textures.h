@@ -61,7 +61,7 @@ typedef struct nt_texture_source {
 	nt_image_found found;
 	nt_image_type type;   /* of the file; of a missing one, by its name */
 	nt_file identity;     /* of the file, closed: size, device and inode */
-	uint64_t pixels;      /* as the file's header says; 0: not known */
+	uint64_t pixels;      /* as the file's header says, or as a decoder goes over them; 0: not known */
 } nt_texture_source;
 
 /* One result. Texts and bytes belong to the textures. */
