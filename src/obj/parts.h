@@ -23,6 +23,7 @@ typedef struct obj_corner {
 typedef enum obj_event_kind {
 	OBJ_EVENT_OBJECT,    /* o */
 	OBJ_EVENT_MATERIAL,  /* usemtl: a mesh begins here, too, where its normal map is mirrored in another way */
+	OBJ_EVENT_GROUP,     /* g */
 	OBJ_EVENT_SMOOTHING, /* s */
 	OBJ_EVENT_LIBRARY    /* mtllib */
 } obj_event_kind;
@@ -164,6 +165,10 @@ typedef struct obj_file {
 	/* Stretches of faces of one material and smoothing group, in order. */
 	struct obj_span *spans;
 	size_t span_count, span_capacity;
+	struct obj_part *parts; /* [part_count] what spans are primitives of, sorted by group */
+	size_t part_count;
+	const char **groups;    /* [group_count] names; 0 is "", of faces before any `g` */
+	size_t group_count;
 
 	uint32_t *corner_vertices;          /* [corner_count], relative to the mesh's first vertex */
 	struct obj_vertex *vertices;        /* of all meshes, in order */
@@ -185,11 +190,18 @@ static inline const obj_chunk *obj_find_row(const obj_file *file, int kind, uint
 typedef struct obj_span {
 	size_t face, corner; /* the first ones; the span ends where the next begins */
 	uint32_t material;
+	uint32_t group;
+	uint32_t part;
 	uint32_t smoothing;
 	bool begins_object;
 	const obj_event *object; /* NULL: none */
 	size_t line;             /* its line, else 0 */
 } obj_span;
+
+/* A material and a group that faces have together. */
+typedef struct obj_part {
+	uint32_t material, group;
+} obj_part;
 
 /* A distinct corner of a mesh: rows of the joined arrays, OBJ_ABSENT where it has none. */
 typedef struct obj_vertex {

@@ -168,7 +168,7 @@ static nt_status read_normal(obj_reader *r)
 	return store_row(r, OBJ_VN, numbers);
 }
 
-/* ---- o, usemtl, mtllib, s ---- */
+/* ---- o, g, usemtl, mtllib, s ---- */
 
 static nt_status store_event(obj_reader *r, obj_event event)
 {
@@ -307,10 +307,8 @@ static nt_status read_rare(obj_reader *r)
 		return read_name(r, OBJ_EVENT_LIBRARY);
 	if (is_word(word, length, "s"))
 		return read_smoothing(r);
-	if (is_word(word, length, "g")) {
-		skip_statement(r, false);
-		return NT_OK;
-	}
+	if (is_word(word, length, "g"))
+		return read_name(r, OBJ_EVENT_GROUP);
 	return read_other(r, word, length);
 }
 

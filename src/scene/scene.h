@@ -114,6 +114,7 @@ typedef struct nt_material {
 typedef struct nt_primitive {
 	uint32_t material; /* index into scene->materials or NT_NONE */
 	size_t face_count; /* faces of the mesh that belong to it */
+	uint32_t group;    /* index into the mesh's groups; those of one group follow each other */
 } nt_primitive;
 
 /* A mesh as one morph target moves it at weight 1. */
@@ -282,6 +283,7 @@ typedef struct nt_mesh {
 	uint32_t *face_primitive;/* [face_count] index into primitives; NULL: all 0 */
 	nt_primitive *primitives;
 	size_t primitive_count;
+	const char *const *groups; /* names of its primitives' groups, each a mesh of an output; NULL: none */
 
 	/* vertices that making normals appended: vertex source_vertex_count + i is a copy of
 	 * vertex_sources[i], with another normal */

@@ -12,6 +12,7 @@
 typedef struct nt_new_primitive {
 	const nt_mesh *mesh;
 	uint32_t material;        /* of the scene, or NT_NONE */
+	uint32_t group;           /* of the mesh */
 	size_t vertex_count;
 	const uint32_t *vertices; /* [vertex_count] vertex of the mesh after its split; NULL: all, in order */
 	size_t index_count;       /* 0 with indices NULL: every three vertices are a triangle */
