@@ -204,7 +204,7 @@ static nt_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt_re
 	return NT_OK;
 }
 
-/* Where the primitives of a mesh begin in scene->meshes. */
+/* The first primitive of a mesh in scene->meshes. */
 typedef struct placing {
 	nt_scene *scene;
 	const uint32_t *first; /* [mesh count + 1] */

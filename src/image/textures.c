@@ -174,7 +174,7 @@ static nt_status find_source(nt_textures *t, const nt_image_places *places, cons
 	return status;
 }
 
-/* What of a request makes a difference. */
+/* Compares the parts of a request that make a difference. */
 static nt_conversion wanted(const nt_texture_request *what, const uint32_t sources[4])
 {
 	const bool packed = what->kind == NT_TEXTURE_PACKED;
@@ -219,7 +219,7 @@ static bool can_decode(const nt_texture_source *s)
 	return s->found <= NT_IMAGE_FOUND_ELSEWHERE && nt_image_is_decoded(s->type);
 }
 
-/* Opens a source that was looked at before. What becomes shorter while it is read has to be asked for: see
+/* Opens a source that was looked at before. The caller has to ask whether a file becomes shorter while it is read: see
  * close_source(). */
 static nt_status open_source(const nt_texture_source *s, nt_file *file, nt_error *error)
 {
@@ -278,7 +278,7 @@ static nt_conversion conversion_of_one(const nt_textures *t, nt_texture_kind kin
 		.flip = may_flip ? t->rules.flip : NT_FLIP_OFF};
 }
 
-/* What a request comes to; *lost receives the channels whose image there is not. */
+/* The result of a request; *lost receives the channels that have no image. */
 static nt_conversion conversion_of(const nt_textures *t, const request *w, unsigned *lost)
 {
 	*lost = 0;

@@ -18,7 +18,7 @@
 
 enum { GRAIN = 1 << 14 }; /* rows per thread that are worth one */
 
-/* What making the meshes shares. Attribute arrays are for the vertices of all meshes. */
+/* Shared data of making meshes. Attribute arrays are for the vertices of all meshes. */
 typedef struct builder {
 	obj_file *file;
 	nt_error *error;
@@ -113,7 +113,7 @@ static void set_vertices(const builder *b, nt_mesh *mesh, size_t first)
 	mesh->normals = mesh->has_normals ? b->normals + 3 * first : NULL;
 	mesh->texcoords = mesh->has_texcoords ? b->texcoords + 2 * first : NULL;
 	mesh->colors = b->colors ? b->colors + 4 * first : NULL;
-	/* What the whole mesh does not have, no vertex of it lacks. */
+	/* An attribute that the whole mesh does not have is missing in no vertex. */
 	const unsigned partly = any & ~all;
 	if (!partly)
 		return;
@@ -124,7 +124,7 @@ static void set_vertices(const builder *b, nt_mesh *mesh, size_t first)
 
 /* ---- faces ---- */
 
-/* What a mesh's faces are, counted. */
+/* Counts of a mesh's faces. */
 typedef struct face_counts {
 	size_t quads, polygons;     /* polygons: of five corners and more */
 	size_t faces, corners;      /* when polygons have become triangles */
@@ -195,7 +195,7 @@ static nt_status triangulate(builder *b, nt_mesh *mesh, const obj_polygon *polyg
 	return NT_OK;
 }
 
-/* Where the next face of a mesh is written. */
+/* The place at which the next face of a mesh is written. */
 typedef struct face_writer {
 	size_t face, corner;   /* of the mesh, after triangulation */
 	const uint32_t *source; /* its corners in the file */
@@ -375,7 +375,7 @@ static nt_status set_name(builder *b, nt_mesh *mesh, size_t m)
 	return NT_OK;
 }
 
-/* What its materials ask for: slots, how normal maps are sampled. Where several differ, they are mirrored alike (see
+/* Demands of its materials: slots, how normal maps are sampled. If several differ, they are mirrored alike (see
  * spans.c), which is all that tangents know of. */
 static nt_status set_slots(const obj_file *file, nt_mesh *mesh, nt_error *error)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the parts of the OBJ reader hand to each other: statements.c and faces.c turn lines into the
+ * Shared by the parts of the OBJ reader: statements.c and faces.c turn lines into the
  * arrays of a chunk, vertices.c turns corners into vertices, meshes.c makes meshes of them. read.c
  * says in which order. Nothing here is for other files.
  */
@@ -62,7 +62,7 @@ typedef struct obj_ignored {
 	size_t line; /* of the first, within the chunk */
 } obj_ignored;
 
-/* What corners refer to, and how many numbers of it are kept. */
+/* Kinds of attributes that corners refer to, and how many numbers of it are kept. */
 enum { OBJ_V, OBJ_VT, OBJ_VN, OBJ_KIND_COUNT };
 static const unsigned obj_widths[OBJ_KIND_COUNT] = {3, 2, 3};
 
@@ -96,7 +96,7 @@ typedef struct obj_chunk {
 	obj_mrgb_line *mrgb_lines;
 	size_t mrgb_line_count, mrgb_line_capacity;
 
-	/* Corners by number of their distinct v/t/n. Those are in order of first use; some come more than
+	/* Corners by number of their distinct v/t/n. The materials are in order of first use; some come more than
 	 * once, and again in every object. */
 	obj_corner *distinct;
 	size_t distinct_count, distinct_capacity;
@@ -121,7 +121,7 @@ typedef struct obj_chunk {
 	nt_error error; /* its line is within the chunk, from 1 */
 } obj_chunk;
 
-/* Where a thread keeps what it has read. */
+/* The arrays of one thread. */
 typedef struct obj_memory {
 	nt_arena rows;    /* of vertices */
 	nt_arena corners; /* distinct corners, corners, sizes of faces */
@@ -145,7 +145,7 @@ typedef struct obj_file {
 	char *tail; /* the last lines, padded */
 	const char *tail_begin, *tail_end; /* where they stand in the input */
 
-	/* Of each kind: how many there are, and the chunk that has number i << OBJ_GUIDE_SHIFT. */
+	/* For each kind: how many there are, and the chunk that has number i << OBJ_GUIDE_SHIFT. */
 	size_t row_counts[OBJ_KIND_COUNT];
 	uint32_t *guides[OBJ_KIND_COUNT];
 	bool has_colors;

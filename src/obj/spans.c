@@ -25,7 +25,7 @@ typedef struct state {
 	size_t *name_lines;      /* of their first usemtl */
 	size_t name_line_capacity;
 
-	/* What faces at this point have. */
+	/* State of the faces at this point. */
 	const obj_event *object; /* NULL: none yet */
 	size_t object_line;
 	const obj_event *material;
@@ -218,7 +218,7 @@ static nt_status make_materials(state *s, const nt_mtl *mtl)
 		if (number != UINT32_MAX)
 			define(scene, number, d);
 	}
-	/* Where a library is missing that is already said, and why these are unknown. */
+	/* A missing library is reported already, and explains the unknown names. */
 	size_t unknown = 0;
 	for (size_t i = 0; i < s->names.count && !mtl->incomplete; i++)
 		if (!scene->materials[i].library) {

@@ -206,7 +206,7 @@ static nt_status read_name(obj_reader *r, obj_event_kind kind)
 }
 
 /* s off, s on or s N: a group of faces that are shaded as one; 0 and off mean flat. N has up to 32 bits, one of which
- * 3ds Max sets for each of its groups. Of ZBrush there is s alone, which is on; others write null for off. */
+ * 3ds Max sets for each of its groups. ZBrush writes s alone, which is on; others write null for off. */
 static nt_status read_smoothing(obj_reader *r)
 {
 	skip_blanks(r);

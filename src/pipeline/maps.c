@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the input's normal maps say about themselves, for a report or on demand. Each image is decoded once, however
+ * Examines the input's normal maps, for a report or on demand. Each image is decoded once, however
  * many meshes share it. Height maps are passed over.
  */
 #include "pipeline/stages.h"
@@ -13,7 +13,7 @@
 #include "image/examine.h"
 #include "image/image.h"
 
-/* What --check-maps=auto decodes; how many images are open at a time. */
+/* Largest file that --check-maps=auto decodes; how many images are open at a time. */
 enum { MOST_AUTO_BYTES = 16 << 20, MOST_OPEN = 16 };
 
 /* What is known of an image once it is closed. */

@@ -14,7 +14,7 @@
  * in one plane, and the coarsest normals that glTF can quantize to in 16 bits are 3e-5 apart. */
 static const double CLOSE_RADIANS = 1e-5;
 
-/* What one run of the stage holds; everything is malloc'ed and handed to the arena at the end. */
+/* Data of one run of the stage; everything is malloc'ed and handed to the arena at the end. */
 typedef struct normal_job {
 	float (*rows)[4];     /* [corner_count] normals as rows that nmtan_split compares */
 	uint32_t *indices;    /* [corner_count] */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a run can be told, and what it tells.
+ * Settings and results of a run.
  */
 #ifndef NT_PIPELINE_SETTINGS_H
 #define NT_PIPELINE_SETTINGS_H
@@ -23,7 +23,7 @@ typedef enum nt_normals {
 	NT_NORMALS_REPLACE_ANGLE
 } nt_normals;
 
-/* What map_Bump and bump name. */
+/* Kinds of images that map_Bump and bump name. */
 typedef enum nt_bump {
 	NT_BUMP_AUTO,   /* grey images are height maps, others normal maps: also of norm and map_Kn */
 	NT_BUMP_HEIGHT,
@@ -127,7 +127,7 @@ typedef struct nt_settings {
 
 	nt_readers *readers; /* what the other runs of a batch read is protected, too; NULL: there are none */
 
-	/* What a report is to hold; NULL: none is made. `written` is set by the run. */
+	/* Options of the report; NULL: none is made. `written` is set by the run. */
 	const nt_report_options *report;
 
 	/* Called when a stage begins, from the thread that called nt_run; NULL: nobody looks. */
@@ -135,7 +135,7 @@ typedef struct nt_settings {
 	void *on_stage_user;
 } nt_settings;
 
-/* What became of one mesh (glTF: primitive). */
+/* The outcome of one mesh (glTF: primitive). */
 typedef struct nt_mesh_line {
 	nt_place place;
 	nt_decision decision;
@@ -145,7 +145,7 @@ typedef struct nt_mesh_line {
 	size_t appended;       /* vertices added */
 } nt_mesh_line;
 
-/* What a run did. */
+/* The results of a run. */
 typedef struct nt_summary {
 	size_t mesh_count;       /* meshes (glTF: primitives) in the input */
 	size_t solved_count;     /* of them, those that got tangents */

@@ -3,8 +3,8 @@
  * The table of findings and the few functions that read it: see codes.h.
  *
  * Severities: an error is data that breaks glTF's rules or certainly renders wrong; a warning is worth
- * a look in the DCC tool; an info says what is there (mirroring itself is legitimate). What nobody would ever act on is
- * a number of the mesh and no finding.
+ * a look in the DCC tool; an info says what is there (mirroring itself is legitimate). A fact that nobody would ever
+ * act on is a number of the mesh and no finding.
  */
 #include "report/codes.h"
 

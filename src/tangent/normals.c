@@ -23,7 +23,7 @@ typedef struct shared_normal {
 	double weights; /* of what went into the sum: unit vectors times angles */
 } shared_normal;
 
-/* What a vertex remembers. */
+/* State of a vertex. */
 typedef struct known_normal {
 	uint32_t group; /* 0: nothing */
 	uint32_t entry;

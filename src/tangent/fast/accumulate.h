@@ -20,7 +20,7 @@ static inline void add_record(nt_record *record, const float *add)
 	nt_record_add(record, sum);
 }
 
-/* What a corner adds: that of corner k of the triangle whose rows lie at `place`. */
+/* The contribution of a corner: that of corner k of the triangle whose rows lie at `place`. */
 typedef struct addition {
 	const float *sum, *more[2];
 } addition;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Bins: see bins.h. What a bin is added up in (23 bytes a corner, its cursors, entries and sums) should
+ * Bins: see bins.h. The memory in which a bin is added up (23 bytes a corner, its cursors, entries and sums) should
  * fit the second-level cache; but the more bins, the more streams, and each is a line in the first-level
  * cache and a page. 8192 vertices of six corners are about two megabytes.
  */

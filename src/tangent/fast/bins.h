@@ -64,7 +64,7 @@ typedef struct nt_bins {
 	uint8_t *seen;     /* [ranges] */
 } nt_bins;
 
-/* What one bin after the other is added up in. */
+/* Memory in which one bin after the other is added up. */
 typedef struct nt_bin {
 	nt_adjacency adjacency;
 	nt_record *sums[2]; /* [2^vertex_bits] by orientation, counted from the first vertex; NULL: not needed */

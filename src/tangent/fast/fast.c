@@ -14,8 +14,8 @@
  *   7 complex     the other vertices: pairs, groups, averages              complex.c
  *   8 copies      degenerate triangles copy a neighbour's corner           write.c
  *
- * Step 4 takes about half of the time on a clean mesh. Where neighbouring triangles have vertices far apart there is
- * no step 3, step 4 writes corners down in bins of vertices, and step 5 adds up and settles one bin after the other
+ * Step 4 takes about half of the time on a clean mesh. If neighbouring triangles have vertices far apart, there is no
+ * step 3, step 4 writes corners down in bins of vertices, and step 5 adds up and settles one bin after the other
  * (bins.h). Threads own ranges of triangles, and every sum is in triangle order whatever their number.
  *
  * Words of these files:
@@ -124,7 +124,7 @@ static unsigned count_ranges(const nt_fast *fast, const nt_fast_plan *plan)
 	return ranges == 1 && two ? 2 : ranges;
 }
 
-/* What the published sort of edges is asked from. */
+/* The mesh as the published sort of edges sees it. */
 static nt_welded_mesh welded_mesh(const nt_fast *fast, nt_scratch *scratch)
 {
 	return (nt_welded_mesh){.triangles = &fast->triangles, .triangle_count = fast->triangle_count,
@@ -163,7 +163,7 @@ static void tell_noted(nt_fast *fast)
 	tail->is_noted = tail->is_box_used = used;
 }
 
-/* What the published sort of edges is asked from, before sums note what they pass. */
+/* Prepares the question to the published sort of edges, before sums note what they pass. */
 static nmtan_status make_tail(nt_fast *fast)
 {
 	const nt_welded_mesh mesh = welded_mesh(fast, fast->solve->scratch);
