@@ -49,7 +49,6 @@ typedef struct nt_edge_tail {
 	uint8_t *near;           /* [triangle_count] 0: has no corner in a member's cell; NULL: few, all are listed */
 	float scale;             /* of a coordinate above grid.low to its bin, below NT_EDGE_BINS */
 	uint32_t bins[NT_EDGE_BINS / 32]; /* a bit for each that is at or beside a member's cell */
-	uint8_t *cells;          /* [NT_CELLS] the number of each that has a member, from 1 on; of others 0 */
 	size_t triangles;
 	uint32_t first;          /* their least corner */
 	unsigned slot_shift;
