@@ -233,4 +233,8 @@ nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_err
 /* Fills scene->meshes from all of it. */
 nt_status obj_make_meshes(obj_file *file, nt_error *error);
 
+/* Gives each tile of a material with <UDIM> in the names of its maps a material of its own: see udim.c. Returns NT_OK
+ * or NT_ERROR_MEMORY. */
+nt_status obj_split_tiles(nt_scene *scene, nt_error *error);
+
 #endif

@@ -399,6 +399,8 @@ nt_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error 
 		add_file_finding(scene, NT_CODE_NORMALS_NOT_THERE);
 	if (!status)
 		status = obj_make_meshes(&file, error);
+	if (!status)
+		status = obj_split_tiles(scene, error);
 	if (!status && (scene->findings.failed || !obj_keep_places(&file)))
 		status = nt_fail_memory(error);
 	free_file(&file);
