@@ -19,22 +19,25 @@
  *     nmtan_status status = nmtan_vertex_tangents(&mesh, NULL, &output, NULL);
  *
  * Each vertex has a tangent now: T, of unit length, along which u grows, and w = +1 or -1. The bitangent is
- * B = cross(N, T) * w. Here T is (1, 0, 0) and w is 1. If corners of one vertex need different tangents, as at the
+ * B = cross(N, T) * w. Here T is (1, 0, 0) and w is 1. Where corners of one vertex need different tangents, as at the
  * edge of mirrored texture, the vertex is copied: output.source_count says how many copies are appended, `sources` of
- * which vertices they are, and `indices` uses them. Append the same copies to all your vertices.
+ * which vertices they are, and `indices` uses them. Append the same copies to all your vertices: nmtan_copy_rows().
+ * If vertices have room for their tangents, nmtan_generate() does all of it in place.
  *
  * V POINTS UP unless mesh.v_down says that it points down: up in bakers, OBJ and PLY, down in glTF and most engines'
  * files. Whichever it is, B then runs along growing v of v up, as MikkTSpace, glTF and bakers of normal maps mean it
  * ("green up"); for maps with green down negate w.
  *
  * nmtan_vertex_tangents() gives tangents of vertices, nmtan_tangents() those of the corners of faces; nmtan_split()
- * leads from the second to the first. The end says what all promise: bytes, structs, memory, threads, errors.
+ * leads from the second to the first. What all promise (bytes, structs, memory, threads, errors) is at the end.
  */
 #ifndef NMTAN_H
 #define NMTAN_H
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -51,6 +54,9 @@ extern "C" {
 #else
 #define NMTAN_API
 #endif
+
+/* Functions of this header alone, over those of the library. */
+#define NMTAN_INLINE static inline
 
 /* Described further down; the first example needs none of them. */
 typedef struct nmtan_stored_uv nmtan_stored_uv;
@@ -71,7 +77,7 @@ typedef struct nmtan_counts nmtan_counts;
  * 4 and at least the row's size; 0 means tightly packed. Any float value is accepted, NaN and
  * infinities too. Normals are used as given and should have unit length: counts.normals_not_unit.
  *
- * OBJ, FBX and USD number normals and texture coordinates apart from positions. If normal_count or texcoord_count is
+ * OBJ, FBX and USD number normals and texture coordinates apart from positions. Where normal_count or texcoord_count is
  * not 0, that array has so many rows of its own, and corner c has row normal_indices[c] of it, or row c where that is
  * NULL; `indices` and vertex_count are those of positions. Vertices come into being then: each combination of rows that
  * a corner uses is one, and mesh->stored may have no texcoords.
@@ -107,7 +113,7 @@ typedef struct nmtan_mesh {
 #define NMTAN_MESH_INIT \
 	{sizeof(nmtan_mesh), 0, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, NULL, 0, NULL, NULL, NULL, 0, 0}
 
-/* The result of a call. Later versions may add values. */
+/* What a call reports. Later versions may add values. */
 typedef enum nmtan_status {
 	NMTAN_OK = 0,
 	NMTAN_ERROR_ARGUMENT,  /* a required pointer is NULL; a struct_bytes, a stride, an enum or a number
@@ -123,9 +129,9 @@ typedef enum nmtan_status {
 /* Static English text for a status, "unknown status" for any other number. Never NULL. */
 NMTAN_API const char *nmtan_status_text(nmtan_status status);
 
-/* Outputs of a split. Nothing is appended past source_capacity; the corner count is always enough. If vertices come
- * into being (see nmtan_mesh) all of them are appended, to none: vertex_count counts as 0 here, sources[i] is a
- * corner that vertex i stands for, `indices` is required, copy_counts must be NULL. */
+/* Where a split goes. Nothing is appended past source_capacity; the corner count is always enough. Where vertices come
+ * into being (see nmtan_mesh) all of them are appended, to none: vertex_count counts as 0 here, sources[i] is a corner
+ * that vertex i stands for, `indices` is required, copy_counts must be NULL. */
 typedef struct nmtan_split_output {
 	size_t struct_bytes;  /* sizeof(nmtan_split_output): see "Structs" */
 	uint32_t *indices;    /* [corner count]: the vertex of each corner after the split. NULL: no vertex is
@@ -140,7 +146,9 @@ typedef struct nmtan_split_output {
 	                           split. A vertex without corners gets a unit vector perpendicular to its
 	                           normal and w = 1. Required, but for nmtan_split() */
 	uint32_t *copy_counts;  /* [vertex_count], may be NULL: how many copies each vertex gets */
-	size_t vertex_tangent_stride_bytes; /* from one row of vertex_tangents to the next; 0: tightly packed */
+	size_t vertex_tangent_stride_bytes; /* from one row of vertex_tangents to the next; 0: tightly packed. If the
+	                           tangents lie in your vertices, those of copies are in place already, and copying
+	                           whole vertices would overwrite them: use nmtan_copy_rows() */
 	size_t split_count;     /* written by the call: vertices whose corners have different tangents */
 } nmtan_split_output;
 
@@ -162,6 +170,102 @@ typedef struct nmtan_split_output {
 NMTAN_API nmtan_status nmtan_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	nmtan_split_output *output, nmtan_counts *counts);
 
+/* ---- interleaved vertices, in place ---- */
+
+/*
+ * Appends copies of rows, after a split: row `row_count + i` becomes a copy of row sources[i], but for kept_bytes bytes
+ * from kept_offset on, which stay as they are. These are the tangents, if the split has written them into the rows:
+ * a copy has another tangent than its source. kept_bytes 0: whole rows are copied, of any other array of your vertices.
+ *
+ *   rows         room for row_count + source_count rows of stride_bytes bytes
+ *   row_count    of vertices before the split
+ *   sources      [source_count] nmtan_split_output.sources
+ */
+NMTAN_INLINE void nmtan_copy_rows(void *rows, size_t stride_bytes, size_t row_count, const uint32_t *sources,
+	size_t source_count, size_t kept_offset, size_t kept_bytes)
+{
+	const size_t rest = kept_bytes ? kept_offset + kept_bytes : 0;
+	unsigned char *to = (unsigned char *)rows + row_count * stride_bytes;
+	for (size_t i = 0; i < source_count; i++, to += stride_bytes) {
+		const unsigned char *from = (const unsigned char *)rows + sources[i] * stride_bytes;
+		if (kept_bytes)
+			memcpy(to, from, kept_offset);
+		memcpy(to + rest, from + rest, stride_bytes - rest);
+	}
+}
+
+/* Where a vertex has what: offsets in bytes, multiples of 4 as the stride. What else it has is copied with it. This
+ * struct does not grow. */
+typedef struct nmtan_layout {
+	size_t stride_bytes;
+	size_t position_offset; /* float[3] */
+	size_t normal_offset;   /* float[3], of unit length */
+	size_t texcoord_offset; /* float[2] */
+	size_t tangent_offset;  /* float[4], written: T and w */
+	size_t v_down;          /* 0: v points up in texture coordinates; 1: down, as in glTF */
+} nmtan_layout;
+
+/*
+ * Computes a tangent for every vertex, in place, and appends the vertices that have to be copied; `indices` then uses
+ * the copies.
+ *
+ *   layout           required
+ *   vertices         room for vertex_capacity of them, of which vertex_count are there; an address that floats may have
+ *   vertex_capacity  vertex_count and a tenth more is enough for most meshes, vertex_count + index_count for all
+ *   indices          [index_count] three for each triangle; NULL: vertices 3 * t to 3 * t + 2 are triangle t, none is
+ *                    copied, and index_count is not used
+ *   options          NULL for defaults
+ *
+ * Returns how many vertices there are now. If that is above vertex_capacity, so many are needed: tangents are
+ * unspecified, all else is as it was. 0: there are no vertices, or it failed: an argument is wrong (a required pointer,
+ * an index, an offset beyond the stride, a count that is no multiple of 3), or memory is exhausted;
+ * nmtan_vertex_tangents() tells which. Memory comes from malloc: 4 bytes for each index and each copy.
+ */
+NMTAN_INLINE size_t nmtan_generate(const nmtan_layout *layout, void *vertices, size_t vertex_count,
+	size_t vertex_capacity, uint32_t *indices, size_t index_count, const nmtan_options *options)
+{
+	nmtan_mesh mesh = NMTAN_MESH_INIT;
+	nmtan_split_output output = NMTAN_SPLIT_OUTPUT_INIT;
+	const size_t corners = indices ? index_count : vertex_count;
+	if (!layout || !vertices || vertex_capacity < vertex_count || corners % 3 || corners > SIZE_MAX / 16 ||
+		layout->stride_bytes < 16 || layout->position_offset > layout->stride_bytes - 12 ||
+		layout->normal_offset > layout->stride_bytes - 12 ||
+		layout->texcoord_offset > layout->stride_bytes - 8 ||
+		layout->tangent_offset > layout->stride_bytes - 16 ||
+		((layout->position_offset | layout->normal_offset | layout->texcoord_offset |
+			layout->tangent_offset) & 3))
+		return 0;
+	unsigned char *bytes = (unsigned char *)vertices;
+	mesh.face_count = corners / 3;
+	mesh.vertex_count = vertex_count;
+	mesh.indices = indices;
+	mesh.positions = (const float *)(const void *)(bytes + layout->position_offset);
+	mesh.normals = (const float *)(const void *)(bytes + layout->normal_offset);
+	mesh.texcoords = (const float *)(const void *)(bytes + layout->texcoord_offset);
+	mesh.position_stride_bytes = mesh.normal_stride_bytes = mesh.texcoord_stride_bytes = layout->stride_bytes;
+	mesh.v_down = layout->v_down;
+	output.vertex_tangents = (float *)(void *)(bytes + layout->tangent_offset);
+	output.vertex_tangent_stride_bytes = layout->stride_bytes;
+	const size_t room = vertex_capacity - vertex_count;
+	output.source_capacity = !indices ? 0 : room < corners ? room : corners;
+	uint32_t *own = NULL;
+	if (indices) {
+		own = (uint32_t *)malloc((corners + output.source_capacity + 1) * sizeof *own);
+		if (!own)
+			return 0;
+		output.indices = own;
+		output.sources = own + corners;
+	}
+	const nmtan_status status = nmtan_vertex_tangents(&mesh, options, &output, NULL);
+	if (!status && own) {
+		nmtan_copy_rows(vertices, layout->stride_bytes, vertex_count, output.sources, output.source_count,
+			layout->tangent_offset, 4 * sizeof(float));
+		memcpy(indices, own, corners * sizeof *indices);
+	}
+	free(own);
+	return !status || status == NMTAN_ERROR_CAPACITY ? vertex_count + output.source_count : 0;
+}
+
 /* ---- options, and what is counted ---- */
 
 /* How the triangles around a vertex are averaged. */
@@ -180,7 +284,7 @@ typedef enum nmtan_method {
 	                                rewrites have it: see "Results" */
 } nmtan_method;
 
-/* Treatment of results that a renderer cannot use. */
+/* What happens to results that a renderer cannot use. */
 typedef enum nmtan_repair {
 	NMTAN_REPAIR_ON = 0, /* tangents that no triangle gave, that are zero, not unit, not finite, more than
 	                        2^-10 off perpendicular to a normal of unit length (|n|^2 within 2^-11 of 1)
@@ -194,7 +298,7 @@ typedef struct nmtan_timing nmtan_timing;
 typedef struct nmtan_workspace nmtan_workspace;
 typedef struct nmtan_jobs nmtan_jobs;
 
-/* If a function takes a pointer to options, NULL means the defaults, which are all zero. */
+/* Where a function takes a pointer to options, NULL means the defaults, which are all zero. */
 typedef struct nmtan_options {
 	size_t struct_bytes;              /* sizeof(nmtan_options): see "Structs" */
 	nmtan_method method;
@@ -212,7 +316,7 @@ typedef struct nmtan_options {
 #define NMTAN_OPTIONS_INIT \
 	{sizeof(nmtan_options), NMTAN_METHOD_MIKKTSPACE, NMTAN_REPAIR_ON, 0.0f, 0, NULL, NULL, NULL, NULL}
 
-/* Counts of a solve and its repair, in corners unless it says otherwise. Each call writes it anew. */
+/* What a solve met and what repair did, in corners unless it says otherwise. Each call writes it anew. */
 typedef struct nmtan_counts {
 	size_t struct_bytes;         /* sizeof(nmtan_counts): see "Structs" */
 	size_t degenerate_positions; /* faces each triangle of which has two corners at one position */
@@ -262,7 +366,7 @@ typedef enum nmtan_fault {
 	NMTAN_FAULT_SUMMED = 128     /* summed_instead; only with MikkTSpace's methods: the same bit */
 } nmtan_fault;
 
-/* Outputs of a solve. Each array has one row per corner, tightly packed, but for tangents with a stride. */
+/* Where results go. Each array has one row per corner, tightly packed, but for tangents with a stride. */
 typedef struct nmtan_output {
 	size_t struct_bytes; /* sizeof(nmtan_output): see "Structs" */
 	float *tangents;     /* [corner count][4], required: T and w */
@@ -343,7 +447,7 @@ typedef struct nmtan_jobs {
 /* Ends the library's threads and returns when they have ended. No other call may run; a later one makes new threads. */
 NMTAN_API void nmtan_end_threads(void);
 
-/* Time of calls by stage, in seconds of the wall clock. Calls add to it; the caller sets it to zero. */
+/* Where the time of calls went, in seconds of the wall clock. Calls add to it; the caller sets it to zero. */
 typedef struct nmtan_timing {
 	size_t struct_bytes; /* sizeof(nmtan_timing): see "Structs" */
 	double weld;         /* finding equal vertices; 0 where the method does not tell */
@@ -354,10 +458,10 @@ typedef struct nmtan_timing {
 #define NMTAN_TIMING_INIT {sizeof(nmtan_timing), 0.0, 0.0, 0.0}
 
 /*
- * For callers that store other texture coordinates than they pass in. The values that a renderer reads from the file
- * decide which way a triangle is wound; if rounding or a transform lies between that and nmtan_mesh.texcoords, a very
- * thin triangle may be wound differently. Repair then takes the sign of w from the coordinates described here.
- * Nothing else uses them.
+ * For callers that store other texture coordinates than they pass in. What a renderer reads from the file
+ * decides which way a triangle is wound; where rounding or a transform lies between that and
+ * nmtan_mesh.texcoords, a very thin triangle may be wound differently. Repair then takes the sign of w from
+ * the coordinates described here. Nothing else uses them.
  */
 typedef struct nmtan_stored_uv {
 	size_t struct_bytes; /* sizeof(nmtan_stored_uv): see "Structs" */
@@ -427,7 +531,7 @@ NMTAN_API int nmtan_self_test(void);
  * Threads: every function but nmtan_end_threads() may be called from several threads at once, as long as they do not
  * share outputs, counts, timing or a workspace. There is no global state but a pool of threads: the first call that
  * is large enough for options->threads > 1 and has no options->jobs makes them, later calls in any thread share them,
- * and they sleep in between, with signals blocked. They never call the caller's allocator. If none can be made, the
+ * and they sleep in between, with signals blocked. They never call the caller's allocator. Where none can be made the
  * caller's thread does all. Processes made by fork() may go on calling, whatever their parent was doing.
  *
  * Errors: a status, never an exit, never a message on a stream. Arguments, faces and indices are checked

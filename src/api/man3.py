@@ -8,7 +8,7 @@ import os
 import re
 import sys
 
-FUNCTION = re.compile(r'/\*((?:(?!\*/).)*)\*/\nNMTAN_API ([^;]*?\b(nmtan_\w+)\([^;]*\);)', re.S)
+FUNCTION = re.compile(r'/\*((?:(?!\*/).)*)\*/\nNMTAN_(?:API|INLINE) ([^;{]*?\b(nmtan_\w+)\([^;{]*\))(?:;|\n\{)', re.S)
 TYPE = re.compile(r'((?:/\*(?:(?!\*/).)*\*/\n)?typedef (?:struct|enum) (nmtan_\w+) \{\n.*?\n\} \2;)', re.S)
 
 
@@ -64,7 +64,7 @@ def summary_of(lines):
 
 
 def types_of(declaration, types):
-	"""The parts of its arguments, in the order of the header."""
+	"""What its arguments are made of, in the order of the header."""
 	used, more = set(), declaration
 	while more:
 		found = set(re.findall(r'\bnmtan_\w+', re.sub(r'/\*.*?\*/', '', more, flags=re.S))) & set(types) - used
@@ -81,12 +81,12 @@ def main():
 	types = {name: whole for whole, name in TYPE.findall(text)}
 	functions = [(strip(comment), declaration, name) for comment, declaration, name in FUNCTION.findall(text)]
 	names = [name for _, _, name in functions]
-	declared = re.findall(r'^NMTAN_API .*?\b(nmtan_\w+)\(', text, re.M)
+	declared = re.findall(r'^NMTAN_(?:API|INLINE) .*?\b(nmtan_\w+)\(', text, re.M)
 	if names != declared:
 		sys.exit(f'{header}: no comment in front of {set(declared) - set(names)}')
 	pages = {}
 	for comment, declaration, name in functions:
-		pages[name] = page(name, version, summary_of(comment), declaration.split('\n'), prose(comment),
+		pages[name] = page(name, version, summary_of(comment), (declaration + ';').split('\n'), prose(comment),
 			types_of(declaration, types),
 			['nmtan'] + [other for other in names if other != name])
 	head, end = (strip(found) for found in (re.search(r'\n/\*\n(.*?)\*/', text, re.S)[1],

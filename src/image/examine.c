@@ -201,13 +201,13 @@ static block sum_block(const slopes *s, size_t column, size_t row)
 	return b;
 }
 
-/* The evidence at one size. */
+/* What one size says. */
 typedef struct voice {
 	double correlation, agreement;
 	size_t blocks;
 } voice;
 
-/* The evidence of each block at all sizes: the sum of its correlations times their weights, and of these. */
+/* What each block says at all sizes: the sum of its correlations times their weights, and of these. */
 typedef struct block_sums {
 	double votes[BLOCKS * BLOCKS], weights[BLOCKS * BLOCKS];
 } block_sums;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Settings and results of a run.
+ * What a run can be told, and what it tells.
  */
 #ifndef NT_PIPELINE_SETTINGS_H
 #define NT_PIPELINE_SETTINGS_H
@@ -12,18 +12,16 @@
 #include "scene/format.h"
 #include "scene/select.h"
 
-/* If normals are missing; the last three replace authored ones, too. */
+/* Where normals are missing; the last two replace authored ones, too. */
 typedef enum nt_normals {
 	NT_NORMALS_AUTO,
 	NT_NORMALS_FLAT,
 	NT_NORMALS_SMOOTH,
-	NT_NORMALS_ANGLE,
 	NT_NORMALS_REPLACE_FLAT,
-	NT_NORMALS_REPLACE_SMOOTH,
-	NT_NORMALS_REPLACE_ANGLE
+	NT_NORMALS_REPLACE_SMOOTH
 } nt_normals;
 
-/* Kinds of images that map_Bump and bump name. */
+/* What map_Bump and bump name. */
 typedef enum nt_bump {
 	NT_BUMP_AUTO,   /* grey images are height maps, others normal maps: also of norm and map_Kn */
 	NT_BUMP_HEIGHT,
@@ -74,7 +72,6 @@ typedef struct nt_settings {
 	nt_existing existing;
 	bool fix;      /* repair what a check of the input calls error or warning, as far as that is proven: fix.c */
 	nt_normals normals;
-	int normals_degrees; /* of those by ANGLE: faces that meet at less share a normal */
 	nt_across across;
 	nt_transform_choice transform;
 	nt_quads quads;
@@ -127,7 +124,7 @@ typedef struct nt_settings {
 
 	nt_readers *readers; /* what the other runs of a batch read is protected, too; NULL: there are none */
 
-	/* Options of the report; NULL: none is made. `written` is set by the run. */
+	/* What a report is to hold; NULL: none is made. `written` is set by the run. */
 	const nt_report_options *report;
 
 	/* Called when a stage begins, from the thread that called nt_run; NULL: nobody looks. */
@@ -135,7 +132,7 @@ typedef struct nt_settings {
 	void *on_stage_user;
 } nt_settings;
 
-/* The outcome of one mesh (glTF: primitive). */
+/* What became of one mesh (glTF: primitive). */
 typedef struct nt_mesh_line {
 	nt_place place;
 	nt_decision decision;
@@ -145,7 +142,7 @@ typedef struct nt_mesh_line {
 	size_t appended;       /* vertices added */
 } nt_mesh_line;
 
-/* The results of a run. */
+/* What a run did. */
 typedef struct nt_summary {
 	size_t mesh_count;       /* meshes (glTF: primitives) in the input */
 	size_t solved_count;     /* of them, those that got tangents */

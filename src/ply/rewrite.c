@@ -16,7 +16,7 @@
 #include "ply/cursor.h"
 #include "ply/vertex_map.h"
 
-/* The places of a row's values. */
+/* Where the values of a row lie. */
 typedef struct span {
 	const unsigned char *begin, *end;
 } span;
@@ -43,7 +43,7 @@ typedef struct plan {
 	size_t *row_offsets;     /* [row_count] where the row of a vertex begins */
 } plan;
 
-/* Changes of the header. */
+/* What changes in the header. */
 
 enum { KEPT = -1, DROPPED = -2 };
 

@@ -116,7 +116,7 @@ bool nt_outline_crosses(const nmtan_mesh *mesh, size_t first)
 	return crosses;
 }
 
-/* Data of a triangle for the sums. */
+/* What the sums need of a triangle. */
 typedef struct solved {
 	nt_dvec3 u;          /* dP/du times |determinant|: growing u */
 	nt_dvec3 across;     /* cross product of the edges from the first corner */

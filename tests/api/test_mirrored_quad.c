@@ -12,6 +12,9 @@
 #include "nmtan.h"
 #include "test.h"
 
+#include <stdbool.h>
+#include <stdlib.h>
+
 static const float positions[6][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}};
 static const float normals[6][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 static const float texcoords[6][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}, {0, 1}};
@@ -131,6 +134,157 @@ TEST(a_solve_with_split_counts_copies)
 {
 	check_counts(&mikktspace);
 	check_counts(&area);
+}
+
+/* ---- interleaved, in place ---- */
+
+/* Two orders of the same attributes, with a word of the caller's (its number) and room that stays 0xee. */
+static const struct {
+	nmtan_layout layout;
+	size_t number_offset;
+} layouts[] = {
+	{{.stride_bytes = 52, .position_offset = 0, .normal_offset = 12, .texcoord_offset = 24, .tangent_offset = 32},
+		48},
+	{{.stride_bytes = 60, .position_offset = 28, .normal_offset = 40, .texcoord_offset = 16, .tangent_offset = 0},
+		24},
+};
+enum { MOST_BYTES = 60 * 8 };
+
+static void *at(unsigned char *vertices, const nmtan_layout *layout, size_t vertex, size_t offset)
+{
+	return vertices + vertex * layout->stride_bytes + offset;
+}
+
+static void interleave(size_t row, bool v_down, nmtan_layout *layout, unsigned char *vertices)
+{
+	*layout = layouts[row].layout;
+	layout->v_down = v_down;
+	memset(vertices, 0xee, MOST_BYTES);
+	for (uint32_t v = 0; v < 6; v++) {
+		const float texcoord[2] = {texcoords[v][0], v_down ? 1 - texcoords[v][1] : texcoords[v][1]};
+		memcpy(at(vertices, layout, v, layout->position_offset), positions[v], sizeof positions[v]);
+		memcpy(at(vertices, layout, v, layout->normal_offset), normals[v], sizeof normals[v]);
+		memcpy(at(vertices, layout, v, layout->texcoord_offset), texcoord, sizeof texcoord);
+		memcpy(at(vertices, layout, v, layouts[row].number_offset), &v, sizeof v);
+	}
+}
+
+/* Copies have all of their source but its tangent. */
+TEST(interleaved_vertices_get_tangents_and_copies_in_place)
+{
+	for (size_t i = 0; i < 4; i++) {
+		const size_t row = i / 2;
+		unsigned char vertices[MOST_BYTES], before[MOST_BYTES];
+		uint32_t indices[12];
+		nmtan_layout layout;
+		interleave(row, i & 1, &layout, vertices);
+		memcpy(before, vertices, sizeof before);
+		memcpy(indices, triangles, sizeof indices);
+		assert_int_equal(nmtan_generate(&layout, vertices, 6, 8, indices, 12, &mikktspace), 8);
+		const uint32_t expected[12] = {0, 1, 2, 0, 2, 3, 6, 4, 5, 6, 5, 7};
+		const size_t sources[8] = {0, 1, 2, 3, 4, 5, 1, 2};
+		assert_memory_equal(indices, expected, sizeof expected);
+		for (size_t v = 0; v < 8; v++) {
+			const float left[4] = {1, 0, 0, 1}, right[4] = {-1, 0, 0, -1};
+			const void *tangent = at(vertices, &layout, v, layout.tangent_offset);
+			assert_memory_equal(tangent, v < 4 ? left : right, sizeof left);
+			memcpy(at(before, &layout, v, 0), at(before, &layout, sources[v], 0), layout.stride_bytes);
+			memcpy(at(before, &layout, v, layout.tangent_offset), tangent, sizeof left);
+		}
+		assert_memory_equal(vertices, before, sizeof before);
+	}
+}
+
+TEST(too_little_room_says_how_much_is_needed_and_changes_only_tangents)
+{
+	for (size_t capacity = 6; capacity < 8; capacity++) {
+		unsigned char vertices[MOST_BYTES], before[MOST_BYTES];
+		uint32_t indices[12];
+		nmtan_layout layout;
+		interleave(1, true, &layout, vertices);
+		memcpy(before, vertices, sizeof before);
+		memcpy(indices, triangles, sizeof indices);
+		assert_int_equal(nmtan_generate(&layout, vertices, 6, capacity, indices, 12, NULL), 8);
+		assert_memory_equal(indices, triangles, sizeof triangles);
+		for (size_t v = 0; v < 6; v++)
+			memset(at(vertices, &layout, v, layout.tangent_offset), 0xee, 16);
+		assert_memory_equal(vertices, before, capacity * layout.stride_bytes);
+		assert_int_equal(nmtan_generate(&layout, vertices, 6, 8, indices, 12, NULL), 8);
+	}
+}
+
+/* Each corner its own vertex: nothing is copied. */
+TEST(triangles_without_indices_get_tangents_in_place)
+{
+	unsigned char vertices[MOST_BYTES];
+	nmtan_layout layout;
+	interleave(0, false, &layout, vertices);
+	assert_int_equal(nmtan_generate(&layout, vertices, 3, 3, NULL, 0, NULL), 3);
+	const float expected[4] = {1, 0, 0, 1};
+	for (size_t v = 0; v < 3; v++)
+		assert_memory_equal(at(vertices, &layout, v, layout.tangent_offset), expected, sizeof expected);
+}
+
+/* Sixty-five thousand and more vertices lie before the quads: their numbers need 32 bits. */
+TEST(indices_have_32_bits)
+{
+	enum { BEFORE = 70000, STRIDE = 52 };
+	unsigned char *vertices = calloc(BEFORE + 8, STRIDE), own[MOST_BYTES];
+	uint32_t indices[12];
+	nmtan_layout layout;
+	assert_non_null(vertices);
+	interleave(0, false, &layout, own);
+	memcpy(vertices + BEFORE * STRIDE, own, 6 * STRIDE);
+	for (int c = 0; c < 12; c++)
+		indices[c] = triangles[c] + BEFORE;
+	assert_int_equal(nmtan_generate(&layout, vertices, BEFORE + 6, BEFORE + 8, indices, 12, NULL), BEFORE + 8);
+	assert_int_equal(indices[6], BEFORE + 6);
+	assert_int_equal(indices[11], BEFORE + 7);
+	assert_memory_equal(at(vertices, &layout, BEFORE + 6, 0), at(vertices, &layout, BEFORE + 1, 0), 32);
+	free(vertices);
+}
+
+TEST(what_is_wrong_gives_no_vertices)
+{
+	unsigned char vertices[MOST_BYTES];
+	uint32_t indices[12], beyond[3] = {0, 1, 6};
+	nmtan_layout layout;
+	interleave(0, false, &layout, vertices);
+	memcpy(indices, triangles, sizeof indices);
+	assert_int_equal(nmtan_generate(NULL, vertices, 6, 8, indices, 12, NULL), 0);
+	assert_int_equal(nmtan_generate(&layout, NULL, 6, 8, indices, 12, NULL), 0);
+	assert_int_equal(nmtan_generate(&layout, vertices, 6, 5, indices, 12, NULL), 0);
+	assert_int_equal(nmtan_generate(&layout, vertices, 6, 8, indices, 11, NULL), 0);
+	assert_int_equal(nmtan_generate(&layout, vertices, 6, 8, beyond, 3, NULL), 0);
+	assert_int_equal(nmtan_generate(&layout, vertices, 0, 8, indices, 0, NULL), 0);
+	assert_int_equal(nmtan_generate(&layout, vertices, 5, 8, NULL, 0, NULL), 0);
+	size_t *const offsets[] = {&layout.position_offset, &layout.normal_offset, &layout.texcoord_offset,
+		&layout.tangent_offset};
+	for (size_t i = 0; i < sizeof offsets / sizeof *offsets; i++) {
+		const size_t right = *offsets[i];
+		static const size_t wrong[] = {48, 49, SIZE_MAX - 3};
+		for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+			*offsets[i] = wrong[k];
+			assert_int_equal(nmtan_generate(&layout, vertices, 6, 8, indices, 12, NULL), 0);
+		}
+		*offsets[i] = right;
+	}
+	for (layout.stride_bytes = 0; layout.stride_bytes < 48; layout.stride_bytes++)
+		assert_int_equal(nmtan_generate(&layout, vertices, 6, 8, indices, 12, NULL), 0);
+	assert_memory_equal(indices, triangles, sizeof triangles);
+}
+
+/* The call with all parts apart, and the rows of another array. */
+TEST(rows_are_copied_whole_or_but_for_their_tangents)
+{
+	const uint32_t sources[2] = {2, 0};
+	char rows[5][9] = {"aaTTaaaa", "bbTTbbbb", "ccTTcccc", "..12....", "..34...."}, whole[5][9] = {"a", "b", "c"};
+	nmtan_copy_rows(rows, 9, 3, sources, 2, 2, 2);
+	assert_string_equal(rows[3], "cc12cccc");
+	assert_string_equal(rows[4], "aa34aaaa");
+	nmtan_copy_rows(whole, 9, 3, sources, 2, 0, 0);
+	assert_string_equal(whole[3], "c");
+	assert_string_equal(whole[4], "a");
 }
 
 int main(void)

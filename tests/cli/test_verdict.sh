@@ -160,7 +160,7 @@ done <<'END'
 --max-issues=1|all
 --max-triangles=1M|all
 --max-pixels=1G|all
---max-memory=4G|all
+--max-memory=1000T|all
 --max-seconds=600|all
 --threads=1|all
 --manifest=/dev/null|all

@@ -27,7 +27,7 @@ for change in s/nmtan_split\'/nmtan_cut\'/ "s/layout-offset-in-bits='128'/layout
 done
 
 scene "every function of nmtan.h has a version, and nothing else is exported"
-grep -oE '\bnmtan_[a-z_]+\(' "$ROOT/include/nmtan.h" | tr -d '(' | sort -u >said.txt
+sed -n 's/^NMTAN_API .*\b\(nmtan_[a-z_]*\)(.*/\1/p' "$ROOT/include/nmtan.h" | sort -u >said.txt
 nm -D --defined-only "$BUILD/libnmtan.so" | awk '$2 == "T" { print $3 }' >exported.txt
 sed -n 's/@@NMTAN_.*//p' exported.txt | sort >versioned.txt
 [ "$(wc -l <exported.txt)" = "$(wc -l <versioned.txt)" ] || wrong "without a version: $(grep -v @@ exported.txt)"

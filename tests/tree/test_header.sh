@@ -55,7 +55,7 @@ diff ../expected printed || wrong "prints something else"
 
 scene "each function has a page for man, which says what the header says; without its comment there is none"
 make -C "$ROOT" -s build/man3/nmtan.3 >make.txt 2>&1 || wrong "$(tail -5 make.txt)"
-is "$(cd "$ROOT/build/man3" && echo *.3)" "$(cd "$ROOT" && { echo nmtan.3 && sed -n 's/^NMTAN_API .*\(nmtan_[a-z_]*\)(.*/\1.3/p' include/nmtan.h; } |
+is "$(cd "$ROOT/build/man3" && echo *.3)" "$(cd "$ROOT" && { echo nmtan.3 && sed -n 's/^NMTAN_[AI][A-Z]* .*\b\(nmtan_[a-z_]*\)(.*/\1.3/p' include/nmtan.h; } |
 	LC_ALL=C sort | tr '\n' ' ' | sed 's/ $//')"
 for page in "$ROOT"/build/man3/*.3; do
 	if command -v man >/dev/null; then
