@@ -51,7 +51,7 @@ typedef enum nt_morph_choice {
 
 /* How tangents of glTF are stored, where Draco does not. */
 typedef enum nt_precision {
-	NT_PRECISION_AUTO, /* as the normals of the same view are, where meshoptimizer packed these; else float */
+	NT_PRECISION_AUTO, /* as integers that are replaced, or normals that meshoptimizer packed; else float */
 	NT_PRECISION_FLOAT,
 	NT_PRECISION_SHORT, /* normalized integers: KHR_mesh_quantization */
 	NT_PRECISION_BYTE

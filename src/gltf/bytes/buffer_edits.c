@@ -88,9 +88,11 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 	edits->free_views = nt_alloc(edits->view_count, sizeof *edits->free_views);
 	edits->seen = nt_calloc(pools->accessor_count, sizeof *edits->seen);
 	edits->pinned = nt_calloc(pools->accessor_count, sizeof *edits->pinned);
+	edits->index_moved = nt_calloc(pools->accessor_count, sizeof *edits->index_moved);
 	edits->replaced = nt_calloc(pools->accessor_count, sizeof *edits->replaced);
 	edits->appended_by = nt_alloc(pools->accessor_count, sizeof *edits->appended_by);
-	if (!edits->seen || !edits->pinned || !edits->replaced || !edits->appended_by || !edits->buffers ||
+	if (!edits->seen || !edits->pinned || !edits->replaced || !edits->index_moved || !edits->appended_by ||
+		!edits->buffers ||
 		!edits->virtuals || !edits->is_free || !edits->free_views ||
 		!nt_byte_users_find(&edits->users, document, pools)) {
 		nt_edits_free(edits);
@@ -124,6 +126,7 @@ void nt_edits_free(nt_buffer_edits *edits)
 	free(edits->seen);
 	free(edits->pinned);
 	free(edits->replaced);
+	free(edits->index_moved);
 	free(edits->appended_by);
 	free(edits->is_free);
 	free(edits->free_views);

@@ -75,6 +75,7 @@ typedef struct nt_buffer_edits {
 	 * nothing has to be emptied in between; bytes may be another pool's too. */
 	bool *seen;                 /* [accessor_count] */
 	bool *pinned;               /* [accessor_count] used by an unsolved user */
+	uint32_t *index_moved;      /* [accessor_count] by first alias: uses as indices that have other ones by now */
 	uint32_t *replaced;         /* [accessor_count] by first alias: uses by morph targets that are no more */
 	uint32_t *appended_by;      /* [accessor_count] by first alias: the pool that appends to it, by its
 	                               first user */

@@ -74,6 +74,16 @@ static nt_precision precision_of(const nt_gltf_accessor *a)
 		a->component_type == NT_GLTF_SHORT ? NT_PRECISION_SHORT : NT_PRECISION_FLOAT;
 }
 
+/* What tangents that are there are stored as. */
+static nt_precision replaced_precision(const nt_buffer_edits *edits, const nt_json_value *attributes)
+{
+	uint64_t index;
+	nt_gltf_accessor a;
+	return nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &index) &&
+			nt_gltf_get_accessor(edits->document, index, "", &a, NULL) == NT_OK && a.components == 4
+		? precision_of(&a) : NT_PRECISION_FLOAT;
+}
+
 /* The bits of what an attribute's filter is applied to. */
 static nt_status find_bits(nt_buffer_edits *edits, const nt_gltf_accessor *a, const char *filter, int *bits,
 	nt_error *error)
@@ -95,14 +105,14 @@ nt_status nt_packed_tangents(nt_buffer_edits *edits, const nt_json_value *attrib
 {
 	static const int most[] = {[NT_PRECISION_SHORT] = 16, [NT_PRECISION_BYTE] = 8};
 	nt_gltf_accessor a;
-	*filter = (nt_tangent_filter){.precision = wanted == NT_PRECISION_AUTO ? NT_PRECISION_FLOAT : wanted,
-		.filter = "NONE"};
+	*filter = (nt_tangent_filter){.precision = wanted == NT_PRECISION_AUTO ? replaced_precision(edits, attributes)
+		: wanted, .filter = "NONE"};
 	const bool found = find_packed_attribute(edits, attributes, "TANGENT", &a, packing) ||
 		find_packed_attribute(edits, attributes, "NORMAL", &a, packing);
 	nt_status status = NT_OK;
 	if (found) {
 		const nt_precision own = precision_of(&a);
-		if (wanted == NT_PRECISION_AUTO)
+		if (wanted == NT_PRECISION_AUTO && filter->precision == NT_PRECISION_FLOAT)
 			filter->precision = own;
 		const bool integers = filter->precision != NT_PRECISION_FLOAT;
 		const char *kind = integers ? "OCTAHEDRAL" : "EXPONENTIAL";

@@ -65,6 +65,25 @@ static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices,
 	return NT_OK;
 }
 
+/* Bounds that an accessor states are those of its new indices. */
+static void set_bounds(nt_json *json, nt_json_value *accessor, const encoded *new)
+{
+	nt_json_value *const bounds[2] = {nt_json_find(accessor, "min"), nt_json_find(accessor, "max")};
+	uint32_t least = UINT32_MAX, most = 0;
+	if (!bounds[0] && !bounds[1])
+		return;
+	for (size_t i = 0; i < new->count; i++) {
+		uint32_t index = 0;
+		for (uint32_t k = 0; k < new->width; k++)
+			index |= (uint32_t)new->bytes[new->width * i + k] << 8 * k;
+		least = index < least ? index : least;
+		most = index > most ? index : most;
+	}
+	for (int i = 0; i < 2; i++)
+		if (bounds[i] && nt_json_count(bounds[i]) == 1)
+			nt_json_set_uint64(json, nt_json_at(bounds[i], 0), i ? most : least);
+}
+
 /* New indices are packed as those before them are; where there were none, as the positions are. */
 static nt_gltf_packing find_packing(const nt_buffer_edits *edits, const nt_json_value *primitive, const encoded *new)
 {
@@ -100,8 +119,7 @@ static nt_status add_indices(nt_buffer_edits *edits, uint32_t buffer, const nt_g
 	if (old) {
 		nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), new->type);
 		nt_json_set_uint64(json, nt_json_put(json, object, "count"), new->count);
-		nt_json_remove(json, object, "min");
-		nt_json_remove(json, object, "max");
+		set_bounds(json, object, new);
 	}
 	return NT_OK;
 }
@@ -156,8 +174,7 @@ static nt_status replace_indices(nt_buffer_edits *edits, uint32_t first_alias, c
 		nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"), new->type);
 	if (new->count != old->count)
 		nt_json_set_uint64(json, nt_json_put(json, accessor, "count"), new->count);
-	nt_json_remove(json, accessor, "min");
-	nt_json_remove(json, accessor, "max");
+	set_bounds(json, accessor, new);
 	*done = true;
 	return nt_edits_replace(edits, view.buffer, begin, size, bytes, new->size + pad, error);
 }
@@ -254,8 +271,9 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 	if (!status)
 		status = encode(&edits->arena, mesh, vertices->indices[user], vertices->borrowed,
 			tail_of(mesh, mode, old.count), vertices->new_count, old.component_type, &new, error);
-	/* in place where everybody who uses these indices will have the same new ones */
-	const bool agree = leader->index != NT_NONE && leader->agreeing == pools->index_users[leader->first_alias];
+	/* in place where everybody who uses these indices will have the same new ones, or has got others */
+	const bool agree = leader->index != NT_NONE && leader->agreeing + edits->index_moved[leader->first_alias] ==
+		pools->index_users[leader->first_alias];
 	if (!status && agree && !old.decoded)
 		status = replace_indices(edits, leader->first_alias, &old, &new, &done, error);
 	leader->accessor = leader->index;
@@ -267,6 +285,8 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 	if (stays && !old.decoded)
 		status = nt_packed_release(edits, old.view, old.offset,
 			old.count * nt_gltf_component_bytes(old.component_type), error);
+	if (!stays && leader->index != NT_NONE)
+		edits->index_moved[leader->first_alias] += leader->agreeing;
 	return status ? status
 		      : add_indices(edits, buffer, &packing, &new, stays ? &old : NULL, &leader->accessor, error);
 }
