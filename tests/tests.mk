@@ -28,7 +28,7 @@ $(unit_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(module_obj) $(B)/libt
 $(api_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) $(WRAP) -o $@ $^ -lcmocka -lm $(QUADMATH)
 
-# What is read of a mapped file is watched.
+# Reads of mapped files are guarded.
 $(patsubst tests/%.c,$(B)/tests/%,$(call existing,tests/unit/pipeline/test_needed.c)): WRAP += -Wl,--wrap=mmap
 
 # Threads that cannot be made.
@@ -36,7 +36,7 @@ $(B)/tests/unit/base/test_pool: WRAP += -Wl,--wrap=pthread_create
 
 .PRECIOUS: $(B)/tests/%.o
 
-# What stands between the tool and the system in tests/support/sets.py; never with a sanitizer's own calls in it.
+# The library between the tool and the system in tests/support/sets.py; never with a sanitizer's own calls in it.
 calls_so := $(B)/tests/preload/calls.so
 $(calls_so): tests/preload/calls.c
 	@mkdir -p $(@D)
@@ -55,7 +55,7 @@ $(B)/tests/faults/sweep: $(B)/tests/faults/sweep.o
 $(B)/tests/faults/make_meshopt: $(B)/tests/faults/make_meshopt.o
 	$(CXX) $(NT_LDFLAGS) -o $@ $^ -lmeshoptimizer
 
-# What soak, fuzz and bench are made of compiles in every check; not what needs a peer's header.
+# Sources of soak, fuzz and bench compile in every check, but for those that need a peer's header.
 rest_obj := $(patsubst %.c,$(B)/%.o,$(filter-out tests/soak/published.c tests/bench/peer_%,$(wildcard \
 	$(foreach folder,bench fuzz soak stress,tests/$(folder)/*.c))))
 

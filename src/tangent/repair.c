@@ -2,7 +2,7 @@
 /*
  * Repair: see repair.h.
  *
- * The check (usable.c) finds nothing on most meshes, and then nothing is done here. Where it finds something it has
+ * The check (usable.c) finds nothing on most meshes, and then nothing is done here. If it finds something, it has
  * marked the corners concerned with w = 0. They are collected by welded vertex, the triangles around these vertices
  * are visited once, and each corner gets, in this order:
  *
@@ -13,8 +13,8 @@
  *   4 where its face has no orientation of its own, 1 or 2 of the other orientation
  *   5 a unit vector perpendicular to the normal
  *
- * A face without orientation takes that of its usable corners, or of its vertices' neighbourhoods. What is usable
- * keeps its bytes.
+ * A face without orientation takes that of its usable corners, or of its vertices' neighbourhoods. Usable tangents
+ * keep their bytes.
  *
  * Apart from what is faulty this costs one look at the numbers of each triangle's vertices.
  */
@@ -27,7 +27,7 @@
 #include "tangent/usable.h"
 #include "topology/corners.h"
 
-/* What the sums at a vertex and its usable corners come to, for orientation -1 and +1. */
+/* Sums at a vertex and its usable corners, for orientation -1 and +1. */
 typedef struct neighbour_answers {
 	float tangents[2][3], perpendicular[3]; /* unit; perpendicular to the normal */
 	bool averaged[2], borrowed[2];          /* 1 or 2 of the list above; neither: there is no tangent */
@@ -326,7 +326,7 @@ static void repair_face(const repair_state *r, size_t number, size_t first)
 	}
 }
 
-/* What nearly all meshes do not need: not in line, since it saves many registers. */
+/* The part that nearly all meshes do not need: not in line, since it saves many registers. */
 static nmtan_status NT_NOINLINE repair(const nt_solve *solve, const nmtan_counts *counts,
 	const uint64_t *faulty)
 {

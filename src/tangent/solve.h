@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What every method gets and gives. The entry point (tangents.c) has checked the mesh: pointers, sizes
+ * Input and output of every method. The entry point (tangents.c) has checked the mesh: pointers, sizes
  * and indices are sound, strides are filled in, face_count is not 0, limits are kept.
  */
 #ifndef NT_TANGENT_SOLVE_H
@@ -20,8 +20,8 @@ enum { NT_FAST_PATHS = 0 };
 enum { NT_FAST_PATHS = 1 };
 #endif
 
-/* What a method knows of its result, so that usable.c need not look at all of it. `flags` has a byte for each triangle,
- * two for a quad; what its bits mean is told by these sets of bits, of which each may be empty:
+/* A method's knowledge of its result, so that usable.c need not look at all of it. `flags` has a byte for each
+ * triangle, two for a quad; what its bits mean is told by these sets of bits, of which each may be empty:
  *
  *   suspect     The triangle has to be looked at. Without these bits all its corners are usable, it is not degenerate
  *               and no half of a folded quad, and its orientation is exact and survives storing.

@@ -2,7 +2,7 @@
 /*
  * The search for unusable tangents: see usable.h. Most faces need no look: a method that has bounded the error of
  * its determinants and checked the vectors it shared out knows that they are usable (nt_solve.known). The others
- * are suspects. Of triangles, those among 64 are found first and then checked.
+ * are suspects. The triangles among 64 are found first and then checked.
  */
 #include "tangent/usable.h"
 
@@ -21,7 +21,7 @@ typedef struct search {
 	uint64_t *faulty;     /* [words] */
 } search;
 
-/* What is wrong with a row */
+/* Faults of a row */
 
 /* Why a corner is not usable, which is counted. */
 static nmtan_fault fault_of(const float *t, const float *n, nmtan_counts *counts)
@@ -106,7 +106,7 @@ static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int o
 	return true;
 }
 
-/* What a face is like */
+/* Facts about a face */
 
 /* Adds what a triangle is like to the counts; returns its exact orientation, as stored if it has one there. */
 static int count_triangle(const nmtan_mesh *mesh, const uint32_t corners[3], nmtan_counts *counts)

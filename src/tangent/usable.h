@@ -19,7 +19,7 @@
 /* |T|^2 may differ from 1 by this much: 32 units in the last place. Normalising in float is good to 4. */
 #define NT_UNIT_TOLERANCE (32 * 1.1920929e-7f)
 
-/* The largest (T . N)^2 there: a sine of 2^-10, 0.056 degrees. Where a projection in float is well-conditioned it is
+/* The largest (T . N)^2 there: a sine of 2^-10, 0.056 degrees. If a projection in float is well-conditioned, it is
  * good to 2^-22, so that beyond this a direction has lost more than half of its bits along the normal. */
 #define NT_MOST_LEAN_SQUARED 0x1p-20f
 

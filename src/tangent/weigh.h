@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a triangle adds to the sum at one of its corners, without a branch: the one formula behind
+ * The contribution of a triangle to the sum at one of its corners, without a branch: the one formula behind
  * frames.c, which does one triangle after the other, and tangent/sums/kernel.h, which does many at a time.
  *
  * Nothing here has unit length but the normal: scales cancel in the direction, in the angle and in the

@@ -2,7 +2,7 @@
 /*
  * The corners around each welded vertex, laid out for lanes: vertices go in blocks of 16, and the k-th
  * corners of a block's vertices lie side by side. A block is as deep as its vertex of most corners;
- * hubs, which are the vertices of more than NT_FAN_DEPTH corners, have no entries here. Where places run out, because
+ * hubs, which are the vertices of more than NT_FAN_DEPTH corners, have no entries here. If places run out, because
  * a very large mesh is also very uneven, all vertices are hubs from there on.
  *
  * Several ranges of triangles can be entered at the same time: each range has a cursor of its own for

@@ -92,7 +92,7 @@ static inline size_t nt_first_corner(const nmtan_mesh *mesh, size_t face)
 	return 3 * face + quads;
 }
 
-/* What is added to v when it is stored. */
+/* The number that is added to v when it is stored. */
 static inline float nt_stored_v_offset(const nmtan_mesh *mesh)
 {
 	return mesh->stored ? mesh->stored->v_offset : 0.0f;

@@ -22,7 +22,7 @@
  * enough. In few triangles everything is near, and to look again costs little. */
 enum { FIRST_TRIANGLES = 12, FIRST_OF_FEW = 4, MORE = 4 };
 
-/* Of so few triangles all corners are listed. */
+/* So few triangles have all corners listed. */
 enum { LEAST_WATCHED = 16, FEW = 1024 };
 
 /* Vertices of the last triangles, whose cells have numbers of a byte. If they have more, all edges are looked at. */
@@ -74,7 +74,7 @@ static const uint32_t *vertices_of(const nt_welded_mesh *m, size_t triangle, uin
 
 /* The last triangles */
 
-/* Where the number of a member is, or NONE. */
+/* The place of a member's number, or NONE. */
 static uint32_t *slot_of(const nt_edge_tail *tail, uint32_t vertex)
 {
 	uint32_t at = vertex * 0x9e3779b1u >> tail->slot_shift;

@@ -94,8 +94,8 @@ int nt_quad_diagonal(const float *const texcoords[4], const float *const positio
 	       squared_distance(positions[0], positions[2], 3);
 }
 
-/* Newell's normal of a quad is the cross product of its diagonals: twice the area of its shadows. Of coordinates with
- * 24 bits of one scale the cross products are exact; where they are not, a triangle that is judged wrongly stands
+/* Newell's normal of a quad is the cross product of its diagonals: twice the area of its shadows. For coordinates
+ * with 24 bits of one scale the cross products are exact; if they are not, a triangle that is judged wrongly stands
  * upright on the quad, to 2^-50. */
 static bool has_inverted(const float *const positions[4], int diagonal)
 {

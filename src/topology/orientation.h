@@ -5,9 +5,9 @@
  *
  * The sign is exact. A difference of two floats is exact in double unless their exponents lie more
  * than 2^29 apart; rounding a product is monotone, so two rounded products that differ compare as the
- * exact ones do; and where they are equal the residuals, which fma gives exactly, decide. What is left
- * (inexact differences) is summed as an expansion (J. Shewchuk, "Adaptive Precision Floating-Point
- * Arithmetic and Fast Robust Geometric Predicates", 1997).
+ * exact ones do; and where they are equal the residuals, which fma gives exactly, decide. The rest (inexact
+ * differences) is summed as an expansion (J. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
+ * Geometric Predicates", 1997).
  */
 #ifndef NT_TOPOLOGY_ORIENTATION_H
 #define NT_TOPOLOGY_ORIENTATION_H
@@ -52,8 +52,8 @@ extern const unsigned char nt_quad_triangles[2][2][3];
 int nt_quad_diagonal(const float *const texcoords[4], const float *const positions[4]);
 
 /* The diagonal along which a quad is written as triangles: that of its solve, unless this lies outside in space, so
- * that one triangle is inverted, and the other one does not. "Inverted" is against the quad's Newell normal. Of a
- * simple outline no triangle is, for it has at most one corner that turns inwards; of one that crosses itself one
+ * that one triangle is inverted, and the other one does not. "Inverted" is against the quad's Newell normal. No
+ * triangle of a simple outline is, for it has at most one corner that turns inwards; of one that crosses itself one
  * always is. */
 int nt_written_quad_diagonal(int solved, const float *const positions[4]);
 

@@ -10,7 +10,7 @@
 
 /*
  * Makes a mesh plain, whose faces nt_check_faces() has accepted and whose strides are filled in; of attributes that are
- * NULL nothing is made. What is new is in the scratch; a plain mesh stays as it is, at no cost.
+ * NULL nothing is made. New arrays are in the scratch; a plain mesh stays as it is, at no cost.
  *
  *   corners  receives NULL or, where vertices have come into being, the first corner of each: [mesh->vertex_count]
  *

@@ -120,7 +120,7 @@ typedef struct part {
 	unsigned halvings;
 } part;
 
-/* Where a part is halved, and along which axis; false: nothing is left to halve. */
+/* The point at which a part is halved, and along which axis; false: nothing is left to halve. */
 static bool find_middle(const part *p, unsigned *axis, float *middle)
 {
 	enum { STEP = sizeof *p->points / sizeof *p->points->position };

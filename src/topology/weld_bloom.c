@@ -12,7 +12,7 @@
  * A bitmap is a quarter of the table at most and stays in the second-level cache where the table does not.
  * A mesh that turns out to have many equal vertices is left
  * to the table. Threads have bitmaps of their own for their ranges of vertices; what two of them have marked
- * counts as marked again. What is equal does not depend on threads, nor on whether a vertex is listed by chance.
+ * counts as marked again. Equality does not depend on threads, nor on whether a vertex is listed by chance.
  */
 #include "base/parallel.h"
 #include "topology/weld_parts.h"
@@ -79,7 +79,7 @@ static nt_weld_flags load_rows(const nt_welder *w, size_t begin, size_t end, uin
 	return unordered;
 }
 
-/* Whoever holds a NaN gets place 0, as if it had been found. */
+/* A vertex with a NaN gets place 0, as if it had been found. */
 static void find_unordered(const bloom_filter *f, size_t begin, size_t end, uint32_t *marked)
 {
 	marked[0] |= bits_of(0);
@@ -127,7 +127,7 @@ static void load_range(void *context, size_t begin, size_t end, unsigned thread)
 
 /* List */
 
-/* What two ranges have marked, or one again. */
+/* Vertices that two ranges have marked, or one again. */
 static void join_range(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const bloom_filter *f = context;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the table of rows (weld_table.c), its use on several threads (weld_threads.c) and the weld of vertices
+ * Shared by the table of rows (weld_table.c), its use on several threads (weld_threads.c) and the weld of vertices
  * (weld_bloom.c) share: the entries of that table. For these files and weld.c only.
  *
  * An entry of 4 bytes holds a number and, in the bits that the number leaves free, a tag of the hash, so that

@@ -92,7 +92,7 @@ static inline void nt_weld_put(nt_weld_floats low, nt_weld_floats high, nt_weld_
 	memcpy((char *)row + sizeof low, &high, sizeof high);
 }
 
-/* Where each byte of code is sent to a browser a row is loaded out of line: 240 bytes of the package. */
+/* If each byte of code is sent to a browser, a row is loaded out of line: 240 bytes of the package. */
 #ifdef __wasm__
 #define NT_WELD_INLINE NT_NOINLINE __attribute__((unused))
 #else

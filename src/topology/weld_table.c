@@ -161,7 +161,7 @@ static void number_batch(nt_welder *w, const batch *b)
 	w->unordered = local.unordered || !b->ordered;
 }
 
-/* Where the batch after `now` is loaded: right behind, so that rows of a mesh without doubles are
+/* The place into which the batch after `now` is loaded: right behind, so that rows of a mesh without doubles are
  * never moved; once doubles have left a gap before `now`, into the gap, out of the way of the rows that
  * `now` will keep. */
 static nt_weld_row *next_place(const nt_welder *w, const batch *now)

@@ -201,7 +201,7 @@ static void limited_release(void *user, void *block, size_t size)
 	free(block);
 }
 
-/* What a square needs lies on the stack, so there are many: they take blocks from the allocator. */
+/* A square's arrays lie on the stack, so there are many: they take blocks from the allocator. */
 TEST(exhausted_memory_is_told_and_nothing_leaks)
 {
 	enum { SQUARES = 5000 };

@@ -71,7 +71,7 @@ static void assert_same(const results *a, const results *b, size_t vertex_count,
 	assert_memory_equal(&a->counts, &b->counts, sizeof a->counts);
 }
 
-/* What a golden mesh is with every seventh corner at the vertex of the sixth before it. */
+/* A golden mesh with every seventh corner at the vertex of the sixth before it. */
 typedef struct indexed {
 	nmtan_mesh mesh;
 	uint32_t *indices;

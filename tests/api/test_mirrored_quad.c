@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the library is for, on the smallest mesh that shows it: two unit quads side by side in the plane
+ * The purpose of the library, on the smallest mesh that shows it: two unit quads side by side in the plane
  * z = 0. The texture runs to the right on the left quad and is mirrored on the right one, as an artist
  * does with the two halves of a face. The vertices on the seam have one position, one normal and one UV,
  * but two tangents.

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Callers that were compiled with another version of nmtan.h: older ones pass smaller structs, newer ones
- * larger structs. What an older header did not have is simulated by a size that ends before it.
+ * larger structs. A member that an older header did not have is simulated by a size that ends before it.
  */
 #include "test.h"
 #include <stdbool.h>
@@ -81,7 +81,7 @@ static taken struct_of(call *c, int which)
 	return all[which];
 }
 
-/* What each function says when one struct has this size and that last word of its tail. */
+/* The status of each function if one struct has this size and that last word of its tail. */
 static void expect(int which, size_t struct_bytes, size_t tail, nmtan_status expected)
 {
 	call c;

@@ -42,7 +42,7 @@ static void print_machine(void)
 		nt_thread_count(0));
 }
 
-/* What a row of the table is timed on: one mesh, or many small ones in turn. */
+/* Meshes that a row of the table is timed on: one mesh, or many small ones in turn. */
 typedef struct workload {
 	nt_owned *meshes; /* [count] */
 	size_t count, triangles, most_corners;

@@ -17,7 +17,7 @@
 
 enum { ROUNDS = 7, MOST_WAYS = 5 + NATIVE_MOST };
 
-/* What a way runs in one round at least, in seconds; triangles between two looks at the clock, which is a system
+/* The least time of a way in one round, in seconds; triangles between two looks at the clock, which is a system
  * call. */
 static const double ROUND = 0.01;
 enum { LEAST_TIMED = 10000 };

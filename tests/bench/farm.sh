@@ -14,7 +14,7 @@ farm=$ROOT/data/farm
 . "$ROOT/tests/support/slurm.sh"
 cd "$WORK"
 
-# Of 100 files one is an OBJ of 0.7 MB, nine are heads of 40 KB, the others what data/ has of a few KB.
+# One of 100 files is an OBJ of 0.7 MB, nine are heads of 40 KB, the others what data/ has of a few KB.
 make_files() {
 	local i small
 	cc -O1 -o make_obj "$ROOT/tests/bench/make_obj.c" -lm

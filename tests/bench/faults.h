@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a renderer cannot use, counted as tests/support/frames.mjs does for files: on meshes that are hard for tangents.
+ * Tangents that a renderer cannot use, counted as tests/support/frames.mjs does for files: on meshes that are hard
+ * for tangents.
  */
 #ifndef NT_BENCH_FAULTS_H
 #define NT_BENCH_FAULTS_H

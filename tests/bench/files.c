@@ -241,8 +241,8 @@ static void take(const nt_owned *mesh, result *r, double most, shading *to)
 	}
 }
 
-/* Whether the document of a GLB speaks of tangents. What nmtan reads must have them: it would make them, and a tool
- * that did nothing would be given nmtan's own. */
+/* Whether the document of a GLB speaks of tangents. Files that nmtan reads must have them: it would make them, and a
+ * tool that did nothing would be given nmtan's own. */
 static bool has_tangents(const char *glb)
 {
 	uint32_t head[5] = {0};

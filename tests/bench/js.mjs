@@ -3,7 +3,7 @@
 // node js.mjs NMTAN PACKAGE MODULES FOLDER FILE...: million triangles a second of the npm package in Node, beside npm's
 // mikktspace (wasm), three.js's own JavaScript and meshoptimizer's wasm in its compatible mode: on a clean torus of a
 // million triangles and on the largest primitive of each FILE, which NMTAN converts to GLB in FOLDER. Runs are
-// interleaved, each column is the best of them. Those that need triangles without shared vertices get them made in
+// interleaved, each column is the best of them. Programs that need triangles without shared vertices get them made in
 // the measured time, as their users have to; meshoptimizer gives a tangent for each corner and does not split.
 import { spawnSync } from 'node:child_process';
 import { createRequire } from 'node:module';

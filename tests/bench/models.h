@@ -17,8 +17,8 @@ typedef struct model {
 } model;
 
 /*
- * Reads the PLY files that models.sh made of real models. Quads are cut at their first corner. Where a file has no
- * normals, they are made: sums of triangles' normals by area; all get unit length, as bakers have them. Where it has no
+ * Reads the PLY files that models.sh made of real models. Quads are cut at their first corner. If a file has no
+ * normals, they are made: sums of triangles' normals by area; all get unit length, as bakers have them. If it has no
  * texture coordinates, x and y are projected to [0, 1]: the silhouettes are mirror seams. Without a file there are
  * stand-ins.
  *

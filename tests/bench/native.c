@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* See native.h. What is declared of the peers is their public interface, as far as it is used. */
+/* See native.h. The declarations of peers are their public interface, as far as it is used. */
 #include "native.h"
 
 #include <dlfcn.h>

@@ -17,7 +17,7 @@ typedef struct native {
 
 /*
  * Looks for libmeshoptimizer*.so and libmikktspace*.so (from mikktspace.c) in a folder; the system's libmeshoptimizer
- * where the folder has none. What is not there, or has no tangents, is said.
+ * where the folder has none. Prints which program is missing, or gives no tangents.
  *
  *   folder  NULL: the system alone
  *

@@ -31,7 +31,7 @@
 
 enum { MOST_ROWS = 48, MOST_VARIANTS = 4, CALL_ROUNDS = 5, RUN_ROUNDS = 3, MOST_ARGUMENTS = 12 };
 
-/* What a call is repeated for in a round, in seconds. */
+/* The time for which a call is repeated in a round, in seconds. */
 static const double ROUND = 0.01;
 
 /* Times that are nearer to each other than that are taken as equal: one is not ahead by what a run may differ. */
@@ -323,7 +323,7 @@ static bool read_tangents(const bench *b, const row *r, char letter, size_t numb
 	return whole;
 }
 
-/* What a row makes of a model. */
+/* The result of a row for a model. */
 static bool shade(const bench *b, const row *r, size_t number, nmtan_workspace *workspace, shading *to)
 {
 	const model *m = &b->models[number];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What whole processes take, two commands in turns: see process.sh.
+ * Time of whole processes, two commands in turns: see process.sh.
  *
  *   process ROUNDS OUTPUTS NAME COMMAND... -- COMMAND...
  *

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the methods do to surfaces that are known: how fast their tangents converge to the analytic dP/du, and how far
+ * The methods on surfaces that are known: how fast their tangents converge to the analytic dP/du, and how far
  * thin bevels tilt the plane beside them. Prints a table in Markdown for each.
  */
 #include <math.h>

@@ -34,7 +34,7 @@ def read_golden(path):
     return sizes, [part.reshape(corners, -1) for part in cut]
 
 
-# Those whose faces have one size, as an array [faces, 3] or [faces, 4] has.
+# Meshes whose faces have one size, as an array [faces, 3] or [faces, 4] has.
 GOLDENS = {os.path.basename(path): golden for path in sorted(glob.glob(os.path.join(DATA, "golden", "*.nmtg")))
            if len(set((golden := read_golden(path))[0])) == 1}
 

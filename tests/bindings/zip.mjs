@@ -14,7 +14,7 @@ const {Refusal, checkSize, cleanPath, isHidden, isMesh} = await import(pathToFil
 const original = readFileSync(from_python), text = bytes => new TextDecoder().decode(bytes);
 const CENTRAL = Buffer.from([0x50, 0x4b, 1, 2]), END = Buffer.from([0x50, 0x4b, 5, 6]);
 
-// Where the record of the directory begins whose name contains a word.
+// The beginning of the directory's record whose name contains a word.
 function record(bytes, word) {
 	for (let at = bytes.indexOf(CENTRAL); at >= 0; at = bytes.indexOf(CENTRAL, at + 1))
 		if (bytes.toString('latin1', at + 46, at + 46 + bytes.readUInt16LE(at + 28)).includes(word)) return at;

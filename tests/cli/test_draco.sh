@@ -356,7 +356,7 @@ grains_obj() {
 		}
 	}'
 }
-# What --check has against the tangents of a file.
+# Findings of --check about the tangents of a file.
 faults() {
 	run --check "$@"
 	grep -o 'TAN_[A-Z_]*' "$WORK/out.txt" | grep -v TAN_UNUSED

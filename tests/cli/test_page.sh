@@ -28,7 +28,7 @@ exits 0
 [ "$(grep -ao '"images":\[{"image":[0-9]' twice.html | wc -l)" -gt 1 ] || wrong "no two meshes have an image"
 [ "$(grep -ao 'data:image/png;base64,[^"]*' twice.html | sort | uniq -d | wc -l)" = 0 ] || wrong "an image is there twice"
 
-# What a browser shows is the same whoever made the page; sanitizers look at its making alone.
+# A browser shows the same for every build that made the page; sanitizers look at its making alone.
 case $BUILD in *sanitize*) browses=false side=60 ;; *) browses=true side=708 ;; esac
 
 scene "pages of small, large, many and broken meshes work in Chromium: findings, views, frames, keys, links, names as text"
@@ -159,7 +159,7 @@ else
 	skip_case "chromium or playwright-core is not installed"
 fi
 
-# What the page has of the first mesh's normal map: what it is, and where it is looked up.
+# The page's data of the first mesh's normal map: what it is, and where it is looked up.
 normal_map() {
 	grep -ao '"image":[0-9]*,"map":[^]]*]' "$1" | head -1
 	grep -ao 'data:image/[a-z]*' "$1" | head -1

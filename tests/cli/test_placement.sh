@@ -13,7 +13,7 @@ quad() {
 	cp "$WORK/n.png" .
 }
 
-# What a renderer sees at the corners of a mesh, from the file alone: where it samples (v up again), and whether
+# A renderer's view of the corners of a mesh, from the file alone: where it samples (v up again), and whether
 # B = cross(N, T) w runs along -dP/dv and T along dP/du of the coordinates at which it samples (v down).
 seen='(m => {
 	const p = g.meshes[m].primitives[0], a = p.attributes, use = g.materials[p.material].normalTexture;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# --quads: triangles of a glTF that are solved as the quads that they are halves of. What is right is said by the same
-# quads in an OBJ, which are no halves; the glTF has them cut by the diagonal that nmtan would not take.
+# --quads: triangles of a glTF that are solved as the quads that they are halves of. The same quads in an OBJ give the
+# right answer, which are no halves; the glTF has them cut by the diagonal that nmtan would not take.
 . "$ROOT/tests/support/cli.sh"
 
 # A bumpy grid of 12 by 12 quads with odd texture coordinates. Positions are whole 1024ths and
@@ -39,7 +39,7 @@ recut='const halves = (p) => { const c = rows(p.indices).flat(), out = [];
 	const all = g.meshes.flatMap((m) => m.primitives);'
 strip='g.meshes.flatMap((m) => m.primitives).forEach((p) => { delete p.attributes.TANGENT; });'
 
-# What is at each place, once: position and texture coordinates, then the tangent. $1: how tangents are printed.
+# The vertices at each place, once: position and texture coordinates, then the tangent. $1: how tangents are printed.
 places() {
 	gltf "$2" "[...new Set(g.meshes.flatMap((m) => m.primitives).flatMap((p) => {
 		const [x, t, u] = ['POSITION', 'TANGENT', 'TEXCOORD_0'].map((name) => rows(p.attributes[name]));

@@ -8,7 +8,7 @@ rows() {
 	value "$1" '"\n".join(str(('"$2"')) for f in r["files"])'
 }
 
-# What several scenes report on: names that are equal, equal but for case, hostile, hidden; an input that cannot be read.
+# Inputs of several scenes: names that are equal, equal but for case, hostile, hidden; an input that cannot be read.
 inputs() {
 	mkdir a b
 	cp "$data/mirrored_cube.obj" a/m.obj

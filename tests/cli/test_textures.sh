@@ -631,7 +631,8 @@ exits 0
 is "$(gltf out.gltf '[g.images, g.textures, g.materials]')" '[[{"name":"n","uri":"down.png"},{"name":"n","uri":"down-green-up.png"}],[{"source":0},{"source":1,"name":"second"},{"source":1}],[{"name":"m","normalTexture":{"index":2},"pbrMetallicRoughness":{"metallicFactor":0},"occlusionTexture":{"index":0}},{"normalTexture":{"index":1},"extensions":{"KHR_materials_clearcoat":{"clearcoatNormalTexture":{"index":2}}}}]]'
 echo "$PWD/out.gltf" >pairs
 valid --pairs pairs
-# VRM 0 has numbers of textures in the root; of these _BumpMap is a normal map. Of VRM 1 mtoon has textures in the material.
+# VRM 0 has numbers of textures in the root; of these _BumpMap is a normal map. In VRM 1, mtoon has textures in the
+# material.
 changed quad.gltf vrm.gltf 'm = g["materials"]; m[0]["extensions"] = {"VRMC_materials_mtoon": {"matcapTexture": {"index": 0}}}
 g["extensionsUsed"] = ["VRM", "VRMC_materials_mtoon"]; g["textures"].append({"source": 0})
 m.append({"normalTexture": {"index": 1}})

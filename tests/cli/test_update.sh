@@ -51,7 +51,7 @@ mkfifo nobody_writes
 timeout 60 "$NMTAN" -n nobody_writes o.glb 2>"$WORK/err.txt"
 is $? 2
 
-# What the run made anew: the names of inputs.
+# Outputs that the run made again: the names of inputs.
 made() {
 	sed -n 's/^nmtan: \([^>]*\) -> .*, [0-9.e-]* s\(;.*\)*$/\1/p' "$WORK/err.txt" | tr '\n' ' '
 }

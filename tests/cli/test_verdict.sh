@@ -56,7 +56,7 @@ faulty_inputs() {
 	rm kept.*
 }
 
-# Of each file what is found; of no glTF where $2 is empty; without the codes $3.
+# Findings of each file; of no glTF where $2 is empty; without the codes $3.
 found() {
 	value "$1" '"\n".join("%s: %s %s %s %s" % (f["file"], x["severity"], x["code"], x["count"], x["message"]) for f in r["files"]
 		if "'"$2"'" or ".gl" not in f["file"] for x in f["findings"] if x["code"] not in "'"${3:-}"'")'

@@ -27,7 +27,8 @@ await page.route('**/*', (route) => {
 });
 await page.goto('http://card/');
 
-// What strips say: the brightness of the left strokes of P and F, which begin at columns 5 and 37, beside the ground's.
+// Readings of strips: the brightness of the left strokes of P and F, which begin at columns 5 and 37, beside the
+// ground's.
 function read(pixels) {
 	const at = (strip, column) => {
 		const row = HEIGHT - 1 - Math.floor((TOP - 2.2 + 1.1 * strip - 0.5 + 8.5 / 16) * 128);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What mikktspace.c answers on the meshes of meshes.json.
+"""mikktspace.c's answers on the meshes of meshes.json.
 
     reference.py DIR           compares; DIR has mikktspace.c and mikktspace.h as published; exit 1 where they differ
     reference.py --write DIR   writes the answers into meshes.json

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the driver (sweep.c) and the library that it preloads into the tool (faulty.c) say to one another, through a
+ * Messages between the driver (sweep.c) and the library that it preloads into the tool (faulty.c), through a
  * file that both map.
  */
 #ifndef NT_FAULTY_H

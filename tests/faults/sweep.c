@@ -229,7 +229,7 @@ typedef struct expectations {
 	const char *shortened; /* a file that becomes empty, or NULL */
 } expectations;
 
-/* What stands behind the last colon of what is said. */
+/* The text behind the last colon of a message. */
 static const char *last_words(bytes said)
 {
 	static char words[300];
@@ -245,7 +245,7 @@ static bool has_times(const char *path)
 	return strstr(path, "/.nmtan-record") || strstr(path, ".jsonl");
 }
 
-/* What is wrong with the files; NULL: nothing. `whole`: all must be what they should be. */
+/* The fault of the files; NULL: nothing. `whole`: all must be what they should be. */
 static const char *judge_files(const expectations *rules, const folder *before, const folder *clean, const folder *now,
 	bool whole, bytes said)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * JSON from JSON: see json_mutator.h. The text is walked once, which gives the span of every value; a change replaces
- * one span by other text, so that nothing has to be written anew. What replaces comes half of the time from the
+ * one span by other text, so that nothing has to be written anew. The replacement comes half of the time from the
  * document itself, under the same key: indices and counts that fit somewhere lead further than any others.
  */
 #include "json_mutator.h"
@@ -133,8 +133,8 @@ static bool is_named(const document *d, int i, const char *name, size_t length)
 	return v->key_end - v->key == length && memcmp(d->text + v->key, name, length) == 0;
 }
 
-/* A value of a kind; NO_VALUE where there is none. `like`: with that value's name, NO_VALUE: any. Whatever lies in an
- * array is seldom chosen for itself: matrices, weights and extents would be most of it. */
+/* A value of a kind; NO_VALUE where there is none. `like`: with that value's name, NO_VALUE: any. Elements of an
+ * array are seldom chosen for themselves: matrices, weights and extents would be most of it. */
 static int choose(const document *d, char kind, int like)
 {
 	int chosen = NO_VALUE;
@@ -340,7 +340,7 @@ static size_t change_kind(document *d)
 	return i == NO_VALUE ? d->size : replace(d, i, by, strlen(by));
 }
 
-/* What documents may have, and the object or array that has it. */
+/* Members that documents may have, and the object or array that has it. */
 static const struct {
 	const char *owner, *member;
 } members[] = {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Other documents from a JSON document: numbers, strings and whole values are exchanged, members and elements removed,
- * doubled, moved and added, bytes within data URIs changed. What comes out can be parsed if what went in could.
+ * doubled, moved and added, bytes within data URIs changed. The result can be parsed if the input could.
  */
 #ifndef NT_FUZZ_JSON_MUTATOR_H
 #define NT_FUZZ_JSON_MUTATOR_H

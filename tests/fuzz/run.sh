@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: MIT
 #
 # tests/fuzz/run.sh BUILD FUZZ_BUILD SECONDS TARGET...: so many seconds with each target in turn. An input that fails
-# is kept in FUZZ_BUILD/found/TARGET and the target goes on, unless it fails at the same input again. What leads further
-# is kept in FUZZ_BUILD/corpus/TARGET, for
-# the next time. Fails when an input did. To run one again:
+# is kept in FUZZ_BUILD/found/TARGET and the target goes on, unless it fails at the same input again. Inputs that lead
+# further are kept in FUZZ_BUILD/corpus/TARGET, for the next time. Fails when an input did. To run one again:
 #
 #   FUZZ_VERBOSE=1 FUZZ_TARGET=ply build/fuzz/tests/fuzz/target build/fuzz/found/ply/crash-...
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 build=$1 fuzz=$2 seconds=$3
 shift 3
-# What is too large to be given is refused as in a full memory; what is given counts as used.
+# An allocation that is too large is refused as in a full memory; others count as used.
 export ASAN_OPTIONS=allocator_may_return_null=1:quarantine_size_mb=16:detect_stack_use_after_return=0
 limits=(-timeout=20 -rss_limit_mb=1024 -malloc_limit_mb=512 -max_len=24576)
 all_failed=0

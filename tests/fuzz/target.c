@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What libFuzzer calls: an input becomes a file in memory (/dev/shm), is converted or checked as a run of the tool
- * would, with settings by chance, which the input's bytes decide, and what comes of it is looked at:
+ * The function that libFuzzer calls: an input becomes a file in memory (/dev/shm), is converted or checked as a run
+ * of the tool would, with settings by chance, which the input's bytes decide, and what comes of it is looked at:
  *
  * - a failed run has a sentence and leaves no file, a successful one leaves what it says;
  * - an output is read back, and needs nothing: a run in place leaves it as it is;

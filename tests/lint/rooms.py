@@ -72,7 +72,7 @@ def included(path):
 
 
 def symbols(build, sources):
-    """Where each strong symbol is defined, and the symbols that each source file needs, by its object."""
+    """The definition of each strong symbol, and the symbols that each source file needs, by its object."""
     defines, needs = {}, {}
     for source in sources:
         built = os.path.join(build, os.path.relpath(source, "src") + ".o")

@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# rooms.sh [BUILD_DIR]: make lint. Who may use whom (rooms.py), SPDX lines, nothing that prints or exits outside
-# src/cli, C++ in src/ext alone, lines of C and C++ of at most 120 columns, no addresses of package registries or
-# paths of one machine, and with BUILD_DIR what the libraries show and need. Prints one line per fault.
+# rooms.sh [BUILD_DIR]: make lint. Allowed arrows between rooms (rooms.py), SPDX lines, nothing that prints or exits
+# outside src/cli, C++ in src/ext alone, lines of C and C++ of at most 120 columns, no addresses of package registries
+# or paths of one machine, and with BUILD_DIR what the libraries show and need. Prints one line per fault.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 faults=0
@@ -12,7 +12,7 @@ fault() {
 	faults=$((faults + 1))
 }
 
-# Who may use whom: includes, and symbols where there is a build.
+# Arrows between rooms: includes, and symbols where there is a build.
 python3 tests/lint/rooms.py ${1+"$1"} || faults=$((faults + 1))
 
 while IFS= read -r file; do
@@ -52,7 +52,7 @@ while IFS= read -r hit; do
 	fault "$hit"
 done < <(git grep -nIE 'registry\.[a-z]+\.|"resolved"|(^|[^a-zA-Z0-9_.}])/(work|root|home/[a-z]+)/' -- . ':!tests/lint' 2>/dev/null)
 
-# What the shared library shows to the world, and what the static one asks of it.
+# Symbols that the shared library exports, and that the static one needs.
 build=${1-}
 if [ -n "$build" ]; then
 	while IFS= read -r symbol; do

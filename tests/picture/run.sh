@@ -14,7 +14,7 @@ node "$here/make_tile.mjs" "$dir"
 "$nmtan" -q "$dir/tile.obj" "$dir/ours.glb"
 node "$dir/node_modules/gltfpack/cli.js" -noq -gt -i "$dir/ours.glb" -o "$dir/theirs.glb"
 
-# What the README says: the validator finds nothing in either file, --check finds the wrong sign in one.
+# The README says: the validator finds nothing in either file, --check finds the wrong sign in one.
 node tests/support/answer.mjs validate "$dir/ours.glb"
 node tests/support/answer.mjs validate "$dir/theirs.glb"
 "$nmtan" --check -q --report-format=text --fail-on=info "$dir/ours.glb" >"$dir/ours.txt"

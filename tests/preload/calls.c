@@ -110,7 +110,7 @@ static void note(const char *format, ...)
 	errno = kept;
 }
 
-/* What a descriptor stands for: a folder or a file, by its inode. */
+/* The file of a descriptor: a folder or a file, by its inode. */
 static void note_sync(int fd)
 {
 	const char *folder = getenv("NT_CALLS_TRACE");

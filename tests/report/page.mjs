@@ -33,7 +33,8 @@ function check(condition, text) {
 }
 
 // A page does what it is told when it comes to it, which takes long where others want the same processor: what is expected may
-// come within a minute. `text`: a string, or what is asked for one then. What must *not* happen is asked for after rest().
+// come within a minute. `text`: a string, or what is asked for one then. Checks that something does *not* happen come
+// after rest().
 async function expect(holds, text) {
 	let thrown = '';
 	for (const end = Date.now() + 60000; ;) {

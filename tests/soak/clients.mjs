@@ -184,7 +184,7 @@ function primitivesOf(file) {
 const classOf = (error) => error.replace(/[^\s"']*[/.][a-z][^\s"']*/gi, 'FILE').replace(/[0-9.]+/g, 'N')
 	.replace(/(Type|Range)Error: .*/s, 'exception').slice(0, 200);
 
-// What is wrong with an output, in words, or nothing. `before` is what the client makes of the input, if it reads such.
+// The fault of an output, in words, or nothing. `before` is what the client makes of the input, if it reads such.
 function faultOf(before, after, file) {
 	const known = new Set((before?.errors ?? []).map(classOf)), error = after.errors.find((e) => !known.has(classOf(e)));
 	if (error)

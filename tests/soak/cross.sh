@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 #
 # tests/soak/cross.sh BUILD: the whole tool for arm64, with its modules, run by qemu: its files have the bytes of BUILD's,
-# and its messages are the same. Where Draco encodes what was not compressed the messages alone are compared: Debian's
+# and its messages are the same. If Draco encodes uncompressed primitives, the messages alone are compared: Debian's
 # library multiplies and adds in one step on arm64, and may quantize to another integer. The libraries (6 MB) are unpacked
 # below build/aarch64/, installed is nothing. Needs gcc-aarch64-linux-gnu, g++-aarch64-linux-gnu, qemu-user, and a Debian
 # that knows packages of arm64:

@@ -32,7 +32,7 @@
 
 enum { GROUP = 25, SECONDS = 10, STUCK_SECONDS = 600, MEGABYTES = 2048, EXIT_WRONG = 3 };
 
-/* What children and their parent share. */
+/* Memory that children and their parent share. */
 static struct {
 	size_t run;      /* under way, of the file's */
 	size_t runs, written, refused, geometry, opened, memory;

@@ -5,7 +5,7 @@
 The mesh is a strip of two quads over one row of texture coordinates, u = |x|: its left half is mirrored, so that
 the two vertices in the middle split, which moves everything behind them. Its tangents are known without a program:
 u grows along +x on the right and along -x on the left, w is 1 and -1 (v runs down in glTF, along -y here).
-What is checked: exit codes, where the bytes lie, the bytes, and the tool's peak of memory."""
+It checks: exit codes, where the bytes lie, the bytes, and the tool's peak of memory."""
 import array
 import json
 import os

@@ -3,9 +3,9 @@
 """mutate.py ROOM N SEED: which of N random faults in the sources of a room do the tests notice?
 
 A copy of the tree in build/mutate gets one fault at a time: a relation, a constant, a statement that is gone. First the
-tests of the file's room and subject run, then all others but those of cost, pages, tree and bindings. What no test
-notices is listed with its line. A fault that does not compile, or that compiles to the same code, does not count. ROOM is
-a folder of src ("gltf", "report/render"), or "all". The choice follows from SEED alone.
+tests of the file's room and subject run, then all others but those of cost, pages, tree and bindings. A change that
+no test notices is listed with its line. A fault that does not compile, or that compiles to the same code, does not
+count. ROOM is a folder of src ("gltf", "report/render"), or "all". The choice follows from SEED alone.
 """
 import concurrent.futures
 import glob
@@ -22,7 +22,7 @@ B = 'build/release'
 JOBS = os.cpu_count() or 1
 LIMIT = 120  # seconds for a test that a fault may keep from ending
 
-# What is about a room although its name does not say so.
+# Tests of a room whose name does not say so.
 SUBJECTS = {
     'topology': ['frames', 'quads'], 'tangent': ['frames', 'quads', 'conformance'], 'api': ['frames'],
     'gltf': ['lossless', 'convert', 'morphs', 'extensions', 'draco', 'meshopt', 'precision', 'verify', 'validator', 'sets', 'damaged'],

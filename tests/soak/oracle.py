@@ -47,7 +47,7 @@ SETS = [
     ('check', None, '--check --fail-on=warning --max-issues=0 --report=report.json'),
 ]
 
-# What a step of the rebuilding changes on purpose: (kind, pattern of "set path detail", why). See "what users lose".
+# Intended changes of a step of the rebuilding: (kind, pattern of "set path detail", why). See "what users lose".
 EXPLAINED = []
 
 TIMES = re.compile(r'\b\d[\d.e-]* (m?s|ms|us|seconds)\b|"(seconds|generator|version)": *[^,}\n]+')

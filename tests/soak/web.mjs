@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // web.mjs MODULES WEB NMTAN FOLDER: the page in Chromium, served from WEB, with files of FOLDER (web.sh made them) that are
-// dropped as a hand would. What it says and gives is compared with the native tool. Prints what is wrong, times, and how much
-// was checked.
+// dropped as a hand would. Its texts and outputs are compared with the native tool. Prints what is wrong, times, and
+// how much was checked.
 import {execFileSync, spawnSync} from 'node:child_process';
 import {createServer} from 'node:http';
 import {existsSync, mkdtempSync, readFileSync, readdirSync} from 'node:fs';

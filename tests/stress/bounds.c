@@ -15,7 +15,7 @@ static const double UNIT = 1.0 / 16777216, DEGREES = 57.29577951308232, QUARTER 
 /* Numbers between these are normal floats, as exact as others. */
 static const double LEAST = 0x1p-124, LARGEST = 0x1p127;
 
-/* What float may make of a triangle. */
+/* Bounds of float's errors on a triangle. */
 typedef enum nature {
 	CERTAIN,  /* its orientation and frame are the exact ones but for rounding */
 	NO_FRAME, /* none: it gives nothing, and connects others of either orientation */
@@ -305,7 +305,7 @@ static void bound_copies(work *w, const nmtan_mesh *mesh, const oracle_corner *e
 	free(all);
 }
 
-/* Of a quad's corner whose two triangles are in different groups: MikkTSpace writes the average of both answers. */
+/* At a quad's corner whose two triangles are in different groups, MikkTSpace writes the average of both answers. */
 static bound between(const bound *a, const bound *b)
 {
 	bound both = *a;

@@ -400,7 +400,7 @@ static const double sizes[] = {1e3, 1e4, 1e5, 1e6};
  * that are one unit of rounding from having no area. The first two are plain models. */
 #define MODELS 2, 5
 
-/* Of a vertex with a NaN or infinity all triangles are undetermined, and so are the corners beside these. */
+/* All triangles of a vertex with a NaN or infinity are undetermined, and so are the corners beside these. */
 #define NOT_FINITE 2, 40
 
 const family families[] = {

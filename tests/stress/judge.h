@@ -21,7 +21,7 @@ typedef struct column {
 
 extern const column columns[COLUMN_COUNT];
 
-/* What was found with one method on one mesh. */
+/* Results of one method on one mesh. */
 typedef struct score {
 	size_t faces, oriented; /* oriented: exact determinant not zero */
 	size_t corners;

@@ -10,8 +10,8 @@
  *     that has one; perpendicular to normals of unit length within 2^-10; the mirrored, scaled, turned answer for the
  *     mirrored, scaled, turned mesh (twins.h)
  *   the default: MikkTSpace's bytes wherever they are usable, and these within the bound that is proved for each corner
- *     (bounds.h). Corners without a bound: none where the family says so, and no more than it allows elsewhere. What
- *     was repaired has the exact frame within 2^-23 where its condition is below 2^24
+ * (bounds.h). Corners without a bound: none where the family says so, and no more than it allows elsewhere. A
+ * repaired corner has the exact frame within 2^-23 where its condition is below 2^24
  *   robust: every component within 2^-23 of the oracle where the condition is below 2^24; T perpendicular to N within
  *     2^-21; corner_faults names all corners beyond that condition
  *   sweeps of size: time per triangle within a factor of 8 from 10^4 triangles on
@@ -112,7 +112,7 @@ static void write_summary(const family *f, const family_scores *scores)
 	}
 }
 
-/* What the default keeps and what it replaces: sums and worst of all levels. */
+/* Tangents that the default keeps or replaces: sums and worst of all levels. */
 static void write_default(const family *f, const family_scores *scores)
 {
 	size_t corners = 0, replaced = 0, unbounded = 0, leaning[2] = {0, 0}, differing = 0;

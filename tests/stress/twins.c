@@ -9,7 +9,7 @@
  *                                       bound of the formula (bounds.h), and w equal
  *
  * Compared are corners whose answer is a sum of frames: MikkTSpace's own, or an average that repair took where the
- * condition is moderate. Where a face has no orientation and nothing around it has one, the answer is a perpendicular
+ * condition is moderate. If a face has no orientation and nothing around it has one, the answer is a perpendicular
  * of the normal that need not turn with the mesh, and w is +1 on both; stress asks that it is unit and across the
  * normal.
  */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a run can be told, by chance: for damaged and made-up inputs.
+ * Random settings of a run: for damaged and made-up inputs.
  */
 #ifndef NT_SUPPORT_ANY_SETTINGS_H
 #define NT_SUPPORT_ANY_SETTINGS_H

@@ -33,7 +33,7 @@ typedef struct box {
 	double left, top, right, bottom;
 } box;
 
-/* What is drawn already and no name may cover. */
+/* Boxes that are drawn already, which no name may cover. */
 typedef struct taken {
 	box boxes[MOST_BOXES];
 	size_t count;

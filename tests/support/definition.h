@@ -22,7 +22,7 @@ size_t nt_result_differences(const nt_result *a, const nt_result *b, size_t corn
 nt_solve nt_result_solve(const nmtan_mesh *mesh, size_t corners, nt_scratch *scratch, const nt_result *result,
 	bool more);
 
-/* What the definition gives. */
+/* The definition's results. */
 nt_result nt_result_define(const nmtan_mesh *mesh, size_t corners, bool more);
 
 /* The mesh with its strides. */

@@ -51,8 +51,8 @@ await_stop() { await eval '[ "$(cat "my work/2.1.jsonl" 2>/dev/null | wc -l)" = 
 
 # ---- what is noticed ----
 
-# What each line of the table in nmtan-farm(7) means for out/a.glb, which is made of in/a.obj, in/a.mtl and in/tex/n.png, by
-# ./program; in/gone.png is missing where the line is about that.
+# The meaning of each line of the table in nmtan-farm(7) for out/a.glb, which is made of in/a.obj, in/a.mtl and
+# in/tex/n.png, by ./program; in/gone.png is missing where the line is about that.
 event() {
 	case $1 in
 	"a file that was read gets a new time") touch in/v1/n.png ;;

@@ -6,7 +6,7 @@
 // They see g, the document; bytes, the buffers, which they may change and replace; rows(accessor), an accessor's rows of
 // numbers, by its number or itself; at(accessor, row), where one begins in its buffer; add(TYPE, COMPONENT TYPE, NUMBERS,
 // MEMBERS), which makes an accessor in the first buffer and gives its number; and open(FILE), another file with all of
-// these. The file "new" is a document with nothing in it. Where views are compressed by meshoptimizer, bytes has what
+// these. The file "new" is a document with nothing in it. If views are compressed by meshoptimizer, bytes has what
 // npm's decoder makes of them, in place of what a fallback buffer has.
 import { createRequire } from 'node:module';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -24,7 +24,7 @@ try {
 	await decoder.ready;
 } catch { /* a file that needs it will say so */ }
 
-// What compresses a view; undefined: nothing.
+// The extension that compresses a view; undefined: nothing.
 export const packing = (view) => view.extensions?.EXT_meshopt_compression ?? view.extensions?.KHR_meshopt_compression;
 
 // The bytes of a view that is compressed: data is those of the buffer that has them.

@@ -149,7 +149,7 @@ def same_geometry(a, b):
 
 
 class Own:
-    """What only TANGENT uses in the input: it may change its type, and its view may take other content."""
+    """Accessors that only TANGENT uses in the input: it may change its type, and its view may take other content."""
     accessors, views = set(), set()
 
     @classmethod

@@ -4,7 +4,7 @@
 
 The files are of one kind, each twice as large as the one before, and stand for IN in the command. Prints the best times
 of up to three tries, and ends with 1 where the last is MOST times the first or more: what is linear takes four times as
-long, what is quadratic sixteen. Times below LEAST seconds say nothing. Whatever takes a hundred times LEAST is ended.
+long, what is quadratic sixteen. Times below LEAST seconds say nothing. A run that takes a hundred times LEAST is ended.
 """
 import os
 import resource

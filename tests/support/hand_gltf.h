@@ -185,7 +185,7 @@ static inline void assert_indices(const opened *file, size_t primitive, const ui
 	assert_memory_equal(array.data, expected, count * sizeof *expected);
 }
 
-/* What the whole mesh should look like in the file: the copy of vertex 2 at the end, v turned round, normals of
+/* The whole mesh as the file should have it: the copy of vertex 2 at the end, v turned round, normals of
  * unit length, the zero one along z. */
 static inline void assert_whole(const opened *file, const float *tangents)
 {

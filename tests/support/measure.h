@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What programs that measure share: time, angles, quantiles. Out of memory they end.
+ * Shared by programs that measure: time, angles, quantiles. Out of memory they end.
  */
 #ifndef NT_MEASURE_H
 #define NT_MEASURE_H
@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* What the system calls the processor. */
+/* The system's name of the processor. */
 const char *measure_processor(void);
 
 /* Seconds of the wall's clock. */

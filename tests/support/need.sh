@@ -31,7 +31,7 @@ if [ "${1:-build}" = wasm ]; then
 	command -v clang >/dev/null 2>&1 || missing="$missing clang"
 fi
 
-# What is above 100 MB is no part of the check: make wasm-tool asks for it.
+# A package above 100 MB is no part of the check: make wasm-tool asks for it.
 if [ "${1:-build}" = emscripten ]; then
 	build="$build emscripten dpkg-dev nodejs"
 	missing=

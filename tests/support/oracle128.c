@@ -376,8 +376,8 @@ static void find_range(const quad *values, size_t count, double *least, double *
 	}
 }
 
-/* What float does to the triangle as a whole. u and v are the lengths of dP/du and dP/dv times |determinant|; products
- * [2] receives the two products that each is the difference of. */
+/* The effect of float on the triangle as a whole. u and v are the lengths of dP/du and dP/dv times |determinant|;
+ * products [2] receives the two products that each is the difference of. */
 static void judge_float(const float *const p[3], const float *const t[3], quad u, quad v, quad det, oracle_triangle *to,
 	quad products[2])
 {
@@ -407,7 +407,7 @@ static double give_direction(vec direction, vec n, double off_unit, quad product
 	return left > 0 ? (double)(((products + 0x1p-123) / size + 1 + off_unit) / left) : (double)INFINITY;
 }
 
-/* What it gives corner k. off_unit: |n|^2 - 1 in units of 2^-24. Weights are acos() of the cosine of two unit vectors:
+/* Its result for corner k. off_unit: |n|^2 - 1 in units of 2^-24. Weights are acos() of the cosine of two unit vectors:
  * 1 / sine, but for what is left near 0 and pi, half of the bits. */
 static void give_corner(oracle_triangle *to, int k, const vec directions[2], vec n, double off_unit,
 	const quad products[2], quad angle, quad sine, quad squares, quad edges)

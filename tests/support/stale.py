@@ -74,7 +74,7 @@ class Fuzz:
         return {line['input']: line for line in map(json.loads, read('m').decode().splitlines())}
 
     def outputs(self, folder):
-        """What a reader gets of each main file, whatever its .bin is called."""
+        """A reader's data of each main file, whatever its .bin is called."""
         found = {}
         for place, _, names in os.walk(folder):
             for name in names:

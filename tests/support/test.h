@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What every test file includes: cmocka in the order it wants its headers, tests, and what a text says.
+ * Included by every test file: cmocka in the order it wants its headers, tests, and what a text says.
  */
 #ifndef NT_TEST_H
 #define NT_TEST_H

@@ -123,7 +123,7 @@ says "no chunk '3'"
 JOB_COMPLETION_INDEX='' recipe "$farm/nmtan-farm" run w
 says "no chunk ''"
 
-# What a cluster does with an Indexed Job: kubectl.py FILE runs the command of each index, here, and ends pods by -9 where
+# A cluster that runs an Indexed Job: kubectl.py FILE runs the command of each index, here, and ends pods by -9 where
 # told to; a mount is the folder itself.
 kubectl() {
 	python3 - "$@" <<'END'

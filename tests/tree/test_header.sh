@@ -4,7 +4,7 @@
 . "$ROOT/tests/support/cli.sh"
 header=$ROOT/include/nmtan.h
 
-# What is set in by five spaces in the first comment.
+# The program in the first comment, indented by five spaces.
 cd "$WORK" || exit 1
 sed -n '1,/^#ifndef/s/^ \*     //p' "$header" >example
 

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the lanes of kernel.h leave to the definition in frames.c: triangles whose values are not finite or whose
- * vertices have no normal, differences that are no doubles and cancel, signs that are in doubt. All triangles go this
- * way where the caller asks for the scalar path. And the second look at sums that are ill-conditioned, which few are.
+ * Triangles that the lanes of kernel.h leave to the definition in frames.c: triangles whose values are not finite or
+ * whose vertices have no normal, differences that are no doubles and cancel, signs that are in doubt. All triangles
+ * go this way where the caller asks for the scalar path. And the second look at sums that are ill-conditioned, which
+ * few are.
  */
 #include "tangent/sums/parts.h"
 
 #include <string.h>
 #include "topology/corners.h"
 
-/* What a triangle adds at each of its corners, which are told. */
+/* The contribution of a triangle to each of its corners, which are told. */
 static void NT_NOINLINE find_parts(const nt_sums *s, size_t t, uint32_t corners[3], nt_frame_sum parts[3])
 {
 	const nmtan_mesh *mesh = s->solve->mesh;

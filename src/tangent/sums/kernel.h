@@ -22,7 +22,7 @@
 /* Everything finite is below; so are products of three. */
 #define SUM_HUGE 1e100
 
-/* What goes from one step to the next, by lane. */
+/* Data that goes from one step to the next, by lane. */
 typedef struct sum_lanes {
 	NT_ALIGNED(64) float row[3][8][NT_SUM_LANES]; /* corner, float of its nt_weld_row */
 	double uv[4][NT_SUM_LANES];    /* the texture edges bu, bv, cu, cv */

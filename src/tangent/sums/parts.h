@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What sums.c, its passes for one instruction set (kernel.h) and hard.c share.
+ * Shared by sums.c, its passes for one instruction set (kernel.h) and hard.c.
  */
 #ifndef NT_TANGENT_SUMS_PARTS_H
 #define NT_TANGENT_SUMS_PARTS_H
@@ -15,7 +15,7 @@ typedef struct nt_vertex_sum {
 	double x, y, z, sensitivity;
 } nt_vertex_sum;
 
-/* What becomes of it: the tangent as it is written, or zero for repair to fill; w is 0 where no triangle of the
+/* The result: the tangent as it is written, or zero for repair to fill; w is 0 where no triangle of the
  * orientation has weight. */
 typedef struct nt_vertex_tangent {
 	float x, y, z, w;
@@ -42,7 +42,7 @@ typedef struct nt_later {
 	nt_vertex_sum add;
 } nt_later;
 
-/* What 16 triangles add, and what they are. */
+/* Contributions and kinds of 16 triangles. */
 typedef struct nt_sum_block {
 	NT_ALIGNED(64) double add[3][4][NT_SUM_LANES]; /* corner, double of its nt_vertex_sum */
 	double sign[NT_SUM_LANES];      /* exact orientation; only where not hard */

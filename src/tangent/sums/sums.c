@@ -9,10 +9,10 @@
  * All keep mirrored triangles apart, so that w is the sign of the determinant: one sum for each welded
  * vertex and exact orientation.
  *
- * MikkTSpace averages over the part of those triangles that hangs together by paired edges. Where two
- * fans meet in nothing but a vertex, or in a non-manifold edge, or across a collapsed triangle, its parts
- * depend on the order of the triangles and on what is collapsed. One sum does not, and costs no pairing:
- * what that saves pays for double precision.
+ * MikkTSpace averages over the part of those triangles that hangs together by paired edges. If two fans meet in
+ * nothing but a vertex, or in a non-manifold edge, or across a collapsed triangle, its parts depend on the order of
+ * the triangles and on what is collapsed. One sum does not, and costs no pairing: what that saves pays for double
+ * precision.
  *
  * The passes: weld; 16 triangles at a time, added to the sums of their vertices in triangle order; 16 sums
  * at a time become tangents (both kernel.h); corners are written, but for those that a caller would
@@ -245,7 +245,7 @@ static nmtan_status finish(const run *given, nt_sums_finished *sum)
 	return NMTAN_OK;
 }
 
-/* Of a corner whose vertex does not tell it: repair looks at the whole face. */
+/* The sign at a corner whose vertex does not tell it: repair looks at the whole face. */
 enum { NO_SIDE = -1 };
 
 /* The orientation whose sum a corner gets. */
@@ -287,7 +287,7 @@ static bool is_counted(const nt_sums *s, size_t t, size_t i)
 }
 
 /* Writes any triangle, and returns how many of its corners are ill-conditioned. A face without orientation
- * takes that of the sums at its corners. What that check has to see becomes suspect. */
+ * takes that of the sums at its corners. Triangles that the check has to see become suspect. */
 static size_t write_triangle(const nt_sums *s, size_t t)
 {
 	size_t ill = 0;

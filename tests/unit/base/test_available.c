@@ -26,7 +26,7 @@ TEST(a_limit_of_the_address_space_counts)
 	assert_true(found <= 100 * 1024 * 1024);
 }
 
-/* What a list of groups means where these are the limits of version 2 at the root, /a and /a/b, and of version 1. */
+/* The meaning of a list of groups if these are the limits of version 2 at the root, /a and /a/b, and of version 1. */
 TEST(the_least_limit_of_the_groups_above_counts)
 {
 	static const struct {

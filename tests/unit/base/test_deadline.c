@@ -39,7 +39,7 @@ static void note_passed(void *context, size_t item, unsigned slot)
 	((bool *)context)[item] = nt_deadline_passed();
 }
 
-/* Of the thread that asks for help, and of no other. */
+/* The deadline of the thread that asks for help, and of no other. */
 TEST(threads_that_help_have_it)
 {
 	enum { ITEMS = 1000 };

@@ -40,7 +40,7 @@ TEST(equal_floats_have_equal_bits)
 	assert_true(nt_hash_floats(1, 2) != nt_hash_floats(2, 1));
 }
 
-/* What a process of its own prints. */
+/* The output of a process of its own. */
 static uint64_t hash_of_other_process(void)
 {
 	char command[4096], line[32] = "";

@@ -243,7 +243,7 @@ static void *call_until_cancelled(void *unused)
 	return NULL;
 }
 
-/* Who is cancelled while it waits ends after the region, and others go on. */
+/* A thread that is cancelled while it waits ends after the region, and others go on. */
 TEST(a_cancelled_caller_leaves_the_pool_free)
 {
 	pthread_t caller;
@@ -315,7 +315,7 @@ static void work_shortly(void)
 	expect(each_slot_once(6));
 }
 
-/* Whatever the other threads are doing, with the lock or without. */
+/* The other threads may do anything, with the lock or without. */
 TEST(fork_in_the_midst_of_regions)
 {
 	pthread_t callers[2];

@@ -61,7 +61,7 @@ TEST(lent_memory_comes_first)
 	}
 }
 
-/* What is expected is in the first block that is not lent, once. */
+/* The expected bytes are in the first block that is not lent, once. */
 TEST(the_first_own_block_is_as_large_as_expected)
 {
 	static char memory[4096];

@@ -19,7 +19,7 @@ static uint64_t need_of(const char *name)
 	return nt_need_of(in_folder(name), &settings, 0);
 }
 
-/* Of text that is no glTF: its bytes, a PLY's also by the elements of its header. */
+/* The estimate for text that is no glTF: its bytes, a PLY's also by the elements of its header. */
 TEST(text_counts_by_its_bytes)
 {
 	static const struct {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a record says of an output, and when that no longer holds, in a fresh folder that is the current one.
+ * A record's statement about an output, and when that no longer holds, in a fresh folder that is the current one.
  */
 #include "batch/record.h"
 #include "fail_alloc.h"

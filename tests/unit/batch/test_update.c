@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Deciding by records and times, in a fresh folder that is the current one. What a record says is record.c's.
+ * Deciding by records and times, in a fresh folder that is the current one. record.c has the contents of records.
  */
 #include "batch/update.h"
 #include "fail_alloc.h"
@@ -18,7 +18,7 @@ static void put_at(const char *name, time_t seconds)
 	assert_int_equal(utimensat(AT_FDCWD, name, times, 0), 0);
 }
 
-/* What is decided about a.obj and a.glb. `settings` may be changed; a trace of it is written to the record if
+/* The decision about a.obj and a.glb. `settings` may be changed; a trace of it is written to the record if
  * `make`. */
 static bool is_current(const nt_update_options *options, nt_settings *settings, bool make)
 {

@@ -124,7 +124,7 @@ TEST(what_cannot_be_written_is_told_at_the_end)
 	assert_string_equal(error.place.file, "/dev/full");
 }
 
-/* What most lines take is there from the start, so that the failure itself can be told. */
+/* Memory for most lines is there from the start, so that the failure itself can be told. */
 TEST(a_line_needs_no_memory)
 {
 	const nt_job job = {.input = "a", .status = NT_ERROR_MEMORY, .end = NT_JOB_RAN};

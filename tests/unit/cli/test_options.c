@@ -238,7 +238,7 @@ TEST(options_that_contradict_each_other_are_refused)
 	refuses("--draco=off", WORDS("--draco=off", "--draco-bits=14,12,12,12", "a", "b"));
 }
 
-/* What says how to write a glTF has it judged as that would write it; what only says how to judge has not. */
+/* An option about writing a glTF has it judged as written so; an option about judging has not. */
 TEST(a_check_takes_what_a_conversion_takes)
 {
 	static const struct {

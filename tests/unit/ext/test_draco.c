@@ -154,7 +154,7 @@ TEST(twelve_bits_keep_tangents_and_their_sign)
 	end_coded(&c);
 }
 
-/* Of an integer n: n * step, rounded, plus the box's origin, rounded, on every machine. */
+/* The value of an integer n: n * step, rounded, plus the box's origin, rounded, on every machine. */
 TEST(floats_are_multiplied_then_added)
 {
 	static const uint32_t ids[] = {0, 2, 7};
@@ -502,7 +502,7 @@ static uint32_t random_bits(uint32_t *state)
 	return *state ^= *state << 5;
 }
 
-/* Whatever decodes must have sound indices and values, which a sum over everything touches. */
+/* A block that decodes must have sound indices and values, which a sum over everything touches. */
 static void touch(const nt_draco_mesh *mesh)
 {
 	unsigned sum = 0;

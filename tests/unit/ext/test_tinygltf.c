@@ -76,7 +76,7 @@ TEST(reread_finds_attributes_in_sidecars)
 	assert_int_equal(open_text(&reread, triangle, NULL, &error), NT_ERROR_INPUT);
 }
 
-/* What a document says after one piece of its text was replaced. */
+/* The result of a document after one piece of its text was replaced. */
 static nt_status status_after(const char *old, const char *new, nt_error *error)
 {
 	char changed[2000];

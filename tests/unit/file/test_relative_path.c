@@ -4,7 +4,7 @@
 #include <unistd.h>
 #include "file/relative_path.h"
 
-/* What a function appends, as a string that lives until the next call. */
+/* The text that a function appends, as a string that lives until the next call. */
 static const char *taken(nt_buffer *text)
 {
 	static char kept[300];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Where paths lead, in a fresh folder that is the current one.
+ * Targets of paths, in a fresh folder that is the current one.
  */
 #include "file/way.h"
 #include "fail_alloc.h"
@@ -35,7 +35,7 @@ static void add_link(void *user, const char *path, const char *target)
 	nt_buffer_format(text, "%s>%s ", strrchr(path, '/') + 1, target);
 }
 
-/* Where a path leads from the current folder on, and the links on the way. */
+/* The target of a path from the current folder on, and the links on the way. */
 static void leads(const char *path, const char *expected, const char *links)
 {
 	nt_buffer real = {0}, seen = {0};

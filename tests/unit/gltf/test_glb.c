@@ -2,7 +2,7 @@
 #include "hand_gltf_file.h"
 #include "gltf/glb.h"
 
-/* Of a copy of the exact size, so that a read behind it is seen. */
+/* Reads a copy of the exact size, so that a read behind it is seen. */
 static nt_status parse(const char *bytes, size_t size, nt_glb *glb, nt_arena *arena, nt_error *error)
 {
 	unsigned char *copy = memcpy(malloc(size + !size), bytes, size);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Damaged glTF, thousands of times: bytes flipped, numbers and names of the JSON exchanged, pieces cut
- * out. Whatever comes of it, the run ends with a status, and an error has words; the sanitizers see the
+ * out. In any case the run ends with a status, and an error has words; the sanitizers see the
  * rest. NT_MUTATIONS sets the number of mutations; they are the same in every run.
  */
 #include "folder.h"

@@ -131,7 +131,7 @@ TEST(the_same_geometry_contributes_once)
 	results_are("n t n. nt", "2 3", "---01");
 }
 
-/* What is only compared may not cost many times the solve, which is of one triangle here. */
+/* A comparison alone may not cost many times the solve, which is of one triangle here. */
 TEST(a_comparison_is_not_dear)
 {
 	joins_are("nb", "0 1");

@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "gltf/load.h"
 
-/* Of the meshes: one with an index that is no vertex, one with an attribute and one with positions in a buffer that
+/* The meshes: one with an index that is no vertex, one with an attribute and one with positions in a buffer that
  * nobody has opened, and one that is not needed. All have FACES triangles. */
 enum { MESHES = 12, DAMAGED = 5, COLORED = 7, ELSEWHERE = 8, UNASKED = 9, FACES = 500 };
 

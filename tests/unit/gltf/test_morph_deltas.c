@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What counts as no delta, what integers make of the others, and what of them is stored. */
+/* Deltas that count as none, integers for the others, and their storage. */
 #include "gltf/morph_deltas.h"
 
 #include "ext/gltf_numbers.h"
@@ -34,7 +34,7 @@ TEST(integers_round_and_end_at_one)
 	assert_true(delta[0] == 0.6f && delta[1] == -1.01f);
 }
 
-/* Of 100 elements of 12 bytes the 3 that are not zero take 3 numbers, padded to 4, and 36 bytes. */
+/* The 3 of 100 elements of 12 bytes that are not zero take 3 numbers, padded to 4, and 36 bytes. */
 TEST(few_are_stored_sparse)
 {
 	float deltas[300] = {0};

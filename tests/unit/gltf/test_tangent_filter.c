@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is stored is decoded here after appendix B of KHR_meshopt_compression, and compared with what
+ * Stored values are decoded here after appendix B of KHR_meshopt_compression, and compared with what
  * nt_tangents_store() says that readers will have.
  */
 #include "test.h"

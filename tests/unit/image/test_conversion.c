@@ -28,7 +28,7 @@ static nt_conversion_channel take(uint32_t source, nt_channel channel)
 	return (nt_conversion_channel){true, source, {.channel = channel, .gain = 1}};
 }
 
-/* What a conversion of two images makes of them, as pixels. */
+/* The result of a conversion of two images, as pixels. */
 static nt_pixels make(const nt_conversion *how, const nt_file *a, const nt_file *b, nt_converted *made)
 {
 	const nt_file *files[4];

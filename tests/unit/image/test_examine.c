@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What normal maps say, on maps made from formulas. make bench-green has many more.
+ * Evidence in normal maps that are made from formulas. make bench-green has many more.
  */
 #include "image/examine.h"
 
@@ -107,7 +107,7 @@ static void grain(double x, double y, double *p, double *q)
 	*q = 0.02 * cos(x * 1.5 + y * 1.3);
 }
 
-/* What DamagedHelmet is like: forms with green up, and grain upon them with green down, whose curl is the larger. */
+/* A map like DamagedHelmet's: forms with green up, and grain upon them with green down, whose curl is the larger. */
 static void opposed(double x, double y, double *p, double *q)
 {
 	double p2, q2;

@@ -23,7 +23,7 @@ static nt_image_places places_here(bool allow_outside)
 		.confined = true, .allow_outside = allow_outside};
 }
 
-/* What a name leads to, from the test's folder. */
+/* The target of a name, from the test's folder. */
 static void assert_found(const char *name, bool allow_outside, nt_image_found expected, const char *file)
 {
 	const nt_image_places places = places_here(allow_outside);

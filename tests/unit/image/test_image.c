@@ -355,7 +355,7 @@ TEST(grey_is_told_by_pixels)
 	}
 }
 
-/* Whatever is missing of a file, it is no image. What may be missing: of a PNG the checksum of the last
+/* A file without any part of it is no image. Parts that may be missing: of a PNG the checksum of the last
  * IDAT and the IEND, which has 12 bytes, the padding of a BMP's last row, and a TIFF's offset of a second image. */
 TEST(decode_refuses_what_is_cut_short)
 {
@@ -505,8 +505,8 @@ TEST(blocks_of_a_jpeg_may_cover_many_pixels)
 	free(made);
 }
 
-/* Arithmetic codes take next to nothing where nothing changes. What libjpeg keeps of all scans follows the declared
- * size: that is looked at first, also where some rows are enough. */
+/* Arithmetic codes take next to nothing where nothing changes. libjpeg's memory for all scans follows the declared
+ * size: that is looked at first, even if some rows are enough. */
 TEST(jpegs_of_arithmetic_codes_have_a_bound)
 {
 	unsigned long size;
@@ -527,7 +527,7 @@ TEST(jpegs_of_arithmetic_codes_have_a_bound)
 	free(made);
 }
 
-/* Of one colour, they are as small as they like. Nothing is kept of a single scan. */
+/* Images of one colour are as small as they like. Nothing is kept of a single scan. */
 TEST(large_jpegs_of_arithmetic_codes_are_decoded)
 {
 	static const unsigned sides[] = {6000, 16384}; /* of several scans, of one */

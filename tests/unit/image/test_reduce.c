@@ -57,7 +57,7 @@ TEST(reduce_keeps_the_shape_and_the_halves)
 	}
 }
 
-/* Of a JPEG an eighth, a quarter or a half is decoded, then averaged: 400 x 300 to 90 x 67 by way of 100 x 75. */
+/* An eighth of a JPEG, a quarter or a half is decoded, then averaged: 400 x 300 to 90 x 67 by way of 100 x 75. */
 TEST(reduce_decodes_no_more_of_a_jpeg_than_it_takes)
 {
 	nt_pixels whole = make_halves(400, 300, 3, 8), small;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Colours in comments. What is expected of them follows from sRGB's definition: 0 and 255 are 0 and 1, and 188 is
+ * Colours in comments. The expected values follow from sRGB's definition: 0 and 255 are 0 and 1, and 188 is
  * ((188 / 255 + 0.055) / 1.055)^2.4 = 0.5029.
  */
 #include "obj_file.h"

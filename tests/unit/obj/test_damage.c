@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is wrong with an OBJ file, and in which line; every prefix of a file, and every byte replaced.
+ * Faults of an OBJ file, and in which line; every prefix of a file, and every byte replaced.
  */
 #include "obj_file.h"
 
@@ -153,7 +153,7 @@ TEST(lines_of_nul_alone_are_passed_over)
 	close_reading(&r);
 }
 
-/* Whatever a file is cut to, it is read or refused with a line; the sanitizers watch. */
+/* Cut anywhere, the file it is read or refused with a line; the sanitizers watch. */
 TEST(every_prefix_is_survived)
 {
 	static const char text[] = "\xEF\xBB\xBFmtllib a.mtl b.mtl\no a\nv 0 0 0\nv 1 0 0 1 1 1\r\nv 1 1 1e-3\n"

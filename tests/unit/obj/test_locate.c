@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Where faces stand in an OBJ: lines are counted by hand in the comments, corners as they stand in the text.
+ * Places of faces in an OBJ: lines are counted by hand in the comments, corners as they stand in the text.
  */
 #include "fail_alloc.h"
 #include "obj_file.h"

@@ -54,7 +54,7 @@ TEST(every_allocation_of_the_reader_may_fail)
 	assert_true(count > 40); /* at least one of each kind */
 }
 
-/* What is read goes into common blocks then; comments fill the chunks. */
+/* Data goes into common blocks then; comments fill the chunks. */
 TEST(every_allocation_for_a_file_of_many_chunks_may_fail)
 {
 	enum { CHUNKS = 6, CHUNK = 1 << 20 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the statements of a material come to together. Roughness is that of the formula in the man page, worked out by
+ * The result of a material's statements together. Roughness is that of the formula in the man page, worked out by
  * hand: n = 30 gives (2/32)^(1/4) = 1/2, n = 510 gives 1/4.
  */
 #include "test.h"

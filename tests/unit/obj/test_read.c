@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the OBJ reader makes of files. Expected arrays are derived by hand beside each case: vertices are numbered by
+ * The OBJ reader's results. Expected arrays are derived by hand beside each case: vertices are numbered by
  * the first use of their v/vt/vn. Files that are wrong are in test_damage.c.
  */
 #include "obj/read.h"
@@ -118,7 +118,7 @@ TEST(faces_may_come_before_their_vertices)
 	close_reading(&r);
 }
 
-/* Where no vertex has a normal, none lacks one. */
+/* If no vertex has a normal, none lacks one. */
 TEST(lacks_are_told_only_where_others_have)
 {
 	reading r;

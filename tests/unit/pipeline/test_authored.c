@@ -115,7 +115,7 @@ TEST(tangents_turn_with_their_normals)
 
 /* ---- with texture coordinates ---- */
 
-/* What becomes of a triangle's authored tangents when a solve gives others. */
+/* Treatment of a triangle's authored tangents if a solve gives others. */
 static nt_mesh restore(float texcoords[3][2], float authored[3][4], float solved[3][4], float step)
 {
 	nt_mesh mesh = triangle(authored);

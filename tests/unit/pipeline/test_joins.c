@@ -141,7 +141,7 @@ static void put_joined(const char *name, const surface *s, int material, const c
 
 /* ---- results ---- */
 
-/* What came out: an output, opened, and the tangents of one mesh's corners after the other's. */
+/* The result: an output, opened, and the tangents of one mesh's corners after the other's. */
 typedef struct result {
 	nt_file file;
 	nt_scene scene;
@@ -468,7 +468,7 @@ TEST(a_report_tells_borders_that_would_change)
 	}
 }
 
-/* What --check finds wrong with directions, of a file that --across=mesh has made. */
+/* Findings of --check about directions, of a file that --across=mesh has made. */
 static size_t mismatches(nt_across how)
 {
 	const nt_report_options report = {0};

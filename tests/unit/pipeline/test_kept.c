@@ -99,7 +99,7 @@ TEST(wrong_signs_are_told_where_they_are_kept_and_used)
 	}
 }
 
-/* What --check calls errors. */
+/* Errors of --check. */
 TEST(tangents_that_no_renderer_can_use_are_told)
 {
 	for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {

@@ -118,7 +118,7 @@ static bool is_inverted_anyway(size_t quad)
 	return quad % 3 == 0 && inverted[0] && inverted[1];
 }
 
-/* What a GLB has: the quads' corners in the order of its triangles, and their tangents. */
+/* Contents of a GLB: the quads' corners in the order of its triangles, and their tangents. */
 typedef struct written {
 	size_t corners[6 * QUADS];
 	float tangents[6 * QUADS][4];

@@ -240,7 +240,7 @@ TEST(mirroring_texture_transforms_reverse_the_sign)
 	assert_int_equal(count.mixed, 0);
 }
 
-/* Where texture directions spin around a vertex its average can lie more than 90 degrees from one of
+/* If texture directions spin around a vertex, its average can lie more than 90 degrees from one of
  * its triangles; w is right all the same. */
 TEST(w_is_exact_on_damaged_geometry)
 {

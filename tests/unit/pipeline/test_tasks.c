@@ -10,7 +10,7 @@
 
 enum { SIDE = 16, VERTICES = (SIDE + 1) * (SIDE + 1), CORNERS = 6 * SIDE * SIDE };
 
-/* What a primitive is, in this order, again and again. */
+/* Kinds of primitives, in this order, again and again. */
 typedef enum kind {
 	MIRRORED,    /* half of its texture coordinates: vertices are split */
 	PLAIN,       /* no vertex is */
@@ -185,7 +185,7 @@ static void begin_stage(void *run, nt_stage stage)
 	(void)stage;
 }
 
-/* What each mesh holds after its window: of those that share vertices with others the writer has the results. */
+/* Data of each mesh after its window: of those that share vertices with others the writer has the results. */
 static void geometry_is_let_go_of_where_only_results_count(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is wrong with a PLY file, and where: header, text, counts, binary rows; every prefix of a file, every
+ * Faults of a PLY file, and where: header, text, counts, binary rows; every prefix of a file, every
  * byte replaced, and memory that ends.
  */
 #include "fail_alloc.h"

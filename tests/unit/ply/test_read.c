@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a PLY file can look like: the header, lines, numbers, types and properties, in all three encodings.
+ * Forms of a PLY file: the header, lines, numbers, types and properties, in all three encodings.
  * Faces are in test_faces.c, files that are wrong in test_damage.c.
  */
 #include "file/input.h"

@@ -55,7 +55,7 @@ static void assert_written(reading *r, bool bitangents, const char *expected)
 	close_reading(r);
 }
 
-/* What is written has this line, if it is not NULL, and this end. */
+/* The output has this line, if it is not NULL, and this end. */
 static void assert_ends(reading *r, const char *line, const char *tail)
 {
 	nt_file file = write_scene(&r->scene, false);
@@ -151,7 +151,7 @@ TEST(split_vertices_are_appended_with_all_properties)
 		"100 3 0 1 2 .5\r\n101 3 4 5 3 .25\r\n");
 }
 
-/* Where they are and as they are typed. */
+/* Keeps their place and type. */
 TEST(old_tangents_and_bitangents_are_replaced)
 {
 	static const char *const input = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float tx\n"
@@ -170,8 +170,8 @@ TEST(old_tangents_and_bitangents_are_replaced)
 		"2 0 1 0 0 2 0 0 0 1 0 0 1\n3 0 1 2\n");
 }
 
-/* Normals that are made take the type of those that are there: of char 1 is 127. Those that stay keep their bytes, and
- * integers are no tangents. */
+/* Normals that are made take the type of those that are there: of char 1 is 127. Properties that stay keep their
+ * bytes, and integers are no tangents. */
 TEST(new_values_keep_place_and_type)
 {
 	static const char *const input = "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ

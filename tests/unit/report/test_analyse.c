@@ -41,7 +41,7 @@ TEST(sound_tangents_give_no_findings)
 	hand_free(h, report);
 }
 
-/* Where dP/dv is 20 degrees from dP/du, a T that averaging turned by 60 degrees has a bitangent that is 130 degrees
+/* If dP/dv is 20 degrees from dP/du, a T that averaging turned by 60 degrees has a bitangent that is 130 degrees
  * from dP/dv, and yet is not reversed. */
 TEST(tangents_of_sheared_coordinates_are_not_reversed)
 {
@@ -68,7 +68,7 @@ TEST(unused_tangents_are_told_and_cannot_be_errors)
 	hand_free(h, report);
 }
 
-/* Of vertex 1, which has one corner, or of several. */
+/* A fault of vertex 1, which has one corner, or of several. */
 TEST(each_kind_of_bad_tangent_has_its_code)
 {
 	const struct {

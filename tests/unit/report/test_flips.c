@@ -42,7 +42,7 @@ static void cut_out(hand_mesh *h, uint32_t triangle, const float uv[3][2])
 	}
 }
 
-/* What a mirrored part is told as, whatever its size. */
+/* The code for a mirrored part of any size. */
 static size_t mirror_findings(const nt_report *report)
 {
 	return hand_findings(report, NT_CODE_UV_MIRROR_SEAM) + hand_findings(report, NT_CODE_UV_MIRROR_OVERLAP) +

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Whose tangents a mesh has. Those of each method are made by nmtan_tangents() on a bumpy grid, of quads as quads, and
- * put on the triangles that a file has; the maker is found from these.
+ * Whose tangents a mesh has. Tangents of each method are made by nmtan_tangents() on a bumpy grid, of quads as quads,
+ * and put on the triangles that a file has; the maker is found from these.
  */
 #include "report/maker.h"
 #include "base/bits.h"
@@ -74,7 +74,7 @@ static void solve(const grid *g, nmtan_method method, bool quads, float (*tangen
 		memcpy(tangents[c], of_quads[c / 6 * 4 + corner_of_quad[c % 6]], sizeof *tangents);
 }
 
-/* Of the triangles with these tangents, each corner a vertex. */
+/* The maker of the triangles with these tangents, each corner a vertex. */
 static nt_maker find_with(const grid *g, float (*tangents)[4], bool bytes, bool quads, uint64_t *border)
 {
 	static float positions[CORNERS][3], normals[CORNERS][3], texcoords[CORNERS][2];
@@ -133,7 +133,7 @@ TEST(every_method_is_found_on_both_kinds_of_faces)
 	}
 }
 
-/* Where the sorts agree, the published one is named. */
+/* If the sorts agree, the published one is named. */
 TEST(first_of_equals_is_named)
 {
 	static grid g;
@@ -272,7 +272,7 @@ TEST(corners_of_a_closed_fan_are_inside)
 	}
 }
 
-/* What another primitive changed at the border is not asked; what is wrong inside is not forgiven. */
+/* Changes by another primitive at the border do not count; faults inside do. */
 TEST(borders_do_not_hide_the_method)
 {
 	static grid g;

@@ -19,7 +19,7 @@ static hand_mesh *points(uint32_t count)
 	return h;
 }
 
-/* What each triangle is: - alone, C and D the first half of an (a b c d) cut by a c or b d, 2 a second half. */
+/* The kind of each triangle: - alone, C and D the first half of an (a b c d) cut by a c or b d, 2 a second half. */
 static void expect(const hand_mesh *h, bool polygons, const char *letters)
 {
 	static const char names[] = {[NT_HALF_NONE] = '-', [NT_HALF_ABC] = 'C', [NT_HALF_ABD] = 'D',
@@ -162,7 +162,7 @@ TEST(made_normals_leave_polygons_whole)
 	hand_free(h, NULL);
 }
 
-/* What the definition says of a lone quad's w; 0: the corners do not agree. */
+/* The definition's w of a lone quad; 0: the corners do not agree. */
 static int sign_of_quad(const hand_mesh *h, const uint32_t quad[4])
 {
 	static const uint8_t size = 4;

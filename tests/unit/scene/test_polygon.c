@@ -181,7 +181,7 @@ TEST(time_grows_little_faster_than_corners)
 	}
 }
 
-/* What must hold of every result: the right number of triangles, corners in range. */
+/* Properties of every result: the right number of triangles, corners in range. */
 static bool finish(const float (*points)[3], size_t count)
 {
 	uint32_t triangles[3 * 64];

@@ -95,7 +95,7 @@ static const float *corner_at(const nmtan_mesh *m, size_t corner)
 	return m->positions + 3 * m->indices[corner];
 }
 
-/* What the header says, by atan2 and over all pairs of corners: a's share of the sum at b's position. */
+/* The header's definition, by atan2 and over all pairs of corners: a's share of the sum at b's position. */
 static void add_share(const nmtan_mesh *m, size_t first, size_t size, size_t k, const float *at, double sum[3])
 {
 	const float *p[4];

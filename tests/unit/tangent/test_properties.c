@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * How tangents must change when a mesh does: each property on each method, on the goldens, meshes of data/,
- * jittered surfaces and random soups. Where arithmetic and order are untouched, floats are equal; elsewhere
+ * jittered surfaces and random soups. If arithmetic and order are untouched, floats are equal; elsewhere
  * they are within a bound. A mesh that breaks a property is shrunk, printed as OBJ and left in
  * build/properties; files in data/properties are tried again every time.
  *
@@ -67,7 +67,7 @@ static void release(solution *s)
 	free(s->b);
 }
 
-/* What the oracle says of the mesh that is being tried, kept for all properties. */
+/* The oracle's answer on the tried mesh, kept for all properties. */
 static oracle_corner *known[3];
 
 static void forget(void)

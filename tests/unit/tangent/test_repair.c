@@ -38,7 +38,7 @@ static bool leans(const float *t, const float *n)
 	return fabs(squared - 1) <= 1.0 / 2048 && fabs(along) > 1.0 / 1024 + 1e-9;
 }
 
-/* What MikkTSpace leaves where no triangle contributes; one may give the same. */
+/* MikkTSpace's default if no triangle contributes; one may give the same. */
 static bool may_be_unassigned(const float *t)
 {
 	return t[0] == 1 && t[1] == 0 && t[2] == 0 && t[3] == -1;
@@ -489,7 +489,7 @@ TEST(a_tie_of_halves_changes_nothing)
 }
 
 /* Quads on a lattice, and normals along the dP/du of three of their corners, as floats have it: what is left of such a
- * direction across its normal is rounding, which the sums may take for a direction. Of 100 000 such quads 8 had a
+ * direction across its normal is rounding, which the sums may take for a direction. 8 of 100 000 such quads had a
  * tangent along its normal. */
 TEST(noise_along_the_normal_is_no_answer)
 {

@@ -184,8 +184,8 @@ TEST(a_dart_is_written_along_its_inner_diagonal)
 	}
 }
 
-/* At most one corner of a simple outline turns inwards. Of one that crosses itself two do, along either diagonal one
- * triangle is inverted, and MikkTSpace's stays; so it does where it is good. */
+/* At most one corner of a simple outline turns inwards. Two triangles of one that crosses itself do, along either
+ * diagonal one triangle is inverted, and MikkTSpace's stays; so it does where it is good. */
 TEST(no_written_triangle_of_a_simple_quad_is_inverted)
 {
 	uint32_t seed = 11;

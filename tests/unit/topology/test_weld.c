@@ -251,7 +251,7 @@ TEST(many_equal_vertices_weld_alike)
 }
 
 /* A row that has that hash with another key than this process, and that number. nt_weld_hash() adds the products of the
- * first and of the last two words, each with a word of the key added by XOR. Where the first is 1 then, and the third
+ * first and of the last two words, each with a word of the key added by XOR. If the first is 1 then, and the third
  * 0, the sum is the second, which is folded to itself and multiplied by an odd number; the fourth is free. */
 static const nt_weld_key other_key = {{0x243f6a8885a308d3u, 0x13198a2e03707344u, 0xa4093822299f31d0u,
 	0x082efa98ec4e6c89u}};

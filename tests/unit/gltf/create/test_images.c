@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Images of new glTF documents: linked, embedded, copied or left out. What is decoded is in tests/unit/image.
+ * Images of new glTF documents: linked, embedded, copied or left out. Tests of decoding are in tests/unit/image.
  */
 #include "hand_gltf.h"
 

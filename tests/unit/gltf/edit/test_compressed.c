@@ -229,7 +229,7 @@ static void check_tangents(const nt_mesh *a, const nt_mesh *b, double degrees)
 
 static sheet source;
 
-/* Every view changes. Those of the output are all packed, or all plain. */
+/* Every view changes. Views of the output are all packed, or all plain. */
 TEST(meshopt_gives_what_plain_gives)
 {
 	write_plain(&source, "plain.glb");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Data URIs that are made while the text is written. What is written is read again, and says what sidecars say.
+ * Data URIs that are made while the text is written. The output is read again, and has the bytes of sidecars.
  */
 #include "hand_gltf_file.h"
 #include <sys/stat.h>

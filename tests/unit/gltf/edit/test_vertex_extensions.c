@@ -103,7 +103,7 @@ static void compressed_triangles_lose_it(void **state)
 	expect((nt_settings){.threads = 1, .draco = NT_DRACO_AS_EDGEBREAKER}, 1, 0, 0);
 }
 
-/* What is listed without need is not ours to take away. */
+/* An extension that is listed without need is not ours to take away. */
 static void nothing_goes_where_nothing_was(void **state)
 {
 	(void)state;

@@ -141,7 +141,7 @@ TEST(tangents_of_targets_are_compared)
 	}
 }
 
-/* Whatever thread is done first. */
+/* The order of threads does not matter. */
 TEST(the_first_mesh_that_differs_is_told)
 {
 	static const nt_draco_choice ways[] = {NT_DRACO_OFF, NT_DRACO_AS_SEQUENTIAL, NT_DRACO_AS_EDGEBREAKER};

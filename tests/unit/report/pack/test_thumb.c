@@ -61,7 +61,7 @@ TEST(layout_fills_the_picture)
 	nt_buffer_free(&paths[1]);
 }
 
-/* Of one triangle the corner with the largest v is above where v points up. */
+/* The corner of one triangle with the largest v is above where v points up. */
 TEST(v_points_up_or_down)
 {
 	float corner[] = {0, 0, 1, 0, 0, 1};

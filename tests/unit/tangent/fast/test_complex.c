@@ -8,8 +8,8 @@
 #include "definition.h"
 
 /* Around a vertex three triangles of a square, from (-1, -1) counterclockwise, with u = x and directions of u
- * (1 - k, 1 + k), (1, 0) and (1 - k, -1 - k), k = 1 - 2^-bits. Those of v are (0, 1). The product of the first and
- * the last is 2^(-2 bits - 1) above -1: step 7 parts them from 12 bits on, where that is 2^-25, half the
+ * (1 - k, 1 + k), (1, 0) and (1 - k, -1 - k), k = 1 - 2^-bits. The directions of v are (0, 1). The product of the
+ * first and the last is 2^(-2 bits - 1) above -1: step 7 parts them from 12 bits on, where that is 2^-25, half the
  * distance of floats below 1, or less. `turn` exchanges axes. Returns whether the vertex has two results at least. */
 static bool compare_wide_fan(int bits, int turn, bool middle_first, size_t *differences)
 {
@@ -72,7 +72,7 @@ static size_t compare_short_fan(uint32_t random)
 	return differences;
 }
 
-/* Of such directions angles do not tell whether their product is -1. These fans, eight of 70 000, would be solved
+/* Angles of such directions do not tell whether their product is -1. These fans, eight of 70 000, would be solved
  * wrongly if they did. */
 TEST(short_directions_are_byte_identical)
 {

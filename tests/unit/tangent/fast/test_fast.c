@@ -327,7 +327,7 @@ static nmtan_mesh make_hopeless(hopeless kind, bool mixed, float (*p)[3], float 
 		.positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices};
 }
 
-/* What callers get, faults and counts too, is the definition's with every instruction set. */
+/* The result for callers, faults and counts too, is the definition's with every instruction set. */
 static void compare_calls(const nmtan_mesh *mesh, nmtan_repair repair)
 {
 	const size_t corners = 3 * mesh->face_count;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the fast path takes besides its output, one thread: at most 16 bytes a triangle on clean meshes, 40 on
+ * Memory of the fast path besides its output, one thread: at most 16 bytes a triangle on clean meshes, 40 on
  * others, and as much a face whatever quads do at a hub.
  */
 #include "test.h"
