@@ -51,7 +51,7 @@ endif
 
 # No contraction anywhere: the bytes of the result depend on it (see README, "Reproducible"). No vectorization of
 # straight-line code either: gcc 12 forgets the rounding in "float x = (float)d; double y = x;" when it combines two
-# such lines into one vector. Where the tree lies makes no difference to what is built.
+# such lines into one vector. The tree's place makes no difference to what is built.
 COMMON := $(flags_$(config)) -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno \
 	-pthread -fPIC -fvisibility=hidden '-ffile-prefix-map=$(CURDIR)=.' \
 	-Iinclude -Isrc -Wall -Wextra -MMD -MP
@@ -91,7 +91,7 @@ $(info Building $(B)/nmtan)
 endif
 all: $(B)/nmtan $(module_so) $(B)/libnmtan.a $(B)/libnmtan.so $(B)/completion.bash $(B)/completion.zsh $(B)/licences.txt
 
-# The tool has no shared library but the system's. What it takes of the C++ library (std::to_chars) is linked in; modules
+# The tool has no shared library but the system's. Its part of the C++ library (std::to_chars) is linked in; modules
 # bring the whole, and find the tool's operators new and delete. So are libdeflate, which is small, and libjpeg: as a shared
 # library it would ask for thread-local memory late, and the loader ends a process that has none left.
 link_tool = $(CXX) $(NT_LDFLAGS) $(if $(findstring fsanitize,$(NT_LDFLAGS)),,-static-libstdc++ -static-libgcc) \
@@ -113,8 +113,8 @@ $(module_so): $(B)/nmtan-%.so: $(module_obj) $(B)/libmodule.a
 	$(CXX) $(NT_LDFLAGS) -shared -Wl,--exclude-libs,ALL -o $@ $(filter $(call module_files,$*),$^) $(B)/libmodule.a \
 		$(module_libs_$*)
 
-# What modules use of the tool; all of it without a state, but for the key of hashes, which each makes for itself, and
-# deadlines, of which they have none.
+# The part of the tool that modules use; all of it without a state, but for the key of hashes, which each makes for
+# itself, and deadlines, of which they have none.
 $(B)/libmodule.a: $(call objects,src/base/error.c src/base/hash.c src/base/deadline.c src/base/pages.c \
 		src/ext/number.cpp src/ext/codec/pixels.c src/ext/modules/cxx.cpp)
 	rm -f $@ && $(AR) qcsD $@ $^
@@ -149,7 +149,8 @@ lanes := -O3 -fno-trapping-math
 ifeq ($(config),debug)
 lanes :=
 endif
-$(call objects_of,tangent/fast/kernel_baseline.c tangent/sums/kernel_baseline.c): FILE_FLAGS := $(lanes)
+$(call objects_of,tangent/fast/kernel_baseline.c tangent/sums/kernel_baseline.c topology/edge_sort.c \
+	topology/representatives.c): FILE_FLAGS := $(lanes)
 ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
 $(call objects_of,tangent/fast/kernel_avx2.c tangent/sums/kernel_avx2.c): FILE_FLAGS := $(lanes) -mavx2 -mfma
 $(call objects_of,tangent/fast/kernel_avx512.c tangent/sums/kernel_avx512.c): FILE_FLAGS := $(lanes) \
@@ -218,8 +219,8 @@ check: need-check
 soak: need-check
 	@$(MAKE) --no-print-directory -s soak-built
 
-# Paths as they are installed. What names them is made on the way, since they may differ from the build's. CMake's
-# file finds the header from where it lies itself, so that the whole may be moved.
+# Paths as they are installed. Files that name them are made on the way, since the names may differ from the build's.
+# CMake's file finds the header from where it lies itself, so that the whole may be moved.
 bin := $(DESTDIR)$(PREFIX)/bin
 lib := $(DESTDIR)$(LIBDIR)
 share := $(DESTDIR)$(PREFIX)/share

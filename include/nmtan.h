@@ -19,7 +19,7 @@
  *     nmtan_status status = nmtan_vertex_tangents(&mesh, NULL, &output, NULL);
  *
  * Each vertex has a tangent now: T, of unit length, along which u grows, and w = +1 or -1. The bitangent is
- * B = cross(N, T) * w. Here T is (1, 0, 0) and w is 1. Where corners of one vertex need different tangents, as at the
+ * B = cross(N, T) * w. Here T is (1, 0, 0) and w is 1. If corners of one vertex need different tangents, as at the
  * edge of mirrored texture, the vertex is copied: output.source_count says how many copies are appended, `sources` of
  * which vertices they are, and `indices` uses them. Append the same copies to all your vertices: nmtan_copy_rows().
  * If vertices have room for their tangents, nmtan_generate() does all of it in place.
@@ -29,7 +29,7 @@
  * ("green up"); for maps with green down negate w.
  *
  * nmtan_vertex_tangents() gives tangents of vertices, nmtan_tangents() those of the corners of faces; nmtan_split()
- * leads from the second to the first. What all promise (bytes, structs, memory, threads, errors) is at the end.
+ * leads from the second to the first. The end says what all promise: bytes, structs, memory, threads, errors.
  */
 #ifndef NMTAN_H
 #define NMTAN_H
@@ -77,7 +77,7 @@ typedef struct nmtan_counts nmtan_counts;
  * 4 and at least the row's size; 0 means tightly packed. Any float value is accepted, NaN and
  * infinities too. Normals are used as given and should have unit length: counts.normals_not_unit.
  *
- * OBJ, FBX and USD number normals and texture coordinates apart from positions. Where normal_count or texcoord_count is
+ * OBJ, FBX and USD number normals and texture coordinates apart from positions. If normal_count or texcoord_count is
  * not 0, that array has so many rows of its own, and corner c has row normal_indices[c] of it, or row c where that is
  * NULL; `indices` and vertex_count are those of positions. Vertices come into being then: each combination of rows that
  * a corner uses is one, and mesh->stored may have no texcoords.
@@ -113,7 +113,7 @@ typedef struct nmtan_mesh {
 #define NMTAN_MESH_INIT \
 	{sizeof(nmtan_mesh), 0, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, NULL, 0, NULL, NULL, NULL, 0, 0}
 
-/* What a call reports. Later versions may add values. */
+/* The result of a call. Later versions may add values. */
 typedef enum nmtan_status {
 	NMTAN_OK = 0,
 	NMTAN_ERROR_ARGUMENT,  /* a required pointer is NULL; a struct_bytes, a stride, an enum or a number
@@ -129,9 +129,9 @@ typedef enum nmtan_status {
 /* Static English text for a status, "unknown status" for any other number. Never NULL. */
 NMTAN_API const char *nmtan_status_text(nmtan_status status);
 
-/* Where a split goes. Nothing is appended past source_capacity; the corner count is always enough. Where vertices come
- * into being (see nmtan_mesh) all of them are appended, to none: vertex_count counts as 0 here, sources[i] is a corner
- * that vertex i stands for, `indices` is required, copy_counts must be NULL. */
+/* Outputs of a split. Nothing is appended past source_capacity; the corner count is always enough. If vertices come
+ * into being (see nmtan_mesh) all of them are appended, to none: vertex_count counts as 0 here, sources[i] is a
+ * corner that vertex i stands for, `indices` is required, copy_counts must be NULL. */
 typedef struct nmtan_split_output {
 	size_t struct_bytes;  /* sizeof(nmtan_split_output): see "Structs" */
 	uint32_t *indices;    /* [corner count]: the vertex of each corner after the split. NULL: no vertex is
@@ -284,7 +284,7 @@ typedef enum nmtan_method {
 	                                rewrites have it: see "Results" */
 } nmtan_method;
 
-/* What happens to results that a renderer cannot use. */
+/* Treatment of results that a renderer cannot use. */
 typedef enum nmtan_repair {
 	NMTAN_REPAIR_ON = 0, /* tangents that no triangle gave, that are zero, not unit, not finite, more than
 	                        2^-10 off perpendicular to a normal of unit length (|n|^2 within 2^-11 of 1)
@@ -298,7 +298,7 @@ typedef struct nmtan_timing nmtan_timing;
 typedef struct nmtan_workspace nmtan_workspace;
 typedef struct nmtan_jobs nmtan_jobs;
 
-/* Where a function takes a pointer to options, NULL means the defaults, which are all zero. */
+/* If a function takes a pointer to options, NULL means the defaults, which are all zero. */
 typedef struct nmtan_options {
 	size_t struct_bytes;              /* sizeof(nmtan_options): see "Structs" */
 	nmtan_method method;
@@ -316,7 +316,7 @@ typedef struct nmtan_options {
 #define NMTAN_OPTIONS_INIT \
 	{sizeof(nmtan_options), NMTAN_METHOD_MIKKTSPACE, NMTAN_REPAIR_ON, 0.0f, 0, NULL, NULL, NULL, NULL}
 
-/* What a solve met and what repair did, in corners unless it says otherwise. Each call writes it anew. */
+/* Counts of a solve and its repair, in corners unless it says otherwise. Each call writes it anew. */
 typedef struct nmtan_counts {
 	size_t struct_bytes;         /* sizeof(nmtan_counts): see "Structs" */
 	size_t degenerate_positions; /* faces each triangle of which has two corners at one position */
@@ -366,7 +366,7 @@ typedef enum nmtan_fault {
 	NMTAN_FAULT_SUMMED = 128     /* summed_instead; only with MikkTSpace's methods: the same bit */
 } nmtan_fault;
 
-/* Where results go. Each array has one row per corner, tightly packed, but for tangents with a stride. */
+/* Outputs of a solve. Each array has one row per corner, tightly packed, but for tangents with a stride. */
 typedef struct nmtan_output {
 	size_t struct_bytes; /* sizeof(nmtan_output): see "Structs" */
 	float *tangents;     /* [corner count][4], required: T and w */
@@ -447,7 +447,7 @@ typedef struct nmtan_jobs {
 /* Ends the library's threads and returns when they have ended. No other call may run; a later one makes new threads. */
 NMTAN_API void nmtan_end_threads(void);
 
-/* Where the time of calls went, in seconds of the wall clock. Calls add to it; the caller sets it to zero. */
+/* Time of calls by stage, in seconds of the wall clock. Calls add to it; the caller sets it to zero. */
 typedef struct nmtan_timing {
 	size_t struct_bytes; /* sizeof(nmtan_timing): see "Structs" */
 	double weld;         /* finding equal vertices; 0 where the method does not tell */
@@ -458,10 +458,10 @@ typedef struct nmtan_timing {
 #define NMTAN_TIMING_INIT {sizeof(nmtan_timing), 0.0, 0.0, 0.0}
 
 /*
- * For callers that store other texture coordinates than they pass in. What a renderer reads from the file
- * decides which way a triangle is wound; where rounding or a transform lies between that and
- * nmtan_mesh.texcoords, a very thin triangle may be wound differently. Repair then takes the sign of w from
- * the coordinates described here. Nothing else uses them.
+ * For callers that store other texture coordinates than they pass in. The values that a renderer reads from the file
+ * decide which way a triangle is wound; if rounding or a transform lies between that and nmtan_mesh.texcoords, a very
+ * thin triangle may be wound differently. Repair then takes the sign of w from the coordinates described here.
+ * Nothing else uses them.
  */
 typedef struct nmtan_stored_uv {
 	size_t struct_bytes; /* sizeof(nmtan_stored_uv): see "Structs" */
@@ -531,7 +531,7 @@ NMTAN_API int nmtan_self_test(void);
  * Threads: every function but nmtan_end_threads() may be called from several threads at once, as long as they do not
  * share outputs, counts, timing or a workspace. There is no global state but a pool of threads: the first call that
  * is large enough for options->threads > 1 and has no options->jobs makes them, later calls in any thread share them,
- * and they sleep in between, with signals blocked. They never call the caller's allocator. Where none can be made the
+ * and they sleep in between, with signals blocked. They never call the caller's allocator. If none can be made, the
  * caller's thread does all. Processes made by fork() may go on calling, whatever their parent was doing.
  *
  * Errors: a status, never an exit, never a message on a stream. Arguments, faces and indices are checked

@@ -22,7 +22,7 @@ $(NMTAN_OUT)/%.glb: $(NMTAN_IN)/%.$(1) $(nmtan_program)
 endef
 $(foreach ending,obj ply gltf glb,$(eval $(call nmtan_rule,$(ending))))
 
-# What the outputs that are there were made of. An output gets a new time even where its bytes stay, or make would make it
+# Files that existing outputs were made of. An output gets a new time even where its bytes stay, or make would make it
 # again for ever.
 -include $(shell [ ! -d $(NMTAN_OUT) ] || find $(NMTAN_OUT) -name '*.glb.d')
 

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 #
 # parallel.sh WORK [OPTION of parallel...]: runs what "nmtan-farm prepare WORK" has cut into chunks with GNU parallel,
-# here or on the hosts of --sshloginfile=FILE, which see the same folders under the same names. Where something was
+# here or on the hosts of --sshloginfile=FILE, which see the same folders under the same names. If something was
 # killed before all inputs were tried, the next start runs the chunks that have not ended well. After that every start
-# runs all chunks: what is up to date is not made again. What came of each input is in WORK/manifest.jsonl.
+# runs all chunks: what is up to date is not made again. WORK/manifest.jsonl has the result of each input.
 set -u
 farm=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)/nmtan-farm
 work=$(CDPATH= cd -- "$1" && pwd) || exit 2

@@ -21,7 +21,7 @@ KERNEL_PLACE = 'src/tangent/fast/kernel_baseline.c'  # among the sources
 KERNELS = ['src/tangent/fast/kernel.h', 'src/tangent/sums/kernel.h']
 
 INCLUDE = re.compile(r'#include ([<"])(.+)[>"]')
-# What begins a function that others see, in the first column.
+# The beginning of a function that others see, in the first column.
 FUNCTION = re.compile(r'(?!typedef|static|return|else|extern|enum|NMTAN_API|LANE_INLINE|struct \w+ \{)'
 	r'[a-z][\w ]*[ *]\**(nt_\w+)\(')
 DEFINITION = re.compile(r'^(?:const )?[\w ]+ (nt_\w+)(?:\[\w+\])+(?: = \{.*?^\t*\}+)?;\n', re.M | re.S)

@@ -64,7 +64,7 @@ def summary_of(lines):
 
 
 def types_of(declaration, types):
-	"""What its arguments are made of, in the order of the header."""
+	"""The parts of its arguments, in the order of the header."""
 	used, more = set(), declaration
 	while more:
 		found = set(re.findall(r'\bnmtan_\w+', re.sub(r'/\*.*?\*/', '', more, flags=re.S))) & set(types) - used

@@ -13,7 +13,7 @@
 enum { COLUMNS = 5, GRID = COLUMNS * COLUMNS, RIM = 4 * (COLUMNS - 1), VERTICES = GRID + RIM,
 	TRIANGLES = 2 * (COLUMNS - 1) * (COLUMNS - 1) + 2 * RIM };
 
-/* What every build gives. */
+/* The result of every build. */
 static const uint64_t digest_of_all = 0xcb30618f7a5c4e6fu;
 
 /* Position, normal, texture coordinate. */

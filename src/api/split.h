@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a split writes, between the caller's arrays and those of the splitter, which knows plain meshes and rows of
+ * The output of a split, between the caller's arrays and those of the splitter, which knows plain meshes and rows of
  * tangents that are tightly packed.
  */
 #ifndef NT_API_SPLIT_H

@@ -17,7 +17,7 @@ typedef struct nt_vertex_request {
 nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_vertex_request *request, nmtan_split_output *output, nmtan_counts *counts);
 
-/* What a triangle is to a solve by quads. The corners of a quad are a, b, c, d; its halves follow one another. */
+/* A triangle as a solve by quads sees it. The corners of a quad are a, b, c, d; its halves follow one another. */
 enum nt_half {
 	NT_HALF_NONE,   /* a face of its own */
 	NT_HALF_ABC,    /* first half (a, b, c); (a, c, d) is the second */

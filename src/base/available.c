@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How much memory this process may take: see available.h. What cannot be read does not limit.
+ * How much memory this process may take: see available.h. A limit that cannot be read does not count.
  */
 #include "base/available.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Borrowed scratch: an output that is written last serves as scratch memory until then. What does not fit comes from
- * the scratch itself.
+ * Borrowed scratch: an output that is written last serves as scratch memory until then. An array that does not fit
+ * comes from the scratch itself.
  */
 #ifndef NT_BASE_BORROWED_H
 #define NT_BASE_BORROWED_H

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What gcc and clang have beside C11, by names that mean the same or nothing elsewhere: the compute library compiles
+ * Extensions of gcc and clang to C11, by names that mean the same or nothing elsewhere: the compute library compiles
  * as C11 that has no extensions, as MSVC's, and as C++. NMTAN_PLAIN_C makes any compiler such a one.
  */
 #ifndef NT_BASE_COMPILER_H
@@ -59,7 +59,7 @@
 #define NT_ALIGNED(bytes) _Alignas(bytes)
 #endif
 
-/* What becomes a pointer of any type: in C++ too. */
+/* A pointer that converts to any type, in C++ too. */
 #if defined(__cplusplus)
 struct nt_memory {
 	void *at;
@@ -80,7 +80,7 @@ typedef void *nt_memory;
 #define NT_VECTORS 0
 #endif
 
-/* Who may run on other threads: the pool's, or those of the caller's jobs. One thread needs no atomic operations, and
+/* Owners of other threads: the pool's, or those of the caller's jobs. One thread needs no atomic operations, and
  * plain C has none that C++ has too. */
 #if defined(NT_NO_THREADS) && !defined(NMTAN_JOBS)
 #define NT_ONE_THREAD 1

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * When the work of a thread, and of the pool's threads that help it, is to end. From then on memory is refused, by
- * which every step knows how to fail; long loops that ask for none ask here. Who sets deadlines says what the failure
- * was.
+ * which every step knows how to fail; long loops that ask for none ask here. The caller that set a deadline says that
+ * it was the reason.
  */
 #ifndef NT_BASE_DEADLINE_H
 #define NT_BASE_DEADLINE_H

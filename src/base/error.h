@@ -15,7 +15,7 @@
 extern "C" { /* for src/ext */
 #endif
 
-/* Where something is in an input. Parts that are unknown are zero, NT_NO_OFFSET or empty. */
+/* A place in an input. Parts that are unknown are zero, NT_NO_OFFSET or empty. */
 typedef struct nt_place {
 	char file[512];     /* name as the user gave it, or as the input refers to it */
 	size_t line;        /* 1-based, text formats */

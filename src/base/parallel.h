@@ -20,7 +20,7 @@ void nt_parallel_ranges(unsigned threads, size_t count, size_t grain,
 unsigned nt_parallel_slots(unsigned threads, size_t count, size_t grain);
 
 /* Calls body once for each of [0, count), at most `threads` at a time: items of unlike size, handed out one by
- * one. Of the calls with one `slot`, which is below `threads` and below `count`, none runs beside another. */
+ * one. Calls with the same `slot`, which is below `threads` and below `count`, run one after the other. */
 void nt_parallel_items(unsigned threads, size_t count,
 	void (*body)(void *context, size_t item, unsigned slot), void *context);
 

@@ -5,9 +5,9 @@
  *
  * The pool is made by the first region that needs it and grows to the largest region's need, up to
  * NT_POOL_MOST. Its threads belong to nobody: any number of user threads may run regions at once, and a body
- * may run a region of its own. Idle threads sleep, and never keep the process from ending. What no thread takes,
- * the caller does, so a region ends wherever a thread cannot be made: under a limit, in a build with NT_NO_THREADS, or
- * with none left after fork(). A child of fork() makes threads of its own.
+ * may run a region of its own. Idle threads sleep, and never keep the process from ending. The caller runs every slot
+ * that no thread has taken. A region therefore completes even if no thread can be created: under a limit, in a build
+ * with NT_NO_THREADS, or with none left after fork(). A child of fork() makes threads of its own.
  */
 #ifndef NT_BASE_POOL_H
 #define NT_BASE_POOL_H

@@ -18,7 +18,7 @@ typedef struct nt_scratch {
 	size_t expected_bytes; /* of the first own block; 0: none is expected, or it is there */
 } nt_scratch;
 
-/* Where a stack stands, to go back to. */
+/* A position of a stack, to go back to. */
 typedef struct nt_scratch_mark {
 	struct nt_scratch_block *block;
 	size_t used;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What can go wrong with files and command lines, beside what nmtan.h knows of arrays.
+ * Faults of files and command lines, beside what nmtan.h knows of arrays.
  *
  * The compute library returns nmtan_status. Everything that reads, writes or is told by a user returns
  * nt_status, whose first values are those of nmtan_status; the compiler keeps the two apart (-Wenum-conversion).

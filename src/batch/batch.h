@@ -12,7 +12,7 @@
 #include "batch/update.h"
 #include "pipeline/run.h"
 
-/* What became of an input, while somebody may want to know. */
+/* The outcome of an input, while somebody may want to know. */
 typedef struct nt_outcome {
 	nt_error error; /* when the job's status is not NT_OK */
 	nt_summary summary;
@@ -69,7 +69,7 @@ nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count
  * name. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
 nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error);
 
-/* What runs a job: nt_run, or something else in tests. */
+/* The function that runs a job: nt_run, or something else in tests. */
 typedef nt_status (*nt_runner)(const char *input, const char *output, const nt_settings *settings,
 	nt_summary *summary, nt_error *error);
 

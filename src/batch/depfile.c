@@ -2,8 +2,9 @@
 /*
  * Depfiles: see depfile.h. Names are spelled as GNU make's manual ("Rule Syntax", "Using Wildcard Characters") and
  * Ninja's depfile lexer both read them: a backslash before a blank, "#" and ":", each backslash before those doubled,
- * and "$$". What only one of them knows (%, * in make) is left as it is. Of "\#" in a name Ninja reads one backslash
- * too many, and makes the output again each time; make would lose the rest of the line the other way.
+ * and "$$". Characters that only one of them knows (%, * in make) are left as they are. Ninja reads "\#" in a name
+ * with one backslash too many, and makes the output again each time; make would lose the rest of the line the other
+ * way.
  */
 #include "batch/depfile.h"
 
@@ -92,8 +93,8 @@ static bool is_written_to(const nt_trace *trace, const struct stat *info)
 	return is;
 }
 
-/* What an output depends on, each with a NUL behind it: files that were read, the input first, and the folders in which
- * others were looked for in vain. */
+/* The dependencies of an output, each with a NUL behind it: files that were read, the input first, and the folders in
+ * which others were looked for in vain. */
 static nt_status list_dependencies(const nt_trace *trace, nt_buffer *list, nt_error *error)
 {
 	nt_buffer folder = {0};
@@ -117,7 +118,7 @@ static nt_status list_dependencies(const nt_trace *trace, nt_buffer *list, nt_er
 	return list->failed ? nt_fail_memory(error) : NT_OK;
 }
 
-/* Those from `at` on, each with `before` and `after` around it. */
+/* Appends the names from `at` on, each with `before` and `after` around it. */
 static nt_status append_list(nt_depfile *depfile, const nt_buffer *list, size_t at, bool relative, const char *before,
 	const char *after, nt_error *error)
 {

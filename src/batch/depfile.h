@@ -17,8 +17,8 @@ typedef struct nt_depfile {
 /*
  * Appends a rule: the output depends on everything in the trace that was read, and on the folders in which something
  * was looked for in vain, unless the run wrote to them: whatever arrives there changes their times. Files below the
- * current folder are named from there on if the output is. What is not the input gets a rule without files, so that
- * make goes on when it is gone.
+ * current folder are named from there on if the output is. A dependency that is not the input gets a rule without
+ * files, so that make goes on when it is gone.
  *
  * Returns NT_OK; NT_ERROR_UNSUPPORTED where a name has a line feed, for which neither has a spelling; NT_ERROR_IO or
  * NT_ERROR_MEMORY.

@@ -101,7 +101,8 @@ static nt_status list_folder(const char *path, char ***names, size_t *count, nt_
 
 static nt_status look_through(walk *w, nt_buffer *path);
 
-/* What `path` names, within a folder. What vanished meanwhile, or is neither file nor folder, is passed over. */
+/* Takes the file or folder `path` within a folder. It passes over a name that vanished meanwhile, or is neither file
+ * nor folder. */
 static nt_status visit(walk *w, nt_buffer *path)
 {
 	struct stat info;

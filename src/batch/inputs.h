@@ -18,7 +18,7 @@ typedef struct nt_inputs {
 } nt_inputs;
 
 /*
- * What is taken from folders. A file is taken if its name has the ending of a format that is read, one of `include`
+ * Rules for files in folders. A file is taken if its name has the ending of a format that is read, one of `include`
  * matches (or there is none) and none of `exclude` does; a folder in which nothing is looked for if one of `exclude`
  * matches. A pattern (fnmatch) with a slash is compared with the path below the folder that was named, else with the
  * last name of it.

@@ -25,7 +25,7 @@
 #include "file/lookup.h"
 #include "format/format.h"
 
-/* Of any run, and of any byte of a format that has all its bytes in one file. */
+/* Bytes for any run, and for each byte of a format that has all its bytes in one file. */
 enum { LEAST = 1 << 20, MOST_BYTE_COST = 256 };
 
 /* sum + cost * count; UINT64_MAX where that overflows: counts come from the file. */
@@ -155,7 +155,7 @@ static uint64_t gltf_need(const char *text, size_t json_size, size_t size, const
 
 /* ---- OBJ ---- */
 
-/* What the lines of an OBJ begin with. */
+/* Beginnings of lines of an OBJ. */
 typedef struct obj_counts {
 	uint64_t corners, positions, texcoords, normals, changes;
 } obj_counts;
@@ -179,7 +179,7 @@ static void count_lines(obj_counts *counts, const char *text, size_t size)
 		count_line(counts, line, next);
 }
 
-/* Of a large file as many parts as tell what is in it. */
+/* Counts as many parts of a large file as tell what is in it. */
 static uint64_t obj_need(const char *text, size_t size)
 {
 	enum { PARTS = 64, PART = 1 << 16 };
@@ -216,7 +216,7 @@ static uint64_t varint_at(const unsigned char **at, const unsigned char *end)
 }
 
 /* By the header of a block of version 2.2 without metadata, which is what encoders have written since 2018: method 0 is
- * sequential (faces, points), 1 edgebreaker (a byte, vertices, faces). Of others by its bytes. */
+ * sequential (faces, points), 1 edgebreaker (a byte, vertices, faces). Counts other formats by their bytes. */
 static uint64_t draco_need(const unsigned char *bytes, size_t size)
 {
 	enum { HEAD = 11, MAJOR = 5, MINOR = 6, TYPE = 7, METHOD = 8, FLAGS = 10, MESH = 1, METADATA = 128 };
@@ -229,7 +229,7 @@ static uint64_t draco_need(const unsigned char *bytes, size_t size)
 	return size + 120 * faces + 190 * vertices;
 }
 
-/* Of all blocks among the bytes of a GLB: its JSON may say less of them than they do. */
+/* Counts all blocks among the bytes of a GLB: its JSON may say less of them than they do. */
 static uint64_t blocks_need(const unsigned char *bytes, size_t size)
 {
 	const unsigned char *end = bytes + size;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What an OBJ's images take while they are converted: 6 bytes for each pixel of the largest ones, as many as are
+ * Memory that an OBJ's images take while they are converted: 6 bytes for each pixel of the largest ones, as many as are
  * converted at a time. The names are those of a glance: the material library that the head of the OBJ names, in its
  * folder, and the last word of lines that begin as maps do. Images that glTF carries as they are count where channels
  * or heights are made of them.

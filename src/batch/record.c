@@ -102,7 +102,7 @@ static void append_links(nt_buffer *links, const nt_buffer *more)
 	}
 }
 
-/* Where the folder of a path is; neighbours mostly have the same. Appended, as are the links on the way (NULL: not
+/* The folder of a path; neighbours mostly have the same. Appended, as are the links on the way (NULL: not
  * wanted). */
 static nt_status append_folder(
 	nt_record *record, const char *path, nt_buffer *real, nt_buffer *links, nt_error *error)
@@ -214,7 +214,7 @@ static bool is_whole(const char *line, size_t length)
 	return length > SEAL_BYTES && memcmp(line + length - SEAL_BYTES, seal_begin, sizeof seal_begin - 1) == 0;
 }
 
-/* Of a whole one. */
+/* Whether a line is whole: it ends with the digest of its bytes. */
 static nt_status is_sealed(const char *line, size_t length, bool *is, nt_error *error)
 {
 	char digest[NT_DIGEST_TEXT];
@@ -238,7 +238,7 @@ static bool is_recent(uint64_t changed, uint64_t noted)
 	return (int64_t)(noted - changed) < tick;
 }
 
-/* Of what was read: who changes it again has no reason to wait. */
+/* An input may have been modified again within the same clock tick; compare digests. */
 static bool may_have_changed_unseen(const state *then)
 {
 	return is_recent(then->modified, then->noted) || is_recent(then->changed, then->noted);
@@ -262,7 +262,7 @@ typedef struct look {
 	line_file file;
 } look;
 
-/* What is the same is so in another state. */
+/* Notes the new state of a file whose bytes are the same. */
 static void renew(look *l, nt_json_value *value, const state *now)
 {
 	nt_json_set_uint64(l->line, nt_json_put(l->line, value, "modified"), now->modified);
@@ -575,7 +575,7 @@ static nt_status find_ways(writing *w)
 	return status;
 }
 
-/* Of files that changed while they were read the line says that nothing was written, so that it never holds. */
+/* If files changed while they were read, the line says that nothing was written, so that it never holds. */
 static nt_status make_line(writing *w, const nt_making *making)
 {
 	static const struct {

@@ -12,7 +12,7 @@
  *
  * where the first file that was read is the input and FILE is {"uri":"../v1/a.obj","bytes":10,STATE,"xxh128":D}.
  * STATE is "modified":T,"changed":T,"inode":N,"noted":T: T are nanoseconds since 1970, of the last change of the bytes,
- * of that of the inode, and of when the file was opened. Where the state is another one, and where a file that was read
+ * of that of the inode, and of when the file was opened. If the state is another one, or if a file that was read
  * had changed so shortly before that it may have changed again within one tick of its clock, the digests of the bytes
  * decide; when they are equal, a new line notes the new state.
  *
@@ -37,7 +37,7 @@ static inline bool nt_same_file(const struct stat *a, const struct stat *b)
 	return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
-/* What is compared beside sizes: the state and, where only the inode changed, digests; or digests alone. */
+/* The comparison beside sizes: the state and, if only the inode changed, digests; or digests alone. */
 typedef enum nt_update_by { NT_UPDATE_BY_TIME, NT_UPDATE_BY_CONTENT } nt_update_by;
 
 typedef struct nt_record nt_record;

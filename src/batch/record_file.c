@@ -2,9 +2,9 @@
 /*
  * The file of a record: see record_file.h.
  *
- * Who appends or rewrites locks the file, by a lock of the open file that network file systems know, too. Where there
- * are no locks, appending goes on without (O_APPEND is enough on local disks), and nothing is rewritten. A rewritten
- * file is another one: who has waited for the lock of the old one opens it again.
+ * A process that appends or rewrites locks the file, by a lock of the open file that network file systems know, too.
+ * If there are no locks, appending goes on without (O_APPEND is enough on local disks), and nothing is rewritten. A
+ * rewritten file is another one: who has waited for the lock of the old one opens it again.
  */
 #include "batch/record_file.h"
 
@@ -75,7 +75,7 @@ static void forget(nt_record_file *file)
 	*file = (nt_record_file){.path = file->path, .prefix = file->prefix, .is_whole = file->is_whole};
 }
 
-/* A copy of the file's bytes: others append to it. What comes after the last line feed is half a line of a process
+/* A copy of the file's bytes: others append to it. Bytes after the last line feed are half a line of a process
  * that was killed. */
 static nt_status read_text(nt_record_file *file, nt_error *error)
 {
@@ -191,8 +191,8 @@ static nt_status write_anew(const nt_record_file *file, nt_error *error)
 	return status;
 }
 
-/* With the lock nobody appends in between; without one, the file stays as long as it is. What goes wrong leaves it
- * so, too, unless memory ends. */
+/* With the lock nobody appends in between; without one, the file stays as long as it is. A failure leaves it so, too,
+ * unless memory ends. */
 static nt_status rewrite(nt_record_file *file, nt_error *error)
 {
 	bool locked;

@@ -135,7 +135,7 @@ void nt_update_done(nt_update_job *job, bool well, const nt_trace *trace)
 	nt_buffer_free(&job->options);
 }
 
-/* What a record can be about: regular files, of which the output need not be there yet. */
+/* Subjects of a record: regular files, of which the output need not be there yet. */
 static nt_status look_at_files(const nt_making *making, struct stat *input, struct stat *output, bool *regular,
 	bool *made, nt_error *error)
 {

@@ -41,7 +41,7 @@ build/wasm/%.o: %.c | need-wasm
 	@mkdir -p $(@D)
 	$(WASM_CC) $(WASM_FLAGS) $(WASM_LEVEL) -c -o $@ $<
 
-# What is at no address below 1024, where the data begins, takes shorter instructions: 770 bytes less.
+# Data that has no address below 1024, where the data begins, takes shorter instructions: 770 bytes less.
 build/npm/nmtan.wasm: $(wasm_obj)
 	@mkdir -p $(@D)
 	$(WASM_CC) --target=wasm32-wasi --sysroot=/usr -nostartfiles \

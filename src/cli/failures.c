@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What failed in a run of many: see failures.h.
+ * Failures in a run of many: see failures.h.
  */
 #include "cli/failures.h"
 

@@ -23,7 +23,7 @@ typedef struct nt_failures {
 	size_t refused; /* of these, before anything ran; each reason has been told once */
 } nt_failures;
 
-/* Counts a job that failed. What there is no memory for counts as a further reason. */
+/* Counts a job that failed. A reason that finds no memory counts as a further reason. */
 void nt_failures_add(nt_failures *failures, const nt_job *job);
 
 /* Appends a line for each reason, and one for those that have none; `manifest`: the file that has them all, or NULL. */

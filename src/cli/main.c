@@ -32,7 +32,7 @@
 #include "pipeline/report_folder.h"
 #include "report/codes.h"
 
-/* What the jobs' ends add up to. */
+/* Sums over the jobs that have ended. */
 typedef struct session {
 	const nt_command *command;
 	const nt_report_plan *plan;
@@ -57,13 +57,13 @@ typedef struct session {
 	int exit_code;
 } session;
 
-/* What a signal handler tells of a run of many. */
+/* Counts that a signal handler prints for a run of many. */
 static struct {
 	atomic_size_t count, ended, failed; /* jobs */
 	bool erases;                        /* a line of progress */
 } in_work;
 
-/* What a message of a run usually takes is there before the run: none fails because that took all memory. */
+/* The run allocates the usual memory of its messages first: none fails because that took all memory. */
 enum { MESSAGE_BYTES = 16 * 1024 };
 
 static void say_usage(const nt_error *error, nt_style style)
@@ -83,7 +83,7 @@ static bool reader_is_gone(void)
 	return poll(&out, 1, 0) == 1 && (out.revents & POLLERR);
 }
 
-/* Who reads the first lines alone (head) wants no message: the program ends as others do. */
+/* A reader of the first lines alone (head) wants no message: the program ends as others do. */
 static void end_unread(void)
 {
 	signal(SIGPIPE, SIG_DFL);
@@ -133,7 +133,7 @@ static bool findings_fail(const nt_summary *summary, int least_failure)
 	return summary->report && nt_report_worst(summary->report, &worst) && (int)worst >= least_failure;
 }
 
-/* What --timing shows of all of them. */
+/* Sums that --timing shows. */
 static void add_times(nt_summary *total, const nt_summary *one)
 {
 	for (int stage = 0; stage < NT_STAGE_COUNT; stage++)
@@ -217,7 +217,7 @@ static void note_end(void *user, const nt_job *job)
 	nt_manifest_add(&s->manifest, job, fails ? NT_EXIT_FINDINGS : nt_exit_code(job->status));
 }
 
-/* What a job has read or written is not replaced by what is said about it. */
+/* Reports must not replace files that a job has read or written. */
 static void refuse_own(session *s, const nt_job *job, const char *path, bool *refused, int *code)
 {
 	struct stat own, other;
@@ -251,7 +251,7 @@ static void add_rule(session *s, const nt_job *job, int *code)
 	*code = nt_exit_worse(*code, nt_exit_code(error.status));
 }
 
-/* What there is no memory for in a message is said all the same. */
+/* A message for which there is no memory is printed all the same, shorter. */
 static void tell_shortly(session *s, const nt_job *job)
 {
 	nt_error error;
@@ -369,7 +369,7 @@ static void tell_files(session *s)
 		tell_report_error(s, &error, c->depfile);
 }
 
-/* What came of those that are done. */
+/* Counts of those that are done. */
 static void append_outcomes(session *s)
 {
 	const size_t counts[] = {s->solved, s->unchanged, s->wrong};
@@ -524,7 +524,7 @@ static nt_status check_pairs(const nt_command *c, const nt_batch *batch, nt_erro
 	return error->status;
 }
 
-/* What a run writes beside its outputs is new with --no-clobber. */
+/* A file that a run writes beside its outputs is new with --no-clobber. */
 static nt_status check_own(const nt_command *c, nt_error *error)
 {
 	const char *const files[] = {c->depfile, c->manifest};
@@ -579,7 +579,8 @@ static void end_late(const nt_error *error)
 
 static struct rlimit data_before;
 
-/* What the system refuses from now on. Threads get their stacks all the same, of which they use little. */
+/* Has the system refuse memory beyond the limit. Threads get their stacks all the same, of which they use
+ * little. */
 static void limit_memory(const nt_command *command)
 {
 	struct rlimit data, stack;

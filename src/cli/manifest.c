@@ -46,7 +46,7 @@ static void append_digest(nt_buffer *out, const char *path)
 	}
 }
 
-/* Of names, in their order. */
+/* A digest of names, in their order. */
 static void append_missing_digest(nt_buffer *out, const nt_trace *trace)
 {
 	uint64_t digest = 0;
@@ -118,7 +118,7 @@ static void append_codes(nt_buffer *out, const char *key, const size_t counts[NT
 	nt_buffer_text(out, "}");
 }
 
-/* What a run found and did. */
+/* The findings and the result of a run. */
 static void append_run(nt_buffer *out, const nt_summary *s)
 {
 	size_t found[NT_CODE_COUNT] = {0};

@@ -20,7 +20,7 @@ typedef struct nt_manifest {
  * NT_ERROR_MEMORY; close it after failure, too. */
 nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options, nt_error *error);
 
-/* Appends the line of a job that has ended, in one piece. What goes wrong is kept for nt_manifest_close(). */
+/* Appends the line of a job that has ended, in one piece. A failure is kept for nt_manifest_close(). */
 void nt_manifest_add(nt_manifest *manifest, const nt_job *job, int exit_code);
 
 /* Returns NT_OK, or what went wrong since it was opened. */

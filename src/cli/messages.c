@@ -11,7 +11,7 @@
 #include "base/counts.h"
 #include "report/codes.h"
 
-/* Of one code so many places are shown without -v; the rest is counted. */
+/* So many places of one code are shown without -v; the rest is counted. */
 enum { PLACES_SHOWN = 5 };
 
 static const double DEGREES = 57.29577951308232; /* of a radian */
@@ -66,14 +66,14 @@ static void append_sentence(nt_buffer *out, const nt_place_view *place, const ch
 	nt_buffer_format(out, " [%s]%s%s\n", nt_code_info(code)->name, command ? ": " : "", command ? command : "");
 }
 
-/* Where a run succeeds it has met no error. */
+/* A run that succeeds has met no error. */
 static nt_severity shown_severity(const nt_finding *finding, nt_style style)
 {
 	const nt_severity severity = nt_finding_severity(finding);
 	return style.fails || severity < NT_SEVERITY_ERROR ? severity : NT_SEVERITY_WARNING;
 }
 
-/* What is told without -v although it is an info: what to do, which the file does not say. */
+/* Infos that are printed without -v: they say what to do, which the file does not say. */
 static bool is_proposed(nt_code code)
 {
 	return code == NT_CODE_NMAP_BESIDE || code == NT_CODE_TAN_QUADS_LIKELY;
@@ -272,7 +272,7 @@ static void append_findings_count(nt_buffer *out, const nt_summary *s)
 		}
 }
 
-/* What --fix did, by the codes of the findings. */
+/* Repairs of --fix, by the codes of the findings. */
 static void append_fixed(nt_buffer *out, const nt_summary *s, const nt_settings *settings)
 {
 	bool first = true;

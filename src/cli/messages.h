@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the tool says to people, as text in a buffer: errors with their place, findings, the line on
- * success, the table of --timing. Whoever prints does so in one piece, so that the messages of files
+ * Messages to people, as text in a buffer: errors with their place, findings, the line on
+ * success, the table of --timing. The caller prints them in one piece, so that the messages of files
  * that run at the same time do not mix.
  *
  * Names and texts from files may hold anything; control characters are shown as \x1b, never sent to a
@@ -24,8 +24,8 @@ void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 
 /* Findings of the severities from `most` down to `least` (nt_severity), a few of each code; without `infos`, of these
  * what is proposed alone: "nmtan: file:line: warning: sentence [CODE]", and the command, if one repairs it, with
- * `output` (NULL: a name beside the file). What a report of them ignores or knows from its baseline is left out; NULL:
- * there is none. */
+ * `output` (NULL: a name beside the file). Findings that the report ignores or knows from its baseline are left out;
+ * NULL: there is none. */
 void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report, const bool *ignore,
 	const char *file, const char *output, bool infos, int least, int most, nt_style style);
 

@@ -12,6 +12,7 @@
 
 /* Enumerations are stored through int; the words of a choice are in the order of its constants. */
 _Static_assert(sizeof(nt_only) == sizeof(int) && sizeof(nmtan_method) == sizeof(int), "enum is int");
+_Static_assert(SETTING(normals_degrees) == SETTING(normals) + sizeof(int), "angle:N has its number behind it");
 _Static_assert(NMTAN_METHOD_MIKKTSPACE_SORTED == NMTAN_METHOD_MIKKTSPACE + 4, "the words of --method");
 
 const nt_option_row nt_option_rows[] = {
@@ -31,9 +32,11 @@ const nt_option_row nt_option_rows[] = {
 	{"raw", 0, NT_OPTION_SET, NULL, NMTAN_REPAIR_OFF, 0, NULL,
 		"write the method's raw result, unusable tangents too; use it if the map was baked on folded quads",
 		SETTING(repair), true},
-	{"normals", 0, NT_OPTION_CHOICE, "auto|flat|smooth|replace-flat|replace-smooth", NT_NORMALS_AUTO, 0, "auto",
+	{"normals", 0, NT_OPTION_CHOICE, "auto|flat|smooth|angle:N|replace-flat|replace-smooth|replace-angle:N",
+		NT_NORMALS_AUTO, 180, "auto",
 		"how to make missing normals; auto: of OBJ by smoothing group, of PLY smooth, of glTF none; "
-		"replace-flat, replace-smooth: replace the input's normals too", SETTING(normals), true},
+		"angle: smooth between faces that meet at less than N degrees; replace-: replace the input's too",
+		SETTING(normals), true},
 	{"across", 0, NT_OPTION_CHOICE, "primitive|mesh", NT_ACROSS_PRIMITIVE, 0, "primitive",
 		"glTF: solve each primitive alone, or all primitives of a mesh that share texture coordinates as "
 		"one, as bakers do", SETTING(across), false},

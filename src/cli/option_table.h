@@ -12,7 +12,8 @@ typedef enum nt_option_kind {
 	NT_OPTION_HEADING,     /* no option: a line of --help */
 	NT_OPTION_FLAG,        /* bool becomes true */
 	NT_OPTION_SET,         /* int becomes `first` */
-	NT_OPTION_CHOICE,      /* int becomes `first` + the number of the word in `values` */
+	NT_OPTION_CHOICE,      /* int becomes `first` + the number of the word in `values`; a word that ends in :N there
+	                          has a number 0..most, which the int behind becomes */
 	NT_OPTION_MAYBE_CHOICE,/* the same, or `first` without a word, which follows = and nothing else */
 	NT_OPTION_NUMBER,      /* int becomes 0..most */
 	NT_OPTION_AUTO_NUMBER, /* the same; -1 for the word auto */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is said of options in words: --help, the completions of bash and zsh, and which options shape outputs.
+ * Texts about options: --help, the completions of bash and zsh, and which options shape outputs.
  */
 #include "cli/option_table.h"
 #include "cli/options.h"
@@ -71,7 +71,7 @@ static const char exit_codes[] =
 	"\nExit code: 0 done, 1 usage, 2 cannot read or write, 3 invalid input, 4 out of\n"
 	"memory or internal error, 5 unsupported, 6 findings (--fail-on), 7 a limit.\n";
 
-/* What people ask first: examples, and the ten options that they use. */
+/* Answers to the first questions: examples, and the ten options that they use. */
 void nt_options_first_help(nt_buffer *out)
 {
 	nt_buffer_text(out, usage);
@@ -135,7 +135,7 @@ void nt_options_explain(const char *word, nt_buffer *out)
 	}
 }
 
-/* What may be completed as a value: the words of a choice; nothing for numbers; files elsewhere. */
+/* Completions of a value: the words of a choice; nothing for numbers; files elsewhere. */
 static bool has_words(const nt_option_row *row)
 {
 	return row->kind == NT_OPTION_CHOICE || row->kind == NT_OPTION_MAYBE_CHOICE ||
@@ -161,7 +161,7 @@ static void append_words(nt_buffer *out, const nt_option_row *row)
 		const size_t length = strcspn(v, "|");
 		if (!(length == 1 && *v == 'N')) {
 			nt_buffer_text(out, v == row->values ? "" : " ");
-			nt_buffer_append(out, v, length);
+			nt_buffer_append(out, v, length > 2 && v[length - 2] == ':' ? length - 1 : length);
 		}
 		v += length + (v[length] == '|');
 	}

@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the parser remembers: which rows were given. */
+/* The parser's memory: which rows were given. */
 typedef struct parser {
 	nt_command *command;
 	nt_error *error;
@@ -33,21 +33,6 @@ static const nt_option_row *find_long(const char *name, size_t length)
 			return row;
 	}
 	return NULL;
-}
-
-/* The number of a word in "one|two|three", -1 when it is none of them. */
-static int choice_of(const char *values, const char *word)
-{
-	const size_t length = strlen(word);
-	int number = 0;
-	for (const char *v = values;; number++) {
-		const size_t here = strcspn(v, "|");
-		if (here == length && memcmp(v, word, length) == 0)
-			return number;
-		if (!v[here])
-			return -1;
-		v += here + 1;
-	}
 }
 
 /* A whole word of digits, at most `most`; -1 for anything else. */
@@ -66,6 +51,25 @@ static int number_of(const char *word, int most)
 	return number;
 }
 
+/* The number of a word among the values; -1: it is none. For a value that ends in :N *count becomes N, up to most. */
+static int choice_of(const char *values, const char *word, int most, int *count)
+{
+	const size_t length = strlen(word);
+	int number = 0;
+	for (const char *v = values;; number++) {
+		const size_t here = strcspn(v, "|");
+		if (here == length && memcmp(v, word, length) == 0 && v[here - 1] != 'N')
+			return number;
+		if (here > 2 && v[here - 2] == ':' && strncmp(v, word, here - 1) == 0) {
+			*count = number_of(word + here - 1, most);
+			return *count < 0 ? -1 : number;
+		}
+		if (!v[here])
+			return -1;
+		v += here + 1;
+	}
+}
+
 /* "64M": a whole number, and what it counts, as GNU's tools have it: nothing for bytes; K, M, G, T or KiB, MiB, GiB,
  * TiB for powers of 1024; kB, KB, MB, GB, TB for powers of 1000. UINT64_MAX for anything else. */
 static uint64_t size_of(const char *word)
@@ -73,11 +77,10 @@ static uint64_t size_of(const char *word)
 	static const char units[] = "KMGT";
 	uint64_t number = 0;
 	const char *at = word;
-	for (; *at >= '0' && *at <= '9'; at++) {
-		if (number > (UINT64_MAX >> 40) / 10 - 1)
+	for (; *at >= '0' && *at <= '9'; at++)
+		if (__builtin_mul_overflow(number, 10, &number) ||
+			__builtin_add_overflow(number, (uint64_t)(*at - '0'), &number))
 			return UINT64_MAX;
-		number = number * 10 + (uint64_t)(*at - '0');
-	}
 	if (at == word)
 		return UINT64_MAX;
 	if (!*at)
@@ -87,7 +90,8 @@ static uint64_t size_of(const char *word)
 	if (!unit || (*at == 'k' && binary) || (!binary && strcmp(at + 1, "B") != 0))
 		return UINT64_MAX;
 	for (const char *u = units; u <= unit; u++)
-		number *= binary ? 1024 : 1000;
+		if (__builtin_mul_overflow(number, binary ? 1024 : 1000, &number))
+			return UINT64_MAX;
 	return number;
 }
 
@@ -144,7 +148,7 @@ static nt_status append_word(parser *p, const nt_option_row *row, nt_words *word
 static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 {
 	char *field = (char *)p->command + row->offset;
-	int value = row->first;
+	int value = row->first, count = -1;
 	uint64_t size;
 	p->given[row - nt_option_rows] = true;
 	if (word && is_name(row) && nt_name_is_too_long(word))
@@ -160,9 +164,11 @@ static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 		break;
 	case NT_OPTION_CHOICE:
 	case NT_OPTION_MAYBE_CHOICE:
-		value = word ? choice_of(row->values, word) : 0;
+		value = word ? choice_of(row->values, word, row->most, &count) : 0;
 		if (value < 0)
 			return refuse_value(p, row, word);
+		if (count >= 0)
+			memcpy(field + sizeof value, &count, sizeof count);
 		value += row->first;
 		memcpy(field, &value, sizeof value);
 		break;
@@ -541,7 +547,7 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 		command->settings.texture_paths = command->texture_paths.items;
 	for (size_t i = 0; i < nt_option_row_count && command->settings.check; i++)
 		command->settings.converts |= nt_option_rows[i].writes && p.given[i];
-	/* Of one input an image beside it is proposed. */
+	/* For one input an image beside it is proposed. */
 	command->settings.own_input = !command->directory &&
 		!command->settings.in_place && !list_option(command) &&
 		command->operand_count == (command->settings.check ? 1 : 2);

@@ -11,7 +11,7 @@
 #include "batch/update.h"
 #include "pipeline/run.h"
 
-/* What the words ask for. */
+/* Actions that words ask for. */
 enum nt_action {
 	NT_ACTION_RUN,
 	NT_ACTION_HELP,
@@ -28,7 +28,7 @@ enum nt_fail_on { NT_FAIL_ON_ERROR, NT_FAIL_ON_WARNING, NT_FAIL_ON_INFO, NT_FAIL
 
 enum nt_progress_mode { NT_PROGRESS_AUTO, NT_PROGRESS_ON, NT_PROGRESS_OFF };
 
-/* What an option said each time it was given. */
+/* Values of an option that may be given several times. */
 enum { NT_MOST_WORDS = 32 };
 
 typedef struct nt_words {
@@ -36,7 +36,7 @@ typedef struct nt_words {
 	size_t count;
 } nt_words;
 
-/* What the words mean. */
+/* The meaning of the words. */
 typedef struct nt_command {
 	nt_settings settings;
 	int action;            /* enum nt_action */
@@ -75,7 +75,7 @@ typedef struct nt_command {
 	size_t operand_count;
 } nt_command;
 
-/* What a command line without words means. */
+/* The meaning of a command line without words. */
 void nt_options_defaults(nt_command *command);
 
 /*
@@ -95,7 +95,7 @@ bool nt_command_is_many(const nt_command *command);
 /* Appends the options on which the bytes of outputs depend, in one way for each meaning; defaults are left out. */
 void nt_options_shaping(const nt_command *command, nt_buffer *out);
 
-/* What --help prints, the one screen of -h, and the two lines that follow a mistake. */
+/* Text of --help, the one screen of -h, and the two lines that follow a mistake. */
 void nt_options_help(nt_buffer *out);
 void nt_options_first_help(nt_buffer *out);
 void nt_options_usage(nt_buffer *out);

@@ -2,7 +2,7 @@
 /*
  * Progress: see progress.h. On a terminal the line replaces itself, beginning after a second, since a
  * line that flashes by only disturbs. --progress=on without a terminal is for logs: a line for each stage of one file,
- * or one every ten seconds for many. Where there are no threads, stages and ends of files are the clock.
+ * or one every ten seconds for many. Without threads, stages and ends of files are the clock.
  */
 #include "cli/progress.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What --report and the options beside it mean: words to the options of a report, and where it goes.
+ * Meaning of --report and the options beside it: words to the options of a report, and where it goes.
  */
 #ifndef NT_CLI_REPORT_OPTIONS_H
 #define NT_CLI_REPORT_OPTIONS_H

@@ -59,7 +59,7 @@ int nt_exit_code(nt_status status)
 	case NT_ERROR_TOO_LARGE:
 		return NT_EXIT_UNSUPPORTED;
 	default:
-		/* What the compute API refuses, a reader should have refused before: our mistake. */
+		/* A reader should have refused before what the compute API refuses: our mistake. */
 		return NT_EXIT_INTERNAL;
 	}
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What people and scripts get to know of a run: standard error, also when there is no memory to build a message in, and
+ * Channels to people and scripts: standard error, also when there is no memory to build a message in, and
  * exit codes, which are part of the tool's interface (nmtan.1).
  */
 #ifndef NT_CLI_SAY_H
@@ -30,7 +30,7 @@ enum nt_exit {
 /* The exit code of a status. */
 int nt_exit_code(nt_status status);
 
-/* Of two exit codes the worse one, in the order 4, 2, 3, 5, 7, 1, 6, 0. */
+/* The worse of two exit codes, in the order 4, 2, 3, 5, 7, 1, 6, 0. */
 int nt_exit_worse(int a, int b);
 
 #endif

@@ -3,8 +3,8 @@
  * Draco: compressed meshes to arrays and back. For KHR_draco_mesh_compression and .drc files.
  *
  * Nothing that Draco returns is believed: sizes are checked before it decodes, and after it every index, every
- * mapping and every attribute's extent is checked. What it encodes is decoded again and compared with what
- * went in, bit for bit after quantization. Functions may run in several threads at once.
+ * mapping and every attribute's extent is checked. Each block is decoded again and compared with the input, bit for
+ * bit after quantization. Functions may run in several threads at once.
  */
 #ifndef NT_EXT_DRACO_H
 #define NT_EXT_DRACO_H
@@ -20,7 +20,7 @@ extern "C" {
 
 typedef enum nt_draco_method { NT_DRACO_SEQUENTIAL, NT_DRACO_EDGEBREAKER } nt_draco_method;
 
-/* What Draco calls an attribute's type; tangents, joints and weights are generic and found by their id. */
+/* Draco's name of an attribute's type; tangents, joints and weights are generic and found by their id. */
 typedef enum nt_draco_kind {
 	NT_DRACO_POSITION,
 	NT_DRACO_NORMAL,
@@ -118,8 +118,8 @@ static inline void nt_draco_block_free(nt_draco_block *block)
 nt_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error);
 
 /*
- * What a decoder will have of the quantized attributes of a mesh once it is encoded, whichever method that is by, and
- * whatever else is encoded with them.
+ * The values that a decoder will have of the quantized attributes of a mesh once it is encoded, whichever method that
+ * is by, and whatever else is encoded with them.
  *
  *   values  [attribute_count] of each attribute room for [point_count][components] floats, which may be where its data
  *           is; NULL: it is only looked at, as where its quantization has no bits. Points that no face uses keep

@@ -56,7 +56,7 @@ nt_status nt_meshopt_filter(const nt_meshopt_view *view, unsigned char *bytes, c
 
 /*
  * Packs bytes to which the filter is still to be applied, with version 0 of the vertex codec, which all decoders know.
- * What comes of it is decoded again and compared.
+ * The result is decoded again and compared.
  *
  *   view  checked; packed_size is not looked at
  *   bytes  [count * stride]

@@ -3,8 +3,8 @@
  * Opening modules: see module.h.
  *
  * Memory may end inside of dlopen() as well. The loader says so by its message alone, and ends the process itself where
- * it has none for its table of C++ symbols: so there must be enough before it begins. What constructors
- * of C++ libraries ask for in vain comes from the reserve, since an exception must not pass the loader.
+ * it has none for its table of C++ symbols: so there must be enough before it begins. Memory that constructors of C++
+ * libraries ask for in vain comes from the reserve, since an exception must not pass the loader.
  */
 #include "ext/module.h"
 
@@ -21,7 +21,7 @@
 #include "ext/reserve.h"
 #include "ext/tables.h"
 
-/* Where modules are installed; NULL in the tool that is not. */
+/* The folder of installed modules; NULL in the tool that is not. */
 #ifdef NT_LIBDIR
 static const char *const installed = NT_LIBDIR "/nmtan";
 #else

@@ -2,8 +2,8 @@
 /*
  * Modules: foreign libraries behind tables of functions (tables.h), in shared objects of their own that are opened when
  * an input needs them. A module is looked for in the folder of the running program, then in the folder where it
- * was installed (LIBDIR/nmtan); never in the working folder, nor where the environment says. What it needs itself, the
- * library, is the system's to find. Once open, it stays so.
+ * was installed (LIBDIR/nmtan); never in the working folder, nor where the environment says. The system finds the
+ * library that it needs. Once open, it stays so.
  *
  * Threads may use all of it at once.
  */
@@ -34,8 +34,8 @@ const void *nt_module_opened(nt_module module);
 /* One line about a module: the library behind it and its licence, or why it cannot be opened. */
 void nt_module_describe(nt_module module, char *line, size_t size);
 
-/* A foreign library that is in the tool itself, and in no module. What their licences say is installed with it:
- * licences.sh. */
+/* A foreign library that is in the tool itself, and in no module. licences.sh collects their licences, which are
+ * installed with it. */
 typedef struct nt_linked_library {
 	const char *name, *version; /* version NULL: the library does not say */
 	const char *licence;        /* an SPDX expression */

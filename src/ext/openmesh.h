@@ -5,9 +5,9 @@
  * Edges are numbered like corners: side 3 * t + k runs from corner k of triangle t to its next corner. An inner edge
  * has two sides; it is marked when either of them is.
  *
- * The mesh should be manifold and consistently oriented. What is not becomes open: of several triangles that use a
- * directed edge the first gets it and the others are left out, as are degenerate ones (two equal vertices); fans that
- * meet in a vertex only are taken as apart.
+ * The mesh should be manifold and consistently oriented. An edge that is not becomes open: of several triangles that
+ * use a directed edge the first gets it and the others are left out, as are degenerate ones (two equal vertices);
+ * fans that meet in a vertex only are taken as apart.
  */
 #ifndef NT_EXT_OPENMESH_H
 #define NT_EXT_OPENMESH_H

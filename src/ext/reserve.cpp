@@ -17,7 +17,7 @@
 
 namespace {
 
-// Address space: pages that are not used are not there. What unwinding destroys needs the more: nlohmann's destructors
+// Address space: pages that are not used are not there. Destroying during unwinding needs more: nlohmann's destructors
 // list the members of what they destroy, 16 bytes each, in a vector that doubles.
 constexpr size_t reserve_bytes = size_t(32) << 20, kept_for_unwinding = size_t(28) << 20;
 constexpr size_t alignment = alignof(std::max_align_t);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a module shows: one table of functions, which begins with a head. Functions do what the headers of their names
- * say; what those do without the library (releasing plain arrays, say) is in no table.
+ * The symbol of a module: one table of functions, which begins with a head. Functions do what the headers of their
+ * names say; what those do without the library (releasing plain arrays, say) is in no table.
  */
 #ifndef NT_EXT_TABLES_H
 #define NT_EXT_TABLES_H

@@ -57,7 +57,7 @@ typedef struct nt_reread_array {
  *
  * Returns NT_OK (with data NULL and count 0 when the primitive has none), NT_ERROR_INPUT when the
  * accessor is not inside its view and buffer, or NT_ERROR_MEMORY. Views that meshoptimizer packed are unpacked.
- * What Draco has in the primitive's block is zeros here, and its indices are none: see nt_reread_block().
+ * Attributes in the primitive's Draco block are zeros here, and its indices are none: see nt_reread_block().
  */
 nt_status nt_reread_attribute(nt_reread *model, size_t mesh, size_t primitive,
 	const char *name, nt_reread_array *array, nt_error *error);

@@ -12,7 +12,7 @@
  *      it is free, else a.new-D.bin
  *   2  rename tmp onto M: the switch       M -> a.bin, a.new-D.bin      new
  *
- * That is all where every sidecar's name was free or had its bytes (NT_NAMING_NEW, NT_NAMING_USED). Where a sidecar
+ * That is all where every sidecar's name was free or had its bytes (NT_NAMING_NEW, NT_NAMING_USED). If a sidecar
  * replaces one of ours (NT_NAMING_REPLACES), what step 2 places is the staging main file, and it goes on:
  *
  *   3  link a.new-D.bin to tmp, rename     M -> a.new-D.bin             new; a.bin has old
@@ -32,8 +32,8 @@
  * Sets with sidecars are placed one after the other in a folder. If M is another one than when the names were chosen,
  * they are chosen anew: otherwise two runs that write M at once would leave a sidecar that nobody refers to.
  *
- * Who may be replaced: M, because the user named it; a.bin in step 3, by the rules of sidecar.c. If a name was taken
- * since it was chosen, nothing is replaced, and the caller is told to try again.
+ * Files that may be replaced: M, because the user named it; a.bin in step 3, by the rules of sidecar.c. If a name was
+ * taken since it was chosen, nothing is replaced, and the caller is told to try again.
  */
 #include "file/output_parts.h"
 
@@ -75,7 +75,7 @@ nt_status nt_output_sync_name(const char *path, nt_error *error)
 	return failed ? nt_sink_fail(error, path, number) : NT_OK;
 }
 
-/* What was done so far onto the disk, before what comes next. */
+/* Syncs everything so far to the disk, before the next step. */
 static nt_status sync_step(const nt_output *output, nt_error *error)
 {
 	nt_status status = NT_OK;
@@ -197,7 +197,7 @@ static void unlink_second_name(const nt_sink *sink)
 	nt_buffer_free(&path);
 }
 
-/* What earlier runs left, and nothing refers to any more. What cannot be removed stays. */
+/* Leftovers of earlier runs to which nothing refers any more. A file that cannot be removed stays. */
 static void remove_superseded(const nt_output *output)
 {
 	nt_buffer path = {0};

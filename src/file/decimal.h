@@ -66,7 +66,7 @@ static inline unsigned nt_read_digits(const char *p, uint32_t *value)
 }
 
 /* The same for numbers of at most 7 digits, which is quicker: the value of the digits at p, whose count
- * is left in *count. What follows is a digit where there are more. */
+ * is left in *count. The next character is a digit if there are more. */
 static inline uint32_t nt_read_short_digits(const char *p, unsigned *count)
 {
 	const uint64_t word = nt_load8(p) ^ 0x3030303030303030u;

@@ -17,7 +17,9 @@ static uint64_t number_at(const unsigned char *p, size_t bytes, bool big_endian)
 	return value;
 }
 
-static void size_of_jpeg(const unsigned char *bytes, size_t size, uint32_t pixels[2])
+/* Where the segment of the first marker of a kind begins, with the marker: SOF0 to SOF15 without DHT, JPG and DAC,
+ * which lie among them, or SOS. SIZE_MAX: there is none. */
+static size_t find_segment(const unsigned char *bytes, size_t size, bool scan)
 {
 	size_t at = 2;
 	while (at + 9 < size && bytes[at] == 0xFF) {
@@ -26,20 +28,45 @@ static void size_of_jpeg(const unsigned char *bytes, size_t size, uint32_t pixel
 			at++;
 			continue;
 		}
-		/* SOF0 to SOF15, without DHT, JPG and DAC, which lie among them */
-		if (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) {
-			pixels[0] = (uint32_t)number_at(bytes + at + 7, 2, true);
-			pixels[1] = (uint32_t)number_at(bytes + at + 5, 2, true);
-			return;
-		}
+		if (scan ? marker == 0xDA
+			 : marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC)
+			return at;
 		at += 2 + number_at(bytes + at + 2, 2, true);
 	}
+	return SIZE_MAX;
 }
 
-/* Version 43 (BigTIFF) has 8 bytes where 42 has 4, and 2 for counts of tags. */
-static void size_of_tiff(const unsigned char *bytes, size_t size, uint32_t pixels[2])
+static void size_of_jpeg(const unsigned char *bytes, size_t size, uint32_t pixels[2])
 {
-	enum { WIDTH = 256, HEIGHT = 257, SHORT = 3 };
+	const size_t at = find_segment(bytes, size, false);
+	if (at == SIZE_MAX)
+		return;
+	pixels[0] = (uint32_t)number_at(bytes + at + 7, 2, true);
+	pixels[1] = (uint32_t)number_at(bytes + at + 5, 2, true);
+}
+
+/* Of a frame that is progressive, or whose first scan lacks components, all scans are read. In their data each 0xFF has
+ * 0 or the number of a restart behind it (B.1.1.5). */
+static uint64_t scans_of_jpeg(const unsigned char *bytes, size_t size)
+{
+	const size_t frame = find_segment(bytes, size, false), scan = find_segment(bytes, size, true);
+	if (frame == SIZE_MAX || scan == SIZE_MAX)
+		return 1;
+	const unsigned kind = bytes[frame + 1] & 3; /* 2: progressive */
+	if (kind != 2 && bytes[scan + 4] == bytes[frame + 9])
+		return 1;
+	uint64_t count = 0;
+	const unsigned char *const end = bytes + size, *at = bytes + scan;
+	for (; (at = memchr(at, 0xFF, (size_t)(end - at))) && end - at > 1; at++)
+		count += at[1] == 0xDA;
+	return count;
+}
+
+/* `numbers` [count] receives those of the tags from `first` on that the first directory has. Version 43 (BigTIFF) has 8
+ * bytes where 42 has 4, and 2 for counts of tags. */
+static void tags_of_tiff(const unsigned char *bytes, size_t size, unsigned first, unsigned tags, uint32_t *numbers)
+{
+	enum { SHORT = 3 };
 	if (size < 16)
 		return;
 	const bool big_endian = bytes[0] == 'M', large = number_at(bytes + 2, 2, big_endian) == 43;
@@ -49,10 +76,31 @@ static void size_of_tiff(const unsigned char *bytes, size_t size, uint32_t pixel
 	for (uint64_t i = 0; i < count && size - at - head >= (i + 1) * entry; i++) {
 		const unsigned char *tag = bytes + at + head + i * entry;
 		const uint64_t name = number_at(tag, 2, big_endian), type = number_at(tag + 2, 2, big_endian);
-		if (name == WIDTH || name == HEIGHT)
-			pixels[name - WIDTH] =
+		if (name >= first && name - first < tags)
+			numbers[name - first] =
 				(uint32_t)number_at(tag + entry - word, type == SHORT ? 2 : 4, big_endian);
 	}
+}
+
+static void size_of_tiff(const unsigned char *bytes, size_t size, uint32_t pixels[2])
+{
+	enum { WIDTH = 256 };
+	tags_of_tiff(bytes, size, WIDTH, 2, pixels);
+}
+
+/* Tiles are decoded whole: of an image of one column, too. */
+static uint64_t work_of_tiff(const unsigned char *bytes, size_t size, const uint32_t pixels[2])
+{
+	enum { TILE_WIDTH = 322 };
+	uint32_t tile[2] = {0, 0};
+	uint64_t work = 1;
+	tags_of_tiff(bytes, size, TILE_WIDTH, 2, tile);
+	for (int axis = 0; axis < 2; axis++) {
+		const uint64_t side = tile[0] && tile[1] ? tile[axis] : 1;
+		if (__builtin_mul_overflow(work, (pixels[axis] + side - 1) / side * side, &work))
+			return UINT64_MAX;
+	}
+	return work;
 }
 
 /* "-Y 2 +X 3" behind an empty line */
@@ -105,4 +153,15 @@ bool nt_image_size(const unsigned char *bytes, size_t size, uint32_t pixels[2])
 		return true;
 	pixels[0] = pixels[1] = 0;
 	return false;
+}
+
+uint64_t nt_image_work(const unsigned char *bytes, size_t size)
+{
+	uint32_t pixels[2];
+	if (!nt_image_size(bytes, size, pixels))
+		return 0;
+	const nt_image_type type = nt_image_type_of_bytes(bytes, size);
+	if (type == NT_IMAGE_TIFF)
+		return work_of_tiff(bytes, size, pixels);
+	return (uint64_t)pixels[0] * pixels[1] * (type == NT_IMAGE_JPEG ? scans_of_jpeg(bytes, size) : 1);
 }

@@ -46,4 +46,8 @@ const char *nt_image_extension(nt_image_type type);
  * other types, damaged headers and images without pixels. */
 bool nt_image_size(const unsigned char *bytes, size_t size, uint32_t pixels[2]);
 
+/* The pixels that a decoder goes over: those of a JPEG of several scans once for each, those of a TIFF with all of its
+ * tiles. 0: not known. */
+uint64_t nt_image_work(const unsigned char *bytes, size_t size);
+
 #endif

@@ -10,13 +10,13 @@
 #include "base/error.h"
 
 /*
- * What an errno of looking for a file means: NT_ERROR_MISSING for ENOENT and ENOTDIR, and for names that are longer
+ * The status for an errno of looking for a file: NT_ERROR_MISSING for ENOENT and ENOTDIR, and for names that are longer
  * than any file's, or are a folder's; NT_ERROR_MEMORY; else NT_ERROR_IO. The error names the path.
  */
 nt_status nt_lookup_failed(const char *path, int number, nt_error *error);
 
-/* Whether a name is longer than any path that the system takes. Whoever follows a name step by step asks this first:
- * the steps of a long one take quadratic time. */
+/* Whether a name is longer than any path that the system takes. A function that follows a name step by step asks this
+ * first: the steps of a long one take quadratic time. */
 bool nt_name_is_too_long(const char *name);
 
 /* stat(). Returns NT_OK or what nt_lookup_failed() says. */

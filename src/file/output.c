@@ -68,7 +68,7 @@ static bool is_in_place(const nt_output_options *options, const struct stat *sta
 	       input.st_ino == status->st_ino;
 }
 
-/* What is meant to stay as it is. */
+/* Refuses a file that is meant to stay as it is. */
 static nt_status refuse_in_place(const char *path, const struct stat *status, nt_error *error)
 {
 	const char *refusal = nt_in_place_refusal(path, status);
@@ -339,8 +339,8 @@ void nt_output_note(nt_output *output, const char *format, ...)
 	nt_buffer_text(&output->options.result->note, text);
 }
 
-/* Which sidecars are not called what they would be. What nt_output_place() may add has its memory before anything has
- * its place. */
+/* Which sidecars are not called what they would be. nt_output_place() allocates for everything that it may add before
+ * it places anything. */
 static nt_status note_names(const nt_output *output, nt_error *error)
 {
 	enum { NAMES_SHOWN = 3, OTHER_WORDS = 200 };
@@ -383,7 +383,7 @@ static nt_status leave_equal(nt_output *output, nt_error *error)
 	return status;
 }
 
-/* Where the bytes of a complete file of the set are now. */
+/* The present name of a complete file of the set. */
 static const char *present_path(const nt_sink *sink)
 {
 	if (sink->naming == NT_NAMING_REPLACES && sink->staging_is_there)

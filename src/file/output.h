@@ -5,9 +5,9 @@
  *
  * All files are written to temporary files beside their targets. A sidecar gets its name when its bytes are known
  * (nt_output_settle), then the main file is written, which holds those names, and nt_output_commit() puts everything in
- * place; abort, or a signal, removes it. What a sidecar may be called, and what it may replace, is in sidecar.c;
- * the order of the steps, and what a crash leaves after each, in commit.c. Outputs that are pipes or devices, and
- * "-", are written through.
+ * place; abort, or a signal, removes it. sidecar.c chooses a sidecar's name and says what it may replace; commit.c
+ * has the order of the steps, and what a crash leaves after each. Outputs that are pipes or devices, and "-", are
+ * written through.
  */
 #ifndef NT_FILE_OUTPUT_H
 #define NT_FILE_OUTPUT_H
@@ -25,7 +25,7 @@ typedef enum nt_role {
 	NT_ROLE_IMAGE    /* a sidecar that other documents may share: never replaced, never removed */
 } nt_role;
 
-/* What became of a set, beyond its status. */
+/* The outcome of a set, beyond its status. */
 typedef struct nt_output_result {
 	bool again;     /* the commit failed because a name was taken meanwhile: with the names chosen anew it
 	                   would not */
@@ -33,7 +33,7 @@ typedef struct nt_output_result {
 	nt_buffer note; /* which sidecars do not have their own names, and why: "; ..." */
 } nt_output_result;
 
-/* What becomes of a main file that has the bytes of its replacement already. In place it always stays. */
+/* Treatment of a main file that has the bytes of its replacement already. In place it always stays. */
 typedef enum nt_equal_choice {
 	NT_EQUAL_REPLACE,
 	NT_EQUAL_KEEP, /* with its inode and its time of change */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the files of an output set's implementation share: sink.c writes bytes, sidecar.c chooses names, same_file.c
+ * Shared by the files of an output set's implementation: sink.c writes bytes, sidecar.c chooses names, same_file.c
  * keeps what a file in place has, commit.c puts things in place, output.c is above them.
  */
 #ifndef NT_FILE_OUTPUT_PARTS_H
@@ -12,7 +12,7 @@
 #include "file/relative_path.h"
 #include "file/temporary.h"
 
-/* What becomes of a settled sidecar. */
+/* Treatment of a settled sidecar. */
 typedef enum nt_naming {
 	NT_NAMING_NEW,     /* it takes a name that is free */
 	NT_NAMING_USED,    /* a file of these bytes has the name already, and stays */

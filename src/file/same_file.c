@@ -4,7 +4,7 @@
  *
  * Mode, owner, group, extended attributes and access lists go over. Nobody may come to read what he could not read
  * before: the new file is made for its owner alone, and where the group cannot be kept, the new group gets what
- * others have. What was granted to the old content is dropped: set-user-ID and set-group-ID bits, capabilities,
+ * others have. Rights of the old content are dropped: set-user-ID and set-group-ID bits, capabilities,
  * and signatures. A file with further names could not keep them, and one that is read-only is meant to stay.
  */
 #include "file/output_parts.h"
@@ -67,7 +67,7 @@ static bool list_attributes(const char *target, char **names, ssize_t *size)
 	}
 }
 
-/* Copies one attribute. Those that the system keeps for itself may be refused. */
+/* Copies one attribute. The system may refuse those that it keeps for itself. */
 static bool copy_attribute(int fd, const char *target, const char *name)
 {
 	const ssize_t size = getxattr(target, name, NULL, 0);

@@ -22,7 +22,7 @@ static void narrow(nt_buffer *folder, const char *path)
 	folder->data[folder->size] = '\0';
 }
 
-/* Of an input; it becomes the first one's folder, and then less. */
+/* The folder of the first input, shortened by each further one. */
 static nt_status take_input(nt_shown_paths *paths, const char *input, nt_buffer *path, bool *below)
 {
 	path->size = 0;

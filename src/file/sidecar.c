@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a sidecar is called, and whose file a file is.
+ * Names of sidecars, and owners of files.
  *
- * A sidecar wants the name that the writer gave it ("a.bin" of a.gltf, an image's own). Where the name is free it
- * gets it. Where a file of the same bytes has it, that file is used as it is, so that a map that many documents share
- * is there once. Where another file has it:
+ * A sidecar wants the name that the writer gave it ("a.bin" of a.gltf, an image's own). If the name is free, it gets
+ * it. If a file of the same bytes has it, that file is used as it is, so that a map that many documents share is
+ * there once. If another file has it:
  *
  * - A buffer replaces it if the previous main file at that very path refers to it and it is provably ours: the main
  *   file records the digest of the bytes that we wrote (nt_sink_digest), and the file still has that digest. A staging
@@ -311,7 +311,7 @@ static bool is_staging(const nt_output *output, const char *path)
 	return false;
 }
 
-/* Whether a document refers to a file as its own. What cannot be read may do so. */
+/* Whether a document refers to a file as its own. A file that cannot be read may do so. */
 static bool is_owner(const nt_output *output, const char *path, const char *name)
 {
 	nt_output other = {0};
@@ -387,7 +387,7 @@ static const nt_sink *find_in_set(const nt_output *output, const nt_sink *sink, 
 	return NULL;
 }
 
-/* What has a name now. `state` receives that of an EQUAL file. */
+/* The file that has a name now. `state` receives that of an EQUAL file. */
 static nt_status look(const nt_output *output, const nt_sink *sink, const char *path, verdict *found,
 	nt_file_state *state, nt_error *error)
 {

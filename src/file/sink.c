@@ -20,7 +20,7 @@
 /* How much of a map is copied at a time, and which files get their room at once: that is a system call of 30 us. */
 enum { COPIED_BYTES = 2 * 1024 * 1024, LARGE_FILE_BYTES = 1024 * 1024 };
 
-/* What goes straight through, and takes no memory of the buffer. */
+/* Writes of this size go straight through, without the buffer. */
 enum { STRAIGHT_BYTES = 128 * 1024 };
 
 nt_status nt_sink_fail(nt_error *error, const char *path, int number)

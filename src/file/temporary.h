@@ -28,7 +28,7 @@ bool nt_temporary_is_led(const nt_temporary *temporary);
 /* A second name beside `target` for the file `from`. False, with errno, where the file system has no links. */
 bool nt_temporary_link(const char *from, const char *target, nt_temporary **temporary);
 
-/* Where it is. */
+/* Its place. */
 const char *nt_temporary_path(const nt_temporary *temporary);
 
 /* The name of a file's leader, which is in the same folder; false: it has none. */
@@ -39,7 +39,7 @@ bool nt_temporary_leader_of(const char *name, char leader[NT_TEMPORARY_NAME]);
  * disk of this machine alone (`local`), or of this boot. */
 bool nt_temporary_is_lockable(const char *name, bool local);
 
-/* Removes stale temporary files from a folder, which each process looks through once. What goes wrong is no matter: the
+/* Removes stale temporary files from a folder, which each process looks through once. A failure does not matter: the
  * next run looks again. */
 void nt_temporaries_clean(const char *folder);
 

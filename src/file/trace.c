@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a run reads and writes: see trace.h.
+ * Files that a run reads and writes: see trace.h.
  */
 #include "file/trace.h"
 
@@ -12,7 +12,7 @@
 
 static _Thread_local nt_trace *current;
 
-/* Of all traces: noting takes less than the system call that is noted. */
+/* One lock for all traces: noting takes less than the system call that is noted. */
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
 nt_trace *nt_trace_use(nt_trace *trace)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a run reads and writes, noted where it happens: nt_file_open() and the looking for files (lookup.h) note
- * what is read and what is missing, nt_output_commit() what is written. The caller of a run sets the
- * trace of its thread; functions in between need no argument for it.
+ * Files that a run reads and writes, noted by those that do it: nt_file_open() and the looking for files (lookup.h)
+ * note what is read and what is missing, nt_output_commit() what is written. The caller of a run sets the trace of
+ * its thread; functions in between need no argument for it.
  *
  * A later run can tell by it whether it would read the same: nothing that decides on a file goes unnoted.
  */
@@ -52,7 +52,7 @@ typedef struct nt_trace {
 	unsigned reader;     /* as read by this one */
 } nt_trace;
 
-/* What is noted as read is from now on. Once for each run. */
+/* What the trace notes as read is shared from now on. Once for each run. */
 void nt_trace_share(nt_trace *trace, nt_readers *readers);
 
 /* Whether a run that shares with that of the trace that is used has read a file. */

@@ -167,7 +167,7 @@ bool nt_uri_has_parent_step(const char *name)
 	return false;
 }
 
-/* What is wrong with the text of a decoded name; NULL: nothing. */
+/* The fault in the text of a decoded name; NULL: nothing. */
 static const char *check_text(const char *name, size_t length, bool allow_outside)
 {
 	if (length == 0)

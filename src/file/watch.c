@@ -116,7 +116,7 @@ bool nt_watch_is_shortened(int watch)
 	return is_shortened(&maps[watch], fstat(maps[watch].fd, &info) == 0 ? &info : NULL);
 }
 
-/* What another process did to a file; NULL: nothing. */
+/* Another process's change to a file; NULL: nothing. */
 static const char *change_of(const watched *w)
 {
 	struct stat info;

@@ -29,7 +29,7 @@ void nt_watch_forget(void);
 /* Returns NT_ERROR_IO, with the name, if a file that this thread opened has changed; else NT_OK. */
 nt_status nt_watch_check(nt_error *error);
 
-/* What happened to the first of all open files that has changed, and its name; NULL: none has. Safe in a signal
+/* The change of the first open file that has changed, and its name; NULL: none has. Safe in a signal
  * handler. */
 const char *nt_watch_any_change(const char **path);
 

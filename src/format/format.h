@@ -45,7 +45,7 @@ const nt_format_entry *nt_format_of_input(const unsigned char *bytes, size_t siz
 /* The entry whose extension the path ends in, in any case; NULL: none. */
 const nt_format_entry *nt_format_of_path(const char *path);
 
-/* What is written where no name says it: PLY for PLY, else GLB. */
+/* The format if no name says one: PLY for PLY, else GLB. */
 const nt_format_entry *nt_format_unnamed(const nt_format_entry *reader);
 
 #endif

@@ -13,7 +13,7 @@
 #include "image/find.h"
 #include "image/image.h"
 
-/* What is wrong with a map takes it away, and no more; its bytes stay NULL. */
+/* A faulty map is left out, and nothing else; its bytes stay NULL. */
 static nt_status without_map(nt_status status)
 {
 	return status == NT_ERROR_MEMORY || status == NT_ERROR_IO ? status : NT_OK;

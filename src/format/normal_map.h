@@ -39,8 +39,8 @@ void nt_normal_map_close(nt_normal_map *map);
 /* The same of an image of a glTF by its number. */
 nt_status nt_normal_map_open_image(nt_normal_map *map, nt_gltf *document, size_t image, nt_error *error);
 
-/* Where the map of a slot is looked up, at texture coordinates whose v points down: u' = t[0] u + t[1] v + t[2], v' =
- * t[3] u + t[4] v + t[5]. What says nothing, or nothing that is a number, moves nothing. */
+/* The place at which the map of a slot is looked up, at texture coordinates whose v points down: u' = t[0] u + t[1] v
+ * + t[2], v' = t[3] u + t[4] v + t[5]. A member that is missing or is no number moves nothing. */
 void nt_normal_map_transform(const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot, float t[6]);
 
 /* The map of a slot in the first material of a mesh of an OBJ that names one; NULL: none. */

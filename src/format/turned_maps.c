@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Normal maps of a glTF turned: see turned_maps.h. An image is decoded once, however many materials have it as a
- * normal map. Whoever else samples it keeps it: textures are counted by who refers to them, as normal map and at all,
+ * normal map. Other materials keep the image: textures are counted by who refers to them, as normal map and at all,
  * and where the two differ the material gets a texture of its own. VRM 0 says in the root what shaders sample, normal
  * maps once more. Other extensions whose textures are not called ...Texture are not seen; a texture that nobody is seen
  * to use counts as theirs.
@@ -16,7 +16,7 @@
 #include "gltf/document.h"
 #include "image/image.h"
 
-/* Where slots are, and what they are called there. */
+/* Places and names of slots. */
 enum { CLEARCOAT = 1, VRM, SLOT_COUNT };
 static const char *const slots[SLOT_COUNT][3] = {{"materials", "", "normalTexture"},
 	{"materials", "extensions/KHR_materials_clearcoat/", "clearcoatNormalTexture"},
@@ -153,12 +153,13 @@ static nt_status open_jobs(const turning *t, nt_error *error)
 	nt_status status = NT_OK;
 	for (size_t j = 0; j < t->job_count && !status; j++) {
 		job *x = &t->jobs[j];
-		uint32_t sides[2];
 		status = nt_normal_map_open_image(&x->map, t->document, x->first.image, error);
-		if (status || !x->map.bytes || !nt_image_size(x->map.bytes, x->map.size, sides))
+		const uint64_t work = status || !x->map.bytes ? 0 : nt_image_work(x->map.bytes, x->map.size);
+		if (!work)
 			continue;
-		pixels += 2 * (uint64_t)sides[0] * sides[1];
+		pixels += 2 * work;
 		bytes += x->map.size;
+		status = nt_check_image(work, t->how->max_pixels, x->map.size, NULL, error);
 	}
 	return status ? status : nt_check_pixels(pixels, t->how->max_pixels, bytes, error);
 }

@@ -21,7 +21,7 @@ typedef struct nt_turning {
 
 /*
  * Makes the images, and has the document refer to them: an image that something else uses, too, gets a copy, and so
- * does its texture. What is turned, and what cannot be, is a finding.
+ * does its texture. Each image that is flipped, or cannot be, is a finding.
  *
  *   scene   of a glTF that is about to be written, with its document
  *   turned  receives the images; nt_turned_maps_free() after failure, too

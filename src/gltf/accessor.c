@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Accessors: checked against their views, and decoded to floats or indices. Every legal combination is
- * taken: any component type, normalized or not, interleaved, sparse, without a view. Where the file
- * already holds what is wanted, nothing is copied.
+ * taken: any component type, normalized or not, interleaved, sparse, without a view. If the file already holds the
+ * wanted values, nothing is copied.
  */
 #include "gltf/accessor.h"
 

@@ -65,8 +65,8 @@ nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, s
 /* Size of a component; 0 for an unknown type. */
 uint32_t nt_gltf_component_bytes(uint64_t component_type);
 
-/* The narrowest type for numbers up to `most` that is not narrower than `least`. Of a primitive's indices
- * that is the number of vertices, since the largest number of a type is reserved for restarts. */
+/* The narrowest type for numbers up to `most` that is not narrower than `least`. For a primitive's indices that is
+ * the number of vertices, since the largest number of a type is reserved for restarts. */
 uint32_t nt_gltf_index_type(uint64_t most, uint32_t least);
 
 /* Numbers as a type of `width` bytes has them: count * width bytes. */

@@ -4,7 +4,7 @@
  * that each costs what it uses and not what all of them have together. Vertices keep their order: whoever goes through
  * them in ascending numbers meets them as in the buffer. One that uses nearly all vertices takes them as they are.
  *
- * A table over the range from the least to the greatest index gives each vertex its number. Where corners are few in a
+ * A table over the range from the least to the greatest index gives each vertex its number. If corners are few in a
  * wide range, they are sorted instead: the cost is bounded by corners alone.
  */
 #include "gltf/compact.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A faulty file may refer to accessors, views or buffers that it does not have, where nobody looks: in a mesh of no
- * scene, a skin, an image. What an edit adds takes the next numbers, and such a reference would come to mean it. So the
- * lowest number of each kind that is referred to in vain is noted before anything is added, and the file is refused if
- * it is taken. Known are the places below: those of glTF 2.0 and of the extensions that are in use. Elements of other
- * arrays (images, materials ...) are never added.
+ * scene, a skin, an image. Elements that an edit adds take the next numbers, and such a reference would come to mean
+ * it. So the lowest number of each kind that is referred to in vain is noted before anything is added, and the file
+ * is refused if it is taken. Known are the places below: those of glTF 2.0 and of the extensions that are in use.
+ * Elements of other arrays (images, materials ...) are never added.
  */
 #include "gltf/document.h"
 
@@ -20,7 +20,7 @@ typedef struct place {
 	nt_gltf_growing kind; /* of what is referred to */
 } place;
 
-/* What begins alike stands together: it is looked up once. */
+/* Names that begin alike stand together: it is looked up once. */
 static const place places[] = {
 	{"accessors/*/bufferView", NT_GLTF_VIEWS},
 	{"accessors/*/sparse/indices/bufferView", NT_GLTF_VIEWS},

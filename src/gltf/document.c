@@ -257,7 +257,7 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 	nt_status status = nt_gltf_element(document, "buffers", index, from, &json, error);
 	if (status)
 		return status;
-	/* What an edit has added is none of the file's: a reference that dangled in it has come to mean that. */
+	/* Elements that an edit has added are not the file's: a reference that dangled in it has come to mean that. */
 	if (index >= document->buffer_count)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, from, "refers to buffers[%llu], there are %zu",
 			(unsigned long long)index, document->buffer_count);
@@ -381,7 +381,7 @@ nt_status nt_gltf_refuse(nt_error *error)
 	return nt_fail(error, NT_ERROR_UNSUPPORTED, "not while several threads read the document");
 }
 
-/* Of threads that come to the same page, one counts it. */
+/* If several threads come to the same page, one counts it. */
 void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin, uint64_t length)
 {
 	if (length == 0 || !buffer->pages)

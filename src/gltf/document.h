@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A glTF document as nmtan sees it: the JSON as parsed, and views of it that are checked when they are
- * asked for and not before. What nobody asks for is never checked, opened or decoded.
+ * asked for and not before. Parts that nobody asks for are never checked, opened or decoded.
  *
  * Every function that reads from the document reports faults with the JSON pointer of what is wrong.
  */
@@ -18,7 +18,7 @@
 /* Room for the JSON pointers we make ourselves. */
 enum { NT_GLTF_POINTER = 160 };
 
-/* Where a buffer's bytes come from. */
+/* The source of a buffer's bytes. */
 typedef enum nt_gltf_storage {
 	NT_GLTF_STORED_NOWHERE, /* no uri and no BIN chunk: extensions may give it a meaning */
 	NT_GLTF_STORED_BIN,     /* the BIN chunk of the GLB */
@@ -138,7 +138,7 @@ bool nt_gltf_uses(const nt_gltf *document, const char *extension);
 nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
 	const char *from, const nt_json_value **element, nt_error *error);
 
-/* An unsigned member of an object: value at most `limit`. Where the member is missing *value gets
+/* An unsigned member of an object: value at most `limit`. If the member is missing, *value gets
  * `otherwise`; NT_GLTF_REQUIRED there makes that an error. */
 #define NT_GLTF_REQUIRED UINT64_MAX
 nt_status nt_gltf_uint(const nt_json_value *object, const char *pointer, const char *key,
@@ -155,7 +155,7 @@ nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *fro
 /* Defers errors: the caller repeats the call on a private document to get the message. */
 nt_status nt_gltf_refuse(nt_error *error);
 
-/* Books bytes of a buffer as read: whole pages, each once. What a data URI holds was read with the JSON. */
+/* Books bytes of a buffer as read: whole pages, each once. Data URIs were read with the JSON. */
 enum { NT_GLTF_PAGE = 4096 };
 void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin, uint64_t length);
 

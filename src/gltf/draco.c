@@ -43,7 +43,7 @@ const nt_draco_quantization *nt_gltf_draco_tangents_of(const nt_gltf *document, 
 	return found ? &found->quantization : NULL;
 }
 
-/* What a decoder makes of a value, in Draco's arithmetic. */
+/* A value as a decoder will have it, in Draco's arithmetic. */
 static float decoded_value(const nt_draco_quantization *q, size_t component, float value)
 {
 	const float most = (float)((1u << q->bits) - 1), step = q->range / most;

@@ -44,7 +44,7 @@ static inline bool nt_gltf_is_beside_mesh(nt_status status)
 /* The block of a view; NULL: not decoded. */
 const nt_draco_mesh *nt_gltf_draco_block(const nt_gltf *document, uint64_t view);
 
-/* Gives each content an accessor of its own. What is malformed is left for loading to find. Returns NT_OK,
+/* Gives each content an accessor of its own. Loading finds malformed parts. Returns NT_OK,
  * NT_ERROR_INPUT (nt_gltf_check_dangling()) or NT_ERROR_MEMORY. */
 nt_status nt_gltf_separate_draco(nt_gltf *document, nt_error *error);
 

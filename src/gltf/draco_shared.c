@@ -12,7 +12,7 @@
 #include "gltf/document.h"
 #include "gltf/draco.h"
 
-/* What an accessor stands for in a primitive. No padding: compared as bytes. */
+/* The role of an accessor in a primitive. No padding: compared as bytes. */
 typedef struct content {
 	uint64_t accessor; /* as the file names it */
 	uint64_t view;     /* of the block */

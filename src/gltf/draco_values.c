@@ -5,7 +5,7 @@
  * values go to the encoder, which lays the same grid over them: both look at the vertices that faces use, or take the
  * grid that edit/draco_plan.c has for them.
  *
- * Of a primitive that is compressed already nothing has to be done: its values lie on a grid which it keeps, and
+ * A primitive that is compressed already needs nothing: its values lie on a grid which it keeps, and
  * quantizing them again moves none; what is beside its block stays there as it is.
  */
 #include "gltf/draco_values.h"

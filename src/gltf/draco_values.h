@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a decoder of Draco will have of a mesh that is to be compressed: see draco_values.c.
+ * The values of a mesh as a decoder of Draco will have them: see draco_values.c.
  */
 #ifndef NT_GLTF_DRACO_VALUES_H
 #define NT_GLTF_DRACO_VALUES_H

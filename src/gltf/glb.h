@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "file/output.h"
 
-/* Where a chunk's data lies in the file. */
+/* The place of a chunk's data in the file. */
 typedef struct nt_glb_chunk {
 	uint32_t type;
 	size_t offset;
@@ -66,7 +66,7 @@ uint64_t nt_glb_chunk_bytes(uint64_t size);
 nt_status nt_glb_write_chunk(nt_sink *sink, uint32_t type, const void *data, size_t size,
 	nt_error *error);
 
-/* What follows a message about version 1, which Cesium's converter still reads. */
+/* The end of a message about version 1, which Cesium's converter still reads. */
 #define NT_GLTF_OLD_ADVICE "; the npm package gltf-pipeline converts it"
 
 #endif

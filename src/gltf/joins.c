@@ -10,7 +10,7 @@
  * material's transform. A primitive without normals is shaded flat and has nothing to weld; it contributes where
  * normals are made for it.
  *
- * What is there several times counts once. Primitives with the same geometry (same_geometry.c) lie on each other: the
+ * Repeated parts count once. Primitives with the same geometry (same_geometry.c) lie on each other: the
  * first contributes, and the others have its result, so that a small file that names the same triangles a thousand
  * times costs what one that names them once does, and a surface with two materials on it is no other surface. A join
  * whose parts are those of an earlier one, in another mesh, has that one's result.
@@ -181,7 +181,7 @@ static uint32_t next_candidate(const group *g, uint32_t mesh, uint32_t number)
 	return number < MOST_KINDS ? mesh + 1 : g->next[mesh - g->begin];
 }
 
-/* What stands for a primitive in a join: itself, or a copy. */
+/* The mesh that stands for a primitive in a join: itself, or a copy. */
 static nt_mesh *part_of(const group *g, uint32_t mesh, uint32_t number)
 {
 	nt_mesh *own = &g->scene->meshes[mesh];
@@ -269,7 +269,7 @@ static uint32_t add_unit(search *s, const unit *u)
 	return number;
 }
 
-/* Who has whose result, now that it is known who is solved with whom. */
+/* Decides which primitive takes whose result, now that the groups of a solve are known. */
 static void share_results(const search *s, const group *g, uint32_t number, const unit *first)
 {
 	for (uint32_t i = first_candidate(g, number); i < g->end; i = next_candidate(g, i, number)) {

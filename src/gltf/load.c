@@ -3,8 +3,8 @@
  * The geometry of one glTF primitive, with the buffers that this one needs: vertices, faces, and where it is
  * asked for the mesh as each morph target moves it. Everything that is read is checked here.
  *
- * Texture coordinates are handed on as (u, -v): v up, exactly. Where the texture that tangents serve has a
- * transform, they go through it.
+ * Texture coordinates are handed on as (u, -v): v up, exactly. If the texture that tangents serve has a transform,
+ * they go through it.
  */
 #include "gltf/load.h"
 
@@ -83,7 +83,7 @@ static nt_status check_count(const nt_mesh *mesh, const attribute *found, const 
 		(unsigned long long)found->accessor.count, mesh->vertex_count);
 }
 
-/* What a load takes from a primitive. */
+/* The data that a load takes from a primitive. */
 typedef struct inputs {
 	attribute positions, normals, texcoords, tangents, colors;
 	char texcoord_name[32];
@@ -185,7 +185,7 @@ static nt_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, unsigned threads
 	return NT_OK;
 }
 
-/* An attribute as floats. What primitives share is decoded once. */
+/* An attribute as floats. Data that primitives share is decoded once. */
 static nt_status load_floats(nt_scene *scene, const nt_mesh *mesh, const nt_gltf_accessor *accessor, uint32_t width,
 	float fill, float **floats, nt_error *error)
 {
@@ -199,7 +199,7 @@ static float step_of(const nt_draco_quantization *grid)
 	return grid->bits ? grid->range / (float)((1u << grid->bits) - 1) : 0;
 }
 
-/* What Draco did to tangents, and will do to those that stay: nothing more where they keep their grid. */
+/* Draco's rounding of tangents, past and to come: none to come if they keep their grid. */
 static void find_tangent_steps(const nt_scene *scene, nt_mesh *mesh, const nt_read_options *options)
 {
 	const nt_draco_quantization *source =
@@ -228,7 +228,7 @@ static nt_status load_vertices(nt_scene *scene, nt_mesh *mesh, const inputs *in,
 	return status;
 }
 
-/* What others share is not written to. */
+/* Shared arrays are not written to. */
 static nt_status copy_normals(nt_scene *scene, nt_mesh *mesh, nt_error *error)
 {
 	float *own = nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->vertex_count, 3 * sizeof *own);
@@ -238,7 +238,7 @@ static nt_status copy_normals(nt_scene *scene, nt_mesh *mesh, nt_error *error)
 	return NT_OK;
 }
 
-/* Of a pooled mesh, the vertices that it uses. *view has the pool's numbers where it uses all, or has no indices. */
+/* The vertices that a pooled mesh uses. *view has the pool's numbers where it uses all, or has no indices. */
 static nt_status make_compact(nt_scene *scene, nt_mesh *mesh, const inputs *in, size_t index_count, nt_compact *view,
 	nt_error *error)
 {
@@ -342,8 +342,8 @@ static nt_status add_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *me
 	return status;
 }
 
-/* Sums of unit normals are not unit. Where nothing was added to a normal that is used as it is, so is the sum: the
- * tangents there are the base's, bit for bit. */
+/* Sums of unit normals are not unit. If nothing was added to a normal that is used as it is, the sum is used so, too:
+ * the tangents there are the base's, bit for bit. */
 static void normalise_moved(const nt_gltf_accessor *accessor, const float *base, float *moved, size_t count)
 {
 	static const double unit = 1.0 / 2048; /* pipeline/unit_normals.c */
@@ -447,7 +447,7 @@ static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, c
 	return NT_OK;
 }
 
-/* What a copy of a vertex costs; attributes that cannot be read are not counted. */
+/* Bytes that a copy of a vertex costs; attributes that cannot be read are not counted. */
 static nt_status find_vertex_bytes(nt_gltf *document, const nt_json_value *primitive, size_t *vertex_bytes,
 	nt_error *error)
 {

@@ -11,14 +11,14 @@
 nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 	nt_error *error);
 
-/* The normals of all vertices of the pool of a mesh that has some, as a load has them; not to be written to. What is
- * made for that is in the arena. */
+/* The normals of all vertices of the pool of a mesh that has some, as a load has them; not to be written to. New data
+ * is in the arena. */
 nt_status nt_gltf_load_normals(nt_gltf *document, const nt_mesh *mesh, nt_arena *arena, float **normals,
 	nt_error *error);
 
 /*
  * For the table of formats: between these two several threads may load, each with a copy of the scene that has an arena
- * of its own. What would add a finding or change the document fails without words: it is to be loaded afterwards.
+ * of its own. A step that would add a finding or change the document fails silently: it is to be loaded afterwards.
  *
  *   needed  [mesh_count] meshes that will be loaded; several threads decode their compressed blocks here
  *

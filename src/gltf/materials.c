@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the materials of a primitive ask of tangents. A primitive has its own material, one per variant
+ * Demands of a primitive's materials on tangents. A primitive has its own material, one per variant
  * (KHR_materials_variants) and one per level of detail (MSFT_lod on a material); tangents must serve
  * them all, so slots are united. Texture coordinates come from the first slot that names a texture:
  * normalTexture, then the clearcoat normal, then anisotropy.
@@ -11,7 +11,7 @@
 #include <string.h>
 #include "gltf/pointer.h"
 
-/* What all materials together want, per slot. */
+/* Demands of all materials together, per slot. */
 typedef struct wishes {
 	bool wants[3]; /* in the order of enum nt_slot: the slot names a texture */
 	uint32_t set[3];
@@ -120,7 +120,7 @@ static const nt_json_value *element_of(const nt_gltf *document, const char *arra
 	return nt_json_get_uint64(index, &i) ? nt_json_at(nt_gltf_root_member(document, array), (size_t)i) : NULL;
 }
 
-/* Of the texture that a textureInfo names; what is missing or unknown repeats, as glTF has it. */
+/* The wrap modes of the texture that a textureInfo names; a missing or unknown one repeats, as glTF has it. */
 static void read_wrap(const nt_gltf *document, const nt_json_value *info, nt_wrap wrap[2])
 {
 	const nt_json_value *texture = element_of(document, "textures", nt_json_find(info, "index"));
@@ -221,7 +221,7 @@ static nt_status note_slots(nt_gltf *document, wishes *all, const nt_json_value 
 	return status;
 }
 
-/* What more materials want. */
+/* Demands of more materials. */
 static void unite(wishes *all, const wishes *more)
 {
 	for (int slot = 0; slot < 3; slot++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What materials ask of the primitives they cover: see materials.c.
+ * Demands of materials on the primitives they cover: see materials.c.
  */
 #ifndef NT_GLTF_MATERIALS_H
 #define NT_GLTF_MATERIALS_H
@@ -15,7 +15,7 @@ typedef struct nt_gltf_transform {
 	bool animated;
 } nt_gltf_transform;
 
-/* What a primitive's materials ask for. */
+/* Demands of a primitive's materials. */
 typedef struct nt_gltf_shading {
 	unsigned slots; /* enum nt_slot */
 	bool unlit;     /* all of its materials are */
@@ -35,7 +35,7 @@ static inline bool nt_gltf_turns(const nt_gltf_shading *shading, uint32_t set)
 	return shading->has_set && shading->set == set && shading->transform.turns;
 }
 
-/* What the materials of a primitive want, variants included: slots, texture coordinates, transform. */
+/* Demands of a primitive's materials, variants included: slots, texture coordinates, transform. */
 nt_status nt_gltf_find_slots(nt_gltf *document, const nt_json_value *primitive,
 	const char *pointer, nt_gltf_shading *shading, nt_error *error);
 

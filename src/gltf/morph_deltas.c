@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a morph target adds to tangents, in few bytes. Most targets move a small part of a mesh. Where they move
- * nothing a solve gives the base's tangents again but for the rounding of floats, and what is stored of these may be
- * integers: a delta that is not above either is zero, and a sparse accessor has the others. Where the normals of the
- * target are integers its tangents are integers of that type; these end at 1, and a tangent that turns round takes a
+ * Tangent deltas of morph targets, in few bytes. Most targets move a small part of a mesh. If they move nothing,
+ * a solve gives the base's tangents again but for the rounding of floats, and what is stored of these may be
+ * integers: a delta that is not above either is zero, and a sparse accessor has the others. If the normals of the
+ * target are integers, its tangents are integers of that type; these end at 1, and a tangent that turns round takes a
  * delta of 2.
  */
 #include "gltf/morph_deltas.h"
@@ -12,7 +12,7 @@
 #include <string.h>
 #include "gltf/accessor.h"
 
-/* What an accessor that is sparse takes in JSON beyond a dense one with its view. */
+/* Bytes that a sparse accessor takes in JSON beyond a dense one with its view. */
 enum { SPARSE_JSON = 64 };
 
 /* nt_precision_round() takes one of the integers on either side. */

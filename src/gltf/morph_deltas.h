@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a morph target adds to tangents: see morph_deltas.c.
+ * Tangent deltas of morph targets: see morph_deltas.c.
  */
 #ifndef NT_GLTF_MORPH_DELTAS_H
 #define NT_GLTF_MORPH_DELTAS_H

@@ -150,7 +150,7 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->primitives = nt_arena_alloc(&scene->arena, 1, sizeof *mesh->primitives);
 	if (!mesh->primitives)
 		return nt_fail_memory(error);
-	mesh->primitives[0] = (nt_primitive){NT_NONE, mesh->face_count};
+	mesh->primitives[0] = (nt_primitive){.material = NT_NONE, .face_count = mesh->face_count};
 	return NT_OK;
 }
 
@@ -204,7 +204,7 @@ static nt_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt_re
 	return NT_OK;
 }
 
-/* Where the primitives of a mesh begin in scene->meshes. */
+/* The first primitive of a mesh in scene->meshes. */
 typedef struct placing {
 	nt_scene *scene;
 	const uint32_t *first; /* [mesh count + 1] */

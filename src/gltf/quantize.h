@@ -16,9 +16,9 @@ uint32_t nt_precision_component_type(nt_precision precision);
 
 /*
  * Rounds tangents to what the integers can say; afterwards they hold what a reader will decode. w becomes
- * +-1 exactly. Of the up to eight integer vectors around T the one of the least angle is taken whose length is
- * within what the Khronos validator lets pass. What the integers can say stays as it is. Tangents without a direction
- * become zero. NT_PRECISION_FLOAT changes nothing.
+ * +-1 exactly. Takes the one with the least angle of the up to eight integer vectors around T, if its length is
+ * within what the Khronos validator lets pass. A tangent that the integers represent stays as it is. Tangents without
+ * a direction become zero. NT_PRECISION_FLOAT changes nothing.
  *
  *   tangents  [count][4]
  *   cost  what the rounding does to the directions is added to it; may be NULL

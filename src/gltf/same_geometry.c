@@ -5,7 +5,7 @@
  * Everything that load() reads of a primitive is written down as numbers: the accessors of what a solve
  * takes, with accessors over the same bytes counted as one, the mode, the compressed block and the
  * texture transform. Primitives with equal numbers have equal geometry; a table of keys finds them in linear
- * time. What is not known to be equal is not.
+ * time. Primitives that are not known to be equal count as different.
  */
 
 #include <stdio.h>

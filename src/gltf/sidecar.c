@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Records of sidecars: see sidecar.h. What a previous document says is somebody's text: a record counts only for a
+ * Records of sidecars: see sidecar.h. A previous document is somebody's text: a record counts only for a
  * plain name in the document's folder, and output sets compare the digest with the file's bytes.
  */
 #include "gltf/sidecar.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a document says of the buffers that were written beside it: their names, and in "extras" the digest by which a
- * later run knows them for ours (output.h).
+ * Members of a document about the buffers that were written beside it: their names, and in "extras" the digest by
+ * which a later run knows them for ours (output.h).
  *
  *   "extras": {"nmtan:xxh128": DIGEST}                             we wrote these bytes, for this document
  *   "extras": {"nmtan:xxh128": DIGEST, "nmtan:replaces": DIGEST}   under a staging name, to replace that

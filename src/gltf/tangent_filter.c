@@ -26,7 +26,7 @@ static bool is(const nt_tangent_filter *f, const char *name)
 
 /* ---- octahedron ---- */
 
-/* Where a direction lies in the square. */
+/* The place of a direction in the square. */
 static void fold(nt_dvec3 t, double *u, double *v)
 {
 	const double sum = fabs(t.x) + fabs(t.y) + fabs(t.z);

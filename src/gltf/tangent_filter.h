@@ -7,7 +7,7 @@
 
 #include "gltf/quantize.h"
 
-/* What becomes of numbers on their way into a view. */
+/* Filters of numbers on their way into a view. */
 typedef struct nt_tangent_filter {
 	nt_precision precision;
 	const char *filter; /* NONE; of integers OCTAHEDRAL, of floats EXPONENTIAL; NULL: NONE, too */

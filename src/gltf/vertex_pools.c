@@ -125,7 +125,7 @@ static bool allocate(nt_vertex_pools *pools, nt_arena *arena)
 		pools->block_users && pools->of && pools->order && pools->first;
 }
 
-/* What a primitive uses. */
+/* Accessors that a primitive uses. */
 static void join_primitive(nt_vertex_pools *pools, joining *j)
 {
 	const nt_gltf *document = pools->scene->source;

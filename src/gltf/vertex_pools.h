@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Who shares what with whom: see vertex_pools.c.
+ * Primitives that share vertices: see vertex_pools.c.
  *
  * Primitives that share an attribute accessor share its elements, so their vertices can only be split
  * together: they are the users of one pool of vertices. Users of a pool with the same positions, normals,

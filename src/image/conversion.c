@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Making one image: see conversion.h. What is put together holds the samples of all its images at once, and those
+ * Making one image: see conversion.h. Packing holds the samples of all its images at once, and those
  * of the result; each image is decoded once.
  */
 #include "image/conversion.h"
@@ -181,7 +181,7 @@ static const nt_pixels *pixels_of(const packing *p, int k)
 	return &p->pixels[p->owner[k]];
 }
 
-/* What alpha does; where it does nothing it is not used. */
+/* The effect of alpha; if it has none, alpha is not used. */
 static nt_status judge_alpha(packing *p, nt_converted *made, nt_error *error)
 {
 	if (!is_taken(p, 3)) {

@@ -36,7 +36,7 @@ typedef struct nt_conversion {
 	const char *suffix; /* of the name of what is made; only with packed */
 } nt_conversion;
 
-/* What it came to. */
+/* The result. */
 typedef struct nt_converted {
 	bool made;            /* a PNG; else the file of the first channel is the result */
 	unsigned char *bytes; /* of it, in a malloc'ed block; NULL: nothing was made, or it was only judged */

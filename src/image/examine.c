@@ -201,13 +201,13 @@ static block sum_block(const slopes *s, size_t column, size_t row)
 	return b;
 }
 
-/* What one size says. */
+/* The evidence at one size. */
 typedef struct voice {
 	double correlation, agreement;
 	size_t blocks;
 } voice;
 
-/* What each block says at all sizes: the sum of its correlations times their weights, and of these. */
+/* The evidence of each block at all sizes: the sum of its correlations times their weights, and of these. */
 typedef struct block_sums {
 	double votes[BLOCKS * BLOCKS], weights[BLOCKS * BLOCKS];
 } block_sums;

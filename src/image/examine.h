@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a normal map says about itself: which way its green points, and what is wrong with it.
+ * Evidence in a normal map: which way its green points, and what is wrong with it.
  */
 #ifndef NT_IMAGE_EXAMINE_H
 #define NT_IMAGE_EXAMINE_H

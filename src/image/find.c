@@ -16,7 +16,7 @@
 #include "file/uri.h"
 #include "file/way.h"
 
-/* Of a name so many last parts are looked for: each is one more look into every folder. */
+/* So many last parts of a name are looked for: each is one more look into every folder. */
 enum { MOST_PARTS = 32 };
 
 typedef struct search {

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include "base/buffer.h"
 
-/* Where to look. */
+/* Places to search. */
 typedef struct nt_image_places {
 	const char *document;       /* the file that has the name (MTL): names are relative to its folder */
 	const char *input;          /* the file that has the document (OBJ); NULL: none */

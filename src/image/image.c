@@ -15,9 +15,21 @@ bool nt_image_is_decoded(nt_image_type type)
 	return type == NT_IMAGE_PNG || type == NT_IMAGE_JPEG || (type >= NT_IMAGE_TGA && type <= NT_IMAGE_TIFF);
 }
 
+enum { BYTE_PIXELS = 256, MOST_TIMES = 64 };
+
+nt_status nt_check_image(uint64_t pixels, uint64_t most, uint64_t file_bytes, const char *path, nt_error *error)
+{
+	if (most || pixels / (BYTE_PIXELS * MOST_TIMES) <= file_bytes)
+		return NT_OK;
+	nt_fail(error, NT_ERROR_LIMIT,
+		"%" PRIu64 " bytes of image are to be decoded to %" PRIu64 " pixels (each scan counts), which is more "
+		"than %d for each byte; --max-pixels=%" PRIu64 " allows it", file_bytes, pixels,
+		BYTE_PIXELS * MOST_TIMES, pixels);
+	return path ? nt_error_in_file(error, path) : NT_ERROR_LIMIT;
+}
+
 nt_status nt_check_pixels(uint64_t pixels, uint64_t most, uint64_t file_bytes, nt_error *error)
 {
-	enum { BYTE_PIXELS = 256 };
 	static const uint64_t standard = (uint64_t)1 << 34;
 	if (!most)
 		most = file_bytes > standard / BYTE_PIXELS ? BYTE_PIXELS * file_bytes : standard;

@@ -29,6 +29,11 @@ bool nt_image_is_decoded(nt_image_type type);
  */
 nt_status nt_check_pixels(uint64_t pixels, uint64_t most, uint64_t file_bytes, nt_error *error);
 
+/* Whether a decoder may be asked for so many pixels (nt_image_work()) of one image. Without the user's word it is asked
+ * for 64 times those that a file of its size has at best, as above: twice what bits of one colour come to in Deflate.
+ * Returns NT_OK or NT_ERROR_LIMIT; the error names the file, unless that is NULL. */
+nt_status nt_check_image(uint64_t pixels, uint64_t most, uint64_t file_bytes, const char *path, nt_error *error);
+
 /*
  * Decodes PNG, JPEG, TGA, BMP, PSD, HDR and TIFF, told by content.
  *

@@ -7,7 +7,7 @@
 
 #include "ext/codec/pixels.h"
 
-/* Which number of a pixel is meant. Of grey images red, green and blue are the grey; an image without alpha is
+/* Which number of a pixel is meant. In a grey image red, green and blue are the grey; an image without alpha is
  * opaque. */
 typedef enum nt_channel {
 	NT_CHANNEL_RED, NT_CHANNEL_GREEN, NT_CHANNEL_BLUE, NT_CHANNEL_ALPHA,
@@ -31,7 +31,7 @@ bool nt_channel_map_is_identity(const nt_channel_map *map);
 nt_channel nt_channel_resolve(nt_channel channel, const nt_pixels *pixels);
 
 /*
- * Fills one channel of an image. Where sizes differ, `from` is resampled: bilinear, of the samples as they are, pixel
+ * Fills one channel of an image. If sizes differ, `from` is resampled: bilinear, of the samples as they are, pixel
  * centres at halves; beyond a border the opposite one follows, with `clamp` its own pixels go on.
  *
  *   map      its channel is resolved
@@ -43,14 +43,14 @@ nt_channel nt_channel_resolve(nt_channel channel, const nt_pixels *pixels);
 nt_status nt_pack_channel(const nt_pixels *from, const nt_channel_map *map, bool clamp, nt_pixels *to, unsigned channel,
 	nt_error *error);
 
-/* What alpha does, in glTF's terms. */
+/* The effect of alpha, in glTF's terms. */
 typedef enum nt_alpha_mode {
 	NT_ALPHA_OPAQUE, /* all is opaque */
 	NT_ALPHA_MASK,   /* some pixels are below 1/16, and at most one of 20 is between 1/16 and 15/16 */
 	NT_ALPHA_BLEND
 } nt_alpha_mode;
 
-/* Of the only channel of an image. */
+/* The number of the only channel of an image. */
 nt_alpha_mode nt_alpha_of(const nt_pixels *pixels);
 
 #endif

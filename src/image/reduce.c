@@ -12,7 +12,9 @@ static nt_status decode(const unsigned char *bytes, size_t size, uint32_t most, 
 {
 	uint32_t sides[2];
 	*pixels = (nt_pixels){0};
-	if (nt_image_size(bytes, size, sides) && (uint64_t)sides[0] * sides[1] > MOST_PIXELS)
+	nt_error unused;
+	if (nt_image_size(bytes, size, sides) && ((uint64_t)sides[0] * sides[1] > MOST_PIXELS ||
+		nt_check_image(nt_image_work(bytes, size), 0, size, NULL, &unused)))
 		return nt_fail(error, NT_ERROR_UNSUPPORTED, "an image of %u x %u pixels", sides[0], sides[1]);
 	return nt_image_type_of_bytes(bytes, size) == NT_IMAGE_JPEG
 		? nt_decode_jpeg_small(bytes, size, most, pixels, error)

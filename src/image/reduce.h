@@ -8,8 +8,8 @@
 #include "image/image.h"
 
 /*
- * Makes a JPEG of an image whose longer side has at most `most` pixels; transparency is lost. Of a JPEG no more is
- * decoded than that takes. An image of more than 8192 x 8192 pixels is not decoded.
+ * Makes a JPEG of an image whose longer side has at most `most` pixels; transparency is lost. A JPEG is decoded only
+ * as far as that takes. An image of more than 8192 x 8192 pixels is not decoded.
  *
  *   jpeg, jpeg_size  receive the file in a malloc'ed block, NULL after a failure
  *

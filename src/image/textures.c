@@ -174,7 +174,7 @@ static nt_status find_source(nt_textures *t, const nt_image_places *places, cons
 	return status;
 }
 
-/* What of a request makes a difference. */
+/* Compares the parts of a request that make a difference. */
 static nt_conversion wanted(const nt_texture_request *what, const uint32_t sources[4])
 {
 	const bool packed = what->kind == NT_TEXTURE_PACKED;
@@ -219,7 +219,7 @@ static bool can_decode(const nt_texture_source *s)
 	return s->found <= NT_IMAGE_FOUND_ELSEWHERE && nt_image_is_decoded(s->type);
 }
 
-/* Opens a source that was looked at before. What becomes shorter while it is read has to be asked for: see
+/* Opens a source that was looked at before. The caller has to ask whether a file becomes shorter while it is read: see
  * close_source(). */
 static nt_status open_source(const nt_texture_source *s, nt_file *file, nt_error *error)
 {
@@ -278,7 +278,7 @@ static nt_conversion conversion_of_one(const nt_textures *t, nt_texture_kind kin
 		.flip = may_flip ? t->rules.flip : NT_FLIP_OFF};
 }
 
-/* What a request comes to; *lost receives the channels whose image there is not. */
+/* The result of a request; *lost receives the channels that have no image. */
 static nt_conversion conversion_of(const nt_textures *t, const request *w, unsigned *lost)
 {
 	*lost = 0;
@@ -516,10 +516,39 @@ uint64_t nt_textures_pixels(const nt_textures *t, uint64_t *bytes)
 	return t->pixels;
 }
 
+/* What is decoded counts as often as a decoder goes over it, for which the whole file has to be seen. */
+static nt_status count_work(const nt_textures *t, nt_error *error)
+{
+	bool *decoded = nt_calloc(t->source_count, sizeof *decoded);
+	nt_status status = decoded ? NT_OK : nt_fail_memory(error);
+	for (size_t i = 0; i < t->source_count && !status; i++)
+		decoded[i] = t->sources[i]->in_question;
+	for (size_t i = 0; i < t->result_count && !status; i++)
+		for (int k = 0; k < 4 && nt_conversion_decodes(&t->results[i].how); k++)
+			if (t->results[i].how.channels[k].used && t->results[i].how.channels[k].source != UINT32_MAX)
+				decoded[t->results[i].how.channels[k].source] = true;
+	for (size_t i = 0; i < t->source_count && !status; i++) {
+		nt_texture_source *s = &t->sources[i]->file;
+		nt_file file;
+		nt_error ignored; /* who decodes it meets it again, and says it */
+		if (!decoded[i] || !can_decode(s))
+			continue;
+		if ((s->type == NT_IMAGE_JPEG || s->type == NT_IMAGE_TIFF) && !open_source(s, &file, &ignored)) {
+			s->pixels = nt_image_work(file.data, file.size);
+			nt_file_close(&file);
+		}
+		status = nt_check_image(s->pixels, t->rules.max_pixels, s->identity.size, s->path, error);
+	}
+	free(decoded);
+	return status;
+}
+
 /* Each source counts for each result that it is decoded for, and where somebody wants to know whether it is grey. */
 static nt_status check_pixels(nt_textures *t, nt_error *error)
 {
 	uint64_t bytes, pixels = 0;
+	if (count_work(t, error))
+		return error->status;
 	nt_textures_pixels(t, &bytes);
 	for (size_t i = 0; i < t->source_count; i++)
 		pixels += t->sources[i]->in_question && can_decode(&t->sources[i]->file)

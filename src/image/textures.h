@@ -37,7 +37,7 @@ typedef struct nt_texture_channel {
 	nt_channel_map map;
 } nt_texture_channel;
 
-/* What an image is, and how it is used. */
+/* The kind of an image, and its use. */
 typedef struct nt_texture_request {
 	nt_texture_kind kind;
 	nt_texture_channel channels[4]; /* red, green, blue, alpha; if not packed the first alone, of which the map
@@ -61,7 +61,7 @@ typedef struct nt_texture_source {
 	nt_image_found found;
 	nt_image_type type;   /* of the file; of a missing one, by its name */
 	nt_file identity;     /* of the file, closed: size, device and inode */
-	uint64_t pixels;      /* as the file's header says; 0: not known */
+	uint64_t pixels;      /* as the file's header says, or as a decoder goes over them; 0: not known */
 } nt_texture_source;
 
 /* One result. Texts and bytes belong to the textures. */
@@ -114,7 +114,7 @@ size_t nt_textures_result(const nt_textures *textures, uint32_t request);
 /* Releases the pages of a result that is in a file; they come back when they are read. */
 void nt_texture_release_pages(const nt_texture *texture);
 
-/* What a request itself came to: what was lost, what its alpha does. */
+/* The outcome of a request: what was lost, what its alpha does. */
 const nt_texture *nt_textures_of(const nt_textures *textures, uint32_t request);
 
 /* The file that a channel of a request led to, which has a name. */

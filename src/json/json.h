@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * JSON documents that can be read, edited and written again. What is not edited is written as it was spelled: numbers,
+ * JSON documents that can be read, edited and written again. Unedited parts are written as they were spelled: numbers,
  * escapes, white space, order and repetition of keys.
  *
  * A document owns its values; a value is a handle into it. Handles are small and cheap, and stay valid
@@ -8,7 +8,7 @@
  * take NULL for "no such value" and answer with "nothing", so that look-ups can be chained.
  *
  * Functions that change a document never fail at once: a document that runs out of memory remembers it,
- * as nt_buffer does, and says so in nt_json_failed() and nt_json_dump(). What they return is never NULL.
+ * as nt_buffer does, and says so in nt_json_failed() and nt_json_dump(). They never return NULL.
  *
  * Not for several threads that write; reading from several threads is fine.
  */

@@ -128,7 +128,7 @@ static char *put_utf8(char *to, uint32_t code)
 	return to;
 }
 
-/* What a checked string with escapes says, in the arena; NULL: out of memory. */
+/* The text of a checked string with escapes, in the arena; NULL: out of memory. */
 static nt_json_override *decode(reader *r, const char *at, const char *end, size_t *length)
 {
 	const size_t bytes = sizeof(nt_json_override) + (size_t)(end - at) + 1;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the files of this room know of a document: a copy of its text, and a tree of values that point into it.
+ * A document as the files of this room see it: a copy of its text, and a tree of values that point into it.
  *
  * In the copy the closing quote of every string is a NUL, so that a string without escapes is its own text. There is no
  * other NUL before the end, so that who copies text puts quotes in their place. A value that changes still knows where
@@ -79,7 +79,7 @@ static inline bool nt_json_is_container(const nt_json_value *value)
 	return value->type == NT_JSON_ARRAY || value->type == NT_JSON_OBJECT;
 }
 
-/* Where a value stands, or stood, in the text; NULL: it was added. */
+/* The present or former place of a value in the text; NULL: it was added. */
 static inline const char *nt_json_begin(const nt_json_value *value)
 {
 	if (value->apart)

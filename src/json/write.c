@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A changed document as text. The writer goes over the tree in the order of the old text and copies this up to the next
- * change: a value that was set, children that were taken out, or a place for new ones. What is new is spaced as its
- * neighbours: commas as between the first two children of its container, lines as before the first one; without
- * such, as at the beginning of the document.
+ * change: a value that was set, children that were taken out, or a place for new ones. New values are spaced as their
+ * neighbours: commas as between the first two children of its container, lines as before the first one; without such,
+ * as at the beginning of the document.
  */
 #include <stdlib.h>
 #include "json/tree.h"
@@ -114,7 +114,7 @@ static const char *value_of(const char *child, bool in_object)
 	return nt_json_skip_space(child + 1);
 }
 
-/* Where the first child of a container begins in the old text, or the closing bracket. */
+/* The place of a container's first child in the old text, or the closing bracket. */
 static const char *first_in_text(const nt_json_value *container)
 {
 	return nt_json_skip_space(nt_json_begin(container) + 1);
@@ -145,7 +145,7 @@ static slice between(const char *begin, const char *end)
 	return (slice){begin, (size_t)(end - begin)};
 }
 
-/* What separates the first two children in the old text of a container; empty where it has no two. */
+/* The separator of the first two children in the old text of a container; empty if it has no two. */
 static slice comma_in_text(const nt_json_value *container)
 {
 	const char *at = first_in_text(container);

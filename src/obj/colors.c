@@ -3,7 +3,7 @@
  * The colours of vertices that ZBrush writes as comments: "#MRGB" and 8 hexadecimal digits MMRRGGBB for each vertex, 64
  * vertices a line (ZBrush says so in its files; http://paulbourke.net/dataformats/obj/colour.html). MM is the mask of
  * sculpting, not opacity. The lines between two `v` are one block: n colours for the n vertices before it, so that a
- * file of several tools, each with its block, is read, too. Where `v` have colours of their own, those count.
+ * file of several tools, each with its block, is read, too. If `v` have colours of their own, those count.
  *
  * Comments never fail a file: what is malformed is a finding with its line, and its vertices are white.
  */

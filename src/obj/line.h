@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Where reading a chunk of an OBJ stands, and the small steps that every statement takes: statements.c,
+ * The cursor in a chunk of an OBJ, and the small steps that every statement takes: statements.c,
  * faces.c and locate.c stand on it.
  *
  * Every chunk ends behind a line feed and has 8 readable bytes behind it (the last lines of the file are
@@ -16,7 +16,7 @@
  * stays in the cache. */
 enum { RECENT_COUNT = 1 << 13 };
 
-/* Where the reader stands. */
+/* The position of the reader. */
 typedef struct obj_reader {
 	obj_chunk *chunk;
 	const char *p;
@@ -76,7 +76,7 @@ static inline bool is_digit(char c)
 	return c >= '0' && c <= '9';
 }
 
-/* Where the next line begins when p stands at a line end. */
+/* The beginning of the next line if p is at a line end. */
 static inline const char *behind_line_end(const char *p)
 {
 	return p + (p[0] == '\r' && p[1] == '\n' ? 2 : 1);

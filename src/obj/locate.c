@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Where a face stands in the text. Nothing is kept of a face's line while the file is read: only errors and
+ * Finds the line of a face in the text. Nothing is kept of a face's line while the file is read: only errors and
  * reports ask for it, and for a few faces. Their chunks are read again, by the same parser, as far as the face.
  * For that, 32 bytes of each chunk and 8 of each mesh outlive the reader.
  */
@@ -15,7 +15,7 @@ typedef struct stretch {
 	size_t first_face, first_line;
 } stretch;
 
-/* What the reader leaves in the scene. */
+/* Data that the reader leaves in the scene. */
 typedef struct places {
 	stretch *stretches;
 	size_t stretch_count;

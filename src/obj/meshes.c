@@ -18,7 +18,7 @@
 
 enum { GRAIN = 1 << 14 }; /* rows per thread that are worth one */
 
-/* What making the meshes shares. Attribute arrays are for the vertices of all meshes. */
+/* Shared data of making meshes. Attribute arrays are for the vertices of all meshes. */
 typedef struct builder {
 	obj_file *file;
 	nt_error *error;
@@ -27,7 +27,7 @@ typedef struct builder {
 	nt_srgb srgb;
 	size_t span;              /* of the next face */
 	size_t polygon;           /* the next one of five corners and more */
-	uint32_t *material_slots; /* [material_count + 1] primitive of a material in the current mesh */
+	uint32_t *part_slots;     /* [part_count] primitive of a part in the current mesh */
 
 	/* of one polygon */
 	float (*points)[3];
@@ -113,7 +113,7 @@ static void set_vertices(const builder *b, nt_mesh *mesh, size_t first)
 	mesh->normals = mesh->has_normals ? b->normals + 3 * first : NULL;
 	mesh->texcoords = mesh->has_texcoords ? b->texcoords + 2 * first : NULL;
 	mesh->colors = b->colors ? b->colors + 4 * first : NULL;
-	/* What the whole mesh does not have, no vertex of it lacks. */
+	/* An attribute that the whole mesh does not have is missing in no vertex. */
 	const unsigned partly = any & ~all;
 	if (!partly)
 		return;
@@ -124,7 +124,7 @@ static void set_vertices(const builder *b, nt_mesh *mesh, size_t first)
 
 /* ---- faces ---- */
 
-/* What a mesh's faces are, counted. */
+/* Counts of a mesh's faces. */
 typedef struct face_counts {
 	size_t quads, polygons;     /* polygons: of five corners and more */
 	size_t faces, corners;      /* when polygons have become triangles */
@@ -146,16 +146,16 @@ static face_counts count_faces(const builder *b, size_t begin, size_t end, size_
 	return n;
 }
 
-/* The primitive of a span's material; it is added to the mesh where it is new. The array has room for
+/* The primitive of a span's part; it is added to the mesh where it is new. The array has room for
  * as many as there are spans in the mesh. */
-static uint32_t primitive_of(builder *b, nt_mesh *mesh, uint32_t material)
+static uint32_t primitive_of(builder *b, nt_mesh *mesh, const obj_span *span)
 {
-	const size_t slot = material == NT_NONE ? b->file->scene->material_count : material;
-	const uint32_t known = b->material_slots[slot];
-	if (known < mesh->primitive_count && mesh->primitives[known].material == material)
+	const uint32_t known = b->part_slots[span->part];
+	if (known < mesh->primitive_count && mesh->primitives[known].material == span->material &&
+		mesh->primitives[known].group == span->group)
 		return known;
-	mesh->primitives[mesh->primitive_count] = (nt_primitive){material, 0};
-	b->material_slots[slot] = (uint32_t)mesh->primitive_count;
+	mesh->primitives[mesh->primitive_count] = (nt_primitive){.material = span->material, .group = span->group};
+	b->part_slots[span->part] = (uint32_t)mesh->primitive_count;
 	return (uint32_t)mesh->primitive_count++;
 }
 
@@ -195,7 +195,7 @@ static nt_status triangulate(builder *b, nt_mesh *mesh, const obj_polygon *polyg
 	return NT_OK;
 }
 
-/* Where the next face of a mesh is written. */
+/* The place at which the next face of a mesh is written. */
 typedef struct face_writer {
 	size_t face, corner;   /* of the mesh, after triangulation */
 	const uint32_t *source; /* its corners in the file */
@@ -256,7 +256,7 @@ static nt_status write_spans(builder *b, nt_mesh *mesh, size_t begin, size_t end
 		} else {
 			w.face += stop - f;
 		}
-		const uint32_t primitive = primitive_of(b, mesh, span->material);
+		const uint32_t primitive = primitive_of(b, mesh, span);
 		mesh->primitives[primitive].face_count += w.face - first;
 		if (mesh->face_primitive)
 			fill(mesh->face_primitive + first, w.face - first, primitive);
@@ -266,6 +266,50 @@ static nt_status write_spans(builder *b, nt_mesh *mesh, size_t begin, size_t end
 		b->span++;
 	}
 	return NT_OK;
+}
+
+typedef struct numbered_primitive {
+	nt_primitive primitive;
+	uint32_t number;
+} numbered_primitive;
+
+static int compare_groups(const void *a, const void *b)
+{
+	const numbered_primitive *x = a, *y = b;
+	if (x->primitive.group != y->primitive.group)
+		return x->primitive.group < y->primitive.group ? -1 : 1;
+	return (x->number > y->number) - (x->number < y->number);
+}
+
+/* Brings the primitives of a group together; a mesh of one group has its name. */
+static nt_status sort_groups(const builder *b, nt_mesh *mesh)
+{
+	const size_t count = mesh->primitive_count;
+	bool sorted = true;
+	for (size_t i = 1; i < count; i++)
+		sorted &= mesh->primitives[i - 1].group <= mesh->primitives[i].group;
+	mesh->groups = b->file->group_count > 1 ? b->file->groups : NULL;
+	if (mesh->groups && mesh->primitives[0].group == mesh->primitives[count - 1].group)
+		mesh->name = mesh->groups[mesh->primitives[0].group];
+	if (sorted)
+		return NT_OK;
+	numbered_primitive *list = nt_alloc(count, sizeof *list);
+	uint32_t *numbers = nt_alloc(count, sizeof *numbers);
+	for (size_t i = 0; list && numbers && i < count; i++)
+		list[i] = (numbered_primitive){mesh->primitives[i], (uint32_t)i};
+	if (list && numbers) {
+		qsort(list, count, sizeof *list, compare_groups);
+		for (size_t i = 0; i < count; i++) {
+			mesh->primitives[i] = list[i].primitive;
+			numbers[list[i].number] = (uint32_t)i;
+		}
+		for (size_t f = 0; f < mesh->face_count; f++)
+			mesh->face_primitive[f] = numbers[mesh->face_primitive[f]];
+	}
+	const bool done = list && numbers;
+	free(list);
+	free(numbers);
+	return done ? NT_OK : nt_fail_memory(b->error);
 }
 
 /* Indices, sizes, polygons, primitives and smoothing groups. */
@@ -309,7 +353,9 @@ static nt_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 	}
 	if (!mesh->primitives || (spans > 1 && !mesh->face_primitive))
 		return nt_fail_memory(b->error);
-	const nt_status status = write_spans(b, mesh, begin, end, replace, source);
+	nt_status status = write_spans(b, mesh, begin, end, replace, source);
+	if (!status)
+		status = sort_groups(b, mesh);
 	if (mesh->primitive_count == 1)
 		mesh->face_primitive = NULL;
 	return status;
@@ -329,7 +375,7 @@ static nt_status set_name(builder *b, nt_mesh *mesh, size_t m)
 	return NT_OK;
 }
 
-/* What its materials ask for: slots, how normal maps are sampled. Where several differ, they are mirrored alike (see
+/* Demands of its materials: slots, how normal maps are sampled. If several differ, they are mirrored alike (see
  * spans.c), which is all that tangents know of. */
 static nt_status set_slots(const obj_file *file, nt_mesh *mesh, nt_error *error)
 {
@@ -397,9 +443,9 @@ nt_status obj_make_meshes(obj_file *file, nt_error *error)
 	nt_srgb_init(&b.srgb);
 	scene->meshes = nt_arena_alloc(&scene->arena, file->mesh_count, sizeof *scene->meshes);
 	scene->instances = nt_arena_alloc(&scene->arena, file->mesh_count, sizeof *scene->instances);
-	b.material_slots = nt_calloc(scene->material_count + 1, sizeof *b.material_slots);
+	b.part_slots = nt_calloc(file->part_count, sizeof *b.part_slots);
 	nt_status status = NT_OK;
-	if (!scene->meshes || !scene->instances || !b.material_slots)
+	if (!scene->meshes || !scene->instances || !b.part_slots)
 		status = nt_fail_memory(error);
 	if (!status)
 		status = gather_vertices(&b);
@@ -408,7 +454,7 @@ nt_status obj_make_meshes(obj_file *file, nt_error *error)
 		if (!status)
 			scene->mesh_count = scene->instance_count = m + 1;
 	}
-	free(b.material_slots);
+	free(b.part_slots);
 	free(b.points);
 	free(b.triangles);
 	return status;

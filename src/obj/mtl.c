@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * MTL: the lines of a library. What is damaged is an error with its line, as in the OBJ itself.
+ * MTL: the lines of a library. A damaged statement is an error with its line, as in the OBJ itself.
  *
- * Words are taken in any case, as exporters write map_Bump, map_bump and Map_Bump. What the statements of a material
- * come to is in mtl_settle.c. Maps that have no place in a glTF are named.
+ * Words are taken in any case, as exporters write map_Bump, map_bump and Map_Bump. mtl_settle.c makes the result of a
+ * material's statements. Maps that have no place in a glTF are named.
  */
 #include "obj/mtl.h"
 
@@ -28,7 +28,7 @@ typedef struct reader {
 	nt_error *error;
 } reader;
 
-/* Of the statement. */
+/* The place of the statement. */
 static void find(const reader *r, nt_code code, const char *detail)
 {
 	char text[256];
@@ -117,7 +117,7 @@ static nt_status read_number(const reader *r, mtl_number which)
 	return NT_OK;
 }
 
-/* Of two maps for one purpose that name different images the first is lost: Substance Painter writes heights as bump
+/* If two maps for one purpose name different images, the first is lost: Substance Painter writes heights as bump
  * and normals as map_Bump. */
 static void lose_earlier(const reader *r, mtl_map which, const char *name)
 {

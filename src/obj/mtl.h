@@ -41,7 +41,7 @@ static inline nt_place nt_line_place(const char *path, size_t line)
 }
 
 /*
- * Reads the libraries of one mtllib statement: one file name, blanks allowed, or several. What cannot be
+ * Reads the libraries of one mtllib statement: one file name, blanks allowed, or several. A library that cannot be
  * read, or lies outside the folder of scene->path without options->allow_outside, is a finding.
  *
  *   names, length   what follows "mtllib"
@@ -119,7 +119,7 @@ typedef struct mtl_values {
 
 /*
  * Makes glTF's terms of what was said: see mtl_settle.c. `m` has its name and place and is otherwise
- * nt_material_default(). What is contradictory, doubtful or lost is a finding.
+ * nt_material_default(). Each contradictory, doubtful or lost statement is a finding.
  */
 void nt_mtl_settle(const mtl_values *said, nt_scene *scene, nt_material *m);
 

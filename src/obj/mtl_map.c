@@ -10,7 +10,7 @@
 #include <strings.h>
 #include "ext/number.h"
 
-/* What becomes of an option's arguments. */
+/* Treatment of an option's arguments. */
 enum use { NOTHING, BUMP_SCALE, CHANNEL, CLAMP, OFFSET, RANGE, SCALE, TURBULENCE };
 
 static const struct {
@@ -73,7 +73,7 @@ static void use_number(enum use use, int i, float value, nt_mtl_map *map)
 	(use == SCALE ? p->scale : p->offset)[i] = value;
 }
 
-/* Takes an option's arguments. Those beyond the least have to be numbers and must leave a word, which
+/* Takes an option's arguments. Arguments beyond the least have to be numbers and must leave a word, which
  * is the file name. Returns where the next word may begin. */
 static const char *take_arguments(size_t option, const char *p, const char *end, nt_mtl_map *map)
 {

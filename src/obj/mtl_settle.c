@@ -52,7 +52,7 @@ static bool has(const settling *s, mtl_number which)
 	return s->said->numbers[which].line != 0;
 }
 
-/* What was said, from 0 to 1; else `otherwise`. */
+/* The stated number, from 0 to 1; else `otherwise`. */
 static float unit(const settling *s, mtl_number which, float otherwise)
 {
 	const float value = s->said->numbers[which].value;

@@ -12,7 +12,7 @@
 #include "file/way.h"
 #include "obj/mtl.h"
 
-/* What mtllib statements are read for. */
+/* The request that mtllib statements serve. */
 typedef struct request {
 	nt_scene *scene;
 	const nt_read_options *options;
@@ -129,7 +129,7 @@ static nt_status read_library(const request *q, const char *text, size_t length,
 	return status;
 }
 
-/* Where the first of several names ends: behind ".mtl" before a blank. */
+/* The end of the first of several names: behind ".mtl" before a blank. */
 static size_t first_name_length(const char *text, size_t length)
 {
 	for (size_t i = 0; i + 4 < length; i++)

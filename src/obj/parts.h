@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the parts of the OBJ reader hand to each other: statements.c and faces.c turn lines into the
+ * Shared by the parts of the OBJ reader: statements.c and faces.c turn lines into the
  * arrays of a chunk, vertices.c turns corners into vertices, meshes.c makes meshes of them. read.c
  * says in which order. Nothing here is for other files.
  */
@@ -23,6 +23,7 @@ typedef struct obj_corner {
 typedef enum obj_event_kind {
 	OBJ_EVENT_OBJECT,    /* o */
 	OBJ_EVENT_MATERIAL,  /* usemtl: a mesh begins here, too, where its normal map is mirrored in another way */
+	OBJ_EVENT_GROUP,     /* g */
 	OBJ_EVENT_SMOOTHING, /* s */
 	OBJ_EVENT_LIBRARY    /* mtllib */
 } obj_event_kind;
@@ -61,7 +62,7 @@ typedef struct obj_ignored {
 	size_t line; /* of the first, within the chunk */
 } obj_ignored;
 
-/* What corners refer to, and how many numbers of it are kept. */
+/* Kinds of attributes that corners refer to, and how many numbers of it are kept. */
 enum { OBJ_V, OBJ_VT, OBJ_VN, OBJ_KIND_COUNT };
 static const unsigned obj_widths[OBJ_KIND_COUNT] = {3, 2, 3};
 
@@ -95,7 +96,7 @@ typedef struct obj_chunk {
 	obj_mrgb_line *mrgb_lines;
 	size_t mrgb_line_count, mrgb_line_capacity;
 
-	/* Corners by number of their distinct v/t/n. Those are in order of first use; some come more than
+	/* Corners by number of their distinct v/t/n. The materials are in order of first use; some come more than
 	 * once, and again in every object. */
 	obj_corner *distinct;
 	size_t distinct_count, distinct_capacity;
@@ -120,7 +121,7 @@ typedef struct obj_chunk {
 	nt_error error; /* its line is within the chunk, from 1 */
 } obj_chunk;
 
-/* Where a thread keeps what it has read. */
+/* The arrays of one thread. */
 typedef struct obj_memory {
 	nt_arena rows;    /* of vertices */
 	nt_arena corners; /* distinct corners, corners, sizes of faces */
@@ -144,7 +145,7 @@ typedef struct obj_file {
 	char *tail; /* the last lines, padded */
 	const char *tail_begin, *tail_end; /* where they stand in the input */
 
-	/* Of each kind: how many there are, and the chunk that has number i << OBJ_GUIDE_SHIFT. */
+	/* For each kind: how many there are, and the chunk that has number i << OBJ_GUIDE_SHIFT. */
 	size_t row_counts[OBJ_KIND_COUNT];
 	uint32_t *guides[OBJ_KIND_COUNT];
 	bool has_colors;
@@ -164,6 +165,10 @@ typedef struct obj_file {
 	/* Stretches of faces of one material and smoothing group, in order. */
 	struct obj_span *spans;
 	size_t span_count, span_capacity;
+	struct obj_part *parts; /* [part_count] what spans are primitives of, sorted by group */
+	size_t part_count;
+	const char **groups;    /* [group_count] names; 0 is "", of faces before any `g` */
+	size_t group_count;
 
 	uint32_t *corner_vertices;          /* [corner_count], relative to the mesh's first vertex */
 	struct obj_vertex *vertices;        /* of all meshes, in order */
@@ -185,11 +190,18 @@ static inline const obj_chunk *obj_find_row(const obj_file *file, int kind, uint
 typedef struct obj_span {
 	size_t face, corner; /* the first ones; the span ends where the next begins */
 	uint32_t material;
+	uint32_t group;
+	uint32_t part;
 	uint32_t smoothing;
 	bool begins_object;
 	const obj_event *object; /* NULL: none */
 	size_t line;             /* its line, else 0 */
 } obj_span;
+
+/* A material and a group that faces have together. */
+typedef struct obj_part {
+	uint32_t material, group;
+} obj_part;
 
 /* A distinct corner of a mesh: rows of the joined arrays, OBJ_ABSENT where it has none. */
 typedef struct obj_vertex {
@@ -220,5 +232,9 @@ nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_err
 
 /* Fills scene->meshes from all of it. */
 nt_status obj_make_meshes(obj_file *file, nt_error *error);
+
+/* Gives each tile of a material with <UDIM> in the names of its maps a material of its own: see udim.c. Returns NT_OK
+ * or NT_ERROR_MEMORY. */
+nt_status obj_split_tiles(nt_scene *scene, nt_error *error);
 
 #endif

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The statements between faces, in the order of the file: where meshes begin, which material and
+ * The statements between faces, in the order of the file: where meshes begin, which material, group and
  * smoothing group a stretch of faces has; then the materials themselves, and what was ignored.
+ *
+ * Groups (`g`) count where there is no `o`: 3ds Max and others write nothing else. All of them are one mesh, since
+ * halves of a surface are often groups; a writer makes a mesh of each.
  *
  * Materials get their numbers by the first face that has them, and become part of the scene then;
  * those that no face has do not. A name that no library defines still becomes a material of that
@@ -22,11 +25,14 @@ typedef struct state {
 	size_t *name_lines;      /* of their first usemtl */
 	size_t name_line_capacity;
 
-	/* What faces at this point have. */
+	/* State of the faces at this point. */
 	const obj_event *object; /* NULL: none yet */
 	size_t object_line;
 	const obj_event *material;
 	size_t material_line;
+	nt_name_table groups;    /* in the order of use */
+	uint32_t group;          /* 0: none, else its number there and 1 */
+	bool has_objects;        /* then groups say nothing */
 	uint32_t smoothing;
 	bool object_is_new;      /* the next face begins a mesh */
 	size_t face, corner;     /* where the stretch that is under way began */
@@ -61,8 +67,8 @@ static bool end_stretch(state *s, size_t face, size_t corner)
 			!nt_grow((void **)&file->spans, &file->span_capacity, file->span_count + 1,
 				sizeof *file->spans))
 			return false;
-		file->spans[file->span_count++] = (obj_span){s->face, s->corner, material, s->smoothing,
-			s->object_is_new, s->object, s->object_line};
+		file->spans[file->span_count++] = (obj_span){s->face, s->corner, material, s->group, 0,
+			s->smoothing, s->object_is_new, s->object, s->object_line};
 		s->object_is_new = false;
 	}
 	s->face = face;
@@ -72,7 +78,7 @@ static bool end_stretch(state *s, size_t face, size_t corner)
 
 static bool read_event(state *s, const obj_chunk *chunk, const obj_event *event)
 {
-	if (event->kind == OBJ_EVENT_LIBRARY)
+	if (event->kind == OBJ_EVENT_LIBRARY || (event->kind == OBJ_EVENT_GROUP && s->has_objects))
 		return true;
 	if (!end_stretch(s, chunk->first_face + event->face, chunk->first_corner + event->corner))
 		return false;
@@ -84,11 +90,54 @@ static bool read_event(state *s, const obj_chunk *chunk, const obj_event *event)
 	} else if (event->kind == OBJ_EVENT_MATERIAL) {
 		s->material = event;
 		s->material_line = line;
+	} else if (event->kind == OBJ_EVENT_GROUP) {
+		s->group = event->length ? nt_name_add(&s->groups, event->text, event->length) + 1 : 0;
+		return s->group || !event->length;
 	} else {
 		s->smoothing = event->group;
 		s->file->uses_smoothing = true;
 	}
 	return true;
+}
+
+/* ---- groups ---- */
+
+static int compare_parts(const void *a, const void *b)
+{
+	const obj_part *x = a, *y = b;
+	if (x->group != y->group)
+		return x->group < y->group ? -1 : 1;
+	return (x->material > y->material) - (x->material < y->material);
+}
+
+/* The part of each span: pairs are sorted, and looked up. Without groups a material is a part. */
+static nt_status number_parts(state *s)
+{
+	obj_file *file = s->file;
+	file->groups = nt_arena_alloc(&file->scene->arena, s->groups.count + 1, sizeof *file->groups);
+	file->parts = nt_arena_alloc(&file->scene->arena, file->span_count, sizeof *file->parts);
+	if (!file->groups || !file->parts)
+		return nt_fail_memory(s->error);
+	file->groups[file->group_count++] = "";
+	for (size_t i = 0; i < s->groups.count; i++) {
+		const nt_name *name = &s->groups.names[i];
+		file->groups[file->group_count] = nt_utf8_text(&file->scene->arena, name->text, name->length);
+		if (!file->groups[file->group_count++])
+			return nt_fail_memory(s->error);
+	}
+	for (size_t i = 0; i < file->span_count; i++)
+		file->parts[i] = (obj_part){file->spans[i].material, file->spans[i].group};
+	qsort(file->parts, file->span_count, sizeof *file->parts, compare_parts);
+	for (size_t i = 0; i < file->span_count; i++)
+		if (!i || compare_parts(&file->parts[i], &file->parts[file->part_count - 1]) != 0)
+			file->parts[file->part_count++] = file->parts[i];
+	for (size_t i = 0; i < file->span_count; i++) {
+		const obj_part part = {file->spans[i].material, file->spans[i].group};
+		const obj_part *found =
+			bsearch(&part, file->parts, file->part_count, sizeof part, compare_parts);
+		file->spans[i].part = (uint32_t)(found - file->parts);
+	}
+	return NT_OK;
 }
 
 /* ---- materials ---- */
@@ -169,7 +218,7 @@ static nt_status make_materials(state *s, const nt_mtl *mtl)
 		if (number != UINT32_MAX)
 			define(scene, number, d);
 	}
-	/* Where a library is missing that is already said, and why these are unknown. */
+	/* A missing library is reported already, and explains the unknown names. */
 	size_t unknown = 0;
 	for (size_t i = 0; i < s->names.count && !mtl->incomplete; i++)
 		if (!scene->materials[i].library) {
@@ -265,6 +314,9 @@ nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_err
 	if (file->face_count == 0)
 		return fail_empty(file, error);
 	bool read = true;
+	for (size_t c = 0; c < file->chunk_count && !s.has_objects; c++)
+		for (size_t i = 0; i < file->chunks[c].event_count && !s.has_objects; i++)
+			s.has_objects = file->chunks[c].events[i].kind == OBJ_EVENT_OBJECT;
 	for (size_t c = 0; c < file->chunk_count; c++)
 		for (size_t i = 0; i < file->chunks[c].event_count && read; i++)
 			read = read_event(&s, &file->chunks[c], &file->chunks[c].events[i]);
@@ -275,11 +327,14 @@ nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_err
 	if (!status)
 		status = make_materials(&s, &mtl);
 	if (!status)
+		status = number_parts(&s);
+	if (!status)
 		status = make_meshes(file, error);
 	if (!status)
 		report_ignored(file);
 	nt_mtl_free(&mtl);
 	nt_name_table_free(&s.names);
+	nt_name_table_free(&s.groups);
 	free(s.name_lines);
 	return status;
 }

@@ -168,7 +168,7 @@ static nt_status read_normal(obj_reader *r)
 	return store_row(r, OBJ_VN, numbers);
 }
 
-/* ---- o, usemtl, mtllib, s ---- */
+/* ---- o, g, usemtl, mtllib, s ---- */
 
 static nt_status store_event(obj_reader *r, obj_event event)
 {
@@ -206,7 +206,7 @@ static nt_status read_name(obj_reader *r, obj_event_kind kind)
 }
 
 /* s off, s on or s N: a group of faces that are shaded as one; 0 and off mean flat. N has up to 32 bits, one of which
- * 3ds Max sets for each of its groups. Of ZBrush there is s alone, which is on; others write null for off. */
+ * 3ds Max sets for each of its groups. ZBrush writes s alone, which is on; others write null for off. */
 static nt_status read_smoothing(obj_reader *r)
 {
 	skip_blanks(r);
@@ -307,10 +307,8 @@ static nt_status read_rare(obj_reader *r)
 		return read_name(r, OBJ_EVENT_LIBRARY);
 	if (is_word(word, length, "s"))
 		return read_smoothing(r);
-	if (is_word(word, length, "g")) {
-		skip_statement(r, false);
-		return NT_OK;
-	}
+	if (is_word(word, length, "g"))
+		return read_name(r, OBJ_EVENT_GROUP);
 	return read_other(r, word, length);
 }
 

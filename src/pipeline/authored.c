@@ -104,7 +104,7 @@ static bool face_is_valid(const nt_mesh *mesh, const nmtan_mesh *view, size_t fa
 	return w != 0.0f;
 }
 
-/* What becomes of a face. */
+/* Treatment of a face. */
 typedef enum face_fate { STAYS, IS_LEFT, IS_REPLACED } face_fate;
 
 /* A face is replaced where that makes it better: not where the solve gives what is there, as far as storing it shows,

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * --fix: what a check of the input calls error or warning, and whose row in report/codes.c says that --fix mends it,
- * becomes wishes of the run that writes. A primitive has its own wish: what is right in another one stays. Of a
- * primitive --existing=repair is enough, since no tangent that is wrong by itself passes it; what no solve makes better
- * stays. An info alone is no reason for anything.
+ * becomes wishes of the run that writes. A primitive has its own wish: what is right in another one stays.
+ * --existing=repair is enough for a primitive, since no tangent that is wrong by itself passes it; one that no solve
+ * makes better stays. An info alone is no reason for anything.
  */
 #include "pipeline/stages.h"
 

@@ -110,7 +110,7 @@ static void cut_faces(nt_mesh *mesh, const nmtan_mesh *view, const uint8_t *diag
 	}
 }
 
-/* The cut arrays become the mesh's. Those that it had belong to the arena or the input, but for its tangents. */
+/* The cut arrays become the mesh's. The mesh's old arrays belong to the arena or the input, but for its tangents. */
 static void adopt_cut(nt_mesh *mesh, const cut_mesh *cut)
 {
 	free(mesh->corner_tangents);

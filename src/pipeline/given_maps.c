@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Images that the user names for an input that says nothing of images, or of which one material does: --normal-map and
- * its like. Where nobody names a normal map, one is proposed that is called after the input and lies beside it.
+ * its like. If nobody names a normal map, one is proposed that is called after the input and lies beside it.
  */
 #include "pipeline/stages.h"
 

@@ -5,7 +5,7 @@
  * the parts' order. MikkTSpace welds by value, so that nothing else is needed for a border to vanish, and the result
  * is that of one primitive with the same triangles. The rows of a part's corners are then the part's own.
  *
- * Of morph targets each that moves any part is solved in the same way: a part that it does not move has other tangents
+ * Each morph target that moves any part is solved in the same way: a part that it does not move has other tangents
  * at the border to one that it does.
  *
  * A join costs the parts once more, as arrays of 32 bytes for each vertex that is used.
@@ -180,7 +180,7 @@ static nt_status take_rows(const nt_mesh *part, const float *rows, float **tange
 
 /* ---- counts of a part ---- */
 
-/* What a solve of the whole counted on a part: its triangles are checked again, its corners by the raw rows where the
+/* Counts of a solve of the whole on one part: its triangles are checked again, its corners by the raw rows where the
  * solve repaired any. These are written to. */
 static nt_status check_part(const whole *w, const nt_mesh *part, float *raw, nmtan_counts *counts)
 {
@@ -291,7 +291,7 @@ static nt_status hand_out_target(const whole *w, uint32_t target, const float *t
 	return NT_OK;
 }
 
-/* What adding half of the deltas does, part by part. */
+/* The effect of adding half of the deltas, part by part. */
 static nt_status measure_halfway(const whole *w, uint32_t target, const float *positions, const float *normals)
 {
 	float *halfway;
@@ -376,7 +376,7 @@ nt_status nt_join_solve(const nt_join *join, float stored_v_offset, bool targets
 
 /* ---- borders that joins would change ---- */
 
-/* Of 5 degrees: from here on a tangent counts as another one. */
+/* The cosine of 5 degrees: from here on a tangent counts as another one. */
 static const double BORDER_COSINE = 0.99619469809174553;
 
 /* The tangent of a corner that was solved, split or not. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Tangents that stay as they are although a material uses them: whether w is right is asked of indices, texture
- * coordinates and w alone, exactly; whether a renderer can use them at all, of tangents and normals. What only a
- * decoder can tell is left to --check: it would take longer than copying the file.
+ * coordinates and w alone, exactly; whether a renderer can use them at all, of tangents and normals. Faults that need
+ * a decoder are left to --check: it would take longer than copying the file.
  */
 #include "pipeline/stages.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What became of each mesh, for those who want to see it: copied out of the scene, which is gone when the run
+ * The outcome of each mesh, for those who want to see it: copied out of the scene, which is gone when the run
  * is over.
  */
 #include "base/memory.h"

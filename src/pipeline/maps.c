@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the input's normal maps say about themselves, for a report or on demand. Each image is decoded once, however
+ * Examines the input's normal maps, for a report or on demand. Each image is decoded once, however
  * many meshes share it. Height maps are passed over.
  */
 #include "pipeline/stages.h"
@@ -13,7 +13,7 @@
 #include "image/examine.h"
 #include "image/image.h"
 
-/* What --check-maps=auto decodes; how many images are open at a time. */
+/* Largest file that --check-maps=auto decodes; how many images are open at a time. */
 enum { MOST_AUTO_BYTES = 16 << 20, MOST_OPEN = 16 };
 
 /* What is known of an image once it is closed. */
@@ -196,7 +196,7 @@ static uint32_t find_known(const examination *e, const uint64_t identity[2], uin
 static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot, nt_normal_map *map, uint32_t number,
 	uint64_t hash, nt_error *error)
 {
-	uint32_t sides[2];
+	nt_status status = NT_OK;
 	if (!nt_grow((void **)&e->maps, &e->capacity, number + 1, sizeof *e->maps) ||
 		!nt_hash_index_add(&e->known, hash, number)) {
 		nt_normal_map_close(map);
@@ -205,11 +205,14 @@ static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot,
 	const char *use = !nt_format_is_gltf(e->scene->format) ? ""
 		: slot == NT_SLOT_NORMAL ? "normalTexture, " : "clearcoatNormalTexture, ";
 	e->maps[e->count++] = (known_map){.identity = {map->identity[0], map->identity[1]}, .mesh = mesh, .use = use};
-	if (is_wanted(e, map) && nt_image_size(map->bytes, map->size, sides)) {
-		e->pixels += (uint64_t)sides[0] * sides[1];
-		e->bytes += map->size;
+	if (is_wanted(e, map)) {
+		const uint64_t work = nt_image_work(map->bytes, map->size);
+		e->pixels += work;
+		e->bytes += work ? map->size : 0;
+		status = nt_check_image(work, e->settings->max_pixels, map->size, NULL, error);
 	}
-	const nt_status status = nt_check_pixels(e->pixels, e->settings->max_pixels, e->bytes, error);
+	if (!status)
+		status = nt_check_pixels(e->pixels, e->settings->max_pixels, e->bytes, error);
 	if (status) {
 		nt_normal_map_close(map);
 		return status;

@@ -3,7 +3,7 @@
  * How far a morph target's tangents are off at weight 0.5. A client adds the delta of TANGENT times the weight,
  * which is exact at the ends. Between them dP/du of a triangle moves along a straight line from its old to its new
  * value; the sum of two unit vectors follows the angle, so that the two part where a target stretches what it turns,
- * and the sum has no direction where a target turns by 180 degrees. What is right is a solve of the mesh as the
+ * and the sum has no direction where a target turns by 180 degrees. The right answer is a solve of the mesh as the
  * target moves it at weight 0.5.
  *
  * On one triangle what is right lies between the tangents of the two ends and the client's halfway, so the error is
@@ -20,7 +20,7 @@
 
 static const double DEGREES = 57.29577951308232;
 
-/* Of 5 degrees, from which on the finding speaks. */
+/* The cosine of 5 degrees, from which on there is a finding. */
 static const double LIMIT_COSINE = 0.99619469809174553;
 
 /* Half a sum of two unit vectors that is shorter has lost its direction. */

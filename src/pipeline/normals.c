@@ -14,7 +14,7 @@
  * in one plane, and the coarsest normals that glTF can quantize to in 16 bits are 3e-5 apart. */
 static const double CLOSE_RADIANS = 1e-5;
 
-/* What one run of the stage holds; everything is malloc'ed and handed to the arena at the end. */
+/* Data of one run of the stage; everything is malloc'ed and handed to the arena at the end. */
 typedef struct normal_job {
 	float (*rows)[4];     /* [corner_count] normals as rows that nmtan_split compares */
 	uint32_t *indices;    /* [corner_count] */
@@ -37,7 +37,7 @@ static size_t vertex_of(const nt_mesh *mesh, size_t corner)
 
 static bool replaces(nt_normals mode)
 {
-	return mode == NT_NORMALS_REPLACE_FLAT || mode == NT_NORMALS_REPLACE_SMOOTH;
+	return mode >= NT_NORMALS_REPLACE_FLAT;
 }
 
 static bool lacks_normal(const nt_mesh *mesh, size_t vertex)
@@ -94,23 +94,30 @@ static bool grow_mesh(nt_arena *arena, nt_mesh *mesh, const uint32_t *sources, s
 	return true;
 }
 
-static nt_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, normal_job *job)
+static nt_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, int degrees, normal_job *job)
 {
 	nmtan_stored_uv stored;
 	nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	view.position_stride_bytes = 3 * sizeof(float);
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	uint32_t *flat = NULL;
-	const bool is_flat = mode == NT_NORMALS_FLAT || mode == NT_NORMALS_REPLACE_FLAT;
-	if (is_flat && !(flat = nt_calloc(mesh->face_count, sizeof *flat)))
-		return NT_ERROR_MEMORY;
-	const uint32_t *smoothing = is_flat ? flat : mode == NT_NORMALS_AUTO ? mesh->face_smoothing : NULL;
-	const nt_status status =
-		nt_status_of(nt_corner_normals(&view, mesh->corner_count, smoothing, &scratch, job->rows));
+	uint32_t *flat = NULL, *groups = NULL;
+	nmtan_status made = NMTAN_OK;
+	if (mode == NT_NORMALS_FLAT || mode == NT_NORMALS_REPLACE_FLAT) {
+		flat = nt_scratch_alloc(&scratch, mesh->face_count, sizeof *flat);
+		if (flat)
+			memset(flat, 0, mesh->face_count * sizeof *flat);
+		made = flat ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	} else if (mode == NT_NORMALS_ANGLE || mode == NT_NORMALS_REPLACE_ANGLE) {
+		groups = nt_scratch_alloc(&scratch, mesh->corner_count, sizeof *groups);
+		made = groups ? nt_crease_groups(&view, mesh->corner_count, degrees, &scratch, groups)
+			      : NMTAN_ERROR_MEMORY;
+	}
+	if (!made)
+		made = nt_corner_normals(&view, mesh->corner_count,
+			mode == NT_NORMALS_AUTO ? mesh->face_smoothing : flat, groups, &scratch, job->rows);
 	nt_scratch_free(&scratch);
-	free(flat);
-	return status;
+	return nt_status_of(made);
 }
 
 /* Corners keep the normal their vertex has, where it has one and that is not to be replaced. */
@@ -187,11 +194,13 @@ static nt_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job
 	return NT_OK;
 }
 
-static void report_normals(nt_scene *scene, const nt_mesh *mesh)
+static void report_normals(nt_scene *scene, const nt_mesh *mesh, nt_normals mode)
 {
+	/* OBJ's default is flat; exporters that write neither s nor vn mean nothing by it, and scans are smooth */
+	const bool chosen = scene->format == NT_FORMAT_OBJ && mode == NT_NORMALS_AUTO && !mesh->face_smoothing;
 	if (mesh->made_normal_corners)
 		nt_finding_add(&scene->findings, NT_CODE_NORMALS_MADE, nt_mesh_place(mesh, &(nt_place){0}),
-			mesh->made_normal_corners, NULL);
+			mesh->made_normal_corners, "%s", chosen ? "smooth, because the file has no s" : "");
 	if (mesh->replaced_normal_corners)
 		nt_finding_add(&scene->findings, NT_CODE_NORMALS_REPLACED, nt_mesh_place(mesh, &(nt_place){0}),
 			mesh->replaced_normal_corners, NULL);
@@ -201,7 +210,7 @@ static void report_normals(nt_scene *scene, const nt_mesh *mesh)
 }
 
 /* The new arrays become the mesh's. */
-static nt_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job)
+static nt_status adopt(nt_scene *scene, nt_mesh *mesh, nt_normals mode, normal_job *job)
 {
 	mesh->indices = job->indices;
 	mesh->vertex_sources = job->sources;
@@ -214,7 +223,7 @@ static nt_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job)
 	float *normals = job->normals;
 	job->indices = job->sources = NULL;
 	job->normals = NULL;
-	report_normals(scene, mesh);
+	report_normals(scene, mesh, mode);
 	/* each, whatever became of the others: the arena frees what it cannot keep */
 	bool kept = nt_arena_adopt(nt_mesh_arena(scene, mesh), indices);
 	kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), sources);
@@ -222,7 +231,7 @@ static nt_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job)
 	return kept ? NT_OK : NT_ERROR_MEMORY;
 }
 
-static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode)
+static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode, int degrees)
 {
 	if (!any_made(mesh, mode) || mesh->corner_count == 0)
 		return NT_OK;
@@ -233,26 +242,27 @@ static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode)
 	};
 	nt_status status = NT_ERROR_MEMORY;
 	if (job.rows && job.indices && job.sources)
-		status = make_corner_normals(mesh, mode, &job);
+		status = make_corner_normals(mesh, mode, degrees, &job);
 	if (!status) {
 		choose_normals(mesh, mode, &job);
 		status = join_close(mesh, &job);
 		if (!status)
 			status = split_by_normal(scene, mesh, &job);
 		if (!status)
-			status = adopt(scene, mesh, &job);
+			status = adopt(scene, mesh, mode, &job);
 	}
 	free_job(&job);
 	return status;
 }
 
-static nt_status make_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, unsigned threads, nt_error *error)
+static nt_status make_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, int degrees, unsigned threads,
+	nt_error *error)
 {
 	/* a glTF keeps the normals that it has, unless others are asked for */
 	const bool keeps = nt_format_is_gltf(scene->format);
 	nt_status status = keeps ? NT_OK : nt_mark_directionless(scene, mesh, threads);
 	if (!status)
-		status = make_lacking(scene, mesh, mode);
+		status = make_lacking(scene, mesh, mode, degrees);
 	if (!status)
 		status = nt_make_unit_normals(scene, mesh, threads);
 	return status ? nt_fail(error, status, "cannot make normals: %s", nt_status_text(status)) : NT_OK;
@@ -266,12 +276,12 @@ static nt_status make_normals_of_copies(nt_scene *scene, unsigned threads, nt_er
 		for (size_t k = 0; !status && k < scene->joins[i].part_count; k++) {
 			nt_mesh *mesh = scene->joins[i].parts[k];
 			if (!nt_mesh_is_wanted(mesh) && mesh->positions)
-				status = make_normals(scene, mesh, NT_NORMALS_AUTO, threads, error);
+				status = make_normals(scene, mesh, NT_NORMALS_AUTO, 0, threads, error);
 		}
 	return status;
 }
 
-nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, unsigned threads, nt_error *error)
+nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, int degrees, unsigned threads, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
@@ -279,12 +289,12 @@ nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, unsigned threads, n
 		if (!nt_mesh_is_wanted(mesh) || (!mesh->plan.same_as && nt_mesh_is_solved_ahead(mesh)))
 			continue;
 		if (!mesh->plan.same_as) {
-			status = make_normals(scene, mesh, mode, threads, error);
+			status = make_normals(scene, mesh, mode, degrees, threads, error);
 			continue;
 		}
 		nt_mesh_share(mesh);
 		if (mesh->normals_made)
-			report_normals(scene, mesh);
+			report_normals(scene, mesh, mode);
 	}
 	return status ? status : make_normals_of_copies(scene, threads, error);
 }

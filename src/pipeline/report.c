@@ -24,14 +24,14 @@ typedef struct found_image {
 	nt_image image;
 } found_image;
 
-/* Who finds images. */
+/* The finder of images. */
 typedef struct finder {
 	const nt_textures *textures; /* NULL: none are made */
 	const char *page_folder;     /* NULL: files are not referred to */
 	found_image *found;
 } finder;
 
-/* What a conversion makes of a map of an OBJ; NULL: nothing, it is used as it is or not at all. */
+/* The image that a conversion makes of an OBJ's map; NULL: nothing, it is used as it is or not at all. */
 static const nt_texture *find_converted(const nt_textures *textures, const nt_map *map)
 {
 	if (!textures || !map || map->request == NT_NONE)
@@ -52,7 +52,7 @@ static nt_status copy_image(nt_arena *arena, const unsigned char *bytes, size_t 
 	return NT_OK;
 }
 
-/* Where a page finds a file, if they have a folder in common that is not the root: then it says nothing of the
+/* The path from a page to a file, if they have a folder in common that is not the root: then it says nothing of the
  * machine. */
 static nt_status refer(nt_arena *arena, const char *page_folder, const char *path, nt_image *image)
 {
@@ -75,8 +75,8 @@ static nt_status refer(nt_arena *arena, const char *page_folder, const char *pat
 	return failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
-/* A copy of an image whose bytes a browser shows; of a base colour one that is small. What cannot be decoded is not
- * there. */
+/* A copy of an image whose bytes a browser shows; of a base colour one that is small. An image that cannot be decoded
+ * is left out. */
 static nt_status keep_image(nt_arena *arena, const nt_normal_map *map, nt_picture picture, size_t most_bytes,
 	nt_image *image)
 {

@@ -8,7 +8,7 @@
 #include "report/baseline.h"
 #include "report/render/diff.h"
 
-/* Where a report goes. */
+/* The target of a report. */
 typedef struct nt_report_target {
 	const char *path;        /* "-" is standard output */
 	nt_report_format format;

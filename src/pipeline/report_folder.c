@@ -17,14 +17,14 @@
 #include "file/relative_path.h"
 #include "file/uri.h"
 
-/* Of 255 bytes that names may have, the rest is for what stands behind, and for temporary names. */
+/* Names may have 255 bytes; the rest is for endings and temporary names. */
 enum { MOST_STEM = 100, HEAD_BYTES = 1024 };
 
 static const char index_name[] = "index.html";
 
 /* ---- names ---- */
 
-/* What is safe in a name on any system, and in a shell. */
+/* Characters that are safe in a name on any system, and in a shell. */
 static void append_stem(nt_buffer *name, const char *input)
 {
 	const char *stem = nt_last_part(input);
@@ -191,7 +191,7 @@ static nt_status write_page(const nt_report_folder *folder, const char *page, co
 	return status;
 }
 
-/* Whether a part is there. What else has its name is refused. */
+/* Whether a part is there. Any other file of its name is refused. */
 static nt_status find_part(const char *path, const char *text, bool *there, nt_error *error)
 {
 	struct stat info;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A report as a folder: a page of each input, and index.html, which lists them. What pages share is written first,
+ * A report as a folder: a page of each input, and index.html, which lists them. Shared files are written first,
  * pages are as their inputs are done, and the index, of which only a row is kept for each, at the end: who is referred
  * to is there.
  */

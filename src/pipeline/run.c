@@ -20,7 +20,7 @@
 #include "pipeline/stages.h"
 #include "pipeline/timer.h"
 
-/* What the stages of one run share. */
+/* Shared data of the stages of one run. */
 typedef struct run {
 	const char *input_path, *output_path;
 	const nt_settings *settings;
@@ -153,7 +153,7 @@ static nt_output_options output_options_of(run *r)
 		.placing = tell_placing, .placing_user = r};
 }
 
-/* What the plan depends on, now that reader and writer are known. */
+/* Settings that the plan depends on, now that reader and writer are known. */
 static void plan_options_of(run *r)
 {
 	const nt_settings *s = r->settings;
@@ -207,7 +207,7 @@ static nt_status read_scene(run *r)
 	return status ? nt_error_in_file(r->error, r->input_path) : NT_OK;
 }
 
-/* What was read must not be overwritten: the input, and what it refers to. */
+/* Files that were read must not be overwritten: the input, and what it refers to. */
 static nt_status protect_inputs(const run *r, nt_output *output)
 {
 	nt_status status = nt_output_protect(output, r->input_path, "--in-place allows that", r->error);
@@ -329,7 +329,7 @@ static nt_status run_stages(run *r)
 	return status;
 }
 
-/* What a run that is to be done again has found and made so far; the times it took stay, and what it read (the
+/* Drops the findings and data of a run that is to be done again; the times it took stay, and what it read (the
  * input is still open). */
 static void forget_attempt(run *r)
 {
@@ -365,7 +365,7 @@ static void set_read_options(run *r, const nt_settings *settings)
 	memcpy(r->read_options.draco_bits, settings->draco_bits, sizeof r->read_options.draco_bits);
 }
 
-/* What an input that changed is, a later stage says. */
+/* A later stage judges an input that changed. */
 static nt_status make_report(run *r, nt_status status)
 {
 	if (status || r->settings->check)
@@ -377,8 +377,8 @@ static nt_status make_report(run *r, nt_status status)
 		status, r->summary, r->error);
 }
 
-/* --fix: the input is judged as --check does, and what is to be repaired becomes settings and marks of meshes. What
- * the user ignores, or calls an info, is left. */
+/* --fix: the input is judged as --check does, and what is to be repaired becomes settings and marks of meshes.
+ * Findings that the user ignores, or calls an info, are left. */
 static nt_status plan_fixes(run *r, nt_settings *fixed)
 {
 	const nt_settings *wished = r->settings;
@@ -447,7 +447,7 @@ static void end_late(void *user)
 	r->settings->too_late(&error);
 }
 
-/* What a failure was for the user: that there was no memory can be a limit. */
+/* The failure as the user sees it: that there was no memory can be a limit. */
 static nt_status name_limit(run *r, nt_status status)
 {
 	const nt_settings *s = r->settings;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * One input from file to file: read, select, load, make normals, solve, split, write. What any front
- * end calls; nothing here prints or exits.
+ * One input from file to file: read, select, load, make normals, solve, split, write. The entry point for any front
+ * end; nothing here prints or exits.
  */
 #ifndef NT_PIPELINE_RUN_H
 #define NT_PIPELINE_RUN_H

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a run can be told, and what it tells.
+ * Settings and results of a run.
  */
 #ifndef NT_PIPELINE_SETTINGS_H
 #define NT_PIPELINE_SETTINGS_H
@@ -12,16 +12,18 @@
 #include "scene/format.h"
 #include "scene/select.h"
 
-/* Where normals are missing; the last two replace authored ones, too. */
+/* If normals are missing; the last three replace authored ones, too. */
 typedef enum nt_normals {
 	NT_NORMALS_AUTO,
 	NT_NORMALS_FLAT,
 	NT_NORMALS_SMOOTH,
+	NT_NORMALS_ANGLE,
 	NT_NORMALS_REPLACE_FLAT,
-	NT_NORMALS_REPLACE_SMOOTH
+	NT_NORMALS_REPLACE_SMOOTH,
+	NT_NORMALS_REPLACE_ANGLE
 } nt_normals;
 
-/* What map_Bump and bump name. */
+/* Kinds of images that map_Bump and bump name. */
 typedef enum nt_bump {
 	NT_BUMP_AUTO,   /* grey images are height maps, others normal maps: also of norm and map_Kn */
 	NT_BUMP_HEIGHT,
@@ -72,6 +74,7 @@ typedef struct nt_settings {
 	nt_existing existing;
 	bool fix;      /* repair what a check of the input calls error or warning, as far as that is proven: fix.c */
 	nt_normals normals;
+	int normals_degrees; /* of those by ANGLE: faces that meet at less share a normal */
 	nt_across across;
 	nt_transform_choice transform;
 	nt_quads quads;
@@ -124,7 +127,7 @@ typedef struct nt_settings {
 
 	nt_readers *readers; /* what the other runs of a batch read is protected, too; NULL: there are none */
 
-	/* What a report is to hold; NULL: none is made. `written` is set by the run. */
+	/* Options of the report; NULL: none is made. `written` is set by the run. */
 	const nt_report_options *report;
 
 	/* Called when a stage begins, from the thread that called nt_run; NULL: nobody looks. */
@@ -132,7 +135,7 @@ typedef struct nt_settings {
 	void *on_stage_user;
 } nt_settings;
 
-/* What became of one mesh (glTF: primitive). */
+/* The outcome of one mesh (glTF: primitive). */
 typedef struct nt_mesh_line {
 	nt_place place;
 	nt_decision decision;
@@ -142,7 +145,7 @@ typedef struct nt_mesh_line {
 	size_t appended;       /* vertices added */
 } nt_mesh_line;
 
-/* What a run did. */
+/* The results of a run. */
 typedef struct nt_summary {
 	size_t mesh_count;       /* meshes (glTF: primitives) in the input */
 	size_t solved_count;     /* of them, those that got tangents */

@@ -18,7 +18,7 @@ nt_status nt_choose_writer(const nt_settings *settings, const char *path, const 
 /* Whether a writer changes the document that the reader read. */
 bool nt_writer_edits(const nt_format_entry *reader, const nt_format_entry *writer);
 
-/* What the tasks of a run take. */
+/* Input of the tasks of a run. */
 typedef struct nt_tasks {
 	nt_scene *scene;
 	const nt_format_entry *reader, *writer; /* writer: NULL: the input is judged as it is */
@@ -37,7 +37,7 @@ nt_status nt_tasks_do(const nt_tasks *tasks, nt_error *error);
 /* Makes the normals that meshes lack (all of them when `mode` says replace); vertices whose corners get
  * different normals are split, copies appended. Sets mesh->normals_made where something was made. Then makes
  * unit what is not: see unit_normals.c. */
-nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, unsigned threads, nt_error *error);
+nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, int degrees, unsigned threads, nt_error *error);
 
 /* Solves and splits every mesh whose decision says so; counts and findings go to the summary. Large
  * meshes take all threads one after the other, small ones run side by side. */
@@ -98,8 +98,8 @@ void nt_small_solves_end(nt_small_solves *small);
 /* Corners from which on a mesh may be worth all threads: it is not solved ahead of others. */
 enum { NT_LEAST_ALONE_CORNERS = 3 * 30000 };
 
-/* authored.c, for tangents.c and morphs.c: authored tangents that stay with --existing=repair. Of meshes with texture
- * coordinates the corners of faces whose tangents are all valid take theirs back after a solve, of targets too. */
+/* authored.c, for tangents.c and morphs.c: authored tangents that stay with --existing=repair. If a mesh has texture
+ * coordinates, the corners of faces whose tangents are all valid take theirs back after a solve, in targets too. */
 void nt_restore_authored(nt_mesh *mesh, float *corner_tangents);
 
 /* Without texture coordinates no solve is possible: each authored tangent stays or is mended by itself.
@@ -134,7 +134,7 @@ bool nt_any_inverted(const nt_scene *scene);
  * Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_find_pairs(nt_scene *scene, const nt_settings *settings, size_t map_count);
 
-/* fix.c. What --fix does, found by a check of the input. */
+/* fix.c. Repairs of --fix, found by a check of the input. */
 typedef struct nt_fixes {
 	uint8_t *meshes; /* [mesh_count] their nt_mesh.fix */
 	size_t mesh_count;

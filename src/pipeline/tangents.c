@@ -23,7 +23,7 @@
  * hundred triangles. */
 enum { LARGE_CORNERS = 3 * 128 * 1024, LEAST_SHARED_CORNERS = 3 * 4096 };
 
-/* What holds for all meshes of a run. */
+/* Data for all meshes of a run. */
 typedef struct wishes {
 	nt_scene *scene;
 	const nt_settings *settings;
@@ -32,7 +32,7 @@ typedef struct wishes {
 	bool splits;        /* something is written, or judged as if it were */
 } wishes;
 
-/* What a thread solves small meshes with. */
+/* Memory in which a thread solves small meshes. */
 typedef struct solver {
 	nmtan_workspace *workspace; /* NULL: none */
 	nt_arena arena;             /* results, until the scene takes them over */
@@ -76,7 +76,7 @@ static bool is_item(const nt_mesh *mesh)
 	return mesh->plan.join ? mesh->plan.join->first == mesh : is_solved(mesh) && !nt_mesh_is_solved_ahead(mesh);
 }
 
-/* What v is added to when it is stored: nothing where the format stays, else see nmtan_stored_uv. */
+/* The number that v is added to when it is stored: none if the format stays, else see nmtan_stored_uv. */
 static float stored_v_offset(const wishes *job)
 {
 	if (!job->round_trip)
@@ -84,8 +84,8 @@ static float stored_v_offset(const wishes *job)
 	return nt_format_is_gltf(job->scene->format) ? 1.0f : -1.0f;
 }
 
-/* Room for the worst case; pages that are not needed are never touched. What is made here, keep_split() or
- * drop_split() gets. */
+/* Room for the worst case; pages that are not needed are never touched. keep_split() or drop_split() gets the
+ * results. */
 static nt_status make_split(const nt_mesh *mesh, nt_split *split, nmtan_split_output *output)
 {
 	const size_t capacity = mesh->corner_count;
@@ -366,7 +366,7 @@ static nt_status solve_small(tangent_job *job, nt_format output)
 	return NT_OK;
 }
 
-/* What is not kept yet lives as long as the scene. */
+/* Data that is not kept yet lives as long as the scene. */
 static bool keep_results(nt_scene *scene, nt_mesh *mesh)
 {
 	bool kept = true;
@@ -378,7 +378,7 @@ static bool keep_results(nt_scene *scene, nt_mesh *mesh)
 	return kept;
 }
 
-/* What half of a morph target's deltas does. */
+/* The effect of half of a morph target's deltas. */
 static void add_halfway(nt_finding_list *list, const nt_mesh *mesh, const nt_morph *morph)
 {
 	if (morph->halfway_triangles)
@@ -408,7 +408,6 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 		{NT_CODE_UV_FOLDED_QUAD, c->folded_quads},
 		{NT_CODE_UV_ROUNDED_AWAY, c->stored_differently},
 		{NT_CODE_NORMALS_SCALED, mesh->scaled_normals},
-		{NT_CODE_NORMALS_MADE, mesh->replaced_normals},
 		{NT_CODE_TAN_MORPH_TURNED, mesh->morph_turned},
 		{NT_CODE_TAN_REPAIRED, nt_counts_repaired(c)},
 		{NT_CODE_TAN_EXISTING_REPAIRED, mesh->replaced_tangents},
@@ -418,6 +417,9 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		if (rows[i].count)
 			nt_finding_add(list, rows[i].code, nt_mesh_place(mesh, &(nt_place){0}), rows[i].count, NULL);
+	if (mesh->replaced_normals)
+		nt_finding_add(list, NT_CODE_NORMALS_MADE, nt_mesh_place(mesh, &(nt_place){0}), mesh->replaced_normals,
+			"for the tangents alone, NORMAL keeps its zeros");
 	for (size_t m = 0; m < mesh->morph_count; m++)
 		add_halfway(list, mesh, &mesh->morphs[m]);
 }
@@ -435,7 +437,7 @@ static void add_counts(nt_summary *summary, const nt_mesh *mesh)
 	nt_counts_add(&summary->counts, &mesh->counts);
 }
 
-/* What was solved is kept, shared with the meshes that have the same geometry, and counted for each. */
+/* Each solved result is kept, shared with the meshes that have the same geometry, and counted for each. */
 static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *error)
 {
 	nt_scene *scene = job->wishes.scene;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The queue of tasks over the meshes of a scene: load, make normals, solve, split, merge. Meshes go through it in
- * windows, one after the other in the order of the file. What a mesh holds that only its pool asks for is gone at the
+ * windows, one after the other in the order of the file. Data of a mesh that only its pool needs is freed at the
  * end of its window, so that memory follows the largest window and not the sum of all meshes. Most scenes are one
  * window.
  *
- * Small meshes are loaded by several threads, each as if it were alone. Those of which nothing but results is asked for
- * are solved by the same thread at once, while their geometry is in the cache, and hold no geometry afterwards. What
- * fails there is loaded again where it stands, so that findings and faults come in the order of the file.
+ * Small meshes are loaded by several threads, each as if it were alone. Meshes that need only results are solved by
+ * the same thread at once, while their geometry is in the cache, and hold no geometry afterwards. A mesh that fails
+ * there is loaded again where it stands, so that findings and faults come in the order of the file.
  */
 #include "pipeline/stages.h"
 
@@ -21,7 +21,7 @@ enum {
 	WINDOW_CORNERS = 4 << 20     /* of temporary meshes: enough for all threads, and some hundred megabytes */
 };
 
-/* What a thread loads into. */
+/* Memory into which a thread loads. */
 typedef struct loader {
 	nt_arena kept;      /* until the scene takes it over */
 	nt_arena temporary; /* the same of temporary meshes */
@@ -224,7 +224,8 @@ static nt_status do_window(window *w)
 			nt_judge_w(&w->scene.meshes[i]);
 	t->begin_stage(t->run, NT_STAGE_NORMALS);
 	if (!status)
-		status = nt_stage_normals(&w->scene, t->settings->normals, t->settings->threads, w->error);
+		status = nt_stage_normals(&w->scene, t->settings->normals, t->settings->normals_degrees,
+			t->settings->threads, w->error);
 	if (!status)
 		status = nt_gltf_quantize_made_normals(&w->scene, t->options, w->error);
 	t->begin_stage(t->run, NT_STAGE_TANGENTS);
@@ -241,7 +242,7 @@ static nt_status do_window(window *w)
 
 /* ---- all ---- */
 
-/* Where the window ends that begins at a mesh. */
+/* The end of the window that begins at a mesh. */
 static size_t find_end(const nt_scene *scene, size_t first)
 {
 	size_t corners = 0, end = first;

@@ -148,7 +148,7 @@ typedef struct telling {
 	size_t images, lost; /* that the material names, and those of them that are not in the output */
 } telling;
 
-/* Where it is, from the folder of the material library, as files are named. */
+/* Its path from the folder of the material library, as files are named. */
 static void tell_elsewhere(const telling *t, const nt_place *place, const char *name, const char *path)
 {
 	nt_buffer folder = {0}, relative = {0};

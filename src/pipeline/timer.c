@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * See timer.h. A thread sleeps until the time is over. Whoever finds the lock taken for ever waits in a process that is
- * ending.
+ * See timer.h. A thread sleeps until the time is over. A thread that waits for the lock for ever is in a process that
+ * is ending.
  */
 #include "pipeline/timer.h"
 
@@ -12,7 +12,7 @@
 #include "base/clock.h"
 #include "file/output.h"
 
-/* What a run gets to end by itself: most of the tenth of a second within which it is to be over. */
+/* Time for a run to end by itself: most of the tenth of a second within which it is to be over. */
 static const double grace_seconds = 0.06;
 
 /* With the lock: sleeps until `end`, or until the timer changes. */

@@ -79,7 +79,7 @@ static float (*make_smooth(const nt_mesh *mesh))[4]
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
 	float (*corners)[4] = nt_alloc(mesh->corner_count, sizeof *corners);
-	if (corners && nt_corner_normals(&view, mesh->corner_count, NULL, &scratch, corners)) {
+	if (corners && nt_corner_normals(&view, mesh->corner_count, NULL, NULL, &scratch, corners)) {
 		free(corners);
 		corners = NULL;
 	}

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Who writes the output: see stages.h.
+ * Chooses the writer of the output: see stages.h.
  */
 #include "pipeline/stages.h"
 
@@ -60,7 +60,7 @@ static nt_status choose(const nt_settings *settings, const char *path, const nt_
 	return NT_OK;
 }
 
-/* What only a glTF made from a glTF can have. */
+/* Options for a glTF made from a glTF only. */
 static nt_status check_edit(const nt_settings *settings, const char *path, const nt_format_entry *reader,
 	const nt_format_entry *writer, nt_error *error)
 {

@@ -7,7 +7,7 @@
 
 #include "ply/header.h"
 
-/* Where the values come from: a position in the input with what is needed to check it. */
+/* The source of the values: a position in the input with what is needed to check it. */
 typedef struct ply_cursor {
 	const unsigned char *begin, *at, *end; /* of the input */
 	size_t body_line;                      /* line that body is on */

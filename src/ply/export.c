@@ -2,9 +2,9 @@
 /*
  * PLY from a scene of another format: one binary little endian mesh in world space. PLY has no nodes,
  * so every instance is written with its matrix applied: positions by the matrix, normals by its inverse
- * transpose, tangents by its upper 3x3 and made perpendicular to the normal again. Where the
- * determinant is negative, faces are wound the other way round and w changes its sign, so that the
- * bitangent stays the image of the bitangent. Instances with the identity keep their bits.
+ * transpose, tangents by its upper 3x3 and made perpendicular to the normal again. If the determinant is negative,
+ * faces are wound the other way round and w changes its sign, so that the bitangent stays the image of the bitangent.
+ * Instances with the identity keep their bits.
  *
  * v points up in PLY: the scene has it so, but what came from glTF is -v there and becomes 1 - v.
  */
@@ -15,7 +15,7 @@
 #include "base/vec.h"
 #include "scene/srgb.h"
 
-/* What the vertices of the file have. */
+/* Attributes of the file's vertices. */
 typedef struct layout {
 	bool normals, colors, byte_colors, texcoords, tangents, bitangents;
 	nt_srgb srgb;
@@ -176,7 +176,7 @@ static nt_status fail_not_finite(const nt_mesh *mesh, const char *what, size_t v
 	return NT_ERROR_INPUT;
 }
 
-/* What a mesh does not have although others do is zero, a colour white. Returns NT_OK or NT_ERROR_INPUT. */
+/* An attribute that only other meshes have is zero, a colour white. Returns NT_OK or NT_ERROR_INPUT. */
 static nt_status put_vertex(ply_output *out, const layout *l, const placement *p, const nt_mesh *mesh,
 	size_t vertex, bool flip_v, nt_error *error)
 {

@@ -435,7 +435,7 @@ static nt_status make_primitives(builder *b)
 		return nt_fail_memory(b->error);
 	}
 	if (!b->primitives) {
-		mesh->primitives[0] = (nt_primitive){textures ? 0 : NT_NONE, b->face_count};
+		mesh->primitives[0] = (nt_primitive){.material = textures ? 0 : NT_NONE, .face_count = b->face_count};
 		mesh->primitive_count = 1;
 	}
 	for (size_t f = 0; b->primitives && f < b->face_count; f++)
@@ -444,7 +444,8 @@ static nt_status make_primitives(builder *b)
 		if (!numbers[i])
 			continue;
 		const uint32_t material = i < textures ? (uint32_t)i : NT_NONE;
-		mesh->primitives[mesh->primitive_count] = (nt_primitive){material, numbers[i]};
+		mesh->primitives[mesh->primitive_count] =
+			(nt_primitive){.material = material, .face_count = numbers[i]};
 		numbers[i] = (uint32_t)mesh->primitive_count++;
 	}
 	for (size_t f = 0; b->primitives && f < b->face_count; f++)

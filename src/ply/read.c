@@ -117,7 +117,7 @@ static nt_status find_elements(ply_source *source, nt_error *error)
 	return status;
 }
 
-/* What the file has and the scene has not. */
+/* Data of the file that the scene has not. */
 static void report_unused(nt_scene *scene, const ply_source *source)
 {
 	if (source->header.unknown_lines) {

@@ -16,7 +16,7 @@
 #include "ply/cursor.h"
 #include "ply/vertex_map.h"
 
-/* Where the values of a row lie. */
+/* The places of a row's values. */
 typedef struct span {
 	const unsigned char *begin, *end;
 } span;
@@ -43,7 +43,7 @@ typedef struct plan {
 	size_t *row_offsets;     /* [row_count] where the row of a vertex begins */
 } plan;
 
-/* What changes in the header. */
+/* Changes of the header. */
 
 enum { KEPT = -1, DROPPED = -2 };
 

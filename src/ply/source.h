@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What reading a PLY leaves to whoever writes a PLY from it, and the steps of reading.
+ * Data that reading a PLY leaves for writing a PLY from it, and the steps of reading.
  */
 #ifndef NT_PLY_SOURCE_H
 #define NT_PLY_SOURCE_H
@@ -19,7 +19,7 @@ typedef struct ply_cuts {
 	size_t count, capacity;
 } ply_cuts;
 
-/* What the reader keeps for the writer. */
+/* Data that the reader keeps for the writer. */
 typedef struct ply_source {
 	ply_header header;
 	ply_roles roles;

@@ -96,7 +96,7 @@ static inline bool ply_is_signed(ply_type type)
 	return type == PLY_INT8 || type == PLY_INT16 || type == PLY_INT32;
 }
 
-/* What stands for 1 in colours and normals: the largest number of an integer type. */
+/* The number that stands for 1 in colours and normals: the largest number of an integer type. */
 static inline double ply_one(ply_type type)
 {
 	static const double largest[] = {127, 255, 32767, 65535, 2147483647, 4294967295, 1, 1};

@@ -44,8 +44,8 @@ typedef struct row_chains {
 	uint32_t *previous; /* [appended_count] */
 } row_chains;
 
-/* The output vertex of that row with the values of v; NT_NONE: none. Where a row has very many copies
- * the search stops after a while: the output is then larger, never wrong. */
+/* The output vertex of that row with the values of v; NT_NONE: none. If a row has very many copies, the search stops
+ * after a while: the output is then larger, never wrong. */
 static uint32_t find_equal(const ply_numbering *n, const row_chains *chains, size_t row, size_t v)
 {
 	uint32_t other = chains->last[row];

@@ -40,7 +40,7 @@ static const char *copy_text(nt_arena *arena, const char *text)
 	return nt_arena_text(arena, text ? text : "", text ? strlen(text) : 0);
 }
 
-/* Of a name, which each of thousands of primitives may have, what says enough. */
+/* Shortens a name, since each of thousands of primitives may have it. */
 static const char *copy_name(nt_arena *arena, const char *name)
 {
 	enum { MOST = 240, WITH_LENGTH = MOST + 40 };
@@ -88,7 +88,7 @@ static bool describe_mesh(nt_report *report, const nt_mesh *mesh, const nt_repor
 	return facts->name && facts->why && nt_keep_place(&report->arena, &view, &facts->place);
 }
 
-/* Where what was read is judged, a solve may have run too, but what counts is what the file has. */
+/* If the file itself is judged, its own data counts, although a solve may have run too. */
 static nt_stored stored_tangents(const nt_mesh *mesh, bool written)
 {
 	if (written && mesh->split.vertex_tangents)
@@ -212,7 +212,7 @@ static nt_status keep_geometry(nt_check *check)
 	return NT_OK;
 }
 
-/* Of all normal maps of a report together, and of all other images. */
+/* Bytes of all normal maps of a report together, and of all other images. */
 static const size_t MOST_IMAGE_BYTES = 16000000;
 
 static nt_status keep_pictures(nt_check *check, size_t most_bytes[NT_PICTURE_COUNT])

@@ -13,7 +13,7 @@
 #include "json/json.h"
 #include "report/pairs.h"
 
-/* What is known of all files that are gone. */
+/* Known findings of all files that are gone. */
 enum { GONE = 0 };
 
 static int by_file(const void *a, const void *b)

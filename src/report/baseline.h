@@ -20,7 +20,7 @@ struct nt_baseline {
 	size_t file_count;
 };
 
-/* Who knows whether a file of the baseline is still there. */
+/* Tells whether a file of the baseline is still there. */
 typedef struct nt_file_finder {
 	bool (*is_there)(void *user, const char *shown);
 	void *user;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the checks of one mesh share: the surface, what is known so far, and how occurrences are tallied
+ * Shared by the checks of one mesh: the surface, what is known so far, and how occurrences are tallied
  * into findings. A check goes over its elements, tallies what it finds and reports the tally once.
  */
 #ifndef NT_REPORT_CHECK_H
@@ -123,7 +123,7 @@ static inline bool nt_needs_tangents(const nt_check *check)
 	return !nt_format_is_gltf(check->scene->format) || check->mesh->slots != 0;
 }
 
-/* Of a finding in texture coordinates: an info where no material needs tangents. */
+/* The severity of a finding in texture coordinates: an info if no material needs tangents. */
 static inline nt_severity nt_texcoord_severity(const nt_check *check, nt_severity severity)
 {
 	return nt_needs_tangents(check) ? severity : NT_SEVERITY_INFO;
@@ -162,8 +162,8 @@ static inline void nt_side_source_texcoord(const nt_check *check, uint32_t side,
 		check->mesh->texcoords + 2 * (size_t)nt_side_vertex(&check->surface, side), out);
 }
 
-/* Where a sampler looks along an axis, for a coordinate of the surface: repeated modulo 1, mirrored folded, clamped
- * (inside the texture) as it stands. Offsets that move all alike are left out. */
+/* The place that a sampler looks up along an axis, for a coordinate of the surface: repeated modulo 1, mirrored
+ * folded, clamped (inside the texture) as it stands. Offsets that move all alike are left out. */
 static inline double nt_wrap_coordinate(const nt_mesh *mesh, int axis, double coordinate)
 {
 	const nt_wrap wrap = mesh->wrap[axis];

@@ -3,8 +3,8 @@
  * The table of findings and the few functions that read it: see codes.h.
  *
  * Severities: an error is data that breaks glTF's rules or certainly renders wrong; a warning is worth
- * a look in the DCC tool; an info says what is there (mirroring itself is legitimate). What nobody would ever act on is
- * a number of the mesh and no finding.
+ * a look in the DCC tool; an info says what is there (mirroring itself is legitimate). A fact that nobody would ever
+ * act on is a number of the mesh and no finding.
  */
 #include "report/codes.h"
 
@@ -175,10 +175,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"only one. PLY output keeps polygons if it can; these became triangles.",
 		"Nothing, unless the polygons matter: then cut or unwrap them differently.",
 		"a PLY pentagon with one corner's texture coordinates mirrored"),
-	ROW(NORMALS_MADE, INFO, "i-i", LOOK, NULL, "normals were missing and have been made",
+	ROW(NORMALS_MADE, INFO, "i-i", LOOK, NULL, "{count} {corner|corners} got a computed normal",
 		"Tangents need normals, which the input lacks, or which have no direction: (0, 0, 0). For OBJ they are "
-		"made by its smoothing groups, for PLY smooth, for glTF only if --normals asks for them; a glTF keeps "
-		"normals that have no direction, and its tangents are made for smooth ones.",
+		"made by its smoothing groups, or smooth if it has none, for PLY smooth, for glTF only if --normals "
+		"asks for them; a glTF keeps normals that have no direction, and its tangents are made for smooth "
+		"ones.",
 		"Export normals if these are not what you want.",
 		"a PLY triangle with s and t but no nx, ny, nz"),
 	ROW(NORMALS_REPLACED, INFO, "i-i", LOOK, NULL, "{count} {normal|normals} of the input {was|were} replaced",
@@ -310,7 +311,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Straighten the quad in the UV editor, or triangulate it.",
 		"a quad with UVs (0,0), (1,1), (1,0), (0,1): a bowtie"),
 	ROW(UV_UNMAPPED, WARNING, "w-w", EXPORT, NULL,
-		"no triangle has an area in UV space: all {count} {is|are} unmapped",
+		"the mesh is not unwrapped: {count} {triangle has|triangles have} no area in UV space",
 		"All texture coordinates are alike, or on a line. Tangents are made from normals, and mean nothing. "
 		"An info if no material of a glTF needs tangents.",
 		"Unwrap the mesh.",

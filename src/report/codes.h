@@ -10,7 +10,7 @@
 #include "base/buffer.h"
 #include "scene/finding.h"
 
-/* What is to be done about a finding. The greatest comes first: what has to be exported again, all else is made
+/* Actions for a finding. The greatest comes first: what has to be exported again, all else is made
  * from. */
 typedef enum nt_advice { NT_ADVICE_LOOK, NT_ADVICE_CONVERT, NT_ADVICE_BAKE, NT_ADVICE_EXPORT } nt_advice;
 

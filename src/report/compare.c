@@ -72,7 +72,7 @@ static uint64_t mesh_digest(const void *report, size_t index)
 	return ((const nt_report *)report)->meshes[index].digest;
 }
 
-/* What is left in both and follows each other, if it has as many triangles. */
+/* Pairs the rest of both in order, if it has as many triangles. */
 static void match_rest(const nt_report *old, const nt_report *new, uint32_t *partners, bool *taken)
 {
 	size_t next = 0;

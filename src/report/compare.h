@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What changed between two versions of an asset: in its tangents, its seams and what is found.
+ * Changes between two versions of an asset: in its tangents, its seams and what is found.
  */
 #ifndef NT_REPORT_COMPARE_H
 #define NT_REPORT_COMPARE_H

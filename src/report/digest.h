@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What meshes and findings are known by when their names have changed: their geometry. The same in every run.
+ * Identity of meshes and findings whose names have changed: their geometry. The same in every run.
  */
 #ifndef NT_REPORT_DIGEST_H
 #define NT_REPORT_DIGEST_H
@@ -8,10 +8,11 @@
 #include "report/report.h"
 #include "report/surface/surface.h"
 
-/* Of a mesh's triangles in space, whatever their order and numbers. Never 0. */
+/* The digest of a mesh's triangles in space, whatever their order and numbers. Never 0. */
 uint64_t nt_digest_surface(const nt_surface *surface);
 
-/* Of a finding, before its mesh is known as a whole: its code and its places, or, without places, its detail. */
+/* The digest of a finding, before its mesh is known as a whole: its code and its places, or, without places, its
+ * detail. */
 uint64_t nt_digest_finding(const nt_report_finding *finding, const char *detail);
 
 /* Completes the digests of findings without places, which are about a mesh or the file: 0 where that has no

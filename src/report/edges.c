@@ -7,7 +7,7 @@
  * Two triangles of an edge continue each other in UV space when both ends have equal texture
  * coordinates on both. On an edge of many triangles all that have the same coordinates do.
  *
- * Threads take bins of edges. What they find goes to lists by bin, or into sets that do not show who was first.
+ * Threads take bins of edges. Results go to lists by bin, or into sets that do not show who was first.
  */
 #include "report/check.h"
 

@@ -132,7 +132,7 @@ static uint64_t fingerprint_of(const nt_report_finding *finding, const nt_report
 	return hash;
 }
 
-/* What the code's row says, if the mesh has what that takes. */
+/* The severity in the code's row, if the mesh has what that takes. */
 static const char *repair_of(const nt_report *report, const nt_report_finding *finding)
 {
 	static const char replace[] = "--existing=replace";
@@ -227,7 +227,7 @@ void nt_check_report_as(nt_check *check, const nt_tally *tally, nt_severity seve
 	va_end(arguments);
 }
 
-/* What a place is known by: a JSON pointer, or an object of a text. */
+/* The key of a place: a JSON pointer, or an object of a text. */
 static const char *key_of(const nt_place_view *place)
 {
 	return place->pointer[0] ? place->pointer : place->object;

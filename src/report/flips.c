@@ -9,7 +9,7 @@
  * Needles whose orientation is nothing but the rounding of their coordinates are passed over: they are nearly
  * degenerate, which geometry.c tells.
  *
- * What is flipped or a needle makes no mirror edge, no fold, no overlap and no shared vertex: its bit is set in
+ * A flipped triangle or a needle makes no mirror edge, no fold, no overlap and no shared vertex: its bit is set in
  * check->flipped, and its mirror edges go.
  */
 #include "report/check.h"
@@ -138,7 +138,7 @@ static bool is_candidate(const nt_check *check, patch *one)
 			host->area + (alone ? one->area : 0.0)));
 }
 
-/* What lies beside small patches alone is cut off by them, and not flipped itself. */
+/* A patch that only small patches surround is cut off by them, and not flipped itself. */
 static void choose_flipped(const nt_check *check, patches *p)
 {
 	for (uint32_t i = 0; i < p->count; i++)
@@ -158,7 +158,7 @@ static void choose_flipped(const nt_check *check, patches *p)
 
 /* ---- triangles whose texels are those of another one ---- */
 
-/* Of the corners in any order: their coordinates, or their points. */
+/* A hash of the corners in any order: their coordinates, or their points. */
 static uint64_t hash_corners(const nt_surface *s, size_t t, bool points)
 {
 	uint64_t hash = 0;
@@ -174,7 +174,7 @@ static bool may_have_twins(const nt_check *check, const patch *one)
 	return one->flipped || (check->surface.orientation[one->first] < 0 && one->sides >= one->triangles);
 }
 
-/* What a triangle of this orientation is known by. With `points` it lies where its twin lies. */
+/* The key of a triangle of this orientation. With `points` it lies where its twin lies. */
 static uint64_t key_of(const nt_surface *s, size_t t, int orientation, bool points)
 {
 	const uint64_t key = hash_corners(s, t, false) + (uint64_t)orientation;

@@ -29,10 +29,10 @@ static const double UNIT_TOLERANCE = 0.00674;
 
 static const double DEGREES = 57.29577951308232;
 
-/* Blocks that a thread takes at a time. What is found in them is joined in their order. */
+/* Blocks that a thread takes at a time. Their results are joined in their order. */
 enum { PART = 128 };
 
-/* What is found in the triangles of a part. */
+/* Results in the triangles of a part. */
 typedef struct triangle_part {
 	nt_tally flat, no_uv_area, near, against;
 	size_t coincident, collinear;
@@ -89,8 +89,8 @@ static double rounding_bound(const uv_frame *f)
 }
 
 /* Whether that bound is below the limit for certain, without a root or a quotient: the larger singular value is at most
- * the root of both edges' squares. Of the rest, with what is too small or too large to be squared, the bound itself
- * decides. */
+ * the root of both edges' squares. For the rest, values too small or too large to be squared included, the bound
+ * itself decides. */
 static bool is_far_from_degenerate(const uv_frame *f)
 {
 	const double left = 8.0 * 0x1p-48 * f->size * f->size * (f->n1 + f->n2) * (f->uu + f->vv);
@@ -129,8 +129,8 @@ static void check_texcoords(const triangle_work *work, size_t t, const uint32_t 
 	}
 }
 
-/* Whether the normals of all corners point to the back, and with them what is interpolated at each pixel. Where one
- * does not, a part is lit from the front: what smooth normals do at sharp bends. */
+/* Whether the normals of all corners point to the back, and with them what is interpolated at each pixel. If one does
+ * not, a part is lit from the front: what smooth normals do at sharp bends. */
 static bool is_against_normals(const float *normals, const uint32_t v[3], nt_dvec3 d1, nt_dvec3 d2)
 {
 	const nt_dvec3 face = nt_dvec3_cross(d1, d2);
@@ -198,7 +198,7 @@ static void join_part(triangle_part *all, const triangle_part *part)
 
 /* ---- least, median and greatest determinant ---- */
 
-/* Of those that are known. Puts them in another order: quickselect, with pivots of a fixed random sequence. */
+/* The share among the known ones. Puts them in another order: quickselect, with pivots of a fixed random sequence. */
 static void find_determinants(nt_report_mesh *facts, float *values, size_t count)
 {
 	float least = INFINITY, greatest = -INFINITY;

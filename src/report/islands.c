@@ -444,7 +444,7 @@ static nt_code code_of(const nt_island *island)
 		: NT_CODE_UV_MIRROR_LONE;
 }
 
-/* What a finding of this island counts: all its triangles for a fold, else the mirrored ones. */
+/* Count for a finding of this island: all its triangles for a fold, else the mirrored ones. */
 static size_t size_of(const nt_island *island)
 {
 	return code_of(island) == NT_CODE_UV_MIXED_WINDING_ISLAND

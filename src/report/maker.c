@@ -49,7 +49,7 @@ nt_status nt_maker_border(const nt_mesh *mesh, uint64_t *border)
 	return left ? NT_OK : NT_ERROR_MEMORY;
 }
 
-/* What was counted at corners. */
+/* Counts at corners. */
 typedef struct tally {
 	size_t judged, agreeing, inverted;
 	size_t by_degrees[2 * 180 + 1]; /* halves of a degree */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Who made the tangents that a mesh has: they are compared with those of the methods that engines and exporters use.
+ * The method that made a mesh's tangents: they are compared with those of the methods that engines and exporters use.
  */
 #ifndef NT_REPORT_MAKER_H
 #define NT_REPORT_MAKER_H
@@ -25,20 +25,20 @@ typedef struct nt_maker {
 	double off_mikktspace; /* most_degrees of MikkTSpace on triangles */
 } nt_maker;
 
-/* Of a mesh with siblings, which corners are at its border: the triangles around the corner's vertex, welded as
+/* Which corners of a mesh with siblings are at its border: the triangles around the corner's vertex, welded as
  * MikkTSpace does, are not a closed fan, so that some of them may be another primitive's. border
  * [nt_bit_words(corner_count)] receives bits. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_maker_border(const nt_mesh *mesh, uint64_t *border);
 
 /* Compares a mesh's own tangents with those of a maker, whose method and quads are given and whose other members are
  * filled. `halves` [face_count]: enum nt_half, where quads is set; `border` of nt_maker_border(); NULL: no corner.
- * Where those at the border disagree and the others agree, only the others count. Returns NT_OK or NT_ERROR_MEMORY. */
+ * If those at the border disagree and the others agree, only the others count. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
 	nt_maker *maker);
 
 /* Finds the maker of a mesh's own tangents: the first of MikkTSpace as published and sorted, area, lengyel and robust,
- * each on triangles and on quads, with which most corners agree, if these are NT_MAKER_SHARE of all. Where nearly all
- * agree no other is tried; if none is it and a texture transform turns the mesh's coordinates, all are tried on
+ * each on triangles and on quads, with which most corners agree, if these are NT_MAKER_SHARE of all. If nearly all
+ * agree, no other is tried; if none is it and a texture transform turns the mesh's coordinates, all are tried on
  * those of the file. `halves` [face_count]: enum nt_half; NULL: no quads; `border` as above. Returns NT_OK or
  * NT_ERROR_MEMORY. */
 nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,

@@ -24,7 +24,7 @@ typedef struct texel {
 	double longest, shortest;
 } texel;
 
-/* Of a triangle that has an area in space and in the texture. */
+/* Measures of a triangle that has an area in space and in the texture. */
 static texel measure_texel(const nt_surface *s, size_t t, double width, double height)
 {
 	const uint32_t c = (uint32_t)(3 * t);
@@ -61,8 +61,8 @@ static int by_value(const void *a, const void *b)
 	return x->value < y->value ? -1 : x->value > y->value;
 }
 
-/* Sorts by value; the bits of floats that are not negative are in the order of their values. Of many triangles qsort()
- * takes a third of a whole run. other: [count] */
+/* Sorts by value; the bits of floats that are not negative are in the order of their values. With many triangles
+ * qsort() takes a third of a whole run. other: [count] */
 static void sort_weighed(weighed *items, size_t count, weighed *other)
 {
 	enum { FEW = 256 };
@@ -84,7 +84,7 @@ static void sort_weighed(weighed *items, size_t count, weighed *other)
 	}
 }
 
-/* Of sorted ones: up to which value half the area lies. */
+/* The median by area of sorted ones. */
 static double median_of(const weighed *items, size_t count)
 {
 	double total = 0.0, sum = 0.0;

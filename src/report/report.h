@@ -6,7 +6,7 @@
  * report owns all it holds, so the scene may go. nt_report_write() (report/render/render.h) turns one or many reports
  * into text, JSON and so on. Nothing here prints.
  *
- * What is found is data: one finding per seam, island or group of equal occurrences, with a fingerprint
+ * Findings are data: one finding per seam, island or group of equal occurrences, with a fingerprint
  * that stays the same when indices change, so that a later run can tell old findings from new ones.
  */
 #ifndef NT_REPORT_REPORT_H
@@ -39,7 +39,8 @@ typedef struct nt_image {
 	size_t size;
 	const char *type; /* static */
 	const char *file; /* URI of a file, relative to options.page_folder; NULL: none */
-	/* Where it is looked up: u' = t[0] u + t[1] v + t[2], v' = t[3] u + t[4] v + t[5], v pointing down. */
+	/* The place at which it is looked up: u' = t[0] u + t[1] v + t[2], v' = t[3] u + t[4] v + t[5], v pointing
+	 * down. */
 	float transform[6];
 	bool again; /* a mesh before has the same bytes */
 } nt_image;
@@ -98,8 +99,8 @@ typedef struct nt_report_finding {
 	uint32_t mesh;        /* index into the report's meshes, NT_NONE: the file as a whole */
 	size_t count;         /* occurrences */
 	size_t order;         /* in which it was found */
-	/* Of the file's triangles, what it concerns: all of a texture or material; and the most of findings of its
-	 * code and severity. They say which come first. */
+	/* The share of the file's triangles that it concerns: all of a texture or material; and the most of findings
+	 * of its code and severity. They say which come first. */
 	double share, code_share;
 	size_t alike;         /* meshes of this geometry that it holds for, the mesh itself included; 0: no mesh */
 	const char *message;  /* one sentence */
@@ -171,7 +172,7 @@ typedef struct nt_island {
 	nt_box box;
 } nt_island;
 
-/* What pictures are drawn from. Everything per vertex or triangle of the mesh as checked. */
+/* Data for pictures. Everything per vertex or triangle of the mesh as checked. */
 typedef struct nt_report_geometry {
 	size_t vertex_count, triangle_count;
 	float *positions, *normals, *texcoords, *tangents; /* NULL: none. Texcoords as the source has them,

@@ -62,9 +62,9 @@ static void widen(double range[2], double value)
 /* ---- what a normal map can hide ---- */
 
 /*
- * A baker writes what two frames differ by into the texels of each side. Where both sides look up the same texels,
- * that cannot be: then the seam shows, but where the map is flat across it, if the frames differ by more than one
- * step of an 8-bit map, 1 / 127.
+ * A baker writes what two frames differ by into the texels of each side. If both sides look up the same texels, that
+ * cannot be: then the seam shows, but where the map is flat across it, if the frames differ by more than one step of
+ * an 8-bit map, 1 / 127.
  */
 static const double HIDDEN_DEGREES = 0.45;
 
@@ -170,7 +170,7 @@ static double edge_length(const nt_seam_edge *edge)
 
 /* ---- the plane ---- */
 
-/* What fitting a plane needs of a seam, summed over its edges. */
+/* Sums over a seam's edges for fitting a plane. */
 typedef struct plane_sums {
 	nt_dvec3 across; /* from the mirrored triangles' third points to the unmirrored ones' */
 	nt_dvec3 points;

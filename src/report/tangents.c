@@ -35,7 +35,7 @@ const double nt_angle_bins[NT_ANGLE_BINS] = {1.0, 5.0, 15.0, 30.0, 60.0, 180.0};
 
 static const double DEGREES = 57.29577951308232;
 
-/* Triangles that a thread takes at a time. What is found in parts is joined in their order. */
+/* Triangles that a thread takes at a time. Results of parts are joined in their order. */
 enum { PART = 16384 };
 
 static size_t part_count(const nt_check *check)
@@ -195,7 +195,7 @@ static nt_status check_each(nt_check *check)
 
 /* ---- signs ---- */
 
-/* Of triangles whose w is right, sign 1: whether T and the bitangent are reversed. Where w is wrong, sign -1: whether T
+/* For triangles whose w is right, sign 1: whether T and the bitangent are reversed. If w is wrong, sign -1: whether T
  * alone is. */
 static bool is_reversed(const nt_check *check, size_t t, float sign)
 {
@@ -236,7 +236,7 @@ static bool fits_untransformed(const nt_check *check, size_t t, float w)
 	return sign != 0 && (w > 0.0f) == (sign > 0);
 }
 
-/* What v is added to on its way between formats that count it from opposite ends: see nmtan_stored_uv. */
+/* The number that v is added to on its way between formats that count it from opposite ends: see nmtan_stored_uv. */
 static float stored_v_offset(const nt_check *check)
 {
 	const bool from_gltf = nt_format_is_gltf(check->scene->format);

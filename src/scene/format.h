@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The formats by number, and what a user can ask of their readers and writers. Who reads and writes them is in
- * the table of format/format.h, which stands above them all.
+ * The formats by number, and what a user can ask of their readers and writers. The table of format/format.h, which
+ * stands above them all, has their readers and writers.
  */
 #ifndef NT_SCENE_FORMAT_H
 #define NT_SCENE_FORMAT_H
@@ -77,7 +77,7 @@ typedef enum nt_outside {
 typedef enum nt_images { NT_IMAGES_DEFAULT, NT_IMAGES_LINK, NT_IMAGES_EMBED, NT_IMAGES_COPY,
 	NT_IMAGES_NONE } nt_images;
 
-/* What happens to glTF primitives that get tangents. */
+/* Treatment of glTF primitives that get tangents. */
 typedef enum nt_draco_choice {
 	NT_DRACO_KEEP, /* compressed ones are compressed again, with the source's method and quantization */
 	NT_DRACO_OFF,  /* all are written plain */

@@ -15,7 +15,7 @@
  * The walk goes on with the corner behind the ear it has cut, so a convex polygon becomes the fan
  * (0,1,2) (0,2,3) ... that every other tool makes of it.
  *
- * Every triangle of a sound result is counter-clockwise in the plane. Where there is no ear (crossing
+ * Every triangle of a sound result is counter-clockwise in the plane. If there is no ear (crossing
  * outlines, spikes, repeated points) a corner is cut off all the same and the result is not sound.
  */
 #include "scene/polygon.h"
@@ -36,7 +36,7 @@ enum kind { CONVEX, BLOCKING, GONE };
 
 enum verdict { NO_EAR, EAR, FLAT_EAR };
 
-/* What is known of one corner. */
+/* Data of one corner. */
 typedef struct corner {
 	double x, y; /* in the plane, relative to corner 0 */
 	uint32_t previous, next;

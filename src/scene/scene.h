@@ -20,7 +20,7 @@
 
 #define NT_NONE UINT32_MAX
 
-/* What a material or its glTF extensions ask of tangents: docs in scene/select.c. */
+/* Demands of a material or its glTF extensions on tangents: docs in scene/select.c. */
 enum nt_slot {
 	NT_SLOT_NORMAL = 1,           /* normalTexture */
 	NT_SLOT_CLEARCOAT_NORMAL = 2, /* KHR_materials_clearcoat.clearcoatNormalTexture */
@@ -46,14 +46,14 @@ typedef enum nt_decision {
 	NT_DECISION_COUNT
 } nt_decision;
 
-/* Where an image lies: it is sampled at scale * (u, v) + offset, v up. */
+/* Placement of an image: it is sampled at scale * (u, v) + offset, v up. */
 typedef struct nt_placement {
 	bool moved;                  /* else scale counts as 1 and offset as 0 */
 	float scale[2], offset[2];   /* finite */
 	bool clamp;                  /* beyond 0 to 1 its border goes on; else it repeats */
 } nt_placement;
 
-/* A map of a material. Of a map of numbers, which it has where nothing else is said, one channel counts: with v from 0
+/* A map of a material. One channel of a map of numbers counts (red unless stated otherwise): with v from 0
  * to 1 the number is factor * (base + gain * v), or factor * the roughness of the exponent * (base + gain * v). */
 typedef struct nt_map {
 	const char *name;            /* of the file, as the source spells it; NULL: there is no map */
@@ -114,6 +114,7 @@ typedef struct nt_material {
 typedef struct nt_primitive {
 	uint32_t material; /* index into scene->materials or NT_NONE */
 	size_t face_count; /* faces of the mesh that belong to it */
+	uint32_t group;    /* index into the mesh's groups; those of one group follow each other */
 } nt_primitive;
 
 /* A mesh as one morph target moves it at weight 1. */
@@ -128,13 +129,13 @@ typedef struct nt_morph {
 	double halfway_degrees;   /* by how much at most */
 } nt_morph;
 
-/* What a morph target adds to a component; never -0, so that tangents which were read back give the same bytes. */
+/* Delta of a morph target's component; never -0, so that tangents which were read back give the same bytes. */
 static inline float nt_morph_delta(float moved, float base)
 {
 	return moved - base + 0.0f;
 }
 
-/* What splitting found: copies to append behind the mesh's vertices. */
+/* Results of a split: copies to append behind the mesh's vertices. */
 typedef struct nt_split {
 	uint32_t *indices;      /* [mesh corner_count]; NULL: the mesh's own, nothing was split */
 	uint32_t *sources;      /* [source_count] vertex each appended one is a copy of */
@@ -159,7 +160,7 @@ typedef enum nt_quantized {
 	NT_QUANTIZED_WHOLE /* if faces use all vertices of its block: otherwise it cannot be compressed again */
 } nt_quantized;
 
-/* What is done with a mesh, found before anything is loaded: reader, stages and writer keep to it. */
+/* The decision about a mesh, found before anything is loaded: reader, stages and writer keep to it. */
 typedef struct nt_mesh_plan {
 	const struct nt_mesh *same_as; /* an earlier mesh with the same geometry, which is loaded and solved once;
 	                                  NULL: none. That one has none */
@@ -282,6 +283,7 @@ typedef struct nt_mesh {
 	uint32_t *face_primitive;/* [face_count] index into primitives; NULL: all 0 */
 	nt_primitive *primitives;
 	size_t primitive_count;
+	const char *const *groups; /* names of its primitives' groups, each a mesh of an output; NULL: none */
 
 	/* vertices that making normals appended: vertex source_vertex_count + i is a copy of
 	 * vertex_sources[i], with another normal */
@@ -310,7 +312,7 @@ typedef struct nt_mesh {
 	bool merged;              /* the writer has merged them with those of the meshes that share its vertices */
 } nt_mesh;
 
-/* What a vertex of an OBJ does not have although others do. */
+/* Attributes that a vertex of an OBJ lacks although others have them. */
 enum nt_lack { NT_LACKS_NORMAL = 1, NT_LACKS_TEXCOORD = 2 };
 
 /* A mesh placed in the world; OBJ and PLY place each mesh once, with the identity. */
@@ -319,19 +321,19 @@ typedef struct nt_instance {
 	double matrix[16]; /* column-major, as in glTF */
 } nt_instance;
 
-/* What storing tangents as integers does to their directions. */
+/* The effect of storing tangents as integers on their directions. */
 typedef struct nt_rounding {
 	size_t count; /* tangents that were rounded */
 	double worst_radians, sum_radians;
 } nt_rounding;
 
-/* What the tangents of morph targets take that are written, and what their meshes take without them. */
+/* Bytes of the written tangents of morph targets, and of their meshes without them. */
 typedef struct nt_morph_cost {
 	size_t targets;
 	uint64_t bytes, mesh_bytes;
 } nt_morph_cost;
 
-/* Where a face stands in a text. */
+/* The place of a face in a text. */
 typedef struct nt_face_place {
 	uint32_t mesh, face; /* face: number in the source, as face_polygon has it */
 	size_t line;         /* of its statement, from 1 */
@@ -361,7 +363,7 @@ typedef struct nt_scene {
 	                         nothing */
 	size_t left_out_count;
 
-	/* What a reader keeps for the writer of the same format, and the input's bytes. */
+	/* Data that a reader keeps for the writer of the same format, and the input's bytes. */
 	void *source;
 	void (*free_source)(void *source);
 	uint64_t (*read_of_source)(const void *source); /* bytes of the input and its files that were read, as far as

@@ -16,7 +16,7 @@
 
 #include <stdio.h>
 
-/* What is asked for, and what all meshes together are like. */
+/* The request, and facts about all meshes together. */
 typedef struct wishes {
 	nt_only only;
 	nt_existing existing;
@@ -49,7 +49,7 @@ static bool any_has_texcoords(const nt_scene *scene)
 }
 
 /* A glTF whose material looks a map up with coordinates that are not there is wrong; what is made of other formats is
- * without the map. Where no material asks for tangents, a scan say, nobody misses them, but where other meshes of the
+ * without the map. If no material asks for tangents, in a scan say, nobody misses them, but if other meshes of the
  * file have coordinates, that this one has none may not be meant. */
 static void report_no_texcoords(nt_scene *scene, const nt_mesh *mesh, bool others_have)
 {

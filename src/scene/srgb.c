@@ -7,7 +7,7 @@
 #include <float.h>
 #include <math.h>
 
-/* What is finite but no float becomes the largest one of its sign. */
+/* A finite value beyond floats becomes the largest one of its sign. */
 static float saturated(double c)
 {
 	return (float)(isfinite(c) ? fmin(fmax(c, -FLT_MAX), FLT_MAX) : c);

@@ -16,7 +16,7 @@ typedef struct nt_srgb {
 
 void nt_srgb_init(nt_srgb *srgb);
 
-/* Both ways. What is finite stays so, at most FLT_MAX either way; what is not finite stays so, too. */
+/* Both ways. Finite values stay finite, at most FLT_MAX either way; others stay as they are. */
 float nt_linear_from_srgb(const nt_srgb *srgb, float value);
 float nt_srgb_from_linear(float value);
 
@@ -26,7 +26,7 @@ int nt_srgb_byte(const nt_srgb *srgb, float linear);
 /* Makes a colour white that is not finite; whether it was such a one. */
 bool nt_color_mend(float color[4]);
 
-/* Makes linear colours of a mesh's [count][4]; alpha stays. Those that are not finite become white, and a finding. */
+/* Makes linear colours of a mesh's [count][4]; alpha stays. Colours that are not finite become white, and a finding. */
 void nt_linearise(nt_scene *scene, nt_mesh *mesh, size_t count);
 
 #endif

@@ -19,7 +19,7 @@
 #include <math.h>
 #include "base/compiler.h"
 
-/* One term of the polynomial. Where the instruction set has FMA the rounding differs, and with it about one
+/* One term of the polynomial. If the instruction set has FMA, the rounding differs, and with it about one
  * bit in 2^53; the float that comes out is the same, which was tried for all of them as well. */
 #if defined(__FMA__) || defined(NT_SET_AVX2) || defined(__aarch64__)
 #define NT_ACOS_TERM(p, z, coefficient) fma(p, z, coefficient)

@@ -116,7 +116,7 @@ bool nt_outline_crosses(const nmtan_mesh *mesh, size_t first)
 	return crosses;
 }
 
-/* What the sums need of a triangle. */
+/* Data of a triangle for the sums. */
 typedef struct solved {
 	nt_dvec3 u;          /* dP/du times |determinant|: growing u */
 	nt_dvec3 across;     /* cross product of the edges from the first corner */

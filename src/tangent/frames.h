@@ -5,7 +5,7 @@
  *
  * A triangle's directions come from the 2x2 system of its UV edges, with exact differences and exact
  * products wherever they cancel (base/exact.h): a direction is good to a few 2^-53 however thin the
- * triangle is in space or in UV. What is lost afterwards is lost by geometry: a direction nearly along
+ * triangle is in space or in UV. Later losses are the geometry's: a direction nearly along
  * the normal, directions that cancel in the sum. `sensitivity` measures both.
  */
 #ifndef NT_TANGENT_FRAMES_H

@@ -23,7 +23,7 @@ typedef struct shared_normal {
 	double weights; /* of what went into the sum: unit vectors times angles */
 } shared_normal;
 
-/* What a vertex remembers. */
+/* State of a vertex. */
 typedef struct known_normal {
 	uint32_t group; /* 0: nothing */
 	uint32_t entry;
@@ -128,8 +128,7 @@ static void gather_face(const nmtan_mesh *mesh, size_t first, size_t size, face_
 	b->across[1][0][face] = other.x, b->across[1][1][face] = other.y, b->across[1][2][face] = other.z;
 }
 
-/* Unit normal of a face; false where it has no area. */
-static bool face_normal(const nmtan_mesh *mesh, size_t first, size_t size, nt_dvec3 *n)
+bool nt_face_normal(const nmtan_mesh *mesh, size_t first, size_t size, nt_dvec3 *n)
 {
 	face_block b;
 	gather_face(mesh, first, size, &b, 0, 0);
@@ -170,17 +169,27 @@ static shared_normal *find_entry(normal_table *table, const nmtan_mesh *mesh, si
 	return &table->entries[known->entry];
 }
 
+/* Which corners share a sum. */
+typedef struct grouping {
+	const uint32_t *faces, *corners; /* of nt_corner_normals() */
+} grouping;
+
+static inline uint32_t group_of(const grouping *g, size_t face, size_t corner)
+{
+	return g->corners ? g->corners[corner] : g->faces ? g->faces[face] : 1;
+}
+
 /* At least as many as there are entries: how often a corner's group is not that of its vertex's corner before. */
-static size_t count_entries(const nmtan_mesh *mesh, const uint32_t *smoothing, known_normal *known)
+static size_t count_entries(const nmtan_mesh *mesh, const grouping *g, known_normal *known)
 {
 	size_t first = 0, count = 0;
 	for (size_t face = 0; face < mesh->face_count; face++) {
 		const size_t size = nt_face_size(mesh, face);
-		const uint32_t group = smoothing ? smoothing[face] : 1;
-		for (size_t k = 0; k < size && group != 0; k++) {
+		for (size_t k = 0; k < size; k++) {
+			const uint32_t group = group_of(g, face, first + k);
 			uint32_t *before = &known[nt_vertex_of(mesh, first + k)].group;
-			count += *before != group;
-			*before = group;
+			count += group && *before != group;
+			*before = group ? group : *before;
 		}
 		first += size;
 	}
@@ -188,14 +197,16 @@ static size_t count_entries(const nmtan_mesh *mesh, const uint32_t *smoothing, k
 }
 
 /* Adds a block of faces, of which the first is `face` and begins with corner `first`. */
-static void add_block(const nmtan_mesh *mesh, const uint32_t *smoothing, size_t face, size_t count, size_t first,
+static void add_block(const nmtan_mesh *mesh, const grouping *g, size_t face, size_t count, size_t first,
 	const face_block *b, normal_table *table)
 {
 	for (size_t i = 0, at = 0; i < count; i++) {
 		const size_t size = nt_face_size(mesh, face + i);
-		const uint32_t group = smoothing ? smoothing[face + i] : 1;
 		const nt_dvec3 n = lane(b->normal[0], b->normal[1], b->normal[2], i);
-		for (size_t k = 0; k < size && group != 0 && b->usable[i] != 0.0; k++) {
+		for (size_t k = 0; k < size && b->usable[i] != 0.0; k++) {
+			const uint32_t group = group_of(g, face + i, first + at + k);
+			if (!group)
+				continue;
 			shared_normal *entry = find_entry(table, mesh, first + at + k, group);
 			entry->sum = nt_dvec3_add(entry->sum, nt_dvec3_scale(b->angles[at + k], n));
 			entry->weights += b->angles[at + k];
@@ -204,7 +215,7 @@ static void add_block(const nmtan_mesh *mesh, const uint32_t *smoothing, size_t 
 	}
 }
 
-static void sum_normals(const nmtan_mesh *mesh, const uint32_t *smoothing, normal_table *table)
+static void sum_normals(const nmtan_mesh *mesh, const grouping *g, normal_table *table)
 {
 	face_block b;
 	for (size_t face = 0, first = 0; face < mesh->face_count;) {
@@ -216,7 +227,7 @@ static void sum_normals(const nmtan_mesh *mesh, const uint32_t *smoothing, norma
 			corners += size;
 		}
 		measure(&b, count, corners);
-		add_block(mesh, smoothing, face, count, first, &b, table);
+		add_block(mesh, g, face, count, first, &b, table);
 		face += count;
 		first += corners;
 	}
@@ -247,19 +258,19 @@ static bool is_zero(nt_dvec3 n)
 }
 
 /* Every corner gets its sum; in group 0, or where that has no direction, its face's normal. */
-static void write_normals(const nmtan_mesh *mesh, const uint32_t *smoothing, normal_table *table,
+static void write_normals(const nmtan_mesh *mesh, const grouping *g, normal_table *table,
 	float (*normals)[4])
 {
 	static const shared_normal none;
 	size_t first = 0;
 	for (size_t face = 0; face < mesh->face_count; face++) {
 		const size_t size = nt_face_size(mesh, face);
-		const uint32_t group = smoothing ? smoothing[face] : 1;
 		for (size_t k = 0; k < size; k++) {
+			const uint32_t group = group_of(g, face, first + k);
 			const shared_normal *entry = group != 0 ? find_entry(table, mesh, first + k, group) : &none;
 			const bool cancelled = is_zero(entry->sum) && entry->weights > 0.0;
 			nt_dvec3 n = entry->sum;
-			const bool has_normal = !is_zero(n) || face_normal(mesh, first, size, &n);
+			const bool has_normal = !is_zero(n) || nt_face_normal(mesh, first, size, &n);
 			nt_dvec3_store(has_normal ? n : (nt_dvec3){0, 0, 1}, normals[first + k]);
 			normals[first + k][3] = cancelled && has_normal ? 1.0f : 0.0f;
 		}
@@ -268,15 +279,16 @@ static void write_normals(const nmtan_mesh *mesh, const uint32_t *smoothing, nor
 }
 
 nmtan_status nt_corner_normals(const nmtan_mesh *mesh, size_t corner_count, const uint32_t *smoothing,
-	nt_scratch *scratch, float (*normals)[4])
+	const uint32_t *groups, nt_scratch *scratch, float (*normals)[4])
 {
+	const grouping g = {smoothing, groups};
 	const nt_scratch_mark mark = nt_scratch_here(scratch);
 	const size_t vertices = mesh->indices ? mesh->vertex_count : corner_count;
 	normal_table table = {.size = 16, .known = nt_scratch_alloc(scratch, vertices, sizeof *table.known)};
 	if (!table.known)
 		return NMTAN_ERROR_MEMORY;
 	memset(table.known, 0, vertices * sizeof *table.known);
-	const size_t most = count_entries(mesh, smoothing, table.known);
+	const size_t most = count_entries(mesh, &g, table.known);
 	while (table.size < 2 * most)
 		table.size *= 2;
 	if (most >= UINT32_MAX) /* slots have 32 bits; these take 200 GB */
@@ -287,9 +299,9 @@ nmtan_status nt_corner_normals(const nmtan_mesh *mesh, size_t corner_count, cons
 		return NMTAN_ERROR_MEMORY;
 	memset(table.slots, 0, table.size * sizeof *table.slots);
 	memset(table.known, 0, vertices * sizeof *table.known);
-	sum_normals(mesh, smoothing, &table);
+	sum_normals(mesh, &g, &table);
 	normalise_sums(&table);
-	write_normals(mesh, smoothing, &table, normals);
+	write_normals(mesh, &g, &table, normals);
 	nt_scratch_back(scratch, mark);
 	return NMTAN_OK;
 }

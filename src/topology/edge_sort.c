@@ -20,12 +20,12 @@
 
 /* Triangles at the end that are looked at first, and how many times more the next time: nearly always a dozen are
  * enough. In few triangles everything is near, and to look again costs little. */
-enum { FIRST_TRIANGLES = 12, FIRST_OF_FEW = 4, MORE = 4 };
+enum { FIRST_TRIANGLES = 12, FIRST_OF_FEW = 4, MORE = 3 };
 
 /* So few triangles have all corners listed. */
 enum { LEAST_WATCHED = 16, FEW = 1024 };
 
-/* Vertices of the last triangles, whose cells have numbers of a byte. If they have more, all edges are looked at. */
+/* Vertices of the last triangles. If they have more, all edges are looked at. */
 enum { MOST_MEMBERS = 255, LEAST_SLOT_BITS = 6 };
 
 /* If the order of the last run matters, it has three edges or more, one of each of its triangles: the largest lower
@@ -97,9 +97,7 @@ static bool take_last(const nt_welded_mesh *m, size_t triangles, nt_edge_tail *t
 	tail->slots = nt_scratch_alloc(m->scratch, (size_t)1 << bits, sizeof *tail->slots);
 	tail->members = nt_scratch_alloc(m->scratch, most, sizeof *tail->members);
 	tail->are_members = make_bits(m);
-	if (!tail->cells)
-		tail->cells = nt_scratch_alloc(m->scratch, NT_CELLS, 1);
-	if (!tail->members || !tail->slots || !tail->are_members || !tail->cells)
+	if (!tail->members || !tail->slots || !tail->are_members)
 		return false;
 	memset(tail->slots, 0xff, sizeof *tail->slots << bits);
 	tail->triangles = triangles;
@@ -124,19 +122,19 @@ static bool take_last(const nt_welded_mesh *m, size_t triangles, nt_edge_tail *t
 static void watch_cells(const nt_welded_mesh *m, nt_edge_tail *tail)
 {
 	const nt_grid *grid = &tail->grid;
-	/* twice a cell, so that no rounding can leave one of it out */
-	const float near = (grid->high - grid->low) * (2.0f / NT_CELLS) + FLT_MIN;
-	unsigned count = 0;
-	memset(tail->cells, 0, NT_CELLS);
-	tail->low = grid->high;
-	tail->high = grid->low;
+	memset(tail->bins, 0, sizeof tail->bins);
+	/* a little less than there are, so that no rounding makes one more: less than half a cell */
+	tail->scale = ((float)NT_EDGE_BINS - 0.1f) / (grid->high - grid->low);
+	tail->scale = tail->scale <= FLT_MAX ? tail->scale : 0;
 	for (size_t i = 0; i < tail->member_count; i++) {
-		const float here = nt_welded_position(m, tail->members[i].vertex)[grid->axis];
-		uint8_t *cell = &tail->cells[nt_grid_cell(grid, here)];
-		*cell = *cell ? *cell : (uint8_t)++count;
-		tail->low = here - near < tail->low ? here - near : tail->low;
-		tail->high = here + near > tail->high ? here + near : tail->high;
+		const unsigned cell = nt_grid_cell(grid, nt_welded_position(m, tail->members[i].vertex)[grid->axis]);
+		const unsigned bin = cell / 2, beside = cell % 2 ? bin + 1 : bin - 1;
+		tail->bins[bin / 32] |= (uint32_t)1 << bin % 32;
+		if (beside < NT_EDGE_BINS)
+			tail->bins[beside / 32] |= (uint32_t)1 << beside % 32;
 	}
+	if (tail->scale == 0)
+		tail->bins[0] |= 1;
 }
 
 /* The box of rows that have corners, since others made that of all, or may have. */
@@ -156,16 +154,14 @@ nmtan_status nt_edge_tail_make(const nt_welded_mesh *m, nt_edge_tail *tail)
 	*tail = (nt_edge_tail){.limit = corner_count(m) > NT_EDGE_SORT_CORNERS};
 	if (m->triangle_count < LEAST_WATCHED || tail->limit)
 		return NMTAN_OK;
-	const size_t batches = m->triangle_count / NT_EDGE_BATCH + 1;
 	nt_box *boxes = nt_scratch_alloc(m->scratch, m->vertex_count / NT_BOX_ROWS + 1, sizeof *boxes);
-	tail->batches = nt_scratch_alloc(m->scratch, batches, 1);
-	if (!boxes || !tail->batches)
+	tail->near = nt_scratch_alloc(m->scratch, m->triangle_count, 1);
+	if (!boxes || !tail->near)
 		return NMTAN_ERROR_MEMORY;
-	memset(tail->batches, 0, batches);
 	if (!nt_grid_make(m, boxes, &tail->grid))
 		use_box_of_used(m, tail);
 	if (tail->limit) {
-		tail->batches = NULL;
+		tail->near = NULL;
 		return NMTAN_OK;
 	}
 	if (!take_last(m, first_triangles(m), tail))
@@ -185,105 +181,92 @@ typedef struct question {
 	const nt_welded_mesh *mesh;
 	nt_edge_tail *tail;
 	nt_welded_corner *corners; /* [corner_count] as 3 * triangle + k, ascending */
-	uint8_t *cells;            /* [corner_count] the number of each one's cell */
-	size_t corner_count;
+	uint16_t *cells;           /* [corner_count] of each */
+	uint32_t *next;            /* [corner_count] the next one of the cells that have a list together, or NONE */
+	uint32_t *heads;           /* [head_mask + 1] the first one */
+	size_t corner_count, head_mask;
 	nt_welded_corner *chosen;  /* [corner_count] those of one cell; NULL: not made */
 	nt_welded_point *points;   /* [corner_count] */
 	link *links;               /* [link_count] */
 	size_t link_count;
 } question;
 
-/* Set in the number of a vertex that makes the box. */
-enum { EXTREME = 256 };
-
-/* The number of a coordinate's cell; 0: no member is in it. */
-static inline uint8_t number_of(const nt_edge_tail *tail, float coordinate)
+/* Notes which triangles are near, if nobody has, and whether the vertices that make the box have corners. */
+static void note_near(const nt_welded_mesh *m, nt_edge_tail *tail)
 {
-	return coordinate >= tail->low && coordinate <= tail->high
-		? tail->cells[nt_grid_cell(&tail->grid, coordinate)] : 0;
-}
-
-/* Notes the batches that have corners in members' cells by vertices, of which nearly all are elsewhere, if the
- * triangles
- * come in no order or nobody has noted any. Returns the numbers of the vertices' cells; NULL when out of memory. */
-static uint16_t *look_through(const nt_welded_mesh *m, nt_edge_tail *tail)
-{
-	uint16_t *numbers = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *numbers);
-	const float *coordinates = m->positions + tail->grid.axis;
-	if (!numbers)
-		return NULL;
-	for (size_t v = 0; v < m->vertex_count; v++)
-		numbers[v] = tail->cells[nt_grid_cell(&tail->grid, coordinates[m->step * v])];
-	for (int e = 0; e < 6 && !tail->is_box_used; e++)
-		numbers[tail->grid.extremes[e]] |= EXTREME;
 	unsigned met = 0;
-	for (size_t t = 0, batch = 0, count; t < m->triangle_count; t += count, batch++) {
-		uint32_t copy[3 * NT_EDGE_BATCH];
-		count = m->triangle_count - t < NT_EDGE_BATCH ? m->triangle_count - t : NT_EDGE_BATCH;
-		const uint32_t *v = nt_triangle_vertices(m->triangles, t, count, copy);
-		unsigned any = 0;
-		NT_UNROLL(16)
-		for (size_t i = 0; i < 3 * count; i++)
-			any |= numbers[v[i]];
-		tail->batches[batch] = (uint8_t)any != 0;
-		for (size_t i = 0; any & EXTREME && met != 63 && i < 3 * count; i++)
-			for (unsigned e = 0; e < 6; e++)
-				met |= (unsigned)(v[i] == tail->grid.extremes[e]) << e;
+	for (size_t t = 0; t < m->triangle_count; t++) {
+		uint32_t copy[3], near = 0;
+		const uint32_t *v = vertices_of(m, t, copy);
+		for (int k = 0; k < 3; k++)
+			near |= nt_edge_is_near(tail, nt_welded_position(m, v[k])[tail->grid.axis]);
+		tail->near[t] = (uint8_t)near;
+		for (int i = 0; i < 18 && !tail->is_box_used; i++)
+			met |= (unsigned)(v[i % 3] == tail->grid.extremes[i / 3]) << i / 3;
 	}
 	tail->is_box_used = tail->is_box_used || met == 63;
-	return numbers;
 }
 
-static size_t count_batches(const question *q)
+/* The next triangle from t on that is near. */
+static size_t next_near(const nt_welded_mesh *m, const nt_edge_tail *tail, size_t t)
 {
-	const size_t all = q->mesh->triangle_count / NT_EDGE_BATCH + 1;
-	size_t count = 0;
-	for (size_t i = 0; i < all && q->tail->batches; i++)
-		count += q->tail->batches[i];
-	return q->tail->batches ? count : all;
-}
-
-/* The triangles of a batch: corners in members' cells. */
-static void list_batch(question *q, const uint16_t *numbers, size_t first, size_t count)
-{
-	const nt_welded_mesh *m = q->mesh;
-	uint32_t copy[3 * NT_EDGE_BATCH];
-	const uint32_t *v = nt_triangle_vertices(m->triangles, first, count, copy);
-	for (size_t i = 0; i < 3 * count; i++) {
-		const uint8_t number = numbers
-			? (uint8_t)numbers[v[i]] : number_of(q->tail, nt_welded_position(m, v[i])[q->tail->grid.axis]);
-		q->corners[q->corner_count] = (nt_welded_corner){v[i], (uint32_t)(3 * first + i)};
-		q->cells[q->corner_count] = number;
-		q->corner_count += number != 0;
+	if (!tail->near)
+		return t;
+	for (uint64_t some; t + sizeof some <= m->triangle_count; t += sizeof some) {
+		memcpy(&some, tail->near + t, sizeof some);
+		if (some != 0)
+			break;
 	}
+	while (t < m->triangle_count && !tail->near[t])
+		t++;
+	return t;
 }
 
-/* Corners that are compared at a time. */
-enum { STEP = sizeof(uint64_t) };
+/* Coordinates whose cells are found at a time, and lists of corners by cell if there are few. */
+enum { STEP = 16, FEW_HEADS = 64 };
 
-/* Lists the corners in members' cells. False when out of memory. */
+/* Lists the corners that are near, or all of few triangles. False when out of memory. */
 static bool list_corners(question *q)
 {
-	enum { MANY = 8 };
 	const nt_welded_mesh *m = q->mesh;
 	nt_edge_tail *tail = q->tail;
-	uint16_t *numbers = NULL;
-	if (tail->batches && (!tail->is_watched || count_batches(q) > m->triangle_count / NT_EDGE_BATCH / MANY) &&
-		!(numbers = look_through(m, tail)))
-		return false;
-	const size_t most = count_batches(q) * 3 * NT_EDGE_BATCH + STEP;
-	q->corners = nt_scratch_alloc(m->scratch, most, sizeof *q->corners);
-	q->cells = nt_scratch_alloc(m->scratch, most, sizeof *q->cells);
+	if (tail->near && !tail->is_noted)
+		note_near(m, tail);
+	size_t most = tail->near ? 0 : m->triangle_count;
+	for (size_t t = 0; tail->near && t < m->triangle_count; t++)
+		most += tail->near[t];
+	float *coordinates = nt_scratch_alloc(m->scratch, 3 * most + STEP, sizeof *coordinates);
+	q->corners = nt_scratch_alloc(m->scratch, 3 * most + STEP, sizeof *q->corners);
+	q->cells = nt_scratch_alloc(m->scratch, 3 * most + STEP, sizeof *q->cells);
+	q->next = nt_scratch_alloc(m->scratch, 3 * most + STEP, sizeof *q->next);
+	q->head_mask = (3 * most < NT_CELLS ? FEW_HEADS : NT_CELLS) - 1;
+	q->heads = nt_scratch_alloc(m->scratch, q->head_mask + 1, sizeof *q->heads);
 	q->chosen = NULL;
-	q->corner_count = 0;
-	if (!q->corners || !q->cells)
+	if (!coordinates || !q->corners || !q->cells || !q->next || !q->heads)
 		return false;
-	for (size_t t = 0, batch = 0, count; t < m->triangle_count; t += count, batch++) {
-		count = m->triangle_count - t < NT_EDGE_BATCH ? m->triangle_count - t : NT_EDGE_BATCH;
-		if (!tail->batches || tail->batches[batch])
-			list_batch(q, numbers, t, count);
+	const nt_grid grid = tail->grid;
+	size_t count = 0;
+	for (size_t t = next_near(m, tail, 0); t < m->triangle_count; t = next_near(m, tail, t + 1)) {
+		uint32_t copy[3];
+		const uint32_t *v = vertices_of(m, t, copy);
+		for (uint32_t k = 0; k < 3; k++) {
+			q->corners[count] = (nt_welded_corner){v[k], (uint32_t)(3 * t) + k};
+			coordinates[count] = nt_welded_position(m, v[k])[grid.axis];
+			count += !tail->near || nt_edge_is_near(tail, coordinates[count]);
+		}
 	}
-	memset(q->cells + q->corner_count, 0, STEP);
+	for (size_t i = 0; i < STEP; i++)
+		coordinates[count + i] = grid.low;
+	for (size_t i = 0; i < count; i += STEP)
+		for (size_t k = 0; k < STEP; k++)
+			q->cells[i + k] = (uint16_t)nt_grid_cell(&grid, coordinates[i + k]);
+	q->corner_count = count;
+	memset(q->heads, 0xff, (q->head_mask + 1) * sizeof *q->heads);
+	for (size_t i = count; i-- > 0;) {
+		uint32_t *head = &q->heads[q->cells[i] & q->head_mask];
+		q->next[i] = *head;
+		*head = (uint32_t)i;
+	}
 	return true;
 }
 
@@ -332,19 +315,12 @@ static nmtan_status find_member(question *q, nt_edge_member *member)
 		if (!q->chosen || !q->points)
 			return NMTAN_ERROR_MEMORY;
 	}
-	const uint8_t number = number_of(q->tail, nt_welded_position(m, member->vertex)[q->tail->grid.axis]);
-	const uint64_t low_bits = UINT64_MAX / 255 * 127, numbers = UINT64_MAX / 255 * number;
+	const nt_grid *grid = &q->tail->grid;
+	const uint16_t cell = (uint16_t)nt_grid_cell(grid, nt_welded_position(m, member->vertex)[grid->axis]);
 	size_t count = 0;
-	for (size_t i = 0; i < q->corner_count; i += STEP) {
-		uint64_t cells;
-		memcpy(&cells, q->cells + i, sizeof cells);
-		cells ^= numbers;
-		/* the upper bits of bytes that are 0 */
-		cells = ~(((cells & low_bits) + low_bits) | cells | low_bits);
-		for (size_t k = 0; cells && k < STEP; k++) {
-			q->chosen[count] = q->corners[i + k];
-			count += q->cells[i + k] == number;
-		}
+	for (uint32_t i = q->heads[cell & q->head_mask]; i != NONE; i = q->next[i]) {
+		q->chosen[count] = q->corners[i];
+		count += q->cells[i] == cell;
 	}
 	uint32_t found;
 	if (!nt_find_representative(m, q->chosen, count, member->vertex, q->points, &found)) {
@@ -355,6 +331,11 @@ static nmtan_status find_member(question *q, nt_edge_member *member)
 	return NMTAN_OK;
 }
 
+static bool is_known(const nt_edge_member *member)
+{
+	return member->low == member->high;
+}
+
 /* Whether an edge may be in the last run, with `low` as its lower end, which is at least `least`. */
 static bool may_run(const nt_edge_member *low, const nt_edge_member *high, uint32_t least)
 {
@@ -362,8 +343,8 @@ static bool may_run(const nt_edge_member *low, const nt_edge_member *high, uint3
 }
 
 /* How many edges the last run may have if its order matters: three or more, two of them between the same vertices; 0:
- * it cannot. */
-static size_t most_edges(const question *q, uint32_t least)
+ * it cannot. `unknown` receives a member that decides whether there are such edges, or is left alone. */
+static size_t most_edges(const question *q, uint32_t least, nt_edge_member **unknown)
 {
 	nt_edge_member *members = q->tail->members;
 	for (size_t i = 0; i < q->tail->member_count; i++)
@@ -379,22 +360,26 @@ static size_t most_edges(const question *q, uint32_t least)
 			continue;
 		for (size_t k = 0; k < q->tail->member_count; k++)
 			members[k].is_met = false;
-		bool twins = false;
-		for (const link *l = q->links; l < q->links + q->link_count && !twins; l++) {
+		nt_edge_member *twin = NULL;
+		for (const link *l = q->links; l < q->links + q->link_count && !twin; l++) {
 			nt_edge_member *other = l->a == i ? &members[l->b] : &members[l->a];
 			if ((l->a != i && l->b != i) || !may_run(&members[i], other, least))
 				continue;
-			twins = other->is_met;
+			twin = other->is_met ? other : NULL;
 			other->is_met = true;
 		}
-		most = twins ? members[i].edges : most;
+		if (!twin)
+			continue;
+		most = members[i].edges;
+		if (is_known(twin))
+			twin = &members[i];
+		*unknown = is_known(twin) ? *unknown : twin;
 	}
 	return most;
 }
 
-/* The edge of members, not both of them known, whose lower end may be the largest; NULL: none can be as large as one
- * that
- * is. `least` receives what the largest lower end is at least. */
+/* The edge of members, not both of them known, whose lower end may be the largest; NULL: none can be as large as one of
+ * which both are. `least` receives what the largest lower end is at least. */
 static const link *find_open(const question *q, uint32_t *least)
 {
 	const nt_edge_member *members = q->tail->members;
@@ -405,7 +390,7 @@ static const link *find_open(const question *q, uint32_t *least)
 		const nt_edge_member *a = &members[l->a], *b = &members[l->b];
 		const uint32_t low = a->low < b->low ? a->low : b->low, high = a->high < b->high ? a->high : b->high;
 		*least = low > *least ? low : *least;
-		if (high >= most && (a->low < a->high || b->low < b->high)) {
+		if (high >= most && !(is_known(a) && is_known(b))) {
 			most = high;
 			open = l;
 		}
@@ -421,12 +406,13 @@ static nmtan_status ask_members(question *q, bool *enough, size_t *count)
 		uint32_t least;
 		const link *open = find_open(q, &least);
 		*enough = least >= q->tail->first;
-		*count = *enough ? most_edges(q, least) : 0;
+		nt_edge_member *unknown = NULL;
+		*count = *enough ? most_edges(q, least, &unknown) : 0;
 		if (!open || (*enough && *count == 0))
 			return NMTAN_OK;
 		nt_edge_member *a = &q->tail->members[open->a], *b = &q->tail->members[open->b];
 		nt_edge_member *lower = a->high < b->high ? a : b, *other = lower == a ? b : a;
-		const nmtan_status status = find_member(q, lower->low < lower->high ? lower : other);
+		const nmtan_status status = find_member(q, unknown ? unknown : is_known(lower) ? other : lower);
 		if (status || q->tail->limit)
 			return status;
 	}
@@ -636,7 +622,7 @@ static nmtan_status pair_as_published(const nt_welded_mesh *m, const nt_grid *gr
 static nmtan_status ask(const nt_welded_mesh *m, nt_edge_tail *tail, size_t *count)
 {
 	question q = {.mesh = m, .tail = tail};
-	if (!tail->batches && !tail->limit)
+	if (!tail->near && !tail->limit)
 		use_box_of_used(m, tail);
 	if (m->triangle_count < LEAST_EDGES || tail->limit)
 		return NMTAN_OK;
@@ -644,8 +630,9 @@ static nmtan_status ask(const nt_welded_mesh *m, nt_edge_tail *tail, size_t *cou
 		if (tail->triangles != triangles) {
 			if (!take_last(m, triangles, tail))
 				return NMTAN_ERROR_MEMORY;
-			watch_cells(m, tail);
-			tail->is_watched = false;
+			if (tail->near)
+				watch_cells(m, tail);
+			tail->is_noted = false;
 		}
 		if (!list_corners(&q))
 			return NMTAN_ERROR_MEMORY;
@@ -654,7 +641,7 @@ static nmtan_status ask(const nt_welded_mesh *m, nt_edge_tail *tail, size_t *cou
 			if (tail->limit)
 				return NMTAN_OK;
 			watch_cells(m, tail);
-			tail->is_watched = false;
+			tail->is_noted = false;
 			if (!list_corners(&q))
 				return NMTAN_ERROR_MEMORY;
 		}

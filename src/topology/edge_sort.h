@@ -36,20 +36,19 @@ typedef struct nt_edge_member {
 	bool is_met;
 } nt_edge_member;
 
-/* Triangles of a batch. */
-enum { NT_EDGE_BATCH = 16 };
+/* Bins of two cells each. */
+enum { NT_EDGE_BINS = NT_CELLS / 2 };
 
 /* The last triangles, which decide whether the order matters, and what has to be known of the mesh for that: corners
- * whose coordinate on the axis of the grid is near one of theirs. */
+ * whose coordinate on the axis of the grid is in the cell of one of theirs. */
 typedef struct nt_edge_tail {
 	nt_grid grid;
 	bool limit;              /* see nt_unsorted */
 	bool is_box_used;        /* the box is that of rows that have corners */
-	bool is_watched;         /* batches are written, and is_box_used */
-	uint8_t *batches;        /* [triangles / NT_EDGE_BATCH + 1] not 0: there may be a corner from `low` to `high`;
-	                            NULL: in few triangles, all */
-	float low, high;
-	uint8_t *cells;          /* [NT_CELLS] the number of each that has a member, from 1 on; of others 0 */
+	bool is_noted;           /* `near` is written, and is_box_used */
+	uint8_t *near;           /* [triangle_count] 0: has no corner in a member's cell; NULL: few, all are listed */
+	float scale;             /* of a coordinate above grid.low to its bin, below NT_EDGE_BINS */
+	uint32_t bins[NT_EDGE_BINS / 32]; /* a bit for each that is at or beside a member's cell */
 	size_t triangles;
 	uint32_t first;          /* their least corner */
 	unsigned slot_shift;
@@ -59,9 +58,17 @@ typedef struct nt_edge_tail {
 	uint64_t *are_members;   /* a bit for each vertex */
 } nt_edge_tail;
 
-/* Begins: says what to look for, in memory of the mesh. Who passes all corners meanwhile may note batches, and then
- * sets is_watched if the grid's extremes have corners. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+/* Begins: says what to look for, in memory of the mesh. Who passes all corners meanwhile may note which triangles are
+ * near, and then sets is_noted and is_box_used if the grid's extremes have corners. Returns NMTAN_OK or
+ * NMTAN_ERROR_MEMORY. */
 nmtan_status nt_edge_tail_make(const nt_welded_mesh *mesh, nt_edge_tail *tail);
+
+/* Whether a coordinate of the box is near. */
+static inline uint32_t nt_edge_is_near(const nt_edge_tail *tail, float coordinate)
+{
+	const unsigned bin = (unsigned)(int)((coordinate - tail->grid.low) * tail->scale);
+	return tail->bins[bin / 32] >> bin % 32 & 1;
+}
 
 /* Ends. Expected linear time; if the order of the run does not matter, a fraction of the time of reading the mesh. The
  * result's edges come from `memory`, which may be that of the mesh. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */

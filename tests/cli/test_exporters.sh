@@ -30,6 +30,29 @@ exits 3
 says 'n.ply:6: found "propery"'
 only n.ply
 
+scene "groups of an OBJ without objects are meshes with names, and one surface"
+# two halves, of which one is mirrored: their edge is a seam, and MikkTSpace averages across it as if there were no groups
+halves() {
+	printf '%s\n' 'v -1 0 0' 'v 0 0 0' 'v 1 0 0' 'v -1 1 0' 'v 0 1 0' 'v 1 1 0' 'vt 1 0' 'vt 0 0' 'vt 1 1' 'vt 0 1' \
+		'vn 0 0 1' "$1" 'f 1/1/1 2/2/1 5/4/1' "$2" 'f 2/2/1 3/1/1 6/3/1' "$1" 'f 1/1/1 5/4/1 4/3/1' "$2" 'f 2/2/1 6/3/1 5/4/1'
+}
+halves 'g arm' 'g leg two' >g.obj
+run g.obj g.glb
+exits 0
+is "$(gltf g.glb 'g.meshes.map(m => m.name + " " + m.primitives.length).join() + " " + g.nodes.map(n => n.name + n.mesh).join() +
+	" " + g.scenes[0].nodes')" "arm 1,leg two 1 arm0,leg two1 0,1"
+is "$(gltf g.glb 'g.meshes.map(m => rows(m.primitives[0].attributes.TANGENT).map(t => t[0] + t[3]).join()).join(" ")')" "-2,-2,-2,-2 2,2,2,2"
+run --check --report=g.json g.obj
+is "$(value g.json '[len(r["files"][0]["meshes"])] + [f["code"] for f in r["files"][0]["findings"]]')" \
+	"[1, 'UV_MIRROR_SEAM', 'UV_MIRROR_OVERLAP']"
+# the same as without groups, and objects come before them
+halves '#' '#' >n.obj
+run --check --report=n.json n.obj
+is "$(sed 's/[gn]\.obj//' g.json | cmp - <(sed 's/[gn]\.obj//' n.json))" ""
+{ echo 'o body'; cat g.obj; } >o.obj
+run o.obj o.glb
+is "$(gltf o.glb 'g.meshes.map(m => m.name).join()')" body
+
 scene "zero bytes behind the text of an OBJ are a finding"
 for count in 1 40; do
 	{ cat "$data/quad.obj"; head -c $count /dev/zero; } >q.obj

@@ -68,6 +68,49 @@ run --check --check-maps=on --max-pixels=100 plates.gltf
 exits 7
 says "plates.gltf: images of "
 
+scene "each scan of a JPEG and each tile of a TIFF counts, and no image has more than 16 384 pixels for a byte"
+python3 - <<'END'
+import struct, zlib
+def segment(marker, data):
+    return b'\xff' + bytes((marker,)) + struct.pack('>H', 2 + len(data)) + data
+# progressive, of 4 000 x 4 000 and 490 scans
+scan = segment(0xda, bytes((1, 1, 0, 0, 0, 0))) + b'\x12\xff\x00'
+open('scans.jpg', 'wb').write(b'\xff\xd8' + segment(0xc2, struct.pack('>BHHB', 8, 4000, 4000, 1) + b'\1\x11\0') + 490 * scan)
+def tiff(path, width, height, tags, data, count):
+    tables = struct.pack('<%dI' % count, *[8] * count) + struct.pack('<%dI' % count, *[len(data)] * count)
+    at = 8 + len(data)
+    tags = sorted([(256, 4, 1, width), (257, 4, 1, height), (258, 3, 1, 8), (259, 3, 1, 8), (262, 3, 1, 1), (277, 3, 1, 1)] +
+                  [(t, 4, n, {'offsets': at, 'sizes': at + 4 * count}.get(v, v)) for t, n, v in tags])
+    open(path, 'wb').write(struct.pack('<2sHI', b'II', 42, at + len(tables)) + data + tables + struct.pack('<H', len(tags)) +
+                           b''.join(struct.pack('<HHII', *t) for t in tags) + bytes(4))
+rows = zlib.compress(bytes(16000 * 800), 9)
+tiff('strips.tif', 16000, 16000, [(273, 20, 'offsets'), (278, 1, 800), (279, 20, 'sizes')], rows, 20)
+# one column, of tiles of 4 096 x 16
+tile = zlib.compress(bytes(4096 * 16), 9)
+tiff('tiles.tif', 1, 1600, [(322, 1, 4096), (323, 1, 16), (324, 100, 'offsets'), (325, 100, 'sizes')], tile, 100)
+for name in 'scans.jpg', 'strips.tif', 'tiles.tif':
+    open(name + '.obj', 'w').write('mtllib %s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n' % name)
+    open(name + '.mtl', 'w').write('newmtl m\nmap_Kd %s\n' % name)
+END
+for row in "scans.jpg 7840000000" "strips.tif 256000000" "tiles.tif 6553600"; do
+	name=${row% *} pixels=${row#* }
+	if [ $name != tiles.tif ]; then
+		run --textures=png $name.obj out.gltf
+		exits 7
+		says "$name: $(stat -c %s $name) bytes of image are to be decoded to $pixels pixels"
+		says "--max-pixels=$pixels allows it"
+	fi
+	run --textures=png --max-pixels=$((pixels - 1)) $name.obj out.gltf
+	exits 7
+	says "images of $pixels pixels are to be decoded and made"
+	[ ! -e out.gltf ] || wrong "there is an output"
+done
+run -q --textures=png --max-pixels=256000000 strips.tif.obj out.gltf
+exits 0
+run -q --textures=png --max-pixels=7840000000 scans.jpg.obj out.gltf
+exits 0
+says IMAGE_DAMAGED
+
 scene "500 maps of 4096 x 4096 are not too many, 60 times as many are"
 python3 "$ROOT/tests/support/cost_inputs.py" bumps 500 b.obj
 run --max-seconds=0.1 b.obj out.glb

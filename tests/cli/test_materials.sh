@@ -163,6 +163,50 @@ for file in quad.obj bare.obj quad.ply; do
 		'[[{"pbrMetallicRoughness":{"metallicFactor":0}}],0]'
 done
 
+# Quads around (0.5, 0.5), (1.5, 0.5), (3.5, 2.5), (-0.5, 0.5): tiles 1001, 1002, 1024 and none. A line has its corners on
+# both borders of 1002. The fan of four triangles has them in 1001, too: each face goes where its centre lies.
+udim_obj() {
+	echo 'mtllib m.mtl'
+	for corner in '0.1 0.1' '1.0 0.1' '3.2 2.2' '-0.8 0.3'; do
+		set -- $corner
+		awk -v u="$1" -v v="$2" 'BEGIN { for (i = 0; i < 4; i++) {
+			x = (i == 1 || i == 2); y = (i > 1); printf "v %g %g 0\nvt %g %g\n", u + x, v + y, u + x * (u == 1 ? 1 : 0.5), v + y * 0.5 } }'
+	done
+	printf 'usemtl m\nf 5/5 6/6 7/7 8/8\nf 1/1 2/2 3/3\nf 9/9 10/10 11/11 12/12\nusemtl plain\nf 1/1 3/3 4/4\nusemtl m\nf 13/13 14/14 15/15 16/16\n'
+}
+drawn='g.meshes[0].primitives.map((p) => [g.materials[p.material].name, g.accessors[p.indices].count / 3, (g.images[g.textures[g.materials[p.material].pbrMetallicRoughness.baseColorTexture?.index]?.source] ?? {}).uri])'
+
+scene "UDIM: a material for each tile that faces lie in, with its images"
+udim_obj >t.obj
+for tile in 1001 1002 1024; do
+	images write body.$tile.png 4 4 "($tile - 1000, 0, 0)"
+	images write nrm.$tile.png 4 4 '(128, 128, 255)'
+done
+printf 'newmtl m\nmap_Kd -clamp on body.<UDIM>.png\nnorm nrm.<UDIM>.png\nnewmtl plain\n' >m.mtl
+for threads in 1 2; do
+	run --threads=$threads t.obj t.gltf
+	exits 0
+	says_not warning
+	is "$(gltf t.gltf "$drawn")" \
+		'[["m.1002",2,"body.1002.png"],["m.1001",3,"body.1001.png"],["m.1024",2,"body.1024.png"],["plain",1,null]]'
+	is "$(gltf t.gltf '[g.images.length, (g.samplers ?? []).length, g.materials[0].normalTexture.index]')" '[6,0,1]'
+done
+rm body.1024.png
+run t.obj t.gltf
+says 'm.mtl:2: material "m.1024": warning: image cannot be read: body.1024.png'
+
+scene "a tile's number in a name is taken at its word, and faces in other tiles are a finding"
+udim_obj >t.obj
+images write body.1001.png 4 4 '(1, 0, 0)'
+printf 'newmtl m\nmap_Kd body.1001.png\nnewmtl plain\n' >m.mtl
+run t.obj t.gltf
+exits 0
+says "m.mtl:2: warning: 1 property of a material is not taken at its word: MTL: body.1001.png is the image of one tile, and faces in the tiles 1001 to 1024 show it; for an image each, write <UDIM> in place of 1001 [MATERIAL_DOUBTFUL]"
+is "$(gltf t.gltf "$drawn")" '[["m",7,"body.1001.png"],["plain",1,null]]'
+printf 'mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 0\nvt 2 0\nvt 1 1\nf 1/1 2/2 3/3\n' >one.obj
+run one.obj t.gltf
+says_not warning
+
 scene "the same bytes for every number of threads"
 for i in 1 2 3 4; do images write "$i.tga" 64 $((i * 16)) '(x + y, x, y)'; done
 quad "map_Kd 1.tga" "map_d 2.tga" "map_Pr 3.tga" "map_Pm 4.tga" "map_Ke 2.tga"

@@ -54,6 +54,48 @@ for input in t.obj t.glb; do
 	done
 done
 
+# A cube of 8 vertices, whose faces meet at 90 degrees: flat below that, and what smooth makes above.
+scene "angle:N: faces that meet at less share a normal, in PLY, OBJ and glTF"
+{
+	printf 'v %s\n' '0 0 0' '1 0 0' '1 1 0' '0 1 0' '0 0 1' '1 0 1' '1 1 1' '0 1 1'
+	printf 'vt %s\n' '0 0' '1 0' '1 1' '0 1'
+	for face in '1 4 3 2' '5 6 7 8' '1 2 6 5' '2 3 7 6' '3 4 8 7' '4 1 5 8'; do
+		set -- $face
+		echo "f $1/1 $2/2 $3/3 $4/4"
+	done
+} >cube.obj
+run cube.obj cube.ply
+{ printf 'ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n'
+	printf 'property float s\nproperty float t\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n'
+	awk '$1 == "v" { print $2, $3, $4, $2 + 0.1 * $4, $3 + 0.2 * $4 } $1 == "f" {
+		printf 4; for (i = 2; i <= 5; i++) printf " %d", $i - 1; print "" }' cube.obj; } >cube.ply
+run --normals=smooth --buffers=embed cube.ply cube.gltf
+python3 -c 'import json
+g = json.load(open("cube.gltf"))
+for p in g["meshes"][0]["primitives"]:
+    del p["attributes"]["NORMAL"], p["attributes"]["TANGENT"]
+json.dump(g, open("cube.gltf", "w"))'
+for input in cube.obj cube.ply cube.gltf; do
+	run --only=all --normals=angle:90 $input flat.glb
+	exits 0
+	is "$(gltf flat.glb "$positions")" 24
+	is "$(gltf flat.glb '[...new Set(rows(g.meshes[0].primitives[0].attributes.NORMAL).map(n => n.map(Math.abs).sort().join(" ")))]')" '["0 0 1"]'
+	run --only=all --normals=angle:91 $input smooth.glb
+	exits 0
+	is "$(gltf smooth.glb '[...new Set(rows(g.meshes[0].primitives[0].attributes.NORMAL).map(n => n.map(x => Math.abs(x).toFixed(5)).join(" ")))]')" \
+		'["0.57735 0.57735 0.57735"]'
+done
+run --only=all --existing=replace --normals=replace-angle:30 smooth.glb flat.glb
+is "$(gltf flat.glb "$positions")" 24
+
+scene "an OBJ without s gets smooth normals, and -v says why"
+sed '/^vn/d' "$data/quad.obj" | sed 's,/[0-9]*\( \|$\),\1,g' >t.obj
+run -v t.obj t.glb
+says "4 corners got a computed normal: smooth, because the file has no s [NORMALS_MADE]"
+{ echo 's off'; cat t.obj; } >s.obj
+run -v s.obj t.glb
+says "4 corners got a computed normal [NORMALS_MADE]"
+
 scene "where only some faces have normals the others get them"
 {
 	tilted_obj

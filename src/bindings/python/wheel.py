@@ -93,7 +93,7 @@ def write_sdist(version, files, folder):
     return path
 
 
-# What pip calls, in the folder of an unpacked source distribution.
+# Entry points for pip, in the folder of an unpacked source distribution.
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     with tempfile.TemporaryDirectory() as folder:
         library = os.path.join(folder, "libnmtan.so.0")

@@ -13,7 +13,7 @@ for header in fast_float nlohmann xxhash.h xxh3.h stb; do
 	[ ! -e "$system/$header" ] || ln -sfn "$system/$header" "$include/$header"
 done
 
-# What is installed beside the others' headers, without what reads whole scenes, or asks for vector code.
+# Headers that are installed beside the others' headers, without those that read whole scenes or ask for vector code.
 installed() { find "$system" -name "$1" | head -n 1; }
 grep -v TRANSCODER "$system/draco/draco_features.h" >"$include/draco/draco_features.h"
 grep -v WITH_SIMD "$(installed jconfig.h)" >"$include/jconfig.h"

@@ -1,8 +1,8 @@
 #!/usr/bin/env node
 // SPDX-License-Identifier: MIT
 //
-// npx nmtan: the tool over the files of this machine. What emscripten's files do otherwise than the system calls that the
-// tool was written for is put right here and in system.c.
+// npx nmtan: the tool over the files of this machine. This file and system.c put right what emscripten's files do
+// otherwise than the system calls that the tool was written for.
 import fs from 'node:fs';
 import {createRequire} from 'node:module';
 import tty from 'node:tty';

@@ -18,7 +18,7 @@
 enum { FIELDS = 14 };
 
 // clang-format off
-/* What a call of JavaScript returns, or an error number below 0. */
+/* The result of a call of JavaScript, or an error number below 0. */
 EM_JS(int, call_system, (const char *name, const char *from, const char *to, int fd), {
 	var system = Module["system"];
 	var call = system && system[UTF8ToString(name)];
@@ -186,7 +186,7 @@ int fallocate(int fd, int mode, off_t offset, off_t size)
 	return refuse();
 }
 
-/* Locks. What others left behind cannot be told from what they are writing, and stays. */
+/* Locks. Leftovers of others look like files that they are writing, and stay. */
 int flock(int fd, int operation)
 {
 	(void)fd, (void)operation;

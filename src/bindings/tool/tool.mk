@@ -50,7 +50,7 @@ foreign_spng := $(call foreign_of,libspng,spng/spng.c)
 foreign_deflate := $(call foreign_of,libdeflate,lib/*.c lib/arm/*.c lib/x86/*.c)
 foreign_zlib := $(filter-out %/gz%,$(call foreign_of,zlib,*.c))
 foreign_zstd := $(call foreign_of,libzstd,lib/common/*.c lib/compress/*.c lib/decompress/*.c)
-# What other libjpeg's programs are made of, and what is included by other files, is left out.
+# Leaves out the sources of libjpeg's programs and files that other files include.
 foreign_jpeg := $(filter-out %/jccolext.c %/jdcolext.c %/jdcol565.c %/jdmrgext.c %/jdmrg565.c %/jstdhuff.c %/jpegtran.c \
 	%/jcstest.c %/jdatadst-tj.c %/jdatasrc-tj.c, $(call foreign_of,libjpeg-turbo,jc*.c jd*.c jerror.c jfdct*.c jidct*.c jmem*.c \
 	jquant*.c jutils.c jsimd_none.c jaricom.c))

@@ -26,7 +26,7 @@ export function outside(name) {
 	return whole.replace(/^\/UNC:(?=\/)/i, '/').replace(/^\/([a-z]:)$/i, '$1/').replace(/^\/(?=[a-z]:\/)/i, '');
 }
 
-// What Windows takes for a device, part of a file or another name, is not made.
+// Refuses to make names that Windows takes for a device, part of a file or another name.
 function checkNew(name) {
 	const parts = name.replace(/^\/(UNC|[a-z]):/i, '').split('/').filter((part) => part !== '.' && part !== '..');
 	if (parts.some((part) => /^(con|prn|aux|nul|(com|lpt)\d) *(\.|$)|[<>:"|?*]|[. ]$/i.test(part)))

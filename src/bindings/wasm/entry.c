@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What JavaScript calls, in a module of its own memory. core.js puts a job's arrays into this memory, tightly packed,
- * and takes the results out of it. One thread.
+ * Functions that JavaScript calls, in a module of its own memory. core.js puts a job's arrays into this memory,
+ * tightly packed, and takes the results out of it. One thread.
  */
 #include <stdint.h>
 #include "base/hash.h"

@@ -97,7 +97,7 @@ export function generateTangents(positions: Attribute, normals: Normals, texcoor
 
 /**
  * The same, repaired: each tangent is a unit vector across its normal, and the corners of a triangle have one w, by the
- * exact orientation of the triangle. Where the raw result is that already, the two are equal.
+ * exact orientation of the triangle. If the raw result is that already, the two are equal.
  */
 export function generateRepairedTangents(positions: Attribute, normals: Normals, texcoords: Attribute,
 	options?: Direction): Float32Array;

@@ -49,7 +49,7 @@ function setTheme(name) {
 
 // ---- jobs ----
 
-// What a worker answers to a job; undefined if the job was given up meanwhile.
+// A worker's answer to a job; undefined if the job was given up meanwhile.
 async function run(job, state) {
 	stop();
 	say('failure', '');
@@ -135,7 +135,7 @@ async function showReport(html) {
 
 // ---- saving ----
 
-// Those chosen by hand, and what the report advises unless the tangents are decided by hand.
+// The options chosen by hand, and what the report advises unless the tangents are decided by hand.
 function chosenOptions() {
 	const chosen = [...new FormData(actions)].filter(([, value]) => value).map(([name, value]) => `--${name}=${value}`);
 	return advised && !$('actions').elements.existing.value ? ['--fix', ...chosen] : chosen;

@@ -7,7 +7,7 @@
 // WebAssembly has 4 GB, and a mesh takes several times its file's size there.
 export const MOST_BYTES = 1e9;
 
-// What is said to the reader as it stands.
+// An error whose text the reader sees as it stands.
 export class Refusal extends Error {}
 
 export const sizeText = bytes => bytes >= 1e9 ? (bytes / 1e9).toFixed(1) + ' GB' : bytes >= 1e6 ? (bytes / 1e6).toFixed(1) + ' MB' : Math.ceil(bytes / 1e3) + ' kB';
@@ -33,7 +33,7 @@ export const isHidden = path => path.split('/').some(part => part.startsWith('.'
 
 export const filesOfList = list => [...list].map(file => ({path: file.webkitRelativePath || file.name, blob: file}));
 
-// Of a folder all files. readEntries() gives some at a time, and none at the end.
+// Lists all files of a folder. readEntries() gives some at a time, and none at the end.
 async function filesOfEntry(entry) {
 	if (entry.isFile)
 		return [{path: entry.fullPath.slice(1), blob: await new Promise((done, failed) => entry.file(done, failed))}];

@@ -35,7 +35,7 @@ build/web/report.html: $(web_dir)/report.html $(web_page)/page.html
 	@mkdir -p $(@D)
 	{ cat $(web_dir)/report.html $(web_page)/page.html && printf '</body>\n</html>\n'; } >$@.part && mv $@.part $@
 
-# What is made by these rules is made by them as they are now.
+# A change of these rules makes their targets again.
 $(addprefix build/web/,$(web_files)): $(web_dir)/web.mk
 
 # Another version is another cache: its name is of the bytes.

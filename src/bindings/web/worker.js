@@ -11,7 +11,7 @@ import {openZip, writeZip} from './zip.js';
 const STATUS_OK = 0, STATUS_MEMORY = 4, STATUS_FINDINGS = 6;
 const tooLarge = 'There is not enough memory for this in a web page. The program nmtan has no such limit.';
 
-// What was dropped, archives unpacked: Map of path to bytes.
+// The dropped files, archives unpacked: Map of path to bytes.
 async function read(files) {
 	const wanted = [];
 	for (const {path, blob} of files)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // ZIP archives. openZip() reads the directory and judges it before anything is unpacked: names stay below the archive, no two
-// are equal, all together are not too large. What an entry says of its size and its CRC-32 is then held against what
-// comes out, so that an archive takes no more memory than it says. writeZip() stores what does not get smaller anyway.
-// Not read: ZIP64, encryption, methods other than stored and deflated.
+// are equal, all together are not too large. Size and CRC-32 that an entry states are then compared with its output,
+// so that an archive takes no more memory than it says. writeZip() stores what does not get smaller anyway. Not read:
+// ZIP64, encryption, methods other than stored and deflated.
 import {Refusal, checkSize, cleanPath} from './files.js';
 
 const LOCAL = 0x04034b50, CENTRAL = 0x02014b50, END = 0x06054b50;

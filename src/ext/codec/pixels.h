@@ -24,7 +24,7 @@ typedef struct nt_pixels {
 	void *samples;          /* [height][width][channels] of uint8_t or uint16_t, rows from the top; free() */
 } nt_pixels;
 
-/* What an image may have: a map of 16384 x 16384, with at most two bytes for each of four channels. */
+/* Largest image: a map of 16384 x 16384, with at most two bytes for each of four channels. */
 #define NT_PIXELS_MOST       ((uint64_t)16384 * 16384)
 #define NT_PIXELS_MOST_BYTES ((uint64_t)2 << 30)
 

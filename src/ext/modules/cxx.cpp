@@ -7,9 +7,9 @@
 #include <new>
 
 // A thread's exceptions are in thread-local memory of the C++ library. The loader gives a library that is opened late
-// such memory when a thread first asks for it, and ends the process where there is none. What is referred to by its
-// offset has its place from the start of each thread; so one of the library's variables is, and the rest lies beside
-// it.
+// such memory when a thread first asks for it, and ends the process where there is none. A thread-local variable that
+// is referred to by its offset has its place from the start of each thread; so one of the library's variables is, and
+// the rest lies beside it.
 extern __thread void *with_fixed_offset __asm__("_ZSt15__once_callable") __attribute__((tls_model("initial-exec")));
 
 namespace {

@@ -91,7 +91,7 @@ struct head_reader {
 		return 0;
 	}
 
-	// What was a fixed number in streams before `since` is a variable one from then on.
+	// A fixed number in streams before `since` is a variable one from then on.
 	uint64_t number(unsigned since) { return version < since ? fixed(4) : variable(); }
 
 	void skip(uint64_t bytes)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Encoding with Draco. What would kill the encoder (values that are not finite), take it beyond memory, or could
-// not be decoded again (more than three points per face) is refused before; and its result is decoded and
-// compared with the input after quantization (draco_compare.cpp), since what it cannot keep it does not tell.
+// Encoding with Draco. Refuses input that would kill the encoder (values that are not finite), take it beyond memory,
+// or could not be decoded again (more than three points per face); and its result is decoded and compared with the
+// input after quantization (draco_compare.cpp), since what it cannot keep it does not tell.
 #include "base/hash.h"
 #include "ext/modules/draco_parts.hpp"
 #include "ext/modules/guard.hpp"
@@ -220,9 +220,9 @@ private:
 	std::vector<slot> slots;
 };
 
-// What DeduplicateValues() of the attribute does, whose tables take a third of the whole time: values that are equal
-// bit for bit become one, in the order in which they come first. Each point has a value of its own before. Returns
-// whether all differ.
+// Does the work of the attribute's DeduplicateValues(), whose tables take a third of the whole time: values that are
+// equal bit for bit become one, in the order in which they come first. Each point has a value of its own before.
+// Returns whether all differ.
 bool join_values(PointAttribute &attribute, uint32_t count)
 {
 	const size_t width = static_cast<size_t>(attribute.byte_stride());

@@ -13,7 +13,7 @@
 /* Two bits of a block of version 1 say that 256 bytes are like those before them. */
 enum { MAX_RATIO = 1024, SLACK_BYTES = 65536 };
 
-/* What the extension's text demands of strides and counts, so that the decoders' assertions hold. */
+/* Checks what the extension's text demands of strides and counts, so that the decoders' assertions hold. */
 static nt_status check(const nt_meshopt_view *v, uint64_t size, const char *pointer, nt_error *error)
 {
 	const bool attributes = strcmp(v->mode, "ATTRIBUTES") == 0;

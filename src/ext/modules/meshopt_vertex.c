@@ -16,7 +16,7 @@
 
 enum { GROUP = 16, BLOCK_BYTES = 8192, BLOCK_MOST = 256, MAX_STRIDE = 256, TAIL_LEAST = 24 };
 
-/* What is left of the blocks. */
+/* The rest of the blocks. */
 typedef struct cursor {
 	const unsigned char *at, *end;
 } cursor;

@@ -272,7 +272,7 @@ struct marked_edges {
 		return HalfedgeHandle();
 	}
 
-	// Where the walk through h begins: h itself when it is closed.
+	// The beginning of the walk through h: h itself when it is closed.
 	HalfedgeHandle beginning(HalfedgeHandle h) const
 	{
 		HalfedgeHandle back = opposite_of(mesh, h);

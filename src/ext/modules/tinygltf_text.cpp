@@ -68,7 +68,7 @@ size_t skip_string(const char *text, size_t size, size_t at)
 	return at;
 }
 
-// Where the next number begins, and ends, from `at` on; false: there is none.
+// Finds the beginning and the end of the next number from `at` on; false: there is none.
 bool find_number(const char *text, size_t size, size_t at, size_t *begin, size_t *end)
 {
 	for (; at < size; at++) {
@@ -85,7 +85,7 @@ bool find_number(const char *text, size_t size, size_t at, size_t *begin, size_t
 	return false;
 }
 
-// What the parser gets instead of a number; empty: the number as it stands.
+// The text that the parser gets instead of a number; empty: the number as it stands.
 std::string easier_number(const char *begin, const char *end)
 {
 	constexpr double exact = 9007199254740992; // up to here every integer is a double

@@ -13,7 +13,7 @@
 #include <string.h>
 #include "gltf/accessor.h"
 
-/* Of insertions, where a view's user is unknown: it may be data of an extension that wants 8-byte alignment
+/* Alignment of insertions if a view's user is unknown: it may be data of an extension that wants 8-byte alignment
  * (EXT_structural_metadata does). */
 enum { CAREFUL_ALIGNMENT = 8 };
 
@@ -153,7 +153,7 @@ nt_status nt_edits_replace(nt_buffer_edits *edits, uint32_t index, uint64_t at, 
 	const unsigned char *bytes, size_t size, nt_error *error)
 {
 	nt_edited_buffer *buffer = nt_edits_of(edits, index);
-	/* What is behind keeps its alignment; in a view that will be packed again there are whole elements. */
+	/* Bytes behind keep their alignment; in a view that will be packed again there are whole elements. */
 	const bool pads = at + removed < buffer->old_length && (index < NT_GLTF_VIRTUAL || !edits->keeps_packed);
 	const size_t excess = pads ? (size_t)((size - removed) % edits->alignment) : 0;
 	if (excess) {

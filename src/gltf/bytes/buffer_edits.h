@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What changes in the bytes of a document's buffers: insertions and replacements at places of the
+ * Changes of the bytes of a document's buffers: insertions and replacements at places of the
  * source, and new views behind the end. Everything else is streamed from the source as it is, and every
  * offset in the JSON is moved by what was inserted before it.
  */
@@ -10,7 +10,7 @@
 #include "gltf/bytes/byte_users.h"
 #include "gltf/view.h"
 
-/* What glTF itself has in buffers needs no more. */
+/* glTF's own data in buffers needs no more. */
 enum { NT_EDITS_ALIGNMENT = 4 };
 
 /* New bytes at a place of a source buffer. */
@@ -83,7 +83,7 @@ typedef struct nt_buffer_edits {
 
 /*
  * Starts with no edits. Compressed views that vertices will be appended to are decompressed first: edits
- * have to know them from the beginning. What is faulty and needed by nothing is passed over.
+ * have to know them from the beginning. Faulty data that nothing needs is passed over.
  */
 nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, bool keeps_packed, nt_error *error);
 void nt_edits_free(nt_buffer_edits *edits);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Who refers to which bytes of a document's buffers: accessors, their sparse arrays, images, compressed
+ * Users of the bytes of a document's buffers: accessors, their sparse arrays, images, compressed
  * data, and views whose user is unknown. Sorted by buffer and begin, with the largest end so far beside each,
  * so that a question about a range looks at few of them.
  */
@@ -51,7 +51,7 @@ static bool add_accessor(nt_byte_users *users, nt_gltf *document, const nt_verte
 	return added;
 }
 
-/* Where a view lies that was decompressed, for readers that do not know the extension. */
+/* The place of a decompressed view, for readers that do not know the extension. */
 static bool add_place(nt_byte_users *users, const nt_json_value *view)
 {
 	uint64_t buffer, offset = 0, length;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Who refers to which bytes: see byte_users.c.
+ * Users of bytes: see byte_users.c.
  */
 #ifndef NT_GLTF_BYTES_BYTE_USERS_H
 #define NT_GLTF_BYTES_BYTE_USERS_H
@@ -21,7 +21,7 @@ typedef struct nt_byte_users {
 	bool unknown;       /* nothing that we know uses one of the views */
 } nt_byte_users;
 
-/* What is faulty in the document is passed over. False: out of memory. */
+/* Faulty parts of the document are passed over. False: out of memory. */
 bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document, const nt_vertex_pools *pools);
 
 /* Whether something other than the accessors whose owner, by first alias, is `own` refers to bytes of [begin, end). */

@@ -2,10 +2,10 @@
 /*
  * Views that meshoptimizer packed stay packed, by the extension, mode and filter that they have.
  *
- * Edits know a packed view as a virtual buffer, which was decompressed. What is put into it is what stands before its
- * filter, since undoing a filter and applying it again would round what is there: a copied vertex is a copy of those
- * bytes. New elements that go with a packed view are gathered in one new view for each kind of them, as gltfpack has
- * them: a view costs more than many of its elements.
+ * Edits know a packed view as a virtual buffer, which was decompressed. Values are put into it as they stand before
+ * its filter, since undoing a filter and applying it again would round what is there: a copied vertex is a copy of
+ * those bytes. New elements that go with a packed view are gathered in one new view for each kind of them, as
+ * gltfpack has them: a view costs more than many of its elements.
  *
  * A packed view names two buffers. One has the packed bytes. In the other a reader that does not know the extension
  * finds the plain ones, if it has bytes at all; there the view takes the place that its new length needs.
@@ -132,7 +132,7 @@ nt_status nt_packed_tangents(nt_buffer_edits *edits, const nt_json_value *attrib
 
 /* ---- packing ---- */
 
-/* What a packed view's JSON says of its bytes. */
+/* The members of a packed view's JSON. */
 static void describe(nt_json *json, nt_json_value *extension, const nt_gltf_packing *p, size_t count, size_t size)
 {
 	nt_json_set_uint64(json, nt_json_put(json, extension, "byteLength"), size);

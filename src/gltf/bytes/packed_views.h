@@ -16,8 +16,8 @@ nt_gltf_packing nt_packing_of(const nt_buffer_edits *edits, uint32_t view);
 nt_gltf_packing nt_packing_of_accessor(const nt_buffer_edits *edits, uint32_t accessor);
 
 /*
- * Bytes of a buffer as they are stored: those before the filter of a packed view, which has been decompressed. What is
- * added to such a view has to be that.
+ * Bytes of a buffer as they are stored: those before the filter of a packed view, which has been decompressed. Data
+ * that is added to such a view has to be that.
  *
  *   bytes  those at `offset` of the buffer, and what takes their place
  */
@@ -43,8 +43,8 @@ void nt_gltf_place_accessor(nt_json *json, nt_json_value *accessor, uint32_t vie
 nt_status nt_packed_release(nt_buffer_edits *edits, uint32_t view, uint64_t offset, uint64_t length, nt_error *error);
 
 /*
- * How new tangents are stored that go with a primitive's attributes. Where its tangents are packed, as they are; else,
- * where its normals are, as these: integers by the octahedron if they are, floats by the same filter; else plain.
+ * How new tangents are stored that go with a primitive's attributes. If its tangents are packed, as they are; else,
+ * if its normals are, as these: integers by the octahedron if they are, floats by the same filter; else plain.
  *
  *   wanted  NT_PRECISION_AUTO: as said; else they have this, and a filter only if that is of its kind
  */

@@ -3,11 +3,12 @@
  * A new glTF document for a scene from another format (OBJ, PLY, Draco): .gltf with a .bin, .gltf with
  * everything inside, or .glb.
  *
- * One glTF mesh per mesh, one node per instance, one primitive per material of a mesh. The document is
+ * One glTF mesh per mesh (of a mesh with groups: per group), one node per instance of it, one primitive per
+ * material. The document is
  * planned first, so that all sizes and places are known and its JSON (model.h) is complete, then the
  * buffer is streamed: geometry as primitive.h has it, embedded images behind. Only materials and images that
- * something uses are written; a primitive without texture coordinates gets its material without textures. What has no
- * material gets a neutral one, since glTF's default is metal.
+ * something uses are written; a primitive without texture coordinates gets its material without textures. A mesh
+ * without a material gets a neutral one, since glTF's default is metal.
  */
 #include "gltf/create/create.h"
 
@@ -54,7 +55,7 @@ typedef struct composition {
 	uint64_t buffer_size;
 } composition;
 
-/* Where the buffer's bytes go. */
+/* The destination of the buffer's bytes. */
 typedef struct byte_stream {
 	nt_sink *sink;
 	nt_base64 *base64; /* NULL: as they are */
@@ -168,7 +169,7 @@ static bool is_textured(composition *c, const nt_new_primitive *primitive)
 		nt_material_takes_texcoords(material_of(c, primitive));
 }
 
-/* Where the number of that version is. */
+/* The place of that version's number. */
 static uint32_t *number_of(composition *c, const nt_new_primitive *primitive)
 {
 	const size_t count = c->scene->material_count;
@@ -213,6 +214,18 @@ static size_t list_attributes(const primitive_record *record, nt_model_attribute
 	return count;
 }
 
+static const char *name_of(const composition *c, size_t m, uint32_t group)
+{
+	const nt_mesh *mesh = &c->scene->meshes[m];
+	return mesh->groups ? mesh->groups[group] : mesh->name;
+}
+
+/* Whether a primitive begins a mesh of the document: the first of each group does. */
+static bool begins_mesh(const nt_new_primitives *primitives, size_t p)
+{
+	return p == 0 || primitives->items[p].group != primitives->items[p - 1].group;
+}
+
 /* Meshes, their primitives, and a node for each of their instances. */
 static nt_status plan_scene(composition *c, nt_error *error)
 {
@@ -220,23 +233,28 @@ static nt_status plan_scene(composition *c, nt_error *error)
 	uint32_t *numbers = nt_arena_alloc(&c->arena, scene->mesh_count, sizeof *numbers);
 	if (!numbers)
 		return nt_fail_memory(error);
+	uint32_t count = 0;
 	for (size_t m = 0; m < scene->mesh_count; m++) {
-		if (c->primitives[m].count == 0)
-			continue;
-		numbers[m] = nt_model_mesh(c->model, scene->meshes[m].name);
+		numbers[m] = count;
 		for (size_t p = 0; p < c->primitives[m].count; p++) {
 			const nt_new_primitive *primitive = &c->primitives[m].items[p];
 			const primitive_record *record = &c->records[m][p];
 			nt_model_attribute attributes[NT_ATTRIBUTE_COUNT];
-			const size_t count = list_attributes(record, attributes);
-			nt_model_primitive(c->model, attributes, count, record->indices, *number_of(c, primitive));
+			const size_t attribute_count = list_attributes(record, attributes);
+			if (begins_mesh(&c->primitives[m], p))
+				count = nt_model_mesh(c->model, name_of(c, m, primitive->group)) + 1;
+			nt_model_primitive(c->model, attributes, attribute_count, record->indices,
+				*number_of(c, primitive));
 		}
 	}
 	for (size_t i = 0; i < scene->instance_count; i++) {
 		const nt_instance *instance = &scene->instances[i];
-		if (c->primitives[instance->mesh].count > 0)
-			nt_model_node(c->model, scene->meshes[instance->mesh].name,
-				numbers[instance->mesh], instance->matrix);
+		const size_t m = instance->mesh;
+		uint32_t number = numbers[m];
+		for (size_t p = 0; p < c->primitives[m].count; p++)
+			if (begins_mesh(&c->primitives[m], p))
+				nt_model_node(c->model, name_of(c, m, c->primitives[m].items[p].group), number++,
+					instance->matrix);
 	}
 	return NT_OK;
 }
@@ -447,10 +465,10 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 	if (scene->left_out)
 		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, NULL, scene->left_out_count, "%.200s",
 			scene->left_out);
-	/* What becomes of each mesh. */
+	/* The primitives made of each mesh. */
 	if (status == NT_OK)
 		status = plan_primitives(&c, error);
-	/* Where everything lies in the buffer. */
+	/* The layout of the buffer. */
 	if (status == NT_OK) {
 		plan_geometry(&c);
 		status = plan_materials(&c, error);

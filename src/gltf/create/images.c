@@ -13,7 +13,7 @@
 #include "file/uri.h"
 #include "image/textures.h"
 
-/* What becomes of one result of the textures. */
+/* Treatment of one result of the textures. */
 typedef struct image_entry {
 	const nt_texture *image;
 	const nt_material *material; /* the first that uses it */

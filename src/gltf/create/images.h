@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The images and materials of a new glTF document. Of the results that its materials use (image/textures.h) each is
- * linked, copied or embedded. An image that was made is a file of nobody yet, so where others are linked it is written
- * beside the output. An image that several materials use is one image, and a texture for each of its samplers.
+ * The images and materials of a new glTF document. Each result that its materials use (image/textures.h) is linked,
+ * copied or embedded. An image that was made is a file of nobody yet, so where others are linked it is written beside
+ * the output. An image that several materials use is one image, and a texture for each of its samplers.
  */
 #ifndef NT_GLTF_CREATE_IMAGES_H
 #define NT_GLTF_CREATE_IMAGES_H
@@ -31,7 +31,7 @@ nt_status nt_image_set_use(nt_image_set *set, const nt_material *material, const
 nt_status nt_image_set_add(nt_image_set *set, nt_scene *scene, nt_model *model, uint64_t *buffer_size,
 	nt_output *output, nt_error *error);
 
-/* What the alpha of a request's image does, where the request is for alpha. */
+/* The effect of alpha of a request's image, if the request is for alpha. */
 nt_alpha_mode nt_image_set_alpha(const nt_image_set *set, uint32_t request);
 
 /* The document's texture for a map, and where it lies. */

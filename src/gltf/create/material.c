@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Materials of new documents: see images.h. Where a map is there its own factor counts, else the material's number.
+ * Materials of new documents: see images.h. If there is a map, its own factor counts, else the material's number.
  */
 #include "gltf/create/images.h"
 

@@ -37,6 +37,7 @@ static nt_new_primitive whole_primitive(const nt_mesh *mesh)
 	return (nt_new_primitive){
 		.mesh = mesh,
 		.material = mesh->primitive_count ? mesh->primitives[0].material : NT_NONE,
+		.group = mesh->primitive_count ? mesh->primitives[0].group : 0,
 		.vertex_count = indices ? vertex_count_after_split(mesh) : mesh->corner_count,
 		.index_count = indices ? mesh->corner_count : 0,
 		.indices = indices,
@@ -117,6 +118,7 @@ static bool divide(const nt_mesh *mesh, nt_arena *arena, nt_new_primitives *made
 		nt_new_primitive *primitive = &made->items[made->count++];
 		*primitive = (nt_new_primitive){.mesh = mesh,
 			.material = mesh->primitives[p].material,
+			.group = mesh->primitives[p].group,
 			.index_count = first[p + 1] - first[p],
 			.indices = sorted + first[p]};
 		done = compact(primitive, sorted + first[p], numbers, arena);

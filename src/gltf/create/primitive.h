@@ -12,6 +12,7 @@
 typedef struct nt_new_primitive {
 	const nt_mesh *mesh;
 	uint32_t material;        /* of the scene, or NT_NONE */
+	uint32_t group;           /* of the mesh */
 	size_t vertex_count;
 	const uint32_t *vertices; /* [vertex_count] vertex of the mesh after its split; NULL: all, in order */
 	size_t index_count;       /* 0 with indices NULL: every three vertices are a triangle */
@@ -23,12 +24,12 @@ typedef struct nt_new_primitives {
 	size_t count;
 } nt_new_primitives;
 
-/* The new primitives of a mesh, for those of its primitives that have faces, in their order. What has to be
- * made lives in the arena. Returns NT_OK, NT_ERROR_MEMORY, NT_ERROR_TOO_LARGE or NT_ERROR_INTERNAL. */
+/* The new primitives of a mesh, for those of its primitives that have faces, in their order. New strings live in the
+ * arena. Returns NT_OK, NT_ERROR_MEMORY, NT_ERROR_TOO_LARGE or NT_ERROR_INTERNAL. */
 nt_status nt_new_primitives_make(const nt_mesh *mesh, nt_arena *arena, nt_new_primitives *made,
 	nt_error *error);
 
-/* What can be written of a primitive. */
+/* The attributes of a primitive that can be written. */
 typedef enum nt_attribute {
 	NT_ATTRIBUTE_POSITION,
 	NT_ATTRIBUTE_NORMAL,
@@ -52,7 +53,7 @@ void nt_new_primitive_bounds(const nt_new_primitive *primitive, float min[3], fl
 /* The component type of the indices: NT_GLTF_USHORT where that will do, else NT_GLTF_UINT. */
 uint32_t nt_new_primitive_index_type(const nt_new_primitive *primitive);
 
-/* Where the bytes of a primitive go. */
+/* The destination of a primitive's bytes. */
 typedef nt_status (*nt_byte_writer)(void *user, const void *bytes, size_t size, nt_error *error);
 
 /* Writes one attribute, or the indices, in blocks: straight from the mesh where it has them as they are

@@ -3,10 +3,9 @@
  * Vertices that splitting appended, in the accessors of a pool.
  *
  * Accessors keep their number and their first elements. Attributes that are interleaved form a block whose
- * vertices are copied as a whole and inserted behind its last one. Where bytes of a block also belong to
- * somebody else, its accessors move to new views. An accessor that has to keep its count, because a
- * primitive without indices or an animation uses it too, is left alone and the solved primitives get a
- * copy of it.
+ * vertices are copied as a whole and inserted behind its last one. If bytes of a block also belong to somebody else,
+ * its accessors move to new views. An accessor that has to keep its count, because a primitive without indices or an
+ * animation uses it too, is left alone and the solved primitives get a copy of it.
  */
 #include "gltf/edit/append.h"
 
@@ -94,7 +93,7 @@ static nt_status add_elements(nt_appending *job, const nt_append_target *from, b
 	return status;
 }
 
-/* What an accessor says of its bounds becomes that of its values where these are new, or come from a decoder: the
+/* An accessor's bounds become those of its values if these are new, or come from a decoder: the
  * encoder may have moved them. Copies do not matter. */
 static nt_status settle_bounds(nt_appending *job, const nt_append_target *of, uint32_t accessor)
 {
@@ -295,8 +294,8 @@ static nt_status insert_vertices(nt_appending *job, const block *b, const unsign
 	return nt_edits_replace(job->edits, b->buffer, b->end, 0, out, added * b->stride, job->error);
 }
 
-/* Replaces the whole block: some of its values are new. What a reader will see as before stays as it is stored, since
- * several elements of a packed view may mean the same. */
+/* Replaces the whole block: some of its values are new. Values that a reader will see as before stay as they are
+ * stored, since several elements of a packed view may mean the same. */
 static nt_status replace_vertices(nt_appending *job, const block *b, const unsigned char *decoded,
 	const unsigned char *elements)
 {

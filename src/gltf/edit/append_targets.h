@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What appending vertices to the accessors of a pool takes: see append_targets.c.
+ * Helpers for appending vertices to the accessors of a pool: see append_targets.c.
  */
 #ifndef NT_GLTF_EDIT_APPEND_TARGETS_H
 #define NT_GLTF_EDIT_APPEND_TARGETS_H

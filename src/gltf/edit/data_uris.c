@@ -4,8 +4,8 @@
  * JSON, as it was before, a buffer took its size four times over: its bytes, their base64, the string's
  * copy, and the text.
  *
- * Where a buffer's data belongs is found by making the text twice, once with a character in its place: where
- * the texts differ. Without data URIs the text is never in memory as a whole.
+ * To find the place of a buffer's data, the text is made twice, once with a character in its place: there the texts
+ * differ. Without data URIs the text is never in memory as a whole.
  */
 #include "gltf/edit/data_uris.h"
 

@@ -3,11 +3,11 @@
  * Compressed primitives that got tangents; with an explicit --draco, plain ones that shall be compressed.
  *
  * The block is encoded again with the copied vertices and TANGENT among the attributes. Attributes keep the
- * source's quantization, origin and range, so that they decode to the values they had. Where attributes
- * lie outside of the block (morph targets, joints in some files) or faces are degenerate, order matters
- * and the sequential method is taken. Where compressing again would lose something (the encoder drops
- * vertices that no face uses, and elements outside of the block would no longer fit), where primitives share
- * accessors but not all else, or where it is not wanted, the primitive is written plain.
+ * source's quantization, origin and range, so that they decode to the values they had. If attributes lie outside of
+ * the block (morph targets, joints in some files) or faces are degenerate, order matters and the sequential method is
+ * taken. If compressing again would lose something (the encoder drops vertices that no face uses, and elements
+ * outside of the block would no longer fit), where primitives share accessors but not all else, or where it is not
+ * wanted, the primitive is written plain.
  */
 #include "gltf/edit/draco.h"
 
@@ -130,7 +130,7 @@ static nt_status quantize_tangents(const nt_gltf_recoding *r, float *least, nt_e
 	return nt_draco_quantize(&mesh, &quantized, error);
 }
 
-/* What is in the block leaves the buffers, and what is not grows beside it. */
+/* Attributes in the block leave the buffers, others grow beside it. */
 static nt_status store(nt_gltf_recoding *r, uint32_t buffer, nt_morph_cost *cost, nt_error *error)
 {
 	nt_gltf_override *overrides = nt_arena_alloc(r->arena, r->mesh->morph_count + 1, sizeof *overrides);
@@ -188,7 +188,7 @@ static void share_block(const nt_gltf_recoding *r)
 	}
 }
 
-/* What the user asked for and does not get. */
+/* A finding for compression that the user asked for and does not get. */
 static void report_users(const nt_gltf_recoding *r, nt_finding_list *findings, bool compressed)
 {
 	const nt_vertex_pool *pool = r->vertices->pool;

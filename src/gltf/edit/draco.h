@@ -16,7 +16,7 @@ nt_status nt_gltf_draco_look_up(nt_gltf_recoding *recoding, nt_buffer_edits *edi
 	nt_pool_vertices *vertices, const nt_write_options *options, nt_arena *arena, nt_error *error);
 
 /* The beginning of that, which looks at no values: whether an obstacle stands in the way, and what of a plain pool
- * goes into a block. Of the vertices it takes the pool and their count in the source. */
+ * goes into a block. It takes the pool of the vertices and their count in the source. */
 nt_status nt_gltf_draco_begin(nt_gltf_recoding *recoding, nt_gltf *document, nt_vertex_pools *pools,
 	nt_pool_vertices *vertices, const nt_write_options *options, nt_arena *arena, nt_error *error);
 

@@ -48,7 +48,7 @@ void nt_gltf_draco_add(nt_gltf_recoding *recoding, const char *name, nt_draco_at
 /* The attributes of the primitive's block, as they are. */
 nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *recoding, nt_error *error);
 
-/* What nmtan made: NORMAL where it did, TANGENT, _BITANGENT where asked for. */
+/* Attributes that nmtan made: NORMAL where it did, TANGENT, _BITANGENT where asked for. */
 void nt_gltf_draco_add_own(nt_gltf_recoding *recoding);
 
 /* The JSON of the primitive follows what a decoder will see; new accessors have no view, their elements are in the

@@ -11,13 +11,13 @@
 #include "base/parallel.h"
 #include "gltf/edit/new_accessors.h"
 
-/* What Draco takes for each corner and vertex, of ordinary meshes: see batch/need.h. */
+/* Memory that Draco takes for each corner and vertex of ordinary meshes: see batch/need.h. */
 enum { ELEMENT_BYTES = 100 };
 
 /* ---- one ---- */
 
-/* Whether edgebreaker would drop a face: two corners at one position, as Draco gets them. What quantization brings
- * together it keeps. */
+/* Whether edgebreaker would drop a face: two corners at one position, as Draco gets them. Vertices
+ * that quantization brings together do not count. */
 static bool has_degenerate_face(const nt_gltf_recoding *r)
 {
 	const nt_draco_attribute *positions = NULL;
@@ -58,7 +58,7 @@ static bool order_is_kept(const nt_gltf_recoding *r)
 	return true;
 }
 
-/* Draco's own default. Of an edgebreaker torus of 245 000 triangles level 4 makes 0.85 of the bytes in 1.07 of the
+/* Draco's own default. With edgebreaker, a torus of 245 000 triangles takes at level 4 0.85 of the bytes in 1.07 of the
  * time, level 8 twice the bytes in 0.69; with many seams level 6 makes up to a quarter more. */
 enum { DRACO_SPEED = 5 };
 

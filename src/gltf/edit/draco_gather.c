@@ -3,7 +3,7 @@
  * Plain primitives that an explicit --draco asks to compress.
  *
  * All attributes go into the block; floats that have a meaning we know are quantized, all other values stay
- * exact. Where the order of vertices matters to somebody (morph targets, attributes that Draco cannot have,
+ * exact. If the order of vertices matters to somebody (morph targets, attributes that Draco cannot have,
  * extensions of the primitive), the sequential method keeps it. A primitive is left plain where that would
  * not do: accessors that somebody else uses too, sparse or compressed ones, strips.
  *

@@ -3,15 +3,15 @@
  * Which primitives will be compressed by Draco, found before they are loaded. Quantization moves vertices: a triangle
  * that is small beside the grid gets another direction in space or in the texture, or is turned over, and what was
  * solved for the values of the file is wrong for those of the decoder. So these primitives are loaded as a decoder will
- * have them (gltf/draco_values.c). Of 19 public models compressed by sequential with 14, 12, 12 and 12 bits, tangents
+ * have them (gltf/draco_values.c). On 19 public models compressed by sequential with 14, 12, 12 and 12 bits, tangents
  * of the file's values gave --check 3 480 findings; 20, 14, 18 and 12 bits left 1 266 and took 9 % more bytes.
  *
- * What stands in the way of compression is found by the functions that find it when the document is edited: one that
+ * The functions that edit the document also find here what stands in the way of compression: one that
  * looks at no values, and Draco's own check of them. Only of the vertices of a block, which is not decoded yet, is it
  * left for the load whether faces use them all.
  *
  * On grids of their own the borders of primitives that are solved together (--across=mesh) would not meet any more.
- * Those that are compressed get one grid; where some are not, all are solved for what the file has, so that tangents
+ * Compressed ones get one grid; if some are not, all are solved for what the file has, so that tangents
  * meet at the least.
  */
 #include "gltf/edit/edit.h"
@@ -62,7 +62,7 @@ static nt_status find_faces(planning *f, const nt_gltf_recoding *r, nt_mesh *mes
 }
 
 /* Whether Draco takes the values of a plain primitive, and all of its vertices where something beside the block counts
- * them. What is wrong with the file is found again when it is loaded. */
+ * them. Loading finds faults of the file again. */
 static nt_status look_at_values(planning *f, const nt_gltf_recoding *r, bool *takes, nt_error *error)
 {
 	nt_mesh mesh = {.vertex_count = r->vertices->old_count};

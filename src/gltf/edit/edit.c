@@ -2,8 +2,8 @@
 /*
  * glTF from glTF: the source document with tangents put in, and nothing else changed. Pool by pool: splits are
  * merged, vertices appended, indices follow, TANGENT comes; then offsets are moved and the document is written.
- * What no solved primitive uses is not read. Only Draco takes long: its blocks are encoded on all threads, of a
- * window of pools before the first of them is edited.
+ * Accessors that no solved primitive uses are not read. Only Draco takes long: its blocks are encoded on all threads,
+ * of a window of pools before the first of them is edited.
  *
  * The solve is made on (u, -v), so its w is glTF's as it stands.
  */
@@ -28,7 +28,7 @@
 #include "gltf/turned_images.h"
 #include "gltf/view.h"
 
-/* What every pool's edit needs. */
+/* Data for every pool's edit. */
 typedef struct editing {
 	nt_scene *scene;
 	const nt_write_options *options;
@@ -198,7 +198,7 @@ static nt_status choose_buffer(const editing *e, const nt_vertex_pool *pool, uin
 	return nt_edits_choose_buffer(e->edits, view.buffer, buffer, e->error);
 }
 
-/* What becomes of the TANGENT accessors that are there: new values for those that stay in place; the others
+/* Treatment of existing TANGENT accessors: new values for those that stay in place; the others
  * lose their bytes. new, old: [set]; overrides: room for every user. */
 static nt_status settle_old_tangents(const editing *e, const nt_vertex_pool *pool, const stored_tangents *new,
 	nt_gltf_old_tangents *old, nt_gltf_override *overrides, size_t *count)

@@ -8,7 +8,7 @@
 #include "file/output.h"
 #include "gltf/bytes/buffer_edits.h"
 
-/* Where an edited document goes. */
+/* The destination of an edited document. */
 typedef struct nt_gltf_output {
 	const nt_write_options *options;
 	nt_output *set;          /* of files */
@@ -22,7 +22,7 @@ typedef struct nt_open_images {
 	size_t count, capacity;
 } nt_open_images;
 
-/* What the images option means for this output of a document. The default is LINK where the output's folder has the
+/* The meaning of the images option for this output of a document. The default is LINK where the output's folder has the
  * file, and COPY elsewhere. */
 nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *document);
 

@@ -242,7 +242,7 @@ static bool find_leaders(const nt_vertex_pools *pools, const nt_pool_vertices *v
 	return found;
 }
 
-/* What a user's indices are in the source: of the narrowest type that all hardware likes, where there are none. */
+/* The type of a user's indices in the source; if there are none, the narrowest that all hardware likes. */
 static nt_status find_old(nt_gltf *document, const nt_mesh *mesh, uint32_t index, nt_gltf_accessor *old,
 	nt_error *error)
 {
@@ -251,7 +251,7 @@ static nt_status find_old(nt_gltf *document, const nt_mesh *mesh, uint32_t index
 	if (index == NT_NONE)
 		return NT_OK;
 	const nt_status status = nt_gltf_get_accessor(document, index, nt_gltf_of_mesh(mesh).pointer, old, error);
-	/* What Draco gave has 32 bits; the accessor may say less. */
+	/* Draco's indices have 32 bits; the accessor may say less. */
 	uint64_t type;
 	if (!status && old->decoded && nt_json_get_uint64(nt_json_find(nt_json_at(
 		nt_gltf_root_member(document, "accessors"), index), "componentType"), &type))

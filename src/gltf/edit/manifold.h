@@ -9,7 +9,7 @@
 #include "gltf/edit/merge_splits.h"
 
 /* Writes the indices of all primitives of the glTF mesh that the pool's user `first` is in, where that is a manifold;
- * they are not `changed` then. Where it cannot follow there is a finding. compressed: by Draco. New views go to
+ * they are not `changed` then. If it cannot follow, there is a finding. compressed: by Draco. New views go to
  * `buffer`. */
 nt_status nt_gltf_follow_manifold(nt_buffer_edits *edits, uint32_t buffer, nt_scene *scene,
 	nt_pool_vertices *vertices, size_t first, bool compressed, nt_error *error);

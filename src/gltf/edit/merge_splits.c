@@ -2,7 +2,7 @@
 /*
  * Merges the splits of meshes into one list of vertices for each pool.
  *
- * Each mesh was solved and split by itself. Where several of them use the same vertex, their tangents for it may
+ * Each mesh was solved and split by itself. If several of them use the same vertex, their tangents for it may
  * agree or not. The copies of a vertex form a chain that begins with itself. A mesh takes the vertex of the chain where
  * its set has the same tangent, else the first one where the set has none yet; where the set has tangents for all, a
  * copy is appended. Copies are found by hash, since a hub may have any number of them. For a mesh that shares nothing
@@ -173,8 +173,8 @@ static uint64_t hash_vertex(const nt_pool_set *set, uint32_t number, uint32_t so
 	return hash;
 }
 
-/* The first of a vertex and its copies that the set has no tangent for. Where it has them all a copy is
- * appended; NT_NONE when memory is exhausted. */
+/* The first of a vertex and its copies that the set has no tangent for. If all have one, a copy is appended; NT_NONE
+ * when memory is exhausted. */
 static uint32_t find_free_vertex(nt_pool_merge *m, nt_pool_set *set, uint32_t source)
 {
 	uint32_t pool_vertex = set->first_free[source];

@@ -7,7 +7,7 @@
 
 #include "gltf/vertex_pools.h"
 
-/* What the meshes of a tangent set have together, for all vertices of their pool. */
+/* Shared data of the meshes of a tangent set, for all vertices of their pool. */
 typedef struct nt_pool_set {
 	float *tangents;      /* [new_count][4] */
 	float *normals;       /* [new_count][3]: NULL where normals were not made */
@@ -41,8 +41,8 @@ static inline size_t nt_vertex_source(const nt_pool_vertices *vertices, size_t v
  * mesh is `merged` then; what it holds is not asked for again. */
 nt_status nt_gltf_merge(nt_scene *scene, nt_mesh *mesh, nt_error *error);
 
-/* The vertices of a pool, all of whose solved meshes are there; it has a set. What edits may refer to lives as long as
- * the document, or is borrowed from the scene; tables of it are in `tables`. */
+/* The vertices of a pool, all of whose solved meshes are there; it has a set. Data that edits may refer to lives as
+ * long as the document, or is borrowed from the scene; tables of it are in `tables`. */
 nt_status nt_pool_vertices_get(nt_vertex_pools *pools, size_t number, const nt_vertex_pool *pool, nt_arena *tables,
 	nt_pool_vertices *vertices, nt_error *error);
 

@@ -124,7 +124,7 @@ static uint32_t type_of_normals(const target_job *job, uint32_t target)
 		a.component_type : NT_GLTF_FLOAT;
 }
 
-/* Where a target's deltas are packed, so are its tangents. There zeros take next to nothing: they are not sparse. */
+/* If a target's deltas are packed, so are its tangents. There zeros take next to nothing: they are not sparse. */
 static void choose_storage(const target_job *job, target_tangents *t, uint32_t type, size_t moved)
 {
 	const size_t count = job->vertices->new_count;
@@ -167,7 +167,7 @@ static nt_status find_deltas(target_job *job, uint32_t target, uint32_t type, co
 	return status == NT_ERROR_MEMORY ? status : NT_OK;
 }
 
-/* What a target's tangents are, and whether the document has them. */
+/* A target's tangents, and whether the document has them. */
 static nt_status look_at_target(target_job *job, size_t m, float least)
 {
 	const nt_pool_set *set = &job->vertices->sets[job->set];
@@ -295,7 +295,7 @@ static void describe_target(const target_job *job, target_tangents *t, uint32_t 
 	set_view(json, values, view, t->offset + s->value_offset);
 }
 
-/* Those of one type that have nothing but zeros, and no accessor of their own, have one together. */
+/* Accessors of one type that have nothing but zeros, and no accessor of their own, have one together. */
 static nt_status write_targets(target_job *job)
 {
 	nt_json *json = job->edits->document->json;
@@ -328,7 +328,7 @@ static nt_status write_targets(target_job *job)
 	return status;
 }
 
-/* What is written for targets, and what the set's first primitive takes without them. */
+/* Bytes that are written for targets, and that the set's first primitive takes without them. */
 static void add_cost(const target_job *job, nt_morph_cost *cost)
 {
 	const nt_vertex_pool *pool = job->vertices->pool;

@@ -32,7 +32,7 @@ nt_status nt_gltf_bitangents(const nt_pool_vertices *vertices, uint32_t set, nt_
 
 /* TANGENT of the morph targets of a set's meshes: what to add to the base's, which are final. Before vertices are
  * appended: accessors to which nothing is to be appended then are added to the overrides, which have room for as many
- * as the set's mesh has targets. least: as nt_morph_deltas() has it. What they take is added to the cost. */
+ * as the set's mesh has targets. least: as nt_morph_deltas() has it. Their bytes are added to the cost. */
 nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
 	const nt_pool_vertices *vertices, uint32_t set, float least, nt_gltf_override *overrides,
 	size_t *override_count, nt_morph_cost *cost, nt_error *error);

@@ -5,10 +5,10 @@
  * An accessor that only the meshes of one set use as TANGENT keeps its number. Elements of the same type are
  * replaced where they are, and so are interleaved ones that become smaller: their place between other
  * attributes stays as it is, since these are not ours to move. For another type the old bytes are taken
- * out and the accessor gets a new place; so it does where it was sparse, had no bytes or was compressed by Draco. What
- * others use too stays, and a new accessor is appended. Bytes that nobody uses are left in one case only:
- * interleaved tangents that become larger, whose slots could not go without another stride for attributes
- * that are to stay as they are.
+ * out and the accessor gets a new place; so it does where it was sparse, had no bytes or was compressed by Draco. An
+ * accessor that others use too stays, and a new accessor is appended. Bytes that nobody uses are left in one case
+ * only: interleaved tangents that become larger, whose slots could not go without another stride for attributes that
+ * are to stay as they are.
  */
 #include "gltf/edit/old_tangents.h"
 

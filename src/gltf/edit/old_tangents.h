@@ -17,7 +17,7 @@ typedef struct nt_gltf_old_tangents {
 /* The TANGENT accessor of a user; NT_NONE: none. */
 uint32_t nt_gltf_tangent_of(const nt_vertex_pools *pools, const nt_vertex_pool *pool, size_t user);
 
-/* filter: of the new ones. What is found is in the arena. */
+/* filter: of the new ones. The result is in the arena. */
 nt_status nt_gltf_find_tangents(nt_buffer_edits *edits, const nt_vertex_pools *pools, const nt_vertex_pool *pool,
 	uint32_t set, const nt_tangent_filter *filter, nt_arena *arena, nt_gltf_old_tangents *old, nt_error *error);
 

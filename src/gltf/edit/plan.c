@@ -49,7 +49,7 @@ static void find_pooled(const nt_scene *scene, const nt_read_options *options)
 	}
 }
 
-/* What a mesh holds is temporary where only its results are asked for, and go to its pool. Where a later mesh has the
+/* A mesh's data is temporary if only its results are needed, and go to its pool. If a later mesh has the
  * same geometry and a texture transform, which findings are about, the texture coordinates stay. */
 static void find_temporary(const nt_scene *scene, const nt_read_options *options)
 {

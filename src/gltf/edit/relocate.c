@@ -13,7 +13,7 @@
 #include "gltf/document.h"
 #include "gltf/bytes/packed_views.h"
 
-/* Of a free view that nothing new came for. */
+/* The length of a free view that nothing new replaces. */
 enum { FREE_VIEW_BYTES = 4 };
 
 /* ---- moving offsets ---- */
@@ -26,8 +26,8 @@ static int compare_edits(const void *a, const void *b)
 	return (x->removed > y->removed) - (x->removed < y->removed);
 }
 
-/* Where a position of a source buffer goes; one inside of bytes that are replaced, which the unused end of a view may
- * be, stays inside of what comes for them. */
+/* The new place of a position of a source buffer; one inside of bytes that are replaced, which the unused end of a
+ * view may be, stays inside of what comes for them. */
 static uint64_t map_position(const nt_relocated_buffer *buffer, uint64_t position)
 {
 	const nt_buffer_edit *edits = buffer->from->edits;
@@ -211,7 +211,7 @@ static void move_accessors(const nt_buffer_edits *edits, const moved_view *moved
 
 /* ---- writing ---- */
 
-/* Where the bytes of a buffer go: a sink as they are or as base64, or memory. */
+/* The destination of a buffer's bytes: a sink as they are or as base64, or memory. */
 typedef struct target {
 	nt_sink *sink;
 	nt_base64 *base64;
@@ -390,8 +390,8 @@ static void drop_unneeded_compression(nt_gltf *document)
 	}
 }
 
-/* What a filter moved has other bounds than the encoder said, which everybody sees once the view is plain. Accessors of
- * vertices that were changed have theirs; `seen` says which these are. */
+/* Values that a filter moved have other bounds than the encoder said, which everybody sees once the view is plain.
+ * Accessors of vertices that were changed have theirs; `seen` says which these are. */
 static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 {
 	nt_gltf *document = edits->document;
@@ -444,7 +444,7 @@ static nt_status relocate(nt_buffer_edits *edits, nt_relocated *result, moved_vi
 	if (status)
 		return status;
 
-	/* What was there moves; what is new comes behind it. */
+	/* Old data moves; new data comes behind it. */
 	if (moves) {
 		move_views(edits, result->buffers, moved);
 		move_accessors(edits, moved);

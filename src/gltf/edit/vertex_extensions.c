@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Extensions of primitives and meshes whose vertices were copied. What a known one says is computed in
+ * Extensions of primitives and meshes whose vertices were copied. The values of a known one are computed in
  * gltf/extensions; here it is read from the document and stored in it. The accessor of an outline stays as it is,
  * since others may use it, and the primitive gets another. FB_ngon_encoding, a mark that says which triangles are one
  * polygon, goes where it would not say the same any more.

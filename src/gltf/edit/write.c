@@ -38,7 +38,7 @@ typedef struct writing {
 	bool to_glb, same_container, embed, in_place;
 } writing;
 
-/* What happens to a buffer. */
+/* Treatment of a buffer. */
 typedef enum destination {
 	KEPT,   /* its JSON stays as it is */
 	LINKED, /* the same file, seen from the output's folder */
@@ -236,7 +236,7 @@ static nt_status check_room(writing *c)
 	return NT_OK;
 }
 
-/* What will be written must be open before its uri changes, and have its length before room is made for it. */
+/* A buffer that will be written must be open before its uri changes, and have its length before room is made for it. */
 static nt_status open_source(writing *c, uint32_t index, destination what)
 {
 	if (what == KEPT || what == LINKED || index >= c->document->buffer_count ||
@@ -260,7 +260,8 @@ static bool can_stay(const writing *c, uint32_t index)
 		!nt_is_edited(c->buffers.buffers[index].from) && !c->embed && c->options->buffers == NT_BUFFERS_DEFAULT;
 }
 
-/* Opens what will be written. What nothing needs does not fail the input: where it cannot be read it stays a link. */
+/* Opens what will be written. A buffer that nothing needs does not fail the input: if it cannot be read, it stays a
+ * link. */
 static nt_status open_or_link(writing *c, uint32_t index, destination *what)
 {
 	nt_status status = open_source(c, index, *what);

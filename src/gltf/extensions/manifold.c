@@ -12,7 +12,7 @@
 
 enum { TRIANGLES = 4 };
 
-/* What a faulty member has is an obstacle, exhausted memory is not. */
+/* A faulty member is an obstacle, exhausted memory is not. */
 static nt_status obstruct(nt_manifold *m, nt_status status, const char *obstacle)
 {
 	if (status == NT_ERROR_MEMORY)
@@ -37,7 +37,7 @@ static bool get_positions(nt_gltf *document, const nt_json_value *primitive, nt_
 		nt_gltf_get_accessor(document, number, "", accessor, NULL) == NT_OK;
 }
 
-/* Where the corners of a primitive begin among those of the manifold. */
+/* The first corner of a primitive among those of the manifold. */
 static void place_primitive(nt_manifold *m, nt_gltf *document, const nt_json_value *primitive, size_t index,
 	const nt_gltf_accessor *all, const nt_gltf_accessor *positions)
 {

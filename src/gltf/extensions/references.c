@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What an extension that nobody here knows says of vertices cannot follow when these are copied; but it can be told.
+ * An unknown extension cannot follow when vertices are copied; but the user can be told.
  * An extension is taken to refer to vertices where a number in it is that of an accessor with as many elements as there
  * were vertices, which is none of the primitive's own attributes: those grow with it. The number may be another thing,
  * a mode, say: the finding is a warning to look.

@@ -2,8 +2,8 @@
 /*
  * The comparison of faces.h. The triangles of one list are in a tree, which halves space along what tells them apart:
  * of each of the seven values of a corner the sum, the least and the most of a triangle's three, whichever corner comes
- * first. Each triangle of the other list goes down wherever the one that is the same may be. What they leave open is
- * which corner has which value. Both lists are asked, so that none has more than the other.
+ * first. Each triangle of the other list goes down wherever the one that is the same may be. They leave open which
+ * corner has which value. Both lists are asked, so that none has more than the other.
  */
 #include "gltf/verify/faces.h"
 
@@ -60,7 +60,7 @@ typedef struct face_set {
 	size_t node_count, node_capacity;
 } face_set;
 
-/* What is not finite says nothing. */
+/* Values that are not finite do not count. */
 static double feature_of(const nt_verify_corner *face, uint32_t feature)
 {
 	const uint32_t value = feature % VALUES, kind = feature / VALUES;

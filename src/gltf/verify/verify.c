@@ -90,7 +90,7 @@ static void close_sidecars(file_set *set)
 
 /* ---- comparing ---- */
 
-/* What is compared of one primitive. */
+/* Data of one primitive that is compared. */
 typedef struct primitive_view {
 	nt_reread_array positions, tangents, indices;
 	nt_reread_array *target_tangents; /* [morph_count] of the scene's mesh; NULL: none are compared */
@@ -412,7 +412,7 @@ static bool found_corner(const primitive_view *view, size_t corner, nt_verify_co
 	return true;
 }
 
-/* What lies outside of a block goes by its vertices, so that they are in order. */
+/* Attributes outside of a block go by its vertices, so that they are in order. */
 static nt_status compare_block_targets(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
 {
 	for (size_t c = 0; c < mesh->corner_count; c++) {
@@ -599,7 +599,7 @@ static nt_status compare_all(verification *v, unsigned threads, nt_error *error)
 	return status;
 }
 
-/* What the document did not have, something refers to. */
+/* Something refers to a part that the document did not have. */
 static nt_status check_accessors(const nt_gltf *document, const nt_reread *model, nt_error *error)
 {
 	size_t unused = SIZE_MAX;

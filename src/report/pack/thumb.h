@@ -7,11 +7,11 @@
 
 #include "report/report.h"
 
-/* Where the points of a thumbnail lie: 0 to these, y pointing down. */
+/* The range of a thumbnail's points: 0 to these, y pointing down. */
 enum { NT_THUMB_WIDTH = 208, NT_THUMB_HEIGHT = 144 };
 
 /* Appends the islands of a mesh to two SVG paths, unmirrored and mirrored, to be filled by the rule that counts
- * windings. Of a layout of very many points only the first few thousand are there. v_down: of the texture coordinates.
+ * windings. A layout of very many points has only the first few thousand. v_down: of the texture coordinates.
  * Nothing where there are none. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_thumb(const nt_report_geometry *geometry, bool v_down, nt_buffer paths[2]);
 

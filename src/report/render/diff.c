@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What changed between two versions: see diff.h. Short, the worst first: meshes that are as they were are not listed in
+ * Changes between two versions: see diff.h. Short, the worst first: meshes that are as they were are not listed in
  * text and Markdown, and of findings that both versions have only the number is told. data/nmtan-diff.schema.json
  * describes the JSON. HTML is the page of html.c, with both versions.
  */
@@ -319,7 +319,7 @@ static void page_rows(const nt_report_diff *diff, const nt_mesh_change *change, 
 	nt_buffer_format(out, " of length %.4g -> %.4g\"]", a->seam_length, b->seam_length);
 }
 
-/* What html.c calls diff. */
+/* The object that html.c calls diff. */
 static void page_json(const nt_report_diff *diff, nt_buffer *out)
 {
 	nt_buffer_format(out, "{\"unchanged\":%zu,\"meshes\":[", diff->unchanged);

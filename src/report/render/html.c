@@ -2,7 +2,7 @@
 /*
  * The report as one HTML file that opens without a network: see page/main.js for what it shows.
  *
- * What there is to read comes first, as JSON in a script element that is not run (#data), with every `<` written as
+ * The text comes first, as JSON in a script element that is not run (#data), with every `<` written as
  * \u003c, so that no name can end the element:
  *
  *   files     [{name, format, verdict, failure, counts: [errors, warnings, infos], meshes, findings}]
@@ -39,7 +39,7 @@
 #include "report/pack/thumb.h"
 #include "report/render/render.h"
 
-/* What one page holds. Triangles take 10 to 20 bytes of it; where the meshes have more together, each gets its share
+/* Limits of one page. Triangles take 10 to 20 bytes of it; where the meshes have more together, each gets its share
  * and the page says so. */
 enum {
 	MOST_TRIANGLES = 3 * 1000 * 1000,
@@ -49,7 +49,7 @@ enum {
 	FLUSHED_BYTES = 1 << 20
 };
 
-/* What is left of the budgets while the page grows. */
+/* The rest of the budgets while the page grows. */
 typedef struct budget {
 	size_t images[NT_PICTURE_COUNT], findings, seams;
 	size_t left_out;   /* findings */
@@ -414,7 +414,7 @@ static void put_part(nt_html_part_kind kind, bool in_folder, nt_buffer *out)
 	nt_buffer_free(&name);
 }
 
-/* What stands before the data. A file is from file: or, on a server, from there. */
+/* The beginning of the page, before the data. A file is from file: or, on a server, from there. */
 static void begin_page(bool in_folder, nt_buffer *out)
 {
 	const char *parts = in_folder ? "'self' file:" : "'unsafe-inline'";

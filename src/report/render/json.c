@@ -281,7 +281,7 @@ static void put_maker(nt_buffer *out, const nt_maker *maker)
 		maker->inverted ? "inverted" : "right", maker->agreement, maker->degrees);
 }
 
-/* What splitting costs, and the texture that density is measured by. */
+/* The cost of splitting, and the texture that density is measured by. */
 static void put_costs(nt_buffer *out, const nt_report_mesh *mesh)
 {
 	const size_t added = mesh->split_vertices;

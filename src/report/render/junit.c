@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * JUnit XML, for test dashboards: one case for each file, which fails if the run fails by a finding of the file. What
- * fails nothing is the output of its case.
+ * JUnit XML, for test dashboards: one case for each file, which fails if the run fails by a finding of the file.
+ * Findings that fail nothing are the output of their case.
  */
 #include "report/render/writers.h"
 
@@ -18,7 +18,7 @@ static size_t count_failures(const nt_report_list *reports, const nt_report *rep
 	return count;
 }
 
-/* Those that fail, or the others: one per line. */
+/* The findings that fail, or the others: one per line. */
 static void put_findings(const nt_report_list *reports, const nt_report *report, bool failures, nt_buffer *out)
 {
 	for (size_t i = 0; i < report->finding_count; i++) {

@@ -8,7 +8,7 @@
 #include <string.h>
 #include "base/utf8.h"
 
-/* What one line says. */
+/* The parts of one line. */
 typedef struct log_line {
 	const char *file;
 	size_t number; /* in the file; 0: it has no lines, or it is not known */
@@ -61,8 +61,8 @@ void nt_write_lines(const nt_report_list *reports, nt_buffer *out)
 
 /* ---- for GitHub ---- */
 
-/* A property ends at a comma or a colon, a command at the end of its line. What else must not reach a terminal is
- * shown as \x1b. */
+/* A property ends at a comma or a colon, a command at the end of its line. Other characters that must not reach a
+ * terminal is shown as \x1b. */
 static void put_escaped(const char *text, bool property, nt_buffer *out)
 {
 	for (size_t length; *text; text += length) {

@@ -32,10 +32,10 @@ bool nt_report_format_of_path(const char *path, nt_report_format *format);
 nt_status nt_report_write(const nt_report *const *reports, size_t count, nt_report_format format,
 	const nt_report_style *style, nt_report_sink sink, void *user, nt_error *error);
 
-/* What tells an HTML report from other files: it is in the first 1000 bytes. */
+/* A mark that tells an HTML report from other files: it is in the first 1000 bytes. */
 extern const char nt_html_mark[];
 
-/* What the pages of a folder share, a file each beside them. */
+/* Shared parts of a folder's pages, a file each beside them. */
 typedef enum nt_html_part_kind { NT_HTML_STYLE, NT_HTML_SCRIPT, NT_HTML_PART_COUNT } nt_html_part_kind;
 
 /* The text of a part. Appends the name of its file, which depends on the text: a page has the parts that it was made

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is to be done about a report, in one sentence.
+ * The verdict of a report, in one sentence.
  *
- * Errors count before warnings. Of these, what has to be exported again comes first, since all else is made from it,
- * then what has to be baked again, then what a conversion repairs.
+ * Errors count before warnings. Order of actions: export again comes first, since all else is made from it, then bake
+ * again, then repairs of a conversion.
  */
 #include "report/render/words.h"
 

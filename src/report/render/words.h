@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the writers of reports share: the reports they write, names and sums in words, and text escaped for
+ * Shared by the writers of reports: the reports they write, names and sums in words, and text escaped for
  * JSON, XML and HTML.
  */
 #ifndef NT_REPORT_RENDER_WORDS_H
@@ -18,7 +18,7 @@ typedef struct nt_report_style {
 /* Takes a piece of the output. */
 typedef nt_status (*nt_report_sink)(void *user, const void *bytes, size_t size, nt_error *error);
 
-/* Where a document goes while it grows. */
+/* The destination of a growing document. */
 typedef struct nt_report_stream {
 	nt_report_sink sink;
 	void *user;
@@ -56,8 +56,8 @@ void nt_totals_text(const nt_totals *totals, nt_buffer *out);
  * any bytes. */
 void nt_put_verdict(const nt_report *report, void (*put)(const char *text, nt_buffer *out), nt_buffer *out);
 
-/* What --max-issues left out, between the two texts: "3 more: 2 UV_MIRROR_SEAM, 1 TAN_UNUSED". Nothing where it left
- * nothing out. */
+/* Findings that --max-issues left out, between the two texts: "3 more: 2 UV_MIRROR_SEAM, 1 TAN_UNUSED". Nothing where
+ * it left nothing out. */
 void nt_dropped_text(const nt_report *report, const char *before, const char *after, nt_buffer *out);
 
 /* The line of a text where a finding begins, of its first face that has one; 0: none. */
@@ -88,7 +88,7 @@ void nt_json_floats(const float *values, size_t count, nt_buffer *out);
 void nt_json_rows(const float *values, size_t count, size_t width, nt_buffer *out);
 void nt_json_box(const nt_box *box, nt_buffer *out);
 
-/* What the blocks of a normal map say, row by row; null where a finding has none. */
+/* Votes of a normal map's blocks, row by row; null if a finding has none. */
 void nt_json_votes(const nt_report_finding *finding, nt_buffer *out);
 
 /* Text for a terminal: nt_buffer_clean(). */

@@ -21,7 +21,7 @@ void nt_write_github(const nt_report_list *reports, nt_buffer *out);
 /* The HTML page that lists files by the rows that nt_report_index_row() made. */
 void nt_write_html_index(const nt_buffer *rows, nt_buffer *out);
 
-/* page_assets.c: what goes into an HTML page. Of page.html what is inside the body; the scripts in order. */
+/* page_assets.c: what goes into an HTML page. The inside of page.html's body; the scripts in order. */
 extern const char nt_page_style[], nt_page_body[], nt_page_script[];
 
 /* For other writers of Markdown: a text without markup, and a finding as a row of four columns. */

@@ -2,13 +2,13 @@
 /*
  * Marked edges in walking order: see chains.h.
  *
- * Where no more than two marked edges meet in a point, and no two triangles use an edge in one direction, the ends of
+ * If no more than two marked edges meet in a point, and no two triangles use an edge in one direction, the ends of
  * the edges tell their order. Elsewhere OpenMesh walks (ext/openmesh.h), which knows around which side of a point an
  * edge goes on; it gets only the triangles that touch a marked edge's ends, which is
- * all that a walk around these points needs and a small part of most meshes. What it cannot take comes
- * back from it in pieces: edges that more than two triangles share, triangles against the winding of
- * the others (the last face of a Moebius strip), fans that only meet in a point. The pieces, and edges it
- * does not know, are then joined wherever exactly two ends meet, so that nothing is dropped.
+ * all that a walk around these points needs and a small part of most meshes. Edges that it cannot take come back in
+ * pieces: edges that more than two triangles share, triangles against the winding of the others (the last face of a
+ * Moebius strip), fans that only meet in a point. The pieces, and edges it does not know, are then joined wherever
+ * exactly two ends meet, so that nothing is dropped.
  */
 #include "report/surface/chains.h"
 
@@ -92,7 +92,7 @@ typedef struct vicinity {
 	uint8_t *marked;     /* [3 * triangle_count] */
 } vicinity;
 
-/* Of triangles that have edges and an end. */
+/* Counts triangles that have edges and an end. */
 static nt_status find_vicinity(const ends *e, const nt_marks *marks, nt_scratch *scratch, vicinity *v)
 {
 	*v = (vicinity){0};

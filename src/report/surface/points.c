@@ -13,7 +13,7 @@ static bool same_position(const float *p, const float *q)
 	return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
 }
 
-/* The place in a table of vertices + 1 where a position is, or belongs. What has a NaN is not found again. */
+/* The place in a table of vertices + 1 where a position is, or belongs. A row with a NaN is not found again. */
 static uint32_t *find_place(uint32_t *table, size_t mask, const nt_mesh *mesh, const float *position)
 {
 	const uint64_t xy = nt_hash_floats(position[0], position[1]), z = nt_hash_floats(position[2], 0);

@@ -75,7 +75,7 @@ static nt_status list_triangles(nt_surface *s, nt_scratch *scratch)
 
 /* ---- triangles by themselves ---- */
 
-/* Of corners a, b and c; NaN or infinite where a coordinate is. */
+/* The area of corners a, b and c; NaN or infinite if a coordinate is. */
 static double area_of(const float *a, const float *b, const float *c)
 {
 	const double ux = (double)b[0] - a[0], uy = (double)b[1] - a[1], uz = (double)b[2] - a[2];

@@ -21,11 +21,11 @@ typedef enum nt_flatness {
 	NT_NOT_FINITE  /* a coordinate is NaN or infinite */
 } nt_flatness;
 
-/* Triangles of a block. Whatever is summed is summed by block and then in the order of blocks, so that the last bit
+/* Triangles of a block. Every sum is taken by block and then in the order of blocks, so that the last bit
  * does not depend on threads. */
 enum { NT_BLOCK = 128 };
 
-/* What the triangles of one block are together. */
+/* Sums over the triangles of one block. */
 typedef struct nt_block {
 	uint32_t triangles[3]; /* mirrored, degenerate, normal: [orientation + 1] */
 	double areas[3];       /* the same, in space */
@@ -55,7 +55,7 @@ typedef struct nt_surface {
  * own. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, nt_scratch *scratch);
 
-/* Of that: sets points, point_count and joints. points.c */
+/* A part of that: sets points, point_count and joints. points.c */
 nt_status nt_surface_weld(nt_surface *surface, nt_scratch *scratch);
 
 /* Sets the orientation and flatness of a block's triangles, and the block. The triangles are then in the cache. */
@@ -100,7 +100,7 @@ static inline const float *nt_side_position(const nt_surface *s, size_t side)
 	return s->mesh->positions + 3 * (size_t)nt_side_vertex(s, side);
 }
 
-/* Where a side begins in UV space; the mesh has texture coordinates. */
+/* The beginning of a side in UV space; the mesh has texture coordinates. */
 static inline const float *nt_side_texcoord(const nt_surface *s, size_t side)
 {
 	return s->texcoords + 2 * (size_t)nt_side_vertex(s, side);

@@ -20,7 +20,7 @@ static inline void add_record(nt_record *record, const float *add)
 	nt_record_add(record, sum);
 }
 
-/* What a corner adds: that of corner k of the triangle whose rows lie at `place`. */
+/* The contribution of a corner: that of corner k of the triangle whose rows lie at `place`. */
 typedef struct addition {
 	const float *sum, *more[2];
 } addition;
@@ -309,32 +309,34 @@ static inline NT_ALWAYS_INLINE void prefetch_rows(const nt_fast *fast, size_t fi
 		NT_PREFETCH(&fast->rows[ids[3 * i]]);
 }
 
-#if WIDTH > 1
-typedef float lane_floats __attribute__((vector_size(4 * WIDTH)));
-#else
-typedef float lane_floats;
-#endif
-
-/* Has the sign bit of lanes outside of an interval: that of a difference. */
-static inline lanes outside_of(const float *x, float low, float high)
-{
-	lane_floats at;
-	memcpy(&at, x, sizeof at);
-	const lane_floats above = at - low, below = high - at;
-	return load_lanes(&above) | load_lanes(&below);
-}
-
-/* Notes triangles with a corner near the last ones (topology/edge_sort.h). A batch may lie in two ranges. */
+/* Notes which triangles have a corner near the last ones (topology/edge_sort.h). */
 static inline void note_near(const nt_edge_tail *tail, const lanes_in *in, size_t first, size_t count)
 {
-	lanes outside = ~(lanes){0};
-	for (size_t i = 0; i < whole_lanes(count); i += WIDTH)
-		for (int k = 0; k < 3; k++)
-			outside &= outside_of(in->row[k][tail->grid.axis] + i, tail->low, tail->high);
-	if (any_lane(~outside & 0x80000000u)) {
-		nt_atomic_store(&tail->batches[first / NT_EDGE_BATCH], 1, RELAXED);
-		nt_atomic_store(&tail->batches[(first + count - 1) / NT_EDGE_BATCH], 1, RELAXED);
+	uint8_t near[NT_LANES];
+#if WIDTH == 16
+	const __m512 low = _mm512_set1_ps(tail->grid.low), scale = _mm512_set1_ps(tail->scale);
+	const __m512i half = _mm512_loadu_si512(tail->bins), other = _mm512_loadu_si512(tail->bins + 16);
+	const __m512i in_word = _mm512_set1_epi32(31);
+	__m512i bits = _mm512_setzero_si512();
+	for (int k = 0; k < 3; k++) {
+		const __m512 x = _mm512_load_ps(in->row[k][tail->grid.axis]);
+		const __m512i bin = _mm512_cvttps_epi32(_mm512_mul_ps(_mm512_sub_ps(x, low), scale));
+		const __m512i word = _mm512_permutex2var_epi32(half, _mm512_srli_epi32(bin, 5), other);
+		bits = _mm512_or_si512(bits, _mm512_srlv_epi32(word, _mm512_and_si512(bin, in_word)));
 	}
+	_mm_storeu_si128((__m128i *)near, _mm512_cvtepi32_epi8(_mm512_and_si512(bits, _mm512_set1_epi32(1))));
+#else
+	for (size_t i = 0; i < count; i++) {
+		uint32_t bit = 0;
+		for (int k = 0; k < 3; k++)
+			bit |= nt_edge_is_near(tail, in->row[k][tail->grid.axis][i]);
+		near[i] = (uint8_t)bit;
+	}
+#endif
+	if (count == NT_LANES)
+		memcpy(tail->near + first, near, NT_LANES);
+	else
+		memcpy(tail->near + first, near, count);
 }
 
 static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
@@ -353,7 +355,7 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 		uint32_t copy[3 * NT_LANES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
 		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : whole_lanes(count), in.row);
-		if (!fast->bins.cursors && fast->tail.batches)
+		if (fast->tail.near)
 			note_near(&fast->tail, &in, first, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 1);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Bins: see bins.h. What a bin is added up in (23 bytes a corner, its cursors, entries and sums) should
+ * Bins: see bins.h. The memory in which a bin is added up (23 bytes a corner, its cursors, entries and sums) should
  * fit the second-level cache; but the more bins, the more streams, and each is a line in the first-level
  * cache and a page. 8192 vertices of six corners are about two megabytes.
  */
@@ -129,6 +129,16 @@ nmtan_status nt_bin_make(const nt_bins *bins, const bool needed[2], nt_scratch *
 static uint32_t vertex_of(const nt_bins *b, uint32_t state)
 {
 	return state >> NT_BINNED_SHIFT & (((uint32_t)1 << b->vertex_bits) - 1);
+}
+
+bool nt_bins_have_corners(const nt_bins *b, uint32_t vertex)
+{
+	const size_t bin = vertex >> b->vertex_bits;
+	for (unsigned range = 0; range < b->ranges; range++)
+		for (size_t i = b->begins[bin * b->ranges + range]; i < b->cursors[range * b->count + bin]; i++)
+			if (((vertex_of(b, b->sums[i].state) ^ vertex) & (((uint32_t)1 << b->vertex_bits) - 1)) == 0)
+				return true;
+	return false;
 }
 
 static void add_corners(const nt_bins *b, size_t begin, size_t end, nt_record *const to[2], bool both,

@@ -64,7 +64,7 @@ typedef struct nt_bins {
 	uint8_t *seen;     /* [ranges] */
 } nt_bins;
 
-/* What one bin after the other is added up in. */
+/* Memory in which one bin after the other is added up. */
 typedef struct nt_bin {
 	nt_adjacency adjacency;
 	nt_record *sums[2]; /* [2^vertex_bits] by orientation, counted from the first vertex; NULL: not needed */
@@ -91,6 +91,9 @@ nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges,
 /* Orientations for which there have to be records: those that came up; without a frame anywhere, one whose records
  * can take notes. */
 void nt_bins_orientations(const nt_bins *bins, bool orientations[2]);
+
+/* Whether a vertex has corners, once all are in their bins. */
+bool nt_bins_have_corners(const nt_bins *bins, uint32_t vertex);
 
 /* Memory for one bin, whichever it is, with sums of the orientations that are needed. Returns NMTAN_OK or
  * NMTAN_ERROR_MEMORY. */

@@ -72,7 +72,7 @@ static size_t list_corners(const nt_complex *c, const uint32_t *triangles, size_
 	return n;
 }
 
-/* Where the next things go, by whether the vertex is tangled. */
+/* The next free places, by whether the vertex is tangled. */
 typedef struct cursors {
 	size_t vertex[2];
 	uint32_t place[2], *order;
@@ -103,7 +103,7 @@ static inline void place_corner(const nt_complex *c, const listed_corner *corner
 }
 
 /* Places of which edges and groups are kept: those of plain vertices, then a few tangled ones, or the largest of these.
- * Where all groups are found together: all. */
+ * If all groups are found together: all. */
 static size_t room_of(const nt_settled *settled, bool ordered)
 {
 	const size_t plain = settled->complex_corners - settled->tangled_corners;

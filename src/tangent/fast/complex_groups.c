@@ -15,7 +15,7 @@
 
 /*
  * Edge `e` meets the first edge in the other direction that waits at its far end; if there is none it waits
- * there itself. Those that wait at one vertex all run the same way. They stand in a ring, each with its
+ * there itself. Groups that wait at one vertex all run the same way. They stand in a ring, each with its
  * follower in `across`, and `waiting` knows the last: its number is counted from `zero`, which lies above that of what
  * has waited there since another window's turn, and is not below `first` unless it has since another vertex's.
  */

@@ -17,7 +17,7 @@
 #include "topology/corners.h"
 
 /*
- * What it may cost where results are repaired: squares of members, of all large groups of a mesh. Less than half
+ * Bound of its cost if results are repaired: squares of members, of all large groups of a mesh. Less than half
  * a second on one thread (1.5 ns each), which 8 192 folded quads around a vertex take, and 256 for each corner
  * more, so that time is linear. mikktspace.c takes 16 s and half a gigabyte for these quads: nobody has a mesh with
  * more, whose bytes would be missed. The group whose turn it is then has one sum.
@@ -155,7 +155,7 @@ static const nt_corner *first_with_frame(const part *p)
 	return &p->solved[i];
 }
 
-/* Whether a group certainly does not split. Of two members that do one is not near the axis. No more of those are asked
+/* Whether a group certainly does not split. One of two members that do is not near the axis. No more of those are asked
  * than cost little beside sums for all directions: a few in a hub do not make it one that splits. */
 static bool is_one(const part *p, const nt_corner *axis)
 {

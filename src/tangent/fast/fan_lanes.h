@@ -49,7 +49,7 @@ static inline vertex_entries entries_at(const nt_adjacency *a, size_t vertex)
 }
 
 /* Corner k of WIDTH vertices of so many corners; where one has fewer, voids above all numbers that accumulate gives to
- * voids. Of an entry the bits of `mask` count. The numbers of narrow entries are in the upper halves. */
+ * voids. The bits of `mask` count in an entry. The numbers of narrow entries are in the upper halves. */
 static inline NT_ALWAYS_INLINE void load_corners(vertex_entries entries, uint32_t k, lanes degree,
 	lanes mask, lanes *next, lanes *previous)
 {
@@ -90,9 +90,9 @@ static lanes NT_NOINLINE find_twice(vertex_entries entries, uint32_t depth, lane
 	return twice;
 }
 
-/* The components of corners that are linked: bit j, times `unit`, of linked[i] for each later neighbour j. Those with
- * a bit of `voids` are none. By elimination: a corner hands its links to the later ones it is linked with; one that has
- * none when its turn comes is the last of its component. */
+/* The components of corners that are linked: bit j, times `unit`, of linked[i] for each later neighbour j. Entries
+ * with a bit of `voids` do not count. By elimination: a corner hands its links to the later ones it is linked with;
+ * one that has none when its turn comes is the last of its component. */
 static inline NT_ALWAYS_INLINE lanes count_components(lanes linked[NT_FAN_DEPTH], uint32_t depth,
 	uint32_t unit, uint32_t voids)
 {

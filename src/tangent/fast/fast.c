@@ -14,8 +14,8 @@
  *   7 complex     the other vertices: pairs, groups, averages              complex.c
  *   8 copies      degenerate triangles copy a neighbour's corner           write.c
  *
- * Step 4 takes about half of the time on a clean mesh. Where neighbouring triangles have vertices far apart there is
- * no step 3, step 4 writes corners down in bins of vertices, and step 5 adds up and settles one bin after the other
+ * Step 4 takes about half of the time on a clean mesh. If neighbouring triangles have vertices far apart, there is no
+ * step 3, step 4 writes corners down in bins of vertices, and step 5 adds up and settles one bin after the other
  * (bins.h). Threads own ranges of triangles, and every sum is in triangle order whatever their number.
  *
  * Words of these files:
@@ -124,7 +124,7 @@ static unsigned count_ranges(const nt_fast *fast, const nt_fast_plan *plan)
 	return ranges == 1 && two ? 2 : ranges;
 }
 
-/* What the published sort of edges is asked from. */
+/* The mesh as the published sort of edges sees it. */
 static nt_welded_mesh welded_mesh(const nt_fast *fast, nt_scratch *scratch)
 {
 	return (nt_welded_mesh){.triangles = &fast->triangles, .triangle_count = fast->triangle_count,
@@ -150,17 +150,20 @@ static nmtan_status find_unsorted(nt_fast *fast, const nt_borrowed *memory)
 	return status;
 }
 
-/* Batches have been noted; whether the vertices that make the box have corners. */
-static void tell_watched(nt_fast *fast)
+/* Near triangles have been noted; whether the vertices that make the box have corners. */
+static void tell_noted(nt_fast *fast)
 {
 	nt_edge_tail *tail = &fast->tail;
-	bool used = tail->batches;
-	for (int i = 0; i < 6 && used && !tail->is_box_used; i++)
-		used = nt_adjacency_has_corners(&fast->adjacency, tail->grid.extremes[i]);
-	tail->is_watched = tail->is_box_used = used;
+	bool used = tail->near;
+	for (int i = 0; i < 6 && used && !tail->is_box_used; i++) {
+		const uint32_t extreme = tail->grid.extremes[i];
+		used = fast->bins.cursors ? nt_bins_have_corners(&fast->bins, extreme)
+					  : nt_adjacency_has_corners(&fast->adjacency, extreme);
+	}
+	tail->is_noted = tail->is_box_used = used;
 }
 
-/* What the published sort of edges is asked from, before sums note what they pass. */
+/* Prepares the question to the published sort of edges, before sums note what they pass. */
 static nmtan_status make_tail(nt_fast *fast)
 {
 	const nt_welded_mesh mesh = welded_mesh(fast, fast->solve->scratch);
@@ -216,10 +219,7 @@ static void fill_ranges(void *context, size_t begin, size_t end, unsigned thread
 /* By way of bins, which take the place of the adjacency. */
 static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned bin_bits, nt_fast_memory *memory)
 {
-	nmtan_status status = fast->solve->sorted ? NMTAN_OK : find_unsorted(fast, &memory->borrowed);
-	if (status)
-		return status;
-	status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
+	const nmtan_status status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
 		bin_bits ? bin_bits : nt_bins_bits(fast->vertex_count), memory->bin_sums, &memory->borrowed,
 		&fast->bins);
 	if (status)
@@ -430,7 +430,7 @@ static nmtan_status ask_tail(nt_fast *fast, const nt_borrowed *memory)
 {
 	if (fast->solve->sorted)
 		return NMTAN_OK;
-	tell_watched(fast);
+	tell_noted(fast);
 	return find_unsorted(fast, memory);
 }
 
@@ -461,7 +461,8 @@ static nmtan_status add(nt_fast *fast, const nt_kernels *kernels, const nt_fast_
 	/* each vertex's sums over its corners, one for each orientation */
 	status = binned ? fill_bins(fast, kernels, plan->bin_bits, &memory)
 		: add_to_records(fast, kernels, plan, &memory);
-	return status || binned ? status : ask_tail(fast, &memory.borrowed);
+	/* sums of bins lie in the output */
+	return status ? status : ask_tail(fast, binned ? &memory.none : &memory.borrowed);
 }
 
 nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan)

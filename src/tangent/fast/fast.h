@@ -7,7 +7,7 @@
 
 #include "tangent/solve.h"
 
-/* What depends on a mesh's size and order; tests choose it themselves, so that small meshes go every way. */
+/* Choices that depend on a mesh's size and order; tests choose it themselves, so that small meshes go every way. */
 typedef struct nt_fast_plan {
 	size_t grain;      /* least triangles for a thread */
 	size_t least_two;  /* triangles from which on two threads share a mesh that is too small for the grain;
@@ -20,7 +20,7 @@ typedef struct nt_fast_plan {
 } nt_fast_plan;
 
 /* Whether this file can: it knows the default angular threshold alone, since others split most groups, and less
- * than 2^28 corners and vertices. What it cannot is done by nt_mikktspace_scalar(). */
+ * than 2^28 corners and vertices. nt_mikktspace_scalar() does the rest. */
 bool nt_fast_can(const nt_solve *solve);
 
 /* The bytes of nt_mikktspace_scalar(), where nt_fast_can(). Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */

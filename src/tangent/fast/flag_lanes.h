@@ -27,7 +27,7 @@ static void orient_quads(uint8_t *flags, size_t count, const float *area)
 }
 
 /* Triangles whose UV area is exactly 0 whatever is rounded, as stored too, for two texture coordinates are the same or
- * all lie along an axis. Where there is another reason they stay uncertain. */
+ * all lie along an axis. If there is another reason, they stay uncertain. */
 static void NT_NOINLINE clear_flat(const lanes_in *in, uint8_t *flags, size_t count)
 {
 	const float (*a)[NT_LANES] = in->row[0] + 6, (*b)[NT_LANES] = in->row[1] + 6, (*c)[NT_LANES] = in->row[2] + 6;

@@ -43,7 +43,7 @@ typedef struct lanes_out {
 /* Lanes of whole vectors: so no compiler has to see to those that are left over. */
 #define EACH_LANE(count) for (int i = 0; i < ((count) & -WIDTH); i++)
 
-/* Of 16 triangles, the edges from corner 0 to 1, from 0 to 2 and from 1 to 2. */
+/* For 16 triangles, the edges from corner 0 to 1, from 0 to 2 and from 1 to 2. */
 typedef struct lanes_edges {
 	NT_ALIGNED(64) float of[3][3][NT_LANES];
 } lanes_edges;

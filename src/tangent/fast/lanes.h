@@ -57,7 +57,7 @@ static inline bool are_plain(const lanes_out *out, size_t corners, size_t count)
 	return !any_lane(~all & TWO);
 }
 
-/* What is to be known of lanes that are solved: so many corners' sums say whether they are plain. */
+/* Facts about solved lanes: so many corners' sums say whether they are plain. */
 static inline void judge(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out, float offset, size_t corners,
 	size_t lane_count)
 {

@@ -50,8 +50,8 @@ void nt_fast_plan_memory(const nt_fast *fast, bool binned, size_t least_bytes, n
 	memory->bin_sums = fast->sparse ? NULL : (nt_record *)solve->tangents;
 }
 
-/* Records take the rows' place: settle looks at the normals of a block before it writes its records. Those of both
- * orientations lie in pairs. Those of one are packed, so that write reads fewer lines; but only one thread alone
+/* Records take the rows' place: settle looks at the normals of a block before it writes its records. Records of both
+ * orientations lie in pairs. Records of one are packed, so that write reads fewer lines; but only one thread alone
  * has passed all the rows that it then overwrites. */
 bool nt_fast_place_records(nt_fast *fast, const bool orientations[2])
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the passes of the fast path share, and no one else. fast.c is the recipe and explains the words; kernel.h holds
+ * Shared by the passes of the fast path alone. fast.c is the recipe and explains the words; kernel.h holds
  * the passes that are compiled once for each instruction set; complex.c solves the vertices that need groups.
  *
  * A vertex here is a welded vertex.
@@ -78,7 +78,7 @@ typedef struct nt_settled {
 /* Makes fast->records[orient], which a triangle needs and which does not exist; false: it cannot be had now. */
 typedef bool nt_record_maker(nt_fast *fast, int orient, void *context);
 
-/* What a corner adds to its group. */
+/* The contribution of a corner to its group. */
 typedef struct nt_corner {
 	float u[3], mag_s, v[3], mag_t; /* unit directions perpendicular to the normal, magnitudes */
 	float angle;                    /* the weight */

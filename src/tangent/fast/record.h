@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the fast path keeps of a welded vertex: the sum over its corners of one orientation, and bits that say
+ * The fast path's data of a welded vertex: the sum over its corners of one orientation, and bits that say
  * whether that sum is what the groups of the definition would give.
  */
 #ifndef NT_TANGENT_FAST_RECORD_H

@@ -51,7 +51,7 @@ static inline void read_states(size_t used, record_lanes *NT_RESTRICT r)
 	}
 }
 
-/* Those of an orientation that no vertex of the block has. */
+/* Records of an orientation that no vertex of the block has. */
 static const record_lanes no_records = {.state = {NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE,
 	NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE}};
 

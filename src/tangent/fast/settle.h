@@ -55,7 +55,7 @@ static void load_degrees(const nt_adjacency *a, size_t first, size_t count, size
 	}
 }
 
-/* What complex.c wants to know of a block's complex vertices goes to their records: see NT_RESULT_COMPLEX. */
+/* Data of a block's complex vertices for complex.c goes to their records: see NT_RESULT_COMPLEX. */
 static void describe_complex(const nt_fast *fast, const nt_adjacency *a, size_t first, size_t used,
 	const uint32_t *complex, const uint32_t *fan_count, nt_settled *settled)
 {

@@ -153,7 +153,7 @@ static inline lanes out_of_turn(lanes a)
 #endif
 }
 
-/* Where turn() leaves the row of a lane, and from where it takes it. */
+/* The place of a lane's row before and after turn(). */
 static inline size_t turned_place(size_t lane)
 {
 	const size_t in_vector = lane % WIDTH;

@@ -222,8 +222,8 @@ static inline unsigned find_special(const uint8_t *flags)
 	return ((four >> 1 | four >> 2) & 0x01010101u) * gather >> 24;
 }
 
-/* The same without quads: no triangles share corners, so that what some of them need can wait. Of BATCH triangles at a
- * time all corners get their records, without a branch, and then come those for which this was not the result. On
+/* The same without quads: no triangles share corners, so that what some of them need can wait. All corners of BATCH
+ * triangles at a time get their records, without a branch, and then come those for which this was not the result. On
  * makehuman_body, where these are few, it takes 5.0 cycles a triangle instead of the 7.0 of one loop, on Lantern 6.5
  * instead of 8.0; the 3 stores alone take 3 (Zen 4, in the cache). */
 static void write_plain(nt_fast *fast, size_t begin, size_t end)
@@ -324,7 +324,7 @@ static void copy_corner(const nt_solve *solve, size_t to, size_t from)
 }
 
 /* The first corners, among the sound triangles, of the vertices of all triangles that copy: [vertex_count], UINT32_MAX
- * where there is none. Those of other vertices are not there. */
+ * where there is none. Results of other vertices are not there. */
 static uint32_t *find_first_corners(const nt_fast *fast)
 {
 	uint32_t *first = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *first);

@@ -133,7 +133,7 @@ TEST(a_size_is_a_number_and_what_it_counts)
 	} sizes[] = {{"--memory=0", 0}, {"--memory=123", 123}, {"--memory=64M", UINT64_C(64) << 20},
 		{"--memory=2GiB", UINT64_C(2) << 30}, {"--memory=3kB", 3000}, {"--memory=3KB", 3000},
 		{"--memory=5K", 5 * 1024}, {"--memory=500MB", 500000000}, {"--memory=1T", UINT64_C(1) << 40},
-		{"--memory=1TB", UINT64_C(1000000000000)}};
+		{"--memory=1TB", UINT64_C(1000000000000)}, {"--memory=100000000000", UINT64_C(100000000000)}};
 	nt_command c;
 	for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
 		accepts(&c, WORDS(sizes[i].word, "a", "b"));

@@ -206,6 +206,32 @@ TEST(degenerate_polygon_is_a_finding_with_its_line)
 
 /* ---- objects, materials, smoothing ---- */
 
+/* Groups are primitives of one mesh, brought together by name; faces before the first have none. */
+TEST(groups_are_parts_of_one_mesh_where_there_is_no_object)
+{
+	reading r;
+	const nt_mesh *mesh = only_mesh(&r, TRIANGLE "f 1 2 3\ng leg\nusemtl a\nf 2 3 1\ng arm one\nf 3 1 2\nusemtl b\n"
+		"g leg\nf 1 2 3\nf 2 3 1\nusemtl a\nf 3 1 2\ng\nf 1 2 3\n");
+	static const struct {
+		const char *group;
+		uint32_t material, faces;
+	} expected[] = {{"", NT_NONE, 1}, {"", 0, 1}, {"leg", 0, 2}, {"leg", 1, 2}, {"arm one", 0, 1}};
+	assert_int_equal(mesh->primitive_count, 5);
+	for (size_t i = 0; i < 5; i++) {
+		assert_string_equal(mesh->groups[mesh->primitives[i].group], expected[i].group);
+		assert_int_equal(mesh->primitives[i].material, expected[i].material);
+		assert_int_equal(mesh->primitives[i].face_count, expected[i].faces);
+	}
+	assert_numbers(mesh->face_primitive, (const uint32_t[]){0, 2, 4, 3, 3, 2, 1}, 7);
+	assert_int_equal(mesh->vertex_count, 3);
+	assert_string_equal(mesh->name, "");
+	close_reading(&r);
+	/* one name for all is the mesh's */
+	mesh = only_mesh(&r, "g default\n" TRIANGLE "g pCube1\nf 1 2 3\n");
+	assert_string_equal(mesh->name, "pCube1");
+	close_reading(&r);
+}
+
 TEST(objects_become_meshes_and_groups_do_not)
 {
 	reading r;

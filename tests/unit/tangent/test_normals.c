@@ -16,7 +16,7 @@ static void make(const uint32_t *smoothing, float (*normals)[4])
 {
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	assert_int_equal(nt_corner_normals(&mesh, 8, smoothing, &scratch, normals), NMTAN_OK);
+	assert_int_equal(nt_corner_normals(&mesh, 8, smoothing, NULL, &scratch, normals), NMTAN_OK);
 	nt_scratch_free(&scratch);
 }
 
@@ -53,6 +53,66 @@ TEST(groups_keep_apart_and_group_zero_is_flat)
 	}
 }
 
+static void make_by_angle(double degrees, float (*normals)[4])
+{
+	uint32_t groups[8];
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	assert_int_equal(nt_crease_groups(&mesh, 8, degrees, &scratch, groups), NMTAN_OK);
+	assert_int_equal(nt_corner_normals(&mesh, 8, NULL, groups, &scratch, normals), NMTAN_OK);
+	nt_scratch_free(&scratch);
+}
+
+/* They meet at 90 degrees. */
+TEST(faces_that_meet_at_less_than_the_angle_share_a_normal)
+{
+	const float h = sqrtf(0.5f);
+	for (int degrees = 0; degrees <= 180; degrees += 1) {
+		const bool smooth = degrees > 90;
+		float n[8][4];
+		make_by_angle(degrees, n);
+		assert_near(n[0], 0, 0, 1);
+		assert_near(n[1], smooth ? h : 0, 0, smooth ? h : 1);
+		assert_near(n[4], smooth ? h : 1, 0, smooth ? h : 0);
+		assert_near(n[7], smooth ? h : 1, 0, smooth ? h : 0);
+		assert_near(n[5], 1, 0, 0);
+	}
+}
+
+/* Around the apex (0, 0, 1) of a pyramid over a square of half side 1, neighbours meet at 60 degrees: their normals are
+ * (1, 0, 1) / sqrt 2 and (0, 1, 1) / sqrt 2, whose product is 1/2. A face that is missing leaves a fan, whose ends meet
+ * through the others; one that is turned over meets both neighbours at 120 degrees and is alone. */
+TEST(groups_are_joined_through_edges)
+{
+	static const float p[5][3] = {{0, 0, 1}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}};
+	static const struct {
+		uint32_t corners[12];
+		size_t faces;
+		double degrees;
+		uint32_t groups[4]; /* of the apex in each face */
+	} rows[] = {
+		{{0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1}, 4, 61, {1, 1, 1, 1}},
+		{{0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1}, 4, 59, {1, 4, 7, 10}},
+		{{0, 1, 2, 0, 2, 3, 0, 3, 4}, 3, 61, {1, 1, 1}},
+		{{0, 1, 2, 0, 3, 4}, 2, 61, {1, 4}},                     /* opposite faces have no common edge */
+		{{0, 1, 2, 0, 3, 2, 0, 3, 4}, 3, 61, {1, 4, 7}},         /* the middle one is turned over */
+		{{0, 1, 2, 0, 2, 2, 0, 2, 3}, 3, 61, {1, 1, 1}},         /* one without area */
+		{{0, 1, 2, 0, 2, 2, 0, 2, 3}, 3, 59, {1, 1, 1}},         /* which joins what it touches */
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		const nmtan_mesh m = {.struct_bytes = sizeof m, .face_count = rows[i].faces, .vertex_count = 5,
+			.indices = rows[i].corners, .positions = &p[0][0], .position_stride_bytes = 12};
+		uint32_t groups[12];
+		nt_scratch scratch;
+		nt_scratch_init(&scratch, NULL);
+		assert_int_equal(nt_crease_groups(&m, 3 * m.face_count, rows[i].degrees, &scratch, groups), NMTAN_OK);
+		for (size_t f = 0; f < m.face_count; f++)
+			if (groups[3 * f] != rows[i].groups[f])
+				fail_msg("row %zu, face %zu: group %u", i, f, groups[3 * f]);
+		nt_scratch_free(&scratch);
+	}
+}
+
 /* A cube's corner: one face is cut into two triangles at it, which must not weigh twice. With angle weights
  * the normal is the diagonal (1,1,1)/sqrt 3. */
 TEST(angle_weights_do_not_depend_on_the_cut)
@@ -66,7 +126,7 @@ TEST(angle_weights_do_not_depend_on_the_cut)
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
 	float n[12][4];
-	assert_int_equal(nt_corner_normals(&cube, 12, NULL, &scratch, n), NMTAN_OK);
+	assert_int_equal(nt_corner_normals(&cube, 12, NULL, NULL, &scratch, n), NMTAN_OK);
 	nt_scratch_free(&scratch);
 	const float d = fabsf(n[0][0]);
 	assert_true(fabsf(d - 0.57735027f) < 1e-6f);
@@ -83,7 +143,7 @@ TEST(faces_without_area_give_a_unit_vector)
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
 	float n[3][4];
-	assert_int_equal(nt_corner_normals(&sliver, 3, NULL, &scratch, n), NMTAN_OK);
+	assert_int_equal(nt_corner_normals(&sliver, 3, NULL, NULL, &scratch, n), NMTAN_OK);
 	nt_scratch_free(&scratch);
 	for (int c = 0; c < 3; c++)
 		assert_near(n[c], 0, 0, 1);
@@ -147,7 +207,7 @@ TEST(many_faces_are_what_the_formula_says)
 	float n[4 * FACES][4];
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	assert_int_equal(nt_corner_normals(&m, corners, smoothing, &scratch, n), NMTAN_OK);
+	assert_int_equal(nt_corner_normals(&m, corners, smoothing, NULL, &scratch, n), NMTAN_OK);
 	nt_scratch_free(&scratch);
 	for (size_t face = 0, c = 0; face < FACES; face++)
 		for (size_t k = 0; k < sizes[face]; k++, c++) {
@@ -185,7 +245,7 @@ TEST(where_faces_cancel_corners_have_their_faces)
 		.indices = indices, .positions = &p[0][0], .position_stride_bytes = 12};
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	assert_int_equal(nt_corner_normals(&m, 3 * FACES, NULL, &scratch, n), NMTAN_OK);
+	assert_int_equal(nt_corner_normals(&m, 3 * FACES, NULL, NULL, &scratch, n), NMTAN_OK);
 	nt_scratch_free(&scratch);
 	for (size_t c = 0; c < 3 * FACES; c++) {
 		double own[3] = {0, 0, 0};

@@ -38,7 +38,7 @@ _OUT_OF_MEMORY = 5
 
 
 class Counts(NamedTuple):
-    """What a solve met and repaired, in corners unless nmtan.h says otherwise."""
+    """Counts of a solve and its repair, in corners unless nmtan.h says otherwise."""
 
     degenerate_positions: int
     degenerate_texcoords: int
@@ -58,7 +58,7 @@ class Counts(NamedTuple):
 
 
 class CornerTangents(NamedTuple):
-    """What is known of each corner of the faces, in their order."""
+    """The attributes of each corner of the faces, in their order."""
 
     tangents: NDArray[np.float32]  #: [corners, 4]: x, y, z, w
     bitangents: NDArray[np.float32]  #: [corners, 3]: MikkTSpace's own, not cross(N, T) * w

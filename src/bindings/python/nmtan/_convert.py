@@ -9,7 +9,7 @@ from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Un
 
 
 class Conversion(NamedTuple):
-    """What became of one input: a line of the manifest (data/nmtan-manifest.schema.json)."""
+    """The outcome of one input: a line of the manifest (data/nmtan-manifest.schema.json)."""
 
     input: str
     status: str  #: "done", or why there is no output

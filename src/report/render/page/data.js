@@ -181,7 +181,7 @@ function readOutlines(bytes) {
 	return regions;
 }
 
-// Of each seam its edges: [unmirrored from, to, mirrored from, to]...
+// The edges of each seam: [unmirrored from, to, mirrored from, to]...
 function readSeams(bytes, seams) {
 	const from = new Varints(bytes), list = [];
 	let vertex = 0;
@@ -260,7 +260,7 @@ function trianglesOfSeam(g, seam) {
 	return list;
 }
 
-// Of all texture coordinates.
+// The bounds of all texture coordinates.
 function uvBox(g) {
 	const low = [Infinity, Infinity], high = [-Infinity, -Infinity], uv = g.texcoords;
 	for (let i = 0; i < uv.length; i++) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Two versions of an asset, of --diff: the old one stands left, the new one right. One of them is open as a single file
-// would be; the other is its twin, whose views follow, and which a click opens. What changed is in the list.
+// would be; the other is its twin, whose views follow, and which a click opens. Changes are in the list.
 //
 // Frames are those of each version (authored) and of the other one at the same place (computed), so that their angle is the heat
 // map.

@@ -90,7 +90,7 @@ class Findings {
 		return group;
 	}
 
-	// Where the clipboard is out of reach the command is marked, to be copied by hand.
+	// If the clipboard is out of reach, the command is marked, to be copied by hand.
 	command(text) {
 		const code = element('code', {}, text), copy = element('button', {type: 'button', 'aria-label': 'Copy the command that repairs it', onclick: async () => {
 			try {

@@ -49,7 +49,7 @@ let file = null, mesh = null, geometry = null, selection = null;
 
 const islandOf = t => geometry.islands[t] - 1;
 
-// What a selection covers: {triangles, seams, text, related}.
+// Contents of a selection: {triangles, seams, text, related}.
 function resolve({finding, island, seam, triangle}) {
 	const mine = file.findings.filter(x => x.mesh === mesh.number || x.mesh === (mesh.same_as ?? -1));
 	if (finding) {
@@ -308,7 +308,7 @@ function offerPictures() {
 	$('texture').value = layout.shown;
 }
 
-// What is missing under the islands, and what is tinted.
+// Names the missing image under the islands, and tints.
 function noteLayout() {
 	const {overlaps, showOverlaps} = layout, repeated = showOverlaps && overlaps?.repeated;
 	$('fill').value = 100 * layout.opacity;
@@ -413,7 +413,7 @@ window.addEventListener('hashchange', follow);
 window.addEventListener('beforeprint', () => document.querySelectorAll('.group').forEach(g => { g.open = true; }));
 follow();
 
-// What the tests look at.
+// The state that tests look at.
 window.nmtanReport = Object.freeze({
 	ready: () => painted.then(() => loading),
 	camera: () => space && {...space.camera, eye: space.eye(space.camera)},

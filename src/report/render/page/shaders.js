@@ -128,7 +128,7 @@ void main() {
 	colour = vec4(tint.rgb * light, tint.a);
 }`;
 
-// What a camera would see: red where chosen triangles show their front.
+// The view of a camera: red where chosen triangles show their front.
 const seenFragment = `#version 300 es
 precision highp float;
 uniform vec4 tint;

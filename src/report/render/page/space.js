@@ -64,7 +64,7 @@ class Space {
 		return {program, at};
 	}
 
-	// Of the mode, with a frame.
+	// Colours of the mode, with a frame.
 	surface(frame) {
 		// a client lights what has no tangents by screen derivatives
 		if (this.mode === 0 && !this.geometry[FRAMES[frame][0]]) frame = 2;
@@ -219,7 +219,7 @@ class Space {
 		this.draw();
 	}
 
-	// Of a few triangles, which may be too narrow to be seen.
+	// An outline of a few triangles, which may be too narrow to be seen.
 	outlines(triangles) {
 		const g = this.geometry;
 		return triangles.length > MOST_OUTLINED ? [] : triangles.flatMap(t => [0, 1, 2].flatMap(k =>
@@ -265,7 +265,7 @@ class Space {
 		this.draw();
 	}
 
-	// Of a small picture, the share of what is chosen that shows its front.
+	// The share of the chosen triangles that shows its front in a small picture.
 	visible(camera) {
 		const gl = this.gl, size = 96;
 		this.small ||= this.framebuffer(size, size, true);
@@ -309,7 +309,7 @@ class Space {
 	}
 
 	// Draws the triangles that the sampler repeats on a window of the texture, those that lie there themselves left out; returns
-	// how many, or null: too many. What it repeats is what it is asked for: texture coordinates behind the material's map.
+	// how many, or null: too many. It returns its request: texture coordinates behind the material's map.
 	drawRepeated(low, high, draw) {
 		const {map, wrap} = this.mesh, g = this.geometry, uv = g.texcoords, all = uvBox(g);
 		const whole = mapBox(map, all.low, all.high), least = 1e-6 * (1 + Math.max(whole[1][0] - whole[0][0], whole[1][1] - whole[0][1]));

@@ -281,7 +281,7 @@ class Layout {
 		}
 	}
 
-	// Where the normal map lies, of its repetitions the one in the middle of the mesh.
+	// The place of the normal map: its repetition in the middle of the mesh.
 	imageMap() {
 		const {map} = this.mesh, [low, high] = mapBox(map, this.low, this.high);
 		return mapAfter(mapBack(map), [1, 0, Math.floor((low[0] + high[0]) / 2), 0, 1, Math.floor((low[1] + high[1]) / 2)]);
@@ -389,7 +389,7 @@ class Layout {
 		}
 	}
 
-	// Where two triangles lie on each other, as the sampler repeats them, once the picture rests.
+	// Marks places where two triangles lie on each other, as the sampler repeats them, once the picture rests.
 	drawOverlaps(c, ink) {
 		const {u, v, scale} = this.view, key = [u, v, scale, this.width, this.height].join();
 		if (!this.showOverlaps || !this.oncoverage) return;
