@@ -69,7 +69,7 @@ static inline NT_ALWAYS_INLINE nt_weighed nt_weigh_corner(const nt_measured *m, 
 	const nt_dvec3 d = nt_dvec3_reject(n, m->u);
 	const double squared = nt_dvec3_dot(d, d);
 	const double lengths = e_length * g_length;
-	const double usable = nt_is_across(m, d) & (lengths > 0.0) ? 1.0 : 0.0;
+	const double usable = (nt_is_across(m, d) & (lengths > 0.0)) ? 1.0 : 0.0;
 	const double cosine = nt_dvec3_dot(n, e) * nt_dvec3_dot(n, g) - nt_dvec3_dot(e, g);
 	const double turn = nt_rsqrt(sine * sine + cosine * cosine);
 	/* how much an error of the projections moves the angle */

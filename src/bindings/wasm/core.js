@@ -247,7 +247,10 @@ function putFaces(job, faceSizes, indices, vertices) {
 
 function readCounts() {
 	const written = words(wasm.job() >>> 0, WORD.counts + COUNTS.length);
-	return Object.fromEntries(COUNTS.map((name, i) => [name, written[WORD.counts + i]]));
+	const counts = {};
+	for (let i = 0; i < COUNTS.length; i++)
+		counts[COUNTS[i]] = written[WORD.counts + i];
+	return counts;
 }
 
 export function generateCornerTangents(given, positions, normals, texcoords, options = {}) {
