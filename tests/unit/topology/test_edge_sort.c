@@ -18,11 +18,10 @@ static void place(void)
 		positions[v][0] = (float)v;
 }
 
-static nmtan_status ask(
-	const uint32_t *ids, size_t triangles, size_t vertices, nt_scratch *scratch, nt_unsorted *unsorted)
+static nmtan_status ask_of(
+	const nt_triangles *all, size_t triangles, size_t vertices, nt_scratch *scratch, nt_unsorted *unsorted)
 {
-	const nt_triangles all = {.ids = ids};
-	const nt_welded_mesh mesh = {.triangles = &all,
+	const nt_welded_mesh mesh = {.triangles = all,
 		.triangle_count = triangles,
 		.vertex_count = vertices,
 		.positions = positions[0],
@@ -33,6 +32,13 @@ static nmtan_status ask(
 	const nmtan_status status = nt_edge_tail_make(&mesh, &tail);
 	*unsorted = (nt_unsorted){.edges = NULL};
 	return status ? status : nt_find_unsorted(&mesh, &tail, scratch, unsorted);
+}
+
+static nmtan_status ask(
+	const uint32_t *ids, size_t triangles, size_t vertices, nt_scratch *scratch, nt_unsorted *unsorted)
+{
+	const nt_triangles all = {.ids = ids};
+	return ask_of(&all, triangles, vertices, scratch, unsorted);
 }
 
 static void expect(const uint32_t *ids, size_t triangles, size_t vertices, const nt_unsorted_edge *edges, size_t count)
@@ -154,6 +160,290 @@ TEST(too_many_halvings_are_a_limit)
 	for (uint32_t v = 0; v < 100; v++)
 		positions[v][0] = 0x1p109f;
 	assert_false(is_limit(ids, (CORNERS + LAST) / 3, CORNERS));
+}
+
+/* The specification, step by step, on everything: what the search leaves out decides nothing. */
+
+enum { MOST_TRIANGLES = 700, MOST_CORNERS = 3 * MOST_TRIANGLES };
+
+typedef struct edge {
+	uint32_t low, high, number; /* representatives; 3 * triangle + k */
+	bool forward;
+} edge;
+
+static uint32_t entries[MOST_CORNERS], entry_vertices[MOST_CORNERS], values[MOST_CORNERS]; /* entries: 3 * t + k */
+static uint32_t representatives[MOST];
+
+static float coordinate_of(uint32_t entry, int axis)
+{
+	return positions[entry_vertices[entry]][axis];
+}
+
+static int find_axis(const uint32_t *list, size_t count, float low[3], float high[3])
+{
+	for (int i = 0; i < 3; i++) {
+		low[i] = high[i] = coordinate_of(list[0], i);
+		for (size_t e = 1; e < count; e++) {
+			low[i] = fminf(low[i], coordinate_of(list[e], i));
+			high[i] = fmaxf(high[i], coordinate_of(list[e], i));
+		}
+	}
+	const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
+	return y > x && y > z ? 1 : z > x ? 2 : 0;
+}
+
+static void weld_all(uint32_t *list, size_t count)
+{
+	float low[3], high[3];
+	if (count == 0)
+		return;
+	const int axis = find_axis(list, count, low, high);
+	const float middle = 0.5f * (high[axis] + low[axis]);
+	if (middle >= high[axis] || middle <= low[axis]) {
+		for (size_t e = count; e-- > 0;)
+			representatives[entry_vertices[list[e]]] = values[list[e]];
+		return;
+	}
+	size_t left = 0, right = count - 1;
+	while (left < right) {
+		while (left < right && coordinate_of(list[left], axis) < middle)
+			left++;
+		while (left < right && !(coordinate_of(list[right], axis) < middle))
+			right--;
+		if (left < right) {
+			const uint32_t swapped = list[left];
+			list[left++] = list[right];
+			list[right--] = swapped;
+		}
+	}
+	if (left == right && coordinate_of(list[left], axis) < middle)
+		left++;
+	weld_all(list, left);
+	weld_all(list + left, count - left);
+}
+
+static void sort_as_published(edge *edges, long low, long high, uint32_t seed)
+{
+	const long count = high - low + 1;
+	if (count < 2)
+		return;
+	if (count == 2) {
+		if (edges[low].low > edges[high].low) {
+			const edge swapped = edges[low];
+			edges[low] = edges[high];
+			edges[high] = swapped;
+		}
+		return;
+	}
+	const uint32_t turn = seed & 31;
+	seed += (turn ? seed << turn | seed >> (32 - turn) : seed) + 3;
+	const uint32_t pivot = edges[low + (long)(seed % (uint32_t)count)].low;
+	long left = low, right = high;
+	do {
+		while (edges[left].low < pivot)
+			left++;
+		while (edges[right].low > pivot)
+			right--;
+		if (left <= right) {
+			const edge swapped = edges[left];
+			edges[left++] = edges[right];
+			edges[right--] = swapped;
+		}
+	} while (left <= right);
+	sort_as_published(edges, low, right, seed);
+	sort_as_published(edges, left, high, seed);
+}
+
+static int by_number(const void *left, const void *right)
+{
+	const edge *a = left, *b = right;
+	return (a->number > b->number) - (a->number < b->number);
+}
+
+static int by_all(const void *left, const void *right)
+{
+	const edge *a = left, *b = right;
+	return a->low != b->low ? (a->low > b->low ? 1 : -1)
+	     : a->high != b->high ? (a->high > b->high ? 1 : -1) : by_number(left, right);
+}
+
+static void pair_all(const edge *edges, size_t count, uint32_t *neighbours)
+{
+	for (size_t i = 0; i < count; i++)
+		for (size_t k = i + 1; k < count && neighbours[edges[i].number] == NT_NO_NEIGHBOUR &&
+			edges[k].low == edges[i].low && edges[k].high == edges[i].high; k++)
+			if (edges[k].forward != edges[i].forward && neighbours[edges[k].number] == NT_NO_NEIGHBOUR) {
+				neighbours[edges[i].number] = edges[k].number / 3;
+				neighbours[edges[k].number] = edges[i].number / 3;
+			}
+}
+
+static bool is_collapsed(const uint32_t v[3])
+{
+	for (int k = 0; k < 3; k++)
+		if (memcmp(positions[v[k]], positions[v[(k + 1) % 3]], sizeof *positions) == 0)
+			return true;
+	return false;
+}
+
+/* Writes the edges that are paired otherwise; returns how many. */
+static size_t pair_by_specification(const nt_triangles *all, size_t triangles, nt_unsorted_edge *expected)
+{
+	static edge edges[MOST_CORNERS], sorted[MOST_CORNERS];
+	static uint32_t cells[2048][MOST_CORNERS / 8], published[MOST_CORNERS], usual[MOST_CORNERS];
+	static size_t counts[2048];
+	float low[3], high[3];
+	size_t count = 0, differ = 0;
+	for (uint32_t e = 0; e < 3 * triangles; e++) {
+		entries[e] = e;
+		values[e] = (uint32_t)nt_triangle_corner(all, e / 3, e % 3);
+		entry_vertices[e] = all->ids[values[e]];
+	}
+	const int axis = find_axis(entries, 3 * triangles, low, high);
+	memset(counts, 0, sizeof counts);
+	for (uint32_t e = 0; e < 3 * triangles; e++) {
+		const float cell = 2048 * ((coordinate_of(e, axis) - low[axis]) / (high[axis] - low[axis]));
+		const size_t c = cell >= 2048 ? 2047 : cell > 0 ? (size_t)cell : 0;
+		assert_true(counts[c] < MOST_CORNERS / 8);
+		cells[c][counts[c]++] = e;
+	}
+	for (size_t c = 0; c < 2048; c++)
+		weld_all(cells[c], counts[c]);
+	for (uint32_t t = 0; t < triangles; t++)
+		for (uint32_t k = 0; k < 3 && !is_collapsed(entry_vertices + 3 * t); k++) {
+			const uint32_t a = representatives[entry_vertices[3 * t + k]];
+			const uint32_t b = representatives[entry_vertices[3 * t + (k + 1) % 3]];
+			edges[count++] = (edge){a < b ? a : b, a < b ? b : a, 3 * t + k, a < b};
+		}
+	memcpy(sorted, edges, count * sizeof *edges);
+	qsort(sorted, count, sizeof *sorted, by_all);
+	sort_as_published(edges, 0, (long)count - 1, 39871946);
+	size_t run = count;
+	while (run > 0 && edges[run - 1].low == edges[count - 1].low)
+		run--;
+	qsort(edges, run, sizeof *edges, by_all);
+	for (size_t begin = run, end; begin < count; begin = end) {
+		for (end = begin; end < count && edges[end].high == edges[begin].high; end++)
+			continue;
+		if (end < count)
+			qsort(edges + begin, end - begin, sizeof *edges, by_number);
+	}
+	memset(published, 0xff, sizeof published);
+	memset(usual, 0xff, sizeof usual);
+	pair_all(edges, count, published);
+	pair_all(sorted, count, usual);
+	for (uint32_t e = 0; e < 3 * triangles; e++)
+		if (published[e] != usual[e])
+			expected[differ++] = (nt_unsorted_edge){e, published[e]};
+	return differ;
+}
+
+static uint32_t chance;
+
+static uint32_t below(uint32_t limit)
+{
+	chance = chance * 1664525 + 1013904223;
+	return (chance >> 8) % limit;
+}
+
+/* How a mesh ends. QUADS: of two halves, one collapsed; SHUFFLED: in no order. */
+typedef enum tail_form {
+	PLAIN,
+	OLD_VERTICES,
+	HUB,
+	DOUBLES,
+	COLLAPSED,
+	QUADS,
+	THREE_VERTICES,
+	SHUFFLED,
+	FORMS
+} tail_form;
+
+/* A sheet of cells, most of whose rows of vertices are in one cell of the grid, and a tail. */
+static size_t make_tail(tail_form form, uint32_t *ids, uint32_t *cuts)
+{
+	const uint32_t columns = 1 + below(6), rows = 1 + below(9);
+	const bool turned = below(2), lattice = below(2);
+	size_t count = 0;
+	for (uint32_t v = 0; v < MOST; v++) {
+		const float noise = lattice ? 0 : (float)below(64) / 8192;
+		positions[v][turned] = (float)(v % (columns + 1)) + noise;
+		positions[v][!turned] = (float)(v / (columns + 1)) * 0.25f;
+		positions[v][2] = noise;
+	}
+	for (uint32_t q = 0; q < columns * rows; q++) {
+		const uint32_t a = q / columns * (columns + 1) + q % columns, d = a + columns + 1;
+		const uint32_t halves[6] = {a, a + 1, d + 1, a, d + 1, d}, quad[4] = {a, a + 1, d + 1, d};
+		const size_t corners = form == QUADS ? 4 : 6;
+		memcpy(ids + count, form == QUADS ? quad : halves, corners * sizeof *ids);
+		count += corners;
+	}
+	const uint32_t vertices = (columns + 1) * (rows + 1), times = 1 + below(form == COLLAPSED ? 60 : 12);
+	uint32_t *tail = ids + count;
+	for (uint32_t i = 0; i < times; i++, tail += 3) {
+		const uint32_t old[3] = {below(vertices), below(vertices), below(vertices)};
+		memcpy(tail, old, sizeof old);
+		if (form == HUB)
+			tail[2] = vertices;
+		if (form == DOUBLES)
+			for (uint32_t k = 0; k < 3; k++)
+				tail[k] = i == 0 ? k + vertices - 3 : *(tail - 3 + (below(4) ? k : k * 2 % 3));
+		if (form == COLLAPSED)
+			tail[1] = tail[2 * below(2)];
+	}
+	count += form == PLAIN || form == QUADS || form == SHUFFLED ? 0 : 3 * times;
+	for (size_t i = 0; form == THREE_VERTICES && i < count; i++)
+		ids[i] = (i + (i / 3 + below(2)) % 2 * (i % 3)) % 3;
+	for (size_t t = count / 3 - 1; form == SHUFFLED && t > 0; t--) {
+		const size_t other = below((uint32_t)t + 1);
+		uint32_t swapped[3];
+		memcpy(swapped, ids + 3 * t, sizeof swapped);
+		memcpy(ids + 3 * t, ids + 3 * other, sizeof swapped);
+		memcpy(ids + 3 * other, swapped, sizeof swapped);
+	}
+	if (form != QUADS)
+		return count / 3;
+	for (uint32_t first = 0; first < count; first += 4) {
+		const uint32_t half = below(4);
+		if (half < 2) /* the first or the second half collapses */
+			ids[first + (half ? 2 : 1)] = ids[first + (half ? 3 : 0)];
+		const uint32_t halves[2][2][3] = {{{0, 1, 2}, {0, 2, 3}}, {{0, 1, 3}, {1, 2, 3}}}, way = below(2);
+		for (uint32_t h = 0; h < 2; h++) {
+			uint32_t corners[3];
+			for (int k = 0; k < 3; k++)
+				corners[k] = first + halves[way][h][k];
+			cuts[first / 2 + h] = nt_cut_of(first, corners);
+		}
+	}
+	return count / 2;
+}
+
+TEST(every_form_of_a_tail_is_as_specified)
+{
+	static uint32_t ids[MOST_CORNERS], cuts[MOST_TRIANGLES];
+	static nt_unsorted_edge expected[MOST_CORNERS];
+	for (int form = 0; form < FORMS; form++) {
+		size_t shown = 0;
+		for (chance = 0; chance < 600; chance++) {
+			const uint32_t seed = chance;
+			chance *= 7919;
+			const size_t triangles = make_tail((tail_form)form, ids, cuts);
+			chance = seed;
+			const nt_triangles all = {.ids = ids, .cuts = form == QUADS ? cuts : NULL};
+			const size_t count = pair_by_specification(&all, triangles, expected);
+			shown += count > 0;
+			nt_scratch scratch;
+			nt_scratch_init(&scratch, NULL);
+			nt_unsorted unsorted;
+			assert_int_equal(ask_of(&all, triangles, MOST, &scratch, &unsorted), NMTAN_OK);
+			assert_false(unsorted.limit);
+			assert_int_equal(unsorted.count, count);
+			if (count > 0)
+				assert_memory_equal(unsorted.edges, expected, count * sizeof *expected);
+			nt_scratch_free(&scratch);
+		}
+		assert_true(shown > 0 || form == PLAIN);
+	}
 }
 
 /* Memory that says nothing useful. */
