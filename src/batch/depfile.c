@@ -8,7 +8,9 @@
  */
 #include "batch/depfile.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include "base/name_table.h"
 #include "batch/record.h"
 #include "file/output.h"
 #include "file/relative_path.h"
@@ -80,42 +82,76 @@ static bool find_folder(const char *path, nt_buffer *folder, struct stat *info)
 	return false;
 }
 
-/* In such a folder each run leaves another time of change. */
-static bool is_written_to(const nt_trace *trace, const struct stat *info)
+/* Notes the folders that are written to: in them each run leaves another time of change. They are few. */
+static nt_status list_written(const nt_trace *trace, struct stat **written, size_t *count, nt_error *error)
 {
 	nt_buffer folder = {0};
-	struct stat of_output;
-	bool is = false;
-	for (size_t i = 0; i < trace->count && !is; i++)
-		is = trace->files[i].kind == NT_TRACE_WRITTEN &&
-			find_folder(trace->files[i].path, &folder, &of_output) && nt_same_file(&of_output, info);
+	size_t capacity = 0;
+	nt_status status = NT_OK;
+	*written = NULL;
+	*count = 0;
+	for (size_t i = 0; i < trace->count && !status; i++) {
+		struct stat info;
+		if (trace->files[i].kind != NT_TRACE_WRITTEN || !find_folder(trace->files[i].path, &folder, &info))
+			continue;
+		size_t k = 0;
+		while (k < *count && !nt_same_file(&(*written)[k], &info))
+			k++;
+		if (k < *count)
+			continue;
+		if (nt_grow((void **)written, &capacity, *count + 1, sizeof **written))
+			(*written)[(*count)++] = info;
+		else
+			status = nt_fail_memory(error);
+	}
 	nt_buffer_free(&folder);
-	return is;
+	return status;
+}
+
+/* Appends the folders in which files were looked for in vain, each once. */
+static nt_status list_searched(const nt_trace *trace, const struct stat *written, size_t written_count, nt_buffer *list,
+	nt_error *error)
+{
+	nt_name_table listed = {0};
+	nt_arena texts = {0};
+	nt_buffer folder = {0};
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < trace->count && !status; i++) {
+		const nt_trace_kind kind = trace->files[i].kind;
+		struct stat info;
+		if ((kind != NT_TRACE_MISSING && kind != NT_TRACE_SEARCHED) ||
+			!find_folder(trace->files[i].path, &folder, &info) ||
+			nt_name_find(&listed, folder.data, folder.size) != UINT32_MAX)
+			continue;
+		const char *text = nt_arena_text(&texts, folder.data, folder.size);
+		if (!text || nt_name_add(&listed, text, folder.size) == UINT32_MAX)
+			status = nt_fail_memory(error);
+		size_t k = 0;
+		while (k < written_count && !nt_same_file(&written[k], &info))
+			k++;
+		if (k == written_count)
+			nt_buffer_append(list, folder.data, folder.size + 1);
+	}
+	nt_name_table_free(&listed);
+	nt_arena_free(&texts);
+	nt_buffer_free_into(&folder, list);
+	return status;
 }
 
 /* The dependencies of an output, each with a NUL behind it: files that were read, the input first, and the folders in
  * which others were looked for in vain. */
 static nt_status list_dependencies(const nt_trace *trace, nt_buffer *list, nt_error *error)
 {
-	nt_buffer folder = {0};
-	struct stat info;
+	struct stat *written;
+	size_t written_count;
 	for (size_t i = 0; i < trace->count; i++)
 		if (trace->files[i].kind == NT_TRACE_READ)
 			nt_buffer_append(list, trace->files[i].path, strlen(trace->files[i].path) + 1);
-	const size_t begin = list->size;
-	for (size_t i = 0; i < trace->count; i++) {
-		const nt_trace_kind kind = trace->files[i].kind;
-		if ((kind != NT_TRACE_MISSING && kind != NT_TRACE_SEARCHED) ||
-			!find_folder(trace->files[i].path, &folder, &info) || is_written_to(trace, &info))
-			continue;
-		bool listed = false;
-		for (size_t at = begin; at < list->size && !listed; at += strlen(list->data + at) + 1)
-			listed = strcmp(list->data + at, folder.data) == 0;
-		if (!listed)
-			nt_buffer_append(list, folder.data, folder.size + 1);
-	}
-	nt_buffer_free_into(&folder, list);
-	return list->failed ? nt_fail_memory(error) : NT_OK;
+	nt_status status = list_written(trace, &written, &written_count, error);
+	if (!status)
+		status = list_searched(trace, written, written_count, list, error);
+	free(written);
+	return status || !list->failed ? status : nt_fail_memory(error);
 }
 
 /* Appends the names from `at` on, each with `before` and `after` around it. */

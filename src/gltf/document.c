@@ -238,6 +238,7 @@ void nt_gltf_free(void *source)
 	free(document->grids);
 	free(document->lod_wishes);
 	nt_name_table_free(&document->animated);
+	nt_hash_index_free(&document->buffer_files);
 	free(document->buffers);
 	nt_json_free(document->json);
 	nt_arena_free(&document->arena);
@@ -299,6 +300,27 @@ static nt_status place_error(nt_error *error, nt_status status, const char *poin
 	return status;
 }
 
+/* A file that an earlier buffer names, too, by whatever name, is open once. */
+static nt_status share_file(nt_gltf *document, nt_gltf_buffer *buffer, nt_error *error)
+{
+	const uint64_t key[2] = {buffer->file.device, buffer->file.inode}, hash = nt_hash_bytes(0, key, sizeof key);
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t i; (i = nt_hash_index_next(&document->buffer_files, hash, &at)) != UINT32_MAX;) {
+		const nt_file *known = &document->buffers[i].file;
+		if (known->device != key[0] || known->inode != key[1])
+			continue;
+		nt_file_close(&buffer->file);
+		buffer->file = *known;
+		buffer->file.mapped = false;
+		buffer->file.borrowed = true;
+		return NT_OK;
+	}
+	if (nt_hash_index_add(&document->buffer_files, hash, (uint32_t)(buffer - document->buffers)))
+		return NT_OK;
+	nt_file_close(&buffer->file);
+	return nt_fail_memory(error);
+}
+
 static nt_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const char *uri, size_t length,
 	nt_error *error)
 {
@@ -309,6 +331,8 @@ static nt_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const char
 		document->allow_outside, &path, error);
 	if (!status)
 		status = nt_file_open_content(&buffer->file, path, true, error);
+	if (!status)
+		status = share_file(document, buffer, error);
 	if (status)
 		return status;
 	buffer->path = path;

@@ -90,6 +90,7 @@ typedef struct nt_gltf {
 	bool keeps_transforms;   /* texture transforms turn no tangents: set before meshes are described */
 	nt_gltf_buffer *buffers; /* [buffer_count] */
 	size_t buffer_count;
+	nt_hash_index buffer_files; /* of buffers, by the files that they were the first to open */
 	nt_gltf_buffer *virtuals;  /* [virtual_count] decompressed views; buffer NT_GLTF_VIRTUAL + i */
 	size_t virtual_count, virtual_capacity;
 	uint32_t *virtual_of;      /* [view_count] the buffer a view was decompressed to; NT_NONE */
