@@ -138,8 +138,8 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 		nt_record *const to = records[orient];
 		const float *add = out->add[0] + turned_rows[i];
 		add_record(to + a, add);
-		add_record(to + b, add + 4 * NT_LANES);
-		add_record(to + c, add + 8 * NT_LANES);
+		add_record(to + b, add + 4 * NT_TRIANGLES);
+		add_record(to + c, add + 8 * NT_TRIANGLES);
 		if (is_narrow) {
 			const uint32_t both = -(uint32_t)orient & 0x80008000u;
 			narrow[pa] = b | c << 16 | both;
@@ -301,9 +301,9 @@ static int missing_record(const nt_fast *fast, size_t first, size_t count)
  * than that can be under way. Always inline: to gcc 12 a function of prefetches alone has no effect, and goes. */
 static inline NT_ALWAYS_INLINE void prefetch_rows(const nt_fast *fast, size_t first, size_t end, size_t k)
 {
-	const size_t far = first + 2 * NT_LANES < end ? first + 2 * NT_LANES : end;
-	const size_t count = end - far < NT_LANES ? end - far : NT_LANES;
-	uint32_t copy[3 * NT_LANES];
+	const size_t far = first + 2 * NT_TRIANGLES < end ? first + 2 * NT_TRIANGLES : end;
+	const size_t count = end - far < NT_TRIANGLES ? end - far : NT_TRIANGLES;
+	uint32_t copy[3 * NT_TRIANGLES];
 	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, far, count, copy) + k;
 	for (size_t i = 0; i < count; i++)
 		NT_PREFETCH(&fast->rows[ids[3 * i]]);
@@ -312,19 +312,21 @@ static inline NT_ALWAYS_INLINE void prefetch_rows(const nt_fast *fast, size_t fi
 /* Notes which triangles have a corner near the last ones (topology/edge_sort.h). */
 static inline void note_near(const nt_edge_tail *tail, const lanes_in *in, size_t first, size_t count)
 {
-	uint8_t near[NT_LANES];
+	uint8_t near[NT_TRIANGLES];
 #if WIDTH == 16
 	const __m512 low = _mm512_set1_ps(tail->grid.low), scale = _mm512_set1_ps(tail->scale);
 	const __m512i half = _mm512_loadu_si512(tail->bins), other = _mm512_loadu_si512(tail->bins + 16);
-	const __m512i in_word = _mm512_set1_epi32(31);
-	__m512i bits = _mm512_setzero_si512();
-	for (int k = 0; k < 3; k++) {
-		const __m512 x = _mm512_load_ps(in->row[k][tail->grid.axis]);
-		const __m512i bin = _mm512_cvttps_epi32(_mm512_mul_ps(_mm512_sub_ps(x, low), scale));
-		const __m512i word = _mm512_permutex2var_epi32(half, _mm512_srli_epi32(bin, 5), other);
-		bits = _mm512_or_si512(bits, _mm512_srlv_epi32(word, _mm512_and_si512(bin, in_word)));
+	const __m512i in_word = _mm512_set1_epi32(31), one = _mm512_set1_epi32(1);
+	for (size_t i = 0; i < count; i += WIDTH) {
+		__m512i bits = _mm512_setzero_si512();
+		for (int k = 0; k < 3; k++) {
+			const __m512 x = _mm512_load_ps(in->row[k][tail->grid.axis] + i);
+			const __m512i bin = _mm512_cvttps_epi32(_mm512_mul_ps(_mm512_sub_ps(x, low), scale));
+			const __m512i word = _mm512_permutex2var_epi32(half, _mm512_srli_epi32(bin, 5), other);
+			bits = _mm512_or_si512(bits, _mm512_srlv_epi32(word, _mm512_and_si512(bin, in_word)));
+		}
+		_mm_storeu_si128((__m128i *)(near + i), _mm512_cvtepi32_epi8(_mm512_and_si512(bits, one)));
 	}
-	_mm_storeu_si128((__m128i *)near, _mm512_cvtepi32_epi8(_mm512_and_si512(bits, _mm512_set1_epi32(1))));
 #else
 	for (size_t i = 0; i < count; i++) {
 		uint32_t bit = 0;
@@ -333,8 +335,8 @@ static inline void note_near(const nt_edge_tail *tail, const lanes_in *in, size_
 		near[i] = (uint8_t)bit;
 	}
 #endif
-	if (count == NT_LANES)
-		memcpy(tail->near + first, near, NT_LANES);
+	if (count == NT_TRIANGLES)
+		memcpy(tail->near + first, near, NT_TRIANGLES);
 	else
 		memcpy(tail->near + first, near, count);
 }
@@ -347,20 +349,20 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 	const float offset = nt_stored_v_offset(fast->solve->mesh);
 	const bool scattered = fast->scattered;
 	for (size_t first = begin, count; first < end; first += count) {
-		count = end - first < NT_LANES ? end - first : NT_LANES;
+		count = end - first < NT_TRIANGLES ? end - first : NT_TRIANGLES;
 		if (first + count < end && (fast->flags[first + count] & NT_TRIANGLE_SECOND))
 			count--; /* halves of a quad stay together */
 		if (scattered)
 			prefetch_rows(fast, first, end, 0);
-		uint32_t copy[3 * NT_LANES];
+		uint32_t copy[3 * NT_TRIANGLES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
-		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : whole_lanes(count), in.row);
+		gather_lanes(fast->rows, ids, count, whole_lanes(count), in.row[0][0], NT_TRIANGLES);
 		if (fast->tail.near)
 			note_near(&fast->tail, &in, first, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 1);
 		if (fast->wants_more)
-			solve_lanes_more(&in, &out, offset);
+			solve_lanes_more(&in, &out, offset, count);
 		else
 			solve_lanes_plain(&in, &out, offset, count);
 		if (scattered)

@@ -58,11 +58,11 @@ static inline NT_ALWAYS_INLINE uint32_t state_of(const float u[3], const float v
 
 /* Corners in lanes, by component. */
 typedef struct corner_lanes {
-	const float (*n)[NT_LANES];                 /* normal */
-	const float (*u)[NT_LANES], (*v)[NT_LANES]; /* directions of the triangle's frame */
-	const float (*e)[NT_LANES], (*f)[NT_LANES]; /* edges at the corner */
+	const float (*n)[NT_TRIANGLES];                 /* normal */
+	const float (*u)[NT_TRIANGLES], (*v)[NT_TRIANGLES]; /* directions of the triangle's frame */
+	const float (*e)[NT_TRIANGLES], (*f)[NT_TRIANGLES]; /* edges at the corner */
 	float turned;                               /* -1 where one of them runs towards it, or 1 */
-	float (*sum)[NT_LANES], (*extra)[NT_LANES]; /* as in lanes_out */
+	float (*sum)[NT_TRIANGLES], (*extra)[NT_TRIANGLES]; /* as in lanes_out */
 } corner_lanes;
 
 /* Each corner's unit directions, the bits of what holds for it, and the cosine of its angle as seen along n, at most 1.

@@ -38,7 +38,7 @@ static const uint32_t in_order[3 * NT_LANES] = {THREE(0), THREE(1), THREE(2), TH
 /* The lanes behind the last corner repeat it. */
 static void load_singles(const nt_weld_row *rows, const uint32_t *corners, size_t count, single_lanes *NT_RESTRICT s)
 {
-	gather_rows(rows, in_order, count < NT_LANES ? count : NT_LANES, s->in.row);
+	gather_lanes(rows, in_order, count < NT_LANES ? count : NT_LANES, NT_LANES, s->in.row[0][0], NT_TRIANGLES);
 	for (size_t lane = 0; lane < NT_LANES; lane++) {
 		const uint32_t corner = corners[lane < count ? lane : count - 1];
 		s->k[lane] = corner & 3;
@@ -142,8 +142,8 @@ static void kernel_corners(const nt_weld_row *rows, const uint32_t *list, size_t
 		load_singles(rows + 3 * first, list + first, count - first, &s);
 		solve_single_frames(&s);
 		solve_single_angles(&s);
-		interleave(s.u, NT_LANES, u);
-		interleave(s.v, NT_LANES, v);
+		interleave(s.u[0], NT_LANES, NT_LANES, u);
+		interleave(s.v[0], NT_LANES, NT_LANES, v);
 		for (size_t i = 0; i < NT_LANES; i++) {
 			memcpy(solved[i].u, u + 4 * turned_place(i), 4 * sizeof *u);
 			memcpy(solved[i].v, v + 4 * turned_place(i), 4 * sizeof *v);

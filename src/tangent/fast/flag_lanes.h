@@ -30,7 +30,8 @@ static void orient_quads(uint8_t *flags, size_t count, const float *area)
  * all lie along an axis. If there is another reason, they stay uncertain. */
 static void NT_NOINLINE clear_flat(const lanes_in *in, uint8_t *flags, size_t count)
 {
-	const float (*a)[NT_LANES] = in->row[0] + 6, (*b)[NT_LANES] = in->row[1] + 6, (*c)[NT_LANES] = in->row[2] + 6;
+	const float (*a)[NT_TRIANGLES] = in->row[0] + 6, (*b)[NT_TRIANGLES] = in->row[1] + 6,
+		(*c)[NT_TRIANGLES] = in->row[2] + 6;
 	for (size_t i = 0; i < count; i++) {
 		const int ab_u = a[0][i] == b[0][i], ac_u = a[0][i] == c[0][i], bc_u = b[0][i] == c[0][i];
 		const int ab_v = a[1][i] == b[1][i], ac_v = a[1][i] == c[1][i], bc_v = b[1][i] == c[1][i];
@@ -73,8 +74,8 @@ static inline bool classify_lanes(const nt_fast *fast, size_t first, size_t coun
 	bool ordinary = out->plain;
 	if (!NT_FAST_PATHS || !ordinary)
 		ordinary = classify_special(flags, count, in, out);
-	else if (count == NT_LANES)
-		classify_plain(flags, NT_LANES, out);
+	else if (count == NT_TRIANGLES)
+		classify_plain(flags, NT_TRIANGLES, out);
 	else
 		classify_plain(flags, count, out);
 	if (fast->triangles.cuts)

@@ -21,23 +21,23 @@
 
 /* 16 triangles by component. */
 typedef struct lanes_in {
-	NT_ALIGNED(64) float row[3][8][NT_LANES]; /* corner, float of its nt_weld_row */
+	NT_ALIGNED(64) float row[3][8][NT_TRIANGLES]; /* corner, float of its nt_weld_row */
 } lanes_in;
 
 typedef struct lanes_out {
-	NT_ALIGNED(64) float u[3][NT_LANES], v[3][NT_LANES]; /* unit directions of the frames */
-	float length_u[NT_LANES], length_v[NT_LANES]; /* of the directions before they are made unit vectors */
-	float mag_u[NT_LANES], mag_v[NT_LANES];
-	float sum[3][4][NT_LANES];      /* corner, float of its nt_record */
-	float extra[3][8][NT_LANES];    /* corner, float of its nt_record_more */
-	float add[3][4 * NT_LANES];     /* corner, one nt_record after the other, in turned places */
-	float more[3][2][4 * NT_LANES]; /* the same, halves of nt_record_more */
-	float area[NT_LANES];
-	float doubt[NT_LANES];    /* negative where the area's sign is exact, and stays when v is stored */
+	NT_ALIGNED(64) float u[3][NT_TRIANGLES], v[3][NT_TRIANGLES]; /* unit directions of the frames */
+	float length_u[NT_TRIANGLES], length_v[NT_TRIANGLES]; /* of the directions before they are made unit vectors */
+	float mag_u[NT_TRIANGLES], mag_v[NT_TRIANGLES];
+	float sum[3][4][NT_TRIANGLES];      /* corner, float of its nt_record */
+	float extra[3][8][NT_TRIANGLES];    /* corner, float of its nt_record_more */
+	float add[3][4 * NT_TRIANGLES];     /* corner, one nt_record after the other, in turned places */
+	float more[3][2][4 * NT_TRIANGLES]; /* the same, halves of nt_record_more */
+	float area[NT_TRIANGLES];
+	float doubt[NT_TRIANGLES];    /* negative where the area's sign is exact, and stays when v is stored */
 	bool plain;               /* all triangles are sound and not degenerate; only if not, there are: */
-	int frameless[NT_LANES];  /* no UV area at all, or next to none: "any" */
-	int sound[NT_LANES];      /* every length and ratio is well inside float's range: certainly not "any" */
-	int degenerate[NT_LANES];
+	int frameless[NT_TRIANGLES];  /* no UV area at all, or next to none: "any" */
+	int sound[NT_TRIANGLES];      /* every length and ratio is well inside float's range: certainly not "any" */
+	int degenerate[NT_TRIANGLES];
 } lanes_out;
 
 /* Lanes of whole vectors: so no compiler has to see to those that are left over. */
@@ -45,7 +45,7 @@ typedef struct lanes_out {
 
 /* For 16 triangles, the edges from corner 0 to 1, from 0 to 2 and from 1 to 2. */
 typedef struct lanes_edges {
-	NT_ALIGNED(64) float of[3][3][NT_LANES];
+	NT_ALIGNED(64) float of[3][3][NT_TRIANGLES];
 } lanes_edges;
 
 static inline NT_ALWAYS_INLINE void make_edges(const lanes_in *NT_RESTRICT in,
@@ -130,7 +130,8 @@ static void NT_NOINLINE tell_apart(const lanes_in *NT_RESTRICT in, lanes_out *NT
 		int same[3];
 		NT_UNROLL(3)
 		for (int k = 0; k < 3; k++) {
-			const float (*const a)[NT_LANES] = in->row[k], (*const b)[NT_LANES] = in->row[(k + 1) % 3];
+			const float (*const a)[NT_TRIANGLES] = in->row[k];
+			const float (*const b)[NT_TRIANGLES] = in->row[(k + 1) % 3];
 			same[k] = (a[0][i] == b[0][i]) & (a[1][i] == b[1][i]) & (a[2][i] == b[2][i]);
 		}
 		const float size = fabsf(out->area[i]), ls = out->length_u[i], lt = out->length_v[i];

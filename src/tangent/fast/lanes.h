@@ -28,7 +28,7 @@ static inline NT_ALWAYS_INLINE void solve_lanes(const lanes_in *NT_RESTRICT in, 
 	if (count < WIDTH)
 		NT_UNREACHABLE; /* keeps gcc 12 from warning of loops that are not entered */
 	lanes_edges edges;
-	NT_ALIGNED(64) float cosines[3][NT_LANES];
+	NT_ALIGNED(64) float cosines[3][NT_TRIANGLES];
 	EACH_LANE(count) {
 		make_edges(in, &edges, i);
 		solve_frames(in, &edges, out, more, i);
@@ -40,7 +40,7 @@ static inline NT_ALWAYS_INLINE void solve_lanes(const lanes_in *NT_RESTRICT in, 
 	for (int k = 0; k < 3; k++)
 		EACH_LANE(count) weigh_corner(corner_of(in, &edges, out, k), cosines[k], out, more, i);
 	for (int k = 0; k < 3; k++)
-		interleave(out->sum[k], (size_t)count, out->add[k]);
+		interleave(out->sum[k][0], NT_TRIANGLES, (size_t)count, out->add[k]);
 }
 
 /* Whether all lanes are plain. */
@@ -72,18 +72,23 @@ static void NT_NOINLINE solve_lanes_plain(const lanes_in *NT_RESTRICT in, lanes_
 	float offset, size_t count)
 {
 	const size_t lane_count = whole_lanes(count);
-	solve_lanes(in, out, false, (int)lane_count);
+	/* few triangles: 10 ns less without loops */
+	if (lane_count == WIDTH)
+		solve_lanes(in, out, false, WIDTH);
+	else
+		solve_lanes(in, out, false, (int)lane_count);
 	judge(in, out, offset, 3, lane_count);
 }
 
-static void NT_NOINLINE solve_lanes_more(const lanes_in *in, lanes_out *out, float offset)
+static void NT_NOINLINE solve_lanes_more(const lanes_in *in, lanes_out *out, float offset, size_t count)
 {
-	solve_lanes(in, out, true, NT_LANES);
+	const size_t lane_count = whole_lanes(count);
+	solve_lanes(in, out, true, (int)lane_count);
 	for (int k = 0; k < 3; k++) {
-		interleave(out->extra[k], NT_LANES, out->more[k][0]);
-		interleave(out->extra[k] + 4, NT_LANES, out->more[k][1]);
+		interleave(out->extra[k][0], NT_TRIANGLES, lane_count, out->more[k][0]);
+		interleave(out->extra[k][4], NT_TRIANGLES, lane_count, out->more[k][1]);
 	}
-	judge(in, out, offset, 0, NT_LANES);
+	judge(in, out, offset, 0, lane_count);
 }
 
 #endif

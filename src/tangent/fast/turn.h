@@ -162,22 +162,23 @@ static inline size_t turned_place(size_t lane)
 
 /* The same as the first float of a lane's row of four. */
 #define ROW(lane) (4 * ((lane) - (lane) % WIDTH + (lane) % WIDTH % 4 * (WIDTH / 4) + (lane) % WIDTH / 4))
-static const uint8_t turned_rows[NT_LANES] = {ROW(0), ROW(1), ROW(2), ROW(3), ROW(4), ROW(5), ROW(6), ROW(7), ROW(8),
-	ROW(9), ROW(10), ROW(11), ROW(12), ROW(13), ROW(14), ROW(15)};
+#define FOUR_ROWS(lane) ROW(lane), ROW((lane) + 1), ROW((lane) + 2), ROW((lane) + 3)
+static const uint8_t turned_rows[NT_TRIANGLES] = {FOUR_ROWS(0), FOUR_ROWS(4), FOUR_ROWS(8), FOUR_ROWS(12),
+	FOUR_ROWS(16), FOUR_ROWS(20), FOUR_ROWS(24), FOUR_ROWS(28)};
 
-/* Lanes of the whole vectors that hold `count` of 1 to 16. */
+/* Lanes of the whole vectors that hold `count`. */
 static inline size_t whole_lanes(size_t count)
 {
-	return WIDTH == NT_LANES ? NT_LANES : (count + WIDTH - 1) / WIDTH * WIDTH;
+	return (count + WIDTH - 1) / WIDTH * WIDTH;
 }
 
-/* Four components of whole vectors of lanes become rows in turned places. */
-static inline NT_ALWAYS_INLINE void interleave(const float in[4][NT_LANES], size_t lane_count, float *out)
+/* Four components of whole vectors of lanes, `stride` apart, become rows in turned places. */
+static inline NT_ALWAYS_INLINE void interleave(const float *in, size_t stride, size_t lane_count, float *out)
 {
 	for (size_t i = 0; i < lane_count; i += WIDTH) {
 		lanes four[4];
 		for (size_t j = 0; j < 4; j++)
-			four[j] = load_lanes(in[j] + i);
+			four[j] = load_lanes(in + stride * j + i);
 		turn(four);
 		for (size_t j = 0; j < 4; j++)
 			memcpy(out + 4 * i + WIDTH * j, &four[j], sizeof four[j]);
@@ -185,9 +186,9 @@ static inline NT_ALWAYS_INLINE void interleave(const float in[4][NT_LANES], size
 }
 
 #if WIDTH <= 4
-/* The rows of one corner of WIDTH triangles, by component, from `lane` on. */
-static inline NT_ALWAYS_INLINE void gather_corner(const nt_weld_row *rows, const uint32_t *ids,
-	size_t lane, float (*out)[NT_LANES])
+/* The rows of one corner of WIDTH triangles, by component, `stride` apart. */
+static inline NT_ALWAYS_INLINE void gather_corner(const nt_weld_row *rows, const uint32_t *ids, float *out,
+	size_t stride)
 {
 	for (size_t half = 0; half < 8; half += 4) {
 		const float *from[WIDTH];
@@ -196,7 +197,7 @@ static inline NT_ALWAYS_INLINE void gather_corner(const nt_weld_row *rows, const
 			from[j] = (const float *)&rows[ids[3 * j]] + half;
 		load_turned(from, four);
 		for (size_t j = 0; j < 4; j++)
-			memcpy(out[half + j] + lane, &four[j], sizeof four[j]);
+			memcpy(out + stride * (half + j), &four[j], sizeof four[j]);
 	}
 }
 #else
@@ -215,9 +216,9 @@ static inline NT_ALWAYS_INLINE lanes load_rows(const nt_weld_row *rows, const ui
 #endif
 }
 
-/* The rows of one corner of WIDTH triangles, by component, from `lane` on. */
-static inline NT_ALWAYS_INLINE void gather_corner(const nt_weld_row *rows, const uint32_t *ids,
-	size_t lane, float (*out)[NT_LANES])
+/* The rows of one corner of WIDTH triangles, by component, `stride` apart. */
+static inline NT_ALWAYS_INLINE void gather_corner(const nt_weld_row *rows, const uint32_t *ids, float *out,
+	size_t stride)
 {
 	lanes low[4], high[4];
 	for (size_t j = 0; j < 4; j++) {
@@ -229,17 +230,17 @@ static inline NT_ALWAYS_INLINE void gather_corner(const nt_weld_row *rows, const
 	for (size_t j = 0; j < 4; j++) {
 		const lanes first = __builtin_shufflevector(low[j], high[j], EVEN_PARTS);
 		const lanes second = __builtin_shufflevector(low[j], high[j], ODD_PARTS);
-		memcpy(out[j] + lane, &first, sizeof first);
-		memcpy(out[4 + j] + lane, &second, sizeof second);
+		memcpy(out + stride * j, &first, sizeof first);
+		memcpy(out + stride * (4 + j), &second, sizeof second);
 	}
 }
 #endif
 
-/* Rows of the corners of `count` triangles; up to `lane_count` the lanes behind repeat the last one. */
-static void NT_NOINLINE gather_lanes(const nt_weld_row *rows, const uint32_t *ids, size_t count,
-	size_t lane_count, float (*NT_RESTRICT out)[8][NT_LANES])
+/* Rows of the corners of `count` triangles, [3][8][stride]; up to `lane_count` the lanes behind repeat the last one. */
+static void NT_NOINLINE gather_lanes(const nt_weld_row *rows, const uint32_t *ids, size_t count, size_t lane_count,
+	float *NT_RESTRICT out, size_t stride)
 {
-	uint32_t padded[3 * NT_LANES];
+	uint32_t padded[3 * NT_TRIANGLES];
 	if (count < lane_count) {
 		for (size_t i = 0; i < lane_count; i++)
 			memcpy(padded + 3 * i, ids + 3 * (i < count ? i : count - 1), 3 * sizeof *ids);
@@ -247,14 +248,7 @@ static void NT_NOINLINE gather_lanes(const nt_weld_row *rows, const uint32_t *id
 	}
 	for (size_t k = 0; k < 3; k++)
 		for (size_t lane = 0; lane + WIDTH <= lane_count; lane += WIDTH)
-			gather_corner(rows, ids + 3 * lane + k, lane, out[k]);
-}
-
-/* The same for all lanes. */
-static inline void gather_rows(const nt_weld_row *rows, const uint32_t *ids, size_t count,
-	float (*NT_RESTRICT out)[8][NT_LANES])
-{
-	gather_lanes(rows, ids, count, NT_LANES, out);
+			gather_corner(rows, ids + 3 * lane + k, out + 8 * stride * k + lane, stride);
 }
 
 #endif

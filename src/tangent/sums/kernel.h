@@ -246,7 +246,7 @@ static void NT_NOINLINE sum_corners_unweighted(sum_lanes *l, nt_sum_block *block
 static void sum_solve(const nt_sums *s, size_t first, size_t count, sum_lanes *l, nt_sum_block *block)
 {
 	const double offset = nt_stored_v_offset(s->solve->mesh);
-	gather_rows(s->weld.rows, s->ids + 3 * first, count, l->row);
+	gather_lanes(s->weld.rows, s->ids + 3 * first, count, NT_SUM_LANES, l->row[0][0], NT_SUM_LANES);
 	sum_frames(l, block, fabs(offset), offset != 0.0 ? 3 * 0x1p-24 : 0.0);
 	const double asked = FLAG(s->weight == NT_WEIGHT_NONE);
 	double cancelled = 0.0;
@@ -458,7 +458,7 @@ static void NT_NOINLINE finish_normals(const nt_weld_row *rows, size_t count, fi
 	for (uint32_t i = 0; i < NT_SUM_LANES; i++)
 		ids[3 * i] = i < count ? i : 0;
 	for (size_t lane = 0; lane < NT_SUM_LANES; lane += WIDTH)
-		gather_corner(rows, ids + 3 * lane, lane, l->row);
+		gather_corner(rows, ids + 3 * lane, l->row[0] + lane, NT_SUM_LANES);
 	LANES(i) {
 		const nt_dvec3 raw = lane_floats(l->row + 3, i), unit = nt_weigh_normal(raw.x, raw.y, raw.z);
 		const double finite = nt_dvec3_dot(raw, raw) < SUM_HUGE ? 1.0 : 0.0;
@@ -523,7 +523,7 @@ static void sum_finish(const nt_sums *s, size_t begin, size_t end, nt_sums_finis
 			finish_load(s, side, first, count, &l);
 			finish_solve(&l, side ? 1.0f : -1.0f);
 			float tangents[4 * NT_SUM_LANES];
-			interleave(l.tangent, NT_LANES, tangents);
+			interleave(l.tangent[0], NT_SUM_LANES, NT_SUM_LANES, tangents);
 			for (size_t i = 0; i < count; i++) {
 				const unsigned found = (unsigned)l.flags[i];
 				memcpy(&s->results[side][first + i], tangents + 4 * turned_place(i), 4 * sizeof(float));
