@@ -281,18 +281,14 @@ static int compare_groups(const void *a, const void *b)
 	return (x->number > y->number) - (x->number < y->number);
 }
 
-/* Brings the primitives of a group together; a mesh of one group has its name. */
-static nt_status sort_groups(const builder *b, nt_mesh *mesh)
+bool obj_sort_groups(nt_mesh *mesh)
 {
 	const size_t count = mesh->primitive_count;
 	bool sorted = true;
 	for (size_t i = 1; i < count; i++)
 		sorted &= mesh->primitives[i - 1].group <= mesh->primitives[i].group;
-	mesh->groups = b->file->group_count > 1 ? b->file->groups : NULL;
-	if (mesh->groups && mesh->primitives[0].group == mesh->primitives[count - 1].group)
-		mesh->name = mesh->groups[mesh->primitives[0].group];
 	if (sorted)
-		return NT_OK;
+		return true;
 	numbered_primitive *list = nt_alloc(count, sizeof *list);
 	uint32_t *numbers = nt_alloc(count, sizeof *numbers);
 	for (size_t i = 0; list && numbers && i < count; i++)
@@ -309,7 +305,7 @@ static nt_status sort_groups(const builder *b, nt_mesh *mesh)
 	const bool done = list && numbers;
 	free(list);
 	free(numbers);
-	return done ? NT_OK : nt_fail_memory(b->error);
+	return done;
 }
 
 /* Indices, sizes, polygons, primitives and smoothing groups. */
@@ -354,8 +350,14 @@ static nt_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 	if (!mesh->primitives || (spans > 1 && !mesh->face_primitive))
 		return nt_fail_memory(b->error);
 	nt_status status = write_spans(b, mesh, begin, end, replace, source);
-	if (!status)
-		status = sort_groups(b, mesh);
+	if (!status && !obj_sort_groups(mesh))
+		status = nt_fail_memory(b->error);
+	if (!status && file->group_count > 1) {
+		mesh->groups = file->groups;
+		/* a mesh of one group has its name */
+		if (mesh->primitives[0].group == mesh->primitives[mesh->primitive_count - 1].group)
+			mesh->name = mesh->groups[mesh->primitives[0].group];
+	}
 	if (mesh->primitive_count == 1)
 		mesh->face_primitive = NULL;
 	return status;

@@ -230,6 +230,9 @@ nt_status obj_make_vertices(obj_file *file, nt_error *error);
 /* Meshes, spans and materials from the events; findings for what was ignored. */
 nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_error *error);
 
+/* Brings the primitives of a group together; false: out of memory. */
+bool obj_sort_groups(nt_mesh *mesh);
+
 /* Fills scene->meshes from all of it. */
 nt_status obj_make_meshes(obj_file *file, nt_error *error);
 

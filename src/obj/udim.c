@@ -171,7 +171,8 @@ static nt_status split_mesh(tiler *t, nt_mesh *mesh)
 		done = done && numbers[f] != UINT32_MAX &&
 			nt_grow((void **)&list, &capacity, primitives.count, sizeof *list);
 		if (done && primitives.count > before)
-			list[numbers[f]] = (nt_primitive){material, 0};
+			list[numbers[f]] =
+				(nt_primitive){.material = material, .group = mesh->primitives[old].group};
 		if (done)
 			list[numbers[f]].face_count++;
 		corner += size;
@@ -181,10 +182,11 @@ static nt_status split_mesh(tiler *t, nt_mesh *mesh)
 		mesh->primitives = memcpy(made, list, primitives.count * sizeof *made);
 		mesh->primitive_count = primitives.count;
 		mesh->face_primitive = primitives.count > 1 ? numbers : NULL;
+		done = obj_sort_groups(mesh);
 	}
 	nt_name_table_free(&primitives);
 	free(list);
-	return made ? NT_OK : nt_fail_memory(t->error);
+	return made && done ? NT_OK : nt_fail_memory(t->error);
 }
 
 static void report_numbered(const tiler *t)

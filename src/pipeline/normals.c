@@ -281,11 +281,23 @@ static nt_status make_normals_of_copies(nt_scene *scene, unsigned threads, nt_er
 	return status;
 }
 
+/* Whether a mesh that cannot have tangents gets the normals that the user asks for: a scan without texture coordinates.
+ * A glTF is changed where it gets tangents, and nowhere else. */
+static bool is_shaded_only(const nt_scene *scene, const nt_mesh *mesh, nt_normals mode)
+{
+	return mode != NT_NORMALS_AUTO && !nt_format_is_gltf(scene->format) && mesh->positions &&
+	       mesh->decision == NT_SKIP_NO_TEXCOORDS;
+}
+
 nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, int degrees, unsigned threads, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
+		if (is_shaded_only(scene, mesh, mode)) {
+			status = make_normals(scene, mesh, mode, degrees, threads, error);
+			continue;
+		}
 		if (!nt_mesh_is_wanted(mesh) || (!mesh->plan.same_as && nt_mesh_is_solved_ahead(mesh)))
 			continue;
 		if (!mesh->plan.same_as) {

@@ -149,4 +149,28 @@ run --only=all --normals=flat tail.gltf out.gltf
 exits 0
 is "$(gltf out.gltf '[g.accessors[g.meshes[0].primitives[0].indices].count, g.accessors[0].count]')" '[6,7]'
 
+scene "a scan without texture coordinates gets the normals that are asked for"
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'v 1 1 1' 'f 1 2 3' 'f 2 4 3' >scan.obj
+run scan.obj scan.ply
+exits 0
+for input in scan.obj scan.ply; do
+	# (0, 0, 1) and (-1, -1, 1) / 3^.5: smooth, each corner weighs by its angle, at the ends of the common edge
+	run $input plain.glb
+	is "$(gltf plain.glb 'Object.keys(g.meshes[0].primitives[0].attributes).join()')" POSITION
+	run --normals=flat $input flat.glb
+	exits 0
+	is "$(gltf flat.glb "$normals")" "0.000 0.000 1.000, -0.577 -0.577 0.577"
+	is "$(gltf flat.glb "$positions")" 6
+	run --normals=smooth $input smooth.glb
+	exits 0
+	is "$(gltf smooth.glb "$positions")" 4
+	is "$(gltf smooth.glb "$normals" | tr , '\n' | wc -l)" 3
+	run --normals=angle:60 $input angle.glb
+	is "$(gltf angle.glb "$normals")" "$(gltf smooth.glb "$normals")"
+	run --normals=angle:30 $input angle.glb
+	is "$(gltf angle.glb "$normals")" "$(gltf flat.glb "$normals")"
+	run -q --normals=smooth $input out.ply
+	is "$(grep -ac 'property float n[xyz]' out.ply)" 3
+done
+
 done_testing
