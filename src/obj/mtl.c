@@ -235,9 +235,10 @@ static void end_material(reader *r)
 {
 	if (r->current)
 		nt_mtl_settle(r->said, r->scene, r->current);
-	const bool blender = r->said->blender;
+	const bool blender = r->said->blender, any_blender = r->said->any_blender;
 	memset(r->said, 0, sizeof *r->said);
 	r->said->blender = blender;
+	r->said->any_blender = any_blender;
 }
 
 static nt_status begin_material(reader *r)
@@ -308,9 +309,10 @@ nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *b
 		if (status)
 			return status;
 		/* "# Blender 3.2.1 MTL File: ...": see mtl_settle.c. Older ones have no number there. */
-		if (comment && r.end - r.text > 8 && memcmp(r.text, "Blender ", 8) == 0 && r.text[8] >= '0' &&
-			r.text[8] <= '9')
-			r.said->blender = true;
+		if (comment && r.end - r.text > 8 && memcmp(r.text, "Blender ", 8) == 0) {
+			r.said->any_blender = true;
+			r.said->blender |= r.text[8] >= '0' && r.text[8] <= '9';
+		}
 		p = line_end + 1;
 		if (line_end < end && *line_end == '\r' && p < end && *p == '\n')
 			p++;

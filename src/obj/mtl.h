@@ -114,6 +114,7 @@ typedef struct mtl_values {
 		const char *word; /* the statement's, as it is spelled */
 		float scale;      /* -bm */
 	} maps[MTL_MAP_COUNT];
+	bool any_blender; /* the library says that Blender wrote it */
 	bool blender; /* the library says that Blender 3.2 or later wrote it */
 } mtl_values;
 

@@ -278,6 +278,7 @@ static void settle_normals(const settling *s)
 	m->normal_scale = s->said->maps[which].scale;
 	if (which == MTL_MAP_BUMP)
 		m->bump = s->said->maps[which].word;
+	m->bump_is_normal = s->said->any_blender;
 }
 
 void nt_mtl_settle(const mtl_values *said, nt_scene *scene, nt_material *m)

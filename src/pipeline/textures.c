@@ -231,8 +231,9 @@ static void tell_normals(const telling *t, const nt_texture *image)
 	const nt_place place = nt_material_place(t->scene, m, m->normal_map.line);
 	nt_finding_list *findings = &t->scene->findings;
 	const bool normals = !image || (image->type != NT_IMAGE_OTHER && !image->from_heights);
-	if (m->bump && t->settings->bump == NT_BUMP_AUTO && normals)
-		nt_finding_add(findings, NT_CODE_BUMP_AS_NORMAL, &place, 1, "%s of %.120s", m->bump, m->name);
+	const bool exists = image && image->sources[0]->found <= NT_IMAGE_FOUND_ELSEWHERE;
+	if (m->bump && !m->bump_is_normal && t->settings->bump == NT_BUMP_AUTO && normals && exists)
+		nt_finding_add(findings, NT_CODE_BUMP_AS_NORMAL, &place, 1, "%s %.200s", m->bump, m->normal_map.name);
 	if (image && normals && !nt_map_is_plain(&m->normal_map))
 		nt_finding_add(findings, NT_CODE_MATERIAL_LOST, &place, 1, "MTL: -mm of a normal map");
 	if (image && image->from_heights)

@@ -129,6 +129,13 @@ static inline nt_severity nt_texcoord_severity(const nt_check *check, nt_severit
 	return nt_needs_tangents(check) ? severity : NT_SEVERITY_INFO;
 }
 
+/* The same of a fault in texture coordinates that nobody sees either where it is up to a thousandth of the mesh. */
+static inline nt_severity nt_area_severity(const nt_check *check, double area)
+{
+	const bool small = check->total_area > 0.0 && area <= 0.001 * check->total_area;
+	return nt_texcoord_severity(check, small ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING);
+}
+
 /* The vertex as the source numbers it: copies that making normals appended are mapped back. */
 static inline uint32_t nt_source_vertex(const nt_mesh *mesh, uint32_t vertex)
 {

@@ -68,11 +68,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"An image was converted to what glTF carries: another type to PNG, a height map to a normal map.",
 		"Nothing. --textures and --bump say what is converted, --bump-height how high heights are.",
 		"an MTL with \"map_Kd wood.tga\""),
-	ROW(BUMP_AS_NORMAL, WARNING, "w--", LOOK, NULL, "bump map was taken as a normal map",
+	ROW(BUMP_AS_NORMAL, INFO, "i--", LOOK, NULL, "bump map was taken as a normal map",
 		"map_Bump and bump are height maps by definition, but most files put a normal map there. An "
-		"image whose pixels are not all grey is taken as one.",
-		"If it is a normal map, write norm instead, or use --bump=normal; if it is a height map, use "
-		"--bump=height.",
+		"image whose pixels are not all grey is taken as one. Nothing is said of Blender's, which always are.",
+		"Nothing if it is a normal map. If it is a height map, use --bump=height.",
 		"an MTL with \"map_Bump n.png\""),
 	ROW(NMAP_NOT_TURNED, WARNING, "w--", LOOK, NULL, "normal map is not turned",
 		"--flip-green and --bump turn PNG and JPEG of a glTF. KTX2 and WebP stay as they are, and so does the "
@@ -267,16 +266,17 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Nothing. When baking, move the mirrored islands by a whole tile so that only one of two is baked.",
 		"two separate quads with the same four UVs, the second one wound the other way"),
 	ROW(UV_MIRROR_LONE, INFO, "i-i", EXPORT, NULL,
-		"mirrored island ({count} {triangle|triangles}) that shares no texels with an unmirrored one",
+		"{detail} ({count} {triangle|triangles}) is mirrored and shares no texels with an unmirrored one",
 		"A mirrored island that shares its texture with nothing: mirroring gains nothing here, and "
-		"text or asymmetric detail in the texture shows reversed. Often an accident.",
+		"text or asymmetric detail in the texture shows reversed. Often an accident. If all islands of a mesh "
+		"are mirrored, that is one finding: v may point the other way in the file.",
 		"Flip the island in the UV editor unless the texture was painted for it.",
 		"one triangle whose UVs are clockwise"),
 	ROW(UV_MIXED_WINDING_ISLAND, WARNING, "w-w", EXPORT, NULL,
 		"island of {count} {triangle|triangles} is folded: both windings are connected",
 		"Inside one connected island some triangles are wound the other way, and they do not lie on a twin "
 		"point by point: a fold. Texture is mirrored there and tangents flip within the island. An info if no "
-		"material of a glTF needs tangents.",
+		"material of a glTF needs tangents, and up to a thousandth of the mesh's area.",
 		"Unfold the island (relax or unwrap it again), or cut it along the fold.",
 		"three quads in a row with u = 0, 1, 0.4, 1.4"),
 	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-w", EXPORT, NULL, "{count} of {detail} {is|are} flipped",
@@ -284,7 +284,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"inside a large island of the other winding: at most 5 % of its triangles and area, or a single one "
 		"up to 10 %, if all triangles that are wound so are at most a quarter. Texture is mirrored there. "
 		"They make no seam, fold or mirrored island. Needles whose winding is rounding are UV_NEAR_DEGENERATE "
-		"instead. An info if no material of a glTF needs tangents.",
+		"instead. An info if no material of a glTF needs tangents, and up to a thousandth of the mesh's area.",
 		"Exchange two corners of these triangles in the UV editor, or relax the knot.",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
 	ROW(UV_DEGENERATE_TRIANGLE, INFO, "w-w", EXPORT, NULL,

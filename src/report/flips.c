@@ -245,6 +245,7 @@ static void report_flipped(nt_check *check, const patches *p)
 	nt_report_mesh *facts = check->facts;
 	const nt_surface *s = &check->surface;
 	nt_tally tally = {.code = NT_CODE_UV_FLIPPED_TRIANGLE};
+	double area = 0.0;
 	for (size_t t = 0; t < s->triangle_count; t++) {
 		const patch *one = p->numbers[t] == NT_NONE ? NULL : &p->items[p->numbers[t]];
 		if (!one || !one->flipped)
@@ -255,8 +256,9 @@ static void report_flipped(nt_check *check, const patches *p)
 			continue;
 		tally.island = tally.count == 0 || tally.island == one->host + 1 ? one->host + 1 : 0;
 		nt_tally_triangle(check, &tally, t, NAN);
+		area += nt_triangle_area(s, t);
 	}
-	nt_check_report_as(check, &tally, nt_texcoord_severity(check, NT_SEVERITY_WARNING), "%zu triangles",
+	nt_check_report_as(check, &tally, nt_area_severity(check, area), "%zu triangles",
 		s->triangle_count);
 }
 

@@ -462,7 +462,7 @@ static void tally_island(const nt_check *check, nt_tally *tally, size_t index)
 	tally->share += check->total_area > 0.0 ? island->area / check->total_area : 0.0;
 }
 
-static void report_island(nt_check *check, size_t index)
+static void report_island(nt_check *check, size_t index, nt_severity severity)
 {
 	const nt_island *island = &check->facts->islands[index];
 	nt_tally tally = {.code = code_of(island), .island = (uint32_t)index + 1};
@@ -470,8 +470,7 @@ static void report_island(nt_check *check, size_t index)
 	nt_tally_number(&tally, "mirrored_triangles", (double)island->triangles[0]);
 	nt_tally_number(&tally, "unmirrored_triangles", (double)island->triangles[2]);
 	nt_tally_number(&tally, "covered_share", island->covered);
-	nt_check_report_as(check, &tally, nt_texcoord_severity(check, nt_code_info(tally.code)->severity), "island %zu",
-		index);
+	nt_check_report_as(check, &tally, severity, "island %zu", index);
 }
 
 /* Islands that share texels are meant: one finding, which counts them. */
@@ -493,28 +492,40 @@ static void report_overlapping(nt_check *check)
 	nt_check_report(check, &tally, NULL);
 }
 
-/* One finding per island; many of a kind beyond the first are one finding together. */
-static void report_islands(nt_check *check)
+static bool is_of(const nt_island *island, nt_code code)
 {
-	static const nt_code codes[] = {NT_CODE_UV_MIRROR_LONE, NT_CODE_UV_MIXED_WINDING_ISLAND};
-	report_overlapping(check);
-	for (int i = 0; i < 2; i++) {
-		size_t seen = 0;
-		nt_tally rest = {.code = codes[i]};
-		for (size_t k = 0; k < check->facts->island_count; k++) {
-			const nt_island *island = &check->facts->islands[k];
-			if (mirrored_in(island) == 0 || code_of(island) != codes[i])
-				continue;
-			if (seen++ < NT_SINGLE_FINDINGS)
-				report_island(check, k);
-			else
-				tally_island(check, &rest, k);
-		}
-		if (seen > NT_SINGLE_FINDINGS)
-			nt_check_report_as(check, &rest, nt_texcoord_severity(check, nt_code_info(rest.code)->severity),
-				"%zu further islands, one finding together beyond the first %d",
-				seen - NT_SINGLE_FINDINGS, NT_SINGLE_FINDINGS);
+	return mirrored_in(island) != 0 && code_of(island) == code;
+}
+
+/* One finding per island, or one of all if there are no others; many of a kind beyond the first are one finding
+ * together. */
+static void report_islands_of(nt_check *check, nt_code code)
+{
+	const nt_report_mesh *facts = check->facts;
+	size_t all = 0, seen = 0;
+	double area = 0.0;
+	for (size_t k = 0; k < facts->island_count; k++) {
+		const nt_island *island = &facts->islands[k];
+		all += is_of(island, code);
+		area += is_of(island, code) ? island->area : 0.0;
 	}
+	const size_t others = facts->island_count - facts->island_kinds[NT_ISLAND_DEGENERATE] - all;
+	const bool together = code == NT_CODE_UV_MIRROR_LONE && all > 1 && others == 0;
+	const nt_severity severity = code == NT_CODE_UV_MIRROR_LONE ? NT_SEVERITY_INFO : nt_area_severity(check, area);
+	nt_tally rest = {.code = code};
+	for (size_t k = 0; k < facts->island_count; k++) {
+		if (!is_of(&facts->islands[k], code))
+			continue;
+		if (!together && seen++ < NT_SINGLE_FINDINGS)
+			report_island(check, k, severity);
+		else
+			tally_island(check, &rest, k);
+	}
+	if (together)
+		nt_check_report_as(check, &rest, severity, "each of all %zu islands", all);
+	else if (seen > NT_SINGLE_FINDINGS)
+		nt_check_report_as(check, &rest, severity, "each of %zu further islands beyond the first %d",
+			seen - NT_SINGLE_FINDINGS, NT_SINGLE_FINDINGS);
 }
 
 nt_status nt_check_islands(nt_check *check)
@@ -539,7 +550,10 @@ nt_status nt_check_islands(nt_check *check)
 		status = find_covered(check, mirrored);
 	if (!status && facts->island_kinds[NT_ISLAND_MIXED])
 		status = find_overlapping(check);
-	if (!status)
-		report_islands(check);
+	if (!status) {
+		report_overlapping(check);
+		report_islands_of(check, NT_CODE_UV_MIRROR_LONE);
+		report_islands_of(check, NT_CODE_UV_MIXED_WINDING_ISLAND);
+	}
 	return status;
 }

@@ -107,6 +107,7 @@ typedef struct nt_material {
 		};
 		nt_map maps[NT_MATERIAL_MAPS];       /* all of these */
 	};
+	bool bump_is_normal;         /* who wrote it means a normal map by that: Blender */
 	const char *bump;            /* the statement that normal_map came from, where it was a bump map; else NULL */
 } nt_material;
 

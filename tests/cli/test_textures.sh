@@ -469,8 +469,19 @@ images embedded low.glb 0 low.png
 images embedded high.glb 0 high.png
 is "$(cmp -s low.png high.png || echo different)" different
 quad 'map_Bump n.png'
+run -v quad.obj quad.glb
+says "info: bump map was taken as a normal map: map_Bump n.png [BUMP_AS_NORMAL]"
+for line in '# Blender MTL File: "x.blend"' '# Blender 4.1.0 MTL File: "x.blend"'; do
+	sed -i "1i $line" m.mtl
+	run -v quad.obj quad.glb
+	says_not "BUMP_AS_NORMAL"
+	sed -i 1d m.mtl
+done
+quad 'map_Bump gone.png'
+run -v quad.obj quad.glb
+says_not "BUMP_AS_NORMAL"
+quad 'map_Bump n.png'
 run quad.obj quad.glb
-says "BUMP_AS_NORMAL"
 images embedded quad.glb 0 made.png
 same made.png n.png
 run --bump=height -v quad.obj quad.glb

@@ -20,13 +20,13 @@ scene "--fail-on judges a conversion, with a report and without"
 halves 0.5 >m.obj
 run -q --fail-on=info m.obj a.glb
 exits 6
-says "info: mirrored island (2 triangles) that shares no texels"
+says "info: island 1 (2 triangles) is mirrored and shares no texels"
 run -q --fail-on=info --report=r.json m.obj b.glb
 exits 6
 same a.glb b.glb
 run --fail-on=info m.obj c.glb
 exits 6
-says "info: mirrored island (2 triangles) that shares no texels"
+says "info: island 1 (2 triangles) is mirrored and shares no texels"
 run -q --fail-on=warning m.obj d.glb
 exits 0
 run -q m.obj e.glb

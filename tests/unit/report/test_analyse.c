@@ -295,16 +295,18 @@ TEST(options_ignore_reweigh_and_limit)
 	hand_free(h, report);
 }
 
-/* Lone mirrored triangles of area 1/2, 2 and 9/2, and one without an area in UV space, of 1/2. */
+/* Lone mirrored triangles of area 1/2, 2 and 9/2, one without an area in UV space, of 1/2, and one that is not
+ * mirrored. */
 TEST(what_concerns_most_comes_first_and_no_code_hides_another)
 {
 	static const uint32_t largest_first[3] = {2, 1, 0};
 	hand_mesh *h = hand_new();
-	for (uint32_t i = 0; i < 4; i++) {
+	h->mesh.wrap[0] = h->mesh.wrap[1] = NT_WRAP_CLAMP;
+	for (uint32_t i = 0; i < 5; i++) {
 		const float size = i < 3 ? (float)i + 1 : 1, x = 10 * (float)i;
 		hand_vertex(h, x, 0, 0, x, 0);
-		hand_vertex(h, x + size, 0, 0, x - size * (i < 3), 0);
-		hand_vertex(h, x, size, 0, x, size);
+		hand_vertex(h, x + size, 0, 0, i == 3 ? x : i < 3 ? x - size : x + 0.01f, 0);
+		hand_vertex(h, x, size, 0, x, i < 4 ? size : 0.01f);
 		hand_triangle(h, 3 * i, 3 * i + 1, 3 * i + 2);
 	}
 	nt_report_options options = {.severity[NT_CODE_UV_DEGENERATE_TRIANGLE] = 1 + NT_SEVERITY_INFO};
@@ -364,7 +366,26 @@ TEST(baseline_knows_old_findings_each_as_often_as_it_has_them)
 	hand_free(h, report);
 }
 
-/* Two lone mirrored islands at one place have one fingerprint; a baseline with it once knows one of them. */
+/* v that points the other way mirrors all of a mesh: one finding, not one for each island. */
+TEST(islands_that_are_all_mirrored_are_one_finding)
+{
+	hand_mesh *h = hand_new();
+	for (uint32_t i = 0; i < 29; i++) {
+		const float x = 10 * (float)i;
+		hand_vertex(h, x, 0, 0, x, 0);
+		hand_vertex(h, x + 1, 0, 0, x - 1, 0);
+		hand_vertex(h, x, 1, 0, x, 1);
+		hand_triangle(h, 3 * i, 3 * i + 1, 3 * i + 2);
+	}
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_LONE), 1);
+	assert_string_equal(hand_finding(report, NT_CODE_UV_MIRROR_LONE)->message,
+		"each of all 29 islands (29 triangles) is mirrored and shares no texels with an unmirrored one");
+	hand_free(h, report);
+}
+
+/* Two lone mirrored islands at one place have one fingerprint; a baseline with it once knows one of them. Another is not
+ * mirrored. */
 TEST(baseline_entries_count_once_each)
 {
 	hand_mesh *h = hand_new();
@@ -374,6 +395,9 @@ TEST(baseline_entries_count_once_each)
 		hand_vertex(h, 0, 1, 0, 1 + 2 * (float)i, 1);
 		hand_triangle(h, 3 * i, 3 * i + 1, 3 * i + 2);
 	}
+	for (uint32_t k = 0; k < 3; k++)
+		hand_vertex(h, 5 + (k == 1), k == 2, 0, 0.01f * (k == 1), 0.01f * (k == 2));
+	hand_triangle(h, 6, 7, 8);
 	nt_report *report = hand_report(h, NULL);
 	assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_LONE), 2);
 	size_t lone = 0;

@@ -69,6 +69,27 @@ TEST(one_flipped_triangle_is_one_finding_at_its_own_place)
 	hand_free(h, report);
 }
 
+/* Up to a thousandth of the area nobody exports a model again. */
+TEST(a_small_one_is_an_info)
+{
+	for (int large = 0; large < 2; large++) {
+		hand_mesh *h = make_grid();
+		set_uv(h, at(N, 0), N - 0.75f, 0.75f);
+		/* a square beside the grid: the triangle is 1/2 of 25 + 460 or of 25 + 480 */
+		const float side = sqrtf(large ? 480.0f : 460.0f);
+		for (uint32_t k = 0; k < 4; k++)
+			hand_vertex(h, 100 + side * (k & 1), side * (float)(k >> 1), 0, 100 + side * (k & 1),
+				side * (float)(k >> 1));
+		const uint32_t first = (N + 1) * (N + 1);
+		hand_triangle(h, first, first + 1, first + 3);
+		hand_triangle(h, first, first + 3, first + 2);
+		nt_report *report = hand_report(h, NULL);
+		assert_int_equal(hand_finding(report, NT_CODE_UV_FLIPPED_TRIANGLE)->severity,
+			large ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING);
+		hand_free(h, report);
+	}
+}
+
 TEST(so_is_one_with_coordinates_of_its_own)
 {
 	static const uint32_t middle = 2 * (2 * N + 2); /* corners (2, 2), (3, 2), (3, 3) */
