@@ -99,21 +99,23 @@ nt_status nt_stage_given_maps(nt_scene *scene, const nt_settings *settings, bool
 
 /* ---- what is beside the input ---- */
 
-/* Whether `name` is the input's, then an ending of normal maps, then that of an image. */
-static bool is_alike(const char *name, const char *stem, size_t length)
+/* The endings of normal maps, the likeliest first: of tangent space, then by how often they name one. */
+static const char *const endings[] = {"nm_tangent", "normal", "normals", "normalmap", "nrm", "norm", "nm", "n", "ddn"};
+enum { ENDINGS = sizeof endings / sizeof *endings, MOST_BESIDE = 8 };
+
+/* Which ending `name` has after the input's name, before that of an image; ENDINGS: none. */
+static size_t rank_of(const char *name, const char *stem, size_t length)
 {
-	static const char *const endings[] = {"nm_tangent", "normal", "normals", "normalmap", "nrm", "norm", "nm", "n",
-		"ddn"};
 	const char *dot = strrchr(name, '.');
 	if (strncasecmp(name, stem, length) != 0 || !name[length] || !strchr("_-.", name[length]) || !dot ||
 		dot <= name + length || nt_image_type_of_name(name) == NT_IMAGE_OTHER)
-		return false;
+		return ENDINGS;
 	const char *rest = name + length + 1;
 	const size_t left = (size_t)(dot - rest);
-	for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-		if (strlen(endings[i]) == left && strncasecmp(endings[i], rest, left) == 0)
-			return true;
-	return false;
+	size_t i = 0;
+	while (i < ENDINGS && !(strlen(endings[i]) == left && strncasecmp(endings[i], rest, left) == 0))
+		i++;
+	return i;
 }
 
 static bool wants_normals(const nt_scene *scene)
@@ -126,23 +128,71 @@ static bool wants_normals(const nt_scene *scene)
 	return wants;
 }
 
+/* Images that may be the normal map, the likeliest first. */
+typedef struct beside {
+	struct {
+		char name[256];
+		size_t rank;
+	} items[MOST_BESIDE];
+	size_t count;
+} beside;
+
+static bool comes_before(size_t rank, const char *name, size_t other_rank, const char *other)
+{
+	return rank != other_rank ? rank < other_rank : strcmp(name, other) < 0;
+}
+
+/* Inserted in its order; the last one goes if there are too many. */
+static void add_beside(beside *found, const char *name, size_t rank)
+{
+	size_t at = found->count;
+	while (at > 0 && comes_before(rank, name, found->items[at - 1].rank, found->items[at - 1].name))
+		at--;
+	if (at == MOST_BESIDE)
+		return;
+	found->count += found->count < MOST_BESIDE;
+	for (size_t i = found->count - 1; i > at; i--)
+		found->items[i] = found->items[i - 1];
+	snprintf(found->items[at].name, sizeof found->items[at].name, "%s", name);
+	found->items[at].rank = rank;
+}
+
+static void tell_beside(nt_scene *scene, const char *folder, const beside *found)
+{
+	nt_buffer detail = {0}, option = {0}, word = {0};
+	nt_place place;
+	nt_place_clear(&place);
+	snprintf(place.file, sizeof place.file, "%s", scene->path);
+	for (size_t i = 0; i < found->count; i++)
+		nt_buffer_format(&detail, "%s%s", i ? ", or " : "", found->items[i].name);
+	nt_buffer_format(&option, "--normal-map=%s%s", folder, found->items[0].name);
+	const bool sayable = option.data && nt_shell_word(option.data, &word) && word.data;
+	char *repair = sayable ? nt_arena_text(&scene->findings.arena, word.data, word.size) : NULL;
+	scene->findings.failed |= !detail.data || !option.data || (sayable && !repair);
+	if (!scene->findings.failed)
+		nt_finding_put(&scene->findings, (nt_finding){.code = NT_CODE_NMAP_BESIDE, .count = 1,
+			.detail = detail.data, .repair = repair, .stays = !repair}, &place);
+	nt_buffer_free(&detail);
+	nt_buffer_free(&option);
+	nt_buffer_free(&word);
+}
+
 void nt_propose_normal_map(nt_scene *scene, const nt_settings *settings)
 {
 	const char *name = nt_last_part(scene->path), *dot = strrchr(name, '.');
 	const size_t length = dot ? (size_t)(dot - name) : strlen(name);
 	char *folder = strndup(scene->path, (size_t)(name - scene->path));
-	char found[256] = "";
+	beside found = {.count = 0};
 	DIR *dir = settings->own_input && settings->images != NT_IMAGES_NONE && length && folder && wants_normals(scene)
 		? opendir(*folder ? folder : ".") : NULL;
-	for (const struct dirent *entry; dir && (entry = readdir(dir));)
-		if (is_alike(entry->d_name, name, length) && (!*found || strcmp(entry->d_name, found) < 0))
-			snprintf(found, sizeof found, "%s", entry->d_name);
+	for (const struct dirent *entry; dir && (entry = readdir(dir));) {
+		const size_t rank = rank_of(entry->d_name, name, length);
+		if (rank < ENDINGS)
+			add_beside(&found, entry->d_name, rank);
+	}
 	if (dir)
 		closedir(dir);
+	if (found.count)
+		tell_beside(scene, folder, &found);
 	free(folder);
-	nt_place place;
-	nt_place_clear(&place);
-	snprintf(place.file, sizeof place.file, "%s", scene->path);
-	if (*found)
-		nt_finding_add(&scene->findings, NT_CODE_NMAP_BESIDE, &place, 1, "%.200s", found);
 }

@@ -282,8 +282,9 @@ static nt_status examine_all(examination *e, nt_error *error)
 
 nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, const nt_textures *textures, nt_error *error)
 {
-	const bool told = settings->check_maps == NT_CHECK_MAPS_ON ||
-		(settings->check_maps == NT_CHECK_MAPS_AUTO && settings->report);
+	/* a map that the user names is looked at, whatever else is asked for */
+	const bool told = settings->check_maps == NT_CHECK_MAPS_ON || (settings->check_maps == NT_CHECK_MAPS_AUTO &&
+		(settings->report || settings->given_maps[NT_GIVEN_NORMAL]));
 	examination *e = told || nt_any_inverted(scene) ? nt_calloc(1, sizeof *e) : NULL;
 	if (!e) {
 		nt_tell_kept(scene);

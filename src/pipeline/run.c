@@ -186,6 +186,9 @@ static nt_status read_scene(run *r)
 	if (status)
 		return status;
 
+	if (r->settings->existing == NT_EXISTING_DROP && !nt_format_is_gltf(r->scene.format))
+		return nt_fail(r->error, NT_ERROR_USAGE,
+			"--existing=drop is for glTF, whose materials say which tangents are used");
 	for (size_t i = 0; i < r->fixes.mesh_count && i < r->scene.mesh_count; i++)
 		r->scene.meshes[i].fix = r->fixes.meshes[i];
 	/* glTF without normals is left alone unless normals are asked for; the other formats get them */

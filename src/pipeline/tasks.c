@@ -219,9 +219,12 @@ static nt_status do_window(window *w)
 	t->begin_stage(t->run, NT_STAGE_DECODE);
 	if (t->reader->load)
 		status = load_meshes(w);
-	for (size_t i = 0; !status && i < w->scene.mesh_count; i++)
+	for (size_t i = 0; !status && i < w->scene.mesh_count; i++) {
+		if (w->scene.meshes[i].decision == NT_SKIP_DROPPED)
+			w->scene.meshes[i].tangents = NULL;
 		if (!nt_mesh_is_solved_ahead(&w->scene.meshes[i]))
 			nt_judge_w(&w->scene.meshes[i]);
+	}
 	t->begin_stage(t->run, NT_STAGE_NORMALS);
 	if (!status)
 		status = nt_stage_normals(&w->scene, t->settings->normals, t->settings->normals_degrees,

@@ -95,11 +95,12 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"was taken instead.",
 		"Correct the material if something else was meant.",
 		"an MTL with \"d 0\""),
-	ROW(NMAP_BESIDE, INFO, "i--", LOOK, NULL, "no normal map, but an image beside the input is named like one",
+	ROW(NMAP_BESIDE, INFO, "i--", LOOK, "--normal-map=FILE",
+		"no normal map, but an image beside the input is named like one",
 		"An OBJ, PLY or Draco file with texture coordinates names no normal map, and in its folder is an "
 		"image with its name and an ending of normal maps: _nm_tangent, _normal, _nrm, _nm, _n, _ddn and the "
 		"like. nmtan does not use it by itself, and looks for it only if one input is named.",
-		"If it is the normal map: --normal-map=FILE.",
+		"If it is the normal map, name it.",
 		"head.obj beside head_n.png"),
 	ROW(NMAP_GREEN_DOWN, WARNING, "w--", CONVERT, "--fix", "normal map whose green points down",
 		"glTF's normal maps have green up. The slopes p = -x/z and q = y/z of a real surface have equal mixed "
@@ -633,8 +634,7 @@ bool nt_code_mends(nt_code code)
 	return repair && strcmp(repair, "--fix") == 0;
 }
 
-/* A word of a shell: as it is if nothing in it is special, else in quotes. False: a terminal would not take it. */
-static bool put_word(const char *text, nt_buffer *out)
+bool nt_shell_word(const char *text, nt_buffer *out)
 {
 	static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.,:@%+/=-";
 	for (const char *c = text; *c;) {
@@ -677,7 +677,7 @@ static bool put_path(const char *name, nt_buffer *out)
 {
 	nt_buffer path = {0};
 	nt_buffer_format(&path, "%s%s", name[0] == '-' && name[1] ? "./" : "", name);
-	const bool put = path.data && put_word(path.data, out);
+	const bool put = path.data && nt_shell_word(path.data, out);
 	nt_buffer_free_into(&path, out);
 	return put;
 }

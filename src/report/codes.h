@@ -47,6 +47,9 @@ bool nt_severity_find(const char *name, nt_severity *severity);
 /* Whether --fix mends it. */
 bool nt_code_mends(nt_code code);
 
+/* Appends a word of a shell: as it is if nothing in it is special, else in quotes. False: no terminal takes it. */
+bool nt_shell_word(const char *text, nt_buffer *out);
+
 /* Appends a command that a shell takes as it stands: "nmtan --fix in.glb in-repaired.glb". output: NULL: a name beside
  * the input. "IN OUT" stand for names that a terminal does not take, or for an input of NULL. */
 void nt_command_text(const char *options, const char *input, const char *output, nt_buffer *out);

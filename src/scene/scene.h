@@ -43,6 +43,7 @@ typedef enum nt_decision {
 	NT_SKIP_NO_TEXCOORDS,
 	NT_SKIP_NO_NORMALS,
 	NT_SKIP_HAS_TANGENTS,        /* and --existing=keep */
+	NT_SKIP_DROPPED,             /* has tangents that no material uses, and --existing=drop: they go */
 	NT_DECISION_COUNT
 } nt_decision;
 

@@ -94,6 +94,8 @@ static nt_decision decide(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 	const bool knows_materials = nt_format_is_gltf(scene->format);
 	if (!mesh->triangles)
 		return NT_SKIP_NOT_TRIANGLES;
+	if (w->existing == NT_EXISTING_DROP && mesh->has_tangents && !needs_tangents(mesh))
+		return NT_SKIP_DROPPED;
 	if (mesh->face_count == 0)
 		return NT_SKIP_EMPTY;
 	const nt_existing existing = mesh->fix ? (nt_existing)mesh->fix : w->existing;
@@ -103,7 +105,7 @@ static nt_decision decide(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 	if (mesh->texcoord_conflict)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, nt_mesh_place(mesh, &(nt_place){0}), 1,
 			"sets %u and %u", mesh->texcoord_set, mesh->texcoord_other_set);
-	if (has_tangents_that_count(mesh) && existing == NT_EXISTING_KEEP)
+	if (has_tangents_that_count(mesh) && (existing == NT_EXISTING_KEEP || existing == NT_EXISTING_DROP))
 		return NT_SKIP_HAS_TANGENTS;
 	decision = decide_by_attributes(scene, mesh, w);
 	if (decision != NT_DECISION_OPEN)
@@ -140,6 +142,7 @@ const char *nt_decision_text(nt_decision decision)
 		[NT_SKIP_NO_TEXCOORDS] = "no texture coordinates",
 		[NT_SKIP_NO_NORMALS] = "no normals",
 		[NT_SKIP_HAS_TANGENTS] = "has tangents",
+		[NT_SKIP_DROPPED] = "loses tangents that no material uses",
 	};
 	return (unsigned)decision < NT_DECISION_COUNT ? texts[decision] : "unknown";
 }

@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 
 typedef enum nt_only { NT_ONLY_AUTO, NT_ONLY_NEEDED, NT_ONLY_ALL } nt_only;
-typedef enum nt_existing { NT_EXISTING_KEEP, NT_EXISTING_REPAIR, NT_EXISTING_REPLACE } nt_existing;
+typedef enum nt_existing { NT_EXISTING_KEEP, NT_EXISTING_REPAIR, NT_EXISTING_REPLACE, NT_EXISTING_DROP } nt_existing;
 
 /* Sets the decision of every mesh of the scene; findings name the meshes that need tangents and cannot have them.
  * `make_normals`: normals that lack will be made. */

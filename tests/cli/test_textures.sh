@@ -243,6 +243,19 @@ printf 'newmtl two\n' >>m.mtl
 sed 's/^f .*/f 1\/1 2\/2 3\/3\nusemtl two\nf 1\/1 3\/3 4\/4/' quad.obj >two.obj
 refused "--base-color is for an input with one material or none; it has 2" --base-color=n.png two.obj new.gltf
 
+scene "of several the one that the manual names first is proposed, and all are named; one that is given is looked at"
+grep -v "^mtllib\|^usemtl" "$data/quad.obj" >head.obj
+cp "$data/bumps.png" "head_nm.png"
+cp "$data/bumps.png" "head_a b.png"
+cp "$data/bumps.png" "head_nm_tangent.png"
+run head.obj head.glb
+says "head_nm_tangent.png, or head_nm.png [NMAP_BESIDE]: nmtan --normal-map=head_nm_tangent.png head.obj head.glb"
+images write sphere.png 64 64 '(lambda a, b: tuple(round(127.5 + 127.5 * c) for c in (math.sin(a) * math.cos(b), math.sin(a) * math.sin(b), math.cos(a))))(x / 64 * math.pi, y / 32 * math.pi)'
+run --normal-map=sphere.png head.obj head.glb
+says "warning: normal map in object space [NMAP_OBJECT_SPACE]"
+run --check-maps=off --normal-map=sphere.png head.obj head.glb
+says_not NMAP_OBJECT_SPACE
+
 scene "what is called like a normal map of the input is proposed, and not taken"
 grep -v "^mtllib\|^usemtl" "$data/quad.obj" >head.obj
 for name in head.png head2_n.png headn.png head_n.txt head_diffuse.png; do cp "$data/bumps.png" $name; done
@@ -251,7 +264,7 @@ says_not NMAP_BESIDE
 for name in Head_NM_Tangent.tga head_normal.png head-nrm.jpg head_ddn.png head_n.png; do
 	cp "$data/bumps.png" $name
 	run head.obj head.glb
-	says "head.obj: info: no normal map, but an image beside the input is named like one: $name [NMAP_BESIDE]"
+	says "head.obj: info: no normal map, but an image beside the input is named like one: $name [NMAP_BESIDE]: nmtan --normal-map=$name head.obj head.glb"
 	is "$(gltf head.glb '"images" in g')" false
 	run -d out head.obj
 	says_not NMAP_BESIDE

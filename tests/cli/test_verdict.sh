@@ -622,6 +622,8 @@ repairs() {
 
 scene "what nmtan says that it repairs is gone after the command that it names"
 mapped
+green_down down.png
+python3 "$ROOT/tests/support/images.py" write grey.png 16 16 "x * 16"
 while IFS='|' read -r code edit; do
 	gltf m.gltf faulty "const p = g.meshes[0].primitives[0], a = p.attributes, n = a.TANGENT, b = bytes[0];
 		const t = f => { for (let i = 0; i < 4; i++) f([0, 1, 2, 3].map(k => b.readFloatLE(at(n, i) + 4 * k)), i)
@@ -641,6 +643,10 @@ TAN_NON_UNIT|t(v => [2, 0, 0, v[3]]), delete p.material
 TAN_BAD_W|t(v => [1, 0, 0, 0])
 TAN_MORPH_MISSING|p.targets = [{POSITION: a.POSITION}]
 TAN_NO_NORMAL|delete a.NORMAL, delete a.TANGENT
+TAN_UNUSED|delete p.material
+TAN_UNUSED|delete p.material, p.targets = [{POSITION: a.POSITION, TANGENT: add('VEC3', 5126, Array(12).fill(0), {})}]
+TAN_GREEN_PAIR|t(v => [v[0], v[1], v[2], -v[3]]), g.images[0].uri = 'down.png'
+NMAP_HEIGHTS|g.images[0].uri = 'grey.png'
 TAN_NO_NORMAL|delete a.NORMAL
 TAN_ACCESSOR|g.accessors[n].type = 'VEC3'
 TAN_ACCESSOR|g.accessors[n].count = 3

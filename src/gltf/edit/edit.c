@@ -9,6 +9,7 @@
  */
 #include "gltf/edit/edit.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
 #include "gltf/accessor.h"
@@ -340,13 +341,66 @@ static nt_status edit_pools(const editing *e)
 	return status;
 }
 
+/* The number of TANGENT is noted as gone. */
+static void drop_attribute(const editing *e, nt_json_value *attributes, uint32_t *gone)
+{
+	uint64_t accessor;
+	if (nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &accessor) && accessor < e->pools->accessor_count)
+		gone[e->pools->first_alias[accessor]]++;
+	nt_json_remove(e->edits->document->json, attributes, "TANGENT");
+}
+
+/* An accessor that nothing uses any more loses its bytes, but not its number. */
+static nt_status drop_accessors(const editing *e, const uint32_t *gone)
+{
+	const nt_vertex_pools *pools = e->pools;
+	nt_gltf *document = e->edits->document;
+	nt_status status = NT_OK;
+	for (uint32_t i = 0; !status && i < pools->accessor_count; i++) {
+		const uint32_t alias = pools->first_alias[i];
+		if (!gone[alias] || pools->foreign[alias] || gone[alias] != pools->attribute_users[alias])
+			continue;
+		if (alias == i)
+			status = nt_gltf_release_tangents(e->edits,
+				&(nt_gltf_old_tangents){.accessors = &i, .count = 1}, e->error);
+		nt_json_value *accessor = nt_gltf_accessor_json(document, i);
+		nt_json_remove(document->json, accessor, "bufferView");
+		nt_json_remove(document->json, accessor, "byteOffset");
+		nt_json_remove(document->json, accessor, "sparse");
+	}
+	return status;
+}
+
+/* --existing=drop: TANGENT of primitives and of their targets goes. A Draco block keeps its bytes, unnamed. */
+static nt_status drop_unused(const editing *e)
+{
+	nt_gltf *document = e->edits->document;
+	uint32_t *gone = nt_calloc(e->pools->accessor_count, sizeof *gone); /* [accessor] uses */
+	if (!gone)
+		return nt_fail_memory(e->error);
+	for (size_t i = 0; i < e->scene->mesh_count; i++) {
+		if (e->scene->meshes[i].decision != NT_SKIP_DROPPED)
+			continue;
+		nt_json_value *primitive = nt_gltf_primitive_of(document, &e->scene->meshes[i]);
+		nt_json_value *targets = nt_json_find(primitive, "targets");
+		nt_json_remove(document->json, nt_json_find(nt_gltf_draco_of(primitive), "attributes"), "TANGENT");
+		drop_attribute(e, nt_json_find(primitive, "attributes"), gone);
+		for (size_t t = 0; t < nt_json_count(targets); t++)
+			drop_attribute(e, nt_json_at(targets, t), gone);
+	}
+	const nt_status status = drop_accessors(e, gone);
+	free(gone);
+	return status;
+}
+
 nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_output *output, nt_error *error)
 {
 	/* Nothing to be done: the input as it is. */
 	bool written = false, all_stay = !options->turned || !options->turned->count;
 	nt_status status = NT_OK;
 	for (size_t i = 0; all_stay && i < scene->mesh_count; i++)
-		all_stay = stays(scene, options, &scene->meshes[i]);
+		all_stay = stays(scene, options, &scene->meshes[i]) &&
+			scene->meshes[i].decision != NT_SKIP_DROPPED;
 	if (all_stay)
 		status = nt_gltf_copy_unchanged(scene, options, output, &written, error);
 	if (status || written)
@@ -368,6 +422,8 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 		.of_window = &of_window, .quantized = &quantized, .error = error};
 	if (!status)
 		status = edit_pools(&e);
+	if (!status)
+		status = drop_unused(&e);
 	nt_arena_free(&of_window);
 	if (edits.vertices_copied)
 		nt_extension_scenes(scene);

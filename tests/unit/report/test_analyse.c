@@ -384,8 +384,8 @@ TEST(islands_that_are_all_mirrored_are_one_finding)
 	hand_free(h, report);
 }
 
-/* Two lone mirrored islands at one place have one fingerprint; a baseline with it once knows one of them. Another is not
- * mirrored. */
+/* Two lone mirrored islands at one place have one fingerprint; a baseline with it once knows one of them. Another one
+ * is not mirrored. */
 TEST(baseline_entries_count_once_each)
 {
 	hand_mesh *h = hand_new();
