@@ -194,7 +194,7 @@ NMTAN_INLINE void nmtan_copy_rows(void *rows, size_t stride_bytes, size_t row_co
 	}
 }
 
-/* Where a vertex has what: offsets in bytes, multiples of 4 as the stride. What else it has is copied with it. This
+/* Layout of a vertex: offsets in bytes, multiples of 4 as the stride. Its other bytes are copied with it. This
  * struct does not grow. */
 typedef struct nmtan_layout {
 	size_t stride_bytes;

@@ -17,7 +17,7 @@ static uint64_t number_at(const unsigned char *p, size_t bytes, bool big_endian)
 	return value;
 }
 
-/* Where the segment of the first marker of a kind begins, with the marker: SOF0 to SOF15 without DHT, JPG and DAC,
+/* The place of the segment of the first marker of a kind, with the marker: SOF0 to SOF15 without DHT, JPG and DAC,
  * which lie among them, or SOS. SIZE_MAX: there is none. */
 static size_t find_segment(const unsigned char *bytes, size_t size, bool scan)
 {
@@ -45,7 +45,7 @@ static void size_of_jpeg(const unsigned char *bytes, size_t size, uint32_t pixel
 	pixels[1] = (uint32_t)number_at(bytes + at + 5, 2, true);
 }
 
-/* Of a frame that is progressive, or whose first scan lacks components, all scans are read. In their data each 0xFF has
+/* If a frame is progressive, or its first scan lacks components, all scans are read. In their data each 0xFF has
  * 0 or the number of a restart behind it (B.1.1.5). */
 static uint64_t scans_of_jpeg(const unsigned char *bytes, size_t size)
 {

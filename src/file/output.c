@@ -122,7 +122,7 @@ static nt_status check_existing(const nt_output *output, nt_sink *sink, const st
 	return sink->in_place ? refuse_in_place(sink->path, status, error) : NT_OK;
 }
 
-/* So many files of a set stay open, each with its own lock. Those behind them have one lock together, that of a file
+/* So many files of a set stay open, each with its own lock. Files behind them have one lock together, that of a file
  * which is there for nothing else: sets may have more files than a process may have open. */
 enum { MOST_OPEN = 32 };
 

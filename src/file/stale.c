@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Removing what killed processes left in a folder: see temporary.h. Whoever makes a temporary file keeps a lock of it
- * (flock) until it has its name; the system takes the lock of a process that is gone. So a file that can be locked is
- * stale, if its owner's lock would be seen here: the folder is on a disk of this machine alone, or the owner ran on
- * this very kernel, whose number for its boot is in the name. A file of a large set has the lock of another one: of its
- * leader.
+ * Removing what killed processes left in a folder: see temporary.h. The process that makes a temporary file keeps a
+ * lock of it (flock) until it has its name; the system takes the lock of a process that is gone. So a file that can
+ * be locked is stale, if its owner's lock would be seen here: the folder is on a disk of this machine alone, or the
+ * owner ran on this very kernel, whose number for its boot is in the name. A file of a large set has the lock of
+ * another one: of its leader.
  */
 #include "file/temporary.h"
 

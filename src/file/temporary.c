@@ -2,7 +2,7 @@
 /*
  * Temporary files that a signal removes: see temporary.h.
  *
- * The list is plain and guarded by a spin lock. Who takes the lock blocks the signals in its own thread
+ * The list is plain and guarded by a spin lock. A thread that takes the lock blocks the signals in its own thread
  * first, so the handler never waits for the thread it interrupted; it may wait for others: for those that hold, and
  * for the lock, which it keeps: from then on nobody creates, renames or holds anything. A fault cannot be blocked: each
  * thread knows what it has itself. Only unlinkat, poll, signal calls and lock-free atomics run in the handler; all of
@@ -27,7 +27,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* What is tried before giving up on a free name: names of ended processes with our number are rare. */
+/* Attempts to find a free name: names of ended processes with our number are rare. */
 enum { MOST_ATTEMPTS = 1000, BOOT_DIGITS = 32 };
 
 /* One that has temporary files. */
@@ -150,8 +150,8 @@ static size_t folder_length(const char *path)
 	return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* Name `attempt` beside target: hidden, of a length that any file system has, the target's own name left out. What
- * tells the leader from others of its process stands behind a dash. */
+/* Name `attempt` beside target: hidden, of a length that any file system has, the target's own name left out. The
+ * part behind a dash tells the leader from others of its process. */
 static void name_beside(char *path, size_t capacity, const char *target, unsigned attempt, const nt_temporary *leader)
 {
 	static atomic_uint counter;
@@ -359,7 +359,7 @@ const char *nt_temporary_path(const nt_temporary *temporary)
 	return temporary->path;
 }
 
-/* Where there is neither such a rename nor a second link: an empty file takes the name, and is ours to replace. */
+/* Without such a rename or a second link, an empty file takes the name, and is ours to replace. */
 static bool rename_to_reserved_name(int at, const char *from, const char *to)
 {
 	const int fd = openat(at, to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

@@ -52,7 +52,7 @@ typedef struct nt_trace {
 	unsigned reader;     /* as read by this one */
 } nt_trace;
 
-/* What the trace notes as read is shared from now on. Once for each run. */
+/* Shares what the trace notes as read from now on. Once for each run. */
 void nt_trace_share(nt_trace *trace, nt_readers *readers);
 
 /* Whether a run that shares with that of the trace that is used has read a file. */

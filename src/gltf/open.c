@@ -271,8 +271,8 @@ static nt_status look_for_file(nt_gltf *document, size_t index, bool *missing, n
 	return status == NT_ERROR_MEMORY ? status : NT_OK;
 }
 
-/* Refuses a document without all of its files, whether a run needs them or not: its output would be as broken. What a
- * buffer of EXT_meshopt_compression falls back to has no URI. */
+/* Refuses a document without all of its files, whether a run needs them or not: its output would be as broken. The
+ * fallback of EXT_meshopt_compression has no URI. */
 static nt_status look_for_buffers(nt_scene *scene, nt_gltf *document, nt_error *error)
 {
 	enum { NAMED = 3 };

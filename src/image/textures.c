@@ -516,7 +516,7 @@ uint64_t nt_textures_pixels(const nt_textures *t, uint64_t *bytes)
 	return t->pixels;
 }
 
-/* What is decoded counts as often as a decoder goes over it, for which the whole file has to be seen. */
+/* Pixels count as often as a decoder goes over them, for which the whole file has to be seen. */
 static nt_status count_work(const nt_textures *t, nt_error *error)
 {
 	bool *decoded = nt_calloc(t->source_count, sizeof *decoded);

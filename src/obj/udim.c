@@ -16,7 +16,7 @@
 static const char mark[] = "<UDIM>";
 enum { FIRST_TILE = 1001, TILES_ALONG_U = 10, TILES = 1000, NO_TILE = TILES };
 
-/* Where the number of a tile stands in a name, behind a dot or underscore and before a dot; NULL: nowhere. */
+/* The place of a tile's number in a name, behind a dot or underscore and before a dot; NULL: nowhere. */
 static const char *find_number(const char *name)
 {
 	for (const char *p = name; name && *p; p++)

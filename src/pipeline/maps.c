@@ -16,7 +16,7 @@
 /* Largest file that --check-maps=auto decodes; how many images are open at a time. */
 enum { MOST_AUTO_BYTES = 16 << 20, MOST_OPEN = 16 };
 
-/* What is known of an image once it is closed. */
+/* Facts about an image that outlive it. */
 typedef struct known_map {
 	uint64_t identity[2];
 	const nt_mesh *mesh;    /* the first that uses it */
@@ -146,7 +146,7 @@ static void tell_down(const examination *e)
 
 /* ---- the images ---- */
 
-/* What stays of an image; memory for its facts can be refused. */
+/* Keeps the facts about an image; memory for its facts can be refused. */
 static bool keep_facts(examination *e, const examined *x)
 {
 	known_map *map = &e->maps[x->number];

@@ -26,7 +26,7 @@ static size_t vertex_of(const nt_mesh *mesh, size_t corner)
 	return mesh->indices ? mesh->indices[corner] : corner;
 }
 
-/* Of a triangle whose w is wrong: whether T is reversed as well, so that the bitangent is right. */
+/* For a triangle whose w is wrong: whether T is reversed as well, so that the bitangent is right. */
 static bool is_reversed(const nt_mesh *mesh, const size_t v[3], int orientation)
 {
 	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
@@ -80,7 +80,7 @@ bool nt_any_inverted(const nt_scene *scene)
 
 /* ---- parts of the graph ---- */
 
-/* What a part has. */
+/* Counts of a part. */
 typedef struct part {
 	uint32_t pair; /* its number as a pair, 0: it is none */
 	uint32_t first; /* mesh */

@@ -34,7 +34,7 @@ static nt_status ask_tangents(const nt_mesh *mesh, const uint8_t *halves, unsign
 	return status;
 }
 
-/* Of a mesh without tangents, from a program that solves quads: whether nearly all of it pairs. */
+/* Whether nearly all of a mesh without tangents pairs, if its program solves quads. */
 static bool suggests_quads(const nt_scene *scene, const nt_mesh *mesh, size_t quads)
 {
 	return scene->solves_quads && !mesh->tangents && mesh->decision == NT_DECISION_SOLVE &&

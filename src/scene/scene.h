@@ -188,7 +188,7 @@ typedef enum nt_signs {
 /* Why it is not known whether a normal map cancels inverted w. */
 typedef enum nt_doubt { NT_DOUBT_NONE, NT_DOUBT_UNEXAMINED, NT_DOUBT_UNDECODABLE } nt_doubt;
 
-/* What a finding about inverted w says then. */
+/* The end of a finding about inverted w. */
 static inline const char *nt_doubt_text(nt_doubt doubt)
 {
 	static const char *const texts[] = {"",

@@ -58,8 +58,8 @@ typedef struct nt_edge_tail {
 	uint64_t *are_members;   /* a bit for each vertex */
 } nt_edge_tail;
 
-/* Begins: says what to look for, in memory of the mesh. Who passes all corners meanwhile may note which triangles are
- * near, and then sets is_noted and is_box_used if the grid's extremes have corners. Returns NMTAN_OK or
+/* Begins: says what to look for, in memory of the mesh. A caller that passes all corners meanwhile may note which
+ * triangles are near, and then sets is_noted and is_box_used if the grid's extremes have corners. Returns NMTAN_OK or
  * NMTAN_ERROR_MEMORY. */
 nmtan_status nt_edge_tail_make(const nt_welded_mesh *mesh, nt_edge_tail *tail);
 

@@ -76,8 +76,8 @@ const contenders = {
 	'meshopt': (m) => meshopt.generateTangents(m.indices, m.positions, 3, m.normals, 3, m.texcoords, 2, ['Compatible']),
 };
 
-// Best seconds of each, of half a second of runs: engines compile what runs often a second time, and better. Whoever is
-// slower than a second runs twice.
+// Best seconds of each, of half a second of runs: engines compile what runs often a second time, and better. A
+// program that is slower than a second runs twice.
 function measure(mesh) {
 	const best = {}, spent = {};
 	for (let round = 0, left = true; left; round++) {

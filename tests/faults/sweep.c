@@ -4,7 +4,7 @@
  *
  * Runs a command in a folder once as it is, then again and again with the n-th allocation (memory) or the n-th system
  * call (EIO, ENOMEM, EINTR, ENOSPC) failing, or with a file that becomes empty at the n-th call, for n = FIRST, FIRST +
- * STRIDE, ... until nothing fails any more. The folder is put back before each run. What must hold of each run:
+ * STRIDE, ... until nothing fails any more. The folder is put back before each run. It checks each run:
  *
  *   - it ends by itself, with the code of the run without faults, 4 for memory, 2 or 4 for system calls, 2 or 3 (where
  *     it was empty when it was opened) for a file that became empty;

@@ -74,7 +74,7 @@ static nt_precision precision_of(const nt_gltf_accessor *a)
 		a->component_type == NT_GLTF_SHORT ? NT_PRECISION_SHORT : NT_PRECISION_FLOAT;
 }
 
-/* What tangents that are there are stored as. */
+/* The storage of existing tangents. */
 static nt_precision replaced_precision(const nt_buffer_edits *edits, const nt_json_value *attributes)
 {
 	uint64_t index;

@@ -23,14 +23,14 @@ nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *
 
 /* ---- reading ---- */
 
-/* Where a file went: images that name it, by whatever name, have it together. */
+/* The destination of a file: images that name it, by whatever name, have it together. */
 typedef struct moved_file {
 	uint64_t device, inode;
 	uint32_t view;   /* NT_NONE: into none */
 	const char *uri; /* NULL: not beside the output */
 } moved_file;
 
-/* Where the images of a document go. */
+/* Destinations of a document's images. */
 typedef struct moving {
 	nt_scene *scene;
 	nt_buffer_edits *edits;
@@ -88,7 +88,7 @@ static nt_status open_image(moving *m, size_t index, const nt_json_value *image,
 	return NT_OK;
 }
 
-/* What became of a file that an earlier image names, too; NULL: none does. */
+/* The destination of a file that an earlier image names, too; NULL: none does. */
 static const moved_file *find_moved(const moving *m, const nt_file *file)
 {
 	const uint64_t key[2] = {file->device, file->inode}, hash = nt_hash_bytes(0, key, sizeof key);

@@ -152,7 +152,7 @@ static void move_and_end(void)
 	nt_temporaries_remove_all();
 }
 
-/* Who moves the folder takes along what is being written in it. */
+/* Moving the folder takes along what is being written in it. */
 TEST(a_folder_may_be_moved)
 {
 	nt_temporary *first, *second;

@@ -29,7 +29,7 @@ TEST(odd_normals_and_folded_quads_are_counted)
 	nt_summary_free(&summary);
 }
 
-/* What our PLY writer makes of a mesh with all attributes and tangents. */
+/* Our PLY writer's output for a mesh with all attributes and tangents. */
 enum { ROW_FLOATS = 12, SIDE = 12, POINTS = (SIDE + 1) * (SIDE + 1), QUADS = SIDE * SIDE, CORNERS = 4 * QUADS };
 
 typedef struct written {
@@ -60,7 +60,7 @@ static void read_written(const char *name, written *w)
 
 /* Raw tangents have the definition's bytes on positions, normals and texture coordinates as they are written, whatever
  * the input's normals were like: here as long as rounding to a few digits makes them, on both sides of what counts as
- * unit, 2^-11 of |n|^2. What is written again stays. */
+ * unit, 2^-11 of |n|^2. The output has them again. */
 TEST(the_normals_that_are_solved_are_written)
 {
 	nt_buffer obj = {0};
