@@ -538,4 +538,20 @@ run --draco=sequential "$data/plates.glb" plates.ply
 exits 1
 only
 
+scene "a block that was edgebreaker's and becomes sequential is a finding that says why"
+# one triangle is 1e-7 high: the first encoder keeps it, its grid brings two corners together, and a second one would drop it
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'v 1 1 0' 'v 1 1.0000001 0' 'v 0 2 0' 'vt 0 0' 'vt 1 0' 'vt 0 1' 'vt 1 1' 'vt 0 2' \
+	'vn 0 0 1' 'f 1/1/1 2/2/1 3/3/1' 'f 2/2/1 4/4/1 3/3/1' 'f 4/4/1 5/4/1 3/3/1' 'f 3/3/1 5/4/1 6/5/1' >flat.obj
+run flat.obj flat.glb
+run --only=all --existing=replace --draco=edgebreaker -v flat.glb one.glb
+exits 0
+says_not DRACO_SEQUENTIAL
+run --only=all --existing=replace -v one.glb two.glb
+exits 0
+says "edgebreaker would drop 1 of its faces, which have no area in the block's grid [DRACO_SEQUENTIAL]"
+is "$(gltf two.glb 'g.accessors[g.meshes[0].primitives[0].indices].count')" 12
+# the input of the next is sequential already
+run --only=all --existing=replace -v two.glb three.glb
+says_not DRACO_SEQUENTIAL
+
 done_testing
