@@ -111,7 +111,7 @@ cp "$data/mirrored_cube.obj" "$name"
 for format in csv markdown; do
 	run --check --fail-on=never --report-format=$format "$name"
 	exits 0
-	python3 -c 'import sys; sys.exit("caf\ufffd" not in open(sys.argv[1], encoding="utf-8").read())' "$WORK/out.txt" ||
+	python3 -c 'import sys; sys.exit(sys.argv[2] not in open(sys.argv[1], encoding="utf-8").read())' "$WORK/out.txt" 'caf\xe9' ||
 		wrong "$format is not UTF-8, or lacks the name"
 done
 
