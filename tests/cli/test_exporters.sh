@@ -37,7 +37,7 @@ halves() {
 		'vn 0 0 1' "$1" 'f 1/1/1 2/2/1 5/4/1' "$2" 'f 2/2/1 3/1/1 6/3/1' "$1" 'f 1/1/1 5/4/1 4/3/1' "$2" 'f 2/2/1 6/3/1 5/4/1'
 }
 halves 'g arm' 'g leg two' >g.obj
-run g.obj g.glb
+run --verify g.obj g.glb
 exits 0
 is "$(gltf g.glb 'g.meshes.map(m => m.name + " " + m.primitives.length).join() + " " + g.nodes.map(n => n.name + n.mesh).join() +
 	" " + g.scenes[0].nodes')" "arm 1,leg two 1 arm0,leg two1 0,1"

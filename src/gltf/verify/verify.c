@@ -494,8 +494,9 @@ static void close_check(mesh_check *check)
 	free(check->views);
 }
 
-/* A mesh of a composed document: its primitives are those that have faces, in order. */
-static nt_status open_composed(const verification *v, mesh_check *check, size_t number, nt_error *error)
+/* A mesh of a composed document, or one for each of its groups from *number on, which becomes the next one's: their
+ * primitives are those that have faces, in order. */
+static nt_status open_composed(const verification *v, mesh_check *check, size_t *number, nt_error *error)
 {
 	const nt_mesh *mesh = check->mesh;
 	const size_t count = check->view_count;
@@ -504,9 +505,18 @@ static nt_status open_composed(const verification *v, mesh_check *check, size_t 
 	for (size_t f = 0; f < mesh->face_count && status == NT_OK; f++)
 		faces[count > 1 && mesh->face_primitive ? mesh->face_primitive[f] : 0]++;
 	size_t primitive = 0;
-	for (size_t p = 0; p < count && status == NT_OK; p++)
-		if (faces[p])
-			status = open_primitive(v->model, number, primitive++, &check->views[p], error);
+	uint32_t group = 0;
+	for (size_t p = 0; p < count && status == NT_OK; p++) {
+		if (!faces[p])
+			continue;
+		if (primitive && mesh->primitives[p].group != group) {
+			++*number;
+			primitive = 0;
+		}
+		group = mesh->primitive_count ? mesh->primitives[p].group : 0;
+		status = open_primitive(v->model, *number, primitive++, &check->views[p], error);
+	}
+	++*number;
 	free(faces);
 	return status;
 }
@@ -542,7 +552,7 @@ static nt_status open_checks(verification *v, nt_error *error)
 		check->views = nt_calloc(check->view_count, sizeof *check->views);
 		if (!check->views)
 			return nt_fail_memory(error);
-		status = v->edited ? open_edited(v, check, error) : open_composed(v, check, number++, error);
+		status = v->edited ? open_edited(v, check, error) : open_composed(v, check, &number, error);
 		if (status == NT_OK)
 			v->count++;
 		else
