@@ -108,10 +108,10 @@ exits 3
 scene "CSV and Markdown are UTF-8 whatever a file is called"
 name=$(printf 'caf\351"x.obj')
 cp "$data/mirrored_cube.obj" "$name"
-for format in csv markdown; do
-	run --check --fail-on=never --report-format=$format "$name"
+for format in 'csv caf\xe9' "markdown $(printf 'caf\357\277\275')"; do
+	run --check --fail-on=never --report-format=${format% *} "$name"
 	exits 0
-	python3 -c 'import sys; sys.exit(sys.argv[2] not in open(sys.argv[1], encoding="utf-8").read())' "$WORK/out.txt" 'caf\xe9' ||
+	python3 -c 'import sys; sys.exit(sys.argv[2] not in open(sys.argv[1], encoding="utf-8").read())' "$WORK/out.txt" "${format#* }" ||
 		wrong "$format is not UTF-8, or lacks the name"
 done
 
