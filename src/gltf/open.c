@@ -350,8 +350,8 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	if (!status)
 		status = describe_meshes(scene, document, options, reached, error);
 
-	/* Their places, where the output is one mesh in the world. */
-	if (!status && options->world)
+	/* Their places, if the output is one mesh in the world, and for a report, which shows lengths there. */
+	if (!status && (options->world || options->report))
 		status = place_meshes(scene, document, error);
 	return status;
 }
