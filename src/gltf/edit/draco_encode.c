@@ -40,6 +40,14 @@ static size_t count_degenerate_faces(const nt_gltf_recoding *r)
 	return count;
 }
 
+/* Whether faces of which two corners are at one position may go: they draw nothing, unless joints move the corners
+ * apart. Only those of a block, whose own grid made them, since other files may mean them. */
+static bool may_drop_faces(const nt_gltf_recoding *r)
+{
+	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	return r->extension && r->options->draco == NT_DRACO_KEEP && !nt_json_find(attributes, "JOINTS_0");
+}
+
 /* Notes why edgebreaker, which is asked for or which the source has, is not taken. */
 static nt_draco_method wanted_method(nt_gltf_recoding *r)
 {
@@ -49,7 +57,7 @@ static nt_draco_method wanted_method(nt_gltf_recoding *r)
 		return wanted;
 	r->sequential_instead = r->outside;
 	r->faces_without_area = r->outside ? 0 : count_degenerate_faces(r);
-	r->sequential_instead |= r->faces_without_area > 0;
+	r->sequential_instead |= r->faces_without_area > 0 && !may_drop_faces(r);
 	return r->sequential_instead ? NT_DRACO_SEQUENTIAL : wanted;
 }
 

@@ -427,17 +427,36 @@ static nt_status compare_block_targets(const nt_mesh *mesh, const primitive_view
 	return NT_OK;
 }
 
+/* Takes out the triangles of which two corners are at one position, as edgebreaker does; returns how many corners are
+ * left. */
+static size_t drop_degenerate(nt_verify_corner *corners, size_t count)
+{
+	size_t kept = 0;
+	for (size_t c = 0; c < count; c += 3) {
+		const float *a = corners[c].position, *b = corners[c + 1].position, *d = corners[c + 2].position;
+		if (memcmp(a, b, 3 * sizeof *a) == 0 || memcmp(b, d, 3 * sizeof *a) == 0 ||
+			memcmp(d, a, 3 * sizeof *a) == 0)
+			continue;
+		memmove(&corners[kept], &corners[c], 3 * sizeof *corners);
+		kept += 3;
+	}
+	return kept;
+}
+
 /* The sequential method keeps corners where they are; if they are elsewhere, the surface has to be the same. */
 static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, unsigned threads, nt_error *error)
 {
-	const size_t count = mesh->corner_count;
-	if (view->indices.count != count)
-		return fail_corner(mesh, 0, error);
+	size_t count = mesh->corner_count;
 	nt_verify_corner *wanted = nt_alloc(count, sizeof *wanted), *found = nt_alloc(count, sizeof *found);
 	nt_status status = wanted && found ? NT_OK : nt_fail_memory(error);
 	bool ordered = true;
-	for (size_t c = 0; c < count && status == NT_OK; c++) {
+	for (size_t c = 0; c < count && status == NT_OK; c++)
 		wanted[c] = wanted_corner(mesh, c);
+	if (status == NT_OK && view->indices.count != count && !view->target_tangents)
+		count = drop_degenerate(wanted, count);
+	if (status == NT_OK && view->indices.count != count)
+		status = fail_corner(mesh, 0, error);
+	for (size_t c = 0; c < count && status == NT_OK; c++) {
 		if (!found_corner(view, c, &found[c]))
 			status = fail_corner(mesh, c, error);
 		else if (!is_drawable(found[c].tangent) && is_drawable(wanted[c].tangent))
