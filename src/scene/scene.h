@@ -361,8 +361,8 @@ typedef struct nt_scene {
 
 	bool solves_quads; /* what wrote the input solves tangents on quads: Blender */
 
-	const char *left_out; /* names of what the source has for vertices and faces, and the scene has not; NULL:
-	                         nothing */
+	const char *left_out; /* names of what the source has, and the scene has not; of a glTF only if the output is
+	                         one mesh in the world; NULL: nothing */
 	size_t left_out_count;
 
 	/* Data that a reader keeps for the writer of the same format, and the input's bytes. */
