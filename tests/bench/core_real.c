@@ -92,7 +92,8 @@ static const struct {
 	const char *name;
 	shape shape;
 	uint32_t columns, rows;
-} made[] = {{"few", CLEAN, 1, 1}, {"few", CLEAN, 2, 2}, {"few", CLEAN, 4, 4}, {"few, noise", NOISE, 1, 1},
+} made[] = {{"few", CLEAN, 1, 1}, {"few", CLEAN, 2, 2}, {"few", CLEAN, 4, 4}, {"few", CLEAN, 8, 8},
+	{"few, noise", NOISE, 1, 1},
 	{"few, noise", NOISE, 2, 2}, {"few, noise", NOISE, 4, 4}, {"all UVs in one point", ONE_POINT, 70, 70},
 	{"tangents along normals", ALONG_NORMALS, 70, 70}};
 enum { MADE = sizeof made / sizeof *made };
