@@ -7,7 +7,9 @@ asks:
 - names that two files have for their own get the name of their file behind them, and macros of a C file end with it;
 - functions that nothing calls go, and what is compiled for the tool alone (NT_NO_DEADLINES is always set);
 - the kernels are compiled once for each instruction set: nmtan.c includes itself, and each time NT_PASS_NAME() makes
-  other names of theirs.
+  other names of theirs;
+- what takes no time in a solve is compiled for size (COLD), and so are the kernels of the processors that few have.
+  gcc inlines no function into one of another level of optimization but what it must, so what headers have must be.
 """
 import glob
 import os
@@ -19,6 +21,12 @@ HEAD = 'src/api/amalgamation.in'
 KERNEL_ROOT, KERNEL_ALSO = 'tangent/fast/turn.h', ['tangent/acos.h']
 KERNEL_PLACE = 'src/tangent/fast/kernel_baseline.c'  # among the sources
 KERNELS = ['src/tangent/fast/kernel.h', 'src/tangent/sums/kernel.h']
+
+# Files whose functions take no time in a solve: the definition, threads, and what few meshes need.
+COLD = re.compile(r'src/(base/(?!hash|words|scratch|counts)|tangent/(mikktspace|repair|sums/hard)|topology/(plain|representatives)|api/self)')
+
+# What headers of the system declare, which a file without them may have for its own.
+SYSTEM = {'link', 'index', 'read', 'write', 'pipe'}
 
 INCLUDE = re.compile(r'#include ([<"])(.+)[>"]')
 # The beginning of a function that others see, in the first column.
@@ -76,7 +84,7 @@ class Amalgamation:
 				counts[name] = counts.get(name, 0) + 1
 			if path.endswith('.c'):
 				self.moved.update((found[1], 'static ' + found[0]) for found in DEFINITION.finditer(text))
-		self.shared = {name for name in counts if counts[name] > 1 and not name.startswith('nt_')}
+		self.shared = {name for name in counts if (counts[name] > 1 or name in SYSTEM) and not name.startswith('nt_')}
 
 	def lines_of(self, path):
 		text = re.sub(r'#ifdef NT_NO_DEADLINES\n(.*?)#else\n.*?#endif\n', r'\1', read(path), flags=re.S)
@@ -120,11 +128,17 @@ class Amalgamation:
 
 	def add_source(self, path):
 		text = read(path)
+		sums = path.startswith('src/tangent/sums/')
+		self.lines += ['@sums'] * sums + ['@cold'] * bool(COLD.match(path))
 		base = os.path.basename(path)[:-2]
-		self.add(path, [(re.compile(r'(?<![\w.])(?<!->)' + name + r'\b'), name + '_of_' + base)
-			for name in sorted(own_names(text) & self.shared)])
+		self.add(path, self.renamed(own_names(text) & self.shared, base))
 		self.lines += ['#undef ' + name for name in re.findall(r'^#define (\w+)', text, re.M)
 			if self.is_elsewhere(name, path)]
+		self.lines += ['@warm'] * bool(COLD.match(path)) + ['#endif'] * sums
+
+	@staticmethod
+	def renamed(names, owner):
+		return [(re.compile(r'(?<![\w.])(?<!->)' + name + r'\b'), name + '_of_' + owner) for name in sorted(names)]
 
 	@staticmethod
 	def is_elsewhere(name, path):
@@ -138,7 +152,11 @@ class Amalgamation:
 				if other not in headers:
 					self.add_header(other)
 		texts = [read('src/' + name) for name in sorted(headers)]
-		names = sorted(set().union(*map(own_names, texts)))
+		clashes = {}
+		for path in KERNELS:
+			others = set().union(*(own_names(read('src/' + name)) for name in headers if 'src/' + name != path))
+			clashes[path] = self.renamed(own_names(read(path)) & others, os.path.basename(os.path.dirname(path)))
+		names = sorted(set().union(*map(own_names, texts), *({name for _, name in renamed} for renamed in clashes.values())))
 		self.lines += ['', '/* ---- names of the kernels ---- */']
 		self.lines += ['#define {0} NT_PASS_NAME({0})'.format(name) for name in names]
 		self.lines += ['', '#define NT_KERNEL NT_PASS_NAME(nt_kernels)',
@@ -146,7 +164,9 @@ class Amalgamation:
 		self.lines += ['@passes']
 		for path in KERNELS:
 			self.seen.add(path[len('src/'):])
-			self.add(path)
+			self.lines += ['@sums'] * ('/sums/' in path)
+			self.add(path, clashes[path])
+			self.lines += ['#endif'] * ('/sums/' in path)
 		macros = {}
 		for name, value in re.findall(r'^#define (\w+)((?:.*\\\n)*.*)', '\n'.join(texts), re.M):
 			macros.setdefault(name, set()).add(value)
@@ -165,6 +185,7 @@ class Amalgamation:
 				text = re.sub(r'(?:^/\*(?:(?!\*/).)*\*/\n)?^static [^;={}()]*\b' + name +
 					r'\([^{};]*\)(?:;\n|\n\{\n.*?^\}\n)', '', text, flags=re.M | re.S)
 			if not unused:
+				text = re.sub(r'^static inline ', 'NT_INLINE ', text, flags=re.M)
 				return re.sub(r'\n\n+(?=/\* ---- )', '\n', re.sub(r'\n\n\n+', '\n\n', text))
 
 
@@ -180,7 +201,7 @@ def main():
 	licence = ''.join((' * ' + line).rstrip() + '\n' for line in read('LICENSE').splitlines())
 	text = text.replace('@licence\n', licence).replace('@includes\n', '\n'.join(result.includes) + '\n')
 	body = result.text()
-	for name in ('passes', 'rest'):
+	for name in ('passes', 'rest', 'cold', 'warm', 'sums'):
 		part = re.search('@begin ' + name + '\n(.*?)@end\n', text, re.S)
 		text = text.replace(part[0], '')
 		body = body.replace('@' + name + '\n', part[1])

@@ -37,8 +37,11 @@ nt_isa nt_cpu_best(void)
 	best = NT_ISA_BASELINE;
 #if defined(__x86_64__)
 	if (has(bit_AVX2, 0x6))
-		best = has(bit_AVX512F | bit_AVX512BW | bit_AVX512DQ | bit_AVX512VL, 0xe6) ? NT_ISA_AVX512
-			: NT_ISA_AVX2;
+		best = NT_ISA_AVX2;
+#ifndef NT_NO_AVX512
+	if (best == NT_ISA_AVX2 && has(bit_AVX512F | bit_AVX512BW | bit_AVX512DQ | bit_AVX512VL, 0xe6))
+		best = NT_ISA_AVX512;
+#endif
 #endif
 	nt_atomic_store(&found, best, RELAXED);
 	return best;

@@ -27,7 +27,9 @@ nt_isa nt_cpu_best(void);
 
 /* The address of the table of functions for a set (never AUTO), where TABLE_baseline, TABLE_avx2 and TABLE_avx512
  * are one for each. A macro because tables of several types have such names. */
-#if defined(__x86_64__) && !defined(NT_ONE_SET)
+#if defined(__x86_64__) && !defined(NT_ONE_SET) && defined(NT_NO_AVX512)
+#define NT_CPU_TABLE(isa, table) ((isa) == NT_ISA_AVX2 ? &table##_avx2 : &table##_baseline)
+#elif defined(__x86_64__) && !defined(NT_ONE_SET)
 #define NT_CPU_TABLE(isa, table) \
 	((isa) == NT_ISA_AVX512 ? &table##_avx512 : (isa) == NT_ISA_AVX2 ? &table##_avx2 : &table##_baseline)
 #else

@@ -44,7 +44,7 @@
 /* Each thread has cursors of its own for all vertices, which are then gone over together: the more threads, the more
  * triangles each must have. Two need fewer: their halves take 10 to 18 % more processor time than the whole. */
 static const nt_fast_plan usual = {.grain = 65536, .least_two = 30000, .least_borrowed_bytes = 65536,
-	.most_narrow = NT_NARROW_LIMIT, .small = true};
+	.small = true, .most_narrow = NT_NARROW_LIMIT};
 
 typedef struct run {
 	nt_fast *fast;
@@ -419,18 +419,6 @@ static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, cons
 
 /* The whole */
 
-/* Whether the UVs of all triangles have exactly no area, as those that nobody made: no group begins then. */
-static bool is_flat(const nt_fast *fast)
-{
-	size_t t = 0;
-	if (!NT_FAST_PATHS || !fast->solve->known || fast->solve->mesh->face_sizes)
-		return false;
-	const unsigned mask = NT_TRIANGLE_ANY | NT_TRIANGLE_UNCERTAIN;
-	while (t < fast->triangle_count && (fast->flags[t] & mask) == NT_TRIANGLE_ANY)
-		t++;
-	return t == fast->triangle_count;
-}
-
 bool nt_fast_can(const nt_solve *solve)
 {
 	return solve->threshold_cos == -1.0f && solve->mesh->vertex_count < NT_WELD_LIMIT &&
@@ -491,15 +479,8 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 		status = add(&fast, kernels, plan);
 	if (status)
 		return status;
-	const bool flat = is_flat(&fast);
-	if (flat || (!fast.records[0] && !fast.records[1])) {
-		/* what repair will write need not be written now */
-		if (!flat || !solve->repair)
-			nt_fast_write_defaults(&fast);
-		if (flat) {
-			tell_known(&fast);
-			solve->known->all_flat = true;
-		}
+	if (!fast.records[0] && !fast.records[1]) {
+		nt_fast_write_defaults(&fast);
 		return NMTAN_OK;
 	}
 	/* sums become results, where the definition would not have split or joined them otherwise */

@@ -29,8 +29,7 @@ class ConversionError(RuntimeError):
 
 
 def _arguments(options: Dict[str, Any]) -> Iterator[str]:
-    chosen: Dict[str, Any] = {"outside": "no", **options}
-    for name, value in chosen.items():
+    for name, value in {"outside": "no", **options}.items():
         name = name.rstrip("_").replace("_", "-")
         values = value if isinstance(value, (list, tuple)) else [value]
         for one in values:
