@@ -189,15 +189,21 @@ static void free_result(result *r)
 	free_folder(&r->files);
 }
 
+/* "s" or "ms" as a word; 0: neither. */
+static size_t length_of_unit(const char *s)
+{
+	const size_t length = s[0] == 'm' ? 2 : 1;
+	return s[length - 1] == 's' && !isalpha((unsigned char)s[length]) ? length : 0;
+}
+
 /* Messages without their times. */
 static void strip_times(bytes *b)
 {
 	char *to = b->data;
 	for (const char *from = b->data; *from;) {
 		char *end;
-		if (isdigit((unsigned char)*from) &&
-			(strtod(from, &end), *end == ' ' && end[1] == 's' && !isalpha((unsigned char)end[2])))
-			from = end;
+		if (isdigit((unsigned char)*from) && (strtod(from, &end), *end == ' ') && length_of_unit(end + 1))
+			from = end + 1 + length_of_unit(end + 1);
 		else
 			*to++ = *from++;
 	}
