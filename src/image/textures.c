@@ -531,7 +531,8 @@ static nt_status count_work(const nt_textures *t, nt_error *error)
 		nt_texture_source *s = &t->sources[i]->file;
 		nt_file file;
 		nt_error ignored; /* who decodes it meets it again, and says it */
-		if (!decoded[i] || !can_decode(s))
+		/* what is larger than any decoder takes is left out by its header */
+		if (!decoded[i] || !can_decode(s) || s->pixels > NT_PIXELS_MOST)
 			continue;
 		if ((s->type == NT_IMAGE_JPEG || s->type == NT_IMAGE_TIFF) && !open_source(s, &file, &ignored)) {
 			s->pixels = nt_image_work(file.data, file.size);

@@ -65,7 +65,7 @@ scene "the known traps are caught"
 if [ -d "$ROOT/../shared/models" ]; then
 	models=$ROOT/../shared/models
 	run --check "$models/obj/triangle_with_degenerate_tex_coords.obj"
-	prints "UV_UNMAPPED  no triangle has an area in UV space: all 1 is unmapped"
+	prints "UV_UNMAPPED  the mesh is not unwrapped: 1 triangle has no area in UV space"
 	for name in rancid_geometry obliterated; do
 		run --check "$models/obj/$name.obj"
 		prints "MESH_NON_MANIFOLD_EDGE"
@@ -122,15 +122,15 @@ flat >'a,b%c:d.obj'
 echo 'f 1 2 3' >bad.obj
 run $strict --report-format=lines 'a,b%c:d.obj' bad.obj
 exits 3
-is "$(cat ../out.txt)" 'a,b%c:d.obj:7: error: UV_UNMAPPED: no triangle has an area in UV space: all 1 is unmapped
+is "$(cat ../out.txt)" 'a,b%c:d.obj:7: error: UV_UNMAPPED: the mesh is not unwrapped: 1 triangle has no area in UV space
 bad.obj:1: error: face refers to "v" number 1, but the file has 0'
 run $strict --report-format=github 'a,b%c:d.obj' bad.obj
-is "$(cat ../out.txt)" '::error file=a%2Cb%25c%3Ad.obj,line=7,title=UV_UNMAPPED::no triangle has an area in UV space: all 1 is unmapped
+is "$(cat ../out.txt)" '::error file=a%2Cb%25c%3Ad.obj,line=7,title=UV_UNMAPPED::the mesh is not unwrapped: 1 triangle has no area in UV space
 ::error file=bad.obj,line=1,title=not judged::face refers to "v" number 1, but the file has 0'
 cp 'a,b%c:d.obj' $'e\r\nf.obj'
 run --check --report-format=github --severity=UV_UNMAPPED=warning --path-prefix=art $'e\r\nf.obj'
 exits 0
-prints '::warning file=art/e%0D%0Af.obj,line=7,title=UV_UNMAPPED::no triangle'
+prints '::warning file=art/e%0D%0Af.obj,line=7,title=UV_UNMAPPED::the mesh'
 { sed 's/^f/usemtl 5%\nf/' 'a,b%c:d.obj'; } >m.obj # of the sentence % alone
 run --check --report-format=github m.obj
 prints '::warning file=m.obj,line=7,title=MATERIAL_UNKNOWN::material is defined by no material library: 5%25'
@@ -145,7 +145,7 @@ for words in "$strict -q m.obj" "$strict -q --report=r.json m.obj" "$strict --re
 	"-q --severity=UV_UNMAPPED=error --fail-on=error m.obj m.glb"; do
 	run $words
 	exits 6
-	says "nmtan: m.obj: error: no triangle has an area in UV space: all 1 is unmapped [UV_UNMAPPED]"
+	says "nmtan: m.obj: error: the mesh is not unwrapped: 1 triangle has no area in UV space [UV_UNMAPPED]"
 done
 run $strict -q --report-format=text m.obj # which says it
 exits 6
@@ -156,7 +156,7 @@ silent
 sed 's/^vt 1 0/vt 1 0\nvt 0 1/; s,3/1/1,3/3/1,' m.obj >sound.obj
 run $strict -q --diff sound.obj m.obj
 exits 6
-says "nmtan: m.obj: error: no triangle has an area"
+says "nmtan: m.obj: error: the mesh is not unwrapped"
 
 scene "exit codes follow the report, what is ignored and what is reweighed"
 cp "$data/head.obj" .
