@@ -299,6 +299,13 @@ nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buff
 		nt_buffer_free(&folder);
 		return status || !path->failed ? status : nt_fail_memory(error);
 	}
+	/* no folder has a file of such a name, and to follow it part by part would take long */
+	if (nt_name_is_too_long(name)) {
+		*found = NT_IMAGE_MISSING;
+		path->size = 0;
+		nt_buffer_text(path, name);
+		return path->failed ? nt_fail_memory(error) : NT_OK;
+	}
 	status = try_as_named(&s, name, &folder, &accepted);
 	*found = NT_IMAGE_FOUND;
 	if (!status && !accepted) {
