@@ -31,7 +31,7 @@ class ConversionError(RuntimeError):
 def _arguments(options: Dict[str, Any]) -> Iterator[str]:
     for name, value in {"outside": "no", **options}.items():
         name = name.rstrip("_").replace("_", "-")
-        values = value if isinstance(value, (list, tuple)) else [value]
+        values: Sequence[Any] = value if isinstance(value, (list, tuple)) else [value]
         for one in values:
             if one is True:
                 yield f"--{name}"
