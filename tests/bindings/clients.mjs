@@ -128,6 +128,12 @@ await test('TypeScript takes what the functions take, and nothing else', () => {
 		const counts: Counts = r.counts, n: number = counts.normalsNotUnit;
 		const faults: Uint8Array | undefined = generateCornerTangents(null, f, f, f, {cornerFaults: true}).cornerFaults;
 		export const done: Promise<void> = ready.then(() => console.log(t, n, faults));
+		const wide: Uint32Array[] = [generateTangentsIndexed(new Uint32Array(3), f, f, f).indices,
+			generateTangentsIndexed(new Uint8Array(3), f, f, f).indices, generateTangentsIndexed([0, 1, 2], f, f, f).indices];
+		// @ts-expect-error
+		wide.push(generateTangentsIndexed(new Uint16Array(3), f, f, f).indices);
+		// @ts-expect-error
+		wide.push(generateTangentsIndexed(f as ArrayLike<number>, f, f, f).indices);
 		// @ts-expect-error
 		generateTangentsIndexed([0], f, f, f, {convention: 'gltf'});
 		// @ts-expect-error

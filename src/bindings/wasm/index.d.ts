@@ -66,11 +66,11 @@ export interface CornerTangents {
 	counts: Counts;
 }
 
-export interface IndexedTangents {
+export interface IndexedTangents<Indices extends Uint16Array | Uint32Array = Uint16Array | Uint32Array> {
 	/** x, y, z, w of each vertex: those given, then the copies. */
 	tangents: Float32Array;
-	/** The vertex of each corner after the split: a Uint16Array where one was given and holds them. */
-	indices: Uint16Array | Uint32Array;
+	/** The vertex of each corner after the split: a Uint16Array if one was given and holds them, else a Uint32Array. */
+	indices: Indices;
 	/** sources[i] is the vertex of which vertex `vertex count + i` is a copy. */
 	sources: Uint32Array;
 	counts: Counts;
@@ -106,5 +106,7 @@ export function generateRepairedTangents(positions: Attribute, normals: Normals,
  * A tangent for each vertex of an indexed mesh, with copies of the vertices whose corners need different ones.
  * Throws TypeError for arrays or options that are wrong, RangeError where memory ends.
  */
+export function generateTangentsIndexed(indices: Uint32Array | Uint8Array | readonly number[],
+	positions: Attribute, normals: Normals, texcoords: Attribute, options?: Options): IndexedTangents<Uint32Array>;
 export function generateTangentsIndexed(indices: ArrayLike<number>, positions: Attribute, normals: Normals,
 	texcoords: Attribute, options?: Options): IndexedTangents;
