@@ -531,7 +531,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Nothing; --raw gives the raw result. Degenerate triangles are the cause.",
 		"converting one triangle with UVs (0,0), (1,0), (2,0)"),
 	ROW(TAN_EXISTING_BAD, WARNING, "w--", CONVERT, "--fix",
-		"{count} {tangent|tangents} that were kept are invalid",
+		"{count} {tangent that was kept is|tangents that were kept are} invalid",
 		"--existing=keep leaves authored tangents as they are, and some of them are not usable.",
 		"Repair them.",
 		"converting a normal-mapped glTF with a tangent (0,0,0,1)"),

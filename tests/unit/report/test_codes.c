@@ -38,6 +38,8 @@ TEST(sentences_count_and_carry_the_detail)
 {
 	sentence_is(NT_CODE_TAN_ZERO, 1, NULL, "1 tangent has no length");
 	sentence_is(NT_CODE_TAN_ZERO, 7, "", "7 tangents have no length");
+	sentence_is(NT_CODE_TAN_EXISTING_BAD, 1, NULL, "1 tangent that was kept is invalid");
+	sentence_is(NT_CODE_TAN_EXISTING_BAD, 2, NULL, "2 tangents that were kept are invalid");
 	sentence_is(NT_CODE_MTL_MISSING, 1, "a.mtl", "material library cannot be read: a.mtl");
 }
 
