@@ -25,7 +25,7 @@ KERNELS = ['src/tangent/fast/kernel.h', 'src/tangent/sums/kernel.h']
 # Files whose functions take no time in a solve: the definition, threads, and what few meshes need.
 COLD = re.compile(r'src/(base/(?!hash|words|scratch|counts)|tangent/(mikktspace|repair|sums/hard)|topology/(plain|representatives)|api/self)')
 
-# What headers of the system declare, which a file without them may have for its own.
+# Names that headers of the system declare: a file without them may have them for its own.
 SYSTEM = {'link', 'index', 'read', 'write', 'pipe'}
 
 INCLUDE = re.compile(r'#include ([<"])(.+)[>"]')

@@ -60,7 +60,7 @@ nt_status nt_fail(nt_error *error, nt_status status, const char *format, ...) NT
 /* The same with the name of a file; error may not be NULL. */
 nt_status nt_fail_file(nt_error *error, nt_status status, const char *file, const char *format, ...) NT_PRINTF(4, 5);
 
-/* The same with a line, a byte offset or a JSON pointer. The name of the file is set by whoever knows
+/* The same with a line, a byte offset or a JSON pointer. The name of the file is set by the caller that knows
  * it (nt_error_in_file). */
 nt_status nt_fail_line(nt_error *error, nt_status status, size_t line, const char *format, ...)
 	NT_PRINTF(4, 5);

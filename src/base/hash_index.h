@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * An index of numbered things by hash: whoever owns the things compares those that have the same hash. Open
+ * An index of numbered things by hash: the owner of the things compares those that have the same hash. Open
  * addressing with the hashes stored, so that growing needs nothing of the things.
  */
 #ifndef NT_BASE_HASH_INDEX_H

@@ -34,7 +34,7 @@ void nt_record_file_close(nt_record_file *file);
 /* The last line with a key when the file was read; NULL: none. */
 const char *nt_record_file_find(const nt_record_file *file, const char *key, size_t *length);
 
-/* Appends whole lines, each with its line feed, in one piece, whoever else appends. */
+/* Appends whole lines, each with its line feed, in one piece, even if others append. */
 nt_status nt_record_file_append(const nt_record_file *file, const void *lines, size_t size, nt_error *error);
 
 #endif

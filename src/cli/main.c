@@ -465,7 +465,7 @@ typedef struct own_file {
 /* False: the folder is none, or memory is exhausted. */
 static bool find_place(nt_buffer *place, const char *path)
 {
-	nt_error ignored; /* whoever opens the file will meet it again, and say it */
+	nt_error ignored; /* opening the file will meet it again, and say it */
 	if (nt_link_folder(place, path, &ignored))
 		return false;
 	nt_buffer_format(place, "/%s", nt_last_part(path));

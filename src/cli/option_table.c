@@ -22,7 +22,8 @@ const nt_option_row nt_option_rows[] = {
 		"that have texture coordinates; needed: only those whose material needs them; all: all that can "
 		"have them", SETTING(only), false},
 	{"existing", 0, NT_OPTION_CHOICE, "keep|repair|replace|drop", NT_EXISTING_KEEP, 0, "keep",
-		"tangents of the input; keep: keep them; repair: replace invalid ones; replace: replace all",
+		"tangents of the input; keep: keep them; repair: replace invalid ones; replace: replace all; drop: "
+		"remove those that no material uses",
 		SETTING(existing), true},
 	{"fix", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"repair what --check calls an error or a warning, if it is proven: tangents, and normal maps whose "

@@ -3,7 +3,7 @@
  * Memory for C++ libraries when malloc has none left. They do not fail safely then: destructors (nlohmann's)
  * allocate and end the process, streams lose text, assertions see half-made values. So between nt_reserve_begin()
  * and nt_reserve_end() an allocation that malloc refuses comes from a block that the process has from its start,
- * and it is remembered that it was needed: whoever began lets the library come to its end and reports
+ * and it is remembered that it was needed: the caller lets the library come to its end and reports
  * NT_ERROR_MEMORY then. Only when the block is used up is bad_alloc thrown; a part of it is kept for what runs
  * meanwhile.
  */

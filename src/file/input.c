@@ -77,7 +77,7 @@ static bool map_all(nt_file *file, int fd, const char *path, const struct stat *
 	return true;
 }
 
-/* `referred`: a name that a document has, which must not make the run wait for whoever writes a pipe. */
+/* `referred`: a name that a document has, which must not make the run wait for the writer of a pipe. */
 static nt_status open_file(nt_file *file, const char *path, bool referred, nt_error *error)
 {
 	*file = (nt_file){.data = no_bytes, .fd = -1};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The way of a path, symbolic link by symbolic link: where it leads, and whether that is inside a folder, which is told
- * without a look at anything outside, so that nobody learns what is there.
+ * Follows a path link by link and says whether it stays inside a folder. It never touches anything outside, so an
+ * attacker cannot probe for files.
  */
 #ifndef NT_FILE_WAY_H
 #define NT_FILE_WAY_H
@@ -11,8 +11,8 @@
 /* Called for each link on the way: its path, of which the folder is real, and what it says. */
 typedef void (*nt_way_link)(void *user, const char *path, const char *target);
 
-/* Appends where a path leads; what is missing need not be there. `link`: NULL: nobody wants to know. Returns NT_OK,
- * NT_ERROR_MISSING or NT_ERROR_IO where the current folder has no name, or NT_ERROR_MEMORY. */
+/* Appends the target of a path, of which parts may be missing. `link` may be NULL. Returns NT_OK, NT_ERROR_MISSING or
+ * NT_ERROR_IO if the current folder has no name, or NT_ERROR_MEMORY. */
 nt_status nt_way_follow(
 	nt_buffer *real, const char *path, nt_way_link link, void *user, nt_error *error);
 

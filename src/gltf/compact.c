@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Compact views. Primitives that share one vertex buffer are loaded with the vertices that their own corners use, so
- * that each costs what it uses and not what all of them have together. Vertices keep their order: whoever goes through
- * them in ascending numbers meets them as in the buffer. One that uses nearly all vertices takes them as they are.
+ * that each costs what it uses and not what all of them have together. Vertices keep their order: a pass through
+ * them in ascending order meets them as in the buffer. One that uses nearly all vertices takes them as they are.
  *
  * A table over the range from the least to the greatest index gives each vertex its number. If corners are few in a
  * wide range, they are sorted instead: the cost is bounded by corners alone.

@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+#include "base/buffer.h"
 #include "file/lookup.h"
 #include "file/uri.h"
 #include "gltf/accessor.h"
@@ -20,6 +21,7 @@
 #include "gltf/draco.h"
 #include "gltf/materials.h"
 #include "gltf/pointer.h"
+#include "gltf/primitive.h"
 
 /* How many elements an accessor claims; where that cannot be said, enough for a triangle, so that loading
  * meets the fault and says it. */
@@ -307,6 +309,66 @@ static nt_status look_for_buffers(nt_scene *scene, nt_gltf *document, nt_error *
 	return status;
 }
 
+/* Sets of texture coordinates that a mesh has beside the one that is used. */
+static size_t count_other_sets(const nt_json_value *attributes, uint32_t used)
+{
+	size_t count = 0;
+	char name[32];
+	for (uint32_t set = 0;; set++) {
+		nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), set);
+		if (!nt_json_find(attributes, name))
+			return count;
+		count += set != used;
+	}
+}
+
+static size_t count_extras(const nt_gltf *document, const char *array)
+{
+	size_t count = 0;
+	const nt_json_value *items = nt_gltf_root_member(document, array);
+	for (size_t i = 0; i < nt_json_count(items); i++)
+		count += nt_json_find(nt_json_at(items, i), "extras") != NULL;
+	return count;
+}
+
+/* Lists what one mesh in the world has no place for; the writer says so. */
+static nt_status list_left_out(nt_scene *scene, const nt_gltf *document, nt_error *error)
+{
+	size_t targets = 0, sets = 0;
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		const nt_json_value *primitive = nt_gltf_primitive_of(document, &scene->meshes[i]);
+		targets += nt_json_count(nt_json_find(primitive, "targets"));
+		sets += count_other_sets(nt_json_find(primitive, "attributes"), scene->meshes[i].texcoord_set);
+	}
+	const nt_json_value *lights = nt_json_find(nt_gltf_root_member(document, "extensions"), "KHR_lights_punctual");
+	const struct {
+		const char *what;
+		size_t count;
+	} parts[] = {
+		{"materials", nt_json_count(nt_gltf_root_member(document, "materials"))},
+		{"textures", nt_json_count(nt_gltf_root_member(document, "textures"))},
+		{"further sets of texture coordinates", sets},
+		{"morph targets", targets},
+		{"skins", nt_json_count(nt_gltf_root_member(document, "skins"))},
+		{"animations", nt_json_count(nt_gltf_root_member(document, "animations"))},
+		{"cameras", nt_json_count(nt_gltf_root_member(document, "cameras"))},
+		{"lights", nt_json_count(nt_json_find(lights, "lights"))},
+		{"extras", count_extras(document, "nodes") + count_extras(document, "meshes") +
+			count_extras(document, "materials")},
+	};
+	nt_buffer text = {0};
+	for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+		if (parts[i].count)
+			nt_buffer_format(&text, "%s%s (%zu)", text.size ? ", " : "", parts[i].what, parts[i].count);
+		scene->left_out_count += parts[i].count;
+	}
+	if (!text.failed && text.size)
+		scene->left_out = nt_arena_text(&scene->arena, text.data, text.size);
+	const bool failed = text.failed || (text.size && !scene->left_out);
+	nt_buffer_free(&text);
+	return failed ? nt_fail_memory(error) : NT_OK;
+}
+
 static uint64_t count_read(const void *source)
 {
 	return nt_gltf_bytes_read(source);
@@ -350,8 +412,10 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	if (!status)
 		status = describe_meshes(scene, document, options, reached, error);
 
-	/* Their places, where the output is one mesh in the world. */
-	if (!status && options->world)
+	/* Their places, if the output is one mesh in the world, and for a report, which shows lengths there. */
+	if (!status && (options->world || options->report))
 		status = place_meshes(scene, document, error);
+	if (!status && options->world)
+		status = list_left_out(scene, document, error);
 	return status;
 }

@@ -273,14 +273,12 @@ static nt_status try_as_named_any_case(search *s, const char *name, const char *
 	if (nt_link_is_absolute(name) && *name != '/')
 		return NT_OK;
 	nt_link_join(&joined, folder, name);
-	if (joined.failed)
-		return nt_fail_memory(s->error);
 	/* below the folder itself try_folders() looks, which lists no folder above: each run may write there */
-	if (nt_link_is_inside(joined.data, folder)) {
+	if (!joined.failed && nt_link_is_inside(joined.data, folder)) {
 		nt_buffer_free(&joined);
 		return NT_OK;
 	}
-	nt_status status = s->places->allow_outside ? NT_OK : find_bounds(s);
+	nt_status status = joined.failed ? nt_fail_memory(s->error) : s->places->allow_outside ? NT_OK : find_bounds(s);
 	const char *const folders[] = {s->root.data, s->above.data};
 	for (size_t i = 0; i < 2 && !*accepted && !status; i++)
 		if (folders[i] && nt_link_is_inside(joined.data, folders[i]))

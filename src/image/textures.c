@@ -5,7 +5,7 @@
  * map is known when its first rows are decoded.
  *
  * Files are opened to see their type and closed again, so that a thousand images do not need a thousand
- * descriptors; whoever reads them later checks that they are still the same.
+ * descriptors; later readers check that they are still the same.
  */
 #include "image/textures.h"
 

@@ -16,8 +16,8 @@ typedef struct nt_mtl_definition {
 	size_t raw_length;
 } nt_mtl_definition;
 
-/* The definitions of all libraries, in order. Texts belong to the scene's arena, the array to whoever
- * frees it. */
+/* The definitions of all libraries, in order. Texts belong to the scene's arena, the caller
+ * frees the array. */
 typedef struct nt_mtl {
 	nt_mtl_definition *definitions;
 	size_t count, capacity;

@@ -165,6 +165,13 @@ static void tell_elsewhere(const telling *t, const nt_place *place, const char *
 	nt_buffer_free(&uri);
 }
 
+/* Not ".", "..", or what ends in a slash. */
+static bool names_file(const char *name)
+{
+	const char *slash = strrchr(name, '/'), *last = slash ? slash + 1 : name;
+	return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0;
+}
+
 /* The image that a channel of a result came from. */
 static void tell_source(telling *t, const nt_map *map, int channel, const nt_texture *image)
 {
@@ -175,7 +182,9 @@ static void tell_source(telling *t, const nt_map *map, int channel, const nt_tex
 	nt_finding_list *findings = &t->scene->findings;
 	t->images++;
 	t->lost += source->found > NT_IMAGE_FOUND_ELSEWHERE || failed || lost;
-	if (source->found == NT_IMAGE_OUTSIDE)
+	if (source->found > NT_IMAGE_FOUND_ELSEWHERE && !names_file(map->name))
+		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1, "%.120s (no file is named)", map->name);
+	else if (source->found == NT_IMAGE_OUTSIDE)
 		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1,
 			"%.110s (it is outside of the folders where it may be; --outside=yes allows it)", map->name);
 	else if (source->found == NT_IMAGE_MISSING)

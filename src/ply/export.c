@@ -282,5 +282,8 @@ nt_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_
 	if (scene->material_count > 0)
 		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, NULL, scene->material_count,
 			"materials");
+	if (scene->left_out)
+		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, NULL, scene->left_out_count, "%s",
+			scene->left_out);
 	return status ? status : put_faces(scene, out, error);
 }

@@ -30,8 +30,13 @@ static void count_instances(nt_report *report, const nt_scene *scene)
 		const nt_instance *instance = &scene->instances[i];
 		if (instance->mesh >= report->mesh_count)
 			continue;
-		report->meshes[instance->mesh].instance_count++;
-		report->meshes[instance->mesh].negative_instances += determinant_of(instance->matrix) < 0.0;
+		nt_report_mesh *mesh = &report->meshes[instance->mesh];
+		const double determinant = determinant_of(instance->matrix), scale = cbrt(fabs(determinant));
+		if (mesh->instance_count++ == 0) {
+			mesh->is_scaled = scale > 0.0 && fabs(scale - 1.0) > 1e-6;
+			memcpy(mesh->world, instance->matrix, sizeof mesh->world);
+		}
+		mesh->negative_instances += determinant < 0.0;
 	}
 }
 
@@ -319,6 +324,8 @@ static void share_facts(nt_report *report, uint32_t mesh, uint32_t first)
 	facts->gltf_primitive = own.gltf_primitive;
 	facts->texcoord_set = own.texcoord_set;
 	facts->instance_count = own.instance_count;
+	facts->is_scaled = own.is_scaled;
+	memcpy(facts->world, own.world, sizeof facts->world);
 	facts->negative_instances = own.negative_instances;
 	facts->seams = NULL;
 	facts->islands = NULL;

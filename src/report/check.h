@@ -73,6 +73,7 @@ typedef struct nt_tally {
 	unsigned number_count;
 	uint32_t seam, island; /* one more than the index; 0: none */
 	const char *repair;    /* options that repair this one; NULL: those of the table */
+	double rank;           /* among findings of its code: greater ones come first */
 	double share;          /* of the mesh that it concerns; 0: as many triangles as it has occurrences */
 } nt_tally;
 

@@ -234,8 +234,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(DRACO_SEQUENTIAL, INFO, "i--", LOOK, NULL,
 		"the primitive is compressed by Draco's sequential method, which gives larger files",
 		"Edgebreaker was asked for, or the input has it. It takes time in the square of the triangles at one "
-		"vertex, which is bounded, and some meshes it does not give back as they are.",
-		"Nothing if the size does not matter. Else remove repeated triangles, and cut fans of thousands.",
+		"vertex, which is bounded, and some meshes it does not give back as they are: it drops faces of which "
+		"two corners are at one position. Such faces go only if the grid of the input's block has made them.",
+		"Nothing if the size does not matter. Else remove repeated triangles and faces without area, and cut "
+		"fans of thousands.",
 		"converting 100 000 times the same triangle, --draco=edgebreaker"),
 	ROW(NOT_VERIFIED, WARNING, "www", LOOK, NULL,
 		"the output could not be verified, since tinygltf refuses the input, too",

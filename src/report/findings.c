@@ -194,6 +194,7 @@ static void report_tally(nt_check *check, const nt_tally *tally, nt_severity sev
 		.box = tally->box,
 		.noted = NT_NONE,
 		.repair = tally->repair,
+		.rank = tally->rank,
 		.seam = tally->seam ? tally->seam - 1 : NT_NONE,
 		.island = tally->island ? tally->island - 1 : NT_NONE,
 		.number_count = tally->number_count,
@@ -337,6 +338,8 @@ static int by_weight(const void *a, const void *b)
 		return x->code_share > y->code_share ? -1 : 1;
 	if (x->code != y->code)
 		return x->code < y->code ? -1 : 1;
+	if (x->rank != y->rank)
+		return x->rank > y->rank ? -1 : 1;
 	if (x->share != y->share)
 		return x->share > y->share ? -1 : 1;
 	return x->order < y->order ? -1 : x->order > y->order;

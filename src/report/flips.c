@@ -4,7 +4,7 @@
  * of one orientation. One that is a small part of its island, in triangles and in area, is no fold but a mistake of one
  * corner or a relaxed knot: one finding for each island, at the triangles themselves. So is an island of its own that
  * lies inside a much larger one of the other orientation, unless its texels are those of a triangle there: then it is a
- * mirrored detail. The back of a doubled sheet, triangles of the same points and coordinates, is no mistake either.
+ * mirrored detail. Back faces of a two-sided sheet (same positions and UVs, reversed) are not reported.
  *
  * Needles whose orientation is nothing but the rounding of their coordinates are passed over: they are nearly
  * degenerate, which geometry.c tells.

@@ -98,6 +98,7 @@ typedef struct nt_report_finding {
 	nt_severity severity;
 	uint32_t mesh;        /* index into the report's meshes, NT_NONE: the file as a whole */
 	size_t count;         /* occurrences */
+	double rank;          /* among those of its code: greater ones come first */
 	size_t order;         /* in which it was found */
 	/* The share of the file's triangles that it concerns: all of a texture or material; and the most of findings
 	 * of its code and severity. They say which come first. */
@@ -216,6 +217,8 @@ typedef struct nt_report_mesh {
 	nt_maker maker;                /* of the input's tangents; agreement < 0: they were not compared */
 	size_t angle_histogram[NT_ANGLE_BINS]; /* corners, against a fresh solve */
 	size_t instance_count, negative_instances;
+	bool is_scaled;           /* by its first instance: lengths and shown places are in the world */
+	double world[16];         /* column-major */
 
 	nt_wrap wrap[2];          /* along u and v: how the sampler repeats what the mesh lies on */
 	nt_seam *seams;           /* [seam_count] */
@@ -225,6 +228,16 @@ typedef struct nt_report_mesh {
 	nt_report_geometry *geometry; /* NULL unless kept */
 	nt_image pictures[NT_PICTURE_COUNT]; /* bytes NULL: none, or not kept */
 } nt_report_mesh;
+
+/* A place of a mesh as it is shown. */
+static inline void nt_world_point(const nt_report_mesh *mesh, const float point[3], double shown[3])
+{
+	for (int i = 0; i < 3; i++) {
+		const double *m = mesh->world + i;
+		shown[i] = !mesh->is_scaled ? (double)point[i]
+			: m[0] * (double)point[0] + m[4] * (double)point[1] + m[8] * (double)point[2] + m[12];
+	}
+}
 
 typedef struct nt_report {
 	nt_arena arena;

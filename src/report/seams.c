@@ -162,10 +162,14 @@ static nt_seam_edge describe_edge(const nt_check *check, const nt_mirror_edge *e
 	return result;
 }
 
-static double edge_length(const nt_seam_edge *edge)
+static double edge_length(const nt_report_mesh *facts, const nt_seam_edge *edge)
 {
-	const nt_dvec3 d = nt_dvec3_sub(nt_dvec3_load(edge->positions[1]), nt_dvec3_load(edge->positions[0]));
-	return sqrt(nt_dvec3_dot(d, d));
+	double ends[2][3], square = 0.0;
+	for (int end = 0; end < 2; end++)
+		nt_world_point(facts, edge->positions[end], ends[end]);
+	for (int i = 0; i < 3; i++)
+		square += (ends[1][i] - ends[0][i]) * (ends[1][i] - ends[0][i]);
+	return sqrt(square);
 }
 
 /* ---- the plane ---- */
@@ -244,6 +248,33 @@ static void fit_plane(const nt_check *check, const nt_chains *chains, size_t cha
 		across.y, across.z, d);
 }
 
+/* The same plane in the world, of a mesh that is scaled: its normal goes by cofactors. */
+static void move_plane(const nt_report_mesh *facts, nt_seam *seam)
+{
+	const double *m = facts->world, *p = seam->plane;
+	const float on[3] = {(float)(p[0] * p[3]), (float)(p[1] * p[3]), (float)(p[2] * p[3])};
+	double at[3], n[3];
+	if (!seam->has_plane || !facts->is_scaled)
+		return;
+	nt_world_point(facts, on, at);
+	for (int i = 0; i < 3; i++) {
+		const int j = (i + 1) % 3, k = (i + 2) % 3;
+		n[i] = p[0] * (m[4 + j] * m[8 + k] - m[4 + k] * m[8 + j]) +
+			p[1] * (m[8 + j] * m[k] - m[8 + k] * m[j]) + p[2] * (m[j] * m[4 + k] - m[k] * m[4 + j]);
+	}
+	nt_dvec3 normal = {n[0], n[1], n[2]};
+	if (!nt_dvec3_normalise(&normal))
+		return;
+	const double d = normal.x * at[0] + normal.y * at[1] + normal.z * at[2];
+	const double parts[3] = {normal.x, normal.y, normal.z};
+	memcpy(seam->plane, (double[4]){normal.x, normal.y, normal.z, d}, sizeof seam->plane);
+	snprintf(seam->plane_text, sizeof seam->plane_text, "%.3gx %+.3gy %+.3gz = %.4g", normal.x, normal.y, normal.z,
+		d);
+	for (int i = 0; i < 3; i++)
+		if (fabs(parts[i]) > 1.0 - 1e-9)
+			snprintf(seam->plane_text, sizeof seam->plane_text, "%c = %.6g", "xyz"[i], d * parts[i]);
+}
+
 /* ---- one seam ---- */
 
 static nt_status describe_seam(nt_check *check, const nt_chains *chains, size_t chain, nt_seam *seam)
@@ -266,7 +297,7 @@ static nt_status describe_seam(nt_check *check, const nt_chains *chains, size_t 
 		const nt_seam_edge edge = describe_edge(check, mirror, from);
 		if (i < kept)
 			seam->edges[i] = edge;
-		seam->length += edge_length(&edge);
+		seam->length += edge_length(check->facts, &edge);
 		widen(seam->dihedral, edge.dihedral);
 		widen(seam->tangent_angle, edge.tangent_angle);
 		compare_frames(check, mirror, from, seam);
@@ -282,6 +313,7 @@ static nt_status describe_seam(nt_check *check, const nt_chains *chains, size_t 
 		}
 	}
 	fit_plane(check, chains, chain, seam, &sums);
+	move_plane(check->facts, seam);
 	return NT_OK;
 }
 
@@ -302,8 +334,17 @@ static void report_seam(nt_check *check, const nt_chains *chains, size_t index)
 	nt_tally_number(&tally, "tangent_angle_min_degrees", seam->tangent_angle[0]);
 	nt_tally_number(&tally, "tangent_angle_max_degrees", seam->tangent_angle[1]);
 	nt_tally_number(&tally, "edges_sharing_vertices", (double)seam->shared_count);
-	nt_check_report(check, &tally, "seam %zu, %s, length %.4g%s%s", index,
-		seam->closed ? "a closed loop" : "an open chain", seam->length,
+	/* what shows comes first */
+	const double angle = isfinite(seam->frame_angle[1]) ? seam->frame_angle[1] : 0.0;
+	tally.rank = 1000.0 * (double)seam->unhidden_count + angle;
+	char frames[80] = "";
+	if (seam->unhidden_count)
+		snprintf(frames, sizeof frames, ", %zu edge%s: frames up to %.3g degrees apart", seam->unhidden_count,
+			seam->unhidden_count == 1 ? " shows" : "s show", angle);
+	else if (angle >= 0.05)
+		snprintf(frames, sizeof frames, ", frames up to %.3g degrees apart", angle);
+	nt_check_report(check, &tally, "seam %zu, %s, length %.4g%s%s%s", index,
+		seam->closed ? "a closed loop" : "an open chain", seam->length, frames,
 		seam->has_plane ? ", plane " : "", seam->plane_text);
 }
 

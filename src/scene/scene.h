@@ -267,7 +267,7 @@ typedef struct nt_mesh {
 	float *tangents;         /* [vertex_count][4] authored, w for v up; NULL: none */
 	bool byte_tangents;      /* they are stored as bytes: within half a degree */
 	float tangent_step;      /* of Draco's grid that they lie on; 0: they are stored as they are */
-	float tangent_margin;    /* what a component of one that stays may change by when it is stored */
+	float tangent_margin;    /* largest change of a kept tangent's component when it is quantized */
 	uint8_t *vertex_lacks;   /* [vertex_count] enum nt_lack bits; NULL: nothing lacks */
 	size_t face_count, corner_count;
 	uint8_t *face_sizes;     /* [face_count] 3 or 4; NULL: all triangles */
@@ -361,8 +361,8 @@ typedef struct nt_scene {
 
 	bool solves_quads; /* what wrote the input solves tangents on quads: Blender */
 
-	const char *left_out; /* names of what the source has for vertices and faces, and the scene has not; NULL:
-	                         nothing */
+	const char *left_out; /* names of what the source has, and the scene has not; of a glTF only if the output is
+	                         one mesh in the world; NULL: nothing */
 	size_t left_out_count;
 
 	/* Data that a reader keeps for the writer of the same format, and the input's bytes. */

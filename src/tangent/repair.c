@@ -342,8 +342,39 @@ static nmtan_status NT_NOINLINE repair(const nt_solve *solve, const nmtan_counts
 	return NMTAN_OK;
 }
 
+/* No triangle has a tangent, nor an orientation: every corner gets 5, and is counted as it would be one by one. */
+static nmtan_status repair_flat(const nt_solve *solve, nmtan_counts *counts)
+{
+	const nt_known *known = solve->known;
+	float (*made)[4] = nt_scratch_alloc(solve->scratch, known->welded_count, sizeof *made);
+	if (!made)
+		return NMTAN_ERROR_MEMORY;
+	memset(made, 0, known->welded_count * sizeof *made);
+	*counts = (nmtan_counts){.degenerate_texcoords = solve->mesh->face_count,
+		.repaired_unassigned = solve->corner_count};
+	for (size_t t = 0; t < solve->mesh->face_count; t++)
+		counts->degenerate_positions += (known->flags[t] & known->degenerate) != 0;
+	for (size_t c = 0; c < solve->corner_count; c++) {
+		float *tangent = made[known->welded[c]];
+		if (tangent[3] == 0.0f) {
+			const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
+			nt_dvec3_store(nt_dvec3_perpendicular(n), tangent);
+			tangent[3] = 1.0f;
+		}
+		if (solve->bitangents || solve->magnitudes)
+			write_corner(solve, c, tangent, 1.0f);
+		else
+			memcpy(solve->tangents + 4 * c, tangent, sizeof *made);
+		if (solve->faults)
+			solve->faults[c] |= NMTAN_FAULT_UNASSIGNED | NMTAN_FAULT_NO_AVERAGE;
+	}
+	return NMTAN_OK;
+}
+
 nmtan_status nt_repair(const nt_solve *solve, nmtan_counts *counts)
 {
+	if (solve->repair && solve->known && solve->known->all_flat)
+		return repair_flat(solve, counts);
 	uint64_t *faulty = NULL;
 	const nmtan_status status = nt_find_unusable(solve, counts, &faulty);
 	return status || !faulty ? status : repair(solve, counts, faulty);

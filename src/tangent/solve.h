@@ -42,6 +42,8 @@ typedef struct nt_known {
 	const uint32_t *welded; /* [corner_count] welded vertices, below welded_count, whatever else is
 	                           known; NULL: ask nt_weld_corners() */
 	size_t welded_count;
+	bool all_flat;        /* the UVs of all triangles have exactly no area: no corner has a tangent, and what
+	                         repair writes has not been written */
 } nt_known;
 
 /* In the lowest bit of a row's w, where the solve repairs: whether the row is usable has to be looked up, and then the

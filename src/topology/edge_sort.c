@@ -175,9 +175,9 @@ nmtan_status nt_edge_tail_make(const nt_welded_mesh *m, nt_edge_tail *tail)
 /* Their corners */
 
 /* An edge between members a and b. */
-typedef struct link {
+typedef struct edge_link {
 	uint32_t a, b;
-} link;
+} edge_link;
 
 typedef struct question {
 	const nt_welded_mesh *mesh;
@@ -189,7 +189,7 @@ typedef struct question {
 	size_t corner_count, head_mask;
 	nt_welded_corner *chosen;  /* [corner_count] those of one cell; NULL: not made */
 	nt_welded_point *points;   /* [corner_count] */
-	link *links;               /* [link_count] */
+	edge_link *links;               /* [link_count] */
 	size_t link_count;
 } question;
 
@@ -300,7 +300,7 @@ static bool link_members(question *q)
 		degenerate = t == last ? degenerate : is_degenerate(m, v);
 		last = t;
 		if (!degenerate)
-			q->links[q->link_count++] = (link){number, *slot_of(tail, next)};
+			q->links[q->link_count++] = (edge_link){number, *slot_of(tail, next)};
 	}
 	return true;
 }
@@ -351,7 +351,7 @@ static size_t most_edges(const question *q, uint32_t least, nt_edge_member **unk
 	nt_edge_member *members = q->tail->members;
 	for (size_t i = 0; i < q->tail->member_count; i++)
 		members[i].edges = 0;
-	for (const link *l = q->links; l < q->links + q->link_count; l++) {
+	for (const edge_link *l = q->links; l < q->links + q->link_count; l++) {
 		nt_edge_member *a = &members[l->a], *b = &members[l->b];
 		a->edges += may_run(a, b, least);
 		b->edges += may_run(b, a, least);
@@ -363,7 +363,7 @@ static size_t most_edges(const question *q, uint32_t least, nt_edge_member **unk
 		for (size_t k = 0; k < q->tail->member_count; k++)
 			members[k].is_met = false;
 		nt_edge_member *twin = NULL;
-		for (const link *l = q->links; l < q->links + q->link_count && !twin; l++) {
+		for (const edge_link *l = q->links; l < q->links + q->link_count && !twin; l++) {
 			nt_edge_member *other = l->a == i ? &members[l->b] : &members[l->a];
 			if ((l->a != i && l->b != i) || !may_run(&members[i], other, least))
 				continue;
@@ -382,13 +382,13 @@ static size_t most_edges(const question *q, uint32_t least, nt_edge_member **unk
 
 /* The edge of members, not both of them known, whose lower end may be the largest; NULL: none can be as large as one of
  * which both are. `least` receives what the largest lower end is at least. */
-static const link *find_open(const question *q, uint32_t *least)
+static const edge_link *find_open(const question *q, uint32_t *least)
 {
 	const nt_edge_member *members = q->tail->members;
-	const link *open = NULL;
+	const edge_link *open = NULL;
 	uint32_t most = 0;
 	*least = 0;
-	for (const link *l = q->links; l < q->links + q->link_count; l++) {
+	for (const edge_link *l = q->links; l < q->links + q->link_count; l++) {
 		const nt_edge_member *a = &members[l->a], *b = &members[l->b];
 		const uint32_t low = a->low < b->low ? a->low : b->low, high = a->high < b->high ? a->high : b->high;
 		*least = low > *least ? low : *least;
@@ -406,7 +406,7 @@ static nmtan_status ask_members(question *q, bool *enough, size_t *count)
 {
 	for (;;) {
 		uint32_t least;
-		const link *open = find_open(q, &least);
+		const edge_link *open = find_open(q, &least);
 		*enough = least >= q->tail->first;
 		nt_edge_member *unknown = NULL;
 		*count = *enough ? most_edges(q, least, &unknown) : 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The edges that mikktspace.c as published leaves unsorted (spec page, step 5). It sorts all edges by their lower end,
- * each run of one lower end by the higher one, and each run of equal edges by triangle, but for the last run both
- * times. So around one vertex pairs of triangles may not meet, or others may.
+ * The edges that mikktspace.c as published leaves unsorted (spec page, step 5). The published code sorts edges by
+ * lower vertex, then higher vertex, then triangle, but skips the last run of each pass. Around the vertex of that run,
+ * triangles may be paired differently.
  */
 #ifndef NT_TOPOLOGY_EDGE_SORT_H
 #define NT_TOPOLOGY_EDGE_SORT_H

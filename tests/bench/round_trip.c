@@ -185,7 +185,8 @@ static double uv_area(const nt_owned *mesh, size_t triangle)
 	return fabs(((double)b[0] - a[0]) * ((double)c[1] - a[1]) - ((double)b[1] - a[1]) * ((double)c[0] - a[0]));
 }
 
-sign_errors round_trip_signs(const nt_owned *mesh, double size, const shading *baker, const shading *shader)
+sign_errors round_trip_signs(const nt_owned *mesh, double size, const shading *raw, const shading *baker,
+	const shading *shader)
 {
 	sign_errors errors = {0};
 	const model m = {.mesh = *mesh, .size = size};
@@ -195,7 +196,7 @@ sign_errors round_trip_signs(const nt_owned *mesh, double size, const shading *b
 		const int sign = oracle_sign(mesh->texcoords[v[0]], mesh->texcoords[v[1]], mesh->texcoords[v[2]]);
 		bool differs = sign != 0;
 		for (size_t c = 3 * t; c < 3 * t + 3; c++)
-			differs = differs && baker->tangents[c][3] == (float)-sign;
+			differs = differs && raw->tangents[c][3] == (float)-sign;
 		all += uv_area(mesh, t);
 		if (!differs)
 			continue;

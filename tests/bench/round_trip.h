@@ -55,7 +55,9 @@ typedef struct sign_errors {
 	double uv_share; /* of the texture area */
 } sign_errors;
 
-/* Bakes with the frames of a file, whatever they are, and shades with those of another of the same triangles. */
-sign_errors round_trip_signs(const nt_owned *mesh, double size, const shading *baker, const shading *shader);
+/* Bakes with the frames of a file, whatever they are, and shades with those of another of the same triangles, at those
+ * that are wound against the w that they have in a third: `raw`. */
+sign_errors round_trip_signs(const nt_owned *mesh, double size, const shading *raw, const shading *baker,
+	const shading *shader);
 
 #endif

@@ -49,7 +49,7 @@ for jobs in 1 2 4; do
 	exits 2
 	says "6 of 9 done, 3 failed"
 	says "  2 files: no such file: missing.obj, gone.obj"
-	sed -e 's/, [0-9.e-]* s$//' -e "s/out$jobs/out/" "$WORK/err.txt" >said$jobs
+	sed -e 's/, [0-9.e-]* m*s$//' -e "s/out$jobs/out/" "$WORK/err.txt" >said$jobs
 done
 for jobs in 2 4; do
 	diff said1 said$jobs >difference || wrong "$(cat difference)"

@@ -303,4 +303,23 @@ says "the colour of vertex 2 is not finite"
 run --only=all nan.gltf out.glb
 exits 0
 
+scene "what PLY cannot hold of a glTF is told, each kind with its number"
+python3 -c 'import json, sys
+g = json.load(open(sys.argv[1]))
+attributes = g["meshes"][0]["primitives"][0]["attributes"]
+attributes["TEXCOORD_1"] = attributes["TEXCOORD_2"] = attributes["TEXCOORD_0"]
+g["animations"] = [{"channels": [], "samplers": []}] * 3
+g["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}]
+g["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point"}] * 2}}
+g["nodes"][0]["extras"] = {"a": 1}
+json.dump(g, open("full.gltf", "w"))' "$data/morph.gltf"
+cp "$data"/*.png .
+run full.gltf full.ply
+exits 0
+says "12 parts of the input are not in the output: materials (1), textures (1), further sets of texture coordinates (2), morph targets (1), animations (3), cameras (1), lights (2), extras (1) [REFERENCE_LOST]"
+run -q full.gltf full.ply
+says "left out of the output: 12 REFERENCE_LOST"
+run full.gltf full.glb
+says_not REFERENCE_LOST
+
 done_testing

@@ -101,6 +101,28 @@ for ending in obj ply glb; do
 done
 ending=obj
 
+scene "a file that many buffers and images name is opened once, and copied once"
+python3 "$ROOT/tests/support/cost_inputs.py" buffers 1500 many.gltf
+mkdir out
+within 4 100 -q --check many.gltf
+within 4 100 -q --only=needed --existing=keep --images=copy --buffers=link --outside=yes --morph=keep --dry-run many.gltf out/many.gltf
+gltf many.gltf unused 'delete g.meshes; g.nodes = [{}]; g.scenes = [{nodes: [0]}]'
+mv unused.gltf many.gltf
+within 4 100 -q --images=copy --buffers=link --outside=yes many.gltf out/many.gltf
+exits 0
+is "$(find out -name '*.png' | wc -l)" 1
+within 4 100 -q --images=embed --buffers=link --outside=yes many.gltf out/many.glb
+exits 0
+[ "$(stat -c %s out/many.glb)" -lt 5000000 ] || wrong "$(stat -c %s out/many.glb) bytes"
+rm -r out
+
+scene "morph targets that share an accessor take as long as they are many, and little memory each"
+for count in 100 200 400; do
+	python3 "$ROOT/tests/support/cost_inputs.py" targets $count $count.targets.glb 30
+done
+command python3 "$ROOT/tests/support/growth.py" 8 $((factor))e-1 100.targets.glb 200.targets.glb 400.targets.glb -- \
+	"$NMTAN" -q IN out.glb >"$WORK/cost.txt" 2>&1 || wrong "$(cat "$WORK/cost.txt")"
+
 scene "a name of a megabyte is cut in reports"
 printf 'o %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n' \
 	"$(head -c 1000000 /dev/zero | tr '\0' x)" >long.obj

@@ -538,4 +538,52 @@ run --draco=sequential "$data/plates.glb" plates.ply
 exits 1
 only
 
+scene "a block that is edgebreaker's stays so: faces that its grid has made flat go, or a finding says why not"
+# one triangle is 1e-7 high: the first encoder keeps it, its grid brings two corners together, and a second one would drop it
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'v 1 1 0' 'v 1 1.0000001 0' 'v 0 2 0' 'vt 0 0' 'vt 1 0' 'vt 0 1' 'vt 1 1' 'vt 0 2' \
+	'vn 0 0 1' 'f 1/1/1 2/2/1 3/3/1' 'f 2/2/1 4/4/1 3/3/1' 'f 4/4/1 5/4/1 3/3/1' 'f 3/3/1 5/4/1 6/5/1' >flat.obj
+run flat.obj flat.glb
+run --only=all --existing=replace --draco=edgebreaker --verify -v flat.glb one.glb
+exits 0
+says_not DRACO_SEQUENTIAL
+indices='g.accessors[g.meshes[0].primitives[0].indices].count'
+is "$(gltf one.glb "$indices")" 12
+# behind "DRACO" and the version a block says its method: 0 sequential, 1 edgebreaker
+method() { python3 -c 'import sys; d = open(sys.argv[1], "rb").read(); print(d[d.index(b"DRACO") + 8])' "$1"; }
+run --only=all --existing=replace --verify -v one.glb two.glb
+exits 0
+says_not DRACO_
+is "$(gltf two.glb "$indices") $(method two.glb)" "9 1"
+run --only=all --existing=replace --verify -v two.glb three.glb
+is "$(gltf three.glb "$indices") $(method three.glb)" "9 1"
+# joints may move the corners of such a face apart
+python3 - one.glb joints.glb <<'END'
+import json, struct, sys
+d = open(sys.argv[1], 'rb').read()
+size, = struct.unpack_from('<I', d, 12)
+g, rest = json.loads(d[20:20 + size]), d[20 + size:]
+count = g['accessors'][g['meshes'][0]['primitives'][0]['attributes']['POSITION']]['count']
+data = rest[8:8 + struct.unpack_from('<I', rest)[0]]
+g['bufferViews'].append({'buffer': 0, 'byteOffset': len(data), 'byteLength': 4 * count})
+data += bytes(4 * count)
+g['buffers'][0]['byteLength'] = len(data)
+g['accessors'].append({'bufferView': len(g['bufferViews']) - 1, 'componentType': 5121, 'type': 'VEC4', 'count': count})
+g['meshes'][0]['primitives'][0]['attributes']['JOINTS_0'] = len(g['accessors']) - 1
+text = json.dumps(g).encode()
+text += b' ' * (-len(text) % 4)
+open(sys.argv[2], 'wb').write(struct.pack('<4sIIII', b'glTF', 2, 28 + len(text) + len(data), len(text), 0x4E4F534A) + text +
+                              struct.pack('<II', len(data), 0x004E4942) + data)
+END
+run --only=all --existing=replace --verify -v joints.glb four.glb
+exits 0
+says "attributes that are not in the block need its order [DRACO_SEQUENTIAL]"
+is "$(gltf four.glb "$indices") $(method four.glb)" "12 0"
+# who asks for edgebreaker, of a file with a face that is flat, keeps the face
+sed 's/1.0000001/1/' flat.obj >area.obj
+run area.obj area.glb
+run --only=all --existing=replace --draco=edgebreaker --verify -v area.glb five.glb
+exits 0
+says "edgebreaker would drop 1 of its faces, which have no area in the block's grid [DRACO_SEQUENTIAL]"
+is "$(gltf five.glb "$indices") $(method five.glb)" "12 0"
+
 done_testing

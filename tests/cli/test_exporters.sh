@@ -37,7 +37,7 @@ halves() {
 		'vn 0 0 1' "$1" 'f 1/1/1 2/2/1 5/4/1' "$2" 'f 2/2/1 3/1/1 6/3/1' "$1" 'f 1/1/1 5/4/1 4/3/1' "$2" 'f 2/2/1 6/3/1 5/4/1'
 }
 halves 'g arm' 'g leg two' >g.obj
-run g.obj g.glb
+run --verify g.obj g.glb
 exits 0
 is "$(gltf g.glb 'g.meshes.map(m => m.name + " " + m.primitives.length).join() + " " + g.nodes.map(n => n.name + n.mesh).join() +
 	" " + g.scenes[0].nodes')" "arm 1,leg two 1 arm0,leg two1 0,1"
@@ -108,10 +108,10 @@ exits 3
 scene "CSV and Markdown are UTF-8 whatever a file is called"
 name=$(printf 'caf\351"x.obj')
 cp "$data/mirrored_cube.obj" "$name"
-for format in csv markdown; do
-	run --check --fail-on=never --report-format=$format "$name"
+for format in 'csv caf\xe9' "markdown $(printf 'caf\357\277\275')"; do
+	run --check --fail-on=never --report-format=${format% *} "$name"
 	exits 0
-	python3 -c 'import sys; sys.exit("caf\ufffd" not in open(sys.argv[1], encoding="utf-8").read())' "$WORK/out.txt" ||
+	python3 -c 'import sys; sys.exit(sys.argv[2] not in open(sys.argv[1], encoding="utf-8").read())' "$WORK/out.txt" "${format#* }" ||
 		wrong "$format is not UTF-8, or lacks the name"
 done
 

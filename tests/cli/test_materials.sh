@@ -215,4 +215,12 @@ exits 0
 run -j8 quad.obj eight.glb
 same one.glb eight.glb
 
+scene "a map that names no file is told as that"
+for name in . .. tex/; do
+	quad "map_Kd $name"
+	run quad.obj quad.glb
+	exits 0
+	says "image cannot be read: $name (no file is named) [IMAGE_MISSING]"
+done
+
 done_testing

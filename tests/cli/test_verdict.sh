@@ -533,6 +533,16 @@ exits 0
 run --check-maps=off pair.gltf out.glb
 says "which was not examined, the two cancel [TAN_KEPT_SIGN]: nmtan --fix pair.gltf out.glb"
 
+scene "seams that show come first, and lengths and places are those of the world"
+cp "$data/mirrored_cube.obj" .
+run -q mirrored_cube.obj c.gltf
+gltf c.gltf big 'g.nodes[0].scale = [100, 100, 100]; g.nodes[0].translation = [5, 0, 0]'
+run --check -q --report=c.json --fail-on=never c.gltf
+run --check -q --report=big.json --fail-on=never big.gltf
+is "$(value big.json 'r["files"][0]["meshes"][0]["seams"][0]["length"]')" "$(value c.json '100 * r["files"][0]["meshes"][0]["seams"][0]["length"]')"
+run --check --fail-on=never c.gltf
+grep -q 'UV_MIRROR_SEAM.*edges\? shows\?: frames up to [0-9.]* degrees apart' "$WORK/out.txt" || wrong "$(grep UV_MIRROR "$WORK/out.txt")"
+
 scene "wrong tangents that are kept are told with the command that repairs them, and counted of many, with -q too"
 mapped
 gltf m.gltf wrong 'const n = g.meshes[0].primitives[0].attributes.TANGENT; for (let i = 0; i < 4; i++) bytes[0].writeFloatLE(-bytes[0].readFloatLE(at(n, i) + 12), at(n, i) + 12)'

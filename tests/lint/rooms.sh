@@ -15,6 +15,9 @@ fault() {
 # Arrows between rooms: includes, and symbols where there is a build.
 python3 tests/lint/rooms.py ${1+"$1"} || faults=$((faults + 1))
 
+# Sentences that hide who acts.
+python3 -B tests/lint/sentences.py || faults=$((faults + 1))
+
 while IFS= read -r file; do
 	fault "$file: C++ outside src/ext"
 done < <(find src -name '*.[ch]pp' ! -path 'src/ext/*' | sort)

@@ -18,6 +18,7 @@ colors    an OBJ of COUNT materials, and FILE.mtl and FILE.0.tga and so on besid
 bumps     an OBJ of COUNT materials, and FILE.mtl and FILE.png beside it: each makes other normals of one white PNG of
           SIDE (4096) pixels squared and one bit
 animated  a GLB of COUNT materials, each with a texture transform, and an animation of COUNT others
+buffers   a glTF, and FILE.bin of 1 MB beside it, of COUNT buffers that all name that, and COUNT images of one file
 targets   a GLB of one grid of SIDE (48) quads squared with COUNT morph targets, which all share one accessor
 levels    a GLB of COUNT primitives of one material with COUNT levels of detail
 turned    a GLB of COUNT materials, each with a texture and an image of its own, as normal map and as emissive
@@ -272,6 +273,28 @@ def levels(count, out):
         [{'normalTexture': {'index': 0}}] * (count - 1), 'extensionsUsed': ['MSFT_lod']})
 
 
+def buffers(count, out):
+    name = sys.argv[3]
+    triangle = struct.pack('<9f', 0, 0, 0, 1, 0, 0, 0, 1, 0) + struct.pack('<9f', *(0, 0, 1) * 3) + struct.pack('<6f', 0, 0, 1, 0, 0, 1)
+    with open(name + '.bin', 'wb') as binary:
+        binary.write(triangle + bytes((1 << 20) - len(triangle)))
+    with open(name + '.png', 'wb') as image:
+        image.write(png(1, 2, 8, b'\x80\xa0\xf0') + bytes(1 << 20))
+    base = os.path.basename(name)
+    views = [{'buffer': i, 'byteOffset': offset, 'byteLength': length} for i in range(count) for offset, length in ((0, 36), (36, 36), (72, 24))]
+    accessors = [{'bufferView': i, 'componentType': 5126, 'count': 3, 'type': 'VEC2' if i % 3 == 2 else 'VEC3'} |
+                 ({'min': [0, 0, 0], 'max': [1, 1, 0]} if i % 3 == 0 else {}) for i in range(3 * count)]
+    meshes = [{'primitives': [{'attributes': {'POSITION': 3 * i, 'NORMAL': 3 * i + 1, 'TEXCOORD_0': 3 * i + 2}, 'material': i}]}
+              for i in range(count)]
+    text = json.dumps({'asset': {'version': '2.0'}, 'meshes': meshes, 'scenes': [{'nodes': list(range(count))}],
+                       'nodes': [{'mesh': i} for i in range(count)], 'textures': [{'source': i} for i in range(count)],
+                       'materials': [{'normalTexture': {'index': i}} for i in range(count)],
+                       'images': [{'uri': './' * (i % 4) + base + '.png'} for i in range(count)],
+                       'buffers': [{'byteLength': 1 << 20, 'uri': './' * (i % 4) + base + '.bin'} for i in range(count)],
+                       'bufferViews': views, 'accessors': accessors})
+    out.write(text.encode())
+
+
 def targets(count, out, side):
     def moved(primitive):
         return dict(primitive, targets=[{'POSITION': 1, 'NORMAL': 0}] * count)
@@ -310,4 +333,4 @@ with open(sys.argv[3], 'wb') as out:
         {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
          'patches': patches, 'repeated': repeated, 'centre': centre, 'folded': folded,
          'tiles': tiles, 'turned': turned, 'libraries': libraries, 'slashes': slashes, 'colors': colors,
-         'animated': animated, 'levels': levels}[kind](count, out)
+         'buffers': buffers, 'animated': animated, 'levels': levels}[kind](count, out)

@@ -25,7 +25,7 @@ holds() {
 # lint STATUS [BUILD_DIR]: what the checks say of that tree.
 lint() {
 	mkdir -p tree/tests/lint
-	cp "$ROOT"/tests/lint/rooms.* tree/tests/lint/
+	cp "$ROOT"/tests/lint/* tree/tests/lint/
 	(cd tree && git init -q . && git add -A && bash tests/lint/rooms.sh ${2+"$2"}) >"$WORK/out.txt" 2>&1
 	status=$?
 	exits "$1"
@@ -127,6 +127,25 @@ lint 0
 holds base/a.cpp ''
 lint 1
 prints "src/base/a.cpp: C++ outside src/ext"
+
+scene "sentences that hide who acts are found in comments, messages and manuals, and questions are not"
+table base:-
+for text in '/* What a call needs. */' '/* Reads all.\n * Where there is none it fails. */' '// Of two the first.' 'x("Done. Those are left.");' \
+	'x("what is not read cannot be judged");'; do
+	holds base/a.c "$text"
+	lint 1
+	prints "src/base/a.c:"
+	prints "begins so that nobody acts"
+done
+for text in '/* The input of a call, and what it needs. */' '/* What does it need? Nothing. */' 'x(", what"); x(" where it is");' 'int What, Where;'; do
+	holds base/a.c "$text"
+	lint 0
+done
+mkdir -p tree/man
+printf '.TP\n.B \\-\\-all\nWhere all are meant.\n' >tree/man/x.1
+lint 1
+prints "man/x.1:3"
+rm -r tree/man
 
 scene "a file without licence line is found"
 table base:-

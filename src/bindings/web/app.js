@@ -8,7 +8,7 @@ import {Refusal, checkSize, filesOfDrop, filesOfList} from './files.js';
 const $ = id => document.getElementById(id);
 const actions = $('actions'), frame = $('report');
 const compiled = fetch('tool.wasm').then(answer => answer.arrayBuffer()).then(WebAssembly.compile);
-compiled.catch(() => {}); // whoever waits for it says so
+compiled.catch(() => {}); // the job that waits for it says so
 
 const STAGES = ['map', 'parse', 'decode', 'textures', 'normals', 'tangents', 'write', 'report'];
 const STAGE_TEXT = {map: 'Opening', parse: 'Reading', decode: 'Reading', textures: 'Images', normals: 'Normals', tangents: 'Tangents', write: 'Writing', report: 'Report'};

@@ -50,7 +50,7 @@ static nt_status decompress_tangents(const nt_mesh *mesh, const nt_vertex_pools 
 	return decompress_attribute(d, NULL, "TANGENT", (uint32_t)accessor);
 }
 
-/* Vertices are appended to all attributes of a pool, whoever of its users wants them. */
+/* Vertices are appended to all attributes of a pool, even if only some of its users want them. */
 static nt_status decompress_pools(nt_gltf *document, const nt_vertex_pools *pools, nt_error *error)
 {
 	decompressing d = {document, error};

@@ -188,6 +188,17 @@ static void share_block(const nt_gltf_recoding *r)
 	}
 }
 
+static void tell_sequential(const nt_gltf_recoding *r, nt_finding_list *findings, const nt_place *place)
+{
+	if (r->faces_without_area)
+		nt_finding_add(findings, NT_CODE_DRACO_SEQUENTIAL, place, 1,
+			"edgebreaker would drop %zu of its faces, which have no area in the block's grid",
+			r->faces_without_area);
+	else
+		nt_finding_add(findings, NT_CODE_DRACO_SEQUENTIAL, place, 1, "%s", r->outside
+			? "attributes that are not in the block need its order" : "edgebreaker does not give it back");
+}
+
 /* A finding for compression that the user asked for and does not get. */
 static void report_users(const nt_gltf_recoding *r, nt_finding_list *findings, bool compressed)
 {
@@ -200,7 +211,7 @@ static void report_users(const nt_gltf_recoding *r, nt_finding_list *findings, b
 		if (!compressed && wanted)
 			nt_finding_add(findings, NT_CODE_DRACO_PLAIN, place, 1, "%s", r->obstacle);
 		if (compressed && r->sequential_instead)
-			nt_finding_add(findings, NT_CODE_DRACO_SEQUENTIAL, place, 1, NULL);
+			tell_sequential(r, findings, place);
 	}
 }
 

@@ -33,6 +33,7 @@ typedef struct nt_gltf_recoding {
 
 	bool encoded;
 	bool sequential_instead; /* edgebreaker does not take it, or does not give it back */
+	size_t faces_without_area; /* for which it does not */
 	nt_draco_block block; /* where it is compressed */
 } nt_gltf_recoding;
 

@@ -16,35 +16,49 @@ enum { ELEMENT_BYTES = 100 };
 
 /* ---- one ---- */
 
-/* Whether edgebreaker would drop a face: two corners at one position, as Draco gets them. Vertices
- * that quantization brings together do not count. */
-static bool has_degenerate_face(const nt_gltf_recoding *r)
+/* How many faces edgebreaker would drop: two corners at one position, as Draco gets them. A block that is decoded has
+ * those that its quantization made: the first encoder saw them with an area, a second one does not. */
+static size_t count_degenerate_faces(const nt_gltf_recoding *r)
 {
+	size_t count = 0;
 	const nt_draco_attribute *positions = NULL;
 	for (size_t i = 0; !positions && i < r->attribute_count; i++)
 		positions = r->attributes[i].kind == NT_DRACO_POSITION ? &r->attributes[i] : NULL;
 	const uint32_t *indices = r->vertices->indices[0];
 	if (!positions)
-		return false;
+		return 0;
 	const size_t width = nt_component_size(positions->component_type) * (size_t)positions->components;
 	const size_t stride = positions->stride_bytes ? positions->stride_bytes : width;
 	const char *elements = positions->data;
-	for (size_t c = 0; c + 2 < r->mesh->corner_count; c += 3)
-		for (size_t k = 0; k < 3; k++) {
-			const size_t a = nt_vertex_source(r->vertices, indices[c + k]),
-				     b = nt_vertex_source(r->vertices, indices[c + (k + 1) % 3]);
-			if (memcmp(elements + stride * a, elements + stride * b, width) == 0)
-				return true;
-		}
-	return false;
+	for (size_t c = 0; c + 2 < r->mesh->corner_count; c += 3) {
+		const char *points[3];
+		for (size_t k = 0; k < 3; k++)
+			points[k] = elements + stride * nt_vertex_source(r->vertices, indices[c + k]);
+		count += memcmp(points[0], points[1], width) == 0 || memcmp(points[1], points[2], width) == 0 ||
+			memcmp(points[2], points[0], width) == 0;
+	}
+	return count;
 }
 
-static nt_draco_method wanted_method(const nt_gltf_recoding *r)
+/* Whether faces of which two corners are at one position may go: they draw nothing, unless joints move the corners
+ * apart. Only those of a block, whose own grid made them, since other files may mean them. */
+static bool may_drop_faces(const nt_gltf_recoding *r)
 {
-	if (r->outside || has_degenerate_face(r) || r->options->draco == NT_DRACO_AS_SEQUENTIAL)
-		return NT_DRACO_SEQUENTIAL;
-	return r->options->draco == NT_DRACO_AS_EDGEBREAKER ? NT_DRACO_EDGEBREAKER :
-								       r->source->method;
+	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	return r->extension && r->options->draco == NT_DRACO_KEEP && !nt_json_find(attributes, "JOINTS_0");
+}
+
+/* Notes why edgebreaker, which is asked for or which the source has, is not taken. */
+static nt_draco_method wanted_method(nt_gltf_recoding *r)
+{
+	const nt_draco_method wanted = r->options->draco == NT_DRACO_AS_SEQUENTIAL ? NT_DRACO_SEQUENTIAL
+		: r->options->draco == NT_DRACO_AS_EDGEBREAKER ? NT_DRACO_EDGEBREAKER : r->source->method;
+	if (wanted == NT_DRACO_SEQUENTIAL)
+		return wanted;
+	r->sequential_instead = r->outside;
+	r->faces_without_area = r->outside ? 0 : count_degenerate_faces(r);
+	r->sequential_instead |= r->faces_without_area > 0 && !may_drop_faces(r);
+	return r->sequential_instead ? NT_DRACO_SEQUENTIAL : wanted;
 }
 
 /* Whether elements outside of the block still fit the points in it. */

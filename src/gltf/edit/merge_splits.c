@@ -3,10 +3,10 @@
  * Merges the splits of meshes into one list of vertices for each pool.
  *
  * Each mesh was solved and split by itself. If several of them use the same vertex, their tangents for it may
- * agree or not. The copies of a vertex form a chain that begins with itself. A mesh takes the vertex of the chain where
- * its set has the same tangent, else the first one where the set has none yet; where the set has tangents for all, a
- * copy is appended. Copies are found by hash, since a hub may have any number of them. For a mesh that shares nothing
- * the result is exactly its own split, which is taken as it is.
+ * agree or not. The copies of a vertex form a chain that begins with itself. For each vertex, a mesh searches the
+ * copies: it takes one that has its tangent, else one whose tangent is still unset, else it appends a copy. Copies are
+ * found by hash, since a hub may have any number of them. For a mesh that shares nothing the result is exactly its own
+ * split, which is taken as it is.
  */
 #include "gltf/edit/merge_splits.h"
 

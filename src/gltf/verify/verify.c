@@ -427,17 +427,36 @@ static nt_status compare_block_targets(const nt_mesh *mesh, const primitive_view
 	return NT_OK;
 }
 
+/* Takes out the triangles of which two corners are at one position, as edgebreaker does; returns how many corners are
+ * left. */
+static size_t drop_degenerate(nt_verify_corner *corners, size_t count)
+{
+	size_t kept = 0;
+	for (size_t c = 0; c < count; c += 3) {
+		const float *a = corners[c].position, *b = corners[c + 1].position, *d = corners[c + 2].position;
+		if (memcmp(a, b, 3 * sizeof *a) == 0 || memcmp(b, d, 3 * sizeof *a) == 0 ||
+			memcmp(d, a, 3 * sizeof *a) == 0)
+			continue;
+		memmove(&corners[kept], &corners[c], 3 * sizeof *corners);
+		kept += 3;
+	}
+	return kept;
+}
+
 /* The sequential method keeps corners where they are; if they are elsewhere, the surface has to be the same. */
 static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, unsigned threads, nt_error *error)
 {
-	const size_t count = mesh->corner_count;
-	if (view->indices.count != count)
-		return fail_corner(mesh, 0, error);
+	size_t count = mesh->corner_count;
 	nt_verify_corner *wanted = nt_alloc(count, sizeof *wanted), *found = nt_alloc(count, sizeof *found);
 	nt_status status = wanted && found ? NT_OK : nt_fail_memory(error);
 	bool ordered = true;
-	for (size_t c = 0; c < count && status == NT_OK; c++) {
+	for (size_t c = 0; c < count && status == NT_OK; c++)
 		wanted[c] = wanted_corner(mesh, c);
+	if (status == NT_OK && view->indices.count != count && !view->target_tangents)
+		count = drop_degenerate(wanted, count);
+	if (status == NT_OK && view->indices.count != count)
+		status = fail_corner(mesh, 0, error);
+	for (size_t c = 0; c < count && status == NT_OK; c++) {
 		if (!found_corner(view, c, &found[c]))
 			status = fail_corner(mesh, c, error);
 		else if (!is_drawable(found[c].tangent) && is_drawable(wanted[c].tangent))
@@ -494,8 +513,9 @@ static void close_check(mesh_check *check)
 	free(check->views);
 }
 
-/* A mesh of a composed document: its primitives are those that have faces, in order. */
-static nt_status open_composed(const verification *v, mesh_check *check, size_t number, nt_error *error)
+/* A mesh of a composed document, or one for each of its groups from *number on, which becomes the next one's: their
+ * primitives are those that have faces, in order. */
+static nt_status open_composed(const verification *v, mesh_check *check, size_t *number, nt_error *error)
 {
 	const nt_mesh *mesh = check->mesh;
 	const size_t count = check->view_count;
@@ -504,9 +524,18 @@ static nt_status open_composed(const verification *v, mesh_check *check, size_t 
 	for (size_t f = 0; f < mesh->face_count && status == NT_OK; f++)
 		faces[count > 1 && mesh->face_primitive ? mesh->face_primitive[f] : 0]++;
 	size_t primitive = 0;
-	for (size_t p = 0; p < count && status == NT_OK; p++)
-		if (faces[p])
-			status = open_primitive(v->model, number, primitive++, &check->views[p], error);
+	uint32_t group = 0;
+	for (size_t p = 0; p < count && status == NT_OK; p++) {
+		if (!faces[p])
+			continue;
+		if (primitive && mesh->primitives[p].group != group) {
+			++*number;
+			primitive = 0;
+		}
+		group = mesh->primitive_count ? mesh->primitives[p].group : 0;
+		status = open_primitive(v->model, *number, primitive++, &check->views[p], error);
+	}
+	++*number;
 	free(faces);
 	return status;
 }
@@ -542,7 +571,7 @@ static nt_status open_checks(verification *v, nt_error *error)
 		check->views = nt_calloc(check->view_count, sizeof *check->views);
 		if (!check->views)
 			return nt_fail_memory(error);
-		status = v->edited ? open_edited(v, check, error) : open_composed(v, check, number++, error);
+		status = v->edited ? open_edited(v, check, error) : open_composed(v, check, &number, error);
 		if (status == NT_OK)
 			v->count++;
 		else

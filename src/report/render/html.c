@@ -6,7 +6,8 @@
  * \u003c, so that no name can end the element:
  *
  *   files     [{name, format, verdict, failure, counts: [errors, warnings, infos], meshes, findings}]
- *             mesh:     {label, why, same_as, triangles, vertices, islands, box, facts: [[name, text]],
+ *             mesh:     {label, why, same_as, mapped: true if it has a normal map, triangles, vertices, islands, box,
+ *                       facts: [[name, text]],
  *                       images: [{image, map: [6], file}] of normal map and base colour: numbers of images, and URIs,
  *                       or null, wrap: [nt_wrap, nt_wrap], seams: [[edges, closed, length, plane, unmirrored island,
  *                       mirrored island]], geometry: bool}
@@ -208,6 +209,7 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 	nt_buffer_text(out, ",\"why\":");
 	put_string(m->why, out);
 	put_index("same_as", m->same_as, out);
+	nt_buffer_text(out, m->slots & NT_SLOT_NORMAL ? ",\"mapped\":true" : "");
 	nt_buffer_format(out, ",\"triangles\":%zu,\"vertices\":%zu,\"islands\":%zu,\"geometry\":%s,\"box\":",
 		m->triangle_count, m->vertices_before, m->island_count, has_geometry(m) ? "true" : "false");
 	nt_json_box(&m->box, out);

@@ -419,6 +419,18 @@ static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, cons
 
 /* The whole */
 
+/* Whether the UVs of all triangles have exactly no area, as those that nobody made: no group begins then. */
+static bool is_flat(const nt_fast *fast)
+{
+	size_t t = 0;
+	if (!NT_FAST_PATHS || !fast->solve->known || fast->solve->mesh->face_sizes)
+		return false;
+	const unsigned mask = NT_TRIANGLE_ANY | NT_TRIANGLE_UNCERTAIN;
+	while (t < fast->triangle_count && (fast->flags[t] & mask) == NT_TRIANGLE_ANY)
+		t++;
+	return t == fast->triangle_count;
+}
+
 bool nt_fast_can(const nt_solve *solve)
 {
 	return solve->threshold_cos == -1.0f && solve->mesh->vertex_count < NT_WELD_LIMIT &&
@@ -479,8 +491,15 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 		status = add(&fast, kernels, plan);
 	if (status)
 		return status;
-	if (!fast.records[0] && !fast.records[1]) {
-		nt_fast_write_defaults(&fast);
+	const bool flat = is_flat(&fast);
+	if (flat || (!fast.records[0] && !fast.records[1])) {
+		/* what repair will write need not be written now */
+		if (!flat || !solve->repair)
+			nt_fast_write_defaults(&fast);
+		if (flat) {
+			tell_known(&fast);
+			solve->known->all_flat = true;
+		}
 		return NMTAN_OK;
 	}
 	/* sums become results, where the definition would not have split or joined them otherwise */

@@ -15,8 +15,8 @@
 #include "topology/edge_sort.h"
 #include "topology/weld.h"
 
-/* Of vertices and of single corners; and of triangles, of which the widest vectors hold half: what one half waits for
- * the other computes meanwhile (6 % of a solve). */
+/* Counts of vertices and of single corners; and of triangles, of which the widest vectors hold half: what one half
+ * waits for the other computes meanwhile (6 % of a solve). */
 enum { NT_LANES = 16, NT_TRIANGLES = 32 };
 
 /* Bits of nt_fast.flags */

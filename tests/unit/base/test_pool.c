@@ -220,17 +220,18 @@ static void nest_twice(void *context, unsigned slot)
 	nt_pool_run(4, count_nested, context);
 }
 
-static atomic_bool helper_is_in;
+static atomic_bool helper_is_in, helper_may_leave;
 
-/* The caller's slot ends at once, so that it waits for the helper's, which takes its time. */
+/* The caller's slot ends at once, so that it waits for the helper's, which stays until it may leave. */
 static void leave_the_helper_alone(void *context, unsigned slot)
 {
 	(void)slot;
 	if (!pthread_equal(*(pthread_t *)context, pthread_self())) {
 		helper_is_in = true;
-		nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
+		for (int i = 0; !helper_may_leave && i < 30000; i++)
+			nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
 	} else
-		for (int i = 0; !helper_is_in && i < 1000; i++)
+		for (int i = 0; !helper_is_in && i < 30000; i++)
 			nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
 }
 
@@ -248,12 +249,13 @@ TEST(a_cancelled_caller_leaves_the_pool_free)
 {
 	pthread_t caller;
 	void *result;
-	helper_is_in = false;
+	helper_is_in = helper_may_leave = false;
 	assert_int_equal(pthread_create(&caller, NULL, call_until_cancelled, NULL), 0);
-	for (int i = 0; !helper_is_in && i < 1000; i++)
+	for (int i = 0; !helper_is_in && i < 30000; i++)
 		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
 	nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
 	assert_int_equal(pthread_cancel(caller), 0);
+	helper_may_leave = true;
 	assert_int_equal(pthread_join(caller, &result), 0);
 	assert_ptr_equal(result, PTHREAD_CANCELED);
 	assert_true(two_slots_meet());

@@ -29,7 +29,8 @@ class ConversionError(RuntimeError):
 
 
 def _arguments(options: Dict[str, Any]) -> Iterator[str]:
-    for name, value in {"outside": "no", **options}.items():
+    chosen: Dict[str, Any] = {"outside": "no", **options}
+    for name, value in chosen.items():
         name = name.rstrip("_").replace("_", "-")
         values: Sequence[Any] = value if isinstance(value, (list, tuple)) else [value]
         for one in values:

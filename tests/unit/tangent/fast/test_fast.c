@@ -104,6 +104,24 @@ enum { NASTY_COUNT = 500 };
 enum { NASTY_COUNT = 2000 };
 #endif
 
+/* UVs in one point, or on a line, of every triangle: no corner has a tangent before repair. */
+TEST(flat_uvs_are_repaired_as_by_the_definition)
+{
+	for (uint64_t seed = 0; seed < 60; seed++) {
+		nt_nasty nasty;
+		nt_nasty_make(seed, &nasty);
+		nmtan_mesh mesh = nt_filled(&nasty.mesh);
+		float *uv = calloc(2 * mesh.vertex_count + 1, sizeof *uv);
+		for (size_t v = 0; seed % 2 && v < mesh.vertex_count; v++)
+			uv[2 * v] = (float)v;
+		mesh.texcoords = uv;
+		mesh.texcoord_stride_bytes = 2 * sizeof *uv;
+		assert_int_equal(compare_repairs("flat", &mesh, nasty.corner_count), 0);
+		free(uv);
+		nt_nasty_free(&nasty);
+	}
+}
+
 TEST(nasty_meshes_are_byte_identical)
 {
 	const uint64_t from = environment("NT_NASTY_FROM", 0), count = environment("NT_NASTY_COUNT", NASTY_COUNT);
