@@ -322,7 +322,8 @@ static nmtan_status pair_unsorted(state *s)
 	const nt_welded_mesh mesh = {.triangles = &triangles,
 		.triangle_count = s->triangle_count, .vertex_count = s->vertex_count, .positions = positions,
 		.step = 3, .threads = s->solve->threads, .scratch = scratch};
-	nmtan_status status = nt_edge_tail_make(&mesh, &tail);
+	nt_borrowed none = nt_borrow(NULL, 0, scratch);
+	nmtan_status status = nt_edge_tail_make(&mesh, &none, &tail);
 	if (!status)
 		status = nt_find_unsorted(&mesh, &tail, scratch, &unsorted);
 	for (size_t i = 0; i < unsorted.count; i++) {

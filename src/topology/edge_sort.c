@@ -151,17 +151,21 @@ static size_t first_triangles(const nt_welded_mesh *m)
 	return m->triangle_count < FEW ? FIRST_OF_FEW : FIRST_TRIANGLES;
 }
 
-nmtan_status nt_edge_tail_make(const nt_welded_mesh *m, nt_edge_tail *tail)
+nmtan_status nt_edge_tail_make(const nt_welded_mesh *m, nt_borrowed *borrowed, nt_edge_tail *tail)
 {
 	*tail = (nt_edge_tail){.limit = corner_count(m) > NT_EDGE_SORT_CORNERS};
 	if (m->triangle_count < LEAST_WATCHED || tail->limit)
 		return NMTAN_OK;
-	nt_box *boxes = nt_scratch_alloc(m->scratch, m->vertex_count / NT_BOX_ROWS + 1, sizeof *boxes);
-	tail->near = nt_scratch_alloc(m->scratch, m->triangle_count, 1);
+	tail->near = nt_borrowed_alloc(borrowed, m->triangle_count, 1);
+	/* the boxes' memory is free again at once */
+	const nt_scratch_mark mark = nt_scratch_here(m->scratch);
+	nt_borrowed left = *borrowed;
+	nt_box *boxes = nt_borrowed_alloc(&left, m->vertex_count / NT_BOX_ROWS + 1, sizeof *boxes);
 	if (!boxes || !tail->near)
 		return NMTAN_ERROR_MEMORY;
 	if (!nt_grid_make(m, boxes, &tail->grid))
 		use_box_of_used(m, tail);
+	nt_scratch_back(m->scratch, mark);
 	if (tail->limit) {
 		tail->near = NULL;
 		return NMTAN_OK;

@@ -7,6 +7,7 @@
 #ifndef NT_TOPOLOGY_EDGE_SORT_H
 #define NT_TOPOLOGY_EDGE_SORT_H
 
+#include "base/borrowed.h"
 #include "topology/representatives.h"
 
 #define NT_NO_NEIGHBOUR UINT32_MAX
@@ -58,10 +59,10 @@ typedef struct nt_edge_tail {
 	uint64_t *are_members;   /* a bit for each vertex */
 } nt_edge_tail;
 
-/* Begins: says what to look for, in memory of the mesh. A caller that passes all corners meanwhile may note which
- * triangles are near, and then sets is_noted and is_box_used if the grid's extremes have corners. Returns NMTAN_OK or
- * NMTAN_ERROR_MEMORY. */
-nmtan_status nt_edge_tail_make(const nt_welded_mesh *mesh, nt_edge_tail *tail);
+/* Begins: says what to look for, in memory of the mesh; `near` lies in what is borrowed, until the end. A caller that
+ * passes all corners meanwhile may note which triangles are near, and then sets is_noted and is_box_used if the grid's
+ * extremes have corners. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_edge_tail_make(const nt_welded_mesh *mesh, nt_borrowed *borrowed, nt_edge_tail *tail);
 
 /* Whether a coordinate of the box is near. */
 static inline uint32_t nt_edge_is_near(const nt_edge_tail *tail, float coordinate)

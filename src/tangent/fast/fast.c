@@ -163,11 +163,12 @@ static void tell_noted(nt_fast *fast)
 	tail->is_noted = tail->is_box_used = used;
 }
 
-/* Prepares the question to the published sort of edges, before sums note what they pass. */
-static nmtan_status make_tail(nt_fast *fast)
+/* Prepares the question to the published sort of edges, before sums note what they pass, in memory that is not in use
+ * until the question is asked. */
+static nmtan_status make_tail(nt_fast *fast, nt_borrowed *memory)
 {
 	const nt_welded_mesh mesh = welded_mesh(fast, fast->solve->scratch);
-	return fast->solve->sorted ? NMTAN_OK : nt_edge_tail_make(&mesh, &fast->tail);
+	return fast->solve->sorted ? NMTAN_OK : nt_edge_tail_make(&mesh, memory, &fast->tail);
 }
 
 static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_memory *memory)
@@ -177,8 +178,6 @@ static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_mem
 	nmtan_status status = weld(fast, ranges, memory, &welded);
 	if (!status)
 		status = make_triangles(fast, &welded);
-	if (!status)
-		status = make_tail(fast);
 	return status ? status : make_ranges(fast, ranges);
 }
 
@@ -188,9 +187,11 @@ static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_mem
 static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, const nt_fast_plan *plan,
 	nt_fast_memory *memory)
 {
-	const nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count,
+	nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count,
 		plan->most_places ? plan->most_places : NT_ADJACENCY_PLACES, plan->most_narrow, memory->rows,
 		&memory->borrowed, &fast->adjacency);
+	if (!status)
+		status = make_tail(fast, &memory->borrowed);
 	if (status)
 		return status;
 	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
@@ -219,9 +220,12 @@ static void fill_ranges(void *context, size_t begin, size_t end, unsigned thread
 /* By way of bins, which take the place of the adjacency. */
 static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned bin_bits, nt_fast_memory *memory)
 {
-	const nmtan_status status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
+	nmtan_status status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
 		bin_bits ? bin_bits : nt_bins_bits(fast->vertex_count), memory->bin_sums, &memory->borrowed,
 		&fast->bins);
+	/* sums of bins lie in the output */
+	if (!status)
+		status = make_tail(fast, &memory->none);
 	if (status)
 		return status;
 	fast->scattered = true;
@@ -449,10 +453,10 @@ static nmtan_status ask_tail(nt_fast *fast, const nt_borrowed *memory)
 /* Steps 1 to 4 of few triangles. */
 static nmtan_status add_small(nt_fast *fast, const nt_kernels *kernels, bool *welded)
 {
-	const nt_borrowed none = nt_borrow(NULL, 0, fast->solve->scratch);
+	nt_borrowed none = nt_borrow(NULL, 0, fast->solve->scratch);
 	nmtan_status status = nt_fast_weld_small(fast, welded);
 	if (!status && *welded)
-		status = make_tail(fast);
+		status = make_tail(fast, &none);
 	if (status || !*welded)
 		return status;
 	nt_fast_add_small(fast, kernels);

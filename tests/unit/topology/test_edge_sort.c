@@ -29,7 +29,8 @@ static nmtan_status ask_of(
 		.threads = 1,
 		.scratch = scratch};
 	nt_edge_tail tail;
-	const nmtan_status status = nt_edge_tail_make(&mesh, &tail);
+	nt_borrowed none = nt_borrow(NULL, 0, scratch);
+	const nmtan_status status = nt_edge_tail_make(&mesh, &none, &tail);
 	*unsorted = (nt_unsorted){.edges = NULL};
 	return status ? status : nt_find_unsorted(&mesh, &tail, scratch, unsorted);
 }

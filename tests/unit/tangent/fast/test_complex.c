@@ -201,7 +201,7 @@ TEST(many_hubs_are_byte_identical)
 /* Scratch that a hub takes whose directions turn by so much in all, or, `once`, at one place and back again. */
 static size_t solve_turning_hub(float turn, bool once)
 {
-	enum { SPOKES = 1500 };
+	enum { SPOKES = 3000 }; /* fewer may fit in the block of scratch that there is */
 	float (*p)[3] = calloc(SPOKES + 2, sizeof *p), (*n)[3] = calloc(SPOKES + 2, sizeof *n);
 	float (*t)[2] = calloc(SPOKES + 2, sizeof *t);
 	unsigned (*indices)[3] = malloc(SPOKES * sizeof *indices);
