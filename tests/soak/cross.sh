@@ -57,7 +57,7 @@ try() {
 		rm -rf "$work/out" && mkdir "$work/out"
 		"$who" "${@//OUT/$work/out}" >"$work/said" 2>&1
 		echo "code $?" >>"$work/said"
-		sed -E 's/[0-9.e-]+ s(;|$)/T s\1/' "$work/said" >"$work/out/said"
+		sed -E 's/[0-9.]+ m?s(;|$)/T s\1/' "$work/said" >"$work/out/said"
 		rm -rf "$work/${who##*/}.is" && mv "$work/out" "$work/${who##*/}.is"
 	done
 	diff -r "$work/nmtan.is/$compared" "$work/arm.is/$compared" >"$work/differs" && return

@@ -27,7 +27,7 @@ both() {
 			fi
 			eval "$2" >out 2>err
 			echo $? >status
-			sed -i -E 's/[0-9.e-]+ s$//; s/[0-9.e-]+ s(,|;)/\1/' err
+			sed -i -E 's/[0-9.]+ m?s$//; s/[0-9.]+ m?s(,|;)/\1/' err
 			find . -name .nmtan-record -delete
 			[ -z "$(find . -name '*.tmp')" ] || echo "temporary files are left" >>err
 		)
