@@ -338,6 +338,7 @@ for taken in mirrored_cube.obj mirrored_cube.mtl bumps.png; do
 done
 run --depfile=o.glb mirrored_cube.obj o.glb
 exits 1
+says "--depfile and an output are both 'o.glb'"
 is "$(head -c 4 o.glb)" glTF
 run --manifest=- --output-format=glb mirrored_cube.obj -
 exits 1
