@@ -32,7 +32,7 @@ def _arguments(options: Dict[str, Any]) -> Iterator[str]:
     chosen: Dict[str, Any] = {"outside": "no", **options}
     for name, value in chosen.items():
         name = name.rstrip("_").replace("_", "-")
-        values: Sequence[Any] = value if isinstance(value, (list, tuple)) else [value]
+        values = value if isinstance(value, (list, tuple)) else [value]
         for one in values:
             if one is True:
                 yield f"--{name}"
