@@ -13,9 +13,6 @@
 #include "base/scratch.h"
 #include "nmtan.h"
 
-/* Fast paths beside the plain ones, with the same bytes. In a browser they are 4.6 KB for up to a tenth of the time. */
-enum { NT_FAST_PATHS = 1 };
-
 /* A method's knowledge of its result, so that usable.c need not look at all of it. `flags` has a byte for each
  * triangle, two for a quad; what its bits mean is told by these sets of bits, of which each may be empty:
  *

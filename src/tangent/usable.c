@@ -146,7 +146,7 @@ static int count_quad(const nt_solve *solve, size_t face, size_t first, nmtan_co
 static uint64_t find_suspects(const nt_known *known, const uint8_t *flags, size_t count, size_t *mirrored)
 {
 	const uint8_t mask =
-		(uint8_t)(known->suspect & (!NT_FAST_PATHS || known->open ? ~0u : ~(unsigned)known->judged));
+		(uint8_t)(known->suspect & (known->open ? ~0u : ~(unsigned)known->judged));
 	size_t plain;
 	const uint64_t suspects = nt_flagged(flags, count, mask, known->positive, &plain);
 	*mirrored += plain;
@@ -169,7 +169,7 @@ static bool check_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts
 		counts->degenerate_positions += nt_is_collapsed(mesh, corners);
 	}
 	return solve->repair &&
-		has_unusable(solve, 3 * t, 3, orientation, NT_FAST_PATHS && known && known->judged, counts);
+		has_unusable(solve, 3 * t, 3, orientation, known && known->judged, counts);
 }
 
 static void check_triangles(const search *job, size_t begin, size_t end, nmtan_counts *counts)

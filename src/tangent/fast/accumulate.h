@@ -278,7 +278,7 @@ static int missing_record(const nt_fast *fast, size_t first, size_t count)
 	const uint64_t ones = 0x0101010101010101u, there = ones * (fast->records[1] ? NT_TRIANGLE_ORIENT : 0);
 	const uint64_t others = ones * (NT_TRIANGLE_ORIENT | NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE);
 	size_t i = 0;
-	for (uint64_t eight; NT_FAST_PATHS && fast->records[there != 0] && count - i >= sizeof eight;
+	for (uint64_t eight; fast->records[there != 0] && count - i >= sizeof eight;
 		i += sizeof eight) {
 		memcpy(&eight, fast->flags + first + i, sizeof eight);
 		if ((eight ^ there) & others)

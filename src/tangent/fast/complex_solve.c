@@ -194,7 +194,7 @@ static void write_corner(const nt_complex *c, uint32_t place, const nt_corner *r
 static uint32_t NT_NOINLINE mark_of(const nt_complex *c, uint32_t place, const nt_corner *r)
 {
 	const nt_solve *solve = c->fast->solve;
-	if (!NT_FAST_PATHS || !nt_fast_judges(solve) || nt_is_surely_frame(r->u, nt_normal(solve->mesh,
+	if (!nt_fast_judges(solve) || nt_is_surely_frame(r->u, nt_normal(solve->mesh,
 			nt_vertex_of(solve->mesh, nt_complex_corner(c, c->corners[place])))))
 		return 0;
 	nt_fast_tell_open(solve);

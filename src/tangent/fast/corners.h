@@ -43,11 +43,9 @@ static void load_singles(const nt_weld_row *rows, const uint32_t *corners, size_
 		const uint32_t corner = corners[lane < count ? lane : count - 1];
 		s->k[lane] = corner & 3;
 		s->any[lane] = corner & NT_COMPLEX_ANY;
-		for (size_t c = 0; !NT_FAST_PATHS && c < 3; c++)
-			s->n[c][lane] = s->in.row[corner & 3][3 + c][lane];
 	}
-	/* the same without going by single floats: 325 cycles for 16 corners, not 350 */
-	for (int i = 0; NT_FAST_PATHS && i < NT_LANES; i++)
+	/* without going by single floats: 325 cycles for 16 corners, not 350 */
+	for (int i = 0; i < NT_LANES; i++)
 		NT_UNROLL(3)
 		for (int c = 0; c < 3; c++)
 			s->n[c][i] =

@@ -308,7 +308,7 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 	if (!r.settled)
 		return NMTAN_ERROR_MEMORY;
 	memset(r.settled, 0, ranges * sizeof *r.settled);
-	if (NT_FAST_PATHS && fast->sparse) {
+	if (fast->sparse) {
 		fast->open = nt_scratch_alloc(fast->solve->scratch, (fast->vertex_count + NT_LANES - 1) / NT_LANES, 1);
 		if (!fast->open)
 			return NMTAN_ERROR_MEMORY;
@@ -394,7 +394,7 @@ static void tell_known(const nt_fast *fast)
 	nt_known *known = fast->solve->known;
 	*known = (nt_known){.flags = fast->flags, .suspect = NT_TRIANGLE_SUSPECT, .positive = NT_TRIANGLE_ORIENT,
 		.doubtful = NT_TRIANGLE_UNCERTAIN, .flat = NT_TRIANGLE_ANY, .degenerate = NT_TRIANGLE_DEGENERATE,
-		.judged = (uint8_t)(NT_FAST_PATHS && nt_fast_judges(fast->solve) ? NT_TRIANGLE_COMPLEX : 0),
+		.judged = (uint8_t)(nt_fast_judges(fast->solve) ? NT_TRIANGLE_COMPLEX : 0),
 		.open = known->open, .row_step = fast->record_step * sizeof(nt_record) / sizeof(float),
 		.welded = fast->triangles.ids, .welded_count = fast->vertex_count};
 	/* a record is x, y, z and, as state, the sign */
@@ -427,7 +427,7 @@ static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, cons
 static bool is_flat(const nt_fast *fast)
 {
 	size_t t = 0;
-	if (!NT_FAST_PATHS || !fast->solve->known || fast->solve->mesh->face_sizes)
+	if (!fast->solve->known || fast->solve->mesh->face_sizes)
 		return false;
 	const unsigned mask = NT_TRIANGLE_ANY | NT_TRIANGLE_UNCERTAIN;
 	while (t < fast->triangle_count && (fast->flags[t] & mask) == NT_TRIANGLE_ANY)

@@ -52,7 +52,7 @@ static bool NT_NOINLINE classify_special(uint8_t *flags, size_t count, const lan
 				     (out->frameless[i] ? NT_TRIANGLE_ANY : 0) |
 				     (out->degenerate[i] ? NT_TRIANGLE_DEGENERATE : 0) |
 				     (out->doubt[i] < 0.0f && !out->frameless[i] ? 0 : NT_TRIANGLE_UNCERTAIN));
-	if (NT_FAST_PATHS && special)
+	if (special)
 		clear_flat(in, flags, count);
 	return !special;
 }
@@ -72,7 +72,7 @@ static inline bool classify_lanes(const nt_fast *fast, size_t first, size_t coun
 {
 	uint8_t *flags = fast->flags + first;
 	bool ordinary = out->plain;
-	if (!NT_FAST_PATHS || !ordinary)
+	if (!ordinary)
 		ordinary = classify_special(flags, count, in, out);
 	else if (count == NT_TRIANGLES)
 		classify_plain(flags, NT_TRIANGLES, out);

@@ -103,8 +103,7 @@ static inline NT_ALWAYS_INLINE void solve_frames(const lanes_in *NT_RESTRICT in,
 	if (more)
 		out->mag_u[i] = d.s_length / fabsf(area), out->mag_v[i] = d.t_length / fabsf(area);
 	out->area[i] = area;
-	if (NT_FAST_PATHS)
-		out->doubt[i] = area_rounding(&d) - fabsf(area);
+	out->doubt[i] = area_rounding(&d) - fabsf(area);
 }
 
 /* Storing moves each v by u |v + offset| at most, an edge by twice that. */

@@ -61,10 +61,10 @@ static inline bool are_plain(const lanes_out *out, size_t corners, size_t count)
 static inline void judge(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out, float offset, size_t corners,
 	size_t lane_count)
 {
-	out->plain = NT_FAST_PATHS && corners > 0 && are_plain(out, corners, lane_count);
+	out->plain = corners > 0 && are_plain(out, corners, lane_count);
 	if (!out->plain)
 		tell_apart(in, out, (int)lane_count);
-	if (!NT_FAST_PATHS || offset != 0.0f)
+	if (offset != 0.0f)
 		doubt_stored(in, out, offset, (int)lane_count);
 }
 

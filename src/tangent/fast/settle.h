@@ -141,12 +141,12 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		normalise_records(used, &own[o]);
 		if (judges)
 			find_unusable(normals, &own[o], unusable[o], used);
-		has_unusable |= NT_FAST_PATHS && any_of(unusable[o], used);
+		has_unusable |= any_of(unusable[o], used);
 	}
 	const bool has_complex = any_of(complex, used);
 	if (has_unusable)
 		nt_fast_tell_open(fast->solve);
-	if (NT_FAST_PATHS && fast->open)
+	if (fast->open)
 		fast->open[block] = has_complex | has_unusable;
 	/* from here on the rows may be overwritten */
 	for (int o = 0; o < 2; o++) {

@@ -117,7 +117,7 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 		uint8_t *flags = &fast->flags[t];
 		uint32_t copy[3];
 		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
-		if (NT_FAST_PATHS && fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT) && !is_near_open(fast, v))
+		if (fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT) && !is_near_open(fast, v))
 			continue;
 		if (fast->scattered)
 			prefetch_records(fast, t, end);
@@ -279,7 +279,7 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned threa
 	(void)thread;
 	const writing *w = context;
 	nt_fast *fast = w->fast;
-	void (*write)(nt_fast *, size_t, size_t) = NT_FAST_PATHS && fast->sparse && !w->has_open ? write_suspects
+	void (*write)(nt_fast *, size_t, size_t) = fast->sparse && !w->has_open ? write_suspects
 		: fast->wants_more || fast->sparse ? write_triangles
 		: fast->triangles.cuts || fast->scattered ? write_tangents : write_plain;
 	for (size_t range = begin; range < end; range++)
