@@ -179,7 +179,7 @@ void nt_message_left_out(nt_buffer *out, const nt_job *job, const bool *ignore)
 		nt_buffer_text(out, told ? ", " : "nmtan: ");
 		if (!told++) {
 			nt_buffer_clean(out, job->input);
-			nt_buffer_text(out, ": left out of the output: ");
+			nt_buffer_text(out, ": missing from the output: ");
 		}
 		nt_buffer_format(out, "%zu %s", count, nt_code_info(codes[c])->name);
 	}

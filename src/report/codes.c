@@ -40,7 +40,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(IMAGE_MISSING, WARNING, "w--", EXPORT, NULL, "image cannot be read",
 		"A material refers to an image file that is not there. The output is without it, or, of a glTF, has "
 		"the same name; with --images=link it refers to where the file should be.",
-		"Put the image where the material looks for it, or name its folder with --texture-path.",
+		"Put the image where the file names it. For an OBJ, --texture-path names more folders.",
 		"an MTL with \"map_Kd missing.png\""),
 	ROW(LINK_LEAVES, WARNING, "w--", LOOK, NULL, "reference leaves the folder of the output",
 		"A URI of the output begins with \"..\", as --images=link or --buffers=link asks, or because a buffer "

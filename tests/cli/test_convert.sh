@@ -23,7 +23,7 @@ scene "but for what is left out of the output"
 printf 'newmtl b\nmap_Kd nowhere.png\ndisp h.png\n' >m.mtl
 run -q q.obj q.glb
 exits 0
-is "$(cat "$WORK/err.txt")" "nmtan: q.obj: left out of the output: 1 IMAGE_MISSING, 1 MATERIAL_LOST; material \"b\" has none of its images"
+is "$(cat "$WORK/err.txt")" "nmtan: q.obj: missing from the output: 1 IMAGE_MISSING, 1 MATERIAL_LOST; material \"b\" has none of its images"
 run -q --ignore=IMAGE_MISSING,MATERIAL_LOST q.obj q.glb
 silent
 
@@ -32,7 +32,7 @@ sed 's/^property float x$/property float quality\n&/; /^end_header/q' "$data/qua
 sed '1,/^end_header/d; /^[0-9]* [0-9]* [0-9]* [0-9]*$/!{/^[34] /!s/^/0.5 /}' "$data/quad_ascii.ply" >>q.ply
 run -q q.ply q.glb
 exits 0
-is "$(cat "$WORK/err.txt")" "nmtan: q.ply: left out of the output: 1 REFERENCE_LOST"
+is "$(cat "$WORK/err.txt")" "nmtan: q.ply: missing from the output: 1 REFERENCE_LOST"
 run q.ply q.glb
 says "1 part of the input is not in the output: vertex quality"
 run -q q.ply again.ply
@@ -227,7 +227,7 @@ cp "$data/plates.bin" .
 cp pointer bumps.png
 run plates.gltf out.glb
 exits 0
-says "/images/0: warning: image cannot be read: Git LFS's pointer"
+says "/images/0: warning: image cannot be read: \"bumps.png\": Git LFS's pointer"
 # what is not there keeps its name; what is no image is copied, and so is one that the texture cannot have without an extension
 mkdir there
 for format in glb gltf; do
@@ -318,7 +318,7 @@ run full.gltf full.ply
 exits 0
 says "12 parts of the input are not in the output: materials (1), textures (1), further sets of texture coordinates (2), morph targets (1), animations (3), cameras (1), lights (2), extras (1) [REFERENCE_LOST]"
 run -q full.gltf full.ply
-says "left out of the output: 12 REFERENCE_LOST"
+says "missing from the output: 12 REFERENCE_LOST"
 run full.gltf full.glb
 says_not REFERENCE_LOST
 

@@ -337,7 +337,7 @@ says "material \"m\" has none of its images"
 says "2 of 2 done"
 says ", 2 materials without any image"
 run -q --outside=no s/p/obj/quad.obj lost.glb
-is "$(cat "$WORK/err.txt")" 'nmtan: s/p/obj/quad.obj: left out of the output: 2 IMAGE_MISSING; material "m" has none of its images'
+is "$(cat "$WORK/err.txt")" 'nmtan: s/p/obj/quad.obj: missing from the output: 2 IMAGE_MISSING; material "m" has none of its images'
 
 scene "and anywhere below the folder that the user names"
 studio 'norm ../../shared/n.png'

@@ -195,6 +195,40 @@ for text in "IMAGE_MISSING" "MTL: decal" "MTL: -t of map_Kd"; do
 	prints "$text"
 done
 
+# A folder is no image, and Git LFS's pointer is not the file; what lies outside is not looked at, and told where it matters.
+scene "a glTF's image that is not there is a warning, whether the file is checked, copied, linked or embedded"
+gltf "$data/plates.gltf" q 'g.images = ["gone.png", "folder.png", "pointer.png", "there.png", "../up.png"].map(uri => ({uri}));
+	g.textures = [{source: 0}]; g.materials = [{normalTexture: {index: 0}}];
+	for (const m of g.meshes) for (const p of m.primitives) p.material = 0'
+mkdir folder.png out
+echo "version https://git-lfs.github.com/spec/v1" >pointer.png
+cp "$data/bumps.png" there.png
+printf '%s\n' '"folder.png": cannot read: Is a directory' "\"pointer.png\": Git LFS's pointer to the file, not the file itself: git lfs pull brings it" \
+	'cannot open "gone.png": No such file or directory' >../three
+{ cat ../three && echo 'the URI "../up.png" leaves the folder of the file (refused without --outside=yes)'; } >../four
+while IFS='|' read -r words expected; do
+	run -q --fail-on=warning --report=../r.json $words q.gltf
+	exits 6
+	says "gone.png"
+	value ../r.json '"\n".join(x["message"][len("image cannot be read: "):] for x in r["files"][0]["findings"]
+		if (x["code"], x["severity"], x["place"]["pointer"][:8]) == ("IMAGE_MISSING", "warning", "/images/"))' | sort >../told
+	is "$words: $(cat ../told)" "$words: $(cat "../$expected")"
+done <<'END'
+--check|four
+-o out.glb|four
+-o out/out.gltf|four
+-o out.gltf|three
+-o out.gltf --existing=drop|three
+-o out.gltf --images=copy|three
+-o out/out.gltf --images=link|three
+--check -o out.gltf|three
+END
+gltf q.gltf whole 'g.images = [{uri: "there.png"}]'
+for words in --check "-o out.glb" "-o out.gltf"; do
+	run -q --fail-on=warning --ignore=TAN_*,NMAP_* $words whole.gltf
+	exits 0
+done
+
 scene "a mesh without texture coordinates is a finding"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >bare.obj
 run --check --fail-on=warning bare.obj

@@ -57,37 +57,6 @@ static const char *media_type(const nt_gltf *document, const nt_file *file)
 	return NULL;
 }
 
-static void report(moving *m, size_t index, nt_code code, const char *text)
-{
-	nt_place place;
-	nt_place_clear(&place);
-	snprintf(place.pointer, sizeof place.pointer, "/images/%zu", index);
-	nt_finding_add(&m->scene->findings, code, &place, 1, "%s", text);
-}
-
-/* Opens the file of an image; *opened is false, after a finding, where that is not possible. */
-static nt_status open_image(moving *m, size_t index, const nt_json_value *image, nt_file *file, bool *opened,
-	const char **path)
-{
-	size_t length;
-	const char *uri = nt_gltf_external_uri(image, &length);
-	nt_error error;
-	nt_error_clear(&error);
-	nt_status status = nt_uri_resolve(&m->edits->arena, m->edits->document->path, uri, length,
-		m->edits->document->allow_outside, path, &error);
-	if (!status)
-		status = nt_file_open_content(file, *path, true, &error);
-	*opened = status == NT_OK;
-	if (status == NT_ERROR_MEMORY || status == NT_ERROR_IO) {
-		*m->error = error;
-		snprintf(m->error->place.pointer, sizeof m->error->place.pointer, "/images/%zu", index);
-		return status;
-	}
-	if (status)
-		report(m, index, NT_CODE_IMAGE_MISSING, error.message);
-	return NT_OK;
-}
-
 /* The destination of a file that an earlier image names, too; NULL: none does. */
 static const moved_file *find_moved(const moving *m, const nt_file *file)
 {
@@ -231,13 +200,12 @@ static nt_status copy_file(moving *m, nt_json_value *image, const nt_file *file,
 
 static nt_status copy_image(moving *m, size_t index, nt_json_value *image)
 {
-	if (!*m->output->link_prefix)
-		return NT_OK; /* it is there already */
+	if (!*m->output->link_prefix) /* it is there already */
+		return nt_gltf_look_for_image(m->scene, index, true, m->error);
 	nt_file file;
 	const char *path;
-	bool opened;
-	nt_status status = open_image(m, index, image, &file, &opened, &path);
-	if (!opened)
+	nt_status status = nt_gltf_open_image(m->scene, index, &file, &path, m->error);
+	if (!path)
 		return status;
 	status = copy_file(m, image, &file, path);
 	nt_file_close(&file);
@@ -250,7 +218,10 @@ static nt_status embed_file(moving *m, size_t index, nt_json_value *image, const
 	const char *type = media_type(m->edits->document, file);
 	*is_kept = false;
 	if (!type) {
-		report(m, index, NT_CODE_IMAGE_TYPE, "it stays a file");
+		nt_place place;
+		nt_place_clear(&place);
+		snprintf(place.pointer, sizeof place.pointer, "/images/%zu", index);
+		nt_finding_add(&m->scene->findings, NT_CODE_IMAGE_TYPE, &place, 1, "it stays a file");
 		return m->output->is_stream ? nt_gltf_link(m->json, image, m->output->link_prefix, m->error)
 			: *m->output->link_prefix ? copy_file(m, image, file, path) : NT_OK;
 	}
@@ -274,14 +245,20 @@ static nt_status embed_image(moving *m, size_t index, nt_json_value *image)
 {
 	nt_file file;
 	const char *path;
-	bool opened, is_kept;
-	nt_status status = open_image(m, index, image, &file, &opened, &path);
-	if (!opened)
+	bool is_kept;
+	nt_status status = nt_gltf_open_image(m->scene, index, &file, &path, m->error);
+	if (!path)
 		return status;
 	status = embed_file(m, index, image, &file, path, &is_kept);
 	if (!is_kept)
 		nt_file_close(&file);
 	return status;
+}
+
+static nt_status link_image(moving *m, size_t index, nt_json_value *image)
+{
+	const nt_status status = nt_gltf_look_for_image(m->scene, index, true, m->error);
+	return status ? status : nt_gltf_link(m->json, image, m->output->link_prefix, m->error);
 }
 
 /* The turned images by their numbers; NULL: there are none. */
@@ -327,7 +304,7 @@ nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_
 		else if ((choice == NT_IMAGES_COPY && !output->is_stream) || (choice == NT_IMAGES_DEFAULT && leaves))
 			status = copy_image(&m, i, image);
 		else
-			status = nt_gltf_link(m.json, image, output->link_prefix, error);
+			status = link_image(&m, i, image);
 	}
 	free(turned_of);
 	free(m.moved);

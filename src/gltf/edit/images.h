@@ -33,9 +33,6 @@ nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_
 
 void nt_open_images_close(nt_open_images *images);
 
-/* links.c. The text of an external reference: neither a data URI nor anything else than a string. NULL: none. */
-const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length);
-
 /* links.c. The way from the folder of one file to the folder of another as a URI: "../other/"; "" where they are
  * the same or cannot be found. "-" is a file of the current folder. */
 nt_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *to, const char **prefix,

@@ -89,6 +89,9 @@ nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *option
 	if (status || !same_container || moves || embeds)
 		return status;
 	*written = true;
+	status = nt_gltf_look_for_images(scene, true, error);
+	if (status)
+		return status;
 	if (nt_output_is_in_place(output, options->path)) {
 		nt_output_leave(output);
 		return NT_OK;
