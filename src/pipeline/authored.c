@@ -98,7 +98,7 @@ static bool face_is_valid(const nt_mesh *mesh, const nmtan_mesh *view, size_t fa
 		/* half of a folded quad may have the quad's */
 		if (sign != 0 && w == (float)sign && mesh->normals && nt_is_reversed(&triangle))
 			return false;
-		if (sign != 0 && w != (float)sign && w != (float)nt_folded_orientation(mesh, mesh->halves, first / 3))
+		if (sign != 0 && w != (float)sign && !nt_is_folded_sign(mesh, mesh->halves, first / 3, (int)w))
 			return false;
 	}
 	return w != 0.0f;

@@ -50,7 +50,7 @@ static void count_range(void *context, size_t begin, size_t end, unsigned slot)
 		const int orientation = turn * nmtan_orientation(mesh->texcoords + 2 * v[0],
 			mesh->texcoords + 2 * v[1], mesh->texcoords + 2 * v[2]);
 		judged += orientation != 0;
-		wrong += orientation != 0 && orientation != sign && nt_folded_orientation(mesh, c->halves, t) != sign;
+		wrong += orientation != 0 && orientation != sign && !nt_is_folded_sign(mesh, c->halves, t, sign);
 	}
 	__atomic_fetch_add(&c->wrong, wrong, __ATOMIC_RELAXED);
 	__atomic_fetch_add(&c->judged, judged, __ATOMIC_RELAXED);

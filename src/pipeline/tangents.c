@@ -412,11 +412,14 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 		{NT_CODE_TAN_REPAIRED, nt_counts_repaired(c)},
 		{NT_CODE_TAN_EXISTING_REPAIRED, mesh->replaced_tangents},
 		{NT_CODE_TAN_EXISTING_LEFT, mesh->left_tangents},
-		{NT_CODE_TAN_QUADS_LIKELY, mesh->may_be_quads},
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		if (rows[i].count)
 			nt_finding_add(list, rows[i].code, nt_mesh_place(mesh, &(nt_place){0}), rows[i].count, NULL);
+	if (mesh->may_be_quads)
+		nt_finding_put(list, (nt_finding){.code = NT_CODE_TAN_QUADS_LIKELY, .count = mesh->may_be_quads,
+			.detail = "", .repair = mesh->slots ? NULL : "--quads=pairs --only=all"},
+			nt_mesh_place(mesh, &(nt_place){0}));
 	if (mesh->replaced_normals)
 		nt_finding_add(list, NT_CODE_NORMALS_MADE, nt_mesh_place(mesh, &(nt_place){0}), mesh->replaced_normals,
 			"for the tangents alone, NORMAL keeps its zeros");

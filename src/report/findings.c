@@ -132,19 +132,31 @@ static uint64_t fingerprint_of(const nt_report_finding *finding, const nt_report
 	return hash;
 }
 
-/* The severity in the code's row, if the mesh has what that takes. */
-static const char *repair_of(const nt_report *report, const nt_report_finding *finding)
+/* The options in the code's row, if the mesh has what they take. `severity` is that of a command without --severity. */
+static const char *repair_of(nt_check *check, const nt_report_finding *finding, nt_severity severity)
 {
-	static const char replace[] = "--existing=replace";
+	nt_report *report = check->report;
 	const char *repair = nt_code_info(finding->code)->repair;
 	const nt_report_mesh *mesh = finding->mesh == NT_NONE ? NULL : &report->meshes[finding->mesh];
-	if (!repair || !mesh)
+	if (!repair || !mesh || finding->code == NT_CODE_TAN_UNUSED || finding->code == NT_CODE_NMAP_GREEN_DOWN)
 		return repair;
-	const bool fixes = nt_code_mends(finding->code) && finding->code != NT_CODE_NMAP_GREEN_DOWN;
-	if (fixes && (!mesh->has_normals || (!mesh->has_texcoords && finding->code == NT_CODE_TAN_MISSING_REQUIRED)))
-		return NULL;
+	if (nt_code_mends(finding->code)) {
+		if (!mesh->has_normals || (!mesh->has_texcoords && finding->code == NT_CODE_TAN_MISSING_REQUIRED))
+			return NULL;
+		if (severity > NT_SEVERITY_INFO)
+			return repair;
+		/* --fix does nothing over an info */
+		repair = mesh->checked_tangents ? "--existing=repair" : "";
+	}
+	if (mesh->slots || !nt_format_is_gltf(check->scene->format))
+		return repair;
 	/* what no material asks for stays as it is, unless it is asked for */
-	return strcmp(repair, replace) == 0 && !mesh->slots ? "--existing=replace --only=all" : repair;
+	nt_buffer all = {0};
+	nt_buffer_format(&all, "%s%s--only=all", repair, *repair ? " " : "");
+	repair = all.failed ? NULL : nt_arena_text(&report->arena, all.data, all.size);
+	check->failed |= !repair;
+	nt_buffer_free(&all);
+	return repair;
 }
 
 /* Completes and appends a finding whose code, place, count, box, numbers and spots are set. */
@@ -171,7 +183,7 @@ static void add_finding(nt_check *check, nt_report_finding *finding, nt_severity
 		return;
 	}
 	if (!finding->repair && !finding->stays)
-		finding->repair = repair_of(report, finding);
+		finding->repair = repair_of(check, finding, severity);
 	finding->order = report->finding_count;
 	report->findings[report->finding_count++] = *finding;
 }

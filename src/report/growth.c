@@ -25,7 +25,7 @@ static nt_status check_shared(nt_check *check)
 		/* both halves of a folded quad may have the quad's tangents */
 		const int folded = nt_folded_orientation(check->mesh, check->halves, c / 3);
 		const int sign = folded ? folded : nt_settled_orientation(check, c / 3);
-		if (sign)
+		if (sign && sign != NT_FOLDED_EITHER)
 			sides[nt_side_vertex(s, c)] |= sign > 0 ? UNMIRRORED : MIRRORED;
 	}
 	nt_tally shared = {.code = NT_CODE_TAN_MIRROR_SHARED_VERTEX};

@@ -8,6 +8,7 @@
 #include "base/angle.h"
 #include "base/bits.h"
 #include "base/dvec.h"
+#include "report/quads.h"
 #include "topology/corners.h"
 
 /* Halves of bytes' steps add up to that, of other tangents less. */
@@ -69,9 +70,10 @@ static void add(tally *to, const tally *from)
 		to->by_degrees[i] += from->by_degrees[i];
 }
 
-/* Looks at the corners of triangles with an area in texture coordinates. */
-static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const uint64_t *border, const float *fresh,
-	nt_maker *maker)
+/* Looks at the corners of triangles with an area in texture coordinates, and of quads that have one: of halves that
+ * cancel MikkTSpace may make no tangent, and what stands for it proves nothing. */
+static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const uint8_t *halves, const uint64_t *border,
+	const float *fresh, nt_maker *maker)
 {
 	const double near = tan(maker->degrees / DEGREES) * tan(maker->degrees / DEGREES);
 	tally inside = {0}, outside = {0};
@@ -81,6 +83,8 @@ static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const uint64_t 
 			v[k] = mesh->indices ? mesh->indices[3 * t + k] : 3 * t + k;
 		if (!nmtan_orientation(view->texcoords + 2 * v[0], view->texcoords + 2 * v[1],
 			view->texcoords + 2 * v[2]))
+			continue;
+		if (nt_folded_orientation(mesh, halves, t) == NT_FOLDED_EITHER)
 			continue;
 		for (size_t k = 0; k < 3; k++) {
 			tally *of = border && nt_bit(border, 3 * t + k) ? &outside : &inside;
@@ -116,10 +120,10 @@ nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, const uin
 	if (!output.tangents)
 		return NT_ERROR_MEMORY;
 	maker->degrees = mesh->byte_tangents ? BYTE_DEGREES : OTHER_DEGREES;
-	const nt_status status = nt_status_of(
-		nt_tangents_of_halves(&view, maker->quads ? halves : NULL, &options, &output, NULL));
+	const uint8_t *solved = maker->quads ? halves : NULL;
+	const nt_status status = nt_status_of(nt_tangents_of_halves(&view, solved, &options, &output, NULL));
 	if (!status)
-		compare(mesh, &view, border, output.tangents, maker);
+		compare(mesh, &view, solved, border, output.tangents, maker);
 	free(output.tangents);
 	return status;
 }

@@ -71,11 +71,15 @@ size_t nt_pair_quads(const nt_mesh *mesh, bool polygons, uint8_t *halves)
 	return quads;
 }
 
-static int orientation_of(const nt_mesh *mesh, size_t t, const float *uv, float *area)
+/* `magnitude`: the sum of the products behind the area. */
+static int orientation_of(const nt_mesh *mesh, size_t t, const float *uv, double *area, double *magnitude)
 {
 	const float *a = uv + 2 * (size_t)vertex_of(mesh, 3 * t), *b = uv + 2 * (size_t)vertex_of(mesh, 3 * t + 1),
 		    *c = uv + 2 * (size_t)vertex_of(mesh, 3 * t + 2);
-	*area = fabsf((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+	const double left = ((double)b[0] - a[0]) * ((double)c[1] - a[1]);
+	const double right = ((double)b[1] - a[1]) * ((double)c[0] - a[0]);
+	*area = fabs(left - right);
+	*magnitude = fabs(left) + fabs(right);
 	return nt_orientation(a, b, c);
 }
 
@@ -85,10 +89,19 @@ int nt_folded_orientation(const nt_mesh *mesh, const uint8_t *halves, size_t t)
 		return 0;
 	const size_t first = halves[t] == NT_HALF_SECOND ? t - 1 : t;
 	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
-	float areas[2];
-	const int one = orientation_of(mesh, first, uv, &areas[0]);
-	const int other = orientation_of(mesh, first + 1, uv, &areas[1]);
+	double areas[2], magnitudes[2];
+	const int one = orientation_of(mesh, first, uv, &areas[0], &magnitudes[0]);
+	const int other = orientation_of(mesh, first + 1, uv, &areas[1], &magnitudes[1]);
 	if (one * other >= 0)
 		return 0;
-	return areas[0] >= areas[1] ? one : other;
+	/* four roundings of each, as MikkTSpace makes them; it may also cut the quad along the other diagonal */
+	if (fabs(areas[0] - areas[1]) <= 0x1p-22 * (magnitudes[0] + magnitudes[1]))
+		return NT_FOLDED_EITHER;
+	return areas[0] > areas[1] ? one : other;
+}
+
+bool nt_is_folded_sign(const nt_mesh *mesh, const uint8_t *halves, size_t t, int sign)
+{
+	const int folded = nt_folded_orientation(mesh, halves, t);
+	return folded && (folded == sign || folded == NT_FOLDED_EITHER);
 }

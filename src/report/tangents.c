@@ -278,8 +278,7 @@ static void check_sign(const nt_check *check, size_t t, int orientation, sign_ta
 		return;
 	st->checked++;
 	const bool by_w = (w[0] > 0.0f) != (orientation > 0);
-	const int folded = by_w ? nt_folded_orientation(check->mesh, check->halves, t) : 0;
-	if (folded && (w[0] > 0.0f) == (folded > 0)) {
+	if (by_w && nt_is_folded_sign(check->mesh, check->halves, t, w[0] > 0.0f ? 1 : -1)) {
 		nt_tally_triangle(check, &st->of_quad, t, w[0]);
 		return;
 	}
