@@ -25,6 +25,7 @@ typedef struct walk {
 	nt_error *error;
 	const char *root;        /* the folder that was named */
 	size_t root_length;      /* of the path up to and with the slash behind the folder that was named */
+	size_t file_count, mesh_count; /* looked at */
 	struct stat leave_out;
 	bool has_leave_out;
 } walk;
@@ -110,6 +111,8 @@ static nt_status visit(walk *w, nt_buffer *path)
 	if (lstat(path->data, &info) != 0)
 		return errno == ENOENT ? NT_OK : fail_folder(path->data, errno, w->error);
 	const nt_folder_rules *rules = w->rules;
+	w->file_count += !S_ISDIR(info.st_mode);
+	w->mesh_count += !S_ISDIR(info.st_mode) && nt_format_of_path(below);
 	if (matches(rules->exclude, rules->exclude_count, below))
 		return NT_OK;
 	if (S_ISDIR(info.st_mode)) {
@@ -148,6 +151,26 @@ static nt_status look_through(walk *w, nt_buffer *path)
 	return status;
 }
 
+/* A pattern with a slip of the pen must not pass for a folder in which all is well. */
+static void note_nothing(walk *w)
+{
+	const nt_folder_rules *rules = w->rules;
+	nt_error *nothing = &w->inputs->nothing;
+	if (nothing->status)
+		return;
+	if (!w->mesh_count)
+		nt_fail_file(nothing, NT_ERROR_IO, w->root,
+			"no mesh is in it or below it (.obj .ply .gltf .glb .drc); files looked at: %zu",
+			w->file_count);
+	else if (rules->include_count)
+		nt_fail_file(nothing, NT_ERROR_IO, w->root, "no file matches --include='%s'%s%s; meshes looked at: %zu",
+			rules->include[0], rules->include_count > 1 ? " or another pattern" : "",
+			rules->exclude_count ? " and no --exclude" : "", w->mesh_count);
+	else
+		nt_fail_file(nothing, NT_ERROR_IO, w->root, "--exclude takes out every mesh; meshes looked at: %zu",
+			w->mesh_count);
+}
+
 /* ---- names ---- */
 
 nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rules *rules, nt_error *error)
@@ -167,7 +190,10 @@ nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rul
 	nt_buffer path = {0};
 	nt_buffer_text(&path, name);
 	w.root_length = path.size + (path.size > 0 && name[path.size - 1] != '/');
+	const size_t before = inputs->count;
 	status = path.failed ? nt_fail_memory(error) : look_through(&w, &path);
+	if (!status && inputs->count == before)
+		note_nothing(&w);
 	nt_buffer_free(&path);
 	return status;
 }

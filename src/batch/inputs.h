@@ -15,6 +15,7 @@ typedef struct nt_inputs {
 	const char **names;
 	const char **roots; /* the folder that was named and has the input in or below it; NULL: the input was named */
 	size_t count, capacity, root_capacity;
+	nt_error nothing; /* the first folder in which no file was taken, and why; status NT_OK: there is none */
 } nt_inputs;
 
 /*

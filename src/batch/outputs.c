@@ -152,7 +152,8 @@ static int compare_jobs(const void *a, const void *b)
 }
 
 /* Refuses jobs with one output: all of them, since which one is meant? The reason is one for all. */
-static nt_status refuse_clash(const nt_batch *batch, nt_job **jobs, size_t count, bool tree_helps, nt_error *error)
+static nt_status refuse_clash(const nt_batch *batch, nt_job **jobs, size_t count, bool tree_helps, const char *remedy,
+	nt_error *error)
 {
 	enum { NAMED = 3 };
 	nt_buffer reason = {0};
@@ -169,6 +170,8 @@ static nt_status refuse_clash(const nt_batch *batch, nt_job **jobs, size_t count
 		nt_buffer_text(&reason, "; --keep-tree=");
 		append_common_folder(&reason, batch);
 		nt_buffer_text(&reason, " keeps the folders of inputs");
+	} else {
+		nt_buffer_format(&reason, "; %s", remedy);
 	}
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < count && !status; i++) {
@@ -179,7 +182,8 @@ static nt_status refuse_clash(const nt_batch *batch, nt_job **jobs, size_t count
 	return status;
 }
 
-static nt_status refuse_equal_outputs(const nt_batch *batch, bool tree_helps, nt_error *error)
+static nt_status refuse_equal_outputs(const nt_batch *batch, bool tree_helps, const char *remedy,
+	nt_error *error)
 {
 	nt_job **sorted = nt_alloc(batch->count, sizeof(nt_job *));
 	if (!sorted)
@@ -192,7 +196,7 @@ static nt_status refuse_equal_outputs(const nt_batch *batch, bool tree_helps, nt
 		for (end = first + 1; end < batch->count && same_output(sorted[first], sorted[end]);)
 			end++;
 		if (end - first > 1)
-			status = refuse_clash(batch, sorted + first, end - first, tree_helps, error);
+			status = refuse_clash(batch, sorted + first, end - first, tree_helps, remedy, error);
 	}
 	free(sorted);
 	return status;
@@ -233,7 +237,7 @@ static const nt_job *find_reader(const nt_batch *batch, const identity *inputs, 
 
 /* An output that is a file already must not be the input of another job: who reads it when? Its own
  * input is nt_run's affair. */
-static nt_status refuse_foreign_inputs(const nt_batch *batch, nt_error *error)
+static nt_status refuse_foreign_inputs(const nt_batch *batch, const char *remedy, nt_error *error)
 {
 	identity *inputs = nt_alloc(batch->count, sizeof *inputs);
 	if (!inputs)
@@ -256,8 +260,8 @@ static nt_status refuse_foreign_inputs(const nt_batch *batch, nt_error *error)
 		if (!reader)
 			continue;
 		nt_buffer reason = {0};
-		nt_buffer_format(&reason, "'%s' would be written to '%s', which is the input '%s'",
-			batch->jobs[i].input, batch->jobs[i].output, reader->input);
+		nt_buffer_format(&reason, "'%s' would be written to '%s', which is the input '%s'; %s",
+			batch->jobs[i].input, batch->jobs[i].output, reader->input, remedy);
 		status = refuse(&batch->jobs[i], &reason, error);
 		nt_buffer_free(&reason);
 	}
@@ -368,9 +372,9 @@ nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count
 	if (!status)
 		status = name_outputs(batch, directory, tree, settings->output_format, error);
 	if (!status)
-		status = refuse_equal_outputs(batch, !tree, error);
+		status = refuse_equal_outputs(batch, !tree, "convert one of them by itself, to another name", error);
 	if (!status)
-		status = refuse_foreign_inputs(batch, error);
+		status = refuse_foreign_inputs(batch, "choose another folder for -d", error);
 	size_t refused = 0;
 	while (refused < batch->count && batch->jobs[refused].refused)
 		refused++;
@@ -381,14 +385,15 @@ nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count
 
 nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
 {
+	static const char once[] = "it is one file: name it once";
 	nt_status status = nt_batch_check(batch, inputs, count, error);
 	for (size_t i = 0; i < count && !status; i++) {
 		batch->jobs[i].output = strdup(inputs[i]);
 		status = batch->jobs[i].output ? NT_OK : nt_fail_memory(error);
 	}
 	if (!status)
-		status = refuse_equal_outputs(batch, false, error);
-	return status ? status : refuse_foreign_inputs(batch, error);
+		status = refuse_equal_outputs(batch, false, once, error);
+	return status ? status : refuse_foreign_inputs(batch, once, error);
 }
 
 void nt_batch_free(nt_batch *batch)

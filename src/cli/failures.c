@@ -23,12 +23,10 @@ static nt_failure_group *group_of(nt_failures *failures, const char *reason)
 void nt_failures_add(nt_failures *failures, const nt_job *job)
 {
 	failures->count++;
-	failures->refused += job->refused != NULL;
-	if (job->refused)
-		return;
 	const nt_error *error = job->outcome ? &job->outcome->error : NULL;
-	nt_failure_group *group =
-		group_of(failures, error && error->message[0] ? error->message : nt_status_text(job->status));
+	/* each clash of names has told which ones */
+	nt_failure_group *group = group_of(failures, job->refused ? "would replace another output or an input"
+		: error && error->message[0] ? error->message : nt_status_text(job->status));
 	if (!group)
 		return;
 	if (group->count < NT_FAILURE_NAMES)
@@ -39,7 +37,7 @@ void nt_failures_add(nt_failures *failures, const nt_job *job)
 static void append_group(nt_buffer *out, const nt_failure_group *group)
 {
 	size_t named = 0;
-	nt_buffer_format(out, "nmtan:   %zu file%s: ", group->count, group->count == 1 ? "" : "s");
+	nt_buffer_format(out, "nmtan:   %zu failed: ", group->count);
 	nt_buffer_clean(out, group->reason);
 	for (size_t i = 0; i < NT_FAILURE_NAMES; i++)
 		if (group->names[i]) {
@@ -53,19 +51,19 @@ static void append_group(nt_buffer *out, const nt_failure_group *group)
 
 void nt_failures_append(nt_buffer *out, const nt_failures *failures, const char *manifest)
 {
-	size_t shown = failures->refused;
+	size_t shown = 0;
 	for (size_t i = 0; i < failures->group_count; i++) {
 		append_group(out, &failures->groups[i]);
 		shown += failures->groups[i].count;
 	}
 	if (shown == failures->count)
 		return;
-	nt_buffer_format(out, "nmtan:   %zu for other reasons; all of them are ", failures->count - shown);
+	nt_buffer_format(out, "nmtan:   %zu failed for other reasons, which are ", failures->count - shown);
 	if (manifest) {
 		nt_buffer_text(out, "in ");
 		nt_buffer_clean(out, manifest);
 	} else {
-		nt_buffer_text(out, "told above");
+		nt_buffer_text(out, "printed above");
 	}
 	nt_buffer_text(out, "\n");
 }

@@ -20,7 +20,6 @@ typedef struct nt_failure_group {
 typedef struct nt_failures {
 	nt_failure_group groups[NT_FAILURE_GROUPS];
 	size_t group_count, count;
-	size_t refused; /* of these, before anything ran; each reason has been told once */
 } nt_failures;
 
 /* Counts a job that failed. A reason that finds no memory counts as a further reason. */

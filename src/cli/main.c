@@ -53,7 +53,9 @@ typedef struct session {
 	nt_summary total; /* of the times and sizes alone */
 	nt_failures failures;
 	size_t count, current, untried; /* jobs: all, up to date, not tried */
-	size_t solved, unchanged, wrong; /* outputs: with new tangents, without; with wrong ones that were kept */
+	/* outputs: left because they had these bytes; with new tangents; of glTF and PLY, unchanged; others; and of all
+	 * of them, with wrong tangents that were kept */
+	size_t left, solved, unchanged, without, wrong;
 	int exit_code;
 } session;
 
@@ -191,8 +193,9 @@ static int tell_run(session *s, nt_job *job)
 		if (fails)
 			code = NT_EXIT_FINDINGS;
 	}
-	s->solved += !job->status && summary->solved_count;
-	s->unchanged += !job->status && !summary->solved_count;
+	if (!job->status)
+		*(summary->left ? &s->left : summary->solved_count ? &s->solved
+			: summary->unchanged ? &s->unchanged : &s->without) += 1;
 	s->wrong += !job->status && summary->keeps_wrong;
 	add_times(&s->total, summary);
 	add_page(s, summary->report, &code);
@@ -372,11 +375,12 @@ static void tell_files(session *s)
 /* Counts of those that are done. */
 static void append_outcomes(session *s)
 {
-	const size_t counts[] = {s->solved, s->unchanged, s->wrong};
-	const char *const words[] = {"got tangents", "unchanged", s->wrong == 1 ? "keeps wrong tangents"
-										: "keep wrong tangents"};
+	const size_t counts[] = {s->solved, s->unchanged, s->without, s->left, s->wrong};
+	const char *const words[] = {"got tangents", "unchanged", "written without new tangents",
+		s->left == 1 ? "left as it was" : "left as they were",
+		s->wrong == 1 ? "keeps wrong tangents" : "keep wrong tangents"};
 	const char *before = "; ";
-	for (int i = 0; i < 3; i++) {
+	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
 		if (!counts[i])
 			continue;
 		nt_buffer_format(&s->text, "%s%zu %s", before, counts[i], words[i]);
@@ -388,7 +392,7 @@ static void append_outcomes(session *s)
 static void tell_end(session *s)
 {
 	const size_t failed = s->failures.count, count = s->count;
-	if (count != 1 && (failed || s->wrong || s->style.verbosity >= 0)) {
+	if (count > 1 && (failed || s->wrong || s->style.verbosity >= 0)) {
 		nt_buffer_format(&s->text, "nmtan: %zu of %zu done", count - failed - s->untried, count);
 		if (s->current)
 			nt_buffer_format(&s->text, ", %zu of them up to date", s->current);
@@ -401,7 +405,7 @@ static void tell_end(session *s)
 		if (s->total.bare_materials)
 			nt_buffer_format(&s->text, ", %zu material%s without any image", s->total.bare_materials,
 				s->total.bare_materials == 1 ? "" : "s");
-		nt_buffer_text(&s->text, failed > s->failures.refused ? ":\n" : "\n");
+		nt_buffer_text(&s->text, "\n");
 		nt_failures_append(&s->text, &s->failures, s->command->manifest);
 	}
 	if (s->command->timing)
@@ -640,7 +644,7 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 }
 
 /* The names of many inputs become the command's operands. */
-static nt_status choose_inputs(nt_command *c, nt_inputs *inputs, nt_error *error)
+static nt_status choose_inputs(nt_command *c, nt_inputs *inputs, nt_style style, nt_error *error)
 {
 	const nt_folder_rules rules = {.recursive = c->recursive, .include = c->include.items,
 		.include_count = c->include.count, .exclude = c->exclude.items, .exclude_count = c->exclude.count,
@@ -654,6 +658,17 @@ static nt_status choose_inputs(nt_command *c, nt_inputs *inputs, nt_error *error
 		status = nt_inputs_add_list(inputs, c->files_from, &rules, error);
 	if (!status && (c->directory || c->settings.in_place))
 		status = nt_inputs_drop_repeated(inputs, error);
+	/* a folder in which nothing is found was named by mistake; a list that selects nothing is an answer */
+	if (!status && !inputs->count && inputs->nothing.status) {
+		*error = inputs->nothing;
+		status = error->status;
+	} else if (!status && (inputs->nothing.status || !inputs->count) && c->verbosity >= 0) {
+		nt_error warning;
+		const bool list = !inputs->count;
+		nt_fail_file(&warning, NT_ERROR_IO, list ? c->files_from : inputs->nothing.place.file, "warning: %s",
+			list ? "there are no names in it, and nothing to do" : inputs->nothing.message);
+		nt_say_error(&warning, style);
+	}
 	c->operands = inputs->names;
 	c->operand_count = inputs->count;
 	return status;
@@ -668,7 +683,7 @@ static int run(nt_command *command, nt_style style, bool colour_on_stdout)
 	nt_error error;
 	nt_status status = check_pairs(command, NULL, &error);
 	if (!status)
-		status = choose_inputs(command, &inputs, &error);
+		status = choose_inputs(command, &inputs, style, &error);
 	if (!status)
 		status = nt_report_plan_make(&plan, command, colour_on_stdout, &error);
 	if (!status)

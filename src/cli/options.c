@@ -99,6 +99,12 @@ static nt_status refuse_value(parser *p, const nt_option_row *row, const char *w
 {
 	if (row->kind == NT_OPTION_CHOICE || row->kind == NT_OPTION_MAYBE_CHOICE) {
 		char list[128];
+		int count;
+		const char *colon = strchr(word, ':');
+		snprintf(list, sizeof list, "%.*s0", colon ? (int)(colon - word) + 1 : 0, word);
+		if (colon && choice_of(row->values, list, row->most, &count) >= 0)
+			return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '%s': '%s' is not a number from 0 to %d",
+				row->name, word, colon + 1, row->most);
 		snprintf(list, sizeof list, "%s", row->values);
 		for (char *c = list; *c; c++)
 			*c = *c == '|' ? ' ' : *c;
@@ -268,7 +274,18 @@ nt_status nt_match_codes(const char *option, const char *word, bool chosen[NT_CO
 		nearest ? "did you mean " : "--list-codes shows them all", nearest ? nearest : "", nearest ? "?" : "");
 }
 
-/* --name, --name=value, --name value. *used becomes 2 where the next word belongs to it. */
+/* Whether the next word is the value of an option that needs one. One that is an option itself is none, as in
+ * --baseline --check; "-" is a name, and -1 a number that is wrong. */
+static nt_status take_next(parser *p, const char *option, const nt_option_row *row, const char *next)
+{
+	if (next && (next[0] != '-' || !next[1] || (next[1] >= '0' && next[1] <= '9')))
+		return NT_OK;
+	return next ? nt_fail(p->error, NT_ERROR_USAGE, "%s needs a value: %s; if that is '%s': --%s=%s", option,
+			      row->values, next, row->name, next)
+		    : nt_fail(p->error, NT_ERROR_USAGE, "%s needs a value: %s", option, row->values);
+}
+
+/* --name, --name=value, --name value. *used becomes 2 if the next word belongs to it. */
 static nt_status parse_long(parser *p, const char *word, const char *next, int *used)
 {
 	const char *name = word + 2;
@@ -287,9 +304,10 @@ static nt_status parse_long(parser *p, const char *word, const char *next, int *
 		return apply(p, row, NULL);
 	}
 	if (!value && row->kind != NT_OPTION_MAYBE_CHOICE) {
-		if (!next)
-			return nt_fail(p->error, NT_ERROR_USAGE, "--%s needs a value: %s", row->name,
-				row->values);
+		char option[64];
+		snprintf(option, sizeof option, "--%s", row->name);
+		if (take_next(p, option, row, next))
+			return p->error->status;
 		value = next;
 		*used = 2;
 	}
@@ -320,9 +338,9 @@ static nt_status parse_short(parser *p, const char *word, const char *next, int 
 		}
 		if (letter[1])
 			return apply(p, row, letter + 1);
-		if (!next)
-			return nt_fail(p->error, NT_ERROR_USAGE, "-%c needs a value: %s", *letter,
-				row->values);
+		const char option[] = {'-', *letter, '\0'};
+		if (take_next(p, option, row, next))
+			return p->error->status;
 		*used = 2;
 		return apply(p, row, next);
 	}
@@ -455,9 +473,11 @@ static nt_status check_count(const parser *p)
 			c->operands[0]);
 	if (c->settings.check && c->output && (count > 1 || list_option(c)))
 		return nt_fail(p->error, NT_ERROR_USAGE, "--output names the output of one input; for many use -d DIR");
+	/* -o comes last of the operands */
+	const size_t extra = c->output && !c->settings.check ? 1 : 2;
 	if (!many && count > 2)
 		return nt_fail(p->error, NT_ERROR_USAGE,
-			"'%s' is one name too many; for many inputs use -d DIR or --in-place", c->operands[2]);
+			"'%s' is one name too many; for many inputs use -d DIR or --in-place", c->operands[extra]);
 	return NT_OK;
 }
 

@@ -150,7 +150,12 @@ static nt_status open_temporary(nt_output *output, nt_sink *sink, const char *be
 		return NT_OK;
 	}
 	const size_t length = strlen(folder) > 1 ? strlen(folder) - 1 : 1;
-	if (number == ENOENT || number == ENOTDIR)
+	struct stat info;
+	const bool no_folder = number == ENOENT || number == ENOTDIR;
+	if (no_folder && stat(folder, &info) == 0 && S_ISDIR(info.st_mode)) /* as those of /proc */
+		nt_fail(error, NT_ERROR_IO, "cannot write: the folder \"%.*s\" takes no new files", (int)length,
+			folder);
+	else if (no_folder)
 		nt_fail(error, NT_ERROR_IO, "cannot write: there is no folder \"%.*s\"", (int)length, folder);
 	else if (number == ENOMEM)
 		nt_fail_memory(error);

@@ -423,6 +423,16 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 	return status;
 }
 
+/* Whether the output has what the input has: nobody's tangents or normals were made or dropped, no image was turned. */
+static bool is_unchanged(const run *r)
+{
+	bool same = r->writer && (nt_writer_edits(r->reader, r->writer) || r->reader == r->writer) &&
+		!r->turned.count && !r->summary->solved_count && !r->summary->skipped[NT_SKIP_DROPPED];
+	for (size_t i = 0; i < r->scene.mesh_count; i++)
+		same &= !r->scene.meshes[i].normals_made;
+	return same;
+}
+
 /* Whether tangents stayed of which a stage or the report found that they are wrong. */
 static bool keeps_wrong(const nt_summary *summary)
 {
@@ -513,6 +523,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->findings = r.scene.findings;
 	summary->rounding = r.scene.rounding;
 	summary->morph_cost = r.scene.morph_cost;
+	summary->unchanged = !status && is_unchanged(&r);
 	summary->keeps_wrong = !settings->check && keeps_wrong(summary);
 	r.scene.findings = (nt_finding_list){0};
 	nt_scene_free(&r.scene);

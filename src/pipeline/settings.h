@@ -176,6 +176,7 @@ typedef struct nt_summary {
 	size_t fixed[NT_CODE_COUNT]; /* with fix: primitives and images repaired, by the code of the finding */
 	bool keeps_wrong; /* tangents of the output are known to be wrong */
 	bool left;       /* the file has what it would get, and was left as it is */
+	bool unchanged;  /* the output says what the input says, in the same format */
 	size_t bare_materials;   /* that name images, none of which is in the output */
 	char bare_material[100]; /* the first of them */
 	char *note;      /* which files of the output have other names than they would, and why: "; ..."; NULL: none */

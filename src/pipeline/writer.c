@@ -41,22 +41,20 @@ static nt_status choose(const nt_settings *settings, const char *path, const nt_
 	if (!*writer && unnamed)
 		return NT_OK;
 	if (!*writer && is_folder(path))
-		return nt_fail(error, NT_ERROR_USAGE, "\"%s\" is a folder: to write into it use -d",
-			path);
+		return nt_fail_file(error, NT_ERROR_USAGE, path, "is a folder: to write into it use -d");
 	if (!*writer)
-		return nt_fail(error, NT_ERROR_USAGE,
-			"cannot tell the output format from the name \"%s\": expected .gltf, .glb or .ply, "
-			"or --output-format", path);
+		return nt_fail_file(error, NT_ERROR_USAGE, path,
+			"cannot tell the output format from the name: expected .gltf, .glb or .ply, "
+			"or --output-format");
 	if (!(*writer)->write)
-		return nt_fail(error, NT_ERROR_USAGE, "\"%s\": %s cannot be written, only read",
-			path, (*writer)->name);
+		return nt_fail_file(error, NT_ERROR_USAGE, path,
+			"%s can only be read; an output is .gltf, .glb or .ply%s", (*writer)->name,
+			settings->in_place ? ": -d DIR writes them elsewhere" : "");
 	if (settings->verify && (*writer)->format == NT_FORMAT_PLY)
-		return nt_fail(error, NT_ERROR_USAGE,
-			"--verify reads glTF back; \"%s\" will be PLY", path);
+		return nt_fail_file(error, NT_ERROR_USAGE, path, "--verify reads glTF back; this will be PLY");
 	if (settings->precision > NT_PRECISION_FLOAT && (*writer)->format == NT_FORMAT_PLY)
-		return nt_fail(error, NT_ERROR_USAGE,
-			"--precision is about glTF; \"%s\" will be PLY, whose tangents are floats",
-			path);
+		return nt_fail_file(error, NT_ERROR_USAGE, path,
+			"--precision is about glTF; this will be PLY, whose tangents are floats");
 	return NT_OK;
 }
 

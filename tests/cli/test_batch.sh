@@ -18,7 +18,7 @@ exists out/quad.glb out/plates.glb
 is "$(ls out | wc -l)" 2
 says "bad.obj:3:"
 says "2 of 4 done, 2 failed"
-says "  1 file: no such file: missing.obj"
+says "  1 failed: no such file: missing.obj"
 run -q -d out missing.obj "$data/quad.obj"
 exits 2
 says "missing.obj"
@@ -48,7 +48,7 @@ for jobs in 1 2 4; do
 	run -j4 --jobs=$jobs -d out$jobs $inputs
 	exits 2
 	says "6 of 9 done, 3 failed"
-	says "  2 files: no such file: missing.obj, gone.obj"
+	says "  2 failed: no such file: missing.obj, gone.obj"
 	sed -e 's/, [0-9.e-]* m*s$//' -e "s/out$jobs/out/" "$WORK/err.txt" >said$jobs
 done
 for jobs in 2 4; do
@@ -123,7 +123,8 @@ run -q -d out --output-format=glb --manifest=m x/a.obj y/a.glb one.obj x/b.obj .
 exits 1
 says "'x/a.obj' and 'y/a.glb' would both be written to 'out/a.glb'"
 says "'x/b.obj' and 'y/b.ply' would both be written to 'out/b.glb'; --keep-tree=. keeps the folders of inputs"
-is "$(wc -l <"$WORK/err.txt")" 3 # a line for each clash, and the sum
+says "nmtan:   4 failed: would replace another output or an input: x/a.obj, y/a.glb, x/b.obj and 1 more"
+is "$(wc -l <"$WORK/err.txt")" 4 # a line for each clash, the sum, and who failed
 is "$(ls out)" one.glb
 is "$(wc -l <m)" 5
 cp x/a.obj y/A.OBJ
@@ -139,6 +140,71 @@ rm y/A.OBJ x/A.OBJ
 run -d none --fail-fast x/a.obj y/a.glb one.obj
 exits 1
 says "0 of 3 done, 2 failed, 1 not tried"
+
+scene "if no folder tells two inputs apart, the refusal says what does"
+cp "$data/quad.obj" b.obj
+cp "$data/quad_le.ply" b.ply
+run -q -d out --output-format=glb b.obj b.ply
+exits 1
+says "'b.obj' and 'b.ply' would both be written to 'out/b.glb'; convert one of them by itself, to another name"
+run -q b.ply out.glb
+exits 0
+run -q --in-place -d . --output-format=ply b.obj b.ply
+exits 1
+says "'b.obj' and 'b.ply' would both be written to './b.ply'"
+ln -s b.ply c.ply
+cp "$data/quad_le.ply" a.ply
+run -q --in-place a.ply b.ply c.ply
+exits 1
+says "'b.ply' would be written to 'b.ply', which is the input 'c.ply'; it is one file: name it once"
+
+scene "the sum says what became of each output, and one reason is one line for all files that have it"
+mkdir in
+for i in 1 2 3 4 5; do cp "$data/quad.obj" in/o$i.obj; done
+cp "$data/plates.glb" "$data/quad_le.ply" in
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >in/scan.obj
+run -r -d out in
+exits 0
+says "nmtan: 8 of 8 done; 7 got tangents, 1 written without new tangents"
+run -r -d again out
+says "nmtan: 8 of 8 done; 8 unchanged"
+run -r --in-place in
+exits 1
+says "nmtan: 2 of 8 done, 6 failed; 2 got tangents"
+says "nmtan:   6 failed: obj can only be read; an output is .gltf, .glb or .ply: -d DIR writes them elsewhere: in/o1.obj, in/o2.obj, in/o3.obj and 3 more"
+is "$(grep -c '^nmtan:   ' "$WORK/err.txt")" 1
+run -r --in-place --include='*l*' in
+exits 0
+says "2 of 2 done; 2 left as they were"
+
+scene "a folder or a pattern in which nothing is found is an error, a list without names is not"
+mkdir empty one
+cp "$data/quad.obj" one
+echo >empty/notes.txt
+: >names
+while IFS='|' read -r words message; do
+	# shellcheck disable=SC2086
+	run -q $words
+	exits 2
+	says "nmtan: $message"
+	only empty names one
+done <<-'EOF'
+	-r -d out empty|empty: no mesh is in it or below it (.obj .ply .gltf .glb .drc); files looked at: 1
+	-r --check empty|empty: no mesh is in it or below it (.obj .ply .gltf .glb .drc); files looked at: 1
+	-r -d out --include=*.glb one empty|one: no file matches --include='*.glb'; meshes looked at: 1
+	-r --check --include=*.glb --include=b* --exclude=c one|one: no file matches --include='*.glb' or another pattern and no --exclude; meshes looked at: 1
+	-r --in-place --exclude=*.obj one|one: --exclude takes out every mesh; meshes looked at: 1
+EOF
+run -r -d out empty one
+exits 0
+says "empty: warning: no mesh is in it"
+exists out/quad.glb
+run --check --files-from=names
+exits 0
+says "names: warning: there are no names in it, and nothing to do"
+run -q -d out --files-from=names
+exits 0
+silent
 
 scene "when all inputs are refused nothing is made"
 mkdir x y
@@ -189,6 +255,11 @@ says "file"
 run -d file/deeper "$data/quad.obj"
 exits 2
 says "file: is not a folder"
+if [ -d /proc/self ]; then
+	run "$data/quad.obj" /proc/quad.glb
+	exits 2
+	says '/proc/quad.glb: cannot write: the folder "/proc" takes no new files'
+fi
 only abs file new
 
 done_testing

@@ -124,7 +124,7 @@ mkdir out
 for folder in out out/ new/; do
 	run a.glb $folder
 	exits 1
-	says "\"$folder\" is a folder: to write into it use -d"
+	says "nmtan: $folder: is a folder: to write into it use -d"
 done
 only a.glb out
 rmdir out || wrong "something was written"

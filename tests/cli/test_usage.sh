@@ -77,7 +77,7 @@ exits 1
 says "out.xyz"
 run "$data/quad.obj" out.obj
 exits 1
-says "out.obj"
+says "out.obj: obj can only be read; an output is .gltf, .glb or .ply"
 only
 
 scene "names that begin with a dash come after two dashes"

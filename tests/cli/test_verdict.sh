@@ -424,7 +424,7 @@ exits 0
 same a.glb b.glb
 run quad.obj c.glb -o d.glb
 exits 1
-says "d.glb"
+says "'c.glb' is one name too many"
 run -o a.glb -d . quad.obj
 exits 1
 says "--output and --directory"

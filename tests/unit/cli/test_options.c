@@ -217,6 +217,15 @@ TEST(bad_values_are_refused_whole)
 	/* missing ones and superfluous ones */
 	refuses("--threads needs a value", WORDS("a", "b", "--threads"));
 	refuses("-d needs a value", WORDS("a", "b", "-d"));
+	/* an option is no value of another one */
+	refuses("--baseline needs a value: FILE; if that is '--check': --baseline=--check",
+		WORDS("--baseline", "--check", "a"));
+	refuses("-d needs a value: DIR; if that is '-q': --directory=-q", WORDS("-d", "-q", "a"));
+	refuses("'400' is not a number from 0 to 180", WORDS("--normals=angle:400", "a", "b"));
+	refuses("'' is not a number from 0 to 180", WORDS("--normals=replace-angle:", "a", "b"));
+	refuses("'flat:3' is none of: auto flat", WORDS("--normals=flat:3", "a", "b"));
+	refuses("'z' is one name too many", WORDS("-o", "o.glb", "a", "z"));
+	refuses("'c' is one name too many", WORDS("a", "b", "c"));
 	refuses("'yes'", WORDS("--verify=yes", "a", "b"));
 	refuses("''", WORDS("--verify=", "a", "b"));
 	/* a value that may be left out is never the next word */
