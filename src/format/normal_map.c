@@ -252,6 +252,75 @@ nt_status nt_normal_map_open_image(nt_normal_map *map, nt_gltf *document, size_t
 	return status;
 }
 
+/* ---- one image of base colours ---- */
+
+/* An image of base colours, as the parts of a scene name it. */
+typedef struct color_name {
+	const char *text, *library; /* of an OBJ; text: NULL: none */
+	const nt_json_value *image; /* of a glTF; NULL: none */
+} color_name;
+
+static bool is_same_name(const color_name *a, const color_name *b)
+{
+	return a->image == b->image && a->library == b->library && !a->text == !b->text &&
+		(!a->text || strcmp(a->text, b->text) == 0);
+}
+
+/* The image that a part names, and whether it lies as the texture coordinates do. */
+static color_name color_of(const nt_scene *scene, const nt_mesh *mesh, size_t primitive, bool *lies_plain)
+{
+	color_name name = {0};
+	if (nt_format_is_gltf(scene->format)) {
+		const nt_json_value *info = info_of(scene->source, mesh, 0);
+		float t[6];
+		name.image = image_of(scene->source, mesh, 0, &(nt_normal_map){0});
+		read_transform(info, t);
+		*lies_plain &= !name.image || (set_of(info) == mesh->texcoord_set && t[0] == 1 && t[1] == 0 &&
+			t[2] == 0 && t[3] == 0 && t[4] == 1 && t[5] == 0);
+		return name;
+	}
+	const uint32_t index = mesh->primitives[primitive].material;
+	const nt_map *map = index < scene->material_count ? &scene->materials[index].base_color_map : NULL;
+	if (map && map->name && *map->name) {
+		name = (color_name){.text = map->name, .library = scene->materials[index].library};
+		*lies_plain &= !map->placement.moved;
+	}
+	return name;
+}
+
+nt_status nt_color_image_open(nt_normal_map *map, const char **obstacle, const nt_scene *scene,
+	const nt_image_places *searched, nt_error *error)
+{
+	const nt_mesh *first = NULL;
+	color_name known = {0};
+	bool any = false, same = true, lies_plain = true;
+	*map = (nt_normal_map){0};
+	*obstacle = NULL;
+	for (size_t i = 0; i < scene->instance_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+		const size_t parts = nt_format_is_gltf(scene->format) ? 1 : mesh->primitive_count;
+		for (size_t k = 0; k < parts && mesh->triangles && mesh->face_count && mesh->texcoords; k++) {
+			const color_name name = color_of(scene, mesh, k, &lies_plain);
+			any |= name.image || name.text;
+			same &= !first || is_same_name(&name, &known);
+			known = first ? known : name;
+			first = first ? first : mesh;
+		}
+	}
+	if (!any)
+		return NT_OK;
+	*obstacle = !same ? "not all of the mesh has one image of base colours"
+		: !lies_plain ? "the image of base colours lies otherwise than the texture coordinates" : NULL;
+	const nt_status status = *obstacle ? NT_OK : nt_normal_map_open(map, scene, first, 0, searched, error);
+	if (!status && !map->bytes && !*obstacle)
+		*obstacle = "the image of base colours cannot be read";
+	if (!status && map->bytes && map->type == NT_IMAGE_KTX2) {
+		*obstacle = "the image of base colours is a KTX2";
+		nt_normal_map_close(map);
+	}
+	return status;
+}
+
 void nt_normal_map_close(nt_normal_map *map)
 {
 	if (map->file.data)

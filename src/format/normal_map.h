@@ -36,7 +36,13 @@ nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt
 	const nt_image_places *searched, nt_error *error);
 void nt_normal_map_close(nt_normal_map *map);
 
-/* The same of an image of a glTF by its number. */
+/* The image of base colours that everything has which a PLY of the scene shows with texture coordinates, which lie as
+ * the image does. map->bytes are NULL where there is none; *obstacle says why if some of it has one, else it is NULL.
+ * Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
+nt_status nt_color_image_open(nt_normal_map *map, const char **obstacle, const nt_scene *scene,
+	const nt_image_places *searched, nt_error *error);
+
+/* The same as nt_normal_map_open() of an image of a glTF by its number. */
 nt_status nt_normal_map_open_image(nt_normal_map *map, nt_gltf *document, size_t image, nt_error *error);
 
 /* The place at which the map of a slot is looked up, at texture coordinates whose v points down: u' = t[0] u + t[1] v

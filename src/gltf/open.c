@@ -346,7 +346,6 @@ static nt_status list_left_out(nt_scene *scene, const nt_gltf *document, nt_erro
 		size_t count;
 	} parts[] = {
 		{"materials", nt_json_count(nt_gltf_root_member(document, "materials"))},
-		{"textures", nt_json_count(nt_gltf_root_member(document, "textures"))},
 		{"further sets of texture coordinates", sets},
 		{"morph targets", targets},
 		{"skins", nt_json_count(nt_gltf_root_member(document, "skins"))},
@@ -357,6 +356,7 @@ static nt_status list_left_out(nt_scene *scene, const nt_gltf *document, nt_erro
 			count_extras(document, "materials")},
 	};
 	nt_buffer text = {0};
+	scene->left_out_textures = nt_json_count(nt_gltf_root_member(document, "textures"));
 	for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
 		if (parts[i].count)
 			nt_buffer_format(&text, "%s%s (%zu)", text.size ? ", " : "", parts[i].what, parts[i].count);

@@ -13,6 +13,7 @@
 #include "base/hash.h"
 #include "file/watch.h"
 #include "format/foreign.h"
+#include "format/normal_map.h"
 #include "format/turned_maps.h"
 #include "gltf/document.h"
 #include "gltf/sidecar.h"
@@ -223,6 +224,25 @@ static nt_status protect_inputs(const run *r, nt_output *output)
 	return status;
 }
 
+/* The image that a PLY names. It is closed by the caller. */
+static nt_status find_texture_file(run *r, nt_normal_map *map, nt_texture_file *file)
+{
+	const nt_settings *s = r->settings;
+	const nt_image_places searched = {.folders = s->texture_paths, .folder_count = s->texture_path_count,
+		.root = s->root, .confined = s->outside == NT_OUTSIDE_NO,
+		.allow_outside = s->outside == NT_OUTSIDE_YES};
+	*file = (nt_texture_file){0};
+	if (r->writer->format != NT_FORMAT_PLY || r->scene.format == NT_FORMAT_PLY || s->images == NT_IMAGES_NONE)
+		return NT_OK;
+	const nt_status status = nt_color_image_open(map, &file->obstacle, &r->scene, &searched, r->error);
+	if (status || !map->bytes)
+		return status;
+	file->path = map->path;
+	file->bytes = map->bytes;
+	file->size = map->size;
+	return NT_OK;
+}
+
 /* A check does all but write, for what writers leave out is found there. */
 static nt_status write_scene(run *r)
 {
@@ -230,8 +250,12 @@ static nt_status write_scene(run *r)
 	const nt_settings *s = r->settings;
 	const nt_output_options output_options = output_options_of(r);
 	const bool dry = output_options.dry_run;
+	nt_normal_map colors = {0};
+	nt_texture_file texture_file;
+	nt_status status = find_texture_file(r, &colors, &texture_file);
 	const nt_write_options options = {
 		.format = r->writer->format,
+		.texture_file = &texture_file,
 		.path = r->output_path,
 		.bitangents = s->bitangents,
 		.images = s->images,
@@ -247,13 +271,15 @@ static nt_status write_scene(run *r)
 		.turned = &r->turned,
 	};
 	nt_output *output = NULL;
-	nt_status status = nt_output_create(&output, &output_options, r->error);
+	if (!status)
+		status = nt_output_create(&output, &output_options, r->error);
 	if (!status && r->writer->format != NT_FORMAT_PLY)
 		status = nt_stage_quads(&r->scene, r->error);
 	if (!status && !s->in_place && !r->nowhere)
 		status = protect_inputs(r, output);
 	if (!status)
 		status = r->writer->write(&r->scene, &options, output, r->error);
+	nt_normal_map_close(&colors);
 	/* the input may still be read here, and its faults are its own */
 	if (status && r->error->place.pointer[0])
 		nt_error_in_file(r->error, r->input_path);

@@ -68,6 +68,9 @@ static nt_status check_edit(const nt_settings *settings, const char *path, const
 			"--draco=%s compresses only glTF that is made from glTF, not %s made from %s",
 			settings->draco == NT_DRACO_AS_SEQUENTIAL ? "sequential" : "edgebreaker",
 			writer->name, reader->name);
+	if (writer && writer->format == NT_FORMAT_PLY && settings->images == NT_IMAGES_EMBED)
+		return nt_fail(error, NT_ERROR_USAGE,
+			"--images=embed: a PLY names a file; use link, copy or none");
 	if (writer && !settings->check && writer->format != NT_FORMAT_PLY && nt_output_is_stream(path) &&
 		(settings->images == NT_IMAGES_COPY || settings->buffers == NT_BUFFERS_COPY))
 		return nt_fail(error, NT_ERROR_USAGE, "--%s=copy: there are no files beside \"%s\"; use link or embed",

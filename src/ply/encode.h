@@ -40,7 +40,7 @@ nt_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply
 	nt_error *error);
 
 /* Writes any other scene, binary, little endian, in world space. export.c */
-nt_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_output *out,
+nt_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_output *out, nt_output *set,
 	nt_error *error);
 
 #endif

@@ -14,7 +14,7 @@ nt_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_outp
 	if (status)
 		return status;
 	status = scene->format == NT_FORMAT_PLY ? ply_write_source(scene, options, &out, error)
-						: ply_write_scene(scene, options, &out, error);
+						: ply_write_scene(scene, options, &out, output, error);
 	if (!status)
 		status = ply_put_bytes(&out, NULL, 0, error);
 	nt_buffer_free(&out.buffer);

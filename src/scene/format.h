@@ -133,6 +133,7 @@ typedef struct nt_write_options {
 	unsigned threads;   /* 0: all */
 	const struct nt_turned_images *turned; /* of a glTF: gltf/turned_images.h; NULL: none */
 	const struct nt_textures *textures; /* of a new document's materials: image/textures.h; NULL: none */
+	const struct nt_texture_file *texture_file; /* of a PLY: scene/scene.h; NULL: none */
 } nt_write_options;
 
 #endif

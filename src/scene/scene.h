@@ -364,6 +364,7 @@ typedef struct nt_scene {
 	const char *left_out; /* names of what the source has, and the scene has not; of a glTF only if the output is
 	                         one mesh in the world; NULL: nothing */
 	size_t left_out_count;
+	size_t left_out_textures; /* of a glTF, the same; a PLY may have one of them */
 
 	/* Data that a reader keeps for the writer of the same format, and the input's bytes. */
 	void *source;
@@ -380,6 +381,14 @@ typedef struct nt_scene {
 	size_t byte_count;
 	const struct nt_file *file; /* the file of these bytes, to stream from; NULL: only the bytes are there */
 } nt_scene;
+
+/* The one image of base colours that all of a scene has: a PLY can name one. */
+typedef struct nt_texture_file {
+	const char *path;   /* of the file that it is; NULL: it is in the input */
+	const unsigned char *bytes; /* [size] NULL: there is none */
+	size_t size;
+	const char *obstacle; /* why there is none although materials have one; NULL: they have none */
+} nt_texture_file;
 
 /* An empty scene. */
 void nt_scene_init(nt_scene *scene, const char *path);

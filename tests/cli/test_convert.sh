@@ -316,10 +316,105 @@ json.dump(g, open("full.gltf", "w"))' "$data/morph.gltf"
 cp "$data"/*.png .
 run full.gltf full.ply
 exits 0
-says "12 parts of the input are not in the output: materials (1), textures (1), further sets of texture coordinates (2), morph targets (1), animations (3), cameras (1), lights (2), extras (1) [REFERENCE_LOST]"
+says "12 parts of the input are not in the output: materials (1), further sets of texture coordinates (2), morph targets (1), animations (3), cameras (1), lights (2), extras (1), textures (1) [REFERENCE_LOST]"
 run -q full.gltf full.ply
 says "missing from the output: 12 REFERENCE_LOST"
 run full.gltf full.glb
 says_not REFERENCE_LOST
+
+# texture_file FILE: what MeshLab and trimesh take for the name of the image: the rest of the line, without what MeshLab drops.
+texture_file() {
+	LC_ALL=C sed -n '/^end_header/q; s/^comment TextureFile //p' "$1" | tr -d '\001-\040\175-\377'
+}
+
+# two.gltf: two triangles in two primitives; $1, $2: their base colours, of the images a.png and b.png
+two_colors() {
+	gltf new two "const attributes = {POSITION: add(\"VEC3\", 5126, [0, 0, 0, 1, 0, 0, 0, 1, 0]),
+			TEXCOORD_0: add(\"VEC2\", 5126, [0, 0, 1, 0, 0, 1])};
+		g.images = [{uri: \"tex/a.png\"}, {uri: \"tex/b%20c.png\"}];
+		g.textures = [{source: 0}, {source: 1}, {source: 0}];
+		const material = (info) => ({pbrMetallicRoughness: info && {baseColorTexture: info}});
+		g.materials = [material($1), material($2)];
+		g.meshes = [{primitives: [{attributes, material: 0}, {attributes, material: 1}]}];
+		g.nodes = [{mesh: 0}]"
+	mkdir -p tex
+	cp "$data/bumps.png" tex/a.png
+	cp "$data/bumps.png" "tex/b c.png"
+}
+
+scene "a PLY names the one image of base colours, as MeshLab reads it"
+two_colors '{index: 0}' '{index: 2}'
+run --only=all two.gltf two.ply
+exits 0
+is "$(texture_file two.ply)" tex/a.png
+grep -aqx 'property float s' two.ply || wrong "MeshLab reads no texture coordinates"
+says "materials (2), textures (2); TextureFile is tex/a.png"
+mkdir out
+run --only=all two.gltf out/two.ply
+is "$(texture_file out/two.ply)" a.png
+same out/a.png tex/a.png
+run --only=all two.gltf out/two.ply
+exits 0
+is "$(cd out && echo *)" "a.png two.ply"
+run --only=all --images=link two.gltf out/two.ply
+is "$(texture_file out/two.ply)" ../tex/a.png
+run --only=all --images=none two.gltf out/two.ply
+is "$(texture_file out/two.ply)" ""
+run --only=all --images=embed two.gltf out/two.ply
+exits 1
+says "a PLY names a file"
+run --only=all --images=embed two.gltf two.glb
+run --only=all two.glb out/two.ply
+is "$(texture_file out/two.ply)" two.png
+same out/two.png tex/a.png
+run --only=all two.glb -
+exits 0
+run --only=all out/two.ply out/back.glb
+exits 0
+is "$(gltf out/back.glb '[g.images.length, g.materials[0].pbrMetallicRoughness.baseColorTexture.index]')" '[1,0]'
+
+scene "an image whose name MeshLab does not read is copied under one that it reads"
+two_colors '{index: 1}' '{index: 1}'
+run --only=all two.gltf two.ply
+exits 0
+is "$(texture_file two.ply)" b_c.png
+same b_c.png tex/a.png
+
+scene "a PLY names no image if its parts have different ones, or if it lies otherwise; that is told"
+while IFS='|' read -r first second why; do
+	two_colors "$first" "$second"
+	run --only=all two.gltf two.ply
+	exits 0
+	is "$(texture_file two.ply)" ""
+	says "textures (3); no TextureFile: $why"
+	only two.bin two.gltf two.ply tex
+done <<-END
+	{index: 0}|{index: 1}|not all of the mesh has one image of base colours
+	{index: 0}|null|not all of the mesh has one image of base colours
+	{index: 0, texCoord: 1}|{index: 0, texCoord: 1}|the image of base colours lies otherwise than the texture coordinates
+END
+two_colors '{index: 0}' '{index: 0}'
+rm tex/a.png
+run --only=all two.gltf two.ply
+exits 0
+says "no TextureFile: the image of base colours cannot be read"
+is "$(texture_file two.ply)" ""
+
+scene "an image outside of the input's folder is not copied beside a PLY, unless that is allowed"
+mkdir in
+printf 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n' >in/in.obj
+printf 'newmtl m\nmap_Kd %s\n' ../above.png >in/m.mtl
+cp "$data/bumps.png" above.png
+cp "$data/bumps.png" in/near.png
+mkdir out
+run in/in.obj out/a.ply
+exits 0
+is "$(texture_file out/a.ply)" above.png
+run --outside=no in/in.obj out/b.ply
+is "$(texture_file out/b.ply)" ""
+says "materials (1); no TextureFile: the image of base colours cannot be read"
+printf 'newmtl m\nmap_Kd near.png\n' >in/m.mtl
+run in/in.obj in/near.ply
+is "$(texture_file in/near.ply)" near.png
 
 done_testing

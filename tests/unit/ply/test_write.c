@@ -479,8 +479,8 @@ TEST(other_scenes_are_written_in_world_space)
 	nt_finding_list_free(&h.scene.findings);
 	static const char head[] = "ply\nformat binary_little_endian 1.0\ncomment nmtan "
 		NMTAN_VERSION_STRING "\nelement vertex 6\n" XYZ NORMAL "property uchar red\n"
-		"property uchar green\nproperty uchar blue\nproperty uchar alpha\nproperty float u\n"
-		"property float v\n" TANGENT BITANGENT "element face 2\n" LIST "end_header\n";
+		"property uchar green\nproperty uchar blue\nproperty uchar alpha\nproperty float s\n"
+		"property float t\n" TANGENT BITANGENT "element face 2\n" LIST "end_header\n";
 	assert_true(back.scene.byte_count > strlen(head));
 	assert_memory_equal(back.bytes, head, strlen(head));
 	const nt_mesh *mesh = back.mesh;
