@@ -159,6 +159,21 @@ static const char *repair_of(nt_check *check, const nt_report_finding *finding, 
 	return repair;
 }
 
+/* A file as reports show it, if it is not the input: a material library; NULL. */
+static const char *elsewhere(nt_check *check, const char *file)
+{
+	nt_report *report = check->report;
+	nt_buffer shown = {0};
+	if (!*file || strcmp(file, report->path) == 0)
+		return NULL;
+	nt_shown_path(report->paths, file, &shown);
+	const char *kept =
+		shown.failed ? NULL : nt_arena_text(&report->arena, shown.data ? shown.data : "", shown.size);
+	nt_buffer_free(&shown);
+	check->failed |= !kept;
+	return kept;
+}
+
 /* Completes and appends a finding whose code, place, count, box, numbers and spots are set. */
 static void add_finding(nt_check *check, nt_report_finding *finding, nt_severity severity, const char *detail)
 {
@@ -174,6 +189,7 @@ static void add_finding(nt_check *check, nt_report_finding *finding, nt_severity
 	finding->message = sentence.failed ? NULL
 					 : nt_arena_text(&report->arena, sentence.data, sentence.size);
 	nt_buffer_free(&sentence);
+	finding->file = elsewhere(check, finding->place.file);
 	finding->fingerprint = fingerprint_of(finding,
 		finding->mesh == NT_NONE ? NULL : &report->meshes[finding->mesh], detail);
 	finding->geometry = nt_digest_finding(finding, detail);

@@ -108,6 +108,7 @@ typedef struct nt_report_finding {
 	bool stays;           /* nothing here repairs it, whatever its code's row says */
 	const char *repair;   /* options with which nmtan repairs it: see nt_code_row; NULL: it cannot */
 	nt_place_view place;  /* texts in the report's arena */
+	const char *file;     /* of the place, as reports show it, if that is not the input; NULL */
 	nt_box box;           /* around all occurrences */
 	uint64_t fingerprint;
 	uint64_t geometry;    /* the same without names: digest.h; 0: not known */

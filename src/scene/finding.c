@@ -21,7 +21,7 @@ static uint64_t hash_finding(const nt_finding *finding)
 static bool same_finding(const nt_finding *a, const nt_finding *b)
 {
 	return a->code == b->code && strcmp(a->detail, b->detail) == 0 &&
-		strcmp(a->place.object, b->place.object) == 0;
+		strcmp(a->place.object, b->place.object) == 0 && strcmp(a->place.file, b->place.file) == 0;
 }
 
 /* False: out of memory. */

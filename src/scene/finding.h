@@ -138,7 +138,7 @@ typedef struct nt_finding_list {
 	bool failed; /* out of memory while adding */
 } nt_finding_list;
 
-/* Adds `count` occurrences of a finding; to an earlier one, which keeps its place, where code, object and
+/* Adds `count` occurrences of a finding; to an earlier one, which keeps its place, if code, file, object and
  * detail are the same. place and detail_format may be NULL. */
 void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, size_t count,
 	const char *detail_format, ...) NT_PRINTF(5, 6);

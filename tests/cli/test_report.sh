@@ -139,6 +139,29 @@ grep -q '^m.obj:7: warning: MATERIAL_UNKNOWN: ' log.txt || wrong "not written to
 run --check --report-format=github "$data/plates.gltf" # no lines, several meshes
 grep -qE '^::error file=[^,]*plates.gltf,title=TAN_[A-Z_]*::.*, in mesh' ../out.txt || wrong "no mesh is named"
 
+# Two libraries, in a folder below; the second line of the first is empty.
+scene "what a material library says is found at its lines, in every format"
+mkdir in
+printf 'mtllib mtl/a.mtl\nmtllib mtl/b.mtl\n' >in/m.obj
+sed '1,/^o /{/^mtllib/d}; /^f /i usemtl wood' "$data/quad.obj" >>in/m.obj
+mkdir in/mtl
+printf 'newmtl wood\n\ndecal rough.png\nmap_Kd gone.png\n' >in/mtl/a.mtl
+printf 'newmtl wood2\nd 1\n' >in/mtl/b.mtl
+while IFS='|' read -r format lost missing; do
+	run -q --check --report=- --report-format="$format" in/m.obj
+	prints "$lost"
+	prints "$missing"
+done <<'END'
+text|in material "wood", line 3 of in/mtl/a.mtl|in material "wood", line 4 of in/mtl/a.mtl
+lines|in/mtl/a.mtl:3: warning: MATERIAL_LOST: |in/mtl/a.mtl:4: warning: IMAGE_MISSING: image cannot be read: gone.png, in material "wood"
+github|::warning file=in/mtl/a.mtl,line=3,title=MATERIAL_LOST::|::warning file=in/mtl/a.mtl,line=4,title=IMAGE_MISSING::
+markdown|material "wood", line 3 of in/mtl/a.mtl|material "wood", line 4 of in/mtl/a.mtl
+sarif|"uri": "in/mtl/a.mtl"}, "region": {"startLine": 3}}, "logicalLocations": [{"name": "material \"wood\""|"uri": "in/mtl/a.mtl"}, "region": {"startLine": 4}}
+junit|MTL: decal, in material &quot;wood&quot;, line 3 of in/mtl/a.mtl|gone.png, in material &quot;wood&quot;, line 4 of in/mtl/a.mtl
+csv|"in/mtl/a.mtl","material ""wood""",MATERIAL_LOST,warning,1,"1 property of a material is not carried over: MTL: decal",3,|gone.png",4,
+html|"where":"material \"wood\", line 3 of in/mtl/a.mtl"|"where":"material \"wood\", line 4 of in/mtl/a.mtl"
+END
+
 scene "a quiet run that fails by what it found says what"
 flat >m.obj
 for words in "$strict -q m.obj" "$strict -q --report=r.json m.obj" "$strict --report=r.json m.obj" \

@@ -27,14 +27,14 @@ static void put_cell(const char *text, nt_buffer *out)
 /* Nothing, or numbers of the first place: line, triangle, x, y, z, u, v. */
 static void put_spot(const nt_report_finding *finding, nt_buffer *out)
 {
+	if (nt_finding_line(finding))
+		nt_buffer_format(out, "%zu", nt_finding_line(finding));
+	nt_buffer_text(out, ",");
 	if (finding->spot_count == 0) {
-		nt_buffer_text(out, ",,,,,,,");
+		nt_buffer_text(out, ",,,,,,");
 		return;
 	}
 	const nt_spot *spot = &finding->spots[0];
-	if (spot->line)
-		nt_buffer_format(out, "%zu", spot->line);
-	nt_buffer_text(out, ",");
 	if (spot->triangle != NT_NONE)
 		nt_buffer_format(out, "%u", spot->triangle);
 	for (int i = 0; i < 3; i++)
@@ -48,11 +48,11 @@ static void put_spot(const nt_report_finding *finding, nt_buffer *out)
 
 static void put_row(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
-	put_cell(report->shown, out);
+	put_cell(nt_finding_file(report, finding), out);
 	if (finding->mesh != NT_NONE)
 		nt_put_label(report, finding->mesh, put_cell, out);
 	else
-		put_cell("", out);
+		put_cell(finding->place.object, out);
 	nt_buffer_format(out, "%s,%s,%zu,", nt_code_info(finding->code)->name,
 		nt_severity_name(finding->severity), finding->count);
 	put_cell(finding->message, out);

@@ -11,7 +11,7 @@
  *                       images: [{image, map: [6], file}] of normal map and base colour: numbers of images, and URIs,
  *                       or null, wrap: [nt_wrap, nt_wrap], seams: [[edges, closed, length, plane, unmirrored island,
  *                       mirrored island]], geometry: bool}
- *             finding:  {code, severity, count, known, message, mesh, seam, island, line, box, at: [triangle],
+ *             finding:  {code, severity, count, known, message, mesh, seam, island, where, box, at: [triangle],
  *                       votes: [[percent]] of a normal map's blocks, rows from the top, green up above 0; or null,
  *                       repair: the command, not there if nmtan cannot repair it}
  *   codes     {CODE: {title, meaning, remedy}} of the findings that there are
@@ -248,8 +248,12 @@ static void put_finding(const nt_report *report, const nt_report_finding *findin
 	put_index("mesh", finding->mesh, out);
 	put_index("seam", finding->seam, out);
 	put_index("island", finding->island, out);
-	const nt_spot *spot = finding->spot_count ? &finding->spots[0] : NULL;
-	nt_buffer_format(out, ",\"line\":%zu,\"box\":", spot && spot->line ? spot->line : finding->place.line);
+	nt_buffer where = {0};
+	nt_put_where(report, finding, report->mesh_count > 1, nt_plain_text, &where);
+	nt_buffer_text(out, ",\"where\":");
+	put_string(where.data ? where.data : "", out);
+	nt_buffer_free_into(&where, out);
+	nt_buffer_text(out, ",\"box\":");
 	nt_json_box(&finding->box, out);
 	nt_buffer_text(out, ",\"at\":[");
 	for (unsigned i = 0, any = 0; i < finding->spot_count; i++)

@@ -28,8 +28,7 @@ static void put_findings(const nt_report_list *reports, const nt_report *report,
 		nt_buffer_format(out, "%s: %s: ", nt_severity_name(finding->severity),
 			nt_code_info(finding->code)->name);
 		nt_put_sentence(report, finding, nt_xml_text, out);
-		if (nt_finding_line(finding))
-			nt_buffer_format(out, ", line %zu", nt_finding_line(finding));
+		nt_put_line(finding, ", ", nt_xml_text, out);
 		nt_buffer_text(out, finding->known ? " (known)\n" : "\n");
 	}
 }

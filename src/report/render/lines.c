@@ -33,7 +33,7 @@ static void put_each(const nt_report_list *reports, void (*put)(const log_line *
 			const nt_report_finding *finding = &report->findings[k];
 			nt_buffer text = {0};
 			nt_put_sentence(report, finding, put_raw, &text);
-			put(&(log_line){report->shown, nt_finding_line(finding), finding->severity,
+			put(&(log_line){nt_finding_file(report, finding), nt_finding_line(finding), finding->severity,
 				nt_code_info(finding->code)->name, text.data ? text.data : ""}, out);
 			nt_buffer_free_into(&text, out);
 		}

@@ -56,10 +56,7 @@ static void put_file_row(const nt_report *report, nt_buffer *out)
 void nt_markdown_finding(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
 	nt_buffer_format(out, "| %s | `%s` | ", nt_severity_name(finding->severity), nt_code_info(finding->code)->name);
-	if (finding->mesh != NT_NONE)
-		nt_put_label(report, finding->mesh, nt_markdown_text, out);
-	if (nt_finding_line(finding))
-		nt_buffer_format(out, ", line %zu", nt_finding_line(finding));
+	nt_put_where(report, finding, true, nt_markdown_text, out);
 	nt_buffer_text(out, " | ");
 	nt_markdown_text(finding->message, out);
 	nt_buffer_text(out, " |\n");

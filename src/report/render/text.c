@@ -130,11 +130,14 @@ static void write_finding(const nt_report_list *reports, const nt_report *report
 	nt_buffer_text(out, "  ");
 	nt_buffer_clean(out, finding->message);
 	nt_buffer_text(out, "\n");
-	if (finding->mesh != NT_NONE && report->mesh_count > 1) {
-		nt_buffer_text(out, "            in ");
-		nt_put_label(report, finding->mesh, nt_plain_text, out);
-		nt_buffer_text(out, "\n");
-	}
+	nt_buffer where = {0};
+	if (!finding->spot_count)
+		nt_put_where(report, finding, report->mesh_count > 1, nt_plain_text, &where);
+	else if (report->mesh_count > 1) /* each spot has its line */
+		nt_put_label(report, finding->mesh, nt_plain_text, &where);
+	if (where.size)
+		nt_buffer_format(out, "            in %s\n", where.data);
+	nt_buffer_free_into(&where, out);
 	for (unsigned i = 0; i < finding->spot_count && i < SHOWN_SPOTS; i++)
 		write_spot(&report->meshes[finding->mesh], &finding->spots[i], out);
 	if (finding->spot_count > SHOWN_SPOTS)

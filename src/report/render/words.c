@@ -89,14 +89,45 @@ size_t nt_finding_line(const nt_report_finding *finding)
 	return finding->place.line;
 }
 
+const char *nt_finding_file(const nt_report *report, const nt_report_finding *finding)
+{
+	return finding->file ? finding->file : report->shown;
+}
+
+void nt_put_line(const nt_report_finding *finding, const char *before, void (*put)(const char *text, nt_buffer *out),
+	nt_buffer *out)
+{
+	const size_t line = nt_finding_line(finding);
+	if (line || finding->file)
+		nt_buffer_text(out, before);
+	if (line)
+		nt_buffer_format(out, "line %zu%s", line, finding->file ? " of " : "");
+	if (finding->file)
+		put(finding->file, out);
+}
+
+void nt_put_where(const nt_report *report, const nt_report_finding *finding, bool label,
+	void (*put)(const char *text, nt_buffer *out), nt_buffer *out)
+{
+	const size_t begin = out->size;
+	if (finding->mesh == NT_NONE)
+		put(finding->place.object[0] ? finding->place.object : finding->place.pointer, out);
+	else if (label)
+		nt_put_label(report, finding->mesh, put, out);
+	nt_put_line(finding, out->size > begin ? ", " : "", put, out);
+}
+
 void nt_put_sentence(const nt_report *report, const nt_report_finding *finding,
 	void (*put)(const char *text, nt_buffer *out), nt_buffer *out)
 {
 	put(finding->message, out);
-	if (finding->mesh == NT_NONE || report->mesh_count == 1)
+	if (finding->mesh == NT_NONE ? !finding->place.object[0] : report->mesh_count == 1)
 		return;
 	nt_buffer_text(out, ", in ");
-	nt_put_label(report, finding->mesh, put, out);
+	if (finding->mesh == NT_NONE)
+		put(finding->place.object, out);
+	else
+		nt_put_label(report, finding->mesh, put, out);
 }
 
 void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out)

@@ -63,7 +63,19 @@ void nt_dropped_text(const nt_report *report, const char *before, const char *af
 /* The line of a text where a finding begins, of its first face that has one; 0: none. */
 size_t nt_finding_line(const nt_report_finding *finding);
 
-/* Appends its sentence, and the mesh where the file has several. */
+/* Its file as reports show it: the input's, or that of a material library. */
+const char *nt_finding_file(const nt_report *report, const nt_report_finding *finding);
+
+/* Appends its mesh, if `label`, or the object or JSON pointer of what is no mesh's; then its line, and in which file
+ * that is if not in the input: material "wood", line 11 of wood.mtl. Nothing if nothing of that is known. */
+void nt_put_where(const nt_report *report, const nt_report_finding *finding, bool label,
+	void (*put)(const char *text, nt_buffer *out), nt_buffer *out);
+
+/* The second part alone, with `before` in front. */
+void nt_put_line(const nt_report_finding *finding, const char *before, void (*put)(const char *text, nt_buffer *out),
+	nt_buffer *out);
+
+/* Appends its sentence, and the mesh if the file has several, or what else it stands in. */
 void nt_put_sentence(const nt_report *report, const nt_report_finding *finding,
 	void (*put)(const char *text, nt_buffer *out), nt_buffer *out);
 

@@ -42,8 +42,7 @@ class Findings {
 	}
 
 	placeOf(x) {
-		const mesh = x.mesh === null ? null : x.file.meshes[x.mesh];
-		return [data.diff && (x.known ? 'in both' : x.file.number ? 'new' : 'gone'), mesh && x.file.meshes.length > 1 ? mesh.label : null, x.line ? 'line ' + x.line : null, x.known && !data.diff ? 'known' : null]
+		return [data.diff && (x.known ? 'in both' : x.file.number ? 'new' : 'gone'), x.where, x.known && !data.diff ? 'known' : null]
 			.filter(part => part).join(' · ');
 	}
 
