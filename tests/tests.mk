@@ -13,7 +13,7 @@ support_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/support/*.c)
 QUADMATH := $(if $(filter x86_64 i686,$(shell uname -m)),-lquadmath)
 
 # Tests have the modules' libraries linked in.
-LINKED_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lspng -ltiff $(TOOL_LIBS)
+LINKED_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lspng -ltiff -lwebp $(TOOL_LIBS)
 
 # tests/support/fail_alloc.c stands in for these
 WRAP := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=posix_memalign,--wrap=strdup,--wrap=strndup

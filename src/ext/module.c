@@ -47,6 +47,7 @@ static const row rows[NT_MODULE_COUNT] = {
 		&nt_tinygltf_module.head},
 	[NT_MODULE_PNG] = {"png", "PNG", sizeof(nt_codec_table), &nt_png_module.head},
 	[NT_MODULE_TIFF] = {"tiff", "TIFF", sizeof(nt_codec_table), &nt_tiff_module.head},
+	[NT_MODULE_WEBP] = {"webp", "WebP", sizeof(nt_codec_table), &nt_webp_module.head},
 };
 
 static _Atomic(const nt_module_head *) tables[NT_MODULE_COUNT];

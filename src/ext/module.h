@@ -19,6 +19,7 @@ typedef enum nt_module {
 	NT_MODULE_TINYGLTF,
 	NT_MODULE_PNG,
 	NT_MODULE_TIFF,
+	NT_MODULE_WEBP,
 	NT_MODULE_COUNT
 } nt_module;
 

@@ -79,7 +79,7 @@ NT_MODULE_TABLE const nt_draco_table nt_draco_module;
 NT_MODULE_TABLE const nt_meshopt_table nt_meshopt_module;
 NT_MODULE_TABLE const nt_openmesh_table nt_openmesh_module;
 NT_MODULE_TABLE const nt_tinygltf_table nt_tinygltf_module;
-NT_MODULE_TABLE const nt_codec_table nt_png_module, nt_tiff_module;
+NT_MODULE_TABLE const nt_codec_table nt_png_module, nt_tiff_module, nt_webp_module;
 
 #ifdef __cplusplus
 }

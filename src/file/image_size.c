@@ -126,6 +126,23 @@ static void size_of_bmp(const unsigned char *bytes, uint32_t pixels[2])
 		pixels[1] = 0 - pixels[1];
 }
 
+/* Behind the header of 12 bytes is a chunk of an image with loss, of one without, or of a file with more. */
+static void size_of_webp(const unsigned char *bytes, size_t size, uint32_t pixels[2])
+{
+	enum { HEADER = 30, LOSSLESS_HEADER = 25 };
+	if (size >= HEADER && memcmp(bytes + 12, "VP8 ", 4) == 0) {
+		pixels[0] = (uint32_t)number_at(bytes + 26, 2, false) & 0x3fff;
+		pixels[1] = (uint32_t)number_at(bytes + 28, 2, false) & 0x3fff;
+	} else if (size >= LOSSLESS_HEADER && memcmp(bytes + 12, "VP8L", 4) == 0) {
+		const uint32_t sides = (uint32_t)number_at(bytes + 21, 4, false);
+		pixels[0] = (sides & 0x3fff) + 1;
+		pixels[1] = (sides >> 14 & 0x3fff) + 1;
+	} else if (size >= HEADER && memcmp(bytes + 12, "VP8X", 4) == 0) {
+		pixels[0] = (uint32_t)number_at(bytes + 24, 3, false) + 1;
+		pixels[1] = (uint32_t)number_at(bytes + 27, 3, false) + 1;
+	}
+}
+
 bool nt_image_size(const unsigned char *bytes, size_t size, uint32_t pixels[2])
 {
 	enum { MOST_HEADER = 26 };
@@ -135,6 +152,8 @@ bool nt_image_size(const unsigned char *bytes, size_t size, uint32_t pixels[2])
 		size_of_jpeg(bytes, size, pixels);
 	} else if (type == NT_IMAGE_TIFF) {
 		size_of_tiff(bytes, size, pixels);
+	} else if (type == NT_IMAGE_WEBP) {
+		size_of_webp(bytes, size, pixels);
 	} else if (type == NT_IMAGE_HDR) {
 		size_of_hdr(bytes, size, pixels);
 	} else if (type == NT_IMAGE_BMP && size >= MOST_HEADER) {

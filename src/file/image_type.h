@@ -42,8 +42,8 @@ const char *nt_image_media_type(nt_image_type type);
 /* The glTF extension through which a texture refers to such an image; NULL: the core does. */
 const char *nt_image_extension(nt_image_type type);
 
-/* image_size.c. Width and height of a PNG, JPEG, TGA, BMP, PSD, HDR or TIFF, as its header says; false, and both 0, for
- * other types, damaged headers and images without pixels. */
+/* image_size.c. Width and height of a PNG, JPEG, WebP, TGA, BMP, PSD, HDR or TIFF, as its header says; false, and both
+ * 0, for other types, damaged headers and images without pixels. */
 bool nt_image_size(const unsigned char *bytes, size_t size, uint32_t pixels[2]);
 
 /* The pixels that a decoder goes over: those of a JPEG of several scans once for each, those of a TIFF with all of its

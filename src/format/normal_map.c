@@ -223,7 +223,7 @@ static void settle(nt_normal_map *map)
 {
 	if (map->bytes) {
 		map->type = nt_image_type_of_bytes(map->bytes, map->size);
-		map->turnable &= nt_image_is_decoded(map->type);
+		map->turnable &= nt_image_is_converted(map->type);
 	} else {
 		nt_normal_map_close(map);
 	}

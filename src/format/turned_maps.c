@@ -171,7 +171,7 @@ static void make(void *context, size_t item, unsigned slot)
 	job *x = &t->jobs[item];
 	bool grey = false;
 	nt_error_clear(&x->error);
-	if (!x->map.bytes || !nt_image_is_decoded(x->map.type) ||
+	if (!x->map.bytes || !nt_image_is_converted(x->map.type) ||
 		nt_image_is_grey(x->map.bytes, x->map.size, &grey, &x->error))
 		return;
 	x->how = (nt_conversion){.channels = {{.used = true, .map = {.channel = NT_CHANNEL_LUMINANCE, .gain = 1}}},
@@ -190,7 +190,7 @@ static nt_status tell_job(const turning *t, const job *x, nt_error *error)
 		*error = x->error;
 	else if (x->error.status)
 		tell(t, &x->first, NT_CODE_IMAGE_DAMAGED, x->error.message);
-	else if (x->map.bytes && !nt_image_is_decoded(x->map.type))
+	else if (x->map.bytes && !nt_image_is_converted(x->map.type))
 		tell(t, &x->first, NT_CODE_NMAP_NOT_TURNED, nt_image_type_name(x->map.type));
 	snprintf(text, sizeof text, "%s", x->how.heights ? "height map to normal map" : "green turned up");
 	if (x->made.made)

@@ -7,10 +7,16 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-/* Rows that show whether an image is grey, if it is not; how far a JPEG's red, green and blue of a grey may differ. */
-enum { SAMPLE_ROWS = 8, JPEG_CHROMA = 6 };
+/* Rows that show whether an image is grey, if it is not; how far the red, green and blue of a grey may differ in
+ * what stores chroma: JPEG, and WebP with loss. */
+enum { SAMPLE_ROWS = 8, ROUNDED_CHROMA = 6 };
 
 bool nt_image_is_decoded(nt_image_type type)
+{
+	return nt_image_is_converted(type) || type == NT_IMAGE_WEBP;
+}
+
+bool nt_image_is_converted(nt_image_type type)
 {
 	return type == NT_IMAGE_PNG || type == NT_IMAGE_JPEG || (type >= NT_IMAGE_TGA && type <= NT_IMAGE_TIFF);
 }
@@ -44,6 +50,8 @@ static nt_status decode_rows(const unsigned char *bytes, size_t size, uint32_t r
 		return nt_decode_png(bytes, size, rows, pixels, error);
 	case NT_IMAGE_JPEG:
 		return nt_decode_jpeg(bytes, size, rows, pixels, error);
+	case NT_IMAGE_WEBP:
+		return nt_decode_webp(bytes, size, rows, pixels, error);
 	case NT_IMAGE_TIFF:
 		return nt_decode_tiff(bytes, size, pixels, error);
 	case NT_IMAGE_TGA:
@@ -53,7 +61,7 @@ static nt_status decode_rows(const unsigned char *bytes, size_t size, uint32_t r
 		return nt_decode_stb(bytes, size, pixels, error);
 	default:
 		*pixels = (nt_pixels){0};
-		return nt_fail(error, NT_ERROR_UNSUPPORTED, "expected PNG, JPEG, TGA, BMP, PSD, HDR or TIFF");
+		return nt_fail(error, NT_ERROR_UNSUPPORTED, "expected PNG, JPEG, WebP, TGA, BMP, PSD, HDR or TIFF");
 	}
 }
 
@@ -64,7 +72,7 @@ nt_status nt_image_decode(const unsigned char *bytes, size_t size, nt_pixels *pi
 
 bool nt_pixels_are_grey(const nt_pixels *pixels, nt_image_type type)
 {
-	const int tolerance = type == NT_IMAGE_JPEG ? JPEG_CHROMA : 0;
+	const int tolerance = type == NT_IMAGE_JPEG || type == NT_IMAGE_WEBP ? ROUNDED_CHROMA : 0;
 	const size_t count = (size_t)pixels->width * pixels->height, step = pixels->channels;
 	if (step < 3)
 		return true;

@@ -18,6 +18,9 @@
 /* Whether nt_image_decode() knows the format. */
 bool nt_image_is_decoded(nt_image_type type);
 
+/* Whether another image may take its place. WebP stays as it is: normal maps of heights apart. */
+bool nt_image_is_converted(nt_image_type type);
+
 /*
  * Whether a run may decode and make so many pixels.
  *
@@ -35,7 +38,7 @@ nt_status nt_check_pixels(uint64_t pixels, uint64_t most, uint64_t file_bytes, n
 nt_status nt_check_image(uint64_t pixels, uint64_t most, uint64_t file_bytes, const char *path, nt_error *error);
 
 /*
- * Decodes PNG, JPEG, TGA, BMP, PSD, HDR and TIFF, told by content.
+ * Decodes PNG, JPEG, WebP, TGA, BMP, PSD, HDR and TIFF, told by content.
  *
  *   bytes, size  the file; any bytes
  *   pixels       receives the samples, rows from the top; nt_pixels_free(); empty after a failure
@@ -45,7 +48,7 @@ nt_status nt_check_image(uint64_t pixels, uint64_t most, uint64_t file_bytes, co
  */
 nt_status nt_image_decode(const unsigned char *bytes, size_t size, nt_pixels *pixels, nt_error *error);
 
-/* Whether every pixel is grey, or nearly so in a JPEG, whose chroma is rounded. */
+/* Whether every pixel is grey, or nearly so in a JPEG or WebP, whose chroma is rounded. */
 bool nt_pixels_are_grey(const nt_pixels *pixels, nt_image_type type);
 
 /* The same of a file; only as many rows are decoded as it takes

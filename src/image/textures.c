@@ -270,10 +270,11 @@ static nt_conversion conversion_of_one(const nt_textures *t, nt_texture_kind kin
 		how.png = choice != NT_TEXTURES_KEEP;
 		return how;
 	}
-	const bool png = decodable && choice != NT_TEXTURES_KEEP &&
+	const bool converted = decodable && nt_image_is_converted(s->type);
+	const bool png = converted && choice != NT_TEXTURES_KEEP &&
 		(choice == NT_TEXTURES_PNG ? s->type != NT_IMAGE_PNG : !nt_image_is_carried(s->type));
 	const bool normals = kind == NT_TEXTURE_NORMALS || kind == NT_TEXTURE_NORMALS_OR_HEIGHTS;
-	const bool may_flip = decodable && normals && (png || nt_image_is_carried(s->type));
+	const bool may_flip = converted && normals && (png || nt_image_is_carried(s->type));
 	return (nt_conversion){.channels = {{.used = true, .source = from}}, .png = png,
 		.flip = may_flip ? t->rules.flip : NT_FLIP_OFF};
 }

@@ -80,7 +80,7 @@ static nt_status refer(nt_arena *arena, const char *page_folder, const char *pat
 static nt_status keep_image(nt_arena *arena, const nt_normal_map *map, nt_picture picture, size_t most_bytes,
 	nt_image *image)
 {
-	const bool shown = map->type == NT_IMAGE_PNG || map->type == NT_IMAGE_JPEG;
+	const bool shown = map->type == NT_IMAGE_PNG || map->type == NT_IMAGE_JPEG || map->type == NT_IMAGE_WEBP;
 	if (shown && (picture == NT_PICTURE_NORMAL || map->size <= PREVIEW_BYTES))
 		return map->size <= most_bytes ? copy_image(arena, map->bytes, map->size, map->type, image) : NT_OK;
 	if (picture == NT_PICTURE_NORMAL || !nt_image_is_decoded(map->type))

@@ -151,7 +151,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Use PNG.",
 		"a JPEG in normalTexture"),
 	ROW(NMAP_NOT_EXAMINED, INFO, "i--", LOOK, NULL, "normal map was not examined",
-		"KTX2 and WebP are not decoded here, and files above 16 MB only with --check-maps=on.",
+		"KTX2 is not decoded here, and files above 16 MB only with --check-maps=on.",
 		"Nothing, or --check-maps=on.",
 		"a KTX2 in normalTexture"),
 	ROW(STATEMENT_IGNORED, INFO, "iii", LOOK, NULL, "{count} {statement was|statements were} not used",

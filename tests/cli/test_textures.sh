@@ -784,4 +784,54 @@ quad 'norm h.png'
 run --check quad.obj
 ! grep -q NMAP_ ../out.txt || wrong "a height map was examined"
 
+scene "WebP is looked at, and stays as it is"
+hills down.webp -1
+hills up.webp 1
+images write h.webp 16 16 '(16 * (x * y % 16),) * 3'
+images write h.png 16 16 '16 * (x * y % 16)'
+images write space.webp 64 64 "tuple(int(127.5 + 127 * v) for v in $sphere)"
+for kind in down:NMAP_GREEN_DOWN up: space:NMAP_OBJECT_SPACE; do
+	quad "norm ${kind%:*}.webp"
+	run --check -q --report=r.json --fail-on=never quad.obj
+	is "$kind $(value r.json '"".join(f["code"] for f in r["files"][0]["findings"] if f["code"].startswith("NMAP"))')" "$kind ${kind#*:}"
+done
+# no option makes another file of it
+quad 'norm down.webp' 'map_Kd up.webp'
+mkdir out
+for options in --flip-green=on --flip-green=auto --textures=png --fix; do
+	run $options quad.obj out/quad.gltf
+	exits 0
+	same down.webp out/down.webp
+	same up.webp out/up.webp
+	is "$options $(ls out | tr '\n' ' ')" "$options down.webp quad.bin quad.gltf up.webp "
+done
+# map_Bump is a normal map if it is not grey, and else heights, of which a normal map is made
+quad 'map_Bump up.webp'
+run --check -q --report=r.json --fail-on=never quad.obj
+is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if "BUMP" in f["code"]]')" "['BUMP_AS_NORMAL']"
+for type in png webp; do
+	quad "map_Bump h.$type"
+	run quad.obj $type.glb
+	images embedded $type.glb 0 made-$type.png
+done
+same made-png.png made-webp.png
+# one channel of it, packed
+quad 'map_Pr h.webp'
+run quad.obj out.glb
+says_not MATERIAL_LOST
+# a glTF's, and limits
+quad 'norm down.webp'
+run quad.obj quad.gltf
+gltf quad.gltf wrong 'const n = g.meshes[0].primitives[0].attributes.TANGENT; for (let i = 0; i < 4; i++) bytes[0].writeFloatLE(-bytes[0].readFloatLE(at(n, i) + 12), at(n, i) + 12)'
+run --check quad.gltf
+prints "NMAP_GREEN_DOWN"
+run --check wrong.gltf
+prints "TAN_GREEN_PAIR"
+run --check --max-pixels=1000 quad.gltf
+exits 7
+head -c 100 down.webp >short.webp
+quad 'norm short.webp'
+run --check quad.obj
+prints "WebP: the file ends within the image"
+
 done_testing

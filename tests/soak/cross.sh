@@ -15,7 +15,7 @@ cross=build/aarch64 root=$PWD/build/aarch64/root
 libraries=$root/usr/lib/aarch64-linux-gnu
 packages="libdraco-dev libdraco7 libmeshoptimizer-dev libmeshoptimizer2d libopenmesh-dev libopenmesh1 libtinygltf-dev
 	libtinygltf2d libspng-dev libspng0 libtiff-dev libtiff6 libjpeg62-turbo-dev libjpeg62-turbo
-	libdeflate-dev libdeflate0 zlib1g zlib1g-dev libwebp7 libzstd1 liblzma5 libjbig0 liblerc4 libstb-dev libstb0"
+	libdeflate-dev libdeflate0 zlib1g zlib1g-dev libwebp-dev libwebp7 libwebpmux3 libwebpdemux2 libzstd1 liblzma5 libjbig0 liblerc4 libstb-dev libstb0"
 for program in aarch64-linux-gnu-g++ qemu-aarch64 apt-get dpkg-deb; do
 	command -v $program >/dev/null || { echo "cross.sh: $program is not here, nothing to run"; exit 0; }
 done

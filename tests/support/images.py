@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Images for tests, with nothing but zlib.
+"""Images for tests, with nothing but zlib, and libwebp for WebP.
 
-    images.py write FILE WIDTH HEIGHT EXPRESSION   a TGA, BMP, TIFF or PNG by its ending; EXPRESSION of x, y (rows down), w, h and
+    images.py write FILE WIDTH HEIGHT EXPRESSION   a TGA, BMP, TIFF, WebP (without loss) or PNG by its ending; EXPRESSION of x, y (rows down), w, h and
                                                    math gives (r, g, b) of bytes, in a PNG (r, g, b, a), too, a grey byte, or ("16", grey) of
                                                    16 bits
     images.py rows FILE [EXPRESSION]               the samples of a PNG as JSON, row by row; or an expression over the rows
@@ -10,6 +10,7 @@
     images.py jpegtif FILE.jpg FILE.tif            the same grey picture, 8 x 8; tables apart from the scan, as TIFFs have them
     images.py embedded GLB NUMBER FILE             the bytes of an image of a GLB
 """
+import ctypes
 import json
 import math
 import struct
@@ -46,6 +47,17 @@ def bmp(width, height, pixel):
     data = b"BM" + struct.pack("<IIIIiiHHIIIIII", 54 + row * height, 0, 54, 40, width, height, 1, 24, 0, 0, 0, 0, 0, 0)
     for y in reversed(range(height)):
         data += b"".join(bytes(pixel(x, y)[::-1]) for x in range(width)).ljust(row, b"\0")
+    return data
+
+
+def webp(width, height, pixel):
+    library = ctypes.CDLL("libwebp.so.7")
+    library.WebPEncodeLosslessRGB.restype = ctypes.c_size_t
+    made = ctypes.POINTER(ctypes.c_ubyte)()
+    size = library.WebPEncodeLosslessRGB(b"".join(bytes(pixel(x, y)) for y in range(height) for x in range(width)),
+                                         width, height, 3 * width, ctypes.byref(made))
+    data = ctypes.string_at(made, size)
+    library.WebPFree(made)
     return data
 
 
@@ -118,7 +130,7 @@ def main():
     if sys.argv[1] == "write":
         path, width, height = sys.argv[2], int(sys.argv[3]), int(sys.argv[4])
         code = compile(sys.argv[5], "pixel", "eval")
-        make = {"tga": tga, "bmp": bmp, "tif": tif, "png": png}[path.rsplit(".", 1)[1].lower()]
+        make = {"tga": tga, "bmp": bmp, "tif": tif, "png": png, "webp": webp}[path.rsplit(".", 1)[1].lower()]
         with open(path, "wb") as file:
             file.write(make(width, height, lambda x, y: eval(code, {"x": x, "y": y, "w": width, "h": height, "math": math})))
     elif sys.argv[1] == "rows":

@@ -9,7 +9,7 @@ set -eu
 
 build="pkg-config libopenmesh-dev libtinygltf-dev nlohmann-json3-dev libdraco-dev
 	libmeshoptimizer-dev libfast-float-dev libxxhash-dev libspng-dev libjpeg62-turbo-dev
-	libtiff-dev libdeflate-dev libstb-dev"
+	libtiff-dev libwebp-dev libdeflate-dev libstb-dev"
 check="libcmocka-dev chromium abigail-tools debhelper lintian python3-numpy python3-pytest ninja-build parallel musl-tools mypy"
 wasm="lld wasi-libc libclang-rt-dev-wasm32 binaryen"
 

@@ -9,7 +9,7 @@ mkdir -p "$1" && cd "$1"
 top=$(pwd)
 
 packages="libdraco-dev libmeshoptimizer-dev libopenmesh-dev libtinygltf-dev libspng-dev libdeflate-dev
-	libjpeg62-turbo-dev libtiff-dev zlib1g-dev libzstd-dev"
+	libjpeg62-turbo-dev libtiff-dev libwebp-dev zlib1g-dev libzstd-dev"
 
 apt-get indextargets --format 'deb-src $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' 'Origin: Debian' |
 	awk '!seen[$0]++' >sources.list

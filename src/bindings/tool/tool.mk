@@ -13,7 +13,7 @@ EMCC := EM_CACHE=$(CURDIR)/$(T)/cache EM_FROZEN_CACHE= NODE_PATH=/usr/share/node
 tool_flags := -O2 -DNDEBUG -DNT_NO_THREADS -msimd128 -fwasm-exceptions -sSUPPORT_LONGJMP=wasm -ffp-contract=off -fno-math-errno
 ours := $(tool_flags) -isystem $(tool_dir)/system -D_GNU_SOURCE -fvisibility=hidden -Iinclude -Isrc -isystem $(T)/include -isystem $(S)/draco/unpacked/src \
 	-isystem $(S)/meshoptimizer/unpacked/src -isystem $(S)/openmesh/unpacked/src -isystem $(S)/tinygltf/unpacked -isystem $(S)/libspng/unpacked/spng \
-	-isystem $(S)/libdeflate/unpacked -isystem $(S)/libjpeg-turbo/unpacked -isystem $(S)/tiff/unpacked/libtiff -isystem $(S)/zlib/unpacked \
+	-isystem $(S)/libdeflate/unpacked -isystem $(S)/libjpeg-turbo/unpacked -isystem $(S)/tiff/unpacked/libtiff -isystem $(S)/zlib/unpacked -isystem $(S)/libwebp/unpacked/src \
 	-Wall -Wextra -Wno-bitwise-instead-of-logical -MMD -MP
 
 tool_wasm_src := $(filter-out %/kernel_avx2.c %/kernel_avx512.c,$(core_src)) $(tool_src) src/cli/main.c \
@@ -55,13 +55,14 @@ foreign_jpeg := $(filter-out %/jccolext.c %/jdcolext.c %/jdcol565.c %/jdmrgext.c
 	%/jcstest.c %/jdatadst-tj.c %/jdatasrc-tj.c, $(call foreign_of,libjpeg-turbo,jc*.c jd*.c jerror.c jfdct*.c jidct*.c jmem*.c \
 	jquant*.c jutils.c jsimd_none.c jaricom.c))
 foreign_tiff := $(filter-out %/tif_win32.c %/tif_jpeg_12.c,$(call foreign_of,tiff,libtiff/tif_*.c))
+foreign_webp := $(call foreign_of,libwebp,src/dec/*.c src/dsp/*.c src/utils/*.c)
 foreign_obj := $(patsubst $(S)/%,$(T)/foreign/%.o,$(foreach library,draco meshopt openmesh tinygltf spng deflate zlib zstd \
-	jpeg tiff,$(foreign_$(library))))
+	jpeg tiff webp,$(foreign_$(library))))
 
 # Their warnings are not ours.
 foreign_flags := $(tool_flags) -w -isystem $(T)/include/stb -isystem $(T)/include -isystem $(S)/zlib/unpacked -isystem $(S)/libjpeg-turbo/unpacked -isystem $(S)/libzstd/unpacked/lib \
 	-isystem $(S)/draco/unpacked/src -isystem $(S)/openmesh/unpacked/src -isystem $(S)/libdeflate/unpacked -isystem $(S)/tinygltf/unpacked \
-	-isystem $(S)/tiff/unpacked/libtiff -DZSTD_DISABLE_ASM
+	-isystem $(S)/tiff/unpacked/libtiff -isystem $(S)/libwebp/unpacked -DZSTD_DISABLE_ASM
 # Other flags make other objects.
 $(T)/flags: FORCE
 	@mkdir -p $(@D)

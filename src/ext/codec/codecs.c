@@ -26,6 +26,11 @@ nt_status nt_decode_tiff(const unsigned char *bytes, size_t size, nt_pixels *pix
 	return decode(NT_MODULE_TIFF, bytes, size, UINT32_MAX, pixels, error);
 }
 
+nt_status nt_decode_webp(const unsigned char *bytes, size_t size, uint32_t rows, nt_pixels *pixels, nt_error *error)
+{
+	return decode(NT_MODULE_WEBP, bytes, size, rows, pixels, error);
+}
+
 nt_status nt_encode_png(const nt_pixels *pixels, unsigned char **bytes, size_t *size, nt_error *error)
 {
 	nt_status status;

@@ -43,6 +43,8 @@ nt_status nt_decode_jpeg(const unsigned char *bytes, size_t size, uint32_t rows,
  * decoded then. */
 nt_status nt_decode_jpeg_small(const unsigned char *bytes, size_t size, uint32_t least, nt_pixels *pixels,
 	nt_error *error);
+/* Not an animation, which is NT_ERROR_UNSUPPORTED. */
+nt_status nt_decode_webp(const unsigned char *bytes, size_t size, uint32_t rows, nt_pixels *pixels, nt_error *error);
 nt_status nt_decode_tiff(const unsigned char *bytes, size_t size, nt_pixels *pixels, nt_error *error);
 /* TGA, BMP, PSD (the flattened image; 8 and 16 bits) and HDR, which becomes sRGB of 8 bits: white is 1. */
 nt_status nt_decode_stb(const unsigned char *bytes, size_t size, nt_pixels *pixels, nt_error *error);

@@ -9,6 +9,7 @@
 #include <jpeglib.h>
 #include <tiffio.h>
 #include <unistd.h>
+#include <webp/encode.h>
 #include "fail_alloc.h"
 #include "folder.h"
 #include "mutate.h"
@@ -193,6 +194,23 @@ static void make_png(const file_kind *kind, bytes *b)
 	free(made);
 }
 
+/* libwebp's own writer, without loss; the variant has 1 for with. */
+static void make_webp(const file_kind *kind, bytes *b)
+{
+	const int channels = (int)kind->channels, width = kind->flat ? 16 : WIDTH, height = kind->flat ? 16 : HEIGHT;
+	unsigned char pixels[16 * 16 * 4], *made;
+	for (int i = 0; i < width * height * channels; i++) {
+		const unsigned x = (unsigned)(i / channels % width), y = (unsigned)(i / channels / width);
+		pixels[i] = (unsigned char)(kind->flat ? 100 : sample(x, y, (unsigned)(i % channels)));
+	}
+	b->size = kind->variant ? WebPEncodeRGB(pixels, width, height, 3 * width, 100, &made)
+		: channels == 4 ? WebPEncodeLosslessRGBA(pixels, width, height, 4 * width, &made)
+				: WebPEncodeLosslessRGB(pixels, width, height, 3 * width, &made);
+	assert_true(b->size > 0 && b->size <= ROOM);
+	memcpy(b->data, made, b->size);
+	WebPFree(made);
+}
+
 static const file_kind files[] = {
 	{"png", make_png, NT_IMAGE_PNG, 3, 8, 2, false},
 	{"tga", make_tga, NT_IMAGE_TGA, 3, 8, 2, false},
@@ -205,6 +223,9 @@ static const file_kind files[] = {
 	{"tiled tiff", make_tiff, NT_IMAGE_TIFF, 3, 8, COMPRESSION_PACKBITS, false},
 	{"grey jpeg", make_jpeg, NT_IMAGE_JPEG, 1, 8, 0, true},
 	{"jpeg", make_jpeg, NT_IMAGE_JPEG, 3, 8, 0, true},
+	{"webp", make_webp, NT_IMAGE_WEBP, 3, 8, 0, false},
+	{"webp with alpha", make_webp, NT_IMAGE_WEBP, 4, 8, 0, false},
+	{"webp with loss", make_webp, NT_IMAGE_WEBP, 3, 8, 1, true},
 };
 enum { FILE_COUNT = sizeof files / sizeof files[0] };
 

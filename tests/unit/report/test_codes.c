@@ -148,7 +148,7 @@ static const char manual_head[] =
 	"findings, / filters, Escape chooses nothing; #finding-N behind the\naddress leads to a finding, and n and p "
 	"go through its places. Below a finding that nmtan can repair is the command, to be copied.\n"
 	"Normal maps are in the page, up to 16 MB together, and base colours, up to 16 MB, as JPEGs of at most 1024\n"
-	"pixels on the longer side if their files are larger than 64 KB. The page refers to other images (KTX2, WebP,\n"
+	"pixels on the longer side if their files are larger than 64 KB. The page refers to other images (KTX2,\n"
 	"and those without room) by a relative path, and reads one when it is chosen. It cannot show an image "
 	"if the\nimage or the page was moved, or if both have no folder in common but the root.\n"
 	"With\n.BI \\-\\-report= DIR/\neach file has a page of its own, up to three million triangles each, "

@@ -273,7 +273,7 @@ function describe() {
 	$('flip').closest('label').hidden = !flips;
 	$('base').closest('label').hidden = mode !== 'lit' || !(space.images.base || twin?.space.images.base);
 	if (flips && space.flip) parts.push('Green is flipped here, not in the file.');
-	else if (mode === 'lit') parts.push(space.images.bump ? 'Lit by the normal map.' : 'Lit with a test pattern of domes: ' + (mesh.pictures[0].file ? 'the normal map is not in this page.' : mesh.mapped ? 'the normal map is not decoded here (KTX2 and WebP are not), or too large for the page.' : 'there is no normal map here.'));
+	else if (mode === 'lit') parts.push(space.images.bump ? 'Lit by the normal map.' : 'Lit with a test pattern of domes: ' + (mesh.pictures[0].file ? 'the normal map is not in this page.' : mesh.mapped ? 'the normal map is not decoded here (KTX2 is not), or too large for the page.' : 'there is no normal map here.'));
 	if (mode === 'angle') parts.push('The angle between the tangents ' + frameNames[FRAMES[space.frame][0]] + ' and those ' + ((space.other < 0 || space.other === 2) ? 'of screen derivatives' : frameNames[FRAMES[space.other][0]]) + '; 180° where the handedness differs.');
 	if (mode === 'angle' && twin) parts.push('Grey: the other version has no triangle here, or there are no tangents.');
 	if (mode === 'skew') parts.push('How far tangents lean out of the plane of the normal.');
