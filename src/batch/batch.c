@@ -122,6 +122,9 @@ static nt_status run_if_needed(progress *p, nt_job *job)
 		nt_trace_free(&outcome->summary.trace);
 		status = run_with_memory(p, job, &own);
 	}
+	nt_severity worst;
+	if (runs && outcome->summary.report && nt_report_worst(outcome->summary.report, &worst))
+		updated.making.worst = (int)worst;
 	nt_update_done(&updated, runs && !status, &outcome->summary.trace);
 	return status;
 }

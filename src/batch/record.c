@@ -402,6 +402,20 @@ static nt_status look_at_search(look *l, nt_json_value *search, bool first, bool
 	return status;
 }
 
+static const char *const verdicts[] = {"none", "info", "warning", "error"}; /* by 1 + nt_severity */
+enum { VERDICTS = sizeof verdicts / sizeof *verdicts };
+
+/* Whether the findings would let a run pass, as far as the line tells. */
+static bool passes(const nt_making *making, const nt_json_value *line)
+{
+	int severity = -1;
+	if (!making->judging || making->least_failure >= VERDICTS - 1)
+		return true;
+	while (severity < making->least_failure && !is_text(nt_json_find(line, "judged"), verdicts[1 + severity]))
+		severity++;
+	return severity < making->least_failure && is_text(nt_json_find(line, "judging"), making->judging);
+}
+
 static nt_status look_at(look *l, const nt_json_value *line, bool *same)
 {
 	static const struct {
@@ -412,7 +426,7 @@ static nt_status look_at(look *l, const nt_json_value *line, bool *same)
 		{"searched", 0, look_at_search}, {"written", 1, look_at_written}};
 	nt_status status = NT_OK;
 	*same = is_text(nt_json_find(line, "nmtan"), nmtan_version()) &&
-		is_text(nt_json_find(line, "options"), l->making->options);
+		is_text(nt_json_find(line, "options"), l->making->options) && passes(l->making, line);
 	for (size_t k = 0; k < sizeof lists / sizeof *lists && *same && !status; k++) {
 		nt_json_value *list = nt_json_find(line, lists[k].key);
 		*same = list && nt_json_count(list) >= lists[k].least;
@@ -613,7 +627,12 @@ nt_status nt_record_append(nt_record *record, const nt_making *making, const nt_
 	return status;
 }
 
-void nt_record_placed(nt_record *record, const nt_buffer *line, const nt_trace *trace)
+static void put_text(nt_json *json, const char *key, const char *text)
+{
+	nt_json_set_string(json, nt_json_put(json, nt_json_root(json), key), text, strlen(text));
+}
+
+void nt_record_placed(nt_record *record, const nt_making *making, const nt_buffer *line, const nt_trace *trace)
 {
 	nt_error ignored; /* without the new state more is read another time, nothing else */
 	look l = {.record = record, .error = &ignored};
@@ -632,6 +651,11 @@ void nt_record_placed(nt_record *record, const nt_buffer *line, const nt_trace *
 			renew(&l, nt_json_at(written, at), &now);
 		}
 		at++;
+	}
+	if (making->judging) {
+		put_text(l.line, "judged", verdicts[1 + making->worst]);
+		put_text(l.line, "judging", making->judging);
+		l.renewed = true;
 	}
 	if (l.renewed)
 		keep_renewed(&l);

@@ -18,7 +18,8 @@
  *
  * URIs go through no links; those that paths went through are in "links". FOLDER is {"uri":"../in/n.png",STATE,
  * "found":"N.PNG"}: it was searched for the last part of the URI in any case, and is again if its state is another one.
- * "sum" is a digest of the line before it. A line without it is damaged, or was written by a version that noted less,
+ * "judged" is the highest severity of the findings, or "none", and "judging" the options that decide on that; a run
+ * that nobody judged has neither. "sum" is a digest of the line before it. A line without it is damaged, or was written by a version that noted less,
  * and holds for nothing.
  *
  * The line is written before the output is renamed. If a run is killed in between, the line does not match the output,
@@ -62,6 +63,10 @@ typedef struct nt_making {
 	struct stat input_info;     /* of the input */
 	const char *options;        /* in words, in one way for each meaning */
 	nt_update_by by;
+	/* Findings that fail a run fail it again: what was judged by other options, or not at all, is not up to date. */
+	const char *judging; /* options that decide on findings, in words; NULL: nobody judges */
+	int least_failure;   /* the nt_severity that fails; above the highest: none does */
+	int worst;           /* of what was made: the highest nt_severity of its findings; -1: there are none */
 } nt_making;
 
 /* Looks whether everything is as the record says. `trace` receives what was read, missed and written then, with paths
@@ -73,7 +78,7 @@ nt_status nt_record_look(nt_record *record, const nt_making *making, nt_freshnes
 nt_status nt_record_append(nt_record *record, const nt_making *making, const nt_trace *trace, nt_buffer *line,
 	nt_error *error);
 
-/* The output of a line, and what belongs to it, is in place. */
-void nt_record_placed(nt_record *record, const nt_buffer *line, const nt_trace *trace);
+/* The output of a line, and what belongs to it, is in place, and judged if `making` says so. */
+void nt_record_placed(nt_record *record, const nt_making *making, const nt_buffer *line, const nt_trace *trace);
 
 #endif

@@ -130,7 +130,7 @@ static nt_status append(void *user, const nt_trace *trace, nt_error *error)
 void nt_update_done(nt_update_job *job, bool well, const nt_trace *trace)
 {
 	if (well && job->record)
-		nt_record_placed(job->record, &job->line, trace);
+		nt_record_placed(job->record, &job->making, &job->line, trace);
 	nt_buffer_free(&job->line);
 	nt_buffer_free(&job->options);
 }
@@ -156,7 +156,8 @@ nt_status nt_update_look(nt_update *update, const char *input, const char *outpu
 	struct stat output_info;
 	bool regular, made;
 	*job = (nt_update_job){.update = update,
-		.making = {.input = input, .output = output, .options = o->options, .by = o->by}};
+		.making = {.input = input, .output = output, .options = o->options, .by = o->by,
+			.judging = o->judging, .least_failure = o->least_failure, .worst = -1}};
 	*current = false;
 	nt_status status;
 	/* images may lie below it */

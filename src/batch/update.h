@@ -16,6 +16,8 @@ typedef struct nt_update_options {
 	const char *folder;  /* that of all outputs; NULL: each output's own */
 	bool dry_run;        /* records stay as they are */
 	const char *options; /* what shapes outputs, in words */
+	const char *judging; /* as in nt_making */
+	int least_failure;
 } nt_update_options;
 
 /* The records of one batch; for any number of threads. */
@@ -48,7 +50,7 @@ typedef struct nt_update_job {
 nt_status nt_update_look(nt_update *update, const char *input, const char *output, nt_update_job *job,
 	nt_settings *settings, bool *current, nt_trace *trace, nt_error *error);
 
-/* The run of a job, or the look at it, has ended, `well` or not. */
+/* The run of a job, or the look at it, has ended, `well` or not; job->making.worst says what it was judged. */
 void nt_update_done(nt_update_job *job, bool well, const nt_trace *trace);
 
 #endif

@@ -4,6 +4,7 @@
  */
 #include "cli/option_table.h"
 #include "cli/options.h"
+#include "file/input.h"
 #include "file/relative_path.h"
 #include "report/codes.h"
 
@@ -323,28 +324,48 @@ static size_t field_bytes(const nt_option_row *row)
 	}
 }
 
-/* Options about the output that change when and how it is written, but not what. */
-static bool is_about_writing(const nt_option_row *row)
+static bool is_one_of(const nt_option_row *row, const char *const *names, size_t count)
 {
-	static const char *const names[] = {"output", "in-place", "no-clobber", "sync", "verify", "dry-run"};
-	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+	for (size_t i = 0; i < count; i++)
 		if (strcmp(row->name, names[i]) == 0)
 			return true;
 	return false;
 }
 
-void nt_options_shaping(const nt_command *command, nt_buffer *out)
+/* An option with a value that is not the default. */
+static void append_given(nt_buffer *out, const nt_command *command, const nt_option_row *row)
 {
 	nt_command defaults;
-	bool shapes = false;
 	nt_options_defaults(&defaults);
+	const char *field = (const char *)command + row->offset;
+	if (memcmp(field, (const char *)&defaults + row->offset, field_bytes(row)) != 0)
+		append_shaping(out, row, field);
+}
+
+void nt_options_shaping(const nt_command *command, nt_buffer *out)
+{
+	/* options about the output that change when and how it is written, but not what */
+	static const char *const writing[] = {"output", "in-place", "no-clobber", "sync", "verify", "dry-run"};
+	bool shapes = false;
 	for (size_t i = 0; i < nt_option_row_count; i++) {
 		const nt_option_row *row = &nt_option_rows[i];
-		const char *field = (const char *)command + row->offset;
 		if (row->kind == NT_OPTION_HEADING)
 			shapes = row->first == NT_SHAPES_OUTPUT;
-		else if (shapes && !is_about_writing(row) &&
-			 memcmp(field, (const char *)&defaults + row->offset, field_bytes(row)) != 0)
-			append_shaping(out, row, field);
+		else if (shapes && !is_one_of(row, writing, sizeof writing / sizeof *writing))
+			append_given(out, command, row);
 	}
+}
+
+void nt_options_judging(const nt_command *command, nt_buffer *out)
+{
+	static const char *const judging[] = {"check-maps", "ignore", "severity", "baseline", "path-prefix",
+		"min-severity"};
+	char digest[NT_DIGEST_TEXT] = "";
+	nt_error unused; /* who reads it says so */
+	for (size_t i = 0; i < nt_option_row_count; i++)
+		if (nt_option_rows[i].kind != NT_OPTION_HEADING &&
+			is_one_of(&nt_option_rows[i], judging, sizeof judging / sizeof *judging))
+			append_given(out, command, &nt_option_rows[i]);
+	if (command->baseline && nt_digest_of_file(command->baseline, digest, &unused) == NT_OK)
+		nt_buffer_format(out, " %s", digest);
 }

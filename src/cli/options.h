@@ -95,6 +95,10 @@ bool nt_command_is_many(const nt_command *command);
 /* Appends the options on which the bytes of outputs depend, in one way for each meaning; defaults are left out. */
 void nt_options_shaping(const nt_command *command, nt_buffer *out);
 
+/* The same for the options on which the severities of findings depend; of a baseline also what is in it, which is empty
+ * if that cannot be read. */
+void nt_options_judging(const nt_command *command, nt_buffer *out);
+
 /* Text of --help, the one screen of -h, and the two lines that follow a mistake. */
 void nt_options_help(nt_buffer *out);
 void nt_options_first_help(nt_buffer *out);

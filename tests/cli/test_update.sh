@@ -225,6 +225,54 @@ validates --lines record out/.nmtan-record
 grep -q '"links":\[{"uri":"../t%2Cx","to":"v1"}\]' out/.nmtan-record || wrong "$(cat out/.nmtan-record)"
 grep -q '"found":"N.PNG"' out/.nmtan-record || wrong "$(cat out/.nmtan-record)"
 
+scene "findings that fail a run fail it again, until they do not"
+quad_with_map
+cp "$data/quad.obj" fine.obj
+later
+# WORDS|EXIT CODE|MADE AGAIN: each after the one before.
+while IFS='|' read -r words code expected; do
+	# shellcheck disable=SC2086
+	run --update -d out $words q.obj fine.obj
+	[ "$status $(made)" = "$code $expected${expected:+ }" ] || wrong "$words: exit code $status, made: $(made)"
+	[ $code = 0 ] || says "IMAGE_MISSING"
+	[ -e before ] || identity out/*.glb >before
+done <<-'EOF'
+	--fail-on=warning|6|q.obj fine.obj
+	--fail-on=warning|6|q.obj
+	--fail-on=warning -q|6|
+	--fail-on=error|0|
+	|0|
+	--fail-on=warning --ignore=IMAGE_MISSING|0|q.obj fine.obj
+	--fail-on=warning --ignore=IMAGE_MISSING|0|
+	--fail-on=warning|6|q.obj fine.obj
+	--fail-on=warning --severity=IMAGE_MISSING=info|0|q.obj fine.obj
+	--fail-on=info --severity=IMAGE_MISSING=info|6|q.obj
+EOF
+identity out/*.glb >after
+same before after
+validates --lines record out/.nmtan-record
+run -q --check --report=known.json q.obj
+run --update -d out --fail-on=warning --baseline=known.json q.obj fine.obj
+is "$status $(made)" "0 q.obj fine.obj "
+run --update -d out --fail-on=warning --baseline=known.json q.obj fine.obj
+is "$status $(made)" "0 "
+run -q --check --report=none.json fine.obj
+mv none.json known.json
+run --update -d out --fail-on=warning --baseline=known.json q.obj fine.obj
+is "$status $(made)" "6 q.obj fine.obj "
+cp "$data/bumps.png" n.png
+run --update -d out --fail-on=warning q.obj fine.obj
+is "$status $(made)" "0 q.obj fine.obj "
+
+scene "an output that was made again and has its bytes counts as left, not as one that got tangents"
+take
+run -q --update -d out mirrored_cube.obj quad.obj
+touch bumps.png
+later
+run --update -d out mirrored_cube.obj quad.obj
+says "mirrored_cube.obj -> out/mirrored_cube.glb: left as it is"
+says "nmtan: 2 of 2 done, 1 of them up to date; 1 left as it was"
+
 scene "in place, a file is up to date as the last run left it"
 take
 mkdir sub

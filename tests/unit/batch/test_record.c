@@ -65,7 +65,7 @@ static void append(nt_update_by by)
 	note(&trace);
 	assert_int_equal(nt_record_open(&record, "record", true, &error), NT_OK);
 	assert_int_equal(nt_record_append(record, &making, &trace, &line, &error), NT_OK);
-	nt_record_placed(record, &line, &trace);
+	nt_record_placed(record, &making, &line, &trace);
 	nt_record_close(record);
 	nt_buffer_free(&line);
 	nt_trace_free(&trace);
