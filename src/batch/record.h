@@ -19,7 +19,8 @@
  * URIs go through no links; those that paths went through are in "links". FOLDER is {"uri":"../in/n.png",STATE,
  * "found":"N.PNG"}: it was searched for the last part of the URI in any case, and is again if its state is another one.
  * "judged" is the highest severity of the findings, or "none", and "judging" the options that decide on that; a run
- * that nobody judged has neither. "sum" is a digest of the line before it. A line without it is damaged, or was written by a version that noted less,
+ * that nobody judged has neither.
+ * "sum" is a digest of the line before it. A line without it is damaged, or was written by a version that noted less,
  * and holds for nothing.
  *
  * The line is written before the output is renamed. If a run is killed in between, the line does not match the output,
@@ -63,7 +64,8 @@ typedef struct nt_making {
 	struct stat input_info;     /* of the input */
 	const char *options;        /* in words, in one way for each meaning */
 	nt_update_by by;
-	/* Findings that fail a run fail it again: what was judged by other options, or not at all, is not up to date. */
+	/* Findings that fail a run fail it again: an output that was judged by other options, or not at all, is not up
+	 * to date. */
 	const char *judging; /* options that decide on findings, in words; NULL: nobody judges */
 	int least_failure;   /* the nt_severity that fails; above the highest: none does */
 	int worst;           /* of what was made: the highest nt_severity of its findings; -1: there are none */

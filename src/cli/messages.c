@@ -239,6 +239,16 @@ static void append_vertices(nt_buffer *out, const nt_summary *s)
 	nt_buffer_text(out, ")");
 }
 
+/* Options that came to nothing, and others with which they would not. */
+static void append_unused(nt_buffer *out, const nt_summary *s, const nt_settings *settings)
+{
+	if (settings->existing == NT_EXISTING_REPLACE && s->skipped[NT_SKIP_NO_SLOT])
+		nt_buffer_text(out, ", --only=all replaces the tangents of all");
+	if (settings->draco > NT_DRACO_OFF && !s->solved_count)
+		nt_buffer_text(out,
+			", nothing compressed, as no primitive got tangents: --existing=replace --only=all");
+}
+
 static void append_skipped(nt_buffer *out, const nt_summary *s)
 {
 	bool first = true;
@@ -354,6 +364,8 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		append_findings_count(out, s);
 	else
 		append_skipped(out, s);
+	if (!settings->check)
+		append_unused(out, s, settings);
 	append_bare(out, ", ", s);
 	append_seconds(out, s->total_seconds);
 	if (s->note && !settings->check && !settings->dry_run)

@@ -115,7 +115,8 @@ const nt_option_row nt_option_rows[] = {
 		SETTING(images), true},
 	{"textures", 0, NT_OPTION_CHOICE, "auto|keep|png", NT_TEXTURES_AUTO, 0, "auto",
 		"images of an OBJ; auto: convert to PNG if glTF does not carry them; keep: leave those out; png: "
-		"convert all that can be decoded", SETTING(textures), true},
+		"convert all that can be decoded; height maps, and maps that share an image in glTF, become PNG in any "
+		"case", SETTING(textures), true},
 	{"texture-path", 0, NT_OPTION_LIST, "DIR", 0, 0, NULL,
 		"search DIR for images of an OBJ too; may be given several times", FIELD(texture_paths), false},
 	{"base-color", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,

@@ -65,9 +65,10 @@ static nt_status check_edit(const nt_settings *settings, const char *path, const
 	const bool edits = writer && writer->format != NT_FORMAT_PLY && nt_format_is_gltf(reader->format);
 	if (writer && !edits && settings->draco > NT_DRACO_OFF)
 		return nt_fail(error, NT_ERROR_USAGE,
-			"--draco=%s compresses only glTF that is made from glTF, not %s made from %s",
-			settings->draco == NT_DRACO_AS_SEQUENTIAL ? "sequential" : "edgebreaker",
-			writer->name, reader->name);
+			writer->format == NT_FORMAT_PLY ? "--draco=%s compresses glTF, not PLY" :
+			"--draco=%s compresses glTF that is made from glTF: convert to .glb without it, and then that "
+			"with --existing=replace --only=all and it",
+			settings->draco == NT_DRACO_AS_SEQUENTIAL ? "sequential" : "edgebreaker");
 	if (writer && writer->format == NT_FORMAT_PLY && settings->images == NT_IMAGES_EMBED)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"--images=embed: a PLY names a file; use link, copy or none");

@@ -533,10 +533,24 @@ done
 scene "only a glTF made from a glTF is compressed"
 run --draco=edgebreaker "$data/quad.obj" quad.glb
 exits 1
-says "--draco=edgebreaker compresses only glTF that is made from glTF"
+says "--draco=edgebreaker compresses glTF that is made from glTF: convert to .glb without it, and then that with --existing=replace --only=all and it"
 run --draco=sequential "$data/plates.glb" plates.ply
 exits 1
+says "--draco=sequential compresses glTF, not PLY"
 only
+run "$data/quad.obj" quad.glb
+run --draco=edgebreaker quad.glb out.glb
+exits 0
+says "nothing compressed, as no primitive got tangents: --existing=replace --only=all"
+is "$(compressed out.glb)" 0
+run --draco=edgebreaker --existing=replace --only=all quad.glb out.glb
+exits 0
+says_not "nothing compressed"
+is "$(compressed out.glb)" 1
+run --existing=replace quad.glb out.glb
+says "0 of 1 primitives, skipped 1 (no material of it uses tangents), --only=all replaces the tangents of all"
+run --existing=replace --only=all quad.glb out.glb
+says "1 primitive, 2 triangles"
 
 scene "a block that is edgebreaker's stays so: faces that its grid has made flat go, or a finding says why not"
 # one triangle is 1e-7 high: the first encoder keeps it, its grid brings two corners together, and a second one would drop it
