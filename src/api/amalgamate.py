@@ -11,6 +11,7 @@ asks:
 - what takes no time in a solve is compiled for size (COLD), and so are the kernels of the processors that few have.
   gcc inlines no function into one of another level of optimization but what it must, so what headers have must be.
 """
+import collections
 import glob
 import os
 import re
@@ -179,8 +180,8 @@ class Amalgamation:
 		while True:
 			plain = COMMENT.sub('', text)
 			heads = re.findall(r'^static [^;={(]*?\b(\w+)\(', plain, re.M)
-			unused = [name for name in set(heads)
-				if len(re.findall(r'\b' + name + r'\b', plain)) == heads.count(name)]
+			heads, words = collections.Counter(heads), collections.Counter(re.findall(r'\w+', plain))
+			unused = [name for name in heads if words[name] == heads[name]]
 			for name in unused:
 				text = re.sub(r'(?:^/\*(?:(?!\*/).)*\*/\n)?^static [^;={}()]*\b' + name +
 					r'\([^{};]*\)(?:;\n|\n\{\n.*?^\}\n)', '', text, flags=re.M | re.S)
@@ -205,8 +206,9 @@ def main():
 		part = re.search('@begin ' + name + '\n(.*?)@end\n', text, re.S)
 		text = text.replace(part[0], '')
 		body = body.replace('@' + name + '\n', part[1])
-	with open(target, 'w', encoding='utf-8') as file:
+	with open(target + '.part', 'w', encoding='utf-8') as file:
 		file.write(text + body + '#endif\n')
+	os.replace(target + '.part', target)
 
 
 main()
