@@ -84,14 +84,23 @@ build/clients/node_modules/three/package.json: tests/bindings/package.json tests
 	@npm ci --prefix build/clients --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null
 	@touch $@
 
-# Everything in release and under ASan and UBSan; make's own jobs carry over to the builds.
-.PHONY: check-built soak-built
-check-built: build/node/node_modules/gltf-validator/package.json
-	@echo "Building config=release"
-	@$(MAKE) -s $(JOBS) config=release all tests
-	@echo "Building config=sanitize"
-	@$(MAKE) -s $(JOBS) config=sanitize all tests
+# Everything in release and under ASan and UBSan; make's own jobs carry over to the builds, which run at the same time, so
+# that no processor waits for the last link of one. What tests ask make for is made here, once: they run at the same time.
+.PHONY: check-built soak-built built-release built-sanitize built-debug built-clients
+check-built:
+	@echo "Building config=release and config=sanitize"
+	@$(MAKE) -s $(JOBS) built-release built-sanitize built-debug built-clients build/node/node_modules/gltf-validator/package.json
 	@bash tests/run $(if $(filter true,$(CI)),--strict) build/release build/sanitize
+built-release:
+	@$(MAKE) -s config=release all tests amalgamation python $(if $(shell command -v clang),wasm) $(man3) \
+		$(addprefix build/web/report.,html css js)
+built-sanitize:
+	@$(MAKE) -s config=sanitize all tests
+built-debug:
+	@$(MAKE) -s config=debug build/debug/libnmtan.so
+built-clients:
+	@$(MAKE) -s build/clients/node_modules/three/package.json >/dev/null 2>&1 || \
+		echo "npm cannot install three, bundlers and others: the tests that need them will be skipped"
 
 # The tool's opens and renames are watched.
 $(B)/tests/soak/hostile: $(B)/tests/soak/hostile.o $(B)/tests/support/any_settings.o $(B)/tests/support/mutate.o $(module_obj) $(B)/libtool.a $(B)/libnmtan.a
