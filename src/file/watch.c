@@ -15,10 +15,12 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A document of so many open files keeps the others in memory. */
+/* A document of so many open files keeps the others in memory; so does one that would have half of the files open that the
+ * process may have. */
 enum { MOST_MAPS = 512 };
 
 typedef struct watched {
@@ -84,7 +86,10 @@ static void install(void)
 int nt_watch_begin(const void *map, const struct stat *status, int fd, const char *path)
 {
 	install();
-	for (int i = 0; i < MOST_MAPS; i++) {
+	struct rlimit files;
+	const bool is_limited = getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur / 2 < MOST_MAPS;
+	const int most = is_limited ? (int)files.rlim_cur / 2 : MOST_MAPS;
+	for (int i = 0; i < most; i++) {
 		watched *w = &maps[i];
 		uintptr_t none = 0;
 		if (!atomic_compare_exchange_strong(&w->begin, &none, 1))
