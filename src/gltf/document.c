@@ -202,6 +202,8 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 		document->file_accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
 		if (!document->buffers || !document->virtual_of || !document->views)
 			status = nt_fail_memory(error);
+		for (size_t i = 0; !status && i < document->buffer_count; i++)
+			document->buffers[i].number = i;
 		for (size_t i = 0; !status && i < document->view_count; i++) {
 			document->virtual_of[i] = NT_NONE;
 			document->views[i].buffer = NT_NONE;
@@ -240,7 +242,6 @@ void nt_gltf_free(void *source)
 	free(document->grids);
 	free(document->lod_wishes);
 	nt_name_table_free(&document->animated);
-	nt_hash_index_free(&document->buffer_files);
 	free(document->buffers);
 	nt_json_free(document->json);
 	nt_arena_free(&document->arena);
@@ -271,7 +272,7 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 	if (document->is_shared)
 		return nt_gltf_refuse(error);
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "/buffers/%llu", (unsigned long long)index);
+	snprintf(pointer, sizeof pointer, "/buffers/%zu", buffer->number);
 	status = nt_gltf_uint(json, pointer, "byteLength", (uint64_t)1 << 53, NT_GLTF_REQUIRED,
 		&buffer->length, error);
 	if (status)
@@ -302,27 +303,6 @@ static nt_status place_error(nt_error *error, nt_status status, const char *poin
 	return status;
 }
 
-/* A file that an earlier buffer names, too, by whatever name, is open once. */
-static nt_status share_file(nt_gltf *document, nt_gltf_buffer *buffer, nt_error *error)
-{
-	const uint64_t key[2] = {buffer->file.device, buffer->file.inode}, hash = nt_hash_bytes(0, key, sizeof key);
-	size_t at = NT_HASH_BEGIN;
-	for (uint32_t i; (i = nt_hash_index_next(&document->buffer_files, hash, &at)) != UINT32_MAX;) {
-		const nt_file *known = &document->buffers[i].file;
-		if (known->device != key[0] || known->inode != key[1])
-			continue;
-		nt_file_close(&buffer->file);
-		buffer->file = *known;
-		buffer->file.mapped = false;
-		buffer->file.borrowed = true;
-		return NT_OK;
-	}
-	if (nt_hash_index_add(&document->buffer_files, hash, (uint32_t)(buffer - document->buffers)))
-		return NT_OK;
-	nt_file_close(&buffer->file);
-	return nt_fail_memory(error);
-}
-
 static nt_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const char *uri, size_t length,
 	nt_error *error)
 {
@@ -333,8 +313,6 @@ static nt_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const char
 		document->allow_outside, &path, error);
 	if (!status)
 		status = nt_file_open_content(&buffer->file, path, true, error);
-	if (!status)
-		status = share_file(document, buffer, error);
 	if (status)
 		return status;
 	buffer->path = path;
@@ -384,7 +362,7 @@ nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *fro
 	if (document->is_shared)
 		return nt_gltf_refuse(error);
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "/buffers/%llu", (unsigned long long)index);
+	snprintf(pointer, sizeof pointer, "/buffers/%zu", buffer->number);
 	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "buffers"), (size_t)index);
 	status = open_bytes(document, buffer, json, error);
 	if (status)

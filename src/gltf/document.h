@@ -28,6 +28,7 @@ typedef enum nt_gltf_storage {
 
 typedef struct nt_gltf_buffer {
 	nt_gltf_storage storage;
+	size_t number;              /* in the file: of several that name one file the first is left (open.c) */
 	uint64_t length;            /* byteLength */
 	bool described, opened;     /* the fields above and below are valid */
 	const unsigned char *bytes; /* NULL until opened */
@@ -90,7 +91,6 @@ typedef struct nt_gltf {
 	bool keeps_transforms;   /* texture transforms turn no tangents: set before meshes are described */
 	nt_gltf_buffer *buffers; /* [buffer_count] */
 	size_t buffer_count;
-	nt_hash_index buffer_files; /* of buffers, by the files that they were the first to open */
 	nt_gltf_buffer *virtuals;  /* [virtual_count] decompressed views; buffer NT_GLTF_VIRTUAL + i */
 	size_t virtual_count, virtual_capacity;
 	uint32_t *virtual_of;      /* [view_count] the buffer a view was decompressed to; NT_NONE */

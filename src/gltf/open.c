@@ -15,6 +15,7 @@
 #include <unistd.h>
 #include "base/buffer.h"
 #include "file/lookup.h"
+#include "file/trace.h"
 #include "file/uri.h"
 #include "gltf/accessor.h"
 #include "gltf/document.h"
@@ -253,24 +254,97 @@ static nt_status place_meshes(nt_scene *scene, const nt_gltf *document, nt_error
 	return nt_gltf_walk_world(document, place_mesh, &world, error);
 }
 
-/* Whether the file of a buffer can be opened; a name that is refused is nobody's file. */
-static nt_status look_for_file(nt_gltf *document, size_t index, bool *missing, nt_error *failure)
+/* Whether the file of a buffer can be opened; a name that is refused is nobody's file. *info: which it is, st_nlink 0 if
+ * there is none. */
+static nt_status look_for_file(nt_gltf *document, size_t index, struct stat *info, bool *missing, nt_error *failure)
 {
 	size_t length = 0;
 	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "buffers"), index);
 	const char *uri = nt_json_get_string(nt_json_find(json, "uri"), &length), *path;
-	struct stat info;
 	*missing = false;
+	info->st_nlink = 0;
 	if (!uri || nt_uri_is_data(uri, length))
 		return NT_OK;
 	nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length, document->allow_outside,
 		&path, failure);
 	if (!status && document->allow_outside)
-		status = nt_lookup(path, &info, failure);
-	if (!status && access(path, R_OK) != 0)
+		status = nt_lookup(path, info, failure);
+	if (!status && (access(path, R_OK) != 0 || stat(path, info) != 0))
 		status = nt_fail(failure, NT_ERROR_IO, "cannot open \"%.120s\": %s", uri, strerror(errno));
 	*missing = status == NT_ERROR_MISSING || status == NT_ERROR_IO;
+	if (status)
+		info->st_nlink = 0;
 	return status == NT_ERROR_MEMORY ? status : NT_OK;
+}
+
+/* Gives what refers to a buffer the buffer's new number. */
+static void renumber(nt_gltf *document, nt_json_value *object, const uint32_t *numbers, size_t count)
+{
+	uint64_t buffer;
+	nt_json_value *reference = nt_json_find(object, "buffer");
+	if (nt_json_get_uint64(reference, &buffer) && buffer < count)
+		nt_json_set_uint64(document->json, reference, numbers[buffer]);
+}
+
+/* Lets a buffer stand for another one of its file: the longer length counts that the file has, but for padding that may be
+ * missing. */
+static void stand_for(nt_gltf *document, nt_json_value *buffer, const nt_json_value *other, const struct stat *file)
+{
+	uint64_t old, new;
+	size_t text;
+	const char *uri = nt_json_get_string(nt_json_find(other, "uri"), &text), *path;
+	const uint64_t most = (uint64_t)file->st_size + 3;
+	nt_json_value *length = nt_json_find(buffer, "byteLength");
+	if (nt_json_get_uint64(length, &old) && nt_json_get_uint64(nt_json_find(other, "byteLength"), &new) &&
+		new <= most && (new > old || old > most))
+		nt_json_set_uint64(document->json, length, new);
+	if (nt_uri_resolve(&document->arena, document->path, uri, text, document->allow_outside, &path, NULL) == NT_OK)
+		nt_trace_read(path, file);
+}
+
+/* Makes one buffer of those that name one file, by whatever name: each would be opened, and once it is edited, written. What
+ * refers to buffers is known: views, and extensions of theirs. files: [buffer_count], of which those are left that the
+ * buffers are. */
+static nt_status merge_buffers(nt_gltf *document, struct stat *files, nt_error *error)
+{
+	const size_t count = document->buffer_count;
+	nt_json *json = document->json;
+	nt_json_value *buffers = nt_gltf_root_member(document, "buffers");
+	nt_json_value *views = nt_gltf_root_member(document, "bufferViews");
+	nt_hash_index known = {0};
+	uint32_t kept = 0, *numbers = nt_alloc(count, sizeof *numbers);
+	bool failed = !numbers;
+	for (size_t i = 0; i < count && !failed; i++) {
+		const uint64_t key[2] = {files[i].st_dev, files[i].st_ino}, hash = nt_hash_bytes(0, key, sizeof key);
+		size_t at = NT_HASH_BEGIN;
+		uint32_t first = files[i].st_nlink ? nt_hash_index_next(&known, hash, &at) : UINT32_MAX;
+		while (first != UINT32_MAX && (files[first].st_dev != files[i].st_dev || files[first].st_ino != files[i].st_ino))
+			first = nt_hash_index_next(&known, hash, &at);
+		if (first != UINT32_MAX) {
+			stand_for(document, nt_json_at(buffers, first), nt_json_at(buffers, i), &files[i]);
+			numbers[i] = first;
+			continue;
+		}
+		if (kept < i)
+			nt_json_set_copy(json, nt_json_at(buffers, kept), nt_json_at(buffers, i));
+		files[kept] = files[i];
+		document->buffers[kept].number = i;
+		failed = files[i].st_nlink && !nt_hash_index_add(&known, hash, kept);
+		numbers[i] = kept++;
+	}
+	for (size_t i = count; i-- > kept && !failed;)
+		nt_json_remove_at(json, buffers, i);
+	for (size_t i = 0; i < nt_json_count(views) && kept < count && !failed; i++) {
+		nt_json_value *view = nt_json_at(views, i), *extensions = nt_json_find(view, "extensions");
+		renumber(document, view, numbers, count);
+		for (size_t k = 0; k < nt_json_count(extensions); k++)
+			renumber(document, nt_json_at(extensions, k), numbers, count);
+	}
+	if (!failed)
+		document->buffer_count = kept;
+	free(numbers);
+	nt_hash_index_free(&known);
+	return failed || nt_json_failed(json) ? nt_fail_memory(error) : NT_OK;
 }
 
 /* Refuses a document without all of its files, whether a run needs them or not: its output would be as broken. The
@@ -282,11 +356,14 @@ static nt_status look_for_buffers(nt_scene *scene, nt_gltf *document, nt_error *
 	nt_place first = {.offset = NT_NO_OFFSET};
 	nt_buffer names = {0};
 	nt_status status = NT_OK;
+	struct stat *files = nt_alloc(document->buffer_count, sizeof *files);
+	if (!files)
+		return nt_fail_memory(error);
 	for (size_t i = 0; i < document->buffer_count && !status; i++) {
 		nt_error failure;
 		bool missing;
 		nt_place place;
-		status = look_for_file(document, i, &missing, &failure);
+		status = look_for_file(document, i, &files[i], &missing, &failure);
 		if (status || !missing)
 			continue;
 		nt_place_clear(&place);
@@ -306,6 +383,9 @@ static nt_status look_for_buffers(nt_scene *scene, nt_gltf *document, nt_error *
 	if (count && status == NT_ERROR_MISSING)
 		error->place = first;
 	nt_buffer_free(&names);
+	if (!status && document->buffer_count > 1)
+		status = merge_buffers(document, files, error);
+	free(files);
 	return status;
 }
 

@@ -2,7 +2,7 @@
 # Small files that ask for much work: time, memory and output stay in proportion to what is read, with the bounds that
 # the manual states under LIMITS. Time is that of the processor, so that other programs are not counted but for what
 # they take of its caches, generous, and asked of one of three runs: what is quadratic misses it by far.
-# Runs alone.
+# Runs once: with the first build.
 . "$ROOT/tests/support/cli.sh"
 
 # inputs KIND COUNT FILE [SIDE]: what is asked for again, in another scene, is the same file.
@@ -115,6 +115,25 @@ within 4 100 -q --images=embed --buffers=link --outside=yes many.gltf out/many.g
 exits 0
 [ "$(stat -c %s out/many.glb)" -lt 5000000 ] || wrong "$(stat -c %s out/many.glb) bytes"
 rm -r out
+
+scene "a file that many buffers name is one buffer of what is edited, as its views and errors say"
+python3 "$ROOT/tests/support/cost_inputs.py" buffers 1500 many.gltf
+for words in "many.gltf out.glb" "--buffers=embed many.gltf out.gltf" "many.gltf out.gltf"; do
+	# shellcheck disable=SC2086
+	run -q --only=all $words
+	exits 0
+	is "$(gltf "${words##* }" '[g.buffers.length, g.bufferViews.every((v) => v.buffer === 0)].join()')" 1,true
+	[ "$(cat out.* | wc -c)" -lt 4000000 ] || wrong "$(cat out.* | wc -c) bytes"
+	rm out.*
+done
+python3 -c 'import json
+g = json.load(open("many.gltf"))
+g["buffers"].append({"byteLength": 24, "uri": "data:;base64,!"})
+g["bufferViews"][5] |= {"buffer": 1500, "byteOffset": 0}
+json.dump(g, open("broken.gltf", "w"))'
+run --only=all broken.gltf out.glb
+exits 3
+says "/buffers/1500"
 
 scene "morph targets that share an accessor take as long as they are many, and little memory each"
 for count in 100 200 400; do
