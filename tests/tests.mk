@@ -85,7 +85,7 @@ build/clients/node_modules/three/package.json: tests/bindings/package.json tests
 	@touch $@
 
 # Everything in release and under ASan and UBSan; make's own jobs carry over to the builds, which run at the same time, so
-# that no processor waits for the last link of one. What tests ask make for is made here, once: they run at the same time.
+# that no processor waits for the last link of one. Tests run at the same time, so that what they ask make for is made here.
 .PHONY: check-built soak-built built-release built-sanitize built-debug built-clients
 check-built:
 	@echo "Building config=release and config=sanitize"

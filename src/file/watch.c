@@ -19,7 +19,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A document of so many open files keeps the others in memory; so does one that would have half of the files open that the
+/* A document of so many open files keeps the others in memory; so does one that has half of the files open that the
  * process may have. */
 enum { MOST_MAPS = 512 };
 

@@ -254,7 +254,7 @@ static nt_status place_meshes(nt_scene *scene, const nt_gltf *document, nt_error
 	return nt_gltf_walk_world(document, place_mesh, &world, error);
 }
 
-/* Whether the file of a buffer can be opened; a name that is refused is nobody's file. *info: which it is, st_nlink 0 if
+/* Whether the file of a buffer can be opened; a name that is refused is nobody's file. *info: the file, st_nlink 0 if
  * there is none. */
 static nt_status look_for_file(nt_gltf *document, size_t index, struct stat *info, bool *missing, nt_error *failure)
 {
@@ -286,8 +286,8 @@ static void renumber(nt_gltf *document, nt_json_value *object, const uint32_t *n
 		nt_json_set_uint64(document->json, reference, numbers[buffer]);
 }
 
-/* Lets a buffer stand for another one of its file: the longer length counts that the file has, but for padding that may be
- * missing. */
+/* Lets a buffer stand for another one of its file: the longer length counts that the file has, but for padding that may
+ * be missing. */
 static void stand_for(nt_gltf *document, nt_json_value *buffer, const nt_json_value *other, const struct stat *file)
 {
 	uint64_t old, new;
@@ -302,9 +302,9 @@ static void stand_for(nt_gltf *document, nt_json_value *buffer, const nt_json_va
 		nt_trace_read(path, file);
 }
 
-/* Makes one buffer of those that name one file, by whatever name: each would be opened, and once it is edited, written. What
- * refers to buffers is known: views, and extensions of theirs. files: [buffer_count], of which those are left that the
- * buffers are. */
+/* Makes one buffer of those that name one file, by whatever name: each would be opened, and once it is edited,
+ * written. Views refer to buffers, and extensions of theirs do. files: [buffer_count], which become those of the
+ * buffers that are left. */
 static nt_status merge_buffers(nt_gltf *document, struct stat *files, nt_error *error)
 {
 	const size_t count = document->buffer_count;
@@ -318,7 +318,8 @@ static nt_status merge_buffers(nt_gltf *document, struct stat *files, nt_error *
 		const uint64_t key[2] = {files[i].st_dev, files[i].st_ino}, hash = nt_hash_bytes(0, key, sizeof key);
 		size_t at = NT_HASH_BEGIN;
 		uint32_t first = files[i].st_nlink ? nt_hash_index_next(&known, hash, &at) : UINT32_MAX;
-		while (first != UINT32_MAX && (files[first].st_dev != files[i].st_dev || files[first].st_ino != files[i].st_ino))
+		while (first != UINT32_MAX &&
+			(files[first].st_dev != files[i].st_dev || files[first].st_ino != files[i].st_ino))
 			first = nt_hash_index_next(&known, hash, &at);
 		if (first != UINT32_MAX) {
 			stand_for(document, nt_json_at(buffers, first), nt_json_at(buffers, i), &files[i]);
