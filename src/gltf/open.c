@@ -36,9 +36,31 @@ static uint64_t claimed_count(const nt_gltf *document, const nt_json_value *refe
 	return count;
 }
 
+/* The sentence about a set that the user asks for and that is not there; NULL if there is none at all. */
+static nt_status describe_asked_set(nt_scene *scene, nt_mesh *mesh, const nt_json_value *attributes, nt_error *error)
+{
+	enum { MOST_SETS = 32 };
+	uint32_t sets[MOST_SETS], count = 0;
+	char name[32];
+	for (uint32_t set = 0; set < MOST_SETS; set++) {
+		nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), set);
+		if (nt_json_find(attributes, name))
+			sets[count++] = set;
+	}
+	if (!count)
+		return NT_OK;
+	nt_buffer text = {0};
+	nt_buffer_format(&text, "--uv asks for set %u, the mesh has set%s ", mesh->texcoord_set, count == 1 ? "" : "s");
+	for (uint32_t i = 0; i < count; i++)
+		nt_buffer_format(&text, "%s%u", i == 0 ? "" : i + 1 < count ? ", " : " and ", sets[i]);
+	mesh->asked_set = text.failed ? NULL : nt_arena_text(&scene->arena, text.data, text.size);
+	nt_buffer_free(&text);
+	return mesh->asked_set ? NT_OK : nt_fail_memory(error);
+}
+
 /* The texture coordinates that tangents follow, as the materials or the user want them. */
-static void describe_texcoords(nt_mesh *mesh, const nt_json_value *attributes, const nt_gltf_shading *shading,
-	const nt_read_options *options)
+static nt_status describe_texcoords(nt_scene *scene, nt_mesh *mesh, const nt_json_value *attributes,
+	const nt_gltf_shading *shading, const nt_read_options *options, nt_error *error)
 {
 	char name[32];
 	mesh->texcoord_set = options->texcoord_set >= 0 ? (uint32_t)options->texcoord_set : shading->set;
@@ -53,6 +75,8 @@ static void describe_texcoords(nt_mesh *mesh, const nt_json_value *attributes, c
 		mesh->wrap_offset[axis] =
 			shading->wrap[axis] == NT_WRAP_MIRRORED ? (float)shading->transform.uv.offset[axis] : 0;
 	}
+	return options->texcoord_set < 0 || mesh->has_texcoords ? NT_OK
+		: describe_asked_set(scene, mesh, attributes, error);
 }
 
 /* Morph targets that move positions or normals, and those of them that leave tangents as they are. */
@@ -132,14 +156,15 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->triangles = mode >= NT_GLTF_TRIANGLES && mode <= LAST_MODE;
 	mesh->slots = shading.slots;
 	mesh->unlit = shading.unlit;
-	describe_texcoords(mesh, attributes, &shading, options);
 	const nt_json_value *positions = nt_json_find(attributes, "POSITION"),
 		*indices = nt_json_find(primitive, "indices");
 	const uint64_t corners = positions ? claimed_count(document, indices ? indices : positions) : 0;
 	mesh->has_positions = positions != NULL;
 	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;
-	status = describe_tangents(scene, document, attributes, positions ? claimed_count(document, positions) : 0,
-		mesh, error);
+	status = describe_texcoords(scene, mesh, attributes, &shading, options, error);
+	if (!status)
+		status = describe_tangents(scene, document, attributes, positions ? claimed_count(document, positions) : 0,
+			mesh, error);
 	if (status)
 		return status;
 	mesh->compressed = nt_gltf_draco_of(primitive) != NULL;

@@ -191,6 +191,10 @@ static nt_status read_scene(run *r)
 	if (r->settings->existing == NT_EXISTING_DROP && !nt_format_is_gltf(r->scene.format))
 		return nt_fail(r->error, NT_ERROR_USAGE,
 			"--existing=drop is for glTF, whose materials say which tangents are used");
+	if (r->settings->texcoord_set > 0 && !nt_format_is_gltf(r->scene.format))
+		return nt_fail(r->error, NT_ERROR_USAGE,
+			"--uv=%d is for glTF: an OBJ, PLY or Draco file has one set of texture coordinates, 0",
+			r->settings->texcoord_set);
 	for (size_t i = 0; i < r->fixes.mesh_count && i < r->scene.mesh_count; i++)
 		r->scene.meshes[i].fix = r->fixes.meshes[i];
 	/* glTF without normals is left alone unless normals are asked for; the other formats get them */

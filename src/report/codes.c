@@ -475,7 +475,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"No mesh of an OBJ, PLY or Draco file has texture coordinates: a scan, say, or a model without "
 		"textures. An error in a glTF whose material looks up a normal map, or shades by anisotropy, with "
 		"coordinates that the primitive lacks: no renderer can get that right. A warning if an OBJ's material "
-		"does: the output is without the map.",
+		"does: the output is without the map. If --uv asks for a set that a primitive lacks, its tangents stay "
+		"as they are, and none are made; the finding then tells which sets there are.",
 		"Nothing if no normal map is meant. Else unwrap the mesh, or choose a set that exists with --uv.",
 		"a normal-mapped glTF primitive without TEXCOORD_0"),
 	ROW(TAN_UVSET_CONFLICT, WARNING, "w--", EXPORT, NULL,

@@ -55,6 +55,12 @@ static void report_no_texcoords(nt_scene *scene, const nt_mesh *mesh, bool other
 {
 	const bool gltf = nt_format_is_gltf(scene->format);
 	char detail[64];
+	if (mesh->asked_set) {
+		nt_finding_add_as(&scene->findings, NT_CODE_TAN_NO_UV,
+			needs_tangents(mesh) && !mesh->has_tangents ? NT_SEVERITY_ERROR : NT_SEVERITY_WARNING,
+			nt_mesh_place(mesh, &(nt_place){0}), mesh->asked_set);
+		return;
+	}
 	if (!needs_tangents(mesh) && gltf)
 		return;
 	snprintf(detail, sizeof detail, "a material needs set %u", mesh->texcoord_set);
@@ -105,8 +111,12 @@ static nt_decision decide(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 	if (mesh->texcoord_conflict)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, nt_mesh_place(mesh, &(nt_place){0}), 1,
 			"sets %u and %u", mesh->texcoord_set, mesh->texcoord_other_set);
-	if (has_tangents_that_count(mesh) && (existing == NT_EXISTING_KEEP || existing == NT_EXISTING_DROP))
-		return NT_SKIP_HAS_TANGENTS;
+	const bool keeps = has_tangents_that_count(mesh) &&
+		(existing == NT_EXISTING_KEEP || existing == NT_EXISTING_DROP);
+	if (mesh->asked_set) /* without it nothing is mended either */
+		report_no_texcoords(scene, mesh, w->any_texcoords);
+	if (keeps || mesh->asked_set)
+		return keeps ? NT_SKIP_HAS_TANGENTS : NT_SKIP_NO_TEXCOORDS;
 	decision = decide_by_attributes(scene, mesh, w);
 	if (decision != NT_DECISION_OPEN)
 		return decision;

@@ -229,6 +229,34 @@ for words in --check "-o out.glb" "-o out.gltf"; do
 	exits 0
 done
 
+scene "a primitive without the set that --uv names is told with the sets that it has, and stays as it is"
+told='--uv asks for set 3, the mesh has sets 0 and 1'
+run -q --only=all "$data/multi_uv.gltf" has.gltf
+gltf has.gltf bad 'const p = g.meshes[0].primitives[0].attributes.TANGENT;
+	for (let k = 0; k < 3; k++) bytes[0].writeFloatLE(0, at(p, 0) + 4 * k)'
+for words in --existing=replace --existing=repair "--existing=repair --only=all" --fix; do
+	run --uv=3 $words bad.gltf out.gltf
+	exits 0
+	says "warning: there are no texture coordinates to make tangents by: $told [TAN_NO_UV]"
+	same bad.gltf out.gltf
+	run -q --check --fail-on=warning --uv=3 $words bad.gltf
+	[ "$words" = --fix ] || exits 6
+	rm -f out.*
+done
+run --check --uv=3 "$data/multi_uv.gltf"
+exits 6
+prints "error     TAN_NO_UV  there are no texture coordinates to make tangents by: $told"
+run --uv=1 --existing=replace bad.gltf out.gltf
+exits 0
+says_not TAN_NO_UV
+for file in quad.obj quad_le.ply; do
+	run --uv=1 "$data/$file" out.glb
+	exits 1
+	says "--uv=1 is for glTF: an OBJ, PLY or Draco file has one set of texture coordinates, 0"
+	run -q --uv=0 "$data/$file" out.glb
+	exits 0
+done
+
 scene "a mesh without texture coordinates is a finding"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >bare.obj
 run --check --fail-on=warning bare.obj

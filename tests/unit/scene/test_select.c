@@ -5,7 +5,7 @@
 
 /* How a mesh differs from a reachable one of triangles with everything a solve takes. */
 enum { UNLIT = 1, HIDDEN = 2, LINES = 4, EMPTY = 8, BARE = 16, NO_NORMALS = 32, TANGENTS = 64, CONFLICT = 128,
-	MADE_NORMALS = 256, UNREADABLE = 512 | 64 };
+	MADE_NORMALS = 256, UNREADABLE = 512 | 64, ASKED = 1024 | 16 };
 
 typedef struct row {
 	unsigned slots, but;
@@ -21,7 +21,7 @@ static void decide(const row *r)
 	nt_mesh mesh = {.name = "", .slots = r->slots, .triangles = !(r->but & LINES), .reachable = !(r->but & HIDDEN),
 		.has_positions = true, .has_normals = !(r->but & NO_NORMALS), .has_texcoords = !(r->but & BARE),
 		.has_tangents = r->but & TANGENTS, .tangents_fault = r->but & (UNREADABLE & ~TANGENTS) ? "" : NULL,
-		.unlit = r->but & UNLIT, .face_count = !(r->but & EMPTY),
+		.asked_set = r->but & (ASKED & ~BARE) ? "" : NULL, .unlit = r->but & UNLIT, .face_count = !(r->but & EMPTY),
 		.texcoord_conflict = r->but & CONFLICT, .texcoord_other_set = r->but & CONFLICT ? 1 : 0};
 	nt_scene scene;
 	nt_scene_init(&scene, "test");
@@ -88,6 +88,13 @@ TEST(decisions_are_those_of_the_table)
 		{N, NO_NORMALS | BARE, GLTF, AUTO, KEEP, NT_SKIP_NO_TEXCOORDS,
 			"error TAN_NO_UV warning TAN_NO_NORMAL"},
 		{0, NO_NORMALS | BARE, GLTF, NT_ONLY_ALL, KEEP, NT_SKIP_NO_TEXCOORDS, ""},
+		/* without the set that the user asks for nothing is made or mended */
+		{N, ASKED, GLTF, AUTO, KEEP, NT_SKIP_NO_TEXCOORDS, "error TAN_NO_UV"},
+		{0, ASKED, GLTF, NT_ONLY_ALL, KEEP, NT_SKIP_NO_TEXCOORDS, "warning TAN_NO_UV"},
+		{0, ASKED, GLTF, AUTO, KEEP, NT_SKIP_NO_SLOT, ""},
+		{N, ASKED | TANGENTS, GLTF, AUTO, KEEP, NT_SKIP_HAS_TANGENTS, "warning TAN_NO_UV"},
+		{N, ASKED | TANGENTS, GLTF, AUTO, NT_EXISTING_REPAIR, NT_SKIP_NO_TEXCOORDS, "warning TAN_NO_UV"},
+		{N, ASKED | TANGENTS, GLTF, AUTO, NT_EXISTING_REPLACE, NT_SKIP_NO_TEXCOORDS, "warning TAN_NO_UV"},
 		/* so are slots that want different sets */
 		{N | NT_SLOT_ANISOTROPY, CONFLICT, NT_FORMAT_GLB, AUTO, KEEP, NT_DECISION_SOLVE,
 			"warning TAN_UVSET_CONFLICT"},
