@@ -9,6 +9,7 @@
 #include <string.h>
 #include "file/uri.h"
 #include "gltf/document.h"
+#include "gltf/edit/images.h"
 #include "gltf/view.h"
 #include "image/find.h"
 #include "image/image.h"
@@ -319,6 +320,11 @@ nt_status nt_color_image_open(nt_normal_map *map, const char **obstacle, const n
 		nt_normal_map_close(map);
 	}
 	return status;
+}
+
+nt_status nt_look_for_images(nt_scene *scene, nt_error *error)
+{
+	return nt_format_is_gltf(scene->format) ? nt_gltf_look_for_images(scene, false, error) : NT_OK;
 }
 
 void nt_normal_map_close(nt_normal_map *map)

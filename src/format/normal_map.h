@@ -52,4 +52,7 @@ void nt_normal_map_transform(const nt_scene *scene, const nt_mesh *mesh, enum nt
 /* The map of a slot in the first material of a mesh of an OBJ that names one; NULL: none. */
 const nt_map *nt_normal_map_named(const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot);
 
+/* A finding about each image of a glTF that is not to be written whose file cannot be read. */
+nt_status nt_look_for_images(nt_scene *scene, nt_error *error);
+
 #endif

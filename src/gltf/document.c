@@ -8,8 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include "file/uri.h"
 #include "gltf/glb.h"
 
@@ -378,89 +376,6 @@ nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *fro
 	}
 	buffer->opened = true;
 	return NT_OK;
-}
-
-/* ---- files of images ---- */
-
-const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length)
-{
-	const char *uri = nt_json_get_string(nt_json_find(object, "uri"), length);
-	return uri && !nt_uri_is_data(uri, *length) ? uri : NULL;
-}
-
-/* The status of opening an image's file, told unless that is to stop the run. */
-static nt_status tell_image(nt_scene *scene, size_t index, const nt_error *failure, nt_error *error)
-{
-	nt_place place;
-	nt_place_clear(&place);
-	snprintf(place.pointer, sizeof place.pointer, "/images/%zu", index);
-	if (failure->status == NT_ERROR_MEMORY || failure->status == NT_ERROR_IO) {
-		*error = *failure;
-		return place_error(error, failure->status, place.pointer);
-	}
-	nt_finding_add(&scene->findings, NT_CODE_IMAGE_MISSING, &place, 1, "%s", failure->message);
-	return NT_OK;
-}
-
-nt_status nt_gltf_open_image(nt_scene *scene, size_t index, nt_file *file, const char **path, nt_error *error)
-{
-	nt_gltf *document = scene->source;
-	size_t length;
-	const char *uri =
-		nt_gltf_external_uri(nt_json_at(nt_gltf_root_member(document, "images"), index), &length);
-	nt_error failure;
-	nt_error_clear(&failure);
-	nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length, document->allow_outside, path,
-		&failure);
-	const bool resolved = !status;
-	if (resolved)
-		status = nt_file_open_content(file, *path, true, &failure);
-	if (!status)
-		return NT_OK;
-	if (resolved) {
-		const nt_error opening = failure;
-		snprintf(failure.message, sizeof failure.message, "\"%.120s\": %.300s", uri, opening.message);
-	}
-	*path = NULL;
-	return tell_image(scene, index, &failure, error);
-}
-
-/* A file is not read for that, unless it is so small that it may be Git LFS's pointer to another. */
-nt_status nt_gltf_look_for_image(nt_scene *scene, size_t index, bool linked, nt_error *error)
-{
-	enum { MOST_OF_POINTER = 1024 };
-	nt_gltf *document = scene->source;
-	size_t length;
-	const char *path,
-		*uri = nt_gltf_external_uri(nt_json_at(nt_gltf_root_member(document, "images"), index), &length);
-	nt_error failure;
-	struct stat info;
-	if (!uri)
-		return NT_OK;
-	nt_error_clear(&failure);
-	const nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length, document->allow_outside,
-		&path, &failure);
-	if (linked && (status == NT_ERROR_INPUT || status == NT_ERROR_UNSUPPORTED))
-		return NT_OK;
-	if (status)
-		return tell_image(scene, index, &failure, error);
-	if (stat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > MOST_OF_POINTER &&
-		access(path, R_OK) == 0)
-		return NT_OK;
-	nt_file file;
-	const nt_status opened = nt_gltf_open_image(scene, index, &file, &path, error);
-	if (path)
-		nt_file_close(&file);
-	return opened;
-}
-
-nt_status nt_gltf_look_for_images(nt_scene *scene, bool linked, nt_error *error)
-{
-	const size_t count = nt_json_count(nt_gltf_root_member(scene->source, "images"));
-	nt_status status = NT_OK;
-	for (size_t i = 0; i < count && !status; i++)
-		status = nt_gltf_look_for_image(scene, i, linked, error);
-	return status;
 }
 
 nt_status nt_gltf_refuse(nt_error *error)

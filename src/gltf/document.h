@@ -153,18 +153,6 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_buffer **buffer, nt_error *error);
 
-/* The text of an external reference: neither a data URI nor anything else than a string. NULL: none. */
-const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length);
-
-/* Opens the file of an image with an external URI. One that cannot be read is a finding, and *path NULL. Returns
- * NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
-nt_status nt_gltf_open_image(nt_scene *scene, size_t index, nt_file *file, const char **path, nt_error *error);
-
-/* Adds the same finding if an image's file cannot be read; does nothing for an image without an external URI. Linked:
- * the image stays the file that it is, of which nothing is said if it lies outside and therefore is not looked at. */
-nt_status nt_gltf_look_for_image(nt_scene *scene, size_t index, bool linked, nt_error *error);
-nt_status nt_gltf_look_for_images(nt_scene *scene, bool linked, nt_error *error);
-
 /* Defers errors: the caller repeats the call on a private document to get the message. */
 nt_status nt_gltf_refuse(nt_error *error);
 

@@ -40,22 +40,20 @@ static uint64_t claimed_count(const nt_gltf *document, const nt_json_value *refe
 static nt_status describe_asked_set(nt_scene *scene, nt_mesh *mesh, const nt_json_value *attributes, nt_error *error)
 {
 	enum { MOST_SETS = 32 };
-	uint32_t sets[MOST_SETS], count = 0;
 	char name[32];
+	nt_buffer sets = {0}, text = {0};
 	for (uint32_t set = 0; set < MOST_SETS; set++) {
 		nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), set);
 		if (nt_json_find(attributes, name))
-			sets[count++] = set;
+			nt_buffer_format(&sets, "%s%u", sets.size ? ", " : "", set);
 	}
-	if (!count)
-		return NT_OK;
-	nt_buffer text = {0};
-	nt_buffer_format(&text, "--uv asks for set %u, the mesh has set%s ", mesh->texcoord_set, count == 1 ? "" : "s");
-	for (uint32_t i = 0; i < count; i++)
-		nt_buffer_format(&text, "%s%u", i == 0 ? "" : i + 1 < count ? ", " : " and ", sets[i]);
-	mesh->asked_set = text.failed ? NULL : nt_arena_text(&scene->arena, text.data, text.size);
+	if (sets.size)
+		nt_buffer_format(&text, "--uv asks for set %u; sets of the mesh: %s", mesh->texcoord_set, sets.data);
+	mesh->asked_set = text.size ? nt_arena_text(&scene->arena, text.data, text.size) : NULL;
+	const bool failed = sets.failed || text.failed || (text.size && !mesh->asked_set);
+	nt_buffer_free(&sets);
 	nt_buffer_free(&text);
-	return mesh->asked_set ? NT_OK : nt_fail_memory(error);
+	return failed ? nt_fail_memory(error) : NT_OK;
 }
 
 /* The texture coordinates that tangents follow, as the materials or the user want them. */
@@ -163,8 +161,8 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;
 	status = describe_texcoords(scene, mesh, attributes, &shading, options, error);
 	if (!status)
-		status = describe_tangents(scene, document, attributes, positions ? claimed_count(document, positions) : 0,
-			mesh, error);
+		status = describe_tangents(scene, document, attributes,
+			positions ? claimed_count(document, positions) : 0, mesh, error);
 	if (status)
 		return status;
 	mesh->compressed = nt_gltf_draco_of(primitive) != NULL;

@@ -14,8 +14,8 @@
 #include "file/watch.h"
 #include "format/foreign.h"
 #include "format/normal_map.h"
+#include "format/normal_map.h"
 #include "format/turned_maps.h"
-#include "gltf/document.h"
 #include "gltf/sidecar.h"
 #include "gltf/verify/verify.h"
 #include "pipeline/map_requests.h"
@@ -352,8 +352,8 @@ static nt_status run_stages(run *r)
 	if (!status)
 		status = nt_tell_textures(&r->scene, r->settings, r->textures, r->summary, r->error);
 	/* a writer finds out which of them it cannot read */
-	if (!status && !r->writer && nt_format_is_gltf(r->scene.format))
-		status = nt_gltf_look_for_images(&r->scene, false, r->error);
+	if (!status && !r->writer)
+		status = nt_look_for_images(&r->scene, r->error);
 	if (!status)
 		status = nt_stage_maps(&r->scene, r->settings, r->textures, r->error);
 	if (!status && r->settings->list_meshes)

@@ -230,7 +230,7 @@ for words in --check "-o out.glb" "-o out.gltf"; do
 done
 
 scene "a primitive without the set that --uv names is told with the sets that it has, and stays as it is"
-told='--uv asks for set 3, the mesh has sets 0 and 1'
+told='--uv asks for set 3; sets of the mesh: 0, 1'
 run -q --only=all "$data/multi_uv.gltf" has.gltf
 gltf has.gltf bad 'const p = g.meshes[0].primitives[0].attributes.TANGENT;
 	for (let k = 0; k < 3; k++) bytes[0].writeFloatLE(0, at(p, 0) + 4 * k)'

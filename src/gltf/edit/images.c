@@ -9,6 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include "base/hash_index.h"
 #include "file/image_type.h"
 #include "file/relative_path.h"
@@ -55,6 +57,87 @@ static const char *media_type(const nt_gltf *document, const nt_file *file)
 	if (file->size >= 4 && memcmp(file->data, "DDS ", 4) == 0)
 		return "image/vnd-ms.dds"; /* MSFT_texture_dds */
 	return NULL;
+}
+
+/* Opens the file of an image. A message that names no file gets the URI. */
+static nt_status open_file(nt_gltf *document, const char *uri, size_t length, nt_file *file, const char **path,
+	nt_error *failure)
+{
+	nt_error_clear(failure);
+	nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length, document->allow_outside, path,
+		failure);
+	if (status)
+		return status;
+	status = nt_file_open_content(file, *path, true, failure);
+	if (status) {
+		const nt_error opening = *failure;
+		snprintf(failure->message, sizeof failure->message, "\"%.120s\": %.300s", uri, opening.message);
+	}
+	return status;
+}
+
+static void tell(nt_scene *scene, size_t index, nt_code code, const char *text)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	snprintf(place.pointer, sizeof place.pointer, "/images/%zu", index);
+	nt_finding_add(&scene->findings, code, &place, 1, "%s", text);
+}
+
+/* Opens the file of an image; *path is NULL, after a finding, if that is not possible. */
+static nt_status open_image(moving *m, size_t index, const nt_json_value *image, nt_file *file, const char **path)
+{
+	size_t length;
+	const char *uri = nt_gltf_external_uri(image, &length);
+	nt_error error;
+	const nt_status status = open_file(m->edits->document, uri, length, file, path, &error);
+	if (!status)
+		return NT_OK;
+	*path = NULL;
+	if (status == NT_ERROR_MEMORY || status == NT_ERROR_IO) {
+		*m->error = error;
+		snprintf(m->error->place.pointer, sizeof m->error->place.pointer, "/images/%zu", index);
+		return status;
+	}
+	tell(m->scene, index, NT_CODE_IMAGE_MISSING, error.message);
+	return NT_OK;
+}
+
+/* A file is not read for this, unless it is so small that it may be Git LFS's pointer to another. */
+static nt_status look_for_image(nt_scene *scene, size_t index, bool linked, nt_error *error)
+{
+	enum { MOST_OF_POINTER = 1024 };
+	nt_gltf *document = scene->source;
+	size_t length;
+	const char *path,
+		*uri = nt_gltf_external_uri(nt_json_at(nt_gltf_root_member(document, "images"), index), &length);
+	nt_error failure;
+	struct stat info;
+	nt_file file;
+	if (!uri)
+		return NT_OK;
+	nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length, document->allow_outside, &path,
+		&failure);
+	if (linked && (status == NT_ERROR_INPUT || status == NT_ERROR_UNSUPPORTED))
+		return NT_OK;
+	if (!status && stat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > MOST_OF_POINTER &&
+		access(path, R_OK) == 0)
+		return NT_OK;
+	status = open_file(document, uri, length, &file, &path, &failure);
+	if (!status)
+		nt_file_close(&file);
+	else if (status != NT_ERROR_MEMORY)
+		tell(scene, index, NT_CODE_IMAGE_MISSING, failure.message);
+	return status == NT_ERROR_MEMORY ? nt_fail_memory(error) : NT_OK;
+}
+
+nt_status nt_gltf_look_for_images(nt_scene *scene, bool linked, nt_error *error)
+{
+	const size_t count = nt_json_count(nt_gltf_root_member(scene->source, "images"));
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < count && !status; i++)
+		status = look_for_image(scene, i, linked, error);
+	return status;
 }
 
 /* The destination of a file that an earlier image names, too; NULL: none does. */
@@ -201,10 +284,10 @@ static nt_status copy_file(moving *m, nt_json_value *image, const nt_file *file,
 static nt_status copy_image(moving *m, size_t index, nt_json_value *image)
 {
 	if (!*m->output->link_prefix) /* it is there already */
-		return nt_gltf_look_for_image(m->scene, index, true, m->error);
+		return look_for_image(m->scene, index, true, m->error);
 	nt_file file;
 	const char *path;
-	nt_status status = nt_gltf_open_image(m->scene, index, &file, &path, m->error);
+	nt_status status = open_image(m, index, image, &file, &path);
 	if (!path)
 		return status;
 	status = copy_file(m, image, &file, path);
@@ -218,10 +301,7 @@ static nt_status embed_file(moving *m, size_t index, nt_json_value *image, const
 	const char *type = media_type(m->edits->document, file);
 	*is_kept = false;
 	if (!type) {
-		nt_place place;
-		nt_place_clear(&place);
-		snprintf(place.pointer, sizeof place.pointer, "/images/%zu", index);
-		nt_finding_add(&m->scene->findings, NT_CODE_IMAGE_TYPE, &place, 1, "it stays a file");
+		tell(m->scene, index, NT_CODE_IMAGE_TYPE, "it stays a file");
 		return m->output->is_stream ? nt_gltf_link(m->json, image, m->output->link_prefix, m->error)
 			: *m->output->link_prefix ? copy_file(m, image, file, path) : NT_OK;
 	}
@@ -246,7 +326,7 @@ static nt_status embed_image(moving *m, size_t index, nt_json_value *image)
 	nt_file file;
 	const char *path;
 	bool is_kept;
-	nt_status status = nt_gltf_open_image(m->scene, index, &file, &path, m->error);
+	nt_status status = open_image(m, index, image, &file, &path);
 	if (!path)
 		return status;
 	status = embed_file(m, index, image, &file, path, &is_kept);
@@ -257,7 +337,7 @@ static nt_status embed_image(moving *m, size_t index, nt_json_value *image)
 
 static nt_status link_image(moving *m, size_t index, nt_json_value *image)
 {
-	const nt_status status = nt_gltf_look_for_image(m->scene, index, true, m->error);
+	const nt_status status = look_for_image(m->scene, index, true, m->error);
 	return status ? status : nt_gltf_link(m->json, image, m->output->link_prefix, m->error);
 }
 

@@ -31,7 +31,14 @@ nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *
 nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_gltf_output *output,
 	nt_open_images *images, nt_error *error);
 
+/* A finding about each image whose file cannot be read. Linked: images stay the files that they are; nothing is said
+ * of those that lie outside, which are not looked at. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_gltf_look_for_images(nt_scene *scene, bool linked, nt_error *error);
+
 void nt_open_images_close(nt_open_images *images);
+
+/* links.c. The text of an external reference: neither a data URI nor anything else than a string. NULL: none. */
+const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length);
 
 /* links.c. The way from the folder of one file to the folder of another as a URI: "../other/"; "" where they are
  * the same or cannot be found. "-" is a file of the current folder. */

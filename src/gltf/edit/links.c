@@ -10,6 +10,12 @@
 #include "file/relative_path.h"
 #include "file/uri.h"
 
+const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length)
+{
+	const char *uri = nt_json_get_string(nt_json_find(object, "uri"), length);
+	return uri && !nt_uri_is_data(uri, *length) ? uri : NULL;
+}
+
 nt_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *to, const char **prefix,
 	nt_error *error)
 {

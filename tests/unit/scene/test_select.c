@@ -21,7 +21,8 @@ static void decide(const row *r)
 	nt_mesh mesh = {.name = "", .slots = r->slots, .triangles = !(r->but & LINES), .reachable = !(r->but & HIDDEN),
 		.has_positions = true, .has_normals = !(r->but & NO_NORMALS), .has_texcoords = !(r->but & BARE),
 		.has_tangents = r->but & TANGENTS, .tangents_fault = r->but & (UNREADABLE & ~TANGENTS) ? "" : NULL,
-		.asked_set = r->but & (ASKED & ~BARE) ? "" : NULL, .unlit = r->but & UNLIT, .face_count = !(r->but & EMPTY),
+		.asked_set = r->but & (ASKED & ~BARE) ? "" : NULL,
+		.unlit = r->but & UNLIT, .face_count = !(r->but & EMPTY),
 		.texcoord_conflict = r->but & CONFLICT, .texcoord_other_set = r->but & CONFLICT ? 1 : 0};
 	nt_scene scene;
 	nt_scene_init(&scene, "test");
