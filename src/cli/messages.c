@@ -156,6 +156,10 @@ static void append_bare(nt_buffer *out, const char *before, const nt_summary *s)
 {
 	if (!s->bare_materials)
 		return;
+	if (!s->bare_material[0] && s->bare_materials == 1) {
+		nt_buffer_format(out, "%sthe material has none of its images", before);
+		return;
+	}
 	nt_buffer_format(out, "%smaterial \"", before);
 	nt_buffer_clean(out, s->bare_material);
 	if (s->bare_materials == 1)
@@ -244,6 +248,12 @@ static void append_unused(nt_buffer *out, const nt_summary *s, const nt_settings
 {
 	if (settings->existing == NT_EXISTING_REPLACE && s->skipped[NT_SKIP_NO_SLOT])
 		nt_buffer_text(out, ", --only=all replaces the tangents of all");
+	if (s->without_normals && settings->normals == NT_NORMALS_AUTO)
+		nt_buffer_format(out, ", %zu without normals (--normals=smooth makes them)", s->without_normals);
+	if (s->without_normals && settings->normals != NT_NORMALS_AUTO)
+		nt_buffer_format(out, ", %zu still without normals", s->without_normals);
+	if (s->shaded_count)
+		nt_buffer_format(out, ", made the normals of %zu without tangents", s->shaded_count);
 	if (settings->draco > NT_DRACO_OFF && !s->solved_count)
 		nt_buffer_text(out,
 			", nothing compressed, as no primitive got tangents: --existing=replace --only=all");
@@ -378,7 +388,7 @@ void nt_message_meshes(nt_buffer *out, const nt_job *job)
 	const nt_summary *s = &job->outcome->summary;
 	for (size_t i = 0; i < s->line_count; i++) {
 		const nt_mesh_line *line = &s->lines[i];
-		const bool solved = line->decision == NT_DECISION_SOLVE || line->decision == NT_DECISION_REPAIR;
+		const bool solved = line->decision > NT_DECISION_OPEN && line->decision <= NT_DECISION_NORMALS;
 		nt_buffer_text(out, "nmtan: ");
 		const nt_place_view place = nt_view_place(&line->place);
 		append_place(out, &place, job->input);

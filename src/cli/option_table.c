@@ -35,8 +35,9 @@ const nt_option_row nt_option_rows[] = {
 		SETTING(repair), true},
 	{"normals", 0, NT_OPTION_CHOICE, "auto|flat|smooth|angle:N|replace-flat|replace-smooth|replace-angle:N",
 		NT_NORMALS_AUTO, 180, "auto",
-		"how to make missing normals; auto: of OBJ by smoothing group, of PLY smooth, of glTF none; "
-		"angle: smooth between faces that meet at less than N degrees; replace-: replace the input's too",
+		"how to make missing normals; auto: if tangents need them, of OBJ by smoothing group, of PLY and "
+		"Draco smooth, of glTF none; angle: smooth between faces that meet at less than N degrees; replace-: "
+		"replace the input's too",
 		SETTING(normals), true},
 	{"across", 0, NT_OPTION_CHOICE, "primitive|mesh", NT_ACROSS_PRIMITIVE, 0, "primitive",
 		"glTF: solve each primitive alone, or all primitives of a mesh that share texture coordinates as "

@@ -80,7 +80,7 @@ typedef struct group {
 /* Whether the tangents of a primitive are asked for, and a solve can give them. */
 static bool is_wanted(const nt_mesh *mesh, bool kept)
 {
-	return mesh->has_texcoords && (nt_mesh_is_wanted(mesh) ||
+	return mesh->has_texcoords && (nt_mesh_gets_tangents(mesh) ||
 		(kept && mesh->decision == NT_SKIP_HAS_TANGENTS && mesh->has_positions && mesh->has_normals));
 }
 
@@ -366,7 +366,7 @@ nt_status nt_gltf_find_joins(nt_scene *scene, bool solved, bool kept, nt_error *
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
 		wanted += is_wanted(mesh, kept);
-		s.solved_faces += nt_mesh_is_wanted(mesh) && !mesh->plan.same_as ? mesh->face_count : 0;
+		s.solved_faces += nt_mesh_gets_tangents(mesh) && !mesh->plan.same_as ? mesh->face_count : 0;
 	}
 	/* a join has one wanted primitive at least */
 	scene->join_count = 0;

@@ -236,6 +236,7 @@ static void put_key(nt_buffer *key, const nt_vertex_pools *pools, const nt_mesh 
 	put_accessor(key, pools, attributes, "POSITION");
 	put_accessor(key, pools, attributes, "NORMAL");
 	put_accessor(key, pools, attributes, name);
+	put_number(key, mesh->decision == NT_DECISION_NORMALS);
 	/* what is solved with others has other tangents than alone */
 	const nt_join *join = mesh->plan.same_as ? mesh->plan.same_as->plan.join : mesh->plan.join;
 	put_number(key, join ? (uint64_t)(join - pools->scene->joins) + 1 : 0);

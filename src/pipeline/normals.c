@@ -281,12 +281,12 @@ static nt_status make_normals_of_copies(nt_scene *scene, unsigned threads, nt_er
 	return status;
 }
 
-/* Whether a mesh that cannot have tangents gets the normals that the user asks for: a scan without texture coordinates.
- * A glTF is changed where it gets tangents, and nowhere else. */
+/* Whether a mesh that gets no tangents gets the normals that the user asks for: a scan without texture coordinates.
+ * Primitives of a glTF have a decision of their own for that. */
 static bool is_shaded_only(const nt_scene *scene, const nt_mesh *mesh, nt_normals mode)
 {
 	return mode != NT_NORMALS_AUTO && !nt_format_is_gltf(scene->format) && mesh->positions &&
-	       mesh->decision == NT_SKIP_NO_TEXCOORDS;
+	       !nt_mesh_is_wanted(mesh);
 }
 
 nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, int degrees, unsigned threads, nt_error *error)

@@ -108,7 +108,7 @@ static void add_mesh(part *p, const nt_scene *scene, uint32_t index, const nt_se
 	p->first = p->meshes++ ? p->first : index;
 	p->inverted |= mesh->signs == NT_SIGN_INVERTED;
 	p->right |= mesh->signs == NT_SIGN_OPEN || mesh->signs == NT_SIGN_RIGHT;
-	p->tangents_change |= mesh->signs == NT_SIGN_INVERTED && nt_mesh_is_wanted(mesh);
+	p->tangents_change |= mesh->signs == NT_SIGN_INVERTED && nt_mesh_gets_tangents(mesh);
 	for (int slot = 0; slot < 2; slot++) {
 		const nt_mesh_map *map = &mesh->normal_maps[slot];
 		if (!map->number)

@@ -44,7 +44,7 @@ static bool suggests_quads(const nt_scene *scene, const nt_mesh *mesh, size_t qu
 nt_status nt_find_halves(nt_scene *scene, nt_mesh *mesh, nt_quads choice, unsigned threads)
 {
 	const bool pairs = choice == NT_QUADS_PAIRS, polygons = !pairs && mesh->has_polygons;
-	const bool proof = !pairs && !polygons && mesh->tangents && nt_mesh_is_wanted(mesh);
+	const bool proof = !pairs && !polygons && mesh->tangents && nt_mesh_gets_tangents(mesh);
 	if (choice == NT_QUADS_OFF || !nt_format_is_gltf(scene->format) || mesh->plan.same_as || !mesh->positions ||
 		!mesh->normals || !mesh->texcoords || !(pairs || polygons || proof || scene->solves_quads))
 		return NT_OK;

@@ -79,7 +79,7 @@ static nt_status check_triangles(const run *r)
 		for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
 			triangles += mesh->face_sizes[f] == 4;
 		count += triangles;
-		of_targets += bakes && nt_mesh_is_wanted(mesh) ? triangles * mesh->moving_targets : 0;
+		of_targets += bakes && nt_mesh_gets_tangents(mesh) ? triangles * mesh->moving_targets : 0;
 	}
 	if (count + of_targets <= most)
 		return NT_OK;
@@ -175,6 +175,18 @@ static bool makes_document(const run *r)
 	return r->writer && r->writer->format != NT_FORMAT_PLY && !nt_format_is_gltf(r->scene.format);
 }
 
+/* A glTF without normals is left alone unless normals are asked for; the other formats get them for tangents. With
+ * --draco, what gets tangents is compressed, and nothing else touched. */
+static nt_making_normals making_normals(const run *r)
+{
+	const nt_settings *s = r->settings;
+	if (s->normals == NT_NORMALS_AUTO)
+		return nt_format_is_gltf(r->reader->format) ? NT_MAKING_NONE : NT_MAKING_MISSING;
+	if (!r->writer || s->draco > NT_DRACO_OFF)
+		return NT_MAKING_MISSING;
+	return s->normals >= NT_NORMALS_REPLACE_FLAT ? NT_MAKING_ALL : NT_MAKING_ALL_MISSING;
+}
+
 static nt_status read_scene(run *r)
 {
 	nt_status status = open_scene(r);
@@ -197,9 +209,10 @@ static nt_status read_scene(run *r)
 			r->settings->texcoord_set);
 	for (size_t i = 0; i < r->fixes.mesh_count && i < r->scene.mesh_count; i++)
 		r->scene.meshes[i].fix = r->fixes.meshes[i];
-	/* glTF without normals is left alone unless normals are asked for; the other formats get them */
-	nt_select(&r->scene, r->settings->only, r->settings->existing,
-		!nt_format_is_gltf(r->reader->format) || r->settings->normals != NT_NORMALS_AUTO);
+	const nt_settings *s = r->settings;
+	/* tangents go with the normals that they were made for */
+	const bool replaces = s->normals >= NT_NORMALS_REPLACE_FLAT && s->existing != NT_EXISTING_DROP;
+	nt_select(&r->scene, s->only, replaces ? NT_EXISTING_REPLACE : s->existing, making_normals(r));
 	status = check_triangles(r);
 	if (status)
 		return status;
@@ -363,6 +376,9 @@ static nt_status run_stages(run *r)
 		status = turn_maps(r);
 	if (!status && r->writer)
 		status = write_scene(r);
+	for (size_t i = 0; i < r->scene.mesh_count; i++)
+		if (r->scene.meshes[i].decision == NT_DECISION_NORMALS) /* no report takes them for tangents */
+			r->scene.meshes[i].split = (nt_split){0};
 	return status;
 }
 
@@ -451,6 +467,18 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 		fixed->flip_green = NT_FLIP_AUTO;
 	set_read_options(r, fixed);
 	return status;
+}
+
+/* Meshes that are written without normals, although a word would make some. */
+static size_t count_without_normals(const run *r)
+{
+	const bool asked = r->settings->normals != NT_NORMALS_AUTO;
+	size_t count = 0;
+	for (size_t i = 0; i < r->scene.mesh_count && asked == nt_format_is_gltf(r->scene.format); i++) {
+		const nt_mesh *mesh = &r->scene.meshes[i];
+		count += mesh->triangles && mesh->face_count && !mesh->has_normals;
+	}
+	return count;
 }
 
 /* Whether the output has what the input has: nobody's tangents or normals were made or dropped, no image was turned. */
@@ -553,6 +581,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->findings = r.scene.findings;
 	summary->rounding = r.scene.rounding;
 	summary->morph_cost = r.scene.morph_cost;
+	summary->without_normals = count_without_normals(&r);
 	summary->unchanged = !status && is_unchanged(&r);
 	summary->keeps_wrong = !settings->check && keeps_wrong(summary);
 	r.scene.findings = (nt_finding_list){0};

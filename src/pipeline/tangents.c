@@ -110,6 +110,11 @@ static nt_status solve_corners(nt_mesh *mesh, const nmtan_mesh *view,
 	*tangents = output.tangents;
 	if (!output.tangents)
 		return NT_ERROR_MEMORY;
+	if (mesh->decision == NT_DECISION_NORMALS) { /* equal ones split no vertex, and nobody writes them */
+		memset(output.tangents, 0, mesh->corner_count * 4 * sizeof(float));
+		mesh->morph_count = 0;
+		return NT_OK;
+	}
 	if (!view->texcoords) {
 		nt_mend_untextured(mesh, view, output.tangents);
 		return NT_OK;
@@ -184,7 +189,7 @@ static nt_status keep_split(const wishes *job, nt_mesh *mesh, const nmtan_split_
 {
 	nt_split *split = &mesh->split;
 	const size_t count = output->source_count;
-	if (job->settings->digests)
+	if (job->settings->digests && mesh->decision != NT_DECISION_NORMALS)
 		mesh->tangents_digest = nt_hash_unkeyed(0, split->vertex_tangents,
 			4 * sizeof(float) * (mesh->vertex_count + count));
 	split->source_count = count;
@@ -211,8 +216,10 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	stored.v_offset = stored_v_offset(job);
 	mesh->counts = (nmtan_counts)NMTAN_COUNTS_INIT;
-	const bool by_corner = mesh->decision == NT_DECISION_REPAIR || mesh->morph_count || mesh->halves;
+	const bool by_corner = mesh->decision != NT_DECISION_SOLVE || mesh->morph_count || mesh->halves;
 	nt_status status;
+	if (mesh->decision == NT_DECISION_NORMALS && !job->triangulates)
+		return NT_OK; /* the edit of a glTF alone asks for a split */
 	if (!job->splits && by_corner) {
 		status = solve_corners(mesh, &view, options, &mesh->corner_tangents, &mesh->counts);
 		if (!status)
@@ -429,6 +436,10 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 
 static void add_counts(nt_summary *summary, const nt_mesh *mesh)
 {
+	if (mesh->decision == NT_DECISION_NORMALS) {
+		summary->shaded_count++;
+		return;
+	}
 	summary->solved_count++;
 	summary->triangle_count += count_triangles(mesh);
 	summary->repaired += mesh->decision == NT_DECISION_REPAIR && mesh->has_tangents

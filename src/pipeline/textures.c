@@ -16,20 +16,24 @@
 #include "file/relative_path.h"
 #include "file/uri.h"
 
-/* Calls body once for each material that a mesh with texture coordinates uses, in the order of the meshes. */
-static nt_status each_material(nt_scene *scene, void *context, nt_error *error,
-	nt_status (*body)(nt_scene *scene, nt_material *material, void *context, nt_error *error))
+/* Calls body once for each material that a mesh with texture coordinates uses, and `bare` (NULL: nothing) for those
+ * that others alone use, in the order of the meshes. */
+typedef nt_status material_function(nt_scene *scene, nt_material *material, void *context, nt_error *error);
+
+static nt_status each_material(nt_scene *scene, void *context, nt_error *error, material_function *body,
+	material_function *bare)
 {
 	bool *seen = nt_calloc(scene->material_count, sizeof *seen);
 	nt_status status = seen ? NT_OK : nt_fail_memory(error);
-	for (size_t m = 0; m < scene->mesh_count && !status; m++) {
-		const nt_mesh *mesh = &scene->meshes[m];
-		for (size_t i = 0; i < mesh->primitive_count && mesh->texcoords && !status; i++) {
+	for (size_t m = 0; m < (bare ? 2 : 1) * scene->mesh_count && !status; m++) {
+		const nt_mesh *mesh = &scene->meshes[m % scene->mesh_count];
+		const bool is_first = m < scene->mesh_count;
+		for (size_t i = 0; i < mesh->primitive_count && is_first == (mesh->texcoords != NULL) && !status; i++) {
 			const uint32_t number = mesh->primitives[i].material;
 			if (number == NT_NONE || !mesh->primitives[i].face_count || seen[number])
 				continue;
 			seen[number] = true;
-			status = body(scene, &scene->materials[number], context, error);
+			status = (is_first ? body : bare)(scene, &scene->materials[number], context, error);
 		}
 	}
 	free(seen);
@@ -90,7 +94,7 @@ nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const 
 	requesting w = {*textures, settings};
 	const nt_status status = check_folders(settings, error);
 	return status || settings->images == NT_IMAGES_NONE
-		? status : each_material(scene, &w, error, request_material);
+		? status : each_material(scene, &w, error, request_material, NULL);
 }
 
 /* ---- making ---- */
@@ -261,6 +265,12 @@ static void tell_misplaced(const telling *t)
 	}
 }
 
+static void count_bare(const telling *t, const nt_material *m)
+{
+	if (!t->summary->bare_materials++)
+		snprintf(t->summary->bare_material, sizeof t->summary->bare_material, "%s", m->name);
+}
+
 static nt_status tell_material(nt_scene *scene, nt_material *m, void *context, nt_error *error)
 {
 	(void)error;
@@ -276,8 +286,28 @@ static nt_status tell_material(nt_scene *scene, nt_material *m, void *context, n
 	tell_misplaced(t);
 	for (size_t i = 0; i < count; i++)
 		tell_request(t, &requests[i]);
-	if (t->images && t->lost == t->images && !t->summary->bare_materials++)
-		snprintf(t->summary->bare_material, sizeof t->summary->bare_material, "%s", m->name);
+	if (t->images && t->lost == t->images)
+		count_bare(t, m);
+	return NT_OK;
+}
+
+/* Images that no texture coordinates lay on the faces. */
+static nt_status tell_unmapped(nt_scene *scene, nt_material *m, void *context, nt_error *error)
+{
+	(void)error;
+	const nt_map *first = NULL;
+	size_t count = 0;
+	for (size_t i = 0; i < NT_MATERIAL_MAPS; i++) {
+		count += m->maps[i].name != NULL;
+		first = first ? first : m->maps[i].name ? &m->maps[i] : NULL;
+	}
+	if (!count)
+		return NT_OK;
+	const nt_place place = nt_material_place(scene, m, first->line);
+	nt_finding_add(&scene->findings, NT_CODE_MATERIAL_LOST, &place, count,
+		"%.120s%s: the faces have no texture coordinates, by which images lie on them", first->name,
+		count > 1 ? " and the others" : "");
+	count_bare(context, m);
 	return NT_OK;
 }
 
@@ -287,5 +317,5 @@ nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const n
 	telling t = {.textures = textures, .settings = settings, .summary = summary};
 	if (settings->images == NT_IMAGES_NONE)
 		return NT_OK;
-	return each_material(scene, &t, error, tell_material);
+	return each_material(scene, &t, error, tell_material, tell_unmapped);
 }

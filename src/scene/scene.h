@@ -35,6 +35,7 @@ typedef enum nt_decision {
 	NT_DECISION_OPEN,            /* not decided yet */
 	NT_DECISION_SOLVE,           /* tangents are computed */
 	NT_DECISION_REPAIR,          /* authored tangents are kept where they are valid */
+	NT_DECISION_NORMALS,         /* of a glTF, normals alone are made */
 	NT_SKIP_NO_SLOT,             /* no material of it uses tangents */
 	NT_SKIP_UNLIT,
 	NT_SKIP_NOT_TRIANGLES,       /* points or lines */
@@ -401,9 +402,15 @@ void nt_scene_free(nt_scene *scene);
 const nt_place *nt_mesh_place(const nt_mesh *mesh, nt_place *place);
 
 /* Whether a mesh gets tangents. */
-static inline bool nt_mesh_is_wanted(const nt_mesh *mesh)
+static inline bool nt_mesh_gets_tangents(const nt_mesh *mesh)
 {
 	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
+}
+
+/* The same, or normals alone. */
+static inline bool nt_mesh_is_wanted(const nt_mesh *mesh)
+{
+	return nt_mesh_gets_tangents(mesh) || mesh->decision == NT_DECISION_NORMALS;
 }
 
 /* Whether a mesh of a glTF keeps tangents that a material uses, and w can be looked at without decoding. */

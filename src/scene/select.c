@@ -20,7 +20,8 @@
 typedef struct wishes {
 	nt_only only;
 	nt_existing existing;
-	bool make_normals, any_texcoords;
+	nt_making_normals normals;
+	bool any_texcoords;
 } wishes;
 
 static bool needs_tangents(const nt_mesh *mesh)
@@ -84,7 +85,7 @@ static bool has_tangents_that_count(const nt_mesh *mesh)
  * what is missing first. */
 static nt_decision decide_by_attributes(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 {
-	const bool lacks_normals = !mesh->has_normals && !w->make_normals;
+	const bool lacks_normals = !mesh->has_normals && !w->normals;
 	const bool lacks_texcoords = !mesh->has_texcoords && !has_tangents_that_count(mesh);
 	if (lacks_texcoords)
 		report_no_texcoords(scene, mesh, w->any_texcoords);
@@ -126,12 +127,26 @@ static nt_decision decide(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 									       : NT_DECISION_SOLVE;
 }
 
-void nt_select(nt_scene *scene, nt_only only, nt_existing existing, bool make_normals)
+/* A mesh of a glTF that would be skipped, for which normals were asked. Tangents that it has follow them. A block of
+ * Draco stays as it is. */
+static nt_decision decide_shading(const nt_scene *scene, const nt_mesh *mesh, nt_decision decision, const wishes *w)
 {
-	const wishes w = {only, existing, make_normals, any_has_texcoords(scene)};
+	const bool for_tangents = decision == NT_SKIP_NO_SLOT || decision == NT_SKIP_UNLIT ||
+		decision == NT_SKIP_NO_TEXCOORDS;
+	if (!for_tangents || !nt_format_is_gltf(scene->format) || w->normals < NT_MAKING_ALL_MISSING ||
+		(mesh->has_normals && w->normals < NT_MAKING_ALL) || !mesh->has_positions || mesh->compressed)
+		return decision;
+	if (mesh->has_tangents)
+		return mesh->has_texcoords ? NT_DECISION_SOLVE : decision;
+	return NT_DECISION_NORMALS;
+}
+
+void nt_select(nt_scene *scene, nt_only only, nt_existing existing, nt_making_normals normals)
+{
+	const wishes w = {only, existing, normals, any_has_texcoords(scene)};
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		mesh->decision = decide(scene, mesh, &w);
+		mesh->decision = decide_shading(scene, mesh, decide(scene, mesh, &w), &w);
 		if (mesh->tangents_fault && mesh->decision != NT_DECISION_SOLVE)
 			nt_finding_add(&scene->findings, NT_CODE_TAN_ACCESSOR, nt_mesh_place(mesh, &(nt_place){0}), 1,
 				"%s", mesh->tangents_fault);
@@ -144,6 +159,7 @@ const char *nt_decision_text(nt_decision decision)
 		[NT_DECISION_OPEN] = "not decided",
 		[NT_DECISION_SOLVE] = "tangents are computed",
 		[NT_DECISION_REPAIR] = "invalid tangents are replaced",
+		[NT_DECISION_NORMALS] = "normals are made",
 		[NT_SKIP_NO_SLOT] = "no material of it uses tangents",
 		[NT_SKIP_UNLIT] = "its material is unlit",
 		[NT_SKIP_NOT_TRIANGLES] = "points or lines",

@@ -81,6 +81,25 @@ run bare.obj bare.glb
 says "TAN_NO_UV"
 is "$(gltf bare.glb 'g.materials[0].extensions')" undefined
 
+scene "images that no texture coordinates lay on the faces are told, of a library and of options"
+cp "$WORK/images/51x.png" .
+quad "map_Kd 51x.png" "norm 51x.png"
+sed '/^vt/d; s|^f .*|f 1 2 3 4|' quad.obj >bare.obj
+run bare.obj bare.glb
+exits 0
+says 'm.mtl:2: material "m": warning: 2 properties of materials are not carried over: 51x.png and the others: the faces have no texture coordinates, by which images lie on them [MATERIAL_LOST]'
+is "$(gltf bare.glb 'g.images')" undefined
+run -q bare.obj bare.glb
+says 'material "m" has none of its images'
+sed -i '/mtl/d' bare.obj
+run bare.obj bare.ply
+for option in --base-color --normal-map --occlusion; do
+	for input in bare.obj bare.ply; do
+		run $option=51x.png $input bare.glb
+		says "$input: warning: 1 property of a material is not carried over: 51x.png: the faces have no texture coordinates"
+	done
+done
+
 scene "materials that share maps share the image"
 images write r.tga 4 4 '(x, x, x)'
 images write m.tga 4 4 '(y, y, y)'

@@ -153,7 +153,9 @@ scene "a scan without texture coordinates gets the normals that are asked for"
 printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'v 1 1 1' 'f 1 2 3' 'f 2 4 3' >scan.obj
 run scan.obj scan.ply
 exits 0
-for input in scan.obj scan.ply; do
+says "skipped 1 (no texture coordinates), 1 without normals (--normals=smooth makes them)"
+run scan.obj scan.gltf
+for input in scan.obj scan.ply scan.gltf; do
 	# (0, 0, 1) and (-1, -1, 1) / 3^.5: smooth, each corner weighs by its angle, at the ends of the common edge
 	run $input plain.glb
 	is "$(gltf plain.glb 'Object.keys(g.meshes[0].primitives[0].attributes).join()')" POSITION
@@ -170,7 +172,50 @@ for input in scan.obj scan.ply; do
 	run --normals=angle:30 $input angle.glb
 	is "$(gltf angle.glb "$normals")" "$(gltf flat.glb "$normals")"
 	run -q --normals=smooth $input out.ply
-	is "$(grep -ac 'property float n[xyz]' out.ply)" 3
+	is "$(grep -ac 'property float n[xyz]' out.ply) $(grep -ac 'property float t[xyzw]' out.ply)" "3 0"
 done
+run --verify --normals=flat scan.gltf flat.glb
+exits 0
+says "0 of 1 primitives, made the normals of 1 without tangents"
+run --check --fail-on=warning --normals=flat scan.gltf
+exits 0
+
+scene "a mesh that needs no tangents gets the normals that are asked for, and no tangents"
+plane_obj 2 >plane.obj
+run --only=needed plane.obj plane.gltf
+run --only=needed plane.obj plane.ply
+for input in plane.obj plane.gltf; do
+	run -q --only=needed --normals=auto $input plain.gltf
+	is "$(gltf plain.gltf 'Object.keys(g.meshes[0].primitives[0].attributes).sort().join()')" POSITION,TEXCOORD_0
+	run -q --only=needed --normals=smooth $input out.gltf
+	exits 0
+	is "$(gltf out.gltf 'Object.keys(g.meshes[0].primitives[0].attributes).sort().join()')" NORMAL,POSITION,TEXCOORD_0
+	is "$(gltf out.gltf "$normals")" "-0.239 -0.557 0.796" # (-0.3, -0.7, 1) of unit length
+	is "$(gltf out.gltf "$positions")" 9
+done
+# beside one that needs tangents, over the same vertices: each has what it asked for
+gltf out.gltf both 'const p = g.meshes[0].primitives[0]; delete p.attributes.NORMAL;
+	g.meshes[0].primitives.push({...p, attributes: {...p.attributes}, material: g.materials.push({normalTexture: {index: 0}}) - 1});
+	g.textures = [{source: 0}]; g.images = [{uri: "n.png"}]'
+run --verify --normals=smooth both.gltf out.glb
+exits 0
+says "1 of 2 primitives"
+is "$(gltf out.glb 'g.meshes[0].primitives.map(p => Object.keys(p.attributes).sort().join())')" \
+	'["NORMAL,POSITION,TEXCOORD_0","NORMAL,POSITION,TANGENT,TEXCOORD_0"]'
+
+scene "normals that are replaced take the tangents with them, without another word"
+tilted_obj >t.obj
+run t.obj t.ply
+run --only=all t.obj t.glb
+run -v --normals=replace-flat t.ply out.ply
+exits 0
+says "6 normals of the input were replaced"
+run -q out.ply out.glb
+is "$(gltf out.glb "$normals")" "0.000 0.000 1.000"
+run -v --normals=replace-flat t.glb out.glb
+says "6 normals of the input were replaced"
+is "$(gltf out.glb "$normals")" "0.000 0.000 1.000"
+run --check --fail-on=warning out.glb
+exits 0
 
 done_testing

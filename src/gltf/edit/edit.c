@@ -67,6 +67,12 @@ static bool stays(const nt_scene *scene, const nt_write_options *options, const 
 		(options->draco == NT_DRACO_OFF && !nt_gltf_draco_of(nt_gltf_primitive_of(scene->source, mesh))));
 }
 
+/* Whether a set gets NORMAL and no TANGENT. */
+static bool is_shaded_only(const nt_vertex_pool *pool, uint32_t set)
+{
+	return nt_pool_set_mesh(pool, set)->decision == NT_DECISION_NORMALS;
+}
+
 /* ---- values ---- */
 
 /* Tangents of a set as they will be stored. */
@@ -88,6 +94,8 @@ static nt_status store_tangents(const editing *e, nt_pool_vertices *vertices, ui
 		e->options->precision, &to->packing, &to->filter, e->error);
 	const nt_precision precision = to->filter.precision;
 	const bool filtered = strcmp(to->filter.filter, "NONE") != 0;
+	if (is_shaded_only(vertices->pool, set))
+		return status;
 	to->element_bytes = nt_precision_bytes(precision);
 	to->values = to->stored = (const unsigned char *)vertices->sets[set].tangents;
 	if (status || (precision == NT_PRECISION_FLOAT && !filtered))
@@ -170,6 +178,8 @@ static nt_status add_set(const editing *e, uint32_t buffer, const nt_pool_vertic
 	float *bitangents = NULL;
 	if (vertices->sets[set].normals)
 		status = add_vectors(e, buffer, vertices, set, &new->packing, "NORMAL", vertices->sets[set].normals);
+	if (is_shaded_only(vertices->pool, set))
+		return status;
 	if (!status && !old->in_place)
 		status = add_tangents(e, buffer, vertices, set, new, old);
 	if (!status && old->in_place)
@@ -207,6 +217,9 @@ static nt_status settle_old_tangents(const editing *e, const nt_vertex_pool *poo
 	nt_status status = NT_OK;
 	*count = 0;
 	for (uint32_t set = 0; !status && set < pool->sets.count; set++) {
+		old[set] = (nt_gltf_old_tangents){.count = 0};
+		if (is_shaded_only(pool, set))
+			continue;
 		status = nt_gltf_find_tangents(e->edits, e->pools, pool, set, &new[set].filter, e->of_window,
 			&old[set], e->error);
 		if (!status && !old[set].in_place)
@@ -264,7 +277,7 @@ static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 	p->stays = !status;
 	for (size_t i = 0; p->stays && i < p->pool.user_count; i++)
 		p->stays = stays(e->scene, e->options, nt_pool_mesh(&p->pool, i));
-	if (status || p->stays || e->options->draco == NT_DRACO_OFF ||
+	if (status || p->stays || e->options->draco == NT_DRACO_OFF || is_shaded_only(&p->pool, 0) ||
 		(e->options->draco == NT_DRACO_KEEP && !nt_gltf_has_draco(&p->pool)))
 		return status;
 	p->for_draco = true;

@@ -23,7 +23,7 @@ static void drop_tangents(const nt_scene *scene, nt_morph_choice morphs)
 	const nt_gltf *document = scene->source;
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
-		if (!nt_mesh_is_wanted(mesh) || !(mesh->tangents_fault || morphs == NT_MORPH_DROP))
+		if (!nt_mesh_gets_tangents(mesh) || !(mesh->tangents_fault || morphs == NT_MORPH_DROP))
 			continue;
 		nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
 		if (mesh->tangents_fault)

@@ -563,7 +563,8 @@ static nt_status open_checks(verification *v, nt_error *error)
 	nt_status status = NT_OK;
 	for (size_t m = 0; m < v->scene->mesh_count && status == NT_OK; m++) {
 		const nt_mesh *mesh = &v->scene->meshes[m];
-		if (v->edited ? !mesh->split.vertex_tangents : !mesh->face_count)
+		const bool solved = mesh->split.vertex_tangents && nt_mesh_gets_tangents(mesh);
+		if (v->edited ? !solved : !mesh->face_count)
 			continue;
 		mesh_check *check = &v->checks[v->count];
 		*check = (mesh_check){.mesh = mesh,

@@ -15,7 +15,7 @@ static void open_text(nt_scene *scene, const nt_buffer *json)
 	const nt_read_options options = {.texcoord_set = -1, .across = true};
 	if (open_bytes(scene, json->data, json->size, &options, &error))
 		fail_msg("%s: %s", error.place.pointer, error.message);
-	nt_select(scene, NT_ONLY_AUTO, NT_EXISTING_KEEP, false);
+	nt_select(scene, NT_ONLY_AUTO, NT_EXISTING_KEEP, NT_MAKING_NONE);
 	if (shared && (nt_vertex_pools_find(scene, &options, &error) || nt_gltf_find_same(scene, &options, &error)))
 		fail_msg("%s", error.message);
 	assert_int_equal(nt_gltf_find_joins(scene, !compared, false, &error), NT_OK);

@@ -47,7 +47,7 @@ static void open_with(const char *primitives, const nt_read_options *options)
 	nt_error error;
 	if (open_bytes(&scene, text.data, text.size, options, &error))
 		fail_msg("%s: %s", error.place.pointer, error.message);
-	nt_select(&scene, NT_ONLY_AUTO, NT_EXISTING_REPLACE, true);
+	nt_select(&scene, NT_ONLY_AUTO, NT_EXISTING_REPLACE, NT_MAKING_MISSING);
 	if (nt_vertex_pools_find(&scene, options, &error) || nt_gltf_find_same(&scene, options, &error))
 		fail_msg("%s: %s", error.place.pointer, error.message);
 }

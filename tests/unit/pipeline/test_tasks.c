@@ -204,7 +204,7 @@ static void geometry_is_let_go_of_where_only_results_count(void **state)
 		scene.byte_count = input.size;
 		const nt_format_entry *glb = nt_format_find(NT_FORMAT_GLB);
 		assert_int_equal(glb->open(&scene, &options, &error), NT_OK);
-		nt_select(&scene, NT_ONLY_NEEDED, NT_EXISTING_KEEP, false);
+		nt_select(&scene, NT_ONLY_NEEDED, NT_EXISTING_KEEP, NT_MAKING_NONE);
 		assert_int_equal(glb->plan(&scene, &options, &error), NT_OK);
 		const nt_tasks tasks = {.scene = &scene, .reader = glb, .writer = glb, .settings = &settings,
 			.options = &options, .summary = &summary, .begin_stage = begin_stage};

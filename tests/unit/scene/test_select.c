@@ -29,7 +29,7 @@ static void decide(const row *r)
 	scene.format = r->format;
 	scene.meshes = &mesh;
 	scene.mesh_count = 1;
-	nt_select(&scene, r->only, r->existing, r->but & MADE_NORMALS);
+	nt_select(&scene, r->only, r->existing, r->but & MADE_NORMALS ? NT_MAKING_MISSING : NT_MAKING_NONE);
 	char findings[100] = "";
 	for (size_t i = 0; i < scene.findings.count; i++) {
 		const nt_finding *found = &scene.findings.items[i];
