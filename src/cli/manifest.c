@@ -17,6 +17,7 @@
 #include "file/input.h"
 #include "report/codes.h"
 #include "report/render/words.h"
+#include "scene/origin.h"
 
 /* A job that failed for want of memory has a line all the same. */
 enum { LINE_BYTES = 16 * 1024 };
@@ -133,6 +134,10 @@ static void append_run(nt_buffer *out, const nt_summary *s)
 	append_number(out, "repaired", s->repaired);
 	append_number(out, "sorted_instead", s->counts.sorted_instead);
 	append_number(out, "summed_instead", s->counts.summed_instead);
+	if (s->origin[0] != 0 || s->origin[1] != 0 || s->origin[2] != 0) {
+		char text[NT_ORIGIN_TEXT];
+		nt_buffer_format(out, ",\"origin\":[%s]", nt_origin_text(s->origin, text));
+	}
 	if (s->tangents_digest)
 		nt_buffer_format(out, ",\"tangents\":\"%016" PRIx64 "\"", s->tangents_digest);
 	append_number(out, "bytes_read", s->bytes_read);

@@ -73,10 +73,10 @@ static nt_severity shown_severity(const nt_finding *finding, nt_style style)
 	return style.fails || severity < NT_SEVERITY_ERROR ? severity : NT_SEVERITY_WARNING;
 }
 
-/* Infos that are printed without -v: they say what to do, which the file does not say. */
+/* Infos that are printed without -v: they say what to do, which the file does not say, or where the positions are. */
 static bool is_proposed(nt_code code)
 {
-	return code == NT_CODE_NMAP_BESIDE || code == NT_CODE_TAN_QUADS_LIKELY;
+	return code == NT_CODE_NMAP_BESIDE || code == NT_CODE_TAN_QUADS_LIKELY || code == NT_CODE_POS_ORIGIN;
 }
 
 /* The command that repairs a finding, if it is told with one. */

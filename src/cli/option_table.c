@@ -53,6 +53,10 @@ const nt_option_row nt_option_rows[] = {
 	{"uv", 0, NT_OPTION_AUTO_NUMBER, "auto|N", 0, 999, "auto",
 		"the set of texture coordinates; auto: the one that the material uses",
 		SETTING(texcoord_set), false},
+	{"origin", 0, NT_OPTION_TEXT, "auto|keep|X,Y,Z", 0, 0, "auto",
+		"OBJ and PLY: store positions relative to an origin, which the nodes of a glTF add again; auto: if "
+		"float would move vertices by more than a hundredth of an edge; keep: round them",
+		FIELD(origin), false},
 	{"outside", 0, NT_OPTION_CHOICE, "no|root|yes", NT_OUTSIDE_NO, 0, "root",
 		"files outside the input's folder; no: refuse them; root: allow images of an OBJ below the folder "
 		"above it and below a folder that is named with -r or --keep-tree; yes: allow all",

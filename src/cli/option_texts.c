@@ -140,7 +140,7 @@ void nt_options_explain(const char *word, nt_buffer *out)
 static bool has_words(const nt_option_row *row)
 {
 	return row->kind == NT_OPTION_CHOICE || row->kind == NT_OPTION_MAYBE_CHOICE ||
-		row->kind == NT_OPTION_AUTO_NUMBER;
+		row->kind == NT_OPTION_AUTO_NUMBER || (row->kind == NT_OPTION_TEXT && strchr(row->values, '|'));
 }
 
 /* A list of codes, perhaps each with a severity. */
@@ -155,12 +155,12 @@ static void append_codes(nt_buffer *out)
 		nt_buffer_format(out, "%s%s", code ? " " : "", nt_code_info((nt_code)code)->name);
 }
 
-/* The words of a row with blanks between them; N, which stands for a number, is left out. */
+/* The words of a row with blanks between them; N and X,Y,Z, which stand for numbers, are left out. */
 static void append_words(nt_buffer *out, const nt_option_row *row)
 {
 	for (const char *v = row->values; *v;) {
 		const size_t length = strcspn(v, "|");
-		if (!(length == 1 && *v == 'N')) {
+		if (!(length == 1 && *v == 'N') && *v != 'X') {
 			nt_buffer_text(out, v == row->values ? "" : " ");
 			nt_buffer_append(out, v, length > 2 && v[length - 2] == ':' ? length - 1 : length);
 		}

@@ -10,9 +10,11 @@
 #include "cli/option_table.h"
 #include "file/lookup.h"
 #include "report/codes.h"
+#include "scene/origin.h"
 
 #include <fnmatch.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -401,6 +403,36 @@ static nt_status parse_bump_height(parser *p)
 	return NT_OK;
 }
 
+/* "431236,5412347,101". A value that means a default is replaced by it, for the record of an
+ * incremental run. */
+static nt_status parse_origin(parser *p)
+{
+	nt_origin *origin = &p->command->settings.origin;
+	const char *word = p->command->origin;
+	static const double most = 1e30; /* so that what is left of a float is one */
+	if (word && strcmp(word, "auto") == 0)
+		p->command->origin = NULL;
+	if (!p->command->origin)
+		return NT_OK;
+	origin->choice = strcmp(word, "keep") == 0 ? NT_ORIGIN_KEEP : NT_ORIGIN_GIVEN;
+	bool sound = strspn(word, "+-.0123456789eE,") == strlen(word);
+	char *end = (char *)(uintptr_t)word;
+	for (size_t k = 0; k < 3 && sound && origin->choice == NT_ORIGIN_GIVEN; k++) {
+		const char *begin = end;
+		origin->at[k] = strtod(begin, &end) + 0.0; /* -0 is 0 */
+		sound = end > begin && fabs(origin->at[k]) <= most && *end == (k < 2 ? ',' : '\0');
+		end++;
+	}
+	if (origin->choice == NT_ORIGIN_GIVEN && !sound)
+		return nt_fail(p->error, NT_ERROR_USAGE,
+			"--origin: '%s' is neither auto nor keep nor three numbers, as 431000,5412000,0", word);
+	if (origin->choice == NT_ORIGIN_GIVEN && !nt_origin_is_given(origin)) {
+		origin->choice = NT_ORIGIN_KEEP;
+		p->command->origin = "keep";
+	}
+	return NT_OK;
+}
+
 static nt_status parse_max_seconds(parser *p)
 {
 	const char *word = p->command->max_seconds;
@@ -574,6 +606,8 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 	nt_status status = parse_draco(&p);
 	if (!status)
 		status = parse_bump_height(&p);
+	if (!status)
+		status = parse_origin(&p);
 	if (!status)
 		status = parse_max_seconds(&p);
 	if (!status)

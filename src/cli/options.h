@@ -54,6 +54,7 @@ typedef struct nt_command {
 	nt_words texture_paths;  /* those of the settings */
 	const char *max_seconds; /* a number, parsed into the settings; NULL: no limit */
 	const char *bump_height; /* a number, parsed into the settings; NULL: the default */
+	const char *origin;    /* keep or X,Y,Z, parsed into the settings; NULL: auto */
 	const char *draco_bits; /* POS,NRM,UV,TAN, parsed into the settings; NULL: defaults */
 	int min_severity;      /* enum nt_fail_on, but never */
 	int max_issues;        /* 0: all; -1: as many as the report's format has by default */

@@ -7,11 +7,13 @@
 #include "obj/parts.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/name_table.h"
 #include "base/parallel.h"
+#include "scene/origin.h"
 #include "scene/polygon.h"
 #include "scene/srgb.h"
 #include "scene/transform.h"
@@ -33,6 +35,8 @@ typedef struct builder {
 	float (*points)[3];
 	uint32_t *triangles;
 	size_t polygon_capacity;
+
+	atomic_uint largest;      /* bits of the largest coordinate */
 } builder;
 
 /* ---- vertices ---- */
@@ -63,7 +67,7 @@ static void copy_color(const builder *b, uint32_t row, float *to)
 static void gather(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
-	const builder *b = context;
+	builder *b = context;
 	const obj_file *file = b->file;
 	for (size_t i = begin; i < end; i++) {
 		const obj_vertex *x = &file->vertices[i];
@@ -77,6 +81,12 @@ static void gather(void *context, size_t begin, size_t end, unsigned slot)
 		b->lacks[i] = (uint8_t)((x->n == OBJ_ABSENT ? NT_LACKS_NORMAL : 0) |
 			(x->t == OBJ_ABSENT ? NT_LACKS_TEXCOORD : 0));
 	}
+	/* bits of floats above 0 are in the order of the floats */
+	unsigned bits, before = atomic_load(&b->largest);
+	const float largest = nt_largest_of(b->positions + 3 * begin, 3 * (end - begin), 0);
+	memcpy(&bits, &largest, sizeof bits);
+	while (bits > before && !atomic_compare_exchange_weak(&b->largest, &before, bits))
+		;
 }
 
 static nt_status gather_vertices(builder *b)
@@ -95,7 +105,10 @@ static nt_status gather_vertices(builder *b)
 	if (file->has_colors && !(b->colors = nt_arena_alloc(arena, count, 4 * sizeof(float))))
 		return nt_fail_memory(b->error);
 	nt_parallel_ranges(file->threads, count, GRAIN, gather, b);
-	return NT_OK;
+	float largest;
+	const unsigned bits = atomic_load(&b->largest);
+	memcpy(&largest, &bits, sizeof largest);
+	return obj_settle_origin(file, largest, b->positions, b->error);
 }
 
 /* Gives the mesh its part of the arrays that it has anything in. */
@@ -110,6 +123,7 @@ static void set_vertices(const builder *b, nt_mesh *mesh, size_t first)
 	mesh->has_normals = !(all & NT_LACKS_NORMAL);
 	mesh->has_texcoords = !(all & NT_LACKS_TEXCOORD);
 	mesh->positions = b->positions + 3 * first;
+	mesh->exact_positions = b->file->exact_positions ? b->file->exact_positions + 3 * first : NULL;
 	mesh->normals = mesh->has_normals ? b->normals + 3 * first : NULL;
 	mesh->texcoords = mesh->has_texcoords ? b->texcoords + 2 * first : NULL;
 	mesh->colors = b->colors ? b->colors + 4 * first : NULL;
@@ -405,7 +419,8 @@ static nt_status set_slots(const obj_file *file, nt_mesh *mesh, nt_error *error)
 	}
 	for (int axis = 0; axis < 2; axis++)
 		mesh->wrap[axis] = clamps && !repeats ? NT_WRAP_CLAMP : NT_WRAP_REPEAT;
-	return mesh->texcoords && !file->keeps_transforms && (transform.scale[0] != 1 || transform.scale[1] != 1)
+	const bool scaled = transform.scale[0] != 1 || transform.scale[1] != 1;
+	return mesh->texcoords && scaled && !file->options->keeps_transforms
 		? nt_mesh_transform(mesh, &transform, &scene->arena, error) : NT_OK;
 }
 
@@ -432,9 +447,8 @@ static nt_status make_mesh(builder *b, size_t m)
 	if (slot_status)
 		return slot_status;
 	nt_instance *instance = &file->scene->instances[m];
-	*instance = (nt_instance){.mesh = (uint32_t)m};
-	for (int k = 0; k < 4; k++)
-		instance->matrix[5 * k] = 1;
+	instance->mesh = (uint32_t)m;
+	nt_origin_matrix(file->scene, instance->matrix);
 	return NT_OK;
 }
 

@@ -87,6 +87,8 @@ typedef struct obj_chunk {
 	const char *begin, *end; /* of the last chunk: in obj_file.tail */
 
 	obj_rows rows[OBJ_KIND_COUNT];
+	bool rare;      /* something is kept of a position besides its row: a colour, or doubles */
+	double *exact;  /* where its numbers go as doubles; NULL: nobody asks for them */
 	float *colors; /* rows of 4 as written, as many as positions; NULL while no `v` has one */
 	size_t color_capacity;
 	obj_ignored bad_colors; /* that are not finite: white */
@@ -157,7 +159,7 @@ typedef struct obj_file {
 	obj_polygon *polygons;
 	size_t polygon_count;
 	bool uses_smoothing;
-	bool keeps_transforms; /* of nt_read_options */
+	const nt_read_options *options;
 
 	obj_mesh *meshes; /* [mesh_count + 1]: behind the last one, where the file ends */
 	size_t mesh_count;
@@ -173,6 +175,7 @@ typedef struct obj_file {
 	uint32_t *corner_vertices;          /* [corner_count], relative to the mesh's first vertex */
 	struct obj_vertex *vertices;        /* of all meshes, in order */
 	size_t vertex_count;
+	double *exact_positions; /* [vertex_count][3]: see nt_mesh; NULL: the scene has no origin */
 } obj_file;
 
 /* A guide has an entry for so many rows. */
@@ -229,6 +232,10 @@ nt_status obj_make_vertices(obj_file *file, nt_error *error);
 
 /* Meshes, spans and materials from the events; findings for what was ignored. */
 nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_error *error);
+
+/* Gives the scene an origin if it needs one, or the user names one; positions: [vertex_count][3], largest: of their
+ * coordinates. Returns NT_OK or NT_ERROR_MEMORY. exact.c */
+nt_status obj_settle_origin(obj_file *file, float largest, float *positions, nt_error *error);
 
 /* Brings the primitives of a group together; false: out of memory. */
 bool obj_sort_groups(nt_mesh *mesh);

@@ -8,6 +8,7 @@
  *   join      what was counted; rows of numbers stay in their chunks and are found there
  *   events    spans.c: objects, materials and smoothing groups, in order
  *   vertices  vertices.c: equal v/vt/vn of one object become one vertex
+ *   origin    exact.c: positions that float cannot hold are read again, as doubles
  *   meshes    meshes.c: faces, quads kept, larger polygons triangulated
  *
  * Where a face stands in the text is asked of few: locate.c reads their lines again.
@@ -378,7 +379,7 @@ nt_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error 
 	/* a file of a chunk or two is read before a second thread has begun */
 	const bool small = scene->byte_count <= 2 * CHUNK_BYTES;
 	obj_file file = {.scene = scene, .threads = small ? 1 : nt_thread_count(options->threads),
-		.keeps_transforms = options->keeps_transforms};
+		.options = options};
 	scene->format = NT_FORMAT_OBJ;
 	nt_status status = split(&file, error);
 	if (!status)

@@ -110,6 +110,7 @@ static nt_status store_color(obj_reader *r, const float *numbers, int count)
 	obj_chunk *chunk = r->chunk;
 	const size_t last = chunk->rows[OBJ_V].count - 1;
 	const size_t first = chunk->colors ? last : 0;
+	chunk->rare = true;
 	if (last >= chunk->color_capacity && !nt_grow((void **)&chunk->colors, &chunk->color_capacity,
 							 chunk->rows[OBJ_V].capacity, 4 * sizeof(float)))
 		return obj_fail_memory(r);
@@ -120,6 +121,19 @@ static nt_status store_color(obj_reader *r, const float *numbers, int count)
 	if (nt_color_mend(&chunk->colors[4 * last]) && !chunk->bad_colors.count++)
 		chunk->bad_colors.line = r->statement_line;
 	return NT_OK;
+}
+
+/* Keeps what few files have or need behind a row: doubles and the colour. `begin`: where its numbers begin. */
+static nt_status store_rare(obj_reader *r, const char *begin, const float *numbers, int count)
+{
+	obj_chunk *chunk = r->chunk;
+	obj_reader again = *r;
+	again.p = begin;
+	for (size_t k = 0; chunk->exact && k < 3; k++) {
+		skip_blanks(&again);
+		again.p = nt_read_double(again.p, chunk->end, &chunk->exact[3 * (chunk->rows[OBJ_V].count - 1) + k]);
+	}
+	return count >= 6 || chunk->colors ? store_color(r, numbers, count) : NT_OK;
 }
 
 /* v x y z [w] or v x y z r g b [a]. The weight w belongs to curves: polygons do not use it. */
@@ -139,7 +153,7 @@ static nt_status read_position(obj_reader *r)
 	if (count < 3 || count == 5)
 		return obj_fail_expected(r, count < 3 ? "3 coordinates" : expected);
 	const nt_status status = store_row(r, OBJ_V, numbers);
-	return status || (count < 6 && !chunk->colors) ? status : store_color(r, numbers, count);
+	return status || (count < 6 && !chunk->rare) ? status : store_rare(r, begin, numbers, count);
 }
 
 /* vt u [v [w]] */

@@ -21,6 +21,7 @@
 #include "pipeline/map_requests.h"
 #include "pipeline/stages.h"
 #include "pipeline/timer.h"
+#include "scene/origin.h"
 
 /* Shared data of the stages of one run. */
 typedef struct run {
@@ -207,6 +208,11 @@ static nt_status read_scene(run *r)
 		return nt_fail(r->error, NT_ERROR_USAGE,
 			"--uv=%d is for glTF: an OBJ, PLY or Draco file has one set of texture coordinates, 0",
 			r->settings->texcoord_set);
+	if (nt_origin_is_given(&r->settings->origin) && r->reader->format != NT_FORMAT_OBJ &&
+		r->reader->format != NT_FORMAT_PLY)
+		return nt_fail(r->error, NT_ERROR_USAGE,
+			"--origin=X,Y,Z is for OBJ and PLY: the positions of this file are floats already");
+	memcpy(r->summary->origin, r->scene.origin, sizeof r->summary->origin);
 	for (size_t i = 0; i < r->fixes.mesh_count && i < r->scene.mesh_count; i++)
 		r->scene.meshes[i].fix = r->fixes.meshes[i];
 	const nt_settings *s = r->settings;
@@ -413,6 +419,7 @@ static void set_read_options(run *r, const nt_settings *settings)
 		.allow_outside = settings->outside == NT_OUTSIDE_YES, .morphs = settings->morphs,
 		.report = settings->report != NULL, .across = settings->across == NT_ACROSS_MESH,
 		.keeps_transforms = settings->transform == NT_TRANSFORM_KEEP,
+		.origin = settings->origin,
 		.threads = settings->threads,
 		.draco = settings->draco};
 	memcpy(r->read_options.draco_bits, settings->draco_bits, sizeof r->read_options.draco_bits);

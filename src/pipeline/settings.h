@@ -77,6 +77,7 @@ typedef struct nt_settings {
 	int normals_degrees; /* of those by ANGLE: faces that meet at less share a normal */
 	nt_across across;
 	nt_transform_choice transform;
+	nt_origin origin;
 	nt_quads quads;
 	nt_images images;
 	nt_buffers buffers;
@@ -152,6 +153,7 @@ typedef struct nt_summary {
 	size_t repaired;         /* tangents of corners: what repair made of computed or, with --existing=repair, of the
 	                            input's own */
 	size_t quad_count;       /* pairs of these triangles that were solved as quads */
+	double origin[3];        /* of the scene */
 	size_t same_count;       /* of the solved ones, those that took the result of another: they have the
 	                            same geometry */
 	size_t skipped[NT_DECISION_COUNT]; /* of them, by reason */

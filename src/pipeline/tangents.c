@@ -401,8 +401,9 @@ static size_t count_triangles(const nt_mesh *mesh)
 	return mesh->corner_count - 2 * mesh->face_count;
 }
 
-static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
+static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 {
+	nt_finding_list *list = &scene->findings;
 	const nmtan_counts *c = &mesh->counts;
 	const size_t triangles = count_triangles(mesh);
 	const bool unmapped = triangles > 0 && c->degenerate_texcoords == triangles;
@@ -411,7 +412,8 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 		size_t count;
 	} rows[] = {
 		{unmapped ? NT_CODE_UV_UNMAPPED : NT_CODE_UV_DEGENERATE_TRIANGLE, c->degenerate_texcoords},
-		{NT_CODE_POS_DEGENERATE_TRIANGLE, c->degenerate_positions},
+		/* rounding may have made them */
+		{NT_CODE_POS_DEGENERATE_TRIANGLE, scene->positions_rounded ? 0 : c->degenerate_positions},
 		{NT_CODE_UV_FOLDED_QUAD, c->folded_quads},
 		{NT_CODE_UV_ROUNDED_AWAY, c->stored_differently},
 		{NT_CODE_NORMALS_SCALED, mesh->scaled_normals},
@@ -478,7 +480,7 @@ static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *e
 			nt_mesh_share(mesh);
 			summary->same_count++;
 		}
-		add_findings(&scene->findings, mesh);
+		add_findings(scene, mesh);
 		add_counts(summary, mesh);
 	}
 	return NT_OK;

@@ -35,6 +35,17 @@ void ply_put_floats(ply_output *out, const float *values, size_t count)
 	nt_buffer_append(&out->buffer, bytes, (size_t)(end - bytes));
 }
 
+void ply_put_doubles(ply_output *out, const double *values, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		unsigned char bytes[8];
+		uint64_t bits;
+		memcpy(&bits, &values[i], sizeof bits);
+		store_bits(out, bits, sizeof bits, bytes);
+		nt_buffer_append(&out->buffer, bytes, sizeof bytes);
+	}
+}
+
 void ply_put_value(ply_output *out, float value, ply_type type)
 {
 	const bool ascii = out->encoding == PLY_ASCII;

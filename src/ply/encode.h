@@ -22,6 +22,9 @@ enum { PLY_MOST_FLOATS = 3 + 4 + 3 };
 /* Append floats; ASCII: a blank and the text of each. */
 void ply_put_floats(ply_output *out, const float *values, size_t count);
 
+/* Appends doubles, which are binary. */
+void ply_put_doubles(ply_output *out, const double *values, size_t count);
+
 /* Appends a value that a property of that type holds; of an integer type 1 is its largest number, as of normals. ASCII:
  * its text alone. */
 void ply_put_value(ply_output *out, float value, ply_type type);

@@ -18,11 +18,13 @@
 #include "file/image_type.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
+#include "scene/origin.h"
 #include "scene/srgb.h"
 
 /* Attributes of the file's vertices. */
 typedef struct layout {
 	bool normals, colors, byte_colors, texcoords, tangents, bitangents;
+	bool doubles; /* positions, which float does not hold */
 	nt_srgb srgb;
 	size_t vertex_count, face_count;
 } layout;
@@ -64,7 +66,7 @@ static int alpha_byte(float alpha)
 
 static layout find_layout(const nt_scene *scene, bool bitangents)
 {
-	layout l = {.byte_colors = true};
+	layout l = {.byte_colors = true, .doubles = nt_scene_has_origin(scene)};
 	nt_srgb_init(&l.srgb);
 	for (size_t i = 0; i < scene->instance_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
@@ -93,7 +95,8 @@ static void write_header(ply_output *out, const layout *l, const char *texture)
 	if (texture)
 		nt_buffer_format(b, "comment TextureFile %s\n", texture);
 	nt_buffer_format(b, "element vertex %zu\n", l->vertex_count);
-	nt_buffer_text(b, "property float x\nproperty float y\nproperty float z\n");
+	const char *place = l->doubles ? "double" : "float";
+	nt_buffer_format(b, "property %s x\nproperty %s y\nproperty %s z\n", place, place, place);
 	if (l->normals)
 		nt_buffer_text(b, "property float nx\nproperty float ny\nproperty float nz\n");
 	if (l->colors) {
@@ -131,6 +134,19 @@ static nt_dvec3 combine(const nt_dvec3 *columns, const float *v)
 {
 	return nt_dvec3_add(nt_dvec3_add(nt_dvec3_scale(v[0], columns[0]), nt_dvec3_scale(v[1], columns[1])),
 		nt_dvec3_scale(v[2], columns[2]));
+}
+
+/* Positions as the source has them, if the scene holds these beside what is relative to its origin. */
+static nt_dvec3 place_position(const placement *p, const nt_mesh *mesh, size_t vertex)
+{
+	if (mesh->exact_positions) {
+		const size_t source = vertex < mesh->source_vertex_count ? vertex
+			: mesh->vertex_sources[vertex - mesh->source_vertex_count];
+		const double *place = mesh->exact_positions + 3 * source;
+		return (nt_dvec3){place[0], place[1], place[2]};
+	}
+	const float *place = mesh->positions + 3 * vertex;
+	return p->identity ? nt_dvec3_load(place) : nt_dvec3_add(combine(p->columns, place), p->columns[3]);
 }
 
 /* A matrix that flattens leaves some normals without a direction: they stay what they are. */
@@ -189,14 +205,15 @@ static nt_status put_vertex(ply_output *out, const layout *l, const placement *p
 	size_t vertex, bool flip_v, nt_error *error)
 {
 	const size_t v = mesh_vertex(mesh, vertex);
+	const nt_dvec3 place = place_position(p, mesh, v);
 	float position[3], normal[3] = {0}, uv[2] = {0}, tangent[4] = {0}, bitangent[3];
-	if (p->identity)
-		memcpy(position, mesh->positions + 3 * v, sizeof position);
-	else
-		nt_dvec3_store(nt_dvec3_add(combine(p->columns, mesh->positions + 3 * v), p->columns[3]), position);
+	nt_dvec3_store(place, position);
 	if (!are_finite(position, 3))
 		return fail_not_finite(mesh, "position", v, are_finite(mesh->positions + 3 * v, 3), error);
-	ply_put_floats(out, position, 3);
+	if (l->doubles)
+		ply_put_doubles(out, (const double[]){place.x, place.y, place.z}, 3);
+	else
+		ply_put_floats(out, position, 3);
 	if (mesh->normals)
 		place_normal(p, normals_of(mesh) + 3 * v, normal);
 	if (!are_finite(normal, 3))

@@ -133,10 +133,8 @@ static nt_status cut_polygon(builder *b, const uint32_t **cut)
 	if (nt_polygon_triangulate((const float(*)[3])b->points, count, corners, &sound))
 		return nt_fail_memory(b->error);
 	cuts->count = needed;
-	if (!sound) {
-		const nt_place place = place_of_row(b);
-		nt_finding_add(&b->scene->findings, NT_CODE_POLYGON_DEGENERATE, &place, 1, NULL);
-	}
+	if (!sound && !cuts->unsound++)
+		cuts->first_unsound = place_of_row(b);
 	*cut = corners;
 	return NT_OK;
 }

@@ -186,13 +186,14 @@ static nt_status read_element(nt_scene *scene, nt_mesh *mesh, ply_source *source
 }
 
 /* All elements in the order of the file; faces that come before the vertices at the end. */
-static nt_status read_body(nt_scene *scene, nt_mesh *mesh, ply_source *source, unsigned threads, nt_error *error)
+static nt_status read_body(nt_scene *scene, nt_mesh *mesh, ply_source *source, const nt_read_options *options,
+	nt_error *error)
 {
 	const ply_header *header = &source->header;
 	const unsigned char *body = scene->bytes + header->body;
 	ply_cursor cursor = {.begin = scene->bytes, .at = body, .end = scene->bytes + scene->byte_count,
 		.body = body, .body_line = header->body_line, .encoding = header->encoding,
-		.threads = nt_thread_count(threads)};
+		.threads = nt_thread_count(options->threads)};
 	bool have_vertices = false, faces_first = false;
 	for (size_t i = 0; i < header->element_count; i++) {
 		const ply_element *element = &header->elements[i];
@@ -211,10 +212,17 @@ static nt_status read_body(nt_scene *scene, nt_mesh *mesh, ply_source *source, u
 		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1,
 			"%zu bytes after the last element", (size_t)(cursor.end - cursor.at));
 	}
-	if (!faces_first)
-		return NT_OK;
-	cursor.at = scene->bytes + source->face_begin;
-	return ply_read_faces(scene, mesh, source, &cursor, error);
+	nt_status status = NT_OK;
+	if (faces_first) {
+		cursor.at = scene->bytes + source->face_begin;
+		status = ply_read_faces(scene, mesh, source, &cursor, error);
+	}
+	if (!status)
+		status = ply_settle_origin(scene, mesh, source, &options->origin, &cursor, error);
+	if (source->cuts.unsound)
+		nt_finding_add(&scene->findings, NT_CODE_POLYGON_DEGENERATE, &source->cuts.first_unsound,
+			source->cuts.unsound, NULL);
+	return status;
 }
 
 /* The image that MeshLab names in a comment becomes the base colour of a material. */
@@ -270,7 +278,7 @@ nt_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_error 
 		status = list_left_out(scene, source, error);
 	if (!status) {
 		report_unused(scene, source);
-		status = read_body(scene, scene->meshes, source, options->threads, error);
+		status = read_body(scene, scene->meshes, source, options, error);
 	}
 	if (!status) {
 		nt_mesh *mesh = scene->meshes;

@@ -17,6 +17,8 @@ typedef struct ply_roles {
 typedef struct ply_cuts {
 	uint32_t *corners;
 	size_t count, capacity;
+	size_t unsound;         /* polygons that could be cut by a guess alone, and the first of them */
+	nt_place first_unsound;
 } ply_cuts;
 
 /* Data that the reader keeps for the writer. */
@@ -25,6 +27,7 @@ typedef struct ply_source {
 	ply_roles roles;
 	const ply_element *vertex, *face, *strips; /* NULL: the file has none */
 	int face_indices, face_texcoords;          /* properties of face; PLY_NO_PROPERTY */
+	size_t vertex_begin;                       /* offset of the rows of vertices */
 	size_t face_begin, face_end;               /* offsets of the rows of faces or strips */
 	/* per-face texture coordinates un-share vertices: vertex vertex->count + i of the mesh has the
 	 * row wedge_rows[i] */
@@ -34,7 +37,18 @@ typedef struct ply_source {
 } ply_source;
 
 /* Reads the rows of the vertex element at the cursor into the mesh. vertices.c */
-nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *source,
+nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, ply_source *source,
+	ply_cursor *cursor, nt_error *error);
+
+/* Whether positions are of a type that float does not hold. */
+bool ply_has_wide_positions(const ply_source *source);
+
+/* Reads the positions of the vertex element at the cursor, which have been read once, as doubles: [count][3]. */
+nt_status ply_read_exact_positions(const ply_source *source, ply_cursor *cursor, double *positions, nt_error *error);
+
+/* Gives the scene an origin if it needs one, or the user names one. The cursor moves. Returns NT_OK or NT_ERROR_MEMORY.
+ * origin.c */
+nt_status ply_settle_origin(nt_scene *scene, nt_mesh *mesh, ply_source *source, const nt_origin *wished,
 	ply_cursor *cursor, nt_error *error);
 
 /* Reads the faces (or strips) at the cursor into the mesh, whose positions are there. faces.c */

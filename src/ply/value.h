@@ -152,7 +152,7 @@ static inline int64_t ply_load_integer(const unsigned char *at, ply_type type, b
 	}
 }
 
-static inline float ply_load_float(const unsigned char *at, ply_type type, bool swap)
+static inline double ply_load_double(const unsigned char *at, ply_type type, bool swap)
 {
 	if (type == PLY_FLOAT32) {
 		const uint32_t bits = ply_load32(at, swap);
@@ -164,9 +164,14 @@ static inline float ply_load_float(const unsigned char *at, ply_type type, bool 
 		const uint64_t bits = ply_load64(at, swap);
 		double value;
 		memcpy(&value, &bits, sizeof value);
-		return (float)value;
+		return value;
 	}
-	return (float)ply_load_integer(at, type, swap);
+	return (double)ply_load_integer(at, type, swap);
+}
+
+static inline float ply_load_float(const unsigned char *at, ply_type type, bool swap)
+{
+	return (float)ply_load_double(at, type, swap);
 }
 
 #endif

@@ -23,6 +23,7 @@ typedef enum finiteness { ANY, MENDED, REFUSED } finiteness;
 typedef struct target {
 	int property;
 	float *values;   /* of the first row */
+	double *exact;   /* the same as doubles; then there are no other values */
 	size_t stride;   /* in floats */
 	float divisor;   /* integer colours: their largest value */
 	finiteness other; /* what becomes of other values */
@@ -53,7 +54,7 @@ static bool add_attribute(reader *r, nt_arena *arena, const int *properties, siz
 	for (size_t i = 0; *array && i < width; i++)
 		if (properties[i] != PLY_NO_PROPERTY)
 			r->targets[r->target_count++] =
-				(target){properties[i], *array + i, width, 1.0f, other};
+				(target){properties[i], *array + i, NULL, width, 1.0f, other};
 	return *array != NULL;
 }
 
@@ -131,6 +132,10 @@ static nt_status decode_value(const reader *r, size_t row, size_t number, const 
 		const target *t = &r->targets[k];
 		if (t->property != (int)number)
 			continue;
+		if (t->exact) {
+			t->exact[row * t->stride] = ply_load_double(at, property->type, swap);
+			continue;
+		}
 		const float value = ply_load_float(at, property->type, swap) / t->divisor;
 		if (t->other != ANY && !is_finite(value)) {
 			if (t->other == REFUSED)
@@ -205,6 +210,8 @@ static nt_status read_line(const reader *r, size_t row, const target *by_propert
 		}
 		float value;
 		const unsigned char *after = t->values ? ply_read_float(at, end, &value) : ply_skip_value(at, end);
+		if (t->exact)
+			nt_read_double((const char *)at, (const char *)after, &t->exact[row * t->stride]);
 		if (!after || after == at)
 			return fail_value(r, row, property, at, "a number for property");
 		if (t->other != ANY && !is_finite(value)) {
@@ -277,7 +284,7 @@ static nt_status read_lines(const reader *r)
 		by_property[r->targets[i].property] = r->targets[i];
 	nt_status status = NT_OK;
 	for (size_t row = 0; !status && row < element->count;) {
-		if (!element->has_list) {
+		if (!element->has_list && !r->targets[0].exact) {
 			ply_next_row(cursor);
 			plain_lines lines = {by_property, element->property_count, row};
 			row += ply_take_pieces(cursor, element->count - row, take_plain_lines, &lines);
@@ -311,11 +318,32 @@ static void mend_rows(nt_scene *scene, float *values, size_t width, size_t count
 		nt_finding_add(&scene->findings, code, NULL, bad, "vertex %zu is the first", first);
 }
 
-nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *source,
+bool ply_has_wide_positions(const ply_source *source)
+{
+	bool wide = false;
+	for (size_t k = 0; k < 3; k++) {
+		const ply_type type = source->vertex->properties[source->roles.position[k]].type;
+		wide |= type == PLY_FLOAT64 || type == PLY_INT32 || type == PLY_UINT32;
+	}
+	return wide;
+}
+
+nt_status ply_read_exact_positions(const ply_source *source, ply_cursor *cursor, double *positions, nt_error *error)
+{
+	bool unsound = false;
+	reader r = {.element = source->vertex, .cursor = cursor, .error = error, .unsound = &unsound,
+		.target_count = 3};
+	for (size_t k = 0; k < 3; k++)
+		r.targets[k] = (target){.property = source->roles.position[k], .exact = positions + k, .stride = 3};
+	return cursor->encoding == PLY_ASCII ? read_lines(&r) : decode_listed(&r);
+}
+
+nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, ply_source *source,
 	ply_cursor *cursor, nt_error *error)
 {
 	const ply_element *element = source->vertex;
 	const ply_roles *roles = &source->roles;
+	source->vertex_begin = (size_t)(cursor->at - cursor->begin);
 	nt_status status = ply_check_count(cursor, element, error);
 	if (status)
 		return status;

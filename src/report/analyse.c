@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/utf8.h"
+#include "scene/origin.h"
 #include "scene/select.h"
 
 /* ---- facts that need no check ---- */
@@ -33,7 +34,7 @@ static void count_instances(nt_report *report, const nt_scene *scene)
 		nt_report_mesh *mesh = &report->meshes[instance->mesh];
 		const double determinant = determinant_of(instance->matrix), scale = cbrt(fabs(determinant));
 		if (mesh->instance_count++ == 0) {
-			mesh->is_scaled = scale > 0.0 && fabs(scale - 1.0) > 1e-6;
+			mesh->is_scaled = (scale > 0.0 && fabs(scale - 1.0) > 1e-6) || nt_scene_has_origin(scene);
 			memcpy(mesh->world, instance->matrix, sizeof mesh->world);
 		}
 		mesh->negative_instances += determinant < 0.0;
@@ -451,9 +452,13 @@ static nt_report *new_report(const char *path, const nt_report_options *options)
 static nt_status build(const nt_scene *scene, const nt_report_options *options, nt_report *report, nt_error *error)
 {
 	report->format = scene->format;
+	memcpy(report->origin, scene->origin, sizeof report->origin);
+	char text[NT_ORIGIN_TEXT];
+	if (nt_scene_has_origin(scene))
+		report->origin_text = copy_text(&report->arena, nt_origin_text(scene->origin, text));
 	report->mesh_count = scene->mesh_count;
 	report->meshes = nt_arena_alloc(&report->arena, scene->mesh_count, sizeof *report->meshes);
-	if (!report->meshes)
+	if (!report->meshes || (nt_scene_has_origin(scene) && !report->origin_text))
 		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < scene->mesh_count; i++)
 		if (!describe_mesh(report, &scene->meshes[i], options, &report->meshes[i]))

@@ -353,6 +353,25 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"NaN or infinity. The triangles there cannot be drawn.",
 		"Export the mesh again.",
 		"a PLY vertex with x = inf"),
+	ROW(POS_ORIGIN, INFO, "-ii", LOOK, NULL, "positions are relative to an origin",
+		"Coordinates of the OBJ or PLY are so large that float would move vertices by more than a hundredth "
+		"of the median edge, or --origin names an origin. Normals, tangents and findings are made of the "
+		"positions as doubles minus the origin, which has the form that --origin takes. A glTF stores those, "
+		"and its nodes add the origin as their translation; a PLY has the file's own coordinates, as doubles. "
+		"Places in a report are the file's, too.",
+		"Nothing. With --origin=keep positions are rounded instead; with --origin=X,Y,Z several files have "
+		"one origin.",
+		"an OBJ with edges of 2 cm at \"v 431234.12 5412345.67 101.05\""),
+	ROW(POS_ROUNDED, WARNING, "-ww", CONVERT, "--origin=auto",
+		"{count} {vertex is|vertices are} moved by more than a hundredth of an edge where positions become "
+		"float",
+		"Coordinates of the OBJ or PLY are so large that the floats there are far apart: triangles bend or "
+		"collapse, and the normals and tangents made of them are wrong. --origin=keep asked for that, or the "
+		"origin does not help, because a few vertices lie far from the rest. Triangles without area are not "
+		"counted then: the file may have none.",
+		"If the origin is auto already, the objects are too far from each other for float: export them as "
+		"files of their own. Otherwise let nmtan choose an origin.",
+		"an OBJ with edges of 2 cm at \"v 431234.12 5412345.67 101.05\", with --origin=keep"),
 	ROW(MESH_NON_MANIFOLD_EDGE, WARNING, "wiw", EXPORT, NULL,
 		"{count} {edge belongs|edges belong} to more than two triangles",
 		"After vertices at one position are welded, three or more triangles meet at an edge. Which of them "

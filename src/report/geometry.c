@@ -145,7 +145,8 @@ static void check_triangle(const triangle_work *work, size_t t, triangle_part *p
 	nt_check *check = work->check;
 	const nt_surface *s = &check->surface;
 	const nt_flatness flatness = s->flatness[t];
-	if (flatness == NT_COINCIDENT || flatness == NT_COLLINEAR) {
+	/* POS_ROUNDED says what happened to the file's positions: the triangle may have an area there */
+	if ((flatness == NT_COINCIDENT || flatness == NT_COLLINEAR) && !check->scene->positions_rounded) {
 		part->coincident += flatness == NT_COINCIDENT;
 		part->collinear += flatness == NT_COLLINEAR;
 		nt_tally_triangle(check, &part->flat, t, nt_triangle_area(s, t));

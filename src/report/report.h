@@ -148,7 +148,7 @@ typedef struct nt_seam {
 	size_t non_manifold_count;
 	bool has_plane;
 	double plane[4];          /* a x + b y + c z = d, unit normal */
-	char plane_text[48];      /* "x = 0" */
+	char plane_text[64];      /* "x = 0" */
 	nt_box box;
 } nt_seam;
 
@@ -218,7 +218,8 @@ typedef struct nt_report_mesh {
 	nt_maker maker;                /* of the input's tangents; agreement < 0: they were not compared */
 	size_t angle_histogram[NT_ANGLE_BINS]; /* corners, against a fresh solve */
 	size_t instance_count, negative_instances;
-	bool is_scaled;           /* by its first instance: lengths and shown places are in the world */
+	bool is_scaled;           /* by its first instance, or moved by an origin: lengths and shown places are in the
+	                             world */
 	double world[16];         /* column-major */
 
 	nt_wrap wrap[2];          /* along u and v: how the sampler repeats what the mesh lies on */
@@ -246,6 +247,8 @@ typedef struct nt_report {
 	const char *shown;        /* the path as reports show it */
 	const nt_shown_paths *paths; /* not owned; NULL: none */
 	nt_format format;
+	double origin[3];         /* of the scene: positions and boxes are relative to it */
+	const char *origin_text;  /* "431236,5412347,101"; NULL: it is 0 */
 	const char *failure;      /* the input could not be checked: why; NULL */
 	nt_place_view failure_place;
 	nt_report_mesh *meshes;

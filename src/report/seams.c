@@ -15,6 +15,7 @@
 #include "base/angle.h"
 #include "base/dvec.h"
 #include "report/surface/chains.h"
+#include "scene/origin.h"
 
 /* A seam lies in a plane when its points keep within this part of the mesh's extent. */
 static const double PLANE_TOLERANCE = 1e-4;
@@ -248,8 +249,8 @@ static void fit_plane(const nt_check *check, const nt_chains *chains, size_t cha
 		across.y, across.z, d);
 }
 
-/* The same plane in the world, of a mesh that is scaled: its normal goes by cofactors. */
-static void move_plane(const nt_report_mesh *facts, nt_seam *seam)
+/* The same plane in the world, of a mesh that is scaled: its normal goes by cofactors. large: coordinates are. */
+static void move_plane(const nt_report_mesh *facts, bool large, nt_seam *seam)
 {
 	const double *m = facts->world, *p = seam->plane;
 	const float on[3] = {(float)(p[0] * p[3]), (float)(p[1] * p[3]), (float)(p[2] * p[3])};
@@ -268,11 +269,12 @@ static void move_plane(const nt_report_mesh *facts, nt_seam *seam)
 	const double d = normal.x * at[0] + normal.y * at[1] + normal.z * at[2];
 	const double parts[3] = {normal.x, normal.y, normal.z};
 	memcpy(seam->plane, (double[4]){normal.x, normal.y, normal.z, d}, sizeof seam->plane);
-	snprintf(seam->plane_text, sizeof seam->plane_text, "%.3gx %+.3gy %+.3gz = %.4g", normal.x, normal.y, normal.z,
-		d);
+	snprintf(seam->plane_text, sizeof seam->plane_text, "%.3gx %+.3gy %+.3gz = %.*g", normal.x, normal.y, normal.z,
+		large ? 10 : 4, d);
 	for (int i = 0; i < 3; i++)
 		if (fabs(parts[i]) > 1.0 - 1e-9)
-			snprintf(seam->plane_text, sizeof seam->plane_text, "%c = %.6g", "xyz"[i], d * parts[i]);
+			snprintf(seam->plane_text, sizeof seam->plane_text, "%c = %.*g", "xyz"[i], large ? 10 : 6,
+				d * parts[i]);
 }
 
 /* ---- one seam ---- */
@@ -313,7 +315,7 @@ static nt_status describe_seam(nt_check *check, const nt_chains *chains, size_t 
 		}
 	}
 	fit_plane(check, chains, chain, seam, &sums);
-	move_plane(check->facts, seam);
+	move_plane(check->facts, nt_scene_has_origin(check->scene), seam);
 	return NT_OK;
 }
 

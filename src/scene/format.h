@@ -42,6 +42,18 @@ typedef enum nt_transform_choice {
 	NT_TRANSFORM_KEEP  /* of those in the file: a renderer turns TANGENT itself */
 } nt_transform_choice;
 
+/* The origin that positions of OBJ and PLY are stored relative to: scene/origin.h. */
+typedef enum nt_origin_choice {
+	NT_ORIGIN_AUTO, /* what float needs: nothing for most files */
+	NT_ORIGIN_KEEP, /* nothing */
+	NT_ORIGIN_GIVEN
+} nt_origin_choice;
+
+typedef struct nt_origin {
+	nt_origin_choice choice;
+	double at[3]; /* GIVEN: 0 0 0 is nothing, too */
+} nt_origin;
+
 /* TANGENT of the morph targets of primitives that get tangents. */
 typedef enum nt_morph_choice {
 	NT_MORPH_BAKE, /* what to add to the base's, by a solve of the mesh as the target moves it */
@@ -108,6 +120,7 @@ typedef struct nt_read_options {
 	nt_morph_choice morphs; /* targets are loaded where they are to be baked */
 	bool report;        /* meshes that get no tangents are loaded too, to be checked */
 	bool keeps_transforms; /* NT_TRANSFORM_KEEP */
+	nt_origin origin;
 	bool across;        /* and those that contribute to others: NT_ACROSS_MESH */
 	bool checks_kept;   /* kept tangents are checked against a solve with others */
 	bool edits;         /* the output is the source's document, edited */

@@ -256,6 +256,8 @@ typedef struct nt_mesh {
 	size_t unused_vertices;  /* then: vertices of the source that it does not use */
 	size_t vertex_bytes;     /* of a vertex with all its attributes and a tangent, as it is stored; 0: not known */
 	float *positions;        /* [vertex_count][3] */
+	double *exact_positions; /* [source_vertex_count][3] as the source has them, if positions are relative to an
+	                            origin and the output is in the world; else NULL */
 	float *normals;          /* [vertex_count][3]; NULL: none */
 	float *solve_normals;    /* [vertex_count][3] of unit length: what tangents are made for, if normals are
 	                            not and stay; NULL: normals themselves */
@@ -355,6 +357,9 @@ typedef struct nt_scene {
 	size_t material_count;
 	nt_instance *instances;
 	size_t instance_count;
+	double origin[3]; /* the source's coordinates are those of meshes plus this, which the matrices of instances
+	                     have; 0 0 0: none */
+	bool positions_rounded; /* float moves vertices by more than a hundredth of an edge: POS_ROUNDED */
 	nt_join *joins; /* of meshes that get tangents, whether they are solved so or could be */
 	size_t join_count;
 	nt_finding_list findings;

@@ -248,13 +248,12 @@ static nt_status plan_scene(composition *c, nt_error *error)
 		}
 	}
 	for (size_t i = 0; i < scene->instance_count; i++) {
-		const nt_instance *instance = &scene->instances[i];
-		const size_t m = instance->mesh;
+		const size_t m = scene->instances[i].mesh; /* its matrix is that of the origin */
 		uint32_t number = numbers[m];
 		for (size_t p = 0; p < c->primitives[m].count; p++)
 			if (begins_mesh(&c->primitives[m], p))
 				nt_model_node(c->model, name_of(c, m, c->primitives[m].items[p].group), number++,
-					instance->matrix);
+					scene->origin);
 	}
 	return NT_OK;
 }

@@ -435,28 +435,20 @@ void nt_model_primitive(nt_model *model, const nt_model_attribute *attributes, s
 	nt_buffer_text(out, "}");
 }
 
-static bool is_identity(const double matrix[16])
-{
-	for (int i = 0; i < 16; i++)
-		if (matrix[i] != (i % 5 == 0 ? 1 : 0))
-			return false;
-	return true;
-}
-
-uint32_t nt_model_node(nt_model *model, const char *name, uint32_t mesh, const double matrix[16])
+uint32_t nt_model_node(nt_model *model, const char *name, uint32_t mesh, const double translation[3])
 {
 	uint32_t number;
 	nt_buffer *out = begin_object(model, NODES, &number);
-	if (!is_identity(matrix)) {
-		put_key(out, "matrix");
-		for (int i = 0; i < 16; i++) {
+	put_index(out, "mesh", mesh);
+	put_name(out, name);
+	if (translation[0] != 0 || translation[1] != 0 || translation[2] != 0) {
+		put_key(out, "translation");
+		for (int i = 0; i < 3; i++) {
 			nt_buffer_text(out, i ? "," : "[");
-			put_double(out, matrix[i]);
+			put_double(out, translation[i]);
 		}
 		nt_buffer_text(out, "]");
 	}
-	put_index(out, "mesh", mesh);
-	put_name(out, name);
 	nt_buffer_text(out, "}");
 	nt_buffer_text(&model->arrays[ROOTS], model->counts[ROOTS]++ ? "," : "");
 	put_uint(&model->arrays[ROOTS], number);

@@ -85,8 +85,8 @@ typedef struct nt_model_attribute {
 void nt_model_primitive(nt_model *model, const nt_model_attribute *attributes, size_t attribute_count,
 	uint32_t indices, uint32_t material);
 
-/* A root node of the scene that shows a mesh. matrix: column-major; the identity is not written. */
-uint32_t nt_model_node(nt_model *model, const char *name, uint32_t mesh, const double matrix[16]);
+/* A root node of the scene that shows a mesh. A translation of 0 0 0 is not written. */
+uint32_t nt_model_node(nt_model *model, const char *name, uint32_t mesh, const double translation[3]);
 
 /* Lists an extension as used and required; the text stays. */
 void nt_model_require(nt_model *model, const char *extension);

@@ -25,7 +25,7 @@ static void put_cell(const char *text, nt_buffer *out)
 }
 
 /* Nothing, or numbers of the first place: line, triangle, x, y, z, u, v. */
-static void put_spot(const nt_report_finding *finding, nt_buffer *out)
+static void put_spot(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
 	if (nt_finding_line(finding))
 		nt_buffer_format(out, "%zu", nt_finding_line(finding));
@@ -37,8 +37,10 @@ static void put_spot(const nt_report_finding *finding, nt_buffer *out)
 	const nt_spot *spot = &finding->spots[0];
 	if (spot->triangle != NT_NONE)
 		nt_buffer_format(out, "%u", spot->triangle);
-	for (int i = 0; i < 3; i++)
-		nt_buffer_format(out, ",%.9g", (double)spot->positions[0][i]);
+	for (int i = 0; i < 3; i++) {
+		nt_buffer_text(out, ",");
+		nt_put_coordinate(spot->positions[0][i], report->origin[i], out);
+	}
 	if (spot->has_texcoords)
 		nt_buffer_format(out, ",%.9g,%.9g,", (double)spot->texcoords[0][0],
 			(double)spot->texcoords[0][1]);
@@ -56,7 +58,7 @@ static void put_row(const nt_report *report, const nt_report_finding *finding, n
 	nt_buffer_format(out, "%s,%s,%zu,", nt_code_info(finding->code)->name,
 		nt_severity_name(finding->severity), finding->count);
 	put_cell(finding->message, out);
-	put_spot(finding, out);
+	put_spot(report, finding, out);
 	nt_buffer_format(out, "%016llx,%s\r\n", (unsigned long long)finding->fingerprint,
 		finding->known ? "known" : "new");
 }

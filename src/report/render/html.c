@@ -212,7 +212,7 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 	nt_buffer_text(out, m->slots & NT_SLOT_NORMAL ? ",\"mapped\":true" : "");
 	nt_buffer_format(out, ",\"triangles\":%zu,\"vertices\":%zu,\"islands\":%zu,\"geometry\":%s,\"box\":",
 		m->triangle_count, m->vertices_before, m->island_count, has_geometry(m) ? "true" : "false");
-	nt_json_box(&m->box, out);
+	nt_json_box(&m->box, report->origin, out);
 	put_facts(m, out);
 	for (int p = 0; p < NT_PICTURE_COUNT; p++) {
 		nt_buffer_text(out, p ? "," : ",\"images\":[");
@@ -254,7 +254,7 @@ static void put_finding(const nt_report *report, const nt_report_finding *findin
 	put_string(where.data ? where.data : "", out);
 	nt_buffer_free_into(&where, out);
 	nt_buffer_text(out, ",\"box\":");
-	nt_json_box(&finding->box, out);
+	nt_json_box(&finding->box, report->origin, out);
 	nt_buffer_text(out, ",\"at\":[");
 	for (unsigned i = 0, any = 0; i < finding->spot_count; i++)
 		if (finding->spots[i].triangle != NT_NONE)

@@ -185,7 +185,7 @@ static void put_pairs(nt_buffer *out, const char *name, const uint32_t pairs[2][
 	nt_buffer_format(out, "[[%u,%u],[%u,%u]]", pairs[0][0], pairs[0][1], pairs[1][0], pairs[1][1]);
 }
 
-static void put_edge(nt_buffer *out, const nt_seam_edge *edge)
+static void put_edge(nt_buffer *out, const nt_report *report, const nt_seam_edge *edge)
 {
 	nt_buffer_text(out, "{");
 	key(out, SAME_LINE, "triangles");
@@ -193,7 +193,7 @@ static void put_edge(nt_buffer *out, const nt_seam_edge *edge)
 	put_pairs(out, "vertices", edge->vertices);
 	put_pairs(out, "output_vertices", edge->output);
 	key(out, SAME_LINE, "positions");
-	nt_json_rows(edge->positions[0], 2, 3, out);
+	nt_json_positions(edge->positions[0], 2, report->origin, out);
 	open(out, "texcoords", "[");
 	nt_json_rows(edge->texcoords[0][0], 2, 2, out);
 	separate(out, SAME_LINE);
@@ -204,7 +204,7 @@ static void put_edge(nt_buffer *out, const nt_seam_edge *edge)
 	nt_buffer_text(out, "}");
 }
 
-static void put_seam(nt_buffer *out, const nt_seam *seam)
+static void put_seam(nt_buffer *out, const nt_report *report, const nt_seam *seam)
 {
 	nt_buffer_text(out, "{");
 	put_bool(out, "closed", seam->closed);
@@ -232,12 +232,12 @@ static void put_seam(nt_buffer *out, const nt_seam *seam)
 		nt_buffer_text(out, "null");
 	}
 	key(out, SAME_LINE, "box");
-	nt_json_box(&seam->box, out);
+	nt_json_box(&seam->box, report->origin, out);
 	put_bool(out, "edges_truncated", seam->edge_count > NT_SEAM_EDGES);
 	open(out, "edges", "[");
 	for (size_t i = 0; i < seam->edge_count && i < NT_SEAM_EDGES; i++) {
 		separate(out, SAME_LINE);
-		put_edge(out, &seam->edges[i]);
+		put_edge(out, report, &seam->edges[i]);
 	}
 	nt_buffer_text(out, "]}");
 }
@@ -353,7 +353,7 @@ static void put_mesh(nt_buffer *out, const nt_report *report, const nt_report_me
 	put_count(out, "instances", mesh->instance_count);
 	put_count(out, "negative_instances", mesh->negative_instances);
 	key(out, SAME_LINE, "box");
-	nt_json_box(&mesh->box, out);
+	nt_json_box(&mesh->box, report->origin, out);
 	put_bool(out, "islands_truncated", mesh->island_count > SHOWN_ISLANDS);
 	open(out, "islands", "[");
 	for (size_t i = 0; mesh->islands && i < mesh->island_count && i < SHOWN_ISLANDS; i++) {
@@ -365,14 +365,14 @@ static void put_mesh(nt_buffer *out, const nt_report *report, const nt_report_me
 	open(out, "seams", "[");
 	for (size_t i = 0; mesh->seams && i < mesh->seam_count && i < SHOWN_SEAMS; i++) {
 		separate(out, 4);
-		put_seam(out, &mesh->seams[i]);
+		put_seam(out, report, &mesh->seams[i]);
 	}
 	nt_buffer_text(out, "]}");
 }
 
 /* ---- findings ---- */
 
-static void put_spot(nt_buffer *out, const nt_spot *spot)
+static void put_spot(nt_buffer *out, const nt_report *report, const nt_spot *spot)
 {
 	nt_buffer_text(out, "{");
 	put_index(out, "triangle", spot->triangle);
@@ -388,7 +388,7 @@ static void put_spot(nt_buffer *out, const nt_spot *spot)
 	}
 	nt_buffer_text(out, "]");
 	key(out, SAME_LINE, "positions");
-	nt_json_rows(spot->positions[0], spot->corner_count, 3, out);
+	nt_json_positions(spot->positions[0], spot->corner_count, report->origin, out);
 	key(out, SAME_LINE, "texcoords");
 	nt_json_rows(spot->texcoords[0], spot->has_texcoords ? spot->corner_count : 0, 2, out);
 	nt_buffer_text(out, "}");
@@ -421,7 +421,7 @@ static void put_finding(nt_buffer *out, const nt_report *report, const nt_report
 	put_index(out, "island", finding->island);
 	put_place(out, "place", report, &finding->place);
 	key(out, SAME_LINE, "box");
-	nt_json_box(&finding->box, out);
+	nt_json_box(&finding->box, report->origin, out);
 	open(out, "numbers", "{");
 	for (unsigned i = 0; i < finding->number_count; i++)
 		put_float(out, finding->numbers[i].name, finding->numbers[i].value);
@@ -429,7 +429,7 @@ static void put_finding(nt_buffer *out, const nt_report *report, const nt_report
 	open(out, "spots", "[");
 	for (unsigned i = 0; i < finding->spot_count; i++) {
 		separate(out, 5);
-		put_spot(out, &finding->spots[i]);
+		put_spot(out, report, &finding->spots[i]);
 	}
 	nt_buffer_text(out, "]");
 	key(out, SAME_LINE, "votes");
@@ -462,6 +462,10 @@ static void put_report(nt_buffer *out, const nt_report *report)
 	key(out, 3, "verdict");
 	nt_put_verdict(report, nt_json_string, out);
 	put_failure(out, report);
+	if (report->origin_text) {
+		key(out, 3, "origin");
+		nt_buffer_format(out, "[%s]", report->origin_text);
+	}
 	put_totals(out, 3, &totals);
 	key(out, 3, "meshes");
 	nt_buffer_text(out, "[");

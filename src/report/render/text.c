@@ -85,14 +85,21 @@ static void write_vector(const float *values, unsigned count, nt_buffer *out)
 	nt_buffer_text(out, ")");
 }
 
-static void write_place(const nt_report_mesh *mesh, const float position[3], nt_buffer *out)
+static void write_place(const nt_report *report, const nt_report_mesh *mesh, const float position[3], nt_buffer *out)
 {
 	double shown[3];
 	nt_world_point(mesh, position, shown);
-	nt_buffer_format(out, "(%.6g %.6g %.6g)", shown[0], shown[1], shown[2]);
+	for (int i = 0; i < 3; i++) {
+		nt_buffer_text(out, i ? " " : "(");
+		if (report->origin[i] != 0)
+			nt_put_coordinate(position[i], report->origin[i], out);
+		else
+			nt_buffer_format(out, fabs(shown[i]) < 1e5 ? "%.6g" : "%.9g", shown[i]);
+	}
+	nt_buffer_text(out, ")");
 }
 
-static void write_spot(const nt_report_mesh *mesh, const nt_spot *spot, nt_buffer *out)
+static void write_spot(const nt_report *report, const nt_report_mesh *mesh, const nt_spot *spot, nt_buffer *out)
 {
 	static const char *const kinds[] = {"vertex", "edge", "corners"};
 	nt_buffer_text(out, "            ");
@@ -109,7 +116,7 @@ static void write_spot(const nt_report_mesh *mesh, const nt_spot *spot, nt_buffe
 			nt_buffer_format(out, " %u", spot->vertices[k]);
 	}
 	nt_buffer_text(out, " at ");
-	write_place(mesh, spot->positions[0], out);
+	write_place(report, mesh, spot->positions[0], out);
 	if (spot->has_texcoords) {
 		nt_buffer_text(out, " uv ");
 		for (unsigned k = 0; k < spot->corner_count; k++)
@@ -139,7 +146,7 @@ static void write_finding(const nt_report_list *reports, const nt_report *report
 		nt_buffer_format(out, "            in %s\n", where.data);
 	nt_buffer_free_into(&where, out);
 	for (unsigned i = 0; i < finding->spot_count && i < SHOWN_SPOTS; i++)
-		write_spot(&report->meshes[finding->mesh], &finding->spots[i], out);
+		write_spot(report, &report->meshes[finding->mesh], &finding->spots[i], out);
 	if (finding->spot_count > SHOWN_SPOTS)
 		nt_buffer_text(out, "            and others\n");
 	if (remedy) {

@@ -5,6 +5,8 @@
 #include "report/render/words.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include "base/utf8.h"
 
@@ -205,17 +207,41 @@ void nt_json_rows(const float *values, size_t count, size_t width, nt_buffer *ou
 	nt_buffer_text(out, count ? "]" : "[]");
 }
 
-void nt_json_box(const nt_box *box, nt_buffer *out)
+void nt_put_coordinate(float value, double origin, nt_buffer *out)
+{
+	if (origin == 0 || !isfinite(value)) {
+		nt_json_float(value, out);
+		return;
+	}
+	/* the fewest digits of those numbers whose difference from the origin is this float */
+	const double sum = origin + value, step = fabs((double)nextafterf(value, INFINITY) - value) / 2;
+	char text[32];
+	int digits = 6;
+	do
+		snprintf(text, sizeof text, "%.*g", digits, sum);
+	while (fabs(strtod(text, NULL) - sum) > step && digits++ < 17);
+	nt_buffer_text(out, text);
+}
+
+void nt_json_positions(const float *positions, size_t count, const double origin[3], nt_buffer *out)
+{
+	for (size_t i = 0; i < 3 * count; i++) {
+		nt_buffer_text(out, i == 0 ? "[[" : i % 3 == 0 ? "],[" : ",");
+		nt_put_coordinate(positions[i], origin[i % 3], out);
+	}
+	nt_buffer_text(out, count ? "]]" : "[]");
+}
+
+void nt_json_box(const nt_box *box, const double origin[3], nt_buffer *out)
 {
 	if (!(box->minimum[0] <= box->maximum[0])) {
 		nt_buffer_text(out, "null");
 		return;
 	}
-	nt_buffer_text(out, "[");
-	nt_json_floats(box->minimum, 3, out);
-	nt_buffer_text(out, ",");
-	nt_json_floats(box->maximum, 3, out);
-	nt_buffer_text(out, "]");
+	float corners[6];
+	memcpy(corners, box->minimum, sizeof box->minimum);
+	memcpy(corners + 3, box->maximum, sizeof box->maximum);
+	nt_json_positions(corners, 2, origin, out);
 }
 
 void nt_json_votes(const nt_report_finding *finding, nt_buffer *out)

@@ -98,7 +98,12 @@ void nt_json_index(uint32_t index, nt_buffer *out);
 /* JSON arrays: of numbers, of `count` rows of `width` numbers, of the corners of a box; null for an empty box. */
 void nt_json_floats(const float *values, size_t count, nt_buffer *out);
 void nt_json_rows(const float *values, size_t count, size_t width, nt_buffer *out);
-void nt_json_box(const nt_box *box, nt_buffer *out);
+void nt_json_box(const nt_box *box, const double origin[3], nt_buffer *out);
+
+/* A coordinate of a mesh as the file has it: plus that of the origin, with the digits that a float leaves. */
+void nt_put_coordinate(float value, double origin, nt_buffer *out);
+/* The same of `count` positions, as JSON. */
+void nt_json_positions(const float *positions, size_t count, const double origin[3], nt_buffer *out);
 
 /* Votes of a normal map's blocks, row by row; null if a finding has none. */
 void nt_json_votes(const nt_report_finding *finding, nt_buffer *out);

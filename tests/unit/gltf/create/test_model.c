@@ -36,7 +36,7 @@ static void model_says(nt_model *model, uint64_t length, nt_model_buffer buffer,
 	nt_model_free(model);
 }
 
-static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+static const double still[3] = {0, 0, 0};
 
 static nt_model *triangle_model(uint32_t material)
 {
@@ -52,7 +52,7 @@ static nt_model *triangle_model(uint32_t material)
 	const uint32_t index_accessor = nt_model_add_accessor(model, &index);
 	const uint32_t mesh = nt_model_mesh(model, "tri");
 	nt_model_primitive(model, &attribute, 1, index_accessor, material);
-	assert_int_equal(nt_model_node(model, "", mesh, identity), 0);
+	assert_int_equal(nt_model_node(model, "", mesh, still), 0);
 	return model;
 }
 
@@ -73,7 +73,7 @@ TEST(document_has_exact_bounds_and_no_empty_objects)
 	model_says(model, 42, NT_MODEL_FILE, "a%20b.bin", PARTS(
 		"\"buffers\":[{\"byteLength\":42,\"uri\":\"a%20b.bin\"}]}", "\"min\":[0.0,0.0,-2.5]",
 		/* 0.1 as a float is this double */
-		"\"max\":[0.10000000149011612,1.0,0.0]", "!null", "!matrix"));
+		"\"max\":[0.10000000149011612,1.0,0.0]", "!null", "!translation"));
 }
 
 TEST(names_in_latin_1_become_utf_8)
@@ -110,17 +110,15 @@ TEST(primitives_follow_their_mesh)
 			nt_model_primitive(model, &attribute, 1, NT_MODEL_NONE, p ? 7 : NT_MODEL_NONE);
 		}
 	}
-	double moved[16];
-	memcpy(moved, identity, sizeof moved);
-	moved[12] = 1e-5;
-	nt_model_node(model, "", 0, identity);
+	const double moved[3] = {1e-5, 5412347.25, 0};
+	nt_model_node(model, "", 0, still);
 	nt_model_node(model, "n", 1, moved);
 	model_says(model, 0, NT_MODEL_CHUNK, NULL, PARTS(
 		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":4},"
 		"{\"attributes\":{\"POSITION\":1},\"material\":7,\"mode\":4}]},{\"name\":\"b\",\"primitives\":["
 		"{\"attributes\":{\"POSITION\":2},\"mode\":4},{\"attributes\":{\"POSITION\":3},\"material\":7,"
-		"\"mode\":4}]}],\"nodes\":[{\"mesh\":0},{\"matrix\":[1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,"
-		"1e-05,0.0,0.0,1.0],\"mesh\":1,\"name\":\"n\"}],\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}]}"));
+		"\"mode\":4}]}],\"nodes\":[{\"mesh\":0},{\"mesh\":1,\"name\":\"n\","
+		"\"translation\":[1e-05,5412347.25,0.0]}],\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}]}"));
 }
 
 TEST(bright_emission_needs_the_extension)
