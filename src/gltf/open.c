@@ -416,14 +416,15 @@ static nt_status look_for_buffers(nt_scene *scene, nt_gltf *document, nt_error *
 /* Sets of texture coordinates that a mesh has beside the one that is used. */
 static size_t count_other_sets(const nt_json_value *attributes, uint32_t used)
 {
-	size_t count = 0;
+	size_t count = 0, length;
 	char name[32];
-	for (uint32_t set = 0;; set++) {
-		nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), set);
-		if (!nt_json_find(attributes, name))
-			return count;
-		count += set != used;
+	nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), used);
+	for (size_t i = 0; i < nt_json_count(attributes); i++) {
+		const char *key = nt_json_key(attributes, i, &length);
+		count += length > 9 && memcmp(key, "TEXCOORD_", 9) == 0 &&
+			(length != strlen(name) || memcmp(key, name, length) != 0);
 	}
+	return count;
 }
 
 static size_t count_extras(const nt_gltf *document, const char *array)

@@ -10,7 +10,8 @@
  * one), and finds them in a k-d tree (J. L. Bentley, "Multidimensional Binary Search Trees Used for
  * Associative Searching", 1975) whose boxes are left out where they lie beyond an edge of the triangle.
  * Cost: n log n for the polygons people draw, stars of long slivers included. A triangle that runs along
- * many boxes without a corner in it visits them all; coordinates of 24 bits leave room for few of those.
+ * many boxes without a corner in it visits them all. Combs of 100 000 teeth have many of those: once visits are more
+ * than any sound outline of common use needs, convex corners are cut off without a look, and the result is not sound.
  *
  * The walk goes on with the corner behind the ear it has cut, so a convex polygon becomes the fan
  * (0,1,2) (0,2,3) ... that every other tool makes of it.
@@ -31,6 +32,9 @@ enum { STACK_CORNERS = 48 };
 /* Leaves of the tree hold 4 to 9 corners where there are more than 8, so that half a node for each corner is
  * enough. */
 enum { LEAF_CORNERS = 8 };
+
+/* Visits of boxes that a corner may cost for each level of the tree. */
+enum { MOST_VISITS = 32 };
 
 enum kind { CONVEX, BLOCKING, GONE };
 
@@ -59,6 +63,7 @@ typedef struct outline {
 	node *nodes;
 	uint32_t *members; /* [member_count] the corners that blocked at first */
 	size_t member_count, leaf_depth;
+	size_t visits_left;
 
 	/* Corners to test, in order: all of them once, and one more for each that is cut off. */
 	uint32_t *queue;
@@ -223,6 +228,7 @@ static void find_blocking(outline *o)
 	}
 	while (o->member_count >> o->leaf_depth > LEAF_CORNERS)
 		o->leaf_depth++;
+	o->visits_left = MOST_VISITS * o->count * (o->leaf_depth + 1);
 	build_node(o, 0, 0, o->members, o->member_count);
 }
 
@@ -286,8 +292,9 @@ static bool node_blocks(outline *o, size_t at, size_t depth, const uint32_t *mem
 	const ear *t)
 {
 	const node *box = &o->nodes[at];
-	if (box->blocking == 0)
+	if (box->blocking == 0 || o->visits_left == 0)
 		return false;
+	o->visits_left--;
 	if (t->box.high_x < box->low_x || t->box.low_x > box->high_x || t->box.high_y < box->low_y ||
 		t->box.low_y > box->high_y || box_is_beyond(o, box, t->a, t->b) ||
 		box_is_beyond(o, box, t->b, t->c) || box_is_beyond(o, box, t->c, t->a))
@@ -376,6 +383,7 @@ static void clip_ears(outline *o)
 	uint32_t at = 1;
 	while (o->left > 3) {
 		const enum verdict verdict = verdict_of(o, at);
+		o->sound &= o->visits_left > 0;
 		if (verdict == EAR) {
 			at = cut(o, at);
 		} else if (verdict == FLAT_EAR || !take(o, &at)) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Users of the bytes of a document's buffers: accessors, their sparse arrays, images, compressed
- * data, and views whose user is unknown. Sorted by buffer and begin, with the largest end so far beside each,
- * so that a question about a range looks at few of them.
+ * data, and views whose user is unknown. Sorted by buffer and begin, and searched as a binary tree whose nodes have the
+ * largest end below them, so that a question about a range looks at few beside those that it is about.
  */
 #include "gltf/bytes/byte_users.h"
 
@@ -125,6 +125,17 @@ static int compare_users(const void *a, const void *b)
 	return (x->accessor > y->accessor) - (x->accessor < y->accessor);
 }
 
+/* The node of a range is the one in its middle. Returns the largest end in it. */
+static uint64_t set_reach(nt_byte_user *list, size_t low, size_t high)
+{
+	if (low >= high)
+		return 0;
+	const size_t middle = low + (high - low) / 2;
+	const uint64_t before = set_reach(list, low, middle), behind = set_reach(list, middle + 1, high);
+	const uint64_t reach = before > behind ? before : behind;
+	return list[middle].reach = list[middle].end > reach ? list[middle].end : reach;
+}
+
 bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document, const nt_vertex_pools *pools)
 {
 	const size_t view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
@@ -143,11 +154,7 @@ bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document, const nt_vertex
 		sorted = compare_users(&users->list[i - 1], &users->list[i]) <= 0;
 	if (!sorted)
 		qsort(users->list, users->count, sizeof *users->list, compare_users);
-	for (size_t i = 0; i < users->count; i++) {
-		nt_byte_user *user = &users->list[i];
-		const bool first = i == 0 || user[-1].buffer != user->buffer;
-		user->reach = first || user[-1].reach < user->end ? user->end : user[-1].reach;
-	}
+	set_reach(users->list, 0, users->count);
 	return true;
 }
 
@@ -166,40 +173,54 @@ static size_t users_before(const nt_byte_users *users, uint32_t buffer, uint64_t
 	return low;
 }
 
+/* A question about the users in [first, last) of the list that end behind `begin`. */
+typedef struct question {
+	const nt_byte_users *users;
+	size_t first, last, found;
+	uint64_t begin;
+	uint32_t own;
+	const uint32_t *owners; /* NULL: accessors are their own */
+	bool counts;            /* all; otherwise one that is not `own` is enough */
+} question;
+
+static void look(question *q, size_t low, size_t high)
+{
+	if (low >= high || low >= q->last || high <= q->first || (q->found && !q->counts))
+		return;
+	const size_t middle = low + (high - low) / 2;
+	const nt_byte_user *user = &q->users->list[middle];
+	if (user->reach <= q->begin)
+		return;
+	look(q, low, middle);
+	const bool touches = middle >= q->first && middle < q->last && user->end > q->begin;
+	q->found += touches && (q->counts || user->accessor == NT_NONE ||
+		(q->owners ? q->owners[user->accessor] : user->accessor) != q->own);
+	look(q, middle + 1, high);
+}
+
+static size_t find_users(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end, question q)
+{
+	q.users = users;
+	q.begin = begin;
+	q.first = users_before(users, buffer, 0);
+	q.last = users_before(users, buffer, end);
+	look(&q, 0, users->count);
+	return q.found;
+}
+
 bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
 	const uint32_t *owners, uint32_t own)
 {
-	for (size_t i = users_before(users, buffer, end); i-- > 0;) {
-		const nt_byte_user *user = &users->list[i];
-		if (user->buffer != buffer || user->reach <= begin)
-			break;
-		if (user->end > begin && (user->accessor == NT_NONE || owners[user->accessor] != own))
-			return true;
-	}
-	return false;
+	return find_users(users, buffer, begin, end, (question){.owners = owners, .own = own});
 }
 
 bool nt_byte_users_other(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
 	uint32_t accessor)
 {
-	for (size_t i = users_before(users, buffer, end); i-- > 0;) {
-		const nt_byte_user *user = &users->list[i];
-		if (user->buffer != buffer || user->reach <= begin)
-			break;
-		if (user->end > begin && user->accessor != accessor)
-			return true;
-	}
-	return false;
+	return find_users(users, buffer, begin, end, (question){.own = accessor});
 }
 
 size_t nt_byte_users_count(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end)
 {
-	size_t found = 0;
-	for (size_t i = users_before(users, buffer, end); i-- > 0;) {
-		const nt_byte_user *user = &users->list[i];
-		if (user->buffer != buffer || user->reach <= begin)
-			break;
-		found += user->end > begin;
-	}
-	return found;
+	return find_users(users, buffer, begin, end, (question){.counts = true});
 }

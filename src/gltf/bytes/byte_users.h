@@ -10,7 +10,7 @@
 /* Bytes of a source buffer that something in the document refers to. */
 typedef struct nt_byte_user {
 	uint64_t begin, end;
-	uint64_t reach;    /* largest end of this and all users before it in the buffer */
+	uint64_t reach;    /* largest end of this and what is below it in the tree (byte_users.c) */
 	uint32_t buffer;
 	uint32_t accessor; /* first alias; NT_NONE: an image, an extension, or an unknown user */
 } nt_byte_user;
