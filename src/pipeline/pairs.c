@@ -55,6 +55,8 @@ void nt_judge_w(nt_mesh *mesh)
 		return;
 	for (size_t t = 0; t < mesh->face_count && right <= mesh->face_count / RIGHT_OF; t++) {
 		const size_t v[3] = {vertex_of(mesh, 3 * t), vertex_of(mesh, 3 * t + 1), vertex_of(mesh, 3 * t + 2)};
+		if (v[0] >= mesh->vertex_count || v[1] >= mesh->vertex_count || v[2] >= mesh->vertex_count)
+			return; /* the solve says so */
 		const int orientation = turn * nmtan_orientation(mesh->texcoords + 2 * v[0],
 			mesh->texcoords + 2 * v[1], mesh->texcoords + 2 * v[2]);
 		bool wrong = orientation != 0;

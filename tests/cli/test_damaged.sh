@@ -26,6 +26,28 @@ for file in "$data"/damaged/*.obj "$data"/damaged/*.ply "$data"/damaged/*.glb "$
 	grep -q "^${file##*/}	" "$ROOT/tests/cli/damaged.tsv" || wrong "${file##*/} is not in damaged.tsv"
 done
 
+scene "an index that is out of range, of a mesh that has tangents and a normal map"
+cp "$data"/plates.* "$data/bumps.png" .
+run -q --only=all plates.gltf kept.gltf
+gltf kept.gltf bad 'bytes[0].writeUInt16LE(6000, at(g.meshes[0].primitives[0].indices, 4))'
+run -q --existing=replace bad.gltf out.glb
+exits 3
+says "index 4 is 6000"
+
+scene "a buffer that nobody needs and that has no length is linked from elsewhere"
+cp "$data"/plates.* "$data/bumps.png" .
+cp plates.bin extra.bin
+python3 -c 'import json
+g = json.load(open("plates.gltf"))
+g["buffers"].append({"uri": "extra.bin"})
+json.dump(g, open("odd.gltf", "w"))'
+mkdir out
+run -q --only=all odd.gltf out/odd.gltf
+exits 0
+is "$(value out/odd.gltf 'r["buffers"][1]["uri"]')" ../extra.bin
+run -q --outside=yes out/odd.gltf out/again.glb
+exits 0
+
 scene "a glTF whose tangents are kept and whose .bin is not there is an error, whatever is asked"
 run -q "$data/mirrored_cube.obj" kept.gltf
 run -q --only=all "$data/plates.gltf" many.gltf

@@ -126,8 +126,10 @@ static destination choose_destination(const writing *c, uint32_t index)
 		return moved;
 	const nt_gltf_buffer *buffer = &document->buffers[index];
 	const bool into_glb = c->to_glb && !c->same_container;
-	if (!buffer->described)
-		return KEPT;
+	size_t length;
+	if (!buffer->described) /* nobody wants it, and something is wrong with it: if it is a file, its name stays right */
+		return nt_gltf_external_uri(nt_json_at(nt_gltf_root_member(document, "buffers"), index), &length) ?
+			LINKED : KEPT;
 	switch (buffer->storage) {
 	case NT_GLTF_STORED_BIN:
 		return moved;
