@@ -20,8 +20,8 @@
 #include <unistd.h>
 
 /* A document of so many open files keeps the others in memory; so does one that has half of the files open that the
- * process may have. */
-enum { MOST_MAPS = 512 };
+ * process may have beside its outputs (output.c). */
+enum { MOST_MAPS = 512, OTHER_FILES = 48 };
 
 typedef struct watched {
 	atomic_uintptr_t begin; /* 0: free; 1: taken, being filled */
@@ -86,9 +86,10 @@ static void install(void)
 int nt_watch_begin(const void *map, const struct stat *status, int fd, const char *path)
 {
 	install();
-	struct rlimit files;
-	const bool is_limited = getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur / 2 < MOST_MAPS;
-	const int most = is_limited ? (int)files.rlim_cur / 2 : MOST_MAPS;
+	struct rlimit files = {.rlim_cur = RLIM_INFINITY};
+	getrlimit(RLIMIT_NOFILE, &files);
+	const rlim_t free_files = files.rlim_cur > OTHER_FILES ? files.rlim_cur - OTHER_FILES : 0;
+	const int most = free_files / 2 < MOST_MAPS ? (int)free_files / 2 : MOST_MAPS;
 	for (int i = 0; i < most; i++) {
 		watched *w = &maps[i];
 		uintptr_t none = 0;

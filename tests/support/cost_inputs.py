@@ -17,6 +17,10 @@ slashes   an OBJ, or a PLY or glTF by the name of FILE, that names library or im
 colors    an OBJ of COUNT materials, and FILE.mtl and FILE.0.tga and so on beside it, with an image of one pixel each
 bumps     an OBJ of COUNT materials, and FILE.mtl and FILE.png beside it: each makes other normals of one white PNG of
           SIDE (4096) pixels squared and one bit
+scans     an OBJ, FILE.mtl and FILE.jpg beside it: a JPEG of 512 x 512 pixels and COUNT scans
+strips    an OBJ, FILE.mtl and FILE.tif beside it: a TIFF of COUNT strips of 256 x 16 pixels, which share their bytes
+list      the names of COUNT OBJ files of one triangle, which are beside it
+apart     a glTF of COUNT images and COUNT buffers, and a file for each beside it
 animated  a GLB of COUNT materials, each with a texture transform, and an animation of COUNT others
 buffers   a glTF, and FILE.bin of 1 MB beside it, of COUNT buffers that all name that, and COUNT images of one file
 targets   a GLB of one grid of SIDE (48) quads squared with COUNT morph targets, which all share one accessor
@@ -108,6 +112,52 @@ def bumps(count, out, side):
             materials.write('newmtl m%d\nmap_Bump -bm %d %s.png\n' % (i, i + 1, os.path.basename(name)))
     with open(name + '.png', 'wb') as image:
         image.write(png(side, 0, 1, b'\xff' * (side // 8)))
+
+
+def one_image(out, ending, content):
+    name = sys.argv[3]
+    out.write(b'mtllib %s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nusemtl m\nf 1/1/1 2/2/1 3/3/1\n' %
+              os.path.basename(name).encode())
+    with open(name + '.mtl', 'w') as materials:
+        materials.write('newmtl m\nmap_Kd %s.%s\n' % (os.path.basename(name), ending))
+    with open('%s.%s' % (name, ending), 'wb') as image:
+        image.write(content)
+
+
+def scans(count, out):
+    def segment(marker, data):
+        return b'\xff' + bytes((marker,)) + struct.pack('>H', 2 + len(data)) + data
+    scan = segment(0xda, bytes((1, 1, 0, 0, 0, 0))) + b'\x12\xff\x00'
+    one_image(out, 'jpg', b'\xff\xd8' + segment(0xc2, struct.pack('>BHHB', 8, 512, 512, 1) + b'\1\x11\0') + count * scan)
+
+
+def strips(count, out):
+    data = zlib.compress(bytes(256 * 16), 9)
+    tables = struct.pack('<%dI' % count, *[8] * count) + struct.pack('<%dI' % count, *[len(data)] * count)
+    at = 8 + len(data)
+    tags = [(256, 1, 256), (257, 1, 16 * count), (258, 1, 8), (259, 1, 8), (262, 1, 1), (273, count, at), (277, 1, 1), (278, 1, 16),
+            (279, count, at + 4 * count)]
+    one_image(out, 'tif', struct.pack('<2sHI', b'II', 42, at + len(tables)) + data + tables + struct.pack('<H', len(tags)) +
+              b''.join(struct.pack('<HHII', tag, 4, n, value) for tag, n, value in tags) + bytes(4))
+
+
+def names(count, out):
+    for i in range(count):
+        with open('%s.%d.obj' % (sys.argv[3], i), 'wb') as triangle:
+            repeated(1, triangle)
+        out.write(b'%s.%d.obj\n' % (sys.argv[3].encode(), i))
+
+
+def apart(count, out):
+    base = os.path.basename(sys.argv[3])
+    triangle = struct.pack('<9f', 0, 0, 0, 1, 0, 0, 0, 1, 0) + struct.pack('<9f', *(0, 0, 1) * 3) + struct.pack('<6f', 0, 0, 1, 0, 0, 1)
+    for i in range(count):
+        with open('%s.%d.bin' % (sys.argv[3], i), 'wb') as binary:
+            binary.write(triangle)
+        with open('%s.%d.png' % (sys.argv[3], i), 'wb') as image:
+            image.write(png(1, 2, 8, b'\x80\xa0\xf0'))
+    out.write(many(count, ['%s.%d.bin' % (base, i) for i in range(count)], len(triangle),
+                   ['%s.%d.png' % (base, i) for i in range(count)]))
 
 
 def strip(count, out):
@@ -281,18 +331,23 @@ def buffers(count, out):
     with open(name + '.png', 'wb') as image:
         image.write(png(1, 2, 8, b'\x80\xa0\xf0') + bytes(1 << 20))
     base = os.path.basename(name)
+    out.write(many(count, ['./' * (i % 4) + base + '.bin' for i in range(count)], 1 << 20,
+                   ['./' * (i % 4) + base + '.png' for i in range(count)]))
+
+
+def many(count, buffers, length, images):
+    """A glTF of COUNT meshes, materials and textures, with the names of a buffer and an image for each."""
     views = [{'buffer': i, 'byteOffset': offset, 'byteLength': length} for i in range(count) for offset, length in ((0, 36), (36, 36), (72, 24))]
     accessors = [{'bufferView': i, 'componentType': 5126, 'count': 3, 'type': 'VEC2' if i % 3 == 2 else 'VEC3'} |
                  ({'min': [0, 0, 0], 'max': [1, 1, 0]} if i % 3 == 0 else {}) for i in range(3 * count)]
     meshes = [{'primitives': [{'attributes': {'POSITION': 3 * i, 'NORMAL': 3 * i + 1, 'TEXCOORD_0': 3 * i + 2}, 'material': i}]}
               for i in range(count)]
-    text = json.dumps({'asset': {'version': '2.0'}, 'meshes': meshes, 'scenes': [{'nodes': list(range(count))}],
+    return json.dumps({'asset': {'version': '2.0'}, 'meshes': meshes, 'scenes': [{'nodes': list(range(count))}],
                        'nodes': [{'mesh': i} for i in range(count)], 'textures': [{'source': i} for i in range(count)],
                        'materials': [{'normalTexture': {'index': i}} for i in range(count)],
-                       'images': [{'uri': './' * (i % 4) + base + '.png'} for i in range(count)],
-                       'buffers': [{'byteLength': 1 << 20, 'uri': './' * (i % 4) + base + '.bin'} for i in range(count)],
-                       'bufferViews': views, 'accessors': accessors})
-    out.write(text.encode())
+                       'images': [{'uri': name} for name in images],
+                       'buffers': [{'byteLength': length, 'uri': name} for name in buffers],
+                       'bufferViews': views, 'accessors': accessors}).encode()
 
 
 def targets(count, out, side):
@@ -333,4 +388,5 @@ with open(sys.argv[3], 'wb') as out:
         {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
          'patches': patches, 'repeated': repeated, 'centre': centre, 'folded': folded,
          'tiles': tiles, 'turned': turned, 'libraries': libraries, 'slashes': slashes, 'colors': colors,
-         'buffers': buffers, 'animated': animated, 'levels': levels}[kind](count, out)
+         'buffers': buffers, 'animated': animated, 'levels': levels, 'scans': scans,
+         'strips': strips, 'list': names, 'apart': apart}[kind](count, out)

@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: MIT
 """growth.py MOST LEAST FILE FILE FILE -- COMMAND...: how the processor time of a command grows with its input.
 
-The files are of one kind, each twice as large as the one before, and stand for IN in the command. Prints the best times
-of up to three tries, and ends with 1 where the last is MOST times the first or more: what is linear takes four times as
+The files are of one kind, each twice as large as the one before, and stand for IN in the command, also behind "=". Prints the
+best times of up to three tries, and ends with 1 where the last is MOST times the first or more: what is linear takes four times as
 long, what is quadratic sixteen. Times below LEAST seconds say nothing. A run that takes a hundred times LEAST is ended.
 """
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -29,7 +30,7 @@ def seconds(words):
 
 for attempt in range(3):
     for i, file in enumerate(files):
-        best[i] = min(best[i], seconds([file if word == 'IN' else word for word in command]))
+        best[i] = min(best[i], seconds([re.sub('^(.*=)?IN$', r'\g<1>' + file, word) for word in command]))
     if best[2] < most * best[0]:
         break
 print('%.2f, %.2f and %.2f seconds' % tuple(best))
