@@ -127,7 +127,7 @@ static destination choose_destination(const writing *c, uint32_t index)
 	const nt_gltf_buffer *buffer = &document->buffers[index];
 	const bool into_glb = c->to_glb && !c->same_container;
 	size_t length;
-	if (!buffer->described) /* nobody wants it, and something is wrong with it: if it is a file, its name stays right */
+	if (!buffer->described) /* something is wrong with one that nobody wants: the name of a file stays right */
 		return nt_gltf_external_uri(nt_json_at(nt_gltf_root_member(document, "buffers"), index), &length) ?
 			LINKED : KEPT;
 	switch (buffer->storage) {
