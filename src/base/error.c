@@ -97,6 +97,13 @@ nt_status nt_fail_memory(nt_error *error)
 	return nt_fail(error, NT_ERROR_MEMORY, "out of memory");
 }
 
+nt_status nt_fail_memory_limit(uint64_t most_bytes, nt_error *error)
+{
+	const bool megabytes = most_bytes % (1 << 20) == 0;
+	return nt_fail(error, NT_ERROR_LIMIT, "--max-memory=%llu%c is not enough",
+		(unsigned long long)(most_bytes >> (megabytes ? 20 : 10)), megabytes ? 'M' : 'K');
+}
+
 nt_status nt_error_in_file(nt_error *error, const char *file)
 {
 	if (!error->place.file[0])

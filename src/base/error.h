@@ -72,6 +72,9 @@ nt_status nt_fail_pointer(nt_error *error, nt_status status, const char *pointer
 /* Status NT_ERROR_MEMORY with the usual sentence. */
 nt_status nt_fail_memory(nt_error *error);
 
+/* NT_ERROR_LIMIT and the sentence that names --max-memory, under whose limit there was no memory. */
+nt_status nt_fail_memory_limit(uint64_t most_bytes, nt_error *error);
+
 /* Names the file of an error, unless a deeper place already did. Returns error->status. */
 nt_status nt_error_in_file(nt_error *error, const char *file);
 

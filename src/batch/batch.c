@@ -169,6 +169,8 @@ static void run_one(progress *p, nt_job *job)
 		job->status = !job->outcome ? NT_ERROR_MEMORY
 			: job->refused      ? tell_refusal(p, job)
 					    : run_if_needed(p, job);
+	if (job->status == NT_ERROR_MEMORY && p->settings->max_memory)
+		job->status = nt_fail_memory_limit(p->settings->max_memory, job->outcome ? &job->outcome->error : NULL);
 	tell(p, job);
 }
 

@@ -258,7 +258,9 @@ static void add_rule(session *s, const nt_job *job, int *code)
 static void tell_shortly(session *s, const nt_job *job)
 {
 	nt_error error;
-	if (job->status)
+	if (job->status == NT_ERROR_LIMIT)
+		nt_fail_memory_limit(s->command->settings.max_memory, &error);
+	else if (job->status)
 		nt_fail_memory(&error);
 	else
 		nt_fail(&error, NT_ERROR_MEMORY, "out of memory for a message%s",
@@ -587,14 +589,28 @@ static void end_late(const nt_error *error)
 
 static struct rlimit data_before;
 
-/* Has the system refuse memory beyond the limit. Threads get their stacks all the same, of which they use
- * little. */
-static void limit_memory(const nt_command *command)
+/* The last words if memory is exhausted in a place that cannot fail. */
+static struct {
+	char line[320];
+	int code;
+} exhausted = {"nmtan: out of memory\n", NT_EXIT_INTERNAL};
+
+/* Has the system refuse memory beyond the limit, while files are worked on. Threads get their stacks all the same, of
+ * which they use little. */
+static void limit_memory(const nt_command *command, const nt_batch *batch)
 {
 	struct rlimit data, stack;
 	const uint64_t most = command->settings.max_memory;
 	if (!most || getrlimit(RLIMIT_DATA, &data) != 0 || getrlimit(RLIMIT_STACK, &stack) != 0)
 		return;
+	nt_error error;
+	const char *one = batch->count == 1 ? batch->jobs[0].input : "";
+	nt_fail_memory_limit(most, &error);
+	snprintf(exhausted.line, sizeof exhausted.line - 1, "nmtan: %.160s%s%.100s", one, *one ? ": " : "",
+		error.message);
+	nt_utf8_mask(exhausted.line);
+	strcat(exhausted.line, "\n");
+	exhausted.code = NT_EXIT_LIMIT;
 	const uint64_t each = stack.rlim_cur == RLIM_INFINITY ? 2 << 20 : stack.rlim_cur;
 	data_before = data;
 	const uint64_t whole = most + each * (nt_thread_count(command->settings.threads) + 1);
@@ -633,6 +649,7 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 		.ended = note_end, .user = &s};
 	in_work.erases = s.progress && isatty(STDERR_FILENO);
 	in_work.count = batch->count;
+	limit_memory(command, batch);
 	nt_batch_run(batch, &settings, &options);
 	/* for what is told of the runs: what they have given back, a thread's heap may keep */
 	if (command->settings.max_memory && data_before.rlim_cur)
@@ -739,10 +756,9 @@ static void tell_interrupted(void)
 
 static void end_exhausted(void)
 {
-	static const char line[] = "nmtan: out of memory\n";
-	const ssize_t written = write(STDERR_FILENO, line, sizeof line - 1);
+	const ssize_t written = write(STDERR_FILENO, exhausted.line, strlen(exhausted.line));
 	(void)written;
-	_exit(NT_EXIT_INTERNAL);
+	_exit(exhausted.code);
 }
 
 /* In a signal handler, so that what must not reach a terminal is a question mark. */
@@ -815,7 +831,6 @@ int main(int argc, char **argv)
 		nt_options_zsh(&text);
 		break;
 	default:
-		limit_memory(&command);
 		return run(&command, style, may_colour && isatty(STDOUT_FILENO));
 	}
 	return print_text(&text, style);

@@ -538,8 +538,9 @@ static nt_status name_limit(run *r, nt_status status)
 	if (nt_timer_end(&r->timer)) {
 		fail_late(r, r->error);
 	} else if (status == NT_ERROR_MEMORY && s->max_memory) {
-		nt_fail(r->error, NT_ERROR_LIMIT, "--max-memory=%" PRIu64 "M is not enough", s->max_memory >> 20);
-		if (s->need > s->max_memory && s->need != UINT64_MAX)
+		nt_fail_memory_limit(s->max_memory, r->error);
+		/* the program takes up to 32 MB before it reads anything: less than that says nothing */
+		if (s->need > s->max_memory && s->need >= 32 << 20 && s->need != UINT64_MAX)
 			snprintf(r->error->message + strlen(r->error->message), 80,
 				": files like this take up to %" PRIu64 "M", (s->need >> 20) + 1);
 	}

@@ -171,6 +171,25 @@ if ! $sanitized; then
 	grep -q -- "--max-memory=24M is not enough" r.json || wrong "the report does not say so"
 	run -q --only=all --max-memory=600M w.glb out.glb
 	exits 0
+
+	scene "memory that is not enough to begin is a limit, too"
+	cp "$data"/{head.obj,quad_le.ply} .
+	gltf "$data/plates.gltf" plates ''
+	for size in 1K 300K 1M 4M; do
+		for file in head.obj quad_le.ply plates.gltf; do
+			for words in "" --check --fix; do
+				output=out.glb
+				[ "$words" != --check ] || output=
+				run $words --max-memory=$size $file $output
+				exits 7
+				is "$(cat "$WORK/err.txt")" "nmtan: $file: --max-memory=$size is not enough"
+			done
+		done
+		run -d out --max-memory=$size head.obj quad_le.ply
+		exits 7
+		says "head.obj: --max-memory=$size is not enough"
+		says "quad_le.ply: --max-memory=$size is not enough"
+	done
 fi
 
 scene "limits that are no numbers"
