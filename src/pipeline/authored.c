@@ -3,7 +3,8 @@
  * Authored tangents with --existing=repair: which of them stay, and what becomes of the others.
  *
  * With texture coordinates there is a fresh solve, and faces go one by one: either all corners of a face keep their
- * tangents or all get the new ones, because they are interpolated with each other.
+ * tangents or all get the new ones, because they are interpolated with each other. If w is to stay inverted, it is read
+ * and written the other way.
  *
  * Without them nothing says where a tangent should point but the tangent itself. Each corner goes by itself: what is
  * valid keeps its bytes, what is not becomes the nearest unit vector across its normal. w stays where the corners of a
@@ -138,6 +139,7 @@ void nt_restore_authored(nt_mesh *mesh, float *corner_tangents)
 {
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
+	const float convention = mesh->keeps_inverted ? -1.0f : 1.0f;
 	mesh->replaced_tangents = mesh->left_tangents = 0;
 	for (size_t face = 0, first = 0; face < mesh->face_count;
 		first += face_size(mesh, face++)) {
@@ -149,14 +151,18 @@ void nt_restore_authored(nt_mesh *mesh, float *corner_tangents)
 			memcpy(solved[k], corner_tangents + 4 * (first + k), sizeof solved[k]);
 			const float w = sign_of(mesh, authored[k][3]);
 			turned += w != authored[k][3];
-			authored[k][3] = w;
+			authored[k][3] = convention * w;
 		}
 		const face_fate fate = fate_of(mesh, &view, face, first, authored, solved);
 		mesh->replaced_tangents += fate == IS_REPLACED ? size : turned;
 		mesh->left_tangents += fate == IS_LEFT ? size : 0;
-		for (size_t k = 0; fate != IS_REPLACED && k < size; k++) {
-			keep_unturned(mesh, first + k, solved[k], authored[k]);
-			memcpy(corner_tangents + 4 * (first + k), authored[k], sizeof authored[k]);
+		for (size_t k = 0; k < size; k++) {
+			float *tangent = corner_tangents + 4 * (first + k);
+			if (fate != IS_REPLACED) {
+				keep_unturned(mesh, first + k, solved[k], authored[k]);
+				memcpy(tangent, authored[k], sizeof authored[k]);
+			}
+			tangent[3] *= convention;
 		}
 	}
 }

@@ -130,7 +130,7 @@ static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh *to, nt
 	if (faulty)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_EXISTING_BAD, nt_mesh_place(&mesh, &(nt_place){0}), faulty,
 			NULL);
-	if (wrong)
+	if (!status && (wrong || !judged))
 		nt_judge_w(&mesh);
 	to->signs = judged && !wrong ? NT_SIGN_RIGHT : mesh.signs;
 	to->wrong_w = wrong;

@@ -89,6 +89,7 @@ typedef struct part {
 	size_t meshes;
 	bool right, inverted, up, down, unknown, undecodable;
 	bool tangents_change, maps_turn;
+	bool fixed_map; /* green points down in one that nmtan does not turn */
 } part;
 
 static uint32_t find(uint32_t *parents, uint32_t i)
@@ -110,7 +111,8 @@ static void add_mesh(part *p, const nt_scene *scene, uint32_t index, const nt_se
 	p->first = p->meshes++ ? p->first : index;
 	p->inverted |= mesh->signs == NT_SIGN_INVERTED;
 	p->right |= mesh->signs == NT_SIGN_OPEN || mesh->signs == NT_SIGN_RIGHT;
-	p->tangents_change |= mesh->signs == NT_SIGN_INVERTED && nt_mesh_gets_tangents(mesh);
+	p->tangents_change |= mesh->signs == NT_SIGN_INVERTED && nt_mesh_gets_tangents(mesh) &&
+		!mesh->keeps_inverted;
 	for (int slot = 0; slot < 2; slot++) {
 		const nt_mesh_map *map = &mesh->normal_maps[slot];
 		if (!map->number)
@@ -120,7 +122,10 @@ static void add_mesh(part *p, const nt_scene *scene, uint32_t index, const nt_se
 		p->up |= map->examined && (map->green == NT_GREEN_UP || map->green == NT_GREEN_MIXED);
 		p->unknown |= !map->examined;
 		p->undecodable |= !map->decodable;
-		p->maps_turn |= turns && map->turnable && (down || settings->flip_green == NT_FLIP_ON);
+		p->maps_turn |= turns && map->turnable && (down || settings->flip_green == NT_FLIP_ON) &&
+			(!scene->turned_images ||
+				(map->image < scene->turned_image_count && scene->turned_images[map->image]));
+		p->fixed_map |= down && !map->turnable;
 	}
 }
 
@@ -130,8 +135,9 @@ static void tell_half(nt_scene *scene, const part *p, const nt_settings *setting
 	const char *repair = p->maps_turn || settings->existing == NT_EXISTING_REPAIR
 		? "--existing=repair --flip-green=auto" : "--existing=replace --flip-green=auto";
 	nt_finding_put(&scene->findings, (nt_finding){.code = NT_CODE_TAN_GREEN_PAIR, .count = p->meshes,
-		.severity = 1 + NT_SEVERITY_WARNING, .repair = repair,
+		.severity = 1 + NT_SEVERITY_WARNING, .repair = repair, .stays = p->fixed_map,
 		.detail = p->maps_turn ? "only the map is turned: repair the tangents too"
+			: p->fixed_map ? "only the tangents are changed, and nmtan does not turn this map"
 				       : "only the tangents are changed: turn the map too"},
 		nt_mesh_place(&scene->meshes[p->first], &(nt_place){0}));
 }
@@ -162,8 +168,9 @@ static void settle(nt_scene *scene, const nt_settings *settings, uint32_t *paren
 			continue;
 		if (first) {
 			p->pair = ++pair_count;
-			nt_finding_add(&scene->findings, NT_CODE_TAN_GREEN_PAIR, nt_mesh_place(mesh, &(nt_place){0}),
-				p->meshes, "shown right; change both or neither");
+			nt_finding_put(&scene->findings, (nt_finding){.code = NT_CODE_TAN_GREEN_PAIR,
+				.count = p->meshes, .detail = "shown right; change both or neither",
+				.stays = p->fixed_map}, nt_mesh_place(mesh, &(nt_place){0}));
 		}
 		mesh->pair = p->pair;
 	}

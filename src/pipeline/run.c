@@ -188,6 +188,16 @@ static nt_making_normals making_normals(const run *r)
 	return s->normals >= NT_NORMALS_REPLACE_FLAT ? NT_MAKING_ALL : NT_MAKING_ALL_MISSING;
 }
 
+static void apply_fixes(run *r)
+{
+	for (size_t i = 0; i < r->fixes.mesh_count && i < r->scene.mesh_count; i++) {
+		r->scene.meshes[i].fix = r->fixes.meshes[i];
+		r->scene.meshes[i].keeps_inverted = r->fixes.keep_inverted[i];
+	}
+	r->scene.turned_images = r->fixes.images;
+	r->scene.turned_image_count = r->fixes.image_count;
+}
+
 static nt_status read_scene(run *r)
 {
 	nt_status status = open_scene(r);
@@ -213,8 +223,7 @@ static nt_status read_scene(run *r)
 		return nt_fail(r->error, NT_ERROR_USAGE,
 			"--origin=X,Y,Z is for OBJ and PLY: the positions of this file are floats already");
 	memcpy(r->summary->origin, r->scene.origin, sizeof r->summary->origin);
-	for (size_t i = 0; i < r->fixes.mesh_count && i < r->scene.mesh_count; i++)
-		r->scene.meshes[i].fix = r->fixes.meshes[i];
+	apply_fixes(r);
 	const nt_settings *s = r->settings;
 	/* tangents go with the normals that they were made for */
 	const bool replaces = s->normals >= NT_NORMALS_REPLACE_FLAT && s->existing != NT_EXISTING_DROP;

@@ -137,6 +137,7 @@ nt_status nt_find_pairs(nt_scene *scene, const nt_settings *settings, size_t map
 /* fix.c. Repairs of --fix, found by a check of the input. */
 typedef struct nt_fixes {
 	uint8_t *meshes; /* [mesh_count] their nt_mesh.fix */
+	bool *keep_inverted; /* [mesh_count] their nt_mesh.keeps_inverted */
 	size_t mesh_count;
 	bool *images; /* [image_count] of a glTF whose green is turned; NULL: of another format */
 	size_t image_count;

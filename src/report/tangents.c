@@ -341,7 +341,7 @@ static nt_status check_signs(nt_check *check)
 	const bool untransformed = st.untransformed > 0 && st.untransformed == st.wrong.count;
 	const bool slivers = share <= SLIVER_SHARE && st.wrong_area <= SLIVER_SHARE * check->total_area;
 	const bool judged = check->stored == NT_STORED_AUTHORED;
-	if (judged && check->mesh->pair)
+	if ((judged || check->mesh->keeps_inverted) && check->mesh->pair)
 		return NT_OK; /* the map cancels it: TAN_GREEN_PAIR */
 	const nt_doubt doubt = judged ? check->mesh->doubt : NT_DOUBT_NONE;
 	st.wrong.repair = doubt == NT_DOUBT_UNDECODABLE ? "--existing=replace" : NULL;

@@ -238,6 +238,7 @@ typedef struct nt_mesh {
 	uint32_t moving_targets; /* morph targets that move its positions or normals */
 	uint32_t targets_without_tangents; /* of them those that have no TANGENT */
 	uint8_t fix;             /* nt_existing of this mesh, whatever --only and --existing say; 0: theirs */
+	bool keeps_inverted;     /* w is inverted and stays so in what is repaired: a normal map cancels it, or may */
 	nt_decision decision;
 	nt_mesh_plan plan;
 
@@ -365,6 +366,10 @@ typedef struct nt_scene {
 	nt_finding_list findings;
 	nt_rounding rounding; /* of all meshes that were written */
 	nt_morph_cost morph_cost; /* the same */
+
+	const bool *turned_images; /* [turned_image_count] images of a glTF whose green --fix turns; NULL: all that
+	                              need it, if any are turned */
+	size_t turned_image_count;
 
 	bool solves_quads; /* what wrote the input solves tangents on quads: Blender */
 
