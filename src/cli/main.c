@@ -52,7 +52,7 @@ typedef struct session {
 	nt_manifest manifest;
 	nt_summary total; /* of the times and sizes alone */
 	nt_failures failures;
-	size_t count, current, untried; /* jobs: all, up to date, not tried */
+	size_t count, current, untried, failing; /* jobs: all, up to date, not tried; with findings that fail */
 	/* outputs: left because they had these bytes; with new tangents; of glTF and PLY, unchanged; others; and of all
 	 * of them, with wrong tangents that were kept */
 	size_t left, solved, unchanged, without, wrong;
@@ -192,6 +192,7 @@ static int tell_run(session *s, nt_job *job)
 			nt_message_success(&s->text, job, &c->settings);
 		if (fails)
 			code = NT_EXIT_FINDINGS;
+		s->failing += fails;
 	}
 	if (!job->status)
 		*(summary->left ? &s->left : summary->solved_count ? &s->solved
@@ -394,7 +395,7 @@ static void append_outcomes(session *s)
 static void tell_end(session *s)
 {
 	const size_t failed = s->failures.count, count = s->count;
-	if (count > 1 && (failed || s->wrong || s->style.verbosity >= 0)) {
+	if (count > 1 && (failed || s->failing || s->wrong || s->style.verbosity >= 0)) {
 		nt_buffer_format(&s->text, "nmtan: %zu of %zu done", count - failed - s->untried, count);
 		if (s->current)
 			nt_buffer_format(&s->text, ", %zu of them up to date", s->current);
@@ -402,8 +403,12 @@ static void tell_end(session *s)
 			nt_buffer_format(&s->text, ", %zu failed", failed);
 		if (s->untried)
 			nt_buffer_format(&s->text, ", %zu not tried", s->untried);
+		if (s->failing)
+			nt_buffer_format(&s->text, ", %zu with findings that fail the run", s->failing);
 		if (!s->command->settings.check)
 			append_outcomes(s);
+		if (s->command->settings.dry_run && !s->command->settings.check)
+			nt_buffer_text(&s->text, "; dry run, nothing written");
 		if (s->total.bare_materials)
 			nt_buffer_format(&s->text, ", %zu material%s without any image", s->total.bare_materials,
 				s->total.bare_materials == 1 ? "" : "s");

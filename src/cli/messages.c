@@ -254,6 +254,8 @@ static void append_unused(nt_buffer *out, const nt_summary *s, const nt_settings
 		nt_buffer_format(out, ", %zu still without normals", s->without_normals);
 	if (s->shaded_count)
 		nt_buffer_format(out, ", made the normals of %zu without tangents", s->shaded_count);
+	if (s->shaded_copies)
+		nt_buffer_format(out, " (+%zu vertices where they differ)", s->shaded_copies);
 	if (settings->draco > NT_DRACO_OFF && !s->solved_count)
 		nt_buffer_text(out,
 			", nothing compressed, as no primitive got tangents: --existing=replace --only=all");
@@ -345,8 +347,10 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		if (s->quad_count) {
 			nt_buffer_text(out, " (as ");
 			append_count(out, s->quad_count, "quad");
-			nt_buffer_text(out, " and ");
-			append_count(out, s->triangle_count - 2 * s->quad_count, "triangle");
+			if (s->triangle_count > 2 * s->quad_count) {
+				nt_buffer_text(out, " and ");
+				append_count(out, s->triangle_count - 2 * s->quad_count, "triangle");
+			}
 			nt_buffer_text(out, ")");
 		}
 		append_vertices(out, s);

@@ -501,8 +501,8 @@ static nt_status check_count(const parser *p)
 	if (count == 0 && !c->files_from)
 		return nt_fail(p->error, NT_ERROR_USAGE, "INPUT is missing");
 	if (!many && count == 1)
-		return nt_fail(p->error, NT_ERROR_USAGE, "OUTPUT is missing: nmtan %s OUT.glb, or -d DIR",
-			c->operands[0]);
+		return nt_fail(p->error, NT_ERROR_USAGE,
+			"OUTPUT is missing: nmtan %s OUT.glb, -d DIR, --in-place or --check", c->operands[0]);
 	if (c->settings.check && c->output && (count > 1 || list_option(c)))
 		return nt_fail(p->error, NT_ERROR_USAGE, "--output names the output of one input; for many use -d DIR");
 	/* -o comes last of the operands */

@@ -485,16 +485,19 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 	return status;
 }
 
-/* Meshes that are written without normals, although a word would make some. */
-static size_t count_without_normals(const run *r)
+/* Counts meshes that are written without normals, although a word would make some, and those without tangents for
+ * which they were made. */
+static void count_shading(const run *r)
 {
-	const bool asked = r->settings->normals != NT_NORMALS_AUTO;
-	size_t count = 0;
-	for (size_t i = 0; i < r->scene.mesh_count && asked == nt_format_is_gltf(r->scene.format); i++) {
+	nt_summary *s = r->summary;
+	const bool matters = (r->settings->normals != NT_NORMALS_AUTO) == nt_format_is_gltf(r->scene.format);
+	for (size_t i = 0; i < r->scene.mesh_count; i++) {
 		const nt_mesh *mesh = &r->scene.meshes[i];
-		count += mesh->triangles && mesh->face_count && !mesh->has_normals;
+		const bool shaded = mesh->normals_made && !nt_mesh_gets_tangents(mesh);
+		s->without_normals += matters && mesh->triangles && mesh->face_count && !mesh->has_normals;
+		s->shaded_count += shaded;
+		s->shaded_copies += shaded ? mesh->vertex_count - mesh->source_vertex_count : 0;
 	}
-	return count;
 }
 
 /* Whether the output has what the input has: nobody's tangents or normals were made or dropped, no image was turned. */
@@ -598,7 +601,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->findings = r.scene.findings;
 	summary->rounding = r.scene.rounding;
 	summary->morph_cost = r.scene.morph_cost;
-	summary->without_normals = count_without_normals(&r);
+	count_shading(&r);
 	summary->unchanged = !status && is_unchanged(&r);
 	summary->keeps_wrong = !settings->check && keeps_wrong(summary);
 	r.scene.findings = (nt_finding_list){0};

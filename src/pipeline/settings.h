@@ -176,7 +176,7 @@ typedef struct nt_summary {
 	nt_trace trace;  /* which files were read, missed and written, after a failure too */
 	uint64_t tangents_digest; /* of those that were computed, in the order of the meshes; 0: none, or not wanted */
 	size_t fixed[NT_CODE_COUNT]; /* with fix: primitives and images repaired, by the code of the finding */
-	size_t shaded_count;     /* that got normals and no tangents */
+	size_t shaded_count, shaded_copies; /* those that got normals and no tangents, and vertices added for that */
 	size_t without_normals; /* meshes: of a glTF, although normals were asked for; else, because they were not */
 	bool keeps_wrong; /* tangents of the output are known to be wrong */
 	bool left;       /* the file has what it would get, and was left as it is */

@@ -438,10 +438,8 @@ static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 
 static void add_counts(nt_summary *summary, const nt_mesh *mesh)
 {
-	if (mesh->decision == NT_DECISION_NORMALS) {
-		summary->shaded_count++;
+	if (mesh->decision == NT_DECISION_NORMALS)
 		return;
-	}
 	summary->solved_count++;
 	summary->triangle_count += count_triangles(mesh);
 	summary->repaired += mesh->decision == NT_DECISION_REPAIR && mesh->has_tangents

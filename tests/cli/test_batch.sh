@@ -168,6 +168,8 @@ exits 0
 says "nmtan: 8 of 8 done; 7 got tangents, 1 written without new tangents"
 run -r -d again out
 says "nmtan: 8 of 8 done; 8 unchanged"
+run -r --dry-run -d none in
+says "nmtan: 8 of 8 done; 7 got tangents, 1 written without new tangents; dry run, nothing written"
 run -r --in-place in
 exits 1
 says "nmtan: 2 of 8 done, 6 failed; 2 got tangents"

@@ -51,4 +51,25 @@ run --only=all --existing=replace --verify empty.gltf empty.glb
 exits 0
 says "skipped 1 (no faces)"
 
+scene "a run that ends with 6 says how many of many files fail, with -q too, and a report without an ending what it may be"
+cp "$data/plates.glb" one.glb
+cp one.glb two.glb
+cp "$data/quad.obj" fine.obj
+run -q --check one.glb fine.obj two.glb
+exits 6
+says "nmtan: 3 of 3 done, 2 with findings that fail the run"
+run --check -q fine.obj fine.obj
+exits 0
+silent
+run -d out --fail-on=warning --existing=keep fine.obj one.glb two.glb
+exits 0
+says "nmtan: 3 of 3 done; 3 got tangents"
+run --check --report=findings fine.obj
+exits 1
+says "cannot tell the report's format from the name 'findings': use --report-format, or an ending: .txt .json .sarif .xml .csv .md .html"
+for ending in txt json sarif xml csv md html; do
+	run -q --check --report=r.$ending fine.obj
+	exists r.$ending
+done
+
 done_testing
