@@ -478,7 +478,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(TAN_UNUSED, INFO, "i--", CONVERT, "--existing=drop", "the mesh has tangents that no material uses",
 		"Without a normal texture, clearcoat normal texture or anisotropy nothing reads them: 16 bytes "
 		"per vertex for nothing.",
-		"If no normal map got lost, drop the attribute.",
+		"Nothing if a normal map is set later. Else drop the attribute.",
 		"a glTF primitive with TANGENT and the default material"),
 	ROW(TAN_ACCESSOR, ERROR, "e--", CONVERT, "--fix", "tangents that cannot be read",
 		"TANGENT of a glTF primitive is not an accessor of as many VEC4 as there are positions, or its place "

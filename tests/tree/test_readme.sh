@@ -54,7 +54,7 @@ sed -n '/^\$ make demo$/,/^```$/p' "$readme" | sed '1d;$d' | clean >expected
 exists expected printed
 diff expected printed || wrong "prints something else"
 
-scene "the examples of the README run as they stand, twice"
+scene "the examples of the README and the manual run as they stand, twice"
 mkdir -p assets/sub bin
 cp "$data"/mirrored_cube.* "$data/bumps.png" assets/sub
 cp "$data/plates.glb" assets
@@ -62,11 +62,29 @@ cp assets/plates.glb in.glb
 cp "$data/quad.obj" in.obj
 cp in.glb old.glb
 cp in.glb new.glb
+# what the words of the text call a file: each has the command in it once more
+cp in.glb FILE
+cp in.glb IN.glb
+cp in.glb model.glb
+cp "$data/plates.gltf" model.gltf
+cp "$data"/head.obj "$data"/plates.bin "$data"/bumps.png .
+mkdir data
+cp "$data"/plates.gltf "$data"/plates.bin "$data"/bumps.png data
+cp "$data"/plates.gltf "$data"/plates.bin "$data"/bumps.png assets
 ln -s "$NMTAN" bin/nmtan
 ln -s "$ROOT/data/farm/nmtan-farm" bin/nmtan-farm
 sed -n '/^## Use/,/^## Formats/p; /^## Reports/,/^## Pipelines/p; /^## Pipelines/,/^## The library/p' "$readme" |
 	sed -n 's/^    \([a-z].*\)/\1/p' | sort -u >examples
-[ "$(wc -l <examples)" -ge 12 ] || wrong "$(wc -l <examples) examples"
+sed -n '1,/^Build it/s/^    \(nmtan .*\)/\1/p' "$readme" >>examples
+# in the text, and with what they are about: nmtan --check FILE
+grep -o '`nmtan -[^`]*`' "$readme" | tr -d '`' | grep -vE '^nmtan -(-version|h|-help)' | sed 's/ IN OUT/ IN.glb OUT.glb/' | sort -u >words
+grep -qx 'nmtan --fix IN.glb OUT.glb' words || wrong "$(cat words)"
+grep ' [A-Z]' words >>examples
+# those of the manual come last, as some are in place
+sed -e 's/\\-/-/g' "$ROOT/man/nmtan.1" | sed -n '/^\.SH EXAMPLES/,/^\.PP/p' | grep -E '^(nmtan|cat) ' >manual
+[ "$(wc -l <manual)" = 9 ] || wrong "$(cat manual)"
+cat manual >>examples
+[ "$(wc -l <examples)" -ge 26 ] || wrong "$(wc -l <examples) examples"
 while IFS= read -r example; do
 	for time in first second; do
 		case $example in
