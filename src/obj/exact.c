@@ -107,7 +107,8 @@ nt_status obj_settle_origin(obj_file *file, float largest, float *positions, nt_
 	if (!lengths)
 		return nt_fail_memory(error);
 	const size_t tried = sample_edges(file, positions, NULL, NT_ORIGIN_TRIED, lengths);
-	if (!nt_origin_is_given(&options->origin) && !nt_origin_is_suspected(largest, lengths, tried)) {
+	if (!nt_origin_is_given(&options->origin) &&
+		!nt_origin_is_suspected(largest, lengths, tried, NT_ORIGIN_DOUBT)) {
 		free(lengths);
 		return NT_OK;
 	}

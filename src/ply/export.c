@@ -11,7 +11,9 @@
  * the one image that a PLY can have: "TextureFile NAME", from the folder of the PLY.
  */
 #include "ply/encode.h"
+#include "ply/source.h"
 
+#include <float.h>
 #include <math.h>
 #include "base/dvec.h"
 #include "base/vec.h"
@@ -64,6 +66,38 @@ static int alpha_byte(float alpha)
 	return scaled >= 0.0f && scaled <= 255.5f && rintf(scaled) / 255.0f == alpha ? (int)rintf(scaled) : -1;
 }
 
+static placement find_placement(const nt_instance *instance)
+{
+	static const double identity[16] = {[0] = 1.0, [5] = 1.0, [10] = 1.0, [15] = 1.0};
+	const double *m = instance->matrix;
+	placement p = {.identity = memcmp(m, identity, sizeof identity) == 0};
+	for (size_t i = 0; i < 4; i++)
+		p.columns[i] = (nt_dvec3){m[4 * i], m[4 * i + 1], m[4 * i + 2]};
+	for (size_t i = 0; i < 3; i++)
+		p.cofactors[i] = nt_dvec3_cross(p.columns[(i + 1) % 3], p.columns[(i + 2) % 3]);
+	p.mirrored = nt_dvec3_dot(p.columns[0], p.cofactors[0]) < 0.0;
+	for (size_t i = 0; p.mirrored && i < 3; i++)
+		p.cofactors[i] = nt_dvec3_scale(-1.0, p.cofactors[i]);
+	return p;
+}
+
+/* Whether a node puts a mesh where float would move vertices by more than a hundredth of an edge: such nodes are what a
+ * file with an origin has. */
+static bool is_far(const placement *p, const nt_mesh *mesh)
+{
+	if (p->identity)
+		return false;
+	double lengths[NT_ORIGIN_TRIED], largest = 0;
+	const double scale = cbrt(fabs(nt_dvec3_dot(p->columns[0], p->cofactors[0])));
+	const size_t count = ply_sample_edges(mesh, NULL, NT_ORIGIN_TRIED, lengths);
+	for (size_t i = 0; i < count; i++)
+		lengths[i] *= scale;
+	for (size_t i = 0; i < 4; i++)
+		largest += fmax(fabs(p->columns[i].x), fmax(fabs(p->columns[i].y), fabs(p->columns[i].z))) *
+			(i < 3 ? (double)nt_largest_of(mesh->positions, 3 * mesh->vertex_count, 0) : 1);
+	return nt_origin_is_suspected((float)fmin(largest, FLT_MAX), lengths, count, 1);
+}
+
 static layout find_layout(const nt_scene *scene, bool bitangents)
 {
 	layout l = {.byte_colors = true, .doubles = nt_scene_has_origin(scene)};
@@ -76,6 +110,8 @@ static layout find_layout(const nt_scene *scene, bool bitangents)
 		l.texcoords |= mesh->texcoords != NULL;
 		l.tangents |= mesh->split.vertex_tangents || mesh->tangents;
 		l.colors |= mesh->colors != NULL;
+		const placement p = find_placement(&scene->instances[i]);
+		l.doubles |= is_far(&p, mesh);
 		/* whether all of them come from sRGB bytes */
 		for (size_t k = 0; mesh->colors && k < 4 * mesh->vertex_count && l.byte_colors; k++)
 			l.byte_colors = (k % 4 == 3 ? alpha_byte(mesh->colors[k])
@@ -113,21 +149,6 @@ static void write_header(ply_output *out, const layout *l, const char *texture)
 		nt_buffer_text(b, "property float bx\nproperty float by\nproperty float bz\n");
 	nt_buffer_format(b, "element face %zu\nproperty list uchar %s vertex_indices\nend_header\n",
 		l->face_count, l->vertex_count > INT32_MAX ? "uint" : "int");
-}
-
-static placement find_placement(const nt_instance *instance)
-{
-	static const double identity[16] = {[0] = 1.0, [5] = 1.0, [10] = 1.0, [15] = 1.0};
-	const double *m = instance->matrix;
-	placement p = {.identity = memcmp(m, identity, sizeof identity) == 0};
-	for (size_t i = 0; i < 4; i++)
-		p.columns[i] = (nt_dvec3){m[4 * i], m[4 * i + 1], m[4 * i + 2]};
-	for (size_t i = 0; i < 3; i++)
-		p.cofactors[i] = nt_dvec3_cross(p.columns[(i + 1) % 3], p.columns[(i + 2) % 3]);
-	p.mirrored = nt_dvec3_dot(p.columns[0], p.cofactors[0]) < 0.0;
-	for (size_t i = 0; p.mirrored && i < 3; i++)
-		p.cofactors[i] = nt_dvec3_scale(-1.0, p.cofactors[i]);
-	return p;
 }
 
 static nt_dvec3 combine(const nt_dvec3 *columns, const float *v)

@@ -9,15 +9,15 @@
 #include "scene/origin.h"
 #include "scene/polygon.h"
 
-/* Lengths of one edge of each of `most` faces or fewer, evenly taken; the count is returned. */
-static size_t sample_edges(const nt_mesh *mesh, const double *exact, size_t most, double *lengths)
+size_t ply_sample_edges(const nt_mesh *mesh, const double *exact, size_t most, double *lengths)
 {
 	const size_t step = mesh->face_count / most + 1;
 	size_t count = 0, corner = 0;
 	for (size_t f = 0; f < mesh->face_count; f++) {
 		if (f % step == 0) {
-			const uint32_t *v = mesh->indices + corner;
-			const size_t k = count % 3, a = v[k < 2 ? k : 0], b = v[k < 2 ? k + 1 : 2];
+			const size_t k = count % 3, from = corner + (k < 2 ? k : 0), to = corner + (k < 2 ? k + 1 : 2);
+			const size_t a = mesh->indices ? mesh->indices[from] : from;
+			const size_t b = mesh->indices ? mesh->indices[to] : to;
 			double square = 0;
 			for (size_t i = 0; i < 3; i++) {
 				const double d = exact ? exact[3 * a + i] - exact[3 * b + i]
@@ -99,13 +99,14 @@ nt_status ply_settle_origin(nt_scene *scene, nt_mesh *mesh, ply_source *source, 
 	double *lengths = nt_alloc(NT_ORIGIN_SAMPLED, sizeof *lengths), *exact = NULL;
 	bool done = lengths != NULL;
 	const float largest = nt_largest_of(mesh->positions, 3 * mesh->vertex_count, 0);
-	if (done && (nt_origin_is_given(wished) || nt_origin_is_suspected(largest, lengths,
-						       sample_edges(mesh, NULL, NT_ORIGIN_TRIED, lengths)))) {
+	const size_t tried = done ? ply_sample_edges(mesh, NULL, NT_ORIGIN_TRIED, lengths) : 0;
+	if (done && (nt_origin_is_given(wished) ||
+			    nt_origin_is_suspected(largest, lengths, tried, NT_ORIGIN_DOUBT))) {
 		exact = nt_alloc(mesh->vertex_count, 3 * sizeof *exact);
 		done = exact && read_exact(mesh, source, cursor, exact);
 		if (done)
 			nt_origin_settle(scene, wished, &(nt_exact){exact, mesh->vertex_count, lengths,
-				sample_edges(mesh, exact, NT_ORIGIN_SAMPLED, lengths)}, mesh->positions);
+				ply_sample_edges(mesh, exact, NT_ORIGIN_SAMPLED, lengths)}, mesh->positions);
 		if (done && nt_scene_has_origin(scene))
 			done = cut_all_again(mesh, &source->cuts);
 		nt_origin_matrix(scene, scene->instances->matrix);

@@ -40,6 +40,10 @@ typedef struct ply_source {
 nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, ply_source *source,
 	ply_cursor *cursor, nt_error *error);
 
+/* Lengths of one edge of each of `most` faces or fewer, evenly taken, of positions or of `exact` ones; NULL: there are
+ * none. The count is returned. */
+size_t ply_sample_edges(const nt_mesh *mesh, const double *exact, size_t most, double *lengths);
+
 /* Whether positions are of a type that float does not hold. */
 bool ply_has_wide_positions(const ply_source *source);
 

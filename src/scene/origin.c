@@ -11,9 +11,6 @@
 /* Rounding may move a vertex by this share of the median edge. */
 static const double MOST_SHARE = 0.01;
 
-/* The median of few edges, measured in float, may be so many times too long. */
-static const double DOUBT = 4;
-
 /* Four at a time: floats without their signs are in the order of their bits. */
 float nt_largest_of(const float *values, size_t count, float largest)
 {
@@ -40,12 +37,12 @@ double nt_float_rounding(float largest)
 {
 	int exponent;
 	frexp((double)largest, &exponent);
-	return largest > 0 ? ldexp(1.0, exponent - 25) : 0;
+	return largest > 0 && isfinite(largest) ? ldexp(1.0, exponent - 25) : 0;
 }
 
-bool nt_origin_is_suspected(float largest, const double *edges, size_t edge_count)
+bool nt_origin_is_suspected(float largest, const double *edges, size_t edge_count, double doubt)
 {
-	const double least = DOUBT * nt_float_rounding(largest) / MOST_SHARE;
+	const double least = doubt * nt_float_rounding(largest) / MOST_SHARE;
 	size_t shorter = 0;
 	for (size_t i = 0; i < edge_count; i++)
 		shorter += edges[i] < least;

@@ -31,12 +31,13 @@ typedef struct nt_exact {
 /* The larger of `largest` and of the absolute values of some floats. */
 float nt_largest_of(const float *values, size_t count, float largest);
 
-/* Half of the step between floats at a coordinate: what rounding moves it by at most. */
+/* Half of the step between floats at a coordinate: what rounding moves it by at most; 0 of infinity. */
 double nt_float_rounding(float largest);
 
-/* Whether the median of some edges, measured in float, may be less than a hundred times the rounding of the largest
- * coordinate. */
-bool nt_origin_is_suspected(float largest, const double *edges, size_t edge_count);
+/* Whether the rounding of the largest coordinate is more than a hundredth of the median of some edges. The median may
+ * be `doubt` times too long: NT_ORIGIN_DOUBT, if it is of few edges, measured in float. */
+enum { NT_ORIGIN_DOUBT = 4 };
+bool nt_origin_is_suspected(float largest, const double *edges, size_t edge_count, double doubt);
 
 /* Whether a reader has to read doubles whatever its floats look like. */
 static inline bool nt_origin_is_given(const nt_origin *wished)

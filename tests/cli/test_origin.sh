@@ -151,6 +151,12 @@ elif do == 'exact': # positions of a PLY are the source's doubles
     source = {tuple(map(float, p)) for p in moved(FAR)[0]}
     x = names.index('x')
     print(kinds[x:x + 3], all(row[x:x + 3] in source for row in rows), len(rows) >= len(source))
+elif do == 'near': # positions of a PLY are the source's, but for a float's rounding within a metre of 0
+    names, kinds, rows = read_ply(sys.argv[2])
+    grid = {tuple(round(x * 1000) for x in p[:2]): tuple(map(float, p)) for p in moved(FAR)[0]}
+    x = names.index('x')
+    print(kinds[x:x + 3], all(max(abs(a - b) for a, b in zip(row[x:x + 3], grid[tuple(round(a * 1000) for a in row[x:x + 2])])) < 3e-8
+                              for row in rows))
 elif do == 'ply': # the rows of the source are there, and what was added is that of the near one
     names, _, rows = read_ply(sys.argv[2])
     _, _, source = read_ply(sys.argv[3])
@@ -245,6 +251,11 @@ is "$(far exact flat.ply)" "ddd True True"
 run far.ply again.gltf
 says "an origin: 431234.3,5412345.9,101; "
 run -q near.obj near.ply
+# so has a PLY of the glTF, whose nodes add the origin
+run -q far.obj far.glb
+run -q far.glb back.ply
+exits 0
+is "$(far near back.ply)" "ddd True"
 is "$(sed -n '/^property.* [xyz]$/p' near.ply | tr '\n' ' ')" "property float x property float y property float z "
 
 scene "a PLY of doubles keeps its rows, and is computed relative to an origin"

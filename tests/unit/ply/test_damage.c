@@ -281,6 +281,35 @@ TEST(every_allocation_may_fail)
 	assert_true(n > 20);
 }
 
+/* The second reading of positions that float does not hold, and the second cut of polygons. */
+TEST(every_allocation_for_an_origin_may_fail)
+{
+	char text[800];
+	int size = sprintf(text, "ply\nformat ascii 1.0\nelement vertex 6\nproperty double x\nproperty double y\n"
+		"property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n");
+	for (int i = 0; i < 6; i++)
+		size += sprintf(text + size, "%d.0%d -5000000.0%d 0\n", 5000000, i, i * i);
+	size += sprintf(text + size, "5 0 1 2 3 5\n3 0 1 2\n");
+	bool failed = true;
+	size_t n = 0;
+	for (; failed; n++) {
+		nt_scene scene;
+		nt_error error;
+		nt_error_clear(&error);
+		nt_scene_init(&scene, "test.ply");
+		scene.bytes = (const unsigned char *)text;
+		scene.byte_count = (size_t)size;
+		const nt_read_options options = {.texcoord_set = -1, .threads = 1};
+		fail_allocations_from(n);
+		const nt_status status = nt_ply_open(&scene, &options, &error);
+		failed = stop_failing_allocations();
+		assert_true(failed ? status == NT_ERROR_MEMORY || scene.findings.failed : !status);
+		assert_true(failed || scene.instances[0].matrix[12] > 4999999);
+		nt_scene_free(&scene);
+	}
+	assert_true(n > 20);
+}
+
 int main(void)
 {
 	return run_group("ply/damage");

@@ -34,7 +34,7 @@ static const double far[] = {5000000.125, 0, 0, 5000010.125, 0, 0, 5000010.125, 
 
 TEST(the_rounding_of_a_coordinate_is_half_a_step)
 {
-	assert_true(nt_float_rounding(0) == 0);
+	assert_true(nt_float_rounding(0) == 0 && nt_float_rounding(INFINITY) == 0);
 	assert_true(nt_float_rounding(1) == 0x1p-24);
 	assert_true(nt_float_rounding(1.5f) == 0x1p-24);
 	assert_true(nt_float_rounding(4194304) == 0.25);
@@ -47,9 +47,11 @@ TEST(the_rounding_of_a_coordinate_is_half_a_step)
 TEST(a_median_of_few_edges_is_doubted_up_to_four_times)
 {
 	/* 0.25 is a hundredth of 25 */
-	assert_true(nt_origin_is_suspected(5000000, (const double[]){99, 99, 1000}, 3));
-	assert_false(nt_origin_is_suspected(5000000, (const double[]){101, 1, 1000}, 3));
-	assert_false(nt_origin_is_suspected(5000000, NULL, 0));
+	assert_true(nt_origin_is_suspected(5000000, (const double[]){99, 99, 1000}, 3, NT_ORIGIN_DOUBT));
+	assert_false(nt_origin_is_suspected(5000000, (const double[]){101, 1, 1000}, 3, NT_ORIGIN_DOUBT));
+	assert_true(nt_origin_is_suspected(5000000, (const double[]){24, 24, 1000}, 3, 1));
+	assert_false(nt_origin_is_suspected(5000000, (const double[]){26, 1, 1000}, 3, 1));
+	assert_false(nt_origin_is_suspected(5000000, NULL, 0, 1));
 }
 
 TEST(vertices_that_float_moves_by_a_hundredth_of_an_edge_get_an_origin)
