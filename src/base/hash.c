@@ -10,7 +10,8 @@
 
 uint64_t nt_hash_key_words[NT_HASH_KEY_WORDS];
 
-/* Digits of pi: numbers of no structure. Random values serve others too, and times must not tell them. */
+/* Digits of pi: numbers of no structure. The key is mixed from them and the random bytes that the system gives a
+ * process: these guard its stack, too, so that nobody may learn them from how long a table takes. */
 static const uint64_t digits[2 * NT_HASH_KEY_WORDS] = {0x243f6a8885a308d3u, 0x13198a2e03707344u, 0xa4093822299f31d0u,
 	0x082efa98ec4e6c89u};
 

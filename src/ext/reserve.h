@@ -26,7 +26,7 @@ NT_RESERVE void nt_reserve_end(void);
 /* Whether malloc refused anything in this thread since the outermost begin. */
 NT_RESERVE bool nt_reserve_was_needed(void);
 
-/* Functions of the C++ library, which the program has not until a module brings it. */
+/* Functions of the C++ library. The program has none until a module brings them. */
 typedef struct nt_cxx {
 	void (*throw_bad_alloc)(void);
 	bool (*is_unwinding)(void);

@@ -221,7 +221,7 @@ static nt_status note_slots(nt_gltf *document, wishes *all, const nt_json_value 
 	return status;
 }
 
-/* Demands of more materials. */
+/* Adds the demands of another material of a primitive. */
 static void unite(wishes *all, const wishes *more)
 {
 	for (int slot = 0; slot < 3; slot++) {

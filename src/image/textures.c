@@ -174,7 +174,7 @@ static nt_status find_source(nt_textures *t, const nt_image_places *places, cons
 	return status;
 }
 
-/* Compares the parts of a request that make a difference. */
+/* The parts of a request that make a difference, the others zero, so that equal conversions are one. */
 static nt_conversion wanted(const nt_texture_request *what, const uint32_t sources[4])
 {
 	const bool packed = what->kind == NT_TEXTURE_PACKED;

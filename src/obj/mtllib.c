@@ -12,7 +12,7 @@
 #include "file/way.h"
 #include "obj/mtl.h"
 
-/* The request that mtllib statements serve. */
+/* Arguments of reading the libraries that mtllib statements name. */
 typedef struct request {
 	nt_scene *scene;
 	const nt_read_options *options;

@@ -24,7 +24,7 @@ typedef struct found_image {
 	nt_image image;
 } found_image;
 
-/* The finder of images. */
+/* Arguments of finding the image of a material's map. */
 typedef struct finder {
 	const nt_textures *textures; /* NULL: none are made */
 	const char *page_folder;     /* NULL: files are not referred to */

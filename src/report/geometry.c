@@ -199,7 +199,8 @@ static void join_part(triangle_part *all, const triangle_part *part)
 
 /* ---- least, median and greatest determinant ---- */
 
-/* The share among the known ones. Puts them in another order: quickselect, with pivots of a fixed random sequence. */
+/* Least, median and greatest of the known ones. Puts them in another order: quickselect, with pivots of a fixed random
+ * sequence. */
 static void find_determinants(nt_report_mesh *facts, float *values, size_t count)
 {
 	float least = INFINITY, greatest = -INFINITY;

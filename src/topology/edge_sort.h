@@ -15,7 +15,7 @@
 /* Meshes of more corners are beyond the limit. */
 #define NT_EDGE_SORT_CORNERS ((size_t)1 << 28)
 
-/* Pairs of unsorted edges. */
+/* An edge, and its neighbour as mikktspace.c pairs it if it leaves the edge unsorted. */
 typedef struct nt_unsorted_edge {
 	uint32_t edge;	    /* 3 * triangle + k: from corner k to the next */
 	uint32_t neighbour; /* triangle on its other side, or NT_NO_NEIGHBOUR */

@@ -11,7 +11,7 @@
 enum { REASONS = NMTAN_FAULT_ZERO | NMTAN_FAULT_NOT_FINITE | NMTAN_FAULT_PARALLEL | NMTAN_FAULT_SIGN |
 	NMTAN_FAULT_UNASSIGNED | NMTAN_FAULT_LEANING };
 
-/* The tangent of a triangle whose three normals are n. */
+/* The faults at the corners of a triangle whose three normals are n. */
 static void faults_of(const float positions[9], const float n[3], const float uvs[6], const float *stored_uvs,
 	nmtan_method method, uint8_t faults[3])
 {

@@ -309,7 +309,7 @@ class Space {
 	}
 
 	// Draws the triangles that the sampler repeats on a window of the texture, those that lie there themselves left out; returns
-	// how many, or null: too many. It returns its request: texture coordinates behind the material's map.
+	// how many, or null: too many. The window, and what it repeats, are texture coordinates behind the material's map.
 	drawRepeated(low, high, draw) {
 		const {map, wrap} = this.mesh, g = this.geometry, uv = g.texcoords, all = uvBox(g);
 		const whole = mapBox(map, all.low, all.high), least = 1e-6 * (1 + Math.max(whole[1][0] - whole[0][0], whole[1][1] - whole[0][1]));
