@@ -471,7 +471,7 @@ static nt_status check_clashes(parser *p)
 		return nt_fail(p->error, NT_ERROR_USAGE,
 			"--update and --report do not go together: a report needs inputs that --update skips");
 	if (p->command->diff && !s->check)
-		return nt_fail(p->error, NT_ERROR_USAGE, "--diff is about --check");
+		return nt_fail(p->error, NT_ERROR_USAGE, "--diff needs --check: nmtan --check --diff OLD NEW");
 	const char *into = p->command->directory ? "directory" : s->in_place ? "in-place" : NULL;
 	if (p->command->output && into)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--output and --%s both say where to write", into);

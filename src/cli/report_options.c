@@ -91,7 +91,7 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 	else if (!nt_report_format_of_path(target->path, &target->format))
 		return nt_fail(error, NT_ERROR_USAGE,
 			"cannot tell the report's format from the name '%s': use --report-format, or an ending: .txt "
-			".json .sarif .xml .csv .md .html",
+			".json .sarif .xml .csv .md .html, or a slash for a folder of pages",
 			target->path);
 	if (c->diff && (target->folder || !nt_diff_has_format(target->format)))
 		return nt_fail(error, NT_ERROR_USAGE, "--diff is written to one file, as text, JSON, Markdown or HTML");

@@ -66,7 +66,7 @@ exits 0
 says "nmtan: 3 of 3 done; 3 got tangents"
 run --check --report=findings fine.obj
 exits 1
-says "cannot tell the report's format from the name 'findings': use --report-format, or an ending: .txt .json .sarif .xml .csv .md .html"
+says "cannot tell the report's format from the name 'findings': use --report-format, or an ending: .txt .json .sarif .xml .csv .md .html, or a slash for a folder of pages"
 for ending in txt json sarif xml csv md html; do
 	run -q --check --report=r.$ending fine.obj
 	exists r.$ending

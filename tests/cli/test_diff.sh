@@ -94,7 +94,7 @@ exits 1
 says "an old one and a new one"
 run --diff quad.obj out.glb
 exits 1
-says "--diff is about --check"
+says "--diff needs --check: nmtan --check --diff OLD NEW"
 run --check --diff --report=r.sarif quad.obj quad.obj
 exits 1
 says "text, JSON, Markdown or HTML"

@@ -10,7 +10,7 @@
 #include <string.h>
 #include "topology/corners.h"
 
-/* What a triangle adds to each of its corners: parts[k] to corners[k]. */
+/* The sums that a triangle adds to its corners: parts[k] to corners[k]. */
 static void NT_NOINLINE find_parts(const nt_sums *s, size_t t, uint32_t corners[3], nt_frame_sum parts[3])
 {
 	const nmtan_mesh *mesh = s->solve->mesh;
