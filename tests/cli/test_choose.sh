@@ -23,7 +23,7 @@ scene "a list can be empty, but not missing, and needs a place for outputs"
 : >list
 run -d out --files-from=list
 exits 0
-says "0 of 0 done"
+says "list: warning: there are no names in it, and nothing to do"
 run -d out --files-from=missing
 exits 2
 says "missing: no such file"
@@ -143,9 +143,9 @@ done
 run -j2 -d out missing1.obj missing2.obj missing3.obj missing4.obj missing5.obj bad*.obj
 exits 2
 says "0 of 17 done, 17 failed"
-says "nmtan:   5 files: no such file: missing1.obj, missing2.obj, missing3.obj and 2 more"
-is "$(grep -c '^nmtan:   1 file: ' "$WORK/err.txt")" 9
-says "nmtan:   3 for other reasons; all of them are told above"
+says "nmtan:   5 failed: no such file: missing1.obj, missing2.obj, missing3.obj and 2 more"
+is "$(grep -c '^nmtan:   1 failed: ' "$WORK/err.txt")" 9
+says "nmtan:   3 failed for other reasons, which are printed above"
 
 scene "ten thousand names are few bytes"
 cp "$data/quad.obj" .

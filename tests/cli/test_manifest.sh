@@ -100,6 +100,6 @@ run -q --manifest=- -d out bad*.obj
 exits 3
 is "$(wc -l <"$WORK/out.txt")" 12
 run --manifest=m -d out bad*.obj
-says "2 for other reasons; all of them are in m"
+says "2 failed for other reasons, which are in m"
 
 done_testing

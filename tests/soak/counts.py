@@ -783,7 +783,7 @@ def option_codes(n, folder):
 
 
 @quantity('-d out @INPUTS', '--check --report=r.json @INPUTS', '--check --report=r.sarif @INPUTS', '--check --report=pages/ @INPUTS',
-          '-d out --files-from=names --depfile=d --manifest=m', '-d out --files-from=names --update', '--in-place --files-from=names',
+          '-d out --files-from=names --depfile=d --manifest=m', '-d out --files-from=names --update',
           '--check --report=r.xml --files-from=names', '-d out --keep-tree=. -r .', '--check -q -r . --exclude=x* --include=*.obj',
           '--dry-run -d out --files-from=names', most=10000)
 def option_inputs(n, folder):
@@ -795,7 +795,17 @@ def option_inputs(n, folder):
     return folder + '/f0.obj'
 
 
-@quantity('--check --files-from=names', '-d out --files-from=names', '--in-place --files-from=names')
+@quantity('--in-place --files-from=names', most=10000)
+def option_in_place(n, folder):
+    first = glb(folder + '/a.glb', document())
+    for i in range(n):
+        shutil.copy(first, '%s/f%d.glb' % (folder, i))
+    with open(folder + '/names', 'w') as out:
+        out.write(''.join('f%d.glb\n' % i for i in range(n)))
+    return first
+
+
+@quantity('--check --files-from=names', '-d out --files-from=names')
 def option_equal_inputs(n, folder):
     obj(folder, CORNERS + FACE)
     with open(folder + '/names', 'w') as out:
