@@ -13,21 +13,21 @@ size_t ply_sample_edges(const nt_mesh *mesh, const double *exact, size_t most, d
 {
 	const size_t step = mesh->face_count / most + 1;
 	size_t count = 0, corner = 0;
-	for (size_t f = 0; f < mesh->face_count; f++) {
-		if (f % step == 0) {
-			const size_t k = count % 3, from = corner + (k < 2 ? k : 0), to = corner + (k < 2 ? k + 1 : 2);
-			const size_t a = mesh->indices ? mesh->indices[from] : from;
-			const size_t b = mesh->indices ? mesh->indices[to] : to;
-			double square = 0;
-			for (size_t i = 0; i < 3; i++) {
-				const double d = exact ? exact[3 * a + i] - exact[3 * b + i]
-					: (double)mesh->positions[3 * a + i] - (double)mesh->positions[3 * b + i];
-				square += d * d;
-			}
-			lengths[count] = sqrt(square);
-			count += square > 0 || !exact;
+	for (size_t f = 0; f < mesh->face_count; f += step) {
+		const size_t k = count % 3, from = corner + (k < 2 ? k : 0), to = corner + (k < 2 ? k + 1 : 2);
+		const size_t a = mesh->indices ? mesh->indices[from] : from;
+		const size_t b = mesh->indices ? mesh->indices[to] : to;
+		double square = 0;
+		for (size_t i = 0; i < 3; i++) {
+			const double d = exact ? exact[3 * a + i] - exact[3 * b + i]
+				: (double)mesh->positions[3 * a + i] - (double)mesh->positions[3 * b + i];
+			square += d * d;
 		}
-		corner += mesh->face_sizes ? mesh->face_sizes[f] : 3;
+		lengths[count] = sqrt(square);
+		count += square > 0 || !exact;
+		for (size_t i = f; i < f + step && i < mesh->face_count && mesh->face_sizes; i++)
+			corner += mesh->face_sizes[i];
+		corner += mesh->face_sizes ? 0 : 3 * step;
 	}
 	return count;
 }
