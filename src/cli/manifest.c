@@ -131,6 +131,10 @@ static void append_run(nt_buffer *out, const nt_summary *s)
 	append_number(out, "vertices_before", s->vertex_count);
 	append_number(out, "vertices_after", s->vertex_count + s->appended_normals + s->appended_tangents);
 	append_number(out, "split", s->appended_tangents);
+	if (s->welded.before) {
+		append_number(out, "weld_before", s->welded.before);
+		append_number(out, "weld_after", s->welded.after);
+	}
 	append_number(out, "repaired", s->repaired);
 	append_number(out, "sorted_instead", s->counts.sorted_instead);
 	append_number(out, "summed_instead", s->counts.summed_instead);

@@ -355,6 +355,10 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		}
 		append_vertices(out, s);
 	}
+	if (s->welded.before > s->welded.after)
+		nt_buffer_format(out, ", welded %zu vertices to %zu", s->welded.before, s->welded.after);
+	else if (settings->weld && s->welded.before)
+		nt_buffer_text(out, ", no vertices are equal");
 	if (s->repaired) {
 		nt_buffer_text(out, settings->check ? ", would repair " : ", repaired ");
 		append_count(out, s->repaired, "tangent");

@@ -101,6 +101,6 @@ enum nt_gltf_target {
 enum nt_gltf_wrap { NT_GLTF_CLAMP_TO_EDGE = 33071, NT_GLTF_MIRRORED_REPEAT = 33648 };
 
 /* Values of a primitive's mode that have faces. */
-enum nt_gltf_mode { NT_GLTF_TRIANGLES = 4, NT_GLTF_STRIP = 5, NT_GLTF_FAN = 6 };
+enum nt_gltf_mode { NT_GLTF_POINTS = 0, NT_GLTF_TRIANGLES = 4, NT_GLTF_STRIP = 5, NT_GLTF_FAN = 6 };
 
 #endif

@@ -297,6 +297,7 @@ static nt_status write_scene(run *r)
 		.draco_bits = {s->draco_bits[0], s->draco_bits[1], s->draco_bits[2], s->draco_bits[3]},
 		.precision = s->precision,
 		.meshopt = s->meshopt,
+		.weld = s->weld,
 		.allow_outside = s->outside == NT_OUTSIDE_YES,
 		.threads = s->threads,
 		.textures = r->textures,
@@ -602,6 +603,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->rounding = r.scene.rounding;
 	summary->morph_cost = r.scene.morph_cost;
 	count_shading(&r);
+	summary->welded = r.scene.welded;
 	summary->unchanged = !status && is_unchanged(&r);
 	summary->keeps_wrong = !settings->check && keeps_wrong(summary);
 	r.scene.findings = (nt_finding_list){0};

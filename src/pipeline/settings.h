@@ -86,6 +86,7 @@ typedef struct nt_settings {
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
 	nt_precision precision;
 	nt_meshopt_choice meshopt;
+	bool weld;
 	nt_format output_format; /* NT_FORMAT_UNKNOWN: by name; with check: see writer.c */
 	int texcoord_set;        /* -1: auto */
 	unsigned threads;        /* 0: all */
@@ -164,6 +165,7 @@ typedef struct nt_summary {
 	nmtan_counts counts;     /* of all solves */
 	nt_rounding rounding;    /* of tangents that were stored as integers */
 	nt_morph_cost morph_cost; /* of the targets whose tangents were written */
+	nt_weld_result welded;   /* vertices of the pools that --weld looked at, before and after */
 	nt_finding_list findings;
 	uint64_t bytes_read;     /* of the inputs, as far as known; what is only copied is not */
 	uint64_t bytes_copied;   /* from an input to the output as they are */

@@ -76,6 +76,10 @@ static nt_status check_edit(const nt_settings *settings, const char *path, const
 		(settings->images == NT_IMAGES_COPY || settings->buffers == NT_BUFFERS_COPY))
 		return nt_fail(error, NT_ERROR_USAGE, "--%s=copy: there are no files beside \"%s\"; use link or embed",
 			settings->images == NT_IMAGES_COPY ? "images" : "buffers", path);
+	if (writer && settings->weld && !edits && reader->format != NT_FORMAT_OBJ)
+		return nt_fail(error, NT_ERROR_USAGE,
+			"--weld: only glTF made from glTF is welded, not %s made from %s; an OBJ's vertices always are",
+			writer->name, reader->name);
 	/* taking images away would renumber what refers to them */
 	if (edits && settings->images == NT_IMAGES_NONE)
 		return nt_fail(error, NT_ERROR_USAGE,

@@ -212,6 +212,13 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Choose another output format, or add it again by hand.",
 		"a glTF with animations that is written as PLY"),
 
+	ROW(WELD_LEFT, WARNING, "w--", LOOK, NULL, "{count} {primitive is|primitives are} not welded: {detail}",
+		"--weld leaves primitives that share vertices as they are if a vertex has meaning by its number: "
+		"EXT_mesh_features with implicit ids, CESIUM_primitive_outline, EXT_mesh_manifold, FB_ngon_encoding, an "
+		"extension that names an accessor with one element for each vertex, an animation that uses an attribute's "
+		"accessor; if Draco compresses primitives that get no tangents; and if an accessor cannot be read.",
+		"Leave --weld away, or take the extension out before.",
+		"nmtan --weld of a primitive with CESIUM_primitive_outline"),
 	ROW(EXTENSION_STALE, WARNING, "w--", LOOK, NULL, "{detail} refers to vertices, and vertices were copied",
 		"Vertices that need several tangents are copied, and attributes and indices follow. This "
 		"extension seems to refer to vertices as well, in a way that nmtan does not know or cannot "

@@ -142,6 +142,7 @@ typedef struct nt_write_options {
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
 	nt_precision precision;
 	nt_meshopt_choice meshopt;
+	bool weld;          /* of a glTF that is edited: equal vertices become one */
 	bool allow_outside;
 	unsigned threads;   /* 0: all */
 	const struct nt_turned_images *turned; /* of a glTF: gltf/turned_images.h; NULL: none */

@@ -340,6 +340,11 @@ typedef struct nt_morph_cost {
 	uint64_t bytes, mesh_bytes;
 } nt_morph_cost;
 
+/* Vertices that --weld looked at, and what is left of them. */
+typedef struct nt_weld_result {
+	size_t before, after;
+} nt_weld_result;
+
 /* The place of a face in a text. */
 typedef struct nt_face_place {
 	uint32_t mesh, face; /* face: number in the source, as face_polygon has it */
@@ -366,6 +371,7 @@ typedef struct nt_scene {
 	nt_finding_list findings;
 	nt_rounding rounding; /* of all meshes that were written */
 	nt_morph_cost morph_cost; /* the same */
+	nt_weld_result welded;    /* the same */
 
 	const bool *turned_images; /* [turned_image_count] images of a glTF whose green --fix turns; NULL: all that
 	                              need it, if any are turned */

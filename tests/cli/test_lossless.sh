@@ -40,6 +40,110 @@ for input in "$WORK"/layouts/*.gl*; do
 	done
 done
 
+mkdir -p "$WORK/doubled"
+python3 "$ROOT/tests/support/gltf_layouts.py" "$WORK/doubled" --doubled || exit 1
+ln -s ../doubled "$WORK/outputs/doubled"
+for input in "$WORK"/doubled/*.gl*; do
+	name=${input##*/}
+	scene "$name is welded, and each corner keeps its bits"
+	mkdir same other
+	quantized= reference=--tangents=reference.gltf
+	case $name in tangents_short*) quantized=--quantized reference= ;; esac
+	run --existing=replace "$input" reference.gltf
+	for output in same/a.gltf other/b.glb; do
+		run --existing=replace --weld "$input" $output
+		exits 0
+		says ", welded "
+		lossless $quantized --welded "$input" $output $reference
+	done
+	run --existing=replace --weld other/b.glb again.glb
+	exits 0
+	says ", no vertices are equal"
+	same other/b.glb again.glb
+	mkdir -p "$WORK/outputs/2$name" && cp -r . "$WORK/outputs/2$name"
+	for output in same/a.gltf other/b.glb; do
+		printf '%s\t%s\n' "$WORK/outputs/2$name/$output" "$input" >>"$WORK/pairs"
+	done
+done
+
+scene "a soup gets indices of the narrowest type, whether or not it gets tangents, and in each mode"
+if [ -d "$ROOT/../shared/cases/unwelded" ]; then
+	run --weld "$ROOT/../shared/cases/unwelded/soup.gltf" out.glb
+	says "384 vertices, welded 384 vertices to 81"
+fi
+count='g.accessors[g.meshes[0].primitives[0].attributes.POSITION].count'
+type='g.meshes[0].primitives.map((p) => g.accessors[p.indices].componentType).join()'
+for mode in 1 2 3 4 5 6; do
+	gltf new soup "const mode = $mode;" 'const points = [0, 1, 2, 1, 2, 3, 2, 3, 0];
+		const attributes = {POSITION: add("VEC3", 5126, points.flatMap((x) => [x, x * x, 0]), {min: [0, 0, 0], max: [3, 9, 0]}),
+			_ID: add("SCALAR", 5126, points.map((x, i) => i === 8 ? 7 : x))};
+		g.meshes = [{primitives: [{attributes, mode}]}]; g.nodes = [{mesh: 0}]; g.scenes = [{nodes: [0]}]; g.scene = 0'
+	run --weld soup.gltf out.gltf
+	exits 0
+	# the last one is another by _ID alone
+	is "$(gltf out.gltf "[$count, $type, g.meshes[0].primitives[0].mode].join()")" 5,5123,$mode
+	lossless --welded soup.gltf out.gltf
+	valid out.gltf
+	run --weld out.gltf again.gltf
+	says ", no vertices are equal"
+	same out.gltf again.gltf
+done
+# 300 x 300 points and 70 000 indices of four bytes, of which two will do
+gltf new wide 'const i = Array.from({length: 70000 * 3}, (_, k) => k);
+	const attributes = {POSITION: add("VEC3", 5126, i.flatMap((k) => [k % 30000, k & 1, 0]), {min: [0, 0, 0], max: [29999, 1, 0]})};
+	g.meshes = [{primitives: [{attributes, indices: add("SCALAR", 5125, i)}, {attributes}]}]; g.nodes = [{mesh: 0}]; g.scenes = [{nodes: [0]}]'
+run --weld wide.gltf out.glb
+is "$(gltf out.glb "[$count, $type, new Set(g.meshes[0].primitives.map((p) => p.indices)).size].join()")" 30000,5123,5123,2
+lossless --welded wide.gltf out.glb
+# points alone stay
+gltf new points 'const attributes = {POSITION: add("VEC3", 5126, [0, 0, 0, 0, 0, 0], {min: [0, 0, 0], max: [0, 0, 0]})};
+	g.meshes = [{primitives: [{attributes, mode: 0}]}]; g.nodes = [{mesh: 0}]'
+run --weld points.gltf out.gltf
+is "$(gltf out.gltf "$count")" 2
+
+scene "Draco blocks and what an extension refers to: welded with what is compressed again, left alone with a word else"
+soup=$WORK/layouts/unindexed.gltf
+run "$soup" plain.glb
+run --draco=sequential "$soup" packed.glb
+vertices=$(gltf packed.glb "$count")
+run --existing=replace --draco=off packed.glb loose.glb
+run --existing=replace --weld --draco=off packed.glb welded.glb
+exits 0
+lossless --welded loose.glb welded.glb --tangents=loose.glb
+run --existing=replace --weld --verify packed.glb again.glb
+exits 0
+is "$(gltf again.glb "$count")" "$(gltf welded.glb "$count")"
+[ "$vertices" = 648 ] || [ "$vertices" = "$(gltf welded.glb "$count")" ] || wrong "the block has $vertices vertices"
+valid again.glb
+run --weld packed.glb left.glb
+exits 0
+says "1 primitive is not welded: Draco compresses it"
+same packed.glb left.glb
+for extension in '{CESIUM_primitive_outline: {indices: 0}}' '{FB_ngon_encoding: {}}' '{EXT_mesh_features: {featureIds: [{featureCount: 648}]}}' \
+	'{VENDOR_x: {of: g.accessors.push({componentType: 5126, type: "SCALAR", count: 648}) - 1}}'; do
+	gltf plain.glb left "g.meshes[0].primitives[0].extensions = $extension; g.extensionsUsed = ['VENDOR_x']"
+	run --weld left.gltf out.gltf
+	exits 0
+	says "[WELD_LEFT]"
+	says_not "welded 648"
+	is "$(gltf out.gltf "$count")" 648
+done
+# feature ids that have an attribute are an attribute like others
+gltf plain.glb ids 'g.meshes[0].primitives[0].extensions = {EXT_mesh_features: {featureIds: [{featureCount: 648, attribute: 0}]}}'
+run --weld ids.gltf out.gltf
+says "welded 648"
+
+scene "other formats are refused, but for OBJ, whose vertices are welded always"
+run --weld "$data/quad_ascii.ply" out.glb
+exits 1
+says "only glTF made from glTF is welded, not glb made from ply"
+run --weld "$WORK/layouts/plain.gltf" out.ply
+exits 1
+run --weld "$data/quad.obj" out.glb
+exits 0
+run --weld --manifest=m "$soup" out.glb
+grep -q '"weld_before":648,"weld_after":1[0-9]*' m || wrong "the manifest does not say what was welded: $(cat m)"
+
 scene "tangents that replace integers have their type, unless --precision says another"
 type='g.meshes[0].primitives.map(p => g.accessors[p.attributes.TANGENT].componentType).join()'
 run --existing=replace "$WORK/layouts/tangents_short.gltf" out.glb

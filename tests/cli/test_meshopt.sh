@@ -71,6 +71,22 @@ for words in "1.08 -c" "1.08 -cc" "1.12 -cc -ce khr" "0 -c -vi" "0 -c -noq" "0 -
 		wrong "$words: $(stat -c %s out.glb) bytes, gltfpack makes $(stat -c %s gt.glb)"
 done
 
+scene "packed vertices that quantization made equal are welded, and packed again"
+bare
+for words in "-c -vp 4 -vt 3 -vn 3" "-cc -vp 4 -vt 2 -vn 3"; do
+	rm -f ./*.glb
+	# shellcheck disable=SC2086
+	pack packed.glb $words
+	run --verify --weld packed.glb out.glb
+	exits 0
+	says ", welded "
+	ask answer.mjs meshopt same packed.glb out.glb >faults || wrong "$words: $(cat faults)"
+	valid out.glb packed.glb
+	is "$(gltf out.glb "$kinds")" "$(gltf packed.glb "$kinds")"
+	run -q --verify packed.glb whole.glb
+	[ "$(stat -c %s out.glb)" -lt "$(stat -c %s whole.glb)" ] || wrong "$words: it is not smaller"
+done
+
 scene "tangents that are there keep their place and form, and a repair settles"
 bare
 for words in "-c -gt" "-cc -gt" "-cc -gt -ce khr"; do

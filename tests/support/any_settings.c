@@ -26,6 +26,7 @@ nt_settings any_settings(const char *input, uint32_t *chance, const nt_report_op
 		.morphs = (nt_morph_choice)mutate_random(chance, 3),
 		.precision = integers ? (nt_precision)(1 + mutate_random(chance, 2)) : NT_PRECISION_FLOAT,
 		.method = (nmtan_method)(mutate_random(chance, 4) ? 0 : mutate_random(chance, 4)),
+		.weld = edited && mutate_random(chance, 4) == 0,
 		.bitangents = mutate_random(chance, 8) == 0, .output_format = check ? 0 : formats[form],
 		.verify = mutate_random(chance, 8) == 0 && !ply && !check, .list_meshes = mutate_random(chance, 8) == 0,
 		.report = mutate_random(chance, 4) && !check ? NULL : report, .check = check};

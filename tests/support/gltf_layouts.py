@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""gltf_layouts.py FOLDER: the same mesh in every way that glTF can store one.
+"""gltf_layouts.py FOLDER [--doubled]: the same mesh in every way that glTF can store one.
 
 A sheet whose middle columns run backwards in u, so that the vertices at the two turns must be split. It
 comes with colours, joints, weights, a custom attribute and two morph targets, and every layout of
 accessors, views and buffers gets a file of its own. Corner k of every file is corner k of plain.gltf.
+
+With --doubled each vertex is there twice, and every other quad uses the second one.
 """
 import base64
 import json
@@ -13,6 +15,7 @@ import struct
 import sys
 
 FOLDER = sys.argv[1]
+DOUBLED = '--doubled' in sys.argv
 NX, NY = 12, 9  # quads
 FLOAT, USHORT, UBYTE, UINT, BYTE, SHORT = 5126, 5123, 5121, 5125, 5120, 5122
 CODES = {FLOAT: 'f', USHORT: 'H', UBYTE: 'B', UINT: 'I', BYTE: 'b', SHORT: 'h'}
@@ -36,6 +39,9 @@ def sheet():
             custom.append((i * 0.5,))
             up.append((0.0, 0.0, x * 0.01))
             turn.append((0.0, 0.02 * (x % 5), 0.0))
+    if DOUBLED:
+        for rows in (positions, normals, uvs, colors, joints, weights, custom, up, turn):
+            rows += rows
     return {'POSITION': (FLOAT, False, positions), 'NORMAL': (FLOAT, False, normals),
             'TEXCOORD_0': (FLOAT, False, uvs), 'COLOR_0': (UBYTE, True, colors),
             'JOINTS_0': (UBYTE, False, joints), 'WEIGHTS_0': (USHORT, True, weights),
@@ -47,7 +53,7 @@ def triangles(x0=0, x1=NX):
     out = []
     for y in range(NY):
         for x in range(x0, x1):
-            a = y * (NX + 1) + x
+            a = y * (NX + 1) + x + (NX + 1) * (NY + 1) * (DOUBLED and (x + y) % 2)
             out += [a, a + 1, a + NX + 2, a, a + NX + 2, a + NX + 1]
     return out
 
@@ -220,13 +226,17 @@ def with_targets(d, targets):
 
 
 attributes, targets = sheet()
+if DOUBLED:  # more than a byte can number
+    UBYTE_INDEX = USHORT
+else:
+    UBYTE_INDEX = UBYTE
 
 d = Document()
 d.primitive(d.separate(attributes), d.indices(triangles(), USHORT), targets=with_targets(d, targets))
 d.write('plain.gltf')
 
 d = Document()
-d.primitive(d.sequential(attributes), d.indices(triangles(), UBYTE), targets=with_targets(d, targets))
+d.primitive(d.sequential(attributes), d.indices(triangles(), UBYTE_INDEX), targets=with_targets(d, targets))
 tail = d.view(b'an unknown extension owns these bytes', align=8)
 d.json['extensionsUsed'] = ['VENDOR_secret']
 d.json['extensions'] = {'VENDOR_secret': {'bufferView': tail, 'accessor': 0}}
@@ -306,7 +316,7 @@ positions = attributes['POSITION']
 wrong = (FLOAT, False, [(9.0, 9.0, 9.0) if i % 5 == 0 else r for i, r in enumerate(positions[2])])
 names = d.separate({**plain, 'POSITION': wrong})
 some = [i for i in range(len(positions[2])) if i % 5 == 0]
-d.sparse(names['POSITION'], UBYTE, some, [positions[2][i] for i in some])
+d.sparse(names['POSITION'], UBYTE_INDEX, some, [positions[2][i] for i in some])
 d.json['accessors'][names['POSITION']].update(d.bounds(positions))
 moved = [i for i in range(len(positions[2])) if i % 13 in (4, 8)]
 target = d.accessor((FLOAT, False, positions[2]), None)

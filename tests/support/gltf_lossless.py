@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""gltf_lossless.py [--quantized] INPUT OUTPUT [--tangents=REFERENCE]: says what OUTPUT changed that it should not have.
+"""gltf_lossless.py [--quantized] [--welded] INPUT OUTPUT [--tangents=REFERENCE]: says what OUTPUT changed that it should not have.
 
 A second reading of both files that shares no code with nmtan. Per triangle corner every attribute and
 morph target holds the same bytes; the JSON is equal value for value and in key order but for what
 tangents need; views that no triangle uses hold the same bytes; the buffers grew by TANGENT and the copied
 rows. With --tangents, corners have the tangents that REFERENCE has. With --quantized, OUTPUT requires
-KHR_mesh_quantization and its tangents are normalized integers.
+KHR_mesh_quantization and its tangents are normalized integers. With --welded, no two vertices of OUTPUT are equal in
+everything that primitives with one of their accessors have, and the buffers lost what INPUT had of those.
 """
 import base64
 import json
@@ -226,11 +227,37 @@ def bytes_of(f, a):
     return size
 
 
-def no_dead_bytes(a, b):
+def pools(f):
+    """Accessors of primitives that share one, as lists of numbers; those over the same bytes are one."""
+    place = lambda i: json.dumps([f.g['accessors'][i].get(k) for k in ('bufferView', 'byteOffset', 'type', 'sparse')])
+    lists = []
+    for mesh in f.g['meshes']:
+        for p in mesh['primitives']:
+            own = {place(i): i for o in [p['attributes']] + p.get('targets', []) for i in o.values()}
+            for other in [x for x in lists if x.keys() & own.keys()]:
+                own.update(other)
+                lists.remove(other)
+            lists.append(own)
+    return [sorted(x.values()) for x in lists]
+
+
+def no_equal_vertices(f):
+    for pool in pools(f):
+        vertices = list(zip(*[f.rows(i) for i in pool]))
+        if len(set(vertices)) != len(vertices):
+            complain('%d of %d vertices are equal to others' % (len(vertices) - len(set(vertices)), len(vertices)))
+
+
+def no_dead_bytes(a, b, welded):
     total = lambda f: sum(x['byteLength'] for x in f.g.get('buffers', []))
     grown = least = 0
     slack = 16
+    seen = set()
     for i, x in enumerate(b.g.get('accessors', [])):
+        place = json.dumps([x.get(k) for k in ('bufferView', 'byteOffset', 'type', 'sparse')])
+        if welded and place in seen:
+            continue
+        seen.add(place)
         if i >= len(a.g['accessors']):
             grown += x['count'] * ((b.element(x) + 3) // 4 * 4)
         else:
@@ -238,7 +265,10 @@ def no_dead_bytes(a, b):
             view = b.g['bufferViews'][x['bufferView']] if 'bufferView' in x else {}
             added = bytes_of(b, x) - bytes_of(a, old)
             grown += added
-            least += min(added, 0) * (i in Own.accessors)
+            # a column of a block may be narrower than its stride
+            wide = max(view.get('byteStride', 0), b.element(x)) / b.element(x) if welded else 1
+            least += min(added, 0) * (welded or i in Own.accessors) * wide
+            slack += 8 * welded
             slack += 8 * (added != 0) + (view.get('byteStride', 0) - b.element(x)) * max(0, x['count'] - old['count']) * (
                 'byteStride' in view)
     if 'images' in a.g:
@@ -274,9 +304,8 @@ def take_quantization(a, b):
 
 
 def main():
-    quantized = '--quantized' in sys.argv
-    if quantized:
-        sys.argv.remove('--quantized')
+    quantized, welded = '--quantized' in sys.argv, '--welded' in sys.argv
+    sys.argv = [x for x in sys.argv if x not in ('--quantized', '--welded')]
     a, b = File(sys.argv[1]), File(sys.argv[2])
     if quantized:
         take_quantization(a, b)
@@ -284,7 +313,9 @@ def main():
     same_json(a.g, b.g)
     same_geometry(a, b)
     same_views(a, b)
-    no_dead_bytes(a, b)
+    no_dead_bytes(a, b, welded)
+    if welded:
+        no_equal_vertices(b)
     for option in sys.argv[3:]:
         r = File(option.split('=', 1)[1])
         mine, theirs = corner_tangents(b), corner_tangents(r)

@@ -51,12 +51,12 @@ static nt_status decompress_tangents(const nt_mesh *mesh, const nt_vertex_pools 
 }
 
 /* Vertices are appended to all attributes of a pool, even if only some of its users want them. */
-static nt_status decompress_pools(nt_gltf *document, const nt_vertex_pools *pools, nt_error *error)
+static nt_status decompress_pools(nt_gltf *document, const nt_vertex_pools *pools, bool welds, nt_error *error)
 {
 	decompressing d = {document, error};
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < pools->count; i++) {
-		bool wanted = false;
+		bool wanted = welds;
 		for (uint32_t k = pools->first[i]; !wanted && k < pools->first[i + 1]; k++) {
 			const nt_mesh *mesh = &pools->scene->meshes[pools->order[k]];
 			wanted = nt_gltf_is_solved(mesh) &&
@@ -72,12 +72,13 @@ static nt_status decompress_pools(nt_gltf *document, const nt_vertex_pools *pool
 	return status;
 }
 
-nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, bool keeps_packed, nt_error *error)
+nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, bool keeps_packed, bool welds,
+	nt_error *error)
 {
 	nt_gltf *document = pools->scene->source;
 	*edits = (nt_buffer_edits){.document = document, .alignment = NT_EDITS_ALIGNMENT,
 		.keeps_packed = keeps_packed};
-	const nt_status status = decompress_pools(document, pools, error);
+	const nt_status status = decompress_pools(document, pools, welds, error);
 	if (status)
 		return status;
 	edits->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
@@ -89,10 +90,11 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 	edits->seen = nt_calloc(pools->accessor_count, sizeof *edits->seen);
 	edits->pinned = nt_calloc(pools->accessor_count, sizeof *edits->pinned);
 	edits->index_moved = nt_calloc(pools->accessor_count, sizeof *edits->index_moved);
+	edits->welding = welds ? nt_calloc(pools->accessor_count, sizeof *edits->welding) : NULL;
 	edits->replaced = nt_calloc(pools->accessor_count, sizeof *edits->replaced);
 	edits->appended_by = nt_alloc(pools->accessor_count, sizeof *edits->appended_by);
 	if (!edits->seen || !edits->pinned || !edits->replaced || !edits->index_moved || !edits->appended_by ||
-		!edits->buffers ||
+		!edits->buffers || (welds && !edits->welding) ||
 		!edits->virtuals || !edits->is_free || !edits->free_views ||
 		!nt_byte_users_find(&edits->users, document, pools)) {
 		nt_edits_free(edits);
@@ -123,6 +125,7 @@ void nt_edits_free(nt_buffer_edits *edits)
 	for (size_t i = 0; i < edits->packed_count; i++)
 		nt_buffer_free(&edits->packed[i].bytes);
 	free(edits->packed);
+	free(edits->welding);
 	free(edits->seen);
 	free(edits->pinned);
 	free(edits->replaced);

@@ -73,6 +73,7 @@ typedef struct nt_buffer_edits {
 
 	/* For appending to the attributes of one pool after the other. An attribute belongs to one pool, so that
 	 * nothing has to be emptied in between; bytes may be another pool's too. */
+	bool *welding;              /* [accessor_count] by first alias: its elements are compared; NULL: of none */
 	bool *seen;                 /* [accessor_count] */
 	bool *pinned;               /* [accessor_count] used by an unsolved user */
 	uint32_t *index_moved;      /* [accessor_count] by first alias: uses as indices that have other ones by now */
@@ -82,10 +83,11 @@ typedef struct nt_buffer_edits {
 } nt_buffer_edits;
 
 /*
- * Starts with no edits. Compressed views that vertices will be appended to are decompressed first: edits
- * have to know them from the beginning. Faulty data that nothing needs is passed over.
+ * Starts with no edits. Compressed views that vertices will be appended to, or all with `welds`, are decompressed first:
+ * edits have to know them from the beginning. Faulty data that nothing needs is passed over.
  */
-nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, bool keeps_packed, nt_error *error);
+nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, bool keeps_packed, bool welds,
+	nt_error *error);
 void nt_edits_free(nt_buffer_edits *edits);
 
 /* Replaces `removed` bytes of a source buffer by others, which must live as long as the edits. The

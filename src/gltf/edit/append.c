@@ -22,7 +22,7 @@
 static bool must_pin(const nt_appending *job)
 {
 	const nt_vertex_pool *pool = job->vertices->pool;
-	for (size_t i = 0; i < pool->user_count; i++)
+	for (size_t i = 0; i < pool->user_count && !job->vertices->renumbered; i++)
 		if (!nt_pool_is_solved(pool, i) && !nt_json_find(nt_pool_primitive(pool, i), "indices"))
 			return true;
 	for (size_t i = 0; i < job->target_count; i++)
@@ -43,6 +43,12 @@ static nt_status copy_elements(nt_appending *job, const nt_append_target *from, 
 		return nt_fail_memory(job->error);
 	memset(out, 0, count * stride);
 	*result = out;
+	/* welded ones are gathered from all of the source's */
+	unsigned char *all = job->vertices->own_count < a->count ? nt_arena_alloc(job->arena, (size_t)a->count, stride) : out;
+	if (!all)
+		return nt_fail_memory(job->error);
+	if (all != out)
+		memset(all, 0, (size_t)a->count * stride);
 	if (from->override) {
 		for (size_t v = 0; v < count; v++)
 			memcpy(out + v * stride, (stored ? from->override->stored : from->override->values) +
@@ -54,17 +60,17 @@ static nt_status copy_elements(nt_appending *job, const nt_append_target *from, 
 	if (!status && stored)
 		status = nt_packed_bytes(job->edits, from->buffer, from->begin, &elements, job->error);
 	for (size_t v = 0; !status && elements && v < a->count; v++)
-		memcpy(out + v * stride, elements + v * a->stride, a->element_bytes);
+		memcpy(all + v * stride, elements + v * a->stride, a->element_bytes);
 	if (!status && bake && a->sparse_count) {
 		const uint32_t *replaced;
 		const unsigned char *values;
 		status = nt_gltf_sparse(job->document, a, job->arena, &replaced, &values, job->error);
 		for (size_t i = 0; !status && i < a->sparse_count; i++)
-			memcpy(out + (size_t)replaced[i] * stride, values + i * a->element_bytes,
+			memcpy(all + (size_t)replaced[i] * stride, values + i * a->element_bytes,
 				a->element_bytes);
 	}
-	for (size_t v = (size_t)a->count; !status && v < count; v++)
-		memcpy(out + v * stride, out + nt_vertex_source(job->vertices, v) * stride, a->element_bytes);
+	for (size_t v = job->vertices->own_count; !status && v < count; v++)
+		memcpy(out + v * stride, all + nt_vertex_source(job->vertices, v) * stride, a->element_bytes);
 	return status;
 }
 
@@ -280,7 +286,7 @@ static void lengthen_views(nt_appending *job, const block *b)
 /* Inserts the copied vertices behind the block. */
 static nt_status insert_vertices(nt_appending *job, const block *b, const unsigned char *elements)
 {
-	const size_t added = nt_appended_count(job), old_count = job->vertices->old_count;
+	const size_t old_count = job->vertices->old_count, added = job->vertices->new_count - old_count;
 	unsigned char *out = nt_arena_alloc(job->arena, added, b->stride);
 	if (!out)
 		return nt_fail_memory(job->error);
@@ -305,16 +311,18 @@ static nt_status replace_vertices(nt_appending *job, const block *b, const unsig
 	if (!out)
 		return nt_fail_memory(job->error);
 	memset(out, 0, count * b->stride);
-	memcpy(out, elements, old_size);
-	for (size_t v = job->vertices->old_count; v < count; v++)
+	if (job->vertices->own_count)
+		memcpy(out, elements, old_size);
+	for (size_t v = job->vertices->own_count; v < count; v++)
 		memcpy(out + v * b->stride, elements + nt_vertex_source(job->vertices, v) * b->stride, b->width);
 	for (size_t i = 0; i < b->count; i++) {
 		const nt_gltf_override *override = b->targets[i].override;
 		unsigned char *at = out + (b->targets[i].begin - b->begin);
 		const unsigned char *before = decoded + (b->targets[i].begin - b->begin);
 		for (size_t v = 0; override && v < count; v++) {
-			if (v < job->vertices->old_count && override->width == b->targets[i].accessor.element_bytes &&
-				memcmp(before + v * b->stride, override->values + v * override->width,
+			const bool known = v < job->vertices->old_count || !job->vertices->own_count;
+			if (known && override->width == b->targets[i].accessor.element_bytes &&
+				memcmp(before + nt_vertex_source(job->vertices, v) * b->stride, override->values + v * override->width,
 					override->width) == 0)
 				continue;
 			memset(at + v * b->stride, 0, b->targets[i].accessor.element_bytes);
@@ -333,7 +341,7 @@ static nt_status append_to_block(nt_appending *job, const block *b, uint64_t pre
 		nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end,
 					       job->edits->appended_by, nt_append_owner(job))) {
 		for (size_t i = 0; !status && i < b->count; i++)
-			if (nt_appended_count(job) || b->targets[i].override)
+			if (nt_vertices_differ(job->vertices) || b->targets[i].override)
 				status = move_away(job, &b->targets[i]);
 		return status;
 	}
@@ -346,9 +354,9 @@ static nt_status append_to_block(nt_appending *job, const block *b, uint64_t pre
 		status = nt_fail_memory(job->error);
 	if (status)
 		return status;
-	if (nt_appended_count(job))
+	if (nt_vertices_differ(job->vertices))
 		lengthen_views(job, b);
-	return b->overridden ? replace_vertices(job, b, decoded, elements) : insert_vertices(job, b, elements);
+	return b->overridden || !job->vertices->own_count ? replace_vertices(job, b, decoded, elements) : insert_vertices(job, b, elements);
 }
 
 /* ---- the whole ---- */
@@ -362,7 +370,7 @@ static nt_status append_to_targets(nt_appending *job)
 	uint32_t previous_buffer = NT_NONE;
 	for (size_t i = 0; !status && i < job->target_count && job->targets[i].accessor.view != NT_NONE;) {
 		const block b = find_block(job, &job->targets[i], job->target_count - i);
-		if (nt_appended_count(job) || b.overridden)
+		if (nt_vertices_differ(job->vertices) || b.overridden)
 			status = append_to_block(job, &b, b.buffer == previous_buffer ? previous_end : 0,
 				i + b.count < job->target_count ? &job->targets[i + b.count] : NULL);
 		if (b.buffer != previous_buffer || b.end > previous_end)
@@ -375,12 +383,13 @@ static nt_status append_to_targets(nt_appending *job)
 			status = move_away(job, &job->targets[i]);
 	for (size_t i = 0; !status && i < job->target_count; i++)
 		status = settle_bounds(job, &job->targets[i], job->targets[i].accessor.index);
-	for (size_t i = 0; !status && (nt_appended_count(job) || job->decoded_too) && i < job->target_count; i++) {
+	const bool counts_change = nt_vertices_differ(job->vertices) || job->decoded_too;
+	for (size_t i = 0; !status && counts_change && i < job->target_count; i++) {
 		const nt_append_target *target = &job->targets[i];
 		nt_json_value *json = nt_gltf_accessor_json(job->document, target->accessor.index);
 		nt_json_set_uint64(job->json, nt_json_put(job->json, json, "count"),
 			job->vertices->new_count);
-		if (target->accessor.sparse_count && nt_appended_count(job))
+		if (target->accessor.sparse_count && nt_vertices_differ(job->vertices))
 			status = nt_append_sparse(job, target);
 	}
 	return status;
@@ -395,7 +404,7 @@ nt_status nt_append_vertices(nt_buffer_edits *edits, uint32_t buffer, const nt_v
 		.vertices = vertices,
 		.decoded_too = decoded_too, .error = error};
 	nt_status status = nt_append_collect(&job, overrides, override_count);
-	if (!status && nt_appended_count(&job) && must_pin(&job))
+	if (!status && nt_vertices_differ(vertices) && must_pin(&job))
 		status = clone_pinned(&job);
 	if (!status)
 		status = append_to_targets(&job);

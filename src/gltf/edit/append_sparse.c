@@ -83,6 +83,23 @@ typedef struct replacement {
 	size_t old_count, count;
 } replacement;
 
+/* If all that was replaced has the values of others now, the first element is replaced by what it is: a sparse accessor
+ * may not be without any. */
+static nt_status replace_first(nt_appending *job, const nt_gltf_accessor *a, replacement *out)
+{
+	const unsigned char *elements;
+	const nt_status status = nt_gltf_elements(job->document, a, &elements, job->error);
+	if (status)
+		return status;
+	out->count = 1;
+	out->elements[0] = 0;
+	if (elements)
+		memcpy(out->values, elements + nt_vertex_source(job->vertices, 0) * a->stride, a->element_bytes);
+	else
+		memset(out->values, 0, a->element_bytes);
+	return NT_OK;
+}
+
 static nt_status find_replacements(nt_appending *job, const nt_gltf_accessor *a, replacement *out)
 {
 	const uint32_t *replaced;
@@ -91,10 +108,11 @@ static nt_status find_replacements(nt_appending *job, const nt_gltf_accessor *a,
 		nt_gltf_sparse(job->document, a, job->arena, &replaced, &values, job->error);
 	if (status)
 		return status;
-	const size_t old_count = (size_t)a->sparse_count, added = nt_appended_count(job);
+	const nt_pool_vertices *vertices = job->vertices;
+	const size_t old_count = (size_t)a->sparse_count, most = old_count + vertices->new_count - vertices->own_count;
 	const uint32_t element = a->element_bytes;
-	out->elements = nt_arena_alloc(job->arena, old_count + added, sizeof *out->elements);
-	out->values = nt_arena_alloc(job->arena, old_count + added, element);
+	out->elements = nt_arena_alloc(job->arena, most, sizeof *out->elements);
+	out->values = nt_arena_alloc(job->arena, most, element);
 	uint32_t *position = nt_alloc((size_t)a->count, sizeof *position); /* of an element in replaced */
 	if (!out->elements || !out->values || !position) {
 		free(position);
@@ -106,9 +124,11 @@ static nt_status find_replacements(nt_appending *job, const nt_gltf_accessor *a,
 		out->elements[i] = replaced[i];
 	}
 	memcpy(out->values, values, old_count * element);
-	out->old_count = out->count = old_count;
-	for (size_t vertex = (size_t)a->count; vertex < a->count + added; vertex++) {
-		const uint32_t at = position[nt_vertex_source(job->vertices, vertex)];
+	out->old_count = old_count;
+	/* welding leaves none where it was */
+	out->count = vertices->own_count ? old_count : 0;
+	for (size_t vertex = vertices->own_count; vertex < vertices->new_count; vertex++) {
+		const uint32_t at = position[nt_vertex_source(vertices, vertex)];
 		if (at == NT_NONE)
 			continue;
 		out->elements[out->count] = (uint32_t)vertex;
@@ -116,7 +136,7 @@ static nt_status find_replacements(nt_appending *job, const nt_gltf_accessor *a,
 		out->count++;
 	}
 	free(position);
-	return NT_OK;
+	return out->count ? NT_OK : replace_first(job, a, out);
 }
 
 /* Copies of elements that a sparse accessor replaces are replaced too. */
@@ -125,7 +145,8 @@ nt_status nt_append_sparse(nt_appending *job, const nt_append_target *from)
 	const nt_gltf_accessor *a = &from->accessor;
 	replacement r = {0};
 	nt_status status = find_replacements(job, a, &r);
-	if (status || r.count == r.old_count)
+	const bool grows = job->vertices->own_count;
+	if (status || (grows && r.count == r.old_count))
 		return status;
 	const uint32_t old_width = nt_gltf_component_bytes(a->sparse_index_type);
 	const uint32_t type = nt_gltf_index_type(r.elements[r.count - 1], a->sparse_index_type);
@@ -142,10 +163,11 @@ nt_status nt_append_sparse(nt_appending *job, const nt_append_target *from)
 			"componentType"), type);
 	status = extend_sparse_array(job, from, &(sparse_array){"indices", a->sparse_index_view,
 		a->sparse_index_offset,
-		r.old_count * old_width, numbers, r.count * width, width, width == old_width});
+		r.old_count * old_width, numbers, r.count * width, width,
+		grows && width == old_width});
 	if (!status)
 		status = extend_sparse_array(job, from, &(sparse_array){"values", a->sparse_value_view,
 			a->sparse_value_offset, r.old_count * a->element_bytes, r.values,
-			r.count * a->element_bytes, a->component_bytes, true});
+			r.count * a->element_bytes, a->component_bytes, grows});
 	return status;
 }

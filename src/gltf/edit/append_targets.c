@@ -83,7 +83,7 @@ nt_status nt_append_collect(nt_appending *job, nt_gltf_override *overrides, size
 	for (size_t i = 0; !status && i < override_count; i++)
 		status = collect_attribute(job, NULL, "TANGENT", overrides[i].accessor);
 	/* where nothing grows, the others matter as far as overrides are between them */
-	job->collecting_beside = !nt_appended_count(job) && !job->decoded_too;
+	job->collecting_beside = !nt_vertices_differ(job->vertices) && !job->decoded_too;
 	for (size_t i = 0; !status && i < pool->user_count; i++) {
 		job->collecting_unsolved = !nt_pool_is_solved(pool, i);
 		status = nt_gltf_visit_attributes(nt_pool_primitive(pool, i), job->pools->accessor_count,

@@ -51,12 +51,6 @@ typedef struct nt_appending {
 	size_t edited_count, edited_capacity;
 } nt_appending;
 
-/* Vertices that are appended to every accessor. */
-static inline size_t nt_appended_count(const nt_appending *a)
-{
-	return a->vertices->new_count - a->vertices->old_count;
-}
-
 /* The pool, as nt_buffer_edits.appended_by has it. */
 static inline uint32_t nt_append_owner(const nt_appending *a)
 {

@@ -144,7 +144,7 @@ static nt_status store(nt_gltf_recoding *r, uint32_t buffer, nt_morph_cost *cost
 	if (!status)
 		status = nt_gltf_add_morphs(r->edits, buffer, r->pools, r->vertices, 0, least,
 			overrides, &override_count, cost, error);
-	if (!status && r->outside && r->vertices->new_count > r->vertices->old_count)
+	if (!status && r->outside && nt_vertices_differ(r->vertices))
 		status = nt_append_vertices(r->edits, buffer, r->pools, r->vertices, overrides, override_count, false,
 			error);
 	if (status)

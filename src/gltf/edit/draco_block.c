@@ -58,7 +58,7 @@ nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *r, nt_error *error)
 		nt_draco_attribute attribute = *nt_draco_find(r->source, (uint32_t)id);
 		attribute.quantization.explicit_box = attribute.quantization.bits > 0;
 		attribute.copied = r->vertices->sources;
-		attribute.own_count = r->vertices->old_count;
+		attribute.own_count = r->vertices->own_count;
 		nt_gltf_draco_add(r, nt_json_key(ids, i, NULL), attribute);
 	}
 	return NT_OK;

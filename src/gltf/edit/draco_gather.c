@@ -113,7 +113,7 @@ static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_
 		.components = (int)accessor.components, .normalized = accessor.normalized,
 		.quantization = nt_gltf_draco_grid(r->document, accessor.index,
 			is_float ? bits_of(r->options, name) : 0),
-		.stride_bytes = accessor.stride, .copied = r->vertices->sources, .own_count = r->vertices->old_count};
+		.stride_bytes = accessor.stride, .copied = r->vertices->sources, .own_count = r->vertices->own_count};
 	const unsigned char *elements = NULL;
 	const nt_status status = nt_gltf_elements(r->document, &accessor, &elements, error);
 	attribute.data = elements;

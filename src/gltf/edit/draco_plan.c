@@ -93,6 +93,7 @@ static nt_status look_at_pool(planning *f, size_t number, nt_error *error)
 			return NT_OK;
 	if (status || !count_vertices(document, &pool, &vertices.old_count))
 		return status;
+	vertices.own_count = vertices.old_count;
 	const bool compressed = nt_gltf_draco_of(nt_pool_primitive(&pool, 0)) != NULL;
 	if (!compressed && f->options.draco == NT_DRACO_KEEP)
 		return NT_OK;

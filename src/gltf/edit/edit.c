@@ -23,6 +23,7 @@
 #include "gltf/edit/manifold.h"
 #include "gltf/bytes/packed_views.h"
 #include "gltf/edit/relocate.h"
+#include "gltf/edit/weld.h"
 #include "gltf/extensions/extensions.h"
 #include "gltf/morph_deltas.h"
 #include "gltf/quantize.h"
@@ -47,7 +48,7 @@ enum { WINDOW = 1024 };
 typedef struct pool_edit {
 	size_t number;
 	nt_vertex_pool pool;
-	bool stays;                /* as it is */
+	bool stays;                /* as it is, but for welding */
 	bool for_draco;            /* what follows is there */
 	nt_pool_vertices vertices;
 	nt_gltf_recoding recoding;
@@ -75,16 +76,8 @@ static bool is_shaded_only(const nt_vertex_pool *pool, uint32_t set)
 
 /* ---- values ---- */
 
-/* Tangents of a set as they will be stored. */
-typedef struct stored_tangents {
-	nt_gltf_packing packing; /* of new bytes */
-	nt_tangent_filter filter;
-	const unsigned char *values, *stored; /* as readers have them, and before the filter */
-	size_t element_bytes;
-} stored_tangents;
-
 /* Rounds the tangents of a set, so that what is derived from them fits what readers will see. */
-static nt_status store_tangents(const editing *e, nt_pool_vertices *vertices, uint32_t set, stored_tangents *to)
+static nt_status store_tangents(const editing *e, nt_pool_vertices *vertices, uint32_t set, nt_stored_tangents *to)
 {
 	const size_t count = vertices->new_count;
 	nt_arena *arena = &e->edits->arena;
@@ -125,7 +118,7 @@ static nt_status store_tangents(const editing *e, nt_pool_vertices *vertices, ui
 
 /* Tangents in new bytes: for the accessors that the set's meshes had, or for a new one. */
 static nt_status add_tangents(const editing *e, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
-	const stored_tangents *new, const nt_gltf_old_tangents *old)
+	const nt_stored_tangents *new, const nt_gltf_old_tangents *old)
 {
 	nt_gltf *document = e->edits->document;
 	const size_t count = vertices->new_count;
@@ -172,7 +165,7 @@ static nt_status add_vectors(const editing *e, uint32_t buffer, const nt_pool_ve
 
 /* NORMAL where it was made, TANGENT where it is not already in place, _BITANGENT where asked for. */
 static nt_status add_set(const editing *e, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
-	const stored_tangents *new, const nt_gltf_old_tangents *old)
+	const nt_stored_tangents *new, const nt_gltf_old_tangents *old)
 {
 	nt_status status = NT_OK;
 	float *bitangents = NULL;
@@ -199,7 +192,8 @@ static nt_status add_set(const editing *e, uint32_t buffer, const nt_pool_vertic
 static nt_status choose_buffer(const editing *e, const nt_vertex_pool *pool, uint32_t *buffer)
 {
 	nt_gltf *document = e->edits->document;
-	const nt_json_value *attributes = nt_json_find(nt_pool_primitive(pool, pool->sets.first[0]), "attributes");
+	const nt_json_value *attributes = nt_json_find(nt_pool_primitive(pool, pool->sets.count ? pool->sets.first[0] : 0),
+		"attributes");
 	uint64_t index;
 	nt_gltf_accessor accessor;
 	nt_gltf_view view = {.buffer = NT_NONE};
@@ -211,7 +205,7 @@ static nt_status choose_buffer(const editing *e, const nt_vertex_pool *pool, uin
 
 /* Treatment of existing TANGENT accessors: new values for those that stay in place; the others
  * lose their bytes. new, old: [set]; overrides: room for every user. */
-static nt_status settle_old_tangents(const editing *e, const nt_vertex_pool *pool, const stored_tangents *new,
+static nt_status settle_old_tangents(const editing *e, const nt_vertex_pool *pool, const nt_stored_tangents *new,
 	nt_gltf_old_tangents *old, nt_gltf_override *overrides, size_t *count)
 {
 	nt_status status = NT_OK;
@@ -232,14 +226,25 @@ static nt_status settle_old_tangents(const editing *e, const nt_vertex_pool *poo
 	return status;
 }
 
+/* Equal vertices become one. Vertices that Draco was to compress are welded already. */
+static nt_status weld(const editing *e, nt_pool_vertices *vertices, nt_stored_tangents *stored)
+{
+	return e->options->weld && vertices->own_count == vertices->old_count ? nt_pool_weld(e->edits, e->pools,
+		e->scene, vertices, stored, e->options->bitangents, e->of_window, e->error) : NT_OK;
+}
+
 /* Accessors of the source grow, and get new ones beside them. decoded_too: they were compressed by Draco. */
 static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices *vertices, bool decoded_too)
 {
 	const nt_vertex_pool *pool = vertices->pool;
 	nt_status status = NT_OK;
-	stored_tangents *new = nt_arena_alloc(e->of_window, pool->sets.count, sizeof *new);
+	nt_stored_tangents *new = nt_arena_alloc(e->of_window, pool->sets.count, sizeof *new);
 	for (uint32_t set = 0; new && !status && set < pool->sets.count; set++)
 		status = store_tangents(e, vertices, set, &new[set]);
+	if (new && !status)
+		status = weld(e, vertices, new);
+	if (new && !status)
+		status = nt_gltf_follow_vertices(e->edits, buffer, e->scene, vertices, false, e->error);
 	if (!new || status)
 		return status ? status : nt_fail_memory(e->error);
 
@@ -259,7 +264,7 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 			e->error);
 
 	/* The copied vertices, the indices that use them, and what is new. */
-	if (!status && (decoded_too || override_count || vertices->new_count > vertices->old_count))
+	if (!status && (decoded_too || override_count || nt_vertices_differ(vertices)))
 		status = nt_append_vertices(e->edits, buffer, e->pools, vertices, overrides, override_count,
 			decoded_too, e->error);
 	if (!status)
@@ -282,6 +287,8 @@ static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 		return status;
 	p->for_draco = true;
 	status = nt_pool_vertices_get(e->pools, number, &p->pool, e->of_window, &p->vertices, e->error);
+	if (!status)
+		status = weld(e, &p->vertices, NULL);
 	return status ? status : nt_gltf_draco_look_up(&p->recoding, e->edits, e->pools, &p->vertices, e->options,
 		e->of_window, e->error);
 }
@@ -302,11 +309,22 @@ static nt_status edit_pool(const editing *e, pool_edit *p)
 		status = nt_gltf_write_draco(&p->recoding, buffer, e->scene, &done, e->error);
 	else if (!status && compressed)
 		status = nt_gltf_draco_make_plain(e->edits, e->pools, &p->vertices, e->error);
-	if (!status)
+	if (!status && done)
 		status = nt_gltf_follow_vertices(e->edits, buffer, e->scene, &p->vertices, done, e->error);
 	if (status || done)
 		return status;
 	return edit_plain(e, buffer, &p->vertices, compressed);
+}
+
+/* A pool without new tangents is welded. */
+static nt_status edit_staying(const editing *e, pool_edit *p)
+{
+	uint32_t buffer = 0;
+	bool can = false;
+	nt_status status = nt_pool_vertices_plain(e->pools, &p->pool, e->of_window, &p->vertices, &can, e->error);
+	if (!status && can)
+		status = choose_buffer(e, &p->pool, &buffer);
+	return status || !can ? status : edit_plain(e, buffer, &p->vertices, false);
 }
 
 /* ---- the whole ---- */
@@ -329,6 +347,8 @@ static nt_status edit_window(const editing *e, pool_edit *window, nt_gltf_recodi
 	for (size_t i = 0; !status && i < count; i++)
 		if (!window[i].stays)
 			status = edit_pool(e, &window[i]);
+		else if (e->options->weld)
+			status = edit_staying(e, &window[i]);
 	for (size_t i = 0; i < count; i++)
 		nt_draco_block_free(&window[i].recoding.block);
 	*first += count;
@@ -414,7 +434,7 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	for (size_t i = 0; all_stay && i < scene->mesh_count; i++)
 		all_stay = stays(scene, options, &scene->meshes[i]) &&
 			scene->meshes[i].decision != NT_SKIP_DROPPED;
-	if (all_stay)
+	if (all_stay && !options->weld)
 		status = nt_gltf_copy_unchanged(scene, options, output, &written, error);
 	if (status || written)
 		return status;
@@ -427,7 +447,8 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	if (!document->pools)
 		status = nt_vertex_pools_find(scene, &(nt_read_options){.morphs = options->morphs}, error);
 	if (!status)
-		status = nt_edits_create(&edits, document->pools, options->meshopt == NT_MESHOPT_KEEP, error);
+		status = nt_edits_create(&edits, document->pools, options->meshopt == NT_MESHOPT_KEEP,
+			options->weld, error);
 
 	/* The edits, and with them the document. */
 	bool quantized = false;
@@ -440,7 +461,9 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	nt_arena_free(&of_window);
 	if (edits.vertices_copied)
 		nt_extension_scenes(scene);
-	if (!status)
+	if (!status && all_stay && scene->welded.after == scene->welded.before)
+		status = nt_gltf_copy_unchanged(scene, options, output, &written, error);
+	if (!status && !written)
 		status = nt_gltf_write_document(scene, &edits, options, output, error);
 	nt_edits_free(&edits);
 	return status;

@@ -22,7 +22,8 @@ typedef struct encoded {
 	uint32_t type, width;
 } encoded;
 
-/* Indices that form no triangle, at the end of a list, stay, but where making normals has made a new list. */
+/* Indices that form no triangle, at the end of a list, stay, but where making normals has made a new list, or welding
+ * follows a split. */
 static size_t tail_of(const nt_mesh *mesh, uint64_t mode, uint64_t old_count)
 {
 	const size_t tail = (size_t)(old_count - mesh->corner_count);
@@ -31,16 +32,16 @@ static size_t tail_of(const nt_mesh *mesh, uint64_t mode, uint64_t old_count)
 }
 
 /* most: all indices are below it. */
-static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices, bool borrowed, size_t tail_count,
-	uint64_t most, uint32_t least, encoded *out, nt_error *error)
+static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices, size_t count, bool borrowed,
+	size_t tail_count, uint64_t most, uint32_t least, encoded *out, nt_error *error)
 {
 	uint32_t tail[2];
 	for (size_t i = 0; i < tail_count; i++)
 		tail[i] = nt_mesh_pool_vertex(mesh, mesh->indices[mesh->corner_count + i]);
-	out->count = mesh->corner_count + tail_count;
+	out->count = count + tail_count;
 	/* those of few vertices fit, whatever they are */
 	if (nt_gltf_index_type(most, least) != least) {
-		uint32_t highest = nt_largest(indices, mesh->corner_count);
+		uint32_t highest = nt_largest(indices, count);
 		for (size_t i = 0; i < tail_count; i++)
 			highest = tail[i] > highest ? tail[i] : highest;
 		most = (uint64_t)highest + 1;
@@ -55,12 +56,12 @@ static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices,
 	}
 	/* narrower ones take their place where nobody reads the wider ones: what is borrowed of a mesh that has its
 	 * geometry is the scene's */
-	const bool fits = (!borrowed || !mesh->positions) && out->size <= mesh->corner_count * sizeof *indices;
+	const bool fits = (!borrowed || !mesh->positions) && out->size <= count * sizeof *indices;
 	unsigned char *bytes = fits ? (unsigned char *)indices : nt_arena_alloc(arena, out->count, out->width);
 	if (!bytes)
 		return nt_fail_memory(error);
-	nt_gltf_store_indices(indices, mesh->corner_count, out->width, bytes);
-	nt_gltf_store_indices(tail, tail_count, out->width, bytes + mesh->corner_count * out->width);
+	nt_gltf_store_indices(indices, count, out->width, bytes);
+	nt_gltf_store_indices(tail, tail_count, out->width, bytes + count * out->width);
 	out->bytes = bytes;
 	return NT_OK;
 }
@@ -190,9 +191,9 @@ typedef struct written {
 
 static bool equal_indices(const nt_pool_vertices *vertices, size_t a, size_t b)
 {
-	const size_t count = nt_pool_mesh(vertices->pool, a)->corner_count;
+	const size_t count = nt_pool_index_count(vertices, a);
 	const uint32_t *of_a = vertices->indices[a], *of_b = vertices->indices[b];
-	return count == nt_pool_mesh(vertices->pool, b)->corner_count &&
+	return count == nt_pool_index_count(vertices, b) &&
 		(of_a == of_b || memcmp(of_a, of_b, count * sizeof *of_a) == 0);
 }
 
@@ -209,7 +210,7 @@ static uint32_t find_leader(const nt_pool_vertices *vertices, uint32_t user, uin
 	if (vertices->pool->user_count == 1)
 		return user;
 	const uint64_t hash = nt_hash_bytes(log[user].first_alias, vertices->indices[user],
-		nt_pool_mesh(vertices->pool, user)->corner_count * sizeof **vertices->indices);
+		nt_pool_index_count(vertices, user) * sizeof **vertices->indices);
 	uint32_t leader;
 	for (size_t at = NT_HASH_BEGIN; (leader = nt_hash_index_next(leaders, hash, &at)) != NT_NONE;)
 		if (log[leader].first_alias == log[user].first_alias && equal_indices(vertices, leader, user))
@@ -268,9 +269,13 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 	encoded new = {0};
 	bool done = false;
 	nt_status status = find_old(edits->document, mesh, leader->index, &old, error);
+	/* welded vertices are fewer: two bytes may do for them */
+	const uint32_t least = vertices->counts && old.component_type == NT_GLTF_UINT ? NT_GLTF_USHORT
+		: old.component_type;
 	if (!status)
-		status = encode(&edits->arena, mesh, vertices->indices[user], vertices->borrowed,
-			tail_of(mesh, mode, old.count), vertices->new_count, old.component_type, &new, error);
+		status = encode(&edits->arena, mesh, vertices->indices[user], nt_pool_index_count(vertices, user),
+			vertices->borrowed, vertices->counts ? 0 : tail_of(mesh, mode, old.count), vertices->new_count,
+			least, &new, error);
 	/* in place where everybody who uses these indices will have the same new ones, or has got others */
 	const bool agree = leader->index != NT_NONE && leader->agreeing + edits->index_moved[leader->first_alias] ==
 		pools->index_users[leader->first_alias];
@@ -305,7 +310,7 @@ static nt_status edit_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ver
 	nt_json_value *primitive = nt_pool_primitive(vertices->pool, user);
 	if (leader->accessor != log[user].index)
 		nt_json_set_uint64(json, nt_json_put(json, primitive, "indices"), leader->accessor);
-	if (mode != NT_GLTF_TRIANGLES)
+	if (mode != NT_GLTF_TRIANGLES && !(vertices->renumbered && vertices->renumbered[user]))
 		nt_json_set_uint64(json, nt_json_put(json, primitive, "mode"), NT_GLTF_TRIANGLES);
 	return NT_OK;
 }

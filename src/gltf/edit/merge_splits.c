@@ -87,7 +87,7 @@ static bool start_set(nt_pool_merge *m, nt_pool_set *set, const nt_mesh *mesh)
 static bool start_merging(nt_pool_merge *m, size_t old_count)
 {
 	nt_pool_vertices *vertices = &m->vertices;
-	vertices->old_count = vertices->new_count = old_count;
+	vertices->old_count = vertices->own_count = vertices->new_count = old_count;
 	vertices->sets = nt_arena_alloc(m->arena, m->pool.sets.count, sizeof *vertices->sets);
 	if (vertices->sets)
 		memset(vertices->sets, 0, m->pool.sets.count * sizeof *vertices->sets);
@@ -471,7 +471,7 @@ static uint32_t *split_triangles(const nt_mesh *mesh, nt_arena *tables)
 static bool borrow_split(nt_pool_vertices *vertices, const nt_mesh *mesh, nt_arena *tables)
 {
 	const size_t user_count = vertices->pool->user_count;
-	vertices->old_count = mesh->source_vertex_count;
+	vertices->old_count = vertices->own_count = mesh->source_vertex_count;
 	vertices->new_count = vertices->old_count + mesh->split.source_count;
 	vertices->sources = mesh->split.sources;
 	vertices->borrowed = true;

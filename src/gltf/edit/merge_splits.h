@@ -22,18 +22,33 @@ typedef struct nt_pool_set {
 typedef struct nt_pool_vertices {
 	const nt_vertex_pool *pool;
 	size_t old_count;   /* of the source */
+	size_t own_count;   /* first ones that are the source's as they stand: old_count, or 0 after welding */
 	size_t new_count;
-	uint32_t *sources;  /* [new_count - old_count] vertex of the source */
+	uint32_t *sources;  /* [new_count - own_count] vertex of the source */
 	nt_pool_set *sets;  /* [pool->sets.count] */
 	uint32_t **indices; /* [user][corner count]; NULL: not solved */
 	bool *changed;      /* [user] indices differ from the source's triangles */
+	size_t *counts;     /* [user] of indices; NULL: as many as the mesh has corners */
+	bool *renumbered;   /* [user] indices are the source's with other numbers, of any mode; NULL: of none */
 	bool borrowed;      /* sources, tangents and indices are the scene's: do not write to them */
 } nt_pool_vertices;
 
 /* The vertex of the source whose attributes a vertex has. */
 static inline size_t nt_vertex_source(const nt_pool_vertices *vertices, size_t vertex)
 {
-	return vertex < vertices->old_count ? vertex : vertices->sources[vertex - vertices->old_count];
+	return vertex < vertices->own_count ? vertex : vertices->sources[vertex - vertices->own_count];
+}
+
+/* Whether vertices are not just those of the source. */
+static inline bool nt_vertices_differ(const nt_pool_vertices *vertices)
+{
+	return vertices->new_count != vertices->own_count;
+}
+
+/* How many indices a user has. */
+static inline size_t nt_pool_index_count(const nt_pool_vertices *vertices, size_t user)
+{
+	return vertices->counts ? vertices->counts[user] : nt_pool_mesh(vertices->pool, user)->corner_count;
 }
 
 /* For the table of formats. Merges the split of a pooled mesh, in the order of the scene's meshes, with those of its

@@ -148,7 +148,7 @@ static nt_status find_deltas(target_job *job, uint32_t target, uint32_t type, co
 	const nt_vertex_pool *pool = vertices->pool;
 	nt_status status = NT_OK;
 	uint32_t known = NT_NONE;
-	*found = vertices->new_count == vertices->old_count;
+	*found = !nt_vertices_differ(vertices);
 	for (uint32_t i = pool->sets.first[job->set]; *found && i != NT_NONE; i = pool->sets.next[i]) {
 		const uint32_t index = find_in_target(job, i, target, "TANGENT");
 		nt_gltf_accessor accessor;

@@ -37,7 +37,7 @@ static nt_status follow_outline(nt_buffer_edits *edits, uint32_t buffer, const n
 {
 	const nt_mesh *mesh = nt_pool_mesh(vertices->pool, user);
 	const nt_copied_triangles triangles = {.vertices = vertices->indices[user], .corner_count = mesh->corner_count,
-		.old_count = vertices->old_count, .sources = vertices->sources};
+		.old_count = vertices->own_count, .sources = vertices->sources};
 	nt_gltf_accessor accessor;
 	uint64_t number;
 	uint32_t *edges, *followed, new_accessor = NT_NONE;
@@ -106,9 +106,9 @@ nt_status nt_gltf_follow_vertices(nt_buffer_edits *edits, uint32_t buffer, nt_sc
 	const nt_vertex_pool *pool = vertices->pool;
 	uint32_t last_mesh = NT_NONE;
 	nt_status status = NT_OK;
-	if (vertices->new_count == vertices->old_count && !compressed)
+	if (!nt_vertices_differ(vertices) && !compressed)
 		return NT_OK;
-	edits->vertices_copied |= vertices->new_count != vertices->old_count;
+	edits->vertices_copied |= nt_vertices_differ(vertices);
 	for (size_t i = 0; !status && i < pool->user_count; i++) {
 		const nt_mesh *mesh = nt_pool_mesh(pool, i);
 		nt_json_value *primitive = nt_pool_primitive(pool, i);

@@ -1,0 +1,421 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * --weld: vertices of a pool that are equal in everything become one, and all of its primitives get indices.
+ *
+ * It comes last, after splits were merged and tangents rounded as they will be stored: so what is equal is what a
+ * reader would find equal. For a soup this is what a solve of the welded mesh gives, since MikkTSpace welds corners
+ * itself; vertices whose corners have different tangents stay apart. The first of equal vertices stands for them, in
+ * their order; elements are moved, never changed, so that each corner has the bits that it had.
+ *
+ * A triangle list that was not split keeps its mode, and strips and lines theirs: indices are only renumbered. A pool is
+ * left alone where vertices have meaning by their numbers: extensions that refer to them, accessors that something else
+ * than attributes uses, Draco blocks that this run does not encode.
+ */
+#include "gltf/edit/weld.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "base/hash_index.h"
+#include "gltf/accessor.h"
+#include "gltf/draco.h"
+#include "gltf/extensions/extensions.h"
+#include "gltf/pointer.h"
+
+/* Something that vertices have. */
+typedef struct column {
+	const unsigned char *bytes;
+	size_t stride, width;
+	bool of_source; /* by the vertex of the source, else by the vertex itself */
+} column;
+
+typedef struct welding {
+	nt_buffer_edits *edits;
+	const nt_vertex_pools *pools;
+	nt_pool_vertices *vertices;
+	nt_arena *scratch;
+	bool bitangents;
+	column *columns;
+	size_t count, capacity;
+	const char *obstacle; /* why the pool stays; NULL: nothing does */
+
+	/* the user whose attributes are visited */
+	const nt_mesh *mesh; /* NULL: it is not solved */
+	const nt_json_value *base, *targets;
+	size_t target, morph;
+	nt_error *error;
+} welding;
+
+/* ---- what forbids it ---- */
+
+static bool has_implicit_ids(const nt_json_value *features)
+{
+	const nt_json_value *ids = nt_json_find(features, "featureIds");
+	for (size_t i = 0; i < nt_json_count(ids); i++)
+		if (!nt_json_find(nt_json_at(ids, i), "attribute") && !nt_json_find(nt_json_at(ids, i), "texture"))
+			return true;
+	return false;
+}
+
+/* An extension by which vertices have meaning by their numbers. */
+static const char *find_extension(const nt_scene *scene, const nt_mesh *mesh)
+{
+	static const char *const names[] = {"CESIUM_primitive_outline", "FB_ngon_encoding", "EXT_mesh_manifold"};
+	const nt_gltf *document = scene->source;
+	const nt_json_value *of_primitive = nt_json_find(nt_gltf_primitive_of(document, mesh), "extensions"),
+		*of_mesh = nt_json_find(nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh),
+			"extensions");
+	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+		if (nt_json_find(of_primitive, names[i]) || nt_json_find(of_mesh, names[i]))
+			return names[i];
+	return has_implicit_ids(nt_json_find(of_primitive, "EXT_mesh_features")) ? "EXT_mesh_features" : NULL;
+}
+
+static nt_status find_obstacle(welding *w, nt_scene *scene)
+{
+	const nt_vertex_pool *pool = w->vertices->pool;
+	nt_scene alone = *scene;
+	alone.findings = (nt_finding_list){0};
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && !w->obstacle && i < pool->user_count; i++) {
+		const nt_mesh *mesh = nt_pool_mesh(pool, i);
+		w->obstacle = find_extension(scene, mesh);
+		if (!w->obstacle && !nt_pool_is_solved(pool, i) && nt_gltf_draco_of(nt_pool_primitive(pool, i)))
+			w->obstacle = "Draco compresses it, and this run does not compress it again";
+		if (!w->obstacle && nt_extension_references(&alone, mesh, w->vertices->old_count, true))
+			status = nt_fail_memory(w->error);
+		if (alone.findings.count)
+			w->obstacle = "an extension refers to its vertices";
+	}
+	nt_finding_list_free(&alone.findings);
+	return status;
+}
+
+/* Faults of the document leave the pool as it is; whoever needs what is faulty says so. */
+static nt_status leave_faulty(welding *w, nt_status status)
+{
+	if (!status || status == NT_ERROR_MEMORY || status == NT_ERROR_IO || status == NT_ERROR_MISSING)
+		return status;
+	w->obstacle = "it cannot be read";
+	nt_error_clear(w->error);
+	return NT_OK;
+}
+
+/* ---- what vertices have ---- */
+
+static bool add_column(welding *w, column added)
+{
+	if (!nt_grow((void **)&w->columns, &w->capacity, w->count + 1, sizeof *w->columns))
+		return false;
+	w->columns[w->count++] = added;
+	return true;
+}
+
+/* Whether new elements take the place of an attribute of a solved user. */
+static bool is_replaced(welding *w, const nt_json_value *attributes, const char *name)
+{
+	const bool tangent = strcmp(name, "TANGENT") == 0;
+	if (!w->mesh)
+		return false;
+	if (attributes == w->base)
+		return tangent || (w->mesh->normals_made && strcmp(name, "NORMAL") == 0) ||
+			(w->bitangents && strcmp(name, "_BITANGENT") == 0);
+	/* targets come in their order, and so do those that are solved */
+	while (nt_json_at(w->targets, w->target) != attributes)
+		w->target++;
+	while (w->morph < w->mesh->morph_count && w->mesh->morphs[w->morph].target < w->target)
+		w->morph++;
+	return tangent && w->morph < w->mesh->morph_count && w->mesh->morphs[w->morph].target == w->target;
+}
+
+/* The elements of a sparse accessor, with what it replaces. */
+static nt_status bake(welding *w, const nt_gltf_accessor *a, const unsigned char *elements, column *c)
+{
+	const uint32_t *replaced;
+	const unsigned char *values;
+	unsigned char *baked = nt_arena_alloc(w->scratch, (size_t)a->count, a->element_bytes);
+	if (!baked)
+		return nt_fail_memory(w->error);
+	const nt_status status = nt_gltf_sparse(w->edits->document, a, w->scratch, &replaced, &values, w->error);
+	for (size_t i = 0; !status && i < a->count; i++)
+		if (elements)
+			memcpy(baked + i * a->element_bytes, elements + i * a->stride, a->element_bytes);
+		else
+			memset(baked + i * a->element_bytes, 0, a->element_bytes);
+	for (size_t i = 0; !status && i < a->sparse_count; i++)
+		memcpy(baked + (size_t)replaced[i] * a->element_bytes, values + i * a->element_bytes, a->element_bytes);
+	c->bytes = baked;
+	c->stride = a->element_bytes;
+	return status;
+}
+
+static nt_status add_attribute(void *context, nt_json_value *attributes, const char *name, uint32_t index)
+{
+	welding *w = context;
+	bool *known = &w->edits->welding[w->pools->first_alias[index]];
+	if (is_replaced(w, attributes, name) || *known || w->obstacle)
+		return NT_OK;
+	*known = true;
+	nt_gltf_accessor a;
+	const unsigned char *elements = NULL;
+	nt_status status = nt_gltf_get_accessor(w->edits->document, index, "/accessors", &a, w->error);
+	if (!status)
+		status = nt_gltf_elements(w->edits->document, &a, &elements, w->error);
+	if (status)
+		return leave_faulty(w, status);
+	if (a.count != w->vertices->old_count)
+		w->obstacle = "its attributes differ in their number of elements";
+	else if (w->pools->foreign[w->pools->first_alias[index]])
+		w->obstacle = "something else uses its attributes";
+	column c = {.bytes = elements, .stride = a.stride, .width = a.element_bytes, .of_source = true};
+	if (!w->obstacle && a.sparse_count)
+		status = leave_faulty(w, bake(w, &a, elements, &c));
+	/* without a view all elements are zero */
+	return status || w->obstacle || !c.bytes || add_column(w, c) ? status : nt_fail_memory(w->error);
+}
+
+static nt_status list_columns(welding *w, const nt_stored_tangents *stored)
+{
+	const nt_vertex_pool *pool = w->vertices->pool;
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && !w->obstacle && i < pool->user_count; i++) {
+		const nt_json_value *primitive = nt_pool_primitive(pool, i);
+		w->mesh = nt_pool_is_solved(pool, i) ? nt_pool_mesh(pool, i) : NULL;
+		w->base = nt_json_find(primitive, "attributes");
+		w->targets = nt_json_find(primitive, "targets");
+		w->target = w->morph = 0;
+		status = nt_gltf_visit_attributes(primitive, w->pools->accessor_count, add_attribute, w);
+	}
+	bool added = true;
+	for (size_t s = 0; s < pool->sets.count; s++) {
+		const nt_pool_set *set = &w->vertices->sets[s];
+		const column tangents = stored
+			? (column){stored[s].values, stored[s].element_bytes, stored[s].element_bytes, false}
+			: (column){(const unsigned char *)set->tangents, 4 * sizeof(float), 4 * sizeof(float), false};
+		added = added && add_column(w, tangents);
+		if (set->normals)
+			added = added && add_column(w, (column){(const unsigned char *)set->normals, 3 * sizeof(float),
+				3 * sizeof(float), false});
+		for (size_t k = 0; k < set->morph_count; k++)
+			added = added && add_column(w, (column){(const unsigned char *)set->morphs[k],
+				3 * sizeof(float), 3 * sizeof(float), false});
+	}
+	return status || added ? status : nt_fail_memory(w->error);
+}
+
+/* ---- which are equal ---- */
+
+static const unsigned char *element(const welding *w, const column *c, size_t vertex)
+{
+	return c->bytes + c->stride * (c->of_source ? nt_vertex_source(w->vertices, vertex) : vertex);
+}
+
+static bool are_equal(const welding *w, size_t a, size_t b)
+{
+	for (size_t i = 0; i < w->count; i++)
+		if (memcmp(element(w, &w->columns[i], a), element(w, &w->columns[i], b), w->columns[i].width) != 0)
+			return false;
+	return true;
+}
+
+/* remap: [new_count] receives new numbers; kept: [new_count] the vertices that stay, of which the number is returned;
+ * 0: memory is exhausted. */
+static size_t find_equal(const welding *w, uint32_t *remap, uint32_t *kept)
+{
+	nt_hash_index known = {0};
+	size_t count = 0;
+	bool added = true;
+	for (size_t v = 0; added && v < w->vertices->new_count; v++) {
+		uint64_t hash = 0;
+		for (size_t i = 0; i < w->count; i++)
+			hash = nt_hash_bytes(hash, element(w, &w->columns[i], v), w->columns[i].width);
+		uint32_t number;
+		for (size_t at = NT_HASH_BEGIN; (number = nt_hash_index_next(&known, hash, &at)) != UINT32_MAX;)
+			if (are_equal(w, kept[number], v))
+				break;
+		if (number == UINT32_MAX) {
+			number = (uint32_t)count;
+			kept[count++] = (uint32_t)v;
+			added = nt_hash_index_add(&known, hash, number);
+		}
+		remap[v] = number;
+	}
+	nt_hash_index_free(&known);
+	return added ? count : 0;
+}
+
+/* ---- the welded vertices ---- */
+
+/* Elements of those that stay. */
+static void *gather(nt_arena *arena, const void *from, size_t width, const uint32_t *kept, size_t count)
+{
+	unsigned char *to = nt_arena_alloc(arena, count, width);
+	for (size_t i = 0; to && i < count; i++)
+		memcpy(to + i * width, (const unsigned char *)from + kept[i] * width, width);
+	return to;
+}
+
+static bool gather_set(nt_arena *arena, nt_pool_set *set, nt_stored_tangents *stored, const uint32_t *kept, size_t count)
+{
+	set->tangents = gather(arena, set->tangents, 4 * sizeof(float), kept, count);
+	bool done = set->tangents;
+	if (set->normals)
+		done &= (set->normals = gather(arena, set->normals, 3 * sizeof(float), kept, count)) != NULL;
+	float **morphs = nt_arena_alloc(arena, set->morph_count, sizeof *morphs);
+	for (size_t k = 0; morphs && k < set->morph_count; k++)
+		done &= (morphs[k] = gather(arena, set->morphs[k], 3 * sizeof(float), kept, count)) != NULL;
+	set->morphs = morphs;
+	if (!stored)
+		return done && morphs;
+	const bool filtered = stored->stored != stored->values;
+	stored->values = gather(arena, stored->values, stored->element_bytes, kept, count);
+	stored->stored = filtered ? gather(arena, stored->stored, stored->element_bytes, kept, count) : stored->values;
+	return done && morphs && stored->values && stored->stored;
+}
+
+/* The indices of a user as they are: of the source, or triangles that were split. renumbered: they only change numbers;
+ * a Draco block has triangles. */
+static nt_status indices_of(welding *w, size_t user, const uint32_t **indices, size_t *count, bool *renumbered)
+{
+	const nt_pool_vertices *vertices = w->vertices;
+	const nt_json_value *primitive = nt_pool_primitive(vertices->pool, user);
+	uint64_t number;
+	nt_gltf_accessor a;
+	*renumbered = !(nt_pool_is_solved(vertices->pool, user) && (vertices->changed[user] ||
+		nt_gltf_draco_of(primitive))) || !vertices->indices[user];
+	if (!*renumbered) {
+		*indices = vertices->indices[user];
+		*count = nt_pool_mesh(vertices->pool, user)->corner_count;
+		return NT_OK;
+	}
+	if (nt_json_get_uint64(nt_json_find(primitive, "indices"), &number)) {
+		uint32_t *read;
+		nt_status status = nt_gltf_get_accessor(w->edits->document, number,
+			nt_gltf_of_mesh(nt_pool_mesh(vertices->pool, user)).pointer, &a, w->error);
+		if (!status)
+			status = nt_gltf_indices(w->edits->document, &a, vertices->old_count, w->scratch, &read, w->error);
+		*indices = status ? NULL : read;
+		*count = status ? 0 : (size_t)a.count;
+		return status;
+	}
+	uint32_t *all = nt_arena_alloc(w->scratch, vertices->old_count, sizeof *all);
+	for (size_t i = 0; all && i < vertices->old_count; i++)
+		all[i] = (uint32_t)i;
+	*indices = all;
+	*count = vertices->old_count;
+	return all ? NT_OK : nt_fail_memory(w->error);
+}
+
+static nt_status renumber(welding *w, const uint32_t *remap, uint32_t **indices, size_t *counts, bool *renumbered,
+	bool *changed)
+{
+	const size_t user_count = w->vertices->pool->user_count;
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && !w->obstacle && i < user_count; i++) {
+		const uint32_t *old = NULL;
+		status = leave_faulty(w, indices_of(w, i, &old, &counts[i], &renumbered[i]));
+		changed[i] = true;
+		if (w->obstacle)
+			break;
+		indices[i] = status ? NULL : nt_arena_alloc(&w->edits->arena, counts[i], sizeof **indices);
+		if (!status && !indices[i])
+			status = nt_fail_memory(w->error);
+		for (size_t c = 0; !status && c < counts[i]; c++)
+			indices[i][c] = remap[old[c]];
+	}
+	return status;
+}
+
+/* Nothing is changed if there turns out to be an obstacle. */
+static nt_status take_welded(welding *w, nt_stored_tangents *stored, const uint32_t *remap, const uint32_t *kept,
+	size_t count)
+{
+	nt_pool_vertices *vertices = w->vertices;
+	nt_arena *arena = &w->edits->arena;
+	const size_t user_count = vertices->pool->user_count;
+	nt_pool_vertices to = {.pool = vertices->pool, .old_count = vertices->old_count, .new_count = count,
+		.sources = nt_arena_alloc(arena, count, sizeof *to.sources), .sets = vertices->sets,
+		.indices = nt_arena_alloc(arena, user_count, sizeof *to.indices),
+		.counts = nt_arena_alloc(arena, user_count, sizeof *to.counts),
+		.changed = nt_arena_alloc(arena, user_count, sizeof *to.changed),
+		.renumbered = nt_arena_alloc(arena, user_count, sizeof *to.renumbered)};
+	bool done = to.sources && to.indices && to.counts && to.changed && to.renumbered;
+	const nt_status status = done ? renumber(w, remap, to.indices, to.counts, to.renumbered, to.changed)
+		: NT_ERROR_MEMORY;
+	if (w->obstacle || (status && status != NT_ERROR_MEMORY))
+		return status;
+	for (size_t s = 0; done && s < vertices->pool->sets.count; s++)
+		done = gather_set(arena, &vertices->sets[s], stored ? &stored[s] : NULL, kept, count);
+	if (!done)
+		return nt_fail_memory(w->error);
+	for (size_t i = 0; i < count; i++)
+		to.sources[i] = (uint32_t)nt_vertex_source(vertices, kept[i]);
+	*vertices = to;
+	return status;
+}
+
+/* ---- one pool ---- */
+
+/* Points are drawn as often as they are there, and share nothing. */
+static bool draws_points_alone(const nt_vertex_pool *pool)
+{
+	for (size_t i = 0; i < pool->user_count; i++) {
+		uint64_t mode = NT_GLTF_TRIANGLES;
+		nt_json_get_uint64(nt_json_find(nt_pool_primitive(pool, i), "mode"), &mode);
+		if (mode != NT_GLTF_POINTS)
+			return false;
+	}
+	return true;
+}
+
+nt_status nt_pool_weld(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_scene *scene,
+	nt_pool_vertices *vertices, nt_stored_tangents *stored, bool bitangents, nt_arena *scratch, nt_error *error)
+{
+	welding w = {.edits = edits, .pools = pools, .vertices = vertices, .scratch = scratch,
+		.bitangents = bitangents, .error = error};
+	const size_t before = vertices->new_count;
+	if (draws_points_alone(vertices->pool))
+		return NT_OK;
+	nt_status status = find_obstacle(&w, scene);
+	if (!status && !w.obstacle)
+		status = list_columns(&w, stored);
+	if (!status && !w.obstacle) {
+		uint32_t *remap = nt_alloc(before, sizeof *remap), *kept = nt_alloc(before, sizeof *kept);
+		const size_t count = remap && kept ? find_equal(&w, remap, kept) : 0;
+		if (!count && before)
+			status = nt_fail_memory(error);
+		else if (count < before)
+			status = take_welded(&w, stored, remap, kept, count);
+		scene->welded.before += w.obstacle ? 0 : before;
+		scene->welded.after += w.obstacle ? 0 : count;
+		free(remap);
+		free(kept);
+	}
+	if (!status && w.obstacle)
+		nt_finding_add(&scene->findings, NT_CODE_WELD_LEFT, nt_mesh_place(nt_pool_mesh(vertices->pool, 0),
+			&(nt_place){0}), vertices->pool->user_count, "%s", w.obstacle);
+	free(w.columns);
+	return status;
+}
+
+nt_status nt_pool_vertices_plain(const nt_vertex_pools *pools, nt_vertex_pool *pool, nt_arena *tables,
+	nt_pool_vertices *vertices, bool *can, nt_error *error)
+{
+	nt_gltf *document = pools->scene->source;
+	nt_gltf_accessor a = {.count = 0};
+	uint64_t position;
+	*can = nt_json_get_uint64(nt_json_find(nt_json_find(nt_pool_primitive(pool, 0), "attributes"), "POSITION"),
+		&position) && nt_gltf_get_accessor(document, position, "", &a, NULL) == NT_OK && a.count < NT_NONE;
+	*vertices = (nt_pool_vertices){.pool = pool, .old_count = (size_t)a.count, .new_count = (size_t)a.count,
+		.own_count = (size_t)a.count,
+		.indices = nt_arena_alloc(tables, pool->user_count, sizeof *vertices->indices),
+		.changed = nt_arena_alloc(tables, pool->user_count, sizeof *vertices->changed)};
+	pool->sets.count = 0;
+	if (!vertices->indices || !vertices->changed)
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < pool->user_count; i++) {
+		pool->sets.of[i] = NT_NONE;
+		vertices->indices[i] = NULL;
+		vertices->changed[i] = false;
+	}
+	return NT_OK;
+}
