@@ -161,8 +161,8 @@ const nt_option_row nt_option_rows[] = {
 		"meshopt-compressed buffer views that change; keep: compress them again, and new data too; off: "
 		"write them uncompressed", SETTING(meshopt), true},
 	{"weld", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
-		"glTF from glTF: make one vertex of those that are equal in everything, and write indices", SETTING(weld),
-		true},
+		"glTF from glTF: make one vertex of those that are equal in everything, and write indices",
+		SETTING(weld), true},
 	{"bitangents", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(bitangents), true},
 	{"no-clobber", 'n', NT_OPTION_FLAG, NULL, 0, 0, NULL, "never replace a file",

@@ -83,8 +83,8 @@ typedef struct nt_buffer_edits {
 } nt_buffer_edits;
 
 /*
- * Starts with no edits. Compressed views that vertices will be appended to, or all with `welds`, are decompressed first:
- * edits have to know them from the beginning. Faulty data that nothing needs is passed over.
+ * Starts with no edits. Compressed views that vertices will be appended to, or all with `welds`, are decompressed
+ * first: edits have to know them from the beginning. Faulty data that nothing needs is passed over.
  */
 nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, bool keeps_packed, bool welds,
 	nt_error *error);

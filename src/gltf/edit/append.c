@@ -44,7 +44,8 @@ static nt_status copy_elements(nt_appending *job, const nt_append_target *from, 
 	memset(out, 0, count * stride);
 	*result = out;
 	/* welded ones are gathered from all of the source's */
-	unsigned char *all = job->vertices->own_count < a->count ? nt_arena_alloc(job->arena, (size_t)a->count, stride) : out;
+	unsigned char *all = job->vertices->own_count < a->count
+		? nt_arena_alloc(job->arena, (size_t)a->count, stride) : out;
 	if (!all)
 		return nt_fail_memory(job->error);
 	if (all != out)
@@ -322,8 +323,8 @@ static nt_status replace_vertices(nt_appending *job, const block *b, const unsig
 		for (size_t v = 0; override && v < count; v++) {
 			const bool known = v < job->vertices->old_count || !job->vertices->own_count;
 			if (known && override->width == b->targets[i].accessor.element_bytes &&
-				memcmp(before + nt_vertex_source(job->vertices, v) * b->stride, override->values + v * override->width,
-					override->width) == 0)
+				memcmp(before + nt_vertex_source(job->vertices, v) * b->stride,
+					override->values + v * override->width, override->width) == 0)
 				continue;
 			memset(at + v * b->stride, 0, b->targets[i].accessor.element_bytes);
 			memcpy(at + v * b->stride, override->stored + v * override->width,
@@ -356,7 +357,8 @@ static nt_status append_to_block(nt_appending *job, const block *b, uint64_t pre
 		return status;
 	if (nt_vertices_differ(job->vertices))
 		lengthen_views(job, b);
-	return b->overridden || !job->vertices->own_count ? replace_vertices(job, b, decoded, elements) : insert_vertices(job, b, elements);
+	return b->overridden || !job->vertices->own_count ? replace_vertices(job, b, decoded, elements)
+							  : insert_vertices(job, b, elements);
 }
 
 /* ---- the whole ---- */

@@ -5,7 +5,7 @@
 #ifndef NT_GLTF_EDIT_DATA_URIS_H
 #define NT_GLTF_EDIT_DATA_URIS_H
 
-#include "gltf/edit/relocate.h"
+#include "gltf/bytes/relocate.h"
 
 typedef struct nt_data_uri {
 	uint32_t buffer;

@@ -22,7 +22,7 @@
 #include "gltf/edit/old_tangents.h"
 #include "gltf/edit/manifold.h"
 #include "gltf/bytes/packed_views.h"
-#include "gltf/edit/relocate.h"
+#include "gltf/bytes/relocate.h"
 #include "gltf/edit/weld.h"
 #include "gltf/extensions/extensions.h"
 #include "gltf/morph_deltas.h"
@@ -192,8 +192,8 @@ static nt_status add_set(const editing *e, uint32_t buffer, const nt_pool_vertic
 static nt_status choose_buffer(const editing *e, const nt_vertex_pool *pool, uint32_t *buffer)
 {
 	nt_gltf *document = e->edits->document;
-	const nt_json_value *attributes = nt_json_find(nt_pool_primitive(pool, pool->sets.count ? pool->sets.first[0] : 0),
-		"attributes");
+	const size_t user = pool->sets.count ? pool->sets.first[0] : 0;
+	const nt_json_value *attributes = nt_json_find(nt_pool_primitive(pool, user), "attributes");
 	uint64_t index;
 	nt_gltf_accessor accessor;
 	nt_gltf_view view = {.buffer = NT_NONE};

@@ -7,9 +7,9 @@
  * itself; vertices whose corners have different tangents stay apart. The first of equal vertices stands for them, in
  * their order; elements are moved, never changed, so that each corner has the bits that it had.
  *
- * A triangle list that was not split keeps its mode, and strips and lines theirs: indices are only renumbered. A pool is
- * left alone where vertices have meaning by their numbers: extensions that refer to them, accessors that something else
- * than attributes uses, Draco blocks that this run does not encode.
+ * If triangles were not split, indices are only renumbered: strips and lines stay such. A pool is left alone if its
+ * vertices have meaning by their numbers: extensions that refer to them, accessors that something else than attributes
+ * uses, Draco blocks that this run does not encode.
  */
 #include "gltf/edit/weld.h"
 
@@ -254,7 +254,8 @@ static void *gather(nt_arena *arena, const void *from, size_t width, const uint3
 	return to;
 }
 
-static bool gather_set(nt_arena *arena, nt_pool_set *set, nt_stored_tangents *stored, const uint32_t *kept, size_t count)
+static bool gather_set(nt_arena *arena, nt_pool_set *set, nt_stored_tangents *stored, const uint32_t *kept,
+	size_t count)
 {
 	set->tangents = gather(arena, set->tangents, 4 * sizeof(float), kept, count);
 	bool done = set->tangents;
@@ -292,7 +293,8 @@ static nt_status indices_of(welding *w, size_t user, const uint32_t **indices, s
 		nt_status status = nt_gltf_get_accessor(w->edits->document, number,
 			nt_gltf_of_mesh(nt_pool_mesh(vertices->pool, user)).pointer, &a, w->error);
 		if (!status)
-			status = nt_gltf_indices(w->edits->document, &a, vertices->old_count, w->scratch, &read, w->error);
+			status = nt_gltf_indices(w->edits->document, &a, vertices->old_count, w->scratch, &read,
+				w->error);
 		*indices = status ? NULL : read;
 		*count = status ? 0 : (size_t)a.count;
 		return status;

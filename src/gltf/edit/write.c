@@ -9,7 +9,7 @@
  * other tools have it, but only with other buffer numbers and offsets, to which extensions that we do not
  * know may refer.
  */
-#include "gltf/edit/relocate.h"
+#include "gltf/bytes/relocate.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 /*
  * Moving offsets, writing buffers and the document: see relocate.c and write.c.
  */
-#ifndef NT_GLTF_EDIT_RELOCATE_H
-#define NT_GLTF_EDIT_RELOCATE_H
+#ifndef NT_GLTF_BYTES_RELOCATE_H
+#define NT_GLTF_BYTES_RELOCATE_H
 
 #include "file/base64.h"
 #include "gltf/bytes/buffer_edits.h"

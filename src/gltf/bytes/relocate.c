@@ -4,7 +4,7 @@
  * sum of what edits that end at or before it have added. Views and accessors are intervals of the buffer, so
  * both ends are mapped and the rest follows. Nothing is reordered.
  */
-#include "gltf/edit/relocate.h"
+#include "gltf/bytes/relocate.h"
 
 #include <stdio.h>
 #include <stdlib.h>
