@@ -506,7 +506,8 @@ static void count_shading(const run *r)
 static bool is_unchanged(const run *r)
 {
 	bool same = r->writer && (nt_writer_edits(r->reader, r->writer) || r->reader == r->writer) &&
-		!r->turned.count && r->scene.welded.before == r->scene.welded.after && !r->summary->solved_count && !r->summary->skipped[NT_SKIP_DROPPED];
+		!r->turned.count && r->scene.welded.before == r->scene.welded.after && !r->summary->solved_count &&
+		!r->summary->skipped[NT_SKIP_DROPPED];
 	for (size_t i = 0; i < r->scene.mesh_count; i++)
 		same &= !r->scene.meshes[i].normals_made;
 	return same;
