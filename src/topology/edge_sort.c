@@ -19,14 +19,11 @@
 #define NONE NT_NO_NEIGHBOUR
 
 /* Triangles at the end that are looked at first, and how many times more the next time: nearly always a dozen are
- * enough. In few triangles everything is near, and to look again costs little. */
-enum { FIRST_TRIANGLES = 12, FIRST_OF_FEW = 4, MORE = 3 };
-
-/* So few triangles have all corners listed. */
-enum { LEAST_WATCHED = 16, FEW = 1024 };
+ * enough. */
+enum { FIRST_TRIANGLES = 12, MORE = 3 };
 
 /* Vertices of the last triangles. If they have more, all edges are looked at. */
-enum { MOST_MEMBERS = 255, LEAST_SLOT_BITS = 6 };
+enum { MOST_MEMBERS = 255 };
 
 /* If the order of the last run matters, it has three edges or more, one of each of its triangles: the largest lower
  * end is the middle one of their representatives, since another edge has a larger lower end where it is the least. */
@@ -37,38 +34,6 @@ static size_t corner_count(const nt_welded_mesh *m)
 	return 3 * m->triangle_count;
 }
 
-static bool has(const uint64_t *bits, uint32_t bit)
-{
-	return bits[bit / 64] >> bit % 64 & 1;
-}
-
-static void add(uint64_t *bits, uint32_t bit)
-{
-	bits[bit / 64] |= (uint64_t)1 << bit % 64;
-}
-
-static uint64_t *make_bits(const nt_welded_mesh *m)
-{
-	const size_t words = m->vertex_count / 64 + 1;
-	uint64_t *bits = nt_scratch_alloc(m->scratch, words, sizeof *bits);
-	if (bits)
-		memset(bits, 0, words * sizeof *bits);
-	return bits;
-}
-
-static bool is_degenerate(const nt_welded_mesh *m, const uint32_t v[3])
-{
-	const float *p[3];
-	for (int k = 0; k < 3; k++)
-		p[k] = nt_welded_position(m, v[k]);
-	for (int k = 0; k < 3; k++) {
-		const float *a = p[k], *b = p[(k + 1) % 3];
-		if (a[0] == b[0] && a[1] == b[1] && a[2] == b[2])
-			return true;
-	}
-	return false;
-}
-
 static const uint32_t *vertices_of(const nt_welded_mesh *m, size_t triangle, uint32_t copy[3])
 {
 	return nt_triangle_vertices(m->triangles, triangle, 1, copy);
@@ -76,51 +41,18 @@ static const uint32_t *vertices_of(const nt_welded_mesh *m, size_t triangle, uin
 
 /* The last triangles */
 
-/* The place of a member's number, or NONE. */
-static uint32_t *slot_of(const nt_edge_tail *tail, uint32_t vertex)
-{
-	uint32_t at = vertex * 0x9e3779b1u >> tail->slot_shift;
-	while (tail->slots[at] != NONE && tail->members[tail->slots[at]].vertex != vertex)
-		at = (at + 1) & (UINT32_MAX >> tail->slot_shift);
-	return &tail->slots[at];
-}
-
-/* Takes triangles from the end; halves of a quad stay together. False when out of memory. */
-static bool take_last(const nt_welded_mesh *m, size_t triangles, nt_edge_tail *tail)
+/* Takes triangles from the end; halves of a quad stay together. */
+static void take_last(const nt_welded_mesh *m, size_t triangles, nt_edge_tail *tail)
 {
 	size_t first = m->triangle_count > triangles ? m->triangle_count - triangles : 0;
 	if (first > 0 && nt_is_cut_between(m->triangles, first - 1))
 		first--;
-	const size_t most = 3 * (m->triangle_count - first);
-	unsigned bits = LEAST_SLOT_BITS;
-	while ((size_t)1 << bits < 2 * most)
-		bits++;
-	tail->slot_shift = 32 - bits;
-	tail->slots = nt_scratch_alloc(m->scratch, (size_t)1 << bits, sizeof *tail->slots);
-	tail->members = nt_scratch_alloc(m->scratch, most, sizeof *tail->members);
-	tail->are_members = make_bits(m);
-	if (!tail->members || !tail->slots || !tail->are_members)
-		return false;
-	memset(tail->slots, 0xff, sizeof *tail->slots << bits);
 	tail->triangles = triangles;
+	tail->first_triangle = first;
 	tail->first = (uint32_t)nt_triangle_corner(m->triangles, first, 0);
-	tail->member_count = 0;
-	for (size_t t = first; t < m->triangle_count; t++) {
-		uint32_t copy[3];
-		const uint32_t *v = vertices_of(m, t, copy);
-		for (int k = 0; k < 3; k++) {
-			uint32_t *slot = slot_of(tail, v[k]);
-			if (*slot == NONE) {
-				*slot = (uint32_t)tail->member_count;
-				tail->members[tail->member_count++] = (nt_edge_member){.vertex = v[k], .low = NONE};
-				add(tail->are_members, v[k]);
-			}
-		}
-	}
-	return true;
 }
 
-/* Says which corners to look for: all of the members' cells. */
+/* Says which corners to look for: all of the cells of the last triangles' vertices. */
 static void watch_cells(const nt_welded_mesh *m, nt_edge_tail *tail)
 {
 	const nt_grid *grid = &tail->grid;
@@ -128,12 +60,16 @@ static void watch_cells(const nt_welded_mesh *m, nt_edge_tail *tail)
 	/* a little less than there are, so that no rounding makes one more: less than half a cell */
 	tail->scale = ((float)NT_EDGE_BINS - 0.1f) / (grid->high - grid->low);
 	tail->scale = tail->scale <= FLT_MAX ? tail->scale : 0;
-	for (size_t i = 0; i < tail->member_count; i++) {
-		const unsigned cell = nt_grid_cell(grid, nt_welded_position(m, tail->members[i].vertex)[grid->axis]);
-		const unsigned bin = cell / 2, beside = cell % 2 ? bin + 1 : bin - 1;
-		tail->bins[bin / 32] |= (uint32_t)1 << bin % 32;
-		if (beside < NT_EDGE_BINS)
-			tail->bins[beside / 32] |= (uint32_t)1 << beside % 32;
+	for (size_t t = tail->first_triangle; t < m->triangle_count; t++) {
+		uint32_t copy[3];
+		const uint32_t *v = vertices_of(m, t, copy);
+		for (int k = 0; k < 3; k++) {
+			const unsigned cell = nt_grid_cell(grid, nt_welded_position(m, v[k])[grid->axis]);
+			/* the scale moves the lower one of a bin's cells a little into the bin before */
+			const unsigned bin = cell / 2, before = bin - (cell % 2 == 0 && bin > 0);
+			tail->bins[bin / 32] |= (uint32_t)1 << bin % 32;
+			tail->bins[before / 32] |= (uint32_t)1 << before % 32;
+		}
 	}
 	if (tail->scale == 0)
 		tail->bins[0] |= 1;
@@ -146,16 +82,15 @@ static void use_box_of_used(const nt_welded_mesh *m, nt_edge_tail *tail)
 	tail->limit = !nt_grid_of_used(m, &tail->grid);
 }
 
-static size_t first_triangles(const nt_welded_mesh *m)
+static bool is_few(const nt_welded_mesh *m)
 {
-	return m->triangle_count < FEW ? FIRST_OF_FEW : FIRST_TRIANGLES;
+	return m->triangle_count <= NT_EDGE_FEW && m->vertex_count <= 3 * NT_EDGE_FEW && !m->triangles->cuts;
 }
 
-nmtan_status nt_edge_tail_make(const nt_welded_mesh *m, nt_borrowed *borrowed, nt_edge_tail *tail)
+/* Says what to look for first. */
+static nmtan_status begin_tail(const nt_welded_mesh *m, nt_borrowed *borrowed, nt_edge_tail *tail)
 {
-	*tail = (nt_edge_tail){.limit = corner_count(m) > NT_EDGE_SORT_CORNERS};
-	if (m->triangle_count < LEAST_WATCHED || tail->limit)
-		return NMTAN_OK;
+	tail->is_box_used = tail->is_noted = false;
 	tail->near = nt_borrowed_alloc(borrowed, m->triangle_count, 1);
 	/* the boxes' memory is free again at once */
 	const nt_scratch_mark mark = nt_scratch_here(m->scratch);
@@ -170,32 +105,62 @@ nmtan_status nt_edge_tail_make(const nt_welded_mesh *m, nt_borrowed *borrowed, n
 		tail->near = NULL;
 		return NMTAN_OK;
 	}
-	if (!take_last(m, first_triangles(m), tail))
-		return NMTAN_ERROR_MEMORY;
+	take_last(m, FIRST_TRIANGLES, tail);
 	watch_cells(m, tail);
 	return NMTAN_OK;
 }
 
+nmtan_status nt_edge_tail_make(const nt_welded_mesh *m, nt_borrowed *borrowed, nt_edge_tail *tail)
+{
+	tail->near = NULL;
+	tail->limit = corner_count(m) > NT_EDGE_SORT_CORNERS;
+	return is_few(m) || tail->limit ? NMTAN_OK : begin_tail(m, borrowed, tail);
+}
+
 /* Their corners */
+
+/* A vertex of the last triangles. */
+typedef struct edge_member {
+	uint32_t vertex, low, high; /* its representative is between these corners; equal: it is known */
+	uint32_t beside;            /* the largest `low` of those that it has an edge with */
+	uint32_t met;               /* by which member, and whether twice */
+} edge_member;
 
 /* An edge between members a and b. */
 typedef struct edge_link {
 	uint32_t a, b;
 } edge_link;
 
+/* Triangles that are near, with all corners of near vertices and some of others. Their corners are numbered
+ * 3 * (place in the list) + k. */
 typedef struct question {
 	const nt_welded_mesh *mesh;
 	nt_edge_tail *tail;
-	nt_welded_corner *corners; /* [corner_count] as 3 * triangle + k, ascending */
-	uint16_t *cells;           /* [corner_count] of each */
-	uint32_t *next;            /* [corner_count] the next one of the cells that have a list together, or NONE */
-	uint32_t *heads;           /* [head_mask + 1] the first one */
-	size_t corner_count, head_mask;
-	nt_welded_corner *chosen;  /* [corner_count] those of one cell; NULL: not made */
-	nt_welded_point *points;   /* [corner_count] */
-	edge_link *links;               /* [link_count] */
-	size_t link_count;
+	size_t triangle_count, vertex_count;
+	uint32_t *triangles;       /* [triangle_count] ascending */
+	uint32_t *vertices;        /* [vertex_count] theirs */
+	uint32_t *ids;             /* [3 * triangle_count] the vertex of each corner */
+	uint32_t *last;            /* [mesh->vertex_count] the last corner of each vertex, or NONE: it is not listed */
+	uint32_t *before;          /* [3 * triangle_count] the one before it at the same vertex, or NONE */
+	uint32_t *numbers;         /* [mesh->vertex_count] those of members, or in a cell */
+	edge_member *members;      /* [member_count] */
+	edge_link *links;          /* [link_count] */
+	edge_link *twins;          /* [twin_count] b has two edges or more with a: both ways */
+	size_t member_count, link_count, twin_count;
+	/* room for cells */
+	uint64_t *bits;            /* [bit for each corner]; NULL: not made */
+	uint16_t *cells;           /* [vertex_count] */
+	uint32_t *heads;           /* [head_mask + 1] the first vertex of cells that have a list together, or NONE */
+	uint32_t *next;            /* [vertex_count] */
+	size_t head_mask;
+	nt_cell_vertex *cell_vertices;
+	nt_cell cell;
 } question;
+
+static uint32_t mesh_corner(const question *q, uint32_t corner)
+{
+	return (uint32_t)nt_triangle_corner(q->mesh->triangles, q->triangles[corner / 3], corner % 3);
+}
 
 /* Notes which triangles are near, if nobody has, and whether the vertices that make the box have corners. */
 static void note_near(const nt_welded_mesh *m, nt_edge_tail *tail)
@@ -211,13 +176,12 @@ static void note_near(const nt_welded_mesh *m, nt_edge_tail *tail)
 			met |= (unsigned)(v[i % 3] == tail->grid.extremes[i / 3]) << i / 3;
 	}
 	tail->is_box_used = tail->is_box_used || met == 63;
+	tail->is_noted = true;
 }
 
 /* The next triangle from t on that is near. */
 static size_t next_near(const nt_welded_mesh *m, const nt_edge_tail *tail, size_t t)
 {
-	if (!tail->near)
-		return t;
 	for (uint64_t some; t + sizeof some <= m->triangle_count; t += sizeof some) {
 		memcpy(&some, tail->near + t, sizeof some);
 		if (some != 0)
@@ -228,180 +192,242 @@ static size_t next_near(const nt_welded_mesh *m, const nt_edge_tail *tail, size_
 	return t;
 }
 
-/* Coordinates whose cells are found at a time, and lists of corners by cell if there are few. */
-enum { STEP = 16, FEW_HEADS = 64 };
-
-/* Lists the corners that are near, or all of few triangles. False when out of memory. */
-static bool list_corners(question *q)
+/* Lists the triangles that are near, and their vertices. False when out of memory. */
+static bool list_near(question *q)
 {
 	const nt_welded_mesh *m = q->mesh;
-	nt_edge_tail *tail = q->tail;
-	if (tail->near && !tail->is_noted)
-		note_near(m, tail);
-	size_t most = tail->near ? 0 : m->triangle_count;
-	for (size_t t = 0; tail->near && t < m->triangle_count; t++)
-		most += tail->near[t];
-	float *coordinates = nt_scratch_alloc(m->scratch, 3 * most + STEP, sizeof *coordinates);
-	q->corners = nt_scratch_alloc(m->scratch, 3 * most + STEP, sizeof *q->corners);
-	q->cells = nt_scratch_alloc(m->scratch, 3 * most + STEP, sizeof *q->cells);
-	q->next = nt_scratch_alloc(m->scratch, 3 * most + STEP, sizeof *q->next);
-	q->head_mask = (3 * most < NT_CELLS ? FEW_HEADS : NT_CELLS) - 1;
-	q->heads = nt_scratch_alloc(m->scratch, q->head_mask + 1, sizeof *q->heads);
-	q->chosen = NULL;
-	if (!coordinates || !q->corners || !q->cells || !q->next || !q->heads)
-		return false;
-	const nt_grid grid = tail->grid;
+	const nt_edge_tail *tail = q->tail;
 	size_t count = 0;
+	for (size_t t = 0; t < m->triangle_count; t++)
+		count += tail->near[t];
+	q->triangle_count = count;
+	q->vertex_count = 0;
+	q->last = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *q->last);
+	q->numbers = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *q->numbers);
+	q->triangles = nt_scratch_alloc(m->scratch, count, sizeof *q->triangles);
+	q->vertices = nt_scratch_alloc(m->scratch, 3 * count + 1, sizeof *q->vertices);
+	q->ids = nt_scratch_alloc(m->scratch, 3 * count, sizeof *q->ids);
+	q->before = nt_scratch_alloc(m->scratch, 3 * count, sizeof *q->before);
+	q->bits = NULL;
+	if (!q->last || !q->numbers || !q->triangles || !q->vertices || !q->ids || !q->before)
+		return false;
+	memset(q->last, 0xff, m->vertex_count * sizeof *q->last);
+	uint32_t c = 0;
 	for (size_t t = next_near(m, tail, 0); t < m->triangle_count; t = next_near(m, tail, t + 1)) {
 		uint32_t copy[3];
 		const uint32_t *v = vertices_of(m, t, copy);
-		for (uint32_t k = 0; k < 3; k++) {
-			q->corners[count] = (nt_welded_corner){v[k], (uint32_t)(3 * t) + k};
-			coordinates[count] = nt_welded_position(m, v[k])[grid.axis];
-			count += !tail->near || nt_edge_is_near(tail, coordinates[count]);
+		q->triangles[c / 3] = (uint32_t)t;
+		memcpy(q->ids + c, v, 3 * sizeof *v);
+		for (size_t k = 0; k < 3; k++, c++) {
+			const uint32_t before = q->last[v[k]];
+			q->before[c] = before;
+			q->last[v[k]] = c;
+			q->vertices[q->vertex_count] = v[k];
+			q->vertex_count += before == NONE;
 		}
-	}
-	for (size_t i = 0; i < STEP; i++)
-		coordinates[count + i] = grid.low;
-	for (size_t i = 0; i < count; i += STEP)
-		for (size_t k = 0; k < STEP; k++)
-			q->cells[i + k] = (uint16_t)nt_grid_cell(&grid, coordinates[i + k]);
-	q->corner_count = count;
-	memset(q->heads, 0xff, (q->head_mask + 1) * sizeof *q->heads);
-	for (size_t i = count; i-- > 0;) {
-		uint32_t *head = &q->heads[q->cells[i] & q->head_mask];
-		q->next[i] = *head;
-		*head = (uint32_t)i;
 	}
 	return true;
 }
 
-/* Finds between which corners the representatives of members are, and the edges between members. False when out of
- * memory. */
+/* Member i has an edge with one more. */
+static void meet(question *q, uint32_t i, uint32_t other)
+{
+	uint32_t *const met = &q->members[other].met;
+	if (*met == 2 * i)
+		q->twins[q->twin_count++] = (edge_link){i, other};
+	*met = *met >> 1 == i ? 2 * i + 1 : 2 * i;
+}
+
+/* Finds between which corners the representatives of the last triangles' vertices are, and the edges between these.
+ * False when out of memory. */
 static bool link_members(question *q)
 {
 	const nt_welded_mesh *m = q->mesh;
-	const nt_edge_tail *tail = q->tail;
-	q->links = nt_scratch_alloc(m->scratch, 3 * q->corner_count, sizeof *q->links);
-	if (!q->links)
+	/* all of the last triangles are listed, behind the others */
+	const size_t tail_count = m->triangle_count - q->tail->first_triangle, corners = 3 * q->triangle_count;
+	const uint32_t first = (uint32_t)(corners - 3 * tail_count);
+	q->members = nt_scratch_alloc(m->scratch, 3 * tail_count, sizeof *q->members);
+	q->links = nt_scratch_alloc(m->scratch, 2 * corners, sizeof *q->links);
+	if (!q->members || !q->links)
 		return false;
-	q->link_count = 0;
-	size_t last = SIZE_MAX;
-	bool degenerate = false;
-	for (size_t i = 0; i < q->corner_count; i++) {
-		if (!has(tail->are_members, q->corners[i].vertex))
+	q->twins = q->links + corners;
+	q->member_count = q->link_count = q->twin_count = 0;
+	for (uint32_t c = first; c < corners; c++) {
+		const uint32_t vertex = q->ids[c];
+		if (q->last[vertex] != c)
 			continue;
-		const size_t t = q->corners[i].corner / 3, k = q->corners[i].corner % 3;
-		const uint32_t number = *slot_of(tail, q->corners[i].vertex);
-		const uint32_t corner = (uint32_t)nt_triangle_corner(m->triangles, t, (unsigned)k);
-		nt_edge_member *member = &tail->members[number];
-		member->low = corner < member->low ? corner : member->low;
-		member->high = corner > member->high ? corner : member->high;
-		uint32_t copy[3];
-		const uint32_t *v = vertices_of(m, t, copy), next = v[k < 2 ? k + 1 : 0];
-		if (!has(tail->are_members, next))
-			continue;
-		degenerate = t == last ? degenerate : is_degenerate(m, v);
-		last = t;
-		if (!degenerate)
-			q->links[q->link_count++] = (edge_link){number, *slot_of(tail, next)};
+		q->numbers[vertex] = (uint32_t)q->member_count;
+		q->members[q->member_count++] = (edge_member){.vertex = vertex, .low = NONE, .met = NONE};
+	}
+	for (uint32_t i = 0; i < q->member_count; i++) {
+		edge_member *const member = &q->members[i];
+		for (uint32_t c = q->last[member->vertex]; c != NONE; c = q->before[c]) {
+			const uint32_t corner = mesh_corner(q, c), k = c % 3, *const v = q->ids + (c - k);
+			const uint32_t next = v[k < 2 ? k + 1 : 0], previous = v[k > 0 ? k - 1 : 2];
+			member->low = corner < member->low ? corner : member->low;
+			member->high = corner > member->high ? corner : member->high;
+			const bool has_next = q->last[next] + 1 > first, has_previous = q->last[previous] + 1 > first;
+			if ((!has_next && !has_previous) || nt_welded_is_degenerate(m, v))
+				continue;
+			if (has_next) {
+				q->links[q->link_count++] = (edge_link){i, q->numbers[next]};
+				meet(q, i, q->numbers[next]);
+			}
+			if (has_previous)
+				meet(q, i, q->numbers[previous]);
+		}
 	}
 	return true;
 }
 
 /* Representatives, as far as they are needed */
 
-/* Finds the representative of a member. */
-static nmtan_status find_member(question *q, nt_edge_member *member)
+/* Makes room for what is in a cell, and lists near vertices by cell. False when out of memory. */
+static bool make_cells(question *q)
 {
-	const nt_welded_mesh *m = q->mesh;
-	if (!q->chosen) {
-		q->chosen = nt_scratch_alloc(m->scratch, q->corner_count + 1, sizeof *q->chosen);
-		q->points = nt_scratch_alloc(m->scratch, q->corner_count, sizeof *q->points);
-		if (!q->chosen || !q->points)
-			return NMTAN_ERROR_MEMORY;
+	enum { FEW_HEADS = 64 };
+	nt_scratch *scratch = q->mesh->scratch;
+	const nt_grid grid = q->tail->grid;
+	const size_t corners = 3 * q->triangle_count, heads = q->vertex_count < NT_CELLS ? FEW_HEADS : NT_CELLS;
+	q->bits = nt_scratch_alloc(scratch, corners / 64 + 1, sizeof *q->bits);
+	q->cell_vertices = nt_scratch_alloc(scratch, q->vertex_count, sizeof *q->cell_vertices);
+	uint32_t *room = nt_scratch_alloc(scratch, heads + 2 * q->vertex_count, sizeof *room);
+	q->cells = nt_scratch_alloc(scratch, q->vertex_count, sizeof *q->cells + 1);
+	nt_cell_corner *list = nt_scratch_alloc(scratch, corners, sizeof *list);
+	if (!q->bits || !q->cell_vertices || !room || !q->cells || !list)
+		return false;
+	q->head_mask = heads - 1;
+	q->heads = (uint32_t *)memset(room, 0xff, heads * sizeof *room);
+	q->next = room + heads;
+	q->cell = (nt_cell){q->cell_vertices, list, q->next + q->vertex_count,
+		(uint8_t *)(q->cells + q->vertex_count), 0, 0};
+	for (uint32_t i = 0; i < q->vertex_count; i++) {
+		const float coordinate = nt_welded_position(q->mesh, q->vertices[i])[grid.axis];
+		if (!nt_edge_is_near(q->tail, coordinate))
+			continue;
+		q->cells[i] = (uint16_t)nt_grid_cell(&grid, coordinate);
+		uint32_t *const head = &q->heads[q->cells[i] & q->head_mask];
+		q->next[i] = *head;
+		*head = i;
 	}
+	return true;
+}
+
+/* Finds the representative of a member. */
+static nmtan_status find_member(question *q, edge_member *member)
+{
+	if (!q->bits && !make_cells(q))
+		return NMTAN_ERROR_MEMORY;
 	const nt_grid *grid = &q->tail->grid;
-	const uint16_t cell = (uint16_t)nt_grid_cell(grid, nt_welded_position(m, member->vertex)[grid->axis]);
-	size_t count = 0;
-	for (uint32_t i = q->heads[cell & q->head_mask]; i != NONE; i = q->next[i]) {
-		q->chosen[count] = q->corners[i];
-		count += q->cells[i] == cell;
+	nt_cell *cell = &q->cell;
+	const size_t words = 3 * q->triangle_count / 64 + 1;
+	const unsigned number = nt_grid_cell(grid, nt_welded_position(q->mesh, member->vertex)[grid->axis]);
+	uint32_t wanted = 0, found;
+	memset(q->bits, 0, words * sizeof *q->bits);
+	cell->vertex_count = cell->corner_count = 0;
+	for (uint32_t i = q->heads[number & q->head_mask]; i != NONE; i = q->next[i]) {
+		const uint32_t v = q->vertices[i];
+		if (q->cells[i] != number)
+			continue;
+		nt_cell_vertex *vertex = &q->cell_vertices[cell->vertex_count];
+		memcpy(vertex->position, nt_welded_position(q->mesh, v), sizeof vertex->position);
+		vertex->corner_count = 0;
+		for (uint32_t c = q->last[v]; c != NONE; c = q->before[c]) {
+			q->bits[c / 64] |= (uint64_t)1 << c % 64;
+			vertex->corner_count++;
+		}
+		wanted = v == member->vertex ? (uint32_t)cell->vertex_count : wanted;
+		q->numbers[v] = (uint32_t)cell->vertex_count++;
 	}
-	uint32_t found;
-	if (!nt_find_representative(m, q->chosen, count, member->vertex, q->points, &found)) {
-		q->tail->limit = true;
-		return NMTAN_OK;
-	}
-	member->low = member->high = (uint32_t)nt_triangle_corner(m->triangles, found / 3, found % 3);
+	for (size_t word = 0; word < words; word++)
+		for (uint64_t bits = q->bits[word]; bits; bits &= bits - 1) {
+			const uint32_t c = (uint32_t)(64 * word) + (uint32_t)nt_trailing_zeros(bits);
+			cell->corners[cell->corner_count++] = (nt_cell_corner){q->numbers[q->ids[c]], c};
+		}
+	q->tail->limit = !nt_find_representative(cell, wanted, &found);
+	if (!q->tail->limit)
+		member->low = member->high = mesh_corner(q, found);
 	return NMTAN_OK;
 }
 
-static bool is_known(const nt_edge_member *member)
+static bool is_known(const edge_member *member)
 {
 	return member->low == member->high;
 }
 
-/* Whether an edge may be in the last run, with `low` as its lower end, which is at least `least`. */
-static bool may_run(const nt_edge_member *low, const nt_edge_member *high, uint32_t least)
+/* Whether an edge may be in the last run, with `low` as its lower end, which is at least `least`: no edge of the higher
+ * end has a larger lower end than that. */
+static bool may_run(const edge_member *low, const edge_member *high, uint32_t least)
 {
-	return high->high > (low->low > least ? low->low : least) && low->high >= least;
+	return high->high > (low->low > least ? low->low : least) && low->high >= least && high->beside <= low->high;
+}
+
+static size_t count_edges(const question *q, uint32_t member, uint32_t least)
+{
+	size_t count = 0;
+	for (const edge_link *l = q->links; l < q->links + q->link_count; l++)
+		if (l->a == member || l->b == member)
+			count += may_run(&q->members[member], &q->members[l->a == member ? l->b : l->a], least);
+	return count;
 }
 
 /* How many edges the last run may have if its order matters: three or more, two of them between the same vertices; 0:
- * it cannot. `unknown` receives a member that decides whether there are such edges, or is left alone. */
-static size_t most_edges(const question *q, uint32_t least, nt_edge_member **unknown)
+ * it cannot. `unknown` receives a member that decides whether there are such edges, or is left alone: of both ends the
+ * one with more corners before the end, which is likely to be out of question. */
+static size_t most_edges(const question *q, uint32_t least, edge_member **unknown)
 {
-	nt_edge_member *members = q->tail->members;
-	for (size_t i = 0; i < q->tail->member_count; i++)
-		members[i].edges = 0;
-	for (const edge_link *l = q->links; l < q->links + q->link_count; l++) {
-		nt_edge_member *a = &members[l->a], *b = &members[l->b];
-		a->edges += may_run(a, b, least);
-		b->edges += may_run(b, a, least);
-	}
-	size_t most = 0;
-	for (uint32_t i = 0; i < q->tail->member_count; i++) {
-		if (members[i].edges < LEAST_EDGES || members[i].edges <= most)
+	size_t most = 0, count = 0;
+	uint32_t lowest = NONE, counted = NONE;
+	for (const edge_link *l = q->twins; l < q->twins + q->twin_count; l++) {
+		edge_member *a = &q->members[l->a], *b = &q->members[l->b];
+		if (!may_run(a, b, least))
 			continue;
-		for (size_t k = 0; k < q->tail->member_count; k++)
-			members[k].is_met = false;
-		nt_edge_member *twin = NULL;
-		for (const edge_link *l = q->links; l < q->links + q->link_count && !twin; l++) {
-			nt_edge_member *other = l->a == i ? &members[l->b] : &members[l->a];
-			if ((l->a != i && l->b != i) || !may_run(&members[i], other, least))
-				continue;
-			twin = other->is_met ? other : NULL;
-			other->is_met = true;
+		count = l->a == counted ? count : count_edges(q, l->a, least);
+		counted = l->a;
+		if (count < LEAST_EDGES)
+			continue;
+		most = count > most ? count : most;
+		edge_member *const one = is_known(b) || (!is_known(a) && a->low < b->low) ? a : b;
+		if (!is_known(one) && one->low < lowest) {
+			lowest = one->low;
+			*unknown = one;
 		}
-		if (!twin)
-			continue;
-		most = members[i].edges;
-		if (is_known(twin))
-			twin = &members[i];
-		*unknown = is_known(twin) ? *unknown : twin;
 	}
 	return most;
 }
 
-/* The edge of members, not both of them known, whose lower end may be the largest; NULL: none can be as large as one of
- * which both are. `least` receives what the largest lower end is at least. */
-static const edge_link *find_open(const question *q, uint32_t *least)
+/* Returns what the largest lower end is at least. */
+static uint32_t find_least(const question *q)
 {
-	const nt_edge_member *members = q->tail->members;
-	const edge_link *open = NULL;
-	uint32_t most = 0;
-	*least = 0;
+	edge_member *members = q->members;
+	uint32_t least = 0;
+	for (size_t i = 0; i < q->member_count; i++)
+		members[i].beside = 0;
 	for (const edge_link *l = q->links; l < q->links + q->link_count; l++) {
-		const nt_edge_member *a = &members[l->a], *b = &members[l->b];
-		const uint32_t low = a->low < b->low ? a->low : b->low, high = a->high < b->high ? a->high : b->high;
-		*least = low > *least ? low : *least;
-		if (high >= most && !(is_known(a) && is_known(b))) {
-			most = high;
-			open = l;
+		edge_member *a = &members[l->a], *b = &members[l->b];
+		const uint32_t low = a->low < b->low ? a->low : b->low;
+		least = low > least ? low : least;
+		a->beside = b->low > a->beside ? b->low : a->beside;
+		b->beside = a->low > b->beside ? a->low : b->beside;
+	}
+	return least;
+}
+
+/* A member that is not known, of the edge whose lower end may be the largest; NULL: that cannot be as large as one that
+ * is known. */
+static edge_member *find_open(const question *q, uint32_t least)
+{
+	edge_member *open = NULL;
+	uint32_t most = least;
+	for (const edge_link *l = q->links; l < q->links + q->link_count; l++) {
+		edge_member *a = &q->members[l->a], *b = &q->members[l->b];
+		edge_member *lower = a->high < b->high ? a : b, *other = lower == a ? b : a;
+		if (lower->high >= most && !(is_known(a) && is_known(b))) {
+			most = lower->high;
+			open = is_known(lower) ? other : lower;
 		}
 	}
-	return most >= *least ? open : NULL;
+	return open;
 }
 
 /* Asks whether the order matters; `enough` receives false if more triangles are to be looked at, and `count` how many
@@ -409,17 +435,15 @@ static const edge_link *find_open(const question *q, uint32_t *least)
 static nmtan_status ask_members(question *q, bool *enough, size_t *count)
 {
 	for (;;) {
-		uint32_t least;
-		const edge_link *open = find_open(q, &least);
+		const uint32_t least = find_least(q);
+		edge_member *unknown = NULL;
 		*enough = least >= q->tail->first;
-		nt_edge_member *unknown = NULL;
 		*count = *enough ? most_edges(q, least, &unknown) : 0;
-		if (!open || (*enough && *count == 0))
+		if (*enough && *count == 0)
 			return NMTAN_OK;
-		nt_edge_member *a = &q->tail->members[open->a], *b = &q->tail->members[open->b];
-		nt_edge_member *lower = a->high < b->high ? a : b, *other = lower == a ? b : a;
-		const nmtan_status status = find_member(q, unknown ? unknown : is_known(lower) ? other : lower);
-		if (status || q->tail->limit)
+		unknown = unknown ? unknown : find_open(q, least);
+		const nmtan_status status = unknown ? find_member(q, unknown) : NMTAN_OK;
+		if (status || q->tail->limit || !unknown)
 			return status;
 	}
 }
@@ -566,7 +590,7 @@ static size_t make_keys(
 	for (size_t t = 0; t < m->triangle_count; t++) {
 		uint32_t copy[3], low;
 		const uint32_t *v = vertices_of(m, t, copy);
-		if (is_degenerate(m, v))
+		if (nt_welded_is_degenerate(m, v))
 			continue;
 		for (uint32_t k = 0; k < 3; k++) {
 			const uint32_t edge = (uint32_t)(3 * t + k);
@@ -624,36 +648,43 @@ static nmtan_status pair_as_published(const nt_welded_mesh *m, const nt_grid *gr
 
 /* The whole */
 
+/* Lists what is near; if tail->limit, nothing is. */
+static nmtan_status look(question *q, size_t triangles)
+{
+	const nt_welded_mesh *m = q->mesh;
+	nt_edge_tail *tail = q->tail;
+	if (tail->triangles != triangles) {
+		take_last(m, triangles, tail);
+		watch_cells(m, tail);
+		tail->is_noted = false;
+	}
+	if (!tail->is_noted)
+		note_near(m, tail);
+	if (!tail->is_box_used) {
+		use_box_of_used(m, tail);
+		if (tail->limit)
+			return NMTAN_OK;
+		watch_cells(m, tail);
+		note_near(m, tail);
+	}
+	return list_near(q) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+}
+
 /* Asks whether the order matters; `count` receives how many edges the run has, or may have, or 0. */
 static nmtan_status ask(const nt_welded_mesh *m, nt_edge_tail *tail, size_t *count)
 {
 	question q = {.mesh = m, .tail = tail};
-	if (!tail->near && !tail->limit)
-		use_box_of_used(m, tail);
-	if (m->triangle_count < LEAST_EDGES || tail->limit)
+	nt_borrowed none = nt_borrow(NULL, 0, m->scratch);
+	if (!tail->near && !tail->limit && !nt_few_edges_are_sorted(m, tail) && begin_tail(m, &none, tail))
+		return NMTAN_ERROR_MEMORY;
+	if (!tail->near || tail->limit || m->triangle_count < LEAST_EDGES)
 		return NMTAN_OK;
-	for (size_t triangles = first_triangles(m);; triangles *= MORE) {
-		if (tail->triangles != triangles) {
-			if (!take_last(m, triangles, tail))
-				return NMTAN_ERROR_MEMORY;
-			if (tail->near)
-				watch_cells(m, tail);
-			tail->is_noted = false;
-		}
-		if (!list_corners(&q))
-			return NMTAN_ERROR_MEMORY;
-		if (!tail->is_box_used) {
-			use_box_of_used(m, tail);
-			if (tail->limit)
-				return NMTAN_OK;
-			watch_cells(m, tail);
-			tail->is_noted = false;
-			if (!list_corners(&q))
-				return NMTAN_ERROR_MEMORY;
-		}
+	for (size_t triangles = FIRST_TRIANGLES;; triangles *= MORE) {
 		bool enough;
-		const nmtan_status status = link_members(&q) ? ask_members(&q, &enough, count) : NMTAN_ERROR_MEMORY;
-		if (status || enough || tail->limit)
+		nmtan_status status = look(&q, triangles);
+		if (!status && !tail->limit)
+			status = link_members(&q) ? ask_members(&q, &enough, count) : NMTAN_ERROR_MEMORY;
+		if (status || tail->limit || enough)
 			return status;
 		*count = m->triangle_count;
 		if (MORE * 3 * triangles > MOST_MEMBERS)

@@ -30,13 +30,6 @@ typedef struct nt_unsorted {
 /* Keys that are looked at to find the order of the last run, for each edge. */
 enum { NT_EDGE_SORT_VISITS = 64 };
 
-/* A vertex of the last triangles. */
-typedef struct nt_edge_member {
-	uint32_t vertex, low, high; /* its representative is between these corners; equal: it is known */
-	uint32_t edges;             /* that the last run may have, with this as the lower end */
-	bool is_met;
-} nt_edge_member;
-
 /* Bins of two cells each. */
 enum { NT_EDGE_BINS = NT_CELLS / 2 };
 
@@ -50,13 +43,8 @@ typedef struct nt_edge_tail {
 	uint8_t *near;           /* [triangle_count] 0: has no corner in a member's cell; NULL: few, all are listed */
 	float scale;             /* of a coordinate above grid.low to its bin, below NT_EDGE_BINS */
 	uint32_t bins[NT_EDGE_BINS / 32]; /* a bit for each that is at or beside a member's cell */
-	size_t triangles;
+	size_t triangles, first_triangle; /* how many are looked at, or one more, and the first of them */
 	uint32_t first;          /* their least corner */
-	unsigned slot_shift;
-	uint32_t *slots;         /* [2^(32 - slot_shift)] a hash table of members */
-	nt_edge_member *members; /* [member_count] */
-	size_t member_count;
-	uint64_t *are_members;   /* a bit for each vertex */
 } nt_edge_tail;
 
 /* Begins: says what to look for, in memory of the mesh; `near` lies in what is borrowed, until the end. A caller that
@@ -75,6 +63,13 @@ static inline uint32_t nt_edge_is_near(const nt_edge_tail *tail, float coordinat
  * result's edges come from `memory`, which may be that of the mesh. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
 nmtan_status nt_find_unsorted(
 	const nt_welded_mesh *mesh, nt_edge_tail *tail, nt_scratch *memory, nt_unsorted *unsorted);
+
+/* So few triangles, with no more rows than corners, have a quicker way to the answer: nt_few_edges_are_sorted(). */
+enum { NT_EDGE_FEW = 128 };
+
+/* Whether the order of the last run certainly does not matter, or is beyond a limit; for few triangles, none of which
+ * is half of a quad. Makes the grid. */
+bool nt_few_edges_are_sorted(const nt_welded_mesh *mesh, nt_edge_tail *tail);
 
 /* The neighbour across an edge as published; false: it is the same as if all were sorted. */
 bool nt_unsorted_neighbour(const nt_unsorted *unsorted, uint32_t edge, uint32_t *neighbour);

@@ -80,6 +80,8 @@ bool nt_grid_make(const nt_welded_mesh *mesh, nt_box *boxes, nt_grid *grid)
 {
 	nt_box all = nothing;
 	bool ordered = true;
+	if (!boxes)
+		return add_rows(mesh->positions, mesh->step, NULL, 0, mesh->vertex_count, &all) && set_grid(&all, grid);
 	for (size_t v = 0; v < mesh->vertex_count; v += NT_BOX_ROWS) {
 		nt_box *box = &boxes[v / NT_BOX_ROWS];
 		const size_t left = mesh->vertex_count - v;
@@ -115,17 +117,28 @@ bool nt_grid_of_used(const nt_welded_mesh *mesh, nt_grid *grid)
 
 /* A part of a cell that is still to be halved. */
 typedef struct part {
-	nt_welded_point *points;
-	size_t count;
+	uint32_t *order; /* its vertices, in any order */
+	size_t vertex_count;
+	nt_cell_corner *corners;
+	size_t corner_count;
 	unsigned halvings;
 } part;
 
-/* The point at which a part is halved, and along which axis; false: nothing is left to halve. */
-static bool find_middle(const part *p, unsigned *axis, float *middle)
+static part whole(const nt_cell *cell)
 {
-	enum { STEP = sizeof *p->points / sizeof *p->points->position };
+	for (size_t i = 0; i < cell->vertex_count; i++)
+		cell->order[i] = (uint32_t)i;
+	return (part){cell->order, cell->vertex_count, cell->corners, cell->corner_count, 0};
+}
+
+/* The point at which a part is halved, and along which axis; false: nothing is left to halve. */
+static bool find_middle(const nt_cell *cell, const part *p, unsigned *axis, float *middle)
+{
+	enum { STEP = sizeof *cell->vertices / sizeof *cell->vertices->position };
 	nt_box b = nothing;
-	(void)add_rows(p->points->position, STEP, NULL, 0, p->count, &b);
+	if (p->vertex_count < 2)
+		return false;
+	(void)add_rows(cell->vertices->position, STEP, p->order, 0, p->vertex_count, &b);
 	*axis = longest_axis(&b);
 	*middle = 0.5f * (b.high[*axis] + b.low[*axis]);
 	return *middle < b.high[*axis] && *middle > b.low[*axis];
@@ -133,112 +146,125 @@ static bool find_middle(const part *p, unsigned *axis, float *middle)
 
 enum { WORD = 64 };
 
-/* Bits of at most 64 points that are on the wrong side: those not below from the first on, those below from the last.
+/* Bits of at most 64 corners that are on the wrong side: those not below from the first on, those below from the last.
  * */
-static uint64_t find_wrong(const nt_welded_point *points, size_t count, unsigned axis, float middle, bool below)
+static uint64_t find_wrong(const uint8_t *below, const nt_cell_corner *corners, size_t count, bool from_last)
 {
 	uint64_t bits = 0;
-	if (below)
+	if (from_last)
 		for (size_t i = 0; i < count; i++)
-			bits |= (uint64_t)(points[count - 1 - i].position[axis] < middle) << i;
+			bits |= (uint64_t)below[corners[count - 1 - i].vertex] << i;
 	else
 		for (size_t i = 0; i < count; i++)
-			bits |= (uint64_t) !(points[i].position[axis] < middle) << i;
+			bits |= (uint64_t)!below[corners[i].vertex] << i;
 	return bits;
 }
 
-/* Swaps points until those below the middle come first, and only those that have to: the first that is above with the
- * last that is below, and so on. The order of all others, and which of them are swapped, decides in the end. Returns
- * how many are below. */
-static size_t part_points(nt_welded_point *points, size_t count, unsigned axis, float middle)
+/* Swaps corners until those of vertices below the middle come first, and only those that have to: the first that is
+ * above with the last that is below, and so on. The order of all others, and which of them are swapped, decides in the
+ * end. */
+static void part_corners(const uint8_t *is_below, nt_cell_corner *corners, size_t count, size_t below)
 {
-	size_t below = 0;
-	for (size_t i = 0; i < count; i++)
-		below += points[i].position[axis] < middle;
-	size_t left = 0,
-	       right = count; /* behind the points that `low` is of, and the first of those that `high` is of */
+	/* behind the corners that `low` is of, and the first of those that `high` is of */
+	size_t left = 0, right = count;
 	for (uint64_t low = 0, high = 0;;) {
 		for (; !low; left += WORD) {
 			if (left >= below)
-				return below;
-			low = find_wrong(points + left, below - left < WORD ? below - left : WORD, axis, middle, false);
+				return;
+			low = find_wrong(is_below, corners + left, below - left < WORD ? below - left : WORD, false);
 		}
 		for (; !high; right -= WORD) {
 			const size_t some = right - below < WORD ? right - below : WORD;
-			high = find_wrong(points + (right - some), some, axis, middle, true);
+			high = find_wrong(is_below, corners + (right - some), some, true);
 		}
 		for (; low && high; low &= low - 1, high &= high - 1) {
-			nt_welded_point *const a = &points[left - WORD + (size_t)nt_trailing_zeros(low)];
-			nt_welded_point *const b = &points[right + WORD - 1 - (size_t)nt_trailing_zeros(high)];
-			const nt_welded_point swapped = *a;
+			nt_cell_corner *const a = &corners[left - WORD + (size_t)nt_trailing_zeros(low)];
+			nt_cell_corner *const b = &corners[right + WORD - 1 - (size_t)nt_trailing_zeros(high)];
+			const nt_cell_corner swapped = *a;
 			*a = *b;
 			*b = swapped;
 		}
 	}
 }
 
-static void load_points(
-	const nt_welded_mesh *mesh, const nt_welded_corner *corners, size_t count, nt_welded_point *points)
+/* Parts a part: it becomes what is not below the middle. Returns what is. */
+static part halve(const nt_cell *cell, part *p, unsigned axis, float middle)
 {
-	for (size_t i = 0; i < count; i++) {
-		memcpy(points[i].position, nt_welded_position(mesh, corners[i].vertex), sizeof points->position);
-		points[i].index = (uint32_t)i;
+	part low = *p;
+	low.vertex_count = low.corner_count = 0;
+	for (size_t i = 0; i < p->vertex_count; i++) {
+		const uint32_t vertex = p->order[i], other = p->order[low.vertex_count];
+		const bool below = cell->vertices[vertex].position[axis] < middle;
+		cell->below[vertex] = below;
+		p->order[i] = below ? other : vertex;
+		p->order[low.vertex_count] = below ? vertex : other;
+		low.corner_count += below ? cell->vertices[vertex].corner_count : 0;
+		low.vertex_count += below;
 	}
+	part_corners(cell->below, p->corners, p->corner_count, low.corner_count);
+	low.halvings = p->halvings + 1;
+	*p = (part){p->order + low.vertex_count, p->vertex_count - low.vertex_count, p->corners + low.corner_count,
+		p->corner_count - low.corner_count, low.halvings};
+	return low;
 }
 
-bool nt_find_representative(const nt_welded_mesh *mesh, const nt_welded_corner *corners, size_t count, uint32_t vertex,
-	nt_welded_point *points, uint32_t *found)
+bool nt_find_representative(const nt_cell *cell, uint32_t vertex, uint32_t *found)
 {
-	const float *const position = nt_welded_position(mesh, vertex);
-	part p = {points, count, 0};
+	part p = whole(cell);
 	unsigned axis;
 	float middle;
-	load_points(mesh, corners, count, points);
-	while (find_middle(&p, &axis, &middle)) {
-		if (++p.halvings > NT_HALVINGS)
+	while (find_middle(cell, &p, &axis, &middle)) {
+		if (p.halvings == NT_HALVINGS)
 			return false;
-		const size_t below = part_points(p.points, p.count, axis, middle);
-		p = position[axis] < middle ? (part){p.points, below, p.halvings}
-					    : (part){p.points + below, p.count - below, p.halvings};
+		const part low = halve(cell, &p, axis, middle);
+		p = cell->below[vertex] ? low : p;
 	}
-	while (corners[p.points->index].vertex != vertex)
-		p.points++;
-	*found = corners[p.points->index].corner;
+	while (p.corners->vertex != vertex)
+		p.corners++;
+	*found = p.corners->corner;
 	return true;
 }
 
 /* All cells */
 
+/* A vertex's cell, and its number there. */
+typedef struct cell_place {
+	uint32_t cell, number;
+} cell_place;
+
 typedef struct weld {
 	const nt_welded_mesh *mesh;
-	nt_welded_corner *corners; /* in their cells, in order */
-	nt_welded_point *points;   /* [threads][most corners of a cell] */
+	nt_cell_vertex *vertices;  /* in their cells */
+	uint32_t *ids;             /* their numbers in the mesh */
+	nt_cell_corner *corners;   /* in their cells, in order */
+	uint32_t *order;           /* [threads][most vertices of a cell] */
+	uint8_t *below;            /* as many */
 	size_t most;
-	uint32_t first[NT_CELLS + 1];
+	uint32_t first_vertex[NT_CELLS + 1], first_corner[NT_CELLS + 1];
 	uint32_t *found;
 	bool limit; /* set by any thread */
 } weld;
 
 /* False: it would have to be halved too often. */
-static bool weld_cell(const weld *w, const nt_welded_corner *corners, size_t count, nt_welded_point *points)
+static bool weld_cell(const weld *w, const nt_cell *cell, const uint32_t *ids)
 {
 	part waiting[NT_HALVINGS + 1];
 	size_t waiting_count = 0;
-	load_points(w->mesh, corners, count, points);
-	waiting[waiting_count++] = (part){points, count, 0};
+	waiting[waiting_count++] = whole(cell);
 	while (waiting_count > 0) {
 		part p = waiting[--waiting_count];
 		unsigned axis;
 		float middle;
-		while (find_middle(&p, &axis, &middle)) {
-			if (++p.halvings > NT_HALVINGS)
+		while (find_middle(cell, &p, &axis, &middle)) {
+			if (p.halvings == NT_HALVINGS)
 				return false;
-			const size_t below = part_points(p.points, p.count, axis, middle);
-			waiting[waiting_count++] = (part){p.points + below, p.count - below, p.halvings};
-			p.count = below;
+			const part low = halve(cell, &p, axis, middle);
+			waiting[waiting_count++] = p;
+			p = low;
 		}
-		for (size_t i = p.count; i-- > 0;)
-			w->found[corners[p.points[i].index].vertex] = corners[p.points[i].index].corner;
+		/* one vertex has its first corner */
+		for (size_t i = p.vertex_count > 1 ? p.corner_count : 1; i-- > 0;)
+			w->found[ids[p.corners[i].vertex]] = p.corners[i].corner;
 	}
 	return true;
 }
@@ -247,44 +273,67 @@ static void weld_cells(void *context, size_t begin, size_t end, unsigned thread)
 {
 	weld *w = context;
 	for (size_t c = begin; c < end; c++) {
-		const size_t count = w->first[c + 1] - w->first[c];
-		if (count > 0 && !weld_cell(w, w->corners + w->first[c], count, w->points + thread * w->most))
+		const size_t vertex = w->first_vertex[c], corner = w->first_corner[c];
+		const nt_cell cell = {w->vertices + vertex, w->corners + corner, w->order + thread * w->most,
+			w->below + thread * w->most, w->first_vertex[c + 1] - vertex,
+			w->first_corner[c + 1] - corner};
+		if (cell.vertex_count > 0 && !weld_cell(w, &cell, w->ids + vertex))
 			nt_atomic_store(&w->limit, true, RELAXED);
 	}
 }
 
-/* Puts corners into their cells, in order. */
+/* Puts vertices and corners into their cells, in order. */
 static bool fill_cells(weld *w, const nt_grid *grid)
 {
 	const nt_welded_mesh *mesh = w->mesh;
 	const size_t count = 3 * mesh->triangle_count;
-	uint16_t *cells = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *cells);
+	uint32_t *corner_counts = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *corner_counts);
+	cell_place *places = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *places);
+	w->vertices = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *w->vertices);
+	w->ids = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *w->ids);
 	w->corners = nt_scratch_alloc(mesh->scratch, count, sizeof *w->corners);
-	if (!cells || !w->corners)
+	if (!corner_counts || !places || !w->vertices || !w->ids || !w->corners)
 		return false;
-	for (size_t v = 0; v < mesh->vertex_count; v++)
-		cells[v] = (uint16_t)nt_grid_cell(grid, mesh->positions[mesh->step * v + grid->axis]);
-	uint32_t copy[3], counts[NT_CELLS] = {0};
+	memset(corner_counts, 0, mesh->vertex_count * sizeof *corner_counts);
+	uint32_t copy[3], vertices[NT_CELLS] = {0}, corners[NT_CELLS] = {0};
 	for (size_t t = 0; t < mesh->triangle_count; t++) {
 		const uint32_t *v = nt_triangle_vertices(mesh->triangles, t, 1, copy);
 		for (int k = 0; k < 3; k++)
-			counts[cells[v[k]]]++;
+			corner_counts[v[k]]++;
 	}
-	w->first[0] = 0;
+	for (size_t v = 0; v < mesh->vertex_count; v++) {
+		const uint32_t cell = nt_grid_cell(grid, mesh->positions[mesh->step * v + grid->axis]);
+		places[v] = (cell_place){cell, vertices[cell]};
+		vertices[cell] += corner_counts[v] > 0;
+		corners[cell] += corner_counts[v];
+	}
+	w->first_vertex[0] = w->first_corner[0] = 0;
 	for (size_t c = 0; c < NT_CELLS; c++) {
-		w->most = counts[c] > w->most ? counts[c] : w->most;
-		w->first[c + 1] = w->first[c] + counts[c];
-		counts[c] = w->first[c];
+		w->most = vertices[c] > w->most ? vertices[c] : w->most;
+		w->first_vertex[c + 1] = w->first_vertex[c] + vertices[c];
+		w->first_corner[c + 1] = w->first_corner[c] + corners[c];
+		corners[c] = w->first_corner[c];
+	}
+	for (size_t v = 0; v < mesh->vertex_count; v++) {
+		if (corner_counts[v] == 0)
+			continue;
+		const size_t at = w->first_vertex[places[v].cell] + places[v].number;
+		memcpy(w->vertices[at].position, nt_welded_position(mesh, (uint32_t)v), sizeof w->vertices->position);
+		w->vertices[at].corner_count = corner_counts[v];
+		w->ids[at] = (uint32_t)v;
 	}
 	for (size_t t = 0; t < mesh->triangle_count; t++) {
 		const uint32_t *v = nt_triangle_vertices(mesh->triangles, t, 1, copy);
-		for (unsigned k = 0; k < 3; k++)
-			w->corners[counts[cells[v[k]]]++] = (nt_welded_corner){
-				v[k], (uint32_t)nt_triangle_corner(mesh->triangles, t, k)};
+		for (unsigned k = 0; k < 3; k++) {
+			const cell_place place = places[v[k]];
+			w->corners[corners[place.cell]++] = (nt_cell_corner){
+				place.number, (uint32_t)nt_triangle_corner(mesh->triangles, t, k)};
+		}
 	}
 	const unsigned slots = nt_parallel_slots(mesh->threads, NT_CELLS, LEAST_CELLS);
-	w->points = nt_scratch_alloc(mesh->scratch, slots * w->most, sizeof *w->points);
-	return w->points;
+	w->order = nt_scratch_alloc(mesh->scratch, slots * w->most, sizeof *w->order);
+	w->below = nt_scratch_alloc(mesh->scratch, slots * w->most, 1);
+	return w->order && w->below;
 }
 
 nt_representatives_end nt_representatives(const nt_welded_mesh *mesh, const nt_grid *grid, uint32_t *found)

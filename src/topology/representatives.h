@@ -35,6 +35,19 @@ static inline const float *nt_welded_position(const nt_welded_mesh *mesh, uint32
 	return mesh->positions + mesh->step * vertex;
 }
 
+/* Whether two corners of a triangle with these vertices are at one position. */
+static inline bool nt_welded_is_degenerate(const nt_welded_mesh *mesh, const uint32_t v[3])
+{
+	const float *const p[3] = {nt_welded_position(mesh, v[0]), nt_welded_position(mesh, v[1]),
+		nt_welded_position(mesh, v[2])};
+	bool is = false;
+	for (int k = 0; k < 3; k++) {
+		const float *a = p[k], *b = p[(k + 1) % 3];
+		is |= (a[0] == b[0]) & (a[1] == b[1]) & (a[2] == b[2]);
+	}
+	return is;
+}
+
 /* The box of some rows; the last of each four is of no use. */
 typedef struct nt_box {
 	float low[4], high[4];
@@ -55,7 +68,7 @@ typedef struct nt_grid {
  * published
  * weld leaves some of these unwelded.
  *
- *   boxes   [vertex_count / NT_BOX_ROWS + 1] receives those of blocks of rows
+ *   boxes   [vertex_count / NT_BOX_ROWS + 1] receives those of blocks of rows; NULL: without extremes
  */
 bool nt_grid_make(const nt_welded_mesh *mesh, nt_box *boxes, nt_grid *grid);
 
@@ -71,25 +84,29 @@ static inline unsigned nt_grid_cell(const nt_grid *grid, float coordinate)
 /* The same as nt_grid_make() for the rows that have corners alone; without extremes. */
 bool nt_grid_of_used(const nt_welded_mesh *mesh, nt_grid *grid);
 
-/* A corner, and its vertex. */
-typedef struct nt_welded_corner {
+/* A corner, and its vertex: its number in the cell. */
+typedef struct nt_cell_corner {
 	uint32_t vertex, corner;
-} nt_welded_corner;
+} nt_cell_corner;
 
-/* A corner on its way: `index` says which. */
-typedef struct nt_welded_point {
+typedef struct nt_cell_vertex {
 	float position[3];
-	uint32_t index;
-} nt_welded_point;
+	uint32_t corner_count;
+} nt_cell_vertex;
 
-/*
- * Finds the corner that stands for a vertex. False: its cell would have to be halved more than NT_HALVINGS times.
- *
- *   corners   [count] all those of its cell, in the order of triangles
- *   points    [count] of the caller
- */
-bool nt_find_representative(const nt_welded_mesh *mesh, const nt_welded_corner *corners, size_t count, uint32_t vertex,
-	nt_welded_point *points, uint32_t *found);
+/* The vertices and corners of one cell. Halves are made of vertices, of which there are few, and corners are only
+ * swapped. */
+typedef struct nt_cell {
+	const nt_cell_vertex *vertices; /* [vertex_count] */
+	nt_cell_corner *corners;        /* [corner_count] in the order of triangles; lost */
+	uint32_t *order;                /* [vertex_count] room */
+	uint8_t *below;                 /* [vertex_count] room */
+	size_t vertex_count, corner_count;
+} nt_cell;
+
+/* Finds the corner that stands for a vertex of a cell. False: the cell would have to be halved more than NT_HALVINGS
+ * times. */
+bool nt_find_representative(const nt_cell *cell, uint32_t vertex, uint32_t *found);
 
 /* How the search for all of them ends. LIMIT: a cell would have to be halved more than NT_HALVINGS times. */
 typedef enum nt_representatives_end {

@@ -171,8 +171,10 @@ TEST(one_is_found_as_all_are)
 {
 	enum { VERTICES = 300, TRIANGLES = 2000 };
 	static uint32_t ids[3 * TRIANGLES], found[VERTICES];
-	static nt_welded_corner corners[3 * TRIANGLES];
-	static nt_welded_point points[3 * TRIANGLES];
+	static nt_cell_corner corners[3 * TRIANGLES];
+	nt_cell_vertex vertices[VERTICES];
+	uint32_t order[VERTICES], numbers[VERTICES];
+	uint8_t below[VERTICES];
 	uint32_t seed = 1;
 	for (uint32_t i = 0; i < 3 * TRIANGLES; i++) {
 		seed = seed * 1664525 + 1013904223;
@@ -181,15 +183,23 @@ TEST(one_is_found_as_all_are)
 	for (uint32_t v = 0; v < VERTICES; v++)
 		put(v, v % 7 == 0 ? 20 : 0, (float)(v / 7 % 9), (float)(v % 5));
 	assert_int_equal(find(ids, TRIANGLES, VERTICES, 1, found), NT_REPRESENTATIVES_FOUND);
-	const nt_triangles all = {.ids = ids};
-	const nt_welded_mesh mesh = mesh_of(&all, TRIANGLES, VERTICES, NULL);
 	for (uint32_t v = 0; v < VERTICES; v++) {
-		size_t count = 0;
+		nt_cell cell = {vertices, corners, order, below, 0, 0};
 		uint32_t one;
-		for (uint32_t i = 0; i < 3 * TRIANGLES; i++)
-			if (positions[ids[i]][0] == positions[v][0])
-				corners[count++] = (nt_welded_corner){ids[i], i};
-		assert_true(nt_find_representative(&mesh, corners, count, v, points, &one));
+		for (uint32_t u = 0; u < VERTICES; u++) {
+			if (positions[u][0] != positions[v][0])
+				continue;
+			memcpy(vertices[cell.vertex_count].position, positions[u], sizeof *positions);
+			vertices[cell.vertex_count].corner_count = 0;
+			numbers[u] = (uint32_t)cell.vertex_count++;
+		}
+		for (uint32_t i = 0; i < 3 * TRIANGLES; i++) {
+			if (positions[ids[i]][0] != positions[v][0])
+				continue;
+			vertices[numbers[ids[i]]].corner_count++;
+			corners[cell.corner_count++] = (nt_cell_corner){numbers[ids[i]], i};
+		}
+		assert_true(nt_find_representative(&cell, numbers[v], &one));
 		assert_int_equal(one, found[v]);
 	}
 }
