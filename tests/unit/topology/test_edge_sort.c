@@ -436,7 +436,7 @@ TEST(every_form_of_a_tail_is_as_specified)
 			uint32_t last = 0;
 			for (size_t e = 0; e < 3 * triangles; e++)
 				last = entry_vertices[e] > last ? entry_vertices[e] : last;
-			/* as few rows as there are, some that have no corner, and too many for nt_few_edges_are_sorted() */
+			/* rows that have corners, some that have none, too many for edge_few.c */
 			const size_t rows[3] = {last + 1, 3 * NT_EDGE_FEW, MOST};
 			for (int i = 0; i < 3; i++) {
 				nt_scratch scratch;
