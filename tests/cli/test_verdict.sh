@@ -778,6 +778,9 @@ repairs TAN_MADE_BY
 cp n.png square_n.png
 run -q --report=r.json square.obj out.glb
 repairs NMAP_BESIDE conversion
+sed 's/^v \([01]\)/v 100000\1.03/' square.obj >far.obj
+run -q --origin=keep --report=r.json far.obj out.glb
+repairs POS_ROUNDED conversion
 # all codes for which nmtan names a command
 run --check -q --report=all.sarif --fail-on=never m.gltf
 is "$(value all.sarif '" ".join(c["id"] for c in r["runs"][0]["tool"]["driver"]["rules"] if c["help"]["text"].endswith(" IN OUT"))' | tr ' ' '\n' | sort)" \
