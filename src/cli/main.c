@@ -178,9 +178,8 @@ static int tell_run(session *s, nt_job *job)
 		nt_message_failure(&s->text, summary->report, job->input, NULL, least_failure, s->style);
 	if (s->style.verbosity >= 0 && !shown) {
 		const bool infos = c->settings.check || s->style.verbosity > 0;
-		nt_message_findings(&s->text, &summary->findings, summary->report, s->plan->options.ignore, job->input,
-			job->output, infos, s->plan->options.min_severity,
-			fails ? least_failure - 1 : NT_SEVERITY_ERROR, style);
+		nt_message_findings(&s->text, &summary->findings, summary->report, &s->plan->options, job->input,
+			job->output, infos, fails ? least_failure - 1 : NT_SEVERITY_ERROR, style);
 	} else if (s->style.verbosity < 0 && !job->status && !c->settings.check)
 		nt_message_left_out(&s->text, job, s->plan->options.ignore);
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */

@@ -66,10 +66,11 @@ static void append_sentence(nt_buffer *out, const nt_place_view *place, const ch
 	nt_buffer_format(out, " [%s]%s%s\n", nt_code_info(code)->name, command ? ": " : "", command ? command : "");
 }
 
-/* A run that succeeds has met no error. */
-static nt_severity shown_severity(const nt_finding *finding, nt_style style)
+/* As the user says (options, NULL: does not). A run that succeeds has met no error. */
+static nt_severity shown_severity(const nt_finding *finding, const nt_report_options *options, nt_style style)
 {
-	const nt_severity severity = nt_finding_severity(finding);
+	const uint8_t said = options ? options->severity[finding->code] : 0;
+	const nt_severity severity = said ? (nt_severity)(said - 1) : nt_finding_severity(finding);
 	return style.fails || severity < NT_SEVERITY_ERROR ? severity : NT_SEVERITY_WARNING;
 }
 
@@ -91,13 +92,14 @@ static void append_command(nt_buffer *out, const nt_finding *finding, nt_severit
 
 /* All findings of one code and severity but for `old` ones, those beyond PLACES_SHOWN as a number. The first has the
  * command. */
-static void append_code(nt_buffer *out, const nt_finding_list *findings, const bool *old, nt_code code,
-	nt_severity severity, const char *file, const char *output, nt_style style)
+static void append_code(nt_buffer *out, const nt_finding_list *findings, const bool *old,
+	const nt_report_options *options, nt_code code, nt_severity severity, const char *file, const char *output,
+	nt_style style)
 {
 	size_t shown = 0, left_out = 0;
 	for (size_t i = 0; i < findings->count; i++) {
 		const nt_finding *finding = &findings->items[i];
-		if (finding->code != code || shown_severity(finding, style) != severity || old[i])
+		if (finding->code != code || shown_severity(finding, options, style) != severity || old[i])
 			continue;
 		if (shown == PLACES_SHOWN && style.verbosity <= 0) {
 			left_out++;
@@ -134,8 +136,8 @@ static void find_old(const nt_finding_list *findings, const nt_report *report, b
 		old[i] |= has_known[findings->items[i].code] && !has_new[findings->items[i].code];
 }
 
-void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report, const bool *ignore,
-	const char *file, const char *output, bool infos, int least, int most, nt_style style)
+void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
+	const nt_report_options *options, const char *file, const char *output, bool infos, int most, nt_style style)
 {
 	bool *old = nt_calloc(findings->count, sizeof *old);
 	if (!old) {
@@ -143,11 +145,11 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 		return;
 	}
 	find_old(findings, report, old);
-	for (int severity = most; severity >= least; severity--)
+	for (int severity = most; severity >= (int)options->min_severity; severity--)
 		for (int code = 0; code < NT_CODE_COUNT; code++)
-			if ((infos || severity || is_proposed((nt_code)code)) && !ignore[code])
-				append_code(out, findings, old, (nt_code)code, (nt_severity)severity, file, output,
-					style);
+			if ((infos || severity || is_proposed((nt_code)code)) && !options->ignore[code])
+				append_code(out, findings, old, options, (nt_code)code, (nt_severity)severity, file,
+					output, style);
 	free(old);
 }
 
@@ -277,7 +279,7 @@ static void append_findings_count(nt_buffer *out, const nt_summary *s)
 {
 	size_t counts[3] = {0};
 	for (size_t i = 0; !s->report && i < s->findings.count; i++)
-		counts[shown_severity(&s->findings.items[i], (nt_style){0})]++;
+		counts[shown_severity(&s->findings.items[i], NULL, (nt_style){0})]++;
 	if (s->report)
 		memcpy(counts, s->report->by_severity, sizeof counts);
 	if (!counts[0] && !counts[1] && !counts[2]) {

@@ -22,12 +22,12 @@ typedef struct nt_style {
 /* "nmtan: file:line: message", "nmtan: file: at byte N: message" or "nmtan: file: /pointer: message". */
 void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 
-/* Findings of the severities from `most` down to `least` (nt_severity), a few of each code; without `infos`, of these
+/* Findings of the severities from `most` (nt_severity) down, a few of each code; without `infos`, of these
  * what is proposed alone: "nmtan: file:line: warning: sentence [CODE]", and the command, if one repairs it, with
- * `output` (NULL: a name beside the file). Findings that the report ignores or knows from its baseline are left out;
- * NULL: there is none. */
-void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report, const bool *ignore,
-	const char *file, const char *output, bool infos, int least, int most, nt_style style);
+ * `output` (NULL: a name beside the file). Severities are those of `options`; findings that these ignore, or that the
+ * report (NULL: there is none) knows from its baseline, are left out. */
+void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
+	const nt_report_options *options, const char *file, const char *output, bool infos, int most, nt_style style);
 
 /* One line, of a quiet run too, where something of the input is not in the output, with the codes that say what but for
  * those of ignore[code]. */

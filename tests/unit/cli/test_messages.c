@@ -49,20 +49,25 @@ TEST(findings_come_worst_first_and_grouped)
 		nt_finding_add(&findings, NT_CODE_MATERIAL_UNKNOWN, &place, 1, "m%u", i);
 		nt_finding_add(&findings, NT_CODE_NORMALS_MADE, &place, 1, "o%u", i);
 	}
-	const bool ignore[NT_CODE_COUNT] = {false};
+	static nt_report_options options; /* zeros: as the table says */
 	nt_buffer out = {0};
-	nt_message_findings(&out, &findings, NULL, ignore, "a.obj", NULL, false,
-		NT_SEVERITY_INFO, NT_SEVERITY_ERROR, plain);
+	nt_message_findings(&out, &findings, NULL, &options, "a.obj", NULL, false, NT_SEVERITY_ERROR, plain);
 	assert_says(out.data, PARTS("nmtan: a.obj:1: warning: ", "nmtan: a.obj:5: warning: ", "!a.obj:6:",
 		"nmtan: warning: and 3 more [MATERIAL_UNKNOWN]", "!NORMALS_MADE"));
 	nt_buffer_free(&out);
 
-	nt_message_findings(&out, &findings, NULL, ignore, "a.obj", NULL, true,
-		NT_SEVERITY_INFO, NT_SEVERITY_ERROR, verbose);
+	nt_message_findings(&out, &findings, NULL, &options, "a.obj", NULL, true, NT_SEVERITY_ERROR, verbose);
 	const char *warning = strstr(out.data, "a.obj:8: warning: ");
 	const char *info = strstr(out.data, "a.obj:1: info: ");
 	assert_true(warning && info && warning < info);
 	assert_null(strstr(out.data, "more"));
+	nt_buffer_free(&out);
+
+	/* severities are those that the user says */
+	options.severity[NT_CODE_MATERIAL_UNKNOWN] = 1 + NT_SEVERITY_INFO;
+	options.severity[NT_CODE_NORMALS_MADE] = 1 + NT_SEVERITY_WARNING;
+	nt_message_findings(&out, &findings, NULL, &options, "a.obj", NULL, false, NT_SEVERITY_ERROR, plain);
+	assert_says(out.data, PARTS("a.obj:1: warning: ", "NORMALS_MADE", "!MATERIAL_UNKNOWN"));
 	nt_buffer_free(&out);
 	nt_finding_list_free(&findings);
 }
