@@ -67,9 +67,14 @@ static void read_chunk(void *context, size_t item, unsigned slot)
 	second_reading *job = context;
 	const obj_chunk *chunk = &job->file->chunks[item];
 	obj_chunk again = {.begin = chunk->begin, .end = chunk->end,
-		.exact = job->rows + 3 * chunk->rows[OBJ_V].first, .rare = true};
+		.exact = job->rows + 3 * chunk->rows[OBJ_V].first, .exact_count = chunk->rows[OBJ_V].count,
+		.rare = true};
 	obj_reader r;
-	if (obj_reader_init(&r, &again) || obj_read_lines(&r, SIZE_MAX))
+	nt_status status = obj_reader_init(&r, &again);
+	if (!status)
+		status = obj_read_lines(&r, SIZE_MAX);
+	/* other faults are those of a file that has changed, which the run's watch of its inputs tells */
+	if (status == NT_ERROR_MEMORY)
 		atomic_store(&job->failed, true);
 	obj_reader_free(&r);
 	obj_chunk_free(&again);
@@ -87,7 +92,7 @@ static void gather_exact(void *context, size_t begin, size_t end, unsigned slot)
 static bool read_exact(second_reading *job)
 {
 	const obj_file *file = job->file;
-	job->rows = nt_alloc(file->row_counts[OBJ_V], 3 * sizeof *job->rows);
+	job->rows = nt_calloc(file->row_counts[OBJ_V], 3 * sizeof *job->rows);
 	if (!job->rows || !job->exact)
 		return false;
 	nt_parallel_items(file->threads, file->chunk_count, read_chunk, job);

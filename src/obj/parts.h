@@ -88,7 +88,8 @@ typedef struct obj_chunk {
 
 	obj_rows rows[OBJ_KIND_COUNT];
 	bool rare;      /* something is kept of a position besides its row: a colour, or doubles */
-	double *exact;  /* where its numbers go as doubles; NULL: nobody asks for them */
+	double *exact;  /* [exact_count][3] where its numbers go as doubles; NULL: nobody asks for them */
+	size_t exact_count; /* of the first reading: the file may have changed */
 	float *colors; /* rows of 4 as written, as many as positions; NULL while no `v` has one */
 	size_t color_capacity;
 	obj_ignored bad_colors; /* that are not finite: white */

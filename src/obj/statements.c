@@ -129,9 +129,10 @@ static nt_status store_rare(obj_reader *r, const char *begin, const float *numbe
 	obj_chunk *chunk = r->chunk;
 	obj_reader again = *r;
 	again.p = begin;
-	for (size_t k = 0; chunk->exact && k < 3; k++) {
+	const size_t row = chunk->rows[OBJ_V].count - 1;
+	for (size_t k = 0; again.p && row < chunk->exact_count && k < 3; k++) {
 		skip_blanks(&again);
-		again.p = nt_read_double(again.p, chunk->end, &chunk->exact[3 * (chunk->rows[OBJ_V].count - 1) + k]);
+		again.p = nt_read_double(again.p, chunk->end, &chunk->exact[3 * row + k]);
 	}
 	return count >= 6 || chunk->colors ? store_color(r, numbers, count) : NT_OK;
 }

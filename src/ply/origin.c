@@ -102,7 +102,7 @@ nt_status ply_settle_origin(nt_scene *scene, nt_mesh *mesh, ply_source *source, 
 	const size_t tried = done ? ply_sample_edges(mesh, NULL, NT_ORIGIN_TRIED, lengths) : 0;
 	if (done && (nt_origin_is_given(wished) ||
 			    nt_origin_is_suspected(largest, lengths, tried, NT_ORIGIN_DOUBT))) {
-		exact = nt_alloc(mesh->vertex_count, 3 * sizeof *exact);
+		exact = nt_calloc(mesh->vertex_count, 3 * sizeof *exact);
 		done = exact && read_exact(mesh, source, cursor, exact);
 		if (done)
 			nt_origin_settle(scene, wished, &(nt_exact){exact, mesh->vertex_count, lengths,

@@ -19,6 +19,12 @@ for extension in obj mtl ply gltf glb drc; do
 	done
 done
 
+# Coordinates that float does not hold.
+awk '$1 == "v" { $2 += 431234.12; $3 += 5412345.67 } 1' CONVFMT=%.9g OFMT=%.9g data/mirrored_cube.obj >"$seeds/obj/far.obj"
+printf '%s\n' ply 'format ascii 1.0' 'element vertex 5' 'property double x' 'property double y' 'property int z' \
+	'element face 2' 'property list uchar int vertex_indices' end_header 5000000.01 0 0 5000000.03 0 0 5000000.03 0.01 0 \
+	5000000.02 0.03 0 5000000.01 0.02 0 '5 0 1 2 3 4' '3 0 1 2' >"$seeds/ply/far.ply"
+
 # One mesh in every way that glTF can store one.
 python3 tests/support/gltf_layouts.py "$seeds/layouts" >/dev/null
 for file in "$seeds"/layouts/*.gltf; do

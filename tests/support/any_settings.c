@@ -16,8 +16,9 @@ nt_settings any_settings(const char *input, uint32_t *chance, const nt_report_op
 	const bool check = mutate_random(chance, 8) == 0, ply = formats[form] == NT_FORMAT_PLY;
 	const bool edited = strstr(input, ".gl") && !ply && !check;
 	const bool integers = mutate_random(chance, 6) == 0 && !ply;
+	const bool texts = strstr(input, ".obj") || strstr(input, ".ply");
 	*output = names[form];
-	return (nt_settings){.texcoord_set = -1, .only = mutate_random(chance, 4) ? NT_ONLY_ALL : 0,
+	nt_settings s = (nt_settings){.texcoord_set = -1, .only = mutate_random(chance, 4) ? NT_ONLY_ALL : 0,
 		.existing = mutate_random(chance, 2) ? NT_EXISTING_REPLACE : 0, .threads = 1,
 		.normals = mutate_random(chance, 3) ? NT_NORMALS_FLAT : NT_NORMALS_AUTO,
 		.across = mutate_random(chance, 6) ? NT_ACROSS_PRIMITIVE : NT_ACROSS_MESH,
@@ -30,4 +31,10 @@ nt_settings any_settings(const char *input, uint32_t *chance, const nt_report_op
 		.bitangents = mutate_random(chance, 8) == 0, .output_format = check ? 0 : formats[form],
 		.verify = mutate_random(chance, 8) == 0 && !ply && !check, .list_meshes = mutate_random(chance, 8) == 0,
 		.report = mutate_random(chance, 4) && !check ? NULL : report, .check = check};
+	const uint32_t origin = texts ? mutate_random(chance, 8) : 0;
+	if (origin == 1)
+		s.origin.choice = NT_ORIGIN_KEEP;
+	if (origin == 2)
+		s.origin = (nt_origin){NT_ORIGIN_GIVEN, {5e6, -0.125, 1e30}};
+	return s;
 }

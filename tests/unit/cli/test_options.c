@@ -117,6 +117,11 @@ TEST(every_option_sets_its_field)
 	assert_true(c.settings.bump_height == 1.0 / 32);
 	assert_int_equal(c.settings.texture_path_count, 2);
 	assert_string_equal(c.settings.texture_paths[1], "y");
+	accepts(&c, WORDS("--origin=1e3,-2.5,+.5", "a", "b"));
+	assert_int_equal(c.settings.origin.choice, NT_ORIGIN_GIVEN);
+	assert_memory_equal(c.settings.origin.at, ((double[]){1000, -2.5, 0.5}), 3 * sizeof(double));
+	accepts(&c, WORDS("--origin=0,-0,0.0", "a", "b"));
+	assert_int_equal(c.settings.origin.choice, NT_ORIGIN_KEEP);
 	accepts(&c, WORDS("--draco=edgebreaker", "--draco-bits=16,10,1,24", "a", "b"));
 	assert_memory_equal(c.settings.draco_bits, ((int[]){16, 10, 1, 24}), 4 * sizeof(int));
 	accepts(&c, WORDS("--in-place", "a"));
@@ -208,6 +213,13 @@ TEST(bad_values_are_refused_whole)
 	refuses("'25' for positions", WORDS("--draco-bits=25,12,12,12", "a", "b"));
 	refuses("'1' for normals", WORDS("--draco-bits=14,1,12,12", "a", "b"));
 	refuses("''", WORDS("--draco-bits=14,12,,12", "a", "b"));
+	static const char *const origins[] = {"1,2", "1,2,3,4", "1,2,3,", ",,", "x", "1,2,inf", "nan,0,0", "0x1,2,3",
+		"1,2, 3", "1e31,0,0", "Auto"};
+	for (size_t i = 0; i < sizeof origins / sizeof *origins; i++) {
+		char word[40];
+		snprintf(word, sizeof word, "--origin=%s", origins[i]);
+		refuses("is neither auto nor keep nor three numbers", WORDS(word, "a", "b"));
+	}
 	refuses("'3'", WORDS("--bump-height=3", "a", "b"));
 	refuses("'1/0'", WORDS("--bump-height=1/0", "a", "b"));
 	refuses("'0.1x'", WORDS("--bump-height=0.1x", "a", "b"));
@@ -367,6 +379,9 @@ TEST(options_that_shape_outputs_are_spelled_in_one_way)
 		WORDS("--draco-bits", "12,12,12,12", "a", "--output-format=gltf", "--output-format=glb", "b",
 			"--raw", "--outside=yes",
 			"--method=robust"));
+	shapes("", WORDS("--origin=auto", "a", "b.glb"));
+	shapes("--origin=keep", WORDS("--origin=0,0,0", "a", "b.glb"));
+	shapes("--origin=1,2,3", WORDS("--origin=1,2,3", "a", "b.glb"));
 	shapes("--uv=0 --bitangents", WORDS("--bitangents", "--uv=0", "--bitangents", "a", "b.glb"));
 }
 
