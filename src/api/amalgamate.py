@@ -24,7 +24,10 @@ KERNEL_PLACE = 'src/tangent/fast/kernel_baseline.c'  # among the sources
 KERNELS = ['src/tangent/fast/kernel.h', 'src/tangent/sums/kernel.h']
 
 # Files whose functions take no time in a solve: the definition, threads, and what few meshes need.
-COLD = re.compile(r'src/(base/(?!hash|words|scratch|counts)|tangent/(mikktspace|repair|sums/hard)|topology/(plain|representatives)|api/self)')
+COLD = re.compile(r'src/(base/(?!hash|words|scratch|counts|largest)|tangent/(frames|mikktspace|sums/hard)|topology/(orientation|plain)|api/(self|split|vertices))')
+
+# Files that take time in a solve and gain by -O3, as in Makefile. The others are compiled at -O2.
+HOT = re.compile(r'src/(base/largest|topology/(adjacency|edge_sort|representatives|weld))')
 
 # Names that headers of the system declare: a file without them may have them for its own.
 SYSTEM = {'link', 'index', 'read', 'write', 'pipe'}
@@ -130,12 +133,13 @@ class Amalgamation:
 	def add_source(self, path):
 		text = read(path)
 		sums = path.startswith('src/tangent/sums/')
-		self.lines += ['@sums'] * sums + ['@cold'] * bool(COLD.match(path))
+		level = '@cold' if COLD.match(path) else '@hot' if HOT.match(path) else ''
+		self.lines += ['@sums'] * sums + [level] * bool(level)
 		base = os.path.basename(path)[:-2]
 		self.add(path, self.renamed(own_names(text) & self.shared, base))
 		self.lines += ['#undef ' + name for name in re.findall(r'^#define (\w+)', text, re.M)
 			if self.is_elsewhere(name, path)]
-		self.lines += ['@warm'] * bool(COLD.match(path)) + ['#endif'] * sums
+		self.lines += ['@warm'] * bool(level) + ['#endif'] * sums
 
 	@staticmethod
 	def renamed(names, owner):
@@ -202,7 +206,7 @@ def main():
 	licence = ''.join((' * ' + line).rstrip() + '\n' for line in read('LICENSE').splitlines())
 	text = text.replace('@licence\n', licence).replace('@includes\n', '\n'.join(result.includes) + '\n')
 	body = result.text()
-	for name in ('passes', 'rest', 'cold', 'warm', 'sums'):
+	for name in ('passes', 'rest', 'cold', 'hot', 'warm', 'sums'):
 		part = re.search('@begin ' + name + '\n(.*?)@end\n', text, re.S)
 		text = text.replace(part[0], '')
 		body = body.replace('@' + name + '\n', part[1])

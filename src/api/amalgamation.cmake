@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-# For add_subdirectory(): the target nmtan::nmtan, a static library of nmtan.c. NMTAN_THREADS=ON gives it threads.
+# For add_subdirectory(): the target nmtan::nmtan, a static library of nmtan.c. NMTAN_THREADS=ON gives it threads,
+# NMTAN_SUMS=ON the methods that are not MikkTSpace's.
 cmake_minimum_required(VERSION 3.13)
 project(nmtan LANGUAGES C)
 option(NMTAN_THREADS "options->threads means something" OFF)
+option(NMTAN_SUMS "the methods that are not MikkTSpace's" OFF)
 add_library(nmtan STATIC nmtan.c nmtan.h)
 add_library(nmtan::nmtan ALIAS nmtan)
 target_include_directories(nmtan PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
@@ -14,4 +16,7 @@ if(NMTAN_THREADS)
 	find_package(Threads REQUIRED)
 	target_compile_definitions(nmtan PRIVATE NMTAN_THREADS)
 	target_link_libraries(nmtan PUBLIC Threads::Threads)
+endif()
+if(NMTAN_SUMS)
+	target_compile_definitions(nmtan PRIVATE NMTAN_SUMS)
 endif()

@@ -14,7 +14,7 @@ enum { COLUMNS = 5, GRID = COLUMNS * COLUMNS, RIM = 4 * (COLUMNS - 1), VERTICES 
 	TRIANGLES = 2 * (COLUMNS - 1) * (COLUMNS - 1) + 2 * RIM };
 
 /* The result of every build, and of those of nmtan.c that have MikkTSpace's methods alone. */
-#ifdef NMTAN_NO_SUMS
+#ifdef NT_NO_SUMS
 enum { LAST_METHOD = NMTAN_METHOD_MIKKTSPACE };
 static const uint64_t digest_of_all = 0x7cc3bc5d62f0313bu;
 #else

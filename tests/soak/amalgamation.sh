@@ -25,7 +25,7 @@ mapfile -t goldens < <(find data/golden -name '*.nmtg' | LC_ALL=C sort)
 run() {
 	local runner=$1
 	shift
-	"$@" -w -I$one tests/api/digest.c "$source" -o "$work/digest.exe" -lm || return
+	"$@" -w -DNMTAN_SUMS -I$one tests/api/digest.c "$source" -o "$work/digest.exe" -lm || return
 	$runner "$work/digest.exe" "${goldens[@]}" 2>"$work/said" || { cat "$work/said" >&2; return 1; }
 }
 source=$1/libnmtan.a

@@ -98,7 +98,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     with tempfile.TemporaryDirectory() as folder:
         library = os.path.join(folder, "libnmtan.so.0")
         subprocess.run([*os.environ.get("CC", "cc").split(), "-O2", "-fPIC", "-shared", "-pthread", "-DNMTAN_THREADS",
-                        "-Wl,-soname,libnmtan.so.0", "-o", library, "nmtan.c", "-lm"], check=True, cwd=HERE)
+                        "-DNMTAN_SUMS", "-Wl,-soname,libnmtan.so.0", "-o", library, "nmtan.c", "-lm"], check=True, cwd=HERE)
         path = write_wheel(version_of(os.path.join(HERE, "nmtan.h")), read(library), read(os.path.join(HERE, "LICENSE")),
                            wheel_directory)
     return os.path.basename(path)

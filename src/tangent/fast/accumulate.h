@@ -361,10 +361,10 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 			note_near(&fast->tail, &in, first, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 1);
+		solve_lanes(&in, &out, count);
 		if (fast->wants_more)
-			solve_lanes_more(&in, &out, offset, count);
-		else
-			solve_lanes_plain(&in, &out, offset, count);
+			solve_more(&in, &out, count);
+		judge(&in, &out, offset, fast->wants_more, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 2);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);

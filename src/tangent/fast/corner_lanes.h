@@ -67,7 +67,7 @@ typedef struct corner_lanes {
 
 /* Each corner's unit directions, the bits of what holds for it, and the cosine of its angle as seen along n, at most 1.
  * NaN may become a number: of a corner that is not sound nothing is used. */
-static inline NT_ALWAYS_INLINE void find_directions(corner_lanes a, float *NT_RESTRICT cosines, bool more, int i)
+static inline NT_ALWAYS_INLINE void find_directions(corner_lanes a, float *NT_RESTRICT cosines, int i)
 {
 	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
 	const float e[3] = {a.e[0][i], a.e[1][i], a.e[2][i]};
@@ -99,32 +99,35 @@ static inline NT_ALWAYS_INLINE void find_directions(corner_lanes a, float *NT_RE
 	a.sum[1][i] = u[1];
 	a.sum[2][i] = u[2];
 	memcpy(&a.sum[3][i], &state, sizeof state);
-	if (more) {
-		const float vr = 1.0f / sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-		a.extra[0][i] = vr * v[0];
-		a.extra[1][i] = vr * v[1];
-		a.extra[2][i] = vr * v[2];
-	}
 }
 
-/* Directions are weighted by the angle. */
-static inline NT_ALWAYS_INLINE void weigh_corner(corner_lanes a, const float *NT_RESTRICT cosines,
-	const lanes_out *out, bool more, int i)
+/* Directions are weighted by the angle, which replaces its cosine. */
+static inline NT_ALWAYS_INLINE void weigh_corner(corner_lanes a, float *NT_RESTRICT angles, int i)
 {
-	const float w = nt_acos(cosines[i]);
+	const float w = nt_acos(angles[i]);
 	a.sum[0][i] *= w;
 	a.sum[1][i] *= w;
 	a.sum[2][i] *= w;
-	if (more) {
-		a.extra[0][i] *= w;
-		a.extra[1][i] *= w;
-		a.extra[2][i] *= w;
-		a.extra[3][i] = w;
-		a.extra[4][i] = w * out->mag_u[i];
-		a.extra[5][i] = w * out->mag_v[i];
-		a.extra[6][i] = 0.0f;
-		a.extra[7][i] = 0.0f;
-	}
+	angles[i] = w;
+}
+
+/* The directions of v and the magnitudes, weighted, and the weight. */
+static inline NT_ALWAYS_INLINE void weigh_more(corner_lanes a, const float *NT_RESTRICT angles,
+	const lanes_out *out, int i)
+{
+	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
+	const float ot[3] = {a.v[0][i], a.v[1][i], a.v[2][i]};
+	const float nv = n[0] * ot[0] + n[1] * ot[1] + n[2] * ot[2];
+	const float x = ot[0] - nv * n[0], y = ot[1] - nv * n[1], z = ot[2] - nv * n[2];
+	const float r = 1.0f / sqrtf(x * x + y * y + z * z), w = angles[i], size = fabsf(out->area[i]);
+	a.extra[0][i] = r * x * w;
+	a.extra[1][i] = r * y * w;
+	a.extra[2][i] = r * z * w;
+	a.extra[3][i] = w;
+	a.extra[4][i] = w * (out->length_u[i] / size);
+	a.extra[5][i] = w * (out->length_v[i] / size);
+	a.extra[6][i] = 0.0f;
+	a.extra[7][i] = 0.0f;
 }
 
 #endif

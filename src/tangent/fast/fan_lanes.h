@@ -13,11 +13,19 @@
 #define HUB UINT32_MAX
 #define DOUBTFUL ((uint32_t)1 << 16)
 
-/* The loops over a fan are worth their code, but not where each byte of it is sent to a browser. */
-#ifdef __wasm__
+/* The loops over a fan are worth their code, but not if each byte of it is sent to a browser, or hardly used. */
+#if defined(__wasm__) || defined(NT_SET_LEAST)
+#define LEAST_CODE
 #define UNROLL
 #else
 #define UNROLL NT_UNROLL(8)
+#endif
+
+/* Large meshes have few blocks of these depths: 5 KB of code for 1 % of their time. */
+#ifdef NT_SMALL_CODE
+#define RARE_IS_WORTH_CODE(entries) ((entries).are_narrow)
+#else
+#define RARE_IS_WORTH_CODE(entries) true
 #endif
 
 /* The 16-bit halves in which a and b are the same: all bits of such a half, 0 in the others. */
@@ -191,15 +199,19 @@ static inline NT_ALWAYS_INLINE lanes count_fans_of(vertex_entries entries, const
 static inline NT_ALWAYS_INLINE lanes count_fans_at(vertex_entries entries, uint32_t depth, lanes degree,
 	lanes mask)
 {
+#ifndef LEAST_CODE
+	if (RARE_IS_WORTH_CODE(entries) && depth == 3)
+		return count_fans_of(entries, 3, degree, mask);
+	if (RARE_IS_WORTH_CODE(entries) && depth == 8)
+		return count_fans_of(entries, 8, degree, mask);
+#endif
 	switch (depth) {
-#ifndef __wasm__
+#ifndef LEAST_CODE
 	case 2: return count_fans_of(entries, 2, degree, mask);
-	case 3: return count_fans_of(entries, 3, degree, mask);
 	case 4: return count_fans_of(entries, 4, degree, mask);
 	case 5: return count_fans_of(entries, 5, degree, mask);
 	case 6: return count_fans_of(entries, 6, degree, mask);
 	case 7: return count_fans_of(entries, 7, degree, mask);
-	case 8: return count_fans_of(entries, 8, degree, mask);
 #endif
 	default: return count_fans_of(entries, depth, degree, mask);
 	}

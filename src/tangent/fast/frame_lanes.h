@@ -27,7 +27,7 @@ typedef struct lanes_in {
 typedef struct lanes_out {
 	NT_ALIGNED(64) float u[3][NT_TRIANGLES], v[3][NT_TRIANGLES]; /* unit directions of the frames */
 	float length_u[NT_TRIANGLES], length_v[NT_TRIANGLES]; /* of the directions before they are made unit vectors */
-	float mag_u[NT_TRIANGLES], mag_v[NT_TRIANGLES];
+	float angle[3][NT_TRIANGLES];       /* of corners */
 	float sum[3][4][NT_TRIANGLES];      /* corner, float of its nt_record */
 	float extra[3][8][NT_TRIANGLES];    /* corner, float of its nt_record_more */
 	float add[3][4 * NT_TRIANGLES];     /* corner, one nt_record after the other, in turned places */
@@ -40,8 +40,12 @@ typedef struct lanes_out {
 	int degenerate[NT_TRIANGLES];
 } lanes_out;
 
-/* Lanes of whole vectors: so no compiler has to see to those that are left over. */
-#define EACH_LANE(count) for (int i = 0; i < ((count) & -WIDTH); i++)
+/* Lanes of whole vectors, one vector after the other: gcc 12 makes the loops over lanes that are left over and copies
+ * for each number of vectors otherwise, twice the code in all. */
+#define EACH_LANE(count) \
+	NT_UNROLL(1) \
+	for (int vector = 0; vector < (count); vector += WIDTH) \
+		for (int i = vector; i < vector + WIDTH; i++)
 
 /* For 16 triangles, the edges from corner 0 to 1, from 0 to 2 and from 1 to 2. */
 typedef struct lanes_edges {
@@ -91,7 +95,7 @@ static inline NT_ALWAYS_INLINE float area_rounding(const uv_directions *d)
 
 /* The frames of lanes [0, count). */
 static inline NT_ALWAYS_INLINE void solve_frames(const lanes_in *NT_RESTRICT in,
-	const lanes_edges *NT_RESTRICT edges, lanes_out *NT_RESTRICT out, bool more, int i)
+	const lanes_edges *NT_RESTRICT edges, lanes_out *NT_RESTRICT out, int i)
 {
 	const uv_directions d = directions_of(in, edges, i);
 	const float area = d.t21x * d.t31y - d.t21y * d.t31x, sign = copysignf(1.0f, area);
@@ -100,8 +104,6 @@ static inline NT_ALWAYS_INLINE void solve_frames(const lanes_in *NT_RESTRICT in,
 	for (int c = 0; c < 3; c++)
 		out->u[c][i] = rs * d.s[c], out->v[c][i] = rt * d.t[c];
 	out->length_u[i] = d.s_length, out->length_v[i] = d.t_length;
-	if (more)
-		out->mag_u[i] = d.s_length / fabsf(area), out->mag_v[i] = d.t_length / fabsf(area);
 	out->area[i] = area;
 	out->doubt[i] = area_rounding(&d) - fabsf(area);
 }

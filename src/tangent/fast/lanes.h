@@ -11,6 +11,13 @@
 #include "tangent/fast/corner_lanes.h"
 #include "tangent/fast/frame_lanes.h"
 
+/* Without it gcc 12 makes no vectors of the loops over lanes. */
+#if WIDTH > 1
+#define UNROLL_CORNERS NT_UNROLL(3)
+#else
+#define UNROLL_CORNERS NT_UNROLL(1)
+#endif
+
 /* Corner k of 16 triangles. */
 static inline NT_ALWAYS_INLINE corner_lanes corner_of(const lanes_in *in,
 	const lanes_edges *edges, lanes_out *out, int k)
@@ -21,74 +28,76 @@ static inline NT_ALWAYS_INLINE corner_lanes corner_of(const lanes_in *in,
 		.extra = out->extra[k]};
 }
 
-/* Lanes [0, count), in a loop for each corner: in a single one more values are under way than there are registers. */
-static inline NT_ALWAYS_INLINE void solve_lanes(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out,
-	bool more, int count)
-{
-	if (count < WIDTH)
-		NT_UNREACHABLE; /* keeps gcc 12 from warning of loops that are not entered */
-	lanes_edges edges;
-	NT_ALIGNED(64) float cosines[3][NT_TRIANGLES];
-	EACH_LANE(count) {
-		make_edges(in, &edges, i);
-		solve_frames(in, &edges, out, more, i);
-	}
-	NT_UNROLL(3)
-	for (int k = 0; k < 3; k++)
-		EACH_LANE(count) find_directions(corner_of(in, &edges, out, k), cosines[k], more, i);
-	NT_UNROLL(3)
-	for (int k = 0; k < 3; k++)
-		EACH_LANE(count) weigh_corner(corner_of(in, &edges, out, k), cosines[k], out, more, i);
-	for (int k = 0; k < 3; k++)
-		interleave(out->sum[k][0], NT_TRIANGLES, (size_t)count, out->add[k]);
-}
-
 /* Whether all lanes are plain. */
-static inline bool are_plain(const lanes_out *out, size_t corners, size_t count)
+static inline bool are_plain(const lanes_out *out, size_t count)
 {
 	lanes all = ~(lanes){0};
 	for (size_t i = 0; i < count; i += WIDTH) {
 		all &= (load_lanes(out->area + i) & (TWO * 2 - 1)) + WELL_INSIDE;
 		lanes states = load_lanes(out->sum[0][3] + i);
-		for (size_t k = 1; k < corners; k++)
+		for (size_t k = 1; k < 3; k++)
 			states &= load_lanes(out->sum[k][3] + i);
 		all &= states << 30;
 	}
 	return !any_lane(~all & TWO);
 }
 
-/* Facts about solved lanes: so many corners' sums say whether they are plain. */
-static inline void judge(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out, float offset, size_t corners,
-	size_t lane_count)
+/* Facts about solved lanes; more than sums needs bounds that plain ones do not have. */
+static inline void judge(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out, float offset, bool more,
+	size_t count)
 {
-	out->plain = corners > 0 && are_plain(out, corners, lane_count);
+	const size_t lane_count = whole_lanes(count);
+	out->plain = !more && are_plain(out, lane_count);
 	if (!out->plain)
 		tell_apart(in, out, (int)lane_count);
 	if (offset != 0.0f)
 		doubt_stored(in, out, offset, (int)lane_count);
 }
 
-static void NT_NOINLINE solve_lanes_plain(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out,
-	float offset, size_t count)
+/* Whole vectors of lanes, in a loop for each corner: in a single one more values are under way than there are
+ * registers. */
+static inline NT_ALWAYS_INLINE void solve_vectors(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out, int end)
 {
-	const size_t lane_count = whole_lanes(count);
-	/* few triangles: 10 ns less without loops */
-	if (lane_count == WIDTH)
-		solve_lanes(in, out, false, WIDTH);
-	else
-		solve_lanes(in, out, false, (int)lane_count);
-	judge(in, out, offset, 3, lane_count);
+	if (end < WIDTH)
+		NT_UNREACHABLE; /* keeps gcc 12 from warning of loops that are not entered */
+	lanes_edges edges;
+	EACH_LANE(end) {
+		make_edges(in, &edges, i);
+		solve_frames(in, &edges, out, i);
+	}
+	UNROLL_CORNERS
+	for (int k = 0; k < 3; k++)
+		EACH_LANE(end) find_directions(corner_of(in, &edges, out, k), out->angle[k], i);
+	UNROLL_CORNERS
+	for (int k = 0; k < 3; k++)
+		EACH_LANE(end) weigh_corner(corner_of(in, &edges, out, k), out->angle[k], i);
+	for (int k = 0; k < 3; k++)
+		interleave(out->sum[k][0], NT_TRIANGLES, (size_t)end, out->add[k]);
 }
 
-static void NT_NOINLINE solve_lanes_more(const lanes_in *in, lanes_out *out, float offset, size_t count)
+static void NT_NOINLINE solve_lanes(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out, size_t count)
+{
+	const int end = (int)whole_lanes(count);
+#ifndef NT_SMALL_CODE
+	/* few triangles: 10 ns less without loops */
+	if (end == WIDTH) {
+		solve_vectors(in, out, WIDTH);
+		return;
+	}
+#endif
+	solve_vectors(in, out, end);
+}
+
+/* Adds the numbers behind bitangents and magnitudes to solved lanes. */
+static void NT_NOINLINE solve_more(const lanes_in *in, lanes_out *out, size_t count)
 {
 	const size_t lane_count = whole_lanes(count);
-	solve_lanes(in, out, true, (int)lane_count);
 	for (int k = 0; k < 3; k++) {
+		const corner_lanes corner = {.n = in->row[k] + 3, .v = out->v, .extra = out->extra[k]};
+		EACH_LANE((int)lane_count) weigh_more(corner, out->angle[k], out, i);
 		interleave(out->extra[k][0], NT_TRIANGLES, lane_count, out->more[k][0]);
 		interleave(out->extra[k][4], NT_TRIANGLES, lane_count, out->more[k][1]);
 	}
-	judge(in, out, offset, 0, lane_count);
 }
 
 #endif

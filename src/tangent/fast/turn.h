@@ -18,7 +18,7 @@
 
 /* Elements of two vectors, one after the other, for shuffles: every other 16-byte part; every other element; one
  * vector's elements in turned places, and out of them. Without vectors a lane is a value, and nothing is turned. */
-#if !NT_VECTORS
+#if !NT_VECTORS || defined(NT_SET_LEAST)
 #define WIDTH 1
 #elif defined(__AVX512F__) || defined(NT_SET_AVX512)
 #define WIDTH 16
