@@ -307,8 +307,13 @@ static void append_fixed(nt_buffer *out, const nt_summary *s, const nt_settings 
 		append_count(out, s->fixed[code], code == NT_CODE_NMAP_GREEN_DOWN ? "normal map" : "primitive");
 		first = false;
 	}
-	if (settings->fix && first)
-		nt_buffer_text(out, ", nothing to fix");
+	if (!settings->fix || !first)
+		return;
+	if (s->solved_count) {
+		nt_buffer_text(out, ", made the tangents of ");
+		append_count(out, s->solved_count, "primitive");
+	}
+	nt_buffer_format(out, ", nothing%s to fix", s->solved_count ? " else" : "");
 }
 
 /* "nmtan: a.obj -> b.glb" */

@@ -522,6 +522,10 @@ is "$(value r.json 'sorted({f["code"] for f in r["files"][0]["findings"] if f["s
 run --fix --manifest=m.json fixed.gltf again.gltf
 says "nothing to fix"
 is "$(value m.json 'r["fixed"]')" "{}"
+run --fix "$data/quad.obj" quad.glb
+says ", made the tangents of 1 primitive, nothing else to fix, "
+run --fix quad.glb again.glb
+says ", nothing to fix, "
 same fixed.gltf again.gltf
 # what the user calls an info is left; an info alone is no reason
 run --fix --ignore=NMAP_GREEN_DOWN --severity=TAN_BAD_W=info three.gltf left.gltf
@@ -785,5 +789,25 @@ repairs POS_ROUNDED conversion
 run --check -q --report=all.sarif --fail-on=never m.gltf
 is "$(value all.sarif '" ".join(c["id"] for c in r["runs"][0]["tool"]["driver"]["rules"] if c["help"]["text"].endswith(" IN OUT"))' | tr ' ' '\n' | sort)" \
 	"$(tr ' ' '\n' <<<"${codes_repaired# }" | sort -u)"
+
+scene "commands that differ are joined to one, and that does what each of them does"
+mapped
+green_down down.png
+while IFS='|' read -r options edit; do
+	gltf m.gltf faulty "const p = g.meshes[0].primitives[0], a = p.attributes, n = a.TANGENT, b = bytes[0];
+		const beside = uv => g.meshes[0].primitives.push({...p, attributes: {NORMAL: a.NORMAL, TEXCOORD_0: add('VEC2', 5126, uv, {}),
+			POSITION: add('VEC3', 5126, [1, 0, 0, 2, 0, 0, 2, 1, 0, 1, 1, 0], {})}}); $edit"
+	run --check --fail-on=never faulty.gltf
+	is "$options: $(sed -n 's/^  All of these in one command: //p' "$WORK/out.txt")" \
+		"$options: nmtan $options faulty.gltf faulty-repaired.gltf"
+	run -q $options faulty.gltf faulty-repaired.gltf
+	exits 0
+	run --check --fail-on=never faulty-repaired.gltf
+	is "$options: $(grep -c "nmtan " "$WORK/out.txt")" "$options: 0"
+	rm faulty*
+done <<'END'
+--fix --across=mesh|b.fill(0, at(n, 0), at(n, 0) + 12); beside([1, 1, 2, .5, 2, -.5, 1, 0])
+--existing=replace --across=mesh --flip-green=auto|[0, 1, 2, 3].forEach(i => { b.writeFloatLE(0, at(n, i)); b.writeFloatLE(1, at(n, i) + 4); }); g.images[0].uri = 'down.png'; beside([1, 1, 2, .5, 2, -.5, 1, 0])
+END
 
 done_testing

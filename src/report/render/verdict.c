@@ -7,6 +7,8 @@
  */
 #include "report/render/words.h"
 
+#include <string.h>
+
 static nt_advice advice_of(const nt_report_finding *finding)
 {
 	const nt_advice advice = nt_code_info(finding->code)->advice;
@@ -64,6 +66,66 @@ static void append_verdict(const nt_report *report, nt_buffer *out)
 		nt_buffer_text(out, ": ");
 		nt_command_text(first->repair, report->shown, NULL, out);
 	}
+}
+
+/* ---- several commands ---- */
+
+/* Whether a finding's command is one of several that the user may want together: not if it names a file, of which there
+ * may be a choice, and not that of the pair, which is right as it is. */
+static bool joins_in(const nt_report_finding *f)
+{
+	return f->repair && strncmp(f->repair, "--normal-map", 12) != 0 && f->code != NT_CODE_TAN_GREEN_PAIR;
+}
+
+/* Adds those of the options that are not there yet, but for a repair if `replaces`. */
+static void add_options(const char *options, bool replaces, nt_buffer *all)
+{
+	static const char repairs[] = "--existing=repair";
+	for (size_t length; *options; options += length + (options[length] == ' ')) {
+		length = strcspn(options, " ");
+		const char *found = all->data ? strstr(all->data, options) : NULL;
+		if (replaces && length == sizeof repairs - 1 && strncmp(options, repairs, length) == 0)
+			continue;
+		if (!found || (found[length] != ' ' && found[length] != '\0'))
+			nt_buffer_format(all, "%s%.*s", all->size ? " " : "", (int)length, options);
+	}
+}
+
+void nt_put_together(const nt_report *report, const char *before, void (*put)(const char *text, nt_buffer *out),
+	nt_buffer *out)
+{
+	nt_buffer all = {0}, command = {0};
+	const char *first = NULL;
+	bool differ = false, fixes = false, turns = false, drops = false, repairs = false, replaces = false;
+	for (size_t i = 0; i < report->new_count; i++) {
+		const nt_report_finding *f = &report->findings[i];
+		if (!joins_in(f))
+			continue;
+		const bool is_fix = strcmp(f->repair, "--fix") == 0;
+		first = first ? first : f->repair;
+		differ |= strcmp(f->repair, first) != 0;
+		drops |= strstr(f->repair, "=drop") != NULL;
+		repairs |= strstr(f->repair, "--existing=re") != NULL;
+		replaces |= strstr(f->repair, "--existing=replace") != NULL;
+		fixes |= is_fix;
+		turns |= is_fix && f->code == NT_CODE_NMAP_GREEN_DOWN;
+	}
+	if (!differ || (drops && (fixes || repairs)))
+		return;
+	/* --fix and --existing exclude each other; what repairs all tangents leaves none that --fix would choose */
+	for (size_t i = 0; i < report->new_count; i++) {
+		const nt_report_finding *f = &report->findings[i];
+		if (joins_in(f) && !(repairs && strcmp(f->repair, "--fix") == 0))
+			add_options(f->repair, replaces, &all);
+	}
+	if (turns && repairs)
+		add_options("--flip-green=auto", false, &all);
+	nt_command_text(all.data ? all.data : "", report->shown, NULL, &command);
+	nt_buffer_text(out, before);
+	put(command.data ? command.data : "", out);
+	nt_buffer_text(out, "\n");
+	nt_buffer_free_into(&all, out);
+	nt_buffer_free_into(&command, out);
 }
 
 void nt_put_verdict(const nt_report *report, void (*put)(const char *text, nt_buffer *out), nt_buffer *out)

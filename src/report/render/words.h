@@ -56,6 +56,11 @@ void nt_totals_text(const nt_totals *totals, nt_buffer *out);
  * any bytes. */
 void nt_put_verdict(const nt_report *report, void (*put)(const char *text, nt_buffer *out), nt_buffer *out);
 
+/* Several findings name different commands, which write one output: the command that does what all of them do, with
+ * `before` in front and a line's end behind. Nothing if they name one, or if none does all. */
+void nt_put_together(const nt_report *report, const char *before, void (*put)(const char *text, nt_buffer *out),
+	nt_buffer *out);
+
 /* Findings that --max-issues left out, between the two texts: "3 more: 2 UV_MIRROR_SEAM, 1 TAN_UNUSED". Nothing where
  * it left nothing out. */
 void nt_dropped_text(const nt_report *report, const char *before, const char *after, nt_buffer *out);
