@@ -826,7 +826,7 @@ int main(int argc, char **argv)
 		nt_codes_list(&text);
 		break;
 	case NT_ACTION_EXPLAIN:
-		nt_options_explain(command.explain, &text);
+		nt_options_explain(&command, &text);
 		break;
 	case NT_ACTION_COMPLETION_BASH:
 		nt_options_bash(&text);

@@ -121,17 +121,22 @@ void nt_options_usage(nt_buffer *out)
 		"       nmtan -h shows examples, nmtan --help all options\n");
 }
 
-void nt_options_explain(const char *word, nt_buffer *out)
+void nt_options_explain(const nt_command *command, nt_buffer *out)
 {
 	bool chosen[NT_CODE_COUNT] = {false}, first = true;
 	nt_error unused;
-	nt_match_codes("explain", word, chosen, &unused);
+	for (size_t i = 0; i < command->explain.count; i++)
+		nt_match_codes("explain", command->explain.items[i], chosen, &unused);
+	for (size_t i = 0; i < command->operand_count; i++)
+		nt_match_codes("explain", command->operands[i], chosen, &unused);
 	for (unsigned code = 0; code < NT_CODE_COUNT; code++) {
 		const nt_code_row *row = nt_code_info((nt_code)code);
 		if (!chosen[code])
 			continue;
-		nt_buffer_format(out, "%s%s (%s)\n  %s\n  Remedy: %s\n  Smallest example: %s\n", first ? "" : "\n",
-			row->name, nt_severity_name(row->severity), row->meaning, row->remedy, row->example);
+		nt_buffer_format(out, "%s%s (%s)\n  %s\n  Remedy: ", first ? "" : "\n", row->name,
+			nt_severity_name(row->severity), row->meaning);
+		nt_remedy_text((nt_code)code, row->repair, NULL, out);
+		nt_buffer_format(out, "\n  Smallest example: %s\n", row->example);
 		first = false;
 	}
 }

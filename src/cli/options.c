@@ -261,9 +261,14 @@ static const char *find_nearest(const char *name, size_t length, const char *(*n
 	return nearest;
 }
 
-nt_status nt_match_codes(const char *option, const char *word, bool chosen[NT_CODE_COUNT], nt_error *error)
+/* One word of a list. */
+static nt_status match_code(const char *option, const char *spelled, bool chosen[NT_CODE_COUNT], nt_error *error)
 {
 	bool found = false;
+	char word[128];
+	snprintf(word, sizeof word, "%s", spelled);
+	for (char *c = word; *c; c++)
+		*c = (char)(*c >= 'a' && *c <= 'z' ? *c - 'a' + 'A' : *c);
 	for (size_t code = 0; code < NT_CODE_COUNT; code++) {
 		const bool matches = fnmatch(word, code_name(code), 0) == 0;
 		chosen[code] |= matches;
@@ -272,8 +277,20 @@ nt_status nt_match_codes(const char *option, const char *word, bool chosen[NT_CO
 	if (found)
 		return NT_OK;
 	const char *nearest = find_nearest(word, strlen(word), code_name, NT_CODE_COUNT);
-	return nt_fail(error, NT_ERROR_USAGE, "--%s: '%s' is no code of a finding; %s%s%s", option, word,
+	return nt_fail(error, NT_ERROR_USAGE, "--%s: '%s' is no code of a finding; %s%s%s", option, spelled,
 		nearest ? "did you mean " : "--list-codes shows them all", nearest ? nearest : "", nearest ? "?" : "");
+}
+
+nt_status nt_match_codes(const char *option, const char *list, bool chosen[NT_CODE_COUNT], nt_error *error)
+{
+	nt_status status = NT_OK;
+	for (size_t length; *list && !status; list += length + (list[length] == ',')) {
+		char word[128];
+		length = strcspn(list, ",");
+		snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), list);
+		status = match_code(option, word, chosen, error);
+	}
+	return status;
 }
 
 /* Whether the next word is the value of an option that needs one. One that is an option itself is none, as in
@@ -554,6 +571,19 @@ void nt_options_defaults(nt_command *command)
 	command->max_issues = -1;
 }
 
+/* --explain A B: operands are codes, too. */
+static nt_status parse_explain(nt_command *command, nt_error *error)
+{
+	bool chosen[NT_CODE_COUNT] = {false};
+	nt_status status = NT_OK;
+	command->action = NT_ACTION_EXPLAIN;
+	for (size_t i = 0; i < command->explain.count && !status; i++)
+		status = nt_match_codes("explain", command->explain.items[i], chosen, error);
+	for (size_t i = 0; i < command->operand_count && !status; i++)
+		status = nt_match_codes("explain", command->operands[i], chosen, error);
+	return status;
+}
+
 nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error)
 {
 	parser p = {.command = command, .error = error};
@@ -587,11 +617,8 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 	if (command->settings.check && !given(&p, "fail-on"))
 		command->fail_on = NT_FAIL_ON_ERROR;
 	command->settings.dry_run |= command->settings.check;
-	bool chosen[NT_CODE_COUNT] = {false};
-	if (command->action == NT_ACTION_RUN && command->explain) {
-		command->action = NT_ACTION_EXPLAIN;
-		return nt_match_codes("explain", command->explain, chosen, error);
-	}
+	if (command->action == NT_ACTION_RUN && command->explain.count)
+		return parse_explain(command, error);
 	if (command->action != NT_ACTION_RUN)
 		return NT_OK;
 	command->settings.texture_path_count = command->texture_paths.count;

@@ -46,9 +46,8 @@ typedef struct nt_command {
 	bool timing;
 	const char *report;    /* file, "-"; NULL: none */
 	int report_format;     /* 1 + nt_report_format; 0: by name */
-	const char *explain;   /* CODE, or a pattern; NULL: nothing */
-	const char *ignore;    /* CODE,CODE; NULL: nothing */
-	const char *severity;  /* CODE=LEVEL,CODE=LEVEL; NULL: none */
+	nt_words explain, ignore; /* lists of codes or patterns: CODE,CODE */
+	nt_words severity;     /* lists CODE=LEVEL,CODE=LEVEL */
 	const char *baseline;  /* file; NULL: none */
 	const char *path_prefix; /* before the names of files in reports; NULL: nothing */
 	nt_words texture_paths;  /* those of the settings */
@@ -105,12 +104,13 @@ void nt_options_help(nt_buffer *out);
 void nt_options_first_help(nt_buffer *out);
 void nt_options_usage(nt_buffer *out);
 
-/* Sets what a word means, which is the code of a finding or a pattern with * and ?. An unknown one is NT_ERROR_USAGE,
- * which names the option and, if there is one, the code that was probably meant. */
-nt_status nt_match_codes(const char *option, const char *word, bool chosen[NT_CODE_COUNT], nt_error *error);
+/* Sets what the words of a list mean, which are codes of findings, in any case, or patterns with * and ?, separated by
+ * commas. An unknown one is NT_ERROR_USAGE, which names the option and, if there is one, the code that was probably
+ * meant. */
+nt_status nt_match_codes(const char *option, const char *list, bool chosen[NT_CODE_COUNT], nt_error *error);
 
-/* Appends what there is to know of the codes that a word of nt_match_codes() means. */
-void nt_options_explain(const char *word, nt_buffer *out);
+/* Appends what there is to know of the codes that --explain and the operands mean, which nt_options_parse() checked. */
+void nt_options_explain(const nt_command *command, nt_buffer *out);
 
 /* Completion scripts for the two shells. */
 void nt_options_bash(nt_buffer *out);

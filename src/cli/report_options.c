@@ -21,15 +21,6 @@ static bool next_word(const char **list, char *word, size_t size)
 	return true;
 }
 
-static nt_status read_ignored(nt_report_options *options, const char *list, nt_error *error)
-{
-	char word[128];
-	nt_status status = NT_OK;
-	while (!status && next_word(&list, word, sizeof word))
-		status = nt_match_codes("ignore", word, options->ignore, error);
-	return status;
-}
-
 static nt_status read_severities(nt_report_options *options, const char *list, nt_error *error)
 {
 	char word[128];
@@ -139,16 +130,17 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 {
 	enum { MOST_READ = 10 };
 	*plan = (nt_report_plan){
-		.wanted = command->settings.check || command->report || command->ignore || command->severity ||
-			command->fail_on != NT_FAIL_ON_NEVER};
+		.wanted = command->settings.check || command->report || command->ignore.count ||
+			command->severity.count || command->fail_on != NT_FAIL_ON_NEVER};
 	plan->options.min_severity = (nt_severity)least_severity[command->min_severity];
 	nt_status status = check_outputs(command, error);
 	if (!status)
 		status = check_diff(command, error);
-	if (!status)
-		status = read_severities(&plan->options, command->severity, error);
-	if (!status) /* last: a later level does not bring back what is ignored */
-		status = read_ignored(&plan->options, command->ignore, error);
+	for (size_t i = 0; i < command->severity.count && !status; i++)
+		status = read_severities(&plan->options, command->severity.items[i], error);
+	/* last: a later level does not bring back what is ignored */
+	for (size_t i = 0; i < command->ignore.count && !status; i++)
+		status = nt_match_codes("ignore", command->ignore.items[i], plan->options.ignore, error);
 	if (!status)
 		status = choose_target(plan, command, colour, error);
 	/* people read a few findings; programs, and pages that unfold, take all */
@@ -165,6 +157,9 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 	}
 	if (!status && command->baseline) {
 		status = nt_baseline_open(&plan->baseline, command->baseline, &plan->paths, error);
+		if (status == NT_ERROR_MISSING)
+			nt_fail(error, status, "--baseline: there is no file '%s'; to make it: nmtan --check "
+				"--report=%s INPUT...", command->baseline, command->baseline);
 		plan->options.baseline = &plan->baseline;
 	}
 	const bool page_wanted = target->path && target->format == NT_REPORT_HTML;

@@ -194,7 +194,7 @@ run --check --severity=UV_MIRROR_SEAM=error head.obj
 exits 6
 run --check --severity=NORMALS_MADE=error,NORMALS_MADE=info --fail-on=warning head.obj
 exits 0
-for word in UV_MIRROR 'UV_MIRROR*X' uv_mirror_seam; do
+for word in UV_MIRROR 'UV_MIRROR*X'; do
 	for option in ignore severity explain; do
 		run --check "--$option=$word$([ $option != severity ] || echo =error)" head.obj
 		exits 1
@@ -204,6 +204,19 @@ done
 run --explain=UV_MIROR_SEAM
 exits 1
 says "did you mean UV_MIRROR_SEAM?"
+run --explain=uv_miror_seam
+exits 1
+says "did you mean UV_MIRROR_SEAM?"
+for words in "--ignore=uv_*,[NT]* --ignore=mtl_missing" "--severity=Uv_*=off,[NT]*=off --severity=MTL_MISSING=off"; do
+	run --check --fail-on=info $words head.obj
+	exits 0
+done
+run --check --baseline=none.json head.obj
+exits 2
+says "--baseline: there is no file 'none.json'; to make it: nmtan --check --report=none.json INPUT..."
+run -q --check --fail-on=never --report=none.json head.obj
+run -q --check --fail-on=info --baseline=none.json head.obj
+exits 0
 run --check --fail-on=info --ignore='UV_*,[NT]*,MTL_MISSING' head.obj # also NORMALS_MADE, TAN_NO_UV
 exits 0
 run --check --severity='UV_MIRROR_*=error' head.obj

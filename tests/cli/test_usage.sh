@@ -53,6 +53,16 @@ is "$(sed -n '2s/^  //p' ../out.txt)" "$("$NMTAN" --list-codes | sed -n 's/^UV_M
 run --explain='UV_MIRROR_*'
 is "$(grep -c '^UV_MIRROR_[A-Z]* (' ../out.txt)" "$("$NMTAN" --list-codes | grep -c '^UV_MIRROR_')"
 
+for words in "--explain UV_MIRROR_SEAM TAN_ZERO" "--explain=TAN_ZERO,uv_mirror_seam" "--explain TAN_ZERO --explain UV_MIRROR_SEAM"; do
+	run $words
+	is "$(sed -n 's/ (.*//p' ../out.txt | grep '^[A-Z]' | tr '\n' ' ')" "UV_MIRROR_SEAM TAN_ZERO "
+done
+run --explain TAN_ZERO head.obj
+exits 1
+says "--explain: 'head.obj' is no code"
+run --explain TAN_ZERO
+prints "  Remedy: $(sed -n '/ROW(TAN_ZERO,/,/ROW(TAN_NOT/{s/^\t\t"\(.*\)\.",$/\1/p}' "$ROOT/src/report/codes.c" | tail -1): nmtan --fix IN OUT"
+
 scene "no words at all are a mistake, told on standard error"
 run
 exits 1

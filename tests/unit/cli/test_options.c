@@ -286,7 +286,6 @@ TEST(of_choices_the_last_counts_but_names_and_lists_stand_once)
 	assert_int_equal(c.settings.threads, 3);
 	refuses("--report is there twice: 'r.xml' and 'r.sarif'",
 		WORDS("--check", "--report=r.xml", "--report=r.sarif", "a"));
-	refuses("--ignore is there twice", WORDS("--check", "--ignore=A", "--ignore", "B", "a"));
 	refuses("--directory is there twice", WORDS("-d", "x", "-dy", "a"));
 }
 
