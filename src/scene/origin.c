@@ -139,8 +139,11 @@ static void report(nt_scene *scene, nt_code code, const rounding *r, double edge
 		snprintf(detail + length, sizeof detail - (size_t)length,
 			"%sby up to %.3g, which is %.2g of the median edge %.3g",
 			length ? "; float would round positions " : "", r->largest, r->largest / edge, edge);
+	nt_place place;
+	nt_place_clear(&place);
+	strncpy(place.file, scene->path, sizeof place.file - 1);
 	nt_finding_put(&scene->findings, (nt_finding){.code = code, .count = length ? 1 : r->count, .detail = detail,
-		.stays = stays}, NULL);
+		.stays = stays}, &place);
 }
 
 void nt_origin_settle(nt_scene *scene, const nt_origin *wished, const nt_exact *exact, float *positions)

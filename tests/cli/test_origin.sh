@@ -344,6 +344,14 @@ prints "at (431234.12 5412345.67 101)"
 prints "positions are relative to an origin: 431234.3,5412345.9,101; "
 run --check flat.obj --report-format=csv
 prints ",431234.12,5412345.67,101,"
+# two quads that are mirrored along x = 431234.12
+printf '%s\n' 'v 431234.12 5412345.67 101' 'v 431235.12 5412345.67 101' 'v 431235.12 5412346.67 101' \
+	'v 431234.12 5412346.67 101' 'v 431233.12 5412345.67 101' 'v 431233.12 5412346.67 101' 'vt 0 0' 'vt 1 0' 'vt 1 1' 'vt 0 1' \
+	'f 1/1 2/2 3/3 4/4' 'f 5/2 1/1 4/4 6/3' >mirror.obj
+run --check mirror.obj
+prints "seam of 1 edge: seam 0, an open chain, length 1,"
+prints "plane x = 431234.12"
+prints "at (431234.12 5412346.67 101)"
 run -q --manifest=m.json far.obj far.gltf
 grep -q '"origin":\[431234.3,5412345.9,101\]' m.json || wrong "$(cat m.json)"
 run -q --manifest=m.json near.obj near.gltf
