@@ -12,6 +12,7 @@
 enum { MOST_VERTICES = 3 * NT_SMALL_TRIANGLES, LEAST_SLOT_BITS = 5, MOST_SLOT_BITS = 10 };
 static_assert(2 * MOST_VERTICES <= 1 << MOST_SLOT_BITS, "a table that is half full at most");
 
+/* Begins the block. */
 typedef struct small_room {
 	nt_weld_row *rows;
 	nt_record *records[2];
@@ -20,9 +21,9 @@ typedef struct small_room {
 	size_t bounds[2];
 } small_room;
 
-static void *take(char **at, size_t bytes)
+static nt_memory take(char **at, size_t bytes)
 {
-	void *const taken = *at;
+	char *const taken = *at;
 	*at += (bytes + 63) / 64 * 64;
 	return taken;
 }
@@ -33,7 +34,8 @@ static small_room *make_room(nt_scratch *scratch, size_t vertices, size_t triang
 	const size_t bytes = vertices * sizeof(nt_weld_row) +
 		step * (2 * sizeof(nt_record) + (1 + NT_FAN_DEPTH) * sizeof(uint32_t) + 1) +
 		triangles * (3 * sizeof(uint32_t) + 1);
-	char *at = nt_scratch_alloc(scratch, 1, bytes + 64 * sizeof(small_room));
+	enum { AND_ROOM = 1024 }; /* itself, and what nine arrays are rounded up by */
+	char *at = nt_scratch_alloc(scratch, 1, bytes + AND_ROOM);
 	if (!at)
 		return NULL;
 	small_room *room = take(&at, sizeof *room);
