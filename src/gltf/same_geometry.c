@@ -100,6 +100,7 @@ static nt_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
 	uint64_t mode = 4;
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
 	put_number(job, mesh->decision);
+	put_number(job, mesh->keeps_inverted);
 	put_number(job, mode);
 	put_number(job, mesh->has_polygons);
 	for (size_t i = 0; i < count; i++)
