@@ -109,7 +109,7 @@ static nt_status look_for_image(nt_scene *scene, size_t index, bool linked, nt_e
 	enum { MOST_OF_POINTER = 1024 };
 	nt_gltf *document = scene->source;
 	size_t length;
-	const char *path,
+	const char *path = "",
 		*uri = nt_gltf_external_uri(nt_json_at(nt_gltf_root_member(document, "images"), index), &length);
 	nt_error failure;
 	struct stat info;
@@ -126,9 +126,15 @@ static nt_status look_for_image(nt_scene *scene, size_t index, bool linked, nt_e
 	status = open_file(document, uri, length, &file, &path, &failure);
 	if (!status)
 		nt_file_close(&file);
-	else if (status != NT_ERROR_MEMORY)
+	/* a file that may be read and cannot is the system's fault, as it is if the image is to be embedded */
+	if (status == NT_ERROR_MEMORY || (status == NT_ERROR_IO && access(path, R_OK) == 0)) {
+		*error = failure;
+		snprintf(error->place.pointer, sizeof error->place.pointer, "/images/%zu", index);
+		return status;
+	}
+	if (status)
 		tell(scene, index, NT_CODE_IMAGE_MISSING, failure.message);
-	return status == NT_ERROR_MEMORY ? nt_fail_memory(error) : NT_OK;
+	return NT_OK;
 }
 
 nt_status nt_gltf_look_for_images(nt_scene *scene, bool linked, nt_error *error)
