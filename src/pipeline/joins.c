@@ -324,6 +324,12 @@ static nt_status solve_target(const whole *w, uint32_t target)
 	free(tangents);
 	if (!status && turns)
 		status = measure_halfway(w, target, positions, normals);
+	for (size_t i = 0; !status && i < w->join->part_count; i++) {
+		nt_mesh *part = w->join->parts[i];
+		nt_morph *morph = is_solved_here(w, part) ? find_morph(part, target) : NULL;
+		if (morph && !nt_morphs_are_restored(part))
+			status = nt_morphs_classify(part, morph);
+	}
 	free(positions);
 	free(normals);
 	return status;

@@ -7,8 +7,17 @@
 
 #include "scene/scene.h"
 
-/* Solves the mesh as each of its targets moves it: morph->corner_tangents, and
- * mesh->morph_turned. Blocks are malloc'ed. */
+/* Whether authored tangents come back into those of corners once all targets are solved (nt_restore_authored). */
+static inline bool nt_morphs_are_restored(const nt_mesh *mesh)
+{
+	return mesh->decision == NT_DECISION_REPAIR && mesh->tangents && mesh->texcoords;
+}
+
+/* Takes the corner tangents of a target, which go, into classes of corners. */
+nt_status nt_morphs_classify(nt_mesh *mesh, nt_morph *morph);
+
+/* Solves the mesh as each of its targets moves it: classes, or if authored tangents come back morph->corner_tangents;
+ * and mesh->morph_turned. Blocks are malloc'ed. */
 nt_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options);
 
 /* How many triangles a target turns to the other side of their normals. */
@@ -28,7 +37,7 @@ void nt_morphs_compare_halfway(const nt_mesh *mesh, const nmtan_mesh *base, cons
 
 /* Writes to keys [corner_count][4] numbers that are equal for two corners of a vertex exactly where
  * the base's and all targets' tangents are: what splitting goes by. */
-nt_status nt_morphs_keys(const nt_mesh *mesh, const nmtan_mesh *view, float *keys);
+nt_status nt_morphs_keys(nt_mesh *mesh, const nmtan_mesh *view, float *keys);
 
 /* After a split by keys: vertex tangents of the base and of every target. Frees the corners' tangents. */
 nt_status nt_morphs_finish(nt_mesh *mesh);

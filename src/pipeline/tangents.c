@@ -125,7 +125,7 @@ static nt_status solve_corners(nt_mesh *mesh, const nmtan_mesh *view,
 /* With --existing=repair what was solved, for targets too, gives way to what is there. */
 static void restore(nt_mesh *mesh)
 {
-	if (mesh->decision == NT_DECISION_REPAIR && mesh->tangents && mesh->texcoords)
+	if (nt_morphs_are_restored(mesh))
 		nt_restore_authored(mesh, mesh->corner_tangents);
 }
 

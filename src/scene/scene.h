@@ -127,6 +127,8 @@ typedef struct nt_morph {
 	float *positions;       /* [vertex_count][3] moved; NULL: as the base */
 	float *normals;         /* [vertex_count][3] moved, unit; NULL: as the base */
 	float *corner_tangents; /* [corner_count][4] while it is being solved */
+	float *class_tangents;  /* [class_count][3] from then until vertices are split: see pipeline/morphs.c */
+	size_t class_count;
 	float *vertex_tangents; /* [vertex_count + split.source_count][3]; NULL until solved */
 	size_t halfway_triangles; /* where adding half of the deltas is wrong by more than 5 degrees */
 	double halfway_degrees;   /* by how much at most */
@@ -303,6 +305,7 @@ typedef struct nt_mesh {
 
 	nt_morph *morphs;         /* [morph_count] targets that move positions or normals; filled by load() */
 	size_t morph_count;
+	struct nt_corner_classes *corner_classes; /* while they are solved: pipeline/morphs.c */
 	size_t morph_turned;      /* triangles that a target turns to the other side of their normals: no w
 	                             serves them with and without it; counted once for each target */
 

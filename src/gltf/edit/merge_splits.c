@@ -447,7 +447,7 @@ static const nt_mesh *lone_mesh(const nt_vertex_pool *pool)
 		const nt_mesh *mesh = nt_pool_mesh(pool, i);
 		if (!nt_pool_is_solved(pool, i) || (lone && mesh->plan.same_as == lone))
 			continue;
-		if (lone || mesh->merged || mesh->normals_made || mesh->morph_count ||
+		if (lone || mesh->merged || mesh->normals_made ||
 			mesh->vertex_count != mesh->source_vertex_count)
 			return NULL;
 		lone = mesh;
@@ -478,9 +478,13 @@ static bool borrow_split(nt_pool_vertices *vertices, const nt_mesh *mesh, nt_are
 	vertices->indices = nt_arena_alloc(tables, user_count, sizeof *vertices->indices);
 	vertices->changed = nt_arena_alloc(tables, user_count, sizeof *vertices->changed);
 	vertices->sets = nt_arena_alloc(tables, 1, sizeof *vertices->sets);
-	if (!vertices->indices || !vertices->changed || !vertices->sets)
+	float **morphs = nt_arena_alloc(tables, mesh->morph_count, sizeof *morphs);
+	if (!vertices->indices || !vertices->changed || !vertices->sets || !morphs)
 		return false;
-	vertices->sets[0] = (nt_pool_set){.tangents = mesh->split.vertex_tangents};
+	for (size_t k = 0; k < mesh->morph_count; k++)
+		morphs[k] = mesh->morphs[k].vertex_tangents;
+	vertices->sets[0] = (nt_pool_set){.tangents = mesh->split.vertex_tangents, .morphs = morphs,
+		.morph_count = mesh->morph_count};
 	uint32_t *triangles = split_triangles(mesh, tables);
 	for (size_t i = 0; i < user_count; i++) {
 		const bool solved = nt_pool_is_solved(vertices->pool, i);
