@@ -296,10 +296,13 @@ static void add_scene_finding(nt_check *check, const mesh_table *table, const nt
 	if (found->code == NT_CODE_UV_DEGENERATE_TRIANGLE || found->code == NT_CODE_UV_UNMAPPED ||
 		found->code == NT_CODE_POS_DEGENERATE_TRIANGLE)
 		return;
+	const char *repair = found->repair; /* its text goes with the scene */
+	if (repair)
+		repair = nt_arena_text(&check->report->arena, repair, strlen(repair));
 	nt_report_finding finding = {.code = found->code,
 		.mesh = find_mesh(table, &found->place),
 		.count = found->count,
-		.repair = found->repair,
+		.repair = repair,
 		.stays = found->stays,
 		.share = 1.0,
 		.noted = noted,
@@ -317,7 +320,7 @@ static void add_scene_finding(nt_check *check, const mesh_table *table, const nt
 		finding.votes_side = found->votes_side;
 		check->failed |= !votes;
 	}
-	if (!nt_keep_place(&check->report->arena, &found->place, &finding.place)) {
+	if (!nt_keep_place(&check->report->arena, &found->place, &finding.place) || (found->repair && !repair)) {
 		check->failed = true;
 		return;
 	}
