@@ -129,10 +129,11 @@ static inline int nt_count_bits(uint64_t bits)
 #endif
 }
 
-/* The product of two words: returns its lower half, and the upper one in `high`. */
+/* The product of two words: returns its lower half, and the upper one in `high`. Compilers for WebAssembly call a
+ * function if a product has 128 bits. */
 static inline uint64_t nt_multiply(uint64_t a, uint64_t b, uint64_t *high)
 {
-#if defined(__SIZEOF_INT128__) && !defined(NMTAN_PLAIN_C)
+#if defined(__SIZEOF_INT128__) && !defined(NMTAN_PLAIN_C) && !defined(__wasm__)
 	const unsigned __int128 product = (unsigned __int128)a * b;
 	*high = (uint64_t)(product >> 64);
 	return (uint64_t)product;

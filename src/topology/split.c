@@ -30,11 +30,6 @@ static nt_tangent_key make_key(const float *tangent)
 	return key;
 }
 
-static bool equal_keys(const nt_tangent_key *a, const nt_tangent_key *b)
-{
-	return memcmp(a, b, sizeof *a) == 0;
-}
-
 /* Two products instead of the four of nt_hash_words() for three words: 4 % of nmtan_vertex_tangents(). */
 static size_t hash_copy(const nt_splitter *s, const nt_vertex_copy *copy)
 {
@@ -51,7 +46,7 @@ static size_t find_slot(const nt_splitter *s, const nt_vertex_copy *copy)
 	size_t at = hash_copy(s, copy) & (s->table_size - 1);
 	while (s->table[at] != NO_COPY) {
 		const nt_vertex_copy *other = &s->copies[s->table[at]];
-		if (other->original == copy->original && equal_keys(&other->tangent, &copy->tangent))
+		if (other->original == copy->original && nt_same_bits(&other->tangent, &copy->tangent))
 			break;
 		at = (at + 1) & (s->table_size - 1);
 	}
@@ -159,7 +154,7 @@ nmtan_status nt_splitter_differs(nt_splitter *s, uint32_t vertex, const float *t
 {
 	const nt_tangent_key key = make_key(tangent);
 	const nt_tangent_key first = make_key(s->tangents + 4 * (size_t)vertex);
-	if (equal_keys(&key, &first))
+	if (nt_same_bits(&key, &first))
 		return NMTAN_OK;
 	const nmtan_status status = take_copy(s, vertex, &key, &vertex);
 	if (status)

@@ -49,6 +49,15 @@ nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, size_t co
  * that differs makes output->indices a copy of the mesh's. */
 nmtan_status nt_splitter_differs(nt_splitter *s, uint32_t vertex, const float *tangent, size_t corner);
 
+/* By words: memcmp() is a loop over bytes in WebAssembly. */
+static inline bool nt_same_bits(const void *a, const void *b)
+{
+	uint64_t x[2], y[2];
+	memcpy(x, a, sizeof x);
+	memcpy(y, b, sizeof y);
+	return ((x[0] ^ y[0]) | (x[1] ^ y[1])) == 0;
+}
+
 /* The next corner in order, of that vertex, has this tangent. Corners whose vertex is known to have one
  * tangent only may be left out once that is in `tangents` and `seen`. Copies past
  * source_capacity are only counted. Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE. */
@@ -59,7 +68,7 @@ static inline nmtan_status nt_splitter_take(nt_splitter *s, uint32_t vertex, con
 	if (!s->seen[vertex]) {
 		s->seen[vertex] = 1;
 		memcpy(first, tangent, 4 * sizeof(float));
-	} else if (memcmp(first, tangent, 4 * sizeof(float)) != 0) {
+	} else if (!nt_same_bits(first, tangent)) {
 		return nt_splitter_differs(s, vertex, tangent, corner);
 	}
 	return NMTAN_OK;
