@@ -134,6 +134,10 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 			command->severity.count || command->fail_on != NT_FAIL_ON_NEVER};
 	plan->options.min_severity = (nt_severity)least_severity[command->min_severity];
 	nt_status status = check_outputs(command, error);
+	if (command->settings.check && command->settings.converts) {
+		nt_options_shaping(command, &plan->conversion);
+		plan->options.conversion = plan->conversion.size ? plan->conversion.data : "";
+	}
 	if (!status)
 		status = check_diff(command, error);
 	for (size_t i = 0; i < command->severity.count && !status; i++)
@@ -183,5 +187,6 @@ void nt_report_plan_free(nt_report_plan *plan)
 {
 	nt_baseline_free(&plan->baseline);
 	nt_shown_paths_free(&plan->paths);
+	nt_buffer_free(&plan->conversion);
 	nt_buffer_free(&plan->folder);
 }

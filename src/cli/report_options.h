@@ -14,6 +14,7 @@ typedef struct nt_report_plan {
 	nt_report_options options;
 	nt_baseline baseline;
 	nt_shown_paths paths;    /* how reports name files */
+	nt_buffer conversion;    /* options of the conversion that --check judges */
 	nt_buffer folder;        /* where a page will be, absolute */
 	nt_report_target target; /* its path is NULL where nothing is written */
 } nt_report_plan;

@@ -496,7 +496,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(TAN_NO_NORMAL, WARNING, "w--", CONVERT, "--normals=smooth",
 		"tangents are needed but there are no normals",
 		"A client must use flat normals then and ignore TANGENT, so none are written.",
-		"Export normals; or make them, with --normals=flat or, if the surface is smooth, so.",
+		"Export normals, or make them (--normals=flat if the surface has facets).",
 		"a glTF primitive with POSITION, TEXCOORD_0 and a normal-mapped material"),
 	ROW(TAN_NO_UV, INFO, "eii", EXPORT, NULL, "there are no texture coordinates to make tangents by",
 		"No mesh of an OBJ, PLY or Draco file has texture coordinates: a scan, say, or a model without "

@@ -519,7 +519,8 @@ static void check_presence(nt_check *check)
 			.count = mesh->targets_without_tangents, .box = check->facts->box, .share = 1.0};
 		nt_check_report(check, &morphs, NULL);
 	}
-	if (!present && mesh->slots != 0 && mesh->reachable) {
+	/* without texture coordinates nobody can make them: TAN_NO_UV says so */
+	if (!present && mesh->slots != 0 && mesh->reachable && mesh->texcoords) {
 		const nt_tally missing = {.code = NT_CODE_TAN_MISSING_REQUIRED, .count = 1,
 			.box = check->facts->box, .share = 1.0};
 		const bool client_may_make = mesh->slots & NT_SLOT_NORMAL;

@@ -257,6 +257,18 @@ for file in quad.obj quad_le.ply; do
 	exits 0
 done
 
+scene "a check that judges a conversion says so, in its verdict and in JSON"
+cp "$data"/{plates.gltf,plates.bin,bumps.png} .
+while IFS='|' read -r words verdict conversion; do
+	run -q --check --report=../r.json --fail-on=never $words plates.gltf
+	is "$words: $(value ../r.json '(lambda f: "%s|%s" % (f["verdict"][:len("'"$verdict"'")], f["conversion"]))(r["files"][0])')" \
+		"$words: $verdict|$conversion"
+done <<'END'
+--existing=replace|After conversion with --existing=replace: Ready to use|--existing=replace
+-d out|After conversion: Ready to use|
+--threads=1|Convert with nmtan: |None
+END
+
 scene "a mesh without texture coordinates is a finding"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >bare.obj
 run --check --fail-on=warning bare.obj
@@ -276,6 +288,7 @@ gltf new needy 'g.meshes = [{primitives: [{material: 0, attributes: {POSITION: a
 run --check needy.gltf
 exits 6
 prints "error     TAN_NO_UV"
+is "$(grep -c TAN_MISSING_REQUIRED "$WORK/out.txt")" 0 # nothing makes them
 run --fail-on=error needy.gltf out.glb
 exits 6
 says "error: there are no texture coordinates"

@@ -107,7 +107,7 @@ async function clickTexture(page, u, v) {
 {
 	const page = await open('two.html'), all = await visible(page);
 	check(all === 4, 'four findings, has ' + all);
-	await expect(async () => /0 errors.*1 warning\b.*3 notes/.test(await page.locator('#summary').innerText().then(t => t.replace(/\s+/g, ' '))), 'the summary');
+	await expect(async () => /0 errors.*1 warning\b.*3 infos/.test(await page.locator('#summary').innerText().then(t => t.replace(/\s+/g, ' '))), 'the summary');
 	const kinds = await page.locator('.group').evaluateAll(g => g.map(x => x.classList[1]));
 	check(kinds.join() === [...kinds].sort((a, b) => (a === 'warning' ? 0 : 1) - (b === 'warning' ? 0 : 1)).join(), 'the most severe first: ' + kinds);
 

@@ -461,6 +461,7 @@ static void put_report(nt_buffer *out, const nt_report *report)
 	nt_buffer_format(out, "\"%s\"", nt_input_format_name(report->format));
 	key(out, 3, "verdict");
 	nt_put_verdict(report, nt_json_string, out);
+	put_text(out, "conversion", report->conversion);
 	put_failure(out, report);
 	if (report->origin_text) {
 		key(out, 3, "origin");

@@ -53,6 +53,9 @@ static void append_verdict(const nt_report *report, nt_buffer *out)
 		nt_buffer_format(out, "Not judged: %s", report->failure);
 		return;
 	}
+	if (report->conversion)
+		nt_buffer_format(out, "After conversion%s%s: ", *report->conversion ? " with " : "",
+			report->conversion);
 	if (!all) {
 		append_nothing_new(report->known, out);
 		return;
