@@ -604,7 +604,8 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->findings = r.scene.findings;
 	summary->rounding = r.scene.rounding;
 	summary->morph_cost = r.scene.morph_cost;
-	count_shading(&r);
+	if (!status) /* else meshes may be without content */
+		count_shading(&r);
 	summary->welded = r.scene.welded;
 	summary->unchanged = !status && is_unchanged(&r);
 	summary->keeps_wrong = !settings->check && keeps_wrong(summary);
