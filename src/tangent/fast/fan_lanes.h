@@ -21,7 +21,7 @@
 #define UNROLL NT_UNROLL(8)
 #endif
 
-/* Large meshes have few blocks of these depths: 5 KB of code for 1 % of their time. */
+/* Large meshes have few blocks of these depths: 8 KB of code for 1 % of their time. */
 #ifdef NT_SMALL_CODE
 #define RARE_IS_WORTH_CODE(entries) ((entries).are_narrow)
 #else
@@ -202,6 +202,8 @@ static inline NT_ALWAYS_INLINE lanes count_fans_at(vertex_entries entries, uint3
 #ifndef LEAST_CODE
 	if (RARE_IS_WORTH_CODE(entries) && depth == 3)
 		return count_fans_of(entries, 3, degree, mask);
+	if (RARE_IS_WORTH_CODE(entries) && depth == 7)
+		return count_fans_of(entries, 7, degree, mask);
 	if (RARE_IS_WORTH_CODE(entries) && depth == 8)
 		return count_fans_of(entries, 8, degree, mask);
 #endif
@@ -211,7 +213,6 @@ static inline NT_ALWAYS_INLINE lanes count_fans_at(vertex_entries entries, uint3
 	case 4: return count_fans_of(entries, 4, degree, mask);
 	case 5: return count_fans_of(entries, 5, degree, mask);
 	case 6: return count_fans_of(entries, 6, degree, mask);
-	case 7: return count_fans_of(entries, 7, degree, mask);
 #endif
 	default: return count_fans_of(entries, depth, degree, mask);
 	}
