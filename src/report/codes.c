@@ -490,7 +490,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a glTF primitive with TANGENT and the default material"),
 	ROW(TAN_ACCESSOR, ERROR, "e--", CONVERT, "--fix", "tangents that cannot be read",
 		"TANGENT of a glTF primitive is not an accessor of as many VEC4 as there are positions, or its place "
-		"is outside of its buffer view. A renderer refuses the file or shows the mesh without normal map.",
+		"is outside of its buffer view. A renderer refuses the file or shows the mesh without normal map. "
+		"Tangents that are computed get an accessor of their own; the faulty one stays in the file, unused.",
 		"Compute the tangents.",
 		"a glTF quad whose TANGENT is a VEC3 accessor"),
 	ROW(TAN_NO_NORMAL, WARNING, "w--", CONVERT, "--normals=smooth",
