@@ -288,7 +288,7 @@ static nt_status write_scene(run *r)
 	const nt_write_options options = {
 		.format = r->writer->format,
 		.texture_file = &texture_file,
-		.path = r->output_path,
+		.path = r->nowhere && texture_file.bytes ? r->input_path : r->output_path, /* the image lies beside */
 		.bitangents = s->bitangents,
 		.images = s->images,
 		.buffers = r->nowhere ? NT_BUFFERS_EMBED : s->buffers,

@@ -69,7 +69,8 @@ static nt_status check_edit(const nt_settings *settings, const char *path, const
 			"--draco=%s compresses glTF that is made from glTF: convert to .glb without it, and then that "
 			"with --existing=replace --only=all and it",
 			settings->draco == NT_DRACO_AS_SEQUENTIAL ? "sequential" : "edgebreaker");
-	if (writer && writer->format == NT_FORMAT_PLY && settings->images == NT_IMAGES_EMBED)
+	if (writer && writer->format == NT_FORMAT_PLY && reader->format != NT_FORMAT_PLY &&
+		settings->images == NT_IMAGES_EMBED)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"--images=embed: a PLY names a file; use link, copy or none");
 	if (writer && !settings->check && writer->format != NT_FORMAT_PLY && nt_output_is_stream(path) &&

@@ -146,6 +146,8 @@ done <<'END'
 --morph=drop|all|w
 --precision=byte|glTF|w
 --meshopt=off|all|w
+--weld|glTF|w
+--origin=keep|all
 --bitangents|all|w
 --no-clobber|all|w
 --sync|all|w

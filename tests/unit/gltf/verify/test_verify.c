@@ -102,6 +102,7 @@ static void edit(edited *p, const char *input, const nt_write_options *options)
 		nt_mesh *mesh = &p->scene.meshes[m];
 		assert_int_equal(nt_gltf_load(&p->scene, mesh, &reading, &error), NT_OK);
 		assert_true(mesh->vertex_count <= VERTICES);
+		mesh->decision = NT_DECISION_SOLVE;
 		mesh->split.vertex_tangents = p->tangents[m][0];
 		if (mesh->morph_count)
 			mesh->morphs[0].vertex_tangents = p->moved[0];
