@@ -90,8 +90,8 @@ static void append_command(nt_buffer *out, const nt_finding *finding, nt_severit
 		nt_command_text(repair, file, in_place ? NULL : output, out);
 }
 
-/* All findings of one code and severity but for `old` ones, those beyond PLACES_SHOWN as a number. The first has the
- * command. */
+/* All findings of one code and severity but for `old` ones (NULL: none are), those beyond PLACES_SHOWN as a number. The
+ * first has the command. */
 static void append_code(nt_buffer *out, const nt_finding_list *findings, const bool *old,
 	const nt_report_options *options, nt_code code, nt_severity severity, const char *file, const char *output,
 	nt_style style)
@@ -99,7 +99,7 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, const b
 	size_t shown = 0, left_out = 0;
 	for (size_t i = 0; i < findings->count; i++) {
 		const nt_finding *finding = &findings->items[i];
-		if (finding->code != code || shown_severity(finding, options, style) != severity || old[i])
+		if (finding->code != code || shown_severity(finding, options, style) != severity || (old && old[i]))
 			continue;
 		if (shown == PLACES_SHOWN && style.verbosity <= 0) {
 			left_out++;
@@ -125,7 +125,7 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, const b
 static void find_old(const nt_finding_list *findings, const nt_report *report, bool *old)
 {
 	bool has_known[NT_CODE_COUNT] = {false}, has_new[NT_CODE_COUNT] = {false};
-	for (size_t i = 0; report && i < report->finding_count; i++) {
+	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
 		if (f->noted != NT_NONE)
 			old[f->noted] = f->known;
@@ -139,12 +139,14 @@ static void find_old(const nt_finding_list *findings, const nt_report *report, b
 void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
 	const nt_report_options *options, const char *file, const char *output, bool infos, int most, nt_style style)
 {
-	bool *old = nt_calloc(findings->count, sizeof *old);
-	if (!old) {
+	const bool known = report && options->baseline && findings->count;
+	bool *old = known ? nt_calloc(findings->count, sizeof *old) : NULL;
+	if (known && !old) {
 		out->failed = true;
 		return;
 	}
-	find_old(findings, report, old);
+	if (old)
+		find_old(findings, report, old);
 	for (int severity = most; severity >= (int)options->min_severity; severity--)
 		for (int code = 0; code < NT_CODE_COUNT; code++)
 			if ((infos || severity || is_proposed((nt_code)code)) && !options->ignore[code])
