@@ -345,8 +345,9 @@ static nt_status parse_short(parser *p, const char *word, const char *next, int 
 			int bytes = 1;
 			while (((unsigned char)letter[bytes] & 0xc0) == 0x80)
 				bytes++;
-			return nt_fail(p->error, NT_ERROR_USAGE, "unknown option '-%.*s'%s%s%s", bytes, letter,
-				word[2] ? " in '" : "", word[2] ? word : "", word[2] ? "'" : "");
+			return nt_fail(p->error, NT_ERROR_USAGE, "unknown option '-%.*s'%s%s%s%s", bytes, letter,
+				word[2] ? " in '" : "", word[2] ? word : "", word[2] ? "'" : "",
+				*letter == 'V' ? "; did you mean --version?" : "");
 		}
 		if (!row->values) {
 			if (apply(p, row, NULL))

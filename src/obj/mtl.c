@@ -125,7 +125,7 @@ static void lose_earlier(const reader *r, mtl_map which, const char *name)
 	if (!earlier->name || strcmp(earlier->name, name) == 0)
 		return;
 	char detail[160];
-	snprintf(detail, sizeof detail, "%.64s before ", r->said->maps[which].word);
+	snprintf(detail, sizeof detail, "%.64s, replaced by a later ", r->said->maps[which].word);
 	reader at = *r;
 	at.line = earlier->line;
 	find(&at, NT_CODE_MATERIAL_LOST, detail);

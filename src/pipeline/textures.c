@@ -202,13 +202,27 @@ static void tell_source(telling *t, const nt_map *map, int channel, const nt_tex
 		tell_elsewhere(t, &place, map->name, source->path);
 }
 
-static void tell_made(const telling *t, const nt_map *map, const nt_texture *image)
+/* Whether an earlier map of the request has the same name. */
+static bool is_repeated(const nt_map_request *w, int k)
+{
+	for (int j = 0; j < k; j++)
+		if (w->maps[j] && strcmp(w->maps[j]->name, w->maps[k]->name) == 0)
+			return true;
+	return false;
+}
+
+static void tell_made(const telling *t, const nt_map_request *w, const nt_map *map, const nt_texture *image)
 {
 	const nt_place place = nt_material_place(t->scene, t->material, map->line);
 	nt_finding_list *findings = &t->scene->findings;
+	char names[4 * 50] = "";
+	for (int k = 0; k < 4; k++)
+		if (w->maps[k] && w->maps[k]->request != NT_NONE && !is_repeated(w, k))
+			snprintf(names + strlen(names), sizeof names - strlen(names), "%s%.46s", *names ? ", " : "",
+				w->maps[k]->name);
 	if (image->packed)
-		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.100s: channels to %.120s",
-			map->name, image->name);
+		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "channels of %s put together as %.50s",
+			names, image->name);
 	else
 		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.100s: %s to %s%s", map->name,
 			image->from_heights ? "height map" : nt_image_type_name(image->sources[0]->type),
@@ -225,17 +239,14 @@ static void tell_request(telling *t, const nt_map_request *w)
 		if (!map || map->request == NT_NONE)
 			continue;
 		image = nt_textures_of(t->textures, map->request);
-		bool told = false;
-		for (int j = 0; j < k; j++)
-			told |= w->maps[j] && strcmp(w->maps[j]->name, map->name) == 0;
-		if (!told)
+		if (!is_repeated(w, k))
 			tell_source(t, map, k, image);
 	}
 	nt_map_request_settle(t->material, w, image ? image->lost : 0);
 	for (int k = 4; k-- > 0;)
 		first = w->maps[k] && w->maps[k]->request != NT_NONE ? w->maps[k] : first;
 	if (first && image->made)
-		tell_made(t, first, image);
+		tell_made(t, w, first, image);
 }
 
 static void tell_normals(const telling *t, const nt_texture *image)

@@ -265,7 +265,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"texture coordinates are mirrored across a seam of {count} {edge|edges}",
 		"The two triangles at each of these edges are wound in opposite directions in UV space, so w changes "
 		"its sign here and vertices cannot be shared. Legitimate and frequent, but normal maps show seams "
-		"here first. There is one finding for each loop or chain.",
+		"here first. It is visible on edges whose two sides look up the same texels although their tangents "
+		"differ: no map can hide that. There is one finding for each loop or chain, numbered as it shows.",
 		"Nothing if the mirroring is meant. Keep the seam off prominent edges, and bake with mirrored "
 		"islands moved by a whole tile.",
 		"two triangles that share an edge and have the same UV at their third corners"),

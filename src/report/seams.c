@@ -11,6 +11,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include "base/angle.h"
 #include "base/dvec.h"
@@ -319,45 +320,73 @@ static nt_status describe_seam(nt_check *check, const nt_chains *chains, size_t 
 	return NT_OK;
 }
 
+static double widest_angle(const nt_seam *seam)
+{
+	return isfinite(seam->frame_angle[1]) ? seam->frame_angle[1] : 0.0;
+}
+
+/* Seams that show come first. */
+static double rank_of(const nt_seam *seam)
+{
+	return 1000.0 * (double)seam->unhidden_count + widest_angle(seam);
+}
+
+/* A seam and its chain, while seams are put in order. */
+typedef struct numbered_seam {
+	nt_seam seam;
+	size_t chain;
+} numbered_seam;
+
+/* As findings are listed: by rank, then by edges. */
+static int compare_seams(const void *a, const void *b)
+{
+	const numbered_seam *x = a, *y = b;
+	const double ranks[2] = {rank_of(&x->seam), rank_of(&y->seam)};
+	if (ranks[0] != ranks[1])
+		return ranks[0] > ranks[1] ? -1 : 1;
+	if (x->seam.edge_count != y->seam.edge_count)
+		return x->seam.edge_count > y->seam.edge_count ? -1 : 1;
+	return x->chain < y->chain ? -1 : x->chain > y->chain;
+}
+
 static void tally_seam(const nt_check *check, const nt_chains *chains, size_t chain, nt_tally *tally)
 {
 	for (size_t i = chains->first[chain]; i < chains->first[chain + 1]; i++)
 		nt_tally_side(check, tally, chains->sides[i], NAN);
 }
 
-static void report_seam(nt_check *check, const nt_chains *chains, size_t index)
+static void report_seam(nt_check *check, const nt_chains *chains, size_t chain, size_t index)
 {
 	const nt_seam *seam = &check->facts->seams[index];
 	nt_tally tally = {.code = NT_CODE_UV_MIRROR_SEAM, .seam = (uint32_t)index + 1};
-	tally_seam(check, chains, index, &tally);
+	tally_seam(check, chains, chain, &tally);
 	nt_tally_number(&tally, "length", seam->length);
 	nt_tally_number(&tally, "dihedral_min_degrees", seam->dihedral[0]);
 	nt_tally_number(&tally, "dihedral_max_degrees", seam->dihedral[1]);
 	nt_tally_number(&tally, "tangent_angle_min_degrees", seam->tangent_angle[0]);
 	nt_tally_number(&tally, "tangent_angle_max_degrees", seam->tangent_angle[1]);
 	nt_tally_number(&tally, "edges_sharing_vertices", (double)seam->shared_count);
-	/* what shows comes first */
-	const double angle = isfinite(seam->frame_angle[1]) ? seam->frame_angle[1] : 0.0;
-	tally.rank = 1000.0 * (double)seam->unhidden_count + angle;
+	tally.rank = rank_of(seam);
+	const double angle = widest_angle(seam);
 	char frames[80] = "";
 	if (seam->unhidden_count)
-		snprintf(frames, sizeof frames, ", %zu edge%s: frames up to %.3g degrees apart", seam->unhidden_count,
-			seam->unhidden_count == 1 ? " shows" : "s show", angle);
+		snprintf(frames, sizeof frames, ", visible on %zu edge%s: tangents up to %.3g degrees apart",
+			seam->unhidden_count, seam->unhidden_count == 1 ? "" : "s", angle);
 	else if (angle >= 0.05)
-		snprintf(frames, sizeof frames, ", frames up to %.3g degrees apart", angle);
+		snprintf(frames, sizeof frames, ", tangents up to %.3g degrees apart", angle);
 	nt_check_report(check, &tally, "seam %zu, %s, length %.4g%s%s%s", index,
 		seam->closed ? "a closed loop" : "an open chain", seam->length, frames,
 		seam->has_plane ? ", plane " : "", seam->plane_text);
 }
 
-static void report_seams(nt_check *check, const nt_chains *chains)
+static void report_seams(nt_check *check, const nt_chains *chains, const numbered_seam *seams)
 {
 	nt_tally rest = {.code = NT_CODE_UV_MIRROR_SEAM};
 	for (size_t i = 0; i < chains->count; i++) {
 		if (i < NT_SINGLE_FINDINGS)
-			report_seam(check, chains, i);
+			report_seam(check, chains, seams[i].chain, i);
 		else
-			tally_seam(check, chains, i, &rest);
+			tally_seam(check, chains, seams[i].chain, &rest);
 	}
 	if (chains->count > NT_SINGLE_FINDINGS)
 		nt_check_report(check, &rest, "%zu further seams, one finding together beyond the first %d",
@@ -398,19 +427,25 @@ static nt_status trace_seams(nt_check *check)
 	if (status)
 		return status;
 	facts->seams = nt_arena_alloc(&check->report->arena, chains.count, sizeof *facts->seams);
-	if (!facts->seams)
+	numbered_seam *seams = nt_scratch_alloc(check->scratch, chains.count, sizeof *seams);
+	if (!facts->seams || !seams)
 		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < chains.count; i++) {
-		status = describe_seam(check, &chains, i, &facts->seams[i]);
+		status = describe_seam(check, &chains, i, &seams[i].seam);
 		if (status)
 			return status;
+		seams[i].chain = i;
+	}
+	qsort(seams, chains.count, sizeof *seams, compare_seams);
+	for (size_t i = 0; i < chains.count; i++) {
+		facts->seams[i] = seams[i].seam;
 		facts->seam_edges += facts->seams[i].edge_count;
 		facts->seam_length += facts->seams[i].length;
 		facts->seam_count++;
 	}
 	if (chains.left_out > facts->left_out)
 		facts->left_out = chains.left_out;
-	report_seams(check, &chains);
+	report_seams(check, &chains, seams);
 	return NT_OK;
 }
 

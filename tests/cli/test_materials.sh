@@ -68,6 +68,12 @@ while IFS=$'\t' read -r name statements question answer; do
 	esac
 done <"$ROOT/tests/cli/materials.tsv"
 
+scene "a packed image is told with all images that it is made of"
+cp "$WORK"/images/* .
+quad "map_Pr r.png" "map_ao -imfchan g o.png" "map_Pm r.png"
+run -q --check --report-format=lines --report=lines --fail-on=never quad.obj
+grep -q "image was converted: channels of o.png, r.png put together as o-orm.png" lines || wrong "$(grep CONVERTED lines)"
+
 scene "anisotropy asks for tangents, in the OBJ and in what is made of it"
 quad "aniso 0.5"
 run --check --report-format=json --report=r.json quad.obj

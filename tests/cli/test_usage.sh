@@ -9,6 +9,13 @@ prints "--threads"
 prints "7 a limit"
 [ ! -s "$WORK/err.txt" ] || wrong "help wrote to standard error"
 
+scene "-V is what others call --version"
+run -V
+exits 1
+says "unknown option '-V'; did you mean --version?"
+run -qV
+says "unknown option '-V' in '-qV'; did you mean --version?"
+
 scene "-h is one screen, whose options exist and whose eight examples run as they stand"
 run -h
 exits 0

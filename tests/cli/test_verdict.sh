@@ -340,6 +340,26 @@ many() {
 	done
 }
 
+scene "seams have numbers in the order in which they are listed: those that show, then long ones"
+{
+	echo "vn 0 0 1"
+	printf 'vt %s\n' "0 0" "1 0" "1 1" "0 1" ".4 .6" ".6 .4" ".3 .7" ".7 .3"
+	# one edge whose sides differ in texels; one that shows; a strip of two edges that shows
+	printf 'v %s\n' "0 0 0" "1 0 0" ".5 1 0" ".5 -1 0" "9 0 0" "10 0 0" "9.5 1 0" "9.5 -1 0"
+	echo "f 1/5/1 2/6/1 3/3/1"
+	echo "f 2/8/1 1/7/1 4/3/1"
+	echo "f 5/1/1 6/2/1 7/3/1"
+	echo "f 6/2/1 5/1/1 8/3/1"
+	printf 'v %s\n' "0 9 0" "1 9 0" "2 9 0" "0 10 0" "1 10 0" "2 10 0" "0 8 0" "1 8 0" "2 8 0"
+	echo "f 9/1/1 10/2/1 13/3/1 12/4/1"
+	echo "f 10/2/1 11/1/1 14/4/1 13/3/1"
+	echo "f 10/2/1 9/1/1 15/4/1 16/3/1"
+	echo "f 11/1/1 10/2/1 16/3/1 17/4/1"
+} >ranked.obj
+run --check --fail-on=never --max-issues=0 --report=r.json ranked.obj
+is "$(grep -o 'seam [0-9]*,' "$WORK/out.txt" | tr -d '\n')" "$(seq -f 'seam %g,' 0 $(($(grep -c 'seam [0-9]*,' "$WORK/out.txt") - 1)) | tr -d '\n')"
+is "$(value r.json '(lambda s: s == sorted(s, reverse=True) and len(s) > 2)([(x["unhidden_edges"], x["edge_count"]) for x in r["files"][0]["meshes"][0]["seams"]])')" True
+
 scene "every seam is a finding of its own; people read ten findings, some of each code"
 many >many.obj
 run -q --check --report=r.json --fail-on=never many.obj
@@ -631,7 +651,7 @@ run --check -q --report=c.json --fail-on=never c.gltf
 run --check -q --report=big.json --fail-on=never big.gltf
 is "$(value big.json 'r["files"][0]["meshes"][0]["seams"][0]["length"]')" "$(value c.json '100 * r["files"][0]["meshes"][0]["seams"][0]["length"]')"
 run --check --fail-on=never c.gltf
-grep -q 'UV_MIRROR_SEAM.*edges\? shows\?: frames up to [0-9.]* degrees apart' "$WORK/out.txt" || wrong "$(grep UV_MIRROR "$WORK/out.txt")"
+grep -q 'UV_MIRROR_SEAM.*visible on [0-9]* edges\?: tangents up to [0-9.]* degrees apart' "$WORK/out.txt" || wrong "$(grep UV_MIRROR "$WORK/out.txt")"
 
 scene "wrong tangents that are kept are told with the command that repairs them, and counted of many, with -q too"
 mapped

@@ -196,7 +196,8 @@ TEST(what_is_lost_is_named)
 		{"map_Kd -imfchan g a.png", "MTL: -imfchan of map_Kd"},
 		{"map_Pr -imfchan z a.png", "MTL: -imfchan z of map_Pr"},
 		{"map_ORM a.png\nmap_RMA b.png", "MTL: map_RMA beside map_ORM"}, {"map_Ns n.png\nPr 1", "MTL: map_Ns"},
-		{"map_aniso r.png", "MTL: map_aniso"}, {"bump a.png\nmap_Bump b.png", "MTL: bump before map_Bump"},
+		{"map_aniso r.png", "MTL: map_aniso"},
+		{"bump a.png\nmap_Bump b.png", "MTL: bump, replaced by a later map_Bump"},
 		{"map_Bump a\\b.png\nbump a/b.png", NULL}, {"map_Kd a.png\nmap_Kd", NULL},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
