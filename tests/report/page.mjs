@@ -704,6 +704,39 @@ async function clickTexture(page, u, v) {
 	}
 }
 
+// ---- sizes ----
+
+for (const [width, height] of [[1440, 900], [1260, 1100], [1024, 768], [390, 844]]) {
+	const size = width + ' x ' + height, page = await open('names.html', {viewport: {width, height}});
+	// the verdict: its command in full, at whatever length
+	const told = () => page.evaluate(() => {
+		const code = document.querySelector('#verdict code'), cut = [];
+		for (let e = code; e && e !== document.body; e = e.parentElement) if (e.scrollHeight > e.clientHeight + 1 && getComputedStyle(e).overflow !== 'visible') cut.push(e.id);
+		return (code?.innerText ?? 'none') + cut.join();
+	});
+	await expect(async () => await told() === String.raw`nmtan --fix './-$(touch broken)'\''.gltf' './-$(touch broken)'\''-repaired.gltf'`, async () => 'the command of the verdict is cut at ' + size + ': ' + await told());
+	// nothing lies over something else, and no word is broken
+	const faults = () => page.evaluate(() => {
+		const box = e => e.getBoundingClientRect(), figures = [...document.querySelectorAll('figure')], [a, b] = figures.map(box);
+		return [a.right > b.left + 1 && a.bottom > b.top + 1 ? 'views overlap' : '',
+			...figures.map(f => [...f.children].some((e, i, all) => i && box(e).top < box(all[i - 1]).bottom - 1) || box(f.lastElementChild).bottom > box(f).bottom + 1 ? f.id + ' is cut' : ''),
+			...[...document.querySelectorAll('#summary .verdict, .legend > span')].map(e => box(e).height > 28 ? e.innerText + ' is broken' : '')].filter(text => text).join();
+	});
+	await expect(async () => await faults() === '', async () => 'at ' + size + ': ' + await faults());
+	// the model: the stage's colour all along the border, from every side
+	const border = async () => {
+		const places = [0.1, 0.3, 0.5, 0.7].flatMap(y => [[0.03, y], [0.97, y]]).concat([[0.3, 0.03], [0.5, 0.03], [0.7, 0.03]]);
+		const found = await colours(page, await page.locator('#space').screenshot(), places);
+		return Math.max(...found.flatMap(c => c.map((x, k) => Math.abs(x - found[0][k])))).toFixed(1);
+	};
+	for (const turned of [0, 0.6, 0.8]) {
+		if (turned) await page.evaluate(by => window.nmtanReport.turn(by, 0), turned);
+		await rest(page);
+		await expect(async () => await border() < 1, async () => 'the model leaves the view at ' + size + ', turned by ' + turned + ': ' + await border());
+	}
+	await page.close();
+}
+
 // ---- the page of make web ----
 
 // The report of a page in the frame of make web, as src/bindings/web/app.js puts it there.

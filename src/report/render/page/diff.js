@@ -133,7 +133,7 @@ class Twin {
 	}
 
 	summary() {
-		$('verdict').textContent = $('verdict').title = 'New version: ' + files[1].verdict;
+		showVerdict('New version: ' + files[1].verdict, files[1]);
 		$('title').replaceChildren(element('span', {}, files[0].name), ' → ', element('span', {}, files[1].name));
 		document.title = files[0].name + ' → ' + files[1].name + ' – nmtan';
 		const [gone, fresh] = files.map(f => f.findings.filter(x => !x.known));

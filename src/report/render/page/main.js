@@ -225,12 +225,19 @@ function openOverview() {
 	overview.show();
 }
 
+// The text of a verdict may be cut at its end, its command never.
+function showVerdict(text, file) {
+	const command = file?.findings.map(x => x.repair).find(repair => repair && text.endsWith(': ' + repair)) || '';
+	const said = text.slice(0, text.length - command.length);
+	$('verdict').replaceChildren(element('span', {title: said}, said), ...command ? [element('code', {}, command)] : []);
+}
+
 // The verdict is the first thing to be read; what could not be judged has no counts.
 function summary(counts, file) {
 	const level = !file ? null : file.failure || counts[0] ? 'error' : counts[1] ? 'warning' : 'good';
 	$('verdict').hidden = !file;
 	$('verdict').className = level;
-	$('verdict').textContent = $('verdict').title = file?.verdict || '';
+	showVerdict(file?.verdict || '', file);
 	$('summary').replaceChildren(...(file?.failure ? [] : severities.map((severity, i) => element('span', {class: 'verdict ' + (counts[i] ? severity : 'none')}, plural(counts[i], severityName[severity])))));
 }
 

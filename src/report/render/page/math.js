@@ -22,8 +22,9 @@ function lookAt(eye, target) {
 	return [x[0], y[0], z[0], 0, x[1], y[1], z[1], 0, x[2], y[2], z[2], 0, -dot(x, eye), -dot(y, eye), -dot(z, eye), 1];
 }
 
-function perspective(angle, aspect, near, far) {
-	const f = 1 / Math.tan(angle / 2);
+// half: half the height of what is seen at distance 1
+function perspective(half, aspect, near, far) {
+	const f = 1 / half;
 	return [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0];
 }
 

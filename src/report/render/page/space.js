@@ -5,6 +5,8 @@
 
 const MOST_REPEATED = 2e6; // triangles in other tiles that lie on what is seen: half a second
 const MOST_OUTLINED = 8; // as many as a finding has places
+const HALF_VIEW = 0.35; // half the angle of view, of the shorter side: a sphere that fits it fits the other
+const WHOLE = 0.5 / Math.sin(HALF_VIEW); // from here a sphere fits whose diameter is 1
 const SELECTED = [1.0, 0.83, 0.1];
 const SEAM = [1.0, 0.58, 0.0];
 const AXES = [[0.93, 0.2, 0.2], [0.1, 0.72, 0.25], [0.25, 0.45, 1]];
@@ -27,6 +29,9 @@ function decodeDirection(codes, at) {
 	if (z < 0) [x, y] = [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)];
 	return unit([x, y, z]);
 }
+
+// Half the height of what is seen at distance 1.
+const halfHeight = aspect => Math.tan(HALF_VIEW) * Math.max(1, 1 / aspect);
 
 class Space {
 	constructor(canvas) {
@@ -248,8 +253,8 @@ class Space {
 		if (!this.chosen || !this.chosen.count) return;
 		const {middle, radius, facing} = this.chosenPlace(), out = sub(middle, this.centre);
 		const wanted = facing || (length(out) > 0.01 * this.extent ? unit(out) : [0.5, 0.3, 0.8]);
-		const near = clamp(4.5 * radius, 0.01 * this.extent, 1.45 * this.extent);
-		const distances = [near, Math.min(4 * near, 1.45 * this.extent)];
+		const whole = WHOLE * this.extent, near = clamp(4.5 * radius, 0.01 * this.extent, whole);
+		const distances = [near, Math.min(4 * near, whole)];
 		const directions = [wanted, unit(out)];
 		for (const yaw of [0, 1, 2, 3, 4, 5, 6, 7]) for (const pitch of [0.1, 0.75, -0.6])
 			directions.push([Math.sin(yaw * Math.PI / 4) * Math.cos(pitch), Math.sin(pitch), Math.cos(yaw * Math.PI / 4) * Math.cos(pitch)]);
@@ -392,10 +397,21 @@ class Space {
 		return add(camera.target, [r * Math.sin(camera.yaw), camera.distance * Math.sin(camera.pitch), r * Math.cos(camera.yaw)]);
 	}
 
+	// Whether two pictures share the canvas, each with half of its width.
+	halved() {
+		return this.other >= 0 && this.mode !== 7 && this.layout === 'side';
+	}
+
+	// Width by height of a picture.
+	aspect() {
+		const {clientWidth: w, clientHeight: h} = this.canvas;
+		return Math.max(1, w) / Math.max(1, h) / (this.halved() ? 2 : 1);
+	}
+
 	matrices(camera, aspect) {
 		const eye = this.eye(camera), far = camera.distance + 2 * this.extent;
 		const near = Math.max(far / 5000, 0.02 * camera.distance);
-		return {eye, matrix: multiply(perspective(0.7, aspect, near, far), lookAt(eye, camera.target))};
+		return {eye, matrix: multiply(perspective(halfHeight(aspect), aspect, near, far), lookAt(eye, camera.target))};
 	}
 
 	use(program, matrix) {
@@ -537,7 +553,7 @@ class Space {
 	// ---- moving ----
 
 	home() {
-		this.camera = {target: this.centre, distance: 1.45 * this.extent, yaw: 0.6, pitch: 0.3};
+		this.camera = {target: this.centre, distance: WHOLE * this.extent, yaw: 0.6, pitch: 0.3};
 		this.draw();
 	}
 
@@ -549,7 +565,7 @@ class Space {
 
 	pan(dx, dy) { // in pixels of the page
 		const [right, up] = axesOf(this.eye(this.camera), this.camera.target);
-		const unitsPerPixel = 2 * Math.tan(0.35) * this.camera.distance / Math.max(1, this.canvas.clientHeight);
+		const {clientHeight: h} = this.canvas, unitsPerPixel = 2 * halfHeight(this.aspect()) * this.camera.distance / Math.max(1, h);
 		this.camera.target = add(this.camera.target, add(times(right, -dx * unitsPerPixel), times(up, dy * unitsPerPixel)));
 		this.move();
 	}
@@ -562,9 +578,8 @@ class Space {
 	// The triangle under a place of the canvas, in pixels of the page; -1: none.
 	pick(x, y) {
 		const g = this.geometry, {clientWidth: w, clientHeight: h} = this.canvas, eye = this.eye(this.camera);
-		let aspect = w / h, at = x / w;
-		if (this.other >= 0 && this.mode !== 7 && this.layout === 'side') { aspect /= 2; at = at * 2 % 1; }
-		const [right, up, back] = axesOf(eye, this.camera.target), t = Math.tan(0.35);
+		const aspect = this.aspect(), t = halfHeight(aspect), at = this.halved() ? x / w * 2 % 1 : x / w;
+		const [right, up, back] = axesOf(eye, this.camera.target);
 		const ray = unit(add(add(times(right, (2 * at - 1) * t * aspect), times(up, (1 - 2 * y / h) * t)), times(back, -1)));
 		// in codes, so that positions need not be decoded: a step is never 0 where a triangle spans
 		const s = g.step.map(x => x || 1), o = [0, 1, 2].map(i => (eye[i] - g.origin[i]) / s[i]), d = [0, 1, 2].map(i => ray[i] / s[i]);
