@@ -152,7 +152,7 @@ static nt_status tell_refusal(const progress *p, nt_job *job)
 	nt_outcome *outcome = job->outcome;
 	nt_fail(&outcome->error, NT_ERROR_USAGE, "%s", job->refused);
 	if (p->settings->report)
-		outcome->summary.report = nt_report_of_error(job->input, p->settings->report, &outcome->error);
+		outcome->summary.report = nt_report_of_error(job->input, NULL, p->settings->report, &outcome->error);
 	return NT_ERROR_USAGE;
 }
 

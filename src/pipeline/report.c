@@ -174,7 +174,7 @@ static nt_status build_report(nt_scene *scene, const nt_settings *settings, cons
 	if (options->written != NT_FORMAT_UNKNOWN && !settings->check && !settings->dry_run)
 		strncat(error->message, "; the output stands", sizeof error->message - strlen(error->message) - 1);
 	nt_report_free(summary->report);
-	summary->report = nt_report_of_error(scene->path, options, error);
+	summary->report = nt_report_of_error(scene->path, scene, options, error);
 	return status;
 }
 
@@ -192,7 +192,7 @@ nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_forma
 	nt_status status, nt_summary *summary, nt_error *error)
 {
 	if (status) {
-		summary->report = nt_report_of_error(scene->path, settings->report, error);
+		summary->report = nt_report_of_error(scene->path, scene, settings->report, error);
 		return status;
 	}
 	nt_report_options options = *settings->report;

@@ -492,7 +492,21 @@ nt_status nt_report_build(const nt_scene *scene, const nt_report_options *option
 		: nt_fail(error, status, "the report cannot be made: %s", nt_status_text(status));
 }
 
-nt_report *nt_report_of_error(const char *path, const nt_report_options *options, const nt_error *failure)
+/* Keeps findings from before an input failed, such as a buffer that is not there. Without memory for it the report has none. */
+static void keep_found(const nt_scene *scene, const nt_report_options *options, nt_report *report)
+{
+	static const nt_report_options defaults;
+	size_t finding_capacity = 0;
+	nt_check check = {.scene = scene, .options = options ? options : &defaults, .report = report,
+		.finding_capacity = &finding_capacity};
+	report->format = scene->format;
+	if (nt_report_add_findings(&check, &scene->findings) || check.failed ||
+		nt_report_complete(report, check.options))
+		report->finding_count = 0;
+}
+
+nt_report *nt_report_of_error(const char *path, const nt_scene *scene, const nt_report_options *options,
+	const nt_error *failure)
 {
 	nt_report *report = new_report(path, options);
 	if (!report)
@@ -503,6 +517,8 @@ nt_report *nt_report_of_error(const char *path, const nt_report_options *options
 		nt_report_free(report);
 		return NULL;
 	}
+	if (scene && scene->findings.count)
+		keep_found(scene, options, report);
 	return report;
 }
 

@@ -277,8 +277,10 @@ typedef struct nt_report {
 nt_status nt_report_build(const nt_scene *scene, const nt_report_options *options,
 	nt_report **report, nt_error *error);
 
-/* A report that says no more than that the input could not be read, or NULL when out of memory. */
-nt_report *nt_report_of_error(const char *path, const nt_report_options *options, const nt_error *failure);
+/* A report that says that the input could not be read, and what was found until then (scene: NULL: nothing); NULL when
+ * out of memory. */
+nt_report *nt_report_of_error(const char *path, const nt_scene *scene, const nt_report_options *options,
+	const nt_error *failure);
 
 /* NULL is allowed. */
 void nt_report_free(nt_report *report);

@@ -323,6 +323,21 @@ exits 3
 validates report r.json
 is "$(value r.json '[f["failure"] is not None for f in r["files"]]')" "[True, False]"
 
+scene "a buffer that is not there is a finding of every report, with its place"
+echo '{"asset": {"version": "2.0"}, "buffers": [{"uri": "no.bin", "byteLength": 12}]}' >lost.gltf
+for format in json sarif lines junit csv markdown html; do
+	run -q --check --report=r --report-format=$format lost.gltf
+	exits 2
+	grep -q BUFFER_MISSING r || wrong "not in $format"
+done
+run -q --report=r.json lost.gltf lost.glb
+exits 2
+validates report r.json
+is "$(value r.json '[(f["code"], f["place"]["pointer"]) for f in r["files"][0]["findings"]], r["totals"]["errors"], r["files"][0]["failure"] is not None')" \
+	"([('BUFFER_MISSING', '/buffers/0')], 1, True)"
+run -q --check --report=r.sarif lost.gltf
+is "$(value r.sarif '[x["ruleId"] for x in r["runs"][0]["results"]], r["runs"][0]["invocations"][0]["executionSuccessful"]')" "(['BUFFER_MISSING'], False)"
+
 scene "the report never replaces an input"
 cp "$data/quad.obj" q.obj
 run --check --report=q.obj --report-format=json q.obj
