@@ -492,7 +492,7 @@ nt_status nt_report_build(const nt_scene *scene, const nt_report_options *option
 		: nt_fail(error, status, "the report cannot be made: %s", nt_status_text(status));
 }
 
-/* Keeps findings from before an input failed, such as a buffer that is not there. Without memory for it the report has none. */
+/* Keeps findings from before an input failed, such as a buffer that is not there; none if memory lacks. */
 static void keep_found(const nt_scene *scene, const nt_report_options *options, nt_report *report)
 {
 	static const nt_report_options defaults;
