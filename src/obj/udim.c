@@ -36,6 +36,7 @@ typedef struct tiler {
 	uint32_t *numbered;       /* [numbers.count] their materials */
 	size_t numbered_capacity;
 	uint16_t *first, *last;   /* [template_count] tiles of materials with a number in a name; NO_TILE: none yet */
+	size_t *outside;          /* [template_count] faces that are in no tile */
 } tiler;
 
 static const nt_map *find_map(const nt_material *m, bool marked)
@@ -48,8 +49,8 @@ static const nt_map *find_map(const nt_material *m, bool marked)
 	return NULL;
 }
 
-/* The tile of a face, from 0 on: that of its centre. One that is in none has the first. */
-static uint32_t tile_of(const nt_mesh *mesh, size_t corner, size_t size)
+/* The tile of a face, from 0 on: that of its centre. One that is in none has the first, and is counted in *outside. */
+static uint32_t tile_of(const nt_mesh *mesh, size_t corner, size_t size, size_t *outside)
 {
 	double sum[2] = {0, 0};
 	for (size_t k = 0; k < size; k++)
@@ -57,6 +58,7 @@ static uint32_t tile_of(const nt_mesh *mesh, size_t corner, size_t size)
 			sum[axis] += mesh->texcoords[2 * (size_t)mesh->indices[corner + k] + axis];
 	const double u = floor(sum[0] / (double)size), v = floor(sum[1] / (double)size);
 	const bool inside = u >= 0 && u < TILES_ALONG_U && v >= 0 && v < TILES / TILES_ALONG_U;
+	*outside += !inside;
 	return inside ? (uint32_t)u + TILES_ALONG_U * (uint32_t)v : 0;
 }
 
@@ -160,11 +162,11 @@ static nt_status split_mesh(tiler *t, nt_mesh *mesh)
 		const uint32_t old = mesh->face_primitive ? numbers[f] : 0;
 		uint32_t material = mesh->primitives[old].material, tile = NO_TILE;
 		if (material != NT_NONE && find_map(&t->templates[material], true)) {
-			tile = tile_of(mesh, corner, size);
+			tile = tile_of(mesh, corner, size, &t->outside[material]);
 			material = material_of(t, material, tile);
 			done = material != NT_NONE;
 		} else if (material != NT_NONE && find_map(&t->templates[material], false)) {
-			note_tile(t, material, tile_of(mesh, corner, size));
+			note_tile(t, material, tile_of(mesh, corner, size, &t->outside[material]));
 		}
 		const size_t before = primitives.count;
 		numbers[f] = number_of(&primitives, arena, old, tile);
@@ -187,6 +189,21 @@ static nt_status split_mesh(tiler *t, nt_mesh *mesh)
 	nt_name_table_free(&primitives);
 	free(list);
 	return made && done ? NT_OK : nt_fail_memory(t->error);
+}
+
+static void report_outside(const tiler *t)
+{
+	for (size_t i = 0; i < t->template_count; i++) {
+		const nt_material *m = &t->templates[i];
+		const nt_map *map = find_map(m, true);
+		if (!map || !t->outside[i])
+			continue;
+		const nt_place place = nt_line_place(m->library, map->line);
+		nt_finding_add(&t->scene->findings, NT_CODE_MATERIAL_DOUBTFUL, &place, 1,
+			"MTL: %.120s has no tile for %zu %s tile %d: u is not in 0 to %d, or v is below 0",
+			map->name, t->outside[i], t->outside[i] == 1 ? "face, which shows" : "faces, which show",
+			FIRST_TILE, TILES_ALONG_U);
+	}
 }
 
 static void report_numbered(const tiler *t)
@@ -216,8 +233,10 @@ nt_status obj_split_tiles(nt_scene *scene, nt_error *error)
 	const size_t bytes = t.template_count * sizeof *t.first;
 	t.first = malloc(bytes);
 	t.last = malloc(bytes);
+	t.outside = nt_calloc(t.template_count, sizeof *t.outside);
 	nt_status status = NT_ERROR_MEMORY;
-	if (t.first && t.last && nt_grow((void **)&t.materials, &t.capacity, t.count, sizeof *t.materials)) {
+	if (t.first && t.last && t.outside &&
+		nt_grow((void **)&t.materials, &t.capacity, t.count, sizeof *t.materials)) {
 		status = NT_OK;
 		memcpy(t.materials, t.templates, t.count * sizeof *t.materials);
 		for (size_t i = 0; i < t.template_count; i++)
@@ -228,6 +247,7 @@ nt_status obj_split_tiles(nt_scene *scene, nt_error *error)
 	nt_material *made = status ? NULL : nt_arena_alloc(&scene->arena, t.count, sizeof *made);
 	if (made) {
 		report_numbered(&t);
+		report_outside(&t);
 		scene->materials = memcpy(made, t.materials, t.count * sizeof *made);
 		scene->material_count = t.count;
 	}
@@ -236,5 +256,6 @@ nt_status obj_split_tiles(nt_scene *scene, nt_error *error)
 	free(t.numbered);
 	free(t.first);
 	free(t.last);
+	free(t.outside);
 	return made ? NT_OK : status ? status : nt_fail_memory(error);
 }

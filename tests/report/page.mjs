@@ -285,9 +285,9 @@ async function clickTexture(page, u, v) {
 	const labels = await ask(page, 'labels');
 	check(labels.every((a, i) => labels.every((b, k) => k <= i || a.box[0] >= b.box[2] || b.box[0] >= a.box[2] || a.box[1] >= b.box[3] || b.box[1] >= a.box[3])),
 		'numbers do not lie on each other');
-	// the reverse: a click on the other seam, at u = 1
+	// the reverse: a click on the other seam, at u = 0
 	await page.click('#layout-fit');
-	await clickTexture(page, 1, 0.31);
+	await clickTexture(page, 0, 0.31);
 	await expect(async () => (await selection(page))?.seam === 1 && await page.locator('.finding.related').count() === 1, 'a click on a seam chooses it and marks its finding');
 	await expect(async () => await ask(page, 'overlapPixels') > 0, 'the mirrored half lies on the other: overlaps are tinted');
 	// the frames of the file and of nmtan: an OBJ has none of its own
