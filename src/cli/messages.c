@@ -369,8 +369,8 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	else if (settings->weld && s->welded.before)
 		nt_buffer_text(out, ", no vertices are equal");
 	if (s->repaired) {
-		nt_buffer_text(out, settings->check ? ", would repair " : ", repaired ");
-		append_count(out, s->repaired, "tangent");
+		nt_buffer_format(out, ", %s the tangents of ", settings->check ? "would repair" : "repaired");
+		append_count(out, s->repaired, "corner");
 	}
 	append_fixed(out, s, settings);
 	if (s->counts.summed_instead)

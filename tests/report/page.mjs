@@ -323,6 +323,7 @@ async function clickTexture(page, u, v) {
 
 {
 	const page = await open('many.html'), rows = () => page.locator('#file-rows tr').count();
+	await expect(async () => /File.*Errors.*Warnings.*Infos/s.test(await page.locator('#file-columns').innerText()), async () => 'severities have one name: ' + await page.locator('#file-columns').innerText());
 	await expect(async () => await rows() === 500, async () => '500 rows: ' + await rows());
 	await expect(async () => (await page.locator('header').innerText()).length < 200, 'and a short header');
 	await expect(async () => /bad.obj[^]*–\s+–\s+–\s+–\s+–\s+–$/.test(await page.locator('#file-rows tr >> nth=0').innerText()), 'the worst first, without counts that nobody made');
@@ -734,6 +735,11 @@ for (const [width, height] of [[1440, 900], [1260, 1100], [1024, 768], [390, 844
 		await rest(page);
 		await expect(async () => await border() < 1, async () => 'the model leaves the view at ' + size + ', turned by ' + turned + ': ' + await border());
 	}
+	await page.close();
+}
+{
+	const page = await open('many.html', {viewport: {width: 1024, height: 768}}), ends = () => page.locator('header > :not([hidden])').evaluateAll(all => all.map(e => e.getBoundingClientRect().right));
+	await expect(async () => (await ends()).at(-1) === Math.max(...await ends()), async () => 'the colours are chosen at the end of the line: ' + await ends());
 	await page.close();
 }
 

@@ -3,7 +3,7 @@
 // The page: what is open, and what happens next. Files come by drop or by choice and stay handles; a worker judges them
 // and its report appears in a frame that has the markup and the script of --report=html (report.html); another worker makes
 // the file that is saved. A worker ends with its job.
-import {Refusal, checkSize, filesOfDrop, filesOfList} from './files.js';
+import {Refusal, checkSize, filesOfDrop, filesOfList, optionsOfFormat} from './files.js';
 
 const $ = id => document.getElementById(id);
 const actions = $('actions'), frame = $('report');
@@ -149,7 +149,7 @@ function stem() {
 }
 
 function offer() {
-	const options = chosenOptions(), format = $('format').value;
+	const format = $('format').value, options = [...chosenOptions(), ...optionsOfFormat(format)];
 	$('save').textContent = chosenOptions().includes('--fix') ? 'Repair and save' : 'Save';
 	const quoted = text => /^[\w.,:@%+/=-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
 	$('command').textContent = ['nmtan', ...options, ...names.length === 1 ? [quoted(names[0]), quoted(stem() + '.' + format)] :

@@ -28,6 +28,9 @@ export function cleanPath(path) {
 	return parts.filter(part => part).join('/');
 }
 
+// Options that copy what a file of this format refers to.
+export const optionsOfFormat = format => format === 'gltf' ? ['--images=copy', '--buffers=copy'] : [];
+
 // Files that systems leave in folders and archives.
 export const isHidden = path => path.split('/').some(part => part.startsWith('.') || part === '__MACOSX' || part === 'Thumbs.db');
 

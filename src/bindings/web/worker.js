@@ -5,7 +5,7 @@
 // {failure}. The page ends the worker after its job, which gives back all memory.
 import createTool from './tool.js';
 import {run} from './run.js';
-import {Refusal, checkSize, cleanPath, isHidden, isMesh, isZip} from './files.js';
+import {Refusal, checkSize, cleanPath, isHidden, isMesh, isZip, optionsOfFormat} from './files.js';
 import {openZip, writeZip} from './zip.js';
 
 const STATUS_OK = 0, STATUS_MEMORY = 4, STATUS_FINDINGS = 6;
@@ -42,7 +42,7 @@ function commonFolder(paths) {
 }
 
 function outputArguments({format, name}, count) {
-	const files = format === 'gltf' ? ['--images=copy', '--buffers=copy'] : [];
+	const files = optionsOfFormat(format);
 	return count > 1 ? ['-d', '/out', '--keep-tree=.', '--output-format=' + format, ...files] : ['-o', '/out/' + name + '.' + format, ...files];
 }
 

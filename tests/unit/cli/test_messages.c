@@ -104,7 +104,8 @@ TEST(success_is_one_line_that_accounts_for_everything)
 	summary->skipped[NT_SKIP_NO_TEXCOORDS] = 2;
 	settings.check = true;
 	nt_message_success(&out, &job, &settings);
-	says(&out, "nmtan: a.obj: checked, 3 primitives, would repair 3 tangents, no findings, 0.1 ms\n");
+	says(&out, "nmtan: a.obj: checked, 3 primitives, would repair the tangents of 3 corners, "
+		"no findings, 0.1 ms\n");
 }
 
 TEST(times_are_numbers_for_people)
