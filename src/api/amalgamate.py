@@ -27,7 +27,11 @@ KERNELS = ['src/tangent/fast/kernel.h', 'src/tangent/sums/kernel.h']
 COLD = re.compile(r'src/(base/(?!hash|words|scratch|counts|largest)|tangent/(frames|mikktspace|sums/hard)|topology/(orientation|plain)|api/(self|split|vertices))')
 
 # Files that take time in a solve and gain by -O3, as in Makefile. The others are compiled at -O2.
-HOT = re.compile(r'src/(base/largest|topology/(adjacency|edge_sort|representatives|weld))')
+HOT = re.compile(r'src/(base/largest|topology/(adjacency|edge_sort|weld))')
+# The same, but vectors would double its code for nothing.
+HOT_SCALAR = re.compile(r'src/topology/representatives')
+
+LEVELS = [('@cold', COLD), ('@hot', HOT), ('@scalar', HOT_SCALAR)]
 
 # Names that headers of the system declare: a file without them may have them for its own.
 SYSTEM = {'link', 'index', 'read', 'write', 'pipe'}
@@ -133,7 +137,7 @@ class Amalgamation:
 	def add_source(self, path):
 		text = read(path)
 		sums = path.startswith('src/tangent/sums/')
-		level = '@cold' if COLD.match(path) else '@hot' if HOT.match(path) else ''
+		level = next((level for level, files in LEVELS if files.match(path)), '')
 		self.lines += ['@sums'] * sums + [level] * bool(level)
 		base = os.path.basename(path)[:-2]
 		self.add(path, self.renamed(own_names(text) & self.shared, base))
@@ -206,7 +210,7 @@ def main():
 	licence = ''.join((' * ' + line).rstrip() + '\n' for line in read('LICENSE').splitlines())
 	text = text.replace('@licence\n', licence).replace('@includes\n', '\n'.join(result.includes) + '\n')
 	body = result.text()
-	for name in ('passes', 'rest', 'cold', 'hot', 'warm', 'sums'):
+	for name in ('passes', 'rest', 'cold', 'hot', 'scalar', 'warm', 'sums'):
 		part = re.search('@begin ' + name + '\n(.*?)@end\n', text, re.S)
 		text = text.replace(part[0], '')
 		body = body.replace('@' + name + '\n', part[1])

@@ -115,109 +115,121 @@ bool nt_grid_of_used(const nt_welded_mesh *mesh, nt_grid *grid)
 
 /* Halving */
 
-/* A part of a cell that is still to be halved. */
-typedef struct part {
-	uint32_t *order; /* its vertices, in any order */
-	size_t vertex_count;
-	nt_cell_corner *corners;
-	size_t corner_count;
-	unsigned halvings;
-} part;
-
-static part whole(const nt_cell *cell)
-{
-	for (size_t i = 0; i < cell->vertex_count; i++)
-		cell->order[i] = (uint32_t)i;
-	return (part){cell->order, cell->vertex_count, cell->corners, cell->corner_count, 0};
-}
+/* A corner on its way, with its position: `index` says which. All corners of a cell are halved as such; if only one
+ * vertex matters, vertices are, of which there are few. */
+typedef struct point {
+	float position[3];
+	uint32_t index;
+} point;
 
 /* The point at which a part is halved, and along which axis; false: nothing is left to halve. */
-static bool find_middle(const nt_cell *cell, const part *p, unsigned *axis, float *middle)
+static bool find_middle(
+	const float *positions, const uint32_t *order, size_t count, unsigned *axis, float *middle)
 {
-	enum { STEP = sizeof *cell->vertices / sizeof *cell->vertices->position };
+	enum { STEP = sizeof(point) / sizeof *positions };
+	_Static_assert(sizeof(nt_cell_vertex) == sizeof(point), "rows have one size");
 	nt_box b = nothing;
-	if (p->vertex_count < 2)
-		return false;
-	(void)add_rows(cell->vertices->position, STEP, p->order, 0, p->vertex_count, &b);
+	(void)add_rows(positions, STEP, order, 0, count, &b);
 	*axis = longest_axis(&b);
 	*middle = 0.5f * (b.high[*axis] + b.low[*axis]);
 	return *middle < b.high[*axis] && *middle > b.low[*axis];
 }
 
-enum { WORD = 64 };
+/* Entries to swap: points, or corners whose vertices are known to be below the middle or not. */
+typedef struct entries {
+	point *points;
+	unsigned axis;
+	float middle;
+	nt_cell_corner *corners;
+	const uint8_t *below;
+} entries;
 
-/* Bits of at most 64 corners that are on the wrong side: those not below from the first on, those below from the last.
- * */
-static uint64_t find_wrong(const uint8_t *below, const nt_cell_corner *corners, size_t count, bool from_last)
+static inline NT_ALWAYS_INLINE bool is_below(const entries *e, size_t i)
 {
-	uint64_t bits = 0;
-	if (from_last)
-		for (size_t i = 0; i < count; i++)
-			bits |= (uint64_t)below[corners[count - 1 - i].vertex] << i;
-	else
-		for (size_t i = 0; i < count; i++)
-			bits |= (uint64_t)!below[corners[i].vertex] << i;
-	return bits;
+	return e->points ? e->points[i].position[e->axis] < e->middle : e->below[e->corners[i].vertex];
 }
 
-/* Swaps corners until those of vertices below the middle come first, and only those that have to: the first that is
- * above with the last that is below, and so on. The order of all others, and which of them are swapped, decides in the
- * end. */
-static void part_corners(const uint8_t *is_below, nt_cell_corner *corners, size_t count, size_t below)
+static inline NT_ALWAYS_INLINE void swap_entries(const entries *e, size_t a, size_t b)
 {
-	/* behind the corners that `low` is of, and the first of those that `high` is of */
+	if (e->points) {
+		const point swapped = e->points[a];
+		e->points[a] = e->points[b];
+		e->points[b] = swapped;
+	} else {
+		const nt_cell_corner swapped = e->corners[a];
+		e->corners[a] = e->corners[b];
+		e->corners[b] = swapped;
+	}
+}
+
+enum { WORD = 64 };
+
+/* Swaps entries until those below the middle come first, and only those that have to: the first that is above with the
+ * last that is below, and so on. The order of all others, and which of them are swapped, decides in the end. */
+static inline NT_ALWAYS_INLINE void part_entries(const entries *e, size_t count, size_t below)
+{
+	/* behind the entries that `low` is of, and the first of those that `high` is of */
 	size_t left = 0, right = count;
+	/* bits of at most 64 entries that are on the wrong side: from the first on, and from the last */
 	for (uint64_t low = 0, high = 0;;) {
 		for (; !low; left += WORD) {
 			if (left >= below)
 				return;
-			low = find_wrong(is_below, corners + left, below - left < WORD ? below - left : WORD, false);
+			const size_t some = below - left < WORD ? below - left : WORD;
+			for (size_t i = 0; i < some; i++)
+				low |= (uint64_t)!is_below(e, left + i) << i;
 		}
 		for (; !high; right -= WORD) {
 			const size_t some = right - below < WORD ? right - below : WORD;
-			high = find_wrong(is_below, corners + (right - some), some, true);
+			for (size_t i = 0; i < some; i++)
+				high |= (uint64_t)is_below(e, right - 1 - i) << i;
 		}
-		for (; low && high; low &= low - 1, high &= high - 1) {
-			nt_cell_corner *const a = &corners[left - WORD + (size_t)nt_trailing_zeros(low)];
-			nt_cell_corner *const b = &corners[right + WORD - 1 - (size_t)nt_trailing_zeros(high)];
-			const nt_cell_corner swapped = *a;
-			*a = *b;
-			*b = swapped;
-		}
+		for (; low && high; low &= low - 1, high &= high - 1)
+			swap_entries(e, left - WORD + (size_t)nt_trailing_zeros(low),
+				right + WORD - 1 - (size_t)nt_trailing_zeros(high));
 	}
 }
 
-/* Parts a part: it becomes what is not below the middle. Returns what is. */
-static part halve(const nt_cell *cell, part *p, unsigned axis, float middle)
+/* A part of a cell: some of its vertices, in any order, and all of their corners. */
+typedef struct part {
+	uint32_t *order;
+	size_t vertex_count;
+	nt_cell_corner *corners;
+	size_t corner_count;
+} part;
+
+/* Leaves the half of a part that a vertex is in. */
+static NT_NOINLINE void halve(const nt_cell *cell, part *p, uint32_t vertex, unsigned axis, float middle)
 {
-	part low = *p;
-	low.vertex_count = low.corner_count = 0;
+	size_t low = 0, corners = 0;
 	for (size_t i = 0; i < p->vertex_count; i++) {
-		const uint32_t vertex = p->order[i], other = p->order[low.vertex_count];
-		const bool below = cell->vertices[vertex].position[axis] < middle;
-		cell->below[vertex] = below;
-		p->order[i] = below ? other : vertex;
-		p->order[low.vertex_count] = below ? vertex : other;
-		low.corner_count += below ? cell->vertices[vertex].corner_count : 0;
-		low.vertex_count += below;
+		const uint32_t one = p->order[i], other = p->order[low];
+		const bool below = cell->vertices[one].position[axis] < middle;
+		cell->below[one] = below;
+		p->order[i] = below ? other : one;
+		p->order[low] = below ? one : other;
+		corners += below ? cell->vertices[one].corner_count : 0;
+		low += below;
 	}
-	part_corners(cell->below, p->corners, p->corner_count, low.corner_count);
-	low.halvings = p->halvings + 1;
-	*p = (part){p->order + low.vertex_count, p->vertex_count - low.vertex_count, p->corners + low.corner_count,
-		p->corner_count - low.corner_count, low.halvings};
-	return low;
+	const entries e = {.corners = p->corners, .below = cell->below};
+	part_entries(&e, p->corner_count, corners);
+	*p = cell->below[vertex] ? (part){p->order, low, p->corners, corners}
+				 : (part){p->order + low, p->vertex_count - low, p->corners + corners,
+					   p->corner_count - corners};
 }
 
 bool nt_find_representative(const nt_cell *cell, uint32_t vertex, uint32_t *found)
 {
-	part p = whole(cell);
-	unsigned axis;
+	part p = {cell->order, cell->vertex_count, cell->corners, cell->corner_count};
+	unsigned axis, halvings = 0;
 	float middle;
-	while (find_middle(cell, &p, &axis, &middle)) {
-		if (p.halvings == NT_HALVINGS)
+	for (size_t i = 0; i < cell->vertex_count; i++)
+		cell->order[i] = (uint32_t)i;
+	while (p.vertex_count > 1 &&
+		find_middle(cell->vertices->position, p.order, p.vertex_count, &axis, &middle)) {
+		if (halvings++ == NT_HALVINGS)
 			return false;
-		const part low = halve(cell, &p, axis, middle);
-		p = cell->below[vertex] ? low : p;
+		halve(cell, &p, vertex, axis, middle);
 	}
 	while (p.corners->vertex != vertex)
 		p.corners++;
@@ -227,44 +239,50 @@ bool nt_find_representative(const nt_cell *cell, uint32_t vertex, uint32_t *foun
 
 /* All cells */
 
-/* A vertex's cell, and its number there. */
-typedef struct cell_place {
-	uint32_t cell, number;
-} cell_place;
+/* Points that are still to be halved. */
+typedef struct points {
+	point *first;
+	size_t count;
+	unsigned halvings;
+} points;
 
 typedef struct weld {
 	const nt_welded_mesh *mesh;
-	nt_cell_vertex *vertices;  /* in their cells */
-	uint32_t *ids;             /* their numbers in the mesh */
-	nt_cell_corner *corners;   /* in their cells, in order */
-	uint32_t *order;           /* [threads][most vertices of a cell] */
-	uint8_t *below;            /* as many */
+	nt_cell_corner *corners; /* in their cells, in order, with vertices of the mesh */
+	point *points;           /* [threads][most corners of a cell] */
 	size_t most;
-	uint32_t first_vertex[NT_CELLS + 1], first_corner[NT_CELLS + 1];
+	uint32_t first[NT_CELLS + 1];
 	uint32_t *found;
 	bool limit; /* set by any thread */
 } weld;
 
 /* False: it would have to be halved too often. */
-static bool weld_cell(const weld *w, const nt_cell *cell, const uint32_t *ids)
+static bool weld_cell(const weld *w, const nt_cell_corner *corners, size_t count, point *room)
 {
-	part waiting[NT_HALVINGS + 1];
+	points waiting[NT_HALVINGS + 1];
 	size_t waiting_count = 0;
-	waiting[waiting_count++] = whole(cell);
+	for (size_t i = 0; i < count; i++) {
+		memcpy(room[i].position, nt_welded_position(w->mesh, corners[i].vertex), sizeof room->position);
+		room[i].index = (uint32_t)i;
+	}
+	waiting[waiting_count++] = (points){room, count, 0};
 	while (waiting_count > 0) {
-		part p = waiting[--waiting_count];
+		points p = waiting[--waiting_count];
 		unsigned axis;
 		float middle;
-		while (find_middle(cell, &p, &axis, &middle)) {
-			if (p.halvings == NT_HALVINGS)
+		while (find_middle(p.first->position, NULL, p.count, &axis, &middle)) {
+			if (p.halvings++ == NT_HALVINGS)
 				return false;
-			const part low = halve(cell, &p, axis, middle);
-			waiting[waiting_count++] = p;
-			p = low;
+			size_t below = 0;
+			for (size_t i = 0; i < p.count; i++)
+				below += p.first[i].position[axis] < middle;
+			const entries e = {.points = p.first, .axis = axis, .middle = middle};
+			part_entries(&e, p.count, below);
+			waiting[waiting_count++] = (points){p.first + below, p.count - below, p.halvings};
+			p.count = below;
 		}
-		/* one vertex has its first corner */
-		for (size_t i = p.vertex_count > 1 ? p.corner_count : 1; i-- > 0;)
-			w->found[ids[p.corners[i].vertex]] = p.corners[i].corner;
+		for (size_t i = p.count; i-- > 0;)
+			w->found[corners[p.first[i].index].vertex] = corners[p.first[i].index].corner;
 	}
 	return true;
 }
@@ -273,67 +291,44 @@ static void weld_cells(void *context, size_t begin, size_t end, unsigned thread)
 {
 	weld *w = context;
 	for (size_t c = begin; c < end; c++) {
-		const size_t vertex = w->first_vertex[c], corner = w->first_corner[c];
-		const nt_cell cell = {w->vertices + vertex, w->corners + corner, w->order + thread * w->most,
-			w->below + thread * w->most, w->first_vertex[c + 1] - vertex,
-			w->first_corner[c + 1] - corner};
-		if (cell.vertex_count > 0 && !weld_cell(w, &cell, w->ids + vertex))
+		const size_t count = w->first[c + 1] - w->first[c];
+		if (count > 0 && !weld_cell(w, w->corners + w->first[c], count, w->points + thread * w->most))
 			nt_atomic_store(&w->limit, true, RELAXED);
 	}
 }
 
-/* Puts vertices and corners into their cells, in order. */
+/* Puts corners into their cells, in order. */
 static bool fill_cells(weld *w, const nt_grid *grid)
 {
 	const nt_welded_mesh *mesh = w->mesh;
 	const size_t count = 3 * mesh->triangle_count;
-	uint32_t *corner_counts = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *corner_counts);
-	cell_place *places = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *places);
-	w->vertices = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *w->vertices);
-	w->ids = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *w->ids);
+	uint16_t *cells = nt_scratch_alloc(mesh->scratch, mesh->vertex_count, sizeof *cells);
 	w->corners = nt_scratch_alloc(mesh->scratch, count, sizeof *w->corners);
-	if (!corner_counts || !places || !w->vertices || !w->ids || !w->corners)
+	if (!cells || !w->corners)
 		return false;
-	memset(corner_counts, 0, mesh->vertex_count * sizeof *corner_counts);
-	uint32_t copy[3], vertices[NT_CELLS] = {0}, corners[NT_CELLS] = {0};
+	for (size_t v = 0; v < mesh->vertex_count; v++)
+		cells[v] = (uint16_t)nt_grid_cell(grid, mesh->positions[mesh->step * v + grid->axis]);
+	uint32_t copy[3], counts[NT_CELLS] = {0};
 	for (size_t t = 0; t < mesh->triangle_count; t++) {
 		const uint32_t *v = nt_triangle_vertices(mesh->triangles, t, 1, copy);
 		for (int k = 0; k < 3; k++)
-			corner_counts[v[k]]++;
+			counts[cells[v[k]]]++;
 	}
-	for (size_t v = 0; v < mesh->vertex_count; v++) {
-		const uint32_t cell = nt_grid_cell(grid, mesh->positions[mesh->step * v + grid->axis]);
-		places[v] = (cell_place){cell, vertices[cell]};
-		vertices[cell] += corner_counts[v] > 0;
-		corners[cell] += corner_counts[v];
-	}
-	w->first_vertex[0] = w->first_corner[0] = 0;
+	w->first[0] = 0;
 	for (size_t c = 0; c < NT_CELLS; c++) {
-		w->most = vertices[c] > w->most ? vertices[c] : w->most;
-		w->first_vertex[c + 1] = w->first_vertex[c] + vertices[c];
-		w->first_corner[c + 1] = w->first_corner[c] + corners[c];
-		corners[c] = w->first_corner[c];
-	}
-	for (size_t v = 0; v < mesh->vertex_count; v++) {
-		if (corner_counts[v] == 0)
-			continue;
-		const size_t at = w->first_vertex[places[v].cell] + places[v].number;
-		memcpy(w->vertices[at].position, nt_welded_position(mesh, (uint32_t)v), sizeof w->vertices->position);
-		w->vertices[at].corner_count = corner_counts[v];
-		w->ids[at] = (uint32_t)v;
+		w->most = counts[c] > w->most ? counts[c] : w->most;
+		w->first[c + 1] = w->first[c] + counts[c];
+		counts[c] = w->first[c];
 	}
 	for (size_t t = 0; t < mesh->triangle_count; t++) {
 		const uint32_t *v = nt_triangle_vertices(mesh->triangles, t, 1, copy);
-		for (unsigned k = 0; k < 3; k++) {
-			const cell_place place = places[v[k]];
-			w->corners[corners[place.cell]++] = (nt_cell_corner){
-				place.number, (uint32_t)nt_triangle_corner(mesh->triangles, t, k)};
-		}
+		for (unsigned k = 0; k < 3; k++)
+			w->corners[counts[cells[v[k]]]++] = (nt_cell_corner){
+				v[k], (uint32_t)nt_triangle_corner(mesh->triangles, t, k)};
 	}
 	const unsigned slots = nt_parallel_slots(mesh->threads, NT_CELLS, LEAST_CELLS);
-	w->order = nt_scratch_alloc(mesh->scratch, slots * w->most, sizeof *w->order);
-	w->below = nt_scratch_alloc(mesh->scratch, slots * w->most, 1);
-	return w->order && w->below;
+	w->points = nt_scratch_alloc(mesh->scratch, slots * w->most, sizeof *w->points);
+	return w->points;
 }
 
 nt_representatives_end nt_representatives(const nt_welded_mesh *mesh, const nt_grid *grid, uint32_t *found)
