@@ -281,7 +281,7 @@ static atomic_int tries[2];
 static nt_status hungry_run(const char *input, const char *output, const nt_settings *settings, nt_summary *summary,
 	nt_error *error)
 {
-	(void)output, (void)settings;
+	(void)output;
 	const int now = atomic_fetch_add(&running, 1) + 1, own = input[0] - 'a';
 	const bool first = tries[own]++ == 0;
 	summary->mesh_count++;
@@ -289,28 +289,31 @@ static nt_status hungry_run(const char *input, const char *output, const nt_sett
 		usleep(2000);
 	atomic_fetch_sub(&running, 1);
 	if (first || input[1] == 'x')
-		return nt_fail_memory(error);
+		return settings->max_memory ? nt_fail_memory_limit(settings->max_memory, error) : nt_fail_memory(error);
 	assert_int_equal(now, 1);
 	return NT_OK;
 }
 
-TEST(what_had_no_memory_beside_others_is_tried_again_alone)
+TEST(what_had_no_memory_beside_others_is_tried_again_alone_with_a_limit_too)
 {
-	nt_batch batch;
-	nt_error error;
-	size_t ran = 0;
-	const nt_settings settings = {.threads = 2, .check = true};
 	put_text_file("a.obj", "");
 	put_text_file("bx.obj", "");
-	assert_int_equal(nt_batch_check(&batch, INPUTS("a.obj", "bx.obj"), &error), NT_OK);
-	nt_batch_run(&batch, &settings,
-		&(nt_batch_options){.run = hungry_run, .jobs = 2, .memory = 100 << 20, .done = pass, .user = &ran});
-	assert_int_equal(ran, 2);
-	assert_int_equal(batch.jobs[0].status, NT_OK);
-	assert_int_equal(batch.jobs[1].status, NT_ERROR_MEMORY);
-	assert_int_equal(tries[0], 2);
-	assert_int_equal(tries[1], 2);
-	nt_batch_free(&batch);
+	for (int limited = 0; limited < 2; limited++) {
+		nt_batch batch;
+		nt_error error;
+		size_t ran = 0;
+		const nt_settings settings = {.threads = 2, .check = true, .max_memory = limited ? 100 << 20 : 0};
+		tries[0] = tries[1] = 0;
+		assert_int_equal(nt_batch_check(&batch, INPUTS("a.obj", "bx.obj"), &error), NT_OK);
+		nt_batch_run(&batch, &settings, &(nt_batch_options){.run = hungry_run, .jobs = 2, .memory = 100 << 20,
+			.done = pass, .user = &ran});
+		assert_int_equal(ran, 2);
+		assert_int_equal(batch.jobs[0].status, NT_OK);
+		assert_int_equal(batch.jobs[1].status, limited ? NT_ERROR_LIMIT : NT_ERROR_MEMORY);
+		assert_int_equal(tries[0], 2);
+		assert_int_equal(tries[1], 2);
+		nt_batch_free(&batch);
+	}
 }
 
 TEST(after_a_failure_no_further_job_begins_if_so_wished)
