@@ -93,7 +93,7 @@ static nt_status run_with_memory(progress *p, nt_job *job, nt_settings *settings
 		settings->threads = p->threads;
 		nt_pool_reserve(p->jobs - 1 + p->threads - 1); /* the others wait */
 	}
-	/* beside others there may be too little, which is no limit yet; what one needs that had all of it is not there */
+	/* too little beside others is no limit yet; what one needs that had all of it is not there */
 	const uint64_t most = settings->max_memory;
 	settings->max_memory = alone ? most : 0;
 	nt_status status = run(p, job, settings);
