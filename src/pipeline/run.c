@@ -385,6 +385,10 @@ static nt_status run_stages(run *r)
 		status = nt_look_for_images(&r->scene, r->error);
 	if (!status)
 		status = nt_stage_maps(&r->scene, r->settings, r->textures, r->error);
+	if (!status && r->settings->quads == NT_QUADS_PAIRS && nt_format_is_gltf(r->scene.format) &&
+		r->summary->solved_count && !r->summary->quad_count)
+		nt_finding_add(&r->scene.findings, NT_CODE_TAN_QUADS_NONE, &(nt_place){.offset = NT_NO_OFFSET}, 1,
+			NULL);
 	if (!status && r->settings->list_meshes)
 		status = nt_stage_listing(&r->scene, r->summary, r->error);
 	if (!status && r->writer && nt_writer_edits(r->reader, r->writer) &&

@@ -616,6 +616,12 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Without tangents in the input nothing proves that the map was baked so.",
 		"If the normal map was baked in that program, solve quads.",
 		"a grid from Blender without tangents, converted with --only=all"),
+	ROW(TAN_QUADS_NONE, WARNING, "w--", LOOK, NULL, "--quads=pairs found no quad: all triangles are solved as such",
+		"Two triangles that follow each other are a quad if the first is a b c and the second a c d or b d c, "
+		"with equal vertices along the common edge. No pair of the file is, so that the option changes "
+		"nothing.",
+		"Leave the option away, or export the quads' halves one after the other.",
+		"one triangle of a glTF, converted with --quads=pairs --only=all"),
 };
 
 const nt_code_row *nt_code_info(nt_code code)

@@ -62,6 +62,7 @@ inputs "" quads 0
 run --only=all --quads=pairs bare.gltf pairs.glb
 exits 0
 says "288 triangles (as 144 quads)"
+says_not "TAN_QUADS_NONE"
 same_places pairs.glb obj.glb
 is "$(gltf pairs.glb 'rows(g.meshes[0].primitives[0].indices)')" "$(gltf bare.gltf 'rows(g.meshes[0].primitives[0].indices)')"
 for choice in auto off; do
@@ -74,6 +75,13 @@ run --only=all --quads=pairs --threads=1 bare.gltf one.glb
 run --only=all --quads=pairs --threads=7 bare.gltf seven.glb
 same one.glb pairs.glb
 same seven.glb pairs.glb
+
+scene "pairs are asked for and there are none: a warning"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n' >one.obj
+run -q one.obj one.gltf
+run --only=all --existing=replace --quads=pairs one.gltf out.glb
+exits 0
+says "one.gltf: warning: --quads=pairs found no quad: all triangles are solved as such [TAN_QUADS_NONE]"
 
 scene "tangents of quads prove quads"
 inputs "" quads 0
