@@ -268,14 +268,14 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"here first. It is visible on edges whose two sides look up the same texels although their tangents "
 		"differ: no map can hide that. There is one finding for each loop or chain, numbered as it shows.",
 		"Nothing if the mirroring is meant. Keep the seam off prominent edges, and bake with mirrored "
-		"islands moved by a whole tile.",
+		"islands a whole tile away.",
 		"two triangles that share an edge and have the same UV at their third corners"),
 	ROW(UV_MIRROR_OVERLAP, INFO, "i-i", EXPORT, NULL,
 		"{count} {island shares|islands share} texels with mirrored ones",
 		"Mirrored islands that share their texture with a twin: the usual way to texture a symmetric "
 		"model at half the cost. Judged as the sampler wraps: repeated coordinates modulo 1, mirrored "
 		"ones folded, clamped ones as they stand.",
-		"Nothing. When baking, move the mirrored islands by a whole tile so that only one of two is baked.",
+		"Nothing. When baking, have the mirrored islands a whole tile away so that only one of two is baked.",
 		"two separate quads with the same four UVs, the second one wound the other way"),
 	ROW(UV_MIRROR_LONE, INFO, "i-i", EXPORT, NULL,
 		"{detail} ({count} {triangle|triangles}) is mirrored and shares no texels with an unmirrored one",
