@@ -315,7 +315,7 @@ static void append_fixed(nt_buffer *out, const nt_summary *s, const nt_settings 
 		nt_buffer_text(out, ", made the tangents of ");
 		append_count(out, s->solved_count, "primitive");
 	}
-	nt_buffer_format(out, ", nothing%s to fix", s->solved_count ? " else" : "");
+	nt_buffer_format(out, ", nothing%s that --fix repairs", s->solved_count ? " else" : "");
 }
 
 /* "nmtan: a.obj -> b.glb" */

@@ -469,7 +469,7 @@ static nt_status check_clashes(parser *p)
 {
 	static const char *const pairs[][3] = {
 		{"quiet", "verbose", "say opposite things"},
-		{"check", "fix", "exclude each other: a repaired file always passes"},
+		{"check", "fix", "exclude each other: check what --fix has written"},
 		{"fix", "existing", "contradict each other: --fix decides for each primitive"},
 		{"fix", "flip-green", "contradict each other: --fix turns the maps that need it"},
 		{"in-place", "no-clobber", "contradict each other"},

@@ -506,7 +506,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"coordinates that the primitive lacks: no renderer can get that right. A warning if an OBJ's material "
 		"does: the output is without the map. If --uv asks for a set that a primitive lacks, its tangents stay "
 		"as they are, and none are made; the finding then tells which sets there are.",
-		"Nothing if no normal map is meant. Else unwrap the mesh, or choose a set that exists with --uv.",
+		"Nothing if no normal map is meant. Else unwrap the mesh, or choose another set with --uv if it has several.",
 		"a normal-mapped glTF primitive without TEXCOORD_0"),
 	ROW(TAN_UVSET_CONFLICT, WARNING, "w--", EXPORT, NULL,
 		"two textures want tangents of different texture coordinates",
@@ -614,7 +614,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"{count} {pair|pairs} of triangles may have been {one quad|quads} when the map was baked",
 		"The program that wrote the input solves tangents on quads and writes their halves as triangles. "
 		"Without tangents in the input nothing proves that the map was baked so.",
-		"If the normal map was baked in that program, solve quads.",
+		"If the normal map was baked in the program that wrote the file (Blender), solve quads.",
 		"a grid from Blender without tangents, converted with --only=all"),
 	ROW(TAN_QUADS_NONE, WARNING, "w--", LOOK, NULL, "--quads=pairs found no quad: all triangles are solved as such",
 		"Two triangles that follow each other are a quad if the first is a b c and the second a c d or b d c, "

@@ -555,16 +555,16 @@ is "$(gltf fixed.gltf '[1, 2].map(i => rows(g.meshes[0].primitives[i].attributes
 run -q --check --report=r.json --fail-on=never fixed.gltf
 is "$(value r.json 'sorted({f["code"] for f in r["files"][0]["findings"] if f["severity"] != "info"})')" "['TAN_DIRECTION_MISMATCH']"
 run --fix --manifest=m.json fixed.gltf again.gltf
-says "nothing to fix"
+says "nothing that --fix repairs"
 is "$(value m.json 'r["fixed"]')" "{}"
 run --fix "$data/quad.obj" quad.glb
-says ", made the tangents of 1 primitive, nothing else to fix, "
+says ", made the tangents of 1 primitive, nothing else that --fix repairs, "
 run --fix quad.glb again.glb
-says ", nothing to fix, "
+says ", nothing that --fix repairs, "
 same fixed.gltf again.gltf
 # what the user calls an info is left; an info alone is no reason
 run --fix --ignore=NMAP_GREEN_DOWN --severity=TAN_BAD_W=info three.gltf left.gltf
-says "nothing to fix"
+says "nothing that --fix repairs"
 for options in "--check three.gltf" "--existing=keep three.gltf a.glb" "--flip-green=on three.gltf a.glb"; do
 	run --fix $options
 	exits 1
@@ -596,29 +596,29 @@ while IFS='|' read -r name edit found fixed; do
 	exits 0
 	says "$fixed"
 	[[ $edit = *map.ktx2* ]] || says_not "[TAN_"
-	[ "$fixed" != "nothing to fix" ] || same pair.gltf fixed.gltf
+	[ "$fixed" != "nothing that --fix repairs" ] || same pair.gltf fixed.gltf
 	run --check -q --report=r.json --fail-on=never fixed.gltf
 	is "$name: $(value r.json '[f["code"] for f in r["files"][0]["findings"] if "--fix" in (f["repair"] or "") and f["severity"] != "info"]')" "$name: []"
 	run --fix fixed.gltf again.gltf
-	says "nothing to fix"
+	says "nothing that --fix repairs"
 	same fixed.gltf again.gltf
 done <<'END'
-two materials over one map|;|TAN_GREEN_PAIR=2|nothing to fix
-a map of each, both down|g.materials[1].normalTexture.index = 1; g.images[1].uri = 'down.png'|TAN_GREEN_PAIR=2|nothing to fix
+two materials over one map|;|TAN_GREEN_PAIR=2|nothing that --fix repairs
+a map of each, both down|g.materials[1].normalTexture.index = 1; g.images[1].uri = 'down.png'|TAN_GREEN_PAIR=2|nothing that --fix repairs
 a map of each, one up|g.materials[1].normalTexture.index = 1|TAN_GREEN_PAIR=1 TAN_SIGN_MISMATCH=2|fixed TAN_SIGN_MISMATCH in 1 primitive
 one map, and w of one mesh is right|g.meshes[0].primitives[1] = square(right, 1)|NMAP_GREEN_DOWN=1 TAN_SIGN_MISMATCH=2|fixed NMAP_GREEN_DOWN in 1 normal map, TAN_SIGN_MISMATCH in 1 primitive
 one map, and one mesh has no tangents|delete g.meshes[0].primitives[1].attributes.TANGENT|NMAP_GREEN_DOWN=1 TAN_SIGN_MISMATCH=2|fixed NMAP_GREEN_DOWN in 1 normal map, TAN_SIGN_MISMATCH in 1 primitive
 a mixed map|g.images[0].uri = 'mixed.png'|TAN_SIGN_MISMATCH=2 TAN_SIGN_MISMATCH=2|fixed TAN_SIGN_MISMATCH in 2 primitives
 a map whose green points up|g.images[0].uri = 'up.png'|TAN_SIGN_MISMATCH=2 TAN_SIGN_MISMATCH=2|fixed TAN_SIGN_MISMATCH in 2 primitives
 a clearcoat map that points up|g.materials[0].extensions = {KHR_materials_clearcoat: {clearcoatFactor: 1, clearcoatNormalTexture: {index: 1}}}; g.extensionsUsed = ['KHR_materials_clearcoat']; g.meshes[0].primitives.pop()|NMAP_GREEN_DOWN=1 TAN_SIGN_MISMATCH=2|fixed NMAP_GREEN_DOWN in 1 normal map, TAN_SIGN_MISMATCH in 1 primitive
-WebP, which is not turned|g.images[0].uri = 'down.webp'|TAN_GREEN_PAIR=2|nothing to fix
+WebP, which is not turned|g.images[0].uri = 'down.webp'|TAN_GREEN_PAIR=2|nothing that --fix repairs
 WebP, and another fault|g.images[0].uri = 'down.webp'; g.meshes[0].primitives[1] = square(zero, 1)|TAN_GREEN_PAIR=2 TAN_ZERO=4|fixed TAN_ZERO in 1 primitive
 beside it a map that is turned|g.materials[1].normalTexture.index = 1; g.images[1].uri = 'another.png'; g.meshes[0].primitives[1] = square(right, 1)|NMAP_GREEN_DOWN=1 TAN_GREEN_PAIR=1|fixed NMAP_GREEN_DOWN in 1 normal map
-a mesh over the map that is not unwrapped|Object.assign(g.meshes[0].primitives[1].attributes, {TEXCOORD_0: add('VEC2', 5126, Array(8).fill(0), {})})|TAN_GREEN_PAIR=2 UV_UNMAPPED=2|nothing to fix
+a mesh over the map that is not unwrapped|Object.assign(g.meshes[0].primitives[1].attributes, {TEXCOORD_0: add('VEC2', 5126, Array(8).fill(0), {})})|TAN_GREEN_PAIR=2 UV_UNMAPPED=2|nothing that --fix repairs
 one geometry over two maps, of which one is up|const z = square((t, i) => i ? inverted(t) : zero(t), 0); g.meshes[0].primitives = [z, {...z, material: 1}]; g.materials[1].normalTexture.index = 1|TAN_GREEN_PAIR=1 TAN_SIGN_MISMATCH=2 TAN_ZERO=1 TAN_ZERO=1|fixed TAN_SIGN_MISMATCH in 1 primitive, TAN_ZERO in 2 primitives
 another fault over a map that is not decoded|g.images[0].uri = 'map.ktx2'; g.extensionsUsed = ['KHR_texture_basisu']; g.textures[0] = {extensions: {KHR_texture_basisu: {source: 0}}}; g.meshes[0].primitives[1] = square(zero, 1)|TAN_SIGN_MISMATCH=2 TAN_SIGN_MISMATCH=2 TAN_ZERO=4|fixed TAN_ZERO in 1 primitive
 another fault in one of them|g.meshes[0].primitives[1] = square(zero, 1)|TAN_GREEN_PAIR=2 TAN_ZERO=4|fixed TAN_ZERO in 1 primitive
-a map that is not decoded|g.images[0].uri = 'map.ktx2'; g.extensionsUsed = ['KHR_texture_basisu']; g.textures[0] = {extensions: {KHR_texture_basisu: {source: 0}}}|TAN_SIGN_MISMATCH=2 TAN_SIGN_MISMATCH=2|nothing to fix
+a map that is not decoded|g.images[0].uri = 'map.ktx2'; g.extensionsUsed = ['KHR_texture_basisu']; g.textures[0] = {extensions: {KHR_texture_basisu: {source: 0}}}|TAN_SIGN_MISMATCH=2 TAN_SIGN_MISMATCH=2|nothing that --fix repairs
 END
 run --check pair.gltf
 prints "which cannot be decoded here, the two cancel"

@@ -111,7 +111,7 @@ class Findings {
 		const opened = code => this.opened.get(code) ?? (order.length <= 2 || shown.length <= 12 || order[0][0] === code);
 		$('groups').replaceChildren(...order.map(([code, items]) => this.group(code, items, opened(code) || items.includes(this.chosen))));
 		const all = this.file.findings.length;
-		if (!all) $('groups').append(element('p', {class: 'empty good'}, this.file.failure ? '' : data.diff ? unchanged : 'Nothing to report. This file is as it should be.'));
+		if (!all) $('groups').append(element('p', {class: this.file.failure ? 'empty' : 'empty good'}, this.file.failure ? '' : data.diff ? unchanged : 'Nothing to report. This file is as it should be.'));
 		else if (!shown.length) $('groups').append(element('p', {class: 'empty'}, 'No finding passes the filter.'));
 		$('shown').textContent = !all ? '' : (shown.length === all ? plural(all, 'finding') : count(shown.length) + ' of ' + plural(all, 'finding')) +
 			(data.left_out ? '; ' + plural(data.left_out, 'more is', 'more are') + ' not on this page' : '');
