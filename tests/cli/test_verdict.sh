@@ -826,6 +826,18 @@ run --check -q --report=all.sarif --fail-on=never m.gltf
 is "$(value all.sarif '" ".join(c["id"] for c in r["runs"][0]["tool"]["driver"]["rules"] if c["help"]["text"].endswith(" IN OUT"))' | tr ' ' '\n' | sort)" \
 	"$(tr ' ' '\n' <<<"${codes_repaired# }" | sort -u)"
 
+scene "a command names the file as the user did, from a folder beside it, too"
+cp "$data"/plates.{gltf,bin} "$data/bumps.png" .
+mkdir -p sub/deep
+cd sub/deep
+for file in ../../plates.gltf "$PWD/../../plates.gltf"; do
+	run --check --report=r.json "$file"
+	exits 6
+	command=$(value r.json '[x["repair"] for x in r["files"][0]["findings"] if x["code"] == "TAN_MISSING_REQUIRED" and x["repair"]][0]')
+	eval "\"\$NMTAN\" -q ${command#nmtan}" || wrong "$command: $?"
+done
+cd ../..
+
 scene "commands that differ are joined to one, and that does what each of them does"
 mapped
 green_down down.png

@@ -152,7 +152,7 @@ static void write_finding(const nt_report_list *reports, const nt_report *report
 	if (remedy) {
 		paint(reports, dim, out);
 		nt_buffer_text(out, "            ");
-		nt_remedy_text(finding->code, finding->repair, report->shown, out);
+		nt_remedy_text(finding->code, finding->repair, report->path, out);
 		nt_buffer_text(out, "\n");
 		paint(reports, plain, out);
 	}

@@ -67,7 +67,7 @@ static void append_verdict(const nt_report *report, nt_buffer *out)
 		nt_buffer_format(out, "; and %zu more", all - 1);
 	if (first && first->repair) {
 		nt_buffer_text(out, ": ");
-		nt_command_text(first->repair, report->shown, NULL, out);
+		nt_command_text(first->repair, report->path, NULL, out);
 	}
 }
 
@@ -123,7 +123,7 @@ void nt_put_together(const nt_report *report, const char *before, void (*put)(co
 	}
 	if (turns && repairs)
 		add_options("--flip-green=auto", false, &all);
-	nt_command_text(all.data ? all.data : "", report->shown, NULL, &command);
+	nt_command_text(all.data ? all.data : "", report->path, NULL, &command);
 	nt_buffer_text(out, before);
 	put(command.data ? command.data : "", out);
 	nt_buffer_text(out, "\n");
