@@ -506,7 +506,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"coordinates that the primitive lacks: no renderer can get that right. A warning if an OBJ's material "
 		"does: the output is without the map. If --uv asks for a set that a primitive lacks, its tangents stay "
 		"as they are, and none are made; the finding then tells which sets there are.",
-		"Nothing if no normal map is meant. Else unwrap the mesh, or choose another set with --uv if it has several.",
+		"Nothing if no normal map is meant. Else unwrap the mesh, or choose another set with --uv if there are "
+		"several.",
 		"a normal-mapped glTF primitive without TEXCOORD_0"),
 	ROW(TAN_UVSET_CONFLICT, WARNING, "w--", EXPORT, NULL,
 		"two textures want tangents of different texture coordinates",
