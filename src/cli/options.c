@@ -244,7 +244,17 @@ static const char *code_name(size_t number)
 	return nt_code_info((nt_code)number)->name;
 }
 
-/* The name that was probably meant: one that begins so, or at most a third of the letters away. NULL: none. */
+/* Whether a name has a word, of those between its hyphens. */
+static bool has_word(const char *name, const char *word, size_t length)
+{
+	for (size_t n = strcspn(name, "-"); *name; name += n + (name[n] == '-'), n = strcspn(name, "-"))
+		if (n == length && strncmp(name, word, n) == 0)
+			return true;
+	return false;
+}
+
+/* The name that was probably meant: one that begins so, or at most a third of the letters away; else one that is a
+ * word of it, or has one. NULL: none. */
 static const char *find_nearest(const char *name, size_t length, const char *(*name_of)(size_t number), size_t count)
 {
 	const char *nearest = NULL;
@@ -258,6 +268,13 @@ static const char *find_nearest(const char *name, size_t length, const char *(*n
 			nearest = other;
 		}
 	}
+	for (int whole = 1; !nearest && whole >= 0; whole--)
+		for (size_t begin = 0, n; !nearest && begin < length; begin += n + 1) {
+			n = strcspn(name + begin, "-=");
+			for (size_t i = 0; i < count && !nearest; i++)
+				if (has_word(name_of(i), name + begin, n) && (!whole || strlen(name_of(i)) == n))
+					nearest = name_of(i);
+		}
 	return nearest;
 }
 

@@ -16,6 +16,7 @@ void nt_fixes_free(nt_fixes *fixes)
 {
 	free(fixes->meshes);
 	free(fixes->keep_inverted);
+	free(fixes->doubtful);
 	free(fixes->images);
 	*fixes = (nt_fixes){0};
 }
@@ -54,11 +55,15 @@ nt_status nt_fixes_make(nt_fixes *fixes, const nt_scene *scene, const nt_report 
 {
 	*fixes = (nt_fixes){.mesh_count = report->mesh_count,
 		.meshes = nt_calloc(report->mesh_count, sizeof *fixes->meshes),
-		.keep_inverted = nt_calloc(report->mesh_count, sizeof *fixes->keep_inverted)};
-	if (!fixes->meshes || !fixes->keep_inverted)
+		.keep_inverted = nt_calloc(report->mesh_count, sizeof *fixes->keep_inverted),
+		.doubtful = nt_calloc(report->mesh_count, sizeof *fixes->doubtful)};
+	if (!fixes->meshes || !fixes->keep_inverted || !fixes->doubtful)
 		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
+		if (f->code == NT_CODE_TAN_SIGN_MISMATCH && f->mesh != NT_NONE &&
+			scene->meshes[f->mesh].doubt == NT_DOUBT_UNDECODABLE && !scene->meshes[f->mesh].pair)
+			fixes->doubtful[f->mesh] = f->count;
 		if (f->severity == NT_SEVERITY_INFO || !f->repair || strcmp(f->repair, "--fix") != 0)
 			continue;
 		if (f->code == NT_CODE_NMAP_GREEN_DOWN) {

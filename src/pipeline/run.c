@@ -191,8 +191,14 @@ static nt_making_normals making_normals(const run *r)
 static void apply_fixes(run *r)
 {
 	for (size_t i = 0; i < r->fixes.mesh_count && i < r->scene.mesh_count; i++) {
-		r->scene.meshes[i].fix = r->fixes.meshes[i];
-		r->scene.meshes[i].keeps_inverted = r->fixes.keep_inverted[i];
+		nt_mesh *mesh = &r->scene.meshes[i];
+		mesh->fix = r->fixes.meshes[i];
+		mesh->keeps_inverted = r->fixes.keep_inverted[i];
+		/* of those that are not solved, the stage that looks at kept tangents says so */
+		if (mesh->fix == NT_EXISTING_REPAIR && mesh->keeps_inverted && r->fixes.doubtful[i])
+			nt_finding_put(&r->scene.findings, (nt_finding){.code = NT_CODE_TAN_KEPT_SIGN,
+				.count = r->fixes.doubtful[i], .repair = "--existing=replace",
+				.detail = nt_doubt_text(NT_DOUBT_UNDECODABLE) + 2}, nt_mesh_place(mesh, &(nt_place){0}));
 	}
 	r->scene.turned_images = r->fixes.images;
 	r->scene.turned_image_count = r->fixes.image_count;

@@ -138,6 +138,7 @@ nt_status nt_find_pairs(nt_scene *scene, const nt_settings *settings, size_t map
 typedef struct nt_fixes {
 	uint8_t *meshes; /* [mesh_count] their nt_mesh.fix */
 	bool *keep_inverted; /* [mesh_count] their nt_mesh.keeps_inverted */
+	size_t *doubtful; /* [mesh_count] triangles with inverted w that a map may cancel which cannot be decoded */
 	size_t mesh_count;
 	bool *images; /* [image_count] of a glTF whose green is turned; NULL: of another format */
 	size_t image_count;

@@ -362,7 +362,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"NaN or infinity. The triangles there cannot be drawn.",
 		"Export the mesh again.",
 		"a PLY vertex with x = inf"),
-	ROW(POS_ORIGIN, INFO, "-ii", LOOK, NULL, "positions are relative to an origin",
+	ROW(POS_ORIGIN, INFO, "-ii", LOOK, NULL, "positions are computed relative to an origin",
 		"Coordinates of the OBJ or PLY are so large that float would move vertices by more than a hundredth "
 		"of the median edge, or --origin names an origin. Normals, tangents and findings are made of the "
 		"positions as doubles minus the origin, which has the form that --origin takes. A glTF stores those, "

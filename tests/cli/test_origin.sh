@@ -178,7 +178,7 @@ scene "an OBJ far from 0 gets an origin, a node adds it, and its normals and tan
 far make
 run far.obj far.gltf
 exits 0
-says "far.obj: info: positions are relative to an origin: 431234.3,5412345.9,101; float would round positions by up to 0.25, which is 12 of the median edge 0.0203 [POS_ORIGIN]"
+says "far.obj: info: positions are computed relative to an origin: 431234.3,5412345.9,101; float would round positions by up to 0.25, which is 12 of the median edge 0.0203 [POS_ORIGIN]"
 is "$(gltf far.gltf 'g.nodes.map(n => n.translation)')" "[[431234.3,5412345.9,101],[431234.3,5412345.9,101]]"
 is "$(far stands far.gltf)" True
 run near.obj near.gltf
@@ -296,7 +296,7 @@ run --origin=431000,5412000,0.5 -q far_ascii.ply named.glb
 is "$(gltf named.glb 'g.nodes.map(n => n.translation)')" "[[431000,5412000,0.5]]"
 # also if float needs none
 run --origin=1,0,-2 "$data/quad.obj" quad.gltf
-says "info: positions are relative to an origin: 1,0,-2 [POS_ORIGIN]"
+says "info: positions are computed relative to an origin: 1,0,-2 [POS_ORIGIN]"
 run -q "$data/quad.obj" plain.gltf
 is "$(gltf quad.gltf '[g.nodes[0].translation, rows(g.meshes[0].primitives[0].attributes.POSITION)[2]]')" \
 	"$(gltf plain.gltf '[[1, 0, -2], rows(g.meshes[0].primitives[0].attributes.POSITION)[2].map((x, k) => x - [1, 0, -2][k])]')"
@@ -341,7 +341,7 @@ END
 is "$(cat said.txt)" "[431234.3, 5412345.9, 101] ['POS_ORIGIN', 'POS_DEGENERATE_TRIANGLE'] 1 [[431234.12, 5412345.67, 101], [431234.14, 5412345.671, 101.00644], [431234.14, 5412345.671, 101.00644]] [[431234.12, 5412345.67, 100.99012], [431234.52, 5412346.072, 101.00991]]"
 run --check flat.obj
 prints "at (431234.12 5412345.67 101)"
-prints "positions are relative to an origin: 431234.3,5412345.9,101; "
+prints "positions are computed relative to an origin: 431234.3,5412345.9,101; "
 run --check flat.obj --report-format=csv
 prints ",431234.12,5412345.67,101,"
 # two quads that are mirrored along x = 431234.12

@@ -469,7 +469,7 @@ says "skipped (points or lines)"
 says_not "triangle"
 
 scene "the nearest option is offered"
-for pair in --repot:--report --chek:--check --thread:--threads --failon:--fail-on --sevreity:--severity; do
+for pair in --repot:--report --chek:--check --weld-vertices:--weld --uv-set:--uv --format:--output-format --thread:--threads --failon:--fail-on --sevreity:--severity; do
 	run "${pair%:*}" a b
 	exits 1
 	says "did you mean ${pair#*:}?"
@@ -597,6 +597,7 @@ while IFS='|' read -r name edit found fixed; do
 	says "$fixed"
 	[[ $edit = *map.ktx2* ]] || says_not "[TAN_"
 	[ "$fixed" != "nothing that --fix repairs" ] || same pair.gltf fixed.gltf
+	[[ $name != "another fault over a map"* ]] || is "$name: $(grep -c 'TAN_KEPT_SIGN' "$WORK/err.txt")" "$name: 2"
 	run --check -q --report=r.json --fail-on=never fixed.gltf
 	is "$name: $(value r.json '[f["code"] for f in r["files"][0]["findings"] if "--fix" in (f["repair"] or "") and f["severity"] != "info"]')" "$name: []"
 	run --fix fixed.gltf again.gltf
