@@ -198,7 +198,8 @@ static void apply_fixes(run *r)
 		if (mesh->fix == NT_EXISTING_REPAIR && mesh->keeps_inverted && r->fixes.doubtful[i])
 			nt_finding_put(&r->scene.findings, (nt_finding){.code = NT_CODE_TAN_KEPT_SIGN,
 				.count = r->fixes.doubtful[i], .repair = "--existing=replace",
-				.detail = nt_doubt_text(NT_DOUBT_UNDECODABLE) + 2}, nt_mesh_place(mesh, &(nt_place){0}));
+				.detail = nt_doubt_text(NT_DOUBT_UNDECODABLE) + 2},
+				nt_mesh_place(mesh, &(nt_place){0}));
 	}
 	r->scene.turned_images = r->fixes.images;
 	r->scene.turned_image_count = r->fixes.image_count;
