@@ -153,7 +153,7 @@ nt_owned model_read_ply(const char *path, float (**tangents)[4])
 		fail(path);
 	if (!pick(&p, "nx", 3, &o.normals[0][0]))
 		make_normals(&o);
-	if (!pick(&p, "u", 2, &o.texcoords[0][0]))
+	if (!pick(&p, "s", 2, &o.texcoords[0][0]))
 		project(&o);
 	float (*rows)[4] = measure_room(p.vertex_count, sizeof *rows);
 	if (!pick(&p, "tx", 4, &rows[0][0])) {
