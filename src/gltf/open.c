@@ -340,7 +340,9 @@ static nt_status merge_buffers(nt_gltf *document, struct stat *files, nt_error *
 	for (size_t i = 0; i < count && !failed; i++) {
 		const uint64_t key[2] = {files[i].st_dev, files[i].st_ino}, hash = nt_hash_bytes(0, key, sizeof key);
 		size_t at = NT_HASH_BEGIN;
-		uint32_t first = files[i].st_nlink ? nt_hash_index_next(&known, hash, &at) : UINT32_MAX;
+		/* a name, extras or an extension of its own would be lost */
+		const bool plain = files[i].st_nlink && nt_json_count(nt_json_at(buffers, i)) == 2;
+		uint32_t first = plain ? nt_hash_index_next(&known, hash, &at) : UINT32_MAX;
 		while (first != UINT32_MAX &&
 			(files[first].st_dev != files[i].st_dev || files[first].st_ino != files[i].st_ino))
 			first = nt_hash_index_next(&known, hash, &at);

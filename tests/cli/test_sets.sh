@@ -538,4 +538,20 @@ python3 "$ROOT/tests/support/cost_inputs.py" colors 40 "$PWD/forty.obj"
 other= stride=$((7 * stride)) sweep kill nothing o.gltf -q -j1 "$PWD/forty.obj" o.gltf
 other= stride=$((7 * stride)) sweep fail nothing o.gltf -q -j1 "$PWD/forty.obj" o.gltf
 
+scene "buffers of one file become one, but for one with extras of its own"
+cp "$data"/plates.{gltf,bin} "$data/bumps.png" .
+for extras in '{}' '{"extras": {"keep": 1}}'; do
+	python3 - "$extras" <<'END'
+import json, sys
+g = json.load(open('plates.gltf'))
+g['buffers'].append({**g['buffers'][0], **json.loads(sys.argv[1])})
+g['bufferViews'][-1]['buffer'] = 1
+json.dump(g, open('two.gltf', 'w'))
+END
+	run -q --only=all two.gltf "out${#extras}.gltf"
+	exits 0
+	is "$extras: $(grep -o '"keep"' "out${#extras}.gltf") $(python3 -c 'import json, sys; print(len(json.load(open(sys.argv[1]))["buffers"]))' "out${#extras}.gltf")" \
+		"$extras: $([ "$extras" = '{}' ] && echo ' 1' || echo '"keep" 2')"
+done
+
 done_testing
