@@ -18,7 +18,7 @@ import tempfile
 import time
 
 # The tree that the house is rebuilt against.
-COMMIT = '13aeea55'
+COMMIT = 'b3b08337'
 MESHES = ('.obj', '.ply', '.gltf', '.glb', '.drc')
 LIMIT = 60
 
