@@ -128,6 +128,19 @@ for extension in '{CESIUM_primitive_outline: {indices: 0}}' '{FB_ngon_encoding: 
 	says_not "welded 648"
 	is "$(gltf out.gltf "$count")" 648
 done
+# what was to be compressed and cannot be is welded once
+for name in sparse tangents_short twin_accessors two_ranges shared_with_points; do
+	for input in "$WORK/layouts/$name.gltf" "$WORK/doubled/$name.gltf"; do
+		run --existing=replace --weld --verify "$input" out.glb
+		exits 0
+		number=$(grep -o ', welded .* to [0-9]*\|, no vertices are equal' "$WORK/err.txt")
+		run --existing=replace --weld --draco=sequential --verify "$input" again.glb
+		exits 0
+		says "DRACO_PLAIN"
+		says "$number"
+	done
+	[ $name = tangents_short ] || same out.glb again.glb
+done
 # feature ids that have an attribute are an attribute like others
 gltf plain.glb ids 'g.meshes[0].primitives[0].extensions = {EXT_mesh_features: {featureIds: [{featureCount: 648, attribute: 0}]}}'
 run --weld ids.gltf out.gltf

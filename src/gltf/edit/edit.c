@@ -226,11 +226,11 @@ static nt_status settle_old_tangents(const editing *e, const nt_vertex_pool *poo
 	return status;
 }
 
-/* Equal vertices become one. Vertices that Draco was to compress are welded already. */
+/* Equal vertices become one. If Draco was to compress them, that was done before, and is not done again. */
 static nt_status weld(const editing *e, nt_pool_vertices *vertices, nt_stored_tangents *stored)
 {
-	return e->options->weld && vertices->own_count == vertices->old_count ? nt_pool_weld(e->edits, e->pools,
-		e->scene, vertices, stored, e->options->bitangents, e->of_window, e->error) : NT_OK;
+	return e->options->weld && !vertices->welded ? nt_pool_weld(e->edits, e->pools, e->scene, vertices, stored,
+		e->options->bitangents, e->of_window, e->error) : NT_OK;
 }
 
 /* Accessors of the source grow, and get new ones beside them. decoded_too: they were compressed by Draco. */

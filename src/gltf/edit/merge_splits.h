@@ -30,6 +30,7 @@ typedef struct nt_pool_vertices {
 	bool *changed;      /* [user] indices differ from the source's triangles */
 	size_t *counts;     /* [user] of indices; NULL: as many as the mesh has corners */
 	bool *renumbered;   /* [user] indices are the source's with other numbers, of any mode; NULL: of none */
+	bool welded;        /* equal ones were looked for */
 	bool borrowed;      /* sources, tangents and indices are the scene's: do not write to them */
 } nt_pool_vertices;
 

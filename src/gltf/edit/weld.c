@@ -335,6 +335,7 @@ static nt_status take_welded(welding *w, nt_stored_tangents *stored, const uint3
 	nt_arena *arena = &w->edits->arena;
 	const size_t user_count = vertices->pool->user_count;
 	nt_pool_vertices to = {.pool = vertices->pool, .old_count = vertices->old_count, .new_count = count,
+		.welded = true,
 		.sources = nt_arena_alloc(arena, count, sizeof *to.sources), .sets = vertices->sets,
 		.indices = nt_arena_alloc(arena, user_count, sizeof *to.indices),
 		.counts = nt_arena_alloc(arena, user_count, sizeof *to.counts),
@@ -375,6 +376,7 @@ nt_status nt_pool_weld(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_
 	welding w = {.edits = edits, .pools = pools, .vertices = vertices, .scratch = scratch,
 		.bitangents = bitangents, .error = error};
 	const size_t before = vertices->new_count;
+	vertices->welded = true;
 	if (draws_points_alone(vertices->pool))
 		return NT_OK;
 	nt_status status = find_obstacle(&w, scene);
