@@ -144,6 +144,13 @@ $(B)/%.cpp.o: src/%.cpp
 existing = $(or $(wildcard $(1)),$(error Makefile has a rule for $(1), which is not there))
 objects_of = $(call objects,$(foreach source,$(1),$(call existing,src/$(source))))
 
+# The library's structs are cleared by plain stores: gcc's "rep stos" takes 30 cycles each, 12 % of a call of two triangles.
+ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
+ifeq ($(findstring clang,$(CC)),)
+$(call objects,$(core_src)): NT_CFLAGS += -mmemset-strategy=unrolled_loop:512:noalign,libcall:-1:noalign
+endif
+endif
+
 # The passes that need lanes, once for each instruction set. Exceptions are never looked at, so that
 # comparisons may be made for all lanes; contraction stays off: FMA is used where fma() stands in the source.
 lanes := -O3 -fno-trapping-math

@@ -299,7 +299,9 @@ nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 
 	/* the method's own answer, then what a renderer can use */
 	size_t ill_conditioned = 0;
-	nmtan_counts of_quads = NMTAN_COUNTS_INIT;
+	nmtan_counts of_quads;
+	if (implementation->halves)
+		of_quads = (nmtan_counts)NMTAN_COUNTS_INIT;
 	if (!r.solve.tangents)
 		status = NMTAN_ERROR_MEMORY;
 	else if (r.solve.corner_count > 0)
@@ -307,7 +309,8 @@ nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 						: run_method(&r.solve, r.options.method, &ill_conditioned);
 	if (!status && r.solve.corner_count > 0)
 		status = nt_repair(&r.solve, &met);
-	nt_counts_add(&met, &of_quads);
+	if (implementation->halves)
+		nt_counts_add(&met, &of_quads);
 	if (!status)
 		nt_put_tangents(to.tangents, to.tangent_stride_bytes, r.solve.tangents, r.solve.corner_count);
 	end_counts(&r, &met, ill_conditioned, counts);

@@ -233,8 +233,15 @@ static void check_words(void *context, size_t begin, size_t end, unsigned thread
 
 nmtan_status nt_find_unusable(const nt_solve *solve, nmtan_counts *counts, uint64_t **faulty)
 {
+	const nt_known *known = solve->known;
+	const bool flags = known && known->flags && !solve->mesh->face_sizes;
 	memset(counts, 0, sizeof *counts);
 	*faulty = NULL;
+	/* scenes have thousands of meshes of few triangles */
+	if (flags && solve->mesh->face_count <= WORD &&
+		!find_suspects(known, known->flags, solve->mesh->face_count, &counts->mirrored))
+		return NMTAN_OK;
+	counts->mirrored = 0;
 	const size_t words = (solve->mesh->face_count + WORD - 1) / WORD;
 	const unsigned threads = nt_parallel_slots(solve->threads, words, GRAIN);
 	search job = {solve, nt_scratch_alloc(solve->scratch, threads, sizeof *job.counts),

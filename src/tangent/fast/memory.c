@@ -53,14 +53,14 @@ void nt_fast_plan_memory(const nt_fast *fast, bool binned, size_t least_bytes, n
 
 /* Records take the rows' place: settle looks at the normals of a block before it writes its records. Records of both
  * orientations lie in pairs. Records of one are packed, so that write reads fewer lines; but only one thread alone
- * has passed all the rows that it then overwrites. */
+ * has passed all the rows that it then overwrites, and whole blocks fit where there is one. */
 bool nt_fast_place_records(nt_fast *fast, const bool orientations[2])
 {
 	static_assert(sizeof(nt_weld_row) == 2 * sizeof(nt_record), "a pair of records is as large as a row");
 	const bool both = orientations[0] && orientations[1];
 	nt_record *records = (nt_record *)fast->rows;
-	if (!both && fast->ranges.count > 1)
-		records = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *records);
+	if (!both && (fast->ranges.count > 1 || fast->vertex_count < NT_LANES))
+		records = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count + NT_LANES, sizeof *records);
 	for (int o = 0; o < 2; o++)
 		fast->records[o] = orientations[o] ? records + (both ? o : 0) : NULL;
 	fast->record_step = both ? 2 : 1;

@@ -122,12 +122,12 @@ static inline void find_unusable(const float (*NT_RESTRICT normals)[NT_LANES], c
 	}
 }
 
-/* Stores `count` records, `step` apart. */
+/* Stores `count` records, `step` apart. If that is 1, there is room for `used`. */
 static void store_records(nt_record *NT_RESTRICT records, size_t step, size_t count, size_t used,
 	const record_lanes *NT_RESTRICT r, const uint32_t *NT_RESTRICT state)
 {
 	nt_record copy[NT_LANES];
-	nt_record *to = count == used && step == 1 ? records : copy;
+	nt_record *to = step == 1 ? records : copy;
 	for (size_t i = 0; i < used; i += WIDTH) {
 		lanes four[4] = {load_lanes(r->x + i), load_lanes(r->y + i), load_lanes(r->z + i),
 			load_lanes(state + i)};
@@ -135,7 +135,7 @@ static void store_records(nt_record *NT_RESTRICT records, size_t step, size_t co
 		memcpy(to + i, four, sizeof four);
 	}
 	for (size_t i = 0; to == copy && i < count; i++)
-		records[step * i] = copy[i];
+		records[2 * i] = copy[i]; /* pairs: nt_fast_place_records() */
 }
 
 #endif
