@@ -244,11 +244,11 @@ static bool is_crowded(const block *b, const nt_append_target *next)
 	return crowded;
 }
 
-/* Moves an accessor to a view of its own. */
+/* Moves an accessor to a view of its own. What is sparse becomes plain there, but for what a Draco block has. */
 static nt_status move_away(nt_appending *job, const nt_append_target *moved)
 {
-	/* what was in the block was not sparse */
-	return add_elements(job, moved, false, nt_gltf_accessor_json(job->document, moved->accessor.index));
+	return add_elements(job, moved, !moved->accessor.decoded,
+		nt_gltf_accessor_json(job->document, moved->accessor.index));
 }
 
 static nt_status block_bytes(nt_appending *job, const block *b, const unsigned char **bytes)
@@ -391,7 +391,7 @@ static nt_status append_to_targets(nt_appending *job)
 		nt_json_value *json = nt_gltf_accessor_json(job->document, target->accessor.index);
 		nt_json_set_uint64(job->json, nt_json_put(job->json, json, "count"),
 			job->vertices->new_count);
-		if (target->accessor.sparse_count && nt_vertices_differ(job->vertices))
+		if (target->accessor.sparse_count && nt_vertices_differ(job->vertices) && nt_json_find(json, "sparse"))
 			status = nt_append_sparse(job, target);
 	}
 	return status;
