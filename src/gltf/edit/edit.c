@@ -126,8 +126,9 @@ static nt_status add_tangents(const editing *e, uint32_t buffer, const nt_pool_v
 	uint64_t offset;
 	nt_status status;
 	if (old->count) {
+		/* a view of several accessors has to say how far apart elements are */
 		status = nt_packed_add(e->edits, buffer, &new->packing, new->stored, count * new->element_bytes,
-			NT_GLTF_ARRAY_BUFFER, 0, &view, &offset, e->error);
+			NT_GLTF_ARRAY_BUFFER, old->count > 1 ? new->element_bytes : 0, &view, &offset, e->error);
 		if (!status)
 			nt_gltf_move_tangents(document, old, new->filter.precision, view, offset, count);
 	} else {
