@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""mutate.py ROOM N SEED: which of N random faults in the sources of a room do the tests notice?
+"""mutate.py [--all] ROOM N SEED: which of N random faults in the sources of a room do the tests notice?
 
 A copy of the tree in build/mutate gets one fault at a time: a relation, a constant, a statement that is gone. First the
-tests of the file's room and subject run, then all others but those of cost, pages, tree and bindings. A change that
+scripts of the file's room and subject run, which see the tool from outside and outlive a room that is written anew;
+then the unit tests of the room; with --all then all others, but those of cost, pages, tree and bindings. A change that
 no test notices is listed with its line. A fault that does not compile, or that compiles to the same code, does not
 count. ROOM is a folder of src ("gltf", "report/render"), or "all". The choice follows from SEED alone.
 """
@@ -12,21 +13,23 @@ import glob
 import os
 import random
 import re
-import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 
 TREE = os.path.abspath('build/mutate/tree')
 B = 'build/release'
 JOBS = os.cpu_count() or 1
-LIMIT = 120  # seconds for a test that a fault may keep from ending
+LIMIT = 300  # seconds for a test that a fault may keep from ending; less if it takes less without
 
 # Tests of a room whose name does not say so.
 SUBJECTS = {
     'topology': ['frames', 'quads'], 'tangent': ['frames', 'quads', 'conformance'], 'api': ['frames'],
-    'gltf': ['lossless', 'convert', 'morphs', 'extensions', 'draco', 'meshopt', 'precision', 'verify', 'validator', 'sets', 'damaged'],
-    'json': ['lossless', 'damaged', 'extensions'], 'scene': ['choose', 'colors', 'convert', 'normals'],
+    'gltf': ['layouts', 'lossless', 'convert', 'morphs', 'extensions', 'draco', 'meshopt', 'precision', 'verify', 'validator', 'sets', 'damaged'],
+    'json': ['layouts', 'lossless', 'damaged', 'extensions'], 'scene': ['choose', 'colors', 'convert', 'normals'],
     'file': ['sets', 'output', 'placement', 'damaged', 'stale'], 'image': ['textures', 'materials'],
     'obj': ['materials', 'colors', 'convert', 'damaged', 'normals'], 'ply': ['convert', 'damaged', 'small_models'],
     'format': ['convert', 'verdict', 'textures'], 'report': ['report', 'check', 'verdict', 'diff', 'report_folder', 'page'],
@@ -41,12 +44,27 @@ def shell(*words, **more):
     return subprocess.run(words, cwd=TREE, capture_output=True, text=True, errors='replace', **more)
 
 
+def bytes_of(path):
+    with open(path, 'rb') as file:
+        return file.read()
+
+
 def copy_tree():
-    shutil.rmtree(TREE, ignore_errors=True)
-    os.makedirs(TREE)
-    files = subprocess.run(['git', 'ls-files', '-z'], capture_output=True, check=True).stdout
-    archive = subprocess.run(['tar', '--null', '-T', '-', '-cf', '-'], input=files, capture_output=True, check=True).stdout
-    subprocess.run(['tar', '-xf', '-', '-C', TREE], input=archive, check=True)
+    """What is there already stays if it is the same, so that it is not built again."""
+    names = subprocess.run(['git', 'ls-files', '-z'], capture_output=True, check=True, text=True).stdout.split('\0')[:-1]
+    names = [name for name in names if os.path.isfile(name)]
+    for folder, _, files in os.walk(TREE):
+        for name in files:
+            path = os.path.relpath(os.path.join(folder, name), TREE)
+            if path not in names and not path.startswith('build/'):
+                os.remove(os.path.join(TREE, path))
+    for name in names:
+        path = os.path.join(TREE, name)
+        if not os.path.exists(path) or bytes_of(path) != bytes_of(name):
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            with open(path, 'wb') as file:
+                file.write(bytes_of(name))
+            os.chmod(path, os.stat(name).st_mode)
     for name, at in (('../shared', os.path.join(TREE, '../shared')), ('build/node', os.path.join(TREE, 'build/node'))):
         if os.path.isdir(name) and not os.path.lexists(at):
             os.makedirs(os.path.dirname(at), exist_ok=True)
@@ -123,42 +141,55 @@ def places(room):
 
 
 def tests_of(path):
-    """Programs and scripts of the file's room and subject; then all others."""
+    """Scripts of the file's room and subject, those that say most first; unit tests of the room; all others."""
     parts, stem = path.split('/')[1:-1], os.path.basename(path).split('.')[0]
     programs = sorted(p for p in glob.glob(TREE + '/tests/unit/**/test_*.c', recursive=True) + glob.glob(TREE + '/tests/api/test_*.c'))
     programs = [B + p[len(TREE):-2] for p in programs]
     scripts = [p[len(TREE) + 1:] for p in sorted(glob.glob(TREE + '/tests/*/test_*.sh')) if not LEFT_OUT.search(p)]
-    words = SUBJECTS.get(parts[0], []) + stem.split('_')
-    near = [p for p in programs if '/unit/%s/' % parts[0] in p or '/api/' in p and parts[0] in ('topology', 'tangent', 'api')]
-    near.sort(key=lambda p: not p.endswith('test_' + stem))
-    near += [p for p in scripts if any(word in os.path.basename(p)[5:-3].split('_') for word in words) or
-             os.path.basename(p)[5:-3] in words]
-    return near, [p for p in programs + scripts if p not in near]
+    words = list(dict.fromkeys(SUBJECTS.get(parts[0], []) + stem.split('_')))
+    name = lambda p: os.path.basename(p)[5:-3]
+    rank = lambda p: min([k for k, word in enumerate(words) if word == name(p) or word in name(p).split('_')], default=99)
+    outside = sorted([p for p in scripts if rank(p) < 99], key=rank)
+    units = [p for p in programs if '/unit/%s/' % parts[0] in p or '/api/' in p and parts[0] in ('topology', 'tangent', 'api')]
+    units.sort(key=lambda p: not p.endswith('test_' + stem))
+    return outside, units, [p for p in programs + scripts if p not in outside + units]
 
 
-def fails(test):
+def fails(test, stopped=None):
     """Whether the test notices something."""
-    with tempfile.TemporaryDirectory(prefix='nmtan-mutate-') as folder:
+    with tempfile.TemporaryDirectory(prefix='nmtan-mutate-', ignore_cleanup_errors=True) as folder:
         more = dict(os.environ, CMOCKA_MESSAGE_OUTPUT='TAP', NMTAN='%s/%s/nmtan' % (TREE, B), BUILD='%s/%s' % (TREE, B),
-                    ROOT=TREE, WORK=folder)
+                    ROOT=TREE, WORK=folder, NT_STOP='1')
         words = ['bash', test] if test.endswith('.sh') else [test]
-        try:
-            done = shell('timeout', '-k', '5', str(LIMIT if test.endswith('.sh') else 60), *words, env=more,
-                         stdin=subprocess.DEVNULL)
-        finally:
-            subprocess.run(['chmod', '-R', 'u+rwX', folder])
-        return done.returncode != 0 or bool(re.search('^not ok(?!.*# SKIP)', done.stdout, re.M))
+        begin = time.monotonic()
+        with open(os.path.join(folder, '.said'), 'w+', errors='replace') as said:
+            run = subprocess.Popen(words, cwd=TREE, env=more, stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.DEVNULL,
+                                   start_new_session=True)
+            while run.poll() is None:
+                if stopped and stopped.is_set() or time.monotonic() - begin > min(LIMIT, 20 + 5 * seconds.get(test, LIMIT)):
+                    os.killpg(run.pid, signal.SIGKILL)
+                    run.wait()
+                    for server in glob.glob(folder + '/.ask/*/pid'):  # which `ask` in cli.sh began
+                        os.kill(int(bytes_of(server)), signal.SIGKILL)
+                    break
+                time.sleep(0.02)
+            said.seek(0)
+            text = said.read()
+        seconds.setdefault(test, time.monotonic() - begin)
+        subprocess.run(['chmod', '-R', 'u+rwX', folder])
+        return run.returncode != 0 or bool(re.search('^not ok(?!.*# SKIP)', text, re.M))
 
 
 def first_that_fails(tests):
+    stopped, found = threading.Event(), []
+
+    def attempt(test):
+        if not stopped.is_set() and fails(test, stopped) and not stopped.is_set():
+            stopped.set()
+            found.append(test)
     with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
-        waiting = {pool.submit(fails, test): test for test in tests}
-        for done in concurrent.futures.as_completed(waiting):
-            if done.result():
-                for other in waiting:
-                    other.cancel()
-                return waiting[done]
-    return None
+        list(pool.map(attempt, tests))
+    return found[0] if found else None
 
 
 def make(*targets):
@@ -169,35 +200,44 @@ def code_of(path):
     return shell('sh', '-c', 'cat %s/*.so %s/nmtan %s/libnmtan.so | sha256sum' % (B, B, B)).stdout
 
 
-def try_one(path, number, kind, new):
-    near, others = tests_of(path)
-    quick = [p for p in near if not p.endswith('.sh')]
-    if not make('all', *quick):
-        return 'does not compile'
+def try_one(path):
+    """Which test notices the fault, and whether it is one from outside."""
+    outside, units, others = [[p for p in tests if p not in ignored] for tests in tests_of(path)]
+    if not make('all'):
+        return 'does not compile', False
     if code_of(path) == usual:
-        return 'same code'
-    seen = first_that_fails(quick) or first_that_fails([p for p in near if p.endswith('.sh')])
-    if not seen:
+        return 'same code', False
+    seen = first_that_fails(outside)
+    if seen:
+        return seen, True
+    if not make(*units):
+        return 'does not compile', False
+    seen = first_that_fails(units)
+    if not seen and everything:
         if not make('all', 'tests'):
-            return 'does not compile'
-        seen = first_that_fails([p for p in others if p not in ignored])
-    return seen
+            return 'does not compile', False
+        seen = first_that_fails(others)
+    return seen, False
 
 
+everything = '--all' in sys.argv
+sys.argv = [word for word in sys.argv if word != '--all']
 room, count, seed = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+seconds = {}  # of each test without a fault
 copy_tree()
-if not make('all', 'tests'):
+sample = tests_of('src/%s/x.c' % ('gltf' if room == 'all' else room))
+needed = sum(sample[:3 if everything else 2], [])
+if not make('all', *(['tests'] if everything else sample[1] + ['build/release/tests/preload/calls.so'])):
     sys.exit('the tree does not build')
-everything = sum(tests_of('src/%s/x.c' % ('gltf' if room == 'all' else room)), [])
 with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
-    ignored = {test for test, failed in zip(everything, pool.map(fails, everything)) if failed}
+    ignored = {test for test, failed in zip(needed, pool.map(fails, needed)) if failed}
 for test in sorted(ignored):
     print('fails without a fault, and is left out: ' + test)
 # -g1 puts line numbers into what is built, but no fault changes those.
 usual = code_of('')
 choices = list(places(room))
 chance = random.Random(seed)
-noticed = tried = 0
+noticed = from_outside = tried = 0
 survivors = []
 while tried < count:
     path, number = chance.choice(choices)
@@ -208,15 +248,17 @@ while tried < count:
     old, lines[number] = lines[number], new
     open(full, 'w', encoding='utf-8').write('\n'.join(lines))
     try:
-        seen = try_one(path, number, kind, new)
+        seen, outside = try_one(path)
     finally:
         open(full, 'w', encoding='utf-8').write(text)
     where = '%s:%d %s: `%s` -> `%s`' % (path, number + 1, kind, old.strip(), new.strip())
     if seen not in ('does not compile', 'same code'):
         tried += 1
         noticed += bool(seen)
+        from_outside += outside
         if not seen:
             survivors.append(where)
     print('%s  %s' % (seen or 'SURVIVES', where), flush=True)
 print('\nNo test notices:\n  ' + '\n  '.join(survivors) if survivors else '')
-print('%s, seed %d: %d of %d noticed, %.0f %%' % (room, seed, noticed, tried, 100 * noticed / max(tried, 1)))
+print('%s, seed %d: %d of %d noticed, %.0f %%; %d of them from outside, %.0f %%' % (
+    room, seed, noticed, tried, 100 * noticed / max(tried, 1), from_outside, 100 * from_outside / max(tried, 1)))

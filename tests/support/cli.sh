@@ -42,6 +42,7 @@ wrong() {
 	case_ok=false
 	echo "# $*"
 	[ ! -s "$WORK/err.txt" ] || sed 's/^/#   stderr: /' "$WORK/err.txt" | head -20
+	[ -z "${NT_STOP-}" ] || { echo "not ok - $case_name"; exit 1; }
 }
 
 run() {

@@ -1,0 +1,875 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""gltf_table.py make             a table of small glTF files in the folder in: who shares what, how bytes lie, which tangents are there
+gltf_table.py sets                 the sets of options, a line for each: name, options
+gltf_table.py run SET NMTAN        converts the files with the options of SET, a third of them with most, and says what is wrong
+
+Each primitive is a plane strip of two squares whose texture is mirrored at the edge between them, turned in another way
+in each primitive, so that its tangents are known: along dP/du, the same in a square. The vertices of the edge need copies. The
+output must have these tangents at every corner, all else of the input bit for bit, no vertex more than needed, no byte that nobody
+uses, and nothing that the specification forbids.
+"""
+import json
+import math
+import os
+import struct
+import subprocess
+import sys
+
+import gltf_lossless as lossless
+
+FLOAT, UINT, USHORT, SHORT, UBYTE, BYTE = 5126, 5125, 5123, 5122, 5121, 5120
+CODES = {FLOAT: 'f', UINT: 'I', USHORT: 'H', SHORT: 'h', UBYTE: 'B', BYTE: 'b'}
+SIZES = lossless.SIZES
+TYPES = {1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4'}
+UNIT = {BYTE: 127, UBYTE: 255, SHORT: 32767, USHORT: 65535}
+
+
+class Stream:
+    """Rows of one accessor. `over`: it has the bytes of that one, from row `first` on."""
+
+    def __init__(self, kind, rows, normalized=False, over=None, first=0, **how):
+        self.kind, self.rows, self.normalized, self.over, self.first = kind, rows, normalized, over, first
+        self.how, self.number = how, None
+
+    def size(self):
+        return SIZES[self.kind] * len(self.rows[0])
+
+    def bytes(self, row):
+        return struct.pack('<%d%s' % (len(row), CODES[self.kind]), *row)
+
+
+def again(stream):
+    return Stream(stream.kind, stream.rows, stream.normalized, over=stream)
+
+
+POINTS = [(x, y) for y in (0, 1) for x in (0, 1, 2)]
+CORNERS = [0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4]
+TURNS = [(1, 0), (0.6, 0.8), (0, 1), (-0.8, 0.6), (-1, 0)]
+
+
+def strip(k, quantized=False, turn=None):
+    """Attributes of the k-th primitive and what a target may add to them."""
+    axes = [[0, 0, 0] for _ in range(3)]
+    for i in range(3):
+        axes[i][(i + k) % 3] = 1
+    place = lambda x, y, z: tuple(x * a + y * b + z * c for a, b, c in zip(*axes))
+    cos, sin = TURNS[(k if turn is None else turn) % 5]
+    turned = lambda u, v: ((2 + cos * u - sin * v) / 4, (2 + sin * u + cos * v) / 4)
+    uvs = [turned(abs(x - 1), y) for x, y in POINTS]
+    count = len(POINTS)
+    attributes = {
+        'POSITION': Stream(FLOAT, [place(x, y, k) for x, y in POINTS]),
+        'NORMAL': Stream(FLOAT, [place(0, 0, 1)] * count),
+        'TEXCOORD_0': Stream(FLOAT, uvs),
+        'COLOR_0': Stream(UBYTE, [(i, 2 * i, 3 * i, 255 - k) for i in range(count)], True),
+        '_ID': Stream(USHORT, [(10 * k + i,) for i in range(count)]),
+    }
+    if quantized:
+        attributes['POSITION'].kind = SHORT
+        attributes['NORMAL'] = Stream(BYTE, [place(0, 0, 127)] * count, True)
+        attributes['TEXCOORD_0'] = Stream(USHORT, [tuple(round(65535 * c) for c in row) for row in uvs], True)
+    targets = [{'POSITION': Stream(FLOAT, [place(0, 0.5 * max(x - 1, 0), 0) for x, y in POINTS])},
+               {'POSITION': Stream(FLOAT, [place(0, 0, 0.25 * x) for x, y in POINTS]),
+                'NORMAL': Stream(FLOAT, [place(-0.25, 0, 0)] * count)},
+               {'COLOR_0': Stream(FLOAT, [(0.0, 0.5, 0.0, 0.0)] * count)}]
+    return attributes, targets
+
+
+def corners(list_=None, kind=USHORT):
+    return Stream(kind, [(i,) for i in (CORNERS if list_ is None else list_)])
+
+
+def primitive(attributes, indices=None, material=0, targets=None, **more):
+    return {'attributes': attributes, 'indices': indices, 'material': material, 'targets': targets, **more}
+
+
+# ---- who shares what: lists of meshes, which are lists of primitives ----
+
+def alone(q):
+    return [[primitive(strip(1, q)[0], corners(kind=UBYTE))]]
+
+
+def two(q):
+    return [[primitive(strip(1, q)[0], corners())], [primitive(strip(2, q)[0], corners(kind=UINT))]]
+
+
+def soup(q):
+    attributes = strip(3, q)[0]
+    for stream in attributes.values():
+        stream.rows = [stream.rows[i] for i in CORNERS]
+    return [[primitive(attributes)]]
+
+
+def ranges(q):
+    attributes, whole = strip(1, q)[0], corners()
+    part = lambda first, count: Stream(USHORT, whole.rows[first:first + count], over=whole, first=first)
+    return [[primitive(attributes, part(0, 6)), primitive(dict(attributes), part(6, 6)), primitive(dict(attributes), whole)]]
+
+
+def ranges_apart(q):
+    """Each user needs less than both."""
+    attributes = strip(1, q)[0]
+    return [[primitive(attributes, corners(CORNERS[:6])), primitive(dict(attributes), corners(CORNERS[6:], UBYTE))]]
+
+
+def twins(q):
+    attributes = strip(1, q, turn=2)[0]
+    return [[primitive(attributes, corners(CORNERS[:9]))],
+            [primitive({n: again(s) for n, s in attributes.items()}, corners(CORNERS[6:]))]]
+
+
+def instances(q):
+    attributes, whole = strip(1, q)[0], corners()
+    return [[primitive(attributes, whole), primitive({n: again(s) for n, s in attributes.items()}, again(whole))],
+            [primitive(dict(attributes), whole)]]
+
+
+def same_indices(q):
+    """One primitive splits the edge between the squares, the other nothing."""
+    whole, other = corners(), strip(2, q)[0]
+    cos_sin = [(x, y) for x, y in POINTS]
+    other['TEXCOORD_0'].rows = [(x, y) for x, y in cos_sin] if not q else [(20000 * x, 20000 * y) for x, y in cos_sin]
+    return [[primitive(strip(1, q)[0], whole), primitive(other, whole)]]
+
+
+def same_positions(q):
+    """Other texture coordinates over the same positions and normals: a TANGENT for each."""
+    first, second = strip(1, q)[0], strip(1, q, turn=2)[0]
+    for name in ('POSITION', 'NORMAL'):
+        second[name] = first[name]
+    return [[primitive(first, corners()), primitive(second, corners(CORNERS[6:] + CORNERS[:6]))]]
+
+
+def same_texcoords(q):
+    first, second = strip(1, q)[0], strip(2, q, turn=1)[0]
+    second['TEXCOORD_0'] = again(first['TEXCOORD_0'])
+    return [[primitive(first, corners())], [primitive(second, corners())]]
+
+
+def needless(q):
+    """The second has the same vertices and a material that needs no tangents."""
+    attributes, whole = strip(1, q)[0], corners()
+    return [[primitive(attributes, whole), primitive(dict(attributes), whole, material=1)]]
+
+
+def points(q):
+    """Points and lines over the same vertices; points count all of an accessor."""
+    attributes = strip(1, q)[0]
+    return [[primitive(attributes, corners()), primitive({'POSITION': attributes['POSITION']}, material=1, mode=0)]]
+
+
+def lines(q):
+    attributes = strip(1, q)[0]
+    return [[primitive(attributes, corners()), primitive(dict(attributes), corners([0, 1, 1, 2]), material=1, mode=1)]]
+
+
+def named_twice(q):
+    """The accessor of an attribute is that of another one, too."""
+    attributes = strip(1, q)[0]
+    attributes['TEXCOORD_1'] = attributes['TEXCOORD_0']
+    attributes['_NORMAL'] = again(attributes['NORMAL'])
+    return [[primitive(attributes, corners())]]
+
+
+def modes(q):
+    first, second = strip(1, q)[0], strip(2, q)[0]
+    return [[primitive(first, corners([3, 0, 4, 1, 5, 2]), mode=5), primitive(second, corners([1, 2, 5, 4, 3, 0]), mode=6)]]
+
+
+def morphs(q):
+    attributes, targets = strip(1)[:2] if not q else (strip(1, q)[0], strip(1)[1])
+    return [[primitive(attributes, corners(), targets=targets)]]
+
+
+def morphs_shared(q):
+    """Two primitives of the same vertices and targets, and a third with other targets of a target's accessors."""
+    attributes, (first, second, third) = strip(1, q)[0], strip(1)[1]
+    other = strip(1, q)[0]
+    return [[primitive(attributes, corners(CORNERS[:6]), targets=[first, second]),
+             primitive(dict(attributes), corners(CORNERS[6:]), targets=[dict(first), {n: again(s) for n, s in second.items()}])],
+            [primitive(other, corners(), targets=[{'POSITION': again(first['POSITION'])}, {}])]]
+
+
+def morphs_sparse(q):
+    attributes, (first, second, third) = strip(1, q)[0], strip(1)[1]
+    first['POSITION'].how = {'sparse': 'zeros'}
+    second['NORMAL'].how = {'sparse': 'base'}
+    return [[primitive(attributes, corners(), targets=[first, second])]]
+
+
+def morphs_nothing(q):
+    """Targets without bytes move nothing; a target's deltas are the values of an attribute."""
+    attributes, (first, second, third) = strip(1, q)[0], strip(1)[1]
+    zero = Stream(FLOAT, [(0.0, 0.0, 0.0)] * len(POINTS), bare=True)
+    return [[primitive(attributes, corners(), targets=[{'POSITION': zero}, {}, {'NORMAL': again(first['POSITION'])}, first])]]
+
+
+def loose(q):
+    """Accessors of nobody have the bytes of positions and indices."""
+    attributes, whole = strip(1, q)[0], corners()
+    return [[primitive(attributes, whole, loose=[
+        again(attributes['POSITION']), Stream(USHORT, [(a, b) for (a,), (b,) in zip(whole.rows[::2], whole.rows[1::2])], over=whole)])]]
+
+
+def loose_soup(q):
+    """The same of vertices that --weld takes away."""
+    (mesh,) = soup(q)
+    mesh[0]['loose'] = [again(stream) for stream in mesh[0]['attributes'].values()]
+    return [mesh]
+
+
+def unused(q):
+    """Vertices that no triangle has stay where they are."""
+    attributes = strip(1, q)[0]
+    return [[primitive(attributes, corners(CORNERS[6:]))]]
+
+
+SHARING = [alone, two, soup, ranges, ranges_apart, twins, instances, same_indices, same_positions, same_texcoords, needless, points,
+           lines, named_twice, modes, morphs, morphs_shared, morphs_sparse, morphs_nothing, loose, loose_soup, unused]
+
+
+# ---- which tangents are there ----
+
+def all_primitives(meshes):
+    return [p for mesh in meshes for p in mesh]
+
+
+def wrong_tangents(p, kind=FLOAT, **how):
+    one = UNIT.get(kind, 1)
+    count = len(p['attributes']['POSITION'].rows)
+    return Stream(kind, [(0, 0, one, one) if i % 2 else (one, 0, 0, -one) for i in range(count)], kind != FLOAT, **how)
+
+
+def by_vertices(meshes, make):
+    """The same TANGENT for primitives with the same positions."""
+    made = {}
+    for p in all_primitives(meshes):
+        if p.get('mode', 4) > 3 and 'TEXCOORD_0' in p['attributes']:
+            key = id(p['attributes']['POSITION'])
+            if key not in made:
+                made[key] = make(p)
+            p['attributes']['TANGENT'] = made[key]
+
+
+def none(meshes):
+    pass
+
+
+def floats(meshes):
+    by_vertices(meshes, wrong_tangents)
+
+
+def shorts(meshes):
+    by_vertices(meshes, lambda p: wrong_tangents(p, SHORT))
+    return True
+
+
+def sparse_tangents(meshes):
+    by_vertices(meshes, lambda p: wrong_tangents(p, sparse='zeros'))
+
+
+def bare_tangents(meshes):
+    by_vertices(meshes, lambda p: Stream(FLOAT, [(0, 0, 0, 0)] * len(p['attributes']['POSITION'].rows), bare=True))
+
+
+def first_has(meshes):
+    """The first primitive alone has tangents."""
+    p = meshes[0][0]
+    p['attributes']['TANGENT'] = wrong_tangents(p)
+
+
+def each_has(meshes):
+    """Each primitive has tangents of its own, whatever else it shares."""
+    for p in all_primitives(meshes):
+        if 'TEXCOORD_0' in p['attributes']:
+            p['attributes']['TANGENT'] = wrong_tangents(p)
+
+
+def used_elsewhere(meshes):
+    """Another attribute of the first primitive has the tangents' accessor, another accessor has their bytes."""
+    floats(meshes)
+    p = meshes[0][0]
+    p['attributes']['_OTHER'] = p['attributes']['TANGENT']
+    for other in all_primitives(meshes)[1:]:
+        if 'TANGENT' in other['attributes']:
+            other['attributes']['_OTHER'] = again(other['attributes']['TANGENT'])
+
+
+def part_elsewhere(meshes):
+    """An accessor of nobody has bytes of the tangents."""
+    floats(meshes)
+    stream = meshes[0][0]['attributes']['TANGENT']
+    meshes[0][0].setdefault('loose', []).append(Stream(FLOAT, [row[:2] for row in stream.rows], over=stream))
+
+
+TANGENTS = [none, floats, shorts, sparse_tangents, bare_tangents, first_has, each_has, used_elsewhere, part_elsewhere]
+
+
+# ---- how bytes lie ----
+
+class Document:
+    def __init__(self, name):
+        self.name = name
+        self.json = {'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': []}], 'nodes': [], 'meshes': [],
+                     'materials': [{'normalTexture': {'index': 0}}, {}], 'textures': [{'source': 0}],
+                     'images': [{'uri': PNG}], 'accessors': [], 'bufferViews': [], 'buffers': []}
+        self.bins = [bytearray(), bytearray(), bytearray()]
+        self.plain = None
+
+    def view(self, data, buffer=0, align=4, **more):
+        target = self.bins[buffer]
+        target.extend(bytes(-len(target) % align))
+        self.json['bufferViews'].append({'buffer': buffer, 'byteOffset': len(target), 'byteLength': len(data), **more})
+        target.extend(data)
+        return len(self.json['bufferViews']) - 1
+
+    def accessor(self, s, view=None, offset=0):
+        a = {'componentType': s.kind, 'count': len(s.rows), 'type': TYPES[len(s.rows[0])]}
+        if view is not None:
+            a['bufferView'] = view
+            if offset:
+                a['byteOffset'] = offset
+        if s.normalized:
+            a['normalized'] = True
+        self.json['accessors'].append(a)
+        s.number = len(self.json['accessors']) - 1
+        self.bounds(s)
+
+    def bounds(self, s):
+        if s.how.get('bounds'):
+            rows = [struct.unpack('<%d%s' % (len(row), CODES[s.kind]), s.bytes(row)) for row in s.rows]
+            a = self.json['accessors'][s.number]
+            a['min'], a['max'] = ([f(column) for column in zip(*rows)] for f in (min, max))
+
+    def alone(self, s, buffer=0, width=None, **more):
+        """A view of its own; rows are as wide as attributes need."""
+        width = width or (s.size() if s.how.get('indices') else (s.size() + 3) // 4 * 4)
+        if width != s.size():
+            more['byteStride'] = width
+        self.accessor(s, self.view(b''.join(s.bytes(row).ljust(width, b'\0') for row in s.rows), buffer, **more))
+
+    def sparse(self, s):
+        zero = (0,) * len(s.rows[0])
+        base = s.how['sparse'] == 'base'
+        rows = [i for i, row in enumerate(s.rows) if any(row) and (not base or i % 2)]
+        whole = s.rows
+        if base:
+            s.rows = [tuple(5 for _ in row) if i in rows else row for i, row in enumerate(whole)]
+            self.alone(s)
+        else:
+            self.accessor(s)
+        s.rows = whole
+        self.bounds(s)
+        self.json['accessors'][s.number]['sparse'] = {
+            'count': len(rows), 'indices': {'bufferView': self.view(bytes(rows)), 'componentType': UBYTE},
+            'values': {'bufferView': self.view(b''.join(s.bytes(whole[i]) for i in rows) or s.bytes(zero))}}
+
+    def put(self, lay_out, streams):
+        """Gives all streams an accessor; what is sparse or bare is so in each layout."""
+        usual = []
+        for s in streams:
+            if s.over:
+                continue
+            if s.how.get('bare'):
+                self.accessor(s)
+            elif s.how.get('sparse'):
+                self.sparse(s)
+            else:
+                usual.append(s)
+        lay_out(self, [s for s in usual if s.how.get('vertex')])
+        for s in usual:
+            if not s.how.get('vertex'):
+                self.alone(s, target=34963) if s.how.get('indices') else self.alone(s)
+        for s in streams:
+            if s.over:
+                root = s.over
+                a = dict(self.json['accessors'][root.number], count=len(s.rows), type=TYPES[len(s.rows[0])])
+                if s.first:
+                    a['byteOffset'] = a.get('byteOffset', 0) + s.first * s.size()
+                self.json['accessors'].append(a)
+                s.number = len(self.json['accessors']) - 1
+
+    def write(self, folder, binary=False):
+        buffers = [data for data in self.bins if data]
+        for number, data in enumerate(buffers):
+            buffer = {'byteLength': len(data)}
+            if not binary or number:
+                name = '%s-%d.bin' % (self.name, number)
+                buffer['uri'] = name
+                with open(os.path.join(folder, name), 'wb') as file:
+                    file.write(data)
+            self.json['buffers'].append(buffer)
+        text = json.dumps(self.json, separators=(',', ':')).encode()
+        if binary:
+            text += b' ' * (-len(text) % 4)
+            data = bytes(buffers[0]) + bytes(-len(buffers[0]) % 4)
+            text = struct.pack('<4sIIII', b'glTF', 2, 28 + len(text) + len(data), len(text), 0x4E4F534A) + text + struct.pack(
+                '<II', len(data), 0x004E4942) + data
+        with open(os.path.join(folder, self.name + ('.glb' if binary else '.gltf')), 'wb') as file:
+            file.write(text)
+
+
+def separate(d, streams):
+    for s in streams:
+        d.alone(s, target=34962)
+
+
+def buffers(d, streams):
+    """Streams in two buffers; a third has bytes of which nobody knows."""
+    for number, s in enumerate(streams):
+        d.alone(s, buffer=number % 2)
+    d.view(b'not ours', 2)
+
+
+def sequential(d, streams):
+    """A view for each width, accessors one behind the other."""
+    for width in sorted({(s.size() + 3) // 4 * 4 for s in streams}):
+        group = [s for s in streams if (s.size() + 3) // 4 * 4 == width]
+        view, offset = d.view(b''.join(s.bytes(row).ljust(width, b'\0') for s in group for row in s.rows), byteStride=width), 0
+        for s in group:
+            d.accessor(s, view, offset)
+            offset += width * len(s.rows)
+
+
+def blocks(streams, joined):
+    """Streams of one length and primitive."""
+    key = lambda s: (len(s.rows), 0 if joined else s.how['owner'])
+    for one in sorted({key(s) for s in streams}):
+        yield [s for s in streams if key(s) == one]
+
+
+def interleaved(d, streams, gap=4, views=False, joined=False):
+    for group in blocks(streams, joined):
+        offsets, stride = [], 0
+        for s in group:
+            offsets.append(stride)
+            stride += (s.size() + 3) // 4 * 4
+        stride += gap
+        rows = zip(*[[s.bytes(row).ljust((s.size() + 3) // 4 * 4, b'\0') for row in s.rows] for s in group])
+        data = b''.join(b''.join(row) + b'\xEE' * gap for row in rows)
+        view = d.view(data, byteStride=stride)
+        begin = d.json['bufferViews'][view]['byteOffset']
+        if views:
+            del d.json['bufferViews'][view]
+        for s, offset in zip(group, offsets):
+            if views:  # each ends with its last element
+                d.json['bufferViews'].append({'buffer': 0, 'byteOffset': begin + offset, 'byteStride': stride,
+                                              'byteLength': (len(s.rows) - 1) * stride + s.size()})
+                d.accessor(s, len(d.json['bufferViews']) - 1)
+            else:
+                d.accessor(s, view, offset)
+
+
+def tight(d, streams):
+    interleaved(d, streams, 0)
+
+
+def together(d, streams):
+    """Vertices of all primitives beside each other."""
+    interleaved(d, streams, 0, joined=True)
+
+
+def overlapping(d, streams):
+    interleaved(d, streams, 0, True)
+
+
+def backwards(d, streams):
+    """The bytes of later streams come first; views have another order than bytes."""
+    first = len(d.json['bufferViews'])
+    for s in reversed(streams):
+        d.alone(s)
+    d.json['bufferViews'][first:] = d.json['bufferViews'][first:][::-1]
+    for s in streams:
+        a = d.json['accessors'][s.number]
+        a['bufferView'] = first + len(d.json['bufferViews']) - 1 - a['bufferView']
+
+
+def sparse_positions(d, streams):
+    for s in streams:
+        if s.how.get('name') in ('POSITION', 'TEXCOORD_0', '_ID') and any(map(any, s.rows)):
+            s.how = dict(s.how, sparse='base')
+            d.sparse(s)
+        else:
+            d.alone(s)
+
+
+LAYOUTS = [separate, sequential, interleaved, tight, together, overlapping, backwards, buffers, sparse_positions]
+PNG = 'data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg=='
+
+
+def build(name, sharing, tangents, lay_out, quantized=False):
+    d, meshes, streams = Document(name), sharing(quantized), []
+    quantized = bool(tangents(meshes)) or quantized
+
+    def use(stream, **how):
+        if stream is None:
+            return None
+        if stream.over:
+            use(stream.over, **how)
+        if stream not in streams:
+            stream.how = {**how, **stream.how}
+            streams.append(stream)
+        return stream
+    for owner, p in enumerate(all_primitives(meshes)):
+        for name_, stream in p['attributes'].items():
+            use(stream, vertex=True, name=name_, bounds=name_ == 'POSITION', owner=owner)
+        for target in p['targets'] or []:
+            for name_, stream in target.items():
+                use(stream, vertex=True, bounds=name_ == 'POSITION', owner=owner)
+        use(p['indices'], indices=True)
+        for stream in p.get('loose', []):
+            use(stream)
+    d.put(lay_out, streams)
+    for mesh in meshes:
+        d.json['scenes'][0]['nodes'].append(len(d.json['nodes']))
+        d.json['nodes'].append({'mesh': len(d.json['meshes'])})
+        list_ = []
+        for p in mesh:
+            q = {'attributes': {n: s.number for n, s in p['attributes'].items()}, 'material': p['material']}
+            if p['indices']:
+                q['indices'] = p['indices'].number
+            if p['targets']:
+                q['targets'] = [{n: s.number for n, s in target.items()} for target in p['targets']]
+            if 'mode' in p:
+                q['mode'] = p['mode']
+            list_.append(q)
+        d.json['meshes'].append({'primitives': list_})
+    if quantized:
+        d.json['extensionsUsed'] = d.json['extensionsRequired'] = ['KHR_mesh_quantization']
+    return d
+
+
+def table():
+    """Each way to share with each layout, each layout with each kind of tangents, each kind of sharing with each of tangents."""
+    cells, seen = [], set()
+    for i, sharing in enumerate(SHARING):
+        for k in range(max(len(LAYOUTS), len(TANGENTS))):
+            lay_out, tangents = LAYOUTS[k % len(LAYOUTS)], TANGENTS[(k + i) % len(TANGENTS)]
+            cells.append((sharing, tangents, lay_out, False))
+        cells.append((sharing, TANGENTS[i % len(TANGENTS)], LAYOUTS[(3 * i) % len(LAYOUTS)], True))
+    return cells
+
+
+def make(folder):
+    for number, (sharing, tangents, lay_out, quantized) in enumerate(table()):
+        name = '-'.join([sharing.__name__, tangents.__name__, lay_out.__name__] + ['quantized'] * quantized)
+        build(name, sharing, tangents, lay_out, quantized).write(folder, binary=number % 5 == 0)
+
+
+
+# ---- what must be ----
+
+# Name, options, and what they ask for.
+SETS = {
+    'replace': '--only=all --existing=replace',
+    'default': '',
+    'keep': '--only=all',
+    'repair': '--only=all --existing=repair --buffers=embed',
+    'glb': '--only=all --existing=replace --output-format=glb --bitangents',
+    'short': '--only=all --existing=replace --precision=short',
+    'byte': '--existing=replace --precision=byte',
+    'float': '--only=all --existing=replace --precision=float --morph=keep',
+    'weld': '--only=all --existing=replace --weld --morph=drop',
+    'across': '--only=all --existing=replace --across=mesh',
+    'drop': '--existing=drop',
+}
+
+
+def components(f, accessor):
+    """Rows of numbers, normalized ones as they are meant."""
+    a = f.g['accessors'][accessor]
+    code = '<%d%s' % (lossless.WIDTHS[a['type']], CODES[a['componentType']])
+    rows = [struct.unpack(code, row) for row in f.rows(accessor)]
+    if a.get('normalized'):
+        rows = [tuple(max(x / UNIT[a['componentType']], -1) for x in row) for row in rows]
+    return rows
+
+
+def minus(a, b):
+    return [x - y for x, y in zip(a, b)]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def unit(a):
+    length = math.sqrt(dot(a, a))
+    return [x / length for x in a]
+
+
+def frames(chain, p, n, t):
+    """The tangent of each corner: all triangles of one orientation around a vertex are in one plane."""
+    out = []
+    for at in range(0, len(chain) - 2, 3):
+        v = chain[at:at + 3]
+        e, f = minus(p[v[1]], p[v[0]]), minus(p[v[2]], p[v[0]])
+        (s1, t1), (s2, t2) = minus(t[v[1]], t[v[0]]), minus(t[v[2]], t[v[0]])
+        area = s1 * t2 - s2 * t1
+        along = [(t2 * x - t1 * y) / area for x, y in zip(e, f)]
+        down = [(s1 * y - s2 * x) / area for x, y in zip(e, f)]
+        for corner in v:
+            normal = unit(n[corner])
+            tangent = unit(minus(along, [dot(along, normal) * x for x in normal]))
+            out.append((*tangent, -1.0 if dot(cross(normal, tangent), down) > 0 else 1.0))
+    return out
+
+
+def solved(a, p, options):
+    """Whether a primitive of the input gets tangents."""
+    has = p['attributes'].get('TANGENT')
+    if p.get('mode', 4) < 4 or 'TEXCOORD_0' not in p['attributes'] or (p.get('material') != 0 and '--only=all' not in options):
+        return False
+    return has is None or '--existing=replace' in options
+
+
+def differ(x, y, tolerance):
+    return len(x) != len(y) or any(abs(a - b) > tolerance for a, b in zip(x, y))
+
+
+def check_tangents(a, b, m, k, options, fault):
+    p, q = a.g['meshes'][m]['primitives'][k], b.g['meshes'][m]['primitives'][k]
+    where = 'mesh %d primitive %d: ' % (m, k)
+    old, chain = a.corners(p), b.corners(q)
+    repaired = '--existing=repair' in options and 'TANGENT' in p['attributes'] and p.get('mode', 4) > 3
+    if not solved(a, p, options) and not repaired:
+        if ('TANGENT' in p['attributes']) != ('TANGENT' in q['attributes']) and not ('drop' in options and p.get('material') != 0):
+            fault(where + 'TANGENT appears or goes')
+        elif 'TANGENT' in q['attributes']:
+            x, y = a.rows(p['attributes']['TANGENT']), b.rows(q['attributes']['TANGENT'])
+            if [x[i] for i in old] != [y[i] for i in chain]:
+                fault(where + 'tangents that stay have other values')
+        return
+    if 'TANGENT' not in q['attributes']:
+        fault(where + 'no tangents')
+        return
+    accessor = b.g['accessors'][q['attributes']['TANGENT']]
+    tolerance = {FLOAT: 1e-6, SHORT: 1e-4, BYTE: 1e-2}[accessor['componentType']]
+    if a.g['accessors'][p['attributes']['TEXCOORD_0']]['componentType'] != FLOAT:
+        tolerance = max(tolerance, 1e-4)
+    want = SHORT if '=short' in options else BYTE if '=byte' in options else FLOAT
+    before = p['attributes'].get('TANGENT')
+    if want == FLOAT and '=float' not in options and before is not None:
+        want = a.g['accessors'][before]['componentType']
+    if accessor['componentType'] != want or accessor.get('normalized', False) != (want != FLOAT):
+        fault(where + 'tangents of type %d, expected %d' % (accessor['componentType'], want))
+    values = [components(a, p['attributes'][name]) for name in ('POSITION', 'NORMAL', 'TEXCOORD_0')]
+    expected = frames(old, *values)
+    found = components(b, q['attributes']['TANGENT'])
+    wrong = [i for i, v in enumerate(chain) if differ(found[v], expected[i], tolerance)]
+    if wrong:
+        fault(where + 'corner %d has tangent %s, expected %s' % (wrong[0], found[chain[wrong[0]]], expected[wrong[0]]))
+    if '--bitangents' in options:
+        bitangents, normals = components(b, q['attributes']['_BITANGENT']), components(b, q['attributes']['NORMAL'])
+        for v in chain:
+            if differ(bitangents[v], [found[v][3] * x for x in cross(unit(normals[v]), found[v])], 1e-5 + tolerance):
+                fault(where + 'bitangent %s of vertex %d' % (bitangents[v], v))
+                break
+    for number, target in enumerate(p.get('targets', [])):
+        deltas = q['targets'][number].get('TANGENT')
+        moves = [name for name in ('POSITION', 'NORMAL') if name in target]
+        if bool(moves) and '--morph' not in options and deltas is None or deltas is not None and (not moves or '--morph' in options):
+            fault(where + 'target %d: TANGENT is %s' % (number, deltas))
+            continue
+        if deltas is None:
+            continue
+        moved = list(values)
+        for i, name in enumerate(('POSITION', 'NORMAL')):
+            if name in moves:
+                moved[i] = [[x + y for x, y in zip(*rows)] for rows in zip(values[i], components(a, target[name]))]
+        rows, expected = components(b, deltas), frames(old, *moved)
+        for i, v in enumerate(chain):
+            sum_ = [x + y for x, y in zip(found[v], rows[v])]
+            if differ(sum_, expected[i][:3], 2 * tolerance):
+                fault(where + 'target %d: corner %d comes to %s, expected %s' % (number, i, sum_, expected[i]))
+                break
+
+
+def place(f, number):
+    a = f.g['accessors'][number]
+    sparse = json.dumps(a.get('sparse'))
+    return (a.get('bufferView'), a.get('byteOffset', 0), sparse) if 'bufferView' in a or 'sparse' in a else number
+
+
+def pools_of(f):
+    """Primitives that share accessors, or others over the same bytes: lists of (mesh, primitive)."""
+    pools = []
+    for m, mesh in enumerate(f.g['meshes']):
+        for k, p in enumerate(mesh['primitives']):
+            own = {place(f, i) for o in [p['attributes']] + p.get('targets', []) for i in o.values()}
+            users = [(m, k)]
+            for other in [x for x in pools if x[0] & own]:
+                own |= other[0]
+                users = other[1] + users
+                pools.remove(other)
+            pools.append((own, users))
+    return [users for _, users in pools]
+
+
+def check_counts(a, b, options, fault):
+    """A vertex is there as often as one primitive needs it with other tangents; primitives of the same positions, normals
+    and texture coordinates have one TANGENT."""
+    if '--weld' in options or '--across' in options or 'repair' in options:
+        return
+    for users in pools_of(a):
+        needs, count = {}, 0
+        for m, k in users:
+            p, q = a.g['meshes'][m]['primitives'][k], b.g['meshes'][m]['primitives'][k]
+            old, new = a.corners(p), b.corners(q)
+            count = a.g['accessors'][p['attributes']['POSITION']]['count']
+            if not solved(a, p, options):
+                continue
+            key = tuple(place(a, i) if 'sparse' not in a.g['accessors'][i] else i for i in
+                        [p['attributes'][n] for n in ('POSITION', 'NORMAL', 'TEXCOORD_0')])
+            rows = b.rows(q['attributes']['TANGENT'])
+            vertices = needs.setdefault(key, {})
+            for x, y in zip(old, new):
+                vertices.setdefault(x, set()).add(rows[y])
+        most = count + sum(max([len(needs[key].get(v, ())) for key in needs] + [1]) - 1 for v in range(count))
+        for m, k in users:
+            p, q = a.g['meshes'][m]['primitives'][k], b.g['meshes'][m]['primitives'][k]
+            got = b.g['accessors'][q['attributes']['POSITION']]['count']
+            if got != most and not (got == count and not solved(a, p, options)):
+                fault('mesh %d primitive %d has %d vertices, expected %d' % (m, k, got, most))
+
+
+def check_bytes(f, fault, left_out=()):
+    """What the specification forbids; gives the bytes that nobody uses, and references to accessors."""
+    g, used = f.g, [set() for _ in f.g.get('buffers', [])]
+    views = g.get('bufferViews', [])
+    for number, buffer in enumerate(g.get('buffers', [])):
+        if len(f.buffer(number)) < buffer['byteLength'] or ('uri' not in buffer and len(f.buffer(number)) - buffer['byteLength'] > 3):
+            fault('buffer %d has %d bytes of %d' % (number, len(f.buffer(number)), buffer['byteLength']))
+    for i, v in enumerate(views):
+        if v.get('byteOffset', 0) + v['byteLength'] > g['buffers'][v['buffer']]['byteLength'] or v['byteLength'] < 1:
+            fault('view %d has bytes %s' % (i, v))
+    primitives = [p for mesh in g['meshes'] for p in mesh['primitives']]
+    vertex = {i for p in primitives for o in [p['attributes']] + p.get('targets', []) for i in o.values()}
+    index = {p['indices'] for p in primitives if 'indices' in p}
+    strides = {}
+
+    def mark(view, offset, count, size, step, unit_, what):
+        v = views[view]
+        begin = v.get('byteOffset', 0) + offset
+        end = begin + (count - 1) * step + size
+        if end > v.get('byteOffset', 0) + v['byteLength'] or begin % unit_ or offset % unit_:
+            fault('%s lies at %d to %d of view %s' % (what, offset, offset + end - begin, v))
+        used[v['buffer']].update(range(begin, end))
+        strides.setdefault(view, set()).add(what)
+    for i, a in enumerate(g.get('accessors', [])):
+        if i in left_out:
+            continue
+        size, part = f.element(a), SIZES[a['componentType']]
+        if 'bufferView' in a:
+            step = views[a['bufferView']].get('byteStride', size)
+            if step % part or (i in vertex and (step % 4 or a.get('byteOffset', 0) % 4)) or step < size:
+                fault('accessor %d: elements of %d bytes, %d apart at %d' % (i, size, step, a.get('byteOffset', 0)))
+            mark(a['bufferView'], a.get('byteOffset', 0), a['count'], size, step, part, 'accessor %d' % i)
+        for name, width in ('indices', None), ('values', size):
+            if 'sparse' in a:
+                s = a['sparse'][name]
+                width = width or SIZES[s['componentType']]
+                mark(s['bufferView'], s.get('byteOffset', 0), a['sparse']['count'], width, width, SIZES[s['componentType']] if
+                     name == 'indices' else part, 'sparse %s of accessor %d' % (name, i))
+                if 'byteStride' in views[s['bufferView']] or 'target' in views[s['bufferView']]:
+                    fault('accessor %d: sparse %s in a view of vertices' % (i, name))
+        if 'min' in a and 'bufferView' in a:
+            rows = list(zip(*[struct.unpack('<%d%s' % (lossless.WIDTHS[a['type']], CODES[a['componentType']]), r) for r in f.rows(i)]))
+            if [min(r) for r in rows] != a['min'] or [max(r) for r in rows] != a['max']:
+                fault('accessor %d: bounds %s %s' % (i, a['min'], a['max']))
+        if i in vertex and i in index:
+            fault('accessor %d has vertices and indices' % i)
+    for i, v in enumerate(views):
+        if i not in strides:
+            used[v['buffer']].update(range(v.get('byteOffset', 0), v.get('byteOffset', 0) + v['byteLength']))
+    dead = sum(buffer['byteLength'] - len(bytes_) for buffer, bytes_ in zip(g.get('buffers', []), used))
+    return dead, {i for i in range(len(g.get('accessors', []))) if i not in vertex | index}
+
+
+def check(options, before, after, fault):
+    a, b = lossless.File(before), lossless.File(after)
+    lossless.complaints = []
+    lossless.complain.__globals__['complaints'] = lossless.complaints
+    if '--precision' in options and '=float' not in options:
+        for key in ('extensionsUsed', 'extensionsRequired'):
+            if 'KHR_mesh_quantization' not in b.g.get(key, []):
+                fault('KHR_mesh_quantization is not in ' + key)
+            elif key not in a.g:
+                del b.g[key]
+    if '--morph=drop' in options or 'repair' in options or '--existing=drop' in options:
+        pass
+    else:
+        lossless.Own.find(a.g)
+        lossless.same_json(a.g, b.g)
+    lossless.same_geometry(a, b)
+    lossless.same_views(a, b)
+    places = [place(a, i) for i in range(len(a.g['accessors']))]
+    shared = ['/accessors/%d/sparse is gone' % i for i, x in enumerate(places) if places.count(x) > 1]
+    for text in lossless.complaints:
+        if text not in shared:  # elements that others have, too, are baked
+            fault(text)
+    for m, mesh in enumerate(a.g['meshes']):
+        for k in range(len(mesh['primitives'])):
+            check_tangents(a, b, m, k, options, fault)
+    check_counts(a, b, options, fault)
+    dead, loose = check_bytes(a, lambda text: None)
+    for i in loose:
+        if '--weld' not in options and a.rows(i) != b.rows(i):
+            fault('accessor %d of nobody has other values' % i)
+    # what --weld takes away, accessors of nobody do not lose
+    dead_now, loose_now = check_bytes(b, fault, loose if '--weld' in options else ())
+    # what lies between attributes of others cannot go, nor what shares a view with their bytes
+    if dead_now > dead + 3 * len(b.g.get('bufferViews', [])) + 16 * ('--precision' in options) and not any(
+            word in before for word in ('together', 'tight', 'part_elsewhere')):
+        fault('%d bytes that nobody uses, there were %d' % (dead_now, dead))
+    # of several accessors over the same bytes one may be left, and one that was the TANGENT of several primitives
+    views = [x.get('bufferView') for x in a.g['accessors']]
+    places = [place(a, i) if 'target' not in a.g['bufferViews'][view or 0] else view for i, view in enumerate(views)]
+    tangents = [p['attributes'].get('TANGENT') for mesh in a.g['meshes'] for p in mesh['primitives']]
+    for i in sorted(loose_now - loose):
+        several = tangents.count(i) > (0 if '--across' in options or '--existing=drop' in options else 1)
+        if i >= len(places) or places.count(places[i]) == 1 and not several:
+            fault('nobody uses accessor %d' % i)
+
+
+def convert(name, program):
+    """The files of a set's turn; all of them for the first."""
+    number, options = list(SETS).index(name), SETS[name]
+    files = sorted(x for x in os.listdir('in') if x.endswith(('.gltf', '.glb')))
+    files = [x for i, x in enumerate(files) if number == 0 or (i + number) % 3 == 0]
+    if '--weld' in options:
+        files = [x for x in files if 'loose' not in x and 'part_' not in x]
+    done = subprocess.run([program, *options.split(), '-q', '-d', name, *['in/' + x for x in files]], stdin=subprocess.DEVNULL,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    said = [] if done.returncode == 0 else ['exit code %d: %s' % (done.returncode, done.stderr[-600:])]
+    outputs = {os.path.splitext(x)[0]: x for x in (os.listdir(name) if os.path.isdir(name) else []) if not x.endswith('.bin')}
+    for x in files:
+        stem = os.path.splitext(x)[0]
+        found = []
+        if stem in outputs:
+            check(options, 'in/' + x, os.path.join(name, outputs[stem]), found.append)
+        else:
+            found.append('there is no output')
+        said += ['%s: %s' % (stem, text) for text in found[:2]]
+        if stem in outputs:
+            with open('pairs', 'a', encoding='utf-8') as file:
+                file.write('%s\t%s\n' % (os.path.abspath(os.path.join(name, outputs[stem])), os.path.abspath('in/' + x)))
+    return said
+
+
+if __name__ == '__main__':
+    if sys.argv[1] == 'make':
+        os.makedirs('in', exist_ok=True)
+        make('in')
+    elif sys.argv[1] == 'sets':
+        for name, options in SETS.items():
+            print(name, options)
+    else:
+        faults = convert(sys.argv[2], sys.argv[3])
+        print('\n'.join(faults[:20]))
+        sys.exit(1 if faults else 0)
