@@ -50,7 +50,7 @@ def bytes_of(path):
 
 
 def copy_tree():
-    """What is there already stays if it is the same, so that it is not built again."""
+    """Files that are the same stay, so that they are not built again."""
     names = subprocess.run(['git', 'ls-files', '-z'], capture_output=True, check=True, text=True).stdout.split('\0')[:-1]
     names = [name for name in names if os.path.isfile(name)]
     for folder, _, files in os.walk(TREE):

@@ -739,7 +739,7 @@ def check_counts(a, b, options, fault):
 
 
 def check_bytes(f, fault, left_out=()):
-    """What the specification forbids; gives the bytes that nobody uses, and references to accessors."""
+    """Tells faults that the specification forbids; gives the number of bytes that nobody uses, and accessors that no primitive has."""
     g, used = f.g, [set() for _ in f.g.get('buffers', [])]
     views = g.get('bufferViews', [])
     for number, buffer in enumerate(g.get('buffers', [])):

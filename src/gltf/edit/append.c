@@ -244,7 +244,7 @@ static bool is_crowded(const block *b, const nt_append_target *next)
 	return crowded;
 }
 
-/* Moves an accessor to a view of its own. What is sparse becomes plain there, but for what a Draco block has. */
+/* Moves an accessor to a view of its own. A sparse one becomes plain there; one of a Draco block is not sparse. */
 static nt_status move_away(nt_appending *job, const nt_append_target *moved)
 {
 	return add_elements(job, moved, !moved->accessor.decoded,
