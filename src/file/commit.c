@@ -101,6 +101,8 @@ static nt_status sync_used(const char *path, nt_error *error)
 static nt_status take_name(nt_output *output, nt_sink *sink, const char *name, nt_error *error)
 {
 	sink->placed = nt_temporary_rename(sink->temporary, name, false);
+	if (sink->placed && output->options.result)
+		output->options.result->left = false;
 	if (sink->placed)
 		return NT_OK;
 	return errno == EEXIST ? taken_meanwhile(output, name, error) : nt_sink_fail(error, name, errno);

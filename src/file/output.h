@@ -29,7 +29,7 @@ typedef enum nt_role {
 typedef struct nt_output_result {
 	bool again;     /* the commit failed because a name was taken meanwhile: with the names chosen anew it
 	                   would not */
-	bool left;      /* the main file had these bytes already and was left as it is */
+	bool left;      /* all files had these bytes already and were left as they are */
 	nt_buffer note; /* which sidecars do not have their own names, and why: "; ..." */
 } nt_output_result;
 

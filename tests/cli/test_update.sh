@@ -91,6 +91,13 @@ cp -r out expected
 rm out/plates.bin
 run --update -d out $inputs
 is "$(made)" "plates.gltf "
+for image in out/*.png; do
+	rm $image
+	run --update -d out --manifest=m.jsonl $inputs
+	says_not "left as"
+	says "1 got tangents"
+	is "$(grep -c '"status":"done"' m.jsonl)" 1
+done
 echo >>out/quad.glb
 run --update -d out $inputs
 is "$(made)" "quad.obj "
