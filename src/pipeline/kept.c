@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Tangents that stay as they are although a material uses them: whether w is right is asked of indices, texture
- * coordinates and w alone, exactly; whether a renderer can use them at all, of tangents and normals. Faults that need
- * a decoder are left to --check: it would take longer than copying the file.
+ * coordinates and w alone, exactly; whether a renderer can use them at all, of tangents and normals. All threads decode
+ * compressed ones for it, once.
  */
 #include "pipeline/stages.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
 #include "report/quads.h"
@@ -145,11 +146,18 @@ static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh *to, nt
 nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error)
 {
 	nt_arena memory = {0};
-	nt_status status = NT_OK;
+	bool *kept = nt_format_is_gltf(scene->format) ? nt_alloc(scene->mesh_count, sizeof *kept) : NULL;
+	if (!kept)
+		return nt_format_is_gltf(scene->format) ? nt_fail_memory(error) : NT_OK;
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		kept[i] = nt_mesh_is_kept_and_used(&scene->meshes[i]);
+	nt_status status = tasks->reader->share(scene, kept, tasks->options, error);
+	tasks->reader->unshare(scene);
 	for (size_t i = 0; !status && i < scene->mesh_count; i++)
-		if (nt_format_is_gltf(scene->format) && nt_mesh_is_kept_and_used(&scene->meshes[i]))
+		if (kept[i])
 			status = look_at(scene, tasks, &scene->meshes[i], &memory, error);
 	nt_arena_free(&memory);
+	free(kept);
 	return status;
 }
 

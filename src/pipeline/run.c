@@ -350,10 +350,12 @@ static nt_status turn_maps(run *r)
 {
 	const nt_settings *s = r->settings;
 	begin_stage(r, NT_STAGE_TEXTURES);
-	return nt_turned_maps_make(&r->scene, &(nt_turning){.flip = s->flip_green,
+	const nt_status status = nt_turned_maps_make(&r->scene, &(nt_turning){.flip = s->flip_green,
 		.heights = s->bump == NT_BUMP_HEIGHT, .height = nt_bump_height(s), .max_pixels = s->max_pixels,
 		.images = r->fixes.images, .image_count = r->fixes.image_count, .threads = s->threads}, &r->turned,
 		r->error);
+	r->summary->made_maps = r->turned.count;
+	return status;
 }
 
 static nt_status run_stages(run *r)
@@ -529,11 +531,10 @@ static bool keeps_wrong(const nt_summary *summary)
 {
 	bool any = false;
 	for (size_t i = 0; i < summary->findings.count; i++)
-		any |= summary->findings.items[i].code == NT_CODE_TAN_KEPT_SIGN;
+		any |= nt_code_is_of_kept(summary->findings.items[i].code);
 	for (size_t i = 0; summary->report && i < summary->report->finding_count; i++) {
 		const nt_report_finding *f = &summary->report->findings[i];
-		any |= f->mesh != NT_NONE && f->severity > NT_SEVERITY_INFO && nt_code_mends(f->code) &&
-			f->code != NT_CODE_NMAP_GREEN_DOWN && f->code != NT_CODE_TAN_MISSING_REQUIRED;
+		any |= f->mesh != NT_NONE && f->severity > NT_SEVERITY_INFO && nt_code_is_of_kept(f->code);
 	}
 	return any;
 }

@@ -432,11 +432,11 @@ static inline bool nt_mesh_is_wanted(const nt_mesh *mesh)
 	return nt_mesh_gets_tangents(mesh) || mesh->decision == NT_DECISION_NORMALS;
 }
 
-/* Whether a mesh of a glTF keeps tangents that a material uses, and w can be looked at without decoding. */
+/* Whether a mesh of a glTF keeps tangents that a material uses, and has what they are judged by. */
 static inline bool nt_mesh_is_kept_and_used(const nt_mesh *mesh)
 {
 	return mesh->decision == NT_SKIP_HAS_TANGENTS && mesh->slots && mesh->reachable && mesh->triangles &&
-	       mesh->has_positions && mesh->has_normals && mesh->has_texcoords && !mesh->compressed;
+	       mesh->has_positions && mesh->has_normals && mesh->has_texcoords;
 }
 
 /* Before the stages that make normals and solve: whether a mesh was solved as soon as it was loaded. It has results
