@@ -182,6 +182,11 @@ static int tell_run(session *s, nt_job *job)
 			job->output, infos, fails ? least_failure - 1 : NT_SEVERITY_ERROR, style);
 	} else if (s->style.verbosity < 0 && !job->status && !c->settings.check)
 		nt_message_left_out(&s->text, job, s->plan->options.ignore);
+	/* a batch counts them in a quiet run; of a report nt_message_findings() says what no check finds */
+	if (summary->keeps_wrong && !job->status && !fails && !shown &&
+		(s->style.verbosity < 0 ? s->count == 1 : summary->report != NULL))
+		nt_message_kept(&s->text, &summary->findings, summary->report, &s->plan->options, job->input,
+			job->output, s->style);
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
 	if (job->status) {
 		if (!job->reason_is_told)

@@ -81,13 +81,13 @@ static bool is_proposed(nt_code code)
 }
 
 /* The command that repairs a finding, if it is told with one. */
-static void append_command(nt_buffer *out, const nt_finding *finding, nt_severity severity, const char *file,
-	const char *output)
+static void append_command(nt_buffer *out, const nt_finding *finding, const nt_report_options *options,
+	nt_severity severity, const char *file, const char *output)
 {
 	const char *repair = finding->repair ? finding->repair : nt_code_info(finding->code)->repair;
 	const bool in_place = output && strcmp(file, output) == 0;
 	if (repair && !finding->stays && (severity > NT_SEVERITY_INFO || is_proposed(finding->code)))
-		nt_command_text(repair, file, in_place ? NULL : output, out);
+		nt_command_text(repair, options->given, file, in_place ? NULL : output, out);
 }
 
 /* All findings of one code and severity but for `old` ones (NULL: none are), those beyond PLACES_SHOWN as a number. The
@@ -108,7 +108,7 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, const b
 		nt_buffer sentence = {0}, command = {0};
 		nt_code_sentence(code, finding->count, finding->detail, &sentence);
 		if (!shown)
-			append_command(&command, finding, severity, file, output);
+			append_command(&command, finding, options, severity, file, output);
 		append_sentence(out, &finding->place, file, code, severity, sentence.data ? sentence.data : "",
 			command.data, style);
 		nt_buffer_free_into(&sentence, out);
@@ -153,6 +153,29 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 				append_code(out, findings, old, options, (nt_code)code, (nt_severity)severity, file,
 					output, style);
 	free(old);
+}
+
+void nt_message_kept(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
+	const nt_report_options *options, const char *file, const char *output, nt_style style)
+{
+	const bool in_place = output && strcmp(file, output) == 0;
+	bool told[NT_CODE_COUNT] = {false};
+	for (int code = 0; !report && code < NT_CODE_COUNT; code++)
+		if (nt_code_is_of_kept((nt_code)code) && !options->ignore[code])
+			append_code(out, findings, NULL, options, (nt_code)code, NT_SEVERITY_WARNING, file, output,
+				style);
+	for (size_t i = 0; report && i < report->new_count; i++) {
+		const nt_report_finding *f = &report->findings[i];
+		nt_buffer command = {0};
+		if (f->mesh == NT_NONE || f->severity == NT_SEVERITY_INFO || !nt_code_is_of_kept(f->code) ||
+			told[f->code] || (f->noted != NT_NONE && style.verbosity >= 0))
+			continue;
+		told[f->code] = true;
+		if (f->repair)
+			nt_command_text(f->repair, options->given, file, in_place ? NULL : output, &command);
+		append_sentence(out, &f->place, file, f->code, NT_SEVERITY_WARNING, f->message, command.data, style);
+		nt_buffer_free_into(&command, out);
+	}
 }
 
 /* Materials that have lost all of their images. */
@@ -252,6 +275,9 @@ static void append_unused(nt_buffer *out, const nt_summary *s, const nt_settings
 {
 	if (settings->existing == NT_EXISTING_REPLACE && s->skipped[NT_SKIP_NO_SLOT])
 		nt_buffer_text(out, ", --only=all replaces the tangents of all");
+	if (settings->existing == NT_EXISTING_DROP && s->skipped[NT_SKIP_HAS_TANGENTS])
+		nt_buffer_format(out, ", a material uses the tangents of %zu, which stay",
+			s->skipped[NT_SKIP_HAS_TANGENTS]);
 	if (s->without_normals && settings->normals == NT_NORMALS_AUTO)
 		nt_buffer_format(out, ", %zu without normals (--normals=smooth makes them)", s->without_normals);
 	if (s->without_normals && settings->normals != NT_NORMALS_AUTO)
@@ -373,6 +399,10 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		append_count(out, s->repaired, "corner");
 	}
 	append_fixed(out, s, settings);
+	if (s->made_maps && !settings->fix) {
+		nt_buffer_format(out, ", %s ", settings->check ? "would convert" : "converted");
+		append_count(out, s->made_maps, "normal map");
+	}
 	if (s->counts.summed_instead)
 		nt_buffer_format(out, ", %zu corners of hubs with one sum", s->counts.summed_instead);
 	if (s->counts.sorted_instead)

@@ -29,6 +29,11 @@ void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
 	const nt_report_options *options, const char *file, const char *output, bool infos, int most, nt_style style);
 
+/* Wrong tangents that were kept, which a report (NULL: findings do) knows, one line for each code: as
+ * nt_message_findings() has it, in a quiet run too. */
+void nt_message_kept(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
+	const nt_report_options *options, const char *file, const char *output, nt_style style);
+
 /* One line, of a quiet run too, where something of the input is not in the output, with the codes that say what but for
  * those of ignore[code]. */
 void nt_message_left_out(nt_buffer *out, const nt_job *job, const bool *ignore);

@@ -135,7 +135,7 @@ void nt_options_explain(const nt_command *command, nt_buffer *out)
 			continue;
 		nt_buffer_format(out, "%s%s (%s)\n  %s\n  Remedy: ", first ? "" : "\n", row->name,
 			nt_severity_name(row->severity), row->meaning);
-		nt_remedy_text((nt_code)code, row->repair, NULL, out);
+		nt_remedy_text((nt_code)code, row->repair, NULL, NULL, out);
 		nt_buffer_format(out, "\n  Smallest example: %s\n", row->example);
 		first = false;
 	}
@@ -347,17 +347,48 @@ static void append_given(nt_buffer *out, const nt_command *command, const nt_opt
 		append_shaping(out, row, field);
 }
 
-void nt_options_shaping(const nt_command *command, nt_buffer *out)
+/* The next row that shapes outputs; *i: 0 before the first. */
+static const nt_option_row *next_shaping(size_t *i, bool *shapes)
 {
 	/* options about the output that change when and how it is written, but not what */
 	static const char *const writing[] = {"output", "in-place", "no-clobber", "sync", "verify", "dry-run"};
-	bool shapes = false;
-	for (size_t i = 0; i < nt_option_row_count; i++) {
-		const nt_option_row *row = &nt_option_rows[i];
+	while (*i < nt_option_row_count) {
+		const nt_option_row *row = &nt_option_rows[(*i)++];
 		if (row->kind == NT_OPTION_HEADING)
-			shapes = row->first == NT_SHAPES_OUTPUT;
-		else if (shapes && !is_one_of(row, writing, sizeof writing / sizeof *writing))
-			append_given(out, command, row);
+			*shapes = row->first == NT_SHAPES_OUTPUT;
+		else if (*shapes && !is_one_of(row, writing, sizeof writing / sizeof *writing))
+			return row;
+	}
+	return NULL;
+}
+
+void nt_options_shaping(const nt_command *command, nt_buffer *out)
+{
+	bool shapes = false;
+	size_t i = 0;
+	for (const nt_option_row *row; (row = next_shaping(&i, &shapes)) != NULL;)
+		append_given(out, command, row);
+}
+
+void nt_options_given(const nt_command *command, nt_buffer *out)
+{
+	static const char *const elsewhere[] = {"output-format"}; /* the name of the output says it */
+	bool shapes = false;
+	size_t i = 0;
+	for (const nt_option_row *row; (row = next_shaping(&i, &shapes)) != NULL;) {
+		const nt_words *words = (const void *)((const char *)command + row->offset);
+		const size_t count = row->kind == NT_OPTION_LIST ? words->count : 1;
+		for (size_t k = 0; k < count && !is_one_of(row, elsewhere, 1); k++) {
+			nt_buffer word = {0}, shown = {0};
+			if (row->kind == NT_OPTION_LIST)
+				nt_buffer_format(&word, "--%s=%s", row->name, words->items[k]);
+			else
+				append_given(&word, command, row);
+			if (word.data && nt_shell_word(word.data, &shown))
+				nt_buffer_format(out, "%s%s", out->size ? "\n" : "", shown.data);
+			nt_buffer_free_into(&word, out);
+			nt_buffer_free_into(&shown, out);
+		}
 	}
 }
 

@@ -95,8 +95,11 @@ bool nt_command_is_many(const nt_command *command);
 /* Appends the options on which the bytes of outputs depend, in one way for each meaning; defaults are left out. */
 void nt_options_shaping(const nt_command *command, nt_buffer *out);
 
-/* The same for the options on which the severities of findings depend; of a baseline also what is in it, which is empty
- * if that cannot be read. */
+/* Appends those that a command for the same input repeats, each as a word of a shell, with line ends between them. */
+void nt_options_given(const nt_command *command, nt_buffer *out);
+
+/* The options on which the severities of findings depend, as nt_options_shaping() has others; of a baseline also what
+ * is in it, which is empty if that cannot be read. */
 void nt_options_judging(const nt_command *command, nt_buffer *out);
 
 /* Text of --help, the one screen of -h, and the two lines that follow a mistake. */

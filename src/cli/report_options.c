@@ -138,6 +138,8 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 		nt_options_shaping(command, &plan->conversion);
 		plan->options.conversion = plan->conversion.size ? plan->conversion.data : "";
 	}
+	nt_options_given(command, &plan->given);
+	plan->options.given = plan->given.data;
 	if (!status)
 		status = check_diff(command, error);
 	for (size_t i = 0; i < command->severity.count && !status; i++)
@@ -188,5 +190,6 @@ void nt_report_plan_free(nt_report_plan *plan)
 	nt_baseline_free(&plan->baseline);
 	nt_shown_paths_free(&plan->paths);
 	nt_buffer_free(&plan->conversion);
+	nt_buffer_free(&plan->given);
 	nt_buffer_free(&plan->folder);
 }

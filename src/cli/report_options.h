@@ -15,6 +15,7 @@ typedef struct nt_report_plan {
 	nt_baseline baseline;
 	nt_shown_paths paths;    /* how reports name files */
 	nt_buffer conversion;    /* options of the conversion that --check judges */
+	nt_buffer given;         /* those of a command that repairs something */
 	nt_buffer folder;        /* where a page will be, absolute */
 	nt_report_target target; /* its path is NULL where nothing is written */
 } nt_report_plan;

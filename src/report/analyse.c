@@ -438,6 +438,7 @@ static nt_report *new_report(const char *path, const nt_report_options *options)
 		return NULL;
 	report->paths = options ? options->paths : NULL;
 	report->conversion = options ? options->conversion : NULL;
+	report->given = options ? options->given : NULL;
 	report->path = copy_text(&report->arena, path);
 	nt_report_show_path(report, path, &shown);
 	if (!shown.failed)

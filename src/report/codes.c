@@ -478,7 +478,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"w is a sign. Any other value scales or removes the bitangent.",
 		"Compute the tangents again.",
 		"a vertex with T = (1,0,0,0)"),
-	ROW(TAN_MISSING_REQUIRED, ERROR, "e--", CONVERT, "--fix", "the material needs tangents and there are none",
+	ROW(TAN_MISSING_REQUIRED, ERROR, "e--", CONVERT, "--fix", "there are no tangents, {detail}",
 		"Clearcoat normal maps and anisotropy demand a tangent space: TANGENT, or a normalTexture from which "
 		"a client can make it. Here there is neither. If a normalTexture lets the client make tangents, this "
 		"is an info: clients differ in how well they do it.",
@@ -585,8 +585,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(TAN_KEPT_SIGN, WARNING, "w--", CONVERT, "--fix",
 		"{count} {triangle keeps|triangles keep} tangents whose bitangent runs the wrong way",
 		"The input's tangents stay, a material uses them, and w is not that of the texture coordinates: bumps "
-		"look like dents there. On --check this is TAN_SIGN_MISMATCH, which looks at compressed primitives "
-		"too.",
+		"look like dents there. On --check this is TAN_SIGN_MISMATCH.",
 		"Repair them.",
 		"DamagedHelmet after gltfpack -gt, converted"),
 	ROW(TAN_GREEN_PAIR, INFO, "w--", LOOK, "--existing=repair --flip-green=auto",
@@ -673,6 +672,11 @@ bool nt_code_mends(nt_code code)
 	return repair && strcmp(repair, "--fix") == 0;
 }
 
+bool nt_code_is_of_kept(nt_code code)
+{
+	return nt_code_mends(code) && code != NT_CODE_NMAP_GREEN_DOWN && code != NT_CODE_TAN_MISSING_REQUIRED;
+}
+
 bool nt_shell_word(const char *text, nt_buffer *out)
 {
 	static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.,:@%+/=-";
@@ -721,14 +725,47 @@ static bool put_path(const char *name, nt_buffer *out)
 	return put;
 }
 
-void nt_command_text(const char *options, const char *input, const char *output, nt_buffer *out)
+/* Whether options have one of that name. */
+static bool has_option(const char *options, const char *name, size_t length)
+{
+	for (; *options; options += strcspn(options, " "), options += *options == ' ')
+		if (strncmp(options, name, length) == 0 && strchr("= ", options[length]))
+			return true;
+	return false;
+}
+
+/* Options of the user, but for those that are said anew or exclude what is said: --fix chooses by itself. */
+static void put_given(const char *options, const char *given, nt_buffer *out)
+{
+	static const char *const chosen[] = {"--existing", "--flip-green"};
+	const bool fixes = has_option(options, "--fix", 5);
+	for (size_t length; *given; given += length + (given[length] == '\n')) {
+		const char *name = given + (*given == '\'');
+		const size_t name_length = strcspn(name, "=\n");
+		bool said = has_option(options, name, name_length);
+		length = strcspn(given, "\n");
+		for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i++)
+			said |= fixes ? has_option(chosen[i], name, name_length)
+				: has_option("--fix", name, name_length) &&
+					has_option(options, chosen[i], strlen(chosen[i]));
+		if (!said) {
+			nt_buffer_text(out, " ");
+			nt_buffer_append(out, given, length);
+		}
+	}
+}
+
+void nt_command_text(const char *options, const char *given, const char *input, const char *output, nt_buffer *out)
 {
 	nt_buffer made = {0};
 	if (input && !output && strcmp(input, "-") == 0)
 		nt_buffer_text(&made, "OUT.glb");
 	else if (input && !output)
 		put_output(input, &made);
-	nt_buffer_format(out, "nmtan%s%s ", *options ? " " : "", options);
+	nt_buffer_text(out, "nmtan");
+	if (given)
+		put_given(options, given, out);
+	nt_buffer_format(out, "%s%s ", *options ? " " : "", options);
 	const size_t before = out->size;
 	bool put = input && *input && put_path(input, out);
 	nt_buffer_text(out, " ");
@@ -740,7 +777,7 @@ void nt_command_text(const char *options, const char *input, const char *output,
 	nt_buffer_free_into(&made, out);
 }
 
-void nt_remedy_text(nt_code code, const char *options, const char *input, nt_buffer *out)
+void nt_remedy_text(nt_code code, const char *options, const char *given, const char *input, nt_buffer *out)
 {
 	const char *remedy = nt_code_info(code)->remedy;
 	const size_t length = strlen(remedy);
@@ -750,7 +787,7 @@ void nt_remedy_text(nt_code code, const char *options, const char *input, nt_buf
 	}
 	nt_buffer_append(out, remedy, length - (length && remedy[length - 1] == '.'));
 	nt_buffer_text(out, ": ");
-	nt_command_text(options, input, NULL, out);
+	nt_command_text(options, given, input, NULL, out);
 }
 
 /* ---- sentences ---- */

@@ -44,18 +44,21 @@ nt_severity nt_finding_severity(const nt_finding *finding);
 const char *nt_severity_name(nt_severity severity);
 bool nt_severity_find(const char *name, nt_severity *severity);
 
-/* Whether --fix mends it. */
+/* Whether --fix mends it; whether it mends tangents that are there. */
 bool nt_code_mends(nt_code code);
+bool nt_code_is_of_kept(nt_code code);
 
 /* Appends a word of a shell: as it is if nothing in it is special, else in quotes. False: no terminal takes it. */
 bool nt_shell_word(const char *text, nt_buffer *out);
 
-/* Appends a command that a shell takes as it stands: "nmtan --fix in.glb in-repaired.glb". output: NULL: a name beside
- * the input. "IN OUT" stand for names that a terminal does not take, or for an input of NULL. */
-void nt_command_text(const char *options, const char *input, const char *output, nt_buffer *out);
+/* Appends a command that a shell takes as it stands: "nmtan --fix in.glb in-repaired.glb". given: options of the user,
+ * words of a shell with line ends between them, which the command has too unless `options` say otherwise; NULL: none.
+ * output: NULL: a name beside the input. "IN OUT" stand for names that a terminal does not take, or for an input of
+ * NULL. */
+void nt_command_text(const char *options, const char *given, const char *input, const char *output, nt_buffer *out);
 
 /* Appends the remedy, and at its end the command with these options; options NULL: without one. */
-void nt_remedy_text(nt_code code, const char *options, const char *input, nt_buffer *out);
+void nt_remedy_text(nt_code code, const char *options, const char *given, const char *input, nt_buffer *out);
 
 /* Appends the sentence of a finding. detail may be NULL. */
 void nt_code_sentence(nt_code code, size_t count, const char *detail, nt_buffer *out);

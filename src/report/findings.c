@@ -141,8 +141,9 @@ static const char *repair_of(nt_check *check, const nt_report_finding *finding, 
 	if (!repair || !mesh || finding->code == NT_CODE_TAN_UNUSED || finding->code == NT_CODE_NMAP_GREEN_DOWN)
 		return repair;
 	if (nt_code_mends(finding->code)) {
-		if (!mesh->has_normals || (!mesh->has_texcoords && finding->code == NT_CODE_TAN_MISSING_REQUIRED))
-			return NULL;
+		const bool missing = finding->code == NT_CODE_TAN_MISSING_REQUIRED;
+		if (!mesh->has_normals || (!mesh->has_texcoords && missing))
+			return missing && mesh->has_texcoords ? nt_code_info(NT_CODE_TAN_NO_NORMAL)->repair : NULL;
 		if (severity > NT_SEVERITY_INFO)
 			return repair;
 		/* --fix does nothing over an info */

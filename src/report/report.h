@@ -71,6 +71,7 @@ typedef struct nt_report_options {
 		nt_picture picture, size_t most_bytes, nt_image *image);
 	const char *page_folder;      /* absolute: where an HTML page will be; NULL: nobody knows */
 	const char *conversion;       /* options of the conversion that a check judges; NULL: it judges the file */
+	const char *given;            /* what a command that repairs a finding repeats: see nt_command_text() */
 	unsigned threads;
 	nt_quads quads;               /* AUTO: tangents may be of quads */
 } nt_report_options;
@@ -250,7 +251,7 @@ typedef struct nt_report {
 	nt_format format;
 	double origin[3];         /* of the scene: positions and boxes are relative to it */
 	const char *origin_text;  /* "431236,5412347,101"; NULL: it is 0 */
-	const char *conversion;   /* as in the options */
+	const char *conversion, *given; /* as in the options */
 	const char *failure;      /* the input could not be checked: why; NULL */
 	nt_place_view failure_place;
 	nt_report_mesh *meshes;

@@ -519,15 +519,15 @@ static void check_presence(nt_check *check)
 			.count = mesh->targets_without_tangents, .box = check->facts->box, .share = 1.0};
 		nt_check_report(check, &morphs, NULL);
 	}
-	/* without texture coordinates nobody can make them: TAN_NO_UV says so */
-	if (!present && mesh->slots != 0 && mesh->reachable && mesh->texcoords) {
+	/* TAN_NO_UV says that nobody can make them, TAN_ACCESSOR that nobody can read them */
+	if (!present && mesh->slots != 0 && mesh->reachable && mesh->texcoords && !mesh->tangents_fault) {
 		const nt_tally missing = {.code = NT_CODE_TAN_MISSING_REQUIRED, .count = 1,
 			.box = check->facts->box, .share = 1.0};
 		const bool client_may_make = mesh->slots & NT_SLOT_NORMAL;
 		nt_check_report_as(check, &missing,
 			client_may_make ? NT_SEVERITY_INFO : NT_SEVERITY_ERROR, "%s",
-			client_may_make ? "clients make them from the normal texture's coordinates"
-					: "and without a normal texture no client can make them");
+			client_may_make ? "which clients make from the normal texture's coordinates"
+					: "which the material needs and no client can make without a normal texture");
 	}
 }
 

@@ -604,6 +604,7 @@ same made.png turned.png
 [ "$(gltf out.gltf 'g.images[0].uri')" = "data:image/png;base64,$(base64 -w0 turned.png)" ] || wrong "another data URI"
 run --verify -v --flip-green=auto quad.gltf out.gltf
 exits 0
+says ": 0 of 1 primitives, converted 1 normal map, "
 says "/materials/0/normalTexture: info: image was converted: green turned up [IMAGE_CONVERTED]"
 same down-green-up.png turned.png
 sed 's/down-green-up.png/down.png/' out.gltf >undone.gltf
@@ -621,6 +622,7 @@ quad 'norm up.png'
 run quad.obj up.gltf
 run up.gltf plain.gltf
 run --flip-green=auto up.gltf auto.gltf
+says_not "converted"
 same plain.gltf auto.gltf
 
 # colour.jpg: 16 x 16, four squares of one colour each, 4:4:4; sharp 0.35 (libjpeg-turbo through libvips) decodes them as

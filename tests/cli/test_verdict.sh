@@ -519,6 +519,14 @@ mapped
 said() { value r.json 'r["files"][0]["verdict"]'; }
 run --check -q --report=r.json --fail-on=never m.gltf
 is "$(said)" "Ready to use"
+gltf m.gltf none 'delete g.meshes[0].primitives[0].attributes.TANGENT'
+run --check -q --report=r.json none.gltf
+is "$(said): $(value r.json '[f["message"] for f in r["files"][0]["findings"] if f["code"] == "TAN_MISSING_REQUIRED"]')" \
+	"Ready to use: [\"there are no tangents, which clients make from the normal texture's coordinates\"]"
+run --existing=drop m.gltf out.gltf
+says "skipped 1 (has tangents), a material uses the tangents of 1, which stay, "
+run --existing=drop none.gltf out.gltf
+says_not "which stay"
 echo 'f 1 2 3' >bad.obj
 run --check -q --report=r.json bad.obj
 is "$(said)" 'Not judged: face refers to "v" number 1, but the file has 0'
@@ -672,6 +680,65 @@ run -q --report=r.json -d out square.obj wrong.gltf
 says "nmtan: 2 of 2 done; 1 got tangents, 1 unchanged, 1 keeps wrong tangents"
 run -q --fix -d out square.obj m.gltf wrong.gltf
 silent
+# one file is told, in a quiet run too, and beside a report
+for quiet in "" -q; do
+	run $quiet wrong.gltf out.glb
+	says "warning: 2 triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]: nmtan --fix wrong.gltf out.glb"
+	run $quiet --report=r.json wrong.gltf out.glb
+	says "warning: 2 triangles have a bitangent that runs the wrong way: 100 % of 2, the convention is inverted [TAN_SIGN_MISMATCH]: nmtan --fix wrong.gltf out.glb"
+	run $quiet --ignore=TAN_KEPT_SIGN,TAN_SIGN_MISMATCH wrong.gltf out.glb
+	says_not "TAN_"
+	run $quiet --report=- wrong.gltf out.glb # which says it
+	says_not "TAN_SIGN_MISMATCH"
+done
+run -q m.gltf out.glb
+silent
+gltf m.gltf zero 'bytes[0].fill(0, at(g.meshes[0].primitives[0].attributes.TANGENT, 0), at(g.meshes[0].primitives[0].attributes.TANGENT, 0) + 12)'
+run -q zero.gltf out.glb
+says "[TAN_EXISTING_BAD]: nmtan --fix zero.gltf out.glb"
+run -d out zero.gltf m.gltf
+says "1 keeps wrong tangents"
+
+scene "wrong tangents that are kept in compressed primitives are told as those of plain ones"
+mapped
+for method in "" --draco=sequential --draco=edgebreaker; do
+	run -q --existing=replace $method m.gltf packed.gltf
+	gltf packed.gltf wrong 'g.materials[0].normalTexture.extensions = {KHR_texture_transform: {scale: [-1, 1]}}; (g.extensionsUsed ??= []).push("KHR_texture_transform")'
+	for threads in 1 2; do
+		run --threads=$threads wrong.gltf out.gltf
+		says "warning: 2 triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]: nmtan --fix wrong.gltf out.gltf"
+		same wrong.gltf out.gltf
+	done
+	run --fix wrong.gltf out.gltf
+	says_not TAN_KEPT_SIGN
+	run out.gltf again.gltf
+	says_not TAN_KEPT_SIGN
+	run packed.gltf again.gltf
+	says_not TAN_
+done
+
+scene "a command that a message or a report names has the other options of the user, but for those that it replaces"
+mapped
+gltf m.gltf wrong 'const n = g.meshes[0].primitives[0].attributes.TANGENT; for (let i = 0; i < 4; i++) bytes[0].writeFloatLE(-bytes[0].readFloatLE(at(n, i) + 12), at(n, i) + 12)'
+mkdir "a b"
+while IFS='|' read -r options repeated; do
+	eval "run $options wrong.gltf out.glb"
+	exits 0
+	says "[TAN_KEPT_SIGN]: nmtan $repeated--fix wrong.gltf out.glb"
+	eval "run ${repeated}--fix wrong.gltf out.glb"
+	exits 0
+	says "fixed TAN_SIGN_MISMATCH in 1 primitive"
+	eval "run --check --report=r.json --fail-on=never $options wrong.gltf"
+	is "$options: $(value r.json 'r["files"][0]["verdict"].split(": ")[-1]')" "$options: nmtan $repeated--fix wrong.gltf wrong-repaired.gltf"
+	is "$options: $(value r.json '"".join({f["repair"] for f in r["files"][0]["findings"] if f["code"] == "TAN_SIGN_MISMATCH"})')" \
+		"$options: nmtan $repeated--fix wrong.gltf wrong-repaired.gltf"
+done <<'END'
+--draco=keep|
+--weld --precision=short|--precision=short --weld |
+--uv=0 --texture-path="a b"|--uv=0 '--texture-path=a b' |
+--flip-green=auto --check-maps=on|
+--existing=keep --verify --sync|
+END
 
 scene "wrong signs of a few slivers are a warning, of as few large triangles an error; a corner's vertex is one spot"
 mapped
@@ -765,6 +832,11 @@ while IFS='|' read -r code edit conversion; do
 		run $conversion faulty.gltf out.gltf
 	else
 		run --check -q --report=r.json --fail-on=never faulty.gltf
+		cp r.json all.json
+		for other in $(value r.json '" ".join({f["code"] for f in r["files"][0]["findings"] if f["repair"]} - {"'$code'"})'); do
+			repairs $other # whatever else it names for this file
+			cp all.json r.json
+		done
 	fi
 	repairs $code $conversion
 done <<'END'
@@ -800,6 +872,7 @@ TAN_ACCESSOR|g.accessors[n].type = 'VEC3'
 TAN_ACCESSOR|g.accessors[n].count = 3
 TAN_ACCESSOR|g.accessors[n].byteOffset = 1000
 TAN_ACCESSOR|a.TANGENT = 99
+TAN_MISSING_REQUIRED|delete a.TANGENT, delete a.NORMAL, g.materials = [{extensions: {KHR_materials_anisotropy: {anisotropyStrength: 0.5}}}], g.extensionsUsed = ['KHR_materials_anisotropy']
 TAN_MISSING_REQUIRED|delete a.TANGENT, g.materials = [{extensions: {KHR_materials_anisotropy: {anisotropyStrength: 0.5}}}], g.extensionsUsed = ['KHR_materials_anisotropy']
 END
 green_down n.png
@@ -842,21 +915,22 @@ cd ../..
 scene "commands that differ are joined to one, and that does what each of them does"
 mapped
 green_down down.png
-while IFS='|' read -r options edit; do
+while IFS='|' read -r says options edit; do
 	gltf m.gltf faulty "const p = g.meshes[0].primitives[0], a = p.attributes, n = a.TANGENT, b = bytes[0];
 		const beside = uv => g.meshes[0].primitives.push({...p, attributes: {NORMAL: a.NORMAL, TEXCOORD_0: add('VEC2', 5126, uv, {}),
 			POSITION: add('VEC3', 5126, [1, 0, 0, 2, 0, 0, 2, 1, 0, 1, 1, 0], {})}}); $edit"
 	run --check --fail-on=never faulty.gltf
-	is "$options: $(sed -n 's/^  All of these in one command: //p' "$WORK/out.txt")" \
-		"$options: nmtan $options faulty.gltf faulty-repaired.gltf"
+	is "$options: $(sed -n "s/^  $says: //p" "$WORK/out.txt")" "$options: nmtan $options faulty.gltf faulty-repaired.gltf"
+	is "$options: $(grep -c "^  All commands" "$WORK/out.txt")" "$options: $(grep -c All <<<$says)"
 	run -q $options faulty.gltf faulty-repaired.gltf
 	exits 0
 	run --check --fail-on=never faulty-repaired.gltf
 	is "$options: $(grep -c "nmtan " "$WORK/out.txt")" "$options: 0"
 	rm faulty*
 done <<'END'
---fix --across=mesh|b.fill(0, at(n, 0), at(n, 0) + 12); beside([1, 1, 2, .5, 2, -.5, 1, 0])
---existing=replace --across=mesh --flip-green=auto|[0, 1, 2, 3].forEach(i => { b.writeFloatLE(0, at(n, i)); b.writeFloatLE(1, at(n, i) + 4); }); g.images[0].uri = 'down.png'; beside([1, 1, 2, .5, 2, -.5, 1, 0])
+All commands in one, those of infos too|--fix --across=mesh|b.fill(0, at(n, 0), at(n, 0) + 12); beside([1, 1, 2, .5, 2, -.5, 1, 0])
+All commands in one, those of infos too|--existing=replace --across=mesh --flip-green=auto|[0, 1, 2, 3].forEach(i => { b.writeFloatLE(0, at(n, i)); b.writeFloatLE(1, at(n, i) + 4); }); g.images[0].uri = 'down.png'; beside([1, 1, 2, .5, 2, -.5, 1, 0])
+Convert with nmtan: .*; and 1 more|--existing=replace --flip-green=auto|[0, 1, 2, 3].forEach(i => { b.writeFloatLE(0, at(n, i)); b.writeFloatLE(1, at(n, i) + 4); }); g.images[0].uri = 'down.png'
 END
 
 done_testing

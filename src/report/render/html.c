@@ -233,7 +233,7 @@ static void put_repair(const nt_report *report, const nt_report_finding *finding
 	nt_buffer command = {0};
 	if (!finding->repair)
 		return;
-	nt_command_text(finding->repair, report->path, NULL, &command);
+	nt_command_text(finding->repair, report->given, report->path, NULL, &command);
 	nt_buffer_text(out, ",\"repair\":");
 	put_string(command.data ? command.data : "", out);
 	nt_buffer_free_into(&command, out);

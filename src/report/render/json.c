@@ -399,7 +399,7 @@ static void put_repair(nt_buffer *out, const nt_report *report, const nt_report_
 {
 	nt_buffer command = {0};
 	if (finding->repair)
-		nt_command_text(finding->repair, report->path, NULL, &command);
+		nt_command_text(finding->repair, report->given, report->path, NULL, &command);
 	put_text(out, "repair", command.data);
 	nt_buffer_free_into(&command, out);
 }

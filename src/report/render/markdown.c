@@ -80,7 +80,7 @@ static void put_findings(const nt_report *report, size_t *rows, nt_buffer *out)
 			missing++;
 		}
 	}
-	nt_put_together(report, "\nAll of these in one command: ", nt_markdown_text, out);
+	nt_put_together(report, "\n", nt_markdown_text, out);
 	nt_dropped_text(report, "\nAnd ", ".\n", out);
 	if (missing)
 		nt_buffer_format(out, "\n%zu findings more do not fit.\n", missing);

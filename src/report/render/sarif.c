@@ -50,7 +50,7 @@ static void put_help(nt_code code, nt_buffer *out)
 {
 	const nt_code_row *row = nt_code_info(code);
 	nt_buffer markdown = {0}, remedy = {0};
-	nt_remedy_text(code, row->repair, NULL, &remedy);
+	nt_remedy_text(code, row->repair, NULL, NULL, &remedy);
 	append_part("Meaning", row->meaning, &markdown);
 	append_part("Remedy", remedy.data ? remedy.data : "", &markdown);
 	append_part("The smallest example", row->example, &markdown);

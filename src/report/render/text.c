@@ -152,7 +152,7 @@ static void write_finding(const nt_report_list *reports, const nt_report *report
 	if (remedy) {
 		paint(reports, dim, out);
 		nt_buffer_text(out, "            ");
-		nt_remedy_text(finding->code, finding->repair, report->path, out);
+		nt_remedy_text(finding->code, finding->repair, report->given, report->path, out);
 		nt_buffer_text(out, "\n");
 		paint(reports, plain, out);
 	}
@@ -184,7 +184,7 @@ static void write_report(const nt_report_list *reports, const nt_report *report,
 		write_finding(reports, report, finding, !told[finding->code], out);
 		told[finding->code] = true;
 	}
-	nt_put_together(report, "  All of these in one command: ", nt_plain_text, out);
+	nt_put_together(report, "  ", nt_plain_text, out);
 	nt_dropped_text(report, "  and ", "; --max-issues=0 shows all\n", out);
 }
 

@@ -15,9 +15,11 @@ static nt_advice advice_of(const nt_report_finding *finding)
 	return advice == NT_ADVICE_CONVERT && !finding->repair ? NT_ADVICE_EXPORT : advice;
 }
 
-/* The finding that has to be seen to first, of the new ones of a severity; NULL: none was kept. */
-static const nt_report_finding *find_first(const nt_report *report, nt_severity severity)
+/* The finding that has to be seen to first, of the new ones of the worst severity; NULL: there are infos alone, or none
+ * was kept. */
+static const nt_report_finding *find_first(const nt_report *report)
 {
+	const nt_severity severity = report->by_severity[NT_SEVERITY_ERROR] ? NT_SEVERITY_ERROR : NT_SEVERITY_WARNING;
 	const nt_report_finding *first = NULL;
 	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
@@ -44,40 +46,14 @@ static void append_nothing_new(const size_t known[3], nt_buffer *out)
 		nt_buffer_text(out, "Ready to use");
 }
 
-static void append_verdict(const nt_report *report, nt_buffer *out)
-{
-	static const char *const verbs[] = {"Look at this", "Convert with nmtan", "Bake again", "Export again"};
-	const size_t errors = report->by_severity[NT_SEVERITY_ERROR];
-	const size_t all = errors + report->by_severity[NT_SEVERITY_WARNING];
-	if (report->failure) {
-		nt_buffer_format(out, "Not judged: %s", report->failure);
-		return;
-	}
-	if (report->conversion)
-		nt_buffer_format(out, "After conversion%s%s: ", *report->conversion ? " with " : "",
-			report->conversion);
-	if (!all) {
-		append_nothing_new(report->known, out);
-		return;
-	}
-	const nt_report_finding *first = find_first(report, errors ? NT_SEVERITY_ERROR : NT_SEVERITY_WARNING);
-	nt_buffer_format(out, "%s: %s", first ? verbs[advice_of(first)] : verbs[0],
-		first ? first->message : "findings that are not shown");
-	if (all > 1)
-		nt_buffer_format(out, "; and %zu more", all - 1);
-	if (first && first->repair) {
-		nt_buffer_text(out, ": ");
-		nt_command_text(first->repair, report->path, NULL, out);
-	}
-}
-
 /* ---- several commands ---- */
 
 /* Whether a finding's command is one of several that the user may want together: not if it names a file, of which there
  * may be a choice, and not that of the pair, which is right as it is. */
-static bool joins_in(const nt_report_finding *f)
+static bool joins_in(const nt_report_finding *f, nt_severity least)
 {
-	return f->repair && strncmp(f->repair, "--normal-map", 12) != 0 && f->code != NT_CODE_TAN_GREEN_PAIR;
+	return f->repair && f->severity >= least && strncmp(f->repair, "--normal-map", 12) != 0 &&
+	       f->code != NT_CODE_TAN_GREEN_PAIR;
 }
 
 /* Adds those of the options that are not there yet, but for a repair if `replaces`. */
@@ -94,15 +70,15 @@ static void add_options(const char *options, bool replaces, nt_buffer *all)
 	}
 }
 
-void nt_put_together(const nt_report *report, const char *before, void (*put)(const char *text, nt_buffer *out),
-	nt_buffer *out)
+/* The options of the command that does what the commands of all new findings do, from a severity on. False: they have
+ * one, or no command does all. */
+static bool join_options(const nt_report *report, nt_severity least, nt_buffer *all)
 {
-	nt_buffer all = {0}, command = {0};
 	const char *first = NULL;
 	bool differ = false, fixes = false, turns = false, drops = false, repairs = false, replaces = false;
 	for (size_t i = 0; i < report->new_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
-		if (!joins_in(f))
+		if (!joins_in(f, least))
 			continue;
 		const bool is_fix = strcmp(f->repair, "--fix") == 0;
 		first = first ? first : f->repair;
@@ -114,20 +90,74 @@ void nt_put_together(const nt_report *report, const char *before, void (*put)(co
 		turns |= is_fix && f->code == NT_CODE_NMAP_GREEN_DOWN;
 	}
 	if (!differ || (drops && (fixes || repairs)))
-		return;
+		return false;
 	/* --fix and --existing exclude each other; what repairs all tangents leaves none that --fix would choose */
 	for (size_t i = 0; i < report->new_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
-		if (joins_in(f) && !(repairs && strcmp(f->repair, "--fix") == 0))
-			add_options(f->repair, replaces, &all);
+		if (joins_in(f, least) && !(repairs && strcmp(f->repair, "--fix") == 0))
+			add_options(f->repair, replaces, all);
 	}
 	if (turns && repairs)
-		add_options("--flip-green=auto", false, &all);
-	nt_command_text(all.data ? all.data : "", report->path, NULL, &command);
-	nt_buffer_text(out, before);
-	put(command.data ? command.data : "", out);
-	nt_buffer_text(out, "\n");
+		add_options("--flip-green=auto", false, all);
+	return true;
+}
+
+/* ---- the verdict ---- */
+
+/* The options of the command that the verdict names, which repairs the first finding and what else is no info. False:
+ * it names none. */
+static bool find_options(const nt_report *report, const nt_report_finding *first, nt_buffer *options)
+{
+	if (!first || !first->repair)
+		return false;
+	if (!join_options(report, NT_SEVERITY_WARNING, options))
+		nt_buffer_text(options, first->repair);
+	return true;
+}
+
+static void append_verdict(const nt_report *report, nt_buffer *out)
+{
+	static const char *const verbs[] = {"Look at this", "Convert with nmtan", "Bake again", "Export again"};
+	const size_t errors = report->by_severity[NT_SEVERITY_ERROR];
+	const size_t all = errors + report->by_severity[NT_SEVERITY_WARNING];
+	if (report->failure) {
+		nt_buffer_format(out, "Not judged: %s", report->failure);
+		return;
+	}
+	if (report->conversion)
+		nt_buffer_format(out, "After conversion%s%s: ", *report->conversion ? " with " : "",
+			report->conversion);
+	if (!all) {
+		append_nothing_new(report->known, out);
+		return;
+	}
+	nt_buffer options = {0};
+	const nt_report_finding *first = find_first(report);
+	nt_buffer_format(out, "%s: %s", first ? verbs[advice_of(first)] : verbs[0],
+		first ? first->message : "findings that are not shown");
+	if (all > 1)
+		nt_buffer_format(out, "; and %zu more", all - 1);
+	if (find_options(report, first, &options)) {
+		nt_buffer_text(out, ": ");
+		nt_command_text(options.data ? options.data : "", report->given, report->path, NULL, out);
+	}
+	nt_buffer_free_into(&options, out);
+}
+
+void nt_put_together(const nt_report *report, const char *before, void (*put)(const char *text, nt_buffer *out),
+	nt_buffer *out)
+{
+	nt_buffer all = {0}, told = {0}, command = {0};
+	const bool names = find_options(report, find_first(report), &told);
+	if (join_options(report, NT_SEVERITY_INFO, &all) && all.data &&
+		!(names && told.data && strcmp(all.data, told.data) == 0)) {
+		nt_command_text(all.data, report->given, report->path, NULL, &command);
+		nt_buffer_format(out, "%sAll commands in one%s: ", before, names ? ", those of infos too" : "");
+		put(command.data ? command.data : "", out);
+		nt_buffer_text(out, "\n");
+	}
 	nt_buffer_free_into(&all, out);
+	nt_buffer_free_into(&told, out);
 	nt_buffer_free_into(&command, out);
 }
 

@@ -56,8 +56,8 @@ void nt_totals_text(const nt_totals *totals, nt_buffer *out);
  * any bytes. */
 void nt_put_verdict(const nt_report *report, void (*put)(const char *text, nt_buffer *out), nt_buffer *out);
 
-/* Several findings name different commands, which write one output: the command that does what all of them do, with
- * `before` in front and a line's end behind. Nothing if they name one, or if none does all. */
+/* Several findings name different commands, which write one output: a line with the command that does what all of them
+ * do, `before` in front. Nothing if they name one, if none does all, or if the verdict names it. */
 void nt_put_together(const nt_report *report, const char *before, void (*put)(const char *text, nt_buffer *out),
 	nt_buffer *out);
 
