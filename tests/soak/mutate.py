@@ -145,7 +145,8 @@ def tests_of(path):
     parts, stem = path.split('/')[1:-1], os.path.basename(path).split('.')[0]
     programs = sorted(p for p in glob.glob(TREE + '/tests/unit/**/test_*.c', recursive=True) + glob.glob(TREE + '/tests/api/test_*.c'))
     programs = [B + p[len(TREE):-2] for p in programs]
-    scripts = [p[len(TREE) + 1:] for p in sorted(glob.glob(TREE + '/tests/*/test_*.sh')) if not LEFT_OUT.search(p)]
+    scripts = [p[len(TREE) + 1:] for p in sorted(glob.glob(TREE + '/tests/*/test_*.sh'))]
+    scripts = [p for p in scripts if not LEFT_OUT.search(p)]
     words = list(dict.fromkeys(SUBJECTS.get(parts[0], []) + stem.split('_')))
     name = lambda p: os.path.basename(p)[5:-3]
     rank = lambda p: min([k for k, word in enumerate(words) if word == name(p) or word in name(p).split('_')], default=99)
