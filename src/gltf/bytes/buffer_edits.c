@@ -57,10 +57,11 @@ static nt_status decompress_pools(nt_gltf *document, const nt_vertex_pools *pool
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < pools->count; i++) {
 		bool wanted = welds;
+		size_t solved = 0; /* two meshes may want copies where none does alone */
 		for (uint32_t k = pools->first[i]; !wanted && k < pools->first[i + 1]; k++) {
 			const nt_mesh *mesh = &pools->scene->meshes[pools->order[k]];
-			wanted = nt_gltf_is_solved(mesh) &&
-				(mesh->split.source_count || mesh->vertex_count > mesh->source_vertex_count);
+			wanted = nt_gltf_is_solved(mesh) && (mesh->split.source_count ||
+				mesh->vertex_count > mesh->source_vertex_count || (!mesh->plan.same_as && solved++));
 		}
 		for (uint32_t k = pools->first[i]; !status && k < pools->first[i + 1]; k++) {
 			const nt_mesh *mesh = &pools->scene->meshes[pools->order[k]];
