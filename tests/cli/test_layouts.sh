@@ -6,7 +6,7 @@ table=$ROOT/tests/support/gltf_table.py
 mkdir "$WORK/table" && cd "$WORK/table" && python3 "$table" make || exit 1
 
 while read -r name options; do
-	scene "what shares vertices, indices and bytes, ${options:-with no options}"
+	scene "who shares what, $name: ${options:-no options}"
 	cd "$WORK/table" || exit 1
 	python3 "$table" run "$name" "$NMTAN" >"$WORK/err.txt" 2>&1 || wrong "$name"
 done < <(python3 "$table" sets)

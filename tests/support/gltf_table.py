@@ -315,7 +315,10 @@ class Document:
                      'materials': [{'normalTexture': {'index': 0}}, {}], 'textures': [{'source': 0}],
                      'images': [{'uri': PNG}], 'accessors': [], 'bufferViews': [], 'buffers': []}
         self.bins = [bytearray(), bytearray(), bytearray()]
-        self.plain = None
+        self.fallback = {}
+
+    def primitives(self):
+        return [p for mesh in self.json['meshes'] for p in mesh['primitives']]
 
     def view(self, data, buffer=0, align=4, **more):
         target = self.bins[buffer]
@@ -391,19 +394,26 @@ class Document:
                 s.number = len(self.json['accessors']) - 1
 
     def write(self, folder, binary=False):
-        buffers = [data for data in self.bins if data]
-        for number, data in enumerate(buffers):
-            buffer = {'byteLength': len(data)}
-            if not binary or number:
-                name = '%s-%d.bin' % (self.name, number)
-                buffer['uri'] = name
-                with open(os.path.join(folder, name), 'wb') as file:
-                    file.write(data)
+        numbers = {}
+        for number, data in enumerate(self.bins):
+            if not data and number:
+                continue
+            numbers[number] = len(self.json['buffers'])
+            buffer = {'byteLength': max(1, len(data))}
+            stands_in = number == self.fallback.get('number')
+            if stands_in:
+                buffer['extensions'] = {self.fallback['extension']: {'fallback': True}}
+            if (number or not binary) and (not stands_in or self.fallback['bytes']):
+                buffer['uri'] = '%s-%d.bin' % (self.name, number)
+                with open(os.path.join(folder, buffer['uri']), 'wb') as file:
+                    file.write(data or b'\0')
             self.json['buffers'].append(buffer)
+        for view in self.json['bufferViews']:
+            view['buffer'] = numbers[view['buffer']]
         text = json.dumps(self.json, separators=(',', ':')).encode()
         if binary:
             text += b' ' * (-len(text) % 4)
-            data = bytes(buffers[0]) + bytes(-len(buffers[0]) % 4)
+            data = bytes(self.bins[0]) + bytes(-len(self.bins[0]) % 4)
             text = struct.pack('<4sIIII', b'glTF', 2, 28 + len(text) + len(data), len(text), 0x4E4F534A) + text + struct.pack(
                 '<II', len(data), 0x004E4942) + data
         with open(os.path.join(folder, self.name + ('.glb' if binary else '.gltf')), 'wb') as file:
@@ -494,6 +504,93 @@ def sparse_positions(d, streams):
             d.alone(s)
 
 
+# ---- views that meshoptimizer compresses ----
+
+def pack_rows(rows, width):
+    """Version 0 of the vertex codec, in which each group of differences is stored as it is."""
+    data, first = b'\xa0', rows[0]
+    for k in range(width):
+        column = [row[k] for row in rows]
+        signed = [(b - a + 128) % 256 - 128 for a, b in zip([first[k]] + column, column)]
+        groups = bytes((d << 1 ^ d >> 7) & 255 for d in signed).ljust((len(rows) + 15) // 16 * 16, b'\0')
+        data += b'\xff' * ((len(groups) // 16 + 3) // 4) + groups
+    return data + bytes(max(0, 32 - width)) + first
+
+
+def pack_indices(numbers, triangles):
+    """Each index by its difference to the last one: of a list of triangles, or of any list."""
+    def varint(v):
+        out = b''
+        while v >= 128:
+            out, v = out + bytes([v & 127 | 128]), v >> 7
+        return out + bytes([v])
+    zigzag = lambda d: d << 1 if d >= 0 else (-d << 1) - 1
+    last, data = 0, b''
+    for i, number in enumerate(numbers):
+        data += b'\xff' * (triangles and i % 3 == 0) + varint(zigzag(number - last) << (not triangles))
+        last = number
+    return b'\xe1' + b'\xff' * (len(numbers) // 3) + data + bytes(16) if triangles else b'\xd1' + data + bytes(4)
+
+
+def octahedral(row):
+    """A unit vector along an axis as it is before the filter, which makes integers of it."""
+    x, y, z = row[:3]
+    return struct.pack('<4b', x, y, 127, 0) if z >= 0 else struct.pack('<4b', 127, 127, 127, 0)
+
+
+def exponential(row):
+    """Floats as 24 bits and an exponent: quarters of integers."""
+    return b''.join(struct.pack('<I', round(4 * x) & 0xFFFFFF | 254 << 24) for x in row)
+
+
+def pack_views(d, extension, filters, fallback):
+    """Compresses the views that have whole rows of attributes, or indices."""
+    g = d.json
+    attributes = [(n, i) for p in d.primitives() for o in [p['attributes']] + p.get('targets', []) for n, i in o.items()]
+    lists = [(p['indices'], p.get('mode', 4)) for p in d.primitives() if 'indices' in p]
+    plain, packed = len(d.bins), bytearray()
+    d.bins.append(bytearray())
+    for number, view in enumerate(g['bufferViews']):
+        users = [i for i, a in enumerate(g['accessors']) if a.get('bufferView') == number]
+        data = bytes(d.bins[view['buffer']][view['byteOffset']:view['byteOffset'] + view['byteLength']])
+        a = g['accessors'][users[0]] if users else {}
+        row = SIZES[a['componentType']] * lossless.WIDTHS[a['type']] if users else 1
+        stride = view.get('byteStride', row)
+        how = {}
+        if users and all(i in [x for _, x in attributes] for i in users) and stride % 4 == 0 and len(data) % stride == 0:
+            names, kind = {n for n, i in attributes if i in users}, a['componentType']
+            rows = [data[at:at + stride] for at in range(0, len(data), stride)]
+            if filters and len(users) == 1 and names == {'NORMAL'} and kind == BYTE:
+                rows, how = [octahedral(struct.unpack('<4b', r)) for r in rows], {'filter': 'OCTAHEDRAL'}
+            elif filters and len(users) == 1 and kind == FLOAT and names == {'POSITION'}:
+                rows, how = [exponential(struct.unpack('<3f', r)) for r in rows], {'filter': 'EXPONENTIAL'}
+            bytes_, how['mode'] = pack_rows(rows, stride), 'ATTRIBUTES'
+        elif users and row in (2, 4) and [m for i, m in lists if i in users]:
+            numbers = [int.from_bytes(data[at:at + row], 'little') for at in range(0, len(data), row)]
+            how['mode'] = 'TRIANGLES' if {m for i, m in lists if i in users} == {4} and len(numbers) % 3 == 0 else 'INDICES'
+            bytes_ = pack_indices(numbers, how['mode'] == 'TRIANGLES')
+        else:
+            continue
+        packed.extend(bytes(-len(packed) % 4))
+        view['extensions'] = {extension: {'buffer': 0, 'byteOffset': len(packed), 'byteLength': len(bytes_), 'byteStride': stride,
+                                          'count': len(data) // stride, **how}}
+        packed.extend(bytes_)
+        target = d.bins[plain]
+        target.extend(bytes(-len(target) % 4))
+        view['buffer'], view['byteOffset'] = plain, len(target)
+        target.extend(data)
+    # what is plain stays in its buffer, the packed bytes come behind it
+    base = len(d.bins[0]) + -len(d.bins[0]) % 4
+    d.bins[0].extend(bytes(base - len(d.bins[0])) + packed)
+    for view in g['bufferViews']:
+        if 'extensions' in view:
+            view['extensions'][extension]['byteOffset'] += base
+    d.fallback = {'number': plain, 'extension': extension, 'bytes': fallback}
+    for key in ('extensionsUsed', 'extensionsRequired'):
+        if key == 'extensionsUsed' or not fallback:
+            g[key] = g.get(key, []) + [extension]
+
+
 LAYOUTS = [separate, sequential, interleaved, tight, together, overlapping, backwards, buffers, sparse_positions]
 PNG = 'data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg=='
 
@@ -551,28 +648,178 @@ def table():
     return cells
 
 
-def make(folder):
+def make():
+    for folder in ('in', 'plain', 'packed'):
+        os.makedirs(folder, exist_ok=True)
     for number, (sharing, tangents, lay_out, quantized) in enumerate(table()):
         name = '-'.join([sharing.__name__, tangents.__name__, lay_out.__name__] + ['quantized'] * quantized)
-        build(name, sharing, tangents, lay_out, quantized).write(folder, binary=number % 5 == 0)
+        build(name, sharing, tangents, lay_out, quantized).write('in', binary=number % 5 == 0)
+    # the same with compressed views
+    for number, sharing in enumerate(SHARING):
+        for k, lay_out in enumerate((separate, sequential, tight)):
+            tangents, quantized = TANGENTS[(number + 3 * k) % len(TANGENTS)], (number + k) % 2 == 1
+            name = '-'.join([sharing.__name__, tangents.__name__, lay_out.__name__] + ['quantized'] * quantized)
+            build(name, sharing, tangents, lay_out, quantized).write('plain')
+            d = build(name, sharing, tangents, lay_out, quantized)
+            pack_views(d, ('EXT_meshopt_compression', 'KHR_meshopt_compression')[number % 2], k == 0, k == 2)
+            d.write('packed', binary=number % 3 == 0)
 
 
 
 # ---- what must be ----
 
-# Name, options, and what they ask for.
+def unpack_rows(data, count, width):
+    """The vertex codec, version 0."""
+    out, at, last = [bytearray(width) for _ in range(count)], 1, bytearray(data[-width:])
+    most = min(256, 8192 // width // 16 * 16)
+    for first in range(0, count, most):
+        n = min(most, count - first)
+        for k in range(width):
+            groups = (n + 15) // 16
+            head, at = data[at:], at + (groups + 3) // 4
+            for group in range(groups):
+                bits = (0, 2, 4, 8)[head[group // 4] >> group % 4 * 2 & 3]
+                values = [int.from_bytes(data[at:at + 2 * bits], 'big') >> (15 - i) * bits & (1 << bits) - 1 for i in range(16)]
+                at += 2 * bits
+                for i, v in enumerate(values):
+                    if bits in (2, 4) and v == (1 << bits) - 1:
+                        v, at = data[at], at + 1
+                    if group * 16 + i < n:
+                        last[k] = last[k] + (v >> 1 ^ -(v & 1)) & 255
+                        out[first + group * 16 + i][k] = last[k]
+    return b''.join(out)
+
+
+def unpack_indices(data, count, width):
+    """Both codecs of indices."""
+    numbers, at = [], 1 + count // 3 * (data[0] >> 4 == 14)
+
+    def varint():
+        nonlocal at
+        v = shift = 0
+        while True:
+            v, shift, at = v | (data[at] & 127) << shift, shift + 7, at + 1
+            if data[at - 1] < 128:
+                return v
+    signed = lambda v: v >> 1 ^ -(v & 1)
+    if data[0] >> 4 == 13:
+        last = [0, 0]
+        for _ in range(count):
+            v = varint()
+            last[v & 1] += signed(v >> 1)
+            numbers.append(last[v & 1])
+        return b''.join(x.to_bytes(width, 'little') for x in numbers)
+    edges, vertices, following, last, table = [(0, 0)] * 16, [0] * 16, 0, 0, data[-16:]
+    steps = 13 if data[0] & 15 else 15
+
+    def explicit():
+        nonlocal last
+        last += signed(varint())
+        return last
+
+    def fresh(keep):
+        nonlocal following
+        following += 1
+        keep(following - 1)
+        return following - 1
+    seen = lambda v: vertices.insert(0, v)
+    for code in data[1:1 + count // 3]:
+        if code < 0xF0:
+            a, b = edges[code >> 4]
+            low = code & 15
+            if low < steps:
+                c = vertices[low] if low else fresh(seen)
+            else:
+                if low == 15:
+                    c = explicit()
+                else:
+                    last += 1 if low == 14 else -1
+                    c = last
+                seen(c)
+            edges[:0] = [(a, c), (c, b)]
+        else:
+            aux = table[code & 15] if code < 0xFE else data[at]
+            at += code >= 0xFE
+            if code >= 0xFE and aux == 0:
+                following = 0
+            keep = lambda v: None
+            a = explicit() if code == 0xFF else fresh(keep)
+            b, c = aux >> 4, aux & 15
+            old = list(vertices)
+            b = fresh(keep) if b == 0 else explicit() if b == 15 else old[b - 1]
+            c = fresh(keep) if c == 0 else explicit() if c == 15 else old[c - 1]
+            seen(a)
+            if aux >> 4 in (0, 15):
+                seen(b)
+            if aux & 15 in (0, 15):
+                seen(c)
+            edges[:0] = [(a, c), (c, b), (b, a)]
+        numbers += [a, b, c]
+    return b''.join(x.to_bytes(width, 'little') for x in numbers)
+
+
+def unfilter(data, filter_, width):
+    """Octahedral vectors, and floats of 24 bits and an exponent."""
+    part = 8 if (filter_, width) == ('OCTAHEDRAL', 8) else 4
+    code, most = ('<4h', 32767) if part == 8 else ('<4b', 127)
+    rows = [data[i:i + part] for i in range(0, len(data), part)]
+    if filter_ == 'EXPONENTIAL':
+        value = lambda v: ((v & 0xFFFFFF) - ((v & 0x800000) << 1)) * 2.0 ** ((v >> 24) - ((v >> 31) << 8))
+        return b''.join(struct.pack('<f', value(int.from_bytes(r, 'little'))) for r in rows)
+    out = []
+    for r in rows:
+        x, y, one, w = struct.unpack(code, r)
+        z = one - abs(x) - abs(y)
+        t = max(-z, 0)
+        x, y = x - (t if x >= 0 else -t), y - (t if y >= 0 else -t)
+        scale = most / math.sqrt(x * x + y * y + z * z)
+        out.append(struct.pack(code, *(round(c * scale) for c in (x, y, z)), w))
+    return b''.join(out)
+
+
+class File(lossless.File):
+    """Views that meshoptimizer compressed have the bytes that a decoder gives."""
+
+    def view(self, i):
+        packed = next((e for n, e in self.g['bufferViews'][i].get('extensions', {}).items() if 'meshopt' in n), None)
+        if not packed:
+            return super().view(i)
+        if ('view', i) not in self.cache:
+            at, count, width = packed.get('byteOffset', 0), packed['count'], packed['byteStride']
+            data = self.buffer(packed['buffer'])[at:at + packed['byteLength']]
+            data = (unpack_rows if packed['mode'] == 'ATTRIBUTES' else unpack_indices)(data, count, width)
+            if packed.get('filter', 'NONE') != 'NONE':
+                data = unfilter(data, packed['filter'], width)
+            self.cache['view', i] = data
+        return self.cache['view', i]
+
+    def buffer(self, i):
+        if self.g['buffers'][i].get('uri') is None and 'extensions' in self.g['buffers'][i]:
+            return bytes(self.g['buffers'][i]['byteLength'])
+        return super().buffer(i)
+
+
+# Of each set of options: where its inputs are, the options, which of the inputs (one in so many).
 SETS = {
-    'replace': '--only=all --existing=replace',
-    'default': '',
-    'keep': '--only=all',
-    'repair': '--only=all --existing=repair --buffers=embed',
-    'glb': '--only=all --existing=replace --output-format=glb --bitangents',
-    'short': '--only=all --existing=replace --precision=short',
-    'byte': '--existing=replace --precision=byte',
-    'float': '--only=all --existing=replace --precision=float --morph=keep',
-    'weld': '--only=all --existing=replace --weld --morph=drop',
-    'across': '--only=all --existing=replace --across=mesh',
-    'drop': '--existing=drop',
+    'replace': ('in', '--only=all --existing=replace', 1),
+    'default': ('in', '', 3),
+    'keep': ('in', '--only=all', 3),
+    'repair': ('in', '--only=all --existing=repair --buffers=embed', 3),
+    'glb': ('in', '--only=all --existing=replace --output-format=glb --bitangents', 3),
+    'short': ('in', '--only=all --existing=replace --precision=short', 3),
+    'byte': ('in', '--existing=replace --precision=byte', 3),
+    'float': ('in', '--only=all --existing=replace --precision=float --morph=keep', 3),
+    'weld': ('in', '--only=all --existing=replace --weld --morph=drop', 3),
+    'across': ('in', '--only=all --existing=replace --across=mesh', 3),
+    'drop': ('in', '--existing=drop', 3),
+    'meshopt': ('packed', '--only=all --existing=replace', 1),
+    'meshopt-off': ('packed', '--only=all --existing=replace --meshopt=off', 3),
+    'meshopt-short': ('packed', '--only=all --existing=replace --precision=short', 3),
+    'meshopt-weld': ('packed', '--only=all --existing=replace --weld', 3),
+    'draco': ('in', '--only=all --existing=replace --draco=sequential', 1),
+    'draco-again': ('draco', '--only=all --existing=replace', 3),
+    'draco-off': ('draco', '--only=all --existing=replace --draco=off', 3),
+    'edgebreaker': ('in', '--only=all --existing=replace --draco=edgebreaker', 3),
 }
 
 
@@ -632,7 +879,7 @@ def differ(x, y, tolerance):
     return len(x) != len(y) or any(abs(a - b) > tolerance for a, b in zip(x, y))
 
 
-def check_tangents(a, b, m, k, options, fault):
+def check_tangents(a, b, m, k, options, fault, compressed):
     p, q = a.g['meshes'][m]['primitives'][k], b.g['meshes'][m]['primitives'][k]
     where = 'mesh %d primitive %d: ' % (m, k)
     old, chain = a.corners(p), b.corners(q)
@@ -656,6 +903,8 @@ def check_tangents(a, b, m, k, options, fault):
     before = p['attributes'].get('TANGENT')
     if want == FLOAT and '=float' not in options and before is not None:
         want = a.g['accessors'][before]['componentType']
+    if compressed and '--precision' not in options:
+        want = accessor['componentType']  # perhaps that of the normals
     if accessor['componentType'] != want or accessor.get('normalized', False) != (want != FLOAT):
         fault(where + 'tangents of type %d, expected %d' % (accessor['componentType'], want))
     values = [components(a, p['attributes'][name]) for name in ('POSITION', 'NORMAL', 'TEXCOORD_0')]
@@ -791,8 +1040,8 @@ def check_bytes(f, fault, left_out=()):
     return dead, {i for i in range(len(g.get('accessors', []))) if i not in vertex | index}
 
 
-def check(options, before, after, fault):
-    a, b = lossless.File(before), lossless.File(after)
+def check(options, before, after, fault, compressed=False):
+    a, b = File(before), File(after)
     lossless.complaints = []
     lossless.complain.__globals__['complaints'] = lossless.complaints
     if '--precision' in options and '=float' not in options:
@@ -801,9 +1050,7 @@ def check(options, before, after, fault):
                 fault('KHR_mesh_quantization is not in ' + key)
             elif key not in a.g:
                 del b.g[key]
-    if '--morph=drop' in options or 'repair' in options or '--existing=drop' in options:
-        pass
-    else:
+    if not compressed and not any(word in options for word in ('--morph=drop', 'repair', '--existing=drop')):
         lossless.Own.find(a.g)
         lossless.same_json(a.g, b.g)
     lossless.same_geometry(a, b)
@@ -815,8 +1062,10 @@ def check(options, before, after, fault):
             fault(text)
     for m, mesh in enumerate(a.g['meshes']):
         for k in range(len(mesh['primitives'])):
-            check_tangents(a, b, m, k, options, fault)
+            check_tangents(a, b, m, k, options, fault, compressed)
     check_counts(a, b, options, fault)
+    if compressed:
+        return
     dead, loose = check_bytes(a, lambda text: None)
     for i in loose:
         if '--weld' not in options and a.rows(i) != b.rows(i):
@@ -837,37 +1086,81 @@ def check(options, before, after, fault):
             fault('nobody uses accessor %d' % i)
 
 
+def check_draco(options, before, after, fault):
+    """Corners of triangles, whatever their order, within the steps of the block's grid."""
+    a, b = File(before), File(after)
+    for m, mesh in enumerate(a.g['meshes']):
+        for k, p in enumerate(mesh['primitives']):
+            q = b.g['meshes'][m]['primitives'][k]
+            if p.get('mode', 4) < 4:
+                continue
+            old, new = a.corners(p), b.corners(q)
+            names = [n for n in p['attributes'] if n not in ('TANGENT', '_OTHER')]
+            values = [components(a, p['attributes'][name]) for name in ('POSITION', 'NORMAL', 'TEXCOORD_0')]
+            rows = [(components(a, p['attributes'][n]), components(b, q['attributes'][n])) for n in names]
+            found = components(b, q['attributes']['TANGENT'])
+            both = []
+            for side, chain, tangents in (0, old, frames(old, *values)), (1, new, [found[v] for v in new]):
+                corner = [sum([tuple(round(x, 2) + 0 for x in r[side][v]) for r in rows], ()) + tuple(round(x, 1) + 0 for x in t)
+                          for v, t in zip(chain, tangents)]
+                triangles = [corner[i:i + 3] for i in range(0, len(corner), 3)]
+                both.append(sorted(min(t, t[1:] + t[:1], t[2:] + t[:2]) for t in triangles))
+            if both[0] != both[1]:
+                at = [x != y for x, y in zip(*both)].index(True) if len(both[0]) == len(both[1]) else 0
+                fault('mesh %d primitive %d: triangle %s, expected %s' % (m, k, both[1][at], both[0][at]))
+
+
+def names_of(folder):
+    """The glTF files of a folder without their endings."""
+    names = os.listdir(folder) if os.path.isdir(folder) else []
+    return {os.path.splitext(x)[0]: os.path.join(folder, x) for x in names if not x.endswith('.bin')}
+
+
 def convert(name, program):
-    """The files of a set's turn; all of them for the first."""
-    number, options = list(SETS).index(name), SETS[name]
-    files = sorted(x for x in os.listdir('in') if x.endswith(('.gltf', '.glb')))
-    files = [x for i, x in enumerate(files) if number == 0 or (i + number) % 3 == 0]
+    """Converts the inputs of a set's turn and says what is wrong."""
+    number, (source, options, share) = list(SETS).index(name), SETS[name]
+    files = names_of(source)
+    files = [files[stem] for i, stem in enumerate(sorted(files)) if (i + number) % share == 0]
     if '--weld' in options:
         files = [x for x in files if 'loose' not in x and 'part_' not in x]
-    done = subprocess.run([program, *options.split(), '-q', '-d', name, *['in/' + x for x in files]], stdin=subprocess.DEVNULL,
-                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    said = [] if done.returncode == 0 else ['exit code %d: %s' % (done.returncode, done.stderr[-600:])]
-    outputs = {os.path.splitext(x)[0]: x for x in (os.listdir(name) if os.path.isdir(name) else []) if not x.endswith('.bin')}
+
+    def run(options, folder, files):
+        done = subprocess.run([program, *options.split(), '-q', '-d', folder, *files], stdin=subprocess.DEVNULL,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        return [] if done.returncode == 0 else ['exit code %d: %s' % (done.returncode, done.stderr[-600:])]
+    said = run(options, name, files)
+    outputs = names_of(name)
+    with open('pairs', 'a', encoding='utf-8') as file:
+        for x in files:
+            stem = os.path.splitext(os.path.basename(x))[0]
+            if stem in outputs:
+                file.write('%s\t%s\n' % (os.path.abspath(outputs[stem]), os.path.abspath(x)))
+    # blocks are judged when they are plain again
+    compressed = source == 'packed' or 'draco' in options + source
+    if 'draco' in options + source and outputs:
+        said += run('--only=all --existing=repair --draco=off', name + '-plain', outputs.values())
+        outputs = names_of(name + '-plain')
     for x in files:
-        stem = os.path.splitext(x)[0]
+        stem = os.path.splitext(os.path.basename(x))[0]
         found = []
-        if stem in outputs:
-            check(options, 'in/' + x, os.path.join(name, outputs[stem]), found.append)
-        else:
-            found.append('there is no output')
-        said += ['%s: %s' % (stem, text) for text in found[:2]]
-        if stem in outputs:
-            with open('pairs', 'a', encoding='utf-8') as file:
-                file.write('%s\t%s\n' % (os.path.abspath(os.path.join(name, outputs[stem])), os.path.abspath('in/' + x)))
+        try:
+            if stem not in outputs:
+                found.append('there is no output')
+            elif 'draco' in options + source:
+                check_draco(options, names_of('in')[stem], outputs[stem], found.append)
+            else:
+                check(options, x if source == 'in' else 'plain/%s.gltf' % stem, outputs[stem], found.append, compressed)
+        except (IndexError, KeyError, ValueError, struct.error) as error:
+            found.append('cannot be read: %r' % error)
+        said += ['%s: %s' % (stem, text[:300]) for text in found[:2]]
     return said
 
 
 if __name__ == '__main__':
     if sys.argv[1] == 'make':
-        os.makedirs('in', exist_ok=True)
-        make('in')
+        make()
     elif sys.argv[1] == 'sets':
-        for name, options in SETS.items():
+        for name, (_, options, _) in SETS.items():
             print(name, options)
     else:
         faults = convert(sys.argv[2], sys.argv[3])
