@@ -799,7 +799,7 @@ class File(lossless.File):
         return super().buffer(i)
 
 
-# Of each set of options: where its inputs are, the options, which of the inputs (one in so many).
+# Sets of options: the folder of the inputs, the options, and one input in how many.
 SETS = {
     'replace': ('in', '--only=all --existing=replace', 1),
     'default': ('in', '', 3),
