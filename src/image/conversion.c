@@ -211,7 +211,8 @@ static bool is_there(const packing *p, const nt_file *const files[4])
 	if (first == 4 || p->how.channels[first].source == UINT32_MAX)
 		return false;
 	const nt_image_type type = nt_image_type_of_bytes(files[first]->data, files[first]->size);
-	const bool grey = nt_pixels_are_grey(pixels_of(p, first), type);
+	const bool grey = nt_pixels_are_grey(pixels_of(p, first),
+		type == NT_IMAGE_JPEG || type == NT_IMAGE_WEBP ? NT_NEARLY_GREY : 0);
 	for (int k = first; k < 4; k++) {
 		const nt_conversion_channel *i = &p->how.channels[k];
 		const bool same = i->map.channel == (nt_channel)k ||

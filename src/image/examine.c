@@ -321,6 +321,7 @@ nt_status nt_examine_image(const unsigned char *bytes, size_t size, nt_normal_fa
 	if (!status)
 		status = nt_examine_normals(&pixels, facts, error);
 	facts->srgb = pixels.srgb;
+	facts->lossy = pixels.lossy;
 	nt_pixels_free(&pixels);
 	return status;
 }

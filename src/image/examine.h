@@ -32,6 +32,7 @@ typedef struct nt_normal_facts {
 	bool object_space;  /* unit vectors into all directions */
 	bool heights;       /* grey pixels alone: a height map, of which nothing else is told */
 	bool srgb;          /* the file says that its samples are sRGB */
+	bool lossy;         /* its compression is */
 } nt_normal_facts;
 
 /* Decodes an image and examines it. Returns what nt_image_decode() does. */

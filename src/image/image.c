@@ -7,9 +7,8 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-/* Rows that show whether an image is grey, if it is not; how far the red, green and blue of a grey may differ in
- * what stores chroma: JPEG, and WebP with loss. */
-enum { SAMPLE_ROWS = 8, ROUNDED_CHROMA = 6 };
+/* Rows that show whether an image is grey, if it is not. */
+enum { SAMPLE_ROWS = 8 };
 
 bool nt_image_is_decoded(nt_image_type type)
 {
@@ -70,9 +69,9 @@ nt_status nt_image_decode(const unsigned char *bytes, size_t size, nt_pixels *pi
 	return decode_rows(bytes, size, UINT32_MAX, pixels, error);
 }
 
-bool nt_pixels_are_grey(const nt_pixels *pixels, nt_image_type type)
+bool nt_pixels_are_grey(const nt_pixels *pixels, int levels)
 {
-	const int tolerance = type == NT_IMAGE_JPEG || type == NT_IMAGE_WEBP ? ROUNDED_CHROMA : 0;
+	const int tolerance = pixels->bits == 8 ? levels : 257 * levels;
 	const size_t count = (size_t)pixels->width * pixels->height, step = pixels->channels;
 	if (step < 3)
 		return true;
@@ -90,14 +89,13 @@ bool nt_pixels_are_grey(const nt_pixels *pixels, nt_image_type type)
 
 nt_status nt_image_is_grey(const unsigned char *bytes, size_t size, bool *grey, nt_error *error)
 {
-	const nt_image_type type = nt_image_type_of_bytes(bytes, size);
 	const uint32_t rows[] = {SAMPLE_ROWS, UINT32_MAX};
 	nt_status status = NT_OK;
 	*grey = true;
 	for (size_t i = 0; i < 2 && !status && *grey; i++) {
 		nt_pixels pixels;
 		status = decode_rows(bytes, size, rows[i], &pixels, error);
-		*grey = !status && nt_pixels_are_grey(&pixels, type);
+		*grey = !status && nt_pixels_are_grey(&pixels, NT_NEARLY_GREY);
 		const bool known = pixels.channels < 3;
 		nt_pixels_free(&pixels);
 		if (known)

@@ -48,11 +48,15 @@ nt_status nt_check_image(uint64_t pixels, uint64_t most, uint64_t file_bytes, co
  */
 nt_status nt_image_decode(const unsigned char *bytes, size_t size, nt_pixels *pixels, nt_error *error);
 
-/* Whether every pixel is grey, or nearly so in a JPEG or WebP, whose chroma is rounded. */
-bool nt_pixels_are_grey(const nt_pixels *pixels, nt_image_type type);
+/* So many of 255 levels the red, green and blue of a grey may differ by after chroma was rounded, by JPEG or by what
+ * scaled the image. */
+enum { NT_NEARLY_GREY = 6 };
 
-/* The same of a file; only as many rows are decoded as it takes
- * to see that one is not, where the format permits. The same statuses. */
+/* Whether red, green and blue of every pixel differ by so many levels at most. */
+bool nt_pixels_are_grey(const nt_pixels *pixels, int levels);
+
+/* Whether all pixels of a file are nearly grey; only as many rows are decoded as it takes to see that one is not, if
+ * the format permits. The same statuses. */
 nt_status nt_image_is_grey(const unsigned char *bytes, size_t size, bool *grey, nt_error *error);
 
 #endif

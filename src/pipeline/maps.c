@@ -73,10 +73,12 @@ static void examine(void *context, size_t item, unsigned slot)
 static void tell_green(nt_finding_list *findings, nt_code code, const nt_place *place, const char *use,
 	const nt_normal_facts *f, bool stays)
 {
-	char detail[128];
+	char detail[200];
 	int8_t *votes = nt_arena_alloc(&findings->arena, sizeof f->votes, 1);
-	snprintf(detail, sizeof detail, "%scorrelation %.2f, %.0f %% agree; %zu blocks say up, %zu down", use,
-		f->correlation, 100 * f->agreement, f->blocks_up, f->blocks_down);
+	snprintf(detail, sizeof detail,
+		"%scorrelation %.2f at the surest size of detail, where %.0f %% of the map have its sign; over all "
+		"sizes %zu of %d blocks say up, %zu down", use, f->correlation, 100 * f->agreement, f->blocks_up,
+		NT_GREEN_BLOCKS * NT_GREEN_BLOCKS, f->blocks_down);
 	findings->failed |= !votes;
 	if (votes)
 		nt_finding_put(findings, (nt_finding){.code = code, .count = 1, .detail = detail, .stays = stays,
@@ -121,8 +123,8 @@ static void tell(const examination *e, const examined *x)
 	tell_facts(findings, place, x->use, &x->facts);
 	if (x->facts.srgb)
 		nt_finding_add(findings, NT_CODE_NMAP_SRGB, place, 1, NULL);
-	if (x->map.type == NT_IMAGE_JPEG)
-		nt_finding_add(findings, NT_CODE_NMAP_JPEG, place, 1, NULL);
+	if (x->facts.lossy)
+		nt_finding_add(findings, NT_CODE_NMAP_JPEG, place, 1, "%s", nt_image_type_name(x->map.type));
 }
 
 /* Maps whose green points down, but for those of pairs and those that are turned. */

@@ -568,8 +568,9 @@ static nt_status name_limit(run *r, nt_status status)
 		nt_fail_memory_limit(s->max_memory, r->error);
 		/* the program takes up to 32 MB before it reads anything: less than that says nothing */
 		if (s->need > s->max_memory && s->need >= 32 << 20 && s->need != UINT64_MAX)
-			snprintf(r->error->message + strlen(r->error->message), 80,
-				": files like this take up to %" PRIu64 "M", (s->need >> 20) + 1);
+			snprintf(r->error->message + strlen(r->error->message), 120,
+				": %" PRIu64 "M is for any file with as many elements, and most take much less",
+				(s->need >> 20) + 1);
 	}
 	return r->error->status;
 }

@@ -105,15 +105,17 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(NMAP_GREEN_DOWN, WARNING, "w--", CONVERT, "--fix", "normal map whose green points down",
 		"glTF's normal maps have green up. The slopes p = -x/z and q = y/z of a real surface have equal mixed "
 		"derivatives, dp/dv = dq/du with rows counted down; in this map they are opposite. The figures are "
-		"their correlation (-1: green down, 1: up), the share of the map that agrees, and how many of its 12 "
-		"x 12 blocks say what. Bumps and dents are exchanged along one direction.",
+		"their correlation (-1: green down, 1: up) at the size of detail that shows it best, the share of the "
+		"map where it has this sign, and how many of 12 x 12 blocks say what, over all sizes. "
+		"Bumps and dents are exchanged along one direction.",
 		"Invert the green channel.",
 		"a map baked for DirectX"),
 	ROW(NMAP_GREEN_MIXED, INFO, "i--", BAKE, NULL,
 		"parts or details of the normal map say that green points down, others that it points up",
 		"Some blocks of the map, or some sizes of its detail, say that green points down, and others that it "
 		"points up or nothing: a detail map or a decal of the other convention was painted in. No "
-		"convention is right for all of it, and --flip-green=auto leaves it.",
+		"convention is right for all of it, and --flip-green=auto leaves it. The figures are those of "
+		"NMAP_GREEN_DOWN.",
 		"Look at the blocks that say down. If their dents and bumps are exchanged, bake or paint them again.",
 		"a map of which one half was baked for DirectX"),
 	ROW(NMAP_NOT_UNIT, INFO, "i--", BAKE, NULL, "normal map whose vectors are not of unit length",
@@ -146,9 +148,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"which bends every normal.",
 		"Export the map as linear, or raw, data.",
 		"a PNG with an sRGB chunk in normalTexture"),
-	ROW(NMAP_JPEG, INFO, "i--", BAKE, NULL, "normal map compressed as JPEG",
-		"JPEG averages colours over 2 x 2 pixels and adds rings at edges, which light shows.",
-		"Use PNG.",
+	ROW(NMAP_JPEG, INFO, "i--", BAKE, NULL, "normal map compressed with loss",
+		"JPEG, and WebP with loss, average colours over 2 x 2 pixels and add rings at edges, which light "
+		"shows.",
+		"Use PNG, or WebP without loss.",
 		"a JPEG in normalTexture"),
 	ROW(NMAP_NOT_EXAMINED, INFO, "i--", LOOK, NULL, "normal map was not examined",
 		"KTX2 is not decoded here, and files above 16 MB only with --check-maps=on.",

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Images for tests, with nothing but zlib, and libwebp for WebP.
 
-    images.py write FILE WIDTH HEIGHT EXPRESSION   a TGA, BMP, TIFF, WebP (without loss) or PNG by its ending; EXPRESSION of x, y (rows down), w, h and
+    images.py write FILE WIDTH HEIGHT EXPRESSION   a TGA, BMP, TIFF, WebP (with loss if FILE begins with "lossy") or PNG by its ending; EXPRESSION of x, y (rows down), w, h and
                                                    math gives (r, g, b) of bytes, in a PNG (r, g, b, a), too, a grey byte, or ("16", grey) of
                                                    16 bits
     images.py rows FILE [EXPRESSION]               the samples of a PNG as JSON, row by row; or an expression over the rows
@@ -52,10 +52,12 @@ def bmp(width, height, pixel):
 
 def webp(width, height, pixel):
     library = ctypes.CDLL("libwebp.so.7")
-    library.WebPEncodeLosslessRGB.restype = ctypes.c_size_t
+    loses = sys.argv[2].startswith("lossy")
+    encode, quality = (library.WebPEncodeRGB, [ctypes.c_float(90)]) if loses else (library.WebPEncodeLosslessRGB, [])
+    encode.restype = ctypes.c_size_t
     made = ctypes.POINTER(ctypes.c_ubyte)()
-    size = library.WebPEncodeLosslessRGB(b"".join(bytes(pixel(x, y)) for y in range(height) for x in range(width)),
-                                         width, height, 3 * width, ctypes.byref(made))
+    size = encode(b"".join(bytes(pixel(x, y)) for y in range(height) for x in range(width)), width, height, 3 * width,
+                  *quality, ctypes.byref(made))
     data = ctypes.string_at(made, size)
     library.WebPFree(made)
     return data

@@ -103,6 +103,7 @@ static void decode(decoder *d, const unsigned char *bytes, size_t size, uint32_t
 	if (nt_pixels_check(jpeg->image_width, jpeg->image_height, channels, 8, error) ||
 		nt_pixels_create(d->pixels, width, all ? height : rows, channels, 8, error))
 		longjmp(d->session.leave, 1);
+	d->pixels->lossy = true;
 	jpeg_start_decompress(jpeg);
 	while (jpeg->output_scanline < d->pixels->height) {
 		JSAMPROW row = (JSAMPROW)d->pixels->samples + jpeg->output_scanline * nt_pixels_row_bytes(d->pixels);

@@ -26,7 +26,8 @@ nt_status nt_pixels_create(nt_pixels *pixels, uint64_t width, uint64_t height, u
 	const nt_status status = nt_pixels_check(width, height, channels, bits, error);
 	if (status)
 		return status;
-	*pixels = (nt_pixels){(uint32_t)width, (uint32_t)height, channels, bits, false, NULL};
+	*pixels = (nt_pixels){
+		.width = (uint32_t)width, .height = (uint32_t)height, .channels = channels, .bits = bits};
 	pixels->samples = nt_alloc_large(nt_pixels_row_bytes(pixels) * pixels->height);
 	return pixels->samples ? NT_OK : nt_fail_memory(error);
 }

@@ -21,6 +21,7 @@ typedef struct nt_pixels {
 	unsigned channels;      /* 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA */
 	unsigned bits;          /* of a sample: 8 or 16 */
 	bool srgb;              /* the file says that its samples are sRGB */
+	bool lossy;             /* the file's compression is: JPEG, and most WebP */
 	void *samples;          /* [height][width][channels] of uint8_t or uint16_t, rows from the top; free() */
 } nt_pixels;
 

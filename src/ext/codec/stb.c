@@ -129,7 +129,7 @@ nt_status nt_decode_stb(const unsigned char *bytes, size_t size, nt_pixels *pixe
 		free(samples);
 		return fail_end(error);
 	}
-	*pixels = (nt_pixels){(uint32_t)width, (uint32_t)height, (unsigned)(wanted ? wanted : channels),
-		deep ? 16 : 8, false, samples};
+	*pixels = (nt_pixels){.width = (uint32_t)width, .height = (uint32_t)height,
+		.channels = (unsigned)(wanted ? wanted : channels), .bits = deep ? 16 : 8, .samples = samples};
 	return NT_OK;
 }

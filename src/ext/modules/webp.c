@@ -32,6 +32,7 @@ static nt_status decode_webp(const unsigned char *bytes, size_t size, uint32_t r
 	const nt_status status = nt_pixels_create(pixels, width, rows < height ? rows : height, channels, 8, error);
 	if (status)
 		return status;
+	pixels->lossy = config.input.format == 1;
 	config.options.use_cropping = rows < height;
 	config.options.crop_width = (int)width;
 	config.options.crop_height = (int)pixels->height;

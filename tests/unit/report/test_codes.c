@@ -46,9 +46,31 @@ TEST(sentences_count_and_carry_the_detail)
 static void command_is(const char *options, const char *input, const char *output, const char *expected)
 {
 	nt_buffer out = {0};
-	nt_command_text(options, input, output, &out);
+	nt_command_text(options, NULL, input, output, &out);
 	assert_string_equal(out.data, expected);
 	nt_buffer_free(&out);
+}
+
+TEST(commands_repeat_what_the_user_gave_but_for_what_they_say_themselves)
+{
+	static const char *const rows[][3] = { /* options, given, both */
+		{"--fix", "--weld\n'--texture-path=a b'", "--weld '--texture-path=a b' --fix"},
+		{"--fix", "--existing=keep\n--weld\n--flip-green=on", "--weld --fix"},
+		{"--existing=replace", "--fix", "--existing=replace"},
+		{"--quads=pairs", "--fix", "--fix --quads=pairs"},
+		{"--existing=replace --only=all", "--only=needed\n--uv=1", "--uv=1 --existing=replace --only=all"},
+		{"--bump=height", "--bump-height=0.1", "--bump-height=0.1 --bump=height"},
+		{"--normals=smooth", "'--normals=angle:30'\n--raw", "--raw --normals=smooth"},
+		{"", "--raw", "--raw"},
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		nt_buffer out = {0};
+		char expected[200];
+		snprintf(expected, sizeof expected, "nmtan %s a.glb b.glb", rows[i][2]);
+		nt_command_text(rows[i][0], rows[i][1], "a.glb", "b.glb", &out);
+		assert_string_equal(out.data, expected);
+		nt_buffer_free(&out);
+	}
 }
 
 TEST(commands_are_words_of_a_shell)
@@ -224,7 +246,7 @@ static void write_manual(nt_buffer *out)
 		put_troff(row->meaning, out);
 		nt_buffer_text(out, "\n.br\n.I Remedy:\n");
 		nt_buffer remedy = {0};
-		nt_remedy_text((nt_code)i, row->repair, NULL, &remedy);
+		nt_remedy_text((nt_code)i, row->repair, NULL, NULL, &remedy);
 		put_troff(remedy.data, out);
 		nt_buffer_free(&remedy);
 		nt_buffer_text(out, "\n.br\n.I Smallest example:\n");
