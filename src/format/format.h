@@ -21,10 +21,9 @@ typedef struct nt_format_entry {
 	nt_status (*open)(nt_scene *scene, const nt_read_options *options, nt_error *error);
 	/* After the decisions: fills what nt_mesh says of the plan, and scene->joins. NULL: each mesh is by itself. */
 	nt_status (*plan)(nt_scene *scene, const nt_read_options *options, nt_error *error);
-	/* After that: from share() to unshare() several threads may load, as gltf/load.h says. needed: [mesh_count],
-	 * which will be loaded. NULL: load() is for one thread. */
-	nt_status (*share)(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error);
-	void (*unshare)(nt_scene *scene);
+	/* After that: several threads may load meshes that it leaves `ready`, as gltf/load.h says. needed:
+	 * [mesh_count], which will be loaded. NULL: load() is for one thread. */
+	nt_status (*prepare)(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error);
 	/* Brings the geometry of one mesh; NULL: open did. */
 	nt_status (*load)(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 		nt_error *error);

@@ -41,22 +41,21 @@ void nt_gltf_store_indices(const uint32_t *indices, size_t count, uint32_t width
 /* ---- checking ---- */
 
 /* Type names; matrices have columns, which begin at multiples of 4 bytes. */
-static bool find_type(const char *name, uint32_t component_bytes, uint32_t *components,
-	uint32_t *element_bytes)
+static bool find_type(const char *name, nt_gltf_accessor *accessor)
 {
 	static const struct {
 		const char *name;
-		uint32_t rows, columns;
+		uint8_t rows, columns;
 	} types[] = {{"SCALAR", 1, 1}, {"VEC2", 2, 1}, {"VEC3", 3, 1}, {"VEC4", 4, 1}, {"MAT2", 2, 2},
 		{"MAT3", 3, 3}, {"MAT4", 4, 4}};
 	for (size_t i = 0; name && i < sizeof types / sizeof *types; i++) {
 		if (strcmp(name, types[i].name) != 0)
 			continue;
-		uint32_t column = types[i].rows * component_bytes;
+		uint32_t column = types[i].rows * accessor->component_bytes;
 		if (types[i].columns > 1)
 			column = (column + 3) / 4 * 4;
-		*components = types[i].rows * types[i].columns;
-		*element_bytes = column * types[i].columns;
+		accessor->components = (uint8_t)(types[i].rows * types[i].columns);
+		accessor->element_bytes = (uint8_t)(column * types[i].columns);
 		return true;
 	}
 	return false;
@@ -72,15 +71,14 @@ static nt_status read_format(const nt_json_value *json, const char *pointer,
 		return status;
 	char place[NT_GLTF_POINTER * 2];
 	accessor->component_type = (uint32_t)type;
-	accessor->component_bytes = nt_gltf_component_bytes(type);
+	accessor->component_bytes = (uint8_t)nt_gltf_component_bytes(type);
 	if (!accessor->component_bytes) {
 		snprintf(place, sizeof place, "%s/componentType", pointer);
 		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
 			"%llu, expected 5120 to 5123, 5125 or 5126", (unsigned long long)type);
 	}
 	const char *name = nt_json_get_string(nt_json_find(json, "type"), NULL);
-	if (!find_type(name, accessor->component_bytes, &accessor->components,
-		&accessor->element_bytes)) {
+	if (!find_type(name, accessor)) {
 		snprintf(place, sizeof place, "%s/type", pointer);
 		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
 			"%s%.30s%s, expected SCALAR, VEC2 to VEC4 or MAT2 to MAT4", name ? "\"" : "",
@@ -185,42 +183,53 @@ static nt_status check_sparse(nt_gltf *document, const nt_json_value *sparse, co
 		error);
 }
 
-/* The accessor of a compressed primitive is what the decoder gave, tightly packed. */
-static void use_decoded(const nt_gltf_decoded *decoded, nt_gltf_accessor *accessor)
+/* An accessor as its JSON has it, checked against its views. */
+static nt_status read_accessor(nt_gltf *document, uint32_t index, nt_gltf_accessor *accessor, nt_error *error)
 {
-	if (!decoded->elements)
-		return;
-	accessor->decoded = decoded->elements;
-	accessor->count = decoded->count;
-	accessor->component_type = decoded->component_type;
-	accessor->component_bytes = nt_gltf_component_bytes(decoded->component_type);
-	accessor->element_bytes = accessor->component_bytes * accessor->components;
-	accessor->stride = accessor->element_bytes;
-	accessor->view = NT_NONE;
-	accessor->offset = 0;
-	accessor->sparse_count = 0;
-}
-
-nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
-	nt_gltf_accessor *accessor, nt_error *error)
-{
-	const nt_json_value *json;
-	*accessor = (nt_gltf_accessor){.view = NT_NONE};
-	nt_status status = nt_gltf_element(document, "accessors", index, from, &json, error);
-	if (status)
-		return status;
+	const nt_json_value *json = nt_gltf_accessor_json(document, index);
 	char pointer[NT_GLTF_POINTER];
+	*accessor = (nt_gltf_accessor){.index = index, .view = NT_NONE};
 	nt_gltf_pointer(pointer, "accessors", index);
-	accessor->index = (uint32_t)index;
-	status = read_format(json, pointer, accessor, error);
+	nt_status status = nt_gltf_check_object(json, pointer, error);
+	if (!status)
+		status = read_format(json, pointer, accessor, error);
 	if (!status)
 		status = check_dense(document, json, pointer, accessor, error);
 	const nt_json_value *sparse = nt_json_find(json, "sparse");
 	if (!status && sparse)
 		status = check_sparse(document, sparse, pointer, accessor, error);
-	if (!status && document->decoded && index < document->accessor_count)
-		use_decoded(&document->decoded[index], accessor);
 	return status;
+}
+
+nt_status nt_gltf_read_arrays(nt_gltf *document, nt_error *error)
+{
+	document->accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
+	document->accessors = nt_alloc(document->accessor_count, sizeof *document->accessors);
+	if (!document->accessors)
+		return nt_fail_memory(error);
+	nt_gltf_buffer *buffer;
+	for (size_t i = 0; i < document->buffer_count; i++)
+		nt_gltf_describe_buffer(document, i, "", &buffer, NULL);
+	for (uint32_t i = 0; i < document->view_count; i++)
+		if (nt_gltf_read_view(document, i, &document->views[i], NULL))
+			document->views[i].buffer = NT_NONE;
+	for (uint32_t i = 0; i < document->accessor_count; i++)
+		if (read_accessor(document, i, &document->accessors[i], NULL))
+			document->accessors[i].index = NT_NONE;
+	return NT_OK;
+}
+
+nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from, nt_gltf_accessor *accessor,
+	nt_error *error)
+{
+	*accessor = (nt_gltf_accessor){.view = NT_NONE};
+	if (index >= document->accessor_count)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, from, "refers to accessors[%llu], there are %zu",
+			(unsigned long long)index, document->accessor_count);
+	if (document->accessors[index].index == NT_NONE)
+		return read_accessor(document, (uint32_t)index, accessor, error);
+	*accessor = document->accessors[index];
+	return NT_OK;
 }
 
 nt_json_value *nt_gltf_accessor_json(const nt_gltf *document, uint64_t index)

@@ -7,24 +7,11 @@
 
 #include "gltf/document.h"
 
-typedef struct nt_gltf_accessor {
-	uint32_t index;
-	uint32_t component_type; /* enum nt_gltf_component */
-	uint32_t component_bytes;
-	uint32_t components;     /* of an element: 1 to 4, matrices 4, 9, 16 */
-	uint32_t element_bytes;  /* with the padding of matrix columns */
-	bool normalized;
-	uint64_t count;
-	uint32_t view;           /* NT_NONE: all zeros, or decoded */
-	const unsigned char *decoded; /* elements from a compressed primitive; NULL: none */
-	uint64_t offset;         /* in the view */
-	uint32_t stride;         /* as it applies, never 0 */
-	uint64_t sparse_count;   /* 0: not sparse */
-	uint32_t sparse_index_type, sparse_index_view, sparse_value_view;
-	uint64_t sparse_index_offset, sparse_value_offset;
-} nt_gltf_accessor;
+/* Reads buffers, views and accessors, each once; whoever uses a faulty one is told. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_gltf_read_arrays(nt_gltf *document, nt_error *error);
 
-/* An accessor, checked against its views. */
+/* An accessor of the source. `from` is the JSON pointer of the reference. */
 nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_accessor *accessor, nt_error *error);
 

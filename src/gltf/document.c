@@ -10,6 +10,7 @@
 #include <string.h>
 #include "file/uri.h"
 #include "gltf/glb.h"
+#include "gltf/pointer.h"
 
 bool nt_gltf_recognise(const unsigned char *bytes, size_t size)
 {
@@ -80,10 +81,17 @@ static nt_status check_array(const nt_gltf *document, const char *name, nt_error
 	return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an array", nt_json_type_text(elements));
 }
 
+nt_status nt_gltf_check_object(const nt_json_value *element, const char *pointer, nt_error *error)
+{
+	return nt_json_type_of(element) == NT_JSON_OBJECT ? NT_OK : nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+		"%s, expected an object", nt_json_type_text(element));
+}
+
 nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
 	const char *from, const nt_json_value **element, nt_error *error)
 {
 	const nt_json_value *elements = nt_gltf_root_member(document, array);
+	char pointer[NT_GLTF_POINTER];
 	if (elements && nt_json_type_of(elements) != NT_JSON_ARRAY)
 		return check_array(document, array, error);
 	if (index >= nt_json_count(elements))
@@ -91,13 +99,8 @@ nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t i
 			"refers to %s[%llu], there are %zu", array, (unsigned long long)index,
 			nt_json_count(elements));
 	*element = nt_json_at(elements, (size_t)index);
-	if (nt_json_type_of(*element) != NT_JSON_OBJECT) {
-		char pointer[NT_GLTF_POINTER];
-		snprintf(pointer, sizeof pointer, "/%s/%llu", array, (unsigned long long)index);
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an object",
-			nt_json_type_text(*element));
-	}
-	return NT_OK;
+	nt_gltf_pointer(pointer, array, index);
+	return nt_gltf_check_object(*element, pointer, error);
 }
 
 nt_status nt_gltf_uint(const nt_json_value *object, const char *pointer, const char *key,
@@ -202,10 +205,8 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 			status = nt_fail_memory(error);
 		for (size_t i = 0; !status && i < document->buffer_count; i++)
 			document->buffers[i].number = i;
-		for (size_t i = 0; !status && i < document->view_count; i++) {
+		for (size_t i = 0; !status && i < document->view_count; i++)
 			document->virtual_of[i] = NT_NONE;
-			document->views[i].buffer = NT_NONE;
-		}
 	}
 	if (status) {
 		nt_gltf_free(document);
@@ -235,7 +236,7 @@ void nt_gltf_free(void *source)
 	free(document->virtuals);
 	free(document->virtual_of);
 	free(document->views);
-	free(document->decoded);
+	free(document->accessors);
 	free(document->floats);
 	free(document->grids);
 	free(document->lod_wishes);
@@ -248,31 +249,16 @@ void nt_gltf_free(void *source)
 
 /* ---- buffers ---- */
 
-nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from,
-	nt_gltf_buffer **result, nt_error *error)
+/* A buffer as its JSON has it. */
+static nt_status read_buffer(const nt_gltf *document, size_t index, nt_gltf_buffer *buffer, nt_error *error)
 {
-	if (index >= NT_GLTF_VIRTUAL && index - NT_GLTF_VIRTUAL < document->virtual_count) {
-		*result = &document->virtuals[index - NT_GLTF_VIRTUAL];
-		return NT_OK;
-	}
-	const nt_json_value *json;
-	nt_status status = nt_gltf_element(document, "buffers", index, from, &json, error);
-	if (status)
-		return status;
-	/* Elements that an edit has added are not the file's: a reference that dangled in it has come to mean that. */
-	if (index >= document->buffer_count)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, from, "refers to buffers[%llu], there are %zu",
-			(unsigned long long)index, document->buffer_count);
-	nt_gltf_buffer *buffer = &document->buffers[index];
-	*result = buffer;
-	if (buffer->described)
-		return NT_OK;
-	if (document->is_shared)
-		return nt_gltf_refuse(error);
+	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "buffers"), index);
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "/buffers/%zu", buffer->number);
-	status = nt_gltf_uint(json, pointer, "byteLength", (uint64_t)1 << 53, NT_GLTF_REQUIRED,
-		&buffer->length, error);
+	nt_gltf_pointer(pointer, "buffers", buffer->number);
+	nt_status status = nt_gltf_check_object(json, pointer, error);
+	if (!status)
+		status = nt_gltf_uint(json, pointer, "byteLength", (uint64_t)1 << 53, NT_GLTF_REQUIRED,
+			&buffer->length, error);
 	if (status)
 		return status;
 	const nt_json_value *uri = nt_json_find(json, "uri");
@@ -291,6 +277,20 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 		buffer->storage = NT_GLTF_STORED_NOWHERE;
 	buffer->described = true;
 	return NT_OK;
+}
+
+nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from, nt_gltf_buffer **result,
+	nt_error *error)
+{
+	if (index >= NT_GLTF_VIRTUAL && index - NT_GLTF_VIRTUAL < document->virtual_count) {
+		*result = &document->virtuals[index - NT_GLTF_VIRTUAL];
+		return NT_OK;
+	}
+	if (index >= document->buffer_count)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, from, "refers to buffers[%llu], there are %zu",
+			(unsigned long long)index, document->buffer_count);
+	*result = &document->buffers[index];
+	return (*result)->described ? NT_OK : read_buffer(document, (size_t)index, *result, error);
 }
 
 /* Names the buffer in an error of a lower room that knows no document. */
@@ -357,8 +357,6 @@ nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *fro
 	*result = buffer;
 	if (buffer->opened)
 		return NT_OK;
-	if (document->is_shared)
-		return nt_gltf_refuse(error);
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "/buffers/%zu", buffer->number);
 	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "buffers"), (size_t)index);
@@ -376,11 +374,6 @@ nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *fro
 	}
 	buffer->opened = true;
 	return NT_OK;
-}
-
-nt_status nt_gltf_refuse(nt_error *error)
-{
-	return nt_fail(error, NT_ERROR_UNSUPPORTED, "not while several threads read the document");
 }
 
 /* If several threads come to the same page, one counts it. */

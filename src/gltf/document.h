@@ -30,7 +30,7 @@ typedef struct nt_gltf_buffer {
 	nt_gltf_storage storage;
 	size_t number;              /* in the file: of several that name one file the first is left (open.c) */
 	uint64_t length;            /* byteLength */
-	bool described, opened;     /* the fields above and below are valid */
+	bool described, opened;     /* the fields above (else the file is at fault) and below are valid */
 	const unsigned char *bytes; /* NULL until opened */
 	size_t size;                /* bytes that are there: byteLength or less */
 	unsigned char *decoded;     /* of a data URI: owned */
@@ -39,13 +39,6 @@ typedef struct nt_gltf_buffer {
 	const char *path;           /* of an external file */
 	uint32_t view;              /* of a virtual one: the view that it holds */
 } nt_gltf_buffer;
-
-/* Elements of an accessor that come from a compressed primitive. */
-typedef struct nt_gltf_decoded {
-	const unsigned char *elements; /* NULL: none */
-	size_t count;
-	uint32_t component_type;
-} nt_gltf_decoded;
 
 /* An accessor that several primitives share, as floats. */
 typedef struct nt_gltf_floats_of {
@@ -60,10 +53,28 @@ typedef struct nt_gltf_floats_of {
 /* A bufferView. */
 typedef struct nt_gltf_view {
 	uint64_t offset, length;
-	uint32_t buffer;
+	uint32_t buffer; /* NT_NONE: the file is at fault */
 	uint32_t stride; /* 0: none given */
 	const char *compression; /* the extension that compresses it; NULL: none, or already undone */
 } nt_gltf_view;
+
+/* An accessor, sound with its views. */
+typedef struct nt_gltf_accessor {
+	uint64_t count;
+	uint64_t offset;         /* in the view */
+	const unsigned char *decoded; /* elements from a compressed primitive; NULL: none */
+	uint32_t index;          /* NT_NONE: the file is at fault */
+	uint32_t view;           /* NT_NONE: all zeros, or decoded */
+	uint32_t stride;         /* as it applies, never 0 */
+	uint32_t component_type; /* enum nt_gltf_component */
+	uint8_t component_bytes;
+	uint8_t components;      /* of an element: 1 to 4, matrices 4, 9, 16 */
+	uint8_t element_bytes;   /* with the padding of matrix columns */
+	bool normalized;
+	uint32_t sparse_index_type, sparse_index_view, sparse_value_view;
+	uint64_t sparse_count;   /* 0: not sparse */
+	uint64_t sparse_index_offset, sparse_value_offset;
+} nt_gltf_accessor;
 
 /* The arrays that elements may be added to. */
 typedef enum nt_gltf_growing {
@@ -94,10 +105,10 @@ typedef struct nt_gltf {
 	nt_gltf_buffer *virtuals;  /* [virtual_count] decompressed views; buffer NT_GLTF_VIRTUAL + i */
 	size_t virtual_count, virtual_capacity;
 	uint32_t *virtual_of;      /* [view_count] the buffer a view was decompressed to; NT_NONE */
-	nt_gltf_view *views;       /* [view_count] as they were read once; buffer NT_NONE: not yet. view.h */
+	nt_gltf_view *views;       /* [view_count] */
 	size_t view_count;
-	size_t file_accessor_count; /* accessors of the source */
-	nt_gltf_decoded *decoded;  /* [accessor_count] what Draco gave; NULL until there is something */
+	size_t file_accessor_count; /* accessors that the file has */
+	nt_gltf_accessor *accessors; /* [accessor_count] of the file, and those of draco_shared.c */
 	size_t accessor_count;
 	nt_gltf_floats_of *floats; /* [accessors] NULL until one is asked for */
 	struct nt_draco **draco_blocks; /* [view_count] decoded blocks: draco.c; NULL until there is something */
@@ -112,8 +123,6 @@ typedef struct nt_gltf {
 	void **lod_wishes;       /* [materials] what those with levels of detail ask for; NULL: no such material yet */
 	bool dangling_known;     /* then these are, as the file had them: dangling.h */
 	nt_gltf_dangling dangling[NT_GLTF_GROWING];
-	bool is_shared;          /* several threads load: nothing is opened, decompressed or decoded, what would have
-	                            to be fails */
 	uint64_t bytes_read;     /* of buffers */
 	uint64_t bytes_opened;   /* of external files and data URIs */
 } nt_gltf;
@@ -135,6 +144,9 @@ nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name);
 /* Whether extensionsUsed has the name. */
 bool nt_gltf_uses(const nt_gltf *document, const char *extension);
 
+/* An element of a root array must be an object. */
+nt_status nt_gltf_check_object(const nt_json_value *element, const char *pointer, nt_error *error);
+
 /* Element of a root array, which must be an object. `from` is the JSON pointer of the reference. */
 nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
 	const char *from, const nt_json_value **element, nt_error *error);
@@ -152,9 +164,6 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 /* The same with its bytes. */
 nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_buffer **buffer, nt_error *error);
-
-/* Defers errors: the caller repeats the call on a private document to get the message. */
-nt_status nt_gltf_refuse(nt_error *error);
 
 /* Books bytes of a buffer as read: whole pages, each once. Data URIs were read with the JSON. */
 enum { NT_GLTF_PAGE = 4096 };

@@ -186,6 +186,21 @@ nt_status nt_gltf_decode_ahead(nt_scene *scene, const bool *needed, const nt_rea
 
 /* ---- a primitive's ---- */
 
+/* The accessor of a compressed primitive is what the decoder gave, tightly packed. */
+static void use_decoded(nt_gltf_accessor *accessor, const unsigned char *elements, size_t count,
+	uint32_t component_type)
+{
+	accessor->decoded = elements;
+	accessor->count = count;
+	accessor->component_type = component_type;
+	accessor->component_bytes = (uint8_t)nt_gltf_component_bytes(component_type);
+	accessor->element_bytes = (uint8_t)(accessor->component_bytes * accessor->components);
+	accessor->stride = accessor->element_bytes;
+	accessor->view = NT_NONE;
+	accessor->offset = 0;
+	accessor->sparse_count = 0;
+}
+
 /* An accessor gets elements, if its type is that of the decoded attribute. */
 static nt_status give_attribute(nt_gltf *document, uint64_t index, const char *name,
 	const nt_draco_mesh *mesh, const nt_draco_attribute *from, const char *pointer, nt_error *error)
@@ -200,8 +215,7 @@ static nt_status give_attribute(nt_gltf *document, uint64_t index, const char *n
 			"%.40s: accessor %llu has %u components of type %u, the compressed attribute %d of "
 			"type %d", name, (unsigned long long)index, accessor.components,
 			accessor.component_type, from->components, from->component_type);
-	document->decoded[index] = (nt_gltf_decoded){from->data, mesh->point_count,
-		(uint32_t)from->component_type};
+	use_decoded(&document->accessors[index], from->data, mesh->point_count, (uint32_t)from->component_type);
 	return NT_OK;
 }
 
@@ -248,12 +262,6 @@ nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive
 	if (!status && mode != 4)
 		status = nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
 			"compressed primitive of mode %llu, expected 4", (unsigned long long)mode);
-	if (!status && !document->decoded) {
-		document->accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
-		document->decoded = nt_calloc(document->accessor_count, sizeof *document->decoded);
-		if (!document->decoded)
-			status = nt_fail_memory(error);
-	}
 	if (!status && !nt_gltf_draco_block(document, view))
 		status = decode_block(document, view, pointer, error);
 	if (status)
@@ -265,7 +273,7 @@ nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive
 	status = nt_gltf_uint(primitive, primitive_pointer, "indices", document->accessor_count,
 		NT_NONE, &index, error);
 	if (!status && index < document->accessor_count)
-		document->decoded[index] = (nt_gltf_decoded){(const unsigned char *)mesh->indices,
-			mesh->face_count * 3, NT_GLTF_UINT};
+		use_decoded(&document->accessors[index], (const unsigned char *)mesh->indices, mesh->face_count * 3,
+			NT_GLTF_UINT);
 	return status;
 }

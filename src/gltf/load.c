@@ -31,9 +31,9 @@ static nt_status find_primitive(nt_gltf *document, const nt_mesh *mesh, const nt
 	const nt_json_value *json =
 		nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
 	*primitive = nt_json_at(nt_json_find(json, "primitives"), mesh->gltf_primitive);
-	if (document->is_shared && nt_gltf_draco_of(*primitive))
-		return nt_gltf_refuse(error);
 	char pointer[NT_GLTF_POINTER];
+	if (mesh->ready)
+		return NT_OK;
 	nt_gltf_mesh_pointer(pointer, mesh);
 	return nt_gltf_decode_draco(document, *primitive, pointer, error);
 }
@@ -263,8 +263,8 @@ static nt_status make_compact(nt_scene *scene, nt_mesh *mesh, const inputs *in, 
 	return NT_OK;
 }
 
-/* The transform of the texture that tangents serve; what cannot be served is a finding. A mesh that shares
- * its geometry has the same one applied already, a copy in a join has that of another. */
+/* The transform of the texture that tangents serve. A mesh that shares its geometry has the same one applied already, a
+ * copy in a join has that of another. */
 static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, nt_error *error)
 {
 	const nt_mesh *giver = mesh->plan.transform_of ? mesh->plan.transform_of : mesh;
@@ -276,16 +276,6 @@ static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *me
 		&shading, error);
 	if (status || !shading.has_set || shading.set != mesh->texcoord_set || !mesh->texcoords)
 		return status;
-	const bool own = !mesh->plan.transform_of;
-	/* findings come in the order of the meshes */
-	if (document->is_shared && (shading.transforms_differ || shading.transform.animated))
-		return nt_gltf_refuse(error);
-	if (own && shading.transforms_differ)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, nt_mesh_place(mesh, &(nt_place){0}), 1,
-			"set %u with different texture transforms", mesh->texcoord_set);
-	if (own && shading.transform.animated)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED,
-			nt_mesh_place(mesh, &(nt_place){0}), 1, NULL);
 	return shading.transform.turns && !mesh->plan.same_as
 		? nt_mesh_transform(mesh, &shading.transform.uv, nt_mesh_arena(scene, mesh), error) : NT_OK;
 }
@@ -448,8 +438,7 @@ static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, c
 }
 
 /* Bytes that a copy of a vertex costs; attributes that cannot be read are not counted. */
-static nt_status find_vertex_bytes(nt_gltf *document, const nt_json_value *primitive, size_t *vertex_bytes,
-	nt_error *error)
+static size_t count_vertex_bytes(nt_gltf *document, const nt_json_value *primitive)
 {
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
 	size_t bytes = nt_json_find(attributes, "TANGENT") ? 0 : 4 * sizeof(float);
@@ -460,11 +449,8 @@ static nt_status find_vertex_bytes(nt_gltf *document, const nt_json_value *primi
 			continue;
 		if (!nt_gltf_get_accessor(document, index, "", &accessor, NULL))
 			bytes += accessor.element_bytes;
-		else if (document->is_shared)
-			return nt_gltf_refuse(error);
 	}
-	*vertex_bytes = bytes;
-	return NT_OK;
+	return bytes;
 }
 
 static nt_status quantize(nt_scene *scene, nt_mesh *mesh, const inputs *in, const nt_read_options *options,
@@ -506,7 +492,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	if (!status)
 		status = apply_transform(scene, document, mesh, error);
 	if (!status && options->report)
-		status = find_vertex_bytes(document, primitive, &mesh->vertex_bytes, error);
+		mesh->vertex_bytes = count_vertex_bytes(document, primitive);
 	/* a mesh in the world is written without its targets */
 	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
 		status = load_morphs(scene, document, mesh, &in, &view, primitive, error);
@@ -540,36 +526,57 @@ nt_status nt_gltf_load_normals(nt_gltf *document, const nt_mesh *mesh, nt_arena 
 
 /* ---- several at a time ---- */
 
-/* Opens the buffer of a mesh's positions: mostly that of all meshes. */
-static void open_buffer_of(nt_gltf *document, const nt_mesh *mesh)
+/* Whether the bytes of a view are there, which are unpacked for it. */
+static bool open_view(nt_gltf *document, uint32_t index)
 {
-	uint64_t index;
-	nt_gltf_accessor accessor;
 	nt_gltf_view view;
 	nt_gltf_buffer *buffer;
 	nt_error ignored;
-	const nt_json_value *attributes = nt_json_find(nt_gltf_primitive_of(document, mesh), "attributes");
-	if (nt_json_get_uint64(nt_json_find(attributes, "POSITION"), &index) &&
-		!nt_gltf_get_accessor(document, index, "", &accessor, &ignored) && accessor.view != NT_NONE &&
-		!nt_gltf_get_view(document, accessor.view, "", &view, &ignored))
-		nt_gltf_open_buffer(document, view.buffer, "", &buffer, &ignored);
+	return index == NT_NONE || (nt_gltf_decompress_view(document, index, &ignored) == NT_OK &&
+		nt_gltf_get_view(document, index, "", &view, &ignored) == NT_OK &&
+		nt_gltf_open_buffer(document, view.buffer, "", &buffer, &ignored) == NT_OK);
 }
 
-nt_status nt_gltf_share(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error)
+/* The same of an accessor that a member names, if there is one. */
+static bool open_accessor(nt_gltf *document, const nt_json_value *object, const char *name)
 {
-	nt_gltf *document = scene->source;
+	const nt_json_value *reference = nt_json_find(object, name);
+	uint64_t index;
+	nt_gltf_accessor a;
+	if (!reference)
+		return true;
+	return nt_json_get_uint64(reference, &index) &&
+		nt_gltf_get_accessor(document, index, "", &a, NULL) == NT_OK && open_view(document, a.view) &&
+		(!a.sparse_count || (open_view(document, a.sparse_index_view) &&
+			open_view(document, a.sparse_value_view)));
+}
+
+/* Whether all that a load takes of a mesh is there now. */
+static bool make_ready(nt_gltf *document, const nt_mesh *mesh, const nt_read_options *options)
+{
+	const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
+	const nt_json_value *attributes = nt_json_find(primitive, "attributes"),
+		*targets = nt_json_find(primitive, "targets");
+	char texcoords[32];
+	nt_error ignored;
+	nt_gltf_put_number(nt_gltf_put_text(texcoords, "TEXCOORD_"), mesh->texcoord_set);
+	bool ready = nt_gltf_decode_draco(document, primitive, "", &ignored) == NT_OK &&
+		open_accessor(document, attributes, "POSITION") && open_accessor(document, attributes, "NORMAL") &&
+		open_accessor(document, attributes, texcoords) && open_accessor(document, primitive, "indices") &&
+		(mesh->tangents_fault || open_accessor(document, attributes, "TANGENT")) &&
+		(!options->world || open_accessor(document, attributes, "COLOR_0"));
+	const bool bakes = !options->world && options->morphs == NT_MORPH_BAKE;
+	for (size_t i = 0; ready && bakes && i < nt_json_count(targets); i++)
+		ready = open_accessor(document, nt_json_at(targets, i), "POSITION") &&
+			open_accessor(document, nt_json_at(targets, i), "NORMAL");
+	return ready;
+}
+
+nt_status nt_gltf_prepare(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error)
+{
 	const nt_status status = nt_gltf_decode_ahead(scene, needed, options, error);
-	size_t first = 0;
-	while (first < scene->mesh_count && !needed[first])
-		first++;
-	if (!status && first < scene->mesh_count)
-		open_buffer_of(document, &scene->meshes[first]);
-	document->is_shared = !status;
+	for (size_t i = 0; !status && i < scene->mesh_count; i++)
+		if (needed[i] && !scene->meshes[i].plan.same_as)
+			scene->meshes[i].ready = make_ready(scene->source, &scene->meshes[i], options);
 	return status;
-}
-
-void nt_gltf_unshare(nt_scene *scene)
-{
-	nt_gltf *document = scene->source;
-	document->is_shared = false;
 }

@@ -17,14 +17,13 @@ nt_status nt_gltf_load_normals(nt_gltf *document, const nt_mesh *mesh, nt_arena 
 	nt_error *error);
 
 /*
- * For the table of formats: between these two several threads may load, each with a copy of the scene that has an arena
- * of its own. A step that would add a finding or change the document fails silently: it is to be loaded afterwards.
+ * For the table of formats: opens and decodes what loads of these meshes take. A mesh is `ready` then, or its load will
+ * find a fault: loads of ready ones only read the document, each for a scene with an arena of its own.
  *
  *   needed  [mesh_count] meshes that will be loaded; several threads decode their compressed blocks here
  *
- * Returns NT_OK or NT_ERROR_MEMORY, and then nothing is shared.
+ * Returns NT_OK or NT_ERROR_MEMORY.
  */
-nt_status nt_gltf_share(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error);
-void nt_gltf_unshare(nt_scene *scene);
+nt_status nt_gltf_prepare(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error);
 
 #endif

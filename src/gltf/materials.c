@@ -54,8 +54,6 @@ static nt_status find_animated(nt_gltf *document, nt_error *error)
 	const nt_json_value *animations = nt_gltf_root_member(document, "animations");
 	if (document->animated_known)
 		return NT_OK;
-	if (document->is_shared)
-		return nt_gltf_refuse(error);
 	for (size_t i = 0; i < nt_json_count(animations); i++) {
 		const nt_json_value *channels = nt_json_find(nt_json_at(animations, i), "channels");
 		for (size_t k = 0; k < nt_json_count(channels); k++) {
@@ -254,16 +252,12 @@ static nt_status note_material(nt_gltf *document, wishes *all, uint64_t index, c
 static nt_status note_levels(nt_gltf *document, wishes *all, uint64_t index, const nt_json_value *ids, const char *from,
 	nt_error *error)
 {
-	if (!document->lod_wishes && document->is_shared)
-		return nt_gltf_refuse(error);
 	if (!document->lod_wishes)
 		document->lod_wishes = nt_calloc(nt_json_count(nt_gltf_root_member(document, "materials")),
 			sizeof *document->lod_wishes);
 	if (!document->lod_wishes)
 		return nt_fail_memory(error);
 	wishes *known = document->lod_wishes[index];
-	if (!known && document->is_shared)
-		return nt_gltf_refuse(error);
 	if (!known) {
 		known = nt_arena_alloc(&document->arena, 1, sizeof *known);
 		if (!known)

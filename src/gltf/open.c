@@ -66,6 +66,9 @@ static nt_status describe_texcoords(nt_scene *scene, nt_mesh *mesh, const nt_jso
 	mesh->has_texcoords = nt_json_find(attributes, name) != NULL;
 	mesh->texcoords_transformed = shading->transforms_differ || shading->transform.animated ||
 		shading->transform.turns;
+	const bool turned = mesh->has_texcoords && shading->has_set && shading->set == mesh->texcoord_set;
+	mesh->transforms_differ = turned && shading->transforms_differ;
+	mesh->transform_animated = turned && shading->transform.animated;
 	mesh->texcoord_conflict = shading->conflict && options->texcoord_set < 0;
 	mesh->texcoord_other_set = shading->other_set;
 	for (int axis = 0; axis < 2; axis++) {
@@ -514,6 +517,8 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	status = look_for_buffers(scene, document, error);
 	if (!status)
 		status = nt_gltf_separate_draco(document, error);
+	if (!status)
+		status = nt_gltf_read_arrays(document, error);
 	if (!status)
 		status = nt_gltf_reach(document, reached, mesh_count, error);
 	if (!status)

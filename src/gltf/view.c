@@ -7,7 +7,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include "base/lock.h"
 #include "ext/meshopt.h"
 #include "gltf/pointer.h"
 
@@ -25,19 +24,17 @@ nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **na
 	return NULL;
 }
 
-/* As the JSON has it. */
-static nt_status read_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view, nt_error *error)
+nt_status nt_gltf_read_view(nt_gltf *document, uint32_t index, nt_gltf_view *view, nt_error *error)
 {
-	const nt_json_value *json;
-	nt_status status = nt_gltf_element(document, "bufferViews", index, from, &json, error);
-	if (status)
-		return status;
+	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "bufferViews"), index);
 	char pointer[NT_GLTF_POINTER];
 	nt_gltf_pointer(pointer, "bufferViews", index);
 	const uint64_t limit = (uint64_t)1 << 53;
 	uint64_t buffer_index = 0, stride = 0;
-	status = nt_gltf_uint(json, pointer, "buffer", UINT32_MAX - 1, NT_GLTF_REQUIRED, &buffer_index,
-		error);
+	nt_status status = nt_gltf_check_object(json, pointer, error);
+	if (!status)
+		status = nt_gltf_uint(json, pointer, "buffer", UINT32_MAX - 1, NT_GLTF_REQUIRED, &buffer_index,
+			error);
 	if (!status)
 		status = nt_gltf_uint(json, pointer, "byteOffset", limit, 0, &view->offset, error);
 	if (!status)
@@ -62,48 +59,21 @@ static nt_status read_view(nt_gltf *document, uint64_t index, const char *from, 
 	return NT_OK;
 }
 
-/* Notes a view that was read. A reader that sees the number of the buffer sees the rest. */
-static void keep_view(nt_gltf_view *known, const nt_gltf_view *view, bool is_shared)
-{
-	static nt_lock lock = NT_LOCK_INIT;
-	if (is_shared)
-		nt_lock_take(&lock);
-	if (known->buffer == NT_NONE) {
-		known->offset = view->offset;
-		known->length = view->length;
-		known->stride = view->stride;
-		known->compression = view->compression;
-		__atomic_store_n(&known->buffer, view->buffer, __ATOMIC_RELEASE);
-	}
-	if (is_shared)
-		nt_lock_give(&lock);
-}
-
 nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
 	nt_error *error)
 {
-	nt_gltf_view *const known = index < document->view_count ? &document->views[index] : NULL;
-	if (known && __atomic_load_n(&known->buffer, __ATOMIC_ACQUIRE) != NT_NONE) {
-		*view = *known;
-	} else {
-		const nt_status status = read_view(document, index, from, view, error);
-		if (status)
-			return status;
-		if (known)
-			keep_view(known, view, document->is_shared);
-	}
-	if (index < document->view_count && document->virtual_of[index] != NT_NONE) {
+	if (index >= document->view_count)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, from, "refers to bufferViews[%llu], there are %zu",
+			(unsigned long long)index, document->view_count);
+	if (document->views[index].buffer == NT_NONE)
+		return nt_gltf_read_view(document, (uint32_t)index, view, error);
+	*view = document->views[index];
+	if (document->virtual_of[index] != NT_NONE) {
 		view->buffer = document->virtual_of[index];
 		view->offset = 0;
 		view->compression = NULL;
 	}
 	return NT_OK;
-}
-
-void nt_gltf_view_changed(nt_gltf *document, uint64_t index)
-{
-	if (index < document->view_count)
-		document->views[index].buffer = NT_NONE;
 }
 
 /* ---- decompression ---- */
@@ -187,8 +157,6 @@ nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error *e
 	nt_status status = nt_gltf_get_view(document, index, pointer, &view, error);
 	if (status || !view.compression)
 		return status;
-	if (document->is_shared)
-		return nt_gltf_refuse(error);
 	if (!nt_grow((void **)&document->virtuals, &document->virtual_capacity, document->virtual_count + 1,
 		    sizeof *document->virtuals))
 		return nt_fail_memory(error);

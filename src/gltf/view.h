@@ -17,12 +17,12 @@ typedef struct nt_gltf_packing {
 	nt_meshopt_view view;
 } nt_gltf_packing;
 
-/* A bufferView, checked against its buffer's byteLength. */
+/* For nt_gltf_read_arrays(): a view as its JSON has it, checked against its buffer's byteLength. */
+nt_status nt_gltf_read_view(nt_gltf *document, uint32_t index, nt_gltf_view *view, nt_error *error);
+
+/* A view of the source; one that was decompressed lies in a virtual buffer. */
 nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
 	nt_error *error);
-
-/* The JSON of a view has changed. */
-void nt_gltf_view_changed(nt_gltf *document, uint64_t index);
 
 /* The extension object of a compressed view; NULL: none. *name (may be NULL) receives the extension. */
 nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **name);

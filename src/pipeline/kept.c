@@ -151,8 +151,7 @@ nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error)
 		return nt_format_is_gltf(scene->format) ? nt_fail_memory(error) : NT_OK;
 	for (size_t i = 0; i < scene->mesh_count; i++)
 		kept[i] = nt_mesh_is_kept_and_used(&scene->meshes[i]);
-	nt_status status = tasks->reader->share(scene, kept, tasks->options, error);
-	tasks->reader->unshare(scene);
+	nt_status status = tasks->reader->prepare(scene, kept, tasks->options, error);
 	for (size_t i = 0; !status && i < scene->mesh_count; i++)
 		if (kept[i])
 			status = look_at(scene, tasks, &scene->meshes[i], &memory, error);

@@ -110,7 +110,7 @@ static void load_small(void *context, size_t item, unsigned thread)
 {
 	const window *w = context;
 	nt_mesh *mesh = &w->scene.meshes[item];
-	if (!w->needed[item] || !is_small(mesh))
+	if (!w->needed[item] || !is_small(mesh) || !mesh->ready)
 		return;
 	loader *own = &w->loaders[thread];
 	const bool ahead = w->solves && mesh->plan.disposable && 3 * mesh->face_count < NT_LEAST_ALONE_CORNERS;
@@ -150,7 +150,7 @@ static bool are_many(const window *w)
 static nt_status load_all_small(window *w)
 {
 	const nt_tasks *t = w->tasks;
-	nt_status status = t->reader->share(&w->scene, w->needed, t->options, w->error);
+	nt_status status = t->reader->prepare(&w->scene, w->needed, t->options, w->error);
 	if (status)
 		return status;
 	const unsigned threads = nt_thread_count(t->options->threads);
@@ -171,11 +171,22 @@ static nt_status load_all_small(window *w)
 		nt_arena_free(&w->loaders[i].per_mesh);
 	}
 	free(w->loaders);
-	t->reader->unshare(&w->scene);
 	return status;
 }
 
 /* ---- one window ---- */
+
+/* Tells which transforms the tangents of a mesh cannot serve. */
+static void tell_transforms(nt_scene *scene, const nt_mesh *mesh)
+{
+	nt_place place;
+	nt_mesh_place(mesh, &place);
+	if (mesh->transforms_differ)
+		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, &place, 1,
+			"set %u with different texture transforms", mesh->texcoord_set);
+	if (mesh->transform_animated)
+		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED, &place, 1, NULL);
+}
 
 static nt_status load_meshes(window *w)
 {
@@ -186,13 +197,15 @@ static nt_status load_meshes(window *w)
 		w->needed[i] = nt_mesh_is_wanted(mesh) ||
 			((all || t->settings->report) && mesh->triangles && mesh->has_positions);
 	}
-	nt_status status = t->reader->share ? load_all_small(w) : NT_OK;
+	nt_status status = t->reader->prepare ? load_all_small(w) : NT_OK;
 	for (size_t i = 0; !status && i < w->scene.mesh_count; i++) {
 		nt_mesh *mesh = &w->scene.meshes[i];
 		if (w->needed[i] && (nt_mesh_is_wanted(mesh) || all))
 			status = t->reader->load(&w->scene, mesh, t->options, w->error);
 		else if (w->needed[i])
 			status = load_for_report(w, mesh);
+		if (!status && mesh->positions && (mesh->transforms_differ || mesh->transform_animated))
+			tell_transforms(&w->scene, mesh);
 	}
 	return status ? status : load_copies(w);
 }

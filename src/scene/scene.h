@@ -235,6 +235,8 @@ typedef struct nt_mesh {
 	                               transforms */
 	bool compressed;         /* with Draco */
 	bool has_polygons;       /* FB_ngon_encoding: triangles that follow each other with one first index are one */
+	bool transforms_differ;  /* slots or materials turn that set in several ways */
+	bool transform_animated; /* an animation turns it */
 	bool texcoord_conflict;  /* another slot of it asks for another set: texcoord_other_set */
 	uint32_t texcoord_other_set;
 	uint32_t moving_targets; /* morph targets that move its positions or normals */
@@ -251,6 +253,8 @@ typedef struct nt_mesh {
 	uint32_t pair;           /* number of a pair that it is in: its w and its maps are inverted; 0: none */
 	bool halved;             /* this run changes one half of such a pair alone */
 	nt_doubt doubt;          /* w is inverted, and a map that is not known may be, too */
+
+	bool ready;              /* load() only reads what the scene holds: several may be loaded at once */
 
 	/* geometry: filled by load(). Arrays belong to the scene's arena or point into the input. */
 	size_t vertex_count;

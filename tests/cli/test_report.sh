@@ -308,6 +308,22 @@ run -q --check --report=r.json m.obj
 is "$(value r.json '[(i["texel_density"], i["stretch"]["median"]) for i in r["files"][0]["meshes"][0]["islands"]]')" \
 	"[(None, 2), (None, 4)]"
 
+scene "images in a view are measured, moved by the edit or not"
+run -q --check --report=r.json "$data/plates.glb"
+run -q --only=all --report=w.json "$data/plates.glb" out.glb
+exits 0
+is "$(value w.json '[m.get("texture_size") for m in r["files"][0]["meshes"]]')" \
+	"$(value r.json '[m.get("texture_size") for m in r["files"][0]["meshes"]]')"
+
+scene "transforms that tangents cannot serve are told"
+python3 -c 'import json, sys
+d = json.load(open(sys.argv[1]))
+d["animations"] = [{"samplers": [], "channels": [{"sampler": 0, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer":
+	{"pointer": "/materials/%d/normalTexture/extensions/KHR_texture_transform/rotation" % i}}}} for i in range(len(d["materials"]))]}]
+json.dump(d, open("animated.gltf", "w"))' "$data/transformed.gltf"
+run -q --check --report=r.json --outside=yes animated.gltf
+is "$(value r.json '"TAN_UV_TRANSFORM_ANIMATED" in json.dumps(r)')" True
+
 scene "converting with a report says what was split"
 run --report=r.json "$data/mirrored_cube.obj" out.glb
 exits 0

@@ -48,7 +48,9 @@ SETS = [
 ]
 
 # Intended changes of a step of the rebuilding: (kind, pattern of "set path detail", why). See "what users lose".
-EXPLAINED = []
+EXPLAINED = [
+    ('report', r'/(texel_density|texture_size)\b.*: None -> ', 'an image in a view that an edit moved is found'),
+]
 
 TIMES = re.compile(r'\b\d[\d.e-]* (m?s|ms|us|seconds)\b|"(seconds|generator|version)": *[^,}\n]+')
 

@@ -210,7 +210,6 @@ static nt_json_value *take_view(nt_buffer_edits *edits, uint32_t *view)
 		return nt_json_append(json, views);
 	}
 	*view = edits->free_views[--edits->free_count];
-	nt_gltf_view_changed(edits->document, *view);
 	nt_json_value *object = nt_json_at(views, *view);
 	nt_json_remove(json, object, "byteStride");
 	nt_json_remove(json, object, "target");

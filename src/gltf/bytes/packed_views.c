@@ -186,7 +186,6 @@ nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigne
 	nt_json_get_uint64(nt_json_find(object, "byteOffset"), &offset);
 	describe(json, nt_gltf_compression_of(object, NULL), &p, count, packed_size);
 	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), size);
-	nt_gltf_view_changed(edits->document, view);
 
 	/* where the old ones are, if these are nobody else's */
 	if (nt_byte_users_count(&edits->users, p.buffer, p.offset, p.offset + old_packed_size) == 1)
@@ -218,7 +217,6 @@ static nt_status release_view(nt_buffer_edits *edits, uint32_t view, const nt_gl
 	nt_json_remove(json, object, "extensions");
 	nt_json_set_uint64(json, nt_json_put(json, object, "buffer"), p->buffer);
 	edits->document->virtual_of[view] = NT_NONE;
-	nt_gltf_view_changed(edits->document, view);
 	edits->is_free[view] = true;
 	edits->free_views[edits->free_count++] = view;
 	return status;

@@ -168,7 +168,6 @@ static void move_views(nt_buffer_edits *edits, const nt_relocated_buffer *buffer
 			continue;
 		moved[i].buffer = &buffers[view.buffer];
 		moved[i].old_offset = view.offset;
-		nt_gltf_view_changed(edits->document, i);
 		moved[i].new_offset = map_position(moved[i].buffer, view.offset);
 		const uint64_t length = map_position(moved[i].buffer, view.offset + view.length) - moved[i].new_offset;
 		set_offset(json, object, "byteOffset", moved[i].new_offset);
@@ -363,7 +362,6 @@ static nt_status settle_virtual(nt_buffer_edits *edits, uint32_t index, moved_vi
 	if (status)
 		return status;
 	nt_json *json = document->json;
-	nt_gltf_view_changed(document, index);
 	nt_json_set_uint64(json, nt_json_put(json, view, "buffer"), buffer);
 	nt_json_set_uint64(json, nt_json_put(json, view, "byteLength"), size);
 	nt_json_value *extensions = nt_json_find(view, "extensions");

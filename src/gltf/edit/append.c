@@ -280,7 +280,7 @@ static void lengthen_views(nt_appending *job, const block *b)
 			continue;
 		nt_json_value *object = nt_json_at(nt_gltf_root_member(job->document, "bufferViews"), index);
 		nt_json_set_uint64(job->json, nt_json_put(job->json, object, "byteLength"), b->end - view.offset);
-		nt_gltf_view_changed(job->document, index);
+		job->document->views[index].length = b->end - view.offset;
 	}
 }
 

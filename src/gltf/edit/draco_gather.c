@@ -232,6 +232,7 @@ static run detach(const nt_gltf_recoding *r, uint64_t index)
 	nt_json_value *json = nt_gltf_accessor_json(r->document, index);
 	nt_json_remove(r->json, json, "bufferView");
 	nt_json_remove(r->json, json, "byteOffset");
+	r->document->accessors[index].view = NT_NONE; /* its elements are in the block */
 	const uint64_t begin = view.offset + a.offset;
 	return (run){begin, begin + (a.count - 1) * a.stride + a.element_bytes, view.offset,
 		view.offset + view.length, view.buffer, a.view};

@@ -549,9 +549,9 @@ static nt_status open_edited(const verification *v, mesh_check *check, nt_error 
 	uint64_t positions;
 	check->mode = NT_GLTF_TRIANGLES;
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &check->mode);
-	check->decoded = document->decoded &&
+	check->decoded =
 		nt_json_get_uint64(nt_json_find(nt_json_find(primitive, "attributes"), "POSITION"), &positions) &&
-		positions < document->accessor_count && document->decoded[positions].elements;
+		positions < document->accessor_count && document->accessors[positions].decoded;
 	const nt_status status = open_primitive(v->model, mesh->gltf_mesh, mesh->gltf_primitive, check->views, error);
 	return status == NT_OK ? open_targets(v->model, mesh, check->views, error) : status;
 }

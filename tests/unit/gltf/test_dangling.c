@@ -2,6 +2,7 @@
 #include "test.h"
 #include <stdio.h>
 #include "base/buffer.h"
+#include "gltf/accessor.h"
 #include "gltf/document.h"
 #include "gltf/view.h"
 
@@ -32,6 +33,7 @@ static nt_gltf *create(nt_scene *scene, const char *text, size_t size)
 	scene->bytes = (const unsigned char *)text;
 	scene->byte_count = size;
 	assert_int_equal(nt_gltf_create(&document, scene, false, &error), NT_OK);
+	assert_int_equal(nt_gltf_read_arrays(document, &error), NT_OK);
 	scene->source = document;
 	scene->free_source = nt_gltf_free;
 	return document;

@@ -349,7 +349,7 @@ TEST(texture_transforms_turn_and_scale)
 	close_text(&f);
 }
 
-TEST(animated_transforms_are_a_finding)
+TEST(animated_transforms_are_known)
 {
 	fixture f;
 	const char *animation = ",\"animations\":[{\"channels\":[{\"target\":{\"extensions\":{"
@@ -358,12 +358,11 @@ TEST(animated_transforms_are_a_finding)
 	char text[512];
 	snprintf(text, sizeof text, animation, "rotation");
 	load_transformed(&f, "\"scale\":[1,1]", text);
-	assert_int_equal(f.scene.findings.count, 1);
-	assert_int_equal(f.scene.findings.items[0].code, NT_CODE_TAN_UV_TRANSFORM_ANIMATED);
+	assert_true(f.scene.meshes[0].transform_animated);
 	close_text(&f);
 	snprintf(text, sizeof text, animation, "offset");
 	load_transformed(&f, "\"scale\":[1,1]", text);
-	assert_int_equal(f.scene.findings.count, 0);
+	assert_false(f.scene.meshes[0].transform_animated);
 	close_text(&f);
 }
 
