@@ -19,6 +19,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+#include "base/compiler.h"
 
 /* sum + error = a + b, exactly (Knuth). */
 static inline double nt_two_sum(double a, double b, double *error)
@@ -51,10 +52,11 @@ static inline double nt_fma(double a, double b, double c)
 #define nt_fma fma
 #endif
 
-/* Whether difference is exactly b - a: an exact difference gives both operands back. False for NaN. */
-static inline bool nt_is_difference(double difference, float a, float b)
+/* Zero if difference is exactly b - a: an exact difference gives both operands back. Else above, or NaN. Some are added
+ * and compared at once, since a branch for each takes longer. */
+static inline NT_ALWAYS_INLINE double nt_difference_error(double difference, double a, double b)
 {
-	return difference + a == b && b - difference == a;
+	return fabs((difference + a) - b) + fabs((b - difference) - a);
 }
 
 /* result[0] + result[1] = a - b, exactly. */

@@ -158,10 +158,10 @@ static nt_dvec3 cross_exactly(nt_dvec3 a, nt_dvec3 b)
 		nt_product_difference(a.z, b.x, a.x, b.z), nt_product_difference(a.x, b.y, a.y, b.x)};
 }
 
-static bool exact3(nt_dvec3 difference, const float *a, const float *b)
+static double error3(nt_dvec3 difference, const float *a, const float *b)
 {
-	return nt_is_difference(difference.x, a[0], b[0]) && nt_is_difference(difference.y, a[1], b[1]) &&
-	       nt_is_difference(difference.z, a[2], b[2]);
+	return nt_difference_error(difference.x, a[0], b[0]) + nt_difference_error(difference.y, a[1], b[1]) +
+	       nt_difference_error(difference.z, a[2], b[2]);
 }
 
 /* The same values by expansions, for triangles whose exponents lie so far apart that a difference is not
@@ -191,7 +191,7 @@ static void solve_by_expansions(const float *const p[3], const float *const t[3]
 /* The edges from a triangle's first corner. */
 typedef struct edges {
 	const float *p[3], *t[3];  /* positions, texture coordinates */
-	double bu, bv, cu, cv;
+	nt_uv_edges uv;
 	bool exact, exact_uv;      /* differences are doubles: all; those of texture coordinates */
 	double most;               /* by which products may cancel */
 } edges;
@@ -200,10 +200,10 @@ typedef struct edges {
 static bool solve_direction(const edges *e, solved *f)
 {
 	const nt_dvec3 d1 = f->edge[0], d2 = nt_dvec3_scale(-1.0, f->edge[2]);
-	if (combine(e->most, e->cv, d1, e->bv, d2, &f->u))
+	if (combine(e->most, e->uv.cv, d1, e->uv.bv, d2, &f->u))
 		return true;
 	if (e->exact)
-		f->u = combine_exactly(e->cv, d1, e->bv, d2);
+		f->u = combine_exactly(e->uv.cv, d1, e->uv.bv, d2);
 	return e->exact;
 }
 
@@ -216,12 +216,12 @@ static bool solve_rest(const edges *e, solved *f)
 			return false;
 		f->across = cross_exactly(d1, d2);
 	}
-	f->determinant = e->bu * e->cv - e->bv * e->cu;
-	if (cancels(e->exact_uv ? NT_CANCELLATION : NT_CANCELLATION_INEXACT, fabs(e->bu * e->cv), fabs(e->bv * e->cu),
-		    fabs(f->determinant))) {
+	const double p = e->uv.bu * e->uv.cv, q = e->uv.bv * e->uv.cu;
+	f->determinant = p - q;
+	if (cancels(e->exact_uv ? NT_CANCELLATION : NT_CANCELLATION_INEXACT, fabs(p), fabs(q), fabs(f->determinant))) {
 		if (!e->exact_uv)
 			return false;
-		f->determinant = nt_product_difference(e->bu, e->cv, e->bv, e->cu);
+		f->determinant = nt_product_difference(e->uv.bu, e->uv.cv, e->uv.bv, e->uv.cu);
 	}
 	return true;
 }
@@ -229,36 +229,35 @@ static bool solve_rest(const edges *e, solved *f)
 /* Edges, and those of `f`. Returns the exact sign of the determinant; 0 where a value is not finite, too. */
 static int make_edges(const nmtan_mesh *mesh, const uint32_t corners[3], edges *e, solved *f)
 {
-	bool finite = true;
+	float not_finite = 0.0f; /* 0 or NaN */
 	for (int k = 0; k < 3; k++) {
 		const size_t vertex = nt_vertex_of(mesh, corners[k]);
 		e->p[k] = nt_position(mesh, vertex);
 		e->t[k] = nt_texcoord(mesh, vertex);
-		finite = finite && isfinite(e->p[k][0]) && isfinite(e->p[k][1]) && isfinite(e->p[k][2]);
+		not_finite += 0.0f * e->p[k][0] + 0.0f * e->p[k][1] + 0.0f * e->p[k][2];
 	}
 	const float *const *p = e->p, *const *t = e->t;
-	const int sign = nt_orientation(t[0], t[1], t[2]); /* 0 where one is not finite */
-	if (sign == 0 || !finite)
+	e->uv = nt_uv_edges_of(t[0], t[1], t[2]);
+	const int sign = nt_orientation_by(&e->uv, t[0], t[1], t[2]); /* 0 where one is not finite */
+	if (sign == 0 || not_finite != 0.0f)
 		return 0;
 	for (int k = 0; k < 3; k++)
 		f->edge[k] = nt_dvec3_sub(nt_dvec3_load(p[(k + 1) % 3]), nt_dvec3_load(p[k]));
-	e->bu = (double)t[1][0] - t[0][0], e->bv = (double)t[1][1] - t[0][1];
-	e->cu = (double)t[2][0] - t[0][0], e->cv = (double)t[2][1] - t[0][1];
-	e->exact_uv = nt_is_difference(e->bu, t[0][0], t[1][0]) && nt_is_difference(e->bv, t[0][1], t[1][1]) &&
-		      nt_is_difference(e->cu, t[0][0], t[2][0]) && nt_is_difference(e->cv, t[0][1], t[2][1]);
-	e->exact = e->exact_uv && exact3(f->edge[0], p[0], p[1]) &&
-		   exact3(nt_dvec3_scale(-1.0, f->edge[2]), p[0], p[2]);
+	e->exact_uv = e->uv.error == 0.0;
+	e->exact = e->exact_uv && error3(f->edge[0], p[0], p[1]) +
+			error3(nt_dvec3_scale(-1.0, f->edge[2]), p[0], p[2]) == 0.0;
 	e->most = e->exact ? NT_CANCELLATION : NT_CANCELLATION_INEXACT;
 	return sign;
 }
 
 /* Which corners a direction adds to; what has no weight adds no condition either. False: to none. */
-static bool find_corners(nt_weight weight, nt_dvec3 u, const nt_dvec3 normals[3], nt_frame_sum *const sums[3],
-	bool adds[3])
+static inline NT_ALWAYS_INLINE bool find_corners(nt_weight weight, nt_dvec3 u, const nt_dvec3 normals[3],
+	nt_frame_sum *const sums[3], bool adds[3])
 {
-	const nt_measured m = {.u = u, .squared = nt_dvec3_dot(u, u)};
+	const double squared = nt_dvec3_dot(u, u);
 	for (int k = 0; k < 3; k++)
-		adds[k] = sums[k] && (weight == NT_WEIGHT_NONE || nt_is_across(&m, nt_dvec3_reject(normals[k], u)));
+		adds[k] = sums[k] &&
+			(weight == NT_WEIGHT_NONE || nt_is_across(squared, nt_dvec3_reject(normals[k], u)));
 	return adds[0] || adds[1] || adds[2];
 }
 

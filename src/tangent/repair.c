@@ -51,7 +51,8 @@ typedef struct repair_state {
 	const uint64_t *faulty; /* a bit for each face */
 	const uint32_t *welded; /* [corner_count] */
 	size_t welded_count;
-	uint32_t *ids;          /* [welded_count] numbers of open vertices, or NT_NO_ID */
+	uint8_t *open;          /* [welded_count] whether a vertex is */
+	uint32_t *ids;          /* [welded_count] numbers of open vertices */
 	size_t id_count;
 	neighbourhood *neighbourhoods; /* [id_count], with room for as many as there can be */
 } repair_state;
@@ -59,7 +60,7 @@ typedef struct repair_state {
 /* Whether a corner's vertex is open. */
 static bool is_open(const repair_state *r, size_t c)
 {
-	return r->ids[r->welded[c]] != NT_NO_ID;
+	return r->open[r->welded[c]];
 }
 
 /* Whether a corner of a faulty face or of a quad is usable: their rows are there. */
@@ -175,16 +176,18 @@ static nmtan_status number_vertices(repair_state *r, size_t unusable)
 {
 	const nt_solve *solve = r->solve;
 	const size_t most = unusable < r->welded_count ? unusable : r->welded_count;
+	r->open = nt_scratch_alloc(solve->scratch, r->welded_count, 1);
 	r->ids = nt_scratch_alloc(solve->scratch, r->welded_count, sizeof *r->ids);
 	r->neighbourhoods = nt_scratch_alloc(solve->scratch, most, sizeof *r->neighbourhoods);
-	if (!r->ids || !r->neighbourhoods)
+	if (!r->open || !r->ids || !r->neighbourhoods)
 		return NMTAN_ERROR_MEMORY;
-	memset(r->ids, 0xff, r->welded_count * sizeof *r->ids);
+	memset(r->open, 0, r->welded_count);
 	for (place at = {0, 0}; find_faulty(r, &at); step_over(r, &at))
 		for (size_t c = at.first; c < at.first + nt_face_size(solve->mesh, at.face); c++) {
 			if (is_open(r, c) || is_usable(solve, c))
 				continue;
 			const size_t vertex = nt_vertex_of(solve->mesh, c);
+			r->open[r->welded[c]] = true;
 			r->ids[r->welded[c]] = (uint32_t)r->id_count;
 			r->neighbourhoods[r->id_count++] = (neighbourhood){.given = nt_normal(solve->mesh, vertex),
 				.normal = nt_unit_normal(solve->mesh, vertex), .usable = {NT_NO_ID, NT_NO_ID}};
@@ -239,14 +242,21 @@ static void answer(const nt_solve *solve, neighbourhood *at)
 	at->answers = a;
 }
 
-/* Visits the faces with an open vertex. */
+/* Visits the faces with an open vertex. Most have none, so that triangles have a loop of their own. */
 static void visit_faces(const repair_state *r)
 {
 	const nmtan_mesh *mesh = r->solve->mesh;
-	for (size_t face = 0, first = 0; face < mesh->face_count; first += nt_face_size(mesh, face++)) {
-		const bool a = is_open(r, first), b = is_open(r, first + 1), c = is_open(r, first + 2);
-		if (a | b | c || (nt_face_size(mesh, face) == 4 && is_open(r, first + 3)))
-			visit_face(r, face, first, nt_face_size(mesh, face));
+	const uint8_t *const open = r->open;
+	const uint32_t *v = r->welded;
+	for (size_t face = 0; !mesh->face_sizes && face < mesh->face_count; face++, v += 3)
+		if (NT_EXPECT(open[v[0]] | open[v[1]] | open[v[2]], 0))
+			visit_face(r, face, 3 * face, 3);
+	for (size_t face = 0, first = 0; mesh->face_sizes && face < mesh->face_count;
+		first += mesh->face_sizes[face++]) {
+		const uint32_t *corners = r->welded + first;
+		const unsigned size = mesh->face_sizes[face];
+		if (open[corners[0]] | open[corners[1]] | open[corners[2]] | (size == 4 && open[corners[3]]))
+			visit_face(r, face, first, size);
 	}
 }
 

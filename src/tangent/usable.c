@@ -82,8 +82,8 @@ static bool is_sound(const float *tangents, size_t size, int orientation)
 }
 
 /* Checks the rows of a face of a known orientation; true: some are unusable. `judged`: see nt_known. */
-static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int orientation, bool judged,
-	nmtan_counts *counts)
+static inline NT_ALWAYS_INLINE bool has_unusable(const nt_solve *solve, size_t first, size_t size, int orientation,
+	bool judged, nmtan_counts *counts)
 {
 	const nmtan_mesh *mesh = solve->mesh;
 	float *t = solve->tangents + 4 * first;

@@ -49,11 +49,11 @@ static inline NT_ALWAYS_INLINE nt_dvec3 nt_weigh_normal(double x, double y, doub
 	return nt_dvec3_scale(nt_rsqrt(nt_dvec3_dot(n, n)), n);
 }
 
-/* Whether u has a direction across a normal, without which it is `across`: what is left where it runs along it is
- * noise. */
-static inline NT_ALWAYS_INLINE bool nt_is_across(const nt_measured *m, nt_dvec3 across)
+/* Whether u of that square has a direction across a normal, without which it is `across`: what is left where it runs
+ * along it is noise. */
+static inline NT_ALWAYS_INLINE bool nt_is_across(double squared, nt_dvec3 across)
 {
-	return nt_dvec3_dot(across, across) > NT_PARALLEL * NT_PARALLEL * m->squared;
+	return nt_dvec3_dot(across, across) > NT_PARALLEL * NT_PARALLEL * squared;
 }
 
 /*
@@ -69,7 +69,7 @@ static inline NT_ALWAYS_INLINE nt_weighed nt_weigh_corner(const nt_measured *m, 
 	const nt_dvec3 d = nt_dvec3_reject(n, m->u);
 	const double squared = nt_dvec3_dot(d, d);
 	const double lengths = e_length * g_length;
-	const double usable = (nt_is_across(m, d) & (lengths > 0.0)) ? 1.0 : 0.0;
+	const double usable = (nt_is_across(m->squared, d) & (lengths > 0.0)) ? 1.0 : 0.0;
 	const double cosine = nt_dvec3_dot(n, e) * nt_dvec3_dot(n, g) - nt_dvec3_dot(e, g);
 	const double turn = nt_rsqrt(sine * sine + cosine * cosine);
 	/* how much an error of the projections moves the angle */

@@ -25,17 +25,32 @@ static inline int nt_orientation_residual(double bu, double bv, double cu, doubl
 	return p == 0.0 ? 0 : (left > right) - (left < right);
 }
 
-/* Exact sign of the UV determinant of a triangle: see nmtan_orientation(), which calls this. */
-static inline int nt_orientation(const float a[2], const float b[2], const float c[2])
+/* The edges of a triangle in UV space from its first corner, and 0.0 if they are exact. */
+typedef struct nt_uv_edges {
+	double bu, bv, cu, cv, error;
+} nt_uv_edges;
+
+static inline nt_uv_edges nt_uv_edges_of(const float a[2], const float b[2], const float c[2])
 {
 	const double bu = (double)b[0] - a[0], bv = (double)b[1] - a[1];
 	const double cu = (double)c[0] - a[0], cv = (double)c[1] - a[1];
-	const int exact = nt_is_difference(bu, a[0], b[0]) && nt_is_difference(bv, a[1], b[1]) &&
-			  nt_is_difference(cu, a[0], c[0]) && nt_is_difference(cv, a[1], c[1]);
-	const double p = bu * cv, r = bv * cu;
-	if (exact)
-		return p != r ? p > r ? 1 : -1 : nt_orientation_residual(bu, bv, cu, cv, p);
+	return (nt_uv_edges){bu, bv, cu, cv, nt_difference_error(bu, a[0], b[0]) + nt_difference_error(bv, a[1], b[1]) +
+		nt_difference_error(cu, a[0], c[0]) + nt_difference_error(cv, a[1], c[1])};
+}
+
+/* Exact sign of the UV determinant of a triangle, which has these edges: see nmtan_orientation(). */
+static inline int nt_orientation_by(const nt_uv_edges *e, const float a[2], const float b[2], const float c[2])
+{
+	const double p = e->bu * e->cv, r = e->bv * e->cu;
+	if (e->error == 0.0)
+		return p != r ? p > r ? 1 : -1 : nt_orientation_residual(e->bu, e->bv, e->cu, e->cv, p);
 	return nt_orientation_slow(a, b, c);
+}
+
+static inline int nt_orientation(const float a[2], const float b[2], const float c[2])
+{
+	const nt_uv_edges edges = nt_uv_edges_of(a, b, c);
+	return nt_orientation_by(&edges, a, b, c);
 }
 
 /* Exact comparison of the determinants' magnitudes: -1, 0, +1 as |det(a, b, c)| is less than, equal to

@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 #include <string.h>
+#include "base/vec.h"
 #include "tangent/fast/corner_lanes.h"
 #include "tangent/fast/frame_lanes.h"
 
@@ -42,14 +43,36 @@ static inline bool are_plain(const lanes_out *out, size_t count)
 	return !any_lane(~all & TWO);
 }
 
+/* Corners whose u lies exactly along the normal add nothing, whichever corners are averaged with them, if their weight
+ * is a number: where all of a vertex are such, its sum is the result. The lanes have a NaN of each. */
+static void NT_NOINLINE clear_along(const lanes_in *in, lanes_out *out, size_t count)
+{
+	static const nt_record nothing = {.state = NT_STATE_BASE | NT_STATE_NO_ANY | NT_STATE_LOCAL | NT_STATE_U};
+	for (size_t i = 0; i < count; i++)
+		for (size_t k = 0; k < 3 && out->sound[i]; k++) {
+			const float n[3] = {in->row[k][3][i], in->row[k][4][i], in->row[k][5][i]};
+			const float u[3] = {out->u[0][i], out->u[1][i], out->u[2][i]}, along = nt_dot3(n, u);
+			float squares = 0;
+			if (u[0] != along * n[0] || u[1] != along * n[1] || u[2] != along * n[2])
+				continue;
+			for (size_t c = 0; c < 9; c++)
+				squares += in->row[c / 3][c % 3][i] * in->row[c / 3][c % 3][i];
+			if (squares < MOST_RATIO)
+				memcpy(out->add[k] + 4 * turned_place(i), &nothing, sizeof nothing);
+		}
+}
+
 /* Facts about solved lanes; more than sums needs bounds that plain ones do not have. */
 static inline void judge(const lanes_in *NT_RESTRICT in, lanes_out *NT_RESTRICT out, float offset, bool more,
 	size_t count)
 {
 	const size_t lane_count = whole_lanes(count);
 	out->plain = !more && are_plain(out, lane_count);
-	if (!out->plain)
+	if (!out->plain) {
 		tell_apart(in, out, (int)lane_count);
+		if (!more)
+			clear_along(in, out, count);
+	}
 	if (offset != 0.0f)
 		doubt_stored(in, out, offset, (int)lane_count);
 }

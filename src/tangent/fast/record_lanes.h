@@ -47,7 +47,9 @@ static inline void read_states(size_t used, record_lanes *NT_RESTRICT r)
 	for (size_t i = 0; i < used; i++) {
 		const uint32_t s = r->state[i];
 		r->present[i] = (s & NT_STATE_EMPTY) == 0;
-		r->sound[i] = (s & NT_STATE_U) != 0 && (s & NT_STATE_V) != 0 && (s & NT_STATE_SOUND) != 0;
+		/* a unit vector is beyond in half of the directions at most: with all bits each u was zero */
+		r->sound[i] = ((s & NT_STATE_U) != 0 && (s & NT_STATE_V) != 0 && (s & NT_STATE_SOUND) != 0) ||
+			      (s & NT_STATE_U) == NT_STATE_U;
 	}
 }
 

@@ -12,6 +12,7 @@
  * finish: 16 vertices at a time, sums become tangents.
  */
 #include <math.h>
+#include "base/exact.h"
 #include "tangent/fast/turn.h"
 #include "tangent/sums/parts.h"
 #include "tangent/weigh.h"
@@ -51,12 +52,6 @@ LANE_INLINE double lane_largest(double x, double y, double z)
 /* Flags are doubles, 0 or 1: SSE2 has no comparison of 64-bit integers. */
 #define FLAG(condition) ((condition) ? 1.0 : 0.0)
 
-/* Zero where nt_is_difference() holds. */
-LANE_INLINE double lane_inexact(double d, double a, double b)
-{
-	return fabs((d + a) - b) + fabs((b - d) - a);
-}
-
 LANE_INLINE double lane_cancels(double most, nt_dvec3 p, nt_dvec3 q, nt_dvec3 d)
 {
 	return FLAG(most * lane_largest(d.x, d.y, d.z) <
@@ -91,11 +86,12 @@ static void NT_NOINLINE sum_frames(sum_lanes *NT_RESTRICT l, nt_sum_block *NT_RE
 		const nt_dvec3 e0 = nt_dvec3_sub(p1, p0), e1 = nt_dvec3_sub(p2, p1), e2 = nt_dvec3_sub(p0, p2);
 		const nt_dvec3 d2 = nt_dvec3_scale(-1.0, e2);
 		const double bu = u1 - u0, bv = v1 - v0, cu = u2 - u0, cv = v2 - v0;
-		const double inexact_uv = lane_inexact(bu, u0, u1) + lane_inexact(bv, v0, v1) +
-					  lane_inexact(cu, u0, u2) + lane_inexact(cv, v0, v2);
-		const double inexact = inexact_uv + lane_inexact(e0.x, p0.x, p1.x) + lane_inexact(e0.y, p0.y, p1.y) +
-			lane_inexact(e0.z, p0.z, p1.z) + lane_inexact(d2.x, p0.x, p2.x) +
-			lane_inexact(d2.y, p0.y, p2.y) + lane_inexact(d2.z, p0.z, p2.z);
+		const double inexact_uv = nt_difference_error(bu, u0, u1) + nt_difference_error(bv, v0, v1) +
+					  nt_difference_error(cu, u0, u2) + nt_difference_error(cv, v0, v2);
+		const double inexact = inexact_uv +
+			nt_difference_error(e0.x, p0.x, p1.x) + nt_difference_error(e0.y, p0.y, p1.y) +
+			nt_difference_error(e0.z, p0.z, p1.z) + nt_difference_error(d2.x, p0.x, p2.x) +
+			nt_difference_error(d2.y, p0.y, p2.y) + nt_difference_error(d2.z, p0.z, p2.z);
 		const double exact_uv = FLAG(inexact_uv == 0.0), exact = FLAG(inexact == 0.0);
 		const double sum = fabs(e0.x) + fabs(e0.y) + fabs(e0.z) + fabs(d2.x) + fabs(d2.y) + fabs(d2.z) +
 				   fabs(bu) + fabs(bv) + fabs(cu) + fabs(cv);

@@ -318,8 +318,10 @@ TEST(scattered_meshes_are_byte_identical)
 }
 
 /* A grid in a plane through the normal, so that u, or v, and some edges lie along it; or one of which
- * all texture coordinates are equal. With one more cell, beside them, that is ordinary: `mixed`. */
-typedef enum hopeless { ALONG_U, ALONG_V, ONE_POINT } hopeless;
+ * all texture coordinates are equal; or one that turns back and leaves the plane in the middle, so that vertices there
+ * have usable triangles, too, and antiparallel directions of v. With one more cell, beside them, that is ordinary:
+ * `mixed`. */
+typedef enum hopeless { ALONG_U, ALONG_V, ONE_POINT, HALF_ALONG } hopeless;
 enum { ROW = 10, HOPELESS_CELLS = (ROW - 1) * (ROW - 1), HOPELESS_VERTICES = ROW * ROW + 4 };
 
 static nmtan_mesh make_hopeless(hopeless kind, bool mixed, float (*p)[3], float (*n)[3], float (*t)[2],
@@ -328,11 +330,13 @@ static nmtan_mesh make_hopeless(hopeless kind, bool mixed, float (*p)[3], float 
 	size_t v = 0, corner = 0;
 	for (; v < HOPELESS_VERTICES; v++) {
 		const size_t own = HOPELESS_VERTICES - 4, width = v < own ? ROW : 2, i = v < own ? v : v - own;
-		const float a = (float)(i % width) / 9, b = (float)(i / width) / 9;
+		const float a = (float)(i % width) / 8, b = (float)(i / width) / 8;
 		memcpy(n[v], (float[3]){0, 0, 1}, 12);
 		memcpy(t[v], v < own && kind == ONE_POINT ? (float[2]){0.5f, 0.5f} : (float[2]){a, b}, 8);
-		memcpy(p[v], v >= own
-			? (float[3]){a, b, 2} : kind == ALONG_U ? (float[3]){b, 0, a} : (float[3]){a, 0, b}, 12);
+		const bool by_u = kind == ALONG_U || kind == HALF_ALONG;
+		memcpy(p[v], v >= own ? (float[3]){a, b, 2} : by_u ? (float[3]){b, 0, a} : (float[3]){a, 0, b}, 12);
+		if (v < own && kind == HALF_ALONG && i / width > 4)
+			memcpy(p[v], (float[3]){1 - b, (b - 0.5f) * (a - 0.5f), a}, 12);
 	}
 	for (unsigned cell = 0; cell < HOPELESS_CELLS + (mixed ? 1u : 0); cell++) {
 		const bool last = cell == HOPELESS_CELLS;
@@ -379,7 +383,7 @@ TEST(unusable_vertices_are_byte_identical)
 {
 	float p[HOPELESS_VERTICES][3], n[HOPELESS_VERTICES][3], t[HOPELESS_VERTICES][2];
 	unsigned indices[6 * (HOPELESS_CELLS + 1)];
-	for (hopeless kind = ALONG_U; kind <= ONE_POINT; kind++)
+	for (hopeless kind = ALONG_U; kind <= HALF_ALONG; kind++)
 		for (int mixed = 0; mixed < 2; mixed++) {
 			const nmtan_mesh mesh = make_hopeless(kind, mixed, p, n, t, indices), full = nt_filled(&mesh);
 			const size_t corners = 3 * mesh.face_count;
