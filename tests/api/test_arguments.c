@@ -314,8 +314,3 @@ TEST(statuses_have_texts)
 	assert_string_equal(nmtan_status_text((nmtan_status)(NMTAN_ERROR_CAPACITY + 1)), "unknown status");
 	assert_string_equal(nmtan_version(), NMTAN_VERSION_STRING);
 }
-
-int main(void)
-{
-	return run_group("api/arguments");
-}

@@ -227,8 +227,3 @@ TEST(bits_are_what_is_counted_and_other_corners_keep_their_bytes)
 	}
 	assert_int_equal(met, 0xff);
 }
-
-int main(void)
-{
-	return run_group("api/corner_faults");
-}

@@ -81,8 +81,3 @@ TEST(without_repair_there_is_no_bound)
 	for (size_t i = 0; i < 4 * BEYOND; i++)
 		assert_int_equal(faults[i], 0);
 }
-
-int main(void)
-{
-	return run_group("api/hubs");
-}

@@ -494,8 +494,3 @@ TEST(threads_end_and_begin_again)
 	}
 	nmtan_end_threads();
 }
-
-int main(void)
-{
-	return run_group("api/inputs");
-}

@@ -286,8 +286,3 @@ TEST(rows_are_copied_whole_or_but_for_their_tangents)
 	assert_string_equal(whole[3], "c");
 	assert_string_equal(whole[4], "a");
 }
-
-int main(void)
-{
-	return run_group("api/mirrored_quad");
-}

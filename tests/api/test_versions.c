@@ -193,8 +193,3 @@ TEST(macros_are_a_size_and_defaults)
 		assert_int_equal(all[i].bytes % sizeof(size_t), 0);
 	}
 }
-
-int main(void)
-{
-	return run_group("api/versions");
-}

@@ -18,10 +18,6 @@ int remove_folder(void **state);
 int enter_folder(void **state);
 int leave_folder(void **state);
 
-/* A test with a fresh folder of its own. */
-#define unit_test_in_folder(test)     cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
-#define unit_test_inside_folder(test) cmocka_unit_test_setup_teardown(test, enter_folder, leave_folder)
-
 /* The path of a file in it, "" for the folder itself; good for the next seven calls. */
 const char *in_folder(const char *name);
 

@@ -167,8 +167,3 @@ TEST(no_halves_are_triangles)
 	assert_memory_equal(of_halves, of_faces, 3 * f.triangle_count * sizeof *of_faces);
 	assert_memory_equal(&counts, &of_triangles, sizeof counts);
 }
-
-int main(void)
-{
-	return run_group("api/tangents");
-}

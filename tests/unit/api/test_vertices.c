@@ -139,8 +139,3 @@ TEST(arguments_are_checked)
 	out.indices = NULL; /* nothing is split, then there are no sources */
 	assert_int_equal(nmtan_vertex_tangents(&mesh, NULL, &out, NULL), NMTAN_ERROR_ARGUMENT);
 }
-
-int main(void)
-{
-	return run_group("api/vertices");
-}

@@ -48,8 +48,3 @@ TEST(angle_of_a_point_on_the_circle_is_atan2)
 	assert_true(nt_angle_on_circle(0, 0) == 1.57079632679489661923);
 	assert_true(nt_angle_on_circle(0, -1) == 3.14159265358979323846);
 }
-
-int main(void)
-{
-	return run_group("base/angle");
-}

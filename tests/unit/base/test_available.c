@@ -51,7 +51,4 @@ TEST(the_least_limit_of_the_groups_above_counts)
 	assert_true(nt_memory_of_groups(in_folder("nowhere"), in_folder("")) == UINT64_MAX);
 }
 
-int main(void)
-{
-	return run_group_within("base/available", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -75,8 +75,3 @@ TEST(a_failure_goes_over_to_the_other_buffer)
 	nt_buffer_free_into(&inner, &outer);
 	assert_true(outer.failed);
 }
-
-int main(void)
-{
-	return run_group("base/buffer");
-}

@@ -30,8 +30,3 @@ TEST(the_kernel_says_the_same)
 	assert_int_equal(nt_cpu_best(),
 		linux_names(avx512) ? NT_ISA_AVX512 : linux_names(avx2) ? NT_ISA_AVX2 : NT_ISA_BASELINE);
 }
-
-int main(void)
-{
-	return run_group("base/cpu");
-}

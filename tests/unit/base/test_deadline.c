@@ -53,8 +53,3 @@ TEST(threads_that_help_have_it)
 	}
 	atomic_store(&deadline.passed, false);
 }
-
-int main(void)
-{
-	return run_group("base/deadline");
-}

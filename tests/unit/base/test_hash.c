@@ -3,8 +3,6 @@
 #include "test.h"
 #include <stdbool.h>
 
-static const char *own_name;
-
 TEST(hashes_tell_texts_and_lengths_apart)
 {
 	const uint64_t a = nt_hash_bytes(0, "abcde", 5);
@@ -108,10 +106,10 @@ TEST(structured_pairs_spread)
 	free(pairs);
 }
 
-int main(int argc, char **argv)
+static int print_hash(int count, char **arguments)
 {
-	own_name = argv[0];
-	if (argc > 1)
-		return printf("%016llx\n", (unsigned long long)nt_hash_bytes(0, "nmtan", 5)) < 0;
-	return run_group("base/hash");
+	(void)count, (void)arguments;
+	return printf("%016llx\n", (unsigned long long)nt_hash_bytes(0, "nmtan", 5)) < 0;
 }
+
+WITH_ARGUMENTS(print_hash)

@@ -25,8 +25,3 @@ TEST(an_empty_index_has_nothing)
 	size_t at = NT_HASH_BEGIN;
 	assert_int_equal(nt_hash_index_next(&index, 7, &at), UINT32_MAX);
 }
-
-int main(void)
-{
-	return run_group("base/hash_index");
-}

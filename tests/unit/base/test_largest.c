@@ -46,8 +46,3 @@ TEST(a_number_beyond_a_limit_is_found_at_every_place)
 			}
 		}
 }
-
-int main(void)
-{
-	return run_group("base/largest");
-}

@@ -127,8 +127,3 @@ TEST(large_arenas_have_large_blocks)
 	assert_in_range(arena.block_bytes, 1, 65536);
 	nt_arena_free(&arena);
 }
-
-int main(void)
-{
-	return run_group("base/memory");
-}

@@ -42,8 +42,3 @@ TEST(text_becomes_utf8)
 		assert_string_equal(nt_utf8_text(&arena, cases[i].from, strlen(cases[i].from)), cases[i].to);
 	nt_arena_free(&arena);
 }
-
-int main(void)
-{
-	return run_group("base/name_table");
-}

@@ -28,8 +28,3 @@ TEST(the_caller_does_all_in_order)
 	run_alone(4, note, order);
 	assert_string_equal(order, "00123");
 }
-
-int main(void)
-{
-	return run_group("base/no_threads");
-}

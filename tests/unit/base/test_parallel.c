@@ -84,8 +84,3 @@ TEST(items_come_once_and_slots_one_at_a_time)
 			assert_int_equal(s.faults, 0);
 		}
 }
-
-int main(void)
-{
-	return run_group("base/parallel");
-}

@@ -367,8 +367,3 @@ TEST(without_threads_the_caller_does_all)
 	threads_made = 0;
 	in_a_child(work_alone);
 }
-
-int main(void)
-{
-	return run_group("base/pool");
-}

@@ -26,8 +26,3 @@ TEST(floats_are_rounded_before_they_are_widened)
 	free(plane);
 	free(points);
 }
-
-int main(void)
-{
-	return run_group("base/rounding");
-}

@@ -22,8 +22,3 @@ TEST(zero_gives_something_finite)
 	assert_true(isfinite(nt_rsqrt(0x1p-1074)));
 	assert_true(nt_sqrt_rough(0) == 0.0);
 }
-
-int main(void)
-{
-	return run_group("base/rsqrt");
-}

@@ -81,8 +81,3 @@ TEST(the_first_own_block_is_as_large_as_expected)
 		nt_scratch_free(&scratch);
 	}
 }
-
-int main(void)
-{
-	return run_group("base/scratch");
-}

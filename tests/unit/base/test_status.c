@@ -29,8 +29,3 @@ TEST(statuses_of_the_compute_library_pass)
 		assert_string_equal(nt_status_text(rows[i].expected), nmtan_status_text(rows[i].computed));
 	}
 }
-
-int main(void)
-{
-	return run_group("base/status");
-}

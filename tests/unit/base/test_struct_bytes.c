@@ -64,8 +64,3 @@ TEST(only_what_both_have_is_written)
 	nt_struct_write(&newer, &ours, sizeof ours);
 	assert_memory_equal(&newer, (&(third){sizeof(third), 1, 2, 9}), sizeof newer);
 }
-
-int main(void)
-{
-	return run_group("base/struct_bytes");
-}

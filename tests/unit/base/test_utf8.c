@@ -86,8 +86,3 @@ TEST(a_cut_sequence_is_none)
 	assert_int_equal(nt_utf8_length("\xc3", SIZE_MAX), 0);
 	assert_int_equal(nt_utf8_length("\xe2\x82", SIZE_MAX), 0);
 }
-
-int main(void)
-{
-	return run_group("base/utf8");
-}

@@ -147,12 +147,6 @@ TEST(a_dry_run_makes_no_folder_and_a_file_is_none)
 	refuses(INPUTS("a.obj"), "file/where", NT_ERROR_IO, "is not a folder");
 }
 
-/* Stands for the one of run.c, so that this test stands without it. */
-void nt_summary_free(nt_summary *summary)
-{
-	nt_finding_list_free(&summary->findings);
-}
-
 /* Stands for nt_run: the input's first letter says how long it takes, "x" in it that it fails. */
 static atomic_uint threads_seen;
 
@@ -346,7 +340,4 @@ TEST(one_input_has_all_threads)
 	nt_batch_free(&batch);
 }
 
-int main(void)
-{
-	return run_group_within("batch/batch", enter_folder, leave_folder);
-}
+AROUND_ALL(enter_folder, leave_folder)

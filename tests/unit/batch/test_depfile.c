@@ -140,7 +140,4 @@ TEST(an_exhausted_memory_is_told)
 	nt_trace_free(&trace);
 }
 
-int main(void)
-{
-	return run_group_within("batch/depfile", enter_folder, leave_folder);
-}
+AROUND_ALL(enter_folder, leave_folder)

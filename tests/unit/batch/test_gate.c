@@ -94,8 +94,3 @@ TEST(who_fits_does_not_pass_who_waits)
 	assert_int_equal(atomic_load(&inside), 2);
 	nt_gate_end(&gate);
 }
-
-int main(void)
-{
-	return run_group("batch/gate");
-}

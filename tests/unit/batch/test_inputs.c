@@ -98,7 +98,4 @@ TEST(an_exhausted_memory_is_told)
 	}
 }
 
-int main(void)
-{
-	return run_group_within("batch/inputs", enter_folder, leave_folder);
-}
+AROUND_ALL(enter_folder, leave_folder)

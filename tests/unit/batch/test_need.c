@@ -177,7 +177,4 @@ TEST(what_has_no_size_is_alone_and_what_is_missing_is_nothing)
 	assert_true(nt_need_of("-", &settings, 0) == UINT64_MAX);
 }
 
-int main(void)
-{
-	return run_group_within("batch/need", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

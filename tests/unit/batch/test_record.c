@@ -88,9 +88,8 @@ static nt_freshness look(nt_update_by by)
 	return look_for(&making, NULL);
 }
 
-static void an_output_is_current_while_all_is_as_it_was(void **state)
+TEST(an_output_is_current_while_all_is_as_it_was)
 {
-	(void)state;
 	nt_trace trace = {0};
 	put_files();
 	append(NT_UPDATE_BY_TIME);
@@ -107,9 +106,8 @@ static void an_output_is_current_while_all_is_as_it_was(void **state)
 	assert_int_equal(look_for(&making, NULL), NT_FRESH_STALE);
 }
 
-static void any_file_that_differs_makes_it_stale(void **state)
+TEST(any_file_that_differs_makes_it_stale)
 {
-	(void)state;
 	for (size_t i = 0; i < 3; i++) {
 		const char *name = ((const char *const[]){"in/a.obj", "in/a.png", "out.glb"})[i];
 		put_files();
@@ -132,9 +130,8 @@ static void any_file_that_differs_makes_it_stale(void **state)
 	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
 }
 
-static void by_content_times_do_not_count(void **state)
+TEST(by_content_times_do_not_count)
 {
-	(void)state;
 	put_files();
 	append(NT_UPDATE_BY_CONTENT);
 	assert_int_equal(utimensat(AT_FDCWD, "in/a.png", NULL, 0), 0);
@@ -146,9 +143,8 @@ static void by_content_times_do_not_count(void **state)
 	assert_int_equal(look(NT_UPDATE_BY_CONTENT), NT_FRESH_STALE);
 }
 
-static void what_changed_just_before_is_compared_by_content_too(void **state)
+TEST(what_changed_just_before_is_compared_by_content_too)
 {
-	(void)state;
 	/* an hour from now is just before, however long it takes to come to it */
 	const struct timespec times[] = {{time(NULL) + 3600, 500}, {time(NULL) + 3600, 500}};
 	put_files();
@@ -161,9 +157,8 @@ static void what_changed_just_before_is_compared_by_content_too(void **state)
 }
 
 /* Nothing that mv and cp -p can do is unseen; what they do to equal bytes is noted, and no bytes are read again. */
-static void equal_sizes_and_times_are_not_equal_bytes(void **state)
+TEST(equal_sizes_and_times_are_not_equal_bytes)
 {
-	(void)state;
 	struct stat before, after;
 	for (size_t i = 0; i < 3; i++) {
 		const char *name = ((const char *const[]){"in/a.obj", "in/a.png", "out.glb"})[i];
@@ -196,9 +191,8 @@ static void equal_sizes_and_times_are_not_equal_bytes(void **state)
 }
 
 /* in -> v1, whose a.png is missing; then v2. */
-static void the_links_on_the_way_to_a_file_count(void **state)
+TEST(the_links_on_the_way_to_a_file_count)
 {
-	(void)state;
 	put_files();
 	assert_int_equal(rename("in", "v1"), 0);
 	assert_int_equal(symlink("v1", "in"), 0);
@@ -220,9 +214,8 @@ static void the_links_on_the_way_to_a_file_count(void **state)
 }
 
 /* Lines as they were before they had a digest of themselves hold for nothing either. */
-static void lines_that_are_damaged_hold_for_nothing(void **state)
+TEST(lines_that_are_damaged_hold_for_nothing)
 {
-	(void)state;
 	static const char *const parts[] = {"links", "uri", "a.obj", "sum"};
 	for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
 		char text[8192] = "";
@@ -240,9 +233,8 @@ static void lines_that_are_damaged_hold_for_nothing(void **state)
 	}
 }
 
-static void a_tree_can_be_moved_with_its_record(void **state)
+TEST(a_tree_can_be_moved_with_its_record)
 {
-	(void)state;
 	put_files();
 	append(NT_UPDATE_BY_TIME);
 	assert_int_equal(mkdir("moved", 0700), 0);
@@ -254,9 +246,8 @@ static void a_tree_can_be_moved_with_its_record(void **state)
 	assert_int_equal(chdir(".."), 0);
 }
 
-static void an_exhausted_memory_is_told(void **state)
+TEST(an_exhausted_memory_is_told)
 {
-	(void)state;
 	put_files();
 	append(NT_UPDATE_BY_TIME);
 	const nt_making making = making_of(NT_UPDATE_BY_TIME);
@@ -285,18 +276,4 @@ static void an_exhausted_memory_is_told(void **state)
 	nt_trace_free(&noted);
 }
 
-int main(void)
-{
-	const struct CMUnitTest tests[] = {
-		unit_test_inside_folder(an_output_is_current_while_all_is_as_it_was),
-		unit_test_inside_folder(any_file_that_differs_makes_it_stale),
-		unit_test_inside_folder(by_content_times_do_not_count),
-		unit_test_inside_folder(what_changed_just_before_is_compared_by_content_too),
-		unit_test_inside_folder(equal_sizes_and_times_are_not_equal_bytes),
-		unit_test_inside_folder(the_links_on_the_way_to_a_file_count),
-		unit_test_inside_folder(lines_that_are_damaged_hold_for_nothing),
-		unit_test_inside_folder(a_tree_can_be_moved_with_its_record),
-		unit_test_inside_folder(an_exhausted_memory_is_told),
-	};
-	return cmocka_run_group_tests_name("batch/record", tests, NULL, NULL);
-}
+AROUND_EACH(enter_folder, leave_folder)

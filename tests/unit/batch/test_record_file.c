@@ -75,7 +75,4 @@ TEST(an_exhausted_memory_is_told)
 	}
 }
 
-int main(void)
-{
-	return run_group_within("batch/record_file", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

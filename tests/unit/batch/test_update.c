@@ -49,9 +49,8 @@ static bool is_current(const nt_update_options *options, nt_settings *settings, 
 
 static const nt_update_options usual = {.look = true, .options = ""};
 
-static void without_a_record_nothing_is_current(void **state)
+TEST(without_a_record_nothing_is_current)
 {
-	(void)state;
 	nt_settings settings = {0};
 	put_at("a.obj", 2000);
 	assert_false(is_current(&usual, &settings, false));
@@ -63,9 +62,8 @@ static void without_a_record_nothing_is_current(void **state)
 	assert_int_equal(settings.equal, NT_EQUAL_TOUCH);
 }
 
-static void a_record_decides_where_it_knows_the_output(void **state)
+TEST(a_record_decides_where_it_knows_the_output)
 {
-	(void)state;
 	nt_settings settings = {0};
 	put_at("a.obj", 2000);
 	put_at("a.glb", 1000);
@@ -83,9 +81,8 @@ static void a_record_decides_where_it_knows_the_output(void **state)
 	assert_int_equal(settings.equal, NT_EQUAL_TOUCH);
 }
 
-static void a_record_can_be_written_without_being_asked(void **state)
+TEST(a_record_can_be_written_without_being_asked)
 {
-	(void)state;
 	nt_settings settings = {0};
 	nt_update_options only_written = usual;
 	only_written.look = false;
@@ -102,9 +99,8 @@ static void a_record_can_be_written_without_being_asked(void **state)
 	assert_int_equal(access(".nmtan-record", F_OK), -1);
 }
 
-static void streams_and_pipes_have_no_record(void **state)
+TEST(streams_and_pipes_have_no_record)
 {
-	(void)state;
 	nt_update *update;
 	nt_update_job job;
 	nt_error error;
@@ -126,9 +122,8 @@ static void streams_and_pipes_have_no_record(void **state)
 	nt_trace_free(&trace);
 }
 
-static void a_record_that_cannot_be_is_refused_before_anything_runs(void **state)
+TEST(a_record_that_cannot_be_is_refused_before_anything_runs)
 {
-	(void)state;
 	nt_update *update;
 	nt_error error;
 	nt_update_options options = usual;
@@ -138,9 +133,8 @@ static void a_record_that_cannot_be_is_refused_before_anything_runs(void **state
 	nt_update_end(NULL);
 }
 
-static void an_exhausted_memory_is_told(void **state)
+TEST(an_exhausted_memory_is_told)
 {
-	(void)state;
 	nt_settings settings = {0};
 	put_at("a.obj", 2000);
 	put_at("a.glb", 3000);
@@ -165,15 +159,4 @@ static void an_exhausted_memory_is_told(void **state)
 	}
 }
 
-int main(void)
-{
-	const struct CMUnitTest tests[] = {
-		unit_test_inside_folder(without_a_record_nothing_is_current),
-		unit_test_inside_folder(a_record_decides_where_it_knows_the_output),
-		unit_test_inside_folder(a_record_can_be_written_without_being_asked),
-		unit_test_inside_folder(streams_and_pipes_have_no_record),
-		unit_test_inside_folder(a_record_that_cannot_be_is_refused_before_anything_runs),
-		unit_test_inside_folder(an_exhausted_memory_is_told),
-	};
-	return cmocka_run_group_tests_name("batch/update", tests, NULL, NULL);
-}
+AROUND_EACH(enter_folder, leave_folder)

@@ -141,7 +141,4 @@ TEST(a_line_needs_no_memory)
 	assert_int_equal(nt_manifest_close(&manifest, &error), NT_OK);
 }
 
-int main(void)
-{
-	return run_group_within("cli/manifest", enter_folder, leave_folder);
-}
+AROUND_ALL(enter_folder, leave_folder)

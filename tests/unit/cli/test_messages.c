@@ -185,8 +185,3 @@ TEST(of_many_exit_codes_the_worst_counts)
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		assert_int_equal(nt_exit_code(rows[i].status), rows[i].code);
 }
-
-int main(void)
-{
-	return run_group("cli/messages");
-}

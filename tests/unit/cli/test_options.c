@@ -383,8 +383,3 @@ TEST(options_that_shape_outputs_are_spelled_in_one_way)
 	shapes("--origin=1,2,3", WORDS("--origin=1,2,3", "a", "b.glb"));
 	shapes("--uv=0 --bitangents", WORDS("--bitangents", "--uv=0", "--bitangents", "a", "b.glb"));
 }
-
-int main(void)
-{
-	return run_group("cli/options");
-}

@@ -54,8 +54,3 @@ TEST(digest_without_memory_is_none)
 	}
 	nt_digest_free(NULL);
 }
-
-int main(void)
-{
-	return run_group("ext/digest");
-}

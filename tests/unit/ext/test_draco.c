@@ -601,8 +601,3 @@ TEST(shared_models_decode_and_round_trip)
 		free(bytes);
 	}
 }
-
-int main(void)
-{
-	return run_group("ext/draco");
-}

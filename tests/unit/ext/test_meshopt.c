@@ -146,9 +146,10 @@ static bool is_near(const nt_meshopt_view *v, const unsigned char *a, const unsi
 	return near;
 }
 
-static int compare_views(const char *path)
+static int compare_views(int argument_count, char **arguments)
 {
-	FILE *f = fopen(path, "rb");
+	(void)argument_count;
+	FILE *f = fopen(arguments[1], "rb");
 	char mode[32], filter[32];
 	unsigned long long stride, count, packed;
 	size_t views = 0, version_1 = 0, bad = 0;
@@ -179,7 +180,4 @@ static int compare_views(const char *path)
 	return bad || !views;
 }
 
-int main(int count, char **arguments)
-{
-	return count == 2 ? compare_views(arguments[1]) : run_group("ext/meshopt");
-}
+WITH_ARGUMENTS(compare_views)

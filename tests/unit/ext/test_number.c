@@ -60,8 +60,3 @@ TEST(json_numbers_read_back)
 		assert_memory_equal(&small_back, &small, sizeof small);
 	}
 }
-
-int main(void)
-{
-	return run_group("ext/number");
-}

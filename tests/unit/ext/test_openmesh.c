@@ -216,8 +216,3 @@ TEST(hub_is_not_quadratic)
 {
 	assert_true(grows_slowly(walk_hub, 7500));
 }
-
-int main(void)
-{
-	return run_group("ext/openmesh");
-}

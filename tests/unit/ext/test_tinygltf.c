@@ -219,8 +219,3 @@ TEST(deep_json_is_refused_before_it_is_parsed)
 	assert_null(reread);
 	free(text);
 }
-
-int main(void)
-{
-	return run_group("ext/tinygltf");
-}

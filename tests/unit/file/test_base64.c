@@ -49,7 +49,4 @@ TEST(large_blocks_pass_the_buffer_whole)
 	free(bytes);
 }
 
-int main(void)
-{
-	return run_group_within("file/base64", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -96,8 +96,3 @@ TEST(floats_written_and_read_back)
 		assert_true(back == strtof(text, NULL));
 	}
 }
-
-int main(void)
-{
-	return run_group("file/decimal");
-}

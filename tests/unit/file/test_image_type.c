@@ -129,8 +129,3 @@ TEST(what_is_cut_short_or_empty_has_none)
 	assert_false(nt_image_size(flat, sizeof flat, pixels));
 	assert_false(nt_image_size((const unsigned char *)"GIF89a", 6, pixels));
 }
-
-int main(void)
-{
-	return run_group("file/image_type");
-}

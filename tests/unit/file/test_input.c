@@ -137,7 +137,4 @@ TEST(input_pipe_is_read_to_its_end)
 	assert_int_equal(waitpid(child, NULL, 0), child);
 }
 
-int main(void)
-{
-	return run_group_each_within("file/input", make_folder, remove_folder);
-}
+AROUND_EACH(make_folder, remove_folder)

@@ -85,7 +85,4 @@ TEST(a_name_is_found_in_any_case_and_the_first_of_several)
 	entry_is("there", "n.png", NULL);
 }
 
-int main(void)
-{
-	return run_group_within("file/lookup", enter_folder, leave_folder);
-}
+AROUND_ALL(enter_folder, leave_folder)

@@ -438,7 +438,4 @@ TEST(output_full_disk_is_an_error)
 	assert_string_equal(error.place.file, "/dev/full");
 }
 
-int main(void)
-{
-	return run_group_each_within("file/output", make_folder, remove_folder);
-}
+AROUND_EACH(make_folder, remove_folder)

@@ -102,8 +102,3 @@ TEST(absolute_paths_are_of_this_system)
 	snprintf(expected, sizeof expected, "%s/x", here);
 	assert_string_equal(taken(&text), expected);
 }
-
-int main(void)
-{
-	return run_group("file/relative_path");
-}

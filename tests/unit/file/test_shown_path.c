@@ -57,8 +57,3 @@ TEST(without_paths_names_are_as_they_are_spelled)
 	assert_string_equal(shown.data, "../a.obj");
 	nt_buffer_free(&shown);
 }
-
-int main(void)
-{
-	return run_group("file/shown_path");
-}

@@ -209,7 +209,4 @@ TEST(every_failed_allocation_is_said)
 	}
 }
 
-int main(void)
-{
-	return run_group_each_within("file/sidecar", make_folder, remove_folder);
-}
+AROUND_EACH(make_folder, remove_folder)

@@ -204,7 +204,4 @@ TEST(a_leader_has_the_lock_of_others)
 	assert_int_equal(rmdir(in_folder("led")), 0);
 }
 
-int main(void)
-{
-	return run_group_within("file/temporary", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

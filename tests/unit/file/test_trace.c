@@ -108,7 +108,4 @@ TEST(an_exhausted_memory_is_remembered)
 	assert_true(failures > 0 && failures < 20);
 }
 
-int main(void)
-{
-	return run_group_within("file/trace", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -118,7 +118,4 @@ TEST(paths_are_percent_encoded)
 	nt_buffer_free(&text);
 }
 
-int main(void)
-{
-	return run_group_within("file/uri", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -193,8 +193,10 @@ TEST(devices_are_refused)
 	assert_string_equal(error.place.file, "/dev/full");
 }
 
-int main(void)
+static int set_up(void **state)
 {
 	page = (size_t)sysconf(_SC_PAGESIZE);
-	return run_group_within("file/watch", make_folder, remove_folder);
+	return make_folder(state);
 }
+
+AROUND_ALL(set_up, remove_folder)

@@ -106,11 +106,4 @@ TEST(inside_is_what_links_do_not_lead_out_of)
 	free(in);
 }
 
-int main(void)
-{
-	const struct CMUnitTest tests[] = {
-		unit_test_inside_folder(a_path_leads_where_the_system_goes),
-		unit_test_inside_folder(inside_is_what_links_do_not_lead_out_of),
-	};
-	return cmocka_run_group_tests_name("file/way", tests, NULL, NULL);
-}
+AROUND_EACH(enter_folder, leave_folder)

@@ -125,8 +125,3 @@ TEST(truncated_files_are_refused)
 	}
 	nt_draco_block_free(&block);
 }
-
-int main(void)
-{
-	return run_group("format/drc");
-}

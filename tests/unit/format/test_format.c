@@ -41,8 +41,3 @@ TEST(every_format_is_found_by_its_number)
 	}
 	assert_null(nt_format_find(NT_FORMAT_UNKNOWN));
 }
-
-int main(void)
-{
-	return run_group("format/format");
-}

@@ -105,8 +105,3 @@ TEST(indices_are_stored_and_read)
 			nt_arena_free(&arena);
 		}
 }
-
-int main(void)
-{
-	return run_group("gltf/accessor");
-}

@@ -105,8 +105,3 @@ TEST(every_file_is_read_or_refused_with_a_place)
 	assert_true(tally.opened > 150);
 	assert_true(tally.loaded > 20);
 }
-
-int main(void)
-{
-	return run_group("gltf/corpus");
-}

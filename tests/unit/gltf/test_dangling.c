@@ -144,8 +144,3 @@ TEST(an_added_buffer_is_not_what_the_file_refers_to)
 	}
 	nt_scene_free(&scene);
 }
-
-int main(void)
-{
-	return run_group("gltf/dangling");
-}

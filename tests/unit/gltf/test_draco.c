@@ -117,8 +117,3 @@ TEST(the_grid_of_tangents_has_both_signs)
 		assert_true(next.origin[3] == -1 && next.range == 2 && next.bits >= 14);
 	}
 }
-
-int main(void)
-{
-	return run_group("gltf/draco");
-}

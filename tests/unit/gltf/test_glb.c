@@ -87,7 +87,4 @@ TEST(four_gigabytes_are_refused)
 	assert_int_equal(nt_glb_begin(NULL, 2, true, UINT64_MAX, 0, &error), NT_ERROR_UNSUPPORTED);
 }
 
-int main(void)
-{
-	return run_group_within("gltf/glb", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -90,7 +90,4 @@ TEST(damaged_files_end_with_a_status)
 	assert_true(tally.geometry * 3 >= tally.runs);
 }
 
-int main(void)
-{
-	return run_group_within("gltf/hostile", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -166,8 +166,3 @@ TEST(many_kinds_cost_linear_time)
 	nt_scene_free(&scene);
 	nt_buffer_free(&json);
 }
-
-int main(void)
-{
-	return run_group("gltf/joins");
-}

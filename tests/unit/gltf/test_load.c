@@ -108,8 +108,3 @@ TEST(meshes_are_loaded_by_several_threads)
 	check_with(2);
 	check_with(MOST_THREADS);
 }
-
-int main(void)
-{
-	return run_group("gltf/load");
-}

@@ -55,8 +55,3 @@ TEST(few_are_stored_sparse)
 	const nt_morph_storage dense = nt_morph_choose_storage(NT_GLTF_BYTE, 100, 90);
 	assert_true(!dense.sparse && dense.stride == 4 && dense.size == 400);
 }
-
-int main(void)
-{
-	return run_group("gltf/morph_deltas");
-}

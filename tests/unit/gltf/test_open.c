@@ -432,8 +432,3 @@ TEST(buffers_are_opened_only_when_wanted)
 	assert_int_equal(document->bytes_opened, sizeof quad);
 	close_text(&f);
 }
-
-int main(void)
-{
-	return run_group("gltf/open");
-}

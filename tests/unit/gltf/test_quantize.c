@@ -78,8 +78,3 @@ TEST(what_has_no_direction_becomes_zero)
 	assert_memory_equal(out, ((int8_t[]){0, 0, 0, 127, 0, 0, 0, -127, 127, 0, 0, 127}), 12);
 	assert_int_equal(cost.count, 1);
 }
-
-int main(void)
-{
-	return run_group("gltf/quantize");
-}

@@ -144,8 +144,3 @@ TEST(a_hundred_thousand_primitives_are_no_burden)
 	close_scene();
 	nt_buffer_free(&primitives);
 }
-
-int main(void)
-{
-	return run_group("gltf/same_geometry");
-}

@@ -105,8 +105,3 @@ TEST(exponential_elements_have_w_exactly)
 		assert_int_equal(nt_filter_bits("EXPONENTIAL", stored, COUNT, 16, NT_GLTF_FLOAT, 4), bits[c]);
 	}
 }
-
-int main(void)
-{
-	return run_group("gltf/tangent_filter");
-}

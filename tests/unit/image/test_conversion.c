@@ -129,8 +129,3 @@ TEST(conversions_without_memory_are_an_error)
 		free(made.bytes);
 	}
 }
-
-int main(void)
-{
-	return run_group("image/conversion");
-}

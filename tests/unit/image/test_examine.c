@@ -191,8 +191,3 @@ TEST(examining_without_memory_is_an_error)
 	assert_true(stop_failing_allocations());
 	nt_pixels_free(&p);
 }
-
-int main(void)
-{
-	return run_group("image/examine");
-}

@@ -172,7 +172,4 @@ TEST(finding_without_memory_is_an_error)
 		}
 }
 
-int main(void)
-{
-	return run_group_within("image/find", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

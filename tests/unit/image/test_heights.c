@@ -150,8 +150,3 @@ TEST(normals_without_memory_are_none)
 	}
 	nt_pixels_free(&heights);
 }
-
-int main(void)
-{
-	return run_group("image/heights");
-}

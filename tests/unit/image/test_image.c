@@ -613,7 +613,4 @@ TEST(decode_without_memory_is_an_error)
 	}
 }
 
-int main(void)
-{
-	return run_group_within("image/image", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -123,8 +123,3 @@ TEST(alpha_has_a_mode)
 	assert_int_equal(alpha_of(0, 0, 1, 99), NT_ALPHA_BLEND);
 	assert_int_equal(alpha_of(0, 1, 0, 99), NT_ALPHA_BLEND);
 }
-
-int main(void)
-{
-	return run_group("image/pack");
-}

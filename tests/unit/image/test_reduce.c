@@ -102,8 +102,3 @@ TEST(reduce_refuses_what_is_no_image_and_lacks_memory)
 	free(jpeg);
 	free(source);
 }
-
-int main(void)
-{
-	return run_group("image/reduce");
-}

@@ -146,7 +146,4 @@ TEST(textures_without_memory_are_an_error)
 	}
 }
 
-int main(void)
-{
-	return run_group_within("image/textures", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -531,8 +531,3 @@ TEST(what_is_no_number_becomes_null_and_is_copied)
 	check_dump(document, "[null,null,null]");
 	nt_json_free(document);
 }
-
-int main(void)
-{
-	return run_group("json/json");
-}

@@ -133,8 +133,3 @@ TEST(colors_reach_over_chunks)
 	}
 	free(text);
 }
-
-int main(void)
-{
-	return run_group("obj/colors");
-}

@@ -187,8 +187,3 @@ TEST(every_changed_byte_is_survived)
 			close_reading(&r);
 		}
 }
-
-int main(void)
-{
-	return run_group("obj/damage");
-}

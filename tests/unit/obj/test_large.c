@@ -472,8 +472,3 @@ TEST(public_models_agree_with_the_naive_reader)
 	closedir(dir);
 	assert_true(count > 10);
 }
-
-int main(void)
-{
-	return run_group("obj/large");
-}

@@ -162,8 +162,3 @@ TEST(locate_out_of_memory)
 	assert_true(count > 5); /* the lines, the table of corners, positions, corners, faces, the result */
 	close_reading(&r);
 }
-
-int main(void)
-{
-	return run_group("obj/locate");
-}

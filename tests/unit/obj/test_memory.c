@@ -105,7 +105,4 @@ TEST(allocations_of_large_polygons_may_fail)
 	assert_true(sound);
 }
 
-int main(void)
-{
-	return run_group_within("obj/memory", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

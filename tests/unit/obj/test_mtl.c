@@ -364,7 +364,4 @@ TEST(nothing_outside_the_folder_is_read)
 	close_reading(&r);
 }
 
-int main(void)
-{
-	return run_group_within("obj/mtl", make_libraries, remove_folder);
-}
+AROUND_ALL(make_libraries, remove_folder)

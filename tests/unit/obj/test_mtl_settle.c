@@ -213,8 +213,3 @@ TEST(what_is_lost_is_named)
 		close_reading(&r);
 	}
 }
-
-int main(void)
-{
-	return run_group("obj/mtl_settle");
-}

@@ -435,8 +435,3 @@ TEST(content_is_recognised)
 		assert_false(nt_obj_recognise((const unsigned char *)no[i], strlen(no[i])));
 	assert_false(nt_obj_recognise((const unsigned char *)"\0v 1 2 3\n", 9));
 }
-
-int main(void)
-{
-	return run_group("obj/read");
-}

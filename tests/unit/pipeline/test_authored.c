@@ -165,8 +165,3 @@ TEST(reversed_tangents_do_not_stay)
 		authored[k][0] = 0, authored[k][1] = 1; /* a right angle is what averaging may do */
 	assert_int_equal(restore(square, authored, solved, 0).replaced_tangents, 0);
 }
-
-int main(void)
-{
-	return run_group("pipeline/authored");
-}

@@ -120,7 +120,4 @@ TEST(failed_allocations_end_the_run)
 	assert_true(failures > 30);
 }
 
-int main(void)
-{
-	return run_group_within("pipeline/folded_quads", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -159,7 +159,4 @@ TEST(meshes_without_texture_area_are_unmapped)
 	assert_int_equal(convert_and_count((nt_settings){0}, NT_CODE_UV_DEGENERATE_TRIANGLE), 1);
 }
 
-int main(void)
-{
-	return run_group_within("pipeline/kept", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -120,28 +120,19 @@ static void assert_peak(const char *small, const char *large, const char *output
 }
 
 /* The base64 of a buffer is not held. */
-static void a_glb_and_a_gltf_with_its_buffer_inside_take_little_more_than_their_output(void **state)
+TEST(a_glb_and_a_gltf_with_its_buffer_inside_take_little_more_than_their_output)
 {
-	(void)state;
 	make_glb("small.glb", 1);
 	make_glb("large.glb", SIDE);
 	assert_peak(in_folder("small.glb"), in_folder("large.glb"), in_folder("out.glb"));
 	assert_peak(in_folder("small.glb"), in_folder("large.glb"), in_folder("out.gltf"));
 }
 
-static void an_obj_takes_little_more_than_its_output(void **state)
+TEST(an_obj_takes_little_more_than_its_output)
 {
-	(void)state;
 	make_obj(in_folder("small.obj"), 1);
 	make_obj(in_folder("large.obj"), SIDE);
 	assert_peak(in_folder("small.obj"), in_folder("large.obj"), in_folder("out.glb"));
 }
 
-int main(void)
-{
-	const struct CMUnitTest tests[] = {
-		unit_test_in_folder(a_glb_and_a_gltf_with_its_buffer_inside_take_little_more_than_their_output),
-		unit_test_in_folder(an_obj_takes_little_more_than_its_output),
-	};
-	return cmocka_run_group_tests_name("pipeline/memory", tests, NULL, NULL);
-}
+AROUND_EACH(make_folder, remove_folder)

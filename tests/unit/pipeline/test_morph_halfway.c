@@ -197,7 +197,4 @@ TEST(the_finding_names_the_target)
 	assert_string_equal(detail, "target 0, 18.4 degrees");
 }
 
-int main(void)
-{
-	return run_group_within("pipeline/morph_halfway", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -191,7 +191,4 @@ static int set_up(void **state)
 	return 0;
 }
 
-int main(void)
-{
-	return run_group_within("pipeline/morphs", set_up, remove_folder);
-}
+AROUND_ALL(set_up, remove_folder)

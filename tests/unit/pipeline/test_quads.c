@@ -216,7 +216,4 @@ TEST(simple_quads_are_written_inside_and_w_fits_each_triangle)
 	assert_true(kept > 5 * QUADS);
 }
 
-int main(void)
-{
-	return run_group_within("pipeline/quads", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -253,7 +253,4 @@ TEST(w_is_exact_on_damaged_geometry)
 	assert_true(count.wrong * 100 < count.judged);
 }
 
-int main(void)
-{
-	return run_group_within("pipeline/sign_rule", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

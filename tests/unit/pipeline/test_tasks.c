@@ -138,9 +138,8 @@ static void assert_same_findings(const nt_finding_list *a, const nt_finding_list
 	}
 }
 
-static void the_same_as_where_geometry_is_kept(void **state)
+TEST(the_same_as_where_geometry_is_kept)
 {
-	(void)state;
 	put_scene(2 * KINDS, SIZE_MAX);
 	nt_summary first = convert_file("in.glb", "first.glb", (nt_settings){.verify = true, .threads = 1});
 	assert_int_equal(first.solved_count, 2 * KINDS);
@@ -164,9 +163,8 @@ static void the_same_as_where_geometry_is_kept(void **state)
 }
 
 /* Tangents that are there, of another type than they would get, and valid: --existing=repair writes none of them. */
-static void what_needs_no_repair_stays(void **state)
+TEST(what_needs_no_repair_stays)
 {
-	(void)state;
 	put_scene(2 * KINDS, SIZE_MAX);
 	nt_summary summary = convert_file("in.glb", "first.glb", (nt_settings){.precision = NT_PRECISION_SHORT});
 	nt_summary_free(&summary);
@@ -186,9 +184,8 @@ static void begin_stage(void *run, nt_stage stage)
 }
 
 /* Data of each mesh after its window: of those that share vertices with others the writer has the results. */
-static void geometry_is_let_go_of_where_only_results_count(void **state)
+TEST(geometry_is_let_go_of_where_only_results_count)
 {
-	(void)state;
 	put_scene(KINDS, SIZE_MAX);
 	for (int only_results = 0; only_results < 2; only_results++) {
 		const nt_settings settings = {.texcoord_set = -1, .threads = 2};
@@ -227,9 +224,8 @@ static void geometry_is_let_go_of_where_only_results_count(void **state)
 }
 
 /* The first fault of the file is told, although a later mesh may be loaded earlier. */
-static void the_first_fault_is_told(void **state)
+TEST(the_first_fault_is_told)
 {
-	(void)state;
 	enum { FAULTY = 2 * KINDS + TAIL };
 	put_scene(4 * KINDS, FAULTY);
 	for (unsigned threads = 1; threads <= 4; threads++) {
@@ -246,22 +242,11 @@ static void the_first_fault_is_told(void **state)
 	}
 }
 
-static void exhausted_memory_is_told(void **state)
+TEST(exhausted_memory_is_told)
 {
-	(void)state;
 	put_scene(KINDS, SIZE_MAX);
 	for (unsigned threads = 1; threads <= 2; threads++)
 		assert_true(exhaust_memory(in_folder("in.glb"), (nt_settings){.threads = threads}) > 50);
 }
 
-int main(void)
-{
-	const struct CMUnitTest tests[] = {
-		unit_test_in_folder(the_same_as_where_geometry_is_kept),
-		unit_test_in_folder(what_needs_no_repair_stays),
-		unit_test_in_folder(geometry_is_let_go_of_where_only_results_count),
-		unit_test_in_folder(the_first_fault_is_told),
-		unit_test_in_folder(exhausted_memory_is_told),
-	};
-	return cmocka_run_group_tests_name("pipeline/tasks", tests, NULL, NULL);
-}
+AROUND_EACH(make_folder, remove_folder)

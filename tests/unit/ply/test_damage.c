@@ -309,8 +309,3 @@ TEST(every_allocation_for_an_origin_may_fail)
 	}
 	assert_true(n > 20);
 }
-
-int main(void)
-{
-	return run_group("ply/damage");
-}

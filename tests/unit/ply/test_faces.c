@@ -274,8 +274,3 @@ TEST(runs_end_at_an_index_out_of_range)
 	}
 	free(bytes);
 }
-
-int main(void)
-{
-	return run_group("ply/faces");
-}

@@ -125,8 +125,3 @@ TEST(runs_end_at_the_first_other_row)
 	free(text);
 	free(read);
 }
-
-int main(void)
-{
-	return run_group("ply/pieces");
-}

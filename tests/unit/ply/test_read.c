@@ -287,8 +287,3 @@ TEST(shared_models_are_read)
 	closedir(stream);
 	assert_true(count > 0);
 }
-
-int main(void)
-{
-	return run_group("ply/read");
-}

@@ -578,7 +578,4 @@ TEST(every_allocation_may_fail)
 	assert_true(n > 10);
 }
 
-int main(void)
-{
-	return run_group_each_within("ply/write", make_folder, remove_folder);
-}
+AROUND_EACH(make_folder, remove_folder)

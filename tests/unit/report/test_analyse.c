@@ -443,8 +443,3 @@ TEST(baseline_knows_geometry_where_names_have_changed)
 		hand_free(h, report);
 	}
 }
-
-int main(void)
-{
-	return run_group("report/analyse");
-}

@@ -278,8 +278,3 @@ TEST(manual_lists_every_code_as_the_table_has_it)
 	free(found);
 	nt_buffer_free(&expected);
 }
-
-int main(void)
-{
-	return run_group("report/codes");
-}

@@ -174,8 +174,3 @@ TEST(a_needle_whose_winding_is_rounding_is_nearly_degenerate_and_nothing_else)
 	assert_int_equal(mirror_findings(report), 0);
 	hand_free(h, report);
 }
-
-int main(void)
-{
-	return run_group("report/flips");
-}

@@ -301,8 +301,3 @@ TEST(borders_do_not_hide_the_method)
 	maker = find_with(&g, tangents, false, true, border);
 	assert_true(maker.known && !maker.across);
 }
-
-int main(void)
-{
-	return run_group("report/maker");
-}

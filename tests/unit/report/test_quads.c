@@ -217,8 +217,3 @@ TEST(folded_quads_have_the_sign_that_mikktspace_gives_them)
 	}
 	assert_true(folded > 100 && ties > 10);
 }
-
-int main(void)
-{
-	return run_group("report/quads");
-}

@@ -403,8 +403,3 @@ TEST(fingerprint_survives_other_indices_but_not_another_place)
 	assert_false(seam_fingerprint(h) == before);
 	hand_free(h, NULL);
 }
-
-int main(void)
-{
-	return run_group("report/seams");
-}

@@ -75,8 +75,3 @@ TEST(two_hundred_thousand_objects_are_no_burden)
 		assert_int_equal(list.items[i].count, 2);
 	nt_finding_list_free(&list);
 }
-
-int main(void)
-{
-	return run_group("scene/finding");
-}

@@ -142,8 +142,3 @@ TEST(a_centre_that_moves_more_vertices_is_left)
 	assert_true(scene.findings.items[0].stays);
 	nt_scene_free(&scene);
 }
-
-int main(void)
-{
-	return run_group("scene/origin");
-}

@@ -286,8 +286,3 @@ TEST(sound_results_have_no_turned_triangle)
 	}
 	assert_true(sound_count > 1000);
 }
-
-int main(void)
-{
-	return run_group("scene/polygon");
-}

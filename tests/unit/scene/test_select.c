@@ -110,8 +110,3 @@ TEST(every_decision_has_its_words)
 		assert_string_not_equal(nt_decision_text((nt_decision)i), "unknown");
 	assert_string_equal(nt_decision_text(NT_DECISION_COUNT), "unknown");
 }
-
-int main(void)
-{
-	return run_group("scene/select");
-}

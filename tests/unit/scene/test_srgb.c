@@ -58,8 +58,3 @@ TEST(finite_stays_finite)
 	assert_true(isinf(nt_srgb_from_linear(-INFINITY)) && isinf(nt_linear_from_srgb(&srgb, INFINITY)));
 	assert_true(isnan(nt_srgb_from_linear(NAN)));
 }
-
-int main(void)
-{
-	return run_group("scene/srgb");
-}

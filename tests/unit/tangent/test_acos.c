@@ -33,8 +33,3 @@ TEST(ends_and_nan)
 	assert_true(nt_acos(0.0f) == (float)M_PI_2);
 	assert_true(isnan(nt_acos(NAN)));
 }
-
-int main(void)
-{
-	return run_group("tangent/acos");
-}

@@ -165,8 +165,3 @@ TEST(robust_counts_what_is_lost)
 	for (int c = 0; c < 3; c++)
 		assert_true(tangents[c][0] == 1.0f && tangents[c][2] == 0.0f && tangents[c][3] == 1.0f);
 }
-
-int main(void)
-{
-	return run_group("tangent/frames");
-}

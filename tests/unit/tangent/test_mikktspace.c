@@ -89,8 +89,3 @@ TEST(limits_are_counted)
 			}
 	}
 }
-
-int main(void)
-{
-	return run_group("tangent/mikktspace");
-}

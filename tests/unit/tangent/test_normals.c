@@ -255,8 +255,3 @@ TEST(where_faces_cancel_corners_have_their_faces)
 		assert_true(n[c][3] == 1.0f);
 	}
 }
-
-int main(void)
-{
-	return run_group("tangent/normals");
-}

@@ -617,8 +617,3 @@ TEST(properties_hold_on_real_models)
 	}
 	assert_int_equal(broken, 0);
 }
-
-int main(void)
-{
-	return run_group("tangent/properties");
-}

@@ -525,8 +525,3 @@ TEST(noise_along_the_normal_is_no_answer)
 	}
 	assert_true(sum.repaired > 0);
 }
-
-int main(void)
-{
-	return run_group("tangent/repair");
-}

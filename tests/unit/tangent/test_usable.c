@@ -162,8 +162,3 @@ TEST(tangents_are_not_parallel_to_normals_of_any_length)
 	assert_int_equal(parallel, 0);
 	assert_true(raw_parallel > 1000);
 }
-
-int main(void)
-{
-	return run_group("tangent/usable");
-}

@@ -153,8 +153,3 @@ TEST(few_vertices_need_not_be_counted)
 			assert_int_equal(a.narrow[degrees[ids[i]]++ * a.step + ids[i]], 0x40008000 | ids[i] << 16 | i);
 	nt_scratch_free(&scratch);
 }
-
-int main(void)
-{
-	return run_group("topology/adjacency");
-}

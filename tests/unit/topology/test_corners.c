@@ -55,8 +55,3 @@ TEST(indexed_corners_take_their_vertex)
 	assert_memory_equal(ids, expected, sizeof ids);
 	nt_scratch_free(&scratch);
 }
-
-int main(void)
-{
-	return run_group("topology/corners");
-}

@@ -523,8 +523,3 @@ TEST(every_failed_allocation_is_told)
 	assert_in_range(allowed, 5, 100);
 	assert_true(found > 0);
 }
-
-int main(void)
-{
-	return run_group("topology/edge_sort");
-}

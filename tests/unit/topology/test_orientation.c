@@ -231,8 +231,3 @@ TEST(a_quad_without_a_normal_is_written_as_it_is_solved)
 		assert_int_equal(nt_written_quad_diagonal(1, q.positions), 1);
 	}
 }
-
-int main(void)
-{
-	return run_group("topology/orientation");
-}

@@ -203,8 +203,3 @@ TEST(one_is_found_as_all_are)
 		assert_int_equal(one, found[v]);
 	}
 }
-
-int main(void)
-{
-	return run_group("topology/representatives");
-}

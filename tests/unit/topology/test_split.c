@@ -143,8 +143,3 @@ TEST(unused_vertices_get_a_unit_tangent)
 	assert_true(t[0] == 0.0f && fabsf(t[1] * t[1] + t[2] * t[2] - 1.0f) < 1e-6f && t[3] == 1.0f);
 	assert_true(vertex_tangents[4][0] == 1.0f && vertex_tangents[4][3] == 1.0f);
 }
-
-int main(void)
-{
-	return run_group("topology/split");
-}

@@ -392,8 +392,3 @@ TEST(every_failed_allocation_is_told)
 		free(indices);
 	}
 }
-
-int main(void)
-{
-	return run_group("topology/weld");
-}

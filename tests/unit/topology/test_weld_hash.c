@@ -100,8 +100,3 @@ TEST(structured_rows_spread_like_random_ones)
 	}
 	free(hashes);
 }
-
-int main(void)
-{
-	return run_group("topology/weld_hash");
-}

@@ -28,7 +28,7 @@ static int tear_down(void **state)
 static const float out_bitangents[] = {
 	0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, -0.0f, 1, -0.0f};
 
-static void one_primitive_is_the_same_in_every_container(void **state)
+TEST(one_primitive_is_the_same_in_every_container)
 {
 	nt_scene *scene = *state;
 	static const char *const names[] = {"one.gltf", "one embedded.gltf", "one.glb"};
@@ -46,7 +46,7 @@ static void one_primitive_is_the_same_in_every_container(void **state)
 		"\"generator\":\"nmtan " NMTAN_VERSION_STRING "\""));
 }
 
-static void several_primitives_get_their_own_vertices(void **state)
+TEST(several_primitives_get_their_own_vertices)
 {
 	nt_scene *scene = *state;
 	divide(&hand);
@@ -75,7 +75,7 @@ static void several_primitives_get_their_own_vertices(void **state)
 	close_back(&file);
 }
 
-static void mesh_without_tangents_is_written_without(void **state)
+TEST(mesh_without_tangents_is_written_without)
 {
 	nt_scene *scene = *state;
 	hand.mesh.split = (nt_split){0};
@@ -103,7 +103,7 @@ static void mesh_without_tangents_is_written_without(void **state)
 	assert_int_equal(compose(scene, (nt_write_options){0}, "bare.glb", &error), NT_ERROR_INTERNAL);
 }
 
-static void triangles_without_indices_stay_without(void **state)
+TEST(triangles_without_indices_stay_without)
 {
 	nt_scene *scene = *state;
 	float *const positions = hand.mesh.positions;
@@ -118,7 +118,7 @@ static void triangles_without_indices_stay_without(void **state)
 	close_back(&file);
 }
 
-static void index_65535_is_reserved(void **state)
+TEST(index_65535_is_reserved)
 {
 	nt_scene *scene = *state;
 	enum { MOST = 65536 };
@@ -141,7 +141,7 @@ static void index_65535_is_reserved(void **state)
 	free(many);
 }
 
-static void bounds_are_finite_whatever_the_positions_are(void **state)
+TEST(bounds_are_finite_whatever_the_positions_are)
 {
 	nt_scene *scene = *state;
 	float wild[] = {NAN, -INFINITY, NAN, NAN, 2, INFINITY, NAN, 3, INFINITY};
@@ -152,7 +152,7 @@ static void bounds_are_finite_whatever_the_positions_are(void **state)
 		"\"min\":[0.0,-3.4028234663852886e+38,3.4028234663852886e+38]"));
 }
 
-static void empty_scene_is_refused(void **state)
+TEST(empty_scene_is_refused)
 {
 	nt_scene *scene = *state;
 	nt_error error;
@@ -161,7 +161,7 @@ static void empty_scene_is_refused(void **state)
 	assert_false(exists("empty.gltf"));
 }
 
-static void gltf_with_a_bin_cannot_go_to_standard_output(void **state)
+TEST(gltf_with_a_bin_cannot_go_to_standard_output)
 {
 	nt_scene *scene = *state;
 	const nt_write_options options = {.format = NT_FORMAT_GLTF, .path = "-"};
@@ -169,17 +169,5 @@ static void gltf_with_a_bin_cannot_go_to_standard_output(void **state)
 	assert_int_equal(nt_gltf_compose(scene, &options, NULL, &error), NT_ERROR_USAGE);
 }
 
-int main(void)
-{
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(one_primitive_is_the_same_in_every_container, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(several_primitives_get_their_own_vertices, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(mesh_without_tangents_is_written_without, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(triangles_without_indices_stay_without, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(index_65535_is_reserved, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(bounds_are_finite_whatever_the_positions_are, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(empty_scene_is_refused, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(gltf_with_a_bin_cannot_go_to_standard_output, set_up, tear_down),
-	};
-	return cmocka_run_group_tests_name("gltf/create/create", tests, make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)
+AROUND_EACH(set_up, tear_down)

@@ -76,7 +76,7 @@ static const nt_finding *finding_of(const nt_scene *scene, nt_code code)
 	return NULL;
 }
 
-static void linked_images_are_relative_to_the_output(void **state)
+TEST(linked_images_are_relative_to_the_output)
 {
 	nt_scene *scene = *state;
 	mkdir(in_folder("out"), 0777);
@@ -96,7 +96,7 @@ static void linked_images_are_relative_to_the_output(void **state)
 	assert_int_equal(scene->findings.count, 2);
 }
 
-static void embedded_images_lie_behind_the_geometry(void **state)
+TEST(embedded_images_lie_behind_the_geometry)
 {
 	nt_scene *scene = *state;
 	compose_images_well(scene, (nt_write_options){0}, "images.glb");
@@ -114,7 +114,7 @@ static void embedded_images_lie_behind_the_geometry(void **state)
 	close_back(&back);
 }
 
-static void copied_images_stand_beside_the_output(void **state)
+TEST(copied_images_stand_beside_the_output)
 {
 	nt_scene *scene = *state;
 	mkdir(in_folder("copies"), 0777);
@@ -136,14 +136,14 @@ static void copied_images_stand_beside_the_output(void **state)
 	assert_true(exists("mtl/a b-256d04da728a78c9.png"));
 }
 
-static void no_images_means_no_textures(void **state)
+TEST(no_images_means_no_textures)
 {
 	nt_scene *scene = *state;
 	compose_images_well(scene, (nt_write_options){.images = NT_IMAGES_NONE}, "none.gltf");
 	assert_file_says("none.gltf", PARTS("!exture", "\"material\":0"));
 }
 
-static void missing_and_foreign_images_are_findings(void **state)
+TEST(missing_and_foreign_images_are_findings)
 {
 	nt_scene *scene = *state;
 	hand.material.base_color_map.name = "gone.png";
@@ -168,7 +168,7 @@ static void missing_and_foreign_images_are_findings(void **state)
 	close_back(&file);
 }
 
-static void images_outside_of_the_mtl_folder_need_leave(void **state)
+TEST(images_outside_of_the_mtl_folder_need_leave)
 {
 	nt_scene *scene = *state;
 	scene->path = hand.material.library; /* beside the OBJ would be inside, too */
@@ -184,7 +184,7 @@ static void images_outside_of_the_mtl_folder_need_leave(void **state)
 		"\"uri\":\"mtl/n.jpg\""));
 }
 
-static void primitive_without_texcoords_gets_no_textures(void **state)
+TEST(primitive_without_texcoords_gets_no_textures)
 {
 	nt_scene *scene = *state;
 	hand.mesh.texcoords = NULL;
@@ -192,7 +192,7 @@ static void primitive_without_texcoords_gets_no_textures(void **state)
 	assert_file_says("plain.gltf", PARTS("!exture", "!images"));
 }
 
-static void images_are_safe_from_the_output(void **state)
+TEST(images_are_safe_from_the_output)
 {
 	nt_scene *scene = *state;
 	put_file("mtl/n.bin", png, sizeof png);
@@ -211,17 +211,5 @@ static void images_are_safe_from_the_output(void **state)
 	free(kept);
 }
 
-int main(void)
-{
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(linked_images_are_relative_to_the_output, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(embedded_images_lie_behind_the_geometry, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(copied_images_stand_beside_the_output, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(no_images_means_no_textures, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(missing_and_foreign_images_are_findings, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(images_outside_of_the_mtl_folder_need_leave, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(primitive_without_texcoords_gets_no_textures, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(images_are_safe_from_the_output, set_up, tear_down),
-	};
-	return cmocka_run_group_tests_name("gltf/create/images", tests, make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)
+AROUND_EACH(set_up, tear_down)

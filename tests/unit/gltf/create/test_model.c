@@ -210,8 +210,3 @@ TEST(misuse_is_reported_at_the_end)
 	nt_model_text_free(&text);
 	nt_model_free(model);
 }
-
-int main(void)
-{
-	return run_group("gltf/create/model");
-}

@@ -494,7 +494,4 @@ static int set_up(void **state)
 	return make_folder(state);
 }
 
-int main(void)
-{
-	return run_group_within("gltf/edit/compressed", set_up, remove_folder);
-}
+AROUND_ALL(set_up, remove_folder)

@@ -83,7 +83,4 @@ TEST(data_is_in_every_text)
 	nt_file_close(&sidecar);
 }
 
-int main(void)
-{
-	return run_group_within("gltf/edit/data_uris", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

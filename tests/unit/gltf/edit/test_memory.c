@@ -26,7 +26,4 @@ TEST(allocations_of_every_kind_of_edit_may_fail)
 	fail_each(NT_DATA_DIR "/transformed.gltf", (nt_settings){.output_format = NT_FORMAT_GLB});
 }
 
-int main(void)
-{
-	return run_group_within("gltf/edit/memory", make_folder, remove_folder);
-}
+AROUND_ALL(make_folder, remove_folder)

@@ -72,9 +72,8 @@ static void expect(nt_settings settings, size_t dropped, size_t marks, size_t us
 }
 
 /* Solved as triangles: on quads a folded half keeps the quad's sign, and no corner is copied. */
-static void polygon_whose_first_corner_is_copied_loses_its_mark(void **state)
+TEST(polygon_whose_first_corner_is_copied_loses_its_mark)
 {
-	(void)state;
 	put_file_of((int[]){SPLITS_FIRST}, 1, EXTENSION);
 	expect((nt_settings){.threads = 1, .quads = NT_QUADS_OFF}, 1, 0, 0);
 	nt_file out = file_in_folder("out.glb");
@@ -82,53 +81,37 @@ static void polygon_whose_first_corner_is_copied_loses_its_mark(void **state)
 	nt_file_close(&out);
 }
 
-static void polygon_whose_other_corners_are_copied_keeps_it(void **state)
+TEST(polygon_whose_other_corners_are_copied_keeps_it)
 {
-	(void)state;
 	put_file_of((int[]){SPLITS_OTHERS}, 1, EXTENSION);
 	expect((nt_settings){.threads = 1}, 0, 1, 1);
 }
 
-static void list_names_it_while_another_primitive_has_it(void **state)
+TEST(list_names_it_while_another_primitive_has_it)
 {
-	(void)state;
 	put_file_of((int[]){SPLITS_FIRST, SPLITS_OTHERS, SPLITS_FIRST}, 3, EXTENSION);
 	expect((nt_settings){.threads = 1, .quads = NT_QUADS_OFF}, 2, 1, 1);
 }
 
 /* Draco's edgebreaker gives triangles another order. */
-static void compressed_triangles_lose_it(void **state)
+TEST(compressed_triangles_lose_it)
 {
-	(void)state;
 	put_file_of((int[]){SPLITS_OTHERS}, 1, EXTENSION);
 	expect((nt_settings){.threads = 1, .draco = NT_DRACO_AS_EDGEBREAKER}, 1, 0, 0);
 }
 
 /* An extension that is listed without need is not ours to take away. */
-static void nothing_goes_where_nothing_was(void **state)
+TEST(nothing_goes_where_nothing_was)
 {
-	(void)state;
 	put_file_of((int[]){SPLITS_FIRST}, 1, "\"extras\":1");
 	expect((nt_settings){.threads = 1}, 0, 0, 1);
 }
 
 /* The polygons' halves and quads are allocated too. */
-static void exhausted_memory_is_told(void **state)
+TEST(exhausted_memory_is_told)
 {
-	(void)state;
 	put_file_of((int[]){SPLITS_FIRST, SPLITS_OTHERS}, 2, EXTENSION);
 	assert_true(exhaust_memory(in_folder("in.glb"), (nt_settings){.threads = 1}) > 30);
 }
 
-int main(void)
-{
-	const struct CMUnitTest tests[] = {
-		unit_test_in_folder(polygon_whose_first_corner_is_copied_loses_its_mark),
-		unit_test_in_folder(polygon_whose_other_corners_are_copied_keeps_it),
-		unit_test_in_folder(list_names_it_while_another_primitive_has_it),
-		unit_test_in_folder(compressed_triangles_lose_it),
-		unit_test_in_folder(nothing_goes_where_nothing_was),
-		unit_test_in_folder(exhausted_memory_is_told),
-	};
-	return cmocka_run_group_tests_name("gltf/edit/vertex_extensions", tests, NULL, NULL);
-}
+AROUND_EACH(make_folder, remove_folder)

@@ -57,9 +57,8 @@ static nt_status run(const char *to, unsigned threads, nt_error *error)
 }
 
 /* One thread writes one after the other. */
-static void a_long_json_is_the_same_for_any_number_of_threads(void **state)
+TEST(a_long_json_is_the_same_for_any_number_of_threads)
 {
-	(void)state;
 	nt_error error;
 	put_triangle();
 	assert_int_equal(run("one.glb", 1, &error), NT_OK);
@@ -75,9 +74,8 @@ static void a_long_json_is_the_same_for_any_number_of_threads(void **state)
 }
 
 /* An output that may not grow beyond some size: neither the text nor what is behind it fits, or the text alone. */
-static void a_file_that_may_not_grow_is_an_error_of_either_thread(void **state)
+TEST(a_file_that_may_not_grow_is_an_error_of_either_thread)
 {
-	(void)state;
 	static const rlim_t most[] = {EXTRAS_BYTES / 2, EXTRAS_BYTES + BIN_BYTES / 2};
 	struct rlimit unlimited;
 	put_triangle();
@@ -96,9 +94,8 @@ static void a_file_that_may_not_grow_is_an_error_of_either_thread(void **state)
 	signal(SIGXFSZ, SIG_DFL);
 }
 
-static void exhausted_memory_is_told(void **state)
+TEST(exhausted_memory_is_told)
 {
-	(void)state;
 	nt_error error;
 	put_triangle();
 	for (unsigned threads = 1; threads <= 2; threads++)
@@ -114,12 +111,4 @@ static void exhausted_memory_is_told(void **state)
 		}
 }
 
-int main(void)
-{
-	const struct CMUnitTest tests[] = {
-		unit_test_in_folder(a_long_json_is_the_same_for_any_number_of_threads),
-		unit_test_in_folder(a_file_that_may_not_grow_is_an_error_of_either_thread),
-		unit_test_in_folder(exhausted_memory_is_told),
-	};
-	return cmocka_run_group_tests_name("gltf/edit/write", tests, NULL, NULL);
-}
+AROUND_EACH(make_folder, remove_folder)

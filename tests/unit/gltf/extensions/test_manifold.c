@@ -35,8 +35,3 @@ TEST(a_manifold_without_merges_has_none)
 	assert_int_equal(status, NT_ERROR_MEMORY);
 	nt_arena_free(&arena);
 }
-
-int main(void)
-{
-	return run_group("gltf/extensions/manifold");
-}

@@ -48,8 +48,3 @@ TEST(sides_with_the_same_ends_are_one_edge)
 	const nt_copied_triangles t = {.vertices = three, .corner_count = 9, .old_count = 4, .sources = sources};
 	assert_edges((uint32_t[]){1, 2}, 1, &t, (uint32_t[]){1, 2, 4, 5}, 2);
 }
-
-int main(void)
-{
-	return run_group("gltf/extensions/outline");
-}

@@ -117,8 +117,3 @@ TEST(triangles_with_one_centre_are_told_apart)
 	shuffle(a, b);
 	assert_true(first_missing(a, FACES, b, FACES) == SIZE_MAX);
 }
-
-int main(void)
-{
-	return run_group("gltf/verify/faces");
-}

@@ -170,7 +170,4 @@ TEST(the_first_mesh_that_differs_is_told)
 	}
 }
 
-int main(void)
-{
-	return run_group_within("gltf/verify/verify", make_folder, remove_empty_folder);
-}
+AROUND_ALL(make_folder, remove_empty_folder)

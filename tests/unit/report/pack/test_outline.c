@@ -148,8 +148,3 @@ TEST(no_triangles_have_no_regions)
 	outline(&mesh, &found);
 	assert_int_equal(found.count, 0);
 }
-
-int main(void)
-{
-	return run_group("report/pack/outline");
-}

@@ -285,8 +285,3 @@ TEST(exhausted_memory_is_told_and_nothing_leaks)
 		}
 	free_sheet(s);
 }
-
-int main(void)
-{
-	return run_group("report/pack/pack");
-}

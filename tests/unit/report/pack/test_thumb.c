@@ -98,8 +98,3 @@ TEST(nothing_to_draw_is_nothing)
 	assert_null(strchr(paths[0].data + 1, 'M'));
 	nt_buffer_free(&paths[0]);
 }
-
-int main(void)
-{
-	return run_group("report/pack/thumb");
-}

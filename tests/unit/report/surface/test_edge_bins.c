@@ -83,8 +83,3 @@ TEST(edges_come_in_order)
 	free(e.sides);
 	free(l);
 }
-
-int main(void)
-{
-	return run_group("report/edge_bins");
-}

@@ -56,8 +56,3 @@ TEST(points_of_a_soup)
 {
 	compare(false);
 }
-
-int main(void)
-{
-	return run_group("report/points");
-}

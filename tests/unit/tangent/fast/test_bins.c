@@ -146,8 +146,3 @@ TEST(bins_stay_within_their_bits)
 		assert_true(nt_bins_bits(vertices) == NT_BINNED_BITS || vertices >> nt_bins_bits(vertices) < 512);
 	}
 }
-
-int main(void)
-{
-	return run_group("tangent/fast/bins");
-}

@@ -262,8 +262,3 @@ TEST(every_failed_allocation_of_a_hub_is_told)
 	nt_result_free(&r);
 	free(h);
 }
-
-int main(void)
-{
-	return run_group("tangent/fast/complex");
-}

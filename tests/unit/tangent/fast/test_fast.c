@@ -557,8 +557,3 @@ TEST(every_failed_allocation_is_told)
 	free(n);
 	free(t);
 }
-
-int main(void)
-{
-	return run_group("tangent/fast/fast");
-}

@@ -143,8 +143,3 @@ TEST(mirrored_meshes_take_at_most_40_bytes_a_triangle)
 		assert_true(solve_bytes(&square) <= 40);
 	}
 }
-
-int main(void)
-{
-	return run_group("tangent/fast/memory");
-}

@@ -149,8 +149,3 @@ TEST(edges_along_normals_weigh_a_right_angle_on_all_paths)
 			assert_true(fabs(tangents[c][k] - exact[c].t[k]) <= 1.0 / 8388608);
 	assert_true(judged > CORNERS);
 }
-
-int main(void)
-{
-	return run_group("tangent/sums/sums");
-}
