@@ -19,6 +19,26 @@ nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh
 	return nt_json_at(nt_json_find(json, "primitives"), mesh->gltf_primitive);
 }
 
+bool nt_gltf_next_use(const nt_gltf *document, const nt_json_value *primitive, nt_gltf_use *use)
+{
+	const nt_json_value *targets = nt_json_find(primitive, "targets");
+	for (; use->object <= nt_json_count(targets); use->object++, use->member = 0) {
+		use->attributes = use->object ? nt_json_at(targets, use->object - 1)
+			: nt_json_find(primitive, "attributes");
+		while (use->member < nt_json_count(use->attributes)) {
+			uint64_t accessor;
+			const nt_json_value *reference = nt_json_at(use->attributes, use->member);
+			use->name = nt_json_key(use->attributes, use->member++, NULL);
+			if (use->name && nt_json_get_uint64(reference, &accessor) &&
+				accessor < document->accessor_count) {
+				use->accessor = (uint32_t)accessor;
+				return true;
+			}
+		}
+	}
+	return false;
+}
+
 static nt_status visit_object(nt_json_value *attributes, size_t accessor_count, nt_gltf_visit visit,
 	void *context)
 {

@@ -20,25 +20,44 @@ mirrored_gltf() {
 			meshes: [{extensions: of.mesh, primitives: [{attributes, indices, extensions: of.primitive}]}]})'
 }
 
-# How many sides of triangles a client outlines, as the extension defines it.
-sides='(() => { const p = g.meshes[0].primitives[0], flat = n => rows(n).map(r => r[0]), t = flat(p.indices);
-	const e = flat(p.extensions.CESIUM_primitive_outline.indices), all = new Set();
-	for (let i = 0; i < e.length; i += 2) all.add([e[i], e[i + 1]].sort().join());
-	let n = 0;
-	for (let c = 0; c < t.length; c++) n += all.has([t[c], t[c % 3 === 2 ? c - 2 : c + 1]].sort().join());
-	return n; })()'
+# $1: the primitive's extensions, $2: the mesh's; $3: the pointer of what is told, whose extension stays as it was.
+is_told() {
+	mirrored_gltf "$1" "$2" '{}'
+	for output in out.gltf out.glb; do
+		run --only=all in.gltf $output
+		exits 0
+		is "$(gltf $output 'rows(g.meshes[0].primitives[0].attributes.POSITION).length')" 8
+		says "$3"
+		says "${3##*/} refers to vertices, and vertices were copied"
+		is "$(gltf $output '[g.meshes[0].extensions, g.meshes[0].primitives[0].extensions]')" \
+			"$(gltf in.gltf '[g.meshes[0].extensions, g.meshes[0].primitives[0].extensions]')"
+	done
+}
 
-scene "CESIUM_primitive_outline: every outlined side stays outlined"
-mirrored_gltf '{"CESIUM_primitive_outline": {"indices": 4}}' '{}' '{}'
-is "$(gltf in.gltf "$sides")" 8
-for output in out.gltf out.glb; do
-	run --only=all in.gltf $output
+scene "extensions that refer to vertices by their numbers are told, and stay"
+is_told '{"CESIUM_primitive_outline": {"indices": 4}}' '{}' /meshes/0/primitives/0/extensions/CESIUM_primitive_outline
+is_told '{}' '{"EXT_mesh_manifold": {}}' /meshes/0/extensions/EXT_mesh_manifold
+is_told '{}' '{"EXT_mesh_primitive_restart": {"primitiveGroups": [{"primitives": [0], "indices": 4}]}}' \
+	/meshes/0/extensions/EXT_mesh_primitive_restart
+is_told '{"EXT_mesh_features": {"featureIds": [{"featureCount": 6}]}}' '{}' \
+	/meshes/0/primitives/0/extensions/EXT_mesh_features
+
+scene "feature ids of an attribute or a texture go with the vertices"
+for ids in '{"featureCount": 6, "attribute": 0}' '{"featureCount": 6, "texture": {"index": 0}}'; do
+	mirrored_gltf "{\"EXT_mesh_features\": {\"featureIds\": [$ids]}}" '{}' '{}'
+	run --only=all in.gltf out.gltf
 	exits 0
-	is "$(gltf $output 'rows(g.meshes[0].primitives[0].attributes.POSITION).length')" 8
-	is "$(gltf $output "$sides")" 8
 	says_not EXTENSION_STALE
-	valid $output
 done
+
+scene "feature ids that are the numbers of vertices keep their order in a block"
+mirrored_gltf '{}' '{}' '{}'
+run --only=all --draco=edgebreaker in.gltf block.gltf
+gltf block.gltf block 'g.meshes[0].primitives[0].extensions.EXT_mesh_features = {featureIds: [{featureCount: 8}]}'
+run -v --only=all --existing=replace block.gltf out.gltf
+exits 0
+says DRACO_SEQUENTIAL
+says_not EXTENSION_STALE
 
 scene "an unknown extension that points at a number for each vertex gives a warning with its pointer"
 mirrored_gltf '{"VENDOR_weights": {"a": [{"of": 5}]}}' '{"VENDOR_other": {"scale": 5000}}' '{}'
@@ -48,79 +67,21 @@ says "/meshes/0/primitives/0/extensions/VENDOR_weights/a/0/of"
 says "VENDOR_weights refers to vertices"
 says_not VENDOR_other
 
-# Prints "manifold" when the extension of $1 says what the specification asks for, and as many merges as there are.
-manifold_of() {
-	gltf "$1" '(() => {
-		const [mesh] = g.meshes, m = mesh.extensions.EXT_mesh_manifold, flat = (accessor) => rows(accessor).flat();
-		const whole = g.accessors[m.manifoldPrimitive.indices], s = whole.sparse;
-		const own = mesh.primitives.map((p) => g.accessors[p.indices]);
-		const must = (...all) => all.forEach((good, i) => { if (!good) throw new Error(`condition ${i}`); });
-		const before = flat({...whole, sparse: undefined}), after = [...before], merges = [g.accessors[m.mergeIndices], g.accessors[m.mergeValues]];
-		const [places, values] = [{...s.indices}, {...s.values, componentType: whole.componentType}].map((part) =>
-			flat({...part, type: "SCALAR", count: s.count}));
-		places.forEach((place, i) => { after[place] = values[i]; });
-		const position = m.manifoldPrimitive.attributes.POSITION, at = rows(position).map(String);
-		const half = after.map((a, c) => [a, after[c % 3 === 2 ? c - 2 : c + 1]]), all = new Set(half.map(String));
-		must(own.every((a) => a.bufferView === whole.bufferView && a.componentType === whole.componentType),
-			before.join() === own.flatMap(flat).join(),
-			places.join() === flat(merges[0]).join(), values.join() === flat(merges[1]).join(),
-			merges[0].bufferView === s.indices.bufferView, merges[1].bufferView === s.values.bufferView,
-			mesh.primitives.every((p) => p.attributes.POSITION === position),
-			before.every((v, c) => at[v] === at[after[c]]),
-			all.size === half.length && half.every(([a, b]) => all.has(`${b},${a}`)));
-		return `manifold ${places.length} ${before.filter((v, c) => v !== after[c]).length}`;
-	})()'
-}
-
-merges_copies() {
-	local found
-	found=$(manifold_of "$1")
-	[[ $found == "manifold "* && $found != "manifold 4 4" ]] || wrong "no merges for the copies: $found"
-}
-
-scene "EXT_mesh_manifold: the manifold stays one, its merges follow"
+scene "EXT_mesh_manifold: the manifold stays what it was, and is told"
 manifold_gltf in
-is "$(manifold_of in.gltf)" "manifold 4 4"
 run --only=all --buffers=embed in.gltf out.gltf
 exits 0
-says_not EXTENSION_STALE
-[ "$(gltf out.gltf 'rows(g.meshes[0].primitives[0].attributes.POSITION).length')" -gt 13 ] || wrong "nothing is copied"
-merges_copies out.gltf
+says /meshes/0/extensions/EXT_mesh_manifold
 corners='g.meshes[0].primitives.map((p) => rows(p.indices).map(([i]) => rows(p.attributes.POSITION)[i]))'
 is "$(gltf out.gltf "$corners" | md5sum)" "$(gltf in.gltf "$corners" | md5sum)"
-is "$(gltf out.gltf 'g.meshes[0].primitives.map((p) => rows(p.attributes.TANGENT).length > 13)')" "[true,true]"
+solid='(() => { const m = g.meshes[0].extensions.EXT_mesh_manifold.manifoldPrimitive, at = rows(m.attributes.POSITION);
+	return rows(m.indices).map(([i]) => at[i]); })()'
+is "$(gltf out.gltf "$solid" | md5sum)" "$(gltf in.gltf "$solid" | md5sum)"
 valid out.gltf
-# where Draco cannot hold what primitives share, they are plain
-run --existing=replace --only=all --buffers=embed --draco=sequential in.gltf out.gltf
-says DRACO_PLAIN
-says_not EXTENSION_STALE
-merges_copies out.gltf
-run --only=all in.gltf out.glb
-exits 0
-valid out.glb
-
-scene "a mesh that is not as EXT_mesh_manifold demands gives a warning that says why"
-while IFS='|' read -r members why; do
-	manifold_gltf in "$members"
-	run --existing=replace --only=all in.gltf out.gltf
-	exits 0
-	says "/meshes/0/extensions/EXT_mesh_manifold"
-	says "EXT_mesh_manifold, $why, refers to vertices"
-	valid out.gltf
-done <<'END'
-{"manifoldPrimitive": 7}|whose manifold has no indices
-{"manifoldPrimitive": {"indices": 3}}|whose manifold has no POSITION
-{"manifoldPrimitive": {"indices": 4, "attributes": {"POSITION": 0}}}|a primitive of which has other indices than the manifold
-{"manifoldPrimitive": {"indices": 3, "attributes": {"POSITION": 1}}}|a primitive of which has another POSITION than the manifold
-END
-manifold_gltf in
-gltf in.gltf in 'g.meshes[0].primitives[1].indices = 6'
-run --existing=replace --only=all in.gltf out.gltf
-says "EXT_mesh_manifold, whose manifold has other triangles than its primitives, refers to vertices"
 mirrored_gltf '{}' '{"EXT_mesh_manifold": {}}' '{}'
 run --existing=replace --only=all --draco=sequential in.gltf out.gltf
 exits 0
-says "EXT_mesh_manifold, whose primitives are compressed, refers to vertices"
+says /meshes/0/extensions/EXT_mesh_manifold
 
 scene "FB_geometry_metadata counts vertices: a warning says that there are more now"
 mirrored_gltf '{}' '{}' '{"FB_geometry_metadata": {"vertexCount": 18, "primitiveCount": 12}}'

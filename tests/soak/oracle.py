@@ -50,6 +50,8 @@ SETS = [
 # Intended changes of a step of the rebuilding: (kind, pattern of "set path detail", why). See "what users lose".
 EXPLAINED = [
     ('report', r'/(texel_density|texture_size)\b.*: None -> ', 'an image in a view that an edit moved is found'),
+    ('messages', r'cases/implicit_ids/', 'feature ids that are numbers of vertices are told'),
+    ('report', r'cases/implicit_ids/', 'feature ids that are numbers of vertices are told'),
 ]
 
 TIMES = re.compile(r'\b\d[\d.e-]* (m?s|ms|us|seconds)\b|"(seconds|generator|version)": *[^,}\n]+')

@@ -16,6 +16,7 @@
 #include "gltf/edit/append.h"
 #include "gltf/edit/draco_block.h"
 #include "gltf/edit/new_accessors.h"
+#include "gltf/edit/vertex_extensions.h"
 #include "gltf/morph_deltas.h"
 #include "gltf/primitive.h"
 #include "gltf/view.h"
@@ -232,6 +233,7 @@ nt_status nt_gltf_draco_begin(nt_gltf_recoding *r, nt_gltf *document, nt_vertex_
 		r->obstacle = "something else uses its accessors";
 	} else {
 		nt_gltf_visit_attributes(r->primitive, pools->accessor_count, note_outside, r);
+		r->outside |= nt_vertices_are_ids(r->primitive);
 	}
 	return status;
 }

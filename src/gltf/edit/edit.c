@@ -20,11 +20,10 @@
 #include "gltf/edit/merge_splits.h"
 #include "gltf/edit/new_accessors.h"
 #include "gltf/edit/old_tangents.h"
-#include "gltf/edit/manifold.h"
+#include "gltf/edit/vertex_extensions.h"
 #include "gltf/bytes/packed_views.h"
 #include "gltf/bytes/relocate.h"
 #include "gltf/edit/weld.h"
-#include "gltf/extensions/extensions.h"
 #include "gltf/morph_deltas.h"
 #include "gltf/quantize.h"
 #include "gltf/turned_images.h"
@@ -245,7 +244,7 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 	if (new && !status)
 		status = weld(e, vertices, new);
 	if (new && !status)
-		status = nt_gltf_follow_vertices(e->edits, buffer, e->scene, vertices, false, e->error);
+		status = nt_vertices_tell(e->edits, e->scene, vertices, false, e->error);
 	if (!new || status)
 		return status ? status : nt_fail_memory(e->error);
 
@@ -311,7 +310,7 @@ static nt_status edit_pool(const editing *e, pool_edit *p)
 	else if (!status && compressed)
 		status = nt_gltf_draco_make_plain(e->edits, e->pools, &p->vertices, e->error);
 	if (!status && done)
-		status = nt_gltf_follow_vertices(e->edits, buffer, e->scene, &p->vertices, done, e->error);
+		status = nt_vertices_tell(e->edits, e->scene, &p->vertices, done, e->error);
 	if (status || done)
 		return status;
 	return edit_plain(e, buffer, &p->vertices, compressed);
@@ -461,7 +460,7 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 		status = drop_unused(&e);
 	nt_arena_free(&of_window);
 	if (edits.vertices_copied)
-		nt_extension_scenes(scene);
+		nt_vertices_tell_scenes(scene);
 	if (!status && all_stay && scene->welded.after == scene->welded.before)
 		status = nt_gltf_copy_unchanged(scene, options, output, &written, error);
 	if (!status && !written)

@@ -18,7 +18,7 @@
 #include "base/hash_index.h"
 #include "gltf/accessor.h"
 #include "gltf/draco.h"
-#include "gltf/extensions/extensions.h"
+#include "gltf/edit/vertex_extensions.h"
 #include "gltf/pointer.h"
 
 /* Something that vertices have. */
@@ -47,47 +47,16 @@ typedef struct welding {
 
 /* ---- what forbids it ---- */
 
-static bool has_implicit_ids(const nt_json_value *features)
-{
-	const nt_json_value *ids = nt_json_find(features, "featureIds");
-	for (size_t i = 0; i < nt_json_count(ids); i++)
-		if (!nt_json_find(nt_json_at(ids, i), "attribute") && !nt_json_find(nt_json_at(ids, i), "texture"))
-			return true;
-	return false;
-}
-
-/* An extension by which vertices have meaning by their numbers. */
-static const char *find_extension(const nt_scene *scene, const nt_mesh *mesh)
-{
-	static const char *const names[] = {"CESIUM_primitive_outline", "FB_ngon_encoding", "EXT_mesh_manifold"};
-	const nt_gltf *document = scene->source;
-	const nt_json_value *of_primitive = nt_json_find(nt_gltf_primitive_of(document, mesh), "extensions"),
-		*of_mesh = nt_json_find(nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh),
-			"extensions");
-	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-		if (nt_json_find(of_primitive, names[i]) || nt_json_find(of_mesh, names[i]))
-			return names[i];
-	return has_implicit_ids(nt_json_find(of_primitive, "EXT_mesh_features")) ? "EXT_mesh_features" : NULL;
-}
-
 static nt_status find_obstacle(welding *w, nt_scene *scene)
 {
 	const nt_vertex_pool *pool = w->vertices->pool;
-	nt_scene alone = *scene;
-	alone.findings = (nt_finding_list){0};
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && !w->obstacle && i < pool->user_count; i++) {
-		const nt_mesh *mesh = nt_pool_mesh(pool, i);
-		w->obstacle = find_extension(scene, mesh);
+		status = nt_vertices_find_meaning(scene, nt_pool_mesh(pool, i), w->vertices->old_count, &w->obstacle);
 		if (!w->obstacle && !nt_pool_is_solved(pool, i) && nt_gltf_draco_of(nt_pool_primitive(pool, i)))
 			w->obstacle = "Draco compresses it, and this run does not compress it again";
-		if (!w->obstacle && nt_extension_references(&alone, mesh, w->vertices->old_count, true))
-			status = nt_fail_memory(w->error);
-		if (alone.findings.count)
-			w->obstacle = "an extension refers to its vertices";
 	}
-	nt_finding_list_free(&alone.findings);
-	return status;
+	return status ? nt_fail_memory(w->error) : NT_OK;
 }
 
 /* Faults of the document leave the pool as it is; whoever needs what is faulty says so. */
