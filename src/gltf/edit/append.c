@@ -154,6 +154,21 @@ static nt_status use_clone(void *context, nt_json_value *attributes, const char 
 	return NT_OK;
 }
 
+/* Whether an accessor that stays has the end of vertices that others of the pool lie in: what comes in behind these would
+ * come between its last element and those before. */
+static bool ends_vertices(const nt_appending *job, const nt_append_target *pinned)
+{
+	bool before = false, behind = false;
+	for (size_t i = 0; i < job->target_count; i++) {
+		const nt_append_target *t = &job->targets[i];
+		if (t->clone != NT_NONE || t->accessor.view == NT_NONE || t->buffer != pinned->buffer)
+			continue;
+		before |= t->begin < pinned->begin && pinned->begin - t->begin < t->accessor.stride;
+		behind |= t->begin > pinned->begin && t->begin - pinned->begin < t->accessor.stride;
+	}
+	return before && !behind;
+}
+
 /* Copies the pinned accessors, points solved users to the copies and takes them off the list. */
 static nt_status clone_pinned(nt_appending *job)
 {
@@ -167,6 +182,10 @@ static nt_status clone_pinned(nt_appending *job)
 		if (nt_pool_is_solved(job->vertices->pool, i))
 			nt_gltf_visit_attributes(nt_pool_primitive(job->vertices->pool, i), job->pools->accessor_count,
 				use_clone, job);
+	for (size_t i = 0; i < job->target_count; i++)
+		if (job->targets[i].clone != NT_NONE && job->targets[i].accessor.view != NT_NONE &&
+			ends_vertices(job, &job->targets[i]))
+			job->edits->appended_by[job->pools->first_alias[job->targets[i].accessor.index]] = NT_NONE;
 	size_t kept = 0;
 	for (size_t i = 0; i < job->target_count; i++)
 		if (job->targets[i].clone == NT_NONE)
