@@ -389,7 +389,7 @@ static void drop_unneeded_compression(nt_gltf *document)
 }
 
 /* Values that a filter moved have other bounds than the encoder said, which everybody sees once the view is plain.
- * Accessors of vertices that were changed have theirs; `seen` says which these are. */
+ * Accessors of vertices that were changed have theirs; `seen` says which these are. So have indices, without a filter. */
 static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 {
 	nt_gltf *document = edits->document;
@@ -399,7 +399,8 @@ static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 		const unsigned char *elements;
 		double bounds[2][4];
 		const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "accessors"), i);
-		if (edits->seen[i] || !nt_json_find(json, "min") ||
+		if (edits->seen[i] || document->pools->index_users[document->pools->first_alias[i]] ||
+			!nt_json_find(json, "min") ||
 			nt_gltf_get_accessor(document, i, "", &a, NULL) || a.view >= edits->view_count ||
 			a.sparse_count || document->virtual_of[a.view] == NT_NONE || a.components > 4 ||
 			a.element_bytes != a.components * a.component_bytes || nt_packing_of(edits, a.view).extension ||
