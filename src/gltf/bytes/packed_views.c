@@ -165,40 +165,6 @@ static nt_status pack(nt_buffer_edits *edits, nt_gltf_packing *p, const unsigned
 	return nt_meshopt_filter(&p->view, filtered, "", error);
 }
 
-nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigned char *bytes, size_t size,
-	nt_error *error)
-{
-	nt_json *json = edits->document->json;
-	nt_json_value *object = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), view);
-	nt_gltf_packing p = nt_packing_of(edits, view);
-	const size_t old_size = (size_t)(p.view.count * p.view.stride), old_packed_size = (size_t)p.view.packed_size;
-	const uint32_t stride = nt_edits_of(edits, edits->document->virtual_of[view])->new_stride;
-	if (stride)
-		p.view.stride = stride;
-	const size_t count = size / (size_t)p.view.stride;
-	unsigned char *packed;
-	const unsigned char *plain;
-	size_t packed_size;
-	nt_status status = pack(edits, &p, bytes, count, &packed, &packed_size, &plain, error);
-	if (status)
-		return status;
-	uint64_t offset = 0;
-	nt_json_get_uint64(nt_json_find(object, "byteOffset"), &offset);
-	describe(json, nt_gltf_compression_of(object, NULL), &p, count, packed_size);
-	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), size);
-
-	/* where the old ones are, if these are nobody else's */
-	if (nt_byte_users_count(&edits->users, p.buffer, p.offset, p.offset + old_packed_size) == 1)
-		status = nt_edits_replace(edits, p.buffer, p.offset, old_packed_size, packed, packed_size, error);
-	else
-		status = nt_edits_add_packed(edits, p.buffer, view, packed, packed_size, error);
-	if (status)
-		return status;
-	if (nt_byte_users_count(&edits->users, p.place, offset, offset + old_size) == 1)
-		return nt_edits_replace(edits, p.place, offset, old_size, plain, size, error);
-	return nt_edits_add_bytes(edits, p.place, view, plain, size, error);
-}
-
 static const unsigned char nothing[1];
 
 /* A view that holds nothing any more is free for a new one. */
@@ -220,6 +186,43 @@ static nt_status release_view(nt_buffer_edits *edits, uint32_t view, const nt_gl
 	edits->is_free[view] = true;
 	edits->free_views[edits->free_count++] = view;
 	return status;
+}
+
+nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigned char *bytes, size_t size,
+	nt_error *error)
+{
+	nt_json *json = edits->document->json;
+	nt_json_value *object = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), view);
+	nt_gltf_packing p = nt_packing_of(edits, view);
+	const size_t old_size = (size_t)(p.view.count * p.view.stride), old_packed_size = (size_t)p.view.packed_size;
+	const uint32_t stride = nt_edits_of(edits, edits->document->virtual_of[view])->new_stride;
+	if (stride)
+		p.view.stride = stride;
+	const size_t count = size / (size_t)p.view.stride;
+	/* emptied accessor by accessor */
+	if (!size && nt_json_count(nt_json_find(object, "extensions")) == 1)
+		return release_view(edits, view, &p, old_size, error);
+	unsigned char *packed;
+	const unsigned char *plain;
+	size_t packed_size;
+	nt_status status = pack(edits, &p, bytes, count, &packed, &packed_size, &plain, error);
+	if (status)
+		return status;
+	uint64_t offset = 0;
+	nt_json_get_uint64(nt_json_find(object, "byteOffset"), &offset);
+	describe(json, nt_gltf_compression_of(object, NULL), &p, count, packed_size);
+	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), size);
+
+	/* where the old ones are, if these are nobody else's */
+	if (nt_byte_users_count(&edits->users, p.buffer, p.offset, p.offset + old_packed_size) == 1)
+		status = nt_edits_replace(edits, p.buffer, p.offset, old_packed_size, packed, packed_size, error);
+	else
+		status = nt_edits_add_packed(edits, p.buffer, view, packed, packed_size, error);
+	if (status)
+		return status;
+	if (nt_byte_users_count(&edits->users, p.place, offset, offset + old_size) == 1)
+		return nt_edits_replace(edits, p.place, offset, old_size, plain, size, error);
+	return nt_edits_add_bytes(edits, p.place, view, plain, size, error);
 }
 
 nt_status nt_packed_release(nt_buffer_edits *edits, uint32_t index, uint64_t offset, uint64_t length, nt_error *error)
