@@ -154,8 +154,8 @@ static nt_status use_clone(void *context, nt_json_value *attributes, const char 
 	return NT_OK;
 }
 
-/* Whether an accessor that stays has the end of vertices that others of the pool lie in: what comes in behind these would
- * come between its last element and those before. */
+/* Whether an accessor that stays lies at the end of vertices in which others of the pool lie: copies of these would come
+ * in before its last element. */
 static bool ends_vertices(const nt_appending *job, const nt_append_target *pinned)
 {
 	bool before = false, behind = false;
