@@ -389,8 +389,8 @@ static void drop_unneeded_compression(nt_gltf *document)
 }
 
 /* Values that a filter moved have other bounds than the encoder said, which everybody sees once the view is plain.
- * Accessors of vertices that were changed have theirs; `seen` says which these are. Indices, which no filter moves, have
- * theirs, too. */
+ * Accessors of vertices that were changed have theirs; `seen` says which these are. Indices have theirs too: no filter
+ * moves them. */
 static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 {
 	nt_gltf *document = edits->document;

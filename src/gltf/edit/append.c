@@ -154,8 +154,8 @@ static nt_status use_clone(void *context, nt_json_value *attributes, const char 
 	return NT_OK;
 }
 
-/* Whether an accessor that stays lies at the end of vertices in which others of the pool lie: copies of these would come
- * in before its last element. */
+/* Whether an accessor that stays lies at the end of vertices in which others of the pool lie: copies of these
+ * would come in before its last element. */
 static bool ends_vertices(const nt_appending *job, const nt_append_target *pinned)
 {
 	bool before = false, behind = false;
