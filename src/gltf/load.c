@@ -18,6 +18,7 @@
 #include "gltf/draco.h"
 #include "gltf/draco_values.h"
 #include "gltf/materials.h"
+#include "gltf/normalized.h"
 #include "gltf/pointer.h"
 #include "gltf/primitive.h"
 #include "gltf/view.h"
@@ -238,28 +239,28 @@ static nt_status copy_normals(nt_scene *scene, nt_mesh *mesh, nt_error *error)
 	return NT_OK;
 }
 
-/* The vertices that a pooled mesh uses. *view has the pool's numbers where it uses all, or has no indices. */
-static nt_status make_compact(nt_scene *scene, nt_mesh *mesh, const inputs *in, size_t index_count, nt_compact *view,
+/* The vertices that a pooled mesh uses. It keeps the pool's numbers if it uses all, or has no indices. */
+static nt_status make_compact(nt_scene *scene, nt_mesh *mesh, const inputs *in, size_t index_count,
 	nt_error *error)
 {
 	nt_arena *arena = nt_mesh_arena(scene, mesh);
 	const size_t pool_count = mesh->vertex_count;
-	*view = (nt_compact){.count = pool_count};
+	nt_compact view = {.count = pool_count};
 	if (mesh->plan.pooled && mesh->indices &&
-		nt_compact_vertices(mesh->indices, index_count, pool_count, arena, view))
+		nt_compact_vertices(mesh->indices, index_count, pool_count, arena, &view))
 		return nt_fail_memory(error);
-	if (!view->vertices)
+	if (!view.vertices)
 		return mesh->plan.pooled && in->normals.exists && in->normals.accessor.component_type != NT_GLTF_FLOAT
 			? copy_normals(scene, mesh, error) : NT_OK;
 	float **const rows[] = {&mesh->positions, &mesh->normals, &mesh->tangents, &mesh->colors, &mesh->texcoords};
 	static const size_t floats[] = {3, 3, 4, 4, 2};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-		if (*rows[i] && !(*rows[i] = nt_compact_rows(view, *rows[i], floats[i], arena)))
+		if (*rows[i] && !(*rows[i] = nt_compact_rows(&view, *rows[i], floats[i], arena)))
 			return nt_fail_memory(error);
-	mesh->pool_vertices = view->vertices;
-	mesh->unused_vertices = pool_count - view->count;
-	mesh->vertex_count = mesh->source_vertex_count = view->count;
-	mesh->indices = view->indices;
+	mesh->pool_vertices = view.vertices;
+	mesh->unused_vertices = pool_count - view.count;
+	mesh->vertex_count = mesh->source_vertex_count = view.count;
+	mesh->indices = view.indices;
 	return NT_OK;
 }
 
@@ -298,52 +299,124 @@ static void list_triangles(uint64_t mode, const uint32_t *chain, size_t face_cou
 
 /* ---- morph targets ---- */
 
-/* Base and delta; NULL where the target does not move it. */
-static nt_status add_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *mesh, const nt_compact *view,
-	const nt_json_value *target, const char *name, const char *pointer, const float *base,
-	float **moved, nt_error *error)
+/* The displacement of an attribute: elements of the pool's vertices. */
+typedef struct nt_displacement {
+	nt_gltf_accessor accessor;
+	const unsigned char *elements; /* NULL: zeros */
+	const unsigned char *replaced, *values; /* [accessor.sparse_count] numbers that ascend, and their elements */
+} nt_displacement;
+
+static nt_status find_sparse(nt_gltf *document, nt_displacement *d, nt_error *error)
+{
+	const nt_gltf_accessor *a = &d->accessor;
+	nt_arena scratch = {0};
+	const uint32_t *checked;
+	nt_status status = nt_gltf_sparse(document, a, &scratch, &checked, &d->values, error);
+	nt_arena_free(&scratch);
+	return status ? status : nt_gltf_view_bytes(document, a->sparse_index_view, a->sparse_index_offset,
+		a->sparse_count * nt_gltf_component_bytes(a->sparse_index_type), "", &d->replaced, error);
+}
+
+/* *delta: NULL where the target does not move the attribute. */
+static nt_status find_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *mesh, const nt_json_value *target,
+	const char *name, const char *pointer, const nt_displacement **delta, nt_error *error)
 {
 	const size_t pool_count = mesh->vertex_count + mesh->unused_vertices;
-	*moved = NULL;
-	const nt_json_value *reference = nt_json_find(target, name);
-	if (!reference || !base)
+	nt_arena *arena = nt_mesh_arena(scene, mesh);
+	if (!nt_json_find(target, name))
 		return NT_OK;
 	uint64_t index;
-	nt_gltf_accessor accessor;
+	nt_displacement found = {.elements = NULL};
 	nt_status status =
 		nt_gltf_uint(target, pointer, name, UINT32_MAX - 1, NT_GLTF_REQUIRED, &index, error);
 	if (!status)
-		status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
+		status = nt_gltf_get_accessor(document, index, pointer, &found.accessor, error);
 	if (status)
 		return status;
-	if (accessor.components != 3 || accessor.count != pool_count)
+	if (found.accessor.components != 3 || found.accessor.count != pool_count)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"%s: accessor %llu has %llu elements of %u components, expected %zu of 3", name,
-			(unsigned long long)index, (unsigned long long)accessor.count,
-			accessor.components, pool_count);
-	float *delta, *sum = nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->vertex_count, 3 * sizeof *sum);
-	if (!sum)
-		return nt_fail_memory(error);
-	status = load_floats(scene, mesh, &accessor, 3, 0, &delta, error);
-	for (size_t v = 0; !status && v < mesh->vertex_count; v++)
-		for (size_t k = 0, from = 3 * (view->vertices ? view->vertices[v] : v); k < 3; k++)
-			sum[3 * v + k] = base[3 * v + k] + delta[from + k];
-	*moved = sum;
-	return status;
+			(unsigned long long)index, (unsigned long long)found.accessor.count,
+			found.accessor.components, pool_count);
+	status = nt_gltf_elements(document, &found.accessor, &found.elements, error);
+	if (!status && found.accessor.sparse_count)
+		status = find_sparse(document, &found, error);
+	nt_displacement *kept = status ? NULL : nt_arena_alloc(arena, 1, sizeof *kept);
+	if (kept)
+		*kept = found;
+	*delta = kept;
+	return status || kept ? status : nt_fail_memory(error);
+}
+
+/* The vertex that a sparse element replaces. */
+static uint32_t replaced_by(const nt_displacement *d, size_t element)
+{
+	const uint32_t width = nt_gltf_component_bytes(d->accessor.sparse_index_type);
+	const unsigned char *at = d->replaced + element * width;
+	uint32_t number = 0;
+	for (uint32_t i = 0; i < width; i++)
+		number |= (uint32_t)at[i] << 8 * i;
+	return number;
+}
+
+static void read_delta(const nt_gltf_accessor *accessor, const unsigned char *element, float *delta)
+{
+	if (accessor->component_type == NT_GLTF_FLOAT)
+		memcpy(delta, element, 3 * sizeof *delta);
+	else
+		for (size_t k = 0; k < 3; k++)
+			delta[k] = nt_component_value(element + k * accessor->component_bytes,
+				(int)accessor->component_type, accessor->normalized);
+}
+
+/* Base and delta, malloc'ed. NULL: memory is exhausted. */
+static float *add_delta(const nt_mesh *mesh, const nt_displacement *d, const float *base)
+{
+	const nt_gltf_accessor *a = &d->accessor;
+	const size_t own_count = mesh->source_vertex_count;
+	float *sums = nt_calloc(mesh->vertex_count, 3 * sizeof *sums);
+	if (!sums)
+		return NULL;
+	for (size_t v = 0, at = 0; v < own_count; v++) {
+		const size_t row = nt_mesh_pool_vertex(mesh, (uint32_t)v);
+		while (at < a->sparse_count && replaced_by(d, at) < row)
+			at++;
+		if (at < a->sparse_count && replaced_by(d, at) == row)
+			read_delta(a, d->values + at * a->element_bytes, sums + 3 * v);
+		else if (d->elements)
+			read_delta(a, d->elements + row * a->stride, sums + 3 * v);
+	}
+	for (size_t v = own_count; v < mesh->vertex_count; v++)
+		memcpy(sums + 3 * v, sums + 3 * (size_t)mesh->vertex_sources[v - own_count], 3 * sizeof *sums);
+	for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+		sums[i] = base[i] + sums[i];
+	return sums;
 }
 
 /* Sums of unit normals are not unit. If nothing was added to a normal that is used as it is, the sum is used so, too:
  * the tangents there are the base's, bit for bit. */
-static void normalise_moved(const nt_gltf_accessor *accessor, const float *base, float *moved, size_t count)
+static void normalise_moved(bool integers, const float *base, float *moved, size_t count)
 {
 	static const double unit = 1.0 / 2048; /* pipeline/unit_normals.c */
 	for (size_t i = 0; i < count; i++) {
 		const float *b = base + 3 * i;
 		const double squared = (double)b[0] * b[0] + (double)b[1] * b[1] + (double)b[2] * b[2];
-		if (accessor->component_type != NT_GLTF_FLOAT || fabs(squared - 1) > unit ||
+		if (integers || fabs(squared - 1) > unit ||
 			memcmp(b, moved + 3 * i, 3 * sizeof *b) != 0)
 			normalise_vector(moved + 3 * i);
 	}
+}
+
+nt_status nt_gltf_move(const nt_mesh *mesh, const nt_morph *morph, float **positions, float **normals)
+{
+	const float *base = mesh->stored_normals ? mesh->stored_normals : mesh->normals;
+	*positions = morph->positions ? add_delta(mesh, morph->positions, mesh->positions) : NULL;
+	*normals = morph->normals ? add_delta(mesh, morph->normals, base) : NULL;
+	if ((morph->positions && !*positions) || (morph->normals && !*normals))
+		return NT_ERROR_MEMORY;
+	if (*normals)
+		normalise_moved(mesh->stored_normals, base, *normals, mesh->vertex_count);
+	return NT_OK;
 }
 
 /* The name of a target, as most exporters write it: the specification suggests extras.targetNames. */
@@ -356,12 +429,14 @@ static const char *name_of_target(nt_scene *scene, const nt_gltf *document, cons
 	return nt_arena_text(nt_mesh_arena(scene, mesh), name ? name : "", name ? length : 0);
 }
 
-/* The mesh as each target moves it: their tangents differ from the base's. */
+/* The targets that move a mesh: their tangents differ from the base's. Displacements stay where they are, for
+ * nt_gltf_move(). */
 static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const inputs *in,
-	const nt_compact *view, const nt_json_value *primitive, nt_error *error)
+	const nt_json_value *primitive, nt_error *error)
 {
 	const nt_json_value *targets = nt_json_find(primitive, "targets");
 	const size_t count = nt_json_count(targets);
+	bool turns = false;
 	mesh->morph_count = 0;
 	if (count == 0)
 		return NT_OK;
@@ -375,21 +450,22 @@ static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, 
 		if (!morph.name)
 			return nt_fail_memory(error);
 		const nt_json_value *target = nt_json_at(targets, i);
-		nt_status status = add_delta(scene, document, mesh, view, target, "POSITION", pointer,
-			mesh->positions, &morph.positions, error);
-		if (!status)
-			status = add_delta(scene, document, mesh, view, target, "NORMAL", pointer, mesh->normals,
-				&morph.normals, error);
+		nt_status status = find_delta(scene, document, mesh, target, "POSITION", pointer, &morph.positions,
+			error);
+		if (!status && mesh->normals)
+			status = find_delta(scene, document, mesh, target, "NORMAL", pointer, &morph.normals, error);
 		if (status)
 			return status;
-		if (morph.normals)
-			normalise_moved(&in->normals.accessor, mesh->normals, morph.normals, mesh->vertex_count);
+		turns |= morph.normals != NULL;
 		/* one that moves a neighbour turns tangents at the border */
 		const nt_join *join = mesh->plan.join;
 		if (morph.positions || morph.normals || (join && i < join->target_count && join->moves[i]))
 			mesh->morphs[mesh->morph_count++] = morph;
 	}
-	return NT_OK;
+	if (!turns || in->normals.accessor.component_type == NT_GLTF_FLOAT)
+		return NT_OK;
+	mesh->stored_normals = mesh->normals;
+	return copy_normals(scene, mesh, error);
 }
 
 /* The corners that a primitive lists; *count is untouched where it lists none. */
@@ -414,14 +490,14 @@ static nt_status load_chain(nt_gltf *document, const nt_mesh *mesh, const nt_jso
 
 /* Faces, of compact vertices where the mesh shares them. */
 static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const nt_json_value *primitive,
-	const inputs *in, nt_compact *view, nt_error *error)
+	const inputs *in, nt_error *error)
 {
 	uint64_t mode = NT_GLTF_TRIANGLES, count = mesh->vertex_count;
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
 	nt_status status = load_chain(document, mesh, primitive, nt_mesh_arena(scene, mesh), &mesh->indices,
 		&count, error);
 	if (!status)
-		status = make_compact(scene, mesh, in, (size_t)count, view, error);
+		status = make_compact(scene, mesh, in, (size_t)count, error);
 	if (status)
 		return status;
 	mesh->face_count = mode == NT_GLTF_TRIANGLES ? (size_t)count / 3 : count < 3 ? 0 : (size_t)count - 2;
@@ -472,7 +548,6 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	}
 	nt_status status = find_primitive(document, mesh, &primitive, error);
 	inputs in;
-	nt_compact view;
 	if (!status)
 		status = find_inputs(document, mesh, primitive, options, &in, error);
 	if (!status) {
@@ -482,7 +557,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	if (!status)
 		status = load_vertices(scene, mesh, &in, error);
 	if (!status)
-		status = load_faces(scene, document, mesh, primitive, &in, &view, error);
+		status = load_faces(scene, document, mesh, primitive, &in, error);
 	if (!status && mesh->texcoords)
 		status = flip_texcoords(scene, mesh, options->threads, error);
 	if (!status && mesh->tangents)
@@ -495,7 +570,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		mesh->vertex_bytes = count_vertex_bytes(document, primitive);
 	/* a mesh in the world is written without its targets */
 	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
-		status = load_morphs(scene, document, mesh, &in, &view, primitive, error);
+		status = load_morphs(scene, document, mesh, &in, primitive, error);
 	if (!status && in.normals.exists)
 		normalise_quantized(&in.normals.accessor, mesh->normals, mesh->vertex_count);
 	if (status && error && !error->place.object[0]) {

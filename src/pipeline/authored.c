@@ -15,7 +15,6 @@
 #include <math.h>
 #include <string.h>
 #include "base/dvec.h"
-#include "gltf/morph_deltas.h"
 #include "report/quads.h"
 #include "topology/corners.h"
 #include "topology/reversed.h"
@@ -124,18 +123,7 @@ static face_fate fate_of(const nt_mesh *mesh, const nmtan_mesh *view, size_t fac
 	return is_same || (is_usable && !face_is_valid(mesh, view, face, first, solved)) ? IS_LEFT : IS_REPLACED;
 }
 
-/* A target that does not turn a tangent that was solved does not turn the authored one either. */
-static void keep_unturned(const nt_mesh *mesh, size_t corner, const float *solved, const float *authored)
-{
-	for (size_t m = 0; m < mesh->morph_count; m++) {
-		float *moved = mesh->morphs[m].corner_tangents ? mesh->morphs[m].corner_tangents + 4 * corner : NULL;
-		if (moved && fabsf(moved[0] - solved[0]) <= NT_MORPH_LEAST &&
-			fabsf(moved[1] - solved[1]) <= NT_MORPH_LEAST && fabsf(moved[2] - solved[2]) <= NT_MORPH_LEAST)
-			memcpy(moved, authored, 3 * sizeof *moved);
-	}
-}
-
-void nt_restore_authored(nt_mesh *mesh, float *corner_tangents)
+void nt_restore_authored(nt_mesh *mesh, float *corner_tangents, float *solved_tangents)
 {
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
@@ -158,10 +146,10 @@ void nt_restore_authored(nt_mesh *mesh, float *corner_tangents)
 		mesh->left_tangents += fate == IS_LEFT ? size : 0;
 		for (size_t k = 0; k < size; k++) {
 			float *tangent = corner_tangents + 4 * (first + k);
-			if (fate != IS_REPLACED) {
-				keep_unturned(mesh, first + k, solved[k], authored[k]);
+			if (fate != IS_REPLACED)
 				memcpy(tangent, authored[k], sizeof authored[k]);
-			}
+			if (solved_tangents)
+				solved_tangents[4 * (first + k) + 3] = fate == IS_REPLACED;
 			tangent[3] *= convention;
 		}
 	}

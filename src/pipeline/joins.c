@@ -19,6 +19,7 @@
 #include "base/angle.h"
 #include "base/counts.h"
 #include "base/dvec.h"
+#include "gltf/load.h"
 #include "pipeline/morphs.h"
 #include "tangent/usable.h"
 #include "topology/corners.h"
@@ -256,24 +257,40 @@ static nt_morph *find_morph(const nt_mesh *part, uint32_t target)
 static nt_status move_whole(const whole *w, uint32_t target, float **positions, float **normals)
 {
 	const size_t count = w->mesh.vertex_count;
+	nt_status status = NT_OK;
 	*positions = nt_alloc(count, 3 * sizeof **positions);
 	*normals = nt_alloc(count, 3 * sizeof **normals);
 	if (!*positions || !*normals)
 		return NT_ERROR_MEMORY;
 	memcpy(*positions, w->positions, count * 3 * sizeof **positions);
 	memcpy(*normals, w->normals, count * 3 * sizeof **normals);
-	for (size_t i = 0; i < w->join->part_count; i++) {
+	for (size_t i = 0; !status && i < w->join->part_count; i++) {
+		float *p = NULL, *n = NULL;
 		const nt_morph *morph = find_morph(w->join->parts[i], target);
-		if (morph && morph->positions)
-			gather(w, i, morph->positions, 3, *positions);
-		if (morph && morph->normals)
-			gather(w, i, morph->normals, 3, *normals);
+		if (morph)
+			status = nt_gltf_move(w->join->parts[i], morph, &p, &n);
+		if (!status && p)
+			gather(w, i, p, 3, *positions);
+		if (!status && n)
+			gather(w, i, n, 3, *normals);
+		free(p);
+		free(n);
 	}
-	return NT_OK;
+	return status;
+}
+
+/* The corners of a part, as the whole has them or a target moves them. */
+static nmtan_mesh view_of_part(const nmtan_mesh *whole_mesh, const nt_mesh *part, size_t corner)
+{
+	nmtan_mesh view = *whole_mesh;
+	view.face_count = part->face_count;
+	view.indices = whole_mesh->indices + corner;
+	return view;
 }
 
 /* The rows of a target go to the parts. */
-static nt_status hand_out_target(const whole *w, uint32_t target, const float *tangents, bool *turns)
+static nt_status hand_out_target(const whole *w, uint32_t target, const nmtan_mesh *moved, const float *tangents,
+	bool *turns)
 {
 	for (size_t i = 0, corner = 0; i < w->join->part_count; corner += w->join->parts[i++]->corner_count) {
 		nt_mesh *part = w->join->parts[i];
@@ -283,27 +300,25 @@ static nt_status hand_out_target(const whole *w, uint32_t target, const float *t
 		const nt_status status = take_rows(part, tangents + 4 * corner, &morph->corner_tangents);
 		if (status)
 			return status;
-		nmtan_stored_uv stored;
-		const nmtan_mesh view = nt_mesh_view(part, &stored);
-		part->morph_turned += nt_morphs_count_turned(&view, morph);
+		const nmtan_mesh base = view_of_part(&w->mesh, part, corner), to = view_of_part(moved, part, corner);
+		part->morph_turned += nt_morphs_count_turned(&base, &to);
 		*turns |= nt_morphs_turn(part, morph);
 	}
 	return NT_OK;
 }
 
 /* The effect of adding half of the deltas, part by part. */
-static nt_status measure_halfway(const whole *w, uint32_t target, const float *positions, const float *normals)
+static nt_status measure_halfway(const whole *w, uint32_t target, const nmtan_mesh *moved)
 {
 	float *halfway;
-	const nt_status status = nt_morphs_solve_halfway(&w->mesh, w->halves, positions, normals, w->options, &halfway);
+	const nt_status status = nt_morphs_solve_halfway(&w->mesh, moved, w->halves, w->options, &halfway);
 	for (size_t i = 0, corner = 0; !status && i < w->join->part_count;
 		corner += w->join->parts[i++]->corner_count) {
 		const nt_mesh *part = w->join->parts[i];
 		nt_morph *morph = is_solved_here(w, part) ? find_morph(part, target) : NULL;
-		nmtan_stored_uv stored;
-		const nmtan_mesh view = nt_mesh_view(part, &stored);
+		const nmtan_mesh base = view_of_part(&w->mesh, part, corner), to = view_of_part(moved, part, corner);
 		if (morph)
-			nt_morphs_compare_halfway(part, &view, halfway + 4 * corner, morph);
+			nt_morphs_compare_halfway(part, &base, &to, halfway + 4 * corner, morph);
 	}
 	free(halfway);
 	return status;
@@ -320,14 +335,14 @@ static nt_status solve_target(const whole *w, uint32_t target)
 	if (!status)
 		status = solve(w, &moved, w->options, &tangents, NULL);
 	if (!status)
-		status = hand_out_target(w, target, tangents, &turns);
+		status = hand_out_target(w, target, &moved, tangents, &turns);
 	free(tangents);
 	if (!status && turns)
-		status = measure_halfway(w, target, positions, normals);
+		status = measure_halfway(w, target, &moved);
 	for (size_t i = 0; !status && i < w->join->part_count; i++) {
 		nt_mesh *part = w->join->parts[i];
 		nt_morph *morph = is_solved_here(w, part) ? find_morph(part, target) : NULL;
-		if (morph && !nt_morphs_are_restored(part))
+		if (morph)
 			status = nt_morphs_classify(part, morph);
 	}
 	free(positions);
@@ -358,6 +373,15 @@ static nt_status hand_out(const whole *w)
 	return status;
 }
 
+static nt_status restore_parts(const whole *w, bool targets)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < w->join->part_count; i++)
+		if (is_solved_here(w, w->join->parts[i]))
+			status = nt_morphs_restore(w->join->parts[i], targets);
+	return status;
+}
+
 nt_status nt_join_solve(const nt_join *join, float stored_v_offset, bool targets, const nmtan_options *options)
 {
 	whole w = {.join = join, .options = options, .stored_v_offset = stored_v_offset};
@@ -373,6 +397,8 @@ nt_status nt_join_solve(const nt_join *join, float stored_v_offset, bool targets
 		status = hand_out(&w);
 	if (!status)
 		status = count_parts(&w);
+	if (!status)
+		status = restore_parts(&w, targets);
 	for (uint32_t t = 0; !status && targets && t < join->target_count; t++)
 		if (join->moves[t])
 			status = solve_target(&w, t);

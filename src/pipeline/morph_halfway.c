@@ -41,10 +41,17 @@ static double degrees_of(double cosine)
 	return nt_angle(sqrt(fmax(0, 1 - cosine * cosine)), cosine) * DEGREES;
 }
 
+/* As they were solved. */
+static const float *base_tangents(const nt_mesh *mesh)
+{
+	return mesh->solved_tangents ? mesh->solved_tangents : mesh->corner_tangents;
+}
+
 bool nt_morphs_turn(const nt_mesh *mesh, const nt_morph *morph)
 {
+	const float *base = base_tangents(mesh);
 	for (size_t c = 0; c < mesh->corner_count; c++)
-		if (cosine_between(nt_dvec3_load(mesh->corner_tangents + 4 * c),
+		if (cosine_between(nt_dvec3_load(base + 4 * c),
 			nt_dvec3_load(morph->corner_tangents + 4 * c)) < LIMIT_COSINE)
 			return true;
 	return false;
@@ -67,10 +74,12 @@ static void normalise_rows(float *rows, size_t count)
 	}
 }
 
-nt_status nt_morphs_solve_halfway(const nmtan_mesh *base, const uint8_t *halves, const float *positions,
-	const float *normals, const nmtan_options *options, float **tangents)
+nt_status nt_morphs_solve_halfway(const nmtan_mesh *base, const nmtan_mesh *moved, const uint8_t *halves,
+	const nmtan_options *options, float **tangents)
 {
 	nmtan_mesh view = *base;
+	const float *positions = moved->positions != base->positions ? moved->positions : NULL;
+	const float *normals = moved->normals != base->normals ? moved->normals : NULL;
 	const size_t corner_count = 3 * base->face_count;
 	float *p = positions ? middle_of(base->positions, positions, base->vertex_count) : NULL;
 	float *n = normals ? middle_of(base->normals, normals, base->vertex_count) : NULL;
@@ -115,9 +124,9 @@ static double measure(const nmtan_mesh *view, const float *from, const float *to
 }
 
 /* Whether the triangle itself has a direction at weight 0.5. */
-static bool has_direction(const nmtan_mesh *base, const nt_morph *morph, size_t triangle)
+static bool has_direction(const nmtan_mesh *base, const nmtan_mesh *moved, size_t triangle)
 {
-	const float *uv[3], *from = base->positions, *to = morph->positions ? morph->positions : from;
+	const float *uv[3], *from = base->positions, *to = moved->positions;
 	for (size_t k = 0; k < 3; k++)
 		uv[k] = base->texcoords + 2 * vertex_of(base, 3 * triangle + k);
 	double before, after, now;
@@ -131,13 +140,14 @@ static bool has_direction(const nmtan_mesh *base, const nt_morph *morph, size_t 
 static double cosine_at(const nt_mesh *mesh, const nt_morph *morph, const float *halfway, size_t corner,
 	bool *cancelled)
 {
-	const nt_dvec3 client = nt_dvec3_scale(0.5, nt_dvec3_add(nt_dvec3_load(mesh->corner_tangents + 4 * corner),
+	const nt_dvec3 client = nt_dvec3_scale(0.5, nt_dvec3_add(nt_dvec3_load(base_tangents(mesh) + 4 * corner),
 		nt_dvec3_load(morph->corner_tangents + 4 * corner)));
 	*cancelled = nt_dvec3_dot(client, client) < CANCELLED * CANCELLED;
 	return *cancelled ? 0 : cosine_between(client, nt_dvec3_load(halfway + 4 * corner));
 }
 
-void nt_morphs_compare_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const float *halfway, nt_morph *morph)
+void nt_morphs_compare_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved,
+	const float *halfway, nt_morph *morph)
 {
 	double least = 1;
 	morph->halfway_triangles = 0;
@@ -149,7 +159,7 @@ void nt_morphs_compare_halfway(const nt_mesh *mesh, const nmtan_mesh *base, cons
 			worst = fmin(worst, cosine_at(mesh, morph, halfway, 3 * t + k, &cancelled));
 			any_cancelled |= cancelled;
 		}
-		if (worst < LIMIT_COSINE && (any_cancelled || has_direction(base, morph, t))) {
+		if (worst < LIMIT_COSINE && (any_cancelled || has_direction(base, moved, t))) {
 			morph->halfway_triangles++;
 			least = fmin(least, worst);
 		}

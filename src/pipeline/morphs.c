@@ -14,10 +14,14 @@
 #include "pipeline/morphs.h"
 #include "pipeline/stages.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include "api/tangents.h"
 #include "base/hash_index.h"
+#include "gltf/load.h"
+#include "gltf/morph_deltas.h"
+#include "scene/morphs.h"
 
 enum { KEY_BITS = 20 }; /* of a corner number in each float of a key: floats are exact to 24 */
 
@@ -41,76 +45,86 @@ static int side_of(const nmtan_mesh *view, size_t triangle)
 	return along > 0 ? 1 : along < 0 ? -1 : 0;
 }
 
-static nmtan_mesh move(const nmtan_mesh *base, const nt_morph *morph)
+size_t nt_morphs_count_turned(const nmtan_mesh *base, const nmtan_mesh *moved)
 {
-	nmtan_mesh moved = *base;
-	if (morph->positions)
-		moved.positions = morph->positions;
-	if (morph->normals)
-		moved.normals = morph->normals;
-	return moved;
-}
-
-size_t nt_morphs_count_turned(const nmtan_mesh *base, const nt_morph *morph)
-{
-	const nmtan_mesh moved = move(base, morph);
 	size_t count = 0;
 	for (size_t t = 0; t < base->face_count; t++)
-		count += side_of(base, t) * side_of(&moved, t) < 0;
+		count += side_of(base, t) * side_of(moved, t) < 0;
 	return count;
 }
 
-static nt_status measure_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_options *options,
-	nt_morph *morph)
+nt_status nt_morphs_restore(nt_mesh *mesh, bool targets)
+{
+	if (mesh->decision != NT_DECISION_REPAIR || !mesh->tangents || !mesh->texcoords)
+		return NT_OK;
+	if (targets && mesh->morph_count) {
+		mesh->solved_tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float));
+		if (!mesh->solved_tangents)
+			return NT_ERROR_MEMORY;
+		memcpy(mesh->solved_tangents, mesh->corner_tangents, mesh->corner_count * 4 * sizeof(float));
+	}
+	nt_restore_authored(mesh, mesh->corner_tangents, mesh->solved_tangents);
+	return NT_OK;
+}
+
+static nt_status measure_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved,
+	const nmtan_options *options, nt_morph *morph)
 {
 	if (!nt_morphs_turn(mesh, morph))
 		return NT_OK;
 	float *halfway;
-	const nt_status status =
-		nt_morphs_solve_halfway(base, mesh->halves, morph->positions, morph->normals, options, &halfway);
+	const nt_status status = nt_morphs_solve_halfway(base, moved, mesh->halves, options, &halfway);
 	if (!status)
-		nt_morphs_compare_halfway(mesh, base, halfway, morph);
+		nt_morphs_compare_halfway(mesh, base, moved, halfway, morph);
 	free(halfway);
 	return status;
 }
 
+static nt_status solve_target(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_mesh *moved,
+	const nmtan_options *options, nt_morph *morph)
+{
+	morph->corner_tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float));
+	if (!morph->corner_tangents)
+		return NT_ERROR_MEMORY;
+	mesh->morph_turned += nt_morphs_count_turned(view, moved);
+	nt_status status = NT_OK;
+	if (!view->texcoords) {
+		nt_turn_untextured(mesh, view, moved, morph->corner_tangents);
+	} else {
+		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = morph->corner_tangents};
+		status = nt_status_of(nt_tangents_of_halves(moved, mesh->halves, options, &output, NULL));
+		if (!status)
+			status = measure_halfway(mesh, view, moved, options, morph);
+	}
+	return status ? status : nt_morphs_classify(mesh, morph);
+}
+
 nt_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options)
 {
+	nt_status status = NT_OK;
 	mesh->morph_turned = 0;
-	for (size_t m = 0; m < mesh->morph_count; m++) {
-		nt_morph *morph = &mesh->morphs[m];
-		const nmtan_mesh moved = move(view, morph);
-		morph->corner_tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float));
-		if (!morph->corner_tangents)
-			return NT_ERROR_MEMORY;
-		mesh->morph_turned += nt_morphs_count_turned(view, morph);
-		nt_status status = NT_OK;
-		if (!view->texcoords) {
-			nt_turn_untextured(mesh, view, &moved, morph->corner_tangents);
-		} else {
-			const nmtan_output output = {.struct_bytes = sizeof output, .tangents = morph->corner_tangents};
-			status = nt_status_of(nt_tangents_of_halves(&moved, mesh->halves, options, &output, NULL));
-			if (!status)
-				status = measure_halfway(mesh, view, options, morph);
-		}
-		if (!status && !nt_morphs_are_restored(mesh))
-			status = nt_morphs_classify(mesh, morph);
-		if (status)
-			return status;
+	for (size_t m = 0; !status && m < mesh->morph_count; m++) {
+		float *positions, *normals;
+		nmtan_mesh moved = *view;
+		status = nt_gltf_move(mesh, &mesh->morphs[m], &positions, &normals);
+		if (positions)
+			moved.positions = positions;
+		if (normals)
+			moved.normals = normals;
+		if (!status)
+			status = solve_target(mesh, view, &moved, options, &mesh->morphs[m]);
+		free(positions);
+		free(normals);
 	}
-	return NT_OK;
+	return status;
 }
 
 /* ---- classes of corners ---- */
 
-/*
- * Corners of a vertex that have the same tangents in all targets so far are one class. A target divides classes
- * further, and keeps one tangent for each that there is then; a class that comes later has that of its parent, which it
- * was one with. So the tangents of all corners are in memory for one target at a time.
- */
+/* Classes of scene/morphs.c, by corner. */
 typedef struct nt_corner_classes {
 	uint32_t *of; /* [corner_count] */
-	uint32_t *first, *parent; /* [count] its first corner, the class that it was part of; itself: a vertex */
+	uint32_t *first, *parent; /* [count] its first corner, the class that it was part of; itself: none */
 	size_t count, first_capacity, parent_capacity;
 } nt_corner_classes;
 
@@ -159,26 +173,24 @@ static bool begin_classes(nt_mesh *mesh)
 }
 
 /* Targets have no w of their own. */
-static bool same_tangent(const nt_morph *morph, size_t a, size_t b)
+static bool same_tangent(const float *rows, size_t a, size_t b)
 {
-	return memcmp(morph->corner_tangents + 4 * a, morph->corner_tangents + 4 * b, 3 * sizeof(float)) == 0;
+	return memcmp(rows + 4 * a, rows + 4 * b, 3 * sizeof(float)) == 0;
 }
 
-nt_status nt_morphs_classify(nt_mesh *mesh, nt_morph *morph)
+/* Divides classes by the tangents of corners. */
+static bool divide(nt_corner_classes *classes, size_t corner_count, const float *rows)
 {
-	if (!mesh->corner_classes && !begin_classes(mesh))
-		return NT_ERROR_MEMORY;
-	nt_corner_classes *classes = mesh->corner_classes;
-	nt_hash_index others = {0}; /* classes that this target makes */
+	nt_hash_index others = {0}; /* classes that come of it */
 	bool done = true;
-	for (uint32_t c = 0; done && c < mesh->corner_count; c++) {
+	for (uint32_t c = 0; done && c < corner_count; c++) {
 		const uint32_t before = classes->of[c];
-		if (same_tangent(morph, classes->first[before], c))
+		if (same_tangent(rows, classes->first[before], c))
 			continue;
-		const uint64_t hash = nt_hash_bytes(before, morph->corner_tangents + 4 * (size_t)c, 3 * sizeof(float));
+		const uint64_t hash = nt_hash_bytes(before, rows + 4 * (size_t)c, 3 * sizeof(float));
 		uint32_t other;
 		for (size_t at = NT_HASH_BEGIN; (other = nt_hash_index_next(&others, hash, &at)) != UINT32_MAX;)
-			if (classes->parent[other] == before && same_tangent(morph, classes->first[other], c))
+			if (classes->parent[other] == before && same_tangent(rows, classes->first[other], c))
 				break;
 		if (other != UINT32_MAX)
 			classes->of[c] = other;
@@ -186,14 +198,80 @@ nt_status nt_morphs_classify(nt_mesh *mesh, nt_morph *morph)
 			done = add_class(classes, c, before) && nt_hash_index_add(&others, hash, classes->of[c]);
 	}
 	nt_hash_index_free(&others);
+	return done;
+}
+
+/* The classes that the base makes have no parent. */
+static nt_status begin(nt_mesh *mesh)
+{
+	mesh->morph_tangents = nt_calloc(1, sizeof *mesh->morph_tangents);
+	if (!mesh->morph_tangents || !begin_classes(mesh) ||
+		!divide(mesh->corner_classes, mesh->corner_count, mesh->corner_tangents))
+		return NT_ERROR_MEMORY;
+	for (size_t k = 0; k < mesh->corner_classes->count; k++)
+		mesh->corner_classes->parent[k] = (uint32_t)k;
+	return NT_OK;
+}
+
+/* Whether a class has a row: parents come before. */
+static bool has_row(const nt_mesh *mesh, const float *rows, size_t k)
+{
+	const nt_corner_classes *classes = mesh->corner_classes;
+	const uint32_t parent = classes->parent[k];
+	const float *row = rows + 4 * (size_t)classes->first[k];
+	const float *other = parent == k ? mesh->corner_tangents + 4 * (size_t)classes->first[k]
+					 : rows + 4 * (size_t)classes->first[parent];
+	return memcmp(row, other, 3 * sizeof *row) != 0;
+}
+
+static nt_status store_rows(nt_mesh *mesh, nt_morph *morph)
+{
+	const nt_corner_classes *classes = mesh->corner_classes;
+	nt_morph_tangents *all = mesh->morph_tangents;
+	size_t count = 0;
+	for (size_t k = 0; k < classes->count; k++)
+		count += has_row(mesh, morph->corner_tangents, k);
+	const bool listed = 4 * count < 3 * classes->count;
 	morph->class_count = classes->count;
-	morph->class_tangents = done ? nt_alloc(classes->count, 3 * sizeof(float)) : NULL;
-	for (size_t k = 0; morph->class_tangents && k < classes->count; k++)
-		memcpy(morph->class_tangents + 3 * k, morph->corner_tangents + 4 * (size_t)classes->first[k],
-			3 * sizeof(float));
+	morph->row_count = listed ? count : classes->count;
+	morph->first_word = all->word_count;
+	if (!nt_grow((void **)&all->words, &all->word_capacity, all->word_count + (listed ? 4 : 3) * morph->row_count,
+		sizeof *all->words))
+		return NT_ERROR_MEMORY;
+	uint32_t *number = all->words + all->word_count, *row = number + (listed ? count : 0);
+	for (size_t k = 0; k < classes->count; k++) {
+		if (listed && !has_row(mesh, morph->corner_tangents, k))
+			continue;
+		if (listed)
+			*number++ = (uint32_t)k;
+		memcpy(row, morph->corner_tangents + 4 * (size_t)classes->first[k], 3 * sizeof *row);
+		row += 3;
+	}
+	all->word_count = (size_t)(row - all->words);
+	return NT_OK;
+}
+
+/* A target that does not turn a tangent that was solved does not turn the authored one either. */
+static void keep_unturned(const nt_mesh *mesh, float *moved)
+{
+	const float *solved = mesh->solved_tangents, *authored = mesh->corner_tangents;
+	for (size_t c = 0; solved && c < mesh->corner_count; c++, moved += 4, solved += 4, authored += 4)
+		if (solved[3] == 0 && fabsf(moved[0] - solved[0]) <= NT_MORPH_LEAST &&
+			fabsf(moved[1] - solved[1]) <= NT_MORPH_LEAST && fabsf(moved[2] - solved[2]) <= NT_MORPH_LEAST)
+			memcpy(moved, authored, 3 * sizeof *moved);
+}
+
+nt_status nt_morphs_classify(nt_mesh *mesh, nt_morph *morph)
+{
+	nt_status status = mesh->corner_classes ? NT_OK : begin(mesh);
+	keep_unturned(mesh, morph->corner_tangents);
+	if (!status && !divide(mesh->corner_classes, mesh->corner_count, morph->corner_tangents))
+		status = NT_ERROR_MEMORY;
+	if (!status)
+		status = store_rows(mesh, morph);
 	free(morph->corner_tangents);
 	morph->corner_tangents = NULL;
-	return morph->class_tangents ? NT_OK : NT_ERROR_MEMORY;
+	return status;
 }
 
 static bool same_corner(const nt_mesh *mesh, size_t a, size_t b)
@@ -218,10 +296,6 @@ static nt_status find_other(const nt_mesh *mesh, uint32_t corner, nt_hash_index 
 
 nt_status nt_morphs_keys(nt_mesh *mesh, const nmtan_mesh *view, float *keys)
 {
-	/* authored tangents come back after all solves: targets whose corners wait for that */
-	for (size_t m = 0; m < mesh->morph_count; m++)
-		if (mesh->morphs[m].corner_tangents && nt_morphs_classify(mesh, &mesh->morphs[m]))
-			return NT_ERROR_MEMORY;
 	/* the first corner of each vertex; corners that differ from it by hash, one for each combination */
 	uint32_t *head = nt_alloc(mesh->vertex_count, sizeof *head);
 	if (!head)
@@ -249,39 +323,54 @@ nt_status nt_morphs_keys(nt_mesh *mesh, const nmtan_mesh *view, float *keys)
 nt_status nt_morphs_finish(nt_mesh *mesh)
 {
 	nt_split *split = &mesh->split;
-	for (size_t c = 0; c < mesh->corner_count; c++)
-		memcpy(split->vertex_tangents + 4 * (size_t)split->indices[c],
-			mesh->corner_tangents + 4 * c, 4 * sizeof(float));
+	nt_corner_classes *classes = mesh->corner_classes;
+	nt_morph_tangents *all = mesh->morph_tangents;
 	const size_t count = mesh->vertex_count + split->source_count;
-	uint32_t *class_of = mesh->corner_classes->of;
-	/* from the last one on: classes become those before them */
-	for (size_t m = mesh->morph_count; m-- > 0;) {
-		nt_morph *morph = &mesh->morphs[m];
-		morph->vertex_tangents = nt_alloc(count, 3 * sizeof(float));
-		if (!morph->vertex_tangents)
-			return NT_ERROR_MEMORY;
-		/* vertices without corners do not turn */
-		for (size_t v = 0; v < count; v++)
-			memcpy(morph->vertex_tangents + 3 * v, split->vertex_tangents + 4 * v,
-				3 * sizeof(float));
-		for (size_t c = 0; c < mesh->corner_count; c++) {
-			while (class_of[c] >= morph->class_count)
-				class_of[c] = mesh->corner_classes->parent[class_of[c]];
-			memcpy(morph->vertex_tangents + 3 * (size_t)split->indices[c],
-				morph->class_tangents + 3 * (size_t)class_of[c], 3 * sizeof(float));
-		}
-		free(morph->class_tangents);
-		morph->class_tangents = NULL;
+	all->class_of = nt_alloc(count, sizeof *all->class_of);
+	if (!all->class_of)
+		return NT_ERROR_MEMORY;
+	memset(all->class_of, 0xFF, count * sizeof *all->class_of);
+	for (size_t c = 0; c < mesh->corner_count; c++) {
+		const size_t vertex = split->indices[c];
+		memcpy(split->vertex_tangents + 4 * vertex, mesh->corner_tangents + 4 * c, 4 * sizeof(float));
+		all->class_of[vertex] = classes->of[c];
 	}
+	all->parent = classes->parent;
+	all->class_count = classes->count;
+	all->user_count = 1;
+	classes->parent = NULL;
 	return NT_OK;
 }
 
-void nt_morphs_free(nt_mesh *mesh)
+nt_status nt_morphs_keep(nt_mesh *mesh, nt_arena *arena)
+{
+	nt_morph_tangents *all = mesh->morph_tangents;
+	if (!all)
+		return NT_OK;
+	/* all of them are tried: what is not kept is freed */
+	bool kept = nt_arena_adopt(arena, all->class_of);
+	kept &= nt_arena_adopt(arena, all->parent);
+	kept &= nt_arena_adopt(arena, all->words);
+	kept &= nt_arena_adopt(arena, all);
+	if (!kept)
+		mesh->morph_tangents = NULL;
+	return kept ? NT_OK : NT_ERROR_MEMORY;
+}
+
+void nt_morphs_free(nt_mesh *mesh, bool failed)
 {
 	for (size_t m = 0; m < mesh->morph_count; m++) {
 		free(mesh->morphs[m].corner_tangents);
-		free(mesh->morphs[m].class_tangents);
-		mesh->morphs[m].corner_tangents = mesh->morphs[m].class_tangents = NULL;
+		mesh->morphs[m].corner_tangents = NULL;
 	}
+	free(mesh->solved_tangents);
+	mesh->solved_tangents = NULL;
 	free_classes(mesh);
+	if (!failed || !mesh->morph_tangents)
+		return;
+	free(mesh->morph_tangents->class_of);
+	free(mesh->morph_tangents->parent);
+	free(mesh->morph_tangents->words);
+	free(mesh->morph_tangents);
+	mesh->morph_tangents = NULL;
 }

@@ -83,14 +83,6 @@ static bool grow_mesh(nt_arena *arena, nt_mesh *mesh, const uint32_t *sources, s
 		if (!*arrays[i])
 			return false;
 	}
-	for (size_t m = 0; m < mesh->morph_count && source_count > 0; m++) {
-		float **positions = &mesh->morphs[m].positions;
-		if (*positions && !(*positions = grow_rows(arena, *positions, 3, mesh->vertex_count,
-					    sources, source_count)))
-			return false;
-		/* normals that are made have none to add to */
-		mesh->morphs[m].normals = NULL;
-	}
 	return true;
 }
 
@@ -215,6 +207,7 @@ static nt_status adopt(nt_scene *scene, nt_mesh *mesh, nt_normals mode, normal_j
 	mesh->indices = job->indices;
 	mesh->vertex_sources = job->sources;
 	mesh->normals = job->normals;
+	mesh->stored_normals = NULL;
 	mesh->vertex_lacks = NULL;
 	mesh->tangents = NULL; /* authored for other normals */
 	mesh->normals_made = true;

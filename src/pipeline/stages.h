@@ -99,8 +99,9 @@ void nt_small_solves_end(nt_small_solves *small);
 enum { NT_LEAST_ALONE_CORNERS = 3 * 30000 };
 
 /* authored.c, for tangents.c and morphs.c: authored tangents that stay with --existing=repair. If a mesh has texture
- * coordinates, the corners of faces whose tangents are all valid take theirs back after a solve, in targets too. */
-void nt_restore_authored(nt_mesh *mesh, float *corner_tangents);
+ * coordinates, the corners of faces whose tangents are all valid take theirs back after a solve.
+ *   solved  [corner_count][4] their w: 0 at corners that did; NULL: it is not asked for */
+void nt_restore_authored(nt_mesh *mesh, float *corner_tangents, float *solved);
 
 /* Without texture coordinates no solve is possible: each authored tangent stays or is mended by itself.
  * `tangents` [corner_count][4] is filled. */

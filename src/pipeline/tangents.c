@@ -17,6 +17,7 @@
 #include "base/hash.h"
 #include "base/pages.h"
 #include "base/parallel.h"
+#include "scene/morphs.h"
 
 /* Corners from which one mesh is worth all threads, whatever else there is, and where the others are less than half of
  * it; and those that small ones must have together for threads to be made at all, which costs as much as solving some
@@ -122,13 +123,6 @@ static nt_status solve_corners(nt_mesh *mesh, const nmtan_mesh *view,
 	return nt_status_of(nt_tangents_of_halves(view, mesh->halves, options, &output, counts));
 }
 
-/* With --existing=repair what was solved, for targets too, gives way to what is there. */
-static void restore(nt_mesh *mesh)
-{
-	if (nt_morphs_are_restored(mesh))
-		nt_restore_authored(mesh, mesh->corner_tangents);
-}
-
 /* Splits with morph targets: wherever the base or a target needs it. */
 static nt_status split_morphs(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options,
 	nmtan_split_output *output)
@@ -156,9 +150,9 @@ static nt_status split_corners(nt_mesh *mesh, const nmtan_options *options, nmta
 				 : nt_status_of(nmtan_split(&view, mesh->corner_tangents, options, output));
 }
 
-static void free_corners(nt_mesh *mesh)
+static void free_corners(nt_mesh *mesh, bool failed)
 {
-	nt_morphs_free(mesh);
+	nt_morphs_free(mesh, failed);
 	free(mesh->corner_tangents);
 	mesh->corner_tangents = NULL;
 }
@@ -204,8 +198,9 @@ static nt_status keep_split(const wishes *job, nt_mesh *mesh, const nmtan_split_
 		4 * sizeof(float) * (mesh->corner_count - count));
 	split->vertex_tangents = keep_block(arena, split->vertex_tangents, mesh->vertex_count + count,
 		4 * sizeof(float));
+	const nt_status status = nt_morphs_keep(mesh, arena);
 	if (split->sources && split->vertex_tangents && (split->indices || count == 0))
-		return NT_OK;
+		return status;
 	*split = (nt_split){0};
 	return NT_ERROR_MEMORY;
 }
@@ -222,9 +217,7 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 		return NT_OK; /* the edit of a glTF alone asks for a split */
 	if (!job->splits && by_corner) {
 		status = solve_corners(mesh, &view, options, &mesh->corner_tangents, &mesh->counts);
-		if (!status)
-			restore(mesh);
-		return status;
+		return status ? status : nt_morphs_restore(mesh, false);
 	}
 
 	/* vertices take less memory than corners, so that they are split although nothing is written */
@@ -234,12 +227,12 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 		if (!status && job->triangulates && mesh->face_sizes && options->repair == NMTAN_REPAIR_ON)
 			status = nt_cut_folded_quads(mesh, stored.v_offset, options->threads);
 		if (!status)
+			status = nt_morphs_restore(mesh, true);
+		if (!status)
 			status = nt_morphs_solve(mesh, &view, options);
 		if (!status)
-			restore(mesh);
-		if (!status)
 			status = split_corners(mesh, options, &output);
-		free_corners(mesh);
+		free_corners(mesh, status);
 	} else if (!(status = make_split(mesh, &mesh->split, &output))) {
 		/* small ones have a workspace, whose pages are there */
 		const nt_vertex_request request = {.lazy_indices = true, .lends_copies = !options->workspace};
@@ -258,16 +251,16 @@ static nt_status solve_join(const wishes *job, const nt_join *join, const nmtan_
 		nt_mesh *mesh = join->parts[i];
 		if (mesh->plan.transform_of)
 			continue;
-		if (!status)
-			restore(mesh);
 		if (!status && !job->splits)
 			continue;
 		nmtan_split_output output;
-		if (!status && !(status = split_corners(mesh, options, &output)))
+		if (!status)
+			status = split_corners(mesh, options, &output);
+		free_corners(mesh, status);
+		if (!status)
 			status = keep_split(job, mesh, &output, arena);
 		else
 			drop_split(mesh);
-		free_corners(mesh);
 	}
 	return status;
 }
@@ -376,11 +369,8 @@ static nt_status solve_small(tangent_job *job, nt_format output)
 /* Data that is not kept yet lives as long as the scene. */
 static bool keep_results(nt_scene *scene, nt_mesh *mesh)
 {
-	bool kept = true;
-	for (size_t m = 0; m < mesh->morph_count; m++)
-		kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), mesh->morphs[m].vertex_tangents);
 	/* all of them are tried: what is not kept is freed */
-	kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), mesh->cut_arrays);
+	bool kept = nt_arena_adopt(nt_mesh_arena(scene, mesh), mesh->cut_arrays);
 	kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), mesh->corner_tangents);
 	return kept;
 }
@@ -478,6 +468,8 @@ static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *e
 			nt_mesh_share(mesh);
 			summary->same_count++;
 		}
+		if (mesh->morph_tangents)
+			mesh->morph_tangents->user_count += (mesh->plan.same_as != NULL) + job->wishes.settings->verify;
 		add_findings(scene, mesh);
 		add_counts(summary, mesh);
 	}

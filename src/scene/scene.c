@@ -89,6 +89,7 @@ void nt_mesh_share(nt_mesh *mesh)
 void nt_mesh_drop_arrays(nt_mesh *mesh)
 {
 	mesh->positions = mesh->normals = mesh->solve_normals = mesh->colors = mesh->tangents = NULL;
+	mesh->stored_normals = NULL;
 	mesh->texcoords = mesh->solve_texcoords = mesh->corner_tangents = mesh->split.vertex_tangents = NULL;
 	mesh->pool_vertices = mesh->indices = mesh->vertex_sources = mesh->split.indices = mesh->split.sources = NULL;
 	mesh->halves = NULL;
@@ -96,6 +97,7 @@ void nt_mesh_drop_arrays(nt_mesh *mesh)
 	mesh->vertex_lacks = mesh->face_sizes = mesh->face_diagonals = NULL;
 	mesh->cut_arrays = NULL;
 	mesh->morphs = NULL;
+	mesh->morph_tangents = NULL;
 	mesh->morph_count = 0;
 }
 

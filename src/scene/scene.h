@@ -124,12 +124,10 @@ typedef struct nt_primitive {
 typedef struct nt_morph {
 	uint32_t target;        /* its number in the source */
 	const char *name;       /* "" where it has none */
-	float *positions;       /* [vertex_count][3] moved; NULL: as the base */
-	float *normals;         /* [vertex_count][3] moved, unit; NULL: as the base */
+	const struct nt_displacement *positions, *normals; /* what is added to the base's, for nt_gltf_move(); NULL:
+	                                                     nothing */
 	float *corner_tangents; /* [corner_count][4] while it is being solved */
-	float *class_tangents;  /* [class_count][3] from then until vertices are split: see pipeline/morphs.c */
-	size_t class_count;
-	float *vertex_tangents; /* [vertex_count + split.source_count][3]; NULL until solved */
+	size_t class_count, row_count, first_word; /* of its tangents then: scene/morphs.h */
 	size_t halfway_triangles; /* where adding half of the deltas is wrong by more than 5 degrees */
 	double halfway_degrees;   /* by how much at most */
 } nt_morph;
@@ -268,6 +266,8 @@ typedef struct nt_mesh {
 	float *normals;          /* [vertex_count][3]; NULL: none */
 	float *solve_normals;    /* [vertex_count][3] of unit length: what tangents are made for, if normals are
 	                            not and stay; NULL: normals themselves */
+	float *stored_normals;   /* [vertex_count][3] integers before they were made unit: what targets add to; NULL:
+	                            normals themselves */
 	size_t scaled_normals;   /* normals that were made unit, there or in their place */
 	size_t replaced_normals; /* and those whose normal has no direction */
 	float *texcoords;        /* [vertex_count][2], v up; NULL: none */
@@ -310,6 +310,7 @@ typedef struct nt_mesh {
 	nt_morph *morphs;         /* [morph_count] targets that move positions or normals; filled by load() */
 	size_t morph_count;
 	struct nt_corner_classes *corner_classes; /* while they are solved: pipeline/morphs.c */
+	struct nt_morph_tangents *morph_tangents; /* then: scene/morphs.h; NULL: none */
 	size_t morph_turned;      /* triangles that a target turns to the other side of their normals: no w
 	                             serves them with and without it; counted once for each target */
 
@@ -317,6 +318,8 @@ typedef struct nt_mesh {
 	void *cut_arrays;         /* the block of indices and face arrays, where folded quads were cut, or of
 	                             face_diagonals; NULL: neither */
 	float *corner_tangents;   /* [corner_count][4]; NULL until solved or after split */
+	float *solved_tangents;   /* [corner_count][4] while targets are solved: before authored ones took their place,
+	                             w: 0 if one did; NULL: corner_tangents */
 	nmtan_counts counts;
 	size_t replaced_tangents; /* corners whose authored tangent was invalid, or is beside one that was, and is
 	                             another now */

@@ -93,4 +93,23 @@ exits 0
 is "$(gltf authored.glb 'rows(g.meshes[0].primitives[0].targets[0].TANGENT).flat().every((x) => x === 0)')" true
 is "$(gltf authored.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT).every((t) => t[1] > 0.0087 && t[1] < 0.0088)')" true
 
+scene "a client adds a target's normals to those that were made: what it has then is solved"
+mkdir "$WORK/layouts"
+python3 "$ROOT/tests/support/gltf_layouts.py" "$WORK/layouts" || exit 1
+for name in plain sequential_u8; do
+	run --only=all --normals=replace-smooth "$WORK/layouts/$name.gltf" made.glb
+	exits 0
+	gltf made.glb drawn 'const p = g.meshes[0].primitives[0], a = p.attributes, t = p.targets[0], unit = (v) => {
+			const l = Math.hypot(...v); return v.map((x) => x / l); },
+		sums = (base, delta) => { const d = rows(delta); return rows(base).map((r, i) => r.map((x, k) => Math.fround(x + d[i][k]))); };
+		if (!t.NORMAL) throw Error("no test");
+		const points = sums(a.POSITION, t.POSITION), bounds = (f) => [0, 1, 2].map((k) => f(...points.map((v) => v[k])));
+		a.POSITION = add("VEC3", 5126, points.flat(), {min: bounds(Math.min), max: bounds(Math.max)});
+		a.NORMAL = add("VEC3", 5126, sums(a.NORMAL, t.NORMAL).flatMap(unit));
+		delete a.TANGENT; delete p.targets; delete g.meshes[0].weights'
+	run --only=all drawn.gltf drawn.glb
+	exits 0
+	python3 "$ROOT/tests/support/gltf_morphs.py" made.glb 0 drawn.glb >"$WORK/err.txt" 2>&1 || wrong "$(cat "$WORK/err.txt")"
+done
+
 done_testing

@@ -17,6 +17,7 @@
 #include "base/vec.h"
 #include "gltf/load.h"
 #include "gltf/pointer.h"
+#include "scene/morphs.h"
 
 /* A pool whose meshes are merged one after the other. */
 typedef struct nt_pool_merge {
@@ -28,6 +29,7 @@ typedef struct nt_pool_merge {
 	uint32_t *next;       /* next copy of the same vertex, NT_NONE */
 	uint32_t *last;       /* [old_count] last copy of each vertex, or itself */
 	nt_hash_index known;  /* copies with a tangent, of all sets */
+	float **moved;        /* [morph_count][vertex][3] of the mesh that is merged */
 } nt_pool_merge;
 
 /* ---- room ---- */
@@ -76,6 +78,7 @@ static bool start_set(nt_pool_merge *m, nt_pool_set *set, const nt_mesh *mesh)
 	const size_t old_count = m->vertices.old_count;
 	set->morph_count = mesh->morph_count;
 	set->morphs = nt_calloc(mesh->morph_count, sizeof *set->morphs);
+	set->frees_morphs = true;
 	set->normals = mesh->normals_made ? nt_calloc(m->capacity, 3 * sizeof(float)) : NULL;
 	set->first_free = nt_alloc(old_count, sizeof *set->first_free);
 	if (!set->morphs || (mesh->normals_made && !set->normals) || !set->first_free || !grow_set(set, 0, m->capacity))
@@ -136,8 +139,8 @@ static uint32_t source_vertex(const nt_mesh *mesh, uint32_t vertex)
 	return nt_mesh_pool_vertex(mesh, vertex);
 }
 
-static bool vertex_fits(const nt_pool_set *set, uint32_t pool_vertex, const nt_mesh *mesh, uint32_t vertex,
-	const float *normal)
+static bool vertex_fits(const nt_pool_merge *m, const nt_pool_set *set, uint32_t pool_vertex, const nt_mesh *mesh,
+	uint32_t vertex, const float *normal)
 {
 	if (!set->defined[pool_vertex] || memcmp(set->tangents + 4 * (size_t)pool_vertex,
 		mesh->split.vertex_tangents + 4 * (size_t)vertex, 4 * sizeof(float)) != 0 ||
@@ -145,31 +148,30 @@ static bool vertex_fits(const nt_pool_set *set, uint32_t pool_vertex, const nt_m
 		return false;
 	for (size_t k = 0; k < set->morph_count; k++)
 		if (memcmp(set->morphs[k] + 3 * (size_t)pool_vertex,
-			mesh->morphs[k].vertex_tangents + 3 * (size_t)vertex, 3 * sizeof(float)) != 0)
+			m->moved[k] + 3 * (size_t)vertex, 3 * sizeof(float)) != 0)
 			return false;
 	return true;
 }
 
-static void set_vertex(nt_pool_set *set, uint32_t pool_vertex, const nt_mesh *mesh, uint32_t vertex,
-	const float *normal)
+static void set_vertex(const nt_pool_merge *m, nt_pool_set *set, uint32_t pool_vertex, const nt_mesh *mesh,
+	uint32_t vertex, const float *normal)
 {
 	memcpy(set->tangents + 4 * (size_t)pool_vertex, mesh->split.vertex_tangents + 4 * (size_t)vertex,
 		4 * sizeof(float));
 	if (normal)
 		memcpy(set->normals + 3 * (size_t)pool_vertex, normal, 3 * sizeof(float));
 	for (size_t k = 0; k < set->morph_count; k++)
-		memcpy(set->morphs[k] + 3 * (size_t)pool_vertex,
-			mesh->morphs[k].vertex_tangents + 3 * (size_t)vertex, 3 * sizeof(float));
+		memcpy(set->morphs[k] + 3 * (size_t)pool_vertex, m->moved[k] + 3 * (size_t)vertex, 3 * sizeof(float));
 }
 
-static uint64_t hash_vertex(const nt_pool_set *set, uint32_t number, uint32_t source, const nt_mesh *mesh,
-	uint32_t vertex)
+static uint64_t hash_vertex(const nt_pool_merge *m, const nt_pool_set *set, uint32_t number, uint32_t source,
+	const nt_mesh *mesh, uint32_t vertex)
 {
 	const uint32_t place[2] = {number, source};
 	uint64_t hash = nt_hash_bytes(nt_hash_bytes(0, place, sizeof place),
 		mesh->split.vertex_tangents + 4 * (size_t)vertex, 4 * sizeof(float));
 	for (size_t k = 0; k < set->morph_count; k++)
-		hash = nt_hash_bytes(hash, mesh->morphs[k].vertex_tangents + 3 * (size_t)vertex, 3 * sizeof(float));
+		hash = nt_hash_bytes(hash, m->moved[k] + 3 * (size_t)vertex, 3 * sizeof(float));
 	return hash;
 }
 
@@ -200,20 +202,20 @@ static uint32_t take_vertex(nt_pool_merge *m, const nt_mesh *mesh, uint32_t numb
 	const float *normal = mesh->normals_made && set->normals
 		? mesh->normals + 3 * (size_t)before_split(mesh, vertex) : NULL;
 	const uint32_t source = source_vertex(mesh, vertex);
-	if (vertex_fits(set, source, mesh, vertex, normal))
+	if (vertex_fits(m, set, source, mesh, vertex, normal))
 		return source;
 	uint32_t pool_vertex = source;
 	if (set->defined[source]) {
-		const uint64_t hash = hash_vertex(set, number, source, mesh, vertex);
+		const uint64_t hash = hash_vertex(m, set, number, source, mesh, vertex);
 		for (size_t at = NT_HASH_BEGIN; (pool_vertex = nt_hash_index_next(&m->known, hash, &at)) != NT_NONE;)
-			if (m->source[pool_vertex] == source && vertex_fits(set, pool_vertex, mesh, vertex, normal))
+			if (m->source[pool_vertex] == source && vertex_fits(m, set, pool_vertex, mesh, vertex, normal))
 				return pool_vertex;
 		pool_vertex = find_free_vertex(m, set, source);
 		if (pool_vertex == NT_NONE || !nt_hash_index_add(&m->known, hash, pool_vertex))
 			return NT_NONE;
 	}
 	set->defined[pool_vertex] = true;
-	set_vertex(set, pool_vertex, mesh, vertex, normal);
+	set_vertex(m, set, pool_vertex, mesh, vertex, normal);
 	return pool_vertex;
 }
 
@@ -285,7 +287,7 @@ static nt_status set_unused(nt_pool_merge *m, const nt_mesh *mesh, nt_pool_set *
 		if (set->defined[v])
 			continue;
 		if (!mesh->pool_vertices) {
-			set_vertex(set, (uint32_t)v, mesh, (uint32_t)v, set->normals ? mesh->normals + 3 * v : NULL);
+			set_vertex(m, set, (uint32_t)v, mesh, (uint32_t)v, set->normals ? mesh->normals + 3 * v : NULL);
 			continue;
 		}
 		set_any_tangent(set, v, set->normals ? up : set->source_normals + 3 * v);
@@ -313,6 +315,26 @@ static void set_unused_copies(const nt_pool_merge *m, uint32_t number)
 }
 
 /* ---- one mesh ---- */
+
+/* The tangents of all targets of a mesh, for as long as it is merged. Returns NT_OK or NT_ERROR_MEMORY. */
+static nt_status read_targets(nt_pool_merge *m, const nt_mesh *mesh)
+{
+	nt_status status = NT_OK;
+	m->moved = nt_calloc(mesh->morph_count, sizeof *m->moved);
+	for (size_t k = 0; m->moved && !status && k < mesh->morph_count; k++) {
+		m->moved[k] = nt_alloc(mesh->vertex_count + mesh->split.source_count, 3 * sizeof **m->moved);
+		status = m->moved[k] ? nt_morph_read(mesh, k, m->moved[k]) : NT_ERROR_MEMORY;
+	}
+	return m->moved ? status : NT_ERROR_MEMORY;
+}
+
+static void free_targets(nt_pool_merge *m, const nt_mesh *mesh)
+{
+	for (size_t k = 0; m->moved && k < mesh->morph_count; k++)
+		free(m->moved[k]);
+	free(m->moved);
+	m->moved = NULL;
+}
 
 /* A copy differs from what it copies; normals that were made may have given the mesh indices of its own. */
 static bool is_changed(const nt_mesh *mesh, const uint32_t *indices)
@@ -364,13 +386,14 @@ static nt_status merge_user(nt_pool_merge *m, uint32_t user, nt_error *error)
 		return nt_fail_memory(error);
 	nt_status status = check_count(m, mesh, error);
 	const bool first = pool->sets.first[set] == user;
-	if (!status && first && !start_set(m, &vertices->sets[set], mesh))
+	if (!status && ((first && !start_set(m, &vertices->sets[set], mesh)) || read_targets(m, mesh)))
 		status = nt_fail_memory(error);
 	vertices->indices[user] = status ? NULL : nt_arena_alloc(m->arena, mesh->corner_count, sizeof(uint32_t));
 	if (!status && (!vertices->indices[user] || !merge_mesh(m, mesh, set, vertices->indices[user])))
 		status = nt_fail_memory(error);
 	if (!status && first)
 		status = set_unused(m, mesh, &vertices->sets[set], error);
+	free_targets(m, mesh);
 	vertices->changed[user] = !status && is_changed(mesh, vertices->indices[user]);
 	return status;
 }
@@ -478,12 +501,9 @@ static bool borrow_split(nt_pool_vertices *vertices, const nt_mesh *mesh, nt_are
 	vertices->indices = nt_arena_alloc(tables, user_count, sizeof *vertices->indices);
 	vertices->changed = nt_arena_alloc(tables, user_count, sizeof *vertices->changed);
 	vertices->sets = nt_arena_alloc(tables, 1, sizeof *vertices->sets);
-	float **morphs = nt_arena_alloc(tables, mesh->morph_count, sizeof *morphs);
-	if (!vertices->indices || !vertices->changed || !vertices->sets || !morphs)
+	if (!vertices->indices || !vertices->changed || !vertices->sets)
 		return false;
-	for (size_t k = 0; k < mesh->morph_count; k++)
-		morphs[k] = mesh->morphs[k].vertex_tangents;
-	vertices->sets[0] = (nt_pool_set){.tangents = mesh->split.vertex_tangents, .morphs = morphs,
+	vertices->sets[0] = (nt_pool_set){.tangents = mesh->split.vertex_tangents, .lone = mesh,
 		.morph_count = mesh->morph_count};
 	uint32_t *triangles = split_triangles(mesh, tables);
 	for (size_t i = 0; i < user_count; i++) {

@@ -12,7 +12,9 @@ typedef struct nt_pool_set {
 	float *tangents;      /* [new_count][4] */
 	float *normals;       /* [new_count][3]: NULL where normals were not made */
 	float *source_normals; /* [old_count][3] of pooled meshes whose normals were not made; not to be written to */
-	float **morphs;       /* [morph_count][new_count][3] */
+	const nt_mesh *lone;  /* its targets have tangents for all vertices: scene/morphs.h; NULL: morphs has them */
+	float **morphs;       /* [morph_count][new_count][3]; NULL: lone */
+	bool frees_morphs;    /* each can be freed once it is written */
 	size_t morph_count;
 	bool *defined;        /* [vertex] while splits are merged: whether a corner of the set has it */
 	uint32_t *first_free; /* [old_count] while splits are merged: before this one the set has tangents for all

@@ -11,6 +11,7 @@
 #include "gltf/accessor.h"
 #include "gltf/edit/old_tangents.h"
 #include "gltf/morph_deltas.h"
+#include "scene/morphs.h"
 
 uint32_t nt_gltf_new_accessor(nt_json *json, uint32_t view, uint32_t component_type, const char *type,
 	size_t count, bool normalized)
@@ -87,7 +88,7 @@ typedef struct target_tangents {
 	uint32_t target, accessor; /* accessor: NT_NONE while there is none that is right */
 	nt_morph_storage storage;
 	nt_gltf_packing packing;
-	const unsigned char *bytes;
+	const unsigned char *bytes; /* NULL: in the view of sparse ones */
 	uint64_t offset; /* in a view that it shares */
 	bool found;      /* it is in the document */
 	bool is_zero;
@@ -101,6 +102,9 @@ typedef struct target_job {
 	target_tangents *list; /* [count] */
 	size_t count;
 	nt_arena scratch;      /* of one target */
+	bool drops;            /* tangents of targets go once they are read */
+	unsigned char *sparse; /* the bytes of all sparse ones */
+	size_t sparse_size, sparse_capacity;
 	nt_error *error;
 } target_job;
 
@@ -167,6 +171,39 @@ static nt_status find_deltas(target_job *job, uint32_t target, uint32_t type, co
 	return status == NT_ERROR_MEMORY ? status : NT_OK;
 }
 
+/* The tangents of the set as a target moves it. NULL: memory is exhausted. */
+static const float *read_target(target_job *job, const nt_pool_set *set, size_t m)
+{
+	if (set->morphs)
+		return set->morphs[m];
+	float *moved = nt_arena_alloc(&job->scratch, job->vertices->new_count, 3 * sizeof *moved);
+	return moved && nt_morph_read(set->lone, m, moved) == NT_OK ? moved : NULL;
+}
+
+/* A target that nobody reads again goes. */
+static void drop_target(const target_job *job, const nt_pool_set *set, size_t m)
+{
+	if (set->lone && job->drops)
+		nt_morph_drop(set->lone, m);
+	if (!set->morphs || !set->frees_morphs)
+		return;
+	free(set->morphs[m]);
+	set->morphs[m] = NULL;
+}
+
+/* Room for a sparse target behind those before it. NULL: memory is exhausted. */
+static unsigned char *add_sparse(target_job *job, target_tangents *t)
+{
+	const size_t padded = (t->storage.size + 3) / 4 * 4;
+	if (!nt_grow((void **)&job->sparse, &job->sparse_capacity, job->sparse_size + padded, 1))
+		return NULL;
+	unsigned char *bytes = job->sparse + job->sparse_size;
+	memset(bytes, 0, padded);
+	t->offset = job->sparse_size;
+	job->sparse_size += padded;
+	return bytes;
+}
+
 /* A target's tangents, and whether the document has them. */
 static nt_status look_at_target(target_job *job, size_t m, float least)
 {
@@ -175,19 +212,22 @@ static nt_status look_at_target(target_job *job, size_t m, float least)
 	target_tangents *t = &job->list[m];
 	nt_arena_clear(&job->scratch);
 	float *deltas = nt_arena_alloc(&job->scratch, count, 3 * sizeof *deltas);
-	if (!deltas)
+	const float *moved_to = deltas ? read_target(job, set, m) : NULL;
+	if (!moved_to)
 		return NT_ERROR_MEMORY;
 	*t = (target_tangents){.accessor = NT_NONE,
 		.target = nt_pool_set_mesh(job->vertices->pool, job->set)->morphs[m].target};
 	uint32_t type = type_of_normals(job, t->target);
-	const size_t moved = nt_morph_deltas(set->morphs[m], set->tangents, count, least, &type, deltas);
+	const size_t moved = nt_morph_deltas(moved_to, set->tangents, count, least, &type, deltas);
+	drop_target(job, set, m);
 	const nt_status status = find_deltas(job, t->target, type, deltas, &t->found);
 	if (status || t->found)
 		return status;
 	t->is_zero = moved == 0;
 	choose_storage(job, t, type, moved);
-	unsigned char *bytes = nt_arena_alloc(&job->edits->arena, t->storage.size, 1);
-	t->bytes = bytes;
+	unsigned char *bytes = t->storage.sparse ? add_sparse(job, t) : nt_arena_alloc(&job->edits->arena,
+		t->storage.size, 1);
+	t->bytes = t->storage.sparse ? NULL : bytes;
 	if (!bytes)
 		return NT_ERROR_MEMORY;
 	memset(bytes, 0, t->storage.size);
@@ -232,23 +272,13 @@ static nt_status take_over(const target_job *job, nt_gltf_override *overrides, s
 /* One view for all sparse ones. NT_NONE: there are none. */
 static nt_status add_sparse_view(target_job *job, uint32_t *view)
 {
-	uint64_t size = 0;
+	unsigned char *bytes = job->sparse;
 	*view = NT_NONE;
-	for (size_t m = 0; m < job->count; m++)
-		if (job->list[m].bytes && job->list[m].storage.sparse) {
-			job->list[m].offset = size;
-			size += (job->list[m].storage.size + 3) / 4 * 4;
-		}
-	if (!size)
-		return NT_OK;
-	unsigned char *bytes = nt_arena_alloc(&job->edits->arena, (size_t)size, 1);
-	if (!bytes)
+	job->sparse = NULL;
+	if (!nt_arena_adopt(&job->edits->arena, bytes))
 		return nt_fail_memory(job->error);
-	memset(bytes, 0, (size_t)size);
-	for (size_t m = 0; m < job->count; m++)
-		if (job->list[m].bytes && job->list[m].storage.sparse)
-			memcpy(bytes + job->list[m].offset, job->list[m].bytes, job->list[m].storage.size);
-	return nt_edits_add_view(job->edits, job->buffer, bytes, (size_t)size, 0, 0, view, job->error);
+	return !bytes ? NT_OK :
+		nt_edits_add_view(job->edits, job->buffer, bytes, job->sparse_size, 0, 0, view, job->error);
 }
 
 static void set_view(nt_json *json, nt_json_value *object, uint32_t view, uint64_t offset)
@@ -352,6 +382,17 @@ static void add_cost(const target_job *job, nt_morph_cost *cost)
 		}
 }
 
+/* Whether nobody else reads the tangents of a set's targets. */
+static bool reads_last(const target_job *job)
+{
+	const nt_vertex_pool *pool = job->vertices->pool;
+	const nt_mesh *lone = job->vertices->sets[job->set].lone;
+	size_t count = 0;
+	for (uint32_t i = pool->sets.first[job->set]; lone && i != NT_NONE; i = pool->sets.next[i])
+		count += nt_pool_mesh(pool, i)->morph_tangents == lone->morph_tangents;
+	return lone && count == lone->morph_tangents->user_count;
+}
+
 nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
 	const nt_pool_vertices *vertices, uint32_t set, float least, nt_gltf_override *overrides,
 	size_t *override_count, nt_morph_cost *cost, nt_error *error)
@@ -360,6 +401,7 @@ nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_v
 		.count = nt_pool_set_mesh(vertices->pool, set)->morph_count, .error = error};
 	if (!job.count)
 		return NT_OK;
+	job.drops = reads_last(&job);
 	job.list = nt_calloc(job.count, sizeof *job.list);
 	nt_status status = job.list ? NT_OK : NT_ERROR_MEMORY;
 	for (size_t m = 0; !status && m < job.count; m++)
@@ -375,6 +417,7 @@ nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_v
 	if (!status)
 		add_cost(&job, cost);
 	nt_arena_free(&job.scratch);
+	free(job.sparse);
 	free(job.list);
 	return status;
 }

@@ -20,6 +20,7 @@
 #include "gltf/draco.h"
 #include "gltf/edit/vertex_extensions.h"
 #include "gltf/pointer.h"
+#include "scene/morphs.h"
 
 /* Something that vertices have. */
 typedef struct column {
@@ -142,6 +143,20 @@ static nt_status add_attribute(void *context, nt_json_value *attributes, const c
 	return status || w->obstacle || !c.bytes || add_column(w, c) ? status : nt_fail_memory(w->error);
 }
 
+/* The tangents of all targets at once, which are compared. */
+static nt_status read_targets(const welding *w, nt_pool_set *set)
+{
+	float **morphs = nt_arena_alloc(w->scratch, set->morph_count, sizeof *morphs);
+	bool done = morphs;
+	for (size_t k = 0; done && k < set->morph_count; k++) {
+		morphs[k] = nt_arena_alloc(w->scratch, w->vertices->new_count, 3 * sizeof **morphs);
+		done = morphs[k] && nt_morph_read(set->lone, k, morphs[k]) == NT_OK;
+	}
+	set->morphs = morphs;
+	set->lone = NULL;
+	return done ? NT_OK : nt_fail_memory(w->error);
+}
+
 static nt_status list_columns(welding *w, const nt_stored_tangents *stored)
 {
 	const nt_vertex_pool *pool = w->vertices->pool;
@@ -155,8 +170,12 @@ static nt_status list_columns(welding *w, const nt_stored_tangents *stored)
 		status = nt_gltf_visit_attributes(primitive, w->pools->accessor_count, add_attribute, w);
 	}
 	bool added = true;
-	for (size_t s = 0; s < pool->sets.count; s++) {
-		const nt_pool_set *set = &w->vertices->sets[s];
+	for (size_t s = 0; !status && s < pool->sets.count; s++) {
+		nt_pool_set *set = &w->vertices->sets[s];
+		if (set->lone && set->morph_count)
+			status = read_targets(w, set);
+		if (status)
+			break;
 		const column tangents = stored
 			? (column){stored[s].values, stored[s].element_bytes, stored[s].element_bytes, false}
 			: (column){(const unsigned char *)set->tangents, 4 * sizeof(float), 4 * sizeof(float), false};
@@ -234,6 +253,7 @@ static bool gather_set(nt_arena *arena, nt_pool_set *set, nt_stored_tangents *st
 	for (size_t k = 0; morphs && k < set->morph_count; k++)
 		done &= (morphs[k] = gather(arena, set->morphs[k], 3 * sizeof(float), kept, count)) != NULL;
 	set->morphs = morphs;
+	set->frees_morphs = false;
 	if (!stored)
 		return done && morphs;
 	const bool filtered = stored->stored != stored->values;

@@ -21,6 +21,7 @@
 #include "gltf/vertex_pools.h"
 #include "gltf/verify/faces.h"
 #include "gltf/view.h"
+#include "scene/morphs.h"
 
 /* ---- finding the files ---- */
 
@@ -283,26 +284,20 @@ static bool bounds_hold(const nt_reread_array *array)
 	return true;
 }
 
-/* Whether a vertex's targets say what leads from its stored tangent to theirs. */
-static bool targets_match(const nt_mesh *mesh, const primitive_view *view, size_t vertex, size_t split,
-	const float *stored)
+/* Whether a vertex of a target says what leads from its stored tangent to the target's. */
+static bool target_matches(const nt_reread_array *array, size_t vertex, const float *moved, const float *stored,
+	float least)
 {
-	const nt_tangent_filter filter = filter_of(&view->tangents, vertex);
-	const float least = view->tangent_bits ? nt_morph_least_of_bits(view->tangent_bits) :
-		nt_tangent_filter_least(&filter);
-	for (size_t m = 0; view->target_tangents && m < mesh->morph_count; m++) {
-		const nt_reread_array *array = &view->target_tangents[m];
-		const unsigned char *element = element_at(array, vertex);
-		uint32_t type = (uint32_t)array->component_type;
-		float delta[3];
-		if (!element || array->components != 3 || (type != NT_GLTF_FLOAT && !array->normalized))
+	const unsigned char *element = element_at(array, vertex);
+	uint32_t type = (uint32_t)array->component_type;
+	float delta[3];
+	if (!element || array->components != 3 || (type != NT_GLTF_FLOAT && !array->normalized))
+		return false;
+	nt_morph_deltas(moved, stored, 1, least, &type, delta);
+	for (size_t k = 0; k < 3; k++)
+		if (nt_component_value(element + k * nt_component_size(array->component_type),
+			array->component_type, array->normalized) != delta[k])
 			return false;
-		nt_morph_deltas(mesh->morphs[m].vertex_tangents + 3 * split, stored, 1, least, &type, delta);
-		for (size_t k = 0; k < 3; k++)
-			if (nt_component_value(element + k * nt_component_size(array->component_type),
-				array->component_type, array->normalized) != delta[k])
-				return false;
-	}
 	return true;
 }
 
@@ -333,8 +328,7 @@ static bool corner_matches(const nt_mesh *mesh, size_t corner, primitive_view *v
 	float stored[4];
 	const float *meant = mesh->split.vertex_tangents + 4 * split;
 	return tangent_matches(&view->tangents, vertex, meant, stored) &&
-		stays_drawable(&view->tangents, vertex, meant) &&
-		targets_match(mesh, view, vertex, split, stored);
+		stays_drawable(&view->tangents, vertex, meant);
 }
 
 static nt_status fail_bounds(const nt_mesh *mesh, const char *attribute, nt_error *error)
@@ -382,6 +376,43 @@ static nt_status compare_mesh(const nt_mesh *mesh, primitive_view *views, nt_err
 	return NT_OK;
 }
 
+/* The base's tangent of a corner as a client has it; its vertex was seen to be there. */
+static void stored_tangent(const nt_mesh *mesh, const primitive_view *view, size_t corner, float tangent[4])
+{
+	size_t source;
+	const size_t split = split_vertex(mesh, corner, &source), vertex = vertex_at(view, corner);
+	if (view->block)
+		memcpy(tangent, element_at(&view->tangents, vertex), 4 * sizeof *tangent);
+	else
+		tangent_matches(&view->tangents, vertex, mesh->split.vertex_tangents + 4 * split, tangent);
+}
+
+/* Attributes outside of a block go by its vertices, so that they are in order. */
+static nt_status compare_targets(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
+{
+	if (!view->target_tangents || !mesh->split.vertex_tangents || !mesh->normals)
+		return NT_OK;
+	float *moved = nt_alloc(mesh->vertex_count + mesh->split.source_count, 3 * sizeof *moved);
+	nt_status status = moved ? NT_OK : nt_fail_memory(error);
+	for (size_t m = 0; m < mesh->morph_count && status == NT_OK; m++) {
+		if (nt_morph_read(mesh, m, moved) != NT_OK)
+			status = nt_fail_memory(error);
+		for (size_t c = 0; c < mesh->corner_count && status == NT_OK; c++) {
+			size_t source;
+			float stored[4];
+			const size_t split = split_vertex(mesh, c, &source), vertex = vertex_at(view, c);
+			const nt_tangent_filter filter = filter_of(&view->tangents, vertex);
+			const float least = view->tangent_bits ? nt_morph_least_of_bits(view->tangent_bits)
+							       : nt_tangent_filter_least(&filter);
+			stored_tangent(mesh, view, c, stored);
+			if (!target_matches(&view->target_tangents[m], vertex, moved + 3 * split, stored, least))
+				status = fail_corner(mesh, c, error);
+		}
+	}
+	free(moved);
+	return status;
+}
+
 /* ---- compressed primitives ---- */
 
 /* A corner as the scene has it. */
@@ -410,21 +441,6 @@ static bool found_corner(const primitive_view *view, size_t corner, nt_verify_co
 		found->position[k] = nt_component_value(position + k * step, array->component_type, array->normalized);
 	memcpy(found->tangent, tangent, sizeof found->tangent);
 	return true;
-}
-
-/* Attributes outside of a block go by its vertices, so that they are in order. */
-static nt_status compare_block_targets(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
-{
-	for (size_t c = 0; c < mesh->corner_count; c++) {
-		size_t source;
-		float stored[4];
-		const size_t split = split_vertex(mesh, c, &source), vertex = vertex_at(view, c);
-		/* found_corner() saw that it is there */
-		memcpy(stored, element_at(&view->tangents, vertex), sizeof stored);
-		if (!targets_match(mesh, view, vertex, split, stored))
-			return fail_corner(mesh, c, error);
-	}
-	return NT_OK;
 }
 
 /* Takes out the triangles of which two corners are at one position, as edgebreaker does; returns how many corners are
@@ -470,8 +486,6 @@ static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, 
 		status = nt_fail_memory(error);
 	if (status == NT_OK && first != SIZE_MAX)
 		status = fail_corner(mesh, 3 * first, error);
-	if (status == NT_OK && view->target_tangents)
-		status = compare_block_targets(mesh, view, error);
 	free(wanted);
 	free(found);
 	return status;
@@ -588,8 +602,10 @@ static nt_status compare_edited(const mesh_check *check, unsigned threads, nt_er
 	nt_status status = view->packed ? NT_OK : check_bounds(check->mesh, view, check->decoded, error);
 	if (status != NT_OK)
 		return status;
-	if (!view->packed && check->mode == NT_GLTF_TRIANGLES && corner_count(view) == check->mesh->corner_count)
-		return compare_mesh(check->mesh, view, error);
+	if (!view->packed && check->mode == NT_GLTF_TRIANGLES && corner_count(view) == check->mesh->corner_count) {
+		status = compare_mesh(check->mesh, view, error);
+		return status ? status : compare_targets(check->mesh, view, error);
+	}
 	if (!view->packed)
 		return counts_match(check->mesh, view) ? NT_OK : fail_corner(check->mesh, 0, error);
 	status = decode_block(view, error);
@@ -597,6 +613,8 @@ static nt_status compare_edited(const mesh_check *check, unsigned threads, nt_er
 		status = check_bounds(check->mesh, view, view->position_id != UINT32_MAX, error);
 	if (status == NT_OK)
 		status = compare_block(check->mesh, view, threads, error);
+	if (status == NT_OK)
+		status = compare_targets(check->mesh, view, error);
 	nt_draco_free(view->block);
 	view->block = NULL;
 	return status;

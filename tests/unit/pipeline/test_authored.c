@@ -121,7 +121,7 @@ static nt_mesh restore(float texcoords[3][2], float authored[3][4], float solved
 	nt_mesh mesh = triangle(authored);
 	mesh.texcoords = texcoords[0];
 	mesh.tangent_step = step;
-	nt_restore_authored(&mesh, solved[0]);
+	nt_restore_authored(&mesh, solved[0], NULL);
 	return mesh;
 }
 

@@ -5,6 +5,7 @@
 #include "gltf/open.h"
 #include "gltf/verify/verify.h"
 #include "hand_gltf.h"
+#include "scene/morphs.h"
 
 #include <math.h>
 
@@ -80,6 +81,8 @@ typedef struct edited {
 	nt_scene scene;
 	nt_output *output;
 	float tangents[MESHES][VERTICES][4], moved[VERTICES][3];
+	uint32_t classes[VERTICES]; /* each vertex has its own */
+	nt_morph_tangents morphed;
 } edited;
 
 static void edit(edited *p, const char *input, const nt_write_options *options)
@@ -104,8 +107,14 @@ static void edit(edited *p, const char *input, const nt_write_options *options)
 		assert_true(mesh->vertex_count <= VERTICES);
 		mesh->decision = NT_DECISION_SOLVE;
 		mesh->split.vertex_tangents = p->tangents[m][0];
-		if (mesh->morph_count)
-			mesh->morphs[0].vertex_tangents = p->moved[0];
+		if (!mesh->morph_count)
+			continue;
+		for (uint32_t v = 0; v < VERTICES; v++)
+			p->classes[v] = v;
+		p->morphed = (nt_morph_tangents){.class_of = p->classes, .parent = p->classes, .class_count = VERTICES,
+			.words = (uint32_t *)(void *)p->moved[0], .word_count = 3 * VERTICES, .user_count = 2};
+		mesh->morph_tangents = &p->morphed;
+		mesh->morphs[0].class_count = mesh->morphs[0].row_count = VERTICES;
 	}
 	assert_int_equal(nt_output_create(&p->output, NULL, &error), NT_OK);
 	assert_int_equal(nt_gltf_edit(&p->scene, options, p->output, &error), NT_OK);
