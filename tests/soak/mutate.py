@@ -6,10 +6,11 @@ A copy of the tree in build/mutate gets one fault at a time: a relation, a const
 scripts of the file's room and subject run, which see the tool from outside and outlive a room that is written anew;
 then the unit tests of the room; with --all then all others, but those of cost, pages, tree and bindings. A change that
 no test notices is listed with its line. A fault that does not compile, or that compiles to the same code, does not
-count. ROOM is a folder of src ("gltf", "report/render"), or "all". The choice follows from SEED alone.
+count. Scripts that do not execute the line (gcov says it, of a build of the tree without faults) are passed over. ROOM is a folder of src ("gltf", "report/render"), or "all". The choice follows from SEED alone.
 """
 import concurrent.futures
 import glob
+import json
 import os
 import random
 import re
@@ -28,8 +29,9 @@ LIMIT = 300  # seconds for a test that a fault may keep from ending; less if it 
 # Tests of a room whose name does not say so.
 SUBJECTS = {
     'topology': ['frames', 'quads'], 'tangent': ['frames', 'quads', 'conformance'], 'api': ['frames'],
-    'gltf': ['layouts', 'lossless', 'convert', 'morphs', 'extensions', 'draco', 'meshopt', 'precision', 'verify', 'validator', 'sets', 'damaged'],
-    'json': ['layouts', 'lossless', 'damaged', 'extensions'], 'scene': ['choose', 'colors', 'convert', 'normals'],
+    'gltf': ['layouts', 'extensions', 'damaged', 'verify', 'convert', 'draco', 'lossless', 'precision', 'meshopt', 'choose',
+             'materials', 'normals', 'textures'],
+    'json': ['damaged', 'layouts', 'extensions', 'lossless', 'convert'], 'scene': ['choose', 'colors', 'convert', 'normals'],
     'file': ['sets', 'output', 'placement', 'damaged', 'stale'], 'image': ['textures', 'materials'],
     'obj': ['materials', 'colors', 'convert', 'damaged', 'normals'], 'ply': ['convert', 'damaged', 'small_models'],
     'format': ['convert', 'verdict', 'textures'], 'report': ['report', 'check', 'verdict', 'diff', 'report_folder', 'page'],
@@ -156,11 +158,11 @@ def tests_of(path):
     return outside, units, [p for p in programs + scripts if p not in outside + units]
 
 
-def fails(test, stopped=None):
+def fails(test, stopped=None, build=B, prefix=''):
     """Whether the test notices something."""
     with tempfile.TemporaryDirectory(prefix='nmtan-mutate-', ignore_cleanup_errors=True) as folder:
-        more = dict(os.environ, CMOCKA_MESSAGE_OUTPUT='TAP', NMTAN='%s/%s/nmtan' % (TREE, B), BUILD='%s/%s' % (TREE, B),
-                    ROOT=TREE, WORK=folder, NT_STOP='1')
+        more = dict(os.environ, CMOCKA_MESSAGE_OUTPUT='TAP', NMTAN='%s/%s/nmtan' % (TREE, build), BUILD='%s/%s' % (TREE, build),
+                    ROOT=TREE, WORK=folder, NT_STOP='1', GCOV_PREFIX=prefix)
         words = ['bash', test] if test.endswith('.sh') else [test]
         begin = time.monotonic()
         with open(os.path.join(folder, '.said'), 'w+', errors='replace') as said:
@@ -193,6 +195,49 @@ def first_that_fails(tests):
     return found[0] if found else None
 
 
+def lines_of(room):
+    """Lines of the room with code, and those that the tests before this executed: [path][line] -> times."""
+    found = {}
+    for name in glob.glob('%s/build/debug/%s/**/*.gcda' % (TREE, room), recursive=True):
+        for file in json.loads(shell('gcov', '-i', '-t', name).stdout or '{"files": []}')['files']:
+            lines = found.setdefault(file['file'], {})
+            for line in file['lines']:
+                lines[line['line_number']] = lines.get(line['line_number'], 0) + line['count']
+        os.remove(name)
+    return found
+
+
+def find_reached(room, scripts):
+    """[script][path] -> lines that it executes."""
+    note = os.path.join(TREE, '../reached.json')
+    key = shell('sh', '-c', "cat src/*/*.[ch] src/*/*/*.[ch] tests/cli/* tests/support/* | sha256sum").stdout + room
+    if os.path.exists(note) and json.loads(bytes_of(note))['key'] == key:
+        return json.loads(bytes_of(note))['reached']
+    shell('make', '-s', '-j%d' % JOBS, 'config=debug', 'CFLAGS=--coverage', 'LDFLAGS=--coverage', 'all',
+          'build/debug/tests/preload/calls.so', 'build/debug/tests/unit/ext/test_meshopt')
+    reached = {}
+    for script in scripts:
+        with tempfile.TemporaryDirectory() as prefix:
+            fails(script, build='build/debug', prefix=prefix)
+            top = prefix + TREE + '/build/debug/'
+            for folder, _, files in os.walk(top):
+                for name in files:
+                    path = os.path.relpath(os.path.join(folder, name), top)
+                    if path.startswith(room):
+                        os.replace(os.path.join(folder, name), os.path.join(TREE, 'build/debug', path))
+        reached[script] = {path: sorted(lines.items()) for path, lines in lines_of(room).items()}
+        print('%s executes %d lines' % (script, sum(bool(n) for x in reached[script].values() for _, n in x)), flush=True)
+    with open(note, 'w', encoding='utf-8') as file:
+        json.dump({'key': key, 'reached': reached}, file)
+    return reached
+
+
+def executes(script, path, number):
+    """Whether a script executes a line, or the one on which its statement begins."""
+    before = [(line, times) for line, times in reached.get(script, {}).get(path, []) if line <= number]
+    return script not in reached or bool(before and before[-1][1])
+
+
 def make(*targets):
     return shell('make', '-s', '-j%d' % JOBS, *targets).returncode == 0
 
@@ -201,14 +246,14 @@ def code_of(path):
     return shell('sh', '-c', 'cat %s/*.so %s/nmtan %s/libnmtan.so | sha256sum' % (B, B, B)).stdout
 
 
-def try_one(path):
+def try_one(path, number):
     """Which test notices the fault, and whether it is one from outside."""
     outside, units, others = [[p for p in tests if p not in ignored] for tests in tests_of(path)]
     if not make('all'):
         return 'does not compile', False
     if code_of(path) == usual:
         return 'same code', False
-    seen = first_that_fails(outside)
+    seen = first_that_fails([p for p in outside if executes(p, path, number + 1)])
     if seen:
         return seen, True
     if not make(*units):
@@ -228,8 +273,9 @@ seconds = {}  # of each test without a fault
 copy_tree()
 sample = tests_of('src/%s/x.c' % ('gltf' if room == 'all' else room))
 needed = sum(sample[:3 if everything else 2], [])
-if not make('all', *(['tests'] if everything else sample[1] + ['build/release/tests/preload/calls.so'])):
+if not make('all', *(['tests'] if everything else sample[1] + [B + '/tests/preload/calls.so', B + '/tests/unit/ext/test_meshopt'])):
     sys.exit('the tree does not build')
+reached = find_reached('' if room == 'all' else room, sample[0])
 with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
     ignored = {test for test, failed in zip(needed, pool.map(fails, needed)) if failed}
 for test in sorted(ignored):
@@ -249,7 +295,7 @@ while tried < count:
     old, lines[number] = lines[number], new
     open(full, 'w', encoding='utf-8').write('\n'.join(lines))
     try:
-        seen, outside = try_one(path)
+        seen, outside = try_one(path, number)
     finally:
         open(full, 'w', encoding='utf-8').write(text)
     where = '%s:%d %s: `%s` -> `%s`' % (path, number + 1, kind, old.strip(), new.strip())

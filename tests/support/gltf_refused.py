@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""gltf_refused.py NMTAN: a good glTF with one fault each, and JSON of each spelling: what is said, and where, and what is kept.
+
+A row is a change of the document, the place and the words of the message; without a place the file is converted. Of JSON it is the
+text of a value, how many bytes of it are read before the fault, and the words; without words it has to be in the output as it was
+spelled.
+"""
+import json
+import os
+import subprocess
+import sys
+
+import gltf_table as table
+
+ROWS = r"""
+g.clear()|/asset/version|nothing, expected the version of glTF as a string
+g['asset'] = 2|/asset/version|nothing, expected the version
+g['asset']['version'] = 2.0|/asset/version|
+g['asset']['version'] = '1.1'|/asset/version|"1.1", expected 2.0
+g['asset']['minVersion'] = '2.1'|/asset/minVersion|needs glTF 2.1, expected 2.0
+g['asset']['minVersion'] = '2.0'
+g['asset']['version'] = '2.7'
+g['accessors'] = {}|/accessors|an object, expected an array
+a[0] = []|/accessors/0|an array, expected an object
+a[0]['count'] = '6'|/accessors/0/count|a string, expected a whole number of at least 0
+a[0]['count'] = 0|/meshes/0/primitives/0/attributes/NORMAL|accessor 1 has 6 elements, POSITION has 0
+a[0]['count'] = 2 ** 32 - 1|/accessors/0/count|4294967295, expected at most 4294967294
+del a[0]['count']|/accessors/0|"count" is missing
+del a[0]['componentType']|/accessors/0|"componentType" is missing
+a[0]['componentType'] = 5124|/accessors/0/componentType|5124, expected 5120 to 5123, 5125 or 5126
+a[0]['componentType'] = 5127|/accessors/0/componentType|5127
+a[0]['componentType'] = 5119|/accessors/0/componentType|5119
+del a[0]['type']|/accessors/0/type|
+a[0]['type'] = 'VEC1'|/accessors/0/type|"VEC1"
+a[0]['type'] = 3|/accessors/0/type|
+a[0]['byteOffset'] = 4|/accessors/0|6 elements end at byte 76 of bufferView 0, which has 72
+a[0]['byteOffset'] = -4|/accessors/0/byteOffset|
+a[0]['bufferView'] = 40|/accessors/0|refers to bufferViews[40], there are
+a[0]['bufferView'] = 1.5|/accessors/0/bufferView|
+a[0]['type'] = 'VEC2'|/meshes/0/primitives/0/attributes/POSITION|accessor 0 has 2 components, expected 3
+a[1]['type'] = 'VEC2'|/meshes/0/primitives/0/attributes/NORMAL|accessor 1 has 2 components, expected 3
+a[2]['type'] = 'SCALAR'|/meshes/0/primitives/0/attributes/TEXCOORD_0|accessor 2 has 1 components, expected 2
+a[1]['count'] = 5|/meshes/0/primitives/0/attributes/NORMAL|accessor 1 has 5 elements, POSITION has 6
+a[2]['count'] = 5|/meshes/0/primitives/0/attributes/TEXCOORD_0|accessor 2 has 5 elements, POSITION has 6
+a[3]['count'] = 5|/accessors/3|5 elements, but other attributes of the same primitives have 6
+v[0]['byteStride'] = 8|/accessors/0|elements of 12 bytes, but bufferView 0 has a byteStride of 8
+v[0]['byteStride'] = 16|/accessors/0|6 elements end at byte 92 of bufferView 0, which has 72
+v[0]['byteStride'] = 256|/accessors/0|6 elements end at byte 1292 of bufferView 0, which has 72
+v[0]['byteLength'] = 71|/accessors/0|6 elements end at byte 72 of bufferView 0, which has 71
+v[0]['byteLength'] = 0|/accessors/0|6 elements end at byte 72 of bufferView 0, which has 0
+del v[0]['byteLength']|/bufferViews/0|"byteLength" is missing
+v[0]['byteLength'] = 1e6|/bufferViews/0|bytes 0 to 1000000, but buffer 0 has
+v[0]['byteOffset'] = 1e6|/bufferViews/0|bytes 1000000 to 1000072, but buffer 0 has
+v[0]['byteOffset'] = 2 ** 53|/bufferViews/0|
+v[0]['buffer'] = 3|/bufferViews/0|refers to buffers[3], there are 1
+del v[0]['buffer']|/bufferViews/0|"buffer" is missing
+v[0] = 3|/bufferViews/0|an integer, expected an object
+g['bufferViews'] = None|/bufferViews|
+g['buffers'][0]['byteLength'] += 100|/buffers/0|bytes are there
+del g['buffers'][0]['byteLength']|/buffers/0|"byteLength" is missing
+del g['buffers'][0]['uri']|/buffers/0|the buffer has no uri
+g['buffers'][0]['uri'] = 3|/buffers/0/uri|an integer, expected a string
+g['buffers'][0]['uri'] = 'data:;base64,A'|/buffers/0|
+g['buffers'] = []|/bufferViews/0|refers to buffers[0], there are 0
+p['indices'] = 99|/meshes/0/primitives/0/indices|refers to accessors[99], there are
+p['indices'] = 'x'|/meshes/0/primitives/0/indices|
+p['indices'] = 0|/accessors/0|the indices of a primitive are 3 components of type 5126, expected an unsigned SCALAR
+del a[p['indices']]['bufferView']
+a[p['indices']]['componentType'] = 5120|/accessors/9|the indices of a primitive are 1 components of type 5120, expected an unsigned SCALAR
+p['mode'] = 7|/meshes/0/primitives/0/mode|7, expected at most 6
+p['mode'] = -1|/meshes/0/primitives/0/mode|
+p['material'] = 9|/meshes/0/primitives/0|refers to materials[9], there are 4
+p['attributes'] = 3|/meshes/0/primitives/0|"attributes" is an integer, expected an object
+p['attributes']['POSITION'] = 99|/meshes/0/primitives/0/attributes/POSITION|refers to accessors[99]
+p['attributes']['NORMAL'] = 99|/meshes/0/primitives/0/attributes/NORMAL|refers to accessors[99]
+p['targets'][0]['POSITION'] = 99|/meshes/0/primitives/0/targets/0|refers to accessors[99], there are 10
+p['targets'][0]['POSITION'] = 2|/meshes/0/primitives/0/targets/0|POSITION: accessor 2 has 6 elements of 2 components, expected 6 of 3
+a[p['targets'][0]['POSITION']]['count'] = 5|/meshes/0/primitives/0/targets/0|
+g['meshes'] = {}|/meshes|an object, expected an array
+g['meshes'][0]['primitives'] = {}|/meshes/0|"primitives" is an object, expected an array
+g['meshes'][0]['primitives'][0] = 3|/meshes/0/primitives/0|an integer, expected an object
+g['meshes'][0] = 3|/meshes/0|
+g['nodes'][0]['mesh'] = 9
+g['nodes'][0]['children'] = [0]
+g['scenes'][0]['nodes'] = [9]
+g['scene'] = 9
+g['materials'][0]['normalTexture'] = 3|/materials/0/normalTexture|an integer, expected an object
+g['materials'][0]['normalTexture']['texCoord'] = 'x'|/materials/0/normalTexture/texCoord|
+g['materials'][0]['normalTexture'].update(extensions={'KHR_texture_transform': {'rotation': 'x'}})|/materials/0/normalTexture/extensions/KHR_texture_transform/rotation|a string, expected a number
+g['materials'][0]['normalTexture'].update(extensions={'KHR_texture_transform': {'scale': [1]}})|/materials/0/normalTexture/extensions/KHR_texture_transform/scale|
+g['materials'] = 3|/materials|
+g['extensionsRequired'] = ['VENDOR_x']
+g['extensionsUsed'] = 3
+a[0]['sparse'] = sparse(); a[0]['sparse']['count'] = 7|/accessors/0/sparse/count|7, expected at most 6
+a[0]['sparse'] = sparse(); a[0]['sparse']['indices']['componentType'] = 5126|/accessors/0/sparse/indices|componentType 5126, expected 5121, 5123 or 5125
+a[0]['sparse'] = sparse(); a[0]['sparse']['indices']['bufferView'] = 99|/accessors/0/sparse/indices|refers to bufferViews[99]
+a[0]['sparse'] = sparse(); a[0]['sparse']['values']['bufferView'] = 99|/accessors/0/sparse/values|refers to bufferViews[99]
+a[0]['sparse'] = sparse(); a[0]['sparse']['values']['byteOffset'] = 70|/accessors/0/sparse/values|2 elements end at byte 94 of bufferView 0, which has 72
+a[0]['sparse'] = sparse(); del a[0]['sparse']['count']|/accessors/0/sparse|"count" is missing
+a[0]['sparse'] = sparse([1, 1])|/accessors/0/sparse/indices|index 1 is 1, expected more than the one before
+a[0]['sparse'] = sparse([2, 1])|/accessors/0/sparse/indices|index 1 is 1, expected more than the one before
+a[0]['sparse'] = sparse([1, 6])|/accessors/0/sparse/indices|index 1 is 6, expected less than the accessor's count
+a[0]['sparse'] = sparse([0, 5])
+g['bufferViews'][0]['extensions'] = {'EXT_meshopt_compression': {}}|/bufferViews/0/extensions/EXT_meshopt_compression|
+pack(v[0], count=7)|/bufferViews/0/extensions/EXT_meshopt_compression|7 elements of 12 bytes, but the view has 72 bytes
+pack(v[0], byteStride=16)|/bufferViews/0/extensions/EXT_meshopt_compression|6 elements of 16 bytes, but the view has 72 bytes
+pack(v[0], byteStride=14)|/bufferViews/0/extensions/EXT_meshopt_compression|byteStride 14 in mode ATTRIBUTES
+pack(v[0], mode='X')|/bufferViews/0/extensions/EXT_meshopt_compression|
+pack(v[0], filter='X')|/bufferViews/0/extensions/EXT_meshopt_compression|
+pack(v[0], buffer=9)|/bufferViews/0/extensions/EXT_meshopt_compression|refers to buffers[9]
+pack(v[0], byteLength=10 ** 6)|/bufferViews/0/extensions/EXT_meshopt_compression|bytes 0 to 1000000, but buffer 0 has
+pack(v[0])|/bufferViews/0/extensions/EXT_meshopt_compression|meshoptimizer cannot decode the view's 72 bytes
+p['extensions'] = {'KHR_draco_mesh_compression': 3}|/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression|
+draco(p, bufferView=99)|/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression|refers to bufferViews[99]
+draco(p, bufferView='x')|/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/bufferView|
+draco(p, bufferView=0)|/bufferViews/0|not Draco data
+draco(p, bufferView=0); p['mode'] = 5|/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression|compressed primitive of mode 5, expected 4
+draco(p, bufferView=0, attributes=3)|/bufferViews/0|not Draco data
+"""
+
+# Text, bytes of it that are read, words; one blank more is no part of it.
+TEXTS = r"""
+01|1|expected ',' or '}'
+1.|2|expected a digit
+.5|0|expected a value
++1|0|expected a value
+-|1|expected a digit
+1e|2|expected a digit
+1e+|3|expected a digit
+-01|2|expected ',' or '}'
+tru|3|expected true
+nulL|3|'L', expected null
+True|0|expected a value
+"\x"|2|'x', expected an escape
+"\u12g4"|2|expected four hexadecimal digits
+"\ud800"|1|the surrogate \ud800 is not one of a pair
+"\ud800\u0041"|1|the surrogate \ud800 is not one of a pair
+"\udc00"|1|the surrogate \udc00 is not one of a pair
+[1,]|3|
+[1 2]|3|expected ',' or ']'
+[,1]|1|expected a value
+{"a":1,}|7|
+{"a" 1}|5|expected ':'
+{a:1}|1|
+{"a":}|5|expected a value
+{"a":1 "b":2}|7|expected ',' or '}'
+[1}|2|expected ',' or ']'
+'a'|0|expected a value
+/**/1|0|expected a value
+0
+-0
+-0.0e-0
+1E5
+1e+05
+123456789012345678901234567890
+0.1000000000000000055511151231257827
+1e-400
+-1.7976931348623157e308
+true
+[ ]
+{ }
+[[[[]]],{"":{}}]
+{"a": 1 ,"b" :[1 , 2]}
+"\u00e9\ud83d\ude00\b\f\n\r\t\/\\\""
+"é😀"
+"\u0000"
+"\u0041"
+{"\u0061":1}
+""
+"""
+
+
+def rows_of(text):
+    return [line.split('|') for line in text.strip('\n').split('\n')]
+
+
+def base():
+    d = table.build('x', table.morphs, table.none, table.separate)
+    d.write('bad', embedded=True)
+    with open('bad/x.gltf', encoding='utf-8') as file:
+        g = json.load(file)
+    os.remove('bad/x.gltf')
+    return g
+
+
+def make():
+    """What is expected of each file: (place, words), or None."""
+    expected, text = {}, json.dumps(base())
+    for number, (change, *message) in enumerate(rows_of(ROWS)):
+        g = json.loads(text)
+        a, v, p = g['accessors'], g['bufferViews'], g['meshes'][0]['primitives'][0]
+
+        def sparse(numbers=(0, 1)):
+            uri = 'data:application/octet-stream;base64,' + table.base64.b64encode(bytes(numbers)).decode()
+            g['buffers'].append({'byteLength': len(numbers), 'uri': uri})
+            v.append({'buffer': len(g['buffers']) - 1, 'byteLength': len(numbers)})
+            return {'count': len(numbers), 'indices': {'bufferView': len(v) - 1, 'componentType': 5121}, 'values': {'bufferView': 0}}
+        def pack(view, **members):
+            view['extensions'] = {'EXT_meshopt_compression': {'buffer': 0, 'byteOffset': 0, 'byteLength': 72, 'byteStride': 12,
+                                                              'count': 6, 'mode': 'ATTRIBUTES', **members}}
+
+        def draco(primitive, **members):
+            primitive['extensions'] = {'KHR_draco_mesh_compression': {'attributes': {'POSITION': 0}, **members}}
+        exec(change, {'g': g, 'a': a, 'v': v, 'p': p, 'sparse': sparse, 'pack': pack, 'draco': draco})
+        name = 'bad/row%03d.gltf' % number
+        expected[name] = message, change, None
+        with open(name, 'w', encoding='utf-8') as file:
+            json.dump(g, file)
+    begin = text[:-1] + ', "extras": '
+    for number, (value, *message) in enumerate(rows_of(TEXTS)):
+        if message:
+            message = ['at byte %d' % (len(begin) + int(message[0])), message[1]]
+        name = 'bad/text%03d.gltf' % number
+        expected[name] = message, value, value
+        with open(name, 'w', encoding='utf-8') as file:
+            file.write(begin + value + ' }')
+    return expected
+
+
+def main():
+    os.makedirs('bad')
+    expected = make()
+    done = subprocess.run([sys.argv[1], '-v', '--only=all', '-d', 'good', *expected], stdin=subprocess.DEVNULL, capture_output=True)
+    said = done.stderr.decode().split('\n')
+    faults = []
+    for name, (message, change, spelled) in expected.items():
+        lines = [line[len('nmtan: ' + name + ': '):] for line in said if line.startswith('nmtan: ' + name + ': ')]
+        output = 'good' + name[3:]
+        if message:
+            place, words = message
+            if not any(line.startswith(place + ': ') and words in line for line in lines) or os.path.exists(output):
+                faults.append('%s: %s, expected %s: %s' % (change, lines, place, words))
+        elif not os.path.exists(output):
+            faults.append('%s: %s' % (change, lines))
+        elif spelled:
+            with open(output, encoding='utf-8') as file:
+                if '"extras": %s }' % spelled not in file.read():
+                    faults.append('%s is spelled otherwise' % spelled)
+    print('\n'.join(faults))
+    return 1 if faults else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
