@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: MIT
 """gltf_refused.py NMTAN: a good glTF with one fault each, and JSON of each spelling: what is said, and where, and what is kept.
 
-A row is a change of the document, the place and the words of the message; without a place the file is converted. Of JSON it is the
-text of a value, how many bytes of it are read before the fault, and the words; without words it has to be in the output as it was
-spelled.
+A row is a change of the document, the place and the words of the message; without a place the file is converted. Rows of
+JSON are the text of a value, how many bytes of it are read before the fault, and the words; without words the output spells it alike.
 """
 import json
 import os
@@ -185,7 +184,7 @@ def base():
 
 
 def make():
-    """What is expected of each file: (place, words), or None."""
+    """Gives for each file the place and words that are expected, what was changed, and the text that stays."""
     expected, text = {}, json.dumps(base())
     for number, (change, *message) in enumerate(rows_of(ROWS)):
         g = json.loads(text)
