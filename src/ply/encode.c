@@ -7,6 +7,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include "ext/number.h"
 
 enum { DRAIN_BYTES = 64 * 1024 };
 

@@ -7,7 +7,7 @@
 
 #include "base/buffer.h"
 #include "file/output.h"
-#include "ply/value.h"
+#include "ply/parts.h"
 #include "scene/scene.h"
 
 typedef struct ply_output {

@@ -11,7 +11,6 @@
  * the one image that a PLY can have: "TextureFile NAME", from the folder of the PLY.
  */
 #include "ply/encode.h"
-#include "ply/source.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,523 +1,431 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The rows of the face element become triangles and quads; larger polygons are cut into triangles, and
- * how they were cut is kept for the writer. Triangle strips (element tristrips, -1 starts a new one)
- * become triangles. Lists are measured against the file before room is made for them, so that memory
- * stays in proportion to the file whatever its counts say.
+ * The rows of the face element are read into columns: the corners of polygons, their sizes, their textures. Triangles
+ * and quads of the file are then faces of the mesh as they stand; larger polygons are cut into triangles, and how they
+ * were cut is kept for the writer. Triangle strips (element tristrips, -1 starts a new one) become triangles when they
+ * are read.
+ *
+ * Texture coordinates may belong to corners (MeshLab's per-wedge ones): a vertex is then a row of the file with one
+ * pair of coordinates. The first pair of a row keeps the row's number, further ones are appended in the order they
+ * come. Most corners of a row agree, so the first pair is compared directly; only copies go through a hash table, which
+ * keeps a fan of any size linear. Pairs are equal if their bits are.
  */
-#include "ply/source.h"
+#include "ply/parts.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include "ply/wedges.h"
+#include "base/hash_index.h"
 #include "scene/polygon.h"
 
+typedef enum wedge_state { WEDGE_UNUSED, WEDGE_HAS, WEDGE_LACKS } wedge_state;
+
+typedef struct wedge {
+	float uv[2];
+	uint32_t row;
+	wedge_state state;
+} wedge;
+
+typedef struct wedges {
+	wedge *rows;   /* [row_count] the first one of each row */
+	wedge *copies; /* of vertices row_count and so on */
+	size_t row_count, copy_count, copy_capacity;
+	nt_hash_index index;  /* of copies */
+	bool any, any_lacks;  /* some corner has, some has no coordinates */
+} wedges;
+
 typedef struct builder {
-	nt_scene *scene;
 	nt_mesh *mesh;
 	ply_source *source;
-	ply_cursor *cursor;
+	ply_polygons *polygons;
 	nt_error *error;
-	const ply_element *element;
-	int indices_property, texcoords_property, texture_property;
-	size_t row;
-	bool swap;
-
-	/* the mesh's arrays while they grow */
-	uint32_t *indices, *polygons, *primitives;
-	uint8_t *sizes;
-	size_t index_count, face_count, polygon_count;
-	size_t index_capacity, size_capacity, polygon_capacity, primitive_capacity;
-
-	/* the current row */
-	const unsigned char *row_begin;
-	uint32_t *corners;
-	float *uvs;
-	size_t corner_count, uv_count, corner_capacity, uv_capacity;
-	uint32_t texture;
-
-	ply_run_layout runs;
-	bool has_wedges;
-	ply_wedges wedges;
-	float (*points)[3];
-	size_t point_capacity;
-	size_t unsound; /* rows with a texcoord that is not finite */
-	nt_place first_unsound;
-	size_t skipped;
-	nt_place first_skipped;
+	ply_rows rows;
+	const ply_column *indices, *texcoords; /* NULL: no coordinates by corner */
+	bool uniform;                          /* rows may be triangles and quads and nothing else */
+	wedges wedges;
+	size_t unsound, skipped; /* rows with a coordinate that is not finite, of fewer than three corners */
+	nt_place first_unsound, first_skipped;
 } builder;
 
-static nt_place place_of_row(const builder *b)
+/* ---- wedges ---- */
+
+/* The vertex for a row with coordinates; uv NULL: with none. NT_NONE: memory or vertex numbers are exhausted. */
+static uint32_t wedge_vertex(wedges *w, uint32_t row, const float *uv)
 {
-	nt_place place;
-	nt_place_clear(&place);
-	if (b->cursor->encoding == PLY_ASCII)
-		place.line = ply_line_of(b->cursor, b->row_begin);
-	else
-		place.offset = (uint64_t)(b->row_begin - b->cursor->begin);
-	return place;
+	wedge new = {.row = row, .state = uv ? WEDGE_HAS : WEDGE_LACKS};
+	memcpy(new.uv, uv ? uv : new.uv, sizeof new.uv);
+	w->any |= uv != NULL;
+	w->any_lacks |= uv == NULL;
+	if (w->rows[row].state == WEDGE_UNUSED)
+		w->rows[row] = new;
+	if (memcmp(&w->rows[row], &new, sizeof new) == 0)
+		return row;
+	uint64_t bits;
+	memcpy(&bits, new.uv, sizeof bits);
+	const uint64_t hash = nt_hash_words(bits, row);
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t copy; (copy = nt_hash_index_next(&w->index, hash, &at)) != NT_NONE;)
+		if (memcmp(&w->copies[copy], &new, sizeof new) == 0)
+			return (uint32_t)(w->row_count + copy);
+	if (w->row_count + w->copy_count + 1 >= NT_NONE ||
+		!nt_grow((void **)&w->copies, &w->copy_capacity, w->copy_count + 1, sizeof new) ||
+		!nt_hash_index_add(&w->index, hash, (uint32_t)w->copy_count))
+		return NT_NONE;
+	w->copies[w->copy_count] = new;
+	return (uint32_t)(w->row_count + w->copy_count++);
 }
 
-/* Faces. */
-
-static bool make_room(builder *b, size_t faces, size_t corners)
+static nt_status take_wedges(builder *b, uint32_t *corners, size_t size)
 {
-	const size_t count = b->face_count + faces;
-	return nt_grow((void **)&b->indices, &b->index_capacity, b->index_count + corners,
-		       sizeof *b->indices) &&
-	       (!b->sizes || nt_grow((void **)&b->sizes, &b->size_capacity, count, 1)) &&
-	       (!b->polygons || nt_grow((void **)&b->polygons, &b->polygon_capacity, count,
-					sizeof *b->polygons)) &&
-	       (b->texture_property == PLY_NO_PROPERTY ||
-		       nt_grow((void **)&b->primitives, &b->primitive_capacity, count,
-			       sizeof *b->primitives));
-}
-
-/* The first quad ends "all are triangles", the first larger polygon "polygons are faces". */
-static bool start_sizes(builder *b)
-{
-	if (b->sizes)
-		return true;
-	if (!nt_grow((void **)&b->sizes, &b->size_capacity, b->face_count + 1, 1))
-		return false;
-	memset(b->sizes, 3, b->face_count);
-	return true;
-}
-
-static bool start_polygons(builder *b)
-{
-	if (b->polygons)
-		return true;
-	if (!nt_grow((void **)&b->polygons, &b->polygon_capacity, b->face_count + 1,
-		    sizeof *b->polygons))
-		return false;
-	for (size_t i = 0; i < b->face_count; i++)
-		b->polygons[i] = (uint32_t)i;
-	return true;
-}
-
-static nt_status add_face(builder *b, const uint32_t *vertices, size_t size)
-{
-	if (b->face_count == NMTAN_MAX_FACES)
-		return nt_fail(b->error, NT_ERROR_TOO_LARGE, "more than %zu faces", NMTAN_MAX_FACES);
-	if (!make_room(b, 1, 4))
-		return nt_fail_memory(b->error);
-	memcpy(b->indices + b->index_count, vertices, size * sizeof *vertices);
-	b->index_count += size;
-	if (b->sizes)
-		b->sizes[b->face_count] = (uint8_t)size;
-	if (b->polygons)
-		b->polygons[b->face_count] = (uint32_t)b->polygon_count;
-	if (b->primitives)
-		b->primitives[b->face_count] = b->texture;
-	b->face_count++;
-	return NT_OK;
-}
-
-/* Cuts the current polygon; the corner numbers of its triangles go to source->cuts. */
-static nt_status cut_polygon(builder *b, const uint32_t **cut)
-{
-	const size_t count = b->corner_count;
-	ply_cuts *cuts = &b->source->cuts;
-	size_t needed;
-	if (!nt_size_add(cuts->count, 3 * (count - 2), &needed) ||
-		!nt_grow((void **)&cuts->corners, &cuts->capacity, needed, sizeof *cuts->corners) ||
-		!nt_grow((void **)&b->points, &b->point_capacity, count, sizeof *b->points))
-		return nt_fail_memory(b->error);
-	for (size_t k = 0; k < count; k++) {
-		const size_t row = b->has_wedges ? ply_wedges_row(&b->wedges, b->corners[k]) : b->corners[k];
-		memcpy(b->points[k], b->mesh->positions + 3 * row, sizeof *b->points);
-	}
-	bool sound;
-	uint32_t *corners = cuts->corners + cuts->count;
-	if (nt_polygon_triangulate((const float(*)[3])b->points, count, corners, &sound))
-		return nt_fail_memory(b->error);
-	cuts->count = needed;
-	if (!sound && !cuts->unsound++)
-		cuts->first_unsound = place_of_row(b);
-	*cut = corners;
-	return NT_OK;
-}
-
-static nt_status add_large_polygon(builder *b)
-{
-	const uint32_t *cut = NULL;
-	nt_status status = start_polygons(b) ? cut_polygon(b, &cut) : nt_fail_memory(b->error);
-	for (size_t t = 0; !status && t < b->corner_count - 2; t++) {
-		const uint32_t vertices[3] = {b->corners[cut[3 * t]], b->corners[cut[3 * t + 1]],
-			b->corners[cut[3 * t + 2]]};
-		status = add_face(b, vertices, 3);
-	}
-	return status;
-}
-
-static nt_status apply_wedges(builder *b)
-{
-	if (b->uv_count != 0 && b->uv_count != 2 * b->corner_count)
-		return ply_fail_at(b->cursor, b->row_begin, b->error,
+	const size_t count = b->rows.cells[b->source->face_texcoords].count;
+	if (count != 0 && count != 2 * size)
+		return ply_fail_at(b->rows.cursor, b->rows.begin, b->error,
 			"%s %zu: list \"texcoord\" has %zu values, expected %zu for %zu corners, or none",
-			b->element->name, b->row, b->uv_count, 2 * b->corner_count, b->corner_count);
-	for (size_t k = 0; k < b->corner_count; k++) {
-		b->corners[k] = ply_wedges_vertex(&b->wedges, b->corners[k],
-			b->uv_count ? b->uvs + 2 * k : NULL);
-		if (b->corners[k] == NT_NONE)
+			b->rows.element->name, b->rows.row - 1, count, 2 * size, size);
+	for (size_t k = 0; k < size; k++) {
+		corners[k] = wedge_vertex(&b->wedges, corners[k], count ? b->texcoords->floats + 2 * k : NULL);
+		if (corners[k] == NT_NONE)
 			return nt_fail_memory(b->error);
 	}
 	return NT_OK;
 }
 
-/* The current polygon becomes faces. */
-static nt_status add_polygon(builder *b)
+/* A copy of an array of rows with the copies' rows behind it. */
+static bool append_copies(const wedges *w, nt_arena *arena, float **array, size_t width)
 {
-	if (b->corner_count < 3) {
-		if (b->skipped++ == 0)
-			b->first_skipped = place_of_row(b);
-		return NT_OK;
-	}
-	nt_status status = b->has_wedges ? apply_wedges(b) : NT_OK;
-	if (status)
-		return status;
-	if (b->corner_count > 4)
-		status = add_large_polygon(b);
-	else if (b->corner_count == 4 && !start_sizes(b))
-		status = nt_fail_memory(b->error);
-	else
-		status = add_face(b, b->corners, b->corner_count);
-	b->polygon_count++;
-	return status;
+	if (!*array || !w->copy_count)
+		return true;
+	float *grown = nt_arena_alloc(arena, w->row_count + w->copy_count, width * sizeof *grown);
+	if (!grown)
+		return false;
+	memcpy(grown, *array, w->row_count * width * sizeof *grown);
+	for (size_t i = 0; i < w->copy_count; i++)
+		memcpy(grown + (w->row_count + i) * width, *array + w->copies[i].row * width, width * sizeof *grown);
+	*array = grown;
+	return true;
 }
 
-/* The current list is a run of strips. Triangles with a doubled corner join strips and are no faces. */
-static nt_status add_strips(builder *b)
+/* Gives the mesh its texture coordinates, and its copies all other attributes. Nothing happens if no corner had
+ * coordinates. */
+static bool apply_wedges(const wedges *w, nt_arena *arena, nt_mesh *mesh, ply_source *source)
 {
-	nt_status status = NT_OK;
+	const size_t count = w->row_count + w->copy_count;
+	if (!w->any)
+		return true;
+	if (!append_copies(w, arena, &mesh->positions, 3) || !append_copies(w, arena, &mesh->normals, 3) ||
+		!append_copies(w, arena, &mesh->colors, 4) || !append_copies(w, arena, &mesh->tangents, 4))
+		return false;
+	mesh->texcoords = nt_arena_alloc(arena, count, 2 * sizeof *mesh->texcoords);
+	mesh->vertex_lacks = w->any_lacks ? nt_arena_alloc(arena, count, 1) : NULL;
+	source->wedge_rows = nt_arena_alloc(arena, w->copy_count, sizeof *source->wedge_rows);
+	if (!mesh->texcoords || !source->wedge_rows || (w->any_lacks && !mesh->vertex_lacks))
+		return false;
+	for (size_t v = 0; v < count; v++) {
+		const wedge *own = v < w->row_count ? &w->rows[v] : &w->copies[v - w->row_count];
+		memcpy(mesh->texcoords + 2 * v, own->uv, sizeof own->uv);
+		if (mesh->vertex_lacks)
+			mesh->vertex_lacks[v] = own->state == WEDGE_LACKS ? NT_LACKS_TEXCOORD : 0;
+		if (v >= w->row_count)
+			source->wedge_rows[v - w->row_count] = own->row;
+	}
+	mesh->vertex_count = count;
+	source->wedge_count = w->copy_count;
+	return true;
+}
+
+/* ---- rows ---- */
+
+static bool make_room(ply_polygons *p, size_t polygons, size_t corners)
+{
+	return nt_grow((void **)&p->corners, &p->corner_capacity, p->corner_count + corners, sizeof *p->corners) &&
+		(!p->sizes || nt_grow((void **)&p->sizes, &p->size_capacity, p->count + polygons, 1));
+}
+
+/* Notes polygons of one size, whose corners are there. The first one that is no triangle ends "all are triangles". */
+static bool add_polygons(ply_polygons *p, size_t count, size_t size, const unsigned char *row)
+{
+	if (size != 3 && !p->sizes) {
+		if (!nt_grow((void **)&p->sizes, &p->size_capacity, p->count + count, 1))
+			return false;
+		memset(p->sizes, 3, p->count);
+	}
+	if (size > 4) {
+		if (!nt_grow((void **)&p->large, &p->large_capacity, p->large_count + 1, sizeof *p->large))
+			return false;
+		p->large[p->large_count++] = (ply_large_face){size, row};
+	}
+	if (p->sizes)
+		memset(p->sizes + p->count, size > 4 ? 0 : (int)size, count);
+	p->has_quads |= size == 4;
+	p->count += count;
+	p->corner_count += count * size;
+	return true;
+}
+
+/* Texture coordinates of the row that are not finite become 0. */
+static void mend_texcoords(builder *b)
+{
+	const size_t count = b->rows.cells[b->source->face_texcoords].count;
+	for (size_t k = 0; k < count; k++)
+		b->texcoords->floats[k] = isfinite(b->texcoords->floats[k]) ? b->texcoords->floats[k] : 0.0f;
+	if (!b->unsound++)
+		b->first_unsound = ply_place(b->rows.cursor, b->rows.begin);
+	b->rows.unsound = false;
+}
+
+/* The row that was read is a polygon. */
+static nt_status take_polygon(builder *b)
+{
+	ply_polygons *p = b->polygons;
+	const size_t size = b->rows.cells[b->source->face_indices].count;
+	if (size < 3) {
+		if (b->skipped++ == 0)
+			b->first_skipped = ply_place(b->rows.cursor, b->rows.begin);
+		return NT_OK;
+	}
+	if (!make_room(p, 1, size))
+		return nt_fail_memory(b->error);
+	uint32_t *corners = p->corners + p->corner_count;
+	memcpy(corners, b->indices->integers, size * sizeof *corners);
+	const nt_status status = b->texcoords ? take_wedges(b, corners, size) : NT_OK;
+	if (p->textures)
+		p->textures[p->count] = p->textures[b->rows.row - 1];
+	return status || add_polygons(p, 1, size, b->rows.begin) ? status : nt_fail_memory(b->error);
+}
+
+/* The row that was read is a run of strips. Triangles with a doubled corner join strips and are no faces. */
+static nt_status take_strips(builder *b)
+{
+	ply_polygons *p = b->polygons;
+	const size_t count = b->rows.cells[b->source->face_indices].count;
 	size_t begin = 0;
-	for (size_t i = 0; !status && i < b->corner_count; i++) {
-		const uint32_t *c = b->corners + i;
+	if (!make_room(p, count, 3 * count))
+		return nt_fail_memory(b->error);
+	for (size_t i = 0; i < count; i++) {
+		const uint32_t *c = b->indices->integers + i;
 		if (*c == NT_NONE)
 			begin = i + 1;
 		if (*c == NT_NONE || i < begin + 2 || c[0] == c[-1] || c[0] == c[-2] || c[-1] == c[-2])
 			continue;
 		const bool odd = (i - begin) & 1;
 		const uint32_t vertices[3] = {c[odd ? -1 : -2], c[odd ? -2 : -1], c[0]};
-		status = add_face(b, vertices, 3);
-	}
-	return status;
-}
-
-/* Rows. */
-
-/* Checks a vertex index; -1 restarts strips. */
-static nt_status take_index(builder *b, size_t k, int64_t index, const unsigned char *at)
-{
-	const bool restart = b->element == b->source->strips && (index == -1 || index == UINT32_MAX);
-	if (!restart && (uint64_t)index >= b->source->vertex->count)
-		return ply_fail_at(b->cursor, at, b->error,
-			"%s %zu: vertex index %lld is out of range, the file has %zu vertices", b->element->name,
-			b->row, (long long)index, b->source->vertex->count);
-	b->corners[k] = restart ? NT_NONE : (uint32_t)index;
-	return NT_OK;
-}
-
-static nt_status load_corners(builder *b, const unsigned char *at, size_t count, ply_type type)
-{
-	if (!nt_grow((void **)&b->corners, &b->corner_capacity, count, sizeof *b->corners))
-		return nt_fail_memory(b->error);
-	b->corner_count = count;
-	const size_t size = ply_size(type);
-	for (size_t k = 0; k < count; k++, at += size) {
-		const nt_status status = take_index(b, k, ply_load_integer(at, type, b->swap), at);
-		if (status)
-			return status;
+		memcpy(p->corners + p->corner_count, vertices, sizeof vertices);
+		add_polygons(p, 1, 3, b->rows.begin);
 	}
 	return NT_OK;
-}
-
-static nt_status load_uvs(builder *b, const unsigned char *at, size_t count, ply_type type)
-{
-	if (!nt_grow((void **)&b->uvs, &b->uv_capacity, count, sizeof *b->uvs))
-		return nt_fail_memory(b->error);
-	b->uv_count = count;
-	for (size_t k = 0; k < count; k++)
-		b->uvs[k] = ply_load_float(at + k * ply_size(type), type, b->swap);
-	return NT_OK;
-}
-
-static void take_texture(builder *b, int64_t texture)
-{
-	const size_t count = b->source->header.texture_count;
-	b->texture = (uint32_t)(texture >= 0 && (uint64_t)texture < count ? (size_t)texture : count);
-}
-
-static nt_status load_property(builder *b, int number, const unsigned char *at)
-{
-	const ply_property *property = &b->element->properties[number];
-	if (number == b->texture_property)
-		take_texture(b, property->type < PLY_FLOAT32
-					? ply_load_integer(at, property->type, b->swap) : -1);
-	if (!property->list)
-		return NT_OK;
-	const size_t count = (size_t)ply_load_integer(at, property->count_type, b->swap);
-	const unsigned char *values = at + ply_size(property->count_type);
-	if (number == b->indices_property)
-		return load_corners(b, values, count, property->type);
-	return number == b->texcoords_property ? load_uvs(b, values, count, property->type) : NT_OK;
-}
-
-/* A row is measured, then read. */
-static nt_status load_row(builder *b)
-{
-	nt_status status = ply_skip_binary_row(b->cursor, b->element, b->row, b->error);
-	const unsigned char *at = b->row_begin;
-	for (size_t i = 0; !status && i < b->element->property_count; i++) {
-		status = load_property(b, (int)i, at);
-		at += ply_value_bytes(&b->element->properties[i], at, b->swap);
-	}
-	return status;
-}
-
-static nt_status fail_text(const builder *b, const unsigned char *at, const char *expected,
-	const ply_property *property)
-{
-	char found[40];
-	return ply_fail_at(b->cursor, at, b->error, "%s %zu: found %s, expected %s \"%s\"",
-		b->element->name, b->row, ply_show(b->cursor, at, found), expected, property->name);
-}
-
-/* One value of a list or a scalar property at *at, which is moved behind it. */
-static nt_status read_value(builder *b, int number, size_t k, const unsigned char **at)
-{
-	const ply_property *property = &b->element->properties[number];
-	const unsigned char *const end = b->cursor->end;
-	const unsigned char *begin = ply_skip_blanks(*at, end), *after;
-	nt_status status = NT_OK;
-	int64_t integer;
-	if (number == b->indices_property) {
-		after = ply_read_integer(begin, end, &integer);
-		if (after)
-			status = take_index(b, k, integer, begin);
-	} else if (number == b->texcoords_property) {
-		after = ply_read_float(begin, end, &b->uvs[k]);
-	} else if (number == b->texture_property) {
-		after = ply_read_integer(begin, end, &integer);
-		if (after)
-			take_texture(b, integer);
-	} else {
-		after = ply_skip_value(begin, end);
-	}
-	if (!after || after == begin)
-		return fail_text(b, begin, property->list ? "another value of list"
-							  : "a number for property", property);
-	*at = after;
-	return status;
-}
-
-static nt_status read_list(builder *b, int number, const unsigned char **at)
-{
-	const ply_property *property = &b->element->properties[number];
-	const unsigned char *begin = ply_skip_blanks(*at, b->cursor->end);
-	int64_t count;
-	const unsigned char *after = ply_read_integer(begin, b->cursor->end, &count);
-	if (!after)
-		return fail_text(b, begin, "the length of list", property);
-	if (count < 0 || (uint64_t)count > (uint64_t)(b->cursor->end - after) / 2 + 1)
-		return ply_fail_at(b->cursor, begin, b->error,
-			"%s %zu: the length of a list does not fit the file: %lld", b->element->name, b->row,
-			(long long)count);
-	const size_t length = (size_t)count;
-	if (number == b->indices_property) {
-		b->corner_count = length;
-		if (!nt_grow((void **)&b->corners, &b->corner_capacity, length, sizeof *b->corners))
-			return nt_fail_memory(b->error);
-	} else if (number == b->texcoords_property) {
-		b->uv_count = length;
-		if (!nt_grow((void **)&b->uvs, &b->uv_capacity, length, sizeof *b->uvs))
-			return nt_fail_memory(b->error);
-	}
-	*at = after;
-	nt_status status = NT_OK;
-	for (size_t k = 0; !status && k < length; k++)
-		status = read_value(b, number, k, at);
-	return status;
-}
-
-static nt_status read_row(builder *b)
-{
-	const unsigned char *at = b->row_begin;
-	nt_status status = NT_OK;
-	for (size_t i = 0; !status && i < b->element->property_count; i++)
-		status = b->element->properties[i].list ? read_list(b, (int)i, &at)
-							: read_value(b, (int)i, 0, &at);
-	if (status)
-		return status;
-	b->cursor->at = ply_skip_blanks(at, b->cursor->end);
-	return ply_check_row_end(b->cursor, b->element, b->row, b->error);
-}
-
-/* Reads as many plain faces as there are at the cursor: b->row moves behind them. */
-static nt_status take_run(builder *b)
-{
-	const size_t size = ply_run_size(&b->runs, b->cursor);
-	if (size == 0)
-		return NT_OK;
-	const size_t left = b->element->count - b->row, room = NMTAN_MAX_FACES - b->face_count;
-	const size_t rows = left < room ? left : room;
-	if ((size == 4 && !start_sizes(b)) || !make_room(b, rows, size * rows + 4))
-		return nt_fail_memory(b->error);
-	const size_t taken = ply_take_run(&b->runs, b->cursor, rows, size, b->source->vertex->count,
-		b->indices + b->index_count);
-	if (b->sizes)
-		memset(b->sizes + b->face_count, (int)size, taken);
-	for (size_t i = 0; b->polygons && i < taken; i++)
-		b->polygons[b->face_count + i] = (uint32_t)(b->polygon_count + i);
-	b->index_count += size * taken;
-	b->face_count += taken;
-	b->polygon_count += taken;
-	b->row += taken;
-	return NT_OK;
-}
-
-/* Texture coordinates of the row that are not finite become 0. */
-static void mend_uvs(builder *b)
-{
-	bool sound = true;
-	for (size_t k = 0; k < b->uv_count; k++) {
-		sound &= isfinite(b->uvs[k]) != 0;
-		b->uvs[k] = isfinite(b->uvs[k]) ? b->uvs[k] : 0.0f;
-	}
-	if (!sound && !b->unsound++)
-		b->first_unsound = place_of_row(b);
-}
-
-static nt_status read_any_row(builder *b)
-{
-	const bool ascii = b->cursor->encoding == PLY_ASCII;
-	b->row_begin = b->cursor->at;
-	if (b->cursor->at == b->cursor->end)
-		return ply_fail_end(b->cursor, b->element, b->row, b->error);
-	nt_status status = ascii ? read_row(b) : load_row(b);
-	if (!status)
-		mend_uvs(b);
-	if (!status)
-		status = b->element == b->source->strips ? add_strips(b) : add_polygon(b);
-	b->row++;
-	return status;
 }
 
 static nt_status read_rows(builder *b)
 {
+	ply_polygons *p = b->polygons;
+	const bool strips = b->source->strips != NULL;
 	nt_status status = NT_OK;
-	while (!status && b->row < b->element->count) {
-		if (b->cursor->encoding == PLY_ASCII)
-			ply_next_row(b->cursor);
-		const size_t before = b->row;
-		status = take_run(b);
-		if (!status && b->row == before)
-			status = read_any_row(b);
+	while (!status && b->rows.row < b->rows.element->count) {
+		const size_t left = b->rows.element->count - b->rows.row;
+		const size_t size = b->uniform ? ply_list_size(&b->rows, (size_t)b->source->face_indices) : 0;
+		if (size && !make_room(p, left, size * left))
+			return nt_fail_memory(b->error);
+		const size_t taken = size ? ply_take_rows(&b->rows, p->corners + p->corner_count, size) : 0;
+		if (taken && !add_polygons(p, taken, size, NULL))
+			return nt_fail_memory(b->error);
+		if (taken)
+			continue;
+		status = ply_read_row(&b->rows, b->error);
+		if (!status && b->rows.unsound)
+			mend_texcoords(b);
+		if (!status)
+			status = strips ? take_strips(b) : take_polygon(b);
 	}
 	return status;
 }
 
-/* Results. */
-
-/* Primitives of textures that no face uses are left out. */
-static nt_status make_primitives(builder *b)
+/* Says what the columns of rows are used for. */
+static nt_status prepare(builder *b, nt_arena *arena)
 {
-	nt_mesh *mesh = b->mesh;
-	const size_t textures = b->source->header.texture_count;
-	const size_t most = b->primitives ? textures + 1 : 1;
-	mesh->primitives = nt_arena_alloc(&b->scene->arena, most, sizeof *mesh->primitives);
-	uint32_t *numbers = nt_calloc(most, sizeof *numbers);
-	if (!mesh->primitives || !numbers) {
-		free(numbers);
-		return nt_fail_memory(b->error);
+	const ply_element *element = b->rows.element;
+	const ply_source *source = b->source;
+	size_t lists = 0;
+	for (size_t i = 0; i < element->property_count; i++)
+		lists += element->properties[i].list;
+	b->uniform = lists == 1 && !source->strips;
+	b->rows.may_be_longer = true;
+	ply_column *indices = &b->rows.columns[source->face_indices];
+	*indices = (ply_column){.use = PLY_INDICES, .limit = source->vertex->count, .restarts = source->strips != NULL};
+	b->indices = indices;
+	if (source->face_texcoords != PLY_NO_PROPERTY) {
+		ply_column *texcoords = &b->rows.columns[source->face_texcoords];
+		*texcoords = (ply_column){.use = PLY_FLOATS, .divisor = 1, .other = PLY_MENDED};
+		b->texcoords = texcoords;
+		b->wedges.row_count = source->vertex->count;
+		b->wedges.rows = nt_calloc(b->wedges.row_count, sizeof *b->wedges.rows);
+		if (!b->wedges.rows)
+			return nt_fail_memory(b->error);
+		for (size_t i = 0; i < b->wedges.row_count; i++)
+			b->wedges.rows[i].row = (uint32_t)i;
 	}
-	if (!b->primitives) {
-		mesh->primitives[0] = (nt_primitive){.material = textures ? 0 : NT_NONE, .face_count = b->face_count};
+	const int texture = source->header.texture_count && !source->strips ? ply_find_property(element, "texnumber")
+		: PLY_NO_PROPERTY;
+	if (texture != PLY_NO_PROPERTY && !element->properties[texture].list) {
+		b->polygons->textures = nt_arena_alloc(arena, element->count, sizeof *b->polygons->textures);
+		b->rows.columns[texture] = (ply_column){.use = PLY_CHOICES, .integers = b->polygons->textures,
+			.stride = 1, .limit = source->header.texture_count};
+		b->uniform = false;
+		if (!b->polygons->textures)
+			return nt_fail_memory(b->error);
+	}
+	/* most files are triangles; the count has been checked against the file */
+	return make_room(b->polygons, element->count, 3 * element->count + 4) ? NT_OK : nt_fail_memory(b->error);
+}
+
+nt_status ply_read_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply_polygons *polygons, ply_cursor *cursor,
+	nt_error *error)
+{
+	const ply_element *element = source->strips ? source->strips : source->face;
+	builder b = {.mesh = mesh, .source = source, .polygons = polygons, .error = error};
+	nt_status status = ply_check_count(cursor, element, error);
+	if (!status)
+		status = ply_begin_rows(&b.rows, cursor, element) ? prepare(&b, &scene->arena) : nt_fail_memory(error);
+	if (!status)
+		status = read_rows(&b);
+	if (!status && b.texcoords && !apply_wedges(&b.wedges, &scene->arena, mesh, source))
+		status = nt_fail_memory(error);
+	if (!status && b.unsound)
+		nt_finding_add(&scene->findings, NT_CODE_UV_NOT_FINITE, &b.first_unsound, b.unsound, "faces");
+	if (!status && b.skipped)
+		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &b.first_skipped, b.skipped,
+			"faces of fewer than three corners");
+	if (!status && b.rows.longer) {
+		const nt_place first = ply_place(cursor, b.rows.first_longer);
+		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &first, b.rows.longer,
+			"faces with more values than the header names, which were passed over");
+	}
+	ply_free_rows(&b.rows);
+	free(b.wedges.rows);
+	free(b.wedges.copies);
+	nt_hash_index_free(&b.wedges.index);
+	return status;
+}
+
+/* ---- faces of polygons ---- */
+
+void ply_free_polygons(ply_polygons *p)
+{
+	free(p->corners);
+	free(p->sizes);
+	free(p->large);
+	*p = (ply_polygons){0};
+}
+
+/* Primitives of textures that no face uses are left out. The numbers of textures become those of primitives. */
+static nt_status make_primitives(nt_scene *scene, nt_mesh *mesh, size_t textures, nt_error *error)
+{
+	uint32_t *numbers = mesh->face_primitive;
+	const size_t most = numbers ? textures + 1 : 1;
+	mesh->primitives = nt_arena_alloc(&scene->arena, most, sizeof *mesh->primitives);
+	uint32_t *counts = nt_calloc(most, sizeof *counts);
+	if (!mesh->primitives || !counts) {
+		free(counts);
+		return nt_fail_memory(error);
+	}
+	if (!numbers) {
+		mesh->primitives[0] =
+			(nt_primitive){.material = textures ? 0 : NT_NONE, .face_count = mesh->face_count};
 		mesh->primitive_count = 1;
 	}
-	for (size_t f = 0; b->primitives && f < b->face_count; f++)
-		numbers[b->primitives[f]]++;
-	for (size_t i = 0; b->primitives && i < most; i++) {
-		if (!numbers[i])
+	for (size_t f = 0; numbers && f < mesh->face_count; f++)
+		counts[numbers[f]]++;
+	for (size_t i = 0; numbers && i < most; i++) {
+		if (!counts[i])
 			continue;
-		const uint32_t material = i < textures ? (uint32_t)i : NT_NONE;
 		mesh->primitives[mesh->primitive_count] =
-			(nt_primitive){.material = material, .face_count = numbers[i]};
-		numbers[i] = (uint32_t)mesh->primitive_count++;
+			(nt_primitive){.material = i < textures ? (uint32_t)i : NT_NONE, .face_count = counts[i]};
+		counts[i] = (uint32_t)mesh->primitive_count++;
 	}
-	for (size_t f = 0; b->primitives && f < b->face_count; f++)
-		b->primitives[f] = numbers[b->primitives[f]];
-	free(numbers);
+	for (size_t f = 0; numbers && f < mesh->face_count; f++)
+		numbers[f] = counts[numbers[f]];
+	mesh->face_primitive = mesh->primitive_count > 1 ? numbers : NULL;
+	free(counts);
 	return NT_OK;
 }
 
-static nt_status finish(builder *b)
-{
-	nt_mesh *mesh = b->mesh;
-	nt_status status = make_primitives(b);
-	if (!status && b->has_wedges && !ply_wedges_apply(&b->wedges, b->scene, mesh, b->source))
-		status = nt_fail_memory(b->error);
-	mesh->face_count = b->face_count;
-	mesh->corner_count = b->index_count;
-	mesh->indices = b->indices;
-	mesh->face_sizes = b->sizes;
-	mesh->face_polygon = b->polygons;
-	mesh->face_primitive = mesh->primitive_count > 1 ? b->primitives : NULL;
-	if (b->unsound)
-		nt_finding_add(&b->scene->findings, NT_CODE_UV_NOT_FINITE, &b->first_unsound, b->unsound, "faces");
-	if (b->skipped)
-		nt_finding_add(&b->scene->findings, NT_CODE_STATEMENT_IGNORED, &b->first_skipped,
-			b->skipped, "faces of fewer than three corners");
-	return status;
-}
-
-static nt_status prepare(builder *b)
-{
-	const ply_element *element = b->element;
-	const nt_status status = ply_check_count(b->cursor, element, b->error);
-	if (status)
-		return status;
-	b->has_wedges = b->texcoords_property != PLY_NO_PROPERTY;
-	if (b->has_wedges && !ply_wedges_init(&b->wedges, b->source->vertex->count))
-		return nt_fail_memory(b->error);
-	if (!b->has_wedges && b->texture_property == PLY_NO_PROPERTY && element != b->source->strips)
-		b->runs = ply_find_run_layout(element, b->indices_property, b->cursor->encoding);
-	/* most files are triangles; the count has been checked against the file */
-	return nt_grow((void **)&b->indices, &b->index_capacity, 3 * element->count + 4,
-		       sizeof *b->indices)
-		       ? NT_OK
-		       : nt_fail_memory(b->error);
-}
-
-nt_status ply_read_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply_cursor *cursor,
+/* Cuts a polygon: the corner numbers of its triangles go to `cut`. */
+static nt_status cut_polygon(const nt_mesh *mesh, const uint32_t *vertices, size_t size, uint32_t *cut, bool *sound,
 	nt_error *error)
 {
-	const bool strips = source->strips != NULL;
-	builder b = {.scene = scene, .mesh = mesh, .source = source, .cursor = cursor, .error = error,
-		.element = strips ? source->strips : source->face,
-		.indices_property = source->face_indices,
-		.texcoords_property = source->face_texcoords,
-		.texture_property = PLY_NO_PROPERTY,
-		.swap = ply_swaps(cursor->encoding)};
-	if (!strips && source->header.texture_count > 0)
-		b.texture_property = ply_find_property(b.element, "texnumber");
-	if (b.texture_property >= 0 && b.element->properties[b.texture_property].list)
-		b.texture_property = PLY_NO_PROPERTY;
+	float (*points)[3] = nt_alloc(size, sizeof *points);
+	for (size_t k = 0; points && k < size; k++)
+		memcpy(points[k], mesh->positions + 3 * (size_t)vertices[k], sizeof *points);
+	const bool done = points && !nt_polygon_triangulate((const float(*)[3])points, size, cut, sound);
+	free(points);
+	return done ? NT_OK : nt_fail_memory(error);
+}
 
-	nt_status status = prepare(&b);
-	if (!status)
-		status = read_rows(&b);
-	if (!status)
-		status = finish(&b);
-	/* the arrays belong to the arena from now on, after an error too */
-	void *const blocks[] = {b.indices, b.sizes, b.polygons, b.primitives};
-	for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
-		if (!nt_arena_adopt(&scene->arena, blocks[i]) && !status)
-			status = nt_fail_memory(error);
-	ply_wedges_free(&b.wedges);
-	free(b.corners);
-	free(b.uvs);
-	free(b.points);
-	return status;
+/* Arrays of faces that are not the polygons themselves. */
+static nt_status start_faces(nt_arena *arena, nt_mesh *mesh, ply_source *source, const ply_polygons *p, nt_error *error)
+{
+	for (size_t i = 0; i < p->large_count; i++)
+		source->cut_count += 3 * (p->large[i].size - 2);
+	size_t large_corners = 0;
+	for (size_t i = 0; i < p->large_count; i++)
+		large_corners += p->large[i].size;
+	mesh->face_count = p->count - p->large_count + source->cut_count / 3;
+	mesh->corner_count = p->corner_count - large_corners + source->cut_count;
+	if (mesh->face_count > NMTAN_MAX_FACES)
+		return nt_fail(error, NT_ERROR_TOO_LARGE, "more than %zu faces", NMTAN_MAX_FACES);
+	if (!p->large_count)
+		return NT_OK;
+	mesh->indices = nt_arena_alloc(arena, mesh->corner_count, sizeof *mesh->indices);
+	mesh->face_polygon = nt_arena_alloc(arena, mesh->face_count, sizeof *mesh->face_polygon);
+	mesh->face_sizes = p->has_quads ? nt_arena_alloc(arena, mesh->face_count, 1) : NULL;
+	mesh->face_primitive = p->textures ? nt_arena_alloc(arena, mesh->face_count, sizeof *p->textures) : NULL;
+	source->cuts = nt_arena_alloc(arena, source->cut_count, sizeof *source->cuts);
+	return mesh->indices && mesh->face_polygon && source->cuts && (mesh->face_sizes || !p->has_quads) &&
+			(mesh->face_primitive || !p->textures) ? NT_OK : nt_fail_memory(error);
+}
+
+nt_status ply_make_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply_polygons *p, size_t *unsound,
+	const unsigned char **first, nt_error *error)
+{
+	const bool again = mesh->face_count > 0;
+	nt_status status = again ? NT_OK : start_faces(&scene->arena, mesh, source, p, error);
+	size_t face = 0, large = 0, cuts = 0;
+	const uint32_t *from = p->corners;
+	uint32_t *to = mesh->indices;
+	*unsound = 0;
+	for (size_t i = 0; !status && p->large_count && i < p->count; i++) {
+		const size_t size = p->sizes[i] ? p->sizes[i] : p->large[large].size;
+		uint32_t *const cut = source->cuts + cuts;
+		const size_t faces = size > 4 ? size - 2 : 1;
+		bool sound = true;
+		if (size > 4)
+			status = cut_polygon(mesh, from, size, cut, &sound, error);
+		for (size_t k = 0; !status && k < (size > 4 ? 3 * faces : size); k++)
+			*to++ = from[size > 4 ? cut[k] : k];
+		for (size_t f = face; f < face + faces; f++) {
+			mesh->face_polygon[f] = (uint32_t)i;
+			if (mesh->face_sizes)
+				mesh->face_sizes[f] = size == 4 ? 4 : 3;
+			if (mesh->face_primitive && !again)
+				mesh->face_primitive[f] = p->textures[i];
+		}
+		if (!sound && !(*unsound)++ && !again)
+			*first = p->large[large].row;
+		from += size;
+		face += faces;
+		cuts += size > 4 ? 3 * faces : 0;
+		large += size > 4;
+	}
+	if (again || status)
+		return status;
+	if (!p->large_count) {
+		mesh->indices = p->corners;
+		mesh->face_sizes = p->sizes;
+		mesh->face_primitive = p->textures;
+		p->corners = NULL;
+		p->sizes = NULL;
+		/* both belong to the arena, after an error too */
+		const bool kept = nt_arena_adopt(&scene->arena, mesh->indices);
+		if (!nt_arena_adopt(&scene->arena, mesh->face_sizes) || !kept)
+			return nt_fail_memory(error);
+	}
+	return make_primitives(scene, mesh, source->header.texture_count, error);
 }

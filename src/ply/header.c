@@ -4,7 +4,7 @@
  * and time in proportion to its own size; what it promises about the rest of the file is checked where the rest
  * is read.
  */
-#include "ply/header.h"
+#include "ply/parts.h"
 
 #include <stdlib.h>
 #include "base/memory.h"

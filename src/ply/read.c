@@ -11,11 +11,14 @@
  */
 #include "ply/ply.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include "base/parallel.h"
 #include "base/name_table.h"
-#include "ply/source.h"
+#include "ply/parts.h"
+#include "scene/origin.h"
+#include "scene/srgb.h"
 
 bool nt_ply_recognise(const unsigned char *bytes, size_t size)
 {
@@ -29,7 +32,6 @@ static void free_source(void *pointer)
 	if (!source)
 		return;
 	ply_free_header(&source->header);
-	free(source->cuts.corners);
 	free(source);
 }
 
@@ -48,11 +50,12 @@ static bool find_set(const ply_element *element, const char *const *names, size_
 	return false;
 }
 
+static const char *const tangent_names[] = {"tx", "ty", "tz", "tw"};
+
 static nt_status find_roles(ply_source *source, nt_error *error)
 {
 	static const char *const positions[] = {"x", "y", "z"};
 	static const char *const normals[] = {"nx", "ny", "nz"};
-	static const char *const tangents[] = {"tx", "ty", "tz", "tw"};
 	static const char *const colors[][4] = {{"red", "green", "blue", "alpha"},
 		{"red", "green", "blue", NULL}, {"diffuse_red", "diffuse_green", "diffuse_blue", NULL}};
 	static const char *const texcoords[][2] = {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"},
@@ -65,7 +68,7 @@ static nt_status find_roles(ply_source *source, nt_error *error)
 		return nt_fail_line(error, NT_ERROR_INPUT, vertex->line,
 			"element \"vertex\" has no properties x, y and z");
 	find_set(vertex, normals, 3, roles->normal);
-	find_set(vertex, tangents, 4, roles->tangent);
+	find_set(vertex, tangent_names, 4, roles->tangent);
 	for (size_t i = 0; i < 3 && !find_set(vertex, colors[i], 4, roles->color); i++)
 		;
 	for (size_t i = 0; i < TEXCOORD_NAMES && !find_set(vertex, texcoords[i], 2, roles->texcoord); i++)
@@ -117,26 +120,34 @@ static nt_status find_elements(ply_source *source, nt_error *error)
 	return status;
 }
 
+static nt_place place_of_line(size_t line)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	place.line = line;
+	return place;
+}
+
 /* Data of the file that the scene has not. */
 static void report_unused(nt_scene *scene, const ply_source *source)
 {
-	if (source->header.unknown_lines) {
-		nt_place place;
-		nt_place_clear(&place);
-		place.line = source->header.unknown_line;
+	const ply_element *vertex = source->vertex;
+	nt_place place = place_of_line(source->header.unknown_line);
+	if (source->header.unknown_lines)
 		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, source->header.unknown_lines,
 			"lines of the header that are no statements");
-	}
 	for (size_t i = 0; i < source->header.element_count; i++) {
 		const ply_element *element = &source->header.elements[i];
-		if (element == source->vertex || element == source->face || element == source->strips ||
-			element->count == 0)
-			continue;
-		nt_place place;
-		nt_place_clear(&place);
-		place.line = element->line;
-		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1, "element \"%s\"",
-			element->name);
+		place = place_of_line(element->line);
+		if (element != vertex && element != source->face && element != source->strips && element->count > 0)
+			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1, "element \"%s\"",
+				element->name);
+	}
+	int tangent[3];
+	if (source->roles.tangent[0] == PLY_NO_PROPERTY && find_set(vertex, tangent_names, 3, tangent)) {
+		place = place_of_line(vertex->properties[tangent[0]].line);
+		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1,
+			"properties tx, ty and tz are no tangents without tw");
 	}
 }
 
@@ -168,20 +179,97 @@ static nt_status list_left_out(nt_scene *scene, const ply_source *source, nt_err
 	return scene->left_out || !scene->left_out_count ? NT_OK : nt_fail_memory(error);
 }
 
-static nt_status read_element(nt_scene *scene, nt_mesh *mesh, ply_source *source,
-	const ply_element *element, ply_cursor *cursor, bool *have_vertices, nt_error *error)
+/* ---- vertices ---- */
+
+/* Allocates an array of `width` floats per row and makes it the column of as many properties. divided: integers become
+ * 0 to 1 or -1 to 1. */
+static bool add_columns(ply_rows *rows, nt_arena *arena, const int *properties, size_t width, bool divided,
+	ply_finiteness other, float **array)
 {
-	if (element == source->vertex) {
-		*have_vertices = true;
-		return ply_read_vertices(scene, mesh, source, cursor, error);
+	if (properties[0] == PLY_NO_PROPERTY)
+		return true;
+	*array = nt_arena_alloc(arena, rows->element->count, width * sizeof **array);
+	for (size_t i = 0; *array && i < width; i++) {
+		if (properties[i] == PLY_NO_PROPERTY)
+			continue;
+		const ply_type type = rows->element->properties[properties[i]].type;
+		rows->columns[properties[i]] = (ply_column){.use = PLY_FLOATS, .floats = *array + i, .stride = width,
+			.divisor = divided ? (float)ply_one(type) : 1, .other = other};
 	}
-	if (element != source->face && element != source->strips)
-		return ply_skip_element(cursor, element, error);
-	source->face_begin = (size_t)(cursor->at - cursor->begin);
-	const nt_status status = *have_vertices
-					    ? ply_read_faces(scene, mesh, source, cursor, error)
-					    : ply_skip_element(cursor, element, error);
-	source->face_end = (size_t)(cursor->at - cursor->begin);
+	return *array != NULL;
+}
+
+/* Rows of normals or texture coordinates that are not finite become zeros. */
+static void mend_rows(nt_scene *scene, float *values, size_t width, size_t count, nt_code code)
+{
+	size_t bad = 0, first = 0;
+	for (size_t row = 0; values && row < count; row++) {
+		bool sound = true;
+		for (size_t k = 0; k < width; k++)
+			sound &= isfinite(values[row * width + k]) != 0;
+		if (sound)
+			continue;
+		memset(values + row * width, 0, width * sizeof *values);
+		first = bad++ ? first : row;
+	}
+	if (bad)
+		nt_finding_add(&scene->findings, code, NULL, bad, "vertex %zu is the first", first);
+}
+
+/* Positions of a mesh must be finite, as in OBJ. Normals and texture coordinates that are not become zeros, with a
+ * finding, and colours white, since glTF cannot store NaN. Points are passed through as they are, and so are tangents,
+ * which the caller may want to check. */
+static nt_status read_vertices(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply_cursor *cursor, nt_error *error)
+{
+	const size_t count = source->vertex->count;
+	const ply_roles *roles = &source->roles;
+	const bool faces = source->face || source->strips;
+	const ply_finiteness other = faces ? PLY_MENDED : PLY_ANY, place = faces ? PLY_REFUSED : PLY_ANY;
+	nt_arena *arena = &scene->arena;
+	source->vertex_begin = (size_t)(cursor->at - cursor->begin);
+	nt_status status = ply_check_count(cursor, source->vertex, error);
+	if (status)
+		return status;
+	ply_rows rows;
+	if (!ply_begin_rows(&rows, cursor, source->vertex) ||
+		!add_columns(&rows, arena, roles->position, 3, false, place, &mesh->positions) ||
+		!add_columns(&rows, arena, roles->normal, 3, false, other, &mesh->normals) ||
+		!add_columns(&rows, arena, roles->texcoord, 2, false, other, &mesh->texcoords) ||
+		!add_columns(&rows, arena, roles->tangent, 4, false, PLY_ANY, &mesh->tangents) ||
+		!add_columns(&rows, arena, roles->color, 4, true, PLY_ANY, &mesh->colors))
+		status = nt_fail_memory(error);
+	for (size_t i = 0; !status && mesh->colors && roles->color[3] == PLY_NO_PROPERTY && i < count; i++)
+		mesh->colors[4 * i + 3] = 1.0f;
+	if (!status)
+		status = ply_read_rows(&rows, error);
+	if (!status && rows.unsound) {
+		mend_rows(scene, mesh->normals, 3, count, NT_CODE_MESH_NORMAL_ZERO);
+		mend_rows(scene, mesh->texcoords, 2, count, NT_CODE_UV_NOT_FINITE);
+	}
+	if (!status && mesh->colors)
+		nt_linearise(scene, mesh, count);
+	mesh->vertex_count = count;
+	ply_free_rows(&rows);
+	return status;
+}
+
+/* ---- the body ---- */
+
+/* Faces of what was read, once positions are what they will be. */
+static nt_status make_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply_polygons *polygons,
+	const nt_origin *origin, ply_cursor *cursor, nt_error *error)
+{
+	size_t unsound = 0;
+	const unsigned char *first = NULL;
+	nt_status status = ply_make_faces(scene, mesh, source, polygons, &unsound, &first, error);
+	if (!status)
+		status = ply_settle_origin(scene, mesh, source, origin, cursor, error);
+	if (!status && nt_scene_has_origin(scene))
+		status = ply_make_faces(scene, mesh, source, polygons, &unsound, &first, error);
+	if (!status && unsound) {
+		const nt_place place = ply_place(cursor, first);
+		nt_finding_add(&scene->findings, NT_CODE_POLYGON_DEGENERATE, &place, unsound, NULL);
+	}
 	return status;
 }
 
@@ -190,40 +278,46 @@ static nt_status read_body(nt_scene *scene, nt_mesh *mesh, ply_source *source, c
 	nt_error *error)
 {
 	const ply_header *header = &source->header;
-	const unsigned char *body = scene->bytes + header->body;
-	ply_cursor cursor = {.begin = scene->bytes, .at = body, .end = scene->bytes + scene->byte_count,
-		.body = body, .body_line = header->body_line, .encoding = header->encoding,
-		.threads = nt_thread_count(options->threads)};
+	ply_cursor cursor = ply_begin_body(scene, header, nt_thread_count(options->threads));
+	ply_polygons polygons = {0};
 	bool have_vertices = false, faces_first = false;
-	for (size_t i = 0; i < header->element_count; i++) {
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < header->element_count; i++) {
 		const ply_element *element = &header->elements[i];
-		faces_first |= !have_vertices && (element == source->face || element == source->strips);
-		const nt_status status =
-			read_element(scene, mesh, source, element, &cursor, &have_vertices, error);
-		if (status)
-			return status;
+		const bool faces = element == source->face || element == source->strips;
+		if (faces)
+			source->face_begin = (size_t)(cursor.at - cursor.begin);
+		if (element == source->vertex)
+			status = read_vertices(scene, mesh, source, &cursor, error);
+		else if (faces && have_vertices)
+			status = ply_read_faces(scene, mesh, source, &polygons, &cursor, error);
+		else
+			status = ply_skip_element(&cursor, element, error);
+		if (faces)
+			source->face_end = (size_t)(cursor.at - cursor.begin);
+		faces_first |= faces && !have_vertices;
+		have_vertices |= element == source->vertex;
 	}
-	if (header->encoding == PLY_ASCII)
+	if (!status && header->encoding == PLY_ASCII)
 		ply_next_row(&cursor);
-	if (cursor.at < cursor.end) {
+	if (!status && cursor.at < cursor.end) {
 		nt_place place;
 		nt_place_clear(&place);
 		place.offset = (uint64_t)(cursor.at - cursor.begin);
 		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1,
 			"%zu bytes after the last element", (size_t)(cursor.end - cursor.at));
 	}
-	nt_status status = NT_OK;
-	if (faces_first) {
+	if (!status && faces_first) {
 		cursor.at = scene->bytes + source->face_begin;
-		status = ply_read_faces(scene, mesh, source, &cursor, error);
+		status = ply_read_faces(scene, mesh, source, &polygons, &cursor, error);
 	}
-	if (!status)
-		status = ply_settle_origin(scene, mesh, source, &options->origin, &cursor, error);
-	if (source->cuts.unsound)
-		nt_finding_add(&scene->findings, NT_CODE_POLYGON_DEGENERATE, &source->cuts.first_unsound,
-			source->cuts.unsound, NULL);
+	if (!status && (source->face || source->strips))
+		status = make_faces(scene, mesh, source, &polygons, &options->origin, &cursor, error);
+	ply_free_polygons(&polygons);
 	return status;
 }
+
+/* ---- the scene ---- */
 
 /* The image that MeshLab names in a comment becomes the base colour of a material. */
 static nt_status make_materials(nt_scene *scene, const ply_header *header, nt_error *error)

@@ -13,13 +13,7 @@
 
 #include <stdlib.h>
 #include "base/vec.h"
-#include "ply/cursor.h"
 #include "ply/vertex_map.h"
-
-/* The places of a row's values. */
-typedef struct span {
-	const unsigned char *begin, *end;
-} span;
 
 typedef struct plan {
 	nt_scene *scene;
@@ -39,7 +33,7 @@ typedef struct plan {
 	size_t value_count;
 
 	ply_type index_type;     /* of the faces written */
-	span *spans;             /* of the element with most properties */
+	ply_rows vertices, faces; /* of the source */
 	size_t *row_offsets;     /* [row_count] where the row of a vertex begins */
 } plan;
 
@@ -58,7 +52,8 @@ static void add_values(plan *p, const char *const *names, size_t count, bool int
 		const int found = ply_find_property(vertex, names[i]);
 		const ply_property *property = found == PLY_NO_PROPERTY ? NULL : &vertex->properties[found];
 		in_place &= property && !property->list &&
-			(property->type >= PLY_FLOAT32 || (integers && ply_is_signed(property->type)));
+			(property->type >= PLY_FLOAT32 || (integers && (property->type == PLY_INT8 ||
+				property->type == PLY_INT16 || property->type == PLY_INT32)));
 	}
 	for (size_t i = 0; i < count; i++) {
 		p->names[p->value_count] = names[i];
@@ -80,15 +75,10 @@ static nt_status plan_properties(plan *p, bool bitangents)
 	static const char *const tangents[] = {"tx", "ty", "tz", "tw"};
 	static const char *const bitangent_names[] = {"bx", "by", "bz"};
 	const ply_element *vertex = p->source->vertex;
-	size_t most = 0;
-	for (size_t i = 0; i < p->source->header.element_count; i++) {
-		const size_t count = p->source->header.elements[i].property_count;
-		most = count > most ? count : most;
-	}
 	p->instead = nt_alloc(vertex->property_count, sizeof *p->instead);
-	p->spans = nt_alloc(most, sizeof *p->spans);
 	p->row_offsets = nt_alloc(p->n.row_count, sizeof *p->row_offsets);
-	if (!p->instead || !p->spans || !p->row_offsets)
+	if (!p->instead || !p->row_offsets || !ply_begin_rows(&p->vertices, &p->cursor, vertex) ||
+		(p->source->face && !ply_begin_rows(&p->faces, &p->cursor, p->source->face)))
 		return nt_fail_memory(p->error);
 	for (size_t i = 0; i < vertex->property_count; i++)
 		p->instead[i] = KEPT;
@@ -205,47 +195,9 @@ static void write_header(const plan *p)
 
 static nt_status fail_changed(const plan *p)
 {
+	if (p->error->status == NT_ERROR_MEMORY)
+		return NT_ERROR_MEMORY;
 	return nt_fail(p->error, NT_ERROR_IO, "the file changed while it was read");
-}
-
-static bool span_binary_row(plan *p, const ply_element *element)
-{
-	const unsigned char *at = p->cursor.at;
-	if (ply_skip_binary_row(&p->cursor, element, 0, p->error))
-		return false;
-	for (size_t i = 0; i < element->property_count; i++) {
-		const size_t bytes = ply_value_bytes(&element->properties[i], at, ply_swaps(p->cursor.encoding));
-		p->spans[i] = (span){at, at + bytes};
-		at += bytes;
-	}
-	return true;
-}
-
-static bool span_text_row(plan *p, const ply_element *element)
-{
-	const unsigned char *const end = p->cursor.end;
-	ply_next_row(&p->cursor);
-	const unsigned char *at = p->cursor.at;
-	for (size_t i = 0; i < element->property_count; i++) {
-		at = ply_skip_blanks(at, end);
-		const unsigned char *begin = at;
-		int64_t values = 0;
-		if (element->properties[i].list && !ply_read_integer(at, end, &values))
-			return false;
-		at = ply_skip_value(at, end);
-		for (int64_t k = 0; k < values && at < end; k++)
-			at = ply_skip_value(ply_skip_blanks(at, end), end);
-		if (at == begin)
-			return false;
-		p->spans[i] = (span){begin, at};
-	}
-	p->cursor.at = at;
-	return true;
-}
-
-static bool span_row(plan *p, const ply_element *element)
-{
-	return p->cursor.encoding == PLY_ASCII ? span_text_row(p, element) : span_binary_row(p, element);
 }
 
 static void write_span(const plan *p, const unsigned char *begin, const unsigned char *end)
@@ -288,14 +240,10 @@ static void find_values(const plan *p, size_t vertex, float values[PLY_MOST_FLOA
 }
 
 /* A value of the row as it is, where the new one is the same number. */
-static bool is_same(const plan *p, const ply_property *property, span old, float value)
+static bool is_same(const plan *p, size_t property, float value)
 {
-	float number;
-	if (p->cursor.encoding != PLY_ASCII)
-		number = ply_load_float(old.begin, property->type, ply_swaps(p->cursor.encoding));
-	else if (!ply_read_float(old.begin, old.end, &number))
-		return false;
-	return memcmp(&number, &value, sizeof value) == 0;
+	float old;
+	return ply_cell_float(&p->vertices, property, &old) && memcmp(&old, &value, sizeof value) == 0;
 }
 
 /* The row at the cursor with new values in it; spans are set when there are any. */
@@ -312,8 +260,8 @@ static void write_row(const plan *p, const unsigned char *begin, const unsigned 
 		if (number == DROPPED)
 			continue;
 		write_gap(p, first);
-		if (number == KEPT || is_same(p, property, p->spans[i], values[number]))
-			write_span(p, p->spans[i].begin, p->spans[i].end);
+		if (number == KEPT || is_same(p, i, values[number]))
+			write_span(p, p->vertices.cells[i].begin, p->vertices.cells[i].end);
 		else
 			ply_put_value(p->out, values[number], property->type);
 		first = false;
@@ -337,9 +285,10 @@ static nt_status write_vertex(plan *p, size_t vertex)
 	} else if (!ascii && !element->has_list && !p->changes_any) {
 		p->cursor.at = end = begin + element->row_bytes;
 	} else {
-		if (!span_row(p, element))
+		p->vertices.row = 0;
+		if (ply_read_row(&p->vertices, p->error))
 			return fail_changed(p);
-		end = p->cursor.at;
+		end = p->vertices.cells[element->property_count - 1].end;
 	}
 	float values[PLY_MOST_FLOATS];
 	find_values(p, vertex, values);
@@ -382,35 +331,15 @@ static void write_indices(const plan *p, const uint32_t *vertices, size_t count,
 }
 
 /* A per-face list of texture coordinates, of which a triangle takes its corners' pairs. */
-static void write_uv_part(const plan *p, const ply_property *property, span all,
-	const uint32_t *corners)
+static void write_uv_part(const plan *p, const ply_property *property, const uint32_t *corners)
 {
-	const bool ascii = p->cursor.encoding == PLY_ASCII;
-	const size_t value = ply_size(property->type);
 	ply_put_integer(p->out, 6, property->count_type);
 	for (size_t k = 0; k < 6; k++) {
-		const size_t number = 2 * corners[k / 2] + k % 2;
-		const unsigned char *at = all.begin + ply_size(property->count_type) + number * value;
-		const unsigned char *end = at + value;
-		if (ascii) {
-			at = ply_skip_blanks(ply_skip_value(all.begin, all.end), all.end);
-			for (size_t skip = 0; skip < number; skip++)
-				at = ply_skip_blanks(ply_skip_value(at, all.end), all.end);
-			end = ply_skip_value(at, all.end);
-		}
+		const ply_cell one = ply_cell_value(&p->faces, (size_t)p->source->face_texcoords,
+			2 * corners[k / 2] + k % 2);
 		write_gap(p, false);
-		write_span(p, at, end);
+		write_span(p, one.begin, one.end);
 	}
-}
-
-static size_t list_length(const plan *p, const ply_property *property, span all)
-{
-	int64_t count = 0;
-	if (p->cursor.encoding == PLY_ASCII)
-		ply_read_integer(all.begin, all.end, &count);
-	else
-		count = ply_load_integer(all.begin, property->count_type, ply_swaps(p->cursor.encoding));
-	return count > 0 ? (size_t)count : 0;
 }
 
 /* The current row with other vertices; corners: which corners of the polygon they are, NULL: all. */
@@ -419,12 +348,12 @@ static nt_status write_face(const plan *p, const uint32_t *vertices, size_t coun
 	const ply_element *element = p->source->face;
 	for (size_t i = 0; i < element->property_count; i++) {
 		const ply_property *property = &element->properties[i];
-		const span all = p->spans[i];
+		const ply_cell all = p->faces.cells[i];
 		write_gap(p, i == 0);
 		if ((int)i == p->source->face_indices)
 			write_indices(p, vertices, count, property->count_type);
-		else if (corners && (int)i == p->source->face_texcoords && list_length(p, property, all))
-			write_uv_part(p, property, all, corners);
+		else if (corners && (int)i == p->source->face_texcoords && all.count)
+			write_uv_part(p, property, corners);
 		else
 			write_span(p, all.begin, all.end);
 	}
@@ -446,54 +375,34 @@ static nt_status write_triangles(const plan *p, const face_progress *done, size_
 		uint32_t vertices[3];
 		for (size_t k = 0; k < 3; k++)
 			vertices[k] = ply_output_vertex(&p->n, done->corner + 3 * t + k);
-		status = write_face(p, vertices, 3, p->source->cuts.corners + done->cut + 3 * t);
+		status = write_face(p, vertices, 3, p->source->cuts + done->cut + 3 * t);
 	}
 	return status;
-}
-
-/* A row of fewer than three corners is no face of the mesh: its vertices stay. */
-static nt_status write_short_face(const plan *p, span list, size_t size, uint32_t *vertices)
-{
-	const ply_property *property = &p->source->face->properties[p->source->face_indices];
-	const unsigned char *at = list.begin + ply_size(property->count_type);
-	for (size_t k = 0; k < size; k++) {
-		int64_t vertex = 0;
-		if (p->cursor.encoding == PLY_ASCII) {
-			at = ply_skip_value(k ? at : list.begin, list.end);
-			at = ply_skip_blanks(at, list.end);
-			ply_read_integer(at, list.end, &vertex);
-		} else {
-			vertex = ply_load_integer(at + k * ply_size(property->type), property->type,
-				ply_swaps(p->cursor.encoding));
-		}
-		vertices[k] = (uint32_t)vertex;
-	}
-	return write_face(p, vertices, size, NULL);
 }
 
 /* One polygon of the source. */
 static nt_status write_polygon(plan *p, face_progress *done)
 {
-	const ply_element *element = p->source->face;
-	if (!span_row(p, element))
+	const size_t indices = (size_t)p->source->face_indices;
+	if (ply_read_row(&p->faces, p->error))
 		return fail_changed(p);
-	const span list = p->spans[p->source->face_indices];
-	const size_t size = list_length(p, &element->properties[p->source->face_indices], list);
+	const size_t size = p->faces.cells[indices].count;
 	if (!nt_grow((void **)&done->vertices, &done->capacity, size, sizeof *done->vertices))
 		return nt_fail_memory(p->error);
 	const size_t corners = size < 3 ? 0 : size < 5 ? size : 3 * (size - 2);
 	if (corners > p->mesh->corner_count - done->corner ||
-		(size > 4 && corners > p->source->cuts.count - done->cut))
+		(size > 4 && corners > p->source->cut_count - done->cut))
 		return fail_changed(p);
 	nt_status status;
 	if (size < 3) {
-		status = write_short_face(p, list, size, done->vertices);
+		/* no face of the mesh: its vertices stay */
+		status = write_face(p, p->faces.columns[indices].integers, size, NULL);
 	} else if (size < 5) {
 		for (size_t k = 0; k < size; k++)
 			done->vertices[k] = ply_output_vertex(&p->n, done->corner + k);
 		status = write_face(p, done->vertices, size, NULL);
 	} else {
-		const uint32_t *cut = p->source->cuts.corners + done->cut;
+		const uint32_t *cut = p->source->cuts + done->cut;
 		status = ply_resolve_polygon(&p->n, done->corner, size, cut, done->vertices)
 				 ? write_face(p, done->vertices, size, NULL)
 				 : write_triangles(p, done, size);
@@ -575,6 +484,10 @@ static nt_status write_changed(plan *p, bool bitangents)
 	const ply_element *faces = p->source->face ? p->source->face : p->source->strips;
 	if (faces)
 		plan_index_type(p, faces);
+	if (p->source->face) {
+		p->faces.may_be_longer = true;
+		p->faces.columns[p->source->face_indices] = (ply_column){.use = PLY_INDICES, .limit = p->n.row_count};
+	}
 	if (p->n.cut_polygons > 0)
 		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, nt_mesh_place(p->mesh, &(nt_place){0}),
 			p->n.cut_polygons, NULL);
@@ -604,19 +517,18 @@ nt_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply
 	const ply_source *source = scene->source;
 	const nt_mesh *mesh = scene->meshes;
 	const ply_header *header = &source->header;
-	const unsigned char *body = scene->bytes + header->body;
 	plan p = {.scene = scene, .mesh = mesh, .source = source, .out = out, .error = error,
 		.new_normals = mesh->normals_made || (mesh->scaled_normals && has_float_normals(source->vertex)),
 		.new_tangents = mesh->split.vertex_tangents != NULL,
-		.cursor = {.begin = scene->bytes, .at = body, .end = scene->bytes + scene->byte_count,
-			.body = body, .body_line = header->body_line, .encoding = header->encoding}};
+		.cursor = ply_begin_body(scene, header, 1)};
 	out->encoding = header->encoding;
 	if (!p.new_normals && !p.new_tangents)
 		return ply_put_bytes(out, scene->bytes, scene->byte_count, error);
 	const nt_status status = write_changed(&p, options->bitangents);
 	ply_numbering_free(&p.n);
 	free(p.instead);
-	free(p.spans);
+	ply_free_rows(&p.vertices);
+	ply_free_rows(&p.faces);
 	free(p.row_offsets);
 	return status;
 }

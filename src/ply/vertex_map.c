@@ -149,7 +149,7 @@ static bool count_cut_polygons(ply_numbering *n)
 				free(vertices);
 				return false;
 			}
-			if (!ply_resolve_polygon(n, corner, triangles + 2, n->source->cuts.corners + cut, vertices)) {
+			if (!ply_resolve_polygon(n, corner, triangles + 2, n->source->cuts + cut, vertices)) {
 				n->cut_polygons++;
 				n->added_faces += triangles - 1;
 			}

@@ -6,7 +6,7 @@
 #ifndef NT_PLY_VERTEX_MAP_H
 #define NT_PLY_VERTEX_MAP_H
 
-#include "ply/source.h"
+#include "ply/parts.h"
 #include "scene/scene.h"
 
 typedef struct ply_numbering {

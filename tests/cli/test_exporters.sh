@@ -30,6 +30,20 @@ exits 3
 says 'n.ply:6: found "propery"'
 only n.ply
 
+scene "faces of a PLY may have more values than its header says, and tangents no tw"
+named_ply s t | sed 's/^3 0 1 2$/3 0 1 2 6 0 0 1 0 0 1/' >n.ply
+run -v n.ply n.glb
+exits 0
+says 'n.ply:16: info: 1 statement was not used: faces with more values than the header names, which were passed over'
+run n.ply again.ply
+exits 0
+is "$(tail -1 again.ply)" '3 0 1 2 6 0 0 1 0 0 1'
+named_ply s t | sed "s/property float t\$/&\nproperty float tx\nproperty float ty\nproperty float tz/; s/^[0-9.]* [0-9.]* [0-9.]* [0-9.]* [0-9.]*\$/& 0 1 0/" >n.ply
+run -v n.ply t.ply
+exits 0
+says 'n.ply:10: info: 1 statement was not used: properties tx, ty and tz are no tangents without tw'
+is "$(grep -c '^property float t[xyzw]' t.ply) $(sed -n '/^0 0 0/p' t.ply)" '4 0 0 0 0 0 0 0 1 1 0 0 1'
+
 scene "groups of an OBJ without objects are meshes with names, and one surface"
 # two halves, of which one is mirrored: their edge is a seam, and MikkTSpace averages across it as if there were no groups
 halves() {

@@ -8,7 +8,7 @@
 
 #include "test.h"
 #include "ply/ply.h"
-#include "ply/value.h"
+#include "ply/parts.h"
 
 typedef struct reading {
 	nt_scene scene;

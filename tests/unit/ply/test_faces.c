@@ -73,6 +73,19 @@ TEST(faces_of_fewer_than_three_corners_are_skipped_and_said)
 	close_reading(&r);
 }
 
+/* As MeshLab and trimesh read them: the header says what a face has, more values are passed over. */
+TEST(faces_with_more_values_than_the_header_names_are_read)
+{
+	reading r;
+	open_text(&r, HEAD("3") FACES("4") POINTS "3 0 1 2\n3 0 1 2 6 0 0 1 0 0 1\n3 1 2 0\n3 2 1 0 7\n");
+	assert_int_equal(r.mesh->face_count, 4);
+	assert_numbers(r.mesh->indices, NUMBERS(0, 1, 2, 0, 1, 2, 1, 2, 0, 2, 1, 0));
+	assert_int_equal(r.scene.findings.count, 1);
+	assert_true(has_finding(&r, NT_CODE_STATEMENT_IGNORED, 14, 2,
+		"faces with more values than the header names, which were passed over"));
+	close_reading(&r);
+}
+
 TEST(polygons_without_area_are_cut_and_said)
 {
 	reading r;

@@ -5,19 +5,20 @@
  */
 #include "ply_file.h"
 #include "base/buffer.h"
-#include "ply/source.h"
 
 enum { VERTICES = 260000, FACES = 150000, MIDDLE = 130001 };
 
-/* Vertex i is at (i, 0.5, -i); row MIDDLE of vertices and of faces is preceded or followed by others. */
+/* Vertex i is at (i, 0.5, -i) and has one number more, so that a face looks like a vertex; row MIDDLE of vertices and
+ * of faces is preceded or followed by others. */
 static nt_buffer make_file(const char *before_vertex, const char *before_face, const char *line_end)
 {
 	nt_buffer text = {0};
 	nt_buffer_format(&text, "ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\n"
-		"property float z\nelement face %d\nproperty list uchar int vertex_indices\nend_header\n",
+		"property float z\nproperty uchar flag\nelement face %d\n"
+		"property list uchar int vertex_indices\nend_header\n",
 		(int)VERTICES, (int)FACES);
 	for (int i = 0; i < VERTICES; i++)
-		nt_buffer_format(&text, "%s%d 0.5000000 %d%s", i == MIDDLE ? before_vertex : "", i, -i, line_end);
+		nt_buffer_format(&text, "%s%d 0.5000000 %d 7%s", i == MIDDLE ? before_vertex : "", i, -i, line_end);
 	for (int i = 0; i < FACES; i++)
 		nt_buffer_format(&text, "%s3 %d %d %d%s", i == MIDDLE ? before_face : "", i, i + 1, i + 2, line_end);
 	assert_false(text.failed);
@@ -59,12 +60,12 @@ TEST(values_are_those_of_the_file)
 
 TEST(faults_are_found_where_they_are)
 {
-	/* nine lines of header */
+	/* ten lines of header */
 	static const struct {
 		const char *before_vertex, *before_face;
 		size_t line;
-	} files[] = {{"1 2\n", "", 10 + MIDDLE}, {"1 2 nan\n", "", 10 + MIDDLE}, {"1 2 3 4\n", "", 10 + MIDDLE},
-		{"", "3 0 1 260000\n", 10 + VERTICES + MIDDLE}, {"", "3 0 1\n", 10 + VERTICES + MIDDLE}};
+	} files[] = {{"1 2\n", "", 11 + MIDDLE}, {"1 2 nan 4\n", "", 11 + MIDDLE}, {"1 2 3 4 5\n", "", 11 + MIDDLE},
+		{"", "3 0 1 260000\n", 11 + VERTICES + MIDDLE}, {"", "3 0 1\n", 11 + VERTICES + MIDDLE}};
 	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
 		nt_buffer text = make_file(files[i].before_vertex, files[i].before_face, "\n");
 		char message[sizeof((nt_error *)NULL)->message];
@@ -80,48 +81,4 @@ TEST(faults_are_found_where_they_are)
 		}
 		nt_buffer_free(&text);
 	}
-}
-
-/* Takes lines of one letter; an 'x' is none. */
-static size_t take_letters(void *user, ply_cursor *cursor, size_t first, size_t rows)
-{
-	char *rows_of = user;
-	size_t taken = 0;
-	for (; taken < rows && cursor->end - cursor->at >= 2 && *cursor->at != 'x' && cursor->at[1] == '\n'; taken++) {
-		rows_of[first + taken] = (char)*cursor->at;
-		cursor->at += 2;
-	}
-	return taken;
-}
-
-/* The run ends with the last row that is wanted, or before the first that is no such row, and after that one thread
- * goes on alone. */
-TEST(runs_end_at_the_first_other_row)
-{
-	enum { LINES = 3 << 20 };
-	char *text = malloc(2 * LINES), *read = calloc(LINES, 1);
-	for (size_t i = 0; i < LINES; i++)
-		memcpy(text + 2 * i, i % 3 ? "a\n" : "b\n", 2);
-	const size_t ends[] = {LINES, 7, 1 << 20, LINES - 1, 2000000};
-	for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
-		const unsigned char *begin = (const unsigned char *)text;
-		ply_cursor cursor = {.begin = begin, .at = begin, .end = begin + 2 * LINES, .threads = 3};
-		assert_int_equal(ply_take_pieces(&cursor, ends[i], take_letters, read), ends[i]);
-		assert_ptr_equal(cursor.at, begin + 2 * ends[i]);
-		assert_int_equal(cursor.threads, 3);
-		if (ends[i] == LINES)
-			continue;
-		text[2 * ends[i]] = 'x';
-		cursor.at = begin;
-		assert_int_equal(ply_take_pieces(&cursor, LINES, take_letters, read), ends[i]);
-		assert_ptr_equal(cursor.at, begin + 2 * ends[i]);
-		assert_int_equal(cursor.threads, 1);
-		text[2 * ends[i]] = ends[i] % 3 ? 'a' : 'b';
-	}
-	size_t wrong = 0;
-	for (size_t i = 0; i < LINES; i++)
-		wrong += read[i] != (i % 3 ? 'a' : 'b');
-	assert_int_equal(wrong, 0);
-	free(text);
-	free(read);
 }

@@ -187,6 +187,16 @@ TEST(texcoords_have_four_pairs_of_names)
 	close_reading(&r);
 }
 
+TEST(tangents_without_tw_are_none_and_said)
+{
+	reading r;
+	open_text(&r, HEAD("1") "property float tx\nproperty float ty\nproperty float tz\nend_header\n0 0 0 1 0 0\n");
+	assert_false(r.mesh->has_tangents);
+	assert_true(has_finding(&r, NT_CODE_STATEMENT_IGNORED, 7, 1,
+		"properties tx, ty and tz are no tangents without tw"));
+	close_reading(&r);
+}
+
 /* sRGB to linear light. */
 static float linear(double c)
 {
