@@ -80,52 +80,23 @@ static void pair_unsorted(const nt_complex *c, uint32_t begin, uint32_t end)
 	}
 }
 
-/* No edge occurs twice in one direction, so that each has one other at most, whatever the order. `fours`: corners / 4,
- * rounded up. */
-static inline NT_ALWAYS_INLINE void pair_plain(const nt_complex *c, uint32_t begin, uint32_t count,
-	int fours)
+/* No edge occurs twice in one direction, so that each has one other at most, whatever the order. */
+static void pair_plain(const nt_complex *c, uint32_t begin, uint32_t count)
 {
-#if NT_VECTORS
-	typedef uint32_t four_ids __attribute__((vector_size(16)));
-	uint32_t *across = c->across + 2 * begin;
-	uint32_t ends[2][NT_FAN_DEPTH];
+	uint32_t *across = c->across + 2 * begin, after[NT_FAN_DEPTH], before[NT_FAN_DEPTH];
 	for (uint32_t i = 0; i < count; i++) {
-		ends[0][i] = across[2 * i];
-		ends[1][i] = across[2 * i + 1];
+		after[i] = across[2 * i];
+		before[i] = across[2 * i + 1];
 	}
-	/* vertices after and before, and the places beyond these edges, counted from 1; 0: none */
-	four_ids after[NT_FAN_DEPTH / 4], before[NT_FAN_DEPTH / 4], next[NT_FAN_DEPTH / 4], previous[NT_FAN_DEPTH / 4];
-	for (int j = 0; j < fours; j++) {
-		memcpy(&after[j], ends[0] + 4 * j, sizeof *after);
-		memcpy(&before[j], ends[1] + 4 * j, sizeof *before);
-		next[j] = previous[j] = (four_ids){0};
-	}
-	for (uint32_t i = 0; i < count; i++)
-		for (int j = 0; j < fours; j++) {
-			next[j] |= (four_ids)(after[j] == ends[1][i]) & (begin + i + 1);
-			previous[j] |= (four_ids)(before[j] == ends[0][i]) & (begin + i + 1);
-		}
-	uint32_t pairs[2 * NT_FAN_DEPTH];
-	for (int j = 0; j < fours; j++) {
-		const four_ids low = __builtin_shufflevector(next[j], previous[j], 0, 4, 1, 5) - 1;
-		const four_ids high = __builtin_shufflevector(next[j], previous[j], 2, 6, 3, 7) - 1;
-		memcpy(pairs + 8 * j, &low, sizeof low);
-		memcpy(pairs + 8 * j + 4, &high, sizeof high);
-	}
-	for (uint32_t i = 0; i < count; i++)
-		memcpy(across + 2 * i, pairs + 2 * i, 2 * sizeof *pairs);
-#else
-	uint32_t *across = c->across + 2 * begin, ends[2 * NT_FAN_DEPTH];
-	(void)fours;
-	memcpy(ends, across, 2 * count * sizeof *ends);
 	for (uint32_t i = 0; i < count; i++) {
-		across[2 * i] = across[2 * i + 1] = NT_NONE;
+		uint32_t next = NT_NONE, previous = NT_NONE;
 		for (uint32_t j = 0; j < count; j++) {
-			across[2 * i] = ends[2 * i] == ends[2 * j + 1] ? begin + j : across[2 * i];
-			across[2 * i + 1] = ends[2 * i + 1] == ends[2 * j] ? begin + j : across[2 * i + 1];
+			next = after[i] == before[j] ? begin + j : next;
+			previous = before[i] == after[j] ? begin + j : previous;
 		}
+		across[2 * i] = next;
+		across[2 * i + 1] = previous;
 	}
-#endif
 }
 
 static void pair_vertex(const nt_complex *c, size_t v, uint32_t begin, uint32_t end)
@@ -134,12 +105,9 @@ static void pair_vertex(const nt_complex *c, size_t v, uint32_t begin, uint32_t 
 		pair_tangled(c, begin, end);
 		if (c->fast->unsorted.count > 0)
 			pair_unsorted(c, begin, end);
-	} else if (end - begin <= 4)
-		pair_plain(c, begin, end - begin, 1);
-	else if (end - begin <= 8)
-		pair_plain(c, begin, end - begin, 2);
-	else
-		pair_plain(c, begin, end - begin, 3);
+	} else {
+		pair_plain(c, begin, end - begin);
+	}
 }
 
 /* Groups */
