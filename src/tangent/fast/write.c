@@ -14,16 +14,20 @@ enum { BATCH = 64 };
 /* Triangles by which the records of a scattered mesh are prefetched before they are read. */
 enum { WRITE_AHEAD = 16 };
 
-static void write_corner(const nt_fast *fast, size_t corner, const nt_record *record,
-	const nt_record_more *more, float sign)
+static void put_more(const nt_solve *solve, size_t corner, const nt_record_more *more)
 {
-	const nt_solve *solve = fast->solve;
-	memcpy(solve->tangents + 4 * corner, record, 3 * sizeof(float));
-	solve->tangents[4 * corner + 3] = sign;
 	if (solve->bitangents)
 		memcpy(solve->bitangents + 3 * corner, &more->x, 3 * sizeof(float));
 	if (solve->magnitudes)
 		memcpy(solve->magnitudes + 2 * corner, &more->mag_s, 2 * sizeof(float));
+}
+
+static void write_corner(const nt_fast *fast, size_t corner, const nt_record *record,
+	const nt_record_more *more, float sign)
+{
+	memcpy(fast->solve->tangents + 4 * corner, record, 3 * sizeof(float));
+	fast->solve->tangents[4 * corner + 3] = sign;
+	put_more(fast->solve, corner, more);
 }
 
 /* The w of a record's row: NT_RESULT_UNUSABLE stays, for usable.c. */
@@ -34,13 +38,6 @@ static inline float sign_of(int orient, uint32_t state)
 	float sign;
 	memcpy(&sign, &bits, sizeof sign);
 	return sign;
-}
-
-static void write_vertex(const nt_fast *fast, size_t corner, int orient, uint32_t vertex)
-{
-	const nt_record *record = nt_fast_record(fast, orient, vertex);
-	write_corner(fast, corner, record, fast->wants_more ? &fast->more[orient][vertex] : NULL,
-		sign_of(orient, record->state));
 }
 
 /* Whether the other half of a triangle's quad is sound. */
@@ -109,59 +106,41 @@ static inline bool is_near_open(const nt_fast *fast, const uint32_t *v)
 	return fast->open[v[0] / NT_LANES] | fast->open[v[1] / NT_LANES] | fast->open[v[2] / NT_LANES];
 }
 
+/* The signs of a triangle whose records have more than signs. */
+static inline NT_ALWAYS_INLINE void write_signs(const nt_fast *fast, size_t t, const uint32_t *v)
+{
+	const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
+	for (unsigned k = 0; k < 3; k++)
+		fast->solve->tangents[4 * nt_fast_corner(fast, 3 * t + k) + 3] =
+			sign_of(orient, nt_fast_record(fast, orient, v[k])->state);
+	fast->flags[t] |= NT_TRIANGLE_COMPLEX;
+}
+
+/* The optional outputs of a triangle. */
+static void NT_NOINLINE write_more(const nt_fast *fast, size_t t, const uint32_t *v)
+{
+	for (unsigned k = 0; k < 3; k++) {
+		const nt_record_more *more = &fast->more[fast->flags[t] & NT_TRIANGLE_ORIENT][v[k]];
+		put_more(fast->solve, nt_fast_corner(fast, 3 * t + k), more);
+	}
+}
+
 /* Every corner of [begin, end) gets its vertex's record and its orientation's sign, which complex.c takes as they are
  * where that is the result; in a sparse solve those of suspects only. */
 static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 {
-	for (size_t t = begin; t < end; t++) {
-		uint8_t *flags = &fast->flags[t];
-		uint32_t copy[3];
-		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
-		if (fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT) && !is_near_open(fast, v))
-			continue;
-		if (fast->scattered)
-			prefetch_records(fast, t, end);
-		if (*flags & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
-			write_special(fast, t);
-			continue;
-		}
-		const int orient = *flags & NT_TRIANGLE_ORIENT;
-		for (int k = 0; k < 3; k++)
-			if (nt_fast_record(fast, orient, v[k])->state & (NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE))
-				*flags |= NT_TRIANGLE_COMPLEX;
-		if (fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT))
-			continue;
-		for (unsigned k = 0; k < 3; k++)
-			write_vertex(fast, nt_triangle_corner(&fast->triangles, t, k), orient, v[k]);
-	}
-}
-
-/* The signs of a triangle whose records have more than signs. */
-static inline NT_ALWAYS_INLINE void write_signs(const nt_fast *fast,
-	const nt_triangles *triangles, size_t t)
-{
-	const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
-	const nt_record *const records = fast->records[orient];
-	float *const tangents = fast->solve->tangents;
-	const size_t step = fast->record_step;
-	uint32_t copy[3];
-	const uint32_t *v = nt_triangle_vertices(triangles, t, 1, copy);
-	for (unsigned k = 0; k < 3; k++)
-		tangents[4 * nt_triangle_corner(triangles, t, k) + 3] = sign_of(orient, records[step * v[k]].state);
-	fast->flags[t] |= NT_TRIANGLE_COMPLEX;
-}
-
-/* The same for the usual case, tangents only. */
-static void write_tangents(nt_fast *fast, size_t begin, size_t end)
-{
 	/* copies, which no store changes */
 	const nt_triangles triangles = {.ids = fast->triangles.ids, .cuts = fast->triangles.cuts};
 	const nt_record *const records[2] = {fast->records[0], fast->records[1]};
-	const uint8_t *const flags = fast->flags;
+	uint8_t *const flags = fast->flags;
 	float *const tangents = fast->solve->tangents;
 	const size_t step = fast->record_step;
-	const bool scattered = fast->scattered;
+	const bool scattered = fast->scattered, sparse = fast->sparse, more = fast->wants_more;
 	for (size_t t = begin; t < end; t++) {
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&triangles, t, 1, copy);
+		if (sparse && !(flags[t] & NT_TRIANGLE_SUSPECT) && !is_near_open(fast, v))
+			continue;
 		if (scattered)
 			prefetch_records(fast, t, end);
 		if (flags[t] & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
@@ -169,17 +148,20 @@ static void write_tangents(nt_fast *fast, size_t begin, size_t end)
 			continue;
 		}
 		const nt_record *const from = records[flags[t] & NT_TRIANGLE_ORIENT];
-		uint32_t copy[3];
-		const uint32_t *v = nt_triangle_vertices(&triangles, t, 1, copy);
 		nt_int4 a, b, c;
 		memcpy(&a, &from[step * v[0]], sizeof a);
 		memcpy(&b, &from[step * v[1]], sizeof b);
 		memcpy(&c, &from[step * v[2]], sizeof c);
+		const bool open = nt_state4(nt_or4(nt_or4(a, b), c)) & (NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE);
+		if (sparse && !open && !(flags[t] & NT_TRIANGLE_SUSPECT))
+			continue;
 		memcpy(tangents + 4 * nt_triangle_corner(&triangles, t, 0), &a, sizeof a);
 		memcpy(tangents + 4 * nt_triangle_corner(&triangles, t, 1), &b, sizeof b);
 		memcpy(tangents + 4 * nt_triangle_corner(&triangles, t, 2), &c, sizeof c);
-		if (nt_state4(nt_or4(nt_or4(a, b), c)) & (NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE))
-			write_signs(fast, &triangles, t);
+		if (open)
+			write_signs(fast, t, v);
+		if (more)
+			write_more(fast, t, v);
 	}
 }
 
@@ -222,7 +204,7 @@ static inline unsigned find_special(const uint8_t *flags)
 	return ((four >> 1 | four >> 2) & 0x01010101u) * gather >> 24;
 }
 
-/* The same without quads: no triangles share corners, so that what some of them need can wait. All corners of BATCH
+/* The same without quads, tangents only: no triangles share corners, so that what some of them need can wait. All corners of BATCH
  * triangles at a time get their records, without a branch, and then come those for which this was not the result. On
  * makehuman_body, where these are few, it takes 5.0 cycles a triangle instead of the 7.0 of one loop, on Lantern 6.5
  * instead of 8.0; the 3 stores alone take 3 (Zen 4, in the cache). */
@@ -232,8 +214,7 @@ static void write_plain(nt_fast *fast, size_t begin, size_t end)
 	const char *const records[2] = {(const char *)fast->records[!fast->records[0]],
 		(const char *)fast->records[fast->records[1] != NULL]};
 	const unsigned shift = fast->record_step == 1 ? 4 : 5;
-	const nt_triangles uncut = {.ids = fast->triangles.ids};
-	const uint32_t *v = uncut.ids + 3 * begin;
+	const uint32_t *v = fast->triangles.ids + 3 * begin;
 	const uint8_t *const flags = fast->flags;
 	float *out = fast->solve->tangents + 12 * begin;
 	size_t t = begin;
@@ -255,10 +236,10 @@ static void write_plain(nt_fast *fast, size_t begin, size_t end)
 			if (flags[other] & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE))
 				write_special(fast, other);
 			else
-				write_signs(fast, &uncut, other);
+				write_signs(fast, other, fast->triangles.ids + 3 * other);
 		}
 	}
-	write_tangents(fast, t, end);
+	write_triangles(fast, t, end);
 }
 
 /* For a sparse solve where each record is the result, and usable: suspects have their flags from step 4. Looking at all
@@ -280,8 +261,7 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned threa
 	const writing *w = context;
 	nt_fast *fast = w->fast;
 	void (*write)(nt_fast *, size_t, size_t) = fast->sparse && !w->has_open ? write_suspects
-		: fast->wants_more || fast->sparse ? write_triangles
-		: fast->triangles.cuts || fast->scattered ? write_tangents : write_plain;
+		: fast->wants_more || fast->sparse || fast->triangles.cuts || fast->scattered ? write_triangles : write_plain;
 	for (size_t range = begin; range < end; range++)
 		write(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
 }
