@@ -158,20 +158,6 @@ void nt_find_groups(const nt_complex *c, size_t v)
 		flood_group(c, i, false);
 }
 
-/* Marks the corners at which a group may begin: those beside an earlier one of their orientation have its group. */
-static void mark_seeds(const nt_complex *c, uint32_t begin, uint32_t end)
-{
-	uint32_t *corners = c->corners;
-	for (uint32_t i = begin; i < end; i++) {
-		bool seed = !(corners[i] & NT_COMPLEX_ANY);
-		for (uint32_t way = 0; way < 2; way++) {
-			const uint32_t beside = c->across[2 * i + way], earlier = beside < i ? beside : i;
-			seed &= earlier == i || (corners[earlier] ^ corners[i]) & (NT_COMPLEX_ANY | NT_COMPLEX_PLUS);
-		}
-		corners[i] |= seed ? NT_COMPLEX_SEED : 0;
-	}
-}
-
 void nt_find_groups_in_order(nt_complex *c)
 {
 	for (size_t v = 0; v < c->vertex_count; v++) {
@@ -185,14 +171,10 @@ void nt_find_groups_in_order(nt_complex *c)
 		}
 		pair_vertex(c, v, begin, end);
 		memset(c->group + begin, 0xff, (end - begin) * sizeof *c->group);
-		mark_seeds(c, begin, end);
+		for (uint32_t i = begin; i < end; i++)
+			c->corners[i] |= c->corners[i] & NT_COMPLEX_ANY ? 0 : NT_COMPLEX_SEED;
 	}
-	size_t seeds = 0;
-	for (size_t i = 0; i < c->corner_count; i++) {
-		const uint32_t place = c->order[i];
-		c->order[seeds] = place;
-		seeds += (c->corners[place] & NT_COMPLEX_SEED) != 0;
-	}
-	for (size_t i = 0; i < seeds; i++)
-		flood_group(c, c->order[i], true);
+	for (size_t i = 0; i < c->corner_count; i++)
+		if (c->corners[c->order[i]] & NT_COMPLEX_SEED)
+			flood_group(c, c->order[i], true);
 }

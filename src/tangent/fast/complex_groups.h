@@ -16,7 +16,7 @@
 
 /* A corner is 4 * triangle + k here, so that parting the two is no division, with what its triangle is above that. */
 #define NT_COMPLEX_CORNER (((uint32_t)1 << 29) - 1)
-#define NT_COMPLEX_SEED ((uint32_t)1 << 29)  /* a group may begin here: see nt_find_groups_in_order() */
+#define NT_COMPLEX_SEED ((uint32_t)1 << 29)  /* nt_find_groups_in_order() may begin a group here */
 #define NT_COMPLEX_PLUS ((uint32_t)1 << 30)  /* the orientation of its triangle, or group */
 #define NT_COMPLEX_ANY ((uint32_t)1 << 31)   /* the triangle has no frame */
 

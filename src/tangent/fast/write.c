@@ -204,10 +204,10 @@ static inline unsigned find_special(const uint8_t *flags)
 	return ((four >> 1 | four >> 2) & 0x01010101u) * gather >> 24;
 }
 
-/* The same without quads, tangents only: no triangles share corners, so that what some of them need can wait. All corners of BATCH
- * triangles at a time get their records, without a branch, and then come those for which this was not the result. On
- * makehuman_body, where these are few, it takes 5.0 cycles a triangle instead of the 7.0 of one loop, on Lantern 6.5
- * instead of 8.0; the 3 stores alone take 3 (Zen 4, in the cache). */
+/* The same without quads, tangents only: no triangles share corners, so that what some of them need can wait. All
+ * corners of BATCH triangles at a time get their records, without a branch, and then come those for which this was not
+ * the result. On makehuman_body, where these are few, it takes 5.0 cycles a triangle instead of the 7.0 of one loop, on
+ * Lantern 6.5 instead of 8.0; the 3 stores alone take 3 (Zen 4, in the cache). */
 static void write_plain(nt_fast *fast, size_t begin, size_t end)
 {
 	static_assert(sizeof(nt_record) == 1 << 4, "what is shifted");
@@ -261,7 +261,8 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned threa
 	const writing *w = context;
 	nt_fast *fast = w->fast;
 	void (*write)(nt_fast *, size_t, size_t) = fast->sparse && !w->has_open ? write_suspects
-		: fast->wants_more || fast->sparse || fast->triangles.cuts || fast->scattered ? write_triangles : write_plain;
+		: fast->wants_more || fast->sparse || fast->triangles.cuts || fast->scattered ? write_triangles
+		: write_plain;
 	for (size_t range = begin; range < end; range++)
 		write(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
 }
