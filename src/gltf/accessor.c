@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include "base/largest.h"
 #include "base/lock.h"
@@ -201,6 +202,55 @@ static nt_status read_accessor(nt_gltf *document, uint32_t index, nt_gltf_access
 	return status;
 }
 
+static int compare_places(const void *a, const void *b)
+{
+	const nt_gltf_accessor *x = *(const nt_gltf_accessor *const *)a, *y = *(const nt_gltf_accessor *const *)b;
+	const uint64_t xs[] = {x->view, x->offset, x->component_type, x->components, x->count, x->normalized};
+	const uint64_t ys[] = {y->view, y->offset, y->component_type, y->components, y->count, y->normalized};
+	for (size_t i = 0; i < sizeof xs / sizeof *xs; i++)
+		if (xs[i] != ys[i])
+			return xs[i] < ys[i] ? -1 : 1;
+	return 0;
+}
+
+static int compare_accessors(const void *a, const void *b)
+{
+	const int places = compare_places(a, b);
+	const nt_gltf_accessor *x = *(const nt_gltf_accessor *const *)a, *y = *(const nt_gltf_accessor *const *)b;
+	return places ? places : (x->index > y->index) - (x->index < y->index);
+}
+
+static bool lies_in_view(const nt_gltf_accessor *accessor)
+{
+	return accessor->index != NT_NONE && accessor->view != NT_NONE && !accessor->sparse_count;
+}
+
+/* Finds accessors over the same bytes. Most views have one accessor, about which there is no question. */
+static bool find_same(nt_gltf *document)
+{
+	nt_gltf_accessor *const all = document->accessors;
+	uint32_t *users = nt_calloc(document->view_count, sizeof *users);
+	size_t shared = 0, count = 0;
+	for (uint32_t i = 0; users && i < document->accessor_count; i++) {
+		all[i].same = i;
+		if (lies_in_view(&all[i]))
+			shared += users[all[i].view]++ ? 1 + (users[all[i].view] == 2) : 0;
+	}
+	nt_gltf_accessor **list = users ? nt_alloc(shared, sizeof *list) : NULL;
+	for (uint32_t i = 0; list && i < document->accessor_count; i++)
+		if (lies_in_view(&all[i]) && users[all[i].view] > 1)
+			list[count++] = &all[i];
+	if (count)
+		qsort(list, count, sizeof *list, compare_accessors);
+	for (size_t i = 1; i < count; i++)
+		if (compare_places(&list[i], &list[i - 1]) == 0)
+			list[i]->same = list[i - 1]->same;
+	const bool found = list != NULL;
+	free(list);
+	free(users);
+	return found;
+}
+
 nt_status nt_gltf_read_arrays(nt_gltf *document, nt_error *error)
 {
 	document->accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
@@ -216,7 +266,7 @@ nt_status nt_gltf_read_arrays(nt_gltf *document, nt_error *error)
 	for (uint32_t i = 0; i < document->accessor_count; i++)
 		if (read_accessor(document, i, &document->accessors[i], NULL))
 			document->accessors[i].index = NT_NONE;
-	return NT_OK;
+	return find_same(document) ? NT_OK : nt_fail_memory(error);
 }
 
 nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from, nt_gltf_accessor *accessor,

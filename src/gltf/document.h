@@ -64,6 +64,7 @@ typedef struct nt_gltf_accessor {
 	uint64_t offset;         /* in the view */
 	const unsigned char *decoded; /* elements from a compressed primitive; NULL: none */
 	uint32_t index;          /* NT_NONE: the file is at fault */
+	uint32_t same;           /* the first accessor over the same bytes, or itself: it stands for all of them */
 	uint32_t view;           /* NT_NONE: all zeros, or decoded */
 	uint32_t stride;         /* as it applies, never 0 */
 	uint32_t component_type; /* enum nt_gltf_component */

@@ -518,13 +518,9 @@ static size_t count_vertex_bytes(nt_gltf *document, const nt_json_value *primiti
 {
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
 	size_t bytes = nt_json_find(attributes, "TANGENT") ? 0 : 4 * sizeof(float);
-	for (size_t i = 0; i < nt_json_count(attributes); i++) {
-		uint64_t index;
-		nt_gltf_accessor accessor;
-		if (!nt_json_get_uint64(nt_json_at(attributes, i), &index))
-			continue;
-		if (!nt_gltf_get_accessor(document, index, "", &accessor, NULL))
-			bytes += accessor.element_bytes;
+	for (nt_gltf_use u = {0}; nt_gltf_next_use(document, primitive, &u) && !u.object;) {
+		const nt_gltf_accessor *accessor = nt_gltf_sound_accessor(document, u.accessor);
+		bytes += accessor ? accessor->element_bytes : 0;
 	}
 	return bytes;
 }
@@ -615,15 +611,11 @@ static bool open_view(nt_gltf *document, uint32_t index)
 /* The same of an accessor that a member names, if there is one. */
 static bool open_accessor(nt_gltf *document, const nt_json_value *object, const char *name)
 {
-	const nt_json_value *reference = nt_json_find(object, name);
-	uint64_t index;
-	nt_gltf_accessor a;
-	if (!reference)
-		return true;
-	return nt_json_get_uint64(reference, &index) &&
-		nt_gltf_get_accessor(document, index, "", &a, NULL) == NT_OK && open_view(document, a.view) &&
-		(!a.sparse_count || (open_view(document, a.sparse_index_view) &&
-			open_view(document, a.sparse_value_view)));
+	const nt_gltf_accessor *a = nt_gltf_named(document, object, name);
+	if (!a)
+		return !nt_json_find(object, name);
+	return open_view(document, a->view) && (!a->sparse_count ||
+		(open_view(document, a->sparse_index_view) && open_view(document, a->sparse_value_view)));
 }
 
 /* Whether all that a load takes of a mesh is there now. */

@@ -24,13 +24,23 @@ typedef struct nt_gltf_use {
 /* Goes through them: a zeroed use becomes the first one, each the next. False: that was the last. */
 bool nt_gltf_next_use(const nt_gltf *document, const nt_json_value *primitive, nt_gltf_use *use);
 
-/* Calls visit() for the accessors of a primitive: its attributes and those of its morph targets. */
-typedef nt_status (*nt_gltf_visit)(void *context, nt_json_value *attributes, const char *name,
-	uint32_t accessor);
-nt_status nt_gltf_visit_attributes(const nt_json_value *primitive, size_t accessor_count,
-	nt_gltf_visit visit, void *context);
+/* The accessor that a member of an object names; NT_NONE: none that is there. */
+uint32_t nt_gltf_reference(const nt_gltf *document, const nt_json_value *object, const char *name);
 
-/* Fills first_alias [accessor_count]: for each accessor the first over the same bytes. False: out of memory. */
-bool nt_gltf_find_first_aliases(nt_gltf *document, uint32_t *first_alias, size_t accessor_count);
+/* An accessor; NULL: the file is at fault, or there is none (NT_NONE). */
+const nt_gltf_accessor *nt_gltf_sound_accessor(const nt_gltf *document, uint32_t index);
+
+/* The accessor that a member names; NULL: none, or a faulty one. */
+static inline const nt_gltf_accessor *nt_gltf_named(const nt_gltf *document, const nt_json_value *object,
+	const char *name)
+{
+	return nt_gltf_sound_accessor(document, nt_gltf_reference(document, object, name));
+}
+
+/* The first accessor over the same bytes, of one that is there. */
+static inline uint32_t nt_gltf_same(const nt_gltf *document, uint32_t accessor)
+{
+	return document->accessors[accessor].same;
+}
 
 #endif

@@ -24,8 +24,6 @@ typedef struct same_job {
 	const nt_scene *scene;
 	nt_gltf *document;
 	const nt_read_options *options;
-	const uint32_t *first_alias; /* [accessor_count] */
-	size_t accessor_count;
 	nt_buffer key;       /* of the mesh at hand */
 } same_job;
 
@@ -47,11 +45,11 @@ static void put_number(same_job *job, uint64_t number)
 static void put_accessor(same_job *job, const nt_mesh *mesh, const nt_json_value *object, const char *name)
 {
 	const nt_json_value *reference = nt_json_find(object, name);
-	uint64_t accessor;
+	const uint32_t accessor = nt_gltf_reference(job->document, object, name);
 	if (!reference) {
 		put_number(job, MISSING);
-	} else if (nt_json_get_uint64(reference, &accessor) && accessor < job->accessor_count) {
-		put_number(job, job->first_alias[accessor]);
+	} else if (accessor != NT_NONE) {
+		put_number(job, nt_gltf_same(job->document, accessor));
 	} else {
 		put_number(job, FAULTY);
 		put_number(job, (uint64_t)(mesh - job->scene->meshes));
@@ -124,9 +122,9 @@ static nt_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
 /* The accessor of a mesh's positions; NT_NONE: none that is there. */
 static uint32_t positions_of(const same_job *job, const nt_mesh *mesh)
 {
-	uint64_t accessor;
-	return nt_json_get_uint64(nt_json_find(nt_json_find(nt_gltf_primitive_of(job->document, mesh), "attributes"),
-		"POSITION"), &accessor) && accessor < job->accessor_count ? job->first_alias[accessor] : NT_NONE;
+	const uint32_t accessor = nt_gltf_reference(job->document, nt_json_find(nt_gltf_primitive_of(job->document,
+		mesh), "attributes"), "POSITION");
+	return accessor != NT_NONE ? nt_gltf_same(job->document, accessor) : NT_NONE;
 }
 
 /* Fills positions, [mesh_count], of meshes that share theirs; NT_NONE: others, of which nothing more has to be known.
@@ -179,7 +177,7 @@ static nt_status find_all(same_job *job, nt_scene *scene, const uint32_t *positi
 static nt_status find_among(same_job *job, nt_scene *scene, nt_error *error)
 {
 	uint32_t *positions = nt_alloc(scene->mesh_count, sizeof *positions);
-	uint32_t *users = nt_calloc(job->accessor_count, sizeof *users);
+	uint32_t *users = nt_calloc(job->document->accessor_count, sizeof *users);
 	const bool ready = positions && users;
 	const size_t count = ready ? find_sharing(job, positions, users) : 0;
 	free(users);
@@ -199,7 +197,6 @@ nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_
 	if (wanted < 2)
 		return NT_OK;
 	nt_gltf *document = scene->source;
-	same_job job = {.scene = scene, .document = document, .options = options,
-		.first_alias = document->pools->first_alias, .accessor_count = document->pools->accessor_count};
+	same_job job = {.scene = scene, .document = document, .options = options};
 	return find_among(&job, scene, error);
 }

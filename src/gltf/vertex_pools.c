@@ -14,11 +14,12 @@
 
 /* ---- other users ---- */
 
-static void mark_foreign(nt_vertex_pools *pools, const nt_json_value *reference)
+static void mark_foreign(nt_vertex_pools *pools, const nt_json_value *object, const char *name)
 {
-	uint64_t accessor;
-	if (nt_json_get_uint64(reference, &accessor) && accessor < pools->accessor_count)
-		pools->foreign[pools->first_alias[accessor]] = true;
+	const nt_gltf *document = pools->scene->source;
+	const uint32_t accessor = nt_gltf_reference(document, object, name);
+	if (accessor != NT_NONE)
+		pools->foreign[nt_gltf_same(document, accessor)] = true;
 }
 
 static void find_foreign(nt_vertex_pools *pools)
@@ -28,20 +29,20 @@ static void find_foreign(nt_vertex_pools *pools)
 	for (size_t i = 0; i < nt_json_count(animations); i++) {
 		const nt_json_value *samplers = nt_json_find(nt_json_at(animations, i), "samplers");
 		for (size_t k = 0; k < nt_json_count(samplers); k++) {
-			mark_foreign(pools, nt_json_find(nt_json_at(samplers, k), "input"));
-			mark_foreign(pools, nt_json_find(nt_json_at(samplers, k), "output"));
+			mark_foreign(pools, nt_json_at(samplers, k), "input");
+			mark_foreign(pools, nt_json_at(samplers, k), "output");
 		}
 	}
 	const nt_json_value *skins = nt_gltf_root_member(document, "skins");
 	for (size_t i = 0; i < nt_json_count(skins); i++)
-		mark_foreign(pools, nt_json_find(nt_json_at(skins, i), "inverseBindMatrices"));
+		mark_foreign(pools, nt_json_at(skins, i), "inverseBindMatrices");
 	const nt_json_value *nodes = nt_gltf_root_member(document, "nodes");
 	for (size_t i = 0; i < nt_json_count(nodes); i++) {
 		const nt_json_value *extensions = nt_json_find(nt_json_at(nodes, i), "extensions");
 		const nt_json_value *attributes = nt_json_find(
 			nt_json_find(extensions, "EXT_mesh_gpu_instancing"), "attributes");
-		for (size_t k = 0; k < nt_json_count(attributes); k++)
-			mark_foreign(pools, nt_json_at(attributes, k));
+		for (size_t k = 0; nt_json_type_of(attributes) == NT_JSON_OBJECT && k < nt_json_count(attributes); k++)
+			mark_foreign(pools, attributes, nt_json_key(attributes, k, NULL));
 	}
 }
 
@@ -63,22 +64,17 @@ static uint32_t find_root(uint32_t *parent, uint32_t mesh)
 	return mesh;
 }
 
-static nt_status join_user(void *context, nt_json_value *attributes, const char *name,
-	uint32_t accessor)
+static void join_user(joining *j, uint32_t accessor)
 {
-	(void)attributes;
-	(void)name;
-	joining *j = context;
-	j->pools->attribute_users[j->pools->first_alias[accessor]]++;
-	uint32_t *user = &j->first_user[j->pools->first_alias[accessor]];
+	j->pools->attribute_users[accessor]++;
+	uint32_t *user = &j->first_user[accessor];
 	if (*user == NT_NONE) {
 		*user = j->mesh;
-		return NT_OK;
+		return;
 	}
 	const uint32_t a = find_root(j->parent, *user), b = find_root(j->parent, j->mesh);
 	/* the smaller number is the root, so that pools come in the order of their first mesh */
 	j->parent[a < b ? b : a] = a < b ? a : b;
-	return NT_OK;
 }
 
 /* Numbers pools in the order of their first mesh and lists their meshes. */
@@ -111,7 +107,6 @@ static bool allocate(nt_vertex_pools *pools, nt_arena *arena)
 	const nt_gltf *document = pools->scene->source;
 	const size_t mesh_count = pools->scene->mesh_count;
 	pools->accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
-	pools->first_alias = zeroed(arena, pools->accessor_count);
 	pools->foreign = nt_arena_alloc(arena, pools->accessor_count, sizeof *pools->foreign);
 	pools->attribute_users = zeroed(arena, pools->accessor_count);
 	pools->index_users = zeroed(arena, pools->accessor_count);
@@ -121,7 +116,7 @@ static bool allocate(nt_vertex_pools *pools, nt_arena *arena)
 	pools->first = zeroed(arena, mesh_count + 1);
 	if (pools->foreign)
 		memset(pools->foreign, 0, pools->accessor_count * sizeof *pools->foreign);
-	return pools->first_alias && pools->foreign && pools->attribute_users && pools->index_users &&
+	return pools->foreign && pools->attribute_users && pools->index_users &&
 		pools->block_users && pools->of && pools->order && pools->first;
 }
 
@@ -130,14 +125,16 @@ static void join_primitive(nt_vertex_pools *pools, joining *j)
 {
 	const nt_gltf *document = pools->scene->source;
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, &pools->scene->meshes[j->mesh]);
-	nt_gltf_visit_attributes(primitive, pools->accessor_count, join_user, j);
-	uint64_t indices, view;
+	for (nt_gltf_use u = {0}; nt_gltf_next_use(document, primitive, &u);)
+		join_user(j, nt_gltf_same(document, u.accessor));
+	const uint32_t indices = nt_gltf_reference(document, primitive, "indices");
+	uint64_t view;
 	if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &view) &&
 		view < document->view_count)
 		pools->block_users[view]++;
-	if (nt_json_get_uint64(nt_json_find(primitive, "indices"), &indices) && indices < pools->accessor_count) {
-		pools->foreign[pools->first_alias[indices]] = true;
-		pools->index_users[pools->first_alias[indices]]++;
+	if (indices != NT_NONE) {
+		pools->foreign[nt_gltf_same(document, indices)] = true;
+		pools->index_users[nt_gltf_same(document, indices)]++;
 	}
 }
 
@@ -158,8 +155,7 @@ nt_status nt_vertex_pools_find(const nt_scene *scene, const nt_read_options *opt
 	*pools = (nt_vertex_pools){.scene = scene,
 		.bakes_morphs = !options->world && options->morphs == NT_MORPH_BAKE};
 	joining j = {.pools = pools, .parent = nt_alloc(mesh_count, sizeof *j.parent)};
-	bool found = allocate(pools, &document->arena) && j.parent &&
-		nt_gltf_find_first_aliases(document, pools->first_alias, pools->accessor_count);
+	bool found = allocate(pools, &document->arena) && j.parent;
 	j.first_user = nt_alloc(pools->accessor_count, sizeof *j.first_user);
 	found = found && j.first_user;
 	if (found) {
@@ -185,14 +181,13 @@ static void put_number(nt_buffer *key, uint64_t number)
 	nt_buffer_append(key, &number, sizeof number);
 }
 
-/* The accessor that a member names, by first alias. */
+/* The accessor that a member names, by `same`. */
 static void put_accessor(nt_buffer *key, const nt_vertex_pools *pools, const nt_json_value *attributes,
 	const char *name)
 {
-	uint64_t accessor;
-	const bool known = nt_json_get_uint64(nt_json_find(attributes, name), &accessor) &&
-		accessor < pools->accessor_count;
-	put_number(key, known ? pools->first_alias[accessor] : NT_NONE);
+	const nt_gltf *document = pools->scene->source;
+	const uint32_t accessor = nt_gltf_reference(document, attributes, name);
+	put_number(key, accessor != NT_NONE ? nt_gltf_same(document, accessor) : NT_NONE);
 }
 
 /* How many morph targets get tangents. */

@@ -13,14 +13,13 @@
 #include "scene/scene.h"
 #include "gltf/primitive.h"
 
-/* All pools of a document. Accessors over the same bytes count as one: the first alias. */
+/* All pools of a document. Accessors over the same bytes count as one, by `same`. */
 typedef struct nt_vertex_pools {
 	const nt_scene *scene;
 	size_t accessor_count;     /* 0 where nothing gets tangents: there are no pools then */
-	uint32_t *first_alias;     /* [accessor_count] the first accessor over the same bytes */
-	bool *foreign;             /* [accessor_count] by first alias: used by something else than attributes */
-	uint32_t *attribute_users; /* [accessor_count] by first alias: uses as attribute, of morph targets too */
-	uint32_t *index_users;     /* [accessor_count] by first alias: primitives that have it as indices */
+	bool *foreign;             /* [accessor_count] by `same`: used by something else than attributes */
+	uint32_t *attribute_users; /* [accessor_count] by `same`: uses as attribute, of morph targets too */
+	uint32_t *index_users;     /* [accessor_count] by `same`: primitives that have it as indices */
 	uint32_t *block_users;     /* [view_count] primitives that are compressed in it */
 	size_t count;
 	uint32_t *of;              /* [mesh count] the pool of each mesh */

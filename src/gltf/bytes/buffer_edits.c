@@ -19,41 +19,24 @@ enum { CAREFUL_ALIGNMENT = 8 };
 
 /* ---- beginning ---- */
 
-typedef struct decompressing {
-	nt_gltf *document;
-	nt_error *error;
-} decompressing;
-
-static nt_status decompress_attribute(void *context, nt_json_value *attributes, const char *name,
-	uint32_t accessor)
+static nt_status decompress_accessor(nt_gltf *document, uint32_t index, nt_error *error)
 {
-	(void)attributes;
-	(void)name;
-	const decompressing *d = context;
-	nt_gltf_accessor found;
-	nt_gltf_view view = {.compression = NULL};
-	const nt_status status = nt_gltf_get_accessor(d->document, accessor, "/accessors", &found, d->error);
-	if (!status && found.view != NT_NONE)
-		nt_gltf_get_view(d->document, found.view, "", &view, NULL);
-	return status || !view.compression ? status :
-					     nt_gltf_decompress_view(d->document, found.view, d->error);
+	nt_gltf_accessor accessor;
+	const nt_status status = nt_gltf_get_accessor(document, index, "/accessors", &accessor, error);
+	return status || accessor.view == NT_NONE ? status : nt_gltf_decompress_view(document, accessor.view, error);
 }
 
 /* Tangents may be replaced where they are. */
-static nt_status decompress_tangents(const nt_mesh *mesh, const nt_vertex_pools *pools, decompressing *d)
+static nt_status decompress_tangents(nt_gltf *document, const nt_mesh *mesh, nt_error *error)
 {
-	uint64_t accessor;
-	const nt_json_value *attributes = nt_json_find(nt_gltf_primitive_of(d->document, mesh), "attributes");
-	if (!nt_gltf_is_solved(mesh) || !nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &accessor) ||
-		accessor >= pools->accessor_count)
-		return NT_OK;
-	return decompress_attribute(d, NULL, "TANGENT", (uint32_t)accessor);
+	const uint32_t accessor = nt_gltf_reference(document, nt_json_find(nt_gltf_primitive_of(document, mesh),
+		"attributes"), "TANGENT");
+	return !nt_gltf_is_solved(mesh) || accessor == NT_NONE ? NT_OK : decompress_accessor(document, accessor, error);
 }
 
 /* Vertices are appended to all attributes of a pool, even if only some of its users want them. */
 static nt_status decompress_pools(nt_gltf *document, const nt_vertex_pools *pools, bool welds, nt_error *error)
 {
-	decompressing d = {document, error};
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < pools->count; i++) {
 		bool wanted = welds;
@@ -65,9 +48,11 @@ static nt_status decompress_pools(nt_gltf *document, const nt_vertex_pools *pool
 		}
 		for (uint32_t k = pools->first[i]; !status && k < pools->first[i + 1]; k++) {
 			const nt_mesh *mesh = &pools->scene->meshes[pools->order[k]];
-			status = !wanted ? decompress_tangents(mesh, pools, &d)
-				: nt_gltf_visit_attributes(nt_gltf_primitive_of(document, mesh), pools->accessor_count,
-				decompress_attribute, &d);
+			const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
+			if (!wanted)
+				status = decompress_tangents(document, mesh, error);
+			for (nt_gltf_use u = {0}; wanted && !status && nt_gltf_next_use(document, primitive, &u);)
+				status = decompress_accessor(document, u.accessor, error);
 		}
 	}
 	return status;
@@ -97,7 +82,7 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 	if (!edits->seen || !edits->pinned || !edits->replaced || !edits->index_moved || !edits->appended_by ||
 		!edits->buffers || (welds && !edits->welding) ||
 		!edits->virtuals || !edits->is_free || !edits->free_views ||
-		!nt_byte_users_find(&edits->users, document, pools)) {
+		!nt_byte_users_find(&edits->users, document)) {
 		nt_edits_free(edits);
 		return nt_fail_memory(error);
 	}

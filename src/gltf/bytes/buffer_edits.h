@@ -73,12 +73,12 @@ typedef struct nt_buffer_edits {
 
 	/* For appending to the attributes of one pool after the other. An attribute belongs to one pool, so that
 	 * nothing has to be emptied in between; bytes may be another pool's too. */
-	bool *welding;              /* [accessor_count] by first alias: its elements are compared; NULL: of none */
+	bool *welding;              /* [accessor_count] by `same`: its elements are compared; NULL: of none */
 	bool *seen;                 /* [accessor_count] */
 	bool *pinned;               /* [accessor_count] used by an unsolved user */
-	uint32_t *index_moved;      /* [accessor_count] by first alias: uses as indices that have other ones by now */
-	uint32_t *replaced;         /* [accessor_count] by first alias: uses by morph targets that are no more */
-	uint32_t *appended_by;      /* [accessor_count] by first alias: the pool that appends to it, by its
+	uint32_t *index_moved;      /* [accessor_count] by `same`: uses as indices that have other ones by now */
+	uint32_t *replaced;         /* [accessor_count] by `same`: uses by morph targets that are no more */
+	uint32_t *appended_by;      /* [accessor_count] by `same`: the pool that appends to it, by its
 	                               first user */
 } nt_buffer_edits;
 

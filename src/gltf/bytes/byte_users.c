@@ -30,23 +30,22 @@ static bool add_view_user(nt_byte_users *users, nt_gltf *document, uint32_t inde
 		accessor);
 }
 
-static bool add_accessor(nt_byte_users *users, nt_gltf *document, const nt_vertex_pools *pools, uint32_t index,
+static bool add_accessor(nt_byte_users *users, nt_gltf *document, uint32_t index,
 	bool *view_used)
 {
-	nt_gltf_accessor a;
-	if (nt_gltf_get_accessor(document, index, "", &a, NULL) != NT_OK || a.count == 0)
+	const nt_gltf_accessor *a = nt_gltf_sound_accessor(document, index);
+	if (!a || a->count == 0)
 		return true;
-	if (index < pools->accessor_count)
-		index = pools->first_alias[index];
+	index = a->same;
 	bool added = true;
-	if (a.view != NT_NONE)
-		added = add_view_user(users, document, a.view, a.offset,
-			(a.count - 1) * a.stride + a.element_bytes, index, view_used);
-	if (a.sparse_count) {
-		added = added && add_view_user(users, document, a.sparse_index_view, a.sparse_index_offset,
-			a.sparse_count * nt_gltf_component_bytes(a.sparse_index_type), index, view_used);
-		added = added && add_view_user(users, document, a.sparse_value_view, a.sparse_value_offset,
-			a.sparse_count * a.element_bytes, index, view_used);
+	if (a->view != NT_NONE)
+		added = add_view_user(users, document, a->view, a->offset,
+			(a->count - 1) * a->stride + a->element_bytes, index, view_used);
+	if (a->sparse_count) {
+		added = added && add_view_user(users, document, a->sparse_index_view, a->sparse_index_offset,
+			a->sparse_count * nt_gltf_component_bytes(a->sparse_index_type), index, view_used);
+		added = added && add_view_user(users, document, a->sparse_value_view, a->sparse_value_offset,
+			a->sparse_count * a->element_bytes, index, view_used);
 	}
 	return added;
 }
@@ -136,14 +135,13 @@ static uint64_t set_reach(nt_byte_user *list, size_t low, size_t high)
 	return list[middle].reach = list[middle].end > reach ? list[middle].end : reach;
 }
 
-bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document, const nt_vertex_pools *pools)
+bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document)
 {
-	const size_t view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
-	const size_t accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
+	const size_t view_count = document->view_count, accessor_count = document->accessor_count;
 	bool *view_used = nt_calloc(view_count, sizeof *view_used);
 	bool added = view_used && nt_grow((void **)&users->list, &users->capacity, accessor_count, sizeof *users->list);
 	for (size_t i = 0; added && i < accessor_count; i++)
-		added = add_accessor(users, document, pools, (uint32_t)i, view_used);
+		added = add_accessor(users, document, (uint32_t)i, view_used);
 	added = added && add_whole_views(users, document, view_used, view_count);
 	free(view_used);
 	if (!added)

@@ -12,7 +12,7 @@ typedef struct nt_byte_user {
 	uint64_t begin, end;
 	uint64_t reach;    /* largest end of this and what is below it in the tree (byte_users.c) */
 	uint32_t buffer;
-	uint32_t accessor; /* first alias; NT_NONE: an image, an extension, or an unknown user */
+	uint32_t accessor; /* `same`; NT_NONE: an image, an extension, or an unknown user */
 } nt_byte_user;
 
 typedef struct nt_byte_users {
@@ -22,13 +22,13 @@ typedef struct nt_byte_users {
 } nt_byte_users;
 
 /* Faulty parts of the document are passed over. False: out of memory. */
-bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document, const nt_vertex_pools *pools);
+bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document);
 
-/* Whether something other than the accessors whose owner, by first alias, is `own` refers to bytes of [begin, end). */
+/* Whether something other than the accessors whose owner is `own` refers to bytes of [begin, end). */
 bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
 	const uint32_t *owners, uint32_t own);
 
-/* Whether something other than one accessor, a first alias, does. */
+/* Whether something other than one accessor does. */
 bool nt_byte_users_other(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
 	uint32_t accessor);
 

@@ -28,10 +28,8 @@ nt_gltf_packing nt_packing_of(const nt_buffer_edits *edits, uint32_t view)
 
 nt_gltf_packing nt_packing_of_accessor(const nt_buffer_edits *edits, uint32_t accessor)
 {
-	nt_gltf_accessor a;
-	if (nt_gltf_get_accessor(edits->document, accessor, "", &a, NULL) != NT_OK || a.view == NT_NONE)
-		return (nt_gltf_packing){.extension = NULL};
-	return nt_packing_of(edits, a.view);
+	const nt_gltf_accessor *a = nt_gltf_sound_accessor(edits->document, accessor);
+	return nt_packing_of(edits, a ? a->view : NT_NONE);
 }
 
 nt_status nt_packed_bytes(nt_buffer_edits *edits, uint32_t buffer, uint64_t offset, const unsigned char **bytes,
@@ -58,10 +56,10 @@ nt_status nt_packed_bytes(nt_buffer_edits *edits, uint32_t buffer, uint64_t offs
 static bool find_packed_attribute(const nt_buffer_edits *edits, const nt_json_value *attributes, const char *name,
 	nt_gltf_accessor *a, nt_gltf_packing *packing)
 {
-	uint64_t index;
-	if (!nt_json_get_uint64(nt_json_find(attributes, name), &index) ||
-		nt_gltf_get_accessor(edits->document, index, "", a, NULL) != NT_OK || a->view == NT_NONE)
+	const nt_gltf_accessor *found = nt_gltf_named(edits->document, attributes, name);
+	if (!found)
 		return false;
+	*a = *found;
 	*packing = nt_packing_of(edits, a->view);
 	return packing->extension && strcmp(packing->view.mode, "ATTRIBUTES") == 0;
 }
@@ -77,11 +75,8 @@ static nt_precision precision_of(const nt_gltf_accessor *a)
 /* The storage of existing tangents. */
 static nt_precision replaced_precision(const nt_buffer_edits *edits, const nt_json_value *attributes)
 {
-	uint64_t index;
-	nt_gltf_accessor a;
-	return nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &index) &&
-			nt_gltf_get_accessor(edits->document, index, "", &a, NULL) == NT_OK && a.components == 4
-		? precision_of(&a) : NT_PRECISION_FLOAT;
+	const nt_gltf_accessor *a = nt_gltf_named(edits->document, attributes, "TANGENT");
+	return a && a->components == 4 ? precision_of(a) : NT_PRECISION_FLOAT;
 }
 
 /* The bits of what an attribute's filter is applied to. */

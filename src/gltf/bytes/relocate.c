@@ -400,7 +400,7 @@ static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 		const unsigned char *elements;
 		double bounds[2][4];
 		const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "accessors"), i);
-		if (edits->seen[i] || document->pools->index_users[document->pools->first_alias[i]] ||
+		if (edits->seen[i] || document->pools->index_users[nt_gltf_same(document, i)] ||
 			!nt_json_find(json, "min") ||
 			nt_gltf_get_accessor(document, i, "", &a, NULL) || a.view >= edits->view_count ||
 			a.sparse_count || document->virtual_of[a.view] == NT_NONE || a.components > 4 ||

@@ -26,7 +26,7 @@ static bool must_pin(const nt_appending *job)
 		if (!nt_pool_is_solved(pool, i) && !nt_json_find(nt_pool_primitive(pool, i), "indices"))
 			return true;
 	for (size_t i = 0; i < job->target_count; i++)
-		if (job->pools->foreign[job->pools->first_alias[job->targets[i].accessor.index]])
+		if (job->pools->foreign[job->targets[i].accessor.same])
 			return true;
 	return false;
 }
@@ -143,15 +143,13 @@ static nt_status clone_accessor(nt_appending *job, nt_append_target *from)
 	return status ? status : settle_bounds(job, from, from->clone);
 }
 
-static nt_status use_clone(void *context, nt_json_value *attributes, const char *name,
-	uint32_t accessor)
+static void use_clones(nt_appending *job, const nt_json_value *primitive)
 {
-	nt_appending *job = context;
-	for (size_t i = 0; i < job->target_count; i++)
-		if (job->targets[i].accessor.index == accessor && job->targets[i].clone != NT_NONE)
-			nt_json_set_uint64(job->json, nt_json_put(job->json, attributes, name),
-				job->targets[i].clone);
-	return NT_OK;
+	for (nt_gltf_use u = {0}; nt_gltf_next_use(job->document, primitive, &u);)
+		for (size_t i = 0; i < job->target_count; i++)
+			if (job->targets[i].accessor.index == u.accessor && job->targets[i].clone != NT_NONE)
+				nt_json_set_uint64(job->json, nt_json_put(job->json, u.attributes, u.name),
+					job->targets[i].clone);
 }
 
 /* Whether an accessor that stays lies at the end of vertices in which others of the pool lie: copies of these
@@ -175,17 +173,16 @@ static nt_status clone_pinned(nt_appending *job)
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < job->target_count; i++) {
 		const uint32_t index = job->targets[i].accessor.index;
-		if (job->edits->pinned[index] || job->pools->foreign[job->pools->first_alias[index]])
+		if (job->edits->pinned[index] || job->pools->foreign[job->targets[i].accessor.same])
 			status = clone_accessor(job, &job->targets[i]);
 	}
 	for (size_t i = 0; !status && i < job->vertices->pool->user_count; i++)
 		if (nt_pool_is_solved(job->vertices->pool, i))
-			nt_gltf_visit_attributes(nt_pool_primitive(job->vertices->pool, i), job->pools->accessor_count,
-				use_clone, job);
+			use_clones(job, nt_pool_primitive(job->vertices->pool, i));
 	for (size_t i = 0; i < job->target_count; i++)
 		if (job->targets[i].clone != NT_NONE && job->targets[i].accessor.view != NT_NONE &&
 			ends_vertices(job, &job->targets[i]))
-			job->edits->appended_by[job->pools->first_alias[job->targets[i].accessor.index]] = NT_NONE;
+			job->edits->appended_by[job->targets[i].accessor.same] = NT_NONE;
 	size_t kept = 0;
 	for (size_t i = 0; i < job->target_count; i++)
 		if (job->targets[i].clone == NT_NONE)

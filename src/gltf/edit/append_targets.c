@@ -43,16 +43,12 @@ static nt_status add_target(nt_appending *job, uint32_t index, nt_error *error)
 		added->begin = view.offset + added->accessor.offset;
 	}
 	job->target_count++;
-	job->edits->appended_by[job->pools->first_alias[index]] = nt_append_owner(job);
+	job->edits->appended_by[added->accessor.same] = nt_append_owner(job);
 	return NT_OK;
 }
 
-static nt_status collect_attribute(void *context, nt_json_value *attributes, const char *name,
-	uint32_t accessor)
+static nt_status collect_attribute(nt_appending *job, uint32_t accessor)
 {
-	(void)attributes;
-	(void)name;
-	nt_appending *job = context;
 	if (job->collecting_unsolved)
 		job->edits->pinned[accessor] = true;
 	if (job->edits->seen[accessor])
@@ -81,13 +77,13 @@ nt_status nt_append_collect(nt_appending *job, nt_gltf_override *overrides, size
 		if (!overrides[i].values)
 			job->edits->seen[overrides[i].accessor] = true;
 	for (size_t i = 0; !status && i < override_count; i++)
-		status = collect_attribute(job, NULL, "TANGENT", overrides[i].accessor);
+		status = collect_attribute(job, overrides[i].accessor);
 	/* where nothing grows, the others matter as far as overrides are between them */
 	job->collecting_beside = !nt_vertices_differ(job->vertices) && !job->decoded_too;
 	for (size_t i = 0; !status && i < pool->user_count; i++) {
 		job->collecting_unsolved = !nt_pool_is_solved(pool, i);
-		status = nt_gltf_visit_attributes(nt_pool_primitive(pool, i), job->pools->accessor_count,
-			collect_attribute, job);
+		for (nt_gltf_use u = {0}; !status && nt_gltf_next_use(job->document, nt_pool_primitive(pool, i), &u);)
+			status = collect_attribute(job, u.accessor);
 	}
 	for (size_t i = 0; !status && override_count && i < job->target_count; i++) {
 		const nt_gltf_override key = {.accessor = job->targets[i].accessor.index};

@@ -82,15 +82,14 @@ nt_status nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_vertex_pools *pool
 
 /* ---- compressed again ---- */
 
-static nt_status note_outside(void *context, nt_json_value *attributes, const char *name,
-	uint32_t accessor)
+/* Whether something of a compressed primitive is not in its block. */
+static bool has_outside(const nt_gltf_recoding *r)
 {
-	nt_gltf_recoding *r = context;
-	(void)accessor;
-	const bool base = attributes == nt_json_find(r->primitive, "attributes");
-	if (!base || !nt_json_find(nt_json_find(r->extension, "attributes"), name))
-		r->outside = true;
-	return NT_OK;
+	const nt_json_value *ids = nt_json_find(r->extension, "attributes");
+	for (nt_gltf_use u = {0}; nt_gltf_next_use(r->document, r->primitive, &u);)
+		if (u.object || !nt_json_find(ids, u.name))
+			return true;
+	return nt_vertices_are_ids(r->primitive);
 }
 
 /* Whether every compressed accessor is used by the pool alone and has no uncompressed twin. */
@@ -100,17 +99,15 @@ static bool accessors_are_own(const nt_gltf_recoding *r)
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
 	const nt_json_value *accessors = nt_gltf_root_member(r->document, "accessors");
 	for (size_t i = 0; i < nt_json_count(ids); i++) {
-		uint64_t accessor;
 		const char *name = nt_json_key(ids, i, NULL);
-		if (!name || !nt_json_get_uint64(nt_json_find(attributes, name), &accessor) ||
-			accessor >= r->pools->accessor_count || r->pools->foreign[r->pools->first_alias[accessor]] ||
-			nt_json_find(nt_json_at(accessors, (size_t)accessor), "bufferView"))
+		const uint32_t accessor = name ? nt_gltf_reference(r->document, attributes, name) : NT_NONE;
+		if (accessor == NT_NONE || r->pools->foreign[nt_gltf_same(r->document, accessor)] ||
+			nt_json_find(nt_json_at(accessors, accessor), "bufferView"))
 			return false;
 	}
-	uint64_t indices;
-	return nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices) &&
-		nt_gltf_draco_owns_indices(r, indices) &&
-		!nt_json_find(nt_json_at(accessors, (size_t)indices), "bufferView");
+	const uint32_t indices = nt_gltf_reference(r->document, r->primitive, "indices");
+	return nt_gltf_draco_owns_indices(r, indices) &&
+		!nt_json_find(nt_json_at(accessors, indices), "bufferView");
 }
 
 /* Targets add to what a decoder has of the tangents. They keep the order of the vertices. */
@@ -232,8 +229,7 @@ nt_status nt_gltf_draco_begin(nt_gltf_recoding *r, nt_gltf *document, nt_vertex_
 		!nt_json_get_uint64(nt_json_find(r->extension, "bufferView"), &r->view)) {
 		r->obstacle = "something else uses its accessors";
 	} else {
-		nt_gltf_visit_attributes(r->primitive, pools->accessor_count, note_outside, r);
-		r->outside |= nt_vertices_are_ids(r->primitive);
+		r->outside = has_outside(r);
 	}
 	return status;
 }

@@ -14,8 +14,10 @@
 bool nt_gltf_draco_owns_indices(const nt_gltf_recoding *r, uint64_t accessor)
 {
 	const nt_vertex_pools *pools = r->pools;
-	return accessor < pools->accessor_count && !pools->attribute_users[pools->first_alias[accessor]] &&
-		pools->index_users[pools->first_alias[accessor]] == r->vertices->pool->user_count;
+	if (accessor >= pools->accessor_count)
+		return false;
+	const uint32_t same = nt_gltf_same(r->document, (uint32_t)accessor);
+	return !pools->attribute_users[same] && pools->index_users[same] == r->vertices->pool->user_count;
 }
 
 void nt_gltf_draco_add(nt_gltf_recoding *r, const char *name, nt_draco_attribute attribute)

@@ -72,21 +72,18 @@ static bool is_vector(const nt_gltf_recoding *r, uint32_t accessor)
 
 static bool indices_are_own(const nt_gltf_recoding *r)
 {
-	const nt_json_value *indices = nt_json_find(r->primitive, "indices");
+	const uint32_t index = nt_gltf_reference(r->document, r->primitive, "indices");
 	nt_gltf_accessor accessor;
-	uint64_t index;
-	return !indices || (nt_json_get_uint64(indices, &index) && lies_plain(r, index, &accessor) &&
-		nt_gltf_draco_owns_indices(r, index));
+	return !nt_json_find(r->primitive, "indices") ||
+		(lies_plain(r, index, &accessor) && nt_gltf_draco_owns_indices(r, index));
 }
 
 /* ---- gathering ---- */
 
-static bool is_in_block(const nt_gltf_recoding *r, const nt_json_value *attributes, const char *name)
+static bool is_in_block(const nt_gltf_recoding *r, const nt_gltf_use *use)
 {
-	if (attributes != nt_json_find(r->primitive, "attributes"))
-		return false;
-	for (size_t i = 0; i < r->attribute_count; i++)
-		if (strcmp(r->names[i], name) == 0)
+	for (size_t i = 0; !use->object && i < r->attribute_count; i++)
+		if (strcmp(r->names[i], use->name) == 0)
 			return true;
 	return false;
 }
@@ -96,7 +93,7 @@ static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_
 	nt_gltf_accessor accessor;
 	if (!lies_plain(r, index, &accessor) || accessor.count != r->vertices->old_count)
 		r->obstacle = "an attribute is sparse or compressed";
-	else if (r->pools->foreign[r->pools->first_alias[index]])
+	else if (r->pools->foreign[accessor.same])
 		r->obstacle = "something else uses its attributes";
 	if (r->obstacle)
 		return NT_OK;
@@ -122,46 +119,16 @@ static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_
 	return status;
 }
 
-/* How often an accessor is used inside of the block and outside of it. */
-typedef struct doubles {
-	const nt_gltf_recoding *recoding;
-	uint32_t first_alias;
-	size_t inside, outside;
-} doubles;
-
-static nt_status count_use(void *context, nt_json_value *attributes, const char *name,
-	uint32_t accessor)
-{
-	doubles *d = context;
-	if (d->recoding->pools->first_alias[accessor] != d->first_alias)
-		return NT_OK;
-	if (is_in_block(d->recoding, attributes, name))
-		d->inside++;
-	else
-		d->outside++;
-	return NT_OK;
-}
-
-static nt_status note_use(void *context, nt_json_value *attributes, const char *name,
-	uint32_t accessor)
-{
-	(void)accessor;
-	nt_gltf_recoding *r = context;
-	if (!is_in_block(r, attributes, name))
-		r->outside = true;
-	return NT_OK;
-}
-
+/* Whether an accessor of the block is used a second time, in it or beside it. */
 static bool has_doubles(const nt_gltf_recoding *r)
 {
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
 	for (size_t i = 0; i < r->attribute_count; i++) {
-		uint64_t index;
-		if (!nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
-			return true;
-		doubles d = {.recoding = r, .first_alias = r->pools->first_alias[index]};
-		nt_gltf_visit_attributes(r->primitive, r->pools->accessor_count, count_use, &d);
-		if (d.inside != 1 || d.outside)
+		const uint32_t index = nt_gltf_reference(r->document, attributes, r->names[i]);
+		size_t uses = 0;
+		for (nt_gltf_use u = {0}; index != NT_NONE && nt_gltf_next_use(r->document, r->primitive, &u);)
+			uses += nt_gltf_same(r->document, u.accessor) == nt_gltf_same(r->document, index);
+		if (uses != 1)
 			return true;
 	}
 	return false;
@@ -193,7 +160,8 @@ nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r, nt_error *error)
 		return status;
 	if (has_doubles(r))
 		r->obstacle = "two of its attributes are one accessor";
-	nt_gltf_visit_attributes(r->primitive, r->pools->accessor_count, note_use, r);
+	for (nt_gltf_use u = {0}; nt_gltf_next_use(r->document, r->primitive, &u);)
+		r->outside |= !is_in_block(r, &u);
 	/* an extension that we do not know may number the vertices */
 	for (size_t m = 0; m < r->vertices->pool->user_count; m++) {
 		const nt_json_value *extensions = nt_json_find(nt_pool_primitive(r->vertices->pool, m),

@@ -30,18 +30,6 @@ typedef struct planning {
 	nt_arena of_pool;
 } planning;
 
-/* How many vertices the primitive has; false: it will not be loaded. */
-static bool count_vertices(nt_gltf *document, const nt_vertex_pool *pool, size_t *count)
-{
-	const nt_json_value *attributes = nt_json_find(nt_pool_primitive(pool, 0), "attributes");
-	uint64_t index;
-	nt_gltf_accessor accessor;
-	const bool found = nt_json_get_uint64(nt_json_find(attributes, "POSITION"), &index) &&
-		nt_gltf_get_accessor(document, index, "", &accessor, NULL) == NT_OK;
-	*count = found ? (size_t)accessor.count : 0;
-	return found;
-}
-
 /* The faces of a plain primitive. */
 static nt_status find_faces(planning *f, const nt_gltf_recoding *r, nt_mesh *mesh, nt_error *error)
 {
@@ -91,9 +79,11 @@ static nt_status look_at_pool(planning *f, size_t number, nt_error *error)
 	for (size_t i = 0; !status && i < pool.user_count; i++)
 		if (!nt_mesh_is_wanted(nt_pool_mesh(&pool, i)))
 			return NT_OK;
-	if (status || !count_vertices(document, &pool, &vertices.old_count))
+	const nt_gltf_accessor *positions = status ? NULL : nt_gltf_named(document,
+		nt_json_find(nt_pool_primitive(&pool, 0), "attributes"), "POSITION");
+	if (!positions) /* it will not be loaded */
 		return status;
-	vertices.own_count = vertices.old_count;
+	vertices.own_count = vertices.old_count = (size_t)positions->count;
 	const bool compressed = nt_gltf_draco_of(nt_pool_primitive(&pool, 0)) != NULL;
 	if (!compressed && f->options.draco == NT_DRACO_KEEP)
 		return NT_OK;
@@ -134,13 +124,13 @@ typedef struct box {
 static bool find_floats(nt_gltf *document, const nt_mesh *mesh, const char *name, uint32_t components,
 	nt_gltf_accessor *accessor, const unsigned char **elements)
 {
-	const nt_json_value *attributes = nt_json_find(nt_gltf_primitive_of(document, mesh), "attributes");
-	uint64_t index;
+	const nt_gltf_accessor *found = nt_gltf_named(document, nt_json_find(nt_gltf_primitive_of(document, mesh),
+		"attributes"), name);
 	nt_error ignored;
-	return nt_json_get_uint64(nt_json_find(attributes, name), &index) &&
-		nt_gltf_get_accessor(document, index, "", accessor, &ignored) == NT_OK &&
-		accessor->component_type == NT_GLTF_FLOAT && accessor->components == components &&
-		nt_gltf_elements(document, accessor, elements, &ignored) == NT_OK && *elements;
+	if (!found || found->component_type != NT_GLTF_FLOAT || found->components != components)
+		return false;
+	*accessor = *found;
+	return nt_gltf_elements(document, found, elements, &ignored) == NT_OK && *elements;
 }
 
 static void grow_box(box *b, const nt_gltf_accessor *accessor, const unsigned char *elements)

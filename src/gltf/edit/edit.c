@@ -193,13 +193,11 @@ static nt_status choose_buffer(const editing *e, const nt_vertex_pool *pool, uin
 {
 	nt_gltf *document = e->edits->document;
 	const size_t user = pool->sets.count ? pool->sets.first[0] : 0;
-	const nt_json_value *attributes = nt_json_find(nt_pool_primitive(pool, user), "attributes");
-	uint64_t index;
-	nt_gltf_accessor accessor;
+	const nt_gltf_accessor *positions = nt_gltf_named(document, nt_json_find(nt_pool_primitive(pool, user),
+		"attributes"), "POSITION");
 	nt_gltf_view view = {.buffer = NT_NONE};
-	if (nt_json_get_uint64(nt_json_find(attributes, "POSITION"), &index) &&
-		nt_gltf_get_accessor(document, index, "", &accessor, NULL) == NT_OK && accessor.view != NT_NONE)
-		nt_gltf_get_view(document, accessor.view, "", &view, NULL);
+	if (positions && positions->view != NT_NONE)
+		nt_gltf_get_view(document, positions->view, "", &view, NULL);
 	return nt_edits_choose_buffer(e->edits, view.buffer, buffer, e->error);
 }
 
@@ -377,9 +375,9 @@ static nt_status edit_pools(const editing *e)
 /* The number of TANGENT is noted as gone. */
 static void drop_attribute(const editing *e, nt_json_value *attributes, uint32_t *gone)
 {
-	uint64_t accessor;
-	if (nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &accessor) && accessor < e->pools->accessor_count)
-		gone[e->pools->first_alias[accessor]]++;
+	const uint32_t accessor = nt_gltf_reference(e->edits->document, attributes, "TANGENT");
+	if (accessor != NT_NONE)
+		gone[nt_gltf_same(e->edits->document, accessor)]++;
 	nt_json_remove(e->edits->document->json, attributes, "TANGENT");
 }
 
@@ -390,10 +388,10 @@ static nt_status drop_accessors(const editing *e, const uint32_t *gone)
 	nt_gltf *document = e->edits->document;
 	nt_status status = NT_OK;
 	for (uint32_t i = 0; !status && i < pools->accessor_count; i++) {
-		const uint32_t alias = pools->first_alias[i];
-		if (!gone[alias] || pools->foreign[alias] || gone[alias] != pools->attribute_users[alias])
+		const uint32_t same = nt_gltf_same(document, i);
+		if (!gone[same] || pools->foreign[same] || gone[same] != pools->attribute_users[same])
 			continue;
-		if (alias == i)
+		if (same == i)
 			status = nt_gltf_release_tangents(e->edits,
 				&(nt_gltf_old_tangents){.accessors = &i, .count = 1}, e->error);
 		nt_json_value *accessor = nt_gltf_accessor_json(document, i);

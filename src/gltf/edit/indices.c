@@ -88,12 +88,12 @@ static void set_bounds(nt_json *json, nt_json_value *accessor, const encoded *ne
 /* New indices are packed as those before them are; where there were none, as the positions are. */
 static nt_gltf_packing find_packing(const nt_buffer_edits *edits, const nt_json_value *primitive, const encoded *new)
 {
-	uint64_t of;
 	const nt_json_value *indices = nt_json_find(primitive, "indices");
-	const nt_json_value *like = indices ? indices : nt_json_find(nt_json_find(primitive, "attributes"), "POSITION");
+	const uint32_t like = indices ? nt_gltf_reference(edits->document, primitive, "indices")
+		: nt_gltf_reference(edits->document, nt_json_find(primitive, "attributes"), "POSITION");
 	nt_gltf_packing packing = {.extension = NULL};
-	if (nt_json_get_uint64(like, &of) && of < UINT32_MAX && new->width > 1)
-		packing = nt_packing_of_accessor(edits, (uint32_t)of);
+	if (new->width > 1)
+		packing = nt_packing_of_accessor(edits, like);
 	if (!indices)
 		packing.view.mode = "TRIANGLES";
 	packing.view.filter = "NONE";
@@ -138,7 +138,7 @@ static bool fits_packed(nt_buffer_edits *edits, const nt_gltf_packing *packing, 
 }
 
 /* Rewrites the accessor, all of whose users agree, where its bytes are its own; *done tells. */
-static nt_status replace_indices(nt_buffer_edits *edits, uint32_t first_alias, const nt_gltf_accessor *old,
+static nt_status replace_indices(nt_buffer_edits *edits, uint32_t same, const nt_gltf_accessor *old,
 	const encoded *new, bool *done, nt_error *error)
 {
 	*done = false;
@@ -156,7 +156,7 @@ static nt_status replace_indices(nt_buffer_edits *edits, uint32_t first_alias, c
 	if (view.offset % new->width || pad >= size || view.compression)
 		return NT_OK;
 	const nt_gltf_packing packing = nt_packing_of(edits, old->view);
-	if (nt_byte_users_other(&edits->users, view.buffer, begin, begin + size, first_alias) ||
+	if (nt_byte_users_other(&edits->users, view.buffer, begin, begin + size, same) ||
 		!fits_packed(edits, &packing, &view, begin, size, new))
 		return NT_OK;
 	const unsigned char *bytes = new->bytes;
@@ -183,7 +183,7 @@ static nt_status replace_indices(nt_buffer_edits *edits, uint32_t first_alias, c
 /* A user's new indices. Users with equal ones in place of the same bytes follow the first of them. */
 typedef struct written {
 	uint32_t index;       /* the accessor of the source; NT_NONE: there was none */
-	uint32_t first_alias; /* of that */
+	uint32_t same;        /* of that */
 	uint32_t leader;      /* the first user with the same ones */
 	uint32_t agreeing;    /* of a leader: users that follow it, itself too, and have its accessor */
 	uint32_t accessor;    /* of a leader: the one in the output */
@@ -205,15 +205,15 @@ static uint32_t find_leader(const nt_pool_vertices *vertices, uint32_t user, uin
 	/* of primitives with the same triangles, which mostly follow each other, nothing is hashed again; of one alone
 	 * nothing is hashed */
 	if (last != NT_NONE && vertices->indices[last] == vertices->indices[user] &&
-		log[last].first_alias == log[user].first_alias)
+		log[last].same == log[user].same)
 		return log[last].leader;
 	if (vertices->pool->user_count == 1)
 		return user;
-	const uint64_t hash = nt_hash_bytes(log[user].first_alias, vertices->indices[user],
+	const uint64_t hash = nt_hash_bytes(log[user].same, vertices->indices[user],
 		nt_pool_index_count(vertices, user) * sizeof **vertices->indices);
 	uint32_t leader;
 	for (size_t at = NT_HASH_BEGIN; (leader = nt_hash_index_next(leaders, hash, &at)) != NT_NONE;)
-		if (log[leader].first_alias == log[user].first_alias && equal_indices(vertices, leader, user))
+		if (log[leader].same == log[user].same && equal_indices(vertices, leader, user))
 			return leader;
 	return nt_hash_index_add(leaders, hash, user) ? user : NT_NONE;
 }
@@ -226,13 +226,11 @@ static bool find_leaders(const nt_vertex_pools *pools, const nt_pool_vertices *v
 	for (uint32_t i = 0, last = NT_NONE; found && i < vertices->pool->user_count; i++) {
 		if (!vertices->changed[i])
 			continue;
-		uint64_t index;
-		log[i] = (written){.index = NT_NONE, .first_alias = NT_NONE, .accessor = NT_NONE};
-		if (nt_json_get_uint64(nt_json_find(nt_pool_primitive(vertices->pool, i), "indices"), &index) &&
-			index < pools->accessor_count) {
-			log[i].index = (uint32_t)index;
-			log[i].first_alias = pools->first_alias[index];
-		}
+		const nt_gltf *document = pools->scene->source;
+		const uint32_t index = nt_gltf_reference(document, nt_pool_primitive(vertices->pool, i),
+			"indices");
+		log[i] = (written){.index = index, .accessor = NT_NONE,
+			.same = index != NT_NONE ? nt_gltf_same(document, index) : NT_NONE};
 		log[i].leader = find_leader(vertices, i, last, log, &leaders);
 		found = log[i].leader != NT_NONE;
 		if (found)
@@ -277,10 +275,10 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 			vertices->borrowed, vertices->counts ? 0 : tail_of(mesh, mode, old.count), vertices->new_count,
 			least, &new, error);
 	/* in place where everybody who uses these indices will have the same new ones, or has got others */
-	const bool agree = leader->index != NT_NONE && leader->agreeing + edits->index_moved[leader->first_alias] ==
-		pools->index_users[leader->first_alias];
+	const bool agree = leader->index != NT_NONE && leader->agreeing + edits->index_moved[leader->same] ==
+		pools->index_users[leader->same];
 	if (!status && agree && !old.decoded)
-		status = replace_indices(edits, leader->first_alias, &old, &new, &done, error);
+		status = replace_indices(edits, leader->same, &old, &new, &done, error);
 	leader->accessor = leader->index;
 	if (status || done)
 		return status;
@@ -291,7 +289,7 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 		status = nt_packed_release(edits, old.view, old.offset,
 			old.count * nt_gltf_component_bytes(old.component_type), error);
 	if (!stays && leader->index != NT_NONE)
-		edits->index_moved[leader->first_alias] += leader->agreeing;
+		edits->index_moved[leader->same] += leader->agreeing;
 	return status ? status
 		      : add_indices(edits, buffer, &packing, &new, stays ? &old : NULL, &leader->accessor, error);
 }

@@ -111,21 +111,17 @@ typedef struct target_job {
 /* An accessor of a target, of the user's primitive; NT_NONE: none. */
 static uint32_t find_in_target(const target_job *job, uint32_t user, uint32_t target, const char *name)
 {
-	const nt_json_value *attributes =
-		nt_json_at(nt_json_find(nt_pool_primitive(job->vertices->pool, user), "targets"), target);
-	uint64_t index;
-	return nt_json_get_uint64(nt_json_find(attributes, name), &index) && index < job->pools->accessor_count ?
-		(uint32_t)index : NT_NONE;
+	return nt_gltf_reference(job->edits->document,
+		nt_json_at(nt_json_find(nt_pool_primitive(job->vertices->pool, user), "targets"), target), name);
 }
 
 /* The type of a target's normals, where tangents may have it. */
 static uint32_t type_of_normals(const target_job *job, uint32_t target)
 {
-	const uint32_t index = find_in_target(job, job->vertices->pool->sets.first[job->set], target, "NORMAL");
-	nt_gltf_accessor a;
-	return index != NT_NONE && nt_gltf_get_accessor(job->edits->document, index, "", &a, NULL) == NT_OK &&
-			a.normalized && (a.component_type == NT_GLTF_BYTE || a.component_type == NT_GLTF_SHORT) ?
-		a.component_type : NT_GLTF_FLOAT;
+	const nt_gltf_accessor *a = nt_gltf_sound_accessor(job->edits->document,
+		find_in_target(job, job->vertices->pool->sets.first[job->set], target, "NORMAL"));
+	return a && a->normalized && (a->component_type == NT_GLTF_BYTE || a->component_type == NT_GLTF_SHORT) ?
+		a->component_type : NT_GLTF_FLOAT;
 }
 
 /* If a target's deltas are packed, so are its tangents. There zeros take next to nothing: they are not sparse. */
@@ -155,17 +151,15 @@ static nt_status find_deltas(target_job *job, uint32_t target, uint32_t type, co
 	*found = !nt_vertices_differ(vertices);
 	for (uint32_t i = pool->sets.first[job->set]; *found && i != NT_NONE; i = pool->sets.next[i]) {
 		const uint32_t index = find_in_target(job, i, target, "TANGENT");
-		nt_gltf_accessor accessor;
 		float *old;
 		if (index != NT_NONE && index == known)
 			continue;
 		known = index;
-		*found = index != NT_NONE &&
-			nt_gltf_get_accessor(job->edits->document, index, "", &accessor, NULL) == NT_OK &&
-			accessor.component_type == type && accessor.components == 3 &&
-			accessor.count == vertices->new_count;
+		const nt_gltf_accessor *accessor = nt_gltf_sound_accessor(job->edits->document, index);
+		*found = accessor && accessor->component_type == type && accessor->components == 3 &&
+			accessor->count == vertices->new_count;
 		if (*found)
-			status = nt_gltf_floats(job->edits->document, &accessor, 3, 0, &job->scratch, &old, NULL);
+			status = nt_gltf_floats(job->edits->document, accessor, 3, 0, &job->scratch, &old, NULL);
 		*found = *found && !status && memcmp(old, deltas, vertices->new_count * 3 * sizeof *old) == 0;
 	}
 	return status == NT_ERROR_MEMORY ? status : NT_OK;
@@ -244,7 +238,7 @@ static void count_replaced(const target_job *job)
 			i = pool->sets.next[i]) {
 			const uint32_t index = find_in_target(job, i, job->list[m].target, "TANGENT");
 			if (index != NT_NONE)
-				job->edits->replaced[job->pools->first_alias[index]]++;
+				job->edits->replaced[nt_gltf_same(job->edits->document, index)]++;
 		}
 }
 
@@ -256,11 +250,11 @@ static nt_status take_over(const target_job *job, nt_gltf_override *overrides, s
 	for (size_t m = 0; !status && m < job->count; m++) {
 		target_tangents *t = &job->list[m];
 		const uint32_t index = t->found ? NT_NONE : find_in_target(job, first, t->target, "TANGENT");
-		const uint32_t alias = index == NT_NONE ? 0 : job->pools->first_alias[index];
-		if (index == NT_NONE || job->pools->foreign[alias] ||
-			job->edits->replaced[alias] != job->pools->attribute_users[alias])
+		const uint32_t same = index == NT_NONE ? 0 : nt_gltf_same(job->edits->document, index);
+		if (index == NT_NONE || job->pools->foreign[same] ||
+			job->edits->replaced[same] != job->pools->attribute_users[same])
 			continue;
-		job->edits->replaced[alias] = 0; /* no second target takes it */
+		job->edits->replaced[same] = 0; /* no second target takes it */
 		t->accessor = index;
 		const nt_gltf_old_tangents old = {.accessors = &t->accessor, .count = 1};
 		status = nt_gltf_release_tangents(job->edits, &old, job->error);
@@ -365,16 +359,13 @@ static void add_cost(const target_job *job, nt_morph_cost *cost)
 	const nt_json_value *primitive = nt_pool_primitive(pool, pool->sets.first[job->set]);
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
 	size_t vertex_bytes = nt_json_find(attributes, "TANGENT") ? 0 : 4 * sizeof(float);
-	nt_gltf_accessor a = {.count = 0};
-	uint64_t index;
-	for (size_t i = 0; i < nt_json_count(attributes); i++)
-		if (nt_json_get_uint64(nt_json_at(attributes, i), &index) &&
-			nt_gltf_get_accessor(job->edits->document, index, "", &a, NULL) == NT_OK)
-			vertex_bytes += a.element_bytes;
+	for (nt_gltf_use u = {0}; nt_gltf_next_use(job->edits->document, primitive, &u) && !u.object;) {
+		const nt_gltf_accessor *a = nt_gltf_sound_accessor(job->edits->document, u.accessor);
+		vertex_bytes += a ? a->element_bytes : 0;
+	}
 	cost->mesh_bytes += vertex_bytes * job->vertices->new_count;
-	if (nt_json_get_uint64(nt_json_find(primitive, "indices"), &index) &&
-		nt_gltf_get_accessor(job->edits->document, index, "", &a, NULL) == NT_OK)
-		cost->mesh_bytes += a.count * a.element_bytes;
+	const nt_gltf_accessor *indices = nt_gltf_named(job->edits->document, primitive, "indices");
+	cost->mesh_bytes += indices ? indices->count * indices->element_bytes : 0;
 	for (size_t m = 0; m < job->count; m++)
 		if (!job->list[m].found) {
 			cost->targets++;

@@ -18,21 +18,17 @@
 
 uint32_t nt_gltf_tangent_of(const nt_vertex_pools *pools, const nt_vertex_pool *pool, size_t user)
 {
-	uint64_t accessor;
-	const nt_json_value *attributes = nt_json_find(nt_pool_primitive(pool, user), "attributes");
-	if (!nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &accessor) || accessor >= pools->accessor_count)
-		return NT_NONE;
-	return (uint32_t)accessor;
+	return nt_gltf_reference(pools->scene->source, nt_json_find(nt_pool_primitive(pool, user), "attributes"),
+		"TANGENT");
 }
 
 /* Whether nobody uses an accessor but the `known` meshes of a set that have it as TANGENT. */
 static bool is_own(const nt_vertex_pools *pools, uint32_t index, size_t known)
 {
-	const uint32_t alias = pools->first_alias[index];
-	nt_gltf_accessor accessor;
-	return !pools->foreign[alias] && pools->attribute_users[alias] == known &&
-		nt_gltf_get_accessor(pools->scene->source, index, "", &accessor, NULL) == NT_OK &&
-		accessor.components == 4;
+	const uint32_t same = nt_gltf_same(pools->scene->source, index);
+	const nt_gltf_accessor *accessor = nt_gltf_sound_accessor(pools->scene->source, index);
+	return !pools->foreign[same] && pools->attribute_users[same] == known && accessor &&
+		accessor->components == 4;
 }
 
 /* Whether the new elements go where the old ones are. */
@@ -40,17 +36,17 @@ static bool fits_in_place(const nt_buffer_edits *edits, uint32_t index, const nt
 {
 	const nt_precision precision = filter->precision;
 	const nt_gltf_packing packing = nt_packing_of_accessor(edits, index);
-	nt_gltf_accessor a;
+	const nt_gltf_accessor *a = nt_gltf_sound_accessor(edits->document, index);
 	nt_gltf_view view;
-	if (nt_gltf_get_accessor(edits->document, index, "", &a, NULL) != NT_OK || a.view == NT_NONE ||
-		a.sparse_count || nt_gltf_get_view(edits->document, a.view, "", &view, NULL) != NT_OK ||
+	if (!a || a->view == NT_NONE || a->sparse_count ||
+		nt_gltf_get_view(edits->document, a->view, "", &view, NULL) != NT_OK ||
 		strcmp(packing.extension ? packing.view.filter : "NONE", filter->filter) != 0)
 		return false;
-	if (a.component_type == nt_precision_component_type(precision) &&
-		(a.component_type == NT_GLTF_FLOAT || a.normalized))
+	if (a->component_type == nt_precision_component_type(precision) &&
+		(a->component_type == NT_GLTF_FLOAT || a->normalized))
 		return true;
-	const uint64_t begin = view.offset + a.offset, end = begin + (a.count - 1) * a.stride + a.element_bytes;
-	return a.stride > a.element_bytes && nt_precision_bytes(precision) <= a.element_bytes &&
+	const uint64_t begin = view.offset + a->offset, end = begin + (a->count - 1) * a->stride + a->element_bytes;
+	return a->stride > a->element_bytes && nt_precision_bytes(precision) <= a->element_bytes &&
 		nt_byte_users_count(&edits->users, view.buffer, begin, end) > 1;
 }
 

@@ -39,10 +39,7 @@ typedef struct welding {
 	size_t count, capacity;
 	const char *obstacle; /* why the pool stays; NULL: nothing does */
 
-	/* the user whose attributes are visited */
-	const nt_mesh *mesh; /* NULL: it is not solved */
-	const nt_json_value *base, *targets;
-	size_t target, morph;
+	size_t morph; /* of the user whose attributes are looked at: the next one that is solved */
 	nt_error *error;
 } welding;
 
@@ -81,20 +78,19 @@ static bool add_column(welding *w, column added)
 }
 
 /* Whether new elements take the place of an attribute of a solved user. */
-static bool is_replaced(welding *w, const nt_json_value *attributes, const char *name)
+static bool is_replaced(welding *w, const nt_mesh *mesh, const nt_gltf_use *use)
 {
-	const bool tangent = strcmp(name, "TANGENT") == 0;
-	if (!w->mesh)
+	const bool tangent = strcmp(use->name, "TANGENT") == 0;
+	if (!mesh)
 		return false;
-	if (attributes == w->base)
-		return tangent || (w->mesh->normals_made && strcmp(name, "NORMAL") == 0) ||
-			(w->bitangents && strcmp(name, "_BITANGENT") == 0);
+	if (!use->object)
+		return tangent || (mesh->normals_made && strcmp(use->name, "NORMAL") == 0) ||
+			(w->bitangents && strcmp(use->name, "_BITANGENT") == 0);
 	/* targets come in their order, and so do those that are solved */
-	while (nt_json_at(w->targets, w->target) != attributes)
-		w->target++;
-	while (w->morph < w->mesh->morph_count && w->mesh->morphs[w->morph].target < w->target)
+	const size_t target = use->object - 1;
+	while (w->morph < mesh->morph_count && mesh->morphs[w->morph].target < target)
 		w->morph++;
-	return tangent && w->morph < w->mesh->morph_count && w->mesh->morphs[w->morph].target == w->target;
+	return tangent && w->morph < mesh->morph_count && mesh->morphs[w->morph].target == target;
 }
 
 /* The elements of a sparse accessor, with what it replaces. */
@@ -118,11 +114,10 @@ static nt_status bake(welding *w, const nt_gltf_accessor *a, const unsigned char
 	return status;
 }
 
-static nt_status add_attribute(void *context, nt_json_value *attributes, const char *name, uint32_t index)
+static nt_status add_attribute(welding *w, uint32_t index)
 {
-	welding *w = context;
-	bool *known = &w->edits->welding[w->pools->first_alias[index]];
-	if (is_replaced(w, attributes, name) || *known || w->obstacle)
+	bool *known = &w->edits->welding[nt_gltf_same(w->edits->document, index)];
+	if (*known || w->obstacle)
 		return NT_OK;
 	*known = true;
 	nt_gltf_accessor a;
@@ -134,7 +129,7 @@ static nt_status add_attribute(void *context, nt_json_value *attributes, const c
 		return leave_faulty(w, status);
 	if (a.count != w->vertices->old_count)
 		w->obstacle = "its attributes differ in their number of elements";
-	else if (w->pools->foreign[w->pools->first_alias[index]])
+	else if (w->pools->foreign[nt_gltf_same(w->edits->document, index)])
 		w->obstacle = "something else uses its attributes";
 	column c = {.bytes = elements, .stride = a.stride, .width = a.element_bytes, .of_source = true};
 	if (!w->obstacle && a.sparse_count)
@@ -162,12 +157,12 @@ static nt_status list_columns(welding *w, const nt_stored_tangents *stored)
 	const nt_vertex_pool *pool = w->vertices->pool;
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && !w->obstacle && i < pool->user_count; i++) {
+		const nt_mesh *solved = nt_pool_is_solved(pool, i) ? nt_pool_mesh(pool, i) : NULL;
 		const nt_json_value *primitive = nt_pool_primitive(pool, i);
-		w->mesh = nt_pool_is_solved(pool, i) ? nt_pool_mesh(pool, i) : NULL;
-		w->base = nt_json_find(primitive, "attributes");
-		w->targets = nt_json_find(primitive, "targets");
-		w->target = w->morph = 0;
-		status = nt_gltf_visit_attributes(primitive, w->pools->accessor_count, add_attribute, w);
+		w->morph = 0;
+		for (nt_gltf_use u = {0}; !status && nt_gltf_next_use(w->edits->document, primitive, &u);)
+			if (!is_replaced(w, solved, &u))
+				status = add_attribute(w, u.accessor);
 	}
 	bool added = true;
 	for (size_t s = 0; !status && s < pool->sets.count; s++) {
@@ -268,7 +263,7 @@ static nt_status indices_of(welding *w, size_t user, const uint32_t **indices, s
 {
 	const nt_pool_vertices *vertices = w->vertices;
 	const nt_json_value *primitive = nt_pool_primitive(vertices->pool, user);
-	uint64_t number;
+	const uint32_t number = nt_gltf_reference(w->edits->document, primitive, "indices");
 	nt_gltf_accessor a;
 	*renumbered = !(nt_pool_is_solved(vertices->pool, user) && (vertices->changed[user] ||
 		nt_gltf_draco_of(primitive))) || !vertices->indices[user];
@@ -277,7 +272,7 @@ static nt_status indices_of(welding *w, size_t user, const uint32_t **indices, s
 		*count = nt_pool_mesh(vertices->pool, user)->corner_count;
 		return NT_OK;
 	}
-	if (nt_json_get_uint64(nt_json_find(primitive, "indices"), &number)) {
+	if (nt_json_find(primitive, "indices")) {
 		uint32_t *read;
 		nt_status status = nt_gltf_get_accessor(w->edits->document, number,
 			nt_gltf_of_mesh(nt_pool_mesh(vertices->pool, user)).pointer, &a, w->error);
@@ -393,13 +388,11 @@ nt_status nt_pool_weld(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_
 nt_status nt_pool_vertices_plain(const nt_vertex_pools *pools, nt_vertex_pool *pool, nt_arena *tables,
 	nt_pool_vertices *vertices, bool *can, nt_error *error)
 {
-	nt_gltf *document = pools->scene->source;
-	nt_gltf_accessor a = {.count = 0};
-	uint64_t position;
-	*can = nt_json_get_uint64(nt_json_find(nt_json_find(nt_pool_primitive(pool, 0), "attributes"), "POSITION"),
-		&position) && nt_gltf_get_accessor(document, position, "", &a, NULL) == NT_OK && a.count < NT_NONE;
-	*vertices = (nt_pool_vertices){.pool = pool, .old_count = (size_t)a.count, .new_count = (size_t)a.count,
-		.own_count = (size_t)a.count,
+	const nt_gltf_accessor *a = nt_gltf_named(pools->scene->source, nt_json_find(nt_pool_primitive(pool, 0),
+		"attributes"), "POSITION");
+	*can = a && a->count < NT_NONE;
+	const size_t count = a ? (size_t)a->count : 0;
+	*vertices = (nt_pool_vertices){.pool = pool, .old_count = count, .new_count = count, .own_count = count,
 		.indices = nt_arena_alloc(tables, pool->user_count, sizeof *vertices->indices),
 		.changed = nt_arena_alloc(tables, pool->user_count, sizeof *vertices->changed)};
 	pool->sets.count = 0;
