@@ -122,10 +122,10 @@ flat >'a,b%c:d.obj'
 echo 'f 1 2 3' >bad.obj
 run $strict --report-format=lines 'a,b%c:d.obj' bad.obj
 exits 3
-is "$(cat ../out.txt)" 'a,b%c:d.obj:7: error: UV_UNMAPPED: the mesh is not unwrapped: 1 triangle has no area in UV space
+is "$(cat ../out.txt)" 'a,b%c:d.obj:7: error: UV_UNMAPPED: the mesh is not unwrapped: 1 triangle has no area in UV space. Unwrap the mesh.
 bad.obj:1: error: face refers to "v" number 1, but the file has 0'
 run $strict --report-format=github 'a,b%c:d.obj' bad.obj
-is "$(cat ../out.txt)" '::error file=a%2Cb%25c%3Ad.obj,line=7,title=UV_UNMAPPED::the mesh is not unwrapped: 1 triangle has no area in UV space
+is "$(cat ../out.txt)" '::error file=a%2Cb%25c%3Ad.obj,line=7,title=UV_UNMAPPED::the mesh is not unwrapped: 1 triangle has no area in UV space%0AUnwrap the mesh.
 ::error file=bad.obj,line=1,title=not judged::face refers to "v" number 1, but the file has 0'
 cp 'a,b%c:d.obj' $'e\r\nf.obj'
 run --check --report-format=github --severity=UV_UNMAPPED=warning --path-prefix=art $'e\r\nf.obj'
@@ -138,6 +138,11 @@ run --check --report-format=lines --report=log.txt m.obj
 grep -q '^m.obj:7: warning: MATERIAL_UNKNOWN: ' log.txt || wrong "not written to a file"
 run --check --report-format=github "$data/plates.gltf" # no lines, several meshes
 grep -qE '^::error file=[^,]*plates.gltf,title=TAN_[A-Z_]*::.*, in mesh' ../out.txt || wrong "no mesh is named"
+cp "$data"/{plates.gltf,plates.bin,bumps.png} .
+run --check --min-severity=error --report-format=github plates.gltf # the command that repairs it
+is "$(sed 's/.*%0A//' ../out.txt)" "Make them: nmtan --fix plates.gltf plates-repaired.gltf"
+run --check --min-severity=error --report-format=lines plates.gltf
+is "$(sed 's/.*texture, [^.]*\. //' ../out.txt)" "Make them: nmtan --fix plates.gltf plates-repaired.gltf"
 
 # Two libraries, in a folder below; the second line of the first is empty.
 scene "what a material library says is found at its lines, in every format"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A line per new finding, for a log: as compilers print them, which editors and CI services recognise, or as workflow
- * commands, of which GitHub makes annotations.
+ * A line per new finding, with its remedy, for a log: as compilers print them, which editors and CI services recognise,
+ * or as workflow commands, of which GitHub makes annotations.
  */
 #include "report/render/writers.h"
 
@@ -22,7 +22,9 @@ static void put_raw(const char *text, nt_buffer *out)
 	nt_buffer_text(out, text);
 }
 
-static void put_each(const nt_report_list *reports, void (*put)(const log_line *line, nt_buffer *out), nt_buffer *out)
+/* before: the remedy. */
+static void put_each(const nt_report_list *reports, const char *before,
+	void (*put)(const log_line *line, nt_buffer *out), nt_buffer *out)
 {
 	for (size_t i = 0; i < reports->count; i++) {
 		const nt_report *report = reports->items[i];
@@ -33,6 +35,8 @@ static void put_each(const nt_report_list *reports, void (*put)(const log_line *
 			const nt_report_finding *finding = &report->findings[k];
 			nt_buffer text = {0};
 			nt_put_sentence(report, finding, put_raw, &text);
+			nt_buffer_text(&text, before);
+			nt_remedy_text(finding->code, finding->repair, report->given, report->path, &text);
 			put(&(log_line){nt_finding_file(report, finding), nt_finding_line(finding), finding->severity,
 				nt_code_info(finding->code)->name, text.data ? text.data : ""}, out);
 			nt_buffer_free_into(&text, out);
@@ -56,7 +60,7 @@ static void put_compiler_line(const log_line *line, nt_buffer *out)
 
 void nt_write_lines(const nt_report_list *reports, nt_buffer *out)
 {
-	put_each(reports, put_compiler_line, out);
+	put_each(reports, ". ", put_compiler_line, out);
 }
 
 /* ---- for GitHub ---- */
@@ -90,5 +94,5 @@ static void put_command(const log_line *line, nt_buffer *out)
 
 void nt_write_github(const nt_report_list *reports, nt_buffer *out)
 {
-	put_each(reports, put_command, out);
+	put_each(reports, "\n", put_command, out);
 }
