@@ -221,11 +221,11 @@ static void end_counts(const request *r, nmtan_counts *met, size_t ill_condition
 	nt_struct_write(given, met, sizeof *met);
 }
 
-/* Corner k of a half, as a corner of its quad. */
-static const uint8_t half_corners[][2][3] = {
-	{{0}, {0}}, /* NT_HALF_NONE */
-	{{0, 1, 2}, {0, 2, 3}}, /* NT_HALF_ABC */
-	{{0, 1, 3}, {1, 2, 3}}, /* NT_HALF_ABD */
+const uint8_t nt_half_corners[NT_HALF_SECOND][2][3] = {
+	[NT_HALF_ABC_ACD] = {{0, 1, 2}, {0, 2, 3}}, [NT_HALF_ABD_BCD] = {{0, 1, 3}, {1, 2, 3}},
+	[NT_HALF_ACD_ABC] = {{0, 2, 3}, {0, 1, 2}}, [NT_HALF_ABD_DBC] = {{0, 1, 3}, {3, 1, 2}},
+	[NT_HALF_CDA_BCA] = {{2, 3, 0}, {1, 2, 0}}, [NT_HALF_BDA_BCD] = {{1, 3, 0}, {1, 2, 3}},
+	[NT_HALF_ACD_CAB] = {{0, 2, 3}, {2, 0, 1}}, [NT_HALF_ABC_CDA] = {{0, 1, 2}, {2, 3, 0}},
 };
 
 /* Solves quads in the place of their halves, whose corners take the quads' results. They are repaired as quads, so that
@@ -248,7 +248,7 @@ static nmtan_status solve_quads(request *r, const uint8_t *halves, size_t *ill_c
 		parts = halves[t] == NT_HALF_NONE ? 1 : 2;
 		for (size_t part = 0; part < parts; part++)
 			for (size_t k = 0; k < 3; k++)
-				corners[parts == 1 ? k : half_corners[halves[t]][part][k]] =
+				corners[parts == 1 ? k : nt_half_corners[halves[t]][part][k]] =
 					(uint32_t)nt_vertex_of(mesh, 3 * (t + part) + k);
 		sizes[quads.face_count++] = (uint8_t)(2 + parts);
 		solve.corner_count += 2 + parts;
@@ -270,7 +270,7 @@ static nmtan_status solve_quads(request *r, const uint8_t *halves, size_t *ill_c
 		parts = halves[t] == NT_HALF_NONE ? 1 : 2;
 		for (size_t i = 0; i < 3 * parts; i++)
 			memcpy(r->solve.tangents + 4 * (3 * t + i),
-				from + 4 * (parts == 1 ? i : half_corners[halves[t]][i / 3][i % 3]), 4 * sizeof *from);
+				from + 4 * (parts == 1 ? i : nt_half_corners[halves[t]][i / 3][i % 3]), 4 * sizeof *from);
 		from += 4 * (2 + parts);
 	}
 	return status;

@@ -17,13 +17,23 @@ typedef struct nt_vertex_request {
 nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_vertex_request *request, nmtan_split_output *output, nmtan_counts *counts);
 
-/* A triangle as a solve by quads sees it. The corners of a quad are a, b, c, d; its halves follow one another. */
+/* A triangle as a solve by quads sees it. The corners of a quad are a, b, c, d; its halves follow one another, and the
+ * first says how both are written. */
 enum nt_half {
-	NT_HALF_NONE,   /* a face of its own */
-	NT_HALF_ABC,    /* first half (a, b, c); (a, c, d) is the second */
-	NT_HALF_ABD,    /* first half (a, b, d); (b, c, d) is the second */
+	NT_HALF_NONE,    /* a face of its own */
+	NT_HALF_ABC_ACD,
+	NT_HALF_ABD_BCD,
+	NT_HALF_ACD_ABC,
+	NT_HALF_ABD_DBC,
+	NT_HALF_CDA_BCA,
+	NT_HALF_BDA_BCD,
+	NT_HALF_ACD_CAB,
+	NT_HALF_ABC_CDA,
 	NT_HALF_SECOND
 };
+
+/* [enum nt_half][half] the corners of a half, as corners of its quad. */
+extern const uint8_t nt_half_corners[NT_HALF_SECOND][2][3];
 
 /* All give the same bytes, so users do not choose; but for halves of quads. */
 typedef struct nt_implementation {

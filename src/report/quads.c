@@ -25,15 +25,21 @@ static bool are_equal(const nt_mesh *mesh, size_t corner, size_t other)
 		are_rows_equal(mesh->texcoords, 2, a, b));
 }
 
-/* The form of the quad that triangle t and the next one make. */
-static enum nt_half form_of(const nt_mesh *mesh, size_t t)
+/* How programs write a quad that they cut along either diagonal: as it stands (Blender, assimp); with two corners of each
+ * half exchanged, since they mirror the model (the last two: glTFast; the outer ones: UnityGLTF, Godot); from its last
+ * corner (glTFast, of quads; 3ds Max, and what cuts ears). */
+static const uint8_t orders[][2] = {{NT_HALF_ABC_ACD, NT_HALF_ABD_BCD}, {NT_HALF_ACD_ABC, NT_HALF_ABD_DBC},
+	{NT_HALF_CDA_BCA, NT_HALF_BDA_BCD}, {NT_HALF_ACD_CAB, NT_HALF_NONE}, {NT_HALF_ABC_CDA, NT_HALF_NONE}};
+
+/* Whether triangle t and the next one make a quad of this form. */
+static bool has_form(const nt_mesh *mesh, size_t t, uint8_t form)
 {
-	const size_t first = 3 * t, second = first + 3;
-	if (are_equal(mesh, first, second) && are_equal(mesh, first + 2, second + 1))
-		return NT_HALF_ABC;
-	if (are_equal(mesh, first + 1, second) && are_equal(mesh, first + 2, second + 2))
-		return NT_HALF_ABD;
-	return NT_HALF_NONE;
+	const uint8_t(*corners)[3] = nt_half_corners[form];
+	for (size_t i = 0; i < 3; i++)
+		for (size_t k = 0; k < 3; k++)
+			if (corners[0][i] == corners[1][k] && !are_equal(mesh, 3 * t + i, 3 * t + 3 + k))
+				return false;
+	return form != NT_HALF_NONE;
 }
 
 /* The first vertex of a triangle, as the file has it. */
@@ -53,15 +59,17 @@ static size_t polygon_size(const nt_mesh *mesh, size_t t)
 	return end - t;
 }
 
-size_t nt_pair_quads(const nt_mesh *mesh, bool polygons, uint8_t *halves)
+/* Pairs the first `count` triangles. */
+static size_t pair_first(const nt_mesh *mesh, size_t count, bool polygons, const uint8_t order[2], uint8_t *halves)
 {
 	size_t quads = 0;
-	memset(halves, NT_HALF_NONE, mesh->face_count);
-	for (size_t t = 0, step; t < mesh->face_count; t += step) {
+	memset(halves, NT_HALF_NONE, count);
+	for (size_t t = 0, step; t < count; t += step) {
 		step = polygons ? polygon_size(mesh, t) : 1;
-		if (t + 1 == mesh->face_count || (polygons && step != 2))
+		if (t + 1 >= count || (polygons && step != 2))
 			continue;
-		halves[t] = (uint8_t)form_of(mesh, t);
+		halves[t] = has_form(mesh, t, order[0]) ? order[0] : has_form(mesh, t, order[1]) ? order[1]
+			: NT_HALF_NONE;
 		if (halves[t] == NT_HALF_NONE)
 			continue;
 		halves[t + 1] = NT_HALF_SECOND;
@@ -69,6 +77,19 @@ size_t nt_pair_quads(const nt_mesh *mesh, bool polygons, uint8_t *halves)
 		step = 2;
 	}
 	return quads;
+}
+
+size_t nt_pair_quads(const nt_mesh *mesh, bool polygons, uint8_t *halves)
+{
+	enum { SAMPLE = 4096 }; /* a program has one order */
+	const size_t sample = mesh->face_count < SAMPLE ? mesh->face_count : SAMPLE;
+	size_t best = 0, most = 0;
+	for (size_t i = 0; i < sizeof orders / sizeof *orders && !polygons && 20 * most < 9 * sample; i++) {
+		const size_t quads = pair_first(mesh, sample, false, orders[i], halves);
+		best = quads > most ? i : best;
+		most = quads > most ? quads : most;
+	}
+	return pair_first(mesh, mesh->face_count, polygons, orders[best], halves);
 }
 
 /* `magnitude`: the sum of the products behind the area. */

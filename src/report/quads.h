@@ -9,8 +9,8 @@
 #include "api/tangents.h"
 #include "scene/scene.h"
 
-/* Pairs the triangles of a mesh in their order, each with the next one where both make a quad of one of these forms;
- * corners are compared by position, normal and texture coordinates. With `polygons` only triangles that
+/* Pairs the triangles of a mesh in their order, each with the next one if both make a quad, of the two forms that one
+ * program writes; corners are compared by position, normal and texture coordinates. With `polygons` only triangles that
  * FB_ngon_encoding has as one polygon of four corners: two, not more, whose first index is the same.
  *
  *   halves   [face_count] receives an nt_half for each

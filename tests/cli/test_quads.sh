@@ -76,6 +76,21 @@ run --only=all --quads=pairs --threads=7 bare.gltf seven.glb
 same one.glb pairs.glb
 same seven.glb pairs.glb
 
+# They negate x, and exchange two corners of each triangle so that it stays wound as it was; the OBJ says what the quads are.
+scene "halves of exporters that mirror the model are pairs, too"
+inputs "" quads 0
+awk '/^vn? / { $2 = $2 ~ /^-/ ? substr($2, 2) : "-" $2 } /^f / { print $1, $2, $5, $4, $3; next } 1' quads.obj >mirrored.obj
+run -q mirrored.obj mirrored.glb
+for corners in 0,2,1 2,1,0; do
+	gltf bare.gltf exported 'const p = g.meshes[0].primitives[0], a = p.attributes;
+		for (const n of [a.POSITION, a.NORMAL]) for (let v = 0; v < g.accessors[n].count; v++) bytes[0].writeFloatLE(-bytes[0].readFloatLE(at(n, v)), at(n, v));
+		const c = rows(p.indices).flat();
+		p.indices = add("SCALAR", 5125, c.map((_, i) => c[i - i % 3 + ['$corners'][i % 3]]));'
+	run --only=all --quads=pairs exported.gltf pairs.glb
+	says "288 triangles (as 144 quads)"
+	same_places pairs.glb mirrored.glb
+done
+
 scene "pairs are asked for and there are none: a warning"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n' >one.obj
 run -q one.obj one.gltf

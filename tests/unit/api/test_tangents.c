@@ -95,7 +95,11 @@ typedef struct random_faces {
 
 static void make_random_faces(random_faces *f, uint64_t seed)
 {
-	static const size_t cuts[2][6] = {{0, 1, 2, 0, 2, 3}, {0, 1, 3, 1, 2, 3}}, alone[] = {0, 1, 2};
+	static const size_t cuts[][6] = {{0, 1, 2, 0, 2, 3}, {0, 1, 3, 1, 2, 3}, {0, 2, 3, 0, 1, 2},
+		{0, 1, 3, 3, 1, 2}, {2, 3, 0, 1, 2, 0}, {1, 3, 0, 1, 2, 3}, {0, 2, 3, 2, 0, 1}, {0, 1, 2, 2, 3, 0}},
+		alone[] = {0, 1, 2};
+	enum { CUTS = sizeof cuts / sizeof *cuts };
+	_Static_assert(NT_HALF_ABC_ACD + CUTS == NT_HALF_SECOND, "all are here, in their order");
 	nt_random random = nt_random_seed(seed);
 	for (size_t v = 0; v < POINTS; v++) {
 		for (size_t k = 0; k < 3; k++)
@@ -106,13 +110,13 @@ static void make_random_faces(random_faces *f, uint64_t seed)
 	}
 	f->corner_count = f->triangle_count = 0;
 	for (size_t i = 0; i < FACES; i++) {
-		const size_t size = 3 + (nt_random_below(&random, 3) > 0), cut = nt_random_below(&random, 2);
+		const size_t size = 3 + (nt_random_below(&random, 3) > 0), cut = nt_random_below(&random, CUTS);
 		uint32_t *face = f->quads + f->corner_count;
 		for (size_t k = 0; k < size; k++)
 			face[k] = nt_random_below(&random, POINTS);
 		f->sizes[i] = (uint8_t)size;
 		f->halves[f->triangle_count] =
-			(uint8_t)(size == 3 ? NT_HALF_NONE : cut ? NT_HALF_ABD : NT_HALF_ABC);
+			(uint8_t)(size == 3 ? NT_HALF_NONE : NT_HALF_ABC_ACD + cut);
 		if (size == 4)
 			f->halves[f->triangle_count + 1] = NT_HALF_SECOND;
 		for (size_t k = 0; k < 3 * (size - 2); k++) {

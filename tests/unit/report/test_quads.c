@@ -22,8 +22,9 @@ static hand_mesh *points(uint32_t count)
 /* The kind of each triangle: - alone, C and D the first half of an (a b c d) cut by a c or b d, 2 a second half. */
 static void expect(const hand_mesh *h, bool polygons, const char *letters)
 {
-	static const char names[] = {[NT_HALF_NONE] = '-', [NT_HALF_ABC] = 'C', [NT_HALF_ABD] = 'D',
-		[NT_HALF_SECOND] = '2'};
+	static const char names[] = {[NT_HALF_NONE] = '-', [NT_HALF_ABC_ACD] = 'C', [NT_HALF_ABD_BCD] = 'D',
+		[NT_HALF_ACD_ABC] = 'E', [NT_HALF_ABD_DBC] = 'F', [NT_HALF_CDA_BCA] = 'G', [NT_HALF_BDA_BCD] = 'H',
+		[NT_HALF_ACD_CAB] = 'I', [NT_HALF_ABC_CDA] = 'J', [NT_HALF_SECOND] = '2'};
 	uint8_t halves[HAND_TRIANGLES];
 	char found[HAND_TRIANGLES + 1] = "";
 	size_t quads = 0;
@@ -50,10 +51,41 @@ TEST(both_cuts_pair_and_so_do_their_mirror_images)
 	}
 }
 
+/* Orders of exporters, each as a rule of theirs: quads 0 1 2 3 and 4 5 6 7, cut along 0 2 and along 5 7, then the corners
+ * of each half exchanged, as a program does that mirrors the model. A program has one order: what the others would pair
+ * stays alone. */
+TEST(orders_of_exporters_pair_and_one_mesh_has_one)
+{
+	static const uint32_t halves[4][3] = {{0, 1, 2}, {0, 2, 3}, {4, 5, 7}, {5, 6, 7}};
+	static const struct {
+		const char *letters;
+		uint32_t corners[3];
+	} orders[] = {{"C2D2", {0, 1, 2}}, {"E2F2", {0, 2, 1}}, {"G2H2", {2, 1, 0}}};
+	for (size_t i = 0; i < sizeof orders / sizeof *orders; i++) {
+		hand_mesh *h = points(8);
+		const uint32_t *k = orders[i].corners;
+		for (size_t t = 0; t < 4; t++)
+			hand_triangle(h, halves[t][k[0]], halves[t][k[1]], halves[t][k[2]]);
+		expect(h, false, orders[i].letters);
+		hand_free(h, NULL);
+	}
+	static const uint32_t others[][6] = {{0, 2, 1, 2, 0, 3}, {0, 1, 2, 2, 3, 0}};
+	for (size_t i = 0; i < 2; i++) {
+		hand_mesh *h = points(12);
+		for (uint32_t quad = 0; quad < 3; quad++) {
+			const uint32_t *c = quad == 2 ? others[1 - i] : others[i];
+			hand_triangle(h, 4 * quad + c[0], 4 * quad + c[1], 4 * quad + c[2]);
+			hand_triangle(h, 4 * quad + c[3], 4 * quad + c[4], 4 * quad + c[5]);
+		}
+		expect(h, false, i ? "J2J2--" : "I2I2--");
+		hand_free(h, NULL);
+	}
+}
+
 /* Triangles with an edge in common that are written in another order, or wound otherwise, are none of these forms. */
 TEST(other_neighbours_do_not_pair)
 {
-	static const uint32_t pairs[][6] = {{0, 1, 2, 2, 3, 0}, {0, 1, 2, 0, 3, 2}, {0, 1, 3, 3, 1, 2},
+	static const uint32_t pairs[][6] = {{0, 1, 2, 3, 1, 0}, {0, 1, 2, 0, 3, 2}, {0, 1, 3, 2, 3, 1},
 		{0, 1, 2, 3, 4, 5}};
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
 		hand_mesh *h = points(6);
