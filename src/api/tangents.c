@@ -221,11 +221,18 @@ static void end_counts(const request *r, nmtan_counts *met, size_t ill_condition
 	nt_struct_write(given, met, sizeof *met);
 }
 
+/* The tool alone has halves. */
+#ifdef NT_NO_HALVES
+static nmtan_status solve_quads(request *r, const uint8_t *halves, size_t *ill_conditioned, nmtan_counts *repaired)
+{
+	(void)r, (void)halves, (void)ill_conditioned, (void)repaired;
+	return NMTAN_ERROR_ARGUMENT;
+}
+#else
 const uint8_t nt_half_corners[NT_HALF_SECOND][2][3] = {
-	[NT_HALF_ABC_ACD] = {{0, 1, 2}, {0, 2, 3}}, [NT_HALF_ABD_BCD] = {{0, 1, 3}, {1, 2, 3}},
-	[NT_HALF_ACD_ABC] = {{0, 2, 3}, {0, 1, 2}}, [NT_HALF_ABD_DBC] = {{0, 1, 3}, {3, 1, 2}},
-	[NT_HALF_CDA_BCA] = {{2, 3, 0}, {1, 2, 0}}, [NT_HALF_BDA_BCD] = {{1, 3, 0}, {1, 2, 3}},
-	[NT_HALF_ACD_CAB] = {{0, 2, 3}, {2, 0, 1}}, [NT_HALF_ABC_CDA] = {{0, 1, 2}, {2, 3, 0}},
+	{{0, 0, 0}, {0, 0, 0}}, /* NT_HALF_NONE */
+	{{0, 1, 2}, {0, 2, 3}}, {{0, 1, 3}, {1, 2, 3}}, {{0, 2, 3}, {0, 1, 2}}, {{0, 1, 3}, {3, 1, 2}},
+	{{2, 3, 0}, {1, 2, 0}}, {{1, 3, 0}, {1, 2, 3}}, {{0, 2, 3}, {2, 0, 1}}, {{0, 1, 2}, {2, 3, 0}},
 };
 
 /* Solves quads in the place of their halves, whose corners take the quads' results. They are repaired as quads, so that
@@ -270,11 +277,13 @@ static nmtan_status solve_quads(request *r, const uint8_t *halves, size_t *ill_c
 		parts = halves[t] == NT_HALF_NONE ? 1 : 2;
 		for (size_t i = 0; i < 3 * parts; i++)
 			memcpy(r->solve.tangents + 4 * (3 * t + i),
-				from + 4 * (parts == 1 ? i : nt_half_corners[halves[t]][i / 3][i % 3]), 4 * sizeof *from);
+				from + 4 * (parts == 1 ? i : nt_half_corners[halves[t]][i / 3][i % 3]),
+				4 * sizeof *from);
 		from += 4 * (2 + parts);
 	}
 	return status;
 }
+#endif
 
 nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_implementation *implementation, const nmtan_output *output, nmtan_counts *counts)

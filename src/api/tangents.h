@@ -32,8 +32,10 @@ enum nt_half {
 	NT_HALF_SECOND
 };
 
+#ifndef NT_NO_HALVES
 /* [enum nt_half][half] the corners of a half, as corners of its quad. */
 extern const uint8_t nt_half_corners[NT_HALF_SECOND][2][3];
+#endif
 
 /* All give the same bytes, so users do not choose; but for halves of quads. */
 typedef struct nt_implementation {

@@ -620,10 +620,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"If the normal map was baked in the program that wrote the file (Blender), solve quads.",
 		"a grid from Blender without tangents, converted with --only=all"),
 	ROW(TAN_QUADS_NONE, WARNING, "w--", LOOK, NULL, "--quads=pairs found no quad: all triangles are solved as such",
-		"Two triangles that follow each other are a quad a b c d if they have equal vertices along their common "
-		"edge and are written as (a b c)(a c d), (a b d)(b c d) or (a b c)(c d a), or as the first two with "
-		"two corners of each exchanged, as exporters of Unity and Godot do. No pair of the file is, so that "
-		"the option changes nothing.",
+		"Two triangles that follow each other are a quad a b c d if they have equal vertices along their "
+		"common edge and are written as (a b c)(a c d), (a b d)(b c d) or (a b c)(c d a), or as the first two "
+		"with two corners of each exchanged, as exporters of Unity and Godot do. No pair of the file is, so "
+		"that the option changes nothing.",
 		"Leave the option away, or export the quads' halves one after the other.",
 		"one triangle of a glTF, converted with --quads=pairs --only=all"),
 };

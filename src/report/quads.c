@@ -25,9 +25,9 @@ static bool are_equal(const nt_mesh *mesh, size_t corner, size_t other)
 		are_rows_equal(mesh->texcoords, 2, a, b));
 }
 
-/* How programs write a quad that they cut along either diagonal: as it stands (Blender, assimp); with two corners of each
- * half exchanged, since they mirror the model (the last two: glTFast; the outer ones: UnityGLTF, Godot); from its last
- * corner (glTFast, of quads; 3ds Max, and what cuts ears). */
+/* How programs write a quad that they cut along either diagonal: as it stands (Blender, assimp); with two corners of
+ * each half exchanged, since they mirror the model (the last two: glTFast; the outer ones: UnityGLTF, Godot); from its
+ * last corner (glTFast, of quads; 3ds Max, and what cuts ears). */
 static const uint8_t orders[][2] = {{NT_HALF_ABC_ACD, NT_HALF_ABD_BCD}, {NT_HALF_ACD_ABC, NT_HALF_ABD_DBC},
 	{NT_HALF_CDA_BCA, NT_HALF_BDA_BCD}, {NT_HALF_ACD_CAB, NT_HALF_NONE}, {NT_HALF_ABC_CDA, NT_HALF_NONE}};
 

@@ -51,7 +51,7 @@ TEST(both_cuts_pair_and_so_do_their_mirror_images)
 	}
 }
 
-/* Orders of exporters, each as a rule of theirs: quads 0 1 2 3 and 4 5 6 7, cut along 0 2 and along 5 7, then the corners
+/* Orders of exporters, each as a rule of theirs: quads 0 1 2 3 and 4 5 6 7, cut along 0 2 and along 5 7, then corners
  * of each half exchanged, as a program does that mirrors the model. A program has one order: what the others would pair
  * stays alone. */
 TEST(orders_of_exporters_pair_and_one_mesh_has_one)
