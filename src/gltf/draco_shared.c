@@ -7,62 +7,53 @@
  */
 
 #include <stdlib.h>
-#include <string.h>
-#include "base/name_table.h"
-#include "gltf/document.h"
 #include "gltf/draco.h"
+#include "gltf/vertex_pools.h"
 
-/* The role of an accessor in a primitive. No padding: compared as bytes. */
-typedef struct content {
-	uint64_t accessor; /* as the file names it */
-	uint64_t view;     /* of the block */
-	uint64_t id;       /* of the attribute; INDICES */
-} content;
-
-#define INDICES UINT64_MAX
+#define INDICES UINT64_MAX /* in place of the id of an attribute */
 
 typedef struct separating {
 	nt_gltf *document;
 	nt_json_value *accessors;
 	size_t named_count;      /* accessors of the file */
 	bool *given;             /* [named_count] has a content already */
-	nt_name_table contents;  /* each has the bytes of a content, in the arena */
-	nt_arena arena;
+	nt_key_table contents;   /* an accessor as the file names it, the view of the block, the id */
 	uint32_t *accessor_of;   /* [capacity] by content: the accessor that a content has now */
 	size_t capacity;
 } separating;
 
 /* The accessor for a content that is met for the first time. */
-static uint32_t accessor_for(separating *s, const content *c)
+static uint32_t accessor_for(separating *s, uint64_t named)
 {
 	nt_json *json = s->document->json;
-	if (!s->given[c->accessor]) {
-		s->given[c->accessor] = true;
-		return (uint32_t)c->accessor;
+	if (!s->given[named]) {
+		s->given[named] = true;
+		return (uint32_t)named;
 	}
 	nt_gltf_find_dangling(s->document);
 	nt_json_value *copy = nt_json_append(json, s->accessors);
-	nt_json_set_copy(json, copy, nt_json_at(s->accessors, (size_t)c->accessor));
+	nt_json_set_copy(json, copy, nt_json_at(s->accessors, (size_t)named));
 	return (uint32_t)nt_json_count(s->accessors) - 1;
 }
 
 /* Points object[key] to the accessor of its content. False: out of memory. */
 static bool separate(separating *s, nt_json_value *object, const char *key, uint64_t view, uint64_t id)
 {
-	content c = {.view = view, .id = id};
-	if (!nt_json_get_uint64(nt_json_find(object, key), &c.accessor) || c.accessor >= s->named_count ||
-		nt_json_find(nt_json_at(s->accessors, (size_t)c.accessor), "bufferView"))
+	uint64_t named;
+	if (!nt_json_get_uint64(nt_json_find(object, key), &named) || named >= s->named_count ||
+		nt_json_find(nt_json_at(s->accessors, (size_t)named), "bufferView"))
 		return true;
-	uint32_t number = nt_name_find(&s->contents, (const char *)&c, sizeof c);
-	if (number == UINT32_MAX) {
-		const char *own = nt_arena_text(&s->arena, (const char *)&c, sizeof c);
-		number = own ? nt_name_add(&s->contents, own, sizeof c) : UINT32_MAX;
-		if (number == UINT32_MAX ||
-			!nt_grow((void **)&s->accessor_of, &s->capacity, (size_t)number + 1, sizeof *s->accessor_of))
-			return false;
-		s->accessor_of[number] = accessor_for(s, &c);
-	}
-	if (s->accessor_of[number] != c.accessor)
+	const size_t known = s->contents.names.count;
+	nt_key_put(&s->contents, named);
+	nt_key_put(&s->contents, view);
+	nt_key_put(&s->contents, id);
+	const uint32_t number = nt_key_number(&s->contents);
+	if (number == NT_NONE ||
+		!nt_grow((void **)&s->accessor_of, &s->capacity, (size_t)number + 1, sizeof *s->accessor_of))
+		return false;
+	if (number == known)
+		s->accessor_of[number] = accessor_for(s, named);
+	if (s->accessor_of[number] != named)
 		nt_json_set_uint64(s->document->json, nt_json_find(object, key), s->accessor_of[number]);
 	return !nt_json_failed(s->document->json);
 }
@@ -95,8 +86,7 @@ nt_status nt_gltf_separate_draco(nt_gltf *document, nt_error *error)
 		for (size_t k = 0; room && k < nt_json_count(primitives); k++)
 			room = separate_primitive(&s, nt_json_at(primitives, k));
 	}
-	nt_name_table_free(&s.contents);
-	nt_arena_free(&s.arena);
+	nt_key_table_free(&s.contents);
 	free(s.accessor_of);
 	free(s.given);
 	return room ? nt_gltf_check_dangling(document, error) : nt_fail_memory(error);

@@ -10,7 +10,7 @@
  * material's transform. A primitive without normals is shaded flat and has nothing to weld; it contributes where
  * normals are made for it.
  *
- * Repeated parts count once. Primitives with the same geometry (same_geometry.c) lie on each other: the
+ * Repeated parts count once. Primitives with the same geometry (geometry_key.c) lie on each other: the
  * first contributes, and the others have its result, so that a small file that names the same triangles a thousand
  * times costs what one that names them once does, and a surface with two materials on it is no other surface. A join
  * whose parts are those of an earlier one, in another mesh, has that one's result.
@@ -20,9 +20,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/buffer.h"
 #include "base/hash_index.h"
-#include "base/name_table.h"
 #include "gltf/materials.h"
 #include "gltf/pointer.h"
 #include "gltf/primitive.h"
@@ -52,11 +50,9 @@ typedef struct search {
 	nt_scene *scene;
 	bool solved, kept;     /* see vertex_pools.h */
 	size_t solved_faces;   /* of what is solved without joins */
-	nt_name_table keys;    /* of units that differ: a kind and the geometry of its parts */
-	unit *units;           /* [keys.count] */
+	nt_key_table keys;     /* of units that differ: a kind and the geometry of its parts */
+	unit *units;           /* [keys.names.count] */
 	size_t unit_capacity;
-	nt_arena arena;        /* of the keys */
-	nt_buffer key;         /* of the unit at hand */
 	uint32_t *unit_of;     /* [mesh_count] of the first mesh with a geometry: the last unit that has it */
 	uint32_t *part_of;     /* [mesh_count] and which part of that one it is */
 	uint32_t unit_count;
@@ -237,8 +233,7 @@ static uint32_t geometry_of(const group *g, uint32_t mesh, uint32_t number)
 /* The parts of a kind, and the unit's key. u->parts: room for all candidates. */
 static bool find_parts(search *s, const group *g, uint32_t number, unit *u)
 {
-	s->key.size = 0;
-	nt_buffer_append(&s->key, &g->kinds[number], sizeof g->kinds[number]);
+	nt_buffer_append(&s->keys.key, &g->kinds[number], sizeof g->kinds[number]);
 	s->unit_count++;
 	for (uint32_t i = first_candidate(g, number); i < g->end; i = next_candidate(g, i, number)) {
 		if (!belongs(g, i, number))
@@ -248,21 +243,21 @@ static bool find_parts(search *s, const group *g, uint32_t number, unit *u)
 			continue;
 		s->unit_of[geometry] = s->unit_count;
 		s->part_of[geometry] = (uint32_t)u->part_count;
-		nt_buffer_append(&s->key, &geometry, sizeof geometry);
+		nt_key_put(&s->keys, geometry);
 		u->parts[u->part_count] = part_of(g, i, number);
 		if (!u->parts[u->part_count++])
 			return false;
 	}
-	return !s->key.failed;
+	return !s->keys.key.failed;
 }
 
 /* The number of the first unit with the same key, which may be this one. NT_NONE: memory is exhausted. */
 static uint32_t add_unit(search *s, const unit *u)
 {
-	const size_t known = s->keys.count;
-	const char *text = nt_arena_text(&s->arena, s->key.data, s->key.size);
-	const uint32_t number = text ? nt_name_add(&s->keys, text, s->key.size) : NT_NONE;
-	if (number == NT_NONE || !nt_grow((void **)&s->units, &s->unit_capacity, s->keys.count, sizeof *s->units))
+	const size_t known = s->keys.names.count;
+	const uint32_t number = nt_key_number(&s->keys);
+	if (number == NT_NONE ||
+		!nt_grow((void **)&s->units, &s->unit_capacity, s->keys.names.count, sizeof *s->units))
 		return NT_NONE;
 	if (number == known)
 		s->units[number] = *u;
@@ -298,7 +293,7 @@ static nt_status add_kind(search *s, const group *g, uint32_t number, nt_error *
 	unit u = {.parts = nt_arena_alloc(&g->scene->arena, count, sizeof *u.parts)};
 	if (!u.parts || !find_parts(s, g, number, &u))
 		return nt_fail_memory(error);
-	const size_t known = s->keys.count;
+	const size_t known = s->keys.names.count;
 	const uint32_t first = add_unit(s, &u);
 	if (first == NT_NONE)
 		return nt_fail_memory(error);
@@ -376,8 +371,6 @@ nt_status nt_gltf_find_joins(nt_scene *scene, bool solved, bool kept, nt_error *
 	free(s.unit_of);
 	free(s.part_of);
 	free(s.units);
-	nt_buffer_free(&s.key);
-	nt_arena_free(&s.arena);
-	nt_name_table_free(&s.keys);
+	nt_key_table_free(&s.keys);
 	return status;
 }

@@ -4,13 +4,9 @@
  */
 #include "gltf/vertex_pools.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/buffer.h"
-#include "base/name_table.h"
 #include "gltf/draco.h"
-#include "gltf/materials.h"
 
 /* ---- other users ---- */
 
@@ -176,20 +172,6 @@ nt_status nt_vertex_pools_find(const nt_scene *scene, const nt_read_options *opt
 
 /* ---- tangent sets of a pool ---- */
 
-static void put_number(nt_buffer *key, uint64_t number)
-{
-	nt_buffer_append(key, &number, sizeof number);
-}
-
-/* The accessor that a member names, by `same`. */
-static void put_accessor(nt_buffer *key, const nt_vertex_pools *pools, const nt_json_value *attributes,
-	const char *name)
-{
-	const nt_gltf *document = pools->scene->source;
-	const uint32_t accessor = nt_gltf_reference(document, attributes, name);
-	put_number(key, accessor != NT_NONE ? nt_gltf_same(document, accessor) : NT_NONE);
-}
-
 /* How many morph targets get tangents. */
 static size_t count_morphs(const nt_vertex_pools *pools, const nt_json_value *primitive, const nt_join *join)
 {
@@ -204,64 +186,22 @@ static size_t count_morphs(const nt_vertex_pools *pools, const nt_json_value *pr
 	return count;
 }
 
-/* The texture transform that turns the texture coordinates. */
-static void put_transform(nt_buffer *key, const nt_vertex_pools *pools, const nt_mesh *mesh,
-	const nt_json_value *primitive)
-{
-	nt_gltf_shading shading = {.has_set = false};
-	if (!mesh->texcoords_transformed || nt_gltf_find_slots(pools->scene->source, primitive, "", &shading, NULL) ||
-		!nt_gltf_turns(&shading, mesh->texcoord_set))
-		return;
-	nt_buffer_append(key, &shading.transform.uv.rotation, sizeof shading.transform.uv.rotation);
-	nt_buffer_append(key, shading.transform.uv.scale, sizeof shading.transform.uv.scale);
-}
-
 /*
  * Writes down what decides a tangent: meshes with equal keys form a set. Texture coordinates count as texture
  * transforms turn them; where those do not agree, hardly a tangent does, and a TANGENT for each is less than a copy of
  * every vertex.
  */
-static void put_key(nt_buffer *key, const nt_vertex_pools *pools, const nt_mesh *mesh)
+static bool put_key(nt_key_table *keys, const nt_vertex_pools *pools, const nt_mesh *mesh)
 {
-	char name[32];
-	snprintf(name, sizeof name, "TEXCOORD_%u", mesh->texcoord_set);
-	const nt_json_value *primitive = nt_gltf_primitive_of(pools->scene->source, mesh);
-	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
-	const nt_json_value *targets = nt_json_find(primitive, "targets");
-	put_accessor(key, pools, attributes, "POSITION");
-	put_accessor(key, pools, attributes, "NORMAL");
-	put_accessor(key, pools, attributes, name);
-	put_number(key, mesh->decision == NT_DECISION_NORMALS);
 	/* what is solved with others has other tangents than alone */
 	const nt_join *join = mesh->plan.same_as ? mesh->plan.same_as->plan.join : mesh->plan.join;
-	put_number(key, join ? (uint64_t)(join - pools->scene->joins) + 1 : 0);
-	const size_t morph_count = count_morphs(pools, primitive, join);
-	put_number(key, morph_count);
-	const size_t target_count = morph_count ? nt_json_count(targets) : 0; /* else they move no tangent */
-	put_number(key, target_count);
-	for (size_t i = 0; i < target_count; i++) {
-		put_accessor(key, pools, nt_json_at(targets, i), "POSITION");
-		put_accessor(key, pools, nt_json_at(targets, i), "NORMAL");
-	}
-	put_transform(key, pools, mesh, primitive);
-}
-
-/* Appends a user to its set, which may be a new one. keys: their numbers are those of the sets; last: [set] its last
- * user yet. */
-static bool join_set(nt_name_table *keys, nt_arena *arena, uint32_t *last, nt_tangent_sets *sets, uint32_t user,
-	const nt_buffer *key)
-{
-	const char *text = key->failed ? NULL : nt_arena_text(arena, key->data, key->size);
-	const uint32_t set = text ? nt_name_add(keys, text, key->size) : NT_NONE;
-	if (set == NT_NONE)
-		return false;
-	if (set == sets->count)
-		sets->first[sets->count++] = user;
-	else
-		sets->next[last[set]] = user;
-	last[set] = user;
-	sets->of[user] = set;
-	return true;
+	nt_key_put(keys, mesh->decision == NT_DECISION_NORMALS);
+	nt_key_put(keys, join ? (uint64_t)(join - pools->scene->joins) + 1 : 0);
+	const size_t morph_count = count_morphs(pools, nt_gltf_primitive_of(pools->scene->source, mesh), join);
+	nt_key_put(keys, morph_count);
+	/* if none gets tangents, they move none */
+	nt_error ignored;
+	return nt_geometry_key(keys, pools->scene->source, mesh, morph_count > 0, &ignored) != NT_ERROR_MEMORY;
 }
 
 /* Sets are known before the solve. */
@@ -272,22 +212,26 @@ static bool gets_tangents(const nt_mesh *mesh)
 
 static bool find_sets(nt_vertex_pool *pool, const nt_vertex_pools *pools)
 {
-	uint32_t *last = nt_alloc(pool->user_count, sizeof *last);
-	nt_name_table keys = {0};
-	nt_arena arena = {0};
-	nt_buffer key = {0};
+	nt_tangent_sets *sets = &pool->sets;
+	uint32_t *last = nt_alloc(pool->user_count, sizeof *last); /* [set] its last user yet */
+	nt_key_table keys = {0}; /* numbers are those of the sets */
 	bool found = last != NULL;
 	for (uint32_t i = 0; found && i < pool->user_count; i++) {
-		pool->sets.of[i] = pool->sets.next[i] = NT_NONE;
+		sets->of[i] = sets->next[i] = NT_NONE;
 		if (!gets_tangents(nt_pool_mesh(pool, i)))
 			continue;
-		key.size = 0;
-		put_key(&key, pools, nt_pool_mesh(pool, i));
-		found = join_set(&keys, &arena, last, &pool->sets, i, &key);
+		const uint32_t set = put_key(&keys, pools, nt_pool_mesh(pool, i)) ? nt_key_number(&keys) : NT_NONE;
+		found = set != NT_NONE;
+		if (!found)
+			break;
+		if (set == sets->count)
+			sets->first[sets->count++] = i;
+		else
+			sets->next[last[set]] = i;
+		last[set] = i;
+		sets->of[i] = set;
 	}
-	nt_buffer_free(&key);
-	nt_arena_free(&arena);
-	nt_name_table_free(&keys);
+	nt_key_table_free(&keys);
 	free(last);
 	return found;
 }

@@ -10,8 +10,28 @@
 #ifndef NT_GLTF_VERTEX_POOLS_H
 #define NT_GLTF_VERTEX_POOLS_H
 
+#include "base/buffer.h"
+#include "base/name_table.h"
 #include "scene/scene.h"
 #include "gltf/primitive.h"
+
+/* Keys, each of which gets a number. Zeroed: empty. */
+typedef struct nt_key_table {
+	nt_name_table names;
+	nt_arena texts; /* of the names */
+	nt_buffer key;  /* the one that is being written */
+} nt_key_table;
+
+/* geometry_key.c. Writes a number. */
+void nt_key_put(nt_key_table *table, uint64_t number);
+
+/* geometry_key.c. The number of the key that was written, new or not; another one begins. NT_NONE: out of memory. */
+uint32_t nt_key_number(nt_key_table *table);
+void nt_key_table_free(nt_key_table *table);
+
+/* geometry_key.c. Writes what decides the vertices of a mesh: attributes and the texture transform, and with `bakes`
+ * what morph targets do to them. Returns NT_OK, NT_ERROR_MEMORY or what is wrong with a material. */
+nt_status nt_geometry_key(nt_key_table *table, nt_gltf *document, const nt_mesh *mesh, bool bakes, nt_error *error);
 
 /* All pools of a document. Accessors over the same bytes count as one, by `same`. */
 typedef struct nt_vertex_pools {
