@@ -61,6 +61,42 @@ nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count)
 	return status ? status : check_own(mesh->texcoord_indices, *corner_count, mesh->texcoord_count);
 }
 
+nmtan_status nt_cut_faces(const nmtan_mesh *mesh, size_t triangle_count, nt_scratch *scratch, uint8_t **flags,
+	nt_triangles *triangles)
+{
+	const bool quads = triangle_count != mesh->face_count;
+	uint32_t *cuts = quads ? nt_scratch_alloc(scratch, triangle_count, sizeof *cuts) : NULL;
+	*flags = nt_scratch_alloc(scratch, triangle_count, 1);
+	if (!*flags || (quads && !cuts))
+		return NMTAN_ERROR_MEMORY;
+	memset(*flags, 0, triangle_count);
+	for (size_t face = 0, first = 0, t = 0; quads && face < mesh->face_count; first += mesh->face_sizes[face++]) {
+		uint32_t corners[2][3];
+		const unsigned count = nt_face_triangles(mesh, face, first, corners);
+		for (unsigned half = 0; half < count; half++, t++) {
+			(*flags)[t] = half ? NT_SECOND_HALF : 0;
+			cuts[t] = nt_cut_of((uint32_t)first, corners[half]);
+		}
+	}
+	triangles->cuts = cuts;
+	return NMTAN_OK;
+}
+
+nmtan_status nt_cut_ranges(const uint8_t *flags, size_t triangle_count, unsigned count, nt_scratch *scratch,
+	nt_triangle_ranges *ranges)
+{
+	size_t *bounds = nt_scratch_alloc(scratch, count + 1, sizeof *bounds);
+	if (!bounds)
+		return NMTAN_ERROR_MEMORY;
+	for (unsigned r = 0; r <= count; r++) {
+		bounds[r] = triangle_count / count * r + triangle_count % count * r / count;
+		while (bounds[r] < triangle_count && flags[bounds[r]] & NT_SECOND_HALF)
+			bounds[r]++;
+	}
+	*ranges = (nt_triangle_ranges){count, bounds};
+	return NMTAN_OK;
+}
+
 /* nt_written_diagonal(); *solved receives the diagonal of the solve. */
 static int written_diagonal(const nmtan_mesh *mesh, size_t first, int *solved)
 {

@@ -9,6 +9,7 @@
 #include "base/scratch.h"
 #include "nmtan.h"
 #include "topology/orientation.h"
+#include "topology/triangles.h"
 
 /* A row of an attribute. */
 static inline const float *nt_row(const float *data, size_t stride_bytes, size_t row)
@@ -118,6 +119,15 @@ static inline void nt_stored_texcoord(const nmtan_mesh *mesh, size_t vertex, flo
 	stored[0] = t[0];
 	stored[1] = t[1] + nt_stored_v_offset(mesh);
 }
+
+/* Makes flags of triangles, all but NT_SECOND_HALF clear, and the cuts of quads, if there are some. Returns NMTAN_OK or
+ * NMTAN_ERROR_MEMORY. */
+nmtan_status nt_cut_faces(const nmtan_mesh *mesh, size_t triangle_count, nt_scratch *scratch, uint8_t **flags,
+	nt_triangles *triangles);
+
+/* Makes ranges of triangles; halves of a quad stay together. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_cut_ranges(const uint8_t *flags, size_t triangle_count, unsigned count, nt_scratch *scratch,
+	nt_triangle_ranges *ranges);
 
 /* The one or two triangles of the face whose first corner is `first`, as corners of the mesh, for the solve: quads
  * are cut as MikkTSpace cuts them. Returns how many. */

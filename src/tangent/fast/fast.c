@@ -55,57 +55,6 @@ typedef struct run {
 
 /* 1 and 2: weld, cut */
 
-/* Triangles of a mesh with quads: how they are cut, and which are second halves. */
-static nmtan_status cut_faces(nt_fast *fast)
-{
-	const nmtan_mesh *mesh = fast->solve->mesh;
-	uint32_t *cuts = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, sizeof *cuts);
-	if (!cuts)
-		return NMTAN_ERROR_MEMORY;
-	size_t first = 0, t = 0;
-	for (size_t face = 0; face < mesh->face_count; first += mesh->face_sizes[face++]) {
-		uint32_t corners[2][3];
-		const unsigned count = nt_face_triangles(mesh, face, first, corners);
-		for (unsigned half = 0; half < count; half++, t++) {
-			fast->flags[t] = half ? NT_TRIANGLE_SECOND : 0;
-			cuts[t] = nt_cut_of((uint32_t)first, corners[half]);
-		}
-	}
-	fast->triangles.cuts = cuts;
-	return NMTAN_OK;
-}
-
-static nmtan_status make_triangles(nt_fast *fast, const nt_weld *weld)
-{
-	fast->rows = weld->rows;
-	fast->vertex_count = weld->count;
-	fast->flags = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 1);
-	if (!fast->flags)
-		return NMTAN_ERROR_MEMORY;
-	fast->triangles.ids = weld->ids;
-	if (fast->triangle_count != fast->solve->mesh->face_count)
-		return cut_faces(fast);
-	memset(fast->flags, 0, fast->triangle_count);
-	return NMTAN_OK;
-}
-
-/* Contiguous ranges of triangles; halves of a quad stay together. */
-static nmtan_status make_ranges(nt_fast *fast, unsigned count)
-{
-	size_t *bounds = nt_scratch_alloc(fast->solve->scratch, count + 1, sizeof *bounds);
-	if (!bounds)
-		return NMTAN_ERROR_MEMORY;
-	bounds[0] = 0;
-	bounds[count] = fast->triangle_count;
-	for (unsigned r = 1; r < count; r++) {
-		bounds[r] = fast->triangle_count / count * r + fast->triangle_count % count * r / count;
-		while (bounds[r] < fast->triangle_count && fast->flags[bounds[r]] & NT_TRIANGLE_SECOND)
-			bounds[r]++;
-	}
-	fast->ranges = (nt_triangle_ranges){count, bounds};
-	return NMTAN_OK;
-}
-
 static nmtan_status weld(const nt_fast *fast, unsigned ranges, nt_fast_memory *memory, nt_weld *result)
 {
 	const nt_solve *solve = fast->solve;
@@ -174,11 +123,16 @@ static nmtan_status make_tail(nt_fast *fast, nt_borrowed *memory)
 static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_memory *memory)
 {
 	const unsigned ranges = count_ranges(fast, plan);
+	nt_scratch *scratch = fast->solve->scratch;
 	nt_weld welded;
 	nmtan_status status = weld(fast, ranges, memory, &welded);
-	if (!status)
-		status = make_triangles(fast, &welded);
-	return status ? status : make_ranges(fast, ranges);
+	if (status)
+		return status;
+	fast->rows = welded.rows;
+	fast->vertex_count = welded.count;
+	fast->triangles.ids = welded.ids;
+	status = nt_cut_faces(fast->solve->mesh, fast->triangle_count, scratch, &fast->flags, &fast->triangles);
+	return status ? status : nt_cut_ranges(fast->flags, fast->triangle_count, ranges, scratch, &fast->ranges);
 }
 
 /* 3 and 4: adjacency, accumulate */

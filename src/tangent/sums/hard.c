@@ -65,8 +65,8 @@ void nt_sums_judge_ill(const nt_sums *s)
 {
 	for (size_t i = 0; i < 3 * s->triangle_count; i++) {
 		const int side = s->flags[i / 3] & NT_SUM_POSITIVE;
-		if (!(s->flags[i / 3] & NT_SUM_NONE) && is_ill(s, s->ids[i], side))
-			ease(s, i / 3, i % 3, &s->sums[side][s->ids[i]]);
+		if (!(s->flags[i / 3] & NT_SUM_NONE) && is_ill(s, nt_sums_vertex(s, i), side))
+			ease(s, i / 3, i % 3, &s->sums[side][nt_sums_vertex(s, i)]);
 	}
 	for (uint32_t id = 0; id < s->weld.count; id++)
 		for (int side = 0; side < 2; side++) {
@@ -80,7 +80,7 @@ void nt_sums_judge_ill(const nt_sums *s)
 
 void nt_sums_orient(const nt_sums *s, size_t t)
 {
-	const unsigned count = t + 1 < s->triangle_count && s->corners && (s->flags[t + 1] & NT_SUM_SECOND) ? 2 : 1;
+	const unsigned count = t + 1 < s->triangle_count && nt_is_cut_between(&s->triangles, t) ? 2 : 1;
 	uint32_t cut[2][3];
 	for (size_t i = 0; i < 3 * count; i++)
 		cut[i / 3][i % 3] = (uint32_t)nt_sums_corner(s, 3 * t + i);

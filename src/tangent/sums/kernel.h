@@ -239,10 +239,10 @@ static void NT_NOINLINE sum_corners_unweighted(sum_lanes *l, nt_sum_block *block
 	sum_corners(l, block, NT_WEIGHT_NONE);
 }
 
-static void sum_solve(const nt_sums *s, size_t first, size_t count, sum_lanes *l, nt_sum_block *block)
+static void sum_solve(const nt_sums *s, const uint32_t *ids, size_t count, sum_lanes *l, nt_sum_block *block)
 {
 	const double offset = nt_stored_v_offset(s->solve->mesh);
-	gather_lanes(s->weld.rows, s->ids + 3 * first, count, NT_SUM_LANES, l->row[0][0], NT_SUM_LANES);
+	gather_lanes(s->weld.rows, ids, count, NT_SUM_LANES, l->row[0][0], NT_SUM_LANES);
 	sum_frames(l, block, fabs(offset), offset != 0.0 ? 3 * 0x1p-24 : 0.0);
 	const double asked = FLAG(s->weight == NT_WEIGHT_NONE);
 	double cancelled = 0.0;
@@ -274,7 +274,7 @@ static void sum_classify(const nt_sums *s, size_t first, size_t count, nt_sum_bl
 	double odd = s->one_by_one;
 	LANES(i)
 		odd += block->hard[i] + (1.0 - block->certain[i]);
-	if (odd == 0.0 && !s->corners && !ask) {
+	if (odd == 0.0 && !s->triangles.cuts && !ask) {
 		for (size_t i = 0; i < count; i++)
 			flags[i] = sum_flags(block, i);
 		return;
@@ -359,7 +359,7 @@ LANE_INLINE void sum_add_one(nt_vertex_sum *to, const nt_vertex_sum *add)
 #endif
 
 /* Adds the lanes to their vertices, in order; or aside, where the vertex belongs to an earlier range. */
-static void NT_NOINLINE sum_add(nt_sums *s, size_t first, size_t count, unsigned range,
+static void NT_NOINLINE sum_add(nt_sums *s, size_t first, const uint32_t *ids, size_t count, unsigned range,
 	const nt_sum_block *block)
 {
 	NT_ALIGNED(64) nt_vertex_sum rows[3][NT_SUM_LANES]; /* in turned places */
@@ -382,8 +382,7 @@ static void NT_NOINLINE sum_add(nt_sums *s, size_t first, size_t count, unsigned
 			rows[k][i] = (nt_vertex_sum){block->add[k][0][i], block->add[k][1][i], block->add[k][2][i],
 				block->add[k][3][i]};
 #endif
-	const uint32_t *ids = s->ids + 3 * first;
-	const bool alone = s->ranges == 1;
+	const bool alone = s->ranges.count == 1;
 	for (size_t i = 0; i < count; i++, ids += 3) {
 		const uint8_t flags = s->flags[first + i];
 		const size_t place = turned_double_place(i);
@@ -406,11 +405,14 @@ static void NT_NOINLINE sum_add(nt_sums *s, size_t first, size_t count, unsigned
 LANE_INLINE void sum_prefetch(const nt_sums *s, size_t first, size_t end)
 {
 	const nt_vertex_sum *sums = s->sums[1] ? s->sums[1] : s->sums[0];
-	const size_t far = first + 2 * NT_SUM_LANES;
-	for (size_t i = 3 * far; i < 3 * (far + NT_SUM_LANES) && i < 3 * end; i++) {
-		NT_PREFETCH(&s->weld.rows[s->ids[i]]);
+	const size_t far = first + 2 * NT_SUM_LANES < end ? first + 2 * NT_SUM_LANES : end;
+	const size_t count = end - far < NT_SUM_LANES ? end - far : NT_SUM_LANES;
+	uint32_t copy[3 * NT_SUM_LANES];
+	const uint32_t *ids = nt_triangle_vertices(&s->triangles, far, count, copy);
+	for (size_t i = 0; i < 3 * count; i++) {
+		NT_PREFETCH(&s->weld.rows[ids[i]]);
 		if (sums)
-			NT_PREFETCH_TO_WRITE(&sums[s->ids[i]]);
+			NT_PREFETCH_TO_WRITE(&sums[ids[i]]);
 	}
 }
 
@@ -424,15 +426,17 @@ static size_t sum_accumulate(nt_sums *s, size_t begin, size_t end, unsigned rang
 			count--; /* halves of a quad stay together */
 		if (s->scattered)
 			sum_prefetch(s, first, end);
+		uint32_t copy[3 * NT_SUM_LANES];
+		const uint32_t *ids = nt_triangle_vertices(&s->triangles, first, count, copy);
 		if (!s->one_by_one)
-			sum_solve(s, first, count, &l, &block);
+			sum_solve(s, ids, count, &l, &block);
 		sum_classify(s, first, count, &block);
 		const int missing = sum_missing(s, first, count);
 		if (missing >= 0) {
 			*side = missing;
 			return first;
 		}
-		sum_add(s, first, count, range, &block);
+		sum_add(s, first, ids, count, range, &block);
 	}
 	return end;
 }

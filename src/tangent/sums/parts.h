@@ -26,7 +26,7 @@ enum {
 	NT_SUM_POSITIVE = 1, /* its face's orientation is +1 */
 	NT_SUM_NONE = 2,     /* its face has no orientation */
 	NT_SUM_SUSPECT = 4,  /* the check for unusable tangents looks at it */
-	NT_SUM_SECOND = 8    /* second half of a quad: the first is the triangle before */
+	NT_SUM_SECOND = NT_SECOND_HALF
 };
 
 /* Bits of nt_sums.vertex_flags; shifted by one for orientation +1 */
@@ -58,18 +58,16 @@ typedef struct nt_sums {
 	bool one_by_one;               /* all triangles are hard */
 	nt_weld weld;
 	size_t triangle_count;
-	const uint32_t *corners;       /* [3 * triangle_count] of the mesh; NULL: i is i */
-	const uint32_t *ids;           /* [3 * triangle_count] of the welded vertices */
+	nt_triangles triangles;        /* of welded vertices */
 	uint8_t *flags;                /* [triangle_count] */
 	nt_vertex_sum *sums[2];        /* [weld.count] for orientation -1 and +1; NULL: not needed */
 	nt_vertex_tangent *results[2]; /* the same */
 	uint8_t *vertex_flags;         /* [weld.count] */
 	bool scattered;                /* neighbouring triangles have vertices far apart: prefetch */
-	unsigned ranges;
-	size_t *begins;                /* [ranges + 1] their first triangles */
+	nt_triangle_ranges ranges;
 	uint16_t *owners;              /* [weld.count] the first range that touches the vertex */
-	nt_later **later;              /* [ranges] */
-	size_t *later_counts;          /* [ranges] */
+	nt_later **later;              /* [ranges.count] */
+	size_t *later_counts;          /* [ranges.count] */
 } nt_sums;
 
 typedef struct nt_sums_finished {
@@ -90,10 +88,15 @@ extern const nt_sum_kernels nt_sum_kernels_baseline;
 extern const nt_sum_kernels nt_sum_kernels_avx2, nt_sum_kernels_avx512;
 #endif
 
-/* Corner i % 3 of triangle i / 3: the mesh's number of it. */
+/* Corner i % 3 of triangle i / 3: the mesh's number of it, and its vertex. */
 static inline size_t nt_sums_corner(const nt_sums *s, size_t i)
 {
-	return s->corners ? s->corners[i] : i;
+	return s->triangles.cuts ? nt_triangle_corner(&s->triangles, i / 3, i % 3) : i;
+}
+
+static inline uint32_t nt_sums_vertex(const nt_sums *s, size_t i)
+{
+	return s->triangles.ids[nt_sums_corner(s, i)];
 }
 
 /* Triangles that go by the definition in frames.c, one by one: hard.c */

@@ -38,80 +38,24 @@ enum { TRIANGLE_GRAIN = 32768, WELD_GRAIN = 3 * 65536, BLOCK_GRAIN = 2048, MOST_
 /* Triangles by which the results of a scattered mesh are prefetched before they are read. */
 enum { WRITE_AHEAD = 16 };
 
-/* Cuts the triangles into ranges, never a quad: before threads change flags, which lie beside the ends of others. */
-static nmtan_status cut_ranges(nt_sums *s)
-{
-	s->ranges = nt_parallel_slots(s->solve->threads, s->triangle_count, TRIANGLE_GRAIN);
-	if (s->ranges > MOST_RANGES)
-		s->ranges = MOST_RANGES;
-	s->begins = nt_scratch_alloc(s->solve->scratch, s->ranges + 1, sizeof *s->begins);
-	if (!s->begins)
-		return NMTAN_ERROR_MEMORY;
-	for (unsigned r = 0; r <= s->ranges; r++) {
-		size_t t = s->triangle_count / s->ranges * r + s->triangle_count % s->ranges * r / s->ranges;
-		while (s->corners && t < s->triangle_count && (s->flags[t] & NT_SUM_SECOND))
-			t++;
-		s->begins[r] = t;
-	}
-	return NMTAN_OK;
-}
-
-/* Triangles of a mesh with quads: their corners, vertices, and which are second halves. */
-static nmtan_status cut_faces(nt_sums *s)
-{
-	const nmtan_mesh *mesh = s->solve->mesh;
-	uint32_t *corners = nt_scratch_alloc(s->solve->scratch, s->triangle_count, 3 * sizeof *corners);
-	uint32_t *ids = nt_scratch_alloc(s->solve->scratch, s->triangle_count, 3 * sizeof *ids);
-	if (!corners || !ids)
-		return NMTAN_ERROR_MEMORY;
-	size_t t = 0;
-	for (size_t face = 0, first = 0; face < mesh->face_count; first += nt_face_size(mesh, face++)) {
-		uint32_t cut[2][3];
-		const unsigned count = nt_face_triangles(mesh, face, first, cut);
-		for (unsigned half = 0; half < count; half++, t++) {
-			s->flags[t] = half ? NT_SUM_SECOND : 0;
-			for (size_t k = 0; k < 3; k++) {
-				corners[3 * t + k] = cut[half][k];
-				ids[3 * t + k] = s->weld.ids[cut[half][k]];
-			}
-		}
-	}
-	s->corners = corners;
-	s->ids = ids;
-	return NMTAN_OK;
-}
-
-static nmtan_status make_triangles(nt_sums *s)
-{
-	const nmtan_mesh *mesh = s->solve->mesh;
-	s->triangle_count = nt_triangle_count(mesh, s->solve->corner_count);
-	s->flags = nt_scratch_alloc(s->solve->scratch, s->triangle_count, 1);
-	if (!s->flags)
-		return NMTAN_ERROR_MEMORY;
-	if (s->triangle_count != mesh->face_count)
-		return cut_faces(s);
-	memset(s->flags, 0, s->triangle_count);
-	s->ids = s->weld.ids;
-	return NMTAN_OK;
-}
-
 /* The first range that touches each vertex, and room for what later ones have for it. */
 static nmtan_status make_owners(nt_sums *s)
 {
 	nt_scratch *scratch = s->solve->scratch;
 	s->owners = nt_scratch_alloc(scratch, s->weld.count, sizeof *s->owners);
-	s->later = nt_scratch_alloc(scratch, s->ranges, sizeof *s->later);
-	s->later_counts = nt_scratch_alloc(scratch, s->ranges, sizeof *s->later_counts);
+	s->later = nt_scratch_alloc(scratch, s->ranges.count, sizeof *s->later);
+	s->later_counts = nt_scratch_alloc(scratch, s->ranges.count, sizeof *s->later_counts);
 	if (!s->owners || !s->later || !s->later_counts)
 		return NMTAN_ERROR_MEMORY;
 	memset(s->owners, 0xff, s->weld.count * sizeof *s->owners);
-	for (unsigned r = s->ranges; r-- > 0;)
-		for (size_t i = 3 * s->begins[r]; i < 3 * s->begins[r + 1]; i++)
-			s->owners[s->ids[i]] = (uint16_t)r;
-	for (unsigned r = 0; r < s->ranges; r++) {
+	const size_t *bounds = s->ranges.bounds;
+	for (unsigned r = s->ranges.count; r-- > 0;)
+		for (size_t i = 3 * bounds[r]; i < 3 * bounds[r + 1]; i++)
+			s->owners[nt_sums_vertex(s, i)] = (uint16_t)r;
+	for (unsigned r = 0; r < s->ranges.count; r++) {
 		size_t count = 0;
-		for (size_t i = 3 * s->begins[r]; r > 0 && i < 3 * s->begins[r + 1]; i++)
-			count += s->owners[s->ids[i]] != r;
+		for (size_t i = 3 * bounds[r]; r > 0 && i < 3 * bounds[r + 1]; i++)
+			count += s->owners[nt_sums_vertex(s, i)] != r;
 		s->later_counts[r] = 0;
 		s->later[r] = nt_scratch_alloc(scratch, count, sizeof **s->later);
 		if (!s->later[r])
@@ -146,11 +90,18 @@ static nmtan_status prepare(nt_sums *s, nt_borrowed *memory)
 	nmtan_status status = weld_any_size(s, memory);
 	if (s->solve->timing)
 		s->solve->timing->weld += nt_seconds() - begin;
-	if (status || (status = make_triangles(s)))
+	const nmtan_mesh *mesh = s->solve->mesh;
+	s->triangle_count = nt_triangle_count(mesh, s->solve->corner_count);
+	s->triangles.ids = s->weld.ids;
+	if (!status)
+		status = nt_cut_faces(mesh, s->triangle_count, s->solve->scratch, &s->flags, &s->triangles);
+	if (status)
 		return status;
-	s->scattered = nt_is_scattered(s->ids, 3 * s->triangle_count, s->weld.count);
-	status = cut_ranges(s);
-	return !status && s->ranges > 1 ? make_owners(s) : status;
+	s->scattered = nt_is_scattered(s->weld.ids, s->solve->corner_count, s->weld.count);
+	const unsigned ranges = nt_parallel_slots(s->solve->threads, s->triangle_count, TRIANGLE_GRAIN);
+	status = nt_cut_ranges(s->flags, s->triangle_count, ranges < MOST_RANGES ? ranges : MOST_RANGES,
+		s->solve->scratch, &s->ranges);
+	return !status && s->ranges.count > 1 ? make_owners(s) : status;
 }
 
 /* Summing */
@@ -176,15 +127,16 @@ static void sum_ranges(void *context, size_t begin, size_t end, unsigned thread)
 {
 	(void)thread;
 	const run *r = context;
+	const size_t *bounds = r->s->ranges.bounds;
 	for (size_t range = begin; range < end; range++) {
 		int side;
-		r->kernels->accumulate(r->s, r->s->begins[range], r->s->begins[range + 1], (unsigned)range, &side);
+		r->kernels->accumulate(r->s, bounds[range], bounds[range + 1], (unsigned)range, &side);
 	}
 }
 
 static void add_later(const nt_sums *s)
 {
-	for (unsigned r = 1; r < s->ranges; r++) {
+	for (unsigned r = 1; r < s->ranges.count; r++) {
 		for (size_t i = 0; i < s->later_counts[r]; i++) {
 			const nt_later *later = &s->later[r][i];
 			later->to->x += later->add.x;
@@ -198,10 +150,10 @@ static void add_later(const nt_sums *s)
 static nmtan_status sum_up(const run *r, nt_borrowed *memory)
 {
 	nt_sums *s = r->s;
-	if (s->ranges > 1) {
+	if (s->ranges.count > 1) {
 		if (!make_sums(s, 0, memory) || !make_sums(s, 1, memory))
 			return NMTAN_ERROR_MEMORY;
-		nt_parallel_ranges(s->ranges, s->ranges, 1, sum_ranges, (void *)r);
+		nt_parallel_ranges(s->ranges.count, s->ranges.count, 1, sum_ranges, (void *)r);
 		add_later(s);
 		return NMTAN_OK;
 	}
@@ -277,13 +229,13 @@ static void write_corner(const nt_sums *s, size_t corner, uint32_t id, int side)
 		solve->magnitudes[2 * corner] = solve->magnitudes[2 * corner + 1] = 1.0f;
 }
 
-/* Whether corner i of the triangles is one of the first half of its quad, too. */
-static bool is_counted(const nt_sums *s, size_t t, size_t i)
+/* Whether a triangle's corner is one of the first half of its quad, too. */
+static bool is_counted(const nt_sums *s, size_t t, size_t corner)
 {
-	if (!(s->flags[t] & NT_SUM_SECOND))
-		return false;
-	const uint32_t *first = s->corners + 3 * (t - 1);
-	return s->corners[i] == first[0] || s->corners[i] == first[1] || s->corners[i] == first[2];
+	for (unsigned k = 0; k < 3 && s->flags[t] & NT_SUM_SECOND; k++)
+		if (nt_triangle_corner(&s->triangles, t - 1, k) == corner)
+			return true;
+	return false;
 }
 
 /* Writes any triangle, and returns how many of its corners are ill-conditioned. A face without orientation
@@ -291,18 +243,19 @@ static bool is_counted(const nt_sums *s, size_t t, size_t i)
 static size_t write_triangle(const nt_sums *s, size_t t)
 {
 	size_t ill = 0;
-	for (size_t i = 3 * t; i < 3 * t + 3; i++) {
-		const uint32_t id = s->ids[i];
+	for (unsigned k = 0; k < 3; k++) {
+		const size_t corner = nt_triangle_corner(&s->triangles, t, k);
+		const uint32_t id = s->weld.ids[corner];
 		const uint8_t flags = s->flags[t], vertex = s->vertex_flags[id];
 		const int side = side_of(s, flags, vertex);
 		const bool none = side == NO_SIDE || !s->results[side];
 		if (!none && (vertex & NT_VERTEX_LOST << side))
 			s->flags[t] |= NT_SUM_SUSPECT;
 		const bool is_ill = none || (vertex & NT_VERTEX_ILL << side);
-		ill += is_ill && !is_counted(s, t, i);
+		ill += is_ill && !is_counted(s, t, corner);
 		if (is_ill && s->solve->faults && s->weight == NT_WEIGHT_ANGLE)
-			s->solve->faults[nt_sums_corner(s, i)] |= NMTAN_FAULT_ILL_CONDITIONED;
-		write_corner(s, nt_sums_corner(s, i), id, side);
+			s->solve->faults[corner] |= NMTAN_FAULT_ILL_CONDITIONED;
+		write_corner(s, corner, id, side);
 	}
 	return ill;
 }
@@ -310,7 +263,7 @@ static size_t write_triangle(const nt_sums *s, size_t t)
 /* Triangles without anything special, and tangents only. */
 static void write_plain(const nt_sums *s, size_t t, const nt_vertex_tangent *results)
 {
-	const uint32_t *ids = s->ids + 3 * t;
+	const uint32_t *ids = s->weld.ids + 3 * t;
 	const nt_vertex_tangent a = results[ids[0]], b = results[ids[1]], c = results[ids[2]];
 	float *out = s->solve->tangents + 12 * t;
 	memcpy(out, &a, sizeof a);
@@ -324,7 +277,7 @@ static void prefetch_results(const nt_sums *s, size_t t, size_t end)
 		return;
 	const nt_vertex_tangent *results = s->results[s->flags[t] & NT_SUM_POSITIVE];
 	for (size_t i = 3 * t; results && i < 3 * t + 3; i++)
-		NT_PREFETCH(&results[s->ids[i]]);
+		NT_PREFETCH(&results[nt_sums_vertex(s, i)]);
 }
 
 typedef struct writing {
@@ -355,7 +308,7 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned threa
 	const writing *w = context;
 	const nt_sums *s = w->r->s;
 	for (size_t range = begin; range < end; range++)
-		w->r->ill[range] = write_range(w, s->begins[range], s->begins[range + 1]);
+		w->r->ill[range] = write_range(w, s->ranges.bounds[range], s->ranges.bounds[range + 1]);
 }
 
 /* Tells the check for unusable tangents what it need not look at: a plain triangle has weight at its corners, so
@@ -369,7 +322,7 @@ static void tell_known(const nt_sums *s, bool sparse)
 		.doubtful = NT_SUM_SUSPECT, .welded = s->weld.ids, .welded_count = s->weld.count};
 	if (!sparse)
 		return;
-	known->ids = s->ids;
+	known->ids = s->weld.ids;
 	known->row_step = 4;
 	for (int side = 0; side < 2; side++)
 		known->rows[side] = s->results[side] ? &s->results[side]->x : NULL;
@@ -380,15 +333,16 @@ static nmtan_status write_results(run *r, const nt_sums_finished *finished, size
 	nt_sums *s = r->s;
 	const nt_solve *solve = s->solve;
 	const writing w = {.r = r,
-		.careful = finished->lost || finished->ill || s->corners || solve->bitangents || solve->magnitudes,
-		.sparse = solve->sparse && solve->known && !s->corners};
-	r->ill = nt_scratch_alloc(solve->scratch, s->ranges, sizeof *r->ill);
+		.careful = finished->lost || finished->ill || s->triangles.cuts || solve->bitangents ||
+			   solve->magnitudes,
+		.sparse = solve->sparse && solve->known && !s->triangles.cuts};
+	r->ill = nt_scratch_alloc(solve->scratch, s->ranges.count, sizeof *r->ill);
 	if (!r->ill)
 		return NMTAN_ERROR_MEMORY;
-	nt_parallel_ranges(s->ranges, s->ranges, 1, write_ranges, (void *)&w);
+	nt_parallel_ranges(s->ranges.count, s->ranges.count, 1, write_ranges, (void *)&w);
 	tell_known(s, w.sparse);
 	*ill_conditioned = 0;
-	for (unsigned range = 0; range < s->ranges; range++)
+	for (unsigned range = 0; range < s->ranges.count; range++)
 		*ill_conditioned += r->ill[range];
 	return NMTAN_OK;
 }
