@@ -13,11 +13,14 @@
 #include <float.h>
 #include <math.h>
 #include <string.h>
-#include "base/error.h"
+#include "base/buffer.h"
+#include "base/dvec.h"
 #include "base/memory.h"
 #include "ext/number.h"
 #include "file/decimal.h"
+#include "file/output.h"
 #include "scene/scene.h"
+#include "scene/srgb.h"
 
 /* ---- values ---- */
 
@@ -335,8 +338,9 @@ nt_status ply_read_rows(ply_rows *rows, nt_error *error);
 /* The value of a number as it was in the row that was read last; false: text that is none. */
 bool ply_cell_float(const ply_rows *rows, size_t property, float *value);
 
-/* Value k of a list. */
+/* Value k of a list; of a list of integers. */
 ply_cell ply_cell_value(const ply_rows *rows, size_t property, size_t k);
+int64_t ply_cell_integer(const ply_rows *rows, size_t property, size_t k);
 
 /* ---- rows of one size: runs.c ---- */
 
@@ -414,5 +418,80 @@ size_t ply_sample_edges(const nt_mesh *mesh, const double *exact, size_t most, d
  * Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status ply_settle_origin(nt_scene *scene, nt_mesh *mesh, const ply_source *source, const nt_origin *wished,
 	ply_cursor *cursor, nt_error *error);
+
+/* ---- writing ---- */
+
+/* Values of a vertex that is written, three of each but for four of colours and tangents and two of s and t. */
+typedef enum ply_value {
+	PLY_X,
+	PLY_NX = 3,
+	PLY_RED = 6,
+	PLY_S = 10,
+	PLY_TX = 12,
+	PLY_BX = 16,
+	PLY_VALUES = 19
+} ply_value;
+
+/* The mesh of a PLY that is written from a PLY: numbering.c. Rows of the source keep their number; what normals,
+ * tangents and per-face texture coordinates have added comes behind them. */
+typedef struct ply_numbering {
+	const nt_mesh *mesh;
+	const ply_source *source;
+	size_t row_count;        /* vertices of the source */
+	const uint32_t *indices; /* final vertex of each corner */
+	size_t final_count;      /* vertices after all stages; some of them become one in the output */
+	uint32_t *numbers;       /* [final_count - row_count] number in the output */
+	uint32_t *appended;      /* [appended_count] final vertex of each appended row */
+	size_t appended_count;
+	size_t cut_polygons;     /* polygons that become triangles, and how many faces that adds */
+	size_t added_faces;
+} ply_numbering;
+
+/* False: out of memory. ply_numbering_free is due in any case. */
+bool ply_number_vertices(ply_numbering *numbering, const nt_mesh *mesh, const ply_source *source);
+void ply_numbering_free(ply_numbering *numbering);
+
+/* The vertex of the mesh, and the row of the source, that a final vertex has its attributes from. */
+size_t ply_mesh_vertex(const ply_numbering *numbering, size_t vertex);
+size_t ply_source_row(const ply_numbering *numbering, size_t vertex);
+
+/* The vertex of the output at a corner of the mesh. */
+uint32_t ply_output_vertex(const ply_numbering *numbering, size_t corner);
+
+/* Vertices for the corners of a cut polygon whose triangles begin at `corner`; false: the triangles
+ * disagree about one. cut: its part of source->cuts; vertices: [size]. */
+bool ply_resolve_polygon(const ply_numbering *numbering, size_t corner, size_t size, const uint32_t *cut,
+	uint32_t *vertices);
+
+/* All meshes of a scene in the world: world.c */
+typedef struct ply_world {
+	bool normals, colors, byte_colors, texcoords, tangents, bitangents; /* what vertices have */
+	bool doubles; /* positions, which float does not hold */
+	bool flips_v;
+	nt_srgb srgb;
+	size_t vertex_count, face_count;
+} ply_world;
+
+/* How one instance is brought into the world. */
+typedef struct ply_placement {
+	bool identity, mirrored;
+	nt_dvec3 columns[4];   /* of the matrix */
+	nt_dvec3 cofactors[3]; /* columns of the inverse transpose times |determinant| */
+} ply_placement;
+
+void ply_find_world(ply_world *world, const nt_scene *scene, bool bitangents);
+ply_placement ply_find_placement(const nt_instance *instance);
+
+/* Vertices of a mesh that are written; 0: the mesh is not. */
+size_t ply_world_vertices(const nt_mesh *mesh);
+
+/* Returns NT_OK or NT_ERROR_INPUT. */
+nt_status ply_world_vertex(const ply_world *world, const ply_placement *placement, const nt_mesh *mesh, size_t vertex,
+	double values[PLY_VALUES], nt_error *error);
+
+/* Puts the image beside the output, if it is not there, and says what of the scene's materials is lost. name: appended,
+ * from the folder of the PLY; "": there is none. texture.c */
+nt_status ply_settle_texture(nt_buffer *name, nt_scene *scene, const nt_write_options *options, nt_output *set,
+	nt_error *error);
 
 #endif

@@ -303,6 +303,18 @@ ply_cell ply_cell_value(const ply_rows *rows, size_t property, size_t k)
 	return (ply_cell){at, text ? ply_skip_value(at, list.end) : at + ply_size(own->type), 1};
 }
 
+int64_t ply_cell_integer(const ply_rows *rows, size_t property, size_t k)
+{
+	const ply_cell cell = ply_cell_value(rows, property, k);
+	const ply_type type = rows->element->properties[property].type;
+	int64_t value = 0;
+	if (rows->cursor->encoding == PLY_ASCII)
+		ply_read_integer(cell.begin, cell.end, &value);
+	else
+		value = ply_load_integer(cell.begin, type, ply_swaps(rows->cursor->encoding));
+	return value;
+}
+
 nt_status ply_read_rows(ply_rows *rows, nt_error *error)
 {
 	nt_status status = NT_OK;

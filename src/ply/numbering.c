@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The vertices of a PLY that is written from a PLY: see vertex_map.h. Vertices that were told apart by
- * per-face texture coordinates alone become one again where their normals and tangents are equal, since
- * the coordinates stay with the faces.
+ * The vertices of a PLY that is written from a PLY: rows of the source keep their number. Vertices that were told apart
+ * by per-face texture coordinates alone become one again if their normals and tangents are equal, since the coordinates
+ * stay with the faces.
  */
-#include "ply/vertex_map.h"
+#include "ply/parts.h"
 
 #include <stdlib.h>
 
