@@ -328,9 +328,21 @@ static void stand_for(nt_gltf *document, nt_json_value *buffer, const nt_json_va
 		nt_trace_read(path, file);
 }
 
+/* Whether an extension may hold the number of a buffer: a vendor's one. KHR_ and EXT_ ones do in views alone. */
+static bool may_refer(const nt_gltf *document)
+{
+	const nt_json_value *used = nt_gltf_root_member(document, "extensionsUsed");
+	bool may = false;
+	for (size_t i = 0; !may && i < nt_json_count(used); i++) {
+		const char *name = nt_json_get_string(nt_json_at(used, i), NULL);
+		may = !name || (strncmp(name, "KHR_", 4) != 0 && strncmp(name, "EXT_", 4) != 0);
+	}
+	return may;
+}
+
 /* Makes one buffer of those that name one file, by whatever name: each would be opened, and once it is edited,
- * written. Views refer to buffers, and extensions of theirs do. files: [buffer_count], which become those of the
- * buffers that are left. */
+ * written. Views refer to buffers, and extensions of theirs do; if others may, all stay. files: [buffer_count], which
+ * become those of the buffers that are left. */
 static nt_status merge_buffers(nt_gltf *document, struct stat *files, nt_error *error)
 {
 	const size_t count = document->buffer_count;
@@ -339,8 +351,8 @@ static nt_status merge_buffers(nt_gltf *document, struct stat *files, nt_error *
 	nt_json_value *views = nt_gltf_root_member(document, "bufferViews");
 	nt_hash_index known = {0};
 	uint32_t kept = 0, *numbers = nt_alloc(count, sizeof *numbers);
-	bool failed = !numbers;
-	for (size_t i = 0; i < count && !failed; i++) {
+	bool failed = !numbers, stays = false;
+	for (size_t i = 0; i < count && !failed && !stays; i++) {
 		const uint64_t key[2] = {files[i].st_dev, files[i].st_ino}, hash = nt_hash_bytes(0, key, sizeof key);
 		size_t at = NT_HASH_BEGIN;
 		/* a name, extras or an extension of its own would be lost */
@@ -349,7 +361,8 @@ static nt_status merge_buffers(nt_gltf *document, struct stat *files, nt_error *
 		while (first != UINT32_MAX &&
 			(files[first].st_dev != files[i].st_dev || files[first].st_ino != files[i].st_ino))
 			first = nt_hash_index_next(&known, hash, &at);
-		if (first != UINT32_MAX) {
+		stays = first != UINT32_MAX && kept == i && may_refer(document);
+		if (first != UINT32_MAX && !stays) {
 			stand_for(document, nt_json_at(buffers, first), nt_json_at(buffers, i), &files[i]);
 			numbers[i] = first;
 			continue;
@@ -361,6 +374,7 @@ static nt_status merge_buffers(nt_gltf *document, struct stat *files, nt_error *
 		failed = files[i].st_nlink && !nt_hash_index_add(&known, hash, kept);
 		numbers[i] = kept++;
 	}
+	kept = stays ? (uint32_t)count : kept;
 	for (size_t i = count; i-- > kept && !failed;)
 		nt_json_remove_at(json, buffers, i);
 	for (size_t i = 0; i < nt_json_count(views) && kept < count && !failed; i++) {

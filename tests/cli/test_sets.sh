@@ -538,8 +538,22 @@ python3 "$ROOT/tests/support/cost_inputs.py" colors 40 "$PWD/forty.obj"
 other= stride=$((7 * stride)) sweep kill nothing o.gltf -q -j1 "$PWD/forty.obj" o.gltf
 other= stride=$((7 * stride)) sweep fail nothing o.gltf -q -j1 "$PWD/forty.obj" o.gltf
 
-scene "buffers of one file become one, but for one with extras of its own"
+scene "buffers of one file become one, but for one with extras of its own, or if an extension may refer to them"
 cp "$data"/plates.{gltf,bin} "$data/bumps.png" .
+for row in VENDOR_x:2 EXT_x:1 KHR_x:1; do
+	python3 - "${row%:*}" <<'END'
+import json, sys
+g = json.load(open('plates.gltf'))
+g['buffers'] *= 2
+g['bufferViews'][-1]['buffer'] = 1
+g['extensionsUsed'] = [sys.argv[1]]
+g['materials'][0]['extensions'] = {sys.argv[1]: {'source': 1}}
+json.dump(g, open('two.gltf', 'w'))
+END
+	run -q --only=all two.gltf out.gltf
+	exits 0
+	is "$row: $(python3 -c 'import json; print(len(json.load(open("out.gltf"))["buffers"]))')" "$row: ${row#*:}"
+done
 for extras in '{}' '{"extras": {"keep": 1}}'; do
 	python3 - "$extras" <<'END'
 import json, sys
