@@ -158,7 +158,7 @@ static nt_dvec3 cross_exactly(nt_dvec3 a, nt_dvec3 b)
 		nt_product_difference(a.z, b.x, a.x, b.z), nt_product_difference(a.x, b.y, a.y, b.x)};
 }
 
-static double error3(nt_dvec3 difference, const float *a, const float *b)
+static inline NT_ALWAYS_INLINE double error3(nt_dvec3 difference, const float *a, const float *b)
 {
 	return nt_difference_error(difference.x, a[0], b[0]) + nt_difference_error(difference.y, a[1], b[1]) +
 	       nt_difference_error(difference.z, a[2], b[2]);

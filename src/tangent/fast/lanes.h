@@ -48,18 +48,22 @@ static inline bool are_plain(const lanes_out *out, size_t count)
 static void NT_NOINLINE clear_along(const lanes_in *in, lanes_out *out, size_t count)
 {
 	static const nt_record nothing = {.state = NT_STATE_BASE | NT_STATE_NO_ANY | NT_STATE_LOCAL | NT_STATE_U};
-	for (size_t i = 0; i < count; i++)
-		for (size_t k = 0; k < 3 && out->sound[i]; k++) {
-			const float n[3] = {in->row[k][3][i], in->row[k][4][i], in->row[k][5][i]};
-			const float u[3] = {out->u[0][i], out->u[1][i], out->u[2][i]}, along = nt_dot3(n, u);
-			float squares = 0;
-			if (u[0] != along * n[0] || u[1] != along * n[1] || u[2] != along * n[2])
-				continue;
-			for (size_t c = 0; c < 9; c++)
-				squares += in->row[c / 3][c % 3][i] * in->row[c / 3][c % 3][i];
-			if (squares < MOST_RATIO)
-				memcpy(out->add[k] + 4 * turned_place(i), &nothing, sizeof nothing);
+	for (size_t i = 0; i < count; i++) {
+		const float u[3] = {out->u[0][i], out->u[1][i], out->u[2][i]};
+		float squares = 0;
+		bool along[3];
+		for (size_t k = 0; k < 3; k++) {
+			const float *p = in->row[k][0] + i, *n = in->row[k][3] + i;
+			const float x = n[0], y = n[NT_TRIANGLES], z = n[2 * NT_TRIANGLES];
+			const float part = x * u[0] + y * u[1] + z * u[2];
+			along[k] = (u[0] == part * x) & (u[1] == part * y) & (u[2] == part * z);
+			squares += p[0] * p[0] + p[NT_TRIANGLES] * p[NT_TRIANGLES] +
+				   p[2 * NT_TRIANGLES] * p[2 * NT_TRIANGLES];
 		}
+		for (size_t k = 0; k < 3 && out->sound[i] && squares < MOST_RATIO; k++)
+			if (along[k])
+				memcpy(out->add[k] + 4 * turned_place(i), &nothing, sizeof nothing);
+	}
 }
 
 /* Facts about solved lanes; more than sums needs bounds that plain ones do not have. */
