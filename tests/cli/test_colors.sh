@@ -48,7 +48,7 @@ exits 0
 is "$(grep -ac '^property uchar red' again.ply)" 1
 
 scene "a colour that is not finite is white, and costs no more than itself"
-printf 'v %s\n' "0 0 0 1 0 0" "1 0 0 0 nan 0" "0 1 0 0 0 1 inf" "1 1 0 0 0 1" >nan.obj
+printf 'v %s\n' "0 0 0 1 0 0" "1 0 0 nan 0 0" "0 1 0 0 0 1 inf" "1 1 0 0 0 1" >nan.obj
 printf 'f %s\n' "1 2 3" "2 4 3" >>nan.obj
 run nan.obj nan.glb
 exits 0

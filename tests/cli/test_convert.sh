@@ -72,6 +72,14 @@ says "2 of 3 primitives"
 is "$(gltf out.glb 'g.meshes[0].primitives.map((p) => p.attributes.TANGENT !== undefined)')" \
 	"[true,false,true]"
 
+scene "views of a new glTF say what is in them: vertices or indices, nothing of images"
+cp "$data/bumps.png" .
+run --images=embed "$data/mirrored_cube.obj" cube.glb
+exits 0
+is "$(gltf cube.glb '(() => { const [p] = g.meshes[0].primitives, of = (a) => g.bufferViews[g.accessors[a].bufferView].target;
+	return [[...new Set(Object.values(p.attributes).map(of))], of(p.indices),
+		g.images.map((i) => g.bufferViews[i.bufferView].target ?? "none")]; })()')" '[[34962],34963,["none"]]'
+
 scene "the second of two runs finds nothing to do and copies the file"
 run "$data/plates.glb" one.glb
 run one.glb two.glb
@@ -123,6 +131,31 @@ run --bitangents "$data/quad_be.ply" be.ply
 exits 0
 grep -aq '^format binary_big_endian 1.0' be.ply || wrong "not big endian"
 grep -aq '^property float bz' be.ply || wrong "no bitangents"
+
+scene "faces of one and two corners stay in a binary PLY"
+python3 - <<'END'
+import struct
+head = ("ply\nformat binary_%s_endian 1.0\nelement vertex 4\n" + "".join("property float %s\n" % n for n in "xyzst") +
+        "element face 4\nproperty list uchar int vertex_indices\nend_header\n")
+for name, order in ("little", "<"), ("big", ">"):
+    with open(name + ".ply", "wb") as file:
+        file.write((head % name).encode())
+        for x, y in (0, 0), (1, 0), (1, 1), (0, 1):
+            file.write(struct.pack(order + "5f", x, y, 0, x, y))
+        for face in [0, 1, 2], [3, 1], [2], [0, 2, 3]:
+            file.write(struct.pack(order + "B%di" % len(face), len(face), *face))
+END
+for order in little big; do
+	run $order.ply out.ply
+	exits 0
+	is "$(python3 -c 'import struct, sys
+d, order = open("out.ply", "rb").read(), "<" if sys.argv[1] == "little" else ">"
+rest, faces = d[-40:], []
+while rest:
+    faces.append(struct.unpack_from(order + "%di" % rest[0], rest, 1))
+    rest = rest[1 + 4 * len(faces[-1]):]
+print(faces)' $order)" "[(0, 1, 2), (3, 1), (2,), (0, 2, 3)]"
+done
 
 scene "a glTF becomes a PLY"
 run --only=all "$data/plates.gltf" plates.ply

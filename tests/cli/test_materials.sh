@@ -115,6 +115,15 @@ run both.obj both.glb
 exits 0
 is "$(gltf both.glb '[g.images.length, g.materials.length]')" "[1,2]"
 
+scene "maps of two sizes: rows of the smaller one lie between its own"
+images write r.png 1 4 '0'
+images write m.png 1 2 '200 * y'
+quad "map_Pr r.png" "map_Pm m.png"
+run quad.obj quad.glb
+exits 0
+images embedded quad.glb 0 made.png
+is "$(images rows made.png '[row[0][2] for row in rows]')" "[50, 50, 150, 150]"
+
 scene "libraries of Blender have its own formula, and its maps"
 cp "$WORK/images/51x.png" .
 quad "Ns 250" "Pm 0" "map_refl 51x.png"

@@ -419,6 +419,7 @@ python3 - b.glb <<'END' || wrong "exit code $?"
 import errno, os, struct, sys
 try:
     os.setxattr(sys.argv[1], 'user.note', b'mine')
+    os.setxattr(sys.argv[1], 'user.empty', b'')
 except OSError as fault:  # a file system without
     sys.exit(fault.errno != errno.ENOTSUP)
 # version 2: user rw-, user 4242 r--, group ---, mask r--, others ---

@@ -66,6 +66,14 @@ for lines in "map_Bump -bm 3 h.tga" "map_Bump h.tga|map_Kd clear.png" "norm n.tg
 done
 [ ! -e dry.gltf ] || wrong "a dry run wrote"
 
+scene "a TIFF with a palette has its colours"
+images write p.tif 3 2 '100 * x + y'
+quad "map_Kd p.tif"
+run quad.obj quad.gltf
+exits 0
+is "$(images rows "$(gltf quad.gltf 'g.images[0].uri' | tr -d '"')")" \
+	"[[[0,0,255],[100,100,155],[200,200,55]],[[1,1,254],[101,101,154],[201,201,54]]]"
+
 scene "a name that is taken by another file stays with that"
 images write n.tga 32 16 "$bumps"
 images write n.png 2 2 '(1, 2, 3)'

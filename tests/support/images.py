@@ -72,7 +72,18 @@ def tif_of(data, behind, entries):
     return b"II*\0" + struct.pack("<I", at) + data + bytes(len(data) % 2) + directory + bytes(4) + behind
 
 
+def palette_tif(width, height, pixel):
+    """Grey bytes are numbers of a palette: from blue to yellow."""
+    data = bytes(pixel(x, y) for y in range(height) for x in range(width))
+    ramp = [257 * i for i in range(256)]
+    return tif_of(data, struct.pack("<768H", *ramp, *ramp, *ramp[::-1]), [
+        (256, 4, 1, width), (257, 4, 1, height), (258, 3, 1, 8), (259, 3, 1, 1), (262, 3, 1, 3), (273, 4, 1, 8), (277, 3, 1, 1),
+        (278, 4, 1, height), (279, 4, 1, len(data)), (320, 3, 768, None)])
+
+
 def tif(width, height, pixel):
+    if not isinstance(pixel(0, 0), tuple):
+        return palette_tif(width, height, pixel)
     data = b"".join(bytes(pixel(x, y)) for y in range(height) for x in range(width))
     return tif_of(data, struct.pack("<HHH", 8, 8, 8), [
         (256, 4, 1, width), (257, 4, 1, height), (258, 3, 3, None), (259, 3, 1, 1), (262, 3, 1, 2),
