@@ -135,14 +135,14 @@ grep -aq '^property float bz' be.ply || wrong "no bitangents"
 scene "faces of one and two corners stay in a binary PLY"
 python3 - <<'END'
 import struct
-head = ("ply\nformat binary_%s_endian 1.0\nelement vertex 4\n" + "".join("property float %s\n" % n for n in "xyzst") +
-        "element face 4\nproperty list uchar int vertex_indices\nend_header\n")
+head = ("ply\nformat binary_%s_endian 1.0\nelement vertex 6\n" + "".join("property float %s\n" % n for n in "xyzst") +
+        "element face 6\nproperty list uchar int vertex_indices\nend_header\n")
 for name, order in ("little", "<"), ("big", ">"):
     with open(name + ".ply", "wb") as file:
         file.write((head % name).encode())
-        for x, y in (0, 0), (1, 0), (1, 1), (0, 1):
-            file.write(struct.pack(order + "5f", x, y, 0, x, y))
-        for face in [0, 1, 2], [3, 1], [2], [0, 2, 3]:
+        for x, y in (0, 0), (1, 0), (1, 1), (0, 1), (2, 0), (2, 1):
+            file.write(struct.pack(order + "5f", x, y, 0, abs(x - 1), y))  # mirrored, so that vertices are copied
+        for face in [0, 1, 2], [3, 1], [2], [0, 2, 3], [1, 4, 5], [1, 5, 2]:
             file.write(struct.pack(order + "B%di" % len(face), len(face), *face))
 END
 for order in little big; do
@@ -150,11 +150,12 @@ for order in little big; do
 	exits 0
 	is "$(python3 -c 'import struct, sys
 d, order = open("out.ply", "rb").read(), "<" if sys.argv[1] == "little" else ">"
-rest, faces = d[-40:], []
+rest, faces = d[-66:], []
 while rest:
     faces.append(struct.unpack_from(order + "%di" % rest[0], rest, 1))
     rest = rest[1 + 4 * len(faces[-1]):]
-print(faces)' $order)" "[(0, 1, 2), (3, 1), (2,), (0, 2, 3)]"
+print(len(faces), faces[1:3])' $order)" "6 [(3, 1), (2,)]"
+	says "6 -> 8 vertices"
 done
 
 scene "a glTF becomes a PLY"

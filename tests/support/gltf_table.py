@@ -770,6 +770,13 @@ def make():
             d = build(name, sharing, tangents, lay_out, quantized)
             pack_views(d, ('EXT_meshopt_compression', 'KHR_meshopt_compression')[number % 2], k == 0, k == 2)
             d.write('packed', binary=number % 3 == 0)
+    for sharing in (points, animated, placed, loose, alone, same_positions):
+        name = '%s-none-sparse_packed' % sharing.__name__
+        for folder in 'plain', 'packed':
+            d = build(name, sharing, none, sparse_positions)
+            if folder == 'packed':
+                pack_views(d, 'EXT_meshopt_compression', True, False)
+            d.write(folder)
 
 
 
@@ -933,6 +940,8 @@ SETS = {
     'meshopt-weld': ('packed', '--only=all --existing=replace --weld', 3),
     'draco': ('in', '--only=all --existing=replace --draco=sequential', 1),
     'draco-again': ('draco', '--only=all --existing=replace', 3),
+    'block-keep': ('block', '--only=all --existing=replace', 1),
+    'block-off': ('block', '--only=all --existing=replace --draco=off', 1),
     'draco-off': ('draco', '--only=all --existing=replace --draco=off', 3),
     'edgebreaker': ('in', '--only=all --existing=replace --draco=edgebreaker', 3),
 }
@@ -1276,6 +1285,26 @@ def check_draco(options, before, after, fault):
                 fault('mesh %d primitive %d: triangle %s, expected %s' % (m, k, both[1][at], both[0][at]))
 
 
+def share_blocks():
+    """Blocks of the set "draco" that two primitives have, or whose accessors a plain one has, too; and the same without blocks."""
+    os.makedirs('block', exist_ok=True)
+    os.makedirs('block-plain', exist_ok=True)
+    for stem, path in names_of('draco').items():
+        if not stem.startswith(('alone-', 'many-', 'other_set-', 'morphs-')) or 'quantized' in stem:
+            continue
+        for source, folder in (path, 'block'), (names_of('draco-plain')[stem], 'block-plain'):
+            f = File(source)
+            p = f.g['meshes'][0]['primitives'][0]
+            # a texture transform turns the second one's tangents over
+            f.g['meshes'][0]['primitives'].append({**json.loads(json.dumps(p)), 'material': 3})
+            for number, buffer in enumerate(f.g['buffers']):
+                uri = 'data:application/octet-stream;base64,' + base64.b64encode(f.buffer(number)[:buffer['byteLength']]).decode()
+                buffer['uri'] = uri
+                buffer.pop('extras', None)
+            with open('%s/%s.gltf' % (folder, stem), 'w', encoding='utf-8') as file:
+                json.dump(f.g, file)
+
+
 def names_of(folder):
     """The glTF files of a folder without their endings."""
     names = os.listdir(folder) if os.path.isdir(folder) else []
@@ -1285,6 +1314,8 @@ def names_of(folder):
 def convert(name, program):
     """Converts the inputs of a set's turn and says what is wrong."""
     number, (source, options, share, *words) = list(SETS).index(name), SETS[name]
+    if name == 'block-keep':
+        share_blocks()
     files = names_of(source)
     stems = [stem for i, stem in enumerate(sorted(files)) if (i + number) % share == 0]
     files = [files[stem] for stem in stems if any(word in stem for word in sum(words, []) or [''])]
@@ -1303,8 +1334,9 @@ def convert(name, program):
             if stem in outputs:
                 file.write('%s\t%s\n' % (os.path.abspath(outputs[stem]), os.path.abspath(x)))
     # blocks are judged when they are plain again
-    compressed = source == 'packed' or 'draco' in options + source
-    if 'draco' in options + source and outputs:
+    compressed = source == 'packed'
+    draco = 'draco' in options + source or source == 'block'
+    if draco and outputs:
         said += run('--only=all --existing=repair --draco=off', name + '-plain', outputs.values())
         outputs = names_of(name + '-plain')
     for x in files:
@@ -1317,8 +1349,9 @@ def convert(name, program):
                 with open(x, 'rb') as old, open(outputs[stem], 'rb') as new:
                     if old.read() != new.read():
                         found.append('a second run changes it')
-            elif 'draco' in options + source:
-                check_draco(options, names_of('in')[stem], outputs[stem], found.append)
+            elif draco:
+                twin = 'block-plain' if source == 'block' else 'in'
+                check_draco(options, names_of(twin)[stem], outputs[stem], found.append)
             else:
                 check(options, x if source == 'in' else 'plain/%s.gltf' % stem, outputs[stem], found.append, compressed)
         except (IndexError, KeyError, ValueError, struct.error) as error:
