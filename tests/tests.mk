@@ -25,11 +25,11 @@ $(B)/tests/%.o: tests/%.c
 # One program for all of tests/unit and one for tests/api: 150 links took as long as a tenth of make check. mmap() is
 # that of test_needed.c, which guards mapped files, pthread_create() that of test_pool.c, where threads cannot be made.
 $(B)/tests/unit/all: $(unit_bin:=.o) $(support_obj) $(module_obj) $(B)/libtool.a $(B)/libnmtan.a
-	$(CXX) $(NT_LDFLAGS) $(WRAP) -Wl,--wrap=mmap,--wrap=pthread_create -o $@ $(filter %.o,$^) \
+	$(CXX) $(PROGRAM_LDFLAGS) $(WRAP) -Wl,--wrap=mmap,--wrap=pthread_create -o $@ $(filter %.o,$^) \
 		-Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lcmocka $(LINKED_LIBS) $(QUADMATH)
 
 $(B)/tests/api/all: $(api_bin:=.o) $(support_obj) $(B)/libnmtan.a
-	$(CC) $(NT_LDFLAGS) $(WRAP) -o $@ $^ -lcmocka -lm $(QUADMATH)
+	$(CC) $(PROGRAM_LDFLAGS) $(WRAP) -o $@ $^ -lcmocka -lm $(QUADMATH)
 
 # By its name it knows whose tests to run: tests/support/test.c.
 $(unit_bin) &: $(B)/tests/unit/all
@@ -89,20 +89,26 @@ build/clients/node_modules/three/package.json: tests/bindings/package.json tests
 	@touch $@
 
 # Everything in release and under ASan and UBSan; make's own jobs carry over to the builds, which run at the same time, so
-# that no processor waits for the last link of one. Tests run at the same time, so that what they ask make for is made here.
-.PHONY: check-built soak-built built-release built-sanitize built-debug built-clients
+# that no processor waits for the last link of one. A job that waits for disk and network installs meanwhile what tests run.
+# Tests run at the same time, so that what they ask make for is made here.
+.PHONY: check-built soak-built built-release built-sanitize built-debug built-clients built-node built-rest
 check-built:
 	@echo "Building config=release and config=sanitize"
-	@$(MAKE) -s $(JOBS) built-release built-sanitize built-debug built-clients build/node/node_modules/gltf-validator/package.json
+	@$(MAKE) -s $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$$(($$(nproc) + 1))) need-check built-release built-sanitize \
+		built-debug built-rest built-node built-clients
 	@bash tests/run $(if $(filter true,$(CI)),--strict) build/release build/sanitize
 built-release:
-	@$(MAKE) -s config=release all tests amalgamation python $(if $(shell command -v clang),wasm) $(man3) \
-		$(addprefix build/web/report.,html css js)
+	@$(MAKE) -s config=release all tests
 built-sanitize:
 	@$(MAKE) -s config=sanitize all tests
 built-debug:
 	@$(MAKE) -s config=debug build/debug/libnmtan.so
-built-clients:
+built-rest: built-release need-check
+	@$(MAKE) -s config=release amalgamation python $$(command -v clang >/dev/null && echo wasm) man3 \
+		$(addprefix build/web/report.,html css js)
+built-node: need-check
+	@$(MAKE) -s build/node/node_modules/gltf-validator/package.json
+built-clients: need-check
 	@$(MAKE) -s build/clients/node_modules/three/package.json >/dev/null 2>&1 || \
 		echo "npm cannot install three, bundlers and others: the tests that need them will be skipped"
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Many files: every one is tried, in any number of threads, and told about in order.
+# Leaks count.
 . "$ROOT/tests/support/cli.sh"
 
 scene "every input gets its output under its own name"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 # The main job on the meshes of data/.
+# Leaks count.
 . "$ROOT/tests/support/cli.sh"
 
 scene "an OBJ becomes a GLB with tangents and one line says so"

@@ -2,6 +2,7 @@
 # Every damaged file of data/damaged is refused with the exit code, the place and the reason that stand
 # in damaged.tsv: file, exit code, how the message begins, words of the reason. Exit code 0: what is
 # wrong is left out, with a finding.
+# Leaks count.
 . "$ROOT/tests/support/cli.sh"
 
 while IFS=$'\t' read -r file code place reason; do

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Plain glTF compressed by --draco, however it stores its vertices. The judges are the Khronos validator for the
 # JSON and Draco for the blocks, when the output is read again.
+# Leaks count.
 . "$ROOT/tests/support/cli.sh"
 mkdir -p "$WORK/layouts" "$WORK/outputs"
 python3 "$ROOT/tests/support/gltf_layouts.py" "$WORK/layouts" || exit 1

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 # The report: valid against its schema, equal to an independent count, honest about what is old and new.
+# Leaks count.
 . "$ROOT/tests/support/cli.sh"
 report=$ROOT/tests/report
 

@@ -7,6 +7,7 @@
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 one=build/amalgamation
+NMTAN_LEVEL=-O1 bash tests/run --only=test_amalgamation "$1" || exit 1
 packages=()
 for pair in s390x-linux-gnu-gcc:gcc-s390x-linux-gnu powerpc-linux-gnu-gcc:gcc-powerpc-linux-gnu qemu-s390x:qemu-user \
 	x86_64-w64-mingw32-gcc:gcc-mingw-w64-x86-64 /usr/lib/wine/wine64:wine64; do

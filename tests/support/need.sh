@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# Installs what is missing, and only that: "need.sh build" for make demo, "need.sh check" for the
-# tests as well, "need.sh wasm" for make wasm, whose packages the tests want too where clang is at hand. Touches
+# Installs what is missing, and only that: "need.sh build" for make demo, "need.sh tests" for what tests are compiled
+# with as well, "need.sh check" for all that they run, "need.sh wasm" for make wasm, whose packages the tests want too where clang is at hand. Touches
 # nothing, and needs no network, when everything is there. Debian packages by apt, with sudo when not root; on other
 # systems it names what to install by hand.
 set -eu
@@ -18,13 +18,16 @@ missing=
 for pair in gcc:build-essential g++:build-essential make:make; do
 	command -v "${pair%%:*}" >/dev/null 2>&1 || missing="$missing ${pair#*:}"
 done
-if [ "${1:-build}" = check ]; then
+case ${1:-build} in
+tests) build="$build libcmocka-dev" ;;
+check)
 	build="$build $check"
 	! command -v clang >/dev/null 2>&1 || build="$build $wasm"
 	for pair in node:nodejs npm:npm python3:python3 cmake:cmake; do
 		command -v "${pair%%:*}" >/dev/null 2>&1 || missing="$missing ${pair#*:}"
 	done
-fi
+	;;
+esac
 
 if [ "${1:-build}" = wasm ]; then
 	build=$wasm

@@ -64,6 +64,9 @@ rm bin/node
 needs build
 exits 0
 [ ! -e log ] || wrong "the build asked for $(cat log)"
+needs tests
+exits 0
+is "$(sed 's/.*recommends //; s/ *$//' log)" libcmocka-dev
 needs check
 exits 0
 grep -q 'nodejs' log || wrong "nodejs is missing"
