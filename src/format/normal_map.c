@@ -176,9 +176,13 @@ static uint64_t set_of(const nt_json_value *info)
 
 static nt_status open_of_document(nt_normal_map *map, nt_gltf *document, const nt_json_value *image, nt_error *error)
 {
-	size_t length;
+	size_t length = 0;
 	uint64_t view;
-	const char *uri = nt_json_get_string(nt_json_find(image, "uri"), &length);
+	const char *uri = map->image < document->image_uri_count ? document->image_uris[map->image] : NULL;
+	if (uri)
+		length = strlen(uri);
+	else
+		uri = nt_json_get_string(nt_json_find(image, "uri"), &length);
 	if (uri)
 		return without_map(open_uri(map, document, uri, length, error));
 	if (nt_json_get_uint64(nt_json_find(image, "bufferView"), &view))
@@ -246,11 +250,28 @@ nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt
 
 nt_status nt_normal_map_open_image(nt_normal_map *map, nt_gltf *document, size_t image, nt_error *error)
 {
-	*map = (nt_normal_map){0};
+	*map = (nt_normal_map){.image = (uint32_t)image};
 	const nt_status status =
 		open_of_document(map, document, nt_json_at(nt_gltf_root_member(document, "images"), image), error);
 	settle(map);
 	return status;
+}
+
+nt_status nt_normal_map_keep_uris(nt_scene *scene, nt_error *error)
+{
+	nt_gltf *document = scene->source;
+	const nt_json_value *images = nt_gltf_root_member(document, "images");
+	const size_t count = nt_json_count(images);
+	document->image_uris = nt_arena_alloc(&document->arena, count, sizeof *document->image_uris);
+	for (size_t i = 0; document->image_uris && i < count; i++) {
+		size_t length;
+		const char *uri = nt_gltf_external_uri(nt_json_at(images, i), &length);
+		document->image_uris[i] = uri ? nt_arena_text(&document->arena, uri, length) : NULL;
+		if (uri && !document->image_uris[i])
+			return nt_fail_memory(error);
+	}
+	document->image_uri_count = document->image_uris ? count : 0;
+	return document->image_uris ? NT_OK : nt_fail_memory(error);
 }
 
 /* ---- one image of base colours ---- */

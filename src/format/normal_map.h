@@ -45,6 +45,10 @@ nt_status nt_color_image_open(nt_normal_map *map, const char **obstacle, const n
 /* The same as nt_normal_map_open() of an image of a glTF by its number. */
 nt_status nt_normal_map_open_image(nt_normal_map *map, nt_gltf *document, size_t image, nt_error *error);
 
+/* Images of a glTF are those of the source from now on, whatever an edit makes of the document. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_normal_map_keep_uris(nt_scene *scene, nt_error *error);
+
 /* The place at which the map of a slot is looked up, at texture coordinates whose v points down: u' = t[0] u + t[1] v
  * + t[2], v' = t[3] u + t[4] v + t[5]. A member that is missing or is no number moves nothing. */
 void nt_normal_map_transform(const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot, float t[6]);

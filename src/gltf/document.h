@@ -122,6 +122,8 @@ typedef struct nt_gltf {
 	nt_name_table animated;  /* pointers of texture transforms that an animation turns or scales: materials.c */
 	bool animated_known;     /* then these are all */
 	void **lod_wishes;       /* [materials] what those with levels of detail ask for; NULL: no such material yet */
+	const char **image_uris; /* [image_uri_count] of images, as the source has them; NULL: none */
+	size_t image_uri_count;  /* 0 until an edit may change them */
 	bool dangling_known;     /* then these are, as the file had them: dangling.h */
 	nt_gltf_dangling dangling[NT_GLTF_GROWING];
 	uint64_t bytes_read;     /* of buffers */

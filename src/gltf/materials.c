@@ -132,21 +132,41 @@ static void read_wrap(const nt_gltf *document, const nt_json_value *info, nt_wra
 	}
 }
 
-/* A material samples this set in the slot. */
-static void note_use(wishes *all, int slot, uint32_t set, const nt_gltf_transform *transform)
+/* Adds the demands of another material of a primitive. */
+static void unite(wishes *all, const wishes *more)
 {
-	if (!all->wants[slot]) {
-		all->wants[slot] = true;
-		all->set[slot] = set;
-		all->transform[slot] = *transform;
-		return;
+	for (int slot = 0; slot < 3; slot++) {
+		if (!more->wants[slot])
+			continue;
+		if (!all->wants[slot]) {
+			all->wants[slot] = true;
+			all->set[slot] = more->set[slot];
+			all->transform[slot] = more->transform[slot];
+			memcpy(all->wrap[slot], more->wrap[slot], sizeof all->wrap[slot]);
+		}
+		if (all->set[slot] != more->set[slot] || more->mixed[slot]) {
+			all->mixed[slot] = true;
+			all->mixed_set[slot] = all->set[slot] != more->set[slot] ? more->set[slot]
+				: more->mixed_set[slot];
+		}
+		all->mixed_transform[slot] |= more->mixed_transform[slot] ||
+			!same_transform(&all->transform[slot], &more->transform[slot]);
+		all->transform[slot].animated |= more->transform[slot].animated;
 	}
-	if (all->set[slot] != set) {
-		all->mixed[slot] = true;
-		all->mixed_set[slot] = set;
-	}
-	all->mixed_transform[slot] |= !same_transform(&all->transform[slot], transform);
-	all->transform[slot].animated |= transform->animated;
+	all->slots |= more->slots;
+	all->material_count += more->material_count;
+	all->unlit_count += more->unlit_count;
+}
+
+/* A material samples this set in the slot. */
+static void note_use(wishes *all, int slot, uint32_t set, const nt_gltf_transform *transform, const nt_wrap wrap[2])
+{
+	wishes one = {0};
+	one.wants[slot] = true;
+	one.set[slot] = set;
+	one.transform[slot] = *transform;
+	memcpy(one.wrap[slot], wrap, sizeof one.wrap[slot]);
+	unite(all, &one);
 }
 
 static nt_status note_texture(nt_gltf *document, wishes *all, int slot,
@@ -164,10 +184,10 @@ static nt_status note_texture(nt_gltf *document, wishes *all, int slot,
 		status = read_transform(document, texture, pointer, &transform, &set, error);
 	if (status)
 		return status;
+	nt_wrap wrap[2];
 	all->slots |= 1u << slot;
-	if (!all->wants[slot])
-		read_wrap(document, texture, all->wrap[slot]);
-	note_use(all, slot, (uint32_t)set, &transform);
+	read_wrap(document, texture, wrap);
+	note_use(all, slot, (uint32_t)set, &transform, wrap);
 	return NT_OK;
 }
 
@@ -185,7 +205,7 @@ static bool note_vrm_map(const nt_gltf *document, wishes *all, uint64_t index)
 		nt_json_get_double(nt_json_at(vector, 2 + k), &transform.uv.scale[k]);
 	transform.turns = transform.uv.scale[0] != 1 || transform.uv.scale[1] != 1;
 	all->slots |= NT_SLOT_NORMAL;
-	note_use(all, 0, 0, &transform);
+	note_use(all, 0, 0, &transform, (nt_wrap[2]){NT_WRAP_REPEAT, NT_WRAP_REPEAT});
 	return true;
 }
 
@@ -217,32 +237,6 @@ static nt_status note_slots(nt_gltf *document, wishes *all, const nt_json_value 
 		status = note_texture(document, all, 2, direction, pointer,
 			"extensions/KHR_materials_anisotropy/anisotropyTexture", error);
 	return status;
-}
-
-/* Adds the demands of another material of a primitive. */
-static void unite(wishes *all, const wishes *more)
-{
-	for (int slot = 0; slot < 3; slot++) {
-		if (!more->wants[slot])
-			continue;
-		if (!all->wants[slot]) {
-			all->wants[slot] = true;
-			all->set[slot] = more->set[slot];
-			all->transform[slot] = more->transform[slot];
-			memcpy(all->wrap[slot], more->wrap[slot], sizeof all->wrap[slot]);
-		}
-		if (all->set[slot] != more->set[slot] || more->mixed[slot]) {
-			all->mixed[slot] = true;
-			all->mixed_set[slot] = all->set[slot] != more->set[slot] ? more->set[slot]
-				: more->mixed_set[slot];
-		}
-		all->mixed_transform[slot] |= more->mixed_transform[slot] ||
-			!same_transform(&all->transform[slot], &more->transform[slot]);
-		all->transform[slot].animated |= more->transform[slot].animated;
-	}
-	all->slots |= more->slots;
-	all->material_count += more->material_count;
-	all->unlit_count += more->unlit_count;
 }
 
 static nt_status note_material(nt_gltf *document, wishes *all, uint64_t index, const char *from,

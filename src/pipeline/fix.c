@@ -15,23 +15,25 @@
 void nt_fixes_free(nt_fixes *fixes)
 {
 	free(fixes->meshes);
-	free(fixes->keep_inverted);
-	free(fixes->doubtful);
 	free(fixes->images);
 	*fixes = (nt_fixes){0};
 }
 
-/* The primitives that a finding holds for get their wish; how many. */
-static size_t mark(const nt_report *report, uint32_t mesh, nt_fixes *fixes)
+/* Each primitive that a finding holds for gets its wish and its doubt: the later ones of the same geometry, too. */
+static void mark(const nt_scene *scene, const nt_report *report, const nt_report_finding *f, bool mends,
+	nt_fixes *fixes)
 {
-	size_t count = 0;
 	for (size_t i = 0; i < report->mesh_count; i++) {
-		if (i != mesh && report->meshes[i].same_as != mesh)
+		const nt_mesh *mesh = &scene->meshes[i];
+		if (i != f->mesh && report->meshes[i].same_as != f->mesh)
 			continue;
-		fixes->meshes[i] = NT_EXISTING_REPAIR;
-		count++;
+		if (f->code == NT_CODE_TAN_SIGN_MISMATCH && mesh->doubt == NT_DOUBT_UNDECODABLE && !mesh->pair)
+			fixes->meshes[i].doubtful = f->count;
+		if (!mends)
+			continue;
+		fixes->meshes[i].existing = NT_EXISTING_REPAIR;
+		fixes->counts[f->code]++;
 	}
-	return count;
 }
 
 /* Maps that are turned: of meshes in no pair. */
@@ -54,28 +56,22 @@ static bool mark_images(const nt_scene *scene, nt_fixes *fixes)
 nt_status nt_fixes_make(nt_fixes *fixes, const nt_scene *scene, const nt_report *report)
 {
 	*fixes = (nt_fixes){.mesh_count = report->mesh_count,
-		.meshes = nt_calloc(report->mesh_count, sizeof *fixes->meshes),
-		.keep_inverted = nt_calloc(report->mesh_count, sizeof *fixes->keep_inverted),
-		.doubtful = nt_calloc(report->mesh_count, sizeof *fixes->doubtful)};
-	if (!fixes->meshes || !fixes->keep_inverted || !fixes->doubtful)
+		.meshes = nt_calloc(report->mesh_count, sizeof *fixes->meshes)};
+	if (!fixes->meshes)
 		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
-		if (f->code == NT_CODE_TAN_SIGN_MISMATCH && f->mesh != NT_NONE &&
-			scene->meshes[f->mesh].doubt == NT_DOUBT_UNDECODABLE && !scene->meshes[f->mesh].pair)
-			fixes->doubtful[f->mesh] = f->count;
-		if (f->severity == NT_SEVERITY_INFO || !f->repair || strcmp(f->repair, "--fix") != 0)
-			continue;
+		const bool mends = f->severity != NT_SEVERITY_INFO && f->repair && strcmp(f->repair, "--fix") == 0;
 		if (f->code == NT_CODE_NMAP_GREEN_DOWN) {
-			fixes->turns_maps = true;
-			fixes->counts[f->code]++;
+			fixes->turns_maps |= mends;
+			fixes->counts[f->code] += mends;
 		} else if (f->mesh != NT_NONE) {
-			fixes->counts[f->code] += mark(report, f->mesh, fixes);
+			mark(scene, report, f, mends, fixes);
 		}
 	}
 	for (size_t i = 0; i < report->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
-		fixes->keep_inverted[i] = mesh->signs == NT_SIGN_INVERTED && (mesh->pair || mesh->doubt);
+		fixes->meshes[i].keeps_inverted = mesh->signs == NT_SIGN_INVERTED && (mesh->pair || mesh->doubt);
 	}
 	return !nt_format_is_gltf(scene->format) || mark_images(scene, fixes) ? NT_OK : NT_ERROR_MEMORY;
 }

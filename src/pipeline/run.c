@@ -14,7 +14,6 @@
 #include "file/watch.h"
 #include "format/foreign.h"
 #include "format/normal_map.h"
-#include "format/normal_map.h"
 #include "format/turned_maps.h"
 #include "gltf/sidecar.h"
 #include "gltf/verify/verify.h"
@@ -192,12 +191,13 @@ static void apply_fixes(run *r)
 {
 	for (size_t i = 0; i < r->fixes.mesh_count && i < r->scene.mesh_count; i++) {
 		nt_mesh *mesh = &r->scene.meshes[i];
-		mesh->fix = r->fixes.meshes[i];
-		mesh->keeps_inverted = r->fixes.keep_inverted[i];
+		const nt_mesh_fix *fix = &r->fixes.meshes[i];
+		mesh->fix = fix->existing;
+		mesh->keeps_inverted = fix->keeps_inverted;
 		/* of those that are not solved, the stage that looks at kept tangents says so */
-		if (mesh->fix == NT_EXISTING_REPAIR && mesh->keeps_inverted && r->fixes.doubtful[i])
+		if (mesh->fix == NT_EXISTING_REPAIR && mesh->keeps_inverted && fix->doubtful)
 			nt_finding_put(&r->scene.findings, (nt_finding){.code = NT_CODE_TAN_KEPT_SIGN,
-				.count = r->fixes.doubtful[i], .repair = "--existing=replace",
+				.count = fix->doubtful, .repair = "--existing=replace",
 				.detail = nt_doubt_text(NT_DOUBT_UNDECODABLE) + 2},
 				nt_mesh_place(mesh, &(nt_place){0}));
 	}
@@ -311,6 +311,8 @@ static nt_status write_scene(run *r)
 		.turned = &r->turned,
 	};
 	nt_output *output = NULL;
+	if (!status && s->report && nt_format_is_gltf(r->scene.format) && !r->turned.count)
+		status = nt_normal_map_keep_uris(&r->scene, r->error);
 	if (!status)
 		status = nt_output_create(&output, &output_options, r->error);
 	if (!status && r->writer->format != NT_FORMAT_PLY)

@@ -136,10 +136,14 @@ bool nt_any_inverted(const nt_scene *scene);
 nt_status nt_find_pairs(nt_scene *scene, const nt_settings *settings, size_t map_count);
 
 /* fix.c. Repairs of --fix, found by a check of the input. */
+typedef struct nt_mesh_fix {
+	uint8_t existing;    /* its nt_mesh.fix */
+	bool keeps_inverted; /* its nt_mesh.keeps_inverted */
+	size_t doubtful;     /* triangles with inverted w that a map may cancel which cannot be decoded */
+} nt_mesh_fix;
+
 typedef struct nt_fixes {
-	uint8_t *meshes; /* [mesh_count] their nt_mesh.fix */
-	bool *keep_inverted; /* [mesh_count] their nt_mesh.keeps_inverted */
-	size_t *doubtful; /* [mesh_count] triangles with inverted w that a map may cancel which cannot be decoded */
+	nt_mesh_fix *meshes; /* [mesh_count] */
 	size_t mesh_count;
 	bool *images; /* [image_count] of a glTF whose green is turned; NULL: of another format */
 	size_t image_count;

@@ -175,6 +175,19 @@ is "$(normal_map quad.html)" '"image":0,"map":[2,0,0.25,0,4,-3.5]
 data:image/png'
 run --report=converted.html quad.obj quad.glb
 is "$(normal_map converted.html)" "$(normal_map quad.html)"
+# a glTF's images are those of the source, wherever the output has them
+run --images=copy --buffers=embed quad.obj quad.gltf
+run --check --report=quad.html quad.gltf
+run --check --report=quad.json quad.gltf
+mkdir out
+for output in out/quad.glb out/quad.gltf linked.gltf; do
+	run --images=$([ $output = linked.gltf ] && echo link || echo copy) --report=converted.html quad.gltf $output
+	is "$output $(normal_map converted.html | wc -c)" "$output $(normal_map quad.html | wc -c)"
+	run --report=converted.json quad.gltf $output
+	is "$output $(value converted.json '[i["texel_density"] for m in r["files"][0]["meshes"] for i in m["islands"]]')" \
+		"$output $(value quad.json '[i["texel_density"] for m in r["files"][0]["meshes"] for i in m["islands"]]')"
+	! grep -q '"texel_density":null' converted.json || wrong "$output has no density"
+done
 run --check --report=turned.html --fail-on=never "$data/transformed.gltf"
 # by a quarter: u' = v + 0.5, v' = 7 - u
 is "$(normal_map turned.html | sed 's/[0-9.]*e-17/0/g')" '"image":0,"map":[0,1,0.5,-1,0,7]
