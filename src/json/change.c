@@ -231,6 +231,12 @@ void nt_json_set_string(nt_json *document, nt_json_value *value, const char *tex
 		set_text(document, value, NT_JSON_STRING, text, length);
 }
 
+void nt_json_set_open(nt_json *document, nt_json_value *value, const char *text, size_t length)
+{
+	set_text(document, value, NT_JSON_STRING, text, length);
+	value->open = 1;
+}
+
 void nt_json_set_object(nt_json *document, nt_json_value *value)
 {
 	if (!set_container(document, value, NT_JSON_OBJECT, 0))

@@ -219,7 +219,8 @@ static spacing spacing_in_text(const nt_json_value *container, const spacing *ou
 
 /* ---- new text ---- */
 
-static void put_string(writer *w, const char *text, size_t size)
+/* `open`: whoever takes the text writes the end of the string. */
+static void put_string(writer *w, const char *text, size_t size, bool open)
 {
 	static const char escaped[] = "\"\\\b\f\n\r\t", letters[] = "\"\\bfnrt";
 	put(w, (slice){"\"", 1});
@@ -236,6 +237,10 @@ static void put_string(writer *w, const char *text, size_t size)
 		else if (i < size)
 			put(w, (slice){hex, sizeof hex});
 	}
+	if (open && w->take)
+		flush(w);
+	if (open && w->take && !w->status)
+		w->status = w->take(w->user, "", 0);
 	put(w, (slice){"\"", 1});
 }
 
@@ -260,7 +265,7 @@ static void put_key(writer *w, const nt_json_value *container, size_t index)
 	if (container->type != NT_JSON_OBJECT)
 		return;
 	const nt_json_name *key = &container->of.list->shape->keys[index];
-	put_string(w, key->text, key->length);
+	put_string(w, key->text, key->length, false);
 	put(w, w->colon);
 }
 
@@ -294,7 +299,7 @@ static void put_value(writer *w, const nt_json_value *value, const spacing *oute
 		put_number(w, value);
 		break;
 	case NT_JSON_STRING:
-		put_string(w, nt_json_text(value), value->size);
+		put_string(w, nt_json_text(value), value->size, value->open);
 		break;
 	case NT_JSON_ARRAY:
 	case NT_JSON_OBJECT:

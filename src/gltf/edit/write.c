@@ -329,14 +329,14 @@ static uint64_t other_bytes(const nt_gltf *document)
 }
 
 /* bin: the BIN chunk is buffer 0. */
-static nt_status write_glb(const writing *c, const nt_buffer *text, uint64_t length, bool bin, nt_sink *sink)
+static nt_status write_glb(const writing *c, uint64_t length, bool bin, nt_sink *sink)
 {
 	const nt_gltf *document = c->document;
 	const bool raw = !bin && document->is_glb && document->glb.has_bin; /* it is no buffer, and stays */
 	const uint64_t size = bin ? c->buffers.buffers[0].length : raw ? document->glb.bin.size : 0;
 	nt_status status = nt_glb_begin(sink, length, bin || raw, size, other_bytes(document), c->error);
 	if (!status)
-		status = nt_data_uris_write(&c->uris, text, sink, c->error);
+		status = nt_data_uris_write(&c->uris, sink, c->error);
 	if (!status)
 		status = nt_glb_end_json(sink, length, bin || raw, size, c->error);
 	if (!status && bin)
@@ -355,7 +355,6 @@ static nt_status write_glb(const writing *c, const nt_buffer *text, uint64_t len
 /* The document with the names that its sidecars have in it. */
 static nt_status write_document(writing *c, bool bin, bool staging, nt_sink *sink)
 {
-	nt_buffer text = {0};
 	uint64_t length;
 	nt_status status = NT_OK;
 	for (uint32_t i = 0; !status && i < c->buffers.buffer_count; i++) {
@@ -363,13 +362,11 @@ static nt_status write_document(writing *c, bool bin, bool staging, nt_sink *sin
 		if (c->sidecars[i])
 			status = nt_gltf_record(c->json, json, c->sidecars[i], staging, c->error);
 	}
+	if (!status && !c->to_glb)
+		return nt_data_uris_write(&c->uris, sink, c->error);
 	if (!status)
-		status = nt_data_uris_text(&c->uris, &text, &length, c->error);
-	if (!status)
-		status = c->to_glb ? write_glb(c, &text, length, bin, sink) :
-				     nt_data_uris_write(&c->uris, &text, sink, c->error);
-	nt_buffer_free(&text);
-	return status;
+		status = nt_data_uris_measure(&c->uris, &length, c->error);
+	return status ? status : write_glb(c, length, bin, sink);
 }
 
 static nt_status write_main(writing *c, bool bin)

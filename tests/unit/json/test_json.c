@@ -531,3 +531,35 @@ TEST(what_is_no_number_becomes_null_and_is_copied)
 	check_dump(document, "[null,null,null]");
 	nt_json_free(document);
 }
+
+static nt_status take_open(void *user, const char *text, size_t size)
+{
+	nt_buffer *to = user;
+	nt_buffer_append(to, size ? text : "REST", size ? size : 4);
+	return NT_OK;
+}
+
+/* The taker writes the end of an open string; set again it is a string like others. */
+TEST(strings_may_be_left_open)
+{
+	nt_json *json;
+	nt_buffer text = {0};
+	uint64_t size;
+	assert_int_equal(nt_json_parse(&json, "{\"a\":\"x\",\"b\":\"y\"}", 17, NULL, NULL), NT_OK);
+	for (int open = 1; open >= 0; open--) {
+		nt_json_value *b = nt_json_find(nt_json_root(json), "b");
+		if (open)
+			nt_json_set_open(json, b, "data:,", 6);
+		else
+			nt_json_set_string(json, b, "z", 1);
+		text.size = 0;
+		assert_int_equal(nt_json_write(json, take_open, &text, NULL), NT_OK);
+		nt_buffer_append(&text, "", 1);
+		assert_string_equal(text.data,
+			open ? "{\"a\":\"x\",\"b\":\"data:,REST\"}" : "{\"a\":\"x\",\"b\":\"z\"}");
+		assert_int_equal(nt_json_measure(json, &size, NULL), NT_OK);
+		assert_int_equal(size, open ? 22 : 17);
+	}
+	nt_buffer_free(&text);
+	nt_json_free(json);
+}
