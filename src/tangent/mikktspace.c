@@ -318,14 +318,10 @@ static nmtan_status pair_unsorted(state *s)
 			3 * sizeof *positions);
 	const nt_triangles triangles = {s->ids, s->cuts};
 	nt_unsorted unsorted = {.edges = NULL};
-	nt_edge_tail tail;
 	const nt_welded_mesh mesh = {.triangles = &triangles,
 		.triangle_count = s->triangle_count, .vertex_count = s->vertex_count, .positions = positions,
-		.step = 3, .threads = s->solve->threads, .scratch = scratch};
-	nt_borrowed none = nt_borrow(NULL, 0, scratch);
-	nmtan_status status = nt_edge_tail_make(&mesh, &none, &tail);
-	if (!status)
-		status = nt_find_unsorted(&mesh, &tail, scratch, &unsorted);
+		.step = 3, .scratch = scratch};
+	const nmtan_status status = nt_find_unsorted(&mesh, scratch, &unsorted);
 	for (size_t i = 0; i < unsorted.count; i++) {
 		const nt_unsorted_edge *e = &unsorted.edges[i];
 		s->triangles[sound_triangle(s, e->edge / 3)].neighbour[e->edge % 3] =

@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Two questions. Does the order of the last run matter? Most often it has less than three edges, or no two between the
- * same vertices. The run belongs to the vertex that has the largest lower end of all edges; both ends of its edges
- * have a corner behind that, so that the last triangles are looked at, and more of them until such an edge is
- * among them. The representative of a vertex is one of its corners; only where that leaves the question open is it
- * found, from the corners of its cell.
+ * Two questions. Does the order of the last run matter? The run belongs to the largest lower end of all edges, the
+ * vertex X. If vertices are taken from the largest representative down, X is the first that has an edge with one that
+ * was taken before, a Y. The run has one edge of each triangle with X and such a Y, and its order only matters if it has
+ * three or more, two of them between the same vertices: nearly always X has one Y, in two triangles.
+ *
+ * The representative of a vertex is between its first and its last corner. So the last triangles' vertices are looked
+ * at, and more of them until an edge between two of them has a lower end among their corners; what first and last
+ * corners leave open is found from the corners of a vertex's cell, the last vertices first.
  *
  * And if it does: which order? That of the published quicksort, of which only those parts are sorted that hold edges of
- * the run.
+ * the run. Of a vertex only that has to be known whether it is above or below a pivot, which first and last corners say
+ * of nearly all where the mesh is in the order of its surface.
  */
 #include "topology/edge_sort.h"
 
@@ -18,498 +22,675 @@
 
 #define NONE NT_NO_NEIGHBOUR
 
-/* Triangles at the end that are looked at first, and how many times more the next time: nearly always a dozen are
- * enough. */
-enum { FIRST_TRIANGLES = 12, MORE = 3 };
+/* Triangles at the end that are looked at first, and how many times more the next time. */
+enum { FIRST_FEW = 4, FIRST = 9, MORE = 4 };
 
-/* Vertices of the last triangles. If they have more, all edges are looked at. */
-enum { MOST_MEMBERS = 255 };
+/* Vertices of the last triangles, and triangles with two of them. If there are more, all edges are looked at. */
+enum { MOST_MEMBERS = 120, MOST_NEAR = 1024, MOST_PAIRS = 64 };
 
-/* If the order of the last run matters, it has three edges or more, one of each of its triangles: the largest lower
- * end is the middle one of their representatives, since another edge has a larger lower end where it is the least. */
+/* If the order of the last run matters, it has three edges or more. */
 enum { LEAST_EDGES = 3 };
-
-static size_t corner_count(const nt_welded_mesh *m)
-{
-	return 3 * m->triangle_count;
-}
 
 static const uint32_t *vertices_of(const nt_welded_mesh *m, size_t triangle, uint32_t copy[3])
 {
 	return nt_triangle_vertices(m->triangles, triangle, 1, copy);
 }
 
-/* The last triangles */
-
-/* Takes triangles from the end; halves of a quad stay together. */
-static void take_last(const nt_welded_mesh *m, size_t triangles, nt_edge_tail *tail)
+/* The corner of the mesh that is corner k of triangle t: 3 * t + k. */
+static uint32_t mesh_corner(const nt_welded_mesh *m, uint32_t corner)
 {
+	return m->triangles->cuts ? (uint32_t)nt_triangle_corner(m->triangles, corner / 3, corner % 3) : corner;
+}
+
+static uint32_t vertex_of(const nt_welded_mesh *m, uint32_t corner)
+{
+	return m->triangles->ids[mesh_corner(m, corner)];
+}
+
+static uint32_t most_of(uint32_t a, uint32_t b)
+{
+	return a < b ? b : a;
+}
+
+static uint32_t least_of(uint32_t a, uint32_t b)
+{
+	return a < b ? a : b;
+}
+
+/* A part of a block of memory. */
+static nt_memory take(char **at, size_t count, size_t size)
+{
+	char *const taken = *at;
+	*at += (count * size + 7) / 8 * 8;
+	return taken;
+}
+
+static size_t cell_bytes(size_t vertices, size_t corners)
+{
+	return vertices * (2 * sizeof(uint32_t) + 2) + corners * (sizeof(nt_cell_corner) + sizeof(uint32_t)) + 48;
+}
+
+/* Room for a cell of so many vertices, which are elsewhere, and corners. */
+static nt_cell make_cell(char *at, size_t vertices, size_t corners)
+{
+	nt_cell cell = {.vertex_count = vertices};
+	cell.corners = take(&at, corners, sizeof *cell.corners);
+	cell.swaps = take(&at, corners, sizeof *cell.swaps);
+	cell.order = take(&at, vertices, sizeof *cell.order);
+	cell.found = take(&at, vertices, sizeof *cell.found);
+	cell.below = take(&at, vertices, 1);
+	cell.wanted = take(&at, vertices, 1);
+	return cell;
+}
+
+/* Does it matter? */
+
+/* An edge that may be in the run, and in how many triangles. */
+typedef struct edge_pair {
+	uint32_t low, high, count; /* members */
+} edge_pair;
+
+/* Marks of vertices: a member's number, from 1 on, or WATCHED and the slot of a cell; NOBODY: neither. */
+enum { NOBODY, WATCHED = 128, NO_SLOT = 255 };
+
+/* Members are vertices of the last triangles, and at the sides of the box. The representative of each is between
+ * two corners; if these are equal, it is known. Corners of cells that are watched have numbers 3 * triangle + k. */
+typedef struct question {
+	const nt_welded_mesh *mesh;
+	nt_grid grid;
+	bool is_few, too_many, is_grid_of_used, is_boxed; /* boxed: no row has a NaN, so that all boxes are right */
+	size_t first_triangle;
+	uint32_t first;           /* the least corner of the last triangles */
+	uint8_t *marks;           /* [vertex_count] */
+	uint32_t *numbers;        /* [vertex_count] of those in cells that are watched: the number there */
+	nt_cell_corner *corners;  /* [corner_count] of these */
+	uint8_t *slots;           /* [corner_count] theirs */
+	nt_box *boxes;            /* of blocks of rows */
+	size_t corner_count, most_corners;
+	nt_cell_corner *by_slot;  /* [corner_count] sorted */
+	uint32_t slot_vertices[MOST_MEMBERS], slot_corners[MOST_MEMBERS], slot_begins[MOST_MEMBERS], slot_count;
+	uint32_t member_count, vertices[WATCHED];
+	uint32_t low[WATCHED], high[WATCHED]; /* first and last corners */
+	uint32_t beside[WATCHED]; /* the largest lower end is at least this where the member is the higher end */
+	uint8_t member_slots[WATCHED], run[WATCHED]; /* edges that the run may have if the member is the lower end */
+	bool may_be_high[WATCHED]; /* whether it may be above the largest lower end */
+	uint32_t near_count;
+	uint8_t near[MOST_NEAR][3]; /* members of triangles that have two or three, and edges */
+} question;
+
+static bool is_known(const question *q, uint32_t member)
+{
+	return q->low[member] == q->high[member];
+}
+
+static void add_member(question *q, uint32_t vertex)
+{
+	const uint32_t member = ++q->member_count;
+	q->vertices[member] = vertex;
+	q->low[member] = NONE;
+	q->high[member] = 0;
+	q->member_slots[member] = NO_SLOT;
+	q->marks[vertex] = (uint8_t)member;
+}
+
+/* Takes the vertices of the last triangles; halves of a quad stay together. False: they are too many. */
+static bool take_last(question *q, size_t triangles)
+{
+	const nt_welded_mesh *m = q->mesh;
 	size_t first = m->triangle_count > triangles ? m->triangle_count - triangles : 0;
 	if (first > 0 && nt_is_cut_between(m->triangles, first - 1))
 		first--;
-	tail->triangles = triangles;
-	tail->first_triangle = first;
-	tail->first = (uint32_t)nt_triangle_corner(m->triangles, first, 0);
-}
-
-/* Says which corners to look for: all of the cells of the last triangles' vertices. */
-static void watch_cells(const nt_welded_mesh *m, nt_edge_tail *tail)
-{
-	const nt_grid *grid = &tail->grid;
-	memset(tail->bins, 0, sizeof tail->bins);
-	/* a little less than there are, so that no rounding makes one more: less than half a cell */
-	tail->scale = ((float)NT_EDGE_BINS - 0.1f) / (grid->high - grid->low);
-	tail->scale = tail->scale <= FLT_MAX ? tail->scale : 0;
-	for (size_t t = tail->first_triangle; t < m->triangle_count; t++) {
+	q->first_triangle = first;
+	q->first = (uint32_t)nt_triangle_corner(m->triangles, first, 0);
+	q->member_count = q->near_count = 0;
+	for (size_t t = first; t < m->triangle_count; t++) {
 		uint32_t copy[3];
 		const uint32_t *v = vertices_of(m, t, copy);
 		for (int k = 0; k < 3; k++) {
-			const unsigned cell = nt_grid_cell(grid, nt_welded_position(m, v[k])[grid->axis]);
-			/* the scale moves the lower one of a bin's cells a little into the bin before */
-			const unsigned bin = cell / 2, before = bin - (cell % 2 == 0 && bin > 0);
-			tail->bins[bin / 32] |= (uint32_t)1 << bin % 32;
-			tail->bins[before / 32] |= (uint32_t)1 << before % 32;
+			if (q->marks[v[k]])
+				continue;
+			if (q->member_count == MOST_MEMBERS)
+				return false;
+			add_member(q, v[k]);
 		}
 	}
-	if (tail->scale == 0)
-		tail->bins[0] |= 1;
+	return true;
 }
 
-/* The box of rows that have corners, since others made that of all, or may have. */
-static void use_box_of_used(const nt_welded_mesh *m, nt_edge_tail *tail)
+/* Notes a triangle that has vertices with marks. */
+static NT_NOINLINE void note(question *q, size_t t, const uint32_t *v)
 {
-	tail->is_box_used = true;
-	tail->limit = !nt_grid_of_used(m, &tail->grid);
-}
-
-static bool is_few(const nt_welded_mesh *m)
-{
-	return m->triangle_count <= NT_EDGE_FEW && m->vertex_count <= 3 * NT_EDGE_FEW && !m->triangles->cuts;
-}
-
-/* Says what to look for first. */
-static nmtan_status begin_tail(const nt_welded_mesh *m, nt_borrowed *borrowed, nt_edge_tail *tail)
-{
-	tail->is_box_used = tail->is_noted = false;
-	tail->near = nt_borrowed_alloc(borrowed, m->triangle_count, 1);
-	/* the boxes' memory is free again at once */
-	const nt_scratch_mark mark = nt_scratch_here(m->scratch);
-	nt_borrowed left = *borrowed;
-	nt_box *boxes = nt_borrowed_alloc(&left, m->vertex_count / NT_BOX_ROWS + 1, sizeof *boxes);
-	if (!boxes || !tail->near)
-		return NMTAN_ERROR_MEMORY;
-	if (!nt_grid_make(m, boxes, &tail->grid))
-		use_box_of_used(m, tail);
-	nt_scratch_back(m->scratch, mark);
-	if (tail->limit) {
-		tail->near = NULL;
-		return NMTAN_OK;
+	const unsigned marks[3] = {q->marks[v[0]], q->marks[v[1]], q->marks[v[2]]};
+	unsigned count = 0;
+	for (uint32_t k = 0; k < 3; k++) {
+		const unsigned member = marks[k] < WATCHED ? marks[k] : NOBODY;
+		const uint32_t corner = (uint32_t)nt_triangle_corner(q->mesh->triangles, t, k);
+		q->low[member] = least_of(q->low[member], corner); /* nobody's too, which are not looked at */
+		q->high[member] = most_of(q->high[member], corner);
+		q->near[q->near_count][k] = (uint8_t)member;
+		count += member != NOBODY;
 	}
-	take_last(m, FIRST_TRIANGLES, tail);
-	watch_cells(m, tail);
-	return NMTAN_OK;
-}
-
-nmtan_status nt_edge_tail_make(const nt_welded_mesh *m, nt_borrowed *borrowed, nt_edge_tail *tail)
-{
-	tail->near = NULL;
-	tail->limit = corner_count(m) > NT_EDGE_SORT_CORNERS;
-	return is_few(m) || tail->limit ? NMTAN_OK : begin_tail(m, borrowed, tail);
-}
-
-/* Their corners */
-
-/* A vertex of the last triangles. */
-typedef struct edge_member {
-	uint32_t vertex, low, high; /* its representative is between these corners; equal: it is known */
-	uint32_t beside;            /* the largest `low` of those that it has an edge with */
-	uint32_t met;               /* by which member, and whether twice */
-} edge_member;
-
-/* An edge between members a and b. */
-typedef struct edge_link {
-	uint32_t a, b;
-} edge_link;
-
-/* Triangles that are near, with all corners of near vertices and some of others. Their corners are numbered
- * 3 * (place in the list) + k. */
-typedef struct question {
-	const nt_welded_mesh *mesh;
-	nt_edge_tail *tail;
-	size_t triangle_count, vertex_count;
-	uint32_t *triangles;       /* [triangle_count] ascending */
-	uint32_t *vertices;        /* [vertex_count] theirs */
-	uint32_t *ids;             /* [3 * triangle_count] the vertex of each corner */
-	uint32_t *last;            /* [mesh->vertex_count] the last corner of each vertex, or NONE: it is not listed */
-	uint32_t *before;          /* [3 * triangle_count] the one before it at the same vertex, or NONE */
-	uint32_t *numbers;         /* [mesh->vertex_count] those of members, or in a cell */
-	edge_member *members;      /* [member_count] */
-	edge_link *links;          /* [link_count] */
-	edge_link *twins;          /* [twin_count] b has two edges or more with a: both ways */
-	size_t member_count, link_count, twin_count;
-	/* room for cells */
-	uint64_t *bits;            /* [bit for each corner]; NULL: not made */
-	uint16_t *cells;           /* [vertex_count] */
-	uint32_t *heads;           /* [head_mask + 1] the first vertex of cells that have a list together, or NONE */
-	uint32_t *next;            /* [vertex_count] */
-	size_t head_mask;
-	nt_cell_vertex *cell_vertices;
-	nt_cell cell;
-} question;
-
-static uint32_t mesh_corner(const question *q, uint32_t corner)
-{
-	return (uint32_t)nt_triangle_corner(q->mesh->triangles, q->triangles[corner / 3], corner % 3);
-}
-
-/* Notes which triangles are near, if nobody has, and whether the vertices that make the box have corners. */
-static void note_near(const nt_welded_mesh *m, nt_edge_tail *tail)
-{
-	unsigned met = 0;
-	for (size_t t = 0; t < m->triangle_count; t++) {
-		uint32_t copy[3], near = 0;
-		const uint32_t *v = vertices_of(m, t, copy);
-		for (int k = 0; k < 3; k++)
-			near |= nt_edge_is_near(tail, nt_welded_position(m, v[k])[tail->grid.axis]);
-		tail->near[t] = (uint8_t)near;
-		for (int i = 0; i < 18 && !tail->is_box_used; i++)
-			met |= (unsigned)(v[i % 3] == tail->grid.extremes[i / 3]) << i / 3;
+	for (uint32_t k = 0; k < 3 && !q->is_few; k++) {
+		const unsigned slot = marks[k] < WATCHED ? q->member_slots[marks[k]] : marks[k] - WATCHED;
+		if (slot == NO_SLOT)
+			continue;
+		q->too_many |= q->corner_count == q->most_corners;
+		if (q->too_many)
+			return;
+		q->slot_corners[slot]++;
+		q->slots[q->corner_count] = (uint8_t)slot;
+		q->corners[q->corner_count++] = (nt_cell_corner){q->numbers[v[k]], (uint32_t)(3 * t + k)};
 	}
-	tail->is_box_used = tail->is_box_used || met == 63;
-	tail->is_noted = true;
+	if (count < 2 || nt_welded_is_degenerate(q->mesh, v))
+		return;
+	q->too_many |= q->near_count + 1 == MOST_NEAR;
+	q->near_count += !q->too_many;
 }
 
-/* The next triangle from t on that is near. */
-static size_t next_near(const nt_welded_mesh *m, const nt_edge_tail *tail, size_t t)
+static void note_marked(question *q)
 {
-	for (uint64_t some; t + sizeof some <= m->triangle_count; t += sizeof some) {
-		memcpy(&some, tail->near + t, sizeof some);
-		if (some != 0)
+	const nt_welded_mesh *m = q->mesh;
+	const uint8_t *const marks = q->marks;
+	const size_t count = m->triangle_count;
+	uint32_t copy[3];
+	q->corner_count = 0;
+	q->low[NOBODY] = 0;
+	q->member_slots[NOBODY] = NO_SLOT;
+	if (m->triangles->cuts) {
+		for (size_t t = 0; t < count && !q->too_many; t++)
+			if (vertices_of(m, t, copy) && (marks[copy[0]] | marks[copy[1]] | marks[copy[2]]))
+				note(q, t, copy);
+		return;
+	}
+	const uint32_t *v = m->triangles->ids;
+	for (size_t t = 0; t < count; t++, v += 3)
+		if (marks[v[0]] | marks[v[1]] | marks[v[2]]) {
+			note(q, t, v);
+			if (q->too_many)
+				return;
+		}
+}
+
+/* Whether one of the cells between two coordinates has a bit. */
+static bool has_cells(const uint64_t *bits, const nt_grid *grid, float low, float high)
+{
+	const unsigned first = nt_grid_cell(grid, low), last = nt_grid_cell(grid, high);
+	uint64_t here = bits[first / 64] & ~(uint64_t)0 << first % 64;
+	for (unsigned word = first / 64; word < last / 64; here = bits[++word])
+		if (here)
+			return true;
+	return here & ~(uint64_t)0 >> (63 - last % 64);
+}
+
+/* Watches the cells of the first members: marks the vertices there. */
+static void watch(question *q, size_t member_count)
+{
+	const nt_welded_mesh *m = q->mesh;
+	const nt_grid grid = q->grid;
+	const float *const rows = m->positions + grid.axis, last = (float)(NT_CELLS - 1);
+	/* a product tells the cell or the one before; if there is no factor, all rows are of one */
+	const float quotient = last / (grid.high - grid.low), scale = quotient <= FLT_MAX ? quotient : 0;
+	uint64_t cells[NT_CELLS / 64] = {0}, about[NT_CELLS / 64] = {0};
+	uint8_t slots[NT_CELLS];
+	q->slot_count = 0;
+	for (size_t i = 1; i <= member_count; i++) {
+		const unsigned c = nt_grid_cell(&grid, rows[m->step * q->vertices[i]]);
+		if (!(cells[c / 64] >> c % 64 & 1)) {
+			cells[c / 64] |= (uint64_t)1 << c % 64;
+			q->slot_vertices[q->slot_count] = q->slot_corners[q->slot_count] = 0;
+			slots[c] = (uint8_t)q->slot_count++;
+		}
+		for (unsigned near = c > 0 ? c - 1 : 0; near <= c + 1 && near < NT_CELLS; near++)
+			about[near / 64] |= (uint64_t)1 << near % 64;
+	}
+	about[0] |= scale == 0;
+	for (size_t block = 0; block * NT_BOX_ROWS < m->vertex_count; block++) {
+		const nt_box *box = &q->boxes[block];
+		if (q->is_boxed && !has_cells(cells, &grid, box->low[grid.axis], box->high[grid.axis]))
+			continue;
+		size_t v = block * NT_BOX_ROWS;
+		const size_t end = m->vertex_count - v < NT_BOX_ROWS ? m->vertex_count : v + NT_BOX_ROWS;
+		for (; v < end; v++) {
+			const float x = rows[m->step * v], cell = (x - grid.low) * scale;
+			const float from_zero = cell > 0.0f ? cell : 0.0f; /* rows without corners may be anywhere */
+			const unsigned guess = (unsigned)(int)(from_zero < last ? from_zero : last);
+			if (!(about[guess / 64] >> guess % 64 & 1))
+				continue;
+			const unsigned c = nt_grid_cell(&grid, x);
+			if (!(cells[c / 64] >> c % 64 & 1))
+				continue;
+			q->numbers[v] = q->slot_vertices[slots[c]]++;
+			if (q->marks[v])
+				q->member_slots[q->marks[v]] = slots[c];
+			else
+				q->marks[v] = (uint8_t)(WATCHED + slots[c]);
+		}
+	}
+}
+
+/* Sorts the corners that are listed by cell. False when out of memory. */
+static bool sort_by_slot(question *q)
+{
+	uint32_t at[MOST_MEMBERS], sum = 0;
+	q->by_slot = nt_scratch_alloc(q->mesh->scratch, q->corner_count, sizeof *q->by_slot);
+	for (uint32_t i = 0; i < q->slot_count; i++) {
+		q->slot_begins[i] = at[i] = sum;
+		sum += q->slot_corners[i];
+	}
+	for (size_t i = 0; q->by_slot && i < q->corner_count; i++)
+		q->by_slot[at[q->slots[i]]++] = q->corners[i];
+	return q->by_slot;
+}
+
+/* Looks at the last triangles: finds their vertices' first and last corners and the triangles around them and, unless
+ * they are few, lists what is in their cells. */
+static bool look(question *q, size_t triangles, bool *limit)
+{
+	const nt_welded_mesh *m = q->mesh;
+	bool used = q->is_grid_of_used;
+	if (!used)
+		used = !(q->is_boxed = nt_grid_make(m, q->boxes, &q->grid));
+	for (;; used = true) {
+		*limit = used && !q->is_grid_of_used && !nt_grid_of_used(m, &q->grid);
+		if (*limit)
+			return false;
+		memset(q->marks, 0, m->vertex_count);
+		q->too_many = !take_last(q, triangles);
+		if (q->too_many)
+			break;
+		/* whether vertices that have corners make the box: these are members */
+		const uint32_t count = q->member_count;
+		for (int i = 0; i < 6 && !used; i++)
+			if (!q->marks[q->grid.extremes[i]])
+				add_member(q, q->grid.extremes[i]);
+		if (!q->is_few)
+			watch(q, count);
+		note_marked(q);
+		used = true;
+		for (uint32_t i = count + 1; i <= q->member_count; i++)
+			used &= q->low[i] != NONE;
+		if (used || q->too_many)
 			break;
 	}
-	while (t < m->triangle_count && !tail->near[t])
-		t++;
-	return t;
+	q->is_grid_of_used = used && !q->too_many;
+	return !q->too_many;
 }
 
-/* Lists the triangles that are near, and their vertices. False when out of memory. */
-static bool list_near(question *q)
+/* Lists the corners of a cell that is watched. */
+static void gather(const question *q, unsigned slot, nt_cell *cell, nt_cell_vertex *rows)
 {
 	const nt_welded_mesh *m = q->mesh;
-	const nt_edge_tail *tail = q->tail;
-	size_t count = 0;
-	for (size_t t = 0; t < m->triangle_count; t++)
-		count += tail->near[t];
-	q->triangle_count = count;
-	q->vertex_count = 0;
-	q->last = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *q->last);
-	q->numbers = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *q->numbers);
-	q->triangles = nt_scratch_alloc(m->scratch, count, sizeof *q->triangles);
-	q->vertices = nt_scratch_alloc(m->scratch, 3 * count + 1, sizeof *q->vertices);
-	q->ids = nt_scratch_alloc(m->scratch, 3 * count, sizeof *q->ids);
-	q->before = nt_scratch_alloc(m->scratch, 3 * count, sizeof *q->before);
-	q->bits = NULL;
-	if (!q->last || !q->numbers || !q->triangles || !q->vertices || !q->ids || !q->before)
-		return false;
-	memset(q->last, 0xff, m->vertex_count * sizeof *q->last);
-	uint32_t c = 0;
-	for (size_t t = next_near(m, tail, 0); t < m->triangle_count; t = next_near(m, tail, t + 1)) {
-		uint32_t copy[3];
+	const nt_cell_corner *corners = q->by_slot + q->slot_begins[slot];
+	cell->corner_count = q->slot_corners[slot];
+	memcpy(cell->corners, corners, cell->corner_count * sizeof *corners);
+	for (size_t i = 0; i < cell->corner_count; i++) {
+		const nt_cell_corner c = corners[i];
+		if (rows[c.vertex].corner_count++ == 0)
+			memcpy(rows[c.vertex].position, nt_welded_position(m, vertex_of(m, c.corner)),
+				sizeof rows->position);
+	}
+}
+
+/* The same of few triangles, whose cells are not watched: finds the vertices of a member's cell, which gets number
+ * `wanted`. */
+static void gather_few(question *q, uint32_t member, uint32_t *wanted, nt_cell *cell, nt_cell_vertex *rows)
+{
+	const nt_welded_mesh *m = q->mesh;
+	const unsigned axis = q->grid.axis;
+	const unsigned number = nt_grid_cell(&q->grid, nt_welded_position(m, q->vertices[member])[axis]);
+	uint32_t *const numbers = q->numbers, count = 0, copy[3];
+	for (uint32_t v = 0; v < m->vertex_count; v++) {
+		const float *p = nt_welded_position(m, v);
+		numbers[v] = NONE;
+		if (nt_grid_cell(&q->grid, p[axis]) != number)
+			continue;
+		memcpy(rows[count].position, p, sizeof rows->position);
+		rows[count].corner_count = 0;
+		numbers[v] = count++;
+	}
+	cell->vertex_count = count;
+	*wanted = numbers[q->vertices[member]];
+	for (uint32_t t = 0; t < m->triangle_count; t++) {
 		const uint32_t *v = vertices_of(m, t, copy);
-		q->triangles[c / 3] = (uint32_t)t;
-		memcpy(q->ids + c, v, 3 * sizeof *v);
-		for (size_t k = 0; k < 3; k++, c++) {
-			const uint32_t before = q->last[v[k]];
-			q->before[c] = before;
-			q->last[v[k]] = c;
-			q->vertices[q->vertex_count] = v[k];
-			q->vertex_count += before == NONE;
+		for (uint32_t k = 0; k < 3; k++) {
+			const uint32_t n = numbers[v[k]];
+			if (n == NONE)
+				continue;
+			cell->corners[cell->corner_count++] = (nt_cell_corner){n, 3 * t + k};
+			rows[n].corner_count++;
 		}
 	}
-	return true;
 }
 
-/* Member i has an edge with one more. */
-static void meet(question *q, uint32_t i, uint32_t other)
-{
-	uint32_t *const met = &q->members[other].met;
-	if (*met == 2 * i)
-		q->twins[q->twin_count++] = (edge_link){i, other};
-	*met = *met >> 1 == i ? 2 * i + 1 : 2 * i;
-}
-
-/* Finds between which corners the representatives of the last triangles' vertices are, and the edges between these.
- * False when out of memory. */
-static bool link_members(question *q)
+/* Finds the representative of a member. False: out of memory, or its cell cannot be halved so often. */
+static bool find_member(question *q, uint32_t member, bool *limit)
 {
 	const nt_welded_mesh *m = q->mesh;
-	/* all of the last triangles are listed, behind the others */
-	const size_t tail_count = m->triangle_count - q->tail->first_triangle, corners = 3 * q->triangle_count;
-	const uint32_t first = (uint32_t)(corners - 3 * tail_count);
-	q->members = nt_scratch_alloc(m->scratch, 3 * tail_count, sizeof *q->members);
-	q->links = nt_scratch_alloc(m->scratch, 2 * corners, sizeof *q->links);
-	if (!q->members || !q->links)
+	const nt_scratch_mark mark = nt_scratch_here(m->scratch);
+	const bool is_few = q->is_few;
+	const unsigned slot = q->member_slots[member];
+	const uint32_t vertices = is_few ? (uint32_t)m->vertex_count : q->slot_vertices[slot];
+	const uint32_t corners = is_few ? 3 * (uint32_t)m->triangle_count : q->slot_corners[slot];
+	nt_cell_vertex *rows = nt_scratch_alloc(m->scratch, 1, vertices * sizeof *rows + cell_bytes(vertices, corners));
+	if (!rows)
 		return false;
-	q->twins = q->links + corners;
-	q->member_count = q->link_count = q->twin_count = 0;
-	for (uint32_t c = first; c < corners; c++) {
-		const uint32_t vertex = q->ids[c];
-		if (q->last[vertex] != c)
-			continue;
-		q->numbers[vertex] = (uint32_t)q->member_count;
-		q->members[q->member_count++] = (edge_member){.vertex = vertex, .low = NONE, .met = NONE};
+	nt_cell cell = make_cell((char *)(rows + vertices), vertices, corners);
+	uint32_t wanted = is_few ? 0 : q->numbers[q->vertices[member]];
+	cell.vertices = rows;
+	if (is_few) {
+		gather_few(q, member, &wanted, &cell, rows);
+	} else {
+		memset(rows, 0, vertices * sizeof *rows);
+		gather(q, slot, &cell, rows);
 	}
-	for (uint32_t i = 0; i < q->member_count; i++) {
-		edge_member *const member = &q->members[i];
-		for (uint32_t c = q->last[member->vertex]; c != NONE; c = q->before[c]) {
-			const uint32_t corner = mesh_corner(q, c), k = c % 3, *const v = q->ids + (c - k);
-			const uint32_t next = v[k < 2 ? k + 1 : 0], previous = v[k > 0 ? k - 1 : 2];
-			member->low = corner < member->low ? corner : member->low;
-			member->high = corner > member->high ? corner : member->high;
-			const bool has_next = q->last[next] + 1 > first, has_previous = q->last[previous] + 1 > first;
-			if ((!has_next && !has_previous) || nt_welded_is_degenerate(m, v))
-				continue;
-			if (has_next) {
-				q->links[q->link_count++] = (edge_link){i, q->numbers[next]};
-				meet(q, i, q->numbers[next]);
-			}
-			if (has_previous)
-				meet(q, i, q->numbers[previous]);
-		}
+	memset(cell.wanted, 0, cell.vertex_count);
+	cell.wanted[wanted] = 1;
+	*limit = !nt_weld_cell(&cell);
+	if (!*limit)
+		q->low[member] = q->high[member] = mesh_corner(m, cell.found[wanted]);
+	nt_scratch_back(m->scratch, mark);
+	return !*limit;
+}
+
+/* Returns what the largest lower end is at least, and finds which members may be above it. */
+static uint32_t find_least(question *q)
+{
+	uint32_t *const low = q->low, *const beside = q->beside, least = 0;
+	low[NOBODY] = q->high[NOBODY] = 0; /* below all */
+	for (uint32_t i = 0; i <= q->member_count; i++)
+		beside[i] = 0;
+	for (uint32_t i = 0; i < q->near_count; i++) {
+		const uint8_t a = q->near[i][0], b = q->near[i][1], c = q->near[i][2];
+		const uint32_t ab = most_of(low[a], low[b]), below = least_of(low[a], low[b]);
+		least = most_of(least, most_of(below, least_of(ab, low[c])));
+		beside[a] = most_of(beside[a], most_of(low[b], low[c]));
+		beside[b] = most_of(beside[b], most_of(low[a], low[c]));
+		beside[c] = most_of(beside[c], ab);
 	}
-	return true;
-}
-
-/* Representatives, as far as they are needed */
-
-/* Makes room for what is in a cell, and lists near vertices by cell. False when out of memory. */
-static bool make_cells(question *q)
-{
-	enum { FEW_HEADS = 64 };
-	nt_scratch *scratch = q->mesh->scratch;
-	const nt_grid grid = q->tail->grid;
-	const size_t corners = 3 * q->triangle_count, heads = q->vertex_count < NT_CELLS ? FEW_HEADS : NT_CELLS;
-	q->bits = nt_scratch_alloc(scratch, corners / 64 + 1, sizeof *q->bits);
-	q->cell_vertices = nt_scratch_alloc(scratch, q->vertex_count, sizeof *q->cell_vertices);
-	uint32_t *room = nt_scratch_alloc(scratch, heads + 2 * q->vertex_count, sizeof *room);
-	q->cells = nt_scratch_alloc(scratch, q->vertex_count, sizeof *q->cells + 1);
-	nt_cell_corner *list = nt_scratch_alloc(scratch, corners, sizeof *list);
-	if (!q->bits || !q->cell_vertices || !room || !q->cells || !list)
-		return false;
-	q->head_mask = heads - 1;
-	q->heads = (uint32_t *)memset(room, 0xff, heads * sizeof *room);
-	q->next = room + heads;
-	q->cell = (nt_cell){q->cell_vertices, list, q->next + q->vertex_count,
-		(uint8_t *)(q->cells + q->vertex_count), 0, 0};
-	for (uint32_t i = 0; i < q->vertex_count; i++) {
-		const float coordinate = nt_welded_position(q->mesh, q->vertices[i])[grid.axis];
-		if (!nt_edge_is_near(q->tail, coordinate))
-			continue;
-		q->cells[i] = (uint16_t)nt_grid_cell(&grid, coordinate);
-		uint32_t *const head = &q->heads[q->cells[i] & q->head_mask];
-		q->next[i] = *head;
-		*head = i;
-	}
-	return true;
-}
-
-/* Finds the representative of a member. */
-static nmtan_status find_member(question *q, edge_member *member)
-{
-	if (!q->bits && !make_cells(q))
-		return NMTAN_ERROR_MEMORY;
-	const nt_grid *grid = &q->tail->grid;
-	nt_cell *cell = &q->cell;
-	const size_t words = 3 * q->triangle_count / 64 + 1;
-	const unsigned number = nt_grid_cell(grid, nt_welded_position(q->mesh, member->vertex)[grid->axis]);
-	uint32_t wanted = 0, found;
-	memset(q->bits, 0, words * sizeof *q->bits);
-	cell->vertex_count = cell->corner_count = 0;
-	for (uint32_t i = q->heads[number & q->head_mask]; i != NONE; i = q->next[i]) {
-		const uint32_t v = q->vertices[i];
-		if (q->cells[i] != number)
-			continue;
-		nt_cell_vertex *vertex = &q->cell_vertices[cell->vertex_count];
-		memcpy(vertex->position, nt_welded_position(q->mesh, v), sizeof vertex->position);
-		vertex->corner_count = 0;
-		for (uint32_t c = q->last[v]; c != NONE; c = q->before[c]) {
-			q->bits[c / 64] |= (uint64_t)1 << c % 64;
-			vertex->corner_count++;
-		}
-		wanted = v == member->vertex ? (uint32_t)cell->vertex_count : wanted;
-		q->numbers[v] = (uint32_t)cell->vertex_count++;
-	}
-	for (size_t word = 0; word < words; word++)
-		for (uint64_t bits = q->bits[word]; bits; bits &= bits - 1) {
-			const uint32_t c = (uint32_t)(64 * word) + (uint32_t)nt_trailing_zeros(bits);
-			cell->corners[cell->corner_count++] = (nt_cell_corner){q->numbers[q->ids[c]], c};
-		}
-	q->tail->limit = !nt_find_representative(cell, wanted, &found);
-	if (!q->tail->limit)
-		member->low = member->high = mesh_corner(q, found);
-	return NMTAN_OK;
-}
-
-static bool is_known(const edge_member *member)
-{
-	return member->low == member->high;
-}
-
-/* Whether an edge may be in the last run, with `low` as its lower end, which is at least `least`: no edge of the higher
- * end has a larger lower end than that. */
-static bool may_run(const edge_member *low, const edge_member *high, uint32_t least)
-{
-	return high->high > (low->low > least ? low->low : least) && low->high >= least && high->beside <= low->high;
-}
-
-static size_t count_edges(const question *q, uint32_t member, uint32_t least)
-{
-	size_t count = 0;
-	for (const edge_link *l = q->links; l < q->links + q->link_count; l++)
-		if (l->a == member || l->b == member)
-			count += may_run(&q->members[member], &q->members[l->a == member ? l->b : l->a], least);
-	return count;
-}
-
-/* How many edges the last run may have if its order matters: three or more, two of them between the same vertices; 0:
- * it cannot. `unknown` receives a member that decides whether there are such edges, or is left alone: of both ends the
- * one with more corners before the end, which is likely to be out of question. */
-static size_t most_edges(const question *q, uint32_t least, edge_member **unknown)
-{
-	size_t most = 0, count = 0;
-	uint32_t lowest = NONE, counted = NONE;
-	for (const edge_link *l = q->twins; l < q->twins + q->twin_count; l++) {
-		edge_member *a = &q->members[l->a], *b = &q->members[l->b];
-		if (!may_run(a, b, least))
-			continue;
-		count = l->a == counted ? count : count_edges(q, l->a, least);
-		counted = l->a;
-		if (count < LEAST_EDGES)
-			continue;
-		most = count > most ? count : most;
-		edge_member *const one = is_known(b) || (!is_known(a) && a->low < b->low) ? a : b;
-		if (!is_known(one) && one->low < lowest) {
-			lowest = one->low;
-			*unknown = one;
-		}
-	}
-	return most;
-}
-
-/* Returns what the largest lower end is at least. */
-static uint32_t find_least(const question *q)
-{
-	edge_member *members = q->members;
-	uint32_t least = 0;
-	for (size_t i = 0; i < q->member_count; i++)
-		members[i].beside = 0;
-	for (const edge_link *l = q->links; l < q->links + q->link_count; l++) {
-		edge_member *a = &members[l->a], *b = &members[l->b];
-		const uint32_t low = a->low < b->low ? a->low : b->low;
-		least = low > least ? low : least;
-		a->beside = b->low > a->beside ? b->low : a->beside;
-		b->beside = a->low > b->beside ? a->low : b->beside;
+	for (uint32_t i = 0; i <= q->member_count; i++) {
+		beside[i] = most_of(beside[i], least);
+		q->may_be_high[i] = q->high[i] > beside[i];
+		q->run[i] = 0;
 	}
 	return least;
 }
 
-/* A member that is not known, of the edge whose lower end may be the largest; NULL: that cannot be as large as one that
- * is known. */
-static edge_member *find_open(const question *q, uint32_t least)
+/* Adds an edge that may be in the run. */
+static void add_pair(edge_pair *pairs, uint32_t *count, uint32_t low, uint32_t high)
 {
-	edge_member *open = NULL;
-	uint32_t most = least;
-	for (const edge_link *l = q->links; l < q->links + q->link_count; l++) {
-		edge_member *a = &q->members[l->a], *b = &q->members[l->b];
-		edge_member *lower = a->high < b->high ? a : b, *other = lower == a ? b : a;
-		if (lower->high >= most && !(is_known(a) && is_known(b))) {
-			most = lower->high;
-			open = is_known(lower) ? other : lower;
-		}
-	}
-	return open;
+	uint32_t p = 0;
+	while (p < *count && (pairs[p].low != low || pairs[p].high != high))
+		p++;
+	if (p == MOST_PAIRS)
+		return;
+	if (p == *count)
+		pairs[(*count)++] = (edge_pair){low, high, 0};
+	pairs[p].count++;
 }
 
-/* Asks whether the order matters; `enough` receives false if more triangles are to be looked at, and `count` how many
- * edges the run has, or 0. */
-static nmtan_status ask_members(question *q, bool *enough, size_t *count)
+/* Goes over edges that may be in the run: counts them, or lists those of which there are enough; returns how many are
+ * listed, up to MOST_PAIRS. */
+static uint32_t pass_pairs(question *q, edge_pair *pairs)
+{
+	uint32_t count = 0;
+	for (uint32_t i = 0; i < q->near_count; i++) {
+		const uint8_t *v = q->near[i];
+		for (uint32_t k = 0; k < 3; k++) {
+			const uint32_t high = v[k], others[2] = {v[k < 2 ? k + 1 : 0], v[k > 0 ? k - 1 : 2]};
+			for (int end = 0; end < 2 && q->may_be_high[high]; end++) {
+				const uint32_t low = others[end];
+				if (low == NOBODY || q->high[low] < q->beside[high])
+					continue;
+				if (!pairs)
+					q->run[low] = (uint8_t)least_of(q->run[low] + 1u, LEAST_EDGES);
+				else if (q->run[low] == LEAST_EDGES)
+					add_pair(pairs, &count, low, high);
+			}
+		}
+	}
+	return count;
+}
+
+/* Whether the order may matter: three edges or more, two of them between the same vertices. `unknown` receives a member
+ * that decides whether there are such edges, or is left alone. */
+static bool may_matter(question *q, uint32_t *unknown)
+{
+	edge_pair pairs[MOST_PAIRS];
+	bool may = false;
+	pass_pairs(q, NULL);
+	for (uint32_t i = 1; i <= q->member_count; i++)
+		may |= q->run[i] == LEAST_EDGES;
+	const uint32_t count = may ? pass_pairs(q, pairs) : 0;
+	may = count == MOST_PAIRS;
+	for (uint32_t i = 0; i < count; i++)
+		for (int end = 0; end < 2 && pairs[i].count > 1; end++) {
+			const uint32_t member = end ? pairs[i].high : pairs[i].low;
+			may = true;
+			if (!is_known(q, member) && (*unknown == NOBODY || q->high[member] > q->high[*unknown]))
+				*unknown = member;
+		}
+	return may;
+}
+
+typedef enum answer { NO, YES, LOOK_AGAIN } answer;
+
+/* Asks whether the order matters; LOOK_AGAIN: at more triangles. False: a limit, or out of memory. */
+static bool ask_members(question *q, answer *result, bool *limit)
 {
 	for (;;) {
 		const uint32_t least = find_least(q);
-		edge_member *unknown = NULL;
-		*enough = least >= q->tail->first;
-		*count = *enough ? most_edges(q, least, &unknown) : 0;
-		if (*enough && *count == 0)
-			return NMTAN_OK;
-		unknown = unknown ? unknown : find_open(q, least);
-		const nmtan_status status = unknown ? find_member(q, unknown) : NMTAN_OK;
-		if (status || q->tail->limit || !unknown)
-			return status;
+		const bool is_last = q->first_triangle == 0 || least >= q->first;
+		uint32_t unknown = NOBODY;
+		*result = !is_last ? LOOK_AGAIN : may_matter(q, &unknown) ? YES : NO;
+		/* if none of a pair decides, that of the last corner which may make the least larger */
+		uint32_t most = is_last ? least : q->first - 1;
+		const bool is_open = *result != NO && unknown == NOBODY;
+		for (uint32_t i = 1; i <= q->member_count && is_open; i++)
+			if (!is_known(q, i) && q->high[i] > most) {
+				most = q->high[i];
+				unknown = i;
+			}
+		if (unknown == NOBODY)
+			return true;
+		if (!find_member(q, unknown, limit))
+			return false;
 	}
 }
 
-/* Edges whose lower end is one vertex, in the order of triangles, and then in others. */
-typedef struct run_edge {
-	uint32_t edge, high; /* high: representative of the higher end */
-	bool forward;	     /* from the lower end to the higher one */
-	uint32_t neighbour;
-} run_edge;
-
-/* Ends of an edge as their representatives. */
-static run_edge ends_of(const uint32_t *found, const uint32_t v[3], uint32_t edge, uint32_t *low)
+/* Asks with the last triangles, and with more of them, until it is known. */
+static bool ask(question *q, answer *result, bool *limit)
 {
-	const uint32_t k = edge % 3, tail = found[v[k]], head = found[v[k < 2 ? k + 1 : 0]];
-	*low = tail < head ? tail : head;
-	return (run_edge){edge, tail < head ? head : tail, tail < head, NONE};
-}
-
-/* Pairs */
-
-static int compare_edges(const void *left, const void *right)
-{
-	const run_edge *a = left, *b = right;
-	return (a->edge > b->edge) - (a->edge < b->edge);
-}
-
-static int compare_ends(const void *left, const void *right)
-{
-	const run_edge *a = left, *b = right;
-	return a->high != b->high ? (a->high > b->high) - (a->high < b->high) : compare_edges(a, b);
-}
-
-/* Pairs edges between the same two vertices: each takes the first later one that is free and runs the other way, so
- * that the n-th of one direction meets the n-th of the other. */
-static void pair_equal(run_edge *edges, size_t count)
-{
-	size_t forward = 0, backward = 0;
-	for (;;) {
-		while (forward < count && !edges[forward].forward)
-			forward++;
-		while (backward < count && edges[backward].forward)
-			backward++;
-		if (forward == count || backward == count)
-			return;
-		run_edge *f = &edges[forward++], *b = &edges[backward++];
-		f->neighbour = b->edge / 3;
-		b->neighbour = f->edge / 3;
+	*result = YES;
+	for (size_t triangles = q->is_few ? FIRST_FEW : FIRST;; triangles *= MORE) {
+		if (!look(q, triangles, limit))
+			return !*limit;
+		if (!q->is_few && !sort_by_slot(q))
+			return false;
+		if (!ask_members(q, result, limit))
+			return false;
+		if (*result != LOOK_AGAIN)
+			return true;
 	}
 }
 
-/* Pairs a run in the order that it is in. Equal edges that are neighbours are sorted by triangle, but for the last of
- * the published sort. */
-static void pair_run(run_edge *run, size_t count, bool published)
+/* Answers it in memory of the mesh. */
+static nmtan_status does_matter(const nt_welded_mesh *m, nt_grid *grid, bool *matters, bool *limit)
 {
-	for (size_t begin = 0, end; begin < count; begin = end) {
-		for (end = begin + 1; end < count && run[end].high == run[begin].high; end++)
-			continue;
-		if (!published || end < count)
-			qsort(run + begin, end - begin, sizeof *run, compare_edges);
-		pair_equal(run + begin, end - begin);
+	/* few triangles, with no more rows than corners, need no other memory */
+	enum { ROWS = 3 * NT_EDGE_FEW };
+	struct {
+		uint32_t numbers[ROWS];
+		nt_cell_corner corners[ROWS];
+		uint8_t slots[ROWS], marks[ROWS];
+		nt_box boxes[ROWS / NT_BOX_ROWS + 1];
+	} few;
+	question q;
+	q.mesh = m;
+	q.is_few = m->triangle_count <= NT_EDGE_FEW && m->vertex_count <= ROWS;
+	q.is_grid_of_used = false;
+	q.boxes = few.boxes;
+	q.numbers = few.numbers;
+	q.corners = few.corners;
+	q.slots = few.slots;
+	q.marks = few.marks;
+	q.most_corners = ROWS;
+	if (!q.is_few) {
+		q.most_corners = m->triangle_count + m->triangle_count / 2 + ROWS;
+		q.marks = nt_scratch_alloc(m->scratch, m->vertex_count, 1);
+		q.numbers = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *q.numbers);
+		q.corners = nt_scratch_alloc(m->scratch, q.most_corners, sizeof *q.corners);
+		q.slots = nt_scratch_alloc(m->scratch, q.most_corners, 1);
+		q.boxes = nt_scratch_alloc(m->scratch, m->vertex_count / NT_BOX_ROWS + 1, sizeof *q.boxes);
+		if (!q.marks || !q.numbers || !q.corners || !q.slots || !q.boxes)
+			return NMTAN_ERROR_MEMORY;
 	}
+	answer result;
+	*limit = false;
+	if (m->triangle_count < LEAST_EDGES) {
+		*limit = !nt_grid_of_used(m, grid);
+		*matters = false;
+		return NMTAN_OK;
+	}
+	const bool answered = ask(&q, &result, limit);
+	*matters = answered && result != NO;
+	if (*matters && !q.is_grid_of_used)
+		(void)nt_grid_of_used(m, &q.grid);
+	*grid = q.grid;
+	return answered || *limit ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }
 
-/* The published order */
+/* Which order? */
 
+/* A vertex's cell, and its number there. */
+typedef struct place {
+	uint32_t cell, number;
+} place;
+
+/* All corners, by cell. */
+typedef struct cells {
+	const nt_welded_mesh *mesh;
+	place *places;           /* [vertex_count] */
+	uint32_t vertex_begins[NT_CELLS + 1], corner_begins[NT_CELLS + 1];
+	nt_cell_vertex *rows;    /* [vertex_count] by cell */
+	uint32_t *vertices;      /* [vertex_count] theirs */
+	nt_cell_corner *corners; /* [3 * triangle_count] by cell, in order: 3 * triangle + k */
+	bool *is_degenerate;     /* [triangle_count] */
+} cells;
+
+/* Turns counts into places of the first of each cell, and one behind the last; returns the largest count. */
+static size_t add_up(uint32_t counts[NT_CELLS + 1])
+{
+	uint32_t most = 0, sum = 0;
+	for (size_t c = 0; c <= NT_CELLS; c++) {
+		const uint32_t count = counts[c];
+		most = most_of(most, count);
+		counts[c] = sum;
+		sum += count;
+	}
+	return most;
+}
+
+/* Puts vertices into their cells; returns the most that one has. */
+static size_t place_vertices(cells *c, const nt_grid *grid)
+{
+	const nt_welded_mesh *m = c->mesh;
+	uint32_t *const counts = c->vertex_begins;
+	memset(counts, 0, sizeof c->vertex_begins);
+	for (size_t v = 0; v < m->vertex_count; v++) {
+		const unsigned cell = nt_grid_cell(grid, m->positions[m->step * v + grid->axis]);
+		c->places[v] = (place){cell, counts[cell]++};
+	}
+	const size_t most = add_up(counts);
+	for (size_t v = 0; v < m->vertex_count; v++) {
+		const size_t row = counts[c->places[v].cell] + c->places[v].number;
+		memcpy(c->rows[row].position, nt_welded_position(m, (uint32_t)v), sizeof c->rows->position);
+		c->rows[row].corner_count = 0;
+		c->vertices[row] = (uint32_t)v;
+	}
+	return most;
+}
+
+/* Puts corners into their cells, in order, and finds degenerate triangles; returns the most that one cell has. */
+static size_t place_corners(cells *c)
+{
+	const nt_welded_mesh *m = c->mesh;
+	uint32_t *const counts = c->corner_begins, at[NT_CELLS], copy[3], cell[3];
+	memset(counts, 0, sizeof c->corner_begins);
+	for (size_t t = 0; t < m->triangle_count; t++) {
+		const uint32_t *v = vertices_of(m, t, copy);
+		for (int k = 0; k < 3; k++)
+			counts[c->places[v[k]].cell]++;
+	}
+	const size_t most = add_up(counts);
+	memcpy(at, counts, sizeof at);
+	for (size_t t = 0; t < m->triangle_count; t++) {
+		const uint32_t *v = vertices_of(m, t, copy);
+		for (uint32_t k = 0; k < 3; k++) {
+			const place to = c->places[v[k]];
+			c->corners[at[to.cell]++] = (nt_cell_corner){to.number, (uint32_t)(3 * t + k)};
+			cell[k] = to.cell;
+		}
+		/* vertices at one position are in one cell */
+		c->is_degenerate[t] = (cell[0] == cell[1] && nt_welded_are_same(m, v[0], v[1])) ||
+			(cell[1] == cell[2] && nt_welded_are_same(m, v[1], v[2])) ||
+			(cell[2] == cell[0] && nt_welded_are_same(m, v[2], v[0]));
+	}
+	return most;
+}
+
+/* Finds the representatives of the vertices of all cells. False: one would have to be halved too often. */
+static bool weld_cells(const cells *c, nt_cell *cell, uint32_t *found)
+{
+	for (size_t i = 0; i < NT_CELLS; i++) {
+		const size_t row = c->vertex_begins[i], corner = c->corner_begins[i];
+		nt_cell_vertex *rows = c->rows + row;
+		cell->vertices = rows;
+		cell->vertex_count = c->vertex_begins[i + 1] - row;
+		cell->corners = c->corners + corner;
+		cell->corner_count = c->corner_begins[i + 1] - corner;
+		for (size_t k = 0; k < cell->corner_count; k++)
+			rows[cell->corners[k].vertex].corner_count++;
+		if (cell->corner_count > 0 && !nt_weld_cell(cell))
+			return false;
+		for (size_t v = 0; v < cell->vertex_count; v++)
+			if (rows[v].corner_count > 0)
+				found[c->vertices[row + v]] = mesh_corner(c->mesh, cell->found[v]);
+	}
+	return true;
+}
+
+/* Finds the corner of the mesh that stands for each vertex that has some. */
+static nmtan_status find_all(
+	const nt_welded_mesh *m, const nt_grid *grid, uint32_t *found, bool *is_degenerate, bool *limit)
+{
+	cells c = {.mesh = m, .is_degenerate = is_degenerate};
+	/* first what needs most of what may be left of memory that is lent */
+	c.corners = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *c.corners);
+	c.places = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *c.places);
+	c.rows = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *c.rows);
+	c.vertices = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *c.vertices);
+	if (!c.places || !c.rows || !c.vertices || !c.corners)
+		return NMTAN_ERROR_MEMORY;
+	const size_t vertices = place_vertices(&c, grid), corners = place_corners(&c);
+	char *room = nt_scratch_alloc(m->scratch, 1, cell_bytes(vertices, corners));
+	if (!room)
+		return NMTAN_ERROR_MEMORY;
+	nt_cell cell = make_cell(room, vertices, corners);
+	memset(cell.wanted, 1, vertices);
+	*limit = !weld_cells(&c, &cell, found);
+	return NMTAN_OK;
+}
+
+/* Ends of an edge: from corner k of a triangle to the next. */
+static void ends_of(const nt_welded_mesh *m, uint32_t edge, uint32_t ends[2])
+{
+	uint32_t copy[3];
+	const uint32_t *v = vertices_of(m, edge / 3, copy), k = edge % 3;
+	ends[0] = v[k];
+	ends[1] = v[k < 2 ? k + 1 : 0];
+}
+
+/* An edge by its lower end. */
 typedef struct key_edge {
 	uint32_t key, edge;
 } key_edge;
@@ -581,21 +762,22 @@ static bool sort_largest(key_edge *keys, size_t count, uint32_t largest)
 }
 
 /* Makes the keys of all edges; returns how many there are. `largest`, and how many have it. */
-static size_t make_keys(
-	const nt_welded_mesh *m, const uint32_t *found, key_edge *keys, uint32_t *largest, size_t *run_count)
+static size_t make_keys(const nt_welded_mesh *m, const uint32_t *found, const bool *is_degenerate, key_edge *keys,
+	uint32_t *largest, size_t *run_count)
 {
 	size_t key_count = 0;
 	*largest = 0;
 	*run_count = 0;
 	for (size_t t = 0; t < m->triangle_count; t++) {
-		uint32_t copy[3], low;
+		uint32_t copy[3], ends[3];
 		const uint32_t *v = vertices_of(m, t, copy);
-		if (nt_welded_is_degenerate(m, v))
+		if (is_degenerate[t])
 			continue;
+		for (int k = 0; k < 3; k++)
+			ends[k] = found[v[k]];
 		for (uint32_t k = 0; k < 3; k++) {
-			const uint32_t edge = (uint32_t)(3 * t + k);
-			ends_of(found, v, edge, &low);
-			keys[key_count++] = (key_edge){low, edge};
+			const uint32_t low = least_of(ends[k], ends[k < 2 ? k + 1 : 0]);
+			keys[key_count++] = (key_edge){low, (uint32_t)(3 * t + k)};
 			if (low >= *largest) {
 				*run_count = low > *largest ? 1 : *run_count + 1;
 				*largest = low;
@@ -605,11 +787,73 @@ static size_t make_keys(
 	return key_count;
 }
 
-/* Pairs the run as published, and as if it were sorted; keeps the edges that differ. */
-static void pair_both(const run_edge *run, run_edge *published, run_edge *sorted, size_t count, nt_unsorted *unsorted)
+/* Edges of the run, in the order of triangles, and then in others. */
+typedef struct run_edge {
+	uint32_t edge, high; /* high: the vertex of the higher end */
+	bool forward;	     /* from the lower end to the higher one */
+	uint32_t neighbour;
+} run_edge;
+
+static int compare_edges(const void *left, const void *right)
 {
-	memcpy(published, run, count * sizeof *run);
-	memcpy(sorted, run, count * sizeof *run);
+	const run_edge *a = left, *b = right;
+	return (a->edge > b->edge) - (a->edge < b->edge);
+}
+
+static int compare_ends(const void *left, const void *right)
+{
+	const run_edge *a = left, *b = right;
+	return a->high != b->high ? (a->high > b->high) - (a->high < b->high) : compare_edges(a, b);
+}
+
+/* Pairs edges between the same two vertices: each takes the first later one that is free and runs the other way, so
+ * that the n-th of one direction meets the n-th of the other. */
+static void pair_equal(run_edge *edges, size_t count)
+{
+	size_t forward = 0, backward = 0;
+	for (;;) {
+		while (forward < count && !edges[forward].forward)
+			forward++;
+		while (backward < count && edges[backward].forward)
+			backward++;
+		if (forward == count || backward == count)
+			return;
+		run_edge *f = &edges[forward++], *b = &edges[backward++];
+		f->neighbour = b->edge / 3;
+		b->neighbour = f->edge / 3;
+	}
+}
+
+/* Pairs a run in the order that it is in. Equal edges that are neighbours are sorted by triangle, but for the last of
+ * the published sort. */
+static void pair_run(run_edge *run, size_t count, bool published)
+{
+	for (size_t begin = 0, end; begin < count; begin = end) {
+		for (end = begin + 1; end < count && run[end].high == run[begin].high; end++)
+			continue;
+		if (!published || end < count)
+			qsort(run + begin, end - begin, sizeof *run, compare_edges);
+		pair_equal(run + begin, end - begin);
+	}
+}
+
+/* Pairs the run, the last keys, as published, and as if it were sorted; keeps the edges that differ. False when out of
+ * memory. */
+static bool pair_both(const nt_welded_mesh *m, const uint32_t *found, const key_edge *last, size_t count,
+	nt_unsorted *unsorted)
+{
+	unsorted->edges = nt_scratch_alloc(m->scratch, count, sizeof *unsorted->edges);
+	run_edge *published = nt_scratch_alloc(m->scratch, count, 2 * sizeof *published);
+	if (!published || !unsorted->edges)
+		return false;
+	run_edge *sorted = published + count;
+	for (size_t i = 0; i < count; i++) {
+		uint32_t v[2];
+		ends_of(m, last[i].edge, v);
+		const bool forward = found[v[0]] == last[i].key;
+		published[i] = (run_edge){last[i].edge, v[forward], forward, NONE};
+	}
+	memcpy(sorted, published, count * sizeof *sorted);
 	pair_run(published, count, true);
 	qsort(published, count, sizeof *published, compare_edges);
 	qsort(sorted, count, sizeof *sorted, compare_ends);
@@ -619,93 +863,55 @@ static void pair_both(const run_edge *run, run_edge *published, run_edge *sorted
 		if (published[i].neighbour != sorted[i].neighbour)
 			unsorted->edges[unsorted->count++] = (nt_unsorted_edge){
 				published[i].edge, published[i].neighbour};
+	return true;
 }
 
-/* The order matters, or may: finds it, with all representatives. */
+/* Finds the order, and what is paired otherwise by it. */
 static nmtan_status pair_as_published(const nt_welded_mesh *m, const nt_grid *grid, nt_unsorted *unsorted)
 {
-	const nt_scratch_mark mark = nt_scratch_here(m->scratch);
 	uint32_t *found = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *found);
-	const nt_representatives_end end = found ? nt_representatives(m, grid, found) : NT_REPRESENTATIVES_NO_MEMORY;
-	unsorted->limit = end == NT_REPRESENTATIVES_LIMIT;
-	key_edge *keys = end == NT_REPRESENTATIVES_FOUND ? nt_scratch_alloc(m->scratch, corner_count(m), sizeof *keys)
-							 : NULL;
-	uint32_t copy[3], low, largest;
-	size_t count = 0;
-	const size_t key_count = keys ? make_keys(m, found, keys, &largest, &count) : 0;
-	run_edge *run = keys ? nt_scratch_alloc(m->scratch, count + 1, 3 * sizeof *run) : NULL;
-	if (run && count >= LEAST_EDGES)
-		unsorted->limit = !sort_largest(keys, key_count, largest);
-	for (size_t i = 0; run && i < count; i++) {
-		const uint32_t edge = keys[key_count - count + i].edge;
-		run[i] = ends_of(found, vertices_of(m, edge / 3, copy), edge, &low);
-	}
-	if (run && count >= LEAST_EDGES && !unsorted->limit)
-		pair_both(run, run + count, run + 2 * count, count, unsorted);
+	bool *is_degenerate = nt_scratch_alloc(m->scratch, m->triangle_count, sizeof *is_degenerate);
+	const nt_scratch_mark mark = nt_scratch_here(m->scratch);
+	const nmtan_status status = found && is_degenerate
+		? find_all(m, grid, found, is_degenerate, &unsorted->limit) : NMTAN_ERROR_MEMORY;
 	nt_scratch_back(m->scratch, mark);
-	return run || unsorted->limit ? NMTAN_OK : NMTAN_ERROR_MEMORY;
-}
-
-/* The whole */
-
-/* Lists what is near; if tail->limit, nothing is. */
-static nmtan_status look(question *q, size_t triangles)
-{
-	const nt_welded_mesh *m = q->mesh;
-	nt_edge_tail *tail = q->tail;
-	if (tail->triangles != triangles) {
-		take_last(m, triangles, tail);
-		watch_cells(m, tail);
-		tail->is_noted = false;
-	}
-	if (!tail->is_noted)
-		note_near(m, tail);
-	if (!tail->is_box_used) {
-		use_box_of_used(m, tail);
-		if (tail->limit)
-			return NMTAN_OK;
-		watch_cells(m, tail);
-		note_near(m, tail);
-	}
-	return list_near(q) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
-}
-
-/* Asks whether the order matters; `count` receives how many edges the run has, or may have, or 0. */
-static nmtan_status ask(const nt_welded_mesh *m, nt_edge_tail *tail, size_t *count)
-{
-	question q = {.mesh = m, .tail = tail};
-	nt_borrowed none = nt_borrow(NULL, 0, m->scratch);
-	if (!tail->near && !tail->limit && !nt_few_edges_are_sorted(m, tail) && begin_tail(m, &none, tail))
+	if (status || unsorted->limit)
+		return status;
+	key_edge *keys = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *keys);
+	if (!keys)
 		return NMTAN_ERROR_MEMORY;
-	if (!tail->near || tail->limit || m->triangle_count < LEAST_EDGES)
+	uint32_t largest;
+	size_t count;
+	const size_t key_count = make_keys(m, found, is_degenerate, keys, &largest, &count);
+	if (count < LEAST_EDGES)
 		return NMTAN_OK;
-	for (size_t triangles = FIRST_TRIANGLES;; triangles *= MORE) {
-		bool enough;
-		nmtan_status status = look(&q, triangles);
-		if (!status && !tail->limit)
-			status = link_members(&q) ? ask_members(&q, &enough, count) : NMTAN_ERROR_MEMORY;
-		if (status || tail->limit || enough)
-			return status;
-		*count = m->triangle_count;
-		if (MORE * 3 * triangles > MOST_MEMBERS)
-			return NMTAN_OK;
-	}
+	unsorted->limit = !sort_largest(keys, key_count, largest);
+	return unsorted->limit || pair_both(m, found, keys + key_count - count, count, unsorted)
+		? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }
 
-nmtan_status nt_find_unsorted(const nt_welded_mesh *mesh, nt_edge_tail *tail, nt_scratch *memory, nt_unsorted *unsorted)
+nmtan_status nt_find_unsorted(const nt_welded_mesh *mesh, nt_scratch *memory, nt_unsorted *unsorted)
 {
-	*unsorted = (nt_unsorted){.edges = NULL};
-	if (mesh->triangle_count == 0)
+	*unsorted = (nt_unsorted){.limit = 3 * mesh->triangle_count > NT_EDGE_SORT_CORNERS};
+	if (mesh->triangle_count == 0 || unsorted->limit)
 		return NMTAN_OK;
 	const nt_scratch_mark mark = nt_scratch_here(mesh->scratch);
-	size_t count = 0;
-	nmtan_status status = ask(mesh, tail, &count);
+	nt_grid grid;
+	bool matters;
+	nmtan_status status = does_matter(mesh, &grid, &matters, &unsorted->limit);
 	nt_scratch_back(mesh->scratch, mark);
-	unsorted->limit = tail->limit;
-	if (status || count == 0 || tail->limit)
+	if (status || !matters)
 		return status;
-	unsorted->edges = nt_scratch_alloc(memory, count, sizeof *unsorted->edges);
-	return unsorted->edges ? pair_as_published(mesh, &tail->grid, unsorted) : NMTAN_ERROR_MEMORY;
+	status = pair_as_published(mesh, &grid, unsorted);
+	nt_scratch_back(mesh->scratch, mark);
+	if (!status && unsorted->count > 0) { /* they are still there, in memory that may be the same */
+		const nt_unsorted_edge *edges = unsorted->edges;
+		unsorted->edges = nt_scratch_alloc(memory, unsorted->count, sizeof *edges);
+		if (unsorted->edges)
+			memmove(unsorted->edges, edges, unsorted->count * sizeof *edges);
+		status = unsorted->edges ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	}
+	return status;
 }
 
 bool nt_unsorted_neighbour(const nt_unsorted *unsorted, uint32_t edge, uint32_t *neighbour)

@@ -26,7 +26,6 @@ typedef struct nt_welded_mesh {
 	const float *positions; /* [vertex_count] rows of three floats, of numbers that no corner has too; three
 	                           floats behind the last one can be read */
 	size_t step;		/* floats from one row to the next */
-	unsigned threads;
 	nt_scratch *scratch;
 } nt_welded_mesh;
 
@@ -35,17 +34,17 @@ static inline const float *nt_welded_position(const nt_welded_mesh *mesh, uint32
 	return mesh->positions + mesh->step * vertex;
 }
 
+static inline bool nt_welded_are_same(const nt_welded_mesh *mesh, uint32_t a, uint32_t b)
+{
+	const float *p = nt_welded_position(mesh, a), *q = nt_welded_position(mesh, b);
+	return (p[0] == q[0]) & (p[1] == q[1]) & (p[2] == q[2]);
+}
+
 /* Whether two corners of a triangle with these vertices are at one position. */
 static inline bool nt_welded_is_degenerate(const nt_welded_mesh *mesh, const uint32_t v[3])
 {
-	const float *const p[3] = {nt_welded_position(mesh, v[0]), nt_welded_position(mesh, v[1]),
-		nt_welded_position(mesh, v[2])};
-	bool is = false;
-	for (int k = 0; k < 3; k++) {
-		const float *a = p[k], *b = p[(k + 1) % 3];
-		is |= (a[0] == b[0]) & (a[1] == b[1]) & (a[2] == b[2]);
-	}
-	return is;
+	return nt_welded_are_same(mesh, v[0], v[1]) | nt_welded_are_same(mesh, v[1], v[2]) |
+	       nt_welded_are_same(mesh, v[2], v[0]);
 }
 
 /* The box of some rows; the last of each four is of no use. */
@@ -64,13 +63,15 @@ typedef struct nt_grid {
 } nt_grid;
 
 /*
- * The box of all rows of a mesh. False if one of their coordinates is not finite or not below FLT_MAX / 2: the
- * published
- * weld leaves some of these unwelded.
+ * The cells of all rows. False if one of their coordinates is not finite or not below FLT_MAX / 2: the published weld
+ * leaves some of these unwelded.
  *
- *   boxes   [vertex_count / NT_BOX_ROWS + 1] receives those of blocks of rows; NULL: without extremes
+ *   boxes   [vertex_count / NT_BOX_ROWS + 1] receives those of blocks of rows
  */
 bool nt_grid_make(const nt_welded_mesh *mesh, nt_box *boxes, nt_grid *grid);
+
+/* The same for the rows that have corners alone; without extremes. */
+bool nt_grid_of_used(const nt_welded_mesh *mesh, nt_grid *grid);
 
 /* The cell of a coordinate on the grid's axis, below NT_CELLS. */
 static inline unsigned nt_grid_cell(const nt_grid *grid, float coordinate)
@@ -81,10 +82,7 @@ static inline unsigned nt_grid_cell(const nt_grid *grid, float coordinate)
 	return (unsigned)(int)(from_zero < last ? from_zero : last);
 }
 
-/* The same as nt_grid_make() for the rows that have corners alone; without extremes. */
-bool nt_grid_of_used(const nt_welded_mesh *mesh, nt_grid *grid);
-
-/* A corner, and its vertex: its number in the cell. */
+/* A corner, by a number that tells the caller which, and its vertex: its number in the cell. */
 typedef struct nt_cell_corner {
 	uint32_t vertex, corner;
 } nt_cell_corner;
@@ -99,24 +97,15 @@ typedef struct nt_cell_vertex {
 typedef struct nt_cell {
 	const nt_cell_vertex *vertices; /* [vertex_count] */
 	nt_cell_corner *corners;        /* [corner_count] in the order of triangles; lost */
-	uint32_t *order;                /* [vertex_count] room */
+	uint32_t *order, *swaps;        /* [vertex_count], [corner_count] room */
 	uint8_t *below;                 /* [vertex_count] room */
+	uint8_t *wanted;                /* [vertex_count] 1: to be found, or 0 */
+	uint32_t *found;                /* [vertex_count] receives what stands for those that are wanted, and others */
 	size_t vertex_count, corner_count;
 } nt_cell;
 
-/* Finds the corner that stands for a vertex of a cell. False: the cell would have to be halved more than NT_HALVINGS
+/* Finds the corners that stand for some vertices of a cell. False: it would have to be halved more than NT_HALVINGS
  * times. */
-bool nt_find_representative(const nt_cell *cell, uint32_t vertex, uint32_t *found);
-
-/* How the search for all of them ends. LIMIT: a cell would have to be halved more than NT_HALVINGS times. */
-typedef enum nt_representatives_end {
-	NT_REPRESENTATIVES_FOUND,
-	NT_REPRESENTATIVES_LIMIT,
-	NT_REPRESENTATIVES_NO_MEMORY
-} nt_representatives_end;
-
-/* Finds the corner of the mesh that stands for each vertex: found[vertex_count], not written for vertices that have
- * none. */
-nt_representatives_end nt_representatives(const nt_welded_mesh *mesh, const nt_grid *grid, uint32_t *found);
+bool nt_weld_cell(const nt_cell *cell);
 
 #endif

@@ -309,38 +309,6 @@ static inline NT_ALWAYS_INLINE void prefetch_rows(const nt_fast *fast, size_t fi
 		NT_PREFETCH(&fast->rows[ids[3 * i]]);
 }
 
-/* Notes which triangles have a corner near the last ones (topology/edge_sort.h). */
-static inline void note_near(const nt_edge_tail *tail, const lanes_in *in, size_t first, size_t count)
-{
-	uint8_t near[NT_TRIANGLES];
-#if WIDTH == 16
-	const __m512 low = _mm512_set1_ps(tail->grid.low), scale = _mm512_set1_ps(tail->scale);
-	const __m512i half = _mm512_loadu_si512(tail->bins), other = _mm512_loadu_si512(tail->bins + 16);
-	const __m512i in_word = _mm512_set1_epi32(31), one = _mm512_set1_epi32(1);
-	for (size_t i = 0; i < count; i += WIDTH) {
-		__m512i bits = _mm512_setzero_si512();
-		for (int k = 0; k < 3; k++) {
-			const __m512 x = _mm512_load_ps(in->row[k][tail->grid.axis] + i);
-			const __m512i bin = _mm512_cvttps_epi32(_mm512_mul_ps(_mm512_sub_ps(x, low), scale));
-			const __m512i word = _mm512_permutex2var_epi32(half, _mm512_srli_epi32(bin, 5), other);
-			bits = _mm512_or_si512(bits, _mm512_srlv_epi32(word, _mm512_and_si512(bin, in_word)));
-		}
-		_mm_storeu_si128((__m128i *)(near + i), _mm512_cvtepi32_epi8(_mm512_and_si512(bits, one)));
-	}
-#else
-	for (size_t i = 0; i < count; i++) {
-		uint32_t bit = 0;
-		for (int k = 0; k < 3; k++)
-			bit |= nt_edge_is_near(tail, in->row[k][tail->grid.axis][i]);
-		near[i] = (uint8_t)bit;
-	}
-#endif
-	if (count == NT_TRIANGLES)
-		memcpy(tail->near + first, near, NT_TRIANGLES);
-	else
-		memcpy(tail->near + first, near, count);
-}
-
 static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
 	void *context)
 {
@@ -357,8 +325,6 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 		uint32_t copy[3 * NT_TRIANGLES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
 		gather_lanes(fast->rows, ids, count, whole_lanes(count), in.row[0][0], NT_TRIANGLES);
-		if (fast->tail.near)
-			note_near(&fast->tail, &in, first, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 1);
 		solve_lanes(&in, &out, count);

@@ -73,51 +73,26 @@ static unsigned count_ranges(const nt_fast *fast, const nt_fast_plan *plan)
 	return ranges == 1 && two ? 2 : ranges;
 }
 
-/* The mesh as the published sort of edges sees it. */
-static nt_welded_mesh welded_mesh(const nt_fast *fast, nt_scratch *scratch)
-{
-	return (nt_welded_mesh){.triangles = &fast->triangles, .triangle_count = fast->triangle_count,
-		.vertex_count = fast->vertex_count, .positions = fast->rows->position,
-		.step = sizeof *fast->rows / sizeof *fast->rows->position, .threads = fast->solve->threads,
-		.scratch = scratch};
-}
-
 /* Asks what the published sort of edges leaves, in memory that is not in use yet. */
 static nmtan_status find_unsorted(nt_fast *fast, const nt_borrowed *memory)
 {
 	enum { LEAST_LENT_BYTES = 1 << 14 };
 	nt_scratch *scratch = fast->solve->scratch, lent;
 	const size_t bytes = (size_t)(memory->end - memory->begin);
+	if (fast->solve->sorted)
+		return NMTAN_OK;
 	nt_scratch_init(&lent, &scratch->allocator);
 	if (bytes >= LEAST_LENT_BYTES)
 		nt_scratch_lend(&lent, memory->begin, bytes);
-	const nt_welded_mesh mesh = welded_mesh(fast, bytes >= LEAST_LENT_BYTES ? &lent : scratch);
-	const nmtan_status status = nt_find_unsorted(&mesh, &fast->tail, scratch, &fast->unsorted);
+	const nt_welded_mesh mesh = {.triangles = &fast->triangles, .triangle_count = fast->triangle_count,
+		.vertex_count = fast->vertex_count, .positions = fast->rows->position,
+		.step = sizeof *fast->rows / sizeof *fast->rows->position,
+		.scratch = bytes >= LEAST_LENT_BYTES ? &lent : scratch};
+	const nmtan_status status = nt_find_unsorted(&mesh, scratch, &fast->unsorted);
 	nt_scratch_free(&lent);
 	if (fast->unsorted.limit && fast->solve->sorted_instead)
 		*fast->solve->sorted_instead = true;
 	return status;
-}
-
-/* Near triangles have been noted; whether the vertices that make the box have corners. */
-static void tell_noted(nt_fast *fast)
-{
-	nt_edge_tail *tail = &fast->tail;
-	bool used = tail->near;
-	for (int i = 0; i < 6 && used && !tail->is_box_used; i++) {
-		const uint32_t extreme = tail->grid.extremes[i];
-		used = fast->bins.cursors ? nt_bins_have_corners(&fast->bins, extreme)
-					  : nt_adjacency_has_corners(&fast->adjacency, extreme);
-	}
-	tail->is_noted = tail->is_box_used = used;
-}
-
-/* Prepares the question to the published sort of edges, before sums note what they pass, in memory that is not in use
- * until the question is asked. */
-static nmtan_status make_tail(nt_fast *fast, nt_borrowed *memory)
-{
-	const nt_welded_mesh mesh = welded_mesh(fast, fast->solve->scratch);
-	return fast->solve->sorted ? NMTAN_OK : nt_edge_tail_make(&mesh, memory, &fast->tail);
 }
 
 static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_memory *memory)
@@ -132,6 +107,8 @@ static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_mem
 	fast->vertex_count = welded.count;
 	fast->triangles.ids = welded.ids;
 	status = nt_cut_faces(fast->solve->mesh, fast->triangle_count, scratch, &fast->flags, &fast->triangles);
+	if (!status)
+		status = find_unsorted(fast, &memory->borrowed);
 	return status ? status : nt_cut_ranges(fast->flags, fast->triangle_count, ranges, scratch, &fast->ranges);
 }
 
@@ -144,8 +121,6 @@ static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, con
 	nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count,
 		plan->most_places ? plan->most_places : NT_ADJACENCY_PLACES, plan->most_narrow, memory->rows,
 		&memory->borrowed, &fast->adjacency);
-	if (!status)
-		status = make_tail(fast, &memory->borrowed);
 	if (status)
 		return status;
 	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
@@ -177,9 +152,6 @@ static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned
 	nmtan_status status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
 		bin_bits ? bin_bits : nt_bins_bits(fast->vertex_count), memory->bin_sums, &memory->borrowed,
 		&fast->bins);
-	/* sums of bins lie in the output */
-	if (!status)
-		status = make_tail(fast, &memory->none);
 	if (status)
 		return status;
 	fast->scattered = true;
@@ -395,26 +367,16 @@ bool nt_fast_can(const nt_solve *solve)
 	       3 * nt_triangle_count(solve->mesh, solve->corner_count) < NT_ADJACENCY_LIMIT;
 }
 
-/* The question, once they have. */
-static nmtan_status ask_tail(nt_fast *fast, const nt_borrowed *memory)
-{
-	if (fast->solve->sorted)
-		return NMTAN_OK;
-	tell_noted(fast);
-	return find_unsorted(fast, memory);
-}
-
 /* Steps 1 to 4 of few triangles. */
 static nmtan_status add_small(nt_fast *fast, const nt_kernels *kernels, bool *welded)
 {
 	nt_borrowed none = nt_borrow(NULL, 0, fast->solve->scratch);
 	nmtan_status status = nt_fast_weld_small(fast, welded);
 	if (!status && *welded)
-		status = make_tail(fast, &none);
-	if (status || !*welded)
-		return status;
-	nt_fast_add_small(fast, kernels);
-	return ask_tail(fast, &none);
+		status = find_unsorted(fast, &none);
+	if (!status && *welded)
+		nt_fast_add_small(fast, kernels);
+	return status;
 }
 
 /* Steps 1 to 4. */
@@ -429,10 +391,8 @@ static nmtan_status add(nt_fast *fast, const nt_kernels *kernels, const nt_fast_
 	if (status)
 		return status;
 	/* each vertex's sums over its corners, one for each orientation */
-	status = binned ? fill_bins(fast, kernels, plan->bin_bits, &memory)
+	return binned ? fill_bins(fast, kernels, plan->bin_bits, &memory)
 		: add_to_records(fast, kernels, plan, &memory);
-	/* sums of bins lie in the output */
-	return status ? status : ask_tail(fast, binned ? &memory.none : &memory.borrowed);
 }
 
 nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan)

@@ -10,7 +10,6 @@
  *   rows               1-5    borrowed where there is memory, see has_room_for_rows(); binned: scratch
  *   cursors            3-5    as the rows
  *   entries            3-5    borrowed
- *   near triangles     4      borrowed; binned: scratch (topology/edge_sort.h)
  *   sums of bins       4-5    the output: 16 bytes a corner, as many as it has
  *   entries of bins    4-5    scratch
  *   records            4-8    scratch; binned: that of the rows, see nt_fast_place_records()

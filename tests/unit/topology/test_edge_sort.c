@@ -26,13 +26,8 @@ static nmtan_status ask_of(
 		.vertex_count = vertices,
 		.positions = positions[0],
 		.step = 3,
-		.threads = 1,
 		.scratch = scratch};
-	nt_edge_tail tail;
-	nt_borrowed none = nt_borrow(NULL, 0, scratch);
-	const nmtan_status status = nt_edge_tail_make(&mesh, &none, &tail);
-	*unsorted = (nt_unsorted){.edges = NULL};
-	return status ? status : nt_find_unsorted(&mesh, &tail, scratch, unsorted);
+	return nt_find_unsorted(&mesh, scratch, unsorted);
 }
 
 static nmtan_status ask(
@@ -436,7 +431,7 @@ TEST(every_form_of_a_tail_is_as_specified)
 			uint32_t last = 0;
 			for (size_t e = 0; e < 3 * triangles; e++)
 				last = entry_vertices[e] > last ? entry_vertices[e] : last;
-			/* rows that have corners, some that have none, too many for edge_few.c */
+			/* rows that have corners, some that have none, too many for few */
 			const size_t rows[3] = {last + 1, 3 * NT_EDGE_FEW, MOST};
 			for (int i = 0; i < 3; i++) {
 				nt_scratch scratch;

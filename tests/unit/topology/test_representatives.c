@@ -3,7 +3,6 @@
 #include "test.h"
 #include <float.h>
 #include <math.h>
-#include "budget.h"
 #include "topology/representatives.h"
 
 enum { MOST = 20000 };
@@ -12,31 +11,56 @@ static float positions[MOST + 1][3]; /* three floats behind the last one can be 
 
 static nt_box boxes[MOST / NT_BOX_ROWS + 1];
 
-static nt_welded_mesh mesh_of(
-	const nt_triangles *triangles, size_t triangle_count, size_t vertices, nt_scratch *scratch)
+static nt_welded_mesh mesh_of(const nt_triangles *triangles, size_t triangle_count, size_t vertices)
 {
 	return (nt_welded_mesh){.triangles = triangles,
 		.triangle_count = triangle_count,
 		.vertex_count = vertices,
 		.positions = positions[0],
-		.step = 3,
-		.threads = 1,
-		.scratch = scratch};
+		.step = 3};
 }
 
-static nt_representatives_end find(
-	const uint32_t *ids, size_t triangles, size_t vertices, unsigned threads, uint32_t *found)
+/* Finds what stands for the vertices of a cell, of all or of one. */
+static bool weld(const uint32_t *ids, size_t triangles, size_t vertices, const nt_grid *grid, unsigned number,
+	uint32_t one, uint32_t *found)
 {
-	nt_scratch scratch;
-	nt_scratch_init(&scratch, NULL);
+	static nt_cell_vertex rows[MOST];
+	static nt_cell_corner corners[3 * MOST];
+	static uint32_t order[MOST], swaps[3 * MOST], numbers[MOST], results[MOST];
+	static uint8_t below[MOST], wanted[MOST];
+	nt_cell cell = {rows, corners, order, swaps, below, wanted, results, 0, 0};
+	for (uint32_t v = 0; v < vertices; v++) {
+		if (nt_grid_cell(grid, positions[v][grid->axis]) != number)
+			continue;
+		memcpy(rows[cell.vertex_count].position, positions[v], sizeof *positions);
+		rows[cell.vertex_count].corner_count = 0;
+		wanted[cell.vertex_count] = one == UINT32_MAX || one == v;
+		numbers[v] = (uint32_t)cell.vertex_count++;
+	}
+	for (uint32_t i = 0; i < 3 * triangles; i++) {
+		if (nt_grid_cell(grid, positions[ids[i]][grid->axis]) != number)
+			continue;
+		rows[numbers[ids[i]]].corner_count++;
+		corners[cell.corner_count++] = (nt_cell_corner){numbers[ids[i]], i};
+	}
+	if (cell.corner_count > 0 && !nt_weld_cell(&cell))
+		return false;
+	for (uint32_t v = 0; v < vertices; v++)
+		if (nt_grid_cell(grid, positions[v][grid->axis]) == number && (one == UINT32_MAX || one == v))
+			found[v] = results[numbers[v]];
+	return true;
+}
+
+static bool find(const uint32_t *ids, size_t triangles, size_t vertices, uint32_t *found)
+{
 	const nt_triangles all = {.ids = ids};
-	nt_welded_mesh mesh = mesh_of(&all, triangles, vertices, &scratch);
-	mesh.threads = threads;
+	const nt_welded_mesh mesh = mesh_of(&all, triangles, vertices);
 	nt_grid grid;
 	assert_true(nt_grid_make(&mesh, boxes, &grid));
-	const nt_representatives_end end = nt_representatives(&mesh, &grid, found);
-	nt_scratch_free(&scratch);
-	return end;
+	bool done = true;
+	for (unsigned cell = 0; cell < NT_CELLS && done; cell++)
+		done = weld(ids, triangles, vertices, &grid, cell, UINT32_MAX, found);
+	return done;
 }
 
 static void put(uint32_t vertex, float x, float y, float z)
@@ -51,7 +75,7 @@ TEST(vertices_alone_have_their_first_corner)
 	uint32_t found[4];
 	for (uint32_t v = 0; v < 4; v++)
 		put(v, (float)v, 0, 0);
-	assert_int_equal(find(ids, 2, 4, 1, found), NT_REPRESENTATIVES_FOUND);
+	assert_true(find(ids, 2, 4, found));
 	assert_memory_equal(found, ((uint32_t[]){1, 2, 0, 4}), sizeof found);
 }
 
@@ -68,12 +92,12 @@ TEST(corners_that_are_swapped_come_first)
 	put(L, 0, 0, 0);
 	for (uint32_t v = A; v <= C; v++)
 		put(v, 10, (float)v, 0);
-	assert_int_equal(find(ids, 3, 6, 1, found), NT_REPRESENTATIVES_FOUND);
+	assert_true(find(ids, 3, 6, found));
 	assert_memory_equal(found, ((uint32_t[]){0, 1, 3, 6, 7, 8}), sizeof found);
 
 	/* two vertices: H0 L1 L2 H3 becomes L2 L1 | H0 H3, as H0 changes places with the last one below */
 	static const uint32_t two[] = {H, L, L, H, A, B};
-	assert_int_equal(find(two, 2, 6, 1, found), NT_REPRESENTATIVES_FOUND);
+	assert_true(find(two, 2, 6, found));
 	assert_int_equal(found[H], 0);
 	assert_int_equal(found[L], 2);
 }
@@ -86,16 +110,14 @@ TEST(vertices_at_one_position_stay_apart)
 	put(0, 1, 1, 1);
 	put(1, 1, 1, 1);
 	put(2, 3, 1, 1);
-	assert_int_equal(find(ids, 2, 3, 1, found), NT_REPRESENTATIVES_FOUND);
+	assert_true(find(ids, 2, 3, found));
 	assert_memory_equal(found, ((uint32_t[]){1, 0, 2}), sizeof found);
 }
 
 TEST(the_box_is_that_of_used_vertices)
 {
-	nt_scratch scratch;
-	nt_scratch_init(&scratch, NULL);
 	const nt_triangles first_three = {.ids = (uint32_t[]){0, 1, 2}};
-	const nt_welded_mesh mesh = mesh_of(&first_three, 1, 4, &scratch);
+	const nt_welded_mesh mesh = mesh_of(&first_three, 1, 4);
 	nt_grid grid;
 	put(0, -1, 0, 0);
 	put(1, 0, 2, 0);
@@ -119,7 +141,6 @@ TEST(the_box_is_that_of_used_vertices)
 	}
 	put(3, 0, nextafterf(FLT_MAX / 2, 0), 0);
 	assert_true(nt_grid_make(&mesh, boxes, &grid));
-	nt_scratch_free(&scratch);
 }
 
 /* Each is nearer to 0 than half of the one before, so that a halving parts one of them from the others, all of which
@@ -132,38 +153,11 @@ TEST(halvings_have_a_limit)
 		ids[v] = v;
 		put(v, v < POINTS ? 0 : 0x1p110f, ldexpf(1 - (float)v / 65536, 100 - (int)v), 0);
 	}
-	for (unsigned threads = 1; threads < 3; threads++)
-		assert_int_equal(find(ids, (POINTS + 3) / 3, POINTS + 3, threads, found), NT_REPRESENTATIVES_LIMIT);
+	assert_false(find(ids, (POINTS + 3) / 3, POINTS + 3, found));
 	for (uint32_t v = 99; v < POINTS; v++)
 		put(v, 0, 0x1p100f, 0);
-	assert_int_equal(find(ids, (POINTS + 3) / 3, POINTS + 3, 1, found), NT_REPRESENTATIVES_FOUND);
+	assert_true(find(ids, (POINTS + 3) / 3, POINTS + 3, found));
 	assert_memory_equal(found, ids, sizeof found);
-}
-
-TEST(every_failed_allocation_is_told)
-{
-	static uint32_t ids[3 * MOST], found[MOST];
-	for (uint32_t i = 0; i < 3 * MOST; i++) {
-		ids[i] = i * 7919 % MOST;
-		put(i % MOST, (float)(i % MOST % 100), (float)(i % MOST / 100), 0);
-	}
-	const nt_triangles all = {.ids = ids};
-	size_t allowed = 0;
-	for (nt_representatives_end end = NT_REPRESENTATIVES_NO_MEMORY; end != NT_REPRESENTATIVES_FOUND; allowed++) {
-		budget b = {allowed};
-		const nmtan_allocator allocator = {take_budget, give_back, &b};
-		nt_scratch scratch;
-		nt_scratch_init(&scratch, &allocator);
-		const nt_welded_mesh mesh = mesh_of(&all, MOST, MOST, &scratch);
-		nt_grid grid;
-		assert_true(nt_grid_make(&mesh, boxes, &grid));
-		end = nt_representatives(&mesh, &grid, found);
-		assert_true(end == NT_REPRESENTATIVES_FOUND || end == NT_REPRESENTATIVES_NO_MEMORY);
-		nt_scratch_free(&scratch);
-	}
-	assert_in_range(allowed, 4, 100);
-	for (uint32_t v = 0; v < MOST; v++)
-		assert_int_equal(ids[found[v]], v);
 }
 
 /* 300 vertices of a lattice, each with some of 6 000 corners, so that parts of more than 64 corners are halved. */
@@ -171,10 +165,6 @@ TEST(one_is_found_as_all_are)
 {
 	enum { VERTICES = 300, TRIANGLES = 2000 };
 	static uint32_t ids[3 * TRIANGLES], found[VERTICES];
-	static nt_cell_corner corners[3 * TRIANGLES];
-	nt_cell_vertex vertices[VERTICES];
-	uint32_t order[VERTICES], numbers[VERTICES];
-	uint8_t below[VERTICES];
 	uint32_t seed = 1;
 	for (uint32_t i = 0; i < 3 * TRIANGLES; i++) {
 		seed = seed * 1664525 + 1013904223;
@@ -182,24 +172,15 @@ TEST(one_is_found_as_all_are)
 	}
 	for (uint32_t v = 0; v < VERTICES; v++)
 		put(v, v % 7 == 0 ? 20 : 0, (float)(v / 7 % 9), (float)(v % 5));
-	assert_int_equal(find(ids, TRIANGLES, VERTICES, 1, found), NT_REPRESENTATIVES_FOUND);
+	assert_true(find(ids, TRIANGLES, VERTICES, found));
+	const nt_triangles all = {.ids = ids};
+	const nt_welded_mesh mesh = mesh_of(&all, TRIANGLES, VERTICES);
+	nt_grid grid;
+	assert_true(nt_grid_make(&mesh, boxes, &grid));
 	for (uint32_t v = 0; v < VERTICES; v++) {
-		nt_cell cell = {vertices, corners, order, below, 0, 0};
-		uint32_t one;
-		for (uint32_t u = 0; u < VERTICES; u++) {
-			if (positions[u][0] != positions[v][0])
-				continue;
-			memcpy(vertices[cell.vertex_count].position, positions[u], sizeof *positions);
-			vertices[cell.vertex_count].corner_count = 0;
-			numbers[u] = (uint32_t)cell.vertex_count++;
-		}
-		for (uint32_t i = 0; i < 3 * TRIANGLES; i++) {
-			if (positions[ids[i]][0] != positions[v][0])
-				continue;
-			vertices[numbers[ids[i]]].corner_count++;
-			corners[cell.corner_count++] = (nt_cell_corner){numbers[ids[i]], i};
-		}
-		assert_true(nt_find_representative(&cell, numbers[v], &one));
-		assert_int_equal(one, found[v]);
+		uint32_t one[VERTICES];
+		const unsigned cell = nt_grid_cell(&grid, positions[v][grid.axis]);
+		assert_true(weld(ids, TRIANGLES, VERTICES, &grid, cell, v, one));
+		assert_int_equal(one[v], found[v]);
 	}
 }
