@@ -95,15 +95,6 @@ static inline void nt_adjacency_store(const nt_adjacency *a, uint32_t place, nt_
 		*nt_adjacency_entry(a, place) = entry;
 }
 
-/* Whether a vertex has corners, once all of them have been entered. */
-static inline bool nt_adjacency_has_corners(const nt_adjacency *a, uint32_t vertex)
-{
-	const uint32_t cursor = a->cursors[(a->ranges - 1) * a->vertex_count + vertex];
-	const uint32_t begin = nt_adjacency_is_narrow(a)
-		? vertex : a->block_begin[vertex / NT_FAN_LANES] + vertex % NT_FAN_LANES;
-	return cursor & NT_CURSOR_HUB || (cursor & NT_CURSOR_PLACE) != begin;
-}
-
 /* The first entry of a block. */
 static inline const nt_fan_entry *nt_adjacency_block(const nt_adjacency *a, size_t block)
 {

@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Two questions. Does the order of the last run matter? The run belongs to the largest lower end of all edges, the
- * vertex X. If vertices are taken from the largest representative down, X is the first that has an edge with one that
- * was taken before, a Y. The run has one edge of each triangle with X and such a Y, and its order only matters if it has
- * three or more, two of them between the same vertices: nearly always X has one Y, in two triangles.
+ * vertex X. If vertices are taken from the largest representative down, X is the first that has an edge with one taken
+ * before, a Y. The run has one edge of each triangle that has X and a Y. Its order only matters if it has three edges
+ * or more, two of them between the same vertices: nearly always X has one Y, in two triangles.
  *
  * The representative of a vertex is between its first and its last corner. So the last triangles' vertices are looked
- * at, and more of them until an edge between two of them has a lower end among their corners; what first and last
- * corners leave open is found from the corners of a vertex's cell, the last vertices first.
+ * at, and more of them until an edge of two of them has its lower end among these triangles' corners. If first and last
+ * corners leave the answer open, representatives are found from the corners of their cells, the last vertices first.
  *
  * And if it does: which order? That of the published quicksort, of which only those parts are sorted that hold edges of
- * the run. Of a vertex only that has to be known whether it is above or below a pivot, which first and last corners say
- * of nearly all where the mesh is in the order of its surface.
+ * the run.
  */
 #include "topology/edge_sort.h"
 
