@@ -43,7 +43,7 @@ static inline bool nt_welded_are_same(const nt_welded_mesh *mesh, uint32_t a, ui
 /* Whether two corners of a triangle with these vertices are at one position. */
 static inline bool nt_welded_is_degenerate(const nt_welded_mesh *mesh, const uint32_t v[3])
 {
-	return nt_welded_are_same(mesh, v[0], v[1]) | nt_welded_are_same(mesh, v[1], v[2]) |
+	return nt_welded_are_same(mesh, v[0], v[1]) || nt_welded_are_same(mesh, v[1], v[2]) ||
 	       nt_welded_are_same(mesh, v[2], v[0]);
 }
 
