@@ -189,8 +189,11 @@ static nmtan_status number_vertices(repair_state *r, size_t unusable)
 			const size_t vertex = nt_vertex_of(solve->mesh, c);
 			r->open[r->welded[c]] = true;
 			r->ids[r->welded[c]] = (uint32_t)r->id_count;
-			r->neighbourhoods[r->id_count++] = (neighbourhood){.given = nt_normal(solve->mesh, vertex),
-				.normal = nt_unit_normal(solve->mesh, vertex), .usable = {NT_NO_ID, NT_NO_ID}};
+			neighbourhood *open = &r->neighbourhoods[r->id_count++];
+			memset(open, 0, sizeof *open);
+			open->given = nt_normal(solve->mesh, vertex);
+			open->normal = nt_unit_normal(solve->mesh, vertex);
+			open->usable[0] = open->usable[1] = NT_NO_ID;
 		}
 	return NMTAN_OK;
 }
