@@ -4,7 +4,7 @@
 
 A copy of the tree in build/mutate gets one fault at a time: a relation, a constant, a statement that is gone. First the
 scripts of the file's room and subject run, which see the tool from outside and outlive a room that is written anew;
-then the unit tests of the room; with --all then all others, but those of cost, pages, tree and bindings. A change that
+then the unit tests of the room, and the first scripts again under sanitizers, as `make check` has both; with --all then all others, but those of cost, pages, tree and bindings. A change that
 no test notices is listed with its line. A fault that does not compile, or that compiles to the same code, does not
 count. Scripts that do not execute the line (gcov says it, of a build of the tree without faults) are passed over. ROOM is a folder of src ("gltf", "report/render"), or "all". The choice follows from SEED alone.
 """
@@ -259,6 +259,13 @@ def try_one(path, number):
     if not make(*units):
         return 'does not compile', False
     seen = first_that_fails(units)
+    if not seen:
+        if not make('config=sanitize', 'all'):
+            return 'does not compile', False
+        scripts = [p for p in outside if executes(p, path, number + 1) and 'meshopt' not in p][:4]
+        seen = next(('%s, sanitized' % p for p in scripts if fails(p, build='build/sanitize')), None)
+        if seen:
+            return seen, True
     if not seen and everything:
         if not make('all', 'tests'):
             return 'does not compile', False
