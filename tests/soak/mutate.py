@@ -3,10 +3,12 @@
 """mutate.py [--all] ROOM N SEED: which of N random faults in the sources of a room do the tests notice?
 
 A copy of the tree in build/mutate gets one fault at a time: a relation, a constant, a statement that is gone. First the
-scripts of the file's room and subject run, which see the tool from outside and outlive a room that is written anew;
-then the unit tests of the room, and the first scripts again under sanitizers, as `make check` has both; with --all then all others, but those of cost, pages, tree and bindings. A change that
-no test notices is listed with its line. A fault that does not compile, or that compiles to the same code, does not
-count. Scripts that do not execute the line (gcov says it, of a build of the tree without faults) are passed over. ROOM is a folder of src ("gltf", "report/render"), or "all". The choice follows from SEED alone.
+scripts of the file's room and subject run, which see the tool from outside and outlive a room that is written anew; then
+the unit tests of the room, and the first scripts again under sanitizers, as `make check` has both; with --all then all
+others, but those of cost, pages, tree and bindings. A change that no test notices is listed with its line. A fault that
+does not compile, or that compiles to the same code, does not count. Scripts that do not execute the line (gcov says it, of
+a build of the tree without faults) are passed over. ROOM is a folder of src ("gltf", "report/render"), or "all". The choice
+follows from SEED alone.
 """
 import concurrent.futures
 import glob
