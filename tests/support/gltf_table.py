@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 """gltf_table.py make             a table of small glTF files in the folder in: who shares what, how bytes lie, which tangents are there
 gltf_table.py sets                 the sets of options, a line for each: name, options
-gltf_table.py run SET NMTAN        converts the files with the options of SET, a third of them with most, and says what is wrong
+gltf_table.py run SET NMTAN N      converts the files with the options of SET, of some sets a third, and of those one in N, and says
+                                   what is wrong
 
 Each primitive is a plane strip of two squares whose texture is mirrored at the edge between them, turned in another way
 in each primitive, so that its tangents are known: along dP/du, the same in a square. The vertices of the edge need copies. The
@@ -743,12 +744,11 @@ def build(name, sharing, tangents, lay_out, quantized=False):
 
 
 def table():
-    """Each way to share with each layout, each layout with each kind of tangents, each kind of sharing with each of tangents."""
-    cells, seen = [], set()
+    """Each way to share with five of the layouts and of the kinds of tangents, which are others from one to the next."""
+    cells = []
     for i, sharing in enumerate(SHARING):
-        for k in range(max(len(LAYOUTS), len(TANGENTS))):
-            lay_out, tangents = LAYOUTS[k % len(LAYOUTS)], TANGENTS[(k + i) % len(TANGENTS)]
-            cells.append((sharing, tangents, lay_out, False))
+        for k in range(5):
+            cells.append((sharing, TANGENTS[(2 * k + i) % len(TANGENTS)], LAYOUTS[(5 * i + k) % len(LAYOUTS)], False))
         cells.append((sharing, TANGENTS[i % len(TANGENTS)], LAYOUTS[(3 * i) % len(LAYOUTS)], True))
     return cells
 
@@ -1311,13 +1311,13 @@ def names_of(folder):
     return {os.path.splitext(x)[0]: os.path.join(folder, x) for x in names if x.endswith(('.gltf', '.glb'))}
 
 
-def convert(name, program):
+def convert(name, program, stride):
     """Converts the inputs of a set's turn and says what is wrong."""
     number, (source, options, share, *words) = list(SETS).index(name), SETS[name]
     if name == 'block-keep':
         share_blocks()
     files = names_of(source)
-    stems = [stem for i, stem in enumerate(sorted(files)) if (i + number) % share == 0]
+    stems = [stem for i, stem in enumerate(sorted(files)) if (i + number) % (share * stride) == 0]
     files = [files[stem] for stem in stems if any(word in stem for word in sum(words, []) or [''])]
     if '--weld' in options:
         files = [x for x in files if 'loose' not in x and 'part_' not in x]
@@ -1329,9 +1329,9 @@ def convert(name, program):
     said = run(options, name, files)
     outputs = names_of(name)
     with open('pairs', 'a', encoding='utf-8') as file:
-        for x in files:
+        for i, x in enumerate(files):
             stem = os.path.splitext(os.path.basename(x))[0]
-            if stem in outputs:
+            if stem in outputs and i % 2 == 0:
                 file.write('%s\t%s\n' % (os.path.abspath(outputs[stem]), os.path.abspath(x)))
     # blocks are judged when they are plain again
     compressed = source == 'packed'
@@ -1367,6 +1367,6 @@ if __name__ == '__main__':
         for name, (_, options, *_) in SETS.items():
             print(name, options)
     else:
-        faults = convert(sys.argv[2], sys.argv[3])
+        faults = convert(sys.argv[2], sys.argv[3], int(sys.argv[4]))
         print('\n'.join(faults[:20]))
         sys.exit(1 if faults else 0)
