@@ -34,7 +34,7 @@ enum { STACK_CORNERS = 48 };
 enum { LEAF_CORNERS = 8 };
 
 /* Visits of boxes that a corner may cost for each level of the tree. */
-enum { MOST_VISITS = 32 };
+enum { MOST_VISITS = 24 };
 
 enum kind { CONVEX, BLOCKING, GONE };
 
