@@ -204,7 +204,8 @@ static nt_status load_meshes(window *w)
 			status = t->reader->load(&w->scene, mesh, t->options, w->error);
 		else if (w->needed[i])
 			status = load_for_report(w, mesh);
-		if (!status && mesh->positions && (mesh->transforms_differ || mesh->transform_animated))
+		const bool loaded = mesh->positions || nt_mesh_is_solved_ahead(mesh);
+		if (!status && loaded && (mesh->transforms_differ || mesh->transform_animated))
 			tell_transforms(&w->scene, mesh);
 	}
 	return status ? status : load_copies(w);

@@ -72,6 +72,8 @@ void nt_mesh_share(nt_mesh *mesh)
 	memcpy(mesh->wrap_offset, own.wrap_offset, sizeof mesh->wrap_offset);
 	mesh->texcoord_set = own.texcoord_set;
 	mesh->texcoords_transformed = own.texcoords_transformed;
+	mesh->transforms_differ = own.transforms_differ;
+	mesh->transform_animated = own.transform_animated;
 	mesh->texcoord_conflict = own.texcoord_conflict;
 	mesh->texcoord_other_set = own.texcoord_other_set;
 	mesh->moving_targets = own.moving_targets;
