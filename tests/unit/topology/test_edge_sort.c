@@ -358,7 +358,7 @@ typedef enum tail_form {
 /* A sheet of cells, most of whose rows of vertices are in one cell of the grid, and a tail. */
 static size_t make_tail(tail_form form, uint32_t *ids, uint32_t *cuts)
 {
-	const uint32_t columns = 1 + below(6), rows = 1 + below(9);
+	const uint32_t columns = 1 + below(10), rows = 1 + below(9);
 	const bool turned = below(2), lattice = below(2);
 	size_t count = 0;
 	for (uint32_t v = 0; v < MOST; v++) {
