@@ -392,8 +392,8 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	}
 	if (s->welded.before > s->welded.after)
 		nt_buffer_format(out, ", welded %zu vertices to %zu", s->welded.before, s->welded.after);
-	else if (settings->weld && s->welded.before)
-		nt_buffer_text(out, ", no vertices are equal");
+	else if (settings->weld)
+		nt_buffer_text(out, s->welded.before ? ", no vertices are equal" : ", nothing that --weld welds");
 	if (s->repaired) {
 		nt_buffer_format(out, ", %s the tangents of ", settings->check ? "would repair" : "repaired");
 		append_count(out, s->repaired, "corner");
@@ -407,7 +407,7 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		nt_buffer_format(out, ", %zu corners of hubs with one sum", s->counts.summed_instead);
 	if (s->counts.sorted_instead)
 		nt_buffer_format(out, ", %zu solved as mikktspace-sorted", s->counts.sorted_instead);
-	if (s->rounding.count)
+	if (s->rounding.count && s->rounding.worst_radians > 0)
 		nt_buffer_format(out, ", rounded tangents by %.2g degrees at most, %.2g on average",
 			s->rounding.worst_radians * DEGREES,
 			s->rounding.sum_radians / (double)s->rounding.count * DEGREES);

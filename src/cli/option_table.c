@@ -227,7 +227,7 @@ const nt_option_row nt_option_rows[] = {
 	{"threads", 'j', NT_OPTION_NUMBER, "N", 0, 1024, "0",
 		"how many threads to use; 0: one for each processor", SETTING(threads), false},
 	{"quiet", 'q', NT_OPTION_SET, NULL, -1, 0, NULL,
-		"print only errors and what an output lacks of its input", FIELD(verbosity), false},
+		"print only errors, what an output lacks of its input, and that it keeps wrong tangents", FIELD(verbosity), false},
 	{"verbose", 'v', NT_OPTION_SET, NULL, 1, 0, NULL,
 		"print every finding, and a line for each mesh", FIELD(verbosity), false},
 	{"progress", 0, NT_OPTION_CHOICE, "auto|on|off", NT_PROGRESS_AUTO, 0, "auto",

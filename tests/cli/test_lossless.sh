@@ -118,6 +118,8 @@ valid again.glb
 run --weld packed.glb left.glb
 exits 0
 says "1 primitive is not welded: Draco compresses it"
+run --weld "$data/quad.obj" out.glb # whose vertices are made one by one
+says ", nothing that --weld welds, "
 same packed.glb left.glb
 for extension in '{CESIUM_primitive_outline: {indices: 0}}' '{FB_ngon_encoding: {}}' '{EXT_mesh_features: {featureIds: [{featureCount: 648}]}}' \
 	'{VENDOR_x: {of: g.accessors.push({componentType: 5126, type: "SCALAR", count: 648}) - 1}}'; do

@@ -56,12 +56,19 @@ for code in 0 1 2 3 4 5 6 7; do
 	sed -n '/^\.SH EXIT/,/^\.SH ENV/p' "$page" | grep -q "^\.B $code$" || wrong "$code is missing"
 done
 
-scene "the page about materials is well formed, and has each option that it names"
-mtl=$ROOT/man/nmtan-mtl.7
-well_formed "$mtl"
-sed -e 's/\\-/-/g' "$mtl" | grep -oE -- '--[a-z-]+' | sort -u >named
+scene "the pages are well formed, and nmtan has each option that they name, with its value"
 "$NMTAN" --help | grep -oE -- '--[a-z-]+' | sort -u >options
-is "$(comm -23 named options)" ""
+for page in nmtan-mtl.7 nmtan-report.5 nmtan-engines.7; do
+	well_formed "$ROOT/man/$page"
+	grep -v 'cc \$(pkg' "$ROOT/man/$page" | sed -e 's/\\-/-/g' >text
+	grep -oE -- '--[a-z][a-z-]*' text | sort -u >named
+	is "$page: $(comm -23 named options)" "$page: "
+	# a value that is none is refused before any file is looked at
+	while read -r word; do
+		"$NMTAN" "$word" --dry-run gone.gltf gone.glb 2>said
+		! grep -q -- "${word%%=*}:\|unknown option" said || wrong "$page: $word: $(head -1 said)"
+	done < <(grep -oE -- '--[a-z][a-z-]*=[a-z][a-z-]*' text | sort -u)
+done
 
 scene "the page for importers is well formed and has a row and a section with sources for each engine"
 engines=$ROOT/man/nmtan-engines.7
