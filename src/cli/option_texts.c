@@ -96,7 +96,7 @@ void nt_options_first_help(nt_buffer *out)
 		"  -r                              take folders as the meshes in them\n"
 		"  --report=FILE                   write a report: .txt .json .html .sarif ...\n"
 		"  --fail-on=error|warning|info    exit with 6 on such findings\n"
-		"  -q                              print only errors, and what got lost or is wrong\n"
+		"  -q                              print errors, what got lost, what is wrong\n"
 		"\nnmtan --help prints all options, man nmtan explains them.\n");
 	nt_buffer_text(out, exit_codes);
 }
