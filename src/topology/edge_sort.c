@@ -647,6 +647,11 @@ static bool weld_cells(const cells *c, nt_cell *cell, uint32_t *found)
 		cell->vertex_count = c->vertex_begins[i + 1] - row;
 		cell->corners = c->corners + corner;
 		cell->corner_count = c->corner_begins[i + 1] - corner;
+		if (cell->vertex_count == 1) { /* many are */
+			if (cell->corner_count > 0)
+				found[c->vertices[row]] = mesh_corner(c->mesh, cell->corners->corner);
+			continue;
+		}
 		for (size_t k = 0; k < cell->corner_count; k++)
 			rows[cell->corners[k].vertex].corner_count++;
 		if (cell->corner_count > 0 && !nt_weld_cell(cell))
