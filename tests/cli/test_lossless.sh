@@ -141,7 +141,11 @@ for name in sparse tangents_short twin_accessors two_ranges shared_with_points; 
 		says "DRACO_PLAIN"
 		says "$number"
 	done
-	[ $name = tangents_short ] || same out.glb again.glb
+	same out.glb again.glb
+	# tangents that rounding made equal, too
+	run --existing=replace --weld --precision=byte --draco=edgebreaker "$input" again.glb
+	run --existing=replace --weld --precision=byte again.glb out.glb
+	says ", no vertices are equal"
 done
 # feature ids that have an attribute are an attribute like others
 gltf plain.glb ids 'g.meshes[0].primitives[0].extensions = {EXT_mesh_features: {featureIds: [{featureCount: 648, attribute: 0}]}}'

@@ -73,7 +73,9 @@ typedef struct nt_buffer_edits {
 
 	/* For appending to the attributes of one pool after the other. An attribute belongs to one pool, so that
 	 * nothing has to be emptied in between; bytes may be another pool's too. */
-	bool *welding;              /* [accessor_count] by `same`: its elements are compared; NULL: of none */
+	uint32_t *welding;          /* [accessor_count] by `same`: the last weld that compared its elements, from 1 on;
+	                               NULL: there is none */
+	uint32_t weld_count;
 	bool *seen;                 /* [accessor_count] */
 	bool *pinned;               /* [accessor_count] used by an unsolved user */
 	uint32_t *index_moved;      /* [accessor_count] by `same`: uses as indices that have other ones by now */

@@ -50,6 +50,7 @@ typedef struct pool_edit {
 	bool stays;                /* as it is, but for welding */
 	bool for_draco;            /* what follows is there */
 	nt_pool_vertices vertices;
+	nt_weld_result welded;     /* what welding has counted */
 	nt_gltf_recoding recoding;
 } pool_edit;
 
@@ -224,7 +225,7 @@ static nt_status settle_old_tangents(const editing *e, const nt_vertex_pool *poo
 	return status;
 }
 
-/* Equal vertices become one. If Draco was to compress them, that was done before, and is not done again. */
+/* Equal vertices become one, unless they were welded for Draco. */
 static nt_status weld(const editing *e, nt_pool_vertices *vertices, nt_stored_tangents *stored)
 {
 	return e->options->weld && !vertices->welded ? nt_pool_weld(e->edits, e->pools, e->scene, vertices, stored,
@@ -285,8 +286,10 @@ static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 		return status;
 	p->for_draco = true;
 	status = nt_pool_vertices_get(e->pools, number, &p->pool, e->of_window, &p->vertices, e->error);
+	const nt_weld_result before = e->scene->welded;
 	if (!status)
 		status = weld(e, &p->vertices, NULL);
+	p->welded = (nt_weld_result){e->scene->welded.before - before.before, e->scene->welded.after - before.after};
 	return status ? status : nt_gltf_draco_look_up(&p->recoding, e->edits, e->pools, &p->vertices, e->options,
 		e->of_window, e->error);
 }
@@ -309,9 +312,13 @@ static nt_status edit_pool(const editing *e, pool_edit *p)
 		status = nt_gltf_draco_make_plain(e->edits, e->pools, &p->vertices, e->error);
 	if (!status && done)
 		status = nt_vertices_tell(e->edits, e->scene, &p->vertices, done, e->error);
-	if (status || done)
-		return status;
-	return edit_plain(e, buffer, &p->vertices, compressed);
+	/* plain tangents may be rounded, which makes others equal: vertices are welded again, as they were */
+	if (!status && !done && !compressed && p->welded.before) {
+		e->scene->welded.before -= p->welded.before;
+		e->scene->welded.after -= p->welded.after;
+		status = nt_pool_vertices_get(e->pools, p->number, &p->pool, e->of_window, &p->vertices, e->error);
+	}
+	return status || done ? status : edit_plain(e, buffer, &p->vertices, compressed);
 }
 
 /* A pool without new tangents is welded. */

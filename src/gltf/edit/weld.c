@@ -116,10 +116,10 @@ static nt_status bake(welding *w, const nt_gltf_accessor *a, const unsigned char
 
 static nt_status add_attribute(welding *w, uint32_t index)
 {
-	bool *known = &w->edits->welding[nt_gltf_same(w->edits->document, index)];
-	if (*known || w->obstacle)
+	uint32_t *known = &w->edits->welding[nt_gltf_same(w->edits->document, index)];
+	if (*known == w->edits->weld_count || w->obstacle)
 		return NT_OK;
-	*known = true;
+	*known = w->edits->weld_count;
 	nt_gltf_accessor a;
 	const unsigned char *elements = NULL;
 	nt_status status = nt_gltf_get_accessor(w->edits->document, index, "/accessors", &a, w->error);
@@ -361,6 +361,7 @@ nt_status nt_pool_weld(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_
 		.bitangents = bitangents, .error = error};
 	const size_t before = vertices->new_count;
 	vertices->welded = true;
+	edits->weld_count++;
 	if (draws_points_alone(vertices->pool))
 		return NT_OK;
 	nt_status status = find_obstacle(&w, scene);
