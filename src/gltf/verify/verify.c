@@ -19,7 +19,7 @@
 #include "gltf/quantize.h"
 #include "gltf/tangent_filter.h"
 #include "gltf/vertex_pools.h"
-#include "gltf/verify/faces.h"
+#include "gltf/verify/vertices.h"
 #include "gltf/view.h"
 #include "scene/morphs.h"
 
@@ -416,18 +416,18 @@ static nt_status compare_targets(const nt_mesh *mesh, const primitive_view *view
 /* ---- compressed primitives ---- */
 
 /* A corner as the scene has it. */
-static nt_verify_corner wanted_corner(const nt_mesh *mesh, size_t corner)
+static nt_verify_vertex wanted_corner(const nt_mesh *mesh, size_t corner)
 {
 	size_t source;
 	const size_t split = split_vertex(mesh, corner, &source);
-	nt_verify_corner result;
+	nt_verify_vertex result;
 	memcpy(result.position, mesh->positions + 3 * source, sizeof result.position);
 	memcpy(result.tangent, mesh->split.vertex_tangents + 4 * split, sizeof result.tangent);
 	return result;
 }
 
 /* The same as the document has it. */
-static bool found_corner(const primitive_view *view, size_t corner, nt_verify_corner *found)
+static bool found_corner(const primitive_view *view, size_t corner, nt_verify_vertex *found)
 {
 	const size_t vertex = vertex_at(view, corner);
 	const unsigned char *position = element_at(&view->positions, vertex);
@@ -445,7 +445,7 @@ static bool found_corner(const primitive_view *view, size_t corner, nt_verify_co
 
 /* Takes out the triangles of which two corners are at one position, as edgebreaker does; returns how many corners are
  * left. */
-static size_t drop_degenerate(nt_verify_corner *corners, size_t count)
+static size_t drop_degenerate(nt_verify_vertex *corners, size_t count)
 {
 	size_t kept = 0;
 	for (size_t c = 0; c < count; c += 3) {
@@ -459,11 +459,11 @@ static size_t drop_degenerate(nt_verify_corner *corners, size_t count)
 	return kept;
 }
 
-/* The sequential method keeps corners where they are; if they are elsewhere, the surface has to be the same. */
-static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, unsigned threads, nt_error *error)
+/* The sequential method keeps corners where they are; if they are elsewhere, their vertices have to be the same. */
+static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
 {
 	size_t count = mesh->corner_count;
-	nt_verify_corner *wanted = nt_alloc(count, sizeof *wanted), *found = nt_alloc(count, sizeof *found);
+	nt_verify_vertex *wanted = nt_alloc(count, sizeof *wanted), *found = nt_alloc(count, sizeof *found);
 	nt_status status = wanted && found ? NT_OK : nt_fail_memory(error);
 	bool ordered = true;
 	for (size_t c = 0; c < count && status == NT_OK; c++)
@@ -482,10 +482,10 @@ static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, 
 	}
 	size_t first = SIZE_MAX;
 	if (status == NT_OK && !ordered &&
-		nt_verify_faces(wanted, count / 3, found, count / 3, &view->tolerance, threads, &first) != NT_OK)
+		nt_verify_vertices(wanted, count, found, count, &view->tolerance, &first) != NT_OK)
 		status = nt_fail_memory(error);
 	if (status == NT_OK && first != SIZE_MAX)
-		status = fail_corner(mesh, 3 * first, error);
+		status = fail_corner(mesh, first, error);
 	free(wanted);
 	free(found);
 	return status;
@@ -515,7 +515,6 @@ typedef struct verification {
 	const nt_scene *scene;
 	nt_reread *model;
 	bool edited; /* else the document is a new one */
-	unsigned threads; /* for the triangles of one mesh */
 	mesh_check *checks; /* [count] */
 	size_t count;
 } verification;
@@ -594,7 +593,7 @@ static nt_status open_checks(verification *v, nt_error *error)
 }
 
 /* Strips and fans keep their own indices: there only the number of tangents is checked. */
-static nt_status compare_edited(const mesh_check *check, unsigned threads, nt_error *error)
+static nt_status compare_edited(const mesh_check *check, nt_error *error)
 {
 	primitive_view *view = check->views;
 	nt_status status = view->packed ? NT_OK : check_bounds(check->mesh, view, check->decoded, error);
@@ -610,7 +609,7 @@ static nt_status compare_edited(const mesh_check *check, unsigned threads, nt_er
 	if (status == NT_OK)
 		status = check_bounds(check->mesh, view, view->position_id != UINT32_MAX, error);
 	if (status == NT_OK)
-		status = compare_block(check->mesh, view, threads, error);
+		status = compare_block(check->mesh, view, error);
 	if (status == NT_OK)
 		status = compare_targets(check->mesh, view, error);
 	nt_draco_free(view->block);
@@ -622,7 +621,7 @@ static nt_status compare_check(const verification *v, const mesh_check *check, n
 {
 	for (size_t p = 0; p < check->view_count; p++)
 		check->views[p].corner = 0;
-	return v->edited ? compare_edited(check, v->threads, error) : compare_mesh(check->mesh, check->views, error);
+	return v->edited ? compare_edited(check, error) : compare_mesh(check->mesh, check->views, error);
 }
 
 static void compare_one(void *context, size_t item, unsigned thread)
@@ -636,7 +635,6 @@ static void compare_one(void *context, size_t item, unsigned thread)
 /* A mesh that failed is compared again, alone, to say where it differs: the first of them that does. */
 static nt_status compare_all(verification *v, unsigned threads, nt_error *error)
 {
-	v->threads = v->count == 1 ? threads : 1;
 	nt_parallel_items(threads, v->count, compare_one, v);
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < v->count && status == NT_OK; i++)

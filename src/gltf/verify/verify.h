@@ -12,7 +12,7 @@
 /*
  * Reads back the glTF or GLB `path` of an output set that is complete but not committed, and compares it
  * with the scene it was written from, morph targets included; views that meshoptimizer
- * packed unpacked, what Draco compresses within its quantization, and with triangles in any order where the method
+ * packed unpacked, what Draco compresses within its quantization, and with vertices in any order where the method
  * is edgebreaker. An output that is written through cannot be read back: nothing
  * is done then. threads: 0 for one per processor; several compare meshes, with the same result. If tinygltf refuses
  * an output that was made from a glTF and refuses the input too, the fault is not ours: the scene gets the finding
