@@ -51,8 +51,9 @@ static void NT_NOINLINE clear_along(const lanes_in *in, lanes_out *out, size_t c
 	static_assert(NT_STATE_SOUND == 1, "as where a frame is sound");
 	lanes some = {0};
 	for (size_t i = 0; i < count; i += WIDTH)
-		some |= load_lanes(out->sound + i) & ~(load_lanes(out->sum[0][3] + i) &
-			load_lanes(out->sum[1][3] + i) & load_lanes(out->sum[2][3] + i));
+		some |= load_lanes(out->sound + i) & ~load_lanes(out->degenerate + i) &
+			~(load_lanes(out->sum[0][3] + i) & load_lanes(out->sum[1][3] + i) &
+				load_lanes(out->sum[2][3] + i));
 	for (size_t i = 0; any_lane(some & NT_STATE_SOUND) && i < count; i++) {
 		const float u[3] = {out->u[0][i], out->u[1][i], out->u[2][i]};
 		float squares = 0;
