@@ -34,11 +34,6 @@ typedef struct parser {
 	nt_name_table names; /* of the elements; a name's number is its element's */
 } parser;
 
-typedef struct word {
-	const char *text;
-	size_t length;
-} word;
-
 const char *ply_type_name(ply_type type)
 {
 	return type_names[type].name;
@@ -67,37 +62,33 @@ ply_line ply_header_line(const ply_header *header, const unsigned char *bytes, s
 	return line;
 }
 
-size_t ply_next_word(const char **at, const char *end, const char **text)
+ply_word ply_next_word(const char **at, const char *end)
 {
-	const char *p = *at;
-	while (p < end && ply_is_blank((unsigned char)*p))
-		p++;
-	*text = p;
-	while (p < end && !ply_is_blank((unsigned char)*p))
-		p++;
-	*at = p;
-	return (size_t)(p - *text);
+	const char *begin = *at;
+	while (begin < end && ply_is_blank((unsigned char)*begin))
+		begin++;
+	for (*at = begin; *at < end && !ply_is_blank((unsigned char)**at);)
+		(*at)++;
+	return (ply_word){begin, (size_t)(*at - begin)};
 }
 
-static word next_word(parser *p)
+bool ply_word_is(ply_word word, const char *text)
 {
-	word w;
-	w.length = ply_next_word(&p->at, p->end, &w.text);
-	return w;
+	return strlen(text) == word.length && memcmp(word.text, text, word.length) == 0;
 }
 
-static bool is(word w, const char *text)
+static ply_word next_word(parser *p)
 {
-	return strlen(text) == w.length && memcmp(w.text, text, w.length) == 0;
+	return ply_next_word(&p->at, p->end);
 }
 
 /* Length and text for "%.*s", shortened to what a message can take. */
-static int shown(word w)
+static int shown(ply_word w)
 {
 	return w.length < 40 ? (int)w.length : 40;
 }
 
-static nt_status fail_word(parser *p, word found, const char *expected)
+static nt_status fail_word(parser *p, ply_word found, const char *expected)
 {
 	if (found.length == 0)
 		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
@@ -108,7 +99,7 @@ static nt_status fail_word(parser *p, word found, const char *expected)
 
 static nt_status expect_end(parser *p)
 {
-	const word w = next_word(p);
+	const ply_word w = next_word(p);
 	return w.length ? fail_word(p, w, "the end of the line") : NT_OK;
 }
 
@@ -117,14 +108,14 @@ static nt_status parse_format(parser *p)
 	static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
 	if (p->has_format)
 		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line, "a second format line");
-	const word name = next_word(p);
+	const ply_word name = next_word(p);
 	int encoding = 0;
-	while (encoding < 3 && !is(name, names[encoding]))
+	while (encoding < 3 && !ply_word_is(name, names[encoding]))
 		encoding++;
 	if (encoding == 3)
 		return fail_word(p, name, "ascii, binary_little_endian or binary_big_endian");
-	const word version = next_word(p);
-	if (version.length && !is(version, "1.0"))
+	const ply_word version = next_word(p);
+	if (version.length && !ply_word_is(version, "1.0"))
 		return nt_fail_line(p->error, NT_ERROR_UNSUPPORTED, p->line,
 			"PLY version \"%.*s\": only 1.0 is known", shown(version), version.text);
 	if (version.length == 0)
@@ -137,9 +128,9 @@ static nt_status parse_format(parser *p)
 /* "TextureFile wood grain.png": the rest of the line is the name. */
 static nt_status parse_comment(parser *p)
 {
-	if (!is(next_word(p), "TextureFile"))
+	if (!ply_word_is(next_word(p), "TextureFile"))
 		return NT_OK;
-	word name = next_word(p);
+	ply_word name = next_word(p);
 	const char *end = p->end;
 	while (end > name.text && ply_is_blank((unsigned char)end[-1]))
 		end--;
@@ -154,7 +145,7 @@ static nt_status parse_comment(parser *p)
 	return NT_OK;
 }
 
-static bool read_count(word w, size_t *count)
+static bool read_count(ply_word w, size_t *count)
 {
 	*count = 0;
 	for (size_t i = 0; i < w.length; i++) {
@@ -168,11 +159,11 @@ static bool read_count(word w, size_t *count)
 static nt_status parse_element(parser *p)
 {
 	ply_header *header = p->header;
-	const word name = next_word(p);
+	const ply_word name = next_word(p);
 	if (name.length == 0)
 		return fail_word(p, name, "the element's name");
 	ply_element element = {.line = p->line};
-	const word number = next_word(p);
+	const ply_word number = next_word(p);
 	if (!read_count(number, &element.count))
 		return fail_word(p, number, "the number of rows");
 	const uint32_t first = nt_name_add(&p->names, name.text, name.length);
@@ -190,10 +181,10 @@ static nt_status parse_element(parser *p)
 	return expect_end(p);
 }
 
-static nt_status parse_type(parser *p, word name, ply_type *type)
+static nt_status parse_type(parser *p, ply_word name, ply_type *type)
 {
 	for (int i = 0; i < TYPE_COUNT; i++) {
-		if (is(name, type_names[i].name) || is(name, type_names[i].alias)) {
+		if (ply_word_is(name, type_names[i].name) || ply_word_is(name, type_names[i].alias)) {
 			*type = (ply_type)i;
 			return NT_OK;
 		}
@@ -204,8 +195,8 @@ static nt_status parse_type(parser *p, word name, ply_type *type)
 /* "list <type> <type>" or "<type>". */
 static nt_status parse_property_type(parser *p, ply_property *property)
 {
-	word name = next_word(p);
-	property->list = is(name, "list");
+	ply_word name = next_word(p);
+	property->list = ply_word_is(name, "list");
 	if (property->list) {
 		name = next_word(p);
 		const nt_status status = parse_type(p, name, &property->count_type);
@@ -229,7 +220,7 @@ static nt_status parse_property(parser *p)
 	const nt_status status = parse_property_type(p, &property);
 	if (status)
 		return status;
-	const word name = next_word(p);
+	const ply_word name = next_word(p);
 	if (name.length == 0)
 		return fail_word(p, name, "the property's name");
 	property.name = nt_arena_text(&header->texts, name.text, name.length);
@@ -244,25 +235,25 @@ static nt_status parse_property(parser *p)
 
 static nt_status parse_line(parser *p, bool *finished)
 {
-	const word keyword = next_word(p);
-	if (is(keyword, "comment"))
+	const ply_word keyword = next_word(p);
+	if (ply_word_is(keyword, "comment"))
 		return parse_comment(p);
-	if (keyword.length == 0 || is(keyword, "obj_info"))
+	if (keyword.length == 0 || ply_word_is(keyword, "obj_info"))
 		return NT_OK;
-	if (is(keyword, "format"))
+	if (ply_word_is(keyword, "format"))
 		return parse_format(p);
-	if (is(keyword, "element"))
+	if (ply_word_is(keyword, "element"))
 		return parse_element(p);
-	if (is(keyword, "property"))
+	if (ply_word_is(keyword, "property"))
 		return parse_property(p);
 	/* A line that some exporter wrote without "comment" before it. Behind the first element it could be a
 	 * misspelt property, without which rows would be read as what they are not. */
-	if (p->header->element_count == 0 && !is(keyword, "end_header")) {
+	if (p->header->element_count == 0 && !ply_word_is(keyword, "end_header")) {
 		if (p->header->unknown_lines++ == 0)
 			p->header->unknown_line = p->line;
 		return NT_OK;
 	}
-	if (!is(keyword, "end_header"))
+	if (!ply_word_is(keyword, "end_header"))
 		return fail_word(p, keyword,
 			"comment, obj_info, element, property or end_header");
 	*finished = true;
@@ -295,7 +286,7 @@ nt_status ply_parse_header(ply_header *header, const unsigned char *bytes, size_
 	ply_line line = read_line(bytes, size, 0);
 	p.at = line.text;
 	p.end = line.text + line.length;
-	if (!is(next_word(&p), "ply"))
+	if (!ply_word_is(next_word(&p), "ply"))
 		return nt_fail_line(error, NT_ERROR_INPUT, 1, "not a PLY file: it does not begin with \"ply\"");
 	/* the first line tells whether '\r' comes alone: a '\n' after it may then be data */
 	header->newline = line.newline;

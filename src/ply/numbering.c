@@ -7,8 +7,7 @@
 #include "ply/parts.h"
 
 #include <stdlib.h>
-
-enum { MOST_CHAIN = 64 };
+#include "base/hash_index.h"
 
 size_t ply_mesh_vertex(const ply_numbering *n, size_t vertex)
 {
@@ -25,67 +24,47 @@ size_t ply_source_row(const ply_numbering *n, size_t vertex)
 	return v < n->row_count ? v : n->source->wedge_rows[v - n->row_count];
 }
 
-static bool same_values(const ply_numbering *n, size_t a, size_t b)
+/* Values by which vertices of one row may differ in the output. */
+typedef struct values {
+	size_t row;
+	float tangent[4], normal[3], unused;
+} values;
+
+static values values_of(const ply_numbering *n, size_t vertex)
 {
 	const nt_mesh *mesh = n->mesh;
-	const float *tangents = mesh->split.vertex_tangents;
-	if (tangents && memcmp(tangents + 4 * a, tangents + 4 * b, 4 * sizeof *tangents) != 0)
-		return false;
-	if (!mesh->normals_made)
-		return true;
-	const float *na = mesh->normals + 3 * ply_mesh_vertex(n, a);
-	const float *nb = mesh->normals + 3 * ply_mesh_vertex(n, b);
-	return memcmp(na, nb, 3 * sizeof *na) == 0;
+	values v = {.row = ply_source_row(n, vertex)};
+	if (mesh->split.vertex_tangents)
+		memcpy(v.tangent, mesh->split.vertex_tangents + 4 * vertex, sizeof v.tangent);
+	if (mesh->normals_made)
+		memcpy(v.normal, mesh->normals + 3 * ply_mesh_vertex(n, vertex), sizeof v.normal);
+	return v;
 }
 
-/* The output vertices of each row, as chains from the newest to the row itself. */
-typedef struct row_chains {
-	uint32_t *last;     /* [row_count] newest output vertex */
-	uint32_t *previous; /* [appended_count] */
-} row_chains;
-
-/* The output vertex of that row with the values of v; NT_NONE: none. If a row has very many copies, the search stops
- * after a while: the output is then larger, never wrong. */
-static uint32_t find_equal(const ply_numbering *n, const row_chains *chains, size_t row, size_t v)
-{
-	uint32_t other = chains->last[row];
-	for (int steps = 0; other >= n->row_count && steps < MOST_CHAIN; steps++) {
-		if (same_values(n, n->appended[other - n->row_count], v))
-			return other;
-		other = chains->previous[other - n->row_count];
-	}
-	return other < n->row_count && same_values(n, other, v) ? other : NT_NONE;
-}
-
-static void merge_into(ply_numbering *n, row_chains *chains)
-{
-	for (size_t row = 0; row < n->row_count; row++)
-		chains->last[row] = (uint32_t)row;
-	for (size_t v = n->row_count; v < n->final_count; v++) {
-		const size_t row = ply_source_row(n, v);
-		uint32_t number = find_equal(n, chains, row, v);
-		if (number == NT_NONE) {
-			number = (uint32_t)(n->row_count + n->appended_count);
-			chains->previous[n->appended_count] = chains->last[row];
-			chains->last[row] = number;
-			n->appended[n->appended_count++] = (uint32_t)v;
-		}
-		n->numbers[v - n->row_count] = number;
-	}
-}
-
+/* Numbers vertices so that those of one row with equal values are one. */
 static bool merge_wedges(ply_numbering *n)
 {
-	row_chains chains = {
-		.last = nt_alloc(n->row_count, sizeof *chains.last),
-		.previous = nt_alloc(n->final_count - n->row_count, sizeof *chains.previous),
-	};
-	const bool sound = chains.last && chains.previous;
-	if (sound)
-		merge_into(n, &chains);
-	free(chains.last);
-	free(chains.previous);
-	return sound;
+	nt_hash_index index = {0}; /* of appended vertices */
+	bool done = true;
+	for (size_t i = n->row_count; done && i < n->final_count; i++) {
+		const values own = values_of(n, i), first = values_of(n, own.row);
+		uint32_t number = memcmp(&own, &first, sizeof own) == 0 ? (uint32_t)own.row : NT_NONE;
+		const uint64_t hash = nt_hash_bytes(0, &own, sizeof own);
+		size_t at = NT_HASH_BEGIN;
+		for (uint32_t k; number == NT_NONE && (k = nt_hash_index_next(&index, hash, &at)) != NT_NONE;) {
+			const values other = values_of(n, n->appended[k]);
+			if (memcmp(&own, &other, sizeof own) == 0)
+				number = (uint32_t)(n->row_count + k);
+		}
+		if (number == NT_NONE) {
+			number = (uint32_t)(n->row_count + n->appended_count);
+			done = nt_hash_index_add(&index, hash, (uint32_t)n->appended_count);
+			n->appended[n->appended_count++] = (uint32_t)i;
+		}
+		n->numbers[i - n->row_count] = number;
+	}
+	nt_hash_index_free(&index);
+	return done;
 }
 
 static bool number_vertices(ply_numbering *n)

@@ -233,8 +233,14 @@ typedef struct ply_line {
 /* The next line of a header, in which '\r' may be a line's end by itself. */
 ply_line ply_header_line(const ply_header *header, const unsigned char *bytes, size_t size, size_t begin);
 
-/* The next word of [*at, end), blanks around it skipped; its length, 0: none. */
-size_t ply_next_word(const char **at, const char *end, const char **word);
+typedef struct ply_word {
+	const char *text;
+	size_t length; /* 0: there is none */
+} ply_word;
+
+/* The next word of [*at, end), blanks around it skipped. */
+ply_word ply_next_word(const char **at, const char *end);
+bool ply_word_is(ply_word word, const char *text);
 
 /* ---- the body as rows of columns: rows.c ---- */
 

@@ -422,12 +422,13 @@ static void put_old_header(writer *w)
 	ply_line line;
 	for (size_t begin = 0; begin < header->body; begin = line.next) {
 		line = ply_header_line(header, w->scene->bytes, header->body, begin);
-		const char *at = line.text, *word;
-		const size_t length = ply_next_word(&at, line.text + line.length, &word), size = line.next - begin;
-		if (length == 7 && memcmp(word, "element", 7) == 0) {
+		const char *at = line.text;
+		const ply_word word = ply_next_word(&at, line.text + line.length);
+		const size_t size = line.next - begin;
+		if (ply_word_is(word, "element")) {
 			stays = put_element_line(w, element++, line.text, size);
 			property = 0;
-		} else if (length == 8 && memcmp(word, "property", 8) == 0) {
+		} else if (ply_word_is(word, "property")) {
 			if (stays)
 				put_property_line(w, element - 1, property, line.text, size);
 			property++;
