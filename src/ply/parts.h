@@ -369,7 +369,7 @@ typedef struct ply_source {
 	ply_header header;
 	ply_roles roles;
 	const ply_element *vertex, *face, *strips; /* NULL: the file has none */
-	int face_indices, face_texcoords;          /* properties of face; PLY_NO_PROPERTY */
+	int face_indices, face_texcoords;          /* properties of face or strips; PLY_NO_PROPERTY */
 	size_t vertex_begin;                       /* offset of the rows of vertices */
 	size_t face_begin, face_end;               /* offsets of the rows of faces or strips */
 	/* per-face texture coordinates un-share vertices: vertex vertex->count + i of the mesh has the

@@ -100,7 +100,6 @@ static nt_status find_elements(ply_source *source, nt_error *error)
 {
 	const ply_header *header = &source->header;
 	source->vertex = ply_find_element(header, "vertex");
-	source->face_indices = source->face_texcoords = PLY_NO_PROPERTY;
 	if (!source->vertex)
 		return nt_fail_line(error, NT_ERROR_INPUT, header->body_line - 1,
 			"the header has no element \"vertex\"");

@@ -437,6 +437,42 @@ TEST(faces_before_vertices_stay_there)
 		"0 0 0 3 0 0 1\n");
 }
 
+TEST(elements_without_rows_stay_empty)
+{
+	reading r;
+	open_text(&r, HEAD("3") "element none 0\nproperty int a\nelement face 1\n" LIST "element edge 0\n"
+		"property int b\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+	SET_SPLIT(&r, 0, NULL, 0, 1, 2);
+	assert_written(&r, false, HEAD("3") TANGENT "element none 0\nproperty int a\nelement face 1\n" LIST
+		"element edge 0\nproperty int b\nend_header\n0 0 0 0 0 0 1\n1 0 0 1 0 0 1\n0 1 0 2 0 0 1\n3 0 1 2\n");
+}
+
+/* More than 64 copies of one row, whose tangents repeat: each tangent is one vertex. */
+TEST(equal_copies_of_a_row_are_one_vertex)
+{
+	enum { COUNT = 200 };
+	char *text = malloc(20000), *p = text;
+	p += sprintf(p, HEAD("3") "element face %d\nproperty list uchar int vertex_indices\n"
+		"property list uchar float texcoord\nend_header\n" POINTS, COUNT);
+	for (int i = 0; i < COUNT; i++)
+		p += sprintf(p, "3 0 1 2 6 %d 0 1 0 0 1\n", i);
+	reading r;
+	open_text(&r, text);
+	assert_int_equal(r.mesh->vertex_count, 3 + COUNT - 1);
+	uint32_t indices[3 * COUNT];
+	memcpy(indices, r.mesh->indices, sizeof indices);
+	set_split(&r, indices, NULL, 0);
+	for (int i = 3; i < 3 + COUNT - 1; i++)
+		plain_tangents[i][0] = (float)(100 + i % 100);
+	reading back;
+	write_and_read(&r.scene, false, &back);
+	/* 3 rows and 100 tangents of copies */
+	assert_non_null(memmem(back.bytes, back.scene.byte_count, "element vertex 103\n", 19));
+	close_reading(&back);
+	close_reading(&r);
+	free(text);
+}
+
 /* A mesh by hand, as a reader of glTF leaves it: v is -v, w for v up. */
 typedef struct hand_made {
 	nt_mesh mesh;
