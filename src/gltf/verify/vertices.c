@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The comparison of vertices.h. A list is put into cells, by position and by x of the tangent, since a hub has any
- * number of vertices at one place. A cell is four tolerances wide: a value has its like in at most two along each axis.
+ * number of vertices at one place. A cell is some tolerances wide: a value has its like in one or two along each axis,
+ * and mostly in one.
  */
 #include "gltf/verify/vertices.h"
 
@@ -9,7 +10,7 @@
 #include <string.h>
 #include "base/hash_index.h"
 
-enum { AXES = 4 };
+enum { AXES = 4, WIDTH = 16 };
 
 static bool within(const float *a, const float *b, size_t count, float tolerance)
 {
@@ -31,7 +32,7 @@ static double cell_of(const nt_verify_vertex *v, size_t axis, double moved, cons
 {
 	const double value = axis < 3 ? v->position[axis] : v->tangent[0];
 	const double slack = axis < 3 ? tolerance->position : tolerance->tangent;
-	const double cell = slack > 0 ? floor((value + moved * slack) / (4 * slack)) : value;
+	const double cell = slack > 0 ? floor((value + moved * slack) / (WIDTH * slack)) : value;
 	return isfinite(cell) ? cell + 0.0 : 0;
 }
 
