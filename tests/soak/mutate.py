@@ -175,7 +175,7 @@ def fails(test, stopped=None, build=B, prefix=''):
                     os.killpg(run.pid, signal.SIGKILL)
                     run.wait()
                     for server in glob.glob(folder + '/.ask/*/pid'):  # which `ask` in cli.sh began
-                        os.kill(int(bytes_of(server)), signal.SIGKILL)
+                        os.killpg(int(bytes_of(server)), signal.SIGKILL)
                     break
                 time.sleep(0.02)
             said.seek(0)
