@@ -54,7 +54,7 @@ static void NT_NOINLINE clear_along(const lanes_in *in, lanes_out *out, size_t c
 		some |= load_lanes(out->sound + i) & ~load_lanes(out->degenerate + i) &
 			~(load_lanes(out->sum[0][3] + i) & load_lanes(out->sum[1][3] + i) &
 				load_lanes(out->sum[2][3] + i));
-	for (size_t i = 0; any_lane(some & NT_STATE_SOUND) && i < count; i++) {
+	for (size_t i = 0; any_lane(some & (uint32_t)NT_STATE_SOUND) && i < count; i++) {
 		const float u[3] = {out->u[0][i], out->u[1][i], out->u[2][i]};
 		float squares = 0;
 		bool along[3];
