@@ -90,7 +90,7 @@ static void count_faulty_range(void *context, size_t begin, size_t end, unsigned
 	size_t faulty = 0;
 	(void)slot;
 	for (size_t v = begin; v < end; v++)
-		faulty += !nt_renders(c->mesh->tangents + 4 * v, c->mesh->normals + 3 * v);
+		faulty += nt_tangent_faults(c->mesh->tangents + 4 * v, c->mesh->normals + 3 * v) != 0;
 	__atomic_fetch_add(&c->faulty, faulty, __ATOMIC_RELAXED);
 }
 
@@ -107,7 +107,7 @@ static size_t count_faulty(const nt_mesh *mesh, nt_arena *arena, unsigned thread
 	c.faulty = 0;
 	for (size_t i = 0; i < 3 * mesh->face_count; i++) {
 		const size_t v = mesh->indices[i];
-		c.faulty += !met[v] && !nt_renders(mesh->tangents + 4 * v, mesh->normals + 3 * v);
+		c.faulty += !met[v] && nt_tangent_faults(mesh->tangents + 4 * v, mesh->normals + 3 * v);
 		met[v] = 1;
 	}
 	return c.faulty;

@@ -289,10 +289,10 @@ void nt_report_free(nt_report *report);
 /* The most severe new finding. False when there is none. */
 bool nt_report_worst(const nt_report *report, nt_severity *worst);
 
-/* Whether a renderer can use a tangent [4] with a normal [3]: it is finite, of unit length and not parallel to the
- * normal, and w is a sign. If not, a finding says why: TAN_NOT_FINITE, TAN_ZERO, TAN_NON_UNIT, TAN_BAD_W or
- * TAN_PARALLEL_NORMAL. */
-bool nt_renders(const float *tangent, const float *normal);
+/* Why no renderer can use a tangent [4] with a normal [3] (NULL: it is not asked for): TAN_NOT_FINITE, TAN_ZERO,
+ * TAN_NON_UNIT, TAN_BAD_W and TAN_PARALLEL_NORMAL; 0: one can. */
+enum { NT_FAULT_NOT_FINITE = 1, NT_FAULT_ZERO = 2, NT_FAULT_LENGTH = 4, NT_FAULT_W = 8, NT_FAULT_PARALLEL = 16 };
+unsigned nt_tangent_faults(const float *tangent, const float *normal);
 
 /* Appends a path as reports show it: see file/shown_path.h. */
 void nt_report_show_path(const nt_report *report, const char *path, nt_buffer *out);

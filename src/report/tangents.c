@@ -21,9 +21,9 @@
 /* Below this a tangent has no length; the tolerance of the Khronos validator for the others. */
 static const double ZERO_LENGTH = 1e-6, UNIT_TOLERANCE = 0.00674;
 
-/* Degrees. Within PARALLEL of the normal the bitangent is noise; quantisation to 8 bits explains half a
- * degree off perpendicular; MISMATCH is the limit of the fifth bin of the histogram. */
-static const double PARALLEL_DEGREES = 1.0, ORTHOGONAL_DEGREES = 1.0, MISMATCH_DEGREES = 30.0;
+/* Degrees. Quantisation to 8 bits explains half a degree off perpendicular; MISMATCH is the limit of the fifth bin of
+ * the histogram. */
+static const double ORTHOGONAL_DEGREES = 1.0, MISMATCH_DEGREES = 30.0;
 
 /* Share of corners from which on other directions are a warning. */
 static const double MISMATCH_SHARE = 0.01;
@@ -65,11 +65,33 @@ static double degrees_between(nt_dvec3 a, nt_dvec3 b)
 	return nt_angle(length_of(nt_dvec3_cross(a, b)), nt_dvec3_dot(a, b)) * DEGREES;
 }
 
+/* The square of the cosine of a degree: within it of the normal the bitangent is noise. */
+static const double PARALLEL_COSINE_SQUARED = 0.9996954135095479;
+
+unsigned nt_tangent_faults(const float *tangent, const float *normal)
+{
+	if (!isfinite(tangent[0]) || !isfinite(tangent[1]) || !isfinite(tangent[2]) || !isfinite(tangent[3]))
+		return NT_FAULT_NOT_FINITE;
+	const nt_dvec3 t = nt_dvec3_load(tangent);
+	const double square = nt_dvec3_dot(t, t), length = sqrt(square);
+	unsigned faults = fabsf(tangent[3]) != 1.0f ? NT_FAULT_W : 0;
+	if (length < ZERO_LENGTH)
+		return faults | NT_FAULT_ZERO;
+	if (fabs(length - 1.0) > UNIT_TOLERANCE)
+		faults |= NT_FAULT_LENGTH;
+	if (normal) {
+		const nt_dvec3 n = nt_dvec3_load(normal);
+		const double along = nt_dvec3_dot(t, n);
+		faults |= along * along > PARALLEL_COSINE_SQUARED * square * nt_dvec3_dot(n, n) ? NT_FAULT_PARALLEL : 0;
+	}
+	return faults;
+}
+
 /* sin^2 of 0.99 degrees: what is less off perpendicular is no finding. If it is less than the worst, too, and that is
  * not noise, the angle itself does not matter. */
 static const double NEARLY_ORTHOGONAL = 0.000298, NOISE = 1e-16, SURELY_LESS = 1.0 - 1e-6;
 
-static void check_angle(nt_check *check, tangent_tallies *tt, uint32_t vertex, nt_dvec3 tangent)
+static void check_angle(nt_check *check, tangent_tallies *tt, uint32_t vertex, nt_dvec3 tangent, bool parallel)
 {
 	if (!check->mesh->normals)
 		return;
@@ -88,7 +110,7 @@ static void check_angle(nt_check *check, tangent_tallies *tt, uint32_t vertex, n
 		facts->worst_orthogonality = off;
 		tt->worst_square = square / both;
 	}
-	if (off > 90.0 - PARALLEL_DEGREES)
+	if (parallel)
 		nt_tally_vertex(check, &tt->parallel, vertex, off);
 	else if (off > ORTHOGONAL_DEGREES)
 		nt_tally_vertex(check, &tt->not_orthogonal, vertex, off);
@@ -96,38 +118,26 @@ static void check_angle(nt_check *check, tangent_tallies *tt, uint32_t vertex, n
 
 static void check_tangent(nt_check *check, tangent_tallies *tt, uint32_t vertex, const float *stored)
 {
-	if (!isfinite(stored[0]) || !isfinite(stored[1]) || !isfinite(stored[2]) || !isfinite(stored[3])) {
+	const float *normals = check->mesh->normals;
+	const unsigned faults = nt_tangent_faults(stored, normals ? normals + 3 * (size_t)vertex : NULL);
+	if (faults & NT_FAULT_NOT_FINITE) {
 		nt_tally_vertex(check, &tt->not_finite, vertex, NAN);
 		return;
 	}
-	if (fabsf(stored[3]) != 1.0f)
+	if (faults & NT_FAULT_W)
 		nt_tally_vertex(check, &tt->bad_w, vertex, stored[3]);
 	const nt_dvec3 tangent = nt_dvec3_load(stored);
 	const double length = length_of(tangent);
-	if (length < ZERO_LENGTH) {
+	if (faults & NT_FAULT_ZERO) {
 		nt_tally_vertex(check, &tt->zero, vertex, length);
 		return;
 	}
-	if (fabs(length - 1.0) > UNIT_TOLERANCE) {
+	if (faults & NT_FAULT_LENGTH) {
 		nt_tally_vertex(check, &tt->non_unit, vertex, length);
 		if (fabs(length - 1.0) > fabs(tt->worst_length - 1.0))
 			tt->worst_length = length;
 	}
-	check_angle(check, tt, vertex, tangent);
-}
-
-/* Less than a degree from the normal, squared: the cosine's share of both lengths. */
-static const float PARALLEL_COSINE_SQUARED = 0.99969541f;
-
-bool nt_renders(const float *tangent, const float *normal)
-{
-	const float squared = tangent[0] * tangent[0] + tangent[1] * tangent[1] + tangent[2] * tangent[2];
-	const float least = (float)((1.0 - UNIT_TOLERANCE) * (1.0 - UNIT_TOLERANCE));
-	const float most = (float)((1.0 + UNIT_TOLERANCE) * (1.0 + UNIT_TOLERANCE));
-	const float along = tangent[0] * normal[0] + tangent[1] * normal[1] + tangent[2] * normal[2];
-	const float both = squared * (normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-	return (squared >= least) & (squared <= most) & (fabsf(tangent[3]) == 1.0f) &
-	       !(along * along > PARALLEL_COSINE_SQUARED * both);
+	check_angle(check, tt, vertex, tangent, faults & NT_FAULT_PARALLEL);
 }
 
 static size_t tangent_count(const nt_check *check)

@@ -108,6 +108,8 @@ await test('interleaved arrays, plain arrays and both widths of indices give the
 	for (const Type of [Uint8Array, Uint16Array, Uint32Array, Int32Array, Array])
 		assert.deepEqual([...solve({...quads, indices: Type.from(quads.indices)}, up).indices], [...solve(quads, up).indices]);
 	assert.ok(solve({...quads, indices: Uint16Array.from(quads.indices)}, up).indices instanceof Uint16Array);
+	for (const Type of [Uint8Array, Uint32Array, Array]) // the first overload of index.d.ts
+		assert.ok(solve({...quads, indices: Type.from(quads.indices)}, up).indices instanceof Uint32Array);
 });
 
 await test('v down is v negated, through every function', () => {
