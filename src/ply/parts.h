@@ -500,4 +500,7 @@ nt_status ply_world_vertex(const ply_world *world, const ply_placement *placemen
 nt_status ply_settle_texture(nt_buffer *name, nt_scene *scene, const nt_write_options *options, nt_output *set,
 	nt_error *error);
 
+/* A PLY made of a PLY keeps names of images: tells which lie in the folder of the input, and not in the output's. */
+void ply_tell_left(nt_scene *scene, const nt_write_options *options);
+
 #endif

@@ -5,6 +5,7 @@
  */
 #include "ply/parts.h"
 
+#include <unistd.h>
 #include "file/image_type.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
@@ -107,4 +108,32 @@ nt_status ply_settle_texture(nt_buffer *name, nt_scene *scene, const nt_write_op
 	tell_lost(scene, name->size ? name->data : NULL, !image ? NULL : image->bytes && stream
 		? "there are no files beside a stream" : image->obstacle);
 	return status;
+}
+
+/* Whether there is a file of this name in the folder of another. */
+static bool lies_beside(const char *path, const char *name, nt_error *error)
+{
+	nt_buffer text = {0};
+	const bool found = !nt_link_folder(&text, path, error);
+	nt_buffer_format(&text, "/%s", name);
+	const bool lies = found && !text.failed && access(text.data, R_OK) == 0;
+	nt_buffer_free(&text);
+	return lies;
+}
+
+void ply_tell_left(nt_scene *scene, const nt_write_options *options)
+{
+	nt_error ignored;
+	size_t count = 0;
+	const char *first = NULL;
+	for (size_t i = 0; i < scene->material_count && !nt_output_is_stream(options->path); i++) {
+		const char *name = scene->materials[i].name;
+		if (!lies_beside(scene->path, name, &ignored) || lies_beside(options->path, name, &ignored))
+			continue;
+		first = first ? first : name;
+		count++;
+	}
+	if (count)
+		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, NULL, count,
+			"TextureFile is %.100s, which lies beside the input alone", first);
 }

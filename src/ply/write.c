@@ -668,6 +668,8 @@ nt_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_outp
 	if (!status)
 		status = scene->format == NT_FORMAT_PLY ? write_source(&w, options->bitangents)
 			: write_world(&w, options, output);
+	if (!status && scene->format == NT_FORMAT_PLY)
+		ply_tell_left(scene, options);
 	if (!status)
 		status = put_bytes(&w, NULL, 0);
 	nt_buffer_free(&w.buffer);

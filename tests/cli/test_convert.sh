@@ -452,4 +452,18 @@ printf 'newmtl m\nmap_Kd near.png\n' >in/m.mtl
 run in/in.obj in/near.ply
 is "$(texture_file in/near.ply)" near.png
 
+scene "a PLY made of a PLY says which image it leaves behind"
+mkdir from to
+cp "$data/bumps.png" from/wood.png
+printf '%s\n' ply 'format ascii 1.0' 'comment TextureFile wood.png' 'comment TextureFile none.png' 'element vertex 3' 'property float x' \
+	'property float y' 'property float z' 'property float s' 'property float t' 'element face 1' \
+	'property list uchar int vertex_indices' end_header '0 0 0 0 0' '1 0 0 1 0' '0 1 0 0 1' '3 0 1 2' >from/a.ply
+run from/a.ply to/a.ply
+says "TextureFile is wood.png, which lies beside the input alone"
+run from/a.ply from/b.ply
+says_not TextureFile
+cp from/wood.png to/
+run from/a.ply to/a.ply
+says_not TextureFile
+
 done_testing
