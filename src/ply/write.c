@@ -323,7 +323,7 @@ static nt_status put_polygon(writer *w, size_t *corner, size_t *cut, uint32_t **
 		return fail_changed(w);
 	const size_t size = w->faces.cells[w->source->face_indices].count;
 	const size_t corners = size < 3 ? 0 : size < 5 ? size : 3 * (size - 2);
-	const uint32_t *own = w->source->cuts + *cut;
+	const uint32_t *own = w->source->cuts ? w->source->cuts + *cut : NULL;
 	if (!nt_grow((void **)vertices, capacity, size, sizeof **vertices))
 		return nt_fail_memory(w->error);
 	if (corners > w->mesh->corner_count - *corner || (size > 4 && corners > w->source->cut_count - *cut))
