@@ -22,7 +22,7 @@
 #define NONE NT_NO_NEIGHBOUR
 
 /* Triangles at the end that are looked at first, and how many times more the next time. */
-enum { FIRST_FEW = 4, FIRST = 9, MORE = 4 };
+enum { FIRST = 9, MORE = 4 };
 
 /* Vertices of the last triangles, and triangles with two of them. If there are more, all edges are looked at. */
 enum { MOST_MEMBERS = 120, MOST_NEAR = 1024, MOST_PAIRS = 64 };
@@ -97,7 +97,7 @@ enum { NOBODY, WATCHED = 128, NO_SLOT = 255 };
 typedef struct question {
 	const nt_welded_mesh *mesh;
 	nt_grid grid;
-	bool is_few, too_many, is_grid_of_used, is_boxed; /* boxed: no row has a NaN, so that all boxes are right */
+	bool too_many, is_grid_of_used, is_boxed; /* boxed: no row has a NaN, so that all boxes are right */
 	size_t first_triangle;
 	uint32_t first;           /* the least corner of the last triangles */
 	uint8_t *marks;           /* [vertex_count] */
@@ -169,7 +169,7 @@ static NT_NOINLINE void note(question *q, size_t t, const uint32_t *v)
 		q->near[q->near_count][k] = (uint8_t)member;
 		count += member != NOBODY;
 	}
-	for (uint32_t k = 0; k < 3 && !q->is_few; k++) {
+	for (uint32_t k = 0; k < 3; k++) {
 		const unsigned slot = marks[k] < WATCHED ? q->member_slots[marks[k]] : marks[k] - WATCHED;
 		if (slot == NO_SLOT)
 			continue;
@@ -281,8 +281,8 @@ static bool sort_by_slot(question *q)
 	return q->by_slot;
 }
 
-/* Looks at the last triangles: finds their vertices' first and last corners and the triangles around them and, unless
- * they are few, lists what is in their cells. */
+/* Looks at the last triangles: finds their vertices' first and last corners and the triangles around them, and lists
+ * what is in their cells. */
 static bool look(question *q, size_t triangles, bool *limit)
 {
 	const nt_welded_mesh *m = q->mesh;
@@ -302,8 +302,7 @@ static bool look(question *q, size_t triangles, bool *limit)
 		for (int i = 0; i < 6 && !used; i++)
 			if (!q->marks[q->grid.extremes[i]])
 				add_member(q, q->grid.extremes[i]);
-		if (!q->is_few)
-			watch(q, count);
+		watch(q, count);
 		note_marked(q);
 		used = true;
 		for (uint32_t i = count + 1; i <= q->member_count; i++)
@@ -330,58 +329,21 @@ static void gather(const question *q, unsigned slot, nt_cell *cell, nt_cell_vert
 	}
 }
 
-/* The same of few triangles, whose cells are not watched: finds the vertices of a member's cell, which gets number
- * `wanted`. */
-static void gather_few(question *q, uint32_t member, uint32_t *wanted, nt_cell *cell, nt_cell_vertex *rows)
-{
-	const nt_welded_mesh *m = q->mesh;
-	const unsigned axis = q->grid.axis;
-	const unsigned number = nt_grid_cell(&q->grid, nt_welded_position(m, q->vertices[member])[axis]);
-	uint32_t *const numbers = q->numbers, count = 0, copy[3];
-	for (uint32_t v = 0; v < m->vertex_count; v++) {
-		const float *p = nt_welded_position(m, v);
-		numbers[v] = NONE;
-		if (nt_grid_cell(&q->grid, p[axis]) != number)
-			continue;
-		memcpy(rows[count].position, p, sizeof rows->position);
-		rows[count].corner_count = 0;
-		numbers[v] = count++;
-	}
-	cell->vertex_count = count;
-	*wanted = numbers[q->vertices[member]];
-	for (uint32_t t = 0; t < m->triangle_count; t++) {
-		const uint32_t *v = vertices_of(m, t, copy);
-		for (uint32_t k = 0; k < 3; k++) {
-			const uint32_t n = numbers[v[k]];
-			if (n == NONE)
-				continue;
-			cell->corners[cell->corner_count++] = (nt_cell_corner){n, 3 * t + k};
-			rows[n].corner_count++;
-		}
-	}
-}
-
 /* Finds the representative of a member. False: out of memory, or its cell cannot be halved so often. */
 static bool find_member(question *q, uint32_t member, bool *limit)
 {
 	const nt_welded_mesh *m = q->mesh;
 	const nt_scratch_mark mark = nt_scratch_here(m->scratch);
-	const bool is_few = q->is_few;
 	const unsigned slot = q->member_slots[member];
-	const uint32_t vertices = is_few ? (uint32_t)m->vertex_count : q->slot_vertices[slot];
-	const uint32_t corners = is_few ? 3 * (uint32_t)m->triangle_count : q->slot_corners[slot];
+	const uint32_t vertices = q->slot_vertices[slot], corners = q->slot_corners[slot];
 	nt_cell_vertex *rows = nt_scratch_alloc(m->scratch, 1, vertices * sizeof *rows + cell_bytes(vertices, corners));
 	if (!rows)
 		return false;
 	nt_cell cell = make_cell((char *)(rows + vertices), vertices, corners);
-	uint32_t wanted = is_few ? 0 : q->numbers[q->vertices[member]];
+	const uint32_t wanted = q->numbers[q->vertices[member]];
 	cell.vertices = rows;
-	if (is_few) {
-		gather_few(q, member, &wanted, &cell, rows);
-	} else {
-		memset(rows, 0, vertices * sizeof *rows);
-		gather(q, slot, &cell, rows);
-	}
+	memset(rows, 0, vertices * sizeof *rows);
+	gather(q, slot, &cell, rows);
 	memset(cell.wanted, 0, cell.vertex_count);
 	cell.wanted[wanted] = 1;
 	*limit = !nt_weld_cell(&cell);
@@ -500,10 +462,10 @@ static bool ask_members(question *q, answer *result, bool *limit)
 static bool ask(question *q, answer *result, bool *limit)
 {
 	*result = YES;
-	for (size_t triangles = q->is_few ? FIRST_FEW : FIRST;; triangles *= MORE) {
+	for (size_t triangles = FIRST;; triangles *= MORE) {
 		if (!look(q, triangles, limit))
 			return !*limit;
-		if (!q->is_few && !sort_by_slot(q))
+		if (!sort_by_slot(q))
 			return false;
 		if (!ask_members(q, result, limit))
 			return false;
@@ -515,41 +477,27 @@ static bool ask(question *q, answer *result, bool *limit)
 /* Answers it in memory of the mesh. */
 static nmtan_status does_matter(const nt_welded_mesh *m, nt_grid *grid, bool *matters, bool *limit)
 {
-	/* few triangles, with no more rows than corners, need no other memory */
-	enum { ROWS = 3 * NT_EDGE_FEW };
-	struct {
-		uint32_t numbers[ROWS];
-		nt_cell_corner corners[ROWS];
-		uint8_t slots[ROWS], marks[ROWS];
-		nt_box boxes[ROWS / NT_BOX_ROWS + 1];
-	} few;
+	enum { MOST_ROWS = 3 * NT_EDGE_FEW };
 	question q;
-	q.mesh = m;
-	q.is_few = m->triangle_count <= NT_EDGE_FEW && m->vertex_count <= ROWS;
-	q.is_grid_of_used = false;
-	q.boxes = few.boxes;
-	q.numbers = few.numbers;
-	q.corners = few.corners;
-	q.slots = few.slots;
-	q.marks = few.marks;
-	q.most_corners = ROWS;
-	if (!q.is_few) {
-		q.most_corners = m->triangle_count + m->triangle_count / 2 + ROWS;
-		q.marks = nt_scratch_alloc(m->scratch, m->vertex_count, 1);
-		q.numbers = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *q.numbers);
-		q.corners = nt_scratch_alloc(m->scratch, q.most_corners, sizeof *q.corners);
-		q.slots = nt_scratch_alloc(m->scratch, q.most_corners, 1);
-		q.boxes = nt_scratch_alloc(m->scratch, m->vertex_count / NT_BOX_ROWS + 1, sizeof *q.boxes);
-		if (!q.marks || !q.numbers || !q.corners || !q.slots || !q.boxes)
-			return NMTAN_ERROR_MEMORY;
-	}
-	answer result;
-	*limit = false;
+	*limit = *matters = false;
+	if (m->triangle_count <= NT_EDGE_FEW && m->vertex_count <= MOST_ROWS && !m->triangles->cuts &&
+		nt_few_edges_are_sorted(m, limit))
+		return NMTAN_OK;
 	if (m->triangle_count < LEAST_EDGES) {
 		*limit = !nt_grid_of_used(m, grid);
-		*matters = false;
 		return NMTAN_OK;
 	}
+	q.mesh = m;
+	q.is_grid_of_used = false;
+	q.most_corners = m->triangle_count + m->triangle_count / 2 + MOST_ROWS;
+	q.marks = nt_scratch_alloc(m->scratch, m->vertex_count, 1);
+	q.numbers = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *q.numbers);
+	q.corners = nt_scratch_alloc(m->scratch, q.most_corners, sizeof *q.corners);
+	q.slots = nt_scratch_alloc(m->scratch, q.most_corners, 1);
+	q.boxes = nt_scratch_alloc(m->scratch, m->vertex_count / NT_BOX_ROWS + 1, sizeof *q.boxes);
+	if (!q.marks || !q.numbers || !q.corners || !q.slots || !q.boxes)
+		return NMTAN_ERROR_MEMORY;
+	answer result;
 	const bool answered = ask(&q, &result, limit);
 	*matters = answered && result != NO;
 	if (*matters && !q.is_grid_of_used)

@@ -29,8 +29,12 @@ typedef struct nt_unsorted {
 /* Keys that are looked at to find the order of the last run, for each edge. */
 enum { NT_EDGE_SORT_VISITS = 64 };
 
-/* So few triangles are asked about in memory of their own. */
+/* So few triangles have a quicker way to the answer, which is nearly always that the order does not matter. */
 enum { NT_EDGE_FEW = 128 };
+
+/* Whether the order of the last run certainly does not matter, or is beyond a limit; for at most NT_EDGE_FEW triangles
+ * that are not halves of quads, and no more rows than corners may be. */
+bool nt_few_edges_are_sorted(const nt_welded_mesh *mesh, bool *limit);
 
 /* Expected linear time; if the order of the run does not matter, that of reading the indices once and the positions
  * twice. The result's edges come from `memory`, which may be that of the mesh. Returns NMTAN_OK or

@@ -74,6 +74,8 @@ bool nt_grid_make(const nt_welded_mesh *mesh, nt_box *boxes, nt_grid *grid)
 {
 	nt_box all = nothing;
 	bool ordered = true;
+	if (!boxes)
+		return add_rows(mesh->positions, mesh->step, NULL, mesh->vertex_count, &all) && set_grid(&all, grid);
 	for (size_t v = 0; v < mesh->vertex_count; v += NT_BOX_ROWS) {
 		nt_box *box = &boxes[v / NT_BOX_ROWS];
 		const size_t left = mesh->vertex_count - v;

@@ -66,7 +66,7 @@ typedef struct nt_grid {
  * The cells of all rows. False if one of their coordinates is not finite or not below FLT_MAX / 2: the published weld
  * leaves some of these unwelded.
  *
- *   boxes   [vertex_count / NT_BOX_ROWS + 1] receives those of blocks of rows
+ *   boxes   [vertex_count / NT_BOX_ROWS + 1] receives those of blocks of rows; NULL: without extremes
  */
 bool nt_grid_make(const nt_welded_mesh *mesh, nt_box *boxes, nt_grid *grid);
 
