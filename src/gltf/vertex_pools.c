@@ -48,6 +48,7 @@ typedef struct joining {
 	const nt_vertex_pools *pools;
 	uint32_t *parent;     /* [mesh count] union-find */
 	uint32_t *first_user; /* [accessor_count] */
+	bool *used;           /* [accessor_count] by number */
 	uint32_t mesh;
 } joining;
 
@@ -104,6 +105,7 @@ static bool allocate(nt_vertex_pools *pools, nt_arena *arena)
 	const size_t mesh_count = pools->scene->mesh_count;
 	pools->accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
 	pools->foreign = nt_arena_alloc(arena, pools->accessor_count, sizeof *pools->foreign);
+	pools->idle = nt_arena_alloc(arena, pools->accessor_count, sizeof *pools->idle);
 	pools->attribute_users = zeroed(arena, pools->accessor_count);
 	pools->index_users = zeroed(arena, pools->accessor_count);
 	pools->block_users = zeroed(arena, document->view_count);
@@ -112,7 +114,9 @@ static bool allocate(nt_vertex_pools *pools, nt_arena *arena)
 	pools->first = zeroed(arena, mesh_count + 1);
 	if (pools->foreign)
 		memset(pools->foreign, 0, pools->accessor_count * sizeof *pools->foreign);
-	return pools->foreign && pools->attribute_users && pools->index_users &&
+	if (pools->idle)
+		memset(pools->idle, 0, pools->accessor_count * sizeof *pools->idle);
+	return pools->foreign && pools->idle && pools->attribute_users && pools->index_users &&
 		pools->block_users && pools->of && pools->order && pools->first;
 }
 
@@ -121,8 +125,10 @@ static void join_primitive(nt_vertex_pools *pools, joining *j)
 {
 	const nt_gltf *document = pools->scene->source;
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, &pools->scene->meshes[j->mesh]);
-	for (nt_gltf_use u = {0}; nt_gltf_next_use(document, primitive, &u);)
+	for (nt_gltf_use u = {0}; nt_gltf_next_use(document, primitive, &u);) {
 		join_user(j, nt_gltf_same(document, u.accessor));
+		j->used[u.accessor] = true;
+	}
 	const uint32_t indices = nt_gltf_reference(document, primitive, "indices");
 	uint64_t view;
 	if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &view) &&
@@ -153,7 +159,8 @@ nt_status nt_vertex_pools_find(const nt_scene *scene, const nt_read_options *opt
 	joining j = {.pools = pools, .parent = nt_alloc(mesh_count, sizeof *j.parent)};
 	bool found = allocate(pools, &document->arena) && j.parent;
 	j.first_user = nt_alloc(pools->accessor_count, sizeof *j.first_user);
-	found = found && j.first_user;
+	j.used = nt_calloc(pools->accessor_count, sizeof *j.used);
+	found = found && j.first_user && j.used;
 	if (found) {
 		memset(j.first_user, 0xFF, pools->accessor_count * sizeof *j.first_user);
 		for (uint32_t i = 0; i < mesh_count; i++)
@@ -161,12 +168,15 @@ nt_status nt_vertex_pools_find(const nt_scene *scene, const nt_read_options *opt
 		find_foreign(pools);
 		for (j.mesh = 0; j.mesh < mesh_count; j.mesh++)
 			join_primitive(pools, &j);
+		for (uint32_t i = 0; i < pools->accessor_count; i++)
+			pools->idle[nt_gltf_same(document, i)] |= !j.used[i];
 		list_pools(pools, j.parent, mesh_count);
 		document->pools = pools;
 		document->free_pools = free_pools;
 	}
 	free(j.parent);
 	free(j.first_user);
+	free(j.used);
 	return found ? NT_OK : nt_fail_memory(error);
 }
 

@@ -38,6 +38,7 @@ typedef struct nt_vertex_pools {
 	const nt_scene *scene;
 	size_t accessor_count;     /* 0 where nothing gets tangents: there are no pools then */
 	bool *foreign;             /* [accessor_count] by `same`: used by something else than attributes */
+	bool *idle;                /* [accessor_count] by `same`: an accessor that no primitive uses is among them */
 	uint32_t *attribute_users; /* [accessor_count] by `same`: uses as attribute, of morph targets too */
 	uint32_t *index_users;     /* [accessor_count] by `same`: primitives that have it as indices */
 	uint32_t *block_users;     /* [view_count] primitives that are compressed in it */

@@ -928,6 +928,7 @@ SETS = {
     'float': ('in', '--only=all --existing=replace --precision=float --morph=keep', 3),
     'again': ('replace', '--only=all --existing=replace', 2, ['alone', 'two', 'soup', 'ranges', 'morphs', 'modes', 'same', 'many', 'other']),
     'weld': ('in', '--only=all --existing=replace --weld', 3),
+    'weld-loose': ('in', '--only=all --existing=replace --weld', 1, ['loose_soup']),
     'weld-left': ('in', '--weld --images=copy', 1, ['soup']),
     'no-morphs': ('in', '--only=all --existing=replace --morph=drop --images=embed', 1, ['morphs', 'many']),
     'across': ('in', '--only=all --existing=replace --across=mesh', 3),
@@ -1130,7 +1131,7 @@ def check_counts(a, b, options, fault):
                 fault('mesh %d primitive %d has %d vertices, expected %d' % (m, k, got, most))
 
 
-def check_bytes(f, fault, left_out=()):
+def check_bytes(f, fault):
     """Tells faults that the specification forbids; gives the number of bytes that nobody uses, and accessors that no primitive has."""
     g, used = f.g, [set() for _ in f.g.get('buffers', [])]
     views = g.get('bufferViews', [])
@@ -1156,8 +1157,6 @@ def check_bytes(f, fault, left_out=()):
         used[v['buffer']].update(range(begin, end))
         strides.setdefault(view, set()).add(what)
     for i, a in enumerate(g.get('accessors', [])):
-        if i in left_out:
-            continue
         size, part = f.element(a), SIZES[a['componentType']]
         if 'bufferView' in a:
             step = views[a['bufferView']].get('byteStride', size)
@@ -1243,10 +1242,9 @@ def check(options, before, after, fault, compressed=False):
         return
     dead, loose = check_bytes(a, lambda text: None)
     for i in loose:
-        if '--weld' not in options and a.rows(i) != b.rows(i):
+        if a.rows(i) != b.rows(i):
             fault('accessor %d of nobody has other values' % i)
-    # what --weld takes away, accessors of nobody do not lose
-    dead_now, loose_now = check_bytes(b, fault, loose if '--weld' in options else ())
+    dead_now, loose_now = check_bytes(b, fault)
     # what lies between attributes of others cannot go, nor what shares a view with their bytes
     if dead_now > dead + 3 * len(b.g.get('bufferViews', [])) + 16 * ('--precision' in options) and not any(
             word in before for word in ('together', 'tight', 'part_elsewhere')) and '=drop' not in options:
@@ -1319,8 +1317,6 @@ def convert(name, program, stride):
     files = names_of(source)
     stems = [stem for i, stem in enumerate(sorted(files)) if (i + number) % (share * stride) == 0]
     files = [files[stem] for stem in stems if any(word in stem for word in sum(words, []) or [''])]
-    if '--weld' in options:
-        files = [x for x in files if 'loose' not in x and 'part_' not in x]
 
     def run(options, folder, files):
         done = subprocess.run([program, *options.split(), '-q', '-d', folder, *files], stdin=subprocess.DEVNULL,

@@ -160,9 +160,12 @@ static nt_status list_columns(welding *w, const nt_stored_tangents *stored)
 		const nt_mesh *solved = nt_pool_is_solved(pool, i) ? nt_pool_mesh(pool, i) : NULL;
 		const nt_json_value *primitive = nt_pool_primitive(pool, i);
 		w->morph = 0;
-		for (nt_gltf_use u = {0}; !status && nt_gltf_next_use(w->edits->document, primitive, &u);)
+		for (nt_gltf_use u = {0}; !status && nt_gltf_next_use(w->edits->document, primitive, &u);) {
+			if (w->pools->idle[nt_gltf_same(w->edits->document, u.accessor)])
+				w->obstacle = "an accessor that no primitive uses has its bytes";
 			if (!is_replaced(w, solved, &u))
 				status = add_attribute(w, u.accessor);
+		}
 	}
 	bool added = true;
 	for (size_t s = 0; !status && s < pool->sets.count; s++) {
