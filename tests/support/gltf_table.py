@@ -945,6 +945,7 @@ SETS = {
     'block-off': ('block', '--only=all --existing=replace --draco=off', 1),
     'draco-off': ('draco', '--only=all --existing=replace --draco=off', 3),
     'edgebreaker': ('in', '--only=all --existing=replace --draco=edgebreaker', 3),
+    'glb-again': ('glb', '--only=all --existing=replace --output-format=glb --bitangents', 1, ['alone', 'two', 'soup', 'ranges', 'modes', 'same', 'many', 'other']),
 }
 
 
@@ -1342,7 +1343,7 @@ def convert(name, program, stride):
         try:
             if stem not in outputs:
                 found.append('there is no output')
-            elif source == 'replace':
+            elif source in ('replace', 'glb'):
                 with open(x, 'rb') as old, open(outputs[stem], 'rb') as new:
                     if old.read() != new.read():
                         found.append('a second run changes it')

@@ -164,9 +164,49 @@ static nt_status add_vectors(const editing *e, uint32_t buffer, const nt_pool_ve
 	return status;
 }
 
-/* NORMAL where it was made, TANGENT where it is not already in place, _BITANGENT where asked for. */
+/* The accessor that a set's meshes have as _BITANGENT, and nobody else, and that takes new values where it is; NT_NONE:
+ * none. */
+static uint32_t find_old_bitangents(const editing *e, const nt_vertex_pool *pool, uint32_t set)
+{
+	nt_gltf *document = e->edits->document;
+	uint32_t found = NT_NONE, count = 0;
+	for (uint32_t i = pool->sets.first[set]; i != NT_NONE; i = pool->sets.next[i], count++) {
+		const uint32_t number = nt_gltf_reference(document, nt_json_find(nt_pool_primitive(pool, i),
+			"attributes"), "_BITANGENT");
+		if (number == NT_NONE || (count > 0 && number != found))
+			return NT_NONE;
+		found = number;
+	}
+	const nt_gltf_accessor *a = nt_gltf_sound_accessor(document, found);
+	if (!a || a->view == NT_NONE || a->sparse_count || a->component_type != NT_GLTF_FLOAT || a->components != 3)
+		return NT_NONE;
+	const uint32_t same = nt_gltf_same(document, found);
+	const nt_gltf_packing packing = nt_packing_of_accessor(e->edits, found);
+	const bool is_own = !e->pools->foreign[same] && !e->pools->idle[same] &&
+		e->pools->attribute_users[same] == count;
+	return is_own && (!packing.extension || strcmp(packing.view.filter, "NONE") == 0) ? found : NT_NONE;
+}
+
+/* New values for a _BITANGENT that is there. set: its vertices. */
+static nt_status override_bitangents(const editing *e, const nt_pool_vertices *vertices, uint32_t set,
+	nt_gltf_override *overrides, size_t *count, bool *done)
+{
+	float *values;
+	const uint32_t accessor = e->options->bitangents && !is_shaded_only(vertices->pool, set)
+		? find_old_bitangents(e, vertices->pool, set) : NT_NONE;
+	*done = accessor != NT_NONE;
+	if (!*done)
+		return NT_OK;
+	const nt_status status = nt_gltf_bitangents(vertices, set, &e->edits->arena, &values, e->error);
+	if (!status)
+		overrides[(*count)++] = (nt_gltf_override){.accessor = accessor, .values = (unsigned char *)values,
+			.stored = (unsigned char *)values, .width = 3 * sizeof *values};
+	return status;
+}
+
+/* NORMAL where it was made, TANGENT where it is not already in place, _BITANGENT where asked for and not in place. */
 static nt_status add_set(const editing *e, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
-	const nt_stored_tangents *new, const nt_gltf_old_tangents *old)
+	const nt_stored_tangents *new, const nt_gltf_old_tangents *old, bool has_bitangents)
 {
 	nt_status status = NT_OK;
 	float *bitangents = NULL;
@@ -180,7 +220,7 @@ static nt_status add_set(const editing *e, uint32_t buffer, const nt_pool_vertic
 		nt_gltf_retype_tangents(e->edits->document, old, new->filter.precision);
 	if (!status)
 		complete_tangents(e, vertices->pool, set, old);
-	if (!status && e->options->bitangents)
+	if (!status && e->options->bitangents && !has_bitangents)
 		status = nt_gltf_bitangents(vertices, set, &e->edits->arena, &bitangents, e->error);
 	if (!status && bitangents)
 		status = add_vectors(e, buffer, vertices, set, &new->packing, "_BITANGENT", bitangents);
@@ -248,15 +288,18 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 		return status ? status : nt_fail_memory(e->error);
 
 	/* Tangents that are there keep their accessor, and their place where that will do. */
-	size_t most = pool->user_count;
+	size_t most = pool->user_count + pool->sets.count;
 	for (uint32_t set = 0; set < pool->sets.count; set++)
 		most += nt_pool_set_mesh(pool, set)->morph_count;
 	nt_gltf_override *overrides = nt_arena_alloc(e->of_window, most, sizeof *overrides);
 	nt_gltf_old_tangents *old = nt_arena_alloc(e->of_window, pool->sets.count, sizeof *old);
-	if (!overrides || !old)
+	bool *has_bitangents = nt_arena_alloc(e->of_window, pool->sets.count, sizeof *has_bitangents);
+	if (!overrides || !old || !has_bitangents)
 		return nt_fail_memory(e->error);
 	size_t override_count;
 	status = settle_old_tangents(e, pool, new, old, overrides, &override_count);
+	for (uint32_t set = 0; !status && set < pool->sets.count; set++)
+		status = override_bitangents(e, vertices, set, overrides, &override_count, &has_bitangents[set]);
 	for (uint32_t set = 0; !status && set < pool->sets.count; set++)
 		status = nt_gltf_add_morphs(e->edits, buffer, e->pools, vertices, set,
 			nt_tangent_filter_least(&new[set].filter), overrides, &override_count, &e->scene->morph_cost,
@@ -269,7 +312,7 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 	if (!status)
 		status = nt_gltf_write_indices(e->edits, buffer, e->pools, vertices, e->error);
 	for (uint32_t set = 0; !status && set < pool->sets.count; set++)
-		status = add_set(e, buffer, vertices, set, &new[set], &old[set]);
+		status = add_set(e, buffer, vertices, set, &new[set], &old[set], has_bitangents[set]);
 	return status;
 }
 
