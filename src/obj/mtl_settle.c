@@ -278,6 +278,9 @@ static void settle_normals(const settling *s)
 	m->normal_scale = s->said->maps[which].scale;
 	if (which == MTL_MAP_BUMP)
 		m->bump = s->said->maps[which].word;
+	else if (has_map(s, MTL_MAP_BUMP) && strcmp(s->said->maps[MTL_MAP_BUMP].map.name, m->normal_map.name) != 0)
+		find(s, NT_CODE_MATERIAL_LOST, s->said->maps[MTL_MAP_BUMP].map.line, "MTL: %.64s, replaced by %.64s",
+			s->said->maps[MTL_MAP_BUMP].word, s->said->maps[which].word);
 	m->bump_is_normal = s->said->any_blender;
 }
 

@@ -198,6 +198,7 @@ TEST(what_is_lost_is_named)
 		{"map_ORM a.png\nmap_RMA b.png", "MTL: map_RMA beside map_ORM"}, {"map_Ns n.png\nPr 1", "MTL: map_Ns"},
 		{"map_aniso r.png", "MTL: map_aniso"},
 		{"bump a.png\nmap_Bump b.png", "MTL: bump, replaced by a later map_Bump"},
+		{"map_Bump b.png\nnorm a.png", "MTL: map_Bump, replaced by norm"}, {"norm a.png\nbump a.png", NULL},
 		{"map_Bump a\\b.png\nbump a/b.png", NULL}, {"map_Kd a.png\nmap_Kd", NULL},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
