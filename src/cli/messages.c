@@ -274,7 +274,7 @@ static void append_vertices(nt_buffer *out, const nt_summary *s)
 static void append_unused(nt_buffer *out, const nt_summary *s, const nt_settings *settings)
 {
 	if (settings->existing == NT_EXISTING_REPLACE && s->skipped[NT_SKIP_NO_SLOT])
-		nt_buffer_text(out, ", --only=all makes new ones of all");
+		nt_buffer_text(out, ", --only=all makes new tangents for all");
 	if (settings->existing == NT_EXISTING_DROP && s->skipped[NT_SKIP_HAS_TANGENTS])
 		nt_buffer_format(out, ", a material uses the tangents of %zu, which stay",
 			s->skipped[NT_SKIP_HAS_TANGENTS]);
