@@ -634,17 +634,6 @@ const nt_code_row *nt_code_info(nt_code code)
 	return &code_table[code];
 }
 
-bool nt_code_find(const char *name, nt_code *code)
-{
-	for (unsigned i = 0; i < NT_CODE_COUNT; i++) {
-		if (strcmp(code_table[i].name, name) == 0) {
-			*code = (nt_code)i;
-			return true;
-		}
-	}
-	return false;
-}
-
 nt_severity nt_finding_severity(const nt_finding *finding)
 {
 	return finding->severity ? (nt_severity)(finding->severity - 1) : nt_code_info(finding->code)->severity;

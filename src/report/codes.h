@@ -34,9 +34,6 @@ typedef struct nt_code_row {
 /* The row of a code; a code that is out of range is our mistake. */
 const nt_code_row *nt_code_info(nt_code code);
 
-/* The code with this public name; false when there is none. */
-bool nt_code_find(const char *name, nt_code *code);
-
 /* The severity of a scene's finding: its own, or that of the table. */
 nt_severity nt_finding_severity(const nt_finding *finding);
 

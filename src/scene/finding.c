@@ -81,16 +81,6 @@ void nt_finding_add_as(nt_finding_list *list, nt_code code, nt_severity severity
 		(nt_finding){.code = code, .severity = (uint8_t)(1 + severity), .count = 1, .detail = detail}, place);
 }
 
-void nt_finding_add_votes(nt_finding_list *list, nt_code code, const nt_place *place, const char *detail,
-	const int8_t *votes, unsigned side)
-{
-	int8_t *copy = nt_arena_alloc(&list->arena, (size_t)side * side, sizeof *copy);
-	list->failed |= !copy;
-	if (copy)
-		nt_finding_put(list, (nt_finding){.code = code, .count = 1, .detail = detail, .votes_side = side,
-			.votes = memcpy(copy, votes, (size_t)side * side)}, place);
-}
-
 void nt_finding_list_free(nt_finding_list *list)
 {
 	free(list->items);

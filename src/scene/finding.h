@@ -154,10 +154,6 @@ void nt_finding_put(nt_finding_list *list, nt_finding finding, const nt_place *p
 void nt_finding_add_as(nt_finding_list *list, nt_code code, nt_severity severity, const nt_place *place,
 	const char *detail);
 
-/* The same of a normal map, with what its blocks say, which is copied. */
-void nt_finding_add_votes(nt_finding_list *list, nt_code code, const nt_place *place, const char *detail,
-	const int8_t *votes, unsigned side);
-
 void nt_finding_list_free(nt_finding_list *list);
 
 /* The same place with texts in an arena. False: out of memory. */

