@@ -81,9 +81,8 @@ static nt_status take_attributes(nt_scene *scene, nt_mesh *mesh, const nt_draco_
 		const nt_draco_attribute *a = &from->attributes[i];
 		const target to = target_of(mesh, a->kind);
 		if (!to.rows || *to.rows || a->components < to.least) {
-			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED,
-				nt_mesh_place(mesh, &(nt_place){0}), 1,
-				"Draco attribute %u with %d components", a->unique_id, a->components);
+			nt_scene_leave_out(scene, 0, 1, "Draco attribute %u with %d components", a->unique_id,
+				a->components);
 			continue;
 		}
 		*to.rows = read_rows(scene, a, from->point_count, to.width, 1.0f);

@@ -432,18 +432,20 @@ static nt_status look_for_buffers(nt_scene *scene, nt_gltf *document, nt_error *
 	return status;
 }
 
-/* Sets of texture coordinates that a mesh has beside the one that is used. */
-static size_t count_other_sets(const nt_json_value *attributes, uint32_t used)
+/* Attributes that a PLY has no place for; of sets of texture coordinates all but the one that is used. */
+static void count_left_attributes(const nt_json_value *attributes, uint32_t used, size_t *sets, size_t *others)
 {
-	size_t count = 0, length;
 	char name[32];
 	nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), used);
+	const char *const kept[] = {name, "POSITION", "NORMAL", "TANGENT", "COLOR_0"};
 	for (size_t i = 0; i < nt_json_count(attributes); i++) {
+		size_t length, k = 0;
 		const char *key = nt_json_key(attributes, i, &length);
-		count += length > 9 && memcmp(key, "TEXCOORD_", 9) == 0 &&
-			(length != strlen(name) || memcmp(key, name, length) != 0);
+		while (k < 5 && (length != strlen(kept[k]) || memcmp(key, kept[k], length) != 0))
+			k++;
+		if (k == 5)
+			++*(length > 9 && memcmp(key, "TEXCOORD_", 9) == 0 ? sets : others);
 	}
-	return count;
 }
 
 static size_t count_extras(const nt_gltf *document, const char *array)
@@ -456,13 +458,16 @@ static size_t count_extras(const nt_gltf *document, const char *array)
 }
 
 /* Lists what one mesh in the world has no place for; the writer says so. */
-static nt_status list_left_out(nt_scene *scene, const nt_gltf *document, nt_error *error)
+static void list_left_out(nt_scene *scene, const nt_gltf *document)
 {
-	size_t targets = 0, sets = 0;
+	size_t targets = 0, sets = 0, others = 0, unshown = 0, drawn = 0;
 	for (size_t i = 0; i < scene->mesh_count; i++) {
-		const nt_json_value *primitive = nt_gltf_primitive_of(document, &scene->meshes[i]);
+		const nt_mesh *mesh = &scene->meshes[i];
+		const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
 		targets += nt_json_count(nt_json_find(primitive, "targets"));
-		sets += count_other_sets(nt_json_find(primitive, "attributes"), scene->meshes[i].texcoord_set);
+		count_left_attributes(nt_json_find(primitive, "attributes"), mesh->texcoord_set, &sets, &others);
+		drawn += !mesh->triangles;
+		unshown += mesh->triangles && !mesh->reachable;
 	}
 	const nt_json_value *lights = nt_json_find(nt_gltf_root_member(document, "extensions"), "KHR_lights_punctual");
 	const struct {
@@ -470,7 +475,10 @@ static nt_status list_left_out(nt_scene *scene, const nt_gltf *document, nt_erro
 		size_t count;
 	} parts[] = {
 		{"materials", nt_json_count(nt_gltf_root_member(document, "materials"))},
+		{"primitives of points or lines", drawn},
+		{"primitives that no scene shows", unshown},
 		{"further sets of texture coordinates", sets},
+		{"other attributes", others},
 		{"morph targets", targets},
 		{"skins", nt_json_count(nt_gltf_root_member(document, "skins"))},
 		{"animations", nt_json_count(nt_gltf_root_member(document, "animations"))},
@@ -479,18 +487,10 @@ static nt_status list_left_out(nt_scene *scene, const nt_gltf *document, nt_erro
 		{"extras", count_extras(document, "nodes") + count_extras(document, "meshes") +
 			count_extras(document, "materials")},
 	};
-	nt_buffer text = {0};
 	scene->left_out_textures = nt_json_count(nt_gltf_root_member(document, "textures"));
-	for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+	for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
 		if (parts[i].count)
-			nt_buffer_format(&text, "%s%s (%zu)", text.size ? ", " : "", parts[i].what, parts[i].count);
-		scene->left_out_count += parts[i].count;
-	}
-	if (!text.failed && text.size)
-		scene->left_out = nt_arena_text(&scene->arena, text.data, text.size);
-	const bool failed = text.failed || (text.size && !scene->left_out);
-	nt_buffer_free(&text);
-	return failed ? nt_fail_memory(error) : NT_OK;
+			nt_scene_leave_out(scene, 0, parts[i].count, "%s (%zu)", parts[i].what, parts[i].count);
 }
 
 static uint64_t count_read(const void *source)
@@ -542,6 +542,6 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	if (!status && (options->world || options->report))
 		status = place_meshes(scene, document, error);
 	if (!status && options->world)
-		status = list_left_out(scene, document, error);
+		list_left_out(scene, document);
 	return status;
 }

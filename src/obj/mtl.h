@@ -30,16 +30,6 @@ typedef struct nt_mtl {
 	nt_hash_index file_index;
 } nt_mtl;
 
-/* A line of a text. */
-static inline nt_place nt_line_place(const char *path, size_t line)
-{
-	nt_place place;
-	nt_place_clear(&place);
-	strncpy(place.file, path, sizeof place.file - 1);
-	place.line = line;
-	return place;
-}
-
 /*
  * Reads the libraries of one mtllib statement: one file name, blanks allowed, or several. A library that cannot be
  * read, or lies outside the folder of scene->path without options->allow_outside, is a finding.

@@ -275,6 +275,19 @@ static size_t ignored_line(const obj_chunk *chunk, size_t which)
 	return chunk->first_line + chunk->ignored[which].line + 1;
 }
 
+/* Geometry, which an output of another format has not; NULL: a statement without which nothing is missing. */
+static const char *name_left_out(size_t which)
+{
+	static const char *const elements[][2] = {{"l", "lines"}, {"p", "points"}, {"curv", "curves"},
+		{"surf", "surfaces"}};
+	if (which == OBJ_SMALL_FACE)
+		return "faces of fewer than three corners";
+	for (size_t i = 0; i < sizeof elements / sizeof *elements; i++)
+		if (strcmp(obj_ignored_names[which], elements[i][0]) == 0)
+			return elements[i][1];
+	return NULL;
+}
+
 static void report_ignored(const obj_file *file)
 {
 	nt_scene *scene = file->scene;
@@ -284,7 +297,10 @@ static void report_ignored(const obj_file *file)
 		if (!first)
 			continue;
 		const nt_place place = nt_line_place(scene->path, ignored_line(first, which));
-		if (which == OBJ_UNKNOWN)
+		const char *left = name_left_out(which);
+		if (left)
+			nt_scene_leave_out(scene, place.line, count, "%s (%zu)", left, count);
+		else if (which == OBJ_UNKNOWN)
 			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, count,
 				"OBJ: %s, the first is %.*s", obj_ignored_names[which],
 				(int)(first->unknown_length < 64 ? first->unknown_length : 64), first->unknown);

@@ -17,7 +17,7 @@
 #include "scene/srgb.h"
 
 const char *const obj_ignored_names[OBJ_IGNORED_COUNT] = {
-	[OBJ_SMALL_FACE] = "f with fewer than 3 corners",
+	[OBJ_SMALL_FACE] = "f",
 	"l", "p", "vp", "deg", "bmat", "step", "cstype", "curv", "curv2", "surf", "parm", "trim", "hole",
 	"scrv", "sp", "end", "con", "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj",
 	"trace_obj", "ctech", "stech", "usemap", "maplib", "call", "csh", "bsp", "bzp", "cdc", "cdp",

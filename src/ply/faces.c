@@ -291,12 +291,12 @@ nt_status ply_read_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply
 	if (!status && b.unsound)
 		nt_finding_add(&scene->findings, NT_CODE_UV_NOT_FINITE, &b.first_unsound, b.unsound, "faces");
 	if (!status && b.skipped)
-		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &b.first_skipped, b.skipped,
-			"faces of fewer than three corners");
+		nt_scene_leave_out(scene, b.first_skipped.line, b.skipped, "faces of fewer than three corners (%zu)",
+			b.skipped);
 	if (!status && b.rows.longer) {
 		const nt_place first = ply_place(cursor, b.rows.first_longer);
-		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &first, b.rows.longer,
-			"faces with more values than the header names, which were passed over");
+		nt_scene_leave_out(scene, first.line, b.rows.longer,
+			"values of faces beyond those that the header names (%zu)", b.rows.longer);
 	}
 	ply_free_rows(&b.rows);
 	free(b.wedges.rows);

@@ -119,32 +119,17 @@ static nt_status find_elements(ply_source *source, nt_error *error)
 	return status;
 }
 
-static nt_place place_of_line(size_t line)
-{
-	nt_place place;
-	nt_place_clear(&place);
-	place.line = line;
-	return place;
-}
-
-/* Data of the file that the scene has not. */
+/* Statements that say nothing, and properties that lack one of their set. */
 static void report_unused(nt_scene *scene, const ply_source *source)
 {
 	const ply_element *vertex = source->vertex;
-	nt_place place = place_of_line(source->header.unknown_line);
+	nt_place place = nt_line_place(scene->path, source->header.unknown_line);
 	if (source->header.unknown_lines)
 		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, source->header.unknown_lines,
 			"lines of the header that are no statements");
-	for (size_t i = 0; i < source->header.element_count; i++) {
-		const ply_element *element = &source->header.elements[i];
-		place = place_of_line(element->line);
-		if (element != vertex && element != source->face && element != source->strips && element->count > 0)
-			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1, "element \"%s\"",
-				element->name);
-	}
 	int tangent[3];
 	if (source->roles.tangent[0] == PLY_NO_PROPERTY && find_set(vertex, tangent_names, 3, tangent)) {
-		place = place_of_line(vertex->properties[tangent[0]].line);
+		place = nt_line_place(scene->path, vertex->properties[tangent[0]].line);
 		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1,
 			"properties tx, ty and tz are no tangents without tw");
 	}
@@ -162,20 +147,20 @@ static bool is_used(const ply_source *source, const ply_element *element, int nu
 	return false;
 }
 
-/* Names the properties that a file of another format will not have. */
-static nt_status list_left_out(nt_scene *scene, const ply_source *source, nt_error *error)
+/* Names the properties and elements that a file of another format will not have. */
+static void list_left_out(nt_scene *scene, const ply_source *source)
 {
-	const ply_element *const elements[] = {source->vertex, source->face};
-	nt_buffer text = {0};
-	for (size_t e = 0; e < 2; e++)
-		for (size_t i = 0; elements[e] && i < elements[e]->property_count; i++)
-			if (!is_used(source, elements[e], (int)i))
-				nt_buffer_format(&text, "%s%s %s", scene->left_out_count++ ? ", " : "",
-					elements[e]->name, elements[e]->properties[i].name);
-	if (!text.failed && scene->left_out_count)
-		scene->left_out = nt_utf8_text(&scene->arena, text.data, text.size);
-	nt_buffer_free(&text);
-	return scene->left_out || !scene->left_out_count ? NT_OK : nt_fail_memory(error);
+	for (size_t e = 0; e < source->header.element_count; e++) {
+		const ply_element *element = &source->header.elements[e];
+		const bool read = element == source->vertex || element == source->face || element == source->strips;
+		for (size_t i = 0; read && i < element->property_count; i++)
+			if (!is_used(source, element, (int)i))
+				nt_scene_leave_out(scene, element->properties[i].line, 1, "%.90s %.90s", element->name,
+					element->properties[i].name);
+		if (!read && element->count)
+			nt_scene_leave_out(scene, element->line, 1, "element %.90s (%zu)", element->name,
+				element->count);
+	}
 }
 
 /* ---- vertices ---- */
@@ -367,9 +352,8 @@ nt_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_error 
 		status = make_scene(scene, error);
 	if (!status)
 		status = make_materials(scene, &source->header, error);
-	if (!status)
-		status = list_left_out(scene, source, error);
 	if (!status) {
+		list_left_out(scene, source);
 		report_unused(scene, source);
 		status = read_body(scene, scene->meshes, source, options, error);
 	}

@@ -79,11 +79,12 @@ static void tell_lost(nt_scene *scene, const char *image, const char *obstacle)
 {
 	const size_t textures = scene->left_out_textures - (image && scene->left_out_textures);
 	const size_t count = scene->material_count + textures + scene->left_out_count;
+	const nt_place place = nt_line_place(scene->path, scene->left_out_line);
 	nt_buffer text = {0};
 	if (scene->material_count)
 		nt_buffer_format(&text, "materials (%zu)", scene->material_count);
-	if (scene->left_out)
-		nt_buffer_format(&text, "%s%s", text.size ? ", " : "", scene->left_out);
+	if (scene->left_out.size)
+		nt_buffer_format(&text, "%s%s", text.size ? ", " : "", scene->left_out.data);
 	if (textures)
 		nt_buffer_format(&text, "%stextures (%zu)", text.size ? ", " : "", textures);
 	if (image)
@@ -91,9 +92,9 @@ static void tell_lost(nt_scene *scene, const char *image, const char *obstacle)
 	else if (obstacle)
 		nt_buffer_format(&text, "; no TextureFile: %s", obstacle);
 	if (count)
-		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, NULL, count, "%s",
+		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, &place, count, "%s",
 			text.data && !text.failed ? text.data : "");
-	scene->findings.failed |= text.failed;
+	scene->findings.failed |= text.failed || scene->left_out.failed;
 	nt_buffer_free(&text);
 }
 

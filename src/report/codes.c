@@ -158,9 +158,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Nothing, or --check-maps=on.",
 		"a KTX2 in normalTexture"),
 	ROW(STATEMENT_IGNORED, INFO, "iii", LOOK, NULL, "{count} {statement was|statements were} not used",
-		"The input has a statement, element or property that nmtan does not know or does not need.",
+		"The input has a statement that nmtan does not know or does not need.",
 		"Nothing, unless you expected it to matter.",
-		"an OBJ with a \"curv\" line"),
+		"an OBJ with a \"bevel\" line"),
 	ROW(COLORS_DOUBTFUL, WARNING, "-ww", EXPORT, NULL, "colours of vertices are not what they should be",
 		"A block of #MRGB comments in an OBJ has more or fewer colours than there are vertices before "
 		"it, or something that is no colour; or a vertex has a colour that is NaN or infinite. The last "
@@ -208,10 +208,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"PLY from a PLY whose normals are integers, keeps those that it has.",
 		"Harmless. To silence it, export unit normals.",
 		"an OBJ triangle with \"vn 0 0 .5\""),
-	ROW(REFERENCE_LOST, WARNING, "w--", LOOK, NULL,
+	ROW(REFERENCE_LOST, WARNING, "www", LOOK, NULL,
 		"{count} {part of the input is|parts of the input are} not in the output",
 		"Something that the input has or refers to has no place in the output's format, or none that nmtan "
-		"knows: animations in PLY, a PLY's property \"quality\" in glTF.",
+		"knows: animations in PLY, an OBJ's lines and a PLY's property \"quality\" in glTF.",
 		"Choose another output format, or add it again by hand.",
 		"a glTF with animations that is written as PLY"),
 

@@ -4,6 +4,7 @@
  */
 #include "scene/scene.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -19,9 +20,24 @@ void nt_scene_free(nt_scene *scene)
 	if (scene->unmap)
 		scene->unmap(scene);
 	nt_finding_list_free(&scene->findings);
+	nt_buffer_free(&scene->left_out);
 	nt_arena_free(&scene->arena);
 	nt_arena_free(&scene->temporary);
 	memset(scene, 0, sizeof *scene);
+}
+
+void nt_scene_leave_out(nt_scene *scene, size_t line, size_t count, const char *format, ...)
+{
+	char text[200];
+	va_list arguments;
+	va_start(arguments, format);
+	vsnprintf(text, sizeof text, format, arguments);
+	va_end(arguments);
+	nt_buffer_text(&scene->left_out, scene->left_out_count ? ", " : "");
+	nt_buffer_clean(&scene->left_out, text);
+	if (line && (!scene->left_out_line || line < scene->left_out_line))
+		scene->left_out_line = line;
+	scene->left_out_count += count;
 }
 
 /* `mesh "head", primitive 2, material "skin"`. */

@@ -13,6 +13,7 @@
 #ifndef NT_SCENE_SCENE_H
 #define NT_SCENE_SCENE_H
 
+#include "base/buffer.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "scene/finding.h"
@@ -389,9 +390,9 @@ typedef struct nt_scene {
 
 	bool solves_quads; /* what wrote the input solves tangents on quads: Blender */
 
-	const char *left_out; /* names of what the source has, and the scene has not; of a glTF only if the output is
-	                         one mesh in the world; NULL: nothing */
-	size_t left_out_count;
+	nt_buffer left_out; /* what the source has and the scene has not: "lines (3), points (1)". Writers of other
+	                       formats report it. A glTF fills it only if the output is one mesh in the world */
+	size_t left_out_count, left_out_line; /* line: of the first in a text; 0: unknown */
 	size_t left_out_textures; /* of a glTF, the same; a PLY may have one of them */
 
 	/* Data that a reader keeps for the writer of the same format, and the input's bytes. */
@@ -423,6 +424,19 @@ void nt_scene_init(nt_scene *scene, const char *path);
 
 /* Frees everything; the scene is empty afterwards. */
 void nt_scene_free(nt_scene *scene);
+
+/* A line of a text. */
+static inline nt_place nt_line_place(const char *path, size_t line)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	strncpy(place.file, path, sizeof place.file - 1);
+	place.line = line;
+	return place;
+}
+
+/* Appends to scene->left_out. */
+void nt_scene_leave_out(nt_scene *scene, size_t line, size_t count, const char *format, ...) NT_PRINTF(4, 5);
 
 /* Fills the place of a mesh in the source, with its name in words as object. Returns `place`. */
 const nt_place *nt_mesh_place(const nt_mesh *mesh, nt_place *place);

@@ -39,6 +39,64 @@ says "1 part of the input is not in the output: vertex quality"
 run -q q.ply again.ply
 silent
 
+scene "what an output of another format lacks is told alike, by a quiet conversion and a check, and of no format that has it"
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'vt 0 0' 'vt 1 0' 'vt 0 1' 'f 1/1 2/2 3/3' 'l 1 2' 'l 2 3' 'p 1' 'curv 0 1 1 2' 'f 1 2' >l.obj
+python3 - <<'END'
+head = """ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+property float s
+property float t
+element face 2
+property list uchar int vertex_indices
+property uchar flags
+element edge 1
+property int vertex1
+property int vertex2
+element none 0
+property int a
+element user 2
+property list uchar int a
+end_header
+0 0 0 0 0
+1 0 0 1 0
+0 1 0 0 1
+3 0 1 2 7
+2 0 1 7
+0 1
+1 5
+0
+"""
+open("e.ply", "w").write(head)
+END
+gltf "$data/plates.gltf" g 'const p = g.meshes[0].primitives[0];
+	g.meshes[0].primitives.push({...p, mode: 0}); g.meshes.push({primitives: [p]});
+	Object.assign(p.attributes, {TEXCOORD_1: p.attributes.TEXCOORD_0, _HEAT: p.attributes.TEXCOORD_0, COLOR_1: p.attributes.POSITION})'
+while IFS='|' read -r input output place count list; do
+	told="$count parts of the input are not in the output: $list"
+	run "$input" "$output"
+	exits 0
+	says "nmtan: $input:${place}warning: $told [REFERENCE_LOST]"
+	run -q "$input" "$output"
+	is "$input: $(cat "$WORK/err.txt")" "$input: nmtan: $input: missing from the output: $count REFERENCE_LOST"
+	run --check -q --fail-on=never --report=r.json -o "$output" "$input"
+	is "$input: $(value r.json '[f["message"] for f in r["files"][0]["findings"] if f["code"] in ("REFERENCE_LOST", "STATEMENT_IGNORED")]')" \
+		"$input: ['$told']"
+done <<'END'
+l.obj|o.glb|8: |5|faces of fewer than three corners (1), lines (2), points (1), curves (1)
+l.obj|o.ply|8: |5|faces of fewer than three corners (1), lines (2), points (1), curves (1)
+e.ply|o.glb|11: |4|face flags, element edge (1), element user (2), faces of fewer than three corners (1)
+g.gltf|o.ply| |16|materials (3), primitives of points or lines (1), primitives that no scene shows (1), further sets of texture coordinates (3), other attributes (6), extras (1), textures (1)
+END
+run -v e.ply o.ply
+says_not LOST
+says_not "not used"
+run --check --fail-on=never e.ply
+is "$(grep -c "LOST\|IGNORED" "$WORK/out.txt")" 0
+
 scene "vertices on a mirror seam are split, and no others"
 cp "$data/bumps.png" .
 run "$data/mirrored_cube.obj" cube.glb

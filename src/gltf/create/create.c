@@ -461,9 +461,11 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 
 	c.model = nt_model_create("nmtan " NMTAN_VERSION_STRING);
 	nt_status status = c.model ? NT_OK : nt_fail_memory(error);
-	if (scene->left_out)
-		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, NULL, scene->left_out_count, "%.200s",
-			scene->left_out);
+	const nt_place place = nt_line_place(scene->path, scene->left_out_line);
+	if (scene->left_out.size)
+		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, &place, scene->left_out_count, "%.200s",
+			scene->left_out.data);
+	scene->findings.failed |= scene->left_out.failed;
 	/* The primitives made of each mesh. */
 	if (status == NT_OK)
 		status = plan_primitives(&c, error);

@@ -406,14 +406,14 @@ TEST(unused_statements_are_counted)
 		const char *detail;
 		size_t count, line;
 	} expected[] = {
-		{"OBJ: f with fewer than 3 corners", 3, 8},
-		{"OBJ: l", 2, 4},
-		{"OBJ: p", 1, 5},
 		{"OBJ: vp", 1, 11},
 		{"OBJ: unknown statement, the first is whatever", 2, 12},
 	};
-	assert_int_equal(r.scene.findings.count, 5);
-	for (size_t i = 0; i < 5; i++) {
+	assert_string_equal(r.scene.left_out.data, "faces of fewer than three corners (3), lines (2), points (1)");
+	assert_int_equal(r.scene.left_out_count, 6);
+	assert_int_equal(r.scene.left_out_line, 4);
+	assert_int_equal(r.scene.findings.count, 2);
+	for (size_t i = 0; i < 2; i++) {
 		const nt_finding *finding = &r.scene.findings.items[i];
 		assert_int_equal(finding->code, NT_CODE_STATEMENT_IGNORED);
 		assert_string_equal(finding->detail, expected[i].detail);

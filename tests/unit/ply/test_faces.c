@@ -17,7 +17,8 @@ TEST(faces_may_come_before_vertices)
 	assert_int_equal(r.mesh->face_count, 4);
 	assert_numbers(r.mesh->face_polygon, NUMBERS(0, 1, 1, 1));
 	assert_floats(r.mesh->positions, FLOATS(0, 0, 0, 2, 0, 0));
-	assert_true(has_finding(&r, NT_CODE_STATEMENT_IGNORED, 6, 1, "element \"junk\""));
+	assert_string_equal(r.scene.left_out.data, "face red, element junk (2)");
+	assert_int_equal(r.scene.left_out_line, 5);
 	close_reading(&r);
 }
 
@@ -69,7 +70,8 @@ TEST(faces_of_fewer_than_three_corners_are_skipped_and_said)
 	open_text(&r, HEAD("3") FACES("4") POINTS "2 0 1\n0\n3 0 1 2\n1 2\n");
 	assert_int_equal(r.mesh->face_count, 1);
 	assert_numbers(r.mesh->indices, NUMBERS(0, 1, 2));
-	assert_true(has_finding(&r, NT_CODE_STATEMENT_IGNORED, 13, 3, "faces of fewer than three corners"));
+	assert_string_equal(r.scene.left_out.data, "faces of fewer than three corners (3)");
+	assert_int_equal(r.scene.left_out_line, 13);
 	close_reading(&r);
 }
 
@@ -80,9 +82,8 @@ TEST(faces_with_more_values_than_the_header_names_are_read)
 	open_text(&r, HEAD("3") FACES("4") POINTS "3 0 1 2\n3 0 1 2 6 0 0 1 0 0 1\n3 1 2 0\n3 2 1 0 7\n");
 	assert_int_equal(r.mesh->face_count, 4);
 	assert_numbers(r.mesh->indices, NUMBERS(0, 1, 2, 0, 1, 2, 1, 2, 0, 2, 1, 0));
-	assert_int_equal(r.scene.findings.count, 1);
-	assert_true(has_finding(&r, NT_CODE_STATEMENT_IGNORED, 14, 2,
-		"faces with more values than the header names, which were passed over"));
+	assert_string_equal(r.scene.left_out.data, "values of faces beyond those that the header names (2)");
+	assert_int_equal(r.scene.left_out_line, 14);
 	close_reading(&r);
 }
 
