@@ -79,21 +79,17 @@ static nt_status open_library(const request *q, const char *name, const char *pa
 }
 
 /* Notes that a file is read; *before: it has been. */
-static nt_status note_file(nt_mtl *mtl, const nt_file *file, bool *before, nt_error *error)
+static nt_status note_file(const request *q, const nt_file *file, bool *before)
 {
-	const struct nt_mtl_file id = {file->device, file->inode};
-	const uint64_t hash = nt_hash_bytes(0, &id, sizeof id);
-	size_t at = NT_HASH_BEGIN;
-	*before = false;
-	for (uint32_t i; !*before && (i = nt_hash_index_next(&mtl->file_index, hash, &at)) != UINT32_MAX;)
-		*before = mtl->files[i].device == id.device && mtl->files[i].inode == id.inode;
-	if (*before)
-		return NT_OK;
-	if (!nt_grow((void **)&mtl->files, &mtl->file_capacity, mtl->file_count + 1, sizeof *mtl->files) ||
-		!nt_hash_index_add(&mtl->file_index, hash, (uint32_t)mtl->file_count))
-		return nt_fail_memory(error);
-	mtl->files[mtl->file_count++] = id;
-	return NT_OK;
+	const size_t count = q->mtl->files.count;
+	uint64_t *id = nt_arena_alloc(&q->scene->arena, 2, sizeof *id);
+	if (!id)
+		return nt_fail_memory(q->error);
+	id[0] = file->device;
+	id[1] = file->inode;
+	const uint32_t number = nt_name_add(&q->mtl->files, (const char *)id, 2 * sizeof *id);
+	*before = q->mtl->files.count == count;
+	return number != UINT32_MAX ? NT_OK : nt_fail_memory(q->error);
 }
 
 /* Reads one library; what cannot be read is reported unless `quiet`. *found says whether it was. */
@@ -121,8 +117,8 @@ static nt_status read_library(const request *q, const char *text, size_t length,
 	if (reason)
 		return NT_OK;
 	*found = true;
-	bool before;
-	status = note_file(q->mtl, &file, &before, q->error);
+	bool before = false;
+	status = note_file(q, &file, &before);
 	if (!status && !before)
 		status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
 	nt_file_close(&file);

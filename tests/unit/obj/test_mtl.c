@@ -148,18 +148,19 @@ TEST(map_options_are_skipped_by_their_arguments)
 		{"\"a b.png\"", "a b.png", 1, false},
 		{"-bm 1", "", 1, false},
 		{"-bm", "", 1, false},
-		{"-bm 0.5", "", 0.5f, false},
+		{"-bm 0.5", "", 1, false},
 		{"", "", 1, false},
 		{"a-bm 1", "a-bm 1", 1, false},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-		nt_arena arena = {0};
-		nt_mtl_map map;
-		nt_mtl_map_read(cases[i].text, cases[i].text + strlen(cases[i].text), &map);
-		assert_string_equal(nt_mtl_file_name(&arena, map.name_begin, map.name_end), cases[i].name);
-		assert_true(map.bump_scale == cases[i].scale);
-		assert_int_equal(map.turbulent, cases[i].turbulent);
-		nt_arena_free(&arena);
+		char text[200];
+		reading r;
+		snprintf(text, sizeof text, "newmtl a\nbump %s\n", cases[i].text);
+		const nt_material *m = &parse_one(&r, text)->material;
+		assert_string_equal(m->normal_map.name ? m->normal_map.name : "", cases[i].name);
+		assert_true(m->normal_scale == cases[i].scale);
+		assert_int_equal(r.scene.findings.count, cases[i].turbulent);
+		close_reading(&r);
 	}
 }
 
@@ -186,14 +187,17 @@ TEST(placements_are_read)
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
 		const nt_placement *expected = &cases[i].placement;
-		nt_mtl_map map;
-		nt_mtl_map_read(cases[i].text, cases[i].text + strlen(cases[i].text), &map);
-		assert_int_equal(map.placement.moved, expected->moved);
-		assert_int_equal(map.placement.clamp, expected->clamp);
+		char text[200];
+		reading r;
+		snprintf(text, sizeof text, "newmtl a\nmap_Kd %s\n", cases[i].text);
+		const nt_placement *placement = &parse_one(&r, text)->material.base_color_map.placement;
+		assert_int_equal(placement->moved, expected->moved);
+		assert_int_equal(placement->clamp, expected->clamp);
 		for (int axis = 0; axis < 2 && expected->moved; axis++) {
-			assert_true(map.placement.scale[axis] == expected->scale[axis]);
-			assert_true(map.placement.offset[axis] == expected->offset[axis]);
+			assert_true(placement->scale[axis] == expected->scale[axis]);
+			assert_true(placement->offset[axis] == expected->offset[axis]);
 		}
+		close_reading(&r);
 	}
 }
 
