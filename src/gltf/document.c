@@ -238,6 +238,8 @@ void nt_gltf_free(void *source)
 	free(document->views);
 	free(document->accessors);
 	free(document->floats);
+	free(document->users);
+	free(document->view_users);
 	free(document->grids);
 	free(document->lod_wishes);
 	nt_name_table_free(&document->animated);

@@ -77,6 +77,20 @@ typedef struct nt_gltf_accessor {
 	uint64_t sparse_index_offset, sparse_value_offset;
 } nt_gltf_accessor;
 
+/* Uses of an accessor, and of others over the same bytes: references.c. */
+typedef struct nt_gltf_users {
+	uint32_t attributes;   /* uses as attribute, of morph targets too */
+	uint32_t indices : 30; /* primitives that have it as indices */
+	uint32_t foreign : 1;  /* used by something else than attributes */
+	uint32_t idle : 1;     /* an accessor that is nobody's attribute is among them */
+} nt_gltf_users;
+
+/* Uses of a view. */
+typedef struct nt_gltf_view_users {
+	uint32_t blocks : 31; /* primitives that are compressed in it */
+	uint32_t image : 1;
+} nt_gltf_view_users;
+
 /* The arrays that elements may be added to. */
 typedef enum nt_gltf_growing {
 	NT_GLTF_ACCESSORS,
@@ -124,7 +138,9 @@ typedef struct nt_gltf {
 	void **lod_wishes;       /* [materials] what those with levels of detail ask for; NULL: no such material yet */
 	const char **image_uris; /* [image_uri_count] of images, as the source has them; NULL: none */
 	size_t image_uri_count;  /* 0 until an edit may change them */
-	bool dangling_known;     /* then these are, as the file had them: dangling.h */
+	nt_gltf_users *users;    /* [accessor_count] by `same`; NULL: not known yet */
+	nt_gltf_view_users *view_users; /* [view_count] with them */
+	bool dangling_known;     /* then these are, as the file had them */
 	nt_gltf_dangling dangling[NT_GLTF_GROWING];
 	uint64_t bytes_read;     /* of buffers */
 	uint64_t bytes_opened;   /* of external files and data URIs */
@@ -184,11 +200,14 @@ nt_status nt_gltf_walk_world(const nt_gltf *document,
 	nt_status (*place)(void *context, uint64_t mesh, const double matrix[16]), void *context,
 	nt_error *error);
 
-/* dangling.c. Notes the lowest dangling references of a document that nothing was added to yet. Does nothing the second
- * time. */
+/* references.c. Finds who refers to accessors and views, and the dangling references with them. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_gltf_find_users(nt_gltf *document, nt_error *error);
+
+/* references.c. Notes the lowest dangling references alone, of a document that nothing was added to yet. */
 void nt_gltf_find_dangling(nt_gltf *document);
 
-/* dangling.c. NT_ERROR_INPUT with the place of a reference if what was added since then took the number that it
+/* references.c. NT_ERROR_INPUT with the place of a reference if what was added since then took the number that it
  * names. */
 nt_status nt_gltf_check_dangling(const nt_gltf *document, nt_error *error);
 

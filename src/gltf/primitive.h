@@ -43,4 +43,10 @@ static inline uint32_t nt_gltf_same(const nt_gltf *document, uint32_t accessor)
 	return document->accessors[accessor].same;
 }
 
+/* Uses of it, and of others over its bytes: after nt_gltf_find_users(). */
+static inline const nt_gltf_users *nt_gltf_users_of(const nt_gltf *document, uint32_t accessor)
+{
+	return &document->users[nt_gltf_same(document, accessor)];
+}
+
 #endif

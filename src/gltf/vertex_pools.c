@@ -6,49 +6,12 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "gltf/draco.h"
-
-/* ---- other users ---- */
-
-static void mark_foreign(nt_vertex_pools *pools, const nt_json_value *object, const char *name)
-{
-	const nt_gltf *document = pools->scene->source;
-	const uint32_t accessor = nt_gltf_reference(document, object, name);
-	if (accessor != NT_NONE)
-		pools->foreign[nt_gltf_same(document, accessor)] = true;
-}
-
-static void find_foreign(nt_vertex_pools *pools)
-{
-	const nt_gltf *document = pools->scene->source;
-	const nt_json_value *animations = nt_gltf_root_member(document, "animations");
-	for (size_t i = 0; i < nt_json_count(animations); i++) {
-		const nt_json_value *samplers = nt_json_find(nt_json_at(animations, i), "samplers");
-		for (size_t k = 0; k < nt_json_count(samplers); k++) {
-			mark_foreign(pools, nt_json_at(samplers, k), "input");
-			mark_foreign(pools, nt_json_at(samplers, k), "output");
-		}
-	}
-	const nt_json_value *skins = nt_gltf_root_member(document, "skins");
-	for (size_t i = 0; i < nt_json_count(skins); i++)
-		mark_foreign(pools, nt_json_at(skins, i), "inverseBindMatrices");
-	const nt_json_value *nodes = nt_gltf_root_member(document, "nodes");
-	for (size_t i = 0; i < nt_json_count(nodes); i++) {
-		const nt_json_value *extensions = nt_json_find(nt_json_at(nodes, i), "extensions");
-		const nt_json_value *attributes = nt_json_find(
-			nt_json_find(extensions, "EXT_mesh_gpu_instancing"), "attributes");
-		for (size_t k = 0; nt_json_type_of(attributes) == NT_JSON_OBJECT && k < nt_json_count(attributes); k++)
-			mark_foreign(pools, attributes, nt_json_key(attributes, k, NULL));
-	}
-}
 
 /* ---- pools ---- */
 
 typedef struct joining {
-	const nt_vertex_pools *pools;
 	uint32_t *parent;     /* [mesh count] union-find */
 	uint32_t *first_user; /* [accessor_count] */
-	bool *used;           /* [accessor_count] by number */
 	uint32_t mesh;
 } joining;
 
@@ -63,7 +26,6 @@ static uint32_t find_root(uint32_t *parent, uint32_t mesh)
 
 static void join_user(joining *j, uint32_t accessor)
 {
-	j->pools->attribute_users[accessor]++;
 	uint32_t *user = &j->first_user[accessor];
 	if (*user == NT_NONE) {
 		*user = j->mesh;
@@ -92,54 +54,6 @@ static void list_pools(nt_vertex_pools *pools, uint32_t *parent, size_t mesh_cou
 		pools->order[pools->first[pool_of[i]] + parent[pool_of[i]]++] = i;
 }
 
-static uint32_t *zeroed(nt_arena *arena, size_t count)
-{
-	/* what nobody counts in takes no memory */
-	uint32_t *numbers = nt_calloc(count, sizeof *numbers);
-	return nt_arena_adopt(arena, numbers) ? numbers : NULL;
-}
-
-static bool allocate(nt_vertex_pools *pools, nt_arena *arena)
-{
-	const nt_gltf *document = pools->scene->source;
-	const size_t mesh_count = pools->scene->mesh_count;
-	pools->accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
-	pools->foreign = nt_arena_alloc(arena, pools->accessor_count, sizeof *pools->foreign);
-	pools->idle = nt_arena_alloc(arena, pools->accessor_count, sizeof *pools->idle);
-	pools->attribute_users = zeroed(arena, pools->accessor_count);
-	pools->index_users = zeroed(arena, pools->accessor_count);
-	pools->block_users = zeroed(arena, document->view_count);
-	pools->of = zeroed(arena, mesh_count);
-	pools->order = zeroed(arena, mesh_count);
-	pools->first = zeroed(arena, mesh_count + 1);
-	if (pools->foreign)
-		memset(pools->foreign, 0, pools->accessor_count * sizeof *pools->foreign);
-	if (pools->idle)
-		memset(pools->idle, 0, pools->accessor_count * sizeof *pools->idle);
-	return pools->foreign && pools->idle && pools->attribute_users && pools->index_users &&
-		pools->block_users && pools->of && pools->order && pools->first;
-}
-
-/* Accessors that a primitive uses. */
-static void join_primitive(nt_vertex_pools *pools, joining *j)
-{
-	const nt_gltf *document = pools->scene->source;
-	const nt_json_value *primitive = nt_gltf_primitive_of(document, &pools->scene->meshes[j->mesh]);
-	for (nt_gltf_use u = {0}; nt_gltf_next_use(document, primitive, &u);) {
-		join_user(j, nt_gltf_same(document, u.accessor));
-		j->used[u.accessor] = true;
-	}
-	const uint32_t indices = nt_gltf_reference(document, primitive, "indices");
-	uint64_t view;
-	if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &view) &&
-		view < document->view_count)
-		pools->block_users[view]++;
-	if (indices != NT_NONE) {
-		pools->foreign[nt_gltf_same(document, indices)] = true;
-		pools->index_users[nt_gltf_same(document, indices)]++;
-	}
-}
-
 static void free_pools(void *pools)
 {
 	nt_vertex_pools *all = pools;
@@ -156,27 +70,29 @@ nt_status nt_vertex_pools_find(const nt_scene *scene, const nt_read_options *opt
 		return nt_fail_memory(error);
 	*pools = (nt_vertex_pools){.scene = scene,
 		.bakes_morphs = !options->world && options->morphs == NT_MORPH_BAKE};
-	joining j = {.pools = pools, .parent = nt_alloc(mesh_count, sizeof *j.parent)};
-	bool found = allocate(pools, &document->arena) && j.parent;
-	j.first_user = nt_alloc(pools->accessor_count, sizeof *j.first_user);
-	j.used = nt_calloc(pools->accessor_count, sizeof *j.used);
-	found = found && j.first_user && j.used;
+	pools->of = nt_arena_alloc(&document->arena, mesh_count, sizeof *pools->of);
+	pools->order = nt_arena_alloc(&document->arena, mesh_count, sizeof *pools->order);
+	pools->first = nt_arena_alloc(&document->arena, mesh_count + 1, sizeof *pools->first);
+	joining j = {.parent = nt_alloc(mesh_count, sizeof *j.parent),
+		.first_user = nt_alloc(document->accessor_count, sizeof *j.first_user)};
+	const bool found = pools->of && pools->order && pools->first && j.parent && j.first_user &&
+		nt_gltf_find_users(document, error) == NT_OK;
 	if (found) {
-		memset(j.first_user, 0xFF, pools->accessor_count * sizeof *j.first_user);
+		memset(pools->first, 0, (mesh_count + 1) * sizeof *pools->first);
+		memset(j.first_user, 0xFF, document->accessor_count * sizeof *j.first_user);
 		for (uint32_t i = 0; i < mesh_count; i++)
 			j.parent[i] = i;
-		find_foreign(pools);
-		for (j.mesh = 0; j.mesh < mesh_count; j.mesh++)
-			join_primitive(pools, &j);
-		for (uint32_t i = 0; i < pools->accessor_count; i++)
-			pools->idle[nt_gltf_same(document, i)] |= !j.used[i];
+		for (j.mesh = 0; j.mesh < mesh_count; j.mesh++) {
+			const nt_json_value *primitive = nt_gltf_primitive_of(document, &scene->meshes[j.mesh]);
+			for (nt_gltf_use u = {0}; nt_gltf_next_use(document, primitive, &u);)
+				join_user(&j, nt_gltf_same(document, u.accessor));
+		}
 		list_pools(pools, j.parent, mesh_count);
 		document->pools = pools;
 		document->free_pools = free_pools;
 	}
 	free(j.parent);
 	free(j.first_user);
-	free(j.used);
 	return found ? NT_OK : nt_fail_memory(error);
 }
 

@@ -36,12 +36,6 @@ nt_status nt_geometry_key(nt_key_table *table, nt_gltf *document, const nt_mesh 
 /* All pools of a document. Accessors over the same bytes count as one, by `same`. */
 typedef struct nt_vertex_pools {
 	const nt_scene *scene;
-	size_t accessor_count;     /* 0 where nothing gets tangents: there are no pools then */
-	bool *foreign;             /* [accessor_count] by `same`: used by something else than attributes */
-	bool *idle;                /* [accessor_count] by `same`: an accessor that no primitive uses is among them */
-	uint32_t *attribute_users; /* [accessor_count] by `same`: uses as attribute, of morph targets too */
-	uint32_t *index_users;     /* [accessor_count] by `same`: primitives that have it as indices */
-	uint32_t *block_users;     /* [view_count] primitives that are compressed in it */
 	size_t count;
 	uint32_t *of;              /* [mesh count] the pool of each mesh */
 	uint32_t *order;           /* [mesh count] numbers of meshes, those of one pool together */

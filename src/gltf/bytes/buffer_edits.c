@@ -73,12 +73,12 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 	edits->virtuals = nt_calloc(edits->view_count, sizeof *edits->virtuals);
 	edits->is_free = nt_calloc(edits->view_count, sizeof *edits->is_free);
 	edits->free_views = nt_alloc(edits->view_count, sizeof *edits->free_views);
-	edits->seen = nt_calloc(pools->accessor_count, sizeof *edits->seen);
-	edits->pinned = nt_calloc(pools->accessor_count, sizeof *edits->pinned);
-	edits->index_moved = nt_calloc(pools->accessor_count, sizeof *edits->index_moved);
-	edits->welding = welds ? nt_calloc(pools->accessor_count, sizeof *edits->welding) : NULL;
-	edits->replaced = nt_calloc(pools->accessor_count, sizeof *edits->replaced);
-	edits->appended_by = nt_alloc(pools->accessor_count, sizeof *edits->appended_by);
+	edits->seen = nt_calloc(document->accessor_count, sizeof *edits->seen);
+	edits->pinned = nt_calloc(document->accessor_count, sizeof *edits->pinned);
+	edits->index_moved = nt_calloc(document->accessor_count, sizeof *edits->index_moved);
+	edits->welding = welds ? nt_calloc(document->accessor_count, sizeof *edits->welding) : NULL;
+	edits->replaced = nt_calloc(document->accessor_count, sizeof *edits->replaced);
+	edits->appended_by = nt_alloc(document->accessor_count, sizeof *edits->appended_by);
 	if (!edits->seen || !edits->pinned || !edits->replaced || !edits->index_moved || !edits->appended_by ||
 		!edits->buffers || (welds && !edits->welding) ||
 		!edits->virtuals || !edits->is_free || !edits->free_views ||
@@ -86,7 +86,7 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 		nt_edits_free(edits);
 		return nt_fail_memory(error);
 	}
-	memset(edits->appended_by, 0xFF, pools->accessor_count * sizeof *edits->appended_by);
+	memset(edits->appended_by, 0xFF, document->accessor_count * sizeof *edits->appended_by);
 	if (edits->users.unknown)
 		edits->alignment = CAREFUL_ALIGNMENT;
 	for (size_t i = 0; i < document->buffer_count; i++) {

@@ -75,25 +75,10 @@ static bool add_compressed(nt_byte_users *users, const nt_json_value *view)
 	return add_user(users, (uint32_t)buffer, offset, offset + length, NT_NONE);
 }
 
-static void mark_image_views(const nt_gltf *document, bool *view_known, size_t view_count)
-{
-	const nt_json_value *images = nt_gltf_root_member(document, "images");
-	for (size_t i = 0; i < nt_json_count(images); i++) {
-		uint64_t view;
-		if (nt_json_get_uint64(nt_json_find(nt_json_at(images, i), "bufferView"), &view) &&
-			view < view_count)
-			view_known[view] = true;
-	}
-}
-
 /* Views without an accessor are used as a whole. */
 static bool add_whole_views(nt_byte_users *users, nt_gltf *document, bool *view_used, size_t view_count)
 {
 	const nt_json_value *views = nt_gltf_root_member(document, "bufferViews");
-	bool *known = nt_calloc(view_count, sizeof *known);
-	if (!known)
-		return false;
-	mark_image_views(document, known, view_count);
 	bool added = true;
 	for (size_t i = 0; added && i < view_count; i++) {
 		nt_gltf_view view;
@@ -101,14 +86,13 @@ static bool add_whole_views(nt_byte_users *users, nt_gltf *document, bool *view_
 			nt_gltf_get_view(document, i, "", &view, NULL) == NT_OK) {
 			added = add_user(users, view.buffer, view.offset, view.offset + view.length,
 				NT_NONE);
-			if (!known[i])
+			if (!document->view_users[i].image)
 				users->unknown = true;
 		}
 		if (document->virtual_of[i] != NT_NONE)
 			added = added && add_place(users, nt_json_at(views, i));
 		added = added && add_compressed(users, nt_json_at(views, i));
 	}
-	free(known);
 	return added;
 }
 

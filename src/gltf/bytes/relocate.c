@@ -395,12 +395,12 @@ static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 {
 	nt_gltf *document = edits->document;
 	nt_status status = NT_OK;
-	for (uint32_t i = 0; !status && document->virtual_count && i < document->pools->accessor_count; i++) {
+	for (uint32_t i = 0; !status && document->virtual_count && i < document->accessor_count; i++) {
 		nt_gltf_accessor a;
 		const unsigned char *elements;
 		double bounds[2][4];
 		const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "accessors"), i);
-		if (edits->seen[i] || document->pools->index_users[nt_gltf_same(document, i)] ||
+		if (edits->seen[i] || nt_gltf_users_of(document, i)->indices ||
 			!nt_json_find(json, "min") ||
 			nt_gltf_get_accessor(document, i, "", &a, NULL) || a.view >= edits->view_count ||
 			a.sparse_count || document->virtual_of[a.view] == NT_NONE || a.components > 4 ||

@@ -26,7 +26,7 @@ static bool must_pin(const nt_appending *job)
 		if (!nt_pool_is_solved(pool, i) && !nt_json_find(nt_pool_primitive(pool, i), "indices"))
 			return true;
 	for (size_t i = 0; i < job->target_count; i++)
-		if (job->pools->foreign[job->targets[i].accessor.same])
+		if (job->document->users[job->targets[i].accessor.same].foreign)
 			return true;
 	return false;
 }
@@ -173,7 +173,7 @@ static nt_status clone_pinned(nt_appending *job)
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < job->target_count; i++) {
 		const uint32_t index = job->targets[i].accessor.index;
-		if (job->edits->pinned[index] || job->pools->foreign[job->targets[i].accessor.same])
+		if (job->edits->pinned[index] || job->document->users[job->targets[i].accessor.same].foreign)
 			status = clone_accessor(job, &job->targets[i]);
 	}
 	for (size_t i = 0; !status && i < job->vertices->pool->user_count; i++)

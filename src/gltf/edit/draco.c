@@ -50,7 +50,7 @@ void nt_gltf_drop_draco(const nt_scene *scene)
 /* ---- plain ---- */
 
 /* Takes the extension off a primitive, and its block out of the buffer. The view takes some of the elements. */
-static nt_status make_plain(nt_buffer_edits *edits, nt_vertex_pools *pools, nt_json_value *primitive, nt_error *error)
+static nt_status make_plain(nt_buffer_edits *edits, nt_json_value *primitive, nt_error *error)
 {
 	nt_gltf *document = edits->document;
 	nt_json_value *extensions = nt_json_find(primitive, "extensions");
@@ -59,7 +59,7 @@ static nt_status make_plain(nt_buffer_edits *edits, nt_vertex_pools *pools, nt_j
 	nt_status status = NT_OK;
 	if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &index) &&
 		nt_gltf_get_view(document, index, "", &view, NULL) == NT_OK &&
-		nt_gltf_draco_release(pools, index, 1))
+		nt_gltf_draco_release(document, index, 1))
 		status = nt_edits_release(edits, (uint32_t)index, NT_DRACO_HEAD, view.length - NT_DRACO_HEAD, error);
 	nt_json_remove(document->json, extensions, "KHR_draco_mesh_compression");
 	if (nt_json_count(extensions) == 0)
@@ -67,14 +67,13 @@ static nt_status make_plain(nt_buffer_edits *edits, nt_vertex_pools *pools, nt_j
 	return status;
 }
 
-nt_status nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_vertex_pools *pools, nt_pool_vertices *vertices,
-	nt_error *error)
+nt_status nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_pool_vertices *vertices, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < vertices->pool->user_count; i++) {
 		if (!is_compressed(vertices->pool, i))
 			continue;
-		status = make_plain(edits, pools, nt_pool_primitive(vertices->pool, i), error);
+		status = make_plain(edits, nt_pool_primitive(vertices->pool, i), error);
 		vertices->changed[i] = true;
 	}
 	return status;
@@ -101,7 +100,7 @@ static bool accessors_are_own(const nt_gltf_recoding *r)
 	for (size_t i = 0; i < nt_json_count(ids); i++) {
 		const char *name = nt_json_key(ids, i, NULL);
 		const uint32_t accessor = name ? nt_gltf_reference(r->document, attributes, name) : NT_NONE;
-		if (accessor == NT_NONE || r->pools->foreign[nt_gltf_same(r->document, accessor)] ||
+		if (accessor == NT_NONE || nt_gltf_users_of(r->document, accessor)->foreign ||
 			nt_json_find(nt_json_at(accessors, accessor), "bufferView"))
 			return false;
 	}
@@ -269,5 +268,5 @@ nt_status nt_gltf_write_draco(nt_gltf_recoding *r, uint32_t buffer, nt_scene *sc
 	if (*done)
 		share_block(r);
 	report_users(r, &scene->findings, *done);
-	return *done ? NT_OK : nt_gltf_draco_make_plain(r->edits, r->pools, r->vertices, error);
+	return *done ? NT_OK : nt_gltf_draco_make_plain(r->edits, r->vertices, error);
 }

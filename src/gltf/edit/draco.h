@@ -30,8 +30,7 @@ nt_status nt_gltf_write_draco(nt_gltf_recoding *recoding, uint32_t buffer, nt_sc
 	nt_error *error);
 
 /* Makes the compressed users of a pool plain; their indices count as changed. */
-nt_status nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_vertex_pools *pools, nt_pool_vertices *vertices,
-	nt_error *error);
+nt_status nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_pool_vertices *vertices, nt_error *error);
 
 /* Takes KHR_draco_mesh_compression off the lists where no primitive has it any more. */
 void nt_gltf_drop_draco(const nt_scene *scene);

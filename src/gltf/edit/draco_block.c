@@ -13,11 +13,10 @@
 
 bool nt_gltf_draco_owns_indices(const nt_gltf_recoding *r, uint64_t accessor)
 {
-	const nt_vertex_pools *pools = r->pools;
-	if (accessor >= pools->accessor_count)
+	if (accessor >= r->document->accessor_count)
 		return false;
-	const uint32_t same = nt_gltf_same(r->document, (uint32_t)accessor);
-	return !pools->attribute_users[same] && pools->index_users[same] == r->vertices->pool->user_count;
+	const nt_gltf_users *users = nt_gltf_users_of(r->document, (uint32_t)accessor);
+	return !users->attributes && users->indices == r->vertices->pool->user_count;
 }
 
 void nt_gltf_draco_add(nt_gltf_recoding *r, const char *name, nt_draco_attribute attribute)
@@ -126,10 +125,10 @@ void nt_gltf_draco_describe(nt_gltf_recoding *r)
 	nt_json_remove(json, accessor, "max");
 }
 
-bool nt_gltf_draco_release(nt_vertex_pools *pools, uint64_t view, size_t count)
+bool nt_gltf_draco_release(nt_gltf *document, uint64_t view, size_t count)
 {
-	pools->block_users[view] -= (uint32_t)count;
-	return pools->block_users[view] == 0;
+	document->view_users[view].blocks -= (uint32_t)count;
+	return document->view_users[view].blocks == 0;
 }
 
 nt_status nt_gltf_draco_store(nt_gltf_recoding *r, uint32_t buffer, nt_error *error)
@@ -142,7 +141,7 @@ nt_status nt_gltf_draco_store(nt_gltf_recoding *r, uint32_t buffer, nt_error *er
 	nt_status status = r->source ? nt_gltf_get_view(r->document, r->view, "", &view, error) : NT_OK;
 	if (status)
 		return status;
-	if (r->source && nt_gltf_draco_release(r->pools, r->view, r->vertices->pool->user_count) &&
+	if (r->source && nt_gltf_draco_release(r->document, r->view, r->vertices->pool->user_count) &&
 		nt_byte_users_count(&r->edits->users, view.buffer, view.offset + NT_DRACO_HEAD,
 			view.offset + view.length) == 1)
 		return nt_edits_replace(r->edits, view.buffer, view.offset, view.length, bytes, r->block.size, error);

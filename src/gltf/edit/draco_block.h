@@ -60,7 +60,7 @@ void nt_gltf_draco_describe(nt_gltf_recoding *recoding);
 enum { NT_DRACO_HEAD = 4 };
 
 /* So many primitives do not refer to a block any more. Whether nobody does. */
-bool nt_gltf_draco_release(nt_vertex_pools *pools, uint64_t view, size_t count);
+bool nt_gltf_draco_release(nt_gltf *document, uint64_t view, size_t count);
 
 /* Puts the block where the primitive's was, else into a new view of `buffer`. */
 nt_status nt_gltf_draco_store(nt_gltf_recoding *recoding, uint32_t buffer, nt_error *error);

@@ -55,7 +55,7 @@ static int bits_of(const nt_write_options *options, const char *name)
 static bool lies_plain(const nt_gltf_recoding *r, uint64_t index, nt_gltf_accessor *accessor)
 {
 	nt_gltf_view view;
-	return index < r->pools->accessor_count &&
+	return index < r->document->accessor_count &&
 		nt_gltf_get_accessor(r->document, index, "", accessor, NULL) == NT_OK &&
 		accessor->view != NT_NONE && !accessor->sparse_count && !accessor->decoded &&
 		nt_gltf_get_view(r->document, accessor->view, "", &view, NULL) == NT_OK &&
@@ -93,7 +93,7 @@ static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_
 	nt_gltf_accessor accessor;
 	if (!lies_plain(r, index, &accessor) || accessor.count != r->vertices->old_count)
 		r->obstacle = "an attribute is sparse or compressed";
-	else if (r->pools->foreign[accessor.same])
+	else if (r->document->users[accessor.same].foreign)
 		r->obstacle = "something else uses its attributes";
 	if (r->obstacle)
 		return NT_OK;

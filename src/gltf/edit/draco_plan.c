@@ -223,7 +223,7 @@ static nt_status look_at_joins(const planning *f, nt_error *error)
 		if (join->parts[0]->plan.join != join) /* only compared */
 			continue;
 		if (!document->grids)
-			document->grids = nt_calloc(f->pools->accessor_count, sizeof *document->grids);
+			document->grids = nt_calloc(document->accessor_count, sizeof *document->grids);
 		if (!document->grids)
 			return nt_fail_memory(error);
 		look_at_join(f, join);

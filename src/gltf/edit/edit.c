@@ -182,8 +182,8 @@ static uint32_t find_old_bitangents(const editing *e, const nt_vertex_pool *pool
 		return NT_NONE;
 	const uint32_t same = nt_gltf_same(document, found);
 	const nt_gltf_packing packing = nt_packing_of_accessor(e->edits, found);
-	const bool is_own = !e->pools->foreign[same] && !e->pools->idle[same] &&
-		e->pools->attribute_users[same] == count;
+	const nt_gltf_users *users = &document->users[same];
+	const bool is_own = !users->foreign && !users->idle && users->attributes == count;
 	return is_own && (!packing.extension || strcmp(packing.view.filter, "NONE") == 0) ? found : NT_NONE;
 }
 
@@ -352,7 +352,7 @@ static nt_status edit_pool(const editing *e, pool_edit *p)
 	if (!status && p->for_draco)
 		status = nt_gltf_write_draco(&p->recoding, buffer, e->scene, &done, e->error);
 	else if (!status && compressed)
-		status = nt_gltf_draco_make_plain(e->edits, e->pools, &p->vertices, e->error);
+		status = nt_gltf_draco_make_plain(e->edits, &p->vertices, e->error);
 	if (!status && done)
 		status = nt_vertices_tell(e->edits, e->scene, &p->vertices, done, e->error);
 	/* plain tangents may be rounded, which makes others equal: vertices are welded again, as they were */
@@ -434,12 +434,11 @@ static void drop_attribute(const editing *e, nt_json_value *attributes, uint32_t
 /* An accessor that nothing uses any more loses its bytes, but not its number. */
 static nt_status drop_accessors(const editing *e, const uint32_t *gone)
 {
-	const nt_vertex_pools *pools = e->pools;
 	nt_gltf *document = e->edits->document;
 	nt_status status = NT_OK;
-	for (uint32_t i = 0; !status && i < pools->accessor_count; i++) {
+	for (uint32_t i = 0; !status && i < document->accessor_count; i++) {
 		const uint32_t same = nt_gltf_same(document, i);
-		if (!gone[same] || pools->foreign[same] || gone[same] != pools->attribute_users[same])
+		if (!gone[same] || document->users[same].foreign || gone[same] != document->users[same].attributes)
 			continue;
 		if (same == i)
 			status = nt_gltf_release_tangents(e->edits,
@@ -456,7 +455,7 @@ static nt_status drop_accessors(const editing *e, const uint32_t *gone)
 static nt_status drop_unused(const editing *e)
 {
 	nt_gltf *document = e->edits->document;
-	uint32_t *gone = nt_calloc(e->pools->accessor_count, sizeof *gone); /* [accessor] uses */
+	uint32_t *gone = nt_calloc(document->accessor_count, sizeof *gone); /* [accessor] uses */
 	if (!gone)
 		return nt_fail_memory(e->error);
 	for (size_t i = 0; i < e->scene->mesh_count; i++) {
@@ -487,11 +486,10 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	if (status || written)
 		return status;
 
-	/* Which bytes may change, and what refers to nothing. */
+	/* Which bytes may change. */
 	nt_gltf *document = scene->source;
 	nt_arena of_window = {0};
 	nt_buffer_edits edits = {0};
-	nt_gltf_find_dangling(document);
 	if (!document->pools)
 		status = nt_vertex_pools_find(scene, &(nt_read_options){.morphs = options->morphs}, error);
 	if (!status)

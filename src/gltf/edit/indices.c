@@ -276,7 +276,7 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 			least, &new, error);
 	/* in place where everybody who uses these indices will have the same new ones, or has got others */
 	const bool agree = leader->index != NT_NONE && leader->agreeing + edits->index_moved[leader->same] ==
-		pools->index_users[leader->same];
+		edits->document->users[leader->same].indices;
 	if (!status && agree && !old.decoded)
 		status = replace_indices(edits, leader->same, &old, &new, &done, error);
 	leader->accessor = leader->index;

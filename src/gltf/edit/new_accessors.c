@@ -251,8 +251,8 @@ static nt_status take_over(const target_job *job, nt_gltf_override *overrides, s
 		target_tangents *t = &job->list[m];
 		const uint32_t index = t->found ? NT_NONE : find_in_target(job, first, t->target, "TANGENT");
 		const uint32_t same = index == NT_NONE ? 0 : nt_gltf_same(job->edits->document, index);
-		if (index == NT_NONE || job->pools->foreign[same] ||
-			job->edits->replaced[same] != job->pools->attribute_users[same])
+		if (index == NT_NONE || job->edits->document->users[same].foreign ||
+			job->edits->replaced[same] != job->edits->document->users[same].attributes)
 			continue;
 		job->edits->replaced[same] = 0; /* no second target takes it */
 		t->accessor = index;

@@ -25,9 +25,9 @@ uint32_t nt_gltf_tangent_of(const nt_vertex_pools *pools, const nt_vertex_pool *
 /* Whether nobody uses an accessor but the `known` meshes of a set that have it as TANGENT. */
 static bool is_own(const nt_vertex_pools *pools, uint32_t index, size_t known)
 {
-	const uint32_t same = nt_gltf_same(pools->scene->source, index);
+	const nt_gltf_users *users = nt_gltf_users_of(pools->scene->source, index);
 	const nt_gltf_accessor *accessor = nt_gltf_sound_accessor(pools->scene->source, index);
-	return !pools->foreign[same] && pools->attribute_users[same] == known && accessor &&
+	return !users->foreign && users->attributes == known && accessor &&
 		accessor->components == 4;
 }
 

@@ -129,7 +129,7 @@ static nt_status add_attribute(welding *w, uint32_t index)
 		return leave_faulty(w, status);
 	if (a.count != w->vertices->old_count)
 		w->obstacle = "its attributes differ in their number of elements";
-	else if (w->pools->foreign[nt_gltf_same(w->edits->document, index)])
+	else if (nt_gltf_users_of(w->edits->document, index)->foreign)
 		w->obstacle = "something else uses its attributes";
 	column c = {.bytes = elements, .stride = a.stride, .width = a.element_bytes, .of_source = true};
 	if (!w->obstacle && a.sparse_count)
@@ -161,7 +161,7 @@ static nt_status list_columns(welding *w, const nt_stored_tangents *stored)
 		const nt_json_value *primitive = nt_pool_primitive(pool, i);
 		w->morph = 0;
 		for (nt_gltf_use u = {0}; !status && nt_gltf_next_use(w->edits->document, primitive, &u);) {
-			if (w->pools->idle[nt_gltf_same(w->edits->document, u.accessor)])
+			if (nt_gltf_users_of(w->edits->document, u.accessor)->idle)
 				w->obstacle = "an accessor that no primitive uses has its bytes";
 			if (!is_replaced(w, solved, &u))
 				status = add_attribute(w, u.accessor);

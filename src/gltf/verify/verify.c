@@ -648,7 +648,7 @@ static nt_status check_accessors(const nt_gltf *document, const nt_reread *model
 {
 	size_t unused = SIZE_MAX;
 	const nt_status status = !document->pools ? NT_OK :
-		nt_reread_unused(model, document->pools->accessor_count, &unused, error);
+		nt_reread_unused(model, document->accessor_count, &unused, error);
 	return status != NT_OK || unused == SIZE_MAX ? status : nt_fail(error, NT_ERROR_INTERNAL,
 		"nothing in the output, read back, refers to accessor %zu, which is new", unused);
 }

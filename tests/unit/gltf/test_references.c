@@ -4,6 +4,7 @@
 #include "base/buffer.h"
 #include "gltf/accessor.h"
 #include "gltf/document.h"
+#include "gltf/primitive.h"
 #include "gltf/view.h"
 
 /* `,"meshes":[{"primitives":[9]}]` for "/meshes/0/primitives/0": nothing stands beside what the path names. */
@@ -142,5 +143,40 @@ TEST(an_added_buffer_is_not_what_the_file_refers_to)
 		nt_json_value *buffer = nt_json_append(json, nt_json_put(json, nt_json_root(json), "buffers"));
 		nt_json_set_uint64(json, nt_json_put(json, buffer, "byteLength"), 8);
 	}
+	nt_scene_free(&scene);
+}
+
+/* Accessors 0 and 1 lie over the same bytes: a primitive and a target have the first, nobody the second. 2 is indices
+ * twice, 3 belongs to an animation, 4 to an extension whose accessors are kept as they are. */
+TEST(users_of_accessors_over_the_same_bytes_are_counted_together)
+{
+	static const char text[] = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":96}],"
+		"\"bufferViews\":[{\"buffer\":0,\"byteLength\":96},{\"buffer\":0,\"byteLength\":8}],"
+		"\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":3},"
+		"{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":3},"
+		"{\"bufferView\":0,\"componentType\":5125,\"type\":\"SCALAR\",\"count\":3},"
+		"{\"bufferView\":0,\"componentType\":5126,\"type\":\"SCALAR\",\"count\":3},"
+		"{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC2\",\"count\":3}],"
+		"\"images\":[{\"bufferView\":1}],\"animations\":[{\"samplers\":[{\"input\":3,\"output\":99}]}],"
+		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":2,"
+		"\"targets\":[{\"POSITION\":0}],"
+		"\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0},"
+		"\"EXT_mesh_primitive_edge_visibility\":{\"silhouetteNormals\":4}}},{\"indices\":2}]}]}";
+	static const nt_gltf_users expected[] = {{.attributes = 2, .idle = true}, {.attributes = 2, .idle = true},
+		{.indices = 2, .foreign = true, .idle = true}, {.foreign = true, .idle = true}, {.idle = true}};
+	nt_scene scene;
+	nt_error error;
+	nt_gltf *document = create(&scene, text, sizeof text - 1);
+	assert_int_equal(nt_gltf_find_users(document, &error), NT_OK);
+	for (uint32_t i = 0; i < 5; i++) {
+		const nt_gltf_users *found = nt_gltf_users_of(document, i);
+		assert_int_equal(found->attributes, expected[i].attributes);
+		assert_int_equal(found->indices, expected[i].indices);
+		assert_int_equal(found->foreign, expected[i].foreign);
+		assert_int_equal(found->idle, expected[i].idle);
+	}
+	assert_int_equal(document->view_users[0].blocks, 1);
+	assert_true(document->view_users[1].image && !document->view_users[0].image);
+	assert_int_equal(document->dangling[NT_GLTF_ACCESSORS].number, 99);
 	nt_scene_free(&scene);
 }
