@@ -16,9 +16,10 @@
 #include "base/memory.h"
 #include "base/pages.h"
 
-/* at: [class_count] receives the word of each class's tangent; SIZE_MAX: it has the base's. */
-static void find_rows(const nt_morph_tangents *all, const nt_morph *morph, size_t *at)
+void nt_morph_find_rows(const nt_mesh *mesh, size_t m, size_t *at)
 {
+	const nt_morph_tangents *all = mesh->morph_tangents;
+	const nt_morph *morph = &mesh->morphs[m];
 	const bool listed = morph->row_count < morph->class_count;
 	const uint32_t *classes = all->words + morph->first_word;
 	size_t next = 0, row = morph->first_word + (listed ? morph->row_count : 0);
@@ -35,14 +36,9 @@ nt_status nt_morph_read(const nt_mesh *mesh, size_t m, float *tangents)
 	size_t *at = nt_alloc(all->class_count, sizeof *at);
 	if (!at)
 		return NT_ERROR_MEMORY;
-	find_rows(all, &mesh->morphs[m], at);
-	for (size_t v = 0; v < mesh->vertex_count + mesh->split.source_count; v++) {
-		const uint32_t k = all->class_of[v];
-		const void *row = mesh->split.vertex_tangents + 4 * v;
-		if (k != NT_NONE && at[k] != SIZE_MAX)
-			row = all->words + at[k];
-		memcpy(tangents + 3 * v, row, 3 * sizeof *tangents);
-	}
+	nt_morph_find_rows(mesh, m, at);
+	for (size_t v = 0; v < mesh->vertex_count + mesh->split.source_count; v++)
+		memcpy(tangents + 3 * v, nt_morph_row(mesh, at, v), 3 * sizeof *tangents);
 	free(at);
 	return NT_OK;
 }

@@ -24,6 +24,7 @@ apart     a glTF of COUNT images and COUNT buffers, and a file for each beside i
 animated  a GLB of COUNT materials, each with a texture transform, and an animation of COUNT others
 buffers   a glTF, and FILE.bin of 1 MB beside it, of COUNT buffers that all name that, and COUNT images of one file
 targets   a GLB of one grid of SIDE (48) quads squared with COUNT morph targets, which all share one accessor
+halves    the same grid, as two primitives over one set of vertices
 levels    a GLB of COUNT primitives of one material with COUNT levels of detail
 turned    a GLB of COUNT materials, each with a texture and an image of its own, as normal map and as emissive
 strip     an OBJ strip of COUNT quads
@@ -350,10 +351,10 @@ def many(count, buffers, length, images):
                        'bufferViews': views, 'accessors': accessors}).encode()
 
 
-def targets(count, out, side):
+def targets(count, out, side, parts=1):
     def moved(primitive):
         return dict(primitive, targets=[{'POSITION': 1, 'NORMAL': 0}] * count)
-    glb(1, out, side, False, change=moved)
+    glb(parts, out, side, False, parts > 1, change=moved)
 
 
 def write_glb(out, document, chunks):
@@ -382,6 +383,8 @@ with open(sys.argv[3], 'wb') as out:
         scene(count, out, side or 3)
     elif kind == 'targets':
         targets(count, out, side or 48)
+    elif kind == 'halves':
+        targets(count, out, side or 48, 2)
     elif kind == 'bumps':
         bumps(count, out, side or 4096)
     else:

@@ -7,6 +7,10 @@
  * copies: it takes one that has its tangent, else one whose tangent is still unset, else it appends a copy. Copies are
  * found by hash, since a hub may have any number of them. For a mesh that shares nothing the result is exactly its own
  * split, which is taken as it is.
+ *
+ * The tangents of morph targets stay with the mesh that gave them (scene/morphs.h), so that one target at a time is
+ * unpacked. Two vertices have the same if 128 bits of keyed hashes are equal: to compare them themselves, all targets
+ * would have to be there at once.
  */
 #include "gltf/edit/merge_splits.h"
 
@@ -29,7 +33,7 @@ typedef struct nt_pool_merge {
 	uint32_t *next;       /* next copy of the same vertex, NT_NONE */
 	uint32_t *last;       /* [old_count] last copy of each vertex, or itself */
 	nt_hash_index known;  /* copies with a tangent, of all sets */
-	float **moved;        /* [morph_count][vertex][3] of the mesh that is merged */
+	uint64_t *digests;    /* [vertex][2] of the mesh that is merged: of the tangents of its targets; NULL: none */
 } nt_pool_merge;
 
 /* ---- room ---- */
@@ -52,8 +56,10 @@ static bool grow_set(nt_pool_set *set, size_t old, size_t wanted)
 		grow((void **)&set->defined, old, wanted, sizeof(bool));
 	if (grown && set->normals)
 		grown = grow((void **)&set->normals, old, wanted, 3 * sizeof(float));
-	for (size_t k = 0; grown && k < set->morph_count; k++)
-		grown = grow((void **)&set->morphs[k], old, wanted, 3 * sizeof(float));
+	if (grown && set->morph_count)
+		grown = grow((void **)&set->givers, old, wanted, sizeof *set->givers) &&
+			grow((void **)&set->given, old, wanted, sizeof *set->given) &&
+			grow((void **)&set->digests, old, wanted, 2 * sizeof *set->digests);
 	return grown;
 }
 
@@ -77,11 +83,9 @@ static bool start_set(nt_pool_merge *m, nt_pool_set *set, const nt_mesh *mesh)
 {
 	const size_t old_count = m->vertices.old_count;
 	set->morph_count = mesh->morph_count;
-	set->morphs = nt_calloc(mesh->morph_count, sizeof *set->morphs);
-	set->frees_morphs = true;
 	set->normals = mesh->normals_made ? nt_calloc(m->capacity, 3 * sizeof(float)) : NULL;
 	set->first_free = nt_alloc(old_count, sizeof *set->first_free);
-	if (!set->morphs || (mesh->normals_made && !set->normals) || !set->first_free || !grow_set(set, 0, m->capacity))
+	if ((mesh->normals_made && !set->normals) || !set->first_free || !grow_set(set, 0, m->capacity))
 		return false;
 	memcpy(set->first_free, m->source, old_count * sizeof *set->first_free);
 	return true;
@@ -112,9 +116,9 @@ static void free_merge(nt_pool_merge *m)
 		free(set->normals);
 		free(set->defined);
 		free(set->first_free);
-		for (size_t k = 0; set->morphs && k < set->morph_count; k++)
-			free(set->morphs[k]);
-		free(set->morphs);
+		free(set->givers);
+		free(set->given);
+		free(set->digests);
 	}
 	free(m->source);
 	free(m->next);
@@ -146,33 +150,32 @@ static bool vertex_fits(const nt_pool_merge *m, const nt_pool_set *set, uint32_t
 		mesh->split.vertex_tangents + 4 * (size_t)vertex, 4 * sizeof(float)) != 0 ||
 		(normal && memcmp(set->normals + 3 * (size_t)pool_vertex, normal, 3 * sizeof(float)) != 0))
 		return false;
-	for (size_t k = 0; k < set->morph_count; k++)
-		if (memcmp(set->morphs[k] + 3 * (size_t)pool_vertex,
-			m->moved[k] + 3 * (size_t)vertex, 3 * sizeof(float)) != 0)
-			return false;
-	return true;
+	return !m->digests || memcmp(set->digests + 2 * (size_t)pool_vertex, m->digests + 2 * (size_t)vertex,
+		2 * sizeof *m->digests) == 0;
 }
 
+/* The vertex of the pool becomes that of a mesh, which is `user`. */
 static void set_vertex(const nt_pool_merge *m, nt_pool_set *set, uint32_t pool_vertex, const nt_mesh *mesh,
-	uint32_t vertex, const float *normal)
+	uint32_t user, uint32_t vertex, const float *normal)
 {
 	memcpy(set->tangents + 4 * (size_t)pool_vertex, mesh->split.vertex_tangents + 4 * (size_t)vertex,
 		4 * sizeof(float));
 	if (normal)
 		memcpy(set->normals + 3 * (size_t)pool_vertex, normal, 3 * sizeof(float));
-	for (size_t k = 0; k < set->morph_count; k++)
-		memcpy(set->morphs[k] + 3 * (size_t)pool_vertex, m->moved[k] + 3 * (size_t)vertex, 3 * sizeof(float));
+	if (!m->digests)
+		return;
+	set->givers[pool_vertex] = user;
+	set->given[pool_vertex] = vertex;
+	memcpy(set->digests + 2 * (size_t)pool_vertex, m->digests + 2 * (size_t)vertex, 2 * sizeof *m->digests);
 }
 
-static uint64_t hash_vertex(const nt_pool_merge *m, const nt_pool_set *set, uint32_t number, uint32_t source,
-	const nt_mesh *mesh, uint32_t vertex)
+static uint64_t hash_vertex(const nt_pool_merge *m, uint32_t number, uint32_t source, const nt_mesh *mesh,
+	uint32_t vertex)
 {
 	const uint32_t place[2] = {number, source};
-	uint64_t hash = nt_hash_bytes(nt_hash_bytes(0, place, sizeof place),
+	const uint64_t hash = nt_hash_bytes(nt_hash_bytes(0, place, sizeof place),
 		mesh->split.vertex_tangents + 4 * (size_t)vertex, 4 * sizeof(float));
-	for (size_t k = 0; k < set->morph_count; k++)
-		hash = nt_hash_bytes(hash, m->moved[k] + 3 * (size_t)vertex, 3 * sizeof(float));
-	return hash;
+	return m->digests ? nt_hash_words(hash, m->digests[2 * (size_t)vertex]) : hash;
 }
 
 /* The first of a vertex and its copies that the set has no tangent for. If all have one, a copy is appended; NT_NONE
@@ -196,8 +199,9 @@ static uint32_t find_free_vertex(nt_pool_merge *m, nt_pool_set *set, uint32_t so
 }
 
 /* The pool's vertex for a vertex of a mesh; NT_NONE when memory is exhausted. */
-static uint32_t take_vertex(nt_pool_merge *m, const nt_mesh *mesh, uint32_t number, uint32_t vertex)
+static uint32_t take_vertex(nt_pool_merge *m, const nt_mesh *mesh, uint32_t user, uint32_t vertex)
 {
+	const uint32_t number = m->pool.sets.of[user];
 	nt_pool_set *set = &m->vertices.sets[number];
 	const float *normal = mesh->normals_made && set->normals
 		? mesh->normals + 3 * (size_t)before_split(mesh, vertex) : NULL;
@@ -206,7 +210,7 @@ static uint32_t take_vertex(nt_pool_merge *m, const nt_mesh *mesh, uint32_t numb
 		return source;
 	uint32_t pool_vertex = source;
 	if (set->defined[source]) {
-		const uint64_t hash = hash_vertex(m, set, number, source, mesh, vertex);
+		const uint64_t hash = hash_vertex(m, number, source, mesh, vertex);
 		for (size_t at = NT_HASH_BEGIN; (pool_vertex = nt_hash_index_next(&m->known, hash, &at)) != NT_NONE;)
 			if (m->source[pool_vertex] == source && vertex_fits(m, set, pool_vertex, mesh, vertex, normal))
 				return pool_vertex;
@@ -215,7 +219,7 @@ static uint32_t take_vertex(nt_pool_merge *m, const nt_mesh *mesh, uint32_t numb
 			return NT_NONE;
 	}
 	set->defined[pool_vertex] = true;
-	set_vertex(m, set, pool_vertex, mesh, vertex, normal);
+	set_vertex(m, set, pool_vertex, mesh, user, vertex, normal);
 	return pool_vertex;
 }
 
@@ -231,7 +235,7 @@ static const uint32_t *triangles_of(const nt_mesh *mesh)
 }
 
 /* indices: receives the mesh's triangles with the pool's vertices. */
-static bool merge_mesh(nt_pool_merge *m, const nt_mesh *mesh, uint32_t set, uint32_t *indices)
+static bool merge_mesh(nt_pool_merge *m, const nt_mesh *mesh, uint32_t user, uint32_t *indices)
 {
 	const size_t vertex_count = mesh->vertex_count + mesh->split.source_count;
 	const uint32_t *triangles = triangles_of(mesh);
@@ -246,7 +250,7 @@ static bool merge_mesh(nt_pool_merge *m, const nt_mesh *mesh, uint32_t set, uint
 	for (uint32_t v = 0; merged && v < vertex_count; v++) {
 		if (pool_vertex_of[v] != (uint32_t)USED)
 			continue;
-		pool_vertex_of[v] = take_vertex(m, mesh, set, v);
+		pool_vertex_of[v] = take_vertex(m, mesh, user, v);
 		merged = pool_vertex_of[v] != NT_NONE;
 	}
 	for (size_t c = 0; merged && c < mesh->corner_count; c++)
@@ -271,23 +275,25 @@ static void set_any_tangent(nt_pool_set *set, size_t vertex, const float *normal
 	float *tangent = set->tangents + 4 * vertex;
 	nt_dvec3_store(t, tangent);
 	tangent[3] = 1.0f;
-	for (size_t k = 0; k < set->morph_count; k++)
-		memcpy(set->morphs[k] + 3 * vertex, tangent, 3 * sizeof *tangent);
+	if (set->morph_count)
+		set->givers[vertex] = NT_NONE;
 }
 
 static const float up[3] = {0, 0, 1}; /* the normal that making normals gives such vertices */
 
 /* Vertices that no corner of a set uses have the tangent that splitting its first mesh gave them, or would have given
  * them. They stay undefined, so that others take them. */
-static nt_status set_unused(nt_pool_merge *m, const nt_mesh *mesh, nt_pool_set *set, nt_error *error)
+static nt_status set_unused(nt_pool_merge *m, const nt_mesh *mesh, uint32_t user, nt_error *error)
 {
+	nt_pool_set *set = &m->vertices.sets[m->pool.sets.of[user]];
 	nt_status status = mesh->pool_vertices && !set->normals
 		? nt_gltf_load_normals(m->pool.scene->source, mesh, m->arena, &set->source_normals, error) : NT_OK;
 	for (size_t v = 0; !status && v < m->vertices.old_count; v++) {
 		if (set->defined[v])
 			continue;
 		if (!mesh->pool_vertices) {
-			set_vertex(m, set, (uint32_t)v, mesh, (uint32_t)v, set->normals ? mesh->normals + 3 * v : NULL);
+			set_vertex(m, set, (uint32_t)v, mesh, user, (uint32_t)v,
+				set->normals ? mesh->normals + 3 * v : NULL);
 			continue;
 		}
 		set_any_tangent(set, v, set->normals ? up : set->source_normals + 3 * v);
@@ -316,24 +322,25 @@ static void set_unused_copies(const nt_pool_merge *m, uint32_t number)
 
 /* ---- one mesh ---- */
 
-/* The tangents of all targets of a mesh, for as long as it is merged. Returns NT_OK or NT_ERROR_MEMORY. */
-static nt_status read_targets(nt_pool_merge *m, const nt_mesh *mesh)
+/* Digests of the targets of a mesh, for as long as it is merged. Returns NT_OK or NT_ERROR_MEMORY. */
+static nt_status digest_targets(nt_pool_merge *m, const nt_mesh *mesh)
 {
-	nt_status status = NT_OK;
-	m->moved = nt_calloc(mesh->morph_count, sizeof *m->moved);
-	for (size_t k = 0; m->moved && !status && k < mesh->morph_count; k++) {
-		m->moved[k] = nt_alloc(mesh->vertex_count + mesh->split.source_count, 3 * sizeof **m->moved);
-		status = m->moved[k] ? nt_morph_read(mesh, k, m->moved[k]) : NT_ERROR_MEMORY;
+	const size_t vertex_count = mesh->vertex_count + mesh->split.source_count;
+	if (!mesh->morph_count)
+		return NT_OK;
+	size_t *at = nt_alloc(mesh->morph_tangents->class_count, sizeof *at);
+	m->digests = nt_calloc(vertex_count, 2 * sizeof *m->digests);
+	const nt_status status = at && m->digests ? NT_OK : NT_ERROR_MEMORY;
+	for (size_t k = 0; !status && k < mesh->morph_count; k++) {
+		nt_morph_find_rows(mesh, k, at);
+		for (size_t v = 0; v < vertex_count; v++) {
+			uint64_t *digest = m->digests + 2 * v;
+			digest[0] = nt_hash_bytes(digest[0], nt_morph_row(mesh, at, v), 3 * sizeof(float));
+			digest[1] = nt_hash_bytes(~digest[1], nt_morph_row(mesh, at, v), 3 * sizeof(float));
+		}
 	}
-	return m->moved ? status : NT_ERROR_MEMORY;
-}
-
-static void free_targets(nt_pool_merge *m, const nt_mesh *mesh)
-{
-	for (size_t k = 0; m->moved && k < mesh->morph_count; k++)
-		free(m->moved[k]);
-	free(m->moved);
-	m->moved = NULL;
+	free(at);
+	return status;
 }
 
 /* A copy differs from what it copies; normals that were made may have given the mesh indices of its own. */
@@ -386,14 +393,15 @@ static nt_status merge_user(nt_pool_merge *m, uint32_t user, nt_error *error)
 		return nt_fail_memory(error);
 	nt_status status = check_count(m, mesh, error);
 	const bool first = pool->sets.first[set] == user;
-	if (!status && ((first && !start_set(m, &vertices->sets[set], mesh)) || read_targets(m, mesh)))
+	if (!status && ((first && !start_set(m, &vertices->sets[set], mesh)) || digest_targets(m, mesh)))
 		status = nt_fail_memory(error);
 	vertices->indices[user] = status ? NULL : nt_arena_alloc(m->arena, mesh->corner_count, sizeof(uint32_t));
-	if (!status && (!vertices->indices[user] || !merge_mesh(m, mesh, set, vertices->indices[user])))
+	if (!status && (!vertices->indices[user] || !merge_mesh(m, mesh, user, vertices->indices[user])))
 		status = nt_fail_memory(error);
 	if (!status && first)
-		status = set_unused(m, mesh, &vertices->sets[set], error);
-	free_targets(m, mesh);
+		status = set_unused(m, mesh, user, error);
+	free(m->digests);
+	m->digests = NULL;
 	vertices->changed[user] = !status && is_changed(mesh, vertices->indices[user]);
 	return status;
 }
@@ -539,4 +547,37 @@ nt_status nt_pool_vertices_get(nt_vertex_pools *pools, size_t number, const nt_v
 	vertices->sources = m->source + m->vertices.old_count;
 	vertices->sets = memcpy(sets, m->vertices.sets, pool->sets.count * sizeof *sets);
 	return NT_OK;
+}
+
+/* ---- targets ---- */
+
+/* Where a mesh has the tangents of a target. NULL: memory is exhausted. */
+static const size_t *rows_of(const nt_mesh *mesh, size_t m, nt_arena *scratch)
+{
+	nt_morph_tangents *all = mesh->morph_tangents;
+	if (!all->rows && (all->rows = nt_arena_alloc(scratch, all->class_count, sizeof *all->rows)))
+		nt_morph_find_rows(mesh, m, all->rows);
+	return all->rows;
+}
+
+const float *nt_pool_read_target(const nt_pool_vertices *vertices, uint32_t set, size_t m, nt_arena *scratch)
+{
+	const nt_vertex_pool *pool = vertices->pool;
+	const nt_pool_set *of = &vertices->sets[set];
+	float *moved = nt_arena_alloc(scratch, vertices->new_count, 3 * sizeof *moved);
+	if (moved && !of->given)
+		return nt_morph_read(of->lone, m, moved) == NT_OK ? moved : NULL;
+	for (uint32_t i = pool->sets.first[set]; i != NT_NONE; i = pool->sets.next[i])
+		nt_pool_mesh(pool, i)->morph_tangents->rows = NULL;
+	for (size_t v = 0; moved && v < vertices->new_count; v++) {
+		const nt_mesh *mesh = of->lone;
+		if (!mesh && of->givers[v] != NT_NONE)
+			mesh = nt_pool_mesh(pool, of->givers[v]);
+		const size_t *rows = mesh ? rows_of(mesh, m, scratch) : NULL;
+		if (mesh && !rows)
+			return NULL;
+		memcpy(moved + 3 * v, mesh ? nt_morph_row(mesh, rows, of->given[v]) : of->tangents + 4 * v,
+			3 * sizeof *moved);
+	}
+	return moved;
 }

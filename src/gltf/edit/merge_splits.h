@@ -12,10 +12,11 @@ typedef struct nt_pool_set {
 	float *tangents;      /* [new_count][4] */
 	float *normals;       /* [new_count][3]: NULL where normals were not made */
 	float *source_normals; /* [old_count][3] of pooled meshes whose normals were not made; not to be written to */
-	const nt_mesh *lone;  /* its targets have tangents for all vertices: scene/morphs.h; NULL: morphs has them */
-	float **morphs;       /* [morph_count][new_count][3]; NULL: lone */
-	bool frees_morphs;    /* each can be freed once it is written */
 	size_t morph_count;
+	const nt_mesh *lone;  /* gives all vertices the tangents of targets: scene/morphs.h; NULL: several do */
+	uint32_t *givers;     /* [new_count] with targets: the user that does; NT_NONE: they are the base's; NULL: lone */
+	uint32_t *given;      /* [new_count] its vertex there; NULL: the same one of lone */
+	uint64_t *digests;    /* [vertex][2] while splits are merged: of the tangents of all targets */
 	bool *defined;        /* [vertex] while splits are merged: whether a corner of the set has it */
 	uint32_t *first_free; /* [old_count] while splits are merged: before this one the set has tangents for all
 	                         copies of a vertex */
@@ -63,5 +64,8 @@ nt_status nt_gltf_merge(nt_scene *scene, nt_mesh *mesh, nt_error *error);
  * long as the document, or is borrowed from the scene; tables of it are in `tables`. */
 nt_status nt_pool_vertices_get(nt_vertex_pools *pools, size_t number, const nt_vertex_pool *pool, nt_arena *tables,
 	nt_pool_vertices *vertices, nt_error *error);
+
+/* The tangents of a set as the m-th target moves it, in the arena: [new_count][3]. NULL: memory is exhausted. */
+const float *nt_pool_read_target(const nt_pool_vertices *vertices, uint32_t set, size_t m, nt_arena *scratch);
 
 #endif

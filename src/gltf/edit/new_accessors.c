@@ -102,7 +102,6 @@ typedef struct target_job {
 	target_tangents *list; /* [count] */
 	size_t count;
 	nt_arena scratch;      /* of one target */
-	bool drops;            /* tangents of targets go once they are read */
 	unsigned char *sparse; /* the bytes of all sparse ones */
 	size_t sparse_size, sparse_capacity;
 	nt_error *error;
@@ -165,24 +164,26 @@ static nt_status find_deltas(target_job *job, uint32_t target, uint32_t type, co
 	return status == NT_ERROR_MEMORY ? status : NT_OK;
 }
 
-/* The tangents of the set as a target moves it. NULL: memory is exhausted. */
-static const float *read_target(target_job *job, const nt_pool_set *set, size_t m)
+/* Counts who of the set reads the tangents of its targets: meshes of equal geometry have them together. */
+static void count_readers(const target_job *job)
 {
-	if (set->morphs)
-		return set->morphs[m];
-	float *moved = nt_arena_alloc(&job->scratch, job->vertices->new_count, 3 * sizeof *moved);
-	return moved && nt_morph_read(set->lone, m, moved) == NT_OK ? moved : NULL;
+	const nt_vertex_pool *pool = job->vertices->pool;
+	const uint32_t first = pool->sets.first[job->set];
+	for (uint32_t i = first; i != NT_NONE; i = pool->sets.next[i])
+		nt_pool_mesh(pool, i)->morph_tangents->reader_count = 0;
+	for (uint32_t i = first; i != NT_NONE; i = pool->sets.next[i])
+		nt_pool_mesh(pool, i)->morph_tangents->reader_count++;
 }
 
-/* A target that nobody reads again goes. */
-static void drop_target(const target_job *job, const nt_pool_set *set, size_t m)
+/* A target goes if nobody reads it again. */
+static void drop_target(const target_job *job, size_t m)
 {
-	if (set->lone && job->drops)
-		nt_morph_drop(set->lone, m);
-	if (!set->morphs || !set->frees_morphs)
-		return;
-	free(set->morphs[m]);
-	set->morphs[m] = NULL;
+	const nt_vertex_pool *pool = job->vertices->pool;
+	for (uint32_t i = pool->sets.first[job->set]; i != NT_NONE; i = pool->sets.next[i]) {
+		const nt_mesh *mesh = nt_pool_mesh(pool, i);
+		if (mesh->morph_tangents->reader_count == mesh->morph_tangents->user_count)
+			nt_morph_drop(mesh, m);
+	}
 }
 
 /* Room for a sparse target behind those before it. NULL: memory is exhausted. */
@@ -206,14 +207,14 @@ static nt_status look_at_target(target_job *job, size_t m, float least)
 	target_tangents *t = &job->list[m];
 	nt_arena_clear(&job->scratch);
 	float *deltas = nt_arena_alloc(&job->scratch, count, 3 * sizeof *deltas);
-	const float *moved_to = deltas ? read_target(job, set, m) : NULL;
+	const float *moved_to = deltas ? nt_pool_read_target(job->vertices, job->set, m, &job->scratch) : NULL;
 	if (!moved_to)
 		return NT_ERROR_MEMORY;
 	*t = (target_tangents){.accessor = NT_NONE,
 		.target = nt_pool_set_mesh(job->vertices->pool, job->set)->morphs[m].target};
 	uint32_t type = type_of_normals(job, t->target);
 	const size_t moved = nt_morph_deltas(moved_to, set->tangents, count, least, &type, deltas);
-	drop_target(job, set, m);
+	drop_target(job, m);
 	const nt_status status = find_deltas(job, t->target, type, deltas, &t->found);
 	if (status || t->found)
 		return status;
@@ -373,17 +374,6 @@ static void add_cost(const target_job *job, nt_morph_cost *cost)
 		}
 }
 
-/* Whether nobody else reads the tangents of a set's targets. */
-static bool reads_last(const target_job *job)
-{
-	const nt_vertex_pool *pool = job->vertices->pool;
-	const nt_mesh *lone = job->vertices->sets[job->set].lone;
-	size_t count = 0;
-	for (uint32_t i = pool->sets.first[job->set]; lone && i != NT_NONE; i = pool->sets.next[i])
-		count += nt_pool_mesh(pool, i)->morph_tangents == lone->morph_tangents;
-	return lone && count == lone->morph_tangents->user_count;
-}
-
 nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
 	const nt_pool_vertices *vertices, uint32_t set, float least, nt_gltf_override *overrides,
 	size_t *override_count, nt_morph_cost *cost, nt_error *error)
@@ -392,7 +382,7 @@ nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_v
 		.count = nt_pool_set_mesh(vertices->pool, set)->morph_count, .error = error};
 	if (!job.count)
 		return NT_OK;
-	job.drops = reads_last(&job);
+	count_readers(&job);
 	job.list = nt_calloc(job.count, sizeof *job.list);
 	nt_status status = job.list ? NT_OK : NT_ERROR_MEMORY;
 	for (size_t m = 0; !status && m < job.count; m++)

@@ -138,20 +138,6 @@ static nt_status add_attribute(welding *w, uint32_t index)
 	return status || w->obstacle || !c.bytes || add_column(w, c) ? status : nt_fail_memory(w->error);
 }
 
-/* The tangents of all targets at once, which are compared. */
-static nt_status read_targets(const welding *w, nt_pool_set *set)
-{
-	float **morphs = nt_arena_alloc(w->scratch, set->morph_count, sizeof *morphs);
-	bool done = morphs;
-	for (size_t k = 0; done && k < set->morph_count; k++) {
-		morphs[k] = nt_arena_alloc(w->scratch, w->vertices->new_count, 3 * sizeof **morphs);
-		done = morphs[k] && nt_morph_read(set->lone, k, morphs[k]) == NT_OK;
-	}
-	set->morphs = morphs;
-	set->lone = NULL;
-	return done ? NT_OK : nt_fail_memory(w->error);
-}
-
 static nt_status list_columns(welding *w, const nt_stored_tangents *stored)
 {
 	const nt_vertex_pool *pool = w->vertices->pool;
@@ -169,11 +155,7 @@ static nt_status list_columns(welding *w, const nt_stored_tangents *stored)
 	}
 	bool added = true;
 	for (size_t s = 0; !status && s < pool->sets.count; s++) {
-		nt_pool_set *set = &w->vertices->sets[s];
-		if (set->lone && set->morph_count)
-			status = read_targets(w, set);
-		if (status)
-			break;
+		const nt_pool_set *set = &w->vertices->sets[s];
 		const column tangents = stored
 			? (column){stored[s].values, stored[s].element_bytes, stored[s].element_bytes, false}
 			: (column){(const unsigned char *)set->tangents, 4 * sizeof(float), 4 * sizeof(float), false};
@@ -181,9 +163,6 @@ static nt_status list_columns(welding *w, const nt_stored_tangents *stored)
 		if (set->normals)
 			added = added && add_column(w, (column){(const unsigned char *)set->normals, 3 * sizeof(float),
 				3 * sizeof(float), false});
-		for (size_t k = 0; k < set->morph_count; k++)
-			added = added && add_column(w, (column){(const unsigned char *)set->morphs[k],
-				3 * sizeof(float), 3 * sizeof(float), false});
 	}
 	return status || added ? status : nt_fail_memory(w->error);
 }
@@ -203,8 +182,8 @@ static bool are_equal(const welding *w, size_t a, size_t b)
 	return true;
 }
 
-/* remap: [new_count] receives new numbers; kept: [new_count] the vertices that stay, of which the number is returned;
- * 0: memory is exhausted. */
+/* remap: [new_count] receives numbers of those that the columns say are equal; kept: [new_count] the first ones, of
+ * which the number is returned; 0: memory is exhausted. */
 static size_t find_equal(const welding *w, uint32_t *remap, uint32_t *kept)
 {
 	nt_hash_index known = {0};
@@ -229,6 +208,66 @@ static size_t find_equal(const welding *w, uint32_t *remap, uint32_t *kept)
 	return added ? count : 0;
 }
 
+/* Divides groups of vertices by what a target makes of them. parent: room for as many as vertices. Returns the number of
+ * groups, 0: memory is exhausted. */
+static size_t divide(const welding *w, const float *tangents, uint32_t *group, uint32_t *first, uint32_t *parent,
+	size_t count)
+{
+	nt_hash_index others = {0}; /* groups that come of it */
+	bool done = true;
+	for (size_t v = 0; done && v < w->vertices->new_count; v++) {
+		const uint32_t before = group[v];
+		const float *row = tangents + 3 * v;
+		if (memcmp(row, tangents + 3 * (size_t)first[before], 3 * sizeof *row) == 0)
+			continue;
+		const uint64_t hash = nt_hash_bytes(before, row, 3 * sizeof *row);
+		uint32_t other;
+		for (size_t at = NT_HASH_BEGIN; (other = nt_hash_index_next(&others, hash, &at)) != UINT32_MAX;)
+			if (parent[other] == before &&
+				memcmp(row, tangents + 3 * (size_t)first[other], 3 * sizeof *row) == 0)
+				break;
+		if (other == UINT32_MAX) {
+			other = (uint32_t)count++;
+			first[other] = (uint32_t)v;
+			parent[other] = before;
+			done = nt_hash_index_add(&others, hash, other);
+		}
+		group[v] = other;
+	}
+	nt_hash_index_free(&others);
+	return done ? count : 0;
+}
+
+/* The same by all targets, of which one is unpacked at a time, until no two vertices are equal; arrays as
+ * find_equal() has them. */
+static size_t divide_by_targets(const welding *w, uint32_t *remap, uint32_t *kept, size_t count)
+{
+	nt_pool_vertices *vertices = w->vertices;
+	nt_arena target = {0};
+	uint32_t *parent = nt_alloc(vertices->new_count, sizeof *parent), *number = parent;
+	if (!parent)
+		count = 0;
+	for (uint32_t s = 0; s < vertices->pool->sets.count; s++)
+		for (size_t m = 0; count && count < vertices->new_count && m < vertices->sets[s].morph_count; m++) {
+			nt_arena_clear(&target);
+			const float *tangents = nt_pool_read_target(vertices, s, m, &target);
+			count = tangents ? divide(w, tangents, remap, kept, parent, count) : 0;
+		}
+	/* in the order of the first of each */
+	for (size_t v = 0, next = 0; count && v < vertices->new_count; v++) {
+		const uint32_t group = remap[v];
+		if (kept[group] == v)
+			number[group] = (uint32_t)next++;
+		remap[v] = number[group];
+	}
+	for (size_t v = 0, next = 0; count && v < vertices->new_count; v++)
+		if (remap[v] == next)
+			kept[next++] = (uint32_t)v;
+	nt_arena_free(&target);
+	free(parent);
+	return count;
+}
+
 /* ---- the welded vertices ---- */
 
 /* Elements of those that stay. */
@@ -247,17 +286,18 @@ static bool gather_set(nt_arena *arena, nt_pool_set *set, nt_stored_tangents *st
 	bool done = set->tangents;
 	if (set->normals)
 		done &= (set->normals = gather(arena, set->normals, 3 * sizeof(float), kept, count)) != NULL;
-	float **morphs = nt_arena_alloc(arena, set->morph_count, sizeof *morphs);
-	for (size_t k = 0; morphs && k < set->morph_count; k++)
-		done &= (morphs[k] = gather(arena, set->morphs[k], 3 * sizeof(float), kept, count)) != NULL;
-	set->morphs = morphs;
-	set->frees_morphs = false;
+	if (set->givers)
+		done &= (set->givers = gather(arena, set->givers, sizeof *kept, kept, count)) != NULL;
+	if (set->given)
+		done &= (set->given = gather(arena, set->given, sizeof *kept, kept, count)) != NULL;
+	else if (set->morph_count && (done &= (set->given = nt_arena_alloc(arena, count, sizeof *kept)) != NULL))
+		memcpy(set->given, kept, count * sizeof *kept);
 	if (!stored)
-		return done && morphs;
+		return done;
 	const bool filtered = stored->stored != stored->values;
 	stored->values = gather(arena, stored->values, stored->element_bytes, kept, count);
 	stored->stored = filtered ? gather(arena, stored->stored, stored->element_bytes, kept, count) : stored->values;
-	return done && morphs && stored->values && stored->stored;
+	return done && stored->values && stored->stored;
 }
 
 /* The indices of a user as they are: of the source, or triangles that were split. renumbered: they only change numbers;
@@ -372,7 +412,9 @@ nt_status nt_pool_weld(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_
 		status = list_columns(&w, stored);
 	if (!status && !w.obstacle) {
 		uint32_t *remap = nt_alloc(before, sizeof *remap), *kept = nt_alloc(before, sizeof *kept);
-		const size_t count = remap && kept ? find_equal(&w, remap, kept) : 0;
+		size_t count = remap && kept ? find_equal(&w, remap, kept) : 0;
+		if (count)
+			count = divide_by_targets(&w, remap, kept, count);
 		if (!count && before)
 			status = nt_fail_memory(error);
 		else if (count < before)
