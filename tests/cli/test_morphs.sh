@@ -93,6 +93,38 @@ exits 0
 is "$(gltf authored.glb 'rows(g.meshes[0].primitives[0].targets[0].TANGENT).flat().every((x) => x === 0)')" true
 is "$(gltf authored.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT).every((t) => t[1] > 0.0087 && t[1] < 0.0088)')" true
 
+# Two triangles of a quad as primitives of their own: a target moves a corner that only the first has, so that its
+# tangents differ from the second's at the two corners that both have, while the base's are (1, 0, 0) everywhere.
+scene "vertices that primitives share are split, and not welded, if a target alone turns their tangents apart"
+triangles='const p = g.meshes[0].primitives[0], q = structuredClone(p), a = p.attributes,
+	two = (u, v) => { p.indices = add("SCALAR", 5123, u), q.indices = add("SCALAR", 5123, v); };
+	a.POSITION = add("VEC3", 5126, [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0], {min: [0, 0, 0], max: [1, 1, 0]});
+	a.NORMAL = add("VEC3", 5126, Array(4).fill([0, 0, 1]).flat());
+	a.TEXCOORD_0 = add("VEC2", 5126, [0, 1, 1, 1, 1, 0, 0, 0]);
+	p.targets = [{POSITION: add("VEC3", 5126, [0, 0, 0, 0, -0.5, 0, ...Array(6).fill(0)], {min: [0, -0.5, 0], max: [0, 0, 0]})}];
+	q.attributes = a, q.targets = p.targets, g.meshes[0].primitives = [p, q]'
+soup='for (const o of [a, p.targets[0]]) for (const name in o) { const r = rows(o[name]), v = [0, 1, 2, 0, 2, 3].map((i) => r[i]);
+	const bounds = (f) => v[0].map((_, k) => f(...v.map((x) => x[k])));
+	o[name] = add(v[0].length === 2 ? "VEC2" : "VEC3", 5126, v.flat(), name === "POSITION" ? {min: bounds(Math.min), max: bounds(Math.max)} : {}); }'
+gltf "$data/morph.gltf" shared "$triangles; two([0, 1, 2], [0, 2, 3])"
+gltf "$data/morph.gltf" soup "$triangles; two([0, 1, 2], [3, 4, 5]); $soup"
+gltf "$data/morph.gltf" one "$triangles; two([0, 1, 2], [3, 4, 5]); $soup; p.indices = add('SCALAR', 5123, [0, 1, 2, 3, 4, 5]); g.meshes[0].primitives = [p]"
+while read -r count words; do
+	# shellcheck disable=SC2086
+	run -q --only=all --verify $words $count.glb
+	exits 0
+	is "$(gltf $count.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT).length')" "${count%.*}"
+	is "$(gltf $count.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT).every((t) => t[0] === 1)')" true
+done <<'END'
+6.1 shared.gltf
+4.1 --morph=drop shared.gltf
+6.2 --weld shared.gltf
+6.3 --weld soup.gltf
+4.2 --weld --morph=drop soup.gltf
+4.3 --weld --across=mesh soup.gltf
+4.4 --weld one.gltf
+END
+
 scene "a client adds a target's normals to those that were made: what it has then is solved"
 mkdir "$WORK/layouts"
 python3 "$ROOT/tests/support/gltf_layouts.py" "$WORK/layouts" || exit 1

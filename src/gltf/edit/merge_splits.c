@@ -551,7 +551,7 @@ nt_status nt_pool_vertices_get(nt_vertex_pools *pools, size_t number, const nt_v
 
 /* ---- targets ---- */
 
-/* Where a mesh has the tangents of a target. NULL: memory is exhausted. */
+/* The rows of a mesh for a target. NULL: memory is exhausted. */
 static const size_t *rows_of(const nt_mesh *mesh, size_t m, nt_arena *scratch)
 {
 	nt_morph_tangents *all = mesh->morph_tangents;

@@ -208,8 +208,8 @@ static size_t find_equal(const welding *w, uint32_t *remap, uint32_t *kept)
 	return added ? count : 0;
 }
 
-/* Divides groups of vertices by what a target makes of them. parent: room for as many as vertices. Returns the number of
- * groups, 0: memory is exhausted. */
+/* Divides groups of vertices by what a target makes of them. parent: room for as many as vertices. Returns the number
+ * of groups, 0: memory is exhausted. */
 static size_t divide(const welding *w, const float *tangents, uint32_t *group, uint32_t *first, uint32_t *parent,
 	size_t count)
 {
