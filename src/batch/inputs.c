@@ -17,6 +17,7 @@
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "format/format.h"
+#include "pipeline/timer.h"
 
 /* A look through one folder and those below. */
 typedef struct walk {
@@ -198,11 +199,22 @@ nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rul
 	return status;
 }
 
-nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, const nt_folder_rules *rules,
+/* Reads a list in the time that an input has. */
+static nt_status read_list(nt_file *file, const char *path, double seconds, nt_error *error)
+{
+	nt_timer timer;
+	nt_status status = nt_timer_begin(&timer, seconds, NULL, NULL) ? nt_file_open(file, path, error)
+		: nt_fail_memory(error);
+	if (nt_timer_end(&timer) && status == NT_ERROR_MEMORY)
+		status = nt_fail_file(error, NT_ERROR_LIMIT, path, "not read after --max-seconds=%.9g", seconds);
+	return status;
+}
+
+nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, double seconds, const nt_folder_rules *rules,
 	nt_error *error)
 {
 	nt_file file;
-	nt_status status = nt_file_open(&file, path, error);
+	nt_status status = read_list(&file, path, seconds, error);
 	if (status)
 		return status;
 	const char *text = (const char *)file.data;

@@ -36,9 +36,10 @@ typedef struct nt_folder_rules {
 nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rules *rules, nt_error *error);
 
 /* Adds the names in a file, or from standard input ("-"). They are separated by NUL if the file contains one, else by
- * line feeds. They are relative to the current folder; empty ones are passed over, and "-" is a file. Returns as
- * nt_inputs_add(), or NT_ERROR_MISSING. */
-nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, const nt_folder_rules *rules, nt_error *error);
+ * line feeds. They are relative to the current folder; empty ones are passed over, and "-" is a file. seconds: that
+ * reading may take; 0: any time. Returns as nt_inputs_add(), NT_ERROR_MISSING or NT_ERROR_LIMIT. */
+nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, double seconds, const nt_folder_rules *rules,
+	nt_error *error);
 
 /* Takes away names that are there again, but for how "." and "..", and "//" are spelled. Returns NT_OK or
  * NT_ERROR_MEMORY. */

@@ -685,7 +685,7 @@ static nt_status choose_inputs(nt_command *c, nt_inputs *inputs, nt_style style,
 	for (size_t i = 0; i < c->operand_count && !status; i++)
 		status = nt_inputs_add(inputs, c->operands[i], &rules, error);
 	if (!status && c->files_from)
-		status = nt_inputs_add_list(inputs, c->files_from, &rules, error);
+		status = nt_inputs_add_list(inputs, c->files_from, c->settings.max_seconds, &rules, error);
 	if (!status && (c->directory || c->settings.in_place))
 		status = nt_inputs_drop_repeated(inputs, error);
 	/* a folder in which nothing is found was named by mistake; a list that selects nothing is an answer */

@@ -9,11 +9,13 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include "base/deadline.h"
 #include "base/memory.h"
 #include "file/lookup.h"
 #include "file/trace.h"
@@ -23,6 +25,16 @@ enum { FIRST_READ_BYTES = 64 * 1024 };
 
 static const unsigned char no_bytes[1]; /* where the data of an empty input points */
 
+/* Waits for bytes, or the end, of what may let a thread with a deadline wait. False: the deadline has passed. */
+static bool wait_for_bytes(int fd)
+{
+	enum { STEP_MILLISECONDS = 25 }; /* a deadline wakes nobody */
+	struct pollfd waited = {.fd = fd, .events = POLLIN};
+	while (nt_deadline_own() && !nt_deadline_passed() && poll(&waited, 1, STEP_MILLISECONDS) == 0)
+		;
+	return !nt_deadline_passed();
+}
+
 /* Reads a descriptor to its end. */
 static nt_status read_all(nt_file *file, int fd, const char *path, nt_error *error)
 {
@@ -31,7 +43,7 @@ static nt_status read_all(nt_file *file, int fd, const char *path, nt_error *err
 	for (;;) {
 		size_t needed;
 		if (!nt_size_add(size, size ? 1 : FIRST_READ_BYTES, &needed) ||
-			!nt_grow((void **)&data, &capacity, needed, 1)) {
+			!nt_grow((void **)&data, &capacity, needed, 1) || !wait_for_bytes(fd)) {
 			free(data);
 			nt_fail_memory(error);
 			return nt_error_in_file(error, path);
@@ -77,12 +89,14 @@ static bool map_all(nt_file *file, int fd, const char *path, const struct stat *
 	return true;
 }
 
-/* `referred`: a name that a document has, which must not make the run wait for the writer of a pipe. */
+/* `referred`: a name that a document has, which must not make the run wait for the writer of a pipe. Nor is a thread
+ * with a deadline to wait for one: it opens the pipe first, and waits for bytes. */
 static nt_status open_file(nt_file *file, const char *path, bool referred, nt_error *error)
 {
 	*file = (nt_file){.data = no_bytes, .fd = -1};
 	const bool standard = !referred && strcmp(path, "-") == 0;
-	const int flags = O_RDONLY | O_CLOEXEC | (referred ? O_NONBLOCK | O_NOCTTY : 0);
+	const bool waits = !referred && !nt_deadline_own();
+	const int flags = O_RDONLY | O_CLOEXEC | (waits ? 0 : O_NONBLOCK) | (referred ? O_NOCTTY : 0);
 	int fd;
 	do /* a file system over a network may be interrupted */
 		fd = standard ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : open(path, flags);
@@ -106,6 +120,8 @@ static nt_status open_file(nt_file *file, const char *path, bool referred, nt_er
 	}
 	if (map_all(file, fd, path, &status))
 		return NT_OK;
+	if (!standard && !waits)
+		fcntl(fd, F_SETFL, 0);
 	const bool readable = standard || S_ISREG(status.st_mode) || S_ISFIFO(status.st_mode) ||
 		S_ISSOCK(status.st_mode);
 	const nt_status result = readable ? read_all(file, fd, path, error)

@@ -139,6 +139,32 @@ sleeper=$!
 status=$?
 kill $sleeper
 refused "standard input: not done after --max-seconds=0.2" pipe
+# a pipe by its name that nobody opens to write, or whose writer says nothing: alone, of several, and as a list
+cp "$data/quad.obj" .
+for writer in none "sleep 60"; do
+	[ "$writer" = none ] || { $writer >pipe & }
+	while IFS='|' read -r words message; do
+		# shellcheck disable=SC2086
+		timeout 20 "$NMTAN" -q --max-seconds=0.2 $words 2>"$WORK/err.txt" </dev/null
+		status=$?
+		exits 7
+		says "$message"
+	done <<-'END'
+		pipe out.glb|pipe: not done after --max-seconds=0.2
+		-j1 -d out pipe quad.obj|pipe: not done after --max-seconds=0.2
+		--check --fail-on=never pipe quad.obj|pipe: not done after --max-seconds=0.2
+		--check --files-from=pipe|pipe: not read after --max-seconds=0.2
+	END
+	[ "$writer" = none ] || kill $!
+done
+is "$(ls out)" quad.glb
+rm -r out
+only pipe quad.obj
+(sleep 0.3; cat "$data/quad.obj"; sleep 0.3) >pipe &
+run -q --max-seconds=60 pipe out.glb
+exits 0
+run -q quad.obj want.glb
+same out.glb want.glb
 
 scene "one that is late leaves the others"
 python3 "$ROOT/tests/support/cost_inputs.py" windows 1000 w.glb

@@ -70,14 +70,14 @@ TEST(lists_have_a_name_a_line_or_one_before_each_nul)
 	put_text_file("lines", "\nb.obj\n\na b.obj\n-\nlast");
 	put_file("nuls", "x\ny.obj\0\0-\0z", 12);
 	assert_int_equal(nt_inputs_add(&inputs, "first", &files_only, &error), NT_OK);
-	assert_int_equal(nt_inputs_add_list(&inputs, "lines", &files_only, &error), NT_OK);
+	assert_int_equal(nt_inputs_add_list(&inputs, "lines", 0, &files_only, &error), NT_OK);
 	are(&inputs, "first b.obj a b.obj ./- last ");
-	assert_int_equal(nt_inputs_add_list(&inputs, "nuls", &files_only, &error), NT_OK);
+	assert_int_equal(nt_inputs_add_list(&inputs, "nuls", 0, &files_only, &error), NT_OK);
 	are(&inputs, "x\ny.obj ./- z ");
 	put_text_file("none", "");
-	assert_int_equal(nt_inputs_add_list(&inputs, "none", &files_only, &error), NT_OK);
+	assert_int_equal(nt_inputs_add_list(&inputs, "none", 0, &files_only, &error), NT_OK);
 	are(&inputs, "");
-	assert_int_equal(nt_inputs_add_list(&inputs, "nowhere", &files_only, &error), NT_ERROR_MISSING);
+	assert_int_equal(nt_inputs_add_list(&inputs, "nowhere", 0, &files_only, &error), NT_ERROR_MISSING);
 	nt_inputs_free(&inputs);
 }
 
@@ -90,7 +90,7 @@ TEST(an_exhausted_memory_is_told)
 		fail_allocations_from(n);
 		nt_status status = nt_inputs_add(&inputs, "d", &folders, &error);
 		if (!status)
-			status = nt_inputs_add_list(&inputs, "lines", &folders, &error);
+			status = nt_inputs_add_list(&inputs, "lines", 0, &folders, &error);
 		failed = stop_failing_allocations();
 		assert_int_equal(status, failed ? NT_ERROR_MEMORY : NT_OK);
 		nt_inputs_free(&inputs);
