@@ -248,6 +248,15 @@ nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt
 	return status;
 }
 
+nt_status nt_normal_map_open_named(nt_normal_map *map, const nt_scene *scene, const nt_material *material,
+	enum nt_slot slot, const nt_image_places *searched, nt_error *error)
+{
+	*map = (nt_normal_map){.turnable = true};
+	const nt_status status = without_map(open_named(map, scene, material, slot, searched, error));
+	settle(map);
+	return status;
+}
+
 nt_status nt_normal_map_open_image(nt_normal_map *map, nt_gltf *document, size_t image, nt_error *error)
 {
 	*map = (nt_normal_map){.image = (uint32_t)image};

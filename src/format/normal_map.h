@@ -36,6 +36,10 @@ nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt
 	const nt_image_places *searched, nt_error *error);
 void nt_normal_map_close(nt_normal_map *map);
 
+/* The same of the map that a material names. */
+nt_status nt_normal_map_open_named(nt_normal_map *map, const nt_scene *scene, const nt_material *material,
+	enum nt_slot slot, const nt_image_places *searched, nt_error *error);
+
 /* The image of base colours that everything has which a PLY of the scene shows with texture coordinates, which lie as
  * the image does. map->bytes are NULL where there is none; *obstacle says why if some of it has one, else it is NULL.
  * Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */

@@ -22,7 +22,8 @@ typedef struct known_map {
 	const nt_mesh *mesh;    /* the first that uses it */
 	const char *use;
 	nt_normal_facts *facts; /* of one whose green points down */
-	bool examined, decodable, turnable, paired;
+	bool examined, decodable, turnable, paired, heights;
+	bool stays; /* somebody has it as a normal map that is not made of heights */
 	nt_green green;
 } known_map;
 
@@ -33,7 +34,6 @@ typedef struct examined {
 	const nt_mesh *mesh; /* the first that uses it */
 	const char *use;     /* what a glTF's material calls it; "" of others */
 	bool decoded;        /* and no height map */
-	bool heights;        /* of a glTF, which has normals alone: it is one */
 	nt_normal_facts facts;
 	nt_error error;
 } examined;
@@ -41,6 +41,8 @@ typedef struct examined {
 typedef struct examination {
 	nt_scene *scene;
 	const nt_settings *settings;
+	const nt_textures *textures; /* of materials; NULL: a glTF's, or the output has none */
+	nt_image_places searched;
 	nt_hash_index known; /* identities of images */
 	known_map *maps;
 	size_t count, capacity;
@@ -65,7 +67,6 @@ static void examine(void *context, size_t item, unsigned slot)
 	if (is_wanted(e, &x->map))
 		x->decoded = nt_examine_image(x->map.bytes, x->map.size, &x->facts, &x->error) == NT_OK &&
 			!x->facts.heights;
-	x->heights = x->facts.heights && nt_format_is_gltf(e->scene->format);
 }
 
 /* ---- what is to be said ---- */
@@ -116,8 +117,6 @@ static void tell(const examination *e, const examined *x)
 		nt_finding_add(findings, NT_CODE_NMAP_NOT_EXAMINED, place, 1, "%.200s", x->error.message);
 	else if (x->error.status)
 		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, place, 1, "normal map (%.200s)", x->error.message);
-	if (x->heights)
-		nt_finding_add(findings, NT_CODE_NMAP_HEIGHTS, place, 1, NULL);
 	if (!x->decoded)
 		return;
 	tell_facts(findings, place, x->use, &x->facts);
@@ -127,8 +126,9 @@ static void tell(const examination *e, const examined *x)
 		nt_finding_add(findings, NT_CODE_NMAP_JPEG, place, 1, "%s", nt_image_type_name(x->map.type));
 }
 
-/* Maps whose green points down, but for those of pairs and those that are turned. */
-static void tell_down(const examination *e)
+/* Height maps that nothing converts; and maps whose green points down, but for those of pairs and those that are
+ * turned. */
+static void tell_kept(const examination *e)
 {
 	const nt_scene *scene = e->scene;
 	const bool turns = e->settings->flip_green != NT_FLIP_OFF && (!e->settings->check || e->settings->converts);
@@ -140,6 +140,11 @@ static void tell_down(const examination *e)
 		}
 	for (size_t i = 0; i < e->count; i++) {
 		const known_map *map = &e->maps[i];
+		/* of an OBJ, --bump=height is about map_bump alone */
+		if (map->heights && map->stays)
+			nt_finding_put(&e->scene->findings, (nt_finding){.code = NT_CODE_NMAP_HEIGHTS, .count = 1,
+				.detail = "", .repair = e->textures ? "--bump=auto" : NULL},
+				nt_mesh_place(map->mesh, &(nt_place){0}));
 		if (map->facts && !map->paired && !(turns && map->turnable))
 			tell_green(&e->scene->findings, NT_CODE_NMAP_GREEN_DOWN,
 				nt_mesh_place(map->mesh, &(nt_place){0}), map->use, map->facts, !map->turnable);
@@ -156,6 +161,7 @@ static bool keep_facts(examination *e, const examined *x)
 	map->green = x->decoded ? x->facts.green : NT_GREEN_UNKNOWN;
 	map->decodable = nt_image_is_decoded(x->map.type) && !x->error.status;
 	map->turnable = x->map.turnable;
+	map->heights = x->facts.heights;
 	if (map->green != NT_GREEN_DOWN)
 		return true;
 	map->facts = nt_alloc(1, sizeof *map->facts);
@@ -223,27 +229,54 @@ static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot,
 	return e->open_count == MOST_OPEN ? flush(e, error) : NT_OK;
 }
 
-/* The map of a slot, if the mesh has it. */
-static nt_status take_map(examination *e, nt_mesh *mesh, enum nt_slot slot, nt_error *error)
+/* Takes over an image that is open. stays: it is not converted. */
+static nt_status take_map(examination *e, nt_mesh *mesh, enum nt_slot slot, nt_normal_map *map, bool stays,
+	nt_error *error)
 {
-	const nt_image_places searched = {.folders = e->settings->texture_paths,
-		.folder_count = e->settings->texture_path_count,
-		.root = e->settings->root, .confined = e->settings->outside == NT_OUTSIDE_NO,
-		.allow_outside = e->settings->outside == NT_OUTSIDE_YES};
+	if (!map->bytes)
+		return NT_OK;
+	const uint64_t hash = nt_hash_bytes(0, map->identity, sizeof map->identity);
+	const uint32_t found = find_known(e, map->identity, hash);
+	const uint32_t number = found == UINT32_MAX ? (uint32_t)e->count : found;
+	nt_status status = NT_OK;
+	mesh->normal_maps[slot == NT_SLOT_CLEARCOAT_NORMAL] = (nt_mesh_map){.number = number + 1, .image = map->image};
+	if (found == UINT32_MAX)
+		status = add_map(e, mesh, slot, map, number, hash, error);
+	else
+		nt_normal_map_close(map);
+	if (!status)
+		e->maps[number].stays |= stays;
+	return status;
+}
+
+static nt_status take_slot(examination *e, nt_mesh *mesh, enum nt_slot slot, nt_error *error)
+{
+	const nt_settings *s = e->settings;
 	nt_normal_map map;
 	if (!(mesh->slots & slot))
 		return NT_OK;
-	nt_status status = nt_normal_map_open(&map, e->scene, mesh, slot, &searched, error);
-	if (status || !map.bytes)
-		return status;
-	const uint64_t hash = nt_hash_bytes(0, map.identity, sizeof map.identity);
-	const uint32_t found = find_known(e, map.identity, hash);
-	const uint32_t number = found == UINT32_MAX ? (uint32_t)e->count : found;
-	mesh->normal_maps[slot == NT_SLOT_CLEARCOAT_NORMAL] = (nt_mesh_map){.number = number + 1, .image = map.image};
-	if (found == UINT32_MAX)
-		return add_map(e, mesh, slot, &map, number, hash, error);
-	nt_normal_map_close(&map);
-	return NT_OK;
+	const nt_status status = nt_normal_map_open(&map, e->scene, mesh, slot, NULL, error);
+	const bool converted = s->bump == NT_BUMP_HEIGHT && (!s->check || s->converts) && map.turnable;
+	return status ? status : take_map(e, mesh, slot, &map, !converted, error);
+}
+
+/* Maps of a mesh's materials that the output has; each material is looked at once. */
+static nt_status take_named(examination *e, nt_mesh *mesh, bool *seen, nt_error *error)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < mesh->primitive_count && e->textures && !status; i++) {
+		const uint32_t number = mesh->primitives[i].material;
+		const nt_material *m = number < e->scene->material_count ? &e->scene->materials[number] : NULL;
+		nt_normal_map map;
+		if (!m || seen[number] || !m->normal_map.name || m->normal_map.request == NT_NONE)
+			continue;
+		seen[number] = true;
+		status = nt_normal_map_open_named(&map, e->scene, m, NT_SLOT_NORMAL, &e->searched, error);
+		if (!status)
+			status = take_map(e, mesh, NT_SLOT_NORMAL, &map,
+				!nt_textures_of(e->textures, m->normal_map.request)->from_heights, error);
+	}
+	return status;
 }
 
 /* Meshes get what is known of their maps. */
@@ -265,28 +298,34 @@ static void share_facts(const examination *e)
 static nt_status examine_all(examination *e, nt_error *error)
 {
 	nt_scene *scene = e->scene;
-	nt_status status = NT_OK;
+	const bool gltf = nt_format_is_gltf(scene->format);
+	bool *seen = nt_calloc(scene->material_count, sizeof *seen);
+	nt_status status = seen ? NT_OK : nt_fail_memory(error);
 	for (size_t i = 0; i < scene->mesh_count && !status; i++) {
-		status = take_map(e, &scene->meshes[i], NT_SLOT_NORMAL, error);
-		if (!status)
-			status = take_map(e, &scene->meshes[i], NT_SLOT_CLEARCOAT_NORMAL, error);
+		status = gltf ? take_slot(e, &scene->meshes[i], NT_SLOT_NORMAL, error)
+			: take_named(e, &scene->meshes[i], seen, error);
+		if (gltf && !status)
+			status = take_slot(e, &scene->meshes[i], NT_SLOT_CLEARCOAT_NORMAL, error);
 	}
+	free(seen);
 	const nt_status flushed = flush(e, error);
 	if (status || flushed)
 		return status ? status : flushed;
 	share_facts(e);
-	if (nt_format_is_gltf(scene->format) && nt_find_pairs(scene, e->settings, e->count))
+	if (gltf && nt_find_pairs(scene, e->settings, e->count))
 		return nt_fail_memory(error);
 	if (e->told)
-		tell_down(e);
+		tell_kept(e);
 	return NT_OK;
 }
 
-nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, const nt_textures *textures, nt_error *error)
+nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_format written, const nt_textures *textures,
+	nt_error *error)
 {
 	/* a map that the user names is looked at, whatever else is asked for */
-	const bool told = settings->check_maps == NT_CHECK_MAPS_ON || (settings->check_maps == NT_CHECK_MAPS_AUTO &&
-		(settings->report || settings->given_maps[NT_GIVEN_NORMAL]));
+	const bool told = written != NT_FORMAT_PLY && (settings->check_maps == NT_CHECK_MAPS_ON ||
+		(settings->check_maps == NT_CHECK_MAPS_AUTO &&
+			(settings->report || settings->given_maps[NT_GIVEN_NORMAL])));
 	examination *e = told || nt_any_inverted(scene) ? nt_calloc(1, sizeof *e) : NULL;
 	if (!e) {
 		nt_tell_kept(scene);
@@ -294,6 +333,8 @@ nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, const nt_t
 	}
 	e->scene = scene;
 	e->settings = settings;
+	e->textures = textures;
+	e->searched = nt_searched_places(settings);
 	e->told = told;
 	if (textures)
 		e->pixels = nt_textures_pixels(textures, &e->bytes);

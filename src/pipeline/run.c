@@ -267,9 +267,7 @@ static nt_status protect_inputs(const run *r, nt_output *output)
 static nt_status find_texture_file(run *r, nt_normal_map *map, nt_texture_file *file)
 {
 	const nt_settings *s = r->settings;
-	const nt_image_places searched = {.folders = s->texture_paths, .folder_count = s->texture_path_count,
-		.root = s->root, .confined = s->outside == NT_OUTSIDE_NO,
-		.allow_outside = s->outside == NT_OUTSIDE_YES};
+	const nt_image_places searched = nt_searched_places(s);
 	*file = (nt_texture_file){0};
 	if (r->writer->format != NT_FORMAT_PLY || r->scene.format == NT_FORMAT_PLY || s->images == NT_IMAGES_NONE)
 		return NT_OK;
@@ -395,7 +393,8 @@ static nt_status run_stages(run *r)
 	if (!status && !r->writer)
 		status = nt_look_for_images(&r->scene, r->error);
 	if (!status)
-		status = nt_stage_maps(&r->scene, r->settings, r->textures, r->error);
+		status = nt_stage_maps(&r->scene, r->settings, r->writer ? r->writer->format : NT_FORMAT_UNKNOWN,
+			r->textures, r->error);
 	if (!status && r->settings->quads == NT_QUADS_PAIRS && nt_format_is_gltf(r->scene.format) &&
 		r->summary->solved_count && !r->summary->quad_count)
 		nt_finding_add(&r->scene.findings, NT_CODE_TAN_QUADS_NONE, &(nt_place){.offset = NT_NO_OFFSET}, 1,

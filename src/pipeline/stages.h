@@ -67,10 +67,20 @@ nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *set
 nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const nt_textures *textures,
 	nt_summary *summary, nt_error *error);
 
-/* Examines normal maps, if settings->check_maps, a report or a mesh with inverted w wants that, and adds what is found
- * of them, and of tangents that are kept. textures: what was
- * decoded before; NULL: nothing. Returns NT_OK, NT_ERROR_IO, NT_ERROR_MEMORY or NT_ERROR_LIMIT. */
-nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, const nt_textures *textures, nt_error *error);
+/* Examines the normal maps of the output, if settings->check_maps, a report or a mesh with inverted w wants that, and
+ * adds what is found of them, and of tangents that are kept. written: NT_FORMAT_UNKNOWN: a glTF is judged as it is.
+ * textures: those of materials; NULL: of a glTF, or the output has none. Returns NT_OK, NT_ERROR_IO, NT_ERROR_MEMORY
+ * or NT_ERROR_LIMIT. */
+nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_format written, const nt_textures *textures,
+	nt_error *error);
+
+/* Folders in which the maps of materials are looked for, whatever the document. */
+static inline nt_image_places nt_searched_places(const nt_settings *settings)
+{
+	return (nt_image_places){.folders = settings->texture_paths, .folder_count = settings->texture_path_count,
+		.root = settings->root, .confined = settings->outside == NT_OUTSIDE_NO,
+		.allow_outside = settings->outside == NT_OUTSIDE_YES};
+}
 
 /* If an input changed during the run, reports only that; else returns `status`. */
 nt_status nt_check_inputs(nt_scene *scene, nt_status status, nt_error *error);

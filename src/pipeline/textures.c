@@ -50,10 +50,9 @@ typedef struct requesting {
 static nt_status request_material(nt_scene *scene, nt_material *m, void *context, nt_error *error)
 {
 	const requesting *w = context;
-	const nt_image_places places = {.document = m->library ? m->library : scene->path, .input = scene->path,
-		.folders = w->settings->texture_paths, .folder_count = w->settings->texture_path_count,
-		.root = w->settings->root, .confined = w->settings->outside == NT_OUTSIDE_NO,
-		.allow_outside = w->settings->outside == NT_OUTSIDE_YES};
+	nt_image_places places = nt_searched_places(w->settings);
+	places.document = m->library ? m->library : scene->path;
+	places.input = scene->path;
 	nt_map_request requests[NT_MATERIAL_MAPS];
 	const size_t count = nt_map_requests(m, w->settings, requests);
 	nt_status status = NT_OK;
@@ -322,10 +321,39 @@ static nt_status tell_unmapped(nt_scene *scene, nt_material *m, void *context, n
 	return NT_OK;
 }
 
+/* Whether the output has the normal map of a material. */
+static bool is_mapped(const nt_scene *scene, const nt_settings *settings, const nt_textures *textures,
+	const nt_primitive *primitive)
+{
+	const nt_map *map = primitive->material == NT_NONE || !primitive->face_count ? NULL
+		: &scene->materials[primitive->material].normal_map;
+	if (!map || !map->name || map->request == NT_NONE)
+		return false;
+	const nt_texture *image = nt_textures_at(textures, nt_textures_result(textures, map->request));
+	return image->type != NT_IMAGE_OTHER &&
+		(image->sources[0]->found != NT_IMAGE_MISSING || settings->images == NT_IMAGES_LINK);
+}
+
+/* Meshes are judged as the output has them. */
+static void settle_slots(nt_scene *scene, const nt_settings *settings, const nt_textures *textures)
+{
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		nt_mesh *mesh = &scene->meshes[i];
+		bool mapped = false;
+		for (size_t p = 0; p < mesh->primitive_count && mesh->slots & NT_SLOT_NORMAL && !mapped; p++)
+			mapped = is_mapped(scene, settings, textures, &mesh->primitives[p]);
+		mesh->lost_map = mesh->slots & NT_SLOT_NORMAL && !mapped;
+		if (mesh->lost_map)
+			mesh->slots &= ~(unsigned)NT_SLOT_NORMAL;
+	}
+}
+
 nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const nt_textures *textures,
 	nt_summary *summary, nt_error *error)
 {
 	telling t = {.textures = textures, .settings = settings, .summary = summary};
+	if (textures)
+		settle_slots(scene, settings, textures);
 	if (settings->images == NT_IMAGES_NONE)
 		return NT_OK;
 	return each_material(scene, &t, error, tell_material, tell_unmapped);

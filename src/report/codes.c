@@ -487,10 +487,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"is an info: clients differ in how well they do it.",
 		"Make them.",
 		"a material with KHR_materials_anisotropy on a primitive with NORMAL only"),
-	ROW(TAN_UNUSED, INFO, "i--", CONVERT, "--existing=drop", "the mesh has tangents that no material uses",
+	ROW(TAN_UNUSED, INFO, "i-i", CONVERT, "--existing=drop", "the mesh has tangents that no material uses",
 		"Without a normal texture, clearcoat normal texture or anisotropy nothing reads them: 16 bytes "
-		"per vertex for nothing.",
-		"Nothing if a normal map is set later. Else drop the attribute.",
+		"per vertex for nothing. A glTF may have them, and one that is made of another format gets them.",
+		"Nothing if a normal map is set later. Else write the mesh without them.",
 		"a glTF primitive with TANGENT and the default material"),
 	ROW(TAN_ACCESSOR, ERROR, "e--", CONVERT, "--fix", "tangents that cannot be read",
 		"TANGENT of a glTF primitive is not an accessor of as many VEC4 as there are positions, or its place "

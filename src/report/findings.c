@@ -138,8 +138,12 @@ static const char *repair_of(nt_check *check, const nt_report_finding *finding, 
 	nt_report *report = check->report;
 	const char *repair = nt_code_info(finding->code)->repair;
 	const nt_report_mesh *mesh = finding->mesh == NT_NONE ? NULL : &report->meshes[finding->mesh];
-	if (!repair || !mesh || finding->code == NT_CODE_TAN_UNUSED || finding->code == NT_CODE_NMAP_GREEN_DOWN)
+	if (!repair || !mesh || finding->code == NT_CODE_NMAP_GREEN_DOWN)
 		return repair;
+	if (finding->code == NT_CODE_TAN_UNUSED && !check->mesh->has_tangents)
+		return check->mesh->lost_map ? NULL : "--only=needed";
+	if (finding->code == NT_CODE_TAN_UNUSED)
+		return nt_format_is_gltf(check->scene->format) ? repair : NULL;
 	if (nt_code_mends(finding->code)) {
 		const bool missing = finding->code == NT_CODE_TAN_MISSING_REQUIRED;
 		if (!mesh->has_normals || (!mesh->has_texcoords && missing))

@@ -519,7 +519,7 @@ static void check_presence(nt_check *check)
 	const bool present = check->facts->checked_tangents;
 	if (!nt_is_gltf(check))
 		return;
-	if (check->stored == NT_STORED_AUTHORED && mesh->slots == 0) {
+	if (present && mesh->slots == 0) {
 		const nt_tally unused = {
 			.code = NT_CODE_TAN_UNUSED, .count = 1, .box = check->facts->box, .share = 1.0};
 		nt_check_report(check, &unused, NULL);

@@ -221,6 +221,7 @@ typedef struct nt_mesh {
 
 	/* what decides: filled by open() */
 	unsigned slots;          /* enum nt_slot, union over materials and variants */
+	bool lost_map;           /* a material of an OBJ names a normal map that the output has not: no slot of it */
 	bool triangles;          /* false: points or lines */
 	bool reachable;          /* false: no scene shows it */
 	bool unlit;              /* every material of it is unlit */
