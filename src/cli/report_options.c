@@ -162,7 +162,7 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 			status = NT_OK; /* where the run's folder has no name, files are called as they were given */
 	}
 	if (!status && command->baseline) {
-		status = nt_baseline_open(&plan->baseline, command->baseline, &plan->paths, error);
+		status = nt_baseline_open(&plan->baseline, command->baseline, error);
 		if (status == NT_ERROR_MISSING)
 			nt_fail(error, status, "--baseline: there is no file '%s'; to make it: nmtan --check "
 				"--report=%s INPUT...", command->baseline, command->baseline);

@@ -79,15 +79,6 @@ void nt_shown_path(const nt_shown_paths *paths, const char *path, nt_buffer *out
 	nt_buffer_free_into(&whole, out);
 }
 
-void nt_shown_path_find(const nt_shown_paths *paths, const char *shown, nt_buffer *out)
-{
-	nt_buffer prefix = {0};
-	append_prefix(paths, &prefix);
-	const bool begins = prefix.size && strncmp(shown, prefix.data, prefix.size) == 0;
-	nt_path_join(out, paths->base.data, shown + (begins ? prefix.size : 0));
-	nt_buffer_free_into(&prefix, out);
-}
-
 void nt_shown_paths_free(nt_shown_paths *paths)
 {
 	nt_buffer_free(&paths->current);

@@ -24,9 +24,6 @@ nt_status nt_shown_paths_begin(nt_shown_paths *paths, const char *const *inputs,
  * as it is spelled. */
 void nt_shown_path(const nt_shown_paths *paths, const char *path, nt_buffer *out);
 
-/* Appends the path of a file that an earlier run of the same folder has shown so. */
-void nt_shown_path_find(const nt_shown_paths *paths, const char *shown, nt_buffer *out);
-
 void nt_shown_paths_free(nt_shown_paths *paths);
 
 #endif

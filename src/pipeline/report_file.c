@@ -8,7 +8,6 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include "base/buffer.h"
 #include "file/output.h"
 
@@ -60,25 +59,13 @@ nt_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_re
 	return status;
 }
 
-/* Whether a file that a baseline names is still there; standard input always is. */
-static bool is_there(void *user, const char *shown)
+nt_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_error *error)
 {
-	nt_buffer path = {0};
-	struct stat info;
-	nt_shown_path_find(user, shown, &path);
-	const bool there = strcmp(shown, "-") == 0 || path.failed || stat(path.data, &info) == 0;
-	nt_buffer_free(&path);
-	return there;
-}
-
-nt_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_shown_paths *paths, nt_error *error)
-{
-	const nt_file_finder finder = {is_there, paths};
 	nt_file file;
 	nt_status status = nt_file_open(&file, path, error);
 	if (status)
 		return status;
-	status = nt_baseline_read(baseline, (const char *)file.data, file.size, &finder, error);
+	status = nt_baseline_read(baseline, (const char *)file.data, file.size, error);
 	nt_file_close(&file);
 	return status ? nt_error_in_file(error, path) : NT_OK;
 }

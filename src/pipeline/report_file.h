@@ -27,7 +27,7 @@ typedef struct nt_report_target {
 nt_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_report_target *target,
 	nt_error *error);
 
-/* Reads the findings of a JSON report, and looks which of its files are still there. The error names the report. */
-nt_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_shown_paths *paths, nt_error *error);
+/* Reads the findings of a JSON report. The error names the report. */
+nt_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_error *error);
 
 #endif

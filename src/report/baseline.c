@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Baselines: the findings of an earlier JSON report, so that only new ones count. A finding of one file is no excuse
- * for another: a file is compared with what the baseline says of its name. There a finding is known by its
- * fingerprint, in which the mesh's name is, else by its geometry. A file of a new name is compared by geometry with
- * those of the baseline that are no longer there.
+ * Baselines: the findings of an earlier JSON report, so that only new ones count. A file is compared with what the
+ * baseline says of its name: there a finding is known by its fingerprint, in which the mesh's name is, else by its
+ * geometry. A file of a name that the baseline does not have, renamed or copied, is compared by geometry with all of
+ * the baseline: equal positions of another file are the same finding.
  */
 #include "report/baseline.h"
 
@@ -12,9 +12,6 @@
 #include "base/hash.h"
 #include "json/json.h"
 #include "report/pairs.h"
-
-/* Known findings of all files that are gone. */
-enum { GONE = 0 };
 
 static int by_file(const void *a, const void *b)
 {
@@ -64,8 +61,7 @@ static nt_status read_findings(nt_baseline *baseline, size_t *capacity, uint64_t
 	return NT_OK;
 }
 
-static nt_status read_files(nt_baseline *baseline, const nt_json_value *root, const nt_file_finder *finder,
-	nt_error *error)
+static nt_status read_files(nt_baseline *baseline, const nt_json_value *root, nt_error *error)
 {
 	const char *report = nt_json_get_string(nt_json_find(root, "report"), NULL);
 	const nt_json_value *files = nt_json_find(root, "files");
@@ -78,22 +74,20 @@ static nt_status read_files(nt_baseline *baseline, const nt_json_value *root, co
 		const nt_json_value *file = nt_json_at(files, i);
 		const char *name = nt_json_get_string(nt_json_find(file, "file"), NULL);
 		const uint64_t key = key_of_file(name ? name : "");
-		const bool gone = finder && name && !finder->is_there(finder->user, name);
-		baseline->files[baseline->file_count++] = gone ? GONE : key;
-		status = read_findings(baseline, &capacity, gone ? GONE : key, nt_json_find(file, "findings"), error);
+		baseline->files[baseline->file_count++] = key;
+		status = read_findings(baseline, &capacity, key, nt_json_find(file, "findings"), error);
 	}
 	return status;
 }
 
-nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, const nt_file_finder *finder,
-	nt_error *error)
+nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, nt_error *error)
 {
 	*baseline = (nt_baseline){0};
 	nt_json *document = NULL;
 	nt_status status = nt_json_parse(&document, text, size, NULL, error);
 	if (status)
 		return status;
-	status = read_files(baseline, nt_json_root(document), finder, error);
+	status = read_files(baseline, nt_json_root(document), error);
 	nt_json_free(document);
 	if (status)
 		nt_baseline_free(baseline);
@@ -143,8 +137,8 @@ bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report)
 	const uint64_t own = key_of_file(report->shown);
 	const bool named = baseline->file_count &&
 		bsearch(&own, baseline->files, baseline->file_count, sizeof own, by_number);
-	const uint64_t file = named ? own : GONE;
-	const size_t first = find_entries(baseline, file), old_count = find_entries(baseline, file + 1) - first;
+	const size_t first = named ? find_entries(baseline, own) : 0;
+	const size_t old_count = (named ? find_entries(baseline, own + 1) : baseline->count) - first;
 	const nt_baseline_entry *old = baseline->entries ? baseline->entries + first : NULL;
 	nt_baseline_entry *new = nt_calloc(report->finding_count, sizeof *new);
 	uint32_t *partners = nt_alloc(report->finding_count, sizeof *partners);

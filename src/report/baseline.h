@@ -16,23 +16,16 @@ typedef struct nt_baseline_entry {
 struct nt_baseline {
 	nt_baseline_entry *entries; /* [count] by file */
 	size_t count;
-	uint64_t *files; /* [file_count] keys of those that are there, ascending */
+	uint64_t *files; /* [file_count] keys of the files' names, ascending */
 	size_t file_count;
 };
 
-/* Tells whether a file of the baseline is still there. */
-typedef struct nt_file_finder {
-	bool (*is_there)(void *user, const char *shown);
-	void *user;
-} nt_file_finder;
-
 /*
- * Reads the findings of a JSON report. finder NULL: all its files are there.
+ * Reads the findings of a JSON report.
  *
  * Returns NT_OK, NT_ERROR_INPUT when the text is no report of nmtan, or NT_ERROR_MEMORY.
  */
-nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, const nt_file_finder *finder,
-	nt_error *error);
+nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, nt_error *error);
 
 /* Marks the findings that the baseline has. False: out of memory. */
 bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report);

@@ -247,6 +247,9 @@ is "$(value new.json '[r["totals"][k] for k in ("errors", "warnings", "infos")]'
 validates report new.json
 run --check --fail-on=info --baseline=old.json "$data/mirrored_cube.obj"
 exits 6
+cp head.obj copy.obj # of another name, while the old one is there: by positions
+run --check --fail-on=info --baseline=old.json head.obj copy.obj
+exits 0
 echo '{}' >broken.json
 run --check --baseline=broken.json head.obj
 exits 3

@@ -173,7 +173,7 @@ static void check_report(const nt_report *report)
 			(text.size == 0 && !may_be_empty))
 			wrong("report format %d: %s", format, error.message);
 		nt_baseline baseline = {0};
-		if (format == NT_REPORT_JSON && nt_baseline_read(&baseline, text.data, text.size, NULL, &error))
+		if (format == NT_REPORT_JSON && nt_baseline_read(&baseline, text.data, text.size, &error))
 			wrong("the JSON report cannot be read: %s", error.message);
 		nt_baseline_free(&baseline);
 		nt_buffer_free(&text);

@@ -333,7 +333,7 @@ TEST(what_concerns_most_comes_first_and_no_code_hides_another)
 }
 
 /* A baseline of one finding of a file. */
-static nt_baseline baseline_with(const char *file, const nt_report_finding *finding, const nt_file_finder *finder)
+static nt_baseline baseline_with(const char *file, const nt_report_finding *finding)
 {
 	nt_baseline baseline;
 	nt_error error;
@@ -342,7 +342,7 @@ static nt_baseline baseline_with(const char *file, const nt_report_finding *find
 		"{\"report\":\"nmtan\",\"files\":[{\"file\":\"%s\",\"findings\":"
 		"[{\"fingerprint\":\"%016llx\",\"geometry\":\"%016llx\"}]}]}",
 		file, (unsigned long long)finding->fingerprint, (unsigned long long)finding->geometry);
-	assert_int_equal(nt_baseline_read(&baseline, text, strlen(text), finder, &error), NT_OK);
+	assert_int_equal(nt_baseline_read(&baseline, text, strlen(text), &error), NT_OK);
 	return baseline;
 }
 
@@ -351,7 +351,7 @@ TEST(baseline_knows_old_findings_each_as_often_as_it_has_them)
 	hand_mesh *h = sound_quad();
 	set_tangent(h, 1, 0, 0, 0, 1);
 	nt_report *report = hand_report(h, NULL);
-	nt_baseline baseline = baseline_with("hand.ply", hand_finding(report, NT_CODE_TAN_ZERO), NULL);
+	nt_baseline baseline = baseline_with("hand.ply", hand_finding(report, NT_CODE_TAN_ZERO));
 	nt_error error;
 	nt_report_free(report);
 	set_tangent(h, 3, 0, 0, 1, 1); /* new */
@@ -361,8 +361,8 @@ TEST(baseline_knows_old_findings_each_as_often_as_it_has_them)
 	assert_false(hand_finding(report, NT_CODE_TAN_PARALLEL_NORMAL)->known);
 	assert_int_equal(report->known[NT_SEVERITY_ERROR], 1);
 	nt_baseline_free(&baseline);
-	assert_int_equal(nt_baseline_read(&baseline, "{}", 2, NULL, &error), NT_ERROR_INPUT);
-	assert_int_equal(nt_baseline_read(&baseline, "{", 1, NULL, &error), NT_ERROR_INPUT);
+	assert_int_equal(nt_baseline_read(&baseline, "{}", 2, &error), NT_ERROR_INPUT);
+	assert_int_equal(nt_baseline_read(&baseline, "{", 1, &error), NT_ERROR_INPUT);
 	hand_free(h, report);
 }
 
@@ -403,7 +403,7 @@ TEST(baseline_entries_count_once_each)
 	size_t lone = 0;
 	while (report->findings[lone].code != NT_CODE_UV_MIRROR_LONE)
 		lone++;
-	nt_baseline baseline = baseline_with("hand.ply", &report->findings[lone], NULL);
+	nt_baseline baseline = baseline_with("hand.ply", &report->findings[lone]);
 	nt_report_free(report);
 	const nt_report_options options = {.baseline = &baseline};
 	report = hand_report(h, &options);
@@ -412,27 +412,19 @@ TEST(baseline_entries_count_once_each)
 	hand_free(h, report);
 }
 
-static bool is_there(void *user, const char *shown)
-{
-	return strcmp(shown, user) != 0;
-}
-
-/* Another name of the mesh is no other finding; another name of the file is none if no file has the old one. */
+/* Another name of the mesh is no other finding, nor is another name of the file. */
 TEST(baseline_knows_geometry_where_names_have_changed)
 {
 	static const struct {
-		const char *file, *gone;
+		const char *file;
 		float moved;
 		size_t known;
-	} rows[] = {{"hand.ply", "", 0, 1}, {"hand.ply", "", 1, 0}, {"old.ply", "", 0, 0}, {"old.ply", "old.ply", 0, 1},
-		{"old.ply", "old.ply", 1, 0}};
+	} rows[] = {{"hand.ply", 0, 1}, {"hand.ply", 1, 0}, {"old.ply", 0, 1}, {"old.ply", 1, 0}};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
 		hand_mesh *h = sound_quad();
 		set_tangent(h, 1, 0, 0, 0, 1);
 		nt_report *report = hand_report(h, NULL);
-		const nt_file_finder finder = {is_there, (void *)(uintptr_t)rows[i].gone};
-		nt_baseline baseline =
-			baseline_with(rows[i].file, hand_finding(report, NT_CODE_TAN_ZERO), &finder);
+		nt_baseline baseline = baseline_with(rows[i].file, hand_finding(report, NT_CODE_TAN_ZERO));
 		nt_report_free(report);
 		h->mesh.name = "Head.001";
 		h->positions[1][0] += rows[i].moved;
