@@ -239,7 +239,7 @@ static nt_status keep_pictures(nt_check *check, size_t most_bytes[NT_PICTURE_COU
 static nt_status run_checks(nt_check *check)
 {
 	static nt_status (*const checks[])(nt_check *) = {nt_check_geometry, nt_check_edges, nt_check_islands,
-		nt_check_seams, nt_check_measures, nt_check_tangents, nt_check_growth};
+		nt_check_seams, nt_check_hard_edges, nt_check_measures, nt_check_tangents, nt_check_growth};
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < sizeof checks / sizeof *checks && !status; i++)
 		status = checks[i](check);

@@ -11,12 +11,13 @@
 #include "report/report.h"
 #include "report/surface/surface.h"
 
-/* Two sides of one edge whose triangles are wound differently in UV space. */
-typedef struct nt_mirror_edge {
-	uint32_t sides[2]; /* unmirrored, mirrored */
+/* Two sides of one edge: of a mirror edge, whose triangles are wound differently in UV space, or of a hard edge. */
+typedef struct nt_edge_pair {
+	uint32_t sides[2]; /* unmirrored, mirrored; of a hard edge the lower one first */
+	float cosine;      /* of a hard edge: of the angle between its normals, where it is widest */
 	bool non_manifold;
 	bool against; /* the unmirrored side runs against the lowest side of the edge */
-} nt_mirror_edge;
+} nt_edge_pair;
 
 /* Whose tangents are checked: the input's, or, on conversion, the result. */
 typedef enum nt_stored {
@@ -52,8 +53,11 @@ typedef struct nt_check {
 	                             are none */
 	uint64_t *mirrors_against; /* of these, sides that run against the lowest one of their edge */
 	uint32_t *mirror_ranks;
-	nt_mirror_edge *mirror_edges; /* [mirror_edge_count] by their unmirrored sides, ascending */
+	nt_edge_pair *mirror_edges; /* [mirror_edge_count] by their unmirrored sides, ascending */
 	size_t mirror_edge_count;
+	nt_edge_pair *hard_edges; /* [hard_edge_count] whose sides have other normals and the same texture coordinates,
+	                             by their lower sides, ascending */
+	size_t hard_edge_count;
 	uint32_t *islands;        /* [triangle_count] NT_NONE: has no edges */
 	uint32_t *patches;        /* [triangle_count] parents of what is connected in UV space and of one orientation;
 	                             NULL: there is but one */
@@ -96,7 +100,7 @@ void nt_check_report_as(nt_check *check, const nt_tally *tally, nt_severity seve
 	const char *detail_format, ...) NT_PRINTF(4, 5);
 
 /* The mirror edge of an unmirrored side that is in one. */
-static inline nt_mirror_edge *nt_mirror_edge_of(const nt_check *check, uint32_t side)
+static inline nt_edge_pair *nt_mirror_edge_of(const nt_check *check, uint32_t side)
 {
 	return &check->mirror_edges[nt_bit_rank(check->mirrors, check->mirror_ranks, side)];
 }
@@ -207,6 +211,9 @@ static inline const float *nt_stored_tangent(const nt_check *check, uint32_t cor
 	return nt_stored_tangents(check) + 4 * nt_tangent_index(check, corner);
 }
 
+/* An edge of a seam as it is seen from a point at one of its ends on. seams.c */
+nt_seam_edge nt_describe_edge(const nt_check *check, const nt_edge_pair *edge, uint32_t from);
+
 /* The checks, in the order in which they run. */
 nt_status nt_check_geometry(nt_check *check); /* geometry.c: the surface's triangles; positions, normals, UV
                                                  triangles */
@@ -214,6 +221,7 @@ nt_status nt_check_edges(nt_check *check);    /* edges.c: boundary, non-manifold
 nt_status nt_check_islands(nt_check *check);  /* islands.c */
 nt_status nt_check_flips(nt_check *check);    /* flips.c: called by islands.c, once islands are measured */
 nt_status nt_check_seams(nt_check *check);    /* seams.c */
+nt_status nt_check_hard_edges(nt_check *check); /* hard_edges.c */
 nt_status nt_check_tangents(nt_check *check); /* tangents.c */
 nt_status nt_check_growth(nt_check *check);   /* growth.c: shared and copied vertices */
 nt_status nt_check_measures(nt_check *check); /* measures.c: density, stretch, costs */

@@ -302,6 +302,16 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"instead. An info if no material of a glTF needs tangents, and up to a thousandth of the mesh's area.",
 		"Exchange two corners of these triangles in the UV editor, or relax the knot.",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
+	ROW(UV_HARD_EDGE, WARNING, "w-i", LOOK, NULL,
+		"{count} hard {edge lies|edges lie} inside a UV island: {detail}",
+		"The normals of both sides differ by more than 20 degrees, and the texture coordinates go on across "
+		"the edge. A bake has other directions in neighbouring texels then, which filtering and mipmaps mix: a "
+		"line shows along the edge. Edges that hang together are one finding: a loop, a chain or, if three of "
+		"them meet, a net. An info if no material has a normal map. A cut in the texture coordinates along "
+		"which normals are smooth is no fault.",
+		"Cut the texture coordinates along these edges (in Blender: Select > Select Sharp Edges, Edge > Mark "
+		"Seam, UV > Unwrap) or shade them smooth, and bake again.",
+		"two quads at a right angle with normals of their own and one strip of texture coordinates"),
 	ROW(UV_DEGENERATE_TRIANGLE, INFO, "w-w", EXPORT, NULL,
 		"{count} {triangle has|triangles have} no area in UV space",
 		"The three texture coordinates are collinear: there is no direction in which u grows, so the tangent "

@@ -227,7 +227,7 @@ static void drop_mirror_edges(nt_check *check)
 	const size_t sides = 3 * check->surface.triangle_count;
 	size_t kept = 0;
 	for (size_t i = 0; i < check->mirror_edge_count; i++) {
-		const nt_mirror_edge edge = check->mirror_edges[i];
+		const nt_edge_pair edge = check->mirror_edges[i];
 		if (is_flipped(check, edge.sides[0]) || is_flipped(check, edge.sides[1])) {
 			nt_bit_clear(check->mirrors, edge.sides[0]);
 			nt_bit_clear(check->mirrors_against, edge.sides[0]);

@@ -116,7 +116,7 @@ typedef struct nt_report_finding {
 	uint64_t geometry;    /* the same without names: digest.h; 0: not known */
 	bool known;           /* the baseline has it */
 	uint32_t noted;       /* index into the scene's findings, NT_NONE: a check found it */
-	uint32_t seam;        /* index into the mesh's seams, NT_NONE */
+	uint32_t seam;        /* index into the mesh's seams, those of hard edges too; NT_NONE */
 	uint32_t island;      /* index into the mesh's islands, NT_NONE */
 	nt_number *numbers;   /* [number_count] at most NT_NUMBER_COUNT */
 	nt_spot *spots;       /* [spot_count] at most NT_SPOT_COUNT */
@@ -225,7 +225,8 @@ typedef struct nt_report_mesh {
 	double world[16];         /* column-major */
 
 	nt_wrap wrap[2];          /* along u and v: how the sampler repeats what the mesh lies on */
-	nt_seam *seams;           /* [seam_count] */
+	size_t hard_count;        /* nets of hard edges, behind the mirror seams */
+	nt_seam *seams;           /* [seam_count + hard_count] */
 	nt_island *islands;       /* [island_count] */
 	size_t island_count;
 	nt_box box;

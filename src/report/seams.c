@@ -100,7 +100,7 @@ static const float *corner_tangent(const nt_check *check, uint32_t side)
 }
 
 /* Adds an edge to frame_angle, same_texel_count and unhidden_count. */
-static void compare_frames(const nt_check *check, const nt_mirror_edge *edge, uint32_t from, nt_seam *seam)
+static void compare_frames(const nt_check *check, const nt_edge_pair *edge, uint32_t from, nt_seam *seam)
 {
 	const nt_surface *s = &check->surface;
 	bool same = true;
@@ -136,8 +136,7 @@ static uint32_t output_vertex(const nt_check *check, uint32_t side)
 						  : vertex + (uint32_t)mesh->unused_vertices;
 }
 
-/* An edge as seen in walking direction, from the point `from`. */
-static nt_seam_edge describe_edge(const nt_check *check, const nt_mirror_edge *edge, uint32_t from)
+nt_seam_edge nt_describe_edge(const nt_check *check, const nt_edge_pair *edge, uint32_t from)
 {
 	const nt_surface *s = &check->surface;
 	nt_seam_edge result = {.triangles = {edge->sides[0] / 3, edge->sides[1] / 3}};
@@ -188,7 +187,7 @@ static nt_dvec3 third_point(const nt_surface *s, uint32_t side)
 	return nt_dvec3_load(nt_side_position(s, nt_side_next(nt_side_next(side))));
 }
 
-static void add_to_sums(const nt_surface *s, const nt_mirror_edge *edge, plane_sums *sums)
+static void add_to_sums(const nt_surface *s, const nt_edge_pair *edge, plane_sums *sums)
 {
 	nt_dvec3 d = nt_dvec3_sub(third_point(s, edge->sides[0]), third_point(s, edge->sides[1]));
 	if (nt_dvec3_dot(d, sums->across) < 0.0)
@@ -295,9 +294,9 @@ static nt_status describe_seam(nt_check *check, const nt_chains *chains, size_t 
 	plane_sums sums = {0};
 	for (size_t i = 0; i < seam->edge_count; i++) {
 		const uint32_t side = chains->sides[first + i];
-		const nt_mirror_edge *mirror = nt_mirror_edge_of(check, side);
+		const nt_edge_pair *mirror = nt_mirror_edge_of(check, side);
 		const uint32_t from = nt_side_point(s, chains->reversed[first + i] ? nt_side_next(side) : side);
-		const nt_seam_edge edge = describe_edge(check, mirror, from);
+		const nt_seam_edge edge = nt_describe_edge(check, mirror, from);
 		if (i < kept)
 			seam->edges[i] = edge;
 		seam->length += edge_length(check->facts, &edge);

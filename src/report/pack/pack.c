@@ -333,7 +333,7 @@ static void put_seam(packing *p, const nt_seam *seam, uint32_t *before)
 static void put_seams_and_numbers(packing *p)
 {
 	uint32_t before = 0;
-	for (size_t i = 0; p->mesh->seams && i < p->mesh->seam_count; i++)
+	for (size_t i = 0; p->mesh->seams && i < p->mesh->seam_count + p->mesh->hard_count; i++)
 		put_seam(p, &p->mesh->seams[i], &before);
 	end_stream(p);
 	before = 0;

@@ -14,8 +14,8 @@
  *   kinds       of each triangle a byte: orientation + 1, and 4 where a position is not finite
  *   islands     of each triangle a varint: its island + 1, 0: none, as a zigzag difference from the triangle before
  *   outlines    see outline.h
- *   seams       of each seam a varint: how many edges, then of each edge the vertices at its ends, unmirrored side
- *               first, as zigzag differences from the number before
+ *   seams       of each seam, then of each net of hard edges, a varint: how many edges, then of each edge the vertices
+ *               at its ends, unmirrored side first, as zigzag differences from the number before
  *   numbers     where triangles are left out, of each a varint: its number, as difference from the one before
  *
  * Varints have seven bits a byte, the lowest first. A code of 16 or 24 bits is the zigzag difference from the vertex

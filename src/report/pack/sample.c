@@ -40,7 +40,7 @@ static void take_findings(growth *w, const nt_report *report, uint32_t mesh)
 				take(w, finding->spots[k].triangle);
 	}
 	const nt_report_mesh *m = &report->meshes[mesh];
-	for (size_t i = 0; i < m->seam_count; i++) {
+	for (size_t i = 0; i < m->seam_count + m->hard_count; i++) {
 		const nt_seam *seam = &m->seams[i];
 		for (size_t k = 0; k < seam->edge_count && k < NT_SEAM_EDGES; k++) {
 			take(w, seam->edges[k].triangles[0]);

@@ -10,7 +10,7 @@
  *                       facts: [[name, text]],
  *                       images: [{image, map: [6], file}] of normal map and base colour: numbers of images, and URIs,
  *                       or null, wrap: [nt_wrap, nt_wrap], seams: [[edges, closed, length, plane, unmirrored island,
- *                       mirrored island]], geometry: bool}
+ *                       mirrored island, 1: hard edges; else not there]], geometry: bool}
  *             finding:  {code, severity, count, known, message, mesh, seam, island, where, box, at: [triangle],
  *                       votes: [[percent]] of a normal map's blocks, rows from the top, green up above 0; or null,
  *                       repair: the command, not there if nmtan cannot repair it}
@@ -118,7 +118,7 @@ static bool has_geometry(const nt_report_mesh *m)
 	return m->geometry && m->geometry->triangle_count;
 }
 
-static void put_seam(const nt_seam *seam, nt_buffer *out)
+static void put_seam(const nt_seam *seam, bool hard, nt_buffer *out)
 {
 	nt_buffer_format(out, "[%zu,%s,%.6g,", seam->edge_count, seam->closed ? "true" : "false",
 		isfinite(seam->length) ? seam->length : 0.0);
@@ -127,7 +127,7 @@ static void put_seam(const nt_seam *seam, nt_buffer *out)
 		nt_buffer_text(out, ",");
 		nt_json_index(seam->islands[side], out);
 	}
-	nt_buffer_text(out, "]");
+	nt_buffer_text(out, hard ? ",1]" : "]");
 }
 
 static void begin_fact(const char *name, nt_buffer *out)
@@ -219,9 +219,10 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 		put_image(&m->pictures[p], &left->images[p], left, out);
 	}
 	nt_buffer_format(out, "],\"wrap\":[%d,%d],\"seams\":[", (int)m->wrap[0], (int)m->wrap[1]);
-	for (size_t i = 0; m->seams && i < m->seam_count && left->seams > 0; i++, left->seams--) {
+	const size_t seams = m->seams ? m->seam_count + m->hard_count : 0;
+	for (size_t i = 0; i < seams && left->seams > 0; i++, left->seams--) {
 		nt_buffer_text(out, i ? "," : "");
-		put_seam(&m->seams[i], out);
+		put_seam(&m->seams[i], i >= m->seam_count, out);
 	}
 	nt_buffer_text(out, "]}");
 }

@@ -417,7 +417,7 @@ static void put_finding(nt_buffer *out, const nt_report *report, const nt_report
 	put_digest(out, "geometry", finding->geometry);
 	put_bool(out, "known", finding->known);
 	put_index(out, "mesh", finding->mesh);
-	put_index(out, "seam", finding->seam);
+	put_index(out, "seam", finding->code == NT_CODE_UV_HARD_EDGE ? NT_NONE : finding->seam);
 	put_index(out, "island", finding->island);
 	put_place(out, "place", report, &finding->place);
 	key(out, SAME_LINE, "box");

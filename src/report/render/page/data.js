@@ -39,7 +39,8 @@ files.forEach((file, f) => {
 		const shown = file.meshes[mesh.same_as ?? m];
 		mesh.source = 'g-' + f + '-' + shown.number;
 		mesh.hasGeometry = shown.geometry;
-		mesh.seamList = shown.seams;
+		mesh.seamList = shown.seams; // nets of hard edges come behind the mirror seams
+		mesh.mirrorSeams = shown.seams.filter(seam => !seam[6]).length;
 		// normal map, base colour: {source, file, map}, of which source and file may be null
 		mesh.pictures = shown.images.map(({image, file, map}) => ({source: image === null ? null : data.images[image], file,
 			map: determinant(map) ? map : [1, 0, 0, 0, 1, 0]}));
@@ -54,7 +55,7 @@ files.forEach((file, f) => {
 	if (file.page) return; // a row of a folder's index has the sums
 	file.triangles = file.meshes.reduce((sum, mesh) => sum + mesh.triangles, 0);
 	file.islands = file.meshes.reduce((sum, mesh) => sum + mesh.islands, 0);
-	file.seams = file.meshes.reduce((sum, mesh) => sum + mesh.seams.length, 0);
+	file.seams = file.meshes.reduce((sum, mesh) => sum + mesh.mirrorSeams, 0);
 });
 
 // ---- geometry ----
@@ -181,7 +182,7 @@ function readOutlines(bytes) {
 	return regions;
 }
 
-// The edges of each seam: [unmirrored from, to, mirrored from, to]...
+// The edges of each seam, or net of hard edges: [unmirrored from, to, mirrored from, to]...
 function readSeams(bytes, seams) {
 	const from = new Varints(bytes), list = [];
 	let vertex = 0;
@@ -217,6 +218,7 @@ async function readGeometry(mesh) {
 	g.islands = streams.islands ? readDifferences(streams.islands, triangles) : new Int32Array(triangles);
 	g.regions = readOutlines(streams.outlines);
 	g.seams = readSeams(streams.seams, streams.seams ? Math.max(mesh.seamList.length, 1) : 0);
+	g.firstHard = mesh.mirrorSeams;
 	g.numbers = streams.numbers ? new Map() : null;
 	const from = new Varints(streams.numbers);
 	for (let t = 0, number = 0; g.numbers && t < triangles; t++) g.numbers.set(number += from.next(), t);

@@ -105,7 +105,7 @@ class Twin {
 			main.querySelector('h2').textContent = name + versions[number];
 			title.textContent = name + versions[1 - number];
 			legend.textContent = !other ? '' : i ? plural(other.triangles, 'triangle') + ' · ' + plural(other.vertices, 'vertex', 'vertices') :
-				plural(other.islands, 'island') + ' · ' + plural(other.seamList.length, 'mirror seam');
+				plural(other.islands, 'island') + ' · ' + plural(other.mirrorSeams, 'mirror seam');
 			main.style.order = 2 * i + number;
 			figure.style.order = 2 * i + 1 - number;
 			empty.textContent = other ? other.hasGeometry ? '' : 'No triangles to show.' : 'This version does not have the mesh.';

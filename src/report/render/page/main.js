@@ -20,7 +20,7 @@ function layoutInk() {
 	return (themeCache ||= {}).layout ||= {stage: colourOf('--stage'), model: colourOf('--model'), grid: colourOf('--grid'), faint: colourOf('--grid-faint'), soft: colourOf('--soft'),
 		plainFill: colourOf('--plain') + '66', plainLine: colourOf('--plain-line'), mirroredFill: colourOf('--mirrored') + '66',
 		mirroredLine: colourOf('--mirrored-line'), hatch: colourOf('--mirrored-line') + '99', overlap: rgb(colourOf('--twice')).map(x => 255 * x),
-		seam: colourOf('--seam'), label: colourOf('--label'), labelText: colourOf('--label-text'),
+		seam: colourOf('--seam'), hard: colourOf('--hard'), label: colourOf('--label'), labelText: colourOf('--label-text'),
 		chosen: colourOf('--chosen'), chosenFill: colourOf('--chosen') + 'b0', chosenLine: colourOf('--chosen-line'), wire: colourOf('--wire')};
 }
 
@@ -61,10 +61,10 @@ function resolve({finding, island, seam, triangle}) {
 		return {triangles, seams, spots: local, text: finding.message, related: []};
 	}
 	if (seam !== undefined) {
-		const [edges, closed, long, plane, a, b] = mesh.seamList[seam] || [];
+		const [edges, closed, long, plane, a, b, hard] = mesh.seamList[seam] || [];
 		return {triangles: trianglesOfSeam(geometry, seam), seams: [seam], related: mine.filter(x => x.seam === seam),
-			text: 'Mirror seam ' + seam + (edges ? ': ' + plural(edges, 'edge') + (closed ? ', closed' : '') + ', length ' + Number(long.toPrecision(4)) +
-				(plane ? ', in ' + plane : '') + (a !== null ? ', between island ' + a + ' and ' + (a === b ? 'itself' : b) : '') : '')};
+			text: (hard ? 'Hard edges ' : 'Mirror seam ') + seam + (edges ? ': ' + plural(edges, 'edge') + (closed ? ', closed' : '') + ', length ' + Number(long.toPrecision(4)) +
+				(plane ? ', in ' + plane : '') + (a !== null && !hard ? ', between island ' + a + ' and ' + (a === b ? 'itself' : b) : '') : '')};
 	}
 	if (triangle !== undefined) {
 		const number = geometry.numbers ? [...geometry.numbers].find(([, t]) => t === triangle)[0] : triangle;
@@ -171,7 +171,7 @@ function openMesh(next) {
 	$('facts').replaceChildren(element('dt', {}, 'tangents'), element('dd', {}, mesh.why),
 		...mesh.facts.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]));
 	$('summary-of-mesh').textContent = mesh.triangles ? [plural(mesh.triangles, 'triangle'), plural(mesh.vertices, 'vertex', 'vertices'), plural(mesh.islands, 'island'),
-		plural(mesh.seamList.length, 'mirror seam')].join(' · ') : mesh.why;
+		plural(mesh.mirrorSeams, 'mirror seam')].join(' · ') : mesh.why;
 	offerPictures();
 	layout.load(mesh, null);
 	space?.load(mesh, null);

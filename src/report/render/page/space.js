@@ -8,7 +8,7 @@ const MOST_OUTLINED = 8; // as many as a finding has places
 const HALF_VIEW = 0.35; // half the angle of view, of the shorter side: a sphere that fits it fits the other
 const WHOLE = 0.5 / Math.sin(HALF_VIEW); // from here a sphere fits whose diameter is 1
 const SELECTED = [1.0, 0.83, 0.1];
-const SEAM = [1.0, 0.58, 0.0];
+const SEAM = [1.0, 0.58, 0.0], HARD = [0.1, 0.85, 0.72];
 const AXES = [[0.93, 0.2, 0.2], [0.1, 0.72, 0.25], [0.25, 0.45, 1]];
 
 // A field of domes: a test pattern for meshes without a normal map, green up, as glTF has it.
@@ -130,7 +130,7 @@ class Space {
 			this.fillTexture('bump', gl => { const {size, pixels} = domes(); gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, size, size, 0, gl.RGBA, gl.UNSIGNED_BYTE, pixels); });
 			this.loadImage('bump', mesh.pictures[0].source);
 			this.loadImage('base', mesh.pictures[1].source);
-			this.seamLines = this.lineArray(this.seamSegments(g.seams.map((_, i) => i), SEAM));
+			this.seamLines = this.lineArray(g.seams.flatMap((_, i) => this.seamSegments([i], i < g.firstHard ? SEAM : HARD)));
 			this.home();
 		}
 		this.draw();

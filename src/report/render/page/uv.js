@@ -358,7 +358,7 @@ class Layout {
 		for (const pass of [0, 1]) this.seams.forEach((sides, i) => sides.forEach(({path}) => {
 			const wide = chosen.has(i) ? 4.5 : 2.6;
 			c.lineWidth = (pass ? wide : wide + 4) / scale;
-			c.strokeStyle = !pass ? ink.chosenLine : chosen.has(i) ? ink.chosen : ink.seam;
+			c.strokeStyle = !pass ? ink.chosenLine : chosen.has(i) ? ink.chosen : i < this.geometry.firstHard ? ink.seam : ink.hard;
 			if (!pass && !chosen.has(i)) return;
 			c.stroke(path);
 		}));

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Hard edges inside a UV island: the normals of both sides differ, the texture coordinates do not. A baker makes the
+ * texels of each side for its own normals, and filtering mixes them along the edge. edges.c finds them; here those that
+ * hang together at points become one finding: a loop, a chain or a net. (Every edge of a faceted model is hard: chains
+ * that end where three edges meet would be as many findings as edges.)
+ *
+ * Linear in the number of hard edges, but for the sort of nets by length, and of points if there are any.
+ */
+#include "report/check.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double DEGREES = 57.29577951308232;
+
+/* Hard edges that hang together: edges[first] to edges[first + count - 1]. */
+typedef struct net {
+	size_t first, count, ends; /* ends: points where one edge ends */
+	bool forks;                /* more than two edges meet somewhere */
+	double length;
+	float cosine;              /* of the widest angle between normals */
+} net;
+
+typedef struct nets {
+	net *items;        /* [count] the longest first */
+	size_t count;
+	uint32_t *numbers; /* [hard_edge_count] net of each edge, as they were found */
+	uint32_t *edges;   /* [hard_edge_count] */
+} nets;
+
+/* ---- which edges hang together ---- */
+
+static uint32_t end_of(const nt_check *check, size_t edge, int end)
+{
+	const uint32_t side = check->hard_edges[edge].sides[0];
+	return nt_side_point(&check->surface, end ? nt_side_next(side) : side);
+}
+
+static uint32_t find_root(uint32_t *parents, uint32_t i)
+{
+	while (parents[i] != i)
+		i = parents[i] = parents[parents[i]];
+	return i;
+}
+
+/* Numbers nets by their lowest edges. degrees: [point_count] hard edges at each point, 3: more than two. */
+static nt_status number_nets(const nt_check *check, nets *n, uint8_t *degrees)
+{
+	const size_t points = check->surface.point_count;
+	uint32_t *parents = nt_scratch_alloc(check->scratch, points, sizeof *parents);
+	uint32_t *of_root = nt_scratch_alloc(check->scratch, points, sizeof *of_root);
+	n->numbers = nt_scratch_alloc(check->scratch, check->hard_edge_count, sizeof *n->numbers);
+	if (!parents || !of_root || !n->numbers)
+		return NT_ERROR_MEMORY;
+	memset(degrees, 0, points);
+	memset(of_root, 0xff, points * sizeof *of_root);
+	for (size_t p = 0; p < points; p++)
+		parents[p] = (uint32_t)p;
+	for (size_t i = 0; i < check->hard_edge_count; i++) {
+		const uint32_t a = find_root(parents, end_of(check, i, 0)), b = find_root(parents, end_of(check, i, 1));
+		parents[a > b ? a : b] = a > b ? b : a;
+		for (int end = 0; end < 2; end++)
+			degrees[end_of(check, i, end)] += degrees[end_of(check, i, end)] < 3;
+	}
+	n->count = 0;
+	for (size_t i = 0; i < check->hard_edge_count; i++) {
+		uint32_t *number = &of_root[find_root(parents, end_of(check, i, 0))];
+		if (*number == NT_NONE)
+			*number = (uint32_t)n->count++;
+		n->numbers[i] = *number;
+	}
+	return NT_OK;
+}
+
+static double length_of(const nt_check *check, size_t edge)
+{
+	const uint32_t side = check->hard_edges[edge].sides[0];
+	double ends[2][3], square = 0.0;
+	nt_world_point(check->facts, nt_side_position(&check->surface, side), ends[0]);
+	nt_world_point(check->facts, nt_side_position(&check->surface, nt_side_next(side)), ends[1]);
+	for (int i = 0; i < 3; i++)
+		square += (ends[1][i] - ends[0][i]) * (ends[1][i] - ends[0][i]);
+	return sqrt(square);
+}
+
+static int longest_first(const void *a, const void *b)
+{
+	const net *x = a, *y = b;
+	if (x->length != y->length)
+		return x->length > y->length ? -1 : 1;
+	return x->first < y->first ? -1 : x->first > y->first;
+}
+
+/* Sums up each net, lists its edges, and sorts. */
+static void measure_nets(const nt_check *check, nets *n, const uint8_t *degrees)
+{
+	for (size_t i = 0; i < n->count; i++)
+		n->items[i] = (net){.cosine = 1.0f};
+	for (size_t i = 0; i < check->hard_edge_count; i++) {
+		net *one = &n->items[n->numbers[i]];
+		one->count++;
+		one->length += length_of(check, i);
+		one->cosine = fminf(one->cosine, check->hard_edges[i].cosine);
+		for (int end = 0; end < 2; end++) {
+			one->forks |= degrees[end_of(check, i, end)] > 2;
+			one->ends += degrees[end_of(check, i, end)] == 1;
+		}
+	}
+	size_t first = 0;
+	for (size_t i = 0; i < n->count; i++) {
+		n->items[i].first = first;
+		first += n->items[i].count;
+		n->items[i].count = 0;
+	}
+	for (size_t i = 0; i < check->hard_edge_count; i++) {
+		net *one = &n->items[n->numbers[i]];
+		n->edges[one->first + one->count++] = (uint32_t)i;
+	}
+	qsort(n->items, n->count, sizeof *n->items, longest_first);
+}
+
+/* ---- findings ---- */
+
+static void tally_net(const nt_check *check, const nets *n, const net *one, nt_tally *tally)
+{
+	for (size_t i = one->first; i < one->first + one->count; i++) {
+		const nt_edge_pair *edge = &check->hard_edges[n->edges[i]];
+		nt_tally_side(check, tally, edge->sides[0], acos(edge->cosine) * DEGREES);
+	}
+}
+
+/* An info unless a normal map is asked for. */
+static nt_severity severity_of(const nt_check *check)
+{
+	return check->mesh->slots & (NT_SLOT_NORMAL | NT_SLOT_CLEARCOAT_NORMAL) ? NT_SEVERITY_WARNING
+		: NT_SEVERITY_INFO;
+}
+
+/* Keeps a net as a page draws it: seam of the mesh. */
+static bool keep_net(nt_check *check, const nets *n, const net *one, nt_seam *seam)
+{
+	const size_t kept = one->count < NT_SEAM_EDGES ? one->count : NT_SEAM_EDGES;
+	*seam = (nt_seam){.closed = !one->forks && one->ends == 0, .edge_count = one->count, .length = one->length,
+		.edges = nt_arena_alloc(&check->report->arena, kept, sizeof *seam->edges), .box = nt_box_empty()};
+	for (size_t i = 0; seam->edges && i < kept; i++) {
+		const nt_edge_pair *edge = &check->hard_edges[n->edges[one->first + i]];
+		seam->edges[i] = nt_describe_edge(check, edge, nt_side_point(&check->surface, edge->sides[0]));
+		for (int side = 0; side < 2 && i == 0; side++)
+			seam->islands[side] = check->islands[edge->sides[side] / 3];
+	}
+	return seam->edges != NULL;
+}
+
+static void report_net(nt_check *check, const nets *n, const net *one, size_t seam)
+{
+	nt_tally tally = {.code = NT_CODE_UV_HARD_EDGE, .seam = (uint32_t)seam + 1, .rank = one->length};
+	tally_net(check, n, one, &tally);
+	nt_tally_number(&tally, "length", one->length);
+	nt_tally_number(&tally, "angle_max_degrees", acos(one->cosine) * DEGREES);
+	nt_check_report_as(check, &tally, severity_of(check), "%s of length %.4g, normals up to %.3g degrees apart",
+		one->forks ? "a net" : one->ends ? "an open chain" : "a closed loop", one->length,
+		acos(one->cosine) * DEGREES);
+}
+
+static nt_status report_nets(nt_check *check, const nets *n)
+{
+	nt_report_mesh *facts = check->facts;
+	const size_t before = facts->seam_count, single = n->count < NT_SINGLE_FINDINGS ? n->count : NT_SINGLE_FINDINGS;
+	nt_seam *all = nt_arena_alloc(&check->report->arena, before + single, sizeof *all);
+	nt_tally rest = {.code = NT_CODE_UV_HARD_EDGE};
+	if (!all)
+		return NT_ERROR_MEMORY;
+	if (before)
+		memcpy(all, facts->seams, before * sizeof *all);
+	facts->seams = all;
+	facts->hard_count = single;
+	for (size_t i = 0; i < n->count; i++) {
+		if (i >= single)
+			tally_net(check, n, &n->items[i], &rest);
+		else if (keep_net(check, n, &n->items[i], &all[before + i]))
+			report_net(check, n, &n->items[i], before + i);
+		else
+			return NT_ERROR_MEMORY;
+	}
+	nt_check_report_as(check, &rest, severity_of(check), "%zu further nets, one finding together beyond the first %d",
+		n->count - single, NT_SINGLE_FINDINGS);
+	return NT_OK;
+}
+
+nt_status nt_check_hard_edges(nt_check *check)
+{
+	if (!check->hard_edge_count)
+		return NT_OK;
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	nets n = {.edges = nt_scratch_alloc(check->scratch, check->hard_edge_count, sizeof *n.edges)};
+	uint8_t *degrees = nt_scratch_alloc(check->scratch, check->surface.point_count, 1);
+	nt_status status = n.edges && degrees ? number_nets(check, &n, degrees) : NT_ERROR_MEMORY;
+	if (!status && !(n.items = nt_scratch_alloc(check->scratch, n.count, sizeof *n.items)))
+		status = NT_ERROR_MEMORY;
+	if (!status) {
+		measure_nets(check, &n, degrees);
+		status = report_nets(check, &n);
+	}
+	nt_scratch_back(check->scratch, mark);
+	return status;
+}
