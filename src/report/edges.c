@@ -159,8 +159,8 @@ static void find_mirror(const nt_edge_side *sides, size_t count, edge_lists *lis
 }
 
 /*
- * The cosine of 20 degrees, from which on an edge is hard. Of 1 321 public files 239 have edges between different
- * normals inside an island, 112 000 together. Fewest lie between 15 and 25 degrees (3 096): below are rounded normals and
+ * The cosine of 20 degrees, from which on an edge is hard. 239 of 1 321 public files have edges between different
+ * normals inside an island, 112 000 together. Fewest have 15 to 25 degrees (3 096): below are rounded normals and
  * finely faceted spheres, above what was meant to be an edge. Any limit from 15 to 30 names the same 225 files.
  */
 static const double HARD_COSINE = 0.9396926207859084;
@@ -182,7 +182,8 @@ static void find_hard(const nt_check *check, const nt_edge_side *sides, edge_lis
 {
 	const nt_surface *s = &check->surface;
 	const uint32_t a = sides[0].side, b = sides[1].side;
-	if (!nt_edge_orientation(&sides[0]) || !nt_edge_orientation(&sides[1]) || nt_edge_same_way(&sides[0], &sides[1]))
+	if (!nt_edge_orientation(&sides[0]) || !nt_edge_orientation(&sides[1]) ||
+		nt_edge_same_way(&sides[0], &sides[1]))
 		return;
 	const double first = squared_cosine(s, a, nt_side_next(b)), second = squared_cosine(s, nt_side_next(a), b);
 	const double least = first < second ? first : second;

@@ -74,17 +74,6 @@ static nt_status number_nets(const nt_check *check, nets *n, uint8_t *degrees)
 	return NT_OK;
 }
 
-static double length_of(const nt_check *check, size_t edge)
-{
-	const uint32_t side = check->hard_edges[edge].sides[0];
-	double ends[2][3], square = 0.0;
-	nt_world_point(check->facts, nt_side_position(&check->surface, side), ends[0]);
-	nt_world_point(check->facts, nt_side_position(&check->surface, nt_side_next(side)), ends[1]);
-	for (int i = 0; i < 3; i++)
-		square += (ends[1][i] - ends[0][i]) * (ends[1][i] - ends[0][i]);
-	return sqrt(square);
-}
-
 static int longest_first(const void *a, const void *b)
 {
 	const net *x = a, *y = b;
@@ -101,7 +90,9 @@ static void measure_nets(const nt_check *check, nets *n, const uint8_t *degrees)
 	for (size_t i = 0; i < check->hard_edge_count; i++) {
 		net *one = &n->items[n->numbers[i]];
 		one->count++;
-		one->length += length_of(check, i);
+		const uint32_t side = check->hard_edges[i].sides[0];
+		one->length += nt_world_length(check->facts, nt_side_position(&check->surface, side),
+			nt_side_position(&check->surface, nt_side_next(side)));
 		one->cosine = fminf(one->cosine, check->hard_edges[i].cosine);
 		for (int end = 0; end < 2; end++) {
 			one->forks |= degrees[end_of(check, i, end)] > 2;
@@ -158,7 +149,7 @@ static void report_net(nt_check *check, const nets *n, const net *one, size_t se
 	nt_tally tally = {.code = NT_CODE_UV_HARD_EDGE, .seam = (uint32_t)seam + 1, .rank = one->length};
 	tally_net(check, n, one, &tally);
 	nt_tally_number(&tally, "length", one->length);
-	nt_tally_number(&tally, "angle_max_degrees", acos(one->cosine) * DEGREES);
+	nt_tally_number(&tally, "worst_degrees", acos(one->cosine) * DEGREES);
 	nt_check_report_as(check, &tally, severity_of(check), "%s of length %.4g, normals up to %.3g degrees apart",
 		one->forks ? "a net" : one->ends ? "an open chain" : "a closed loop", one->length,
 		acos(one->cosine) * DEGREES);
@@ -184,8 +175,8 @@ static nt_status report_nets(nt_check *check, const nets *n)
 		else
 			return NT_ERROR_MEMORY;
 	}
-	nt_check_report_as(check, &rest, severity_of(check), "%zu further nets, one finding together beyond the first %d",
-		n->count - single, NT_SINGLE_FINDINGS);
+	nt_check_report_as(check, &rest, severity_of(check),
+		"%zu further nets, one finding together beyond the first %d", n->count - single, NT_SINGLE_FINDINGS);
 	return NT_OK;
 }
 

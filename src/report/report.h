@@ -12,6 +12,7 @@
 #ifndef NT_REPORT_REPORT_H
 #define NT_REPORT_REPORT_H
 
+#include <math.h>
 #include "report/maker.h"
 #include "base/memory.h"
 #include "file/shown_path.h"
@@ -242,6 +243,17 @@ static inline void nt_world_point(const nt_report_mesh *mesh, const float point[
 		shown[i] = !mesh->is_scaled ? (double)point[i]
 			: m[0] * (double)point[0] + m[4] * (double)point[1] + m[8] * (double)point[2] + m[12];
 	}
+}
+
+/* The length between two places, as it is shown. */
+static inline double nt_world_length(const nt_report_mesh *mesh, const float a[3], const float b[3])
+{
+	double ends[2][3], square = 0.0;
+	nt_world_point(mesh, a, ends[0]);
+	nt_world_point(mesh, b, ends[1]);
+	for (int i = 0; i < 3; i++)
+		square += (ends[1][i] - ends[0][i]) * (ends[1][i] - ends[0][i]);
+	return sqrt(square);
 }
 
 typedef struct nt_report {

@@ -163,16 +163,6 @@ nt_seam_edge nt_describe_edge(const nt_check *check, const nt_edge_pair *edge, u
 	return result;
 }
 
-static double edge_length(const nt_report_mesh *facts, const nt_seam_edge *edge)
-{
-	double ends[2][3], square = 0.0;
-	for (int end = 0; end < 2; end++)
-		nt_world_point(facts, edge->positions[end], ends[end]);
-	for (int i = 0; i < 3; i++)
-		square += (ends[1][i] - ends[0][i]) * (ends[1][i] - ends[0][i]);
-	return sqrt(square);
-}
-
 /* ---- the plane ---- */
 
 /* Sums over a seam's edges for fitting a plane. */
@@ -299,7 +289,7 @@ static nt_status describe_seam(nt_check *check, const nt_chains *chains, size_t 
 		const nt_seam_edge edge = nt_describe_edge(check, mirror, from);
 		if (i < kept)
 			seam->edges[i] = edge;
-		seam->length += edge_length(check->facts, &edge);
+		seam->length += nt_world_length(check->facts, edge.positions[0], edge.positions[1]);
 		widen(seam->dihedral, edge.dihedral);
 		widen(seam->tangent_angle, edge.tangent_angle);
 		compare_frames(check, mirror, from, seam);

@@ -454,9 +454,15 @@ says "--min-severity needs --report, --check or --fail-on"
 run --check --min-severity=never many.obj
 exits 1
 
-scene "a baseline of one file waives nothing in another"
+# A mesh whose findings have the same fingerprints, at other positions.
+moved() {
+	awk '$1 == "v" { $2 += 0.25 } 1' "$1"
+}
+
+scene "a baseline of one file waives nothing in another, but where both have the same positions"
 halves 0.5 >one.obj
-cp one.obj two.obj
+moved one.obj >two.obj
+cp one.obj copy.obj
 run -q --check --fail-on=never --report=one.json one.obj
 run --check --fail-on=info --baseline=one.json one.obj
 exits 0
@@ -464,6 +470,8 @@ run --check --fail-on=info --baseline=one.json ./one.obj
 exits 0
 run --check --fail-on=info --baseline=one.json two.obj
 exits 6
+run --check --fail-on=info --baseline=one.json copy.obj
+exits 0
 
 # The names of a report's files.
 names() {
@@ -473,7 +481,7 @@ names() {
 scene "two files of one name are two, wherever they are named from"
 mkdir -p a/b run
 halves 0.5 >a/m.obj
-cp a/m.obj a/b/m.obj
+moved a/m.obj >a/b/m.obj
 run -q --check --fail-on=never --report=r.json "$PWD/a/m.obj" a/b/m.obj
 is "$(names r.json)" "a/m.obj a/b/m.obj"
 run -q --check --fail-on=never --path-prefix=art --report=r.json "$PWD/a/m.obj" a/b/../m.obj
@@ -503,7 +511,7 @@ scene "objects and files that were renamed have no new findings"
 run -q --check --fail-on=never --report=old.json old.obj
 sed 's/^o .*/o Head.001/' old.obj >renamed
 grep -v '^o ' old.obj >dropped
-awk '$1 == "v" { $2 += 0.25 } 1' renamed >moved
+moved renamed >moved
 for name in renamed dropped moved; do
 	run --check --diff --report=r.json old.obj $name
 	is "$name $(value r.json '[len(r[k]) > 0 for k in ("new_findings", "gone_findings")]')" \

@@ -5,7 +5,7 @@
 #ifndef NT_REPORT_RENDER_DIFF_H
 #define NT_REPORT_RENDER_DIFF_H
 
-#include "report/compare.h"
+#include "report/render/compare.h"
 #include "report/render/render.h"
 
 /* Whether there is a writer for it: NT_REPORT_TEXT, NT_REPORT_JSON, NT_REPORT_MARKDOWN and NT_REPORT_HTML have one. */

@@ -6,7 +6,7 @@
 #ifndef NT_REPORT_RENDER_WORDS_H
 #define NT_REPORT_RENDER_WORDS_H
 
-#include "report/compare.h"
+#include "report/render/compare.h"
 
 typedef struct nt_report_style {
 	bool colour;       /* text: for a terminal */

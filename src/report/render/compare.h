@@ -2,8 +2,8 @@
 /*
  * Changes between two versions of an asset: in its tangents, its seams and what is found.
  */
-#ifndef NT_REPORT_COMPARE_H
-#define NT_REPORT_COMPARE_H
+#ifndef NT_REPORT_RENDER_COMPARE_H
+#define NT_REPORT_RENDER_COMPARE_H
 
 #include "report/report.h"
 

@@ -4,7 +4,7 @@
  * positions, which are hashed from the least of the three corners on. Findings, meshes and triangles are paired alike:
  * by a key, each thing once.
  */
-#include "report/compare.h"
+#include "report/render/compare.h"
 
 #include <math.h>
 #include <stdlib.h>
