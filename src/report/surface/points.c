@@ -2,10 +2,16 @@
 /*
  * Points: vertices whose positions are equal, compared as floats (0 equals -0, NaN equals nothing, no epsilon),
  * numbered by the first side that begins at any of them.
+ *
+ * A sheet that is there twice, front and back, shares no edge for MikkTSpace, which compares normals too. So its points
+ * are two: if all triangles at a point lie on their reverse, with opposite normals, the vertices whose normals are
+ * against the first one's get a point of their own. Anything else that touches stays connected.
  */
 #include "report/surface/surface.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include "base/dvec.h"
 #include "base/hash.h"
 
 static bool same_position(const float *p, const float *q)
@@ -23,6 +29,131 @@ static uint32_t *find_place(uint32_t *table, size_t mask, const nt_mesh *mesh, c
 	return &table[at];
 }
 
+/* ---- sheets that are there twice ---- */
+
+/* Whether the normals of two vertices look the same way, 1, or opposite ways, -1, by 60 degrees at most; else 0. */
+static int compare_normals(const nt_mesh *mesh, uint32_t a, uint32_t b)
+{
+	const nt_dvec3 x = nt_dvec3_load(mesh->normals + 3 * (size_t)a);
+	const nt_dvec3 y = nt_dvec3_load(mesh->normals + 3 * (size_t)b);
+	const double dot = nt_dvec3_dot(x, y), both = nt_dvec3_dot(x, x) * nt_dvec3_dot(y, y);
+	return !(dot * dot >= 0.25 * both && both > 0.0) ? 0 : dot > 0.0 ? 1 : -1;
+}
+
+/* A triangle by its points, ascending. */
+typedef struct pointed {
+	uint32_t points[3], triangle;
+	bool odd; /* they were put in order by an odd permutation */
+} pointed;
+
+static int by_points(const void *a, const void *b)
+{
+	const pointed *x = a, *y = b;
+	for (int i = 0; i < 3; i++)
+		if (x->points[i] != y->points[i])
+			return x->points[i] < y->points[i] ? -1 : 1;
+	return x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
+}
+
+static pointed point_triangle(const nt_surface *s, size_t t)
+{
+	pointed p = {.triangle = (uint32_t)t};
+	for (size_t k = 0; k < 3; k++) {
+		const uint32_t point = nt_side_point(s, 3 * t + k);
+		size_t at = k;
+		for (; at > 0 && point < p.points[at - 1]; at--, p.odd = !p.odd)
+			p.points[at] = p.points[at - 1];
+		p.points[at] = point;
+	}
+	return p;
+}
+
+/* Whether two triangles of the same points are each other's reverse and lit so. */
+static bool is_reverse(const nt_surface *s, const pointed *a, const pointed *b)
+{
+	if (a->odd == b->odd)
+		return false;
+	for (size_t side = 3 * (size_t)a->triangle; side < 3 * (size_t)a->triangle + 3; side++)
+		for (size_t other = 3 * (size_t)b->triangle; other < 3 * (size_t)b->triangle + 3; other++)
+			if (nt_side_point(s, side) == nt_side_point(s, other) &&
+				compare_normals(s->mesh, nt_side_vertex(s, side), nt_side_vertex(s, other)) >= 0)
+				return false;
+	return true;
+}
+
+/* doubled: [point_count] bits, in: points with opposite normals; out: those where all triangles are there twice. */
+static nt_status find_doubled(const nt_surface *s, uint64_t *doubled, nt_scratch *scratch)
+{
+	const size_t words = nt_bit_words(s->triangle_count);
+	uint64_t *paired = nt_scratch_alloc(scratch, words, sizeof *paired);
+	size_t count = 0;
+	for (size_t pass = 0; paired && pass < 2; pass++) {
+		pointed *list = pass ? nt_scratch_alloc(scratch, count, sizeof *list) : NULL;
+		if (pass && !list)
+			return NT_ERROR_MEMORY;
+		count = 0;
+		for (size_t t = 0; t < s->triangle_count; t++) {
+			bool all = true;
+			for (size_t k = 0; k < 3 && all; k++)
+				all = nt_bit(doubled, nt_side_point(s, 3 * t + k));
+			if (all && pass)
+				list[count] = point_triangle(s, t);
+			count += all;
+		}
+		if (!pass)
+			continue;
+		memset(paired, 0, words * sizeof *paired);
+		qsort(list, count, sizeof *list, by_points);
+		for (size_t i = 0, end; i < count; i = end) {
+			for (end = i + 1; end < count && memcmp(list[i].points, list[end].points,
+				sizeof list[i].points) == 0;)
+				end++;
+			if (end - i != 2 || !is_reverse(s, &list[i], &list[i + 1]))
+				continue;
+			nt_bit_set(paired, list[i].triangle);
+			nt_bit_set(paired, list[i + 1].triangle);
+		}
+	}
+	for (size_t side = 0; paired && side < 3 * s->triangle_count; side++)
+		if (!nt_bit(paired, side / 3))
+			nt_bit_clear(doubled, nt_side_point(s, side));
+	return paired ? NT_OK : NT_ERROR_MEMORY;
+}
+
+/* Gives the backs of doubled points points of their own, behind all others. */
+static nt_status separate_sheets(nt_surface *s, uint64_t *doubled, nt_scratch *scratch)
+{
+	const size_t before = s->point_count;
+	const nt_status status = find_doubled(s, doubled, scratch);
+	uint32_t *front = nt_scratch_alloc(scratch, before, sizeof *front);
+	uint32_t *back = nt_scratch_alloc(scratch, before, sizeof *back);
+	if (status || !front || !back)
+		return NT_ERROR_MEMORY;
+	memset(front, 0xff, before * sizeof *front);
+	memset(back, 0xff, before * sizeof *back);
+	for (size_t side = 0; side < 3 * s->triangle_count; side++) {
+		const uint32_t v = nt_side_vertex(s, side), point = s->points[v];
+		if (!nt_bit(doubled, point))
+			continue;
+		if (front[point] == NT_NONE)
+			front[point] = v;
+		if (!compare_normals(s->mesh, front[point], v))
+			nt_bit_clear(doubled, point);
+	}
+	for (size_t side = 0; side < 3 * s->triangle_count; side++) {
+		const uint32_t v = nt_side_vertex(s, side), point = s->points[v];
+		if (point >= before || !nt_bit(doubled, point) || compare_normals(s->mesh, front[point], v) > 0)
+			continue;
+		if (back[point] == NT_NONE)
+			back[point] = (uint32_t)s->point_count++;
+		s->points[v] = back[point];
+		nt_bit_set(s->joints, back[point]);
+	}
+	return NT_OK;
+}
+
+/* ---- welding ---- */
+
 nt_status nt_surface_weld(nt_surface *s, nt_scratch *scratch)
 {
 	const nt_mesh *mesh = s->mesh;
@@ -34,11 +165,14 @@ nt_status nt_surface_weld(nt_surface *s, nt_scratch *scratch)
 	s->points = nt_scratch_alloc(scratch, vertices, sizeof *s->points);
 	s->joints = nt_scratch_alloc(scratch, nt_bit_words(vertices), sizeof *s->joints);
 	const nt_scratch_mark mark = nt_scratch_here(scratch);
+	uint64_t *opposed = nt_scratch_alloc(scratch, nt_bit_words(vertices), sizeof *opposed);
+	size_t opposed_count = 0;
 	uint32_t *table = nt_scratch_alloc(scratch, size, sizeof *table);
-	if (!s->points || !s->joints || !table)
+	if (!s->points || !s->joints || !opposed || !table)
 		return NT_ERROR_MEMORY;
 	memset(s->points, 0xff, vertices * sizeof *s->points);
 	memset(s->joints, 0, nt_bit_words(vertices) * sizeof *s->joints);
+	memset(opposed, 0, nt_bit_words(vertices) * sizeof *opposed);
 	memset(table, 0, size * sizeof *table);
 	s->point_count = 0;
 	for (size_t side = 0; side < sides; side++) {
@@ -51,9 +185,15 @@ nt_status nt_surface_weld(nt_surface *s, nt_scratch *scratch)
 		s->points[v] = *place ? s->points[*place - 1] : (uint32_t)s->point_count++;
 		if (*place || (uv && (uv[0] != uv[0] || uv[1] != uv[1])))
 			nt_bit_set(s->joints, s->points[v]);
+		if (*place && mesh->normals && compare_normals(mesh, *place - 1, v) < 0) {
+			nt_bit_set(opposed, s->points[v]);
+			opposed_count++;
+		}
 		if (same_position(position, position))
 			*place = v + 1;
 	}
+	/* a triangle has three */
+	const nt_status status = opposed_count > 2 ? separate_sheets(s, opposed, scratch) : NT_OK;
 	nt_scratch_back(scratch, mark);
-	return NT_OK;
+	return status;
 }

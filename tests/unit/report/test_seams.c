@@ -5,6 +5,7 @@
 #include "hand_mesh.h"
 
 #include <math.h>
+#include <string.h>
 #include <time.h>
 
 /* Two triangles over one edge, the third corners at the same UV: one is the other's mirror image. */
@@ -402,4 +403,80 @@ TEST(fingerprint_survives_other_indices_but_not_another_place)
 	h->mesh.name = "another";
 	assert_false(seam_fingerprint(h) == before);
 	hand_free(h, NULL);
+}
+
+/* A square with its back, whose corners have the same positions and texture coordinates. */
+static hand_mesh *double_sheet(bool opposed, unsigned back_triangles)
+{
+	static const float corners[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+	hand_mesh *h = hand_new();
+	for (unsigned side = 0; side < 2; side++)
+		for (size_t k = 0; k < 4; k++)
+			h->normals[hand_vertex(h, corners[k][0], corners[k][1], 0, corners[k][0], corners[k][1])][2] =
+				side && opposed ? -1.0f : 1.0f;
+	hand_quad(h, 0, 1, 2, 3);
+	hand_triangle(h, 6, 5, 4);
+	if (back_triangles == 2)
+		hand_triangle(h, 7, 6, 4);
+	hand_give_normals(h);
+	return h;
+}
+
+/* MikkTSpace compares normals: front and back share no edge, and have no mirror seam at their rim. With one normal they
+ * are one surface, and so is what hangs on something else. */
+TEST(front_and_back_of_a_sheet_with_opposite_normals_share_no_edge)
+{
+	static const struct {
+		bool opposed;
+		unsigned back;
+		size_t non_manifold, seams, islands, boundary, loops;
+	} rows[] = {
+		{true, 2, 0, 0, 2, 8, 2},
+		{false, 2, 1, 3, 1, 0, 0}, /* the diagonal of four triangles; the rim is shared by two */
+		/* the diagonal of three; the corner that has its back is two points, and the front's rim is closed */
+		{true, 1, 1, 1, 1, 6, 1},
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		hand_mesh *h = double_sheet(rows[i].opposed, rows[i].back);
+		nt_report *report = hand_report(h, NULL);
+		const nt_report_mesh *m = &report->meshes[0];
+		assert_int_equal(m->non_manifold_edges, rows[i].non_manifold);
+		assert_int_equal(m->seam_count, rows[i].seams);
+		assert_int_equal(m->island_count, rows[i].islands);
+		assert_int_equal(m->boundary_edges, rows[i].boundary);
+		assert_int_equal(m->boundary_loops, rows[i].loops);
+		hand_free(h, report);
+	}
+}
+
+/* The lid of one box and the bottom of another are each other's reverse, but both hang on walls: four edges of four
+ * faces, and the diagonal. */
+TEST(boxes_that_touch_are_not_opened)
+{
+	static const float n[6][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+	hand_mesh *h = hand_new();
+	for (size_t box = 0; box < 2; box++)
+		for (size_t i = 0; i < 6; i++) {
+			const float *a = n[(i + 1) % 3], *b = n[(i + 2) % 3];
+			const uint32_t first = (uint32_t)h->mesh.vertex_count;
+			for (size_t k = 0; k < 4; k++) {
+				const float x = k == 1 || k == 2, y = k > 1;
+				float p[3];
+				for (int axis = 0; axis < 3; axis++)
+					p[axis] = x * a[axis] + y * b[axis] + (i < 3 ? n[i][axis] : 0);
+				const uint32_t v = hand_vertex(h, p[0], p[1], p[2] + (float)box, x, y);
+				memcpy(h->normals[v], n[i], sizeof h->normals[v]);
+			}
+			if (i < 3)
+				hand_quad(h, first, first + 1, first + 2, first + 3);
+			else { /* the other way, cut along the same diagonal */
+				hand_triangle(h, first + 2, first + 1, first);
+				hand_triangle(h, first + 3, first + 2, first);
+			}
+		}
+	hand_give_normals(h);
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->meshes[0].non_manifold_edges, 5);
+	assert_int_equal(report->meshes[0].boundary_edges, 0);
+	hand_free(h, report);
 }
