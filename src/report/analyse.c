@@ -104,7 +104,7 @@ static nt_stored stored_tangents(const nt_mesh *mesh, bool written)
 	return mesh->tangents ? NT_STORED_AUTHORED : NT_STORED_NONE;
 }
 
-static void describe_surface(nt_check *check)
+static nt_status describe_surface(nt_check *check)
 {
 	nt_report_mesh *facts = check->facts;
 	facts->face_count = check->mesh->face_count;
@@ -115,7 +115,7 @@ static void describe_surface(nt_check *check)
 	facts->checked_tangents = check->stored != NT_STORED_NONE;
 	facts->maker.agreement = -1.0;
 	facts->analysed = true;
-	facts->digest = nt_digest_surface(&check->surface);
+	return nt_digest_surface(&check->surface, check->scratch, &facts->digest);
 }
 
 /* ---- what pictures need ---- */
@@ -252,8 +252,9 @@ static nt_status check_mesh(nt_check *check, size_t most_image_bytes[NT_PICTURE_
 	nt_status status = nt_surface_build(&check->surface, check->mesh, check->scratch);
 	if (status || check->surface.triangle_count == 0)
 		return status;
-	describe_surface(check);
-	status = run_checks(check);
+	status = describe_surface(check);
+	if (!status)
+		status = run_checks(check);
 	if (!status && check->options->keep_geometry)
 		status = keep_geometry(check);
 	if (!status)

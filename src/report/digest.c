@@ -26,16 +26,26 @@ static uint64_t mix_position(uint64_t hash, const float *p)
 }
 
 /* A turned triangle is the same, a reversed one is not: each corner is mixed with the one after it. */
-uint64_t nt_digest_surface(const nt_surface *surface)
+nt_status nt_digest_surface(const nt_surface *surface, nt_scratch *scratch, uint64_t *digest)
 {
-	uint64_t sum = 0;
+	const nt_scratch_mark mark = nt_scratch_here(scratch);
+	uint64_t *points = nt_scratch_alloc(scratch, surface->point_count, sizeof *points), sum = 0;
+	if (!points)
+		return NT_ERROR_MEMORY;
+	memset(points, 0, surface->point_count * sizeof *points);
 	for (size_t t = 0; t < surface->triangle_count; t++) {
 		uint64_t corners[3];
-		for (size_t k = 0; k < 3; k++)
-			corners[k] = mix_position(1, nt_side_position(surface, 3 * t + k));
+		for (size_t k = 0; k < 3; k++) {
+			uint64_t *point = &points[nt_side_point(surface, 3 * t + k)];
+			if (!*point)
+				*point = mix_position(1, nt_side_position(surface, 3 * t + k));
+			corners[k] = *point;
+		}
 		sum += mix(corners[0], corners[1]) + mix(corners[1], corners[2]) + mix(corners[2], corners[0]);
 	}
-	return mix(sum, surface->triangle_count) | 1;
+	*digest = mix(sum, surface->triangle_count) | 1;
+	nt_scratch_back(scratch, mark);
+	return NT_OK;
 }
 
 static bool has_places(const nt_report_finding *finding)

@@ -8,8 +8,9 @@
 #include "report/report.h"
 #include "report/surface/surface.h"
 
-/* The digest of a mesh's triangles in space, whatever their order and numbers. Never 0. */
-uint64_t nt_digest_surface(const nt_surface *surface);
+/* The digest of a mesh's triangles in space, whatever their order and numbers. Never 0. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_digest_surface(const nt_surface *surface, nt_scratch *scratch, uint64_t *digest);
 
 /* The digest of a finding, before its mesh is known as a whole: its code and its places, or, without places, its
  * detail. */

@@ -40,6 +40,13 @@ static int compare_normals(const nt_mesh *mesh, uint32_t a, uint32_t b)
 	return !(dot * dot >= 0.25 * both && both > 0.0) ? 0 : dot > 0.0 ? 1 : -1;
 }
 
+/* The same as -1, for what is asked of many. */
+static bool is_against(const nt_mesh *mesh, uint32_t a, uint32_t b)
+{
+	const float *x = mesh->normals + 3 * (size_t)a, *y = mesh->normals + 3 * (size_t)b;
+	return x[0] * y[0] + x[1] * y[1] + x[2] * y[2] < 0.0f && compare_normals(mesh, a, b) < 0;
+}
+
 /* A triangle by its points, ascending. */
 typedef struct pointed {
 	uint32_t points[3], triangle;
@@ -76,7 +83,7 @@ static bool is_reverse(const nt_surface *s, const pointed *a, const pointed *b)
 	for (size_t side = 3 * (size_t)a->triangle; side < 3 * (size_t)a->triangle + 3; side++)
 		for (size_t other = 3 * (size_t)b->triangle; other < 3 * (size_t)b->triangle + 3; other++)
 			if (nt_side_point(s, side) == nt_side_point(s, other) &&
-				compare_normals(s->mesh, nt_side_vertex(s, side), nt_side_vertex(s, other)) >= 0)
+				!is_against(s->mesh, nt_side_vertex(s, side), nt_side_vertex(s, other)))
 				return false;
 	return true;
 }
@@ -185,7 +192,7 @@ nt_status nt_surface_weld(nt_surface *s, nt_scratch *scratch)
 		s->points[v] = *place ? s->points[*place - 1] : (uint32_t)s->point_count++;
 		if (*place || (uv && (uv[0] != uv[0] || uv[1] != uv[1])))
 			nt_bit_set(s->joints, s->points[v]);
-		if (*place && mesh->normals && compare_normals(mesh, *place - 1, v) < 0) {
+		if (*place && mesh->normals && is_against(mesh, *place - 1, v)) {
 			nt_bit_set(opposed, s->points[v]);
 			opposed_count++;
 		}
