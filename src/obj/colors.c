@@ -7,50 +7,9 @@
  *
  * Comments never fail a file: what is malformed is a finding with its line, and its vertices are white.
  */
-#include "obj/line.h"
+#include "obj/parts.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-enum { MRGB_DIGITS = 8 };
-
-static const uint32_t white = 0xffffff;
-
-/* ---- reading ---- */
-
-nt_status obj_read_mrgb(obj_reader *r)
-{
-	obj_chunk *chunk = r->chunk;
-	const size_t first = chunk->mrgb_count;
-	const char *p = r->p + strlen("#MRGB");
-	bool sound = true;
-	while (is_blank(*p))
-		p++;
-	const char *end = p;
-	while (!is_line_end(*end))
-		end++;
-	while (end > p && is_blank(end[-1]))
-		end--;
-	for (; p < end; p += MRGB_DIGITS) {
-		char digits[MRGB_DIGITS + 1] = "";
-		memcpy(digits, p, end - p < MRGB_DIGITS ? (size_t)(end - p) : MRGB_DIGITS);
-		const bool whole = strspn(digits, "0123456789ABCDEFabcdef") == MRGB_DIGITS;
-		const uint32_t color = whole ? (uint32_t)strtoul(digits, NULL, 16) & white : white;
-		sound &= whole;
-		if (!obj_reserve(chunk, (void **)&chunk->mrgb, &chunk->mrgb_capacity, chunk->mrgb_count, sizeof color))
-			return obj_fail_memory(r);
-		chunk->mrgb[chunk->mrgb_count++] = color;
-	}
-	if (!nt_grow((void **)&chunk->mrgb_lines, &chunk->mrgb_line_capacity, chunk->mrgb_line_count + 1,
-			sizeof *chunk->mrgb_lines))
-		return obj_fail_memory(r);
-	chunk->mrgb_lines[chunk->mrgb_line_count++] =
-		(obj_mrgb_line){r->statement_line, chunk->rows[OBJ_V].count, chunk->mrgb_count - first, sound};
-	return NT_OK;
-}
-
-/* ---- giving them to vertices ---- */
 
 /* The block that is under way, and the next colour that is given. */
 typedef struct painter {
@@ -104,7 +63,7 @@ static nt_status end_block(painter *p, nt_error *error)
 			p->color = 0;
 		const uint32_t color = p->file->chunks[p->chunk].mrgb[p->color++];
 		const uint32_t number = (uint32_t)(p->vertex - vertices + i);
-		if (i >= vertices || color == white)
+		if (i >= vertices || color == OBJ_WHITE)
 			continue;
 		p->file->has_colors = true;
 		obj_chunk *chunk = &p->file->chunks[obj_find_row(p->file, OBJ_V, number) - p->file->chunks];

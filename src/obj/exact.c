@@ -3,8 +3,9 @@
  * Positions that float cannot hold: the rule is that of scene/origin.h. All vertices have their positions as floats
  * when it is asked. Only if these are suspicious are the `v` lines read again, by the same parser, as doubles.
  */
-#include "obj/line.h"
+#include "obj/parts.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,17 +67,13 @@ static void read_chunk(void *context, size_t item, unsigned slot)
 	(void)slot;
 	second_reading *job = context;
 	const obj_chunk *chunk = &job->file->chunks[item];
-	obj_chunk again = {.begin = chunk->begin, .end = chunk->end,
-		.exact = job->rows + 3 * chunk->rows[OBJ_V].first, .exact_count = chunk->rows[OBJ_V].count,
-		.rare = true};
-	obj_reader r;
-	nt_status status = obj_reader_init(&r, &again);
-	if (!status)
-		status = obj_read_lines(&r, SIZE_MAX);
+	obj_chunk again = obj_chunk_of(chunk->begin, chunk->end);
+	again.exact = job->rows + 3 * chunk->rows[OBJ_V].first;
+	again.exact_count = chunk->rows[OBJ_V].count;
+	again.rare = true;
 	/* other faults are those of a file that has changed, which the run's watch of its inputs tells */
-	if (status == NT_ERROR_MEMORY)
+	if (obj_read_lines(&again, SIZE_MAX) == NT_ERROR_MEMORY)
 		atomic_store(&job->failed, true);
-	obj_reader_free(&r);
 	obj_chunk_free(&again);
 }
 

@@ -4,7 +4,7 @@
  * reports ask for it, and for a few faces. Their chunks are read again, by the same parser, as far as the face.
  * For that, 32 bytes of each chunk and 8 of each mesh outlive the reader.
  */
-#include "obj/line.h"
+#include "obj/parts.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -28,16 +28,12 @@ size_t obj_face_line(const obj_file *file, size_t face, obj_corner *before)
 	while (c + 1 < file->chunk_count && file->chunks[c + 1].first_face <= face)
 		c++;
 	const obj_chunk *chunk = &file->chunks[c];
-	obj_chunk again = {.begin = chunk->begin, .end = chunk->end};
-	obj_reader r;
-	nt_status status = obj_reader_init(&r, &again);
-	if (!status)
-		status = obj_read_lines(&r, face - chunk->first_face);
+	obj_chunk again = obj_chunk_of(chunk->begin, chunk->end);
+	const nt_status status = obj_read_lines(&again, face - chunk->first_face);
 	*before = (obj_corner){(uint32_t)again.rows[OBJ_V].count, (uint32_t)again.rows[OBJ_VT].count,
 		(uint32_t)again.rows[OBJ_VN].count};
-	obj_reader_free(&r);
 	obj_chunk_free(&again);
-	return status ? 0 : chunk->first_line + r.statement_line + 1;
+	return status ? 0 : chunk->first_line + again.statement_line + 1;
 }
 
 /* The words behind "f" as far as there is room for whole ones, one blank between two. */
@@ -76,21 +72,18 @@ static size_t number_of(const places *kept, const nt_face_place *face)
 static nt_status locate_in(const places *kept, const stretch *lines, const char *begin, const char *end,
 	nt_face_place *faces, size_t count, nt_arena *arena)
 {
-	obj_chunk again = {.begin = begin, .end = end};
-	obj_reader r;
-	nt_status status = obj_reader_init(&r, &again);
+	obj_chunk again = obj_chunk_of(begin, end);
+	nt_status status = NT_OK;
 	for (size_t i = 0; i < count && !status; i++) {
 		const size_t face = number_of(kept, &faces[i]) - lines->first_face;
-		if (again.face_count <= face)
-			status = obj_read_lines(&r, face);
+		status = obj_read_lines(&again, face);
 		if (status)
 			break;
-		faces[i].line = lines->first_line + r.statement_line + 1;
-		faces[i].corners = copy_corners(r.statement, arena);
+		faces[i].line = lines->first_line + again.statement_line + 1;
+		faces[i].corners = copy_corners(again.statement, arena);
 		if (!faces[i].corners)
 			status = NT_ERROR_MEMORY;
 	}
-	obj_reader_free(&r);
 	obj_chunk_free(&again);
 	return status;
 }

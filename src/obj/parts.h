@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Shared by the parts of the OBJ reader: statements.c and faces.c turn lines into the
- * arrays of a chunk, vertices.c turns corners into vertices, meshes.c makes meshes of them. read.c
- * says in which order. Nothing here is for other files.
+ * Shared by the parts of the OBJ reader: lines.c turns lines into the arrays of a chunk, vertices.c turns corners into
+ * vertices, meshes.c makes meshes of them. read.c says in which order. Nothing here is for other files.
  */
 #ifndef NT_OBJ_PARTS_H
 #define NT_OBJ_PARTS_H
@@ -16,21 +15,44 @@
 #define OBJ_RELATIVE 0x80000000u
 #define OBJ_BIAS     0x40000000u
 
+#define OBJ_WHITE 0xffffffu
+
 typedef struct obj_corner {
 	uint32_t v, t, n;
 } obj_corner;
 
-typedef enum obj_event_kind {
-	OBJ_EVENT_OBJECT,    /* o */
-	OBJ_EVENT_MATERIAL,  /* usemtl: a mesh begins here, too, where its normal map is mirrored in another way */
-	OBJ_EVENT_GROUP,     /* g */
-	OBJ_EVENT_SMOOTHING, /* s */
-	OBJ_EVENT_LIBRARY    /* mtllib */
-} obj_event_kind;
+/* The kinds of lines. */
+typedef enum obj_statement {
+	OBJ_UNUSED,
+	OBJ_POSITION,
+	OBJ_TEXCOORD,
+	OBJ_NORMAL,
+	OBJ_FACE,
+	OBJ_OBJECT,
+	OBJ_MATERIAL,  /* usemtl: a mesh begins here, too, where its normal map is mirrored in another way */
+	OBJ_GROUP,
+	OBJ_SMOOTHING,
+	OBJ_LIBRARY
+} obj_statement;
+
+/* The words that OBJ defines, and at the end what lines without one are called. Findings about unused ones come in
+ * this order. */
+typedef struct obj_keyword {
+	const char *word;
+	obj_statement statement;
+	bool is_proof;        /* no other format has such a line */
+	const char *left_out; /* geometry, which an output of another format has not; else NULL */
+} obj_keyword;
+
+enum { OBJ_WORD_COUNT = 46, OBJ_UNKNOWN = OBJ_WORD_COUNT - 1, OBJ_NUL_LINE = OBJ_UNKNOWN - 1, OBJ_SMALL_FACE = 9 };
+extern const obj_keyword obj_keywords[OBJ_WORD_COUNT];
+
+/* NULL: there is no such word. */
+const obj_keyword *obj_find_keyword(const char *word, size_t length);
 
 /* A statement between faces. */
 typedef struct obj_event {
-	obj_event_kind kind;
+	obj_statement kind;  /* o, g, usemtl, s or mtllib */
 	uint32_t group;      /* SMOOTHING: its group, 0 off */
 	const char *text;    /* the others: the name, in the input */
 	size_t length;
@@ -47,20 +69,10 @@ typedef struct obj_polygon {
 	size_t line;
 } obj_polygon;
 
-/* Statements that are not used, by number; obj_ignored_names has their words. The last one stands for
- * all that OBJ does not define. */
-enum {
-	OBJ_IGNORED_COUNT = 37,
-	OBJ_UNKNOWN = OBJ_IGNORED_COUNT - 1,
-	OBJ_NUL_LINE = OBJ_UNKNOWN - 1,
-	OBJ_SMALL_FACE = 0
-};
-extern const char *const obj_ignored_names[OBJ_IGNORED_COUNT];
-
-typedef struct obj_ignored {
-	size_t count;
-	size_t line; /* of the first, within the chunk */
-} obj_ignored;
+/* How often there is something, and the line of the first, within the chunk. */
+typedef struct obj_count {
+	size_t count, line;
+} obj_count;
 
 /* Kinds of attributes that corners refer to, and how many numbers of it are kept. */
 enum { OBJ_V, OBJ_VT, OBJ_VN, OBJ_KIND_COUNT };
@@ -86,14 +98,23 @@ typedef struct obj_mrgb_line {
 typedef struct obj_chunk {
 	const char *begin, *end; /* of the last chunk: in obj_file.tail */
 
+	/* the position of the reader */
+	const char *p;
+	size_t line;           /* of p, from 0 */
+	const char *statement; /* its first word, and the line of that */
+	size_t statement_line;
+	uint32_t *recent;      /* number + 1 of the distinct corner that last had a v, by the low bits of v; valid are
+	                          those that still exist, of this object */
+	size_t object_begin;   /* distinct corners before the object, or its last usemtl */
+
 	obj_rows rows[OBJ_KIND_COUNT];
 	bool rare;      /* something is kept of a position besides its row: a colour, or doubles */
 	double *exact;  /* [exact_count][3] where its numbers go as doubles; NULL: nobody asks for them */
 	size_t exact_count; /* of the first reading: the file may have changed */
 	float *colors; /* rows of 4 as written, as many as positions; NULL while no `v` has one */
 	size_t color_capacity;
-	obj_ignored bad_colors; /* that are not finite: white */
-	obj_ignored bad_rows[OBJ_KIND_COUNT]; /* of vt and vn, that are not finite: zeros */
+	obj_count bad_colors; /* that are not finite: white */
+	obj_count bad_rows[OBJ_KIND_COUNT]; /* of vt and vn, that are not finite: zeros */
 	uint32_t *mrgb; /* colours in comments, 0xRRGGBB: colors.c */
 	size_t mrgb_count, mrgb_capacity;
 	obj_mrgb_line *mrgb_lines;
@@ -112,11 +133,10 @@ typedef struct obj_chunk {
 	obj_event *events;
 	size_t event_count, event_capacity;
 
-	obj_ignored ignored[OBJ_IGNORED_COUNT];
+	obj_count ignored[OBJ_WORD_COUNT];
 	const char *unknown; /* the first unknown statement's word */
 	size_t unknown_length;
 	size_t small_size;   /* corners of the first face with fewer than 3 */
-	size_t line_count;
 
 	/* How much comes before this chunk in the file; known after all have been read. */
 	size_t first_corner, first_face, first_line;
@@ -213,6 +233,11 @@ typedef struct obj_vertex {
 	uint32_t next; /* for finding it: another vertex of the same v, plus 1; 0 none */
 } obj_vertex;
 
+/* Reads the lines of a chunk up to that of face number `last`, or all; the rest may be read later. Returns NT_OK or
+ * what chunk->error says. */
+obj_chunk obj_chunk_of(const char *begin, const char *end);
+nt_status obj_read_lines(obj_chunk *chunk, size_t last);
+
 /* Frees the arrays of a chunk: all of them, or those that are in no arena. */
 void obj_chunk_free(obj_chunk *chunk);
 void obj_chunk_free_rest(obj_chunk *chunk);
@@ -220,6 +245,9 @@ void obj_chunk_free_rest(obj_chunk *chunk);
 /* Gives the vertices of the file the colours that stand in comments; what is wrong with those or with
  * those of `v` is a finding. Needs guides. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status obj_join_colors(obj_file *file, nt_error *error);
+
+/* A copy of lines that may stand at the end of a file, ended and padded as chunks are; NULL: out of memory. */
+char *obj_copy_padded(const char *begin, const char *end, const char **padded_end);
 
 /* Line of a face of the file, by reading its chunk again; 0: out of memory. before: how many v, vt and vn of
  * its chunk stand before it. */
@@ -247,5 +275,35 @@ nt_status obj_make_meshes(obj_file *file, nt_error *error);
 /* Gives each tile of a material with <UDIM> in the names of its maps a material of its own: see udim.c. Returns NT_OK
  * or NT_ERROR_MEMORY. */
 nt_status obj_split_tiles(nt_scene *scene, nt_error *error);
+
+/* ---- steps over text ---- */
+
+static inline bool is_line_end(char c)
+{
+	return c == '\n' || c == '\r';
+}
+
+static inline bool is_digit(char c)
+{
+	return c >= '0' && c <= '9';
+}
+
+/* The beginning of the next line if p is at a line end. */
+static inline const char *behind_line_end(const char *p)
+{
+	return p + (p[0] == '\r' && p[1] == '\n' ? 2 : 1);
+}
+
+/* A blank, or a `\` that joins the next line to this one. */
+static inline bool joins_lines(const char *p)
+{
+	return *p == '\\' && is_line_end(p[1]);
+}
+
+/* Whether a word may end here. */
+static inline bool is_word_end(const char *p)
+{
+	return is_blank(*p) || is_line_end(*p) || joins_lines(p);
+}
 
 #endif

@@ -4,7 +4,7 @@
  * bytes, in chunks of whole lines that threads take one after the other; then the chunks are joined.
  *
  *   split     the file into chunks of 1 MiB, whatever the number of threads, so that it cannot show
- *   parse     statements.c, faces.c: numbers, corners, and the statements between faces
+ *   parse     lines.c: numbers, corners, and the statements between faces
  *   join      what was counted; rows of numbers stay in their chunks and are found there
  *   events    spans.c: objects, materials and smoothing groups, in order
  *   vertices  vertices.c: equal v/vt/vn of one object become one vertex
@@ -28,7 +28,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "file/input.h"
-#include "obj/line.h"
+#include "obj/parts.h"
 
 enum {
 	CHUNK_BYTES = 1 << 20,
@@ -39,17 +39,6 @@ enum {
 };
 
 /* ---- recognising ---- */
-
-/* Possible beginnings of an OBJ. Words that other formats share are no proof. */
-static bool is_obj_statement(const char *word, size_t length)
-{
-	static const char *const words[] = {"v", "vt", "vn", "vp", "f", "o", "g", "s", "l", "p", "mtllib",
-		"usemtl", "cstype", "deg", "mg", "lod"};
-	for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
-		if (strlen(words[i]) == length && memcmp(words[i], word, length) == 0)
-			return true;
-	return false;
-}
 
 bool nt_obj_recognise(const unsigned char *bytes, size_t size)
 {
@@ -69,7 +58,8 @@ bool nt_obj_recognise(const unsigned char *bytes, size_t size)
 	const char *word = p;
 	while (p < end && *p > ' ' && *p < 0x7F)
 		p++;
-	return p < end && *p && strchr(" \t\r\n", *p) && is_obj_statement(word, (size_t)(p - word));
+	const obj_keyword *keyword = obj_find_keyword(word, (size_t)(p - word));
+	return p < end && (is_blank(*p) || is_line_end(*p)) && keyword && keyword->is_proof;
 }
 
 /* ---- split ---- */
@@ -99,10 +89,7 @@ static bool add_chunk(obj_file *file, size_t *capacity, const char *begin, const
 {
 	if (!nt_grow((void **)&file->chunks, capacity, file->chunk_count + 1, sizeof *file->chunks))
 		return false;
-	obj_chunk *chunk = &file->chunks[file->chunk_count++];
-	memset(chunk, 0, sizeof *chunk);
-	chunk->begin = begin;
-	chunk->end = end;
+	file->chunks[file->chunk_count++] = obj_chunk_of(begin, end);
 	return true;
 }
 
@@ -208,17 +195,16 @@ static void parse_chunks(void *context, size_t begin, size_t end, unsigned slot)
 	parse_job *job = context;
 	obj_file *file = job->file;
 	obj_chunk work = {0};
-	obj_reader r;
 	while (!atomic_load(&job->failed)) {
 		const size_t c = atomic_fetch_add(&job->next, 1);
 		if (c >= file->chunk_count)
 			break;
 		obj_chunk *chunk = &file->chunks[c];
-		work.begin = chunk->begin;
+		work.begin = work.p = chunk->begin;
 		work.end = chunk->end;
-		if (!obj_reader_init(&r, &work))
-			obj_read_lines(&r, SIZE_MAX);
-		obj_reader_free(&r);
+		obj_read_lines(&work, SIZE_MAX);
+		free(work.recent);
+		work.recent = NULL;
 		keep_chunk(file, &file->memory[slot], &work, chunk);
 		if (chunk->error.status)
 			atomic_store(&job->failed, true);
@@ -250,7 +236,7 @@ static nt_status parse(obj_file *file, nt_error *error)
 			return error->status;
 		}
 		chunk->first_line = line;
-		line += chunk->line_count;
+		line += chunk->line;
 	}
 	return NT_OK;
 }
@@ -359,7 +345,7 @@ static void report_bad_rows(const obj_file *file, int kind, nt_code code, const 
 {
 	size_t count = 0, line = 0;
 	for (size_t c = file->chunk_count; c-- > 0;) {
-		const obj_ignored *bad = &file->chunks[c].bad_rows[kind];
+		const obj_count *bad = &file->chunks[c].bad_rows[kind];
 		count += bad->count;
 		line = bad->count ? file->chunks[c].first_line + bad->line + 1 : line;
 	}

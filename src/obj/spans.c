@@ -78,19 +78,19 @@ static bool end_stretch(state *s, size_t face, size_t corner)
 
 static bool read_event(state *s, const obj_chunk *chunk, const obj_event *event)
 {
-	if (event->kind == OBJ_EVENT_LIBRARY || (event->kind == OBJ_EVENT_GROUP && s->has_objects))
+	if (event->kind == OBJ_LIBRARY || (event->kind == OBJ_GROUP && s->has_objects))
 		return true;
 	if (!end_stretch(s, chunk->first_face + event->face, chunk->first_corner + event->corner))
 		return false;
 	const size_t line = chunk->first_line + event->line + 1;
-	if (event->kind == OBJ_EVENT_OBJECT) {
+	if (event->kind == OBJ_OBJECT) {
 		s->object = event;
 		s->object_line = line;
 		s->object_is_new = true;
-	} else if (event->kind == OBJ_EVENT_MATERIAL) {
+	} else if (event->kind == OBJ_MATERIAL) {
 		s->material = event;
 		s->material_line = line;
-	} else if (event->kind == OBJ_EVENT_GROUP) {
+	} else if (event->kind == OBJ_GROUP) {
 		s->group = event->length ? nt_name_add(&s->groups, event->text, event->length) + 1 : 0;
 		return s->group || !event->length;
 	} else {
@@ -153,7 +153,7 @@ static nt_status read_libraries(state *s, const nt_read_options *options, nt_mtl
 		for (size_t i = 0; i < chunk->event_count && !status; i++) {
 			const obj_event *event = &chunk->events[i];
 			const size_t before = seen.count;
-			if (event->kind != OBJ_EVENT_LIBRARY)
+			if (event->kind != OBJ_LIBRARY)
 				continue;
 			if (nt_name_add(&seen, event->text, event->length) == UINT32_MAX)
 				status = nt_fail_memory(s->error);
@@ -275,38 +275,25 @@ static size_t ignored_line(const obj_chunk *chunk, size_t which)
 	return chunk->first_line + chunk->ignored[which].line + 1;
 }
 
-/* Geometry, which an output of another format has not; NULL: a statement without which nothing is missing. */
-static const char *name_left_out(size_t which)
-{
-	static const char *const elements[][2] = {{"l", "lines"}, {"p", "points"}, {"curv", "curves"},
-		{"surf", "surfaces"}};
-	if (which == OBJ_SMALL_FACE)
-		return "faces of fewer than three corners";
-	for (size_t i = 0; i < sizeof elements / sizeof *elements; i++)
-		if (strcmp(obj_ignored_names[which], elements[i][0]) == 0)
-			return elements[i][1];
-	return NULL;
-}
-
 static void report_ignored(const obj_file *file)
 {
 	nt_scene *scene = file->scene;
-	for (size_t which = 0; which < OBJ_IGNORED_COUNT; which++) {
+	for (size_t which = 0; which < OBJ_WORD_COUNT; which++) {
 		size_t count;
 		const obj_chunk *first = find_ignored(file, which, &count);
 		if (!first)
 			continue;
 		const nt_place place = nt_line_place(scene->path, ignored_line(first, which));
-		const char *left = name_left_out(which);
+		const char *left = obj_keywords[which].left_out;
 		if (left)
 			nt_scene_leave_out(scene, place.line, count, "%s (%zu)", left, count);
 		else if (which == OBJ_UNKNOWN)
 			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, count,
-				"OBJ: %s, the first is %.*s", obj_ignored_names[which],
+				"OBJ: %s, the first is %.*s", obj_keywords[which].word,
 				(int)(first->unknown_length < 64 ? first->unknown_length : 64), first->unknown);
 		else
 			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, count, "OBJ: %s",
-				obj_ignored_names[which]);
+				obj_keywords[which].word);
 	}
 }
 
@@ -332,7 +319,7 @@ nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_err
 	bool read = true;
 	for (size_t c = 0; c < file->chunk_count && !s.has_objects; c++)
 		for (size_t i = 0; i < file->chunks[c].event_count && !s.has_objects; i++)
-			s.has_objects = file->chunks[c].events[i].kind == OBJ_EVENT_OBJECT;
+			s.has_objects = file->chunks[c].events[i].kind == OBJ_OBJECT;
 	for (size_t c = 0; c < file->chunk_count; c++)
 		for (size_t i = 0; i < file->chunks[c].event_count && read; i++)
 			read = read_event(&s, &file->chunks[c], &file->chunks[c].events[i]);

@@ -55,6 +55,7 @@ TEST(numbers_that_are_not_finite_are_refused)
 	assert_fails("v 0 -nan 0\n", 1, "found \"-nan\", expected a finite number");
 	assert_fails("v 0 0 1e39\n", 1, "found \"1e39\", expected a finite number");
 	assert_fails("v 0 0 0 nan\n", 1, "found \"nan\", expected a finite number");
+	assert_fails("v 0 \\\n0 \\\n0 nan\n", 3, "found \"nan\", expected a finite number");
 }
 
 /* One such vt or vn does not cost the file; the finding has the line of the first and the number of all. */
@@ -75,6 +76,11 @@ TEST(texcoords_and_normals_that_are_not_finite_become_zeros)
 	assert_int_equal(normal->code, NT_CODE_MESH_NORMAL_ZERO);
 	assert_int_equal(normal->count, 1);
 	assert_int_equal(normal->place.line, 7);
+	close_reading(&r);
+	/* one number is u */
+	m = only_mesh(&r, TRIANGLE "vt inf\nvt 0.5\nf 1/1 2/2 3/1\n");
+	assert_true(m->texcoords[0] == 0 && m->texcoords[2] == 0.5f);
+	assert_int_equal(r.scene.findings.items[0].code, NT_CODE_UV_NOT_FINITE);
 	close_reading(&r);
 }
 
