@@ -29,12 +29,12 @@ typedef struct builder {
 	nt_srgb srgb;
 	size_t span;              /* of the next face */
 	size_t polygon;           /* the next one of five corners and more */
-	uint32_t *part_slots;     /* [part_count] primitive of a part in the current mesh */
+	obj_primitives primitives; /* of the current mesh */
 
 	/* of one polygon */
 	float (*points)[3];
 	uint32_t *triangles;
-	size_t polygon_capacity;
+	size_t point_capacity, triangle_capacity;
 
 	atomic_uint largest;      /* bits of the largest coordinate */
 } builder;
@@ -160,37 +160,13 @@ static face_counts count_faces(const builder *b, size_t begin, size_t end, size_
 	return n;
 }
 
-/* The primitive of a span's part; it is added to the mesh where it is new. The array has room for
- * as many as there are spans in the mesh. */
-static uint32_t primitive_of(builder *b, nt_mesh *mesh, const obj_span *span)
-{
-	const uint32_t known = b->part_slots[span->part];
-	if (known < mesh->primitive_count && mesh->primitives[known].material == span->material &&
-		mesh->primitives[known].group == span->group)
-		return known;
-	mesh->primitives[mesh->primitive_count] = (nt_primitive){.material = span->material, .group = span->group};
-	b->part_slots[span->part] = (uint32_t)mesh->primitive_count;
-	return (uint32_t)mesh->primitive_count++;
-}
-
-static bool grow_polygon(builder *b, size_t size)
-{
-	if (size <= b->polygon_capacity)
-		return true;
-	size_t points = b->polygon_capacity, triangles = b->polygon_capacity;
-	if (!nt_grow((void **)&b->points, &points, size, sizeof *b->points) ||
-		!nt_grow((void **)&b->triangles, &triangles, size, 3 * sizeof *b->triangles))
-		return false;
-	b->polygon_capacity = points;
-	return true;
-}
-
 /* Replaces a polygon of the file by triangles: writes 3 * (size - 2) vertices. */
 static nt_status triangulate(builder *b, nt_mesh *mesh, const obj_polygon *polygon,
 	const uint32_t *corners, uint32_t *to)
 {
 	const size_t size = polygon->size;
-	if (!grow_polygon(b, size))
+	if (!nt_grow((void **)&b->points, &b->point_capacity, size, sizeof *b->points) ||
+		!nt_grow((void **)&b->triangles, &b->triangle_capacity, size, 3 * sizeof *b->triangles))
 		return nt_fail_memory(b->error);
 	for (size_t i = 0; i < size; i++)
 		memcpy(b->points[i], mesh->positions + 3 * (size_t)corners[i], sizeof b->points[i]);
@@ -209,115 +185,113 @@ static nt_status triangulate(builder *b, nt_mesh *mesh, const obj_polygon *polyg
 	return NT_OK;
 }
 
-/* The place at which the next face of a mesh is written. */
-typedef struct face_writer {
-	size_t face, corner;   /* of the mesh, after triangulation */
-	const uint32_t *source; /* its corners in the file */
-} face_writer;
-
-/* Copies the faces [begin, end) of the file, which share a span, one by one. */
-static nt_status write_faces(builder *b, nt_mesh *mesh, size_t begin, size_t end, size_t mesh_begin,
-	face_writer *w)
-{
-	const obj_file *file = b->file;
-	for (size_t f = begin; f < end; f++) {
-		size_t size = file->face_sizes[f], count = 1;
-		uint32_t *to = mesh->indices + w->corner;
-		if (size == OBJ_POLYGON) {
-			const obj_polygon *polygon = &file->polygons[b->polygon++];
-			const nt_status status = triangulate(b, mesh, polygon, w->source, to);
-			if (status)
-				return status;
-			size = polygon->size;
-			count = size - 2;
-			w->corner += 3 * count;
-		} else {
-			memcpy(to, w->source, size * sizeof *to);
-			w->corner += size;
-		}
-		for (size_t i = 0; i < count; i++, w->face++) {
-			mesh->face_polygon[w->face] = (uint32_t)(f - mesh_begin);
-			if (mesh->face_sizes)
-				mesh->face_sizes[w->face] = size == 4 ? 4 : 3;
-		}
-		w->source += size;
-	}
-	return NT_OK;
-}
-
 static void fill(uint32_t *to, size_t count, uint32_t value)
 {
-	for (size_t i = 0; i < count; i++)
+	for (size_t i = 0; to && i < count; i++)
 		to[i] = value;
 }
 
-/* Walks through the spans of the mesh: primitives, smoothing groups, and the faces where polygons have
- * to be replaced. */
-static nt_status write_spans(builder *b, nt_mesh *mesh, size_t begin, size_t end, bool replace,
-	const uint32_t *source)
+/* Walks through the spans of the mesh: primitives, smoothing groups, and if polygons have to be replaced, its faces one
+ * by one. */
+static nt_status write_spans(builder *b, nt_mesh *mesh, size_t begin, size_t end, const uint32_t *source)
 {
 	const obj_file *file = b->file;
-	face_writer w = {0, 0, source};
-	for (size_t f = begin; f < end;) {
+	size_t face = 0, corner = 0; /* of the mesh, after triangulation */
+	for (size_t f = begin; f < end; b->span++) {
 		const obj_span *span = &file->spans[b->span];
-		const bool last = b->span + 1 == file->span_count || file->spans[b->span + 1].face >= end;
-		const size_t stop = last ? end : file->spans[b->span + 1].face;
-		const size_t first = w.face;
-		if (replace) {
-			const nt_status status = write_faces(b, mesh, f, stop, begin, &w);
-			if (status)
-				return status;
-		} else {
-			w.face += stop - f;
+		const bool last = b->span + 1 == file->span_count || span[1].face >= end;
+		const size_t stop = last ? end : span[1].face, first = face;
+		if (!mesh->face_polygon) {
+			face += stop - f;
+			f = stop;
 		}
-		const uint32_t primitive = primitive_of(b, mesh, span);
-		mesh->primitives[primitive].face_count += w.face - first;
-		if (mesh->face_primitive)
-			fill(mesh->face_primitive + first, w.face - first, primitive);
-		if (mesh->face_smoothing)
-			fill(mesh->face_smoothing + first, w.face - first, span->smoothing);
-		f = stop;
-		b->span++;
+		for (; f < stop; f++) {
+			size_t size = file->face_sizes[f], count = 1;
+			uint32_t *to = mesh->indices + corner;
+			if (size == OBJ_POLYGON) {
+				const obj_polygon *polygon = &file->polygons[b->polygon++];
+				size = polygon->size;
+				count = size - 2;
+				corner += 3 * count;
+				const nt_status status = triangulate(b, mesh, polygon, source, to);
+				if (status)
+					return status;
+			} else {
+				memcpy(to, source, size * sizeof *to);
+				corner += size;
+			}
+			fill(mesh->face_polygon + face, count, (uint32_t)(f - begin));
+			if (mesh->face_sizes)
+				memset(mesh->face_sizes + face, size == 4 ? 4 : 3, count);
+			source += size;
+			face += count;
+		}
+		const uint32_t primitive = obj_add_primitive(&b->primitives, span->material, span->group, face - first);
+		if (primitive == NT_NONE)
+			return nt_fail_memory(b->error);
+		fill(mesh->face_primitive ? mesh->face_primitive + first : NULL, face - first, primitive);
+		fill(mesh->face_smoothing ? mesh->face_smoothing + first : NULL, face - first, span->smoothing);
 	}
 	return NT_OK;
 }
 
-typedef struct numbered_primitive {
-	nt_primitive primitive;
-	uint32_t number;
-} numbered_primitive;
+/* ---- primitives ---- */
 
-static int compare_groups(const void *a, const void *b)
+/* The first ones are looked at one by one: few meshes have more. */
+enum { FEW_PRIMITIVES = 8 };
+
+uint32_t obj_add_primitive(obj_primitives *list, uint32_t material, uint32_t group, size_t faces)
 {
-	const numbered_primitive *x = a, *y = b;
-	if (x->primitive.group != y->primitive.group)
-		return x->primitive.group < y->primitive.group ? -1 : 1;
-	return (x->number > y->number) - (x->number < y->number);
+	const uint64_t hash = nt_hash_words(material, group);
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t i = 0; i != NT_NONE && i < list->count;) {
+		nt_primitive *known = &list->items[i];
+		if (known->material == material && known->group == group) {
+			known->face_count += faces;
+			return i;
+		}
+		i = i + 1 < FEW_PRIMITIVES ? i + 1 : nt_hash_index_next(&list->index, hash, &at);
+	}
+	if (!nt_grow((void **)&list->items, &list->capacity, list->count + 1, sizeof *list->items) ||
+		(list->count >= FEW_PRIMITIVES && !nt_hash_index_add(&list->index, hash, (uint32_t)list->count)))
+		return NT_NONE;
+	list->items[list->count] = (nt_primitive){.material = material, .group = group, .face_count = faces};
+	return (uint32_t)list->count++;
 }
 
-bool obj_sort_groups(nt_mesh *mesh)
+static int compare_words(const void *a, const void *b)
 {
-	const size_t count = mesh->primitive_count;
+	const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+	return (x > y) - (x < y);
+}
+
+bool obj_set_primitives(nt_mesh *mesh, obj_primitives *list, nt_arena *arena)
+{
+	const size_t count = list->count;
 	bool sorted = true;
 	for (size_t i = 1; i < count; i++)
-		sorted &= mesh->primitives[i - 1].group <= mesh->primitives[i].group;
-	if (sorted)
-		return true;
-	numbered_primitive *list = nt_alloc(count, sizeof *list);
-	uint32_t *numbers = nt_alloc(count, sizeof *numbers);
-	for (size_t i = 0; list && numbers && i < count; i++)
-		list[i] = (numbered_primitive){mesh->primitives[i], (uint32_t)i};
-	if (list && numbers) {
-		qsort(list, count, sizeof *list, compare_groups);
-		for (size_t i = 0; i < count; i++) {
-			mesh->primitives[i] = list[i].primitive;
-			numbers[list[i].number] = (uint32_t)i;
-		}
-		for (size_t f = 0; f < mesh->face_count; f++)
-			mesh->face_primitive[f] = numbers[mesh->face_primitive[f]];
+		sorted &= list->items[i - 1].group <= list->items[i].group;
+	mesh->primitives = nt_arena_alloc(arena, count, sizeof *mesh->primitives);
+	uint64_t *order = sorted ? NULL : nt_alloc(count, sizeof *order); /* groups, and numbers below */
+	uint32_t *numbers = sorted ? NULL : nt_alloc(count, sizeof *numbers);
+	const bool done = mesh->primitives && (sorted || (order && numbers));
+	for (size_t i = 0; done && !sorted && i < count; i++)
+		order[i] = (uint64_t)list->items[i].group << 32 | i;
+	if (done && !sorted)
+		qsort(order, count, sizeof *order, compare_words);
+	for (size_t i = 0; done && i < count; i++) {
+		const uint32_t from = sorted ? (uint32_t)i : (uint32_t)order[i];
+		mesh->primitives[i] = list->items[from];
+		if (!sorted)
+			numbers[from] = (uint32_t)i;
 	}
-	const bool done = list && numbers;
-	free(list);
+	for (size_t f = 0; done && !sorted && f < mesh->face_count; f++)
+		mesh->face_primitive[f] = numbers[mesh->face_primitive[f]];
+	mesh->primitive_count = count;
+	mesh->face_primitive = count > 1 ? mesh->face_primitive : NULL;
+	list->count = 0;
+	nt_hash_index_free(&list->index);
+	free(order);
 	free(numbers);
 	return done;
 }
@@ -338,8 +312,7 @@ static nt_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 	mesh->corner_count = n.corners;
 	mesh->indices = source;
 	mesh->face_sizes = n.quads ? file->face_sizes + begin : NULL;
-	const bool replace = n.polygons != 0;
-	if (replace) {
+	if (n.polygons) {
 		mesh->indices = nt_arena_alloc(arena, n.corners, sizeof *mesh->indices);
 		mesh->face_polygon = nt_arena_alloc(arena, n.faces, sizeof *mesh->face_polygon);
 		if (n.quads)
@@ -347,49 +320,32 @@ static nt_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 		if (!mesh->indices || !mesh->face_polygon || (n.quads && !mesh->face_sizes))
 			return nt_fail_memory(b->error);
 	}
-	size_t spans = 0;
-	while (b->span + spans < file->span_count && file->spans[b->span + spans].face < end)
-		spans++;
-	mesh->primitives = nt_arena_alloc(arena, spans, sizeof *mesh->primitives);
-	if (spans > 1)
-		mesh->face_primitive = nt_arena_alloc(arena, n.faces, sizeof *mesh->face_primitive);
+	const bool one_span = b->span + 1 == file->span_count || file->spans[b->span + 1].face >= end;
 	bool lacking = !mesh->normals;
 	for (size_t i = 0; file->uses_smoothing && mesh->vertex_lacks && i < mesh->vertex_count && !lacking; i++)
 		lacking = mesh->vertex_lacks[i] & NT_LACKS_NORMAL;
-	if (file->uses_smoothing && lacking) {
+	const bool smooths = file->uses_smoothing && lacking;
+	if (smooths)
 		mesh->face_smoothing = nt_arena_alloc(arena, n.faces, sizeof *mesh->face_smoothing);
-		if (!mesh->face_smoothing)
-			return nt_fail_memory(b->error);
-	}
-	if (!mesh->primitives || (spans > 1 && !mesh->face_primitive))
+	if (!one_span)
+		mesh->face_primitive = nt_arena_alloc(arena, n.faces, sizeof *mesh->face_primitive);
+	if ((smooths && !mesh->face_smoothing) || (!one_span && !mesh->face_primitive))
 		return nt_fail_memory(b->error);
-	nt_status status = write_spans(b, mesh, begin, end, replace, source);
-	if (!status && !obj_sort_groups(mesh))
-		status = nt_fail_memory(b->error);
-	if (!status && file->group_count > 1) {
+	const nt_status status = write_spans(b, mesh, begin, end, source);
+	if (status)
+		return status;
+	if (!obj_set_primitives(mesh, &b->primitives, arena))
+		return nt_fail_memory(b->error);
+	if (file->group_count > 1) {
 		mesh->groups = file->groups;
 		/* a mesh of one group has its name */
 		if (mesh->primitives[0].group == mesh->primitives[mesh->primitive_count - 1].group)
 			mesh->name = mesh->groups[mesh->primitives[0].group];
 	}
-	if (mesh->primitive_count == 1)
-		mesh->face_primitive = NULL;
-	return status;
+	return NT_OK;
 }
 
 /* ---- meshes ---- */
-
-static nt_status set_name(builder *b, nt_mesh *mesh, size_t m)
-{
-	const obj_file *file = b->file;
-	const obj_event *object = file->meshes[m].object;
-	mesh->name = object ? nt_utf8_text(&file->scene->arena, object->text, object->length) : "";
-	if (!mesh->name)
-		return nt_fail_memory(b->error);
-	mesh->file = file->scene->path;
-	mesh->line = file->meshes[m].line;
-	return NT_OK;
-}
 
 /* Demands of its materials: slots, how normal maps are sampled. If several differ, they are mirrored alike (see
  * spans.c), which is all that tangents know of. */
@@ -435,17 +391,19 @@ static nt_status make_mesh(builder *b, size_t m)
 		.reachable = true,
 		.vertex_count = file->meshes[m + 1].vertex - file->meshes[m].vertex,
 	};
+	const obj_event *object = file->meshes[m].object;
 	mesh->source_vertex_count = mesh->vertex_count;
-	const nt_status status = set_name(b, mesh, m);
+	mesh->name = object ? nt_utf8_text(&file->scene->arena, object->text, object->length) : "";
+	mesh->file = file->scene->path;
+	mesh->line = file->meshes[m].line;
+	if (!mesh->name)
+		return nt_fail_memory(b->error);
+	set_vertices(b, mesh, file->meshes[m].vertex);
+	nt_status status = set_faces(b, mesh, m);
+	if (!status)
+		status = set_slots(file, mesh, b->error);
 	if (status)
 		return status;
-	set_vertices(b, mesh, file->meshes[m].vertex);
-	const nt_status face_status = set_faces(b, mesh, m);
-	if (face_status)
-		return face_status;
-	const nt_status slot_status = set_slots(file, mesh, b->error);
-	if (slot_status)
-		return slot_status;
 	nt_instance *instance = &file->scene->instances[m];
 	instance->mesh = (uint32_t)m;
 	nt_origin_matrix(file->scene, instance->matrix);
@@ -459,9 +417,8 @@ nt_status obj_make_meshes(obj_file *file, nt_error *error)
 	nt_srgb_init(&b.srgb);
 	scene->meshes = nt_arena_alloc(&scene->arena, file->mesh_count, sizeof *scene->meshes);
 	scene->instances = nt_arena_alloc(&scene->arena, file->mesh_count, sizeof *scene->instances);
-	b.part_slots = nt_calloc(file->part_count, sizeof *b.part_slots);
 	nt_status status = NT_OK;
-	if (!scene->meshes || !scene->instances || !b.part_slots)
+	if (!scene->meshes || !scene->instances)
 		status = nt_fail_memory(error);
 	if (!status)
 		status = gather_vertices(&b);
@@ -470,7 +427,8 @@ nt_status obj_make_meshes(obj_file *file, nt_error *error)
 		if (!status)
 			scene->mesh_count = scene->instance_count = m + 1;
 	}
-	free(b.part_slots);
+	free(b.primitives.items);
+	nt_hash_index_free(&b.primitives.index);
 	free(b.points);
 	free(b.triangles);
 	return status;

@@ -188,8 +188,6 @@ typedef struct obj_file {
 	/* Stretches of faces of one material and smoothing group, in order. */
 	struct obj_span *spans;
 	size_t span_count, span_capacity;
-	struct obj_part *parts; /* [part_count] what spans are primitives of, sorted by group */
-	size_t part_count;
 	const char **groups;    /* [group_count] names; 0 is "", of faces before any `g` */
 	size_t group_count;
 
@@ -215,17 +213,11 @@ typedef struct obj_span {
 	size_t face, corner; /* the first ones; the span ends where the next begins */
 	uint32_t material;
 	uint32_t group;
-	uint32_t part;
 	uint32_t smoothing;
 	bool begins_object;
 	const obj_event *object; /* NULL: none */
 	size_t line;             /* its line, else 0 */
 } obj_span;
-
-/* A material and a group that faces have together. */
-typedef struct obj_part {
-	uint32_t material, group;
-} obj_part;
 
 /* A distinct corner of a mesh: rows of the joined arrays, OBJ_ABSENT where it has none. */
 typedef struct obj_vertex {
@@ -266,8 +258,19 @@ nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_err
  * coordinates. Returns NT_OK or NT_ERROR_MEMORY. exact.c */
 nt_status obj_settle_origin(obj_file *file, float largest, float *positions, nt_error *error);
 
-/* Brings the primitives of a group together; false: out of memory. */
-bool obj_sort_groups(nt_mesh *mesh);
+/* The primitives of a mesh, which differ in material or group. Zeroed: none. */
+typedef struct obj_primitives {
+	nt_primitive *items;
+	size_t count, capacity;
+	nt_hash_index index;
+} obj_primitives;
+
+/* The number of a primitive, which has so many faces more; it is added if it is new. NT_NONE: out of memory. */
+uint32_t obj_add_primitive(obj_primitives *list, uint32_t material, uint32_t group, size_t faces);
+
+/* Makes the list, which is empty then, the primitives of the mesh, each group's together; face_primitive has numbers of
+ * the list, and is NULL afterwards if one is enough. False: out of memory. */
+bool obj_set_primitives(nt_mesh *mesh, obj_primitives *list, nt_arena *arena);
 
 /* Fills scene->meshes from all of it. */
 nt_status obj_make_meshes(obj_file *file, nt_error *error);

@@ -67,7 +67,7 @@ static bool end_stretch(state *s, size_t face, size_t corner)
 			!nt_grow((void **)&file->spans, &file->span_capacity, file->span_count + 1,
 				sizeof *file->spans))
 			return false;
-		file->spans[file->span_count++] = (obj_span){s->face, s->corner, material, s->group, 0,
+		file->spans[file->span_count++] = (obj_span){s->face, s->corner, material, s->group,
 			s->smoothing, s->object_is_new, s->object, s->object_line};
 		s->object_is_new = false;
 	}
@@ -102,21 +102,11 @@ static bool read_event(state *s, const obj_chunk *chunk, const obj_event *event)
 
 /* ---- groups ---- */
 
-static int compare_parts(const void *a, const void *b)
-{
-	const obj_part *x = a, *y = b;
-	if (x->group != y->group)
-		return x->group < y->group ? -1 : 1;
-	return (x->material > y->material) - (x->material < y->material);
-}
-
-/* The part of each span: pairs are sorted, and looked up. Without groups a material is a part. */
-static nt_status number_parts(state *s)
+static nt_status name_groups(state *s)
 {
 	obj_file *file = s->file;
 	file->groups = nt_arena_alloc(&file->scene->arena, s->groups.count + 1, sizeof *file->groups);
-	file->parts = nt_arena_alloc(&file->scene->arena, file->span_count, sizeof *file->parts);
-	if (!file->groups || !file->parts)
+	if (!file->groups)
 		return nt_fail_memory(s->error);
 	file->groups[file->group_count++] = "";
 	for (size_t i = 0; i < s->groups.count; i++) {
@@ -124,18 +114,6 @@ static nt_status number_parts(state *s)
 		file->groups[file->group_count] = nt_utf8_text(&file->scene->arena, name->text, name->length);
 		if (!file->groups[file->group_count++])
 			return nt_fail_memory(s->error);
-	}
-	for (size_t i = 0; i < file->span_count; i++)
-		file->parts[i] = (obj_part){file->spans[i].material, file->spans[i].group};
-	qsort(file->parts, file->span_count, sizeof *file->parts, compare_parts);
-	for (size_t i = 0; i < file->span_count; i++)
-		if (!i || compare_parts(&file->parts[i], &file->parts[file->part_count - 1]) != 0)
-			file->parts[file->part_count++] = file->parts[i];
-	for (size_t i = 0; i < file->span_count; i++) {
-		const obj_part part = {file->spans[i].material, file->spans[i].group};
-		const obj_part *found =
-			bsearch(&part, file->parts, file->part_count, sizeof part, compare_parts);
-		file->spans[i].part = (uint32_t)(found - file->parts);
 	}
 	return NT_OK;
 }
@@ -330,7 +308,7 @@ nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_err
 	if (!status)
 		status = make_materials(&s, &mtl);
 	if (!status)
-		status = number_parts(&s);
+		status = name_groups(&s);
 	if (!status)
 		status = make_meshes(file, error);
 	if (!status)

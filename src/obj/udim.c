@@ -11,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/name_table.h"
 
 static const char mark[] = "<UDIM>";
 enum { FIRST_TILE = 1001, TILES_ALONG_U = 10, TILES = 1000, NO_TILE = TILES };
@@ -25,18 +24,25 @@ static const char *find_number(const char *name)
 	return NULL;
 }
 
+/* A material as it was. */
+typedef struct template {
+	const nt_map *marked;   /* a map with a mark in its name; NULL: none */
+	const nt_map *numbered; /* else one with a number, which counts if there is no mark */
+	uint32_t first, last;   /* then: tiles of its faces; NO_TILE: none yet */
+	size_t outside;         /* faces that are in no tile */
+} template;
+
 typedef struct tiler {
 	nt_scene *scene;
 	nt_error *error;
-	const nt_material *templates; /* the materials as they were */
-	size_t template_count;
-	nt_material *materials;
-	size_t count, capacity;
-	nt_name_table numbers;    /* of pairs of template and tile */
-	uint32_t *numbered;       /* [numbers.count] their materials */
-	size_t numbered_capacity;
-	uint16_t *first, *last;   /* [template_count] tiles of materials with a number in a name; NO_TILE: none yet */
-	size_t *outside;          /* [template_count] faces that are in no tile */
+	template *templates;      /* [scene->material_count] */
+	nt_material *materials;   /* of the result: the first of a template takes its place */
+	struct made {
+		uint32_t from, tile;
+	} *made;                  /* [count] templates of materials, and their tiles */
+	size_t count, capacity, made_capacity;
+	nt_hash_index index;      /* of made */
+	obj_primitives primitives; /* of the current mesh */
 } tiler;
 
 static const nt_map *find_map(const nt_material *m, bool marked)
@@ -102,41 +108,40 @@ static bool make_material(tiler *t, nt_material *m, const nt_material *from, uin
 	return true;
 }
 
-/* The number of a pair in a table, which has it afterwards, with its own copy; UINT32_MAX: out of memory. */
-static uint32_t number_of(nt_name_table *table, nt_arena *arena, uint32_t a, uint32_t b)
-{
-	const uint32_t key[2] = {a, b};
-	const uint32_t known = nt_name_find(table, (const char *)key, sizeof key);
-	if (known != UINT32_MAX)
-		return known;
-	uint32_t *copy = nt_arena_alloc(arena, 1, sizeof key);
-	return copy ? nt_name_add(table, memcpy(copy, key, sizeof key), sizeof key) : UINT32_MAX;
-}
-
-/* The material of a template in a tile; NT_NONE: out of memory. The first of a template takes its place. */
+/* The material of a template in a tile; NT_NONE: out of memory. */
 static uint32_t material_of(tiler *t, uint32_t from, uint32_t tile)
 {
-	const size_t before = t->numbers.count;
-	const uint32_t pair = number_of(&t->numbers, &t->scene->arena, from, tile);
-	if (pair == UINT32_MAX || t->numbers.count == before)
-		return pair == UINT32_MAX ? NT_NONE : t->numbered[pair];
-	const bool first = find_map(&t->materials[from], true) != NULL;
-	const size_t number = first ? from : t->count;
-	if (!nt_grow((void **)&t->numbered, &t->numbered_capacity, t->numbers.count, sizeof *t->numbered) ||
-		!nt_grow((void **)&t->materials, &t->capacity, number + 1, sizeof *t->materials) ||
-		!make_material(t, &t->materials[number], &t->templates[from], tile))
+	const uint64_t hash = nt_hash_words(from, tile);
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t i; (i = nt_hash_index_next(&t->index, hash, &at)) != NT_NONE;)
+		if (t->made[i].from == from && t->made[i].tile == tile)
+			return i;
+	const bool first = t->made[from].tile == NO_TILE;
+	const uint32_t number = first ? from : (uint32_t)t->count;
+	if (!nt_grow((void **)&t->made, &t->made_capacity, (size_t)number + 1, sizeof *t->made) ||
+		!nt_grow((void **)&t->materials, &t->capacity, (size_t)number + 1, sizeof *t->materials) ||
+		!nt_hash_index_add(&t->index, hash, number) ||
+		!make_material(t, &t->materials[number], &t->scene->materials[from], tile))
 		return NT_NONE;
+	t->made[number] = (struct made){from, tile};
 	t->count += !first;
-	return t->numbered[pair] = (uint32_t)number;
+	return number;
 }
 
-/* Which tiles a material with a number in a name has. */
-static void note_tile(tiler *t, uint32_t material, uint32_t tile)
+/* The material of a face of `size` corners from `corner` on; NT_NONE: out of memory. */
+static uint32_t material_of_face(tiler *t, const nt_mesh *mesh, uint32_t material, size_t corner, size_t size)
 {
-	if (t->first[material] == NO_TILE || tile < t->first[material])
-		t->first[material] = (uint16_t)tile;
-	if (t->last[material] == NO_TILE || tile > t->last[material])
-		t->last[material] = (uint16_t)tile;
+	template *from = &t->templates[material];
+	if (!from->marked && !from->numbered)
+		return material;
+	const uint32_t tile = tile_of(mesh, corner, size, &from->outside);
+	if (from->marked)
+		return material_of(t, material, tile);
+	if (from->first == NO_TILE || tile < from->first)
+		from->first = tile;
+	if (from->last == NO_TILE || tile > from->last)
+		from->last = tile;
+	return material;
 }
 
 /* Each face goes to the primitive of its material and tile; primitives in the order of their first faces. */
@@ -145,117 +150,92 @@ static nt_status split_mesh(tiler *t, nt_mesh *mesh)
 	bool any = false;
 	for (size_t i = 0; i < mesh->primitive_count; i++) {
 		const uint32_t material = mesh->primitives[i].material;
-		any |= material != NT_NONE && (find_map(&t->templates[material], true) ||
-			find_map(&t->templates[material], false));
+		any |= material != NT_NONE && (t->templates[material].marked || t->templates[material].numbered);
 	}
 	if (!any || !mesh->texcoords)
 		return NT_OK;
 	nt_arena *arena = &t->scene->arena;
-	nt_name_table primitives = {0};
-	nt_primitive *list = NULL;
-	size_t capacity = 0, corner = 0;
 	uint32_t *const numbers = mesh->face_primitive ? mesh->face_primitive
 		: nt_arena_alloc(arena, mesh->face_count, sizeof *numbers);
 	bool done = numbers != NULL;
-	for (size_t f = 0; done && f < mesh->face_count; f++) {
+	for (size_t f = 0, corner = 0; done && f < mesh->face_count; f++) {
 		const size_t size = mesh->face_sizes ? mesh->face_sizes[f] : 3;
-		const uint32_t old = mesh->face_primitive ? numbers[f] : 0;
-		uint32_t material = mesh->primitives[old].material, tile = NO_TILE;
-		if (material != NT_NONE && find_map(&t->templates[material], true)) {
-			tile = tile_of(mesh, corner, size, &t->outside[material]);
-			material = material_of(t, material, tile);
-			done = material != NT_NONE;
-		} else if (material != NT_NONE && find_map(&t->templates[material], false)) {
-			note_tile(t, material, tile_of(mesh, corner, size, &t->outside[material]));
-		}
-		const size_t before = primitives.count;
-		numbers[f] = number_of(&primitives, arena, old, tile);
-		done = done && numbers[f] != UINT32_MAX &&
-			nt_grow((void **)&list, &capacity, primitives.count, sizeof *list);
-		if (done && primitives.count > before)
-			list[numbers[f]] =
-				(nt_primitive){.material = material, .group = mesh->primitives[old].group};
+		const nt_primitive *old = &mesh->primitives[mesh->face_primitive ? numbers[f] : 0];
+		const bool plain = old->material == NT_NONE;
+		const uint32_t material = plain ? NT_NONE : material_of_face(t, mesh, old->material, corner, size);
+		done = plain || material != NT_NONE;
 		if (done)
-			list[numbers[f]].face_count++;
+			numbers[f] = obj_add_primitive(&t->primitives, material, old->group, 1);
+		done = done && numbers[f] != NT_NONE;
 		corner += size;
 	}
-	nt_primitive *made = done ? nt_arena_alloc(arena, primitives.count, sizeof *made) : NULL;
-	if (made) {
-		mesh->primitives = memcpy(made, list, primitives.count * sizeof *made);
-		mesh->primitive_count = primitives.count;
-		mesh->face_primitive = primitives.count > 1 ? numbers : NULL;
-		done = obj_sort_groups(mesh);
-	}
-	nt_name_table_free(&primitives);
-	free(list);
-	return made && done ? NT_OK : nt_fail_memory(t->error);
+	mesh->face_primitive = numbers;
+	return done && obj_set_primitives(mesh, &t->primitives, arena) ? NT_OK : nt_fail_memory(t->error);
 }
 
-static void report_outside(const tiler *t)
+static void report_outside(const tiler *t, size_t i)
 {
-	for (size_t i = 0; i < t->template_count; i++) {
-		const nt_material *m = &t->templates[i];
-		const nt_map *map = find_map(m, true);
-		if (!map || !t->outside[i])
-			continue;
-		const nt_place place = nt_line_place(m->library, map->line);
-		nt_finding_add(&t->scene->findings, NT_CODE_MATERIAL_DOUBTFUL, &place, 1,
-			"MTL: %.120s has no tile for %zu %s tile %d: u is not in 0 to %d, or v is below 0",
-			map->name, t->outside[i], t->outside[i] == 1 ? "face, which shows" : "faces, which show",
-			FIRST_TILE, TILES_ALONG_U);
-	}
+	const nt_map *map = t->templates[i].marked;
+	const size_t count = t->templates[i].outside;
+	if (!map || !count)
+		return;
+	const nt_place place = nt_line_place(t->scene->materials[i].library, map->line);
+	nt_finding_add(&t->scene->findings, NT_CODE_MATERIAL_DOUBTFUL, &place, 1,
+		"MTL: %.120s has no tile for %zu %s tile %d: u is not in 0 to %d, or v is below 0", map->name, count,
+		count == 1 ? "face, which shows" : "faces, which show", FIRST_TILE, TILES_ALONG_U);
 }
 
-static void report_numbered(const tiler *t)
+static void report_numbered(const tiler *t, size_t i)
 {
-	for (size_t i = 0; i < t->template_count; i++) {
-		const nt_material *m = &t->templates[i];
-		const nt_map *map = find_map(m, false);
-		if (!map || t->first[i] == t->last[i])
-			continue;
-		const nt_place place = nt_line_place(m->library, map->line);
-		nt_finding_add(&t->scene->findings, NT_CODE_MATERIAL_DOUBTFUL, &place, 1,
-			"MTL: %.120s is the image of one tile, and faces in the tiles %d to %d show it; for an image "
-			"each, write <UDIM> in place of %.4s",
-			map->name, FIRST_TILE + t->first[i], FIRST_TILE + t->last[i], find_number(map->name));
-	}
+	const template *from = &t->templates[i];
+	if (from->first == from->last)
+		return;
+	const nt_place place = nt_line_place(t->scene->materials[i].library, from->numbered->line);
+	nt_finding_add(&t->scene->findings, NT_CODE_MATERIAL_DOUBTFUL, &place, 1,
+		"MTL: %.120s is the image of one tile, and faces in the tiles %d to %d show it; for an image each, "
+		"write <UDIM> in place of %.4s",
+		from->numbered->name, (int)(FIRST_TILE + from->first), (int)(FIRST_TILE + from->last),
+		find_number(from->numbered->name));
 }
 
 nt_status obj_split_tiles(nt_scene *scene, nt_error *error)
 {
+	const size_t count = scene->material_count;
+	tiler t = {.scene = scene, .error = error, .count = count};
 	bool any = false;
-	for (size_t i = 0; i < scene->material_count && !any; i++)
-		any = find_map(&scene->materials[i], true) || find_map(&scene->materials[i], false);
-	if (!any)
-		return NT_OK;
-	tiler t = {.scene = scene, .error = error, .templates = scene->materials,
-		.template_count = scene->material_count, .count = scene->material_count};
-	const size_t bytes = t.template_count * sizeof *t.first;
-	t.first = malloc(bytes);
-	t.last = malloc(bytes);
-	t.outside = nt_calloc(t.template_count, sizeof *t.outside);
-	nt_status status = NT_ERROR_MEMORY;
-	if (t.first && t.last && t.outside &&
-		nt_grow((void **)&t.materials, &t.capacity, t.count, sizeof *t.materials)) {
-		status = NT_OK;
-		memcpy(t.materials, t.templates, t.count * sizeof *t.materials);
-		for (size_t i = 0; i < t.template_count; i++)
-			t.first[i] = t.last[i] = NO_TILE;
+	t.templates = nt_calloc(count, sizeof *t.templates);
+	nt_status status = t.templates ? NT_OK : NT_ERROR_MEMORY;
+	for (size_t i = 0; i < count && !status; i++) {
+		const nt_map *marked = find_map(&scene->materials[i], true);
+		t.templates[i] = (template){.marked = marked,
+			.numbered = marked ? NULL : find_map(&scene->materials[i], false),
+			.first = NO_TILE,
+			.last = NO_TILE};
+		any |= t.templates[i].marked || t.templates[i].numbered;
 	}
-	for (size_t m = 0; m < scene->mesh_count && !status; m++)
+	if (any && (!nt_grow((void **)&t.materials, &t.capacity, count, sizeof *t.materials) ||
+			   !nt_grow((void **)&t.made, &t.made_capacity, count, sizeof *t.made)))
+		status = NT_ERROR_MEMORY;
+	for (size_t i = 0; i < count && any && !status; i++) {
+		t.materials[i] = scene->materials[i];
+		t.made[i] = (struct made){(uint32_t)i, NO_TILE};
+	}
+	for (size_t m = 0; m < scene->mesh_count && any && !status; m++)
 		status = split_mesh(&t, &scene->meshes[m]);
-	nt_material *made = status ? NULL : nt_arena_alloc(&scene->arena, t.count, sizeof *made);
+	nt_material *made = any && !status ? nt_arena_alloc(&scene->arena, t.count, sizeof *made) : NULL;
 	if (made) {
-		report_numbered(&t);
-		report_outside(&t);
+		for (size_t i = 0; i < count; i++)
+			report_numbered(&t, i);
+		for (size_t i = 0; i < count; i++)
+			report_outside(&t, i);
 		scene->materials = memcpy(made, t.materials, t.count * sizeof *made);
 		scene->material_count = t.count;
 	}
-	nt_name_table_free(&t.numbers);
+	free(t.templates);
 	free(t.materials);
-	free(t.numbered);
-	free(t.first);
-	free(t.last);
-	free(t.outside);
-	return made ? NT_OK : status ? status : nt_fail_memory(error);
+	free(t.made);
+	free(t.primitives.items);
+	nt_hash_index_free(&t.primitives.index);
+	nt_hash_index_free(&t.index);
+	return status || (any && !made) ? nt_fail_memory(error) : NT_OK;
 }
