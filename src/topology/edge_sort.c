@@ -477,19 +477,16 @@ static bool ask(question *q, answer *result, bool *limit)
 /* Answers it in memory of the mesh. */
 static nmtan_status does_matter(const nt_welded_mesh *m, nt_grid *grid, bool *matters, bool *limit)
 {
-	enum { MOST_ROWS = 3 * NT_EDGE_FEW };
+	enum { LEAST_ROOM = 3 * NT_EDGE_FEW };
 	question q;
 	*limit = *matters = false;
-	if (m->triangle_count <= NT_EDGE_FEW && m->vertex_count <= MOST_ROWS && !m->triangles->cuts &&
-		nt_few_edges_are_sorted(m, limit))
-		return NMTAN_OK;
 	if (m->triangle_count < LEAST_EDGES) {
 		*limit = !nt_grid_of_used(m, grid);
 		return NMTAN_OK;
 	}
 	q.mesh = m;
 	q.is_grid_of_used = false;
-	q.most_corners = m->triangle_count + m->triangle_count / 2 + MOST_ROWS;
+	q.most_corners = m->triangle_count + m->triangle_count / 2 + LEAST_ROOM;
 	q.marks = nt_scratch_alloc(m->scratch, m->vertex_count, 1);
 	q.numbers = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *q.numbers);
 	q.corners = nt_scratch_alloc(m->scratch, q.most_corners, sizeof *q.corners);
@@ -847,6 +844,10 @@ nmtan_status nt_find_unsorted(const nt_welded_mesh *mesh, nt_scratch *memory, nt
 	*unsorted = (nt_unsorted){.limit = 3 * mesh->triangle_count > NT_EDGE_SORT_CORNERS};
 	if (mesh->triangle_count == 0 || unsorted->limit)
 		return NMTAN_OK;
+	if (mesh->triangle_count <= NT_EDGE_FEW && mesh->vertex_count <= 3 * NT_EDGE_FEW &&
+		!mesh->triangles->cuts && nt_few_edges_are_sorted(mesh, &unsorted->limit))
+		return NMTAN_OK;
+	unsorted->limit = false;
 	const nt_scratch_mark mark = nt_scratch_here(mesh->scratch);
 	nt_grid grid;
 	bool matters;

@@ -60,20 +60,20 @@ static bool number_rows(const nmtan_mesh *mesh, size_t count, nt_weld_row *rows,
 	while ((size_t)1 << bits < 2 * count)
 		bits++;
 	memset(slots, 0, sizeof *slots << bits);
-	*equal = false;
+	uint64_t any_equal = 0;
 	for (size_t v = 0; v < count; v++) {
 		unordered |= nt_weld_load(mesh, v, &rows[v]);
-		uint64_t hash = 0;
-		for (size_t i = 0; i < 4; i++)
-			hash += nt_weld_word(&rows[v], i) * odd[i];
+		const uint64_t hash = nt_weld_word(&rows[v], 0) * odd[0] + nt_weld_word(&rows[v], 1) * odd[1] +
+			(nt_weld_word(&rows[v], 2) * odd[2] + nt_weld_word(&rows[v], 3) * odd[3]);
 		size_t at = hash >> (64 - bits);
 		while (slots[at] && !nt_weld_same(&rows[slots[at] - 1], &rows[v]))
 			at = (at + 1) & (((size_t)1 << bits) - 1);
-		*equal |= slots[at] != 0;
+		any_equal |= slots[at];
 		if (!slots[at])
 			slots[at] = (uint16_t)(v + 1);
 		numbers[v] = slots[at] - 1u;
 	}
+	*equal = any_equal != 0;
 	return nt_weld_ordered(unordered);
 }
 
