@@ -5,7 +5,8 @@
  *
  *   OBJ        2 for each byte, 60 for each corner of a face, 140 for each vertex that these may be (30 to 65, with
  *              vertices that all differ 190), 2300 for each change of material or object
- *   PLY        2 for each byte and 96 for each element that the header declares (50; 500)
+ *   PLY        2 for each byte and 140 for each element that the header declares (50; 135 if all triangles collapse,
+ *              as --origin=keep makes them; 500)
  *   glTF, GLB  12 for each byte of JSON, 1 for each other byte, and 46 for each "count" in the JSON, which is that of
  *              accessors, wherever their bytes are (30; 105); 112 where there is or will be Draco (98; 207); and 60
  *              for each element of a morph target, however many share an accessor (50)
@@ -13,8 +14,7 @@
  *
  * as "make bench-need" prints it. --weld takes no more: a soup of 320 000 triangles 78 MB instead of 164, a grid the
  * same 44. Doubles of an origin are within what counts for vertices: a grid takes 81 MB instead of 59 as OBJ, where 228
- * are expected, 65 and 66 as PLY. --origin=keep has a report list triangles that rounding made degenerate: they are not
- * seen. An OBJ's images that are converted are in need_images.c. Images that a report
+ * are expected, 65 and 66 as PLY. An OBJ's images that are converted are in need_images.c. Images that a report
  * examines, polygons of many corners, and instances that become one PLY are not seen.
  */
 #include "batch/need.h"
@@ -67,7 +67,7 @@ static uint64_t ply_need(const char *text, size_t size)
 		elements = plus(elements, 1, number_after(name_end, end, " "));
 		at = name_end;
 	}
-	return plus(2 * (uint64_t)size, 96, elements);
+	return plus(2 * (uint64_t)size, 140, elements);
 }
 
 /* ---- morph targets ---- */

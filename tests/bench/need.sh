@@ -50,6 +50,17 @@ with open(work + '/corners.ply', 'wb') as f:
     f.write(struct.pack('<%df' % (5 * points), *(random.randrange(10) for _ in range(5 * points))))
     for _ in range(200000):
         f.write(bytes([4] + random.sample(range(points), 4)))
+with open(work + '/far.ply', 'w') as f:
+    n = 300 # rounding to float makes one point of 10 x 10
+    f.write('ply\nformat ascii 1.0\nelement vertex %d\n' % (n + 1) ** 2 + ''.join('property double %s\n' % name for name in 'xyzst') +
+            'element face %d\nproperty list uchar int vertex_indices\nend_header\n' % (n * n))
+    for j in range(n + 1):
+        for i in range(n + 1):
+            f.write('%.2f %.2f 0 %d %d\n' % (431234 + 0.05 * i, 5412345 + 0.05 * j, i, j))
+    for j in range(n):
+        for i in range(n):
+            a = j * (n + 1) + i
+            f.write('4 %d %d %d %d\n' % (a, a + 1, a + n + 2, a + n + 1))
 data = b''
 views, accessors = [], []
 def accessor(bytes_, component, kind, count, **more):
@@ -97,6 +108,7 @@ fi
 make_files
 for file in ordinary terse corners; do row "$work/$file.obj"; row "$work/$file.obj" --verify --report="$work/r.html"; done
 for file in ordinary corners; do row "$work/$file.ply"; done
+row "$work/far.ply" --origin=keep --verify --report="$work/r.json"
 for file in ordinary corners nodes draco; do
 	row "$work/$file.glb"
 	row "$work/$file.glb" --verify --report="$work/r.html"
