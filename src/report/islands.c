@@ -7,7 +7,8 @@
  * the whole mesh, both as the sampler wraps them: a mirrored half that was moved by a whole tile for baking
  * still lies on the other half. The points (about SAMPLE_COUNT of them, at least one of each island) go into a
  * grid and the triangles stream over it, once for each tile that they reach into; a point that is found leaves
- * its cell, so that many stacked layers cost no more than one.
+ * its cell, so that many stacked layers cost no more than one. Triangles whose materials have other images share no
+ * texture.
  *
  * An island with both windings is a fold, unless its mirrored part lies point by point on its own
  * unmirrored part: then it is a symmetric model whose halves share the coordinates of the middle line, or a doubled
@@ -19,6 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash_index.h"
+#include "base/name_table.h"
 
 enum { SAMPLE_COUNT = 16384, GRID_SIZE = 128 };
 
@@ -122,6 +124,7 @@ typedef struct sample {
 	double weight;     /* area in UV space */
 	uint32_t island;
 	uint32_t next;     /* in its cell, NT_NONE at the end */
+	uint32_t texture;  /* number of the image that its material has */
 	bool found;
 } sample;
 
@@ -132,6 +135,7 @@ typedef struct grid {
 	size_t sample_count, left; /* not found yet */
 	size_t visits, most_visits;
 	const nt_mesh *mesh; /* whose wrap and wrap_offset count */
+	uint32_t *textures;  /* [primitive_count] numbers of images; NULL: all have one */
 } grid;
 
 static double uv_area(const float *a, const float *b, const float *c)
@@ -144,6 +148,30 @@ static int cell_of(const grid *g, int axis, double value)
 {
 	const double cell = (value - g->minimum[axis]) * g->scale[axis];
 	return cell < 0.0 ? 0 : cell >= GRID_SIZE ? GRID_SIZE - 1 : (int)cell;
+}
+
+/* Numbers the images that the materials of primitives have: the first map of each, normal maps before others. */
+static bool number_textures(const nt_check *check, uint32_t *textures)
+{
+	nt_name_table names = {0};
+	bool added = true;
+	for (size_t p = 0; added && p < check->mesh->primitive_count; p++) {
+		const uint32_t number = check->mesh->primitives[p].material;
+		const nt_material *material = number == NT_NONE ? NULL : &check->scene->materials[number];
+		const char *name = material ? material->normal_map.name : NULL;
+		for (size_t i = 0; material && !name && i < NT_MATERIAL_MAPS; i++)
+			name = material->maps[i].name;
+		textures[p] = nt_name_add(&names, name ? name : "", name ? strlen(name) : 0);
+		added = textures[p] != UINT32_MAX;
+	}
+	nt_name_table_free(&names);
+	return added;
+}
+
+static uint32_t texture_of(const nt_check *check, const grid *g, size_t triangle)
+{
+	const uint32_t *faces = check->surface.faces;
+	return g->textures ? g->textures[g->mesh->face_primitive[faces ? faces[triangle] : triangle]] : 0;
 }
 
 /* Takes every n-th mirrored triangle, at most SAMPLE_COUNT, and the first one of every island. `met` is
@@ -168,6 +196,7 @@ static void take_samples(const nt_check *check, grid *g, size_t mirrored_count, 
 			.v = nt_wrap_coordinate(g->mesh, 1, ((double)a[1] + b[1] + c[1]) / 3.0),
 			.weight = -uv_area(a, b, c),
 			.island = check->islands[t],
+			.texture = texture_of(check, g, t),
 			.found = check->twins && nt_bit(check->twins, t)};
 	}
 }
@@ -197,6 +226,7 @@ static void fill_grid(grid *g)
 /* A triangle in UV space, counterclockwise. */
 typedef struct uv_triangle {
 	double u[3], v[3];
+	uint32_t texture;
 } uv_triangle;
 
 static bool is_inside(const sample *p, const uv_triangle *t)
@@ -215,7 +245,7 @@ static void search_cell(grid *g, size_t cell, const uv_triangle *t)
 	for (uint32_t *link = &g->cells[cell]; *link != NT_NONE;) {
 		sample *p = &g->samples[*link];
 		g->visits++;
-		if (is_inside(p, t)) {
+		if (p->texture == t->texture && is_inside(p, t)) {
 			p->found = true;
 			g->left--;
 			*link = p->next;
@@ -286,7 +316,7 @@ static void stream_triangles(const nt_check *check, grid *g)
 	for (size_t t = 0; t < s->triangle_count && g->left && g->visits < g->most_visits; t++) {
 		if (s->orientation[t] <= 0)
 			continue;
-		uv_triangle uv;
+		uv_triangle uv = {.texture = texture_of(check, g, t)};
 		for (uint32_t k = 0; k < 3; k++) {
 			const float *texcoord = nt_side_texcoord(s, (uint32_t)(3 * t) + k);
 			uv.u[k] = (double)texcoord[0] + g->mesh->wrap_offset[0];
@@ -312,6 +342,12 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 	double *sums = nt_scratch_alloc(check->scratch, 2 * islands, sizeof *sums);
 	if (!g || !samples || !sums || !met)
 		return NT_ERROR_MEMORY;
+	g->textures = NULL;
+	if (check->mesh->face_primitive && check->mesh->primitive_count > 1) {
+		g->textures = nt_scratch_alloc(check->scratch, check->mesh->primitive_count, sizeof *g->textures);
+		if (!g->textures || !number_textures(check, g->textures))
+			return NT_ERROR_MEMORY;
+	}
 	memset(met, 0, islands * sizeof *met);
 	g->samples = samples;
 	g->sample_count = g->visits = 0;

@@ -241,6 +241,19 @@ printf 'mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 0\nvt 2 0\nvt 1 
 run one.obj t.gltf
 says_not warning
 
+scene "mirrored islands share texels with those that show the same image, not with another tile or material"
+for tile in 1001 1002; do images write body.$tile.png 4 4 "($tile - 1000, 0, 0)"; done
+for row in 'body.<UDIM>.png|body.<UDIM>.png|0 1' 'body.1001.png|body.1002.png|0 1' 'body.1001.png|body.1001.png|1 0'; do
+	IFS='|' read -r first second want <<<"$row"
+	printf 'newmtl a\nmap_Kd %s\nnewmtl b\nmap_Kd %s\n' "$first" "$second" >m.mtl
+	printf '%s\n' 'mtllib m.mtl' 'v 0 0 0' 'v 1 0 0' 'v 1 1 0' 'v 0 1 0' 'v 3 0 0' 'v 4 0 0' 'v 4 1 0' 'v 3 1 0' \
+		'vt 0.1 0.1' 'vt 0.9 0.1' 'vt 0.9 0.9' 'vt 0.1 0.9' 'vt 1.9 0.1' 'vt 1.1 0.1' 'vt 1.1 0.9' 'vt 1.9 0.9' \
+		'usemtl a' 'f 1/1 2/2 3/3 4/4' 'usemtl b' 'f 5/5 6/6 7/7 8/8' >tiles.obj
+	run -q --check --report=r.json tiles.obj
+	codes=$(value r.json '[f["code"] for f in r["files"][0]["findings"]]')
+	is "$second $(grep -o UV_MIRROR_OVERLAP <<<"$codes" | wc -l) $(grep -o UV_MIRROR_LONE <<<"$codes" | wc -l)" "$second $want"
+done
+
 scene "the same bytes for every number of threads"
 for i in 1 2 3 4; do images write "$i.tga" 64 $((i * 16)) '(x + y, x, y)'; done
 quad "map_Kd 1.tga" "map_d 2.tga" "map_Pr 3.tga" "map_Pm 4.tga" "map_Ke 2.tga"
