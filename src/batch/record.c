@@ -4,6 +4,7 @@
  */
 #include "batch/record.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
 #include <pthread.h>
@@ -43,6 +44,7 @@ struct nt_record {
 	} known[KNOWN_FOLDERS];	 /* folders as they were spelled lately, and where they are */
 	size_t oldest;
 	nt_buffer renewed; /* lines */
+	size_t looked;     /* outputs of the record that this run has looked at */
 };
 
 /* ---- names ---- */
@@ -469,6 +471,9 @@ nt_status nt_record_look(nt_record *record, const nt_making *making, nt_freshnes
 	nt_buffer_free(&key);
 	if (!text)
 		return status;
+	pthread_mutex_lock(&record->lock);
+	record->looked++;
+	pthread_mutex_unlock(&record->lock);
 	*freshness = NT_FRESH_STALE;
 	bool same;
 	status = is_sealed(text, length, &same, error);
@@ -488,6 +493,40 @@ nt_status nt_record_look(nt_record *record, const nt_making *making, nt_freshnes
 	if (!status && same)
 		*freshness = NT_FRESH_CURRENT;
 	return status;
+}
+
+/* Whether a line's output is there, and its input is not. */
+static bool is_left_over(const nt_record *record, const nt_json_value *line, nt_buffer *output)
+{
+	nt_buffer input = {0};
+	struct stat info;
+	const nt_json_value *source = nt_json_at(nt_json_find(line, "read"), 0);
+	const bool left = read_path(record, nt_json_find(line, "output"), output) &&
+		read_path(record, nt_json_find(source, "uri"), &input) && !output->failed && !input.failed &&
+		stat(output->data, &info) == 0 && stat(input.data, &info) != 0 && errno == ENOENT;
+	nt_buffer_free(&input);
+	return left;
+}
+
+size_t nt_record_left_over(nt_record *record, const char *path, nt_buffer *first)
+{
+	const nt_record_file *file = &record->file;
+	const char *slash = strrchr(path, '/');
+	size_t count = 0;
+	for (size_t i = 0; i < file->line_count && record->looked < file->line_count; i++) {
+		nt_json *line;
+		nt_error ignored;
+		nt_buffer output = {0};
+		if (nt_json_parse(&line, file->text + file->lines[i].offset, file->lines[i].length, NULL, &ignored))
+			continue;
+		if (is_left_over(record, nt_json_root(line), &output) && !count++) {
+			nt_buffer_append(first, path, slash ? (size_t)(slash - path) + 1 : 0);
+			nt_buffer_text(first, output.data + strlen(record->folder) + 1);
+		}
+		nt_buffer_free(&output);
+		nt_json_free(line);
+	}
+	return count;
 }
 
 /* ---- appending ---- */

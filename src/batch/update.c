@@ -119,6 +119,19 @@ void nt_update_end(nt_update *update)
 	free(update);
 }
 
+size_t nt_update_left_over(const nt_update *update, nt_buffer *first)
+{
+	size_t count = 0;
+	for (size_t i = 0; update && i < update->count; i++) {
+		nt_buffer name = {0};
+		count += nt_record_left_over(update->records[i].record, update->records[i].path, &name);
+		if (!first->size && name.size)
+			nt_buffer_text(first, name.data);
+		nt_buffer_free_into(&name, first);
+	}
+	return count;
+}
+
 /* ---- one output ---- */
 
 static nt_status append(void *user, const nt_trace *trace, nt_error *error)

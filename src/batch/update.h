@@ -29,6 +29,9 @@ nt_status nt_update_begin(nt_update **update, const nt_update_options *options, 
 /* NULL is allowed. */
 void nt_update_end(nt_update *update);
 
+/* The same as nt_record_left_over() of all records; NULL is allowed. */
+size_t nt_update_left_over(const nt_update *update, nt_buffer *first);
+
 /* One input on its way through the records. */
 typedef struct nt_update_job {
 	nt_update *update;

@@ -171,22 +171,24 @@ static int tell_run(session *s, nt_job *job)
 	int code = nt_exit_code(job->status);
 	const int least_failure = s->plan->target.style.least_failure;
 	const bool fails = !job->status && !c->diff && findings_fail(summary, least_failure);
+	const int most = fails ? least_failure - 1 : NT_SEVERITY_ERROR;
 	const nt_style style = {s->style.colour, s->style.verbosity, fails || job->status};
 	/* a report on standard output says it better */
 	const bool shown = s->plan->target.path && strcmp(s->plan->target.path, "-") == 0;
 	if (fails && !shown)
-		nt_message_failure(&s->text, summary->report, job->input, NULL, least_failure, s->style);
+		nt_message_failure(&s->text, summary->report, &s->plan->options, job->input, job->output, NULL,
+			least_failure, s->style);
 	if (s->style.verbosity >= 0 && !shown) {
 		const bool infos = c->settings.check || s->style.verbosity > 0;
 		nt_message_findings(&s->text, &summary->findings, summary->report, &s->plan->options, job->input,
-			job->output, infos, fails ? least_failure - 1 : NT_SEVERITY_ERROR, style);
+			job->output, infos, most, style);
 	} else if (s->style.verbosity < 0 && !job->status && !c->settings.check)
 		nt_message_left_out(&s->text, job, s->plan->options.ignore);
 	/* a batch counts them in a quiet run; of a report nt_message_findings() says what no check finds */
-	if (summary->keeps_wrong && !job->status && !fails && !shown &&
+	if (summary->keeps_wrong && !job->status && !shown &&
 		(s->style.verbosity < 0 ? s->count == 1 : summary->report != NULL))
 		nt_message_kept(&s->text, &summary->findings, summary->report, &s->plan->options, job->input,
-			job->output, s->style);
+			job->output, most, s->style);
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
 	if (job->status) {
 		if (!job->reason_is_told)
@@ -341,8 +343,8 @@ static void tell_diff(session *s)
 		if (diff.by_severity[1][severity])
 			s->exit_code = nt_exit_worse(s->exit_code, NT_EXIT_FINDINGS);
 	if (!target.path || strcmp(target.path, "-") != 0)
-		nt_message_failure(&s->text, s->reports[1], s->command->operands[1], diff.known[1],
-			target.style.least_failure, s->style);
+		nt_message_failure(&s->text, s->reports[1], &s->plan->options, s->command->operands[1], NULL,
+			diff.known[1], target.style.least_failure, s->style);
 	target.diff = &diff;
 	if (target.path && nt_report_to_file(s->reports, s->report_count, &target, &error))
 		tell_report_error(s, &error, target.path);
@@ -395,6 +397,24 @@ static void append_outcomes(session *s)
 	}
 }
 
+/* Outputs that no input of a folder makes any more. */
+static void tell_left_over(session *s)
+{
+	nt_buffer first = {0};
+	const nt_command *c = s->command;
+	const size_t count = c->update && c->recursive && s->style.verbosity >= 0
+		? nt_update_left_over(s->update, &first) : 0;
+	if (count) {
+		nt_buffer_format(&s->text, "nmtan: %zu output%s left whose input is gone: ", count,
+			count == 1 ? " is" : "s are");
+		nt_buffer_clean(&s->text, first.data ? first.data : "");
+		if (count > 1)
+			nt_buffer_format(&s->text, " and %zu more", count - 1);
+		nt_buffer_text(&s->text, "\n");
+	}
+	nt_buffer_free_into(&first, &s->text);
+}
+
 /* After the last of many: how many failed, and why; and the times. */
 static void tell_end(session *s)
 {
@@ -419,6 +439,7 @@ static void tell_end(session *s)
 		nt_buffer_text(&s->text, "\n");
 		nt_failures_append(&s->text, &s->failures, s->command->manifest);
 	}
+	tell_left_over(s);
 	if (s->command->timing)
 		nt_message_timing(&s->text, &s->total);
 	if (!nt_say(&s->text))

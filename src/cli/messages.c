@@ -63,7 +63,7 @@ static void append_sentence(nt_buffer *out, const nt_place_view *place, const ch
 	nt_buffer_format(out, "%s%s:%s ", colour(style, colours[severity]), nt_severity_name(severity),
 		colour(style, "\033[0m"));
 	nt_buffer_clean(out, sentence);
-	nt_buffer_format(out, " [%s]%s%s\n", nt_code_info(code)->name, command ? ": " : "", command ? command : "");
+	nt_buffer_format(out, " [%s]%s\n", nt_code_info(code)->name, command ? command : "");
 }
 
 /* As the user says (options, NULL: does not). A run that succeeds has met no error. */
@@ -74,20 +74,27 @@ static nt_severity shown_severity(const nt_finding *finding, const nt_report_opt
 	return style.fails || severity < NT_SEVERITY_ERROR ? severity : NT_SEVERITY_WARNING;
 }
 
-/* Infos that are printed without -v: they say what to do, which the file does not say, or where the positions are. */
-static bool is_proposed(nt_code code)
+/* Infos that are printed without -v: the file does not say what was to be done, and nmtan chose; or the output has no
+ * room for what it says. */
+static bool is_chosen(nt_code code)
 {
-	return code == NT_CODE_NMAP_BESIDE || code == NT_CODE_TAN_QUADS_LIKELY || code == NT_CODE_POS_ORIGIN;
+	static const nt_code codes[] = {NT_CODE_NMAP_BESIDE, NT_CODE_TAN_QUADS_LIKELY, NT_CODE_POS_ORIGIN,
+		NT_CODE_NORMALS_MADE, NT_CODE_BUMP_AS_NORMAL, NT_CODE_MATERIAL_FIRST, NT_CODE_POLYGON_CUT,
+		NT_CODE_POLYGONS_DROPPED, NT_CODE_DRACO_SEQUENTIAL};
+	bool chosen = false;
+	for (size_t i = 0; i < sizeof codes / sizeof *codes; i++)
+		chosen |= codes[i] == code;
+	return chosen;
 }
 
-/* The command that repairs a finding, if it is told with one. */
-static void append_command(nt_buffer *out, const nt_finding *finding, const nt_report_options *options,
-	nt_severity severity, const char *file, const char *output)
+/* ": nmtan --fix a.glb b.glb", and before it when that is right. */
+static void append_command(nt_buffer *out, nt_code code, const char *repair, const nt_report_options *options,
+	const char *file, const char *output)
 {
-	const char *repair = finding->repair ? finding->repair : nt_code_info(finding->code)->repair;
+	const char *condition = nt_code_condition(code);
 	const bool in_place = output && strcmp(file, output) == 0;
-	if (repair && !finding->stays && (severity > NT_SEVERITY_INFO || is_proposed(finding->code)))
-		nt_command_text(repair, options->given, file, in_place ? NULL : output, out);
+	nt_buffer_format(out, condition ? "; %s: " : ": ", condition);
+	nt_command_text(repair, options->given, file, in_place ? NULL : output, out);
 }
 
 /* All findings of one code and severity but for `old` ones (NULL: none are), those beyond PLACES_SHOWN as a number. The
@@ -107,8 +114,9 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, const b
 		}
 		nt_buffer sentence = {0}, command = {0};
 		nt_code_sentence(code, finding->count, finding->detail, &sentence);
-		if (!shown)
-			append_command(&command, finding, options, severity, file, output);
+		const char *repair = finding->repair ? finding->repair : nt_code_info(code)->repair;
+		if (!shown && repair && !finding->stays && (severity > NT_SEVERITY_INFO || is_chosen(code)))
+			append_command(&command, code, repair, options, file, output);
 		append_sentence(out, &finding->place, file, code, severity, sentence.data ? sentence.data : "",
 			command.data, style);
 		nt_buffer_free_into(&sentence, out);
@@ -149,16 +157,27 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 		find_old(findings, report, old);
 	for (int severity = most; severity >= (int)options->min_severity; severity--)
 		for (int code = 0; code < NT_CODE_COUNT; code++)
-			if ((infos || severity || is_proposed((nt_code)code)) && !options->ignore[code])
+			if ((infos || severity || is_chosen((nt_code)code)) && !options->ignore[code])
 				append_code(out, findings, old, options, (nt_code)code, (nt_severity)severity, file,
 					output, style);
 	free(old);
 }
 
-void nt_message_kept(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
+/* A finding of a report, with its command if that was not told before. */
+static void append_found(nt_buffer *out, const nt_report_finding *f, nt_severity severity, bool *told,
 	const nt_report_options *options, const char *file, const char *output, nt_style style)
 {
-	const bool in_place = output && strcmp(file, output) == 0;
+	nt_buffer command = {0};
+	if (f->repair && !told[f->code])
+		append_command(&command, f->code, f->repair, options, file, output);
+	told[f->code] = true;
+	append_sentence(out, &f->place, file, f->code, severity, f->message, command.data, style);
+	nt_buffer_free_into(&command, out);
+}
+
+void nt_message_kept(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
+	const nt_report_options *options, const char *file, const char *output, int most, nt_style style)
+{
 	bool told[NT_CODE_COUNT] = {false};
 	for (int code = 0; !report && code < NT_CODE_COUNT; code++)
 		if (nt_code_is_of_kept((nt_code)code) && !options->ignore[code])
@@ -166,15 +185,10 @@ void nt_message_kept(nt_buffer *out, const nt_finding_list *findings, const nt_r
 				style);
 	for (size_t i = 0; report && i < report->new_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
-		nt_buffer command = {0};
-		if (f->mesh == NT_NONE || f->severity == NT_SEVERITY_INFO || !nt_code_is_of_kept(f->code) ||
-			told[f->code] || (f->noted != NT_NONE && style.verbosity >= 0))
+		if (f->mesh == NT_NONE || f->severity == NT_SEVERITY_INFO || (int)f->severity > most ||
+			!nt_code_is_of_kept(f->code) || told[f->code] || (f->noted != NT_NONE && style.verbosity >= 0))
 			continue;
-		told[f->code] = true;
-		if (f->repair)
-			nt_command_text(f->repair, options->given, file, in_place ? NULL : output, &command);
-		append_sentence(out, &f->place, file, f->code, NT_SEVERITY_WARNING, f->message, command.data, style);
-		nt_buffer_free_into(&command, out);
+		append_found(out, f, NT_SEVERITY_WARNING, told, options, file, output, style);
 	}
 }
 
@@ -219,17 +233,17 @@ void nt_message_left_out(nt_buffer *out, const nt_job *job, const bool *ignore)
 	nt_buffer_text(out, told ? "\n" : "");
 }
 
-void nt_message_failure(nt_buffer *out, const nt_report *report, const char *file, const bool *known, int least_failure,
-	nt_style style)
+void nt_message_failure(nt_buffer *out, const nt_report *report, const nt_report_options *options, const char *file,
+	const char *output, const bool *known, int least_failure, nt_style style)
 {
+	bool told[NT_CODE_COUNT] = {false};
 	size_t shown = 0, more = 0;
 	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *found = &report->findings[i];
 		if ((known ? known[i] : found->known) || (int)found->severity < least_failure)
 			continue;
 		if (shown++ < PLACES_SHOWN || style.verbosity > 0)
-			append_sentence(out, &found->place, file, found->code, found->severity, found->message, NULL,
-				style);
+			append_found(out, found, found->severity, told, options, file, output, style);
 		else
 			more++;
 	}
@@ -286,6 +300,10 @@ static void append_unused(nt_buffer *out, const nt_summary *s, const nt_settings
 		nt_buffer_format(out, ", made the normals of %zu without tangents", s->shaded_count);
 	if (s->shaded_copies)
 		nt_buffer_format(out, " (+%zu vertices where they differ)", s->shaded_copies);
+	if (settings->bump == NT_BUMP_HEIGHT && nt_format_is_gltf(s->input_format) && !s->made_maps)
+		nt_buffer_text(out, ", nothing that --bump=height converts");
+	if (settings->flip_green == NT_FLIP_ON && nt_format_is_gltf(s->input_format) && !s->made_maps)
+		nt_buffer_text(out, ", nothing that --flip-green turns");
 	if (settings->draco > NT_DRACO_OFF && !s->solved_count)
 		nt_buffer_text(out,
 			", nothing compressed, as no primitive got tangents: --existing=replace --only=all");
@@ -310,18 +328,23 @@ static void append_findings_count(nt_buffer *out, const nt_summary *s)
 		counts[shown_severity(&s->findings.items[i], NULL, (nt_style){0})]++;
 	if (s->report)
 		memcpy(counts, s->report->by_severity, sizeof counts);
-	if (!counts[0] && !counts[1] && !counts[2]) {
-		size_t known = 0;
-		for (int severity = 0; s->report && severity < 3; severity++)
-			known += s->report->known[severity];
-		nt_buffer_format(out, known ? ", nothing new, %zu known" : ", no findings", known);
-		return;
+	size_t known = 0, hidden = 0;
+	for (int severity = 0; s->report && severity < 3; severity++) {
+		known += s->report->known[severity];
+		hidden += s->report->hidden[severity];
 	}
+	if (!counts[0] && !counts[1] && !counts[2] && (known || !hidden))
+		nt_buffer_format(out, known ? ", nothing new, %zu known" : ", no findings", known);
 	for (int severity = NT_SEVERITY_ERROR; severity >= NT_SEVERITY_INFO; severity--)
 		if (counts[severity]) {
 			nt_buffer_text(out, ", ");
 			append_count(out, counts[severity], nt_severity_name((nt_severity)severity));
 		}
+	if (hidden) {
+		nt_buffer_text(out, ", ");
+		append_count(out, hidden, "finding");
+		nt_buffer_text(out, " below --min-severity");
+	}
 }
 
 /* Repairs of --fix, by the codes of the findings. */

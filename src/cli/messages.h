@@ -23,16 +23,16 @@ typedef struct nt_style {
 void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 
 /* Findings of the severities from `most` (nt_severity) down, a few of each code; without `infos`, of these
- * what is proposed alone: "nmtan: file:line: warning: sentence [CODE]", and the command, if one repairs it, with
+ * what nmtan chose alone: "nmtan: file:line: warning: sentence [CODE]", and the command, if one repairs it, with
  * `output` (NULL: a name beside the file). Severities are those of `options`; findings that these ignore, or that the
  * report (NULL: there is none) knows from its baseline, are left out. */
 void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
 	const nt_report_options *options, const char *file, const char *output, bool infos, int most, nt_style style);
 
-/* Wrong tangents that were kept, which a report (NULL: findings do) knows, one line for each code: as
+/* Wrong tangents that were kept, which a report (NULL: findings do) knows, one line for each code, up to a severity: as
  * nt_message_findings() has it, in a quiet run too. */
 void nt_message_kept(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
-	const nt_report_options *options, const char *file, const char *output, nt_style style);
+	const nt_report_options *options, const char *file, const char *output, int most, nt_style style);
 
 /* One line, of a quiet run too, where something of the input is not in the output, with the codes that say what but for
  * those of ignore[code]. */
@@ -44,10 +44,10 @@ void nt_message_current(nt_buffer *out, const nt_job *job);
 /* A line for each mesh of the summary's list: what was decided and why, triangles, vertices. */
 void nt_message_meshes(nt_buffer *out, const nt_job *job);
 
-/* The findings for which a run fails: those of a report from the severity `least_failure` on that are not known.
- * known: [findings] which are; NULL: as each says. */
-void nt_message_failure(nt_buffer *out, const nt_report *report, const char *file, const bool *known, int least_failure,
-	nt_style style);
+/* The findings for which a run fails, with commands: those of a report from the severity `least_failure` on that are
+ * not known. known: [findings] which are; NULL: as each says. */
+void nt_message_failure(nt_buffer *out, const nt_report *report, const nt_report_options *options, const char *file,
+	const char *output, const bool *known, int least_failure, nt_style style);
 
 /* One line: what happened. */
 void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings);

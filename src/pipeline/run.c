@@ -395,10 +395,10 @@ static nt_status run_stages(run *r)
 	if (!status)
 		status = nt_stage_maps(&r->scene, r->settings, r->writer ? r->writer->format : NT_FORMAT_UNKNOWN,
 			r->textures, r->error);
-	if (!status && r->settings->quads == NT_QUADS_PAIRS && nt_format_is_gltf(r->scene.format) &&
-		r->summary->solved_count && !r->summary->quad_count)
-		nt_finding_add(&r->scene.findings, NT_CODE_TAN_QUADS_NONE, &(nt_place){.offset = NT_NO_OFFSET}, 1,
-			NULL);
+	if (!status && r->settings->quads == NT_QUADS_PAIRS && r->summary->solved_count && !r->summary->quad_count)
+		nt_finding_add(&r->scene.findings, NT_CODE_TAN_QUADS_NONE, &(nt_place){.offset = NT_NO_OFFSET}, 1, "%s",
+			nt_format_is_gltf(r->scene.format) ? "no two triangles that follow each other are a quad"
+				: "it is for glTF; the faces of this file are solved as they are");
 	if (!status && r->settings->list_meshes)
 		status = nt_stage_listing(&r->scene, r->summary, r->error);
 	if (!status && r->writer && nt_writer_edits(r->reader, r->writer) &&
@@ -616,6 +616,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	if (r.scene.read_of_source)
 		summary->bytes_read = r.scene.read_of_source(r.scene.source);
 	summary->findings = r.scene.findings;
+	summary->input_format = r.scene.format;
 	summary->rounding = r.scene.rounding;
 	summary->morph_cost = r.scene.morph_cost;
 	if (!status) /* else meshes may be without content */

@@ -149,6 +149,7 @@ typedef struct nt_mesh_line {
 
 /* The results of a run. */
 typedef struct nt_summary {
+	nt_format input_format;
 	size_t mesh_count;       /* meshes (glTF: primitives) in the input */
 	size_t solved_count;     /* of them, those that got tangents */
 	size_t repaired;         /* tangents of corners: what repair made of computed or, with --existing=repair, of the

@@ -175,6 +175,17 @@ static bool names_file(const char *name)
 	return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0;
 }
 
+/* Names of files, not paths: a report is the same wherever its input lies. */
+static void tell_missing(const telling *t, const nt_place *place, const char *name)
+{
+	const char *input = t->scene->path, *library = t->material->library ? t->material->library : input;
+	const char *own = nt_last_part(input), *last = nt_last_part(library);
+	const bool apart = own - input != last - library || strncmp(input, library, (size_t)(own - input)) != 0;
+	nt_finding_add(&t->scene->findings, NT_CODE_IMAGE_MISSING, place, 1,
+		"%.100s (looked for beside %.40s%s%.40s%s)", name, last, apart ? " and " : "", apart ? own : "",
+		t->settings->texture_path_count ? ", and in --texture-path" : "");
+}
+
 /* The image that a channel of a result came from. */
 static void tell_source(telling *t, const nt_map *map, int channel, const nt_texture *image)
 {
@@ -191,7 +202,7 @@ static void tell_source(telling *t, const nt_map *map, int channel, const nt_tex
 		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1,
 			"%.110s (it is outside of the folders where it may be; --outside=yes allows it)", map->name);
 	else if (source->found == NT_IMAGE_MISSING)
-		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1, "%.120s", map->name);
+		tell_missing(t, &place, map->name);
 	else if (failed)
 		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, &place, 1, "%.100s (%.120s)", map->name,
 			image->failure);

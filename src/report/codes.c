@@ -18,7 +18,7 @@
 		remedy, example}
 
 static const nt_code_row code_table[NT_CODE_COUNT] = {
-	ROW(MTL_MISSING, WARNING, "--w", EXPORT, NULL, "material library cannot be read",
+	ROW(MTL_MISSING, WARNING, "--w", FILE, NULL, "material library cannot be read",
 		"The OBJ names an MTL file that is not there. The meshes are converted, their materials get "
 		"default values.",
 		"Put the MTL file beside the OBJ, or take the mtllib line out.",
@@ -32,12 +32,12 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"first material to all faces then, and so does nmtan.",
 		"Nothing, or write usemtl before the faces.",
 		"an OBJ with \"mtllib m.mtl\" and no usemtl"),
-	ROW(BUFFER_MISSING, ERROR, "e--", EXPORT, NULL, "buffer cannot be opened",
+	ROW(BUFFER_MISSING, ERROR, "e--", FILE, NULL, "buffer cannot be opened",
 		"A buffer of the glTF has a URI, and no file that can be read is there. Nothing is converted or "
 		"judged, whether the buffer is needed or not: the output would be as broken. The exit code is 2.",
 		"Put the file beside the glTF under the name that its URI has.",
 		"a glTF whose .bin was not copied with it"),
-	ROW(IMAGE_MISSING, WARNING, "w--", EXPORT, NULL, "image cannot be read",
+	ROW(IMAGE_MISSING, WARNING, "w--", FILE, NULL, "image cannot be read",
 		"A material refers to an image file that is not there. The output is without it, or, of a glTF, has "
 		"the same name; with --images=link it refers to where the file should be.",
 		"Put the image where the file names it. For an OBJ, --texture-path names more folders.",
@@ -58,7 +58,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"PNG and JPEG are used as they are, other types are left out.",
 		"Write the image again.",
 		"a TGA that ends before its last pixel"),
-	ROW(IMAGE_ELSEWHERE, WARNING, "w--", EXPORT, NULL, "image was found elsewhere",
+	ROW(IMAGE_ELSEWHERE, WARNING, "w--", LOOK, NULL, "image was found elsewhere",
 		"The file that a material names is not there, but one whose path ends alike is: in the folder "
 		"of the material library or of the OBJ, in a folder of --texture-path, or under a name in "
 		"another case.",
@@ -629,11 +629,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Without tangents in the input nothing proves that the map was baked so.",
 		"If the normal map was baked in the program that wrote the file (Blender), solve quads.",
 		"a grid from Blender without tangents, converted with --only=all"),
-	ROW(TAN_QUADS_NONE, WARNING, "w--", LOOK, NULL, "--quads=pairs found no quad: all triangles are solved as such",
+	ROW(TAN_QUADS_NONE, WARNING, "w-w", LOOK, NULL, "--quads=pairs changes nothing",
 		"Two triangles that follow each other are a quad a b c d if they have equal vertices along their "
 		"common edge and are written as (a b c)(a c d), (a b d)(b c d) or (a b c)(c d a), or as the first two "
-		"with two corners of each exchanged, as exporters of Unity and Godot do. No pair of the file is, so "
-		"that the option changes nothing.",
+		"with two corners of each exchanged, as exporters of Unity and Godot do. No pair of the file is; or "
+		"it is no glTF: its quads are there as such.",
 		"Leave the option away, or export the quads' halves one after the other.",
 		"one triangle of a glTF, converted with --quads=pairs --only=all"),
 };
@@ -668,6 +668,25 @@ bool nt_severity_find(const char *name, nt_severity *severity)
 }
 
 /* ---- commands ---- */
+
+const char *nt_code_condition(nt_code code)
+{
+	switch ((int)code) {
+	case NT_CODE_NMAP_BESIDE:
+		return "if it is the normal map";
+	case NT_CODE_TAN_DIRECTION_MISMATCH:
+	case NT_CODE_TAN_MADE_BY:
+		return "if the map was baked with MikkTSpace";
+	case NT_CODE_TAN_PRIMITIVE_BORDER:
+		return "if the map was baked for the whole mesh";
+	case NT_CODE_TAN_QUADS_LIKELY:
+		return "if the map was baked in the program that wrote the file";
+	case NT_CODE_TAN_UNUSED:
+		return "if no normal map is set later";
+	default:
+		return NULL;
+	}
+}
 
 bool nt_code_mends(nt_code code)
 {
@@ -786,6 +805,7 @@ void nt_remedy_text(nt_code code, const char *options, const char *given, const 
 	const size_t length = strlen(remedy);
 	if (!options) {
 		nt_buffer_text(out, remedy);
+		nt_buffer_text(out, nt_code_mends(code) ? " nmtan cannot do it here." : "");
 		return;
 	}
 	nt_buffer_append(out, remedy, length - (length && remedy[length - 1] == '.'));

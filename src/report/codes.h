@@ -12,7 +12,13 @@
 
 /* Actions for a finding. The greatest comes first: what has to be exported again, all else is made
  * from. */
-typedef enum nt_advice { NT_ADVICE_LOOK, NT_ADVICE_CONVERT, NT_ADVICE_BAKE, NT_ADVICE_EXPORT } nt_advice;
+typedef enum nt_advice {
+	NT_ADVICE_LOOK,
+	NT_ADVICE_CONVERT,
+	NT_ADVICE_BAKE,
+	NT_ADVICE_FILE, /* one is missing */
+	NT_ADVICE_EXPORT
+} nt_advice;
 
 typedef struct nt_code_row {
 	const char *name;     /* UV_MIRROR_SEAM: what users write */
@@ -41,6 +47,9 @@ nt_severity nt_finding_severity(const nt_finding *finding);
 const char *nt_severity_name(nt_severity severity);
 bool nt_severity_find(const char *name, nt_severity *severity);
 
+/* "if the map was baked with MikkTSpace": else the command of a finding is wrong; NULL: it is always right. */
+const char *nt_code_condition(nt_code code);
+
 /* Whether --fix mends it; whether it mends tangents that are there. */
 bool nt_code_mends(nt_code code);
 bool nt_code_is_of_kept(nt_code code);
@@ -54,7 +63,7 @@ bool nt_shell_word(const char *text, nt_buffer *out);
  * NULL. */
 void nt_command_text(const char *options, const char *given, const char *input, const char *output, nt_buffer *out);
 
-/* Appends the remedy, and at its end the command with these options; options NULL: without one. */
+/* Appends the remedy, and at its end the command with these options; options NULL: there is none here. */
 void nt_remedy_text(nt_code code, const char *options, const char *given, const char *input, nt_buffer *out);
 
 /* Appends the sentence of a finding. detail may be NULL. */

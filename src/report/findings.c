@@ -147,7 +147,7 @@ static const char *repair_of(nt_check *check, const nt_report_finding *finding, 
 	if (nt_code_mends(finding->code)) {
 		const bool missing = finding->code == NT_CODE_TAN_MISSING_REQUIRED;
 		if (!mesh->has_normals || (!mesh->has_texcoords && missing))
-			return missing && mesh->has_texcoords ? nt_code_info(NT_CODE_TAN_NO_NORMAL)->repair : NULL;
+			return mesh->has_texcoords ? nt_code_info(NT_CODE_TAN_NO_NORMAL)->repair : NULL;
 		if (severity > NT_SEVERITY_INFO)
 			return repair;
 		/* --fix does nothing over an info */
@@ -185,8 +185,11 @@ static void add_finding(nt_check *check, nt_report_finding *finding, nt_severity
 	nt_report *report = check->report;
 	const uint8_t wish = check->options->severity[finding->code];
 	finding->severity = wish ? (nt_severity)(wish - 1) : severity;
-	if (check->options->ignore[finding->code] || finding->severity < check->options->min_severity)
+	const bool hidden = finding->severity < check->options->min_severity;
+	if (check->options->ignore[finding->code] || hidden) {
+		report->hidden[finding->severity] += !check->options->ignore[finding->code];
 		return;
+	}
 	nt_buffer sentence = {0};
 	nt_code_sentence(finding->code, finding->count, detail, &sentence);
 	if (finding->alike > 1)

@@ -276,6 +276,7 @@ typedef struct nt_report {
 	size_t dropped_by_code[NT_CODE_COUNT]; /* the same */
 	size_t by_severity[3];    /* findings, dropped ones too, that no baseline knows */
 	size_t known[3];          /* by severity: findings that the baseline knows */
+	size_t hidden[3];         /* by severity: findings below options.min_severity, which are not here */
 	bool compared;            /* there was a baseline */
 } nt_report;
 

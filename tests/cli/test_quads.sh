@@ -96,7 +96,7 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n' >one
 run -q one.obj one.gltf
 run --only=all --existing=replace --quads=pairs one.gltf out.glb
 exits 0
-says "one.gltf: warning: --quads=pairs found no quad: all triangles are solved as such [TAN_QUADS_NONE]"
+says "one.gltf: warning: --quads=pairs changes nothing: no two triangles that follow each other are a quad [TAN_QUADS_NONE]"
 
 scene "tangents of quads prove quads"
 inputs "" quads 0

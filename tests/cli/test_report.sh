@@ -159,12 +159,12 @@ while IFS='|' read -r format lost missing; do
 	prints "$missing"
 done <<'END'
 text|in material "wood", line 3 of in/mtl/a.mtl|in material "wood", line 4 of in/mtl/a.mtl
-lines|in/mtl/a.mtl:3: warning: MATERIAL_LOST: |in/mtl/a.mtl:4: warning: IMAGE_MISSING: image cannot be read: gone.png, in material "wood"
+lines|in/mtl/a.mtl:3: warning: MATERIAL_LOST: |in/mtl/a.mtl:4: warning: IMAGE_MISSING: image cannot be read: gone.png (looked for beside a.mtl and m.obj), in material "wood"
 github|::warning file=in/mtl/a.mtl,line=3,title=MATERIAL_LOST::|::warning file=in/mtl/a.mtl,line=4,title=IMAGE_MISSING::
 markdown|material "wood", line 3 of in/mtl/a.mtl|material "wood", line 4 of in/mtl/a.mtl
 sarif|"uri": "in/mtl/a.mtl"}, "region": {"startLine": 3}}, "logicalLocations": [{"name": "material \"wood\""|"uri": "in/mtl/a.mtl"}, "region": {"startLine": 4}}
-junit|MTL: decal, in material &quot;wood&quot;, line 3 of in/mtl/a.mtl|gone.png, in material &quot;wood&quot;, line 4 of in/mtl/a.mtl
-csv|"in/mtl/a.mtl","material ""wood""",MATERIAL_LOST,warning,1,"1 property of a material is not carried over: MTL: decal",3,|gone.png",4,
+junit|MTL: decal, in material &quot;wood&quot;, line 3 of in/mtl/a.mtl|gone.png (looked for beside a.mtl and m.obj), in material &quot;wood&quot;, line 4 of in/mtl/a.mtl
+csv|"in/mtl/a.mtl","material ""wood""",MATERIAL_LOST,warning,1,"1 property of a material is not carried over: MTL: decal",3,|gone.png (looked for beside a.mtl and m.obj)",4,
 html|"where":"material \"wood\", line 3 of in/mtl/a.mtl"|"where":"material \"wood\", line 4 of in/mtl/a.mtl"
 END
 

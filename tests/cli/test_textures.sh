@@ -257,7 +257,7 @@ cp "$data/bumps.png" "head_nm.png"
 cp "$data/bumps.png" "head_a b.png"
 cp "$data/bumps.png" "head_nm_tangent.png"
 run head.obj head.glb
-says "head_nm_tangent.png, or head_nm.png [NMAP_BESIDE]: nmtan --normal-map=head_nm_tangent.png head.obj head.glb"
+says "head_nm_tangent.png, or head_nm.png [NMAP_BESIDE]; if it is the normal map: nmtan --normal-map=head_nm_tangent.png head.obj head.glb"
 images write sphere.png 64 64 '(lambda a, b: tuple(round(127.5 + 127.5 * c) for c in (math.sin(a) * math.cos(b), math.sin(a) * math.sin(b), math.cos(a))))(x / 64 * math.pi, y / 32 * math.pi)'
 run --normal-map=sphere.png head.obj head.glb
 says "warning: normal map in object space [NMAP_OBJECT_SPACE]"
@@ -272,7 +272,7 @@ says_not NMAP_BESIDE
 for name in Head_NM_Tangent.tga head_normal.png head-nrm.jpg head_ddn.png head_n.png; do
 	cp "$data/bumps.png" $name
 	run head.obj head.glb
-	says "head.obj: info: no normal map, but an image beside the input is named like one: $name [NMAP_BESIDE]: nmtan --normal-map=$name head.obj head.glb"
+	says "head.obj: info: no normal map, but an image beside the input is named like one: $name [NMAP_BESIDE]; if it is the normal map: nmtan --normal-map=$name head.obj head.glb"
 	is "$(gltf head.glb '"images" in g')" false
 	run -d out head.obj
 	says_not NMAP_BESIDE
@@ -399,7 +399,7 @@ for name in ../secret.txt ../gone.txt ../pipe.png ../tex; do
 	run s/p/obj/quad.obj out.glb
 	grep -o ': image .*' ../err.txt | sed "s#$name#NAME#" >>missing
 done
-is "$(sort missing | uniq -c | sed 's/^ *//')" "4 : image cannot be read: NAME [IMAGE_MISSING]"
+is "$(sort missing | uniq -c | sed 's/^ *//')" "4 : image cannot be read: NAME (looked for beside m.mtl) [IMAGE_MISSING]"
 
 scene "a link inside the folder does not tell whether there is something outside that it leads to"
 mkdir -p d/in there

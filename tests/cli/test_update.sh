@@ -252,8 +252,8 @@ done <<-'EOF'
 	--fail-on=warning --ignore=IMAGE_MISSING|0|q.obj fine.obj
 	--fail-on=warning --ignore=IMAGE_MISSING|0|
 	--fail-on=warning|6|q.obj fine.obj
-	--fail-on=warning --severity=IMAGE_MISSING=info|0|q.obj fine.obj
-	--fail-on=info --severity=IMAGE_MISSING=info|6|q.obj
+	--fail-on=warning --ignore=TAN_UNUSED --severity=IMAGE_MISSING=info|0|q.obj fine.obj
+	--fail-on=info --ignore=TAN_UNUSED --severity=IMAGE_MISSING=info|6|q.obj
 EOF
 identity out/*.glb >after
 same before after
@@ -554,6 +554,30 @@ same before .nmtan-record
 run --update quad.obj o.glb
 exits 0
 [ "$(wc -l <.nmtan-record)" -le 2 ] || wrong "$(wc -l <.nmtan-record) lines"
+
+scene "outputs whose input is gone are told of a folder, and stay"
+mkdir in
+for name in a b c; do cp "$data/quad.obj" in/$name.obj; done
+run --update -r in -d out
+says_not "gone"
+rm in/b.obj
+for number in 1 2; do # all others are up to date
+	run --update -r in -d out
+	exits 0
+	says "nmtan: 1 output is left whose input is gone: out/b.glb"
+done
+run -q --update -r in -d out
+silent
+rm in/c.obj
+run --update --record=out/r -r in -d out # which knows of none
+says_not "gone"
+run --update -r in -d out
+says "nmtan: 2 outputs are left whose input is gone: out/b.glb and 1 more"
+run --update -d out in/a.obj
+says_not "gone"
+rm out/[bc].glb
+run --update -r in -d out
+says_not "gone"
 
 scene "--no-clobber replaces no depfile and no manifest either"
 cp "$data/quad.obj" .

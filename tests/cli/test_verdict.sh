@@ -766,6 +766,120 @@ says "[TAN_EXISTING_BAD]: nmtan --fix zero.gltf out.glb"
 run -d out zero.gltf m.gltf
 says "1 keeps wrong tangents"
 
+scene "a run that fails says it with the command, of kept tangents too, whatever it fails for"
+mapped
+gltf m.gltf wrong 'const [p] = g.meshes[0].primitives, n = p.attributes.TANGENT; g.meshes[0].primitives.push({...p, material: undefined});
+	for (let i = 0; i < 4; i++) bytes[0].writeFloatLE(-bytes[0].readFloatLE(at(n, i) + 12), at(n, i) + 12)'
+for options in "" -q "--severity=TAN_SIGN_MISMATCH=warning,TAN_UNUSED=error" "-q --severity=TAN_SIGN_MISMATCH=warning,TAN_UNUSED=error"; do
+	run --fail-on=error $options wrong.gltf out.glb
+	exits 6
+	is "$options $(grep -c "\[TAN_SIGN_MISMATCH\]: nmtan --fix wrong.gltf out.glb" "$WORK/err.txt")" "$options 1"
+done
+run --check -q wrong.gltf
+exits 6
+says "[TAN_SIGN_MISMATCH]: nmtan --fix wrong.gltf wrong-repaired.gltf"
+
+scene "a command that is right under a condition is named with it, and no verdict names it beside one that has none"
+mapped
+# the tangents of another direction are a warning, the zero ones an error
+gltf m.gltf turned 'const n = g.meshes[0].primitives[0].attributes.TANGENT; for (let i = 0; i < 4; i++) { bytes[0].writeFloatLE(0, at(n, i)); bytes[0].writeFloatLE(1, at(n, i) + 4); }'
+run --check -q --report=r.json --fail-on=warning turned.gltf
+exits 6
+says "[TAN_DIRECTION_MISMATCH]; if the map was baked with MikkTSpace: nmtan --existing=replace turned.gltf turned-repaired.gltf"
+is "$(value r.json 'r["files"][0]["verdict"].split("degrees; ")[-1]')" "if the map was baked with MikkTSpace: nmtan --existing=replace turned.gltf turned-repaired.gltf"
+gltf turned.gltf both 'const p = g.meshes[0].primitives[0]; g.meshes[0].primitives.push({...p, attributes: {...p.attributes, TANGENT: add("VEC4", 5126, Array(16).fill(0), {})}})'
+run --check -q --report=r.json --report-format=json --fail-on=never both.gltf
+is "$(value r.json 'r["files"][0]["verdict"].split(": ")[-1]')" "nmtan --fix both.gltf both-repaired.gltf"
+run --check --fail-on=never both.gltf
+prints "All commands in one, if their conditions hold: nmtan --existing=replace both.gltf both-repaired.gltf"
+gltf m.gltf quads 'delete g.meshes[0].primitives[0].attributes.TANGENT; g.asset.generator = "Khronos glTF Blender I/O v4.2"'
+run quads.gltf out.glb
+says "[TAN_QUADS_LIKELY]; if the map was baked in the program that wrote the file: nmtan --quads=pairs quads.gltf out.glb"
+
+scene "a remedy of what --fix mends names a command, or says that nmtan cannot"
+mapped
+gltf m.gltf flat 'const p = g.meshes[0].primitives[0]; p.attributes.TANGENT = add("VEC4", 5126, Array(16).fill(0), {}); delete p.attributes.NORMAL;
+	g.meshes[0].primitives.push({...p, attributes: {...p.attributes, NORMAL: add("VEC3", 5126, Array(4).fill([0, 0, 1]).flat(), {})}})'
+run --check --report=r.json --fail-on=never flat.gltf
+is "$(value r.json 'sorted(f["repair"] for f in r["files"][0]["findings"] if f["code"] == "TAN_ZERO")')" \
+	"['nmtan --fix flat.gltf flat-repaired.gltf', 'nmtan --normals=smooth flat.gltf flat-repaired.gltf']"
+run --check --fail-on=never flat.gltf
+for options in --fix --normals=smooth; do
+	prints "Compute the tangents again: nmtan $options flat.gltf flat-repaired.gltf"
+	run -q $options flat.gltf out.gltf
+	run --check -q --report=r.json --fail-on=never out.gltf
+	is "$options $(value r.json 'len([f for f in r["files"][0]["findings"] if f["code"] == "TAN_ZERO"])')" "$options 1"
+	run --check --fail-on=never flat.gltf
+done
+gltf flat.gltf bare 'for (const p of g.meshes[0].primitives) { delete p.attributes.NORMAL; delete p.attributes.TEXCOORD_0; }'
+run --check --fail-on=never bare.gltf
+prints "Compute the tangents again. nmtan cannot do it here."
+
+scene "a missing file is named by the verdict, and where it was looked for"
+mkdir -p lib tex
+{ printf 'mtllib lib/m.mtl\nusemtl m\n'; cat "$data/quad.obj"; } >quad.obj
+printf 'newmtl m\nmap_Kd tex/gone.png\n' >lib/m.mtl
+for options in "" "--texture-path=tex"; do
+	run --check -q --report=r.json $options quad.obj
+	is "$options $(value r.json 'r["files"][0]["verdict"]')" \
+		"$options A file is missing: image cannot be read: tex/gone.png (looked for beside m.mtl and quad.obj${options:+, and in --texture-path})"
+done
+rm lib/m.mtl
+run --check -q --report=r.json quad.obj
+is "$(value r.json 'r["files"][0]["verdict"].split(";")[0]')" "A file is missing: material library cannot be read: lib/m.mtl: no such file"
+
+scene "infos of what nmtan chose are told by a plain conversion, in one line each; others are for -v"
+mapped
+printf 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n' >m.obj
+printf 'newmtl m\nmap_Bump n.png\n' >m.mtl
+run m.obj m.glb
+for code in NORMALS_MADE BUMP_AS_NORMAL MATERIAL_FIRST; do
+	is "$code $(grep -c "info: .*\[$code\]$" "$WORK/err.txt")" "$code 1"
+done
+run -q m.obj m.glb
+silent
+run -q --fail-on=error m.obj m.glb
+silent
+
+scene "a file without triangles is not ready to use, and what --min-severity leaves out is counted"
+mapped
+gltf new points 'g.meshes = [{primitives: [{mode: 0, attributes: {POSITION: add("VEC3", 5126, Array(9).fill(0))}}]}]; g.nodes = [{mesh: 0}]'
+printf 'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n' >points.ply
+for file in points.gltf points.ply; do
+	run --check -q --report=r.json $file
+	is "$file $(value r.json 'r["files"][0]["verdict"]')" "$file Nothing to judge: there are no triangles"
+done
+gltf m.gltf turned 'const [p] = g.meshes[0].primitives, n = p.attributes.TANGENT; g.meshes[0].primitives.push({...p, material: undefined});
+	for (let i = 0; i < 4; i++) { bytes[0].writeFloatLE(0, at(n, i)); bytes[0].writeFloatLE(1, at(n, i) + 4); }'
+run --check --ignore=TAN_MADE_BY turned.gltf
+says "1 warning, 2 infos,"
+run --check --ignore=TAN_MADE_BY --min-severity=error turned.gltf
+says "checked, 2 primitives, 3 findings below --min-severity,"
+prints "turned.gltf: 0 errors, 0 warnings, 0 infos, 3 below --min-severity"
+prints "Not shown by --min-severity: 1 warning"
+run --check --ignore=TAN_MADE_BY --min-severity=warning turned.gltf
+says "checked, 2 primitives, 1 warning, 2 findings below --min-severity,"
+run --check --min-severity=error m.gltf
+says ", no findings,"
+prints "Ready to use"
+
+scene "an option that changes nothing says so"
+mapped
+while IFS='|' read -r options input told; do
+	run $options $input out.glb
+	exits 0
+	says "$told"
+done <<'END'
+--quads=pairs|square.obj|square.obj: warning: --quads=pairs changes nothing: it is for glTF; the faces of this file are solved as they are [TAN_QUADS_NONE]
+--bump=height|m.gltf|, nothing that --bump=height converts,
+--flip-green=on|square.gltf|, nothing that --flip-green turns,
+--weld|m.gltf|, no vertices are equal,
+END
+python3 "$ROOT/tests/support/images.py" write n.png 16 16 "x * 16"
+run --bump=height m.gltf out.glb
+says_not "nothing that"
+says "converted 1 normal map"
+
 scene "wrong tangents that are kept in compressed primitives are told as those of plain ones"
 mapped
 for method in "" --draco=sequential --draco=edgebreaker; do
@@ -868,7 +982,7 @@ done
 repairs() {
 	local command repaired
 	command=$(value r.json 'next((f["repair"] or "" for f in r["files"][0]["findings"] if f["code"] == "'$1'"), "")')
-	command=${command:-$(sed -n "s/.*\[$1\]: //p" "$WORK/err.txt")}
+	command=${command:-$(sed -n "s/.*\[$1\].*: nmtan /nmtan /p" "$WORK/err.txt")}
 	[ -n "$command" ] || wrong "no $1 to repair"
 	repaired=${command##* }
 	eval "run ${command#nmtan }"
@@ -995,9 +1109,9 @@ while IFS='|' read -r says options edit; do
 	is "$options: $(grep -c "nmtan " "$WORK/out.txt")" "$options: 0"
 	rm faulty*
 done <<'END'
-All commands in one, those of infos too|--fix --across=mesh|b.fill(0, at(n, 0), at(n, 0) + 12); beside([1, 1, 2, .5, 2, -.5, 1, 0])
-All commands in one, those of infos too|--existing=replace --across=mesh --flip-green=auto|[0, 1, 2, 3].forEach(i => { b.writeFloatLE(0, at(n, i)); b.writeFloatLE(1, at(n, i) + 4); }); g.images[0].uri = 'down.png'; beside([1, 1, 2, .5, 2, -.5, 1, 0])
-Convert with nmtan: .*; and 1 more|--existing=replace --flip-green=auto|[0, 1, 2, 3].forEach(i => { b.writeFloatLE(0, at(n, i)); b.writeFloatLE(1, at(n, i) + 4); }); g.images[0].uri = 'down.png'
+All commands in one, those of infos too, if their conditions hold|--fix --across=mesh|b.fill(0, at(n, 0), at(n, 0) + 12); beside([1, 1, 2, .5, 2, -.5, 1, 0])
+All commands in one, those of infos too, if their conditions hold|--existing=replace --across=mesh --flip-green=auto|[0, 1, 2, 3].forEach(i => { b.writeFloatLE(0, at(n, i)); b.writeFloatLE(1, at(n, i) + 4); }); g.images[0].uri = 'down.png'; beside([1, 1, 2, .5, 2, -.5, 1, 0])
+All commands in one, if their conditions hold|--existing=replace --flip-green=auto|[0, 1, 2, 3].forEach(i => { b.writeFloatLE(0, at(n, i)); b.writeFloatLE(1, at(n, i) + 4); }); g.images[0].uri = 'down.png'
 END
 
 done_testing

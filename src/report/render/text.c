@@ -178,11 +178,14 @@ static void write_report(const nt_report_list *reports, const nt_report *report,
 	nt_buffer_text(out, "\n");
 	for (size_t i = 0; i < report->mesh_count; i++)
 		write_mesh(report, (uint32_t)i, out);
-	bool told[NT_CODE_COUNT] = {false};
+	/* remedies, each with its command once */
+	const char *told[NT_CODE_COUNT] = {NULL};
 	for (size_t i = 0; i < report->new_count; i++) {
 		const nt_report_finding *finding = &report->findings[i];
-		write_finding(reports, report, finding, !told[finding->code], out);
-		told[finding->code] = true;
+		const char *repair = finding->repair ? finding->repair : "", **last = &told[finding->code];
+		const bool remedy = !*last || (*repair && strcmp(*last, repair) != 0);
+		write_finding(reports, report, finding, remedy, out);
+		*last = remedy ? repair : *last;
 	}
 	nt_put_together(report, "  ", nt_plain_text, out);
 	nt_dropped_text(report, "  and ", "; --max-issues=0 shows all\n", out);

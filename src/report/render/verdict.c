@@ -31,29 +31,45 @@ static const nt_report_finding *find_first(const nt_report *report)
 	return first;
 }
 
-/* "Ready to use", or "Nothing new: 1 known error, 2 known warnings". */
-static void append_nothing_new(const size_t known[3], nt_buffer *out)
+/* "Nothing new: 1 known error, 2 known warnings"; nothing where there are none. */
+static void append_counts(const char *before, const size_t counts[3], const char *which, nt_buffer *out)
 {
-	const char *before = "Nothing new: ";
 	for (int severity = NT_SEVERITY_ERROR; severity >= NT_SEVERITY_WARNING; severity--) {
-		if (!known[severity])
+		if (!counts[severity])
 			continue;
-		nt_buffer_format(out, "%s%zu known %s%s", before, known[severity],
-			nt_severity_name((nt_severity)severity), known[severity] == 1 ? "" : "s");
+		nt_buffer_format(out, "%s%zu %s%s%s", before, counts[severity], which,
+			nt_severity_name((nt_severity)severity), counts[severity] == 1 ? "" : "s");
 		before = ", ";
 	}
-	if (!known[NT_SEVERITY_ERROR] && !known[NT_SEVERITY_WARNING])
-		nt_buffer_text(out, "Ready to use");
+}
+
+/* There is no new error or warning. */
+static void append_nothing_new(const nt_report *report, nt_buffer *out)
+{
+	const size_t before = out->size;
+	bool judged = false;
+	for (size_t i = 0; i < report->mesh_count; i++)
+		judged |= report->meshes[i].analysed;
+	append_counts("Nothing new: ", report->known, "known ", out);
+	append_counts(out->size > before ? "; not shown: " : "Not shown by --min-severity: ", report->hidden, "", out);
+	if (out->size == before)
+		nt_buffer_text(out, judged ? "Ready to use" : "Nothing to judge: there are no triangles");
 }
 
 /* ---- several commands ---- */
 
+/* The commands that are joined. */
+typedef struct chosen {
+	nt_severity least;
+	bool conditions; /* those that are right under a condition alone, too */
+} chosen;
+
 /* Whether a finding's command is one of several that the user may want together: not if it names a file, of which there
  * may be a choice, and not that of the pair, which is right as it is. */
-static bool joins_in(const nt_report_finding *f, nt_severity least)
+static bool joins_in(const nt_report_finding *f, chosen which)
 {
-	return f->repair && f->severity >= least && strncmp(f->repair, "--normal-map", 12) != 0 &&
-	       f->code != NT_CODE_TAN_GREEN_PAIR;
+	return f->repair && f->severity >= which.least && strncmp(f->repair, "--normal-map", 12) != 0 &&
+	       f->code != NT_CODE_TAN_GREEN_PAIR && (which.conditions || !nt_code_condition(f->code));
 }
 
 /* Adds those of the options that are not there yet, but for a repair if `replaces`. */
@@ -72,13 +88,13 @@ static void add_options(const char *options, bool replaces, nt_buffer *all)
 
 /* The options of the command that does what the commands of all new findings do, from a severity on. False: they have
  * one, or no command does all. */
-static bool join_options(const nt_report *report, nt_severity least, nt_buffer *all)
+static bool join_options(const nt_report *report, chosen which, nt_buffer *all)
 {
 	const char *first = NULL;
 	bool differ = false, fixes = false, turns = false, drops = false, repairs = false, replaces = false;
 	for (size_t i = 0; i < report->new_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
-		if (!joins_in(f, least))
+		if (!joins_in(f, which))
 			continue;
 		const bool is_fix = strcmp(f->repair, "--fix") == 0;
 		first = first ? first : f->repair;
@@ -94,7 +110,7 @@ static bool join_options(const nt_report *report, nt_severity least, nt_buffer *
 	/* --fix and --existing exclude each other; what repairs all tangents leaves none that --fix would choose */
 	for (size_t i = 0; i < report->new_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
-		if (joins_in(f, least) && !(repairs && strcmp(f->repair, "--fix") == 0))
+		if (joins_in(f, which) && !(repairs && strcmp(f->repair, "--fix") == 0))
 			add_options(f->repair, replaces, all);
 	}
 	if (turns && repairs)
@@ -110,14 +126,16 @@ static bool find_options(const nt_report *report, const nt_report_finding *first
 {
 	if (!first || !first->repair)
 		return false;
-	if (!join_options(report, NT_SEVERITY_WARNING, options))
+	const chosen which = {NT_SEVERITY_WARNING, nt_code_condition(first->code) != NULL};
+	if (!join_options(report, which, options))
 		nt_buffer_text(options, first->repair);
 	return true;
 }
 
 static void append_verdict(const nt_report *report, nt_buffer *out)
 {
-	static const char *const verbs[] = {"Look at this", "Convert with nmtan", "Bake again", "Export again"};
+	static const char *const verbs[] = {"Look at this", "Convert with nmtan", "Bake again",
+		"A file is missing", "Export again"};
 	const size_t errors = report->by_severity[NT_SEVERITY_ERROR];
 	const size_t all = errors + report->by_severity[NT_SEVERITY_WARNING];
 	if (report->failure) {
@@ -128,7 +146,7 @@ static void append_verdict(const nt_report *report, nt_buffer *out)
 		nt_buffer_format(out, "After conversion%s%s: ", *report->conversion ? " with " : "",
 			report->conversion);
 	if (!all) {
-		append_nothing_new(report->known, out);
+		append_nothing_new(report, out);
 		return;
 	}
 	nt_buffer options = {0};
@@ -138,7 +156,8 @@ static void append_verdict(const nt_report *report, nt_buffer *out)
 	if (all > 1)
 		nt_buffer_format(out, "; and %zu more", all - 1);
 	if (find_options(report, first, &options)) {
-		nt_buffer_text(out, ": ");
+		const char *condition = nt_code_condition(first->code);
+		nt_buffer_format(out, condition ? "; %s: " : ": ", condition);
 		nt_command_text(options.data ? options.data : "", report->given, report->path, NULL, out);
 	}
 	nt_buffer_free_into(&options, out);
@@ -149,10 +168,18 @@ void nt_put_together(const nt_report *report, const char *before, void (*put)(co
 {
 	nt_buffer all = {0}, told = {0}, command = {0};
 	const bool names = find_options(report, find_first(report), &told);
-	if (join_options(report, NT_SEVERITY_INFO, &all) && all.data &&
+	bool infos = false, conditions = false;
+	for (size_t i = 0; i < report->new_count; i++) {
+		const nt_report_finding *f = &report->findings[i];
+		const bool joins = joins_in(f, (chosen){NT_SEVERITY_INFO, true});
+		infos |= joins && names && f->severity == NT_SEVERITY_INFO;
+		conditions |= joins && nt_code_condition(f->code);
+	}
+	if (join_options(report, (chosen){NT_SEVERITY_INFO, true}, &all) && all.data &&
 		!(names && told.data && strcmp(all.data, told.data) == 0)) {
 		nt_command_text(all.data, report->given, report->path, NULL, &command);
-		nt_buffer_format(out, "%sAll commands in one%s: ", before, names ? ", those of infos too" : "");
+		nt_buffer_format(out, "%sAll commands in one%s%s: ", before, infos ? ", those of infos too" : "",
+			conditions ? ", if their conditions hold" : "");
 		put(command.data ? command.data : "", out);
 		nt_buffer_text(out, "\n");
 	}

@@ -27,6 +27,7 @@ nt_totals nt_report_totals(const nt_report_list *reports)
 		for (int severity = 0; severity < 3; severity++) {
 			totals.by_severity[severity] += report->by_severity[severity];
 			totals.known[severity] += report->known[severity];
+			totals.hidden[severity] += report->hidden[severity];
 		}
 		totals.dropped += report->dropped;
 	}
@@ -52,6 +53,9 @@ void nt_totals_text(const nt_totals *totals, nt_buffer *out)
 	counted(totals->by_severity[NT_SEVERITY_INFO], "info", out);
 	if (nt_known_count(totals))
 		nt_buffer_format(out, ", %zu known from the baseline", nt_known_count(totals));
+	const size_t hidden = totals->hidden[0] + totals->hidden[1] + totals->hidden[2];
+	if (hidden)
+		nt_buffer_format(out, ", %zu below --min-severity", hidden);
 	if (totals->dropped)
 		nt_buffer_format(out, ", %zu not shown", totals->dropped);
 }

@@ -40,7 +40,7 @@ void nt_list_flush(const nt_report_list *reports, size_t least, nt_buffer *out);
 
 /* New findings of all reports, by severity; known ones, and new ones that were dropped. */
 typedef struct nt_totals {
-	size_t by_severity[3], known[3], dropped;
+	size_t by_severity[3], known[3], hidden[3], dropped;
 } nt_totals;
 nt_totals nt_report_totals(const nt_report_list *reports);
 
