@@ -96,16 +96,12 @@ nt_status obj_join_colors(obj_file *file, nt_error *error)
 {
 	painter p = {.file = file};
 	nt_status status = NT_OK;
-	size_t bad = 0, line = 0;
-	for (size_t c = file->chunk_count; c-- > 0;) {
-		const obj_chunk *chunk = &file->chunks[c];
-		bad += chunk->bad_colors.count;
-		line = chunk->bad_colors.count ? chunk->first_line + chunk->bad_colors.line + 1 : line;
-	}
+	obj_count bad;
+	obj_count_all(file, offsetof(obj_chunk, bad_colors), &bad);
 	char what[64];
-	snprintf(what, sizeof what, "%zu of v not finite", bad);
-	if (bad)
-		doubt(file, line, bad, what);
+	snprintf(what, sizeof what, "%zu of v not finite", bad.count);
+	if (bad.count)
+		doubt(file, bad.line, bad.count, what);
 	if (file->has_colors)
 		return NT_OK;
 	for (size_t c = 0; c < file->chunk_count && !status; c++)

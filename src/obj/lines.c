@@ -578,6 +578,21 @@ obj_chunk obj_chunk_of(const char *begin, const char *end)
 	return (obj_chunk){.begin = begin, .end = end, .p = begin};
 }
 
+const obj_chunk *obj_count_all(const obj_file *file, size_t member, obj_count *all)
+{
+	const obj_chunk *first = NULL;
+	*all = (obj_count){0};
+	for (const obj_chunk *c = file->chunks; c < file->chunks + file->chunk_count; c++) {
+		const obj_count *count = (const obj_count *)((const char *)c + member);
+		if (!first && count->count) {
+			first = c;
+			all->line = c->first_line + count->line + 1;
+		}
+		all->count += count->count;
+	}
+	return first;
+}
+
 void obj_chunk_free_rest(obj_chunk *c)
 {
 	free(c->recent);

@@ -230,6 +230,10 @@ typedef struct obj_vertex {
 obj_chunk obj_chunk_of(const char *begin, const char *end);
 nt_status obj_read_lines(obj_chunk *chunk, size_t last);
 
+/* Adds up a count of all chunks, with its line in the file; `member`: its offset in obj_chunk. The first chunk that has
+ * any is returned, or NULL. */
+const obj_chunk *obj_count_all(const obj_file *file, size_t member, obj_count *all);
+
 /* Frees the arrays of a chunk: all of them, or those that are in no arena. */
 void obj_chunk_free(obj_chunk *chunk);
 void obj_chunk_free_rest(obj_chunk *chunk);
@@ -241,10 +245,6 @@ nt_status obj_join_colors(obj_file *file, nt_error *error);
 /* A copy of lines that may stand at the end of a file, ended and padded as chunks are; NULL: out of memory. */
 char *obj_copy_padded(const char *begin, const char *end, const char **padded_end);
 
-/* Line of a face of the file, by reading its chunk again; 0: out of memory. before: how many v, vt and vn of
- * its chunk stand before it. */
-size_t obj_face_line(const obj_file *file, size_t face, obj_corner *before);
-
 /* Leaves in the scene what its locate_faces needs; false: out of memory. */
 bool obj_keep_places(const obj_file *file);
 
@@ -255,7 +255,7 @@ nt_status obj_make_vertices(obj_file *file, nt_error *error);
 nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_error *error);
 
 /* Gives the scene an origin if it needs one, or the user names one; positions: [vertex_count][3], largest: of their
- * coordinates. Returns NT_OK or NT_ERROR_MEMORY. exact.c */
+ * coordinates. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status obj_settle_origin(obj_file *file, float largest, float *positions, nt_error *error);
 
 /* The primitives of a mesh, which differ in material or group. Zeroed: none. */

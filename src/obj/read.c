@@ -8,10 +8,10 @@
  *   join      what was counted; rows of numbers stay in their chunks and are found there
  *   events    spans.c: objects, materials and smoothing groups, in order
  *   vertices  vertices.c: equal v/vt/vn of one object become one vertex
- *   origin    exact.c: positions that float cannot hold are read again, as doubles
+ *   origin    again.c: positions that float cannot hold are read again, as doubles
  *   meshes    meshes.c: faces, quads kept, larger polygons triangulated
  *
- * Where a face stands in the text is asked of few: locate.c reads their lines again.
+ * Where a face stands in the text is asked of few: again.c reads their lines again.
  *
  * An `o` makes a mesh; `g` does not. The u and v of texture coordinates are kept as they stand (v up).
  * Colours behind positions are sRGB, as Blender and three.js write them, and become linear.
@@ -343,15 +343,11 @@ static void free_file(obj_file *file)
 /* vt or vn that were not finite, with the line of the first. */
 static void report_bad_rows(const obj_file *file, int kind, nt_code code, const char *what)
 {
-	size_t count = 0, line = 0;
-	for (size_t c = file->chunk_count; c-- > 0;) {
-		const obj_count *bad = &file->chunks[c].bad_rows[kind];
-		count += bad->count;
-		line = bad->count ? file->chunks[c].first_line + bad->line + 1 : line;
-	}
-	const nt_place place = nt_line_place(file->scene->path, line);
-	if (count)
-		nt_finding_add(&file->scene->findings, code, &place, count, "%s", what);
+	obj_count bad;
+	obj_count_all(file, offsetof(obj_chunk, bad_rows) + (size_t)kind * sizeof bad, &bad);
+	const nt_place place = nt_line_place(file->scene->path, bad.line);
+	if (bad.count)
+		nt_finding_add(&file->scene->findings, code, &place, bad.count, "%s", what);
 }
 
 static void add_file_finding(nt_scene *scene, nt_code code)

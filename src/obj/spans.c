@@ -235,53 +235,41 @@ static nt_status make_meshes(obj_file *file, nt_error *error)
 
 /* ---- what was ignored ---- */
 
-/* The first chunk that has a statement of that kind, NULL for none, and how often the file has it. */
-static const obj_chunk *find_ignored(const obj_file *file, size_t which, size_t *count)
+/* The first chunk that has a statement of that kind, NULL for none. */
+static const obj_chunk *count_ignored(const obj_file *file, size_t which, obj_count *all)
 {
-	const obj_chunk *first = NULL;
-	*count = 0;
-	for (size_t c = 0; c < file->chunk_count; c++) {
-		if (!first && file->chunks[c].ignored[which].count)
-			first = &file->chunks[c];
-		*count += file->chunks[c].ignored[which].count;
-	}
-	return first;
-}
-
-static size_t ignored_line(const obj_chunk *chunk, size_t which)
-{
-	return chunk->first_line + chunk->ignored[which].line + 1;
+	return obj_count_all(file, offsetof(obj_chunk, ignored) + which * sizeof *all, all);
 }
 
 static void report_ignored(const obj_file *file)
 {
 	nt_scene *scene = file->scene;
 	for (size_t which = 0; which < OBJ_WORD_COUNT; which++) {
-		size_t count;
-		const obj_chunk *first = find_ignored(file, which, &count);
+		obj_count all;
+		const obj_chunk *first = count_ignored(file, which, &all);
+		const obj_keyword *keyword = &obj_keywords[which];
 		if (!first)
 			continue;
-		const nt_place place = nt_line_place(scene->path, ignored_line(first, which));
-		const char *left = obj_keywords[which].left_out;
-		if (left)
-			nt_scene_leave_out(scene, place.line, count, "%s (%zu)", left, count);
+		const nt_place place = nt_line_place(scene->path, all.line);
+		if (keyword->left_out)
+			nt_scene_leave_out(scene, all.line, all.count, "%s (%zu)", keyword->left_out, all.count);
 		else if (which == OBJ_UNKNOWN)
-			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, count,
-				"OBJ: %s, the first is %.*s", obj_keywords[which].word,
+			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, all.count,
+				"OBJ: %s, the first is %.*s", keyword->word,
 				(int)(first->unknown_length < 64 ? first->unknown_length : 64), first->unknown);
 		else
-			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, count, "OBJ: %s",
-				obj_keywords[which].word);
+			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, all.count, "OBJ: %s",
+				keyword->word);
 	}
 }
 
 /* A file without faces has nothing to put tangents on: points and lines are sound, nothing at all is no OBJ. */
 static nt_status fail_empty(const obj_file *file, nt_error *error)
 {
-	size_t count;
-	const obj_chunk *small = find_ignored(file, OBJ_SMALL_FACE, &count);
+	obj_count all;
+	const obj_chunk *small = count_ignored(file, OBJ_SMALL_FACE, &all);
 	if (small)
-		return nt_fail_line(error, NT_ERROR_INPUT, ignored_line(small, OBJ_SMALL_FACE),
+		return nt_fail_line(error, NT_ERROR_INPUT, all.line,
 			"found a face of %zu corners and no larger one in the file, expected at least 3",
 			small->small_size);
 	return nt_fail(error, file->row_counts[OBJ_V] ? NT_ERROR_UNSUPPORTED : NT_ERROR_INPUT,

@@ -89,53 +89,34 @@ static inline bool resolve(uint32_t *index, size_t first, size_t count)
 	return *index < count;
 }
 
-/* The face of a corner of the file. */
-static size_t face_of_corner(const obj_file *file, const obj_chunk *chunk, size_t wanted)
+/* Says which index of a distinct corner is out of range, as the file spells it. The chunk is read again, up to the face
+ * that has the corner first. */
+static nt_status fail_index(const obj_file *file, const obj_chunk *chunk, size_t distinct, nt_error *error)
 {
-	size_t face = chunk->first_face, corner = chunk->first_corner, polygon = 0;
-	while (polygon < file->polygon_count && file->polygons[polygon].face < face)
-		polygon++;
-	for (;; face++) {
-		const uint8_t size = file->face_sizes[face];
-		corner += size == OBJ_POLYGON ? file->polygons[polygon++].size : size;
-		if (wanted < corner)
-			return face;
-	}
-}
-
-/* Says which index of the corner is out of range, as the file spells it. */
-static nt_status fail_index(const obj_file *file, const obj_chunk *chunk, size_t distinct,
-	nt_error *error)
-{
-	size_t bad_corner = chunk->first_corner;
-	while (chunk->corners[bad_corner - chunk->first_corner] != distinct)
-		bad_corner++;
 	const obj_corner corner = chunk->distinct[distinct];
-	obj_corner before;
-	const size_t line = obj_face_line(file, face_of_corner(file, chunk, bad_corner), &before);
-	const struct {
-		const char *word;
-		uint32_t index;
-		uint32_t before;      /* elements of the chunk before the face */
-		size_t first, count;
-	} parts[3] = {
-		{"v", corner.v, before.v, chunk->rows[OBJ_V].first, file->row_counts[OBJ_V]},
-		{"vt", corner.t, before.t, chunk->rows[OBJ_VT].first, file->row_counts[OBJ_VT]},
-		{"vn", corner.n, before.n, chunk->rows[OBJ_VN].first, file->row_counts[OBJ_VN]},
-	};
-	int k = 0;
-	uint32_t row = parts[0].index;
-	while (k < 2 && ((k && !parts[k].count) || resolve(&row, parts[k].first, parts[k].count)))
-		row = parts[++k].index;
-	const uint32_t index = parts[k].index;
+	obj_chunk again = obj_chunk_of(chunk->begin, chunk->end);
+	while (again.distinct_count <= distinct && again.p < again.end)
+		if (obj_read_lines(&again, again.face_count))
+			break;
+	const size_t line = again.error.status ? 0 : chunk->first_line + again.statement_line + 1;
+	obj_chunk_free(&again);
+	static const char *const words[OBJ_KIND_COUNT] = {"v", "vt", "vn"};
+	const uint32_t indices[OBJ_KIND_COUNT] = {corner.v, corner.t, corner.n};
+	int kind = OBJ_V;
+	for (; kind < OBJ_VN; kind++) {
+		uint32_t row = indices[kind];
+		const bool ignored = kind != OBJ_V && !file->row_counts[kind];
+		if (!ignored && !resolve(&row, chunk->rows[kind].first, file->row_counts[kind]))
+			break;
+	}
+	const uint32_t index = indices[kind];
+	const size_t before = again.rows[kind].count; /* elements of the chunk before the face */
 	if (index & OBJ_RELATIVE)
 		return nt_fail_line(error, NT_ERROR_INPUT, line,
-			"face refers to \"%s\" number -%zu, but %zu precede it", parts[k].word,
-			(size_t)(parts[k].before + OBJ_BIAS - (index & ~OBJ_RELATIVE)),
-			parts[k].first + parts[k].before);
-	return nt_fail_line(error, NT_ERROR_INPUT, line,
-		"face refers to \"%s\" number %zu, but the file has %zu", parts[k].word, (size_t)index + 1,
-		parts[k].count);
+			"face refers to \"%s\" number -%zu, but %zu precede it", words[kind],
+			before + OBJ_BIAS - (index & ~OBJ_RELATIVE), chunk->rows[kind].first + before);
+	return nt_fail_line(error, NT_ERROR_INPUT, line, "face refers to \"%s\" number %zu, but the file has %zu",
+		words[kind], (size_t)index + 1, file->row_counts[kind]);
 }
 
 /* Corners that refer to a kind of which the file has none are read as if they did not, and a finding says so. */
