@@ -14,7 +14,7 @@
  * Exporters write 0 for what they do not mean: d 0 (Tr 1), which would make all of it invisible, and 0 for the number
  * of a map, which would make the map invisible. Both become 1, as in obj2gltf.
  */
-#include "obj/mtl.h"
+#include "obj/parts.h"
 
 #include <math.h>
 #include <stdarg.h>

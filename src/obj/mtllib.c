@@ -10,7 +10,7 @@
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/way.h"
-#include "obj/mtl.h"
+#include "obj/parts.h"
 
 /* Arguments of reading the libraries that mtllib statements name. */
 typedef struct request {

@@ -6,7 +6,9 @@
 #ifndef NT_OBJ_PARTS_H
 #define NT_OBJ_PARTS_H
 
-#include "obj/mtl.h"
+#include <string.h>
+#include "base/name_table.h"
+#include "scene/scene.h"
 
 /* The numbers of a face corner, as they are kept until the file has been read. Bit 31 clear: counted
  * from 0. Bit 31 set: counted back, the low bits are OBJ_BIAS plus the number relative to the chunk's
@@ -279,7 +281,53 @@ nt_status obj_make_meshes(obj_file *file, nt_error *error);
  * or NT_ERROR_MEMORY. */
 nt_status obj_split_tiles(nt_scene *scene, nt_error *error);
 
+/* ---- MTL ---- */
+
+/* One newmtl. */
+typedef struct nt_mtl_definition {
+	nt_material material;
+	const char *raw_name;   /* as the file spells it, for comparing with usemtl; not converted */
+	size_t raw_length;
+} nt_mtl_definition;
+
+/* The definitions of all libraries, in order. Texts belong to the scene's arena, the caller
+ * frees the array. */
+typedef struct nt_mtl {
+	nt_mtl_definition *definitions;
+	size_t count, capacity;
+	bool incomplete;     /* a library could not be read */
+	nt_name_table files; /* device and inode of those that have been: each is, once, by however many names */
+} nt_mtl;
+
+/*
+ * Reads the libraries of one mtllib statement: one file name, blanks allowed, or several. A library that cannot be
+ * read, or lies outside the folder of scene->path without options->allow_outside, is a finding.
+ *
+ *   names, length   what follows "mtllib"
+ *   line            of the statement
+ *
+ * Returns NT_OK, NT_ERROR_INPUT (a number that is none, with the library's line) or
+ * NT_ERROR_MEMORY.
+ */
+nt_status nt_mtl_read(nt_scene *scene, const char *names, size_t length, size_t line,
+	const nt_read_options *options, nt_mtl *mtl, nt_error *error);
+
+/* Reads definitions from bytes; `path` names them in findings and materials and has to live as long as the scene. Each
+ * contradictory, doubtful or lost statement is a finding. The same statuses. */
+nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *bytes, size_t size, nt_mtl *mtl,
+	nt_error *error);
+
+void nt_mtl_free(nt_mtl *mtl);
+
+/* A file name with `\` as `/` and without quotes; NULL: out of memory. */
+char *nt_mtl_file_name(nt_arena *arena, const char *text, const char *end);
+
 /* ---- steps over text ---- */
+
+static inline bool is_blank(char c)
+{
+	return c == ' ' || c == '\t';
+}
 
 static inline bool is_line_end(char c)
 {

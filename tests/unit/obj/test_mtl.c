@@ -6,7 +6,7 @@
 #include "test.h"
 #include <sys/stat.h>
 #include <unistd.h>
-#include "obj/mtl.h"
+#include "obj/parts.h"
 #include "obj/read.h"
 
 typedef struct reading {

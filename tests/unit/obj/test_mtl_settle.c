@@ -5,7 +5,7 @@
  */
 #include "test.h"
 #include <math.h>
-#include "obj/mtl.h"
+#include "obj/parts.h"
 
 typedef struct reading {
 	nt_scene scene;
