@@ -160,9 +160,10 @@ static nt_status check_sparse(nt_gltf *document, const nt_json_value *sparse, co
 {
 	char pointer[NT_GLTF_POINTER], place[NT_GLTF_POINTER * 2];
 	snprintf(pointer, sizeof pointer, "%.100s/sparse", accessor_pointer);
-	nt_status status = nt_gltf_uint(sparse, pointer, "count", accessor->count, NT_GLTF_REQUIRED,
-		&accessor->sparse_count, error);
-	if (status || accessor->sparse_count == 0)
+	nt_gltf_sparse_arrays arrays;
+	nt_status status = nt_gltf_uint(sparse, pointer, "count", accessor->count, NT_GLTF_REQUIRED, &arrays.count,
+		error);
+	if (status || arrays.count == 0)
 		return status;
 	snprintf(place, sizeof place, "%s/indices", pointer);
 	uint64_t type;
@@ -173,15 +174,17 @@ static nt_status check_sparse(nt_gltf *document, const nt_json_value *sparse, co
 	if (type != NT_GLTF_UBYTE && type != NT_GLTF_USHORT && type != NT_GLTF_UINT)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
 			"componentType %llu, expected 5121, 5123 or 5125", (unsigned long long)type);
-	accessor->sparse_index_type = (uint32_t)type;
-	status = check_sparse_array(document, sparse, "indices", pointer, accessor->sparse_count,
-		nt_gltf_component_bytes(type), &accessor->sparse_index_view,
-		&accessor->sparse_index_offset, error);
-	if (status)
-		return status;
-	return check_sparse_array(document, sparse, "values", pointer, accessor->sparse_count,
-		accessor->element_bytes, &accessor->sparse_value_view, &accessor->sparse_value_offset,
-		error);
+	arrays.index_type = (uint32_t)type;
+	status = check_sparse_array(document, sparse, "indices", pointer, arrays.count, nt_gltf_component_bytes(type),
+		&arrays.index_view, &arrays.index_offset, error);
+	if (!status)
+		status = check_sparse_array(document, sparse, "values", pointer, arrays.count, accessor->element_bytes,
+			&arrays.value_view, &arrays.value_offset, error);
+	nt_gltf_sparse_arrays *kept = status ? NULL : nt_arena_alloc(&document->arena, 1, sizeof *kept);
+	if (kept)
+		*kept = arrays;
+	accessor->sparse = kept;
+	return status || kept ? status : nt_fail_memory(error);
 }
 
 /* An accessor as its JSON has it, checked against its views. */
@@ -222,7 +225,7 @@ static int compare_accessors(const void *a, const void *b)
 
 static bool lies_in_view(const nt_gltf_accessor *accessor)
 {
-	return accessor->index != NT_NONE && accessor->view != NT_NONE && !accessor->sparse_count;
+	return accessor->index != NT_NONE && accessor->view != NT_NONE && !accessor->sparse;
 }
 
 /* Finds accessors over the same bytes. Most views have one accessor, about which there is no question. */
@@ -233,6 +236,7 @@ static bool find_same(nt_gltf *document)
 	size_t shared = 0, count = 0;
 	for (uint32_t i = 0; users && i < document->accessor_count; i++) {
 		all[i].same = i;
+		all[i].next = NT_NONE;
 		if (lies_in_view(&all[i]))
 			shared += users[all[i].view]++ ? 1 + (users[all[i].view] == 2) : 0;
 	}
@@ -243,8 +247,10 @@ static bool find_same(nt_gltf *document)
 	if (count)
 		qsort(list, count, sizeof *list, compare_accessors);
 	for (size_t i = 1; i < count; i++)
-		if (compare_places(&list[i], &list[i - 1]) == 0)
+		if (compare_places(&list[i], &list[i - 1]) == 0) {
 			list[i]->same = list[i - 1]->same;
+			list[i - 1]->next = list[i]->index;
+		}
 	const bool found = list != NULL;
 	free(list);
 	free(users);
@@ -263,10 +269,13 @@ nt_status nt_gltf_read_arrays(nt_gltf *document, nt_error *error)
 	for (uint32_t i = 0; i < document->view_count; i++)
 		if (nt_gltf_read_view(document, i, &document->views[i], NULL))
 			document->views[i].buffer = NT_NONE;
-	for (uint32_t i = 0; i < document->accessor_count; i++)
-		if (read_accessor(document, i, &document->accessors[i], NULL))
+	nt_status status = NT_OK;
+	for (uint32_t i = 0; status != NT_ERROR_MEMORY && i < document->accessor_count; i++) {
+		status = read_accessor(document, i, &document->accessors[i], NULL);
+		if (status)
 			document->accessors[i].index = NT_NONE;
-	return find_same(document) ? NT_OK : nt_fail_memory(error);
+	}
+	return status != NT_ERROR_MEMORY && find_same(document) ? NT_OK : nt_fail_memory(error);
 }
 
 nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from, nt_gltf_accessor *accessor,
@@ -332,20 +341,20 @@ static uint32_t read_unsigned(const unsigned char *bytes, uint32_t component_typ
 nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
 	const uint32_t **elements, const unsigned char **values, nt_error *error)
 {
-	const uint64_t count = accessor->sparse_count;
-	const uint32_t width = nt_gltf_component_bytes(accessor->sparse_index_type);
+	const uint64_t count = accessor->sparse->count;
+	const uint32_t width = nt_gltf_component_bytes(accessor->sparse->index_type);
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "/accessors/%u/sparse/indices", accessor->index);
 	const unsigned char *numbers;
-	nt_status status = nt_gltf_view_bytes(document, accessor->sparse_index_view,
-		accessor->sparse_index_offset, count * width, pointer, &numbers, error);
+	nt_status status = nt_gltf_view_bytes(document, accessor->sparse->index_view,
+		accessor->sparse->index_offset, count * width, pointer, &numbers, error);
 	if (status)
 		return status;
 	uint32_t *list = nt_arena_alloc(arena, (size_t)count, sizeof *list);
 	if (!list)
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < count; i++) {
-		list[i] = read_unsigned(numbers + i * width, accessor->sparse_index_type);
+		list[i] = read_unsigned(numbers + i * width, accessor->sparse->index_type);
 		if (list[i] >= accessor->count || (i > 0 && list[i] <= list[i - 1]))
 			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 				"index %zu is %u, expected %s", i, list[i],
@@ -354,7 +363,7 @@ nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt
 	}
 	*elements = list;
 	snprintf(pointer, sizeof pointer, "/accessors/%u/sparse/values", accessor->index);
-	return nt_gltf_view_bytes(document, accessor->sparse_value_view, accessor->sparse_value_offset,
+	return nt_gltf_view_bytes(document, accessor->sparse->value_view, accessor->sparse->value_offset,
 		count * accessor->element_bytes, pointer, values, error);
 }
 
@@ -392,7 +401,7 @@ static float *floats_as_stored(const nt_gltf_accessor *accessor, uint32_t width,
 	float *floats = NULL;
 	if (elements && accessor->component_type == NT_GLTF_FLOAT && accessor->components == width &&
 		accessor->stride == width * sizeof(float) && (uintptr_t)elements % sizeof(float) == 0 &&
-		!accessor->sparse_count)
+		!accessor->sparse)
 		memcpy(&floats, &elements, sizeof floats);
 	return floats;
 }
@@ -411,13 +420,13 @@ nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, ui
 	if (!out)
 		return nt_fail_memory(error);
 	decode_elements(accessor, elements, width, fill, out);
-	if (accessor->sparse_count) {
+	if (accessor->sparse) {
 		const uint32_t *replaced;
 		const unsigned char *values;
 		status = nt_gltf_sparse(document, accessor, arena, &replaced, &values, error);
 		if (status)
 			return status;
-		for (size_t i = 0; i < accessor->sparse_count; i++)
+		for (size_t i = 0; i < accessor->sparse->count; i++)
 			decode_element(accessor, values + i * accessor->element_bytes, width, fill,
 				out + (size_t)replaced[i] * width);
 	}
@@ -480,7 +489,7 @@ nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, s
 	if (status)
 		return status;
 	const bool as_wanted = type == NT_GLTF_UINT && accessor->stride == 4 && elements &&
-		(uintptr_t)elements % 4 == 0 && !accessor->sparse_count;
+		(uintptr_t)elements % 4 == 0 && !accessor->sparse;
 	uint32_t *out = NULL;
 	if (as_wanted)
 		memcpy(&out, &elements, sizeof out);
@@ -488,13 +497,13 @@ nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, s
 		return nt_fail_memory(error);
 	if (!as_wanted)
 		widen(elements, type, accessor->stride, count, out);
-	if (accessor->sparse_count) {
+	if (accessor->sparse) {
 		const uint32_t *replaced;
 		const unsigned char *values;
 		status = nt_gltf_sparse(document, accessor, arena, &replaced, &values, error);
 		if (status)
 			return status;
-		for (size_t i = 0; i < accessor->sparse_count; i++)
+		for (size_t i = 0; i < accessor->sparse->count; i++)
 			out[replaced[i]] = read_unsigned(values + i * accessor->element_bytes, type);
 	}
 	const uint32_t reserved = type == NT_GLTF_UBYTE ? 0xFF : type == NT_GLTF_USHORT ? 0xFFFF : NT_NONE;

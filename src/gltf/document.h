@@ -58,6 +58,12 @@ typedef struct nt_gltf_view {
 	const char *compression; /* the extension that compresses it; NULL: none, or already undone */
 } nt_gltf_view;
 
+/* The elements that a sparse accessor replaces. */
+typedef struct nt_gltf_sparse_arrays {
+	uint64_t count, index_offset, value_offset;
+	uint32_t index_type, index_view, value_view;
+} nt_gltf_sparse_arrays;
+
 /* An accessor, sound with its views. */
 typedef struct nt_gltf_accessor {
 	uint64_t count;
@@ -65,6 +71,7 @@ typedef struct nt_gltf_accessor {
 	const unsigned char *decoded; /* elements from a compressed primitive; NULL: none */
 	uint32_t index;          /* NT_NONE: the file is at fault */
 	uint32_t same;           /* the first accessor over the same bytes, or itself: it stands for all of them */
+	uint32_t next;           /* the next accessor over the same bytes; NT_NONE: none */
 	uint32_t view;           /* NT_NONE: all zeros, or decoded */
 	uint32_t stride;         /* as it applies, never 0 */
 	uint32_t component_type; /* enum nt_gltf_component */
@@ -72,9 +79,7 @@ typedef struct nt_gltf_accessor {
 	uint8_t components;      /* of an element: 1 to 4, matrices 4, 9, 16 */
 	uint8_t element_bytes;   /* with the padding of matrix columns */
 	bool normalized;
-	uint32_t sparse_index_type, sparse_index_view, sparse_value_view;
-	uint64_t sparse_count;   /* 0: not sparse */
-	uint64_t sparse_index_offset, sparse_value_offset;
+	const nt_gltf_sparse_arrays *sparse; /* NULL: not sparse */
 } nt_gltf_accessor;
 
 /* Uses of an accessor, and of others over the same bytes: references.c. */
@@ -82,7 +87,7 @@ typedef struct nt_gltf_users {
 	uint32_t attributes;   /* uses as attribute, of morph targets too */
 	uint32_t indices : 30; /* primitives that have it as indices */
 	uint32_t foreign : 1;  /* used by something else than attributes */
-	uint32_t idle : 1;     /* an accessor that is nobody's attribute is among them */
+	uint32_t idle : 1;     /* an accessor that nobody uses is among them */
 } nt_gltf_users;
 
 /* Uses of a view. */

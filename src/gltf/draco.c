@@ -198,7 +198,7 @@ static void use_decoded(nt_gltf_accessor *accessor, const unsigned char *element
 	accessor->stride = accessor->element_bytes;
 	accessor->view = NT_NONE;
 	accessor->offset = 0;
-	accessor->sparse_count = 0;
+	accessor->sparse = NULL;
 }
 
 /* An accessor gets elements, if its type is that of the decoded attribute. */

@@ -303,7 +303,7 @@ static void list_triangles(uint64_t mode, const uint32_t *chain, size_t face_cou
 typedef struct nt_displacement {
 	nt_gltf_accessor accessor;
 	const unsigned char *elements; /* NULL: zeros */
-	const unsigned char *replaced, *values; /* [accessor.sparse_count] numbers that ascend, and their elements */
+	const unsigned char *replaced, *values; /* [accessor.sparse->count] numbers that ascend, and their elements */
 } nt_displacement;
 
 static nt_status find_sparse(nt_gltf *document, nt_displacement *d, nt_error *error)
@@ -313,8 +313,8 @@ static nt_status find_sparse(nt_gltf *document, nt_displacement *d, nt_error *er
 	const uint32_t *checked;
 	nt_status status = nt_gltf_sparse(document, a, &scratch, &checked, &d->values, error);
 	nt_arena_free(&scratch);
-	return status ? status : nt_gltf_view_bytes(document, a->sparse_index_view, a->sparse_index_offset,
-		a->sparse_count * nt_gltf_component_bytes(a->sparse_index_type), "", &d->replaced, error);
+	return status ? status : nt_gltf_view_bytes(document, a->sparse->index_view, a->sparse->index_offset,
+		a->sparse->count * nt_gltf_component_bytes(a->sparse->index_type), "", &d->replaced, error);
 }
 
 /* *delta: NULL where the target does not move the attribute. */
@@ -339,7 +339,7 @@ static nt_status find_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *m
 			(unsigned long long)index, (unsigned long long)found.accessor.count,
 			found.accessor.components, pool_count);
 	status = nt_gltf_elements(document, &found.accessor, &found.elements, error);
-	if (!status && found.accessor.sparse_count)
+	if (!status && found.accessor.sparse)
 		status = find_sparse(document, &found, error);
 	nt_displacement *kept = status ? NULL : nt_arena_alloc(arena, 1, sizeof *kept);
 	if (kept)
@@ -351,7 +351,7 @@ static nt_status find_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *m
 /* The vertex that a sparse element replaces. */
 static uint32_t replaced_by(const nt_displacement *d, size_t element)
 {
-	const uint32_t width = nt_gltf_component_bytes(d->accessor.sparse_index_type);
+	const uint32_t width = nt_gltf_component_bytes(d->accessor.sparse->index_type);
 	const unsigned char *at = d->replaced + element * width;
 	uint32_t number = 0;
 	for (uint32_t i = 0; i < width; i++)
@@ -374,14 +374,15 @@ static float *add_delta(const nt_mesh *mesh, const nt_displacement *d, const flo
 {
 	const nt_gltf_accessor *a = &d->accessor;
 	const size_t own_count = mesh->source_vertex_count;
+	const uint64_t replaced_count = a->sparse ? a->sparse->count : 0;
 	float *sums = nt_calloc(mesh->vertex_count, 3 * sizeof *sums);
 	if (!sums)
 		return NULL;
 	for (size_t v = 0, at = 0; v < own_count; v++) {
 		const size_t row = nt_mesh_pool_vertex(mesh, (uint32_t)v);
-		while (at < a->sparse_count && replaced_by(d, at) < row)
+		while (at < replaced_count && replaced_by(d, at) < row)
 			at++;
-		if (at < a->sparse_count && replaced_by(d, at) == row)
+		if (at < replaced_count && replaced_by(d, at) == row)
 			read_delta(a, d->values + at * a->element_bytes, sums + 3 * v);
 		else if (d->elements)
 			read_delta(a, d->elements + row * a->stride, sums + 3 * v);
@@ -614,8 +615,8 @@ static bool open_accessor(nt_gltf *document, const nt_json_value *object, const 
 	const nt_gltf_accessor *a = nt_gltf_named(document, object, name);
 	if (!a)
 		return !nt_json_find(object, name);
-	return open_view(document, a->view) && (!a->sparse_count ||
-		(open_view(document, a->sparse_index_view) && open_view(document, a->sparse_value_view)));
+	return open_view(document, a->view) && (!a->sparse ||
+		(open_view(document, a->sparse->index_view) && open_view(document, a->sparse->value_view)));
 }
 
 /* Whether all that a load takes of a mesh is there now. */

@@ -196,7 +196,7 @@ nt_status nt_gltf_find_users(nt_gltf *document, nt_error *error)
 			all->indices += own.indices;
 			all->foreign |= own.foreign;
 		}
-		all->idle |= !own.attributes;
+		all->idle |= !own.attributes && !own.indices && !own.foreign;
 	}
 	return NT_OK;
 }

@@ -50,6 +50,7 @@ SETS = [
 # Intended changes of a step of the rebuilding: (kind, pattern of "set path detail", why). See "what users lose".
 EXPLAINED = [
     ('report', r'/(texel_density|texture_size)\b.*: None -> ', 'an image in a view that an edit moved is found'),
+    ('values', r'mesh/uv\.gltf .*/accessors has 5 elements, had 6', 'a TANGENT of two sets goes to the last of them'),
     ('messages', r'cases/implicit_ids/', 'feature ids that are numbers of vertices are told'),
     ('report', r'cases/implicit_ids/', 'feature ids that are numbers of vertices are told'),
 ]

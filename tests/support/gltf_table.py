@@ -222,6 +222,15 @@ def loose_soup(q):
     return [mesh]
 
 
+def loose_morphs(q):
+    """Vertices that --weld would take away, but for an accessor of nobody with the deltas of their targets."""
+    (mesh,), (first, second, third) = soup(q), strip(3)[1]
+    for stream in [*first.values(), *second.values()]:
+        stream.rows = [stream.rows[i] for i in CORNERS]
+    mesh[0].update(targets=[first, second], loose=[again(second['NORMAL'])])
+    return [mesh]
+
+
 def unused(q):
     """Vertices that no triangle has stay where they are."""
     attributes = strip(1, q)[0]
@@ -311,7 +320,7 @@ def soup_left(q):
 
 SHARING = [alone, two, soup, ranges, ranges_apart, twins, instances, same_indices, same_positions, same_texcoords, needless, points,
            lines, named_twice, modes, morphs, morphs_shared, morphs_sparse, morphs_nothing, loose, loose_soup, unused, other_set, mirrored, animated,
-           placed, normals_missing, sparse_together, unfinished, many, many_sparse, soup_left]
+           placed, normals_missing, sparse_together, unfinished, many, many_sparse, soup_left, loose_morphs]
 
 
 # ---- which tangents are there ----
@@ -750,6 +759,10 @@ def table():
         for k in range(5):
             cells.append((sharing, TANGENTS[(2 * k + i) % len(TANGENTS)], LAYOUTS[(5 * i + k) % len(LAYOUTS)], False))
         cells.append((sharing, TANGENTS[i % len(TANGENTS)], LAYOUTS[(3 * i) % len(LAYOUTS)], True))
+    # twins whose bytes others have, TANGENT of all accessors over the same bytes, and of two sets
+    for sharing, tangents, lay_out in (twins, part_elsewhere, tight), (twins, floats, separate), (instances, shorts, interleaved), (
+            same_positions, floats, separate), (instances, none, separate):
+        cells.append((sharing, tangents, lay_out, False))
     return cells
 
 
@@ -926,9 +939,10 @@ SETS = {
     'short': ('in', '--only=all --existing=replace --precision=short', 3),
     'byte': ('in', '--existing=replace --precision=byte', 3),
     'float': ('in', '--only=all --existing=replace --precision=float --morph=keep', 3),
-    'again': ('replace', '--only=all --existing=replace', 2, ['alone', 'two', 'soup', 'ranges', 'morphs', 'modes', 'same', 'many', 'other']),
+    # points lie between tangents, and who they belong to is not asked
+    'again': ('replace', '--only=all --existing=replace', 1, [sharing.__name__ for sharing in SHARING if sharing != points]),
     'weld': ('in', '--only=all --existing=replace --weld', 3),
-    'weld-loose': ('in', '--only=all --existing=replace --weld', 1, ['loose_soup']),
+    'weld-loose': ('in', '--only=all --existing=replace --weld', 1, ['loose_soup', 'loose_morphs']),
     'weld-left': ('in', '--weld --images=copy', 1, ['soup']),
     'no-morphs': ('in', '--only=all --existing=replace --morph=drop --images=embed', 1, ['morphs', 'many']),
     'across': ('in', '--only=all --existing=replace --across=mesh', 3),
@@ -1250,13 +1264,13 @@ def check(options, before, after, fault, compressed=False):
     if dead_now > dead + 3 * len(b.g.get('bufferViews', [])) + 16 * ('--precision' in options) and not any(
             word in before for word in ('together', 'tight', 'part_elsewhere')) and '=drop' not in options:
         fault('%d bytes that nobody uses, there were %d' % (dead_now, dead))
-    # of several accessors over the same bytes one may be left, and one that was the TANGENT of several primitives
+    # of several accessors over some of the same bytes one may be left, and one that was the TANGENT of what is solved with others
     views = [x.get('bufferView') for x in a.g['accessors']]
     places = [place(a, i) if 'target' not in a.g['bufferViews'][view or 0] else view for i, view in enumerate(views)]
     tangents = [p['attributes'].get('TANGENT') for mesh in a.g['meshes'] for p in mesh['primitives']]
     for i in sorted(loose_now - loose):
-        several = tangents.count(i) > (0 if '--across' in options or '--existing=drop' in options else 1)
-        if i >= len(places) or places.count(places[i]) == 1 and not several:
+        left = i in tangents and ('--across' in options or '--existing=drop' in options)
+        if i >= len(places) or places.count(places[i]) == 1 and not left:
             fault('nobody uses accessor %d' % i)
 
 

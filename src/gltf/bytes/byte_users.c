@@ -34,18 +34,19 @@ static bool add_accessor(nt_byte_users *users, nt_gltf *document, uint32_t index
 	bool *view_used)
 {
 	const nt_gltf_accessor *a = nt_gltf_sound_accessor(document, index);
-	if (!a || a->count == 0)
+	if (!a || a->count == 0 || a->same != index)
 		return true;
-	index = a->same;
 	bool added = true;
-	if (a->view != NT_NONE)
+	/* one that nobody uses keeps its bytes whatever becomes of those over the same */
+	const int times = nt_gltf_users_of(document, index)->idle ? 2 : 1;
+	for (int i = 0; added && i < times && a->view != NT_NONE; i++)
 		added = add_view_user(users, document, a->view, a->offset,
 			(a->count - 1) * a->stride + a->element_bytes, index, view_used);
-	if (a->sparse_count) {
-		added = added && add_view_user(users, document, a->sparse_index_view, a->sparse_index_offset,
-			a->sparse_count * nt_gltf_component_bytes(a->sparse_index_type), index, view_used);
-		added = added && add_view_user(users, document, a->sparse_value_view, a->sparse_value_offset,
-			a->sparse_count * a->element_bytes, index, view_used);
+	if (a->sparse) {
+		added = added && add_view_user(users, document, a->sparse->index_view, a->sparse->index_offset,
+			a->sparse->count * nt_gltf_component_bytes(a->sparse->index_type), index, view_used);
+		added = added && add_view_user(users, document, a->sparse->value_view, a->sparse->value_offset,
+			a->sparse->count * a->element_bytes, index, view_used);
 	}
 	return added;
 }
@@ -122,6 +123,7 @@ static uint64_t set_reach(nt_byte_user *list, size_t low, size_t high)
 bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document)
 {
 	const size_t view_count = document->view_count, accessor_count = document->accessor_count;
+	users->document = document;
 	bool *view_used = nt_calloc(view_count, sizeof *view_used);
 	bool added = view_used && nt_grow((void **)&users->list, &users->capacity, accessor_count, sizeof *users->list);
 	for (size_t i = 0; added && i < accessor_count; i++)
@@ -162,8 +164,35 @@ typedef struct question {
 	uint64_t begin;
 	uint32_t own;
 	const uint32_t *owners; /* NULL: accessors are their own */
+	const nt_byte_rows *rows; /* [row_count] that alone change; 0: all may */
+	size_t row_count;
 	bool counts;            /* all; otherwise one that is not `own` is enough */
 } question;
+
+/* Whether a user is an accessor that no edit touches, with elements between the rows that change. */
+static bool lies_apart(const question *q, const nt_byte_user *user)
+{
+	const nt_gltf *document = q->users->document;
+	if (!q->row_count || user->accessor == NT_NONE || document->users[user->accessor].attributes ||
+		document->users[user->accessor].indices)
+		return false;
+	const nt_gltf_accessor *a = &document->accessors[user->accessor];
+	const uint64_t stride = a->stride;
+	bool apart = user->end - user->begin == (a->count - 1) * stride + a->element_bytes;
+	for (size_t i = 0; apart && i < q->row_count; i++) {
+		const nt_byte_rows *rows = &q->rows[i];
+		const uint64_t behind = (rows->begin % stride + stride - user->begin % stride) % stride;
+		apart = rows->stride == stride && behind >= a->element_bytes && behind + rows->width <= stride;
+	}
+	return apart;
+}
+
+static bool is_asked_for(const question *q, const nt_byte_user *user)
+{
+	const uint32_t accessor = user->accessor;
+	return q->counts || accessor == NT_NONE ||
+		((q->owners ? q->owners[accessor] : accessor) != q->own && !lies_apart(q, user));
+}
 
 static void look(question *q, size_t low, size_t high)
 {
@@ -175,8 +204,7 @@ static void look(question *q, size_t low, size_t high)
 		return;
 	look(q, low, middle);
 	const bool touches = middle >= q->first && middle < q->last && user->end > q->begin;
-	q->found += touches && (q->counts || user->accessor == NT_NONE ||
-		(q->owners ? q->owners[user->accessor] : user->accessor) != q->own);
+	q->found += touches && is_asked_for(q, user);
 	look(q, middle + 1, high);
 }
 
@@ -191,9 +219,10 @@ static size_t find_users(const nt_byte_users *users, uint32_t buffer, uint64_t b
 }
 
 bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
-	const uint32_t *owners, uint32_t own)
+	const uint32_t *owners, uint32_t own, const nt_byte_rows *rows, size_t row_count)
 {
-	return find_users(users, buffer, begin, end, (question){.owners = owners, .own = own});
+	return find_users(users, buffer, begin, end,
+		(question){.owners = owners, .own = own, .rows = rows, .row_count = row_count});
 }
 
 bool nt_byte_users_other(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,

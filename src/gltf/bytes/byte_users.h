@@ -15,7 +15,14 @@ typedef struct nt_byte_user {
 	uint32_t accessor; /* `same`; NT_NONE: an image, an extension, or an unknown user */
 } nt_byte_user;
 
+/* Bytes that get new values: `width` of them from `begin` on, every `stride` bytes. */
+typedef struct nt_byte_rows {
+	uint64_t begin;
+	uint32_t stride, width;
+} nt_byte_rows;
+
 typedef struct nt_byte_users {
+	const nt_gltf *document;
 	nt_byte_user *list; /* sorted by buffer and begin; malloc'ed */
 	size_t count, capacity;
 	bool unknown;       /* nothing that we know uses one of the views */
@@ -24,9 +31,10 @@ typedef struct nt_byte_users {
 /* Faulty parts of the document are passed over. False: out of memory. */
 bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document);
 
-/* Whether something other than the accessors whose owner is `own` refers to bytes of [begin, end). */
+/* Whether something other than the accessors whose owner is `own` refers to bytes of [begin, end). rows: [row_count] if
+ * nothing else of these bytes changes: an accessor that no edit touches may lie beside them. */
 bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
-	const uint32_t *owners, uint32_t own);
+	const uint32_t *owners, uint32_t own, const nt_byte_rows *rows, size_t row_count);
 
 /* Whether something other than one accessor does. */
 bool nt_byte_users_other(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,

@@ -403,7 +403,7 @@ static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 		if (edits->seen[i] || nt_gltf_users_of(document, i)->indices ||
 			!nt_json_find(json, "min") ||
 			nt_gltf_get_accessor(document, i, "", &a, NULL) || a.view >= edits->view_count ||
-			a.sparse_count || document->virtual_of[a.view] == NT_NONE || a.components > 4 ||
+			a.sparse || document->virtual_of[a.view] == NT_NONE || a.components > 4 ||
 			a.element_bytes != a.components * a.component_bytes || nt_packing_of(edits, a.view).extension ||
 			!nt_edits_of(edits, document->virtual_of[a.view])->edit_count)
 			continue;

@@ -13,7 +13,6 @@
 #include <string.h>
 #include "gltf/accessor.h"
 #include "gltf/edit/append_targets.h"
-#include "gltf/edit/new_accessors.h"
 #include "gltf/bytes/packed_views.h"
 
 /* ---- accessors that must keep their count ---- */
@@ -62,11 +61,11 @@ static nt_status copy_elements(nt_appending *job, const nt_append_target *from, 
 		status = nt_packed_bytes(job->edits, from->buffer, from->begin, &elements, job->error);
 	for (size_t v = 0; !status && elements && v < a->count; v++)
 		memcpy(all + v * stride, elements + v * a->stride, a->element_bytes);
-	if (!status && bake && a->sparse_count) {
+	if (!status && bake && a->sparse) {
 		const uint32_t *replaced;
 		const unsigned char *values;
 		status = nt_gltf_sparse(job->document, a, job->arena, &replaced, &values, job->error);
-		for (size_t i = 0; !status && i < a->sparse_count; i++)
+		for (size_t i = 0; !status && i < a->sparse->count; i++)
 			memcpy(all + (size_t)replaced[i] * stride, values + i * a->element_bytes,
 				a->element_bytes);
 	}
@@ -76,27 +75,27 @@ static nt_status copy_elements(nt_appending *job, const nt_append_target *from, 
 }
 
 /* All elements of an accessor go to a new place: of its own, or of others that are packed like it. */
-static nt_status add_elements(nt_appending *job, const nt_append_target *from, bool bake, nt_json_value *accessor)
+static nt_status add_elements(nt_appending *job, nt_append_target *from, bool bake, nt_json_value *accessor)
 {
 	const uint32_t element = from->override ? from->override->width : from->accessor.element_bytes;
 	const uint32_t stride = (element + 3) / 4 * 4;
 	nt_gltf_packing packing = nt_packing_of(job->edits, from->accessor.view);
 	unsigned char *elements = NULL;
-	uint32_t view = 0;
-	uint64_t offset = 0;
+	/* of several accessors a view has to say how far apart elements are */
+	const bool shared = from->accessor.same != from->accessor.index || from->accessor.next != NT_NONE;
 	/* a filter is one of whole elements */
 	const bool stored =
-		packing.extension && packing.view.stride == stride && !(bake && from->accessor.sparse_count);
+		packing.extension && packing.view.stride == stride && !(bake && from->accessor.sparse);
 	if (!stored)
 		packing.view.filter = "NONE";
 	packing.view.stride = stride;
 	nt_status status = copy_elements(job, from, stride, bake, stored, &elements);
 	if (!status)
 		status = nt_packed_add(job->edits, job->buffer, &packing, elements,
-			job->vertices->new_count * stride, NT_GLTF_ARRAY_BUFFER, stride != element ? stride : 0, &view,
-			&offset, job->error);
+			job->vertices->new_count * stride, NT_GLTF_ARRAY_BUFFER,
+			shared || stride != element ? stride : 0, &from->new_view, &from->new_offset, job->error);
 	if (!status)
-		nt_gltf_place_accessor(job->json, accessor, view, offset);
+		nt_gltf_place_accessor(job->json, accessor, from->new_view, from->new_offset);
 	return status;
 }
 
@@ -106,7 +105,7 @@ static nt_status settle_bounds(nt_appending *job, const nt_append_target *of, ui
 {
 	const nt_gltf_accessor *a = &of->accessor;
 	const nt_gltf_override *override = of->override;
-	uint32_t stride = override ? override->width : a->sparse_count ? a->element_bytes : a->stride;
+	uint32_t stride = override ? override->width : a->sparse ? a->element_bytes : a->stride;
 	int type = (int)a->component_type;
 	const unsigned char *elements = NULL;
 	double bounds[2][4];
@@ -117,7 +116,7 @@ static nt_status settle_bounds(nt_appending *job, const nt_append_target *of, ui
 	if (override) {
 		elements = override->values;
 		type = stride == 16 ? NT_GLTF_FLOAT : stride == 8 ? NT_GLTF_SHORT : NT_GLTF_BYTE;
-	} else if (a->sparse_count) {
+	} else if (a->sparse) {
 		unsigned char *baked = NULL;
 		status = copy_elements(job, of, stride, true, false, &baked);
 		elements = baked;
@@ -254,17 +253,28 @@ static bool is_crowded(const block *b, const nt_append_target *next)
 	for (size_t i = 0; !crowded && i < b->count; i++)
 		for (size_t k = 0; b->targets[i].override && !crowded && k < b->count; k++) {
 			const nt_append_target *x = &b->targets[i], *y = &b->targets[k];
-			crowded = x != y && x->begin < y->begin + y->accessor.element_bytes &&
+			crowded = x->accessor.same != y->accessor.same &&
+				x->begin < y->begin + y->accessor.element_bytes &&
 				y->begin < x->begin + x->accessor.element_bytes;
 		}
 	return crowded;
 }
 
-/* Moves an accessor to a view of its own. A sparse one becomes plain there; one of a Draco block is not sparse. */
-static nt_status move_away(nt_appending *job, const nt_append_target *moved)
+/* Moves a target to a view of its own, or to where one before it went that lies over the same bytes. A sparse accessor
+ * becomes plain there; one of a Draco block is not sparse. */
+static nt_status move_away(nt_appending *job, nt_append_target *moved)
 {
-	return add_elements(job, moved, !moved->accessor.decoded,
-		nt_gltf_accessor_json(job->document, moved->accessor.index));
+	nt_json_value *accessor = nt_gltf_accessor_json(job->document, moved->accessor.index);
+	const nt_append_target *other = moved;
+	while (other > job->targets && other[-1].begin == moved->begin &&
+		(other == moved || other->accessor.same != moved->accessor.same))
+		other--;
+	if (other == moved || other->accessor.same != moved->accessor.same || other->new_view == NT_NONE)
+		return add_elements(job, moved, !moved->accessor.decoded, accessor);
+	moved->new_view = other->new_view;
+	moved->new_offset = other->new_offset;
+	nt_gltf_place_accessor(job->json, accessor, other->new_view, other->new_offset);
+	return NT_OK;
 }
 
 static nt_status block_bytes(nt_appending *job, const block *b, const unsigned char **bytes)
@@ -350,13 +360,29 @@ static nt_status replace_vertices(nt_appending *job, const block *b, const unsig
 	return nt_edits_replace(job->edits, b->buffer, b->begin, old_size, out, size, job->error);
 }
 
+/* The bytes of a block to which nothing is appended that get new values. NULL: memory is exhausted. */
+static nt_byte_rows *list_rows(nt_appending *job, const block *b, size_t *count)
+{
+	nt_byte_rows *rows = nt_arena_alloc(job->arena, b->count, sizeof *rows);
+	*count = 0;
+	for (size_t i = 0; rows && !nt_vertices_differ(job->vertices) && i < b->count; i++)
+		if (b->targets[i].override)
+			rows[(*count)++] = (nt_byte_rows){b->targets[i].begin, b->stride,
+				b->targets[i].accessor.element_bytes};
+	return rows;
+}
+
 static nt_status append_to_block(nt_appending *job, const block *b, uint64_t previous_end,
 	const nt_append_target *next)
 {
-	nt_status status = NT_OK;
+	size_t row_count;
+	const nt_byte_rows *rows = list_rows(job, b, &row_count);
+	nt_status status = rows ? NT_OK : nt_fail_memory(job->error);
+	if (!rows)
+		return status;
 	if (b->begin < previous_end || b->misfits || is_crowded(b, next) ||
-		nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end,
-					       job->edits->appended_by, nt_append_owner(job))) {
+		nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end, job->edits->appended_by,
+			nt_append_owner(job), rows, row_count)) {
 		for (size_t i = 0; !status && i < b->count; i++)
 			if (nt_vertices_differ(job->vertices) || b->targets[i].override)
 				status = move_away(job, &b->targets[i]);
@@ -407,21 +433,19 @@ static nt_status append_to_targets(nt_appending *job)
 		nt_json_value *json = nt_gltf_accessor_json(job->document, target->accessor.index);
 		nt_json_set_uint64(job->json, nt_json_put(job->json, json, "count"),
 			job->vertices->new_count);
-		if (target->accessor.sparse_count && nt_vertices_differ(job->vertices) && nt_json_find(json, "sparse"))
+		if (target->accessor.sparse && nt_vertices_differ(job->vertices) && nt_json_find(json, "sparse"))
 			status = nt_append_sparse(job, target);
 	}
 	return status;
 }
 
-nt_status nt_append_vertices(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
-	const nt_pool_vertices *vertices, nt_gltf_override *overrides, size_t override_count, bool decoded_too,
-	nt_error *error)
+nt_status nt_append_vertices(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
+	nt_override_list *overrides, bool decoded_too, nt_error *error)
 {
 	nt_appending job = {.edits = edits, .document = edits->document,
-		.json = edits->document->json, .arena = &edits->arena, .buffer = buffer, .pools = pools,
-		.vertices = vertices,
+		.json = edits->document->json, .arena = &edits->arena, .buffer = buffer, .vertices = vertices,
 		.decoded_too = decoded_too, .error = error};
-	nt_status status = nt_append_collect(&job, overrides, override_count);
+	nt_status status = nt_append_collect(&job, overrides);
 	if (!status && nt_vertices_differ(vertices) && must_pin(&job))
 		status = clone_pinned(&job);
 	if (!status)

@@ -63,7 +63,7 @@ static nt_status extend_sparse_array(nt_appending *job, const nt_append_target *
 	find_edited(job, view.buffer, begin, end, &same, &some);
 	if (some || (!array->extended && begin % array->width) ||
 		nt_byte_users_foreign(&job->edits->users, view.buffer, begin, end, job->edits->appended_by,
-			nt_append_owner(job)))
+			nt_append_owner(job), NULL, 0))
 		return move_sparse_array(job, array, json);
 	if (same)
 		return NT_OK;
@@ -109,7 +109,7 @@ static nt_status find_replacements(nt_appending *job, const nt_gltf_accessor *a,
 	if (status)
 		return status;
 	const nt_pool_vertices *vertices = job->vertices;
-	const size_t old_count = (size_t)a->sparse_count, most = old_count + vertices->new_count - vertices->own_count;
+	const size_t old_count = (size_t)a->sparse->count, most = old_count + vertices->new_count - vertices->own_count;
 	const uint32_t element = a->element_bytes;
 	out->elements = nt_arena_alloc(job->arena, most, sizeof *out->elements);
 	out->values = nt_arena_alloc(job->arena, most, element);
@@ -148,8 +148,8 @@ nt_status nt_append_sparse(nt_appending *job, const nt_append_target *from)
 	const bool grows = job->vertices->own_count;
 	if (status || (grows && r.count == r.old_count))
 		return status;
-	const uint32_t old_width = nt_gltf_component_bytes(a->sparse_index_type);
-	const uint32_t type = nt_gltf_index_type(r.elements[r.count - 1], a->sparse_index_type);
+	const uint32_t old_width = nt_gltf_component_bytes(a->sparse->index_type);
+	const uint32_t type = nt_gltf_index_type(r.elements[r.count - 1], a->sparse->index_type);
 	const uint32_t width = nt_gltf_component_bytes(type);
 	unsigned char *numbers = nt_arena_alloc(job->arena, r.count, width);
 	if (!numbers)
@@ -158,16 +158,16 @@ nt_status nt_append_sparse(nt_appending *job, const nt_append_target *from)
 
 	nt_json_value *sparse = nt_json_find(nt_gltf_accessor_json(job->document, a->index), "sparse");
 	nt_json_set_uint64(job->json, nt_json_put(job->json, sparse, "count"), r.count);
-	if (type != a->sparse_index_type)
+	if (type != a->sparse->index_type)
 		nt_json_set_uint64(job->json, nt_json_put(job->json, nt_json_find(sparse, "indices"),
 			"componentType"), type);
-	status = extend_sparse_array(job, from, &(sparse_array){"indices", a->sparse_index_view,
-		a->sparse_index_offset,
+	status = extend_sparse_array(job, from, &(sparse_array){"indices", a->sparse->index_view,
+		a->sparse->index_offset,
 		r.old_count * old_width, numbers, r.count * width, width,
 		grows && width == old_width});
 	if (!status)
-		status = extend_sparse_array(job, from, &(sparse_array){"values", a->sparse_value_view,
-			a->sparse_value_offset, r.old_count * a->element_bytes, r.values,
+		status = extend_sparse_array(job, from, &(sparse_array){"values", a->sparse->value_view,
+			a->sparse->value_offset, r.old_count * a->element_bytes, r.values,
 			r.count * a->element_bytes, a->component_bytes, grows});
 	return status;
 }

@@ -17,12 +17,20 @@ bool nt_append_note_edit(nt_appending *job, uint32_t buffer, uint64_t begin, uin
 	return true;
 }
 
+bool nt_override_add(nt_override_list *list, nt_gltf_override override)
+{
+	if (!nt_grow((void **)&list->items, &list->capacity, list->count + 1, sizeof *list->items))
+		return false;
+	list->items[list->count++] = override;
+	return true;
+}
+
 static nt_status add_target(nt_appending *job, uint32_t index, nt_error *error)
 {
 	if (!nt_grow((void **)&job->targets, &job->target_capacity, job->target_count + 1, sizeof *job->targets))
 		return nt_fail_memory(error);
 	nt_append_target *added = &job->targets[job->target_count];
-	*added = (nt_append_target){.clone = NT_NONE};
+	*added = (nt_append_target){.clone = NT_NONE, .new_view = NT_NONE};
 	nt_status status =
 		nt_gltf_get_accessor(job->document, index, "/accessors", &added->accessor, error);
 	if (status)
@@ -67,17 +75,17 @@ static int compare_overrides(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-nt_status nt_append_collect(nt_appending *job, nt_gltf_override *overrides, size_t override_count)
+nt_status nt_append_collect(nt_appending *job, nt_override_list *overrides)
 {
 	const nt_vertex_pool *pool = job->vertices->pool;
 	nt_status status = NT_OK;
-	if (override_count)
-		qsort(overrides, override_count, sizeof *overrides, compare_overrides);
-	for (size_t i = 0; i < override_count; i++)
-		if (!overrides[i].values)
-			job->edits->seen[overrides[i].accessor] = true;
-	for (size_t i = 0; !status && i < override_count; i++)
-		status = collect_attribute(job, overrides[i].accessor);
+	if (overrides->count)
+		qsort(overrides->items, overrides->count, sizeof *overrides->items, compare_overrides);
+	for (size_t i = 0; i < overrides->count; i++)
+		if (!overrides->items[i].values)
+			job->edits->seen[overrides->items[i].accessor] = true;
+	for (size_t i = 0; !status && i < overrides->count; i++)
+		status = collect_attribute(job, overrides->items[i].accessor);
 	/* where nothing grows, the others matter as far as overrides are between them */
 	job->collecting_beside = !nt_vertices_differ(job->vertices) && !job->decoded_too;
 	for (size_t i = 0; !status && i < pool->user_count; i++) {
@@ -85,10 +93,10 @@ nt_status nt_append_collect(nt_appending *job, nt_gltf_override *overrides, size
 		for (nt_gltf_use u = {0}; !status && nt_gltf_next_use(job->document, nt_pool_primitive(pool, i), &u);)
 			status = collect_attribute(job, u.accessor);
 	}
-	for (size_t i = 0; !status && override_count && i < job->target_count; i++) {
+	for (size_t i = 0; !status && overrides->count && i < job->target_count; i++) {
 		const nt_gltf_override key = {.accessor = job->targets[i].accessor.index};
 		job->targets[i].override =
-			bsearch(&key, overrides, override_count, sizeof key, compare_overrides);
+			bsearch(&key, overrides->items, overrides->count, sizeof key, compare_overrides);
 	}
 	return status;
 }

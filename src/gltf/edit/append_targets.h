@@ -18,6 +18,14 @@ typedef struct nt_gltf_override {
 	uint32_t width;
 } nt_gltf_override;
 
+typedef struct nt_override_list {
+	nt_gltf_override *items; /* [count], malloc'ed */
+	size_t count, capacity;
+} nt_override_list;
+
+/* False: out of memory. */
+bool nt_override_add(nt_override_list *list, nt_gltf_override override);
+
 /* An accessor to which vertices are appended, or that may lie between values that are replaced. */
 typedef struct nt_append_target {
 	nt_gltf_accessor accessor;
@@ -25,6 +33,8 @@ typedef struct nt_append_target {
 	uint64_t begin; /* in the buffer */
 	const nt_gltf_override *override;
 	uint32_t clone; /* accessor that takes its place in solved primitives; NT_NONE: none does */
+	uint32_t new_view; /* that has its elements now, from new_offset on; NT_NONE: they stay */
+	uint64_t new_offset;
 } nt_append_target;
 
 /* Bytes of the source that have been edited for this pool. */
@@ -38,7 +48,6 @@ typedef struct nt_appending {
 	nt_gltf *document; /* of the edits, as its JSON */
 	nt_json *json;
 	nt_arena *arena;   /* of the edits */
-	const nt_vertex_pools *pools;
 	const nt_pool_vertices *vertices;
 	uint32_t buffer;  /* of new views */
 	bool decoded_too; /* decompressed accessors get plain views */
@@ -61,7 +70,7 @@ static inline uint32_t nt_append_owner(const nt_appending *a)
 bool nt_append_note_edit(nt_appending *appending, uint32_t buffer, uint64_t begin, uint64_t end);
 
 /* All accessors of all users; when nothing is appended, only those with new values. Sorts the overrides. */
-nt_status nt_append_collect(nt_appending *appending, nt_gltf_override *overrides, size_t override_count);
+nt_status nt_append_collect(nt_appending *appending, nt_override_list *overrides);
 
 /* Appends the elements that are copies of replaced ones to what a sparse accessor replaces. */
 nt_status nt_append_sparse(nt_appending *appending, const nt_append_target *target);

@@ -11,11 +11,12 @@
  */
 #include "gltf/edit/draco.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include "gltf/document.h"
 #include "gltf/edit/append.h"
 #include "gltf/edit/draco_block.h"
-#include "gltf/edit/new_accessors.h"
+#include "gltf/edit/morph_targets.h"
 #include "gltf/edit/vertex_extensions.h"
 #include "gltf/morph_deltas.h"
 #include "gltf/primitive.h"
@@ -130,20 +131,16 @@ static nt_status quantize_tangents(const nt_gltf_recoding *r, float *least, nt_e
 /* Attributes in the block leave the buffers, others grow beside it. */
 static nt_status store(nt_gltf_recoding *r, uint32_t buffer, nt_morph_cost *cost, nt_error *error)
 {
-	nt_gltf_override *overrides = nt_arena_alloc(r->arena, r->mesh->morph_count + 1, sizeof *overrides);
-	size_t override_count = 0;
+	nt_override_list overrides = {0};
 	float least = 0;
-	nt_status status = overrides ? NT_OK : nt_fail_memory(error);
-	if (!status && !r->source)
-		status = nt_gltf_draco_take_out(r, error);
+	nt_status status = r->source ? NT_OK : nt_gltf_draco_take_out(r, error);
 	if (!status && r->mesh->morph_count)
 		status = quantize_tangents(r, &least, error);
 	if (!status)
-		status = nt_gltf_add_morphs(r->edits, buffer, r->pools, r->vertices, 0, least,
-			overrides, &override_count, cost, error);
+		status = nt_gltf_add_morphs(r->edits, buffer, r->vertices, 0, least, &overrides, cost, error);
 	if (!status && r->outside && nt_vertices_differ(r->vertices))
-		status = nt_append_vertices(r->edits, buffer, r->pools, r->vertices, overrides, override_count, false,
-			error);
+		status = nt_append_vertices(r->edits, buffer, r->vertices, &overrides, false, error);
+	free(overrides.items);
 	if (status)
 		return status;
 	r->primitive = nt_pool_primitive(r->vertices->pool, 0); /* members have moved */
@@ -212,11 +209,11 @@ static void report_users(const nt_gltf_recoding *r, nt_finding_list *findings, b
 	}
 }
 
-nt_status nt_gltf_draco_begin(nt_gltf_recoding *r, nt_gltf *document, nt_vertex_pools *pools,
-	nt_pool_vertices *vertices, const nt_write_options *options, nt_arena *arena, nt_error *error)
+nt_status nt_gltf_draco_begin(nt_gltf_recoding *r, nt_gltf *document, nt_pool_vertices *vertices,
+	const nt_write_options *options, nt_arena *arena, nt_error *error)
 {
 	*r = (nt_gltf_recoding){.document = document, .json = document->json, .arena = arena, .options = options,
-		.pools = pools, .vertices = vertices, .mesh = nt_pool_mesh(vertices->pool, 0),
+		.vertices = vertices, .mesh = nt_pool_mesh(vertices->pool, 0),
 		.primitive = nt_pool_primitive(vertices->pool, 0)};
 	r->extension = nt_gltf_draco_of(r->primitive);
 	nt_status status = NT_OK;
@@ -233,10 +230,10 @@ nt_status nt_gltf_draco_begin(nt_gltf_recoding *r, nt_gltf *document, nt_vertex_
 	return status;
 }
 
-nt_status nt_gltf_draco_look_up(nt_gltf_recoding *r, nt_buffer_edits *edits, nt_vertex_pools *pools,
-	nt_pool_vertices *vertices, const nt_write_options *options, nt_arena *arena, nt_error *error)
+nt_status nt_gltf_draco_look_up(nt_gltf_recoding *r, nt_buffer_edits *edits, nt_pool_vertices *vertices,
+	const nt_write_options *options, nt_arena *arena, nt_error *error)
 {
-	nt_status status = nt_gltf_draco_begin(r, edits->document, pools, vertices, options, arena, error);
+	nt_status status = nt_gltf_draco_begin(r, edits->document, vertices, options, arena, error);
 	r->edits = edits;
 	if (status || r->obstacle)
 		return status;

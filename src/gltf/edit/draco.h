@@ -12,13 +12,13 @@ bool nt_gltf_has_draco(const nt_vertex_pool *pool);
 
 /* Looks up what the block of a pool will hold, which is compressed or to be compressed, for
  * nt_gltf_draco_encode_all(). Names and attributes are in the arena. */
-nt_status nt_gltf_draco_look_up(nt_gltf_recoding *recoding, nt_buffer_edits *edits, nt_vertex_pools *pools,
-	nt_pool_vertices *vertices, const nt_write_options *options, nt_arena *arena, nt_error *error);
+nt_status nt_gltf_draco_look_up(nt_gltf_recoding *recoding, nt_buffer_edits *edits, nt_pool_vertices *vertices,
+	const nt_write_options *options, nt_arena *arena, nt_error *error);
 
 /* The beginning of that, which looks at no values: whether an obstacle stands in the way, and what of a plain pool
  * goes into a block. It takes the pool of the vertices and their count in the source. */
-nt_status nt_gltf_draco_begin(nt_gltf_recoding *recoding, nt_gltf *document, nt_vertex_pools *pools,
-	nt_pool_vertices *vertices, const nt_write_options *options, nt_arena *arena, nt_error *error);
+nt_status nt_gltf_draco_begin(nt_gltf_recoding *recoding, nt_gltf *document, nt_pool_vertices *vertices,
+	const nt_write_options *options, nt_arena *arena, nt_error *error);
 
 /*
  * Writes a pool that was looked up, and perhaps encoded: compressed (again) where that is possible, else plain, with a

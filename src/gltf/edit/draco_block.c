@@ -6,7 +6,7 @@
 
 #include <string.h>
 #include "gltf/accessor.h"
-#include "gltf/edit/new_accessors.h"
+#include "gltf/edit/set_attributes.h"
 #include "gltf/view.h"
 
 /* ---- what goes into it ---- */

@@ -17,7 +17,6 @@ typedef struct nt_gltf_recoding {
 	nt_json *json;
 	nt_arena *arena;   /* of names and attributes */
 	const nt_write_options *options;
-	nt_vertex_pools *pools;
 	nt_pool_vertices *vertices;
 	const nt_mesh *mesh;
 

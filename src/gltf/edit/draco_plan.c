@@ -89,7 +89,7 @@ static nt_status look_at_pool(planning *f, size_t number, nt_error *error)
 		return NT_OK;
 	/* what is wrong with the file is found again when it is loaded */
 	nt_error ignored;
-	status = nt_gltf_draco_begin(&recoding, document, f->pools, &vertices, &f->options, &f->of_pool, &ignored);
+	status = nt_gltf_draco_begin(&recoding, document, &vertices, &f->options, &f->of_pool, &ignored);
 	if (status == NT_ERROR_MEMORY)
 		return nt_fail_memory(error);
 	bool takes = !status && !recoding.obstacle;

@@ -18,8 +18,8 @@
 #include "gltf/edit/draco.h"
 #include "gltf/edit/draco_block.h"
 #include "gltf/edit/merge_splits.h"
-#include "gltf/edit/new_accessors.h"
-#include "gltf/edit/old_tangents.h"
+#include "gltf/edit/morph_targets.h"
+#include "gltf/edit/set_attributes.h"
 #include "gltf/edit/vertex_extensions.h"
 #include "gltf/bytes/packed_views.h"
 #include "gltf/bytes/relocate.h"
@@ -116,114 +116,36 @@ static nt_status store_tangents(const editing *e, nt_pool_vertices *vertices, ui
 
 /* ---- one tangent set ---- */
 
-/* Tangents in new bytes: for the accessors that the set's meshes had, or for a new one. */
-static nt_status add_tangents(const editing *e, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
-	const nt_stored_tangents *new, const nt_gltf_old_tangents *old)
+/* The attributes of a set, in the order in which they are written. */
+enum { NORMALS, TANGENTS, BITANGENTS, SET_ATTRIBUTES };
+
+/* Floats without a filter; NULL: the set does not get them. */
+static nt_set_attribute vectors(const char *name, const nt_stored_tangents *beside, const float *values)
 {
-	nt_gltf *document = e->edits->document;
-	const size_t count = vertices->new_count;
-	uint32_t view, accessor;
-	uint64_t offset;
-	nt_status status;
-	if (old->count) {
-		/* a view of several accessors has to say how far apart elements are */
-		status = nt_packed_add(e->edits, buffer, &new->packing, new->stored, count * new->element_bytes,
-			NT_GLTF_ARRAY_BUFFER, old->count > 1 ? new->element_bytes : 0, &view, &offset, e->error);
-		if (!status)
-			nt_gltf_move_tangents(document, old, new->filter.precision, view, offset, count);
-	} else {
-		status = nt_gltf_add_attribute(e->edits, buffer, &new->packing, new->stored, count,
-			new->element_bytes, nt_precision_component_type(new->filter.precision), "VEC4", &accessor,
-			e->error);
-		if (!status)
-			nt_gltf_set_attribute(document->json, vertices->pool, set, "TANGENT", accessor);
-	}
-	return status;
+	return (nt_set_attribute){.name = name, .components = 3,
+		.values = {.packing = beside->packing, .filter = {.precision = NT_PRECISION_FLOAT, .filter = "NONE"},
+			.values = (const unsigned char *)values, .stored = (const unsigned char *)values,
+			.element_bytes = 3 * sizeof *values}};
 }
 
-/* Meshes of the set that had no tangents take those of the others. */
-static void complete_tangents(const editing *e, const nt_vertex_pool *pool, uint32_t set,
-	const nt_gltf_old_tangents *old)
+/* NORMAL where it was made, TANGENT, _BITANGENT where asked for: [SET_ATTRIBUTES], and which accessors take them. */
+static nt_status settle_set(const editing *e, const nt_pool_vertices *vertices, uint32_t set,
+	const nt_stored_tangents *tangents, nt_set_attribute *attributes, nt_override_list *overrides)
 {
-	nt_json *json = e->edits->document->json;
-	for (uint32_t i = pool->sets.first[set]; old->count && i != NT_NONE; i = pool->sets.next[i])
-		if (nt_gltf_tangent_of(e->pools, pool, i) == NT_NONE)
-			nt_json_set_uint64(json, nt_json_put(json, nt_json_find(nt_pool_primitive(pool, i),
-				"attributes"), "TANGENT"), old->accessors[0]);
-}
-
-/* An attribute of floats, VEC3, for the whole set. */
-static nt_status add_vectors(const editing *e, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
-	const nt_gltf_packing *packing, const char *name, const float *vectors)
-{
-	uint32_t accessor;
-	const nt_status status = nt_gltf_add_floats(e->edits, buffer, packing, vectors, vertices->new_count, 3,
-		&accessor, e->error);
-	if (!status)
-		nt_gltf_set_attribute(e->edits->document->json, vertices->pool, set, name, accessor);
-	return status;
-}
-
-/* The accessor that a set's meshes have as _BITANGENT, and nobody else, and that takes new values where it is; NT_NONE:
- * none. */
-static uint32_t find_old_bitangents(const editing *e, const nt_vertex_pool *pool, uint32_t set)
-{
-	nt_gltf *document = e->edits->document;
-	uint32_t found = NT_NONE, count = 0;
-	for (uint32_t i = pool->sets.first[set]; i != NT_NONE; i = pool->sets.next[i], count++) {
-		const uint32_t number = nt_gltf_reference(document, nt_json_find(nt_pool_primitive(pool, i),
-			"attributes"), "_BITANGENT");
-		if (number == NT_NONE || (count > 0 && number != found))
-			return NT_NONE;
-		found = number;
-	}
-	const nt_gltf_accessor *a = nt_gltf_sound_accessor(document, found);
-	if (!a || a->view == NT_NONE || a->sparse_count || a->component_type != NT_GLTF_FLOAT || a->components != 3)
-		return NT_NONE;
-	const uint32_t same = nt_gltf_same(document, found);
-	const nt_gltf_packing packing = nt_packing_of_accessor(e->edits, found);
-	const nt_gltf_users *users = &document->users[same];
-	const bool is_own = !users->foreign && !users->idle && users->attributes == count;
-	return is_own && (!packing.extension || strcmp(packing.view.filter, "NONE") == 0) ? found : NT_NONE;
-}
-
-/* New values for a _BITANGENT that is there. set: its vertices. */
-static nt_status override_bitangents(const editing *e, const nt_pool_vertices *vertices, uint32_t set,
-	nt_gltf_override *overrides, size_t *count, bool *done)
-{
-	float *values;
-	const uint32_t accessor = e->options->bitangents && !is_shaded_only(vertices->pool, set)
-		? find_old_bitangents(e, vertices->pool, set) : NT_NONE;
-	*done = accessor != NT_NONE;
-	if (!*done)
-		return NT_OK;
-	const nt_status status = nt_gltf_bitangents(vertices, set, &e->edits->arena, &values, e->error);
-	if (!status)
-		overrides[(*count)++] = (nt_gltf_override){.accessor = accessor, .values = (unsigned char *)values,
-			.stored = (unsigned char *)values, .width = 3 * sizeof *values};
-	return status;
-}
-
-/* NORMAL where it was made, TANGENT where it is not already in place, _BITANGENT where asked for and not in place. */
-static nt_status add_set(const editing *e, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
-	const nt_stored_tangents *new, const nt_gltf_old_tangents *old, bool has_bitangents)
-{
-	nt_status status = NT_OK;
+	const bool shaded_only = is_shaded_only(vertices->pool, set);
 	float *bitangents = NULL;
-	if (vertices->sets[set].normals)
-		status = add_vectors(e, buffer, vertices, set, &new->packing, "NORMAL", vertices->sets[set].normals);
-	if (is_shaded_only(vertices->pool, set))
-		return status;
-	if (!status && !old->in_place)
-		status = add_tangents(e, buffer, vertices, set, new, old);
-	if (!status && old->in_place)
-		nt_gltf_retype_tangents(e->edits->document, old, new->filter.precision);
-	if (!status)
-		complete_tangents(e, vertices->pool, set, old);
-	if (!status && e->options->bitangents && !has_bitangents)
+	nt_status status = NT_OK;
+	if (!shaded_only && e->options->bitangents)
 		status = nt_gltf_bitangents(vertices, set, &e->edits->arena, &bitangents, e->error);
-	if (!status && bitangents)
-		status = add_vectors(e, buffer, vertices, set, &new->packing, "_BITANGENT", bitangents);
+	attributes[NORMALS] = vectors("NORMAL", tangents, vertices->sets[set].normals);
+	attributes[TANGENTS] = (nt_set_attribute){.name = "TANGENT", .components = 4, .values = *tangents};
+	attributes[BITANGENTS] = vectors("_BITANGENT", tangents, bitangents);
+	if (shaded_only)
+		attributes[TANGENTS].values.stored = NULL;
+	for (size_t i = 0; !status && i < SET_ATTRIBUTES; i++)
+		if (attributes[i].values.stored)
+			status = nt_set_attribute_settle(e->edits, vertices->pool, set, e->of_window, &attributes[i],
+				overrides, e->error);
 	return status;
 }
 
@@ -242,33 +164,10 @@ static nt_status choose_buffer(const editing *e, const nt_vertex_pool *pool, uin
 	return nt_edits_choose_buffer(e->edits, view.buffer, buffer, e->error);
 }
 
-/* Treatment of existing TANGENT accessors: new values for those that stay in place; the others
- * lose their bytes. new, old: [set]; overrides: room for every user. */
-static nt_status settle_old_tangents(const editing *e, const nt_vertex_pool *pool, const nt_stored_tangents *new,
-	nt_gltf_old_tangents *old, nt_gltf_override *overrides, size_t *count)
-{
-	nt_status status = NT_OK;
-	*count = 0;
-	for (uint32_t set = 0; !status && set < pool->sets.count; set++) {
-		old[set] = (nt_gltf_old_tangents){.count = 0};
-		if (is_shaded_only(pool, set))
-			continue;
-		status = nt_gltf_find_tangents(e->edits, e->pools, pool, set, &new[set].filter, e->of_window,
-			&old[set], e->error);
-		if (!status && !old[set].in_place)
-			status = nt_gltf_release_tangents(e->edits, &old[set], e->error);
-		for (size_t i = 0; !status && i < old[set].count; i++)
-			overrides[(*count)++] = (nt_gltf_override){.accessor = old[set].accessors[i],
-				.values = old[set].in_place ? new[set].values : NULL, .stored = new[set].stored,
-				.width = (uint32_t)new[set].element_bytes};
-	}
-	return status;
-}
-
 /* Equal vertices become one, unless they were welded for Draco. */
 static nt_status weld(const editing *e, nt_pool_vertices *vertices, nt_stored_tangents *stored)
 {
-	return e->options->weld && !vertices->welded ? nt_pool_weld(e->edits, e->pools, e->scene, vertices, stored,
+	return e->options->weld && !vertices->welded ? nt_pool_weld(e->edits, e->scene, vertices, stored,
 		e->options->bitangents, e->of_window, e->error) : NT_OK;
 }
 
@@ -287,32 +186,29 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 	if (!new || status)
 		return status ? status : nt_fail_memory(e->error);
 
-	/* Tangents that are there keep their accessor, and their place where that will do. */
-	size_t most = pool->user_count + pool->sets.count;
-	for (uint32_t set = 0; set < pool->sets.count; set++)
-		most += nt_pool_set_mesh(pool, set)->morph_count;
-	nt_gltf_override *overrides = nt_arena_alloc(e->of_window, most, sizeof *overrides);
-	nt_gltf_old_tangents *old = nt_arena_alloc(e->of_window, pool->sets.count, sizeof *old);
-	bool *has_bitangents = nt_arena_alloc(e->of_window, pool->sets.count, sizeof *has_bitangents);
-	if (!overrides || !old || !has_bitangents)
+	/* Attributes that are there keep their accessor, and their place where that will do. */
+	nt_override_list overrides = {0};
+	nt_set_attribute(*attributes)[SET_ATTRIBUTES] = nt_arena_alloc(e->of_window, pool->sets.count,
+		sizeof *attributes);
+	if (!attributes)
 		return nt_fail_memory(e->error);
-	size_t override_count;
-	status = settle_old_tangents(e, pool, new, old, overrides, &override_count);
 	for (uint32_t set = 0; !status && set < pool->sets.count; set++)
-		status = override_bitangents(e, vertices, set, overrides, &override_count, &has_bitangents[set]);
+		status = settle_set(e, vertices, set, &new[set], attributes[set], &overrides);
 	for (uint32_t set = 0; !status && set < pool->sets.count; set++)
-		status = nt_gltf_add_morphs(e->edits, buffer, e->pools, vertices, set,
-			nt_tangent_filter_least(&new[set].filter), overrides, &override_count, &e->scene->morph_cost,
-			e->error);
+		status = nt_gltf_add_morphs(e->edits, buffer, vertices, set, nt_tangent_filter_least(&new[set].filter),
+			&overrides, &e->scene->morph_cost, e->error);
 
 	/* The copied vertices, the indices that use them, and what is new. */
-	if (!status && (decoded_too || override_count || nt_vertices_differ(vertices)))
-		status = nt_append_vertices(e->edits, buffer, e->pools, vertices, overrides, override_count,
-			decoded_too, e->error);
+	if (!status && (decoded_too || overrides.count || nt_vertices_differ(vertices)))
+		status = nt_append_vertices(e->edits, buffer, vertices, &overrides, decoded_too, e->error);
+	free(overrides.items);
 	if (!status)
-		status = nt_gltf_write_indices(e->edits, buffer, e->pools, vertices, e->error);
+		status = nt_gltf_write_indices(e->edits, buffer, vertices, e->error);
 	for (uint32_t set = 0; !status && set < pool->sets.count; set++)
-		status = add_set(e, buffer, vertices, set, &new[set], &old[set], has_bitangents[set]);
+		for (size_t i = 0; !status && i < SET_ATTRIBUTES; i++)
+			if (attributes[set][i].values.stored)
+				status = nt_set_attribute_write(e->edits, buffer, vertices, set, &attributes[set][i],
+					e->error);
 	return status;
 }
 
@@ -333,7 +229,7 @@ static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 	if (!status)
 		status = weld(e, &p->vertices, NULL);
 	p->welded = (nt_weld_result){e->scene->welded.before - before.before, e->scene->welded.after - before.after};
-	return status ? status : nt_gltf_draco_look_up(&p->recoding, e->edits, e->pools, &p->vertices, e->options,
+	return status ? status : nt_gltf_draco_look_up(&p->recoding, e->edits, &p->vertices, e->options,
 		e->of_window, e->error);
 }
 
@@ -431,27 +327,8 @@ static void drop_attribute(const editing *e, nt_json_value *attributes, uint32_t
 	nt_json_remove(e->edits->document->json, attributes, "TANGENT");
 }
 
-/* An accessor that nothing uses any more loses its bytes, but not its number. */
-static nt_status drop_accessors(const editing *e, const uint32_t *gone)
-{
-	nt_gltf *document = e->edits->document;
-	nt_status status = NT_OK;
-	for (uint32_t i = 0; !status && i < document->accessor_count; i++) {
-		const uint32_t same = nt_gltf_same(document, i);
-		if (!gone[same] || document->users[same].foreign || gone[same] != document->users[same].attributes)
-			continue;
-		if (same == i)
-			status = nt_gltf_release_tangents(e->edits,
-				&(nt_gltf_old_tangents){.accessors = &i, .count = 1}, e->error);
-		nt_json_value *accessor = nt_gltf_accessor_json(document, i);
-		nt_json_remove(document->json, accessor, "bufferView");
-		nt_json_remove(document->json, accessor, "byteOffset");
-		nt_json_remove(document->json, accessor, "sparse");
-	}
-	return status;
-}
-
-/* --existing=drop: TANGENT of primitives and of their targets goes. A Draco block keeps its bytes, unnamed. */
+/* --existing=drop: TANGENT of primitives and of their targets goes, and with it what its accessors have if nothing
+ * else uses them. A Draco block keeps its bytes, unnamed. */
 static nt_status drop_unused(const editing *e)
 {
 	nt_gltf *document = e->edits->document;
@@ -468,7 +345,11 @@ static nt_status drop_unused(const editing *e)
 		for (size_t t = 0; t < nt_json_count(targets); t++)
 			drop_attribute(e, nt_json_at(targets, t), gone);
 	}
-	const nt_status status = drop_accessors(e, gone);
+	nt_status status = NT_OK;
+	for (uint32_t i = 0; !status && i < document->accessor_count; i++)
+		if (gone[i] && !document->users[i].foreign && !document->users[i].idle &&
+			gone[i] == document->users[i].attributes)
+			status = nt_gltf_drop_elements(e->edits, i, e->error);
 	free(gone);
 	return status;
 }

@@ -11,7 +11,7 @@
 #include "base/hash_index.h"
 #include "base/largest.h"
 #include "gltf/accessor.h"
-#include "gltf/edit/new_accessors.h"
+#include "gltf/edit/set_attributes.h"
 #include "gltf/bytes/packed_views.h"
 #include "gltf/pointer.h"
 
@@ -144,7 +144,7 @@ static nt_status replace_indices(nt_buffer_edits *edits, uint32_t same, const nt
 	*done = false;
 	nt_json *json = edits->document->json;
 	const uint32_t old_width = nt_gltf_component_bytes(old->component_type);
-	if (old->view == NT_NONE || old->sparse_count || old->stride != old_width)
+	if (old->view == NT_NONE || old->sparse || old->stride != old_width)
 		return NT_OK;
 	nt_gltf_view view;
 	nt_status status = nt_gltf_get_view(edits->document, old->view, "", &view, error);
@@ -185,7 +185,7 @@ typedef struct written {
 	uint32_t index;       /* the accessor of the source; NT_NONE: there was none */
 	uint32_t same;        /* of that */
 	uint32_t leader;      /* the first user with the same ones */
-	uint32_t agreeing;    /* of a leader: users that follow it, itself too, and have its accessor */
+	uint32_t agreeing;    /* of a leader: users that follow it, itself too */
 	uint32_t accessor;    /* of a leader: the one in the output */
 } written;
 
@@ -219,14 +219,13 @@ static uint32_t find_leader(const nt_pool_vertices *vertices, uint32_t user, uin
 }
 
 /* Fills the log of changed users but for its accessors. */
-static bool find_leaders(const nt_vertex_pools *pools, const nt_pool_vertices *vertices, written *log)
+static bool find_leaders(const nt_gltf *document, const nt_pool_vertices *vertices, written *log)
 {
 	nt_hash_index leaders = {0};
 	bool found = true;
 	for (uint32_t i = 0, last = NT_NONE; found && i < vertices->pool->user_count; i++) {
 		if (!vertices->changed[i])
 			continue;
-		const nt_gltf *document = pools->scene->source;
 		const uint32_t index = nt_gltf_reference(document, nt_pool_primitive(vertices->pool, i),
 			"indices");
 		log[i] = (written){.index = index, .accessor = NT_NONE,
@@ -234,7 +233,7 @@ static bool find_leaders(const nt_vertex_pools *pools, const nt_pool_vertices *v
 		log[i].leader = find_leader(vertices, i, last, log, &leaders);
 		found = log[i].leader != NT_NONE;
 		if (found)
-			log[log[i].leader].agreeing += log[i].index == log[log[i].leader].index;
+			log[log[i].leader].agreeing++;
 		last = i;
 	}
 	nt_hash_index_free(&leaders);
@@ -258,9 +257,27 @@ static nt_status find_old(nt_gltf *document, const nt_mesh *mesh, uint32_t index
 	return status;
 }
 
+/* Accessors over the same bytes say of them what this one does now. */
+static void describe_others(nt_gltf *document, uint32_t accessor)
+{
+	static const char *const members[] = {"bufferView", "byteOffset", "componentType", "count", "min", "max"};
+	nt_json *json = document->json;
+	for (uint32_t k = nt_gltf_same(document, accessor); k != NT_NONE; k = document->accessors[k].next) {
+		nt_json_value *other = nt_gltf_accessor_json(document, k);
+		for (size_t i = 0; k != accessor && i < sizeof members / sizeof *members; i++) {
+			const nt_json_value *value =
+				nt_json_find(nt_gltf_accessor_json(document, accessor), members[i]);
+			if (value)
+				nt_json_set_copy(json, nt_json_put(json, other, members[i]), value);
+			else
+				nt_json_remove(json, other, members[i]);
+		}
+	}
+}
+
 /* Writes the indices of a leader: in place where that will do, else behind the end. */
-static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
-	const nt_pool_vertices *vertices, size_t user, uint64_t mode, written *leader, nt_error *error)
+static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices, size_t user,
+	uint64_t mode, written *leader, nt_error *error)
 {
 	const nt_mesh *mesh = nt_pool_mesh(vertices->pool, user);
 	nt_gltf_accessor old;
@@ -275,11 +292,14 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 			vertices->borrowed, vertices->counts ? 0 : tail_of(mesh, mode, old.count), vertices->new_count,
 			least, &new, error);
 	/* in place where everybody who uses these indices will have the same new ones, or has got others */
-	const bool agree = leader->index != NT_NONE && leader->agreeing + edits->index_moved[leader->same] ==
-		edits->document->users[leader->same].indices;
+	const nt_gltf_users *users = leader->index != NT_NONE ? &edits->document->users[leader->same] : NULL;
+	const bool agree = users && !users->idle && !users->attributes &&
+		leader->agreeing + edits->index_moved[leader->same] == users->indices;
 	if (!status && agree && !old.decoded)
 		status = replace_indices(edits, leader->same, &old, &new, &done, error);
 	leader->accessor = leader->index;
+	if (done)
+		describe_others(edits->document, leader->index);
 	if (status || done)
 		return status;
 	/* those that were compressed leave no bytes behind, and the accessor stays */
@@ -290,41 +310,45 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 			old.count * nt_gltf_component_bytes(old.component_type), error);
 	if (!stays && leader->index != NT_NONE)
 		edits->index_moved[leader->same] += leader->agreeing;
-	return status ? status
-		      : add_indices(edits, buffer, &packing, &new, stays ? &old : NULL, &leader->accessor, error);
+	if (!status)
+		status = add_indices(edits, buffer, &packing, &new, stays ? &old : NULL, &leader->accessor, error);
+	if (!status && stays)
+		describe_others(edits->document, leader->index);
+	return status;
 }
 
-static nt_status edit_user(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
-	const nt_pool_vertices *vertices, size_t user, written *log, nt_error *error)
+static nt_status edit_user(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices, size_t user,
+	written *log, nt_error *error)
 {
 	nt_json *json = edits->document->json;
 	uint64_t mode = NT_GLTF_TRIANGLES;
 	nt_json_get_uint64(nt_json_find(nt_pool_primitive(vertices->pool, user), "mode"), &mode);
 	written *leader = &log[log[user].leader];
 	const nt_status status = log[user].leader != user ? NT_OK :
-		write_user(edits, buffer, pools, vertices, user, mode, leader, error);
+		write_user(edits, buffer, vertices, user, mode, leader, error);
 	if (status)
 		return status;
 	nt_json_value *primitive = nt_pool_primitive(vertices->pool, user);
-	if (leader->accessor != log[user].index)
+	/* in place, each user keeps its accessor */
+	if (leader->accessor != leader->index)
 		nt_json_set_uint64(json, nt_json_put(json, primitive, "indices"), leader->accessor);
 	if (mode != NT_GLTF_TRIANGLES && !(vertices->renumbered && vertices->renumbered[user]))
 		nt_json_set_uint64(json, nt_json_put(json, primitive, "mode"), NT_GLTF_TRIANGLES);
 	return NT_OK;
 }
 
-nt_status nt_gltf_write_indices(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
-	const nt_pool_vertices *vertices, nt_error *error)
+nt_status nt_gltf_write_indices(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
+	nt_error *error)
 {
 	const nt_vertex_pool *pool = vertices->pool;
 	if (!memchr(vertices->changed, true, pool->user_count * sizeof *vertices->changed))
 		return NT_OK;
 	written *log = nt_arena_alloc(&edits->arena, pool->user_count, sizeof *log);
-	if (!log || !find_leaders(pools, vertices, log))
+	if (!log || !find_leaders(edits->document, vertices, log))
 		return nt_fail_memory(error);
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < pool->user_count; i++)
 		if (vertices->changed[i])
-			status = edit_user(edits, buffer, pools, vertices, i, log, error);
+			status = edit_user(edits, buffer, vertices, i, log, error);
 	return status;
 }

@@ -31,7 +31,6 @@ typedef struct column {
 
 typedef struct welding {
 	nt_buffer_edits *edits;
-	const nt_vertex_pools *pools;
 	nt_pool_vertices *vertices;
 	nt_arena *scratch;
 	bool bitangents;
@@ -107,7 +106,7 @@ static nt_status bake(welding *w, const nt_gltf_accessor *a, const unsigned char
 			memcpy(baked + i * a->element_bytes, elements + i * a->stride, a->element_bytes);
 		else
 			memset(baked + i * a->element_bytes, 0, a->element_bytes);
-	for (size_t i = 0; !status && i < a->sparse_count; i++)
+	for (size_t i = 0; !status && i < a->sparse->count; i++)
 		memcpy(baked + (size_t)replaced[i] * a->element_bytes, values + i * a->element_bytes, a->element_bytes);
 	c->bytes = baked;
 	c->stride = a->element_bytes;
@@ -132,7 +131,7 @@ static nt_status add_attribute(welding *w, uint32_t index)
 	else if (nt_gltf_users_of(w->edits->document, index)->foreign)
 		w->obstacle = "something else uses its attributes";
 	column c = {.bytes = elements, .stride = a.stride, .width = a.element_bytes, .of_source = true};
-	if (!w->obstacle && a.sparse_count)
+	if (!w->obstacle && a.sparse)
 		status = leave_faulty(w, bake(w, &a, elements, &c));
 	/* without a view all elements are zero */
 	return status || w->obstacle || !c.bytes || add_column(w, c) ? status : nt_fail_memory(w->error);
@@ -397,10 +396,10 @@ static bool draws_points_alone(const nt_vertex_pool *pool)
 	return true;
 }
 
-nt_status nt_pool_weld(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_scene *scene,
-	nt_pool_vertices *vertices, nt_stored_tangents *stored, bool bitangents, nt_arena *scratch, nt_error *error)
+nt_status nt_pool_weld(nt_buffer_edits *edits, nt_scene *scene, nt_pool_vertices *vertices,
+	nt_stored_tangents *stored, bool bitangents, nt_arena *scratch, nt_error *error)
 {
-	welding w = {.edits = edits, .pools = pools, .vertices = vertices, .scratch = scratch,
+	welding w = {.edits = edits, .vertices = vertices, .scratch = scratch,
 		.bitangents = bitangents, .error = error};
 	const size_t before = vertices->new_count;
 	vertices->welded = true;

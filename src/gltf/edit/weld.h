@@ -28,8 +28,8 @@ typedef struct nt_stored_tangents {
  *
  * Returns NT_OK or NT_ERROR_MEMORY; other errors are those of the document.
  */
-nt_status nt_pool_weld(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_scene *scene,
-	nt_pool_vertices *vertices, nt_stored_tangents *stored, bool bitangents, nt_arena *scratch, nt_error *error);
+nt_status nt_pool_weld(nt_buffer_edits *edits, nt_scene *scene, nt_pool_vertices *vertices,
+	nt_stored_tangents *stored, bool bitangents, nt_arena *scratch, nt_error *error);
 
 /* The vertices of a pool that stays as it is otherwise: no user of it counts as solved. *can: they can be welded. */
 nt_status nt_pool_vertices_plain(const nt_vertex_pools *pools, nt_vertex_pool *pool, nt_arena *tables,

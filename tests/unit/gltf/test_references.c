@@ -163,7 +163,7 @@ TEST(users_of_accessors_over_the_same_bytes_are_counted_together)
 		"\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0},"
 		"\"EXT_mesh_primitive_edge_visibility\":{\"silhouetteNormals\":4}}},{\"indices\":2}]}]}";
 	static const nt_gltf_users expected[] = {{.attributes = 2, .idle = true}, {.attributes = 2, .idle = true},
-		{.indices = 2, .foreign = true, .idle = true}, {.foreign = true, .idle = true}, {.idle = true}};
+		{.indices = 2, .foreign = true}, {.foreign = true}, {.idle = true}};
 	nt_scene scene;
 	nt_error error;
 	nt_gltf *document = create(&scene, text, sizeof text - 1);

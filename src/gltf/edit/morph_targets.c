@@ -1,87 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Accessors that a document did not have: for attributes that nmtan computes, over new views, and the members of
- * primitives and morph targets that name them.
+ * TANGENT of morph targets: what leads from the base's tangents to those of the mesh as a target moves it. A target
+ * takes over the accessor that it has if no use of that is left; new ones are sparse if most of them are zeros.
  */
-#include "gltf/edit/new_accessors.h"
+#include "gltf/bytes/packed_views.h"
+#include "gltf/edit/morph_targets.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/vec.h"
 #include "gltf/accessor.h"
-#include "gltf/edit/old_tangents.h"
+#include "gltf/edit/set_attributes.h"
 #include "gltf/morph_deltas.h"
 #include "scene/morphs.h"
-
-uint32_t nt_gltf_new_accessor(nt_json *json, uint32_t view, uint32_t component_type, const char *type,
-	size_t count, bool normalized)
-{
-	nt_json_value *accessors = nt_json_put(json, nt_json_root(json), "accessors");
-	const uint32_t number = (uint32_t)nt_json_count(accessors);
-	nt_json_value *object = nt_json_append(json, accessors);
-	if (view != NT_NONE)
-		nt_json_set_uint64(json, nt_json_put(json, object, "bufferView"), view);
-	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), component_type);
-	if (normalized)
-		nt_json_set_bool(json, nt_json_put(json, object, "normalized"), true);
-	nt_json_set_uint64(json, nt_json_put(json, object, "count"), count);
-	nt_json_set_string(json, nt_json_put(json, object, "type"), type, strlen(type));
-	return number;
-}
-
-nt_status nt_gltf_add_attribute(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_packing *packing,
-	const void *elements, size_t count, size_t element_bytes, uint32_t component_type, const char *type,
-	uint32_t *accessor, nt_error *error)
-{
-	nt_json *json = edits->document->json;
-	nt_gltf_packing own = *packing;
-	uint32_t view;
-	uint64_t offset;
-	own.view.stride = element_bytes;
-	const nt_status status = nt_packed_add(edits, buffer, &own, elements, count * element_bytes,
-		NT_GLTF_ARRAY_BUFFER, 0, &view, &offset, error);
-	if (status)
-		return status;
-	*accessor = nt_gltf_new_accessor(json, view, component_type, type, count, component_type != NT_GLTF_FLOAT);
-	if (offset)
-		nt_gltf_place_accessor(json, nt_gltf_accessor_json(edits->document, *accessor), view, offset);
-	return NT_OK;
-}
-
-nt_status nt_gltf_add_floats(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_packing *packing,
-	const float *elements, size_t count, uint32_t width, uint32_t *accessor, nt_error *error)
-{
-	nt_gltf_packing own = *packing;
-	own.view.filter = "NONE";
-	return nt_gltf_add_attribute(edits, buffer, &own, elements, count, width * sizeof(float), NT_GLTF_FLOAT,
-		width == 3 ? "VEC3" : "VEC4", accessor, error);
-}
-
-void nt_gltf_set_attribute(nt_json *json, const nt_vertex_pool *pool, uint32_t set, const char *name,
-	uint32_t accessor)
-{
-	for (uint32_t i = pool->sets.first[set]; i != NT_NONE; i = pool->sets.next[i])
-		nt_json_set_uint64(json, nt_json_put(json, nt_json_find(nt_pool_primitive(pool, i), "attributes"),
-			name), accessor);
-}
-
-nt_status nt_gltf_bitangents(const nt_pool_vertices *vertices, uint32_t set, nt_arena *arena, float **result,
-	nt_error *error)
-{
-	const nt_pool_set *of = &vertices->sets[set];
-	const nt_mesh *mesh = nt_pool_set_mesh(vertices->pool, set);
-	const float *loaded = of->source_normals ? of->source_normals : mesh->normals;
-	float *out = nt_arena_alloc(arena, vertices->new_count, 3 * sizeof *out);
-	*result = out;
-	if (!out)
-		return nt_fail_memory(error);
-	for (size_t v = 0; v < vertices->new_count; v++)
-		nt_bitangent(of->normals ? of->normals + 3 * v : loaded + 3 * nt_vertex_source(vertices, v),
-			of->tangents + 4 * v, out + 3 * v);
-	return NT_OK;
-}
-
-/* ---- morph targets ---- */
 
 /* TANGENT of one target. */
 typedef struct target_tangents {
@@ -96,7 +26,6 @@ typedef struct target_tangents {
 
 typedef struct target_job {
 	nt_buffer_edits *edits;
-	const nt_vertex_pools *pools;
 	const nt_pool_vertices *vertices;
 	uint32_t set, buffer;
 	target_tangents *list; /* [count] */
@@ -244,22 +173,24 @@ static void count_replaced(const target_job *job)
 }
 
 /* Targets take over the accessor that they have where no use of it is left; nobody appends to it. */
-static nt_status take_over(const target_job *job, nt_gltf_override *overrides, size_t *override_count)
+static nt_status take_over(const target_job *job, nt_override_list *overrides)
 {
 	const uint32_t first = job->vertices->pool->sets.first[job->set];
+	const nt_gltf *document = job->edits->document;
 	nt_status status = NT_OK;
 	for (size_t m = 0; !status && m < job->count; m++) {
 		target_tangents *t = &job->list[m];
 		const uint32_t index = t->found ? NT_NONE : find_in_target(job, first, t->target, "TANGENT");
-		const uint32_t same = index == NT_NONE ? 0 : nt_gltf_same(job->edits->document, index);
-		if (index == NT_NONE || job->edits->document->users[same].foreign ||
-			job->edits->replaced[same] != job->edits->document->users[same].attributes)
+		const uint32_t same = index == NT_NONE ? 0 : nt_gltf_same(document, index);
+		if (index == NT_NONE || document->users[same].foreign || document->users[same].idle ||
+			job->edits->replaced[same] != document->users[same].attributes)
 			continue;
 		job->edits->replaced[same] = 0; /* no second target takes it */
 		t->accessor = index;
-		const nt_gltf_old_tangents old = {.accessors = &t->accessor, .count = 1};
-		status = nt_gltf_release_tangents(job->edits, &old, job->error);
-		overrides[(*override_count)++] = (nt_gltf_override){.accessor = index};
+		status = nt_gltf_drop_elements(job->edits, index, job->error);
+		for (uint32_t k = same; !status && k != NT_NONE; k = document->accessors[k].next)
+			if (!nt_override_add(overrides, (nt_gltf_override){.accessor = k}))
+				status = nt_fail_memory(job->error);
 	}
 	return status;
 }
@@ -374,11 +305,10 @@ static void add_cost(const target_job *job, nt_morph_cost *cost)
 		}
 }
 
-nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
-	const nt_pool_vertices *vertices, uint32_t set, float least, nt_gltf_override *overrides,
-	size_t *override_count, nt_morph_cost *cost, nt_error *error)
+nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
+	float least, nt_override_list *overrides, nt_morph_cost *cost, nt_error *error)
 {
-	target_job job = {.edits = edits, .pools = pools, .vertices = vertices, .set = set, .buffer = buffer,
+	target_job job = {.edits = edits, .vertices = vertices, .set = set, .buffer = buffer,
 		.count = nt_pool_set_mesh(vertices->pool, set)->morph_count, .error = error};
 	if (!job.count)
 		return NT_OK;
@@ -391,7 +321,7 @@ nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_v
 		nt_fail_memory(error);
 	if (!status) {
 		count_replaced(&job);
-		status = take_over(&job, overrides, override_count);
+		status = take_over(&job, overrides);
 	}
 	if (!status)
 		status = write_targets(&job);
