@@ -524,4 +524,39 @@ cp from/wood.png to/
 run from/a.ply to/a.ply
 says_not TextureFile
 
+# Lines of an OBJ. Asked is what the run says, with which exit code it fails and says so, or a JavaScript expression over the
+# document g, its first primitive p, and what that has: indices I, positions P, texture coordinates U, normals N, colours C.
+expression='((p) => ((I, P, U, N, C) => %s)(...[p.indices, ...["POSITION", "TEXCOORD_0", "NORMAL", "COLOR_0"].map((n) => p.attributes[n])]
+	.map((a, i) => a === undefined ? [] : i ? rows(a) : rows(a).flat())))(g.meshes[0].primitives[0])'
+while IFS=$'\t' read -r name lines question answer; do
+	case $name in "#"*) continue ;; .) ;; *) scene "$name" ;; esac
+	if [ "$lines" != . ]; then
+		lines=${lines//@/v 0 0 0|v 1 0 0|v 0 1 0}
+		printf '%b' "${lines//|/\\n}" >in.obj
+		run -v in.obj out.glb
+	fi
+	case $question in
+	says) says "$answer" ;;
+	[0-9])
+		exits "$question"
+		says "$answer"
+		;;
+	*)
+		exits 0
+		case $answer in *=\>*) answer=$(gltf out.glb "$answer") ;; esac
+		is "$(gltf out.glb "$(printf "$expression" "$question")")" "$answer"
+		;;
+	esac
+done <"$ROOT/tests/cli/obj.tsv"
+
+scene "a line longer than what is read at once, and the lines behind it"
+{ printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0'; awk 'BEGIN { printf "l"; for (i = 0; i < 600000; i++) printf " 1 2"; print "" }'; echo 'f 1 2 3'; echo 'f 1 2 4'; } >long.obj
+run long.obj out.glb
+exits 3
+says 'long.obj:6: face refers to "v" number 4'
+sed -i '$d' long.obj
+run long.obj out.glb
+exits 0
+is "$(gltf out.glb 'rows(g.meshes[0].primitives[0].attributes.POSITION)')" "[[0,0,0],[1,0,0],[0,1,0]]"
+
 done_testing

@@ -115,6 +115,13 @@ run both.obj both.glb
 exits 0
 is "$(gltf both.glb '[g.images.length, g.materials.length]')" "[1,2]"
 
+scene "damaged values without which a material can do are not used, with a finding"
+quad "Ka a b c" "Ns big" "Ni"
+run -v quad.obj quad.glb
+exits 0
+for word in Ka Ns Ni; do says "info: 1 statement was not used: MTL: $word [STATEMENT_IGNORED]"; done
+is "$(gltf quad.glb 'g.materials[0].pbrMetallicRoughness')" '{"metallicFactor":0}'
+
 scene "maps of two sizes: rows of the smaller one lie between its own"
 images write r.png 1 4 '0'
 images write m.png 1 2 '200 * y'
@@ -237,6 +244,9 @@ run t.obj t.gltf
 exits 0
 says "m.mtl:2: warning: 1 property of a material is not taken at its word: MTL: body.1001.png is the image of one tile, and faces in the tiles 1001 to 1024 show it; for an image each, write <UDIM> in place of 1001 [MATERIAL_DOUBTFUL]"
 is "$(gltf t.gltf "$drawn")" '[["m",7,"body.1001.png"],["plain",1,null]]'
+{ sed '/^f/d' t.obj; echo 'usemtl m'; grep '^f [159]' t.obj | tac; } >back.obj
+run back.obj t.gltf
+says "faces in the tiles 1001 to 1024 show it"
 printf 'mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 0\nvt 2 0\nvt 1 1\nf 1/1 2/2 3/3\n' >one.obj
 run one.obj t.gltf
 says_not warning
