@@ -168,8 +168,8 @@ endif
 # A quarter of the speed of the fast path comes from straight-line code in vectors. Its kernels make no double of a
 # float that was a double, and their tests compare all bytes with those of the scalar definition.
 $(foreach set,baseline avx2 avx512,$(call objects_of,tangent/fast/kernel_$(set).c)): FILE_FLAGS += -ftree-slp-vectorize
-$(call objects_of,topology/adjacency.c topology/edge_few.c topology/edge_sort.c topology/representatives.c \
-	topology/weld.c topology/weld_bloom.c topology/weld_table.c topology/weld_threads.c): FILE_FLAGS := $(lanes)
+$(call objects_of,topology/adjacency.c topology/edge_few.c topology/edge_sort.c topology/edge_tail.c \
+	topology/representatives.c topology/weld.c topology/weld_bloom.c topology/weld_table.c topology/weld_threads.c): FILE_FLAGS := $(lanes)
 $(call objects_of,base/largest.c tangent/normals.c): FILE_FLAGS := $(lanes)
 
 # An exception passes operator new, but what it and number.cpp do throws nothing, so they need no C++ library.

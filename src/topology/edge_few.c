@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The question of edge_sort.c for few triangles, nearly all of which are answered with no: scenes have thousands of
+ * The question of edge_tail.c for few triangles, nearly all of which are answered with no: scenes have thousands of
  * small meshes, so nothing is allocated, and of all corners only the next of the same vertex is written down. A call
  * for 8 triangles takes 580 ns instead of 910, one for 32 takes 1 030 instead of 1 450 (Zen 5, AVX-512).
  *
  * The representative of a vertex is between its first and its last corner. The order of the last run can only matter
  * if two of three triangles or more, whose middle representative may be the largest lower end, share the largest.
  */
-#include "topology/edge_sort.h"
+#include "topology/edge_parts.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,8 +19,7 @@ enum {
 	MOST_IN_CELL = 63, /* corners, which have a bit each */
 	WINDOW = 16,       /* triangles at the end that hold the last run */
 	LAST = 4,          /* a vertex of the last triangle that is older than these is likely to be found there */
-	MOST_ROUNDS = 8,
-	LEAST_EDGES = 3 /* of a run whose order matters */
+	MOST_ROUNDS = 8
 };
 
 /* Behind the last corner of a vertex. */
@@ -40,19 +39,9 @@ typedef struct few {
 	uint16_t suspects[NT_EDGE_FEW]; /* triangles whose middle representative may be the largest lower end */
 } few;
 
-static uint32_t least_of(uint32_t a, uint32_t b)
-{
-	return a < b ? a : b;
-}
-
-static uint32_t most_of(uint32_t a, uint32_t b)
-{
-	return a < b ? b : a;
-}
-
 static uint32_t middle_of(uint32_t a, uint32_t b, uint32_t c)
 {
-	return most_of(least_of(a, b), least_of(most_of(a, b), c));
+	return nt_most_of(nt_least_of(a, b), nt_least_of(nt_most_of(a, b), c));
 }
 
 /* Links the corners of each vertex. Whether all rows have some. */
@@ -117,16 +106,16 @@ static bool find_suspects(few *f)
 			seen[t / 64] |= (uint64_t)counts << t % 64;
 			here += counts;
 		}
-		most = most_of(most, here);
+		most = nt_most_of(most, here);
 	}
 	f->suspect_count = 0;
-	for (uint32_t word = 0; most >= LEAST_EDGES && word < NT_EDGE_FEW / 64; word++)
+	for (uint32_t word = 0; most >= NT_LEAST_EDGES && word < NT_EDGE_FEW / 64; word++)
 		for (uint64_t left = seen[word]; left; left &= left - 1) {
 			const uint32_t t = 64 * word + (uint32_t)nt_trailing_zeros(left);
 			f->suspects[f->suspect_count] = (uint16_t)t;
 			f->suspect_count += !nt_welded_is_degenerate(f->mesh, f->ids + 3 * t);
 		}
-	return f->suspect_count >= LEAST_EDGES;
+	return f->suspect_count >= NT_LEAST_EDGES;
 }
 
 /* A cell: representatives.h says how it is welded. Its corners have places, and each vertex a bit for each of its
@@ -312,9 +301,9 @@ static bool may_matter(few *f, uint32_t *unknown)
 		f->beside[f->ids[3 * f->suspects[i / 3] + i % 3]] = 0;
 	for (uint32_t i = 0; i < f->suspect_count; i++) {
 		const uint32_t *v = f->ids + 3 * f->suspects[i], a = low[v[0]], b = low[v[1]], c = low[v[2]];
-		f->beside[v[0]] = (uint16_t)most_of(f->beside[v[0]], most_of(b, c));
-		f->beside[v[1]] = (uint16_t)most_of(f->beside[v[1]], most_of(c, a));
-		f->beside[v[2]] = (uint16_t)most_of(f->beside[v[2]], most_of(a, b));
+		f->beside[v[0]] = (uint16_t)nt_most_of(f->beside[v[0]], nt_most_of(b, c));
+		f->beside[v[1]] = (uint16_t)nt_most_of(f->beside[v[1]], nt_most_of(c, a));
+		f->beside[v[2]] = (uint16_t)nt_most_of(f->beside[v[2]], nt_most_of(a, b));
 	}
 	/* which vertices of a triangle may be the middle one and the largest: no edge of the latter has a larger lower
 	 * end than the middle one */
@@ -332,7 +321,7 @@ static bool may_matter(few *f, uint32_t *unknown)
 			const int m = way / 2, l = (m + 1 + way % 2) % 3;
 			pairs[count].middle = v[m];
 			pairs[count].largest = v[l];
-			count += (highs[m] >= least) & (highs[l] > most_of(lows[m], least)) &
+			count += (highs[m] >= least) & (highs[l] > nt_most_of(lows[m], least)) &
 				(lows[3 - m - l] < highs[m]) & (beside[l] <= highs[m]);
 		}
 		if (count > MOST_PAIRS)
@@ -346,8 +335,8 @@ static bool may_matter(few *f, uint32_t *unknown)
 			uint32_t edges = 0;
 			for (uint32_t e = 0; e < count; e++)
 				edges += pairs[e].middle == pairs[i].middle;
-			may |= edges >= LEAST_EDGES;
-			for (int end = 0; end < 2 && edges >= LEAST_EDGES; end++) {
+			may |= edges >= NT_LEAST_EDGES;
+			for (int end = 0; end < 2 && edges >= NT_LEAST_EDGES; end++) {
 				const uint32_t v = end ? pairs[i].largest : pairs[i].middle;
 				if (low[v] != high[v] && low[v] < lowest) {
 					lowest = low[v];
@@ -361,7 +350,7 @@ static bool may_matter(few *f, uint32_t *unknown)
 bool nt_few_edges_are_sorted(const nt_welded_mesh *mesh, bool *limit)
 {
 	few f;
-	if (mesh->triangle_count < LEAST_EDGES) {
+	if (mesh->triangle_count < NT_LEAST_EDGES) {
 		*limit = !nt_grid_of_used(mesh, &f.grid);
 		return true;
 	}

@@ -46,7 +46,7 @@ static unsigned longest_axis(const nt_box *b)
 	return y > x && y > z ? 1 : z > x ? 2 : 0;
 }
 
-/* Makes the grid of a box, but for its extremes. */
+/* Makes the grid of a box. */
 static bool set_grid(const nt_box *b, nt_grid *grid)
 {
 	for (int i = 0; i < 3; i++)
@@ -55,42 +55,37 @@ static bool set_grid(const nt_box *b, nt_grid *grid)
 	grid->axis = longest_axis(b);
 	grid->low = b->low[grid->axis];
 	grid->high = b->high[grid->axis];
+	grid->inverse = 1 / (double)(grid->high - grid->low);
 	return true;
 }
 
-/* The first vertex with that coordinate, which is a side of the box. */
-static uint32_t find_extreme(const nt_welded_mesh *mesh, const nt_box *boxes, int axis, bool high, float coordinate)
+bool nt_grid_make(const nt_welded_mesh *mesh, uint32_t extremes[6], nt_grid *grid)
 {
-	size_t block = 0;
-	while ((high ? boxes[block].high : boxes[block].low)[axis] != coordinate)
-		block++;
-	size_t v = block * NT_BOX_ROWS;
-	while (mesh->positions[mesh->step * v + (size_t)axis] != coordinate)
-		v++;
-	return (uint32_t)v;
-}
-
-bool nt_grid_make(const nt_welded_mesh *mesh, nt_box *boxes, nt_grid *grid)
-{
+	enum { BLOCK = 64 };
 	nt_box all = nothing;
 	bool ordered = true;
-	if (!boxes)
+	size_t blocks[6] = {0}; /* where the sides are */
+	if (!extremes)
 		return add_rows(mesh->positions, mesh->step, NULL, mesh->vertex_count, &all) && set_grid(&all, grid);
-	for (size_t v = 0; v < mesh->vertex_count; v += NT_BOX_ROWS) {
-		nt_box *box = &boxes[v / NT_BOX_ROWS];
+	for (size_t v = 0; v < mesh->vertex_count; v += BLOCK) {
 		const size_t left = mesh->vertex_count - v;
-		*box = nothing;
-		ordered &= add_rows(mesh->positions + mesh->step * v, mesh->step, NULL,
-			left < NT_BOX_ROWS ? left : NT_BOX_ROWS, box);
-		for (int i = 0; i < 4; i++) {
-			all.low[i] = box->low[i] < all.low[i] ? box->low[i] : all.low[i];
-			all.high[i] = box->high[i] > all.high[i] ? box->high[i] : all.high[i];
+		nt_box box = all;
+		ordered &= add_rows(
+			mesh->positions + mesh->step * v, mesh->step, NULL, left < BLOCK ? left : BLOCK, &box);
+		for (int i = 0; i < 3; i++) {
+			blocks[2 * i] = box.low[i] < all.low[i] ? v : blocks[2 * i];
+			blocks[2 * i + 1] = box.high[i] > all.high[i] ? v : blocks[2 * i + 1];
 		}
+		all = box;
 	}
 	if (!ordered || !set_grid(&all, grid))
 		return false;
-	for (int i = 0; i < 6; i++)
-		grid->extremes[i] = find_extreme(mesh, boxes, i / 2, i % 2, i % 2 ? all.high[i / 2] : all.low[i / 2]);
+	for (int i = 0; i < 6; i++) {
+		const float side = (i % 2 ? all.high : all.low)[i / 2];
+		while (nt_welded_position(mesh, (uint32_t)blocks[i])[i / 2] != side)
+			blocks[i]++;
+		extremes[i] = (uint32_t)blocks[i];
+	}
 	return true;
 }
 
@@ -106,6 +101,20 @@ bool nt_grid_of_used(const nt_welded_mesh *mesh, nt_grid *grid)
 		ordered &= add_rows(mesh->positions, mesh->step, ids, 3 * count, &all);
 	}
 	return ordered && set_grid(&all, grid);
+}
+
+nt_cell nt_cell_make(nt_scratch *scratch, size_t vertices, size_t corners)
+{
+	nt_cell cell = {.vertex_count = vertices, .corner_count = corners};
+	uint32_t *room = nt_scratch_alloc(scratch, 1, (2 * vertices + corners) * sizeof *room + 2 * vertices);
+	if (!room)
+		return cell;
+	cell.order = room;
+	cell.found = cell.order + vertices;
+	cell.swaps = cell.found + vertices;
+	cell.below = (uint8_t *)(cell.swaps + corners);
+	cell.wanted = cell.below + vertices;
+	return cell;
 }
 
 /* A part of a cell: some of its vertices, in any order, and all of their corners. */

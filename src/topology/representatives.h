@@ -52,31 +52,31 @@ typedef struct nt_box {
 	float low[4], high[4];
 } nt_box;
 
-/* Rows of a block, whose box is kept: blocks that are far from a cell need no look. */
-enum { NT_BOX_ROWS = 32 };
-
 /* Cells lie along one axis of the box. */
 typedef struct nt_grid {
 	unsigned axis;
 	float low, high;
-	uint32_t extremes[6]; /* vertices that have the least and the largest coordinate on each axis */
+	double inverse; /* of the length */
 } nt_grid;
 
 /*
  * The cells of all rows. False if one of their coordinates is not finite or not below FLT_MAX / 2: the published weld
  * leaves some of these unwelded.
  *
- *   boxes   [vertex_count / NT_BOX_ROWS + 1] receives those of blocks of rows; NULL: without extremes
+ *   extremes   receive the vertices that have the least and the largest coordinate on each axis; NULL: not needed
  */
-bool nt_grid_make(const nt_welded_mesh *mesh, nt_box *boxes, nt_grid *grid);
+bool nt_grid_make(const nt_welded_mesh *mesh, uint32_t extremes[6], nt_grid *grid);
 
-/* The same for the rows that have corners alone; without extremes. */
+/* The same for the rows that have corners alone. */
 bool nt_grid_of_used(const nt_welded_mesh *mesh, nt_grid *grid);
 
-/* The cell of a coordinate on the grid's axis, below NT_CELLS. */
+/* The cell of a coordinate on the grid's axis, below NT_CELLS. The published weld divides floats: a product of doubles
+ * rounds to the same float, since it is wrong by 2^-52 of itself, and no quotient of two floats is nearer than 2^-49 to
+ * what is half-way between two floats. */
 static inline unsigned nt_grid_cell(const nt_grid *grid, float coordinate)
 {
-	const float cell = (float)NT_CELLS * ((coordinate - grid->low) / (grid->high - grid->low));
+	const float quotient = (float)((double)(coordinate - grid->low) * grid->inverse);
+	const float cell = (float)NT_CELLS * quotient;
 	/* NaN, of a box without extent, is cell 0 */
 	const float from_zero = cell > 0.0f ? cell : 0.0f, last = (float)(NT_CELLS - 1);
 	return (unsigned)(int)(from_zero < last ? from_zero : last);
@@ -103,6 +103,9 @@ typedef struct nt_cell {
 	uint32_t *found;                /* [vertex_count] receives what stands for those that are wanted, and others */
 	size_t vertex_count, corner_count;
 } nt_cell;
+
+/* Room for a cell of so many vertices and corners, which are elsewhere; its `order` is NULL when out of memory. */
+nt_cell nt_cell_make(nt_scratch *scratch, size_t vertices, size_t corners);
 
 /* Finds the corners that stand for some vertices of a cell. False: it would have to be halved more than NT_HALVINGS
  * times. */

@@ -309,6 +309,32 @@ static inline NT_ALWAYS_INLINE void prefetch_rows(const nt_fast *fast, size_t fi
 		NT_PREFETCH(&fast->rows[ids[3 * i]]);
 }
 
+/* Which triangles have a corner near the last ones (topology/edge_sort.h). */
+static inline uint32_t near_triangles(const nt_edge_tail *tail, const lanes_in *in, size_t count)
+{
+	uint32_t near = 0;
+#if WIDTH == 16
+	const __m512 low = _mm512_set1_ps(tail->grid.low), scale = _mm512_set1_ps(tail->scale);
+	const __m512i half = _mm512_loadu_si512(tail->bins), other = _mm512_loadu_si512(tail->bins + 16);
+	const __m512i in_word = _mm512_set1_epi32(31), one = _mm512_set1_epi32(1);
+	for (size_t i = 0; i < count; i += WIDTH) {
+		__m512i bits = _mm512_setzero_si512();
+		for (int k = 0; k < 3; k++) {
+			const __m512 x = _mm512_load_ps(in->row[k][tail->grid.axis] + i);
+			const __m512i bin = _mm512_cvttps_epi32(_mm512_mul_ps(_mm512_sub_ps(x, low), scale));
+			const __m512i word = _mm512_permutex2var_epi32(half, _mm512_srli_epi32(bin, 5), other);
+			bits = _mm512_or_si512(bits, _mm512_srlv_epi32(word, _mm512_and_si512(bin, in_word)));
+		}
+		near |= (uint32_t)_mm512_test_epi32_mask(bits, one) << i;
+	}
+#else
+	for (size_t i = 0; i < count; i++)
+		for (int k = 0; k < 3; k++)
+			near |= (uint32_t)nt_edge_is_near(tail, in->row[k][tail->grid.axis][i]) << i;
+#endif
+	return near & UINT32_MAX >> (NT_EDGE_NOTE_MOST - count);
+}
+
 static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
 	void *context)
 {
@@ -316,6 +342,8 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 	lanes_out out;
 	const float offset = nt_stored_v_offset(fast->solve->mesh);
 	const bool scattered = fast->scattered;
+	nt_edge_note *note = fast->tail.notes ? nt_edge_notes(&fast->tail, range) : NULL;
+	static_assert((int)NT_EDGE_NOTE_MOST == NT_TRIANGLES && (int)NT_EDGE_NOTE_LEAST == NT_TRIANGLES - 1, "a batch");
 	for (size_t first = begin, count; first < end; first += count) {
 		count = end - first < NT_TRIANGLES ? end - first : NT_TRIANGLES;
 		if (first + count < end && (fast->flags[first + count] & NT_TRIANGLE_SECOND))
@@ -325,6 +353,10 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 		uint32_t copy[3 * NT_TRIANGLES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
 		gather_lanes(fast->rows, ids, count, whole_lanes(count), in.row[0][0], NT_TRIANGLES);
+		if (note) {
+			*note = (nt_edge_note){(uint32_t)first, near_triangles(&fast->tail, &in, count)};
+			note += note->triangles != 0;
+		}
 		if (scattered)
 			prefetch_rows(fast, first, end, 1);
 		solve_lanes(&in, &out, count);
@@ -348,6 +380,8 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 				add_special(fast, range, first + i, ids + 3 * i, (int)i, &out);
 		}
 	}
+	if (note)
+		note->triangles = 0;
 }
 
 #endif

@@ -131,6 +131,16 @@ static uint32_t vertex_of(const nt_bins *b, uint32_t state)
 	return state >> NT_BINNED_SHIFT & (((uint32_t)1 << b->vertex_bits) - 1);
 }
 
+bool nt_bins_have_corners(const nt_bins *b, uint32_t vertex)
+{
+	const size_t bin = vertex >> b->vertex_bits;
+	for (unsigned range = 0; range < b->ranges; range++)
+		for (size_t i = b->begins[bin * b->ranges + range]; i < b->cursors[range * b->count + bin]; i++)
+			if (((vertex_of(b, b->sums[i].state) ^ vertex) & (((uint32_t)1 << b->vertex_bits) - 1)) == 0)
+				return true;
+	return false;
+}
+
 static void add_corners(const nt_bins *b, size_t begin, size_t end, nt_record *const to[2], bool both,
 	nt_adjacency *a)
 {

@@ -92,6 +92,9 @@ nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges,
  * can take notes. */
 void nt_bins_orientations(const nt_bins *bins, bool orientations[2]);
 
+/* Whether a vertex has corners, once all are in their bins. */
+bool nt_bins_have_corners(const nt_bins *bins, uint32_t vertex);
+
 /* Memory for one bin, whichever it is, with sums of the orientations that are needed. Returns NMTAN_OK or
  * NMTAN_ERROR_MEMORY. */
 nmtan_status nt_bin_make(const nt_bins *bins, const bool needed[2], nt_scratch *scratch, nt_bin *bin);

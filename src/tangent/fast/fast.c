@@ -73,22 +73,51 @@ static unsigned count_ranges(const nt_fast *fast, const nt_fast_plan *plan)
 	return ranges == 1 && two ? 2 : ranges;
 }
 
-/* Asks what the published sort of edges leaves, in memory that is not in use yet. */
+/* The mesh as the published sort of edges sees it. */
+static nt_welded_mesh welded_mesh(const nt_fast *fast, nt_scratch *scratch)
+{
+	return (nt_welded_mesh){.triangles = &fast->triangles, .triangle_count = fast->triangle_count,
+		.vertex_count = fast->vertex_count, .positions = fast->rows->position,
+		.step = sizeof *fast->rows / sizeof *fast->rows->position, .scratch = scratch};
+}
+
+/* Says what step 4 notes of the last run. */
+static nmtan_status make_tail(nt_fast *fast, nt_borrowed *memory)
+{
+	const nt_welded_mesh mesh = welded_mesh(fast, fast->solve->scratch);
+	return fast->solve->sorted ? NMTAN_OK : nt_edge_tail_make(&mesh, &fast->ranges, memory, &fast->tail);
+}
+
+/* Whether the vertices that make the box are known to have corners. */
+static bool is_box_used(const nt_fast *fast)
+{
+	bool used = true;
+	for (int i = 0; i < 6 && used; i++) {
+		const uint32_t vertex = fast->tail.extremes[i];
+		used = fast->bins.cursors && nt_bins_have_corners(&fast->bins, vertex);
+		for (int o = 0; o < 2 && !fast->bins.cursors; o++)
+			used |= fast->records[o] && !(fast->records[o][vertex].state & NT_STATE_EMPTY);
+	}
+	return used;
+}
+
+/* Asks what the published sort of edges leaves, in memory that is not in use now. */
 static nmtan_status find_unsorted(nt_fast *fast, const nt_borrowed *memory)
 {
-	enum { LEAST_LENT_BYTES = 1 << 14 };
+	/* for each triangle: what is missing would come from the system, fresh each time */
+	enum { LEAST_LENT_BYTES = 32 };
 	nt_scratch *scratch = fast->solve->scratch, lent;
 	const size_t bytes = (size_t)(memory->end - memory->begin);
+	const bool is_lent = bytes >= LEAST_LENT_BYTES * fast->triangle_count + LEAST_LENT_BYTES * LEAST_LENT_BYTES;
 	if (fast->solve->sorted)
 		return NMTAN_OK;
+	if (fast->tail.notes && !fast->tail.is_grid_of_used)
+		fast->tail.is_grid_of_used = is_box_used(fast);
 	nt_scratch_init(&lent, &scratch->allocator);
-	if (bytes >= LEAST_LENT_BYTES)
+	if (is_lent)
 		nt_scratch_lend(&lent, memory->begin, bytes);
-	const nt_welded_mesh mesh = {.triangles = &fast->triangles, .triangle_count = fast->triangle_count,
-		.vertex_count = fast->vertex_count, .positions = fast->rows->position,
-		.step = sizeof *fast->rows / sizeof *fast->rows->position,
-		.scratch = bytes >= LEAST_LENT_BYTES ? &lent : scratch};
-	const nmtan_status status = nt_find_unsorted(&mesh, scratch, &fast->unsorted);
+	const nt_welded_mesh mesh = welded_mesh(fast, is_lent ? &lent : scratch);
+	const nmtan_status status = nt_find_unsorted(&mesh, &fast->tail, scratch, &fast->unsorted);
 	nt_scratch_free(&lent);
 	if (fast->unsorted.limit && fast->solve->sorted_instead)
 		*fast->solve->sorted_instead = true;
@@ -107,8 +136,6 @@ static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_mem
 	fast->vertex_count = welded.count;
 	fast->triangles.ids = welded.ids;
 	status = nt_cut_faces(fast->solve->mesh, fast->triangle_count, scratch, &fast->flags, &fast->triangles);
-	if (!status)
-		status = find_unsorted(fast, &memory->borrowed);
 	return status ? status : nt_cut_ranges(fast->flags, fast->triangle_count, ranges, scratch, &fast->ranges);
 }
 
@@ -121,10 +148,13 @@ static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, con
 	nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count,
 		plan->most_places ? plan->most_places : NT_ADJACENCY_PLACES, plan->most_narrow, memory->rows,
 		&memory->borrowed, &fast->adjacency);
+	if (!status)
+		status = make_tail(fast, &memory->borrowed);
 	if (status)
 		return status;
 	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
-	return nt_fast_add(fast, kernels);
+	status = nt_fast_add(fast, kernels);
+	return status ? status : find_unsorted(fast, &memory->borrowed);
 }
 
 /* Whether corners go by way of bins: the sums of all of them are as large as the output of triangles. */
@@ -152,11 +182,18 @@ static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned
 	nmtan_status status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
 		bin_bits ? bin_bits : nt_bins_bits(fast->vertex_count), memory->bin_sums, &memory->borrowed,
 		&fast->bins);
+	/* sums of bins may lie in the output */
+	nt_borrowed *const left = memory->bin_sums ? &memory->none : &memory->borrowed;
+	if (!status)
+		status = make_tail(fast, left);
 	if (status)
 		return status;
 	fast->scattered = true;
 	run r = {.fast = fast, .kernels = kernels};
 	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, fill_ranges, &r);
+	status = find_unsorted(fast, left);
+	if (status)
+		return status;
 	bool orientations[2];
 	nt_bins_orientations(&fast->bins, orientations);
 	return nt_fast_place_records(fast, orientations) ? NMTAN_OK : NMTAN_ERROR_MEMORY;

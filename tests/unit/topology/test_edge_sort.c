@@ -27,7 +27,7 @@ static nmtan_status ask_of(
 		.positions = positions[0],
 		.step = 3,
 		.scratch = scratch};
-	return nt_find_unsorted(&mesh, scratch, unsorted);
+	return nt_find_unsorted(&mesh, NULL, scratch, unsorted);
 }
 
 static nmtan_status ask(
@@ -414,6 +414,36 @@ static size_t make_tail(tail_form form, uint32_t *ids, uint32_t *cuts)
 	return count / 2;
 }
 
+/* Asks after the triangles of two ranges are noted, as the sums do, 31 or 32 at a time. */
+static nmtan_status ask_noted(
+	const nt_triangles *all, size_t triangles, size_t vertices, nt_scratch *scratch, nt_unsorted *unsorted)
+{
+	const nt_welded_mesh mesh = {.triangles = all, .triangle_count = triangles, .vertex_count = vertices,
+		.positions = positions[0], .step = 3, .scratch = scratch};
+	const size_t middle = triangles / 3 - (triangles / 3 > 0 && nt_is_cut_between(all, triangles / 3 - 1));
+	const size_t bounds[3] = {0, middle, triangles};
+	const nt_triangle_ranges ranges = {2, bounds};
+	nt_borrowed none = nt_borrow(NULL, 0, scratch);
+	nt_edge_tail tail;
+	assert_int_equal(nt_edge_tail_make(&mesh, &ranges, &none, &tail), NMTAN_OK);
+	for (unsigned range = 0; range < 2 && tail.notes; range++) {
+		nt_edge_note *note = nt_edge_notes(&tail, range);
+		size_t count = 31;
+		for (size_t first = bounds[range]; first < bounds[range + 1]; first += count, count ^= 31 ^ 32) {
+			*note = (nt_edge_note){(uint32_t)first, 0};
+			for (size_t i = 0; i < count && first + i < bounds[range + 1]; i++)
+				for (unsigned k = 0; k < 3; k++) {
+					const uint32_t v = all->ids[nt_triangle_corner(all, first + i, k)];
+					const uint32_t near = nt_edge_is_near(&tail, positions[v][tail.grid.axis]);
+					note->triangles |= near << i;
+				}
+			note += note->triangles != 0;
+		}
+		note->triangles = 0;
+	}
+	return nt_find_unsorted(&mesh, &tail, scratch, unsorted);
+}
+
 TEST(every_form_of_a_tail_is_as_specified)
 {
 	static uint32_t ids[MOST_CORNERS], cuts[MOST_TRIANGLES];
@@ -431,13 +461,14 @@ TEST(every_form_of_a_tail_is_as_specified)
 			uint32_t last = 0;
 			for (size_t e = 0; e < 3 * triangles; e++)
 				last = entry_vertices[e] > last ? entry_vertices[e] : last;
-			/* rows that have corners, some that have none, too many for few */
-			const size_t rows[3] = {last + 1, 3 * NT_EDGE_FEW, MOST};
-			for (int i = 0; i < 3; i++) {
+			/* rows that have corners, some that have none, too many for edge_few.c */
+			const size_t rows[5] = {last + 1, 3 * NT_EDGE_FEW, MOST, last + 1, MOST};
+			for (int i = 0; i < 5; i++) {
 				nt_scratch scratch;
 				nt_scratch_init(&scratch, NULL);
 				nt_unsorted unsorted;
-				assert_int_equal(ask_of(&all, triangles, rows[i], &scratch, &unsorted), NMTAN_OK);
+				assert_int_equal((i < 3 ? ask_of : ask_noted)(
+					&all, triangles, rows[i], &scratch, &unsorted), NMTAN_OK);
 				assert_false(unsorted.limit);
 				assert_int_equal(unsorted.count, count);
 				if (count > 0)

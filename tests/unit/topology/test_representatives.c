@@ -9,8 +9,6 @@ enum { MOST = 20000 };
 
 static float positions[MOST + 1][3]; /* three floats behind the last one can be read */
 
-static nt_box boxes[MOST / NT_BOX_ROWS + 1];
-
 static nt_welded_mesh mesh_of(const nt_triangles *triangles, size_t triangle_count, size_t vertices)
 {
 	return (nt_welded_mesh){.triangles = triangles,
@@ -56,7 +54,7 @@ static bool find(const uint32_t *ids, size_t triangles, size_t vertices, uint32_
 	const nt_triangles all = {.ids = ids};
 	const nt_welded_mesh mesh = mesh_of(&all, triangles, vertices);
 	nt_grid grid;
-	assert_true(nt_grid_make(&mesh, boxes, &grid));
+	assert_true(nt_grid_make(&mesh, NULL, &grid));
 	bool done = true;
 	for (unsigned cell = 0; cell < NT_CELLS && done; cell++)
 		done = weld(ids, triangles, vertices, &grid, cell, UINT32_MAX, found);
@@ -123,10 +121,11 @@ TEST(the_box_is_that_of_used_vertices)
 	put(1, 0, 2, 0);
 	put(2, 1, 1, 0);
 	put(3, 0, 1, 50);
-	assert_true(nt_grid_make(&mesh, boxes, &grid));
+	uint32_t extremes[6];
+	assert_true(nt_grid_make(&mesh, extremes, &grid));
 	assert_int_equal(grid.axis, 2);
 	assert_true(grid.low == 0 && grid.high == 50);
-	assert_memory_equal(grid.extremes, ((uint32_t[]){0, 2, 0, 1, 0, 3}), sizeof grid.extremes);
+	assert_memory_equal(extremes, ((uint32_t[]){0, 2, 0, 1, 0, 3}), sizeof extremes);
 	assert_true(nt_grid_of_used(&mesh, &grid));
 	assert_int_equal(grid.axis, 0); /* y is as long, and not longer */
 	assert_true(grid.low == -1 && grid.high == 1);
@@ -136,11 +135,11 @@ TEST(the_box_is_that_of_used_vertices)
 	static const float wrong[] = {NAN, INFINITY, -INFINITY, FLT_MAX / 2, -FLT_MAX / 2};
 	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
 		put(3, 0, wrong[i], 0);
-		assert_false(nt_grid_make(&mesh, boxes, &grid));
+		assert_false(nt_grid_make(&mesh, extremes, &grid));
 		assert_true(nt_grid_of_used(&mesh, &grid));
 	}
 	put(3, 0, nextafterf(FLT_MAX / 2, 0), 0);
-	assert_true(nt_grid_make(&mesh, boxes, &grid));
+	assert_true(nt_grid_make(&mesh, NULL, &grid));
 }
 
 /* Each is nearer to 0 than half of the one before, so that a halving parts one of them from the others, all of which
@@ -176,7 +175,7 @@ TEST(one_is_found_as_all_are)
 	const nt_triangles all = {.ids = ids};
 	const nt_welded_mesh mesh = mesh_of(&all, TRIANGLES, VERTICES);
 	nt_grid grid;
-	assert_true(nt_grid_make(&mesh, boxes, &grid));
+	assert_true(nt_grid_make(&mesh, NULL, &grid));
 	for (uint32_t v = 0; v < VERTICES; v++) {
 		uint32_t one[VERTICES];
 		const unsigned cell = nt_grid_cell(&grid, positions[v][grid.axis]);
