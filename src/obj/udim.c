@@ -2,8 +2,9 @@
 /*
  * UDIM: an image for each tile of texture space, numbered 1001 + the tile along u (0 to 9) + 10 times the one along v.
  * A glTF texture has one image, so that a material whose maps have <UDIM> in their names becomes one for each tile that
- * faces lie in. Texture coordinates stay: images repeat. A name with a number alone is taken at its word; if faces in
- * several tiles show its image, that is a finding.
+ * faces lie in. Texture coordinates stay: images repeat; but islands in different tiles share no texels, which the mesh
+ * says by its wrap. A name with a number alone is taken at its word; if faces in several tiles show its image, that is a
+ * finding.
  */
 #include "obj/parts.h"
 
@@ -147,13 +148,16 @@ static uint32_t material_of_face(tiler *t, const nt_mesh *mesh, uint32_t materia
 /* Each face goes to the primitive of its material and tile; primitives in the order of their first faces. */
 static nt_status split_mesh(tiler *t, nt_mesh *mesh)
 {
-	bool any = false;
+	bool any = false, tiled = false;
 	for (size_t i = 0; i < mesh->primitive_count; i++) {
 		const uint32_t material = mesh->primitives[i].material;
+		tiled |= material != NT_NONE && t->templates[material].marked;
 		any |= material != NT_NONE && (t->templates[material].marked || t->templates[material].numbered);
 	}
 	if (!any || !mesh->texcoords)
 		return NT_OK;
+	for (int axis = 0; axis < 2 && tiled; axis++)
+		mesh->wrap[axis] = NT_WRAP_TILES;
 	nt_arena *arena = &t->scene->arena;
 	uint32_t *const numbers = mesh->face_primitive ? mesh->face_primitive
 		: nt_arena_alloc(arena, mesh->face_count, sizeof *numbers);

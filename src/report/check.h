@@ -175,12 +175,12 @@ static inline void nt_side_source_texcoord(const nt_check *check, uint32_t side,
 }
 
 /* The place that a sampler looks up along an axis, for a coordinate of the surface: repeated modulo 1, mirrored
- * folded, clamped (inside the texture) as it stands. Offsets that move all alike are left out. */
+ * folded, clamped (inside the texture) or in tiles as it stands. Offsets that move all alike are left out. */
 static inline double nt_wrap_coordinate(const nt_mesh *mesh, int axis, double coordinate)
 {
 	const nt_wrap wrap = mesh->wrap[axis];
 	const double x = coordinate + mesh->wrap_offset[axis];
-	if (wrap == NT_WRAP_CLAMP)
+	if (wrap == NT_WRAP_CLAMP || wrap == NT_WRAP_TILES)
 		return x;
 	const double tile = floor(x), within = x - tile;
 	return wrap == NT_WRAP_MIRRORED && fmod(tile, 2.0) != 0.0 ? 1.0 - within : within;

@@ -282,8 +282,9 @@ static void search_cells(grid *g, const uv_triangle *t)
 /* The tiles that coordinates reach into: one where they are not wrapped. */
 static void find_tiles(const double x[3], nt_wrap wrap, double tiles[2])
 {
-	tiles[0] = wrap == NT_WRAP_CLAMP ? 0.0 : floor(least(x));
-	tiles[1] = wrap == NT_WRAP_CLAMP ? 0.0 : floor(greatest(x));
+	const bool wrapped = wrap == NT_WRAP_REPEAT || wrap == NT_WRAP_MIRRORED;
+	tiles[0] = wrapped ? floor(least(x)) : 0.0;
+	tiles[1] = wrapped ? floor(greatest(x)) : 0.0;
 }
 
 /* Moves a tile to the first one; returns whether that turns it over. */

@@ -119,11 +119,11 @@ static void list_triangles(const nt_check *check, uint32_t *first, uint32_t *lis
 			list[first[check->islands[t] + 1]++] = (uint32_t)t;
 }
 
-/* density: whether the texture's size is known. items, other: [count] */
+/* size: of the texture, 0 0: not known. items, other: [count] */
 static void measure_island(const nt_check *check, nt_island *island, const uint32_t *list, size_t count,
-	bool density, weighed *items, weighed *other)
+	const uint32_t size[2], weighed *items, weighed *other)
 {
-	const uint32_t *size = check->facts->texture_size;
+	const bool density = size[0] > 0;
 	const double width = density ? size[0] : 1.0, height = density ? size[1] : 1.0;
 	for (int pass = density ? 0 : 1; pass < 2 && count; pass++) {
 		for (size_t i = 0; i < count; i++) {
@@ -141,6 +141,32 @@ static void measure_island(const nt_check *check, nt_island *island, const uint3
 			island->texel_density[1] = items[0].value;
 		}
 	}
+}
+
+/* Sizes of the normal maps of a mesh with several materials, each asked for once. */
+typedef struct map_sizes {
+	uint32_t (*pixels)[2]; /* [primitive_count] */
+	uint8_t *known;        /* [primitive_count]; NULL: all islands have the size of the mesh */
+} map_sizes;
+
+/* That of a triangle's material, which is that of its island, but where materials meet inside of one. */
+static nt_status find_size(const nt_check *check, map_sizes *sizes, uint32_t triangle, uint32_t size[2])
+{
+	const nt_mesh *mesh = check->mesh;
+	memcpy(size, check->facts->texture_size, 2 * sizeof *size);
+	if (!sizes->known)
+		return NT_OK;
+	const uint32_t p = mesh->face_primitive[check->surface.faces ? check->surface.faces[triangle] : triangle];
+	nt_status status = NT_OK;
+	if (!sizes->known[p]) {
+		nt_mesh one = *mesh;
+		one.primitives += p;
+		one.primitive_count = 1;
+		sizes->known[p] = 1;
+		status = check->options->find_map_size(check->options->find_user, check->scene, &one, sizes->pixels[p]);
+	}
+	memcpy(size, sizes->pixels[p], 2 * sizeof *size);
+	return status;
 }
 
 static void measure_split(nt_check *check)
@@ -175,12 +201,24 @@ nt_status nt_check_measures(nt_check *check)
 	uint32_t *list = nt_scratch_alloc(check->scratch, triangles, sizeof *list);
 	weighed *items = nt_scratch_alloc(check->scratch, triangles, sizeof *items);
 	weighed *other = nt_scratch_alloc(check->scratch, triangles, sizeof *other);
-	if (!first || !list || !items || !other)
+	map_sizes sizes = {0};
+	const size_t primitives = check->mesh->primitive_count;
+	const bool several = check->mesh->face_primitive && check->options->find_map_size;
+	if (several) {
+		sizes.pixels = nt_scratch_alloc(check->scratch, primitives, sizeof *sizes.pixels);
+		sizes.known = nt_scratch_alloc(check->scratch, primitives, 1);
+	}
+	if (!first || !list || !items || !other || (several && (!sizes.pixels || !sizes.known)))
 		return NT_ERROR_MEMORY;
+	if (several)
+		memset(sizes.known, 0, primitives);
 	list_triangles(check, first, list);
-	for (size_t i = 0; i < islands; i++)
-		measure_island(check, &check->facts->islands[i], list + first[i], first[i + 1] - first[i],
-			check->facts->texture_size[0] > 0, items, other);
+	for (size_t i = 0; i < islands && !status; i++) {
+		nt_island *island = &check->facts->islands[i];
+		uint32_t size[2];
+		status = find_size(check, &sizes, island->first_triangle, size);
+		measure_island(check, island, list + first[i], first[i + 1] - first[i], size, items, other);
+	}
 	nt_scratch_back(check->scratch, mark);
-	return NT_OK;
+	return status;
 }

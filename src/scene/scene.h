@@ -28,8 +28,8 @@ enum nt_slot {
 	NT_SLOT_ANISOTROPY = 4        /* KHR_materials_anisotropy, with or without a texture */
 };
 
-/* How a sampler takes coordinates outside of 0 to 1, along u or v. */
-typedef enum nt_wrap { NT_WRAP_REPEAT, NT_WRAP_MIRRORED, NT_WRAP_CLAMP } nt_wrap;
+/* How a sampler takes coordinates outside of 0 to 1, along u or v. TILES: each tile has an image of its own (UDIM). */
+typedef enum nt_wrap { NT_WRAP_REPEAT, NT_WRAP_MIRRORED, NT_WRAP_CLAMP, NT_WRAP_TILES } nt_wrap;
 
 /* Whether a mesh gets tangents, and why. */
 typedef enum nt_decision {

@@ -317,6 +317,27 @@ run -q --check --report=r.json m.obj
 is "$(value r.json '[(i["texel_density"], i["stretch"]["median"]) for i in r["files"][0]["meshes"][0]["islands"]]')" \
 	"[(None, 2), (None, 4)]"
 
+# Two squares of side 1 that cover 0.8 x 0.8 of the tiles 1001 and 1002, the second mirrored: 64 and 32 pixels a tile give
+# 51.2 and 25.6 texels per unit. With one image for both, the second lies on the first.
+scene "UDIM: islands in different tiles share no texels, and have the density of their own tile"
+python3 "$ROOT/tests/support/images.py" write n.1001.png 64 64 '(128, 128, 255)'
+python3 "$ROOT/tests/support/images.py" write n.1002.png 32 32 '(128, 128, 255)'
+{
+	printf '%s\n' "mtllib m.mtl" "usemtl m" "vn 0 0 1"
+	printf 'v %s 0\n' '0 0' '1 0' '1 1' '0 1' '3 0' '4 0' '4 1' '3 1'
+	printf 'vt %s\n' '.1 .1' '.9 .1' '.9 .9' '.1 .9' '1.9 .1' '1.1 .1' '1.1 .9' '1.9 .9'
+	printf '%s\n' 'f 1/1/1 2/2/1 3/3/1 4/4/1' 'f 5/5/1 6/6/1 7/7/1 8/8/1'
+} >m.obj
+while IFS='|' read -r name density codes; do
+	printf 'newmtl m\nnorm %s\n' "$name" >m.mtl
+	run -q --check --ignore='NMAP_*,MATERIAL_*' --report=r.json m.obj
+	is "$name $(value r.json '[round(i["texel_density"]["median"], 3) for i in r["files"][0]["meshes"][0]["islands"]]')" "$name $density"
+	is "$name $(value r.json '[f["code"] for f in r["files"][0]["findings"]]')" "$name $codes"
+done <<'END'
+n.<UDIM>.png|[51.2, 25.6]|['UV_MIRROR_LONE']
+n.1001.png|[51.2, 51.2]|['UV_MIRROR_OVERLAP']
+END
+
 scene "images in a view are measured, moved by the edit or not"
 run -q --check --report=r.json "$data/plates.glb"
 run -q --only=all --report=w.json "$data/plates.glb" out.glb

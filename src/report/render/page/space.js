@@ -136,9 +136,9 @@ class Space {
 		this.draw();
 	}
 
-	// As the sampler of the normal map repeats it: wrap is 0 for repeated, 1 for mirrored, 2 for clamped.
+	// As the sampler of the normal map repeats it: wrap is 0 for repeated, 1 for mirrored, 2 for clamped, 3 for UDIM.
 	fillTexture(name, fill) {
-		const gl = this.gl, wraps = [gl.REPEAT, gl.MIRRORED_REPEAT, gl.CLAMP_TO_EDGE];
+		const gl = this.gl, wraps = [gl.REPEAT, gl.MIRRORED_REPEAT, gl.CLAMP_TO_EDGE, gl.REPEAT];
 		gl.bindTexture(gl.TEXTURE_2D, this.textures[name]);
 		fill(gl);
 		gl.generateMipmap(gl.TEXTURE_2D);
@@ -321,7 +321,7 @@ class Space {
 		const window = mapBox(map, [0, 1].map(i => Math.max(low[i], all.low[i])), [0, 1].map(i => Math.min(high[i], all.high[i])));
 		// of what lies from `from` to `to` along an axis: calls on(s, t) for each x: s x + t that is in the window
 		const eachMove = (axis, from, to, on) => {
-			if (wrap[axis] === 2) { on(1, 0); return; }
+			if (wrap[axis] > 1) { on(1, 0); return; }
 			const step = wrap[axis] === 1 ? 2 : 1;
 			for (let s = 1; s >= (wrap[axis] === 1 ? -1 : 1); s -= 2) {
 				const last = Math.floor((window[1][axis] - (s < 0 ? -to : from) - least) / step);
