@@ -201,6 +201,20 @@ static void report_normals(nt_scene *scene, const nt_mesh *mesh, nt_normals mode
 			mesh->cancelled_normal_corners, NULL);
 }
 
+/* Vertices and their copies without texture coordinates stay known. */
+static bool keep_lacks(nt_scene *scene, nt_mesh *mesh, const uint32_t *sources)
+{
+	const uint8_t *before = mesh->vertex_lacks;
+	bool any = false;
+	for (size_t v = 0; before && v < mesh->source_vertex_count; v++)
+		any |= before[v] & NT_LACKS_TEXCOORD;
+	mesh->vertex_lacks = any ? nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->vertex_count, 1) : NULL;
+	for (size_t v = 0; mesh->vertex_lacks && v < mesh->vertex_count; v++)
+		mesh->vertex_lacks[v] = NT_LACKS_TEXCOORD &
+			before[v < mesh->source_vertex_count ? v : sources[v - mesh->source_vertex_count]];
+	return !any || mesh->vertex_lacks;
+}
+
 /* The new arrays become the mesh's. */
 static nt_status adopt(nt_scene *scene, nt_mesh *mesh, nt_normals mode, normal_job *job)
 {
@@ -208,7 +222,7 @@ static nt_status adopt(nt_scene *scene, nt_mesh *mesh, nt_normals mode, normal_j
 	mesh->vertex_sources = job->sources;
 	mesh->normals = job->normals;
 	mesh->stored_normals = NULL;
-	mesh->vertex_lacks = NULL;
+	const bool lacks_kept = keep_lacks(scene, mesh, job->sources);
 	mesh->tangents = NULL; /* authored for other normals */
 	mesh->normals_made = true;
 	mesh->has_normals = true;
@@ -221,7 +235,7 @@ static nt_status adopt(nt_scene *scene, nt_mesh *mesh, nt_normals mode, normal_j
 	bool kept = nt_arena_adopt(nt_mesh_arena(scene, mesh), indices);
 	kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), sources);
 	kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), normals);
-	return kept ? NT_OK : NT_ERROR_MEMORY;
+	return kept && lacks_kept ? NT_OK : NT_ERROR_MEMORY;
 }
 
 static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode, int degrees)

@@ -391,17 +391,33 @@ static size_t count_triangles(const nt_mesh *mesh)
 	return mesh->corner_count - 2 * mesh->face_count;
 }
 
+/* Triangles for whose corners the file has no texture coordinates; it has some for others. */
+static size_t count_missing(const nt_mesh *mesh)
+{
+	size_t count = 0, corner = 0;
+	for (size_t f = 0; mesh->vertex_lacks && f < mesh->face_count; f++) {
+		const size_t size = mesh->face_sizes ? mesh->face_sizes[f] : 3;
+		unsigned all = NT_LACKS_TEXCOORD;
+		for (size_t k = 0; k < size; k++)
+			all &= mesh->vertex_lacks[mesh->indices ? mesh->indices[corner + k] : corner + k];
+		count += all ? size - 2 : 0;
+		corner += size;
+	}
+	return count;
+}
+
 static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 {
 	nt_finding_list *list = &scene->findings;
 	const nmtan_counts *c = &mesh->counts;
-	const size_t triangles = count_triangles(mesh);
-	const bool unmapped = triangles > 0 && c->degenerate_texcoords == triangles;
+	const size_t triangles = count_triangles(mesh), missing = count_missing(mesh);
+	const size_t degenerate = c->degenerate_texcoords - missing;
+	const bool unmapped = triangles > 0 && degenerate == triangles;
 	const struct {
 		nt_code code;
 		size_t count;
 	} rows[] = {
-		{unmapped ? NT_CODE_UV_UNMAPPED : NT_CODE_UV_DEGENERATE_TRIANGLE, c->degenerate_texcoords},
+		{unmapped ? NT_CODE_UV_UNMAPPED : NT_CODE_UV_DEGENERATE_TRIANGLE, degenerate},
 		/* rounding may have made them */
 		{NT_CODE_POS_DEGENERATE_TRIANGLE, scene->positions_rounded ? 0 : c->degenerate_positions},
 		{NT_CODE_UV_FOLDED_QUAD, c->folded_quads},
@@ -415,6 +431,10 @@ static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		if (rows[i].count)
 			nt_finding_add(list, rows[i].code, nt_mesh_place(mesh, &(nt_place){0}), rows[i].count, NULL);
+	if (missing)
+		nt_finding_add(list, NT_CODE_UV_MISSING, nt_mesh_place(mesh, &(nt_place){0}), missing,
+			"%zu of %zu triangles %s no texture coordinates, and tangents made from %s", missing, triangles,
+			missing == 1 ? "has" : "have", missing == 1 ? "its normals" : "their normals");
 	if (mesh->may_be_quads)
 		nt_finding_put(list, (nt_finding){.code = NT_CODE_TAN_QUADS_LIKELY, .count = mesh->may_be_quads,
 			.detail = "", .repair = mesh->slots ? NULL : "--quads=pairs --only=all"},

@@ -285,14 +285,16 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"A mirrored island that shares its texture with nothing: mirroring gains nothing here, and "
 		"text or asymmetric detail in the texture shows reversed. Often an accident. If all islands of a mesh "
 		"are mirrored, that is one finding: v may point the other way in the file.",
-		"Flip the island in the UV editor unless the texture was painted for it.",
+		"Flip the island in the UV editor (Blender: UV > Mirror > X Axis) unless the texture was painted for "
+		"it.",
 		"one triangle whose UVs are clockwise"),
 	ROW(UV_MIXED_WINDING_ISLAND, WARNING, "w-w", EXPORT, NULL,
 		"island of {count} {triangle|triangles} is folded: both windings are connected",
 		"Inside one connected island some triangles are wound the other way, and they do not lie on a twin "
 		"point by point: a fold. Texture is mirrored there and tangents flip within the island. An info if no "
 		"material of a glTF needs tangents, and up to a thousandth of the mesh's area.",
-		"Unfold the island (relax or unwrap it again), or cut it along the fold.",
+		"Unfold the island (Blender: UV > Minimize Stretch, or UV > Unwrap), or cut it along the fold (Edge "
+		"> Mark Seam) and unwrap it again.",
 		"three quads in a row with u = 0, 1, 0.4, 1.4"),
 	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-w", EXPORT, NULL, "{count} of {detail} {is|are} flipped",
 		"A few triangles in a row are wound against their island, or have texture coordinates of their own "
@@ -300,7 +302,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"up to 10 %, if all triangles that are wound so are at most a quarter. Texture is mirrored there. "
 		"They make no seam, fold or mirrored island. Needles whose winding is rounding are UV_NEAR_DEGENERATE "
 		"instead. An info if no material of a glTF needs tangents, and up to a thousandth of the mesh's area.",
-		"Exchange two corners of these triangles in the UV editor, or relax the knot.",
+		"Relax the knot in the UV editor (Blender: UV > Minimize Stretch), or unwrap these triangles again.",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
 	ROW(UV_HARD_EDGE, WARNING, "w-i", LOOK, NULL,
 		"{count} hard {edge lies|edges lie} inside a UV island: {detail}",
@@ -317,7 +319,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"The three texture coordinates are collinear: there is no direction in which u grows, so the tangent "
 		"comes from a neighbour or from the normal. A warning when such triangles are more than 1 % of the "
 		"mesh's area, unless a glTF's material uses no tangents.",
-		"Unwrap these triangles if they are visible and normal mapped.",
+		"Unwrap these triangles (Blender: UV > Smart UV Project) if they are visible and normal mapped.",
 		"two triangles, of which one has UVs (0,0), (1,0), (2,0)"),
 	ROW(UV_NEAR_DEGENERATE, INFO, "w-w", EXPORT, NULL,
 		"{count} {triangle has|triangles have} nearly collinear texture coordinates",
@@ -325,7 +327,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"more than one degree: the finding gives the smallest relative determinant |det| / (|e1| |e2|) "
 		"and the largest bound of the angle. A warning when they are more than 1 % of the mesh's area, "
 		"unless a glTF's material uses no tangents.",
-		"Give the triangles more room in the UV layout, or keep islands near the origin.",
+		"Unwrap these triangles again, or keep islands near the origin (Blender: UV > Pack Islands).",
 		"a triangle with UVs (1000,0), (1001,0), (1000,0.0001)"),
 	ROW(UV_FOLDED_QUAD, WARNING, "--w", EXPORT, NULL,
 		"{count} {quad crosses itself|quads cross themselves} in UV space",
@@ -333,13 +335,13 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"in a glTF, each gets its own sign and vertices of its own. MikkTSpace, and with it a bake of quads, "
 		"has one sign for both, that of the larger one: --raw writes that. PLY keeps the quad and this "
 		"sign, and the smaller triangle is lit from the wrong side.",
-		"Straighten the quad in the UV editor, or triangulate it.",
+		"Straighten the quad in the UV editor, or triangulate it (Blender: Face > Triangulate Faces).",
 		"a quad with UVs (0,0), (1,1), (1,0), (0,1): a bowtie"),
 	ROW(UV_UNMAPPED, WARNING, "w-w", EXPORT, NULL,
 		"the mesh is not unwrapped: {count} {triangle has|triangles have} no area in UV space",
 		"All texture coordinates are alike, or on a line. Tangents are made from normals, and mean nothing. "
 		"An info if no material of a glTF needs tangents.",
-		"Unwrap the mesh.",
+		"Unwrap the mesh (Blender: UV > Smart UV Project).",
 		"a quad whose corners have one vt"),
 	ROW(UV_ROUNDED_AWAY, INFO, "--i", EXPORT, NULL,
 		"{count} {triangle changes|triangles change} orientation when v becomes 1 - v",
@@ -353,11 +355,13 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"(0, 0).",
 		"Export the mesh again.",
 		"a PLY vertex with s = nan"),
-	ROW(UV_MISSING, WARNING, "--w", EXPORT, NULL, "the mesh has no texture coordinates and gets no tangents",
+	ROW(UV_MISSING, WARNING, "--w", EXPORT, NULL, "{detail}",
 		"An OBJ, PLY or Draco mesh gets tangents if it has texture coordinates. This one has none, other "
-		"meshes of the file have some. TAN_NO_UV is reported instead if no mesh has any, or if a material's "
+		"meshes of the file have some; or some of its triangles have none (an info up to 1 % of its area). "
+		"TAN_NO_UV is reported instead if no mesh has any, or if a material's "
 		"normal map needs them.",
-		"Unwrap the mesh if it is to be normal mapped; else --only=needed, or --ignore=UV_MISSING.",
+		"Unwrap it if it is to be normal mapped (Blender: UV > Smart UV Project); else --only=needed, or "
+		"--ignore=UV_MISSING.",
 		"an OBJ with two objects of which one has faces like 1 2 3"),
 	ROW(UV_NOT_THERE, WARNING, "-ww", EXPORT, NULL, "faces refer to texture coordinates, but the file has none",
 		"The file has faces with numbers of texture coordinates and not a single vt. It is read as if "
@@ -368,7 +372,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(POS_DEGENERATE_TRIANGLE, INFO, "iii", EXPORT, NULL, "{count} {triangle has|triangles have} no area",
 		"Corners coincide or are collinear. The triangle cannot be seen, and MikkTSpace gives its "
 		"corners the tangents of a neighbour.",
-		"Remove it, or merge its vertices.",
+		"Remove it (Blender: Mesh > Clean Up > Degenerate Dissolve), or merge its vertices.",
 		"a triangle with two corners at one position"),
 	ROW(POS_NOT_FINITE, ERROR, "eee", EXPORT, NULL,
 		"{count} {vertex has a position|vertices have positions} that are not finite",
@@ -406,7 +410,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"The two triangles at these edges face opposite sides. A flipped face, or a surface that has "
 		"one side only (a Moebius strip), which cannot be wound consistently. An info up to a thousandth of "
 		"the mesh's area: slivers.",
-		"Recalculate the normals outside, or flip the faces that are wrong.",
+		"Recalculate the normals outside (Blender: Mesh > Normals > Recalculate Outside), or flip the faces "
+		"that are wrong.",
 		"triangles 0 1 2 and 0 1 3"),
 	ROW(MESH_NORMAL_NON_UNIT, WARNING, "wii", EXPORT, NULL, "{count} {normal is|normals are} not of unit length",
 		"The length differs from 1 by more than 0.00674, the tolerance of the Khronos validator. "
@@ -423,7 +428,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"{count} {triangle has|triangles have} normals that point against {its|their} winding",
 		"All three corner normals lie on the back side of the triangle: it is lit as if seen from behind, and "
 		"the bitangent runs against v there. An info if these are at most 1 % of the mesh's area.",
-		"Flip the winding or recalculate the normals.",
+		"Flip the winding (Blender: Mesh > Normals > Flip) or recalculate the normals.",
 		"a counterclockwise triangle in the xy plane with the normal (0,0,-1)"),
 
 	ROW(TAN_MIRROR_SHARED_VERTEX, WARNING, "w--", CONVERT, "--fix",
@@ -457,7 +462,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"other texture coordinates. The finding says so if they are right without the material's texture "
 		"transform: Blender's exporter, glTF-Transform and gltfpack write those, and most renderers show them "
 		"turned (nmtan-engines(7)). An info below 1 % of the corners.",
-		"Select the UV set that they were made for with --uv; or, if the map was baked with MikkTSpace, "
+		"If they were made for another UV set, select that with --uv; if the map was baked with MikkTSpace, "
 		"compute them again.",
 		"a quad in the xy plane with tangents along y"),
 	ROW(TAN_NOT_ORTHOGONAL, WARNING, "w--", CONVERT, "--fix",
@@ -519,8 +524,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"coordinates that the primitive lacks: no renderer can get that right. A warning if an OBJ's material "
 		"does: the output is without the map. If --uv asks for a set that a primitive lacks, its tangents stay "
 		"as they are, and none are made; the finding then tells which sets there are.",
-		"Nothing if no normal map is meant. Else unwrap the mesh, or choose another set with --uv if there are "
-		"several.",
+		"Nothing if no normal map is meant: take it out of the material. Else unwrap the mesh (Blender: UV > "
+		"Smart UV Project) and export its texture coordinates. If the finding tells other sets, choose one "
+		"with --uv.",
 		"a normal-mapped glTF primitive without TEXCOORD_0"),
 	ROW(TAN_UVSET_CONFLICT, WARNING, "w--", EXPORT, NULL,
 		"two textures want tangents of different texture coordinates",

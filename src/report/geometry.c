@@ -34,9 +34,9 @@ enum { PART = 128 };
 
 /* Results in the triangles of a part. */
 typedef struct triangle_part {
-	nt_tally flat, no_uv_area, near, against;
+	nt_tally flat, missing, no_uv_area, near, against;
 	size_t coincident, collinear;
-	double no_uv_area_sum, near_area, against_area;
+	double missing_area, no_uv_area_sum, near_area, against_area;
 	double worst_bound, worst_determinant;
 } triangle_part;
 
@@ -99,6 +99,13 @@ static bool is_far_from_degenerate(const uv_frame *f)
 	return left < right && right > 1e-200;
 }
 
+/* Whether the file has no texture coordinates for a triangle, but for others. */
+static bool lacks_texcoords(const nt_check *check, const uint32_t v[3])
+{
+	const uint8_t *lacks = check->mesh->vertex_lacks;
+	return lacks && lacks[v[0]] & lacks[v[1]] & lacks[v[2]] & NT_LACKS_TEXCOORD;
+}
+
 static void check_texcoords(const triangle_work *work, size_t t, const uint32_t v[3], nt_dvec3 d1, nt_dvec3 d2,
 	triangle_part *part)
 {
@@ -107,8 +114,9 @@ static void check_texcoords(const triangle_work *work, size_t t, const uint32_t 
 	work->determinants[t] = NAN;
 	if (s->orientation[t] == 0) {
 		const double area = nt_triangle_area(s, t);
-		nt_tally_triangle(check, &part->no_uv_area, t, area);
-		part->no_uv_area_sum += area;
+		const bool missing = lacks_texcoords(check, v);
+		nt_tally_triangle(check, missing ? &part->missing : &part->no_uv_area, t, area);
+		*(missing ? &part->missing_area : &part->no_uv_area_sum) += area;
 		return;
 	}
 	const float *const uv[3] = {s->texcoords + 2 * (size_t)v[0], s->texcoords + 2 * (size_t)v[1],
@@ -170,6 +178,7 @@ static void check_part(void *context, size_t item, unsigned slot)
 	triangle_part *part = &work->parts[item];
 	(void)slot;
 	*part = (triangle_part){.flat = {.code = NT_CODE_POS_DEGENERATE_TRIANGLE},
+		.missing = {.code = NT_CODE_UV_MISSING},
 		.no_uv_area = {.code = NT_CODE_UV_DEGENERATE_TRIANGLE},
 		.near = {.code = NT_CODE_UV_NEAR_DEGENERATE},
 		.against = {.code = NT_CODE_MESH_NORMAL_AGAINST_FACE},
@@ -185,11 +194,13 @@ static void check_part(void *context, size_t item, unsigned slot)
 static void join_part(triangle_part *all, const triangle_part *part)
 {
 	nt_tally_join(&all->flat, &part->flat);
+	nt_tally_join(&all->missing, &part->missing);
 	nt_tally_join(&all->no_uv_area, &part->no_uv_area);
 	nt_tally_join(&all->near, &part->near);
 	nt_tally_join(&all->against, &part->against);
 	all->coincident += part->coincident;
 	all->collinear += part->collinear;
+	all->missing_area += part->missing_area;
 	all->no_uv_area_sum += part->no_uv_area_sum;
 	all->near_area += part->near_area;
 	all->against_area += part->against_area;
@@ -264,8 +275,8 @@ static void sum_blocks(nt_check *check)
 		check->total_area += facts->areas[i];
 }
 
-/* How many corners of degenerate triangles share their vertex with a sound one, whose tangent they take; the others get
- * a vector perpendicular to their normal. */
+/* How many corners of degenerate triangles that have texture coordinates share their vertex with a sound one, whose
+ * tangent they take; the others get a vector perpendicular to their normal. */
 static nt_status count_neighbours(const nt_check *check, size_t *count)
 {
 	const nt_surface *s = &check->surface;
@@ -280,8 +291,11 @@ static nt_status count_neighbours(const nt_check *check, size_t *count)
 	for (size_t c = 0; c < 3 * s->triangle_count; c++)
 		if (s->orientation[c / 3] && s->flatness[c / 3] != NT_COINCIDENT)
 			nt_bit_set(sound, nt_side_vertex(s, c));
-	for (size_t c = 0; c < 3 * s->triangle_count; c++)
-		*count += !s->orientation[c / 3] && nt_bit(sound, nt_side_vertex(s, c));
+	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
+		const uint32_t v = nt_side_vertex(s, c);
+		const bool lacks = check->mesh->vertex_lacks && check->mesh->vertex_lacks[v] & NT_LACKS_TEXCOORD;
+		*count += !s->orientation[c / 3] && !lacks && nt_bit(sound, v);
+	}
 	return NT_OK;
 }
 
@@ -292,6 +306,13 @@ static void report_triangles(nt_check *check, triangle_part *all, size_t from_ne
 	nt_tally_number(&all->flat, "coincident_corners", (double)all->coincident);
 	nt_tally_number(&all->flat, "collinear_corners", (double)all->collinear);
 	nt_check_report(check, &all->flat, NULL);
+
+	nt_tally_number(&all->missing, "area_share", all->missing_area / total);
+	const bool one = all->missing.count == 1;
+	nt_check_report_as(check, &all->missing,
+		nt_texcoord_severity(check, severity_by_share(check, all->missing_area)),
+		"%zu of %zu triangles %s no texture coordinates, and tangents made from %s", all->missing.count,
+		check->surface.triangle_count, one ? "has" : "have", one ? "its normals" : "their normals");
 
 	nt_tally *no_area = &all->no_uv_area;
 	const size_t from_normal = 3 * no_area->count - from_neighbour;

@@ -49,6 +49,10 @@ static size_t part_end(const nt_check *check, size_t part)
 	return end < count ? end : count;
 }
 
+/* Said if wrong tangents follow the file's own coordinates, which a material's transform turns or mirrors. */
+static const char untransformed_text[] =
+	", they were made without the texture transform, as Blender's exporter, glTF-Transform and gltfpack do";
+
 typedef struct tangent_tallies {
 	nt_tally not_finite, zero, non_unit, bad_w, parallel, not_orthogonal;
 	double worst_length;
@@ -358,7 +362,7 @@ static nt_status check_signs(nt_check *check)
 	nt_check_report_as(check, &st.wrong,
 		severity_of(check, untransformed || slivers ? NT_CODE_TAN_MIXED_W_TRIANGLE : NT_CODE_TAN_SIGN_MISMATCH),
 		"%.3g %% of %zu%s%s", 100.0 * share, st.checked,
-		untransformed	     ? ", they were made without the texture transform"
+		untransformed	     ? untransformed_text
 		: 2 * st.by_t > st.wrong.count ? ", T is reversed with w: red is inverted, not green"
 		: st.by_w == st.checked ? ", the convention is inverted"
 		: st.by_w == 0	     ? ", the tangents are reversed too"
@@ -446,7 +450,7 @@ static nt_status check_directions(nt_check *check, const float *fresh, const uin
 	nt_check_report_as(check, &wrong,
 		share > MISMATCH_SHARE ? severity_of(check, wrong.code) : NT_SEVERITY_INFO,
 		"%.3g %% of the corners, the worst by %.4g degrees%s", 100.0 * share, worst,
-		check->facts->maker.untransformed ? ", they were made without the texture transform" : "");
+		check->facts->maker.untransformed ? untransformed_text : "");
 	return NT_OK;
 }
 

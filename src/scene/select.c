@@ -72,7 +72,8 @@ static void report_no_texcoords(nt_scene *scene, const nt_mesh *mesh, bool other
 		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, nt_mesh_place(mesh, &(nt_place){0}), 1,
 			"the file has none at all");
 	else
-		nt_finding_add(&scene->findings, NT_CODE_UV_MISSING, nt_mesh_place(mesh, &(nt_place){0}), 1, NULL);
+		nt_finding_add(&scene->findings, NT_CODE_UV_MISSING, nt_mesh_place(mesh, &(nt_place){0}), 1,
+			"the mesh has no texture coordinates and gets no tangents");
 }
 
 /* glTF: without NORMAL a client ignores TANGENT (specification, 3.7.2.1). */

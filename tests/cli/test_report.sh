@@ -123,10 +123,10 @@ flat >'a,b%c:d.obj'
 echo 'f 1 2 3' >bad.obj
 run $strict --report-format=lines 'a,b%c:d.obj' bad.obj
 exits 3
-is "$(cat ../out.txt)" 'a,b%c:d.obj:7: error: UV_UNMAPPED: the mesh is not unwrapped: 1 triangle has no area in UV space. Unwrap the mesh.
+is "$(cat ../out.txt)" 'a,b%c:d.obj:7: error: UV_UNMAPPED: the mesh is not unwrapped: 1 triangle has no area in UV space. Unwrap the mesh (Blender: UV > Smart UV Project).
 bad.obj:1: error: face refers to "v" number 1, but the file has 0'
 run $strict --report-format=github 'a,b%c:d.obj' bad.obj
-is "$(cat ../out.txt)" '::error file=a%2Cb%25c%3Ad.obj,line=7,title=UV_UNMAPPED::the mesh is not unwrapped: 1 triangle has no area in UV space%0AUnwrap the mesh.
+is "$(cat ../out.txt)" '::error file=a%2Cb%25c%3Ad.obj,line=7,title=UV_UNMAPPED::the mesh is not unwrapped: 1 triangle has no area in UV space%0AUnwrap the mesh (Blender: UV > Smart UV Project).
 ::error file=bad.obj,line=1,title=not judged::face refers to "v" number 1, but the file has 0'
 cp 'a,b%c:d.obj' $'e\r\nf.obj'
 run --check --report-format=github --severity=UV_UNMAPPED=warning --path-prefix=art $'e\r\nf.obj'

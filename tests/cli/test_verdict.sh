@@ -302,6 +302,19 @@ printf 'o one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\
 run --check half.obj
 exits 0
 prints "warning   UV_MISSING"
+# Faces without vt beside others: not that their texture coordinates are on a line; the same count in a conversion.
+for faces in 'f 1/1 2/2 3/3\nf 2/1 5/4 4/2\n\nf 2 5 6 4\n' 'vn 0 0 1\nf 1/1/1 2/2/1 3/3/1\nf 2/1/1 5/4/1 4/2/1\nf 2//1 5//1 6//1 4//1\n'; do
+	printf "v %s 0\n" '0 0' '1 0' '0 1' '1 1' '2 0' '2 1' >some.obj
+	printf "vt %s\n" '0 0' '1 0' '0 1' '.5 0' >>some.obj
+	printf "$faces" >>some.obj
+	run --check --report=r.json some.obj
+	exits 0
+	is "$(value r.json '[(f["code"], f["severity"], f["count"], f["spots"][0]["line"] > 13) for f in r["files"][0]["findings"] if f["code"][:3] == "UV_"]')" \
+		"[('UV_MISSING', 'warning', 2, True), ('UV_DEGENERATE_TRIANGLE', 'warning', 1, False)]"
+	run --manifest=m.json some.obj out.glb
+	says "warning: 2 of 4 triangles have no texture coordinates, and tangents made from their normals [UV_MISSING]"
+	is "$(value m.json '[r["findings"].get(c) for c in ("UV_MISSING", "UV_DEGENERATE_TRIANGLE")]')" "[2, 1]"
+done
 
 # The triangle's v are so near to 1 that 1 - v turns it over: w follows what is stored, and so does its judge.
 scene "a conversion and the check of its output agree"
