@@ -3,8 +3,8 @@
  * UDIM: an image for each tile of texture space, numbered 1001 + the tile along u (0 to 9) + 10 times the one along v.
  * A glTF texture has one image, so that a material whose maps have <UDIM> in their names becomes one for each tile that
  * faces lie in. Texture coordinates stay: images repeat; but islands in different tiles share no texels, which the mesh
- * says by its wrap. A name with a number alone is taken at its word; if faces in several tiles show its image, that is a
- * finding.
+ * says by its wrap. A name with a number alone is taken at its word; if faces in several tiles show its image, that is
+ * a finding.
  */
 #include "obj/parts.h"
 

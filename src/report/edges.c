@@ -18,36 +18,7 @@
 #include "base/dvec.h"
 #include "base/parallel.h"
 #include "report/surface/edge_bins.h"
-
-/* ---- islands by union and find, the lower number on top ---- */
-
-/* Parents only ever become lower, whatever other threads unite at the same time. */
-static uint32_t find_root(uint32_t *parents, uint32_t t)
-{
-	for (;;) {
-		const uint32_t parent = __atomic_load_n(&parents[t], __ATOMIC_RELAXED);
-		if (parent == t)
-			return t;
-		const uint32_t above = __atomic_load_n(&parents[parent], __ATOMIC_RELAXED);
-		if (above != parent)
-			__atomic_store_n(&parents[t], above, __ATOMIC_RELAXED);
-		t = above;
-	}
-}
-
-static void unite(uint32_t *parents, uint32_t a, uint32_t b)
-{
-	for (;;) {
-		a = find_root(parents, a);
-		b = find_root(parents, b);
-		if (a == b)
-			return;
-		uint32_t high = a > b ? a : b;
-		const uint32_t low = a > b ? b : a;
-		if (__atomic_compare_exchange_n(&parents[high], &high, low, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
-			return;
-	}
-}
+#include "report/surface/union_find.h"
 
 /* Sides by which triangles are prefetched before they are united. */
 enum { AHEAD = 16 };
@@ -127,7 +98,7 @@ static bool unite_many(const nt_check *check, const nt_edge_side *sides, size_t 
 {
 	if (!(sides[0].low & NT_EDGE_JOINT)) {
 		for (size_t i = 1; i < count; i++)
-			unite(check->islands, sides[i].side / 3, sides[0].side / 3);
+			nt_unite(check->islands, sides[i].side / 3, sides[0].side / 3);
 		return true;
 	}
 	side_key *keys = nt_alloc(count, sizeof *keys);
@@ -138,7 +109,7 @@ static bool unite_many(const nt_check *check, const nt_edge_side *sides, size_t 
 	qsort(keys, count, sizeof *keys, by_key);
 	for (size_t i = 1; i < count; i++)
 		if (same_coordinates(&keys[i], &keys[i - 1]))
-			unite(check->islands, keys[i].side / 3, keys[i - 1].side / 3);
+			nt_unite(check->islands, keys[i].side / 3, keys[i - 1].side / 3);
 	free(keys);
 	return true;
 }
@@ -199,7 +170,7 @@ static void unite_patches(const nt_check *check, const nt_edge_side *sides, size
 	for (size_t i = 0; i < count; i++) {
 		const nt_edge_side **before = &last[nt_edge_orientation(&sides[i]) + 1];
 		if (*before)
-			unite(check->patches, sides[i].side / 3, (*before)->side / 3);
+			nt_unite(check->patches, sides[i].side / 3, (*before)->side / 3);
 		*before = &sides[i];
 	}
 }
@@ -228,7 +199,7 @@ static void check_edge(nt_check *check, const nt_edge_side *sides, size_t count,
 	if (count > 2)
 		lists->failed |= !unite_many(check, sides, count);
 	else if (meet)
-		unite(check->islands, sides[0].side / 3, sides[1].side / 3);
+		nt_unite(check->islands, sides[0].side / 3, sides[1].side / 3);
 	else
 		result->uv_seams++;
 	if (meet && check->patches)

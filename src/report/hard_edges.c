@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "report/surface/union_find.h"
 
 static const double DEGREES = 57.29577951308232;
 
@@ -38,13 +39,6 @@ static uint32_t end_of(const nt_check *check, size_t edge, int end)
 	return nt_side_point(&check->surface, end ? nt_side_next(side) : side);
 }
 
-static uint32_t find_root(uint32_t *parents, uint32_t i)
-{
-	while (parents[i] != i)
-		i = parents[i] = parents[parents[i]];
-	return i;
-}
-
 /* Numbers nets by their lowest edges. degrees: [point_count] hard edges at each point, 3: more than two. */
 static nt_status number_nets(const nt_check *check, nets *n, uint8_t *degrees)
 {
@@ -59,14 +53,13 @@ static nt_status number_nets(const nt_check *check, nets *n, uint8_t *degrees)
 	for (size_t p = 0; p < points; p++)
 		parents[p] = (uint32_t)p;
 	for (size_t i = 0; i < check->hard_edge_count; i++) {
-		const uint32_t a = find_root(parents, end_of(check, i, 0)), b = find_root(parents, end_of(check, i, 1));
-		parents[a > b ? a : b] = a > b ? b : a;
+		nt_unite(parents, end_of(check, i, 0), end_of(check, i, 1));
 		for (int end = 0; end < 2; end++)
 			degrees[end_of(check, i, end)] += degrees[end_of(check, i, end)] < 3;
 	}
 	n->count = 0;
 	for (size_t i = 0; i < check->hard_edge_count; i++) {
-		uint32_t *number = &of_root[find_root(parents, end_of(check, i, 0))];
+		uint32_t *number = &of_root[nt_find_root(parents, end_of(check, i, 0))];
 		if (*number == NT_NONE)
 			*number = (uint32_t)n->count++;
 		n->numbers[i] = *number;
