@@ -28,6 +28,29 @@ exits 0
 [ "$(grep -ao '"images":\[{"image":[0-9]' twice.html | wc -l)" -gt 1 ] || wrong "no two meshes have an image"
 [ "$(grep -ao 'data:image/png;base64,[^"]*' twice.html | sort | uniq -d | wc -l)" = 0 ] || wrong "an image is there twice"
 
+# The page as a browser without modules makes it.
+shown() {
+	timeout 120 "${CHROMIUM:-/usr/bin/chromium}" --headless --no-sandbox --disable-gpu --virtual-time-budget=8000 \
+		--dump-dom "file://$PWD/$1" 2>/dev/null
+}
+
+scene "an index sums what its rows have, and a finding that is gone has no command"
+cp "$data"/{plates.gltf,plates.bin,bumps.png} .
+sed 's/plates.bin/gone.bin/' plates.gltf >bad.gltf
+run --check --report=index.html --fail-on=never bad.gltf plates.gltf
+run --check --fail-on=never --report-format=text bad.gltf plates.gltf
+is "$(grep -c '^  1 error, 0 warnings, 0 infos$' ../out.txt) $(tail -1 ../out.txt)" "1 2 files: 2 errors, 0 warnings, 4 infos"
+run -q --fix plates.gltf fixed.gltf
+run --check --diff --report=gone.html --fail-on=never plates.gltf fixed.gltf
+run --check --diff --report=new.html --fail-on=never fixed.gltf plates.gltf
+if [ ! -x "${CHROMIUM:-/usr/bin/chromium}" ] || [[ $BUILD = *sanitize* ]]; then
+	skip_case "chromium is not installed"
+else
+	shown index.html >index.dom
+	is "$(grep -o '>2 errors<' index.dom | head -1) $(grep -o '<td class="numeric error">1</td>' index.dom | wc -l)" ">2 errors< 2"
+	is "$(shown new.html | grep -c 'class="command"><code>nmtan --fix plates.gltf') $(shown gone.html | grep -c 'class="command"')" "1 0"
+fi
+
 # A browser shows the same for every build that made the page; sanitizers look at its making alone.
 case $BUILD in *sanitize*) browses=false side=60 ;; *) browses=true side=708 ;; esac
 

@@ -169,6 +169,10 @@ static void write_report(const nt_report_list *reports, const nt_report *report,
 	if (report->failure) {
 		nt_buffer_text(out, "not judged: ");
 		nt_buffer_clean(out, report->failure);
+		if (report->finding_count) { /* found before */
+			nt_buffer_text(out, "\n  ");
+			nt_totals_text(&totals, out);
+		}
 		nt_buffer_text(out, "\n");
 		return;
 	}

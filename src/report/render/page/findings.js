@@ -80,7 +80,7 @@ class Findings {
 				element('span', {class: 'number'}, count(items.length)), element('code', {}, code)),
 			element('p', {class: 'remedy'}, row.remedy || ''),
 			element('details', {class: 'about'}, element('summary', {}, 'What it means'), row.meaning || ''), list);
-		const command = items.find(x => x.repair)?.repair;
+		const command = items.find(x => x.repair && !(data.diff && !x.file.number))?.repair; // the old version stays
 		if (command) group.insertBefore(this.command(command), group.querySelector('.about'));
 		const needed = items.indexOf(this.chosen) + 1;
 		const fill = () => { if (group.open && !list.firstChild) this.fill(list, items, Math.max(MOST_ROWS, needed)); };

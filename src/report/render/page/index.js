@@ -46,7 +46,7 @@ class Overview {
 		if (file.page) { canvas.layout = file.layout; this.observer.observe(canvas); }
 		else if (mesh && mesh.triangles <= MOST_THUMB_TRIANGLES) { canvas.mesh = mesh; this.observer.observe(canvas); }
 		const address = file.page || '#file-' + file.number;
-		const number = (n, kind) => element('td', {class: 'numeric ' + (n ? kind || '' : 'none')}, file.failure ? '–' : count(n));
+		const number = (n, kind) => element('td', {class: 'numeric ' + (n ? kind || '' : 'none')}, file.failure && !n ? '–' : count(n));
 		const folder = file.name.slice(0, file.name.lastIndexOf('/') + 1);
 		return element('tr', {class: file.failure || file.counts[0] ? 'error' : file.counts[1] ? 'warning' : 'clean', onclick: () => { location.href = address; }},
 			element('td', {}, element('div', {class: 'thumbs'}, model, canvas)),
