@@ -161,7 +161,7 @@ static void plan_options_of(run *r)
 	const nt_settings *s = r->settings;
 	nt_read_options *o = &r->read_options;
 	o->edits = nt_writer_edits(r->reader, r->writer);
-	o->checks_kept = o->across && s->check && s->report && !r->writer;
+	o->checks_kept = o->across && s->report && (o->edits || !r->writer);
 	o->only_results = o->edits && !s->check && !s->report && !s->verify && !s->bitangents && !o->across &&
 		s->draco <= NT_DRACO_OFF && s->normals == NT_NORMALS_AUTO && !s->list_meshes;
 	/* primitives, or normals that are made for some that are compressed */

@@ -251,7 +251,8 @@ static nt_status solve_join(const wishes *job, const nt_join *join, const nmtan_
 		nt_mesh *mesh = join->parts[i];
 		if (mesh->plan.transform_of)
 			continue;
-		if (!status && !job->splits)
+		/* kept ones are compared with them */
+		if (!status && (!job->splits || !nt_mesh_is_wanted(mesh)))
 			continue;
 		nmtan_split_output output;
 		if (!status)

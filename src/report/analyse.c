@@ -99,7 +99,7 @@ static nt_stored stored_tangents(const nt_mesh *mesh, bool written)
 {
 	if (written && mesh->split.vertex_tangents)
 		return NT_STORED_SPLIT;
-	if (written && mesh->corner_tangents)
+	if (written && mesh->corner_tangents && nt_mesh_is_wanted(mesh))
 		return NT_STORED_CORNERS;
 	return mesh->tangents ? NT_STORED_AUTHORED : NT_STORED_NONE;
 }

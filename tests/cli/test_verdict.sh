@@ -1094,6 +1094,30 @@ run --check -q --report=all.sarif --fail-on=never m.gltf
 is "$(value all.sarif '" ".join(c["id"] for c in r["runs"][0]["tool"]["driver"]["rules"] if c["help"]["text"].endswith(" IN OUT"))' | tr ' ' '\n' | sort)" \
 	"$(tr ' ' '\n' <<<"${codes_repaired# }" | sort -u)"
 
+scene "--across=mesh judges kept tangents by the whole mesh, in a check of the file, of a conversion, and in that; a report changes no byte"
+mapped
+gltf m.gltf two 'const [p] = g.meshes[0].primitives, a = p.attributes; delete a.TANGENT;
+	g.meshes[0].primitives.push({...p, attributes: {NORMAL: a.NORMAL, TEXCOORD_0: add("VEC2", 5126, [1, 1, 2, -1.5, 2, -2.5, 1, 0], {}),
+		POSITION: add("VEC3", 5126, [1, 0, 0, 2, 0, 0, 2, 1, 0, 1, 1, 0], {})}})'
+run -q --across=mesh two.gltf whole.gltf
+run -q two.gltf apart.gltf
+gltf whole.gltf half 'delete g.meshes[0].primitives[1].attributes.TANGENT'
+while IFS='|' read -r input options found; do
+	for words in "--check" "--check -o out.glb" ""; do
+		run -q $words --report=r.json --fail-on=never $options $input.gltf $([ -n "$words" ] || echo out.glb)
+		is "$input $options, $words: $(value r.json 'len([f for f in r["files"][0]["findings"] if f["code"] in ("TAN_DIRECTION_MISMATCH", "TAN_MADE_BY")]) > 0')" "$input $options, $words: $found"
+	done
+	run -q $options $input.gltf again.glb
+	same out.glb again.glb
+done <<'END'
+whole|--across=mesh|False
+apart|--across=mesh|True
+apart|--across=primitive|False
+half|--across=mesh|False
+half|--across=mesh --draco=edgebreaker|False
+half|--across=mesh --existing=repair|False
+END
+
 scene "a command names the file as the user did, from a folder beside it, too"
 cp "$data"/plates.{gltf,bin} "$data/bumps.png" .
 mkdir -p sub/deep
