@@ -26,6 +26,7 @@ is "$(value m 'm["mirrored_cube.obj"]["missing"], m["mirrored_cube.obj"]["findin
 	"(['mirrored_cube.mtl'], 1)"
 is "$(value m '[m["plates.gltf"][k] for k in ("triangles", "vertices_before", "vertices_after", "split", "options")]')" \
 	"[8, 12, 14, 2, '--method=area']"
+is "$(value m '"origin" in m["plates.gltf"], m["plates.gltf"]["fixed"]')" "(False, {})"
 # the stages are nearly all of a run; of twenty the scheduler leaves one alone
 rest='m["plates.gltf"]["seconds"]["total"] - sum(v for k, v in m["plates.gltf"]["seconds"].items() if k != "total")'
 for try in $(seq 20); do

@@ -35,6 +35,7 @@ c30.png 4 4 (10 * x, 20 * y, 30)
 d.tga 4 4 (60 * x, 60 * x, 60 * x)
 holes.png 4 4 255 * (x % 2)
 white.png 4 4 255
+late.png 4 4 255 if y < 3 or x < 2 else 128
 leaf.png 8 8 (9, 8, 7, 255 * (x > y))
 20000x1.png 20000 1 (9, 9, 9)
 1x20000.png 1 20000 (9, 9, 9)

@@ -212,9 +212,10 @@ mv * moved/ 2>/dev/null
 cd moved
 run --update --record=records/r -d out $inputs
 is "$(made)" ""
-run --update --record=nowhere/r -d out $inputs
+run --update --record=nowhere/r -d never $inputs
 exits 2
 says "nowhere"
+is "$(ls never)" "" # nothing ran
 
 scene "a record's lines are as the schema says"
 take

@@ -3,7 +3,7 @@
 #include "cli/messages.h"
 #include "test.h"
 
-static const nt_style plain = {false, 0, true}, verbose = {false, 1, true}, coloured = {true, 0, true};
+static const nt_style plain = {false, 0, true}, coloured = {true, 0, true};
 
 static void says(nt_buffer *out, const char *expected)
 {
@@ -37,75 +37,6 @@ TEST(an_error_stands_behind_its_line_offset_or_pointer)
 	/* text from files cannot steer the terminal */
 	nt_fail(&error, NT_ERROR_INPUT, "found '%s'", "\033[2J\r\n\x7f\xc3\xa9");
 	fails_with(&error, "a\tb", plain, "nmtan: a\\x09b: found '\\x1b[2J\\x0d\\x0a\\x7f\xc3\xa9'\n");
-}
-
-TEST(findings_come_worst_first_and_grouped)
-{
-	nt_finding_list findings = {0};
-	nt_place place;
-	nt_place_clear(&place);
-	for (unsigned i = 0; i < 8; i++) {
-		place.line = i + 1;
-		nt_finding_add(&findings, NT_CODE_MATERIAL_UNKNOWN, &place, 1, "m%u", i);
-		nt_finding_add(&findings, NT_CODE_NORMALS_MADE, &place, 1, "o%u", i);
-	}
-	static nt_report_options options; /* zeros: as the table says */
-	nt_buffer out = {0};
-	nt_message_findings(&out, &findings, NULL, &options, "a.obj", NULL, false, NT_SEVERITY_ERROR, plain);
-	assert_says(out.data, PARTS("nmtan: a.obj:1: warning: ", "nmtan: a.obj:5: warning: ", "!a.obj:6:",
-		"nmtan: warning: and 3 more [MATERIAL_UNKNOWN]", "!NORMALS_MADE"));
-	nt_buffer_free(&out);
-
-	nt_message_findings(&out, &findings, NULL, &options, "a.obj", NULL, true, NT_SEVERITY_ERROR, verbose);
-	const char *warning = strstr(out.data, "a.obj:8: warning: ");
-	const char *info = strstr(out.data, "a.obj:1: info: ");
-	assert_true(warning && info && warning < info);
-	assert_null(strstr(out.data, "more"));
-	nt_buffer_free(&out);
-
-	/* severities are those that the user says */
-	options.severity[NT_CODE_MATERIAL_UNKNOWN] = 1 + NT_SEVERITY_INFO;
-	options.severity[NT_CODE_NORMALS_MADE] = 1 + NT_SEVERITY_WARNING;
-	nt_message_findings(&out, &findings, NULL, &options, "a.obj", NULL, false, NT_SEVERITY_ERROR, plain);
-	assert_says(out.data, PARTS("a.obj:1: warning: ", "NORMALS_MADE", "!MATERIAL_UNKNOWN"));
-	nt_buffer_free(&out);
-	nt_finding_list_free(&findings);
-}
-
-TEST(success_is_one_line_that_accounts_for_everything)
-{
-	nt_buffer out = {0};
-	nt_settings settings = {0};
-	char output[] = "b.glb";
-	nt_outcome outcome = {0};
-	nt_summary *summary = &outcome.summary;
-	nt_job job = {.input = "a.obj", .output = output, .outcome = &outcome};
-	*summary = (nt_summary){.mesh_count = 3, .solved_count = 2, .triangle_count = 12,
-		.vertex_count = 20, .appended_tangents = 4, .appended_normals = 1, .total_seconds = 0.25};
-	summary->skipped[NT_SKIP_NO_TEXCOORDS] = 1;
-	nt_message_success(&out, &job, &settings);
-	char expected[256];
-	snprintf(expected, sizeof expected,
-		"nmtan: a.obj -> b.glb: 2 of 3 primitives, 12 triangles, 20 -> 25 vertices "
-		"(+4 where tangents differ, +1 where made normals differ), skipped 1 (%s), 250 ms\n",
-		nt_decision_text(NT_SKIP_NO_TEXCOORDS));
-	says(&out, expected);
-
-	char stream[] = "-";
-	job = (nt_job){.input = "-", .output = stream, .outcome = &outcome};
-	*summary = (nt_summary){.mesh_count = 1, .solved_count = 1, .triangle_count = 1, .vertex_count = 3};
-	nt_message_success(&out, &job, &settings);
-	says(&out, "nmtan: standard input -> standard output: 1 primitive, 1 triangle, 3 vertices, 0.1 ms\n");
-
-	/* every primitive is judged, whichever would get tangents */
-	job = (nt_job){.input = "a.obj", .outcome = &outcome};
-	*summary = (nt_summary){.mesh_count = 3, .solved_count = 1, .triangle_count = 1,
-		.vertex_count = 3, .repaired = 3};
-	summary->skipped[NT_SKIP_NO_TEXCOORDS] = 2;
-	settings.check = true;
-	nt_message_success(&out, &job, &settings);
-	says(&out, "nmtan: a.obj: checked, 3 primitives, would repair the tangents of 3 corners, "
-		"no findings, 0.1 ms\n");
 }
 
 TEST(times_are_numbers_for_people)
