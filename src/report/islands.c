@@ -144,10 +144,11 @@ static double uv_area(const float *a, const float *b, const float *c)
 		((double)b[1] - a[1]) * ((double)c[0] - a[0]);
 }
 
+/* Coordinates that a material scales beyond what float holds are no numbers then: the first cell has them. */
 static int cell_of(const grid *g, int axis, double value)
 {
 	const double cell = (value - g->minimum[axis]) * g->scale[axis];
-	return cell < 0.0 ? 0 : cell >= GRID_SIZE ? GRID_SIZE - 1 : (int)cell;
+	return !(cell >= 0.0) ? 0 : cell >= GRID_SIZE ? GRID_SIZE - 1 : (int)cell;
 }
 
 /* Numbers the images that the materials of primitives have: the first map of each, normal maps before others. */

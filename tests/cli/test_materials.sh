@@ -123,6 +123,14 @@ exits 0
 for word in Ka Ns Ni; do says "info: 1 statement was not used: MTL: $word [STATEMENT_IGNORED]"; done
 is "$(gltf quad.glb 'g.materials[0].pbrMetallicRoughness')" '{"metallicFactor":0}'
 
+scene "texture coordinates that a map's scale makes infinite do not end a check"
+printf 'newmtl m\nnorm -s 4 4 n.png\n' >m.mtl
+printf '%s\n' 'mtllib m.mtl' 'usemtl m' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'v 1 1 0' 'vt 0 0' 'vt 3e38 0' 'vt 0 3e38' 'vt 0 1' 'vt 1 0' \
+	'f 1/1 2/3 3/2' 'f 2/1 4/5 3/4' >far.obj
+run --check --fail-on=never far.obj
+exits 0
+prints "2 UV islands"
+
 scene "maps of two sizes: rows of the smaller one lie between its own"
 images write r.png 1 4 '0'
 images write m.png 1 2 '200 * y'
