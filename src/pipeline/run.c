@@ -576,6 +576,17 @@ static nt_status name_limit(run *r, nt_status status)
 	return r->error->status;
 }
 
+/* Vertices that several meshes share are counted once, and copies that they share too. */
+static void count_once(const nt_shared_vertices *shared, nt_summary *summary)
+{
+	const size_t copies = shared->after - shared->before, counted = shared->copies;
+	summary->vertex_count -= shared->counted - shared->before;
+	if (copies >= counted || counted - copies <= summary->appended_tangents)
+		summary->appended_tangents += copies - counted;
+	else
+		summary->appended_normals += copies - counted;
+}
+
 nt_status nt_run(const char *input, const char *output, const nt_settings *settings,
 	nt_summary *summary, nt_error *error)
 {
@@ -622,6 +633,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	if (!status) /* else meshes may be without content */
 		count_shading(&r);
 	summary->welded = r.scene.welded;
+	count_once(&r.scene.shared, summary);
 	summary->unchanged = !status && is_unchanged(&r);
 	summary->keeps_wrong = !settings->check && keeps_wrong(summary);
 	r.scene.findings = (nt_finding_list){0};

@@ -419,8 +419,6 @@ static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 		size_t count;
 	} rows[] = {
 		{unmapped ? NT_CODE_UV_UNMAPPED : NT_CODE_UV_DEGENERATE_TRIANGLE, degenerate},
-		/* rounding may have made them */
-		{NT_CODE_POS_DEGENERATE_TRIANGLE, scene->positions_rounded ? 0 : c->degenerate_positions},
 		{NT_CODE_UV_FOLDED_QUAD, c->folded_quads},
 		{NT_CODE_UV_ROUNDED_AWAY, c->stored_differently},
 		{NT_CODE_NORMALS_SCALED, mesh->scaled_normals},
@@ -447,10 +445,11 @@ static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 		add_halfway(list, mesh, &mesh->morphs[m]);
 }
 
-static void add_counts(nt_summary *summary, const nt_mesh *mesh)
+static void add_counts(nt_summary *summary, nt_mesh *mesh)
 {
 	if (mesh->decision == NT_DECISION_NORMALS)
 		return;
+	mesh->copies = mesh->vertex_count - mesh->source_vertex_count + mesh->split.source_count;
 	summary->solved_count++;
 	summary->triangle_count += count_triangles(mesh);
 	summary->repaired += mesh->decision == NT_DECISION_REPAIR && mesh->has_tangents

@@ -303,7 +303,6 @@ static void add_scene_finding(nt_check *check, const mesh_table *table, const nt
 	const nt_finding *found = &all->items[noted];
 	/* the solve counts these too, but does not know where they are: geometry.c does */
 	if (found->code == NT_CODE_UV_DEGENERATE_TRIANGLE || found->code == NT_CODE_UV_UNMAPPED ||
-		found->code == NT_CODE_POS_DEGENERATE_TRIANGLE ||
 		(found->code == NT_CODE_UV_MISSING && isdigit((unsigned char)found->detail[0]))) /* of some */
 		return;
 	const char *repair = found->repair; /* its text goes with the scene */

@@ -328,6 +328,7 @@ typedef struct nt_mesh {
 	size_t left_tangents;     /* those that stay, as a solve gives no valid one either */
 	nt_split split;
 	uint64_t tangents_digest; /* of split.vertex_tangents, where that is wanted; 0: not known */
+	size_t copies;            /* vertices that made normals and the split appended */
 	bool merged;              /* the writer has merged them with those of the meshes that share its vertices */
 } nt_mesh;
 
@@ -351,6 +352,12 @@ typedef struct nt_morph_cost {
 	size_t targets;
 	uint64_t bytes, mesh_bytes;
 } nt_morph_cost;
+
+/* Vertices of pools of several solved meshes. Each mesh by itself counts those of its pool, and its copies. */
+typedef struct nt_shared_vertices {
+	size_t counted, copies; /* by all of these meshes */
+	size_t before, after;   /* in fact: in the source, and in the output */
+} nt_shared_vertices;
 
 /* Vertices that --weld looked at, and what is left of them. */
 typedef struct nt_weld_result {
@@ -384,6 +391,7 @@ typedef struct nt_scene {
 	nt_rounding rounding; /* of all meshes that were written */
 	nt_morph_cost morph_cost; /* the same */
 	nt_weld_result welded;    /* the same */
+	nt_shared_vertices shared; /* the same */
 
 	const bool *turned_images; /* [turned_image_count] images of a glTF whose green --fix turns; NULL: all that
 	                              need it, if any are turned */

@@ -103,4 +103,31 @@ is "$(wc -l <"$WORK/out.txt")" 12
 run --manifest=m -d out bad*.obj
 says "2 failed for other reasons, which are in m"
 
+# Two squares side by side in one set of six vertices; the right one is mirrored, so that the two vertices at the border
+# need a copy. The third primitive is the first again.
+scene "vertices that primitives share are counted once, and so are their copies"
+gltf new pair 'const attributes = {POSITION: add("VEC3", 5126, [0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0]),
+		NORMAL: add("VEC3", 5126, Array(6).fill([0, 0, 1]).flat()),
+		TEXCOORD_0: add("VEC2", 5126, [0, 1, 1, 1, 0, 1, 0, 0, 1, 0, 0, 0])};
+	const square = a => ({attributes, indices: add("SCALAR", 5125, [a, a + 1, a + 4, a, a + 4, a + 3])});
+	g.meshes = [{primitives: [square(0), square(1), square(0)]}]; g.nodes = [{mesh: 0}]'
+run --only=all --manifest=m pair.gltf out.gltf
+exits 0
+says "3 primitives, 6 triangles, 6 -> 8 vertices (+2 where tangents differ)"
+is "$(value m '[m["pair.gltf"][k] for k in ("vertices_before", "vertices_after", "split")]')" "[6, 8, 2]"
+is "$(gltf out.gltf 'g.accessors[g.meshes[0].primitives[0].attributes.POSITION].count')" 8
+
+# A quad of four points on a line, and one of two points: four triangles without area in both reports. A conversion alone
+# does not look for them.
+scene "a conversion counts no triangles otherwise than its report does"
+printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n' >flat.obj
+printf 'f 1/1/1 2/2/1 3/3/1 4/4/1\nf 1/1/1 1/2/1 2/3/1 2/4/1\nf 1/1/1 2/2/1 5/3/1\n' >>flat.obj
+run --report=r.json --manifest=m flat.obj out.gltf
+run --check --report=c.json flat.obj
+for report in r c; do
+	is "$report $(python3 -c 'import json; print([f["count"] for f in json.load(open("'$report'.json"))["files"][0]["findings"]
+		if f["code"] == "POS_DEGENERATE_TRIANGLE"])')" "$report [4]"
+done
+is "$(value m '"POS_DEGENERATE_TRIANGLE" in m["flat.obj"]["findings"]')" False
+
 done_testing

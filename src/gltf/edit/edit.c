@@ -233,12 +233,37 @@ static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 		e->of_window, e->error);
 }
 
+/* Notes how many vertices the meshes of a pool have counted each, and how many there are. Welding counts for itself. */
+static void count_shared(const editing *e, const nt_pool_vertices *vertices)
+{
+	const nt_vertex_pool *pool = vertices->pool;
+	nt_shared_vertices all = {.before = vertices->old_count, .after = vertices->new_count};
+	size_t users = 0;
+	for (size_t i = 0; i < pool->user_count && vertices->own_count == vertices->old_count; i++) {
+		const nt_mesh *mesh = nt_pool_mesh(pool, i);
+		if (!nt_pool_is_solved(pool, i) || mesh->decision == NT_DECISION_NORMALS)
+			continue;
+		users++;
+		all.counted += mesh->unused_vertices + mesh->source_vertex_count;
+		all.copies += mesh->copies;
+	}
+	nt_shared_vertices *shared = &e->scene->shared;
+	if (users < 2)
+		return;
+	shared->counted += all.counted;
+	shared->copies += all.copies;
+	shared->before += all.before;
+	shared->after += all.after;
+}
+
 static nt_status edit_pool(const editing *e, pool_edit *p)
 {
 	/* One vertex for each tangent that a vertex has. */
 	uint32_t buffer = 0;
 	nt_status status = p->for_draco ? NT_OK :
 		nt_pool_vertices_get(e->pools, p->number, &p->pool, e->of_window, &p->vertices, e->error);
+	if (!status)
+		count_shared(e, &p->vertices);
 	if (!status)
 		status = choose_buffer(e, &p->pool, &buffer);
 
