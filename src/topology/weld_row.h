@@ -44,7 +44,7 @@ static inline uint64_t nt_weld_hash(const nt_weld_key *key, const nt_weld_row *r
 {
 	const uint64_t a = nt_weld_word(row, 0) ^ key->words[0], b = nt_weld_word(row, 1) ^ key->words[1];
 	const uint64_t c = nt_weld_word(row, 2) ^ key->words[2], d = nt_weld_word(row, 3) ^ key->words[3];
-#if defined(__SIZEOF_INT128__) && !defined(NMTAN_PLAIN_C)
+#if defined(__SIZEOF_INT128__) && !defined(NMTAN_PLAIN_C) && !defined(__wasm__)
 	/* an addition with carry: gcc makes three instructions more of the one below */
 	const unsigned __int128 whole = (unsigned __int128)a * b + (unsigned __int128)c * d;
 	const uint64_t sum = (uint64_t)whole, upper = (uint64_t)(whole >> 64);
