@@ -19,6 +19,7 @@ enum {
 	MOST_IN_CELL = 63, /* corners, which have a bit each */
 	WINDOW = 16,       /* triangles at the end that hold the last run */
 	LAST = 4,          /* a vertex of the last triangle that is older than these is likely to be found there */
+	BLOCK = 32,        /* rows that are cleared at a time */
 	MOST_ROUNDS = 8
 };
 
@@ -48,8 +49,11 @@ static uint32_t middle_of(uint32_t a, uint32_t b, uint32_t c)
 static bool link_corners(few *f)
 {
 	const size_t rows = f->mesh->vertex_count;
-	memset(f->first, 0xff, rows * sizeof *f->first);
-	memset(f->high, 0, rows * sizeof *f->high);
+	/* blocks of one size need no calls */
+	for (size_t v = 0; v < rows; v += BLOCK) {
+		memset(f->first + v, 0xff, BLOCK * sizeof *f->first);
+		memset(f->high + v, 0, BLOCK * sizeof *f->high);
+	}
 	for (uint32_t t = f->count; t-- > 0;) {
 		const uint32_t *v = f->ids + 3 * t, a = v[0], b = v[1], c = v[2];
 		uint16_t *const next = f->next + 4 * t;
@@ -66,17 +70,21 @@ static bool link_corners(few *f)
 		f->high[v[1]] = (uint16_t)(4 * t + 1);
 		f->high[v[2]] = (uint16_t)(4 * t + 2);
 	}
-	memcpy(f->low, f->first, rows * sizeof *f->low);
+	/* one by one: a load of more than was stored at once waits for all stores */
 	uint32_t bits = 0;
-	for (size_t v = 0; v < rows; v++)
-		bits |= f->first[v];
+	for (size_t v = 0; v < rows; v++) {
+		const uint32_t first = f->first[v];
+		f->low[v] = first & (NONE >> 1);
+		bits |= first;
+	}
 	return bits < 4 * NT_EDGE_FEW;
 }
 
 static void find_least(few *f)
 {
 	f->least = 0;
-	for (uint32_t t = f->count; t-- > f->window;) {
+	/* the middle corner of a triangle is not above its second one */
+	for (uint32_t t = f->count; t-- > f->window && 4 * t + 1 > f->least;) {
 		const uint32_t *v = f->ids + 3 * t;
 		const uint32_t middle = middle_of(f->low[v[0]], f->low[v[1]], f->low[v[2]]);
 		if (middle > f->least && !nt_welded_is_degenerate(f->mesh, v))

@@ -113,12 +113,14 @@ static nmtan_status find_unsorted(nt_fast *fast, const nt_borrowed *memory)
 		return NMTAN_OK;
 	if (fast->tail.notes && !fast->tail.is_grid_of_used)
 		fast->tail.is_grid_of_used = is_box_used(fast);
-	nt_scratch_init(&lent, &scratch->allocator);
-	if (is_lent)
+	if (is_lent) {
+		nt_scratch_init(&lent, &scratch->allocator);
 		nt_scratch_lend(&lent, memory->begin, bytes);
+	}
 	const nt_welded_mesh mesh = welded_mesh(fast, is_lent ? &lent : scratch);
 	const nmtan_status status = nt_find_unsorted(&mesh, &fast->tail, scratch, &fast->unsorted);
-	nt_scratch_free(&lent);
+	if (is_lent)
+		nt_scratch_free(&lent);
 	if (fast->unsorted.limit && fast->solve->sorted_instead)
 		*fast->solve->sorted_instead = true;
 	return status;
