@@ -342,7 +342,7 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 	lanes_out out;
 	const float offset = nt_stored_v_offset(fast->solve->mesh);
 	const bool scattered = fast->scattered;
-	nt_edge_note *note = fast->tail.notes ? nt_edge_notes(&fast->tail, range) : NULL;
+	nt_edge_note *note = fast->tail->notes ? nt_edge_notes(fast->tail, range) : NULL;
 	static_assert((int)NT_EDGE_NOTE_MOST == NT_TRIANGLES && (int)NT_EDGE_NOTE_LEAST == NT_TRIANGLES - 1, "a batch");
 	for (size_t first = begin, count; first < end; first += count) {
 		count = end - first < NT_TRIANGLES ? end - first : NT_TRIANGLES;
@@ -354,7 +354,7 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
 		gather_lanes(fast->rows, ids, count, whole_lanes(count), in.row[0][0], NT_TRIANGLES);
 		if (note) {
-			*note = (nt_edge_note){(uint32_t)first, near_triangles(&fast->tail, &in, count)};
+			*note = (nt_edge_note){(uint32_t)first, near_triangles(fast->tail, &in, count)};
 			note += note->triangles != 0;
 		}
 		if (scattered)

@@ -85,7 +85,7 @@ static nt_welded_mesh welded_mesh(const nt_fast *fast, nt_scratch *scratch)
 static nmtan_status make_tail(nt_fast *fast, nt_borrowed *memory)
 {
 	const nt_welded_mesh mesh = welded_mesh(fast, fast->solve->scratch);
-	return fast->solve->sorted ? NMTAN_OK : nt_edge_tail_make(&mesh, &fast->ranges, memory, &fast->tail);
+	return fast->solve->sorted ? NMTAN_OK : nt_edge_tail_make(&mesh, &fast->ranges, memory, fast->tail);
 }
 
 /* Whether the vertices that make the box are known to have corners. */
@@ -93,7 +93,7 @@ static bool is_box_used(const nt_fast *fast)
 {
 	bool used = true;
 	for (int i = 0; i < 6 && used; i++) {
-		const uint32_t vertex = fast->tail.extremes[i];
+		const uint32_t vertex = fast->tail->extremes[i];
 		used = fast->bins.cursors && nt_bins_have_corners(&fast->bins, vertex);
 		for (int o = 0; o < 2 && !fast->bins.cursors; o++)
 			used |= fast->records[o] && !(fast->records[o][vertex].state & NT_STATE_EMPTY);
@@ -111,14 +111,14 @@ static nmtan_status find_unsorted(nt_fast *fast, const nt_borrowed *memory)
 	const bool is_lent = bytes >= LEAST_LENT_BYTES * fast->triangle_count + LEAST_LENT_BYTES * LEAST_LENT_BYTES;
 	if (fast->solve->sorted)
 		return NMTAN_OK;
-	if (fast->tail.notes && !fast->tail.is_grid_of_used)
-		fast->tail.is_grid_of_used = is_box_used(fast);
+	if (fast->tail->notes && !fast->tail->is_grid_of_used)
+		fast->tail->is_grid_of_used = is_box_used(fast);
 	if (is_lent) {
 		nt_scratch_init(&lent, &scratch->allocator);
 		nt_scratch_lend(&lent, memory->begin, bytes);
 	}
 	const nt_welded_mesh mesh = welded_mesh(fast, is_lent ? &lent : scratch);
-	const nmtan_status status = nt_find_unsorted(&mesh, &fast->tail, scratch, &fast->unsorted);
+	const nmtan_status status = nt_find_unsorted(&mesh, fast->tail, scratch, &fast->unsorted);
 	if (is_lent)
 		nt_scratch_free(&lent);
 	if (fast->unsorted.limit && fast->solve->sorted_instead)
@@ -438,8 +438,10 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 {
 	assert(nt_fast_can(solve));
 	const nt_kernels *kernels = NT_CPU_TABLE(solve->isa, nt_kernels);
+	nt_edge_tail tail;
+	tail.notes = NULL; /* the rest is made where there are some: few triangles do not wait for 300 bytes of zeros */
 	nt_fast fast = {.solve = solve, .triangle_count = nt_triangle_count(solve->mesh, solve->corner_count),
-		.wants_more = solve->bitangents || solve->magnitudes, .sparse = solve->sparse};
+		.wants_more = solve->bitangents || solve->magnitudes, .sparse = solve->sparse, .tail = &tail};
 	bool added = false;
 	nmtan_status status = NMTAN_OK;
 	if (plan->small && nt_fast_is_small(&fast))

@@ -63,7 +63,7 @@ typedef struct nt_fast {
 	                            result, or not usable */
 	bool scattered;          /* neighbouring triangles have vertices far apart: prefetch */
 	nt_bins bins;            /* of a scattered mesh: its corners on their way to the records */
-	nt_edge_tail tail;
+	nt_edge_tail *tail;      /* what step 4 notes of the last triangles */
 	nt_unsorted unsorted;    /* edges that are not paired as a vertex's corners alone would have it */
 	nt_triangle_ranges ranges;
 	nt_deferred *deferred;       /* [ranges]; NULL: there is one */
