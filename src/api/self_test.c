@@ -78,7 +78,7 @@ int nmtan_self_test(void)
 			vertices[v][i] = (float)rows[v][i] / (i < 3 ? 100.0f : 127.0f);
 	for (size_t i = 0; i < RIM; i++) {
 		const float x = vertices[rim[i]][0] * 0x1p-54f, y = vertices[rim[i]][1] * 0x1p-54f;
-		const float pole[8] = {x, y, -1.0f, x, y, -1.0f, (float)i / RIM, 0.0f};
+		const float pole[8] = {x, y, -1.0f, x, y, -1.0f, (float)i / (float)RIM, 0.0f};
 		memcpy(vertices[GRID + i], pole, sizeof pole);
 	}
 	make_triangles(indices);

@@ -227,7 +227,7 @@ static uint32_t list_vertices(const few *f, uint32_t vertex, uint32_t most, few_
 	const float at = nt_welded_position(f->mesh, vertex)[grid.axis];
 	const unsigned wanted = nt_grid_cell(&grid, at);
 	/* two cells, so that no rounding matters; if a box is so thin that this is 0, each float has its own cell */
-	const float reach = (grid.high - grid.low) * (2.0f / NT_CELLS);
+	const float reach = (grid.high - grid.low) * (2.0f / (float)NT_CELLS);
 	const float *x = f->mesh->positions + grid.axis;
 	uint32_t count = 0;
 	for (uint32_t v = 0; v < f->mesh->vertex_count; v++, x += f->mesh->step) {

@@ -288,7 +288,7 @@ static bool list_corners(question *q, unsigned only, float coordinate)
 	const nt_grid *grid = &q->tail->grid;
 	const float *const rows = m->positions + grid->axis;
 	/* two cells, so that no rounding matters; if a box is so thin that this is 0, each float has its own cell */
-	const float reach = only == NO_SLOT ? INFINITY : (grid->high - grid->low) * (2.0f / NT_CELLS);
+	const float reach = only == NO_SLOT ? INFINITY : (grid->high - grid->low) * (2.0f / (float)NT_CELLS);
 	uint32_t batch[BATCH];
 	size_t count = 0;
 	q->listed_count = q->listed_capacity = 0;
@@ -373,7 +373,7 @@ static uint32_t *make_cell(question *q, unsigned slot, nt_cell *cell)
 	uint32_t *vertices = nt_scratch_alloc(m->scratch, (size_t)corner_count + mask + 1, sizeof *vertices);
 	if (!corners || !vertices)
 		return NULL;
-	uint32_t *table = memset(vertices + corner_count, 0, (mask + (size_t)1) * sizeof *table);
+	uint32_t *table = (uint32_t *)memset(vertices + corner_count, 0, (mask + (size_t)1) * sizeof *table);
 	for (size_t i = 0; i < corner_count; i++) {
 		const uint32_t vertex = m->triangles->ids[nt_mesh_corner(m, listed[i])];
 		corners[i] = (nt_cell_corner){number_of(vertex, table, mask, vertices, &count), listed[i]};

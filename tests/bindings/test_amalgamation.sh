@@ -62,13 +62,13 @@ done
 ! command -v clang >/dev/null || ! clang -ffast-math -fsyntax-only -I"$one" "$source" 2>err.txt || wrong "clang"
 
 scene "no warnings, in C and C++, in plain C neither; the first lines name the macros"
-for define in SUMS PLAIN_C THREADS; do
-	for compiler in "gcc -std=c11" "clang -std=c11" "g++ -std=c++17 -x c++" "clang++ -std=c++17 -x c++"; do
+for define in DEFAULTS SUMS PLAIN_C THREADS; do
+	for compiler in "gcc -std=c11" "clang -std=c11" "g++ -std=c++17 -x c++" "clang++ -std=c++17 -x c++" "g++ -std=c++20 -x c++" "clang++ -std=c++20 -x c++"; do
 		# shellcheck disable=SC2086
 		! command -v "${compiler%% *}" >/dev/null || $compiler -Wall -Wextra -Wpedantic -Werror -fsyntax-only -DNMTAN_$define \
 			-I"$one" "$source" >err.txt 2>&1 || wrong "$compiler -DNMTAN_$define: $(head -20 err.txt)"
 	done
-	[ $define = PLAIN_C ] || sed -n '1,/\*\//p' "$source" | grep -q "^ \*   NMTAN_$define " || wrong "the first lines do not name NMTAN_$define"
+	[ $define = PLAIN_C ] || [ $define = DEFAULTS ] || sed -n '1,/\*\//p' "$source" | grep -q "^ \*   NMTAN_$define " || wrong "the first lines do not name NMTAN_$define"
 done
 
 scene "nmtan_self_test() sees contraction, and optimizations of clang's that have no macro"

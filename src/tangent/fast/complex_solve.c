@@ -341,7 +341,7 @@ static uint32_t end_of_group(const nt_complex *c, const part *all, uint32_t firs
 /* Whole groups, SOLVED members at most. */
 static void solve_groups(const nt_complex *c, const nt_batch *b, const uint32_t *members, uint32_t count)
 {
-	nt_corner solved[SOLVED + NT_LANES], sums[SOLVED], whole;
+	nt_corner solved[(int)SOLVED + NT_LANES], sums[SOLVED], whole;
 	const part all = {members, solved, count};
 	solve_members(c, members, count, solved);
 	for (uint32_t first = 0, end; first < count; first = end) {

@@ -270,7 +270,7 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned threa
 void nt_fast_write(nt_fast *fast, const nt_settled *settled)
 {
 	const nt_known *known = fast->solve->known;
-	writing w = {fast, .has_open = settled->complex_count > 0 || (known && known->open)};
+	writing w = {.fast = fast, .has_open = settled->complex_count > 0 || (known && known->open)};
 	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, write_ranges, &w);
 }
 

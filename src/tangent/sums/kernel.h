@@ -486,7 +486,8 @@ static void NT_NOINLINE finish_solve(finish_lanes *NT_RESTRICT l, float sign)
 		l->tangent[1][i] = (float)(sound != 0.0 ? scale * t.y : 0.0) + 0.0f;
 		l->tangent[2][i] = (float)(sound != 0.0 ? scale * t.z : 0.0) + 0.0f;
 		l->tangent[3][i] = sensitivity > 0.0 ? sign : 0.0f;
-		l->flags[i] = NT_VERTEX_MET * met + NT_VERTEX_LOST * met * (1.0 - sound) + NT_VERTEX_ILL * (1.0 - well);
+		l->flags[i] = (double)NT_VERTEX_MET * met + (double)NT_VERTEX_LOST * met * (1.0 - sound) +
+			(double)NT_VERTEX_ILL * (1.0 - well);
 	}
 }
 
