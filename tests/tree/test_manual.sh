@@ -60,7 +60,7 @@ scene "the pages are well formed, and nmtan has each option that they name, with
 "$NMTAN" --help | grep -oE -- '--[a-z-]+' | sort -u >options
 for page in nmtan-mtl.7 nmtan-report.5 nmtan-engines.7; do
 	well_formed "$ROOT/man/$page"
-	grep -v 'cc \$(pkg' "$ROOT/man/$page" | sed -e 's/\\-/-/g' >text
+	grep -v 'cc program.c' "$ROOT/man/$page" | sed -e 's/\\-/-/g' >text
 	grep -oE -- '--[a-z][a-z-]*' text | sort -u >named
 	is "$page: $(comm -23 named options)" "$page: "
 	# a value that is none is refused before any file is looked at
@@ -69,6 +69,40 @@ for page in nmtan-mtl.7 nmtan-report.5 nmtan-engines.7; do
 		! grep -q -- "${word%%=*}:\|unknown option" said || wrong "$page: $word: $(head -1 said)"
 	done < <(grep -oE -- '--[a-z][a-z-]*=[a-z][a-z-]*' text | sort -u)
 done
+
+# example CODE: the smallest example of a code, as the page has it.
+example() {
+	text "$ROOT/man/nmtan-report.5" | sed -n "/^\.SS $1 /,/^\.S[SH] [^$]/p" | grep -A1 'Smallest example' | sed -n '2s/\.$//p'
+}
+
+scene "examples of nmtan-report(5) that are commands find what they stand for"
+cp "$data/plates.bin" .
+mkdir a b
+cp "$data/bumps.png" a
+gltf "$data/plates.gltf" a/in 'g.images = [{uri: "bumps.png"}]; g.textures = [{source: 0}]'
+cp plates.bin a
+command=$(example LINK_LEAVES)
+eval "run ${command#nmtan }"
+exits 0
+says "[LINK_LEAVES]"
+is "$(gltf b/out.gltf 'g.images[0].uri')" "../a/bumps.png"
+gltf "$data/quantized.gltf" outlined 'g.meshes[0].primitives[0].extensions = {CESIUM_primitive_outline: {indices: add("SCALAR", 5123, [0, 1], {})}};
+	(g.extensionsUsed ??= []).push("CESIUM_primitive_outline")'
+command=$(example WELD_LEFT)
+command="${command#nmtan } outlined.gltf out.gltf"
+eval "run ${command/ of a primitive with CESIUM_primitive_outline/}"
+says "CESIUM_primitive_outline"
+says "[WELD_LEFT]"
+command=$(example TAN_QUANTIZED)
+run -v ${command#converting any quad with } "$data/quad.obj" out.glb
+exits 0
+says "[TAN_QUANTIZED]"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n' >one.obj
+run -q --only=needed one.obj one.gltf
+command=$(example TAN_QUADS_NONE)
+run ${command#one triangle of a glTF, converted with } one.gltf out.gltf
+exits 0
+says "[TAN_QUADS_NONE]"
 
 scene "the page for importers is well formed and has a row and a section with sources for each engine"
 engines=$ROOT/man/nmtan-engines.7
