@@ -102,8 +102,8 @@ typedef struct edge_pair {
 /* Instead of a member's number, from 1 on; instead of a slot. */
 enum { NOBODY = 0, NO_SLOT = 255 };
 
-/* The table of members; triangles that are listed at a time. */
-enum { MEMBER_PLACES = 512, BATCH = 32 };
+/* The table of members. */
+enum { MEMBER_PLACES = 512 };
 
 /* Members are vertices of the last triangles. The representative of each is between two corners; if these are equal, it
  * is known. */
@@ -118,8 +118,8 @@ typedef struct question {
 	uint32_t slot_count, slot_begins[MOST_MEMBERS + 1];
 	size_t noted_count;          /* triangles */
 	uint32_t *listed;            /* [listed_count] corners in cells that are watched, ascending: 3 * triangle + k */
-	uint8_t *listed_slots;       /* [listed_count] */
-	size_t listed_count, listed_capacity;
+	uint8_t *listed_slots;       /* [listed_count] if all slots are listed */
+	size_t listed_count;
 	uint32_t *corners;           /* the same by slot */
 	uint32_t member_count, vertices[MOST_MEMBERS + 1];
 	uint8_t firsts[MEMBER_PLACES], next[MOST_MEMBERS + 1]; /* members by the lowest bits of their vertices */
@@ -235,83 +235,41 @@ static void note_all_members(question *q)
 
 /* Representatives, as far as they are needed */
 
-/* Lists the corners of triangles, at most BATCH, that are in slot `only`; NO_SLOT: in any. */
-static void list_triangles(question *q, const uint32_t *triangles, size_t count, unsigned only)
-{
-	const nt_welded_mesh *m = q->mesh;
-	const nt_grid grid = q->tail->grid;
-	const float *const coordinates = m->positions + grid.axis;
-	float at[3 * BATCH];
-	uint32_t cells[3 * BATCH];
-	for (size_t i = 0; i < count; i++) {
-		uint32_t copy[3];
-		const uint32_t *v = nt_vertices_of(m, triangles[i], copy);
-		for (int k = 0; k < 3; k++)
-			at[3 * i + k] = coordinates[m->step * v[k]];
-	}
-	for (size_t c = 0; c < 3 * count; c++)
-		cells[c] = nt_grid_cell(&grid, at[c]);
-	size_t end = q->listed_count;
-	for (size_t c = 0; c < 3 * count; c++) {
-		const uint8_t slot = q->slots[cells[c]];
-		q->listed[end] = 3 * triangles[c / 3] + (uint32_t)(c % 3);
-		q->listed_slots[end] = slot;
-		end += only == NO_SLOT ? slot != NO_SLOT : slot == only;
-	}
-	q->listed_count = end;
-}
-
-/* Makes room for three corners of so many triangles more. False when out of memory. */
-static bool make_room(question *q, size_t triangles)
-{
-	const size_t needed = q->listed_count + 3 * triangles;
-	if (needed <= q->listed_capacity)
-		return true;
-	q->listed_capacity = needed;
-	uint32_t *listed = nt_scratch_alloc(q->mesh->scratch, needed, sizeof *listed);
-	uint8_t *slots = nt_scratch_alloc(q->mesh->scratch, needed, 1);
-	if (!listed || !slots)
-		return false;
-	if (q->listed_count > 0) {
-		memcpy(listed, q->listed, q->listed_count * sizeof *listed);
-		memcpy(slots, q->listed_slots, q->listed_count);
-	}
-	q->listed = listed;
-	q->listed_slots = slots;
-	return true;
-}
-
 /* Lists what triangles that are noted have in slot `only`, or in any. False when out of memory. */
 static bool list_corners(question *q, unsigned only, float coordinate)
 {
 	const nt_welded_mesh *m = q->mesh;
-	const nt_grid *grid = &q->tail->grid;
-	const float *const rows = m->positions + grid->axis;
+	const nt_grid grid = q->tail->grid;
+	const float *const rows = m->positions + grid.axis;
 	/* two cells, so that no rounding matters; if a box is so thin that this is 0, each float has its own cell */
-	const float reach = only == NO_SLOT ? INFINITY : (grid->high - grid->low) * (2.0f / (float)NT_CELLS);
-	uint32_t batch[BATCH];
+	const bool any = only == NO_SLOT;
+	const float reach = any ? INFINITY : (grid.high - grid.low) * (2.0f / (float)NT_CELLS);
+	const size_t all = 3 * q->noted_count, enough = m->triangle_count + 3 * NT_EDGE_FEW;
+	const size_t most = all < enough ? all : enough;
+	uint32_t *const listed = nt_scratch_alloc(m->scratch, most + 3, sizeof *listed);
+	uint8_t *const slots = nt_scratch_alloc(m->scratch, any ? most + 3 : 1, 1);
 	size_t count = 0;
-	q->listed_count = q->listed_capacity = 0;
-	/* most have one corner of three in these cells, or none */
-	if (!make_room(q, q->noted_count / 3 + BATCH))
+	if (!listed || !slots)
 		return false;
-	size_t left = q->noted_count;
 	noted_triangles n = {.tail = q->tail};
-	for (uint32_t t; next_noted(&n, &t);) {
+	for (uint32_t t; count <= most && next_noted(&n, &t);) {
 		uint32_t copy[3];
 		const uint32_t *v = nt_vertices_of(m, t, copy);
-		batch[count] = t;
-		count += (fabsf(rows[m->step * v[0]] - coordinate) <= reach) |
-			(fabsf(rows[m->step * v[1]] - coordinate) <= reach) |
-			(fabsf(rows[m->step * v[2]] - coordinate) <= reach);
-		left--;
-		if (count == 0 || (count < BATCH && left > 0))
+		const float at[3] = {rows[m->step * v[0]], rows[m->step * v[1]], rows[m->step * v[2]]};
+		if (!((fabsf(at[0] - coordinate) <= reach) | (fabsf(at[1] - coordinate) <= reach) |
+			(fabsf(at[2] - coordinate) <= reach)))
 			continue;
-		if (q->listed_count + 3 * count > q->listed_capacity && !make_room(q, left + count))
-			return false;
-		list_triangles(q, batch, count, only);
-		count = 0;
+		for (uint32_t k = 0; k < 3; k++) {
+			const uint8_t slot = q->slots[nt_grid_cell(&grid, at[k])];
+			listed[count] = 3 * t + k;
+			slots[any ? count : 0] = slot;
+			count += any ? slot != NO_SLOT : slot == only;
+		}
 	}
+	q->listed = listed;
+	q->listed_slots = slots;
+	q->listed_count = count;
+	q->too_many = count > most;
 	return true;
 }
 
@@ -343,8 +301,12 @@ static bool list_slot(question *q, unsigned slot, float coordinate, bool several
 	q->are_all_listed = several || ++q->times_listed > ALONE;
 	if (!list_corners(q, q->are_all_listed ? NO_SLOT : slot, coordinate))
 		return false;
-	q->too_many = q->listed_count > q->mesh->triangle_count + q->mesh->triangle_count / 2 + 3 * NT_EDGE_FEW;
-	return q->too_many || sort_by_slot(q);
+	if (q->are_all_listed && !q->too_many)
+		return sort_by_slot(q);
+	q->corners = q->listed;
+	q->slot_begins[slot] = 0;
+	q->slot_begins[slot + 1] = (uint32_t)q->listed_count;
+	return true;
 }
 
 /* The number of a vertex in a table of those that have one, [mask + 1] of NOBODY; the next one if it has none. */
@@ -367,7 +329,7 @@ static uint32_t *make_cell(question *q, unsigned slot, nt_cell *cell)
 	const uint32_t *listed = q->corners + q->slot_begins[slot];
 	const uint32_t corner_count = q->slot_begins[slot + 1] - q->slot_begins[slot];
 	uint32_t mask = 15, count = 0;
-	while (mask < corner_count + corner_count / 3)
+	while (mask < corner_count) /* most have several corners, so that few places are taken */
 		mask = 2 * mask + 1;
 	nt_cell_corner *corners = nt_scratch_alloc(m->scratch, corner_count, sizeof *corners);
 	uint32_t *vertices = nt_scratch_alloc(m->scratch, (size_t)corner_count + mask + 1, sizeof *vertices);
