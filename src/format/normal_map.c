@@ -10,7 +10,6 @@
 #include "file/uri.h"
 #include "gltf/document.h"
 #include "gltf/edit/images.h"
-#include "gltf/view.h"
 #include "image/find.h"
 #include "image/image.h"
 

@@ -4,7 +4,7 @@
  * taken: any component type, normalized or not, interleaved, sparse, without a view. If the file already holds the
  * wanted values, nothing is copied.
  */
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,8 +13,6 @@
 #include "base/largest.h"
 #include "base/lock.h"
 #include "gltf/normalized.h"
-#include "gltf/pointer.h"
-#include "gltf/view.h"
 
 /* Indices that an accessor without a bufferView may have: nothing in the file backs their number. */
 enum { UNBACKED_INDICES = 65536 };

@@ -10,7 +10,6 @@
 #include <string.h>
 #include "file/uri.h"
 #include "gltf/glb.h"
-#include "gltf/pointer.h"
 
 bool nt_gltf_recognise(const unsigned char *bytes, size_t size)
 {

@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A glTF document as nmtan sees it: the JSON as parsed, and views of it that are checked when they are
- * asked for and not before. Parts that nobody asks for are never checked, opened or decoded.
+ * A glTF document as nmtan sees it: the JSON as parsed, and arrays of what it has, filled at open. Parts that nobody
+ * asks for are neither opened nor decoded, and a fault is told to whoever asks for what is faulty.
  *
  * Every function that reads from the document reports faults with the JSON pointer of what is wrong.
  */
 #ifndef NT_GLTF_DOCUMENT_H
 #define NT_GLTF_DOCUMENT_H
 
+#include <string.h>
 #include "base/name_table.h"
 #include "ext/gltf_numbers.h"
+#include "ext/meshopt.h"
 #include "file/input.h"
 #include "gltf/glb.h"
 #include "json/json.h"
@@ -221,5 +223,190 @@ void nt_gltf_list_extension(nt_gltf *document, const char *list, const char *nam
 
 /* Takes an extension off "extensionsUsed" or "extensionsRequired". */
 void nt_gltf_remove_extension(nt_gltf *document, const char *list, const char *name);
+
+/* ---- JSON pointers ---- */
+
+/* Both append to a pointer that ends at `end`, where there is room, and return its new end. */
+static inline char *nt_gltf_put_text(char *end, const char *text)
+{
+	const size_t length = strlen(text);
+	memcpy(end, text, length + 1);
+	return end + length;
+}
+
+static inline char *nt_gltf_put_number(char *end, uint64_t number)
+{
+	char digits[20];
+	size_t at = sizeof digits;
+	do {
+		digits[--at] = (char)('0' + number % 10);
+	} while (number /= 10);
+	memcpy(end, digits + at, sizeof digits - at);
+	end += sizeof digits - at;
+	*end = '\0';
+	return end;
+}
+
+/* Writes "/array/index". */
+static inline void nt_gltf_pointer(char pointer[NT_GLTF_POINTER], const char *array, uint64_t index)
+{
+	pointer[0] = '/';
+	char *const end = nt_gltf_put_text(pointer + 1, array);
+	*end = '/';
+	nt_gltf_put_number(end + 1, index);
+}
+
+/* Writes the pointer of the primitive that a mesh is; returns its end. */
+static inline char *nt_gltf_mesh_pointer(char pointer[NT_GLTF_POINTER], const nt_mesh *mesh)
+{
+	char *const end = nt_gltf_put_number(nt_gltf_put_text(pointer, "/meshes/"), mesh->gltf_mesh);
+	return nt_gltf_put_number(nt_gltf_put_text(end, "/primitives/"), mesh->gltf_primitive);
+}
+
+/* The same for the length of an expression: nt_gltf_of_mesh(mesh).pointer */
+typedef struct nt_gltf_mesh_text {
+	char pointer[NT_GLTF_POINTER];
+} nt_gltf_mesh_text;
+
+static inline nt_gltf_mesh_text nt_gltf_of_mesh(const nt_mesh *mesh)
+{
+	nt_gltf_mesh_text text;
+	nt_gltf_mesh_pointer(text.pointer, mesh);
+	return text;
+}
+
+/* ---- views: view.c ---- */
+
+/* How meshoptimizer packed a view. */
+typedef struct nt_gltf_packing {
+	const char *extension; /* NULL: it is plain */
+	uint32_t buffer;       /* that has the packed bytes */
+	uint32_t place;        /* the buffer that the view itself names, which may have no bytes */
+	uint64_t offset;
+	nt_meshopt_view view;
+} nt_gltf_packing;
+
+/* For nt_gltf_read_arrays(): a view as its JSON has it, checked against its buffer's byteLength. */
+nt_status nt_gltf_read_view(nt_gltf *document, uint32_t index, nt_gltf_view *view, nt_error *error);
+
+/* A view of the source; one that was decompressed lies in a virtual buffer. */
+nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
+	nt_error *error);
+
+/* The extension object of a compressed view; NULL: none. *name (may be NULL) receives the extension. */
+nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **name);
+
+/* Decompresses a view of EXT_meshopt_compression or KHR_meshopt_compression: from then on it lies in a
+ * virtual buffer. */
+nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t view, nt_error *error);
+
+/* How a view is packed, whether or not it has been decompressed. */
+nt_status nt_gltf_get_packing(const nt_gltf *document, uint32_t view, nt_gltf_packing *packing, nt_error *error);
+
+/* The bytes of a view that was decompressed, as they are before its filter; free() gives them back. */
+nt_status nt_gltf_unfiltered_view(nt_gltf *document, uint32_t view, unsigned char **bytes, nt_error *error);
+
+/* Bytes of a view, `length` of them from `offset` on; a compressed view is decompressed first. `what` is the
+ * JSON pointer of who wants them. */
+nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t view, uint64_t offset, uint64_t length,
+	const char *what, const unsigned char **bytes, nt_error *error);
+
+/* ---- accessors: accessor.c ---- */
+
+/* Reads buffers, views and accessors, each once; whoever uses a faulty one is told. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_gltf_read_arrays(nt_gltf *document, nt_error *error);
+
+/* An accessor of the source. `from` is the JSON pointer of the reference. */
+nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_accessor *accessor, nt_error *error);
+
+/* The JSON of an accessor, NULL where there is none. */
+nt_json_value *nt_gltf_accessor_json(const nt_gltf *document, uint64_t index);
+
+/* Makes what an accessor says of its least and most values, if it does, that of the elements that are written:
+ * bounds as nt_component_bounds() has them. */
+void nt_gltf_state_bounds(nt_json *json, nt_json_value *accessor, size_t components, double bounds[2][4]);
+
+/* The bytes of an accessor's elements, `stride` apart; NULL where it has no view. */
+nt_status nt_gltf_elements(nt_gltf *document, const nt_gltf_accessor *accessor,
+	const unsigned char **elements, nt_error *error);
+
+/* The elements a sparse accessor replaces: their numbers and new values, tightly packed. Numbers are
+ * checked: increasing and below the count. The array is in the arena. */
+nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
+	const uint32_t **elements, const unsigned char **values, nt_error *error);
+
+/*
+ * An accessor as floats, `width` per element: normalized integers as the specification maps them, other
+ * integers by value. Components beyond those of the accessor get `fill`. Points into the input where it
+ * already is that.
+ */
+nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width,
+	float fill, nt_arena *arena, float **floats, nt_error *error);
+
+/* The same, not to be written to: an accessor that several primitives use is decoded once, and lives as long as the
+ * document. Several threads may call this. */
+nt_status nt_gltf_shared_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width, float fill,
+	float **floats, nt_error *error);
+
+/* An accessor of unsigned scalars as 32-bit indices, each below `vertex_count` and not the value that
+ * is reserved for restarts. Points into the input where it already is that. */
+nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
+	nt_arena *arena, uint32_t **indices, nt_error *error);
+
+/* Size of a component; 0 for an unknown type. */
+uint32_t nt_gltf_component_bytes(uint64_t component_type);
+
+/* The narrowest type for numbers up to `most` that is not narrower than `least`. For a primitive's indices that is
+ * the number of vertices, since the largest number of a type is reserved for restarts. */
+uint32_t nt_gltf_index_type(uint64_t most, uint32_t least);
+
+/* Numbers as a type of `width` bytes has them: count * width bytes. */
+void nt_gltf_store_indices(const uint32_t *indices, size_t count, uint32_t width, unsigned char *bytes);
+
+/* ---- primitives: primitive.c ---- */
+
+/* Whether a mesh has tangents to be written. */
+bool nt_gltf_is_solved(const nt_mesh *mesh);
+
+/* The primitive of a mesh in the document. */
+nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh);
+
+/* A use of an accessor by a primitive: an attribute, or one of a morph target. */
+typedef struct nt_gltf_use {
+	nt_json_value *attributes; /* the primitive's, or the target's */
+	const char *name;
+	uint32_t accessor;
+	size_t object, member;     /* what comes next */
+} nt_gltf_use;
+
+/* Goes through them: a zeroed use becomes the first one, each the next. False: that was the last. */
+bool nt_gltf_next_use(const nt_gltf *document, const nt_json_value *primitive, nt_gltf_use *use);
+
+/* The accessor that a member of an object names; NT_NONE: none that is there. */
+uint32_t nt_gltf_reference(const nt_gltf *document, const nt_json_value *object, const char *name);
+
+/* An accessor; NULL: the file is at fault, or there is none (NT_NONE). */
+const nt_gltf_accessor *nt_gltf_sound_accessor(const nt_gltf *document, uint32_t index);
+
+/* The accessor that a member names; NULL: none, or a faulty one. */
+static inline const nt_gltf_accessor *nt_gltf_named(const nt_gltf *document, const nt_json_value *object,
+	const char *name)
+{
+	return nt_gltf_sound_accessor(document, nt_gltf_reference(document, object, name));
+}
+
+/* The first accessor over the same bytes, of one that is there. */
+static inline uint32_t nt_gltf_same(const nt_gltf *document, uint32_t accessor)
+{
+	return document->accessors[accessor].same;
+}
+
+/* Uses of it, and of others over its bytes: after nt_gltf_find_users(). */
+static inline const nt_gltf_users *nt_gltf_users_of(const nt_gltf *document, uint32_t accessor)
+{
+	return &document->users[nt_gltf_same(document, accessor)];
+}
 
 #endif

@@ -10,9 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "base/parallel.h"
-#include "gltf/accessor.h"
-#include "gltf/primitive.h"
-#include "gltf/view.h"
+#include "gltf/document.h"
 
 nt_json_value *nt_gltf_draco_of(const nt_json_value *primitive)
 {

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "gltf/draco.h"
-#include "gltf/primitive.h"
+#include "gltf/document.h"
 
 static void flip_texcoords(nt_mesh *mesh)
 {

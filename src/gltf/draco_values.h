@@ -6,7 +6,6 @@
 #define NT_GLTF_DRACO_VALUES_H
 
 #include "ext/draco.h"
-#include "gltf/accessor.h"
 #include "gltf/document.h"
 
 /* The accessors of what a mesh has, of its vertices; NULL: it has none. */

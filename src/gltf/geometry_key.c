@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include "gltf/draco.h"
 #include "gltf/materials.h"
-#include "gltf/pointer.h"
+#include "gltf/document.h"
 #include "gltf/vertex_pools.h"
 
 /* ---- keys ---- */

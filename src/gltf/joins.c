@@ -22,8 +22,7 @@
 #include <string.h>
 #include "base/hash_index.h"
 #include "gltf/materials.h"
-#include "gltf/pointer.h"
-#include "gltf/primitive.h"
+#include "gltf/document.h"
 
 /* Primitives without a kind take part in the joins of so many kinds of a mesh, so that a file with a transform for
  * every primitive costs linear time and memory. Meshes that people make have one or two kinds. */

@@ -13,15 +13,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 #include "gltf/compact.h"
 #include "gltf/draco.h"
 #include "gltf/draco_values.h"
 #include "gltf/materials.h"
 #include "gltf/normalized.h"
-#include "gltf/pointer.h"
-#include "gltf/primitive.h"
-#include "gltf/view.h"
 
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
 enum { UNBACKED_ELEMENTS = 65536 };

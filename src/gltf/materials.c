@@ -9,7 +9,7 @@
 
 #include <stdio.h>
 #include <string.h>
-#include "gltf/pointer.h"
+#include "gltf/document.h"
 
 /* Demands of all materials together, per slot. */
 typedef struct wishes {

@@ -10,7 +10,7 @@
 
 #include <math.h>
 #include <string.h>
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 
 /* Bytes that a sparse accessor takes in JSON beyond a dense one with its view. */
 enum { SPARSE_JSON = 64 };

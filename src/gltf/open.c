@@ -17,12 +17,9 @@
 #include "file/lookup.h"
 #include "file/trace.h"
 #include "file/uri.h"
-#include "gltf/accessor.h"
 #include "gltf/document.h"
 #include "gltf/draco.h"
 #include "gltf/materials.h"
-#include "gltf/pointer.h"
-#include "gltf/primitive.h"
 
 /* How many elements an accessor claims; where that cannot be said, enough for a triangle, so that loading
  * meets the fault and says it. */

@@ -2,9 +2,8 @@
 /*
  * Primitives and the accessors they name.
  */
-#include "gltf/primitive.h"
+#include "gltf/document.h"
 
-#include "gltf/accessor.h"
 
 bool nt_gltf_is_solved(const nt_mesh *mesh)
 {

@@ -9,7 +9,7 @@
  * it. So the lowest number of each kind that is referred to in vain is noted before anything is added, and the file
  * is refused if it is taken. Elements of other arrays (images, materials ...) are never added.
  */
-#include "gltf/primitive.h"
+#include "gltf/document.h"
 
 #include <stdio.h>
 #include <stdlib.h>

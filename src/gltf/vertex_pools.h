@@ -13,7 +13,7 @@
 #include "base/buffer.h"
 #include "base/name_table.h"
 #include "scene/scene.h"
-#include "gltf/primitive.h"
+#include "gltf/document.h"
 
 /* Keys, each of which gets a number. Zeroed: empty. */
 typedef struct nt_key_table {

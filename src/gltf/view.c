@@ -3,12 +3,11 @@
  * bufferViews, plain ones and those of EXT_meshopt_compression and KHR_meshopt_compression, whose bytes
  * meshoptimizer packed. A view is decompressed when somebody reads it.
  */
-#include "gltf/view.h"
+#include "gltf/document.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include "ext/meshopt.h"
-#include "gltf/pointer.h"
 
 nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **name)
 {

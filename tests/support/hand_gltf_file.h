@@ -11,7 +11,6 @@
 #include "base/buffer.h"
 #include "file/input.h"
 #include "file/uri.h"
-#include "gltf/accessor.h"
 #include "gltf/document.h"
 #include "gltf/open.h"
 #include "pipeline/run.h"

@@ -7,11 +7,11 @@
  * be empty; but they need not keep bytes that nobody reads. The bytes are taken out, and the number waits
  * for a new view: see take_view().
  */
-#include "gltf/bytes/buffer_edits.h"
+#include "gltf/bytes/bytes.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 
 /* Alignment of insertions if a view's user is unknown: it may be data of an extension that wants 8-byte alignment
  * (EXT_structural_metadata does). */

@@ -4,11 +4,10 @@
  * data, and views whose user is unknown. Sorted by buffer and begin, and searched as a binary tree whose nodes have the
  * largest end below them, so that a question about a range looks at few beside those that it is about.
  */
-#include "gltf/bytes/byte_users.h"
+#include "gltf/bytes/bytes.h"
 
 #include <stdlib.h>
-#include "gltf/accessor.h"
-#include "gltf/view.h"
+#include "gltf/document.h"
 
 static bool add_user(nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
 	uint32_t accessor)

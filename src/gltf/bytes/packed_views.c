@@ -10,11 +10,11 @@
  * A packed view names two buffers. One has the packed bytes. In the other a reader that does not know the extension
  * finds the plain ones, if it has bytes at all; there the view takes the place that its new length needs.
  */
-#include "gltf/bytes/packed_views.h"
+#include "gltf/bytes/bytes.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 
 nt_gltf_packing nt_packing_of(const nt_buffer_edits *edits, uint32_t view)
 {

@@ -4,14 +4,12 @@
  * sum of what edits that end at or before it have added. Views and accessors are intervals of the buffer, so
  * both ends are mapped and the rest follows. Nothing is reordered.
  */
-#include "gltf/bytes/relocate.h"
+#include "gltf/bytes/bytes.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "gltf/accessor.h"
 #include "gltf/document.h"
-#include "gltf/bytes/packed_views.h"
 
 /* The length of a free view that nothing new replaces. */
 enum { FREE_VIEW_BYTES = 4 };

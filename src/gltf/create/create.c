@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "file/base64.h"
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 #include "gltf/sidecar.h"
 #include "gltf/create/images.h"
 #include "gltf/create/model.h"

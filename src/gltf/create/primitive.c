@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/vec.h"
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 
 enum { BLOCK_ROWS = 4096 };
 

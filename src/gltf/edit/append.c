@@ -11,9 +11,8 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "gltf/accessor.h"
-#include "gltf/edit/append_targets.h"
-#include "gltf/bytes/packed_views.h"
+#include "gltf/document.h"
+#include "gltf/bytes/bytes.h"
 
 /* ---- accessors that must keep their count ---- */
 

@@ -4,12 +4,11 @@
  * replaced as well: its number goes to the end of the indices, which stay in order since new elements have
  * the highest numbers, and its element to the end of the values.
  */
-#include "gltf/edit/append_targets.h"
+#include "gltf/edit/append.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include "gltf/accessor.h"
-#include "gltf/view.h"
+#include "gltf/document.h"
 
 /* One of the two arrays of a sparse accessor, as it is and as it will be. */
 typedef struct sparse_array {

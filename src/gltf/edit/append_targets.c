@@ -2,12 +2,11 @@
 /*
  * The accessors of a pool to which vertices are appended, and a record of the bytes that were edited for them.
  */
-#include "gltf/edit/append_targets.h"
+#include "gltf/edit/append.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include "gltf/accessor.h"
-#include "gltf/view.h"
+#include "gltf/document.h"
 
 bool nt_append_note_edit(nt_appending *job, uint32_t buffer, uint64_t begin, uint64_t end)
 {

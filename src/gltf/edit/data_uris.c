@@ -4,7 +4,7 @@
  * are left open. In the JSON, as it was before, a buffer took its size four times over: its bytes, their base64, the
  * string's copy, and the text.
  */
-#include "gltf/edit/data_uris.h"
+#include "gltf/edit/images.h"
 
 #include <string.h>
 #include "file/uri.h"

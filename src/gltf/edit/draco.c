@@ -15,12 +15,9 @@
 #include <string.h>
 #include "gltf/document.h"
 #include "gltf/edit/append.h"
-#include "gltf/edit/draco_block.h"
 #include "gltf/edit/morph_targets.h"
 #include "gltf/edit/vertex_extensions.h"
 #include "gltf/morph_deltas.h"
-#include "gltf/primitive.h"
-#include "gltf/view.h"
 
 /* Whether a user has tangents to be written and is compressed. */
 static bool is_compressed(const nt_vertex_pool *pool, size_t user)

@@ -1,11 +1,85 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Compressed primitives that got tangents: see draco.c.
+ * Primitives on their way into Draco blocks.
  */
 #ifndef NT_GLTF_EDIT_DRACO_H
 #define NT_GLTF_EDIT_DRACO_H
 
-#include "gltf/edit/draco_block.h"
+#include "gltf/bytes/bytes.h"
+#include "gltf/draco.h"
+#include "gltf/edit/merge_splits.h"
+
+/* A primitive that is to be compressed. First comes what is known of it, then what was looked up in the
+ * document, the third what was encoded. */
+typedef struct nt_gltf_recoding {
+	nt_buffer_edits *edits;
+	nt_gltf *document; /* of the edits, as its JSON */
+	nt_json *json;
+	nt_arena *arena;   /* of names and attributes */
+	const nt_write_options *options;
+	nt_pool_vertices *vertices;
+	const nt_mesh *mesh;
+
+	nt_json_value *primitive, *extension; /* until the JSON changes */
+	uint64_t view;
+	const nt_draco_mesh *source; /* NULL: the primitive is plain */
+	nt_draco_attribute *attributes; /* their values are where the document or the scene has them; data NULL: of
+	                                   _BITANGENT, which are made when they are encoded */
+	size_t attribute_count;
+	const char **names;
+	bool outside; /* something of the primitive is not in the block */
+	const char *obstacle; /* why it cannot be compressed; NULL: nothing is known to stand in the way */
+
+	bool encoded;
+	bool sequential_instead; /* edgebreaker does not take it, or does not give it back */
+	size_t faces_without_area; /* for which it does not */
+	nt_draco_block block; /* where it is compressed */
+} nt_gltf_recoding;
+
+/* Attributes that nmtan may add to those of the source: NORMAL, TANGENT, _BITANGENT. */
+enum { NT_GLTF_OWN_ATTRIBUTES = 3 };
+
+/* Whether an accessor is indices of the pool's primitives alone, and nobody's attribute. */
+bool nt_gltf_draco_owns_indices(const nt_gltf_recoding *recoding, uint64_t accessor);
+
+/* There is room for what the primitive has and NT_GLTF_OWN_ATTRIBUTES. The name lives as long as the JSON. */
+void nt_gltf_draco_add(nt_gltf_recoding *recoding, const char *name, nt_draco_attribute attribute);
+
+/* The attributes of the primitive's block, as they are. */
+nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *recoding, nt_error *error);
+
+/* Attributes that nmtan made: NORMAL where it did, TANGENT, _BITANGENT where asked for. */
+void nt_gltf_draco_add_own(nt_gltf_recoding *recoding);
+
+/* The JSON of the primitive follows what a decoder will see; new accessors have no view, their elements are in the
+ * block. */
+void nt_gltf_draco_describe(nt_gltf_recoding *recoding);
+
+/* All blocks begin with DRAC, which views that an earlier run left free share (relocate.c): that stays for them. */
+enum { NT_DRACO_HEAD = 4 };
+
+/* So many primitives do not refer to a block any more. Whether nobody does. */
+bool nt_gltf_draco_release(nt_gltf *document, uint64_t view, size_t count);
+
+/* Puts the block where the primitive's was, else into a new view of `buffer`. */
+nt_status nt_gltf_draco_store(nt_gltf_recoding *recoding, uint32_t buffer, nt_error *error);
+
+/* draco_gather.c. The attributes of a plain primitive; recoding->obstacle where it cannot be compressed. */
+nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding, nt_error *error);
+
+/* draco_gather.c. Takes what the block holds out of the buffers, and gives the primitive its extension. */
+nt_status nt_gltf_draco_take_out(nt_gltf_recoding *recoding, nt_error *error);
+
+/* draco_encode.c. Encodes what was looked up: ->encoded then, with the block or the obstacle. Looks at no JSON, so that
+ * several may be encoded at once. Returns NT_OK or what is not the mesh's fault: NT_ERROR_MEMORY, NT_ERROR_MODULE,
+ * NT_ERROR_IO. */
+nt_status nt_gltf_draco_encode(nt_gltf_recoding *recoding, nt_error *error);
+
+/* The same for several on several threads; the list gets another order. One that fails is left as it was, for
+ * nt_gltf_draco_encode(), which has it alone and says what is wrong. */
+void nt_gltf_draco_encode_all(nt_gltf_recoding **list, size_t count, unsigned threads);
+
+/* ---- a pool, compressed or plain: draco.c ---- */
 
 /* Whether a solved user of the pool is compressed by Draco. */
 bool nt_gltf_has_draco(const nt_vertex_pool *pool);

@@ -2,12 +2,11 @@
 /*
  * A Draco block: what goes into it, and the view and JSON that it gets.
  */
-#include "gltf/edit/draco_block.h"
+#include "gltf/edit/draco.h"
 
 #include <string.h>
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 #include "gltf/edit/set_attributes.h"
-#include "gltf/view.h"
 
 /* ---- what goes into it ---- */
 

@@ -3,7 +3,7 @@
  * Draco blocks, each encoded by one thread. The largest come first, so that no thread is left alone with one of them at
  * the end; and of those that take much memory only so many are encoded at once as there is room for.
  */
-#include "gltf/edit/draco_block.h"
+#include "gltf/edit/draco.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -10,15 +10,12 @@
  * The elements leave the buffers. Views keep their numbers: one takes the block, others that are empty then
  * share bytes with it.
  */
-#include "gltf/edit/draco_block.h"
+#include "gltf/edit/draco.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "gltf/accessor.h"
 #include "gltf/document.h"
-#include "gltf/primitive.h"
-#include "gltf/view.h"
 
 /* ---- what can be compressed ---- */
 

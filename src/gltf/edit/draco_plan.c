@@ -19,7 +19,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 #include "gltf/draco_values.h"
 #include "gltf/edit/draco.h"
 

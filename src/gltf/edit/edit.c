@@ -12,22 +12,18 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
-#include "gltf/accessor.h"
 #include "gltf/document.h"
 #include "gltf/edit/append.h"
 #include "gltf/edit/draco.h"
-#include "gltf/edit/draco_block.h"
 #include "gltf/edit/merge_splits.h"
 #include "gltf/edit/morph_targets.h"
 #include "gltf/edit/set_attributes.h"
 #include "gltf/edit/vertex_extensions.h"
-#include "gltf/bytes/packed_views.h"
-#include "gltf/bytes/relocate.h"
+#include "gltf/bytes/bytes.h"
 #include "gltf/edit/weld.h"
 #include "gltf/morph_deltas.h"
 #include "gltf/quantize.h"
 #include "gltf/turned_images.h"
-#include "gltf/view.h"
 
 /* Data for every pool's edit. */
 typedef struct editing {

@@ -10,10 +10,9 @@
 #include <string.h>
 #include "base/hash_index.h"
 #include "base/largest.h"
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 #include "gltf/edit/set_attributes.h"
-#include "gltf/bytes/packed_views.h"
-#include "gltf/pointer.h"
+#include "gltf/bytes/bytes.h"
 
 /* New indices of one primitive, encoded. */
 typedef struct encoded {

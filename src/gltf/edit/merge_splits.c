@@ -20,7 +20,7 @@
 #include "base/hash_index.h"
 #include "base/vec.h"
 #include "gltf/load.h"
-#include "gltf/pointer.h"
+#include "gltf/document.h"
 #include "scene/morphs.h"
 
 /* A pool whose meshes are merged one after the other. */

@@ -3,12 +3,12 @@
  * TANGENT of morph targets: what leads from the base's tangents to those of the mesh as a target moves it. A target
  * takes over the accessor that it has if no use of that is left; new ones are sparse if most of them are zeros.
  */
-#include "gltf/bytes/packed_views.h"
+#include "gltf/bytes/bytes.h"
 #include "gltf/edit/morph_targets.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 #include "gltf/edit/set_attributes.h"
 #include "gltf/morph_deltas.h"
 #include "scene/morphs.h"

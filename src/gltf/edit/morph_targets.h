@@ -5,7 +5,7 @@
 #ifndef NT_GLTF_EDIT_MORPH_TARGETS_H
 #define NT_GLTF_EDIT_MORPH_TARGETS_H
 
-#include "gltf/edit/append_targets.h"
+#include "gltf/edit/append.h"
 #include "gltf/edit/merge_splits.h"
 
 /* TANGENT of the morph targets of a set's meshes: what to add to the base's, which are final. Before vertices are

@@ -11,13 +11,13 @@
  * only: interleaved elements that become larger, whose slots could not go without another stride for attributes that
  * are to stay as they are.
  */
-#include "gltf/bytes/packed_views.h"
+#include "gltf/bytes/bytes.h"
 #include "gltf/edit/set_attributes.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include "base/vec.h"
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 
 /* The accessor that a user has by that name; NT_NONE: none. */
 static uint32_t accessor_of(const nt_gltf *document, const nt_vertex_pool *pool, size_t user, const char *name)

@@ -5,7 +5,7 @@
 #ifndef NT_GLTF_EDIT_SET_ATTRIBUTES_H
 #define NT_GLTF_EDIT_SET_ATTRIBUTES_H
 
-#include "gltf/edit/append_targets.h"
+#include "gltf/edit/append.h"
 #include "gltf/edit/weld.h"
 
 /* NORMAL, TANGENT or _BITANGENT of a set: its values, and where they go. */

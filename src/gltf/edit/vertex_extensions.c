@@ -14,8 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/buffer.h"
-#include "gltf/accessor.h"
-#include "gltf/pointer.h"
+#include "gltf/document.h"
 
 static const char polygons_name[] = "FB_ngon_encoding", features_name[] = "EXT_mesh_features";
 

@@ -5,7 +5,7 @@
 #ifndef NT_GLTF_EDIT_VERTEX_EXTENSIONS_H
 #define NT_GLTF_EDIT_VERTEX_EXTENSIONS_H
 
-#include "gltf/bytes/buffer_edits.h"
+#include "gltf/bytes/bytes.h"
 #include "gltf/edit/merge_splits.h"
 
 /* Adds a finding for each extension of the pool's primitives and their meshes that does not hold any more, and takes

@@ -16,10 +16,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash_index.h"
-#include "gltf/accessor.h"
+#include "gltf/document.h"
 #include "gltf/draco.h"
 #include "gltf/edit/vertex_extensions.h"
-#include "gltf/pointer.h"
 #include "scene/morphs.h"
 
 /* Something that vertices have. */

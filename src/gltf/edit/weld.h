@@ -5,7 +5,7 @@
 #ifndef NT_GLTF_EDIT_WELD_H
 #define NT_GLTF_EDIT_WELD_H
 
-#include "gltf/bytes/buffer_edits.h"
+#include "gltf/bytes/bytes.h"
 #include "gltf/edit/merge_splits.h"
 #include "gltf/tangent_filter.h"
 

@@ -9,7 +9,7 @@
  * other tools have it, but only with other buffer numbers and offsets, to which extensions that we do not
  * know may refer.
  */
-#include "gltf/bytes/relocate.h"
+#include "gltf/bytes/bytes.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +17,6 @@
 #include "base/parallel.h"
 #include "file/uri.h"
 #include "gltf/document.h"
-#include "gltf/edit/data_uris.h"
 #include "gltf/edit/images.h"
 #include "gltf/sidecar.h"
 

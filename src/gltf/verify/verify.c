@@ -15,12 +15,10 @@
 #include "gltf/document.h"
 #include "gltf/morph_deltas.h"
 #include "gltf/normalized.h"
-#include "gltf/primitive.h"
 #include "gltf/quantize.h"
 #include "gltf/tangent_filter.h"
 #include "gltf/vertex_pools.h"
 #include "gltf/verify/vertices.h"
-#include "gltf/view.h"
 #include "scene/morphs.h"
 
 /* ---- finding the files ---- */

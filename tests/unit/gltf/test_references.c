@@ -2,10 +2,7 @@
 #include "test.h"
 #include <stdio.h>
 #include "base/buffer.h"
-#include "gltf/accessor.h"
 #include "gltf/document.h"
-#include "gltf/primitive.h"
-#include "gltf/view.h"
 
 /* `,"meshes":[{"primitives":[9]}]` for "/meshes/0/primitives/0": nothing stands beside what the path names. */
 static void put_path(nt_buffer *text, const char *path)

@@ -8,7 +8,7 @@
  *   0---1        texture coordinates are positions, but for one vertex over which a side is folded
  */
 #include "hand_gltf_file.h"
-#include "gltf/primitive.h"
+#include "gltf/document.h"
 
 #define EXTENSION "\"extensions\":{\"FB_ngon_encoding\":{}}"
 
