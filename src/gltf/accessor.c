@@ -280,13 +280,11 @@ nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *fr
 	nt_error *error)
 {
 	*accessor = (nt_gltf_accessor){.view = NT_NONE};
-	if (index >= document->accessor_count)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, from, "refers to accessors[%llu], there are %zu",
-			(unsigned long long)index, document->accessor_count);
-	if (document->accessors[index].index == NT_NONE)
-		return read_accessor(document, (uint32_t)index, accessor, error);
+	const nt_status status = nt_gltf_check_index("accessors", index, document->accessor_count, from, error);
+	if (status)
+		return status;
 	*accessor = document->accessors[index];
-	return NT_OK;
+	return accessor->index != NT_NONE ? NT_OK : read_accessor(document, (uint32_t)index, accessor, error);
 }
 
 nt_json_value *nt_gltf_accessor_json(const nt_gltf *document, uint64_t index)

@@ -80,6 +80,12 @@ static nt_status check_array(const nt_gltf *document, const char *name, nt_error
 	return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an array", nt_json_type_text(elements));
 }
 
+nt_status nt_gltf_check_index(const char *array, uint64_t index, size_t count, const char *from, nt_error *error)
+{
+	return index < count ? NT_OK : nt_fail_pointer(error, NT_ERROR_INPUT, from, "refers to %s[%llu], there are %zu",
+		array, (unsigned long long)index, count);
+}
+
 nt_status nt_gltf_check_object(const nt_json_value *element, const char *pointer, nt_error *error)
 {
 	return nt_json_type_of(element) == NT_JSON_OBJECT ? NT_OK : nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
@@ -93,10 +99,9 @@ nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t i
 	char pointer[NT_GLTF_POINTER];
 	if (elements && nt_json_type_of(elements) != NT_JSON_ARRAY)
 		return check_array(document, array, error);
-	if (index >= nt_json_count(elements))
-		return nt_fail_pointer(error, NT_ERROR_INPUT, from,
-			"refers to %s[%llu], there are %zu", array, (unsigned long long)index,
-			nt_json_count(elements));
+	const nt_status status = nt_gltf_check_index(array, index, nt_json_count(elements), from, error);
+	if (status)
+		return status;
 	*element = nt_json_at(elements, (size_t)index);
 	nt_gltf_pointer(pointer, array, index);
 	return nt_gltf_check_object(*element, pointer, error);
@@ -197,15 +202,12 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 		document->buffer_count = nt_json_count(nt_gltf_root_member(document, "buffers"));
 		document->buffers = nt_calloc(document->buffer_count, sizeof *document->buffers);
 		document->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
-		document->virtual_of = nt_alloc(document->view_count, sizeof *document->virtual_of);
-		document->views = nt_alloc(document->view_count, sizeof *document->views);
+		document->views = nt_calloc(document->view_count, sizeof *document->views);
 		document->file_accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
-		if (!document->buffers || !document->virtual_of || !document->views)
+		if (!document->buffers || !document->views)
 			status = nt_fail_memory(error);
 		for (size_t i = 0; !status && i < document->buffer_count; i++)
 			document->buffers[i].number = i;
-		for (size_t i = 0; !status && i < document->view_count; i++)
-			document->virtual_of[i] = NT_NONE;
 	}
 	if (status) {
 		nt_gltf_free(document);
@@ -226,14 +228,12 @@ void nt_gltf_free(void *source)
 		if (buffer->opened && buffer->storage == NT_GLTF_STORED_FILE)
 			nt_file_close(&buffer->file);
 	}
-	for (size_t i = 0; i < document->virtual_count; i++)
-		free(document->virtuals[i].decoded);
+	for (size_t i = 0; document->views && i < document->view_count; i++)
+		free(document->views[i].decoded);
 	if (document->free_pools)
 		document->free_pools(document->pools);
 	if (document->free_blocks)
 		document->free_blocks(document);
-	free(document->virtuals);
-	free(document->virtual_of);
 	free(document->views);
 	free(document->accessors);
 	free(document->floats);
@@ -283,13 +283,9 @@ static nt_status read_buffer(const nt_gltf *document, size_t index, nt_gltf_buff
 nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from, nt_gltf_buffer **result,
 	nt_error *error)
 {
-	if (index >= NT_GLTF_VIRTUAL && index - NT_GLTF_VIRTUAL < document->virtual_count) {
-		*result = &document->virtuals[index - NT_GLTF_VIRTUAL];
-		return NT_OK;
-	}
-	if (index >= document->buffer_count)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, from, "refers to buffers[%llu], there are %zu",
-			(unsigned long long)index, document->buffer_count);
+	const nt_status status = nt_gltf_check_index("buffers", index, document->buffer_count, from, error);
+	if (status)
+		return status;
 	*result = &document->buffers[index];
 	return (*result)->described ? NT_OK : read_buffer(document, (size_t)index, *result, error);
 }

@@ -39,7 +39,6 @@ typedef struct nt_gltf_buffer {
 	nt_file file;               /* of an external file: owned */
 	uint64_t *pages;            /* one bit for each NT_GLTF_PAGE bytes that were read; NULL: they are not counted */
 	const char *path;           /* of an external file */
-	uint32_t view;              /* of a virtual one: the view that it holds */
 } nt_gltf_buffer;
 
 /* An accessor that several primitives share, as floats. */
@@ -49,15 +48,21 @@ typedef struct nt_gltf_floats_of {
 	float fill;
 } nt_gltf_floats_of;
 
-/* Numbers of buffers that are no buffers of the document: each holds one decompressed view. */
-#define NT_GLTF_VIRTUAL ((uint32_t)1 << 30)
+/* In place of the number of a buffer, of view i: its own bytes, since it was decompressed. */
+#define NT_GLTF_OF_VIEW(i) (((uint32_t)1 << 30) + (uint32_t)(i))
+
+static inline bool nt_gltf_is_of_view(uint32_t buffer)
+{
+	return buffer >= NT_GLTF_OF_VIEW(0);
+}
 
 /* A bufferView. */
 typedef struct nt_gltf_view {
 	uint64_t offset, length;
+	unsigned char *decoded; /* [length] of a compressed one, owned by the document; NULL: nobody asked yet */
 	uint32_t buffer; /* NT_NONE: the file is at fault */
-	uint32_t stride; /* 0: none given */
-	const char *compression; /* the extension that compresses it; NULL: none, or already undone */
+	uint16_t stride; /* 0: none given */
+	bool compressed; /* by an extension, and not yet undone */
 } nt_gltf_view;
 
 /* The elements that a sparse accessor replaces. */
@@ -124,11 +129,8 @@ typedef struct nt_gltf {
 	bool keeps_transforms;   /* texture transforms turn no tangents: set before meshes are described */
 	nt_gltf_buffer *buffers; /* [buffer_count] */
 	size_t buffer_count;
-	nt_gltf_buffer *virtuals;  /* [virtual_count] decompressed views; buffer NT_GLTF_VIRTUAL + i */
-	size_t virtual_count, virtual_capacity;
-	uint32_t *virtual_of;      /* [view_count] the buffer a view was decompressed to; NT_NONE */
 	nt_gltf_view *views;       /* [view_count] */
-	size_t view_count;
+	size_t view_count, decoded_count; /* decoded_count: of those that were compressed */
 	size_t file_accessor_count; /* accessors that the file has */
 	nt_gltf_accessor *accessors; /* [accessor_count] of the file, and those of draco_shared.c */
 	size_t accessor_count;
@@ -169,6 +171,9 @@ nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name);
 
 /* Whether extensionsUsed has the name. */
 bool nt_gltf_uses(const nt_gltf *document, const char *extension);
+
+/* NT_ERROR_INPUT if the file has fewer than `index` + 1 elements. `from` is the JSON pointer of the reference. */
+nt_status nt_gltf_check_index(const char *array, uint64_t index, size_t count, const char *from, nt_error *error);
 
 /* An element of a root array must be an object. */
 nt_status nt_gltf_check_object(const nt_json_value *element, const char *pointer, nt_error *error);
@@ -289,15 +294,14 @@ typedef struct nt_gltf_packing {
 /* For nt_gltf_read_arrays(): a view as its JSON has it, checked against its buffer's byteLength. */
 nt_status nt_gltf_read_view(nt_gltf *document, uint32_t index, nt_gltf_view *view, nt_error *error);
 
-/* A view of the source; one that was decompressed lies in a virtual buffer. */
+/* A view of the source; one that was decompressed lies in bytes of its own: NT_GLTF_OF_VIEW(). */
 nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
 	nt_error *error);
 
 /* The extension object of a compressed view; NULL: none. *name (may be NULL) receives the extension. */
 nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **name);
 
-/* Decompresses a view of EXT_meshopt_compression or KHR_meshopt_compression: from then on it lies in a
- * virtual buffer. */
+/* Decompresses a view of EXT_meshopt_compression or KHR_meshopt_compression, if it is one and nobody did. */
 nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t view, nt_error *error);
 
 /* How a view is packed, whether or not it has been decompressed. */

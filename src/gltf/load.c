@@ -23,19 +23,6 @@
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
 enum { UNBACKED_ELEMENTS = 65536 };
 
-static nt_status find_primitive(nt_gltf *document, const nt_mesh *mesh, const nt_json_value **primitive,
-	nt_error *error)
-{
-	const nt_json_value *json =
-		nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
-	*primitive = nt_json_at(nt_json_find(json, "primitives"), mesh->gltf_primitive);
-	char pointer[NT_GLTF_POINTER];
-	if (mesh->ready)
-		return NT_OK;
-	nt_gltf_mesh_pointer(pointer, mesh);
-	return nt_gltf_decode_draco(document, *primitive, pointer, error);
-}
-
 /* An attribute of a primitive. *accessor has count 0 and no view where there is none. */
 typedef struct attribute {
 	bool exists;
@@ -535,12 +522,13 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	nt_error *error)
 {
 	nt_gltf *document = scene->source;
-	const nt_json_value *primitive;
+	const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
 	if (mesh->plan.same_as) {
 		nt_mesh_share(mesh);
 		return apply_transform(scene, document, mesh, error);
 	}
-	nt_status status = find_primitive(document, mesh, &primitive, error);
+	nt_status status = mesh->ready ? NT_OK :
+		nt_gltf_decode_draco(document, primitive, nt_gltf_of_mesh(mesh).pointer, error);
 	inputs in;
 	if (!status)
 		status = find_inputs(document, mesh, primitive, options, &in, error);

@@ -206,9 +206,8 @@ nt_status nt_gltf_check_dangling(const nt_gltf *document, nt_error *error)
 	for (nt_gltf_growing kind = 0; document->dangling_known && kind < NT_GLTF_GROWING; kind++) {
 		const nt_gltf_dangling *lowest = &document->dangling[kind];
 		if (lowest->number < nt_json_count(nt_gltf_root_member(document, arrays[kind])))
-			return nt_fail_pointer(error, NT_ERROR_INPUT, lowest->pointer,
-				"refers to %s[%llu], there are %zu",
-				arrays[kind], (unsigned long long)lowest->number, count_in_file(document, kind));
+			return nt_gltf_check_index(arrays[kind], lowest->number, count_in_file(document, kind),
+				lowest->pointer, error);
 	}
 	return NT_OK;
 }

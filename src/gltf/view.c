@@ -52,27 +52,24 @@ nt_status nt_gltf_read_view(nt_gltf *document, uint32_t index, nt_gltf_view *vie
 			(unsigned long long)(view->offset + view->length),
 			(unsigned long long)buffer_index, (unsigned long long)buffer->length);
 	view->buffer = (uint32_t)buffer_index;
-	view->stride = (uint32_t)stride;
-	view->compression = NULL;
-	nt_gltf_compression_of(json, &view->compression);
+	view->stride = (uint16_t)stride;
+	view->compressed = nt_gltf_compression_of(json, NULL) != NULL;
 	return NT_OK;
 }
 
 nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
 	nt_error *error)
 {
-	if (index >= document->view_count)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, from, "refers to bufferViews[%llu], there are %zu",
-			(unsigned long long)index, document->view_count);
-	if (document->views[index].buffer == NT_NONE)
-		return nt_gltf_read_view(document, (uint32_t)index, view, error);
+	const nt_status status = nt_gltf_check_index("bufferViews", index, document->view_count, from, error);
+	if (status)
+		return status;
 	*view = document->views[index];
-	if (document->virtual_of[index] != NT_NONE) {
-		view->buffer = document->virtual_of[index];
+	if (view->decoded) {
+		view->buffer = NT_GLTF_OF_VIEW(index);
 		view->offset = 0;
-		view->compression = NULL;
+		view->compressed = false;
 	}
-	return NT_OK;
+	return view->buffer != NT_NONE ? NT_OK : nt_gltf_read_view(document, (uint32_t)index, view, error);
 }
 
 /* ---- decompression ---- */
@@ -154,20 +151,15 @@ nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error *e
 	nt_gltf_packing p;
 	unsigned char *bytes;
 	nt_status status = nt_gltf_get_view(document, index, pointer, &view, error);
-	if (status || !view.compression)
+	if (status || !view.compressed)
 		return status;
-	if (!nt_grow((void **)&document->virtuals, &document->virtual_capacity, document->virtual_count + 1,
-		    sizeof *document->virtuals))
-		return nt_fail_memory(error);
 	status = nt_gltf_get_packing(document, index, &p, error);
 	if (!status)
 		status = unpack_view(document, index, view.length, &p.view, &p, &bytes, error);
 	if (status)
 		return status;
-	document->virtuals[document->virtual_count] = (nt_gltf_buffer){.storage = NT_GLTF_STORED_NOWHERE,
-		.length = view.length, .described = true, .opened = true, .bytes = bytes,
-		.size = (size_t)view.length, .decoded = bytes, .view = index};
-	document->virtual_of[index] = NT_GLTF_VIRTUAL + (uint32_t)document->virtual_count++;
+	document->views[index].decoded = bytes;
+	document->decoded_count++;
 	return NT_OK;
 }
 
@@ -191,18 +183,19 @@ nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offset,
 		return status;
 	char pointer[NT_GLTF_POINTER];
 	nt_gltf_pointer(pointer, "bufferViews", index);
-	if (view.compression) {
+	if (view.compressed)
 		status = nt_gltf_decompress_view(document, index, error);
-		if (!status)
-			status = nt_gltf_get_view(document, index, what, &view, error);
-		if (status)
-			return status;
-	}
+	if (status)
+		return status;
 	if (offset > view.length || length > view.length - offset)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, what,
 			"takes bytes %llu to %llu of bufferView %u, which has %llu",
 			(unsigned long long)offset, (unsigned long long)(offset + length), index,
 			(unsigned long long)view.length);
+	if (document->views[index].decoded) {
+		*bytes = document->views[index].decoded + offset;
+		return NT_OK;
+	}
 	nt_gltf_buffer *buffer;
 	status = nt_gltf_open_buffer(document, view.buffer, pointer, &buffer, error);
 	if (status)
@@ -214,7 +207,6 @@ nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offset,
 			(unsigned long long)buffer->length, buffer->size);
 	}
 	*bytes = buffer->bytes + view.offset + offset;
-	if (view.buffer < NT_GLTF_VIRTUAL)
-		nt_gltf_note_read(document, buffer, view.offset + offset, length);
+	nt_gltf_note_read(document, buffer, view.offset + offset, length);
 	return NT_OK;
 }

@@ -70,7 +70,7 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 	edits->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
 	edits->buffer_count = document->buffer_count;
 	edits->buffers = nt_calloc(document->buffer_count + 1, sizeof *edits->buffers);
-	edits->virtuals = nt_calloc(edits->view_count, sizeof *edits->virtuals);
+	edits->decoded = nt_calloc(edits->view_count, sizeof *edits->decoded);
 	edits->is_free = nt_calloc(edits->view_count, sizeof *edits->is_free);
 	edits->free_views = nt_alloc(edits->view_count, sizeof *edits->free_views);
 	edits->seen = nt_calloc(document->accessor_count, sizeof *edits->seen);
@@ -81,7 +81,7 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 	edits->appended_by = nt_alloc(document->accessor_count, sizeof *edits->appended_by);
 	if (!edits->seen || !edits->pinned || !edits->replaced || !edits->index_moved || !edits->appended_by ||
 		!edits->buffers || (welds && !edits->welding) ||
-		!edits->virtuals || !edits->is_free || !edits->free_views ||
+		!edits->decoded || !edits->is_free || !edits->free_views ||
 		!nt_byte_users_find(&edits->users, document)) {
 		nt_edits_free(edits);
 		return nt_fail_memory(error);
@@ -103,10 +103,9 @@ void nt_edits_free(nt_buffer_edits *edits)
 		free(edits->buffers[i].edits);
 		free(edits->buffers[i].additions);
 	}
-	for (size_t i = 0; edits->virtuals && i < edits->document->virtual_count; i++) {
-		free(edits->virtuals[i].edits);
-		free(edits->virtuals[i].additions);
-		free(edits->virtuals[i].unfiltered);
+	for (size_t i = 0; edits->decoded && edits->document->decoded_count && i < edits->view_count; i++) {
+		free(edits->decoded[i].edits);
+		free(edits->decoded[i].unfiltered);
 	}
 	for (size_t i = 0; i < edits->packed_count; i++)
 		nt_buffer_free(&edits->packed[i].bytes);
@@ -119,7 +118,7 @@ void nt_edits_free(nt_buffer_edits *edits)
 	free(edits->appended_by);
 	free(edits->is_free);
 	free(edits->free_views);
-	free(edits->virtuals);
+	free(edits->decoded);
 	free(edits->buffers);
 	free(edits->users.list);
 	nt_arena_free(&edits->arena);
@@ -130,12 +129,11 @@ void nt_edits_free(nt_buffer_edits *edits)
 
 nt_edited_buffer *nt_edits_of(nt_buffer_edits *edits, uint32_t buffer)
 {
-	if (buffer < NT_GLTF_VIRTUAL)
+	if (!nt_gltf_is_of_view(buffer))
 		return &edits->buffers[buffer];
-	/* views may be decompressed at any time; there is room for all of them */
-	const uint32_t number = buffer - NT_GLTF_VIRTUAL;
-	edits->virtuals[number].old_length = edits->document->virtuals[number].length;
-	return &edits->virtuals[number];
+	const uint32_t view = buffer - NT_GLTF_OF_VIEW(0);
+	edits->decoded[view].old_length = edits->document->views[view].length;
+	return &edits->decoded[view];
 }
 
 nt_status nt_edits_replace(nt_buffer_edits *edits, uint32_t index, uint64_t at, uint64_t removed,
@@ -143,7 +141,7 @@ nt_status nt_edits_replace(nt_buffer_edits *edits, uint32_t index, uint64_t at, 
 {
 	nt_edited_buffer *buffer = nt_edits_of(edits, index);
 	/* Bytes behind keep their alignment; in a view that will be packed again there are whole elements. */
-	const bool pads = at + removed < buffer->old_length && (index < NT_GLTF_VIRTUAL || !edits->keeps_packed);
+	const bool pads = at + removed < buffer->old_length && !(nt_gltf_is_of_view(index) && edits->keeps_packed);
 	const size_t excess = pads ? (size_t)((size - removed) % edits->alignment) : 0;
 	if (excess) {
 		const size_t padded = size + edits->alignment - excess;
@@ -262,7 +260,7 @@ static bool is_plain(const nt_buffer_edits *edits, uint32_t index, nt_gltf_view 
 {
 	const nt_json_value *json = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), index);
 	return nt_gltf_get_view(edits->document, index, "", view, NULL) == NT_OK &&
-		view->buffer < NT_GLTF_VIRTUAL && !nt_json_find(json, "extensions");
+		!nt_gltf_is_of_view(view->buffer) && !nt_json_find(json, "extensions");
 }
 
 nt_status nt_edits_release_view(nt_buffer_edits *edits, uint32_t index, size_t users, nt_error *error)

@@ -89,7 +89,7 @@ static bool add_whole_views(nt_byte_users *users, nt_gltf *document, bool *view_
 			if (!document->view_users[i].image)
 				users->unknown = true;
 		}
-		if (document->virtual_of[i] != NT_NONE)
+		if (document->views[i].decoded)
 			added = added && add_place(users, nt_json_at(views, i));
 		added = added && add_compressed(users, nt_json_at(views, i));
 	}

@@ -104,7 +104,7 @@ typedef struct nt_buffer_edits {
 	bool *is_free;              /* [view_count] what it held is gone: see nt_edits_release() */
 	uint32_t *free_views;       /* [free_count] those that nothing new has taken over */
 	size_t free_count;
-	nt_edited_buffer *virtuals; /* [view_count] of decompressed views */
+	nt_edited_buffer *decoded;  /* [view_count] bytes of decompressed views */
 	nt_byte_users users;        /* of the source */
 	uint32_t alignment;         /* insertions are multiples of this */
 	bool polygons_dropped;      /* a primitive lost FB_ngon_encoding */

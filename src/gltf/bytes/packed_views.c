@@ -2,7 +2,7 @@
 /*
  * Views that meshoptimizer packed stay packed, by the extension, mode and filter that they have.
  *
- * Edits know a packed view as a virtual buffer, which was decompressed. Values are put into it as they stand before
+ * Edits change the bytes of a packed view, which was decompressed. Values are put into it as they stand before
  * its filter, since undoing a filter and applying it again would round what is there: a copied vertex is a copy of
  * those bytes. New elements that go with a packed view are gathered in one new view for each kind of them, as
  * gltfpack has them: a view costs more than many of its elements.
@@ -35,9 +35,9 @@ nt_gltf_packing nt_packing_of_accessor(const nt_buffer_edits *edits, uint32_t ac
 nt_status nt_packed_bytes(nt_buffer_edits *edits, uint32_t buffer, uint64_t offset, const unsigned char **bytes,
 	nt_error *error)
 {
-	if (buffer < NT_GLTF_VIRTUAL || !edits->keeps_packed)
+	if (!nt_gltf_is_of_view(buffer) || !edits->keeps_packed)
 		return NT_OK;
-	const uint32_t view = edits->document->virtuals[buffer - NT_GLTF_VIRTUAL].view;
+	const uint32_t view = buffer - NT_GLTF_OF_VIEW(0);
 	nt_edited_buffer *edited = nt_edits_of(edits, buffer);
 	const nt_gltf_packing p = nt_packing_of(edits, view);
 	if (!edited->unfiltered && p.extension && strcmp(p.view.filter, "NONE") != 0) {
@@ -177,7 +177,6 @@ static nt_status release_view(nt_buffer_edits *edits, uint32_t view, const nt_gl
 		status = nt_edits_replace(edits, p->place, offset, size, nothing, 0, error);
 	nt_json_remove(json, object, "extensions");
 	nt_json_set_uint64(json, nt_json_put(json, object, "buffer"), p->buffer);
-	edits->document->virtual_of[view] = NT_NONE;
 	edits->is_free[view] = true;
 	edits->free_views[edits->free_count++] = view;
 	return status;
@@ -190,7 +189,7 @@ nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigne
 	nt_json_value *object = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), view);
 	nt_gltf_packing p = nt_packing_of(edits, view);
 	const size_t old_size = (size_t)(p.view.count * p.view.stride), old_packed_size = (size_t)p.view.packed_size;
-	const uint32_t stride = nt_edits_of(edits, edits->document->virtual_of[view])->new_stride;
+	const uint32_t stride = edits->decoded[view].new_stride;
 	if (stride)
 		p.view.stride = stride;
 	const size_t count = size / (size_t)p.view.stride;
@@ -226,7 +225,7 @@ nt_status nt_packed_release(nt_buffer_edits *edits, uint32_t index, uint64_t off
 	const nt_gltf_packing p = nt_packing_of(edits, index);
 	if (!p.extension || nt_gltf_get_view(edits->document, index, "", &view, NULL) != NT_OK)
 		return nt_edits_release(edits, index, offset, length, error);
-	if (view.buffer < NT_GLTF_VIRTUAL || length % p.view.stride ||
+	if (!nt_gltf_is_of_view(view.buffer) || length % p.view.stride ||
 		nt_byte_users_count(&edits->users, view.buffer, offset, offset + length) != 1)
 		return NT_OK;
 	const nt_json_value *object = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), index);

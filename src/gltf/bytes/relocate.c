@@ -162,7 +162,7 @@ static void move_views(nt_buffer_edits *edits, const nt_relocated_buffer *buffer
 		}
 		if (moved[i].buffer || edits->is_free[i] ||
 			nt_gltf_get_view(edits->document, i, "", &view, NULL) != NT_OK ||
-			view.buffer >= NT_GLTF_VIRTUAL || edits->buffers[view.buffer].edit_count == 0)
+			nt_gltf_is_of_view(view.buffer) || edits->buffers[view.buffer].edit_count == 0)
 			continue;
 		moved[i].buffer = &buffers[view.buffer];
 		moved[i].old_offset = view.offset;
@@ -208,22 +208,16 @@ static void move_accessors(const nt_buffer_edits *edits, const moved_view *moved
 
 /* ---- writing ---- */
 
-/* The destination of a buffer's bytes: a sink as they are or as base64, or memory. */
+/* The destination of a buffer's bytes: a sink, as they are or as base64. */
 typedef struct target {
 	nt_sink *sink;
 	nt_base64 *base64;
-	nt_buffer *memory;
 	const nt_file *input; /* the document's own file */
 } target;
 
 static nt_status put_bytes(const target *to, const void *bytes, size_t size, nt_error *error)
 {
-	if (to->sink)
-		return nt_sink_write(to->sink, bytes, size, error);
-	if (to->base64)
-		return nt_base64_write(to->base64, bytes, size, error);
-	nt_buffer_append(to->memory, bytes, size);
-	return to->memory->failed ? nt_fail_memory(error) : NT_OK;
+	return to->sink ? nt_sink_write(to->sink, bytes, size, error) : nt_base64_write(to->base64, bytes, size, error);
 }
 
 static nt_status put_zeros(const target *to, uint64_t size, nt_error *error)
@@ -277,7 +271,7 @@ static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer
 	nt_gltf_buffer *source = NULL;
 	nt_status status = NT_OK;
 	uint64_t at = 0, released = 0, written = map_position(buffer, from->old_length);
-	if (from->old_length && index < NT_GLTF_VIRTUAL && document->buffers[index].storage == NT_GLTF_STORED_NOWHERE)
+	if (from->old_length && document->buffers[index].storage == NT_GLTF_STORED_NOWHERE)
 		return put_zeros(to, buffer->length, error);
 	if (from->old_length)
 		status = nt_gltf_open_buffer(document, index, "/buffers", &source, error);
@@ -321,31 +315,46 @@ static nt_status remove_compressed(nt_buffer_edits *edits, const nt_json_value *
 			    NT_OK;
 }
 
+/* The bytes of a view after its edits; NULL: memory is exhausted. */
+static unsigned char *edit_bytes(nt_arena *arena, const nt_relocated_buffer *view, const unsigned char *bytes,
+	size_t *size)
+{
+	const nt_edited_buffer *from = view->from;
+	*size = (size_t)map_position(view, from->old_length);
+	unsigned char *const result = nt_arena_alloc(arena, *size, 1), *to = result;
+	uint64_t at = 0;
+	for (size_t i = 0; to && i <= from->edit_count; i++) {
+		const nt_buffer_edit *edit = i < from->edit_count ? &from->edits[i] : NULL;
+		const size_t kept = (size_t)((edit ? edit->at : from->old_length) - at);
+		memcpy(to, bytes + at, kept);
+		to += kept;
+		if (!edit)
+			break;
+		if (edit->size)
+			memcpy(to, edit->bytes, edit->size);
+		to += edit->size;
+		at = edit->at + edit->removed;
+	}
+	return result;
+}
+
 /* A decompressed view whose bytes have changed is packed again or written plain. */
-static nt_status settle_virtual(nt_buffer_edits *edits, uint32_t index, moved_view *moved,
-	nt_error *error)
+static nt_status settle_decoded(nt_buffer_edits *edits, uint32_t index, moved_view *moved, nt_error *error)
 {
 	nt_gltf *document = edits->document;
-	const uint32_t virtual = document->virtual_of[index];
-	nt_gltf_buffer *source = &document->virtuals[virtual - NT_GLTF_VIRTUAL];
 	const bool packs = nt_packing_of(edits, index).extension != NULL;
+	const unsigned char *old = document->views[index].decoded;
 	nt_relocated_buffer *plain = nt_arena_alloc(&edits->arena, 1, sizeof *plain);
-	nt_status status = plain ? order_edits(edits, virtual, plain, error) : nt_fail_memory(error);
-	nt_buffer bytes = {0};
-	/* nobody reads the view any more */
+	nt_status status = plain ? order_edits(edits, NT_GLTF_OF_VIEW(index), plain, error) : nt_fail_memory(error);
 	if (!status && packs)
-		status = nt_packed_bytes(edits, virtual, 0, &source->bytes, error);
-	if (!status)
-		status = put_buffer(document, plain, virtual, &(target){.memory = &bytes}, error);
-	const size_t size = bytes.size;
-	if (status || !nt_arena_adopt(&edits->arena, bytes.data)) {
-		if (status)
-			nt_buffer_free(&bytes);
+		status = nt_packed_bytes(edits, NT_GLTF_OF_VIEW(index), 0, &old, error);
+	size_t size = 0;
+	unsigned char *bytes = status ? NULL : edit_bytes(&edits->arena, plain, old, &size);
+	if (!bytes)
 		return status ? status : nt_fail_memory(error);
-	}
 	*moved = (moved_view){plain, 0, 0};
 	if (packs)
-		return nt_packed_replace(edits, index, (const unsigned char *)bytes.data, size, error);
+		return nt_packed_replace(edits, index, bytes, size, error);
 	nt_json_value *view = nt_json_at(nt_gltf_root_member(document, "bufferViews"), index);
 	const char *name = "";
 	nt_json_value *packed = nt_gltf_compression_of(view, &name);
@@ -356,7 +365,7 @@ static nt_status settle_virtual(nt_buffer_edits *edits, uint32_t index, moved_vi
 	if (!status)
 		status = nt_edits_choose_buffer(edits, (uint32_t)near, &buffer, error);
 	if (!status)
-		status = nt_edits_add_bytes(edits, buffer, index, bytes.data, size, error);
+		status = nt_edits_add_bytes(edits, buffer, index, bytes, size, error);
 	if (status)
 		return status;
 	nt_json *json = document->json;
@@ -373,7 +382,7 @@ static nt_status settle_virtual(nt_buffer_edits *edits, uint32_t index, moved_vi
 static void drop_unneeded_compression(nt_gltf *document)
 {
 	static const char *const names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
-	if (document->virtual_count == 0)
+	if (document->decoded_count == 0)
 		return;
 	for (size_t k = 0; k < 2; k++) {
 		/* taking a member off the root moves the others */
@@ -393,7 +402,7 @@ static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 {
 	nt_gltf *document = edits->document;
 	nt_status status = NT_OK;
-	for (uint32_t i = 0; !status && document->virtual_count && i < document->accessor_count; i++) {
+	for (uint32_t i = 0; !status && document->decoded_count && i < document->accessor_count; i++) {
 		nt_gltf_accessor a;
 		const unsigned char *elements;
 		double bounds[2][4];
@@ -401,9 +410,9 @@ static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 		if (edits->seen[i] || nt_gltf_users_of(document, i)->indices ||
 			!nt_json_find(json, "min") ||
 			nt_gltf_get_accessor(document, i, "", &a, NULL) || a.view >= edits->view_count ||
-			a.sparse || document->virtual_of[a.view] == NT_NONE || a.components > 4 ||
+			a.sparse || !document->views[a.view].decoded || edits->is_free[a.view] || a.components > 4 ||
 			a.element_bytes != a.components * a.component_bytes || nt_packing_of(edits, a.view).extension ||
-			!nt_edits_of(edits, document->virtual_of[a.view])->edit_count)
+			!edits->decoded[a.view].edit_count)
 			continue;
 		status = nt_gltf_elements(document, &a, &elements, error);
 		if (status)
@@ -421,14 +430,13 @@ static nt_status relocate(nt_buffer_edits *edits, nt_relocated *result, moved_vi
 {
 	/* Edits come to an end: views that were decompressed and edited go into buffers, those that have lost all get
 	 * a few bytes. */
-	const uint32_t *virtual_of = edits->document->virtual_of;
 	nt_status status = settle_bounds(edits, error);
 	for (uint32_t i = 0; !status && i < edits->view_count; i++)
-		if (virtual_of[i] != NT_NONE && nt_edits_of(edits, virtual_of[i])->edit_count)
-			status = settle_virtual(edits, i, &moved[i], error);
+		if (edits->decoded[i].edit_count && !edits->is_free[i])
+			status = settle_decoded(edits, i, &moved[i], error);
 	if (!status)
 		status = nt_packed_finish(edits, error);
-	bool moves = edits->document->virtual_count > 0;
+	bool moves = edits->document->decoded_count > 0;
 	*result = (nt_relocated){.document = edits->document, .buffer_count = edits->buffer_count,
 		.buffers = nt_arena_alloc(&edits->arena, edits->buffer_count, sizeof *result->buffers)};
 	if (!status && !result->buffers)

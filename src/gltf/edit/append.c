@@ -109,7 +109,7 @@ static nt_status settle_bounds(nt_appending *job, const nt_append_target *of, ui
 	const unsigned char *elements = NULL;
 	double bounds[2][4];
 	nt_status status = NT_OK;
-	if ((!override && !a->decoded && of->buffer < NT_GLTF_VIRTUAL) || a->components > 4 ||
+	if ((!override && !a->decoded && !nt_gltf_is_of_view(of->buffer)) || a->components > 4 ||
 		a->element_bytes != a->components * a->component_bytes)
 		return NT_OK;
 	if (override) {
@@ -300,7 +300,7 @@ static void lengthen_views(nt_appending *job, const block *b)
 		const uint32_t index = b->targets[i].accessor.view;
 		nt_gltf_view view;
 		if (nt_gltf_get_view(job->document, index, "", &view, NULL) != NT_OK ||
-			view.buffer >= NT_GLTF_VIRTUAL ||
+			nt_gltf_is_of_view(view.buffer) ||
 			view.offset + view.length >= b->end)
 			continue;
 		nt_json_value *object = nt_json_at(nt_gltf_root_member(job->document, "bufferViews"), index);

@@ -56,7 +56,7 @@ static bool lies_plain(const nt_gltf_recoding *r, uint64_t index, nt_gltf_access
 		nt_gltf_get_accessor(r->document, index, "", accessor, NULL) == NT_OK &&
 		accessor->view != NT_NONE && !accessor->sparse && !accessor->decoded &&
 		nt_gltf_get_view(r->document, accessor->view, "", &view, NULL) == NT_OK &&
-		!view.compression && view.buffer < NT_GLTF_VIRTUAL;
+		!view.compressed && !nt_gltf_is_of_view(view.buffer);
 }
 
 /* Matrices are no attributes of Draco's. */

@@ -128,7 +128,7 @@ static nt_status add_indices(nt_buffer_edits *edits, uint32_t buffer, const nt_g
 static bool fits_packed(nt_buffer_edits *edits, const nt_gltf_packing *packing, const nt_gltf_view *view,
 	uint64_t begin, uint64_t size, const encoded *new)
 {
-	if (view->buffer < NT_GLTF_VIRTUAL || !packing->extension || new->width == packing->view.stride)
+	if (!nt_gltf_is_of_view(view->buffer) || !packing->extension || new->width == packing->view.stride)
 		return true;
 	if (begin || size != view->length || new->width < 2)
 		return false;
@@ -152,7 +152,7 @@ static nt_status replace_indices(nt_buffer_edits *edits, uint32_t same, const nt
 	/* A wider type wants its own alignment: zeros before it, if the view allows. */
 	const uint64_t begin = view.offset + old->offset, size = old->count * old_width;
 	const size_t pad = (size_t)((new->width - begin % new->width) % new->width);
-	if (view.offset % new->width || pad >= size || view.compression)
+	if (view.offset % new->width || pad >= size || view.compressed)
 		return NT_OK;
 	const nt_gltf_packing packing = nt_packing_of(edits, old->view);
 	if (nt_byte_users_other(&edits->users, view.buffer, begin, begin + size, same) ||
