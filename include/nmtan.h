@@ -129,9 +129,9 @@ typedef enum nmtan_status {
 /* Static English text for a status, "unknown status" for any other number. Never NULL. */
 NMTAN_API const char *nmtan_status_text(nmtan_status status);
 
-/* Outputs of a split. Nothing is appended past source_capacity; the corner count is always enough. If vertices come
- * into being (see nmtan_mesh) all of them are appended, to none: vertex_count counts as 0 here, sources[i] is a
- * corner that vertex i stands for, `indices` is required, copy_counts must be NULL. */
+/* Outputs of a split. Nothing is appended past source_capacity; the corner count is always enough. If the mesh has
+ * corners alone (see nmtan_mesh) the call makes all vertices: vertex_count counts as 0 here, sources[i] is a corner
+ * that vertex i stands for, `indices` is required, copy_counts must be NULL. */
 typedef struct nmtan_split_output {
 	size_t struct_bytes;  /* sizeof(nmtan_split_output): see "Structs" */
 	uint32_t *indices;    /* [corner count]: the vertex of each corner after the split. NULL: no vertex is

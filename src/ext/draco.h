@@ -118,8 +118,8 @@ static inline void nt_draco_block_free(nt_draco_block *block)
 nt_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error);
 
 /*
- * The values that a decoder will have of the quantized attributes of a mesh once it is encoded, whichever method that
- * is by, and whatever else is encoded with them.
+ * The values that a decoder will have of the quantized attributes of a mesh once it is encoded. They depend neither on
+ * the method nor on the other attributes.
  *
  *   values  [attribute_count] of each attribute room for [point_count][components] floats, which may be where its data
  *           is; NULL: it is only looked at, as where its quantization has no bits. Points that no face uses keep

@@ -21,7 +21,7 @@
 #include "ext/reserve.h"
 #include "ext/tables.h"
 
-/* The folder of installed modules; NULL in the tool that is not. */
+/* The folder of installed modules; NULL if the tool is not installed. */
 #ifdef NT_LIBDIR
 static const char *const installed = NT_LIBDIR "/nmtan";
 #else

@@ -344,8 +344,8 @@ void nt_output_note(nt_output *output, const char *format, ...)
 	nt_buffer_text(&output->options.result->note, text);
 }
 
-/* Which sidecars are not called what they would be. nt_output_place() allocates for everything that it may add before
- * it places anything. */
+/* Notes sidecars that got another name than they asked for. nt_output_place() allocates for everything that it may add
+ * before it places anything. */
 static nt_status note_names(const nt_output *output, nt_error *error)
 {
 	enum { NAMES_SHOWN = 3, OTHER_WORDS = 200 };

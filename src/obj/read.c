@@ -11,10 +11,10 @@
  *   origin    again.c: positions that float cannot hold are read again, as doubles
  *   meshes    meshes.c: faces, quads kept, larger polygons triangulated
  *
- * Where a face stands in the text is asked of few: again.c reads their lines again.
+ * Few faces are asked for their place in the text: again.c reads their lines again.
  *
- * An `o` makes a mesh; `g` does not. The u and v of texture coordinates are kept as they stand (v up).
- * Colours behind positions are sRGB, as Blender and three.js write them, and become linear.
+ * An `o` makes a mesh, and so does a `g` in a file without `o`. The u and v of texture coordinates are kept as they
+ * stand (v up). Colours behind positions are sRGB, as Blender and three.js write them, and become linear.
  * Numbers that are not finite are an error wherever they stand: no output format can hold them. So is a
  * file without faces: there is nothing to put tangents on.
  */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Images that the user names for an input that says nothing of images, or of which one material does: --normal-map and
- * its like. If nobody names a normal map, one is proposed that is called after the input and lies beside it.
+ * Images that the user names for an input with one material or none: --normal-map and its like. If no normal map is
+ * named, an image beside the input with a name like the input's is proposed.
  */
 #include "pipeline/stages.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A report as a folder: a page of each input, and index.html, which lists them. Shared files are written first,
- * pages are as their inputs are done, and the index, of which only a row is kept for each, at the end: who is referred
- * to is there.
+ * A report as a folder: a page of each input, and index.html, which lists them. Shared files are written first, each
+ * page when its input is done, and the index at the end, so that no file refers to one that is not there yet. Memory
+ * holds one row of the index for each page.
  */
 #ifndef NT_PIPELINE_REPORT_FOLDER_H
 #define NT_PIPELINE_REPORT_FOLDER_H

@@ -64,9 +64,9 @@ static void widen(double range[2], double value)
 /* ---- what a normal map can hide ---- */
 
 /*
- * A baker writes what two frames differ by into the texels of each side. If both sides look up the same texels, that
- * cannot be: then the seam shows, but where the map is flat across it, if the frames differ by more than one step of
- * an 8-bit map, 1 / 127.
+ * A baker writes the difference of two frames into the texels of each side. If both sides look up the same texels, it
+ * cannot: the seam shows if the frames differ by more than one step of an 8-bit map, 1 / 127, unless the map is flat
+ * across it.
  */
 static const double HIDDEN_DEGREES = 0.45;
 

@@ -50,8 +50,8 @@ static bool any_has_texcoords(const nt_scene *scene)
 }
 
 /* A glTF whose material looks a map up with coordinates that are not there is wrong; what is made of other formats is
- * without the map. If no material asks for tangents, in a scan say, nobody misses them, but if other meshes of the
- * file have coordinates, that this one has none may not be meant. */
+ * without the map. If no material asks for tangents, as in a scan, nothing is missing; but if other meshes of the file
+ * have coordinates, this one may lack them by mistake. */
 static void report_no_texcoords(nt_scene *scene, const nt_mesh *mesh, bool others_have)
 {
 	const bool gltf = nt_format_is_gltf(scene->format);

@@ -66,10 +66,10 @@ extern const unsigned char nt_quad_triangles[2][2][3];
  * space; where those are equal or not comparable, the shorter one in space, 0-2 when in doubt. */
 int nt_quad_diagonal(const float *const texcoords[4], const float *const positions[4]);
 
-/* The diagonal along which a quad is written as triangles: that of its solve, unless this lies outside in space, so
- * that one triangle is inverted, and the other one does not. "Inverted" is against the quad's Newell normal. No
- * triangle of a simple outline is, for it has at most one corner that turns inwards; of one that crosses itself one
- * always is. */
+/* The diagonal along which a quad is written as triangles. It is that of the solve, unless one triangle is inverted by
+ * it (it lies outside of the quad in space) and none by the other diagonal. Inverted means against the quad's Newell
+ * normal. A simple outline has at most one corner that turns inwards, so one diagonal inverts nothing; an outline that
+ * crosses itself has an inverted triangle either way. */
 int nt_written_quad_diagonal(int solved, const float *const positions[4]);
 
 #endif

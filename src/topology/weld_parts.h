@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Shared by the table of rows (weld_table.c), its use on several threads (weld_threads.c) and the weld of vertices
- * (weld_bloom.c) share: the entries of that table. For these files and weld.c only.
+ * The entries of the table of rows (weld_table.c), for its use on several threads (weld_threads.c) and the weld of
+ * vertices (weld_bloom.c, weld.c).
  *
  * An entry of 4 bytes holds a number and, in the bits that the number leaves free, a tag of the hash, so that
  * the row of another key is read about once in 2^tag probes. Tables are open-addressing and at most half full.

@@ -162,7 +162,7 @@ const TYPES = {method: 'string', repair: 'boolean', vDown: 'boolean', angularThr
 	bitangents: 'boolean', cornerFaults: 'boolean'};
 const OF_MESH = ['method', 'repair', 'vDown', 'angularThreshold', 'faceSizes'];
 
-// The options as words of a job, and those that are no words. A key that is not one of `names` is an error.
+// The options as words of a job, and, apart, those that a job has no words for. A key that is not one of `names` is an error.
 function readOptions(given, names) {
 	if (typeof given !== 'object' || given === null)
 		throw new TypeError(`nmtan: options: an object is expected, not ${String(given)}`);

@@ -27,7 +27,7 @@ enum { MOST_RATIO = 128 };
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wsign-compare"
 #pragma GCC diagnostic ignored "-Wshadow"
-/* In a nearly transparent PSD it divides by alpha, and takes what is no byte for one. */
+/* stb divides the colours of a PSD by alpha; if that is small, it converts floats above 255 to bytes. */
 #ifdef __clang__
 #pragma clang attribute push(__attribute__((no_sanitize("float-cast-overflow"))), apply_to = function)
 #endif

@@ -169,7 +169,7 @@ static bool is_textured(composition *c, const nt_new_primitive *primitive)
 		nt_material_takes_texcoords(material_of(c, primitive));
 }
 
-/* The place of that version's number. */
+/* The material's number in the document, with or without textures as the primitive takes it. */
 static uint32_t *number_of(composition *c, const nt_new_primitive *primitive)
 {
 	const size_t count = c->scene->material_count;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The images and materials of a new glTF document. Each result that its materials use (image/textures.h) is linked,
- * copied or embedded. An image that was made is a file of nobody yet, so where others are linked it is written beside
- * the output. An image that several materials use is one image, and a texture for each of its samplers.
+ * copied or embedded. An image that was made has no file yet: if others are linked, it is written beside the output.
+ * An image that several materials use is one image, and a texture for each of its samplers.
  */
 #ifndef NT_GLTF_CREATE_IMAGES_H
 #define NT_GLTF_CREATE_IMAGES_H

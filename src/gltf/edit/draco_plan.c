@@ -6,9 +6,9 @@
  * have them (gltf/draco_values.c). On 19 public models compressed by sequential with 14, 12, 12 and 12 bits, tangents
  * of the file's values gave --check 3 480 findings; 20, 14, 18 and 12 bits left 1 266 and took 9 % more bytes.
  *
- * The functions that edit the document also find here what stands in the way of compression: one that
- * looks at no values, and Draco's own check of them. Only of the vertices of a block, which is not decoded yet, is it
- * left for the load whether faces use them all.
+ * The functions that edit the document also find here what stands in the way of compression: by one check that looks
+ * at no values, and by Draco's own. Whether faces use all vertices of a block is known when it is decoded: the load
+ * finds that.
  *
  * On grids of their own the borders of primitives that are solved together (--across=mesh) would not meet any more.
  * Compressed ones get one grid; if some are not, all are solved for what the file has, so that tangents

@@ -4,12 +4,11 @@
  * written anew, and where.
  *
  * An accessor that only the meshes of one set use so keeps its number; one that several sets use goes to the last of
- * them. Elements of the same type are replaced where they are, and so are interleaved ones that become smaller: their
- * place between other attributes stays as it is, since these are not ours to move. For another type the old bytes are
- * taken out and the accessor gets a new place; so it does where it was sparse, had no bytes or was compressed by Draco.
- * An accessor that others use too stays, and a new accessor is appended. Bytes that nobody uses are left in one case
- * only: interleaved elements that become larger, whose slots could not go without another stride for attributes that
- * are to stay as they are.
+ * them. Elements of the same type are replaced in place, and so are interleaved ones that become smaller. If the type
+ * is another one, or the accessor was sparse, had no bytes or was compressed by Draco, the old bytes are taken out and
+ * the accessor gets a new place. An accessor that others use too stays, and a new accessor is appended. Unused bytes
+ * remain in one case: interleaved elements that become larger leave their slots, since without these the attributes
+ * beside them would need another stride.
  */
 #include "gltf/bytes/bytes.h"
 #include "gltf/edit/set_attributes.h"

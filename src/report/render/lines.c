@@ -66,7 +66,7 @@ void nt_write_lines(const nt_report_list *reports, nt_buffer *out)
 /* ---- for GitHub ---- */
 
 /* A property ends at a comma or a colon, a command at the end of its line. Other characters that must not reach a
- * terminal is shown as \x1b. */
+ * terminal are shown as \x1b. */
 static void put_escaped(const char *text, bool property, nt_buffer *out)
 {
 	for (size_t length; *text; text += length) {

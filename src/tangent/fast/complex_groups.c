@@ -16,8 +16,8 @@
 /*
  * Edge `e` meets the first edge in the other direction that waits at its far end; if there is none it waits
  * there itself. Groups that wait at one vertex all run the same way. They stand in a ring, each with its
- * follower in `across`, and `waiting` knows the last: its number is counted from `zero`, which lies above that of what
- * has waited there since another window's turn, and is not below `first` unless it has since another vertex's.
+ * follower in `across`, and `waiting` knows the last. Its number is counted from `zero`, which is above all numbers of
+ * earlier windows; a number below `first` is left from an earlier vertex.
  */
 static inline void pair_edge(uint32_t *across, uint32_t *waiting, uint32_t zero, uint32_t first, uint32_t e)
 {

@@ -26,8 +26,8 @@ static void orient_quads(uint8_t *flags, size_t count, const float *area)
 	}
 }
 
-/* Triangles whose UV area is exactly 0 whatever is rounded, as stored too, for two texture coordinates are the same or
- * all lie along an axis. If there is another reason, they stay uncertain. */
+/* Clears triangles whose UV area is exactly 0, whatever is rounded and as stored too: two texture coordinates are the
+ * same, or all lie along an axis. Others stay uncertain. */
 static void NT_NOINLINE clear_flat(const lanes_in *in, uint8_t *flags, size_t count)
 {
 	const float (*a)[NT_TRIANGLES] = in->row[0] + 6, (*b)[NT_TRIANGLES] = in->row[1] + 6,
