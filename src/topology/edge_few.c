@@ -15,7 +15,7 @@
 
 enum {
 	MOST_ROWS = 3 * NT_EDGE_FEW,
-	MOST_PAIRS = 64,
+	MOST_ENDS = 64,
 	MOST_IN_CELL = 63, /* corners, which have a bit each */
 	WINDOW = 16,       /* triangles at the end that hold the last run */
 	LAST = 4,          /* a vertex of the last triangle that is older than these is likely to be found there */
@@ -37,6 +37,7 @@ typedef struct few {
 	uint16_t first[MOST_ROWS], next[4 * NT_EDGE_FEW]; /* corners of each vertex, ascending */
 	uint16_t low[MOST_ROWS], high[MOST_ROWS]; /* the representative is between; high is 0 in no last triangle */
 	uint16_t beside[MOST_ROWS];  /* the largest low of those that a vertex has an edge with, of those that count */
+	uint8_t around[MOST_ROWS];   /* suspects that a vertex has */
 	uint16_t suspects[NT_EDGE_FEW]; /* triangles whose middle representative may be the largest lower end */
 } few;
 
@@ -99,31 +100,55 @@ static bool is_suspect(const few *f, uint32_t t)
 	return (f->high[v[0]] >= f->least) + (f->high[v[1]] >= f->least) + (f->high[v[2]] >= f->least) >= 2;
 }
 
-/* Finds triangles that count. Whether one of these vertices has enough of them. */
-static bool find_suspects(few *f)
+/* Lists the suspects around vertices that may be at least the largest lower end; false: none has enough of them. */
+static bool list_suspects(few *f)
 {
 	uint64_t seen[NT_EDGE_FEW / 64] = {0};
 	uint32_t most = 0;
 	for (uint32_t c = f->least; c < 4 * f->count; c++) {
 		const uint32_t vertex = f->ids[3 * (c / 4) + c % 4 % 3];
-		uint32_t here = 0;
-		if (f->high[vertex] != c)
-			continue;
-		for (uint32_t at = f->first[vertex]; at != NONE; at = f->next[at]) {
-			const uint32_t t = at / 4, counts = is_suspect(f, t);
-			seen[t / 64] |= (uint64_t)counts << t % 64;
-			here += counts;
+		uint32_t around = 0;
+		for (uint32_t at = f->high[vertex] == c ? f->first[vertex] : NONE; at != NONE; at = f->next[at]) {
+			const uint32_t t = at / 4, suspect = is_suspect(f, t);
+			seen[t / 64] |= (uint64_t)suspect << t % 64;
+			around += suspect;
 		}
-		most = nt_most_of(most, here);
+		most = nt_most_of(most, around);
 	}
+	if (most < NT_LEAST_EDGES)
+		return false;
 	f->suspect_count = 0;
-	for (uint32_t word = 0; most >= NT_LEAST_EDGES && word < NT_EDGE_FEW / 64; word++)
+	for (uint32_t word = 0; word < NT_EDGE_FEW / 64; word++)
 		for (uint64_t left = seen[word]; left; left &= left - 1) {
 			const uint32_t t = 64 * word + (uint32_t)nt_trailing_zeros(left);
 			f->suspects[f->suspect_count] = (uint16_t)t;
 			f->suspect_count += !nt_welded_is_degenerate(f->mesh, f->ids + 3 * t);
 		}
-	return f->suspect_count >= NT_LEAST_EDGES;
+	return true;
+}
+
+/* Finds suspects, those of the round before first. Whether one of their vertices has enough of them. */
+static bool find_suspects(few *f, bool of_all)
+{
+	uint32_t count = 0, most = 0;
+	if (of_all && !list_suspects(f))
+		return false;
+	for (uint32_t i = 0; i < f->suspect_count; i++) {
+		const uint32_t *v = f->ids + 3 * f->suspects[i];
+		f->suspects[count] = f->suspects[i];
+		count += of_all || is_suspect(f, f->suspects[i]);
+		f->beside[v[0]] = f->beside[v[1]] = f->beside[v[2]] = 0;
+		f->around[v[0]] = f->around[v[1]] = f->around[v[2]] = 0;
+	}
+	f->suspect_count = count;
+	for (uint32_t i = 0; i < count; i++) {
+		const uint32_t *v = f->ids + 3 * f->suspects[i];
+		for (int k = 0; k < 3; k++) {
+			const uint32_t around = ++f->around[v[k]];
+			most = f->high[v[k]] >= f->least ? nt_most_of(most, around) : most;
+		}
+	}
+	return most >= NT_LEAST_EDGES;
 }
 
 /* A cell: representatives.h says how it is welded. Its corners have places, and each vertex a bit for each of its
@@ -296,62 +321,59 @@ static bool find(few *f, uint32_t vertex, uint32_t most)
 	return true;
 }
 
+/* Finds the larger ends of edges whose lower end may be the largest one, at this vertex: no edge of theirs has a larger
+ * lower end. Returns how many there are, up to MOST_ENDS + 1. */
+static uint32_t find_ends(const few *f, uint32_t middle, uint16_t *ends)
+{
+	const uint16_t *const low = f->low, *const high = f->high;
+	const uint32_t most = high[middle], least = nt_most_of(low[middle], f->least);
+	uint32_t count = 0;
+	for (uint32_t i = 0; i < f->suspect_count && count < MOST_ENDS; i++) {
+		const uint32_t *v = f->ids + 3 * f->suspects[i];
+		if (v[0] != middle && v[1] != middle && v[2] != middle)
+			continue;
+		const uint32_t a = v[v[0] == middle], b = v[2 - (v[2] == middle)];
+		ends[count] = (uint16_t)a;
+		count += (high[a] > least) & (low[b] < most) & (f->beside[a] <= most);
+		ends[count] = (uint16_t)b;
+		count += (high[b] > least) & (low[a] < most) & (f->beside[b] <= most);
+	}
+	return count;
+}
+
 /* Whether the order may matter; `unknown` receives a vertex that decides it, or NT_NO_NEIGHBOUR. */
 static bool may_matter(few *f, uint32_t *unknown)
 {
-	const uint32_t least = f->least;
 	const uint16_t *const low = f->low, *const high = f->high;
-	struct {
-		uint32_t middle, largest;
-	} pairs[MOST_PAIRS + 6];
-	uint32_t count = 0, lowest = UINT32_MAX;
-	for (uint32_t i = 0; i < 3 * f->suspect_count; i++)
-		f->beside[f->ids[3 * f->suspects[i / 3] + i % 3]] = 0;
+	uint32_t lowest = UINT32_MAX;
+	bool may = false;
+	*unknown = NT_NO_NEIGHBOUR;
 	for (uint32_t i = 0; i < f->suspect_count; i++) {
 		const uint32_t *v = f->ids + 3 * f->suspects[i], a = low[v[0]], b = low[v[1]], c = low[v[2]];
 		f->beside[v[0]] = (uint16_t)nt_most_of(f->beside[v[0]], nt_most_of(b, c));
 		f->beside[v[1]] = (uint16_t)nt_most_of(f->beside[v[1]], nt_most_of(c, a));
 		f->beside[v[2]] = (uint16_t)nt_most_of(f->beside[v[2]], nt_most_of(a, b));
 	}
-	/* which vertices of a triangle may be the middle one and the largest: no edge of the latter has a larger lower
-	 * end than the middle one */
-	*unknown = NT_NO_NEIGHBOUR;
-	for (uint32_t i = 0; i < f->suspect_count; i++) {
-		const uint32_t *v = f->ids + 3 * f->suspects[i];
-		uint32_t lows[3], highs[3], beside[3];
-		for (int k = 0; k < 3; k++) {
-			lows[k] = low[v[k]];
-			highs[k] = high[v[k]];
-			beside[k] = f->beside[v[k]];
-		}
-		NT_UNROLL(6)
-		for (int way = 0; way < 6; way++) {
-			const int m = way / 2, l = (m + 1 + way % 2) % 3;
-			pairs[count].middle = v[m];
-			pairs[count].largest = v[l];
-			count += (highs[m] >= least) & (highs[l] > nt_most_of(lows[m], least)) &
-				(lows[3 - m - l] < highs[m]) & (beside[l] <= highs[m]);
-		}
-		if (count > MOST_PAIRS)
+	for (uint32_t c = f->least; c < 4 * f->count; c++) {
+		uint16_t ends[MOST_ENDS + 2];
+		const uint32_t middle = f->ids[3 * (c / 4) + c % 4 % 3];
+		const bool may_be = high[middle] == c && f->around[middle] >= NT_LEAST_EDGES;
+		const uint32_t count = may_be ? find_ends(f, middle, ends) : 0;
+		if (count >= MOST_ENDS) {
+			*unknown = NT_NO_NEIGHBOUR;
 			return true;
-	}
-	bool may = false;
-	for (uint32_t i = 1; i < count; i++)
-		for (uint32_t k = 0; k < i; k++) {
-			if ((pairs[i].middle != pairs[k].middle) | (pairs[i].largest != pairs[k].largest))
-				continue;
-			uint32_t edges = 0;
-			for (uint32_t e = 0; e < count; e++)
-				edges += pairs[e].middle == pairs[i].middle;
-			may |= edges >= NT_LEAST_EDGES;
-			for (int end = 0; end < 2 && edges >= NT_LEAST_EDGES; end++) {
-				const uint32_t v = end ? pairs[i].largest : pairs[i].middle;
-				if (low[v] != high[v] && low[v] < lowest) {
-					lowest = low[v];
-					*unknown = v;
-				}
-			}
 		}
+		for (uint32_t i = 1; count >= NT_LEAST_EDGES && i < count; i++)
+			for (uint32_t k = 0; k < i; k++)
+				for (int end = 0; end < 2 && ends[i] == ends[k]; end++) {
+					const uint32_t v = end ? ends[i] : middle;
+					may = true;
+					if (low[v] != high[v] && low[v] < lowest) {
+						lowest = low[v];
+						*unknown = v;
+					}
+				}
+	}
 	return may;
 }
 
@@ -381,7 +403,7 @@ bool nt_few_edges_are_sorted(const nt_welded_mesh *mesh, bool *limit)
 		find_least(&f);
 		if (f.least < 4 * f.window)
 			return false;
-		if (!find_suspects(&f) || !may_matter(&f, &unknown))
+		if (!find_suspects(&f, round == 0) || !may_matter(&f, &unknown))
 			return true;
 		if (unknown == NT_NO_NEIGHBOUR || !find(&f, unknown, MOST_IN_CELL))
 			return false;
