@@ -65,6 +65,8 @@ bool nt_grid_make(const nt_welded_mesh *mesh, uint32_t extremes[6], nt_grid *gri
 	nt_box all = nothing;
 	bool ordered = true;
 	size_t blocks[6] = {0}; /* where the sides are */
+	if (!extremes && mesh->box)
+		return set_grid(mesh->box, grid);
 	if (!extremes)
 		return add_rows(mesh->positions, mesh->step, NULL, mesh->vertex_count, &all) && set_grid(&all, grid);
 	for (size_t v = 0; v < mesh->vertex_count; v += BLOCK) {

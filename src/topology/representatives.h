@@ -19,6 +19,11 @@ enum { NT_CELLS = 2048 };
 /* A cell is halved so often at most; one with floats of ordinary sizes needs about 40. */
 enum { NT_HALVINGS = 128 };
 
+/* The box of some rows; the last of each four is of no use. */
+typedef struct nt_box {
+	float low[4], high[4];
+} nt_box;
+
 /* Triangles of welded vertices, those with two corners at one position too. */
 typedef struct nt_welded_mesh {
 	const nt_triangles *triangles;
@@ -26,6 +31,7 @@ typedef struct nt_welded_mesh {
 	const float *positions; /* [vertex_count] rows of three floats, of numbers that no corner has too; three
 	                           floats behind the last one can be read */
 	size_t step;		/* floats from one row to the next */
+	const nt_box *box;	/* of all rows; NULL: not known */
 	nt_scratch *scratch;
 } nt_welded_mesh;
 
@@ -46,11 +52,6 @@ static inline bool nt_welded_is_degenerate(const nt_welded_mesh *mesh, const uin
 	return nt_welded_are_same(mesh, v[0], v[1]) || nt_welded_are_same(mesh, v[1], v[2]) ||
 	       nt_welded_are_same(mesh, v[2], v[0]);
 }
-
-/* The box of some rows; the last of each four is of no use. */
-typedef struct nt_box {
-	float low[4], high[4];
-} nt_box;
 
 /* Cells lie along one axis of the box. */
 typedef struct nt_grid {

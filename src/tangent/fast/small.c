@@ -7,7 +7,13 @@
  */
 #include "tangent/fast/parts.h"
 
+#include <float.h>
 #include <string.h>
+
+/* The box of the rows falls out of loading them, where that is an instruction each. */
+#if NT_VECTORS && defined(__SSE2__)
+#define BOXES
+#endif
 
 enum { MOST_VERTICES = 3 * NT_SMALL_TRIANGLES, LEAST_SLOT_BITS = 5, MOST_SLOT_BITS = 10 };
 static_assert(2 * MOST_VERTICES <= 1 << MOST_SLOT_BITS, "a table that is half full at most");
@@ -19,6 +25,7 @@ typedef struct small_room {
 	uint32_t *cursors, *narrow, *ids;
 	uint8_t *flags, *open;
 	size_t bounds[2];
+	nt_box box;
 } small_room;
 
 static nt_memory take(char **at, size_t bytes)
@@ -50,9 +57,10 @@ static small_room *make_room(nt_scratch *scratch, size_t vertices, size_t triang
 	return room;
 }
 
-/* Loads the rows of vertices and numbers each by the first that is equal. False: a value is NaN. */
-static bool number_rows(const nmtan_mesh *mesh, size_t count, nt_weld_row *rows, uint32_t *numbers, bool *equal)
+/* Loads the rows of vertices, which have a box, and numbers each by the first that is equal. False: a value is NaN. */
+static bool number_rows(const nmtan_mesh *mesh, size_t count, small_room *room, uint32_t *numbers, bool *equal)
 {
+	nt_weld_row *const rows = room->rows;
 	const uint64_t odd[4] = {0x9e3779b97f4a7c15u, 0xa4093822299f31d1u, 0x082efa98ec4e6c89u, 0x452821e638d01377u};
 	uint16_t slots[1 << MOST_SLOT_BITS]; /* 0, or one more than a vertex */
 	unsigned bits = LEAST_SLOT_BITS;
@@ -61,8 +69,16 @@ static bool number_rows(const nmtan_mesh *mesh, size_t count, nt_weld_row *rows,
 		bits++;
 	memset(slots, 0, sizeof *slots << bits);
 	uint64_t any_equal = 0;
+#ifdef BOXES
+	__m128 low = _mm_set1_ps(FLT_MAX), high = _mm_set1_ps(-FLT_MAX);
+#endif
 	for (size_t v = 0; v < count; v++) {
 		unordered |= nt_weld_load(mesh, v, &rows[v]);
+#ifdef BOXES
+		const __m128 position = _mm_loadu_ps(rows[v].position);
+		low = _mm_min_ps(low, position);
+		high = _mm_max_ps(high, position);
+#endif
 		const uint64_t hash = nt_weld_word(&rows[v], 0) * odd[0] + nt_weld_word(&rows[v], 1) * odd[1] +
 			(nt_weld_word(&rows[v], 2) * odd[2] + nt_weld_word(&rows[v], 3) * odd[3]);
 		size_t at = hash >> (64 - bits);
@@ -73,6 +89,10 @@ static bool number_rows(const nmtan_mesh *mesh, size_t count, nt_weld_row *rows,
 			slots[at] = (uint16_t)(v + 1);
 		numbers[v] = slots[at] - 1u;
 	}
+#ifdef BOXES
+	_mm_storeu_ps(room->box.low, low);
+	_mm_storeu_ps(room->box.high, high);
+#endif
 	*equal = any_equal != 0;
 	return nt_weld_ordered(unordered);
 }
@@ -118,7 +138,10 @@ nmtan_status nt_fast_weld_small(nt_fast *fast, bool *welded)
 	small_room *room = make_room(solve->scratch, fast->vertex_count, fast->triangle_count, step);
 	if (!room)
 		return NMTAN_ERROR_MEMORY;
-	*welded = number_rows(mesh, fast->vertex_count, room->rows, numbers, &equal);
+	*welded = number_rows(mesh, fast->vertex_count, room, numbers, &equal);
+#ifdef BOXES
+	fast->box = &room->box;
+#endif
 	fast->rows = room->rows;
 	fast->triangles.ids = number_corners(mesh, solve->corner_count, numbers, equal, room->ids);
 	fast->flags = (uint8_t *)memset(room->flags, 0, fast->triangle_count);
