@@ -397,12 +397,16 @@ static bool put_element_line(writer *w, const ply_element *element, const char *
 	return true;
 }
 
-static void put_property_line(writer *w, const ply_element *element, size_t number, const char *line, size_t size)
+/* next: the first of the old columns that has not been met; they are in the order of properties. */
+static void put_property_line(writer *w, const ply_element *element, size_t number, const char *line, size_t size,
+	size_t *next)
 {
 	const ply_property *property = &element->properties[number];
 	bool stays = element != w->source->vertex;
-	for (size_t i = 0; i < w->old_count; i++)
-		stays |= w->columns[i].property == (int)number;
+	if (!stays && *next < w->old_count && w->columns[*next].property == (int)number) {
+		stays = true;
+		++*next;
+	}
 	if (element == w->source->face && (int)number == w->source->face_indices && w->index_type != property->type)
 		nt_buffer_format(&w->buffer, "property list %s %s %s%s", ply_type_name(property->count_type),
 			ply_type_name(w->index_type), property->name, w->newline);
@@ -417,7 +421,7 @@ static void put_old_header(writer *w)
 {
 	const ply_header *header = &w->source->header;
 	const ply_element *element = header->elements;
-	size_t property = 0;
+	size_t property = 0, next = 0;
 	bool stays = true;
 	ply_line line;
 	for (size_t begin = 0; begin < header->body; begin = line.next) {
@@ -430,7 +434,7 @@ static void put_old_header(writer *w)
 			property = 0;
 		} else if (ply_word_is(word, "property")) {
 			if (stays)
-				put_property_line(w, element - 1, property, line.text, size);
+				put_property_line(w, element - 1, property, line.text, size, &next);
 			property++;
 		} else {
 			nt_buffer_append(&w->buffer, line.text, size);

@@ -208,7 +208,10 @@ for report in r.json r.html r.txt r.sarif; do
 done
 grep -q 'xxx\.\.\. (1000000 bytes)' r.json || wrong "the name is not cut"
 
-scene "a PLY header of $elements elements is read in linear time"
+scene "a PLY header of many properties, or of $elements elements, is read in linear time"
+ending=ply
+grows properties $((elements / 4)) IN out.ply
+ending=obj
 inputs elements $elements e.ply
 within 15 300 e.ply out.ply
 exits 0

@@ -27,6 +27,7 @@ targets   a GLB of one grid of SIDE (48) quads squared with COUNT morph targets,
 halves    the same grid, as two primitives over one set of vertices
 levels    a GLB of COUNT primitives of one material with COUNT levels of detail
 turned    a GLB of COUNT materials, each with a texture and an image of its own, as normal map and as emissive
+properties a PLY of one triangle with COUNT properties of its vertices
 strip     an OBJ strip of COUNT quads
 hub       an OBJ of COUNT triangles around one point
 tiles     an OBJ of COUNT quads in a row, all with the same texels, every other one mirrored
@@ -52,6 +53,15 @@ def elements(count, out):
     out.write(b'element vertex 3\n' + b''.join(b'property float %c\n' % c for c in b'xyzst') +
               b'element face 1\nproperty list uchar int vertex_indices\nend_header\n'
               b'0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n')
+
+
+def properties(count, out):
+    out.write(b'ply\nformat ascii 1.0\nelement vertex 3\n' + b''.join(b'property float %c\n' % c for c in b'xyzst'))
+    out.write(b''.join(b'property int p%d\n' % i for i in range(count)))
+    out.write(b'element face 1\nproperty list uchar int vertex_indices\nend_header\n')
+    for row in b'0 0 0 0 0', b'1 0 0 1 0', b'0 1 0 0 1':
+        out.write(row + b' 0' * count + b'\n')
+    out.write(b'3 0 1 2\n')
 
 
 def usemtl(count, out):
@@ -388,7 +398,7 @@ with open(sys.argv[3], 'wb') as out:
     elif kind == 'bumps':
         bumps(count, out, side or 4096)
     else:
-        {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
+        {'elements': elements, 'properties': properties, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
          'patches': patches, 'repeated': repeated, 'centre': centre, 'folded': folded,
          'tiles': tiles, 'turned': turned, 'libraries': libraries, 'slashes': slashes, 'colors': colors,
          'buffers': buffers, 'animated': animated, 'levels': levels, 'scans': scans,
