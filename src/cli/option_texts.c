@@ -337,18 +337,15 @@ static bool is_one_of(const nt_option_row *row, const char *const *names, size_t
 	return false;
 }
 
-/* An option with a value that is not the default. */
-static void append_given(nt_buffer *out, const nt_command *command, const nt_option_row *row)
+/* Whether an option has a value that is not the default. */
+static bool is_given(const nt_command *command, const nt_option_row *row)
 {
-	nt_command defaults;
-	nt_options_defaults(&defaults);
-	const char *field = (const char *)command + row->offset;
-	if (memcmp(field, (const char *)&defaults + row->offset, field_bytes(row)) != 0)
-		append_shaping(out, row, field);
+	return row->kind != NT_OPTION_HEADING && memcmp((const char *)command + row->offset,
+		(const char *)&nt_default_command + row->offset, field_bytes(row)) != 0;
 }
 
-/* The next row that shapes outputs; *i: 0 before the first. */
-static const nt_option_row *next_shaping(size_t *i, bool *shapes)
+/* The next row that shapes outputs and is given; *i: 0 before the first. */
+static const nt_option_row *next_shaping(const nt_command *command, size_t *i, bool *shapes)
 {
 	/* options about the output that change when and how it is written, but not what */
 	static const char *const writing[] = {"output", "in-place", "no-clobber", "sync", "verify", "dry-run"};
@@ -356,7 +353,8 @@ static const nt_option_row *next_shaping(size_t *i, bool *shapes)
 		const nt_option_row *row = &nt_option_rows[(*i)++];
 		if (row->kind == NT_OPTION_HEADING)
 			*shapes = row->first == NT_SHAPES_OUTPUT;
-		else if (*shapes && !is_one_of(row, writing, sizeof writing / sizeof *writing))
+		else if (*shapes && is_given(command, row) &&
+			!is_one_of(row, writing, sizeof writing / sizeof *writing))
 			return row;
 	}
 	return NULL;
@@ -366,8 +364,8 @@ void nt_options_shaping(const nt_command *command, nt_buffer *out)
 {
 	bool shapes = false;
 	size_t i = 0;
-	for (const nt_option_row *row; (row = next_shaping(&i, &shapes)) != NULL;)
-		append_given(out, command, row);
+	for (const nt_option_row *row; (row = next_shaping(command, &i, &shapes)) != NULL;)
+		append_shaping(out, row, (const char *)command + row->offset);
 }
 
 void nt_options_given(const nt_command *command, nt_buffer *out)
@@ -375,7 +373,7 @@ void nt_options_given(const nt_command *command, nt_buffer *out)
 	static const char *const elsewhere[] = {"output-format"}; /* the name of the output says it */
 	bool shapes = false;
 	size_t i = 0;
-	for (const nt_option_row *row; (row = next_shaping(&i, &shapes)) != NULL;) {
+	for (const nt_option_row *row; (row = next_shaping(command, &i, &shapes)) != NULL;) {
 		const nt_words *words = (const void *)((const char *)command + row->offset);
 		const size_t count = row->kind == NT_OPTION_LIST ? words->count : 1;
 		for (size_t k = 0; k < count && !is_one_of(row, elsewhere, 1); k++) {
@@ -383,7 +381,7 @@ void nt_options_given(const nt_command *command, nt_buffer *out)
 			if (row->kind == NT_OPTION_LIST)
 				nt_buffer_format(&word, "--%s=%s", row->name, words->items[k]);
 			else
-				append_given(&word, command, row);
+				append_shaping(&word, row, words);
 			if (word.data && nt_shell_word(word.data, &shown))
 				nt_buffer_format(out, "%s%s", out->size ? "\n" : "", shown.data);
 			nt_buffer_free_into(&word, out);
@@ -399,9 +397,9 @@ void nt_options_judging(const nt_command *command, nt_buffer *out)
 	char digest[NT_DIGEST_TEXT] = "";
 	nt_error unused; /* who reads it says so */
 	for (size_t i = 0; i < nt_option_row_count; i++)
-		if (nt_option_rows[i].kind != NT_OPTION_HEADING &&
+		if (is_given(command, &nt_option_rows[i]) &&
 			is_one_of(&nt_option_rows[i], judging, sizeof judging / sizeof *judging))
-			append_given(out, command, &nt_option_rows[i]);
+			append_shaping(out, &nt_option_rows[i], (const char *)command + nt_option_rows[i].offset);
 	if (command->baseline && nt_digest_of_file(command->baseline, digest, &unused) == NT_OK)
 		nt_buffer_format(out, " %s", digest);
 }

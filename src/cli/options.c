@@ -579,15 +579,8 @@ static nt_status check_dashes(const parser *p)
 	return NT_OK;
 }
 
-void nt_options_defaults(nt_command *command)
-{
-	memset(command, 0, sizeof *command);
-	command->settings.texcoord_set = -1;
-	command->settings.outside = NT_OUTSIDE_ROOT;
-	command->fail_on = NT_FAIL_ON_NEVER;
-	command->min_severity = NT_FAIL_ON_INFO;
-	command->max_issues = -1;
-}
+const nt_command nt_default_command = {.settings = {.texcoord_set = -1, .outside = NT_OUTSIDE_ROOT},
+	.fail_on = NT_FAIL_ON_NEVER, .min_severity = NT_FAIL_ON_INFO, .max_issues = -1};
 
 /* --explain A B: operands are codes, too. */
 static nt_status parse_explain(nt_command *command, nt_error *error)
@@ -605,7 +598,7 @@ static nt_status parse_explain(nt_command *command, nt_error *error)
 nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error)
 {
 	parser p = {.command = command, .error = error};
-	nt_options_defaults(command);
+	*command = nt_default_command;
 
 	/* Operands move to the front, behind the program's name, in their order. */
 	int kept = argc > 0 ? 1 : 0;

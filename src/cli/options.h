@@ -76,7 +76,7 @@ typedef struct nt_command {
 } nt_command;
 
 /* The meaning of a command line without words. */
-void nt_options_defaults(nt_command *command);
+extern const nt_command nt_default_command;
 
 /*
  * Reads the words of a command line.
