@@ -278,6 +278,9 @@ static bool same_uses(const nt_mesh *a, const nt_mesh *b)
 		a->wrap_offset[1] == b->wrap_offset[1];
 }
 
+/* Faces of other meshes that are looked at, for all meshes together: some 0.1 s. */
+static const size_t MOST_FOREIGN_FACES = 4000000;
+
 /* Meshes that are checked together: of the same geometry and used alike. */
 typedef struct checked_meshes {
 	uint32_t *first; /* [mesh_count] the one that is checked in its place; NT_NONE: nobody */
@@ -365,9 +368,9 @@ static nt_status check_meshes(const nt_check *check, const checked_meshes *check
 static nt_status check_scene(const nt_scene *scene, const nt_report_options *options,
 	nt_report *report, nt_error *error)
 {
-	size_t finding_capacity = 0;
+	size_t finding_capacity = 0, foreign_faces = MOST_FOREIGN_FACES;
 	nt_check check = {.scene = scene, .options = options, .report = report, .error = error,
-		.finding_capacity = &finding_capacity};
+		.finding_capacity = &finding_capacity, .foreign_faces = &foreign_faces};
 	checked_meshes checked = {.first = nt_alloc(scene->mesh_count, sizeof *checked.first),
 		.next = nt_alloc(scene->mesh_count, sizeof *checked.next),
 		.alike = nt_alloc(scene->mesh_count, sizeof *checked.alike)};

@@ -33,6 +33,7 @@ typedef struct nt_check {
 	nt_report *report;
 	nt_error *error;          /* of the one check whose faults have words: seams.c */
 	size_t *finding_capacity;
+	size_t *foreign_faces; /* of other meshes that checks of a mesh may still look at */
 	nt_scratch *scratch; /* of this mesh */
 
 	uint32_t mesh_index;

@@ -8,7 +8,7 @@
  * still lies on the other half. The points (about SAMPLE_COUNT of them, at least one of each island) go into a
  * grid and the triangles stream over it, once for each tile that they reach into; a point that is found leaves
  * its cell, so that many stacked layers cost no more than one. Triangles whose materials have other images share no
- * texture.
+ * texture. What is left is looked up among the other meshes: halves of a model may be objects of their own.
  *
  * An island with both windings is a fold, unless its mirrored part lies point by point on its own
  * unmirrored part: then it is a symmetric model whose halves share the coordinates of the middle line, or a doubled
@@ -21,6 +21,7 @@
 #include <string.h>
 #include "base/hash_index.h"
 #include "base/name_table.h"
+#include "topology/orientation.h"
 
 enum { SAMPLE_COUNT = 16384, GRID_SIZE = 128 };
 
@@ -135,7 +136,7 @@ typedef struct grid {
 	size_t sample_count, left; /* not found yet */
 	size_t visits, most_visits;
 	const nt_mesh *mesh; /* whose wrap and wrap_offset count */
-	uint32_t *textures;  /* [primitive_count] numbers of images; NULL: all have one */
+	uint32_t *textures;  /* [primitive_count] numbers of images */
 } grid;
 
 static double uv_area(const float *a, const float *b, const float *c)
@@ -151,28 +152,38 @@ static int cell_of(const grid *g, int axis, double value)
 	return !(cell >= 0.0) ? 0 : cell >= GRID_SIZE ? GRID_SIZE - 1 : (int)cell;
 }
 
-/* Numbers the images that the materials of primitives have: the first map of each, normal maps before others. */
-static bool number_textures(const nt_check *check, uint32_t *textures)
+/* The image that a primitive's material has: its first map, a normal map before others; "": none. A glTF's meshes are
+ * told apart by their materials. */
+static const char *texture_name(const nt_scene *scene, const nt_mesh *mesh, size_t primitive)
 {
-	nt_name_table names = {0};
-	bool added = true;
-	for (size_t p = 0; added && p < check->mesh->primitive_count; p++) {
-		const uint32_t number = check->mesh->primitives[p].material;
-		const nt_material *material = number == NT_NONE ? NULL : &check->scene->materials[number];
-		const char *name = material ? material->normal_map.name : NULL;
-		for (size_t i = 0; material && !name && i < NT_MATERIAL_MAPS; i++)
-			name = material->maps[i].name;
-		textures[p] = nt_name_add(&names, name ? name : "", name ? strlen(name) : 0);
-		added = textures[p] != UINT32_MAX;
+	const uint32_t number = mesh->primitive_count ? mesh->primitives[primitive].material : NT_NONE;
+	const nt_material *material = number < scene->material_count ? &scene->materials[number] : NULL;
+	const char *name = material ? material->normal_map.name : NULL;
+	for (size_t i = 0; material && !name && i < NT_MATERIAL_MAPS; i++)
+		name = material->maps[i].name;
+	return name ? name : "";
+}
+
+/* The numbers of the images of a mesh's primitives, one at least, in scratch; NULL when out of memory. Of another mesh
+ * UINT32_MAX: the mesh that is checked has no such image. */
+static uint32_t *number_textures(const nt_check *check, const nt_mesh *mesh, nt_name_table *names)
+{
+	const size_t count = mesh->primitive_count ? mesh->primitive_count : 1;
+	uint32_t *textures = nt_scratch_alloc(check->scratch, count, sizeof *textures);
+	for (size_t p = 0; textures && p < count; p++) {
+		const char *name = texture_name(check->scene, mesh, p);
+		textures[p] = mesh == check->mesh ? nt_name_add(names, name, strlen(name))
+			: nt_name_find(names, name, strlen(name));
+		if (mesh == check->mesh && textures[p] == UINT32_MAX)
+			return NULL;
 	}
-	nt_name_table_free(&names);
-	return added;
+	return textures;
 }
 
 static uint32_t texture_of(const nt_check *check, const grid *g, size_t triangle)
 {
-	const uint32_t *faces = check->surface.faces;
-	return g->textures ? g->textures[g->mesh->face_primitive[faces ? faces[triangle] : triangle]] : 0;
+	const uint32_t *faces = check->surface.faces, *primitives = g->mesh->face_primitive;
+	return g->textures[primitives ? primitives[faces ? faces[triangle] : triangle] : 0];
 }
 
 /* Takes every n-th mirrored triangle, at most SAMPLE_COUNT, and the first one of every island. `met` is
@@ -312,25 +323,75 @@ static void search_tile(grid *g, uv_triangle t, double tile_u, double tile_v)
 	search_cells(g, &t);
 }
 
+/* An unmirrored triangle. */
+static void search_triangle(grid *g, const float *const texcoords[3], uint32_t texture)
+{
+	uv_triangle uv = {.texture = texture};
+	for (int k = 0; k < 3; k++) {
+		uv.u[k] = (double)texcoords[k][0] + g->mesh->wrap_offset[0];
+		uv.v[k] = (double)texcoords[k][1] + g->mesh->wrap_offset[1];
+	}
+	double us[2], vs[2];
+	find_tiles(uv.u, g->mesh->wrap[0], us);
+	find_tiles(uv.v, g->mesh->wrap[1], vs);
+	for (double v = vs[0]; v <= vs[1] && g->visits < g->most_visits; v += 1.0)
+		for (double u = us[0]; u <= us[1] && g->visits < g->most_visits; u += 1.0)
+			search_tile(g, uv, u, v);
+}
+
 static void stream_triangles(const nt_check *check, grid *g)
 {
 	const nt_surface *s = &check->surface;
-	for (size_t t = 0; t < s->triangle_count && g->left && g->visits < g->most_visits; t++) {
-		if (s->orientation[t] <= 0)
-			continue;
-		uv_triangle uv = {.texture = texture_of(check, g, t)};
-		for (uint32_t k = 0; k < 3; k++) {
-			const float *texcoord = nt_side_texcoord(s, (uint32_t)(3 * t) + k);
-			uv.u[k] = (double)texcoord[0] + g->mesh->wrap_offset[0];
-			uv.v[k] = (double)texcoord[1] + g->mesh->wrap_offset[1];
+	for (size_t t = 0; t < s->triangle_count && g->left && g->visits < g->most_visits; t++)
+		if (s->orientation[t] > 0)
+			search_triangle(g, (const float *const[3]){nt_side_texcoord(s, 3 * t),
+				nt_side_texcoord(s, 3 * t + 1), nt_side_texcoord(s, 3 * t + 2)},
+				texture_of(check, g, t));
+}
+
+/* The triangles of another mesh, quads cut anyhow. */
+static void stream_mesh(const nt_mesh *mesh, const uint32_t *textures, grid *g)
+{
+	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
+	size_t first = 0;
+	for (size_t f = 0; f < mesh->face_count && g->left && g->visits < g->most_visits; f++) {
+		const size_t size = mesh->face_sizes ? mesh->face_sizes[f] : 3;
+		for (size_t k = 2; k < size; k++) {
+			const size_t corners[3] = {first, first + k - 1, first + k};
+			const float *texcoords[3];
+			for (int i = 0; i < 3; i++)
+				texcoords[i] = uv + 2 * (mesh->indices ? mesh->indices[corners[i]] : corners[i]);
+			if (nt_orientation(texcoords[0], texcoords[1], texcoords[2]) > 0)
+				search_triangle(g, texcoords, textures[mesh->face_primitive ? mesh->face_primitive[f] : 0]);
 		}
-		double us[2], vs[2];
-		find_tiles(uv.u, g->mesh->wrap[0], us);
-		find_tiles(uv.v, g->mesh->wrap[1], vs);
-		for (double v = vs[0]; v <= vs[1] && g->visits < g->most_visits; v += 1.0)
-			for (double u = us[0]; u <= us[1] && g->visits < g->most_visits; u += 1.0)
-				search_tile(g, uv, u, v);
+		first += size;
 	}
+}
+
+/* Whether a sampler takes the coordinates of two meshes alike. */
+static bool share_sampler(const nt_mesh *a, const nt_mesh *b)
+{
+	return a->gltf_material == b->gltf_material && a->texcoord_set == b->texcoord_set &&
+		memcmp(a->wrap, b->wrap, sizeof a->wrap) == 0 && a->solve_sign == b->solve_sign;
+}
+
+/* Other meshes, as long as the scene's budget for it lasts: each of thousands may have mirrored islands. */
+static nt_status stream_others(const nt_check *check, nt_name_table *names, grid *g)
+{
+	for (size_t i = 0; i < check->scene->mesh_count && g->left; i++) {
+		const nt_mesh *other = &check->scene->meshes[i];
+		if (other == check->mesh || !other->triangles || !other->positions || !other->texcoords ||
+			other->face_count > *check->foreign_faces || !share_sampler(check->mesh, other))
+			continue;
+		const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+		const uint32_t *textures = number_textures(check, other, names);
+		if (!textures)
+			return NT_ERROR_MEMORY;
+		*check->foreign_faces -= other->face_count;
+		stream_mesh(other, textures, g);
+		nt_scratch_back(check->scratch, mark);
+	}
+	return NT_OK;
 }
 
 /* Sets `covered` of every island with mirrored triangles. */
@@ -342,13 +403,12 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 	sample *samples = nt_scratch_alloc(check->scratch, SAMPLE_COUNT + islands, sizeof *samples);
 	uint8_t *met = nt_scratch_alloc(check->scratch, islands, sizeof *met);
 	double *sums = nt_scratch_alloc(check->scratch, 2 * islands, sizeof *sums);
-	if (!g || !samples || !sums || !met)
+	nt_name_table names = {0};
+	if (g)
+		g->textures = number_textures(check, check->mesh, &names);
+	if (!g || !samples || !sums || !met || !g->textures) {
+		nt_name_table_free(&names);
 		return NT_ERROR_MEMORY;
-	g->textures = NULL;
-	if (check->mesh->face_primitive && check->mesh->primitive_count > 1) {
-		g->textures = nt_scratch_alloc(check->scratch, check->mesh->primitive_count, sizeof *g->textures);
-		if (!g->textures || !number_textures(check, g->textures))
-			return NT_ERROR_MEMORY;
 	}
 	memset(met, 0, islands * sizeof *met);
 	g->samples = samples;
@@ -361,6 +421,8 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 	fill_grid(g);
 	g->left = g->sample_count;
 	stream_triangles(check, g);
+	const nt_status status = g->left ? stream_others(check, &names, g) : NT_OK;
+	nt_name_table_free(&names);
 	memset(sums, 0, 2 * islands * sizeof *sums);
 	for (size_t i = 0; i < g->sample_count; i++) {
 		const sample *p = &samples[i];
@@ -371,7 +433,7 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 		if (sums[2 * i] > 0.0)
 			check->facts->islands[i].covered = sums[2 * i + 1] / sums[2 * i];
 	nt_scratch_back(check->scratch, mark);
-	return NT_OK;
+	return status;
 }
 
 /* ---- folds and overlapping islands ---- */
