@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
-#include "report/quads.h"
+#include "report/maker/quads.h"
 #include "report/report.h"
 
 /* The sign of w at all corners of a triangle; 0: some have none; MIXED: they differ. */

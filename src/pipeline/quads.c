@@ -9,8 +9,8 @@
 
 #include <stdlib.h>
 #include "base/bits.h"
-#include "report/maker.h"
-#include "report/quads.h"
+#include "report/maker/maker.h"
+#include "report/maker/quads.h"
 #include "topology/corners.h"
 
 /* Whether the tangents that a mesh has are those of its quads and not those of its triangles. */

@@ -239,7 +239,8 @@ static nt_status keep_pictures(nt_check *check, size_t most_bytes[NT_PICTURE_COU
 static nt_status run_checks(nt_check *check)
 {
 	static nt_status (*const checks[])(nt_check *) = {nt_check_geometry, nt_check_edges, nt_check_islands,
-		nt_check_seams, nt_check_hard_edges, nt_check_measures, nt_check_tangents, nt_check_growth};
+		nt_check_seams, nt_check_hard_edges, nt_check_rims, nt_check_measures, nt_check_tangents,
+		nt_check_growth};
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < sizeof checks / sizeof *checks && !status; i++)
 		status = checks[i](check);
@@ -369,8 +370,9 @@ static nt_status check_scene(const nt_scene *scene, const nt_report_options *opt
 	nt_report *report, nt_error *error)
 {
 	size_t finding_capacity = 0, foreign_faces = MOST_FOREIGN_FACES;
+	nt_rims rims = {0};
 	nt_check check = {.scene = scene, .options = options, .report = report, .error = error,
-		.finding_capacity = &finding_capacity, .foreign_faces = &foreign_faces};
+		.finding_capacity = &finding_capacity, .rims = &rims, .foreign_faces = &foreign_faces};
 	checked_meshes checked = {.first = nt_alloc(scene->mesh_count, sizeof *checked.first),
 		.next = nt_alloc(scene->mesh_count, sizeof *checked.next),
 		.alike = nt_alloc(scene->mesh_count, sizeof *checked.alike)};
@@ -379,6 +381,9 @@ static nt_status check_scene(const nt_scene *scene, const nt_report_options *opt
 		find_checked(scene, &checked);
 		status = check_meshes(&check, &checked);
 	}
+	if (!status)
+		status = nt_check_across(&check);
+	free(rims.sides);
 	free(checked.first);
 	free(checked.next);
 	free(checked.alike);

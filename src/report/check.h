@@ -27,12 +27,26 @@ typedef enum nt_stored {
 	NT_STORED_SPLIT     /* mesh->split.vertex_tangents */
 } nt_stored;
 
+/* A side at the rim of an object, its ends ascending by position. across.c */
+typedef struct nt_rim_side {
+	uint64_t key;            /* of the positions at its ends */
+	uint32_t mesh, side, face; /* side: of the mesh as a surface */
+	uint32_t ends[2];        /* vertices of the mesh */
+	int orientation;         /* of the triangle: 1 or -1 */
+} nt_rim_side;
+
+typedef struct nt_rims {
+	nt_rim_side *sides;
+	size_t count, capacity;
+} nt_rims;
+
 typedef struct nt_check {
 	const nt_scene *scene;
 	const nt_report_options *options;
 	nt_report *report;
 	nt_error *error;          /* of the one check whose faults have words: seams.c */
 	size_t *finding_capacity;
+	nt_rims *rims;         /* of all objects of an OBJ */
 	size_t *foreign_faces; /* of other meshes that checks of a mesh may still look at */
 	nt_scratch *scratch; /* of this mesh */
 
@@ -85,6 +99,9 @@ typedef struct nt_tally {
 /* Each counts one occurrence. value is the number that was checked, or NAN. */
 void nt_tally_triangle(const nt_check *check, nt_tally *tally, size_t triangle, double value);
 void nt_tally_side(const nt_check *check, nt_tally *tally, uint32_t side, double value);
+/* The edge of a triangle of a mesh whose surface is not there. */
+void nt_tally_edge(const nt_check *check, nt_tally *tally, uint32_t triangle, uint32_t face, const uint32_t ends[2],
+	double value);
 void nt_tally_vertex(const nt_check *check, nt_tally *tally, uint32_t vertex, double value);
 
 /* Adds another tally of the same code, whose occurrences come after those of the first. */
@@ -223,9 +240,13 @@ nt_status nt_check_islands(nt_check *check);  /* islands.c */
 nt_status nt_check_flips(nt_check *check);    /* flips.c: called by islands.c, once islands are measured */
 nt_status nt_check_seams(nt_check *check);    /* seams.c */
 nt_status nt_check_hard_edges(nt_check *check); /* hard_edges.c */
+nt_status nt_check_rims(nt_check *check);     /* across.c */
 nt_status nt_check_tangents(nt_check *check); /* tangents.c */
 nt_status nt_check_growth(nt_check *check);   /* growth.c: shared and copied vertices */
 nt_status nt_check_measures(nt_check *check); /* measures.c: density, stretch, costs */
+
+/* Once all meshes are checked: seams between them. across.c */
+nt_status nt_check_across(nt_check *check);
 
 /* Ends: most severe first, limits, baseline. findings.c */
 nt_status nt_report_complete(nt_report *report, const nt_report_options *options);

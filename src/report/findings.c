@@ -43,13 +43,17 @@ static void add_vertex(const nt_check *check, nt_tally *tally, nt_spot *spot, ui
 			spot->texcoords[k]);
 }
 
-static void set_triangle(const nt_check *check, nt_spot *spot, size_t triangle)
+static void set_face(const nt_check *check, nt_spot *spot, size_t triangle, uint32_t face)
 {
 	if (!spot)
 		return;
-	const uint32_t face = check->surface.faces ? check->surface.faces[triangle] : (uint32_t)triangle;
 	spot->triangle = (uint32_t)triangle;
 	spot->face = check->mesh->face_polygon ? check->mesh->face_polygon[face] : face;
+}
+
+static void set_triangle(const nt_check *check, nt_spot *spot, size_t triangle)
+{
+	set_face(check, spot, triangle, check->surface.faces ? check->surface.faces[triangle] : (uint32_t)triangle);
 }
 
 void nt_tally_triangle(const nt_check *check, nt_tally *tally, size_t triangle, double value)
@@ -66,6 +70,15 @@ void nt_tally_side(const nt_check *check, nt_tally *tally, uint32_t side, double
 	set_triangle(check, spot, side / 3);
 	add_vertex(check, tally, spot, nt_side_vertex(&check->surface, side));
 	add_vertex(check, tally, spot, nt_side_vertex(&check->surface, nt_side_next(side)));
+}
+
+void nt_tally_edge(const nt_check *check, nt_tally *tally, uint32_t triangle, uint32_t face, const uint32_t ends[2],
+	double value)
+{
+	nt_spot *spot = count_one(tally, value);
+	set_face(check, spot, triangle, face);
+	add_vertex(check, tally, spot, ends[0]);
+	add_vertex(check, tally, spot, ends[1]);
 }
 
 void nt_tally_vertex(const nt_check *check, nt_tally *tally, uint32_t vertex, double value)

@@ -8,7 +8,7 @@
 
 #include <math.h>
 #include <string.h>
-#include "report/quads.h"
+#include "report/maker/quads.h"
 
 enum { UNMIRRORED = 1, MIRRORED = 2 };
 

@@ -8,7 +8,7 @@
  * still lies on the other half. The points (about SAMPLE_COUNT of them, at least one of each island) go into a
  * grid and the triangles stream over it, once for each tile that they reach into; a point that is found leaves
  * its cell, so that many stacked layers cost no more than one. Triangles whose materials have other images share no
- * texture. What is left is looked up among the other meshes: halves of a model may be objects of their own.
+ * texture. Points that are not found are looked up among the other meshes: halves of a model may be objects.
  *
  * An island with both windings is a fold, unless its mirrored part lies point by point on its own
  * unmirrored part: then it is a symmetric model whose halves share the coordinates of the middle line, or a doubled
@@ -164,8 +164,8 @@ static const char *texture_name(const nt_scene *scene, const nt_mesh *mesh, size
 	return name ? name : "";
 }
 
-/* The numbers of the images of a mesh's primitives, one at least, in scratch; NULL when out of memory. Of another mesh
- * UINT32_MAX: the mesh that is checked has no such image. */
+/* The numbers of the images of a mesh's primitives, one at least, in scratch; NULL when out of memory. UINT32_MAX: of
+ * another mesh, an image that the checked one does not have. */
 static uint32_t *number_textures(const nt_check *check, const nt_mesh *mesh, nt_name_table *names)
 {
 	const size_t count = mesh->primitive_count ? mesh->primitive_count : 1;
@@ -361,8 +361,9 @@ static void stream_mesh(const nt_mesh *mesh, const uint32_t *textures, grid *g)
 			const float *texcoords[3];
 			for (int i = 0; i < 3; i++)
 				texcoords[i] = uv + 2 * (mesh->indices ? mesh->indices[corners[i]] : corners[i]);
+			const uint32_t texture = textures[mesh->face_primitive ? mesh->face_primitive[f] : 0];
 			if (nt_orientation(texcoords[0], texcoords[1], texcoords[2]) > 0)
-				search_triangle(g, texcoords, textures[mesh->face_primitive ? mesh->face_primitive[f] : 0]);
+				search_triangle(g, texcoords, texture);
 		}
 		first += size;
 	}

@@ -13,7 +13,7 @@
 #define NT_REPORT_REPORT_H
 
 #include <math.h>
-#include "report/maker.h"
+#include "report/maker/maker.h"
 #include "base/memory.h"
 #include "file/shown_path.h"
 #include "report/surface/box.h"

@@ -13,8 +13,8 @@
 #include "base/angle.h"
 #include "base/dvec.h"
 #include "base/parallel.h"
-#include "report/maker.h"
-#include "report/quads.h"
+#include "report/maker/maker.h"
+#include "report/maker/quads.h"
 #include "topology/orientation.h"
 #include "topology/reversed.h"
 

@@ -338,6 +338,35 @@ n.<UDIM>.png|[51.2, 25.6]|['UV_MIRROR_LONE']
 n.1001.png|[51.2, 51.2]|['UV_MIRROR_OVERLAP']
 END
 
+# A strip of three squares and its mirror image at x = 0, with one set of texture coordinates.
+strip() {
+	printf 'v %s 0\n' '0 0' '1 0' '0 1' '1 1' '0 2' '1 2' '0 3' '1 3' '0 0' '-1 0' '0 1' '-1 1' '0 2' '-1 2' '0 3' '-1 3'
+	printf 'vt %s\n' '0 0' '1 0' '0 .25' '1 .25' '0 .5' '1 .5' '0 .75' '1 .75'
+	printf 'vn 0 0 1\n%s left\n' "$1"
+	for i in 1 3 5; do echo "f $i/$i/1 $((i + 1))/$((i + 1))/1 $((i + 3))/$((i + 3))/1 $((i + 2))/$((i + 2))/1"; done
+	echo "$1 right"
+	for i in 1 3 5; do echo "f $((i + 10))/$((i + 2))/1 $((i + 11))/$((i + 3))/1 $((i + 9))/$((i + 1))/1 $((i + 8))/$i/1"; done
+}
+
+scene "mirrored halves that are objects of their own have the seam that groups have, named by both"
+strip g >g.obj
+strip o >o.obj
+strip o | sed '/^o right/,$s,/[1357]/,/8/,g' >cut.obj # texture coordinates do not meet
+for file in g:"['UV_MIRROR_SEAM', 'UV_MIRROR_OVERLAP']" o:"['UV_MIRROR_SEAM', 'UV_MIRROR_OVERLAP']"; do
+	run --check --ignore=TAN_UNUSED --report=r.json "${file%%:*}.obj"
+	is "$file $(value r.json '[f["code"] for f in r["files"][0]["findings"]]')" "$file ${file#*:}"
+	validates report r.json
+	is "$(value r.json '[(f["count"], f["numbers"]["length"]) for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[(3, 3)]"
+done
+run --check o.obj
+prints 'across a seam of 3 edges: between the objects "left" and "right", length 3'
+run --check --report=r.json o.obj
+is "$(value r.json '[[s["line"] for s in f["spots"]] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[[27, 28, 29]]"
+run --check --threads=2 --report=s.json o.obj
+same r.json s.json
+run --check --report=r.json cut.obj
+is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[]"
+
 scene "images in a view are measured, moved by the edit or not"
 run -q --check --report=r.json "$data/plates.glb"
 run -q --only=all --report=w.json "$data/plates.glb" out.glb

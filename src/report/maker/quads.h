@@ -3,8 +3,8 @@
  * Quads of which a mesh has the halves: bakers solve quads, and files have triangles. The solve takes them
  * (nt_implementation in api/tangents.h); all else keeps to the triangles.
  */
-#ifndef NT_REPORT_QUADS_H
-#define NT_REPORT_QUADS_H
+#ifndef NT_REPORT_MAKER_QUADS_H
+#define NT_REPORT_MAKER_QUADS_H
 
 #include "api/tangents.h"
 #include "scene/scene.h"

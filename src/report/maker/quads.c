@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "report/quads.h"
+#include "report/maker/quads.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "report/maker.h"
+#include "report/maker/maker.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 #include "base/angle.h"
 #include "base/bits.h"
 #include "base/dvec.h"
-#include "report/quads.h"
+#include "report/maker/quads.h"
 #include "topology/corners.h"
 
 /* Halves of bytes' steps add up to that, of other tangents less. */

@@ -2,8 +2,8 @@
 /*
  * The method that made a mesh's tangents: they are compared with those of the methods that engines and exporters use.
  */
-#ifndef NT_REPORT_MAKER_H
-#define NT_REPORT_MAKER_H
+#ifndef NT_REPORT_MAKER_MAKER_H
+#define NT_REPORT_MAKER_MAKER_H
 
 #include "base/buffer.h"
 #include "scene/scene.h"
