@@ -21,18 +21,6 @@ enum { GRAIN = 1 << 14 }; /* vertices for each thread that are worth one */
 
 /* ---- edges ---- */
 
-/* The length of an edge between vertices of the file: in doubles, if there are any. */
-static double length_of(const float *positions, const double *exact, size_t a, size_t b)
-{
-	double square = 0;
-	for (size_t k = 0; k < 3; k++) {
-		const double d = exact ? exact[3 * a + k] - exact[3 * b + k]
-			: (double)positions[3 * a + k] - (double)positions[3 * b + k];
-		square += d * d;
-	}
-	return sqrt(square);
-}
-
 /* Lengths of one edge of each of `most` faces or fewer, evenly taken from the file; the count is returned. */
 static size_t sample_edges(const obj_file *file, const float *positions, const double *exact, size_t most,
 	double *lengths)
@@ -46,9 +34,8 @@ static size_t sample_edges(const obj_file *file, const float *positions, const d
 		const uint32_t *v = file->corner_vertices + corner;
 		const size_t base = file->meshes[mesh].vertex;
 		/* edge 2 is that between corners 0 and 2, a diagonal in larger faces */
-		const double length = length_of(positions, exact, base + v[k < 2 ? k : 0], base + v[k < 2 ? k + 1 : 2]);
-		if (length > 0 || !exact)
-			lengths[count++] = length;
+		lengths[count] = nt_edge_length(positions, exact, base + v[k < 2 ? k : 0], base + v[k < 2 ? k + 1 : 2]);
+		count += lengths[count] > 0 || !exact;
 		const size_t end = f + step < file->face_count ? f + step : file->face_count;
 		for (size_t i = f; i < end; i++)
 			corner += file->face_sizes[i];

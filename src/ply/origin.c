@@ -17,14 +17,8 @@ size_t ply_sample_edges(const nt_mesh *mesh, const double *exact, size_t most, d
 		const size_t k = count % 3, from = corner + (k < 2 ? k : 0), to = corner + (k < 2 ? k + 1 : 2);
 		const size_t a = mesh->indices ? mesh->indices[from] : from;
 		const size_t b = mesh->indices ? mesh->indices[to] : to;
-		double square = 0;
-		for (size_t i = 0; i < 3; i++) {
-			const double d = exact ? exact[3 * a + i] - exact[3 * b + i]
-				: (double)mesh->positions[3 * a + i] - (double)mesh->positions[3 * b + i];
-			square += d * d;
-		}
-		lengths[count] = sqrt(square);
-		count += square > 0 || !exact;
+		lengths[count] = nt_edge_length(mesh->positions, exact, a, b);
+		count += lengths[count] > 0 || !exact;
 		for (size_t i = f; i < f + step && i < mesh->face_count && mesh->face_sizes; i++)
 			corner += mesh->face_sizes[i];
 		corner += mesh->face_sizes ? 0 : 3 * step;

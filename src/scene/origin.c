@@ -33,6 +33,17 @@ float nt_largest_of(const float *values, size_t count, float largest)
 	return largest;
 }
 
+double nt_edge_length(const float *positions, const double *exact, size_t a, size_t b)
+{
+	double square = 0;
+	for (size_t k = 0; k < 3; k++) {
+		const double d = exact ? exact[3 * a + k] - exact[3 * b + k]
+			: (double)positions[3 * a + k] - (double)positions[3 * b + k];
+		square += d * d;
+	}
+	return sqrt(square);
+}
+
 double nt_float_rounding(float largest)
 {
 	int exponent;

@@ -31,6 +31,9 @@ typedef struct nt_exact {
 /* The larger of `largest` and of the absolute values of some floats. */
 float nt_largest_of(const float *values, size_t count, float largest);
 
+/* The length of an edge: in doubles, if there are any. */
+double nt_edge_length(const float *positions, const double *exact, size_t a, size_t b);
+
 /* Half of the step between floats at a coordinate: what rounding moves it by at most; 0 of infinity. */
 double nt_float_rounding(float largest);
 

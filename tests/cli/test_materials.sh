@@ -131,6 +131,15 @@ run --check --fail-on=never far.obj
 exits 0
 prints "2 UV islands"
 
+scene "if normal maps are mirrored in other ways, their faces are meshes of their own"
+for case in '-s 2 3:1' '-s -1 1:2' '-s 1 -2:2' '-s -1 -1:2' '-o 0.5 0:1'; do
+	quad "norm n.png" "newmtl second" "norm ${case%:*} n.png"
+	{ cat quad.obj; echo "usemtl second"; grep '^f' quad.obj; } >both.obj
+	run both.obj both.glb
+	exits 0
+	is "${case%:*}:$(gltf both.glb 'g.meshes.length')" "$case"
+done
+
 scene "maps of two sizes: rows of the smaller one lie between its own"
 images write r.png 1 4 '0'
 images write m.png 1 2 '200 * y'

@@ -26,6 +26,22 @@ static nt_status open_text(const char *path, const char *text, nt_error *error)
 	return status;
 }
 
+/* Each allocation of reading it fails once; how many there are. */
+static size_t fail_each(const char *path, const char *text)
+{
+	nt_error error;
+	assert_int_equal(open_text(path, text, &error), NT_OK);
+	for (size_t count = 0;; count++) {
+		fail_allocations_from(count);
+		const nt_status status = open_text(path, text, &error);
+		if (status == NT_OK)
+			return count;
+		assert_int_equal(status, NT_ERROR_MEMORY);
+		assert_string_equal(error.message, "out of memory");
+		assert_string_equal(error.place.file, path);
+	}
+}
+
 TEST(every_allocation_of_the_reader_may_fail)
 {
 	char path[200], text[4000], *p = text;
@@ -42,19 +58,19 @@ TEST(every_allocation_of_the_reader_may_fail)
 		p += sprintf(p, " 1/%d", i);
 	sprintf(p, "\nl 1 2\n");
 
-	nt_error error;
-	assert_int_equal(open_text(path, text, &error), NT_OK);
-	size_t count = 0;
-	for (;; count++) {
-		fail_allocations_from(count);
-		const nt_status status = open_text(path, text, &error);
-		if (status == NT_OK)
-			break;
-		assert_int_equal(status, NT_ERROR_MEMORY);
-		assert_string_equal(error.message, "out of memory");
-		assert_string_equal(error.place.file, path);
-	}
-	assert_true(count > 40); /* at least one of each kind */
+	assert_true(fail_each(path, text) > 40); /* at least one of each kind */
+
+	/* no face has a material: all get the first */
+	strcpy(text, "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+	assert_true(fail_each(path, text) > 10);
+
+	/* tiles, and more primitives than are looked at one by one */
+	put_text_file("u.mtl", "newmtl u\nmap_Kd u.<UDIM>.png\nnewmtl n\nmap_Kd n.1001.png\n");
+	p = text + sprintf(text, "mtllib u.mtl\nusemtl u\n");
+	for (int i = 0; i < 12; i++)
+		p += sprintf(p, "g %d\nv %d 0 0\nv 0 1 0\nv 0 0 1\nvt %d.5 0.5\nf -3/-1 -2/-1 -1/-1\nusemtl %s\n",
+			12 - i, i, i % 10, i % 2 ? "u" : "n");
+	assert_true(fail_each(path, text) > 40);
 }
 
 /* Data goes into common blocks then; comments fill the chunks. */
@@ -71,16 +87,7 @@ TEST(every_allocation_for_a_file_of_many_chunks_may_fail)
 		p += CHUNK + 1;
 		p[0] = '\0';
 	}
-	nt_error error;
-	assert_int_equal(open_text(path, text, &error), NT_OK);
-	for (size_t count = 0;; count++) {
-		fail_allocations_from(count);
-		const nt_status status = open_text(path, text, &error);
-		if (status == NT_OK)
-			break;
-		assert_int_equal(status, NT_ERROR_MEMORY);
-		assert_string_equal(error.place.file, path);
-	}
+	fail_each(path, text);
 	free(text);
 }
 
