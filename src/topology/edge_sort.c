@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/compiler.h"
+#include "base/parallel.h"
 
 #define NONE NT_NO_NEIGHBOUR
 
@@ -25,6 +26,9 @@ typedef struct cells {
 	uint32_t *vertices;      /* [vertex_count] theirs */
 	nt_cell_corner *corners; /* [3 * triangle_count] by cell, in order: 3 * triangle + k */
 	bool *is_degenerate;     /* [triangle_count] */
+	uint32_t *found;         /* [vertex_count] receives representatives */
+	nt_cell *rooms;          /* [threads] */
+	bool limit;              /* a cell would have to be halved too often */
 } cells;
 
 /* Turns counts into places of the first of each cell, and one behind the last; returns the largest count. */
@@ -88,10 +92,10 @@ static size_t place_corners(cells *c)
 	return most;
 }
 
-/* Finds the representatives of the vertices of all cells. False: one would have to be halved too often. */
-static bool weld_cells(const cells *c, nt_cell *cell, uint32_t *found)
+/* Finds the representatives of the vertices of some cells. False: one would have to be halved too often. */
+static bool weld_cells(const cells *c, size_t begin, size_t end, nt_cell *cell)
 {
-	for (size_t i = 0; i < NT_CELLS; i++) {
+	for (size_t i = begin; i < end; i++) {
 		const size_t row = c->vertex_begins[i], corner = c->corner_begins[i];
 		nt_cell_vertex *rows = c->rows + row;
 		cell->vertices = rows;
@@ -100,7 +104,7 @@ static bool weld_cells(const cells *c, nt_cell *cell, uint32_t *found)
 		cell->corner_count = c->corner_begins[i + 1] - corner;
 		if (cell->vertex_count == 1) { /* many are */
 			if (cell->corner_count > 0)
-				found[c->vertices[row]] = nt_mesh_corner(c->mesh, cell->corners->corner);
+				c->found[c->vertices[row]] = nt_mesh_corner(c->mesh, cell->corners->corner);
 			continue;
 		}
 		for (size_t k = 0; k < cell->corner_count; k++)
@@ -109,29 +113,44 @@ static bool weld_cells(const cells *c, nt_cell *cell, uint32_t *found)
 			return false;
 		for (size_t v = 0; v < cell->vertex_count; v++)
 			if (rows[v].corner_count > 0)
-				found[c->vertices[row + v]] = nt_mesh_corner(c->mesh, cell->found[v]);
+				c->found[c->vertices[row + v]] = nt_mesh_corner(c->mesh, cell->found[v]);
 	}
 	return true;
+}
+
+/* Cells that a thread welds at a time, and corners that a thread more should have. */
+enum { GROUP = 32, GRAIN = 1 << 16 };
+
+static void weld_group(void *context, size_t group, unsigned slot)
+{
+	cells *c = context;
+	if (!weld_cells(c, group * GROUP, (group + 1) * GROUP, &c->rooms[slot]))
+		nt_atomic_store(&c->limit, true, RELAXED);
 }
 
 /* Finds the corner of the mesh that stands for each vertex that has some. */
 static nmtan_status find_all(
 	const nt_welded_mesh *m, const nt_grid *grid, uint32_t *found, bool *is_degenerate, bool *limit)
 {
-	cells c = {.mesh = m, .is_degenerate = is_degenerate};
+	const unsigned threads = nt_parallel_slots(m->threads, 3 * m->triangle_count, GRAIN);
+	cells c = {.mesh = m, .is_degenerate = is_degenerate, .found = found};
 	/* first what needs most of what may be left of memory that is lent */
 	c.corners = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *c.corners);
 	c.places = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *c.places);
 	c.rows = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *c.rows);
 	c.vertices = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *c.vertices);
-	if (!c.places || !c.rows || !c.vertices || !c.corners)
+	c.rooms = nt_scratch_alloc(m->scratch, threads, sizeof *c.rooms);
+	if (!c.places || !c.rows || !c.vertices || !c.corners || !c.rooms)
 		return NMTAN_ERROR_MEMORY;
 	const size_t vertices = place_vertices(&c, grid), corners = place_corners(&c);
-	nt_cell cell = nt_cell_make(m->scratch, vertices, corners);
-	if (!cell.order)
-		return NMTAN_ERROR_MEMORY;
-	memset(cell.wanted, 1, vertices);
-	*limit = !weld_cells(&c, &cell, found);
+	for (unsigned i = 0; i < threads; i++) {
+		c.rooms[i] = nt_cell_make(m->scratch, vertices, corners);
+		if (!c.rooms[i].order)
+			return NMTAN_ERROR_MEMORY;
+		memset(c.rooms[i].wanted, 1, vertices);
+	}
+	nt_parallel_items(threads, NT_CELLS / GROUP, weld_group, &c);
+	*limit = c.limit;
 	return NMTAN_OK;
 }
 
