@@ -245,20 +245,54 @@ static bool weld_part(few_cell *c, uint32_t first, uint32_t count, uint32_t plac
 	return true;
 }
 
-/* Lists the vertices of a vertex's cell. Returns how many there are, up to one more than `most`. */
-static uint32_t list_vertices(const few *f, uint32_t vertex, uint32_t most, few_cell *cell)
+/* Vertices farther apart are in two cells, whatever is rounded. If a box is so thin that this is 0, each float has a
+ * cell of its own. */
+static float reach_of(const nt_grid *grid)
+{
+	return (grid->high - grid->low) * (2.0f / (float)NT_CELLS);
+}
+
+/* Knows the representatives of those of the last triangles' vertices that are alone in their cells: their first
+ * corners. If two are not, vertices are likely to lie in rows. */
+static void find_alone(few *f)
+{
+	enum { MOST_IN_ROWS = 2 };
+	uint32_t in_rows = 0;
+	const float reach = reach_of(&f->grid), *x = f->mesh->positions + f->grid.axis;
+	const size_t rows = f->mesh->vertex_count;
+	float along[MOST_ROWS];
+	for (size_t v = 0; v < rows; v++, x += f->mesh->step)
+		along[v] = *x;
+	for (size_t v = rows; v % BLOCK != 0; v++)
+		along[v] = INFINITY;
+	for (uint32_t t = f->count; t-- > 0 && t + LAST >= f->count;)
+		for (uint32_t k = 0; k < 3 && in_rows < MOST_IN_ROWS; k++) {
+			const uint32_t vertex = f->ids[3 * t + k];
+			uint32_t near = 0;
+			if (f->high[vertex] != 4 * t + k || f->low[vertex] == f->high[vertex])
+				continue;
+			const float at = along[vertex];
+			for (size_t v = 0; v < rows; v += BLOCK)
+				for (size_t i = v; i < v + BLOCK; i++)
+					near += fabsf(along[i] - at) <= reach;
+			if (near == 1)
+				f->low[vertex] = f->high[vertex] = f->first[vertex];
+			in_rows += near > 1;
+		}
+}
+
+/* Lists the vertices of a vertex's cell. Returns how many there are, up to one more than MOST_IN_CELL. */
+static uint32_t list_vertices(const few *f, uint32_t vertex, few_cell *cell)
 {
 	const nt_grid grid = f->grid;
-	const float at = nt_welded_position(f->mesh, vertex)[grid.axis];
+	const float at = nt_welded_position(f->mesh, vertex)[grid.axis], reach = reach_of(&grid);
 	const unsigned wanted = nt_grid_cell(&grid, at);
-	/* two cells, so that no rounding matters; if a box is so thin that this is 0, each float has its own cell */
-	const float reach = (grid.high - grid.low) * (2.0f / (float)NT_CELLS);
 	const float *x = f->mesh->positions + grid.axis;
 	uint32_t count = 0;
 	for (uint32_t v = 0; v < f->mesh->vertex_count; v++, x += f->mesh->step) {
 		if (!(fabsf(*x - at) <= reach) || f->first[v] == NONE || nt_grid_cell(&grid, *x) != wanted)
 			continue;
-		if (count == most)
+		if (count == MOST_IN_CELL)
 			return count + 1;
 		cell->names[count] = (uint16_t)v;
 		cell->positions[count++] = x - grid.axis;
@@ -295,17 +329,13 @@ static bool place_corners(const few *f, uint32_t count, few_cell *cell)
 	return true;
 }
 
-/* Finds the representative of a vertex, and those of the last triangle's vertices in its cell; nothing if that has more
- * than `most` vertices. False: the cell has too many corners, or has to be halved too often. */
-static bool find(few *f, uint32_t vertex, uint32_t most)
+/* Finds the representative of a vertex, and those of the last triangle's vertices in its cell. False: the
+ * cell has too many corners, or has to be halved too often. */
+static bool find(few *f, uint32_t vertex)
 {
 	few_cell cell;
-	const uint32_t count = list_vertices(f, vertex, most, &cell);
-	if (count == 1)
-		f->low[vertex] = f->high[vertex] = f->first[vertex];
-	if (count == 1 || (count > most && most < MOST_IN_CELL))
-		return true;
-	if (count > most || !place_corners(f, count, &cell))
+	const uint32_t count = list_vertices(f, vertex, &cell);
+	if (count > MOST_IN_CELL || !place_corners(f, count, &cell))
 		return false;
 	const uint32_t *last = f->ids + 3 * f->count - 3;
 	cell.wanted = 0;
@@ -392,10 +422,11 @@ bool nt_few_edges_are_sorted(const nt_welded_mesh *mesh, bool *limit)
 	*limit = !(used && nt_grid_make(mesh, NULL, &f.grid)) && !nt_grid_of_used(mesh, &f.grid);
 	if (*limit)
 		return true;
+	find_alone(&f);
 	for (uint32_t k = 0; k < 3; k++) {
 		const uint32_t vertex = f.ids[3 * f.count - 3 + k];
 		const bool is_old = f.low[vertex] + 4u * LAST < 4 * f.count;
-		if (f.low[vertex] != f.high[vertex] && !find(&f, vertex, is_old ? MOST_IN_CELL : 1))
+		if (f.low[vertex] != f.high[vertex] && is_old && !find(&f, vertex))
 			return false;
 	}
 	for (int round = 0; round < MOST_ROUNDS; round++) {
@@ -405,7 +436,7 @@ bool nt_few_edges_are_sorted(const nt_welded_mesh *mesh, bool *limit)
 			return false;
 		if (!find_suspects(&f, round == 0) || !may_matter(&f, &unknown))
 			return true;
-		if (unknown == NT_NO_NEIGHBOUR || !find(&f, unknown, MOST_IN_CELL))
+		if (unknown == NT_NO_NEIGHBOUR || !find(&f, unknown))
 			return false;
 	}
 	return false;
