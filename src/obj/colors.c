@@ -55,8 +55,6 @@ static float *colors_of(obj_chunk *chunk)
 static nt_status end_block(painter *p, nt_error *error)
 {
 	const size_t vertices = p->count < p->vertex ? p->count : p->vertex;
-	if (!p->line)
-		return NT_OK;
 	check_count(p);
 	for (size_t i = 0; i < p->count; i++) {
 		for (; p->color == p->file->chunks[p->chunk].mrgb_count; p->chunk++)

@@ -35,7 +35,7 @@ SUBJECTS = {
              'materials', 'normals', 'textures'],
     'json': ['damaged', 'layouts', 'extensions', 'lossless', 'convert'], 'scene': ['choose', 'colors', 'convert', 'normals'],
     'file': ['sets', 'output', 'placement', 'damaged', 'stale'], 'image': ['textures', 'materials'],
-    'obj': ['materials', 'colors', 'convert', 'damaged', 'normals'], 'ply': ['convert', 'damaged', 'small_models'],
+    'obj': ['materials', 'colors', 'convert', 'damaged', 'normals', 'origin'], 'ply': ['convert', 'damaged', 'small_models'],
     'format': ['convert', 'verdict', 'textures'], 'report': ['report', 'check', 'verdict', 'diff', 'report_folder', 'page'],
     'pipeline': ['convert', 'quads', 'normals', 'morphs', 'choose', 'report', 'manifest', 'textures'],
     'batch': ['batch', 'update', 'manifest', 'depfile', 'placement'], 'cli': ['usage', 'output', 'limits', 'choose'],
