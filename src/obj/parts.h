@@ -213,6 +213,7 @@ static inline const obj_chunk *obj_find_row(const obj_file *file, int kind, uint
 
 typedef struct obj_span {
 	size_t face, corner; /* the first ones; the span ends where the next begins */
+	size_t material_line; /* of its usemtl */
 	uint32_t material;
 	uint32_t group;
 	uint32_t smoothing;

@@ -22,8 +22,6 @@ typedef struct state {
 	obj_file *file;
 	nt_error *error;
 	nt_name_table names;     /* of materials that faces have, in order */
-	size_t *name_lines;      /* of their first usemtl */
-	size_t name_line_capacity;
 
 	/* State of the faces at this point. */
 	const obj_event *object; /* NULL: none yet */
@@ -46,15 +44,8 @@ static bool number_material(state *s, uint32_t *number)
 	*number = NT_NONE;
 	if (!s->material || s->material->length == 0)
 		return true;
-	const size_t before = s->names.count;
 	*number = nt_name_add(&s->names, s->material->text, s->material->length);
-	if (*number == UINT32_MAX ||
-		!nt_grow((void **)&s->name_lines, &s->name_line_capacity, s->names.count,
-			sizeof *s->name_lines))
-		return false;
-	if (s->names.count > before)
-		s->name_lines[*number] = s->material_line;
-	return true;
+	return *number != UINT32_MAX;
 }
 
 /* The faces up to here have what was said before them. */
@@ -62,13 +53,13 @@ static bool end_stretch(state *s, size_t face, size_t corner)
 {
 	obj_file *file = s->file;
 	if (face > s->face) {
-		uint32_t material;
-		if (!number_material(s, &material) ||
-			!nt_grow((void **)&file->spans, &file->span_capacity, file->span_count + 1,
-				sizeof *file->spans))
+		obj_span span = {.face = s->face, .corner = s->corner, .material_line = s->material_line,
+			.group = s->group, .smoothing = s->smoothing, .begins_object = s->object_is_new,
+			.object = s->object, .line = s->object_line};
+		if (!number_material(s, &span.material) ||
+			!nt_grow((void **)&file->spans, &file->span_capacity, file->span_count + 1, sizeof span))
 			return false;
-		file->spans[file->span_count++] = (obj_span){s->face, s->corner, material, s->group,
-			s->smoothing, s->object_is_new, s->object, s->object_line};
+		file->spans[file->span_count++] = span;
 		s->object_is_new = false;
 	}
 	s->face = face;
@@ -197,13 +188,16 @@ static nt_status make_materials(state *s, const nt_mtl *mtl)
 			define(scene, number, d);
 	}
 	/* A missing library is reported already, and explains the unknown names. */
-	size_t unknown = 0;
-	for (size_t i = 0; i < s->names.count && !mtl->incomplete; i++)
-		if (!scene->materials[i].library) {
-			const nt_place place = nt_line_place(scene->path, s->name_lines[i]);
+	uint32_t next = 0, unknown = 0;
+	for (const obj_span *span = s->file->spans; next < s->names.count && !mtl->incomplete; span++) {
+		if (span->material != next)
+			continue;
+		const nt_material *material = &scene->materials[next++];
+		const nt_place place = nt_line_place(scene->path, span->material_line);
+		if (!material->library)
 			nt_finding_add(&scene->findings, NT_CODE_MATERIAL_UNKNOWN, &place, 1, "%.200s",
-				unknown++ < NAMED_UNKNOWN_MOST ? scene->materials[i].name : "and others");
-		}
+				unknown++ < NAMED_UNKNOWN_MOST ? material->name : "and others");
+	}
 	return NT_OK;
 }
 
@@ -304,6 +298,5 @@ nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_err
 	nt_mtl_free(&mtl);
 	nt_name_table_free(&s.names);
 	nt_name_table_free(&s.groups);
-	free(s.name_lines);
 	return status;
 }
