@@ -9,6 +9,20 @@ prints "--threads"
 prints "7 a limit"
 [ ! -s "$WORK/err.txt" ] || wrong "help wrote to standard error"
 
+scene "there are at most 78 options; CHANGELOG names those that went, which are refused, and the new words are taken"
+[ "$("$NMTAN" --help | grep -cE '^ {2,6}(-[a-zA-Z], )?--[a-z]')" -le 78 ] || wrong "$("$NMTAN" --help | grep -cE '^ {2,6}(-[a-zA-Z], )?--[a-z]')"
+sed -n '/^| before/,$p' "$ROOT/.github/CHANGELOG.md" | sed '1,2d' >renamed
+for word in embed allow-outside confine update-by as files0-from mirror repair keep-going draco-speed uv-image; do
+	grep -q "^| [^|]*\`--$word[\`=]" renamed || wrong "CHANGELOG does not name --$word"
+	run --$word a.obj b.glb
+	exits 1
+	says "unknown option '--$word'"
+done
+while read -r word; do
+	run --dry-run --check "$word" gone.obj
+	says_not "unknown option"
+done < <(sed 's/^|[^|]*|//' renamed | grep -o -- '`--[a-z][a-z=-]*`' | tr -d '`' | sort -u)
+
 scene "-V is what others call --version"
 run -V
 exits 1

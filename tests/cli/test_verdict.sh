@@ -837,6 +837,14 @@ for options in "" "--texture-path=tex"; do
 	is "$options $(value r.json 'r["files"][0]["verdict"]')" \
 		"$options A file is missing: image cannot be read: tex/gone.png (looked for beside m.mtl and quad.obj${options:+, and in --texture-path})"
 done
+# names of files are as they are, not as URIs
+sed 's|lib/m.mtl|a b/m.mtl|' quad.obj >"q x.obj"
+mkdir "a b" out
+printf 'newmtl m\nmap_Kd C:/art/my wood%%20.png\n' >"a b/m.mtl"
+cp "$data/bumps.png" "a b/my wood%20.png"
+run --images=link "q x.obj" out/o.gltf
+says 'a b/m.mtl:2: material "m": warning: image was found elsewhere: C:/art/my wood%20.png is my wood%20.png [IMAGE_ELSEWHERE]'
+says 'reference leaves the folder of the output: my wood%20.png, as'
 rm lib/m.mtl
 run --check -q --report=r.json quad.obj
 is "$(value r.json 'r["files"][0]["verdict"].split(";")[0]')" "A file is missing: material library cannot be read: lib/m.mtl: no such file"

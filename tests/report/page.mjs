@@ -648,15 +648,14 @@ async function clickTexture(page, u, v) {
 	await page.check('#flip', {force: true});
 	await expect(async () => { const [old, now] = await grey(); return Math.abs(old - first[1]) < 6 && Math.abs(now - first[0]) < 6; }, async () => 'with green flipped each is as the other was: ' + first + ', then ' + await grey());
 	await expect(async () => (await page.locator('#space-note').textContent()).includes('not in the file'), 'and that is said');
-	// the command that repairs it, of each version by its own name
-	const command = page.locator('[data-code=TAN_SIGN_MISMATCH] .command');
-	await expect(async () => await command.locator('code').innerText() === 'nmtan --fix wrong.gltf wrong-repaired.gltf', async () => 'a command repairs it: ' + await command.locator('code').innerText());
-	await command.locator('button').click();
-	await expect(async () => await command.locator('button').innerText() === 'Copied' || await page.evaluate(() => getSelection().toString()).then(t => t.startsWith('nmtan ')), 'and is copied, or marked');
+	await expect(async () => await page.locator('[data-code=TAN_SIGN_MISMATCH]').count() === 1 && await page.locator('.command').count() === 0, 'what is gone needs no command');
 	if (shots) await page.screenshot({path: shots + '/lit.png'});
 	await page.close();
 	const named = await open('names.html'), words = () => named.locator('.command code').innerText();
 	await expect(async () => await words() === String.raw`nmtan --fix './-$(touch broken)'\''.gltf' './-$(touch broken)'\''-repaired.gltf'`, async () => 'a name is one word of a shell: ' + await words());
+	const button = named.locator('.command button');
+	await button.click();
+	await expect(async () => await button.innerText() === 'Copied' || await named.evaluate(() => getSelection().toString()).then(t => t.startsWith('nmtan ')), 'and the command is copied, or marked');
 	await named.close();
 }
 

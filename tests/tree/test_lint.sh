@@ -147,6 +147,19 @@ lint 1
 prints "man/x.1:3"
 rm -r tree/man
 
+scene "no sentence that ../shared/docs/english.md has a better one for is left"
+english=$ROOT/../shared/docs/english.md
+if [ -f "$english" ]; then
+	for file in "$ROOT"/README.md "$ROOT"/man/* "$ROOT"/src/README.md $(find "$ROOT/src" "$ROOT/include" -name '*.[ch]'); do
+		tr -s '\t\n *' ' ' <"$file"
+	done | sed 's/\\-/-/g; s/" "//g' >all
+	grep '^| [^w-]' "$english" | cut -d'|' -f3 | tr -d '`' | sed 's/^ //; s/[. ]*$//' | cut -c1-60 >before
+	[ "$(wc -l <before)" -gt 20 ] || wrong "$(cat before)"
+	is "$(while IFS= read -r sentence; do ! grep -qF "$sentence" all || echo "$sentence"; done <before)" ""
+else
+	skip_case "../shared is not here"
+fi
+
 scene "a file without licence line is found"
 table base:-
 lint 0

@@ -121,5 +121,15 @@ equal files manual
 text "$farm" | sed -n 's/^\.B nmtan-farm \([a-z]* [A-Z]*\).*/\1/p' | sort -u >manual
 equal help manual
 well_formed "$farm"
+# what a service says: of an input's folder, and nothing beside it
+mkdir job up
+cp "$data/bumps.png" up
+{ printf 'mtllib m.mtl\nusemtl m\n'; cat "$data/quad.obj"; } >job/in.obj
+printf 'newmtl m\nmap_Kd ../up/bumps.png\n' >job/m.mtl
+run ${service:=$(text "$farm" | sed -n 's/^\tnmtan \(--outside=no .*\)/\1/p')}
+exits 0
+says "IMAGE_MISSING"
+run ${service/no/root}
+says_not "IMAGE_MISSING"
 
 done_testing

@@ -30,6 +30,9 @@ is "$(grep -oE '^    make( [a-z-]+)?' "$readme" | head -5 | tr -s ' \n' ' ')" " 
 for target in demo deb wasm-tool web check install uninstall install-lib; do
 	grep -qE "^$target:" "$ROOT"/Makefile "$ROOT"/src/bindings/*/*.mk || wrong "there is no make $target"
 done
+for word in --fix --existing=keep --existing=replace; do
+	head -30 "$readme" | grep -q -- "\`[^\`]*$word" || wrong "its first page does not name $word"
+done
 
 scene "peers have the versions in the README that the measurements have"
 grep -oE '(gltfpack|meshoptimizer|mikktspace) [0-9][0-9.]*[0-9]' "$readme" | sort -u >versions
