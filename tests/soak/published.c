@@ -316,10 +316,11 @@ static const struct {
 	{"rounded", round_positions}};
 enum { CHANGES = sizeof changes / sizeof *changes };
 
-/* Rows behind the corners' that no corner has: far away, and of no number. */
+/* Rows behind the corners' that no corner has: far away, or of no number. */
 static void add_unused(soup *s, nt_random *random)
 {
 	enum { MORE = 3 };
+	const uint32_t kinds = nt_random_below(random, 2) ? 5 : 2;
 	soup more = soup_make(s->face_count, s->corner_count + MORE);
 	memcpy(more.sizes, s->sizes, s->face_count);
 	memcpy(more.positions, s->positions, s->corner_count * sizeof *s->positions);
@@ -328,7 +329,7 @@ static void add_unused(soup *s, nt_random *random)
 	for (size_t i = s->corner_count; i < s->corner_count + MORE; i++)
 		for (int k = 0; k < 3; k++)
 			more.positions[i][k] =
-				(const float[]){NAN, 1e30f, -7, 0, INFINITY}[nt_random_below(random, 5)];
+				(const float[]){-7, 3, NAN, 1e30f, INFINITY}[nt_random_below(random, kinds)];
 	more.corner_count = s->corner_count;
 	soup_free(s);
 	*s = more;

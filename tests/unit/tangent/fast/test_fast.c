@@ -13,6 +13,7 @@
 #include "definition.h"
 #include "golden.h"
 #include "nasty.h"
+#include "surfaces.h"
 #include "tangent/fast/bins.h"
 #include "tangent/fast/fast.h"
 #include "tangent/fast/parts.h"
@@ -525,6 +526,44 @@ TEST(what_is_bare_takes_from_its_triangle)
 
 /* Scratch comes in blocks of 64 KiB, so the meshes are made large enough for many of them: a grid beside
  * which every nasty mesh is placed. */
+	enum { COLUMNS = 16, ROWS = 10, QUADS = COLUMNS * ROWS, USED = (COLUMNS + 1) * (ROWS + 1) };
+ * how the edges are paired are those of the others. */
+TEST(rows_without_corners_move_no_cells)
+{
+	enum { COLUMNS = 16, ROWS = 10, QUADS = COLUMNS * ROWS, USED = (COLUMNS + 1) * (ROWS + 1), SEEDS = 400 };
+	enum { TAIL = 12, TRIANGLES = 2 * QUADS + TAIL };
+	static float p[USED + 2][3], n[USED + 2][3], t[USED + 2][2];
+	static unsigned indices[TRIANGLES][3];
+	const nmtan_mesh lattice = {.struct_bytes = sizeof lattice, .face_count = TRIANGLES, .vertex_count = USED + 2,
+		.positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices[0]};
+	const nmtan_mesh mesh = nt_filled(&lattice);
+	size_t differ = 0;
+	for (uint64_t seed = 0; seed < SEEDS; seed++) {
+		nt_random random = nt_random_seed(seed);
+		for (unsigned v = 0; v < USED + 2; v++) {
+			const float x = (float)(v % (COLUMNS + 1)), y = (float)(v / (COLUMNS + 1)) / 4;
+			memcpy(p[v], (float[3]){x, y, 0}, sizeof *p);
+			memcpy(n[v], (float[3]){0, 0, 1}, sizeof *n);
+			for (int i = 0; i < 2; i++)
+				t[v][i] = (float)nt_random_below(&random, 64) / 64;
+		}
+		p[USED][0] = -9.0f * (float)(1 + seed % 3);
+		p[USED + 1][1] = 40.0f * (float)(seed % 5);
+		for (unsigned q = 0; q < QUADS; q++) {
+			const unsigned a = q / COLUMNS * (COLUMNS + 1) + q % COLUMNS, d = a + COLUMNS + 1;
+			memcpy(indices[2 * q], (unsigned[6]){a, a + 1, d + 1, a, d + 1, d}, 2 * sizeof *indices);
+		}
+		for (unsigned i = 2 * QUADS; i < TRIANGLES; i++)
+			for (int k = 0; k < 3; k++)
+				indices[i][k] = nt_random_below(&random, USED);
+		nt_result expected = nt_result_define(&mesh, 3 * TRIANGLES, false);
+		differ += nt_compare_run("rows without corners", &mesh, 3 * TRIANGLES, &expected, false, nt_cpu_best(),
+			1, &nt_usual_plan);
+		nt_result_free(&expected);
+	}
+	assert_int_equal(differ, 0);
+}
+
 TEST(every_failed_allocation_is_told)
 {
 	enum { SIDE = 150 };
