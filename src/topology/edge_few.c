@@ -16,7 +16,8 @@
 enum {
 	MOST_ROWS = 3 * NT_EDGE_FEW,
 	MOST_ENDS = 64,
-	MOST_IN_CELL = 63, /* corners, which have a bit each */
+	MOST_IN_CELL = 63, /* vertices; if corners are no more, each has a bit */
+	MOST_CORNERS = 256,
 	WINDOW = 16,       /* triangles at the end that hold the last run */
 	LAST = 4,          /* a vertex of the last triangle that is older than these is likely to be found there */
 	BLOCK = 32,        /* rows that are cleared at a time */
@@ -158,10 +159,10 @@ typedef struct few_cell {
 	uint64_t has[MOST_IN_CELL];
 	const float *positions[MOST_IN_CELL];
 	uint16_t names[MOST_IN_CELL];       /* of vertices */
-	uint16_t corners[MOST_IN_CELL];     /* by place */
+	uint16_t corners[MOST_CORNERS];     /* by place */
 	uint16_t found[MOST_IN_CELL];       /* representatives of those that are wanted */
-	uint8_t owners[MOST_IN_CELL];       /* vertices, by place */
-	uint8_t counts[MOST_IN_CELL];       /* of corners */
+	uint8_t owners[MOST_CORNERS];       /* vertices, by place */
+	uint16_t counts[MOST_IN_CELL];      /* of corners */
 	uint8_t order[MOST_IN_CELL];        /* vertices by part */
 } few_cell;
 
@@ -300,8 +301,8 @@ static uint32_t list_vertices(const few *f, uint32_t vertex, few_cell *cell)
 	return count;
 }
 
-/* Gives the corners of a cell's vertices their places. False: they are too many. */
-static bool place_corners(const few *f, uint32_t count, few_cell *cell)
+/* Gives the corners of a cell's vertices their places. Returns how many there are, or more than MOST_CORNERS. */
+static uint32_t place_corners(const few *f, uint32_t count, few_cell *cell)
 {
 	uint64_t owners[4 * NT_EDGE_FEW / 8]; /* in a byte for each corner one more than its vertex, or 0 */
 	uint32_t place = 0;
@@ -312,11 +313,11 @@ static bool place_corners(const few *f, uint32_t count, few_cell *cell)
 			owners[c / 8] |= (uint64_t)(i + 1) << 8 * (c % 8);
 		place += corners;
 		cell->has[i] = 0;
-		cell->counts[i] = (uint8_t)corners;
+		cell->counts[i] = (uint16_t)corners;
 		cell->order[i] = (uint8_t)i;
 	}
-	if (place > MOST_IN_CELL)
-		return false;
+	if (place > MOST_CORNERS)
+		return place;
 	place = 0;
 	for (uint32_t c = 0; c < 4 * f->count; c += 8)
 		for (uint64_t left = owners[c / 8]; left; place++) {
@@ -324,8 +325,30 @@ static bool place_corners(const few *f, uint32_t count, few_cell *cell)
 			left &= ~((uint64_t)255 << bit);
 			cell->corners[place] = (uint16_t)(c + bit / 8);
 			cell->owners[place] = (uint8_t)owner;
-			cell->has[owner] |= (uint64_t)1 << place;
+			cell->has[owner] |= (uint64_t)1 << place % 64;
 		}
+	return place;
+}
+
+/* Welds a cell of more corners than a word has bits. False: it has to be halved too often. */
+static bool weld_large(few_cell *c, uint32_t count, uint32_t corner_count)
+{
+	nt_cell_vertex vertices[MOST_IN_CELL];
+	nt_cell_corner corners[MOST_CORNERS];
+	uint32_t order[MOST_IN_CELL], found[MOST_IN_CELL], swaps[MOST_CORNERS];
+	uint8_t below[MOST_IN_CELL], wanted[MOST_IN_CELL];
+	for (uint32_t i = 0; i < count; i++) {
+		memcpy(vertices[i].position, c->positions[i], sizeof vertices->position);
+		vertices[i].corner_count = c->counts[i];
+		wanted[i] = c->wanted >> i & 1;
+	}
+	for (uint32_t i = 0; i < corner_count; i++)
+		corners[i] = (nt_cell_corner){c->owners[i], c->corners[i]};
+	const nt_cell cell = {vertices, corners, order, swaps, below, wanted, found, count, corner_count};
+	if (!nt_weld_cell(&cell))
+		return false;
+	for (uint32_t i = 0; i < count; i++)
+		c->found[i] = (uint16_t)found[i];
 	return true;
 }
 
@@ -335,7 +358,8 @@ static bool find(few *f, uint32_t vertex)
 {
 	few_cell cell;
 	const uint32_t count = list_vertices(f, vertex, &cell);
-	if (count > MOST_IN_CELL || !place_corners(f, count, &cell))
+	const uint32_t corner_count = count > MOST_IN_CELL ? UINT32_MAX : place_corners(f, count, &cell);
+	if (corner_count > MOST_CORNERS)
 		return false;
 	const uint32_t *last = f->ids + 3 * f->count - 3;
 	cell.wanted = 0;
@@ -343,7 +367,7 @@ static bool find(few *f, uint32_t vertex)
 		const uint32_t v = cell.names[i];
 		cell.wanted |= (uint64_t)((v == vertex) | (v == last[0]) | (v == last[1]) | (v == last[2])) << i;
 	}
-	if (!weld_part(&cell, 0, count, 0, 0))
+	if (corner_count > MOST_IN_CELL ? !weld_large(&cell, count, corner_count) : !weld_part(&cell, 0, count, 0, 0))
 		return false;
 	for (uint32_t i = 0; i < count; i++)
 		if (cell.wanted >> i & 1)

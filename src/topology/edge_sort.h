@@ -31,7 +31,7 @@ typedef struct nt_unsorted {
 enum { NT_EDGE_SORT_VISITS = 64 };
 
 /* So few triangles have a quicker way to the answer, which is nearly always that the order does not matter. */
-enum { NT_EDGE_FEW = 128 };
+enum { NT_EDGE_FEW = 256 };
 
 /* Triangles first + i with bit i, and at most so many. */
 typedef struct nt_edge_note {
