@@ -76,7 +76,7 @@ static nt_status read_format(const nt_json_value *json, const char *pointer,
 		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
 			"%llu, expected 5120 to 5123, 5125 or 5126", (unsigned long long)type);
 	}
-	const char *name = nt_json_get_string(nt_json_find(json, "type"), NULL);
+	const char *name = nt_json_find_string(json, "type", NULL);
 	if (!find_type(name, accessor)) {
 		snprintf(place, sizeof place, "%s/type", pointer);
 		return nt_fail_pointer(error, NT_ERROR_INPUT, place,

@@ -140,7 +140,7 @@ static nt_status check_version(const nt_gltf *document, nt_error *error)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, "", "%s, expected an object",
 			nt_json_type_text(root));
 	const nt_json_value *asset = nt_json_find(root, "asset");
-	const char *version = nt_json_get_string(nt_json_find(asset, "version"), NULL);
+	const char *version = nt_json_find_string(asset, "version", NULL);
 	if (!version)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, "/asset/version",
 			"%s, expected the version of glTF as a string",
@@ -149,7 +149,7 @@ static nt_status check_version(const nt_gltf *document, nt_error *error)
 	if (strncmp(version, "2.", 2) != 0)
 		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, "/asset/version",
 			"glTF version \"%.20s\", expected 2.0%s", version, old ? NT_GLTF_OLD_ADVICE : "");
-	const char *minimum = nt_json_get_string(nt_json_find(asset, "minVersion"), NULL);
+	const char *minimum = nt_json_find_string(asset, "minVersion", NULL);
 	if (minimum && strcmp(minimum, "2.0") != 0)
 		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, "/asset/minVersion",
 			"needs glTF %.20s, expected 2.0", minimum);
@@ -320,7 +320,7 @@ static nt_status open_bytes(nt_gltf *document, nt_gltf_buffer *buffer, const nt_
 	nt_error *error)
 {
 	size_t length = 0;
-	const char *uri = nt_json_get_string(nt_json_find(json, "uri"), &length);
+	const char *uri = nt_json_find_string(json, "uri", &length);
 	nt_status status = NT_OK;
 	switch (buffer->storage) {
 	case NT_GLTF_STORED_BIN:

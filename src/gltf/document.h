@@ -325,6 +325,12 @@ nt_status nt_gltf_read_arrays(nt_gltf *document, nt_error *error);
 nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_accessor *accessor, nt_error *error);
 
+/* The JSON of a view, NULL where there is none. */
+static inline nt_json_value *nt_gltf_view_json(const nt_gltf *document, uint64_t index)
+{
+	return nt_json_at(nt_gltf_root_member(document, "bufferViews"), (size_t)index);
+}
+
 /* The JSON of an accessor, NULL where there is none. */
 nt_json_value *nt_gltf_accessor_json(const nt_gltf *document, uint64_t index);
 
@@ -376,6 +382,15 @@ bool nt_gltf_is_solved(const nt_mesh *mesh);
 
 /* The primitive of a mesh in the document. */
 nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh);
+
+/* Its mode, of triangles where none is said. */
+uint64_t nt_gltf_mode(const nt_json_value *primitive);
+
+/* Bytes that a vertex has, TANGENT too; attributes that cannot be read are not counted. */
+size_t nt_gltf_vertex_bytes(const nt_gltf *document, const nt_json_value *primitive);
+
+/* Takes an extension off an object. */
+void nt_gltf_drop_extension(nt_json *json, nt_json_value *object, const char *name);
 
 /* A use of an accessor by a primitive: an attribute, or one of a morph target. */
 typedef struct nt_gltf_use {

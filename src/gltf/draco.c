@@ -33,11 +33,11 @@ const nt_draco_quantization *nt_gltf_draco_tangents_of(const nt_gltf *document, 
 {
 	const nt_json_value *extension = nt_gltf_draco_of(primitive);
 	uint64_t view, id;
-	const nt_draco_mesh *block = nt_json_get_uint64(nt_json_find(extension, "bufferView"), &view) ?
-		nt_gltf_draco_block(document, view) : NULL;
+	const nt_draco_mesh *block = nt_json_find_uint64(extension, "bufferView", &view)
+		? nt_gltf_draco_block(document, view) : NULL;
 	const nt_draco_attribute *found = block &&
-			nt_json_get_uint64(nt_json_find(nt_json_find(extension, "attributes"), "TANGENT"), &id) ?
-		nt_draco_find(block, (uint32_t)id) : NULL;
+			nt_json_find_uint64(nt_json_find(extension, "attributes"), "TANGENT", &id)
+		? nt_draco_find(block, (uint32_t)id) : NULL;
 	return found ? &found->quantization : NULL;
 }
 
@@ -150,8 +150,9 @@ static size_t find_wanted(const decoding *d, const nt_scene *scene, const bool *
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
 		uint64_t view;
-		if (!needed[i] || mesh->plan.same_as || !nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(
-				nt_gltf_primitive_of(document, mesh)), "bufferView"), &view) ||
+		if (!needed[i] || mesh->plan.same_as ||
+			!nt_json_find_uint64(nt_gltf_draco_of(nt_gltf_primitive_of(document, mesh)), "bufferView",
+				&view) ||
 			view >= document->view_count || nt_gltf_draco_block(document, view) || d->blocks[view].bytes)
 			continue;
 		packed *block = &d->blocks[view];
@@ -253,11 +254,11 @@ nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "%.80s/extensions/KHR_draco_mesh_compression",
 		primitive_pointer);
-	uint64_t view, mode = 4, index;
+	uint64_t view, index;
+	const uint64_t mode = nt_gltf_mode(primitive);
 	nt_status status = nt_gltf_uint(extension, pointer, "bufferView", UINT32_MAX - 1,
 		NT_GLTF_REQUIRED, &view, error);
-	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
-	if (!status && mode != 4)
+	if (!status && mode != NT_GLTF_TRIANGLES)
 		status = nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
 			"compressed primitive of mode %llu, expected 4", (unsigned long long)mode);
 	if (!status && !nt_gltf_draco_block(document, view))

@@ -40,7 +40,7 @@ static uint32_t accessor_for(separating *s, uint64_t named)
 static bool separate(separating *s, nt_json_value *object, const char *key, uint64_t view, uint64_t id)
 {
 	uint64_t named;
-	if (!nt_json_get_uint64(nt_json_find(object, key), &named) || named >= s->named_count ||
+	if (!nt_json_find_uint64(object, key, &named) || named >= s->named_count ||
 		nt_json_find(nt_json_at(s->accessors, (size_t)named), "bufferView"))
 		return true;
 	const size_t known = s->contents.names.count;
@@ -63,7 +63,7 @@ static bool separate_primitive(separating *s, nt_json_value *primitive)
 	const nt_json_value *extension = nt_gltf_draco_of(primitive);
 	const nt_json_value *ids = nt_json_find(extension, "attributes");
 	uint64_t view, id;
-	if (!nt_json_get_uint64(nt_json_find(extension, "bufferView"), &view))
+	if (!nt_json_find_uint64(extension, "bufferView", &view))
 		return true;
 	for (size_t i = 0; i < nt_json_count(ids); i++) {
 		const char *name = nt_json_key(ids, i, NULL);

@@ -103,11 +103,11 @@ static void put_block(nt_key_table *table, const nt_json_value *primitive, const
 	nt_gltf_put_number(nt_gltf_put_text(texcoords, "TEXCOORD_"), mesh->texcoord_set);
 	const char *const names[] = {"POSITION", "NORMAL", texcoords, "TANGENT", "COLOR_0"};
 	uint64_t number = UINT64_MAX;
-	nt_json_get_uint64(nt_json_find(extension, "bufferView"), &number);
+	nt_json_find_uint64(extension, "bufferView", &number);
 	nt_key_put(table, number);
 	for (size_t i = 0; extension && i < sizeof names / sizeof *names; i++) {
 		number = UINT64_MAX;
-		nt_json_get_uint64(nt_json_find(ids, names[i]), &number);
+		nt_json_find_uint64(ids, names[i], &number);
 		nt_key_put(table, number);
 	}
 }
@@ -118,11 +118,9 @@ static nt_status put_all(nt_key_table *table, nt_gltf *document, const nt_mesh *
 {
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
-	uint64_t mode = NT_GLTF_TRIANGLES;
-	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
 	nt_key_put(table, mesh->decision);
 	nt_key_put(table, mesh->keeps_inverted);
-	nt_key_put(table, mode);
+	nt_key_put(table, nt_gltf_mode(primitive));
 	nt_key_put(table, mesh->has_polygons);
 	put_accessor(table, document, mesh, attributes, "TANGENT");
 	if (options->world)

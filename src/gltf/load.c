@@ -477,8 +477,8 @@ static nt_status load_chain(nt_gltf *document, const nt_mesh *mesh, const nt_jso
 static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const nt_json_value *primitive,
 	const inputs *in, nt_error *error)
 {
-	uint64_t mode = NT_GLTF_TRIANGLES, count = mesh->vertex_count;
-	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
+	const uint64_t mode = nt_gltf_mode(primitive);
+	uint64_t count = mesh->vertex_count;
 	nt_status status = load_chain(document, mesh, primitive, nt_mesh_arena(scene, mesh), &mesh->indices,
 		&count, error);
 	if (!status)
@@ -496,18 +496,6 @@ static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, c
 		return nt_fail_memory(error);
 	list_triangles(mode, chain, mesh->face_count, mesh->indices);
 	return NT_OK;
-}
-
-/* Bytes that a copy of a vertex costs; attributes that cannot be read are not counted. */
-static size_t count_vertex_bytes(nt_gltf *document, const nt_json_value *primitive)
-{
-	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
-	size_t bytes = nt_json_find(attributes, "TANGENT") ? 0 : 4 * sizeof(float);
-	for (nt_gltf_use u = {0}; nt_gltf_next_use(document, primitive, &u) && !u.object;) {
-		const nt_gltf_accessor *accessor = nt_gltf_sound_accessor(document, u.accessor);
-		bytes += accessor ? accessor->element_bytes : 0;
-	}
-	return bytes;
 }
 
 static nt_status quantize(nt_scene *scene, nt_mesh *mesh, const inputs *in, const nt_read_options *options,
@@ -549,7 +537,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	if (!status)
 		status = apply_transform(scene, document, mesh, error);
 	if (!status && options->report)
-		mesh->vertex_bytes = count_vertex_bytes(document, primitive);
+		mesh->vertex_bytes = nt_gltf_vertex_bytes(document, primitive);
 	/* a mesh in the world is written without its targets */
 	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
 		status = load_morphs(scene, document, mesh, &in, primitive, error);

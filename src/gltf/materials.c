@@ -60,8 +60,8 @@ static nt_status find_animated(nt_gltf *document, nt_error *error)
 			const nt_json_value *extensions = nt_json_find(
 				nt_json_find(nt_json_at(channels, k), "target"), "extensions");
 			size_t length = 0;
-			const char *target = nt_json_get_string(nt_json_find(
-				nt_json_find(extensions, "KHR_animation_pointer"), "pointer"), &length);
+			const char *target = nt_json_find_string(nt_json_find(extensions, "KHR_animation_pointer"),
+				"pointer", &length);
 			for (size_t m = 0; m < 2 && target; m++) {
 				const size_t end = strlen(members[m]);
 				if (length > end && memcmp(target + length - end, members[m], end) == 0 &&
@@ -125,7 +125,7 @@ static void read_wrap(const nt_gltf *document, const nt_json_value *info, nt_wra
 	const nt_json_value *sampler = element_of(document, "samplers", nt_json_find(texture, "sampler"));
 	for (int axis = 0; axis < 2; axis++) {
 		uint64_t mode = 0;
-		nt_json_get_uint64(nt_json_find(sampler, axis ? "wrapT" : "wrapS"), &mode);
+		nt_json_find_uint64(sampler, axis ? "wrapT" : "wrapS", &mode);
 		wrap[axis] = mode == NT_GLTF_CLAMP_TO_EDGE ? NT_WRAP_CLAMP
 			: mode == NT_GLTF_MIRRORED_REPEAT ? NT_WRAP_MIRRORED
 						  : NT_WRAP_REPEAT;

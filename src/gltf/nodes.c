@@ -104,7 +104,7 @@ nt_status nt_gltf_reach(const nt_gltf *document, bool *reached, size_t mesh_coun
 	while (walk.stack_count && !walk.failed) {
 		const nt_json_value *node = nt_json_at(walk.nodes, walk.stack[--walk.stack_count].node);
 		uint64_t mesh;
-		if (nt_json_get_uint64(nt_json_find(node, "mesh"), &mesh) && mesh < mesh_count)
+		if (nt_json_find_uint64(node, "mesh", &mesh) && mesh < mesh_count)
 			reached[mesh] = true;
 		push_nodes(&walk, nt_json_find(node, "children"), identity);
 		push_extension_nodes(&walk, node);
@@ -218,7 +218,7 @@ nt_status nt_gltf_walk_world(const nt_gltf *document,
 		local_matrix(node, local);
 		multiply(here.matrix, local, world);
 		uint64_t mesh;
-		if (nt_json_get_uint64(nt_json_find(node, "mesh"), &mesh))
+		if (nt_json_find_uint64(node, "mesh", &mesh))
 			status = place(context, mesh, world);
 		push_nodes(&walk, nt_json_find(node, "children"), world);
 	}

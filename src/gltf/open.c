@@ -27,9 +27,7 @@ static uint64_t claimed_count(const nt_gltf *document, const nt_json_value *refe
 {
 	uint64_t index, count = 3;
 	if (nt_json_get_uint64(reference, &index) && index < UINT32_MAX)
-		nt_json_get_uint64(nt_json_find(
-			nt_json_at(nt_gltf_root_member(document, "accessors"), (size_t)index), "count"),
-			&count);
+		nt_json_find_uint64(nt_gltf_accessor_json(document, index), "count", &count);
 	return count;
 }
 
@@ -149,8 +147,8 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	if (status)
 		return status;
 	mesh->gltf_material = shading.material;
-	mesh->gltf_material_name = nt_json_get_string(nt_json_find(
-		nt_json_at(nt_gltf_root_member(document, "materials"), shading.material), "name"), NULL);
+	mesh->gltf_material_name = nt_json_find_string(nt_json_at(nt_gltf_root_member(document, "materials"),
+		shading.material), "name", NULL);
 	mesh->triangles = mode >= NT_GLTF_TRIANGLES && mode <= LAST_MODE;
 	mesh->slots = shading.slots;
 	mesh->unlit = shading.unlit;
@@ -210,7 +208,7 @@ static nt_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt_re
 		const nt_json_value *json = nt_json_at(meshes, i);
 		const nt_json_value *primitives = nt_json_find(json, "primitives");
 		size_t length = 0;
-		const char *name = nt_json_get_string(nt_json_find(json, "name"), &length);
+		const char *name = nt_json_find_string(json, "name", &length);
 		name = nt_arena_text(&scene->arena, name ? name : "", name ? length : 0);
 		if (!name)
 			return nt_fail_memory(error);
@@ -283,7 +281,7 @@ static nt_status look_for_file(nt_gltf *document, size_t index, struct stat *inf
 {
 	size_t length = 0;
 	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "buffers"), index);
-	const char *uri = nt_json_get_string(nt_json_find(json, "uri"), &length), *path;
+	const char *uri = nt_json_find_string(json, "uri", &length), *path;
 	*missing = false;
 	info->st_nlink = 0;
 	if (!uri || nt_uri_is_data(uri, length))
@@ -315,11 +313,11 @@ static void stand_for(nt_gltf *document, nt_json_value *buffer, const nt_json_va
 {
 	uint64_t old, new;
 	size_t text;
-	const char *uri = nt_json_get_string(nt_json_find(other, "uri"), &text), *path;
+	const char *uri = nt_json_find_string(other, "uri", &text), *path;
 	const uint64_t most = (uint64_t)file->st_size + 3;
 	nt_json_value *length = nt_json_find(buffer, "byteLength");
-	if (nt_json_get_uint64(length, &old) && nt_json_get_uint64(nt_json_find(other, "byteLength"), &new) &&
-		new <= most && (new > old || old > most))
+	if (nt_json_get_uint64(length, &old) && nt_json_find_uint64(other, "byteLength", &new) && new <= most &&
+		(new > old || old > most))
 		nt_json_set_uint64(document->json, length, new);
 	if (nt_uri_resolve(&document->arena, document->path, uri, text, document->allow_outside, &path, NULL) == NT_OK)
 		nt_trace_read(path, file);
@@ -413,7 +411,7 @@ static nt_status look_for_buffers(nt_scene *scene, nt_gltf *document, nt_error *
 		first = count ? first : place;
 		if (count++ < NAMED)
 			nt_buffer_format(&names, "%s\"%.80s\"", count > 1 ? ", " : "",
-				nt_json_get_string(nt_json_find(json, "uri"), NULL));
+				nt_json_find_string(json, "uri", NULL));
 	}
 	if (status || names.failed)
 		status = nt_fail_memory(error);
@@ -507,7 +505,7 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	scene->read_of_source = count_read;
 	scene->format = document->is_glb ? NT_FORMAT_GLB : NT_FORMAT_GLTF;
 	const char *generator =
-		nt_json_get_string(nt_json_find(nt_gltf_root_member(document, "asset"), "generator"), NULL);
+		nt_json_find_string(nt_gltf_root_member(document, "asset"), "generator", NULL);
 	scene->solves_quads = generator && strstr(generator, "Blender");
 	if (scene->file) /* the JSON has a copy of its text */
 		nt_file_release(scene->file, document->glb.json.offset, document->is_glb ?

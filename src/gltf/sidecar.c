@@ -18,14 +18,14 @@ static const char key_digest[] = "nmtan:xxh128", key_before[] = "nmtan:replaces"
 static const char *digest_at(const nt_json_value *buffer, const char *key)
 {
 	size_t length;
-	const char *text = nt_json_get_string(nt_json_find(nt_json_find(buffer, "extras"), key), &length);
+	const char *text = nt_json_find_string(nt_json_find(buffer, "extras"), key, &length);
 	return text && length == 32 && strspn(text, "0123456789abcdef") == 32 ? text : NULL;
 }
 
 static nt_status add_ownership_of(nt_output *output, const nt_json_value *buffer, nt_error *error)
 {
 	size_t length;
-	const char *uri = nt_json_get_string(nt_json_find(buffer, "uri"), &length);
+	const char *uri = nt_json_find_string(buffer, "uri", &length);
 	const char *digest = digest_at(buffer, key_digest);
 	if (!uri || !digest || nt_uri_is_data(uri, length))
 		return NT_OK;

@@ -25,7 +25,7 @@ nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **na
 
 nt_status nt_gltf_read_view(nt_gltf *document, uint32_t index, nt_gltf_view *view, nt_error *error)
 {
-	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "bufferViews"), index);
+	const nt_json_value *json = nt_gltf_view_json(document, index);
 	char pointer[NT_GLTF_POINTER];
 	nt_gltf_pointer(pointer, "bufferViews", index);
 	const uint64_t limit = (uint64_t)1 << 53;
@@ -84,7 +84,7 @@ static nt_status read_packing(const nt_json_value *view, const char *pointer, nt
 	uint64_t buffer = 0, place = 0;
 	nt_status status = nt_gltf_uint(json, pointer, "buffer", UINT32_MAX - 1, NT_GLTF_REQUIRED,
 		&buffer, error);
-	nt_json_get_uint64(nt_json_find(view, "buffer"), &place);
+	nt_json_find_uint64(view, "buffer", &place);
 	p->buffer = (uint32_t)buffer;
 	p->place = (uint32_t)place;
 	if (!status)
@@ -98,8 +98,8 @@ static nt_status read_packing(const nt_json_value *view, const char *pointer, nt
 	if (!status)
 		status = nt_gltf_uint(json, pointer, "count", UINT32_MAX, NT_GLTF_REQUIRED, &p->view.count,
 			error);
-	const char *mode = nt_json_get_string(nt_json_find(json, "mode"), NULL);
-	const char *filter = nt_json_get_string(nt_json_find(json, "filter"), NULL);
+	const char *mode = nt_json_find_string(json, "mode", NULL);
+	const char *filter = nt_json_find_string(json, "filter", NULL);
 	p->view.mode = mode ? mode : "";
 	p->view.filter = filter ? filter : "NONE";
 	return status;

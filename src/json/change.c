@@ -209,6 +209,11 @@ void nt_json_set_uint64(nt_json *document, nt_json_value *value, uint64_t conten
 	set_text(document, value, NT_JSON_INTEGER, text, (size_t)length);
 }
 
+void nt_json_put_uint64(nt_json *document, nt_json_value *object, const char *key, uint64_t content)
+{
+	nt_json_set_uint64(document, nt_json_put(document, object, key), content);
+}
+
 void nt_json_set_double(nt_json *document, nt_json_value *value, double content)
 {
 	char text[NT_NUMBER_TEXT];

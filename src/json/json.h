@@ -91,9 +91,21 @@ bool nt_json_get_bool(const nt_json_value *value, bool *result);
 bool nt_json_get_uint64(const nt_json_value *value, uint64_t *result);
 bool nt_json_get_double(const nt_json_value *value, double *result);
 
+/* The same of an object's member. */
+static inline bool nt_json_find_uint64(const nt_json_value *object, const char *key, uint64_t *result)
+{
+	return nt_json_get_uint64(nt_json_find(object, key), result);
+}
+
 /* Text of a string, NUL-terminated (it may contain NULs too), length in *length (may be NULL); NULL
  * when the value is not a string. */
 const char *nt_json_get_string(const nt_json_value *value, size_t *length);
+
+/* The same of an object's member. */
+static inline const char *nt_json_find_string(const nt_json_value *object, const char *key, size_t *length)
+{
+	return nt_json_get_string(nt_json_find(object, key), length);
+}
 
 /* Whether two values are equal: same types, numbers, texts, and members in the same order. 1 and 1.0
  * are equal. */
@@ -119,6 +131,8 @@ void nt_json_set_bool(nt_json *document, nt_json_value *value, bool content);
 void nt_json_set_uint64(nt_json *document, nt_json_value *value, uint64_t content);
 void nt_json_set_double(nt_json *document, nt_json_value *value, double content);
 void nt_json_set_string(nt_json *document, nt_json_value *value, const char *text, size_t length);
+/* The same of an object's member, which may be new. */
+void nt_json_put_uint64(nt_json *document, nt_json_value *object, const char *key, uint64_t content);
 /* See nt_json_write(). */
 void nt_json_set_open(nt_json *document, nt_json_value *value, const char *text, size_t length);
 void nt_json_set_object(nt_json *document, nt_json_value *value); /* empty */

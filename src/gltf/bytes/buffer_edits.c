@@ -211,13 +211,13 @@ nt_status nt_edits_add_view(nt_buffer_edits *edits, uint32_t index, const void *
 {
 	nt_json *json = edits->document->json;
 	nt_json_value *object = take_view(edits, view);
-	nt_json_set_uint64(json, nt_json_put(json, object, "buffer"), index);
-	nt_json_set_uint64(json, nt_json_put(json, object, "byteOffset"), 0);
-	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), size);
+	nt_json_put_uint64(json, object, "buffer", index);
+	nt_json_put_uint64(json, object, "byteOffset", 0);
+	nt_json_put_uint64(json, object, "byteLength", size);
 	if (stride)
-		nt_json_set_uint64(json, nt_json_put(json, object, "byteStride"), stride);
+		nt_json_put_uint64(json, object, "byteStride", stride);
 	if (target)
-		nt_json_set_uint64(json, nt_json_put(json, object, "target"), target);
+		nt_json_put_uint64(json, object, "target", target);
 	return nt_edits_add_bytes(edits, index, *view, bytes, size, error);
 }
 
@@ -249,7 +249,7 @@ nt_status nt_edits_choose_buffer(nt_buffer_edits *edits, uint32_t near, uint32_t
 	nt_json_value *buffers = nt_json_put(json, nt_json_root(json), "buffers");
 	*buffer = (uint32_t)nt_json_count(buffers);
 	nt_json_value *object = nt_json_append(json, buffers);
-	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), 0);
+	nt_json_put_uint64(json, object, "byteLength", 0);
 	edits->buffer_count++;
 	return nt_json_failed(json) ? nt_fail_memory(error) : NT_OK;
 }
@@ -258,7 +258,7 @@ nt_status nt_edits_choose_buffer(nt_buffer_edits *edits, uint32_t near, uint32_t
 
 static bool is_plain(const nt_buffer_edits *edits, uint32_t index, nt_gltf_view *view)
 {
-	const nt_json_value *json = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), index);
+	const nt_json_value *json = nt_gltf_view_json(edits->document, index);
 	return nt_gltf_get_view(edits->document, index, "", view, NULL) == NT_OK &&
 		!nt_gltf_is_of_view(view->buffer) && !nt_json_find(json, "extensions");
 }

@@ -54,10 +54,9 @@ static bool add_accessor(nt_byte_users *users, nt_gltf *document, uint32_t index
 static bool add_place(nt_byte_users *users, const nt_json_value *view)
 {
 	uint64_t buffer, offset = 0, length;
-	if (!nt_json_get_uint64(nt_json_find(view, "buffer"), &buffer) ||
-		!nt_json_get_uint64(nt_json_find(view, "byteLength"), &length))
+	if (!nt_json_find_uint64(view, "buffer", &buffer) || !nt_json_find_uint64(view, "byteLength", &length))
 		return true;
-	nt_json_get_uint64(nt_json_find(view, "byteOffset"), &offset);
+	nt_json_find_uint64(view, "byteOffset", &offset);
 	return add_user(users, (uint32_t)buffer, offset, offset + length, NT_NONE);
 }
 
@@ -66,10 +65,10 @@ static bool add_compressed(nt_byte_users *users, const nt_json_value *view)
 {
 	const nt_json_value *packed = nt_gltf_compression_of(view, NULL);
 	uint64_t buffer, offset = 0, length;
-	if (!nt_json_get_uint64(nt_json_find(packed, "buffer"), &buffer) || buffer >= UINT32_MAX ||
-		!nt_json_get_uint64(nt_json_find(packed, "byteLength"), &length))
+	if (!nt_json_find_uint64(packed, "buffer", &buffer) || buffer >= UINT32_MAX ||
+		!nt_json_find_uint64(packed, "byteLength", &length))
 		return true;
-	nt_json_get_uint64(nt_json_find(packed, "byteOffset"), &offset);
+	nt_json_find_uint64(packed, "byteOffset", &offset);
 	if (length > UINT64_MAX - offset)
 		return true;
 	return add_user(users, (uint32_t)buffer, offset, offset + length, NT_NONE);

@@ -130,12 +130,12 @@ nt_status nt_packed_tangents(nt_buffer_edits *edits, const nt_json_value *attrib
 /* The members of a packed view's JSON. */
 static void describe(nt_json *json, nt_json_value *extension, const nt_gltf_packing *p, size_t count, size_t size)
 {
-	nt_json_set_uint64(json, nt_json_put(json, extension, "byteLength"), size);
-	nt_json_set_uint64(json, nt_json_put(json, extension, "byteStride"), p->view.stride);
-	const char *mode = nt_json_get_string(nt_json_find(extension, "mode"), NULL);
+	nt_json_put_uint64(json, extension, "byteLength", size);
+	nt_json_put_uint64(json, extension, "byteStride", p->view.stride);
+	const char *mode = nt_json_find_string(extension, "mode", NULL);
 	if (!mode || strcmp(mode, p->view.mode) != 0)
 		nt_json_set_string(json, nt_json_put(json, extension, "mode"), p->view.mode, strlen(p->view.mode));
-	nt_json_set_uint64(json, nt_json_put(json, extension, "count"), count);
+	nt_json_put_uint64(json, extension, "count", count);
 }
 
 /* The packed bytes of elements, and those after the filter where somebody reads them. Both are in the arena. */
@@ -167,16 +167,16 @@ static nt_status release_view(nt_buffer_edits *edits, uint32_t view, const nt_gl
 	nt_error *error)
 {
 	nt_json *json = edits->document->json;
-	nt_json_value *object = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), view);
+	nt_json_value *object = nt_gltf_view_json(edits->document, view);
 	uint64_t offset = 0;
 	nt_status status = NT_OK;
-	nt_json_get_uint64(nt_json_find(object, "byteOffset"), &offset);
+	nt_json_find_uint64(object, "byteOffset", &offset);
 	if (nt_byte_users_count(&edits->users, p->buffer, p->offset, p->offset + p->view.packed_size) == 1)
 		status = nt_edits_replace(edits, p->buffer, p->offset, p->view.packed_size, nothing, 0, error);
 	if (!status && nt_byte_users_count(&edits->users, p->place, offset, offset + size) == 1)
 		status = nt_edits_replace(edits, p->place, offset, size, nothing, 0, error);
 	nt_json_remove(json, object, "extensions");
-	nt_json_set_uint64(json, nt_json_put(json, object, "buffer"), p->buffer);
+	nt_json_put_uint64(json, object, "buffer", p->buffer);
 	edits->is_free[view] = true;
 	edits->free_views[edits->free_count++] = view;
 	return status;
@@ -186,7 +186,7 @@ nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigne
 	nt_error *error)
 {
 	nt_json *json = edits->document->json;
-	nt_json_value *object = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), view);
+	nt_json_value *object = nt_gltf_view_json(edits->document, view);
 	nt_gltf_packing p = nt_packing_of(edits, view);
 	const size_t old_size = (size_t)(p.view.count * p.view.stride), old_packed_size = (size_t)p.view.packed_size;
 	const uint32_t stride = edits->decoded[view].new_stride;
@@ -203,9 +203,9 @@ nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigne
 	if (status)
 		return status;
 	uint64_t offset = 0;
-	nt_json_get_uint64(nt_json_find(object, "byteOffset"), &offset);
+	nt_json_find_uint64(object, "byteOffset", &offset);
 	describe(json, nt_gltf_compression_of(object, NULL), &p, count, packed_size);
-	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), size);
+	nt_json_put_uint64(json, object, "byteLength", size);
 
 	/* where the old ones are, if these are nobody else's */
 	if (nt_byte_users_count(&edits->users, p.buffer, p.offset, p.offset + old_packed_size) == 1)
@@ -228,7 +228,7 @@ nt_status nt_packed_release(nt_buffer_edits *edits, uint32_t index, uint64_t off
 	if (!nt_gltf_is_of_view(view.buffer) || length % p.view.stride ||
 		nt_byte_users_count(&edits->users, view.buffer, offset, offset + length) != 1)
 		return NT_OK;
-	const nt_json_value *object = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), index);
+	const nt_json_value *object = nt_gltf_view_json(edits->document, index);
 	if (length < view.length)
 		return nt_edits_replace(edits, view.buffer, offset, length, nothing, 0, error);
 	return nt_json_count(nt_json_find(object, "extensions")) == 1
@@ -284,17 +284,17 @@ nt_status nt_packed_add(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_p
 
 void nt_gltf_place_accessor(nt_json *json, nt_json_value *accessor, uint32_t view, uint64_t offset)
 {
-	nt_json_set_uint64(json, nt_json_put(json, accessor, "bufferView"), view);
+	nt_json_put_uint64(json, accessor, "bufferView", view);
 	nt_json_remove(json, accessor, "byteOffset");
 	nt_json_remove(json, accessor, "sparse");
 	if (offset)
-		nt_json_set_uint64(json, nt_json_put(json, accessor, "byteOffset"), offset);
+		nt_json_put_uint64(json, accessor, "byteOffset", offset);
 }
 
 static nt_status finish(nt_buffer_edits *edits, nt_packed_view *new, nt_error *error)
 {
 	nt_json *json = edits->document->json;
-	nt_json_value *object = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), new->view);
+	nt_json_value *object = nt_gltf_view_json(edits->document, new->view);
 	nt_gltf_packing *p = &new->packing;
 	const unsigned char *bytes = (const unsigned char *)new->bytes.data, *plain;
 	const size_t size = new->bytes.size, count = size / (size_t)p->view.stride;
@@ -303,16 +303,16 @@ static nt_status finish(nt_buffer_edits *edits, nt_packed_view *new, nt_error *e
 	nt_status status = pack(edits, p, bytes, count, &packed, &packed_size, &plain, error);
 	if (status)
 		return status;
-	nt_json_set_uint64(json, nt_json_put(json, object, "buffer"), p->place);
-	nt_json_set_uint64(json, nt_json_put(json, object, "byteOffset"), 0);
-	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), size);
+	nt_json_put_uint64(json, object, "buffer", p->place);
+	nt_json_put_uint64(json, object, "byteOffset", 0);
+	nt_json_put_uint64(json, object, "byteLength", size);
 	if (new->target == NT_GLTF_ARRAY_BUFFER)
-		nt_json_set_uint64(json, nt_json_put(json, object, "byteStride"), p->view.stride);
+		nt_json_put_uint64(json, object, "byteStride", p->view.stride);
 	if (new->target)
-		nt_json_set_uint64(json, nt_json_put(json, object, "target"), new->target);
+		nt_json_put_uint64(json, object, "target", new->target);
 	nt_json_value *extension = nt_json_put(json, nt_json_put(json, object, "extensions"), p->extension);
-	nt_json_set_uint64(json, nt_json_put(json, extension, "buffer"), p->buffer);
-	nt_json_set_uint64(json, nt_json_put(json, extension, "byteOffset"), 0);
+	nt_json_put_uint64(json, extension, "buffer", p->buffer);
+	nt_json_put_uint64(json, extension, "byteOffset", 0);
 	describe(json, extension, p, count, packed_size);
 	if (strcmp(p->view.filter, "NONE") != 0)
 		nt_json_set_string(json, nt_json_put(json, extension, "filter"), p->view.filter,

@@ -88,8 +88,8 @@ static nt_status place_additions(nt_buffer_edits *edits, nt_relocated_buffer *bu
 		if (addition->view == NT_NONE)
 			continue;
 		nt_json_value *view = nt_json_at(views, addition->view);
-		nt_json_set_uint64(json, nt_json_put(json, addition->packed ? nt_gltf_compression_of(view, NULL) : view,
-			"byteOffset"), buffer->offsets[i]);
+		nt_json_put_uint64(json, addition->packed ? nt_gltf_compression_of(view, NULL) : view, "byteOffset",
+			buffer->offsets[i]);
 	}
 	return NT_OK;
 }
@@ -98,9 +98,9 @@ static nt_status place_additions(nt_buffer_edits *edits, nt_relocated_buffer *bu
 static void set_offset(nt_json *json, nt_json_value *object, const char *key, uint64_t value)
 {
 	uint64_t old = 0;
-	nt_json_get_uint64(nt_json_find(object, key), &old);
+	nt_json_find_uint64(object, key, &old);
 	if (old != value)
-		nt_json_set_uint64(json, nt_json_put(json, object, key), value);
+		nt_json_put_uint64(json, object, key, value);
 }
 
 /* A buffer must not be empty. */
@@ -121,7 +121,7 @@ static void settle_free_views(const nt_buffer_edits *edits, const nt_relocated *
 	for (size_t i = 0; i < edits->free_count; i++) {
 		nt_json_value *object = nt_json_at(views, edits->free_views[i]);
 		uint64_t buffer = 0;
-		nt_json_get_uint64(nt_json_find(object, "buffer"), &buffer);
+		nt_json_find_uint64(object, "buffer", &buffer);
 		const uint64_t length = relocated->buffers[buffer].length;
 		nt_json_remove(json, object, "byteStride");
 		set_offset(json, object, "byteOffset", 0);
@@ -141,9 +141,8 @@ static void move_packed(const nt_buffer_edits *edits, const nt_relocated_buffer 
 	nt_json_value *const objects[] = {nt_gltf_compression_of(view, NULL), view};
 	for (size_t k = 0; k < 2; k++) {
 		uint64_t buffer, offset = 0;
-		nt_json_get_uint64(nt_json_find(objects[k], "byteOffset"), &offset);
-		if (nt_json_get_uint64(nt_json_find(objects[k], "buffer"), &buffer) &&
-			buffer < edits->document->buffer_count)
+		nt_json_find_uint64(objects[k], "byteOffset", &offset);
+		if (nt_json_find_uint64(objects[k], "buffer", &buffer) && buffer < edits->document->buffer_count)
 			set_offset(edits->document->json, objects[k], "byteOffset",
 				map_position(&buffers[buffer], offset));
 	}
@@ -181,10 +180,9 @@ static void move_in_view(nt_json *json, nt_json_value *object, const moved_view 
 	size_t view_count)
 {
 	uint64_t view, offset = 0;
-	if (!nt_json_get_uint64(nt_json_find(object, "bufferView"), &view) || view >= view_count ||
-		!moved[view].buffer)
+	if (!nt_json_find_uint64(object, "bufferView", &view) || view >= view_count || !moved[view].buffer)
 		return;
-	nt_json_get_uint64(nt_json_find(object, "byteOffset"), &offset);
+	nt_json_find_uint64(object, "byteOffset", &offset);
 	set_offset(json, object, "byteOffset",
 		map_position(moved[view].buffer, moved[view].old_offset + offset) -
 			moved[view].new_offset);
@@ -304,11 +302,10 @@ static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer
 static nt_status remove_compressed(nt_buffer_edits *edits, const nt_json_value *packed, nt_error *error)
 {
 	uint64_t buffer, offset = 0, length;
-	if (!nt_json_get_uint64(nt_json_find(packed, "buffer"), &buffer) ||
-		!nt_json_get_uint64(nt_json_find(packed, "byteLength"), &length) ||
+	if (!nt_json_find_uint64(packed, "buffer", &buffer) || !nt_json_find_uint64(packed, "byteLength", &length) ||
 		buffer >= edits->document->buffer_count)
 		return NT_OK;
-	nt_json_get_uint64(nt_json_find(packed, "byteOffset"), &offset);
+	nt_json_find_uint64(packed, "byteOffset", &offset);
 	const size_t users = nt_byte_users_count(&edits->users, (uint32_t)buffer, offset, offset + length);
 	return users == 1 ? nt_edits_replace(edits, (uint32_t)buffer, offset, length,
 				    (const unsigned char *)"", 0, error) :
@@ -355,11 +352,11 @@ static nt_status settle_decoded(nt_buffer_edits *edits, uint32_t index, moved_vi
 	*moved = (moved_view){plain, 0, 0};
 	if (packs)
 		return nt_packed_replace(edits, index, bytes, size, error);
-	nt_json_value *view = nt_json_at(nt_gltf_root_member(document, "bufferViews"), index);
+	nt_json_value *view = nt_gltf_view_json(document, index);
 	const char *name = "";
 	nt_json_value *packed = nt_gltf_compression_of(view, &name);
 	uint64_t near = NT_NONE;
-	nt_json_get_uint64(nt_json_find(packed, "buffer"), &near);
+	nt_json_find_uint64(packed, "buffer", &near);
 	uint32_t buffer = NT_NONE;
 	status = remove_compressed(edits, packed, error);
 	if (!status)
@@ -369,12 +366,9 @@ static nt_status settle_decoded(nt_buffer_edits *edits, uint32_t index, moved_vi
 	if (status)
 		return status;
 	nt_json *json = document->json;
-	nt_json_set_uint64(json, nt_json_put(json, view, "buffer"), buffer);
-	nt_json_set_uint64(json, nt_json_put(json, view, "byteLength"), size);
-	nt_json_value *extensions = nt_json_find(view, "extensions");
-	nt_json_remove(json, extensions, name);
-	if (nt_json_count(extensions) == 0)
-		nt_json_remove(json, view, "extensions");
+	nt_json_put_uint64(json, view, "buffer", buffer);
+	nt_json_put_uint64(json, view, "byteLength", size);
+	nt_gltf_drop_extension(json, view, name);
 	return NT_OK;
 }
 
@@ -406,7 +400,7 @@ static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 		nt_gltf_accessor a;
 		const unsigned char *elements;
 		double bounds[2][4];
-		const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "accessors"), i);
+		const nt_json_value *json = nt_gltf_accessor_json(document, i);
 		if (edits->seen[i] || nt_gltf_users_of(document, i)->indices ||
 			!nt_json_find(json, "min") ||
 			nt_gltf_get_accessor(document, i, "", &a, NULL) || a.view >= edits->view_count ||

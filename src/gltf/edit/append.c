@@ -137,7 +137,7 @@ static nt_status clone_accessor(nt_appending *job, nt_append_target *from)
 	nt_json_value *clone = nt_json_append(job->json, accessors);
 	nt_json_set_copy(job->json, clone, nt_json_at(accessors, from->accessor.index));
 	const nt_status status = add_elements(job, from, true, clone);
-	nt_json_set_uint64(job->json, nt_json_put(job->json, clone, "count"), job->vertices->new_count);
+	nt_json_put_uint64(job->json, clone, "count", job->vertices->new_count);
 	return status ? status : settle_bounds(job, from, from->clone);
 }
 
@@ -146,8 +146,7 @@ static void use_clones(nt_appending *job, const nt_json_value *primitive)
 	for (nt_gltf_use u = {0}; nt_gltf_next_use(job->document, primitive, &u);)
 		for (size_t i = 0; i < job->target_count; i++)
 			if (job->targets[i].accessor.index == u.accessor && job->targets[i].clone != NT_NONE)
-				nt_json_set_uint64(job->json, nt_json_put(job->json, u.attributes, u.name),
-					job->targets[i].clone);
+				nt_json_put_uint64(job->json, u.attributes, u.name, job->targets[i].clone);
 }
 
 /* Whether an accessor that stays lies at the end of vertices in which others of the pool lie: copies of these
@@ -303,8 +302,8 @@ static void lengthen_views(nt_appending *job, const block *b)
 			nt_gltf_is_of_view(view.buffer) ||
 			view.offset + view.length >= b->end)
 			continue;
-		nt_json_value *object = nt_json_at(nt_gltf_root_member(job->document, "bufferViews"), index);
-		nt_json_set_uint64(job->json, nt_json_put(job->json, object, "byteLength"), b->end - view.offset);
+		nt_json_value *object = nt_gltf_view_json(job->document, index);
+		nt_json_put_uint64(job->json, object, "byteLength", b->end - view.offset);
 		job->document->views[index].length = b->end - view.offset;
 	}
 }
@@ -430,8 +429,7 @@ static nt_status append_to_targets(nt_appending *job)
 	for (size_t i = 0; !status && counts_change && i < job->target_count; i++) {
 		const nt_append_target *target = &job->targets[i];
 		nt_json_value *json = nt_gltf_accessor_json(job->document, target->accessor.index);
-		nt_json_set_uint64(job->json, nt_json_put(job->json, json, "count"),
-			job->vertices->new_count);
+		nt_json_put_uint64(job->json, json, "count", job->vertices->new_count);
 		if (target->accessor.sparse && nt_vertices_differ(job->vertices) && nt_json_find(json, "sparse"))
 			status = nt_append_sparse(job, target);
 	}

@@ -25,7 +25,7 @@ static nt_status move_sparse_array(nt_appending *job, const sparse_array *moved,
 	uint32_t view;
 	const nt_status status = nt_edits_add_view(job->edits, job->buffer, moved->bytes,
 		moved->size, 0, 0, &view, job->error);
-	nt_json_set_uint64(job->json, nt_json_put(job->json, json, "bufferView"), view);
+	nt_json_put_uint64(job->json, json, "bufferView", view);
 	nt_json_remove(job->json, json, "byteOffset");
 	return status;
 }
@@ -50,9 +50,8 @@ static void find_edited(const nt_appending *job, uint32_t buffer, uint64_t begin
  * share one array of indices: they replace the same elements, so it grows once for all of them. */
 static nt_status extend_sparse_array(nt_appending *job, const nt_append_target *from, const sparse_array *array)
 {
-	nt_json_value *json = nt_json_find(nt_json_find(nt_json_at(
-		nt_gltf_root_member(job->document, "accessors"), from->accessor.index), "sparse"),
-		array->name);
+	nt_json_value *json = nt_json_find(nt_json_find(nt_gltf_accessor_json(job->document, from->accessor.index),
+		"sparse"), array->name);
 	nt_gltf_view view;
 	const nt_status status = nt_gltf_get_view(job->document, array->view, "", &view, job->error);
 	if (status)
@@ -156,10 +155,9 @@ nt_status nt_append_sparse(nt_appending *job, const nt_append_target *from)
 	nt_gltf_store_indices(r.elements, r.count, width, numbers);
 
 	nt_json_value *sparse = nt_json_find(nt_gltf_accessor_json(job->document, a->index), "sparse");
-	nt_json_set_uint64(job->json, nt_json_put(job->json, sparse, "count"), r.count);
+	nt_json_put_uint64(job->json, sparse, "count", r.count);
 	if (type != a->sparse->index_type)
-		nt_json_set_uint64(job->json, nt_json_put(job->json, nt_json_find(sparse, "indices"),
-			"componentType"), type);
+		nt_json_put_uint64(job->json, nt_json_find(sparse, "indices"), "componentType", type);
 	status = extend_sparse_array(job, from, &(sparse_array){"indices", a->sparse->index_view,
 		a->sparse->index_offset,
 		r.old_count * old_width, numbers, r.count * width, width,

@@ -29,7 +29,7 @@ nt_status nt_data_uris_add(nt_data_uris *uris, uint32_t buffer, nt_error *error)
 		return nt_fail_memory(error);
 	uris->buffers[uris->count++] = buffer;
 	size_t length = 0;
-	const char *uri = nt_json_get_string(nt_json_find(object, "uri"), &length);
+	const char *uri = nt_json_find_string(object, "uri", &length);
 	const size_t head = head_length(uri, length);
 	nt_json_set_open(json, nt_json_put(json, object, "uri"), head ? uri : plain_head,
 		head ? head : sizeof plain_head - 1);

@@ -51,17 +51,14 @@ void nt_gltf_drop_draco(const nt_scene *scene)
 static nt_status make_plain(nt_buffer_edits *edits, nt_json_value *primitive, nt_error *error)
 {
 	nt_gltf *document = edits->document;
-	nt_json_value *extensions = nt_json_find(primitive, "extensions");
 	uint64_t index;
 	nt_gltf_view view;
 	nt_status status = NT_OK;
-	if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &index) &&
+	if (nt_json_find_uint64(nt_gltf_draco_of(primitive), "bufferView", &index) &&
 		nt_gltf_get_view(document, index, "", &view, NULL) == NT_OK &&
 		nt_gltf_draco_release(document, index, 1))
 		status = nt_edits_release(edits, (uint32_t)index, NT_DRACO_HEAD, view.length - NT_DRACO_HEAD, error);
-	nt_json_remove(document->json, extensions, "KHR_draco_mesh_compression");
-	if (nt_json_count(extensions) == 0)
-		nt_json_remove(document->json, primitive, "extensions");
+	nt_gltf_drop_extension(document->json, primitive, "KHR_draco_mesh_compression");
 	return status;
 }
 
@@ -219,7 +216,7 @@ nt_status nt_gltf_draco_begin(nt_gltf_recoding *r, nt_gltf *document, nt_pool_ve
 	} else if (!r->extension) {
 		status = nt_gltf_draco_gather_plain(r, error);
 	} else if (!accessors_are_own(r) ||
-		!nt_json_get_uint64(nt_json_find(r->extension, "bufferView"), &r->view)) {
+		!nt_json_find_uint64(r->extension, "bufferView", &r->view)) {
 		r->obstacle = "something else uses its accessors";
 	} else {
 		r->outside = has_outside(r);

@@ -85,7 +85,7 @@ static void set_count(nt_gltf *document, uint64_t accessor, size_t count)
 {
 	nt_json_value *json = nt_gltf_accessor_json(document, accessor);
 	nt_json_remove(document->json, json, "sparse");
-	nt_json_set_uint64(document->json, nt_json_put(document->json, json, "count"), count);
+	nt_json_put_uint64(document->json, json, "count", count);
 }
 
 void nt_gltf_draco_describe(nt_gltf_recoding *r)
@@ -96,30 +96,29 @@ void nt_gltf_draco_describe(nt_gltf_recoding *r)
 	for (size_t i = 0; i < r->attribute_count; i++) {
 		const nt_draco_attribute *a = &r->attributes[i];
 		uint64_t accessor;
-		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &accessor)) {
+		if (nt_json_find_uint64(attributes, r->names[i], &accessor)) {
 			set_count(r->document, accessor, block->point_count);
 			nt_gltf_state_bounds(json, nt_gltf_accessor_json(r->document, accessor),
 				(size_t)a->components, block->bounds[i]);
 		} else {
-			nt_json_set_uint64(json, nt_json_put(json, attributes, r->names[i]),
+			nt_json_put_uint64(json, attributes, r->names[i],
 				nt_gltf_new_accessor(json, NT_NONE, NT_GLTF_FLOAT,
 					a->components == 3 ? "VEC3" : "VEC4", block->point_count, false));
 		}
-		nt_json_set_uint64(json, nt_json_put(json, nt_json_put(json, r->extension, "attributes"),
-			r->names[i]), a->unique_id);
+		nt_json_put_uint64(json, nt_json_put(json, r->extension, "attributes"), r->names[i], a->unique_id);
 	}
 	uint64_t indices, type = 0;
-	if (!nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices)) {
+	if (!nt_json_find_uint64(r->primitive, "indices", &indices)) {
 		indices = nt_gltf_new_accessor(json, NT_NONE, NT_GLTF_UINT, "SCALAR", 0, false);
-		nt_json_set_uint64(json, nt_json_put(json, r->primitive, "indices"), indices);
+		nt_json_put_uint64(json, r->primitive, "indices", indices);
 		r->extension = nt_gltf_draco_of(r->primitive); /* members have moved */
 	}
 	set_count(r->document, indices, block->face_count * 3);
 	nt_json_value *accessor = nt_gltf_accessor_json(r->document, indices);
-	nt_json_get_uint64(nt_json_find(accessor, "componentType"), &type);
+	nt_json_find_uint64(accessor, "componentType", &type);
 	const uint32_t wide = nt_gltf_index_type(block->point_count, (uint32_t)type);
 	if (wide != type)
-		nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"), wide);
+		nt_json_put_uint64(json, accessor, "componentType", wide);
 	nt_json_remove(json, accessor, "min");
 	nt_json_remove(json, accessor, "max");
 }
@@ -146,6 +145,6 @@ nt_status nt_gltf_draco_store(nt_gltf_recoding *r, uint32_t buffer, nt_error *er
 		return nt_edits_replace(r->edits, view.buffer, view.offset, view.length, bytes, r->block.size, error);
 	uint32_t number;
 	status = nt_edits_add_view(r->edits, buffer, bytes, r->block.size, 0, 0, &number, error);
-	nt_json_set_uint64(r->json, nt_json_put(r->json, r->extension, "bufferView"), number);
+	nt_json_put_uint64(r->json, r->extension, "bufferView", number);
 	return status;
 }

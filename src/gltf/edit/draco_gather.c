@@ -62,8 +62,7 @@ static bool lies_plain(const nt_gltf_recoding *r, uint64_t index, nt_gltf_access
 /* Matrices are no attributes of Draco's. */
 static bool is_vector(const nt_gltf_recoding *r, uint32_t accessor)
 {
-	const char *type = nt_json_get_string(nt_json_find(nt_json_at(
-		nt_gltf_root_member(r->document, "accessors"), accessor), "type"), NULL);
+	const char *type = nt_json_find_string(nt_gltf_accessor_json(r->document, accessor), "type", NULL);
 	return type && !begins_with(type, "MAT");
 }
 
@@ -135,9 +134,7 @@ nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r, nt_error *error)
 {
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
 	const size_t count = nt_json_count(attributes);
-	uint64_t mode = 4;
-	nt_json_get_uint64(nt_json_find(r->primitive, "mode"), &mode);
-	if (mode != 4)
+	if (nt_gltf_mode(r->primitive) != NT_GLTF_TRIANGLES)
 		r->obstacle = "it is a strip or a fan";
 	else if (!indices_are_own(r))
 		r->obstacle = "its indices are shared, sparse or compressed";
@@ -251,7 +248,7 @@ static void put_extension(nt_gltf_recoding *r)
 	nt_json *json = r->json;
 	nt_json_value *extensions = nt_json_put(json, r->primitive, "extensions");
 	r->extension = nt_json_put(json, extensions, "KHR_draco_mesh_compression");
-	nt_json_set_uint64(json, nt_json_put(json, r->extension, "bufferView"), 0);
+	nt_json_put_uint64(json, r->extension, "bufferView", 0);
 	nt_json_set_object(json, nt_json_put(json, r->extension, "attributes"));
 	nt_gltf_list_extension(r->document, "extensionsUsed", "KHR_draco_mesh_compression");
 	nt_gltf_list_extension(r->document, "extensionsRequired", "KHR_draco_mesh_compression");
@@ -266,9 +263,9 @@ nt_status nt_gltf_draco_take_out(nt_gltf_recoding *r, nt_error *error)
 	size_t count = 0;
 	uint64_t index;
 	for (size_t i = 0; i < r->attribute_count; i++)
-		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
+		if (nt_json_find_uint64(attributes, r->names[i], &index))
 			runs[count++] = detach(r, index);
-	if (nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &index))
+	if (nt_json_find_uint64(r->primitive, "indices", &index))
 		runs[count++] = detach(r, index);
 	const nt_status status = remove_runs(r, runs, count, error);
 	put_extension(r);

@@ -37,7 +37,7 @@ static nt_status find_faces(planning *f, const nt_gltf_recoding *r, nt_mesh *mes
 	nt_gltf_accessor accessor = {.count = mesh->vertex_count};
 	uint32_t *indices = NULL;
 	nt_status status = NT_OK;
-	if (nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &index)) {
+	if (nt_json_find_uint64(r->primitive, "indices", &index)) {
 		status = nt_gltf_get_accessor(r->document, index, "", &accessor, error);
 		if (!status)
 			status = nt_gltf_indices(r->document, &accessor, mesh->vertex_count,

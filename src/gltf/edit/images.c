@@ -183,7 +183,7 @@ static void refer_to_view(moving *m, nt_json_value *image, uint32_t view, const 
 {
 	nt_json_remove(m->json, image, "uri");
 	nt_json_set_string(m->json, nt_json_put(m->json, image, "mimeType"), type, strlen(type));
-	nt_json_set_uint64(m->json, nt_json_put(m->json, image, "bufferView"), view);
+	nt_json_put_uint64(m->json, image, "bufferView", view);
 }
 
 static nt_status embed_in_view(moving *m, nt_json_value *image, const nt_file *file, const char *type, uint32_t *view)
@@ -263,7 +263,7 @@ static nt_status place_turned(moving *m, nt_json_value *image, const nt_turned_i
 	if (!to_glb && nt_json_find(image, "uri"))
 		return embed_as_data(m, image, &file, type);
 	nt_status status = NT_OK;
-	if (turned->replaces && nt_json_get_uint64(nt_json_find(image, "bufferView"), &view))
+	if (turned->replaces && nt_json_find_uint64(image, "bufferView", &view))
 		status = nt_edits_release_view(m->edits, (uint32_t)view, 1, m->error);
 	uint32_t new_view;
 	return status ? status : embed_in_view(m, image, &file, type, &new_view);
@@ -282,7 +282,7 @@ static nt_status copy_file(moving *m, nt_json_value *image, const nt_file *file,
 	const nt_status status = write_beside(m, image, file, nt_last_part(path));
 	if (status)
 		return status;
-	const char *uri = nt_json_get_string(nt_json_find(image, "uri"), &length);
+	const char *uri = nt_json_find_string(image, "uri", &length);
 	uri = nt_arena_text(&m->edits->arena, uri, length);
 	return uri ? note_moved(m, file, NT_NONE, uri) : nt_fail_memory(m->error);
 }

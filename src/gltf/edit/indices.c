@@ -117,8 +117,8 @@ static nt_status add_indices(nt_buffer_edits *edits, uint32_t buffer, const nt_g
 	if (old || offset)
 		nt_gltf_place_accessor(json, object, view, offset);
 	if (old) {
-		nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), new->type);
-		nt_json_set_uint64(json, nt_json_put(json, object, "count"), new->count);
+		nt_json_put_uint64(json, object, "componentType", new->type);
+		nt_json_put_uint64(json, object, "count", new->count);
 		set_bounds(json, object, new);
 	}
 	return NT_OK;
@@ -169,11 +169,11 @@ static nt_status replace_indices(nt_buffer_edits *edits, uint32_t same, const nt
 	}
 	nt_json_value *accessor = nt_gltf_accessor_json(edits->document, old->index);
 	if (pad)
-		nt_json_set_uint64(json, nt_json_put(json, accessor, "byteOffset"), old->offset + pad);
+		nt_json_put_uint64(json, accessor, "byteOffset", old->offset + pad);
 	if (new->type != old->component_type)
-		nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"), new->type);
+		nt_json_put_uint64(json, accessor, "componentType", new->type);
 	if (new->count != old->count)
-		nt_json_set_uint64(json, nt_json_put(json, accessor, "count"), new->count);
+		nt_json_put_uint64(json, accessor, "count", new->count);
 	set_bounds(json, accessor, new);
 	*done = true;
 	return nt_edits_replace(edits, view.buffer, begin, size, bytes, new->size + pad, error);
@@ -250,8 +250,8 @@ static nt_status find_old(nt_gltf *document, const nt_mesh *mesh, uint32_t index
 	const nt_status status = nt_gltf_get_accessor(document, index, nt_gltf_of_mesh(mesh).pointer, old, error);
 	/* Draco's indices have 32 bits; the accessor may say less. */
 	uint64_t type;
-	if (!status && old->decoded && nt_json_get_uint64(nt_json_find(nt_json_at(
-		nt_gltf_root_member(document, "accessors"), index), "componentType"), &type))
+	if (!status && old->decoded &&
+		nt_json_find_uint64(nt_gltf_accessor_json(document, index), "componentType", &type))
 		old->component_type = (uint32_t)type;
 	return status;
 }
@@ -320,8 +320,7 @@ static nt_status edit_user(nt_buffer_edits *edits, uint32_t buffer, const nt_poo
 	written *log, nt_error *error)
 {
 	nt_json *json = edits->document->json;
-	uint64_t mode = NT_GLTF_TRIANGLES;
-	nt_json_get_uint64(nt_json_find(nt_pool_primitive(vertices->pool, user), "mode"), &mode);
+	const uint64_t mode = nt_gltf_mode(nt_pool_primitive(vertices->pool, user));
 	written *leader = &log[log[user].leader];
 	const nt_status status = log[user].leader != user ? NT_OK :
 		write_user(edits, buffer, vertices, user, mode, leader, error);
@@ -330,9 +329,9 @@ static nt_status edit_user(nt_buffer_edits *edits, uint32_t buffer, const nt_poo
 	nt_json_value *primitive = nt_pool_primitive(vertices->pool, user);
 	/* in place, each user keeps its accessor */
 	if (leader->accessor != leader->index)
-		nt_json_set_uint64(json, nt_json_put(json, primitive, "indices"), leader->accessor);
+		nt_json_put_uint64(json, primitive, "indices", leader->accessor);
 	if (mode != NT_GLTF_TRIANGLES && !(vertices->renumbered && vertices->renumbered[user]))
-		nt_json_set_uint64(json, nt_json_put(json, primitive, "mode"), NT_GLTF_TRIANGLES);
+		nt_json_put_uint64(json, primitive, "mode", NT_GLTF_TRIANGLES);
 	return NT_OK;
 }
 

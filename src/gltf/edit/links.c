@@ -12,7 +12,7 @@
 
 const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length)
 {
-	const char *uri = nt_json_get_string(nt_json_find(object, "uri"), length);
+	const char *uri = nt_json_find_string(object, "uri", length);
 	return uri && !nt_uri_is_data(uri, *length) ? uri : NULL;
 }
 

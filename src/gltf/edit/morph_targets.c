@@ -209,9 +209,9 @@ static nt_status add_sparse_view(target_job *job, uint32_t *view)
 
 static void set_view(nt_json *json, nt_json_value *object, uint32_t view, uint64_t offset)
 {
-	nt_json_set_uint64(json, nt_json_put(json, object, "bufferView"), view);
+	nt_json_put_uint64(json, object, "bufferView", view);
 	if (offset)
-		nt_json_set_uint64(json, nt_json_put(json, object, "byteOffset"), offset);
+		nt_json_put_uint64(json, object, "byteOffset", offset);
 }
 
 /* The accessor of a target, for what is stored in a view. */
@@ -229,8 +229,8 @@ static void describe_target(const target_job *job, target_tangents *t, uint32_t 
 	for (size_t k = 0; !is_new && k < sizeof gone / sizeof *gone; k++)
 		nt_json_remove(json, accessor, gone[k]);
 	if (!is_new) {
-		nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"), s->type);
-		nt_json_set_uint64(json, nt_json_put(json, accessor, "count"), job->vertices->new_count);
+		nt_json_put_uint64(json, accessor, "componentType", s->type);
+		nt_json_put_uint64(json, accessor, "count", job->vertices->new_count);
 		nt_json_set_string(json, nt_json_put(json, accessor, "type"), "VEC3", 4);
 	}
 	if (!is_new && s->type != NT_GLTF_FLOAT)
@@ -241,10 +241,10 @@ static void describe_target(const target_job *job, target_tangents *t, uint32_t 
 	}
 	nt_json_value *sparse = nt_json_put(json, accessor, "sparse");
 	nt_json_set_object(json, sparse);
-	nt_json_set_uint64(json, nt_json_put(json, sparse, "count"), s->element_count);
+	nt_json_put_uint64(json, sparse, "count", s->element_count);
 	nt_json_value *indices = nt_json_put(json, sparse, "indices");
 	nt_json_set_object(json, indices);
-	nt_json_set_uint64(json, nt_json_put(json, indices, "componentType"), s->index_type);
+	nt_json_put_uint64(json, indices, "componentType", s->index_type);
 	set_view(json, indices, view, t->offset);
 	nt_json_value *values = nt_json_put(json, sparse, "values");
 	nt_json_set_object(json, values);
@@ -278,8 +278,8 @@ static nt_status write_targets(target_job *job)
 			zero_type = t->storage.type;
 		}
 		for (uint32_t i = pool->sets.first[job->set]; i != NT_NONE; i = pool->sets.next[i])
-			nt_json_set_uint64(json, nt_json_put(json, nt_json_at(nt_json_find(nt_pool_primitive(pool, i),
-				"targets"), t->target), "TANGENT"), t->accessor);
+			nt_json_put_uint64(json, nt_json_at(nt_json_find(nt_pool_primitive(pool, i), "targets"),
+				t->target), "TANGENT", t->accessor);
 	}
 	return status;
 }
@@ -289,13 +289,7 @@ static void add_cost(const target_job *job, nt_morph_cost *cost)
 {
 	const nt_vertex_pool *pool = job->vertices->pool;
 	const nt_json_value *primitive = nt_pool_primitive(pool, pool->sets.first[job->set]);
-	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
-	size_t vertex_bytes = nt_json_find(attributes, "TANGENT") ? 0 : 4 * sizeof(float);
-	for (nt_gltf_use u = {0}; nt_gltf_next_use(job->edits->document, primitive, &u) && !u.object;) {
-		const nt_gltf_accessor *a = nt_gltf_sound_accessor(job->edits->document, u.accessor);
-		vertex_bytes += a ? a->element_bytes : 0;
-	}
-	cost->mesh_bytes += vertex_bytes * job->vertices->new_count;
+	cost->mesh_bytes += nt_gltf_vertex_bytes(job->edits->document, primitive) * job->vertices->new_count;
 	const nt_gltf_accessor *indices = nt_gltf_named(job->edits->document, primitive, "indices");
 	cost->mesh_bytes += indices ? indices->count * indices->element_bytes : 0;
 	for (size_t m = 0; m < job->count; m++)

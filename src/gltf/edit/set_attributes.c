@@ -147,11 +147,11 @@ uint32_t nt_gltf_new_accessor(nt_json *json, uint32_t view, uint32_t component_t
 	const uint32_t number = (uint32_t)nt_json_count(accessors);
 	nt_json_value *object = nt_json_append(json, accessors);
 	if (view != NT_NONE)
-		nt_json_set_uint64(json, nt_json_put(json, object, "bufferView"), view);
-	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), component_type);
+		nt_json_put_uint64(json, object, "bufferView", view);
+	nt_json_put_uint64(json, object, "componentType", component_type);
 	if (normalized)
 		nt_json_set_bool(json, nt_json_put(json, object, "normalized"), true);
-	nt_json_set_uint64(json, nt_json_put(json, object, "count"), count);
+	nt_json_put_uint64(json, object, "count", count);
 	nt_json_set_string(json, nt_json_put(json, object, "type"), type, strlen(type));
 	return number;
 }
@@ -160,7 +160,7 @@ uint32_t nt_gltf_new_accessor(nt_json *json, uint32_t view, uint32_t component_t
 static void set_type(nt_json *json, nt_json_value *accessor, nt_precision precision)
 {
 	const uint32_t type = nt_precision_component_type(precision);
-	nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"), type);
+	nt_json_put_uint64(json, accessor, "componentType", type);
 	if (type == NT_GLTF_FLOAT)
 		nt_json_remove(json, accessor, "normalized");
 	else
@@ -180,7 +180,7 @@ static void describe(nt_gltf *document, uint32_t accessor, const nt_set_attribut
 		return;
 	}
 	nt_gltf_place_accessor(json, object, view, offset);
-	nt_json_set_uint64(json, nt_json_put(json, object, "count"), count);
+	nt_json_put_uint64(json, object, "count", count);
 	set_type(json, object, precision);
 	nt_json_remove(json, object, "min");
 	nt_json_remove(json, object, "max");
@@ -224,8 +224,8 @@ nt_status nt_set_attribute_write(nt_buffer_edits *edits, uint32_t buffer, const 
 		const uint32_t same = old == NT_NONE ? NT_NONE : nt_gltf_same(document, old);
 		if (old == NT_NONE ||
 			!bsearch(&same, attribute->own, attribute->own_count, sizeof same, compare_numbers))
-			nt_json_set_uint64(json, nt_json_put(json, nt_json_find(nt_pool_primitive(pool, i),
-				"attributes"), attribute->name), accessor);
+			nt_json_put_uint64(json, nt_json_find(nt_pool_primitive(pool, i), "attributes"),
+				attribute->name, accessor);
 	}
 	return status;
 }

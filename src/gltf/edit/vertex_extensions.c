@@ -87,7 +87,7 @@ static bool is_per_vertex(search *s, const nt_json_value *value)
 {
 	uint64_t accessor, count;
 	return nt_json_get_uint64(value, &accessor) && accessor < s->document->accessor_count &&
-		nt_json_get_uint64(nt_json_find(nt_gltf_accessor_json(s->document, accessor), "count"), &count) &&
+		nt_json_find_uint64(nt_gltf_accessor_json(s->document, accessor), "count", &count) &&
 		count == s->old_count && !is_attribute(s, accessor);
 }
 
@@ -202,11 +202,7 @@ static bool keeps_polygons(const nt_pool_vertices *vertices, size_t user)
 
 static void drop_polygons(nt_scene *scene, nt_buffer_edits *edits, nt_json_value *primitive, const nt_mesh *mesh)
 {
-	nt_json *json = edits->document->json;
-	nt_json_value *extensions = nt_json_find(primitive, "extensions");
-	nt_json_remove(json, extensions, polygons_name);
-	if (nt_json_count(extensions) == 0)
-		nt_json_remove(json, primitive, "extensions");
+	nt_gltf_drop_extension(edits->document->json, primitive, polygons_name);
 	edits->polygons_dropped = true;
 	nt_finding_add(&scene->findings, NT_CODE_POLYGONS_DROPPED, nt_mesh_place(mesh, &(nt_place){0}), 1, "%s",
 		polygons_name);

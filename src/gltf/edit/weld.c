@@ -386,12 +386,9 @@ static nt_status take_welded(welding *w, nt_stored_tangents *stored, const uint3
 /* Points are drawn as often as they are there, and share nothing. */
 static bool draws_points_alone(const nt_vertex_pool *pool)
 {
-	for (size_t i = 0; i < pool->user_count; i++) {
-		uint64_t mode = NT_GLTF_TRIANGLES;
-		nt_json_get_uint64(nt_json_find(nt_pool_primitive(pool, i), "mode"), &mode);
-		if (mode != NT_GLTF_POINTS)
+	for (size_t i = 0; i < pool->user_count; i++)
+		if (nt_gltf_mode(nt_pool_primitive(pool, i)) != NT_GLTF_POINTS)
 			return false;
-	}
 	return true;
 }
 

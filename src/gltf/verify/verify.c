@@ -558,8 +558,7 @@ static nt_status open_edited(const verification *v, mesh_check *check, nt_error 
 	const nt_gltf *document = v->scene->source;
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
 	const nt_gltf_accessor *positions = nt_gltf_named(document, nt_json_find(primitive, "attributes"), "POSITION");
-	check->mode = NT_GLTF_TRIANGLES;
-	nt_json_get_uint64(nt_json_find(primitive, "mode"), &check->mode);
+	check->mode = nt_gltf_mode(primitive);
 	check->decoded = positions && positions->decoded;
 	const nt_status status = open_primitive(v->model, mesh->gltf_mesh, mesh->gltf_primitive, check->views, error);
 	return status == NT_OK ? open_targets(v->model, mesh, check->views, error) : status;
