@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "ext/draco.h"
-#include "gltf/normalized.h"
+#include "gltf/quantize.h"
 #include "scene/srgb.h"
 
 bool nt_drc_recognise(const unsigned char *bytes, size_t size)

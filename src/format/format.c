@@ -11,9 +11,8 @@
 #include "gltf/create/create.h"
 #include "gltf/document.h"
 #include "gltf/edit/edit.h"
-#include "gltf/edit/merge_splits.h"
+#include "gltf/edit/pool_edit.h"
 #include "gltf/load.h"
-#include "gltf/open.h"
 #include "obj/read.h"
 #include "ply/ply.h"
 

@@ -12,7 +12,7 @@
 #include <string.h>
 #include "base/largest.h"
 #include "base/lock.h"
-#include "gltf/normalized.h"
+#include "gltf/quantize.h"
 
 /* Indices that an accessor without a bufferView may have: nothing in the file backs their number. */
 enum { UNBACKED_INDICES = 65536 };

@@ -7,7 +7,7 @@
  * A table over the range from the least to the greatest index gives each vertex its number. If corners are few in a
  * wide range, they are sorted instead: the cost is bounded by corners alone.
  */
-#include "gltf/compact.h"
+#include "gltf/load.h"
 
 #include <stdlib.h>
 #include <string.h>

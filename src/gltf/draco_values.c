@@ -8,7 +8,7 @@
  * A primitive that is compressed already needs nothing: its values lie on a grid which it keeps, and
  * quantizing them again moves none; what is beside its block stays there as it is.
  */
-#include "gltf/draco_values.h"
+#include "gltf/load.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -14,11 +14,9 @@
 #include <string.h>
 #include "base/parallel.h"
 #include "gltf/document.h"
-#include "gltf/compact.h"
 #include "gltf/draco.h"
-#include "gltf/draco_values.h"
 #include "gltf/materials.h"
-#include "gltf/normalized.h"
+#include "gltf/quantize.h"
 
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
 enum { UNBACKED_ELEMENTS = 65536 };

@@ -1,11 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The geometry of a primitive, for the table of formats.
+ * Opening a glTF, and the geometry of its primitives, for the table of formats and the stages.
  */
 #ifndef NT_GLTF_LOAD_H
 #define NT_GLTF_LOAD_H
 
+#include "base/error.h"
+#include "base/memory.h"
+#include "ext/draco.h"
 #include "gltf/document.h"
+#include "scene/scene.h"
+
+/* Describes the meshes of scene->bytes. */
+nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
 
 /* Brings the geometry of a mesh of an opened glTF. */
 nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
@@ -29,5 +36,45 @@ nt_status nt_gltf_load_normals(nt_gltf *document, const nt_mesh *mesh, nt_arena 
  * Returns NT_OK or NT_ERROR_MEMORY.
  */
 nt_status nt_gltf_prepare(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error);
+
+/* ---- values as a decoder of Draco will have them: draco_values.c ---- */
+
+/* The accessors of what a mesh has, of its vertices; NULL: it has none. */
+typedef struct nt_gltf_sources {
+	const nt_gltf_accessor *positions, *normals, *texcoords;
+} nt_gltf_sources;
+
+/* Whether Draco takes these attributes of a mesh, of which only faces and the number of vertices are asked for; with
+ * `whole` also whether faces use all its vertices. Returns NT_OK; what nt_draco_encode() has against it; NT_ERROR_INPUT
+ * where a vertex is not used; NT_ERROR_MEMORY, NT_ERROR_MODULE or NT_ERROR_IO. */
+nt_status nt_gltf_draco_takes(const nt_mesh *mesh, const nt_draco_attribute *attributes, size_t count, bool whole,
+	nt_error *error);
+
+/* The plain floats of a mesh with ->quantized become what a decoder will have of them: nt_gltf_draco_takes() it. After
+ * faces are loaded, before texture transforms are applied. One with a block that cannot be made again, since something
+ * beside it counts vertices that no face uses, loses ->quantized. */
+nt_status nt_gltf_quantize_vertices(nt_scene *scene, nt_mesh *mesh, const nt_gltf_sources *sources,
+	const nt_read_options *options, nt_error *error);
+
+/* Normals that were made for meshes with ->quantized: tangents will be solved for what a decoder has of them. */
+nt_status nt_gltf_quantize_made_normals(nt_scene *scene, const nt_read_options *options, nt_error *error);
+
+/* ---- vertices that a primitive uses, of those that it shares with others: compact.c ---- */
+
+typedef struct nt_compact {
+	uint32_t *vertices; /* [count] number of each in the pool, ascending; NULL: the pool's own numbers */
+	size_t count;
+	uint32_t *indices;  /* [corner_count] of these vertices */
+} nt_compact;
+
+/* Numbers the vertices that corners use, of a pool of `vertex_count`; nearly all are taken for all. indices:
+ * [corner_count], each below that. All of the view is in the arena, or `indices` themselves. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_compact_vertices(const uint32_t *indices, size_t corner_count, size_t vertex_count, nt_arena *arena,
+	nt_compact *view);
+
+/* The rows of a view's vertices, as many floats each; `rows` themselves where the view has the pool's numbers. NULL:
+ * memory is exhausted. */
+float *nt_compact_rows(const nt_compact *view, const float *rows, size_t floats, nt_arena *arena);
 
 #endif

@@ -7,7 +7,7 @@
  * primitive's accessors are checked when it is loaded; cameras, skins, animations and images are not
  * looked at.
  */
-#include "gltf/open.h"
+#include "gltf/load.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,12 +1,56 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Tangents as integers: what KHR_mesh_quantization allows for TANGENT, a VEC4 of normalized SHORT or BYTE.
+ * Numbers as accessors and views store them: normalized integers, tangents as integers, filters.
  */
 #ifndef NT_GLTF_QUANTIZE_H
 #define NT_GLTF_QUANTIZE_H
 
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
 #include "base/dvec.h"
+#include "ext/gltf_numbers.h"
 #include "scene/scene.h"
+
+static inline float nt_signed_fraction(float value, float most)
+{
+	return value < -most ? -1.0f : value / most;
+}
+
+/* bytes: those of the component, without alignment. type: one of nt_gltf_component. */
+static inline float nt_component_value(const unsigned char *bytes, int type, bool normalised)
+{
+	int8_t i8;
+	int16_t i16;
+	uint16_t u16;
+	int32_t i32;
+	uint32_t u32;
+	float f32;
+	switch (type) {
+	case NT_GLTF_BYTE:
+		memcpy(&i8, bytes, sizeof i8);
+		return normalised ? nt_signed_fraction((float)i8, 127.0f) : (float)i8;
+	case NT_GLTF_UBYTE:
+		return normalised ? (float)bytes[0] / 255.0f : (float)bytes[0];
+	case NT_GLTF_SHORT:
+		memcpy(&i16, bytes, sizeof i16);
+		return normalised ? nt_signed_fraction((float)i16, 32767.0f) : (float)i16;
+	case NT_GLTF_USHORT:
+		memcpy(&u16, bytes, sizeof u16);
+		return normalised ? (float)u16 / 65535.0f : (float)u16;
+	case NT_GLTF_INT:
+		memcpy(&i32, bytes, sizeof i32);
+		return normalised ? (float)(i32 / 2147483647.0) : (float)i32;
+	case NT_GLTF_UINT:
+		memcpy(&u32, bytes, sizeof u32);
+		return normalised ? (float)(u32 / 4294967295.0) : (float)u32;
+	default:
+		memcpy(&f32, bytes, sizeof f32);
+		return f32;
+	}
+}
+
+/* ---- tangents as integers: quantize.c ---- */
 
 #define NT_GLTF_QUANTIZATION "KHR_mesh_quantization"
 
@@ -35,5 +79,36 @@ void nt_precision_encode(nt_precision precision, const float *tangents, size_t c
 /* Adds a cost to the scene's, and the finding that tells it. */
 void nt_precision_report(nt_scene *scene, nt_precision precision, const nt_rounding *cost,
 	const nt_place *place);
+
+/* ---- filters of meshoptimizer: tangent_filter.c ---- */
+
+/* Filters of numbers on their way into a view. */
+typedef struct nt_tangent_filter {
+	nt_precision precision;
+	const char *filter; /* NONE; of integers OCTAHEDRAL, of floats EXPONENTIAL; NULL: NONE, too */
+	int bits;           /* of a component before the filter: 2 to 8 of bytes, to 16 of shorts, to 23 of floats */
+} nt_tangent_filter;
+
+/*
+ * Rounds tangents to what the integers or the filter can say, as nt_precision_round() does; afterwards they hold what a
+ * reader will decode. w is +-1 exactly.
+ *
+ *   tangents  [count][4]
+ *   stored  [count * nt_precision_bytes()], what the filter will be applied to
+ *   values  the same size, what it gives; may be `stored` where there is none
+ *   cost  may be NULL
+ *
+ * Returns NT_OK or what opening the module of meshoptimizer gives.
+ */
+nt_status nt_tangents_store(const nt_tangent_filter *filter, float *tangents, size_t count, unsigned char *stored,
+	unsigned char *values, nt_rounding *cost, nt_error *error);
+
+/* By how much storing may change a component: nt_morph_least(). */
+float nt_tangent_filter_least(const nt_tangent_filter *filter);
+
+/* The bits that elements before a filter have, 0: none that make sense. elements: [count], `stride` bytes apart, each
+ * of `components` numbers of a type. */
+int nt_filter_bits(const char *filter, const unsigned char *elements, size_t count, size_t stride, int component_type,
+	unsigned components);
 
 #endif

@@ -8,7 +8,7 @@
  * components have the one exponent with which 1 is a mantissa of one bit, so that w is exact and the mantissas are
  * such integers.
  */
-#include "gltf/tangent_filter.h"
+#include "gltf/quantize.h"
 
 #include <math.h>
 #include <string.h>

@@ -13,7 +13,7 @@
 
 #include <stdlib.h>
 #include "base/parallel.h"
-#include "gltf/draco_values.h"
+#include "gltf/load.h"
 
 enum {
 	LARGE_FACES = 128 * 1024,    /* from here on a mesh has all threads for its load */

@@ -12,7 +12,7 @@
 #include "file/input.h"
 #include "file/uri.h"
 #include "gltf/document.h"
-#include "gltf/open.h"
+#include "gltf/load.h"
 #include "pipeline/run.h"
 
 /* ---- writing ---- */

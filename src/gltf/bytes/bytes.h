@@ -8,7 +8,7 @@
 #define NT_GLTF_BYTES_BYTES_H
 
 #include "file/base64.h"
-#include "gltf/tangent_filter.h"
+#include "gltf/quantize.h"
 #include "gltf/vertex_pools.h"
 #include "gltf/document.h"
 

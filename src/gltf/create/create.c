@@ -18,9 +18,7 @@
 #include "file/base64.h"
 #include "gltf/document.h"
 #include "gltf/sidecar.h"
-#include "gltf/create/images.h"
 #include "gltf/create/model.h"
-#include "gltf/create/primitive.h"
 #include "gltf/glb.h"
 #include "gltf/quantize.h"
 

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Images of new documents: see images.h. Files that are as they were found are opened when their bytes are
- * needed; that they are still the same is checked then.
+ * Images of new documents. Each result that its materials use (image/textures.h) is linked, copied or embedded. An
+ * image that was made has no file yet: if others are linked, it is written beside the output. An image that several
+ * materials use is one image, and a texture for each of its samplers. Files that are as they were found are opened
+ * when their bytes are needed; that they are still the same is checked then.
  */
-#include "gltf/create/images.h"
+#include "gltf/create/model.h"
 
 #include <float.h>
 #include <math.h>

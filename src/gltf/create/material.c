@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Materials of new documents: see images.h. If there is a map, its own factor counts, else the material's number.
+ * Materials of new documents. If there is a map, its own factor counts, else the material's number.
  */
-#include "gltf/create/images.h"
+#include "gltf/create/model.h"
 
 #include <math.h>
 

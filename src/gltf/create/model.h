@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The JSON of a new glTF document: one buffer, one scene. Additions return the index of what they added; when memory
- * is exhausted nt_model_json() says so. The bytes of buffers and images are the caller's.
+ * Parts of a new glTF document: its JSON, of one buffer and one scene; primitives; images and materials.
  *
- * Texts may be any bytes: what is not UTF-8 is taken as Latin-1, which is what old files have. NULL and ""
- * mean no name. Floats are written with the fewest digits that give them back.
+ * Additions to the JSON return the index of what they added; when memory is exhausted nt_model_json() says so. The
+ * bytes of buffers and images are the caller's. Texts may be any bytes: what is not UTF-8 is taken as Latin-1, which is
+ * what old files have. NULL and "" mean no name. Floats are written with the fewest digits that give them back.
  */
 #ifndef NT_GLTF_CREATE_MODEL_H
 #define NT_GLTF_CREATE_MODEL_H
@@ -14,6 +14,9 @@
 #include "ext/gltf_numbers.h"
 #include "file/output.h"
 #include "image/pack.h"
+#include "scene/scene.h"
+
+/* ---- the JSON: model.c ---- */
 
 /* No index: an optional reference that is absent. */
 #define NT_MODEL_NONE UINT32_MAX
@@ -135,5 +138,107 @@ void nt_model_text_free(nt_model_text *text);
 /* Write the beginning and the end. */
 nt_status nt_model_text_begin(const nt_model_text *text, nt_sink *sink, nt_error *error);
 nt_status nt_model_text_end(const nt_model_text *text, nt_sink *sink, nt_error *error);
+
+/* ---- primitives: primitive.c ---- */
+
+typedef struct nt_new_primitive {
+	const nt_mesh *mesh;
+	uint32_t material;        /* of the scene, or NT_NONE */
+	uint32_t group;           /* of the mesh */
+	size_t vertex_count;
+	const uint32_t *vertices; /* [vertex_count] vertex of the mesh after its split; NULL: all, in order */
+	size_t index_count;       /* 0 with indices NULL: every three vertices are a triangle */
+	const uint32_t *indices;  /* [index_count] below vertex_count */
+} nt_new_primitive;
+
+typedef struct nt_new_primitives {
+	nt_new_primitive *items;
+	size_t count;
+} nt_new_primitives;
+
+/* The new primitives of a mesh, for those of its primitives that have faces, in their order. New strings live in the
+ * arena. Returns NT_OK, NT_ERROR_MEMORY, NT_ERROR_TOO_LARGE or NT_ERROR_INTERNAL. */
+nt_status nt_new_primitives_make(const nt_mesh *mesh, nt_arena *arena, nt_new_primitives *made,
+	nt_error *error);
+
+/* The attributes of a primitive that can be written. */
+typedef enum nt_attribute {
+	NT_ATTRIBUTE_POSITION,
+	NT_ATTRIBUTE_NORMAL,
+	NT_ATTRIBUTE_TANGENT,
+	NT_ATTRIBUTE_TEXCOORD,  /* v down */
+	NT_ATTRIBUTE_COLOR,
+	NT_ATTRIBUTE_BITANGENT, /* cross(N, T) * w */
+	NT_ATTRIBUTE_COUNT
+} nt_attribute;
+
+/* Name of the glTF attribute and floats per vertex. */
+const char *nt_attribute_name(nt_attribute attribute);
+int nt_attribute_width(nt_attribute attribute);
+
+/* Whether the primitive has it. Tangents need normals, as glTF wants it. */
+bool nt_new_primitive_has(const nt_new_primitive *primitive, nt_attribute attribute);
+
+/* Smallest and largest coordinates of the positions, finite whatever they are. */
+void nt_new_primitive_bounds(const nt_new_primitive *primitive, float min[3], float max[3]);
+
+/* The component type of the indices: NT_GLTF_USHORT where that will do, else NT_GLTF_UINT. */
+uint32_t nt_new_primitive_index_type(const nt_new_primitive *primitive);
+
+/* The destination of a primitive's bytes. */
+typedef nt_status (*nt_byte_writer)(void *user, const void *bytes, size_t size, nt_error *error);
+
+/* Writes one attribute, or the indices, in blocks: straight from the mesh where it has them as they are
+ * written. */
+nt_status nt_new_primitive_write_attribute(const nt_new_primitive *primitive, nt_attribute attribute,
+	nt_byte_writer write, void *user, nt_error *error);
+nt_status nt_new_primitive_write_indices(const nt_new_primitive *primitive, nt_byte_writer write, void *user,
+	nt_error *error);
+
+/* ---- images: images.c ---- */
+
+typedef struct nt_image_set nt_image_set;
+
+/* A set for one output. options->textures may be NULL: there are no images. Returns NT_OK, NT_ERROR_IO when the
+ * output's folder is missing, or NT_ERROR_MEMORY. */
+nt_status nt_image_set_create(nt_image_set **set, const nt_write_options *options, nt_error *error);
+
+/* NULL is allowed. */
+void nt_image_set_free(nt_image_set *set);
+
+/* Says that the document uses the image that the request of a material's map led to, and protects its file from the
+ * output. NT_NONE and images without result are passed over. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_image_set_use(nt_image_set *set, const nt_material *material, const nt_map *map, nt_output *output,
+	nt_error *error);
+
+/* Adds what is used to the document: images and textures. Images that are embedded get their place at *buffer_size and
+ * move it on. Others that need a file of their own are written: what was made, what is to be copied, and by default
+ * what is outside of the output's folder. A link that leaves it is a finding of the scene. After all uses, once. */
+nt_status nt_image_set_add(nt_image_set *set, nt_scene *scene, nt_model *model, uint64_t *buffer_size,
+	nt_output *output, nt_error *error);
+
+/* The effect of alpha of a request's image, if the request is for alpha. */
+nt_alpha_mode nt_image_set_alpha(const nt_image_set *set, uint32_t request);
+
+/* The document's texture for a map, and where it lies. */
+nt_model_use nt_image_set_texture(const nt_image_set *set, const nt_map *map);
+
+/* The number of the first embedded image from `from` on, in the order of their places; UINT32_MAX: there is none. */
+uint32_t nt_image_set_embedded(const nt_image_set *set, uint32_t from);
+
+/* That image: opened, with the place it has in the buffer. Returns NT_OK or NT_ERROR_IO, also when
+ * the file is not what it was. */
+nt_status nt_image_set_open(const nt_image_set *set, uint32_t number, nt_file *file,
+	uint64_t *offset, nt_error *error);
+void nt_image_set_close(const nt_image_set *set, uint32_t number, nt_file *file);
+
+/* ---- materials: material.c ---- */
+
+/* Says that the document uses the images of a material. Returns what nt_image_set_use() does. */
+nt_status nt_new_material_use(const nt_material *material, nt_image_set *images, nt_output *output, nt_error *error);
+
+/* Adds it to the document, after the images. images: NULL: without textures and what else takes texture coordinates.
+ * Returns its number. */
+uint32_t nt_new_material_add(const nt_material *material, const nt_image_set *images, nt_model *model);
 
 #endif

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * New primitives: see primitive.h. Planning makes at most one array of indices per mesh; attributes are
- * gathered while they are written, through a buffer that stays in the cache, and go straight from the mesh where
- * nothing has to be changed. So writing costs about what copying to the file costs.
+ * Primitives of a new document: triangles over vertices, ready to be written attribute by attribute. That of a mesh
+ * with one material refers to the mesh's own arrays; of a mesh with several each gets the vertices it uses, in the
+ * order of first use. Planning makes at most one array of indices per mesh; attributes are gathered while they are
+ * written, through a buffer that stays in the cache, and go straight from the mesh where nothing has to be changed. So
+ * writing costs about what copying to the file costs.
  */
-#include "gltf/create/primitive.h"
+#include "gltf/create/model.h"
 
 #include <float.h>
 #include <math.h>

@@ -7,7 +7,7 @@
  * its accessors move to new views. An accessor that has to keep its count, because a primitive without indices or an
  * animation uses it too, is left alone and the solved primitives get a copy of it.
  */
-#include "gltf/edit/append.h"
+#include "gltf/edit/pool_edit.h"
 
 #include <stdlib.h>
 #include <string.h>

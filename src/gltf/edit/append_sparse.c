@@ -4,7 +4,7 @@
  * replaced as well: its number goes to the end of the indices, which stay in order since new elements have
  * the highest numbers, and its element to the end of the values.
  */
-#include "gltf/edit/append.h"
+#include "gltf/edit/pool_edit.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 /*
  * The accessors of a pool to which vertices are appended, and a record of the bytes that were edited for them.
  */
-#include "gltf/edit/append.h"
+#include "gltf/edit/pool_edit.h"
 
 #include <stdio.h>
 #include <stdlib.h>

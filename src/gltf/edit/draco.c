@@ -14,9 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "gltf/document.h"
-#include "gltf/edit/append.h"
-#include "gltf/edit/morph_targets.h"
-#include "gltf/edit/vertex_extensions.h"
+#include "gltf/edit/pool_edit.h"
 #include "gltf/morph_deltas.h"
 
 /* Whether a user has tangents to be written and is compressed. */

@@ -7,7 +7,7 @@
 
 #include "gltf/bytes/bytes.h"
 #include "gltf/draco.h"
-#include "gltf/edit/merge_splits.h"
+#include "gltf/edit/pool_edit.h"
 
 /* A primitive that is to be compressed. First comes what is known of it, then what was looked up in the
  * document, the third what was encoded. */

@@ -6,7 +6,7 @@
 
 #include <string.h>
 #include "gltf/document.h"
-#include "gltf/edit/set_attributes.h"
+#include "gltf/edit/pool_edit.h"
 
 /* ---- what goes into it ---- */
 

@@ -9,7 +9,7 @@
 #include <string.h>
 #include "base/available.h"
 #include "base/parallel.h"
-#include "gltf/edit/set_attributes.h"
+#include "gltf/edit/pool_edit.h"
 
 /* Memory that Draco takes for each corner and vertex of ordinary meshes: see batch/need.h. */
 enum { ELEMENT_BYTES = 100 };

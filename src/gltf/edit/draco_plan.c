@@ -20,7 +20,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "gltf/document.h"
-#include "gltf/draco_values.h"
+#include "gltf/load.h"
 #include "gltf/edit/draco.h"
 
 typedef struct planning {

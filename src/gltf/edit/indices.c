@@ -4,14 +4,13 @@
  * still fit, its component type (the largest value of a type is reserved). Strips and fans whose
  * triangles changed become lists; primitives without indices get some.
  */
-#include "gltf/edit/append.h"
+#include "gltf/edit/pool_edit.h"
 
 #include <stdio.h>
 #include <string.h>
 #include "base/hash_index.h"
 #include "base/largest.h"
 #include "gltf/document.h"
-#include "gltf/edit/set_attributes.h"
 #include "gltf/bytes/bytes.h"
 
 /* New indices of one primitive, encoded. */

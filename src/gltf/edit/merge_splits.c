@@ -12,7 +12,7 @@
  * unpacked. Two vertices have the same if 128 bits of keyed hashes are equal: to compare them themselves, all targets
  * would have to be there at once.
  */
-#include "gltf/edit/merge_splits.h"
+#include "gltf/edit/pool_edit.h"
 
 #include <stdlib.h>
 #include <string.h>

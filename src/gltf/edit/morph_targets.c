@@ -4,12 +4,11 @@
  * takes over the accessor that it has if no use of that is left; new ones are sparse if most of them are zeros.
  */
 #include "gltf/bytes/bytes.h"
-#include "gltf/edit/morph_targets.h"
+#include "gltf/edit/pool_edit.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include "gltf/document.h"
-#include "gltf/edit/set_attributes.h"
 #include "gltf/morph_deltas.h"
 #include "scene/morphs.h"
 

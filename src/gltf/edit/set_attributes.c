@@ -11,7 +11,7 @@
  * beside them would need another stride.
  */
 #include "gltf/bytes/bytes.h"
-#include "gltf/edit/set_attributes.h"
+#include "gltf/edit/pool_edit.h"
 
 #include <stdlib.h>
 #include <string.h>

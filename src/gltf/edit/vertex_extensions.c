@@ -8,7 +8,7 @@
  * as many elements as there were vertices, which is none of the primitive's own attributes: those grow with it. The
  * number may be another thing, a mode, say: the finding is a warning to look.
  */
-#include "gltf/edit/vertex_extensions.h"
+#include "gltf/edit/pool_edit.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -11,14 +11,13 @@
  * vertices have meaning by their numbers: extensions that refer to them, accessors that something else than attributes
  * uses, Draco blocks that this run does not encode.
  */
-#include "gltf/edit/weld.h"
+#include "gltf/edit/pool_edit.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash_index.h"
 #include "gltf/document.h"
 #include "gltf/draco.h"
-#include "gltf/edit/vertex_extensions.h"
 #include "scene/morphs.h"
 
 /* Something that vertices have. */

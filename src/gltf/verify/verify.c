@@ -14,11 +14,8 @@
 #include "ext/tinygltf.h"
 #include "gltf/document.h"
 #include "gltf/morph_deltas.h"
-#include "gltf/normalized.h"
 #include "gltf/quantize.h"
-#include "gltf/tangent_filter.h"
 #include "gltf/vertex_pools.h"
-#include "gltf/verify/vertices.h"
 #include "scene/morphs.h"
 
 /* ---- finding the files ---- */

@@ -4,7 +4,7 @@
  * number of vertices at one place. A cell is some tolerances wide: a value has its like in one or two along each axis,
  * and mostly in one.
  */
-#include "gltf/verify/vertices.h"
+#include "gltf/verify/verify.h"
 
 #include <math.h>
 #include <string.h>

@@ -10,7 +10,6 @@
 #include <sys/stat.h>
 #include "gltf/document.h"
 #include "gltf/load.h"
-#include "gltf/open.h"
 
 static const char *const roots[] = {"../shared/models/gltf", "../shared/corpus"};
 

@@ -6,7 +6,7 @@
 #include "test.h"
 #include <math.h>
 #include "gltf/document.h"
-#include "gltf/tangent_filter.h"
+#include "gltf/quantize.h"
 
 enum { COUNT = 3000 };
 

@@ -2,7 +2,6 @@
 #include "gltf/create/create.h"
 #include "gltf/edit/edit.h"
 #include "gltf/load.h"
-#include "gltf/open.h"
 #include "gltf/verify/verify.h"
 #include "hand_gltf.h"
 #include "scene/morphs.h"

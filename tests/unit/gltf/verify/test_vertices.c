@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
 #include <math.h>
-#include "gltf/verify/vertices.h"
+#include "gltf/verify/verify.h"
 
 enum { COUNT = 5000, HUB = 200, CHANGED = 1234 };
 

@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Edits of one pool: vertices after all splits, welded; attributes that a set gets, and tangents of its morph targets;
+ * vertices appended, with the indices that use them; extensions that do not hold any more.
+ */
+#ifndef NT_GLTF_EDIT_POOL_EDIT_H
+#define NT_GLTF_EDIT_POOL_EDIT_H
+
+#include "gltf/bytes/bytes.h"
+#include "gltf/document.h"
+#include "gltf/quantize.h"
+#include "gltf/vertex_pools.h"
+
+/* ---- splits of its meshes merged: merge_splits.c ---- */
+
+/* Shared data of the meshes of a tangent set, for all vertices of their pool. */
+typedef struct nt_pool_set {
+	float *tangents;      /* [new_count][4] */
+	float *normals;       /* [new_count][3]: NULL where normals were not made */
+	float *source_normals; /* [old_count][3] of pooled meshes whose normals were not made; not to be written to */
+	size_t morph_count;
+	const nt_mesh *lone;  /* gives all vertices the tangents of targets: scene/morphs.h; NULL: several do */
+	uint32_t *givers;     /* [new_count] the user that gives them; NT_NONE: they are the base's; NULL: lone */
+	uint32_t *given;      /* [new_count] its vertex there; NULL: the same one of lone */
+	uint64_t *digests;    /* [vertex][2] while splits are merged: of the tangents of all targets */
+	bool *defined;        /* [vertex] while splits are merged: whether a corner of the set has it */
+	uint32_t *first_free; /* [old_count] while splits are merged: before this one the set has tangents for all
+	                         copies of a vertex */
+} nt_pool_set;
+
+typedef struct nt_pool_vertices {
+	const nt_vertex_pool *pool;
+	size_t old_count;   /* of the source */
+	size_t own_count;   /* first ones that are the source's as they stand: old_count, or 0 after welding */
+	size_t new_count;
+	uint32_t *sources;  /* [new_count - own_count] vertex of the source */
+	nt_pool_set *sets;  /* [pool->sets.count] */
+	uint32_t **indices; /* [user][corner count]; NULL: not solved */
+	bool *changed;      /* [user] indices differ from the source's triangles */
+	size_t *counts;     /* [user] of indices; NULL: as many as the mesh has corners */
+	bool *renumbered;   /* [user] indices are the source's with other numbers, of any mode; NULL: of none */
+	bool welded;        /* equal ones were looked for */
+	bool borrowed;      /* sources, tangents and indices are the scene's: do not write to them */
+} nt_pool_vertices;
+
+/* The vertex of the source whose attributes a vertex has. */
+static inline size_t nt_vertex_source(const nt_pool_vertices *vertices, size_t vertex)
+{
+	return vertex < vertices->own_count ? vertex : vertices->sources[vertex - vertices->own_count];
+}
+
+/* Whether vertices are not just those of the source. */
+static inline bool nt_vertices_differ(const nt_pool_vertices *vertices)
+{
+	return vertices->new_count != vertices->own_count;
+}
+
+/* How many indices a user has. */
+static inline size_t nt_pool_index_count(const nt_pool_vertices *vertices, size_t user)
+{
+	return vertices->counts ? vertices->counts[user] : nt_pool_mesh(vertices->pool, user)->corner_count;
+}
+
+/* For the table of formats. Merges the split of a pooled mesh, in the order of the scene's meshes, with those of its
+ * pool before it: a vertex of the source becomes one for each tangent (and made normal) that any of them wants. The
+ * mesh is `merged` then; what it holds is not asked for again. */
+nt_status nt_gltf_merge(nt_scene *scene, nt_mesh *mesh, nt_error *error);
+
+/* The vertices of a pool, all of whose solved meshes are there; it has a set. Data that edits may refer to lives as
+ * long as the document, or is borrowed from the scene; tables of it are in `tables`. */
+nt_status nt_pool_vertices_get(nt_vertex_pools *pools, size_t number, const nt_vertex_pool *pool, nt_arena *tables,
+	nt_pool_vertices *vertices, nt_error *error);
+
+/* The tangents of a set as the m-th target moves it, in the arena: [new_count][3]. NULL: memory is exhausted. */
+const float *nt_pool_read_target(const nt_pool_vertices *vertices, uint32_t set, size_t m, nt_arena *scratch);
+
+/* ---- vertices appended: append.c, indices.c ---- */
+
+/* An accessor whose values are replaced in place: elements of `width` bytes for every new vertex. Without values
+ * nothing is appended to it: it will get a view of its own. */
+typedef struct nt_gltf_override {
+	uint32_t accessor;
+	const unsigned char *values; /* as readers have them */
+	const unsigned char *stored; /* before the filter of a packed view; the same where there is none */
+	uint32_t width;
+} nt_gltf_override;
+
+typedef struct nt_override_list {
+	nt_gltf_override *items; /* [count], malloc'ed */
+	size_t count, capacity;
+} nt_override_list;
+
+/* False: out of memory. */
+bool nt_override_add(nt_override_list *list, nt_gltf_override override);
+
+/* An accessor to which vertices are appended, or that may lie between values that are replaced. */
+typedef struct nt_append_target {
+	nt_gltf_accessor accessor;
+	uint32_t buffer;
+	uint64_t begin; /* in the buffer */
+	const nt_gltf_override *override;
+	uint32_t clone; /* accessor that takes its place in solved primitives; NT_NONE: none does */
+	uint32_t new_view; /* that has its elements now, from new_offset on; NT_NONE: they stay */
+	uint64_t new_offset;
+} nt_append_target;
+
+/* Bytes of the source that have been edited for this pool. */
+typedef struct nt_edited_range {
+	uint32_t buffer;
+	uint64_t begin, end;
+} nt_edited_range;
+
+typedef struct nt_appending {
+	nt_buffer_edits *edits;
+	nt_gltf *document; /* of the edits, as its JSON */
+	nt_json *json;
+	nt_arena *arena;   /* of the edits */
+	const nt_pool_vertices *vertices;
+	uint32_t buffer;  /* of new views */
+	bool decoded_too; /* decompressed accessors get plain views */
+	nt_error *error;
+	nt_append_target *targets;
+	size_t target_count, target_capacity;
+	bool collecting_unsolved;
+	bool collecting_beside; /* nothing is appended to them: one that cannot be read is none */
+	nt_edited_range *edited;
+	size_t edited_count, edited_capacity;
+} nt_appending;
+
+/* The pool, as nt_buffer_edits.appended_by has it. */
+static inline uint32_t nt_append_owner(const nt_appending *a)
+{
+	return a->vertices->pool->users[0];
+}
+
+/* Notes that bytes of a source buffer have been edited. False: out of memory. */
+bool nt_append_note_edit(nt_appending *appending, uint32_t buffer, uint64_t begin, uint64_t end);
+
+/* All accessors of all users; when nothing is appended, only those with new values. Sorts the overrides. */
+nt_status nt_append_collect(nt_appending *appending, nt_override_list *overrides);
+
+/* Appends the elements that are copies of replaced ones to what a sparse accessor replaces. */
+nt_status nt_append_sparse(nt_appending *appending, const nt_append_target *target);
+
+/* ---- append.c, indices.c ---- */
+
+/* Gives every accessor of the pool its copied elements, and overridden accessors their new values; `overrides` is
+ * sorted for that. buffer: of new views. decoded_too: what was decompressed by Draco goes into plain views. */
+nt_status nt_append_vertices(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
+	nt_override_list *overrides, bool decoded_too, nt_error *error);
+
+/* Writes the indices of a pool's solved users where they changed. buffer: of new views. */
+nt_status nt_gltf_write_indices(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
+	nt_error *error);
+
+/* ---- equal vertices welded: weld.c ---- */
+
+/* Tangents of a set as they will be stored. */
+typedef struct nt_stored_tangents {
+	nt_gltf_packing packing; /* of new bytes */
+	nt_tangent_filter filter;
+	const unsigned char *values, *stored; /* as readers have them, and before the filter */
+	size_t element_bytes;
+} nt_stored_tangents;
+
+/*
+ * Makes one vertex of those that are equal in all that the users of the pool have of them: elements of all attributes
+ * and targets, bit by bit, and what takes their place. Nothing happens where none are equal, or where something else
+ * refers to vertices by their numbers, which becomes a finding.
+ *
+ *   stored      [pool->sets.count] what takes the place of vertices->sets[].tangents: follows; NULL: nothing does
+ *   bitangents  _BITANGENT will be new
+ *   scratch     for what only this call needs
+ *
+ * Returns NT_OK or NT_ERROR_MEMORY; other errors are those of the document.
+ */
+nt_status nt_pool_weld(nt_buffer_edits *edits, nt_scene *scene, nt_pool_vertices *vertices,
+	nt_stored_tangents *stored, bool bitangents, nt_arena *scratch, nt_error *error);
+
+/* The vertices of a pool that stays as it is otherwise: no user of it counts as solved. *can: they can be welded. */
+nt_status nt_pool_vertices_plain(const nt_vertex_pools *pools, nt_vertex_pool *pool, nt_arena *tables,
+	nt_pool_vertices *vertices, bool *can, nt_error *error);
+
+/* ---- attributes of a tangent set: set_attributes.c ---- */
+
+/* NORMAL, TANGENT or _BITANGENT of a set: its values, and where they go. */
+typedef struct nt_set_attribute {
+	const char *name;
+	uint32_t components;
+	nt_stored_tangents values;
+	uint32_t *own; /* [own_count] accessors that take them, each for all over its bytes; none: a new one does */
+	size_t own_count;
+	bool in_place; /* they go where the old ones are */
+} nt_set_attribute;
+
+/* Finds the accessors that take the values: those that the set's meshes have and nobody else uses. Before vertices are
+ * appended: they become overrides, and what will not be in place leaves its bytes. Lists are in the arena. */
+nt_status nt_set_attribute_settle(nt_buffer_edits *edits, const nt_vertex_pool *pool, uint32_t set, nt_arena *arena,
+	nt_set_attribute *attribute, nt_override_list *overrides, nt_error *error);
+
+/* After that: writes the values that are not in place, and lets all of the set's meshes have them. buffer: of new
+ * views. */
+nt_status nt_set_attribute_write(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
+	uint32_t set, const nt_set_attribute *attribute, nt_error *error);
+
+/* Takes the elements of an accessor, and of others over the same bytes, out of the buffers. */
+nt_status nt_gltf_release_elements(nt_buffer_edits *edits, uint32_t accessor, nt_error *error);
+
+/* The same, of accessors that nobody uses any more: they keep their numbers, without a view. */
+nt_status nt_gltf_drop_elements(nt_buffer_edits *edits, uint32_t accessor, nt_error *error);
+
+/* Appends the JSON of an accessor; view NT_NONE: without one. Returns its number. */
+uint32_t nt_gltf_new_accessor(nt_json *json, uint32_t view, uint32_t component_type, const char *type,
+	size_t count, bool normalized);
+
+/* cross(N, T) w of every vertex of a set, glTF's own definition of the bitangent; in the arena. */
+nt_status nt_gltf_bitangents(const nt_pool_vertices *vertices, uint32_t set, nt_arena *arena, float **result,
+	nt_error *error);
+
+/* ---- tangents of morph targets: morph_targets.c ---- */
+
+/* TANGENT of the morph targets of a set's meshes: what to add to the base's, which are final. Before vertices are
+ * appended: accessors to which nothing is to be appended then are added to the overrides. least: as nt_morph_deltas()
+ * has it. Their bytes are added to the cost. */
+nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
+	float least, nt_override_list *overrides, nt_morph_cost *cost, nt_error *error);
+
+/* ---- extensions that refer to vertices: vertex_extensions.c ---- */
+
+/* Adds a finding for each extension of the pool's primitives and their meshes that does not hold any more, and takes
+ * FB_ngon_encoding off where it would say other polygons. compressed: by Draco, which may give triangles any order.
+ * Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_vertices_tell(nt_buffer_edits *edits, nt_scene *scene, const nt_pool_vertices *vertices, bool compressed,
+	nt_error *error);
+
+/* Why the numbers of a primitive's vertices have a meaning: the name of an extension, or a sentence; NULL: they have
+ * none. old_count: vertices. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_vertices_find_meaning(nt_scene *scene, const nt_mesh *mesh, size_t old_count, const char **meaning);
+
+/* Whether feature ids of a primitive are the numbers of its vertices (EXT_mesh_features). */
+bool nt_vertices_are_ids(const nt_json_value *primitive);
+
+/* After all edits: vertices were copied. Adds a finding for each scene with FB_geometry_metadata, which counts them. */
+void nt_vertices_tell_scenes(nt_scene *scene);
+
+/* Takes FB_ngon_encoding off the lists where the last primitive lost it. */
+void nt_gltf_drop_polygons(const nt_buffer_edits *edits);
+
+#endif
