@@ -142,6 +142,23 @@ run -d none --fail-fast x/a.obj y/a.glb one.obj
 exits 1
 says "0 of 3 done, 2 failed, 1 not tried"
 
+scene "the refusal says which folder tells two inputs apart, by their spelling"
+mkdir -p m/x m/y mx my work
+for name in m/x/a m/y/a mx/a my/a; do cp "$data/quad.obj" $name.obj; done
+cd work
+while IFS='|' read -r one two said; do
+	run -q -d o "$one" "$two"
+	exits 1
+	says "'o/a.glb'; --keep-tree=$said keeps"
+	[ ! -e o ] || wrong "a folder of nothing"
+done <<END
+../m/x/a.obj|../m/y/a.obj|../m
+$PWD/../m/x/a.obj|$PWD/../m/y/a.obj|$PWD/../m
+../mx/a.obj|../my/a.obj|..
+../m/x/a.obj|$PWD/../m/y/a.obj|ROOT
+END
+cd ..
+
 scene "if no folder tells two inputs apart, the refusal says what does"
 cp "$data/quad.obj" b.obj
 cp "$data/quad_le.ply" b.ply
