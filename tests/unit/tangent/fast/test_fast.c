@@ -524,14 +524,12 @@ TEST(what_is_bare_takes_from_its_triangle)
 	}
 }
 
-/* Scratch comes in blocks of 64 KiB, so the meshes are made large enough for many of them: a grid beside
- * which every nasty mesh is placed. */
-	enum { COLUMNS = 16, ROWS = 10, QUADS = COLUMNS * ROWS, USED = (COLUMNS + 1) * (ROWS + 1) };
- * how the edges are paired are those of the others. */
+/* Meshes with edges that the published sort leaves unsorted, and rows far away that no corner has: the cells that
+ * decide how the edges are paired are those of the others. */
 TEST(rows_without_corners_move_no_cells)
 {
-	enum { COLUMNS = 16, ROWS = 10, QUADS = COLUMNS * ROWS, USED = (COLUMNS + 1) * (ROWS + 1), SEEDS = 400 };
-	enum { TAIL = 12, TRIANGLES = 2 * QUADS + TAIL };
+	enum { COLUMNS = 16, ROWS = 10, QUADS = COLUMNS * ROWS, USED = (COLUMNS + 1) * (ROWS + 1) };
+	enum { SEEDS = 400, TAIL = 12, TRIANGLES = 2 * QUADS + TAIL };
 	static float p[USED + 2][3], n[USED + 2][3], t[USED + 2][2];
 	static unsigned indices[TRIANGLES][3];
 	const nmtan_mesh lattice = {.struct_bytes = sizeof lattice, .face_count = TRIANGLES, .vertex_count = USED + 2,
@@ -564,6 +562,8 @@ TEST(rows_without_corners_move_no_cells)
 	assert_int_equal(differ, 0);
 }
 
+/* Scratch comes in blocks of 64 KiB, so the meshes are made large enough for many of them: a grid beside
+ * which every nasty mesh is placed. */
 TEST(every_failed_allocation_is_told)
 {
 	enum { SIDE = 150 };
