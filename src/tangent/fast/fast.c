@@ -412,11 +412,12 @@ static nmtan_status add_small(nt_fast *fast, const nt_kernels *kernels, bool *we
 {
 	nt_borrowed none = nt_borrow(NULL, 0, fast->solve->scratch);
 	nmtan_status status = nt_fast_weld_small(fast, welded);
-	if (!status && *welded)
-		status = find_unsorted(fast, &none);
-	if (!status && *welded)
-		nt_fast_add_small(fast, kernels);
-	return status;
+	if (!status && *welded && fast->triangle_count > NT_EDGE_FEW)
+		status = make_tail(fast, &none);
+	if (status || !*welded)
+		return status;
+	nt_fast_add_small(fast, kernels);
+	return find_unsorted(fast, &none);
 }
 
 /* Steps 1 to 4. */

@@ -162,7 +162,7 @@ enum { NT_TRIANGLE_SUSPECT = NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE | NT_TRIAN
 
 /* Steps 1 to 4 of few triangles: small.c */
 
-enum { NT_SMALL_TRIANGLES = 128 };
+enum { NT_SMALL_TRIANGLES = 512 };
 
 /* Whether a mesh is for it: triangles, tangents only. */
 bool nt_fast_is_small(const nt_fast *fast);
