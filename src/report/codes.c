@@ -324,11 +324,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(UV_NEAR_DEGENERATE, INFO, "w-w", EXPORT, NULL,
 		"{count} {triangle has|triangles have} nearly collinear texture coordinates",
 		"Rounding of the texture coordinates to float alone may turn the tangent of these triangles by "
-		"more than one degree: the finding gives the smallest relative determinant |det| / (|e1| |e2|) "
-		"and the largest bound of the angle. A warning when they are more than 1 % of the mesh's area, "
+		"more than one degree, or their winding: the finding gives the smallest relative determinant "
+		"|det| / (|e1| |e2|) and the largest angle. A warning when they are more than 1 % of the mesh's area, "
 		"unless a glTF's material uses no tangents.",
 		"Unwrap these triangles again, or keep islands near the origin (Blender: UV > Pack Islands).",
-		"a triangle with UVs (1000,0), (1001,0), (1000,0.0001)"),
+		"a triangle with UVs (0,1000), (1,1000), (0,1000.001)"),
 	ROW(UV_FOLDED_QUAD, WARNING, "--w", EXPORT, NULL,
 		"{count} {quad crosses itself|quads cross themselves} in UV space",
 		"Cut along either diagonal, its triangles are wound in opposite directions. Written as two triangles, "

@@ -49,21 +49,6 @@ static size_t island_size(const nt_island *island)
 	return island->triangles[0] + island->triangles[1] + island->triangles[2];
 }
 
-/* Whether rounding of the coordinates to float may turn the sign of the area: each edge is off by at most two half
- * units in the last place along each axis. */
-static bool is_sliver(const nt_surface *s, size_t t)
-{
-	const float *a = nt_side_texcoord(s, 3 * t), *b = nt_side_texcoord(s, 3 * t + 1),
-		    *c = nt_side_texcoord(s, 3 * t + 2);
-	const double x1 = (double)b[0] - a[0], y1 = (double)b[1] - a[1], x2 = (double)c[0] - a[0],
-		     y2 = (double)c[1] - a[1];
-	double size = 0.0;
-	for (int i = 0; i < 2; i++)
-		size = fmax(size, fmax(fabs(a[i]), fmax(fabs(b[i]), fabs(c[i]))));
-	const double error = 2.0 * 0x1p-24 * size * (fabs(x1) + fabs(y1) + fabs(x2) + fabs(y2));
-	return fabs(x1 * y2 - x2 * y1) <= error;
-}
-
 /* From parents to numbers, which count by the lowest triangles. */
 static nt_status number_patches(nt_check *check, patches *p)
 {
@@ -93,7 +78,7 @@ static void measure_patches(const nt_check *check, patches *p)
 		patch *one = &p->items[p->numbers[t]];
 		one->first = one->first == NT_NONE ? (uint32_t)t : one->first;
 		one->triangles++;
-		one->slivers += is_sliver(s, t);
+		one->slivers += nt_is_sliver(s, t);
 		one->area += nt_triangle_area(s, t);
 	}
 	for (size_t i = 0; i < check->mirror_edge_count; i++) {
@@ -252,7 +237,7 @@ static void report_flipped(nt_check *check, const patches *p)
 			continue;
 		nt_bit_set(check->flipped, t);
 		facts->islands[check->islands[t]].flipped[s->orientation[t] + 1]++;
-		if (is_sliver(s, t))
+		if (nt_is_sliver(s, t))
 			continue;
 		tally.island = tally.count == 0 || tally.island == one->host + 1 ? one->host + 1 : 0;
 		nt_tally_triangle(check, &tally, t, NAN);

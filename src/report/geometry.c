@@ -3,11 +3,11 @@
  * Triangles and normals by themselves: what is not finite, has no area in space or in UV space, nearly has
  * none, or is lit from behind.
  *
- * How near to degenerate is too near? With e1, e2 the UV edges of a triangle as the rows of M and P its
- * edges in space, the frame X = M^-1 P. Each UV coordinate is known to half a unit in the last place, so
- * M is known up to D with |D| <= 2 sqrt(2) d, d = 2^-24 max |uv| (a difference of two coordinates has
- * two such errors). To first order the tangent changes by |M^-1| |D| |X|, |M^-1| = s1 / |det M| with
- * s1 the larger singular value, and turns by at most the arc sine of that over the tangent's length.
+ * How near to degenerate is too near? The tangent runs along the line of equal v: T = (v2 d1 - v1 d2) / det, with d1,
+ * d2 the edges from the first corner in space, v1, v2 in v, and B alike. An error of v at the three corners, each up
+ * to d = 2^-24 max |v|, turns T towards B, to first order by the sine of d (|v1| + |v2| + |v1 - v2|) / |det| times
+ * the part of B across T over |T|, which is |d1 x d2| |det| / |v2 d1 - v1 d2|^2. An error of u only makes T longer or
+ * shorter. If rounding may turn the sign of det, w and all of T are uncertain.
  */
 #include "report/check.h"
 
@@ -54,11 +54,12 @@ static bool is_finite(const float *values, size_t count)
 	return true;
 }
 
-/* A triangle's UV edges, and the edges of its tangent and bitangent times the determinant. */
+/* A triangle's UV edges, and its tangent times the determinant. */
 typedef struct uv_frame {
 	double n1, n2, determinant; /* |e1|^2, |e2|^2, |det M| */
-	double uu, vv;              /* |det M|^2 |T|^2, |det M|^2 |B|^2 */
-	double size;                /* max |uv| */
+	double uu;                  /* |det M|^2 |T|^2 */
+	double range, size;         /* of v: greatest difference, max |v| */
+	double uncertain;           /* |det M| from which on rounding does not turn its sign */
 } uv_frame;
 
 static double greater(double a, double b)
@@ -71,32 +72,34 @@ static uv_frame measure_frame(const float *const t[3], nt_dvec3 d1, nt_dvec3 d2)
 	const double e1[2] = {(double)t[1][0] - t[0][0], (double)t[1][1] - t[0][1]};
 	const double e2[2] = {(double)t[2][0] - t[0][0], (double)t[2][1] - t[0][1]};
 	const nt_dvec3 u = nt_dvec3_sub(nt_dvec3_scale(e2[1], d1), nt_dvec3_scale(e1[1], d2));
-	const nt_dvec3 v = nt_dvec3_sub(nt_dvec3_scale(e1[0], d2), nt_dvec3_scale(e2[0], d1));
-	double size = 0.0;
-	for (int k = 0; k < 3; k++)
-		size = greater(size, greater(fabs(t[k][0]), fabs(t[k][1])));
+	const double width = greater(fabs(t[0][0]), greater(fabs(t[1][0]), fabs(t[2][0])));
+	const double size = greater(fabs(t[0][1]), greater(fabs(t[1][1]), fabs(t[2][1])));
+	const double x = greater(greater(fabs(e1[0]), fabs(e2[0])), fabs(e1[0] - e2[0]));
+	const double y = greater(greater(fabs(e1[1]), fabs(e2[1])), fabs(e1[1] - e2[1]));
 	return (uv_frame){e1[0] * e1[0] + e1[1] * e1[1], e2[0] * e2[0] + e2[1] * e2[1],
-		fabs(e1[0] * e2[1] - e1[1] * e2[0]), nt_dvec3_dot(u, u), nt_dvec3_dot(v, v), size};
+		fabs(e1[0] * e2[1] - e1[1] * e2[0]), nt_dvec3_dot(u, u),
+		y, size, 2.0 * 0x1p-24 * (width * y + size * x)}; /* as nt_is_sliver() has it */
 }
 
-/* Bound of the sine of how far rounding of the texture coordinates may turn the tangent. */
-static double rounding_bound(const uv_frame *f)
+/* The sine of how far rounding of the texture coordinates may turn the tangent; across: |d1 x d2|. */
+static double rounding_sine(const nt_surface *s, size_t t, const uv_frame *f, double across)
 {
-	const double half = 0.5 * (f->n1 + f->n2);
-	const double largest = sqrt(half + sqrt(greater(half * half - f->determinant * f->determinant, 0.0)));
-	const double error = 2.0 * 1.4142135623730951 * f->size * 0x1p-24;
-	return error * largest / f->determinant * sqrt((f->uu + f->vv) / f->uu);
+	double error = 0.0;
+	for (size_t k = 0; k < 3; k++)
+		error += nt_half_unit(nt_side_texcoord(s, 3 * t + k)[1]) *
+			fabs((double)nt_side_texcoord(s, 3 * t + (k + 1) % 3)[1] -
+				nt_side_texcoord(s, 3 * t + (k + 2) % 3)[1]);
+	return nt_is_sliver(s, t) ? INFINITY : error * across / f->uu;
 }
 
-/* Whether that bound is below the limit for certain, without a root or a quotient: the larger singular value is at most
- * the root of both edges' squares. For the rest, values too small or too large to be squared included, the bound
- * itself decides. */
-static bool is_far_from_degenerate(const uv_frame *f)
+/* Whether that is below the limit for certain, by the largest coordinate and without a root or a quotient. For the
+ * rest, values too small or too large to be squared included, the sine itself decides. */
+static bool is_far_from_degenerate(const uv_frame *f, nt_dvec3 face)
 {
-	const double left = 8.0 * 0x1p-48 * f->size * f->size * (f->n1 + f->n2) * (f->uu + f->vv);
-	const double right =
-		0.9 * NEAR_DEGENERATE_SINE * NEAR_DEGENERATE_SINE * f->determinant * f->determinant * f->uu;
-	return left < right && right > 1e-200;
+	const double error = 0x1p-24 * f->size * 2.0 * f->range;
+	const double left = error * error * nt_dvec3_dot(face, face);
+	const double right = 0.9 * NEAR_DEGENERATE_SINE * NEAR_DEGENERATE_SINE * f->uu * f->uu;
+	return left < right && right > 1e-200 && f->determinant > f->uncertain;
 }
 
 /* Whether the file has no texture coordinates for a triangle, but for others. */
@@ -106,8 +109,9 @@ static bool lacks_texcoords(const nt_check *check, const uint32_t v[3])
 	return lacks && lacks[v[0]] & lacks[v[1]] & lacks[v[2]] & NT_LACKS_TEXCOORD;
 }
 
+/* face: d1 x d2 */
 static void check_texcoords(const triangle_work *work, size_t t, const uint32_t v[3], nt_dvec3 d1, nt_dvec3 d2,
-	triangle_part *part)
+	nt_dvec3 face, triangle_part *part)
 {
 	nt_check *check = work->check;
 	const nt_surface *s = &check->surface;
@@ -125,9 +129,9 @@ static void check_texcoords(const triangle_work *work, size_t t, const uint32_t 
 	const double determinant = frame.determinant / sqrt(frame.n1 * frame.n2);
 	if (isfinite(determinant))
 		work->determinants[t] = (float)determinant;
-	if (is_far_from_degenerate(&frame) || s->flatness[t] == NT_COINCIDENT || s->flatness[t] == NT_COLLINEAR)
+	if (is_far_from_degenerate(&frame, face) || s->flatness[t] == NT_COINCIDENT || s->flatness[t] == NT_COLLINEAR)
 		return;
-	const double sine = rounding_bound(&frame);
+	const double sine = rounding_sine(s, t, &frame, nt_dvec3_length(face));
 	if (!(sine <= NEAR_DEGENERATE_SINE)) {
 		const double bound = sine < 1.0 ? asin(sine) * DEGREES : 90.0;
 		nt_tally_triangle(check, &part->near, t, bound);
@@ -139,9 +143,8 @@ static void check_texcoords(const triangle_work *work, size_t t, const uint32_t 
 
 /* Whether the normals of all corners point to the back, and with them what is interpolated at each pixel. If one does
  * not, a part is lit from the front: what smooth normals do at sharp bends. */
-static bool is_against_normals(const float *normals, const uint32_t v[3], nt_dvec3 d1, nt_dvec3 d2)
+static bool is_against_normals(const float *normals, const uint32_t v[3], nt_dvec3 face)
 {
-	const nt_dvec3 face = nt_dvec3_cross(d1, d2);
 	for (size_t k = 0; k < 3; k++)
 		if (!(nt_dvec3_dot(face, nt_dvec3_load(normals + 3 * (size_t)v[k])) < 0.0))
 			return false;
@@ -164,9 +167,10 @@ static void check_triangle(const triangle_work *work, size_t t, triangle_part *p
 	const nt_dvec3 a = nt_dvec3_load(positions + 3 * (size_t)v[0]);
 	const nt_dvec3 d1 = nt_dvec3_sub(nt_dvec3_load(positions + 3 * (size_t)v[1]), a);
 	const nt_dvec3 d2 = nt_dvec3_sub(nt_dvec3_load(positions + 3 * (size_t)v[2]), a);
+	const nt_dvec3 face = nt_dvec3_cross(d1, d2);
 	if (check->mesh->texcoords)
-		check_texcoords(work, t, v, d1, d2, part);
-	if (check->mesh->normals && flatness == NT_SOUND && is_against_normals(check->mesh->normals, v, d1, d2)) {
+		check_texcoords(work, t, v, d1, d2, face, part);
+	if (check->mesh->normals && flatness == NT_SOUND && is_against_normals(check->mesh->normals, v, face)) {
 		nt_tally_triangle(check, &part->against, t, NAN);
 		part->against_area += nt_triangle_area(s, t);
 	}

@@ -91,6 +91,31 @@ double nt_triangle_area(const nt_surface *s, size_t t)
 	return isfinite(area) ? area : 0.0;
 }
 
+/* det = sum u[k] (v[k + 1] - v[k + 2]), each coordinate off by half a unit in its last place. The three differences
+ * along an axis have twice the range together: with the largest coordinate that is a bound, which most triangles are
+ * far above. */
+bool nt_is_sliver(const nt_surface *s, size_t t)
+{
+	const float *uv[3] = {nt_side_texcoord(s, 3 * t), nt_side_texcoord(s, 3 * t + 1),
+		nt_side_texcoord(s, 3 * t + 2)};
+	double low[2], high[2], size[2], error = 0.0;
+	for (int axis = 0; axis < 2; axis++) {
+		const double x = uv[0][axis], y = uv[1][axis], z = uv[2][axis];
+		low[axis] = fmin(x, fmin(y, z));
+		high[axis] = fmax(x, fmax(y, z));
+		size[axis] = fmax(fabs(low[axis]), fabs(high[axis]));
+	}
+	const double determinant = fabs(((double)uv[1][0] - uv[0][0]) * ((double)uv[2][1] - uv[0][1]) -
+		((double)uv[2][0] - uv[0][0]) * ((double)uv[1][1] - uv[0][1]));
+	if (determinant > 2.0 * 0x1p-24 * (size[0] * (high[1] - low[1]) + size[1] * (high[0] - low[0])))
+		return false;
+	for (int k = 0; k < 3; k++)
+		for (int axis = 0; axis < 2; axis++)
+			error += nt_half_unit(uv[k][axis]) *
+				fabs((double)uv[(k + 1) % 3][1 - axis] - uv[(k + 2) % 3][1 - axis]);
+	return determinant <= error;
+}
+
 static bool is_same_position(const float *a, const float *b)
 {
 	return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];

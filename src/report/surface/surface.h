@@ -8,6 +8,7 @@
 #ifndef NT_REPORT_SURFACE_H
 #define NT_REPORT_SURFACE_H
 
+#include <math.h>
 #include "base/bits.h"
 #include "base/scratch.h"
 #include "report/surface/box.h"
@@ -111,6 +112,15 @@ static inline bool nt_has_edges(const nt_surface *s, size_t triangle)
 {
 	return s->flatness[triangle] == NT_SOUND || s->flatness[triangle] == NT_COLLINEAR;
 }
+
+/* Half a unit in the last place of a float: by how much rounding may have changed it. */
+static inline double nt_half_unit(float x)
+{
+	return 0.5 * ((double)nextafterf(fabsf(x), INFINITY) - (double)fabsf(x));
+}
+
+/* Whether rounding of the texture coordinates to float may turn the sign of a triangle's area in UV space. */
+bool nt_is_sliver(const nt_surface *s, size_t triangle);
 
 /* The area of a triangle in space; 0 where it is not finite. */
 double nt_triangle_area(const nt_surface *s, size_t triangle);
