@@ -235,6 +235,8 @@ static nt_status store_rows(nt_mesh *mesh, nt_morph *morph)
 	morph->class_count = classes->count;
 	morph->row_count = listed ? count : classes->count;
 	morph->first_word = all->word_count;
+	if (!morph->row_count) /* of all targets, words may still be NULL */
+		return NT_OK;
 	if (!nt_grow((void **)&all->words, &all->word_capacity, all->word_count + (listed ? 4 : 3) * morph->row_count,
 		sizeof *all->words))
 		return NT_ERROR_MEMORY;

@@ -21,10 +21,9 @@ void nt_morph_find_rows(const nt_mesh *mesh, size_t m, size_t *at)
 	const nt_morph_tangents *all = mesh->morph_tangents;
 	const nt_morph *morph = &mesh->morphs[m];
 	const bool listed = morph->row_count < morph->class_count;
-	const uint32_t *classes = all->words + morph->first_word;
 	size_t next = 0, row = morph->first_word + (listed ? morph->row_count : 0);
 	for (size_t k = 0; k < all->class_count; k++) {
-		const bool own = next < morph->row_count && (!listed || classes[next] == k);
+		const bool own = next < morph->row_count && (!listed || all->words[morph->first_word + next] == k);
 		at[k] = own ? row + 3 * next : all->parent[k] == k ? SIZE_MAX : at[all->parent[k]];
 		next += own;
 	}
