@@ -71,6 +71,17 @@ TEST(every_allocation_of_the_reader_may_fail)
 		p += sprintf(p, "g %d\nv %d 0 0\nv 0 1 0\nv 0 0 1\nvt %d.5 0.5\nf -3/-1 -2/-1 -1/-1\nusemtl %s\n",
 			12 - i, i, i % 10, i % 2 ? "u" : "n");
 	assert_true(fail_each(path, text) > 40);
+
+	/* a name for which the arena has no room left */
+	enum { LONG = 100000 };
+	char *library = malloc(LONG + 100);
+	p = library + sprintf(library, "newmtl a\nmap_Kd ");
+	memset(p, 'x', LONG);
+	strcpy(p + LONG, ".png\n");
+	put_text_file("a.mtl", library);
+	strcpy(text, "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+	fail_each(path, text);
+	free(library);
 }
 
 /* Data goes into common blocks then; comments fill the chunks. */
