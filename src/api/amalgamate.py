@@ -27,7 +27,7 @@ KERNELS = ['src/tangent/fast/kernel.h', 'src/tangent/sums/kernel.h']
 COLD = re.compile(r'src/(base/(?!hash|words|scratch|counts|largest)|tangent/(frames|mikktspace|sums/hard)|topology/(orientation|plain)|api/(self|split|vertices))')
 
 # Files that take time in a solve and gain by -O3, as in Makefile. The others are compiled at -O2.
-HOT = re.compile(r'src/(base/largest|topology/(adjacency|edge_sort|edge_tail|weld))')
+HOT = re.compile(r'src/(base/largest|topology/(adjacency|edge_sort|weld))')
 # The same, but vectors would double its code for nothing.
 HOT_SCALAR = re.compile(r'src/topology/representatives')
 

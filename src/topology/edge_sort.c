@@ -149,7 +149,7 @@ static nmtan_status find_all(
 			return NMTAN_ERROR_MEMORY;
 		memset(c.rooms[i].wanted, 1, vertices);
 	}
-	nt_parallel_items(threads, NT_CELLS / GROUP, weld_group, &c);
+	nt_parallel_items(threads, (size_t)NT_CELLS / GROUP, weld_group, &c);
 	*limit = c.limit;
 	return NMTAN_OK;
 }
