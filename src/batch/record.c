@@ -512,6 +512,7 @@ size_t nt_record_left_over(nt_record *record, const char *path, nt_buffer *first
 {
 	const nt_record_file *file = &record->file;
 	const char *slash = strrchr(path, '/');
+	const size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
 	size_t count = 0;
 	for (size_t i = 0; i < file->line_count && record->looked < file->line_count; i++) {
 		nt_json *line;
@@ -519,9 +520,14 @@ size_t nt_record_left_over(nt_record *record, const char *path, nt_buffer *first
 		nt_buffer output = {0};
 		if (nt_json_parse(&line, file->text + file->lines[i].offset, file->lines[i].length, NULL, &ignored))
 			continue;
-		if (is_left_over(record, nt_json_root(line), &output) && !count++) {
-			nt_buffer_append(first, path, slash ? (size_t)(slash - path) + 1 : 0);
-			nt_buffer_text(first, output.data + strlen(record->folder) + 1);
+		const bool left = is_left_over(record, nt_json_root(line), &output);
+		const char *name = left ? output.data + strlen(record->folder) + 1 : "";
+		count += left;
+		/* lines are in the order in which threads were done */
+		if (left && !first->failed && (count == 1 || strcmp(name, first->data + folder) < 0)) {
+			first->size = 0;
+			nt_buffer_append(first, path, folder);
+			nt_buffer_text(first, name);
 		}
 		nt_buffer_free(&output);
 		nt_json_free(line);

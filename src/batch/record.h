@@ -76,8 +76,8 @@ typedef struct nt_making {
 nt_status nt_record_look(nt_record *record, const nt_making *making, nt_freshness *freshness, nt_trace *trace,
 	nt_error *error);
 
-/* Counts outputs of the record that are there although their input is gone, and names the first: path is the record's,
- * as it was spelled. Looks only if this run has not looked at every output of the record. */
+/* Counts outputs of the record that are there although their input is gone, and names the first by name: path is the
+ * record's, as it was spelled. Looks only if this run has not looked at every output of the record. */
 size_t nt_record_left_over(nt_record *record, const char *path, nt_buffer *first);
 
 /* Appends a line for an output that is complete, and says which. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */

@@ -561,6 +561,7 @@ exits 0
 scene "outputs whose input is gone are told of a folder, and stay"
 mkdir in
 for name in a b c; do cp "$data/quad.obj" in/$name.obj; done
+run --update -d out in/c.obj # the first line of the record
 run --update -r in -d out
 says_not "gone"
 rm in/b.obj
