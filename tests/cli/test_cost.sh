@@ -311,10 +311,10 @@ rm -f out.glb out.ply
 
 scene "$parts primitives with accessors of their own"
 inputs scene "$parts" p.glb
-within 10 470 -q p.glb out.glb
+within 10 460 -q p.glb out.glb
 exits 0
 is "$(gltf out.glb 'g.accessors.length')" $((5 * parts))
-within 20 690 -q --check p.glb
+within 20 680 -q --check p.glb
 exits 0
 rm out.glb
 

@@ -203,10 +203,8 @@ nt_status nt_set_attribute_settle(nt_buffer_edits *edits, const nt_vertex_pool *
 nt_status nt_set_attribute_write(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
 	uint32_t set, const nt_set_attribute *attribute, nt_error *error);
 
-/* Takes the elements of an accessor, and of others over the same bytes, out of the buffers. */
-nt_status nt_gltf_release_elements(nt_buffer_edits *edits, uint32_t accessor, nt_error *error);
-
-/* The same, of accessors that nobody uses any more: they keep their numbers, without a view. */
+/* Takes the elements of an accessor that nobody uses any more, and of others over the same bytes, out of the buffers:
+ * they keep their numbers, without a view. */
 nt_status nt_gltf_drop_elements(nt_buffer_edits *edits, uint32_t accessor, nt_error *error);
 
 /* Appends the JSON of an accessor; view NT_NONE: without one. Returns its number. */

@@ -77,6 +77,23 @@ static nt_status list_accessors(const nt_gltf *document, const nt_vertex_pool *p
 	return NT_OK;
 }
 
+/* Takes the elements of an accessor, and of others over the same bytes, out of the buffers. */
+static nt_status release_elements(nt_buffer_edits *edits, uint32_t accessor, nt_error *error)
+{
+	const nt_gltf_accessor *a = &edits->document->accessors[nt_gltf_same(edits->document, accessor)];
+	const nt_gltf_sparse_arrays *s = a->sparse;
+	nt_status status = NT_OK;
+	if (a->view != NT_NONE)
+		status = nt_packed_release(edits, a->view, a->offset, (a->count - 1) * a->stride + a->element_bytes,
+			error);
+	if (!status && s)
+		status = nt_edits_release(edits, s->index_view, s->index_offset,
+			s->count * nt_gltf_component_bytes(s->index_type), error);
+	if (!status && s)
+		status = nt_edits_release(edits, s->value_view, s->value_offset, s->count * a->element_bytes, error);
+	return status;
+}
+
 nt_status nt_set_attribute_settle(nt_buffer_edits *edits, const nt_vertex_pool *pool, uint32_t set, nt_arena *arena,
 	nt_set_attribute *attribute, nt_override_list *overrides, nt_error *error)
 {
@@ -101,7 +118,7 @@ nt_status nt_set_attribute_settle(nt_buffer_edits *edits, const nt_vertex_pool *
 	attribute->in_place &= attribute->own_count > 0;
 	for (size_t i = 0; !status && i < attribute->own_count; i++) {
 		if (!attribute->in_place)
-			status = nt_gltf_release_elements(edits, attribute->own[i], error);
+			status = release_elements(edits, attribute->own[i], error);
 		for (uint32_t k = attribute->own[i]; !status && k != NT_NONE; k = document->accessors[k].next)
 			if (!nt_override_add(overrides, (nt_gltf_override){.accessor = k, .stored = values->stored,
 				.values = attribute->in_place ? values->values : NULL,
@@ -111,27 +128,11 @@ nt_status nt_set_attribute_settle(nt_buffer_edits *edits, const nt_vertex_pool *
 	return status;
 }
 
-nt_status nt_gltf_release_elements(nt_buffer_edits *edits, uint32_t accessor, nt_error *error)
-{
-	const nt_gltf_accessor *a = &edits->document->accessors[nt_gltf_same(edits->document, accessor)];
-	const nt_gltf_sparse_arrays *s = a->sparse;
-	nt_status status = NT_OK;
-	if (a->view != NT_NONE)
-		status = nt_packed_release(edits, a->view, a->offset, (a->count - 1) * a->stride + a->element_bytes,
-			error);
-	if (!status && s)
-		status = nt_edits_release(edits, s->index_view, s->index_offset,
-			s->count * nt_gltf_component_bytes(s->index_type), error);
-	if (!status && s)
-		status = nt_edits_release(edits, s->value_view, s->value_offset, s->count * a->element_bytes, error);
-	return status;
-}
-
 nt_status nt_gltf_drop_elements(nt_buffer_edits *edits, uint32_t accessor, nt_error *error)
 {
 	static const char *const gone[] = {"bufferView", "byteOffset", "sparse"};
 	nt_gltf *document = edits->document;
-	const nt_status status = nt_gltf_release_elements(edits, accessor, error);
+	const nt_status status = release_elements(edits, accessor, error);
 	for (uint32_t k = nt_gltf_same(document, accessor); k != NT_NONE; k = document->accessors[k].next)
 		for (size_t i = 0; i < sizeof gone / sizeof *gone; i++)
 			nt_json_remove(document->json, nt_gltf_accessor_json(document, k), gone[i]);
