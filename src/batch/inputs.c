@@ -124,9 +124,11 @@ static nt_status visit(walk *w, nt_buffer *path)
 	if (!nt_format_of_path(below) ||
 		(rules->include_count && !matches(rules->include, rules->include_count, below)))
 		return NT_OK;
-	if (S_ISLNK(info.st_mode) && stat(path->data, &info) != 0)
-		return errno == EIO || errno == ENOMEM ? fail_folder(path->data, errno, w->error) : NT_OK;
-	if (!S_ISREG(info.st_mode))
+	const bool leads_nowhere = S_ISLNK(info.st_mode) && stat(path->data, &info) != 0;
+	if (leads_nowhere && (errno == EIO || errno == ENOMEM))
+		return fail_folder(path->data, errno, w->error);
+	/* its run fails, and says why; Emacs locks a file by such a link */
+	if (leads_nowhere ? strncmp(nt_last_part(below), ".#", 2) == 0 : !S_ISREG(info.st_mode))
 		return NT_OK;
 	return add(w->inputs, nt_arena_text(&w->inputs->arena, path->data, path->size), w->root, w->error);
 }

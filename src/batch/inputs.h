@@ -32,7 +32,8 @@ typedef struct nt_folder_rules {
 } nt_folder_rules;
 
 /* Adds a name that outlives the inputs, or with rules->recursive what is in the folder that has it; links to folders
- * are not followed below it. Returns NT_OK, NT_ERROR_IO (a folder that cannot be read) or NT_ERROR_MEMORY. */
+ * are not followed below it, and a link that leads nowhere is an input that will fail (but for .#NAME, which Emacs
+ * locks with). Returns NT_OK, NT_ERROR_IO (a folder that cannot be read) or NT_ERROR_MEMORY. */
 nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rules *rules, nt_error *error);
 
 /* Adds the names in a file, or from standard input ("-"). They are separated by NUL if the file contains one, else by

@@ -139,10 +139,12 @@ static void append_common_folder(nt_buffer *out, const nt_batch *batch)
 		nt_buffer_text(out, below ? "." : "ROOT");
 }
 
-static bool same_folder(const nt_job *x, const nt_job *y)
+static int compare_folders(const void *a, const void *b)
 {
-	const size_t length = (size_t)(nt_last_part(x->input) - x->input);
-	return length == (size_t)(nt_last_part(y->input) - y->input) && memcmp(x->input, y->input, length) == 0;
+	const nt_job *x = *(const nt_job *const *)a, *y = *(const nt_job *const *)b;
+	const size_t length = (size_t)(nt_last_part(x->input) - x->input),
+		     other = (size_t)(nt_last_part(y->input) - y->input);
+	return length != other ? (length > other) - (length < other) : memcmp(x->input, y->input, length);
 }
 
 static int compare_jobs(const void *a, const void *b)
@@ -158,11 +160,14 @@ static nt_status refuse_clash(const nt_batch *batch, nt_job **jobs, size_t count
 	enum { NAMED = 3 };
 	nt_buffer reason = {0};
 	const size_t named = count > NAMED ? NAMED - 1 : count;
+	size_t folders = 1;
+	qsort(jobs, count, sizeof *jobs, compare_folders);
+	for (size_t i = 1; i < count; i++)
+		folders += compare_folders(&jobs[i - 1], &jobs[i]) != 0;
+	tree_helps &= folders > 1;
 	qsort(jobs, count, sizeof *jobs, compare_jobs);
-	for (size_t i = 0; i < named; i++) {
+	for (size_t i = 0; i < named; i++)
 		nt_buffer_format(&reason, "%s'%s'", !i ? "" : i + 1 < count ? ", " : " and ", jobs[i]->input);
-		tree_helps &= !i || !same_folder(jobs[0], jobs[i]);
-	}
 	if (named < count)
 		nt_buffer_format(&reason, " and %zu more", count - named);
 	nt_buffer_format(&reason, " would %s be written to '%s'", count == 2 ? "both" : "all", jobs[0]->output);
@@ -170,9 +175,11 @@ static nt_status refuse_clash(const nt_batch *batch, nt_job **jobs, size_t count
 		nt_buffer_text(&reason, "; --keep-tree=");
 		append_common_folder(&reason, batch);
 		nt_buffer_text(&reason, " keeps the folders of inputs");
-	} else {
-		nt_buffer_format(&reason, "; %s", remedy);
 	}
+	if (tree_helps && folders < count)
+		nt_buffer_format(&reason, ", and of inputs in one folder: %s", remedy);
+	else if (!tree_helps)
+		nt_buffer_format(&reason, "; %s", remedy);
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < count && !status; i++) {
 		jobs[i]->reason_is_told = i > 0;

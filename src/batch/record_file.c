@@ -108,7 +108,8 @@ static nt_status load(nt_record_file *file, nt_error *error)
 	}
 	const size_t head = strlen(file->prefix), known = file->size < head ? file->size : head;
 	if (!status && known && !file->line_count && memcmp(file->text, file->prefix, known) != 0)
-		status = nt_fail_file(error, NT_ERROR_IO, file->path, "refusing to write: it is no record");
+		status = nt_fail_file(error, NT_ERROR_IO, file->path,
+			"refusing to write: it is no record; delete it, or name another by --record=FILE");
 	return status;
 }
 

@@ -725,6 +725,19 @@ static nt_status choose_inputs(nt_command *c, nt_inputs *inputs, nt_style style,
 	return status;
 }
 
+/* The same if a folder has no inputs any more. */
+static void tell_all_left_over(const nt_command *command, nt_style style, const nt_report_plan *plan)
+{
+	session s = {.command = command, .plan = plan, .style = style};
+	nt_error ignored; /* the run has failed already */
+	if (!begin_update(&s, &ignored)) {
+		tell_left_over(&s);
+		nt_say(&s.text);
+	}
+	nt_update_end(s.update);
+	nt_buffer_free(&s.text);
+}
+
 static int run(nt_command *command, nt_style style, bool colour_on_stdout)
 {
 	nt_inputs inputs = {0};
@@ -735,6 +748,7 @@ static int run(nt_command *command, nt_style style, bool colour_on_stdout)
 	nt_status status = check_pairs(command, NULL, &error);
 	if (!status)
 		status = choose_inputs(command, &inputs, style, &error);
+	const bool none = status && inputs.nothing.status && !inputs.count;
 	if (!status)
 		status = nt_report_plan_make(&plan, command, colour_on_stdout, &error);
 	if (!status)
@@ -750,6 +764,8 @@ static int run(nt_command *command, nt_style style, bool colour_on_stdout)
 		nt_say_error(&error, style);
 	else
 		code = run_batch(command, style, &plan, &batch, plan.target.folder ? &folder : NULL);
+	if (none)
+		tell_all_left_over(command, style, &plan);
 	nt_report_folder_free(&folder);
 	nt_batch_free(&batch);
 	nt_report_plan_free(&plan);

@@ -159,6 +159,24 @@ $PWD/../m/x/a.obj|$PWD/../m/y/a.obj|$PWD/../m
 END
 cd ..
 
+scene "if a folder tells some inputs of one output apart, the refusal says both remedies"
+mkdir -p b/s b/t
+for name in b/m b/s/m b/t/m; do cp "$data/quad.obj" $name.obj; done
+cp "$data/plates.glb" b/m.glb
+run -q -r -d out b
+exits 1
+says "'b/m.glb', 'b/m.obj' and 2 more would all be written to 'out/m.glb'; --keep-tree=b keeps the folders of inputs, and of inputs in one folder: convert one of them by itself, to another name"
+run -q -r -d out --keep-tree=b b
+exits 1
+says "'b/m.glb' and 'b/m.obj' would both be written to 'out/m.glb'; convert one"
+exists out/s/m.glb out/t/m.glb
+rm b/m.glb
+run -q -r -d none b
+exits 1
+says_not "in one folder"
+run -q -r -d none --keep-tree=b b
+exits 0
+
 scene "if no folder tells two inputs apart, the refusal says what does"
 cp "$data/quad.obj" b.obj
 cp "$data/quad_le.ply" b.ply
@@ -225,6 +243,24 @@ says "names: warning: there are no names in it, and nothing to do"
 run -q -d out --files-from=names
 exits 0
 silent
+
+scene "a link to a mesh that leads nowhere is an input that fails"
+mkdir l
+cp "$data/quad.obj" l/b.obj
+ln -s nowhere.glb l/a.glb
+ln -s c.obj l/c.obj
+ln -s nowhere.txt l/notes.txt
+ln -s me@host.1 l/.#b.obj
+run -r -d out l
+exits 2
+exists out/b.glb
+says "l/a.glb: no such file"
+says "1 of 3 done, 2 failed"
+run -r -d again --exclude='[ac].*' l
+exits 0
+says "1 primitive"
+run -q -r --check l
+exits 2
 
 scene "when all inputs are refused nothing is made"
 mkdir x y

@@ -54,7 +54,7 @@ cp "$data/plates.glb" elsewhere/linked.glb
 ln -s ../elsewhere/linked.glb in/g.glb
 ln -s ../elsewhere in/folder
 ln -s . in/sub/circle
-ln -s nowhere.obj in/dead.obj
+ln -s me@host.1 in/.#a.obj # a lock of Emacs
 run -r -d in/out --keep-tree=in --exclude=skip in
 exits 0
 is "$(sed -n 's/^nmtan: \([^>]*\) -> .*/\1/p' "$WORK/err.txt" | tr '\n' ' ')" \

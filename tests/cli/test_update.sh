@@ -583,6 +583,35 @@ rm out/[bc].glb
 run --update -r in -d out
 says_not "gone"
 
+scene "outputs are told of as left when the last input is gone, too"
+mkdir in
+for name in a b; do cp "$data/quad.obj" in/$name.obj; done
+run --update -r in -d out
+rm in/*.obj
+for quiet in "" -q; do
+	run $quiet --update -r in -d out
+	exits 2
+	says "in: no mesh is in it"
+	[ -n "$quiet" ] || says "nmtan: 2 outputs are left whose input is gone: out/a.glb and 1 more"
+done
+says_not "left"
+run --update -r in -d never
+exits 2
+says_not "left"
+only in out
+
+scene "a file that is no record is refused, with what to do"
+mkdir out
+echo garbage >out/.nmtan-record
+run --update -d out "$data/quad.obj"
+exits 2
+says "out/.nmtan-record: refusing to write: it is no record; delete it, or name another by --record=FILE"
+run -q --update --record=r -d out "$data/quad.obj"
+exits 0
+rm out/.nmtan-record
+run -q --update -d out "$data/quad.obj"
+exits 0
+
 scene "--no-clobber replaces no depfile and no manifest either"
 cp "$data/quad.obj" .
 run --depfile=d --manifest=m quad.obj first.glb
