@@ -140,7 +140,7 @@ nmtan_status nt_fast_weld_small(nt_fast *fast, bool *welded)
 		return NMTAN_ERROR_MEMORY;
 	*welded = number_rows(mesh, fast->vertex_count, room, numbers, &equal);
 #ifdef BOXES
-	fast->box = &room->box;
+	fast->box = *welded ? &room->box : NULL; /* minima and maxima lose NaN */
 #endif
 	fast->rows = room->rows;
 	fast->triangles.ids = number_corners(mesh, solve->corner_count, numbers, equal, room->ids);
