@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/counts.h"
 #include "report/codes.h"
@@ -87,14 +88,25 @@ static bool is_chosen(nt_code code)
 	return chosen;
 }
 
+/* However they are spelled. */
+static bool are_one_file(const char *a, const char *b)
+{
+	struct stat one, other;
+	return strcmp(a, b) == 0 || (strcmp(a, "-") != 0 && strcmp(b, "-") != 0 && stat(a, &one) == 0 &&
+		stat(b, &other) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino);
+}
+
 /* ": nmtan --fix a.glb b.glb", and before it when that is right. */
 static void append_command(nt_buffer *out, nt_code code, const char *repair, const nt_report_options *options,
 	const char *file, const char *output)
 {
 	const char *condition = nt_code_condition(code);
-	const bool in_place = output && strcmp(file, output) == 0;
+	const bool same = output && are_one_file(file, output), in_place = same && options->in_place;
+	nt_buffer all = {0};
+	nt_buffer_format(&all, "%s%s", repair, in_place ? " --in-place" : "");
 	nt_buffer_format(out, condition ? "; %s: " : ": ", condition);
-	nt_command_text(repair, options->given, file, in_place ? NULL : output, out);
+	nt_command_text(all.data ? all.data : "", options->given, file, in_place ? "" : same ? NULL : output, out);
+	nt_buffer_free_into(&all, out);
 }
 
 /* All findings of one code and severity but for `old` ones (NULL: none are), those beyond PLACES_SHOWN as a number. The

@@ -140,6 +140,7 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 	}
 	nt_options_given(command, &plan->given);
 	plan->options.given = plan->given.data;
+	plan->options.in_place = command->settings.in_place;
 	if (!status)
 		status = check_diff(command, error);
 	for (size_t i = 0; i < command->severity.count && !status; i++)

@@ -795,12 +795,13 @@ void nt_command_text(const char *options, const char *given, const char *input, 
 		put_given(options, given, out);
 	nt_buffer_format(out, "%s%s ", *options ? " " : "", options);
 	const size_t before = out->size;
+	const bool alone = output && !*output;
 	bool put = input && *input && put_path(input, out);
-	nt_buffer_text(out, " ");
-	put = put && (output || made.data) && put_path(output ? output : made.data, out);
+	nt_buffer_text(out, alone ? "" : " ");
+	put = put && (alone || ((output || made.data) && put_path(output ? output : made.data, out)));
 	if (!put) {
 		out->size = before;
-		nt_buffer_text(out, "IN OUT");
+		nt_buffer_text(out, alone ? "IN" : "IN OUT");
 	}
 	nt_buffer_free_into(&made, out);
 }

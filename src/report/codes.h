@@ -59,8 +59,8 @@ bool nt_shell_word(const char *text, nt_buffer *out);
 
 /* Appends a command that a shell takes as it stands: "nmtan --fix in.glb in-repaired.glb". given: options of the user,
  * words of a shell with line ends between them, which the command has too unless `options` say otherwise; NULL: none.
- * output: NULL: a name beside the input. "IN OUT" stand for names that a terminal does not take, or for an input of
- * NULL. */
+ * output: "": none; NULL: a name beside the input. "IN OUT" stand for names that a terminal does not take, or for an
+ * input of NULL. */
 void nt_command_text(const char *options, const char *given, const char *input, const char *output, nt_buffer *out);
 
 /* Appends the remedy, and at its end the command with these options; options NULL: there is none here. */

@@ -73,6 +73,7 @@ typedef struct nt_report_options {
 	const char *page_folder;      /* absolute: where an HTML page will be; NULL: nobody knows */
 	const char *conversion;       /* options of the conversion that a check judges; NULL: it judges the file */
 	const char *given;            /* what a command that repairs a finding repeats: see nt_command_text() */
+	bool in_place;                /* outputs replace inputs, and those of commands do */
 	unsigned threads;
 	nt_quads quads;               /* AUTO: tangents may be of quads */
 } nt_report_options;

@@ -942,6 +942,31 @@ done <<'END'
 --existing=keep --verify --sync|
 END
 
+scene "a command names no output that is the input, however that is spelled, and --in-place has its own"
+mapped
+gltf m.gltf wrong 'const n = g.meshes[0].primitives[0].attributes.TANGENT; for (let i = 0; i < 4; i++) bytes[0].writeFloatLE(-bytes[0].readFloatLE(at(n, i) + 12), at(n, i) + 12)'
+ln -s wrong.gltf link.gltf
+while IFS='|' read -r operands command output; do
+	run $operands
+	says "[TAN_KEPT_SIGN]: $command"
+	cp wrong.gltf kept
+	command=${command#nmtan}
+	run $command
+	exits 0
+	says "fixed TAN_SIGN_MISMATCH in 1 primitive"
+	[ "$output" = wrong.gltf ] || same kept wrong.gltf
+	[ -e "$output" ] || wrong "$command wrote no $output"
+	mv kept wrong.gltf
+	rm -f wrong-repaired.gltf
+done <<'END'
+wrong.gltf wrong.gltf|nmtan --fix wrong.gltf wrong-repaired.gltf|wrong-repaired.gltf
+wrong.gltf ./wrong.gltf|nmtan --fix wrong.gltf wrong-repaired.gltf|wrong-repaired.gltf
+wrong.gltf link.gltf|nmtan --fix wrong.gltf wrong-repaired.gltf|wrong-repaired.gltf
+-d . --output-format=gltf wrong.gltf|nmtan --fix wrong.gltf wrong-repaired.gltf|wrong-repaired.gltf
+--in-place wrong.gltf|nmtan --fix --in-place wrong.gltf|wrong.gltf
+--in-place -d . wrong.gltf|nmtan --fix --in-place wrong.gltf|wrong.gltf
+END
+
 scene "wrong signs of a few slivers are a warning, of as few large triangles an error; a corner's vertex is one spot"
 mapped
 for size in 0.001 4; do
