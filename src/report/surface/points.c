@@ -47,84 +47,116 @@ static bool is_against(const nt_mesh *mesh, uint32_t a, uint32_t b)
 	return x[0] * y[0] + x[1] * y[1] + x[2] * y[2] < 0.0f && compare_normals(mesh, a, b) < 0;
 }
 
-/* A triangle by its points, ascending. */
-typedef struct pointed {
-	uint32_t points[3], triangle;
-	bool odd; /* they were put in order by an odd permutation */
-} pointed;
+/* A triangle, or a quad however it is cut: its points in their order around it, from the lowest one on. */
+typedef struct outline {
+	uint32_t points[4]; /* of a triangle, [3] is NT_NONE */
+	uint32_t triangle;  /* its first */
+	bool turned;        /* the order is against its winding: of two directions the one that goes on with less */
+} outline;
+
+static int compare_outlines(const outline *x, const outline *y)
+{
+	for (int i = 0; i < 4; i++)
+		if (x->points[i] != y->points[i])
+			return x->points[i] < y->points[i] ? -1 : 1;
+	return 0;
+}
 
 static int by_points(const void *a, const void *b)
 {
-	const pointed *x = a, *y = b;
-	for (int i = 0; i < 3; i++)
-		if (x->points[i] != y->points[i])
-			return x->points[i] < y->points[i] ? -1 : 1;
-	return x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
+	const outline *x = a, *y = b;
+	const int order = compare_outlines(x, y);
+	return order ? order : x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
 }
 
-static pointed point_triangle(const nt_surface *s, size_t t)
+/* The corners of a quad follow each other, and both ways to cut it begin with its first one. */
+static outline find_outline(const nt_surface *s, size_t t, size_t size)
 {
-	pointed p = {.triangle = (uint32_t)t};
-	for (size_t k = 0; k < 3; k++) {
-		const uint32_t point = nt_side_point(s, 3 * t + k);
-		size_t at = k;
-		for (; at > 0 && point < p.points[at - 1]; at--, p.odd = !p.odd)
-			p.points[at] = p.points[at - 1];
-		p.points[at] = point;
+	uint32_t points[4];
+	size_t low = 0;
+	for (size_t k = 0; k < size; k++) {
+		const uint32_t corner = nt_side_corner(s, 3 * t) + (uint32_t)k;
+		points[k] = size == 3 ? nt_side_point(s, 3 * t + k)
+				      : s->points[s->mesh->indices ? s->mesh->indices[corner] : corner];
+		low = points[k] < points[low] ? k : low;
 	}
-	return p;
+	const bool turned = points[(low + size - 1) % size] < points[(low + 1) % size];
+	outline o = {.points[3] = NT_NONE, .triangle = (uint32_t)t, .turned = turned};
+	for (size_t k = 0; k < size; k++)
+		o.points[k] = points[(low + (turned ? size - k : k)) % size];
+	return o;
 }
 
-/* Whether two triangles of the same points are each other's reverse and lit so. */
-static bool is_reverse(const nt_surface *s, const pointed *a, const pointed *b)
+/* Whether two faces of the same outline are each other's reverse and lit so. */
+static bool is_reverse(const nt_surface *s, const outline *a, const outline *b, size_t size)
 {
-	if (a->odd == b->odd)
+	const size_t sides = 3 * (size - 2), first = 3 * (size_t)a->triangle, second = 3 * (size_t)b->triangle;
+	if (a->turned == b->turned)
 		return false;
-	for (size_t side = 3 * (size_t)a->triangle; side < 3 * (size_t)a->triangle + 3; side++)
-		for (size_t other = 3 * (size_t)b->triangle; other < 3 * (size_t)b->triangle + 3; other++)
+	for (size_t side = first; side < first + sides; side++)
+		for (size_t other = second; other < second + sides; other++)
 			if (nt_side_point(s, side) == nt_side_point(s, other) &&
 				!is_against(s->mesh, nt_side_vertex(s, side), nt_side_vertex(s, other)))
 				return false;
 	return true;
 }
 
-/* doubled: [point_count] bits, in: points with opposite normals; out: those where all triangles are there twice. */
+/* Whether a face of `size` corners begins with a triangle, is not paired, and has only such points. */
+static bool may_be_doubled(const nt_surface *s, const uint64_t *doubled, const uint64_t *paired, size_t t, size_t size)
+{
+	if (nt_bit(paired, t) || (size == 4 && (t + 1 == s->triangle_count || s->faces[t] != s->faces[t + 1])))
+		return false;
+	bool all = true;
+	for (size_t side = 3 * t; side < 3 * (t + size - 2) && all; side++)
+		all = nt_bit(doubled, nt_side_point(s, side));
+	return all;
+}
+
+/* paired: [triangle_count] bits; sets those of faces of `size` corners that are there twice. */
+static nt_status pair_faces(const nt_surface *s, const uint64_t *doubled, uint64_t *paired, size_t size,
+	nt_scratch *scratch)
+{
+	size_t count = 0, added = 0;
+	for (size_t t = 0; t < s->triangle_count; t++)
+		count += may_be_doubled(s, doubled, paired, t, size);
+	outline *list = nt_scratch_alloc(scratch, count, sizeof *list);
+	if (!list)
+		return NT_ERROR_MEMORY;
+	for (size_t t = 0; t < s->triangle_count && added < count; t++)
+		if (may_be_doubled(s, doubled, paired, t, size))
+			list[added++] = find_outline(s, t, size);
+	if (count)
+		qsort(list, count, sizeof *list, by_points);
+	for (size_t i = 0, end; i < count; i = end) {
+		for (end = i + 1; end < count && compare_outlines(&list[i], &list[end]) == 0;)
+			end++;
+		if (end - i != 2 || !is_reverse(s, &list[i], &list[i + 1], size))
+			continue;
+		for (uint32_t k = 0; k < size - 2; k++) {
+			nt_bit_set(paired, list[i].triangle + k);
+			nt_bit_set(paired, list[i + 1].triangle + k);
+		}
+	}
+	return NT_OK;
+}
+
+/*
+ * doubled: [point_count] bits, in: points with opposite normals; out: those where all triangles are there twice. Front
+ * and back of a quad may be cut along different diagonals, so that quads are compared before their triangles are.
+ */
 static nt_status find_doubled(const nt_surface *s, uint64_t *doubled, nt_scratch *scratch)
 {
 	const size_t words = nt_bit_words(s->triangle_count);
 	uint64_t *paired = nt_scratch_alloc(scratch, words, sizeof *paired);
-	size_t count = 0;
-	for (size_t pass = 0; paired && pass < 2; pass++) {
-		pointed *list = pass ? nt_scratch_alloc(scratch, count, sizeof *list) : NULL;
-		if (pass && !list)
-			return NT_ERROR_MEMORY;
-		count = 0;
-		for (size_t t = 0; t < s->triangle_count; t++) {
-			bool all = true;
-			for (size_t k = 0; k < 3 && all; k++)
-				all = nt_bit(doubled, nt_side_point(s, 3 * t + k));
-			if (all && pass)
-				list[count] = point_triangle(s, t);
-			count += all;
-		}
-		if (!pass)
-			continue;
-		memset(paired, 0, words * sizeof *paired);
-		qsort(list, count, sizeof *list, by_points);
-		for (size_t i = 0, end; i < count; i = end) {
-			for (end = i + 1; end < count && memcmp(list[i].points, list[end].points,
-				sizeof list[i].points) == 0;)
-				end++;
-			if (end - i != 2 || !is_reverse(s, &list[i], &list[i + 1]))
-				continue;
-			nt_bit_set(paired, list[i].triangle);
-			nt_bit_set(paired, list[i + 1].triangle);
-		}
-	}
-	for (size_t side = 0; paired && side < 3 * s->triangle_count; side++)
+	if (!paired)
+		return NT_ERROR_MEMORY;
+	memset(paired, 0, words * sizeof *paired);
+	if ((s->faces && pair_faces(s, doubled, paired, 4, scratch)) || pair_faces(s, doubled, paired, 3, scratch))
+		return NT_ERROR_MEMORY;
+	for (size_t side = 0; side < 3 * s->triangle_count; side++)
 		if (!nt_bit(paired, side / 3))
 			nt_bit_clear(doubled, nt_side_point(s, side));
-	return paired ? NT_OK : NT_ERROR_MEMORY;
+	return NT_OK;
 }
 
 /* Gives the backs of doubled points points of their own, behind all others. */
