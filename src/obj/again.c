@@ -109,8 +109,8 @@ nt_status obj_settle_origin(obj_file *file, float largest, float *positions, nt_
 		.exact = nt_arena_alloc(&file->scene->arena, file->vertex_count, 3 * sizeof *job.exact)};
 	const bool done = read_exact(&job);
 	if (done) {
-		const nt_exact exact = {job.exact, file->vertex_count, lengths,
-			sample_edges(file, positions, job.exact, NT_ORIGIN_SAMPLED, lengths)};
+		const nt_exact exact = {.positions = job.exact, .vertex_count = file->vertex_count, .edges = lengths,
+			.edge_count = sample_edges(file, positions, job.exact, NT_ORIGIN_SAMPLED, lengths)};
 		nt_origin_settle(file->scene, &options->origin, &exact, positions);
 		file->exact_positions = options->world && nt_scene_has_origin(file->scene) ? job.exact : NULL;
 	}

@@ -363,6 +363,9 @@ static nt_status run_stages(run *r)
 	nt_status status = nt_choose_writer(r->settings, r->output_path, NULL, &r->writer, r->error);
 	/* a PLY is one mesh in the world, so the reader has to say where the meshes stand */
 	r->read_options.world = r->writer && r->writer->format == NT_FORMAT_PLY;
+	r->read_options.origin.to_ply = !r->writer || r->read_options.world;
+	r->read_options.origin.keeps = r->settings->existing == NT_EXISTING_KEEP && !r->settings->fix &&
+		r->settings->normals < NT_NORMALS_REPLACE_FLAT;
 	if (!status && r->writer) {
 		const nt_output_options options = output_options_of(r);
 		status = nt_output_check_clobber(&options, r->output_path, r->error);

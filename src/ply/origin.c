@@ -73,8 +73,11 @@ nt_status ply_settle_origin(nt_scene *scene, nt_mesh *mesh, const ply_source *so
 		exact = nt_calloc(mesh->vertex_count, 3 * sizeof *exact);
 		done = exact && read_exact(mesh, source, cursor, exact);
 		if (done)
-			nt_origin_settle(scene, wished, &(nt_exact){exact, mesh->vertex_count, lengths,
-				ply_sample_edges(mesh, exact, NT_ORIGIN_SAMPLED, lengths)}, mesh->positions);
+			nt_origin_settle(scene, wished, &(nt_exact){.positions = exact,
+				.vertex_count = mesh->vertex_count, .edges = lengths, .edge_count =
+				ply_sample_edges(mesh, exact, NT_ORIGIN_SAMPLED, lengths), .stored = wished->to_ply,
+				.needless = wished->to_ply && wished->keeps && mesh->normals && mesh->tangents},
+				mesh->positions);
 		nt_origin_matrix(scene, scene->instances->matrix);
 	}
 	free(lengths);

@@ -394,7 +394,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Coordinates of the OBJ or PLY are so large that the floats there are far apart: triangles bend or "
 		"collapse, and the normals and tangents made of them are wrong. --origin=keep asked for that, or the "
 		"origin does not help, because a few vertices lie far from the rest. Triangles without area are not "
-		"counted then: the file may have none.",
+		"counted then: the file may have none. A PLY of a PLY keeps its numbers, and only the normals and "
+		"tangents that it gets are wrong: an info if it has both already and keeps them.",
 		"If the origin is auto already, the objects are too far from each other for float: export them as "
 		"files of their own. Otherwise let nmtan choose an origin.",
 		"an OBJ with edges of 2 cm at \"v 431234.12 5412345.67 101.05\", with --origin=keep"),

@@ -52,6 +52,8 @@ typedef enum nt_origin_choice {
 typedef struct nt_origin {
 	nt_origin_choice choice;
 	double at[3]; /* GIVEN: 0 0 0 is nothing, too */
+	bool to_ply;  /* the output is a PLY, or would be one of a PLY: that keeps a PLY's own numbers */
+	bool keeps;   /* normals and tangents that are there stay */
 } nt_origin;
 
 /* TANGENT of the morph targets of primitives that get tangents. */

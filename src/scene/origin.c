@@ -140,21 +140,24 @@ const char *nt_origin_text(const double origin[3], char text[NT_ORIGIN_TEXT])
 }
 
 /* "by up to 0.25, which is 1.1 of the median edge 0.22" */
-static void report(nt_scene *scene, nt_code code, const rounding *r, double edge, bool stays)
+static void report(nt_scene *scene, nt_code code, const rounding *r, double edge, const nt_exact *exact, bool stays)
 {
-	char text[NT_ORIGIN_TEXT], detail[256];
+	char text[NT_ORIGIN_TEXT], detail[320];
 	int length = 0;
 	if (code == NT_CODE_POS_ORIGIN)
 		length = snprintf(detail, sizeof detail, "%s", nt_origin_text(scene->origin, text));
 	if (r->count)
 		snprintf(detail + length, sizeof detail - (size_t)length,
-			"%sby up to %.3g, which is %.2g of the median edge %.3g",
-			length ? "; float would round positions " : "", r->largest, r->largest / edge, edge);
+			"%sby up to %.3g, which is %.2g of the median edge %.3g%s",
+			length ? "; float would round positions " : "", r->largest, r->largest / edge, edge,
+			length || !exact->stored ? ""
+			: exact->needless ? "; the PLY keeps its numbers, its normals and its tangents"
+					  : "; the PLY keeps its numbers: only what is computed is made of the floats");
 	nt_place place;
 	nt_place_clear(&place);
 	strncpy(place.file, scene->path, sizeof place.file - 1);
 	nt_finding_put(&scene->findings, (nt_finding){.code = code, .count = length ? 1 : r->count, .detail = detail,
-		.stays = stays}, &place);
+		.stays = stays, .severity = !length && exact->needless ? 1 + NT_SEVERITY_INFO : 0}, &place);
 }
 
 void nt_origin_settle(nt_scene *scene, const nt_origin *wished, const nt_exact *exact, float *positions)
@@ -177,9 +180,10 @@ void nt_origin_settle(nt_scene *scene, const nt_origin *wished, const nt_exact *
 	if (nt_scene_has_origin(scene)) {
 		for (size_t i = 0; i < 3 * exact->vertex_count; i++)
 			positions[i] = (float)(exact->positions[i] - origin[i % 3]);
-		report(scene, NT_CODE_POS_ORIGIN, &before, edge, true);
+		report(scene, NT_CODE_POS_ORIGIN, &before, edge, exact, true);
 	}
 	scene->positions_rounded = after.count > 0;
 	if (scene->positions_rounded)
-		report(scene, NT_CODE_POS_ROUNDED, &after, edge, wished->choice == NT_ORIGIN_AUTO);
+		report(scene, NT_CODE_POS_ROUNDED, &after, edge, exact,
+			wished->choice == NT_ORIGIN_AUTO || exact->needless);
 }

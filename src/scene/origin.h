@@ -26,6 +26,8 @@ typedef struct nt_exact {
 	size_t vertex_count;
 	double *edges;           /* [edge_count] lengths, in any order, above 0; they are sorted */
 	size_t edge_count;
+	bool stored;    /* the output has these doubles all the same */
+	bool needless;  /* and nothing of it is computed of the floats */
 } nt_exact;
 
 /* The larger of `largest` and of the absolute values of some floats. */

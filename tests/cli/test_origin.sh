@@ -277,6 +277,32 @@ sed '1,/^end_header/d' far_ascii.ply | sed '441q' >before.txt
 sed '1,/^end_header/d' out.ply | sed '441q' | cut -d' ' -f1-6 >after.txt
 same before.txt after.txt
 
+scene "of a PLY to a PLY, --origin=keep says that only what is computed is made of floats"
+far make
+kept='; the PLY keeps its numbers: only what is computed is made of the floats'
+run --origin=keep far_ascii.ply keep.ply
+says "which is 12 of the median edge 0.0203$kept [POS_ROUNDED]: nmtan --origin=auto far_ascii.ply keep.ply"
+run -q far_ascii.ply auto.ply
+for file in keep auto; do sed '1,/^end_header/d' $file.ply | sed 441q | cut -d' ' -f1-3 >$file.txt; done
+same keep.txt auto.txt
+! cmp -s keep.ply auto.ply || wrong "the command changes nothing"
+run --check --origin=keep far_ascii.ply
+prints "$kept"
+prints "let nmtan choose an origin: nmtan --origin=auto far_ascii.ply far_ascii-repaired.ply"
+# if nothing is computed, nothing is wrong, and no command is named
+run --origin=keep keep.ply again.ply
+says_not "POS_ROUNDED"
+same keep.ply again.ply
+run --check --origin=keep keep.ply
+prints "Ready to use"
+prints "info      POS_ROUNDED"
+prints "; the PLY keeps its numbers, its normals and its tangents"
+! grep -q "nmtan --origin" "$WORK/out.txt" || wrong "$(cat "$WORK/out.txt")"
+run --origin=keep --existing=replace keep.ply again.ply
+says "$kept [POS_ROUNDED]: nmtan --existing=replace --origin=auto keep.ply again.ply"
+run --origin=keep keep.ply out.glb
+says "which is 12 of the median edge 0.0203 [POS_ROUNDED]: nmtan --origin=auto keep.ply out.glb"
+
 scene "a PLY of integers that float does not hold"
 printf '%s\n' ply 'format ascii 1.0' 'element vertex 4' 'property int x' 'property int y' 'property int z' \
 	'property float s' 'property float t' 'element face 1' 'property list uchar int vertex_indices' end_header \

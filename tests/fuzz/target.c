@@ -193,7 +193,7 @@ static void check_output(const char *output)
 	again.draco = NT_DRACO_KEEP;
 	if (told.draco >= NT_DRACO_AS_SEQUENTIAL) /* then no normals are made of meshes that get no tangents */
 		again.normals = NT_NORMALS_AUTO;
-	again.origin = (nt_origin){NT_ORIGIN_AUTO, {0}}; /* glTF takes none */
+	again.origin = (nt_origin){.choice = NT_ORIGIN_AUTO}; /* glTF takes none */
 	if (run(output, output, &again, &summary, &error))
 		wrong("what was written is refused: %s: %s", error.place.pointer, error.message);
 	/* tangents that were there are not judged, and glTF has none without normals */

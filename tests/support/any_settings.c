@@ -35,6 +35,6 @@ nt_settings any_settings(const char *input, uint32_t *chance, const nt_report_op
 	if (origin == 1)
 		s.origin.choice = NT_ORIGIN_KEEP;
 	if (origin == 2)
-		s.origin = (nt_origin){NT_ORIGIN_GIVEN, {5e6, -0.125, 1e30}};
+		s.origin = (nt_origin){.choice = NT_ORIGIN_GIVEN, .at = {5e6, -0.125, 1e30}};
 	return s;
 }
