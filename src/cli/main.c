@@ -179,7 +179,9 @@ static int tell_run(session *s, nt_job *job)
 		nt_message_failure(&s->text, summary->report, &s->plan->options, job->input, job->output, NULL,
 			least_failure, s->style);
 	if (s->style.verbosity >= 0 && !shown) {
-		const bool infos = c->settings.check || s->style.verbosity > 0;
+		/* what nmtan chose for a file that is not there says nothing */
+		const nt_shown_infos infos = c->settings.check || s->style.verbosity > 0 ? NT_INFOS_ALL
+			: job->status ? NT_INFOS_NONE : NT_INFOS_CHOSEN;
 		nt_message_findings(&s->text, &summary->findings, summary->report, &s->plan->options, job->input,
 			job->output, infos, most, style);
 	} else if (s->style.verbosity < 0 && !job->status && !c->settings.check)

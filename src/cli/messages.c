@@ -157,7 +157,8 @@ static void find_old(const nt_finding_list *findings, const nt_report *report, b
 }
 
 void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
-	const nt_report_options *options, const char *file, const char *output, bool infos, int most, nt_style style)
+	const nt_report_options *options, const char *file, const char *output,
+	nt_shown_infos infos, int most, nt_style style)
 {
 	const bool known = report && options->baseline && findings->count;
 	bool *old = known ? nt_calloc(findings->count, sizeof *old) : NULL;
@@ -169,7 +170,8 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 		find_old(findings, report, old);
 	for (int severity = most; severity >= (int)options->min_severity; severity--)
 		for (int code = 0; code < NT_CODE_COUNT; code++)
-			if ((infos || severity || is_chosen((nt_code)code)) && !options->ignore[code])
+			if ((severity || infos == NT_INFOS_ALL || (infos && is_chosen((nt_code)code))) &&
+				!options->ignore[code])
 				append_code(out, findings, old, options, (nt_code)code, (nt_severity)severity, file,
 					output, style);
 	free(old);

@@ -61,7 +61,7 @@ cc -std=c11 -Wall -Wextra ${CGLTF:+-w} -I"${CGLTF:-$ROOT/tests/support}" -I"$ROO
 
 scene "Python, trimesh or what stands in for it"
 make -C "$ROOT" -s python >make.txt 2>&1 || wrong "$(tail -5 make.txt)"
-python=python3
+python=$(type -P python3) # not the word of cli.sh, whose process has its modules already
 "$python" -c 'import numpy' 2>/dev/null || python=/usr/bin/python3
 python3 -m zipfile -e "$ROOT/build/python/nmtan.whl" wheel
 "$python" -c 'import trimesh' 2>/dev/null || cat >wheel/trimesh.py <<'END'
