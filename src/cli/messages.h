@@ -25,9 +25,10 @@ void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 /* Infos that are printed: none, what nmtan chose, or all. */
 typedef enum nt_shown_infos { NT_INFOS_NONE, NT_INFOS_CHOSEN, NT_INFOS_ALL } nt_shown_infos;
 
-/* Findings of the severities from `most` (nt_severity) down, a few of each code, with such infos: "nmtan: file:line: warning: sentence [CODE]", and the command, if one repairs it, with
- * `output` (NULL: a name beside the file). Severities are those of `options`; findings that these ignore, or that the
- * report (NULL: there is none) knows from its baseline, are left out. */
+/* Findings of the severities from `most` (nt_severity) down, a few of each code, with such infos: "nmtan:
+ * file:line: warning: sentence [CODE]", and the command, if one repairs it, with `output` (NULL: a name beside the
+ * file). Severities are those of `options`; findings that these ignore, or that the report (NULL: there is none)
+ * knows from its baseline, are left out. */
 void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
 	const nt_report_options *options, const char *file, const char *output,
 	nt_shown_infos infos, int most, nt_style style);
