@@ -204,6 +204,16 @@ exits 0
 says "1 of 2 primitives"
 is "$(gltf out.glb 'g.meshes[0].primitives.map(p => Object.keys(p.attributes).sort().join())')" \
 	'["NORMAL,POSITION,TEXCOORD_0","NORMAL,POSITION,TANGENT,TEXCOORD_0"]'
+# and welds by them alone, whatever malloc returns
+gltf new soup 'const corners = [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0];
+	const attributes = {POSITION: add("VEC3", 5126, corners, {min: [0, 0, 0], max: [1, 1, 0]})};
+	g.meshes = [{primitives: [{attributes}]}]; g.nodes = [{mesh: 0}]; g.scenes = [{nodes: [0]}]; g.scene = 0'
+MALLOC_PERTURB_=165 run --normals=smooth --only=needed --weld soup.gltf out.gltf
+exits 0
+says "welded 6 vertices to 4"
+is "$(gltf out.gltf "$normals")" "0.000 0.000 1.000"
+MALLOC_PERTURB_=165 run --verify --normals=smooth --weld both.gltf out.glb
+exits 0
 
 scene "normals that are replaced take the tangents with them, without another word"
 tilted_obj >t.obj

@@ -168,6 +168,8 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 	const nt_vertex_pool *pool = vertices->pool;
 	nt_status status = NT_OK;
 	nt_stored_tangents *new = nt_arena_alloc(e->of_window, pool->sets.count, sizeof *new);
+	if (new) /* a set without TANGENT keeps no values */
+		memset(new, 0, pool->sets.count * sizeof *new);
 	for (uint32_t set = 0; new && !status && set < pool->sets.count; set++)
 		status = store_tangents(e, vertices, set, &new[set]);
 	if (new && !status)

@@ -156,7 +156,8 @@ static nt_status list_columns(welding *w, const nt_stored_tangents *stored)
 		const column tangents = stored
 			? (column){stored[s].values, stored[s].element_bytes, stored[s].element_bytes, false}
 			: (column){(const unsigned char *)set->tangents, 4 * sizeof(float), 4 * sizeof(float), false};
-		added = added && add_column(w, tangents);
+		if (tangents.bytes)
+			added = added && add_column(w, tangents);
 		if (set->normals)
 			added = added && add_column(w, (column){(const unsigned char *)set->normals, 3 * sizeof(float),
 				3 * sizeof(float), false});
@@ -289,7 +290,7 @@ static bool gather_set(nt_arena *arena, nt_pool_set *set, nt_stored_tangents *st
 		done &= (set->given = gather(arena, set->given, sizeof *kept, kept, count)) != NULL;
 	else if (set->morph_count && (done &= (set->given = nt_arena_alloc(arena, count, sizeof *kept)) != NULL))
 		memcpy(set->given, kept, count * sizeof *kept);
-	if (!stored)
+	if (!stored || !stored->values)
 		return done;
 	const bool filtered = stored->stored != stored->values;
 	stored->values = gather(arena, stored->values, stored->element_bytes, kept, count);
