@@ -19,11 +19,6 @@
 #include "topology/corners.h"
 #include "topology/reversed.h"
 
-static size_t vertex_of(const nt_mesh *mesh, size_t corner)
-{
-	return mesh->indices ? mesh->indices[corner] : corner;
-}
-
 static size_t face_size(const nt_mesh *mesh, size_t face)
 {
 	return mesh->face_sizes ? mesh->face_sizes[face] : 3;
@@ -63,7 +58,7 @@ static float common_sign(float tangents[][4], size_t size)
 /* Whether a corner's tangent can be drawn, whatever its neighbours have. */
 static bool corner_is_valid(const nt_mesh *mesh, size_t corner, const float *tangent)
 {
-	const size_t vertex = vertex_of(mesh, corner);
+	const size_t vertex = nt_mesh_vertex(mesh, corner);
 	return is_valid(tangent, mesh->normals ? mesh->normals + 3 * vertex : NULL, mesh->tangent_margin) &&
 		fabsf(tangent[3]) == 1;
 }
@@ -84,11 +79,11 @@ static bool face_is_valid(const nt_mesh *mesh, const nmtan_mesh *view, size_t fa
 	for (unsigned i = 0; i < count; i++) {
 		nt_tangent_triangle triangle;
 		const int sign = (mesh->solve_texcoords ? mesh->solve_sign : 1) *
-				 nmtan_orientation(mesh->texcoords + 2 * vertex_of(mesh, corners[i][0]),
-					 mesh->texcoords + 2 * vertex_of(mesh, corners[i][1]),
-					 mesh->texcoords + 2 * vertex_of(mesh, corners[i][2]));
+				 nmtan_orientation(mesh->texcoords + 2 * nt_mesh_vertex(mesh, corners[i][0]),
+					 mesh->texcoords + 2 * nt_mesh_vertex(mesh, corners[i][1]),
+					 mesh->texcoords + 2 * nt_mesh_vertex(mesh, corners[i][2]));
 		for (size_t k = 0; k < 3; k++) {
-			const size_t vertex = vertex_of(mesh, corners[i][k]);
+			const size_t vertex = nt_mesh_vertex(mesh, corners[i][k]);
 			triangle.positions[k] = mesh->positions + 3 * vertex;
 			triangle.normals[k] = mesh->normals ? mesh->normals + 3 * vertex : NULL;
 			triangle.texcoords[k] = uv + 2 * vertex;
@@ -135,7 +130,7 @@ void nt_restore_authored(nt_mesh *mesh, float *corner_tangents, float *solved_ta
 		float authored[MOST_CORNERS][4], solved[MOST_CORNERS][4];
 		size_t turned = 0;
 		for (size_t k = 0; k < size; k++) {
-			memcpy(authored[k], mesh->tangents + 4 * vertex_of(mesh, first + k), sizeof authored[k]);
+			memcpy(authored[k], mesh->tangents + 4 * nt_mesh_vertex(mesh, first + k), sizeof authored[k]);
 			memcpy(solved[k], corner_tangents + 4 * (first + k), sizeof solved[k]);
 			const float w = sign_of(mesh, authored[k][3]);
 			turned += w != authored[k][3];
@@ -189,10 +184,10 @@ void nt_mend_untextured(nt_mesh *mesh, const nmtan_mesh *view, float *tangents)
 		const size_t size = face_size(mesh, face);
 		float authored[MOST_CORNERS][4] = {{0}};
 		for (size_t k = 0; mesh->tangents && k < size; k++)
-			memcpy(authored[k], mesh->tangents + 4 * vertex_of(mesh, first + k), sizeof authored[k]);
+			memcpy(authored[k], mesh->tangents + 4 * nt_mesh_vertex(mesh, first + k), sizeof authored[k]);
 		const float sign = common_sign(authored, size);
 		for (size_t c = first; c < first + size; c++) {
-			const size_t vertex = vertex_of(mesh, c);
+			const size_t vertex = nt_mesh_vertex(mesh, c);
 			const float *t = mesh->tangents ? mesh->tangents + 4 * vertex : nothing;
 			float *to = tangents + 4 * c;
 			if (is_valid(t, view->normals + 3 * vertex, mesh->tangent_margin))
@@ -217,7 +212,7 @@ void nt_turn_untextured(
 	const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved, float *tangents)
 {
 	for (size_t c = 0; c < mesh->corner_count; c++) {
-		const size_t vertex = vertex_of(mesh, c);
+		const size_t vertex = nt_mesh_vertex(mesh, c);
 		const float *t = mesh->corner_tangents + 4 * c;
 		const nt_dvec3 n = unit_normal(base, vertex), m = unit_normal(moved, vertex);
 		nt_dvec3 turned = turn(nt_dvec3_load(t), n, m);

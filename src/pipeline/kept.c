@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Tangents that stay as they are although a material uses them: whether w is right is asked of indices, texture
- * coordinates and w alone, exactly; whether a renderer can use them at all, of tangents and normals. All threads decode
- * compressed ones for it, once.
+ * Tangents that stay as they are although a material uses them, or whatever uses a PLY: whether w is right is asked of
+ * indices, texture coordinates and w alone, exactly; if it is, whether T is reversed, of a corner's T first. Whether a
+ * renderer can use them at all is asked of tangents and normals. All threads decode compressed ones for it, once.
  */
 #include "pipeline/stages.h"
 
@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "report/maker/quads.h"
 #include "report/report.h"
+#include "topology/corners.h"
 
 /* The sign of w at all corners of a triangle; 0: some have none; MIXED: they differ. */
 enum { MIXED = 2 };
@@ -28,55 +29,78 @@ static int common_sign(const nt_mesh *mesh, const size_t v[3])
 	return signs[0] == signs[1] && signs[1] == signs[2] ? signs[0] : MIXED;
 }
 
+/* Triangles that say; of them those whose w differs, whose w is wrong, and whose T is reversed while w is right. */
+enum { JUDGED, DIFFERS, BY_W, REVERSED, KINDS };
+
 typedef struct sign_count {
 	const nt_mesh *mesh;
-	const uint8_t *halves; /* NULL: quads are not asked */
-	size_t wrong, judged;  /* added to by any thread */
+	const nmtan_mesh *view; /* of it, with the texture coordinates as they are stored: w has to fit these */
+	const uint8_t *halves;  /* NULL: quads are not asked */
+	size_t counts[KINDS];   /* added to by any thread */
 } sign_count;
+
+static void count_triangle(const sign_count *c, size_t t, const uint32_t corners[3], size_t counts[KINDS])
+{
+	const nt_mesh *mesh = c->mesh;
+	float uv[3][2];
+	size_t v[3];
+	for (size_t k = 0; k < 3; k++) {
+		v[k] = nt_mesh_vertex(mesh, corners[k]);
+		uv[k][0] = mesh->texcoords[2 * v[k]];
+		uv[k][1] = mesh->texcoords[2 * v[k] + 1] + nt_stored_v_offset(c->view);
+	}
+	const int sign = common_sign(mesh, v), turn = mesh->solve_texcoords ? mesh->solve_sign : 1;
+	const int orientation = sign && turn ? turn * nmtan_orientation(uv[0], uv[1], uv[2]) : 0;
+	if (orientation == 0)
+		return;
+	counts[JUDGED] += sign != MIXED;
+	if (orientation == sign)
+		counts[REVERSED] += nt_runs_backwards(mesh, v, orientation, false);
+	else if (!nt_is_folded_sign(mesh, c->halves, t, sign))
+		counts[sign == MIXED ? DIFFERS : BY_W]++;
+}
 
 static void count_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	sign_count *c = context;
-	const nt_mesh *mesh = c->mesh;
-	const int turn = mesh->solve_texcoords ? mesh->solve_sign : 1;
-	size_t wrong = 0, judged = 0;
+	size_t counts[KINDS] = {0}, first = 3 * begin;
 	(void)slot;
-	for (size_t t = begin; t < end; t++) {
-		size_t v[3];
-		for (size_t k = 0; k < 3; k++)
-			v[k] = mesh->indices ? mesh->indices[3 * t + k] : 3 * t + k;
-		const int sign = common_sign(mesh, v);
-		if (sign == 0 || turn == 0)
-			continue;
-		const int orientation = turn * nmtan_orientation(mesh->texcoords + 2 * v[0],
-			mesh->texcoords + 2 * v[1], mesh->texcoords + 2 * v[2]);
-		judged += orientation != 0;
-		wrong += orientation != 0 && orientation != sign && !nt_is_folded_sign(mesh, c->halves, t, sign);
+	for (size_t face = begin; face < end; first += nt_face_size(c->view, face++)) {
+		uint32_t corners[2][3] = {{(uint32_t)first, (uint32_t)first + 1, (uint32_t)first + 2}};
+		const unsigned count = c->mesh->face_sizes ? nt_written_triangles(c->view, face, first, corners) : 1;
+		for (unsigned i = 0; i < count; i++)
+			count_triangle(c, face, corners[i], counts);
 	}
-	__atomic_fetch_add(&c->wrong, wrong, __ATOMIC_RELAXED);
-	__atomic_fetch_add(&c->judged, judged, __ATOMIC_RELAXED);
+	for (int i = 0; i < KINDS; i++)
+		__atomic_fetch_add(&c->counts[i], counts[i], __ATOMIC_RELAXED);
 }
 
-/* Triangles whose w is not that of their orientation. */
-static size_t count_wrong(const nt_mesh *mesh, const uint8_t *halves, unsigned threads, size_t *judged)
+/* Returns how many have a wrong w. If there are quads, one range has all: no other knows its first corner. */
+static size_t count_wrong(sign_count *c, unsigned threads)
 {
-	enum { GRAIN = 1 << 16 };
-	sign_count c = {.mesh = mesh, .halves = halves};
-	nt_parallel_ranges(nt_thread_count(threads), mesh->face_count, GRAIN, count_range, &c);
-	*judged = c.judged;
-	return c.wrong;
+	const size_t faces = c->mesh->face_count, grain = c->mesh->face_sizes ? faces + 1 : 1 << 16;
+	memset(c->counts, 0, sizeof c->counts);
+	nt_parallel_ranges(nt_thread_count(threads), faces, grain, count_range, c);
+	return c->counts[BY_W] + c->counts[DIFFERS];
 }
 
-/* The same without halves of folded quads that have the quad's sign, if these are what is wrong. */
-static size_t count_wrong_of(const nt_mesh *mesh, nt_arena *arena, unsigned threads, size_t *judged)
+/* Counts without halves of folded quads that have the quad's sign, if these are what is wrong. */
+static void judge(nt_mesh *mesh, float v_offset, nt_arena *arena, unsigned threads)
 {
-	const size_t wrong = count_wrong(mesh, NULL, threads, judged);
-	uint8_t *halves = wrong ? nt_arena_alloc(arena, mesh->face_count, 1) : NULL;
-	if (!halves)
-		return wrong;
-	nt_pair_quads(mesh, false, halves);
-	const size_t others = count_wrong(mesh, halves, threads, judged);
-	return 2 * others > wrong ? wrong : others;
+	nmtan_stored_uv stored;
+	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
+	sign_count c = {.mesh = mesh, .view = &view}, others = c;
+	stored.v_offset = v_offset;
+	const size_t wrong = count_wrong(&c, threads);
+	uint8_t *halves = wrong && !mesh->face_sizes ? nt_arena_alloc(arena, mesh->face_count, 1) : NULL;
+	if (halves)
+		nt_pair_quads(mesh, false, halves);
+	others.halves = halves;
+	if (halves && 2 * count_wrong(&others, threads) <= wrong)
+		c = others;
+	mesh->wrong_kept = c.counts[BY_W] + c.counts[REVERSED];
+	mesh->mixed_kept = c.counts[DIFFERS];
+	mesh->judged_kept = c.counts[JUDGED];
 }
 
 typedef struct fault_count {
@@ -105,7 +129,7 @@ static size_t count_faulty(const nt_mesh *mesh, nt_arena *arena, unsigned thread
 		return c.faulty;
 	memset(met, 0, mesh->vertex_count);
 	c.faulty = 0;
-	for (size_t i = 0; i < 3 * mesh->face_count; i++) {
+	for (size_t i = 0; i < mesh->corner_count; i++) {
 		const size_t v = mesh->indices[i];
 		c.faulty += !met[v] && nt_tangent_faults(mesh->tangents + 4 * v, mesh->normals + 3 * v);
 		met[v] = 1;
@@ -113,8 +137,24 @@ static size_t count_faulty(const nt_mesh *mesh, nt_arena *arena, unsigned thread
 	return c.faulty;
 }
 
-/* Looks at one mesh as if it were alone; `memory` is empty before and after. */
-static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh *to, nt_arena *memory, nt_error *error)
+/* Counts what is wrong with the tangents of a loaded mesh. */
+static void look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh *mesh, nt_arena *arena)
+{
+	const unsigned threads = tasks->settings->threads;
+	if (mesh->tangents && mesh->texcoords)
+		judge(mesh, nt_v_offset(scene->format, tasks->writer->format), arena, threads);
+	const size_t faulty = mesh->tangents && mesh->normals ? count_faulty(mesh, arena, threads) : 0;
+	if (faulty)
+		nt_finding_add(&scene->findings, NT_CODE_TAN_EXISTING_BAD, nt_mesh_place(mesh, &(nt_place){0}), faulty,
+			NULL);
+	if (mesh->wrong_kept || mesh->mixed_kept || !mesh->judged_kept)
+		nt_judge_w(mesh);
+	else
+		mesh->signs = NT_SIGN_RIGHT;
+}
+
+/* Looks at one mesh of a glTF as if it were alone; `memory` is empty before and after. */
+static nt_status load_and_look(nt_scene *scene, const nt_tasks *tasks, nt_mesh *to, nt_arena *memory, nt_error *error)
 {
 	nt_mesh mesh = *to;
 	nt_scene own = *scene;
@@ -122,20 +162,13 @@ static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh *to, nt
 	own.temporary = (nt_arena){0};
 	own.findings = (nt_finding_list){0}; /* what a load finds is said of meshes that are solved */
 	mesh.plan = (nt_mesh_plan){.pooled = mesh.plan.pooled}; /* a primitive costs what it uses */
-	size_t wrong = 0, judged = 0, faulty = 0;
 	const nt_status status = tasks->reader->load(&own, &mesh, tasks->options, error);
-	if (!status && mesh.tangents && mesh.texcoords)
-		wrong = count_wrong_of(&mesh, &own.arena, tasks->settings->threads, &judged);
-	if (!status && mesh.tangents && mesh.normals)
-		faulty = count_faulty(&mesh, &own.arena, tasks->settings->threads);
-	if (faulty)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_EXISTING_BAD, nt_mesh_place(&mesh, &(nt_place){0}), faulty,
-			NULL);
-	if (!status && (wrong || !judged))
-		nt_judge_w(&mesh);
-	to->signs = judged && !wrong ? NT_SIGN_RIGHT : mesh.signs;
-	to->wrong_w = wrong;
-	to->judged_w = judged;
+	if (!status)
+		look_at(scene, tasks, &mesh, &own.arena);
+	to->signs = mesh.signs;
+	to->wrong_kept = mesh.wrong_kept;
+	to->mixed_kept = mesh.mixed_kept;
+	to->judged_kept = mesh.judged_kept;
 	*memory = own.arena;
 	nt_arena_clear(memory);
 	nt_arena_free(&own.temporary);
@@ -146,15 +179,20 @@ static nt_status look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh *to, nt
 nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error)
 {
 	nt_arena memory = {0};
-	bool *kept = nt_format_is_gltf(scene->format) ? nt_alloc(scene->mesh_count, sizeof *kept) : NULL;
+	for (size_t i = 0; !tasks->reader->load && i < scene->mesh_count; i++)
+		if (scene->meshes[i].tangents && !nt_mesh_is_wanted(&scene->meshes[i]))
+			look_at(scene, tasks, &scene->meshes[i], &scene->temporary);
+	if (!tasks->reader->load)
+		return NT_OK;
+	bool *kept = nt_alloc(scene->mesh_count, sizeof *kept);
 	if (!kept)
-		return nt_format_is_gltf(scene->format) ? nt_fail_memory(error) : NT_OK;
+		return nt_fail_memory(error);
 	for (size_t i = 0; i < scene->mesh_count; i++)
 		kept[i] = nt_mesh_is_kept_and_used(&scene->meshes[i]);
 	nt_status status = tasks->reader->prepare(scene, kept, tasks->options, error);
 	for (size_t i = 0; !status && i < scene->mesh_count; i++)
 		if (kept[i])
-			status = look_at(scene, tasks, &scene->meshes[i], &memory, error);
+			status = load_and_look(scene, tasks, &scene->meshes[i], &memory, error);
 	nt_arena_free(&memory);
 	free(kept);
 	return status;
@@ -164,13 +202,19 @@ void nt_tell_kept(nt_scene *scene)
 {
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
-		char detail[160];
-		if (!mesh->wrong_w || mesh->pair)
+		const size_t wrong = mesh->wrong_kept, mixed = mesh->mixed_kept;
+		char share[64] = "", others[64] = "", detail[256];
+		if ((!wrong && !mixed) || mesh->pair)
 			continue;
-		snprintf(detail, sizeof detail, "%.3g %% of %zu%s", 100.0 * (double)mesh->wrong_w /
-			(double)mesh->judged_w, mesh->judged_w, nt_doubt_text(mesh->doubt));
-		nt_finding_put(&scene->findings, (nt_finding){.code = NT_CODE_TAN_KEPT_SIGN, .count = mesh->wrong_w,
-			.detail = detail, .stays = mesh->halved,
+		if (wrong)
+			snprintf(share, sizeof share, "%.3g %% of %zu", 100.0 * (double)wrong /
+				(double)mesh->judged_kept, mesh->judged_kept);
+		if (wrong && mixed)
+			snprintf(others, sizeof others, ", and corners of %zu more have different w", mixed);
+		snprintf(detail, sizeof detail, "%s%s%s", wrong ? share : "their corners have different w", others,
+			nt_doubt_text(mesh->doubt));
+		nt_finding_put(&scene->findings, (nt_finding){.code = NT_CODE_TAN_KEPT_SIGN,
+			.count = wrong ? wrong : mixed, .detail = detail, .stays = mesh->halved,
 			.repair = mesh->doubt == NT_DOUBT_UNDECODABLE ? "--existing=replace" : NULL},
 			nt_mesh_place(mesh, &(nt_place){0}));
 	}

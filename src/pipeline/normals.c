@@ -30,11 +30,6 @@ static void free_job(normal_job *job)
 	free(job->normals);
 }
 
-static size_t vertex_of(const nt_mesh *mesh, size_t corner)
-{
-	return mesh->indices ? mesh->indices[corner] : corner;
-}
-
 static bool replaces(nt_normals mode)
 {
 	return mode >= NT_NORMALS_REPLACE_FLAT;
@@ -117,7 +112,7 @@ static void choose_normals(nt_mesh *mesh, nt_normals mode, normal_job *job)
 {
 	mesh->made_normal_corners = mesh->replaced_normal_corners = mesh->cancelled_normal_corners = 0;
 	for (size_t c = 0; c < mesh->corner_count; c++) {
-		const size_t vertex = vertex_of(mesh, c);
+		const size_t vertex = nt_mesh_vertex(mesh, c);
 		const bool lacks = lacks_normal(mesh, vertex), make = lacks || replaces(mode);
 		if (!make)
 			memcpy(job->rows[c], mesh->normals + 3 * vertex, 3 * sizeof(float));
@@ -146,7 +141,7 @@ static nt_status join_close(const nt_mesh *mesh, normal_job *job)
 	if (last && before)
 		memset(last, 0xff, mesh->vertex_count * sizeof *last);
 	for (size_t c = 0; last && before && c < mesh->corner_count; c++) {
-		const size_t vertex = vertex_of(mesh, c);
+		const size_t vertex = nt_mesh_vertex(mesh, c);
 		uint32_t other = last[vertex];
 		for (int i = 0;
 			i < MOST_COMPARED && other != NT_NONE && !are_close(job->rows[c], job->rows[other]); i++)

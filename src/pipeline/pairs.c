@@ -21,29 +21,17 @@ enum { RIGHT_OF = 500 };
 
 /* ---- w ---- */
 
-static size_t vertex_of(const nt_mesh *mesh, size_t corner)
-{
-	return mesh->indices ? mesh->indices[corner] : corner;
-}
-
-/* For a triangle whose w is wrong: whether T is reversed as well, so that the bitangent is right. */
-static bool is_reversed(const nt_mesh *mesh, const size_t v[3], int orientation)
+bool nt_runs_backwards(const nt_mesh *mesh, const size_t v[3], int orientation, bool other_w)
 {
 	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
-	nt_tangent_triangle triangle = {.orientation = orientation};
-	float tangents[3][4];
-	if (!mesh->normals || !mesh->positions)
-		return false;
-	for (size_t k = 0; k < 3; k++) {
-		const float *t = mesh->tangents + 4 * v[k];
-		for (size_t i = 0; i < 4; i++)
-			tangents[k][i] = i < 3 ? t[i] : -t[i];
+	nt_tangent_triangle triangle = {.orientation = orientation, .other_w = other_w};
+	for (size_t k = 0; k < 3 && mesh->normals && mesh->positions; k++) {
 		triangle.positions[k] = mesh->positions + 3 * v[k];
 		triangle.normals[k] = mesh->normals + 3 * v[k];
 		triangle.texcoords[k] = uv + 2 * v[k];
-		triangle.tangents[k] = tangents[k];
+		triangle.tangents[k] = mesh->tangents + 4 * v[k];
 	}
-	return nt_is_reversed(&triangle);
+	return triangle.normals[0] && nt_is_reversed(&triangle);
 }
 
 void nt_judge_w(nt_mesh *mesh)
@@ -54,7 +42,8 @@ void nt_judge_w(nt_mesh *mesh)
 	if (!(mesh->slots & MAPPED) || !mesh->tangents || !mesh->texcoords || mesh->face_sizes || turn == 0)
 		return;
 	for (size_t t = 0; t < mesh->face_count && right <= mesh->face_count / RIGHT_OF; t++) {
-		const size_t v[3] = {vertex_of(mesh, 3 * t), vertex_of(mesh, 3 * t + 1), vertex_of(mesh, 3 * t + 2)};
+		const size_t v[3] = {nt_mesh_vertex(mesh, 3 * t), nt_mesh_vertex(mesh, 3 * t + 1),
+			nt_mesh_vertex(mesh, 3 * t + 2)};
 		if (v[0] >= mesh->vertex_count || v[1] >= mesh->vertex_count || v[2] >= mesh->vertex_count)
 			return; /* the solve says so */
 		const int orientation = turn * nmtan_orientation(mesh->texcoords + 2 * v[0],
@@ -66,7 +55,7 @@ void nt_judge_w(nt_mesh *mesh)
 		}
 		judged += orientation != 0;
 		right += orientation != 0 && !wrong;
-		reversed += wrong && is_reversed(mesh, v, orientation);
+		reversed += wrong && nt_runs_backwards(mesh, v, orientation, true);
 	}
 	const bool inverted = judged && right <= judged / RIGHT_OF && 2 * reversed <= judged;
 	mesh->signs = judged == 0 && right == 0 ? NT_SIGN_NONE : inverted ? NT_SIGN_INVERTED : NT_SIGN_RIGHT;

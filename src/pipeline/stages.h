@@ -125,14 +125,20 @@ void nt_turn_untextured(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan
  * NT_ERROR_MEMORY. */
 nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads);
 
+/* The number that is added to v on its way between formats that count it from opposite ends: see nmtan_stored_uv. */
+static inline float nt_v_offset(nt_format from, nt_format to)
+{
+	return (float)nt_format_is_gltf(from) - (float)nt_format_is_gltf(to);
+}
+
 /* Whether a mesh that nobody solves may be left as it is: it could be loaded, or it is there and cannot be. */
 static inline bool nt_may_be_left(nt_status load)
 {
 	return load != NT_ERROR_MEMORY && load != NT_ERROR_MISSING && load != NT_ERROR_IO;
 }
 
-/* kept.c, for tasks.c. Counts what is wrong with w of tangents that are kept and used, which nt_tell_kept() says once
- * pairs are known. Returns NT_OK, NT_ERROR_MEMORY,
+/* kept.c, for tasks.c. Counts what is wrong with tangents that are kept and used, which nt_tell_kept() says once pairs
+ * are known. Returns NT_OK, NT_ERROR_MEMORY,
  * or NT_ERROR_MISSING or NT_ERROR_IO where their file cannot be opened. */
 nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error);
 void nt_tell_kept(nt_scene *scene);
@@ -140,6 +146,9 @@ void nt_tell_kept(nt_scene *scene);
 /* pairs.c. Sets mesh->signs of a loaded mesh with authored tangents and a normal map. */
 void nt_judge_w(nt_mesh *mesh);
 bool nt_any_inverted(const nt_scene *scene);
+
+/* Whether T and the bitangent are reversed at all corners of a triangle, of vertices v; other_w: with w negated. */
+bool nt_runs_backwards(const nt_mesh *mesh, const size_t v[3], int orientation, bool other_w);
 
 /* Sets pair and doubted of meshes whose normal maps are known, of which there are map_count, and adds what is found.
  * Returns NT_OK or NT_ERROR_MEMORY. */

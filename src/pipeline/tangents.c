@@ -28,7 +28,7 @@ enum { LARGE_CORNERS = 3 * 128 * 1024, LEAST_SHARED_CORNERS = 3 * 4096 };
 typedef struct wishes {
 	nt_scene *scene;
 	const nt_settings *settings;
-	bool round_trip;    /* the output stores 1 - v */
+	float v_offset;     /* that v is stored with: none if the format stays, else see nmtan_stored_uv */
 	bool triangulates;  /* the output has triangles where the input has quads */
 	bool splits;        /* something is written, or judged as if it were */
 } wishes;
@@ -61,8 +61,7 @@ typedef struct tangent_job {
 static wishes wishes_of(nt_scene *scene, const nt_settings *settings, nt_format output)
 {
 	return (wishes){.scene = scene, .settings = settings,
-		.round_trip = output != NT_FORMAT_UNKNOWN &&
-		nt_format_is_gltf(scene->format) != nt_format_is_gltf(output),
+		.v_offset = output == NT_FORMAT_UNKNOWN ? 0.0f : nt_v_offset(scene->format, output),
 		.triangulates = nt_format_is_gltf(output), .splits = output != NT_FORMAT_UNKNOWN};
 }
 
@@ -75,14 +74,6 @@ static bool is_solved(const nt_mesh *mesh)
 static bool is_item(const nt_mesh *mesh)
 {
 	return mesh->plan.join ? mesh->plan.join->first == mesh : is_solved(mesh) && !nt_mesh_is_solved_ahead(mesh);
-}
-
-/* The number that v is added to when it is stored: none if the format stays, else see nmtan_stored_uv. */
-static float stored_v_offset(const wishes *job)
-{
-	if (!job->round_trip)
-		return 0.0f;
-	return nt_format_is_gltf(job->scene->format) ? 1.0f : -1.0f;
 }
 
 /* Room for the worst case; pages that are not needed are never touched. keep_split() or drop_split() gets the
@@ -209,7 +200,7 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 {
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
-	stored.v_offset = stored_v_offset(job);
+	stored.v_offset = job->v_offset;
 	mesh->counts = (nmtan_counts)NMTAN_COUNTS_INIT;
 	const bool by_corner = mesh->decision != NT_DECISION_SOLVE || mesh->morph_count || mesh->halves;
 	nt_status status;
@@ -246,7 +237,7 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 
 static nt_status solve_join(const wishes *job, const nt_join *join, const nmtan_options *options, nt_arena *arena)
 {
-	nt_status status = nt_join_solve(join, stored_v_offset(job), job->splits, options);
+	nt_status status = nt_join_solve(join, job->v_offset, job->splits, options);
 	for (size_t i = 0; i < join->part_count; i++) {
 		nt_mesh *mesh = join->parts[i];
 		if (mesh->plan.transform_of)

@@ -209,13 +209,12 @@ static nt_status check_each(nt_check *check)
 
 /* ---- signs ---- */
 
-/* For triangles whose w is right, sign 1: whether T and the bitangent are reversed. If w is wrong, sign -1: whether T
- * alone is. */
-static bool is_reversed(const nt_check *check, size_t t, float sign)
+/* For triangles whose w is right: whether T and the bitangent are reversed. If w is wrong, other_w: whether T alone
+ * is. */
+static bool is_reversed(const nt_check *check, size_t t, bool other_w)
 {
 	const nt_surface *s = &check->surface;
-	nt_tangent_triangle triangle = {.orientation = s->orientation[t]};
-	float tangents[3][4];
+	nt_tangent_triangle triangle = {.orientation = s->orientation[t], .other_w = other_w};
 	if (check->stored != NT_STORED_AUTHORED || !check->mesh->normals)
 		return false;
 	for (uint32_t k = 0; k < 3; k++) {
@@ -223,9 +222,7 @@ static bool is_reversed(const nt_check *check, size_t t, float sign)
 		triangle.positions[k] = nt_side_position(s, side);
 		triangle.normals[k] = check->mesh->normals + 3 * (size_t)nt_side_vertex(s, side);
 		triangle.texcoords[k] = nt_side_texcoord(s, side);
-		memcpy(tangents[k], nt_stored_tangent(check, nt_side_corner(s, side)), sizeof tangents[k]);
-		tangents[k][3] *= sign;
-		triangle.tangents[k] = tangents[k];
+		triangle.tangents[k] = nt_stored_tangent(check, nt_side_corner(s, side));
 	}
 	return nt_is_reversed(&triangle);
 }
@@ -296,7 +293,7 @@ static void check_sign(const nt_check *check, size_t t, int orientation, sign_ta
 		nt_tally_triangle(check, &st->of_quad, t, w[0]);
 		return;
 	}
-	const bool turned = is_reversed(check, t, by_w ? -1.0f : 1.0f), reversed = !by_w && turned;
+	const bool turned = is_reversed(check, t, by_w), reversed = !by_w && turned;
 	st->by_w += by_w;
 	st->by_t += by_w && turned;
 	st->reversed += reversed;

@@ -248,7 +248,8 @@ typedef struct nt_mesh {
 
 	/* what tangents and normal maps are together: pipeline/pairs.c */
 	nt_signs signs;
-	size_t wrong_w, judged_w; /* triangles of kept tangents, whose w is wrong, and that say */
+	size_t wrong_kept, mixed_kept, judged_kept; /* triangles of kept tangents: whose bitangent runs the wrong way,
+	                            whose corners differ in w, and that say, without those that differ */
 	nt_mesh_map normal_maps[2]; /* the normal map, and that of the clearcoat */
 	uint32_t pair;           /* number of a pair that it is in: its w and its maps are inverted; 0: none */
 	bool halved;             /* this run changes one half of such a pair alone */
@@ -460,6 +461,12 @@ static inline bool nt_mesh_gets_tangents(const nt_mesh *mesh)
 static inline bool nt_mesh_is_wanted(const nt_mesh *mesh)
 {
 	return nt_mesh_gets_tangents(mesh) || mesh->decision == NT_DECISION_NORMALS;
+}
+
+/* The vertex of a corner of a mesh that is loaded. */
+static inline size_t nt_mesh_vertex(const nt_mesh *mesh, size_t corner)
+{
+	return mesh->indices ? mesh->indices[corner] : corner;
 }
 
 /* Whether a mesh of a glTF keeps tangents that a material uses, and has what they are judged by. */

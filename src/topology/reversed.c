@@ -36,7 +36,8 @@ bool nt_is_reversed(const nt_tangent_triangle *t)
 	for (size_t k = 0; k < 3; k++) {
 		const nt_dvec3 normal = nt_dvec3_load(t->normals[k]);
 		nt_dvec3 tangent = nt_dvec3_load(t->tangents[k]);
-		nt_dvec3 bitangent = nt_dvec3_scale(t->tangents[k][3], nt_dvec3_cross(normal, tangent));
+		const double w = t->other_w ? -t->tangents[k][3] : t->tangents[k][3];
+		nt_dvec3 bitangent = nt_dvec3_scale(w, nt_dvec3_cross(normal, tangent));
 		if (!(nt_dvec3_dot(face, normal) > 0.0) || !nt_dvec3_normalise(&bitangent) ||
 			nt_dvec3_dot(bitangent, v) > REVERSED_COSINE || !nt_dvec3_normalise(&tangent) ||
 			nt_dvec3_dot(tangent, u) > REVERSED_COSINE)

@@ -13,6 +13,7 @@ typedef struct nt_tangent_triangle {
 	const float *positions[3], *normals[3], *texcoords[3];
 	const float *tangents[3]; /* of four numbers */
 	int orientation;          /* of the texture coordinates, not 0 */
+	bool other_w;             /* w is negated */
 } nt_tangent_triangle;
 
 /* Whether all three tangents run against growing u and all bitangents against growing v although the normals agree with

@@ -778,6 +778,48 @@ run -q zero.gltf out.glb
 says "[TAN_EXISTING_BAD]: nmtan --fix zero.gltf out.glb"
 run -d out zero.gltf m.gltf
 says "1 keeps wrong tangents"
+# what --check calls an error, a conversion tells, with the same count: T reversed, corners of two signs, and of a PLY
+tangents() { gltf m.gltf "$1" 'const n = g.meshes[0].primitives[0].attributes.TANGENT, b = bytes[0];
+	for (let i = 0; i < 4; i++) for (let k = 0; k < 4; k++) { const o = at(n, i) + 4 * k, x = b.readFloatLE(o); b.writeFloatLE('"$2"', o); }'; }
+tangents reversed 'k < 3 ? -x : x'
+tangents mixed 'k == 3 && i == 1 ? -x : x'
+tangents corner 'k == 3 && i == 0 ? -x : x'
+ply() { # $1: T and w, $2: faces
+	printf 'ply\nformat ascii 1.0\nelement vertex 4\n'
+	printf 'property float %s\n' x y z nx ny nz s t tx ty tz tw
+	printf 'element face %d\nproperty list uchar int vertex_indices\nend_header\n' $(($(wc -l <<<$2)))
+	printf "%s $1\n" '0 0 0 0 0 1 0 0' '1 0 0 0 0 1 1 0' '1 1 0 0 0 1 1 1' '0 1 0 0 0 1 0 1'
+	printf '%s\n' "$2"
+}
+ply '1 0 0 -1' '4 0 1 2 3' >quad.ply
+ply '1 0 0 -1' $'3 0 1 2\n3 0 2 3' >triangles.ply
+ply '-1 0 0 1' '4 0 1 2 3' >reversed.ply
+ply '0 0 0 1' '4 0 1 2 3' >zero.ply
+ply '1 0 0 1' '4 0 1 2 3' >right.ply
+while IFS='|' read -r input count kept checked; do
+	run --check --fail-on=never $input
+	for code in $checked; do
+		grep -q "$code *$count " "$WORK/out.txt" || wrong "$input: $code of $count"
+	done
+	for output in out.glb out.ply; do
+		run -q $input $output
+		exits 0
+		says "warning: $count $kept"
+		says "]: nmtan --fix $input $output"
+	done
+done <<'END'
+reversed.gltf|2|triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]|TAN_SIGN_MISMATCH
+mixed.gltf|1|triangle keeps tangents whose bitangent runs the wrong way: their corners have different w [TAN_KEPT_SIGN]|TAN_MIXED_W_TRIANGLE
+corner.gltf|2|triangles keep tangents whose bitangent runs the wrong way: their corners have different w [TAN_KEPT_SIGN]|TAN_MIXED_W_TRIANGLE
+quad.ply|2|triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]|TAN_SIGN_MISMATCH
+triangles.ply|2|triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]|TAN_SIGN_MISMATCH
+reversed.ply|2|triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]|TAN_SIGN_MISMATCH
+zero.ply|4|tangents that were kept are invalid [TAN_EXISTING_BAD]|TAN_ZERO TAN_EXISTING_BAD
+END
+run -q right.ply out.glb
+silent
+run -q -d out reversed.gltf m.gltf mixed.gltf quad.ply zero.ply right.ply
+says "6 unchanged, 4 keep wrong tangents"
 
 scene "a run that fails says it with the command, of kept tangents too, whatever it fails for"
 mapped
