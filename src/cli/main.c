@@ -591,7 +591,8 @@ static nt_status begin_session(session *s, nt_error *error)
 	const char *options = s->shaping.data ? s->shaping.data : "";
 	if (check_own(s->command, error))
 		return error->status;
-	if (s->command->manifest && nt_manifest_open(&s->manifest, s->command->manifest, options, error))
+	if (s->command->manifest && nt_manifest_open(&s->manifest, s->command->manifest, options,
+		s->command->settings.check, error))
 		return error->status;
 	return begin_update(s, error);
 }

@@ -119,18 +119,39 @@ static void append_codes(nt_buffer *out, const char *key, const size_t counts[NT
 	nt_buffer_text(out, "}");
 }
 
-/* The findings and the result of a run. */
-static void append_run(nt_buffer *out, const nt_summary *s)
+/* Triangles and vertices: of what got tangents; of a check, of all primitives that it judged,
+ * each with its own vertices. */
+static void append_sizes(nt_buffer *out, const nt_summary *s, bool check)
+{
+	size_t triangles = s->triangle_count, before = s->vertex_count, split = s->appended_tangents;
+	size_t after = before + s->appended_normals + split;
+	if (check && s->report && !s->report->failure) {
+		triangles = before = after = split = 0;
+		for (size_t i = 0; i < s->report->mesh_count; i++) {
+			const nt_report_mesh *m = &s->report->meshes[i];
+			triangles += m->triangle_count;
+			before += m->vertices_before;
+			after += m->vertices_after;
+			split += m->added_mirror + m->added_direction;
+		}
+	}
+	append_number(out, "triangles", triangles);
+	append_number(out, "vertices_before", before);
+	append_number(out, "vertices_after", after);
+	append_number(out, "split", split);
+}
+
+/* The findings and the result of a run. A report has those of the stages too, but for what it leaves out. */
+static void append_run(nt_buffer *out, const nt_summary *s, bool check)
 {
 	size_t found[NT_CODE_COUNT] = {0};
 	for (size_t i = 0; i < s->findings.count; i++)
 		found[s->findings.items[i].code] += s->findings.items[i].count;
+	for (int code = 0; s->report && code < NT_CODE_COUNT; code++)
+		found[code] = s->report->counts[code] ? s->report->counts[code] : found[code];
 	append_codes(out, "findings", found);
 	append_codes(out, "fixed", s->fixed);
-	append_number(out, "triangles", s->triangle_count);
-	append_number(out, "vertices_before", s->vertex_count);
-	append_number(out, "vertices_after", s->vertex_count + s->appended_normals + s->appended_tangents);
-	append_number(out, "split", s->appended_tangents);
+	append_sizes(out, s, check);
 	if (s->welded.before) {
 		append_number(out, "weld_before", s->welded.before);
 		append_number(out, "weld_after", s->welded.after);
@@ -152,7 +173,7 @@ static void append_run(nt_buffer *out, const nt_summary *s)
 	nt_buffer_format(out, "\"total\":%.6f}", s->total_seconds);
 }
 
-static void append_job(nt_buffer *out, const nt_job *job, const char *options, int exit_code)
+static void append_job(nt_buffer *out, const nt_job *job, const nt_manifest *manifest, int exit_code)
 {
 	static const nt_trace nothing;
 	const nt_trace *trace = job->outcome ? &job->outcome->summary.trace : &nothing;
@@ -163,7 +184,7 @@ static void append_job(nt_buffer *out, const nt_job *job, const char *options, i
 		: job->outcome->summary.left ? "left" : "done", exit_code);
 	append_text(out, "nmtan", nmtan_version());
 	nt_buffer_text(out, ",");
-	append_text(out, "options", options);
+	append_text(out, "options", manifest->options);
 	append_files(out, "outputs", trace, NT_TRACE_WRITTEN, job->end == NT_JOB_RAN && !job->status);
 	append_files(out, "dependencies", trace, NT_TRACE_READ, false);
 	append_files(out, "missing", trace, NT_TRACE_MISSING, false);
@@ -172,7 +193,7 @@ static void append_job(nt_buffer *out, const nt_job *job, const char *options, i
 	if (job->status && job->outcome)
 		append_error(out, &job->outcome->error);
 	if (job->outcome && job->end == NT_JOB_RAN)
-		append_run(out, &job->outcome->summary);
+		append_run(out, &job->outcome->summary, manifest->check);
 	nt_buffer_text(out, "}\n");
 }
 
@@ -206,9 +227,10 @@ static nt_status refuse_foreign(const nt_manifest *manifest, nt_error *error)
 		"refusing to write: the file exists already and is no manifest");
 }
 
-nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options, nt_error *error)
+nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options, bool check,
+	nt_error *error)
 {
-	*manifest = (nt_manifest){.path = path, .options = options, .fd = -1};
+	*manifest = (nt_manifest){.path = path, .options = options, .check = check, .fd = -1};
 	const bool standard = strcmp(path, "-") == 0;
 	if (!standard && refuse_foreign(manifest, error))
 		return error->status;
@@ -237,7 +259,7 @@ void nt_manifest_add(nt_manifest *manifest, const nt_job *job, int exit_code)
 	if (manifest->error.status)
 		return;
 	line->size = 0;
-	append_job(line, job, manifest->options, exit_code);
+	append_job(line, job, manifest, exit_code);
 	if (line->failed)
 		nt_fail_memory(&manifest->error);
 	else if (!write_whole(manifest->fd, line->data, line->size))

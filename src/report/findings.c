@@ -449,6 +449,7 @@ nt_status nt_report_complete(nt_report *report, const nt_report_options *options
 	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
 		++*(f->known ? &report->known[f->severity] : &report->by_severity[f->severity]);
+		report->counts[f->code] += f->count * (f->noted == NT_NONE && f->alike ? f->alike : 1);
 	}
 	if (options->max_findings && report->finding_count > options->max_findings &&
 		!keep_findings(report, options->max_findings))

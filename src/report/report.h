@@ -275,6 +275,7 @@ typedef struct nt_report {
 	size_t new_count;         /* of the findings, those that no baseline knows: the first ones */
 	size_t dropped;           /* new findings beyond max_findings */
 	size_t dropped_by_code[NT_CODE_COUNT]; /* the same */
+	size_t counts[NT_CODE_COUNT]; /* occurrences of all findings, known and dropped ones too, in all meshes alike */
 	size_t by_severity[3];    /* findings, dropped ones too, that no baseline knows */
 	size_t known[3];          /* by severity: findings that the baseline knows */
 	size_t hidden[3];         /* by severity: findings below options.min_severity, which are not here */

@@ -35,6 +35,24 @@ for try in $(seq 20); do
 done
 is "$(value m "-1e-5 < $rest < 0.01")" True
 
+scene "a line has the findings of a check and of a report, and a check's sizes"
+run -q "$data/mirrored_cube.obj" a.glb
+gltf a.glb wrong 'for (const n of g.meshes.flatMap(m => m.primitives.map(p => p.attributes.TANGENT)))
+	for (let i = 0; i < g.accessors[n].count; i++) bytes[0].writeFloatLE(-bytes[0].readFloatLE(at(n, i) + 12), at(n, i) + 12);
+	const [p] = g.meshes[0].primitives; g.meshes[0].primitives = [p, p]'
+for words in "--check" "--check --report=r.txt" "--check --max-issues=1" "--report=r.json" "--fail-on=error"; do
+	to="out.glb"
+	[ "${words#--check}" = "$words" ] || to=
+	run -q --manifest=m $words wrong.gltf $to
+	is "$words: $(value m 'm["wrong.gltf"]["findings"]["TAN_SIGN_MISMATCH"]')" "$words: 40"
+done
+validates --lines manifest m
+run -q --check --manifest=m a.glb "$data/mirrored_cube.obj"
+for file in a.glb "$data/mirrored_cube.obj"; do
+	is "$(value m '[m["'"$file"'"][k] for k in ("triangles", "vertices_before", "vertices_after", "split")]')" \
+		"$([ $file = a.glb ] && echo "[20, 40, 40, 0]" || echo "[20, 32, 40, 8]")"
+done
+
 scene "digests tell whose tangents, outputs and missing files have changed"
 printf 'newmtl bumps\nKd 1 0 0\nmap_Kd none.png\n' >mirrored_cube.mtl
 cp "$data/mirrored_cube.obj" .
@@ -115,6 +133,8 @@ run --only=all --manifest=m pair.gltf out.gltf
 exits 0
 says "3 primitives, 6 triangles, 6 -> 8 vertices (+2 where tangents differ)"
 is "$(value m '[m["pair.gltf"][k] for k in ("vertices_before", "vertices_after", "split")]')" "[6, 8, 2]"
+run -q --check --manifest=m out.gltf
+is "$(value m '[m["out.gltf"][k] for k in ("triangles", "vertices_before", "vertices_after", "split")]')" "[6, 24, 24, 0]" # each of three has eight, as in its report
 is "$(gltf out.gltf 'g.accessors[g.meshes[0].primitives[0].attributes.POSITION].count')" 8
 
 # A quad of four points on a line, and one of two points: four triangles without area in both reports. A conversion alone
@@ -128,6 +148,8 @@ for report in r c; do
 	is "$report $(python3 -c 'import json; print([f["count"] for f in json.load(open("'$report'.json"))["files"][0]["findings"]
 		if f["code"] == "POS_DEGENERATE_TRIANGLE"])')" "$report [4]"
 done
+is "$(value m 'm["flat.obj"]["findings"]["POS_DEGENERATE_TRIANGLE"]')" 4
+run --manifest=m flat.obj out.gltf
 is "$(value m '"POS_DEGENERATE_TRIANGLE" in m["flat.obj"]["findings"]')" False
 
 done_testing
