@@ -90,6 +90,17 @@ static int by_meshes(const void *a, const void *b)
 	return x->rim.side < y->rim.side ? -1 : x->rim.side > y->rim.side;
 }
 
+/* Whether two sides of different objects are front and back of a sheet, which are two points for points.c, too. */
+static bool are_opposed(const nt_check *check, const nt_rim_side *a, const nt_rim_side *b)
+{
+	const float *normals[2] = {check->scene->meshes[a->mesh].normals, check->scene->meshes[b->mesh].normals};
+	bool opposed = normals[0] && normals[1];
+	for (int end = 0; end < 2 && opposed; end++)
+		opposed = nt_compare_normals(normals[0] + 3 * (size_t)a->ends[end],
+			normals[1] + 3 * (size_t)b->ends[end]) < 0;
+	return opposed;
+}
+
 /* Whether two sides of different objects lie on each other, in space and in UV space, and are wound differently. */
 static bool are_mirrored(const nt_check *check, const nt_rim_side *a, const nt_rim_side *b)
 {
@@ -101,7 +112,7 @@ static bool are_mirrored(const nt_check *check, const nt_rim_side *a, const nt_r
 		meet = p[0] == q[0] && p[1] == q[1] &&
 			compare_positions(position_of(check, a, end), position_of(check, b, end)) == 0;
 	}
-	return meet;
+	return meet && !are_opposed(check, a, b);
 }
 
 /* The first such pair of a run of equal keys, of at most a few sides: a seam has two. */

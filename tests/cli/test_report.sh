@@ -367,15 +367,26 @@ same r.json s.json
 run --check --report=r.json cut.obj
 is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[]"
 
+front() {
+	printf 'v %s 0\nvt %s\n' '0 0' '0 0' '1 0' '1 0' '1 1' '1 1' '0 1' '0 1'
+	printf 'vn 0 0 1\nvn 0 0 -1\no front\nf 1/1/1 2/2/1 3/3/1 4/4/1\n'
+}
+
 scene "front and back of a quad are a doubled sheet, cut along one diagonal or along both"
-printf 'v %s 0\nvt %s\n' '0 0' '0 0' '1 0' '1 0' '1 1' '1 1' '0 1' '0 1' >front.obj
-printf 'vn 0 0 1\nvn 0 0 -1\nf 1/1/1 2/2/1 3/3/1 4/4/1\n' >>front.obj
 for back in '4 3 2 1' '1 4 3 2' '2 1 4 3' '3 2 1 4'; do
-	{ cat front.obj; sed 's, *\([0-9]\), \1/\1/2,g; s/^/f/' <<<"$back"; } >sheet.obj
+	{ front; sed 's, *\([0-9]\), \1/\1/2,g; s/^/f/' <<<"$back"; } >sheet.obj
 	run --check --report=r.json sheet.obj
 	is "$back $(value r.json '[f["code"] for f in r["files"][0]["findings"]], r["files"][0]["verdict"]')" \
 		"$back (['TAN_UNUSED', 'UV_MIRROR_OVERLAP'], 'Ready to use')"
 done
+
+scene "front and back of a sheet as two objects have no seam; with one normal they have"
+{ front; echo 'o back'; echo 'f 1/1/2 4/4/2 3/3/2 2/2/2'; } >sheet.obj
+run --check --report=r.json sheet.obj
+is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[]"
+sed '/^o back/,$s,/2\( \|$\),/1\1,g' sheet.obj >one.obj
+run --check --report=r.json one.obj
+is "$(value r.json '[f["count"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[4]"
 
 scene "images in a view are measured, moved by the edit or not"
 run -q --check --report=r.json "$data/plates.glb"

@@ -31,13 +31,16 @@ static uint32_t *find_place(uint32_t *table, size_t mask, const nt_mesh *mesh, c
 
 /* ---- sheets that are there twice ---- */
 
-/* Whether the normals of two vertices look the same way, 1, or opposite ways, -1, by 60 degrees at most; else 0. */
-static int compare_normals(const nt_mesh *mesh, uint32_t a, uint32_t b)
+int nt_compare_normals(const float *a, const float *b)
 {
-	const nt_dvec3 x = nt_dvec3_load(mesh->normals + 3 * (size_t)a);
-	const nt_dvec3 y = nt_dvec3_load(mesh->normals + 3 * (size_t)b);
+	const nt_dvec3 x = nt_dvec3_load(a), y = nt_dvec3_load(b);
 	const double dot = nt_dvec3_dot(x, y), both = nt_dvec3_dot(x, x) * nt_dvec3_dot(y, y);
 	return !(dot * dot >= 0.25 * both && both > 0.0) ? 0 : dot > 0.0 ? 1 : -1;
+}
+
+static int compare_normals(const nt_mesh *mesh, uint32_t a, uint32_t b)
+{
+	return nt_compare_normals(mesh->normals + 3 * (size_t)a, mesh->normals + 3 * (size_t)b);
 }
 
 /* The same as -1, for what is asked of many. */

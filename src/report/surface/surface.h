@@ -56,6 +56,9 @@ typedef struct nt_surface {
  * own. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, nt_scratch *scratch);
 
+/* Whether two normals look the same way, 1, or opposite ways, -1, by 60 degrees at most; else 0. points.c */
+int nt_compare_normals(const float *a, const float *b);
+
 /* A part of that: sets points, point_count and joints. points.c */
 nt_status nt_surface_weld(nt_surface *surface, nt_scratch *scratch);
 
