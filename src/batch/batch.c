@@ -118,8 +118,10 @@ static nt_status run_if_needed(progress *p, nt_job *job)
 	if (options->update && job->output)
 		status = nt_update_look(options->update, job->input, job->output, &updated, &own, &current,
 			&outcome->summary.trace, &outcome->error);
-	if (current)
+	if (current) {
 		job->end = NT_JOB_CURRENT;
+		outcome->summary.keeps_wrong = updated.making.keeps_wrong;
+	}
 	const bool runs = !status && !current;
 	if (runs) {
 		nt_trace_free(&outcome->summary.trace);
@@ -128,6 +130,7 @@ static nt_status run_if_needed(progress *p, nt_job *job)
 	nt_severity worst;
 	if (runs && outcome->summary.report && nt_report_worst(outcome->summary.report, &worst))
 		updated.making.worst = (int)worst;
+	updated.making.keeps_wrong = outcome->summary.keeps_wrong;
 	nt_update_done(&updated, runs && !status, &outcome->summary.trace);
 	return status;
 }

@@ -21,7 +21,7 @@ typedef struct nt_outcome {
 /* How a job ended. */
 typedef enum nt_job_end {
 	NT_JOB_RAN,     /* well or not, as its status says */
-	NT_JOB_CURRENT, /* its output was up to date; the summary has the trace alone */
+	NT_JOB_CURRENT, /* its output was up to date; the summary has the trace, and keeps_wrong */
 	NT_JOB_UNTRIED  /* an earlier one failed, and nothing was to be done after that */
 } nt_job_end;
 

@@ -459,7 +459,7 @@ static nt_status keep_renewed(look *l)
 	return status;
 }
 
-nt_status nt_record_look(nt_record *record, const nt_making *making, nt_freshness *freshness,
+nt_status nt_record_look(nt_record *record, nt_making *making, nt_freshness *freshness,
 	nt_trace *trace, nt_error *error)
 {
 	nt_buffer key = {0};
@@ -487,6 +487,7 @@ nt_status nt_record_look(nt_record *record, const nt_making *making, nt_freshnes
 	nt_trace_use(outer);
 	if (!status && same && l.renewed && record->tidy)
 		status = keep_renewed(&l);
+	making->keeps_wrong = same && nt_json_find(nt_json_root(l.line), "wrong");
 	nt_json_free(l.line);
 	if (!status && trace && trace->failed)
 		status = nt_fail_memory(error);
@@ -697,12 +698,13 @@ void nt_record_placed(nt_record *record, const nt_making *making, const nt_buffe
 		}
 		at++;
 	}
+	if (making->keeps_wrong)
+		nt_json_set_uint64(l.line, nt_json_put(l.line, nt_json_root(l.line), "wrong"), 1);
 	if (making->judging) {
 		put_text(l.line, "judged", verdicts[1 + making->worst]);
 		put_text(l.line, "judging", making->judging);
-		l.renewed = true;
 	}
-	if (l.renewed)
+	if (l.renewed || making->judging || making->keeps_wrong)
 		keep_renewed(&l);
 	nt_json_free(l.line);
 }

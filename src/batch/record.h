@@ -20,6 +20,7 @@
  * "found":"N.PNG"}: it was searched for the last part of the URI in any case, and is again if its state is another one.
  * "judged" is the highest severity of the findings, or "none", and "judging" the options that decide on that; a run
  * that nobody judged has neither.
+ * "wrong" is 1 if the output keeps tangents that are known to be wrong: a run that leaves it alone says so again.
  * "sum" is a digest of the line before it. A line without it is damaged, or was written by a version that noted less,
  * and holds for nothing.
  *
@@ -69,11 +70,13 @@ typedef struct nt_making {
 	const char *judging; /* options that decide on findings, in words; NULL: nobody judges */
 	int least_failure;   /* the nt_severity that fails; above the highest: none does */
 	int worst;           /* of what was made: the highest nt_severity of its findings; -1: there are none */
+	bool keeps_wrong;    /* and it keeps tangents that are known to be wrong */
 } nt_making;
 
-/* Looks whether everything is as the record says. `trace` receives what was read, missed and written then, with paths
- * that can be opened, when the answer is CURRENT; NULL: not wanted. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
-nt_status nt_record_look(nt_record *record, const nt_making *making, nt_freshness *freshness, nt_trace *trace,
+/* Looks whether everything is as the record says; then the answer is CURRENT, making->keeps_wrong is set, and `trace`
+ * receives what was read, missed and written, with paths that can be opened; NULL: not wanted. Returns NT_OK,
+ * NT_ERROR_IO or NT_ERROR_MEMORY. */
+nt_status nt_record_look(nt_record *record, nt_making *making, nt_freshness *freshness, nt_trace *trace,
 	nt_error *error);
 
 /* Counts outputs of the record that are there although their input is gone, and names the first by name: path is the

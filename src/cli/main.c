@@ -291,7 +291,9 @@ static void tell_job(void *user, nt_job *job)
 		code = tell_run(s, job);
 	else
 		s->no_report = true;
-	if (job->end == NT_JOB_CURRENT && s->style.verbosity + (s->count == 1) > 0)
+	const bool current = job->end == NT_JOB_CURRENT, still_wrong = current && job->outcome->summary.keeps_wrong;
+	s->wrong += still_wrong;
+	if (current && (s->style.verbosity + (s->count == 1) > 0 || (still_wrong && s->count == 1)))
 		nt_message_current(&s->text, job);
 	refuse_own(s, job, s->command->depfile, &s->no_depfile, &code);
 	refuse_own(s, job, s->command->report, &s->no_report, &code);

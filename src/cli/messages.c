@@ -395,7 +395,8 @@ static void append_job(nt_buffer *out, const nt_job *job)
 void nt_message_current(nt_buffer *out, const nt_job *job)
 {
 	append_job(out, job);
-	nt_buffer_text(out, ": up to date\n");
+	nt_buffer_format(out, ": up to date%s\n",
+		job->outcome->summary.keeps_wrong ? ", keeps wrong tangents" : "");
 }
 
 void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings)

@@ -756,6 +756,26 @@ for quiet in "" -q; do
 	exits 0
 	says "nmtan: 3 of 3 done; 1 got tangents, 2 unchanged, 1 keeps wrong tangents"
 done
+# which a record does not forget, until they are mended
+run --update -d kept square.obj m.gltf wrong.gltf
+says "1 keeps wrong tangents"
+for quiet in "" -q "--update=content" -v; do
+	touch wrong.gltf kept/wrong.gltf
+	run --update=content $quiet -d kept square.obj m.gltf wrong.gltf
+	exits 0
+	says "nmtan: 3 of 3 done, 3 of them up to date; 1 keeps wrong tangents"
+done
+validates --lines record kept/.nmtan-record
+for quiet in "" -q; do
+	run $quiet --update -d kept wrong.gltf
+	says "nmtan: wrong.gltf -> kept/wrong.gltf: up to date, keeps wrong tangents"
+	run $quiet --update -d kept m.gltf
+	says_not "wrong"
+done
+for quiet in "" -q; do
+	run $quiet --update --fix -d kept square.obj m.gltf wrong.gltf
+	says_not "wrong tangents"
+done
 run -q --report=r.json -d out square.obj wrong.gltf
 says "nmtan: 2 of 2 done; 1 got tangents, 1 unchanged, 1 keeps wrong tangents"
 run -q --fix -d out square.obj m.gltf wrong.gltf
