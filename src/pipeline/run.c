@@ -213,6 +213,7 @@ static nt_status read_scene(run *r)
 	status = nt_choose_writer(r->settings, r->output_path, r->reader, &r->writer, r->error);
 	if (status)
 		return status;
+	r->scene.judged = r->writer ? r->writer->format : r->scene.format;
 
 	status = nt_stage_given_maps(&r->scene, r->settings, makes_document(r), r->error);
 	if (status)

@@ -10,6 +10,7 @@
 #include "pipeline/morphs.h"
 #include "pipeline/stages.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "api/tangents.h"
@@ -405,6 +406,10 @@ static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 	const size_t triangles = count_triangles(mesh), missing = count_missing(mesh);
 	const size_t degenerate = c->degenerate_texcoords - missing;
 	const bool unmapped = triangles > 0 && degenerate == triangles;
+	const uint8_t unless_needed = !nt_mesh_needs_tangents(mesh, nt_format_is_gltf(scene->judged)); /* an info */
+	char detail[160];
+	snprintf(detail, sizeof detail, "%zu of %zu triangles %s no texture coordinates, and tangents made from %s",
+		missing, triangles, missing == 1 ? "has" : "have", missing == 1 ? "its normals" : "their normals");
 	const struct {
 		nt_code code;
 		size_t count;
@@ -417,14 +422,14 @@ static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 		{NT_CODE_TAN_REPAIRED, nt_counts_repaired(c)},
 		{NT_CODE_TAN_EXISTING_REPAIRED, mesh->replaced_tangents},
 		{NT_CODE_TAN_EXISTING_LEFT, mesh->left_tangents},
+		{NT_CODE_UV_MISSING, missing},
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		if (rows[i].count)
-			nt_finding_add(list, rows[i].code, nt_mesh_place(mesh, &(nt_place){0}), rows[i].count, NULL);
-	if (missing)
-		nt_finding_add(list, NT_CODE_UV_MISSING, nt_mesh_place(mesh, &(nt_place){0}), missing,
-			"%zu of %zu triangles %s no texture coordinates, and tangents made from %s", missing, triangles,
-			missing == 1 ? "has" : "have", missing == 1 ? "its normals" : "their normals");
+			nt_finding_put(list, (nt_finding){.code = rows[i].code, .count = rows[i].count,
+				.severity = i < 2 || rows[i].code == NT_CODE_UV_MISSING ? unless_needed : 0,
+				.detail = rows[i].code == NT_CODE_UV_MISSING ? detail : ""},
+				nt_mesh_place(mesh, &(nt_place){0}));
 	if (mesh->may_be_quads)
 		nt_finding_put(list, (nt_finding){.code = NT_CODE_TAN_QUADS_LIKELY, .count = mesh->may_be_quads,
 			.detail = "", .repair = mesh->slots ? NULL : "--quads=pairs --only=all"},

@@ -140,10 +140,9 @@ static inline int nt_settled_orientation(const nt_check *check, size_t triangle)
 	return check->flipped && nt_bit(check->flipped, triangle) ? 0 : check->surface.orientation[triangle];
 }
 
-/* Whether what is wrong with texture coordinates may show in the light: other formats than glTF do not tell. */
 static inline bool nt_needs_tangents(const nt_check *check)
 {
-	return !nt_format_is_gltf(check->scene->format) || check->mesh->slots != 0;
+	return nt_mesh_needs_tangents(check->mesh, nt_is_gltf(check));
 }
 
 /* The severity of a finding in texture coordinates: an info if no material needs tangents. */

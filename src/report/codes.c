@@ -288,20 +288,22 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Flip the island in the UV editor (Blender: UV > Mirror > X Axis) unless the texture was painted for "
 		"it.",
 		"one triangle whose UVs are clockwise"),
-	ROW(UV_MIXED_WINDING_ISLAND, WARNING, "w-w", EXPORT, NULL,
+	ROW(UV_MIXED_WINDING_ISLAND, WARNING, "w-i", EXPORT, NULL,
 		"island of {count} {triangle|triangles} is folded: both windings are connected",
 		"Inside one connected island some triangles are wound the other way, and they do not lie on a twin "
 		"point by point: a fold. Texture is mirrored there and tangents flip within the island. An info if no "
-		"material of a glTF needs tangents, and up to a thousandth of the mesh's area.",
+		"material of a glTF needs tangents (of an OBJ: of its glTF), and up to a thousandth of the mesh's "
+		"area.",
 		"Unfold the island (Blender: UV > Minimize Stretch, or UV > Unwrap), or cut it along the fold (Edge "
 		"> Mark Seam) and unwrap it again.",
 		"three quads in a row with u = 0, 1, 0.4, 1.4"),
-	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-w", EXPORT, NULL, "{count} of {detail} {is|are} flipped",
+	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-i", EXPORT, NULL, "{count} of {detail} {is|are} flipped",
 		"A few triangles in a row are wound against their island, or have texture coordinates of their own "
 		"inside a large island of the other winding: at most 5 % of its triangles and area, or a single one "
 		"up to 10 %, if all triangles that are wound so are at most a quarter. Texture is mirrored there. "
 		"They make no seam, fold or mirrored island. Needles whose winding is rounding are UV_NEAR_DEGENERATE "
-		"instead. An info if no material of a glTF needs tangents, and up to a thousandth of the mesh's area.",
+		"instead. An info if no material of a glTF needs tangents (of an OBJ: of its glTF), and up to a "
+		"thousandth of the mesh's area.",
 		"Relax the knot in the UV editor (Blender: UV > Minimize Stretch), or unwrap these triangles again.",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
 	ROW(UV_HARD_EDGE, WARNING, "w-i", LOOK, NULL,
@@ -314,33 +316,34 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Cut the texture coordinates along these edges (in Blender: Select > Select Sharp Edges, Edge > Mark "
 		"Seam, UV > Unwrap) or shade them smooth, and bake again.",
 		"two quads at a right angle with normals of their own and one strip of texture coordinates"),
-	ROW(UV_DEGENERATE_TRIANGLE, INFO, "w-w", EXPORT, NULL,
+	ROW(UV_DEGENERATE_TRIANGLE, INFO, "w-i", EXPORT, NULL,
 		"{count} {triangle has|triangles have} no area in UV space",
 		"The three texture coordinates are collinear: there is no direction in which u grows, so the tangent "
 		"comes from a neighbour or from the normal. A warning when such triangles are more than 1 % of the "
-		"mesh's area, unless a glTF's material uses no tangents.",
+		"mesh's area, unless no material of a glTF needs tangents (of an OBJ: of its glTF).",
 		"Unwrap these triangles (Blender: UV > Smart UV Project) if they are visible and normal mapped.",
 		"two triangles, of which one has UVs (0,0), (1,0), (2,0)"),
-	ROW(UV_NEAR_DEGENERATE, INFO, "w-w", EXPORT, NULL,
+	ROW(UV_NEAR_DEGENERATE, INFO, "w-i", EXPORT, NULL,
 		"{count} {triangle has|triangles have} nearly collinear texture coordinates",
 		"Rounding of the texture coordinates to float alone may turn the tangent of these triangles by "
 		"more than one degree, or their winding: the finding gives the smallest relative determinant "
 		"|det| / (|e1| |e2|) and the largest angle. A warning when they are more than 1 % of the mesh's area, "
-		"unless a glTF's material uses no tangents.",
+		"unless no material of a glTF needs tangents (of an OBJ: of its glTF).",
 		"Unwrap these triangles again, or keep islands near the origin (Blender: UV > Pack Islands).",
 		"a triangle with UVs (0,1000), (1,1000), (0,1000.001)"),
-	ROW(UV_FOLDED_QUAD, WARNING, "--w", EXPORT, NULL,
+	ROW(UV_FOLDED_QUAD, WARNING, "w-i", EXPORT, NULL,
 		"{count} {quad crosses itself|quads cross themselves} in UV space",
 		"Cut along either diagonal, its triangles are wound in opposite directions. Written as two triangles, "
 		"in a glTF, each gets its own sign and vertices of its own. MikkTSpace, and with it a bake of quads, "
 		"has one sign for both, that of the larger one: --raw writes that. PLY keeps the quad and this "
-		"sign, and the smaller triangle is lit from the wrong side.",
+		"sign, and the smaller triangle is lit from the wrong side. An info if no material of the glTF "
+		"needs tangents.",
 		"Straighten the quad in the UV editor, or triangulate it (Blender: Face > Triangulate Faces).",
 		"a quad with UVs (0,0), (1,1), (1,0), (0,1): a bowtie"),
-	ROW(UV_UNMAPPED, WARNING, "w-w", EXPORT, NULL,
+	ROW(UV_UNMAPPED, WARNING, "w-i", EXPORT, NULL,
 		"the mesh is not unwrapped: {count} {triangle has|triangles have} no area in UV space",
 		"All texture coordinates are alike, or on a line. Tangents are made from normals, and mean nothing. "
-		"An info if no material of a glTF needs tangents.",
+		"An info if no material of a glTF needs tangents (of an OBJ: of its glTF).",
 		"Unwrap the mesh (Blender: UV > Smart UV Project).",
 		"a quad whose corners have one vt"),
 	ROW(UV_ROUNDED_AWAY, INFO, "--i", EXPORT, NULL,
@@ -355,9 +358,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"(0, 0).",
 		"Export the mesh again.",
 		"a PLY vertex with s = nan"),
-	ROW(UV_MISSING, WARNING, "--w", EXPORT, NULL, "{detail}",
+	ROW(UV_MISSING, WARNING, "w-i", EXPORT, NULL, "{detail}",
 		"An OBJ, PLY or Draco mesh gets tangents if it has texture coordinates. This one has none, other "
-		"meshes of the file have some; or some of its triangles have none (an info up to 1 % of its area). "
+		"meshes of the file have some; or some of its triangles have none (an info up to 1 % of its area, and "
+		"if no material of the glTF needs tangents). "
 		"TAN_NO_UV is reported instead if no mesh has any, or if a material's "
 		"normal map needs them.",
 		"Unwrap it if it is to be normal mapped (Blender: UV > Smart UV Project); else --only=needed, or "
@@ -399,7 +403,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"If the origin is auto already, the objects are too far from each other for float: export them as "
 		"files of their own. Otherwise let nmtan choose an origin.",
 		"an OBJ with edges of 2 cm at \"v 431234.12 5412345.67 101.05\", with --origin=keep"),
-	ROW(MESH_NON_MANIFOLD_EDGE, WARNING, "wiw", EXPORT, NULL,
+	ROW(MESH_NON_MANIFOLD_EDGE, WARNING, "wii", EXPORT, NULL,
 		"{count} {edge belongs|edges belong} to more than two triangles",
 		"After vertices at one position are welded, three or more triangles meet at an edge. Which of them "
 		"are neighbours is then a matter of order, and programs differ in their tangents. An info if nothing "

@@ -115,11 +115,11 @@ static void tally_net(const nt_check *check, const nets *n, const net *one, nt_t
 	}
 }
 
-/* An info unless a normal map is asked for. */
+/* An info unless a normal map is asked for; a PLY has none. */
 static nt_severity severity_of(const nt_check *check)
 {
-	return check->mesh->slots & (NT_SLOT_NORMAL | NT_SLOT_CLEARCOAT_NORMAL) ? NT_SEVERITY_WARNING
-		: NT_SEVERITY_INFO;
+	const bool mapped = nt_is_gltf(check) && check->mesh->slots & (NT_SLOT_NORMAL | NT_SLOT_CLEARCOAT_NORMAL);
+	return mapped ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO;
 }
 
 /* Keeps a net as a page draws it: seam of the mesh. */

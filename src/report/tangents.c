@@ -157,7 +157,7 @@ static nt_severity severity_of(const nt_check *check, nt_code code)
 {
 	const bool broken = code == NT_CODE_TAN_NOT_FINITE || code == NT_CODE_TAN_ZERO ||
 		code == NT_CODE_TAN_NON_UNIT || code == NT_CODE_TAN_BAD_W;
-	if (nt_is_gltf(check) && check->mesh->slots == 0)
+	if (!nt_needs_tangents(check))
 		return broken ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO;
 	return nt_code_info(code)->severity;
 }

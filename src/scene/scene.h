@@ -376,6 +376,7 @@ typedef struct nt_scene {
 	nt_arena arena;
 	nt_arena temporary; /* of meshes that are */
 	nt_format format;
+	nt_format judged; /* that of the output; the input's if it is judged as it is */
 	const char *path; /* for messages and to find sidecars; "-" is standard input */
 	nt_mesh *meshes;
 	size_t mesh_count;
@@ -520,5 +521,12 @@ void nt_mesh_share(nt_mesh *mesh);
 /* The public view of a loaded mesh, for nmtan_tangents() and nmtan_split(). It refers to `stored`, which is
  * filled; v_offset is left to the caller. */
 nmtan_mesh nt_mesh_view(const nt_mesh *mesh, nmtan_stored_uv *stored);
+
+/* Whether tangents of the mesh, and what is wrong with its texture coordinates, may show in the light. The materials of
+ * a glTF tell, of one that is written, too; a PLY has none, and its tangents are for whoever reads it. */
+static inline bool nt_mesh_needs_tangents(const nt_mesh *mesh, bool judged_as_gltf)
+{
+	return !judged_as_gltf || mesh->slots != 0;
+}
 
 #endif

@@ -55,6 +55,7 @@ static bool any_has_texcoords(const nt_scene *scene)
 static void report_no_texcoords(nt_scene *scene, const nt_mesh *mesh, bool others_have)
 {
 	const bool gltf = nt_format_is_gltf(scene->format);
+	const bool judged_as_gltf = nt_format_is_gltf(scene->judged);
 	char detail[64];
 	if (mesh->asked_set) {
 		nt_finding_add_as(&scene->findings, NT_CODE_TAN_NO_UV,
@@ -72,7 +73,9 @@ static void report_no_texcoords(nt_scene *scene, const nt_mesh *mesh, bool other
 		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, nt_mesh_place(mesh, &(nt_place){0}), 1,
 			"the file has none at all");
 	else
-		nt_finding_add(&scene->findings, NT_CODE_UV_MISSING, nt_mesh_place(mesh, &(nt_place){0}), 1,
+		nt_finding_add_as(&scene->findings, NT_CODE_UV_MISSING,
+			nt_mesh_needs_tangents(mesh, judged_as_gltf) ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO,
+			nt_mesh_place(mesh, &(nt_place){0}),
 			"the mesh has no texture coordinates and gets no tangents");
 }
 

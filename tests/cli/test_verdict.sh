@@ -301,7 +301,7 @@ says_not "error"
 printf 'o one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\no two\nf 1 2 3\n' >half.obj
 run --check half.obj
 exits 0
-prints "warning   UV_MISSING"
+prints "info      UV_MISSING"
 # Faces without vt beside others: not that their texture coordinates are on a line; the same count in a conversion.
 for faces in 'f 1/1 2/2 3/3\nf 2/1 5/4 4/2\n\nf 2 5 6 4\n' 'vn 0 0 1\nf 1/1/1 2/2/1 3/3/1\nf 2/1/1 5/4/1 4/2/1\nf 2//1 5//1 6//1 4//1\n'; do
 	printf "v %s 0\n" '0 0' '1 0' '0 1' '1 1' '2 0' '2 1' >some.obj
@@ -310,9 +310,8 @@ for faces in 'f 1/1 2/2 3/3\nf 2/1 5/4 4/2\n\nf 2 5 6 4\n' 'vn 0 0 1\nf 1/1/1 2/
 	run --check --report=r.json some.obj
 	exits 0
 	is "$(value r.json '[(f["code"], f["severity"], f["count"], f["spots"][0]["line"] > 13) for f in r["files"][0]["findings"] if f["code"][:3] == "UV_"]')" \
-		"[('UV_MISSING', 'warning', 2, True), ('UV_DEGENERATE_TRIANGLE', 'warning', 1, False)]"
+		"[('UV_MISSING', 'info', 2, True), ('UV_DEGENERATE_TRIANGLE', 'info', 1, False)]"
 	run --manifest=m.json some.obj out.glb
-	says "warning: 2 of 4 triangles have no texture coordinates, and tangents made from their normals [UV_MISSING]"
 	is "$(value m.json '[r["findings"].get(c) for c in ("UV_MISSING", "UV_DEGENERATE_TRIANGLE")]')" "[2, 1]"
 done
 
@@ -1076,7 +1075,7 @@ is "$(value r.json '(lambda f: (f["verdict"][:57], f["totals"]["errors"]))(r["fi
 run -q --fail-on=error faulty.gltf out.gltf
 exits 6
 
-scene "a fold is a warning where a material needs tangents, an info where a glTF has none that does"
+scene "a fold is a warning where a material of the output needs tangents, an info where a glTF has none that does"
 mapped
 {
 	for x in 0 1 2 3; do printf "v $x 0 0\nv $x 1 0\n"; done
@@ -1084,9 +1083,13 @@ mapped
 	printf 'vn 0 0 1\nf 1/1/1 3/3/1 4/4/1 2/2/1\nf 3/3/1 5/5/1 6/6/1 4/4/1\nf 5/5/1 7/7/1 8/8/1 6/6/1\n'
 } >fold.obj
 run -q fold.obj fold.gltf
+run -q fold.obj fold.ply
+printf 'newmtl m\nnorm n.png\n' >m.mtl
+{ printf 'mtllib m.mtl\nusemtl m\n' && cat fold.obj; } >mapped.obj
 gltf fold.gltf mapped 'Object.assign(g, {images: [{uri: "n.png"}], textures: [{source: 0}], materials: [{normalTexture: {index: 0}}]});
 	g.meshes[0].primitives[0].material = 0'
-for expected in fold.obj:warning fold.gltf:info mapped.gltf:warning; do
+for expected in fold.obj:info fold.gltf:info mapped.gltf:warning mapped.obj:warning '--output-format=ply fold.obj:warning' fold.ply:warning \
+	'-o x.glb fold.ply:info'; do
 	run --check -q --report=r.json --fail-on=never ${expected%:*}
 	is "$expected $(value r.json '[f["severity"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIXED_WINDING_ISLAND"]')" \
 		"$expected ['${expected#*:}']"

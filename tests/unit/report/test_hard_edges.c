@@ -37,6 +37,7 @@ static hand_mesh *folded(double degrees, bool cut, bool smooth)
 			set_normal(h, v, sin(a), 0, cos(a));
 	hand_give_normals(h);
 	h->mesh.slots = NT_SLOT_NORMAL;
+	h->scene.format = NT_FORMAT_GLB;
 	return h;
 }
 
