@@ -369,10 +369,11 @@ static nt_status check_meshes(const nt_check *check, const checked_meshes *check
 static nt_status check_scene(const nt_scene *scene, const nt_report_options *options,
 	nt_report *report, nt_error *error)
 {
-	size_t finding_capacity = 0, foreign_faces = MOST_FOREIGN_FACES;
+	size_t finding_capacity = 0;
+	nt_others others = {.faces = MOST_FOREIGN_FACES};
 	nt_rims rims = {0};
 	nt_check check = {.scene = scene, .options = options, .report = report, .error = error,
-		.finding_capacity = &finding_capacity, .rims = &rims, .foreign_faces = &foreign_faces};
+		.finding_capacity = &finding_capacity, .rims = &rims, .others = &others};
 	checked_meshes checked = {.first = nt_alloc(scene->mesh_count, sizeof *checked.first),
 		.next = nt_alloc(scene->mesh_count, sizeof *checked.next),
 		.alike = nt_alloc(scene->mesh_count, sizeof *checked.alike)};
@@ -384,6 +385,7 @@ static nt_status check_scene(const nt_scene *scene, const nt_report_options *opt
 	if (!status)
 		status = nt_check_across(&check);
 	free(rims.sides);
+	nt_others_free(&others);
 	free(checked.first);
 	free(checked.next);
 	free(checked.alike);

@@ -9,6 +9,7 @@
 #include <math.h>
 #include "report/codes.h"
 #include "report/report.h"
+#include "report/surface/others.h"
 #include "report/surface/surface.h"
 
 /* Two sides of one edge: of a mirror edge, whose triangles are wound differently in UV space, or of a hard edge. */
@@ -47,7 +48,7 @@ typedef struct nt_check {
 	nt_error *error;          /* of the one check whose faults have words: seams.c */
 	size_t *finding_capacity;
 	nt_rims *rims;         /* of all objects of an OBJ */
-	size_t *foreign_faces; /* of other meshes that checks of a mesh may still look at */
+	nt_others *others;     /* of all that are checked */
 	nt_scratch *scratch; /* of this mesh */
 
 	uint32_t mesh_index;
@@ -189,18 +190,6 @@ static inline void nt_side_source_texcoord(const nt_check *check, uint32_t side,
 {
 	nt_source_texcoord(check->scene,
 		check->mesh->texcoords + 2 * (size_t)nt_side_vertex(&check->surface, side), out);
-}
-
-/* The place that a sampler looks up along an axis, for a coordinate of the surface: repeated modulo 1, mirrored
- * folded, clamped (inside the texture) or in tiles as it stands. Offsets that move all alike are left out. */
-static inline double nt_wrap_coordinate(const nt_mesh *mesh, int axis, double coordinate)
-{
-	const nt_wrap wrap = mesh->wrap[axis];
-	const double x = coordinate + mesh->wrap_offset[axis];
-	if (wrap == NT_WRAP_CLAMP || wrap == NT_WRAP_TILES)
-		return x;
-	const double tile = floor(x), within = x - tile;
-	return wrap == NT_WRAP_MIRRORED && fmod(tile, 2.0) != 0.0 ? 1.0 - within : within;
 }
 
 /* Which of the stored tangents a corner has; the mesh has some. */

@@ -21,7 +21,6 @@
 #include <string.h>
 #include "base/hash_index.h"
 #include "base/name_table.h"
-#include "topology/orientation.h"
 
 enum { SAMPLE_COUNT = 16384, GRID_SIZE = 128 };
 
@@ -349,50 +348,65 @@ static void stream_triangles(const nt_check *check, grid *g)
 				texture_of(check, g, t));
 }
 
-/* The triangles of another mesh, quads cut anyhow. */
+/* The search of samples among other meshes. */
+typedef struct search {
+	const nt_check *check;
+	nt_name_table *names;
+	grid *grid;
+	nt_status status;
+} search;
+
 static void stream_mesh(const nt_mesh *mesh, const uint32_t *textures, grid *g)
 {
-	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
-	size_t first = 0;
-	for (size_t f = 0; f < mesh->face_count && g->left && g->visits < g->most_visits; f++) {
-		const size_t size = mesh->face_sizes ? mesh->face_sizes[f] : 3;
-		for (size_t k = 2; k < size; k++) {
-			const size_t corners[3] = {first, first + k - 1, first + k};
-			const float *texcoords[3];
-			for (int i = 0; i < 3; i++)
-				texcoords[i] = uv + 2 * (mesh->indices ? mesh->indices[corners[i]] : corners[i]);
-			const uint32_t texture = textures[mesh->face_primitive ? mesh->face_primitive[f] : 0];
-			if (nt_orientation(texcoords[0], texcoords[1], texcoords[2]) > 0)
-				search_triangle(g, texcoords, texture);
-		}
-		first += size;
+	nt_mesh_triangles at = {.mesh = mesh};
+	const float *texcoords[3];
+	while (g->left && g->visits < g->most_visits && nt_next_unmirrored(&at, texcoords))
+		search_triangle(g, texcoords, textures[mesh->face_primitive ? mesh->face_primitive[at.face] : 0]);
+}
+
+/* Returns whether to go on: as long as the scene's budget for it lasts, as thousands may have mirrored islands. */
+static bool search_other(void *context, const nt_mesh *other)
+{
+	search *x = context;
+	const nt_check *check = x->check;
+	size_t *faces = &check->others->faces;
+	if (other == check->mesh)
+		return true;
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	const uint32_t *textures = number_textures(check, other, x->names);
+	if (!textures) {
+		x->status = NT_ERROR_MEMORY;
+		return false;
 	}
+	bool shared = textures[0] != UINT32_MAX;
+	for (size_t p = 1; p < other->primitive_count && !shared; p++)
+		shared = textures[p] != UINT32_MAX;
+	const size_t cost = 1 + other->primitive_count + (shared ? other->face_count : 0);
+	if (cost <= *faces && shared)
+		stream_mesh(other, textures, x->grid);
+	*faces -= cost <= *faces ? cost : 1;
+	nt_scratch_back(check->scratch, mark);
+	return x->grid->left && x->grid->visits < x->grid->most_visits && *faces;
 }
 
-/* Whether a sampler takes the coordinates of two meshes alike. */
-static bool share_sampler(const nt_mesh *a, const nt_mesh *b)
+static nt_status search_others(const nt_check *check, nt_name_table *names, grid *g)
 {
-	return a->gltf_material == b->gltf_material && a->texcoord_set == b->texcoord_set &&
-		memcmp(a->wrap, b->wrap, sizeof a->wrap) == 0 && a->solve_sign == b->solve_sign;
-}
-
-/* Other meshes, as long as the scene's budget for it lasts: each of thousands may have mirrored islands. */
-static nt_status stream_others(const nt_check *check, nt_name_table *names, grid *g)
-{
-	for (size_t i = 0; i < check->scene->mesh_count && g->left; i++) {
-		const nt_mesh *other = &check->scene->meshes[i];
-		if (other == check->mesh || !other->triangles || !other->positions || !other->texcoords ||
-			other->face_count > *check->foreign_faces || !share_sampler(check->mesh, other))
+	double minimum[2] = {INFINITY, INFINITY}, maximum[2] = {-INFINITY, -INFINITY};
+	search x = {check, names, g, NT_OK};
+	if (!check->others->faces)
+		return NT_OK;
+	for (size_t i = 0; i < g->sample_count; i++) {
+		const sample *p = &g->samples[i];
+		if (p->found)
 			continue;
-		const nt_scratch_mark mark = nt_scratch_here(check->scratch);
-		const uint32_t *textures = number_textures(check, other, names);
-		if (!textures)
-			return NT_ERROR_MEMORY;
-		*check->foreign_faces -= other->face_count;
-		stream_mesh(other, textures, g);
-		nt_scratch_back(check->scratch, mark);
+		minimum[0] = fmin(minimum[0], p->u);
+		minimum[1] = fmin(minimum[1], p->v);
+		maximum[0] = fmax(maximum[0], p->u);
+		maximum[1] = fmax(maximum[1], p->v);
 	}
-	return NT_OK;
+	const nt_status status = nt_others_ask(check->others, check->scene, check->mesh, minimum, maximum,
+		search_other, &x);
+	return status ? status : x.status;
 }
 
 /* Sets `covered` of every island with mirrored triangles. */
@@ -401,7 +415,8 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 	const size_t islands = check->facts->island_count;
 	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
 	grid *g = nt_scratch_alloc(check->scratch, 1, sizeof *g);
-	sample *samples = nt_scratch_alloc(check->scratch, SAMPLE_COUNT + islands, sizeof *samples);
+	const size_t most = (mirrored_count < SAMPLE_COUNT ? mirrored_count : SAMPLE_COUNT) + islands;
+	sample *samples = nt_scratch_alloc(check->scratch, most, sizeof *samples);
 	uint8_t *met = nt_scratch_alloc(check->scratch, islands, sizeof *met);
 	double *sums = nt_scratch_alloc(check->scratch, 2 * islands, sizeof *sums);
 	nt_name_table names = {0};
@@ -422,7 +437,7 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 	fill_grid(g);
 	g->left = g->sample_count;
 	stream_triangles(check, g);
-	const nt_status status = g->left ? stream_others(check, &names, g) : NT_OK;
+	const nt_status status = g->left ? search_others(check, &names, g) : NT_OK;
 	nt_name_table_free(&names);
 	memset(sums, 0, 2 * islands * sizeof *sums);
 	for (size_t i = 0; i < g->sample_count; i++) {

@@ -93,6 +93,7 @@ done
 first=
 grows folded $((faces / 8)) IN out.ply
 grows tiles $((faces / 8)) --check --report=r.json IN
+grows objects $((faces / 8)) --check IN
 grows bumps 10 --check IN
 grows turned $((blocks / 5)) --flip-green=on IN out.glb
 for kind in animated levels; do

@@ -36,6 +36,7 @@ edge      an OBJ of COUNT triangles on one edge
 repeated  an OBJ of one triangle, COUNT times
 centre    an OBJ of COUNT triangles of three points each, all around one centre
 patches   an OBJ of COUNT quads, each an island of its own over the same texels, every other one mirrored
+objects   an OBJ of COUNT quads that are objects, every other one mirrored and with texels of its own
 """
 import base64
 import json
@@ -240,6 +241,17 @@ def patches(count, out):
         out.write(b'f %d/%d %d/%d %d/%d %d/%d\n' % tuple(n for k in range(4) for n in (4 * i + k + 1, corners[k])))
 
 
+def objects(count, out):
+    """Two at one edge each."""
+    rows = math.isqrt(count) + 1
+    for i in range(count):
+        x, u, v, side = i + i // 2, i % rows / rows, i // rows / rows, 0.8 / rows
+        out.write(b'o %d\nv %d 0 0\nv %d 0 0\nv %d 1 0\nv %d 1 0\n' % (i, x, x + 1, x + 1, x))
+        for right, up in (((1, 0), (0, 0), (0, 1), (1, 1)) if i % 2 else ((0, 0), (1, 0), (1, 1), (0, 1))):
+            out.write(b'vt %.7f %.7f\n' % (u + right * side, v + up * side))
+        out.write(b'f -4/-4 -3/-3 -2/-2 -1/-1\n')
+
+
 def grid(side, windows):
     """Positions, normals, texture coordinates and indices."""
     width = side + 1
@@ -402,4 +414,4 @@ with open(sys.argv[3], 'wb') as out:
          'patches': patches, 'repeated': repeated, 'centre': centre, 'folded': folded,
          'tiles': tiles, 'turned': turned, 'libraries': libraries, 'slashes': slashes, 'colors': colors,
          'buffers': buffers, 'animated': animated, 'levels': levels, 'scans': scans,
-         'strips': strips, 'list': names, 'apart': apart}[kind](count, out)
+         'strips': strips, 'list': names, 'apart': apart, 'objects': objects}[kind](count, out)
