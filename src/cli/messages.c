@@ -399,6 +399,36 @@ void nt_message_current(nt_buffer *out, const nt_job *job)
 		job->outcome->summary.keeps_wrong ? ", keeps wrong tangents" : "");
 }
 
+/* Options of tangents that are computed, in a glTF that has them all. */
+static void append_idle(nt_buffer *out, const nt_job *job, const nt_settings *settings)
+{
+	const nt_summary *s = &job->outcome->summary;
+	const struct {
+		bool given;
+		const char *name;
+	} options[] = {{settings->method != NMTAN_METHOD_MIKKTSPACE, "--method"},
+		{settings->repair == NMTAN_REPAIR_OFF, "--raw"}, {settings->across == NT_ACROSS_MESH, "--across=mesh"},
+		{settings->quads == NT_QUADS_PAIRS, "--quads=pairs"},
+		{settings->precision != NT_PRECISION_AUTO, "--precision"}, {settings->bitangents, "--bitangents"}};
+	size_t count = 0;
+	if (!s->unchanged || settings->check || settings->fix || settings->existing != NT_EXISTING_KEEP ||
+		!s->mesh_count || s->skipped[NT_SKIP_HAS_TANGENTS] != s->mesh_count ||
+		!nt_format_is_gltf(s->input_format))
+		return;
+	for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+		if (!options[i].given)
+			continue;
+		if (!count) {
+			nt_buffer_text(out, "nmtan: ");
+			nt_buffer_clean(out, strcmp(job->input, "-") == 0 ? "standard input" : job->input);
+		}
+		nt_buffer_format(out, "%s%s", count++ ? ", " : ": ", options[i].name);
+	}
+	if (count)
+		nt_buffer_format(out, " %s nothing: the primitives have tangents; --existing=replace makes them new\n",
+			count == 1 ? "changes" : "change");
+}
+
 void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings)
 {
 	const nt_summary *s = &job->outcome->summary;
@@ -466,6 +496,7 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	if (s->note && !settings->check && !settings->dry_run)
 		nt_buffer_clean(out, s->note);
 	nt_buffer_text(out, "\n");
+	append_idle(out, job, settings);
 }
 
 void nt_message_meshes(nt_buffer *out, const nt_job *job)

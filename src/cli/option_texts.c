@@ -83,7 +83,7 @@ void nt_options_first_help(nt_buffer *out)
 		"  nmtan --check in.glb                     what is wrong with a file\n"
 		"  nmtan --check --report=in.html in.glb    the same, as a page with pictures\n"
 		"  nmtan --fix in.glb out.glb               repair what is wrong\n"
-		"  nmtan --quads=pairs in.glb out.glb       the normal map was baked on quads\n"
+		"  nmtan --quads=pairs in.glb out.glb       missing tangents, if baked on quads\n"
 		"  nmtan --normal-map=n.png in.ply out.glb  a normal map and no material\n"
 		"  nmtan --update -r -d out assets          a folder; again, only what changed\n"
 		"\nOptions:\n"

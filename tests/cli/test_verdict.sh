@@ -963,8 +963,14 @@ done <<'END'
 --bump=height|m.gltf|, nothing that --bump=height converts,
 --flip-green=on|square.gltf|, nothing that --flip-green turns,
 --weld|m.gltf|, no vertices are equal,
+--bitangents|m.gltf|nmtan: m.gltf: --bitangents changes nothing: the primitives have tangents; --existing=replace makes them new
+--raw --across=mesh --quads=pairs --method=area --precision=short|m.gltf|nmtan: m.gltf: --method, --raw, --across=mesh, --quads=pairs, --precision change nothing: the primitives have tangents; --existing=replace makes them new
 END
 python3 "$ROOT/tests/support/images.py" write n.png 16 16 "x * 16"
+for options in "--existing=replace --bitangents m.gltf" "--bitangents square.gltf" "--images=embed m.gltf"; do
+	run $options out.glb
+	says_not "tangents; --existing"
+done
 run --bump=height m.gltf out.glb
 says_not "nothing that"
 says "converted 1 normal map"
