@@ -3,8 +3,9 @@
  * Authored tangents with --existing=repair: which of them stay, and what becomes of the others.
  *
  * With texture coordinates there is a fresh solve, and faces go one by one: either all corners of a face keep their
- * tangents or all get the new ones, because they are interpolated with each other. If w is to stay inverted, it is read
- * and written the other way.
+ * tangents or all get the new ones, because they are interpolated with each other. If nearly all faces of a primitive
+ * get new ones, so do others whose T runs against the solve's: reversed, but not beyond what averaging does. If w is to
+ * stay inverted, it is read and written the other way.
  *
  * Without them nothing says where a tangent should point but the tangent itself. Each corner goes by itself: what is
  * valid keeps its bytes, what is not becomes the nearest unit vector across its normal. w stays where the corners of a
@@ -18,11 +19,6 @@
 #include "report/maker/quads.h"
 #include "topology/corners.h"
 #include "topology/reversed.h"
-
-static size_t face_size(const nt_mesh *mesh, size_t face)
-{
-	return mesh->face_sizes ? mesh->face_sizes[face] : 3;
-}
 
 /* Finite, of unit length (to the Khronos validator's tolerance), off perpendicular by no more than a degree, as
  * --check has it: half a degree comes from rounding to 8 bits. n may be NULL. margin: what storing it may do to a
@@ -68,7 +64,7 @@ static bool corner_is_valid(const nt_mesh *mesh, size_t corner, const float *tan
 static bool face_is_valid(const nt_mesh *mesh, const nmtan_mesh *view, size_t face, size_t first,
 	float tangents[][4])
 {
-	const size_t size = face_size(mesh, face);
+	const size_t size = nt_face_size(view, face);
 	const float w = common_sign(tangents, size);
 	for (size_t k = 0; k < size; k++)
 		if (!corner_is_valid(mesh, first + k, tangents[k]))
@@ -99,18 +95,28 @@ static bool face_is_valid(const nt_mesh *mesh, const nmtan_mesh *view, size_t fa
 	return w != 0.0f;
 }
 
-/* Treatment of a face. */
-typedef enum face_fate { STAYS, IS_LEFT, IS_REPLACED } face_fate;
+/* Treatment of a face; IS_OPPOSED: stays, but its T runs against the solve's at all corners. */
+typedef enum face_fate { STAYS, IS_OPPOSED, IS_LEFT, IS_REPLACED } face_fate;
 
 /* A face is replaced where that makes it better: not where the solve gives what is there, as far as storing it shows,
- * nor where it gives no valid one either and each corner is usable. A second run finds what the first one made. */
-static face_fate fate_of(const nt_mesh *mesh, const nmtan_mesh *view, size_t face, size_t first, float authored[][4],
-	float solved[][4])
+ * nor where it gives no valid one either and each corner is usable. A second run finds what the first one made.
+ * Gives the authored tangents, and in how many w is not as it was meant. */
+static face_fate fate_of(const nt_mesh *mesh, const nmtan_mesh *view, size_t face, size_t first, float solved[][4],
+	float authored[][4], size_t *turned)
 {
+	const size_t size = nt_face_size(view, face);
+	bool is_same = true, is_usable = true, is_opposed = true;
+	*turned = 0;
+	for (size_t k = 0; k < size; k++) {
+		memcpy(authored[k], mesh->tangents + 4 * nt_mesh_vertex(mesh, first + k), sizeof authored[k]);
+		const float w = sign_of(mesh, authored[k][3]);
+		*turned += w != authored[k][3];
+		authored[k][3] = mesh->keeps_inverted ? -w : w;
+		is_opposed &= nt_dvec3_dot(nt_dvec3_load(authored[k]), nt_dvec3_load(solved[k])) < 0.0;
+	}
 	if (face_is_valid(mesh, view, face, first, authored))
-		return STAYS;
-	bool is_same = true, is_usable = true;
-	for (size_t k = 0; k < face_size(mesh, face); k++) {
+		return is_opposed ? IS_OPPOSED : STAYS;
+	for (size_t k = 0; k < size; k++) {
 		for (size_t i = 0; i < 4; i++)
 			is_same &= fabsf(authored[k][i] - solved[k][i]) <= (i < 3 ? mesh->tangent_step : 0);
 		is_usable &= corner_is_valid(mesh, first + k, authored[k]);
@@ -120,32 +126,30 @@ static face_fate fate_of(const nt_mesh *mesh, const nmtan_mesh *view, size_t fac
 
 void nt_restore_authored(nt_mesh *mesh, float *corner_tangents, float *solved_tangents)
 {
+	enum { OTHERS_OF = 100 };
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
-	const float convention = mesh->keeps_inverted ? -1.0f : 1.0f;
+	float (*tangents)[4] = (float (*)[4])corner_tangents, authored[MOST_CORNERS][4];
+	size_t turned, replaced = 0, others = 0;
+	/* if nearly all are replaced, the opposed go with them; a few faces tell that many stay */
+	for (size_t face = 0, first = 0; face < mesh->face_count && others <= mesh->face_count / OTHERS_OF;
+		first += nt_face_size(&view, face++))
+		*(fate_of(mesh, &view, face, first, tangents + first, authored, &turned) == IS_REPLACED
+			? &replaced : &others) += 1;
 	mesh->replaced_tangents = mesh->left_tangents = 0;
-	for (size_t face = 0, first = 0; face < mesh->face_count;
-		first += face_size(mesh, face++)) {
-		const size_t size = face_size(mesh, face);
-		float authored[MOST_CORNERS][4], solved[MOST_CORNERS][4];
-		size_t turned = 0;
-		for (size_t k = 0; k < size; k++) {
-			memcpy(authored[k], mesh->tangents + 4 * nt_mesh_vertex(mesh, first + k), sizeof authored[k]);
-			memcpy(solved[k], corner_tangents + 4 * (first + k), sizeof solved[k]);
-			const float w = sign_of(mesh, authored[k][3]);
-			turned += w != authored[k][3];
-			authored[k][3] = convention * w;
-		}
-		const face_fate fate = fate_of(mesh, &view, face, first, authored, solved);
+	for (size_t face = 0, first = 0; face < mesh->face_count; first += nt_face_size(&view, face++)) {
+		const size_t size = nt_face_size(&view, face);
+		face_fate fate = fate_of(mesh, &view, face, first, tangents + first, authored, &turned);
+		if (fate == IS_OPPOSED && others <= replaced / OTHERS_OF)
+			fate = IS_REPLACED;
 		mesh->replaced_tangents += fate == IS_REPLACED ? size : turned;
 		mesh->left_tangents += fate == IS_LEFT ? size : 0;
 		for (size_t k = 0; k < size; k++) {
-			float *tangent = corner_tangents + 4 * (first + k);
 			if (fate != IS_REPLACED)
-				memcpy(tangent, authored[k], sizeof authored[k]);
+				memcpy(tangents[first + k], authored[k], sizeof authored[k]);
 			if (solved_tangents)
 				solved_tangents[4 * (first + k) + 3] = fate == IS_REPLACED;
-			tangent[3] *= convention;
+			tangents[first + k][3] *= mesh->keeps_inverted ? -1.0f : 1.0f;
 		}
 	}
 }
@@ -180,8 +184,8 @@ void nt_mend_untextured(nt_mesh *mesh, const nmtan_mesh *view, float *tangents)
 		0, 0, 0, 0}; /* where other normals were made, there are no tangents left */
 	mesh->replaced_tangents = 0;
 	for (size_t face = 0, first = 0; face < mesh->face_count;
-		first += face_size(mesh, face++)) {
-		const size_t size = face_size(mesh, face);
+		first += nt_face_size(view, face++)) {
+		const size_t size = nt_face_size(view, face);
 		float authored[MOST_CORNERS][4] = {{0}};
 		for (size_t k = 0; mesh->tangents && k < size; k++)
 			memcpy(authored[k], mesh->tangents + 4 * nt_mesh_vertex(mesh, first + k), sizeof authored[k]);
