@@ -19,14 +19,12 @@ enum { MIXED = 2 };
 
 static int common_sign(const nt_mesh *mesh, const size_t v[3])
 {
-	int signs[3];
+	int positive = 0, negative = 0;
 	for (int k = 0; k < 3; k++) {
-		const float w = mesh->tangents[4 * v[k] + 3];
-		signs[k] = (w > 0.0f) - (w < 0.0f);
+		positive += mesh->tangents[4 * v[k] + 3] > 0.0f;
+		negative += mesh->tangents[4 * v[k] + 3] < 0.0f;
 	}
-	if (!signs[0] || !signs[1] || !signs[2])
-		return 0;
-	return signs[0] == signs[1] && signs[1] == signs[2] ? signs[0] : MIXED;
+	return positive + negative < 3 ? 0 : positive == 3 ? 1 : negative == 3 ? -1 : MIXED;
 }
 
 /* Triangles that say; of them those whose w differs, whose w is wrong, and whose T is reversed while w is right. */
@@ -203,16 +201,14 @@ void nt_tell_kept(nt_scene *scene)
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
 		const size_t wrong = mesh->wrong_kept, mixed = mesh->mixed_kept;
-		char share[64] = "", others[64] = "", detail[256];
+		char share[64], others[64], detail[256];
 		if ((!wrong && !mixed) || mesh->pair)
 			continue;
-		if (wrong)
-			snprintf(share, sizeof share, "%.3g %% of %zu", 100.0 * (double)wrong /
-				(double)mesh->judged_kept, mesh->judged_kept);
-		if (wrong && mixed)
-			snprintf(others, sizeof others, ", and corners of %zu more have different w", mixed);
-		snprintf(detail, sizeof detail, "%s%s%s", wrong ? share : "their corners have different w", others,
-			nt_doubt_text(mesh->doubt));
+		snprintf(share, sizeof share, "%.3g %% of %zu", 100.0 * (double)wrong / (double)mesh->judged_kept,
+			mesh->judged_kept);
+		snprintf(others, sizeof others, ", and corners of %zu more have different w", mixed);
+		snprintf(detail, sizeof detail, "%s%s%s", wrong ? share : "their corners have different w",
+			wrong && mixed ? others : "", nt_doubt_text(mesh->doubt));
 		nt_finding_put(&scene->findings, (nt_finding){.code = NT_CODE_TAN_KEPT_SIGN,
 			.count = wrong ? wrong : mixed, .detail = detail, .stays = mesh->halved,
 			.repair = mesh->doubt == NT_DOUBT_UNDECODABLE ? "--existing=replace" : NULL},
