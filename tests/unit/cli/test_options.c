@@ -284,7 +284,7 @@ TEST(of_choices_the_last_counts_but_names_and_lists_stand_once)
 	accepts(&c, WORDS("--method=area", "--method=lengyel", "-j2", "-j3", "a", "b"));
 	assert_int_equal(c.settings.method, NMTAN_METHOD_LENGYEL);
 	assert_int_equal(c.settings.threads, 3);
-	refuses("--report is there twice: 'r.xml' and 'r.sarif'",
+	refuses("--report is there twice: 'r.xml' and 'r.sarif'; another run writes the other",
 		WORDS("--check", "--report=r.xml", "--report=r.sarif", "a"));
 	refuses("--directory is there twice", WORDS("-d", "x", "-dy", "a"));
 }
@@ -296,6 +296,9 @@ TEST(names_must_be_as_many_as_the_form_takes)
 	assert_int_equal(parse(&c, &error, (const char *const[]){NULL}), NT_ERROR_USAGE);
 	refuses("OUTPUT is missing: nmtan a OUT.glb", WORDS("a"));
 	refuses("'c'", WORDS("a", "b", "c"));
+	refuses("there is no file 'check'; did you mean --check?", WORDS("check", "a.glb"));
+	refuses("there is no file 'help'; did you mean --help?", WORDS("help"));
+	refuses("--min-severity hides", WORDS("--check", "--min-severity=error", "--fail-on=warning", "a"));
 	refuses("INPUT is missing", WORDS("--check"));
 	refuses("INPUT is missing", WORDS("-d", "x"));
 	refuses("'-'", WORDS("-d", "x", "-"));
