@@ -2,8 +2,8 @@
 /*
  * Mirror seams between the objects of one OBJ: two halves that are objects of their own have positions and texture
  * coordinates that meet, and are one surface to whoever looks at it, as they would be as groups. Each mesh leaves the
- * sides at its rim; sorted by their positions, those of an edge follow each other. There is one finding for each two
- * objects, which names both.
+ * sides at its rim; sorted by positions and texture coordinates, those that may be a seam follow each other. There is one
+ * finding for each two objects, which names both.
  */
 #include "report/check.h"
 
@@ -27,9 +27,12 @@ static int compare_positions(const float *a, const float *b)
 	return 0;
 }
 
-static uint64_t hash_position(const float *p)
+static uint64_t hash_end(const nt_check *check, const nt_rim_side *side, int end)
 {
-	return nt_hash_words(nt_hash_floats(p[0], p[1]), nt_hash_floats(p[2], 0));
+	const float *p = position_of(check, side, end);
+	const float *uv = check->mesh->texcoords + 2 * (size_t)side->ends[end];
+	return nt_hash_words(nt_hash_words(nt_hash_floats(p[0], p[1]), nt_hash_floats(p[2], 0)),
+		nt_hash_floats(uv[0], uv[1]));
 }
 
 nt_status nt_check_rims(nt_check *check)
@@ -51,8 +54,7 @@ nt_status nt_check_rims(nt_check *check)
 			rim.ends[0] = rim.ends[1];
 			rim.ends[1] = first;
 		}
-		rim.key = nt_hash_words(hash_position(position_of(check, &rim, 0)),
-			hash_position(position_of(check, &rim, 1)));
+		rim.key = nt_hash_words(hash_end(check, &rim, 0), hash_end(check, &rim, 1));
 		if (!nt_grow((void **)&rims->sides, &rims->capacity, rims->count + 1, sizeof *rims->sides))
 			return NT_ERROR_MEMORY;
 		rims->sides[rims->count++] = rim;
@@ -115,16 +117,22 @@ static bool are_mirrored(const nt_check *check, const nt_rim_side *a, const nt_r
 	return meet && !are_opposed(check, a, b);
 }
 
-/* The first such pair of a run of equal keys, of at most a few sides: a seam has two. */
+/* The first such pair of a run of equal keys, of at most a few sides of each orientation: a seam has two. Copies of an
+ * object may be many. */
 static bool find_pair(const nt_check *check, size_t first, size_t end, seam_edge *edge)
 {
 	enum { MOST_SIDES = 16 };
-	const nt_rim_side *sides = check->rims->sides;
-	end = end - first > MOST_SIDES ? first + MOST_SIDES : end;
-	for (size_t i = first; i < end; i++)
-		for (size_t k = i + 1; k < end; k++)
-			if (are_mirrored(check, &sides[i], &sides[k])) {
-				*edge = (seam_edge){sides[i], sides[k].mesh};
+	const nt_rim_side *picked[2 * MOST_SIDES];
+	size_t counts[2] = {0, 0}, count = 0;
+	for (size_t i = first; i < end; i++) {
+		const nt_rim_side *side = &check->rims->sides[i];
+		if (counts[side->orientation > 0]++ < MOST_SIDES)
+			picked[count++] = side;
+	}
+	for (size_t i = 0; i < count; i++)
+		for (size_t k = i + 1; k < count; k++)
+			if (are_mirrored(check, picked[i], picked[k])) {
+				*edge = (seam_edge){*picked[i], picked[k]->mesh};
 				return true;
 			}
 	return false;

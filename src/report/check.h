@@ -30,7 +30,7 @@ typedef enum nt_stored {
 
 /* A side at the rim of an object, its ends ascending by position. across.c */
 typedef struct nt_rim_side {
-	uint64_t key;            /* of the positions at its ends */
+	uint64_t key;            /* of positions and texture coordinates at its ends */
 	uint32_t mesh, side, face; /* side: of the mesh as a surface */
 	uint32_t ends[2];        /* vertices of the mesh */
 	int orientation;         /* of the triangle: 1 or -1 */

@@ -388,6 +388,22 @@ sed '/^o back/,$s,/2\( \|$\),/1\1,g' sheet.obj >one.obj
 run --check --report=r.json one.obj
 is "$(value r.json '[f["count"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[4]"
 
+scene "copies of an object at a seam, at its place or with other texture coordinates, do not hide the other half"
+for shift in 0 8; do
+	strip o | sed '/^o right/,$d' >copies.obj
+	printf 'vt %s\n' '9 0' '10 0' '9 .25' '10 .25' '9 .5' '10 .5' '9 .75' '10 .75' >>copies.obj # 9 to 16
+	for copy in {1..20}; do
+		echo "o copy$copy"
+		for i in 1 3 5; do
+			for k in $i $((i + 1)) $((i + 3)) $((i + 2)); do echo -n "$k/$((k + shift))/1 "; done | sed 's/^/f /'
+			echo
+		done
+	done >>copies.obj
+	strip o | sed -n '/^o right/,$p' >>copies.obj
+	run --check --report=r.json copies.obj
+	is "$(value r.json '[f["count"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[3]"
+done
+
 scene "images in a view are measured, moved by the edit or not"
 run -q --check --report=r.json "$data/plates.glb"
 run -q --only=all --report=w.json "$data/plates.glb" out.glb
