@@ -58,6 +58,7 @@ nt_status nt_check_rims(nt_check *check)
 		if (!nt_grow((void **)&rims->sides, &rims->capacity, rims->count + 1, sizeof *rims->sides))
 			return NT_ERROR_MEMORY;
 		rims->sides[rims->count++] = rim;
+		rims->met[rim.orientation > 0] = true;
 	}
 	return NT_OK;
 }
@@ -176,7 +177,7 @@ static void report_edges(nt_check *check, const seam_edge *edges, size_t count)
 nt_status nt_check_across(nt_check *check)
 {
 	nt_rims *rims = check->rims;
-	if (!rims->count)
+	if (!rims->met[0] || !rims->met[1])
 		return NT_OK;
 	seam_edge *edges = nt_alloc(rims->count / 2 + 1, sizeof *edges);
 	size_t count = 0;

@@ -39,6 +39,7 @@ typedef struct nt_rim_side {
 typedef struct nt_rims {
 	nt_rim_side *sides;
 	size_t count, capacity;
+	bool met[2]; /* [orientation > 0] whether a side has it */
 } nt_rims;
 
 typedef struct nt_check {
