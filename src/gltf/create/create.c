@@ -6,7 +6,7 @@
  * One glTF mesh per mesh (of a mesh with groups: per group), one node per instance of it, one primitive per
  * material. The document is
  * planned first, so that all sizes and places are known and its JSON (model.h) is complete, then the
- * buffer is streamed: geometry as primitive.h has it, embedded images behind. Only materials and images that
+ * buffer is streamed: geometry as primitive.c plans it, embedded images behind. Only materials and images that
  * something uses are written; a primitive without texture coordinates gets its material without textures. A mesh
  * without a material gets a neutral one, since glTF's default is metal.
  */
