@@ -583,12 +583,10 @@ static nt_status name_limit(run *r, nt_status status)
 /* Vertices that several meshes share are counted once, and copies that they share too. */
 static void count_once(const nt_shared_vertices *shared, nt_summary *summary)
 {
-	const size_t copies = shared->after - shared->before, counted = shared->copies;
-	summary->vertex_count -= shared->counted - shared->before;
-	if (copies >= counted || counted - copies <= summary->appended_tangents)
-		summary->appended_tangents += copies - counted;
-	else
-		summary->appended_normals += copies - counted;
+	const nt_vertex_counts *counted = &shared->counted, *actual = &shared->actual;
+	summary->vertex_count += actual->vertices - counted->vertices;
+	summary->appended_normals += actual->normal_copies - counted->normal_copies;
+	summary->appended_tangents += actual->tangent_copies - counted->tangent_copies;
 }
 
 nt_status nt_run(const char *input, const char *output, const nt_settings *settings,

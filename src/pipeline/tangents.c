@@ -445,15 +445,16 @@ static void add_counts(nt_summary *summary, nt_mesh *mesh)
 {
 	if (mesh->decision == NT_DECISION_NORMALS)
 		return;
-	mesh->copies = mesh->vertex_count - mesh->source_vertex_count + mesh->split.source_count;
+	mesh->normal_copies = mesh->vertex_count - mesh->source_vertex_count;
+	mesh->tangent_copies = mesh->split.source_count;
 	summary->solved_count++;
 	summary->triangle_count += count_triangles(mesh);
 	summary->repaired += mesh->decision == NT_DECISION_REPAIR && mesh->has_tangents
 		? mesh->replaced_tangents : nt_counts_repaired(&mesh->counts);
 	summary->quad_count += mesh->quad_count;
 	summary->vertex_count += mesh->unused_vertices + mesh->source_vertex_count;
-	summary->appended_normals += mesh->vertex_count - mesh->source_vertex_count;
-	summary->appended_tangents += mesh->split.source_count;
+	summary->appended_normals += mesh->normal_copies;
+	summary->appended_tangents += mesh->tangent_copies;
 	nt_counts_add(&summary->counts, &mesh->counts);
 }
 

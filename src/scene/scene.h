@@ -329,7 +329,7 @@ typedef struct nt_mesh {
 	size_t left_tangents;     /* those that stay, as a solve gives no valid one either */
 	nt_split split;
 	uint64_t tangents_digest; /* of split.vertex_tangents, where that is wanted; 0: not known */
-	size_t copies;            /* vertices that made normals and the split appended */
+	size_t normal_copies, tangent_copies; /* vertices that made normals and the split appended */
 	bool merged;              /* the writer has merged them with those of the meshes that share its vertices */
 } nt_mesh;
 
@@ -354,10 +354,15 @@ typedef struct nt_morph_cost {
 	uint64_t bytes, mesh_bytes;
 } nt_morph_cost;
 
+/* Vertices of the source, and copies of them, by what differs. */
+typedef struct nt_vertex_counts {
+	size_t vertices, normal_copies, tangent_copies;
+} nt_vertex_counts;
+
 /* Vertices of pools of several solved meshes. Each mesh by itself counts those of its pool, and its copies. */
 typedef struct nt_shared_vertices {
-	size_t counted, copies; /* by all of these meshes */
-	size_t before, after;   /* in fact: in the source, and in the output */
+	nt_vertex_counts counted; /* by all of these meshes */
+	nt_vertex_counts actual;
 } nt_shared_vertices;
 
 /* Vertices that --weld looked at, and what is left of them. */

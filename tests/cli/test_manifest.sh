@@ -53,6 +53,26 @@ for file in a.glb "$data/mirrored_cube.obj"; do
 		"$([ $file = a.glb ] && echo "[20, 40, 40, 0]" || echo "[20, 32, 40, 8]")"
 done
 
+scene "five primitives over the same vertices count them, and each kind of their copies, as one does"
+for count in 1 5; do
+	gltf new cube$count "const count = $count;" 'const p = [], t = [];
+		for (let i = 0; i < 8; i++) { p.push(i >> 2, i >> 1 & 1, i & 1); t.push(i * 0.37 % 1, i * i * 0.23 % 1) }
+		const position = add("VEC3", 5126, p, {min: [0, 0, 0], max: [1, 1, 1]}), texcoord = add("VEC2", 5126, t);
+		const indices = add("SCALAR", 5123, [0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6,
+			0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3]);
+		g.meshes = [...Array(count)].map(() => ({primitives: [
+			{attributes: {POSITION: position, TEXCOORD_0: texcoord}, indices}]}));
+		g.nodes = g.meshes.map((m, mesh) => ({mesh})); g.scenes = [{nodes: g.nodes.map((n, i) => i)}]; g.scene = 0'
+	run --only=all --normals=flat --manifest=m$count cube$count.gltf out$count.gltf
+	exits 0
+	value m$count '[[l[k] for k in ("vertices_before", "vertices_after", "split")] for l in m.values()]' >counts$count
+	grep -o '[0-9][0-9]* -> .*differ)' "$WORK/err.txt" >>counts$count
+	is "$(gltf out$count.gltf 'g.accessors[g.meshes[0].primitives[0].attributes.POSITION].count')" \
+		"$(value m$count '[l["vertices_after"] for l in m.values()][0]')"
+done
+same counts1 counts5
+grep -q '+16 where made normals differ' counts5 || wrong "of 24 corners of the sides 8 are there: $(cat counts5)"
+
 scene "digests tell whose tangents, outputs and missing files have changed"
 printf 'newmtl bumps\nKd 1 0 0\nmap_Kd none.png\n' >mirrored_cube.mtl
 cp "$data/mirrored_cube.obj" .

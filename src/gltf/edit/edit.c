@@ -226,27 +226,32 @@ static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 		e->of_window, e->error);
 }
 
+static void add_counts(nt_vertex_counts *to, size_t vertices, size_t normal_copies, size_t tangent_copies)
+{
+	to->vertices += vertices;
+	to->normal_copies += normal_copies;
+	to->tangent_copies += tangent_copies;
+}
+
 /* Notes how many vertices the meshes of a pool have counted each, and how many there are. Welding counts for itself. */
 static void count_shared(const editing *e, const nt_pool_vertices *vertices)
 {
 	const nt_vertex_pool *pool = vertices->pool;
-	nt_shared_vertices all = {.before = vertices->old_count, .after = vertices->new_count};
+	nt_vertex_counts all = {0};
 	size_t users = 0;
 	for (size_t i = 0; i < pool->user_count && vertices->own_count == vertices->old_count; i++) {
 		const nt_mesh *mesh = nt_pool_mesh(pool, i);
 		if (!nt_pool_is_solved(pool, i) || mesh->decision == NT_DECISION_NORMALS)
 			continue;
 		users++;
-		all.counted += mesh->unused_vertices + mesh->source_vertex_count;
-		all.copies += mesh->copies;
+		add_counts(&all, mesh->unused_vertices + mesh->source_vertex_count, mesh->normal_copies,
+			mesh->tangent_copies);
 	}
-	nt_shared_vertices *shared = &e->scene->shared;
 	if (users < 2)
 		return;
-	shared->counted += all.counted;
-	shared->copies += all.copies;
-	shared->before += all.before;
-	shared->after += all.after;
+	add_counts(&e->scene->shared.counted, all.vertices, all.normal_copies, all.tangent_copies);
+	add_counts(&e->scene->shared.actual, vertices->old_count, vertices->normal_copies,
+		vertices->new_count - vertices->old_count - vertices->normal_copies);
 }
 
 static nt_status edit_pool(const editing *e, pool_edit *p)

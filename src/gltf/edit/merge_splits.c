@@ -214,7 +214,11 @@ static uint32_t take_vertex(nt_pool_merge *m, const nt_mesh *mesh, uint32_t user
 		for (size_t at = NT_HASH_BEGIN; (pool_vertex = nt_hash_index_next(&m->known, hash, &at)) != NT_NONE;)
 			if (m->source[pool_vertex] == source && vertex_fits(m, set, pool_vertex, mesh, vertex, normal))
 				return pool_vertex;
+		const size_t before = m->vertices.new_count;
 		pool_vertex = find_free_vertex(m, set, source);
+		if (m->vertices.new_count > before && normal && vertex < mesh->vertex_count &&
+			memcmp(set->normals + 3 * (size_t)source, normal, 3 * sizeof *normal) != 0)
+			m->vertices.normal_copies++;
 		if (pool_vertex == NT_NONE || !nt_hash_index_add(&m->known, hash, pool_vertex))
 			return NT_NONE;
 	}

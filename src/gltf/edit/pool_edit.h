@@ -33,6 +33,7 @@ typedef struct nt_pool_vertices {
 	size_t old_count;   /* of the source */
 	size_t own_count;   /* first ones that are the source's as they stand: old_count, or 0 after welding */
 	size_t new_count;
+	size_t normal_copies; /* of those that were appended: their made normal is another than the first's */
 	uint32_t *sources;  /* [new_count - own_count] vertex of the source */
 	nt_pool_set *sets;  /* [pool->sets.count] */
 	uint32_t **indices; /* [user][corner count]; NULL: not solved */
