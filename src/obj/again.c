@@ -11,7 +11,6 @@
  */
 #include "obj/parts.h"
 
-#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include "base/parallel.h"
@@ -82,8 +81,10 @@ static bool read_exact(second_reading *job)
 {
 	const obj_file *file = job->file;
 	job->rows = nt_calloc(file->row_counts[OBJ_V], 3 * sizeof *job->rows);
-	if (!job->rows || !job->exact)
+	if (!job->rows || !job->exact) {
+		free(job->rows);
 		return false;
+	}
 	nt_parallel_items(file->threads, file->chunk_count, read_chunk, job);
 	const bool done = !atomic_load(&job->failed);
 	if (done)
