@@ -8,7 +8,6 @@
 #include "format/drc.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include "ext/draco.h"
 #include "gltf/quantize.h"

@@ -7,7 +7,6 @@
  * Three ask: which primitives have the geometry of an earlier one, so that it is loaded and solved once (here), which
  * users of a pool have one TANGENT (vertex_pools.c), and which joins are those of another mesh (joins.c).
  */
-#include <stdio.h>
 #include <stdlib.h>
 #include "gltf/draco.h"
 #include "gltf/materials.h"

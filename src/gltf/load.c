@@ -9,7 +9,6 @@
 #include "gltf/load.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"

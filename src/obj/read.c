@@ -20,9 +20,7 @@
  */
 #include "obj/read.h"
 
-#include <limits.h>
 #include <stdatomic.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/clock.h"

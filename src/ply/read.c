@@ -12,7 +12,6 @@
 #include "ply/ply.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include "base/parallel.h"
 #include "base/name_table.h"

@@ -109,7 +109,7 @@ typedef struct nt_buffer_edits {
 	uint32_t alignment;         /* insertions are multiples of this */
 	bool polygons_dropped;      /* a primitive lost FB_ngon_encoding */
 	bool vertices_copied;       /* some pool has more of them now */
-	bool keeps_packed;          /* views that meshoptimizer packed are packed again: packed_views.h */
+	bool keeps_packed;          /* views that meshoptimizer packed are packed again: packed_views.c */
 	nt_packed_view *packed;     /* [packed_count] new ones */
 	size_t packed_count, packed_capacity;
 

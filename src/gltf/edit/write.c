@@ -14,7 +14,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/parallel.h"
 #include "file/uri.h"
 #include "gltf/document.h"
 #include "gltf/edit/images.h"
