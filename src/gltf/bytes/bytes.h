@@ -121,7 +121,7 @@ typedef struct nt_buffer_edits {
 	bool *seen;                 /* [accessor_count] */
 	bool *pinned;               /* [accessor_count] used by an unsolved user */
 	uint32_t *index_moved;      /* [accessor_count] by `same`: uses as indices that have other ones by now */
-	uint32_t *replaced;         /* [accessor_count] by `same`: uses by morph targets that are no more */
+	uint32_t *replaced;         /* [accessor_count] by `same`: uses by sets and morph targets that are no more */
 	uint32_t *appended_by;      /* [accessor_count] by `same`: the pool that appends to it, by its
 	                               first user */
 } nt_buffer_edits;
