@@ -216,12 +216,6 @@ static bool is_solved_here(const whole *w, const nt_mesh *part)
 	return part->plan.join == w->join && !part->plan.transform_of;
 }
 
-/* Kept ones are compared in their base alone. */
-static bool takes_morphs(const whole *w, const nt_mesh *part)
-{
-	return is_solved_here(w, part) && nt_mesh_is_wanted(part);
-}
-
 static nt_status count_parts(const whole *w)
 {
 	float *raw = NULL;
@@ -253,7 +247,7 @@ static nt_status count_parts(const whole *w)
 
 static nt_morph *find_morph(const nt_mesh *part, uint32_t target)
 {
-	for (size_t m = 0; m < part->morph_count; m++)
+	for (size_t m = 0; nt_mesh_is_wanted(part) && m < part->morph_count; m++)
 		if (part->morphs[m].target == target)
 			return &part->morphs[m];
 	return NULL;
@@ -300,7 +294,7 @@ static nt_status hand_out_target(const whole *w, uint32_t target, const nmtan_me
 {
 	for (size_t i = 0, corner = 0; i < w->join->part_count; corner += w->join->parts[i++]->corner_count) {
 		nt_mesh *part = w->join->parts[i];
-		nt_morph *morph = takes_morphs(w, part) ? find_morph(part, target) : NULL;
+		nt_morph *morph = is_solved_here(w, part) ? find_morph(part, target) : NULL;
 		if (!morph)
 			continue;
 		const nt_status status = take_rows(part, tangents + 4 * corner, &morph->corner_tangents);
@@ -321,7 +315,7 @@ static nt_status measure_halfway(const whole *w, uint32_t target, const nmtan_me
 	for (size_t i = 0, corner = 0; !status && i < w->join->part_count;
 		corner += w->join->parts[i++]->corner_count) {
 		const nt_mesh *part = w->join->parts[i];
-		nt_morph *morph = takes_morphs(w, part) ? find_morph(part, target) : NULL;
+		nt_morph *morph = is_solved_here(w, part) ? find_morph(part, target) : NULL;
 		const nmtan_mesh base = view_of_part(&w->mesh, part, corner), to = view_of_part(moved, part, corner);
 		if (morph)
 			nt_morphs_compare_halfway(part, &base, &to, halfway + 4 * corner, morph);
@@ -347,7 +341,7 @@ static nt_status solve_target(const whole *w, uint32_t target)
 		status = measure_halfway(w, target, &moved);
 	for (size_t i = 0; !status && i < w->join->part_count; i++) {
 		nt_mesh *part = w->join->parts[i];
-		nt_morph *morph = takes_morphs(w, part) ? find_morph(part, target) : NULL;
+		nt_morph *morph = is_solved_here(w, part) ? find_morph(part, target) : NULL;
 		if (morph)
 			status = nt_morphs_classify(part, morph);
 	}
@@ -360,7 +354,7 @@ static nt_status solve_target(const whole *w, uint32_t target)
 static bool has_morphs(const whole *w)
 {
 	for (size_t i = 0; i < w->join->part_count; i++)
-		if (takes_morphs(w, w->join->parts[i]) && w->join->parts[i]->morph_count)
+		if (is_solved_here(w, w->join->parts[i]) && w->join->parts[i]->morph_count)
 			return true;
 	return false;
 }
@@ -384,8 +378,7 @@ static nt_status restore_parts(const whole *w, bool targets)
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < w->join->part_count; i++)
 		if (is_solved_here(w, w->join->parts[i]))
-			status = nt_morphs_restore(w->join->parts[i],
-				targets && takes_morphs(w, w->join->parts[i]));
+			status = nt_morphs_restore(w->join->parts[i], targets);
 	return status;
 }
 

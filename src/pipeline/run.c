@@ -583,10 +583,9 @@ static nt_status name_limit(run *r, nt_status status)
 /* Vertices that several meshes share are counted once, and copies that they share too. */
 static void count_once(const nt_shared_vertices *shared, nt_summary *summary)
 {
-	const nt_vertex_counts *counted = &shared->counted, *actual = &shared->actual;
-	summary->vertex_count += actual->vertices - counted->vertices;
-	summary->appended_normals += actual->normal_copies - counted->normal_copies;
-	summary->appended_tangents += actual->tangent_copies - counted->tangent_copies;
+	summary->vertex_count += shared->actual.vertices - shared->counted.vertices;
+	summary->appended_normals += shared->actual.normal_copies - shared->counted.normal_copies;
+	summary->appended_tangents += shared->actual.tangent_copies - shared->counted.tangent_copies;
 }
 
 nt_status nt_run(const char *input, const char *output, const nt_settings *settings,
