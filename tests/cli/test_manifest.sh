@@ -71,6 +71,15 @@ for count in 1 5; do
 		"$(value m$count '[l["vertices_after"] for l in m.values()][0]')"
 done
 same counts1 counts5
+# what stays and what Draco has are counted so, too
+run -q --only=all --normals=flat cube5.gltf kept.gltf
+run --only=all --existing=repair kept.gltf out.gltf
+says ", 26 vertices,"
+gltf kept.gltf twice 'const n = g.meshes.map((m) => m.primitives[0]); for (const p of n) { delete p.attributes.TANGENT }'
+for words in --weld "--weld --draco=sequential"; do
+	run --only=all $words twice.gltf out.glb
+	says ", 26 vertices"
+done
 grep -q '+16 where made normals differ' counts5 || wrong "of 24 corners of the sides 8 are there: $(cat counts5)"
 
 scene "digests tell whose tangents, outputs and missing files have changed"

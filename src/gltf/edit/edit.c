@@ -205,6 +205,34 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 	return status;
 }
 
+static void add_counts(nt_vertex_counts *to, size_t vertices, size_t normal_copies, size_t tangent_copies)
+{
+	to->vertices += vertices;
+	to->normal_copies += normal_copies;
+	to->tangent_copies += tangent_copies;
+}
+
+/* Notes how many vertices the meshes of a pool have counted each, and how many there are before welding, which counts
+ * for itself. vertices: NULL: the pool stays as it is. */
+static void count_shared(nt_scene *scene, const nt_vertex_pools *pools, size_t number, const nt_pool_vertices *vertices)
+{
+	nt_vertex_counts all = {0};
+	size_t users = 0, before = 0;
+	for (size_t i = pools->first[number]; i < pools->first[number + 1]; i++) {
+		const nt_mesh *mesh = &scene->meshes[pools->order[i]];
+		if (!nt_gltf_is_solved(mesh) || mesh->decision == NT_DECISION_NORMALS)
+			continue;
+		users++;
+		before = mesh->unused_vertices + mesh->source_vertex_count;
+		add_counts(&all, before, mesh->normal_copies, mesh->tangent_copies);
+	}
+	if (users < 2)
+		return;
+	add_counts(&scene->shared.counted, all.vertices, all.normal_copies, all.tangent_copies);
+	add_counts(&scene->shared.actual, before, vertices ? vertices->normal_copies : 0,
+		vertices ? vertices->new_count - vertices->old_count - vertices->normal_copies : 0);
+}
+
 /* The pool, and where Draco has to do with it what its block will hold. Changes nothing in the document. */
 static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 {
@@ -213,6 +241,8 @@ static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 	p->stays = !status;
 	for (size_t i = 0; p->stays && i < p->pool.user_count; i++)
 		p->stays = stays(e->scene, e->options, nt_pool_mesh(&p->pool, i));
+	if (!status && p->stays)
+		count_shared(e->scene, e->pools, number, NULL);
 	if (status || p->stays || e->options->draco == NT_DRACO_OFF || is_shaded_only(&p->pool, 0) ||
 		(e->options->draco == NT_DRACO_KEEP && !nt_gltf_has_draco(&p->pool)))
 		return status;
@@ -220,38 +250,12 @@ static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 	status = nt_pool_vertices_get(e->pools, number, &p->pool, e->of_window, &p->vertices, e->error);
 	const nt_weld_result before = e->scene->welded;
 	if (!status)
+		count_shared(e->scene, e->pools, number, &p->vertices);
+	if (!status)
 		status = weld(e, &p->vertices, NULL);
 	p->welded = (nt_weld_result){e->scene->welded.before - before.before, e->scene->welded.after - before.after};
 	return status ? status : nt_gltf_draco_look_up(&p->recoding, e->edits, &p->vertices, e->options,
 		e->of_window, e->error);
-}
-
-static void add_counts(nt_vertex_counts *to, size_t vertices, size_t normal_copies, size_t tangent_copies)
-{
-	to->vertices += vertices;
-	to->normal_copies += normal_copies;
-	to->tangent_copies += tangent_copies;
-}
-
-/* Notes how many vertices the meshes of a pool have counted each, and how many there are. Welding counts for itself. */
-static void count_shared(const editing *e, const nt_pool_vertices *vertices)
-{
-	const nt_vertex_pool *pool = vertices->pool;
-	nt_vertex_counts all = {0};
-	size_t users = 0;
-	for (size_t i = 0; i < pool->user_count && vertices->own_count == vertices->old_count; i++) {
-		const nt_mesh *mesh = nt_pool_mesh(pool, i);
-		if (!nt_pool_is_solved(pool, i) || mesh->decision == NT_DECISION_NORMALS)
-			continue;
-		users++;
-		add_counts(&all, mesh->unused_vertices + mesh->source_vertex_count, mesh->normal_copies,
-			mesh->tangent_copies);
-	}
-	if (users < 2)
-		return;
-	add_counts(&e->scene->shared.counted, all.vertices, all.normal_copies, all.tangent_copies);
-	add_counts(&e->scene->shared.actual, vertices->old_count, vertices->normal_copies,
-		vertices->new_count - vertices->old_count - vertices->normal_copies);
 }
 
 static nt_status edit_pool(const editing *e, pool_edit *p)
@@ -260,8 +264,8 @@ static nt_status edit_pool(const editing *e, pool_edit *p)
 	uint32_t buffer = 0;
 	nt_status status = p->for_draco ? NT_OK :
 		nt_pool_vertices_get(e->pools, p->number, &p->pool, e->of_window, &p->vertices, e->error);
-	if (!status)
-		count_shared(e, &p->vertices);
+	if (!status && !p->for_draco)
+		count_shared(e->scene, e->pools, p->number, &p->vertices);
 	if (!status)
 		status = choose_buffer(e, &p->pool, &buffer);
 
@@ -380,6 +384,7 @@ static nt_status drop_unused(const editing *e)
 nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_output *output, nt_error *error)
 {
 	/* Nothing to be done: the input as it is. */
+	nt_gltf *document = scene->source;
 	bool written = false, all_stay = !options->turned || !options->turned->count;
 	nt_status status = NT_OK;
 	for (size_t i = 0; all_stay && i < scene->mesh_count; i++)
@@ -387,11 +392,12 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 			scene->meshes[i].decision != NT_SKIP_DROPPED;
 	if (all_stay && !options->weld)
 		status = nt_gltf_copy_unchanged(scene, options, output, &written, error);
+	for (size_t p = 0; written && document->pools && p < document->pools->count; p++)
+		count_shared(scene, document->pools, p, NULL);
 	if (status || written)
 		return status;
 
 	/* Which bytes may change. */
-	nt_gltf *document = scene->source;
 	nt_arena of_window = {0};
 	nt_buffer_edits edits = {0};
 	if (!document->pools)
