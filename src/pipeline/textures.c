@@ -12,6 +12,7 @@
 #include <string.h>
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "base/utf8.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
@@ -182,7 +183,8 @@ static void tell_missing(const telling *t, const nt_place *place, const char *na
 	const char *own = nt_last_part(input), *last = nt_last_part(library);
 	const bool apart = own - input != last - library || strncmp(input, library, (size_t)(own - input)) != 0;
 	nt_finding_add(&t->scene->findings, NT_CODE_IMAGE_MISSING, place, 1,
-		"%.100s (looked for beside %.40s%s%.40s%s)", name, last, apart ? " and " : "", apart ? own : "",
+		"%.*s (looked for beside %.*s%s%.*s%s)", (int)nt_utf8_cut(name, 100), name, (int)nt_utf8_cut(last, 40),
+		last, apart ? " and " : "", apart ? (int)nt_utf8_cut(own, 40) : 0, own,
 		t->settings->texture_path_count ? ", and in --texture-path" : "");
 }
 

@@ -401,6 +401,14 @@ for name in ../secret.txt ../gone.txt ../pipe.png ../tex; do
 done
 is "$(sort missing | uniq -c | sed 's/^ *//')" "4 : image cannot be read: NAME (looked for beside m.mtl) [IMAGE_MISSING]"
 
+scene "a long name is cut where a character ends"
+printf 'mtllib m.mtl\nusemtl m\n' | cat - "$data/quad.obj" >quad.obj
+letters=$(printf 'é%.0s' $(seq 49))
+printf 'newmtl m\nnorm a%s.png\n' "$letters$letters" >m.mtl
+run quad.obj out.glb
+exits 0
+says "image cannot be read: a$letters (looked for beside m.mtl)"
+
 scene "a link inside the folder does not tell whether there is something outside that it leads to"
 mkdir -p d/in there
 cp "$data/bumps.png" there/n.png
