@@ -439,7 +439,8 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	if (s->left)
 		nt_buffer_text(out, "left as it is, ");
 	if (settings->check || s->solved_count == s->mesh_count)
-		append_count(out, s->mesh_count, "primitive");
+		append_count(out, s->made_primitives && !settings->check ? s->made_primitives : s->mesh_count,
+			"primitive");
 	else
 		nt_buffer_format(out, "%zu of %zu primitives", s->solved_count, s->mesh_count);
 	if (s->same_count)

@@ -633,6 +633,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->morph_cost = r.scene.morph_cost;
 	if (!status) /* else meshes may be without content */
 		count_shading(&r);
+	summary->made_primitives = r.scene.made_primitives;
 	summary->welded = r.scene.welded;
 	count_once(&r.scene.shared, summary);
 	summary->unchanged = !status && is_unchanged(&r);

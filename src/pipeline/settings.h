@@ -150,7 +150,7 @@ typedef struct nt_mesh_line {
 /* The results of a run. */
 typedef struct nt_summary {
 	nt_format input_format;
-	size_t mesh_count;       /* meshes (glTF: primitives) in the input */
+	size_t mesh_count, made_primitives; /* meshes (glTF: primitives) in the input; primitives of a new glTF, or 0 */
 	size_t solved_count;     /* of them, those that got tangents */
 	size_t repaired;         /* tangents of corners: what repair made of computed or, with --existing=repair, of the
 	                            input's own */

@@ -399,6 +399,7 @@ typedef struct nt_scene {
 	nt_morph_cost morph_cost; /* the same */
 	nt_weld_result welded;    /* the same */
 	nt_shared_vertices shared; /* the same */
+	size_t made_primitives;    /* of a new glTF: the same; 0: it is none */
 
 	const bool *turned_images; /* [turned_image_count] images of a glTF whose green --fix turns; NULL: all that
 	                              need it, if any are turned */

@@ -965,6 +965,11 @@ run --check --min-severity=error m.gltf
 says ", no findings,"
 prints "Ready to use"
 
+scene "the summary counts the primitives of the glTF that was made"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\no a\nf 1/1/1 2/2/1 3/3/1\ng b\nusemtl x\nf 1/1/1 2/2/1 3/3/1\nusemtl y\nf 1/1/1 2/2/1 3/3/1\n' >many.obj
+run many.obj many.gltf
+says ": $(gltf many.gltf 'g.meshes.flatMap(m => m.primitives).length') primitives, 3 triangles"
+
 scene "an option that changes nothing says so"
 mapped
 while IFS='|' read -r options input told; do
