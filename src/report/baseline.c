@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash.h"
+#include "base/lock.h"
 #include "json/json.h"
 #include "report/pairs.h"
 
@@ -102,6 +103,7 @@ void nt_baseline_free(nt_baseline *baseline)
 {
 	free(baseline->entries);
 	free(baseline->files);
+	free(baseline->geometries);
 	*baseline = (nt_baseline){0};
 }
 
@@ -132,13 +134,78 @@ static uint64_t geometry_of(const void *entries, size_t index)
 	return ((const nt_baseline_entry *)entries)[index].geometry;
 }
 
-bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report)
+/* By geometry, then by the number of the finding, which `file` holds here. */
+static int by_geometry(const void *a, const void *b)
+{
+	const nt_baseline_entry *x = a, *y = b;
+	return x->geometry != y->geometry ? (x->geometry < y->geometry ? -1 : 1) : by_file(a, b);
+}
+
+/* Files are checked on many threads. */
+static bool list_geometries(nt_baseline *baseline)
+{
+	static nt_lock lock = NT_LOCK_INIT;
+	nt_lock_take(&lock);
+	uint64_t *list = baseline->geometries ? NULL : nt_alloc(baseline->count, sizeof *list);
+	for (size_t i = 0; list && i < baseline->count; i++)
+		if (baseline->entries[i].geometry)
+			list[baseline->geometry_count++] = baseline->entries[i].geometry;
+	if (list && baseline->geometry_count)
+		qsort(list, baseline->geometry_count, sizeof *list, by_number);
+	if (list)
+		baseline->geometries = list;
+	const bool made = baseline->geometries != NULL;
+	nt_lock_give(&lock);
+	return made;
+}
+
+/* The first geometry that is not below. */
+static size_t find_geometry(const nt_baseline *baseline, uint64_t geometry)
+{
+	size_t low = 0, high = baseline->geometry_count;
+	while (low < high) {
+		const size_t middle = (low + high) / 2;
+		if (baseline->geometries[middle] < geometry)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return low;
+}
+
+/* Marks findings of a file of a new name, in time that grows with these alone: two equal entries excuse two. */
+static bool apply_all(nt_baseline *baseline, nt_report *report)
+{
+	const size_t count = report->finding_count;
+	if (!count)
+		return true;
+	nt_baseline_entry *new = nt_alloc(count, sizeof *new);
+	if (!new || !list_geometries(baseline)) {
+		free(new);
+		return false;
+	}
+	for (size_t i = 0; i < count; i++)
+		new[i] = (nt_baseline_entry){.file = i, .geometry = report->findings[i].geometry};
+	qsort(new, count, sizeof *new, by_geometry);
+	for (size_t i = 0, place = 0; i < count; i++) {
+		const uint64_t geometry = new[i].geometry;
+		place = i && new[i - 1].geometry == geometry ? place + 1 : find_geometry(baseline, geometry);
+		report->findings[new[i].file].known = geometry && place < baseline->geometry_count &&
+			baseline->geometries[place] == geometry;
+	}
+	free(new);
+	return true;
+}
+
+bool nt_baseline_apply(nt_baseline *baseline, nt_report *report)
 {
 	const uint64_t own = key_of_file(report->shown);
 	const bool named = baseline->file_count &&
 		bsearch(&own, baseline->files, baseline->file_count, sizeof own, by_number);
-	const size_t first = named ? find_entries(baseline, own) : 0;
-	const size_t old_count = (named ? find_entries(baseline, own + 1) : baseline->count) - first;
+	if (!named)
+		return apply_all(baseline, report);
+	const size_t first = find_entries(baseline, own);
+	const size_t old_count = find_entries(baseline, own + 1) - first;
 	const nt_baseline_entry *old = baseline->entries ? baseline->entries + first : NULL;
 	nt_baseline_entry *new = nt_calloc(report->finding_count, sizeof *new);
 	uint32_t *partners = nt_alloc(report->finding_count, sizeof *partners);
@@ -149,7 +216,7 @@ bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report)
 		new[i].geometry = report->findings[i].geometry;
 		partners[i] = NT_NONE;
 	}
-	if (made && named)
+	if (made)
 		made = !nt_pair(old, old_count, new, report->finding_count, fingerprint_of, partners, taken);
 	if (made)
 		made = !nt_pair(old, old_count, new, report->finding_count, geometry_of, partners, taken);

@@ -57,7 +57,7 @@ typedef struct nt_report_options {
 	uint8_t severity[NT_CODE_COUNT]; /* 0: the table's; else 1 + nt_severity */
 	nt_severity min_severity;     /* findings below are not reported */
 	size_t max_findings;          /* findings kept, some of each code; 0: all */
-	const nt_baseline *baseline;  /* NULL: none */
+	nt_baseline *baseline;        /* NULL: none */
 	const nt_shown_paths *paths;  /* how files are named, while the report is there; NULL: as they are spelled */
 	bool keep_geometry;           /* for pages and comparisons */
 	bool keep_frames;             /* with geometry: the file's tangents, and computed ones, which are solved where
