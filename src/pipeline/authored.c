@@ -73,7 +73,7 @@ static bool face_is_valid(const nt_mesh *mesh, const nmtan_mesh *view, size_t fa
 	const unsigned count = nt_written_triangles(view, face, first, corners);
 	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
 	for (unsigned i = 0; i < count; i++) {
-		nt_tangent_triangle triangle;
+		nt_tangent_triangle triangle = {.other_w = false};
 		const int sign = (mesh->solve_texcoords ? mesh->solve_sign : 1) *
 				 nmtan_orientation(mesh->texcoords + 2 * nt_mesh_vertex(mesh, corners[i][0]),
 					 mesh->texcoords + 2 * nt_mesh_vertex(mesh, corners[i][1]),
