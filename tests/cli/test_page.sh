@@ -25,7 +25,6 @@ grid() {
 scene "an image that several meshes have is in a page once, however many of them it shows"
 run --check --report=twice.html --fail-on=never "$data/transformed.gltf"
 exits 0
-grep -q 'as text: nmtan --check .*transformed.gltf</p></noscript>' twice.html || wrong "no command without JavaScript"
 [ "$(grep -ao '"images":\[{"image":[0-9]' twice.html | wc -l)" -gt 1 ] || wrong "no two meshes have an image"
 [ "$(grep -ao 'data:image/png;base64,[^"]*' twice.html | sort | uniq -d | wc -l)" = 0 ] || wrong "an image is there twice"
 

@@ -437,24 +437,10 @@ static void begin_page(bool in_folder, nt_buffer *out)
 	nt_buffer_text(out, nt_page_body);
 }
 
-/* Without scripts: the command for the page's file, if it has one. */
-static void put_unscripted(const nt_report_list *reports, nt_buffer *out)
-{
-	nt_buffer word = {0};
-	const bool named = reports->count == 1 && nt_shell_word(reports->items[0]->shown, &word) && word.size;
-	nt_buffer_text(out, "<noscript><p class=\"empty\">This page needs JavaScript. The same findings as text: "
-		"nmtan --check ");
-	nt_xml_text(named ? word.data : "FILE", out);
-	nt_buffer_text(out, "</p></noscript>\n");
-	out->failed |= word.failed;
-	nt_buffer_free(&word);
-}
-
 void nt_write_html(const nt_report_list *reports, nt_buffer *out)
 {
 	const bool in_folder = reports->style.index;
 	begin_page(in_folder, out);
-	put_unscripted(reports, out);
 	put_data(reports, out);
 	put_part(NT_HTML_SCRIPT, in_folder, out);
 	put_geometries(reports, out);
