@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 
 #include "base/buffer.h"
+#include "batch/record.h"
 #include "base/name_table.h"
 #include "file/input.h"
 #include "file/lookup.h"
@@ -117,8 +118,7 @@ static nt_status visit(walk *w, nt_buffer *path)
 	if (matches(rules->exclude, rules->exclude_count, below))
 		return NT_OK;
 	if (S_ISDIR(info.st_mode)) {
-		const bool left_out = w->has_leave_out && info.st_dev == w->leave_out.st_dev &&
-			info.st_ino == w->leave_out.st_ino;
+		const bool left_out = w->has_leave_out && nt_same_file(&info, &w->leave_out);
 		return left_out ? NT_OK : look_through(w, path);
 	}
 	if (!nt_format_of_path(below) ||

@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 
 #include "base/buffer.h"
+#include "batch/record.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
@@ -99,7 +100,7 @@ static bool ignores_case(const char *input)
 	for (char *c = changed ? changed + (nt_last_part(input) - input) : NULL; c && *c; c++)
 		*c = (char)(isupper((unsigned char)*c) ? tolower((unsigned char)*c) : toupper((unsigned char)*c));
 	const bool same = changed && strcmp(changed, input) != 0 && lstat(input, &one) == 0 &&
-		lstat(changed, &other) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+		lstat(changed, &other) == 0 && nt_same_file(&one, &other);
 	free(changed);
 	return same;
 }

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "base/counts.h"
+#include "batch/record.h"
 #include "report/codes.h"
 
 /* So many places of one code are shown without -v; the rest is counted. */
@@ -93,7 +94,7 @@ static bool are_one_file(const char *a, const char *b)
 {
 	struct stat one, other;
 	return strcmp(a, b) == 0 || (strcmp(a, "-") != 0 && strcmp(b, "-") != 0 && stat(a, &one) == 0 &&
-		stat(b, &other) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino);
+		stat(b, &other) == 0 && nt_same_file(&one, &other));
 }
 
 /* ": nmtan --fix a.glb b.glb", and before it when that is right. */
