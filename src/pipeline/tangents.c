@@ -407,9 +407,9 @@ static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 	const size_t degenerate = c->degenerate_texcoords - missing;
 	const bool unmapped = triangles > 0 && degenerate == triangles;
 	const uint8_t unless_needed = !nt_mesh_needs_tangents(mesh, nt_format_is_gltf(scene->judged)); /* an info */
-	char detail[160];
-	snprintf(detail, sizeof detail, "%zu of %zu triangles %s no texture coordinates, and tangents made from %s",
-		missing, triangles, missing == 1 ? "has" : "have", missing == 1 ? "its normals" : "their normals");
+	char detail[96];
+	snprintf(detail, sizeof detail, "%zu of %zu triangles %s no texture coordinates", missing, triangles,
+		missing == 1 ? "has" : "have");
 	const struct {
 		nt_code code;
 		size_t count;

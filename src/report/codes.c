@@ -361,7 +361,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(UV_MISSING, WARNING, "w-i", EXPORT, NULL, "{detail}",
 		"An OBJ, PLY or Draco mesh gets tangents if it has texture coordinates. This one has none, other "
 		"meshes of the file have some; or some of its triangles have none (an info up to 1 % of its area, and "
-		"if no material of the glTF needs tangents). "
+		"if no material of the glTF needs tangents): tangents that are made for these follow their normals. "
 		"TAN_NO_UV is reported instead if no mesh has any, or if a material's "
 		"normal map needs them.",
 		"Unwrap it if it is to be normal mapped (Blender: UV > Smart UV Project); else --only=needed, or "

@@ -312,11 +312,10 @@ static void report_triangles(nt_check *check, triangle_part *all, size_t from_ne
 	nt_check_report(check, &all->flat, NULL);
 
 	nt_tally_number(&all->missing, "area_share", all->missing_area / total);
-	const bool one = all->missing.count == 1;
 	nt_check_report_as(check, &all->missing,
 		nt_texcoord_severity(check, severity_by_share(check, all->missing_area)),
-		"%zu of %zu triangles %s no texture coordinates, and tangents made from %s", all->missing.count,
-		check->surface.triangle_count, one ? "has" : "have", one ? "its normals" : "their normals");
+		"%zu of %zu triangles %s no texture coordinates", all->missing.count, check->surface.triangle_count,
+		all->missing.count == 1 ? "has" : "have");
 
 	nt_tally *no_area = &all->no_uv_area;
 	const size_t from_normal = 3 * no_area->count - from_neighbour;
