@@ -59,7 +59,7 @@ static bool may_be_folded(const nt_mesh *mesh, size_t changed)
 {
 	const nmtan_counts *c = &mesh->counts;
 	return mesh->texcoords && (changed || c->stored_differently ||
-		(c->mirrored && c->mirrored < mesh->corner_count - 2 * mesh->face_count));
+		(c->mirrored && c->mirrored < nt_mesh_triangle_count(mesh)));
 }
 
 static bool alloc_cut(const nt_mesh *mesh, size_t folded, cut_mesh *cut)

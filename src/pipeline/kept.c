@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Tangents that stay as they are although a material uses them, or whatever uses a PLY: whether w is right is asked of
+ * Tangents that stay as they are although a material uses them, or the output is a PLY: whether w is right is asked of
  * indices, texture coordinates and w alone, exactly; if it is, whether T is reversed, of a corner's T first. Whether a
  * renderer can use them at all is asked of tangents and normals. All threads decode compressed ones for it, once.
  */
@@ -58,6 +58,16 @@ static void count_triangle(const sign_count *c, size_t t, const uint32_t corners
 		counts[sign == MIXED ? DIFFERS : BY_W]++;
 }
 
+/* Whether w of a folded quad is that which MikkTSpace gives both halves. */
+static bool has_sign_of_quad(const nt_mesh *mesh, const uint32_t corners[2][3])
+{
+	const float *uv[2][3], w = mesh->tangents[4 * nt_mesh_vertex(mesh, corners[0][0]) + 3];
+	for (size_t k = 0; k < 6; k++)
+		uv[k / 3][k % 3] = mesh->texcoords + 2 * nt_mesh_vertex(mesh, corners[k / 3][k % 3]);
+	const int sign = nt_orientation_of_halves(uv);
+	return sign == NT_FOLDED_EITHER || (sign && (sign > 0) == (w > 0.0f));
+}
+
 static void count_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	sign_count *c = context;
@@ -66,8 +76,11 @@ static void count_range(void *context, size_t begin, size_t end, unsigned slot)
 	for (size_t face = begin; face < end; first += nt_face_size(c->view, face++)) {
 		uint32_t corners[2][3] = {{(uint32_t)first, (uint32_t)first + 1, (uint32_t)first + 2}};
 		const unsigned count = c->mesh->face_sizes ? nt_written_triangles(c->view, face, first, corners) : 1;
+		const size_t wrong = counts[BY_W];
 		for (unsigned i = 0; i < count; i++)
 			count_triangle(c, face, corners[i], counts);
+		if (count == 2 && counts[BY_W] == wrong + 1 && has_sign_of_quad(c->mesh, corners))
+			counts[BY_W] = wrong;
 	}
 	for (int i = 0; i < KINDS; i++)
 		__atomic_fetch_add(&c->counts[i], counts[i], __ATOMIC_RELAXED);
@@ -139,8 +152,9 @@ static size_t count_faulty(const nt_mesh *mesh, nt_arena *arena, unsigned thread
 static void look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh *mesh, nt_arena *arena)
 {
 	const unsigned threads = tasks->settings->threads;
-	if (mesh->tangents && mesh->texcoords)
-		judge(mesh, nt_v_offset(scene->format, tasks->writer->format), arena, threads);
+	const nt_format written = tasks->writer->format;
+	if (mesh->tangents && mesh->texcoords && nt_mesh_needs_tangents(mesh, nt_format_is_gltf(written)))
+		judge(mesh, nt_v_offset(scene->format, written), arena, threads);
 	const size_t faulty = mesh->tangents && mesh->normals ? count_faulty(mesh, arena, threads) : 0;
 	if (faulty)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_EXISTING_BAD, nt_mesh_place(mesh, &(nt_place){0}), faulty,

@@ -6,16 +6,6 @@
 #include "base/memory.h"
 #include "pipeline/stages.h"
 
-static size_t triangles_of(const nt_mesh *mesh)
-{
-	if (!mesh->triangles)
-		return 0;
-	size_t quads = 0;
-	for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
-		quads += mesh->face_sizes[f] == 4;
-	return mesh->face_count + quads;
-}
-
 nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error)
 {
 	summary->lines = nt_calloc(scene->mesh_count, sizeof *summary->lines);
@@ -27,7 +17,8 @@ nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error 
 		const nt_mesh *solved = mesh->plan.same_as ? mesh->plan.same_as : mesh;
 		nt_mesh_line *line = &summary->lines[i];
 		*line = (nt_mesh_line){.decision = mesh->decision,
-			.same = mesh->plan.same_as && nt_mesh_is_wanted(mesh), .triangle_count = triangles_of(solved),
+			.same = mesh->plan.same_as && nt_mesh_is_wanted(mesh),
+			.triangle_count = solved->triangles ? nt_mesh_triangle_count(solved) : 0,
 			.vertex_count = solved->unused_vertices + solved->source_vertex_count};
 		nt_mesh_place(mesh, &line->place);
 		if (solved->vertex_count > solved->source_vertex_count)

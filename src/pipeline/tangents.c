@@ -378,12 +378,6 @@ static void add_halfway(nt_finding_list *list, const nt_mesh *mesh, const nt_mor
 			morph->target, morph->name, morph->halfway_degrees);
 }
 
-/* A face of n corners is n - 2 triangles. */
-static size_t count_triangles(const nt_mesh *mesh)
-{
-	return mesh->corner_count - 2 * mesh->face_count;
-}
-
 /* Triangles for whose corners the file has no texture coordinates; it has some for others. */
 static size_t count_missing(const nt_mesh *mesh)
 {
@@ -392,7 +386,7 @@ static size_t count_missing(const nt_mesh *mesh)
 		const size_t size = mesh->face_sizes ? mesh->face_sizes[f] : 3;
 		unsigned all = NT_LACKS_TEXCOORD;
 		for (size_t k = 0; k < size; k++)
-			all &= mesh->vertex_lacks[mesh->indices ? mesh->indices[corner + k] : corner + k];
+			all &= mesh->vertex_lacks[nt_mesh_vertex(mesh, corner + k)];
 		count += all ? size - 2 : 0;
 		corner += size;
 	}
@@ -403,13 +397,14 @@ static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 {
 	nt_finding_list *list = &scene->findings;
 	const nmtan_counts *c = &mesh->counts;
-	const size_t triangles = count_triangles(mesh), missing = count_missing(mesh);
+	const size_t triangles = nt_mesh_triangle_count(mesh), missing = count_missing(mesh);
 	const size_t degenerate = c->degenerate_texcoords - missing;
 	const bool unmapped = triangles > 0 && degenerate == triangles;
 	const uint8_t unless_needed = !nt_mesh_needs_tangents(mesh, nt_format_is_gltf(scene->judged)); /* an info */
 	char detail[96];
-	snprintf(detail, sizeof detail, "%zu of %zu triangles %s no texture coordinates", missing, triangles,
-		missing == 1 ? "has" : "have");
+	if (missing)
+		snprintf(detail, sizeof detail, "%zu of %zu triangles %s no texture coordinates", missing, triangles,
+			missing == 1 ? "has" : "have");
 	const struct {
 		nt_code code;
 		size_t count;
@@ -448,7 +443,7 @@ static void add_counts(nt_summary *summary, nt_mesh *mesh)
 	mesh->normal_copies = mesh->vertex_count - mesh->source_vertex_count;
 	mesh->tangent_copies = mesh->split.source_count;
 	summary->solved_count++;
-	summary->triangle_count += count_triangles(mesh);
+	summary->triangle_count += nt_mesh_triangle_count(mesh);
 	summary->repaired += mesh->decision == NT_DECISION_REPAIR && mesh->has_tangents
 		? mesh->replaced_tangents : nt_counts_repaired(&mesh->counts);
 	summary->quad_count += mesh->quad_count;

@@ -142,6 +142,9 @@ static inline int nt_settled_orientation(const nt_check *check, size_t triangle)
 	return check->flipped && nt_bit(check->flipped, triangle) ? 0 : check->surface.orientation[triangle];
 }
 
+/* The orientation that both halves of a folded quad may have: see nt_folded_orientation(). */
+int nt_quad_orientation(const nt_check *check, size_t triangle);
+
 static inline bool nt_needs_tangents(const nt_check *check)
 {
 	return nt_mesh_needs_tangents(check->mesh, nt_is_gltf(check));

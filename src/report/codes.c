@@ -608,7 +608,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a triangle without area in UV space between a mirrored and another triangle, converted twice"),
 	ROW(TAN_KEPT_SIGN, WARNING, "w--", CONVERT, "--fix",
 		"{count} {triangle keeps|triangles keep} tangents whose bitangent runs the wrong way",
-		"The input's tangents stay, a material uses them or the file is a PLY, and w is not that of the "
+		"The input's tangents stay, a material uses them or the output is a PLY, and w is not that of the "
 		"texture coordinates, or T and the bitangent are reversed: bumps look like dents there. On --check "
 		"this is TAN_SIGN_MISMATCH, and TAN_MIXED_W_TRIANGLE where corners of a triangle have different w.",
 		"Repair them.",

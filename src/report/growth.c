@@ -23,7 +23,7 @@ static nt_status check_shared(nt_check *check)
 	memset(sides, 0, vertex_count);
 	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
 		/* both halves of a folded quad may have the quad's tangents */
-		const int folded = nt_folded_orientation(check->mesh, check->halves, c / 3);
+		const int folded = nt_quad_orientation(check, c / 3);
 		const int sign = folded ? folded : nt_settled_orientation(check, c / 3);
 		if (sign && sign != NT_FOLDED_EITHER)
 			sides[nt_side_vertex(s, c)] |= sign > 0 ? UNMIRRORED : MIRRORED;

@@ -273,6 +273,20 @@ static int stored_orientation(const nt_check *check, size_t t, float v_offset)
 	return nt_orientation(uv[0], uv[1], uv[2]) * (exact ? mesh->solve_sign : 1);
 }
 
+int nt_quad_orientation(const nt_check *check, size_t t)
+{
+	const nt_surface *s = &check->surface;
+	if (!s->faces || !check->mesh->face_sizes)
+		return nt_folded_orientation(check->mesh, check->halves, t);
+	const size_t first = t > 0 && s->faces[t - 1] == s->faces[t] ? t - 1 : t;
+	if (first + 1 >= s->triangle_count || s->faces[first + 1] != s->faces[first])
+		return 0;
+	const float *uv[2][3];
+	for (size_t k = 0; k < 6; k++)
+		uv[k / 3][k % 3] = nt_side_texcoord(s, (uint32_t)(3 * first + k));
+	return nt_orientation_of_halves(uv);
+}
+
 static void check_sign(const nt_check *check, size_t t, int orientation, sign_tallies *st)
 {
 	const nt_surface *s = &check->surface;
@@ -289,7 +303,8 @@ static void check_sign(const nt_check *check, size_t t, int orientation, sign_ta
 		return;
 	st->checked++;
 	const bool by_w = (w[0] > 0.0f) != (orientation > 0);
-	if (by_w && nt_is_folded_sign(check->mesh, check->halves, t, w[0] > 0.0f ? 1 : -1)) {
+	const int quad = by_w ? nt_quad_orientation(check, t) : 0;
+	if (quad == NT_FOLDED_EITHER || (quad && (quad > 0) == (w[0] > 0.0f))) {
 		nt_tally_triangle(check, &st->of_quad, t, w[0]);
 		return;
 	}

@@ -476,6 +476,12 @@ static inline size_t nt_mesh_vertex(const nt_mesh *mesh, size_t corner)
 	return mesh->indices ? mesh->indices[corner] : corner;
 }
 
+/* A face of n corners is n - 2 triangles; a mesh that is not loaded has no sizes. */
+static inline size_t nt_mesh_triangle_count(const nt_mesh *mesh)
+{
+	return mesh->face_sizes ? mesh->corner_count - 2 * mesh->face_count : mesh->face_count;
+}
+
 /* Whether a mesh of a glTF keeps tangents that a material uses, and has what they are judged by. */
 static inline bool nt_mesh_is_kept_and_used(const nt_mesh *mesh)
 {

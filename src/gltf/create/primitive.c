@@ -52,7 +52,7 @@ static uint32_t *sort_triangles(const nt_mesh *mesh, nt_arena *arena, size_t *fi
 {
 	const size_t primitives = mesh->primitive_count ? mesh->primitive_count : 1;
 	const uint32_t *of_face = primitives > 1 ? mesh->face_primitive : NULL;
-	uint32_t *sorted = nt_arena_alloc(arena, 3 * (mesh->corner_count - 2 * mesh->face_count), sizeof *sorted);
+	uint32_t *sorted = nt_arena_alloc(arena, 3 * nt_mesh_triangle_count(mesh), sizeof *sorted);
 	if (!sorted)
 		return NULL;
 	memset(first, 0, (primitives + 1) * sizeof *first);

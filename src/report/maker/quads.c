@@ -5,11 +5,6 @@
 #include <string.h>
 #include "topology/orientation.h"
 
-static uint32_t vertex_of(const nt_mesh *mesh, size_t corner)
-{
-	return mesh->indices ? mesh->indices[corner] : (uint32_t)corner;
-}
-
 static bool are_rows_equal(const float *rows, size_t floats, uint32_t a, uint32_t b)
 {
 	for (size_t i = 0; rows && i < floats; i++)
@@ -20,7 +15,7 @@ static bool are_rows_equal(const float *rows, size_t floats, uint32_t a, uint32_
 
 static bool are_equal(const nt_mesh *mesh, size_t corner, size_t other)
 {
-	const uint32_t a = vertex_of(mesh, corner), b = vertex_of(mesh, other);
+	const uint32_t a = nt_mesh_vertex(mesh, corner), b = nt_mesh_vertex(mesh, other);
 	return a == b || (are_rows_equal(mesh->positions, 3, a, b) && are_rows_equal(mesh->normals, 3, a, b) &&
 		are_rows_equal(mesh->texcoords, 2, a, b));
 }
@@ -45,7 +40,7 @@ static bool has_form(const nt_mesh *mesh, size_t t, uint8_t form)
 /* The first vertex of a triangle, as the file has it. */
 static uint32_t first_of(const nt_mesh *mesh, size_t t)
 {
-	const uint32_t vertex = vertex_of(mesh, 3 * t);
+	const uint32_t vertex = nt_mesh_vertex(mesh, 3 * t);
 	return mesh->vertex_sources && vertex >= mesh->source_vertex_count
 		? mesh->vertex_sources[vertex - mesh->source_vertex_count] : vertex;
 }
@@ -92,33 +87,38 @@ size_t nt_pair_quads(const nt_mesh *mesh, bool polygons, uint8_t *halves)
 	return pair_first(mesh, mesh->face_count, polygons, orders[best], halves);
 }
 
-/* `magnitude`: the sum of the products behind the area. */
-static int orientation_of(const nt_mesh *mesh, size_t t, const float *uv, double *area, double *magnitude)
+/* Twice the area; `magnitude`: the sum of the products behind it. */
+static double measure(const float *const uv[3], double *magnitude)
 {
-	const float *a = uv + 2 * (size_t)vertex_of(mesh, 3 * t), *b = uv + 2 * (size_t)vertex_of(mesh, 3 * t + 1),
-		    *c = uv + 2 * (size_t)vertex_of(mesh, 3 * t + 2);
-	const double left = ((double)b[0] - a[0]) * ((double)c[1] - a[1]);
-	const double right = ((double)b[1] - a[1]) * ((double)c[0] - a[0]);
-	*area = fabs(left - right);
+	const double left = ((double)uv[1][0] - uv[0][0]) * ((double)uv[2][1] - uv[0][1]);
+	const double right = ((double)uv[1][1] - uv[0][1]) * ((double)uv[2][0] - uv[0][0]);
 	*magnitude = fabs(left) + fabs(right);
-	return nt_orientation(a, b, c);
+	return fabs(left - right);
+}
+
+int nt_orientation_of_halves(const float *const uv[2][3])
+{
+	double magnitudes[2];
+	const int one = nt_orientation(uv[0][0], uv[0][1], uv[0][2]);
+	const int other = nt_orientation(uv[1][0], uv[1][1], uv[1][2]);
+	if (one * other >= 0)
+		return 0;
+	const double areas[2] = {measure(uv[0], &magnitudes[0]), measure(uv[1], &magnitudes[1])};
+	/* four roundings of each, as MikkTSpace makes them; it may also cut the quad along the other diagonal */
+	if (fabs(areas[0] - areas[1]) <= 0x1p-22 * (magnitudes[0] + magnitudes[1]))
+		return NT_FOLDED_EITHER;
+	return areas[0] > areas[1] ? one : other;
 }
 
 int nt_folded_orientation(const nt_mesh *mesh, const uint8_t *halves, size_t t)
 {
 	if (!halves || halves[t] == NT_HALF_NONE)
 		return 0;
-	const size_t first = halves[t] == NT_HALF_SECOND ? t - 1 : t;
-	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
-	double areas[2], magnitudes[2];
-	const int one = orientation_of(mesh, first, uv, &areas[0], &magnitudes[0]);
-	const int other = orientation_of(mesh, first + 1, uv, &areas[1], &magnitudes[1]);
-	if (one * other >= 0)
-		return 0;
-	/* four roundings of each, as MikkTSpace makes them; it may also cut the quad along the other diagonal */
-	if (fabs(areas[0] - areas[1]) <= 0x1p-22 * (magnitudes[0] + magnitudes[1]))
-		return NT_FOLDED_EITHER;
-	return areas[0] > areas[1] ? one : other;
+	const size_t first = 3 * (halves[t] == NT_HALF_SECOND ? t - 1 : t);
+	const float *texcoords = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords, *uv[2][3];
+	for (size_t k = 0; k < 6; k++)
+		uv[k / 3][k % 3] = texcoords + 2 * (size_t)nt_mesh_vertex(mesh, first + k);
+	return nt_orientation_of_halves(uv);
 }
 
 bool nt_is_folded_sign(const nt_mesh *mesh, const uint8_t *halves, size_t t, int sign)

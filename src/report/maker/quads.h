@@ -18,10 +18,11 @@
  * Returns how many quads there are. */
 size_t nt_pair_quads(const nt_mesh *mesh, bool polygons, uint8_t *halves);
 
-/* The orientation that MikkTSpace gives both halves of a quad: that of the larger one. NT_FOLDED_EITHER: they are equal
- * in size, so that it depends on the diagonal along which a program cuts. 0: triangle t is no half (halves may be
- * NULL), or the halves have one orientation, or one has none. */
+/* The orientation that MikkTSpace gives both halves of a quad, here by their texture coordinates or of triangle t: that
+ * of the larger one. NT_FOLDED_EITHER: they are equal in size, so that it depends on the diagonal along which a program
+ * cuts. 0: triangle t is no half (halves may be NULL), or the halves have one orientation, or one has none. */
 enum { NT_FOLDED_EITHER = 2 };
+int nt_orientation_of_halves(const float *const uv[2][3]);
 int nt_folded_orientation(const nt_mesh *mesh, const uint8_t *halves, size_t t);
 
 /* Whether triangle t is half of a folded quad that MikkTSpace may give this sign. */
