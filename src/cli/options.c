@@ -513,7 +513,8 @@ static nt_status check_clashes(parser *p)
 	if (given(p, "fail-on") && p->command->fail_on != NT_FAIL_ON_NEVER &&
 		p->command->fail_on > p->command->min_severity)
 		return nt_fail(p->error, NT_ERROR_USAGE,
-			"--min-severity hides what --fail-on is to find: it must not be above --fail-on");
+			"--fail-on counts what --min-severity shows: let --min-severity name the same "
+			"severity or a lower one");
 	const char *into = p->command->directory ? "directory" : s->in_place ? "in-place" : NULL;
 	if (p->command->output && into)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--output and --%s both say where to write", into);

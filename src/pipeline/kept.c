@@ -58,16 +58,6 @@ static void count_triangle(const sign_count *c, size_t t, const uint32_t corners
 		counts[sign == MIXED ? DIFFERS : BY_W]++;
 }
 
-/* Whether w of a folded quad is that which MikkTSpace gives both halves. */
-static bool has_sign_of_quad(const nt_mesh *mesh, const uint32_t corners[2][3])
-{
-	const float *uv[2][3], w = mesh->tangents[4 * nt_mesh_vertex(mesh, corners[0][0]) + 3];
-	for (size_t k = 0; k < 6; k++)
-		uv[k / 3][k % 3] = mesh->texcoords + 2 * nt_mesh_vertex(mesh, corners[k / 3][k % 3]);
-	const int sign = nt_orientation_of_halves(uv);
-	return sign == NT_FOLDED_EITHER || (sign && (sign > 0) == (w > 0.0f));
-}
-
 static void count_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	sign_count *c = context;
@@ -79,7 +69,7 @@ static void count_range(void *context, size_t begin, size_t end, unsigned slot)
 		const size_t wrong = counts[BY_W];
 		for (unsigned i = 0; i < count; i++)
 			count_triangle(c, face, corners[i], counts);
-		if (count == 2 && counts[BY_W] == wrong + 1 && has_sign_of_quad(c->mesh, corners))
+		if (count == 2 && counts[BY_W] == wrong + 1 && nt_has_sign_of_quad(c->mesh, corners))
 			counts[BY_W] = wrong;
 	}
 	for (int i = 0; i < KINDS; i++)
@@ -221,7 +211,7 @@ void nt_tell_kept(nt_scene *scene)
 		snprintf(share, sizeof share, "%.3g %% of %zu", 100.0 * (double)wrong / (double)mesh->judged_kept,
 			mesh->judged_kept);
 		snprintf(others, sizeof others, ", and corners of %zu more have different w", mixed);
-		snprintf(detail, sizeof detail, "%s%s%s", wrong ? share : "their corners have different w",
+		snprintf(detail, sizeof detail, "%s%s%s", wrong ? share : "corners with different w",
 			wrong && mixed ? others : "", nt_doubt_text(mesh->doubt));
 		nt_finding_put(&scene->findings, (nt_finding){.code = NT_CODE_TAN_KEPT_SIGN,
 			.count = wrong ? wrong : mixed, .detail = detail, .stays = mesh->halved,

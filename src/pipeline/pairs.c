@@ -23,15 +23,25 @@ enum { RIGHT_OF = 500 };
 
 bool nt_runs_backwards(const nt_mesh *mesh, const size_t v[3], int orientation, bool other_w)
 {
+	if (!mesh->normals || !mesh->positions)
+		return false;
 	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
+	/* nearly all triangles end here: T of the first corner runs along growing u (nt_is_reversed() asks the same) */
+	const float *p = mesh->positions + 3 * v[0], *q = mesh->positions + 3 * v[1], *r = mesh->positions + 3 * v[2];
+	const double b = (double)uv[2 * v[1] + 1] - uv[2 * v[0] + 1], c = (double)uv[2 * v[2] + 1] - uv[2 * v[0] + 1];
+	double along = 0.0;
+	for (size_t i = 0; i < 3; i++)
+		along += mesh->tangents[4 * v[0] + i] * (c * ((double)q[i] - p[i]) - b * ((double)r[i] - p[i]));
+	if (orientation * along > 0.0)
+		return false;
 	nt_tangent_triangle triangle = {.orientation = orientation, .other_w = other_w};
-	for (size_t k = 0; k < 3 && mesh->normals && mesh->positions; k++) {
+	for (size_t k = 0; k < 3; k++) {
 		triangle.positions[k] = mesh->positions + 3 * v[k];
 		triangle.normals[k] = mesh->normals + 3 * v[k];
 		triangle.texcoords[k] = uv + 2 * v[k];
 		triangle.tangents[k] = mesh->tangents + 4 * v[k];
 	}
-	return triangle.normals[0] && nt_is_reversed(&triangle);
+	return nt_is_reversed(&triangle);
 }
 
 void nt_judge_w(nt_mesh *mesh)

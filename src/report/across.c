@@ -3,7 +3,7 @@
  * Mirror seams between the objects of one OBJ: two halves that are objects of their own have positions and texture
  * coordinates that meet, and are one surface to whoever looks at it, as they would be as groups. Each mesh leaves the
  * sides at its rim; sorted by positions and texture coordinates, those that may be a seam follow each other. There is
- * one finding for each two objects, which names both.
+ * one finding for each two objects, which names both; of copies of an object the first has it.
  */
 #include "report/check.h"
 

@@ -837,8 +837,8 @@ while IFS='|' read -r input count kept checked; do
 	done
 done <<'END'
 reversed.gltf|2|triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]|TAN_SIGN_MISMATCH
-mixed.gltf|1|triangle keeps tangents whose bitangent runs the wrong way: their corners have different w [TAN_KEPT_SIGN]|TAN_MIXED_W_TRIANGLE
-corner.gltf|2|triangles keep tangents whose bitangent runs the wrong way: their corners have different w [TAN_KEPT_SIGN]|TAN_MIXED_W_TRIANGLE
+mixed.gltf|1|triangle keeps tangents whose bitangent runs the wrong way: corners with different w [TAN_KEPT_SIGN]|TAN_MIXED_W_TRIANGLE
+corner.gltf|2|triangles keep tangents whose bitangent runs the wrong way: corners with different w [TAN_KEPT_SIGN]|TAN_MIXED_W_TRIANGLE
 quad.ply|2|triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]|TAN_SIGN_MISMATCH
 triangles.ply|2|triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]|TAN_SIGN_MISMATCH
 reversed.ply|2|triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]|TAN_SIGN_MISMATCH

@@ -126,3 +126,12 @@ bool nt_is_folded_sign(const nt_mesh *mesh, const uint8_t *halves, size_t t, int
 	const int folded = nt_folded_orientation(mesh, halves, t);
 	return folded && (folded == sign || folded == NT_FOLDED_EITHER);
 }
+
+bool nt_has_sign_of_quad(const nt_mesh *mesh, const uint32_t corners[2][3])
+{
+	const float *uv[2][3], w = mesh->tangents[4 * nt_mesh_vertex(mesh, corners[0][0]) + 3];
+	for (size_t k = 0; k < 6; k++)
+		uv[k / 3][k % 3] = mesh->texcoords + 2 * nt_mesh_vertex(mesh, corners[k / 3][k % 3]);
+	const int sign = nt_orientation_of_halves(uv);
+	return sign == NT_FOLDED_EITHER || (sign && (sign > 0) == (w > 0.0f));
+}

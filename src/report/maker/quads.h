@@ -28,4 +28,7 @@ int nt_folded_orientation(const nt_mesh *mesh, const uint8_t *halves, size_t t);
 /* Whether triangle t is half of a folded quad that MikkTSpace may give this sign. */
 bool nt_is_folded_sign(const nt_mesh *mesh, const uint8_t *halves, size_t t, int sign);
 
+/* Whether w of a folded quad, cut into these corners, is that which MikkTSpace gives both halves. */
+bool nt_has_sign_of_quad(const nt_mesh *mesh, const uint32_t corners[2][3]);
+
 #endif

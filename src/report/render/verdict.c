@@ -129,7 +129,7 @@ static bool find_options(const nt_report *report, const nt_report_finding *first
 	if (!first || !first->repair)
 		return false;
 	const chosen which = {NT_SEVERITY_WARNING, nt_code_condition(first->code) != NULL};
-	const bool joined = join_options(report, which, options);
+	const bool joined = joins_in(first, which) && join_options(report, which, options);
 	if (!joined)
 		nt_buffer_text(options, first->repair);
 	for (size_t i = 0; i < report->new_count; i++) {
