@@ -298,7 +298,7 @@ TEST(names_must_be_as_many_as_the_form_takes)
 	refuses("'c'", WORDS("a", "b", "c"));
 	refuses("there is no file 'check'; did you mean --check?", WORDS("check", "a.glb"));
 	refuses("there is no file 'help'; did you mean --help?", WORDS("help"));
-	refuses("--min-severity hides", WORDS("--check", "--min-severity=error", "--fail-on=warning", "a"));
+	refuses("counts what --min-severity shows", WORDS("--check", "--min-severity=error", "--fail-on=warning", "a"));
 	refuses("INPUT is missing", WORDS("--check"));
 	refuses("INPUT is missing", WORDS("-d", "x"));
 	refuses("'-'", WORDS("-d", "x", "-"));
