@@ -240,7 +240,7 @@ void nt_gltf_free(void *source)
 	free(document->users);
 	free(document->view_users);
 	free(document->grids);
-	free(document->lod_wishes);
+	free(document->materials);
 	nt_name_table_free(&document->animated);
 	free(document->buffers);
 	nt_json_free(document->json);

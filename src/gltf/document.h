@@ -144,7 +144,7 @@ typedef struct nt_gltf {
 	void (*free_pools)(void *pools); /* set with them */
 	nt_name_table animated;  /* pointers of texture transforms that an animation turns or scales: materials.c */
 	bool animated_known;     /* then these are all */
-	void **lod_wishes;       /* [materials] what those with levels of detail ask for; NULL: no such material yet */
+	const struct nt_gltf_material **materials; /* [materials] of those that primitives have; NULL: none yet */
 	const char **image_uris; /* [image_uri_count] of images, as the source has them; NULL: none */
 	size_t image_uri_count;  /* 0 until an edit may change them */
 	nt_gltf_users *users;    /* [accessor_count] by `same`; NULL: not known yet */
@@ -203,14 +203,11 @@ void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin
 /* Bytes that were read: the JSON and what was booked. */
 uint64_t nt_gltf_bytes_read(const nt_gltf *document);
 
-/* nodes.c. Marks the meshes that a scene shows: reached[mesh]. Faulty nodes are passed over. */
-nt_status nt_gltf_reach(const nt_gltf *document, bool *reached, size_t mesh_count, nt_error *error);
-
-/* nodes.c. Calls place(context, mesh, matrix) for every mesh in the world of the default scene (of all roots,
- * where there is no scene). */
-nt_status nt_gltf_walk_world(const nt_gltf *document,
-	nt_status (*place)(void *context, uint64_t mesh, const double matrix[16]), void *context,
-	nt_error *error);
+/* nodes.c. Calls place(context, mesh, matrix) for every mesh that a node shows; faulty nodes are passed over. `world`:
+ * for those of the default scene (of all roots, where there is no scene), with their matrix in the world; else for those
+ * of any scene, or of an extension. */
+typedef nt_status (*nt_gltf_place_mesh)(void *context, uint64_t mesh, const double matrix[16]);
+nt_status nt_gltf_walk(const nt_gltf *document, bool world, nt_gltf_place_mesh place, void *context, nt_error *error);
 
 /* references.c. Finds who refers to accessors and views, and the dangling references with them. Returns NT_OK or
  * NT_ERROR_MEMORY. */

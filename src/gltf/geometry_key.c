@@ -9,9 +9,9 @@
  */
 #include <stdlib.h>
 #include "gltf/draco.h"
-#include "gltf/materials.h"
 #include "gltf/document.h"
 #include "gltf/vertex_pools.h"
+#include "scene/transform.h"
 
 /* ---- keys ---- */
 
@@ -48,24 +48,7 @@ static void put_accessor(nt_key_table *table, const nt_gltf *document, const nt_
 		nt_key_put(table, (uint64_t)mesh->gltf_mesh << 32 | mesh->gltf_primitive);
 }
 
-/* The texture transform that turns the texture coordinates. */
-static nt_status put_transform(nt_key_table *table, nt_gltf *document, const nt_mesh *mesh,
-	const nt_json_value *primitive, nt_error *error)
-{
-	nt_gltf_shading shading = {.has_set = false};
-	const nt_status status = !mesh->texcoords_transformed ? NT_OK : nt_gltf_find_slots(document, primitive,
-		nt_gltf_of_mesh(mesh).pointer, &shading, error);
-	const nt_uv_transform *uv = &shading.transform.uv;
-	const bool applies = !status && nt_gltf_turns(&shading, mesh->texcoord_set);
-	nt_key_put(table, applies);
-	if (applies) {
-		nt_buffer_append(&table->key, &uv->rotation, sizeof uv->rotation);
-		nt_buffer_append(&table->key, uv->scale, sizeof uv->scale);
-	}
-	return status;
-}
-
-nt_status nt_geometry_key(nt_key_table *table, nt_gltf *document, const nt_mesh *mesh, bool bakes, nt_error *error)
+void nt_geometry_key(nt_key_table *table, const nt_gltf *document, const nt_mesh *mesh, bool bakes)
 {
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes"),
@@ -80,8 +63,11 @@ nt_status nt_geometry_key(nt_key_table *table, nt_gltf *document, const nt_mesh 
 		put_accessor(table, document, mesh, nt_json_at(targets, i), "POSITION");
 		put_accessor(table, document, mesh, nt_json_at(targets, i), "NORMAL");
 	}
-	const nt_status status = put_transform(table, document, mesh, primitive, error);
-	return !status && table->key.failed ? nt_fail_memory(error) : status;
+	nt_key_put(table, mesh->transform != NULL);
+	if (mesh->transform) {
+		nt_buffer_append(&table->key, &mesh->transform->rotation, sizeof mesh->transform->rotation);
+		nt_buffer_append(&table->key, mesh->transform->scale, sizeof mesh->transform->scale);
+	}
 }
 
 /* ---- the same as an earlier one ---- */
@@ -112,8 +98,7 @@ static void put_block(nt_key_table *table, const nt_json_value *primitive, const
 }
 
 /* Everything that a load reads of a primitive, and what decides what becomes of it. */
-static nt_status put_all(nt_key_table *table, nt_gltf *document, const nt_mesh *mesh, const nt_read_options *options,
-	nt_error *error)
+static void put_all(nt_key_table *table, const nt_gltf *document, const nt_mesh *mesh, const nt_read_options *options)
 {
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
@@ -126,7 +111,7 @@ static nt_status put_all(nt_key_table *table, nt_gltf *document, const nt_mesh *
 		put_accessor(table, document, mesh, attributes, "COLOR_0");
 	put_accessor(table, document, mesh, primitive, "indices");
 	put_block(table, primitive, mesh);
-	return nt_geometry_key(table, document, mesh, !options->world && options->morphs == NT_MORPH_BAKE, error);
+	nt_geometry_key(table, document, mesh, !options->world && options->morphs == NT_MORPH_BAKE);
 }
 
 /* Fills positions, [mesh_count], the accessor of meshes that share theirs; NT_NONE: others, of which nothing more has
@@ -152,26 +137,23 @@ static size_t find_sharing(const nt_scene *scene, const nt_read_options *options
 }
 
 /* first: by the number of its key, the first mesh that has it: as many as share positions. */
-static nt_status find_all(nt_scene *scene, const nt_read_options *options, const uint32_t *positions, uint32_t *first,
-	nt_error *error)
+static bool find_all(nt_scene *scene, const nt_read_options *options, const uint32_t *positions, uint32_t *first)
 {
 	nt_key_table keys = {0};
-	nt_status status = NT_OK;
-	for (uint32_t i = 0; !status && i < scene->mesh_count; i++) {
+	uint32_t number = 0;
+	for (uint32_t i = 0; number != NT_NONE && i < scene->mesh_count; i++) {
 		const size_t known = keys.names.count;
 		if (positions[i] == NT_NONE)
 			continue;
-		status = put_all(&keys, scene->source, &scene->meshes[i], options, error);
-		const uint32_t number = status ? NT_NONE : nt_key_number(&keys);
-		if (!status && number == NT_NONE)
-			status = nt_fail_memory(error);
-		else if (!status && number == known)
+		put_all(&keys, scene->source, &scene->meshes[i], options);
+		number = nt_key_number(&keys);
+		if (number == known)
 			first[number] = i;
-		else if (!status)
+		else if (number != NT_NONE)
 			scene->meshes[i].plan.same_as = &scene->meshes[first[number]];
 	}
 	nt_key_table_free(&keys);
-	return status;
+	return number != NT_NONE;
 }
 
 nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_error *error)
@@ -188,8 +170,8 @@ nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_
 	const size_t count = ready ? find_sharing(scene, options, positions, users) : 0;
 	free(users);
 	uint32_t *first = ready ? nt_alloc(count, sizeof *first) : NULL;
-	const nt_status status = first ? find_all(scene, options, positions, first, error) : nt_fail_memory(error);
+	const bool found = first && find_all(scene, options, positions, first);
 	free(positions);
 	free(first);
-	return status;
+	return found ? NT_OK : nt_fail_memory(error);
 }

@@ -14,8 +14,8 @@
 #include "base/parallel.h"
 #include "gltf/document.h"
 #include "gltf/draco.h"
-#include "gltf/materials.h"
 #include "gltf/quantize.h"
+#include "scene/transform.h"
 
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
 enum { UNBACKED_ELEMENTS = 65536 };
@@ -243,23 +243,6 @@ static nt_status make_compact(nt_scene *scene, nt_mesh *mesh, const inputs *in, 
 	mesh->vertex_count = mesh->source_vertex_count = view.count;
 	mesh->indices = view.indices;
 	return NT_OK;
-}
-
-/* The transform of the texture that tangents serve. A mesh that shares its geometry has the same one applied already, a
- * copy in a join has that of another. */
-static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, nt_error *error)
-{
-	const nt_mesh *giver = mesh->plan.transform_of ? mesh->plan.transform_of : mesh;
-	if (!giver->texcoords_transformed)
-		return NT_OK;
-	const nt_json_value *primitive = nt_gltf_primitive_of(document, giver);
-	nt_gltf_shading shading;
-	const nt_status status = nt_gltf_find_slots(document, primitive, nt_gltf_of_mesh(giver).pointer,
-		&shading, error);
-	if (status || !shading.has_set || shading.set != mesh->texcoord_set || !mesh->texcoords)
-		return status;
-	return shading.transform.turns && !mesh->plan.same_as
-		? nt_mesh_transform(mesh, &shading.transform.uv, nt_mesh_arena(scene, mesh), error) : NT_OK;
 }
 
 /* Triangles of a strip or fan, in the order and with the first corners that the specification gives. */
@@ -510,7 +493,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
 	if (mesh->plan.same_as) {
 		nt_mesh_share(mesh);
-		return apply_transform(scene, document, mesh, error);
+		return NT_OK;
 	}
 	nt_status status = mesh->ready ? NT_OK :
 		nt_gltf_decode_draco(document, primitive, nt_gltf_of_mesh(mesh).pointer, error);
@@ -531,8 +514,8 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		find_tangent_steps(scene, mesh, options);
 	if (!status && mesh->plan.quantized)
 		status = quantize(scene, mesh, &in, options, error);
-	if (!status)
-		status = apply_transform(scene, document, mesh, error);
+	if (!status && mesh->texcoords && mesh->transform)
+		status = nt_mesh_transform(mesh, mesh->transform, nt_mesh_arena(scene, mesh), error);
 	if (!status && options->report)
 		mesh->vertex_bytes = nt_gltf_vertex_bytes(document, primitive);
 	/* a mesh in the world is written without its targets */

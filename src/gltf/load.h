@@ -14,6 +14,11 @@
 /* Describes the meshes of scene->bytes. */
 nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
 
+/* Describes what the materials of a primitive ask for, those of variants and levels of detail included: slots, texture
+ * coordinates, their transform. Returns NT_OK, NT_ERROR_INPUT or NT_ERROR_MEMORY. */
+nt_status nt_gltf_describe_materials(nt_scene *scene, nt_mesh *mesh, const nt_json_value *primitive,
+	const char *pointer, const nt_read_options *options, nt_error *error);
+
 /* Brings the geometry of a mesh of an opened glTF. */
 nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 	nt_error *error);

@@ -2,27 +2,34 @@
 /*
  * Demands of a primitive's materials on tangents. A primitive has its own material, one per variant
  * (KHR_materials_variants) and one per level of detail (MSFT_lod on a material); tangents must serve
- * them all, so slots are united. Texture coordinates come from the first slot that names a texture:
- * normalTexture, then the clearcoat normal, then anisotropy.
+ * them all, so slots are united. A material is read once, however many primitives have it. Texture coordinates come
+ * from the first slot that names a texture: normalTexture, then the clearcoat normal, then anisotropy.
  */
-#include "gltf/materials.h"
+#include "gltf/load.h"
 
 #include <stdio.h>
 #include <string.h>
-#include "gltf/document.h"
+#include "base/buffer.h"
+#include "scene/transform.h"
 
-/* Demands of all materials together, per slot. */
-typedef struct wishes {
-	bool wants[3]; /* in the order of enum nt_slot: the slot names a texture */
-	uint32_t set[3];
-	bool mixed[3]; /* materials differ in the set of that slot */
-	uint32_t mixed_set[3];
-	nt_gltf_transform transform[3];
-	nt_wrap wrap[3][2];
-	bool mixed_transform[3];
+/* Demands of a slot. */
+typedef struct demand {
+	bool wanted; /* some material has a texture in it */
+	bool mixed;  /* materials differ in the set: mixed_set is another */
+	bool mixed_transform;
+	bool turns;    /* the transform does something to directions: more than an offset */
+	bool animated;
+	uint32_t set, mixed_set;
+	nt_uv_transform transform; /* KHR_texture_transform, for v up */
+	nt_wrap wrap[2];
+} demand;
+
+/* Those of a material, with its levels of detail, or of several. */
+typedef struct nt_gltf_material {
+	demand demands[3]; /* in the order of enum nt_slot */
 	unsigned slots;
-	size_t material_count, unlit_count;
-} wishes;
+	size_t count, unlit_count; /* of the materials */
+} nt_gltf_material;
 
 static nt_status read_number(const nt_json_value *value, const char *pointer, const char *key,
 	double *number, nt_error *error)
@@ -75,18 +82,17 @@ static nt_status find_animated(nt_gltf *document, nt_error *error)
 }
 
 /* The transform of a textureInfo, and the texture coordinate set, which it may override. */
-static nt_status read_transform(nt_gltf *document, const nt_json_value *texture,
-	const char *pointer, nt_gltf_transform *transform, uint64_t *set, nt_error *error)
+static nt_status read_transform(nt_gltf *document, const nt_json_value *texture, const char *pointer, demand *d,
+	uint64_t *set, nt_error *error)
 {
 	char place[NT_GLTF_POINTER * 2];
-	*transform = (nt_gltf_transform){.uv = {.scale = {1, 1}}};
 	const nt_json_value *json =
 		nt_json_find(nt_json_find(texture, "extensions"), "KHR_texture_transform");
 	if (!json)
 		return NT_OK;
 	snprintf(place, sizeof place, "%s/extensions/KHR_texture_transform", pointer);
 	nt_status status = nt_gltf_uint(json, place, "texCoord", 1000, *set, set, error);
-	nt_uv_transform *uv = &transform->uv;
+	nt_uv_transform *uv = &d->transform;
 	if (!status)
 		status = read_number(nt_json_find(json, "rotation"), place, "rotation", &uv->rotation, error);
 	if (!status)
@@ -101,15 +107,15 @@ static nt_status read_transform(nt_gltf *document, const nt_json_value *texture,
 	}
 	if (!status)
 		status = find_animated(document, error);
-	transform->animated = nt_name_find(&document->animated, place, strlen(place)) != UINT32_MAX;
-	transform->turns = transform->animated || uv->rotation != 0 || uv->scale[0] != 1 || uv->scale[1] != 1;
+	d->animated = nt_name_find(&document->animated, place, strlen(place)) != UINT32_MAX;
+	d->turns = d->animated || uv->rotation != 0 || uv->scale[0] != 1 || uv->scale[1] != 1;
 	return status;
 }
 
-static bool same_transform(const nt_gltf_transform *a, const nt_gltf_transform *b)
+static bool same_transform(const demand *a, const demand *b)
 {
-	return a->uv.rotation == b->uv.rotation && a->uv.scale[0] == b->uv.scale[0] &&
-	       a->uv.scale[1] == b->uv.scale[1];
+	return a->transform.rotation == b->transform.rotation && a->transform.scale[0] == b->transform.scale[0] &&
+	       a->transform.scale[1] == b->transform.scale[1];
 }
 
 static const nt_json_value *element_of(const nt_gltf *document, const char *array, const nt_json_value *index)
@@ -132,84 +138,75 @@ static void read_wrap(const nt_gltf *document, const nt_json_value *info, nt_wra
 	}
 }
 
-/* Adds the demands of another material of a primitive. */
-static void unite(wishes *all, const wishes *more)
+/* Adds what another material wants of the slot. */
+static void unite_demands(demand *all, const demand *more)
 {
-	for (int slot = 0; slot < 3; slot++) {
-		if (!more->wants[slot])
-			continue;
-		if (!all->wants[slot]) {
-			all->wants[slot] = true;
-			all->set[slot] = more->set[slot];
-			all->transform[slot] = more->transform[slot];
-			memcpy(all->wrap[slot], more->wrap[slot], sizeof all->wrap[slot]);
-		}
-		if (all->set[slot] != more->set[slot] || more->mixed[slot]) {
-			all->mixed[slot] = true;
-			all->mixed_set[slot] = all->set[slot] != more->set[slot] ? more->set[slot]
-				: more->mixed_set[slot];
-		}
-		all->mixed_transform[slot] |= more->mixed_transform[slot] ||
-			!same_transform(&all->transform[slot], &more->transform[slot]);
-		all->transform[slot].animated |= more->transform[slot].animated;
+	if (!all->wanted) {
+		*all = *more;
+		return;
 	}
+	if (!more->wanted)
+		return;
+	if (all->set != more->set || more->mixed) {
+		all->mixed = true;
+		all->mixed_set = all->set != more->set ? more->set : more->mixed_set;
+	}
+	all->mixed_transform |= more->mixed_transform || !same_transform(all, more);
+	all->animated |= more->animated;
+}
+
+static void unite(nt_gltf_material *all, const nt_gltf_material *more)
+{
+	for (int slot = 0; slot < 3; slot++)
+		unite_demands(&all->demands[slot], &more->demands[slot]);
 	all->slots |= more->slots;
-	all->material_count += more->material_count;
+	all->count += more->count;
 	all->unlit_count += more->unlit_count;
 }
 
-/* A material samples this set in the slot. */
-static void note_use(wishes *all, int slot, uint32_t set, const nt_gltf_transform *transform, const nt_wrap wrap[2])
-{
-	wishes one = {0};
-	one.wants[slot] = true;
-	one.set[slot] = set;
-	one.transform[slot] = *transform;
-	memcpy(one.wrap[slot], wrap, sizeof one.wrap[slot]);
-	unite(all, &one);
-}
+static const demand untransformed = {.wanted = true, .transform = {.scale = {1, 1}}};
 
-static nt_status note_texture(nt_gltf *document, wishes *all, int slot,
+static nt_status note_texture(nt_gltf *document, nt_gltf_material *all, int slot,
 	const nt_json_value *texture, const char *material, const char *path, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "%s/%s", material, path);
-	if (nt_json_type_of(texture) != NT_JSON_OBJECT)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an object",
-			nt_json_type_text(texture));
 	uint64_t set;
-	nt_gltf_transform transform;
-	nt_status status = nt_gltf_uint(texture, pointer, "texCoord", 1000, 0, &set, error);
+	demand d = untransformed;
+	nt_status status = nt_gltf_check_object(texture, pointer, error);
 	if (!status)
-		status = read_transform(document, texture, pointer, &transform, &set, error);
+		status = nt_gltf_uint(texture, pointer, "texCoord", 1000, 0, &set, error);
+	if (!status)
+		status = read_transform(document, texture, pointer, &d, &set, error);
 	if (status)
 		return status;
-	nt_wrap wrap[2];
+	d.set = (uint32_t)set;
+	read_wrap(document, texture, d.wrap);
 	all->slots |= 1u << slot;
-	read_wrap(document, texture, wrap);
-	note_use(all, slot, (uint32_t)set, &transform, wrap);
+	unite_demands(&all->demands[slot], &d);
 	return NT_OK;
 }
 
 /* VRM 0: the root says what MToon samples, whatever the material says for other shaders. A normal map lies as the main
  * texture does, whose vector is an offset and a scale. Returns whether the material has one. */
-static bool note_vrm_map(const nt_gltf *document, wishes *all, uint64_t index)
+static bool note_vrm_map(const nt_gltf *document, nt_gltf_material *all, uint64_t index)
 {
 	const nt_json_value *vrm = nt_json_find(nt_gltf_root_member(document, "extensions"), "VRM");
 	const nt_json_value *material = nt_json_at(nt_json_find(vrm, "materialProperties"), (size_t)index);
 	if (!nt_json_find(nt_json_find(material, "textureProperties"), "_BumpMap"))
 		return false;
 	const nt_json_value *vector = nt_json_find(nt_json_find(material, "vectorProperties"), "_MainTex");
-	nt_gltf_transform transform = {.uv = {.scale = {1, 1}}};
+	demand d = untransformed;
 	for (size_t k = 0; k < 2 && nt_json_count(vector) == 4 && !document->keeps_transforms; k++)
-		nt_json_get_double(nt_json_at(vector, 2 + k), &transform.uv.scale[k]);
-	transform.turns = transform.uv.scale[0] != 1 || transform.uv.scale[1] != 1;
+		nt_json_get_double(nt_json_at(vector, 2 + k), &d.transform.scale[k]);
+	d.turns = d.transform.scale[0] != 1 || d.transform.scale[1] != 1;
+	d.wrap[0] = d.wrap[1] = NT_WRAP_REPEAT;
 	all->slots |= NT_SLOT_NORMAL;
-	note_use(all, 0, 0, &transform, (nt_wrap[2]){NT_WRAP_REPEAT, NT_WRAP_REPEAT});
+	unite_demands(&all->demands[0], &d);
 	return true;
 }
 
-static nt_status note_slots(nt_gltf *document, wishes *all, const nt_json_value *material, uint64_t index,
+static nt_status note_slots(nt_gltf *document, nt_gltf_material *all, const nt_json_value *material, uint64_t index,
 	const char *pointer, nt_error *error)
 {
 	const nt_json_value *extensions = nt_json_find(material, "extensions");
@@ -239,121 +236,155 @@ static nt_status note_slots(nt_gltf *document, wishes *all, const nt_json_value 
 	return status;
 }
 
-static nt_status note_material(nt_gltf *document, wishes *all, uint64_t index, const char *from,
-	bool levels, nt_error *error);
-
-/* A material with its levels of detail, which are many: they are read once, however many primitives have it. */
-static nt_status note_levels(nt_gltf *document, wishes *all, uint64_t index, const nt_json_value *ids, const char *from,
+/* A material without its levels of detail. */
+static nt_status read_material(nt_gltf *document, nt_gltf_material *all, uint64_t index, const char *from,
 	nt_error *error)
 {
-	if (!document->lod_wishes)
-		document->lod_wishes = nt_calloc(nt_json_count(nt_gltf_root_member(document, "materials")),
-			sizeof *document->lod_wishes);
-	if (!document->lod_wishes)
-		return nt_fail_memory(error);
-	wishes *known = document->lod_wishes[index];
-	if (!known) {
-		known = nt_arena_alloc(&document->arena, 1, sizeof *known);
-		if (!known)
-			return nt_fail_memory(error);
-		*known = (wishes){0};
-		nt_status status = note_material(document, known, index, from, false, error);
-		for (size_t i = 0; !status && i < nt_json_count(ids); i++) {
-			char pointer[NT_GLTF_POINTER];
-			uint64_t id;
-			nt_gltf_pointer(pointer, "materials", index);
-			if (nt_json_get_uint64(nt_json_at(ids, i), &id))
-				status = note_material(document, known, id, pointer, false, error);
-		}
-		if (status)
-			return status;
-		document->lod_wishes[index] = known;
-	}
-	unite(all, known);
-	return NT_OK;
+	const nt_json_value *material;
+	char pointer[NT_GLTF_POINTER];
+	const nt_status status = nt_gltf_element(document, "materials", index, from, &material, error);
+	if (status)
+		return status;
+	nt_gltf_pointer(pointer, "materials", index);
+	all->count++;
+	return note_slots(document, all, material, index, pointer, error);
 }
 
-static nt_status note_material(nt_gltf *document, wishes *all, uint64_t index, const char *from,
-	bool levels, nt_error *error)
+/* Adds the demands of a material of a primitive. */
+static nt_status note_material(nt_gltf *document, nt_gltf_material *all, uint64_t index, const char *from,
+	nt_error *error)
 {
 	const nt_json_value *material;
 	nt_status status = nt_gltf_element(document, "materials", index, from, &material, error);
 	if (status)
 		return status;
-	const nt_json_value *ids = !levels ? NULL
-		: nt_json_find(nt_json_find(nt_json_find(material, "extensions"), "MSFT_lod"), "ids");
-	if (nt_json_count(ids))
-		return note_levels(document, all, index, ids, from, error);
-	char pointer[NT_GLTF_POINTER];
-	nt_gltf_pointer(pointer, "materials", index);
-	all->material_count++;
-	return note_slots(document, all, material, index, pointer, error);
+	if (!document->materials)
+		document->materials = nt_calloc(nt_json_count(nt_gltf_root_member(document, "materials")),
+			sizeof *document->materials);
+	const nt_gltf_material *known = document->materials ? document->materials[index] : NULL;
+	nt_gltf_material *read = known || !document->materials ? NULL : nt_arena_alloc(&document->arena, 1, sizeof *read);
+	if (!known && !read)
+		return nt_fail_memory(error);
+	if (read) {
+		char pointer[NT_GLTF_POINTER];
+		const nt_json_value *ids = nt_json_find(nt_json_find(nt_json_find(material, "extensions"), "MSFT_lod"),
+			"ids");
+		uint64_t id;
+		*read = (nt_gltf_material){.count = 0};
+		nt_gltf_pointer(pointer, "materials", index);
+		status = read_material(document, read, index, from, error);
+		for (size_t i = 0; !status && i < nt_json_count(ids); i++)
+			if (nt_json_get_uint64(nt_json_at(ids, i), &id))
+				status = read_material(document, read, id, pointer, error);
+		if (status)
+			return status;
+		document->materials[index] = known = read;
+	}
+	unite(all, known);
+	return NT_OK;
 }
 
-static nt_status note_variants(nt_gltf *document, wishes *all, const nt_json_value *primitive,
+static nt_status note_variants(nt_gltf *document, nt_gltf_material *all, const nt_json_value *primitive,
 	const char *pointer, nt_error *error)
 {
 	const nt_json_value *mappings = nt_json_find(
 		nt_json_find(nt_json_find(primitive, "extensions"), "KHR_materials_variants"), "mappings");
-	for (size_t i = 0; i < nt_json_count(mappings); i++) {
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < nt_json_count(mappings); i++) {
 		char place[NT_GLTF_POINTER];
 		snprintf(place, sizeof place, "%.90s/extensions/KHR_materials_variants/mappings/%zu",
 			pointer, i);
 		uint64_t index;
-		nt_status status = nt_gltf_uint(nt_json_at(mappings, i), place, "material",
-			UINT32_MAX - 1, NT_GLTF_REQUIRED, &index, error);
+		status = nt_gltf_uint(nt_json_at(mappings, i), place, "material", UINT32_MAX - 1, NT_GLTF_REQUIRED,
+			&index, error);
 		if (!status)
-			status = note_material(document, all, index, place, true, error);
-		if (status)
-			return status;
+			status = note_material(document, all, index, place, error);
 	}
-	return NT_OK;
+	return status;
 }
 
-/* One set must serve all: the first slot that names a texture wins, what differs is a conflict. */
-static void choose_set(const wishes *all, nt_gltf_shading *shading)
+/* ---- texture coordinates ---- */
+
+/* The sentence about a set that the user asks for and that is not there; NULL if there is none at all. */
+static nt_status describe_asked_set(nt_scene *scene, nt_mesh *mesh, const nt_json_value *attributes, nt_error *error)
 {
+	enum { MOST_SETS = 32 };
+	char name[32];
+	nt_buffer sets = {0}, text = {0};
+	for (uint32_t set = 0; set < MOST_SETS; set++) {
+		nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), set);
+		if (nt_json_find(attributes, name))
+			nt_buffer_format(&sets, "%s%u", sets.size ? ", " : "", set);
+	}
+	if (sets.size)
+		nt_buffer_format(&text, "--uv asks for set %u; sets of the mesh: %s", mesh->texcoord_set, sets.data);
+	mesh->asked_set = text.size ? nt_arena_text(&scene->arena, text.data, text.size) : NULL;
+	const bool failed = sets.failed || text.failed || (text.size && !mesh->asked_set);
+	nt_buffer_free(&sets);
+	nt_buffer_free(&text);
+	return failed ? nt_fail_memory(error) : NT_OK;
+}
+
+/* The texture coordinates that tangents follow. One set must serve all slots: that of the first that has a texture, or
+ * the one that the user asks for. What differs from that first slot is a conflict. */
+static nt_status choose_set(nt_scene *scene, nt_mesh *mesh, const nt_gltf_material *all,
+	const nt_json_value *attributes, int asked, nt_error *error)
+{
+	const demand *first = NULL;
+	char name[32];
+	bool conflict = false, differ = false;
 	for (int slot = 0; slot < 3; slot++) {
-		if (!all->wants[slot])
+		const demand *d = &all->demands[slot];
+		if (!d->wanted)
 			continue;
-		if (!shading->has_set) {
-			shading->has_set = true;
-			shading->set = all->set[slot];
-			shading->transform = all->transform[slot];
-			memcpy(shading->wrap, all->wrap[slot], sizeof shading->wrap);
-			shading->transforms_differ = all->mixed_transform[slot];
-		}
-		if (all->set[slot] == shading->set &&
-			!same_transform(&all->transform[slot], &shading->transform))
-			shading->transforms_differ = true;
-		if (!shading->conflict && all->set[slot] != shading->set) {
-			shading->conflict = true;
-			shading->other_set = all->set[slot];
-		} else if (!shading->conflict && all->mixed[slot]) {
-			shading->conflict = true;
-			shading->other_set = all->mixed_set[slot];
+		first = first ? first : d;
+		differ |= (d == first && d->mixed_transform) || (d->set == first->set && !same_transform(d, first));
+		if (!conflict && (d->set != first->set || d->mixed)) {
+			conflict = true;
+			mesh->texcoord_other_set = d->set != first->set ? d->set : d->mixed_set;
 		}
 	}
+	mesh->texcoord_set = asked >= 0 ? (uint32_t)asked : first ? first->set : 0;
+	mesh->texcoord_conflict = conflict && asked < 0;
+	nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), mesh->texcoord_set);
+	mesh->has_texcoords = nt_json_find(attributes, name) != NULL;
+	mesh->texcoords_transformed = first && (differ || first->animated || first->turns);
+	const bool follows = first && first->set == mesh->texcoord_set;
+	mesh->transforms_differ = follows && mesh->has_texcoords && differ;
+	mesh->transform_animated = follows && mesh->has_texcoords && first->animated;
+	for (int axis = 0; first && axis < 2; axis++) {
+		mesh->wrap[axis] = first->wrap[axis];
+		mesh->wrap_offset[axis] =
+			first->wrap[axis] == NT_WRAP_MIRRORED ? (float)first->transform.offset[axis] : 0;
+	}
+	if (follows && first->turns) {
+		nt_uv_transform *kept = nt_arena_alloc(&scene->arena, 1, sizeof *kept);
+		if (!kept)
+			return nt_fail_memory(error);
+		*kept = first->transform;
+		mesh->transform = kept;
+	}
+	return asked < 0 || mesh->has_texcoords ? NT_OK : describe_asked_set(scene, mesh, attributes, error);
 }
 
-nt_status nt_gltf_find_slots(nt_gltf *document, const nt_json_value *primitive,
-	const char *pointer, nt_gltf_shading *shading, nt_error *error)
+nt_status nt_gltf_describe_materials(nt_scene *scene, nt_mesh *mesh, const nt_json_value *primitive,
+	const char *pointer, const nt_read_options *options, nt_error *error)
 {
-	*shading = (nt_gltf_shading){.material = NT_NONE};
-	wishes all = {0};
+	nt_gltf *document = scene->source;
+	nt_gltf_material all = {.count = 0};
 	uint64_t index;
 	nt_status status = nt_gltf_uint(primitive, pointer, "material", UINT32_MAX, NT_NONE, &index,
 		error);
-	if (!status && index != NT_NONE) {
-		shading->material = (uint32_t)index;
-		status = note_material(document, &all, index, pointer, true, error);
-	}
+	if (!status && index != NT_NONE)
+		status = note_material(document, &all, index, pointer, error);
 	if (!status)
 		status = note_variants(document, &all, primitive, pointer, error);
 	if (status)
 		return status;
-	shading->slots = all.slots;
-	shading->unlit = all.material_count > 0 && all.unlit_count == all.material_count;
-	choose_set(&all, shading);
-	return NT_OK;
+	mesh->gltf_material = (uint32_t)index;
+	mesh->gltf_material_name = nt_json_find_string(nt_json_at(nt_gltf_root_member(document, "materials"),
+		(size_t)index), "name", NULL);
+	mesh->slots = all.slots;
+	mesh->unlit = all.count > 0 && all.unlit_count == all.count;
+	return choose_set(scene, mesh, &all, nt_json_find(primitive, "attributes"), options->texcoord_set, error);
 }

@@ -27,35 +27,26 @@ typedef struct node_walk {
 
 static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-static bool start_walk(node_walk *walk, const nt_gltf *document)
+/* A node that was not visited. */
+static void push_number(node_walk *walk, uint64_t node, const double matrix[16])
 {
-	memset(walk, 0, sizeof *walk);
-	walk->nodes = nt_gltf_root_member(document, "nodes");
-	walk->node_count = nt_json_count(walk->nodes);
-	walk->seen = nt_calloc(walk->node_count, sizeof *walk->seen);
-	return walk->seen != NULL;
-}
-
-static void end_walk(node_walk *walk)
-{
-	free(walk->seen);
-	free(walk->stack);
+	if (node >= walk->node_count || walk->seen[node])
+		return;
+	walk->failed |= !nt_grow((void **)&walk->stack, &walk->stack_capacity, walk->stack_count + 1,
+		sizeof *walk->stack);
+	if (walk->failed)
+		return;
+	walk->seen[node] = true;
+	visit *next = &walk->stack[walk->stack_count++];
+	next->node = (uint32_t)node;
+	memcpy(next->matrix, matrix, sizeof next->matrix);
 }
 
 static void push_node(node_walk *walk, const nt_json_value *index, const double matrix[16])
 {
 	uint64_t node;
-	if (!nt_json_get_uint64(index, &node) || node >= walk->node_count || walk->seen[node])
-		return;
-	if (!nt_grow((void **)&walk->stack, &walk->stack_capacity, walk->stack_count + 1,
-		sizeof *walk->stack)) {
-		walk->failed = true;
-		return;
-	}
-	walk->seen[node] = true;
-	visit *next = &walk->stack[walk->stack_count++];
-	next->node = (uint32_t)node;
-	memcpy(next->matrix, matrix, sizeof next->matrix);
+	if (nt_json_get_uint64(index, &node))
+		push_number(walk, node, matrix);
 }
 
 /* Pushes in reverse, so that the first is visited first. */
@@ -66,8 +57,6 @@ static void push_nodes(node_walk *walk, const nt_json_value *list, const double 
 	for (size_t i = nt_json_count(list); i-- > 0;)
 		push_node(walk, nt_json_at(list, i), matrix);
 }
-
-/* ---- reachability ---- */
 
 /* Node numbers that extensions hold under customary names: MSFT_lod's "ids", "node", "nodes". */
 static void push_extension_nodes(node_walk *walk, const nt_json_value *object)
@@ -84,37 +73,26 @@ static void push_extension_nodes(node_walk *walk, const nt_json_value *object)
 	}
 }
 
-nt_status nt_gltf_reach(const nt_gltf *document, bool *reached, size_t mesh_count, nt_error *error)
+/* Roots of a document without scenes: nodes that are nobody's child. */
+static void push_roots(node_walk *walk)
 {
-	const nt_json_value *scenes = nt_gltf_root_member(document, "scenes");
-	if (!scenes) {
-		for (size_t i = 0; i < mesh_count; i++)
-			reached[i] = true;
-		return NT_OK;
+	bool *child = nt_calloc(walk->node_count, sizeof *child);
+	walk->failed |= !child;
+	for (size_t i = 0; child && i < walk->node_count; i++) {
+		const nt_json_value *children = nt_json_find(nt_json_at(walk->nodes, i), "children");
+		for (size_t k = 0; k < nt_json_count(children); k++) {
+			uint64_t node;
+			if (nt_json_get_uint64(nt_json_at(children, k), &node) && node < walk->node_count)
+				child[node] = true;
+		}
 	}
-	node_walk walk;
-	if (!start_walk(&walk, document))
-		return nt_fail_memory(error);
-	push_extension_nodes(&walk, nt_json_root(document->json));
-	for (size_t i = 0; i < nt_json_count(scenes); i++) {
-		const nt_json_value *scene = nt_json_at(scenes, i);
-		push_nodes(&walk, nt_json_find(scene, "nodes"), identity);
-		push_extension_nodes(&walk, scene);
-	}
-	while (walk.stack_count && !walk.failed) {
-		const nt_json_value *node = nt_json_at(walk.nodes, walk.stack[--walk.stack_count].node);
-		uint64_t mesh;
-		if (nt_json_find_uint64(node, "mesh", &mesh) && mesh < mesh_count)
-			reached[mesh] = true;
-		push_nodes(&walk, nt_json_find(node, "children"), identity);
-		push_extension_nodes(&walk, node);
-	}
-	const bool failed = walk.failed;
-	end_walk(&walk);
-	return failed ? nt_fail_memory(error) : NT_OK;
+	for (size_t i = walk->node_count; child && i-- > 0;)
+		if (!child[i])
+			push_number(walk, i, identity);
+	free(child);
 }
 
-/* ---- the world ---- */
+/* ---- where they stand ---- */
 
 /* Numbers of an array; false unless there are exactly `count` finite ones. */
 static bool read_numbers(const nt_json_value *array, double *numbers, size_t count)
@@ -164,65 +142,57 @@ static void local_matrix(const nt_json_value *node, double matrix[16])
 	memcpy(matrix + 12, t, sizeof t);
 }
 
-/* Roots of a document without scenes: nodes that are nobody's child. */
-static void push_roots(node_walk *walk)
+/* The default scene, or the roots. */
+static void push_world(node_walk *walk, const nt_gltf *document)
 {
-	bool *child = nt_calloc(walk->node_count, sizeof *child);
-	if (!child) {
-		walk->failed = true;
-		return;
-	}
-	for (size_t i = 0; i < walk->node_count; i++) {
-		const nt_json_value *children = nt_json_find(nt_json_at(walk->nodes, i), "children");
-		for (size_t k = 0; k < nt_json_count(children); k++) {
-			uint64_t node;
-			if (nt_json_get_uint64(nt_json_at(children, k), &node) && node < walk->node_count)
-				child[node] = true;
-		}
-	}
-	for (size_t i = walk->node_count; i-- > 0 && !walk->failed;) {
-		if (child[i])
-			continue;
-		if (!nt_grow((void **)&walk->stack, &walk->stack_capacity, walk->stack_count + 1,
-			sizeof *walk->stack)) {
-			walk->failed = true;
-			break;
-		}
-		walk->seen[i] = true;
-		visit *next = &walk->stack[walk->stack_count++];
-		next->node = (uint32_t)i;
-		memcpy(next->matrix, identity, sizeof next->matrix);
-	}
-	free(child);
-}
-
-nt_status nt_gltf_walk_world(const nt_gltf *document,
-	nt_status (*place)(void *context, uint64_t mesh, const double matrix[16]), void *context,
-	nt_error *error)
-{
-	node_walk walk;
-	if (!start_walk(&walk, document))
-		return nt_fail_memory(error);
 	const nt_json_value *scenes = nt_gltf_root_member(document, "scenes");
 	uint64_t scene = 0;
 	nt_json_get_uint64(nt_gltf_root_member(document, "scene"), &scene);
 	if (nt_json_count(scenes) == 0)
-		push_roots(&walk);
+		push_roots(walk);
 	else
-		push_nodes(&walk, nt_json_find(nt_json_at(scenes, (size_t)scene), "nodes"), identity);
+		push_nodes(walk, nt_json_find(nt_json_at(scenes, (size_t)scene), "nodes"), identity);
+}
+
+/* All scenes, and what extensions name beside them. */
+static void push_all(node_walk *walk, const nt_gltf *document)
+{
+	const nt_json_value *scenes = nt_gltf_root_member(document, "scenes");
+	push_extension_nodes(walk, nt_json_root(document->json));
+	for (size_t i = 0; i < nt_json_count(scenes); i++) {
+		push_nodes(walk, nt_json_find(nt_json_at(scenes, i), "nodes"), identity);
+		push_extension_nodes(walk, nt_json_at(scenes, i));
+	}
+}
+
+nt_status nt_gltf_walk(const nt_gltf *document, bool world, nt_gltf_place_mesh place, void *context, nt_error *error)
+{
+	node_walk walk = {.nodes = nt_gltf_root_member(document, "nodes")};
+	walk.node_count = nt_json_count(walk.nodes);
+	walk.seen = nt_calloc(walk.node_count, sizeof *walk.seen);
+	walk.failed = !walk.seen;
+	if (!walk.failed && world)
+		push_world(&walk, document);
+	else if (!walk.failed)
+		push_all(&walk, document);
 	nt_status status = NT_OK;
 	while (!status && walk.stack_count && !walk.failed) {
-		const visit here = walk.stack[--walk.stack_count];
+		visit here = walk.stack[--walk.stack_count];
 		const nt_json_value *node = nt_json_at(walk.nodes, here.node);
-		double local[16], world[16];
-		local_matrix(node, local);
-		multiply(here.matrix, local, world);
+		if (world) {
+			double local[16], parent[16];
+			memcpy(parent, here.matrix, sizeof parent);
+			local_matrix(node, local);
+			multiply(parent, local, here.matrix);
+		}
 		uint64_t mesh;
 		if (nt_json_find_uint64(node, "mesh", &mesh))
-			status = place(context, mesh, world);
-		push_nodes(&walk, nt_json_find(node, "children"), world);
+			status = place(context, mesh, here.matrix);
+		push_nodes(&walk, nt_json_find(node, "children"), here.matrix);
+		if (!world)
+			push_extension_nodes(&walk, node);
 	}
-	const bool failed = walk.failed;
-	end_walk(&walk);
-	return failed ? nt_fail_memory(error) : status;
+	free(walk.seen);
+	free(walk.stack);
+	return walk.failed ? nt_fail_memory(error) : status;
 }

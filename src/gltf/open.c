@@ -19,7 +19,6 @@
 #include "file/uri.h"
 #include "gltf/document.h"
 #include "gltf/draco.h"
-#include "gltf/materials.h"
 
 /* How many elements an accessor claims; where that cannot be said, enough for a triangle, so that loading
  * meets the fault and says it. */
@@ -29,50 +28,6 @@ static uint64_t claimed_count(const nt_gltf *document, const nt_json_value *refe
 	if (nt_json_get_uint64(reference, &index) && index < UINT32_MAX)
 		nt_json_find_uint64(nt_gltf_accessor_json(document, index), "count", &count);
 	return count;
-}
-
-/* The sentence about a set that the user asks for and that is not there; NULL if there is none at all. */
-static nt_status describe_asked_set(nt_scene *scene, nt_mesh *mesh, const nt_json_value *attributes, nt_error *error)
-{
-	enum { MOST_SETS = 32 };
-	char name[32];
-	nt_buffer sets = {0}, text = {0};
-	for (uint32_t set = 0; set < MOST_SETS; set++) {
-		nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), set);
-		if (nt_json_find(attributes, name))
-			nt_buffer_format(&sets, "%s%u", sets.size ? ", " : "", set);
-	}
-	if (sets.size)
-		nt_buffer_format(&text, "--uv asks for set %u; sets of the mesh: %s", mesh->texcoord_set, sets.data);
-	mesh->asked_set = text.size ? nt_arena_text(&scene->arena, text.data, text.size) : NULL;
-	const bool failed = sets.failed || text.failed || (text.size && !mesh->asked_set);
-	nt_buffer_free(&sets);
-	nt_buffer_free(&text);
-	return failed ? nt_fail_memory(error) : NT_OK;
-}
-
-/* The texture coordinates that tangents follow, as the materials or the user want them. */
-static nt_status describe_texcoords(nt_scene *scene, nt_mesh *mesh, const nt_json_value *attributes,
-	const nt_gltf_shading *shading, const nt_read_options *options, nt_error *error)
-{
-	char name[32];
-	mesh->texcoord_set = options->texcoord_set >= 0 ? (uint32_t)options->texcoord_set : shading->set;
-	nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), mesh->texcoord_set);
-	mesh->has_texcoords = nt_json_find(attributes, name) != NULL;
-	mesh->texcoords_transformed = shading->transforms_differ || shading->transform.animated ||
-		shading->transform.turns;
-	const bool turned = mesh->has_texcoords && shading->has_set && shading->set == mesh->texcoord_set;
-	mesh->transforms_differ = turned && shading->transforms_differ;
-	mesh->transform_animated = turned && shading->transform.animated;
-	mesh->texcoord_conflict = shading->conflict && options->texcoord_set < 0;
-	mesh->texcoord_other_set = shading->other_set;
-	for (int axis = 0; axis < 2; axis++) {
-		mesh->wrap[axis] = shading->wrap[axis];
-		mesh->wrap_offset[axis] =
-			shading->wrap[axis] == NT_WRAP_MIRRORED ? (float)shading->transform.uv.offset[axis] : 0;
-	}
-	return options->texcoord_set < 0 || mesh->has_texcoords ? NT_OK
-		: describe_asked_set(scene, mesh, attributes, error);
 }
 
 /* Morph targets that move positions or normals, and those of them that leave tangents as they are. */
@@ -141,25 +96,17 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	uint64_t mode;
 	nt_status status = nt_gltf_uint(primitive, pointer, "mode", explained ? UINT32_MAX : LAST_MODE,
 		NT_GLTF_TRIANGLES, &mode, error);
-	nt_gltf_shading shading;
 	if (!status)
-		status = nt_gltf_find_slots(document, primitive, pointer, &shading, error);
+		status = nt_gltf_describe_materials(scene, mesh, primitive, pointer, options, error);
 	if (status)
 		return status;
-	mesh->gltf_material = shading.material;
-	mesh->gltf_material_name = nt_json_find_string(nt_json_at(nt_gltf_root_member(document, "materials"),
-		shading.material), "name", NULL);
 	mesh->triangles = mode >= NT_GLTF_TRIANGLES && mode <= LAST_MODE;
-	mesh->slots = shading.slots;
-	mesh->unlit = shading.unlit;
 	const nt_json_value *positions = nt_json_find(attributes, "POSITION"),
 		*indices = nt_json_find(primitive, "indices");
 	const uint64_t corners = positions ? claimed_count(document, indices ? indices : positions) : 0;
 	mesh->has_positions = positions != NULL;
 	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;
-	status = describe_texcoords(scene, mesh, attributes, &shading, options, error);
-	if (!status)
-		status = describe_tangents(scene, document, attributes,
+	status = describe_tangents(scene, document, attributes,
 			positions ? claimed_count(document, positions) : 0, mesh, error);
 	if (status)
 		return status;
@@ -178,49 +125,62 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	return NT_OK;
 }
 
-/* All primitives of all meshes. */
-static nt_status count_primitives(const nt_gltf *document, size_t *count, nt_error *error)
+/* The meshes of the document. */
+typedef struct placing {
+	nt_scene *scene;
+	uint32_t *first; /* [mesh_count + 1] the first primitive of each in scene->meshes */
+	size_t mesh_count;
+	size_t capacity; /* of scene->instances */
+	nt_error *error;
+} placing;
+
+static nt_status count_primitives(placing *all, const nt_gltf *document)
 {
+	nt_scene *scene = all->scene;
 	const nt_json_value *meshes = nt_gltf_root_member(document, "meshes");
 	if (meshes && nt_json_type_of(meshes) != NT_JSON_ARRAY)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, "/meshes", "%s, expected an array",
+		return nt_fail_pointer(all->error, NT_ERROR_INPUT, "/meshes", "%s, expected an array",
 			nt_json_type_text(meshes));
-	*count = 0;
-	for (size_t i = 0; i < nt_json_count(meshes); i++) {
+	all->mesh_count = nt_json_count(meshes);
+	all->first = nt_arena_alloc(&scene->arena, all->mesh_count + 1, sizeof *all->first);
+	if (!all->first)
+		return nt_fail_memory(all->error);
+	all->first[0] = 0;
+	for (size_t i = 0; i < all->mesh_count; i++) {
 		const nt_json_value *primitives = nt_json_find(nt_json_at(meshes, i), "primitives");
 		if (nt_json_type_of(primitives) != NT_JSON_ARRAY) {
 			char pointer[NT_GLTF_POINTER];
-			snprintf(pointer, sizeof pointer, "/meshes/%zu", i);
-			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+			nt_gltf_pointer(pointer, "meshes", i);
+			return nt_fail_pointer(all->error, NT_ERROR_INPUT, pointer,
 				"\"primitives\" is %s, expected an array", nt_json_type_text(primitives));
 		}
-		*count += nt_json_count(primitives);
+		all->first[i + 1] = all->first[i] + (uint32_t)nt_json_count(primitives);
 	}
-	return NT_OK;
+	scene->mesh_count = all->first[all->mesh_count];
+	scene->meshes = nt_arena_alloc(&scene->arena, scene->mesh_count, sizeof *scene->meshes);
+	return scene->meshes ? NT_OK : nt_fail_memory(all->error);
 }
 
-static nt_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt_read_options *options,
-	const bool *reached, nt_error *error)
+static nt_status describe_meshes(const placing *all, nt_gltf *document, const nt_read_options *options)
 {
-	const nt_json_value *meshes = nt_gltf_root_member(document, "meshes");
+	nt_scene *scene = all->scene;
 	nt_mesh *mesh = scene->meshes;
-	for (size_t i = 0; i < nt_json_count(meshes); i++) {
-		const nt_json_value *json = nt_json_at(meshes, i);
+	for (size_t i = 0; i < all->mesh_count; i++) {
+		const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "meshes"), i);
 		const nt_json_value *primitives = nt_json_find(json, "primitives");
 		size_t length = 0;
 		const char *name = nt_json_find_string(json, "name", &length);
 		name = nt_arena_text(&scene->arena, name ? name : "", name ? length : 0);
 		if (!name)
-			return nt_fail_memory(error);
+			return nt_fail_memory(all->error);
 		for (size_t k = 0; k < nt_json_count(primitives); k++, mesh++) {
 			memset(mesh, 0, sizeof *mesh);
 			mesh->name = name;
 			mesh->gltf_mesh = (uint32_t)i;
 			mesh->gltf_primitive = (uint32_t)k;
 			mesh->has_siblings = nt_json_count(primitives) > 1;
-			mesh->reachable = reached[i];
 			const nt_status status = describe_primitive(scene, document,
-				nt_json_at(primitives, k), mesh, options, error);
+				nt_json_at(primitives, k), mesh, options, all->error);
 			if (status)
 				return status;
 		}
@@ -228,13 +188,15 @@ static nt_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt_re
 	return NT_OK;
 }
 
-/* The first primitive of a mesh in scene->meshes. */
-typedef struct placing {
-	nt_scene *scene;
-	const uint32_t *first; /* [mesh count + 1] */
-	size_t mesh_count, capacity;
-	nt_error *error;
-} placing;
+static nt_status mark_shown(void *context, uint64_t mesh, const double matrix[16])
+{
+	const placing *all = context;
+	(void)matrix;
+	if (mesh < all->mesh_count)
+		for (uint32_t i = all->first[mesh]; i < all->first[mesh + 1]; i++)
+			all->scene->meshes[i].reachable = true;
+	return NT_OK;
+}
 
 static nt_status place_mesh(void *context, uint64_t mesh, const double matrix[16])
 {
@@ -258,21 +220,6 @@ static nt_status place_mesh(void *context, uint64_t mesh, const double matrix[16
 		memcpy(instance->matrix, matrix, sizeof instance->matrix);
 	}
 	return NT_OK;
-}
-
-static nt_status place_meshes(nt_scene *scene, const nt_gltf *document, nt_error *error)
-{
-	const size_t mesh_count = nt_json_count(nt_gltf_root_member(document, "meshes"));
-	uint32_t *first = nt_arena_alloc(&scene->arena, mesh_count + 1, sizeof *first);
-	if (!first)
-		return nt_fail_memory(error);
-	memset(first, 0, (mesh_count + 1) * sizeof *first);
-	for (size_t i = 0; i < scene->mesh_count; i++)
-		first[scene->meshes[i].gltf_mesh + 1]++;
-	for (size_t i = 0; i < mesh_count; i++)
-		first[i + 1] += first[i];
-	placing world = {scene, first, mesh_count, 0, error};
-	return nt_gltf_walk_world(document, place_mesh, &world, error);
 }
 
 /* Whether the file of a buffer can be opened; a name that is refused is nobody's file. *info: the file, st_nlink 0 if
@@ -511,31 +458,26 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 		nt_file_release(scene->file, document->glb.json.offset, document->is_glb ?
 			document->glb.json.size : scene->byte_count);
 
-	/* The meshes, and which of them a scene shows. */
-	size_t count = 0;
-	status = count_primitives(document, &count, error);
-	if (status)
-		return status;
-	const size_t mesh_count = nt_json_count(nt_gltf_root_member(document, "meshes"));
-	bool *reached = nt_arena_alloc(&scene->arena, mesh_count, sizeof *reached);
-	scene->meshes = nt_arena_alloc(&scene->arena, count, sizeof *scene->meshes);
-	if (!reached || !scene->meshes)
-		return nt_fail_memory(error);
-	memset(reached, 0, mesh_count * sizeof *reached);
-	scene->mesh_count = count;
-	status = look_for_buffers(scene, document, error);
+	/* The meshes, and which of them a scene shows: all, if there is none. */
+	placing all = {.scene = scene, .error = error};
+	status = count_primitives(&all, document);
+	if (!status)
+		status = look_for_buffers(scene, document, error);
 	if (!status)
 		status = nt_gltf_separate_draco(document, error);
 	if (!status)
 		status = nt_gltf_read_arrays(document, error);
 	if (!status)
-		status = nt_gltf_reach(document, reached, mesh_count, error);
-	if (!status)
-		status = describe_meshes(scene, document, options, reached, error);
+		status = describe_meshes(&all, document, options);
+	const bool has_scenes = nt_gltf_root_member(document, "scenes") != NULL;
+	for (size_t i = 0; !status && !has_scenes && i < scene->mesh_count; i++)
+		scene->meshes[i].reachable = true;
+	if (!status && has_scenes)
+		status = nt_gltf_walk(document, false, mark_shown, &all, error);
 
 	/* Their places, if the output is one mesh in the world, and for a report, which shows lengths there. */
 	if (!status && (options->world || options->report))
-		status = place_meshes(scene, document, error);
+		status = nt_gltf_walk(document, true, place_mesh, &all, error);
 	if (!status && options->world)
 		list_left_out(scene, document);
 	return status;

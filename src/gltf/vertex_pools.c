@@ -117,7 +117,7 @@ static size_t count_morphs(const nt_vertex_pools *pools, const nt_json_value *pr
  * transforms turn them; where those do not agree, hardly a tangent does, and a TANGENT for each is less than a copy of
  * every vertex.
  */
-static bool put_key(nt_key_table *keys, const nt_vertex_pools *pools, const nt_mesh *mesh)
+static void put_key(nt_key_table *keys, const nt_vertex_pools *pools, const nt_mesh *mesh)
 {
 	/* what is solved with others has other tangents than alone */
 	const nt_join *join = mesh->plan.same_as ? mesh->plan.same_as->plan.join : mesh->plan.join;
@@ -126,8 +126,7 @@ static bool put_key(nt_key_table *keys, const nt_vertex_pools *pools, const nt_m
 	const size_t morph_count = count_morphs(pools, nt_gltf_primitive_of(pools->scene->source, mesh), join);
 	nt_key_put(keys, morph_count);
 	/* if none gets tangents, they move none */
-	nt_error ignored;
-	return nt_geometry_key(keys, pools->scene->source, mesh, morph_count > 0, &ignored) != NT_ERROR_MEMORY;
+	nt_geometry_key(keys, pools->scene->source, mesh, morph_count > 0);
 }
 
 /* Sets are known before the solve. */
@@ -146,7 +145,8 @@ static bool find_sets(nt_vertex_pool *pool, const nt_vertex_pools *pools)
 		sets->of[i] = sets->next[i] = NT_NONE;
 		if (!gets_tangents(nt_pool_mesh(pool, i)))
 			continue;
-		const uint32_t set = put_key(&keys, pools, nt_pool_mesh(pool, i)) ? nt_key_number(&keys) : NT_NONE;
+		put_key(&keys, pools, nt_pool_mesh(pool, i));
+		const uint32_t set = nt_key_number(&keys);
 		found = set != NT_NONE;
 		if (!found)
 			break;

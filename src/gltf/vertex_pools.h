@@ -30,8 +30,8 @@ uint32_t nt_key_number(nt_key_table *table);
 void nt_key_table_free(nt_key_table *table);
 
 /* geometry_key.c. Writes what decides the vertices of a mesh: attributes and the texture transform, and with `bakes`
- * what morph targets do to them. Returns NT_OK, NT_ERROR_MEMORY or what is wrong with a material. */
-nt_status nt_geometry_key(nt_key_table *table, nt_gltf *document, const nt_mesh *mesh, bool bakes, nt_error *error);
+ * what morph targets do to them. */
+void nt_geometry_key(nt_key_table *table, const nt_gltf *document, const nt_mesh *mesh, bool bakes);
 
 /* All pools of a document. Accessors over the same bytes count as one, by `same`. */
 typedef struct nt_vertex_pools {
@@ -94,7 +94,7 @@ nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_
 /* Fills scene->joins, after nt_gltf_find_same(). mesh->plan.join is left to the caller. With `solved` they will be
  * solved, and same_as becomes what holds then; else they will be compared, and those whose comparison costs many
  * times the solve are left out. With `kept` the tangents that primitives keep are to be checked, so that these stand
- * for themselves as if they got new ones. Returns NT_OK, NT_ERROR_MEMORY or what is wrong with a material. */
+ * for themselves as if they got new ones. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_gltf_find_joins(nt_scene *scene, bool solved, bool kept, nt_error *error);
 
 #endif

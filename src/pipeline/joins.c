@@ -213,7 +213,7 @@ static void mark_unassigned(const whole *w, float *raw)
 /* Whether a part is a mesh of the scene. */
 static bool is_solved_here(const whole *w, const nt_mesh *part)
 {
-	return part->plan.join == w->join && !part->plan.transform_of;
+	return part->plan.join == w->join && !part->plan.copied;
 }
 
 static nt_status count_parts(const whole *w)

@@ -241,7 +241,7 @@ static nt_status solve_join(const wishes *job, const nt_join *join, const nmtan_
 	nt_status status = nt_join_solve(join, job->v_offset, job->splits, options);
 	for (size_t i = 0; i < join->part_count; i++) {
 		nt_mesh *mesh = join->parts[i];
-		if (mesh->plan.transform_of)
+		if (mesh->plan.copied)
 			continue;
 		/* kept ones are compared with them */
 		if (!status && (!job->splits || !nt_mesh_is_wanted(mesh)))

@@ -75,7 +75,7 @@ static nt_status load_copies(window *w)
 	for (size_t i = 0; !status && i < w->scene.join_count; i++)
 		for (size_t k = 0; !status && k < w->scene.joins[i].part_count; k++) {
 			nt_mesh *mesh = w->scene.joins[i].parts[k];
-			if (!mesh->plan.transform_of)
+			if (!mesh->plan.copied)
 				continue;
 			if (mesh->plan.same_as && !mesh->plan.same_as->positions) /* that one was not loaded */
 				mesh->plan.same_as = NULL;

@@ -97,7 +97,7 @@ void nt_mesh_share(nt_mesh *mesh)
 	mesh->decision = own.decision;
 	mesh->plan.same_as = own.plan.same_as;
 	mesh->plan.join = own.plan.join;
-	mesh->plan.transform_of = own.plan.transform_of;
+	mesh->plan.copied = own.plan.copied;
 	mesh->primitives = own.primitives;
 	mesh->primitive_count = own.primitive_count;
 	if (mesh->primitive_count == 1)

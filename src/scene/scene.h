@@ -169,8 +169,7 @@ typedef struct nt_mesh_plan {
 	const struct nt_mesh *same_as; /* an earlier mesh with the same geometry, which is loaded and solved once;
 	                                  NULL: none. That one has none */
 	const nt_join *join;     /* it is solved with the others of it; NULL: by itself */
-	const struct nt_mesh *transform_of; /* of a copy in a join: the mesh whose texture transform applies; NULL:
-	                                       its own */
+	bool copied;             /* a copy of a mesh that a join has, and nobody else */
 	nt_quantized quantized;
 	bool disposable;         /* its geometry may go once it is solved: an edit of the source's document needs
 	                            nothing but the results */
@@ -231,6 +230,7 @@ typedef struct nt_mesh {
 	const char *asked_set;   /* the set that --uv asks for is not there, others are: a sentence; NULL */
 	nt_wrap wrap[2];         /* along u and v, of the texture that tangents serve */
 	float wrap_offset[2];    /* of its transform, v up, where it is mirrored: elsewhere an offset moves all alike */
+	const struct nt_uv_transform *transform; /* what turns or scales that set; NULL: nothing (scene/transform.h) */
 	bool texcoords_transformed; /* textures may be looked up elsewhere than the set says: glTF's texture
 	                               transforms */
 	bool compressed;         /* with Draco */
