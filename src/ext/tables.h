@@ -60,7 +60,6 @@ typedef struct nt_tinygltf_table {
 	__typeof__(nt_reread_target) *target;
 	__typeof__(nt_reread_block) *block;
 	__typeof__(nt_reread_block_id) *block_id;
-	__typeof__(nt_reread_unused) *unused;
 } nt_tinygltf_table;
 
 /* The image formats have one kind of table; see ext/codec/pixels.h. */

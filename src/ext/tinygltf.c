@@ -59,8 +59,3 @@ bool nt_reread_block_id(const nt_reread *model, size_t mesh, size_t primitive, c
 {
 	return opened()->block_id(model, mesh, primitive, name, id);
 }
-
-nt_status nt_reread_unused(const nt_reread *model, size_t first, size_t *accessor, nt_error *error)
-{
-	return opened()->unused(model, first, accessor, error);
-}

@@ -19,7 +19,7 @@ extern "C" {
 typedef struct nt_reread nt_reread;
 
 /* Gives the bytes of a file that a document refers to, by its URI after percent-decoding. They must stay
- * until nt_reread_open() returns. False: there is none, which is an error for buffers and none for images. */
+ * until the next call. False: there is none, which is an error for buffers and none for images. */
 typedef bool (*nt_reread_find)(void *user, const char *uri, const unsigned char **bytes, size_t *size);
 
 /*
@@ -48,8 +48,6 @@ typedef struct nt_reread_array {
 	bool normalized;
 	const char *filter; /* of meshoptimizer, by which they came; NULL: none */
 	const unsigned char *unfiltered; /* what it was applied to, as far apart as the elements */
-	bool has_bounds;     /* min and max of the accessor, one number for each component */
-	double bounds[2][4];
 } nt_reread_array;
 
 /*
@@ -73,10 +71,6 @@ nt_status nt_reread_block(nt_reread *model, size_t mesh, size_t primitive, bool 
 
 /* The id that an attribute has in the block; false: it is not in it. */
 bool nt_reread_block_id(const nt_reread *model, size_t mesh, size_t primitive, const char *name, uint32_t *id);
-
-/* The first accessor with bytes, from `first` on, to which no primitive, animation, skin or extension refers; SIZE_MAX:
- * there is none. Any number of an extension may be one. NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_reread_unused(const nt_reread *model, size_t first, size_t *accessor, nt_error *error);
 
 #ifdef __cplusplus
 }

@@ -8,7 +8,6 @@
 #include "ext/modules/tinygltf_text.hpp"
 #include "ext/tables.h"
 
-#include <algorithm>
 #include <cstring>
 #include <deque>
 #include <map>
@@ -236,17 +235,11 @@ const char *resolve(nt_reread &model, int index, nt_reread_array *array)
 		return "the accessor has no buffer view";
 	}
 	*array = {bytes, accessor.count, stride, accessor.componentType, components, accessor.normalized, nullptr,
-		nullptr, false, {}};
+		nullptr};
 	const auto packed = model.packed.find(static_cast<size_t>(accessor.bufferView));
 	if (bytes && !accessor.sparse.isSparse && packed != model.packed.end() && packed->second.filter != "NONE") {
 		array->filter = packed->second.filter.c_str();
 		array->unfiltered = bytes + size;
-	}
-	array->has_bounds = accessor.minValues.size() == static_cast<size_t>(components) &&
-		accessor.maxValues.size() == accessor.minValues.size();
-	for (size_t k = 0; array->has_bounds && k < accessor.minValues.size(); k++) {
-		array->bounds[0][k] = accessor.minValues[k];
-		array->bounds[1][k] = accessor.maxValues[k];
 	}
 	if (bytes && !accessor.sparse.isSparse)
 		return nullptr;
@@ -393,80 +386,7 @@ bool block_id(const nt_reread *model, size_t mesh, size_t primitive, const char 
 	return false;
 }
 
-// ---- who refers to accessors ----
-
-using accessor_set = std::vector<bool>;
-
-void use(accessor_set &used, int accessor)
-{
-	if (accessor >= 0 && static_cast<size_t>(accessor) < used.size())
-		used[static_cast<size_t>(accessor)] = true;
-}
-
-void use_all(accessor_set &used, const std::map<std::string, int> &attributes)
-{
-	for (const auto &attribute : attributes)
-		use(used, attribute.second);
-}
-
-void use_numbers(accessor_set &used, const tinygltf::Value &value)
-{
-	if (value.IsInt())
-		use(used, value.GetNumberAsInt());
-	if (value.IsArray())
-		for (const auto &element : value.Get<tinygltf::Value::Array>())
-			use_numbers(used, element);
-	if (value.IsObject())
-		for (const auto &member : value.Get<tinygltf::Value::Object>())
-			use_numbers(used, member.second);
-}
-
-void use_extensions(accessor_set &used, const tinygltf::ExtensionMap &extensions)
-{
-	for (const auto &extension : extensions)
-		use_numbers(used, extension.second);
-}
-
-void use_mesh(accessor_set &used, const tinygltf::Mesh &mesh)
-{
-	use_extensions(used, mesh.extensions);
-	for (const auto &primitive : mesh.primitives) {
-		use(used, primitive.indices);
-		use_all(used, primitive.attributes);
-		for (const auto &target : primitive.targets)
-			use_all(used, target);
-		use_extensions(used, primitive.extensions);
-	}
-}
-
-nt_status unused(const nt_reread *model, size_t first, size_t *accessor, nt_error *error)
-{
-	const tinygltf::Model &document = model->document;
-	return nt::guard(error, library, [&] {
-		accessor_set used;
-		for (const auto &item : document.accessors) // a block's indices are taken from its primitive to read it
-			used.push_back(item.bufferView < 0 && !item.sparse.isSparse);
-		for (const auto &mesh : document.meshes)
-			use_mesh(used, mesh);
-		for (const auto &node : document.nodes)
-			use_extensions(used, node.extensions);
-		use_extensions(used, document.extensions);
-		for (const auto &skin : document.skins)
-			use(used, skin.inverseBindMatrices);
-		for (const auto &animation : document.animations)
-			for (const auto &sampler : animation.samplers) {
-				use(used, sampler.input);
-				use(used, sampler.output);
-			}
-		const auto found = first < used.size() ?
-			std::find(used.begin() + static_cast<std::ptrdiff_t>(first), used.end(), false) : used.end();
-		*accessor = found == used.end() ? SIZE_MAX : static_cast<size_t>(found - used.begin());
-		return NT_OK;
-	});
-}
-
 } // namespace
 
 const nt_tinygltf_table nt_tinygltf_module = {NT_MODULE_HEAD(nt_tinygltf_table, "tinygltf", nullptr, "MIT",
-	&nt::cxx), open, free_model, mesh_count, primitive_count, attribute, target, block, block_id,
-	unused};
+	&nt::cxx), open, free_model, mesh_count, primitive_count, attribute, target, block, block_id};

@@ -15,73 +15,40 @@
 #include "gltf/document.h"
 #include "gltf/morph_deltas.h"
 #include "gltf/quantize.h"
-#include "gltf/vertex_pools.h"
 #include "scene/morphs.h"
 
 /* ---- finding the files ---- */
 
-enum { SIDECAR_LIMIT = 64 };
-
-typedef struct sidecar {
-	char *uri;
-	nt_file file;
-} sidecar;
-
 typedef struct file_set {
-	nt_output *output; /* NULL: the files of an input */
+	nt_output *output;
 	const char *path; /* of the document */
-	sidecar items[SIDECAR_LIMIT];
-	size_t count;
-	nt_error *error;
+	nt_file file;     /* the one that was asked for last */
+	bool open;
 } file_set;
 
-/* The file that a URI names: one of the output set, or one that was there before. */
-static bool open_sidecar(file_set *set, const char *uri, nt_file *file)
+static void close_file(file_set *set)
 {
-	const char *slash = strrchr(set->path, '/');
-	nt_buffer path = {0};
-	nt_buffer_append(&path, set->path, slash ? (size_t)(slash - set->path) + 1 : 0);
-	nt_buffer_text(&path, uri);
-	nt_status status = path.failed ? nt_fail_memory(set->error) : NT_OK;
-	const char *written = NULL;
-	if (status == NT_OK && set->output)
-		status = nt_output_written(set->output, path.data, &written, set->error);
-	if (status == NT_OK)
-		status = nt_file_open_untraced(file, written ? written : path.data, set->error);
-	nt_buffer_free(&path);
-	return status == NT_OK;
+	if (set->open)
+		nt_file_close(&set->file);
+	set->open = false;
 }
 
-/* tinygltf asks for a file several times. Images are not its business. */
-static bool find_sidecar(void *user, const char *uri, const unsigned char **bytes, size_t *size)
+/* The file that a URI names: one of the output set, or one that was there before. Images are not tinygltf's business. */
+static bool find_file(void *user, const char *uri, const unsigned char **bytes, size_t *size)
 {
 	file_set *set = user;
-	for (size_t i = 0; i < set->count; i++)
-		if (strcmp(set->items[i].uri, uri) == 0) {
-			*bytes = set->items[i].file.data;
-			*size = set->items[i].file.size;
-			return true;
-		}
-	if (set->count == SIDECAR_LIMIT)
-		return false;
-	sidecar *item = &set->items[set->count];
-	item->uri = strdup(uri);
-	if (!item->uri || !open_sidecar(set, uri, &item->file)) {
-		free(item->uri);
-		return false;
-	}
-	set->count++;
-	*bytes = item->file.data;
-	*size = item->file.size;
-	return true;
-}
-
-static void close_sidecars(file_set *set)
-{
-	for (size_t i = 0; i < set->count; i++) {
-		nt_file_close(&set->items[i].file);
-		free(set->items[i].uri);
-	}
+	const char *slash = strrchr(set->path, '/'), *written = NULL;
+	nt_buffer path = {0};
+	nt_error ignored;
+	nt_buffer_append(&path, set->path, slash ? (size_t)(slash - set->path) + 1 : 0);
+	nt_buffer_text(&path, uri);
+	close_file(set);
+	set->open = !path.failed && nt_output_written(set->output, path.data, &written, &ignored) == NT_OK &&
+		nt_file_open_untraced(&set->file, written ? written : path.data, &ignored) == NT_OK;
+	nt_buffer_free(&path);
+	*bytes = set->open ? set->file.data : NULL;
+	*size = set->open ? set->file.size : 0;
+	return set->open;
 }
 
 /* ---- comparing ---- */
@@ -142,10 +109,7 @@ static nt_status decode_block(primitive_view *view, nt_error *error)
 		const nt_draco_attribute *found = ids[i] != UINT32_MAX ? nt_draco_find(decoded, ids[i]) : NULL;
 		if (!found)
 			continue; /* outside of the block */
-		const nt_reread_array stated = *arrays[i];
 		*arrays[i] = block_array(found, decoded->point_count);
-		arrays[i]->has_bounds = stated.has_bounds;
-		memcpy(arrays[i]->bounds, stated.bounds, sizeof stated.bounds);
 		*tolerances[i] = tolerance_of(found, decoded->point_count);
 		view->tangent_bits = found->quantization.bits; /* they are the last */
 	}
@@ -245,40 +209,6 @@ static bool tangent_matches(const nt_reread_array *array, size_t vertex, const f
 		memcmp(element, values, size) == 0;
 }
 
-/* Whether a client can draw with a tangent that it has decoded: of unit length by the Khronos validator's tolerance, w
- * 1 or -1. */
-static bool is_drawable(const float *t)
-{
-	const double squared = (double)t[0] * t[0] + (double)t[1] * t[1] + (double)t[2] * t[2];
-	return fabs(sqrt(squared) - 1) <= 0.00674 && fabsf(t[3]) == 1;
-}
-
-/* The same of an element; what was meant may be undrawable, as with --raw. */
-static bool stays_drawable(const nt_reread_array *array, size_t vertex, const float *meant)
-{
-	const unsigned char *element = element_at(array, vertex);
-	float t[4];
-	for (size_t k = 0; k < 4; k++)
-		t[k] = nt_component_value(element + k * nt_component_size(array->component_type),
-			array->component_type, array->normalized);
-	return is_drawable(t) || !is_drawable(meant);
-}
-
-/* Whether an accessor's bounds are those of its values, where it states any. */
-static bool bounds_hold(const nt_reread_array *array)
-{
-	double bounds[2][4];
-	if (!array->has_bounds || !array->data)
-		return true;
-	nt_component_bounds(array->data, array->stride_bytes, array->count, array->component_type,
-		(size_t)array->components, bounds);
-	for (size_t k = 0; k < (size_t)array->components; k++)
-		for (size_t b = 0; b < 2; b++)
-			if (isfinite(bounds[b][k]) && (float)array->bounds[b][k] != (float)bounds[b][k])
-				return false;
-	return true;
-}
-
 /* Whether a vertex of a target says what leads from its stored tangent to the target's. */
 static bool target_matches(const nt_reread_array *array, size_t vertex, const float *moved, const float *stored,
 	float least)
@@ -321,27 +251,7 @@ static bool corner_matches(const nt_mesh *mesh, size_t corner, primitive_view *v
 	if (!mesh->split.vertex_tangents || !mesh->normals)
 		return true;
 	float stored[4];
-	const float *meant = mesh->split.vertex_tangents + 4 * split;
-	return tangent_matches(&view->tangents, vertex, meant, stored) &&
-		stays_drawable(&view->tangents, vertex, meant);
-}
-
-static nt_status fail_bounds(const nt_mesh *mesh, const char *attribute, nt_error *error)
-{
-	nt_fail(error, NT_ERROR_INTERNAL, "the bounds of %s in the output, read back, are not those of its values",
-		attribute);
-	nt_mesh_place(mesh, &error->place);
-	return NT_ERROR_INTERNAL;
-}
-
-/* Positions that stay as they are have the bounds that the input states, which exporters round. So have tangents that
- * were looked at and all kept. */
-static nt_status check_bounds(const nt_mesh *mesh, const primitive_view *view, bool positions_too, nt_error *error)
-{
-	const bool kept = mesh->decision == NT_DECISION_REPAIR && !mesh->replaced_tangents;
-	if (positions_too && !bounds_hold(&view->positions))
-		return fail_bounds(mesh, "POSITION", error);
-	return kept || bounds_hold(&view->tangents) ? NT_OK : fail_bounds(mesh, "TANGENT", error);
+	return tangent_matches(&view->tangents, vertex, mesh->split.vertex_tangents + 4 * split, stored);
 }
 
 static nt_status fail_corner(const nt_mesh *mesh, size_t corner, nt_error *error)
@@ -470,8 +380,6 @@ static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, 
 	for (size_t c = 0; c < count && status == NT_OK; c++) {
 		if (!found_corner(view, c, &found[c]))
 			status = fail_corner(mesh, c, error);
-		else if (!is_drawable(found[c].tangent) && is_drawable(wanted[c].tangent))
-			status = fail_corner(mesh, c, error);
 		else
 			ordered &= nt_verify_close(&wanted[c], &found[c], &view->tolerance);
 	}
@@ -502,7 +410,6 @@ typedef struct mesh_check {
 	primitive_view *views; /* [view_count] the primitives that it became */
 	size_t view_count;
 	uint64_t mode; /* of an edited document's primitive */
-	bool decoded; /* its positions were in a block of the input */
 	nt_status status;
 } mesh_check;
 
@@ -554,9 +461,7 @@ static nt_status open_edited(const verification *v, mesh_check *check, nt_error 
 	const nt_mesh *mesh = check->mesh;
 	const nt_gltf *document = v->scene->source;
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
-	const nt_gltf_accessor *positions = nt_gltf_named(document, nt_json_find(primitive, "attributes"), "POSITION");
 	check->mode = nt_gltf_mode(primitive);
-	check->decoded = positions && positions->decoded;
 	const nt_status status = open_primitive(v->model, mesh->gltf_mesh, mesh->gltf_primitive, check->views, error);
 	return status == NT_OK ? open_targets(v->model, mesh, check->views, error) : status;
 }
@@ -590,9 +495,7 @@ static nt_status open_checks(verification *v, nt_error *error)
 static nt_status compare_edited(const mesh_check *check, nt_error *error)
 {
 	primitive_view *view = check->views;
-	nt_status status = view->packed ? NT_OK : check_bounds(check->mesh, view, check->decoded, error);
-	if (status != NT_OK)
-		return status;
+	nt_status status;
 	if (!view->packed && check->mode == NT_GLTF_TRIANGLES && corner_count(view) == check->mesh->corner_count) {
 		status = compare_mesh(check->mesh, view, error);
 		return status ? status : compare_targets(check->mesh, view, error);
@@ -600,8 +503,6 @@ static nt_status compare_edited(const mesh_check *check, nt_error *error)
 	if (!view->packed)
 		return counts_match(check->mesh, view) ? NT_OK : fail_corner(check->mesh, 0, error);
 	status = decode_block(view, error);
-	if (status == NT_OK)
-		status = check_bounds(check->mesh, view, view->position_id != UINT32_MAX, error);
 	if (status == NT_OK)
 		status = compare_block(check->mesh, view, error);
 	if (status == NT_OK)
@@ -637,16 +538,6 @@ static nt_status compare_all(verification *v, unsigned threads, nt_error *error)
 	return status;
 }
 
-/* Something refers to a part that the document did not have. */
-static nt_status check_accessors(const nt_gltf *document, const nt_reread *model, nt_error *error)
-{
-	size_t unused = SIZE_MAX;
-	const nt_status status = !document->pools ? NT_OK :
-		nt_reread_unused(model, document->accessor_count, &unused, error);
-	return status != NT_OK || unused == SIZE_MAX ? status : nt_fail(error, NT_ERROR_INTERNAL,
-		"nothing in the output, read back, refers to accessor %zu, which is new", unused);
-}
-
 static nt_status compare_scene(const nt_scene *scene, nt_reread *model, unsigned threads, nt_error *error)
 {
 	verification v = {.scene = scene, .model = model,
@@ -658,50 +549,10 @@ static nt_status compare_scene(const nt_scene *scene, nt_reread *model, unsigned
 	nt_status status = compare_all(&v, nt_thread_count(threads), error);
 	if (status == NT_OK)
 		status = opened;
-	if (status == NT_OK && v.edited)
-		status = check_accessors(scene->source, model, error);
 	for (size_t i = 0; i < v.count; i++)
 		close_check(&v.checks[i]);
 	free(v.checks);
 	return status == NT_ERROR_INPUT ? error->status = NT_ERROR_INTERNAL : status;
-}
-
-/* glTF wants a byte at least, and an extension that says what a buffer without a URI is. tinygltf refuses others in a
- * .gltf, and not in a .glb. */
-static bool has_odd_buffer(nt_gltf *document)
-{
-	const nt_json_value *buffers = nt_gltf_root_member(document, "buffers");
-	for (size_t i = 0; i < document->buffer_count; i++)
-		if (document->buffers[i].length == 0 || (document->buffers[i].storage == NT_GLTF_STORED_NOWHERE &&
-							       !nt_gltf_compression_of(nt_json_at(buffers, i), NULL)))
-			return true;
-	return false;
-}
-
-/* Whether tinygltf refuses the input as well. Then nobody can say by it what became of the output, and a finding
- * says so. */
-static nt_status check_input(nt_scene *scene, nt_error *error)
-{
-	if (scene->format != NT_FORMAT_GLTF && scene->format != NT_FORMAT_GLB)
-		return NT_ERROR_INTERNAL;
-	if (has_odd_buffer(scene->source)) {
-		nt_finding_add(&scene->findings, NT_CODE_NOT_VERIFIED, NULL, 1, "%s", error->message);
-		return NT_OK;
-	}
-	nt_error ignored, refusal;
-	nt_error_clear(&refusal);
-	nt_reread *model = NULL;
-	file_set set = {.path = scene->path, .error = &ignored};
-	const nt_status status =
-		nt_reread_open(&model, scene->bytes, scene->byte_count, find_sidecar, &set, &refusal);
-	nt_reread_free(model);
-	close_sidecars(&set);
-	if (status == NT_ERROR_MEMORY)
-		return nt_fail_memory(error);
-	if (status != NT_ERROR_INPUT)
-		return NT_ERROR_INTERNAL;
-	nt_finding_add(&scene->findings, NT_CODE_NOT_VERIFIED, NULL, 1, "%s", refusal.message);
-	return NT_OK;
 }
 
 nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, unsigned threads,
@@ -716,18 +567,20 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, u
 	status = nt_file_open_untraced(&file, written, error);
 	if (status != NT_OK)
 		return status;
-	nt_error ignored;
-	file_set set = {.output = output, .path = path, .error = &ignored};
-	status = nt_reread_open(&model, file.data, file.size, find_sidecar, &set, error);
-	const bool refused = status == NT_ERROR_INPUT;
-	if (refused)
-		status = check_input(scene, error);
-	if (status == NT_ERROR_INTERNAL)
-		error->status = status;
-	if (status == NT_OK && !refused)
+	nt_error refusal;
+	nt_error_clear(&refusal);
+	file_set set = {.output = output, .path = path};
+	status = nt_reread_open(&model, file.data, file.size, find_file, &set, &refusal);
+	close_file(&set);
+	if (status == NT_OK)
 		status = compare_scene(scene, model, threads, error);
+	else if (status != NT_ERROR_INPUT)
+		*error = refusal;
+	if (status == NT_ERROR_INPUT) {
+		nt_finding_add(&scene->findings, NT_CODE_NOT_VERIFIED, NULL, 1, "%s", refusal.message);
+		status = NT_OK;
+	}
 	nt_reread_free(model);
-	close_sidecars(&set);
 	nt_file_close(&file);
 	return status == NT_OK ? status : nt_error_in_file(error, path);
 }

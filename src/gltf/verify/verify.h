@@ -16,8 +16,7 @@
  * packed unpacked, what Draco compresses within its quantization, and with vertices in any order where the method
  * is edgebreaker. An output that is written through cannot be read back: nothing
  * is done then. threads: 0 for one per processor; several compare meshes, with the same result. If tinygltf refuses
- * an output that was made from a glTF and refuses the input too, the fault is not ours: the scene gets the finding
- * NOT_VERIFIED.
+ * an output, the scene gets the finding NOT_VERIFIED.
  *
  * Returns NT_OK; NT_ERROR_INTERNAL where the output is not what it should be, which says mesh and
  * corner; NT_ERROR_IO, NT_ERROR_MEMORY; NT_ERROR_UNSUPPORTED for what tinygltf cannot take (4 GB and

@@ -23,8 +23,10 @@ static bool within(const float *a, const float *b, size_t count, float tolerance
 
 bool nt_verify_close(const nt_verify_vertex *a, const nt_verify_vertex *b, const nt_verify_tolerance *tolerance)
 {
+	const float u = a->tangent[3], w = b->tangent[3];
+	/* a client takes w of 1 and -1 alone */
 	return within(a->position, b->position, 3, tolerance->position) &&
-		within(a->tangent, b->tangent, 4, tolerance->tangent);
+		within(a->tangent, b->tangent, 4, tolerance->tangent) && (u == w || (fabsf(u) != 1 && fabsf(w) != 1));
 }
 
 /* The cell of a vertex along an axis, moved by some of its tolerance; all that is not finite is in one. */

@@ -128,36 +128,6 @@ static nt_reread *open_packed(named_bytes *file, size_t packed, size_t offset, c
 	return reread;
 }
 
-/* Bounds as they are stated, and accessors that only a target, or an extension, refers to. */
-TEST(bounds_and_uses_are_told)
-{
-	named_bytes file = triangle_bytes();
-	char text[sizeof triangle + 400], *end = strstr(strcpy(text, triangle), ",\"asset\"") - 1;
-	const char *const rest = strstr(triangle, ",\"asset\"") - 1;
-	nt_reread *reread;
-	nt_error error;
-	nt_reread_array array;
-	size_t unused = 0;
-	assert_int_equal(open_text(&reread, triangle, &file, &error), NT_OK);
-	assert_int_equal(nt_reread_attribute(reread, 0, 0, "POSITION", &array, &error), NT_OK);
-	assert_true(array.has_bounds && array.bounds[0][2] == -2.5 && array.bounds[1][0] == 0.1);
-	assert_int_equal(nt_reread_unused(reread, 0, &unused, &error), NT_OK);
-	assert_true(unused == SIZE_MAX);
-	nt_reread_free(reread);
-
-	/* number 2 is an extension's, 3 has no bytes, 4 is nobody's */
-	static const char *const accessor = "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}";
-	sprintf(end, ",{\"bufferView\":0,%s,{%s,{\"bufferView\":0,%s"
-		"%.*s,\"nodes\":[{\"mesh\":0,\"extensions\":{\"E\":{\"a\":[{\"b\":2}]}}}]}",
-		accessor, accessor, accessor, (int)strlen(rest) - 1, rest);
-	assert_int_equal(open_text(&reread, text, &file, &error), NT_OK);
-	assert_int_equal(nt_reread_unused(reread, 0, &unused, &error), NT_OK);
-	assert_int_equal(unused, 4);
-	assert_int_equal(nt_reread_unused(reread, 5, &unused, &error), NT_OK);
-	assert_true(unused == SIZE_MAX);
-	nt_reread_free(reread);
-}
-
 TEST(packed_views_are_unpacked)
 {
 	named_bytes file = {.name = "a.bin", .size = sizeof file.bytes};
