@@ -203,9 +203,9 @@ void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin
 /* Bytes that were read: the JSON and what was booked. */
 uint64_t nt_gltf_bytes_read(const nt_gltf *document);
 
-/* nodes.c. Calls place(context, mesh, matrix) for every mesh that a node shows; faulty nodes are passed over. `world`:
- * for those of the default scene (of all roots, where there is no scene), with their matrix in the world; else for those
- * of any scene, or of an extension. */
+/* nodes.c. Calls place(context, mesh, matrix) for every mesh that a node shows; faulty nodes are passed over.
+ * `world`: for those of the default scene (of all roots, if there is no scene), with their matrix in the world; else
+ * for those of any scene, or of an extension. */
 typedef nt_status (*nt_gltf_place_mesh)(void *context, uint64_t mesh, const double matrix[16]);
 nt_status nt_gltf_walk(const nt_gltf *document, bool world, nt_gltf_place_mesh place, void *context, nt_error *error);
 

@@ -117,8 +117,8 @@ static bool contributes(const search *s, const nt_mesh *mesh, uint64_t set)
 		nt_json_find(nt_json_find(nt_gltf_primitive_of(s->scene->source, mesh), "attributes"), name);
 }
 
-/* The first primitive from `mesh` on that belongs to a kind, `end` if there is none. Those without a kind belong to
- * the first ones. */
+/* The first primitive from `mesh` on that belongs to a kind, `end` if there is none. The first kinds have
+ * those that have none, too. */
 static uint32_t find_member(const search *s, uint32_t mesh, uint32_t number)
 {
 	while (mesh < s->end) {

@@ -24,7 +24,7 @@ typedef struct demand {
 	nt_wrap wrap[2];
 } demand;
 
-/* Those of a material, with its levels of detail, or of several. */
+/* The demands of a material, with its levels of detail, or of several. */
 typedef struct nt_gltf_material {
 	demand demands[3]; /* in the order of enum nt_slot */
 	unsigned slots;
@@ -262,14 +262,15 @@ static nt_status note_material(nt_gltf *document, nt_gltf_material *all, uint64_
 		document->materials = nt_calloc(nt_json_count(nt_gltf_root_member(document, "materials")),
 			sizeof *document->materials);
 	const nt_gltf_material *known = document->materials ? document->materials[index] : NULL;
-	nt_gltf_material *read = known || !document->materials ? NULL : nt_arena_alloc(&document->arena, 1, sizeof *read);
-	if (!known && !read)
-		return nt_fail_memory(error);
-	if (read) {
+	if (!known) {
+		nt_gltf_material *read =
+			document->materials ? nt_arena_alloc(&document->arena, 1, sizeof *read) : NULL;
 		char pointer[NT_GLTF_POINTER];
 		const nt_json_value *ids = nt_json_find(nt_json_find(nt_json_find(material, "extensions"), "MSFT_lod"),
 			"ids");
 		uint64_t id;
+		if (!read)
+			return nt_fail_memory(error);
 		*read = (nt_gltf_material){.count = 0};
 		nt_gltf_pointer(pointer, "materials", index);
 		status = read_material(document, read, index, from, error);
@@ -326,7 +327,7 @@ static nt_status describe_asked_set(nt_scene *scene, nt_mesh *mesh, const nt_jso
 }
 
 /* The texture coordinates that tangents follow. One set must serve all slots: that of the first that has a texture, or
- * the one that the user asks for. What differs from that first slot is a conflict. */
+ * the one that the user asks for. If another slot has another set, that is a conflict. */
 static nt_status choose_set(nt_scene *scene, nt_mesh *mesh, const nt_gltf_material *all,
 	const nt_json_value *attributes, int asked, nt_error *error)
 {

@@ -33,7 +33,7 @@ static void close_file(file_set *set)
 	set->open = false;
 }
 
-/* The file that a URI names: one of the output set, or one that was there before. Images are not tinygltf's business. */
+/* The file that a URI names: one of the output set, or one that was there before. */
 static bool find_file(void *user, const char *uri, const unsigned char **bytes, size_t *size)
 {
 	file_set *set = user;
