@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Packing a mesh for a page: see pack.h. Streams are chosen so that deflate finds what is alike: neighbours in the
- * order of use lie beside each other, so that differences are small and their high bytes nearly always zero. A triangle
- * of a welded mesh takes two to seven bytes for positions and indices (test_pack.c). Memory is some forty bytes a
- * triangle while it runs.
+ * Packing a mesh for a page: see pack.h. Neighbours in the order of use lie beside each other, so that differences are
+ * small and their high bytes nearly always zero, which deflate makes nothing of. A triangle of a welded mesh takes two
+ * to seven bytes for positions and corners (test_pack.c).
+ *
+ * If a mesh is too large for a page, it gets what lies around the findings, grown ring by ring, in time that is linear
+ * in its size.
  */
 #include "report/pack/pack.h"
 
@@ -12,14 +14,108 @@
 #include <stdlib.h>
 #include <string.h>
 #include "ext/deflate.h"
-#include "report/pack/outline.h"
-#include "report/pack/sample.h"
-#include "report/pack/varint.h"
 
 enum { POSITION_CODES = 65535, TEXCOORD_CODES = (1 << 18) - 1, DIRECTION_CODES = 2047 };
 
 /* Texture coordinates beyond this are no place in a texture; they would leave the others without precision. */
 static const float MOST_TEXCOORD = 1e6f;
+
+/* ---- a part of a mesh ---- */
+
+typedef struct growth {
+	const nt_report_geometry *geometry;
+	uint8_t *taken;    /* [triangle_count] */
+	uint8_t *met;      /* [vertex_count] whether the queue has it */
+	uint32_t *queue;   /* [vertex_count] vertices in the order in which they were met */
+	size_t *first;     /* [vertex_count + 1] where a vertex's triangles begin in `around` */
+	uint32_t *around;  /* [3 * triangle_count] triangles by vertex */
+	size_t queued, count, most;
+} growth;
+
+static void take(growth *w, size_t t)
+{
+	if (w->taken[t] || w->count == w->most)
+		return;
+	w->taken[t] = 1;
+	w->count++;
+	for (int k = 0; k < 3; k++) {
+		const uint32_t vertex = w->geometry->indices[3 * t + (size_t)k];
+		if (!w->met[vertex])
+			w->queue[w->queued++] = vertex;
+		w->met[vertex] = 1;
+	}
+}
+
+static void take_findings(growth *w, const nt_report *report, uint32_t mesh)
+{
+	for (size_t i = 0; i < report->finding_count; i++) {
+		const nt_report_finding *finding = &report->findings[i];
+		for (unsigned k = 0; k < finding->spot_count && finding->mesh == mesh; k++)
+			if (finding->spots[k].triangle != NT_NONE)
+				take(w, finding->spots[k].triangle);
+	}
+	const nt_report_mesh *m = &report->meshes[mesh];
+	for (size_t i = 0; i < m->seam_count + m->hard_count; i++) {
+		const nt_seam *seam = &m->seams[i];
+		for (size_t k = 0; k < seam->edge_count && k < NT_SEAM_EDGES; k++) {
+			take(w, seam->edges[k].triangles[0]);
+			take(w, seam->edges[k].triangles[1]);
+		}
+	}
+	if (w->count == 0)
+		take(w, 0);
+}
+
+/* Lists the triangles of every vertex. */
+static void list_around(growth *w)
+{
+	const nt_report_geometry *g = w->geometry;
+	for (size_t c = 0; c < 3 * g->triangle_count; c++)
+		w->first[g->indices[c] + 1]++;
+	for (size_t v = 0; v < g->vertex_count; v++)
+		w->first[v + 1] += w->first[v];
+	for (size_t c = 0; c < 3 * g->triangle_count; c++)
+		w->around[w->first[g->indices[c]]++] = (uint32_t)(c / 3);
+	/* filling moved each beginning to its end, which is the next one's beginning */
+	memmove(w->first + 1, w->first, g->vertex_count * sizeof *w->first);
+	w->first[0] = 0;
+}
+
+/* Ring after ring around the findings, every triangle looked at three times; then, where those are islands of their
+ * own, from the first triangle on. */
+static void grow_rings(growth *w)
+{
+	for (size_t i = 0; i < w->queued && w->count < w->most; i++) {
+		const uint32_t vertex = w->queue[i];
+		for (size_t k = w->first[vertex]; k < w->first[vertex + 1]; k++)
+			take(w, w->around[k]);
+	}
+	for (size_t t = 0; t < w->geometry->triangle_count && w->count < w->most; t++)
+		take(w, t);
+}
+
+static nt_status sample_triangles(const nt_report *report, uint32_t mesh, size_t most, uint8_t *taken, size_t *count)
+{
+	const nt_report_geometry *g = report->meshes[mesh].geometry;
+	growth w = {.geometry = g, .taken = taken, .most = most,
+		.met = nt_calloc(g->vertex_count, 1),
+		.queue = nt_alloc(g->vertex_count, sizeof *w.queue),
+		.first = nt_calloc(g->vertex_count + 1, sizeof *w.first),
+		.around = nt_alloc(3 * g->triangle_count, sizeof *w.around)};
+	const bool made = w.met && w.queue && w.first && w.around;
+	memset(taken, 0, g->triangle_count);
+	if (made) {
+		list_around(&w);
+		take_findings(&w, report, mesh);
+		grow_rings(&w);
+	}
+	*count = w.count;
+	free(w.met);
+	free(w.queue);
+	free(w.first);
+	free(w.around);
+	return made ? NT_OK : NT_ERROR_MEMORY;
+}
 
 typedef struct packing {
 	const nt_report_geometry *geometry;
@@ -30,18 +126,34 @@ typedef struct packing {
 	uint32_t *number;       /* [geometry vertex_count] in the page, NT_NONE */
 	uint32_t *vertices;     /* [vertex_count] of the geometry */
 	uint32_t *triangles;    /* [triangle_count] of the geometry */
+	uint32_t *codes;        /* [3 * triangle_count] of the array that is being written; no fewer than vertices */
 	nt_buffer raw;
-	size_t stream, begin;   /* the stream that is being written */
 } packing;
 
-/* Ends a stream: notes its length. */
-static void end_stream(packing *p)
+/* Appends an array, unless it is empty. */
+static void put_array(packing *p, const char *name, const uint32_t *values, size_t count)
 {
-	const uint32_t size = (uint32_t)(p->raw.size - p->begin);
-	for (unsigned i = 0; i < 4 && p->raw.data; i++)
-		p->raw.data[4 * p->stream + i] = (char)(size >> 8 * i & 255);
-	p->stream++;
-	p->begin = p->raw.size;
+	uint32_t all = 0, before = 0;
+	for (size_t i = 0; i < count; i++)
+		all |= values[i];
+	const unsigned planes = all >> 24 ? 4 : all >> 16 ? 3 : all >> 8 ? 2 : 1, shift = 32 - 8 * planes;
+	unsigned char *to = count ? nt_buffer_extend(&p->raw, planes * count) : NULL;
+	for (size_t i = 0; to && i < count; i++) {
+		/* the difference of so many bits, modulo what they hold; of either sign, as zigzag 0 -1 1 -2 2 ... */
+		const int32_t difference = (int32_t)((values[i] - before) << shift) >> shift;
+		const uint32_t zigzag = (uint32_t)difference << 1 ^ (uint32_t)(difference >> 31);
+		before = values[i];
+		for (unsigned k = 0; k < planes; k++)
+			to[k * count + i] = (unsigned char)(zigzag >> 8 * k);
+	}
+	if (count)
+		p->packed->arrays[p->packed->array_count++] = (nt_packed_array){name, count, planes};
+}
+
+/* The codes of each vertex. */
+static void put_vertex_array(packing *p, const char *name)
+{
+	put_array(p, name, p->codes, p->packed->vertex_count);
 }
 
 /* ---- which triangles and vertices ---- */
@@ -54,7 +166,7 @@ static nt_status choose_triangles(packing *p, const nt_report *report, uint32_t 
 	p->packed->whole = count <= most;
 	if (!p->packed->whole) {
 		p->taken = nt_alloc(g->triangle_count, 1);
-		status = p->taken ? nt_sample_triangles(report, mesh, most, p->taken, &count) : NT_ERROR_MEMORY;
+		status = p->taken ? sample_triangles(report, mesh, most, p->taken, &count) : NT_ERROR_MEMORY;
 	}
 	p->packed->triangle_count = count;
 	p->triangles = nt_alloc(count, sizeof *p->triangles);
@@ -64,47 +176,31 @@ static nt_status choose_triangles(packing *p, const nt_report *report, uint32_t 
 	for (size_t t = 0; t < g->triangle_count; t++)
 		if (!p->taken || p->taken[t])
 			p->triangles[count++] = (uint32_t)t;
+	if (!p->packed->whole)
+		put_array(p, "numbers", p->triangles, count);
 	return NT_OK;
 }
 
-static void put_indices(packing *p)
+static void put_corners(packing *p)
 {
 	const nt_report_geometry *g = p->geometry;
 	uint32_t next = 0;
 	memset(p->number, 0xff, g->vertex_count * sizeof *p->number);
-	for (size_t t = 0; t < p->packed->triangle_count; t++) {
-		for (size_t k = 0; k < 3; k++) {
-			const uint32_t vertex = g->indices[3 * (size_t)p->triangles[t] + k];
-			if (p->number[vertex] == NT_NONE) {
-				p->vertices[next] = vertex;
-				p->number[vertex] = next++;
-				nt_put_varint(0, &p->raw);
-			} else {
-				nt_put_varint(next - p->number[vertex], &p->raw);
-			}
+	for (size_t c = 0; c < 3 * p->packed->triangle_count; c++) {
+		const uint32_t vertex = g->indices[3 * (size_t)p->triangles[c / 3] + c % 3];
+		const bool is_new = p->number[vertex] == NT_NONE;
+		if (is_new) {
+			p->vertices[next] = vertex;
+			p->number[vertex] = next;
 		}
+		p->codes[c] = next - p->number[vertex];
+		next += is_new;
 	}
 	p->packed->vertex_count = next;
-	end_stream(p);
+	put_array(p, "corners", p->codes, 3 * p->packed->triangle_count);
 }
 
 /* ---- numbers of vertices ---- */
-
-/* Appends planes of one component: codes[v] is that of the page's vertex v. */
-static void put_planes(packing *p, const uint32_t *codes, unsigned planes)
-{
-	const size_t count = p->packed->vertex_count;
-	unsigned char *to = nt_buffer_extend(&p->raw, planes * count);
-	uint32_t before = 0;
-	for (size_t v = 0; to && v < count; v++) {
-		/* the difference of so many bits, modulo what they hold */
-		const uint32_t shift = 32 - 8 * planes;
-		const uint32_t code = nt_zigzag((uint32_t)((int32_t)((codes[v] - before) << shift) >> shift));
-		before = codes[v];
-		for (unsigned i = 0; i < planes; i++)
-			to[i * count + v] = (unsigned char)(code >> 8 * i);
-	}
-}
 
 static uint32_t quantise(double value, double origin, double step, unsigned most)
 {
@@ -128,8 +224,9 @@ static void measure(const packing *p, const float *rows, size_t width, size_t co
 		range[0] = range[1] = 0.0;
 }
 
-static void put_positions(packing *p, uint32_t *codes)
+static void put_positions(packing *p)
 {
+	static const char *const names[3] = {"x", "y", "z"};
 	const float *positions = p->geometry->positions;
 	for (size_t axis = 0; axis < 3; axis++) {
 		double range[2];
@@ -138,16 +235,16 @@ static void put_positions(packing *p, uint32_t *codes)
 		p->packed->position_origin[axis] = range[0];
 		p->packed->position_step[axis] = step;
 		for (size_t v = 0; v < p->packed->vertex_count; v++)
-			codes[v] = quantise(positions[3 * (size_t)p->vertices[v] + axis], range[0], step,
+			p->codes[v] = quantise(positions[3 * (size_t)p->vertices[v] + axis], range[0], step,
 				POSITION_CODES);
-		put_planes(p, codes, 2);
+		put_vertex_array(p, names[axis]);
 	}
-	end_stream(p);
 }
 
 /* v becomes one that points down. */
-static void put_texcoords(packing *p, uint32_t *codes)
+static void put_texcoords(packing *p)
 {
+	static const char *const names[2] = {"u", "v"};
 	const float *texcoords = p->geometry->texcoords;
 	double *origin = p->packed->texcoord_origin, *step = &p->packed->texcoord_step;
 	double range[2][2];
@@ -161,11 +258,11 @@ static void put_texcoords(packing *p, uint32_t *codes)
 	for (size_t axis = 0; axis < 2 && texcoords; axis++) {
 		for (size_t v = 0; v < p->packed->vertex_count; v++) {
 			const double x = texcoords[2 * (size_t)p->vertices[v] + axis];
-			codes[v] = quantise(axis == 1 && !p->v_down ? 1.0 - x : x, origin[axis], *step, TEXCOORD_CODES);
+			p->codes[v] = quantise(axis == 1 && !p->v_down ? 1.0 - x : x, origin[axis], *step,
+				TEXCOORD_CODES);
 		}
-		put_planes(p, codes, 3);
+		put_vertex_array(p, names[axis]);
 	}
-	end_stream(p);
 }
 
 /* Both components of a direction; one without a length is 0 0, which is a direction too. */
@@ -184,44 +281,25 @@ static void encode_direction(const float *d, uint32_t codes[2])
 	codes[1] = (uint32_t)(DIRECTION_CODES + y * DIRECTION_CODES + 0.5);
 }
 
-static void put_directions(packing *p, const float *rows, size_t width, uint32_t *codes)
+/* names: of both components of a direction and, of a tangent, of its sign. rows NULL: there are none. */
+static void put_directions(packing *p, const float *rows, size_t width, const char *const names[3])
 {
-	for (size_t axis = 0; axis < 2 && rows; axis++) {
-		for (size_t v = 0; v < p->packed->vertex_count; v++) {
+	const size_t count = rows ? p->packed->vertex_count : 0;
+	for (size_t axis = 0; axis < 2; axis++) {
+		for (size_t v = 0; v < count; v++) {
 			uint32_t both[2];
 			encode_direction(rows + width * p->vertices[v], both);
-			codes[v] = both[axis];
+			p->codes[v] = both[axis];
 		}
-		put_planes(p, codes, 2);
+		put_array(p, names[axis], p->codes, count);
 	}
-}
-
-static void put_tangents(packing *p, const float *tangents, uint32_t *codes)
-{
-	put_directions(p, tangents, 4, codes);
-	for (size_t v = 0; v < p->packed->vertex_count && tangents; v++) {
-		const float *t = tangents + 4 * (size_t)p->vertices[v];
+	for (size_t v = 0; v < count && width == 4; v++) {
+		const float *t = rows + 4 * (size_t)p->vertices[v];
 		const bool there = isfinite(t[0] + t[1] + t[2]) && (t[0] != 0.0f || t[1] != 0.0f || t[2] != 0.0f);
-		const char sign = !there ? 0 : t[3] > 0.0f ? 1 : t[3] < 0.0f ? 2 : 0;
-		nt_buffer_append(&p->raw, &sign, 1);
+		p->codes[v] = !there ? 0 : t[3] > 0.0f ? 1 : t[3] < 0.0f ? 2 : 0;
 	}
-	end_stream(p);
-}
-
-static nt_status put_vertices(packing *p)
-{
-	const nt_report_geometry *g = p->geometry;
-	uint32_t *codes = nt_alloc(p->packed->vertex_count, sizeof *codes);
-	if (!codes)
-		return NT_ERROR_MEMORY;
-	put_positions(p, codes);
-	put_directions(p, g->normals, 3, codes);
-	end_stream(p);
-	put_texcoords(p, codes);
-	put_tangents(p, g->authored, codes);
-	put_tangents(p, g->computed, codes);
-	free(codes);
-	return NT_OK;
+	if (width == 4)
+		put_array(p, names[2], p->codes, count);
 }
 
 /* ---- triangles ---- */
@@ -241,48 +319,13 @@ static void put_triangles(packing *p)
 	const size_t count = p->packed->triangle_count;
 	for (size_t i = 0; i < count; i++) {
 		const size_t t = p->triangles[i];
-		const char kind = (char)((g->orientation[t] + 1) | (is_finite_triangle(g, g->indices + 3 * t) ? 0 : 4));
-		nt_buffer_append(&p->raw, &kind, 1);
+		p->codes[i] = (uint32_t)(g->orientation[t] + 1) |
+			(is_finite_triangle(g, g->indices + 3 * t) ? 0 : 4);
 	}
-	end_stream(p);
-	uint32_t before = 0;
-	for (size_t i = 0; i < count && g->islands; i++) {
-		const uint32_t island = g->islands[p->triangles[i]] + 1; /* NT_NONE + 1 is 0 */
-		nt_put_varint(nt_zigzag(island - before), &p->raw);
-		before = island;
-	}
-	end_stream(p);
-}
-
-/* Outlines of the triangles that are there, with the page's numbers. */
-static nt_status put_outlines(packing *p)
-{
-	const nt_report_geometry *g = p->geometry;
-	const size_t vertices = p->packed->vertex_count, triangles = p->packed->triangle_count;
-	if (!g->texcoords)
-		return NT_OK;
-	uint32_t *indices = nt_alloc(3 * triangles, sizeof *indices), *islands = nt_alloc(triangles, sizeof *islands);
-	float *texcoords = nt_alloc(2 * vertices, sizeof *texcoords);
-	int8_t *orientation = nt_alloc(triangles, 1);
-	nt_status status = NT_ERROR_MEMORY;
-	if (indices && islands && texcoords && orientation) {
-		for (size_t i = 0; i < triangles; i++) {
-			const size_t t = p->triangles[i];
-			for (size_t k = 0; k < 3; k++)
-				indices[3 * i + k] = p->number[g->indices[3 * t + k]];
-			islands[i] = g->islands ? g->islands[t] : 0;
-			orientation[i] = g->orientation[t];
-		}
-		for (size_t v = 0; v < vertices; v++)
-			memcpy(texcoords + 2 * v, g->texcoords + 2 * (size_t)p->vertices[v], 2 * sizeof *texcoords);
-		const nt_outlined outlined = {vertices, triangles, indices, texcoords, orientation, islands};
-		status = nt_outline_islands(&outlined, &p->raw);
-	}
-	free(indices);
-	free(islands);
-	free(texcoords);
-	free(orientation);
-	return status;
+	put_array(p, "kinds", p->codes, count);
+	for (size_t i = 0; i < count && g->islands; i++)
+		p->codes[i] = g->islands[p->triangles[i]] + 1; /* NT_NONE + 1 is 0 */
+	put_array(p, "islands", p->codes, g->islands ? count : 0);
 }
 
 /* ---- seams ---- */
@@ -312,36 +355,25 @@ static bool find_edge(const packing *p, const nt_seam_edge *edge, uint32_t ends[
 	return found;
 }
 
-static void put_seam(packing *p, const nt_seam *seam, uint32_t *before)
+static void put_seams(packing *p)
 {
-	nt_buffer edges = {0};
-	uint32_t count = 0, ends[4];
-	for (size_t i = 0; i < seam->edge_count && i < NT_SEAM_EDGES; i++) {
-		if (!find_edge(p, &seam->edges[i], ends))
-			continue;
-		count++;
-		for (unsigned k = 0; k < 4; k++) {
-			nt_put_varint(nt_zigzag(ends[k] - *before), &edges);
-			*before = ends[k];
+	const size_t count = p->mesh->seams ? p->mesh->seam_count + p->mesh->hard_count : 0;
+	nt_buffer edges = {0}, ends = {0}; /* of uint32_t */
+	for (size_t s = 0; s < count; s++) {
+		const nt_seam *seam = &p->mesh->seams[s];
+		uint32_t found = 0, both[4];
+		for (size_t i = 0; i < seam->edge_count && i < NT_SEAM_EDGES; i++) {
+			if (!find_edge(p, &seam->edges[i], both))
+				continue;
+			nt_buffer_append(&ends, both, sizeof both);
+			found++;
 		}
+		nt_buffer_append(&edges, &found, sizeof found);
 	}
-	nt_put_varint(count, &p->raw);
-	nt_buffer_append(&p->raw, edges.data, edges.size);
+	put_array(p, "seam_edges", (const uint32_t *)(const void *)edges.data, edges.size / sizeof(uint32_t));
+	put_array(p, "seam_ends", (const uint32_t *)(const void *)ends.data, ends.size / sizeof(uint32_t));
 	nt_buffer_free_into(&edges, &p->raw);
-}
-
-static void put_seams_and_numbers(packing *p)
-{
-	uint32_t before = 0;
-	for (size_t i = 0; p->mesh->seams && i < p->mesh->seam_count + p->mesh->hard_count; i++)
-		put_seam(p, &p->mesh->seams[i], &before);
-	end_stream(p);
-	before = 0;
-	for (size_t i = 0; i < p->packed->triangle_count && !p->packed->whole; i++) {
-		nt_put_varint(p->triangles[i] - before, &p->raw);
-		before = p->triangles[i];
-	}
-	end_stream(p);
+	nt_buffer_free_into(&ends, &p->raw);
 }
 
 /* ---- all of it ---- */
@@ -349,22 +381,20 @@ static void put_seams_and_numbers(packing *p)
 static nt_status pack(packing *p)
 {
 	const nt_report_geometry *g = p->geometry;
-	char *lengths = nt_buffer_extend(&p->raw, 4 * NT_STREAM_COUNT);
 	p->number = nt_alloc(g->vertex_count, sizeof *p->number);
 	p->vertices = nt_alloc(g->vertex_count, sizeof *p->vertices);
-	if (!lengths || !p->number || !p->vertices)
+	p->codes = nt_alloc(3 * p->packed->triangle_count, sizeof *p->codes);
+	if (!p->number || !p->vertices || !p->codes)
 		return NT_ERROR_MEMORY;
-	p->begin = p->raw.size;
-	put_indices(p);
-	nt_status status = put_vertices(p);
-	if (status)
-		return status;
+	put_corners(p);
+	put_positions(p);
+	put_directions(p, g->normals, 3, (const char *const[]){"nx", "ny", NULL});
+	put_texcoords(p);
+	put_directions(p, g->authored, 4, (const char *const[]){"ax", "ay", "aw"});
+	put_directions(p, g->computed, 4, (const char *const[]){"cx", "cy", "cw"});
 	put_triangles(p);
-	status = put_outlines(p);
-	end_stream(p);
-	if (!status)
-		put_seams_and_numbers(p);
-	return status || p->raw.failed ? NT_ERROR_MEMORY : NT_OK;
+	put_seams(p);
+	return p->raw.failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
 nt_status nt_pack_mesh(nt_packed *packed, const nt_report *report, uint32_t mesh, size_t most)
@@ -385,5 +415,6 @@ nt_status nt_pack_mesh(nt_packed *packed, const nt_report *report, uint32_t mesh
 	free(p.number);
 	free(p.vertices);
 	free(p.triangles);
+	free(p.codes);
 	return status;
 }

@@ -2,38 +2,47 @@
 /*
  * A mesh as an HTML page has it: whole, in a few bytes a triangle. page/data.js, in report/render, reads it.
  *
- * Vertices are numbered in the order in which triangles use them. The bytes are streams one after the other, deflated
- * together, behind the length of each in bytes (NT_STREAM_COUNT times uint32, little endian; 0: it is not there):
+ * It is arrays of whole numbers, one after the other, deflated together, without those that would be empty. Vertices
+ * are numbered in the order in which triangles use them:
  *
- *   indices     of each corner a varint: how far its vertex is below the number of the next new one; 0: it is that one
- *   positions   x, y, z: position_origin + code * position_step, 16 bits
- *   normals     as directions, see below
- *   texcoords   u, v, v pointing down: texcoord_origin + code * texcoord_step, 24 bits
- *   authored    tangents of the file: directions, then a byte each: 1 for w > 0, 2 for w < 0, 0: there is none
- *   computed    tangents that nmtan computes, the same
- *   kinds       of each triangle a byte: orientation + 1, and 4 where a position is not finite
- *   islands     of each triangle a varint: its island + 1, 0: none, as a zigzag difference from the triangle before
- *   outlines    see outline.h
- *   seams       of each seam, then of each net of hard edges, a varint: how many edges, then of each edge the vertices
- *               at its ends, unmirrored side first, as zigzag differences from the number before
- *   numbers     where triangles are left out, of each a varint: its number, as difference from the one before
+ *   corners                       of each corner how far its vertex is below the number of the next new one; 0: it is
+ *                                 that one
+ *   x y z                         of each vertex: position_origin + code * position_step, 16 bits
+ *   nx ny                         its normal as a direction, see below
+ *   u v                           its texture coordinates, v pointing down: texcoord_origin + code * texcoord_step, 18
+ *                                 bits
+ *   ax ay aw                      its tangent in the file: a direction, then 1 for w > 0, 2 for w < 0, 0: there is none
+ *   cx cy cw                      the one that nmtan computes, the same
+ *   kinds                         of each triangle orientation + 1, and 4 if a position is not finite
+ *   islands                       its island + 1, 0: none
+ *   seam_edges                    of each seam, then of each net of hard edges: how many edges
+ *   seam_ends                     of each edge the vertices at its ends, unmirrored side first
+ *   numbers                       if triangles are left out: the file's number of each
  *
- * Varints have seven bits a byte, the lowest first. A code of 16 or 24 bits is the zigzag difference from the vertex
- * before, modulo 2^16 or 2^24; each component has two or three planes of bytes, the lowest first. A direction is two
- * components of 16 bits: the octahedron |x| + |y| + |z| = 1, its lower half folded out, as 2047 + round(2047 x).
+ * An array is stored as differences from the number before, as zigzag, in planes: the lowest byte of each, then the
+ * second one, as many as its greatest number has, modulo what these hold. A direction is two components of 12 bits: the
+ * octahedron |x| + |y| + |z| = 1, its lower half folded out, as 2047 + round(2047 x).
  */
 #ifndef NT_REPORT_PACK_PACK_H
 #define NT_REPORT_PACK_PACK_H
 
 #include "report/report.h"
 
-enum { NT_STREAM_COUNT = 11 };
+enum { NT_PACKED_ARRAYS = 19 };
+
+typedef struct nt_packed_array {
+	const char *name; /* static */
+	size_t count;
+	unsigned planes;
+} nt_packed_array;
 
 typedef struct nt_packed {
 	size_t vertex_count, triangle_count;
 	bool whole;                  /* nothing was left out */
 	double position_origin[3], position_step[3];
 	double texcoord_origin[2], texcoord_step;
+	nt_packed_array arrays[NT_PACKED_ARRAYS]; /* [array_count] in the order of their bytes */
+	unsigned array_count;
 	size_t raw_bytes;            /* before they were deflated */
 	nt_buffer bytes;             /* deflated */
 } nt_packed;

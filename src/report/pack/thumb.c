@@ -1,110 +1,147 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Thumbnails of UV layouts: see thumb.h. The outlines are those of the page, with points on a raster of half pixels, so
- * that what is smaller than that takes no place.
+ * Small pictures: see thumb.h. Triangles are drawn with a depth for each pixel; a mesh is seen without perspective from
+ * the front, from the right and a little from above, brighter where it faces the eye. Triangles smaller than a pixel
+ * have no middle of one inside: of a mesh of many the others cover the surface.
  */
 #include "report/pack/thumb.h"
 
 #include <math.h>
-#include "report/pack/outline.h"
+#include <stdlib.h>
+#include "ext/deflate.h"
 
-enum { MOST_POINTS = 3000 };
+enum { PIXELS = NT_THUMB_WIDTH * NT_THUMB_HEIGHT, MARGIN = 4 };
 
-typedef struct frame {
-	const float *texcoords;
-	bool v_down;
-	double middle[2], scale; /* of the layout; raster steps per unit */
-} frame;
+/* To the right, up and towards the eye, of a camera turned by 0.6 and raised by 0.3. */
+static const double axes[3][3] = {{0.8253356, 0.0, -0.5646425}, {-0.1668633, 0.9553365, -0.2439034},
+	{0.5394236, 0.2955202, 0.7884732}};
 
-static bool is_finite(const float *uv)
+typedef struct picture {
+	const nt_report_geometry *geometry;
+	bool layout, v_down;
+	double middle[2], scale;
+	float *depth;         /* [PIXELS] */
+	unsigned char *shade; /* [PIXELS] */
+} picture;
+
+/* The places of a triangle's corners: to the right, down and towards the eye. False where one is not finite. */
+static bool place(const picture *d, size_t triangle, double p[3][3])
 {
-	return isfinite(uv[0]) && isfinite(uv[1]);
+	const nt_report_geometry *g = d->geometry;
+	bool finite = true;
+	for (size_t k = 0; k < 3; k++) {
+		const size_t vertex = g->indices[3 * triangle + k];
+		if (d->layout) {
+			p[k][0] = g->texcoords[2 * vertex];
+			p[k][1] = d->v_down ? g->texcoords[2 * vertex + 1] : -g->texcoords[2 * vertex + 1];
+			p[k][2] = g->orientation[triangle] < 0;
+		} else {
+			const float *at = g->positions + 3 * vertex;
+			for (int i = 0; i < 3; i++)
+				p[k][i] = axes[i][0] * at[0] + axes[i][1] * at[1] + axes[i][2] * at[2];
+			p[k][1] = -p[k][1];
+		}
+		finite &= isfinite(p[k][0]) && isfinite(p[k][1]) && isfinite(p[k][2]);
+	}
+	return finite;
 }
 
-static frame fit(const nt_report_geometry *g, bool v_down)
+static void fit(picture *d)
 {
-	double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-	for (size_t c = 0; c < 3 * g->triangle_count; c++) {
-		const float *uv = g->texcoords + 2 * (size_t)g->indices[c];
-		for (int k = 0; k < 2 && is_finite(uv); k++) {
-			low[k] = fmin(low[k], uv[k]);
-			high[k] = fmax(high[k], uv[k]);
+	double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, p[3][3];
+	for (size_t t = 0; t < d->geometry->triangle_count; t++) {
+		if (!place(d, t, p))
+			continue;
+		for (int i = 0; i < 6; i++) {
+			low[i % 2] = fmin(low[i % 2], p[i / 2][i % 2]);
+			high[i % 2] = fmax(high[i % 2], p[i / 2][i % 2]);
 		}
 	}
-	const double width = high[0] - low[0], height = high[1] - low[1];
-	const double across = width > 0.0 ? NT_THUMB_WIDTH / width : INFINITY;
-	const double down = height > 0.0 ? NT_THUMB_HEIGHT / height : INFINITY;
-	const double scale = fmin(across, down);
-	return (frame){g->texcoords, v_down, {(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0},
-		isfinite(scale) ? scale : 0.0};
+	const double across = (NT_THUMB_WIDTH - 2 * MARGIN) / (high[0] - low[0]);
+	const double down = (NT_THUMB_HEIGHT - 2 * MARGIN) / (high[1] - low[1]);
+	d->scale = fmin(across, down);
+	for (int i = 0; i < 2; i++)
+		d->middle[i] = (low[i] + high[i]) / 2.0;
 }
 
-static uint32_t next_varint(const unsigned char **at)
+/* From 1 to 255. */
+static unsigned char shade_of(const double p[3][3])
 {
-	uint32_t value = 0;
-	for (unsigned shift = 0;; shift += 7) {
-		const unsigned char byte = *(*at)++;
-		value |= (uint32_t)(byte & 127) << shift;
-		if (!(byte & 128))
-			return value;
+	double a[3], b[3];
+	for (int i = 0; i < 3; i++) {
+		a[i] = p[1][i] - p[0][i];
+		b[i] = p[2][i] - p[0][i];
 	}
+	const double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+	const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+	/* light from the left above the eye, and as much of it on the back of a sheet */
+	const double light = length > 0.0 ? fabs(0.3 * n[0] + 0.45 * n[1] - 0.84 * n[2]) / length : 0.0;
+	return (unsigned char)(60.0 + 190.0 * fmin(light, 1.0));
 }
 
-static uint32_t next_difference(const unsigned char **at)
+static int clamp(double x, int most)
 {
-	const uint32_t code = next_varint(at);
-	return code >> 1 ^ (0u - (code & 1));
+	return x < 0.0 ? 0 : x > most ? most : (int)x;
 }
 
-/* Appends a loop unless fewer than three points are left of it; returns how many. */
-static size_t put_loop(const frame *f, const unsigned char **at, uint32_t *vertex, nt_buffer *path)
+/* p: in pixels, depth towards the eye. */
+static void draw_triangle(const picture *d, double p[3][3], unsigned char shade)
 {
-	const size_t begin = path->size;
-	size_t count = 0;
-	long last[2] = {0, 0};
-	for (uint32_t points = next_varint(at); points > 0; points--) {
-		*vertex += next_difference(at);
-		const float *uv = f->texcoords + 2 * (size_t)*vertex;
-		if (!is_finite(uv))
+	const double area = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
+	if (!(fabs(area) > 0.0))
+		return;
+	const int x1 = clamp(fmax(fmax(p[0][0], p[1][0]), p[2][0]) + 1.0, NT_THUMB_WIDTH);
+	const int y1 = clamp(fmax(fmax(p[0][1], p[1][1]), p[2][1]) + 1.0, NT_THUMB_HEIGHT);
+	for (int y = clamp(fmin(fmin(p[0][1], p[1][1]), p[2][1]), NT_THUMB_HEIGHT); y < y1; y++)
+		for (int x = clamp(fmin(fmin(p[0][0], p[1][0]), p[2][0]), NT_THUMB_WIDTH); x < x1; x++) {
+			double share[3], depth = 0.0;
+			for (int k = 0; k < 3; k++) {
+				const double *a = p[(k + 1) % 3], *b = p[(k + 2) % 3];
+				share[k] = ((b[0] - a[0]) * (y + 0.5 - a[1]) - (b[1] - a[1]) * (x + 0.5 - a[0])) / area;
+				depth += share[k] * p[k][2];
+			}
+			const int pixel = y * NT_THUMB_WIDTH + x;
+			if (share[0] < 0.0 || share[1] < 0.0 || share[2] < 0.0 || (float)depth < d->depth[pixel])
+				continue;
+			d->depth[pixel] = (float)depth;
+			d->shade[pixel] = shade;
+		}
+}
+
+static nt_status draw(picture d, nt_buffer *out)
+{
+	d.depth = nt_alloc(PIXELS, sizeof(float));
+	d.shade = nt_calloc(PIXELS, 1);
+	const bool made = d.depth && d.shade;
+	if (made)
+		fit(&d);
+	for (size_t i = 0; i < PIXELS && made; i++)
+		d.depth[i] = -INFINITY;
+	for (size_t t = 0; t < d.geometry->triangle_count && made && isfinite(d.scale); t++) {
+		double p[3][3];
+		if (!place(&d, t, p))
 			continue;
-		const double x = (uv[0] - f->middle[0]) * f->scale, y = (uv[1] - f->middle[1]) * f->scale;
-		const long point[2] = {lround(NT_THUMB_WIDTH / 2 + x),
-			lround(NT_THUMB_HEIGHT / 2 + (f->v_down ? y : -y))};
-		if (count && point[0] == last[0] && point[1] == last[1])
-			continue;
-		nt_buffer_format(path, "%s%ld %ld", count++ ? " " : "M", point[0], point[1]);
-		last[0] = point[0];
-		last[1] = point[1];
+		const unsigned char shade = d.layout ? (unsigned char)(1 + p[0][2]) : shade_of((const double(*)[3])p);
+		for (int k = 0; k < 3; k++) {
+			p[k][0] = NT_THUMB_WIDTH / 2 + (p[k][0] - d.middle[0]) * d.scale;
+			p[k][1] = NT_THUMB_HEIGHT / 2 + (p[k][1] - d.middle[1]) * d.scale;
+		}
+		draw_triangle(&d, p, shade);
 	}
-	if (count >= 3) {
-		nt_buffer_text(path, "z");
-		return count;
-	}
-	path->size = begin;
-	return 0;
+	if (made)
+		nt_deflate(d.shade, PIXELS, out);
+	free(d.depth);
+	free(d.shade);
+	return made && !out->failed ? NT_OK : NT_ERROR_MEMORY;
 }
 
-nt_status nt_thumb(const nt_report_geometry *g, bool v_down, nt_buffer paths[2])
+nt_status nt_thumb_model(const nt_report_geometry *geometry, nt_buffer *out)
 {
-	if (!g->texcoords || !g->triangle_count)
-		return NT_OK;
-	const nt_outlined outlined = {g->vertex_count, g->triangle_count, g->indices, g->texcoords,
-		g->orientation, g->islands};
-	nt_buffer outlines = {0};
-	const nt_status status = nt_outline_islands(&outlined, &outlines);
-	if (status || outlines.failed) {
-		nt_buffer_free(&outlines);
-		return NT_ERROR_MEMORY;
-	}
-	const frame f = fit(g, v_down);
-	const unsigned char *at = (const unsigned char *)outlines.data;
-	uint32_t region = 0, vertex = 0;
-	size_t points = 0;
-	for (uint32_t regions = next_varint(&at); regions > 0 && points < MOST_POINTS; regions--) {
-		region += next_difference(&at);
-		for (uint32_t loops = next_varint(&at); loops > 0; loops--)
-			points += put_loop(&f, &at, &vertex, &paths[region & 1]);
-	}
-	nt_buffer_free(&outlines);
-	return paths[0].failed || paths[1].failed ? NT_ERROR_MEMORY : NT_OK;
+	return draw((picture){.geometry = geometry}, out);
+}
+
+nt_status nt_thumb_layout(const nt_report_geometry *geometry, bool v_down, nt_buffer *out)
+{
+	const picture wanted = {.geometry = geometry, .layout = true, .v_down = v_down};
+	return geometry->texcoords ? draw(wanted, out) : NT_OK;
 }

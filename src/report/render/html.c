@@ -22,8 +22,8 @@
  *             and new are numbers of meshes or null; a finding is known where the other version has it
  *
  * The index of a folder of pages has `folder: true` and, of each file, {name, format, verdict, counts, failure, page,
- * triangles, islands, seams, layout: [path, path], model: nt_thumb_model() as base64, meshes: [], findings: [{code,
- * severity}]}, without equal findings.
+ * triangles, islands, seams, model, layout: nt_thumb_model() and nt_thumb_layout() as base64, meshes: [], findings:
+ * [{code, severity}]}, without equal findings.
  *
  * Then the page's script (the pages of a folder refer to one file with it, and to one with the style), then the
  * geometry of each mesh in an element of its own, #g-FILE-MESH, which is not looked at until the mesh is opened: a line
@@ -36,6 +36,7 @@
 #include <string.h>
 #include "base/hash.h"
 #include "base/name_table.h"
+#include "file/base64.h"
 #include "report/pack/pack.h"
 #include "report/pack/thumb.h"
 #include "report/render/render.h"
@@ -61,21 +62,6 @@ typedef struct budget {
 } budget;
 
 /* ---- small things ---- */
-
-static void put_base64(const void *bytes, size_t size, nt_buffer *out)
-{
-	static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-	const unsigned char *p = bytes;
-	char *to = nt_buffer_extend(out, (size + 2) / 3 * 4);
-	for (size_t i = 0; to && i < size; i += 3) {
-		const uint32_t b = i + 1 < size ? p[i + 1] : 0, c = i + 2 < size ? p[i + 2] : 0;
-		const uint32_t group = (uint32_t)p[i] << 16 | b << 8 | c;
-		*to++ = digits[group >> 18];
-		*to++ = digits[group >> 12 & 63];
-		*to++ = i + 1 < size ? digits[group >> 6 & 63] : '=';
-		*to++ = i + 2 < size ? digits[group & 63] : '=';
-	}
-}
 
 /* Appends JSON so that it is safe inside a script element, and frees it. */
 static void put_safe(nt_buffer *json, nt_buffer *out)
@@ -197,7 +183,7 @@ static void put_image(const nt_image *image, size_t *bytes_left, budget *left, n
 		return;
 	*bytes_left -= image->size;
 	nt_buffer_format(&left->sources, "%s\"data:%s;base64,", number ? "," : "", image->type);
-	put_base64(image->bytes, image->size, &left->sources);
+	nt_base64_append(&left->sources, image->bytes, image->size);
 	nt_buffer_text(&left->sources, "\"");
 }
 
@@ -368,8 +354,12 @@ static void put_geometry(const nt_report *report, size_t file, uint32_t mesh, si
 		put_doubles("step", packed.position_step, 3, out);
 		nt_buffer_text(out, ",");
 		put_doubles("uvOrigin", packed.texcoord_origin, 2, out);
-		nt_buffer_format(out, ",\"uvStep\":%.17g}\n", packed.texcoord_step);
-		put_base64(packed.bytes.data, packed.bytes.size, out);
+		nt_buffer_format(out, ",\"uvStep\":%.17g,\"arrays\":", packed.texcoord_step);
+		for (unsigned i = 0; i < packed.array_count; i++)
+			nt_buffer_format(out, "%s[\"%s\",%zu,%u]", i ? "," : "[", packed.arrays[i].name,
+				packed.arrays[i].count, packed.arrays[i].planes);
+		nt_buffer_text(out, "]}\n");
+		nt_base64_append(out, packed.bytes.data, packed.bytes.size);
 		nt_buffer_text(out, "</script>\n");
 	}
 	nt_buffer_free(&packed.bytes);
@@ -449,37 +439,28 @@ void nt_write_html(const nt_report_list *reports, nt_buffer *out)
 
 /* ---- the index of many pages ---- */
 
-/* The mesh of the most triangles. */
-static void put_model(const nt_report *report, nt_buffer *out)
+/* The mesh of the most triangles, and the first layout. */
+static void put_thumbs(const nt_report *report, nt_buffer *out)
 {
-	const nt_report_geometry *largest = NULL;
-	nt_buffer picture = {0};
-	for (size_t m = 0; m < report->mesh_count; m++)
-		if (has_geometry(&report->meshes[m]) &&
-			(!largest || report->meshes[m].geometry->triangle_count > largest->triangle_count))
-			largest = report->meshes[m].geometry;
-	if (largest && nt_thumb_model(largest, &picture))
+	const nt_report_geometry *largest = NULL, *first = NULL;
+	nt_buffer model = {0}, layout = {0};
+	for (size_t m = 0; m < report->mesh_count; m++) {
+		const nt_report_geometry *g = report->meshes[m].geometry;
+		if (!has_geometry(&report->meshes[m]))
+			continue;
+		first = first ? first : g;
+		largest = !largest || g->triangle_count > largest->triangle_count ? g : largest;
+	}
+	if (first && (nt_thumb_model(largest, &model) ||
+		nt_thumb_layout(first, nt_format_is_gltf(report->format), &layout)))
 		out->failed = true;
 	nt_buffer_text(out, ",\"model\":\"");
-	put_base64(picture.data, picture.size, out);
+	nt_base64_append(out, model.data, model.size);
+	nt_buffer_text(out, "\",\"layout\":\"");
+	nt_base64_append(out, layout.data, layout.size);
 	nt_buffer_text(out, "\"");
-	nt_buffer_free_into(&picture, out);
-}
-
-/* The first layout. */
-static void put_thumb(const nt_report *report, nt_buffer *out)
-{
-	const bool v_down = report->format == NT_FORMAT_GLTF || report->format == NT_FORMAT_GLB;
-	nt_buffer paths[2] = {{0}, {0}};
-	size_t m = 0;
-	while (m < report->mesh_count && !has_geometry(&report->meshes[m]))
-		m++;
-	if (m < report->mesh_count && nt_thumb(report->meshes[m].geometry, v_down, paths))
-		out->failed = true;
-	nt_buffer_format(out, "[\"%s\",\"%s\"]", paths[0].data ? paths[0].data : "",
-		paths[1].data ? paths[1].data : "");
-	nt_buffer_free_into(&paths[0], out);
-	nt_buffer_free_into(&paths[1], out);
+	nt_buffer_free(&model);
+	nt_buffer_free(&layout);
 }
 
 void nt_report_index_row(const nt_report *report, const char *page, nt_buffer *rows)
@@ -495,10 +476,8 @@ void nt_report_index_row(const nt_report *report, const char *page, nt_buffer *r
 	put_head(report, rows);
 	nt_buffer_text(rows, ",\"page\":");
 	put_string(page, rows);
-	nt_buffer_format(rows, ",\"triangles\":%zu,\"islands\":%zu,\"seams\":%zu,\"layout\":", triangles,
-		islands, seams);
-	put_thumb(report, rows);
-	put_model(report, rows);
+	nt_buffer_format(rows, ",\"triangles\":%zu,\"islands\":%zu,\"seams\":%zu", triangles, islands, seams);
+	put_thumbs(report, rows);
 	nt_buffer_text(rows, ",\"meshes\":[],\"findings\":[");
 	for (size_t i = 0, any = 0; i < report->finding_count; i++) {
 		const nt_report_finding *finding = &report->findings[i];

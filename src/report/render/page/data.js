@@ -60,6 +60,8 @@ files.forEach((file, f) => {
 
 // ---- geometry ----
 
+const TEXCOORD_CODES = 1 << 18;
+
 const digits = new Uint8Array(128);
 [...'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/'].forEach((c, i) => { digits[c.charCodeAt(0)] = i; });
 
@@ -82,116 +84,110 @@ async function inflate(bytes) {
 	return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-const streamNames = ['indices', 'positions', 'normals', 'texcoords', 'authored', 'computed', 'kinds', 'islands', 'outlines',
-	'seams', 'numbers'];
-
-// The streams of a mesh by name; null where one is not there.
-function cutStreams(bytes) {
-	const streams = {}, lengths = new DataView(bytes.buffer);
-	let at = 4 * streamNames.length;
-	streamNames.forEach((name, i) => {
-		const length = lengths.getUint32(4 * i, true);
-		streams[name] = length ? bytes.subarray(at, at + length) : null;
-		at += length;
-	});
-	return streams;
-}
-
-class Varints {
-	constructor(bytes) { this.bytes = bytes || new Uint8Array(0); this.at = 0; }
-	next() {
-		let value = 0, shift = 0, byte;
-		do {
-			byte = this.bytes[this.at++];
-			value += (byte & 127) * 2 ** shift;
-			shift += 7;
-		} while (byte & 128);
-		return value;
+// Reads arrays of numbers by name, as pack.h says how they are stored; null where one is not there.
+function arrayReader(bytes, arrays) {
+	const places = new Map();
+	let end = 0;
+	for (const [name, count, planes] of arrays) {
+		places.set(name, [end, count, planes]);
+		end += count * planes;
 	}
-	difference() { const z = this.next(); return z % 2 ? -(z + 1) / 2 : z / 2; }
+	return name => {
+		if (!places.has(name)) return null;
+		const [begin, count, planes] = places.get(name), numbers = new Uint32Array(count), mask = planes < 4 ? (1 << 8 * planes) - 1 : -1;
+		for (let k = 0, at = begin; k < planes; k++) for (let i = 0; i < count; i++) numbers[i] |= bytes[at++] << 8 * k;
+		for (let i = 0, number = 0; i < count; i++) numbers[i] = number = number + (numbers[i] >>> 1 ^ -(numbers[i] & 1)) & mask;
+		return numbers;
+	};
 }
 
-// Undoes the planes of one component: calls put(vertex, code) in order.
-function eachCode(bytes, at, planes, vertices, put) {
-	const mask = planes === 3 ? 0xffffff : 0xffff;
-	let code = 0;
-	for (let v = 0; v < vertices; v++) {
-		let z = bytes[at + v] | bytes[at + vertices + v] << 8;
-		if (planes === 3) z |= bytes[at + 2 * vertices + v] << 16;
-		code = code + (z & 1 ? -(z + 1 >> 1) : z >> 1) & mask;
-		put(v, code);
-	}
-	return at + planes * vertices;
-}
-
-function readIndices(bytes, triangles) {
-	const indices = new Uint32Array(3 * triangles);
-	let next = 0, at = 0;
-	for (let c = 0; c < indices.length; c++) {
-		let byte = bytes[at++], code = byte & 127;
-		for (let shift = 7; byte & 128; shift += 7) code |= ((byte = bytes[at++]) & 127) << shift;
-		indices[c] = next - code;
-		if (code === 0) next++;
+function readIndices(indices) {
+	for (let c = 0, next = 0; c < indices.length; c++) {
+		const below = indices[c];
+		indices[c] = next - below;
+		if (below === 0) next++;
 	}
 	return indices;
 }
 
-// Rows of `width` codes, of which `components` are in the stream.
-function readCodes(bytes, vertices, components, width) {
-	if (!bytes) return null;
-	const codes = new Uint16Array(width * vertices);
-	let at = 0;
-	for (let k = 0; k < components; k++)
-		at = eachCode(bytes, at, 2, vertices, (v, code) => { codes[width * v + k] = code; });
-	// the sign of tangents stands behind their directions
-	for (let v = 0; at < bytes.length; v++) codes[width * v + components] = bytes[at++];
-	return codes;
+// Arrays as the columns of one of rows, for WebGL; null where they are not there.
+function joinColumns(columns, width) {
+	if (!columns[0]) return null;
+	const rows = new Uint16Array(width * columns[0].length);
+	columns.forEach((column, k) => { for (let v = 0; v < column.length; v++) rows[width * v + k] = column[v]; });
+	return rows;
 }
 
-function readTexcoords(bytes, vertices, origin, step) {
-	if (!bytes) return null;
-	const uv = new Float32Array(2 * vertices);
-	let at = 0;
-	for (let k = 0; k < 2; k++)
-		at = eachCode(bytes, at, 3, vertices, (v, code) => { uv[2 * v + k] = origin[k] + code * step; });
-	return uv;
+// The order of things by a number of each, which is below `most`; equal ones stay in the order that they have.
+function sortedBy(numbers, most, order) {
+	const ends = new Uint32Array(most + 1), sorted = new Uint32Array(order.length);
+	for (let i = 0; i < order.length; i++) ends[numbers[order[i]] + 1]++;
+	for (let n = 0; n < most; n++) ends[n + 1] += ends[n];
+	for (let i = 0; i < order.length; i++) sorted[ends[numbers[order[i]]]++] = order[i];
+	return sorted;
 }
 
-function readDifferences(bytes, length) {
-	const values = new Int32Array(length), from = new Varints(bytes);
-	let value = 0;
-	for (let i = 0; i < length; i++) values[i] = value += from.difference();
-	return values;
+const upTo = most => new Uint32Array(most).map((_, i) => i);
+
+// Finds for each vertex the first one with the same texture coordinates, which are codes.
+function weldTexcoords(u, v) {
+	const order = sortedBy(u, TEXCOORD_CODES, sortedBy(v, TEXCOORD_CODES, upTo(u.length))), points = new Uint32Array(u.length);
+	for (let i = 0, point = 0; i < order.length; i++) {
+		const vertex = order[i];
+		if (u[vertex] !== u[point] || v[vertex] !== v[point] || i === 0) point = vertex;
+		points[vertex] = point;
+	}
+	return points;
 }
 
-// [{island, mirrored, loops: [Uint32Array of vertices]}]
-function readOutlines(bytes) {
-	if (!bytes) return [];
-	const from = new Varints(bytes), regions = [];
-	let region = 0, vertex = 0;
-	for (let n = from.next(); n > 0; n--) {
-		region += from.difference();
+// The outlines of islands, closed loops around the triangles of one island and one winding: [{island, mirrored, loops: [[vertex]]}].
+// Filled by the rule that counts windings they cover what the triangles cover, and inner edges never show. Each triangle that spans an
+// area has three edges, counterclockwise; those of one region that run against each other cancel, and what remains enters and leaves
+// each point equally often, so that walking along it ends where it began.
+function findOutlines(g, u, v) {
+	const points = weldTexcoords(u, v), most = 3 * g.triangles, low = new Uint32Array(most), high = new Uint32Array(most);
+	const region = new Uint32Array(most), winding = new Int8Array(most), from = [], to = [], regionOf = [], next = [];
+	let count = 0, regionCount = 0;
+	for (let t = 0; t < g.triangles; t++) {
+		const kind = g.kinds[t] & 3, of = 2 * g.islands[t] - 2 + (kind === 0);
+		if (kind === 1 || g.islands[t] === 0) continue;
+		regionCount = Math.max(regionCount, of + 1);
+		for (let k = 0; k < 3; k++) {
+			const a = points[g.indices[3 * t + k]], b = points[g.indices[3 * t + (k + 1) % 3]];
+			if (a === b) continue;
+			low[count] = Math.min(a, b);
+			high[count] = Math.max(a, b);
+			region[count] = of;
+			winding[count++] = a < b === (kind === 2) ? 1 : -1;
+		}
+	}
+	const order = sortedBy(region, regionCount, sortedBy(low, g.vertices, sortedBy(high, g.vertices, upTo(count))));
+	for (let i = 0, sum = 0; i < count; i++) {
+		const edge = order[i], after = order[i + 1];
+		sum += winding[edge];
+		if (i + 1 < count && low[after] === low[edge] && high[after] === high[edge] && region[after] === region[edge]) continue;
+		for (; sum !== 0; sum -= Math.sign(sum)) {
+			from.push(sum > 0 ? low[edge] : high[edge]);
+			to.push(sum > 0 ? high[edge] : low[edge]);
+			regionOf.push(region[edge]);
+		}
+	}
+	const leaving = new Int32Array(g.vertices).fill(-1), regions = []; // of each point an edge of the region that begins there
+	for (let begin = 0, end = 0; begin < from.length; begin = end) {
+		for (; regionOf[end] === regionOf[begin]; end++) { next.push(leaving[from[end]]); leaving[from[end]] = end; }
 		const loops = [];
-		for (let l = from.next(); l > 0; l--) {
-			const loop = new Uint32Array(from.next());
-			for (let i = 0; i < loop.length; i++) loop[i] = vertex += from.difference();
+		for (let first = begin; first < end; first++) while (leaving[from[first]] >= 0) {
+			const loop = [];
+			for (let at = from[first], edge; edge === undefined || at !== from[first]; at = to[edge]) {
+				loop.push(at);
+				edge = leaving[at];
+				leaving[at] = next[edge];
+			}
 			loops.push(loop);
 		}
-		regions.push({island: region >> 1, mirrored: (region & 1) === 1, loops});
+		regions.push({island: regionOf[begin] >> 1, mirrored: (regionOf[begin] & 1) === 1, loops});
 	}
 	return regions;
-}
-
-// The edges of each seam, or net of hard edges: [unmirrored from, to, mirrored from, to]...
-function readSeams(bytes, seams) {
-	const from = new Varints(bytes), list = [];
-	let vertex = 0;
-	for (let s = 0; s < seams && bytes; s++) {
-		const edges = new Uint32Array(4 * from.next());
-		for (let i = 0; i < edges.length; i++) edges[i] = vertex += from.difference();
-		list.push(edges);
-	}
-	return list;
 }
 
 const opened = new Map(); // source -> promise of geometry
@@ -205,23 +201,23 @@ async function findSource(id) {
 
 async function readGeometry(mesh) {
 	const text = await findSource(mesh.source), line = text.indexOf('\n');
-	const g = JSON.parse(text.slice(0, line));
-	const streams = cutStreams(await inflate(fromBase64(text, line + 1)));
-	const {vertices, triangles} = g;
-	g.indices = readIndices(streams.indices, triangles);
-	g.positions = readCodes(streams.positions, vertices, 3, 4);
-	g.normals = readCodes(streams.normals, vertices, 2, 2);
-	g.texcoords = readTexcoords(streams.texcoords, vertices, g.uvOrigin, g.uvStep);
-	g.authored = readCodes(streams.authored, vertices, 2, 4);
-	g.computed = readCodes(streams.computed, vertices, 2, 4);
-	g.kinds = streams.kinds;
-	g.islands = streams.islands ? readDifferences(streams.islands, triangles) : new Int32Array(triangles);
-	g.regions = readOutlines(streams.outlines);
-	g.seams = readSeams(streams.seams, streams.seams ? Math.max(mesh.seamList.length, 1) : 0);
+	const g = JSON.parse(text.slice(0, line)), read = arrayReader(await inflate(fromBase64(text, line + 1)), g.arrays);
+	const {vertices, triangles} = g, u = read('u'), v = read('v');
+	g.indices = readIndices(read('corners'));
+	g.positions = joinColumns(['x', 'y', 'z'].map(read), 4);
+	g.normals = joinColumns(['nx', 'ny'].map(read), 2);
+	g.authored = joinColumns(['ax', 'ay', 'aw'].map(read), 4);
+	g.computed = joinColumns(['cx', 'cy', 'cw'].map(read), 4);
+	g.texcoords = u && new Float32Array(2 * vertices).map((_, i) => g.uvOrigin[i & 1] + (i & 1 ? v : u)[i >> 1] * g.uvStep);
+	g.kinds = read('kinds');
+	g.islands = read('islands') || new Uint32Array(triangles);
+	g.regions = u ? findOutlines(g, u, v) : [];
+	const ends = read('seam_ends');
+	let end = 0;
+	g.seams = [...read('seam_edges') || []].map(edges => ends ? ends.subarray(end, end += 4 * edges) : new Uint32Array(0));
 	g.firstHard = mesh.mirrorSeams;
-	g.numbers = streams.numbers ? new Map() : null;
-	const from = new Varints(streams.numbers);
-	for (let t = 0, number = 0; g.numbers && t < triangles; t++) g.numbers.set(number += from.next(), t);
+	const numbers = read('numbers');
+	g.numbers = numbers && new Map(Array.from(numbers, (number, t) => [number, t]));
 	for (let t = 0; t < triangles; t++) // what has no place in space is not drawn
 		if (g.kinds[t] & 4) g.indices[3 * t + 1] = g.indices[3 * t + 2] = g.indices[3 * t];
 	return g;

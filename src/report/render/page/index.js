@@ -40,16 +40,18 @@ class Overview {
 
 	row(file) {
 		const mesh = file.meshes.find(m => m.hasGeometry && m.number === (m.same_as ?? m.number));
-		const canvas = element('canvas', {class: 'thumb', width: 112, height: 80, 'aria-hidden': 'true'});
-		const model = file.model ? element('canvas', {class: 'thumb', width: 112, height: 80, 'aria-hidden': 'true'}) : null;
-		if (model) { model.model = file.model; this.observer.observe(model); }
-		if (file.page) { canvas.layout = file.layout; this.observer.observe(canvas); }
-		else if (mesh && mesh.triangles <= MOST_THUMB_TRIANGLES) { canvas.mesh = mesh; this.observer.observe(canvas); }
+		const thumbs = ['model', 'layout'].map(kind => {
+			const canvas = element('canvas', {class: 'thumb', width: 112, height: 80, 'aria-hidden': 'true'});
+			if (file.page ? !file[kind] : kind === 'model' || !mesh || mesh.triangles > MOST_THUMB_TRIANGLES) return kind === 'model' ? null : canvas;
+			Object.assign(canvas, {kind, pixels: file[kind], mesh});
+			this.observer.observe(canvas);
+			return canvas;
+		});
 		const address = file.page || '#file-' + file.number;
 		const number = (n, kind) => element('td', {class: 'numeric ' + (n ? kind || '' : 'none')}, file.failure && !n ? '–' : count(n));
 		const folder = file.name.slice(0, file.name.lastIndexOf('/') + 1);
 		return element('tr', {class: file.failure || file.counts[0] ? 'error' : file.counts[1] ? 'warning' : 'clean', onclick: () => { location.href = address; }},
-			element('td', {}, element('div', {class: 'thumbs'}, model, canvas)),
+			element('td', {}, element('div', {class: 'thumbs'}, ...thumbs)),
 			element('td', {class: 'name'}, element('a', {href: address, onclick: e => e.stopPropagation()}, folder && element('span', {class: 'folder'}, folder), file.name.slice(folder.length)),
 				element('span', {class: 'note'}, file.verdict)),
 			number(file.counts[0], 'error'), number(file.counts[1], 'warning'), number(file.counts[2], 'info'), number(file.triangles), number(file.islands), number(file.seams));
@@ -66,22 +68,19 @@ class Overview {
 			th.dataset.column !== this.sort?.id ? 'none' : this.sort.down ? 'descending' : 'ascending'));
 	}
 
-	// A byte for each pixel: how bright it is, 0 where nothing is.
-	async drawModel(canvas, c, ink) {
-		const shades = await inflate(fromBase64(canvas.model, 0)), picture = new ImageData(canvas.width, canvas.height), paint = rgb(ink.model);
-		shades.forEach((shade, i) => { if (shade) picture.data.set([...paint.map(x => x * shade), 255], 4 * i); });
+	// A byte for each pixel: 0 where nothing is; of a model how bright it is, of a layout its winding.
+	async drawPixels({kind, pixels, width, height}, c, ink) {
+		const picture = new ImageData(width, height), model = rgb(ink.model), windings = [null, ink.plainLine, ink.mirroredLine].map(text => text && rgb(text).map(x => 255 * x));
+		(await inflate(fromBase64(pixels, 0))).forEach((pixel, i) => {
+			if (pixel) picture.data.set(kind === 'model' ? [...model.map(x => x * pixel), 255] : [...windings[pixel], 190], 4 * i);
+		});
 		c.putImageData(picture, 0, 0);
 	}
 
 	async drawThumb(canvas) {
 		const c = canvas.getContext('2d'), ink = layoutInk();
-		if (canvas.model) { await this.drawModel(canvas, c, ink); return; }
+		if (canvas.pixels) { await this.drawPixels(canvas, c, ink); return; }
 		c.globalAlpha = 0.75;
-		if (canvas.layout) {
-			c.setTransform(0.5, 0, 0, 0.5, 4, 4);
-			[ink.plainLine, ink.mirroredLine].forEach((style, i) => { c.fillStyle = style; c.fill(new Path2D(canvas.layout[i])); });
-			return;
-		}
 		const g = await readGeometry(canvas.mesh), uv = g.texcoords;
 		if (!uv) return;
 		const {low, high} = uvBox(g);

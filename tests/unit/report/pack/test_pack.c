@@ -10,48 +10,48 @@
 #include <math.h>
 #include "report/pack/pack.h"
 
-enum { INDICES, POSITIONS, NORMALS, TEXCOORDS, AUTHORED, COMPUTED, KINDS, ISLANDS, OUTLINES, SEAMS, NUMBERS };
-
 typedef struct unpacked {
 	nt_packed packed;
-	unsigned char *raw;
-	const unsigned char *streams[NT_STREAM_COUNT];
-	uint32_t sizes[NT_STREAM_COUNT];
-	uint32_t *indices;
+	uint32_t *numbers[NT_PACKED_ARRAYS]; /* of each array */
+	uint32_t *corners;                   /* its vertices */
 } unpacked;
 
-static uint32_t get_varint(const unsigned char **at)
+/* The numbers of an array; NULL: it is not there. */
+static const uint32_t *numbers_of(const unpacked *u, const char *name)
 {
-	uint32_t value = 0;
-	for (unsigned shift = 0;; shift += 7) {
-		value |= (uint32_t)(**at & 127) << shift;
-		if (!(*(*at)++ & 128))
-			return value;
-	}
+	for (unsigned i = 0; i < u->packed.array_count; i++)
+		if (strcmp(u->packed.arrays[i].name, name) == 0)
+			return u->numbers[i];
+	return NULL;
 }
 
 static void unpack(unpacked *u, const nt_report *report, size_t most)
 {
 	assert_int_equal(nt_pack_mesh(&u->packed, report, 0, most), NT_OK);
-	u->raw = test_malloc(u->packed.raw_bytes);
+	unsigned char *raw = test_malloc(u->packed.raw_bytes), *at = raw;
 	struct libdeflate_decompressor *d = libdeflate_alloc_decompressor();
-	assert_int_equal(libdeflate_deflate_decompress(d, u->packed.bytes.data, u->packed.bytes.size, u->raw,
+	assert_int_equal(libdeflate_deflate_decompress(d, u->packed.bytes.data, u->packed.bytes.size, raw,
 				 u->packed.raw_bytes, NULL), LIBDEFLATE_SUCCESS);
 	libdeflate_free_decompressor(d);
-	size_t at = 4 * NT_STREAM_COUNT;
-	for (unsigned i = 0; i < NT_STREAM_COUNT; i++) {
-		const unsigned char *p = u->raw + 4 * i;
-		u->sizes[i] = (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
-		u->streams[i] = u->raw + at;
-		at += u->sizes[i];
+	for (unsigned i = 0; i < u->packed.array_count; i++) {
+		const nt_packed_array *a = &u->packed.arrays[i];
+		const uint32_t mask = a->planes < 4 ? (1u << 8 * a->planes) - 1 : UINT32_MAX;
+		u->numbers[i] = test_calloc(a->count, sizeof **u->numbers);
+		for (unsigned k = 0; k < a->planes; k++)
+			for (size_t n = 0; n < a->count; n++)
+				u->numbers[i][n] |= (uint32_t)*at++ << 8 * k;
+		for (size_t n = 0; n < a->count; n++) {
+			const uint32_t z = u->numbers[i][n], step = z & 1 ? 0u - (z / 2 + 1) : z / 2;
+			u->numbers[i][n] = ((n ? u->numbers[i][n - 1] : 0) + step) & mask;
+		}
 	}
-	assert_int_equal(at, u->packed.raw_bytes);
-	const unsigned char *p = u->streams[INDICES];
-	u->indices = test_malloc(3 * u->packed.triangle_count * sizeof *u->indices);
+	assert_int_equal(at - raw, u->packed.raw_bytes);
+	test_free(raw);
+	u->corners = test_malloc(3 * u->packed.triangle_count * sizeof *u->corners);
 	uint32_t next = 0;
 	for (size_t c = 0; c < 3 * u->packed.triangle_count; c++) {
-		const uint32_t below = get_varint(&p);
-		u->indices[c] = next - below;
+		const uint32_t below = numbers_of(u, "corners")[c];
+		u->corners[c] = next - below;
 		next += below == 0;
 	}
 	assert_int_equal(next, u->packed.vertex_count);
@@ -59,29 +59,15 @@ static void unpack(unpacked *u, const nt_report *report, size_t most)
 
 static void forget(unpacked *u)
 {
-	test_free(u->raw);
-	test_free(u->indices);
+	for (unsigned i = 0; i < u->packed.array_count; i++)
+		test_free(u->numbers[i]);
+	test_free(u->corners);
 	nt_buffer_free(&u->packed.bytes);
 }
 
-/* Component k of vertex v of a stream of codes. */
-static uint32_t code_of(const unpacked *u, int stream, size_t k, unsigned planes, size_t vertex)
+static void decode_direction(uint32_t code_x, uint32_t code_y, double d[3])
 {
-	const size_t count = u->packed.vertex_count;
-	const uint32_t mask = planes == 3 ? 0xffffff : 0xffff;
-	uint32_t code = 0;
-	for (size_t v = 0; v <= vertex; v++) {
-		uint32_t z = 0;
-		for (unsigned i = 0; i < planes; i++)
-			z |= (uint32_t)u->streams[stream][(k * planes + i) * count + v] << 8 * i;
-		code = (code + (z & 1 ? 0u - (z + 1) / 2 : z / 2)) & mask;
-	}
-	return code;
-}
-
-static void decode_direction(const unpacked *u, int stream, size_t vertex, double d[3])
-{
-	double x = code_of(u, stream, 0, 2, vertex) / 2047.0 - 1.0, y = code_of(u, stream, 1, 2, vertex) / 2047.0 - 1.0;
+	double x = code_x / 2047.0 - 1.0, y = code_y / 2047.0 - 1.0;
 	d[2] = 1.0 - fabs(x) - fabs(y);
 	d[0] = d[2] < 0 ? (1 - fabs(y)) * (x < 0 ? -1 : 1) : x;
 	d[1] = d[2] < 0 ? (1 - fabs(x)) * (y < 0 ? -1 : 1) : y;
@@ -191,35 +177,33 @@ TEST(every_number_is_as_near_as_its_code)
 	unpacked u;
 	unpack(&u, &s->report, SIZE_MAX);
 	for (size_t c = 0; c < 3 * g->triangle_count; c++) {
-		const size_t from = g->indices[c], v = u.indices[c];
+		const size_t from = g->indices[c], v = u.corners[c];
 		for (size_t i = 0; i < 3; i++) {
-			const double x = u.packed.position_origin[i] + code_of(&u, POSITIONS, i, 2, v) *
-				u.packed.position_step[i];
+			const double x = u.packed.position_origin[i] +
+				numbers_of(&u, (const char *const[]){"x", "y", "z"}[i])[v] * u.packed.position_step[i];
 			assert_true(fabs(x - g->positions[3 * from + i]) <= 0.5001 * u.packed.position_step[i]);
 		}
 		for (size_t i = 0; i < 2; i++) {
 			const double wanted = i ? 1.0 - g->texcoords[2 * from + 1] : g->texcoords[2 * from];
-			const double x =
-				u.packed.texcoord_origin[i] + code_of(&u, TEXCOORDS, i, 3, v) * u.packed.texcoord_step;
+			const double x = u.packed.texcoord_origin[i] +
+				numbers_of(&u, i ? "v" : "u")[v] * u.packed.texcoord_step;
 			assert_true(fabs(x - wanted) <= 0.51 * u.packed.texcoord_step);
 		}
 		const float *n = g->normals + 3 * from;
 		const double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
-		const int streams[2] = {NORMALS, COMPUTED};
 		for (int i = 0; i < 2; i++) {
 			double d[3];
-			decode_direction(&u, streams[i], v, d);
+			decode_direction(numbers_of(&u, i ? "cx" : "nx")[v], numbers_of(&u, i ? "cy" : "ny")[v], d);
 			/* half a code is 1 / 4094 of the octahedron, whose faces are up to sqrt(3) nearer than the
 			 * sphere */
 			const double cosine = (d[0] * n[0] + d[1] * n[1] + d[2] * n[2]) / length;
 			assert_true(cosine > cos(sqrt(2.0) / 4094 * 3));
 		}
-		assert_int_equal(u.streams[COMPUTED][4 * u.packed.vertex_count + v],
-			g->computed[4 * from + 3] > 0 ? 1 : 2);
+		assert_int_equal(numbers_of(&u, "cw")[v], g->computed[4 * from + 3] > 0 ? 1 : 2);
 	}
-	assert_int_equal(u.sizes[AUTHORED], 0);
-	assert_int_equal(u.sizes[NUMBERS], 0);
-	assert_int_equal(u.sizes[KINDS], g->triangle_count);
+	assert_null(numbers_of(&u, "ax"));
+	assert_null(numbers_of(&u, "numbers"));
+	assert_non_null(numbers_of(&u, "kinds"));
 	assert_true(u.packed.texcoord_step <= 1.0 / (1 << 17));
 	forget(&u);
 	free_sheet(s);
@@ -241,7 +225,7 @@ TEST(what_is_not_finite_is_marked_and_does_not_stretch_the_rest)
 	for (size_t t = 0; t < 8; t++) {
 		const uint32_t *v = s->geometry.indices + 3 * t;
 		const bool broken = v[0] >= 7 || v[1] >= 7 || v[2] >= 7;
-		assert_int_equal(u.streams[KINDS][t], broken ? 2 + 4 : 2);
+		assert_int_equal(numbers_of(&u, "kinds")[t], broken ? 2 + 4 : 2);
 	}
 	forget(&u);
 	free_sheet(s);
@@ -257,12 +241,11 @@ TEST(a_mesh_above_the_bound_is_a_part_that_keeps_its_numbers)
 	unpack(&u, &s->report, 50);
 	assert_false(u.packed.whole);
 	assert_int_equal(u.packed.triangle_count, 50);
-	const unsigned char *p = u.streams[NUMBERS];
+	const uint32_t *numbers = numbers_of(&u, "numbers");
 	bool found = false;
-	for (uint32_t i = 0, number = 0; i < 50; i++) {
-		const uint32_t step = get_varint(&p);
-		assert_true(i == 0 || step > 0);
-		number += step;
+	for (uint32_t i = 0; i < 50; i++) {
+		const uint32_t number = numbers[i];
+		assert_true(i == 0 || number > numbers[i - 1]);
 		assert_true(number > 500 - 170 && number < 500 + 170); /* four rings are four rows of 40 */
 		found |= number == 500;
 	}
