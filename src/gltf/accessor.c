@@ -255,36 +255,31 @@ static bool find_same(nt_gltf *document)
 	return found;
 }
 
-nt_status nt_gltf_read_arrays(nt_gltf *document, nt_error *error)
-{
-	document->accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
-	document->accessors = nt_alloc(document->accessor_count, sizeof *document->accessors);
-	if (!document->accessors)
-		return nt_fail_memory(error);
-	nt_gltf_buffer *buffer;
-	for (size_t i = 0; i < document->buffer_count; i++)
-		nt_gltf_describe_buffer(document, i, "", &buffer, NULL);
-	for (uint32_t i = 0; i < document->view_count; i++)
-		if (nt_gltf_read_view(document, i, &document->views[i], NULL))
-			document->views[i].buffer = NT_NONE;
-	nt_status status = NT_OK;
-	for (uint32_t i = 0; status != NT_ERROR_MEMORY && i < document->accessor_count; i++) {
-		status = read_accessor(document, i, &document->accessors[i], NULL);
-		if (status)
-			document->accessors[i].index = NT_NONE;
-	}
-	return status != NT_ERROR_MEMORY && find_same(document) ? NT_OK : nt_fail_memory(error);
-}
-
 nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from, nt_gltf_accessor *accessor,
 	nt_error *error)
 {
 	*accessor = (nt_gltf_accessor){.view = NT_NONE};
-	const nt_status status = nt_gltf_check_index("accessors", index, document->accessor_count, from, error);
+	nt_status status = nt_gltf_check_index("accessors", index, document->accessor_count, from, error);
 	if (status)
 		return status;
-	*accessor = document->accessors[index];
-	return accessor->index != NT_NONE ? NT_OK : read_accessor(document, (uint32_t)index, accessor, error);
+	nt_gltf_accessor *known = &document->accessors[index];
+	if (known->index != NT_NONE) {
+		*accessor = *known;
+		return NT_OK;
+	}
+	status = read_accessor(document, (uint32_t)index, accessor, error);
+	if (!status)
+		*known = *accessor;
+	return status;
+}
+
+nt_status nt_gltf_read_accessors(nt_gltf *document, nt_error *error)
+{
+	nt_gltf_accessor ignored;
+	nt_status status = NT_OK;
+	for (uint32_t i = 0; status != NT_ERROR_MEMORY && i < document->accessor_count; i++)
+		status = nt_gltf_get_accessor(document, i, "", &ignored, NULL);
+	return status != NT_ERROR_MEMORY && find_same(document) ? NT_OK : nt_fail_memory(error);
 }
 
 nt_json_value *nt_gltf_accessor_json(const nt_gltf *document, uint64_t index)

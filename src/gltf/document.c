@@ -208,6 +208,8 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 			status = nt_fail_memory(error);
 		for (size_t i = 0; !status && i < document->buffer_count; i++)
 			document->buffers[i].number = i;
+		for (size_t i = 0; !status && i < document->view_count; i++)
+			document->views[i].buffer = NT_NONE;
 	}
 	if (status) {
 		nt_gltf_free(document);
@@ -288,6 +290,18 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 		return status;
 	*result = &document->buffers[index];
 	return (*result)->described ? NT_OK : read_buffer(document, (size_t)index, *result, error);
+}
+
+nt_status nt_gltf_begin_arrays(nt_gltf *document, nt_error *error)
+{
+	nt_gltf_buffer *buffer;
+	document->accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
+	document->accessors = nt_alloc(document->accessor_count, sizeof *document->accessors);
+	for (size_t i = 0; document->accessors && i < document->accessor_count; i++)
+		document->accessors[i] = (nt_gltf_accessor){.index = NT_NONE, .view = NT_NONE};
+	for (size_t i = 0; i < document->buffer_count; i++)
+		nt_gltf_describe_buffer(document, i, "", &buffer, NULL);
+	return document->accessors ? NT_OK : nt_fail_memory(error);
 }
 
 /* Names the buffer in an error of a lower room that knows no document. */

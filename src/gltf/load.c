@@ -565,11 +565,13 @@ static bool open_view(nt_gltf *document, uint32_t index)
 /* The same of an accessor that a member names, if there is one. */
 static bool open_accessor(nt_gltf *document, const nt_json_value *object, const char *name)
 {
-	const nt_gltf_accessor *a = nt_gltf_named(document, object, name);
-	if (!a)
+	nt_gltf_accessor a;
+	nt_error ignored;
+	const uint32_t index = nt_gltf_reference(document, object, name);
+	if (index == NT_NONE)
 		return !nt_json_find(object, name);
-	return open_view(document, a->view) && (!a->sparse ||
-		(open_view(document, a->sparse->index_view) && open_view(document, a->sparse->value_view)));
+	return nt_gltf_get_accessor(document, index, "", &a, &ignored) == NT_OK && open_view(document, a.view) &&
+		(!a.sparse || (open_view(document, a.sparse->index_view) && open_view(document, a.sparse->value_view)));
 }
 
 /* Whether all that a load takes of a mesh is there now. */

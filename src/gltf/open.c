@@ -466,7 +466,7 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	if (!status)
 		status = nt_gltf_separate_draco(document, error);
 	if (!status)
-		status = nt_gltf_read_arrays(document, error);
+		status = nt_gltf_begin_arrays(document, error);
 	if (!status)
 		status = describe_meshes(&all, document, options);
 	const bool has_scenes = nt_gltf_root_member(document, "scenes") != NULL;

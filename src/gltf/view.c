@@ -23,7 +23,8 @@ nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **na
 	return NULL;
 }
 
-nt_status nt_gltf_read_view(nt_gltf *document, uint32_t index, nt_gltf_view *view, nt_error *error)
+/* A view as its JSON has it, checked against its buffer's byteLength. */
+static nt_status read_view(nt_gltf *document, uint32_t index, nt_gltf_view *view, nt_error *error)
 {
 	const nt_json_value *json = nt_gltf_view_json(document, index);
 	char pointer[NT_GLTF_POINTER];
@@ -60,7 +61,9 @@ nt_status nt_gltf_read_view(nt_gltf *document, uint32_t index, nt_gltf_view *vie
 nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
 	nt_error *error)
 {
-	const nt_status status = nt_gltf_check_index("bufferViews", index, document->view_count, from, error);
+	nt_status status = nt_gltf_check_index("bufferViews", index, document->view_count, from, error);
+	if (!status && document->views[index].buffer == NT_NONE)
+		status = read_view(document, (uint32_t)index, &document->views[index], error);
 	if (status)
 		return status;
 	*view = document->views[index];
@@ -69,7 +72,7 @@ nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, 
 		view->offset = 0;
 		view->compressed = false;
 	}
-	return view->buffer != NT_NONE ? NT_OK : nt_gltf_read_view(document, (uint32_t)index, view, error);
+	return NT_OK;
 }
 
 /* ---- decompression ---- */

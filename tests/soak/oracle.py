@@ -53,6 +53,8 @@ EXPLAINED = [
     ('values', r'mesh/uv\.gltf .*/accessors has 5 elements, had 6', 'a TANGENT of two sets goes to the last of them'),
     ('messages', r'cases/implicit_ids/', 'feature ids that are numbers of vertices are told'),
     ('report', r'cases/implicit_ids/', 'feature ids that are numbers of vertices are told'),
+    ('report', r'could not be verified, since tinygltf refuses', 'what tinygltf refuses is told, whoever is at fault'),
+    ('words', r'cases/animated_uv/', 'what tinygltf refuses is told, whoever is at fault'),
 ]
 
 TIMES = re.compile(r'\b\d[\d.e-]* (m?s|ms|us|seconds)\b|"(seconds|generator|version)": *[^,}\n]+')

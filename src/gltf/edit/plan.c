@@ -67,10 +67,13 @@ static void find_temporary(const nt_scene *scene, const nt_read_options *options
 
 nt_status nt_gltf_plan(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
-	bool any = false;
-	for (size_t i = 0; !any && i < scene->mesh_count; i++)
-		any = is_loaded(&scene->meshes[i], options);
-	if (!any)
+	size_t loaded = 0, wanted = 0;
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		loaded += is_loaded(&scene->meshes[i], options);
+		wanted += nt_mesh_is_wanted(&scene->meshes[i]);
+	}
+	/* one that keeps its tangents has nothing to do with others */
+	if (loaded == 0 || (loaded == 1 && !wanted && !options->compresses))
 		return NT_OK;
 	if (options->edits)
 		drop_tangents(scene, options->morphs);
