@@ -271,7 +271,9 @@ nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive
 		return status;
 	status = nt_gltf_uint(primitive, primitive_pointer, "indices", document->accessor_count,
 		NT_NONE, &index, error);
-	if (!status && index < document->accessor_count)
+	nt_gltf_accessor indices; /* a faulty one is told by the load */
+	if (!status && index < document->accessor_count &&
+		nt_gltf_get_accessor(document, index, "", &indices, NULL) == NT_OK)
 		use_decoded(&document->accessors[index], (const unsigned char *)mesh->indices, mesh->face_count * 3,
 			NT_GLTF_UINT);
 	return status;

@@ -124,6 +124,19 @@ for three in "off three" "keep three" "off unlisted" "keep unlisted"; do
 	is "$(gltf three.glb 'new Set(g.meshes[0].primitives.map((p) => p.attributes.TEXCOORD_0)).size')" 2
 done
 
+scene "a compressed primitive that gets no tangents is judged by the triangles of its block"
+run -q --raw "$data/quad.obj" plain.glb
+run -q --only=all --existing=replace --draco=sequential plain.glb packed.glb
+gltf packed.glb bare 'const p = g.meshes[0].primitives[0];
+	for (const of of [p, p.extensions.KHR_draco_mesh_compression]) {
+		delete of.attributes.TEXCOORD_0;
+		delete of.attributes.TANGENT;
+	}'
+run --only=all --report=report.json bare.gltf out.glb
+exits 0
+exists report.json
+grep -q POS_DEGENERATE report.json && wrong "its triangles have no area"
+
 # Encoders leave the bounds of what they were given, and decoders give something else.
 scene "bounds are those of what a decoder will see"
 run -q "$data/head.obj" head.glb

@@ -72,8 +72,9 @@ nt_status nt_gltf_plan(nt_scene *scene, const nt_read_options *options, nt_error
 		loaded += is_loaded(&scene->meshes[i], options);
 		wanted += nt_mesh_is_wanted(&scene->meshes[i]);
 	}
-	/* one that keeps its tangents has nothing to do with others */
-	if (loaded == 0 || (loaded == 1 && !wanted && !options->compresses))
+	/* one that keeps its tangents has nothing to do with others; a report asks for all its attributes */
+	const bool alone = loaded == 1 && !wanted && !options->compresses && !options->report;
+	if (loaded == 0 || alone)
 		return NT_OK;
 	if (options->edits)
 		drop_tangents(scene, options->morphs);
