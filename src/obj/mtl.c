@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * MTL: the statements of a library, and what those of a newmtl come to together in glTF's terms. The man page has
- * that as a table (MATERIALS OF AN OBJ). A damaged statement is an error with its line, as in the OBJ itself. Words are
+ * that as a table (MATERIALS OF AN OBJ). A damaged statement is a finding with its line, and loses no mesh. Words are
  * taken in any case, as exporters write map_Bump, map_bump and Map_Bump. Maps that have no place in a glTF are named.
  *
  * Ns is the exponent n of Blinn-Phong highlights. A microfacet distribution of the same width has
@@ -555,7 +555,7 @@ static void end_material(reader *r)
 
 /* ---- statements ---- */
 
-/* HINT: a value without which a material can do: a damaged one is not used. */
+/* A damaged value is not used. HINT: one without which a material can do, so that this is an info. */
 enum action { VALUE, HINT, MAP, PASS_OVER };
 
 /* Words of the specification, of its extension for PBR (exocortex.com, 2015), of Model I/O (map_roughness ...) and of
@@ -602,7 +602,7 @@ static nt_status begin_material(reader *r)
 
 static nt_status read_statement(reader *r)
 {
-	nt_error unused, *error = r->error;
+	nt_error fault = {.status = NT_OK}, *error = r->error;
 	if (r->word_length == 6 && strncasecmp(r->word, "newmtl", 6) == 0)
 		return begin_material(r);
 	for (size_t i = 0; r->m && i < sizeof statements / sizeof statements[0]; i++) {
@@ -611,11 +611,13 @@ static nt_status read_statement(reader *r)
 			continue;
 		switch (statements[i].action) {
 		case VALUE:
-			return read_value(r, (mtl_value)statements[i].which);
 		case HINT:
-			r->error = &unused;
-			if (read_value(r, (mtl_value)statements[i].which))
+			r->error = &fault;
+			if (read_value(r, (mtl_value)statements[i].which) && statements[i].action == HINT)
 				lose(r, NT_CODE_STATEMENT_IGNORED, "");
+			else if (fault.status)
+				find(r, NT_CODE_MATERIAL_DOUBTFUL, r->line, "%s is not used: %s", statements[i].word,
+					fault.message);
 			r->error = error;
 			return NT_OK;
 		case MAP:
@@ -635,8 +637,6 @@ nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *b
 {
 	reader r = {.scene = scene, .path = path, .mtl = mtl, .line = 1, .error = error};
 	const char *p = (const char *)bytes, *const end = p + size;
-	if (memchr(bytes, '\0', size))
-		return nt_fail_file(error, NT_ERROR_INPUT, path, "a byte 0 in it, expected a material library in text");
 	if (size >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0)
 		p += 3;
 	while (p < end) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * MTL: the files that mtllib statements name. A library that is not there is a finding, since its meshes can do
+ * MTL: the files that mtllib statements name. A library that is not there, or is no text, is a finding: meshes can do
  * without.
  */
 #include <stdlib.h>
@@ -109,19 +109,23 @@ static nt_status read_library(const request *q, const char *text, size_t length,
 		*q->error = failure;
 	if (status)
 		return status;
-	if (reason && !quiet) {
+	*found = !reason;
+	bool before = false;
+	if (*found)
+		status = note_file(q, &file, &before);
+	if (*found && !status && !before) {
+		if (file.size && memchr(file.data, '\0', file.size))
+			reason = "a byte 0 in it, expected text";
+		else
+			status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
+	}
+	if (*found)
+		nt_file_close(&file);
+	if (reason && !(quiet && !*found)) {
 		const nt_place place = nt_line_place(q->scene->path, q->line);
 		nt_finding_add(&q->scene->findings, NT_CODE_MTL_MISSING, &place, 1, "%.120s: %.120s", name, reason);
 		q->mtl->incomplete = true;
 	}
-	if (reason)
-		return NT_OK;
-	*found = true;
-	bool before = false;
-	status = note_file(q, &file, &before);
-	if (!status && !before)
-		status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
-	nt_file_close(&file);
 	return status;
 }
 

@@ -19,8 +19,8 @@
 
 static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(MTL_MISSING, WARNING, "--w", FILE, NULL, "material library cannot be read",
-		"The OBJ names an MTL file that is not there. The meshes are converted, their materials get "
-		"default values.",
+		"The OBJ names an MTL file that is not there, or is no text. The meshes are converted, their materials "
+		"get default values.",
 		"Put the MTL file beside the OBJ, or take the mtllib line out.",
 		"an OBJ with \"mtllib nowhere.mtl\""),
 	ROW(MATERIAL_UNKNOWN, WARNING, "--w", EXPORT, NULL, "material is defined by no material library",
@@ -90,9 +90,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"an MTL with \"disp height.png\""),
 	ROW(MATERIAL_DOUBTFUL, WARNING, "w--", EXPORT, NULL,
 		"{count} {property of a material is|properties of materials are} not taken at {its|their} word",
-		"Properties of a material contradict each other, or say what programs write without meaning "
-		"it: d 0, which would make all of it invisible, a black Kd beside a map. The detail says what "
-		"was taken instead.",
+		"Properties of a material contradict each other, are no numbers, or say what programs write without "
+		"meaning it: d 0, which would make all of it invisible, a black Kd beside a map. The detail says what "
+		"was taken instead, or that the statement is not used.",
 		"Correct the material if something else was meant.",
 		"an MTL with \"d 0\""),
 	ROW(NMAP_BESIDE, INFO, "i--", LOOK, "--normal-map=FILE",

@@ -316,6 +316,10 @@ says "Git LFS's pointer"
 run mirrored_cube.obj out.glb
 exits 0
 says "Git LFS's pointer to the file, not the file itself: git lfs pull brings it [MTL_MISSING]"
+printf 'newmtl bumps\nKd 1 \0\n' >mirrored_cube.mtl
+run mirrored_cube.obj out.glb
+exits 0
+says "material library cannot be read: mirrored_cube.mtl: a byte 0 in it, expected text [MTL_MISSING]"
 cp "$data/plates.bin" .
 cp pointer bumps.png
 run plates.gltf out.glb
