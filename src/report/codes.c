@@ -307,12 +307,12 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Relax the knot in the UV editor (Blender: UV > Minimize Stretch), or unwrap these triangles again.",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
 	ROW(UV_HARD_EDGE, WARNING, "w-i", LOOK, NULL,
-		"{count} hard {edge lies|edges lie} inside a UV island: {detail}",
+		"{count} hard {edge lies inside a UV island|edges lie inside UV islands}: {detail}",
 		"The normals of both sides differ by more than 20 degrees, and the texture coordinates go on across "
 		"the edge. A bake has other directions in neighbouring texels then, which filtering and mipmaps mix: a "
-		"line shows along the edge. Edges that hang together are one finding: a loop, a chain or, if three of "
-		"them meet, a net. An info if no material has a normal map. A cut in the texture coordinates along "
-		"which normals are smooth is no fault.",
+		"line shows along the edge. All of a mesh are one finding. Its places begin with the longest of those "
+		"that hang together: a loop, a chain or, if three edges meet, a net. An info if no material has a "
+		"normal map. A cut in the texture coordinates along which normals are smooth is no fault.",
 		"Cut the texture coordinates along these edges (in Blender: Select > Select Sharp Edges, Edge > Mark "
 		"Seam, UV > Unwrap) or shade them smooth, and bake again.",
 		"two quads at a right angle with normals of their own and one strip of texture coordinates"),

@@ -2,14 +2,15 @@
 /*
  * Hard edges inside a UV island: the normals of both sides differ, the texture coordinates do not. A baker makes the
  * texels of each side for its own normals, and filtering mixes them along the edge. edges.c finds them; here those that
- * hang together at points become one finding: a loop, a chain or a net. (Every edge of a faceted model is hard: chains
- * that end where three edges meet would be as many findings as edges.)
+ * hang together at points become a loop, a chain or a net, and all of a mesh one finding. (Every edge of a faceted
+ * model is hard: chains that end where three edges meet would be as many as edges.)
  *
  * Linear in the number of hard edges, but for the sort of nets by length, and of points if there are any.
  */
 #include "report/check.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "report/surface/union_find.h"
@@ -105,15 +106,7 @@ static void measure_nets(const nt_check *check, nets *n, const uint8_t *degrees)
 	qsort(n->items, n->count, sizeof *n->items, longest_first);
 }
 
-/* ---- findings ---- */
-
-static void tally_net(const nt_check *check, const nets *n, const net *one, nt_tally *tally)
-{
-	for (size_t i = one->first; i < one->first + one->count; i++) {
-		const nt_edge_pair *edge = &check->hard_edges[n->edges[i]];
-		nt_tally_side(check, tally, edge->sides[0], acos(edge->cosine) * DEGREES);
-	}
-}
+/* ---- the finding ---- */
 
 /* An info unless a normal map is asked for; a PLY has none. */
 static nt_severity severity_of(const nt_check *check)
@@ -122,55 +115,64 @@ static nt_severity severity_of(const nt_check *check)
 	return mapped ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO;
 }
 
-/* Keeps a net as a page draws it: seam of the mesh. */
-static bool keep_net(nt_check *check, const nets *n, const net *one, nt_seam *seam)
-{
-	const size_t kept = one->count < NT_SEAM_EDGES ? one->count : NT_SEAM_EDGES;
-	*seam = (nt_seam){.closed = !one->forks && one->ends == 0, .edge_count = one->count, .length = one->length,
-		.edges = nt_arena_alloc(&check->report->arena, kept, sizeof *seam->edges), .box = nt_box_empty()};
-	for (size_t i = 0; seam->edges && i < kept; i++) {
-		const nt_edge_pair *edge = &check->hard_edges[n->edges[one->first + i]];
-		seam->edges[i] = nt_describe_edge(check, edge, nt_side_point(&check->surface, edge->sides[0]));
-		for (int side = 0; side < 2 && i == 0; side++)
-			seam->islands[side] = check->islands[edge->sides[side] / 3];
-	}
-	return seam->edges != NULL;
-}
-
-static void report_net(nt_check *check, const nets *n, const net *one, size_t seam)
-{
-	nt_tally tally = {.code = NT_CODE_UV_HARD_EDGE, .seam = (uint32_t)seam + 1, .rank = one->length};
-	tally_net(check, n, one, &tally);
-	nt_tally_number(&tally, "length", one->length);
-	nt_tally_number(&tally, "worst_degrees", acos(one->cosine) * DEGREES);
-	nt_check_report_as(check, &tally, severity_of(check), "%s of length %.4g, normals up to %.3g degrees apart",
-		one->forks ? "a net" : one->ends ? "an open chain" : "a closed loop", one->length,
-		acos(one->cosine) * DEGREES);
-}
-
-static nt_status report_nets(nt_check *check, const nets *n)
+/* All nets as a page draws them, the longest first: one seam of the mesh behind the others. */
+static nt_status keep_nets(nt_check *check, const nets *n, double length)
 {
 	nt_report_mesh *facts = check->facts;
-	const size_t before = facts->seam_count, single = n->count < NT_SINGLE_FINDINGS ? n->count : NT_SINGLE_FINDINGS;
-	nt_seam *all = nt_arena_alloc(&check->report->arena, before + single, sizeof *all);
-	nt_tally rest = {.code = NT_CODE_UV_HARD_EDGE};
-	if (!all)
+	const size_t before = facts->seam_count, count = check->hard_edge_count;
+	const size_t kept = count < NT_SEAM_EDGES ? count : NT_SEAM_EDGES;
+	nt_seam *all = nt_arena_alloc(&check->report->arena, before + 1, sizeof *all);
+	nt_seam_edge *edges = nt_arena_alloc(&check->report->arena, kept, sizeof *edges);
+	if (!all || !edges)
 		return NT_ERROR_MEMORY;
 	if (before)
 		memcpy(all, facts->seams, before * sizeof *all);
+	all[before] = (nt_seam){.closed = n->count == 1 && !n->items[0].forks && n->items[0].ends == 0,
+		.edge_count = count, .length = length, .edges = edges, .box = nt_box_empty()};
+	for (size_t k = 0, filled = 0; k < n->count; k++)
+		for (size_t i = 0; i < n->items[k].count && filled < kept; i++) {
+			const nt_edge_pair *edge = &check->hard_edges[n->edges[n->items[k].first + i]];
+			edges[filled++] = nt_describe_edge(check, edge, nt_side_point(&check->surface, edge->sides[0]));
+		}
 	facts->seams = all;
-	facts->hard_count = single;
-	for (size_t i = 0; i < n->count; i++) {
-		if (i >= single)
-			tally_net(check, n, &n->items[i], &rest);
-		else if (keep_net(check, n, &n->items[i], &all[before + i]))
-			report_net(check, n, &n->items[i], before + i);
-		else
-			return NT_ERROR_MEMORY;
-	}
-	nt_check_report_as(check, &rest, severity_of(check),
-		"%zu further nets, one finding together beyond the first %d", n->count - single, NT_SINGLE_FINDINGS);
+	facts->hard_count = 1;
 	return NT_OK;
+}
+
+static void tally_edges(const nt_check *check, const nets *n, size_t first, size_t count, nt_tally *tally)
+{
+	for (size_t i = first; i < first + count; i++) {
+		const nt_edge_pair *edge = &check->hard_edges[n->edges[i]];
+		nt_tally_side(check, tally, edge->sides[0], acos(edge->cosine) * DEGREES);
+	}
+}
+
+/* One finding for a mesh: an artist goes over all of them at once. Its places are one edge of each net, the longest
+ * first, and others of these if there are few. */
+static nt_status report_nets(nt_check *check, const nets *n)
+{
+	nt_tally tally = {.code = NT_CODE_UV_HARD_EDGE, .seam = (uint32_t)check->facts->seam_count + 1};
+	const net *longest = &n->items[0];
+	float cosine = 1.0f;
+	for (size_t k = 0; k < n->count; k++) {
+		tally.rank += n->items[k].length;
+		cosine = fminf(cosine, n->items[k].cosine);
+		tally_edges(check, n, n->items[k].first, 1, &tally);
+	}
+	for (size_t k = 0; k < n->count; k++)
+		tally_edges(check, n, n->items[k].first + 1, n->items[k].count - 1, &tally);
+	const double length = tally.rank;
+	const char *kind = longest->forks ? "a net" : longest->ends ? "an open chain" : "a closed loop";
+	char nets_text[64] = "";
+	if (n->count > 1)
+		snprintf(nets_text, sizeof nets_text, "%zu nets, the longest ", n->count);
+	nt_tally_number(&tally, "nets", (double)n->count);
+	nt_tally_number(&tally, "length", length);
+	nt_tally_number(&tally, "longest", longest->length);
+	nt_tally_number(&tally, "worst_degrees", acos(cosine) * DEGREES);
+	nt_check_report_as(check, &tally, severity_of(check), "%s%s of length %.4g; normals up to %.3g degrees apart",
+		nets_text, kind, longest->length, acos(cosine) * DEGREES);
+	return keep_nets(check, n, length);
 }
 
 nt_status nt_check_hard_edges(nt_check *check)

@@ -227,7 +227,7 @@ typedef struct nt_report_mesh {
 	double world[16];         /* column-major */
 
 	nt_wrap wrap[2];          /* along u and v: how the sampler repeats what the mesh lies on */
-	size_t hard_count;        /* nets of hard edges, behind the mirror seams */
+	size_t hard_count;        /* 1: all hard edges, behind the mirror seams */
 	nt_seam *seams;           /* [seam_count + hard_count] */
 	nt_island *islands;       /* [island_count] */
 	size_t island_count;

@@ -50,7 +50,7 @@ TEST(an_edge_is_hard_if_normals_are_cut_and_texture_coordinates_are_not)
 		const char *says; /* NULL: nothing */
 		nt_severity severity;
 	} rows[] = {
-		{90, false, false, NT_SLOT_NORMAL, "an open chain of length 1, normals up to 90 degrees apart",
+		{90, false, false, NT_SLOT_NORMAL, "an open chain of length 1; normals up to 90 degrees apart",
 			NT_SEVERITY_WARNING},
 		{90, false, false, NT_SLOT_CLEARCOAT_NORMAL, "normals up to 90 degrees apart", NT_SEVERITY_WARNING},
 		{90, false, false, NT_SLOT_ANISOTROPY, "normals up to 90 degrees apart", NT_SEVERITY_INFO},
@@ -100,7 +100,7 @@ TEST(hard_edges_around_a_lid_are_a_closed_loop)
 	nt_report *report = hand_report(h, NULL);
 	const nt_report_finding *finding = hand_finding(report, NT_CODE_UV_HARD_EDGE);
 	assert_int_equal(finding->count, 4);
-	assert_non_null(strstr(finding->message, "a closed loop of length 4, normals up to 90 degrees apart"));
+	assert_non_null(strstr(finding->message, "a closed loop of length 4; normals up to 90 degrees apart"));
 	assert_int_equal(report->meshes[0].island_count, 1);
 	assert_int_equal(report->meshes[0].hard_count, 1);
 	assert_true(report->meshes[0].seams[finding->seam].closed);
@@ -108,7 +108,7 @@ TEST(hard_edges_around_a_lid_are_a_closed_loop)
 }
 
 /* Three squares around the corner of a cube, as a picture of it shows them; and a fold far from it. */
-TEST(hard_edges_that_meet_are_one_net_the_longest_first)
+TEST(all_hard_edges_are_one_finding_the_longest_net_first)
 {
 	static const float n[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 	hand_mesh *h = folded(90, false, false);
@@ -126,11 +126,15 @@ TEST(hard_edges_that_meet_are_one_net_the_longest_first)
 		hand_quad(h, first, first + 1, first + 2, first + 3);
 	}
 	nt_report *report = hand_report(h, NULL);
-	assert_int_equal(hand_findings(report, NT_CODE_UV_HARD_EDGE), 2);
-	const nt_report_finding *finding = report->findings;
-	while (finding->code != NT_CODE_UV_HARD_EDGE)
-		finding++;
-	assert_int_equal(finding->count, 3);
-	assert_non_null(strstr(finding->message, "a net of length 3, normals up to 90 degrees apart"));
+	assert_int_equal(hand_findings(report, NT_CODE_UV_HARD_EDGE), 1);
+	const nt_report_finding *finding = hand_finding(report, NT_CODE_UV_HARD_EDGE);
+	assert_int_equal(finding->count, 4);
+	assert_non_null(strstr(finding->message,
+		"2 nets, the longest a net of length 3; normals up to 90 degrees apart"));
+	/* an edge of each, the longest first */
+	assert_int_equal(finding->spot_count, 4);
+	assert_true(finding->spots[0].positions[0][0] > 7 && finding->spots[1].positions[0][0] < 3);
+	assert_int_equal(report->meshes[0].hard_count, 1);
+	assert_int_equal(report->meshes[0].seams[finding->seam].edge_count, 4);
 	hand_free(h, report);
 }
