@@ -120,19 +120,18 @@ static bool join_options(const nt_report *report, chosen which, nt_buffer *all)
 
 /* ---- the verdict ---- */
 
-/* The options of the command that the verdict names, which repairs the first finding and what else is no info; *count:
- * how many new errors and warnings that are, dropped ones too. False: it names none. */
+/* The options of the command that the verdict names, which repairs the first finding and what else is no info; *count
+ * (NULL: is not asked): how many new errors and warnings that are, dropped ones too. False: it names none. */
 static bool find_options(const nt_report *report, const nt_report_finding *first, nt_buffer *options, size_t *count)
 {
 	bool counted[NT_CODE_COUNT] = {false};
-	*count = 0;
 	if (!first || !first->repair)
 		return false;
 	const chosen which = {NT_SEVERITY_WARNING, nt_code_condition(first->code) != NULL};
 	const bool joined = joins_in(first, which) && join_options(report, which, options);
 	if (!joined)
 		nt_buffer_text(options, first->repair);
-	for (size_t i = 0; i < report->new_count; i++) {
+	for (size_t i = 0; count && i < report->new_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
 		if (f->severity < which.least || !f->repair ||
 			!(joined ? joins_in(f, which) : strcmp(f->repair, first->repair) == 0))
@@ -162,7 +161,7 @@ static void append_verdict(const nt_report *report, nt_buffer *out)
 	}
 	nt_buffer options = {0};
 	const nt_report_finding *first = find_first(report);
-	size_t repaired;
+	size_t repaired = 0;
 	const bool names = find_options(report, first, &options, &repaired);
 	const size_t more = (names && repaired < all ? repaired : all) - 1;
 	nt_buffer_format(out, "%s: %s", first ? verbs[advice_of(first)] : verbs[0],
@@ -181,8 +180,7 @@ void nt_put_together(const nt_report *report, const char *before, void (*put)(co
 	nt_buffer *out)
 {
 	nt_buffer all = {0}, told = {0}, command = {0};
-	size_t repaired;
-	const bool names = find_options(report, find_first(report), &told, &repaired);
+	const bool names = find_options(report, find_first(report), &told, NULL);
 	bool infos = false, conditions = false;
 	for (size_t i = 0; i < report->new_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
