@@ -594,7 +594,7 @@ static nt_status begin_session(session *s, nt_error *error)
 	if (check_own(s->command, error))
 		return error->status;
 	if (s->command->manifest && nt_manifest_open(&s->manifest, s->command->manifest, options,
-		s->command->settings.check, error))
+		&s->plan->options, s->command->settings.check, error))
 		return error->status;
 	return begin_update(s, error);
 }

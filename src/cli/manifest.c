@@ -141,12 +141,21 @@ static void append_sizes(nt_buffer *out, const nt_summary *s, bool check)
 	append_number(out, "split", split);
 }
 
-/* The findings and the result of a run. A report has those of the stages too, but for what it leaves out. */
-static void append_run(nt_buffer *out, const nt_summary *s, bool check)
+/* Whether a finding of a stage counts, as in a report: --ignore, --severity and --min-severity say so. */
+static bool counts(const nt_finding *finding, const nt_report_options *judged)
+{
+	const uint8_t said = judged->severity[finding->code];
+	const nt_severity severity = said ? (nt_severity)(said - 1) : nt_finding_severity(finding);
+	return !judged->ignore[finding->code] && severity >= judged->min_severity;
+}
+
+/* The findings and the result of a run. The report of one that did not fail has those of the stages, too. */
+static void append_run(nt_buffer *out, const nt_summary *s, const nt_report_options *judged, bool check)
 {
 	size_t found[NT_CODE_COUNT] = {0};
 	for (size_t i = 0; i < s->findings.count; i++)
-		found[s->findings.items[i].code] += s->findings.items[i].count;
+		found[s->findings.items[i].code] +=
+			counts(&s->findings.items[i], judged) ? s->findings.items[i].count : 0;
 	for (int code = 0; s->report && code < NT_CODE_COUNT; code++)
 		found[code] = s->report->counts[code] ? s->report->counts[code] : found[code];
 	append_codes(out, "findings", found);
@@ -193,7 +202,7 @@ static void append_job(nt_buffer *out, const nt_job *job, const nt_manifest *man
 	if (job->status && job->outcome)
 		append_error(out, &job->outcome->error);
 	if (job->outcome && job->end == NT_JOB_RAN)
-		append_run(out, &job->outcome->summary, manifest->check);
+		append_run(out, &job->outcome->summary, manifest->judged, manifest->check);
 	nt_buffer_text(out, "}\n");
 }
 
@@ -227,10 +236,10 @@ static nt_status refuse_foreign(const nt_manifest *manifest, nt_error *error)
 		"refusing to write: the file exists already and is no manifest");
 }
 
-nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options, bool check,
-	nt_error *error)
+nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options,
+	const nt_report_options *judged, bool check, nt_error *error)
 {
-	*manifest = (nt_manifest){.path = path, .options = options, .check = check, .fd = -1};
+	*manifest = (nt_manifest){.path = path, .options = options, .judged = judged, .check = check, .fd = -1};
 	const bool standard = strcmp(path, "-") == 0;
 	if (!standard && refuse_foreign(manifest, error))
 		return error->status;

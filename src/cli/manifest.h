@@ -11,6 +11,7 @@
 typedef struct nt_manifest {
 	const char *path;    /* "-": standard output */
 	const char *options; /* what shapes outputs, in words */
+	const nt_report_options *judged; /* which findings count */
 	bool check;          /* nothing is written: lines count all that was judged */
 	int fd;              /* below 0: not open */
 	nt_buffer line;      /* what most lines take is there from the start */
@@ -19,8 +20,8 @@ typedef struct nt_manifest {
 
 /* Begins a file anew: an earlier manifest, or none, is there. Returns NT_OK, NT_ERROR_IO, NT_ERROR_USAGE or
  * NT_ERROR_MEMORY; close it after failure, too. */
-nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options, bool check,
-	nt_error *error);
+nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options,
+	const nt_report_options *judged, bool check, nt_error *error);
 
 /* Appends the line of a job that has ended, in one piece. A failure is kept for nt_manifest_close(). */
 void nt_manifest_add(nt_manifest *manifest, const nt_job *job, int exit_code);
