@@ -370,13 +370,12 @@ void nt_options_shaping(const nt_command *command, nt_buffer *out)
 
 void nt_options_given(const nt_command *command, nt_buffer *out)
 {
-	static const char *const elsewhere[] = {"output-format"}; /* the name of the output says it */
 	bool shapes = false;
 	size_t i = 0;
 	for (const nt_option_row *row; (row = next_shaping(command, &i, &shapes)) != NULL;) {
 		const nt_words *words = (const void *)((const char *)command + row->offset);
 		const size_t count = row->kind == NT_OPTION_LIST ? words->count : 1;
-		for (size_t k = 0; k < count && !is_one_of(row, elsewhere, 1); k++) {
+		for (size_t k = 0; k < count; k++) {
 			nt_buffer word = {0}, shown = {0};
 			if (row->kind == NT_OPTION_LIST)
 				nt_buffer_format(&word, "--%s=%s", row->name, words->items[k]);

@@ -734,19 +734,22 @@ bool nt_shell_word(const char *text, nt_buffer *out)
 	return true;
 }
 
-/* in.glb: "in-repaired.glb"; head.obj: "head.glb". */
-static void put_output(const char *input, nt_buffer *out)
+static const char format_option[] = "--output-format=";
+
+/* in.glb: "in-repaired.glb"; head.obj: "head.glb"; of standard input "OUT.glb"; or as --output-format says. */
+static void put_output(const char *input, const char *given, nt_buffer *out)
 {
-	static const char *const kept[] = {".gltf", ".glb", ".ply"};
-	const char *slash = strrchr(input, '/'), *dot = strrchr(slash ? slash : input, '.');
-	const char *ending = ".glb", *suffix = "";
-	for (size_t i = 0; dot && i < sizeof kept / sizeof *kept; i++)
-		if (strcasecmp(dot, kept[i]) == 0) {
-			ending = dot;
-			suffix = "-repaired";
-		}
-	nt_buffer_append(out, input, dot ? (size_t)(dot - input) : strlen(input));
-	nt_buffer_format(out, "%s%s", suffix, ending);
+	static const char *const endings[] = {".gltf", ".glb", ".ply"};
+	const char *slash = strrchr(input, '/'), *dot = strrchr(slash ? slash : input, '.'), *ending = ".glb";
+	const char *asked = given ? strstr(given, format_option) : NULL;
+	asked = asked ? asked + sizeof format_option - 1 : dot ? dot + 1 : "";
+	const size_t length = strcspn(asked, "\n");
+	for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+		if (strlen(endings[i]) == length + 1 && strncasecmp(asked, endings[i] + 1, length) == 0)
+			ending = endings[i];
+	const bool stream = strcmp(input, "-") == 0, alike = dot && strcasecmp(dot, ending) == 0;
+	nt_buffer_append(out, stream ? "OUT" : input, stream ? 3 : dot ? (size_t)(dot - input) : strlen(input));
+	nt_buffer_format(out, "%s%s", alike ? "-repaired" : "", alike ? dot : ending);
 }
 
 /* A name that begins with a dash is no option; "-" itself is a stream. */
@@ -768,10 +771,12 @@ static bool has_option(const char *options, const char *name, size_t length)
 	return false;
 }
 
-/* Options of the user, but for those that are said anew or exclude what is said: --fix chooses by itself. */
-static void put_given(const char *options, const char *given, nt_buffer *out)
+/* Options of the user, but for those that are said anew or exclude what is said: --fix chooses by itself; or that the
+ * name of the output (NULL: nobody knows it) says. */
+static void put_given(const char *options, const char *given, const char *output, nt_buffer *out)
 {
 	static const char *const chosen[] = {"--existing", "--flip-green"};
+	const char *dot = output ? strrchr(output, '.') : NULL;
 	const bool fixes = has_option(options, "--fix", 5);
 	for (size_t length; *given; given += length + (given[length] == '\n')) {
 		const char *name = given + (*given == '\'');
@@ -779,6 +784,9 @@ static void put_given(const char *options, const char *given, nt_buffer *out)
 		bool said = has_option(options, name, name_length);
 		length = strcspn(given, "\n");
 		for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i++)
+		const size_t word = sizeof format_option - 1;
+		said |= dot && strncmp(given, format_option, word) == 0 &&
+			strncasecmp(dot + 1, given + word, length - word) == 0;
 			said |= fixes ? has_option(chosen[i], name, name_length)
 				: has_option("--fix", name, name_length) &&
 					has_option(options, chosen[i], strlen(chosen[i]));
@@ -792,13 +800,11 @@ static void put_given(const char *options, const char *given, nt_buffer *out)
 void nt_command_text(const char *options, const char *given, const char *input, const char *output, nt_buffer *out)
 {
 	nt_buffer made = {0};
-	if (input && !output && strcmp(input, "-") == 0)
-		nt_buffer_text(&made, "OUT.glb");
-	else if (input && !output)
-		put_output(input, &made);
+	if (input && !output)
+		put_output(input, given, &made);
 	nt_buffer_text(out, "nmtan");
 	if (given)
-		put_given(options, given, out);
+		put_given(options, given, made.data ? made.data : output, out);
 	nt_buffer_format(out, "%s%s ", *options ? " " : "", options);
 	const size_t before = out->size;
 	const bool alone = output && !*output;

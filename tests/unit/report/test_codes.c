@@ -47,6 +47,28 @@ static void command_is(const char *options, const char *input, const char *outpu
 	nt_buffer_free(&out);
 }
 
+TEST(commands_name_outputs_of_the_format_that_was_asked_for)
+{
+	static const char *const rows[][4] = { /* given, input, output, command */
+		{"--output-format=glb", "k.ply", NULL, "nmtan --fix k.ply k.glb"},
+		{"--weld\n--output-format=gltf", "k.glb", NULL, "nmtan --weld --fix k.glb k.gltf"},
+		{"--output-format=ply", "k.PLY", NULL, "nmtan --fix k.PLY k-repaired.PLY"},
+		{"--output-format=ply", "-", NULL, "nmtan --fix - OUT.ply"},
+		{"--output-format=gltf", "in.g", NULL, "nmtan --fix in.g in.gltf"},
+		{"", "in.g", NULL, "nmtan --fix in.g in.glb"},
+		/* what the name does not say */
+		{"--output-format=ply", "k.ply", "-", "nmtan --output-format=ply --fix k.ply -"},
+		{"--output-format=glb", "k.ply", "out.bin", "nmtan --output-format=glb --fix k.ply out.bin"},
+		{"--output-format=glb", "k.ply", "out.glb", "nmtan --fix k.ply out.glb"},
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		nt_buffer out = {0};
+		nt_command_text("--fix", rows[i][0], rows[i][1], rows[i][2], &out);
+		assert_string_equal(out.data, rows[i][3]);
+		nt_buffer_free(&out);
+	}
+}
+
 TEST(commands_repeat_what_the_user_gave_but_for_what_they_say_themselves)
 {
 	static const char *const rows[][3] = { /* options, given, both */
