@@ -419,12 +419,14 @@ static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 		{NT_CODE_TAN_EXISTING_LEFT, mesh->left_tangents},
 		{NT_CODE_UV_MISSING, missing},
 	};
-	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		const bool of_texcoords = i < 2 || rows[i].code == NT_CODE_UV_MISSING;
 		if (rows[i].count)
 			nt_finding_put(list, (nt_finding){.code = rows[i].code, .count = rows[i].count,
-				.severity = i < 2 || rows[i].code == NT_CODE_UV_MISSING ? unless_needed : 0,
+				.severity = of_texcoords ? unless_needed : 0, .judged = of_texcoords ? mesh : NULL,
 				.detail = rows[i].code == NT_CODE_UV_MISSING ? detail : ""},
 				nt_mesh_place(mesh, &(nt_place){0}));
+	}
 	if (mesh->may_be_quads)
 		nt_finding_put(list, (nt_finding){.code = NT_CODE_TAN_QUADS_LIKELY, .count = mesh->may_be_quads,
 			.detail = "", .repair = mesh->slots ? NULL : "--quads=pairs --only=all"},

@@ -347,7 +347,7 @@ static bool is_mapped(const nt_scene *scene, const nt_settings *settings, const 
 		(image->sources[0]->found != NT_IMAGE_MISSING || settings->images == NT_IMAGES_LINK);
 }
 
-/* Meshes are judged as the output has them. */
+/* Meshes are judged as the output has them, and so is what was found in their texture coordinates before. */
 static void settle_slots(nt_scene *scene, const nt_settings *settings, const nt_textures *textures)
 {
 	for (size_t i = 0; i < scene->mesh_count; i++) {
@@ -358,6 +358,11 @@ static void settle_slots(nt_scene *scene, const nt_settings *settings, const nt_
 		mesh->lost_map = mesh->slots & NT_SLOT_NORMAL && !mapped;
 		if (mesh->lost_map)
 			mesh->slots &= ~(unsigned)NT_SLOT_NORMAL;
+	}
+	for (size_t i = 0; i < scene->findings.count; i++) {
+		nt_finding *f = &scene->findings.items[i];
+		if (f->judged && !nt_mesh_needs_tangents(f->judged, nt_format_is_gltf(scene->judged)))
+			f->severity = 1 + NT_SEVERITY_INFO;
 	}
 }
 

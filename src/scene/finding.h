@@ -132,6 +132,8 @@ typedef struct nt_finding {
 	bool stays;          /* nothing here repairs this one, whatever the table says */
 	const int8_t *votes; /* [votes_side][votes_side] of a normal map's blocks: see image/examine.h; NULL: none */
 	unsigned votes_side;
+	const struct nt_mesh *judged; /* an info unless this mesh needs tangents, which its images may decide later;
+	                                 NULL: the severity stays. Ends with the scene */
 } nt_finding;
 
 typedef struct nt_finding_list {
