@@ -633,7 +633,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"smaller half",
 		"The tangents were solved on quads. A quad whose halves are wound in opposite directions in texture "
 		"space has one orientation to MikkTSpace, that of the larger half.",
-		"Nothing if the map was baked on quads too; --existing=replace --quads=off solves the triangles.",
+		"Nothing if the map was baked on quads too. If on triangles, --existing=replace --quads=off "
+		"solves those of a glTF; cut the quads of a PLY into triangles first.",
 		"a quad with one corner folded over its diagonal in texture space, from Blender"),
 	ROW(TAN_QUADS_LIKELY, INFO, "i--", CONVERT, "--quads=pairs",
 		"{count} {pair|pairs} of triangles may have been {one quad|quads} when the map was baked",
