@@ -186,11 +186,10 @@ static int tell_run(session *s, nt_job *job)
 			job->output, infos, most, style);
 	} else if (s->style.verbosity < 0 && !job->status && !c->settings.check)
 		nt_message_left_out(&s->text, job, s->plan->options.ignore);
-	/* a batch counts them in a quiet run; of a report nt_message_findings() says what no check finds */
-	if (summary->keeps_wrong && !job->status && !shown &&
-		(s->style.verbosity < 0 ? s->count == 1 : summary->report != NULL))
-		nt_message_kept(&s->text, &summary->findings, summary->report, &s->plan->options, job->input,
-			job->output, most, s->style);
+	/* in a quiet run a batch counts them */
+	if (!job->status && !shown && (s->style.verbosity >= 0 || (summary->keeps_wrong && s->count == 1)))
+		nt_message_checked(&s->text, &summary->findings, summary->report, &s->plan->options, job->input,
+			job->output, most, style);
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
 	if (job->status) {
 		if (!job->reason_is_told)
@@ -841,9 +840,9 @@ int main(int argc, char **argv)
 	 * which temporary files are removed. */
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN);
-	nt_run_catch_signals(tell_interrupted);
-	nt_run_catch_exhaustion(end_exhausted);
-	nt_run_catch_faults(end_changed);
+	nt_output_catch_signals(tell_interrupted);
+	nt_output_catch_exhaustion(end_exhausted);
+	nt_output_catch_faults(end_changed);
 
 	nt_command command;
 	nt_error error;

@@ -110,8 +110,8 @@ static void append_command(nt_buffer *out, nt_code code, const char *repair, con
 	nt_buffer_free_into(&all, out);
 }
 
-/* All findings of one code and severity but for `old` ones (NULL: none are), those beyond PLACES_SHOWN as a number. The
- * first has the command. */
+/* All findings of one code and severity but for `old` ones (NULL: there are none), those beyond PLACES_SHOWN as a
+ * number. The first has the command. */
 static void append_code(nt_buffer *out, const nt_finding_list *findings, const bool *old,
 	const nt_report_options *options, nt_code code, nt_severity severity, const char *file, const char *output,
 	nt_style style)
@@ -143,7 +143,7 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, const b
 
 /* Which findings a report knows from its baseline: those that it has as they are, and those of codes of which a check
  * finds the places, if all are known. */
-static void find_old(const nt_finding_list *findings, const nt_report *report, bool *old)
+static void find_known(const nt_finding_list *findings, const nt_report *report, bool *old)
 {
 	bool has_known[NT_CODE_COUNT] = {false}, has_new[NT_CODE_COUNT] = {false};
 	for (size_t i = 0; i < report->finding_count; i++) {
@@ -161,14 +161,18 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 	const nt_report_options *options, const char *file, const char *output,
 	nt_shown_infos infos, int most, nt_style style)
 {
-	const bool known = report && options->baseline && findings->count;
-	bool *old = known ? nt_calloc(findings->count, sizeof *old) : NULL;
-	if (known && !old) {
+	const bool judged = report && !report->failure && findings->count;
+	bool *old = judged ? nt_calloc(findings->count, sizeof *old) : NULL;
+	if (judged && !old) {
 		out->failed = true;
 		return;
 	}
-	if (old)
-		find_old(findings, report, old);
+	if (old && options->baseline)
+		find_known(findings, report, old);
+	/* nt_message_checked() has them with their places */
+	for (size_t i = 0; old && i < findings->count; i++)
+		old[i] |= nt_is_found_again(&findings->items[i]) &&
+			shown_severity(&findings->items[i], options, style) > NT_SEVERITY_INFO;
 	for (int severity = most; severity >= (int)options->min_severity; severity--)
 		for (int code = 0; code < NT_CODE_COUNT; code++)
 			if ((severity || infos == NT_INFOS_ALL || (infos && is_chosen((nt_code)code))) &&
@@ -190,21 +194,30 @@ static void append_found(nt_buffer *out, const nt_report_finding *f, nt_severity
 	nt_buffer_free_into(&command, out);
 }
 
-void nt_message_kept(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
+void nt_message_checked(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
 	const nt_report_options *options, const char *file, const char *output, int most, nt_style style)
 {
+	const bool quiet = style.verbosity < 0;
+	const size_t most_shown = quiet ? 1 : style.verbosity > 0 ? SIZE_MAX : PLACES_SHOWN;
 	bool told[NT_CODE_COUNT] = {false};
-	for (int code = 0; !report && code < NT_CODE_COUNT; code++)
+	size_t shown[NT_CODE_COUNT] = {0};
+	for (int code = 0; quiet && !report && code < NT_CODE_COUNT; code++)
 		if (nt_code_is_of_kept((nt_code)code) && !options->ignore[code])
 			append_code(out, findings, NULL, options, (nt_code)code, NT_SEVERITY_WARNING, file, output,
 				style);
 	for (size_t i = 0; report && i < report->new_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
-		if (f->mesh == NT_NONE || f->severity == NT_SEVERITY_INFO || (int)f->severity > most ||
-			!nt_code_is_of_kept(f->code) || told[f->code] || (f->noted != NT_NONE && style.verbosity >= 0))
+		if (f->severity == NT_SEVERITY_INFO || (int)f->severity > most ||
+			(quiet ? f->mesh == NT_NONE || !nt_code_is_of_kept(f->code) : f->noted != NT_NONE))
 			continue;
-		append_found(out, f, NT_SEVERITY_WARNING, told, options, file, output, style);
+		if (shown[f->code]++ < most_shown)
+			append_found(out, f, style.fails ? f->severity : NT_SEVERITY_WARNING, told, options, file,
+				output, style);
 	}
+	for (int code = 0; code < NT_CODE_COUNT && !quiet; code++)
+		if (shown[code] > most_shown)
+			nt_buffer_format(out, "nmtan: and %zu more [%s]; -v shows all\n", shown[code] - most_shown,
+				nt_code_info((nt_code)code)->name);
 }
 
 /* Materials that have lost all of their images. */
@@ -302,6 +315,15 @@ static void append_vertices(nt_buffer *out, const nt_summary *s)
 /* Options that came to nothing, and others with which they would not. */
 static void append_unused(nt_buffer *out, const nt_summary *s, const nt_settings *settings)
 {
+	static const char *const makes[] = {
+		[NT_NORMALS_FLAT] = "flat", [NT_NORMALS_SMOOTH] = "smooth", [NT_NORMALS_ANGLE] = "angle"};
+	const nt_normals normals = settings->normals;
+	if (normals != NT_NORMALS_AUTO && normals < NT_NORMALS_REPLACE_FLAT && s->kept_normals && !s->made_normals) {
+		nt_buffer_format(out, ", all have normals: --normals=replace-%s", makes[normals]);
+		if (normals == NT_NORMALS_ANGLE)
+			nt_buffer_format(out, ":%d", settings->normals_degrees);
+		nt_buffer_text(out, " makes new ones");
+	}
 	if (settings->existing == NT_EXISTING_REPLACE && s->skipped[NT_SKIP_NO_SLOT])
 		nt_buffer_text(out, ", --only=all makes new tangents for all");
 	if (settings->existing == NT_EXISTING_DROP && s->skipped[NT_SKIP_HAS_TANGENTS])
@@ -326,11 +348,12 @@ static void append_unused(nt_buffer *out, const nt_summary *s, const nt_settings
 
 static void append_skipped(nt_buffer *out, const nt_summary *s)
 {
+	const size_t *skipped = s->made.count ? s->made.skipped : s->skipped;
 	bool first = true;
 	for (int reason = 0; reason < NT_DECISION_COUNT; reason++) {
-		if (!s->skipped[reason])
+		if (!skipped[reason])
 			continue;
-		nt_buffer_format(out, "%s%zu (%s)", first ? ", skipped " : ", ", s->skipped[reason],
+		nt_buffer_format(out, "%s%zu (%s)", first ? ", skipped " : ", ", skipped[reason],
 			nt_decision_text((nt_decision)reason));
 		first = false;
 	}
@@ -362,7 +385,7 @@ static void append_findings_count(nt_buffer *out, const nt_summary *s)
 	}
 }
 
-/* Repairs of --fix, by the codes of the findings. */
+/* Repairs of --fix, by the codes of the findings, and what it leaves to other options. */
 static void append_fixed(nt_buffer *out, const nt_summary *s, const nt_settings *settings)
 {
 	bool first = true;
@@ -373,13 +396,14 @@ static void append_fixed(nt_buffer *out, const nt_summary *s, const nt_settings 
 		append_count(out, s->fixed[code], code == NT_CODE_NMAP_GREEN_DOWN ? "normal map" : "primitive");
 		first = false;
 	}
-	if (!settings->fix || !first)
+	if (!settings->fix)
 		return;
-	if (s->solved_count) {
-		nt_buffer_text(out, ", made the tangents of ");
-		append_count(out, s->solved_count, "primitive");
-	}
-	nt_buffer_format(out, ", nothing%s that --fix repairs", s->solved_count ? " else" : "");
+	if (first)
+		nt_buffer_text(out, ", the input has nothing that --fix repairs");
+	for (unsigned code = 0; code < NT_CODE_COUNT; code++)
+		if (s->unfixed[code])
+			nt_buffer_format(out, ", left %s (%s repairs it)", nt_code_info((nt_code)code)->name,
+				nt_code_info((nt_code)code)->repair);
 }
 
 /* "nmtan: a.obj -> b.glb" */
@@ -439,11 +463,12 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 							  : "");
 	if (s->left)
 		nt_buffer_text(out, "left as it is, ");
-	if (settings->check || s->solved_count == s->mesh_count)
-		append_count(out, s->made_primitives && !settings->check ? s->made_primitives : s->mesh_count,
-			"primitive");
+	const bool made = s->made.count && !settings->check;
+	const size_t all = made ? s->made.count : s->mesh_count, solved = made ? s->made.solved : s->solved_count;
+	if (settings->check || solved == all)
+		append_count(out, all, "primitive");
 	else
-		nt_buffer_format(out, "%zu of %zu primitives", s->solved_count, s->mesh_count);
+		nt_buffer_format(out, "%zu of %zu primitives", solved, all);
 	if (s->same_count)
 		nt_buffer_format(out, " (%zu the same as others)", s->same_count);
 	if (s->solved_count && !settings->check) {

@@ -33,9 +33,9 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 	const nt_report_options *options, const char *file, const char *output,
 	nt_shown_infos infos, int most, nt_style style);
 
-/* Wrong tangents that were kept, which a report (NULL: findings do) knows, one line for each code, up to a severity: as
- * nt_message_findings() has it, in a quiet run too. */
-void nt_message_kept(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
+/* Errors and warnings that the checks of a report found, up to a severity, as nt_message_findings() has it. In a quiet
+ * run only wrong tangents that were kept, one line for each code; report NULL: findings know them. */
+void nt_message_checked(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
 	const nt_report_options *options, const char *file, const char *output, int most, nt_style style);
 
 /* One line, of a quiet run too, where something of the input is not in the output, with the codes that say what but for

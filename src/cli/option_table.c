@@ -137,8 +137,9 @@ const nt_option_row nt_option_rows[] = {
 	{"emissive", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
 		"the same: use FILE as the emitted colour", SETTING(given_maps[NT_GIVEN_EMISSIVE]), false},
 	{"bump", 0, NT_OPTION_CHOICE, "auto|height|normal|ignore", NT_BUMP_AUTO, 0, "auto",
-		"images of map_Bump and bump; auto: grey ones are height maps, others normal maps; height: convert "
-		"all to normal maps; ignore: leave them out", SETTING(bump), true},
+		"how to read the images of an OBJ's map_Bump and bump; auto: as heights if all pixels are grey, else "
+		"as a normal map; height: as heights, and grey normal maps of a glTF too; normal: as normal maps; "
+		"ignore: leave them out. Heights become a normal map", SETTING(bump), true},
 	{"bump-height", 0, NT_OPTION_TEXT, "SHARE", 0, 0, "1/64",
 		"height of white above black in a height map, as a share of its width; -bm multiplies it",
 		FIELD(bump_height), true},
@@ -227,7 +228,8 @@ const nt_option_row nt_option_rows[] = {
 	{"threads", 'j', NT_OPTION_NUMBER, "N", 0, 1024, "0",
 		"how many threads to use; 0: one for each processor", SETTING(threads), false},
 	{"quiet", 'q', NT_OPTION_SET, NULL, -1, 0, NULL,
-		"print only errors, what an output lacks of its input, and that it keeps wrong tangents",
+		"print only errors, findings that fail the run, what an output lacks of its input, and that it keeps "
+		"wrong tangents",
 		FIELD(verbosity), false},
 	{"verbose", 'v', NT_OPTION_SET, NULL, 1, 0, NULL,
 		"print every finding, and a line for each mesh", FIELD(verbosity), false},

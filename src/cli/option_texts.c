@@ -87,7 +87,7 @@ void nt_options_first_help(nt_buffer *out)
 		"  nmtan --normal-map=n.png in.ply out.glb  a normal map and no material\n"
 		"  nmtan --update -r -d out assets          a folder; again, only what changed\n"
 		"\nOptions:\n"
-		"  --fix                           repair what is proven wrong, nothing else\n"
+		"  --fix                           repair what is proven wrong\n"
 		"  --existing=keep|repair|replace  tangents of the input (default: keep)\n"
 		"  --normals=smooth|flat|...       how to make missing normals\n"
 		"  --quads=pairs                   solve pairs of triangles as quads\n"
@@ -96,7 +96,7 @@ void nt_options_first_help(nt_buffer *out)
 		"  -r                              take folders as the meshes in them\n"
 		"  --report=FILE                   write a report: .txt .json .html .sarif ...\n"
 		"  --fail-on=error|warning|info    exit with 6 on such findings\n"
-		"  -q                              print errors, what got lost, what is wrong\n"
+		"  -q                              print only errors, losses, wrong tangents\n"
 		"\nnmtan --help prints all options, man nmtan explains them.\n");
 	nt_buffer_text(out, exit_codes);
 }

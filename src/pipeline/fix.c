@@ -61,7 +61,11 @@ nt_status nt_fixes_make(nt_fixes *fixes, const nt_scene *scene, const nt_report 
 		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
-		const bool mends = f->severity != NT_SEVERITY_INFO && f->repair && strcmp(f->repair, "--fix") == 0;
+		const bool repairs = f->severity != NT_SEVERITY_INFO && f->repair && !f->stays;
+		const bool mends = repairs && strcmp(f->repair, "--fix") == 0;
+		const char *option = nt_code_info(f->code)->repair;
+		fixes->left[f->code] |= repairs && !mends && option && strcmp(f->repair, option) == 0 &&
+			!nt_code_condition(f->code);
 		if (f->code == NT_CODE_NMAP_GREEN_DOWN) {
 			fixes->turns_maps |= mends;
 			fixes->counts[f->code] += mends;

@@ -500,13 +500,14 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 	}
 	if (r->fixes.turns_maps)
 		fixed->flip_green = NT_FLIP_AUTO;
+	r->fixes.left[NT_CODE_NMAP_HEIGHTS] &= wished->bump != NT_BUMP_HEIGHT; /* which the check did not convert */
 	set_read_options(r, fixed);
 	return status;
 }
 
-/* Counts meshes that are written without normals, although a word would make some, and those without tangents for
- * which they were made. */
-static void count_shading(const run *r)
+/* Counts meshes that are written without normals, although a word would make some, those without tangents for which
+ * they were made, and primitives of a new glTF. */
+static void count_written(const run *r)
 {
 	nt_summary *s = r->summary;
 	const bool matters = (r->settings->normals != NT_NORMALS_AUTO) == nt_format_is_gltf(r->scene.format);
@@ -515,7 +516,12 @@ static void count_shading(const run *r)
 		const bool shaded = mesh->normals_made && !nt_mesh_gets_tangents(mesh);
 		s->without_normals += matters && mesh->triangles && mesh->face_count && !mesh->has_normals;
 		s->shaded_count += shaded;
+		s->made_normals += mesh->normals_made;
+		s->kept_normals += mesh->triangles && mesh->has_normals && !mesh->normals_made;
 		s->shaded_copies += shaded ? mesh->vertex_count - mesh->source_vertex_count : 0;
+		s->made.count += mesh->made_primitives;
+		s->made.solved += nt_mesh_gets_tangents(mesh) ? mesh->made_primitives : 0;
+		s->made.skipped[mesh->decision] += nt_mesh_is_wanted(mesh) ? 0 : mesh->made_primitives;
 	}
 }
 
@@ -621,6 +627,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->left = r.result.left && !settings->check;
 	summary->note = r.result.note.data;
 	memcpy(summary->fixed, r.fixes.counts, sizeof summary->fixed);
+	memcpy(summary->unfixed, r.fixes.left, sizeof summary->unfixed);
 	nt_timer_end(&r.timer);
 
 	/* what was found belongs to the caller, also after a failure */
@@ -632,8 +639,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->rounding = r.scene.rounding;
 	summary->morph_cost = r.scene.morph_cost;
 	if (!status) /* else meshes may be without content */
-		count_shading(&r);
-	summary->made_primitives = r.scene.made_primitives;
+		count_written(&r);
 	summary->welded = r.scene.welded;
 	count_once(&r.scene.shared, summary);
 	summary->unchanged = !status && is_unchanged(&r);
@@ -682,19 +688,4 @@ const char *nt_stage_name(nt_stage stage)
 		[NT_STAGE_REPORT] = "report",
 	};
 	return names[stage];
-}
-
-void nt_run_catch_signals(void (*tell)(void))
-{
-	nt_output_catch_signals(tell);
-}
-
-void nt_run_catch_exhaustion(void (*end)(void))
-{
-	nt_output_catch_exhaustion(end);
-}
-
-void nt_run_catch_faults(void (*end)(const char *path, const char *change))
-{
-	nt_output_catch_faults(end);
 }

@@ -27,16 +27,4 @@ void nt_summary_free(nt_summary *summary);
 /* How a stage is called: "tangents". */
 const char *nt_stage_name(nt_stage stage);
 
-/* Makes SIGINT, SIGTERM and SIGHUP remove the temporary files of all runs and call `tell` (NULL: nothing), in the
- * handler, before they end the process, and turns SIGPIPE into a write error. Called once, before the first run, by a
- * front end that is the whole process. */
-void nt_run_catch_signals(void (*tell)(void));
-
-/* The same where a C++ library would end the process for want of memory: `end` is called then, which must not
- * return. */
-void nt_run_catch_exhaustion(void (*end)(void));
-
-/* See nt_output_catch_faults(). */
-void nt_run_catch_faults(void (*end)(const char *path, const char *change));
-
 #endif

@@ -150,8 +150,11 @@ typedef struct nt_mesh_line {
 /* The results of a run. */
 typedef struct nt_summary {
 	nt_format input_format;
-	size_t mesh_count, made_primitives; /* meshes (glTF: primitives) in the input; primitives of a new glTF, or 0 */
+	size_t mesh_count;       /* meshes (glTF: primitives) in the input */
 	size_t solved_count;     /* of them, those that got tangents */
+	struct {
+		size_t count, solved, skipped[NT_DECISION_COUNT];
+	} made;                  /* the same of the primitives of a new glTF; count 0: it is none */
 	size_t repaired;         /* tangents of corners: what repair made of computed or, with --existing=repair, of the
 	                            input's own */
 	size_t quad_count;       /* pairs of these triangles that were solved as quads */
@@ -180,7 +183,9 @@ typedef struct nt_summary {
 	nt_trace trace;  /* which files were read, missed and written, after a failure too */
 	uint64_t tangents_digest; /* of those that were computed, in the order of the meshes; 0: none, or not wanted */
 	size_t fixed[NT_CODE_COUNT]; /* with fix: primitives and images repaired, by the code of the finding */
+	bool unfixed[NT_CODE_COUNT]; /* with fix: errors and warnings that another option repairs */
 	size_t shaded_count, shaded_copies; /* those that got normals and no tangents, and vertices added for that */
+	size_t made_normals, kept_normals; /* meshes that got some; meshes that keep all of theirs */
 	size_t without_normals; /* meshes: of a glTF, although normals were asked for; else, because they were not */
 	bool keeps_wrong; /* tangents of the output are known to be wrong */
 	bool left;       /* the file has what it would get, and was left as it is */

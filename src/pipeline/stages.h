@@ -168,6 +168,7 @@ typedef struct nt_fixes {
 	size_t image_count;
 	bool turns_maps;
 	size_t counts[NT_CODE_COUNT]; /* primitives and images by the code of the finding */
+	bool left[NT_CODE_COUNT];     /* what the options of the code's row repair, whatever else is true */
 } nt_fixes;
 
 /* *fixes is to be freed after failure too. Returns NT_OK or NT_ERROR_MEMORY. */

@@ -776,18 +776,18 @@ static bool has_option(const char *options, const char *name, size_t length)
  * name of the output (NULL: nobody knows it) says. */
 static void put_given(const char *options, const char *given, const char *output, nt_buffer *out)
 {
-	static const char *const chosen[] = {"--existing", "--flip-green"};
 	const char *dot = output ? strrchr(output, '.') : NULL;
+	static const char *const chosen[] = {"--existing", "--flip-green"};
 	const bool fixes = has_option(options, "--fix", 5);
 	for (size_t length; *given; given += length + (given[length] == '\n')) {
 		const char *name = given + (*given == '\'');
 		const size_t name_length = strcspn(name, "=\n");
 		bool said = has_option(options, name, name_length);
 		length = strcspn(given, "\n");
-		for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i++)
 		const size_t word = sizeof format_option - 1;
 		said |= dot && strncmp(given, format_option, word) == 0 &&
 			strncasecmp(dot + 1, given + word, length - word) == 0;
+		for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i++)
 			said |= fixes ? has_option(chosen[i], name, name_length)
 				: has_option("--fix", name, name_length) &&
 					has_option(options, chosen[i], strlen(chosen[i]));

@@ -311,12 +311,16 @@ static uint32_t find_mesh(const mesh_table *table, const nt_place_view *place)
 	return number == UINT32_MAX ? NT_NONE : table->meshes[number];
 }
 
+bool nt_is_found_again(const nt_finding *found)
+{
+	return found->code == NT_CODE_UV_DEGENERATE_TRIANGLE || found->code == NT_CODE_UV_UNMAPPED ||
+		(found->code == NT_CODE_UV_MISSING && isdigit((unsigned char)found->detail[0])); /* of some */
+}
+
 static void add_scene_finding(nt_check *check, const mesh_table *table, const nt_finding_list *all, uint32_t noted)
 {
 	const nt_finding *found = &all->items[noted];
-	/* the solve counts these too, but does not know where they are: geometry.c does */
-	if (found->code == NT_CODE_UV_DEGENERATE_TRIANGLE || found->code == NT_CODE_UV_UNMAPPED ||
-		(found->code == NT_CODE_UV_MISSING && isdigit((unsigned char)found->detail[0]))) /* of some */
+	if (nt_is_found_again(found))
 		return;
 	const char *repair = found->repair; /* its text goes with the scene */
 	if (repair)

@@ -302,6 +302,9 @@ nt_report *nt_report_of_error(const char *path, const nt_scene *scene, const nt_
 /* NULL is allowed. */
 void nt_report_free(nt_report *report);
 
+/* Whether a finding of a stage is not in a report, since a check finds the same with its places. */
+bool nt_is_found_again(const nt_finding *found);
+
 /* The most severe new finding. False when there is none. */
 bool nt_report_worst(const nt_report *report, nt_severity *worst);
 

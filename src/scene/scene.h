@@ -300,6 +300,7 @@ typedef struct nt_mesh {
 	nt_primitive *primitives;
 	size_t primitive_count;
 	const char *const *groups; /* names of its primitives' groups, each a mesh of an output; NULL: none */
+	size_t made_primitives;    /* of a new glTF that it has become; 0: it is in none */
 
 	/* vertices that making normals appended: vertex source_vertex_count + i is a copy of
 	 * vertex_sources[i], with another normal */
@@ -399,8 +400,6 @@ typedef struct nt_scene {
 	nt_morph_cost morph_cost; /* the same */
 	nt_weld_result welded;    /* the same */
 	nt_shared_vertices shared; /* the same */
-	size_t made_primitives;    /* of a new glTF: the same; 0: it is none */
-
 	const bool *turned_images; /* [turned_image_count] images of a glTF whose green --fix turns; NULL: all that
 	                              need it, if any are turned */
 	size_t turned_image_count;

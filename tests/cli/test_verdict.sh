@@ -651,9 +651,9 @@ run --fix --manifest=m.json fixed.gltf again.gltf
 says "nothing that --fix repairs"
 is "$(value m.json 'r["fixed"]')" "{}"
 run --fix "$data/quad.obj" quad.glb
-says ", made the tangents of 1 primitive, nothing else that --fix repairs, "
+says ", the input has nothing that --fix repairs, "
 run --fix quad.glb again.glb
-says ", nothing that --fix repairs, "
+says ", the input has nothing that --fix repairs, "
 same fixed.gltf again.gltf
 # what the user calls an info is left; an info alone is no reason
 run --fix --ignore=NMAP_GREEN_DOWN --severity=TAN_BAD_W=info three.gltf left.gltf
@@ -1298,5 +1298,81 @@ All commands in one, those of infos too, if their conditions hold|--fix --across
 All commands in one, those of infos too, if their conditions hold|--existing=replace --across=mesh --flip-green=auto|[0, 1, 2, 3].forEach(i => { b.writeFloatLE(0, at(n, i)); b.writeFloatLE(1, at(n, i) + 4); }); g.images[0].uri = 'down.png'; beside([1, 1, 2, .5, 2, -.5, 1, 0])
 All commands in one, if their conditions hold|--existing=replace --flip-green=auto|[0, 1, 2, 3].forEach(i => { b.writeFloatLE(0, at(n, i)); b.writeFloatLE(1, at(n, i) + 4); }); g.images[0].uri = 'down.png'
 END
+
+scene "texture coordinates are judged by the normal map that the output of an OBJ has, whichever stage found the fault"
+printf 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nvt 1 0\nvt 0 1\nvn 0 0 1\n' >faults.obj
+printf 'o %s\nusemtl m\nf %s\n' folded "1/1/1 2/2/1 3/3/1 4/4/1" unmapped "1/1/1 2/1/1 3/1/1" part "1/1/1 2/3/1 3/2/1" >>faults.obj
+printf 'f 1//1 3//1 4//1\n' >>faults.obj
+printf 'newmtl m\nnorm n.png\n' >m.mtl
+for there in no yes; do
+	[ $there = no ] || python3 "$ROOT/tests/support/images.py" write n.png 8 8 "(128, 100 + x, 255)"
+	severity=$([ $there = no ] && echo info || echo warning)
+	run -q --check --report=r.json --fail-on=never faults.obj
+	is "$there: $(value r.json '" ".join(f["code"] for f in r["files"][0]["findings"] if f["severity"] == "'$severity'" and f["code"][:4] in ("UV_F", "UV_M", "UV_U"))' |
+		tr ' ' '\n' | grep -v MIRROR | sort | tr '\n' ' ')" "$there: UV_FOLDED_QUAD UV_MISSING UV_MIXED_WINDING_ISLAND UV_UNMAPPED "
+	for words in "" --report=r.json; do
+		run $words --fail-on=never faults.obj out.glb
+		is "$there $words: $(grep -o 'warning: .*\[UV_[A-Z_]*' "$WORK/err.txt" | sed 's/.*\[//' | sort | tr '\n' ' ')" \
+			"$there $words: $([ $there = no ] || echo "UV_FOLDED_QUAD UV_MISSING ${words:+UV_MIXED_WINDING_ISLAND }UV_UNMAPPED ")"
+	done
+done
+
+scene "the warnings of a report's checks are printed, as those of the stages are, a few of each code"
+printf 'v %d 0 0\nv %d 1 0\nv %d 1 1\n' $(for i in $(seq 7); do echo $i $i $i; done) >many.obj
+printf 'mtllib m.mtl\nvt 0 0\nvt 1 0\nvt 1 1\nvn 1 0 0\n' >>many.obj
+for i in $(seq 7); do printf 'o m%d\nusemtl m\nf %d/1/1 %d/2/1 %d/3/1\n' "$i" $((3 * i - 2)) $((3 * i - 1)) $((3 * i)); done >>many.obj
+printf 'newmtl m\nnorm n.png\n' >m.mtl
+python3 "$ROOT/tests/support/images.py" write n.png 8 8 "(128, 100 + x, 255)"
+run -q many.obj many.glb
+gltf many.glb tilted 'for (const m of g.meshes) { const a = m.primitives[0].attributes;
+	a.TANGENT = add("VEC4", 5126, rows(a.TANGENT).map(t => [t[0], t[2], t[1], t[3]].map(x => x || 1e-3)).flat(), {}); }'
+for words in "--check --report=r.txt tilted.gltf" "--report=r.txt tilted.gltf out.glb"; do
+	run --fail-on=never --severity=TAN_*=warning $words
+	exits 0
+	said=$(grep -c 'warning: .*\[TAN_' "$WORK/err.txt")
+	[ "$said" -ge 5 ] || wrong "$words: $said warnings"
+	run -v --fail-on=never --severity=TAN_*=warning $words
+	[ "$(grep -c 'warning: .*\[TAN_' "$WORK/err.txt")" -gt "$said" ] || wrong "$words: -v says no more"
+	run -q --fail-on=never --severity=TAN_*=warning $words
+	says_not TAN_DIRECTION
+done
+
+scene "options that come to nothing say so, --fix says what it leaves, and counts are of the primitives that are written"
+mapped
+for words in flat smooth angle:30; do
+	run --normals=$words m.gltf out.glb
+	says ", all have normals: --normals=replace-$words makes new ones, "
+	run -q --normals=replace-$words m.gltf out.glb
+	exits 0
+	run --normals=$words square.obj out.glb
+	says ", all have normals: --normals=replace-$words makes new ones, "
+done
+gltf m.gltf bare 'delete g.meshes[0].primitives[0].attributes.NORMAL'
+run --normals=flat bare.gltf out.glb
+says_not "all have normals"
+# a height map: whose option is named, unless it is given
+python3 "$ROOT/tests/support/images.py" write n.png 32 32 "8 * x"
+run --fix m.gltf out.glb
+says ", the input has nothing that --fix repairs, left NMAP_HEIGHTS (--bump=height repairs it), "
+run --fix --bump=height m.gltf out.glb
+says_not NMAP_HEIGHTS
+run --check out.glb
+! grep -q NMAP_HEIGHTS "$WORK/out.txt" || wrong "the heights are there"
+# an object of two materials with texture coordinates, one without
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\no a\nusemtl x\nf 1/1/1 2/2/1 3/3/1\nusemtl y\nf 2/2/1 1/1/1 3/3/1\no b\n' >two.obj
+printf 'usemtl x\nf 1//1 2//1 3//1\nusemtl y\nf 1//1 3//1 2//1\nusemtl z\nf 3//1 2//1 1//1\n' >>two.obj
+run two.obj two.glb
+is "$(gltf two.glb 'g.meshes.map(m => m.primitives.length)')" "[2,3]"
+says "two.glb: 2 of 5 primitives, "
+says ", skipped 3 (no texture coordinates), "
+
+scene "a command names the format that the check was asked for"
+cp "$data/quad_wedge.ply" k.ply
+for format in glb gltf ply; do
+	run --check --output-format=$format --fail-on=never --normals=replace-flat --severity=TAN_UNUSED=warning --only=all k.ply
+	command=$(sed -n 's/.*: nmtan \(--.*\)/\1/p' "$WORK/out.txt" | tail -1)
+	[ $format = ply ] || [ "${command##*.}" = $format ] || wrong "$format: $command"
+	[ -z "$command" ] || eval "\"\$NMTAN\" -q $command" || wrong "$format: $command: $?"
+done
 
 done_testing

@@ -82,7 +82,7 @@ static nt_status plan_primitives(composition *c, nt_error *error)
 		if (!c->records[m])
 			return nt_fail_memory(error);
 		count += c->primitives[m].count;
-		c->scene->made_primitives += c->primitives[m].count;
+		scene->meshes[m].made_primitives = c->primitives[m].count;
 	}
 	if (!count)
 		return nt_fail(error, NT_ERROR_UNSUPPORTED, "found no faces, expected a mesh");
