@@ -103,6 +103,11 @@ static bool clamps(const turning *t, const nt_json_value *texture)
 	return wrap == CLAMP_TO_EDGE;
 }
 
+static bool may_be_flipped(const turning *t, uint32_t image)
+{
+	return !t->how->images || (image < t->how->image_count && t->how->images[image]);
+}
+
 static void find_use(turning *t, uint32_t material, int slot)
 {
 	use u = {.material = material, .slot = slot};
@@ -110,7 +115,7 @@ static void find_use(turning *t, uint32_t material, int slot)
 		return;
 	const nt_json_value *texture = texture_at(t, u.texture);
 	const bool has_source = get_index(nt_json_find(texture, "source"), t->image_count, &u.image);
-	if (t->how->images && (!has_source || u.image >= t->how->image_count || !t->how->images[u.image]))
+	if (!t->how->heights && !(has_source ? may_be_flipped(t, u.image) : !t->how->images))
 		return;
 	for (nt_image_type type = NT_IMAGE_KTX2; type <= NT_IMAGE_WEBP; type++)
 		if (nt_json_find(nt_json_find(texture, "extensions"), nt_image_extension(type))) {
@@ -175,8 +180,8 @@ static void make(void *context, size_t item, unsigned slot)
 		nt_image_is_grey(x->map.bytes, x->map.size, &grey, &x->error))
 		return;
 	x->how = (nt_conversion){.channels = {{.used = true, .map = {.channel = NT_CHANNEL_LUMINANCE, .gain = 1}}},
-		.flip = grey ? NT_FLIP_OFF : t->how->flip, .heights = grey && t->how->heights,
-		.height = t->how->height, .clamp = x->first.clamp};
+		.flip = grey || !may_be_flipped(t, x->first.image) ? NT_FLIP_OFF : t->how->flip,
+		.heights = grey && t->how->heights, .height = t->how->height, .clamp = x->first.clamp};
 	const nt_file file = nt_file_of_bytes(x->map.bytes, x->map.size);
 	if (x->how.heights || x->how.flip)
 		nt_conversion_make(&x->how, (const nt_file *const[4]){&file}, false, &x->made, &x->error);

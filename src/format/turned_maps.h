@@ -11,7 +11,7 @@
 
 typedef struct nt_turning {
 	nt_flip flip;        /* of those that are normal maps */
-	const bool *images;  /* [image_count] which images may be; NULL: all */
+	const bool *images;  /* [image_count] whose green may be turned; NULL: all */
 	size_t image_count;
 	bool heights;        /* grey images are height maps */
 	double height;       /* see image/heights.h */

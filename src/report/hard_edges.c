@@ -166,9 +166,7 @@ static nt_status report_nets(nt_check *check, const nets *n)
 	char nets_text[64] = "";
 	if (n->count > 1)
 		snprintf(nets_text, sizeof nets_text, "%zu nets, the longest ", n->count);
-	nt_tally_number(&tally, "nets", (double)n->count);
 	nt_tally_number(&tally, "length", length);
-	nt_tally_number(&tally, "longest", longest->length);
 	nt_tally_number(&tally, "worst_degrees", acos(cosine) * DEGREES);
 	nt_check_report_as(check, &tally, severity_of(check), "%s%s of length %.4g; normals up to %.3g degrees apart",
 		nets_text, kind, longest->length, acos(cosine) * DEGREES);
