@@ -181,4 +181,19 @@ is "$(value m 'm["flat.obj"]["findings"]["POS_DEGENERATE_TRIANGLE"]')" 4
 run --manifest=m flat.obj out.gltf
 is "$(value m '"POS_DEGENERATE_TRIANGLE" in m["flat.obj"]["findings"]')" False
 
+
+# NORMALS_MADE (an info) and UV_FOLDED_QUAD (a warning) are what stages find, UV_MIRROR_SEAM (an info) is what a check finds.
+scene "a line leaves out what --min-severity, --severity and --ignore hide, whoever found it"
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3 4/4\n' >fold.obj
+while IFS='|' read -r words codes; do
+	run -q --fail-on=never --report=r.json --manifest=m $words fold.obj out.ply
+	is "$words: $(value m '" ".join(c for c in ("NORMALS_MADE", "UV_FOLDED_QUAD", "UV_MIRROR_SEAM") if c in m["fold.obj"]["findings"])')" "$words: $codes"
+done <<'END'
+|NORMALS_MADE UV_FOLDED_QUAD UV_MIRROR_SEAM
+--min-severity=warning|UV_FOLDED_QUAD
+--min-severity=error|
+--min-severity=warning --severity=UV_FOLDED_QUAD=info|
+--ignore=NORMALS_MADE,UV_MIRROR_SEAM|UV_FOLDED_QUAD
+END
+
 done_testing
