@@ -616,8 +616,7 @@ static nt_status read_statement(reader *r)
 			if (read_value(r, (mtl_value)statements[i].which) && statements[i].action == HINT)
 				lose(r, NT_CODE_STATEMENT_IGNORED, "");
 			else if (fault.status)
-				find(r, NT_CODE_MATERIAL_DOUBTFUL, r->line, "%s is not used: %s", statements[i].word,
-					fault.message);
+				find(r, NT_CODE_MATERIAL_LOST, r->line, "%s: %s", statements[i].word, fault.message);
 			r->error = error;
 			return NT_OK;
 		case MAP:

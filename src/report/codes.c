@@ -85,14 +85,15 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(MATERIAL_LOST, WARNING, "w--", LOOK, NULL,
 		"{count} {property of a material is|properties of materials are} not carried over",
 		"A texture, a texture's place or a layer that a material names is not in the output, which "
-		"will look different. The detail names the statement.",
-		"Set it again in the output, or bake it into a texture that is carried over.",
+		"will look different; nor is a statement whose numbers cannot be read. The detail names the statement.",
+		"Correct the statement if it is broken. Else set it again in the output, or bake it into a texture that "
+		"is carried over.",
 		"an MTL with \"disp height.png\""),
 	ROW(MATERIAL_DOUBTFUL, WARNING, "w--", EXPORT, NULL,
 		"{count} {property of a material is|properties of materials are} not taken at {its|their} word",
-		"Properties of a material contradict each other, are no numbers, or say what programs write without "
-		"meaning it: d 0, which would make all of it invisible, a black Kd beside a map. The detail says what "
-		"was taken instead, or that the statement is not used.",
+		"Properties of a material contradict each other, or say what programs write without meaning "
+		"it: d 0, which would make all of it invisible, a black Kd beside a map. The detail says what "
+		"was taken instead.",
 		"Correct the material if something else was meant.",
 		"an MTL with \"d 0\""),
 	ROW(NMAP_BESIDE, INFO, "i--", LOOK, "--normal-map=FILE",

@@ -21,10 +21,10 @@ silent
 
 scene "but for what is left out of the output"
 { echo 'mtllib m.mtl'; echo 'usemtl b'; cat "$data/quad.obj"; } >q.obj
-printf 'newmtl b\nmap_Kd nowhere.png\ndisp h.png\n' >m.mtl
+printf 'newmtl b\nmap_Kd nowhere.png\ndisp h.png\nPr x\n' >m.mtl
 run -q q.obj q.glb
 exits 0
-is "$(cat "$WORK/err.txt")" "nmtan: q.obj: missing from the output: 1 IMAGE_MISSING, 1 MATERIAL_LOST; material \"b\" has none of its images"
+is "$(cat "$WORK/err.txt")" "nmtan: q.obj: missing from the output: 1 IMAGE_MISSING, 2 MATERIAL_LOST; material \"b\" has none of its images"
 run -q --ignore=IMAGE_MISSING,MATERIAL_LOST q.obj q.glb
 silent
 

@@ -227,12 +227,12 @@ TEST(damaged_numbers_are_named_and_not_used)
 		const char *text, *detail;
 		size_t line;
 	} cases[] = {
-		{"newmtl a\nPr rough\n", "MTL: Pr is not used: found \"rough\", expected a finite number", 2},
+		{"newmtl a\nPr rough\n", "MTL: Pr: found \"rough\", expected a finite number", 2},
 		{"newmtl a\n\rKd 1 1\r",
-			"MTL: Kd is not used: found the end of the line, expected 3 numbers, or one for all", 3},
-		{"newmtl a\nd\n", "MTL: d is not used: found the end of the line, expected a number", 2},
-		{"newmtl a\nKe 1 nan 1\n", "MTL: Ke is not used: found \"nan\", expected a finite number", 2},
-		{"newmtl a\nKd 1 1x 1\n", "MTL: Kd is not used: found \"1x\", expected a finite number", 2},
+			"MTL: Kd: found the end of the line, expected 3 numbers, or one for all", 3},
+		{"newmtl a\nd\n", "MTL: d: found the end of the line, expected a number", 2},
+		{"newmtl a\nKe 1 nan 1\n", "MTL: Ke: found \"nan\", expected a finite number", 2},
+		{"newmtl a\nKd 1 1x 1\n", "MTL: Kd: found \"1x\", expected a finite number", 2},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
 		reading r;
@@ -240,7 +240,7 @@ TEST(damaged_numbers_are_named_and_not_used)
 		assert_int_equal(r.status, NT_OK);
 		assert_int_equal(r.scene.findings.count, 1);
 		const nt_finding *found = &r.scene.findings.items[0];
-		assert_int_equal(found->code, NT_CODE_MATERIAL_DOUBTFUL);
+		assert_int_equal(found->code, NT_CODE_MATERIAL_LOST);
 		assert_string_equal(found->detail, cases[i].detail);
 		assert_string_equal(found->place.file, "lib/a.mtl");
 		assert_int_equal(found->place.line, cases[i].line);
