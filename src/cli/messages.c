@@ -68,6 +68,20 @@ static void append_sentence(nt_buffer *out, const nt_place_view *place, const ch
 	nt_buffer_format(out, " [%s]%s\n", nt_code_info(code)->name, command ? command : "");
 }
 
+/* Of one code. */
+static size_t places_shown(nt_style style)
+{
+	return style.verbosity < 0 ? 1 : style.verbosity ? SIZE_MAX : PLACES_SHOWN;
+}
+
+/* The rest, but for a quiet run. */
+static void append_more(nt_buffer *out, nt_code code, nt_severity severity, size_t left_out, nt_style style)
+{
+	if (left_out && style.verbosity >= 0)
+		nt_buffer_format(out, "nmtan: %s: and %zu more [%s]; -v shows all\n", nt_severity_name(severity),
+			left_out, nt_code_info(code)->name);
+}
+
 /* As the user says (options, NULL: does not). A run that succeeds has met no error. */
 static nt_severity shown_severity(const nt_finding *finding, const nt_report_options *options, nt_style style)
 {
@@ -110,7 +124,7 @@ static void append_command(nt_buffer *out, nt_code code, const char *repair, con
 	nt_buffer_free_into(&all, out);
 }
 
-/* All findings of one code and severity but for `old` ones (NULL: there are none), those beyond PLACES_SHOWN as a
+/* All findings of one code and severity but for `old` ones (NULL: there are none), those beyond places_shown() as a
  * number. The first has the command. */
 static void append_code(nt_buffer *out, const nt_finding_list *findings, const bool *old,
 	const nt_report_options *options, nt_code code, nt_severity severity, const char *file, const char *output,
@@ -121,7 +135,7 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, const b
 		const nt_finding *finding = &findings->items[i];
 		if (finding->code != code || shown_severity(finding, options, style) != severity || (old && old[i]))
 			continue;
-		if (shown == PLACES_SHOWN && style.verbosity <= 0) {
+		if (shown == places_shown(style)) {
 			left_out++;
 			continue;
 		}
@@ -136,9 +150,7 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, const b
 		nt_buffer_free_into(&command, out);
 		shown++;
 	}
-	if (left_out)
-		nt_buffer_format(out, "nmtan: %s: and %zu more [%s]; -v shows all\n",
-			nt_severity_name(severity), left_out, nt_code_info(code)->name);
+	append_more(out, code, severity, left_out, style);
 }
 
 /* Which findings a report knows from its baseline: those that it has as they are, and those of codes of which a check
@@ -198,9 +210,8 @@ void nt_message_checked(nt_buffer *out, const nt_finding_list *findings, const n
 	const nt_report_options *options, const char *file, const char *output, int most, nt_style style)
 {
 	const bool quiet = style.verbosity < 0;
-	const size_t most_shown = quiet ? 1 : style.verbosity > 0 ? SIZE_MAX : PLACES_SHOWN;
 	bool told[NT_CODE_COUNT] = {false};
-	size_t shown[NT_CODE_COUNT] = {0};
+	size_t found[NT_CODE_COUNT] = {0}, left_out[NT_CODE_COUNT][NT_SEVERITY_ERROR + 1] = {{0}};
 	for (int code = 0; quiet && !report && code < NT_CODE_COUNT; code++)
 		if (nt_code_is_of_kept((nt_code)code) && !options->ignore[code])
 			append_code(out, findings, NULL, options, (nt_code)code, NT_SEVERITY_WARNING, file, output,
@@ -210,14 +221,15 @@ void nt_message_checked(nt_buffer *out, const nt_finding_list *findings, const n
 		if (f->severity == NT_SEVERITY_INFO || (int)f->severity > most ||
 			(quiet ? f->mesh == NT_NONE || !nt_code_is_of_kept(f->code) : f->noted != NT_NONE))
 			continue;
-		if (shown[f->code]++ < most_shown)
-			append_found(out, f, style.fails ? f->severity : NT_SEVERITY_WARNING, told, options, file,
-				output, style);
+		const nt_severity severity = style.fails ? f->severity : NT_SEVERITY_WARNING;
+		if (found[f->code]++ < places_shown(style))
+			append_found(out, f, severity, told, options, file, output, style);
+		else
+			left_out[f->code][severity]++;
 	}
-	for (int code = 0; code < NT_CODE_COUNT && !quiet; code++)
-		if (shown[code] > most_shown)
-			nt_buffer_format(out, "nmtan: and %zu more [%s]; -v shows all\n", shown[code] - most_shown,
-				nt_code_info((nt_code)code)->name);
+	for (int severity = NT_SEVERITY_ERROR; severity >= NT_SEVERITY_WARNING; severity--)
+		for (int code = 0; code < NT_CODE_COUNT; code++)
+			append_more(out, (nt_code)code, (nt_severity)severity, left_out[code][severity], style);
 }
 
 /* Materials that have lost all of their images. */
@@ -494,9 +506,11 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		append_count(out, s->repaired, "corner");
 	}
 	append_fixed(out, s, settings);
-	if (s->made_maps && !settings->fix) {
+	/* append_fixed() has those whose green --fix turned */
+	const size_t turned = settings->fix ? s->fixed[NT_CODE_NMAP_GREEN_DOWN] : 0;
+	if (s->made_maps > turned && (!settings->fix || settings->bump == NT_BUMP_HEIGHT)) {
 		nt_buffer_format(out, ", %s ", settings->check ? "would convert" : "converted");
-		append_count(out, s->made_maps, "normal map");
+		append_count(out, s->made_maps - turned, "normal map");
 	}
 	if (s->counts.summed_instead)
 		nt_buffer_format(out, ", %zu corners of hubs with one sum", s->counts.summed_instead);

@@ -1336,6 +1336,16 @@ for words in "--check --report=r.txt tilted.gltf" "--report=r.txt tilted.gltf ou
 	run -q --fail-on=never --severity=TAN_*=warning $words
 	says_not TAN_DIRECTION
 done
+run --report=r.txt --fail-on=never --severity=TAN_*=warning tilted.gltf out.glb
+says "nmtan: warning: and 2 more [TAN_"
+gltf many.glb inverted 'for (const m of g.meshes) { const a = m.primitives[0].attributes;
+	a.TANGENT = add("VEC4", 5126, rows(a.TANGENT).map(t => [t[0], t[1], t[2], -t[3]]).flat(), {}); }'
+run inverted.gltf out.glb
+is "$(grep -c 'warning: .*\[TAN_KEPT_SIGN\]' "$WORK/err.txt")" 6
+says "nmtan: warning: and 2 more [TAN_KEPT_SIGN]; -v shows all"
+run -q inverted.gltf out.glb
+is "$(wc -l <"$WORK/err.txt")" 1
+says "[TAN_KEPT_SIGN]: nmtan --fix inverted.gltf out.glb"
 
 scene "options that come to nothing say so, --fix says what it leaves, and counts are of the primitives that are written"
 mapped
@@ -1356,6 +1366,7 @@ run --fix m.gltf out.glb
 says ", the input has nothing that --fix repairs, left NMAP_HEIGHTS (--bump=height repairs it), "
 run --fix --bump=height m.gltf out.glb
 says_not NMAP_HEIGHTS
+says ", the input has nothing that --fix repairs, converted 1 normal map, "
 run --check out.glb
 ! grep -q NMAP_HEIGHTS "$WORK/out.txt" || wrong "the heights are there"
 # an object of two materials with texture coordinates, one without
