@@ -68,7 +68,7 @@ static void append_sentence(nt_buffer *out, const nt_place_view *place, const ch
 	nt_buffer_format(out, " [%s]%s\n", nt_code_info(code)->name, command ? command : "");
 }
 
-/* Of one code. */
+/* How many findings of one code are printed. */
 static size_t places_shown(nt_style style)
 {
 	return style.verbosity < 0 ? 1 : style.verbosity ? SIZE_MAX : PLACES_SHOWN;
