@@ -87,8 +87,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"A texture, a texture's place or a layer that a material names is not in the output, which "
 		"will look different; nor is a statement whose numbers cannot be read. The detail names the "
 		"statement.",
-		"Correct the statement if it is broken. Else set it again in the output, or bake it into a texture that "
-		"is carried over.",
+		"Correct the statement if it is broken. Else set it again in the output, or bake it into a texture "
+		"that is carried over.",
 		"an MTL with \"disp height.png\""),
 	ROW(MATERIAL_DOUBTFUL, WARNING, "w--", EXPORT, NULL,
 		"{count} {property of a material is|properties of materials are} not taken at {its|their} word",
