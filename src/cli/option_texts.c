@@ -296,7 +296,11 @@ static void append_shaping(nt_buffer *out, const nt_option_row *row, const void 
 		const char *word = row->values;
 		for (int number = *(const int *)field - row->first; number > 0; number--)
 			word += strcspn(word, "|") + 1;
-		nt_buffer_append(out, word, strcspn(word, "|"));
+		const size_t length = strcspn(word, "|");
+		const bool numbered = length > 2 && memcmp(word + length - 2, ":N", 2) == 0;
+		nt_buffer_append(out, word, numbered ? length - 1 : length);
+		if (numbered)
+			nt_buffer_format(out, "%d", ((const int *)field)[1]); /* see option_table.c */
 	} else if (row->kind == NT_OPTION_TEXT) {
 		nt_buffer_format(out, "=%s", *(const char *const *)field);
 	} else if (row->kind == NT_OPTION_LIST) {

@@ -1343,6 +1343,8 @@ gltf many.glb inverted 'for (const m of g.meshes) { const a = m.primitives[0].at
 run inverted.gltf out.glb
 is "$(grep -c 'warning: .*\[TAN_KEPT_SIGN\]' "$WORK/err.txt")" 6
 says "nmtan: warning: and 2 more [TAN_KEPT_SIGN]; -v shows all"
+run --normals=angle:40 inverted.gltf out.glb
+says "[TAN_KEPT_SIGN]: nmtan --normals=angle:40 --fix inverted.gltf out.glb"
 run -q inverted.gltf out.glb
 is "$(wc -l <"$WORK/err.txt")" 1
 says "[TAN_KEPT_SIGN]: nmtan --fix inverted.gltf out.glb"
