@@ -315,7 +315,8 @@ nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t view, uint64_t offset, 
 /* From now on accessors may be asked for, and buffers are known: none is added to the source any more. */
 nt_status nt_gltf_begin_arrays(nt_gltf *document, nt_error *error);
 
-/* An accessor of the source. It is read and checked when somebody asks first. `from` is the JSON pointer of the
+/* An accessor of the source. It is read and checked when somebody asks first, with its views, in one thread: before
+ * several threads load meshes, nt_gltf_prepare() asks for all that these take. `from` is the JSON pointer of the
  * reference. */
 nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_accessor *accessor, nt_error *error);
