@@ -14,7 +14,7 @@
  *             finding:  {code, severity, count, known, message, mesh, seam, island, where, box, at: [triangle],
  *                       votes: [[percent]] of a normal map's blocks, rows from the top, green up above 0; or null,
  *                       repair: the command, not there if nmtan cannot repair it}
- *   codes     {CODE: {title, meaning, remedy}} of the findings that there are
+ *   codes     {CODE: {meaning, remedy}} of the findings that there are
  *   images    [data URI], which meshes number
  *   left_out  findings that have no place on the page
  *   index     the page that lists all files; null: none but this one

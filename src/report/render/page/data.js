@@ -80,6 +80,7 @@ function fromBase64(text, begin) {
 }
 
 async function inflate(bytes) {
+	if (!window.DecompressionStream) throw new Error('this browser has no DecompressionStream; a newer one has');
 	const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
 	return new Uint8Array(await new Response(stream).arrayBuffer());
 }

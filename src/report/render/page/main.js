@@ -186,7 +186,7 @@ function openMesh(next) {
 		empty('space-empty', spaceFailure);
 		offerFrames();
 		describe();
-	}, failure => empty('space-empty', 'The geometry cannot be read: ' + failure.message));
+	}, failure => ['layout-empty', 'space-empty'].forEach(id => empty(id, 'The geometry cannot be read: ' + failure.message)));
 	loading = Promise.all([opening, twinOpening]);
 	return loading;
 }
