@@ -24,27 +24,14 @@ enum { LINE_BYTES = 16 * 1024 };
 
 /* ---- a line ---- */
 
-static void append_text(nt_buffer *out, const char *key, const char *text)
-{
-	nt_buffer_format(out, "\"%s\":", key);
-	nt_json_string(text, out);
-}
-
-static void append_number(nt_buffer *out, const char *key, uint64_t number)
-{
-	nt_buffer_format(out, ",\"%s\":%" PRIu64, key, number);
-}
-
 /* A new output is read once more, while the system still has it in memory. Streams are no more. */
 static void append_digest(nt_buffer *out, const char *path)
 {
 	char digest[NT_DIGEST_TEXT] = "";
 	struct stat info;
 	nt_error unused;
-	if (stat(path, &info) == 0 && S_ISREG(info.st_mode) && !nt_digest_of_file(path, digest, &unused) && digest[0]) {
-		nt_buffer_text(out, ",");
-		append_text(out, "xxh128", digest);
-	}
+	if (stat(path, &info) == 0 && S_ISREG(info.st_mode) && !nt_digest_of_file(path, digest, &unused) && digest[0])
+		nt_member_text(out, "xxh128", digest);
 }
 
 /* A digest of names, in their order. */
@@ -61,21 +48,19 @@ static void append_missing_digest(nt_buffer *out, const nt_trace *trace)
 /* Files of one kind; those that are there with their sizes, and with digests where that is wanted. */
 static void append_files(nt_buffer *out, const char *key, const nt_trace *trace, nt_trace_kind kind, bool digests)
 {
-	const char *comma = "";
-	nt_buffer_format(out, ",\"%s\":[", key);
+	nt_member_open(out, key, "[");
 	for (size_t i = 0; i < trace->count; i++) {
 		const nt_trace_file *file = &trace->files[i];
 		if (file->kind != kind)
 			continue;
-		nt_buffer_text(out, comma);
-		comma = ",";
+		nt_member_next(out, NT_SAME_LINE);
 		if (kind == NT_TRACE_MISSING || kind == NT_TRACE_SEARCHED) {
 			nt_json_string(file->path, out);
 			continue;
 		}
 		nt_buffer_text(out, "{");
-		append_text(out, "path", file->path);
-		append_number(out, "bytes", file->size);
+		nt_member_text(out, "path", file->path);
+		nt_member_count(out, "bytes", file->size);
 		if (digests)
 			append_digest(out, file->path);
 		nt_buffer_text(out, "}");
@@ -86,36 +71,27 @@ static void append_files(nt_buffer *out, const char *key, const nt_trace *trace,
 static void append_error(nt_buffer *out, const nt_error *error)
 {
 	const nt_place *place = &error->place;
-	nt_buffer_text(out, ",\"error\":{");
-	append_text(out, "message", error->message[0] ? error->message : nt_status_text(error->status));
-	if (place->file[0]) {
-		nt_buffer_text(out, ",");
-		append_text(out, "file", place->file);
-	}
+	nt_member_open(out, "error", "{");
+	nt_member_text(out, "message", error->message[0] ? error->message : nt_status_text(error->status));
+	if (place->file[0])
+		nt_member_text(out, "file", place->file);
 	if (place->line)
-		append_number(out, "line", place->line);
+		nt_member_count(out, "line", place->line);
 	if (place->offset != NT_NO_OFFSET)
-		append_number(out, "offset", place->offset);
-	if (place->pointer[0]) {
-		nt_buffer_text(out, ",");
-		append_text(out, "pointer", place->pointer);
-	}
-	if (place->object[0]) {
-		nt_buffer_text(out, ",");
-		append_text(out, "object", place->object);
-	}
+		nt_member_count(out, "offset", place->offset);
+	if (place->pointer[0])
+		nt_member_text(out, "pointer", place->pointer);
+	if (place->object[0])
+		nt_member_text(out, "object", place->object);
 	nt_buffer_text(out, "}");
 }
 
 static void append_codes(nt_buffer *out, const char *key, const size_t counts[NT_CODE_COUNT])
 {
-	const char *comma = "";
-	nt_buffer_format(out, ",\"%s\":{", key);
+	nt_member_open(out, key, "{");
 	for (int code = 0; code < NT_CODE_COUNT; code++)
-		if (counts[code]) {
-			nt_buffer_format(out, "%s\"%s\":%zu", comma, nt_code_info((nt_code)code)->name, counts[code]);
-			comma = ",";
-		}
+		if (counts[code])
+			nt_member_count(out, nt_code_info((nt_code)code)->name, counts[code]);
 	nt_buffer_text(out, "}");
 }
 
@@ -135,10 +111,10 @@ static void append_sizes(nt_buffer *out, const nt_summary *s, bool check)
 			split += m->added_mirror + m->added_direction;
 		}
 	}
-	append_number(out, "triangles", triangles);
-	append_number(out, "vertices_before", before);
-	append_number(out, "vertices_after", after);
-	append_number(out, "split", split);
+	nt_member_count(out, "triangles", triangles);
+	nt_member_count(out, "vertices_before", before);
+	nt_member_count(out, "vertices_after", after);
+	nt_member_count(out, "split", split);
 }
 
 /* Whether a finding of a stage counts, as in a report: --ignore, --severity and --min-severity say so. */
@@ -162,20 +138,20 @@ static void append_run(nt_buffer *out, const nt_summary *s, const nt_report_opti
 	append_codes(out, "fixed", s->fixed);
 	append_sizes(out, s, check);
 	if (s->welded.before) {
-		append_number(out, "weld_before", s->welded.before);
-		append_number(out, "weld_after", s->welded.after);
+		nt_member_count(out, "weld_before", s->welded.before);
+		nt_member_count(out, "weld_after", s->welded.after);
 	}
-	append_number(out, "repaired", s->repaired);
-	append_number(out, "sorted_instead", s->counts.sorted_instead);
-	append_number(out, "summed_instead", s->counts.summed_instead);
+	nt_member_count(out, "repaired", s->repaired);
+	nt_member_count(out, "sorted_instead", s->counts.sorted_instead);
+	nt_member_count(out, "summed_instead", s->counts.summed_instead);
 	if (s->origin[0] != 0 || s->origin[1] != 0 || s->origin[2] != 0) {
 		char text[NT_ORIGIN_TEXT];
 		nt_buffer_format(out, ",\"origin\":[%s]", nt_origin_text(s->origin, text));
 	}
 	if (s->tangents_digest)
 		nt_buffer_format(out, ",\"tangents\":\"%016" PRIx64 "\"", s->tangents_digest);
-	append_number(out, "bytes_read", s->bytes_read);
-	append_number(out, "bytes_written", s->bytes_written);
+	nt_member_count(out, "bytes_read", s->bytes_read);
+	nt_member_count(out, "bytes_written", s->bytes_written);
 	nt_buffer_text(out, ",\"seconds\":{");
 	for (int stage = 0; stage < NT_STAGE_COUNT; stage++)
 		nt_buffer_format(out, "\"%s\":%.6f,", nt_stage_name((nt_stage)stage), s->seconds[stage]);
@@ -187,13 +163,12 @@ static void append_job(nt_buffer *out, const nt_job *job, const nt_manifest *man
 	static const nt_trace nothing;
 	const nt_trace *trace = job->outcome ? &job->outcome->summary.trace : &nothing;
 	nt_buffer_text(out, "{");
-	append_text(out, "input", job->input);
-	nt_buffer_format(out, ",\"status\":\"%s\",\"exit_code\":%d,", job->end == NT_JOB_UNTRIED ? "untried"
+	nt_member_text(out, "input", job->input);
+	nt_buffer_format(out, ",\"status\":\"%s\",\"exit_code\":%d", job->end == NT_JOB_UNTRIED ? "untried"
 		: job->end == NT_JOB_CURRENT ? "up-to-date" : job->status ? "failed"
 		: job->outcome->summary.left ? "left" : "done", exit_code);
-	append_text(out, "nmtan", nmtan_version());
-	nt_buffer_text(out, ",");
-	append_text(out, "options", manifest->options);
+	nt_member_text(out, "nmtan", nmtan_version());
+	nt_member_text(out, "options", manifest->options);
 	append_files(out, "outputs", trace, NT_TRACE_WRITTEN, job->end == NT_JOB_RAN && !job->status);
 	append_files(out, "dependencies", trace, NT_TRACE_READ, false);
 	append_files(out, "missing", trace, NT_TRACE_MISSING, false);

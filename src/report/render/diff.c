@@ -209,85 +209,79 @@ static void write_markdown(const nt_report_diff *diff, nt_buffer *out)
 
 /* ---- JSON ---- */
 
-static void json_member(const char *name, const char *text, nt_buffer *out)
+static void json_side(const char *name, const nt_report_mesh *mesh, nt_buffer *out)
 {
-	nt_buffer_format(out, "\"%s\":", name);
-	nt_json_string(text, out);
-}
-
-static void json_side(const nt_report_mesh *mesh, nt_buffer *out)
-{
-	if (!mesh) {
-		nt_buffer_text(out, "null");
+	nt_member_open(out, name, mesh ? "{" : "null");
+	if (!mesh)
 		return;
-	}
-	nt_buffer_text(out, "{");
-	json_member("name", mesh->name, out);
-	nt_buffer_format(out, ",\"triangles\":%zu,\"vertices\":%zu,\"has_tangents\":%s,\"mirror_seams\":%zu,"
-		"\"seam_length\":", mesh->triangle_count, mesh->vertices_after,
-		mesh->checked_tangents ? "true" : "false", mesh->seam_count);
-	nt_json_float(mesh->seam_length, out);
+	nt_member_text(out, "name", mesh->name);
+	nt_member_count(out, "triangles", mesh->triangle_count);
+	nt_member_count(out, "vertices", mesh->vertices_after);
+	nt_member_bool(out, "has_tangents", mesh->checked_tangents);
+	nt_member_count(out, "mirror_seams", mesh->seam_count);
+	nt_member_float(out, "seam_length", mesh->seam_length);
 	nt_buffer_text(out, "}");
 }
 
 static void json_mesh(const nt_report_diff *diff, const nt_mesh_change *change, nt_buffer *out)
 {
-	nt_buffer_format(out, "{\"changed\":%s,\"old\":", is_changed(diff, change) ? "true" : "false");
-	json_side(mesh_of(diff, change, OLD), out);
-	nt_buffer_text(out, ",\"new\":");
-	json_side(mesh_of(diff, change, NEW), out);
-	nt_buffer_format(out, ",\"triangles_in_place\":%zu,\"corners_with_other_texcoords\":%zu,\"tangents\":"
-		"{\"compared\":%zu,\"turned\":%zu,\"reversed_w\":%zu,\"worst_degrees\":", change->matched,
-		change->moved_texcoords, change->compared, change->turned, change->reversed);
-	nt_json_float(change->worst_degrees, out);
-	nt_buffer_text(out, ",\"worst_position\":");
+	nt_buffer_text(out, "{");
+	nt_member_bool(out, "changed", is_changed(diff, change));
+	json_side("old", mesh_of(diff, change, OLD), out);
+	json_side("new", mesh_of(diff, change, NEW), out);
+	nt_member_count(out, "triangles_in_place", change->matched);
+	nt_member_count(out, "corners_with_other_texcoords", change->moved_texcoords);
+	nt_member_open(out, "tangents", "{");
+	nt_member_count(out, "compared", change->compared);
+	nt_member_count(out, "turned", change->turned);
+	nt_member_count(out, "reversed_w", change->reversed);
+	nt_member_float(out, "worst_degrees", change->worst_degrees);
+	nt_member_open(out, "worst_position", change->compared ? "" : "null");
 	if (change->compared)
 		nt_json_floats(change->worst_position, 3, out);
-	nt_buffer_text(out, change->compared ? ",\"histogram\":[" : "null,\"histogram\":[");
-	for (int i = 0; i < NT_ANGLE_BINS; i++)
-		nt_buffer_format(out, "%s{\"up_to_degrees\":%g,\"corners\":%zu}", i ? "," : "", nt_angle_bins[i],
-			change->histogram[i]);
-	nt_buffer_text(out, "]}}");
+	nt_member_histogram(out, "histogram", change->histogram);
+	nt_buffer_text(out, "}}");
 }
 
 static void json_findings(const nt_report_diff *diff, int version, const char *name, nt_buffer *out)
 {
 	const nt_report *report = diff->reports[version];
-	bool first = true;
-	nt_buffer_format(out, ",\n\t\"%s\":[", name);
+	nt_member_key(out, 1, name);
+	nt_buffer_text(out, "[");
+	const size_t begin = out->size;
 	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *finding = &report->findings[i];
 		if (diff->known[version][i])
 			continue;
-		nt_buffer_text(out, first ? "\n\t\t{" : ",\n\t\t{");
-		first = false;
-		json_member("code", nt_code_info(finding->code)->name, out);
-		nt_buffer_text(out, ",");
-		json_member("severity", nt_severity_name(finding->severity), out);
-		nt_buffer_text(out, ",");
-		json_member("message", finding->message, out);
-		nt_buffer_format(out, ",\"count\":%zu,\"fingerprint\":\"%016llx\",\"mesh\":", finding->count,
-			(unsigned long long)finding->fingerprint);
-		nt_json_index(finding->mesh, out);
+		nt_member_next(out, 2);
+		nt_buffer_text(out, "{");
+		nt_member_text(out, "code", nt_code_info(finding->code)->name);
+		nt_member_text(out, "severity", nt_severity_name(finding->severity));
+		nt_member_text(out, "message", finding->message);
+		nt_member_count(out, "count", finding->count);
+		nt_member_digest(out, "fingerprint", finding->fingerprint);
+		nt_member_index(out, "mesh", finding->mesh);
 		nt_buffer_text(out, "}");
 	}
-	nt_buffer_text(out, first ? "]" : "\n\t]");
+	nt_buffer_text(out, out->size == begin ? "]" : "\n\t]");
 }
 
 static void write_json(const nt_report_diff *diff, nt_buffer *out)
 {
-	nt_buffer_format(out,
-		"{\n\t\"report\":\"nmtan-diff\",\n\t\"report_version\":1,\n\t\"generator\":\"nmtan %s\",\n\t",
+	nt_buffer_format(out, "{\n\t\"report\":\"nmtan-diff\",\n\t\"report_version\":1,\n\t\"generator\":\"nmtan %s\"",
 		NMTAN_VERSION_STRING);
-	json_member("old", diff->reports[OLD]->shown, out);
-	nt_buffer_text(out, ",\n\t");
-	json_member("new", diff->reports[NEW]->shown, out);
-	nt_buffer_format(out, ",\n\t\"unchanged_findings\":%zu", diff->unchanged);
+	nt_member_key(out, 1, "old");
+	nt_json_string(diff->reports[OLD]->shown, out);
+	nt_member_key(out, 1, "new");
+	nt_json_string(diff->reports[NEW]->shown, out);
+	nt_member_key(out, 1, "unchanged_findings");
+	nt_buffer_format(out, "%zu", diff->unchanged);
 	json_findings(diff, NEW, "new_findings", out);
 	json_findings(diff, OLD, "gone_findings", out);
-	nt_buffer_text(out, ",\n\t\"meshes\":[");
+	nt_member_key(out, 1, "meshes");
+	nt_buffer_text(out, "[");
 	for (size_t i = 0; i < diff->mesh_count; i++) {
-		nt_buffer_text(out, i ? ",\n\t\t" : "\n\t\t");
+		nt_member_next(out, 2);
 		json_mesh(diff, &diff->meshes[i], out);
 	}
 	nt_buffer_text(out, "\n\t]\n}\n");
@@ -322,16 +316,19 @@ static void page_rows(const nt_report_diff *diff, const nt_mesh_change *change, 
 /* The object that html.c calls diff. */
 static void page_json(const nt_report_diff *diff, nt_buffer *out)
 {
-	nt_buffer_format(out, "{\"unchanged\":%zu,\"meshes\":[", diff->unchanged);
+	nt_buffer_text(out, "{");
+	nt_member_count(out, "unchanged", diff->unchanged);
+	nt_member_open(out, "meshes", "[");
 	for (size_t i = 0; i < diff->mesh_count; i++) {
 		const nt_mesh_change *change = &diff->meshes[i];
-		nt_buffer_text(out, i ? ",\n{\"old\":" : "\n{\"old\":");
-		nt_json_index(change->meshes[OLD], out);
-		nt_buffer_text(out, ",\"new\":");
-		nt_json_index(change->meshes[NEW], out);
-		nt_buffer_text(out, ",\"label\":");
+		nt_member_next(out, 0);
+		nt_buffer_text(out, "{");
+		nt_member_index(out, "old", change->meshes[OLD]);
+		nt_member_index(out, "new", change->meshes[NEW]);
+		nt_member_key(out, NT_SAME_LINE, "label");
 		put_label(diff, change, nt_json_string, out);
-		nt_buffer_format(out, ",\"changed\":%s,\"rows\":[", is_changed(diff, change) ? "true" : "false");
+		nt_member_bool(out, "changed", is_changed(diff, change));
+		nt_member_open(out, "rows", "[");
 		page_rows(diff, change, out);
 		nt_buffer_text(out, "]}");
 	}

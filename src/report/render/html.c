@@ -6,14 +6,14 @@
  * \u003c, so that no name can end the element:
  *
  *   files     [{name, format, verdict, failure, counts: [errors, warnings, infos], meshes, findings}]
- *             mesh:     {label, why, same_as, mapped: true if it has a normal map, triangles, vertices, islands, box,
+ *             mesh:     {label, why, same_as, mapped: whether it has a normal map, triangles, vertices, islands, box,
  *                       facts: [[name, text]],
  *                       images: [{image, map: [6], file}] of normal map and base colour: numbers of images, and URIs,
  *                       or null, wrap: [nt_wrap, nt_wrap], seams: [[edges, closed, length, plane, unmirrored island,
  *                       mirrored island, 1: hard edges; else not there]], geometry: bool}
  *             finding:  {code, severity, count, known, message, mesh, seam, island, where, box, at: [triangle],
  *                       votes: [[percent]] of a normal map's blocks, rows from the top, green up above 0; or null,
- *                       repair: the command, not there if nmtan cannot repair it}
+ *                       repair: the command, or null if nmtan cannot repair it}
  *   codes     {CODE: {meaning, remedy}} of the findings that there are
  *   images    [data URI], which meshes number
  *   left_out  findings that have no place on the page
@@ -63,38 +63,24 @@ typedef struct budget {
 
 /* ---- small things ---- */
 
-/* Appends JSON so that it is safe inside a script element, and frees it. */
-static void put_safe(nt_buffer *json, nt_buffer *out)
+/* Appends JSON so that it is safe inside a script element. */
+static void put_safe(const nt_buffer *json, nt_buffer *out)
 {
-	for (size_t i = 0; i < json->size; i++) {
-		if (json->data[i] == '<')
-			nt_buffer_text(out, "\\u003c");
-		else
-			nt_buffer_append(out, json->data + i, 1);
+	const char *at = json->data ? json->data : "", *end = at + json->size, *mark;
+	for (; (mark = memchr(at, '<', (size_t)(end - at))); at = mark + 1) {
+		nt_buffer_append(out, at, (size_t)(mark - at));
+		nt_buffer_text(out, "\\u003c");
 	}
-	nt_buffer_free_into(json, out);
+	nt_buffer_append(out, at, (size_t)(end - at));
 }
 
-static void put_string(const char *text, nt_buffer *out)
-{
-	nt_buffer plain = {0};
-	nt_json_string(text, &plain);
-	put_safe(&plain, out);
-}
-
-/* Three numbers that read back as doubles. */
+/* Numbers that read back as doubles. */
 static void put_doubles(const char *name, const double *values, size_t count, nt_buffer *out)
 {
-	nt_buffer_format(out, "\"%s\":[", name);
+	nt_member_open(out, name, "[");
 	for (size_t i = 0; i < count; i++)
 		nt_buffer_format(out, i ? ",%.17g" : "%.17g", values[i]);
 	nt_buffer_text(out, "]");
-}
-
-static void put_index(const char *name, uint32_t index, nt_buffer *out)
-{
-	nt_buffer_format(out, ",\"%s\":", name);
-	nt_json_index(index, out);
 }
 
 /* ---- meshes ---- */
@@ -108,7 +94,7 @@ static void put_seam(const nt_seam *seam, bool hard, nt_buffer *out)
 {
 	nt_buffer_format(out, "[%zu,%s,%.6g,", seam->edge_count, seam->closed ? "true" : "false",
 		isfinite(seam->length) ? seam->length : 0.0);
-	put_string(seam->has_plane ? seam->plane_text : "", out);
+	nt_json_string(seam->has_plane ? seam->plane_text : "", out);
 	for (int side = 0; side < 2; side++) {
 		nt_buffer_text(out, ",");
 		nt_json_index(seam->islands[side], out);
@@ -118,12 +104,13 @@ static void put_seam(const nt_seam *seam, bool hard, nt_buffer *out)
 
 static void begin_fact(const char *name, nt_buffer *out)
 {
-	nt_buffer_format(out, "%s[\"%s\",\"", out->size && out->data[out->size - 1] == ']' ? "," : "", name);
+	nt_member_next(out, NT_SAME_LINE);
+	nt_buffer_format(out, "[\"%s\",\"", name);
 }
 
 static void put_facts(const nt_report_mesh *m, nt_buffer *out)
 {
-	nt_buffer_text(out, ",\"facts\":[");
+	nt_member_open(out, "facts", "[");
 	begin_fact("triangles", out);
 	nt_buffer_format(out, "%zu: %zu unmirrored, %zu mirrored, %zu degenerate\"]", m->triangle_count,
 		m->triangles[2], m->triangles[0], m->triangles[1]);
@@ -169,15 +156,11 @@ static void put_image(const nt_image *image, size_t *bytes_left, budget *left, n
 	if (first)
 		number = nt_name_add(&left->held, bytes, image->size);
 	left->sources.failed |= first && number == NT_NONE;
-	nt_buffer_text(out, "{\"image\":");
-	nt_json_index(number, out);
-	nt_buffer_text(out, ",\"map\":");
+	nt_buffer_text(out, "{");
+	nt_member_index(out, "image", number);
+	nt_member_key(out, NT_SAME_LINE, "map");
 	nt_json_floats(image->transform, 6, out);
-	nt_buffer_text(out, ",\"file\":");
-	if (image->file)
-		put_string(image->file, out);
-	else
-		nt_buffer_text(out, "null");
+	nt_member_text(out, "file", image->file);
 	nt_buffer_text(out, "}");
 	if (!first)
 		return;
@@ -190,24 +173,28 @@ static void put_image(const nt_image *image, size_t *bytes_left, budget *left, n
 static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_buffer *out)
 {
 	const nt_report_mesh *m = &report->meshes[mesh];
-	nt_buffer_text(out, "{\"label\":");
-	nt_put_label(report, mesh, put_string, out);
-	nt_buffer_text(out, ",\"why\":");
-	put_string(m->why, out);
-	put_index("same_as", m->same_as, out);
-	nt_buffer_text(out, m->slots & NT_SLOT_NORMAL ? ",\"mapped\":true" : "");
-	nt_buffer_format(out, ",\"triangles\":%zu,\"vertices\":%zu,\"islands\":%zu,\"geometry\":%s,\"box\":",
-		m->triangle_count, m->vertices_before, m->island_count, has_geometry(m) ? "true" : "false");
+	nt_buffer_text(out, "{");
+	nt_member_key(out, NT_SAME_LINE, "label");
+	nt_put_label(report, mesh, nt_json_string, out);
+	nt_member_text(out, "why", m->why);
+	nt_member_index(out, "same_as", m->same_as);
+	nt_member_bool(out, "mapped", m->slots & NT_SLOT_NORMAL);
+	nt_member_count(out, "triangles", m->triangle_count);
+	nt_member_count(out, "vertices", m->vertices_before);
+	nt_member_count(out, "islands", m->island_count);
+	nt_member_bool(out, "geometry", has_geometry(m));
+	nt_member_key(out, NT_SAME_LINE, "box");
 	nt_json_box(&m->box, report->origin, out);
 	put_facts(m, out);
+	nt_member_open(out, "images", "[");
 	for (int p = 0; p < NT_PICTURE_COUNT; p++) {
-		nt_buffer_text(out, p ? "," : ",\"images\":[");
+		nt_member_next(out, NT_SAME_LINE);
 		put_image(&m->pictures[p], &left->images[p], left, out);
 	}
 	nt_buffer_format(out, "],\"wrap\":[%d,%d],\"seams\":[", (int)m->wrap[0], (int)m->wrap[1]);
 	const size_t seams = m->seams ? m->seam_count + m->hard_count : 0;
 	for (size_t i = 0; i < seams && left->seams > 0; i++, left->seams--) {
-		nt_buffer_text(out, i ? "," : "");
+		nt_member_next(out, NT_SAME_LINE);
 		put_seam(&m->seams[i], i >= m->seam_count, out);
 	}
 	nt_buffer_text(out, "]}");
@@ -215,49 +202,42 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 
 /* ---- findings ---- */
 
-static void put_repair(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
-{
-	nt_buffer command = {0};
-	if (!finding->repair)
-		return;
-	nt_command_text(finding->repair, report->given, report->path, NULL, &command);
-	nt_buffer_text(out, ",\"repair\":");
-	put_string(command.data ? command.data : "", out);
-	nt_buffer_free_into(&command, out);
-}
-
 static void put_finding(const nt_report *report, const nt_report_finding *finding, bool known, nt_buffer *out)
 {
-	nt_buffer_format(out, "{\"code\":\"%s\",\"severity\":\"%s\",\"count\":%zu,\"known\":%s,\"message\":",
-		nt_code_info(finding->code)->name, nt_severity_name(finding->severity), finding->count,
-		known ? "true" : "false");
-	put_string(finding->message, out);
-	put_index("mesh", finding->mesh, out);
-	put_index("seam", finding->seam, out);
-	put_index("island", finding->island, out);
 	nt_buffer where = {0};
 	nt_put_where(report, finding, report->mesh_count > 1, nt_plain_text, &where);
-	nt_buffer_text(out, ",\"where\":");
-	put_string(where.data ? where.data : "", out);
-	nt_buffer_free_into(&where, out);
-	nt_buffer_text(out, ",\"box\":");
+	nt_buffer_text(out, "{");
+	nt_member_text(out, "code", nt_code_info(finding->code)->name);
+	nt_member_text(out, "severity", nt_severity_name(finding->severity));
+	nt_member_count(out, "count", finding->count);
+	nt_member_bool(out, "known", known);
+	nt_member_text(out, "message", finding->message);
+	nt_member_index(out, "mesh", finding->mesh);
+	nt_member_index(out, "seam", finding->seam);
+	nt_member_index(out, "island", finding->island);
+	nt_member_text(out, "where", where.data ? where.data : "");
+	nt_member_key(out, NT_SAME_LINE, "box");
 	nt_json_box(&finding->box, report->origin, out);
-	nt_buffer_text(out, ",\"at\":[");
-	for (unsigned i = 0, any = 0; i < finding->spot_count; i++)
-		if (finding->spots[i].triangle != NT_NONE)
-			nt_buffer_format(out, any++ ? ",%u" : "%u", finding->spots[i].triangle);
-	nt_buffer_text(out, "],\"votes\":");
-	nt_json_votes(finding, out);
-	put_repair(report, finding, out);
+	nt_member_open(out, "at", "[");
+	for (unsigned i = 0; i < finding->spot_count; i++) {
+		if (finding->spots[i].triangle == NT_NONE)
+			continue;
+		nt_member_next(out, NT_SAME_LINE);
+		nt_json_index(finding->spots[i].triangle, out);
+	}
+	nt_buffer_text(out, "]");
+	nt_member_votes(out, finding);
+	nt_member_repair(out, report, finding);
 	nt_buffer_text(out, "}");
+	nt_buffer_free_into(&where, out);
 }
 
 static void put_findings(const nt_report *report, budget *left, nt_buffer *out)
 {
 	size_t i = 0;
-	nt_buffer_text(out, "\"findings\":[");
+	nt_member_open(out, "findings", "[");
 	for (; i < report->finding_count && left->findings > 0; i++, left->findings--) {
-		nt_buffer_text(out, i ? ",\n" : "\n");
+		nt_member_next(out, 0);
 		const nt_report_finding *finding = &report->findings[i];
 		put_finding(report, finding, left->known ? left->known[i] : finding->known, out);
 		left->seen[finding->code] = true;
@@ -269,43 +249,42 @@ static void put_findings(const nt_report *report, budget *left, nt_buffer *out)
 /* How a file begins, in its page and in the index. */
 static void put_head(const nt_report *report, nt_buffer *out)
 {
-	nt_buffer_text(out, "{\"name\":");
-	put_string(report->shown, out);
-	nt_buffer_text(out, ",\"verdict\":");
-	nt_put_verdict(report, put_string, out);
-	nt_buffer_format(out, ",\"format\":\"%s\",\"counts\":[%zu,%zu,%zu],\"failure\":",
-		nt_input_format_name(report->format), report->by_severity[NT_SEVERITY_ERROR],
-		report->by_severity[NT_SEVERITY_WARNING], report->by_severity[NT_SEVERITY_INFO]);
-	if (report->failure)
-		put_string(report->failure, out);
-	else
-		nt_buffer_text(out, "null");
+	nt_member_next(out, 0);
+	nt_buffer_text(out, "{");
+	nt_member_text(out, "name", report->shown);
+	nt_member_key(out, NT_SAME_LINE, "verdict");
+	nt_put_verdict(report, nt_json_string, out);
+	nt_member_text(out, "format", nt_input_format_name(report->format));
+	nt_member_open(out, "counts", "[");
+	for (int severity = NT_SEVERITY_ERROR; severity >= NT_SEVERITY_INFO; severity--)
+		nt_buffer_format(out, severity ? "%zu," : "%zu]", report->by_severity[severity]);
+	nt_member_text(out, "failure", report->failure);
 }
 
 static void put_file(const nt_report *report, budget *left, nt_buffer *out)
 {
 	put_head(report, out);
-	nt_buffer_text(out, ",\"meshes\":[");
+	nt_member_open(out, "meshes", "[");
 	for (size_t i = 0; i < report->mesh_count; i++) {
-		nt_buffer_text(out, i ? ",\n" : "\n");
+		nt_member_next(out, 0);
 		put_mesh(report, (uint32_t)i, left, out);
 	}
-	nt_buffer_text(out, "],");
+	nt_buffer_text(out, "]");
 	put_findings(report, left, out);
 	nt_buffer_text(out, "}");
 }
 
 static void put_codes(const budget *left, nt_buffer *out)
 {
-	nt_buffer_text(out, "\"codes\":{");
-	for (unsigned code = 0, any = 0; code < NT_CODE_COUNT; code++) {
+	nt_member_open(out, "codes", "{");
+	for (unsigned code = 0; code < NT_CODE_COUNT; code++) {
 		if (!left->seen[code])
 			continue;
 		const nt_code_row *row = nt_code_info((nt_code)code);
-		nt_buffer_format(out, any++ ? ",\n\"%s\":{\"meaning\":" : "\n\"%s\":{\"meaning\":", row->name);
-		put_string(row->meaning, out);
-		nt_buffer_text(out, ",\"remedy\":");
-		put_string(row->remedy, out);
+		nt_member_key(out, 0, row->name);
+		nt_buffer_text(out, "{");
+		nt_member_text(out, "meaning", row->meaning);
+		nt_member_text(out, "remedy", row->remedy);
 		nt_buffer_text(out, "}");
 	}
 	nt_buffer_text(out, "}");
@@ -316,28 +295,29 @@ static void put_codes(const budget *left, nt_buffer *out)
 static void put_data(const nt_report_list *reports, nt_buffer *out)
 {
 	budget left = {.images = {IMAGE_BYTES, IMAGE_BYTES}, .findings = MOST_FINDINGS, .seams = MOST_SEAMS};
-	nt_buffer_text(out, "<script type=\"application/json\" id=\"data\">{\"files\":[");
+	nt_buffer json = {0}; /* without the images, which are large and safe */
+	nt_buffer_text(&json, "{\"files\":[");
 	for (size_t i = 0; i < reports->count; i++) {
-		nt_buffer_text(out, i ? ",\n" : "\n");
 		left.known = reports->diff ? reports->diff->known[i] : NULL;
-		put_file(reports->items[i], &left, out);
+		put_file(reports->items[i], &left, &json);
 	}
-	nt_buffer_text(out, "],");
-	put_codes(&left, out);
-	nt_buffer_format(out, ",\"left_out\":%zu,\"images\":[", left.left_out);
+	nt_buffer_text(&json, "]");
+	put_codes(&left, &json);
+	nt_member_count(&json, "left_out", left.left_out);
+	nt_member_text(&json, "index", reports->style.index);
+	if (reports->diff) {
+		nt_member_key(&json, NT_SAME_LINE, "diff");
+		nt_buffer_append(&json, reports->changes->data, reports->changes->size);
+		nt_buffer_free_into(reports->changes, &json);
+	}
+	nt_buffer_text(out, "<script type=\"application/json\" id=\"data\">");
+	put_safe(&json, out);
+	nt_buffer_free_into(&json, out);
+	nt_member_open(out, "images", "[");
 	nt_buffer_append(out, left.sources.data, left.sources.size);
 	nt_buffer_free_into(&left.sources, out);
 	nt_name_table_free(&left.held);
-	nt_buffer_text(out, "],\"index\":");
-	if (reports->style.index)
-		put_string(reports->style.index, out);
-	else
-		nt_buffer_text(out, "null");
-	if (reports->diff) {
-		nt_buffer_text(out, ",\"diff\":");
-		put_safe(reports->changes, out);
-	}
-	nt_buffer_text(out, "}</script>\n");
+	nt_buffer_text(out, "]}</script>\n");
 }
 
 static void put_geometry(const nt_report *report, size_t file, uint32_t mesh, size_t most, nt_buffer *out)
@@ -346,17 +326,16 @@ static void put_geometry(const nt_report *report, size_t file, uint32_t mesh, si
 	if (nt_pack_mesh(&packed, report, mesh, most)) {
 		out->failed = true;
 	} else {
-		nt_buffer_format(out, "<script type=\"text/plain\" id=\"g-%zu-%u\">{\"vertices\":%zu,\"triangles\":%zu,"
-			"\"whole\":%s,\"bytes\":%zu,", file, mesh, packed.vertex_count, packed.triangle_count,
-			packed.whole ? "true" : "false", packed.raw_bytes);
+		nt_buffer_format(out, "<script type=\"text/plain\" id=\"g-%zu-%u\">{", file, mesh);
+		nt_member_count(out, "vertices", packed.vertex_count);
+		nt_member_count(out, "triangles", packed.triangle_count);
+		nt_member_bool(out, "whole", packed.whole);
 		put_doubles("origin", packed.position_origin, 3, out);
-		nt_buffer_text(out, ",");
 		put_doubles("step", packed.position_step, 3, out);
-		nt_buffer_text(out, ",");
 		put_doubles("uvOrigin", packed.texcoord_origin, 2, out);
-		nt_buffer_format(out, ",\"uvStep\":%.17g,\"arrays\":", packed.texcoord_step);
+		nt_buffer_format(out, ",\"uvStep\":%.17g,\"arrays\":[", packed.texcoord_step);
 		for (unsigned i = 0; i < packed.array_count; i++)
-			nt_buffer_format(out, "%s[\"%s\",%zu,%u]", i ? "," : "[", packed.arrays[i].name,
+			nt_buffer_format(out, "%s[\"%s\",%zu,%u]", i ? "," : "", packed.arrays[i].name,
 				packed.arrays[i].count, packed.arrays[i].planes);
 		nt_buffer_text(out, "]}\n");
 		nt_base64_append(out, packed.bytes.data, packed.bytes.size);
@@ -454,9 +433,10 @@ static void put_thumbs(const nt_report *report, nt_buffer *out)
 	if (first && (nt_thumb_model(largest, &model) ||
 		nt_thumb_layout(first, nt_format_is_gltf(report->format), &layout)))
 		out->failed = true;
-	nt_buffer_text(out, ",\"model\":\"");
+	nt_member_open(out, "model", "\"");
 	nt_base64_append(out, model.data, model.size);
-	nt_buffer_text(out, "\",\"layout\":\"");
+	nt_buffer_text(out, "\"");
+	nt_member_open(out, "layout", "\"");
 	nt_base64_append(out, layout.data, layout.size);
 	nt_buffer_text(out, "\"");
 	nt_buffer_free(&model);
@@ -472,19 +452,23 @@ void nt_report_index_row(const nt_report *report, const char *page, nt_buffer *r
 		islands += report->meshes[i].island_count;
 		seams += report->meshes[i].seams ? report->meshes[i].seam_count : 0;
 	}
-	nt_buffer_text(rows, rows->size ? ",\n" : "\n");
 	put_head(report, rows);
-	nt_buffer_text(rows, ",\"page\":");
-	put_string(page, rows);
-	nt_buffer_format(rows, ",\"triangles\":%zu,\"islands\":%zu,\"seams\":%zu", triangles, islands, seams);
+	nt_member_text(rows, "page", page);
+	nt_member_count(rows, "triangles", triangles);
+	nt_member_count(rows, "islands", islands);
+	nt_member_count(rows, "seams", seams);
 	put_thumbs(report, rows);
 	nt_buffer_text(rows, ",\"meshes\":[],\"findings\":[");
-	for (size_t i = 0, any = 0; i < report->finding_count; i++) {
+	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *finding = &report->findings[i];
 		bool *before = &seen[finding->code][finding->severity];
-		if (!*before)
-			nt_buffer_format(rows, "%s{\"code\":\"%s\",\"severity\":\"%s\"}", any++ ? "," : "",
-				nt_code_info(finding->code)->name, nt_severity_name(finding->severity));
+		if (*before)
+			continue;
+		nt_member_next(rows, NT_SAME_LINE);
+		nt_buffer_text(rows, "{");
+		nt_member_text(rows, "code", nt_code_info(finding->code)->name);
+		nt_member_text(rows, "severity", nt_severity_name(finding->severity));
+		nt_buffer_text(rows, "}");
 		*before = true;
 	}
 	nt_buffer_text(rows, "]}");
@@ -494,7 +478,7 @@ void nt_write_html_index(const nt_buffer *rows, nt_buffer *out)
 {
 	begin_page(true, out);
 	nt_buffer_text(out, "<script type=\"application/json\" id=\"data\">{\"folder\":true,\"files\":[");
-	nt_buffer_append(out, rows->data, rows->size);
+	put_safe(rows, out);
 	nt_buffer_text(out, "]}</script>\n");
 	put_part(NT_HTML_SCRIPT, true, out);
 	nt_buffer_text(out, "</body>\n</html>\n");

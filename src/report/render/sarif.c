@@ -21,7 +21,7 @@ static const char *level_of(nt_severity severity)
 
 static void put_text(const char *name, const char *text, nt_buffer *out)
 {
-	nt_buffer_format(out, "\"%s\": ", name);
+	nt_member_key(out, NT_SPACED, name);
 	nt_json_string(text, out);
 }
 
@@ -56,7 +56,6 @@ static void put_help(nt_code code, nt_buffer *out)
 	append_part("The smallest example", row->example, &markdown);
 	nt_buffer_text(out, "\"help\": {");
 	put_text("text", remedy.data ? remedy.data : "", out);
-	nt_buffer_text(out, ", ");
 	put_text("markdown", markdown.data ? markdown.data : "", out);
 	nt_buffer_text(out, "}");
 	nt_buffer_free_into(&markdown, out);
@@ -116,10 +115,8 @@ static void put_location(const nt_report *report, const nt_report_finding *findi
 		nt_buffer_text(out, ", \"logicalLocations\": [{");
 		if (label.size)
 			put_text("name", label.data, out);
-		if (finding->place.pointer[0]) {
-			nt_buffer_text(out, label.size ? ", " : "");
+		if (finding->place.pointer[0])
 			put_text("fullyQualifiedName", finding->place.pointer, out);
-		}
 		nt_buffer_text(out, ", \"kind\": \"object\"}]");
 		nt_buffer_free_into(&label, out);
 	}
@@ -145,7 +142,7 @@ static void put_result(const nt_report *report, const nt_report_finding *finding
 		nt_buffer_format(out, ", \"baselineState\": \"%s\"", finding->known ? "unchanged" : "new");
 	nt_buffer_format(out, ", \"occurrenceCount\": %zu, \"properties\": {", finding->count);
 	for (unsigned i = 0; i < finding->number_count; i++) {
-		nt_buffer_format(out, "%s\"%s\": ", i ? ", " : "", finding->numbers[i].name);
+		nt_member_key(out, NT_SPACED, finding->numbers[i].name);
 		nt_json_float(finding->numbers[i].value, out);
 	}
 	nt_buffer_text(out, "}}");

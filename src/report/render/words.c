@@ -4,6 +4,7 @@
  */
 #include "report/render/words.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -195,20 +196,106 @@ void nt_json_index(uint32_t index, nt_buffer *out)
 
 void nt_json_floats(const float *values, size_t count, nt_buffer *out)
 {
+	nt_buffer_text(out, "[");
 	for (size_t i = 0; i < count; i++) {
-		nt_buffer_text(out, i ? "," : "[");
+		nt_member_next(out, NT_SAME_LINE);
 		nt_json_float(values[i], out);
 	}
-	nt_buffer_text(out, count ? "]" : "[]");
+	nt_buffer_text(out, "]");
 }
 
 void nt_json_rows(const float *values, size_t count, size_t width, nt_buffer *out)
 {
+	nt_buffer_text(out, "[");
 	for (size_t i = 0; i < count; i++) {
-		nt_buffer_text(out, i ? "," : "[");
+		nt_member_next(out, NT_SAME_LINE);
 		nt_json_floats(values + i * width, width, out);
 	}
-	nt_buffer_text(out, count ? "]" : "[]");
+	nt_buffer_text(out, "]");
+}
+
+void nt_member_next(nt_buffer *out, int indent)
+{
+	const char last = out->size ? out->data[out->size - 1] : '{';
+	if (last != '{' && last != '[')
+		nt_buffer_text(out, indent == NT_SPACED ? ", " : ",");
+	if (indent >= 0)
+		nt_buffer_text(out, "\n");
+	for (int i = 0; i < indent; i++)
+		nt_buffer_text(out, "\t");
+}
+
+void nt_member_key(nt_buffer *out, int indent, const char *name)
+{
+	nt_member_next(out, indent);
+	nt_buffer_text(out, "\"");
+	nt_buffer_text(out, name);
+	nt_buffer_text(out, indent == NT_SPACED ? "\": " : "\":");
+}
+
+void nt_member_open(nt_buffer *out, const char *name, const char *bracket)
+{
+	nt_member_key(out, NT_SAME_LINE, name);
+	nt_buffer_text(out, bracket);
+}
+
+void nt_member_text(nt_buffer *out, const char *name, const char *text)
+{
+	nt_member_key(out, NT_SAME_LINE, name);
+	if (text)
+		nt_json_string(text, out);
+	else
+		nt_buffer_text(out, "null");
+}
+
+void nt_member_count(nt_buffer *out, const char *name, uint64_t count)
+{
+	nt_member_key(out, NT_SAME_LINE, name);
+	nt_buffer_format(out, "%" PRIu64, count);
+}
+
+void nt_member_index(nt_buffer *out, const char *name, uint32_t index)
+{
+	nt_member_key(out, NT_SAME_LINE, name);
+	nt_json_index(index, out);
+}
+
+void nt_member_bool(nt_buffer *out, const char *name, bool value)
+{
+	nt_member_key(out, NT_SAME_LINE, name);
+	nt_buffer_text(out, value ? "true" : "false");
+}
+
+void nt_member_float(nt_buffer *out, const char *name, double value)
+{
+	nt_member_key(out, NT_SAME_LINE, name);
+	nt_json_float(value, out);
+}
+
+void nt_member_doubles(nt_buffer *out, const char *name, const double *values, size_t count)
+{
+	nt_member_open(out, name, "[");
+	for (size_t i = 0; i < count; i++) {
+		nt_member_next(out, NT_SAME_LINE);
+		nt_json_float(values[i], out);
+	}
+	nt_buffer_text(out, "]");
+}
+
+void nt_member_digest(nt_buffer *out, const char *name, uint64_t digest)
+{
+	nt_member_key(out, NT_SAME_LINE, name);
+	nt_buffer_format(out, digest ? "\"%016" PRIx64 "\"" : "null", digest);
+}
+
+void nt_member_histogram(nt_buffer *out, const char *name, const size_t corners[NT_ANGLE_BINS])
+{
+	nt_member_open(out, name, "[");
+	for (int i = 0; i < NT_ANGLE_BINS; i++) {
+		nt_member_next(out, NT_SAME_LINE);
+		nt_buffer_format(out, "{\"up_to_degrees\":%g,\"corners\":%zu}", nt_angle_bins[i], corners[i]);
+	}
+	nt_buffer_text(out, "]");
 }
 
 void nt_put_coordinate(float value, double origin, nt_buffer *out)
@@ -248,9 +335,10 @@ void nt_json_box(const nt_box *box, const double origin[3], nt_buffer *out)
 	nt_json_positions(corners, 2, origin, out);
 }
 
-void nt_json_votes(const nt_report_finding *finding, nt_buffer *out)
+void nt_member_votes(nt_buffer *out, const nt_report_finding *finding)
 {
 	const unsigned side = finding->votes_side;
+	nt_member_key(out, NT_SAME_LINE, "votes");
 	if (!finding->votes) {
 		nt_buffer_text(out, "null");
 		return;
@@ -260,6 +348,15 @@ void nt_json_votes(const nt_report_finding *finding, nt_buffer *out)
 		nt_buffer_format(out, "%d", finding->votes[i]);
 	}
 	nt_buffer_text(out, "]]");
+}
+
+void nt_member_repair(nt_buffer *out, const nt_report *report, const nt_report_finding *finding)
+{
+	nt_buffer command = {0};
+	if (finding->repair)
+		nt_command_text(finding->repair, report->given, report->path, NULL, &command);
+	nt_member_text(out, "repair", command.data);
+	nt_buffer_free_into(&command, out);
 }
 
 void nt_plain_text(const char *text, nt_buffer *out)

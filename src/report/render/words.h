@@ -91,19 +91,40 @@ void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out);
 void nt_put_label(const nt_report *report, uint32_t mesh, void (*put)(const char *text, nt_buffer *out),
 	nt_buffer *out);
 
-/* A JSON string with its quotes; bytes that are no UTF-8 become U+FFFD. */
+/* ---- JSON ---- */
+
+/* A string with its quotes; bytes that are no UTF-8 become U+FFFD. */
 void nt_json_string(const char *text, nt_buffer *out);
 
-/* A JSON number that reads back as the same float; null for NaN and infinities. */
+/* A number that reads back as the same float; null for NaN and infinities. */
 void nt_json_float(double value, nt_buffer *out);
 
-/* A JSON number; null for NT_NONE. */
+/* A number; null for NT_NONE. */
 void nt_json_index(uint32_t index, nt_buffer *out);
 
-/* JSON arrays: of numbers, of `count` rows of `width` numbers, of the corners of a box; null for an empty box. */
+/* Arrays: of numbers, of `count` rows of `width` numbers, of the corners of a box; null for an empty box. */
 void nt_json_floats(const float *values, size_t count, nt_buffer *out);
 void nt_json_rows(const float *values, size_t count, size_t width, nt_buffer *out);
 void nt_json_box(const nt_box *box, const double origin[3], nt_buffer *out);
+
+/* Begins the next value of an array, the next member of an object: with a comma unless a bracket is before it, and on a
+ * new line with `indent` tabs unless that is one of these. */
+enum { NT_SAME_LINE = -1, NT_SPACED = -2 };
+void nt_member_next(nt_buffer *out, int indent);
+void nt_member_key(nt_buffer *out, int indent, const char *name);
+
+/* Members, on the same line: an object or array to be closed; a string, null for NULL; numbers as above, doubles as
+ * floats. */
+void nt_member_open(nt_buffer *out, const char *name, const char *bracket);
+void nt_member_text(nt_buffer *out, const char *name, const char *text);
+void nt_member_count(nt_buffer *out, const char *name, uint64_t count);
+void nt_member_index(nt_buffer *out, const char *name, uint32_t index);
+void nt_member_bool(nt_buffer *out, const char *name, bool value);
+void nt_member_float(nt_buffer *out, const char *name, double value);
+void nt_member_doubles(nt_buffer *out, const char *name, const double *values, size_t count);
+/* 16 digits, null for 0; corners by angle. */
+void nt_member_digest(nt_buffer *out, const char *name, uint64_t digest);
+void nt_member_histogram(nt_buffer *out, const char *name, const size_t corners[NT_ANGLE_BINS]);
 
 /* A coordinate of a mesh as the file has it: plus that of the origin, with the digits that a float leaves. */
 void nt_put_coordinate(float value, double origin, nt_buffer *out);
@@ -111,7 +132,10 @@ void nt_put_coordinate(float value, double origin, nt_buffer *out);
 void nt_json_positions(const float *positions, size_t count, const double origin[3], nt_buffer *out);
 
 /* Votes of a normal map's blocks, row by row; null if a finding has none. */
-void nt_json_votes(const nt_report_finding *finding, nt_buffer *out);
+void nt_member_votes(nt_buffer *out, const nt_report_finding *finding);
+
+/* The command that repairs a finding; null if nmtan cannot. */
+void nt_member_repair(nt_buffer *out, const nt_report *report, const nt_report_finding *finding);
 
 /* Text for a terminal: nt_buffer_clean(). */
 void nt_plain_text(const char *text, nt_buffer *out);
