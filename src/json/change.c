@@ -214,18 +214,27 @@ void nt_json_put_uint64(nt_json *document, nt_json_value *object, const char *ke
 	nt_json_set_uint64(document, nt_json_put(document, object, key), content);
 }
 
+static void set_real(nt_json *document, nt_json_value *value, const char *text, const char *end, bool is_number)
+{
+	if (is_number)
+		set_text(document, value, NT_JSON_REAL, text, (size_t)(end - text));
+	else
+		set(value, (nt_json_value){.type = NT_JSON_NULL});
+}
+
 void nt_json_set_double(nt_json *document, nt_json_value *value, double content)
 {
 	char text[NT_NUMBER_TEXT];
 	double old;
 	if (nt_json_get_double(value, &old) && old == content && !signbit(old) == !signbit(content))
 		return;
-	if (!isfinite(content)) {
-		set(value, (nt_json_value){.type = NT_JSON_NULL});
-		return;
-	}
-	const size_t length = (size_t)(nt_write_json_double(text, content) - text);
-	set_text(document, value, NT_JSON_REAL, text, length);
+	set_real(document, value, text, nt_write_json_double(text, content), isfinite(content));
+}
+
+void nt_json_set_float(nt_json *document, nt_json_value *value, float content)
+{
+	char text[NT_NUMBER_TEXT];
+	set_real(document, value, text, nt_write_json_float(text, content), isfinite(content));
 }
 
 void nt_json_set_string(nt_json *document, nt_json_value *value, const char *text, size_t length)
@@ -240,6 +249,14 @@ void nt_json_set_open(nt_json *document, nt_json_value *value, const char *text,
 {
 	set_text(document, value, NT_JSON_STRING, text, length);
 	value->open = 1;
+}
+
+void nt_json_set_open_array(nt_json *document, nt_json_value *value)
+{
+	if (set_container(document, value, NT_JSON_ARRAY, 0))
+		value->open = 1;
+	else
+		fail(document);
 }
 
 void nt_json_set_object(nt_json *document, nt_json_value *value)

@@ -130,19 +130,21 @@ void nt_json_remove_at(nt_json *document, nt_json_value *container, size_t index
 void nt_json_set_bool(nt_json *document, nt_json_value *value, bool content);
 void nt_json_set_uint64(nt_json *document, nt_json_value *value, uint64_t content);
 void nt_json_set_double(nt_json *document, nt_json_value *value, double content);
+void nt_json_set_float(nt_json *document, nt_json_value *value, float content); /* in the fewest digits */
 void nt_json_set_string(nt_json *document, nt_json_value *value, const char *text, size_t length);
 /* The same of an object's member, which may be new. */
 void nt_json_put_uint64(nt_json *document, nt_json_value *object, const char *key, uint64_t content);
 /* See nt_json_write(). */
 void nt_json_set_open(nt_json *document, nt_json_value *value, const char *text, size_t length);
+void nt_json_set_open_array(nt_json *document, nt_json_value *value);
 void nt_json_set_object(nt_json *document, nt_json_value *value); /* empty */
 void nt_json_set_copy(nt_json *document, nt_json_value *value, const nt_json_value *from);
 
 /*
  * Hands the document's text on, some of it at a time: as it was parsed, but for the values that were set and the
  * members and elements that were added or taken out. These are spaced as their neighbours are, else as the first member
- * of the document is. The same document gives the same bytes. The end of a string that was set open is left to `take`,
- * which is called without any text for it: its length is not measured.
+ * of the document is. The same document gives the same bytes. The end of a string that was set open, or what
+ * is in such an array, is left to `take`, which is called without any text for it: its length is not measured.
  *
  * Returns NT_OK, NT_ERROR_MEMORY, also where a change before ran out of memory, or what `take` returned, which has
  * filled the error then and is not called again.

@@ -37,7 +37,7 @@ struct nt_json_value {
 	uint64_t truth : 1; /* booleans */
 	uint64_t made : 1;  /* what the text has there is not the content */
 	uint64_t apart : 1;
-	uint64_t open : 1;  /* of a string: who takes the text goes on with it */
+	uint64_t open : 1;  /* of a string or an array: who takes the text goes on with it */
 	uint64_t taken : 1; /* of a container: children that are in the text are no more here */
 };
 

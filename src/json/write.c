@@ -219,7 +219,17 @@ static spacing spacing_in_text(const nt_json_value *container, const spacing *ou
 
 /* ---- new text ---- */
 
-/* `open`: whoever takes the text writes the end of the string. */
+/* Lets the one who takes the text write what comes next. */
+static void hand_over(writer *w)
+{
+	if (!w->take)
+		return;
+	flush(w);
+	if (!w->status)
+		w->status = w->take(w->user, "", 0);
+}
+
+/* `open`: its end is handed over. */
 static void put_string(writer *w, const char *text, size_t size, bool open)
 {
 	static const char escaped[] = "\"\\\b\f\n\r\t", letters[] = "\"\\bfnrt";
@@ -237,10 +247,8 @@ static void put_string(writer *w, const char *text, size_t size, bool open)
 		else if (i < size)
 			put(w, (slice){hex, sizeof hex});
 	}
-	if (open && w->take)
-		flush(w);
-	if (open && w->take && !w->status)
-		w->status = w->take(w->user, "", 0);
+	if (open)
+		hand_over(w);
 	put(w, (slice){"\"", 1});
 }
 
@@ -276,6 +284,8 @@ static void put_container(writer *w, const nt_json_value *container, const spaci
 	spacing inner = *outer;
 	inner.units++;
 	put(w, (slice){is_object ? "{" : "[", 1});
+	if (container->open)
+		hand_over(w);
 	for (size_t i = 0; i < container->size; i++) {
 		if (i)
 			put(w, inner.broken ? (slice){",", 1} : w->comma);

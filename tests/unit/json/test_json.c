@@ -563,3 +563,20 @@ TEST(strings_may_be_left_open)
 	nt_buffer_free(&text);
 	nt_json_free(json);
 }
+
+TEST(arrays_may_be_left_open)
+{
+	nt_json *json;
+	nt_buffer text = {0};
+	uint64_t size;
+	assert_int_equal(nt_json_parse(&json, "{}", 2, NULL, NULL), NT_OK);
+	nt_json_set_open_array(json, nt_json_put(json, nt_json_root(json), "a"));
+	nt_json_put_uint64(json, nt_json_root(json), "b", 1);
+	assert_int_equal(nt_json_write(json, take_open, &text, NULL), NT_OK);
+	nt_buffer_append(&text, "", 1);
+	assert_string_equal(text.data, "{\"a\":[REST],\"b\":1}");
+	assert_int_equal(nt_json_measure(json, &size, NULL), NT_OK);
+	assert_int_equal(size, strlen("{\"a\":[],\"b\":1}"));
+	nt_buffer_free(&text);
+	nt_json_free(json);
+}
