@@ -97,6 +97,13 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 	return NT_OK;
 }
 
+nt_status nt_edits_create_new(nt_buffer_edits *edits, nt_gltf *document, nt_error *error)
+{
+	*edits = (nt_buffer_edits){.document = document, .alignment = NT_EDITS_ALIGNMENT,
+		.buffers = nt_calloc(1, sizeof *edits->buffers)};
+	return edits->buffers ? NT_OK : nt_fail_memory(error);
+}
+
 void nt_edits_free(nt_buffer_edits *edits)
 {
 	for (size_t i = 0; edits->buffers && i < edits->buffer_count; i++) {
@@ -174,13 +181,21 @@ static nt_status add_bytes(nt_buffer_edits *edits, uint32_t index, const nt_buff
 nt_status nt_edits_add_bytes(nt_buffer_edits *edits, uint32_t index, uint32_t view, const void *bytes,
 	size_t size, nt_error *error)
 {
-	return add_bytes(edits, index, &(nt_buffer_addition){view, bytes, size, false}, error);
+	return add_bytes(edits, index, &(nt_buffer_addition){.view = view, .bytes = bytes, .size = size}, error);
+}
+
+nt_status nt_edits_add_written(nt_buffer_edits *edits, uint32_t index, size_t size, nt_view_writer write,
+	const void *user, nt_error *error)
+{
+	const nt_buffer_addition added = {.view = NT_NONE, .write = write, .bytes = user, .size = size};
+	return add_bytes(edits, index, &added, error);
 }
 
 nt_status nt_edits_add_packed(nt_buffer_edits *edits, uint32_t index, uint32_t view, const void *bytes, size_t size,
 	nt_error *error)
 {
-	return add_bytes(edits, index, &(nt_buffer_addition){view, bytes, size, true}, error);
+	const nt_buffer_addition added = {.view = view, .bytes = bytes, .size = size, .packed = true};
+	return add_bytes(edits, index, &added, error);
 }
 
 /* The object of a new view: of a free one, with what else it says, or appended. */

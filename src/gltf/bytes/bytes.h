@@ -63,11 +63,22 @@ typedef struct nt_buffer_edit {
 	size_t size;
 } nt_buffer_edit;
 
+/* The destination of the bytes of a buffer. */
+typedef struct nt_byte_target nt_byte_target;
+nt_status nt_target_put(const nt_byte_target *to, const void *bytes, size_t size, nt_error *error);
+
+/* A whole file, from file to file where that is possible. */
+nt_status nt_target_put_file(const nt_byte_target *to, const nt_file *file, nt_error *error);
+
+/* Writes the bytes of a view, when its buffer is written. */
+typedef nt_status (*nt_view_writer)(const void *user, const nt_byte_target *to, nt_error *error);
+
 /* A new view behind the end of a buffer. */
 typedef struct nt_buffer_addition {
-	uint32_t view; /* NT_NONE: of no view */
-	const unsigned char *bytes;
+	const void *bytes; /* or the user of `write` */
+	nt_view_writer write; /* NULL: they are there */
 	size_t size;
+	uint32_t view; /* NT_NONE: of no view */
 	bool packed; /* they are what its extension refers to */
 } nt_buffer_addition;
 
@@ -107,6 +118,9 @@ typedef struct nt_buffer_edits {
 	nt_edited_buffer *decoded;  /* [view_count] bytes of decompressed views */
 	nt_byte_users users;        /* of the source */
 	uint32_t alignment;         /* insertions are multiples of this */
+	const nt_buffer *lists;     /* [list_count] of a new document: elements of arrays that were set open, in its
+	                               order, with "buffers" behind them. Empty: it has no such array */
+	size_t list_count;
 	bool polygons_dropped;      /* a primitive lost FB_ngon_encoding */
 	bool vertices_copied;       /* some pool has more of them now */
 	bool keeps_packed;          /* views that meshoptimizer packed are packed again: packed_views.c */
@@ -132,6 +146,8 @@ typedef struct nt_buffer_edits {
  */
 nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, bool keeps_packed, bool welds,
 	nt_error *error);
+/* The same for a document that is new and has no buffer yet. */
+nt_status nt_edits_create_new(nt_buffer_edits *edits, nt_gltf *document, nt_error *error);
 void nt_edits_free(nt_buffer_edits *edits);
 
 /* Replaces `removed` bytes of a source buffer by others, which must live as long as the edits. The
@@ -157,6 +173,10 @@ nt_edited_buffer *nt_edits_of(nt_buffer_edits *edits, uint32_t buffer);
 /* Adds bytes behind the end of a buffer: of a view, whose byteOffset will be set, or NT_NONE. */
 nt_status nt_edits_add_bytes(nt_buffer_edits *edits, uint32_t buffer, uint32_t view, const void *bytes, size_t size,
 	nt_error *error);
+
+/* The same of bytes that are written when the buffer is; of no view. */
+nt_status nt_edits_add_written(nt_buffer_edits *edits, uint32_t buffer, size_t size, nt_view_writer write,
+	const void *user, nt_error *error);
 
 /* The same of the packed bytes of a view, which its extension refers to. */
 nt_status nt_edits_add_packed(nt_buffer_edits *edits, uint32_t buffer, uint32_t view, const void *bytes, size_t size,
@@ -241,6 +261,8 @@ typedef struct nt_relocated {
 	nt_gltf *document;
 	nt_relocated_buffer *buffers; /* [buffer_count] */
 	size_t buffer_count;
+	const nt_buffer *lists;       /* [list_count] as the edits have them */
+	size_t list_count;
 } nt_relocated;
 
 /* Moves all offsets in the JSON and sets all lengths. Afterwards nothing may be edited any more. */
@@ -257,7 +279,12 @@ nt_status nt_relocated_encode(const nt_relocated *relocated, uint32_t buffer, nt
 nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *options,
 	nt_output *output, bool *written, nt_error *error);
 
-/* write.c. Ends the edits and writes the document with its buffers and images. */
+/* write.c. Ends the edits and writes the document with its buffers, into a main file that was added. link_prefix: the
+ * way from the output's folder to the input's as a URI. */
+nt_status nt_gltf_save(nt_scene *scene, nt_buffer_edits *edits, const nt_write_options *options,
+	const char *link_prefix, nt_output *output, nt_sink *main, nt_error *error);
+
+/* write.c. The same with the images of the source. */
 nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const nt_write_options *options,
 	nt_output *output, nt_error *error);
 

@@ -206,25 +206,31 @@ static void move_accessors(const nt_buffer_edits *edits, const moved_view *moved
 
 /* ---- writing ---- */
 
-/* The destination of a buffer's bytes: a sink, as they are or as base64. */
-typedef struct target {
+/* A sink, as they are or as base64. */
+struct nt_byte_target {
 	nt_sink *sink;
 	nt_base64 *base64;
 	const nt_file *input; /* the document's own file */
-} target;
+};
 
-static nt_status put_bytes(const target *to, const void *bytes, size_t size, nt_error *error)
+nt_status nt_target_put(const nt_byte_target *to, const void *bytes, size_t size, nt_error *error)
 {
 	return to->sink ? nt_sink_write(to->sink, bytes, size, error) : nt_base64_write(to->base64, bytes, size, error);
 }
 
-static nt_status put_zeros(const target *to, uint64_t size, nt_error *error)
+nt_status nt_target_put_file(const nt_byte_target *to, const nt_file *file, nt_error *error)
+{
+	return to->sink ? nt_sink_copy(to->sink, file, 0, file->size, error) :
+			  nt_base64_write(to->base64, file->data, file->size, error);
+}
+
+static nt_status put_zeros(const nt_byte_target *to, uint64_t size, nt_error *error)
 {
 	static const unsigned char zeros[4096];
 	nt_status status = NT_OK;
 	while (size && !status) {
 		const size_t some = size < sizeof zeros ? (size_t)size : sizeof zeros;
-		status = put_bytes(to, zeros, some, error);
+		status = nt_target_put(to, zeros, some, error);
 		size -= some;
 	}
 	return status;
@@ -232,7 +238,7 @@ static nt_status put_zeros(const target *to, uint64_t size, nt_error *error)
 
 /* A range of a source buffer: from file to file where that is possible. */
 static nt_status put_source(nt_gltf *document, nt_gltf_buffer *buffer,
-	const target *to, uint64_t begin, uint64_t end, nt_error *error)
+	const nt_byte_target *to, uint64_t begin, uint64_t end, nt_error *error)
 {
 	if (begin >= end)
 		return NT_OK;
@@ -245,7 +251,7 @@ static nt_status put_source(nt_gltf *document, nt_gltf_buffer *buffer,
 		status = nt_sink_copy(to->sink, to->input,
 			document->glb.bin.offset + (size_t)begin, size, error);
 	else if (size)
-		status = put_bytes(to, buffer->bytes + begin, size, error);
+		status = nt_target_put(to, buffer->bytes + begin, size, error);
 	if (!to->sink)
 		nt_gltf_note_read(document, buffer, begin, size);
 	return status ? status : put_zeros(to, end - there, error);
@@ -261,8 +267,8 @@ static void release(const nt_gltf *document, const nt_gltf_buffer *buffer, const
 		nt_file_release(input, document->glb.bin.offset + (size_t)begin, (size_t)(end - begin));
 }
 
-static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer, uint32_t index, const target *to,
-	nt_error *error)
+static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer, uint32_t index,
+	const nt_byte_target *to, nt_error *error)
 {
 	enum { RELEASED_BYTES = 2 << 20 };
 	const nt_edited_buffer *from = buffer->from;
@@ -277,7 +283,7 @@ static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer
 		const nt_buffer_edit *edit = &from->edits[i];
 		status = put_source(document, source, to, at, edit->at, error);
 		if (!status)
-			status = put_bytes(to, edit->bytes, edit->size, error);
+			status = nt_target_put(to, edit->bytes, edit->size, error);
 		at = edit->at + edit->removed;
 		/* many small edits come to as much as a large range, which is not kept in memory either */
 		if (source && at - released >= RELEASED_BYTES) {
@@ -288,10 +294,12 @@ static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer
 	if (!status && source)
 		status = put_source(document, source, to, at, from->old_length, error);
 	for (size_t i = 0; !status && i < from->addition_count; i++) {
+		const nt_buffer_addition *new = &from->additions[i];
 		status = put_zeros(to, buffer->offsets[i] - written, error);
 		if (!status)
-			status = put_bytes(to, from->additions[i].bytes, from->additions[i].size, error);
-		written = buffer->offsets[i] + from->additions[i].size;
+			status = new->write ? new->write(new->bytes, to, error) :
+					      nt_target_put(to, new->bytes, new->size, error);
+		written = buffer->offsets[i] + new->size;
 	}
 	return status;
 }
@@ -432,6 +440,7 @@ static nt_status relocate(nt_buffer_edits *edits, nt_relocated *result, moved_vi
 		status = nt_packed_finish(edits, error);
 	bool moves = edits->document->decoded_count > 0;
 	*result = (nt_relocated){.document = edits->document, .buffer_count = edits->buffer_count,
+		.lists = edits->lists, .list_count = edits->list_count,
 		.buffers = nt_arena_alloc(&edits->arena, edits->buffer_count, sizeof *result->buffers)};
 	if (!status && !result->buffers)
 		status = nt_fail_memory(error);
@@ -474,11 +483,11 @@ nt_status nt_relocated_write(const nt_relocated *relocated, uint32_t buffer, con
 	nt_error *error)
 {
 	return put_buffer(relocated->document, &relocated->buffers[buffer], buffer,
-		&(target){.sink = sink, .input = input}, error);
+		&(nt_byte_target){.sink = sink, .input = input}, error);
 }
 
 nt_status nt_relocated_encode(const nt_relocated *relocated, uint32_t buffer, nt_base64 *base64, nt_error *error)
 {
-	return put_buffer(relocated->document, &relocated->buffers[buffer], buffer, &(target){.base64 = base64},
+	return put_buffer(relocated->document, &relocated->buffers[buffer], buffer, &(nt_byte_target){.base64 = base64},
 		error);
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Data URIs of an edited document, encoded while its text is written: the JSON has their heads alone, as strings that
- * are left open. In the JSON, as it was before, a buffer took its size four times over: its bytes, their base64, the
- * string's copy, and the text.
+ * The text of a document. Data URIs are encoded while it is written: the JSON has their heads alone, as strings that
+ * are left open, and a new document has open arrays, whose elements are text already. In the JSON a buffer would take
+ * its size four times over: its bytes, their base64, the string's copy, and the text.
  */
 #include "gltf/edit/images.h"
 
@@ -39,6 +39,8 @@ nt_status nt_data_uris_add(nt_data_uris *uris, uint32_t buffer, nt_error *error)
 nt_status nt_data_uris_measure(const nt_data_uris *uris, uint64_t *length, nt_error *error)
 {
 	const nt_status status = nt_json_measure(uris->relocated->document->json, length, error);
+	for (size_t i = 0; !status && i < uris->relocated->list_count; i++)
+		*length += uris->relocated->lists[i].size;
 	for (size_t i = 0; !status && i < uris->count; i++)
 		*length += nt_base64_length(uris->relocated->buffers[uris->buffers[i]].length);
 	return status;
@@ -47,22 +49,28 @@ nt_status nt_data_uris_measure(const nt_data_uris *uris, uint64_t *length, nt_er
 typedef struct text_sink {
 	const nt_data_uris *uris;
 	nt_sink *sink;
-	size_t next; /* buffers come in their order, wherever the array stands */
+	size_t next, list; /* buffers come in their order, wherever the array stands; lists before them */
 	nt_error *error;
 } text_sink;
 
 static nt_status put_text(void *user, const char *text, size_t size)
 {
 	text_sink *to = user;
+	const nt_relocated *relocated = to->uris->relocated;
+	while (!size && to->list < relocated->list_count) {
+		const nt_buffer *list = &relocated->lists[to->list++];
+		text = list->data;
+		size = list->size;
+	}
 	if (size)
 		return nt_sink_write(to->sink, text, size, to->error);
 	nt_base64 base64 = {.sink = to->sink};
-	const nt_status status = nt_relocated_encode(to->uris->relocated, to->uris->buffers[to->next++], &base64,
+	const nt_status status = nt_relocated_encode(relocated, to->uris->buffers[to->next++], &base64,
 		to->error);
 	return status ? status : nt_base64_end(&base64, to->error);
 }
 
 nt_status nt_data_uris_write(const nt_data_uris *uris, nt_sink *sink, nt_error *error)
 {
-	return nt_json_write(uris->relocated->document->json, put_text, &(text_sink){uris, sink, 0, error}, error);
+	return nt_json_write(uris->relocated->document->json, put_text, &(text_sink){uris, sink, 0, 0, error}, error);
 }

@@ -148,37 +148,6 @@ static destination choose_destination(const writing *c, uint32_t index)
 	}
 }
 
-/* In a .glb a buffer 0 without a uri is the BIN chunk. Bytes that exist nowhere cannot be put there: zeros would
- * be other data, and faulty where bounds or matrices are asked for. */
-static nt_status check_first_buffer(const writing *c, const nt_byte_users *users)
-{
-	const nt_gltf_buffer *first = c->document->buffers;
-	if (!c->to_glb || c->same_container || !c->document->buffer_count || !first->described ||
-		first->storage != NT_GLTF_STORED_NOWHERE || nt_byte_users_count(users, 0, 0, first->length) == 0)
-		return NT_OK;
-	return nt_fail_pointer(c->error, NT_ERROR_UNSUPPORTED, "/buffers/0",
-		"no uri, so that a .glb would need its bytes as BIN chunk, which are not there; "
-		"write .gltf");
-}
-
-/* Names that the output must not take: everything the document refers to. */
-static nt_status protect_inputs(writing *c)
-{
-	const char *const arrays[] = {"buffers", "images"};
-	nt_status status = NT_OK;
-	for (size_t k = 0; k < 2; k++) {
-		const nt_json_value *elements = nt_gltf_root_member(c->document, arrays[k]);
-		for (size_t i = 0; !status && i < nt_json_count(elements); i++) {
-			size_t length;
-			const char *file, *uri = nt_gltf_external_uri(nt_json_at(elements, i), &length);
-			if (uri && nt_uri_resolve(c->arena, c->document->path, uri, length, true, &file,
-					   NULL) == NT_OK)
-				status = nt_output_protect(c->output.set, file, NULL, c->error);
-		}
-	}
-	return status;
-}
-
 /* "out.bin", "out-1.bin" for the others, where those names are to be had. */
 static nt_status name_sidecar(writing *c, uint32_t index, bool first, const char **path)
 {
@@ -397,38 +366,79 @@ static nt_status write_files(writing *c)
 	return status;
 }
 
+nt_status nt_gltf_save(nt_scene *scene, nt_buffer_edits *edits, const nt_write_options *options,
+	const char *link_prefix, nt_output *output, nt_sink *main, nt_error *error)
+{
+	nt_gltf *document = edits->document;
+	const bool is_stream = nt_output_is_stream(options->path), to_glb = options->format == NT_FORMAT_GLB;
+	writing c = {.scene = scene, .document = document, .json = document->json,
+		.output = {options, output, link_prefix, is_stream}, .options = options, .input = input_file(scene),
+		.uris = {.relocated = &c.buffers}, .main = main, .arena = &edits->arena, .error = error,
+		.to_glb = to_glb, .same_container = to_glb == document->is_glb,
+		.embed = options->buffers == NT_BUFFERS_EMBED || (!to_glb && is_stream),
+		.in_place = nt_output_is_in_place(output, options->path)};
+	nt_status status = nt_gltf_relocate(edits, &c.buffers, error);
+	if (!status)
+		status = nt_gltf_check_dangling(document, error);
+	return status ? status : write_files(&c);
+}
+
+/* ---- a document that was edited ---- */
+
+/* In a .glb a buffer 0 without a uri is the BIN chunk. Bytes that exist nowhere cannot be put there: zeros would
+ * be other data, and faulty where bounds or matrices are asked for. */
+static nt_status check_first_buffer(const nt_gltf *document, nt_format format, const nt_byte_users *users,
+	nt_error *error)
+{
+	const nt_gltf_buffer *first = document->buffers;
+	if (format != NT_FORMAT_GLB || document->is_glb || !document->buffer_count || !first->described ||
+		first->storage != NT_GLTF_STORED_NOWHERE || nt_byte_users_count(users, 0, 0, first->length) == 0)
+		return NT_OK;
+	return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, "/buffers/0",
+		"no uri, so that a .glb would need its bytes as BIN chunk, which are not there; "
+		"write .gltf");
+}
+
+/* Names that the output must not take: everything the document refers to. */
+static nt_status protect_inputs(const nt_gltf *document, nt_arena *arena, nt_output *output, nt_error *error)
+{
+	const char *const arrays[] = {"buffers", "images"};
+	nt_status status = NT_OK;
+	for (size_t k = 0; k < 2; k++) {
+		const nt_json_value *elements = nt_gltf_root_member(document, arrays[k]);
+		for (size_t i = 0; !status && i < nt_json_count(elements); i++) {
+			size_t length;
+			const char *file, *uri = nt_gltf_external_uri(nt_json_at(elements, i), &length);
+			if (uri && nt_uri_resolve(arena, document->path, uri, length, true, &file, NULL) == NT_OK)
+				status = nt_output_protect(output, file, NULL, error);
+		}
+	}
+	return status;
+}
+
 nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const nt_write_options *options,
 	nt_output *output, nt_error *error)
 {
-	nt_gltf *document = edits->document;
-	writing c = {.scene = scene, .document = document, .json = document->json,
-		.output = {options, output, "", nt_output_is_stream(options->path)},
-		.options = options, .input = input_file(scene), .uris = {.relocated = &c.buffers},
-		.arena = &edits->arena, .error = error, .to_glb = options->format == NT_FORMAT_GLB,
-		.in_place = nt_output_is_in_place(output, options->path)};
-	c.same_container = c.to_glb == document->is_glb;
-	c.embed = options->buffers == NT_BUFFERS_EMBED || (!c.to_glb && c.output.is_stream);
+	const nt_gltf *document = edits->document;
+	nt_gltf_output to = {options, output, "", nt_output_is_stream(options->path)};
+	nt_open_images images = {0};
+	nt_sink *main = NULL;
 	nt_status status = NT_OK;
 	if (has_external(document, "buffers") || has_external(document, "images"))
-		status = nt_gltf_link_prefix(c.arena, options->path, document->path, &c.output.link_prefix, error);
+		status = nt_gltf_link_prefix(&edits->arena, options->path, document->path, &to.link_prefix, error);
 	if (!status)
-		status = check_first_buffer(&c, &edits->users);
+		status = check_first_buffer(document, options->format, &edits->users, error);
 	if (!status)
-		status = protect_inputs(&c);
+		status = protect_inputs(document, &edits->arena, output, error);
 	/* The main file comes first, so that it is refused before anything is written. */
 	if (!status)
-		status = nt_output_add(output, options->path, NT_ROLE_MAIN, &c.main, error);
+		status = nt_output_add(output, options->path, NT_ROLE_MAIN, &main, error);
 
 	/* The last edits: images move into the document. */
-	nt_open_images images = {0};
 	if (!status)
-		status = nt_gltf_move_images(scene, edits, &c.output, &images, error);
+		status = nt_gltf_move_images(scene, edits, &to, &images, error);
 	if (!status)
-		status = nt_gltf_relocate(edits, &c.buffers, error);
-	if (!status)
-		status = nt_gltf_check_dangling(document, error);
-	if (!status)
-		status = write_files(&c);
+		status = nt_gltf_save(scene, edits, options, to.link_prefix, output, main, error);
 	nt_open_images_close(&images);
 	return status;
 }
