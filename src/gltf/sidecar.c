@@ -75,22 +75,6 @@ nt_status nt_gltf_find_ownership(nt_output *output, const char *path, nt_error *
 
 /* ---- writing ---- */
 
-void nt_gltf_record_uri(nt_buffer *text, const nt_sink *sidecar, bool staging)
-{
-	nt_uri_append_path(text, nt_sink_name(sidecar, staging));
-}
-
-void nt_gltf_record_extras(nt_buffer *text, const nt_sink *sidecar, bool staging)
-{
-	const char *digest = nt_sink_digest(sidecar), *before = nt_sink_digest_before(sidecar);
-	if (!digest)
-		return;
-	nt_buffer_format(text, "{\"%s\":\"%s\"", key_digest, digest);
-	if (staging && before)
-		nt_buffer_format(text, ",\"%s\":\"%s\"", key_before, before);
-	nt_buffer_text(text, "}");
-}
-
 static void set_digest(nt_json *json, nt_json_value *extras, const char *key, const char *digest)
 {
 	if (digest)
@@ -103,7 +87,7 @@ nt_status nt_gltf_record(nt_json *json, nt_json_value *buffer, const nt_sink *si
 	nt_error *error)
 {
 	nt_buffer uri = {0};
-	nt_gltf_record_uri(&uri, sidecar, staging);
+	nt_uri_append_path(&uri, nt_sink_name(sidecar, staging));
 	if (!uri.failed)
 		nt_json_set_string(json, nt_json_put(json, buffer, "uri"), uri.data, uri.size);
 	const bool failed = uri.failed;

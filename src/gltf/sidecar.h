@@ -22,8 +22,4 @@ nt_status nt_gltf_record(nt_json *json, nt_json_value *buffer, const nt_sink *si
 /* Takes the digest away: the buffer is not, or no longer, a file that was written for this document. */
 void nt_gltf_forget_record(nt_json *json, nt_json_value *buffer);
 
-/* Appends the uri, and the text of the extras, which is empty where there is nothing to record. */
-void nt_gltf_record_uri(nt_buffer *text, const nt_sink *sidecar, bool staging);
-void nt_gltf_record_extras(nt_buffer *text, const nt_sink *sidecar, bool staging);
-
 #endif

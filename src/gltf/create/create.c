@@ -1,33 +1,24 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A new glTF document for a scene from another format (OBJ, PLY, Draco): .gltf with a .bin, .gltf with
- * everything inside, or .glb.
+ * A new glTF document for a scene from another format (OBJ, PLY, Draco): an empty one that is edited (model.h), and
+ * saved as others are.
  *
  * One glTF mesh per mesh (of a mesh with groups: per group), one node per instance of it, one primitive per
- * material. The document is
- * planned first, so that all sizes and places are known and its JSON (model.h) is complete, then the
- * buffer is streamed: geometry as primitive.c plans it, embedded images behind. Only materials and images that
- * something uses are written; a primitive without texture coordinates gets its material without textures. A mesh
- * without a material gets a neutral one, since glTF's default is metal.
+ * material. A view has only its length at first: geometry is gathered while its buffer is written, embedded
+ * images behind it. Only materials and images that something uses are written; a primitive without texture coordinates
+ * gets its material without textures. A mesh without a material gets a neutral one, since glTF's default is metal.
  */
 #include "gltf/create/create.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include "base/utf8.h"
-#include "file/base64.h"
-#include "gltf/document.h"
-#include "gltf/sidecar.h"
 #include "gltf/create/model.h"
-#include "gltf/glb.h"
-#include "gltf/quantize.h"
 
-/* One range of the buffer that holds geometry. */
+/* The bytes of a view that holds geometry. */
 typedef struct block {
+	struct composition *composition;
 	const nt_new_primitive *primitive;
 	nt_attribute attribute; /* NT_ATTRIBUTE_COUNT: the indices */
-	uint64_t offset, size;
 } block;
 
 /* The accessors of a primitive. */
@@ -42,7 +33,7 @@ typedef struct composition {
 	nt_output *output;
 	nt_sink *main;
 	nt_arena arena;
-	nt_model *model;
+	nt_model model;
 	nt_image_set *images;
 
 	nt_new_primitives *primitives;           /* [mesh_count] */
@@ -51,15 +42,7 @@ typedef struct composition {
 	uint32_t (*materials)[2];  /* [material_count + 1] in the document, without and with textures; last: neutral */
 	block *blocks;
 	size_t block_count;
-	uint64_t buffer_size;
 } composition;
-
-/* The destination of the buffer's bytes. */
-typedef struct byte_stream {
-	nt_sink *sink;
-	nt_base64 *base64; /* NULL: as they are */
-	uint64_t position;
-} byte_stream;
 
 /* ---- planning ---- */
 
@@ -90,15 +73,29 @@ static nt_status plan_primitives(composition *c, nt_error *error)
 	return c->blocks ? NT_OK : nt_fail_memory(error);
 }
 
-/* Reserves a range of the buffer and gives it a view. */
-static uint32_t add_block(composition *c, const nt_new_primitive *primitive, nt_attribute attribute,
-	uint64_t size)
+/* For nt_model_view(). */
+static nt_status write_block(const void *user, const nt_byte_target *to, nt_error *error)
 {
-	const uint64_t offset = (c->buffer_size + 3) & ~(uint64_t)3;
-	c->blocks[c->block_count++] = (block){primitive, attribute, offset, size};
-	c->buffer_size = offset + size;
-	return nt_model_view(c->model, offset, size,
-		attribute == NT_ATTRIBUTE_COUNT ? NT_GLTF_ELEMENT_ARRAY_BUFFER : NT_GLTF_ARRAY_BUFFER);
+	const block *b = user;
+	const nt_precision precision = b->composition->options.precision;
+	nt_rounding cost = {0};
+	if (b->attribute == NT_ATTRIBUTE_COUNT)
+		return nt_new_primitive_write_indices(b->primitive, to, error);
+	const nt_status status =
+		nt_new_primitive_write_attribute(b->primitive, b->attribute, precision, &cost, to, error);
+	if (b->attribute == NT_ATTRIBUTE_TANGENT && precision > NT_PRECISION_FLOAT)
+		nt_precision_report(b->composition->scene, precision, &cost,
+			nt_mesh_place(b->primitive->mesh, &(nt_place){0}));
+	return status;
+}
+
+static uint32_t add_block(composition *c, const nt_new_primitive *primitive, nt_attribute attribute, uint64_t size)
+{
+	block *added = &c->blocks[c->block_count++];
+	*added = (block){c, primitive, attribute};
+	return nt_model_view(&c->model, size,
+		attribute == NT_ATTRIBUTE_COUNT ? NT_GLTF_ELEMENT_ARRAY_BUFFER : NT_GLTF_ARRAY_BUFFER,
+		write_block, added);
 }
 
 static uint32_t plan_attribute(composition *c, const nt_new_primitive *primitive, nt_attribute attribute)
@@ -119,14 +116,14 @@ static uint32_t plan_attribute(composition *c, const nt_new_primitive *primitive
 		.normalized = integers,
 	};
 	if (integers)
-		nt_model_require(c->model, NT_GLTF_QUANTIZATION);
+		nt_model_require(&c->model, NT_GLTF_QUANTIZATION);
 	float min[3], max[3];
 	if (attribute == NT_ATTRIBUTE_POSITION) {
 		nt_new_primitive_bounds(primitive, min, max);
 		accessor.min = min;
 		accessor.max = max;
 	}
-	return nt_model_add_accessor(c->model, &accessor);
+	return nt_model_add_accessor(&c->model, &accessor);
 }
 
 static uint32_t plan_indices(composition *c, const nt_new_primitive *primitive)
@@ -141,7 +138,7 @@ static uint32_t plan_indices(composition *c, const nt_new_primitive *primitive)
 		.components = 1,
 		.count = primitive->index_count,
 	};
-	return nt_model_add_accessor(c->model, &accessor);
+	return nt_model_add_accessor(&c->model, &accessor);
 }
 
 static void plan_geometry(composition *c)
@@ -189,14 +186,14 @@ static nt_status plan_materials(composition *c, nt_error *error)
 	if (status == NT_OK)
 		status = nt_output_add(c->output, c->options.path, NT_ROLE_MAIN, &c->main, error);
 	if (status == NT_OK)
-		status = nt_image_set_add(c->images, c->scene, c->model, &c->buffer_size, c->output, error);
+		status = nt_image_set_add(c->images, c->scene, &c->model, c->output, error);
 	for (size_t m = 0; m < c->scene->mesh_count && status == NT_OK; m++)
 		for (size_t p = 0; p < c->primitives[m].count; p++) {
 			const nt_new_primitive *primitive = &c->primitives[m].items[p];
 			uint32_t *known = number_of(c, primitive);
 			if (*known == NT_MODEL_NONE)
 				*known = nt_new_material_add(material_of(c, primitive),
-					is_textured(c, primitive) ? c->images : NULL, c->model);
+					is_textured(c, primitive) ? c->images : NULL, &c->model);
 		}
 	return status;
 }
@@ -242,8 +239,8 @@ static nt_status plan_scene(composition *c, nt_error *error)
 			nt_model_attribute attributes[NT_ATTRIBUTE_COUNT];
 			const size_t attribute_count = list_attributes(record, attributes);
 			if (begins_mesh(&c->primitives[m], p))
-				count = nt_model_mesh(c->model, name_of(c, m, primitive->group)) + 1;
-			nt_model_primitive(c->model, attributes, attribute_count, record->indices,
+				count = nt_model_mesh(&c->model, name_of(c, m, primitive->group)) + 1;
+			nt_model_primitive(&c->model, attributes, attribute_count, record->indices,
 				*number_of(c, primitive));
 		}
 	}
@@ -252,201 +249,10 @@ static nt_status plan_scene(composition *c, nt_error *error)
 		uint32_t number = numbers[m];
 		for (size_t p = 0; p < c->primitives[m].count; p++)
 			if (begins_mesh(&c->primitives[m], p))
-				nt_model_node(c->model, name_of(c, m, c->primitives[m].items[p].group), number++,
+				nt_model_node(&c->model, name_of(c, m, c->primitives[m].items[p].group), number++,
 					scene->origin);
 	}
 	return NT_OK;
-}
-
-/* ---- writing ---- */
-
-static nt_status stream_bytes(void *user, const void *bytes, size_t size, nt_error *error)
-{
-	byte_stream *stream = user;
-	stream->position += size;
-	return stream->base64 ? nt_base64_write(stream->base64, bytes, size, error)
-			      : nt_sink_write(stream->sink, bytes, size, error);
-}
-
-/* Tangents on their way to integers. */
-typedef struct rounding_stream {
-	byte_stream *stream;
-	nt_precision precision;
-	nt_rounding cost;
-} rounding_stream;
-
-static nt_status stream_rounded(void *user, const void *bytes, size_t size, nt_error *error)
-{
-	enum { BLOCK_ROWS = 256 };
-	rounding_stream *rounding = user;
-	const float *rows = bytes;
-	float chunk[BLOCK_ROWS][4];
-	unsigned char out[sizeof chunk];
-	nt_status status = NT_OK;
-	for (size_t left = size / sizeof *chunk, count; left && status == NT_OK; left -= count) {
-		count = left < BLOCK_ROWS ? left : BLOCK_ROWS;
-		memcpy(chunk, rows, count * sizeof *chunk);
-		rows += 4 * count;
-		nt_precision_round(rounding->precision, chunk[0], count, &rounding->cost);
-		nt_precision_encode(rounding->precision, chunk[0], count, out);
-		status = stream_bytes(rounding->stream, out,
-			count * nt_precision_bytes(rounding->precision), error);
-	}
-	return status;
-}
-
-/* One attribute of a primitive. */
-static nt_status write_block(const composition *c, const block *b, byte_stream *stream, nt_error *error)
-{
-	if (b->attribute == NT_ATTRIBUTE_COUNT)
-		return nt_new_primitive_write_indices(b->primitive, stream_bytes, stream, error);
-	if (b->attribute != NT_ATTRIBUTE_TANGENT || c->options.precision <= NT_PRECISION_FLOAT)
-		return nt_new_primitive_write_attribute(b->primitive, b->attribute, stream_bytes, stream, error);
-	rounding_stream rounding = {.stream = stream, .precision = c->options.precision};
-	const nt_status status =
-		nt_new_primitive_write_attribute(b->primitive, b->attribute, stream_rounded, &rounding, error);
-	nt_precision_report(c->scene, c->options.precision, &rounding.cost,
-		nt_mesh_place(b->primitive->mesh, &(nt_place){0}));
-	return status;
-}
-
-static nt_status pad_to(byte_stream *stream, uint64_t offset, nt_error *error)
-{
-	static const char zeros[4];
-	return stream_bytes(stream, zeros, (size_t)(offset - stream->position), error);
-}
-
-/* The whole buffer. */
-static nt_status write_buffer(const composition *c, byte_stream *stream, nt_error *error)
-{
-	nt_status status = NT_OK;
-	for (size_t i = 0; i < c->block_count && status == NT_OK; i++) {
-		const block *b = &c->blocks[i];
-		status = pad_to(stream, b->offset, error);
-		if (status != NT_OK)
-			break;
-		status = write_block(c, b, stream, error);
-	}
-	for (uint32_t i = 0; status == NT_OK && (i = nt_image_set_embedded(c->images, i)) != UINT32_MAX; i++) {
-		nt_file file;
-		uint64_t offset;
-		status = nt_image_set_open(c->images, i, &file, &offset, error);
-		if (status != NT_OK)
-			break;
-		status = pad_to(stream, offset, error);
-		if (status == NT_OK && stream->base64)
-			status = stream_bytes(stream, file.data, file.size, error);
-		else if (status == NT_OK)
-			status = nt_sink_copy(stream->sink, &file, 0, file.size, error);
-		if (!stream->base64)
-			stream->position += file.size;
-		nt_image_set_close(c->images, i, &file);
-	}
-	return status;
-}
-
-static nt_status write_glb(const composition *c, nt_sink *sink, nt_error *error)
-{
-	nt_model_text text;
-	const bool has_bin = c->buffer_size > 0;
-	byte_stream stream = {.sink = sink};
-	nt_status status = nt_model_json(c->model, c->buffer_size, NT_MODEL_CHUNK, NULL, &text, error);
-	if (status == NT_OK)
-		status = nt_glb_begin(sink, text.size, has_bin, c->buffer_size, 0, error);
-	if (status == NT_OK)
-		status = nt_model_text_begin(&text, sink, error);
-	if (status == NT_OK)
-		status = nt_model_text_end(&text, sink, error);
-	if (status == NT_OK)
-		status = nt_glb_end_json(sink, text.size, has_bin, c->buffer_size, error);
-	if (status == NT_OK)
-		status = write_buffer(c, &stream, error);
-	if (status == NT_OK)
-		status = nt_glb_end_bin(sink, c->buffer_size, error);
-	nt_model_text_free(&text);
-	return status;
-}
-
-static nt_status write_embedded(const composition *c, nt_sink *sink, nt_error *error)
-{
-	nt_model_text text;
-	nt_base64 base64 = {.sink = sink};
-	byte_stream stream = {.sink = sink, .base64 = &base64};
-	nt_status status =
-		nt_model_json(c->model, c->buffer_size, NT_MODEL_EMBEDDED, NULL, &text, error);
-	if (status == NT_OK)
-		status = nt_model_text_begin(&text, sink, error);
-	if (status == NT_OK)
-		status = write_buffer(c, &stream, error);
-	if (status == NT_OK)
-		status = nt_base64_end(&base64, error);
-	if (status == NT_OK)
-		status = nt_model_text_end(&text, sink, error);
-	nt_model_text_free(&text);
-	return status;
-}
-
-/* Path of the .bin: the output's with another ending. */
-static void bin_path(nt_buffer *path, const char *output)
-{
-	const char *slash = strrchr(output, '/');
-	const char *dot = strrchr(slash ? slash + 1 : output, '.');
-	const bool has_ending = dot && dot != (slash ? slash + 1 : output);
-	nt_buffer_append(path, output, has_ending ? (size_t)(dot - output) : strlen(output));
-	nt_buffer_text(path, ".bin");
-}
-
-/* The .bin of the document, if it has a buffer. */
-static nt_status write_bin(const composition *c, nt_sink **bin, nt_error *error)
-{
-	nt_buffer path = {0};
-	*bin = NULL;
-	bin_path(&path, c->options.path);
-	nt_status status = path.failed ? nt_fail_memory(error) : NT_OK;
-	if (status == NT_OK && c->buffer_size > 0)
-		status = nt_output_add(c->output, path.data, NT_ROLE_BUFFER, bin, error);
-	nt_buffer_free(&path);
-	if (status != NT_OK || !*bin)
-		return status;
-	byte_stream stream = {.sink = *bin};
-	nt_sink_expect(*bin, c->buffer_size);
-	status = write_buffer(c, &stream, error);
-	return status == NT_OK ? nt_output_settle(c->output, *bin, error) : status;
-}
-
-static nt_status write_document(const composition *c, const nt_sink *bin, bool staging, nt_sink *sink,
-	nt_error *error)
-{
-	nt_buffer uri = {0}, extras = {0};
-	nt_model_text text = {0};
-	if (bin) {
-		nt_gltf_record_uri(&uri, bin, staging);
-		nt_gltf_record_extras(&extras, bin, staging);
-	}
-	nt_status status = uri.failed || extras.failed ? nt_fail_memory(error) : NT_OK;
-	const nt_model_file file = {uri.data, extras.data};
-	if (status == NT_OK)
-		status = nt_model_json(c->model, c->buffer_size, NT_MODEL_FILE, &file, &text, error);
-	if (status == NT_OK)
-		status = nt_model_text_begin(&text, sink, error);
-	if (status == NT_OK)
-		status = nt_model_text_end(&text, sink, error);
-	nt_model_text_free(&text);
-	nt_buffer_free(&uri);
-	nt_buffer_free(&extras);
-	return status;
-}
-
-static nt_status write_with_bin(const composition *c, nt_sink *sink, nt_error *error)
-{
-	nt_sink *bin, *staging;
-	nt_status status = write_bin(c, &bin, error);
-	if (status == NT_OK && nt_output_has_staging(c->output)) {
-		status = nt_output_add(c->output, c->options.path, NT_ROLE_STAGING, &staging, error);
-		if (status == NT_OK)
-			status = write_document(c, bin, true, staging, error);
-	}
-	return status == NT_OK ? write_document(c, bin, false, sink, error) : status;
 }
 
 nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_output *output,
@@ -459,8 +265,7 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 			"glTF with a .bin cannot go to %s; write glb, or use --buffers=embed",
 			strcmp(options->path, "-") == 0 ? "standard output" : "a device");
 
-	c.model = nt_model_create("nmtan " NMTAN_VERSION_STRING);
-	nt_status status = c.model ? NT_OK : nt_fail_memory(error);
+	nt_status status = nt_model_create(&c.model, error);
 	const nt_place place = nt_line_place(scene->path, scene->left_out_line);
 	if (scene->left_out.size)
 		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, &place, scene->left_out_count, "%.*s",
@@ -477,11 +282,11 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 	if (status == NT_OK)
 		status = plan_scene(&c, error);
 	if (status == NT_OK)
-		status = options->format == NT_FORMAT_GLB ? write_glb(&c, c.main, error)
-			: options->buffers == NT_BUFFERS_EMBED ? write_embedded(&c, c.main, error)
-			: write_with_bin(&c, c.main, error);
+		status = nt_model_finish(&c.model, error);
+	if (status == NT_OK)
+		status = nt_gltf_save(scene, &c.model.edits, options, "", output, c.main, error);
 	nt_image_set_free(c.images);
-	nt_model_free(c.model);
+	nt_model_free(&c.model);
 	nt_arena_free(&c.arena);
 	return status;
 }

@@ -20,9 +20,8 @@ typedef struct image_entry {
 	const nt_texture *image;
 	const nt_material *material; /* the first that uses it */
 	size_t line;                 /* there */
-	bool used, embedded;
+	bool used;
 	bool wants[2];       /* a texture that repeats, one that is clamped */
-	uint64_t offset;     /* in the buffer, where it is embedded */
 	const nt_sink *file; /* of the output; NULL: none */
 	uint32_t textures[2]; /* repeating and clamped; NT_MODEL_NONE: nobody wants it */
 } image_entry;
@@ -156,53 +155,60 @@ static nt_status write_file(nt_image_set *set, image_entry *entry, nt_output *ou
 	return status;
 }
 
-static uint32_t add_embedded(image_entry *entry, const char *title, nt_model *model, uint64_t *buffer_size)
+/* For nt_model_view(). */
+static nt_status write_embedded(const void *user, const nt_byte_target *to, nt_error *error)
 {
-	const uint64_t size = entry->image->made ? entry->image->size : entry->image->sources[0]->identity.size;
-	entry->offset = (*buffer_size + 3) & ~(uint64_t)3;
-	*buffer_size = entry->offset + size;
-	const uint32_t view = nt_model_view(model, entry->offset, size, NT_GLTF_NO_TARGET);
-	return nt_model_image_view(model, title, view, nt_image_media_type(entry->image->type));
+	const image_entry *entry = user;
+	nt_file file;
+	nt_status status = open_image(entry->image, &file, error);
+	if (status)
+		return status;
+	status = nt_target_put_file(to, &file, error);
+	close_image(entry->image, &file);
+	return status;
 }
 
-static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_scene *scene, nt_model *model,
-	uint64_t *buffer_size, nt_output *output, nt_error *error)
+static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_scene *scene, nt_model *model, nt_output *output,
+	nt_error *error)
 {
-	entry->embedded = set->choice == NT_IMAGES_EMBED;
-	const bool leaves = !entry->image->made && !nt_link_is_inside(entry->image->sources[0]->path, set->folder);
+	const nt_texture *from = entry->image;
+	const bool embedded = set->choice == NT_IMAGES_EMBED;
+	const bool leaves = !from->made && !nt_link_is_inside(from->sources[0]->path, set->folder);
 	if (leaves && set->choice == NT_IMAGES_LINK) {
 		const nt_place place = nt_material_place(scene, entry->material, entry->line);
 		nt_finding_add(&scene->findings, NT_CODE_LINK_LEAVES, &place, 1, "%s, as --images=link asks",
-			entry->image->name);
+			from->name);
 	}
-	if (entry->image->made ? !entry->embedded
-				: set->choice == NT_IMAGES_COPY || (set->choice == NT_IMAGES_DEFAULT && leaves)) {
+	if (from->made ? !embedded
+		: set->choice == NT_IMAGES_COPY || (set->choice == NT_IMAGES_DEFAULT && leaves)) {
 		const nt_status status = write_file(set, entry, output, error);
 		if (status != NT_OK)
 			return status;
 	}
-	nt_buffer uri = {0};
 	/* its name in the document: the file's, without its ending */
-	const char *name = entry->image->name, *dot = strrchr(name, '.');
-	char *title = strndup(name, dot ? (size_t)(dot - name) : strlen(name));
-	uint32_t image = NT_MODEL_NONE;
-	if (entry->embedded) {
-		image = add_embedded(entry, title, model, buffer_size);
+	const char *dot = strrchr(from->name, '.');
+	nt_buffer uri = {0}, title = {0};
+	nt_buffer_append(&title, from->name, dot ? (size_t)(dot - from->name) : strlen(from->name));
+	uint32_t number;
+	nt_json_value *image = nt_model_append(model, "images", &number);
+	if (embedded) {
+		const uint64_t size = from->made ? from->size : from->sources[0]->identity.size;
+		nt_model_put_index(model, image, "bufferView",
+			nt_model_view(model, size, NT_GLTF_NO_TARGET, write_embedded, entry));
+		nt_model_put_string(model, image, "mimeType", nt_image_media_type(from->type));
+	} else if (entry->file) {
+		nt_uri_append_path(&uri, nt_sink_name(entry->file, false));
 	} else {
-		if (entry->file)
-			nt_uri_append_path(&uri, nt_sink_name(entry->file, false));
-		else
-			nt_link_uri(&uri, set->folder, entry->image->sources[0]->path);
-		if (!uri.failed)
-			image = nt_model_image_uri(model, title, uri.data);
+		nt_link_uri(&uri, set->folder, from->sources[0]->path);
 	}
+	nt_model_put_string(model, image, "name", title.data);
+	nt_model_put_string(model, image, "uri", uri.data);
 	for (int clamp = 0; clamp < 2; clamp++)
 		if (entry->wants[clamp])
-			entry->textures[clamp] =
-				nt_model_texture(model, image, clamp, nt_image_extension(entry->image->type));
-	const bool failed = uri.failed || !title;
+			entry->textures[clamp] = nt_model_texture(model, number, clamp, nt_image_extension(from->type));
+	const bool failed = uri.failed || title.failed;
 	nt_buffer_free(&uri);
-	free(title);
+	nt_buffer_free(&title);
 	return failed ? nt_fail_memory(error) : NT_OK;
 }
 
@@ -220,19 +226,18 @@ static void note_made(const nt_image_set *set, nt_output *output)
 			nt_output_note(output, "%s %s", k ? " and" : "", nt_last_part(entry->image->sources[k]->path));
 		nt_output_note(output, " became %s%s",
 			entry->file ? nt_sink_name(entry->file, false) : entry->image->name,
-			entry->embedded ? " (embedded)" : "");
+			set->choice == NT_IMAGES_EMBED ? " (embedded)" : "");
 	}
 	if (count > NAMES_SHOWN)
 		nt_output_note(output, ", and %zu more", count - NAMES_SHOWN);
 }
 
-nt_status nt_image_set_add(nt_image_set *set, nt_scene *scene, nt_model *model, uint64_t *buffer_size,
-	nt_output *output, nt_error *error)
+nt_status nt_image_set_add(nt_image_set *set, nt_scene *scene, nt_model *model, nt_output *output, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < set->entry_count && status == NT_OK; i++)
 		if (set->entries[i].used)
-			status = add_entry(set, &set->entries[i], scene, model, buffer_size, output, error);
+			status = add_entry(set, &set->entries[i], scene, model, output, error);
 	if (status == NT_OK)
 		note_made(set, output);
 	return status;
@@ -256,25 +261,4 @@ nt_model_use nt_image_set_texture(const nt_image_set *set, const nt_map *map)
 	/* glTF's v is 1 - v: it samples at 1 - (s v + o) = s (1 - v) + 1 - s - o */
 	use.offset[1] = (float)fmax(fmin(1.0 - p->scale[1] - p->offset[1], FLT_MAX), -FLT_MAX);
 	return use;
-}
-
-/* ---- writing ---- */
-
-uint32_t nt_image_set_embedded(const nt_image_set *set, uint32_t from)
-{
-	while (from < set->entry_count && !set->entries[from].embedded)
-		from++;
-	return from < set->entry_count ? from : UINT32_MAX;
-}
-
-nt_status nt_image_set_open(const nt_image_set *set, uint32_t number, nt_file *file,
-	uint64_t *offset, nt_error *error)
-{
-	*offset = set->entries[number].offset;
-	return open_image(set->entries[number].image, file, error);
-}
-
-void nt_image_set_close(const nt_image_set *set, uint32_t number, nt_file *file)
-{
-	close_image(set->entries[number].image, file);
 }

@@ -305,24 +305,27 @@ static void make_units(float *normals, size_t count)
 }
 
 nt_status nt_new_primitive_write_attribute(const nt_new_primitive *primitive, nt_attribute attribute,
-	nt_byte_writer write, void *user, nt_error *error)
+	nt_precision precision, nt_rounding *cost, const nt_byte_target *to, nt_error *error)
 {
 	const nt_mesh *mesh = primitive->mesh;
-	const size_t row_bytes = (size_t)attribute_table[attribute].width * sizeof(float);
+	const bool rounds = attribute == NT_ATTRIBUTE_TANGENT && precision > NT_PRECISION_FLOAT;
+	const size_t row_bytes = rounds ? nt_precision_bytes(precision)
+					: (size_t)attribute_table[attribute].width * sizeof(float);
 	size_t begin = 0;
 	const bool as_it_is = attribute == NT_ATTRIBUTE_POSITION || attribute == NT_ATTRIBUTE_COLOR ||
-		attribute == NT_ATTRIBUTE_TANGENT ||
+		(attribute == NT_ATTRIBUTE_TANGENT && !rounds) ||
 		(attribute == NT_ATTRIBUTE_NORMAL && all_unit(mesh->normals, mesh->vertex_count));
 	if (as_it_is && !primitive->vertices) {
 		const size_t stored = attribute == NT_ATTRIBUTE_TANGENT ? vertex_count_after_split(mesh)
 								  : mesh->vertex_count;
 		begin = primitive->vertex_count < stored ? primitive->vertex_count : stored;
 		const nt_status status =
-			write(user, attribute_rows(mesh, attribute), begin * row_bytes, error);
+			nt_target_put(to, attribute_rows(mesh, attribute), begin * row_bytes, error);
 		if (status != NT_OK)
 			return status;
 	}
 	float block[4 * BLOCK_ROWS], normals[3 * BLOCK_ROWS];
+	unsigned char integers[8 * BLOCK_ROWS];
 	while (begin < primitive->vertex_count) {
 		const size_t left = primitive->vertex_count - begin;
 		const size_t count = left < BLOCK_ROWS ? left : BLOCK_ROWS;
@@ -339,7 +342,12 @@ nt_status nt_new_primitive_write_attribute(const nt_new_primitive *primitive, nt
 			for (size_t i = 0; i < count; i++)
 				nt_bitangent(normals + 3 * i, block + 4 * i, block + 3 * i);
 		}
-		const nt_status status = write(user, block, count * row_bytes, error);
+		if (rounds) {
+			nt_precision_round(precision, block, count, cost);
+			nt_precision_encode(precision, block, count, integers);
+		}
+		const nt_status status = nt_target_put(to, rounds ? (const void *)integers : block, count * row_bytes,
+			error);
 		if (status != NT_OK)
 			return status;
 		begin += count;
@@ -347,11 +355,11 @@ nt_status nt_new_primitive_write_attribute(const nt_new_primitive *primitive, nt
 	return NT_OK;
 }
 
-nt_status nt_new_primitive_write_indices(const nt_new_primitive *primitive, nt_byte_writer write, void *user,
-	nt_error *error)
+nt_status nt_new_primitive_write_indices(const nt_new_primitive *primitive, const nt_byte_target *to, nt_error *error)
 {
 	if (nt_new_primitive_index_type(primitive) == NT_GLTF_UINT)
-		return write(user, primitive->indices, primitive->index_count * sizeof *primitive->indices, error);
+		return nt_target_put(to, primitive->indices, primitive->index_count * sizeof *primitive->indices,
+			error);
 	uint16_t block[4 * BLOCK_ROWS];
 	size_t begin = 0;
 	while (begin < primitive->index_count) {
@@ -359,7 +367,7 @@ nt_status nt_new_primitive_write_indices(const nt_new_primitive *primitive, nt_b
 		const size_t count = left < 4 * BLOCK_ROWS ? left : 4 * BLOCK_ROWS;
 		for (size_t i = 0; i < count; i++)
 			block[i] = (uint16_t)primitive->indices[begin + i];
-		const nt_status status = write(user, block, count * sizeof *block, error);
+		const nt_status status = nt_target_put(to, block, count * sizeof *block, error);
 		if (status != NT_OK)
 			return status;
 		begin += count;
