@@ -120,7 +120,7 @@ static nt_status run_if_needed(progress *p, nt_job *job)
 			&outcome->summary.trace, &outcome->error);
 	if (current) {
 		job->end = NT_JOB_CURRENT;
-		outcome->summary.keeps_wrong = updated.making.keeps_wrong;
+		outcome->summary.keeps_wrong = updated.keeps_wrong;
 	}
 	const bool runs = !status && !current;
 	if (runs) {
@@ -129,10 +129,10 @@ static nt_status run_if_needed(progress *p, nt_job *job)
 	}
 	nt_severity worst;
 	if (runs && outcome->summary.report && nt_report_worst(outcome->summary.report, &worst))
-		updated.making.worst = (int)worst;
-	updated.making.keeps_wrong = outcome->summary.keeps_wrong;
-	nt_update_done(&updated, runs && !status, &outcome->summary.trace);
-	return status;
+		updated.worst = (int)worst;
+	updated.keeps_wrong = outcome->summary.keeps_wrong;
+	const nt_status done = nt_update_done(&updated, runs && !status, &outcome->summary.trace, &outcome->error);
+	return status ? status : done;
 }
 
 static void tell(progress *p, nt_job *ended)

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/name_table.h"
-#include "batch/record.h"
+#include "file/lookup.h"
 #include "file/output.h"
 #include "file/relative_path.h"
 

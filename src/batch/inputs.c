@@ -12,7 +12,6 @@
 #include <sys/stat.h>
 
 #include "base/buffer.h"
-#include "batch/record.h"
 #include "base/name_table.h"
 #include "file/input.h"
 #include "file/lookup.h"

@@ -13,7 +13,6 @@
 #include <sys/stat.h>
 
 #include "base/buffer.h"
-#include "batch/record.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/uri.h"

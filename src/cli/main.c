@@ -27,6 +27,7 @@
 #include "cli/report_options.h"
 #include "cli/say.h"
 #include "ext/module.h"
+#include "file/lookup.h"
 #include "file/output.h"
 #include "file/relative_path.h"
 #include "pipeline/report_folder.h"

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 
 #include "base/counts.h"
-#include "batch/record.h"
+#include "file/lookup.h"
 #include "report/codes.h"
 
 /* So many places of one code are shown without -v; the rest is counted. */

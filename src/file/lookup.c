@@ -94,9 +94,3 @@ nt_status nt_lookup_any_case(
 	}
 	return status;
 }
-
-nt_status nt_lookup_real(const char *path, char **real, nt_error *error)
-{
-	*real = realpath(path, NULL);
-	return *real ? NT_OK : nt_lookup_failed(path, errno, error);
-}

@@ -30,7 +30,10 @@ nt_status nt_lookup_found(const char *path, struct stat *info, bool *found, nt_e
 nt_status nt_lookup_any_case(
 	const char *folder, const char *name, size_t length, char **entry, nt_error *error);
 
-/* realpath(); free(*real). */
-nt_status nt_lookup_real(const char *path, char **real, nt_error *error);
+/* Whether two names are of one file. */
+static inline bool nt_same_file(const struct stat *a, const struct stat *b)
+{
+	return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
 
 #endif

@@ -11,7 +11,25 @@
 #include <string.h>
 #include <unistd.h>
 #include "file/lookup.h"
-#include "file/uri.h"
+#include "file/trace.h"
+
+/* ---- links ---- */
+
+nt_status nt_path_real(nt_buffer *text, const char *path, nt_error *error)
+{
+	nt_buffer spelled = {0};
+	char *real = realpath(path, NULL);
+	nt_status status = real ? nt_path_absolute(&spelled, path, error) : nt_lookup_failed(path, errno, error);
+	if (!status && strcmp(spelled.data, real) != 0)
+		nt_trace_link(path, real);
+	if (status == NT_ERROR_MISSING)
+		nt_trace_link(path, NULL);
+	if (real)
+		nt_buffer_text(text, real);
+	nt_buffer_free(&spelled);
+	free(real);
+	return status || !text->failed ? status : nt_fail_memory(error);
+}
 
 nt_status nt_link_folder(nt_buffer *text, const char *path, nt_error *error)
 {
@@ -21,22 +39,83 @@ nt_status nt_link_folder(nt_buffer *text, const char *path, nt_error *error)
 	char *folder = slash ? strndup(path, (size_t)(slash - path) + (slash == path)) : strdup(".");
 	if (!folder)
 		return nt_fail_memory(error);
-	char *resolved = realpath(folder, NULL);
 	nt_status status = NT_OK;
-	if (resolved) {
-		nt_buffer_text(text, resolved);
-	} else if (slash && errno == ENOENT) {
+	if (slash && access(folder, F_OK) != 0 && errno == ENOENT) {
 		/* not there (yet, in a dry run): its own folder, and its name as it is spelled */
 		const char *name = strrchr(folder, '/');
 		status = nt_link_folder(text, folder, error);
 		nt_buffer_format(text, "/%s", name ? name + 1 : folder);
 	} else {
-		status = nt_lookup_failed(folder, errno, error);
+		status = nt_path_real(text, folder, error);
 	}
 	free(folder);
-	free(resolved);
 	return status || !text->failed ? status : nt_fail_memory(error);
 }
+
+/* Whether `path` is `folder` or below. */
+static bool is_within(const char *path, const char *folder)
+{
+	const size_t size = strcmp(folder, "/") == 0 ? 0 : strlen(folder);
+	return strncmp(path, folder, size) == 0 && (path[size] == '/' || path[size] == '\0');
+}
+
+static void cut(nt_buffer *text, size_t size)
+{
+	if (text->data)
+		text->data[text->size = size] = '\0';
+}
+
+/* As the system goes it, component by component; a link's text takes the place of the component. */
+nt_status nt_path_stays_inside(const char *folder, const char *name, bool *inside, nt_error *error)
+{
+	enum { MOST_LINKS = 40 }; /* as Linux follows */
+	nt_buffer real = {0}, rest = {0};
+	unsigned links = 0;
+	bool outside = false;
+	nt_buffer_text(&real, strcmp(folder, "/") != 0 ? folder : "");
+	nt_buffer_text(&rest, name);
+	const size_t begin = real.size;
+	for (size_t at = 0; !outside && !real.failed && !rest.failed && at < rest.size;) {
+		const char *part = rest.data + at;
+		const size_t length = strcspn(part, "/"), before = real.size;
+		char target[PATH_MAX];
+		at += length + (part[length] == '/');
+		if (length == 2 && memcmp(part, "..", 2) == 0) {
+			const char *slash = before ? strrchr(real.data, '/') : NULL;
+			cut(&real, slash ? (size_t)(slash - real.data) : 0);
+			continue;
+		}
+		if (!length || (length == 1 && *part == '.'))
+			continue;
+		nt_buffer_format(&real, "/%.*s", (int)length, part);
+		/* the folder is real, and so is what leads to it */
+		if (real.failed || is_within(folder, real.data))
+			continue;
+		outside = !is_within(real.data, folder);
+		const ssize_t size = outside ? -1 : readlink(real.data, target, sizeof target - 1);
+		if (size < 0 || ++links > MOST_LINKS)
+			continue;
+		nt_buffer next = {0};
+		nt_buffer_format(&next, "%.*s/%s", (int)size, target, rest.data + at);
+		cut(&real, target[0] == '/' ? 0 : before);
+		nt_buffer_free_into(&rest, &next);
+		rest = next;
+		at = 0;
+	}
+	*inside = !outside && real.size > begin;
+	if (!*inside) {
+		cut(&real, 0);
+		nt_buffer_format(&real, "%s/%s", folder, name);
+	}
+	const bool failed = real.failed || rest.failed;
+	if (!*inside && !failed)
+		nt_trace_outside(real.data, name);
+	nt_buffer_free(&real);
+	nt_buffer_free(&rest);
+	return failed ? nt_fail_memory(error) : NT_OK;
+}
+
+/* ---- text ---- */
 
 static bool is_separator(char c)
 {
@@ -115,24 +194,4 @@ const char *nt_last_part(const char *path)
 {
 	const char *slash = strrchr(path, '/');
 	return slash ? slash + 1 : path;
-}
-
-void nt_link_uri(nt_buffer *text, const char *folder, const char *path)
-{
-	if (strcmp(folder, "/") == 0)
-		folder = "";
-	/* where the last common component ends */
-	size_t common = 0;
-	for (size_t i = 0;; i++) {
-		const bool folder_ends = folder[i] == '/' || folder[i] == '\0';
-		if (folder_ends && path[i] == '/')
-			common = i;
-		if (folder[i] == '\0' || folder[i] != path[i])
-			break;
-	}
-	for (const char *rest = folder + common; *rest; rest++)
-		if (*rest == '/')
-			nt_buffer_text(text, "../");
-	const char *name = path + common + 1;
-	nt_uri_append_path(text, name);
 }

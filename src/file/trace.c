@@ -119,7 +119,6 @@ static bool is_noted(const nt_trace *trace, uint64_t hash, nt_trace_kind kind, c
 static void free_file(nt_trace_file *file)
 {
 	free(file->path);
-	free(file->present);
 	free(file->found);
 }
 
@@ -131,9 +130,8 @@ static bool add(nt_trace *trace, uint64_t hash, const nt_trace_file *file)
 	nt_trace_file *added = &trace->files[trace->count];
 	*added = *file;
 	added->path = strdup(file->path);
-	added->present = file->present ? strdup(file->present) : NULL;
 	added->found = file->found ? strdup(file->found) : NULL;
-	if (added->path && (added->present || !file->present) && (added->found || !file->found)) {
+	if (added->path && (added->found || !file->found)) {
 		trace->count++;
 		return true;
 	}
@@ -142,13 +140,13 @@ static bool add(nt_trace *trace, uint64_t hash, const nt_trace_file *file)
 	return false;
 }
 
-static void note(nt_trace_kind kind, const char *path, const char *present, const char *found, const struct stat *info)
+static void note(nt_trace_kind kind, const char *path, const char *found, const struct stat *info)
 {
 	nt_trace *trace = current;
 	if (!trace)
 		return;
-	nt_trace_file file = {.path = (char *)(uintptr_t)path, .kind = kind, .present = (char *)(uintptr_t)present,
-		.found = (char *)(uintptr_t)found, .noted = nt_trace_now()};
+	nt_trace_file file = {.path = (char *)(uintptr_t)path, .kind = kind, .found = (char *)(uintptr_t)found,
+		.noted = nt_trace_now()};
 	if (info) {
 		file.size = (uint64_t)info->st_size;
 		file.inode = (uint64_t)info->st_ino;
@@ -165,27 +163,32 @@ static void note(nt_trace_kind kind, const char *path, const char *present, cons
 
 void nt_trace_read(const char *path, const struct stat *info)
 {
-	note(NT_TRACE_READ, path, NULL, NULL, info);
+	note(NT_TRACE_READ, path, NULL, info);
 }
 
 void nt_trace_missing(const char *path)
 {
-	note(NT_TRACE_MISSING, path, NULL, NULL, NULL);
+	note(NT_TRACE_MISSING, path, NULL, NULL);
 }
 
-void nt_trace_written(const char *path, const char *present, const struct stat *info)
+void nt_trace_written(const char *path, const struct stat *info)
 {
-	note(NT_TRACE_WRITTEN, path, present, NULL, info);
+	note(NT_TRACE_WRITTEN, path, NULL, info);
 }
 
-void nt_trace_way(const char *path)
+void nt_trace_link(const char *path, const char *real)
 {
-	note(NT_TRACE_WAY, path, NULL, NULL, NULL);
+	note(NT_TRACE_LINK, path, real, NULL);
+}
+
+void nt_trace_outside(const char *path, const char *name)
+{
+	note(NT_TRACE_OUTSIDE, path, name, NULL);
 }
 
 void nt_trace_searched(const char *path, const char *found, const struct stat *info)
 {
-	note(NT_TRACE_SEARCHED, path, NULL, found, info);
+	note(NT_TRACE_SEARCHED, path, found, info);
 }
 
 /* Nothing but these comes after them. Their numbers stay in the index, and are given again. */

@@ -18,15 +18,16 @@ typedef enum nt_trace_kind {
 	NT_TRACE_MISSING, /* it was looked for, and would have been read as a regular file */
 	NT_TRACE_WRITTEN,
 	NT_TRACE_SEARCHED, /* its folder was searched for its name in any case */
-	NT_TRACE_WAY       /* where the links on its way lead has decided something */
+	NT_TRACE_LINK,     /* by links on its way, it is another path */
+	NT_TRACE_OUTSIDE   /* by links on its way, it leaves a folder */
 } nt_trace_kind;
 
 /* A file as it was when it was opened, or as it will be when its set is in place; or a folder as it was searched. */
 typedef struct nt_trace_file {
 	char *path; /* as the run named it: relative to the current folder, or absolute */
 	nt_trace_kind kind;
-	char *present; /* WRITTEN: where its bytes are when it is noted; NULL: under `path` */
-	char *found;   /* SEARCHED: the entry that has the name; NULL: none */
+	char *found; /* SEARCHED: the entry that has the name; LINK: the path; NULL: none. OUTSIDE: the name
+	                in the folder */
 	uint64_t size, inode;      /* 0 for what is missing */
 	int64_t modified, changed; /* nanoseconds since 1970: last change of the bytes, and of the inode */
 	int64_t noted;             /* when it was noted */
@@ -62,12 +63,12 @@ bool nt_trace_is_read_elsewhere(const struct stat *info);
  * in one trace: each that helps a run and opens files has to be lent it. */
 nt_trace *nt_trace_use(nt_trace *trace);
 
-/* Notes one; what is about to be written has its bytes in `present` until it is in place. Nothing happens where no
- * trace is used. */
+/* Notes one; what is about to be written has its `info` already. Nothing happens where no trace is used. */
 void nt_trace_read(const char *path, const struct stat *info);
 void nt_trace_missing(const char *path);
-void nt_trace_written(const char *path, const char *present, const struct stat *info);
-void nt_trace_way(const char *path);
+void nt_trace_written(const char *path, const struct stat *info);
+void nt_trace_link(const char *path, const char *real);
+void nt_trace_outside(const char *path, const char *name);
 
 /* `path` is a name in the folder that was searched; `info` is the folder's. */
 void nt_trace_searched(const char *path, const char *found, const struct stat *info);

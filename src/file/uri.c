@@ -13,7 +13,7 @@
 #include <strings.h>
 #include "file/base64.h"
 #include "file/lookup.h"
-#include "file/way.h"
+#include "file/relative_path.h"
 
 enum { SHOWN = 200 }; /* characters of a URI that a message shows */
 
@@ -194,18 +194,18 @@ static size_t folder_length(const char *document)
 static nt_status check_links(
 	const char *path, const char *folder, const char *name, const char *uri, nt_error *error)
 {
-	char *real_folder;
+	nt_buffer real = {0};
 	bool inside = true;
 	struct stat info;
-	nt_status status = nt_lookup_real(*folder ? folder : ".", &real_folder, error);
+	nt_status status = nt_path_real(&real, *folder ? folder : ".", error);
 	if (!status)
-		status = nt_way_is_inside(real_folder, name, &inside, error);
+		status = nt_path_stays_inside(real.data, name, &inside, error);
 	if (!inside && !status)
 		status = nt_fail(error, NT_ERROR_INPUT,
 			"the URI \"%.*s\" leaves the folder of the file through a "
 			"symbolic link (refused without --outside=yes)",
 			SHOWN, uri);
-	free(real_folder);
+	nt_buffer_free(&real);
 	if (!status)
 		status = nt_lookup(path, &info, error);
 	if (status == NT_ERROR_IO || status == NT_ERROR_MISSING)
@@ -275,4 +275,24 @@ void nt_uri_append_path(nt_buffer *buffer, const char *path)
 		else
 			nt_buffer_format(buffer, "%%%02X", (unsigned char)*c);
 	}
+}
+
+void nt_link_uri(nt_buffer *text, const char *folder, const char *path)
+{
+	if (strcmp(folder, "/") == 0)
+		folder = "";
+	/* where the last common component ends */
+	size_t common = 0;
+	for (size_t i = 0;; i++) {
+		const bool folder_ends = folder[i] == '/' || folder[i] == '\0';
+		if (folder_ends && path[i] == '/')
+			common = i;
+		if (folder[i] == '\0' || folder[i] != path[i])
+			break;
+	}
+	for (const char *rest = folder + common; *rest; rest++)
+		if (*rest == '/')
+			nt_buffer_text(text, "../");
+	const char *name = path + common + 1;
+	nt_uri_append_path(text, name);
 }

@@ -52,6 +52,9 @@ bool nt_uri_append_name(nt_buffer *name, const char *uri, size_t length);
 /* Appends a path as a URI: everything but letters, digits and "-._~/" is percent-encoded. */
 void nt_uri_append_path(nt_buffer *buffer, const char *path);
 
+/* Appends the URI by which a document in `folder` reaches `path`; both absolute and resolved. */
+void nt_link_uri(nt_buffer *text, const char *folder, const char *path);
+
 /* Appends "data:<media_type>;base64," and the data. */
 void nt_uri_append_data(nt_buffer *buffer, const char *media_type, const void *bytes, size_t size);
 

@@ -14,7 +14,6 @@
 #include "file/relative_path.h"
 #include "file/trace.h"
 #include "file/uri.h"
-#include "file/way.h"
 
 /* So many last parts of a name are looked for: each is one more look into every folder. */
 enum { MOST_PARTS = 32 };
@@ -60,7 +59,6 @@ static nt_status find_bounds(search *s)
 	const nt_image_places *p = s->places;
 	nt_error failure;
 	nt_status status = NT_OK;
-	char *real = NULL;
 	if (s->bounded || p->confined)
 		return NT_OK;
 	s->bounded = true;
@@ -71,13 +69,10 @@ static nt_status find_bounds(search *s)
 		*slash = '\0';
 	if (!slash || slash == s->above.data)
 		nt_buffer_free(&s->above);
-	if (p->root && (!status || status == NT_ERROR_MISSING)) {
-		nt_trace_way(p->root);
-		status = nt_lookup_real(p->root, &real, &failure);
-	}
-	if (real && strcmp(real, "/") != 0)
-		nt_buffer_text(&s->root, real);
-	free(real);
+	if (p->root && (!status || status == NT_ERROR_MISSING))
+		status = nt_path_real(&s->root, p->root, &failure);
+	if (s->root.size == 1)
+		nt_buffer_free(&s->root);
 	if (s->root.failed || s->above.failed)
 		return nt_fail_memory(s->error);
 	if (status && status != NT_ERROR_MISSING)
@@ -98,7 +93,7 @@ static nt_status find_bound(search *s, const char *folder, const char *path, con
 		const char *leave = status ? NULL : i == 0 ? folder : i == 1 ? s->root.data : s->above.data;
 		bool inside = leave && nt_link_is_inside(path, leave);
 		if (inside)
-			status = nt_way_is_inside(leave, path + strlen(leave), &inside, s->error);
+			status = nt_path_stays_inside(leave, path + strlen(leave), &inside, s->error);
 		if (!status && inside)
 			*bound = leave;
 	}
@@ -211,12 +206,7 @@ static nt_status folder_at(const nt_image_places *places, size_t index, nt_buffe
 		const char *file = index == 0 ? places->document : places->input;
 		status = file ? nt_link_folder(folder, file, &failure) : NT_ERROR_MISSING;
 	} else {
-		char *real;
-		nt_trace_way(places->folders[index - 2]);
-		status = nt_lookup_real(places->folders[index - 2], &real, &failure);
-		if (!status)
-			nt_buffer_text(folder, real);
-		free(real);
+		status = nt_path_real(folder, places->folders[index - 2], &failure);
 	}
 	if (!status && folder->failed)
 		return nt_fail_memory(error);

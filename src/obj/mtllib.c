@@ -9,7 +9,6 @@
 #include "file/input.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
-#include "file/way.h"
 #include "obj/parts.h"
 
 /* Arguments of reading the libraries that mtllib statements name. */
@@ -65,7 +64,7 @@ static nt_status open_library(const request *q, const char *name, const char *pa
 	nt_buffer folder = {0};
 	nt_status status = confined ? nt_link_folder(&folder, q->scene->path, error) : NT_OK;
 	if (!status && confined)
-		status = nt_way_is_inside(folder.data, name, &inside, error);
+		status = nt_path_stays_inside(folder.data, name, &inside, error);
 	nt_buffer_free(&folder);
 	if (!status && !inside)
 		*reason = "leaves the folder of the OBJ by a symbolic link, which is followed only "

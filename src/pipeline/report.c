@@ -9,6 +9,7 @@
 #include <string.h>
 #include "file/image_type.h"
 #include "file/relative_path.h"
+#include "file/uri.h"
 #include "format/normal_map.h"
 #include "image/reduce.h"
 #include "pipeline/joins.h"

@@ -135,14 +135,11 @@ static bool count_decisions(run *r)
 	return any;
 }
 
-/* The record is written before the rename: if the run ends between the two, the output is made again. */
-static nt_status tell_placing(void *user, nt_error *error)
+/* Nothing takes its name if it is too late for that, or if a record could not say of what it was made. */
+static nt_status check_placing(void *user, nt_error *error)
 {
 	run *r = user;
-	if (r->summary->trace.failed || !nt_timer_hold(&r->timer))
-		return nt_fail_memory(error);
-	return r->settings->placing
-		? r->settings->placing(r->settings->placing_user, &r->summary->trace, error) : NT_OK;
+	return r->summary->trace.failed || !nt_timer_hold(&r->timer) ? nt_fail_memory(error) : NT_OK;
 }
 
 static nt_output_options output_options_of(run *r)
@@ -152,7 +149,7 @@ static nt_output_options output_options_of(run *r)
 		.dry_run = s->dry_run || s->check,
 		.in_place = s->in_place ? r->input_path : NULL, .result = &r->result,
 		.find_ownership = r->writer->format != NT_FORMAT_PLY ? nt_gltf_find_ownership : NULL,
-		.placing = tell_placing, .placing_user = r};
+		.placing = check_placing, .placing_user = r};
 }
 
 /* Settings that the plan depends on, now that reader and writer are known. */

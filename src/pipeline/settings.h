@@ -113,11 +113,6 @@ typedef struct nt_settings {
 	bool own_input;   /* the one input that the user names: see options.c */
 	nt_equal_choice equal; /* what becomes of an output that has its bytes already */
 
-	/* Called when the output is complete and about to take its name, with what was read and written; it keeps its
-	 * name if this fails. NULL: nobody wants to know. */
-	nt_status (*placing)(void *user, const nt_trace *trace, nt_error *error);
-	void *placing_user;
-
 	/* Limits; 0: none. See nmtan(1). */
 	uint64_t max_triangles; /* of what is read */
 	uint64_t max_pixels;    /* of images that are decoded and made; 0: as nt_check_pixels() has it */

@@ -164,7 +164,7 @@ class Fuzz:
         else:
             shutil.copy2(path, path + '.new')
             os.replace(path + '.new', path)
-        return path, []
+        return path, [path]
 
     def edit_image(self):
         path = self.pick('.png')
@@ -277,7 +277,7 @@ class Fuzz:
         else:
             shutil.copy2(path, path + '.new')
             os.replace(path + '.new', path)
-        return path, [] if how == 2 else [path]
+        return path, [path]
 
     def edit_record(self):
         path = 'out/.nmtan-record'
