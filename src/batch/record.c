@@ -20,6 +20,7 @@
 #include "file/input.h"
 #include "file/lookup.h"
 #include "file/output.h"
+#include "file/relative_path.h"
 
 /* Below so many superseded lines nothing is rewritten; how often a file may be replaced while we wait for it. */
 enum { FEW_LINES = 100, MOST_ATTEMPTS = 100 };
@@ -27,9 +28,9 @@ enum { FEW_LINES = 100, MOST_ATTEMPTS = 100 };
 static const char begin[] = "{\"output\":\"";
 enum { BEGIN_BYTES = sizeof begin - 1, SUM_BYTES = sizeof ",\"sum\":\"0123456789abcdef\"}" - 1 };
 
-static nt_status fail(const nt_record *record, int number, nt_error *error)
+static nt_status fail(const nt_record *record, int number, const char *then, nt_error *error)
 {
-	return nt_fail_file(error, NT_ERROR_IO, record->path, "cannot write the record: %s", strerror(number));
+	return nt_fail_file(error, NT_ERROR_IO, record->path, "cannot write the record: %s%s", strerror(number), then);
 }
 
 /* ---- lines ---- */
@@ -193,11 +194,12 @@ static bool append_whole(int fd, const char *bytes, size_t size, off_t before)
 
 nt_status nt_record_append(const nt_record *record, const void *lines, size_t size, nt_error *error)
 {
+	static const char then[] = "; the output is complete, --update makes it again";
 	bool locked;
 	struct stat info;
 	const int fd = open_locked(record, &locked);
 	if (fd < 0)
-		return fail(record, errno, error);
+		return fail(record, errno, then, error);
 	bool done = fstat(fd, &info) == 0;
 	/* a line that was cut short must not become the beginning of this one */
 	char last = '\n';
@@ -207,7 +209,7 @@ nt_status nt_record_append(const nt_record *record, const void *lines, size_t si
 		done = append_whole(fd, lines, size, info.st_size);
 	const int number = errno;
 	close(fd);
-	return done ? NT_OK : fail(record, number, error);
+	return done ? NT_OK : fail(record, number, then, error);
 }
 
 /* The lines that count take the place of the file. */
@@ -244,14 +246,31 @@ static nt_status rewrite(nt_record *record, nt_error *error)
 	return status;
 }
 
-nt_status nt_record_open(nt_record *record, const char *path, bool tidy, nt_error *error)
+/* Said before anything is made; of a folder that is not there, the output is. */
+static nt_status check_writable(const nt_record *record, nt_error *error)
+{
+	const size_t folder = (size_t)(nt_last_part(record->path) - record->path);
+	int failed = access(record->path, W_OK);
+	if (failed && errno == ENOENT) {
+		char *path = folder ? strndup(record->path, folder) : strdup(".");
+		if (!path)
+			return nt_fail_memory(error);
+		failed = access(path, W_OK);
+		free(path);
+	}
+	return failed && errno != ENOENT ? fail(record, errno, "", error) : NT_OK;
+}
+
+nt_status nt_record_open(nt_record *record, const char *path, bool writes, nt_error *error)
 {
 	*record = (nt_record){.path = strdup(path)};
 	if (!record->path)
 		return nt_fail_memory(error);
 	nt_status status = load(record, error);
+	if (!status && writes)
+		status = check_writable(record, error);
 	const size_t superseded = record->superseded_count;
-	if (!status && tidy && superseded > FEW_LINES && superseded > record->line_count / 2)
+	if (!status && writes && superseded > FEW_LINES && superseded > record->line_count / 2)
 		status = rewrite(record, error);
 	return status;
 }

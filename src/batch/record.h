@@ -26,9 +26,9 @@ typedef struct nt_record {
 	nt_hash_index index;
 } nt_record;
 
-/* Reads a file, which need not be there. With `tidy`, if many lines are superseded, the others are written anew.
- * Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY; close it after failure, too. */
-nt_status nt_record_open(nt_record *record, const char *path, bool tidy, nt_error *error);
+/* Reads a file, which need not be there. With `writes`, fails if it cannot be written; if many lines are superseded,
+ * the others are written anew. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY; close it after failure, too. */
+nt_status nt_record_open(nt_record *record, const char *path, bool writes, nt_error *error);
 void nt_record_close(nt_record *record);
 
 /* The line of an output; NULL: none. */

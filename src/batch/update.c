@@ -336,7 +336,8 @@ typedef struct look {
 	const nt_update_job *job;
 	nt_buffer input; /* its URI */
 	bool found_input;
-	nt_buffer path;  /* of the file in question, as it can be opened */
+	nt_buffer path; /* of the file in question, as it can be opened */
+	bool renews;    /* the line would be another one now: a digest is needed no more, or still to be noted */
 } look;
 
 static bool is_text(const nt_json_value *value, const char *expected)
@@ -354,9 +355,9 @@ static bool has_times(const nt_json_value *file, const struct stat *info)
 		changed == (uint64_t)nt_trace_changed(info) && inode == info->st_ino;
 }
 
-static bool is_same_file(const nt_json_value *file, const char *path, const struct stat *info)
+static bool is_same_file(look *l, const nt_json_value *file, const char *path, const struct stat *info)
 {
-	const nt_json_value *digest = nt_json_find(file, "xxh128");
+	const nt_json_value *digest = nt_json_find(file, "xxh128"), *modified = nt_json_find(file, "modified");
 	char now[NT_DIGEST_TEXT];
 	nt_error ignored;
 	uint64_t bytes;
@@ -364,7 +365,8 @@ static bool is_same_file(const nt_json_value *file, const char *path, const stru
 		return false;
 	if (digest && (nt_digest_of_file(path, now, &ignored) || !is_text(digest, now)))
 		return false;
-	return nt_json_find(file, "modified") ? has_times(file, info) : digest != NULL;
+	l->renews |= l->job->update->options.by == NT_UPDATE_BY_CONTENT ? modified != NULL : digest != NULL;
+	return modified ? has_times(file, info) : digest != NULL;
 }
 
 static bool is_still_read(look *l, const nt_json_value *file, const char *uri)
@@ -373,7 +375,7 @@ static bool is_still_read(look *l, const nt_json_value *file, const char *uri)
 	const bool is_input = strcmp(uri, l->input.data) == 0;
 	l->found_input |= is_input;
 	if ((!is_input && stat(l->path.data, &info) != 0) ||
-		(nt_json_find(file, "bytes") && !is_same_file(file, l->path.data, &info)))
+		(nt_json_find(file, "bytes") && !is_same_file(l, file, l->path.data, &info)))
 		return false;
 	nt_trace_read(is_input ? l->job->input : l->path.data, &info);
 	return true;
@@ -383,7 +385,7 @@ static bool is_still_written(look *l, const nt_json_value *file, const char *uri
 {
 	struct stat info;
 	(void)uri;
-	if (stat(l->path.data, &info) != 0 || !is_same_file(file, l->path.data, &info))
+	if (stat(l->path.data, &info) != 0 || !is_same_file(l, file, l->path.data, &info))
 		return false;
 	nt_trace_written(l->path.data, &info);
 	return true;
@@ -421,6 +423,7 @@ static bool is_still_found(look *l, const nt_json_value *file, const char *uri)
 		same = !name.failed;
 		nt_trace_searched(l->path.data, text ? name.data : NULL, &info);
 	} else if (same) {
+		l->renews |= l->job->update->options.by == NT_UPDATE_BY_TIME;
 		nt_uri_append_path(&name, entry ? entry : "");
 		same = !name.failed && (found ? entry && is_text(found, name.data) : !entry);
 	}
@@ -525,7 +528,7 @@ static bool is_current(nt_update_job *job, const nt_record_line *line, nt_trace 
 	const bool current = holds(&l, nt_json_root(json)) && !trace->failed;
 	job->keeps_wrong = current && nt_json_find(nt_json_root(json), "wrong");
 	nt_trace_use(outer);
-	if (current && !job->update->options.dry_run)
+	if (current && l.renews && !job->update->options.dry_run)
 		renew(job, line, trace);
 	nt_json_free(json);
 	nt_buffer_free(&l.input);

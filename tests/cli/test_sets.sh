@@ -232,6 +232,20 @@ is "$(state sticky/o.gltf)" "$before"
 is "$(ls -A sticky | tr '\n' ' ')" "bumps.png o.bin o.gltf "
 cd "$WORK/here" && rm -rf "$place"
 
+scene "a record that cannot be written is said before anything is made"
+if outsider; then
+	mkdir closed open && touch closed/old && chmod 777 open
+	cp "$data/quad.obj" .
+	for record in old new; do
+		as_nobody ./nmtan --record=closed/$record quad.obj open/q.glb 2>"$WORK/err.txt"
+		status=$?
+		exits 2
+		says "closed/$record: cannot write the record: Permission denied"
+		is "$(ls -A open closed)" "$(printf 'closed:\nold\n\nopen:')"
+	done
+	cd "$WORK/here" && rm -rf "$place"
+fi
+
 scene "images of one name from several inputs are all kept"
 textured s1 one
 textured s2 two

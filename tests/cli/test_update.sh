@@ -643,6 +643,27 @@ rm out/.nmtan-record
 run -q --update -d out "$data/quad.obj"
 exits 0
 
+scene "a record for which there is no room fails the run, and the output is made again"
+cp "$data/quad.obj" .
+run -q --record=full quad.obj q.glb
+while [ "$(stat -c %s full)" -lt 9000 ]; do cat full full >more && mv more full; done
+rm q.glb
+before=$(cksum <full)
+trap '' XFSZ
+limit=$(ulimit -f)
+ulimit -Sf 8
+run --update --record=full quad.obj q.glb
+ulimit -Sf "$limit"
+trap - XFSZ
+exits 2
+says "full: cannot write the record: File too large; the output is complete, --update makes it again"
+is "$(cksum <full)" "$before"
+run -q quad.obj clean.glb
+same q.glb clean.glb
+run --update --record=full quad.obj q.glb
+exits 0
+is "$(made)" "quad.obj "
+
 scene "--no-clobber replaces no depfile and no manifest either"
 cp "$data/quad.obj" .
 run --depfile=d --manifest=m quad.obj first.glb
