@@ -1,7 +1,16 @@
 # SPDX-License-Identifier: MIT
-# What of the page and of the tool for Node needs no WebAssembly: the page's archives, and Windows' paths. The page in a
-# browser: tests/soak/web.sh. The tool: tests/soak/wasm_tool.sh.
+# What of the page and of the tool for Node needs no WebAssembly: the page's text and archives, and Windows' paths. The page
+# in a browser: tests/soak/web.sh. The tool: tests/soak/wasm_tool.sh.
 . "$ROOT/tests/support/cli.sh"
+
+scene "the report of the page is made of markup and of scripts alone"
+mkdir -p src/bindings src/report/render
+cp -r "$ROOT/src/bindings/web" src/bindings
+cp -r "$ROOT"/src/report/render/{page,page_assets.c} src/report/render
+echo 'include src/bindings/web/web.mk' >Makefile
+env -u MAKEFLAGS make -s build/web/report.html build/web/report.js 2>make.txt || wrong "$(cat make.txt)"
+is "$(cat build/web/report.html)" "$(cat src/bindings/web/report.html src/report/render/page/page.html && printf '</body>\n</html>\n')"
+is "$(sed '1,2d; $d' build/web/report.js)" "$(cd src/report/render/page && cat $(grep -o '[a-z]*\.js' ../page_assets.c))"
 
 if ! command -v node >/dev/null 2>&1; then
 	scene "the page"

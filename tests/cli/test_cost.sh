@@ -332,6 +332,23 @@ inputs strip $strip strip.obj
 within 30 1500 --check --report=s.html --fail-on=never strip.obj
 exits 0
 
+scene "a picture of an index takes time for rows, however many triangles lie on a pixel"
+inputs tiles "$faces" t.obj
+within 2 300 -q --check --report=pages/ --fail-on=never t.obj
+exits 0
+
+scene "findings are looked up in a baseline in linear time, of the file's name and of another"
+for size in 1 2 4; do
+	python3 "$ROOT/tests/support/cost_inputs.py" objects $((size * faces / 32)) $size.obj
+	python3 "$ROOT/tests/support/cost_inputs.py" known $((size * faces)) $size.obj.json
+	ln $size.obj other.$size.obj
+	ln $size.obj.json other.$size.obj.json
+done
+for name in "" other.; do
+	command python3 "$ROOT/tests/support/growth.py" 8 $((factor))e-1 ${name}1.obj ${name}2.obj ${name}4.obj -- \
+		"$NMTAN" -q --check --fail-on=never --baseline=IN.json IN >"$WORK/cost.txt" 2>&1 || wrong "$name: $(cat "$WORK/cost.txt")"
+done
+
 for kind in hub edge patches; do
 	scene "$kind: $faces faces that all meet, or none, are judged in nearly linear time, on any number of threads alike"
 	inputs $kind $faces c.obj

@@ -28,6 +28,15 @@ exits 0
 [ "$(grep -ao '"images":\[{"image":[0-9]' twice.html | wc -l)" -gt 1 ] || wrong "no two meshes have an image"
 [ "$(grep -ao 'data:image/png;base64,[^"]*' twice.html | sort | uniq -d | wc -l)" = 0 ] || wrong "an image is there twice"
 
+scene "without JavaScript a page says which options write its findings as text"
+for words in "--check $data/mirrored_cube.obj" "--check --diff $data/quad.obj $data/mirrored_cube.obj" "$data/mirrored_cube.obj out.glb"; do
+	run -q --fail-on=never --report=r.html $words
+	run -q --fail-on=never $(sed -n 's/.*<noscript>.*<code>\(.*\)<\/code>.*/\1/p' r.html) $words
+	exits 0
+	grep -q UV_MIRROR_SEAM report.txt || wrong "$words: report.txt has no findings"
+	rm report.txt
+done
+
 # A browser shows the same for every build that made the page; sanitizers look at its making alone.
 case $BUILD in *sanitize*) browses=false side=60 ;; *) browses=true side=708 ;; esac
 

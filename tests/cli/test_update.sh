@@ -114,8 +114,12 @@ run --update -d out --only=all --method=area quad.obj
 is "$(made)" "quad.obj "
 run --update -d out --method=area --only=all quad.obj
 is "$(made)" ""
+for degrees in 30:quad.obj\  40:quad.obj\  40: 30:quad.obj\ ; do
+	run --update -d out --normals=angle:${degrees%%:*} quad.obj
+	is "$degrees $(made)" "$degrees ${degrees#*:}"
+done
 sed -i 's/"nmtan":"/&0/' out/.nmtan-record
-run --update -d out --method=area --only=all quad.obj
+run --update -d out --normals=angle:30 quad.obj
 is "$(made)" "quad.obj "
 
 scene "a sidecar that was missing, and comes, makes its input again"

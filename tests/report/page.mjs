@@ -690,6 +690,12 @@ async function clickTexture(page, u, v) {
 	await flat.click('.finding >> nth=0');
 	await expect(async () => (await selection(flat))?.finding !== undefined, 'and findings are chosen all the same');
 	await flat.close();
+	const old = await open('head.html', {before: () => { delete window.DecompressionStream; }});
+	for (const place of ['#layout-empty', '#space-empty'])
+		await expect(async () => (await old.locator(place).textContent()).includes('no DecompressionStream'), 'without DecompressionStream ' + place + ' says so');
+	await old.click('.finding >> nth=0');
+	await expect(async () => (await selection(old))?.finding !== undefined, 'and findings are chosen without it, too');
+	await old.close();
 
 	for (const name of ['pictures.html#file-0', 'lit.html', 'many.html#file-0', 'two.html']) {
 		const [file, hash] = name.split('#'), narrow = await open(file, {viewport: {width: 400, height: 800}, hash: hash ? '#' + hash : ''});

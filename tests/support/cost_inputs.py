@@ -36,6 +36,7 @@ edge      an OBJ of COUNT triangles on one edge
 repeated  an OBJ of one triangle, COUNT times
 centre    an OBJ of COUNT triangles of three points each, all around one centre
 patches   an OBJ of COUNT quads, each an island of its own over the same texels, every other one mirrored
+known     a report of COUNT findings of FILE without .json
 objects   an OBJ of COUNT quads that are objects, every other one mirrored and with texels of its own
 """
 import base64
@@ -252,6 +253,15 @@ def objects(count, out):
         out.write(b'f -4/-4 -3/-3 -2/-2 -1/-1\n')
 
 
+def known(count, out):
+    number = 1
+    out.write(b'{"report":"nmtan","files":[{"file":"%s","findings":[' % sys.argv[3][:-5].encode())
+    for i in range(count):
+        number = number * 6364136223846793005 + 1442695040888963407 & (1 << 64) - 1
+        out.write(b'%s{"fingerprint":"%016x","geometry":"%016x"}' % (b',' if i else b'', number, number))
+    out.write(b']}]}')
+
+
 def grid(side, windows):
     """Positions, normals, texture coordinates and indices."""
     width = side + 1
@@ -414,4 +424,4 @@ with open(sys.argv[3], 'wb') as out:
          'patches': patches, 'repeated': repeated, 'centre': centre, 'folded': folded,
          'tiles': tiles, 'turned': turned, 'libraries': libraries, 'slashes': slashes, 'colors': colors,
          'buffers': buffers, 'animated': animated, 'levels': levels, 'scans': scans,
-         'strips': strips, 'list': names, 'apart': apart, 'objects': objects}[kind](count, out)
+         'strips': strips, 'list': names, 'apart': apart, 'objects': objects, 'known': known}[kind](count, out)

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: MIT
 """growth.py MOST LEAST FILE FILE FILE -- COMMAND...: how the processor time of a command grows with its input.
 
-The files are of one kind, each twice as large as the one before, and stand for IN in the command, also behind "=". Prints the
-best times of up to eight tries, and ends with 1 where the last is MOST times the first or more: what is linear takes four times as
-long, what is quadratic sixteen. Times below LEAST seconds say nothing. A run that takes a hundred times LEAST is ended.
+The files are of one kind, each twice as large as the one before, and stand for IN in the command, also behind "=" and before
+".json". Prints the best times of up to eight tries, and ends with 1 where the last is MOST times the first or more: what is
+linear takes four times as long, what is quadratic sixteen. Times below LEAST seconds say nothing. A run that takes a hundred
+times LEAST is ended.
 """
 import os
 import re
@@ -31,7 +32,7 @@ def seconds(words):
 # On a loaded machine the kernel may take several times as long for the same calls: a wrong answer is asked for again.
 for attempt in range(8):
     for i, file in enumerate(files):
-        best[i] = min(best[i], seconds([re.sub('^(.*=)?IN$', r'\g<1>' + file, word) for word in command]))
+        best[i] = min(best[i], seconds([re.sub(r'^(.*=)?IN(\.json)?$', r'\g<1>' + file + r'\2', word) for word in command]))
     if best[2] < most * best[0]:
         break
 print('%.2f, %.2f and %.2f seconds' % tuple(best))
