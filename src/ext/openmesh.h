@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Walks along marked edges of a welded triangle mesh, by OpenMesh.
+ * Walks along marked edges of a triangle mesh, by OpenMesh, which is told which sides are one edge: fans that meet in a
+ * vertex only are apart.
  *
- * Edges are numbered like corners: side 3 * t + k runs from corner k of triangle t to its next corner. An inner edge
- * has two sides; it is marked when either of them is.
+ * Side 3 * t + k runs from corner k of triangle t to its next corner. An inner edge has two sides; it is marked when
+ * either of them is.
  *
  * The mesh should be manifold and consistently oriented. An edge that is not becomes open: of several triangles that
- * use a directed edge the first gets it and the others are left out, as are degenerate ones (two equal vertices);
- * fans that meet in a vertex only are taken as apart.
+ * use an edge in one direction the first gets it and the others are left out, as are degenerate ones, which have two
+ * sides at one edge.
  */
 #ifndef NT_EXT_OPENMESH_H
 #define NT_EXT_OPENMESH_H
@@ -19,9 +20,9 @@ extern "C" {
 #endif
 
 typedef struct nt_walked_mesh {
-	size_t vertex_count, triangle_count; /* at most 2^31 / 6 triangles: OpenMesh numbers half-edges by int */
-	const uint32_t *triangles; /* [triangle_count][3] vertices, each below vertex_count */
-	const uint8_t *marked;     /* [3 * triangle_count] */
+	size_t edge_count, triangle_count; /* at most 2^31 / 6 triangles: OpenMesh numbers half-edges by int */
+	const uint32_t *sides; /* [3 * triangle_count] twice its edge, and 1 more in one of the edge's two directions */
+	const uint8_t *marked; /* [3 * triangle_count] */
 } nt_walked_mesh;
 
 /* Takes a walk of count > 0 steps, each twice a marked side, and 1 more where the walk goes against that side. */

@@ -256,6 +256,7 @@ static nt_status check_mesh(nt_check *check, size_t most_image_bytes[NT_PICTURE_
 	status = describe_surface(check);
 	if (!status)
 		status = run_checks(check);
+	nt_surface_free_sides(&check->surface);
 	if (!status && check->options->keep_geometry)
 		status = keep_geometry(check);
 	if (!status)

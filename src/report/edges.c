@@ -8,7 +8,7 @@
  * Two triangles of an edge continue each other in UV space when both ends have equal texture
  * coordinates on both. On an edge of many triangles all that have the same coordinates do.
  *
- * Threads take bins of edges. Results go to lists by bin, or into sets that do not show who was first.
+ * Threads take the edges of some points. Results go to lists by part, or into sets that do not show who was first.
  */
 #include "report/check.h"
 
@@ -17,20 +17,19 @@
 #include <string.h>
 #include "base/dvec.h"
 #include "base/parallel.h"
-#include "report/surface/edge_bins.h"
 #include "report/surface/union_find.h"
 
-/* Sides by which triangles are prefetched before they are united. */
-enum { AHEAD = 16 };
+/* Points whose edges a thread takes at a time: some 300 KB. Results of parts are joined in their order. */
+enum { PART = 4096 };
 
 /* ---- what is found ---- */
 
-/* In one bin. */
-typedef struct bin_result {
+/* In one part. */
+typedef struct edge_part {
 	size_t edges, boundary, uv_seams;
 	nt_tally non_manifold, inconsistent;
 	double areas[2]; /* of the triangles at inconsistent and at non-manifold edges */
-} bin_result;
+} edge_part;
 
 /* Share of the mesh's area up to which nobody sees those: slivers. */
 static const double SLIVER_SHARE = 0.001;
@@ -43,13 +42,14 @@ typedef struct edge_list {
 
 typedef struct edge_lists {
 	edge_list mirrors, hard;
-	bool failed; /* out of memory */
+	nt_edge_side *sides; /* of one point */
+	bool failed;         /* out of memory */
 } edge_lists;
 
 typedef struct edge_work {
 	nt_check *check;
-	bin_result *results; /* [bins] */
-	edge_lists *lists;   /* [slots] */
+	edge_part *parts;
+	edge_lists *lists; /* [slots] */
 } edge_work;
 
 static void add_edge(edge_lists *lists, edge_list *list, nt_edge_pair edge)
@@ -81,9 +81,8 @@ static int by_key(const void *a, const void *b)
 static side_key key_of(const nt_surface *s, const nt_edge_side *side)
 {
 	const uint32_t first = side->side, next = nt_side_next(first);
-	const bool ascending = side->low & NT_EDGE_ASCENDING;
-	const float *low = nt_side_texcoord(s, ascending ? first : next);
-	const float *high = nt_side_texcoord(s, ascending ? next : first);
+	const float *low = nt_side_texcoord(s, side->ascending ? first : next);
+	const float *high = nt_side_texcoord(s, side->ascending ? next : first);
 	return (side_key){{low[0], low[1], high[0], high[1]}, first};
 }
 
@@ -94,9 +93,9 @@ static bool same_coordinates(const side_key *a, const side_key *b)
 }
 
 /* Unites all triangles of an edge of three and more that have the same coordinates along it. */
-static bool unite_many(const nt_check *check, const nt_edge_side *sides, size_t count)
+static bool unite_many(const nt_check *check, const nt_edge_side *sides, size_t count, bool joint)
 {
-	if (!(sides[0].low & NT_EDGE_JOINT)) {
+	if (!joint) {
 		for (size_t i = 1; i < count; i++)
 			nt_unite(check->islands, sides[i].side / 3, sides[0].side / 3);
 		return true;
@@ -119,14 +118,14 @@ static void find_mirror(const nt_edge_side *sides, size_t count, edge_lists *lis
 {
 	const nt_edge_side *found[2] = {NULL, NULL};
 	for (size_t i = count; i-- > 0;) {
-		const int sign = nt_edge_orientation(&sides[i]);
+		const int sign = sides[i].orientation;
 		if (sign)
 			found[sign < 0] = &sides[i];
 	}
 	if (!found[0] || !found[1])
 		return;
 	add_edge(lists, &lists->mirrors, (nt_edge_pair){.sides = {found[0]->side, found[1]->side},
-		.non_manifold = count > 2, .against = !nt_edge_same_way(&sides[0], found[0])});
+		.non_manifold = count > 2, .against = sides[0].ascending != found[0]->ascending});
 }
 
 /*
@@ -153,8 +152,7 @@ static void find_hard(const nt_check *check, const nt_edge_side *sides, edge_lis
 {
 	const nt_surface *s = &check->surface;
 	const uint32_t a = sides[0].side, b = sides[1].side;
-	if (!nt_edge_orientation(&sides[0]) || !nt_edge_orientation(&sides[1]) ||
-		nt_edge_same_way(&sides[0], &sides[1]))
+	if (!sides[0].orientation || !sides[1].orientation || sides[0].ascending == sides[1].ascending)
 		return;
 	const double first = squared_cosine(s, a, nt_side_next(b)), second = squared_cosine(s, nt_side_next(a), b);
 	const double least = first < second ? first : second;
@@ -168,14 +166,14 @@ static void unite_patches(const nt_check *check, const nt_edge_side *sides, size
 {
 	const nt_edge_side *last[3] = {NULL, NULL, NULL};
 	for (size_t i = 0; i < count; i++) {
-		const nt_edge_side **before = &last[nt_edge_orientation(&sides[i]) + 1];
+		const nt_edge_side **before = &last[sides[i].orientation + 1];
 		if (*before)
 			nt_unite(check->patches, sides[i].side / 3, (*before)->side / 3);
 		*before = &sides[i];
 	}
 }
 
-static void check_edge(nt_check *check, const nt_edge_side *sides, size_t count, bin_result *result,
+static void check_edge(nt_check *check, uint32_t low, const nt_edge_side *sides, size_t count, edge_part *result,
 	edge_lists *lists)
 {
 	result->edges++;
@@ -184,7 +182,7 @@ static void check_edge(nt_check *check, const nt_edge_side *sides, size_t count,
 		nt_bit_set(check->boundary, sides[0].side);
 		return;
 	}
-	const bool bad = count > 2 || nt_edge_same_way(&sides[0], &sides[1]);
+	const bool bad = count > 2 || sides[0].ascending == sides[1].ascending;
 	if (bad)
 		nt_tally_side(check, count > 2 ? &result->non_manifold : &result->inconsistent, sides[0].side,
 			(double)count);
@@ -192,12 +190,13 @@ static void check_edge(nt_check *check, const nt_edge_side *sides, size_t count,
 		result->areas[count > 2] += nt_triangle_area(&check->surface, sides[i].side / 3);
 	if (!check->mesh->texcoords)
 		return;
-	if (count > 2 || nt_edge_orientation(&sides[0]) != nt_edge_orientation(&sides[1]))
+	if (count > 2 || sides[0].orientation != sides[1].orientation)
 		find_mirror(sides, count, lists);
-	const bool joint = sides[0].low & NT_EDGE_JOINT;
+	const uint64_t *joints = check->surface.joints;
+	const bool joint = nt_bit(joints, low) || nt_bit(joints, sides[0].high);
 	const bool meet = count > 2 || !joint || nt_sides_meet(&check->surface, sides[0].side, sides[1].side);
 	if (count > 2)
-		lists->failed |= !unite_many(check, sides, count);
+		lists->failed |= !unite_many(check, sides, count, joint);
 	else if (meet)
 		nt_unite(check->islands, sides[0].side / 3, sides[1].side / 3);
 	else
@@ -208,37 +207,43 @@ static void check_edge(nt_check *check, const nt_edge_side *sides, size_t count,
 		find_hard(check, sides, lists);
 }
 
-static void check_bin(void *context, size_t bin, const nt_edge_side *sides, size_t count, unsigned slot)
+static void check_part(void *context, size_t item, unsigned slot)
 {
 	const edge_work *work = context;
-	const uint32_t *islands = work->check->islands;
-	bin_result *result = &work->results[bin];
-	*result = (bin_result){.non_manifold = {.code = NT_CODE_MESH_NON_MANIFOLD_EDGE},
+	const nt_surface *s = &work->check->surface;
+	nt_edge_side *sides = work->lists[slot].sides;
+	edge_part *part = &work->parts[item];
+	const size_t total = s->point_count ? s->ends[s->point_count - 1] : 0;
+	*part = (edge_part){.non_manifold = {.code = NT_CODE_MESH_NON_MANIFOLD_EDGE},
 		.inconsistent = {.code = NT_CODE_MESH_INCONSISTENT_WINDING}};
-	for (size_t i = 0, end; i < count; i = end) {
-		for (end = i + 1; end < count && nt_edge_same(&sides[i], &sides[end]); end++)
-			if (end + AHEAD < count)
-				__builtin_prefetch(&islands[sides[end + AHEAD].side / 3], 1);
-		check_edge(work->check, sides + i, end - i, result, &work->lists[slot]);
+	for (size_t low = item * PART; low < (item + 1) * PART && low < s->point_count; low++) {
+		const size_t count = nt_surface_edges(s, (uint32_t)low, sides), next = s->ends[low];
+		for (size_t i = 0, end; i < count; i = end) {
+			for (end = i + 1; end < count && sides[end].high == sides[i].high;)
+				end++;
+			if (next + i < total)
+				__builtin_prefetch(&work->check->islands[s->sides[next + i] / 3], 1);
+			check_edge(work->check, (uint32_t)low, sides + i, end - i, part, &work->lists[slot]);
+		}
 	}
 }
 
 /* ---- the results together ---- */
 
-static void join_results(nt_check *check, const bin_result *results, size_t count)
+static void join_parts(nt_check *check, const edge_part *parts, size_t count)
 {
 	nt_report_mesh *facts = check->facts;
 	nt_tally non_manifold = {.code = NT_CODE_MESH_NON_MANIFOLD_EDGE};
 	nt_tally inconsistent = {.code = NT_CODE_MESH_INCONSISTENT_WINDING};
 	double areas[2] = {0.0, 0.0};
-	for (size_t bin = 0; bin < count; bin++) {
-		facts->edge_count += results[bin].edges;
-		facts->boundary_edges += results[bin].boundary;
-		facts->uv_seam_edges += results[bin].uv_seams;
-		nt_tally_join(&non_manifold, &results[bin].non_manifold);
-		nt_tally_join(&inconsistent, &results[bin].inconsistent);
-		areas[0] += results[bin].areas[0];
-		areas[1] += results[bin].areas[1];
+	for (size_t i = 0; i < count; i++) {
+		facts->edge_count += parts[i].edges;
+		facts->boundary_edges += parts[i].boundary;
+		facts->uv_seam_edges += parts[i].uv_seams;
+		nt_tally_join(&non_manifold, &parts[i].non_manifold);
+		nt_tally_join(&inconsistent, &parts[i].inconsistent);
+		areas[0] += parts[i].areas[0];
+		areas[1] += parts[i].areas[1];
 	}
 	facts->non_manifold_edges = non_manifold.count;
 	facts->inconsistent_edges = inconsistent.count;
@@ -351,20 +356,25 @@ static nt_status allocate(nt_check *check)
 	return check->patches ? NT_OK : NT_ERROR_MEMORY;
 }
 
-static nt_status check_bins(nt_check *check, const nt_edge_bins *bins)
+static nt_status check_parts(nt_check *check, unsigned threads)
 {
-	edge_work work = {.check = check,
-		.results = nt_scratch_alloc(check->scratch, bins->count, sizeof *work.results),
-		.lists = nt_scratch_alloc(check->scratch, bins->slots, sizeof *work.lists)};
-	if (!work.results || !work.lists)
+	nt_surface *s = &check->surface;
+	const size_t parts = s->point_count / PART + 1;
+	const unsigned slots = threads < parts ? threads : (unsigned)parts;
+	edge_work work = {check, nt_scratch_alloc(check->scratch, parts, sizeof *work.parts),
+		nt_scratch_alloc(check->scratch, slots, sizeof *work.lists)};
+	if (!work.parts || !work.lists)
 		return NT_ERROR_MEMORY;
-	memset(work.lists, 0, bins->slots * sizeof *work.lists);
-	nt_status status = nt_edge_bins_visit(bins, check->scratch, check_bin, &work);
-	if (!status)
-		join_results(check, work.results, bins->count);
-	if (!status)
-		status = join_edges(check, work.lists, bins->slots);
-	for (unsigned slot = 0; slot < bins->slots; slot++) {
+	for (unsigned slot = 0; slot < slots; slot++) {
+		work.lists[slot] = (edge_lists){.sides = nt_scratch_alloc(check->scratch, s->most_sides,
+			sizeof *work.lists->sides)};
+		if (!work.lists[slot].sides)
+			return NT_ERROR_MEMORY;
+	}
+	nt_parallel_items(slots, parts, check_part, &work);
+	join_parts(check, work.parts, parts);
+	const nt_status status = join_edges(check, work.lists, slots);
+	for (unsigned slot = 0; slot < slots; slot++) {
 		free(work.lists[slot].mirrors.edges);
 		free(work.lists[slot].hard.edges);
 	}
@@ -373,13 +383,12 @@ static nt_status check_bins(nt_check *check, const nt_edge_bins *bins)
 
 nt_status nt_check_edges(nt_check *check)
 {
+	const unsigned threads = nt_thread_count(check->options->threads);
 	nt_status status = allocate(check);
-	nt_edge_bins bins;
 	if (!status)
-		status = nt_edge_bins_make(&bins, &check->surface, nt_thread_count(check->options->threads),
-			check->scratch);
+		status = nt_surface_list_sides(&check->surface, threads);
 	if (!status)
-		status = check_bins(check, &bins);
+		status = check_parts(check, threads);
 	if (!status)
 		number_islands(check);
 	return status;

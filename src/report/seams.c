@@ -445,6 +445,7 @@ nt_status nt_check_seams(nt_check *check)
 	nt_scratch_back(check->scratch, mark);
 	if (!status && check->mirror_edge_count)
 		status = trace_seams(check);
+	nt_surface_free_sides(&check->surface); /* nobody asks for edges after this */
 	nt_scratch_back(check->scratch, mark);
 	return status;
 }

@@ -5,7 +5,7 @@
 // vertices, several fans at one vertex, and fans that grow on both sides, make it search around the vertex
 // for every face (60 000 triangles on one vertex took 16 s). So build() pairs the sides first, leaves
 // out triangles on taken edges, gives every fan a vertex of its own and adds the faces of large fans in
-// the order in which they follow each other. Time is then linear, but for sorting the sides of a vertex.
+// the order in which they follow each other. Time is then linear.
 //
 // Only the connectivity class is used: no positions, no properties.
 #include "ext/modules/guard.hpp"
@@ -48,84 +48,22 @@ uint32_t previous_side(uint32_t side)
 	return side % 3 == 0 ? side + 2 : side - 1;
 }
 
-// Sides as directed edges, sorted by their two vertices.
-struct directed_edges {
-	const uint32_t *vertices; // [side] where a side begins
-	std::vector<uint32_t> first; // [vertex + 1] its range in `sides`
-	std::vector<uint32_t> sides; // by first vertex, then second, then number
-
-	uint32_t from(uint32_t side) const { return vertices[side]; }
-	uint32_t to(uint32_t side) const { return vertices[next_side(side)]; }
-
-	directed_edges(size_t vertex_count, const uint32_t *triangles, size_t side_count)
-		: vertices(triangles), first(vertex_count + 1), sides(side_count)
-	{
-		for (size_t s = 0; s < side_count; s++)
-			first[triangles[s]]++;
-		uint32_t sum = 0;
-		for (uint32_t &begin : first) {
-			const uint32_t size = begin;
-			begin = sum;
-			sum += size;
-		}
-		for (size_t s = 0; s < side_count; s++)
-			sides[first[triangles[s]]++] = static_cast<uint32_t>(s);
-		for (size_t v = vertex_count; v > 0; v--)
-			first[v] = first[v - 1];
-		first[0] = 0;
-		for (size_t v = 0; v < vertex_count; v++)
-			std::sort(sides.begin() + first[v], sides.begin() + first[v + 1],
-				[this](uint32_t a, uint32_t b) {
-					return to(a) != to(b) ? to(a) < to(b) : a < b;
-				});
-	}
-
-	// The first position in `sides` of the edge a -> b, or where it would be.
-	size_t find(uint32_t a, uint32_t b) const
-	{
-		return static_cast<size_t>(
-			std::lower_bound(sides.begin() + first[a], sides.begin() + first[a + 1], b,
-				[this](uint32_t side, uint32_t wanted) { return to(side) < wanted; }) -
-			sides.begin());
-	}
-};
-
-// Which side owns each directed edge, and from that, who is opposite to whom. Triangles that come to a
-// taken edge, or have two equal vertices, are left out.
-std::vector<uint32_t> pair_sides(halfedges &mesh, size_t vertex_count, const uint32_t *triangles)
+// Which side owns each direction of an edge, and from that, who is opposite to whom. Triangles that come to a direction
+// that is taken, or to one edge twice, are left out.
+std::vector<uint32_t> pair_sides(halfedges &mesh, const nt_walked_mesh &of)
 {
-	const size_t side_count = 3 * mesh.out.size();
-	const directed_edges edges(vertex_count, triangles, side_count);
-	std::vector<uint32_t> owner(side_count, none); // by the edge's first position
-	std::vector<uint32_t> slot(side_count);           // that position, for each side
-	for (size_t i = 0; i < side_count; i++) {
-		const uint32_t s = edges.sides[i];
-		const bool again = i > 0 && edges.from(edges.sides[i - 1]) == edges.from(s) &&
-			edges.to(edges.sides[i - 1]) == edges.to(s);
-		slot[s] = again ? slot[edges.sides[i - 1]] : static_cast<uint32_t>(i);
-	}
+	std::vector<uint32_t> owner(2 * of.edge_count, none);
 	for (size_t t = 0; t < mesh.out.size(); t++) {
-		const uint32_t *v = triangles + 3 * t, *at = slot.data() + 3 * t;
-		mesh.out[t] = v[0] == v[1] || v[1] == v[2] || v[2] == v[0] || owner[at[0]] != none ||
-			owner[at[1]] != none || owner[at[2]] != none;
+		const uint32_t *at = of.sides + 3 * t;
+		mesh.out[t] = at[0] / 2 == at[1] / 2 || at[1] / 2 == at[2] / 2 || at[2] / 2 == at[0] / 2 ||
+			owner[at[0]] != none || owner[at[1]] != none || owner[at[2]] != none;
 		for (uint32_t k = 0; k < 3 && !mesh.out[t]; k++)
 			owner[at[k]] = static_cast<uint32_t>(3 * t + k);
 	}
-	std::vector<uint32_t> opposite(side_count, none);
-	for (size_t s = 0; s < side_count; s++) {
-		const uint32_t side = static_cast<uint32_t>(s);
-		const uint32_t a = edges.from(side), b = edges.to(side);
-		if (owner[slot[s]] != side || a > b)
-			continue;
-		const size_t back = edges.find(b, a);
-		if (back == edges.first[b + 1] || edges.to(edges.sides[back]) != a)
-			continue;
-		const uint32_t other = owner[back];
-		if (other != none) {
-			opposite[s] = other;
-			opposite[other] = side;
-		}
-	}
+	std::vector<uint32_t> opposite(3 * mesh.out.size(), none);
+	for (size_t s = 0; s < opposite.size(); s++)
+		if (!mesh.out[s / 3])
+			opposite[s] = owner[of.sides[s] ^ 1];
 	return opposite;
 }
 
@@ -186,9 +124,9 @@ void add_triangle(halfedges &mesh, const std::vector<uint32_t> &fan, uint32_t tr
 	}
 }
 
-void build(halfedges &mesh, size_t vertex_count, const uint32_t *triangles)
+void build(halfedges &mesh, const nt_walked_mesh &of)
 {
-	const std::vector<uint32_t> opposite = pair_sides(mesh, vertex_count, triangles);
+	const std::vector<uint32_t> opposite = pair_sides(mesh, of);
 	std::vector<bool> done = mesh.out;
 	std::vector<uint32_t> order;
 	const std::vector<uint32_t> fan = split_fans(mesh, opposite, order);
@@ -306,19 +244,19 @@ struct marked_edges {
 
 nt_status walk_marked(const nt_walked_mesh *of, nt_walk_taker *take, void *context, size_t *left_out, nt_error *error)
 {
-	if (of->triangle_count > max_triangles || of->vertex_count > none)
+	if (of->triangle_count > max_triangles || of->edge_count > none / 2)
 		return nt_fail(error, NT_ERROR_TOO_LARGE,
 			"%zu triangles are too many for the seam report, which takes %zu",
 			of->triangle_count, max_triangles);
 	for (size_t s = 0; s < 3 * of->triangle_count; s++)
-		if (of->triangles[s] >= of->vertex_count)
-			return nt_fail(error, NT_ERROR_INDEX, "triangle %zu refers to vertex %u of %zu", s / 3,
-				of->triangles[s], of->vertex_count);
+		if (of->sides[s] / 2 >= of->edge_count)
+			return nt_fail(error, NT_ERROR_INDEX, "triangle %zu refers to edge %u of %zu", s / 3,
+				of->sides[s] / 2, of->edge_count);
 	return nt::guard(error, "OpenMesh", [&] {
 		silence();
 		halfedges mesh;
 		mesh.out.resize(of->triangle_count);
-		build(mesh, of->vertex_count, of->triangles);
+		build(mesh, *of);
 		*left_out = static_cast<size_t>(std::count(mesh.out.begin(), mesh.out.end(), true));
 		marked_edges edges(mesh, of->marked);
 		for (const uint32_t h : mesh.halfedge)

@@ -38,7 +38,9 @@ typedef struct ends {
 	const nt_surface *s;
 	uint64_t *touched; /* [point_count] bits */
 	uint32_t *ranks;
+	uint32_t *degrees; /* [count] marked edges */
 	size_t count;
+	bool forks;        /* more than two meet somewhere */
 } ends;
 
 static uint32_t begin_of(const ends *e, uint32_t side)
@@ -70,61 +72,79 @@ static nt_status find_ends(const nt_surface *s, const nt_marks *marks, nt_scratc
 		nt_bit_set(e->touched, nt_side_point(s, nt_side_next((uint32_t)side)));
 	}
 	e->count = nt_bit_ranks(e->touched, s->point_count, e->ranks);
+	e->degrees = nt_scratch_alloc(scratch, e->count, sizeof *e->degrees);
+	if (!e->degrees)
+		return NT_ERROR_MEMORY;
+	memset(e->degrees, 0, e->count * sizeof *e->degrees);
+	for (size_t side = 0; (side = next_marked(s, marks, side)) < sides; side++) {
+		e->forks |= ++e->degrees[begin_of(e, (uint32_t)side)] > 2;
+		e->forks |= ++e->degrees[end_of(e, (uint32_t)side)] > 2;
+	}
 	return NT_OK;
-}
-
-/* degree: [e->count] */
-static bool any_fork(const ends *e, const nt_marks *marks, uint8_t *degree)
-{
-	memset(degree, 0, e->count);
-	for (size_t side = 0; (side = next_marked(e->s, marks, side)) < 3 * e->s->triangle_count; side++)
-		if (++degree[begin_of(e, (uint32_t)side)] > 2 || ++degree[end_of(e, (uint32_t)side)] > 2)
-			return true;
-	return false;
 }
 
 /* ---- the triangles around the marked edges ---- */
 
+/* Triangles that have edges and an end, and the edges of their points. */
 typedef struct vicinity {
-	uint32_t *triangles; /* [triangle_count][3] points, renumbered */
-	uint32_t *origin;    /* [triangle_count] triangle of the surface */
-	size_t triangle_count, point_count;
-	uint8_t *marked;     /* [3 * triangle_count] */
+	uint64_t *near, *points;  /* [triangle_count of the surface], [point_count] bits: triangles, their points */
+	uint32_t *ranks, *origin; /* numbers of triangles, and back */
+	uint32_t *sides;          /* [3 * triangle_count] as nt_walked_mesh has them */
+	uint8_t *marked;          /* [3 * triangle_count] */
+	size_t triangle_count, edge_count;
 } vicinity;
 
-/* Counts triangles that have edges and an end. */
+static bool has_end(const ends *e, size_t t)
+{
+	return nt_bit(e->touched, nt_side_point(e->s, 3 * t)) || nt_bit(e->touched, nt_side_point(e->s, 3 * t + 1)) ||
+		nt_bit(e->touched, nt_side_point(e->s, 3 * t + 2));
+}
+
+/* Numbers the edges of a point, lower ones of their two, of which near triangles have a side. */
+static void number_edges(const nt_surface *s, uint32_t low, nt_edge_side *edges, vicinity *v)
+{
+	const size_t count = nt_surface_edges(s, low, edges);
+	for (size_t i = 0; i < count; i++) {
+		v->edge_count += i == 0 || edges[i].high != edges[i - 1].high;
+		const uint32_t side = edges[i].side, t = side / 3;
+		if (nt_bit(v->near, t))
+			v->sides[3 * nt_bit_rank(v->near, v->ranks, t) + side % 3] =
+				(uint32_t)(2 * (v->edge_count - 1)) + edges[i].ascending;
+	}
+}
+
 static nt_status find_vicinity(const ends *e, const nt_marks *marks, nt_scratch *scratch, vicinity *v)
 {
-	*v = (vicinity){0};
 	const nt_surface *s = e->s;
-	const size_t words = nt_bit_words(s->triangle_count);
-	uint64_t *near = nt_scratch_alloc(scratch, words, sizeof *near);
-	uint32_t *number = nt_scratch_alloc(scratch, s->point_count, sizeof *number);
-	if (!number || !near)
+	const size_t words = nt_bit_words(s->triangle_count), point_words = nt_bit_words(s->point_count);
+	*v = (vicinity){.near = nt_scratch_alloc(scratch, words, sizeof *v->near),
+		.points = nt_scratch_alloc(scratch, point_words, sizeof *v->points),
+		.ranks = nt_scratch_alloc(scratch, words, sizeof *v->ranks)};
+	nt_edge_side *edges = nt_scratch_alloc(scratch, s->most_sides, sizeof *edges);
+	if (!v->near || !v->points || !v->ranks || !edges)
 		return NT_ERROR_MEMORY;
-	memset(number, 0xff, s->point_count * sizeof *number);
-	memset(near, 0, words * sizeof *near);
-	for (size_t t = 0; t < s->triangle_count; t++)
-		if ((nt_bit(e->touched, nt_side_point(s, 3 * t)) || nt_bit(e->touched, nt_side_point(s, 3 * t + 1)) ||
-			    nt_bit(e->touched, nt_side_point(s, 3 * t + 2))) && nt_has_edges(s, t)) {
-			nt_bit_set(near, t);
-			v->triangle_count++;
-		}
-	v->triangles = nt_scratch_alloc(scratch, 3 * v->triangle_count, sizeof *v->triangles);
-	v->origin = nt_scratch_alloc(scratch, v->triangle_count, sizeof *v->origin);
-	v->marked = nt_scratch_alloc(scratch, 3 * v->triangle_count, 1);
-	if (!v->triangles || !v->origin || !v->marked)
-		return NT_ERROR_MEMORY;
-	for (size_t n = 0, t = 0; (t = nt_bit_next(near, t, s->triangle_count)) < s->triangle_count; n++, t++) {
-		for (size_t k = 0; k < 3; k++) {
-			const uint32_t point = nt_side_point(s, 3 * t + k);
-			if (number[point] == NT_NONE)
-				number[point] = (uint32_t)v->point_count++;
-			v->triangles[3 * n + k] = number[point];
-			v->marked[3 * n + k] = nt_bit(marks->sides, 3 * t + k);
-		}
-		v->origin[n] = (uint32_t)t;
+	memset(v->near, 0, words * sizeof *v->near);
+	memset(v->points, 0, point_words * sizeof *v->points);
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		if (!has_end(e, t) || !nt_has_edges(s, t))
+			continue;
+		nt_bit_set(v->near, t);
+		for (size_t side = 3 * t; side < 3 * t + 3; side++)
+			nt_bit_set(v->points, nt_side_point(s, side));
 	}
+	v->triangle_count = nt_bit_ranks(v->near, s->triangle_count, v->ranks);
+	v->origin = nt_scratch_alloc(scratch, v->triangle_count, sizeof *v->origin);
+	v->sides = nt_scratch_alloc(scratch, 3 * v->triangle_count, sizeof *v->sides);
+	v->marked = nt_scratch_alloc(scratch, 3 * v->triangle_count, 1);
+	if (!v->origin || !v->sides || !v->marked)
+		return NT_ERROR_MEMORY;
+	for (size_t n = 0, t = 0; (t = nt_bit_next(v->near, t, s->triangle_count)) < s->triangle_count; n++, t++) {
+		v->origin[n] = (uint32_t)t;
+		for (size_t k = 0; k < 3; k++)
+			v->marked[3 * n + k] = nt_bit(marks->sides, 3 * t + k);
+	}
+	for (size_t p = 0; (p = nt_bit_next(v->points, p, s->point_count)) < s->point_count; p++)
+		number_edges(s, (uint32_t)p, edges, v);
 	return NT_OK;
 }
 
@@ -162,40 +182,25 @@ static void take_walk(void *context, const uint32_t *steps, size_t count, bool c
 
 /* ---- joining ---- */
 
-/* Ends of runs at points, in two slots per point. degree counts all of them. */
-typedef struct joints {
-	uint32_t *ends;  /* [2 * ends] 2 * run + end */
-	uint32_t *degree;
-} joints;
-
-static nt_status find_joints(const ends *e, const runs *r, nt_scratch *scratch, joints *j)
+/* Ends of runs, 2 * run + end, in two slots for each point. joints: [2 * e->count] */
+static void find_joints(const ends *e, const runs *r, uint32_t *joints)
 {
-	j->ends = nt_scratch_alloc(scratch, 2 * e->count, sizeof *j->ends);
-	j->degree = nt_scratch_alloc(scratch, e->count, sizeof *j->degree);
-	if (!j->ends || !j->degree)
-		return NT_ERROR_MEMORY;
-	memset(j->degree, 0, e->count * sizeof *j->degree);
-	for (size_t i = 0; i < r->side_count; i++) { /* inner points too: a run may pass another's end */
-		j->degree[begin_of(e, r->sides[i])]++;
-		j->degree[end_of(e, r->sides[i])]++;
-	}
-	memset(j->ends, 0xff, 2 * e->count * sizeof *j->ends);
+	memset(joints, 0xff, 2 * e->count * sizeof *joints);
 	for (size_t i = 0; i < r->count; i++) {
 		for (size_t end = 0; end < 2 && !r->items[i].closed; end++) {
-			uint32_t *slots = j->ends + 2 * (size_t)r->items[i].ends[end];
+			uint32_t *slots = joints + 2 * (size_t)r->items[i].ends[end];
 			slots[slots[0] != NT_NONE] = (uint32_t)(2 * i + end);
 		}
 	}
-	return NT_OK;
 }
 
-/* The run end that meets this one at a joint; NT_NONE at an open end or a junction. */
-static uint32_t partner_of(const runs *r, const joints *j, uint32_t end)
+/* The run end that meets this one at a joint; NT_NONE at an open end or a junction. A run may pass another's end. */
+static uint32_t partner_of(const ends *e, const runs *r, const uint32_t *joints, uint32_t end)
 {
 	const uint32_t point = r->items[end / 2].ends[end % 2];
-	if (j->degree[point] != 2)
+	if (e->degrees[point] != 2)
 		return NT_NONE;
-	const uint32_t *slots = j->ends + 2 * (size_t)point;
+	const uint32_t *slots = joints + 2 * (size_t)point;
 	return slots[0] == end ? slots[1] : slots[0];
 }
 
@@ -209,12 +214,12 @@ static void append_run(const runs *r, const run *piece, bool backwards, nt_chain
 }
 
 /* Walks back from a run to where its chain begins, then forward to its end. */
-static void join_from(runs *r, const joints *j, size_t start, nt_chains *chains, size_t *n)
+static void join_from(const ends *e, runs *r, const uint32_t *joints, size_t start, nt_chains *chains, size_t *n)
 {
 	uint32_t entry = (uint32_t)(2 * start); /* the end through which the walk enters a run */
 	bool closed = r->items[start].closed;
 	while (!closed) {
-		const uint32_t before = partner_of(r, j, entry);
+		const uint32_t before = partner_of(e, r, joints, entry);
 		if (before == NT_NONE)
 			break;
 		entry = before ^ 1u;
@@ -227,7 +232,7 @@ static void join_from(runs *r, const joints *j, size_t start, nt_chains *chains,
 		run *piece = &r->items[end / 2];
 		piece->used = true;
 		append_run(r, piece, end % 2 == 1, chains, n);
-		const uint32_t next = piece->closed ? NT_NONE : partner_of(r, j, end ^ 1u);
+		const uint32_t next = piece->closed ? NT_NONE : partner_of(e, r, joints, end ^ 1u);
 		if (next == NT_NONE || r->items[next / 2].used)
 			break;
 		end = next;
@@ -245,11 +250,11 @@ static int by_lowest_side(const void *a, const void *b)
 /* Joins runs, in the order of their lowest sides. */
 static nt_status join_runs(const ends *e, runs *r, nt_scratch *scratch, nt_chains *chains)
 {
-	joints j;
 	uint64_t *order = nt_scratch_alloc(scratch, r->count, sizeof *order);
-	nt_status status = find_joints(e, r, scratch, &j);
-	if (status || !order)
+	uint32_t *joints = nt_scratch_alloc(scratch, 2 * e->count, sizeof *joints);
+	if (!order || !joints)
 		return NT_ERROR_MEMORY;
+	find_joints(e, r, joints);
 	for (size_t i = 0; i < r->count; i++) {
 		uint32_t lowest = NT_NONE;
 		for (size_t k = 0; k < r->items[i].count; k++)
@@ -263,7 +268,7 @@ static nt_status join_runs(const ends *e, runs *r, nt_scratch *scratch, nt_chain
 	for (size_t i = 0; i < r->count; i++) {
 		const size_t index = (size_t)(order[i] & UINT32_MAX);
 		if (!r->items[index].used)
-			join_from(r, &j, index, chains, &n);
+			join_from(e, r, joints, index, chains, &n);
 	}
 	return NT_OK;
 }
@@ -297,17 +302,15 @@ nt_status nt_chains_trace(const nt_surface *surface, const nt_marks *marks, nt_s
 	ends e;
 	status = find_ends(surface, marks, scratch, &e);
 	uint64_t *taken = status ? NULL : nt_scratch_alloc(scratch, words, sizeof *taken);
-	uint8_t *degree = status ? NULL : nt_scratch_alloc(scratch, e.count, 1);
-	if (!taken || !degree)
+	if (!taken)
 		return NT_ERROR_MEMORY;
 	memset(taken, 0, words * sizeof *taken);
-	if (marks->conflicts || any_fork(&e, marks, degree)) {
+	if (marks->conflicts || e.forks) {
 		vicinity v;
 		status = find_vicinity(&e, marks, scratch, &v);
 		walk_taking taking = {&e, &v, taken, &r};
 		if (!status)
-			status = nt_walk_marked(&(nt_walked_mesh){v.point_count, v.triangle_count, v.triangles,
-				v.marked}, take_walk, &taking, &chains->left_out, error);
+			status = nt_walk_marked(&(nt_walked_mesh){v.edge_count, v.triangle_count, v.sides, v.marked}, take_walk, &taking, &chains->left_out, error);
 		if (status)
 			return status;
 	}

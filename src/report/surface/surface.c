@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Triangles and what each is by itself: see surface.h. Points are found in points.c, edges in edge_bins.c.
+ * Triangles and what each is by itself: see surface.h. Points are found in points.c, edges in sides.c.
  */
 #include "report/surface/surface.h"
 

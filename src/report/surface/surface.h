@@ -50,7 +50,20 @@ typedef struct nt_surface {
 	int8_t *orientation;  /* [triangle_count] exact sign in UV space, v up; 0 without texture coordinates */
 	uint8_t *flatness;    /* [triangle_count] nt_flatness */
 	nt_block *blocks;     /* [nt_block_count(triangle_count)] */
+	/* by nt_surface_list_sides() */
+	uint32_t *sides;      /* [3 * triangle_count] at most, by the lower of their two points */
+	const uint32_t *ends; /* [point_count] behind the last one of each point */
+	uint32_t *counts;     /* what `ends` is part of */
+	uint32_t most_sides;  /* of a point */
 } nt_surface;
+
+/* A side of an edge. */
+typedef struct nt_edge_side {
+	uint32_t side;
+	uint32_t high;      /* the edge's higher point */
+	int8_t orientation; /* of the triangle */
+	bool ascending;     /* it runs from the lower point to the higher one */
+} nt_edge_side;
 
 /* Builds the surface of a loaded mesh, but for orientation, flatness and blocks. Everything is in scratch or the mesh's
  * own. Returns NT_OK or NT_ERROR_MEMORY. */
@@ -64,6 +77,15 @@ nt_status nt_surface_weld(nt_surface *surface, nt_scratch *scratch);
 
 /* Sets the orientation and flatness of a block's triangles, and the block. The triangles are then in the cache. */
 void nt_surface_measure(nt_surface *surface, size_t block);
+
+/* Lists the sides of all triangles that have edges, in memory that the second one frees. Returns NT_OK or
+ * NT_ERROR_MEMORY. sides.c */
+nt_status nt_surface_list_sides(nt_surface *surface, unsigned threads);
+void nt_surface_free_sides(nt_surface *surface);
+
+/* The edges of which a point is the lower one, ordered by the higher one, on each its sides, ascending. `edges` has room
+ * for most_sides. Returns how many sides these are. */
+size_t nt_surface_edges(const nt_surface *surface, uint32_t low, nt_edge_side *edges);
 
 static inline size_t nt_block_count(const nt_surface *s)
 {
