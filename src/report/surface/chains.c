@@ -310,7 +310,8 @@ nt_status nt_chains_trace(const nt_surface *surface, const nt_marks *marks, nt_s
 		status = find_vicinity(&e, marks, scratch, &v);
 		walk_taking taking = {&e, &v, taken, &r};
 		if (!status)
-			status = nt_walk_marked(&(nt_walked_mesh){v.edge_count, v.triangle_count, v.sides, v.marked}, take_walk, &taking, &chains->left_out, error);
+			status = nt_walk_marked(&(nt_walked_mesh){v.edge_count, v.triangle_count, v.sides, v.marked},
+				take_walk, &taking, &chains->left_out, error);
 		if (status)
 			return status;
 	}
