@@ -10,9 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash.h"
-#include "base/lock.h"
 #include "json/json.h"
-#include "report/pairs.h"
 
 static int by_file(const void *a, const void *b)
 {
@@ -24,6 +22,17 @@ static int by_number(const void *a, const void *b)
 {
 	const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
 	return x < y ? -1 : x > y;
+}
+
+/* Both sides of a pair as one kind of thing. */
+static uint64_t fingerprint_of(const void *entries, size_t index)
+{
+	return ((const nt_baseline_entry *)entries)[index].fingerprint;
+}
+
+static uint64_t geometry_of(const void *entries, size_t index)
+{
+	return ((const nt_baseline_entry *)entries)[index].geometry;
 }
 
 static uint64_t key_of_file(const char *file)
@@ -90,12 +99,17 @@ nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size,
 		return status;
 	status = read_files(baseline, nt_json_root(document), error);
 	nt_json_free(document);
+	if (!status && baseline->count)
+		qsort(baseline->entries, baseline->count, sizeof *baseline->entries, by_file);
+	if (!status && baseline->file_count)
+		qsort(baseline->files, baseline->file_count, sizeof *baseline->files, by_number);
+	if (!status) {
+		baseline->geometries = nt_list_keys(baseline->entries, baseline->count, geometry_of,
+			&baseline->geometry_count);
+		status = baseline->geometries ? NT_OK : nt_fail_memory(error);
+	}
 	if (status)
 		nt_baseline_free(baseline);
-	if (baseline->count)
-		qsort(baseline->entries, baseline->count, sizeof *baseline->entries, by_file);
-	if (baseline->file_count)
-		qsort(baseline->files, baseline->file_count, sizeof *baseline->files, by_number);
 	return status;
 }
 
@@ -123,104 +137,33 @@ static size_t find_entries(const nt_baseline *baseline, uint64_t file)
 	return low;
 }
 
-/* Both sides of a pair as one kind of thing. */
-static uint64_t fingerprint_of(const void *entries, size_t index)
-{
-	return ((const nt_baseline_entry *)entries)[index].fingerprint;
-}
-
-static uint64_t geometry_of(const void *entries, size_t index)
-{
-	return ((const nt_baseline_entry *)entries)[index].geometry;
-}
-
-/* By geometry, then by the number of the finding, which `file` holds here. */
-static int by_geometry(const void *a, const void *b)
-{
-	const nt_baseline_entry *x = a, *y = b;
-	return x->geometry != y->geometry ? (x->geometry < y->geometry ? -1 : 1) : by_file(a, b);
-}
-
-/* Files are checked on many threads. */
-static bool list_geometries(nt_baseline *baseline)
-{
-	static nt_lock lock = NT_LOCK_INIT;
-	nt_lock_take(&lock);
-	uint64_t *list = baseline->geometries ? NULL : nt_alloc(baseline->count, sizeof *list);
-	for (size_t i = 0; list && i < baseline->count; i++)
-		if (baseline->entries[i].geometry)
-			list[baseline->geometry_count++] = baseline->entries[i].geometry;
-	if (list && baseline->geometry_count)
-		qsort(list, baseline->geometry_count, sizeof *list, by_number);
-	if (list)
-		baseline->geometries = list;
-	const bool made = baseline->geometries != NULL;
-	nt_lock_give(&lock);
-	return made;
-}
-
-/* The first geometry that is not below. */
-static size_t find_geometry(const nt_baseline *baseline, uint64_t geometry)
-{
-	size_t low = 0, high = baseline->geometry_count;
-	while (low < high) {
-		const size_t middle = (low + high) / 2;
-		if (baseline->geometries[middle] < geometry)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	return low;
-}
-
-/* Marks findings of a file of a new name, in time that grows with these alone: two equal entries excuse two. */
-static bool apply_all(nt_baseline *baseline, nt_report *report)
+bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report)
 {
 	const size_t count = report->finding_count;
-	if (!count)
-		return true;
-	nt_baseline_entry *new = nt_alloc(count, sizeof *new);
-	if (!new || !list_geometries(baseline)) {
-		free(new);
-		return false;
-	}
-	for (size_t i = 0; i < count; i++)
-		new[i] = (nt_baseline_entry){.file = i, .geometry = report->findings[i].geometry};
-	qsort(new, count, sizeof *new, by_geometry);
-	for (size_t i = 0, place = 0; i < count; i++) {
-		const uint64_t geometry = new[i].geometry;
-		place = i && new[i - 1].geometry == geometry ? place + 1 : find_geometry(baseline, geometry);
-		report->findings[new[i].file].known = geometry && place < baseline->geometry_count &&
-			baseline->geometries[place] == geometry;
-	}
-	free(new);
-	return true;
-}
-
-bool nt_baseline_apply(nt_baseline *baseline, nt_report *report)
-{
 	const uint64_t own = key_of_file(report->shown);
 	const bool named = baseline->file_count &&
 		bsearch(&own, baseline->files, baseline->file_count, sizeof own, by_number);
-	if (!named)
-		return apply_all(baseline, report);
-	const size_t first = find_entries(baseline, own);
-	const size_t old_count = find_entries(baseline, own + 1) - first;
+	const size_t first = find_entries(baseline, own), old_count = find_entries(baseline, own + 1) - first;
 	const nt_baseline_entry *old = baseline->entries ? baseline->entries + first : NULL;
-	nt_baseline_entry *new = nt_calloc(report->finding_count, sizeof *new);
-	uint32_t *partners = nt_alloc(report->finding_count, sizeof *partners);
-	bool *taken = nt_calloc(old_count, sizeof *taken);
-	bool made = new && partners && taken;
-	for (size_t i = 0; made && i < report->finding_count; i++) {
+	nt_baseline_entry *new = nt_calloc(count, sizeof *new);
+	uint32_t *partners = nt_alloc(count, sizeof *partners);
+	bool *taken = nt_calloc(old_count, sizeof *taken), made = new && partners && taken;
+	for (size_t i = 0; made && i < count; i++) {
 		new[i].fingerprint = report->findings[i].fingerprint;
 		new[i].geometry = report->findings[i].geometry;
 		partners[i] = NT_NONE;
 	}
-	if (made)
-		made = !nt_pair(old, old_count, new, report->finding_count, fingerprint_of, partners, taken);
-	if (made)
-		made = !nt_pair(old, old_count, new, report->finding_count, geometry_of, partners, taken);
-	for (size_t i = 0; made && i < report->finding_count; i++)
+	if (made && named) {
+		made = !nt_pair(old, old_count, new, count, fingerprint_of, partners, taken) &&
+			!nt_pair(old, old_count, new, count, geometry_of, partners, taken);
+	} else if (made) {
+		size_t listed;
+		nt_keyed *keys = nt_list_keys(new, count, geometry_of, &listed);
+		made = keys != NULL;
+		nt_pair_keys(baseline->geometries, baseline->geometry_count, keys, listed, partners, NULL);
+		free(keys);
+	}
+	for (size_t i = 0; made && i < count; i++)
 		report->findings[i].known = partners[i] != NT_NONE;
 	free(new);
 	free(partners);

@@ -5,6 +5,7 @@
 #ifndef NT_REPORT_BASELINE_H
 #define NT_REPORT_BASELINE_H
 
+#include "report/pairs.h"
 #include "report/report.h"
 
 typedef struct nt_baseline_entry {
@@ -18,7 +19,7 @@ struct nt_baseline {
 	size_t count;
 	uint64_t *files; /* [file_count] keys of the files' names, ascending */
 	size_t file_count;
-	uint64_t *geometries; /* [geometry_count] ascending; NULL: no file of a new name was met */
+	nt_keyed *geometries; /* [geometry_count] of entries that have one, ascending */
 	size_t geometry_count;
 };
 
@@ -30,7 +31,7 @@ struct nt_baseline {
 nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, nt_error *error);
 
 /* Marks the findings that the baseline has. False: out of memory. */
-bool nt_baseline_apply(nt_baseline *baseline, nt_report *report);
+bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report);
 
 void nt_baseline_free(nt_baseline *baseline);
 

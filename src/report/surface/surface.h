@@ -83,8 +83,8 @@ void nt_surface_measure(nt_surface *surface, size_t block);
 nt_status nt_surface_list_sides(nt_surface *surface, unsigned threads);
 void nt_surface_free_sides(nt_surface *surface);
 
-/* The edges of which a point is the lower one, ordered by the higher one, on each its sides, ascending. `edges` has room
- * for most_sides. Returns how many sides these are. */
+/* The edges of which a point is the lower one, ordered by the higher one, on each its sides, ascending. `edges` has
+ * room for most_sides. Returns how many sides these are. */
 size_t nt_surface_edges(const nt_surface *surface, uint32_t low, nt_edge_side *edges);
 
 static inline size_t nt_block_count(const nt_surface *s)

@@ -26,7 +26,8 @@ static void take(void *context, const uint32_t *steps, size_t count, bool closed
 	uint32_t first = 0, before = 0;
 	assert_true(count > 0);
 	for (size_t i = 0; i < count; i++) {
-		const uint32_t side = steps[i] / 2, a = w->triangles[side], b = w->triangles[side % 3 == 2 ? side - 2 : side + 1];
+		const uint32_t side = steps[i] / 2, a = w->triangles[side],
+			b = w->triangles[side % 3 == 2 ? side - 2 : side + 1];
 		const uint32_t from = steps[i] % 2 ? b : a;
 		assert_true(w->mesh->marked[side]);
 		if (i > 0)
