@@ -13,7 +13,4 @@
  * size alone shows that the need is at most `enough`, the file is not opened. */
 uint64_t nt_need_of(const char *input, const nt_settings *settings, uint64_t enough);
 
-/* need_images.c: of that, what the images of an OBJ take. */
-uint64_t nt_need_of_images(const char *input, const char *text, size_t size, const nt_settings *settings);
-
 #endif

@@ -70,7 +70,7 @@ says " not tried"
 is "$(ls fast1)" ""
 
 scene "--memory bounds what is converted at a time, and changes nothing else"
-# 3 MB of text each, which takes 18 MB, guessed to be 30; four at a time took 67 MB.
+# 3 MB of text each, which takes 18 MB, guessed to be 25; four at a time took 67 MB.
 grid_obj 200 >m1.obj
 for i in 2 3 4 5 6 7 8; do cp m1.obj m$i.obj; done
 # Kilobytes that it takes at most, over those of a run of one small file.

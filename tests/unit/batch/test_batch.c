@@ -72,11 +72,13 @@ TEST(every_input_runs_and_is_told_about_in_order)
 static atomic_int running, most_running, awaited, wide_runs, wide_beside;
 static atomic_size_t running_bytes, most_bytes;
 
+enum { LARGE = 500000, SMALL = 125000 };
+
 static nt_status watched_run(const char *input, const char *output, const nt_settings *settings, nt_summary *summary,
 	nt_error *error)
 {
 	(void)output, (void)summary, (void)error;
-	const size_t need = settings->threads == 4 ? 0 : (1 << 20) + 2 * (atoi(input + 1) % 4 ? 2000000 : 500000);
+	const size_t need = settings->threads == 4 ? 0 : (1 << 20) + 8 * (atoi(input + 1) % 4 ? LARGE : SMALL);
 	const size_t bytes = atomic_fetch_add(&running_bytes, need) + need;
 	for (size_t most = most_bytes; bytes > most && !atomic_compare_exchange_weak(&most_bytes, &most, bytes);)
 		;
@@ -99,11 +101,11 @@ TEST(the_bound_of_memory_keeps_jobs_waiting)
 {
 	static char names[12][20];
 	const char *inputs[12];
-	static char bytes[2000000];
-	/* one megabyte and two bytes for each byte: 5 MB and, every fourth, 2 MB */
+	static char bytes[LARGE];
+	/* one megabyte and eight bytes for each byte: 5 MB and, every fourth, 2 MB */
 	for (int i = 0; i < 12; i++) {
 		snprintf(names[i], sizeof names[i], "m%02d.obj", i);
-		put_file(inputs[i] = names[i], bytes, i % 4 ? sizeof bytes : 500000);
+		put_file(inputs[i] = names[i], bytes, i % 4 ? LARGE : SMALL);
 	}
 	const struct {
 		uint64_t memory;
