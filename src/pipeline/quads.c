@@ -18,19 +18,21 @@ static nt_status ask_tangents(const nt_mesh *mesh, const uint8_t *halves, unsign
 {
 	nt_maker triangles = {.quads = false}, quads = {.quads = true};
 	uint64_t *border = NULL;
+	float *fresh = nt_alloc(mesh->corner_count, 4 * sizeof *fresh);
 	*are_quads = false;
-	nt_status status = NT_OK;
-	if (mesh->has_siblings) {
+	nt_status status = fresh ? NT_OK : NT_ERROR_MEMORY;
+	if (!status && mesh->has_siblings) {
 		border = nt_alloc(nt_bit_words(mesh->corner_count), sizeof *border);
 		status = border ? nt_maker_border(mesh, border) : NT_ERROR_MEMORY;
 	}
 	if (!status)
-		status = nt_maker_compare(mesh, halves, border, threads, &triangles);
+		status = nt_maker_compare(mesh, halves, border, threads, fresh, &triangles);
 	if (!status && triangles.agreement < NT_MAKER_SHARE) {
-		status = nt_maker_compare(mesh, halves, border, threads, &quads);
+		status = nt_maker_compare(mesh, halves, border, threads, fresh, &quads);
 		*are_quads = !status && quads.agreement >= NT_MAKER_SHARE;
 	}
 	free(border);
+	free(fresh);
 	return status;
 }
 

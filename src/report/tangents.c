@@ -466,20 +466,21 @@ static nt_status check_directions(nt_check *check, const float *fresh, const uin
 	return NT_OK;
 }
 
-static nt_status compare_with_fresh(nt_check *check)
+/* fresh: what find_maker() left there. Solves again unless that is MikkTSpace on the same faces. */
+static nt_status compare_with_fresh(nt_check *check, float *fresh)
 {
 	const nt_mesh *mesh = check->mesh;
+	const nt_maker *maker = &check->facts->maker;
+	const bool solved = maker->last && maker->method == NMTAN_METHOD_MIKKTSPACE && !maker->untransformed &&
+		maker->quads == (check->halves != NULL);
+	nt_maker mikktspace = {.quads = check->halves != NULL};
+	nt_status status = NT_OK;
 	/* --across=mesh: as the mesh is solved with the others of its join */
 	if (mesh->plan.join && mesh->corner_tangents && mesh->decision != NT_DECISION_REPAIR)
 		return check_directions(check, mesh->corner_tangents, NULL);
-	float *fresh = nt_scratch_alloc(check->scratch, 4 * mesh->corner_count, sizeof *fresh);
-	if (!fresh)
-		return NT_ERROR_MEMORY;
-	nmtan_stored_uv stored;
-	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
-	const nmtan_options options = {.struct_bytes = sizeof options, .threads = check->options->threads};
-	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = fresh};
-	const nt_status status = nt_status_of(nt_tangents_of_halves(&view, check->halves, &options, &output, NULL));
+	if (!solved)
+		status = nt_maker_compare(mesh, check->halves, NULL, nt_thread_count(check->options->threads), fresh,
+			&mikktspace);
 	return status ? status : check_directions(check, fresh, check->elsewhere);
 }
 
@@ -506,7 +507,7 @@ static bool looks_for_quads(const nt_check *check)
 
 /* Finds the maker, and the faces that the mesh is to be compared on. `pairs`: room for halves, if these are looked for;
  * later checks ask for them. */
-static nt_status find_maker(nt_check *check, uint8_t *pairs)
+static nt_status find_maker(nt_check *check, uint8_t *pairs, float *fresh)
 {
 	const nt_mesh *mesh = check->mesh;
 	uint8_t *halves = pairs ? pairs : mesh->halves;
@@ -519,7 +520,7 @@ static nt_status find_maker(nt_check *check, uint8_t *pairs)
 	}
 	if (!status)
 		status = nt_find_maker(mesh, quads ? halves : NULL, border, nt_thread_count(check->options->threads),
-			&check->facts->maker);
+			fresh, &check->facts->maker);
 	if (status)
 		return status;
 	check->elsewhere = check->facts->maker.across ? border : NULL;
@@ -566,17 +567,18 @@ nt_status nt_check_tangents(nt_check *check)
 	if (compared && looks_for_quads(check) && !(pairs = nt_scratch_alloc(check->scratch, mesh->face_count, 1)))
 		return NT_ERROR_MEMORY;
 	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	float *fresh = compared ? nt_scratch_alloc(check->scratch, mesh->corner_count, 4 * sizeof *fresh) : NULL;
+	nt_status status = compared && !fresh ? NT_ERROR_MEMORY : NT_OK;
 	check_presence(check);
-	nt_status status = NT_OK;
 	check->halves = mesh->halves;
-	if (check->facts->checked_tangents) {
+	if (!status && check->facts->checked_tangents) {
 		status = check_each(check);
 		if (!status && compared)
-			status = find_maker(check, pairs);
+			status = find_maker(check, pairs, fresh);
 		if (!status && mesh->texcoords)
 			status = check_signs(check);
 		if (!status && compared)
-			status = compare_with_fresh(check);
+			status = compare_with_fresh(check, fresh);
 	}
 	nt_scratch_back(check->scratch, mark);
 	return status;

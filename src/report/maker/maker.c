@@ -2,7 +2,6 @@
 #include "report/maker/maker.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include "api/tangents.h"
 #include "base/angle.h"
@@ -110,26 +109,22 @@ static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const uint8_t *
 }
 
 nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
-	nt_maker *maker)
+	float *fresh, nt_maker *maker)
 {
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	const nmtan_options options = {.struct_bytes = sizeof options, .method = maker->method, .threads = threads};
-	const nmtan_output output = {.struct_bytes = sizeof output,
-		.tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float))};
-	if (!output.tangents)
-		return NT_ERROR_MEMORY;
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = fresh};
 	maker->degrees = mesh->byte_tangents ? BYTE_DEGREES : OTHER_DEGREES;
 	const uint8_t *solved = maker->quads ? halves : NULL;
 	const nt_status status = nt_status_of(nt_tangents_of_halves(&view, solved, &options, &output, NULL));
 	if (!status)
-		compare(mesh, &view, solved, border, output.tangents, maker);
-	free(output.tangents);
+		compare(mesh, &view, solved, border, fresh, maker);
 	return status;
 }
 
 nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
-	nt_maker *maker)
+	float *fresh, nt_maker *maker)
 {
 	static const nmtan_method methods[] = {NMTAN_METHOD_MIKKTSPACE, NMTAN_METHOD_MIKKTSPACE_SORTED,
 		NMTAN_METHOD_AREA, NMTAN_METHOD_LENGYEL, NMTAN_METHOD_ROBUST};
@@ -137,14 +132,15 @@ nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64
 	double off_mikktspace = 0.0;
 	*maker = (nt_maker){.agreement = -1.0};
 	for (size_t i = 0; i < MAKERS && maker->agreement < CERTAIN; i++) {
-		nt_maker next = {.method = methods[i / 2], .quads = i % 2};
+		nt_maker next = {.method = methods[i / 2], .quads = i % 2, .last = true};
 		if (next.quads && !halves)
 			continue;
-		const nt_status status = nt_maker_compare(mesh, halves, border, threads, &next);
+		const nt_status status = nt_maker_compare(mesh, halves, border, threads, fresh, &next);
 		if (status)
 			return status;
 		if (i == 0)
 			off_mikktspace = next.most_degrees;
+		maker->last = false;
 		if (next.agreement > maker->agreement)
 			*maker = next;
 	}
@@ -155,7 +151,8 @@ nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64
 	nt_mesh plain = *mesh;
 	plain.solve_texcoords = NULL;
 	nt_maker of_plain;
-	const nt_status status = nt_find_maker(&plain, halves, border, threads, &of_plain);
+	const nt_status status = nt_find_maker(&plain, halves, border, threads, fresh, &of_plain);
+	maker->last = false;
 	if (!status && of_plain.known) {
 		*maker = of_plain;
 		maker->untransformed = true;
