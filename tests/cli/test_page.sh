@@ -75,6 +75,8 @@ grid $side >large.obj
 run --check --report=large.html large.obj
 exits 0
 grep -aq "\"triangles\":$((2 * side * side)),\"whole\":true" large.html || wrong "it is not whole"
+awk 'BEGIN { print "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1"; for (i = 0; i < 20000; i++) printf "v %d 0 0\nv %d 0 0\nv %d 1 0\nv %d 1 0\nf -4/1 -3/2 -2/3 -1/4\n", 2 * i, 2 * i + 1, 2 * i + 1, 2 * i }' >stacked.obj
+run --check --report=stacked.html --fail-on=never stacked.obj
 mkdir many
 cp "$data/head.obj" many/head.obj
 printf 'v 0 0 0\nv 1 0 0\nf 1 2 7\n' >many/bad.obj

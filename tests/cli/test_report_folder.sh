@@ -57,6 +57,10 @@ is "$(rows r/index.html 'f["model"] + f["layout"]' | tail -1)" ""
 # its mirrored triangles cover the square of the texture, which takes 72 x 72
 PYTHONPATH=. rows r/index.html '(lambda s: (len(s), s.count(1), s.count(2)))(__import__("model").shades(f, "layout"))' >layouts
 is "$(head -1 layouts)" "(8960, 0, 5184)"
+# a place far from any texture takes none from the others
+{ cat a/m.obj; printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1e9 0\nvt 0 1e9\nf -3/-3 -2/-2 -1/-1\n'; } >far.obj
+run --check --report=far/ --fail-on=never far.obj
+is "$(PYTHONPATH=. rows far/index.html '(lambda s: (len(s), s.count(1), s.count(2)))(__import__("model").shades(f, "layout"))')" "(8960, 0, 5184)"
 is "$(rows r/m.obj.html 'f["name"], f["counts"]')" "$(rows r/index.html 'f["name"], f["counts"]' | head -1)"
 
 scene "any number of jobs and threads, and another run, write the same bytes"

@@ -5,6 +5,7 @@
 //   two.html    object "plain" (unmirrored, u 0 to 0.4) and object "</script>..." (mirrored, u 0.6 to 1)
 //   head.html   data/head.obj, whose mirror seams lie in x = 0
 //   large.html  a grid of a million triangles, mirrored at its middle
+//   stacked.html  20 000 quads, each with all of the texture
 //   many.html   500 files
 //   pages/      index.html, and a page of each of head.obj, bad.obj, 30 quads and a name that tries to be a script
 //   bad.html    meshes with nothing to show, and a position that is not finite
@@ -318,6 +319,18 @@ async function clickTexture(page, u, v) {
 	await page.waitForFunction(() => window.nmtanReport.selection());
 	await expect(async () => await ask(page, 'visible') > 0, 'its seam is seen');
 	if (shots) await page.screenshot({path: shots + '/large.png'});
+	await page.close();
+}
+
+// ---- 20 000 islands on each other ----
+
+{
+	const page = await open('stacked.html');
+	const {covering, regions} = await page.evaluate(() => (({covering, regions}) => ({covering: covering.length, regions: regions.length}))(window.nmtanReport.geometry()));
+	check(regions === 20000 && covering === 8 * 6, 'eight of equal islands are drawn: ' + covering / 6);
+	await expect(async () => { const {scale} = await ask(page, 'layout'); return Math.abs(await ask(page, 'overlapPixels') / scale ** 2 - 1) < 0.05; }, 'and tinted');
+	await clickTexture(page, 0.5, 0.4);
+	await expect(async () => (await selection(page))?.island === 19999, 'a click chooses the last one');
 	await page.close();
 }
 

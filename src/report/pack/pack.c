@@ -17,9 +17,6 @@
 
 enum { POSITION_CODES = 65535, TEXCOORD_CODES = (1 << 18) - 1, DIRECTION_CODES = 2047 };
 
-/* Texture coordinates beyond this are no place in a texture; they would leave the others without precision. */
-static const float MOST_TEXCOORD = 1e6f;
-
 /* ---- a part of a mesh ---- */
 
 typedef struct growth {
@@ -130,7 +127,7 @@ typedef struct packing {
 	nt_buffer raw;
 } packing;
 
-/* Appends an array, unless it is empty. */
+/* Appends an array; of one that is empty only that it is. */
 static void put_array(packing *p, const char *name, const uint32_t *values, size_t count)
 {
 	uint32_t all = 0, before = 0;
@@ -146,14 +143,7 @@ static void put_array(packing *p, const char *name, const uint32_t *values, size
 		for (unsigned k = 0; k < planes; k++)
 			to[k * count + i] = (unsigned char)(zigzag >> 8 * k);
 	}
-	if (count)
-		p->packed->arrays[p->packed->array_count++] = (nt_packed_array){name, count, planes};
-}
-
-/* The codes of each vertex. */
-static void put_vertex_array(packing *p, const char *name)
-{
-	put_array(p, name, p->codes, p->packed->vertex_count);
+	p->packed->arrays[p->packed->array_count++] = (nt_packed_array){name, count, count ? planes : 0};
 }
 
 /* ---- which triangles and vertices ---- */
@@ -176,8 +166,7 @@ static nt_status choose_triangles(packing *p, const nt_report *report, uint32_t 
 	for (size_t t = 0; t < g->triangle_count; t++)
 		if (!p->taken || p->taken[t])
 			p->triangles[count++] = (uint32_t)t;
-	if (!p->packed->whole)
-		put_array(p, "numbers", p->triangles, count);
+	put_array(p, "numbers", p->triangles, p->packed->whole ? 0 : count);
 	return NT_OK;
 }
 
@@ -237,7 +226,7 @@ static void put_positions(packing *p)
 		for (size_t v = 0; v < p->packed->vertex_count; v++)
 			p->codes[v] = quantise(positions[3 * (size_t)p->vertices[v] + axis], range[0], step,
 				POSITION_CODES);
-		put_vertex_array(p, names[axis]);
+		put_array(p, names[axis], p->codes, p->packed->vertex_count);
 	}
 }
 
@@ -245,23 +234,24 @@ static void put_positions(packing *p)
 static void put_texcoords(packing *p)
 {
 	static const char *const names[2] = {"u", "v"};
+	const size_t count = p->geometry->texcoords ? p->packed->vertex_count : 0;
 	const float *texcoords = p->geometry->texcoords;
 	double *origin = p->packed->texcoord_origin, *step = &p->packed->texcoord_step;
 	double range[2][2];
 	for (size_t axis = 0; axis < 2 && texcoords; axis++)
-		measure(p, texcoords, 2, axis, MOST_TEXCOORD, range[axis]);
+		measure(p, texcoords, 2, axis, NT_MOST_TEXCOORD, range[axis]);
 	if (texcoords) {
 		*step = fmax(range[0][1] - range[0][0], range[1][1] - range[1][0]) / TEXCOORD_CODES;
 		origin[0] = range[0][0];
 		origin[1] = p->v_down ? range[1][0] : 1.0 - range[1][1];
 	}
-	for (size_t axis = 0; axis < 2 && texcoords; axis++) {
-		for (size_t v = 0; v < p->packed->vertex_count; v++) {
+	for (size_t axis = 0; axis < 2; axis++) {
+		for (size_t v = 0; v < count; v++) {
 			const double x = texcoords[2 * (size_t)p->vertices[v] + axis];
 			p->codes[v] = quantise(axis == 1 && !p->v_down ? 1.0 - x : x, origin[axis], *step,
 				TEXCOORD_CODES);
 		}
-		put_vertex_array(p, names[axis]);
+		put_array(p, names[axis], p->codes, count);
 	}
 }
 
@@ -359,6 +349,7 @@ static void put_seams(packing *p)
 {
 	const size_t count = p->mesh->seams ? p->mesh->seam_count + p->mesh->hard_count : 0;
 	nt_buffer edges = {0}, ends = {0}; /* of uint32_t */
+	p->packed->seam_count = count;
 	for (size_t s = 0; s < count; s++) {
 		const nt_seam *seam = &p->mesh->seams[s];
 		uint32_t found = 0, both[4];

@@ -2,9 +2,10 @@
 /*
  * A mesh as an HTML page has it: whole, in a few bytes a triangle. page/data.js, in report/render, reads it.
  *
- * It is arrays of whole numbers, one after the other, deflated together, without those that would be empty. Vertices
- * are numbered in the order in which triangles use them:
+ * It is arrays of whole numbers, one after the other in this order, deflated together; of those that are empty nothing
+ * is there. Vertices are numbered in the order in which triangles use them:
  *
+ *   numbers                       if triangles are left out: the file's number of each
  *   corners                       of each corner how far its vertex is below the number of the next new one; 0: it is
  *                                 that one
  *   x y z                         of each vertex: position_origin + code * position_step, 16 bits
@@ -17,7 +18,6 @@
  *   islands                       its island + 1, 0: none
  *   seam_edges                    of each seam, then of each net of hard edges: how many edges
  *   seam_ends                     of each edge the vertices at its ends, unmirrored side first
- *   numbers                       if triangles are left out: the file's number of each
  *
  * An array is stored as differences from the number before, as zigzag, in planes: the lowest byte of each, then the
  * second one, as many as its greatest number has, modulo what these hold. A direction is two components of 12 bits: the
@@ -30,18 +30,21 @@
 
 enum { NT_PACKED_ARRAYS = 19 };
 
+/* Texture coordinates beyond this are no place in a texture; they would leave the others without precision. */
+#define NT_MOST_TEXCOORD 1e6f
+
 typedef struct nt_packed_array {
 	const char *name; /* static */
 	size_t count;
-	unsigned planes;
+	unsigned planes;   /* 0: it is empty */
 } nt_packed_array;
 
 typedef struct nt_packed {
-	size_t vertex_count, triangle_count;
+	size_t vertex_count, triangle_count, seam_count;
 	bool whole;                  /* nothing was left out */
 	double position_origin[3], position_step[3];
 	double texcoord_origin[2], texcoord_step;
-	nt_packed_array arrays[NT_PACKED_ARRAYS]; /* [array_count] in the order of their bytes */
+	nt_packed_array arrays[NT_PACKED_ARRAYS]; /* in the order of their bytes */
 	unsigned array_count;
 	size_t raw_bytes;            /* before they were deflated */
 	nt_buffer bytes;             /* deflated */

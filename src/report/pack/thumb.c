@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include "ext/deflate.h"
+#include "report/pack/pack.h"
 
 enum { PIXELS = NT_THUMB_WIDTH * NT_THUMB_HEIGHT, CHANGES = (NT_THUMB_WIDTH + 1) * NT_THUMB_HEIGHT, MARGIN = 4 };
 
@@ -27,7 +28,8 @@ typedef struct picture {
 	unsigned char *shade; /* [PIXELS] */
 } picture;
 
-/* The places of a triangle's corners: to the right, down and towards the eye. False where one is not finite. */
+/* The places of a triangle's corners: to the right, down and towards the eye. False where one is not finite, or no
+ * place in a texture. */
 static bool place(const picture *d, size_t triangle, double p[3][3])
 {
 	const nt_report_geometry *g = d->geometry;
@@ -45,6 +47,7 @@ static bool place(const picture *d, size_t triangle, double p[3][3])
 			p[k][1] = -p[k][1];
 		}
 		finite &= isfinite(p[k][0]) && isfinite(p[k][1]) && isfinite(p[k][2]);
+		finite &= !d->layout || (fabs(p[k][0]) <= NT_MOST_TEXCOORD && fabs(p[k][1]) <= NT_MOST_TEXCOORD);
 	}
 	return finite;
 }

@@ -27,7 +27,8 @@
  *
  * Then the page's script (the pages of a folder refer to one file with it, and to one with the style), then the
  * geometry of each mesh in an element of its own, #g-FILE-MESH, which is not looked at until the mesh is opened: a line
- * of JSON (the fields of nt_packed) and its bytes as base64: see pack/pack.h. Written and forgotten mesh by mesh.
+ * of JSON (fields of nt_packed, and how many planes each array has, as a digit) and its bytes as base64: see
+ * pack/pack.h. Written and forgotten mesh by mesh.
  */
 #include "report/render/writers.h"
 
@@ -330,14 +331,14 @@ static void put_geometry(const nt_report *report, size_t file, uint32_t mesh, si
 		nt_member_count(out, "vertices", packed.vertex_count);
 		nt_member_count(out, "triangles", packed.triangle_count);
 		nt_member_bool(out, "whole", packed.whole);
+		nt_member_count(out, "seams", packed.seam_count);
 		put_doubles("origin", packed.position_origin, 3, out);
 		put_doubles("step", packed.position_step, 3, out);
 		put_doubles("uvOrigin", packed.texcoord_origin, 2, out);
-		nt_buffer_format(out, ",\"uvStep\":%.17g,\"arrays\":[", packed.texcoord_step);
-		for (unsigned i = 0; i < packed.array_count; i++)
-			nt_buffer_format(out, "%s[\"%s\",%zu,%u]", i ? "," : "", packed.arrays[i].name,
-				packed.arrays[i].count, packed.arrays[i].planes);
-		nt_buffer_text(out, "]}\n");
+		nt_buffer_format(out, ",\"uvStep\":%.17g,\"planes\":\"", packed.texcoord_step);
+		for (unsigned i = 0; i < NT_PACKED_ARRAYS; i++)
+			nt_buffer_format(out, "%u", packed.arrays[i].planes);
+		nt_buffer_text(out, "\"}\n");
 		nt_base64_append(out, packed.bytes.data, packed.bytes.size);
 		nt_buffer_text(out, "</script>\n");
 	}

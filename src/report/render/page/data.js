@@ -61,6 +61,7 @@ files.forEach((file, f) => {
 // ---- geometry ----
 
 const TEXCOORD_CODES = 1 << 18;
+const MOST_STACKED = 8; // equal outlines of islands that are drawn
 
 const digits = new Uint8Array(128);
 [...'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/'].forEach((c, i) => { digits[c.charCodeAt(0)] = i; });
@@ -85,21 +86,21 @@ async function inflate(bytes) {
 	return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// Reads arrays of numbers by name, as pack.h says how they are stored; null where one is not there.
-function arrayReader(bytes, arrays) {
-	const places = new Map();
-	let end = 0;
-	for (const [name, count, planes] of arrays) {
-		places.set(name, [end, count, planes]);
-		end += count * planes;
-	}
-	return name => {
-		if (!places.has(name)) return null;
-		const [begin, count, planes] = places.get(name), numbers = new Uint32Array(count), mask = planes < 4 ? (1 << 8 * planes) - 1 : -1;
-		for (let k = 0, at = begin; k < planes; k++) for (let i = 0; i < count; i++) numbers[i] |= bytes[at++] << 8 * k;
+const ARRAYS = ['numbers', 'corners', 'x', 'y', 'z', 'nx', 'ny', 'u', 'v', 'ax', 'ay', 'aw', 'cx', 'cy', 'cw', 'kinds', 'islands', 'seam_edges', 'seam_ends'];
+
+// The arrays of numbers by name, as pack.h says how they are stored; those that are not there are undefined.
+function readArrays(bytes, {planes, vertices, triangles, seams}) {
+	const arrays = {}, counts = {numbers: triangles, corners: 3 * triangles, kinds: triangles, islands: triangles, seam_edges: seams};
+	let at = 0;
+	ARRAYS.forEach((name, n) => {
+		const width = Number(planes[n]), mask = width < 4 ? (1 << 8 * width) - 1 : -1;
+		if (!width) return;
+		const count = name === 'seam_ends' ? 4 * arrays.seam_edges.reduce((sum, edges) => sum + edges, 0) : counts[name] ?? vertices;
+		const numbers = arrays[name] = new Uint32Array(count);
+		for (let k = 0; k < width; k++) for (let i = 0; i < count; i++) numbers[i] |= bytes[at++] << 8 * k;
 		for (let i = 0, number = 0; i < count; i++) numbers[i] = number = number + (numbers[i] >>> 1 ^ -(numbers[i] & 1)) & mask;
-		return numbers;
-	};
+	});
+	return arrays;
 }
 
 function readIndices(indices) {
@@ -112,7 +113,7 @@ function readIndices(indices) {
 }
 
 // Arrays as the columns of one of rows, for WebGL; null where they are not there.
-function joinColumns(columns, width) {
+function joinColumns(width, ...columns) {
 	if (!columns[0]) return null;
 	const rows = new Uint16Array(width * columns[0].length);
 	columns.forEach((column, k) => { for (let v = 0; v < column.length; v++) rows[width * v + k] = column[v]; });
@@ -121,18 +122,16 @@ function joinColumns(columns, width) {
 
 // The order of things by a number of each, which is below `most`; equal ones stay in the order that they have.
 function sortedBy(numbers, most, order) {
-	const ends = new Uint32Array(most + 1), sorted = new Uint32Array(order.length);
-	for (let i = 0; i < order.length; i++) ends[numbers[order[i]] + 1]++;
+	const ends = new Uint32Array(most + 1), sorted = new Uint32Array(numbers.length);
+	for (let i = 0; i < numbers.length; i++) ends[numbers[i] + 1]++;
 	for (let n = 0; n < most; n++) ends[n + 1] += ends[n];
-	for (let i = 0; i < order.length; i++) sorted[ends[numbers[order[i]]]++] = order[i];
+	for (let i = 0; i < numbers.length; i++) { const thing = order ? order[i] : i; sorted[ends[numbers[thing]]++] = thing; }
 	return sorted;
 }
 
-const upTo = most => new Uint32Array(most).map((_, i) => i);
-
 // Finds for each vertex the first one with the same texture coordinates, which are codes.
 function weldTexcoords(u, v) {
-	const order = sortedBy(u, TEXCOORD_CODES, sortedBy(v, TEXCOORD_CODES, upTo(u.length))), points = new Uint32Array(u.length);
+	const order = sortedBy(u, TEXCOORD_CODES, sortedBy(v, TEXCOORD_CODES)), points = new Uint32Array(u.length);
 	for (let i = 0, point = 0; i < order.length; i++) {
 		const vertex = order[i];
 		if (u[vertex] !== u[point] || v[vertex] !== v[point] || i === 0) point = vertex;
@@ -141,54 +140,84 @@ function weldTexcoords(u, v) {
 	return points;
 }
 
+// Takes away those of edges[begin ... end) that others reverse; the rest stay in their order. Returns where they end.
+function cancelEdges(edges, begin, end) {
+	// of many those of one kind lie beside each other: what is left of the kind is all of one sign
+	const sorted = end - begin > 32;
+	if (sorted) edges.subarray(begin, end).sort((a, b) => Math.abs(a) - Math.abs(b));
+	let left = begin;
+	for (let i = begin; i < end; i++) {
+		const edge = edges[i], last = sorted ? Math.max(begin, left - 1) : begin;
+		let k = left - 1;
+		while (k >= last && edges[k] !== -edge) k--;
+		if (k < last) edges[left++] = edge;
+		else edges.copyWithin(k, k + 1, left--);
+	}
+	return left;
+}
+
 // The outlines of islands, closed loops around the triangles of one island and one winding: [{island, mirrored, loops: [[vertex]]}].
 // Filled by the rule that counts windings they cover what the triangles cover, and inner edges never show. Each triangle that spans an
 // area has three edges, counterclockwise; those of one region that run against each other cancel, and what remains enters and leaves
 // each point equally often, so that walking along it ends where it began.
+//
+// An edge is a number, listed at its lower point: 1 + higher point + region * vertices, below 0 if it runs down.
 function findOutlines(g, u, v) {
-	const points = weldTexcoords(u, v), most = 3 * g.triangles, low = new Uint32Array(most), high = new Uint32Array(most);
-	const region = new Uint32Array(most), winding = new Int8Array(most), from = [], to = [], regionOf = [], next = [];
-	let count = 0, regionCount = 0;
-	for (let t = 0; t < g.triangles; t++) {
-		const kind = g.kinds[t] & 3, of = 2 * g.islands[t] - 2 + (kind === 0);
-		if (kind === 1 || g.islands[t] === 0) continue;
-		regionCount = Math.max(regionCount, of + 1);
-		for (let k = 0; k < 3; k++) {
-			const a = points[g.indices[3 * t + k]], b = points[g.indices[3 * t + (k + 1) % 3]];
-			if (a === b) continue;
-			low[count] = Math.min(a, b);
-			high[count] = Math.max(a, b);
-			region[count] = of;
-			winding[count++] = a < b === (kind === 2) ? 1 : -1;
+	const {vertices, indices} = g, points = weldTexcoords(u, v), ends = new Uint32Array(vertices + 1);
+	const eachEdge = on => {
+		for (let t = 0; t < g.triangles; t++) {
+			const kind = g.kinds[t] & 3, region = 2 * g.islands[t] - 2 + (kind === 0);
+			if (kind === 1 || g.islands[t] === 0) continue;
+			const a = points[indices[3 * t]], b = points[indices[3 * t + (kind ? 1 : 2)]], c = points[indices[3 * t + (kind ? 2 : 1)]];
+			on(a, b, region);
+			on(b, c, region);
+			on(c, a, region);
 		}
-	}
-	const order = sortedBy(region, regionCount, sortedBy(low, g.vertices, sortedBy(high, g.vertices, upTo(count))));
-	for (let i = 0, sum = 0; i < count; i++) {
-		const edge = order[i], after = order[i + 1];
-		sum += winding[edge];
-		if (i + 1 < count && low[after] === low[edge] && high[after] === high[edge] && region[after] === region[edge]) continue;
-		for (; sum !== 0; sum -= Math.sign(sum)) {
-			from.push(sum > 0 ? low[edge] : high[edge]);
-			to.push(sum > 0 ? high[edge] : low[edge]);
-			regionOf.push(region[edge]);
+	};
+	eachEdge((a, b) => { if (a !== b) ends[Math.min(a, b) + 1]++; });
+	for (let p = 0; p < vertices; p++) ends[p + 1] += ends[p];
+	const edges = new Float64Array(ends[vertices]), from = [], to = [], regionOf = [];
+	eachEdge((a, b, region) => {
+		if (a < b) edges[ends[a]++] = 1 + b + region * vertices;
+		else if (a > b) edges[ends[b]++] = -1 - a - region * vertices;
+	});
+	for (let p = 0, begin = 0; p < vertices; begin = ends[p++])
+		for (let i = begin, end = cancelEdges(edges, begin, ends[p]); i < end; i++) {
+			const edge = Math.abs(edges[i]) - 1, region = Math.floor(edge / vertices), other = edge - region * vertices;
+			from.push(edges[i] > 0 ? p : other);
+			to.push(edges[i] > 0 ? other : p);
+			regionOf.push(region);
 		}
-	}
-	const leaving = new Int32Array(g.vertices).fill(-1), regions = []; // of each point an edge of the region that begins there
-	for (let begin = 0, end = 0; begin < from.length; begin = end) {
-		for (; regionOf[end] === regionOf[begin]; end++) { next.push(leaving[from[end]]); leaving[from[end]] = end; }
-		const loops = [];
-		for (let first = begin; first < end; first++) while (leaving[from[first]] >= 0) {
-			const loop = [];
-			for (let at = from[first], edge; edge === undefined || at !== from[first]; at = to[edge]) {
+	const order = sortedBy(regionOf, regionOf.reduce((most, region) => Math.max(most, region + 1), 0));
+	const next = [], leaving = new Int32Array(vertices).fill(-1), regions = []; // of each point an edge of the region that begins there
+	for (let begin = 0, end = 0; begin < order.length; begin = end) {
+		const region = regionOf[order[begin]], loops = [];
+		for (; regionOf[order[end]] === region; end++) { const edge = order[end]; next[edge] = leaving[from[edge]]; leaving[from[edge]] = edge; }
+		for (let i = begin; i < end; i++) while (leaving[from[order[i]]] >= 0) {
+			const loop = [], first = from[order[i]];
+			for (let at = first, edge; edge === undefined || at !== first; at = to[edge]) {
 				loop.push(at);
 				edge = leaving[at];
 				leaving[at] = next[edge];
 			}
 			loops.push(loop);
 		}
-		regions.push({island: regionOf[begin] >> 1, mirrored: (regionOf[begin] & 1) === 1, loops});
+		regions.push({island: region >> 1, mirrored: (region & 1) === 1, loops});
 	}
 	return regions;
+}
+
+// Marks outlines of islands that are there often already, which takes time to draw and shows nothing. Returns the indices of the
+// other triangles.
+function leaveOutBuried(g) {
+	const seen = new Map(), buried = new Set();
+	for (const region of g.regions) {
+		const key = region.mirrored + ' ' + region.loops.join(), times = seen.get(key) || 0;
+		region.buried = times >= MOST_STACKED;
+		if (region.buried) buried.add(2 * region.island + region.mirrored);
+		seen.set(key, times + 1);
+	}
+	return buried.size ? g.indices.filter((_, c) => !buried.has(2 * g.islands[c / 3 | 0] - 2 + ((g.kinds[c / 3 | 0] & 3) === 0))) : g.indices;
 }
 
 const opened = new Map(); // source -> promise of geometry
@@ -202,25 +231,24 @@ async function findSource(id) {
 
 async function readGeometry(mesh) {
 	const text = await findSource(mesh.source), line = text.indexOf('\n');
-	const g = JSON.parse(text.slice(0, line)), read = arrayReader(await inflate(fromBase64(text, line + 1)), g.arrays);
-	const {vertices, triangles} = g, u = read('u'), v = read('v');
-	g.indices = readIndices(read('corners'));
-	g.positions = joinColumns(['x', 'y', 'z'].map(read), 4);
-	g.normals = joinColumns(['nx', 'ny'].map(read), 2);
-	g.authored = joinColumns(['ax', 'ay', 'aw'].map(read), 4);
-	g.computed = joinColumns(['cx', 'cy', 'cw'].map(read), 4);
+	const g = JSON.parse(text.slice(0, line)), a = readArrays(await inflate(fromBase64(text, line + 1)), g);
+	const {vertices, triangles} = g, {u, v, numbers, seam_ends: ends} = a;
+	g.indices = readIndices(a.corners);
+	g.positions = joinColumns(4, a.x, a.y, a.z);
+	g.normals = joinColumns(2, a.nx, a.ny);
+	g.authored = joinColumns(4, a.ax, a.ay, a.aw);
+	g.computed = joinColumns(4, a.cx, a.cy, a.cw);
 	g.texcoords = u && new Float32Array(2 * vertices).map((_, i) => g.uvOrigin[i & 1] + (i & 1 ? v : u)[i >> 1] * g.uvStep);
-	g.kinds = read('kinds');
-	g.islands = read('islands') || new Uint32Array(triangles);
+	g.kinds = a.kinds;
+	g.islands = a.islands || new Uint32Array(triangles);
 	g.regions = u ? findOutlines(g, u, v) : [];
-	const ends = read('seam_ends');
 	let end = 0;
-	g.seams = [...read('seam_edges') || []].map(edges => ends ? ends.subarray(end, end += 4 * edges) : new Uint32Array(0));
+	g.seams = [...a.seam_edges || []].map(edges => ends ? ends.subarray(end, end += 4 * edges) : new Uint32Array(0));
 	g.firstHard = mesh.mirrorSeams;
-	const numbers = read('numbers');
 	g.numbers = numbers && new Map(Array.from(numbers, (number, t) => [number, t]));
 	for (let t = 0; t < triangles; t++) // what has no place in space is not drawn
 		if (g.kinds[t] & 4) g.indices[3 * t + 1] = g.indices[3 * t + 2] = g.indices[3 * t];
+	g.covering = leaveOutBuried(g);
 	return g;
 }
 

@@ -121,7 +121,8 @@ class Space {
 			this.attribute(3, g.authored, 3, 8);
 			this.attribute(4, g.computed, 3, 8);
 			this.whole = this.elements(g.indices);
-			this.buffers.push(this.whole);
+			this.covering = g.covering === g.indices ? this.whole : this.elements(g.covering);
+			this.buffers.push(this.whole, this.covering);
 			gl.bindVertexArray(null);
 			this.box = [0, 1, 2].map(i => g.step[i] * 65535);
 			this.extent = Math.hypot(...this.box) || 1;
@@ -331,9 +332,9 @@ class Space {
 		const corners = new Float32Array(6), batch = new Float32Array(6 * 65536);
 		let count = 0, filled = 0;
 		const flush = () => { if (filled) draw(batch.subarray(0, filled)); filled = 0; };
-		for (let t = 0; t < g.triangles && count <= MOST_REPEATED; t++) {
+		for (let t = 0; 3 * t < g.covering.length && count <= MOST_REPEATED; t++) {
 			for (let k = 0; k < 3; k++) {
-				const v = 2 * g.indices[3 * t + k];
+				const v = 2 * g.covering[3 * t + k];
 				for (let i = 0; i < 2; i++) corners[2 * k + i] = map[3 * i] * uv[v] + map[3 * i + 1] * uv[v + 1] + map[3 * i + 2];
 			}
 			const [a, b, c, d, e, f] = corners;
@@ -372,7 +373,7 @@ class Space {
 			gl.uniform4f(this.cover.at.tint, red, 0, 0, 0.25);
 		};
 		place(window, 0.25);
-		this.drawElements(this.whole, this.geometry.indices.length);
+		this.drawElements(this.covering, this.geometry.covering.length);
 		place(mapAfter(window, mapBack(this.mesh.map)), 0);
 		gl.bindVertexArray(this.again ||= gl.createVertexArray());
 		gl.bindBuffer(gl.ARRAY_BUFFER, this.againBuffer ||= gl.createBuffer());

@@ -66,23 +66,25 @@ class Layout {
 
 	// ---- paths ----
 
+	// A line back to the first point, since to close a path takes Chromium time for all of it.
 	pathOf(loops) {
 		const uv = this.geometry.texcoords, path = new Path2D();
 		for (const loop of loops) {
-			loop.forEach((vertex, i) => i ? path.lineTo(uv[2 * vertex], uv[2 * vertex + 1]) : path.moveTo(uv[2 * vertex], uv[2 * vertex + 1]));
-			path.closePath();
+			const last = 2 * loop[loop.length - 1];
+			path.moveTo(uv[last], uv[last + 1]);
+			for (const vertex of loop) path.lineTo(uv[2 * vertex], uv[2 * vertex + 1]);
 		}
 		return path;
 	}
 
 	makePaths() {
-		const g = this.geometry, uv = g.texcoords;
-		// beyond some thousand islands all of one winding are one path: fewer calls, the same picture but where they overlap
-		const many = g.regions.length > 4000;
+		const g = this.geometry, uv = g.texcoords, drawn = g.regions.filter(r => !r.buried);
+		// beyond some thousand islands some of one winding are one path: fewer calls, the same picture but where they overlap
+		const many = drawn.length > 4000 ? 64 : 1;
 		this.shapes = [false, true].flatMap(mirrored => {
-			const regions = g.regions.filter(r => r.mirrored === mirrored);
-			return many ? [{mirrored, path: this.pathOf(regions.flatMap(r => r.loops))}]
-				: regions.map(r => ({mirrored, island: r.island, path: this.pathOf(r.loops)}));
+			const loops = drawn.filter(r => r.mirrored === mirrored).map(r => r.loops), shapes = [];
+			for (let i = 0; i < loops.length; i += many) shapes.push({mirrored, path: this.pathOf(loops.slice(i, i + many).flat())});
+			return shapes;
 		});
 		Object.assign(this, uvBox(g));
 		this.seams = g.seams.map(edges => [0, 1].map(side => {
@@ -274,7 +276,7 @@ class Layout {
 			if (shape.mirrored) { c.fillStyle = pattern; c.fill(shape.path, 'nonzero'); }
 		}
 		c.globalAlpha = 1;
-		c.lineWidth = (this.shapes.length > 600 ? 0.6 : 1.1) / scale;
+		c.lineWidth = (this.geometry.regions.length > 600 ? 0.6 : 1.1) / scale;
 		for (const shape of this.shapes) {
 			c.strokeStyle = shape.mirrored ? ink.mirroredLine : ink.plainLine;
 			c.stroke(shape.path);

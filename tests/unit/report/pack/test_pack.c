@@ -19,8 +19,8 @@ typedef struct unpacked {
 /* The numbers of an array; NULL: it is not there. */
 static const uint32_t *numbers_of(const unpacked *u, const char *name)
 {
-	for (unsigned i = 0; i < u->packed.array_count; i++)
-		if (strcmp(u->packed.arrays[i].name, name) == 0)
+	for (unsigned i = 0; i < NT_PACKED_ARRAYS; i++)
+		if (u->packed.arrays[i].count && strcmp(u->packed.arrays[i].name, name) == 0)
 			return u->numbers[i];
 	return NULL;
 }
@@ -33,7 +33,7 @@ static void unpack(unpacked *u, const nt_report *report, size_t most)
 	assert_int_equal(libdeflate_deflate_decompress(d, u->packed.bytes.data, u->packed.bytes.size, raw,
 				 u->packed.raw_bytes, NULL), LIBDEFLATE_SUCCESS);
 	libdeflate_free_decompressor(d);
-	for (unsigned i = 0; i < u->packed.array_count; i++) {
+	for (unsigned i = 0; i < NT_PACKED_ARRAYS; i++) {
 		const nt_packed_array *a = &u->packed.arrays[i];
 		const uint32_t mask = a->planes < 4 ? (1u << 8 * a->planes) - 1 : UINT32_MAX;
 		u->numbers[i] = test_calloc(a->count, sizeof **u->numbers);
@@ -59,7 +59,7 @@ static void unpack(unpacked *u, const nt_report *report, size_t most)
 
 static void forget(unpacked *u)
 {
-	for (unsigned i = 0; i < u->packed.array_count; i++)
+	for (unsigned i = 0; i < NT_PACKED_ARRAYS; i++)
 		test_free(u->numbers[i]);
 	test_free(u->corners);
 	nt_buffer_free(&u->packed.bytes);
