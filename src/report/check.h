@@ -17,8 +17,15 @@ typedef struct nt_edge_pair {
 	uint32_t sides[2]; /* unmirrored, mirrored; of a hard edge the lower one first */
 	float cosine;      /* of a hard edge: of the angle between its normals, where it is widest */
 	bool non_manifold;
-	bool against; /* the unmirrored side runs against the lowest side of the edge */
 } nt_edge_pair;
+
+/* Edges by their first sides, ascending. */
+typedef struct nt_edge_set {
+	uint64_t *sides; /* [3 * triangle_count] bits: the first ones; NULL: there can be none */
+	uint32_t *ranks;
+	nt_edge_pair *edges; /* [count] */
+	size_t count;
+} nt_edge_set;
 
 /* Whose tangents are checked: the input's, or, on conversion, the result. */
 typedef enum nt_stored {
@@ -66,15 +73,10 @@ typedef struct nt_check {
 
 	/* by edges.c */
 	uint64_t *boundary;       /* [3 * triangle_count] bits: sides without a neighbour */
-	uint64_t *mirrors;        /* [3 * triangle_count] bits: unmirrored sides of mirror edges; NULL: there
-	                             are none */
-	uint64_t *mirrors_against; /* of these, sides that run against the lowest one of their edge */
-	uint32_t *mirror_ranks;
-	nt_edge_pair *mirror_edges; /* [mirror_edge_count] by their unmirrored sides, ascending */
-	size_t mirror_edge_count;
-	nt_edge_pair *hard_edges; /* [hard_edge_count] whose sides have other normals and the same texture coordinates,
-	                             by their lower sides, ascending */
-	size_t hard_edge_count;
+	nt_edge_set mirrors;
+	uint64_t *mirrors_against; /* [3 * triangle_count] bits: of their first sides, those that run against the lowest
+	                              one of the edge */
+	nt_edge_set hard;         /* sides with other normals and the same texture coordinates */
 	uint32_t *islands;        /* [triangle_count] NT_NONE: has no edges */
 	uint32_t *patches;        /* [triangle_count] parents of what is connected in UV space and of one orientation;
 	                             NULL: there is but one */
@@ -122,7 +124,7 @@ void nt_check_report_as(nt_check *check, const nt_tally *tally, nt_severity seve
 /* The mirror edge of an unmirrored side that is in one. */
 static inline nt_edge_pair *nt_mirror_edge_of(const nt_check *check, uint32_t side)
 {
-	return &check->mirror_edges[nt_bit_rank(check->mirrors, check->mirror_ranks, side)];
+	return &check->mirrors.edges[nt_bit_rank(check->mirrors.sides, check->mirrors.ranks, side)];
 }
 
 /* Whether what is judged is what a conversion writes, and in which format it is. */

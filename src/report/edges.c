@@ -35,13 +35,13 @@ typedef struct edge_part {
 static const double SLIVER_SHARE = 0.001;
 
 /* By one thread, in no order. */
-typedef struct edge_list {
-	nt_edge_pair *edges;
-	size_t count, capacity;
-} edge_list;
+enum { MIRRORS, HARD, KINDS };
 
 typedef struct edge_lists {
-	edge_list mirrors, hard;
+	struct {
+		nt_edge_pair *edges;
+		size_t count, capacity;
+	} of[KINDS];
 	nt_edge_side *sides; /* of one point */
 	bool failed;         /* out of memory */
 } edge_lists;
@@ -52,12 +52,13 @@ typedef struct edge_work {
 	edge_lists *lists; /* [slots] */
 } edge_work;
 
-static void add_edge(edge_lists *lists, edge_list *list, nt_edge_pair edge)
+static void add_edge(edge_lists *lists, int kind, const nt_edge_set *set, nt_edge_pair edge)
 {
-	if (nt_grow((void **)&list->edges, &list->capacity, list->count + 1, sizeof *list->edges))
-		list->edges[list->count++] = edge;
+	if (nt_grow((void **)&lists->of[kind].edges, &lists->of[kind].capacity, lists->of[kind].count + 1, sizeof edge))
+		lists->of[kind].edges[lists->of[kind].count++] = edge;
 	else
 		lists->failed = true;
+	nt_bit_set(set->sides, edge.sides[0]);
 }
 
 /* ---- one edge ---- */
@@ -114,7 +115,7 @@ static bool unite_many(const nt_check *check, const nt_edge_side *sides, size_t 
 }
 
 /* Remembers the first unmirrored and the first mirrored side of the edge, if it has both. */
-static void find_mirror(const nt_edge_side *sides, size_t count, edge_lists *lists)
+static void find_mirror(const nt_check *check, const nt_edge_side *sides, size_t count, edge_lists *lists)
 {
 	const nt_edge_side *found[2] = {NULL, NULL};
 	for (size_t i = count; i-- > 0;) {
@@ -124,8 +125,10 @@ static void find_mirror(const nt_edge_side *sides, size_t count, edge_lists *lis
 	}
 	if (!found[0] || !found[1])
 		return;
-	add_edge(lists, &lists->mirrors, (nt_edge_pair){.sides = {found[0]->side, found[1]->side},
-		.non_manifold = count > 2, .against = sides[0].ascending != found[0]->ascending});
+	add_edge(lists, MIRRORS, &check->mirrors, (nt_edge_pair){.sides = {found[0]->side, found[1]->side},
+		.non_manifold = count > 2});
+	if (sides[0].ascending != found[0]->ascending)
+		nt_bit_set(check->mirrors_against, found[0]->side);
 }
 
 /*
@@ -157,7 +160,7 @@ static void find_hard(const nt_check *check, const nt_edge_side *sides, edge_lis
 	const double first = squared_cosine(s, a, nt_side_next(b)), second = squared_cosine(s, nt_side_next(a), b);
 	const double least = first < second ? first : second;
 	if (least < HARD_COSINE * HARD_COSINE)
-		add_edge(lists, &lists->hard, (nt_edge_pair){.sides = {a, b},
+		add_edge(lists, HARD, &check->hard, (nt_edge_pair){.sides = {a, b},
 			.cosine = (float)(least < 0.0 ? -sqrt(-least) : sqrt(least))});
 }
 
@@ -191,7 +194,7 @@ static void check_edge(nt_check *check, uint32_t low, const nt_edge_side *sides,
 	if (!check->mesh->texcoords)
 		return;
 	if (count > 2 || sides[0].orientation != sides[1].orientation)
-		find_mirror(sides, count, lists);
+		find_mirror(check, sides, count, lists);
 	const uint64_t *joints = check->surface.joints;
 	const bool joint = nt_bit(joints, low) || nt_bit(joints, sides[0].high);
 	const bool meet = count > 2 || !joint || nt_sides_meet(&check->surface, sides[0].side, sides[1].side);
@@ -254,72 +257,27 @@ static void join_parts(nt_check *check, const edge_part *parts, size_t count)
 	nt_check_report_as(check, &inconsistent, areas[0] > least ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO, NULL);
 }
 
-/* Edges by their first sides, ascending. */
-typedef struct edge_set {
-	uint64_t *sides;  /* [3 * triangle_count] bits; NULL: there are none */
-	uint32_t *ranks;
-	nt_edge_pair *edges;
-	size_t count;
-} edge_set;
-
-/* One set of the lists of all slots; `hard` says which of both. */
-static nt_status join_lists(nt_check *check, const edge_lists *lists, unsigned count, bool hard, edge_set *set)
+/* Puts the edges that threads found in their order. */
+static nt_status join_lists(nt_check *check, const edge_lists *lists, unsigned slots, int kind, nt_edge_set *set)
 {
-	const size_t sides = 3 * check->surface.triangle_count, words = nt_bit_words(sides);
-	*set = (edge_set){0};
-	for (unsigned slot = 0; slot < count; slot++) {
-		set->count += hard ? lists[slot].hard.count : lists[slot].mirrors.count;
+	const size_t sides = 3 * check->surface.triangle_count;
+	for (unsigned slot = 0; slot < slots; slot++) {
+		set->count += lists[slot].of[kind].count;
 		if (lists[slot].failed)
 			return NT_ERROR_MEMORY;
 	}
 	if (!set->count)
 		return NT_OK;
 	set->edges = nt_scratch_alloc(check->scratch, set->count, sizeof *set->edges);
-	set->sides = nt_scratch_alloc(check->scratch, words, sizeof *set->sides);
-	set->ranks = nt_scratch_alloc(check->scratch, words, sizeof *set->ranks);
-	if (!set->edges || !set->sides || !set->ranks)
+	set->ranks = nt_scratch_alloc(check->scratch, nt_bit_words(sides), sizeof *set->ranks);
+	if (!set->edges || !set->ranks)
 		return NT_ERROR_MEMORY;
-	memset(set->sides, 0, words * sizeof *set->sides);
-	for (int pass = 0; pass < 2; pass++) {
-		for (unsigned slot = 0; slot < count; slot++) {
-			const edge_list *list = hard ? &lists[slot].hard : &lists[slot].mirrors;
-			for (size_t i = 0; i < list->count; i++)
-				if (pass)
-					set->edges[nt_bit_rank(set->sides, set->ranks, list->edges[i].sides[0])] =
-						list->edges[i];
-				else
-					nt_bit_set(set->sides, list->edges[i].sides[0]);
+	nt_bit_ranks(set->sides, sides, set->ranks);
+	for (unsigned slot = 0; slot < slots; slot++)
+		for (size_t i = 0; i < lists[slot].of[kind].count; i++) {
+			const nt_edge_pair *edge = &lists[slot].of[kind].edges[i];
+			set->edges[nt_bit_rank(set->sides, set->ranks, edge->sides[0])] = *edge;
 		}
-		if (!pass)
-			nt_bit_ranks(set->sides, sides, set->ranks);
-	}
-	return NT_OK;
-}
-
-static nt_status join_edges(nt_check *check, const edge_lists *lists, unsigned count)
-{
-	edge_set mirrors, hard;
-	nt_status status = join_lists(check, lists, count, false, &mirrors);
-	if (!status)
-		status = join_lists(check, lists, count, true, &hard);
-	if (status)
-		return status;
-	check->hard_edges = hard.edges;
-	check->hard_edge_count = hard.count;
-	check->mirrors = mirrors.sides;
-	check->mirror_ranks = mirrors.ranks;
-	check->mirror_edges = mirrors.edges;
-	check->mirror_edge_count = mirrors.count;
-	if (!mirrors.count)
-		return NT_OK;
-	const size_t words = nt_bit_words(3 * check->surface.triangle_count);
-	check->mirrors_against = nt_scratch_alloc(check->scratch, words, sizeof *check->mirrors_against);
-	if (!check->mirrors_against)
-		return NT_ERROR_MEMORY;
-	memset(check->mirrors_against, 0, words * sizeof *check->mirrors_against);
-	for (size_t i = 0; i < mirrors.count; i++)
-		if (mirrors.edges[i].against)
-			nt_bit_set(check->mirrors_against, mirrors.edges[i].sides[0]);
 	return NT_OK;
 }
 
@@ -338,22 +296,32 @@ static void number_islands(nt_check *check)
 	check->facts->island_count = count;
 }
 
+/* Bits of sides, none of them set. */
+static bool make_bits(const nt_check *check, uint64_t **bits)
+{
+	const size_t words = nt_bit_words(3 * check->surface.triangle_count);
+	*bits = nt_scratch_alloc(check->scratch, words, sizeof **bits);
+	return *bits && memset(*bits, 0, words * sizeof **bits);
+}
+
 static nt_status allocate(nt_check *check)
 {
-	const size_t triangles = check->surface.triangle_count, words = nt_bit_words(3 * triangles);
-	check->boundary = nt_scratch_alloc(check->scratch, words, sizeof *check->boundary);
+	const size_t triangles = check->surface.triangle_count;
+	const bool both = check->facts->triangles[0] && check->facts->triangles[2];
 	check->islands = nt_scratch_alloc(check->scratch, triangles, sizeof *check->islands);
-	if (!check->boundary || !check->islands)
+	if (!check->islands || !make_bits(check, &check->boundary))
 		return NT_ERROR_MEMORY;
-	memset(check->boundary, 0, words * sizeof *check->boundary);
 	for (size_t t = 0; t < triangles; t++)
 		check->islands[t] = (uint32_t)t;
-	if (!check->facts->triangles[0] || !check->facts->triangles[2])
+	if (check->mesh->texcoords && check->mesh->normals && !make_bits(check, &check->hard.sides))
+		return NT_ERROR_MEMORY;
+	if (!both)
 		return NT_OK;
 	check->patches = nt_scratch_alloc(check->scratch, triangles, sizeof *check->patches);
-	if (check->patches)
-		memcpy(check->patches, check->islands, triangles * sizeof *check->patches);
-	return check->patches ? NT_OK : NT_ERROR_MEMORY;
+	if (!check->patches || !make_bits(check, &check->mirrors.sides) || !make_bits(check, &check->mirrors_against))
+		return NT_ERROR_MEMORY;
+	memcpy(check->patches, check->islands, triangles * sizeof *check->patches);
+	return NT_OK;
 }
 
 static nt_status check_parts(nt_check *check, unsigned threads)
@@ -373,11 +341,12 @@ static nt_status check_parts(nt_check *check, unsigned threads)
 	}
 	nt_parallel_items(slots, parts, check_part, &work);
 	join_parts(check, work.parts, parts);
-	const nt_status status = join_edges(check, work.lists, slots);
-	for (unsigned slot = 0; slot < slots; slot++) {
-		free(work.lists[slot].mirrors.edges);
-		free(work.lists[slot].hard.edges);
-	}
+	nt_status status = join_lists(check, work.lists, slots, MIRRORS, &check->mirrors);
+	if (!status)
+		status = join_lists(check, work.lists, slots, HARD, &check->hard);
+	for (unsigned slot = 0; slot < slots; slot++)
+		for (int kind = 0; kind < KINDS; kind++)
+			free(work.lists[slot].of[kind].edges);
 	return status;
 }
 

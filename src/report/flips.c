@@ -81,10 +81,10 @@ static void measure_patches(const nt_check *check, patches *p)
 		one->slivers += nt_is_sliver(s, t);
 		one->area += nt_triangle_area(s, t);
 	}
-	for (size_t i = 0; i < check->mirror_edge_count; i++) {
+	for (size_t i = 0; i < check->mirrors.count; i++) {
 		for (int side = 0; side < 2; side++) {
-			const uint32_t t = check->mirror_edges[i].sides[side] / 3;
-			const uint32_t other = check->islands[check->mirror_edges[i].sides[1 - side] / 3];
+			const uint32_t t = check->mirrors.edges[i].sides[side] / 3;
+			const uint32_t other = check->islands[check->mirrors.edges[i].sides[1 - side] / 3];
 			patch *one = p->numbers[t] == NT_NONE ? NULL : &p->items[p->numbers[t]];
 			if (!one || other == NT_NONE)
 				continue;
@@ -128,8 +128,8 @@ static void choose_flipped(const nt_check *check, patches *p)
 {
 	for (uint32_t i = 0; i < p->count; i++)
 		p->items[i].small = is_candidate(check, &p->items[i]);
-	for (size_t i = 0; i < check->mirror_edge_count; i++) {
-		const uint32_t *sides = check->mirror_edges[i].sides;
+	for (size_t i = 0; i < check->mirrors.count; i++) {
+		const uint32_t *sides = check->mirrors.edges[i].sides;
 		for (int k = 0; k < 2; k++) {
 			const uint32_t number = p->numbers[sides[k] / 3], other = p->numbers[sides[1 - k] / 3];
 			if (number == NT_NONE || other == NT_NONE)
@@ -211,18 +211,18 @@ static void drop_mirror_edges(nt_check *check)
 {
 	const size_t sides = 3 * check->surface.triangle_count;
 	size_t kept = 0;
-	for (size_t i = 0; i < check->mirror_edge_count; i++) {
-		const nt_edge_pair edge = check->mirror_edges[i];
+	for (size_t i = 0; i < check->mirrors.count; i++) {
+		const nt_edge_pair edge = check->mirrors.edges[i];
 		if (is_flipped(check, edge.sides[0]) || is_flipped(check, edge.sides[1])) {
-			nt_bit_clear(check->mirrors, edge.sides[0]);
+			nt_bit_clear(check->mirrors.sides, edge.sides[0]);
 			nt_bit_clear(check->mirrors_against, edge.sides[0]);
 		} else {
-			check->mirror_edges[kept++] = edge;
+			check->mirrors.edges[kept++] = edge;
 		}
 	}
-	check->mirror_edge_count = kept;
+	check->mirrors.count = kept;
 	if (kept)
-		nt_bit_ranks(check->mirrors, sides, check->mirror_ranks);
+		nt_bit_ranks(check->mirrors.sides, sides, check->mirrors.ranks);
 }
 
 static void report_flipped(nt_check *check, const patches *p)
@@ -251,7 +251,7 @@ nt_status nt_check_flips(nt_check *check)
 {
 	const size_t triangles = check->surface.triangle_count;
 	patches p;
-	if (!check->patches || !check->mirror_edge_count)
+	if (!check->patches || !check->mirrors.count)
 		return NT_OK;
 	check->flipped = nt_scratch_alloc(check->scratch, nt_bit_words(triangles), sizeof *check->flipped);
 	check->twins = nt_scratch_alloc(check->scratch, nt_bit_words(triangles), sizeof *check->twins);

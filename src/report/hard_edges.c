@@ -28,15 +28,15 @@ typedef struct net {
 typedef struct nets {
 	net *items;        /* [count] the longest first */
 	size_t count;
-	uint32_t *numbers; /* [hard_edge_count] net of each edge, as they were found */
-	uint32_t *edges;   /* [hard_edge_count] */
+	uint32_t *numbers; /* [hard.count] net of each edge, as they were found */
+	uint32_t *edges;   /* [hard.count] */
 } nets;
 
 /* ---- which edges hang together ---- */
 
 static uint32_t end_of(const nt_check *check, size_t edge, int end)
 {
-	const uint32_t side = check->hard_edges[edge].sides[0];
+	const uint32_t side = check->hard.edges[edge].sides[0];
 	return nt_side_point(&check->surface, end ? nt_side_next(side) : side);
 }
 
@@ -46,20 +46,20 @@ static nt_status number_nets(const nt_check *check, nets *n, uint8_t *degrees)
 	const size_t points = check->surface.point_count;
 	uint32_t *parents = nt_scratch_alloc(check->scratch, points, sizeof *parents);
 	uint32_t *of_root = nt_scratch_alloc(check->scratch, points, sizeof *of_root);
-	n->numbers = nt_scratch_alloc(check->scratch, check->hard_edge_count, sizeof *n->numbers);
+	n->numbers = nt_scratch_alloc(check->scratch, check->hard.count, sizeof *n->numbers);
 	if (!parents || !of_root || !n->numbers)
 		return NT_ERROR_MEMORY;
 	memset(degrees, 0, points);
 	memset(of_root, 0xff, points * sizeof *of_root);
 	for (size_t p = 0; p < points; p++)
 		parents[p] = (uint32_t)p;
-	for (size_t i = 0; i < check->hard_edge_count; i++) {
+	for (size_t i = 0; i < check->hard.count; i++) {
 		nt_unite(parents, end_of(check, i, 0), end_of(check, i, 1));
 		for (int end = 0; end < 2; end++)
 			degrees[end_of(check, i, end)] += degrees[end_of(check, i, end)] < 3;
 	}
 	n->count = 0;
-	for (size_t i = 0; i < check->hard_edge_count; i++) {
+	for (size_t i = 0; i < check->hard.count; i++) {
 		uint32_t *number = &of_root[nt_find_root(parents, end_of(check, i, 0))];
 		if (*number == NT_NONE)
 			*number = (uint32_t)n->count++;
@@ -81,13 +81,13 @@ static void measure_nets(const nt_check *check, nets *n, const uint8_t *degrees)
 {
 	for (size_t i = 0; i < n->count; i++)
 		n->items[i] = (net){.cosine = 1.0f};
-	for (size_t i = 0; i < check->hard_edge_count; i++) {
+	for (size_t i = 0; i < check->hard.count; i++) {
 		net *one = &n->items[n->numbers[i]];
 		one->count++;
-		const uint32_t side = check->hard_edges[i].sides[0];
+		const uint32_t side = check->hard.edges[i].sides[0];
 		one->length += nt_world_length(check->facts, nt_side_position(&check->surface, side),
 			nt_side_position(&check->surface, nt_side_next(side)));
-		one->cosine = fminf(one->cosine, check->hard_edges[i].cosine);
+		one->cosine = fminf(one->cosine, check->hard.edges[i].cosine);
 		for (int end = 0; end < 2; end++) {
 			one->forks |= degrees[end_of(check, i, end)] > 2;
 			one->ends += degrees[end_of(check, i, end)] == 1;
@@ -99,7 +99,7 @@ static void measure_nets(const nt_check *check, nets *n, const uint8_t *degrees)
 		first += n->items[i].count;
 		n->items[i].count = 0;
 	}
-	for (size_t i = 0; i < check->hard_edge_count; i++) {
+	for (size_t i = 0; i < check->hard.count; i++) {
 		net *one = &n->items[n->numbers[i]];
 		n->edges[one->first + one->count++] = (uint32_t)i;
 	}
@@ -119,7 +119,7 @@ static nt_severity severity_of(const nt_check *check)
 static nt_status keep_nets(nt_check *check, const nets *n, double length)
 {
 	nt_report_mesh *facts = check->facts;
-	const size_t before = facts->seam_count, count = check->hard_edge_count;
+	const size_t before = facts->seam_count, count = check->hard.count;
 	const size_t kept = count < NT_SEAM_EDGES ? count : NT_SEAM_EDGES;
 	nt_seam *all = nt_arena_alloc(&check->report->arena, before + 1, sizeof *all);
 	nt_seam_edge *edges = nt_arena_alloc(&check->report->arena, kept, sizeof *edges);
@@ -131,7 +131,7 @@ static nt_status keep_nets(nt_check *check, const nets *n, double length)
 		.edge_count = count, .length = length, .edges = edges, .box = nt_box_empty()};
 	for (size_t k = 0, filled = 0; k < n->count; k++)
 		for (size_t i = 0; i < n->items[k].count && filled < kept; i++) {
-			const nt_edge_pair *edge = &check->hard_edges[n->edges[n->items[k].first + i]];
+			const nt_edge_pair *edge = &check->hard.edges[n->edges[n->items[k].first + i]];
 			edges[filled++] = nt_describe_edge(check, edge, nt_side_point(&check->surface, edge->sides[0]));
 		}
 	facts->seams = all;
@@ -142,7 +142,7 @@ static nt_status keep_nets(nt_check *check, const nets *n, double length)
 static void tally_edges(const nt_check *check, const nets *n, size_t first, size_t count, nt_tally *tally)
 {
 	for (size_t i = first; i < first + count; i++) {
-		const nt_edge_pair *edge = &check->hard_edges[n->edges[i]];
+		const nt_edge_pair *edge = &check->hard.edges[n->edges[i]];
 		nt_tally_side(check, tally, edge->sides[0], acos(edge->cosine) * DEGREES);
 	}
 }
@@ -175,10 +175,10 @@ static nt_status report_nets(nt_check *check, const nets *n)
 
 nt_status nt_check_hard_edges(nt_check *check)
 {
-	if (!check->hard_edge_count)
+	if (!check->hard.count)
 		return NT_OK;
 	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
-	nets n = {.edges = nt_scratch_alloc(check->scratch, check->hard_edge_count, sizeof *n.edges)};
+	nets n = {.edges = nt_scratch_alloc(check->scratch, check->hard.count, sizeof *n.edges)};
 	uint8_t *degrees = nt_scratch_alloc(check->scratch, check->surface.point_count, 1);
 	nt_status status = n.edges && degrees ? number_nets(check, &n, degrees) : NT_ERROR_MEMORY;
 	if (!status && !(n.items = nt_scratch_alloc(check->scratch, n.count, sizeof *n.items)))

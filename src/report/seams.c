@@ -410,8 +410,8 @@ static nt_status trace_seams(nt_check *check)
 {
 	nt_report_mesh *facts = check->facts;
 	nt_chains chains;
-	const nt_marks marks = {.sides = check->mirrors, .against = check->mirrors_against,
-		.count = check->mirror_edge_count, .conflicts = any_conflict(check)};
+	const nt_marks marks = {.sides = check->mirrors.sides, .against = check->mirrors_against,
+		.count = check->mirrors.count, .conflicts = any_conflict(check)};
 	nt_status status = nt_chains_trace(&check->surface, &marks, check->scratch, &chains, check->error);
 	if (status)
 		return status;
@@ -443,7 +443,7 @@ nt_status nt_check_seams(nt_check *check)
 	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
 	nt_status status = check->facts->boundary_edges ? trace_boundary(check) : NT_OK;
 	nt_scratch_back(check->scratch, mark);
-	if (!status && check->mirror_edge_count)
+	if (!status && check->mirrors.count)
 		status = trace_seams(check);
 	nt_surface_free_sides(&check->surface); /* nobody asks for edges after this */
 	nt_scratch_back(check->scratch, mark);

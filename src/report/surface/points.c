@@ -50,43 +50,37 @@ static bool is_against(const nt_mesh *mesh, uint32_t a, uint32_t b)
 	return x[0] * y[0] + x[1] * y[1] + x[2] * y[2] < 0.0f && compare_normals(mesh, a, b) < 0;
 }
 
-/* A triangle, or a quad however it is cut: its points in their order around it, from the lowest one on. */
+/* A triangle, or a quad however it is cut, by the edges around it: sums of their hashes. */
 typedef struct outline {
-	uint32_t points[4]; /* of a triangle, [3] is NT_NONE */
-	uint32_t triangle;  /* its first */
-	bool turned;        /* the order is against its winding: of two directions the one that goes on with less */
+	uint64_t key;      /* whichever way they go */
+	uint64_t turn;     /* of those that ascend, less the others: that of the reverse is the negative */
+	uint32_t triangle; /* its first */
 } outline;
 
-static int compare_outlines(const outline *x, const outline *y)
-{
-	for (int i = 0; i < 4; i++)
-		if (x->points[i] != y->points[i])
-			return x->points[i] < y->points[i] ? -1 : 1;
-	return 0;
-}
-
-static int by_points(const void *a, const void *b)
+static int by_key(const void *a, const void *b)
 {
 	const outline *x = a, *y = b;
-	const int order = compare_outlines(x, y);
-	return order ? order : x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
+	if (x->key != y->key)
+		return x->key < y->key ? -1 : 1;
+	return x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
 }
 
 /* The corners of a quad follow each other, and both ways to cut it begin with its first one. */
 static outline find_outline(const nt_surface *s, size_t t, size_t size)
 {
+	outline o = {.triangle = (uint32_t)t};
 	uint32_t points[4];
-	size_t low = 0;
 	for (size_t k = 0; k < size; k++) {
 		const uint32_t corner = nt_side_corner(s, 3 * t) + (uint32_t)k;
 		points[k] = size == 3 ? nt_side_point(s, 3 * t + k)
 				      : s->points[s->mesh->indices ? s->mesh->indices[corner] : corner];
-		low = points[k] < points[low] ? k : low;
 	}
-	const bool turned = points[(low + size - 1) % size] < points[(low + 1) % size];
-	outline o = {.points[3] = NT_NONE, .triangle = (uint32_t)t, .turned = turned};
-	for (size_t k = 0; k < size; k++)
-		o.points[k] = points[(low + (turned ? size - k : k)) % size];
+	for (size_t k = 0; k < size; k++) {
+		const uint32_t a = points[k], b = points[(k + 1) % size];
+		const uint64_t hash = a < b ? nt_hash_words(a, b) : nt_hash_words(b, a);
+		o.key += hash;
+		o.turn += a < b ? hash : a > b ? 0 - hash : 0;
+	}
 	return o;
 }
 
@@ -94,7 +88,7 @@ static outline find_outline(const nt_surface *s, size_t t, size_t size)
 static bool is_reverse(const nt_surface *s, const outline *a, const outline *b, size_t size)
 {
 	const size_t sides = 3 * (size - 2), first = 3 * (size_t)a->triangle, second = 3 * (size_t)b->triangle;
-	if (a->turned == b->turned)
+	if (a->turn + b->turn != 0)
 		return false;
 	for (size_t side = first; side < first + sides; side++)
 		for (size_t other = second; other < second + sides; other++)
@@ -129,9 +123,9 @@ static nt_status pair_faces(const nt_surface *s, const uint64_t *doubled, uint64
 		if (may_be_doubled(s, doubled, paired, t, size))
 			list[added++] = find_outline(s, t, size);
 	if (count)
-		qsort(list, count, sizeof *list, by_points);
+		qsort(list, count, sizeof *list, by_key);
 	for (size_t i = 0, end; i < count; i = end) {
-		for (end = i + 1; end < count && compare_outlines(&list[i], &list[end]) == 0;)
+		for (end = i + 1; end < count && list[end].key == list[i].key;)
 			end++;
 		if (end - i != 2 || !is_reverse(s, &list[i], &list[i + 1], size))
 			continue;

@@ -158,6 +158,8 @@ TEST(symmetric_sheet_has_a_seam_along_its_middle)
 	assert_int_equal(m->seams[0].shared_count, M);
 	assert_false(m->seams[0].closed);
 	assert_true(m->seams[0].length == M);
+	/* the way of its lowest side, of the first quad left of the middle */
+	assert_true(m->seams[0].edges[0].positions[0][1] == 0 && m->seams[0].edges[0].positions[1][1] == 1);
 	assert_string_equal(m->seams[0].plane_text, "x = 0");
 	assert_int_equal(m->island_count, 1);
 	assert_int_equal(hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP)->count, 1);
@@ -405,8 +407,9 @@ TEST(fingerprint_survives_other_indices_but_not_another_place)
 	hand_free(h, NULL);
 }
 
-/* A square with its back, whose corners have the same positions and texture coordinates. */
-static hand_mesh *double_sheet(bool opposed, unsigned back_triangles)
+/* A square with its back, whose corners have the same positions and texture coordinates; `again`: it is wound as the
+ * front is. */
+static hand_mesh *double_sheet(bool opposed, bool again, unsigned back_triangles)
 {
 	static const float corners[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 	hand_mesh *h = hand_new();
@@ -415,29 +418,30 @@ static hand_mesh *double_sheet(bool opposed, unsigned back_triangles)
 			h->normals[hand_vertex(h, corners[k][0], corners[k][1], 0, corners[k][0], corners[k][1])][2] =
 				side && opposed ? -1.0f : 1.0f;
 	hand_quad(h, 0, 1, 2, 3);
-	hand_triangle(h, 6, 5, 4);
+	hand_triangle(h, again ? 4 : 6, 5, again ? 6 : 4);
 	if (back_triangles == 2)
-		hand_triangle(h, 7, 6, 4);
+		hand_triangle(h, 7, again ? 4 : 6, again ? 6 : 4);
 	hand_give_normals(h);
 	return h;
 }
 
 /* MikkTSpace compares normals: front and back share no edge, and have no mirror seam at their rim. With one normal they
- * are one surface, and so is what hangs on something else. */
+ * are one surface, and so is what hangs on something else, or goes round the same way. */
 TEST(front_and_back_of_a_sheet_with_opposite_normals_share_no_edge)
 {
 	static const struct {
-		bool opposed;
+		bool opposed, again;
 		unsigned back;
 		size_t non_manifold, seams, islands, boundary, loops;
 	} rows[] = {
-		{true, 2, 0, 0, 2, 8, 2},
-		{false, 2, 1, 3, 1, 0, 0}, /* the diagonal of four triangles; the rim is shared by two */
+		{true, false, 2, 0, 0, 2, 8, 2},
+		{true, true, 2, 1, 0, 1, 0, 0},
+		{false, false, 2, 1, 3, 1, 0, 0}, /* the diagonal of four triangles; the rim is shared by two */
 		/* the diagonal of three; the corner that has its back is two points, and the front's rim is closed */
-		{true, 1, 1, 1, 1, 6, 1},
+		{true, false, 1, 1, 1, 1, 6, 1},
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-		hand_mesh *h = double_sheet(rows[i].opposed, rows[i].back);
+		hand_mesh *h = double_sheet(rows[i].opposed, rows[i].again, rows[i].back);
 		nt_report *report = hand_report(h, NULL);
 		const nt_report_mesh *m = &report->meshes[0];
 		assert_int_equal(m->non_manifold_edges, rows[i].non_manifold);
