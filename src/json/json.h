@@ -142,9 +142,10 @@ void nt_json_set_copy(nt_json *document, nt_json_value *value, const nt_json_val
 
 /*
  * Hands the document's text on, some of it at a time: as it was parsed, but for the values that were set and the
- * members and elements that were added or taken out. These are spaced as their neighbours are, else as the first member
- * of the document is. The same document gives the same bytes. The end of a string that was set open, or what
- * is in such an array, is left to `take`, which is called without any text for it: its length is not measured.
+ * containers with members or elements that were added or taken out. These are laid out as they begin,
+ * else as the document does. The same document gives the same bytes. The end of a string that was
+ * set open, or what is in such an array, is left to `take`, which is called without any text for it: its length is not
+ * measured.
  *
  * Returns NT_OK, NT_ERROR_MEMORY, also where a change before ran out of memory, or what `take` returned, which has
  * filled the error then and is not called again.

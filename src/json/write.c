@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A changed document as text. The writer goes over the tree in the order of the old text and copies this up to the next
- * change: a value that was set, children that were taken out, or a place for new ones. New values are spaced as their
- * neighbours: commas as between the first two children of its container, lines as before the first one; without such,
- * as at the beginning of the document.
+ * change: a value that was set, children that were added, or a container that lost some. Its other children are copied.
+ * New text is laid out as its container begins, else as the document does.
  */
 #include <stdlib.h>
 #include "json/tree.h"
@@ -14,13 +13,13 @@ typedef struct slice {
 	size_t size;
 } slice;
 
-/* How the children of a container are spaced: each on a line that begins with `base` and `units` indentations, or
- * all on one line. */
-typedef struct spacing {
+/* How a container is laid out: its children on lines of their own, or all on one. Lines begin with `base`, else with as
+ * many units as it is deep. */
+typedef struct layout {
 	bool broken;
+	size_t depth;
 	slice base;
-	size_t units;
-} spacing;
+} layout;
 
 /* So many bytes are handed on at a time. */
 enum { PIECE_BYTES = 64 * 1024 };
@@ -41,9 +40,7 @@ typedef struct writer {
 } writer;
 
 /* White space that is longer is not repeated. */
-enum { MOST_SPACE = 256, MOST_INDENT = 16 };
-
-static const slice no_text = {"", 0};
+enum { MOST_SPACE = 64 };
 
 static void flush(writer *w)
 {
@@ -105,26 +102,6 @@ static const char *end_of(const nt_json_value *child)
 	return known ? child->of.list->end : skip_value(nt_json_begin(child));
 }
 
-/* The value of the child that begins here, which has a key in an object. */
-static const char *value_of(const char *child, bool in_object)
-{
-	if (!in_object)
-		return child;
-	child = nt_json_skip_space(skip_value(child));
-	return nt_json_skip_space(child + 1);
-}
-
-/* The place of a container's first child in the old text, or the closing bracket. */
-static const char *first_in_text(const nt_json_value *container)
-{
-	return nt_json_skip_space(nt_json_begin(container) + 1);
-}
-
-static bool is_closing(char c)
-{
-	return c == '}' || c == ']';
-}
-
 /* Copies the old text up to there; closing quotes were NULs. */
 static void copy_to(writer *w, const char *end)
 {
@@ -138,83 +115,87 @@ static void copy_to(writer *w, const char *end)
 	w->copied = end;
 }
 
-/* ---- spacing ---- */
+/* ---- layout ---- */
 
 static slice between(const char *begin, const char *end)
 {
 	return (slice){begin, (size_t)(end - begin)};
 }
 
-/* The separator of the first two children in the old text of a container; empty if it has no two. */
-static slice comma_in_text(const nt_json_value *container)
+/* Takes white space for new text, unless it is long. */
+static void take_space(slice *to, const char *begin, const char *end)
 {
-	const char *at = first_in_text(container);
-	if (is_closing(*at))
-		return no_text;
-	at = value_of(at, *nt_json_begin(container) == '{');
-	const nt_json_value *first = container->size ? nt_json_child(container, 0) : NULL;
-	const char *const end = first && nt_json_begin(first) == at ? end_of(first) : skip_value(at);
-	at = nt_json_skip_space(end);
-	return *at == ',' ? between(end, nt_json_skip_space(at + 1)) : no_text;
+	if (end - begin <= MOST_SPACE)
+		*to = between(begin, end);
 }
 
-/* The first line of the document that has a member tells how new text is laid out where no neighbour does. */
+/* The first member of the document says how new text is laid out: its line, what stands before its value and, if all is
+ * on one line, what is between it and the next. */
 static void find_style(writer *w)
 {
-	const nt_json_value *root = &w->document->root;
 	const char *text = w->document->text, *at = strchr(text, '{');
+	w->unit = (slice){"", 0};
 	w->newline = (slice){"\n", 1};
 	w->colon = (slice){":", 1};
 	w->comma = (slice){",", 1};
 	if (!at)
 		return;
-	const char *const first = nt_json_skip_space(at + 1), *line = at + 1;
-	for (const char *c = at + 1; c < first; c++) {
+	const char *const first = nt_json_skip_space(at + 1);
+	for (const char *c = at + 1; c < first; c++)
 		if (*c == '\n') {
 			w->broken = true;
 			w->newline = c[-1] == '\r' ? (slice){"\r\n", 2} : w->newline;
-			line = c + 1;
+			take_space(&w->unit, c + 1, first);
 		}
-	}
+	if (*first != '"')
+		return;
+	const char *const key_end = skip_value(first);
+	const char *const value = nt_json_skip_space(nt_json_skip_space(key_end) + 1);
+	take_space(&w->colon, key_end, value);
+	if (w->broken && w->colon.size > 1)
+		w->comma = (slice){", ", 2};
 	if (w->broken)
-		w->unit = between(line, first - line < MOST_INDENT ? first : line + MOST_INDENT);
-	if (*first == '"') {
-		const char *const key_end = skip_value(first), *const value = value_of(first, true);
-		w->colon = value - key_end <= MOST_INDENT ? between(key_end, value) : w->colon;
-		const slice comma = nt_json_begin(root) && *nt_json_begin(root) == '{' ? comma_in_text(root) : no_text;
-		if (!w->broken && comma.size && comma.size <= MOST_INDENT)
-			w->comma = comma;
-		else if (w->broken && w->colon.size > 1)
-			w->comma = (slice){", ", 2};
-	}
+		return;
+	const nt_json_value *root = &w->document->root, *known = nt_json_at(root, 0);
+	const char *const end = known && nt_json_begin(known) == value ? end_of(known) : skip_value(value);
+	const char *const comma = nt_json_skip_space(end);
+	if (*comma == ',')
+		take_space(&w->comma, end, nt_json_skip_space(comma + 1));
 }
 
-static void put_line(writer *w, const spacing *s)
+static void put_line(writer *w, const layout *l)
 {
-	if (!s->broken)
+	if (!l->broken)
 		return;
 	put(w, w->newline);
-	put(w, s->base);
-	for (size_t i = 0; i < s->units; i++)
+	put(w, l->base);
+	for (size_t i = 0; !l->base.size && i < l->depth; i++)
 		put(w, w->unit);
 }
 
-/* How the children of a container are spaced that is in the old text; outer: how it is spaced itself. */
-static spacing spacing_in_text(const nt_json_value *container, const spacing *outer)
+/* A container that has children in the old text goes on as it begins there. outer: how the container around it is laid
+ * out. */
+static layout layout_of(const nt_json_value *container, const layout *outer)
 {
-	const char *const first = first_in_text(container), *line = nt_json_begin(container) + 1;
-	spacing s = *outer;
-	s.units++;
-	if (container->made || is_closing(*first) || first - line > MOST_SPACE)
-		return s;
-	s = (spacing){.base = no_text};
-	for (const char *c = line; c < first; c++) {
-		if (*c == '\n') {
-			s.broken = true;
-			s.base = between(c + 1, first);
-		}
-	}
-	return s;
+	layout l = {.broken = outer->broken, .depth = outer->depth + 1};
+	if (container->made || !container->apart || !container->of.list->end)
+		return l;
+	const char *const first = nt_json_skip_space(nt_json_begin(container) + 1), *line = first;
+	while (nt_json_is_space(line[-1]) && line[-1] != '\n')
+		line--;
+	l.broken = line[-1] == '\n';
+	if (l.broken)
+		take_space(&l.base, line, first);
+	return l;
+}
+
+/* The end of the last child of a container that has some in the old text. */
+static const char *end_of_children(const nt_json_value *container)
+{
+	const char *end = container->of.list->end - 1;
+	while (nt_json_is_space(end[-1]))
+		end--;
+	return end;
 }
 
 /* ---- new text ---- */
@@ -266,39 +247,62 @@ static void put_number(writer *w, const nt_json_value *value)
 	put(w, between(first, digits + sizeof digits));
 }
 
-static void put_value(writer *w, const nt_json_value *value, const spacing *outer);
+static void put_value(writer *w, const nt_json_value *value, const layout *outer);
+static void write_value(writer *w, const nt_json_value *value, const layout *outer);
 
-static void put_key(writer *w, const nt_json_value *container, size_t index)
+/* The place of a child in the old text with its key. A quote in a key comes behind a backslash. */
+static const char *begin_of(const nt_json_value *child, bool in_object)
 {
-	if (container->type != NT_JSON_OBJECT)
-		return;
-	const nt_json_name *key = &container->of.list->shape->keys[index];
-	put_string(w, key->text, key->length, false);
-	put(w, w->colon);
+	const char *at = nt_json_begin(child);
+	if (!in_object)
+		return at;
+	while (*--at != '\0') {
+	}
+	while (*at != '"' || at[-1] == '\\')
+		at--;
+	return at;
 }
 
-/* outer: how the container is spaced. */
-static void put_container(writer *w, const nt_json_value *container, const spacing *outer)
+static void put_child(writer *w, const nt_json_value *container, size_t index, const layout *inner)
+{
+	const bool in_object = container->type == NT_JSON_OBJECT;
+	const nt_json_value *child = nt_json_child(container, index);
+	if (index)
+		put(w, inner->broken ? (slice){",", 1} : w->comma);
+	put_line(w, inner);
+	if (nt_json_begin(child)) {
+		w->copied = begin_of(child, in_object);
+		write_value(w, child, inner);
+		copy_to(w, end_of(child));
+		return;
+	}
+	if (in_object) {
+		const nt_json_name *key = &container->of.list->shape->keys[index];
+		put_string(w, key->text, key->length, false);
+		put(w, w->colon);
+	}
+	put_value(w, child, inner);
+}
+
+static void put_container(writer *w, const nt_json_value *container, const layout *outer)
 {
 	const bool is_object = container->type == NT_JSON_OBJECT;
-	spacing inner = *outer;
-	inner.units++;
+	const layout inner = layout_of(container, outer), end = {.broken = inner.broken, .depth = outer->depth};
+	slice last_line = {"", 0};
+	if (!container->made && container->of.list->end)
+		take_space(&last_line, end_of_children(container), container->of.list->end - 1);
 	put(w, (slice){is_object ? "{" : "[", 1});
 	if (container->open)
 		hand_over(w);
-	for (size_t i = 0; i < container->size; i++) {
-		if (i)
-			put(w, inner.broken ? (slice){",", 1} : w->comma);
-		put_line(w, &inner);
-		put_key(w, container, i);
-		put_value(w, nt_json_child(container, i), &inner);
-	}
-	if (container->size)
-		put_line(w, outer);
+	for (size_t i = 0; i < container->size; i++)
+		put_child(w, container, i, &inner);
+	put(w, container->size ? last_line : (slice){"", 0});
+	if (container->size && !last_line.size)
+		put_line(w, &end);
 	put(w, (slice){is_object ? "}" : "]", 1});
 }
 
-static void put_value(writer *w, const nt_json_value *value, const spacing *outer)
+static void put_value(writer *w, const nt_json_value *value, const layout *outer)
 {
 	switch ((nt_json_type)value->type) {
 	case NT_JSON_BOOLEAN:
@@ -323,112 +327,38 @@ static void put_value(writer *w, const nt_json_value *value, const spacing *oute
 
 /* ---- changes ---- */
 
-static void write_value(writer *w, const nt_json_value *value, const spacing *outer);
-
-/* Goes over the children of a container from which some were taken out, whose text is skipped: with the comma
- * behind them where no other is left before, else with the one before. Returns whether one is left. */
-static bool write_left(writer *w, const nt_json_value *container, const spacing *inner)
+/* The children of a container in the old text that has lost none; new ones come last. */
+static void write_children(writer *w, const nt_json_value *container, const layout *outer)
 {
-	const bool is_object = container->type == NT_JSON_OBJECT;
-	const char *const first = first_in_text(container), *child = first;
-	const char *left_end = NULL, *end = first; /* of the last one that is left, of the last one */
-	size_t index = 0;
-	while (!is_closing(*child)) {
-		const char *const begin = value_of(child, is_object);
-		const nt_json_value *value = index < container->size ? nt_json_child(container, index) : NULL;
-		const bool is_left = value && nt_json_begin(value) == begin;
-		if (is_left) {
-			copy_to(w, left_end ? left_end : first);
-			w->copied = left_end ? end : child;
-			write_value(w, value, inner);
-			index++;
-		}
-		end = is_left ? end_of(value) : skip_value(begin);
-		left_end = is_left ? end : left_end;
-		child = nt_json_skip_space(end);
-		if (*child == ',')
-			child = nt_json_skip_space(child + 1);
-	}
-	copy_to(w, left_end ? left_end : index < container->size ? first : nt_json_begin(container) + 1);
-	w->copied = left_end || index < container->size ? end : child;
-	return left_end != NULL;
-}
-
-/* Puts what was added behind children in the old text; has_before: there are some. */
-static void write_added(writer *w, const nt_json_value *container, size_t first, bool has_before, const spacing *inner,
-	const spacing *outer)
-{
-	const char *const in_text = first_in_text(container);
-	const bool was_empty = is_closing(*in_text);
-	slice comma = comma_in_text(container);
-	if (comma.size > MOST_SPACE)
-		comma = no_text;
-	if (was_empty) {
-		copy_to(w, nt_json_begin(container) + 1);
-		w->copied = in_text;
-	}
-	for (size_t i = first; i < container->size; i++) {
-		const bool separated = i > first || has_before;
-		if (separated && comma.size) {
-			put(w, comma);
-		} else if (separated) {
-			put(w, inner->broken ? (slice){",", 1} : w->comma);
-			put_line(w, inner);
-		} else if (was_empty) {
-			put_line(w, inner);
-		}
-		put_key(w, container, i);
-		put_value(w, nt_json_child(container, i), inner);
-	}
-	if (was_empty)
-		put_line(w, outer);
-}
-
-/* outer: how the container is spaced. */
-static void write_container(writer *w, const nt_json_value *container, const spacing *outer)
-{
-	if (!container->apart)
+	const layout inner = layout_of(container, outer);
+	size_t i = 0;
+	for (; i < container->size && nt_json_begin(nt_json_child(container, i)); i++)
+		write_value(w, nt_json_child(container, i), &inner);
+	if (i == container->size)
 		return;
-	size_t added = container->size;
-	while (added && !nt_json_begin(nt_json_child(container, added - 1)))
-		added--;
-	const spacing inner = spacing_in_text(container, outer);
-	bool has_before = added > 0;
-	if (container->taken)
-		has_before = write_left(w, container, &inner);
-	else
-		for (size_t i = 0; i < added; i++)
-			write_value(w, nt_json_child(container, i), &inner);
-	if (added == container->size)
-		return;
-	if (has_before && !container->taken) {
-		const char *end = container->of.list->end - 1;
-		while (nt_json_is_space(end[-1]))
-			end--;
-		copy_to(w, end);
-	}
-	write_added(w, container, added, has_before, &inner, outer);
+	copy_to(w, end_of_children(container));
+	for (; i < container->size; i++)
+		put_child(w, container, i, &inner);
 }
 
 /* A value in the old text, whose beginning is not copied yet. */
-static void write_value(writer *w, const nt_json_value *value, const spacing *outer)
+static void write_value(writer *w, const nt_json_value *value, const layout *outer)
 {
-	if (value->made) {
+	const bool is_list = nt_json_is_container(value) && value->apart && !value->made;
+	if (value->made || (is_list && (value->taken || !value->of.list->end))) {
 		copy_to(w, nt_json_begin(value));
 		put_value(w, value, outer);
-		w->copied = skip_value(nt_json_begin(value));
-	} else if (nt_json_is_container(value)) {
-		write_container(w, value, outer);
+		w->copied = end_of(value);
+	} else if (is_list) {
+		write_children(w, value, outer);
 	}
 }
 
 static nt_status write_text(writer *w)
 {
-	w->unit = no_text;
 	w->copied = w->document->text;
 	find_style(w);
-	const spacing outer = {.broken = w->broken, .base = no_text};
-	write_value(w, &w->document->root, &outer);
+	write_value(w, &w->document->root, &(layout){.broken = w->broken});
 	copy_to(w, w->document->text + w->document->size);
 	if (w->take)
 		flush(w);
