@@ -27,7 +27,8 @@ finish_case() {
 scene() {
 	finish_case
 	case_name=$1 case_ok=true status=
-	cd "$WORK" && chmod -R u+rwX . && rm -rf here out.txt err.txt && mkdir here && cd here || exit 1
+	cd "$WORK" && { rm -rf here out.txt err.txt || { chmod -R u+rwX . && rm -rf here out.txt err.txt; }; } 2>/dev/null && mkdir here &&
+		cd here || exit 1
 }
 
 # Ends the case at once as skipped, with the reason.
@@ -54,16 +55,26 @@ exits() {
 	[ "$status" = "$1" ] || wrong "exit code $status, expected $1"
 }
 
+# has FILE TEXT: the file has the text in a line; without grep, which takes longer to begin than all else here.
+has() {
+	local parts part
+	mapfile -d '' parts <"$1"
+	for part in "${parts[@]}"; do
+		[[ $part != *"$2"* ]] || return 0
+	done
+	return 1
+}
+
 says() {
-	grep -qF -- "$1" "$WORK/err.txt" || wrong "standard error does not say: $1"
+	has "$WORK/err.txt" "$1" || wrong "standard error does not say: $1"
 }
 
 says_not() {
-	! grep -qF -- "$1" "$WORK/err.txt" || wrong "standard error says: $1"
+	! has "$WORK/err.txt" "$1" || wrong "standard error says: $1"
 }
 
 prints() {
-	grep -qF -- "$1" "$WORK/out.txt" || wrong "standard output does not say: $1"
+	has "$WORK/out.txt" "$1" || wrong "standard output does not say: $1"
 }
 
 silent() {
@@ -98,7 +109,7 @@ is() {
 # ask FILE WORDS...: what one process says that answers all questions of this script, since Python and Node take long to begin.
 # Two at the same time are two processes.
 ask() {
-	local folder=$WORK/.ask/$1 program=(node "$ROOT/tests/support/$1") command status
+	local folder=$WORK/.ask/$1 program=(node "$ROOT/tests/support/$1") command status parts
 	command=("${program[@]}")
 	[[ $1 != *.py ]] || { program[0]=python3 command=(python3); }
 	if [ ! -d "$folder" ]; then
@@ -112,7 +123,8 @@ ask() {
 	[ $status = 0 ] || { command "${command[@]}" "${@:2}"; return; }
 	printf '%s\0' "$BASHPID" "$PWD" "${@:2}" >"$folder/ask"
 	read -r status <"$folder/said"
-	[ ! -s "$folder/out" ] || cat "$folder/out"
+	mapfile -d '' parts <"$folder/out"
+	[ ${#parts[@]} = 0 ] || { printf '%s' "${parts[0]}" && [ ${#parts[@]} = 1 ] || printf '\0%s' "${parts[@]:1}"; }
 	[ ! -s "$folder/err" ] || cat "$folder/err" >&2
 	rm "$folder/busy"
 	return "$status"
