@@ -10,7 +10,7 @@ set -eu
 build="pkg-config libopenmesh-dev libtinygltf-dev nlohmann-json3-dev libdraco-dev
 	libmeshoptimizer-dev libfast-float-dev libxxhash-dev libspng-dev libjpeg62-turbo-dev
 	libtiff-dev libwebp-dev libdeflate-dev libstb-dev"
-check="libcmocka-dev chromium abigail-tools debhelper lintian python3-numpy python3-pytest ninja-build parallel musl-tools mypy"
+check="libcmocka-dev chromium abigail-tools python3-numpy python3-pytest ninja-build parallel musl-tools mypy"
 wasm="lld wasi-libc libclang-rt-dev-wasm32 binaryen"
 
 # Programs are looked for by name, since they often come from elsewhere than Debian.

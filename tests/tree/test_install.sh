@@ -33,6 +33,15 @@ for name in $(sed -n 's/^linked: \([A-Za-z_]*\).*/\1/p' "$WORK/out.txt"); do
 	grep -q "^==== .*$name" $p/share/doc/nmtan/licences.txt || wrong "the licence of $name is not installed"
 done
 "$p/bin/nmtan" --version | grep -q "$version" || wrong "the installed tool does not run"
+# make deb fails where a package has none of them: tests/soak/packages.sh
+cat "$data"/debian/*.install "$data/debian/not-installed" | sed 's/ .*//; /^#/d' >packaged
+(cd $p && find . ! -type d) | sed 's|^\./lib/|usr/lib/any/|; s|^\./|usr/|' >installed
+while read -r pattern; do
+	grep -qxE "${pattern//\*/.*}(/.*)?" installed || wrong "$pattern is packaged and not installed"
+	grep -vxE "${pattern//\*/.*}(/.*)?" installed >rest
+	mv rest installed
+done <packaged
+is "$(cat installed)" ""
 
 scene "the installed tool finds its modules where they were installed, by its own folder first"
 make -s -C "$ROOT" MAKEFLAGS= install config=release PREFIX="$PWD/root" LIBDIR="$PWD/root/lib/x" >"$WORK/out.txt" 2>&1 ||
