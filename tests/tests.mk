@@ -61,12 +61,12 @@ $(B)/tests/faults/sweep: $(B)/tests/faults/sweep.o
 $(B)/tests/faults/make_meshopt: $(B)/tests/faults/make_meshopt.o
 	$(CXX) $(NT_LDFLAGS) -o $@ $^ -lmeshoptimizer
 
-# Sources of soak, fuzz, stress and bench compile in every check, but for those that need a peer's header.
-rest_looked := $(patsubst %,$(B)/tests/%.looked,bench fuzz soak stress)
+# Sources of fuzz, stress and bench compile in every check, but for those that need a peer's header.
+rest_looked := $(patsubst %,$(B)/tests/%.looked,bench fuzz stress)
 $(rest_looked): $(B)/tests/%.looked: $(wildcard tests/*/*.[ch] src/*/*.h src/*/*/*.h include/*.h)
 	@mkdir -p $(@D)
 	$(CC) $(filter-out -MMD -MP,$(NT_CFLAGS)) -Werror=implicit-function-declaration -Werror=incompatible-pointer-types -Itests/support \
-		-DNT_DATA_DIR='"data"' -fsyntax-only $(filter-out tests/soak/published.c tests/bench/peer_%,$(filter tests/$*/%.c,$^))
+		-DNT_DATA_DIR='"data"' -fsyntax-only $(filter-out tests/bench/peer_%,$(filter tests/$*/%.c,$^))
 	@touch $@
 
 .PHONY: tests
@@ -118,11 +118,6 @@ built-clients: need-check
 	@$(MAKE) -s build/clients/node_modules/three/package.json >/dev/null 2>&1 || \
 		echo "npm cannot install three, bundlers and others: the tests that need them will be skipped"
 
-# The tool's opens and renames are watched.
-$(B)/tests/soak/hostile: $(B)/tests/soak/hostile.o $(B)/tests/support/any_settings.o $(B)/tests/support/mutate.o $(module_obj) $(B)/libtool.a $(B)/libnmtan.a
-	$(CXX) $(NT_LDFLAGS) -Wl,--wrap=open,--wrap=rename,--wrap=link -o $@ $(filter %.o,$^) \
-		-Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(LINKED_LIBS)
-
 # mikktspace.c as published is in the folder that MIKKTSPACE names: tests/soak/published.sh.
 $(B)/tests/soak/published.o: NT_CFLAGS += -I$(MIKKTSPACE)
 $(B)/tests/soak/mikktspace.o: $(MIKKTSPACE)/mikktspace.c
@@ -135,8 +130,6 @@ $(B)/tests/soak/published: $(patsubst %,$(B)/tests/%.o,soak/published soak/mikkt
 
 # Heavy runs: tests/soak/*.sh in turn, each with its own closing line.
 soak-built: check-built
-	@$(MAKE) -s config=release build/release/tests/soak/hostile
-	@$(MAKE) -s config=sanitize build/sanitize/tests/soak/hostile
 	@for script in tests/soak/*.sh; do [ ! -f $$script ] || \
 		{ echo "$$script" && bash $$script build/release build/sanitize || exit 1; }; done
 
@@ -144,7 +137,7 @@ soak-built: check-built
 # clang and libclang-rt-14-dev.
 $(B)/tests/fuzz/target: $(patsubst %,$(B)/tests/%.o,fuzz/target fuzz/json_mutator fuzz/image support/any_settings support/mutate) \
 		$(module_obj) $(B)/libtool.a $(B)/libnmtan.a
-	$(CXX) $(NT_LDFLAGS) -fsanitize=fuzzer -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(LINKED_LIBS) -lz
+	$(CXX) $(NT_LDFLAGS) -fsanitize=fuzzer -Wl,--wrap=open,--wrap=rename,--wrap=link -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(LINKED_LIBS) -lz
 
 SECONDS ?= 60
 TARGET ?= obj mtl ply gltf glb drc image

@@ -12,7 +12,7 @@ mkdir -p "$seeds"/{obj,mtl,ply,gltf,glb,drc,image,layouts}
 seeds=$(cd "$seeds" && pwd)
 
 models=(data data/damaged)
-[ ! -d ../shared/models ] || models+=(../shared/models)
+[ ! -d ../shared/models ] || models+=(../shared/models ../shared/corpus)
 for extension in obj mtl ply gltf glb drc; do
 	find "${models[@]}" -type f -name "*.$extension" -size -17k | LC_ALL=C sort | while read -r file; do
 		cp "$file" "$seeds/$extension/$(basename "$(dirname "$file")")_${file##*/}"

@@ -6,7 +6,8 @@
  * - a failed run has a sentence and leaves no file, a successful one leaves what it says;
  * - an output is read back, and needs nothing: a run in place leaves it as it is;
  * - two threads write the bytes of one;
- * - a report is rendered in every format, and the JSON one is read back.
+ * - a report is rendered in every format, and the JSON one is read back;
+ * - nothing outside of the input's folder is opened, and nothing outside of the output's is made (the linker's --wrap).
  *
  * Images are decoded alone: see image.h. Memory, leaks and time are libFuzzer's and the sanitizers' to watch: see
  * run.sh. FUZZ_TARGET names the target. FUZZ_VERBOSE tells what a run was told and what came of it.
@@ -64,11 +65,65 @@ static void wrong(const char *format, ...)
 	abort();
 }
 
+/* ---- the watch ---- */
+
+int __real_open(const char *path, int flags, ...);
+int __wrap_open(const char *path, int flags, ...);
+int __real_rename(const char *from, const char *to);
+int __wrap_rename(const char *from, const char *to);
+int __real_link(const char *from, const char *to);
+int __wrap_link(const char *from, const char *to);
+
+/* Whether a path, or the folder of one that is not there, is inside folder/part. */
+static bool is_inside(const char *path, const char *part)
+{
+	char place[128], copy[4096];
+	snprintf(place, sizeof place, "%s/%s", folder, part);
+	snprintf(copy, sizeof copy, "%s", path);
+	char *real = realpath(copy, NULL), *slash = strrchr(copy, '/');
+	if (!real && slash) {
+		*slash = '\0';
+		real = realpath(copy, NULL);
+	}
+	const size_t length = strlen(place);
+	const bool inside = real && strncmp(real, place, length) == 0 && (real[length] == '/' || real[length] == '\0');
+	free(real);
+	return inside;
+}
+
+int __wrap_open(const char *path, int flags, ...)
+{
+	va_list arguments;
+	va_start(arguments, flags);
+	const mode_t mode = flags & O_CREAT ? va_arg(arguments, mode_t) : 0;
+	va_end(arguments);
+	const bool reads = (flags & O_ACCMODE) == O_RDONLY;
+	/* what the system says of this process: maker.c */
+	const bool told = reads && (strncmp(path, "/proc/", 6) == 0 || is_inside(path, "in"));
+	if (folder[0] && !told && !is_inside(path, "out"))
+		wrong("opens %s", path);
+	return __real_open(path, flags, mode);
+}
+
+int __wrap_rename(const char *from, const char *to)
+{
+	if (!is_inside(to, "out"))
+		wrong("renames to %s", to);
+	return __real_rename(from, to);
+}
+
+int __wrap_link(const char *from, const char *to)
+{
+	if (!is_inside(to, "out"))
+		wrong("links to %s", to);
+	return __real_link(from, to);
+}
+
 /* ---- files ---- */
 
 static void store(const char *path, const void *bytes, size_t size)
 {
-	const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+	const int fd = __real_open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
 	if (fd < 0 || write(fd, bytes, size) != (ssize_t)size || close(fd) != 0)
 		wrong("%s cannot be written", path);
 }
