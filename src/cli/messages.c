@@ -55,7 +55,7 @@ void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style)
 }
 
 static void append_sentence(nt_buffer *out, const nt_place_view *place, const char *file, nt_code code,
-	nt_severity severity, const char *sentence, const char *command, nt_style style)
+	nt_severity severity, const char *sentence, size_t more, const char *command, nt_style style)
 {
 	static const char *const colours[] = {
 		[NT_SEVERITY_INFO] = "\033[36m", [NT_SEVERITY_WARNING] = "\033[1;33m",
@@ -65,10 +65,12 @@ static void append_sentence(nt_buffer *out, const nt_place_view *place, const ch
 	nt_buffer_format(out, "%s%s:%s ", colour(style, colours[severity]), nt_severity_name(severity),
 		colour(style, "\033[0m"));
 	nt_buffer_clean(out, sentence);
+	if (more)
+		nt_buffer_format(out, " (and %zu more)", more);
 	nt_buffer_format(out, " [%s]%s\n", nt_code_info(code)->name, command ? command : "");
 }
 
-/* How many findings of one code are printed. */
+/* How many findings of one code are printed; a quiet run says in that line how many there are more. */
 static size_t places_shown(nt_style style)
 {
 	return style.verbosity < 0 ? 1 : style.verbosity ? SIZE_MAX : PLACES_SHOWN;
@@ -124,33 +126,39 @@ static void append_command(nt_buffer *out, nt_code code, const char *repair, con
 	nt_buffer_free_into(&all, out);
 }
 
+/* Whether finding i is one of a code and severity, and not an old one. */
+static bool is_shown(const nt_finding_list *findings, size_t i, const bool *old, const nt_report_options *options,
+	nt_code code, nt_severity severity, nt_style style)
+{
+	const nt_finding *finding = &findings->items[i];
+	return finding->code == code && shown_severity(finding, options, style) == severity && !(old && old[i]);
+}
+
 /* All findings of one code and severity but for `old` ones (NULL: there are none), those beyond places_shown() as a
  * number. The first has the command. */
 static void append_code(nt_buffer *out, const nt_finding_list *findings, const bool *old,
 	const nt_report_options *options, nt_code code, nt_severity severity, const char *file, const char *output,
 	nt_style style)
 {
-	size_t shown = 0, left_out = 0;
-	for (size_t i = 0; i < findings->count; i++) {
+	size_t count = 0, shown = 0;
+	for (size_t i = 0; i < findings->count; i++)
+		count += is_shown(findings, i, old, options, code, severity, style);
+	for (size_t i = 0; i < findings->count && shown < count && shown < places_shown(style); i++) {
 		const nt_finding *finding = &findings->items[i];
-		if (finding->code != code || shown_severity(finding, options, style) != severity || (old && old[i]))
+		if (!is_shown(findings, i, old, options, code, severity, style))
 			continue;
-		if (shown == places_shown(style)) {
-			left_out++;
-			continue;
-		}
 		nt_buffer sentence = {0}, command = {0};
 		nt_code_sentence(code, finding->count, finding->detail, &sentence);
 		const char *repair = finding->repair ? finding->repair : nt_code_info(code)->repair;
 		if (!shown && repair && !finding->stays && (severity > NT_SEVERITY_INFO || is_chosen(code)))
 			append_command(&command, code, repair, options, file, output);
 		append_sentence(out, &finding->place, file, code, severity, sentence.data ? sentence.data : "",
-			command.data, style);
+			style.verbosity < 0 ? count - 1 : 0, command.data, style);
 		nt_buffer_free_into(&sentence, out);
 		nt_buffer_free_into(&command, out);
 		shown++;
 	}
-	append_more(out, code, severity, left_out, style);
+	append_more(out, code, severity, count - shown, style);
 }
 
 /* Which findings a report knows from its baseline: those that it has as they are, and those of codes of which a check
@@ -195,15 +203,22 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 }
 
 /* A finding of a report, with its command if that was not told before. */
-static void append_found(nt_buffer *out, const nt_report_finding *f, nt_severity severity, bool *told,
+static void append_found(nt_buffer *out, const nt_report_finding *f, nt_severity severity, size_t more, bool *told,
 	const nt_report_options *options, const char *file, const char *output, nt_style style)
 {
 	nt_buffer command = {0};
 	if (f->repair && !told[f->code])
 		append_command(&command, f->code, f->repair, options, file, output);
 	told[f->code] = true;
-	append_sentence(out, &f->place, file, f->code, severity, f->message, command.data, style);
+	append_sentence(out, &f->place, file, f->code, severity, f->message, more, command.data, style);
 	nt_buffer_free_into(&command, out);
+}
+
+/* Of a quiet run: what is wrong with tangents that are kept. */
+static bool is_told(const nt_report_finding *f, int most, bool quiet)
+{
+	return f->severity > NT_SEVERITY_INFO && (int)f->severity <= most &&
+		(quiet ? f->mesh != NT_NONE && nt_code_is_of_kept(f->code) : f->noted == NT_NONE);
 }
 
 void nt_message_checked(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
@@ -211,19 +226,21 @@ void nt_message_checked(nt_buffer *out, const nt_finding_list *findings, const n
 {
 	const bool quiet = style.verbosity < 0;
 	bool told[NT_CODE_COUNT] = {false};
-	size_t found[NT_CODE_COUNT] = {0}, left_out[NT_CODE_COUNT][NT_SEVERITY_ERROR + 1] = {{0}};
+	size_t found[NT_CODE_COUNT] = {0}, shown[NT_CODE_COUNT] = {0}, left_out[NT_CODE_COUNT][NT_SEVERITY_ERROR + 1] = {{0}};
 	for (int code = 0; quiet && !report && code < NT_CODE_COUNT; code++)
 		if (nt_code_is_of_kept((nt_code)code) && !options->ignore[code])
 			append_code(out, findings, NULL, options, (nt_code)code, NT_SEVERITY_WARNING, file, output,
 				style);
+	for (size_t i = 0; report && i < report->new_count; i++)
+		found[report->findings[i].code] += is_told(&report->findings[i], most, quiet);
 	for (size_t i = 0; report && i < report->new_count; i++) {
 		const nt_report_finding *f = &report->findings[i];
-		if (f->severity == NT_SEVERITY_INFO || (int)f->severity > most ||
-			(quiet ? f->mesh == NT_NONE || !nt_code_is_of_kept(f->code) : f->noted != NT_NONE))
+		if (!is_told(f, most, quiet))
 			continue;
 		const nt_severity severity = style.fails ? f->severity : NT_SEVERITY_WARNING;
-		if (found[f->code]++ < places_shown(style))
-			append_found(out, f, severity, told, options, file, output, style);
+		if (shown[f->code]++ < places_shown(style))
+			append_found(out, f, severity, quiet ? found[f->code] - 1 : 0, told, options, file, output,
+				style);
 		else
 			left_out[f->code][severity]++;
 	}
@@ -283,7 +300,7 @@ void nt_message_failure(nt_buffer *out, const nt_report *report, const nt_report
 		if ((known ? known[i] : found->known) || (int)found->severity < least_failure)
 			continue;
 		if (shown++ < PLACES_SHOWN || style.verbosity > 0)
-			append_found(out, found, found->severity, told, options, file, output, style);
+			append_found(out, found, found->severity, 0, told, options, file, output, style);
 		else
 			more++;
 	}

@@ -103,6 +103,21 @@ static void lose(const reader *r, nt_code code, const char *what)
 
 /* ---- numbers ---- */
 
+typedef struct word {
+	const char *begin, *end;
+} word;
+
+/* The word at or behind p; empty at the end. */
+static word next_word(const char *p, const char *end)
+{
+	while (p < end && is_blank(*p))
+		p++;
+	word w = {p, p};
+	while (w.end < end && !is_blank(*w.end))
+		w.end++;
+	return w;
+}
+
 /* Fails with "found WORD, expected EXPECTED" at a line of the MTL. */
 static nt_status fail_expected(const reader *r, const char *found, const char *expected)
 {
@@ -117,10 +132,10 @@ static nt_status fail_expected(const reader *r, const char *found, const char *e
 	return nt_error_in_file(r->error, r->path);
 }
 
-static bool begins_with(const reader *r, const char *word)
+static bool begins_with(const reader *r, const char *name)
 {
-	const size_t length = strlen(word);
-	return (size_t)(r->end - r->text) > length && strncmp(r->text, word, length) == 0 && is_blank(r->text[length]);
+	const size_t length = strlen(name);
+	return (size_t)(r->end - r->text) > length && strncmp(r->text, name, length) == 0 && is_blank(r->text[length]);
 }
 
 /* A number, or the three of a colour, of which one stands for all. */
@@ -148,6 +163,12 @@ static nt_status read_value(reader *r, mtl_value which)
 	}
 	if (count != 1 && count != most)
 		return fail_expected(r, r->end, most == 1 ? "a number" : "3 numbers, or one for all");
+	const word behind = next_word(p, r->end);
+	const size_t length = (size_t)(behind.end - behind.begin);
+	if (length && *behind.begin != '#')
+		find(r, NT_CODE_STATEMENT_IGNORED, r->line, "\"%.*s\" behind the numbers of %.*s",
+			(int)(length < 64 ? length : 64), behind.begin,
+			(int)(r->word_length < 64 ? r->word_length : 64), r->word);
 	for (int k = 0; k < most; k++)
 		r->said.values[which].value[k] = most == 1 ? numbers[0] : fmaxf(numbers[count == 3 ? k : 0], 0);
 	r->said.values[which].line = r->line;
@@ -170,21 +191,6 @@ static const struct {
 	{"-t", 1, 3, TURBULENCE}, {"-texres", 1, 1, NOTHING}, {"-type", 1, 1, NOTHING},
 };
 enum { OPTION_COUNT = sizeof options / sizeof options[0] };
-
-typedef struct word {
-	const char *begin, *end;
-} word;
-
-/* The word at or behind p; empty at the end. */
-static word next_word(const char *p, const char *end)
-{
-	while (p < end && is_blank(*p))
-		p++;
-	word w = {p, p};
-	while (w.end < end && !is_blank(*w.end))
-		w.end++;
-	return w;
-}
 
 static bool is_word(word w, const char *text)
 {
@@ -214,24 +220,46 @@ static void use_number(enum use use, int i, float value, stated_map *to)
 	(use == SCALE ? p->scale : p->offset)[i] = value;
 }
 
+/* Uses an argument. Returns what it should be if it cannot. */
+static const char *use_argument(enum use use, int i, word argument, stated_map *to)
+{
+	const bool one_letter = argument.end - argument.begin == 1;
+	float value = 0;
+	if (use == CLAMP) {
+		const bool on = argument.end - argument.begin == 2 && strncasecmp(argument.begin, "on", 2) == 0;
+		const bool off = argument.end - argument.begin == 3 && strncasecmp(argument.begin, "off", 3) == 0;
+		to->map.placement.clamp = on;
+		return on || off ? NULL : "on or off";
+	}
+	if (use == CHANNEL) {
+		if (!one_letter || !strchr("rgbmlz", *argument.begin))
+			return "r, g, b, m, l or z";
+		to->map.channel = *argument.begin;
+		return NULL;
+	}
+	if (use == NOTHING)
+		return NULL;
+	if (!is_number(argument, &value))
+		return "a finite number";
+	use_number(use, i, value, to);
+	return NULL;
+}
+
 /* Takes an option's arguments. Arguments beyond the least have to be numbers and must leave a word, which
  * is the file name. Returns where the next word may begin. */
-static const char *take_arguments(size_t option, const char *p, const char *end, stated_map *to)
+static const char *take_arguments(const reader *r, size_t option, const char *p, stated_map *to)
 {
 	for (int i = 0; i < options[option].most; i++) {
-		const word argument = next_word(p, end), behind = next_word(argument.end, end);
-		const bool one_letter = argument.end - argument.begin == 1;
+		const word argument = next_word(p, r->end), behind = next_word(argument.end, r->end);
 		float value = 0;
-		const bool number = is_number(argument, &value);
-		if (i >= options[option].least && (!number || behind.begin == behind.end))
+		if (i >= options[option].least && (!is_number(argument, &value) || behind.begin == behind.end))
 			break;
-		if (number)
-			use_number(options[option].use, i, value, to);
-		else if (options[option].use == CLAMP)
-			to->map.placement.clamp =
-				argument.end - argument.begin == 2 && strncasecmp(argument.begin, "on", 2) == 0;
-		else if (options[option].use == CHANNEL && one_letter && strchr("rgbmlz", *argument.begin))
-			to->map.channel = *argument.begin;
+		const char *expected = use_argument(options[option].use, i, argument, to);
+		const size_t length = (size_t)(argument.end - argument.begin);
+		if (expected && length)
+			find(r, NT_CODE_MATERIAL_LOST, r->line, "%s of %.*s: found \"%.*s\", expected %s",
+				options[option].name, (int)(r->word_length < 64 ? r->word_length : 64), r->word,
+				(int)(length < 64 ? length : 64), argument.begin, expected);
 		p = argument.end;
 	}
 	return p;
@@ -263,7 +291,7 @@ static word read_options(const reader *r, stated_map *to)
 	word w = next_word(r->text, r->end);
 	for (size_t i = 0; i < OPTION_COUNT;)
 		if (is_word(w, options[i].name)) {
-			w = next_word(take_arguments(i, w.end, r->end, to), r->end);
+			w = next_word(take_arguments(r, i, w.end, to), r->end);
 			i = 0;
 		} else {
 			i++;

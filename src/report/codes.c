@@ -591,7 +591,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"converting one triangle with UVs (0,0), (1,0), (2,0)"),
 	ROW(TAN_EXISTING_BAD, WARNING, "w--", CONVERT, "--fix",
 		"{count} {tangent that was kept is|tangents that were kept are} invalid",
-		"--existing=keep leaves authored tangents as they are, and some of them are not usable.",
+		"--existing=keep leaves authored tangents as they are, and some of them are not usable. A report says "
+		"what is wrong with each: TAN_ZERO, TAN_NOT_FINITE and so on in place of this.",
 		"Repair them.",
 		"converting a normal-mapped glTF with a tangent (0,0,0,1)"),
 	ROW(TAN_EXISTING_REPAIRED, INFO, "i--", LOOK, NULL,

@@ -162,19 +162,6 @@ static nt_severity severity_of(const nt_check *check, nt_code code)
 	return nt_code_info(code)->severity;
 }
 
-/* On conversion: that tangents were kept although they are not usable. */
-static void report_kept(nt_check *check, const nt_tally *const *invalid, size_t count)
-{
-	nt_tally kept = {.code = NT_CODE_TAN_EXISTING_BAD, .box = nt_box_empty()};
-	for (size_t i = 0; i < count; i++) {
-		kept.count += invalid[i]->count;
-		if (invalid[i]->count)
-			nt_box_join(&kept.box, &invalid[i]->box);
-	}
-	if (nt_is_written(check) && check->stored == NT_STORED_AUTHORED)
-		nt_check_report(check, &kept, NULL);
-}
-
 /* Each tangent once, in the order of corners. */
 static nt_status check_each(nt_check *check)
 {
@@ -201,7 +188,6 @@ static nt_status check_each(nt_check *check)
 	const nt_tally *all[] = {&tt->not_finite, &tt->zero, &tt->non_unit, &tt->bad_w, &tt->parallel};
 	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
 		nt_check_report_as(check, all[i], severity_of(check, all[i]->code), NULL);
-	report_kept(check, all, sizeof all / sizeof all[0]);
 	nt_check_report_as(check, &tt->not_orthogonal, severity_of(check, tt->not_orthogonal.code),
 		"the worst is %.3g degrees off", check->facts->worst_orthogonality);
 	return NT_OK;

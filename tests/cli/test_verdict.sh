@@ -806,6 +806,9 @@ silent
 gltf m.gltf zero 'bytes[0].fill(0, at(g.meshes[0].primitives[0].attributes.TANGENT, 0), at(g.meshes[0].primitives[0].attributes.TANGENT, 0) + 12)'
 run -q zero.gltf out.glb
 says "[TAN_EXISTING_BAD]: nmtan --fix zero.gltf out.glb"
+run -q --report=r.json zero.gltf out.glb
+is "$(value r.json '[(f["code"], f["count"]) for f in r["files"][0]["findings"] if f["severity"] != "info"]')" "[('TAN_ZERO', 1)]"
+is "$(wc -l <"$WORK/err.txt")" 1
 run -d out zero.gltf m.gltf
 says "1 keeps wrong tangents"
 # what --check calls an error, a conversion tells, with the same count: T reversed, corners of two signs, and of a PLY
@@ -846,7 +849,7 @@ corner.gltf|2|triangles keep tangents whose bitangent runs the wrong way: corner
 quad.ply|2|triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]|TAN_SIGN_MISMATCH
 triangles.ply|2|triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]|TAN_SIGN_MISMATCH
 reversed.ply|2|triangles keep tangents whose bitangent runs the wrong way: 100 % of 2 [TAN_KEPT_SIGN]|TAN_SIGN_MISMATCH
-zero.ply|4|tangents that were kept are invalid [TAN_EXISTING_BAD]|TAN_ZERO TAN_EXISTING_BAD
+zero.ply|4|tangents that were kept are invalid [TAN_EXISTING_BAD]|TAN_ZERO
 END
 run -v m.gltf out.gltf
 says "skipped (has tangents), 2 triangles"
@@ -1349,9 +1352,11 @@ is "$(grep -c 'warning: .*\[TAN_KEPT_SIGN\]' "$WORK/err.txt")" 6
 says "nmtan: warning: and 2 more [TAN_KEPT_SIGN]; -v shows all"
 run --normals=angle:40 inverted.gltf out.glb
 says "[TAN_KEPT_SIGN]: nmtan --normals=angle:40 --fix inverted.gltf out.glb"
-run -q inverted.gltf out.glb
-is "$(wc -l <"$WORK/err.txt")" 1
-says "[TAN_KEPT_SIGN]: nmtan --fix inverted.gltf out.glb"
+for words in "" --report=r.json; do
+	run -q $words inverted.gltf out.glb
+	is "$(wc -l <"$WORK/err.txt")" 1
+	says " (and 6 more) [TAN_$([ -n "$words" ] && echo SIGN_MISMATCH || echo KEPT_SIGN)]: nmtan --fix inverted.gltf out.glb"
+done
 
 scene "options that come to nothing say so, --fix says what it leaves, and counts are of the primitives that are written"
 mapped

@@ -221,6 +221,30 @@ TEST(lost_statements_are_findings)
 	close_reading(&r);
 }
 
+TEST(words_behind_numbers_are_infos_and_comments_are_none)
+{
+	static const struct {
+		const char *text, *detail;
+	} cases[] = {
+		{"newmtl a\nKd 1 0 1 x\n", "MTL: \"x\" behind the numbers of Kd"},
+		{"newmtl a\nKd 1 0 1 0.5 2\n", "MTL: \"0.5\" behind the numbers of Kd"},
+		{"newmtl a\nNs 20 x\n", "MTL: \"x\" behind the numbers of Ns"},
+		{"newmtl a\nd 1 # opaque\n", NULL},
+		{"newmtl a\nKd 1 0 1 #\n", NULL},
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		reading r;
+		parse(&r, cases[i].text);
+		assert_int_equal(r.status, NT_OK);
+		assert_int_equal(r.scene.findings.count, cases[i].detail ? 1 : 0);
+		if (cases[i].detail) {
+			assert_int_equal(r.scene.findings.items[0].code, NT_CODE_STATEMENT_IGNORED);
+			assert_string_equal(r.scene.findings.items[0].detail, cases[i].detail);
+		}
+		close_reading(&r);
+	}
+}
+
 TEST(damaged_numbers_are_named_and_not_used)
 {
 	static const struct {
@@ -233,6 +257,11 @@ TEST(damaged_numbers_are_named_and_not_used)
 		{"newmtl a\nd\n", "MTL: d: found the end of the line, expected a number", 2},
 		{"newmtl a\nKe 1 nan 1\n", "MTL: Ke: found \"nan\", expected a finite number", 2},
 		{"newmtl a\nKd 1 1x 1\n", "MTL: Kd: found \"1x\", expected a finite number", 2},
+		{"newmtl a\nbump -bm x f.png\n", "MTL: -bm of bump: found \"x\", expected a finite number", 2},
+		{"newmtl a\nmap_Kd -s inf 1 f.png\n", "MTL: -s of map_Kd: found \"inf\", expected a finite number", 2},
+		{"newmtl a\nmap_Kd -clamp f.png\n", "MTL: -clamp of map_Kd: found \"f.png\", expected on or off", 2},
+		{"newmtl a\nmap_Pr -imfchan w f.png\n",
+			"MTL: -imfchan of map_Pr: found \"w\", expected r, g, b, m, l or z", 2},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
 		reading r;
