@@ -118,7 +118,7 @@ $(module_so): $(B)/nmtan-%.so: $(module_obj) $(B)/libmodule.a
 
 # The part of the tool that modules use; all of it without a state, but for the key of hashes, which each makes for
 # itself, and deadlines, of which they have none.
-$(B)/libmodule.a: $(call objects,src/base/error.c src/base/hash.c src/base/deadline.c src/base/pages.c \
+$(B)/libmodule.a: $(call objects,src/base/error.c src/base/utf8.c src/base/hash.c src/base/deadline.c src/base/pages.c \
 		src/ext/number.cpp src/ext/codec/pixels.c src/ext/modules/cxx.cpp)
 	rm -f $@ && $(AR) qcsD $@ $^
 

@@ -31,7 +31,7 @@ static void fill(nt_error *error, nt_status status, const char *format, va_list 
 {
 	nt_error_clear(error);
 	error->status = status;
-	vsnprintf(error->message, sizeof error->message, format, arguments);
+	nt_utf8_format(error->message, sizeof error->message, format, arguments);
 }
 
 nt_status nt_fail(nt_error *error, nt_status status, const char *format, ...)

@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include "base/status.h"
+#include "base/utf8.h"
 
 #ifdef __cplusplus
 extern "C" { /* for src/ext */

@@ -2,6 +2,7 @@
 #include "base/utf8.h"
 
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 size_t nt_utf8_length(const char *text, size_t size)
@@ -35,12 +36,29 @@ bool nt_utf8_is_unsafe(const char *text, size_t length)
 
 size_t nt_utf8_cut(const char *text, size_t most)
 {
-	size_t cut = strnlen(text, most);
-	if (text[cut])
-		for (size_t back = 1; back < 4 && back <= cut; back++)
-			if (nt_utf8_length(text + cut - back, SIZE_MAX) > back)
-				return cut - back;
-	return cut;
+	const size_t longest = 4;
+	return nt_utf8_cut_of(text, strnlen(text, most + longest - 1), most);
+}
+
+size_t nt_utf8_cut_of(const char *text, size_t length, size_t most)
+{
+	for (size_t back = 1; length > most && back < 4 && back <= most; back++)
+		if (nt_utf8_length(text + most - back, length - most + back) > back)
+			return most - back;
+	return length < most ? length : most;
+}
+
+void nt_utf8_format(char *to, size_t room, const char *format, va_list arguments)
+{
+	const int wanted = vsnprintf(to, room, format, arguments);
+	if (wanted < 0 || (size_t)wanted < room)
+		return;
+	size_t begin = room - 1; /* of the last sequence */
+	for (int back = 0; back < 3 && begin > 0 && (to[begin - 1] & 0xc0) == 0x80; back++)
+		begin--;
+	const unsigned char lead = begin > 0 ? (unsigned char)to[begin - 1] : 0;
+	if (lead >= 0xc2 && lead <= 0xf4 && !nt_utf8_length(to + begin - 1, SIZE_MAX))
+		to[begin - 1] = '\0';
 }
 
 void nt_utf8_mask(char *text)

@@ -5,6 +5,7 @@
 #ifndef NT_BASE_UTF8_H
 #define NT_BASE_UTF8_H
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -21,8 +22,16 @@ size_t nt_utf8_length(const char *text, size_t size);
  * (U+2028, U+2029), and U+FFFE and U+FFFF, which XML excludes. length 0, that it is no UTF-8, counts too. */
 bool nt_utf8_is_unsafe(const char *text, size_t length);
 
-/* How many bytes of a text, at most `most`, end where a sequence ends. */
+/* How many bytes of a text, at most `most`, end where a sequence ends; and of one of `length` bytes. */
 size_t nt_utf8_cut(const char *text, size_t most);
+size_t nt_utf8_cut_of(const char *text, size_t length, size_t most);
+
+/* A text for "%.*s", at most so many bytes of it: a name in a message. It is a macro as it is two arguments. */
+#define NT_CUT(most, text) (int)nt_utf8_cut((text), (most)), (text)
+#define NT_CUT_OF(most, length, text) (int)nt_utf8_cut_of((text), (length), (most)), (text)
+
+/* As vsnprintf(), but a text without room for all ends where a sequence ends. */
+void nt_utf8_format(char *to, size_t room, const char *format, va_list arguments);
 
 /* Puts question marks where it must not, in place; for a signal handler too. */
 void nt_utf8_mask(char *text);

@@ -641,8 +641,8 @@ static void limit_memory(const nt_command *command, const nt_batch *batch)
 	nt_error error;
 	const char *one = batch->count == 1 ? batch->jobs[0].input : "";
 	nt_fail_memory_limit(most, &error);
-	snprintf(exhausted.line, sizeof exhausted.line - 1, "nmtan: %.160s%s%.100s", one, *one ? ": " : "",
-		error.message);
+	snprintf(exhausted.line, sizeof exhausted.line - 1, "nmtan: %.*s%s%.*s", NT_CUT(160, one), *one ? ": " : "",
+		NT_CUT(100, error.message));
 	nt_utf8_mask(exhausted.line);
 	strcat(exhausted.line, "\n");
 	exhausted.code = NT_EXIT_LIMIT;

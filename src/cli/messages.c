@@ -214,7 +214,7 @@ static void append_found(nt_buffer *out, const nt_report_finding *f, nt_severity
 	nt_buffer_free_into(&command, out);
 }
 
-/* Of a quiet run: what is wrong with tangents that are kept. */
+/* Whether a finding of a report gets a line. A quiet run has those of kept tangents alone. */
 static bool is_told(const nt_report_finding *f, int most, bool quiet)
 {
 	return f->severity > NT_SEVERITY_INFO && (int)f->severity <= most &&
@@ -226,7 +226,8 @@ void nt_message_checked(nt_buffer *out, const nt_finding_list *findings, const n
 {
 	const bool quiet = style.verbosity < 0;
 	bool told[NT_CODE_COUNT] = {false};
-	size_t found[NT_CODE_COUNT] = {0}, shown[NT_CODE_COUNT] = {0}, left_out[NT_CODE_COUNT][NT_SEVERITY_ERROR + 1] = {{0}};
+	size_t found[NT_CODE_COUNT] = {0}, shown[NT_CODE_COUNT] = {0};
+	size_t left_out[NT_CODE_COUNT][NT_SEVERITY_ERROR + 1] = {{0}};
 	for (int code = 0; quiet && !report && code < NT_CODE_COUNT; code++)
 		if (nt_code_is_of_kept((nt_code)code) && !options->ignore[code])
 			append_code(out, findings, NULL, options, (nt_code)code, NT_SEVERITY_WARNING, file, output,

@@ -129,7 +129,7 @@ static nt_status refuse_empty(parser *p, const nt_option_row *row)
 /* Names of files that the system does not take: what is made of them step by step would take long. */
 static nt_status refuse_long(parser *p, const char *word)
 {
-	return nt_fail(p->error, NT_ERROR_USAGE, "'%.40s...' has %zu bytes, which no file's name has", word,
+	return nt_fail(p->error, NT_ERROR_USAGE, "'%.*s...' has %zu bytes, which no file's name has", NT_CUT(40, word),
 		strlen(word));
 }
 

@@ -65,7 +65,7 @@ static void draw(nt_progress *p)
 	if (p->terminal) {
 		erase(p);
 		/* One row, however long the name is: a wrapped line could not be erased. */
-		fprintf(stderr, "%.70s, %u s", line.data, (unsigned)seconds);
+		fprintf(stderr, "%.*s, %u s", NT_CUT(70, line.data), (unsigned)seconds);
 		p->drawn = true;
 	} else if (strcmp(p->last, line.data) != 0) {
 		fprintf(stderr, "nmtan: %s\n", line.data);

@@ -204,13 +204,13 @@ static nt_status check_links(
 		status = nt_fail(error, NT_ERROR_INPUT,
 			"the URI \"%.*s\" leaves the folder of the file through a "
 			"symbolic link (refused without --outside=yes)",
-			SHOWN, uri);
+			NT_CUT(SHOWN, uri));
 	nt_buffer_free(&real);
 	if (!status)
 		status = nt_lookup(path, &info, error);
 	if (status == NT_ERROR_IO || status == NT_ERROR_MISSING)
 		return nt_fail(
-			error, status, "cannot open \"%.*s\": %s", SHOWN, uri, strerror(errno));
+			error, status, "cannot open \"%.*s\": %s", NT_CUT(SHOWN, uri), strerror(errno));
 	return status;
 }
 
@@ -224,16 +224,16 @@ nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri,
 	name[name_length] = '\0';
 	const char *fault = check_text(name, name_length, allow_outside);
 	if (fault)
-		return nt_fail(error, NT_ERROR_INPUT, "the URI \"%.*s\" %s", SHOWN, uri, fault);
+		return nt_fail(error, NT_ERROR_INPUT, "the URI \"%.*s\" %s", NT_CUT_OF(SHOWN, length, uri), fault);
 	if (has_scheme(name))
 		return nt_fail(error, name[1] == ':' ? NT_ERROR_INPUT : NT_ERROR_UNSUPPORTED,
 			name[1] == ':' ? "the URI \"%.*s\" names a drive" :
 					 "the URI \"%.*s\" has a scheme; only data: and relative names are read",
-			SHOWN, uri);
+			NT_CUT_OF(SHOWN, length, uri));
 
 	if (nt_name_is_too_long(name))
 		return nt_fail(error, NT_ERROR_MISSING, "the URI \"%.*s\" has %zu bytes, which no file's name has",
-			SHOWN, uri, name_length);
+			NT_CUT_OF(SHOWN, length, uri), name_length);
 
 	/* An absolute name, allowed here, stands for itself. */
 	const size_t folder = name[0] == '/' ? 0 : folder_length(document);

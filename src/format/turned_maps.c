@@ -87,7 +87,7 @@ static void tell(const turning *t, const use *u, nt_code code, const char *what)
 	nt_place_clear(&place);
 	const char *const *slot = slots[u->slot];
 	snprintf(place.pointer, sizeof place.pointer, "/%s/%u/%s%s", slot[0], u->material, slot[1], slot[2]);
-	nt_finding_add(&t->scene->findings, code, &place, 1, "%.200s", what);
+	nt_finding_add(&t->scene->findings, code, &place, 1, "%.*s", NT_CUT(200, what));
 }
 
 /* ---- which ---- */

@@ -80,8 +80,8 @@ static nt_status read_format(const nt_json_value *json, const char *pointer,
 	if (!find_type(name, accessor)) {
 		snprintf(place, sizeof place, "%s/type", pointer);
 		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
-			"%s%.30s%s, expected SCALAR, VEC2 to VEC4 or MAT2 to MAT4", name ? "\"" : "",
-			name ? name : nt_json_type_text(nt_json_find(json, "type")), name ? "\"" : "");
+			"%s%.*s%s, expected SCALAR, VEC2 to VEC4 or MAT2 to MAT4", name ? "\"" : "",
+			NT_CUT(30, name ? name : nt_json_type_text(nt_json_find(json, "type"))), name ? "\"" : "");
 	}
 	nt_json_get_bool(nt_json_find(json, "normalized"), &accessor->normalized);
 	return nt_gltf_uint(json, pointer, "count", UINT32_MAX - 1, NT_GLTF_REQUIRED, &accessor->count,
@@ -157,7 +157,7 @@ static nt_status check_sparse(nt_gltf *document, const nt_json_value *sparse, co
 	nt_gltf_accessor *accessor, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER], place[NT_GLTF_POINTER * 2];
-	snprintf(pointer, sizeof pointer, "%.100s/sparse", accessor_pointer);
+	snprintf(pointer, sizeof pointer, "%.*s/sparse", NT_CUT(100, accessor_pointer));
 	nt_gltf_sparse_arrays arrays;
 	nt_status status = nt_gltf_uint(sparse, pointer, "count", accessor->count, NT_GLTF_REQUIRED, &arrays.count,
 		error);

@@ -148,11 +148,11 @@ static nt_status check_version(const nt_gltf *document, nt_error *error)
 	const bool old = strncmp(version, "1.", 2) == 0 || strncmp(version, "0.", 2) == 0;
 	if (strncmp(version, "2.", 2) != 0)
 		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, "/asset/version",
-			"glTF version \"%.20s\", expected 2.0%s", version, old ? NT_GLTF_OLD_ADVICE : "");
+			"glTF version \"%.*s\", expected 2.0%s", NT_CUT(20, version), old ? NT_GLTF_OLD_ADVICE : "");
 	const char *minimum = nt_json_find_string(asset, "minVersion", NULL);
 	if (minimum && strcmp(minimum, "2.0") != 0)
 		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, "/asset/minVersion",
-			"needs glTF %.20s, expected 2.0", minimum);
+			"needs glTF %.*s, expected 2.0", NT_CUT(20, minimum));
 	return NT_OK;
 }
 

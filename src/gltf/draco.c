@@ -211,8 +211,8 @@ static nt_status give_attribute(nt_gltf *document, uint64_t index, const char *n
 	if (accessor.component_type != (uint32_t)from->component_type ||
 		accessor.components != (uint32_t)from->components)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-			"%.40s: accessor %llu has %u components of type %u, the compressed attribute %d of "
-			"type %d", name, (unsigned long long)index, accessor.components,
+			"%.*s: accessor %llu has %u components of type %u, the compressed attribute %d of "
+			"type %d", NT_CUT(40, name), (unsigned long long)index, accessor.components,
 			accessor.component_type, from->components, from->component_type);
 	use_decoded(&document->accessors[index], from->data, mesh->point_count, (uint32_t)from->component_type);
 	return NT_OK;
@@ -238,7 +238,7 @@ static nt_status give_attributes(nt_gltf *document, const nt_json_value *primiti
 		const nt_draco_attribute *found = nt_draco_find(mesh, (uint32_t)id);
 		if (!found)
 			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-				"%.40s has the id %llu, which the compressed data does not", name,
+				"%.*s has the id %llu, which the compressed data does not", NT_CUT(40, name),
 				(unsigned long long)id);
 		status = give_attribute(document, index, name, mesh, found, pointer, error);
 	}
@@ -252,8 +252,8 @@ nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive
 	if (!extension)
 		return NT_OK;
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "%.80s/extensions/KHR_draco_mesh_compression",
-		primitive_pointer);
+	snprintf(pointer, sizeof pointer, "%.*s/extensions/KHR_draco_mesh_compression",
+		NT_CUT(80, primitive_pointer));
 	uint64_t view, index;
 	const uint64_t mode = nt_gltf_mode(primitive);
 	nt_status status = nt_gltf_uint(extension, pointer, "bufferView", UINT32_MAX - 1,

@@ -37,7 +37,7 @@ static nt_status read_number(const nt_json_value *value, const char *pointer, co
 	if (!value || nt_json_get_double(value, number))
 		return NT_OK;
 	char place[NT_GLTF_POINTER * 2];
-	snprintf(place, sizeof place, "%.250s/%s", pointer, key);
+	snprintf(place, sizeof place, "%.*s/%s", NT_CUT(250, pointer), key);
 	return nt_fail_pointer(error, NT_ERROR_INPUT, place, "%s, expected a number",
 		nt_json_type_text(value));
 }
@@ -293,8 +293,8 @@ static nt_status note_variants(nt_gltf *document, nt_gltf_material *all, const n
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < nt_json_count(mappings); i++) {
 		char place[NT_GLTF_POINTER];
-		snprintf(place, sizeof place, "%.90s/extensions/KHR_materials_variants/mappings/%zu",
-			pointer, i);
+		snprintf(place, sizeof place, "%.*s/extensions/KHR_materials_variants/mappings/%zu",
+			NT_CUT(90, pointer), i);
 		uint64_t index;
 		status = nt_gltf_uint(nt_json_at(mappings, i), place, "material", UINT32_MAX - 1, NT_GLTF_REQUIRED,
 			&index, error);

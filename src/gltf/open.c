@@ -238,7 +238,7 @@ static nt_status look_for_file(nt_gltf *document, size_t index, struct stat *inf
 	if (!status && document->allow_outside)
 		status = nt_lookup(path, info, failure);
 	if (!status && (access(path, R_OK) != 0 || stat(path, info) != 0))
-		status = nt_fail(failure, NT_ERROR_IO, "cannot open \"%.120s\": %s", uri, strerror(errno));
+		status = nt_fail(failure, NT_ERROR_IO, "cannot open \"%.*s\": %s", NT_CUT(120, uri), strerror(errno));
 	*missing = status == NT_ERROR_MISSING || status == NT_ERROR_IO;
 	if (status)
 		info->st_nlink = 0;
@@ -353,12 +353,13 @@ static nt_status look_for_buffers(nt_scene *scene, nt_gltf *document, nt_error *
 			continue;
 		nt_place_clear(&place);
 		snprintf(place.pointer, sizeof place.pointer, "/buffers/%zu", i);
-		nt_finding_add(&scene->findings, NT_CODE_BUFFER_MISSING, &place, 1, "%.240s", failure.message);
+		nt_finding_add(&scene->findings, NT_CODE_BUFFER_MISSING, &place, 1, "%.*s",
+			NT_CUT(240, failure.message));
 		const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "buffers"), i);
 		first = count ? first : place;
 		if (count++ < NAMED)
-			nt_buffer_format(&names, "%s\"%.80s\"", count > 1 ? ", " : "",
-				nt_json_find_string(json, "uri", NULL));
+			nt_buffer_format(&names, "%s\"%.*s\"", count > 1 ? ", " : "",
+				NT_CUT(80, nt_json_find_string(json, "uri", NULL)));
 	}
 	if (status || names.failed)
 		status = nt_fail_memory(error);

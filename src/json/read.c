@@ -111,7 +111,7 @@ static nt_status fail_escape(const reader *r, const char *at)
 {
 	if (at[1] == 'u' && read_hex(at + 2) >= 0)
 		return nt_fail_offset(r->error, NT_ERROR_INPUT, (uint64_t)(at - r->document->text),
-			"JSON: the surrogate \\u%.4s is not one of a pair, expected UTF-16", at + 2);
+			"JSON: the surrogate \\u%.*s is not one of a pair, expected UTF-16", 4, at + 2);
 	return fail(r, at + 1, at[1] == 'u' ? "four hexadecimal digits" : "an escape that JSON has");
 }
 
@@ -381,7 +381,7 @@ static nt_status fail_repeated(const reader *r, const nt_json_value *value, cons
 	while (at[-1] != '\0')
 		at--;
 	return nt_fail_offset(r->error, NT_ERROR_INPUT, (uint64_t)(at - r->document->text),
-		"JSON: the key \"%.200s\" occurs twice in one object", key->text);
+		"JSON: the key \"%.*s\" occurs twice in one object", NT_CUT(200, key->text));
 }
 
 /* The shape of the object that ends here; NULL: out of memory. */

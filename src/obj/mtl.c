@@ -88,17 +88,17 @@ static void find(const reader *r, nt_code code, size_t line, const char *format,
 	va_list arguments;
 	va_start(arguments, format);
 	if (named)
-		vsnprintf(detail, sizeof detail, format, arguments);
+		nt_utf8_format(detail, sizeof detail, format, arguments);
 	va_end(arguments);
 	if (named && r->m && code != NT_CODE_STATEMENT_IGNORED)
-		snprintf(place.object, sizeof place.object, "material \"%.200s\"", r->m->name);
+		snprintf(place.object, sizeof place.object, "material \"%.*s\"", NT_CUT(200, r->m->name));
 	nt_finding_add(&r->scene->findings, code, &place, 1, "MTL: %s", detail);
 }
 
 /* The statement is not used; what: of it. */
 static void lose(const reader *r, nt_code code, const char *what)
 {
-	find(r, code, r->line, "%s%.*s", what, (int)(r->word_length < 64 ? r->word_length : 64), r->word);
+	find(r, code, r->line, "%s%.*s", what, NT_CUT_OF(64, r->word_length, r->word));
 }
 
 /* ---- numbers ---- */
@@ -121,12 +121,11 @@ static word next_word(const char *p, const char *end)
 /* Fails with "found WORD, expected EXPECTED" at a line of the MTL. */
 static nt_status fail_expected(const reader *r, const char *found, const char *expected)
 {
-	size_t length = 0;
-	while (found + length < r->end && !is_blank(found[length]) && length < 64)
-		length++;
+	const word w = next_word(found, r->end);
+	const size_t length = (size_t)(w.end - w.begin);
 	if (length)
-		nt_fail_line(r->error, NT_ERROR_INPUT, r->line, "found \"%.*s\", expected %s", (int)length, found,
-			expected);
+		nt_fail_line(r->error, NT_ERROR_INPUT, r->line, "found \"%.*s\", expected %s",
+			NT_CUT_OF(64, length, w.begin), expected);
 	else
 		nt_fail_line(r->error, NT_ERROR_INPUT, r->line, "found the end of the line, expected %s", expected);
 	return nt_error_in_file(r->error, r->path);
@@ -167,8 +166,8 @@ static nt_status read_value(reader *r, mtl_value which)
 	const size_t length = (size_t)(behind.end - behind.begin);
 	if (length && *behind.begin != '#')
 		find(r, NT_CODE_STATEMENT_IGNORED, r->line, "\"%.*s\" behind the numbers of %.*s",
-			(int)(length < 64 ? length : 64), behind.begin,
-			(int)(r->word_length < 64 ? r->word_length : 64), r->word);
+			NT_CUT_OF(64, length, behind.begin),
+			NT_CUT_OF(64, r->word_length, r->word));
 	for (int k = 0; k < most; k++)
 		r->said.values[which].value[k] = most == 1 ? numbers[0] : fmaxf(numbers[count == 3 ? k : 0], 0);
 	r->said.values[which].line = r->line;
@@ -258,8 +257,8 @@ static const char *take_arguments(const reader *r, size_t option, const char *p,
 		const size_t length = (size_t)(argument.end - argument.begin);
 		if (expected && length)
 			find(r, NT_CODE_MATERIAL_LOST, r->line, "%s of %.*s: found \"%.*s\", expected %s",
-				options[option].name, (int)(r->word_length < 64 ? r->word_length : 64), r->word,
-				(int)(length < 64 ? length : 64), argument.begin, expected);
+				options[option].name, NT_CUT_OF(64, r->word_length, r->word),
+				NT_CUT_OF(64, length, argument.begin), expected);
 		p = argument.end;
 	}
 	return p;
@@ -341,8 +340,8 @@ static nt_status read_map(reader *r, mtl_map which)
 	/* Substance Painter writes heights as bump and normals as map_Bump */
 	const stated_map *earlier = &r->said.maps[which];
 	if (earlier->map.name && strcmp(earlier->map.name, read.map.name) != 0)
-		find(r, NT_CODE_MATERIAL_LOST, earlier->map.line, "%.64s, replaced by a later %.64s", earlier->word,
-			read.word);
+		find(r, NT_CODE_MATERIAL_LOST, earlier->map.line, "%.*s, replaced by a later %.*s",
+			NT_CUT(64, earlier->word), NT_CUT(64, read.word));
 	r->said.maps[which] = read;
 	return NT_OK;
 }
@@ -564,7 +563,8 @@ static void settle_normals(const reader *r)
 	if (map == bump)
 		m->bump = bump->word;
 	else if (bump->map.name && strcmp(bump->map.name, norm->map.name) != 0)
-		find(r, NT_CODE_MATERIAL_LOST, bump->map.line, "%.64s, replaced by %.64s", bump->word, norm->word);
+		find(r, NT_CODE_MATERIAL_LOST, bump->map.line, "%.*s, replaced by %.*s",
+			NT_CUT(64, bump->word), NT_CUT(64, norm->word));
 	m->bump_is_normal = r->any_blender;
 }
 

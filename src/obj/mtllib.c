@@ -122,7 +122,8 @@ static nt_status read_library(const request *q, const char *text, size_t length,
 		nt_file_close(&file);
 	if (reason && !(quiet && !*found)) {
 		const nt_place place = nt_line_place(q->scene->path, q->line);
-		nt_finding_add(&q->scene->findings, NT_CODE_MTL_MISSING, &place, 1, "%.120s: %.120s", name, reason);
+		nt_finding_add(&q->scene->findings, NT_CODE_MTL_MISSING, &place, 1, "%.*s: %.*s",
+			NT_CUT(120, name), NT_CUT(120, reason));
 		q->mtl->incomplete = true;
 	}
 	return status;

@@ -142,7 +142,7 @@ static void define(nt_scene *scene, uint32_t number, const nt_mtl_definition *d)
 	const nt_place place = nt_line_place(d->material.library, d->material.line);
 	if (material->library) {
 		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1,
-			"MTL: newmtl of a name that was defined before: %.120s", d->material.name);
+			"MTL: newmtl of a name that was defined before: %.*s", NT_CUT(120, d->material.name));
 		return;
 	}
 	*material = d->material;
@@ -160,8 +160,8 @@ static nt_status take_first(obj_file *file, const nt_mtl *mtl, nt_error *error)
 	for (size_t i = 0; i < file->span_count; i++)
 		file->spans[i].material = 0;
 	const nt_place place = nt_line_place(scene->materials->library, scene->materials->line);
-	nt_finding_add(&scene->findings, NT_CODE_MATERIAL_FIRST, &place, 1, "%.120s, the first of %zu",
-		scene->materials->name, mtl->count);
+	nt_finding_add(&scene->findings, NT_CODE_MATERIAL_FIRST, &place, 1, "%.*s, the first of %zu",
+		NT_CUT(120, scene->materials->name), mtl->count);
 	return NT_OK;
 }
 
@@ -194,9 +194,10 @@ static nt_status make_materials(state *s, const nt_mtl *mtl)
 			continue;
 		const nt_material *material = &scene->materials[next++];
 		const nt_place place = nt_line_place(scene->path, span->material_line);
-		if (!material->library)
-			nt_finding_add(&scene->findings, NT_CODE_MATERIAL_UNKNOWN, &place, 1, "%.200s",
-				unknown++ < NAMED_UNKNOWN_MOST ? material->name : "and others");
+		if (material->library)
+			continue;
+		const char *name = unknown++ < NAMED_UNKNOWN_MOST ? material->name : "and others";
+		nt_finding_add(&scene->findings, NT_CODE_MATERIAL_UNKNOWN, &place, 1, "%.*s", NT_CUT(200, name));
 	}
 	return NT_OK;
 }
@@ -250,7 +251,7 @@ static void report_ignored(const obj_file *file)
 		else if (which == OBJ_UNKNOWN)
 			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, all.count,
 				"OBJ: %s, the first is %.*s", keyword->word,
-				(int)(first->unknown_length < 64 ? first->unknown_length : 64), first->unknown);
+				NT_CUT_OF(64, first->unknown_length, first->unknown));
 		else
 			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, all.count, "OBJ: %s",
 				keyword->word);

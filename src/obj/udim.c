@@ -185,7 +185,8 @@ static void report_outside(const tiler *t, size_t i)
 		return;
 	const nt_place place = nt_line_place(t->scene->materials[i].library, map->line);
 	nt_finding_add(&t->scene->findings, NT_CODE_MATERIAL_DOUBTFUL, &place, 1,
-		"MTL: %.120s has no tile for %zu %s tile %d: u is not in 0 to %d, or v is below 0", map->name, count,
+		"MTL: %.*s has no tile for %zu %s tile %d: u is not in 0 to %d, or v is below 0",
+		NT_CUT(120, map->name), count,
 		count == 1 ? "face, which shows" : "faces, which show", FIRST_TILE, TILES_ALONG_U);
 }
 
@@ -196,10 +197,10 @@ static void report_numbered(const tiler *t, size_t i)
 		return;
 	const nt_place place = nt_line_place(t->scene->materials[i].library, from->numbered->line);
 	nt_finding_add(&t->scene->findings, NT_CODE_MATERIAL_DOUBTFUL, &place, 1,
-		"MTL: %.120s is the image of one tile, and faces in the tiles %d to %d show it; for an image each, "
-		"write <UDIM> in place of %.4s",
-		from->numbered->name, (int)(FIRST_TILE + from->first), (int)(FIRST_TILE + from->last),
-		find_number(from->numbered->name));
+		"MTL: %.*s is the image of one tile, and faces in the tiles %d to %d show it; for an image each, "
+		"write <UDIM> in place of %.*s",
+		NT_CUT(120, from->numbered->name), (int)(FIRST_TILE + from->first), (int)(FIRST_TILE + from->last),
+		NT_CUT(4, find_number(from->numbered->name)));
 }
 
 nt_status obj_split_tiles(nt_scene *scene, nt_error *error)

@@ -114,9 +114,10 @@ static void tell(const examination *e, const examined *x)
 			large ? " of more than 16 MB" : "");
 	}
 	if (x->error.status == NT_ERROR_MODULE)
-		nt_finding_add(findings, NT_CODE_NMAP_NOT_EXAMINED, place, 1, "%.200s", x->error.message);
+		nt_finding_add(findings, NT_CODE_NMAP_NOT_EXAMINED, place, 1, "%.*s", NT_CUT(200, x->error.message));
 	else if (x->error.status)
-		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, place, 1, "normal map (%.200s)", x->error.message);
+		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, place, 1, "normal map (%.*s)",
+			NT_CUT(200, x->error.message));
 	if (!x->decoded)
 		return;
 	tell_facts(findings, place, x->use, &x->facts);

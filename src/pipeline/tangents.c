@@ -374,8 +374,8 @@ static void add_halfway(nt_finding_list *list, const nt_mesh *mesh, const nt_mor
 	if (morph->halfway_triangles)
 		nt_finding_add(list, NT_CODE_TAN_MORPH_HALFWAY, nt_mesh_place(mesh, &(nt_place){0}),
 			morph->halfway_triangles,
-			morph->name[0] ? "target %u \"%.80s\", %.1f degrees" : "target %u%s, %.1f degrees",
-			morph->target, morph->name, morph->halfway_degrees);
+			morph->name[0] ? "target %u \"%.*s\", %.1f degrees" : "target %u%.*s, %.1f degrees",
+			morph->target, NT_CUT(80, morph->name), morph->halfway_degrees);
 }
 
 /* Triangles for whose corners the file has no texture coordinates; it has some for others. */

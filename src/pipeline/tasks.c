@@ -61,8 +61,8 @@ static nt_status load_for_report(window *w, nt_mesh *mesh)
 	const nt_status status = w->tasks->reader->load(&w->scene, mesh, w->tasks->options, w->error);
 	if (!status || !w->tasks->writer || !nt_may_be_left(status))
 		return status;
-	nt_finding_add(&w->scene.findings, NT_CODE_MESH_NOT_READ, nt_mesh_place(mesh, &(nt_place){0}), 1, "%.200s",
-		w->error->message);
+	nt_finding_add(&w->scene.findings, NT_CODE_MESH_NOT_READ, nt_mesh_place(mesh, &(nt_place){0}), 1, "%.*s",
+		NT_CUT(200, w->error->message));
 	mesh->positions = NULL;
 	nt_error_clear(w->error);
 	return NT_OK;

@@ -162,8 +162,8 @@ static void tell_elsewhere(const telling *t, const nt_place *place, const char *
 		nt_link_uri(&uri, folder.data, path);
 	if (uri.size && !uri.failed)
 		nt_uri_append_decoded(&relative, uri.data, uri.size);
-	nt_finding_add(&t->scene->findings, NT_CODE_IMAGE_ELSEWHERE, place, 1, "%.100s is %.140s", name,
-		relative.data && !relative.failed ? relative.data : path);
+	nt_finding_add(&t->scene->findings, NT_CODE_IMAGE_ELSEWHERE, place, 1, "%.*s is %.*s", NT_CUT(100, name),
+		NT_CUT(140, relative.data && !relative.failed ? relative.data : path));
 	nt_buffer_free(&folder);
 	nt_buffer_free(&relative);
 	nt_buffer_free(&uri);
@@ -183,8 +183,8 @@ static void tell_missing(const telling *t, const nt_place *place, const char *na
 	const char *own = nt_last_part(input), *last = nt_last_part(library);
 	const bool apart = own - input != last - library || strncmp(input, library, (size_t)(own - input)) != 0;
 	nt_finding_add(&t->scene->findings, NT_CODE_IMAGE_MISSING, place, 1,
-		"%.*s (looked for beside %.*s%s%.*s%s)", (int)nt_utf8_cut(name, 100), name, (int)nt_utf8_cut(last, 40),
-		last, apart ? " and " : "", apart ? (int)nt_utf8_cut(own, 40) : 0, own,
+		"%.*s (looked for beside %.*s%s%.*s%s)", NT_CUT(100, name), NT_CUT(40, last),
+		apart ? " and " : "", apart ? (int)nt_utf8_cut(own, 40) : 0, own,
 		t->settings->texture_path_count ? ", and in --texture-path" : "");
 }
 
@@ -199,17 +199,19 @@ static void tell_source(telling *t, const nt_map *map, int channel, const nt_tex
 	t->images++;
 	t->lost += source->found > NT_IMAGE_FOUND_ELSEWHERE || failed || lost;
 	if (source->found > NT_IMAGE_FOUND_ELSEWHERE && !names_file(map->name))
-		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1, "%.120s (no file is named)", map->name);
+		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1,
+			"%.*s (no file is named)", NT_CUT(120, map->name));
 	else if (source->found == NT_IMAGE_OUTSIDE)
 		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1,
-			"%.110s (it is outside of the folders where it may be; --outside=yes allows it)", map->name);
+			"%.*s (it is outside of the folders where it may be; --outside=yes allows it)",
+			NT_CUT(110, map->name));
 	else if (source->found == NT_IMAGE_MISSING)
 		tell_missing(t, &place, map->name);
 	else if (failed)
-		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, &place, 1, "%.100s (%.120s)", map->name,
-			image->failure);
+		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, &place, 1, "%.*s (%.*s)", NT_CUT(100, map->name),
+			NT_CUT(120, image->failure));
 	else if (lost)
-		nt_finding_add(findings, NT_CODE_IMAGE_TYPE, &place, 1, "%.120s", map->name);
+		nt_finding_add(findings, NT_CODE_IMAGE_TYPE, &place, 1, "%.*s", NT_CUT(120, map->name));
 	if (source->found == NT_IMAGE_FOUND_ELSEWHERE)
 		tell_elsewhere(t, &place, map->name, source->path);
 }
@@ -230,13 +232,13 @@ static void tell_made(const telling *t, const nt_map_request *w, const nt_map *m
 	char names[4 * 50] = "";
 	for (int k = 0; k < 4; k++)
 		if (w->maps[k] && w->maps[k]->request != NT_NONE && !is_repeated(w, k))
-			snprintf(names + strlen(names), sizeof names - strlen(names), "%s%.46s", *names ? ", " : "",
-				w->maps[k]->name);
+			snprintf(names + strlen(names), sizeof names - strlen(names), "%s%.*s", *names ? ", " : "",
+				NT_CUT(46, w->maps[k]->name));
 	if (image->packed)
-		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "channels of %s put together as %.50s",
-			names, image->name);
+		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "channels of %s put together as %.*s",
+			names, NT_CUT(50, image->name));
 	else
-		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.100s: %s to %s%s", map->name,
+		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.*s: %s to %s%s", NT_CUT(100, map->name),
 			image->from_heights ? "height map" : nt_image_type_name(image->sources[0]->type),
 			image->from_heights ? "normal map" : "PNG", image->flipped ? ", green turned up" : "");
 }
@@ -269,7 +271,8 @@ static void tell_normals(const telling *t, const nt_texture *image)
 	const bool normals = !image || (image->type != NT_IMAGE_OTHER && !image->from_heights);
 	const bool exists = image && image->sources[0]->found <= NT_IMAGE_FOUND_ELSEWHERE;
 	if (m->bump && !m->bump_is_normal && t->settings->bump == NT_BUMP_AUTO && normals && exists)
-		nt_finding_add(findings, NT_CODE_BUMP_AS_NORMAL, &place, 1, "%s %.200s", m->bump, m->normal_map.name);
+		nt_finding_add(findings, NT_CODE_BUMP_AS_NORMAL, &place, 1, "%s %.*s", m->bump,
+			NT_CUT(200, m->normal_map.name));
 	if (image && normals && !nt_map_is_plain(&m->normal_map))
 		nt_finding_add(findings, NT_CODE_MATERIAL_LOST, &place, 1, "MTL: -mm of a normal map");
 	if (image && image->from_heights)
@@ -284,14 +287,16 @@ static void tell_misplaced(const telling *t)
 		const nt_place place = nt_material_place(t->scene, t->material, map->line);
 		if (map->name && map->request == NT_NONE && map != &t->material->normal_map)
 			nt_finding_add(&t->scene->findings, NT_CODE_MATERIAL_LOST, &place, 1,
-				"%.120s lies elsewhere than the map beside which it would be in one image", map->name);
+				"%.*s lies elsewhere than the map beside which it would be in one image",
+				NT_CUT(120, map->name));
 	}
 }
 
 static void count_bare(const telling *t, const nt_material *m)
 {
 	if (!t->summary->bare_materials++)
-		snprintf(t->summary->bare_material, sizeof t->summary->bare_material, "%s", m->name);
+		snprintf(t->summary->bare_material, sizeof t->summary->bare_material, "%.*s",
+			NT_CUT(sizeof t->summary->bare_material - 1, m->name));
 }
 
 static nt_status tell_material(nt_scene *scene, nt_material *m, void *context, nt_error *error)
@@ -328,7 +333,7 @@ static nt_status tell_unmapped(nt_scene *scene, nt_material *m, void *context, n
 		return NT_OK;
 	const nt_place place = nt_material_place(scene, m, first->line);
 	nt_finding_add(&scene->findings, NT_CODE_MATERIAL_LOST, &place, count,
-		"%.120s%s: the faces have no texture coordinates, by which images lie on them", first->name,
+		"%.*s%s: the faces have no texture coordinates, by which images lie on them", NT_CUT(120, first->name),
 		count > 1 ? " and the others" : "");
 	count_bare(context, m);
 	return NT_OK;

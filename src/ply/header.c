@@ -85,7 +85,7 @@ static ply_word next_word(parser *p)
 /* Length and text for "%.*s", shortened to what a message can take. */
 static int shown(ply_word w)
 {
-	return w.length < 40 ? (int)w.length : 40;
+	return (int)nt_utf8_cut_of(w.text, w.length, 40);
 }
 
 static nt_status fail_word(parser *p, ply_word found, const char *expected)

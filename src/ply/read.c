@@ -154,10 +154,11 @@ static void list_left_out(nt_scene *scene, const ply_source *source)
 		const bool read = element == source->vertex || element == source->face || element == source->strips;
 		for (size_t i = 0; read && i < element->property_count; i++)
 			if (!is_used(source, element, (int)i))
-				nt_scene_leave_out(scene, element->properties[i].line, 1, "%.90s %.90s", element->name,
-					element->properties[i].name);
+				nt_scene_leave_out(scene, element->properties[i].line, 1,
+					"%.*s %.*s", NT_CUT(90, element->name),
+					NT_CUT(90, element->properties[i].name));
 		if (!read && element->count)
-			nt_scene_leave_out(scene, element->line, 1, "element %.90s (%zu)", element->name,
+			nt_scene_leave_out(scene, element->line, 1, "element %.*s (%zu)", NT_CUT(90, element->name),
 				element->count);
 	}
 }

@@ -88,7 +88,7 @@ static void tell_lost(nt_scene *scene, const char *image, const char *obstacle)
 	if (textures)
 		nt_buffer_format(&text, "%stextures (%zu)", text.size ? ", " : "", textures);
 	if (image)
-		nt_buffer_format(&text, "; TextureFile is %.100s", image);
+		nt_buffer_format(&text, "; TextureFile is %.*s", NT_CUT(100, image));
 	else if (obstacle)
 		nt_buffer_format(&text, "; no TextureFile: %s", obstacle);
 	if (count)
@@ -136,5 +136,5 @@ void ply_tell_left(nt_scene *scene, const nt_write_options *options)
 	}
 	if (count)
 		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, NULL, count,
-			"TextureFile is %.100s, which lies beside the input alone", first);
+			"TextureFile is %.*s, which lies beside the input alone", NT_CUT(100, first));
 }

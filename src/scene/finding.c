@@ -68,7 +68,7 @@ void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, 
 	if (detail_format) {
 		va_list arguments;
 		va_start(arguments, detail_format);
-		vsnprintf(detail, sizeof detail, detail_format, arguments);
+		nt_utf8_format(detail, sizeof detail, detail_format, arguments);
 		va_end(arguments);
 	}
 	nt_finding_put(list, (nt_finding){.code = code, .count = count, .detail = detail}, place);

@@ -43,11 +43,12 @@ void nt_scene_leave_out(nt_scene *scene, size_t line, size_t count, const char *
 /* `mesh "head", primitive 2, material "skin"`. */
 static void name_primitive(const nt_mesh *mesh, char *words, size_t room)
 {
-	int used = mesh->name[0] ? snprintf(words, room, "mesh \"%.80s\"", mesh->name) :
+	int used = mesh->name[0] ? snprintf(words, room, "mesh \"%.*s\"", NT_CUT(80, mesh->name)) :
 				   snprintf(words, room, "mesh %u", mesh->gltf_mesh);
 	used += snprintf(words + used, room - (size_t)used, ", primitive %u", mesh->gltf_primitive);
 	if (mesh->gltf_material_name)
-		snprintf(words + used, room - (size_t)used, ", material \"%.80s\"", mesh->gltf_material_name);
+		snprintf(words + used, room - (size_t)used, ", material \"%.*s\"",
+			NT_CUT(80, mesh->gltf_material_name));
 	else if (mesh->gltf_material != NT_NONE)
 		snprintf(words + used, room - (size_t)used, ", material %u", mesh->gltf_material);
 }
@@ -63,7 +64,7 @@ const nt_place *nt_mesh_place(const nt_mesh *mesh, nt_place *place)
 			mesh->gltf_primitive);
 		name_primitive(mesh, place->object, sizeof place->object);
 	} else if (mesh->name[0]) {
-		snprintf(place->object, sizeof place->object, "object \"%.200s\"", mesh->name);
+		snprintf(place->object, sizeof place->object, "object \"%.*s\"", NT_CUT(200, mesh->name));
 	} else if (!mesh->file) {
 		strcpy(place->object, "mesh");
 	}
@@ -155,7 +156,8 @@ nt_place nt_material_place(const nt_scene *scene, const nt_material *material, s
 	snprintf(place.file, sizeof place.file, "%s", material->library ? material->library : scene->path);
 	place.line = line ? line : material->line;
 	if (material->name[0])
-		snprintf(place.object, sizeof place.object, "material \"%s\"", material->name);
+		snprintf(place.object, sizeof place.object, "material \"%.*s\"",
+			NT_CUT(200, material->name));
 	return place;
 }
 

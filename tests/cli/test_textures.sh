@@ -408,6 +408,23 @@ printf 'newmtl m\nnorm a%s.png\n' "$letters$letters" >m.mtl
 run quad.obj out.glb
 exits 0
 says "image cannot be read: a$letters (looked for beside m.mtl)"
+# names of an object, a material and a library, each with a byte more in front
+for before in "" a; do
+	name=$before$letters$letters$letters$letters
+	printf 'mtllib %s.mtl gone\no %s\nusemtl %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n' "$name" "$name" "$name" >long.obj
+	printf 'newmtl %s\nKd x\nnorm ../../%s\n' "$name" "$name" >m.mtl
+	sed 's/^mtllib.*/mtllib m.mtl/' long.obj >material.obj
+	printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float %s\nend_header\n' "$name" >p.ply
+	printf '0 0 0 0\n1 0 0 0\n0 1 0 0\n' >>p.ply
+	printf '{"asset": {"version": "2.0"}, "buffers": [{"uri": "%s", "byteLength": 4}]}' "$name" >long.gltf
+	for file in long.obj material.obj p.ply long.gltf; do
+		run -v --check --fail-on=never --report=r.json "$file"
+		run -v "$file" out.glb
+		says "é"
+		says_not '\x'
+		! grep -q $'\xef\xbf\xbd' r.json || wrong "$file: a character is cut"
+	done
+done
 
 scene "a link inside the folder does not tell whether there is something outside that it leads to"
 mkdir -p d/in there

@@ -32,6 +32,10 @@ while IFS= read -r place; do
 done < <(git ls-files -z '*.c' '*.h' '*.cpp' '*.sh' '*.py' '*.mk' Makefile 2>/dev/null | xargs -0r awk '
 	/[ \t]$/ || (FILENAME ~ /\.c(pp)?$/ && /^    /) { print FILENAME ":" FNR }')
 
+while IFS= read -r place; do
+	fault "$place: cuts a text inside of a character: %.*s and NT_CUT()"
+done < <(grep -rnoE --include='*.[ch]' --include='*.[ch]pp' '%[0-9]*\.[0-9]+s' src)
+
 calls='(^|[^a-zA-Z0-9_.>])(abort|exit|_exit|_Exit|quick_exit|printf|puts|putchar|perror|vprintf)[[:space:]]*\(|fprintf[[:space:]]*\([[:space:]]*std|std::(cout|cerr)'
 while IFS= read -r file; do
 	# Comments may speak of printf; code may not call it.

@@ -120,6 +120,14 @@ lint 0
 holds cli/a.c '\tprintf("x");'
 lint 0
 
+scene "a format that cuts a text inside of a character is found"
+table base:-
+holds base/a.c '\tx("%.40s", name);'
+lint 1
+prints "src/base/a.c:2:%.40s: cuts a text"
+holds base/a.c '\tx("%.*s %.4g", NT_CUT(40, name), number);'
+lint 0
+
 scene "C++ outside ext is found"
 table base:- ext:-
 holds ext/a.cpp ''

@@ -21,7 +21,7 @@ static nt_status check(const nt_meshopt_view *v, uint64_t size, const char *poin
 	const unsigned long long count = v->count, stride = v->stride;
 	if (!attributes && !triangles && strcmp(v->mode, "INDICES") != 0)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-			"mode \"%.30s\", expected ATTRIBUTES, TRIANGLES or INDICES", v->mode);
+			"mode \"%.*s\", expected ATTRIBUTES, TRIANGLES or INDICES", NT_CUT(30, v->mode));
 	if (attributes ? stride == 0 || stride % 4 || stride > 256 : stride != 2 && stride != 4)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "byteStride %llu in mode %s", stride,
 			v->mode);
@@ -52,7 +52,7 @@ static nt_status filter(const nt_meshopt_view *v, unsigned char *bytes, const ch
 		nt_meshopt_decode_colors(bytes, count, stride);
 	} else {
 		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
-			"filter \"%.30s\" with byteStride %zu, which nmtan does not decode", v->filter,
+			"filter \"%.*s\" with byteStride %zu, which nmtan does not decode", NT_CUT(30, v->filter),
 			stride);
 	}
 	return NT_OK;

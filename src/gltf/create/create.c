@@ -269,7 +269,7 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 	const nt_place place = nt_line_place(scene->path, scene->left_out_line);
 	if (scene->left_out.size)
 		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, &place, scene->left_out_count, "%.*s",
-			(int)nt_utf8_cut(scene->left_out.data, 200), scene->left_out.data);
+			NT_CUT(200, scene->left_out.data));
 	scene->findings.failed |= scene->left_out.failed;
 	/* The primitives made of each mesh. */
 	if (status == NT_OK)

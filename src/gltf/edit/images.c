@@ -71,7 +71,8 @@ static nt_status open_file(nt_gltf *document, const char *uri, size_t length, nt
 	status = nt_file_open_content(file, *path, true, failure);
 	if (status) {
 		const nt_error opening = *failure;
-		snprintf(failure->message, sizeof failure->message, "\"%.120s\": %.300s", uri, opening.message);
+		snprintf(failure->message, sizeof failure->message, "\"%.*s\": %.*s",
+			NT_CUT(120, uri), NT_CUT(300, opening.message));
 	}
 	return status;
 }

@@ -98,7 +98,7 @@ static size_t enter(search *s, const nt_json_value *parent, size_t index)
 	size_t length;
 	const char *key = nt_json_key(parent, index, &length);
 	if (key)
-		nt_buffer_format(&s->pointer, "/%.*s", (int)(length < 100 ? length : 100), key);
+		nt_buffer_format(&s->pointer, "/%.*s", NT_CUT_OF(100, length, key));
 	else
 		nt_buffer_format(&s->pointer, "/%zu", index);
 	return before;
@@ -149,7 +149,7 @@ static void tell(search *s, const nt_json_value *extensions, const char *owner, 
 		nt_place place;
 		nt_mesh_place(s->mesh, &place);
 		snprintf(place.pointer, sizeof place.pointer, "%.*s", (int)s->pointer.size, s->pointer.data);
-		nt_finding_add(&s->scene->findings, NT_CODE_EXTENSION_STALE, &place, 1, "%.100s", name);
+		nt_finding_add(&s->scene->findings, NT_CODE_EXTENSION_STALE, &place, 1, "%.*s", NT_CUT(100, name));
 	}
 }
 

@@ -77,6 +77,30 @@ TEST(texts_are_cut_between_sequences)
 	assert_int_equal(nt_utf8_cut("\xff\xff\xff", 2), 2); /* no UTF-8: anywhere */
 }
 
+static void formatted(size_t room, const char *text, const char *expected, ...)
+{
+	char to[16];
+	va_list arguments;
+	va_start(arguments, expected);
+	nt_utf8_format(to, room, text, arguments);
+	va_end(arguments);
+	assert_string_equal(to, expected);
+}
+
+TEST(formatted_texts_without_room_end_with_a_sequence)
+{
+	formatted(16, "%s", "a\xc3\xa9", "a\xc3\xa9");
+	formatted(4, "%s", "a\xc3\xa9", "a\xc3\xa9");
+	formatted(3, "%s", "a", "a\xc3\xa9");
+	for (size_t room = 2; room < 6; room++)
+		formatted(room, "%s", "a", "a\xf0\x90\x80\x80" "b");
+	formatted(6, "%s", "a\xf0\x90\x80\x80", "a\xf0\x90\x80\x80" "b");
+	formatted(3, "%s", "\xff\xff", "\xff\xff\xff");
+	formatted(3, "%s", "ab", "abc");
+	formatted(1, "%s", "", "abc");
+	formatted(16, "a%.*sb", "aab", NT_CUT(2, "a\xc3\xa9"));
+}
+
 TEST(a_cut_sequence_is_none)
 {
 	char *bytes = malloc(3); /* of its exact size, for the sanitizers */
