@@ -39,20 +39,13 @@ static inline NT_ALWAYS_INLINE bool add_rows(
 #endif
 }
 
-/* The rule by which the published weld chooses an axis. */
-static unsigned longest_axis(const nt_box *b)
-{
-	const float x = b->high[0] - b->low[0], y = b->high[1] - b->low[1], z = b->high[2] - b->low[2];
-	return y > x && y > z ? 1 : z > x ? 2 : 0;
-}
-
 /* Makes the grid of a box. */
 static bool set_grid(const nt_box *b, nt_grid *grid)
 {
 	for (int i = 0; i < 3; i++)
 		if (!(b->low[i] > -FLT_MAX / 2 && b->high[i] < FLT_MAX / 2))
 			return false;
-	grid->axis = longest_axis(b);
+	grid->axis = nt_longest_axis(b);
 	grid->low = b->low[grid->axis];
 	grid->high = b->high[grid->axis];
 	grid->inverse = 1 / (double)(grid->high - grid->low);
@@ -133,7 +126,7 @@ static inline bool find_middle(const nt_cell *cell, const part *p, unsigned *axi
 	enum { STEP = sizeof *cell->vertices / sizeof *cell->vertices->position };
 	nt_box b = nothing;
 	(void)add_rows(cell->vertices->position, STEP, p->order, p->vertex_count, &b);
-	*axis = longest_axis(&b);
+	*axis = nt_longest_axis(&b);
 	*middle = 0.5f * (b.high[*axis] + b.low[*axis]);
 	return *middle < b.high[*axis] && *middle > b.low[*axis];
 }

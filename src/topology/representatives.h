@@ -24,6 +24,13 @@ typedef struct nt_box {
 	float low[4], high[4];
 } nt_box;
 
+/* The rule by which the published weld chooses an axis. */
+static inline unsigned nt_longest_axis(const nt_box *b)
+{
+	const float x = b->high[0] - b->low[0], y = b->high[1] - b->low[1], z = b->high[2] - b->low[2];
+	return y > x && y > z ? 1 : z > x ? 2 : 0;
+}
+
 /* Triangles of welded vertices, those with two corners at one position too. */
 typedef struct nt_welded_mesh {
 	const nt_triangles *triangles;
