@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/dvec.h"
+#include "base/hash_index.h"
 #include "base/parallel.h"
 #include "report/surface/union_find.h"
 
@@ -63,55 +64,26 @@ static void add_edge(edge_lists *lists, int kind, const nt_edge_set *set, nt_edg
 
 /* ---- one edge ---- */
 
-/* Texture coordinates of a side's ends, the lower point first, for sorting. */
-typedef struct side_key {
-	float uv[4];
-	uint32_t side;
-} side_key;
-
-static int by_key(const void *a, const void *b)
-{
-	const side_key *x = a, *y = b;
-	for (int i = 0; i < 4; i++) {
-		if (x->uv[i] < y->uv[i] || x->uv[i] > y->uv[i])
-			return x->uv[i] < y->uv[i] ? -1 : 1;
-	}
-	return x->side < y->side ? -1 : x->side > y->side;
-}
-
-static side_key key_of(const nt_surface *s, const nt_edge_side *side)
-{
-	const uint32_t first = side->side, next = nt_side_next(first);
-	const float *low = nt_side_texcoord(s, side->ascending ? first : next);
-	const float *high = nt_side_texcoord(s, side->ascending ? next : first);
-	return (side_key){{low[0], low[1], high[0], high[1]}, first};
-}
-
-static bool same_coordinates(const side_key *a, const side_key *b)
-{
-	return a->uv[0] == b->uv[0] && a->uv[1] == b->uv[1] && a->uv[2] == b->uv[2] &&
-		a->uv[3] == b->uv[3];
-}
-
 /* Unites all triangles of an edge of three and more that have the same coordinates along it. */
 static bool unite_many(const nt_check *check, const nt_edge_side *sides, size_t count, bool joint)
 {
-	if (!joint) {
-		for (size_t i = 1; i < count; i++)
-			nt_unite(check->islands, sides[i].side / 3, sides[0].side / 3);
-		return true;
+	const nt_surface *s = &check->surface;
+	nt_hash_index met = {0};
+	bool done = true;
+	for (size_t i = 0; i < count && done; i++) {
+		const uint32_t side = sides[i].side, next = nt_side_next(side);
+		const float *low = nt_side_texcoord(s, sides[i].ascending ? side : next);
+		const float *high = nt_side_texcoord(s, sides[i].ascending ? next : side);
+		const uint64_t hash = nt_hash_words(nt_hash_floats(low[0], low[1]), nt_hash_floats(high[0], high[1]));
+		size_t at = NT_HASH_BEGIN;
+		const uint32_t first = joint ? nt_hash_index_next(&met, hash, &at) : sides[0].side;
+		if (first != NT_NONE)
+			nt_unite(check->islands, side / 3, first / 3);
+		else if (low[0] == low[0] && low[1] == low[1] && high[0] == high[0] && high[1] == high[1])
+			done = nt_hash_index_add(&met, hash, side);
 	}
-	side_key *keys = nt_alloc(count, sizeof *keys);
-	if (!keys)
-		return false;
-	for (size_t i = 0; i < count; i++)
-		keys[i] = key_of(&check->surface, &sides[i]);
-	qsort(keys, count, sizeof *keys, by_key);
-	for (size_t i = 1; i < count; i++)
-		if (same_coordinates(&keys[i], &keys[i - 1]))
-			nt_unite(check->islands, keys[i].side / 3, keys[i - 1].side / 3);
-	free(keys);
-	return true;
+	nt_hash_index_free(&met);
+	return done;
 }
 
 /* Remembers the first unmirrored and the first mirrored side of the edge, if it has both. */

@@ -17,7 +17,6 @@
 #include "report/check.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include "base/hash_index.h"
 #include "base/name_table.h"
@@ -454,60 +453,32 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 
 /* ---- folds and overlapping islands ---- */
 
-/* Texture coordinates of an island, and the point that has them. */
-typedef struct uv_key {
-	float uv[2];
-	uint32_t island;
-	uint32_t point; /* NT_NONE: several */
-} uv_key;
-
-typedef struct uv_table {
-	nt_hash_index index;
-	uv_key *keys;
-	size_t count, capacity;
-	bool failed; /* out of memory */
-} uv_table;
-
-/* NULL: there is none. NaN is found nowhere. */
-static uv_key *find_key(const uv_table *table, uint64_t hash, const float *uv, uint32_t island)
-{
-	size_t at = NT_HASH_BEGIN;
-	for (uint32_t number; (number = nt_hash_index_next(&table->index, hash, &at)) != NT_NONE;) {
-		uv_key *key = &table->keys[number];
-		if (key->island == island && key->uv[0] == uv[0] && key->uv[1] == uv[1])
-			return key;
-	}
-	return NULL;
-}
-
-/* Notes an unmirrored corner, or counts a mirrored one: in counts[1] when an unmirrored corner at another
- * point has its coordinates, in counts[0] when none has. Points of the fold itself say nothing, but of a twin. */
-static void meet_corner(const nt_check *check, uint32_t side, uint32_t island, bool mirrored, uv_table *table,
+/* Notes the point of an unmirrored corner by texture coordinates and island, two of them at most, or counts a mirrored
+ * one: in counts[1] when an unmirrored corner at another point has its coordinates, in counts[0] when none has. Points
+ * of the fold itself say nothing, but of a twin. False: out of memory. */
+static bool meet_corner(const nt_check *check, uint32_t side, uint32_t island, bool mirrored, nt_hash_index *points,
 	size_t *counts)
 {
-	const nt_surface *s = &check->surface;
-	const uint32_t point = nt_side_point(s, side);
-	const float *uv = nt_side_texcoord(s, side);
+	const uint32_t point = nt_side_point(&check->surface, side);
+	const float *uv = nt_side_texcoord(&check->surface, side);
 	const uint64_t hash = nt_hash_words(nt_hash_floats(uv[0], uv[1]), island);
-	uv_key *key = find_key(table, hash, uv, island);
-	if (mirrored) {
-		if (!key || key->point != point || (check->twins && nt_bit(check->twins, side / 3)))
-			counts[2 * island + (key != NULL)]++;
-	} else if (key) {
-		key->point = key->point == point ? point : NT_NONE;
-	} else if (nt_grow((void **)&table->keys, &table->capacity, table->count + 1, sizeof *table->keys) &&
-		nt_hash_index_add(&table->index, hash, (uint32_t)table->count)) {
-		table->keys[table->count++] = (uv_key){{uv[0], uv[1]}, island, point};
-	} else {
-		table->failed = true;
-	}
+	size_t at = NT_HASH_BEGIN;
+	const uint32_t first = nt_hash_index_next(points, hash, &at);
+	const bool several = first != NT_NONE && nt_hash_index_next(points, hash, &at) != NT_NONE;
+	const bool other = several || first != point; /* or none */
+	if (!mirrored)
+		return several || !other || nt_hash_index_add(points, hash, point);
+	if (other || (check->twins && nt_bit(check->twins, side / 3)))
+		counts[2 * island + (first != NT_NONE)]++;
+	return true;
 }
 
 /* Calls meet_corner for the triangles of one orientation in mixed islands: once for each vertex and island, as long as
  * the island's triangles follow each other. */
-static void visit_vertices(const nt_check *check, bool mirrored, uint32_t *last, uv_table *table, size_t *counts)
+static bool visit_vertices(const nt_check *check, bool mirrored, uint32_t *last, nt_hash_index *points, size_t *counts)
 {
 	const nt_surface *s = &check->surface;
+	bool done = true;
 	memset(last, 0xff, check->mesh->vertex_count * sizeof *last);
 	for (size_t t = 0; t < s->triangle_count; t++) {
 		const uint32_t island = check->islands[t];
@@ -517,10 +488,11 @@ static void visit_vertices(const nt_check *check, bool mirrored, uint32_t *last,
 		for (uint32_t side = (uint32_t)(3 * t); side < 3 * t + 3; side++) {
 			uint32_t *met = &last[nt_side_vertex(s, side)];
 			if (*met != island)
-				meet_corner(check, side, island, mirrored, table, counts);
+				done &= meet_corner(check, side, island, mirrored, points, counts);
 			*met = island;
 		}
 	}
+	return done;
 }
 
 /* Sets `overlaps_itself` of mixed islands: mirrored corners lie on unmirrored corners of the same island, and the
@@ -534,19 +506,18 @@ static nt_status find_overlapping(nt_check *check)
 	if (!last || !counts)
 		return NT_ERROR_MEMORY;
 	memset(counts, 0, 2 * islands * sizeof *counts);
-	uv_table table = {0};
-	visit_vertices(check, false, last, &table, counts);
-	visit_vertices(check, true, last, &table, counts);
+	nt_hash_index points = {0};
+	const bool done = visit_vertices(check, false, last, &points, counts) &&
+		visit_vertices(check, true, last, &points, counts);
 	for (size_t i = 0; i < islands; i++) {
 		nt_island *island = &check->facts->islands[i];
 		const double corners = (double)(counts[2 * i] + counts[2 * i + 1]);
 		island->overlaps_itself = island->kind == NT_ISLAND_MIXED && island->covered >= EXACT_SHARE &&
 			counts[2 * i + 1] > 0 && (double)counts[2 * i + 1] >= EXACT_SHARE * corners;
 	}
-	nt_hash_index_free(&table.index);
-	free(table.keys);
+	nt_hash_index_free(&points);
 	nt_scratch_back(check->scratch, mark);
-	return table.failed ? NT_ERROR_MEMORY : NT_OK;
+	return done ? NT_OK : NT_ERROR_MEMORY;
 }
 
 /* ---- findings ---- */

@@ -382,6 +382,27 @@ TEST(edge_of_three_triangles_is_reported_and_still_a_seam)
 	assert_int_equal(worst_beside_much(h, report), NT_SEVERITY_INFO);
 }
 
+/* Two triangles with vertices of their own and the coordinates of a third one, wound the other way: one island. Two
+ * elsewhere in the texture are another one, and where it is not known, each is one. */
+TEST(edge_of_many_triangles_joins_those_with_the_same_coordinates)
+{
+	static const float places[] = {0, 0, 5, 0, 5, NAN, NAN};
+	hand_mesh *h = hand_new();
+	for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+		const float u = places[i], angle = (float)i;
+		const uint32_t a = hand_vertex(h, 0, 0, 0, u, 0), b = hand_vertex(h, 0, 1, 0, u, 1);
+		const uint32_t c = hand_vertex(h, cosf(angle), 0, sinf(angle), u + 1, 0);
+		hand_triangle(h, i % 2 ? b : a, i % 2 ? a : b, c);
+	}
+	nt_report *report = hand_report(h, NULL);
+	const nt_report_mesh *m = &report->meshes[0];
+	assert_int_equal(m->non_manifold_edges, 1);
+	assert_int_equal(m->island_count, 4);
+	assert_int_equal(m->islands[0].triangles[0] + m->islands[0].triangles[2], 3);
+	assert_int_equal(m->islands[1].triangles[0] + m->islands[1].triangles[2], 2);
+	hand_free(h, report);
+}
+
 static uint64_t seam_fingerprint(const hand_mesh *h)
 {
 	nt_report *report = hand_report(h, NULL);
