@@ -6,9 +6,9 @@
  *
  * Ordinary meshes: bumpy planes, tubes and tori, closed or not, of triangles and quads, faces in order or shuffled and
  * turned, with some of them missing, doubled, mirrored or without UV area; books and fans of many triangles; these with
- * rare positions, normals and signs of zeros (`changes`), and with rows of vertices that no corner has; and soups and
- * nasty ones with positions that are finite and below FLT_MAX / 2. At thresholds other than the default the definition
- * alone is compared.
+ * rare positions, normals and signs of zeros (`changes`), with NaN, and with rows that no corner has; and soups
+ * and nasty ones with positions that are finite and below FLT_MAX / 2. At thresholds other than the default the
+ * definition alone is compared.
  */
 #include "test.h"
 #include <float.h>
@@ -316,6 +316,19 @@ static const struct {
 	{"rounded", round_positions}};
 enum { CHANGES = sizeof changes / sizeof *changes };
 
+/* Some normals and texture coordinates that are no numbers: such a corner is no vertex with any other, nor with those
+ * that have its row. */
+static void spoil_rows(float (*normals)[3], float (*texcoords)[2], size_t count, nt_random *random)
+{
+	const uint32_t often = 2 + nt_random_below(random, 60), kinds = 1 + nt_random_below(random, 3);
+	for (size_t v = 0; v < count; v++) {
+		if (kinds & 1 && nt_random_below(random, often) == 0)
+			normals[v][nt_random_below(random, 3)] = NAN;
+		if (kinds & 2 && nt_random_below(random, often) == 0)
+			texcoords[v][nt_random_below(random, 2)] = NAN;
+	}
+}
+
 /* Rows behind the corners' that no corner has: far away, or of no number. */
 static void add_unused(soup *s, nt_random *random)
 {
@@ -329,7 +342,8 @@ static void add_unused(soup *s, nt_random *random)
 	for (size_t i = s->corner_count; i < s->corner_count + MORE; i++)
 		for (int k = 0; k < 3; k++)
 			more.positions[i][k] =
-				(const float[]){-7, 3, NAN, 1e30f, INFINITY}[nt_random_below(random, kinds)];
+				more.normals[i][k] = more.texcoords[i][k % 2] =
+					(const float[]){-7, 3, NAN, 1e30f, INFINITY}[nt_random_below(random, kinds)];
 	more.corner_count = s->corner_count;
 	soup_free(s);
 	*s = more;
@@ -425,6 +439,12 @@ static void compare_soup(uint64_t seed, tally *t)
 	soup_indexed indexed = soup_index(&s);
 	if (seed % 3 == 0)
 		mesh = indexed.mesh;
+	if (seed % 21 == 0)
+		spoil_rows(indexed.normals, indexed.texcoords, mesh.vertex_count, &random);
+	else if (seed % 7 == 0)
+		spoil_rows(s.normals, s.texcoords, corners, &random);
+	if (corners == 3 * mesh.face_count)
+		mesh.face_sizes = NULL;
 	compare(seed, changes[kind].name, &mesh, corners, t);
 	if (seed % 16 == 7 && is_usual(&mesh, corners))
 		compare_threshold(seed, &mesh, corners, t);
