@@ -99,8 +99,8 @@ int __wrap_open(const char *path, int flags, ...)
 	va_end(arguments);
 	const bool reads = (flags & O_ACCMODE) == O_RDONLY;
 	/* what the system says of this process: maker.c */
-	const bool told = reads && (strncmp(path, "/proc/", 6) == 0 || is_inside(path, "in"));
-	if (folder[0] && !told && !is_inside(path, "out"))
+	const bool known = reads && (strncmp(path, "/proc/", 6) == 0 || is_inside(path, "in"));
+	if (folder[0] && !known && !is_inside(path, "out"))
 		wrong("opens %s", path);
 	return __real_open(path, flags, mode);
 }
