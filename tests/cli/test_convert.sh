@@ -470,6 +470,17 @@ run --only=all out/two.ply out/back.glb
 exits 0
 is "$(gltf out/back.glb '[g.images.length, g.materials[0].pbrMetallicRoughness.baseColorTexture.index]')" '[1,0]'
 
+scene "a PLY does not take the place of the image that it names"
+two_colors '{index: 0}' '{index: 0}'
+cp tex/a.png own.ply
+sed 's|tex/a.png|own.ply|' two.gltf >own.gltf
+for words in "" --images=link; do
+	run --only=all $words own.gltf own.ply
+	exits 2
+	says "own.ply: refusing to write"
+	same own.ply tex/a.png
+done
+
 scene "an image whose name MeshLab does not read is copied under one that it reads"
 two_colors '{index: 1}' '{index: 1}'
 run --only=all two.gltf two.ply
