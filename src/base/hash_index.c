@@ -69,3 +69,34 @@ void nt_hash_index_free(nt_hash_index *index)
 	free(index->numbers);
 	*index = (nt_hash_index){0};
 }
+
+uint32_t nt_key_find(const nt_key_set *set, const void *key, size_t size)
+{
+	const uint64_t hash = nt_hash_bytes(0, key, size);
+	size_t at = NT_HASH_BEGIN;
+	uint32_t number;
+	while ((number = nt_hash_index_next(&set->index, hash, &at)) != UINT32_MAX)
+		if (memcmp(set->keys + number * size, key, size) == 0)
+			break;
+	return number;
+}
+
+uint32_t nt_key_add(nt_key_set *set, const void *key, size_t size)
+{
+	const uint32_t known = nt_key_find(set, key, size);
+	if (known != UINT32_MAX)
+		return known;
+	if (set->count >= UINT32_MAX - 1 ||
+		!nt_grow((void **)&set->keys, &set->capacity, set->count + 1, size) ||
+		!nt_hash_index_add(&set->index, nt_hash_bytes(0, key, size), (uint32_t)set->count))
+		return UINT32_MAX;
+	memcpy(set->keys + set->count * size, key, size);
+	return (uint32_t)set->count++;
+}
+
+void nt_key_set_free(nt_key_set *set)
+{
+	free(set->keys);
+	nt_hash_index_free(&set->index);
+	*set = (nt_key_set){0};
+}

@@ -28,4 +28,19 @@ uint32_t nt_hash_index_next(const nt_hash_index *index, uint64_t hash, size_t *a
 
 void nt_hash_index_free(nt_hash_index *index);
 
+/* Keys of one size, copied, by number: equal keys get the same one, in the order in which they come. Zeroed: empty. */
+typedef struct nt_key_set {
+	unsigned char *keys;
+	size_t count, capacity;
+	nt_hash_index index;
+} nt_key_set;
+
+/* The number of a key that is there; UINT32_MAX: it is not. */
+uint32_t nt_key_find(const nt_key_set *set, const void *key, size_t size);
+
+/* The number of a key, which is added where it is new: then that is the count before. UINT32_MAX: out of memory. */
+uint32_t nt_key_add(nt_key_set *set, const void *key, size_t size);
+
+void nt_key_set_free(nt_key_set *set);
+
 #endif

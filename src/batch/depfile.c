@@ -82,26 +82,17 @@ static bool find_folder(const char *path, nt_buffer *folder, struct stat *info)
 	return false;
 }
 
-/* Notes the folders that are written to: in them each run leaves another time of change. They are few. */
-static nt_status list_written(const nt_trace *trace, struct stat **written, size_t *count, nt_error *error)
+/* Notes the folders that are written to: in them each run leaves another time of change. */
+static nt_status list_written(const nt_trace *trace, nt_key_set *written, nt_error *error)
 {
 	nt_buffer folder = {0};
-	size_t capacity = 0;
 	nt_status status = NT_OK;
-	*written = NULL;
-	*count = 0;
 	for (size_t i = 0; i < trace->count && !status; i++) {
 		struct stat info;
 		if (trace->files[i].kind != NT_TRACE_WRITTEN || !find_folder(trace->files[i].path, &folder, &info))
 			continue;
-		size_t k = 0;
-		while (k < *count && !nt_same_file(&(*written)[k], &info))
-			k++;
-		if (k < *count)
-			continue;
-		if (nt_grow((void **)written, &capacity, *count + 1, sizeof **written))
-			(*written)[(*count)++] = info;
-		else
+		const nt_file_id id = nt_file_id_of(&info);
+		if (nt_key_add(written, &id, sizeof id) == UINT32_MAX)
 			status = nt_fail_memory(error);
 	}
 	nt_buffer_free(&folder);
@@ -109,8 +100,7 @@ static nt_status list_written(const nt_trace *trace, struct stat **written, size
 }
 
 /* Appends the folders in which files were looked for in vain, each once. */
-static nt_status list_searched(const nt_trace *trace, const struct stat *written, size_t written_count, nt_buffer *list,
-	nt_error *error)
+static nt_status list_searched(const nt_trace *trace, const nt_key_set *written, nt_buffer *list, nt_error *error)
 {
 	nt_name_table listed = {0};
 	nt_arena texts = {0};
@@ -126,10 +116,8 @@ static nt_status list_searched(const nt_trace *trace, const struct stat *written
 		const char *text = nt_arena_text(&texts, folder.data, folder.size);
 		if (!text || nt_name_add(&listed, text, folder.size) == UINT32_MAX)
 			status = nt_fail_memory(error);
-		size_t k = 0;
-		while (k < written_count && !nt_same_file(&written[k], &info))
-			k++;
-		if (k == written_count)
+		const nt_file_id id = nt_file_id_of(&info);
+		if (nt_key_find(written, &id, sizeof id) == UINT32_MAX)
 			nt_buffer_append(list, folder.data, folder.size + 1);
 	}
 	nt_name_table_free(&listed);
@@ -142,15 +130,14 @@ static nt_status list_searched(const nt_trace *trace, const struct stat *written
  * which others were looked for in vain. */
 static nt_status list_dependencies(const nt_trace *trace, nt_buffer *list, nt_error *error)
 {
-	struct stat *written;
-	size_t written_count;
+	nt_key_set written = {0};
 	for (size_t i = 0; i < trace->count; i++)
 		if (trace->files[i].kind == NT_TRACE_READ)
 			nt_buffer_append(list, trace->files[i].path, strlen(trace->files[i].path) + 1);
-	nt_status status = list_written(trace, &written, &written_count, error);
+	nt_status status = list_written(trace, &written, error);
 	if (!status)
-		status = list_searched(trace, written, written_count, list, error);
-	free(written);
+		status = list_searched(trace, &written, list, error);
+	nt_key_set_free(&written);
 	return status || !list->failed ? status : nt_fail_memory(error);
 }
 

@@ -209,62 +209,38 @@ static nt_status refuse_equal_outputs(const nt_batch *batch, bool tree_helps, co
 	return status;
 }
 
-typedef struct identity {
-	dev_t device;
-	ino_t inode;
-	size_t job;
-} identity;
-
-static int compare_identities(const void *a, const void *b)
-{
-	const identity *x = a, *y = b;
-	if (x->device != y->device)
-		return x->device < y->device ? -1 : 1;
-	if (x->inode != y->inode)
-		return x->inode < y->inode ? -1 : 1;
-	return (x->job > y->job) - (x->job < y->job);
-}
-
-/* A job other than `own` whose input is the file; NULL: none. */
-static const nt_job *find_reader(const nt_batch *batch, const identity *inputs, size_t count, const identity *own)
-{
-	size_t low = 0, high = count;
-	const identity least = {own->device, own->inode, 0};
-	while (low < high) {
-		const size_t middle = (low + high) / 2;
-		if (compare_identities(&inputs[middle], &least) < 0)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	low += low < count && inputs[low].job == own->job;
-	return low < count && inputs[low].device == own->device && inputs[low].inode == own->inode
-		? &batch->jobs[inputs[low].job] : NULL;
-}
-
 /* An output that is a file already must not be the input of another job: who reads it when? Its own
  * input is nt_run's affair. */
 static nt_status refuse_foreign_inputs(const nt_batch *batch, const char *remedy, nt_error *error)
 {
-	identity *inputs = nt_alloc(batch->count, sizeof *inputs);
-	if (!inputs)
-		return nt_fail_memory(error);
-	size_t count = 0;
+	nt_key_set files = {0};
+	size_t(*readers)[2] = nt_alloc(batch->count, sizeof *readers); /* of each file, the first two */
+	nt_status status = readers ? NT_OK : nt_fail_memory(error);
 	struct stat info;
 	/* an input that cannot be looked at cannot be read either, and its run says so */
-	for (size_t i = 0; i < batch->count; i++)
-		if (stat(batch->jobs[i].input, &info) == 0)
-			inputs[count++] = (identity){info.st_dev, info.st_ino, i};
-	qsort(inputs, count, sizeof *inputs, compare_identities);
-	nt_status status = NT_OK;
+	for (size_t i = 0; i < batch->count && !status; i++) {
+		if (stat(batch->jobs[i].input, &info) != 0)
+			continue;
+		const nt_file_id id = nt_file_id_of(&info);
+		const size_t known = files.count;
+		const uint32_t number = nt_key_add(&files, &id, sizeof id);
+		if (number == UINT32_MAX)
+			status = nt_fail_memory(error);
+		else if (number == known)
+			readers[number][0] = readers[number][1] = i;
+		else if (readers[number][1] == readers[number][0])
+			readers[number][1] = i;
+	}
 	for (size_t i = 0; i < batch->count && !status; i++) {
 		bool found_output;
 		status = nt_lookup_found(batch->jobs[i].output, &info, &found_output, error);
 		if (status || !found_output)
 			continue;
-		const identity key = {info.st_dev, info.st_ino, i};
-		const nt_job *reader = find_reader(batch, inputs, count, &key);
-		if (!reader)
+		const nt_file_id id = nt_file_id_of(&info);
+		const uint32_t number = nt_key_find(&files, &id, sizeof id);
+		const size_t *of = number != UINT32_MAX ? readers[number] : (size_t[]){i, i};
+		const nt_job *reader = &batch->jobs[of[of[0] == i]];
+		if (reader == &batch->jobs[i])
 			continue;
 		nt_buffer reason = {0};
 		nt_buffer_format(&reason, "'%s' would be written to '%s', which is the input '%s'; %s",
@@ -272,7 +248,8 @@ static nt_status refuse_foreign_inputs(const nt_batch *batch, const char *remedy
 		status = refuse(&batch->jobs[i], &reason, error);
 		nt_buffer_free(&reason);
 	}
-	free(inputs);
+	free(readers);
+	nt_key_set_free(&files);
 	return status;
 }
 

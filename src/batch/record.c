@@ -194,7 +194,7 @@ static bool append_whole(int fd, const char *bytes, size_t size, off_t before)
 
 nt_status nt_record_append(const nt_record *record, const void *lines, size_t size, nt_error *error)
 {
-	static const char then[] = "; the output is complete, --update makes it again";
+	static const char then[] = "; the output stands, --update makes it again";
 	bool locked;
 	struct stat info;
 	const int fd = open_locked(record, &locked);

@@ -174,8 +174,7 @@ static bool link_stable(const nt_sink *sink)
 {
 	nt_temporary *second;
 	struct stat here, there;
-	if (stat(sink->staging, &here) == 0 && lstat(sink->target, &there) == 0 && here.st_dev == there.st_dev &&
-		here.st_ino == there.st_ino)
+	if (stat(sink->staging, &here) == 0 && lstat(sink->target, &there) == 0 && nt_same_file(&here, &there))
 		return true; /* of a run that was killed after this step; rename would do nothing */
 	if (!nt_temporary_link(sink->staging, sink->target, &second))
 		return false;
@@ -193,8 +192,7 @@ static void unlink_second_name(const nt_sink *sink)
 	struct stat status;
 	nt_buffer_append(&path, sink->path, (size_t)(nt_last_part(sink->path) - sink->path));
 	nt_output_staging_name(&path, nt_last_part(sink->path), sink->staging ? sink->before : sink->text);
-	if (!path.failed && lstat(path.data, &status) == 0 && status.st_dev == sink->there.device &&
-		status.st_ino == sink->there.inode)
+	if (!path.failed && lstat(path.data, &status) == 0 && nt_same_id(nt_file_id_of(&status), sink->there.id))
 		unlink(path.data);
 	nt_buffer_free(&path);
 }
@@ -266,7 +264,7 @@ static int lock_folder(const nt_output *output)
 static bool main_is_unchanged(const nt_sink *main)
 {
 	struct stat status;
-	return main->there.inode ? nt_state_is(main->target, &main->there) : lstat(main->target, &status) != 0;
+	return main->there.id.inode ? nt_state_is(main->target, &main->there) : lstat(main->target, &status) != 0;
 }
 
 nt_status nt_output_place(nt_output *output, nt_error *error)

@@ -209,7 +209,7 @@ bool nt_file_is(const nt_file *file, const char *path)
 {
 	struct stat status;
 	return file->inode && strcmp(path, "-") != 0 && stat(path, &status) == 0 &&
-	       (uint64_t)status.st_dev == file->device && (uint64_t)status.st_ino == file->inode;
+	       nt_same_id(nt_file_id_of(&status), (nt_file_id){file->device, file->inode});
 }
 
 /* ---- whole files ---- */

@@ -30,10 +30,24 @@ nt_status nt_lookup_found(const char *path, struct stat *info, bool *found, nt_e
 nt_status nt_lookup_any_case(
 	const char *folder, const char *name, size_t length, char **entry, nt_error *error);
 
-/* Whether two names are of one file. */
+/* Which file it is, by whatever name. Zeroed: none. */
+typedef struct nt_file_id {
+	uint64_t device, inode;
+} nt_file_id;
+
+static inline nt_file_id nt_file_id_of(const struct stat *info)
+{
+	return (nt_file_id){(uint64_t)info->st_dev, (uint64_t)info->st_ino};
+}
+
+static inline bool nt_same_id(nt_file_id a, nt_file_id b)
+{
+	return a.device == b.device && a.inode == b.inode;
+}
+
 static inline bool nt_same_file(const struct stat *a, const struct stat *b)
 {
-	return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+	return nt_same_id(nt_file_id_of(a), nt_file_id_of(b));
 }
 
 #endif

@@ -40,16 +40,16 @@ nt_status nt_output_protect(nt_output *output, const char *path, const char *way
 	/* what is not there cannot be overwritten, what is no regular file is not replaced */
 	if (!known || !S_ISREG(status.st_mode))
 		return NT_OK;
+	const nt_file_id id = nt_file_id_of(&status);
+	const size_t count = output->guards.count;
 	char *copy = strdup(path);
-	if (!copy || !nt_grow((void **)&output->guarded, &output->guarded_capacity,
-			     output->guarded_count + 1, sizeof *output->guarded)) {
+	const uint32_t number = copy && nt_grow((void **)&output->guarded, &output->guarded_capacity, count + 1,
+		sizeof *output->guarded) ? nt_key_add(&output->guards, &id, sizeof id) : UINT32_MAX;
+	if (number == count)
+		output->guarded[number] = (nt_protected_file){copy, way_out};
+	else
 		free(copy);
-		return nt_fail_memory(error);
-	}
-	output->guarded[output->guarded_count++] =
-		(nt_protected_file){status.st_dev, status.st_ino, copy, way_out};
-	return nt_hash_index_add(&output->guards, nt_hash_of_file(status.st_dev, status.st_ino),
-		(uint32_t)output->guarded_count - 1) ? NT_OK : nt_fail_memory(error);
+	return number != UINT32_MAX ? NT_OK : nt_fail_memory(error);
 }
 
 /* ---- adding ---- */
@@ -64,8 +64,7 @@ nt_status nt_output_check_clobber(const nt_output_options *options, const char *
 static bool is_in_place(const nt_output_options *options, const struct stat *status)
 {
 	struct stat input;
-	return options->in_place && stat(options->in_place, &input) == 0 && input.st_dev == status->st_dev &&
-	       input.st_ino == status->st_ino;
+	return options->in_place && stat(options->in_place, &input) == 0 && nt_same_file(&input, status);
 }
 
 /* Refuses a file that is meant to stay as it is. */
@@ -446,9 +445,9 @@ void nt_output_abort(nt_output *output)
 	nt_temporary_discard(output->leader);
 	free(output->named);
 	nt_hash_index_free(&output->names);
-	nt_hash_index_free(&output->guards);
-	for (size_t i = 0; i < output->guarded_count; i++)
+	for (size_t i = 0; i < output->guards.count; i++)
 		free(output->guarded[i].path);
+	nt_key_set_free(&output->guards);
 	nt_output_free_ownership(output);
 	free(output->guarded);
 	free(output);

@@ -8,6 +8,7 @@
 
 #include <sys/stat.h>
 #include "base/hash_index.h"
+#include "file/lookup.h"
 #include "file/output.h"
 #include "file/relative_path.h"
 #include "file/temporary.h"
@@ -21,8 +22,7 @@ typedef enum nt_naming {
 
 /* One state of one file; it has changed when any of it differs. */
 typedef struct nt_file_state {
-	dev_t device;
-	ino_t inode;
+	nt_file_id id;
 	off_t size;
 	struct timespec modified;
 } nt_file_state;
@@ -58,8 +58,6 @@ struct nt_sink {
 };
 
 typedef struct nt_protected_file {
-	dev_t device;
-	ino_t inode;
 	char *path;
 	const char *way_out; /* a constant; NULL: none */
 } nt_protected_file;
@@ -76,9 +74,9 @@ struct nt_output {
 	nt_sink **named; /* by the names that they have or will have, those of sidecars for the time being, too */
 	size_t named_count, named_capacity;
 	nt_hash_index names;
-	nt_protected_file *guarded;
-	size_t guarded_count, guarded_capacity;
-	nt_hash_index guards;
+	nt_key_set guards; /* of nt_file_id */
+	nt_protected_file *guarded; /* [guards.count] */
+	size_t guarded_capacity;
 	nt_ownership *ownership; /* what the previous main file records */
 	size_t ownership_count, ownership_capacity;
 	bool ownership_known;
@@ -107,8 +105,6 @@ bool nt_state_is(const char *path, const nt_file_state *state);
 
 /* Notes a name that a file of the set has. */
 nt_status nt_output_note_name(nt_output *output, nt_sink *sink, const char *path, nt_error *error);
-
-uint64_t nt_hash_of_file(dev_t device, ino_t inode);
 
 /* `file`: its path is NULL where another run of the batch has read it. */
 bool nt_output_is_protected(const nt_output *output, const struct stat *status, const nt_protected_file **file);

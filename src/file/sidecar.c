@@ -38,35 +38,24 @@ static const char of_content[] = "-", for_the_time_being[] = ".new-";
 
 nt_file_state nt_state_of(const struct stat *status)
 {
-	return (nt_file_state){status->st_dev, status->st_ino, status->st_size, status->st_mtim};
+	return (nt_file_state){nt_file_id_of(status), status->st_size, status->st_mtim};
 }
 
 bool nt_state_is(const char *path, const nt_file_state *state)
 {
 	struct stat status;
-	return stat(path, &status) == 0 && status.st_dev == state->device && status.st_ino == state->inode &&
+	return stat(path, &status) == 0 && nt_same_id(nt_file_id_of(&status), state->id) &&
 	       status.st_size == state->size && status.st_mtim.tv_sec == state->modified.tv_sec &&
 	       status.st_mtim.tv_nsec == state->modified.tv_nsec;
 }
 
-uint64_t nt_hash_of_file(dev_t device, ino_t inode)
-{
-	const uint64_t key[2] = {(uint64_t)device, (uint64_t)inode};
-	return nt_hash_bytes(0, key, sizeof key);
-}
-
 bool nt_output_is_protected(const nt_output *output, const struct stat *status, const nt_protected_file **file)
 {
-	const uint64_t hash = nt_hash_of_file(status->st_dev, status->st_ino);
-	size_t at = NT_HASH_BEGIN;
-	for (uint32_t i; (i = nt_hash_index_next(&output->guards, hash, &at)) != UINT32_MAX;)
-		if (output->guarded[i].device == status->st_dev && output->guarded[i].inode == status->st_ino) {
-			*file = &output->guarded[i];
-			return true;
-		}
 	static const nt_protected_file elsewhere = {.path = NULL};
-	*file = &elsewhere;
-	return nt_trace_is_read_elsewhere(status);
+	const nt_file_id id = nt_file_id_of(status);
+	const uint32_t number = nt_key_find(&output->guards, &id, sizeof id);
+	*file = number != UINT32_MAX ? &output->guarded[number] : &elsewhere;
+	return number != UINT32_MAX || nt_trace_is_read_elsewhere(status);
 }
 
 /* ---- names ---- */
@@ -357,7 +346,7 @@ void nt_output_remove_stale_staging(const nt_output *output)
 	pthread_mutex_lock(&lock);
 	if (folder.failed || stat(folder.data, &status) != 0)
 		status = listed;
-	if (status.st_dev != listed.st_dev || status.st_ino != listed.st_ino) {
+	if (!nt_same_file(&status, &listed)) {
 		nt_buffer_free(&names);
 		listed = status;
 		list_folder(folder.data, true, &names);

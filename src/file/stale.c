@@ -20,6 +20,7 @@
 #include <sys/stat.h>
 #include <sys/vfs.h>
 #include <unistd.h>
+#include "file/lookup.h"
 
 /* File systems that one machine has to itself. */
 static bool is_local(int folder)
@@ -40,21 +41,16 @@ static bool is_local(int folder)
 static bool is_first_look(const struct stat *status)
 {
 	enum { REMEMBERED = 64 };
-	static struct {
-		dev_t device;
-		ino_t inode;
-	} folders[REMEMBERED];
+	static nt_file_id folders[REMEMBERED];
 	static size_t count;
 	static atomic_flag lock = ATOMIC_FLAG_INIT;
 	bool known = false;
 	while (atomic_flag_test_and_set_explicit(&lock, memory_order_acquire))
 		poll(NULL, 0, 1);
 	for (size_t i = 0; i < count && i < REMEMBERED && !known; i++)
-		known = folders[i].device == status->st_dev && folders[i].inode == status->st_ino;
-	if (!known) {
-		folders[count % REMEMBERED].device = status->st_dev;
-		folders[count++ % REMEMBERED].inode = status->st_ino;
-	}
+		known = nt_same_id(folders[i], nt_file_id_of(status));
+	if (!known)
+		folders[count++ % REMEMBERED] = nt_file_id_of(status);
 	atomic_flag_clear_explicit(&lock, memory_order_release);
 	return !known;
 }

@@ -26,6 +26,7 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include "file/lookup.h"
 
 /* Attempts to find a free name: names of ended processes with our number are rare. */
 enum { MOST_ATTEMPTS = 1000, BOOT_DIGITS = 32 };
@@ -35,8 +36,7 @@ typedef struct folder {
 	struct folder *next;
 	int fd;
 	unsigned files;
-	dev_t device;
-	ino_t inode;
+	nt_file_id id;
 } folder;
 
 struct nt_temporary {
@@ -206,7 +206,7 @@ static folder *open_folder(const char *path)
 		return NULL;
 	}
 	for (folder *known = folders; known; known = known->next)
-		if (known->device == status.st_dev && known->inode == status.st_ino) {
+		if (nt_same_id(known->id, nt_file_id_of(&status))) {
 			close(fd);
 			known->files++;
 			return known;
@@ -216,7 +216,7 @@ static folder *open_folder(const char *path)
 		close(fd);
 		return NULL;
 	}
-	*opened = (folder){folders, fd, 1, status.st_dev, status.st_ino};
+	*opened = (folder){folders, fd, 1, nt_file_id_of(&status)};
 	folders = opened;
 	return opened;
 #endif

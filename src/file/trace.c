@@ -9,6 +9,7 @@
 #include <string.h>
 #include <time.h>
 #include "base/memory.h"
+#include "file/lookup.h"
 
 static _Thread_local nt_trace *current;
 
@@ -24,11 +25,6 @@ nt_trace *nt_trace_use(nt_trace *trace)
 
 /* ---- what others read ---- */
 
-struct nt_read_file {
-	uint64_t device, inode;
-	unsigned reader; /* 0: several */
-};
-
 void nt_trace_share(nt_trace *trace, nt_readers *readers)
 {
 	pthread_mutex_lock(&lock);
@@ -39,46 +35,32 @@ void nt_trace_share(nt_trace *trace, nt_readers *readers)
 
 void nt_readers_free(nt_readers *readers)
 {
-	free(readers->files);
-	nt_hash_index_free(&readers->index);
+	free(readers->readers);
+	nt_key_set_free(&readers->files);
 	*readers = (nt_readers){0};
-}
-
-static struct nt_read_file *find_read(const nt_readers *readers, const uint64_t key[2], uint64_t *hash)
-{
-	size_t at = NT_HASH_BEGIN;
-	*hash = nt_hash_bytes(0, key, 2 * sizeof *key);
-	for (uint32_t i; (i = nt_hash_index_next(&readers->index, *hash, &at)) != UINT32_MAX;)
-		if (readers->files[i].device == key[0] && readers->files[i].inode == key[1])
-			return &readers->files[i];
-	return NULL;
 }
 
 static bool add_read(nt_readers *readers, unsigned reader, const struct stat *info)
 {
-	uint64_t hash;
-	const uint64_t key[2] = {(uint64_t)info->st_dev, (uint64_t)info->st_ino};
-	struct nt_read_file *file = find_read(readers, key, &hash);
-	if (file) {
-		file->reader = file->reader == reader ? reader : 0;
-		return true;
-	}
-	if (!nt_grow((void **)&readers->files, &readers->capacity, readers->count + 1, sizeof *readers->files) ||
-		!nt_hash_index_add(&readers->index, hash, (uint32_t)readers->count))
+	const nt_file_id id = nt_file_id_of(info);
+	const size_t count = readers->files.count;
+	if (!nt_grow((void **)&readers->readers, &readers->capacity, count + 1, sizeof reader))
 		return false;
-	readers->files[readers->count++] = (struct nt_read_file){key[0], key[1], reader};
-	return true;
+	const uint32_t number = nt_key_add(&readers->files, &id, sizeof id);
+	if (number != UINT32_MAX)
+		readers->readers[number] = number == count || readers->readers[number] == reader ? reader : 0;
+	return number != UINT32_MAX;
 }
 
 bool nt_trace_is_read_elsewhere(const struct stat *info)
 {
 	if (!current || !current->readers)
 		return false;
-	uint64_t hash;
-	const uint64_t key[2] = {(uint64_t)info->st_dev, (uint64_t)info->st_ino};
+	const nt_readers *readers = current->readers;
+	const nt_file_id id = nt_file_id_of(info);
 	pthread_mutex_lock(&lock);
-	const struct nt_read_file *file = find_read(current->readers, key, &hash);
-	const bool elsewhere = file && file->reader != current->reader;
+	const uint32_t number = nt_key_find(&readers->files, &id, sizeof id);
+	const bool elsewhere = number != UINT32_MAX && readers->readers[number] != current->reader;
 	pthread_mutex_unlock(&lock);
 	return elsewhere;
 }

@@ -35,9 +35,9 @@ typedef struct nt_trace_file {
 
 /* Which files the runs of a batch have read, so that none of them overwrites what another one reads. Zeroed: none. */
 typedef struct nt_readers {
-	struct nt_read_file *files;
-	size_t count, capacity;
-	nt_hash_index index;
+	nt_key_set files;  /* of nt_file_id */
+	unsigned *readers; /* of each; 0: several */
+	size_t capacity;
 	unsigned runs;
 } nt_readers;
 

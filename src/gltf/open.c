@@ -156,8 +156,8 @@ static nt_status count_primitives(placing *all, const nt_gltf *document)
 		}
 		all->first[i + 1] = all->first[i] + (uint32_t)nt_json_count(primitives);
 	}
-	scene->mesh_count = all->first[all->mesh_count];
-	scene->meshes = nt_arena_alloc(&scene->arena, scene->mesh_count, sizeof *scene->meshes);
+	scene->meshes = nt_arena_alloc(&scene->arena, all->first[all->mesh_count], sizeof *scene->meshes);
+	scene->mesh_count = scene->meshes ? all->first[all->mesh_count] : 0;
 	return scene->meshes ? NT_OK : nt_fail_memory(all->error);
 }
 

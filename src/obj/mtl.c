@@ -698,6 +698,6 @@ nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *b
 void nt_mtl_free(nt_mtl *mtl)
 {
 	free(mtl->definitions);
-	nt_name_table_free(&mtl->files);
+	nt_key_set_free(&mtl->files);
 	*mtl = (nt_mtl){0};
 }

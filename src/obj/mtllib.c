@@ -81,13 +81,9 @@ static nt_status open_library(const request *q, const char *name, const char *pa
 static nt_status note_file(const request *q, const nt_file *file, bool *before)
 {
 	const size_t count = q->mtl->files.count;
-	uint64_t *id = nt_arena_alloc(&q->scene->arena, 2, sizeof *id);
-	if (!id)
-		return nt_fail_memory(q->error);
-	id[0] = file->device;
-	id[1] = file->inode;
-	const uint32_t number = nt_name_add(&q->mtl->files, (const char *)id, 2 * sizeof *id);
-	*before = q->mtl->files.count == count;
+	const nt_file_id id = {file->device, file->inode};
+	const uint32_t number = nt_key_add(&q->mtl->files, &id, sizeof id);
+	*before = number != count;
 	return number != UINT32_MAX ? NT_OK : nt_fail_memory(q->error);
 }
 

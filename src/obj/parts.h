@@ -297,7 +297,7 @@ typedef struct nt_mtl {
 	nt_mtl_definition *definitions;
 	size_t count, capacity;
 	bool incomplete;     /* a library could not be read */
-	nt_name_table files; /* device and inode of those that have been: each is, once, by however many names */
+	nt_key_set files;    /* nt_file_id of those that have been: each is, once, by however many names */
 } nt_mtl;
 
 /*

@@ -18,7 +18,6 @@ enum { MOST_AUTO_BYTES = 16 << 20, MOST_OPEN = 16 };
 
 /* Facts about an image that outlive it. */
 typedef struct known_map {
-	uint64_t identity[2];
 	const nt_mesh *mesh;    /* the first that uses it */
 	const char *use;
 	nt_normal_facts *facts; /* of one whose green points down */
@@ -43,8 +42,8 @@ typedef struct examination {
 	const nt_settings *settings;
 	const nt_textures *textures; /* of materials; NULL: a glTF's, or the output has none */
 	nt_image_places searched;
-	nt_hash_index known; /* identities of images */
-	known_map *maps;
+	nt_key_set known; /* identities of images */
+	known_map *maps;  /* [count], of the first of them */
 	size_t count, capacity;
 	bool told; /* what is found; else only pairs are */
 	uint64_t pixels, bytes; /* of images that are decoded, those of materials too */
@@ -192,28 +191,18 @@ static nt_status flush(examination *e, nt_error *error)
 	return status;
 }
 
-/* The number of a map; UINT32_MAX: it is new. */
-static uint32_t find_known(const examination *e, const uint64_t identity[2], uint64_t hash)
+static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot, nt_normal_map *map,
+	nt_error *error)
 {
-	size_t at = NT_HASH_BEGIN;
-	for (uint32_t i; (i = nt_hash_index_next(&e->known, hash, &at)) != UINT32_MAX;)
-		if (e->maps[i].identity[0] == identity[0] && e->maps[i].identity[1] == identity[1])
-			return i;
-	return UINT32_MAX;
-}
-
-static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot, nt_normal_map *map, uint32_t number,
-	uint64_t hash, nt_error *error)
-{
+	const size_t number = e->count;
 	nt_status status = NT_OK;
-	if (!nt_grow((void **)&e->maps, &e->capacity, number + 1, sizeof *e->maps) ||
-		!nt_hash_index_add(&e->known, hash, number)) {
+	if (!nt_grow((void **)&e->maps, &e->capacity, number + 1, sizeof *e->maps)) {
 		nt_normal_map_close(map);
 		return nt_fail_memory(error);
 	}
 	const char *use = !nt_format_is_gltf(e->scene->format) ? ""
 		: slot == NT_SLOT_NORMAL ? "normalTexture, " : "clearcoatNormalTexture, ";
-	e->maps[e->count++] = (known_map){.identity = {map->identity[0], map->identity[1]}, .mesh = mesh, .use = use};
+	e->maps[e->count++] = (known_map){.mesh = mesh, .use = use};
 	if (is_wanted(e, map)) {
 		const uint64_t work = nt_image_work(map->bytes, map->size);
 		e->pixels += work;
@@ -236,13 +225,15 @@ static nt_status take_map(examination *e, nt_mesh *mesh, enum nt_slot slot, nt_n
 {
 	if (!map->bytes)
 		return NT_OK;
-	const uint64_t hash = nt_hash_bytes(0, map->identity, sizeof map->identity);
-	const uint32_t found = find_known(e, map->identity, hash);
-	const uint32_t number = found == UINT32_MAX ? (uint32_t)e->count : found;
+	const uint32_t number = nt_key_add(&e->known, map->identity, sizeof map->identity);
 	nt_status status = NT_OK;
+	if (number == UINT32_MAX) {
+		nt_normal_map_close(map);
+		return nt_fail_memory(error);
+	}
 	mesh->normal_maps[slot == NT_SLOT_CLEARCOAT_NORMAL] = (nt_mesh_map){.number = number + 1, .image = map->image};
-	if (found == UINT32_MAX)
-		status = add_map(e, mesh, slot, map, number, hash, error);
+	if (number == e->count)
+		status = add_map(e, mesh, slot, map, error);
 	else
 		nt_normal_map_close(map);
 	if (!status)
@@ -343,7 +334,7 @@ nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_format 
 	nt_tell_kept(scene);
 	for (size_t i = 0; i < e->count; i++)
 		free(e->maps[i].facts);
-	nt_hash_index_free(&e->known);
+	nt_key_set_free(&e->known);
 	free(e->maps);
 	free(e);
 	return status;

@@ -11,8 +11,8 @@
 #include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include "base/hash_index.h"
 #include "file/input.h"
+#include "file/lookup.h"
 #include "file/output.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
@@ -113,14 +113,12 @@ static nt_status note_inputs(nt_report_folder *folder, nt_error *error)
 {
 	const nt_report_target *target = folder->target;
 	struct stat info;
-	folder->inputs = nt_alloc(target->input_count, sizeof *folder->inputs);
-	if (!folder->inputs)
-		return nt_fail_memory(error);
 	for (size_t i = 0; i < target->input_count; i++) {
 		if (stat(target->inputs[i], &info) != 0)
 			continue;
-		folder->inputs[folder->input_count].device = info.st_dev;
-		folder->inputs[folder->input_count++].inode = info.st_ino;
+		const nt_file_id id = nt_file_id_of(&info);
+		if (nt_key_add(&folder->inputs, &id, sizeof id) == UINT32_MAX)
+			return nt_fail_memory(error);
 	}
 	return NT_OK;
 }
@@ -153,9 +151,8 @@ static nt_status check_page(const nt_report_folder *folder, const char *path, nt
 		status = look_for_mark(path, &ours, error);
 	if (status)
 		return status;
-	for (size_t i = 0; i < folder->input_count && ours; i++)
-		ours = !(folder->inputs[i].device == info.st_dev && folder->inputs[i].inode == info.st_ino);
-	if (ours)
+	const nt_file_id id = nt_file_id_of(&info);
+	if (ours && nt_key_find(&folder->inputs, &id, sizeof id) == UINT32_MAX)
 		return NT_OK;
 	return nt_fail_file(error, NT_ERROR_IO, path, "refusing to write: it is no page of a report that nmtan made");
 }
@@ -273,6 +270,6 @@ void nt_report_folder_free(nt_report_folder *folder)
 	for (size_t i = 0; folder->pages && i < folder->target->input_count; i++)
 		free(folder->pages[i]);
 	free(folder->pages);
-	free(folder->inputs);
+	nt_key_set_free(&folder->inputs);
 	nt_buffer_free(&folder->rows);
 }

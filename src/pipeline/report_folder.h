@@ -7,15 +7,14 @@
 #ifndef NT_PIPELINE_REPORT_FOLDER_H
 #define NT_PIPELINE_REPORT_FOLDER_H
 
-#include <sys/types.h>
 #include "base/buffer.h"
+#include "base/hash_index.h"
 #include "pipeline/report_file.h"
 
 typedef struct nt_report_folder {
 	const nt_report_target *target;
 	char **pages;   /* [target->input_count] file names in the folder */
-	struct { dev_t device; ino_t inode; } *inputs; /* [input_count] of those that are there */
-	size_t input_count;
+	nt_key_set inputs; /* nt_file_id of those that are there */
 	nt_buffer rows; /* of the index */
 } nt_report_folder;
 

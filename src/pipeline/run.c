@@ -382,7 +382,7 @@ static nt_status run_stages(run *r)
 		status = nt_tasks_do(&tasks, r->error);
 		nt_error_in_file(r->error, r->input_path);
 	}
-	for (size_t i = 0; i < r->scene.mesh_count && r->settings->digests; i++) {
+	for (size_t i = 0; !status && i < r->scene.mesh_count && r->settings->digests; i++) {
 		const uint64_t digest = r->scene.meshes[i].tangents_digest;
 		if (digest)
 			r->summary->tangents_digest =
@@ -407,7 +407,7 @@ static nt_status run_stages(run *r)
 		status = turn_maps(r);
 	if (!status && r->writer)
 		status = write_scene(r);
-	for (size_t i = 0; i < r->scene.mesh_count; i++)
+	for (size_t i = 0; !status && i < r->scene.mesh_count; i++)
 		if (r->scene.meshes[i].decision == NT_DECISION_NORMALS) /* no report takes them for tangents */
 			r->scene.meshes[i].split = (nt_split){0};
 	return status;

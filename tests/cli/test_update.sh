@@ -667,7 +667,7 @@ run --update --record=full quad.obj q.glb
 ulimit -Sf "$limit"
 trap - XFSZ
 exits 2
-says "full: cannot write the record: No space left on device; the output is complete, --update makes it again"
+says "full: cannot write the record: No space left on device; the output stands, --update makes it again"
 is "$(cksum <full)" "$before"
 run -q quad.obj clean.glb
 same q.glb clean.glb

@@ -25,3 +25,17 @@ TEST(an_empty_index_has_nothing)
 	size_t at = NT_HASH_BEGIN;
 	assert_int_equal(nt_hash_index_next(&index, 7, &at), UINT32_MAX);
 }
+
+TEST(equal_keys_have_one_number)
+{
+	nt_key_set set = {0};
+	assert_int_equal(nt_key_find(&set, "ab", 2), UINT32_MAX);
+	for (uint32_t i = 0; i < 5000; i++) {
+		const uint32_t key[2] = {i % 2500, 7};
+		assert_int_equal(nt_key_add(&set, key, sizeof key), i % 2500);
+		assert_int_equal(nt_key_find(&set, key, sizeof key), i % 2500);
+	}
+	assert_int_equal(set.count, 2500);
+	nt_key_set_free(&set);
+	assert_int_equal(set.count, 0);
+}
