@@ -24,6 +24,7 @@ typedef struct file_set {
 	const char *path; /* of the document */
 	nt_file file;     /* the one that was asked for last */
 	bool open;
+	bool out_of_memory;
 } file_set;
 
 static void close_file(file_set *set)
@@ -39,12 +40,16 @@ static bool find_file(void *user, const char *uri, const unsigned char **bytes, 
 	file_set *set = user;
 	const char *slash = strrchr(set->path, '/'), *written = NULL;
 	nt_buffer path = {0};
-	nt_error ignored;
+	nt_error error;
 	nt_buffer_append(&path, set->path, slash ? (size_t)(slash - set->path) + 1 : 0);
 	nt_buffer_text(&path, uri);
 	close_file(set);
-	set->open = !path.failed && nt_output_written(set->output, path.data, &written, &ignored) == NT_OK &&
-		nt_file_open_untraced(&set->file, written ? written : path.data, &ignored) == NT_OK;
+	nt_status status = path.failed ? nt_fail_memory(&error)
+		: nt_output_written(set->output, path.data, &written, &error);
+	if (!status)
+		status = nt_file_open_untraced(&set->file, written ? written : path.data, &error);
+	set->open = !status;
+	set->out_of_memory |= status == NT_ERROR_MEMORY;
 	nt_buffer_free(&path);
 	*bytes = set->open ? set->file.data : NULL;
 	*size = set->open ? set->file.size : 0;
@@ -572,6 +577,8 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, u
 	file_set set = {.output = output, .path = path};
 	status = nt_reread_open(&model, file.data, file.size, find_file, &set, &refusal);
 	close_file(&set);
+	if (set.out_of_memory) /* tinygltf says that there is no such file */
+		status = nt_fail_memory(&refusal);
 	if (status == NT_OK)
 		status = compare_scene(scene, model, threads, error);
 	else if (status != NT_ERROR_INPUT)
