@@ -577,4 +577,11 @@ value "$data/nmtan-report.schema.json" '"\n".join(sorted(r["$defs"]["code"]["enu
 LC_ALL=C sort -c known
 diff <(LC_ALL=C sort listed) known >/dev/null || wrong "the lists differ"
 
+scene "a report of megabytes is written in pieces, and is one document"
+awk 'BEGIN { for (i = 1; i <= 3000; i++) printf "o m%d\nv 0 0 0\nv %d 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf -3/-3 -2/-2 -1/-1\nf -3/-3 -3/-2 -1/-1\n", i, i }' >many.obj
+for name in many.json many.html many.sarif; do run --check --max-issues=0 --report=$name --fail-on=never many.obj; done
+is "$(value many.json 'len(r["files"][0]["meshes"]), sum(f["code"] == "POS_DEGENERATE_TRIANGLE" for f in r["files"][0]["findings"])')" "(3000, 3000)"
+is "$(value many.html 'sum(f["code"] == "POS_DEGENERATE_TRIANGLE" for f in r["files"][0]["findings"])')" 3000
+is "$(value many.sarif 'len(r["runs"][0]["results"])')" 5000
+
 done_testing

@@ -48,8 +48,9 @@ static void put_spot(const nt_report *report, const nt_report_finding *finding, 
 		nt_buffer_text(out, ",,,");
 }
 
-static void put_row(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
+static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
 {
+	const nt_report *report = w->report;
 	put_cell(nt_finding_file(report, finding), out);
 	if (finding->mesh != NT_NONE)
 		nt_put_label(report, finding->mesh, put_cell, out);
@@ -63,19 +64,22 @@ static void put_row(const nt_report *report, const nt_report_finding *finding, n
 		finding->known ? "known" : "new");
 }
 
-void nt_write_csv(const nt_report_list *reports, nt_buffer *out)
+static void begin(nt_walk *w, nt_buffer *out)
 {
+	(void)w;
 	nt_buffer_text(out, "file,mesh,code,severity,count,message,line,triangle,x,y,z,u,v,fingerprint,"
 		"state\r\n");
-	for (size_t i = 0; i < reports->count; i++) {
-		const nt_report *report = reports->items[i];
-		if (report->failure) {
-			put_cell(report->shown, out);
-			nt_buffer_text(out, ",,error,1,");
-			put_cell(report->failure, out);
-			nt_buffer_text(out, ",,,,,,,,\r\n");
-		}
-		for (size_t k = 0; k < report->finding_count; k++)
-			put_row(report, &report->findings[k], out);
-	}
 }
+
+static void begin_file(nt_walk *w, nt_buffer *out)
+{
+	if (!w->report->failure)
+		return;
+	put_cell(w->report->shown, out);
+	nt_buffer_text(out, ",,error,1,");
+	put_cell(w->report->failure, out);
+	nt_buffer_text(out, ",,,,,,,,\r\n");
+}
+
+const nt_report_writer nt_csv_writer = {
+	.known = true, .begin = begin, .begin_file = begin_file, .put_finding = put_finding};

@@ -352,7 +352,7 @@ nt_status nt_diff_write(const nt_report_diff *diff, nt_report_format format, nt_
 	if (format == NT_REPORT_HTML) {
 		page_json(diff, &changes);
 		versions.changes = &changes;
-		nt_write_html(&versions, &out);
+		nt_report_walk(&nt_html_writer, &versions, &out);
 	} else if (format == NT_REPORT_JSON) {
 		write_json(diff, &out);
 	} else if (format == NT_REPORT_MARKDOWN) {

@@ -36,7 +36,6 @@
 #include <stdio.h>
 #include <string.h>
 #include "base/hash.h"
-#include "base/name_table.h"
 #include "file/base64.h"
 #include "report/pack/pack.h"
 #include "report/pack/thumb.h"
@@ -48,19 +47,8 @@ enum {
 	MOST_TRIANGLES = 3 * 1000 * 1000,
 	IMAGE_BYTES = 16 * 1000 * 1000, /* of normal maps, and of other images */
 	MOST_FINDINGS = 20000,
-	MOST_SEAMS = 20000,
-	FLUSHED_BYTES = 1 << 20
+	MOST_SEAMS = 20000
 };
-
-/* The rest of the budgets while the page grows. */
-typedef struct budget {
-	size_t images[NT_PICTURE_COUNT], findings, seams;
-	size_t left_out;   /* findings */
-	bool seen[NT_CODE_COUNT];
-	const bool *known; /* of a difference: which findings of the file both versions have; NULL */
-	nt_buffer sources; /* data URIs of images, as a JSON array without its end */
-	nt_name_table held; /* their bytes */
-} budget;
 
 /* ---- small things ---- */
 
@@ -73,6 +61,18 @@ static void put_safe(const nt_buffer *json, nt_buffer *out)
 		nt_buffer_text(out, "\\u003c");
 	}
 	nt_buffer_append(out, at, (size_t)(end - at));
+}
+
+/* The same of what was appended since. */
+static void make_safe(nt_buffer *out, size_t since)
+{
+	if (out->size == since || !memchr(out->data + since, '<', out->size - since))
+		return;
+	nt_buffer copy = {0};
+	nt_buffer_append(&copy, out->data + since, out->size - since);
+	out->size = since;
+	put_safe(&copy, out);
+	nt_buffer_free_into(&copy, out);
 }
 
 /* Numbers that read back as doubles. */
@@ -149,7 +149,7 @@ static void put_facts(const nt_report_mesh *m, nt_buffer *out)
 
 /* The image's number among data.images, null where there is none or no room. One that several meshes have is there
  * once. */
-static void put_image(const nt_image *image, size_t *bytes_left, budget *left, nt_buffer *out)
+static void put_image(const nt_image *image, size_t *bytes_left, nt_page_budget *left, nt_buffer *out)
 {
 	const char *bytes = (const char *)image->bytes;
 	uint32_t number = bytes ? nt_name_find(&left->held, bytes, image->size) : NT_NONE;
@@ -171,7 +171,7 @@ static void put_image(const nt_image *image, size_t *bytes_left, budget *left, n
 	nt_buffer_text(&left->sources, "\"");
 }
 
-static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_buffer *out)
+static void put_mesh(const nt_report *report, uint32_t mesh, nt_page_budget *left, nt_buffer *out)
 {
 	const nt_report_mesh *m = &report->meshes[mesh];
 	nt_buffer_text(out, "{");
@@ -203,7 +203,7 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 
 /* ---- findings ---- */
 
-static void put_finding(const nt_report *report, const nt_report_finding *finding, bool known, nt_buffer *out)
+static void put_members(const nt_report *report, const nt_report_finding *finding, bool known, nt_buffer *out)
 {
 	nt_buffer where = {0};
 	nt_put_where(report, finding, report->mesh_count > 1, nt_plain_text, &where);
@@ -233,20 +233,6 @@ static void put_finding(const nt_report *report, const nt_report_finding *findin
 	nt_buffer_free_into(&where, out);
 }
 
-static void put_findings(const nt_report *report, budget *left, nt_buffer *out)
-{
-	size_t i = 0;
-	nt_member_open(out, "findings", "[");
-	for (; i < report->finding_count && left->findings > 0; i++, left->findings--) {
-		nt_member_next(out, 0);
-		const nt_report_finding *finding = &report->findings[i];
-		put_finding(report, finding, left->known ? left->known[i] : finding->known, out);
-		left->seen[finding->code] = true;
-	}
-	left->left_out += report->finding_count - i + report->dropped;
-	nt_buffer_text(out, "]");
-}
-
 /* How a file begins, in its page and in the index. */
 static void put_head(const nt_report *report, nt_buffer *out)
 {
@@ -262,20 +248,7 @@ static void put_head(const nt_report *report, nt_buffer *out)
 	nt_member_text(out, "failure", report->failure);
 }
 
-static void put_file(const nt_report *report, budget *left, nt_buffer *out)
-{
-	put_head(report, out);
-	nt_member_open(out, "meshes", "[");
-	for (size_t i = 0; i < report->mesh_count; i++) {
-		nt_member_next(out, 0);
-		put_mesh(report, (uint32_t)i, left, out);
-	}
-	nt_buffer_text(out, "]");
-	put_findings(report, left, out);
-	nt_buffer_text(out, "}");
-}
-
-static void put_codes(const budget *left, nt_buffer *out)
+static void put_codes(const nt_page_budget *left, nt_buffer *out)
 {
 	nt_member_open(out, "codes", "{");
 	for (unsigned code = 0; code < NT_CODE_COUNT; code++) {
@@ -292,34 +265,6 @@ static void put_codes(const budget *left, nt_buffer *out)
 }
 
 /* ---- the page ---- */
-
-static void put_data(const nt_report_list *reports, nt_buffer *out)
-{
-	budget left = {.images = {IMAGE_BYTES, IMAGE_BYTES}, .findings = MOST_FINDINGS, .seams = MOST_SEAMS};
-	nt_buffer json = {0}; /* without the images, which are large and safe */
-	nt_buffer_text(&json, "{\"files\":[");
-	for (size_t i = 0; i < reports->count; i++) {
-		left.known = reports->diff ? reports->diff->known[i] : NULL;
-		put_file(reports->items[i], &left, &json);
-	}
-	nt_buffer_text(&json, "]");
-	put_codes(&left, &json);
-	nt_member_count(&json, "left_out", left.left_out);
-	nt_member_text(&json, "index", reports->style.index);
-	if (reports->diff) {
-		nt_member_key(&json, NT_SAME_LINE, "diff");
-		nt_buffer_append(&json, reports->changes->data, reports->changes->size);
-		nt_buffer_free_into(reports->changes, &json);
-	}
-	nt_buffer_text(out, "<script type=\"application/json\" id=\"data\">");
-	put_safe(&json, out);
-	nt_buffer_free_into(&json, out);
-	nt_member_open(out, "images", "[");
-	nt_buffer_append(out, left.sources.data, left.sources.size);
-	nt_buffer_free_into(&left.sources, out);
-	nt_name_table_free(&left.held);
-	nt_buffer_text(out, "]}</script>\n");
-}
 
 static void put_geometry(const nt_report *report, size_t file, uint32_t mesh, size_t most, nt_buffer *out)
 {
@@ -360,7 +305,7 @@ static void put_geometries(const nt_report_list *reports, nt_buffer *out)
 				continue;
 			const double most = ceil(share * (double)report->meshes[m].geometry->triangle_count);
 			put_geometry(report, i, m, (size_t)most, out);
-			nt_list_flush(reports, FLUSHED_BYTES, out);
+			nt_list_flush(reports, NT_FLUSHED_BYTES, out);
 		}
 	}
 }
@@ -407,15 +352,76 @@ static void begin_page(bool in_folder, nt_buffer *out)
 	nt_buffer_text(out, nt_page_body);
 }
 
-void nt_write_html(const nt_report_list *reports, nt_buffer *out)
+static void begin(nt_walk *w, nt_buffer *out)
 {
-	const bool in_folder = reports->style.index;
-	begin_page(in_folder, out);
-	put_data(reports, out);
-	put_part(NT_HTML_SCRIPT, in_folder, out);
+	w->page = (nt_page_budget){.images = {IMAGE_BYTES, IMAGE_BYTES}, .findings = MOST_FINDINGS,
+		.seams = MOST_SEAMS};
+	begin_page(w->reports->style.index, out);
+	nt_buffer_text(out, "<script type=\"application/json\" id=\"data\">{\"files\":[");
+}
+
+static void begin_file(nt_walk *w, nt_buffer *out)
+{
+	const size_t since = out->size;
+	put_head(w->report, out);
+	nt_member_open(out, "meshes", "[");
+	for (size_t i = 0; i < w->report->mesh_count; i++) {
+		nt_member_next(out, 0);
+		put_mesh(w->report, (uint32_t)i, &w->page, out);
+	}
+	nt_buffer_text(out, "]");
+	nt_member_open(out, "findings", "[");
+	w->page.left_out += w->report->dropped;
+	make_safe(out, since);
+}
+
+static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
+{
+	const size_t since = out->size;
+	const nt_report_diff *diff = w->reports->diff;
+	if (!w->page.findings) {
+		w->page.left_out++;
+		return;
+	}
+	nt_member_next(out, 0);
+	put_members(w->report, finding, diff ? diff->known[w->file][w->finding] : finding->known, out);
+	w->page.seen[finding->code] = true;
+	w->page.findings--;
+	make_safe(out, since);
+}
+
+static void end_file(nt_walk *w, nt_buffer *out)
+{
+	(void)w;
+	nt_buffer_text(out, "]}");
+}
+
+static void end(nt_walk *w, nt_buffer *out)
+{
+	const nt_report_list *reports = w->reports;
+	const size_t since = out->size;
+	nt_buffer_text(out, "]");
+	put_codes(&w->page, out);
+	nt_member_count(out, "left_out", w->page.left_out);
+	nt_member_text(out, "index", reports->style.index);
+	if (reports->diff) {
+		nt_member_key(out, NT_SAME_LINE, "diff");
+		nt_buffer_append(out, reports->changes->data, reports->changes->size);
+		nt_buffer_free_into(reports->changes, out);
+	}
+	make_safe(out, since);
+	nt_member_open(out, "images", "[");
+	nt_buffer_append(out, w->page.sources.data, w->page.sources.size);
+	nt_buffer_free_into(&w->page.sources, out);
+	nt_name_table_free(&w->page.held);
+	nt_buffer_text(out, "]}</script>\n");
+	put_part(NT_HTML_SCRIPT, reports->style.index, out);
 	put_geometries(reports, out);
 	nt_buffer_text(out, "</body>\n</html>\n");
 }
+
+const nt_report_writer nt_html_writer = {.known = true, .begin = begin, .begin_file = begin_file,
+	.put_finding = put_finding, .end_file = end_file, .end = end};
 
 /* ---- the index of many pages ---- */
 

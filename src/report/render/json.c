@@ -298,8 +298,10 @@ static void put_spot(nt_buffer *out, const nt_report *report, const nt_spot *spo
 	nt_buffer_text(out, "}");
 }
 
-static void put_finding(nt_buffer *out, const nt_report *report, const nt_report_finding *finding)
+static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
 {
+	const nt_report *report = w->report;
+	nt_member_next(out, 4);
 	nt_buffer_text(out, "{");
 	nt_member_text(out, "code", nt_code_info(finding->code)->name);
 	nt_member_text(out, "severity", nt_severity_name(finding->severity));
@@ -343,8 +345,10 @@ static void put_failure(nt_buffer *out, const nt_report *report)
 	nt_buffer_text(out, "}");
 }
 
-static void put_report(nt_buffer *out, const nt_report *report)
+static void begin_file(nt_walk *w, nt_buffer *out)
 {
+	const nt_report *report = w->report;
+	nt_member_next(out, 2);
 	const nt_report_list one = {.items = &report, .count = 1};
 	const nt_totals totals = nt_report_totals(&one);
 	nt_buffer_text(out, "{");
@@ -370,17 +374,17 @@ static void put_report(nt_buffer *out, const nt_report *report)
 	nt_buffer_text(out, "]");
 	nt_member_key(out, 3, "findings");
 	nt_buffer_text(out, "[");
-	for (size_t i = 0; i < report->finding_count; i++) {
-		nt_member_next(out, 4);
-		put_finding(out, report, &report->findings[i]);
-	}
-	nt_buffer_text(out, "]");
-	nt_buffer_text(out, "\n\t\t}");
 }
 
-void nt_write_json(const nt_report_list *reports, nt_buffer *out)
+static void end_file(nt_walk *w, nt_buffer *out)
 {
-	const nt_totals totals = nt_report_totals(reports);
+	(void)w;
+	nt_buffer_text(out, "]\n\t\t}");
+}
+
+static void begin(nt_walk *w, nt_buffer *out)
+{
+	const nt_totals totals = nt_report_totals(w->reports);
 	nt_buffer_text(out, "{");
 	nt_member_key(out, 1, "report");
 	nt_buffer_text(out, "\"nmtan\"");
@@ -391,10 +395,13 @@ void nt_write_json(const nt_report_list *reports, nt_buffer *out)
 	put_totals(out, 1, &totals);
 	nt_member_key(out, 1, "files");
 	nt_buffer_text(out, "[");
-	for (size_t i = 0; i < reports->count; i++) {
-		nt_member_next(out, 2);
-		put_report(out, reports->items[i]);
-	}
-	nt_buffer_text(out, "]");
-	nt_buffer_text(out, "\n}\n");
 }
+
+static void end(nt_walk *w, nt_buffer *out)
+{
+	(void)w;
+	nt_buffer_text(out, "]\n}\n");
+}
+
+const nt_report_writer nt_json_writer = {.known = true, .begin = begin, .begin_file = begin_file,
+	.put_finding = put_finding, .end_file = end_file, .end = end};

@@ -18,74 +18,71 @@ static size_t count_failures(const nt_report_list *reports, const nt_report *rep
 	return count;
 }
 
-/* The findings that fail, or the others: one per line. */
-static void put_findings(const nt_report_list *reports, const nt_report *report, bool failures, nt_buffer *out)
+static void begin(nt_walk *w, nt_buffer *out)
 {
-	for (size_t i = 0; i < report->finding_count; i++) {
-		const nt_report_finding *finding = &report->findings[i];
-		if (is_failure(reports, finding) != failures)
-			continue;
-		nt_buffer_format(out, "%s: %s: ", nt_severity_name(finding->severity),
-			nt_code_info(finding->code)->name);
-		nt_put_sentence(report, finding, nt_xml_text, out);
-		nt_put_line(finding, ", ", nt_xml_text, out);
-		nt_buffer_text(out, finding->known ? " (known)\n" : "\n");
+	size_t failures = 0, errors = 0;
+	for (size_t i = 0; i < w->count; i++) {
+		errors += w->items[i]->failure != NULL;
+		failures += count_failures(w->reports, w->items[i]) > 0;
 	}
+	nt_buffer_text(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+	for (int level = 0; level < 2; level++)
+		nt_buffer_format(out, "%s name=\"nmtan\" tests=\"%zu\" failures=\"%zu\" errors=\"%zu\">\n",
+			level ? "\t<testsuite" : "<testsuites", w->count, failures, errors);
+}
+
+/* A line, of those that fail or of the others. */
+static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
+{
+	const bool fails = is_failure(w->reports, finding);
+	nt_buffer *to = &w->parts[fails];
+	nt_buffer_format(to, "%s: %s: ", nt_severity_name(finding->severity), nt_code_info(finding->code)->name);
+	nt_put_sentence(w->report, finding, nt_xml_text, to);
+	nt_put_line(finding, ", ", nt_xml_text, to);
+	nt_buffer_text(to, finding->known ? " (known)\n" : "\n");
+	w->first = w->first || !fails ? w->first : finding;
+	w->rows += fails;
+	out->failed |= to->failed;
 }
 
 /* The type and the sentence of the first are what dashboards list. */
-static void put_failure(const nt_report_list *reports, const nt_report *report, size_t count, nt_buffer *out)
+static void put_failure(const nt_walk *w, nt_buffer *out)
 {
-	size_t first = 0;
-	while (!is_failure(reports, &report->findings[first]))
-		first++;
-	nt_buffer_format(out, "\t\t\t<failure type=\"%s\" message=\"",
-		nt_code_info(report->findings[first].code)->name);
-	nt_put_sentence(report, &report->findings[first], nt_xml_text, out);
-	if (count > 1)
-		nt_buffer_format(out, "; and %zu more", count - 1);
-	nt_buffer_text(out, "\">");
-	put_findings(reports, report, true, out);
-	nt_buffer_text(out, "</failure>\n");
+	nt_buffer_format(out, "\t\t\t<failure type=\"%s\" message=\"", nt_code_info(w->first->code)->name);
+	nt_put_sentence(w->report, w->first, nt_xml_text, out);
+	if (w->rows > 1)
+		nt_buffer_format(out, "; and %zu more", w->rows - 1);
+	nt_buffer_format(out, "\">%s</failure>\n", w->parts[1].data ? w->parts[1].data : "");
 }
 
-static void put_case(const nt_report_list *reports, const nt_report *report, nt_buffer *out)
+static void end_file(nt_walk *w, nt_buffer *out)
 {
-	const size_t failures = count_failures(reports, report);
+	const nt_report *report = w->report;
 	nt_buffer_text(out, "\t\t<testcase classname=\"nmtan\" name=\"");
 	nt_xml_text(report->shown, out);
-	if (!report->failure && !report->finding_count) {
-		nt_buffer_text(out, "\"/>\n");
-		return;
-	}
-	nt_buffer_text(out, "\">\n");
+	nt_buffer_text(out, report->failure || report->finding_count ? "\">\n" : "\"/>\n");
 	if (report->failure) {
 		nt_buffer_text(out, "\t\t\t<error type=\"not judged\" message=\"");
 		nt_xml_text(report->failure, out);
 		nt_buffer_text(out, "\"/>\n");
 	}
-	if (failures)
-		put_failure(reports, report, failures, out);
-	if (report->finding_count > failures) {
-		nt_buffer_text(out, "\t\t\t<system-out>");
-		put_findings(reports, report, false, out);
-		nt_buffer_text(out, "</system-out>\n");
-	}
-	nt_buffer_text(out, "\t\t</testcase>\n");
+	if (w->first)
+		put_failure(w, out);
+	if (w->parts[0].size)
+		nt_buffer_format(out, "\t\t\t<system-out>%s</system-out>\n", w->parts[0].data);
+	if (report->failure || report->finding_count)
+		nt_buffer_text(out, "\t\t</testcase>\n");
+	nt_buffer_free_into(&w->parts[0], out);
+	nt_buffer_free_into(&w->parts[1], out);
+	w->first = NULL;
+	w->rows = 0;
 }
 
-void nt_write_junit(const nt_report_list *reports, nt_buffer *out)
+static void end(nt_walk *w, nt_buffer *out)
 {
-	size_t failures = 0, errors = 0;
-	for (size_t i = 0; i < reports->count; i++) {
-		errors += reports->items[i]->failure != NULL;
-		failures += count_failures(reports, reports->items[i]) > 0;
-	}
-	nt_buffer_text(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-	for (int level = 0; level < 2; level++)
-		nt_buffer_format(out, "%s name=\"nmtan\" tests=\"%zu\" failures=\"%zu\" errors=\"%zu\">\n",
-			level ? "\t<testsuite" : "<testsuites", reports->count, failures, errors);
-	for (size_t i = 0; i < reports->count; i++)
-		put_case(reports, reports->items[i], out);
+	(void)w;
 	nt_buffer_text(out, "\t</testsuite>\n</testsuites>\n");
 }
+
+const nt_report_writer nt_junit_writer = {
+	.known = true, .begin = begin, .put_finding = put_finding, .end_file = end_file, .end = end};

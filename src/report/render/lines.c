@@ -22,26 +22,25 @@ static void put_raw(const char *text, nt_buffer *out)
 	nt_buffer_text(out, text);
 }
 
+static void put_failure(const nt_walk *w, void (*put)(const log_line *line, nt_buffer *out), nt_buffer *out)
+{
+	const nt_report *report = w->report;
+	if (report->failure)
+		put(&(log_line){report->shown, report->failure_place.line, NT_SEVERITY_ERROR, NULL, report->failure},
+			out);
+}
+
 /* before: the remedy. */
-static void put_each(const nt_report_list *reports, const char *before,
+static void put_new(const nt_walk *w, const nt_report_finding *finding, const char *before,
 	void (*put)(const log_line *line, nt_buffer *out), nt_buffer *out)
 {
-	for (size_t i = 0; i < reports->count; i++) {
-		const nt_report *report = reports->items[i];
-		if (report->failure)
-			put(&(log_line){report->shown, report->failure_place.line, NT_SEVERITY_ERROR, NULL,
-				report->failure}, out);
-		for (size_t k = 0; k < report->new_count; k++) {
-			const nt_report_finding *finding = &report->findings[k];
-			nt_buffer text = {0};
-			nt_put_sentence(report, finding, put_raw, &text);
-			nt_buffer_text(&text, before);
-			nt_remedy_text(finding->code, finding->repair, report->given, report->path, &text);
-			put(&(log_line){nt_finding_file(report, finding), nt_finding_line(finding), finding->severity,
-				nt_code_info(finding->code)->name, text.data ? text.data : ""}, out);
-			nt_buffer_free_into(&text, out);
-		}
-	}
+	nt_buffer text = {0};
+	nt_put_sentence(w->report, finding, put_raw, &text);
+	nt_buffer_text(&text, before);
+	nt_remedy_text(finding->code, finding->repair, w->report->given, w->report->path, &text);
+	put(&(log_line){nt_finding_file(w->report, finding), nt_finding_line(finding), finding->severity,
+		nt_code_info(finding->code)->name, text.data ? text.data : ""}, out);
+	nt_buffer_free_into(&text, out);
 }
 
 /* ---- as compilers print ---- */
@@ -58,10 +57,17 @@ static void put_compiler_line(const log_line *line, nt_buffer *out)
 	nt_buffer_text(out, "\n");
 }
 
-void nt_write_lines(const nt_report_list *reports, nt_buffer *out)
+static void begin_lines(nt_walk *w, nt_buffer *out)
 {
-	put_each(reports, ". ", put_compiler_line, out);
+	put_failure(w, put_compiler_line, out);
 }
+
+static void put_lines_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
+{
+	put_new(w, finding, ". ", put_compiler_line, out);
+}
+
+const nt_report_writer nt_lines_writer = {.begin_file = begin_lines, .put_finding = put_lines_finding};
 
 /* ---- for GitHub ---- */
 
@@ -92,7 +98,14 @@ static void put_command(const log_line *line, nt_buffer *out)
 	nt_buffer_text(out, "\n");
 }
 
-void nt_write_github(const nt_report_list *reports, nt_buffer *out)
+static void begin_github(nt_walk *w, nt_buffer *out)
 {
-	put_each(reports, "\n", put_command, out);
+	put_failure(w, put_command, out);
 }
+
+static void put_github_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
+{
+	put_new(w, finding, "\n", put_command, out);
+}
+
+const nt_report_writer nt_github_writer = {.begin_file = begin_github, .put_finding = put_github_finding};

@@ -62,30 +62,6 @@ void nt_markdown_finding(const nt_report *report, const nt_report_finding *findi
 	nt_buffer_text(out, " |\n");
 }
 
-static void put_findings(const nt_report *report, size_t *rows, nt_buffer *out)
-{
-	size_t missing = 0;
-	nt_buffer_text(out, "\n### ");
-	nt_markdown_text(report->shown, out);
-	nt_buffer_text(out, "\n\n");
-	nt_put_verdict(report, nt_markdown_text, out);
-	nt_buffer_text(out, "\n");
-	if (report->new_count)
-		nt_buffer_text(out, "\n| severity | code | where | finding |\n|---|---|---|---|\n");
-	for (size_t i = 0; i < report->new_count; i++) {
-		if (*rows < MOST_ROWS) {
-			nt_markdown_finding(report, &report->findings[i], out);
-			++*rows;
-		} else {
-			missing++;
-		}
-	}
-	nt_put_together(report, "\n", nt_markdown_text, out);
-	nt_dropped_text(report, "\nAnd ", ".\n", out);
-	if (missing)
-		nt_buffer_format(out, "\n%zu findings more do not fit.\n", missing);
-}
-
 /* Inputs that could not be read first, then by errors, warnings and infos. */
 static int by_worst(const void *a, const void *b)
 {
@@ -103,29 +79,56 @@ static bool is_clean(const nt_report *report)
 	return !report->failure && !report->by_severity[NT_SEVERITY_ERROR] && !report->by_severity[NT_SEVERITY_WARNING];
 }
 
-void nt_write_markdown(const nt_report_list *reports, nt_buffer *out)
+static void begin(nt_walk *w, nt_buffer *out)
 {
-	const nt_totals totals = nt_report_totals(reports);
-	const nt_report **sorted = nt_alloc(reports->count, sizeof *sorted);
-	if (!sorted) {
-		out->failed = true;
-		return;
-	}
-	if (reports->count)
-		memcpy(sorted, reports->items, reports->count * sizeof *sorted);
-	qsort(sorted, reports->count, sizeof *sorted, by_worst);
+	const nt_totals totals = nt_report_totals(w->reports);
+	qsort(w->items, w->count, sizeof *w->items, by_worst);
 	nt_buffer_text(out, "## nmtan: ");
 	nt_totals_text(&totals, out);
 	nt_buffer_text(out, "\n\n| file | errors | warnings | infos | triangles | mirrored | mirror seams |\n"
 		"|---|---:|---:|---:|---:|---:|---:|\n");
-	size_t files = 0, rows = 0;
-	for (; files < reports->count && files < MOST_FILES && (files == 0 || !is_clean(sorted[files])); files++)
-		put_file_row(sorted[files], out);
-	if (files < reports->count)
-		nt_buffer_format(out, "\n%zu more files are not shown%s.\n", reports->count - files,
-			is_clean(sorted[files]) ? ", all without errors and warnings" : "");
-	for (size_t i = 0; i < files; i++)
-		if (sorted[i]->finding_count)
-			put_findings(sorted[i], &rows, out);
-	free(sorted);
+	size_t files = 0;
+	for (; files < w->count && files < MOST_FILES && (files == 0 || !is_clean(w->items[files])); files++)
+		put_file_row(w->items[files], out);
+	if (files < w->count)
+		nt_buffer_format(out, "\n%zu more files are not shown%s.\n", w->count - files,
+			is_clean(w->items[files]) ? ", all without errors and warnings" : "");
+	w->count = files;
 }
+
+static void begin_file(nt_walk *w, nt_buffer *out)
+{
+	if (!w->report->finding_count)
+		return;
+	nt_buffer_text(out, "\n### ");
+	nt_markdown_text(w->report->shown, out);
+	nt_buffer_text(out, "\n\n");
+	nt_put_verdict(w->report, nt_markdown_text, out);
+	nt_buffer_text(out, "\n");
+	if (w->report->new_count)
+		nt_buffer_text(out, "\n| severity | code | where | finding |\n|---|---|---|---|\n");
+}
+
+static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
+{
+	if (w->rows < MOST_ROWS) {
+		nt_markdown_finding(w->report, finding, out);
+		w->rows++;
+	} else {
+		w->missing++;
+	}
+}
+
+static void end_file(nt_walk *w, nt_buffer *out)
+{
+	if (!w->report->finding_count)
+		return;
+	nt_put_together(w->report, "\n", nt_markdown_text, out);
+	nt_dropped_text(w->report, "\nAnd ", ".\n", out);
+	if (w->missing)
+		nt_buffer_format(out, "\n%zu findings more do not fit.\n", w->missing);
+	w->missing = 0;
+}
+
+const nt_report_writer nt_markdown_writer = {
+	.begin = begin, .begin_file = begin_file, .put_finding = put_finding, .end_file = end_file};

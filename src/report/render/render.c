@@ -1,26 +1,28 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The table of report formats: see render.h.
+ * The table of report formats, and the walk that writes them all: see render.h.
  */
 #include "report/render/render.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include "report/render/writers.h"
 
+
 static const struct {
 	const char *name, *extensions;
-	void (*write)(const nt_report_list *, nt_buffer *);
+	const nt_report_writer *writer;
 } formats[NT_REPORT_FORMAT_COUNT] = {
-	[NT_REPORT_TEXT] = {"text", ".txt", nt_write_text},
-	[NT_REPORT_JSON] = {"json", ".json", nt_write_json},
-	[NT_REPORT_SARIF] = {"sarif", ".sarif", nt_write_sarif},
-	[NT_REPORT_JUNIT] = {"junit", ".xml", nt_write_junit},
-	[NT_REPORT_CSV] = {"csv", ".csv", nt_write_csv},
-	[NT_REPORT_MARKDOWN] = {"markdown", ".md", nt_write_markdown},
-	[NT_REPORT_HTML] = {"html", ".html .htm", nt_write_html},
-	[NT_REPORT_LINES] = {"lines", NULL, nt_write_lines},
-	[NT_REPORT_GITHUB] = {"github", NULL, nt_write_github},
+	[NT_REPORT_TEXT] = {"text", ".txt", &nt_text_writer},
+	[NT_REPORT_JSON] = {"json", ".json", &nt_json_writer},
+	[NT_REPORT_SARIF] = {"sarif", ".sarif", &nt_sarif_writer},
+	[NT_REPORT_JUNIT] = {"junit", ".xml", &nt_junit_writer},
+	[NT_REPORT_CSV] = {"csv", ".csv", &nt_csv_writer},
+	[NT_REPORT_MARKDOWN] = {"markdown", ".md", &nt_markdown_writer},
+	[NT_REPORT_HTML] = {"html", ".html .htm", &nt_html_writer},
+	[NT_REPORT_LINES] = {"lines", NULL, &nt_lines_writer},
+	[NT_REPORT_GITHUB] = {"github", NULL, &nt_github_writer},
 };
 
 /* Whether a list of extensions separated by spaces has the one that the path ends in. */
@@ -47,6 +49,38 @@ bool nt_report_format_of_path(const char *path, nt_report_format *format)
 	return false;
 }
 
+static void call(void (*part)(nt_walk *w, nt_buffer *out), nt_walk *w, nt_buffer *out)
+{
+	if (part)
+		part(w, out);
+	nt_list_flush(w->reports, NT_FLUSHED_BYTES, out);
+}
+
+void nt_report_walk(const nt_report_writer *writer, const nt_report_list *reports, nt_buffer *out)
+{
+	nt_walk w = {.reports = reports, .count = reports->count,
+		.items = nt_alloc(reports->count, sizeof *w.items)};
+	if (!w.items) {
+		out->failed = true;
+		return;
+	}
+	if (w.count)
+		memcpy(w.items, reports->items, w.count * sizeof *w.items);
+	call(writer->begin, &w, out);
+	for (; w.file < w.count && !reports->stream->status; w.file++) {
+		w.report = w.items[w.file];
+		call(writer->begin_file, &w, out);
+		const size_t count = writer->known ? w.report->finding_count : w.report->new_count;
+		for (w.finding = 0; w.finding < count && writer->put_finding; w.finding++) {
+			writer->put_finding(&w, &w.report->findings[w.finding], out);
+			nt_list_flush(reports, NT_FLUSHED_BYTES, out);
+		}
+		call(writer->end_file, &w, out);
+	}
+	call(writer->end, &w, out);
+	free(w.items);
+}
+
 nt_status nt_report_write(const nt_report *const *reports, size_t count, nt_report_format format,
 	const nt_report_style *style, nt_report_sink sink, void *user, nt_error *error)
 {
@@ -55,7 +89,7 @@ nt_status nt_report_write(const nt_report *const *reports, size_t count, nt_repo
 	if (style)
 		list.style = *style;
 	nt_buffer out = {0};
-	formats[format].write(&list, &out);
+	nt_report_walk(formats[format].writer, &list, &out);
 	nt_list_flush(&list, 0, &out);
 	if (out.failed && !stream.status)
 		stream.status = nt_fail_memory(error);

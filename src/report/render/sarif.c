@@ -123,9 +123,20 @@ static void put_location(const nt_report *report, const nt_report_finding *findi
 	nt_buffer_text(out, "}]");
 }
 
-static void put_result(const nt_report *report, const nt_report_finding *finding, bool has_baseline,
-	nt_buffer *out)
+static bool has_baseline(const nt_report_list *reports)
 {
+	bool compared = false;
+	for (size_t i = 0; i < reports->count; i++)
+		compared |= reports->items[i]->compared;
+	return compared;
+}
+
+static void put_result(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
+{
+	const nt_report *report = w->report;
+	if (w->rows == MOST_RESULTS)
+		return;
+	nt_buffer_text(out, w->rows++ ? ",\n\t\t\t" : "\n\t\t\t");
 	nt_buffer_text(out, "{");
 	put_text("ruleId", nt_code_info(finding->code)->name, out);
 	nt_buffer_format(out, ", \"ruleIndex\": %u, \"level\": \"%s\", \"message\": {", (unsigned)finding->code,
@@ -138,7 +149,7 @@ static void put_result(const nt_report *report, const nt_report_finding *finding
 	if (finding->geometry)
 		nt_buffer_format(out, ", \"geometry/v1\": \"%016llx\"", (unsigned long long)finding->geometry);
 	nt_buffer_text(out, "}");
-	if (has_baseline)
+	if (has_baseline(w->reports))
 		nt_buffer_format(out, ", \"baselineState\": \"%s\"", finding->known ? "unchanged" : "new");
 	nt_buffer_format(out, ", \"occurrenceCount\": %zu, \"properties\": {", finding->count);
 	for (unsigned i = 0; i < finding->number_count; i++) {
@@ -146,20 +157,6 @@ static void put_result(const nt_report *report, const nt_report_finding *finding
 		nt_json_float(finding->numbers[i].value, out);
 	}
 	nt_buffer_text(out, "}}");
-}
-
-static void put_results(const nt_report_list *reports, bool has_baseline, nt_buffer *out)
-{
-	size_t count = 0;
-	nt_buffer_text(out, "\t\t\"results\": [");
-	for (size_t i = 0; i < reports->count; i++) {
-		const nt_report *report = reports->items[i];
-		for (size_t k = 0; k < report->finding_count && count < MOST_RESULTS; k++) {
-			nt_buffer_text(out, count++ ? ",\n\t\t\t" : "\n\t\t\t");
-			put_result(report, &report->findings[k], has_baseline, out);
-		}
-	}
-	nt_buffer_text(out, "\n\t\t],\n");
 }
 
 /* Inputs that could not be read, and findings that are not here. */
@@ -190,18 +187,22 @@ static void put_invocation(const nt_report_list *reports, nt_buffer *out)
 	nt_buffer_text(out, "]}]\n");
 }
 
-void nt_write_sarif(const nt_report_list *reports, nt_buffer *out)
+static void begin(nt_walk *w, nt_buffer *out)
 {
-	bool has_baseline = false;
-	for (size_t i = 0; i < reports->count; i++)
-		has_baseline |= reports->items[i]->compared;
+	(void)w;
 	nt_buffer_text(out, "{\n\t\"$schema\": \"https://json.schemastore.org/sarif-2.1.0.json\",\n"
 		"\t\"version\": \"2.1.0\",\n\t\"runs\": [{\n\t\t\"tool\": {\n\t\t\t\"driver\": {\n");
 	nt_buffer_format(out, "\t\t\t\t\"name\": \"nmtan\",\n\t\t\t\t\"version\": \"%s\",\n",
 		NMTAN_VERSION_STRING);
 	put_rules(out);
-	nt_buffer_text(out, "\t\t\t}\n\t\t},\n\t\t\"columnKind\": \"utf16CodeUnits\",\n");
-	put_results(reports, has_baseline, out);
-	put_invocation(reports, out);
+	nt_buffer_text(out, "\t\t\t}\n\t\t},\n\t\t\"columnKind\": \"utf16CodeUnits\",\n\t\t\"results\": [");
+}
+
+static void end(nt_walk *w, nt_buffer *out)
+{
+	nt_buffer_text(out, "\n\t\t],\n");
+	put_invocation(w->reports, out);
 	nt_buffer_text(out, "\t}]\n}\n");
 }
+
+const nt_report_writer nt_sarif_writer = {.known = true, .begin = begin, .put_finding = put_result, .end = end};

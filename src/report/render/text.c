@@ -158,13 +158,15 @@ static void write_finding(const nt_report_list *reports, const nt_report *report
 	}
 }
 
-static void write_report(const nt_report_list *reports, const nt_report *report, nt_buffer *out)
+static void begin_file(nt_walk *w, nt_buffer *out)
 {
+	const nt_report *report = w->report;
 	const nt_report_list one = {.items = &report, .count = 1};
 	const nt_totals totals = nt_report_totals(&one);
-	paint(reports, bold, out);
+	memset(w->told, 0, sizeof w->told);
+	paint(w->reports, bold, out);
 	nt_buffer_clean(out, report->shown);
-	paint(reports, plain, out);
+	paint(w->reports, plain, out);
 	nt_buffer_text(out, ": ");
 	if (report->failure) {
 		nt_buffer_text(out, "not judged: ");
@@ -182,27 +184,36 @@ static void write_report(const nt_report_list *reports, const nt_report *report,
 	nt_buffer_text(out, "\n");
 	for (size_t i = 0; i < report->mesh_count; i++)
 		write_mesh(report, (uint32_t)i, out);
-	/* remedies, each with its command once */
-	const char *told[NT_CODE_COUNT] = {NULL};
-	for (size_t i = 0; i < report->new_count; i++) {
-		const nt_report_finding *finding = &report->findings[i];
-		const char *repair = finding->repair ? finding->repair : "", **last = &told[finding->code];
-		const bool remedy = !*last || (*repair && strcmp(*last, repair) != 0);
-		write_finding(reports, report, finding, remedy, out);
-		*last = remedy ? repair : *last;
-	}
-	nt_put_together(report, "  ", nt_plain_text, out);
-	nt_dropped_text(report, "  and ", "; --max-issues=0 shows all\n", out);
 }
 
-void nt_write_text(const nt_report_list *reports, nt_buffer *out)
+/* Remedies, each with its command once. */
+static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
 {
-	for (size_t i = 0; i < reports->count; i++)
-		write_report(reports, reports->items[i], out);
-	if (reports->count > 1) {
-		const nt_totals totals = nt_report_totals(reports);
-		nt_buffer_format(out, "%zu files: ", reports->count);
-		nt_totals_text(&totals, out);
-		nt_buffer_text(out, "\n");
-	}
+	const char *repair = finding->repair ? finding->repair : "", **last = &w->told[finding->code];
+	const bool remedy = !*last || (*repair && strcmp(*last, repair) != 0);
+	if (w->report->failure)
+		return;
+	write_finding(w->reports, w->report, finding, remedy, out);
+	*last = remedy ? repair : *last;
 }
+
+static void end_file(nt_walk *w, nt_buffer *out)
+{
+	if (w->report->failure)
+		return;
+	nt_put_together(w->report, "  ", nt_plain_text, out);
+	nt_dropped_text(w->report, "  and ", "; --max-issues=0 shows all\n", out);
+}
+
+static void end(nt_walk *w, nt_buffer *out)
+{
+	const nt_totals totals = nt_report_totals(w->reports);
+	if (w->count < 2)
+		return;
+	nt_buffer_format(out, "%zu files: ", w->count);
+	nt_totals_text(&totals, out);
+	nt_buffer_text(out, "\n");
+}
+
+const nt_report_writer nt_text_writer = {
+	.begin_file = begin_file, .put_finding = put_finding, .end_file = end_file, .end = end};

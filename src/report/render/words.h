@@ -35,7 +35,9 @@ typedef struct nt_report_list {
 	nt_buffer *changes;         /* and what the page says of it, as JSON; empty when it is written */
 } nt_report_list;
 
-/* Hands on what a large document has so far, if it is `least` bytes or more. */
+/* Hands on what a large document has so far, if it is `least` bytes or more: but for the last byte, by which the next
+ * knows whether a comma is due. least 0: all of it, at the end. */
+enum { NT_FLUSHED_BYTES = 1 << 20 };
 void nt_list_flush(const nt_report_list *reports, size_t least, nt_buffer *out);
 
 /* New findings of all reports, by severity; known ones, and new ones that were dropped. */
