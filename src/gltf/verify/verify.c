@@ -24,7 +24,7 @@ typedef struct file_set {
 	const char *path; /* of the document */
 	nt_file file;     /* the one that was asked for last */
 	bool open;
-	bool out_of_memory;
+	nt_error failure; /* why a file of this run could not be read: tinygltf says that there is no such file */
 } file_set;
 
 static void close_file(file_set *set)
@@ -49,7 +49,8 @@ static bool find_file(void *user, const char *uri, const unsigned char **bytes, 
 	if (!status)
 		status = nt_file_open_untraced(&set->file, written ? written : path.data, &error);
 	set->open = !status;
-	set->out_of_memory |= status == NT_ERROR_MEMORY;
+	if (status && (written || status == NT_ERROR_MEMORY))
+		set->failure = error;
 	nt_buffer_free(&path);
 	*bytes = set->open ? set->file.data : NULL;
 	*size = set->open ? set->file.size : 0;
@@ -577,8 +578,10 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, u
 	file_set set = {.output = output, .path = path};
 	status = nt_reread_open(&model, file.data, file.size, find_file, &set, &refusal);
 	close_file(&set);
-	if (set.out_of_memory) /* tinygltf says that there is no such file */
-		status = nt_fail_memory(&refusal);
+	if (set.failure.status) {
+		refusal = set.failure;
+		status = refusal.status;
+	}
 	if (status == NT_OK)
 		status = compare_scene(scene, model, threads, error);
 	else if (status != NT_ERROR_INPUT)
