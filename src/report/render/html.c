@@ -5,13 +5,13 @@
  * The text comes first, as JSON in a script element that is not run (#data), with every `<` written as
  * \u003c, so that no name can end the element:
  *
- *   files     [{name, format, verdict, failure, counts: [errors, warnings, infos], meshes, findings}]
- *             mesh:     {label, why, same_as, mapped: whether it has a normal map, triangles, vertices, islands, box,
+ *   files     [{name, verdict, failure, counts: [errors, warnings, infos], meshes, findings}]
+ *             mesh:     {label, why, same_as, mapped: whether it has a normal map, triangles, vertices, islands,
  *                       facts: [[name, text]],
  *                       images: [{image, map: [6], file}] of normal map and base colour: numbers of images, and URIs,
  *                       or null, wrap: [nt_wrap, nt_wrap], seams: [[edges, closed, length, plane, unmirrored island,
  *                       mirrored island, 1: hard edges; else not there]], geometry: bool}
- *             finding:  {code, severity, count, known, message, mesh, seam, island, where, box, at: [triangle],
+ *             finding:  {code, severity, count, known, message, mesh, seam, island, where, at: [triangle],
  *                       votes: [[percent]] of a normal map's blocks, rows from the top, green up above 0; or null,
  *                       repair: the command, or null if nmtan cannot repair it}
  *   codes     {CODE: {meaning, remedy}} of the findings that there are
@@ -21,7 +21,7 @@
  *   diff      of two versions only: {unchanged, meshes: [{old, new, changed, label, rows: [[name, text]]}]}, where old
  *             and new are numbers of meshes or null; a finding is known where the other version has it
  *
- * The index of a folder of pages has `folder: true` and, of each file, {name, format, verdict, counts, failure, page,
+ * The index of a folder of pages has `folder: true` and, of each file, {name, verdict, counts, failure, page,
  * triangles, islands, seams, model, layout: nt_thumb_model() and nt_thumb_layout() as base64, meshes: [], findings:
  * [{code, severity}]}, without equal findings.
  *
@@ -184,8 +184,6 @@ static void put_mesh(const nt_report *report, uint32_t mesh, nt_page_budget *lef
 	nt_member_count(out, "vertices", m->vertices_before);
 	nt_member_count(out, "islands", m->island_count);
 	nt_member_bool(out, "geometry", has_geometry(m));
-	nt_member_key(out, NT_SAME_LINE, "box");
-	nt_json_box(&m->box, report->origin, out);
 	put_facts(m, out);
 	nt_member_open(out, "images", "[");
 	for (int p = 0; p < NT_PICTURE_COUNT; p++) {
@@ -217,8 +215,6 @@ static void put_members(const nt_report *report, const nt_report_finding *findin
 	nt_member_index(out, "seam", finding->seam);
 	nt_member_index(out, "island", finding->island);
 	nt_member_text(out, "where", where.data ? where.data : "");
-	nt_member_key(out, NT_SAME_LINE, "box");
-	nt_json_box(&finding->box, report->origin, out);
 	nt_member_open(out, "at", "[");
 	for (unsigned i = 0; i < finding->spot_count; i++) {
 		if (finding->spots[i].triangle == NT_NONE)
@@ -241,7 +237,6 @@ static void put_head(const nt_report *report, nt_buffer *out)
 	nt_member_text(out, "name", report->shown);
 	nt_member_key(out, NT_SAME_LINE, "verdict");
 	nt_put_verdict(report, nt_json_string, out);
-	nt_member_text(out, "format", nt_input_format_name(report->format));
 	nt_member_open(out, "counts", "[");
 	for (int severity = NT_SEVERITY_ERROR; severity >= NT_SEVERITY_INFO; severity--)
 		nt_buffer_format(out, severity ? "%zu," : "%zu]", report->by_severity[severity]);

@@ -28,7 +28,6 @@ const determinant = m => m[0] * m[4] - m[1] * m[3];
 // ---- files, meshes, findings ----
 
 const severities = ['error', 'warning', 'info'];
-const severityName = {error: 'error', warning: 'warning', info: 'info'};
 const files = data.files, findings = [];
 files.forEach((file, f) => {
 	file.number = f;

@@ -31,7 +31,7 @@ class Findings {
 				this.filter[severity] = e.target.checked;
 				this.show();
 			}});
-			return element('label', {class: 'chip ' + severity}, box, element('span', {}, plural(n, severityName[severity])));
+			return element('label', {class: 'chip ' + severity}, box, element('span', {}, plural(n, severity)));
 		}));
 		this.show();
 	}
@@ -76,7 +76,7 @@ class Findings {
 		const row = data.codes[code] || {}, severity = severities[Math.min(...items.map(x => severities.indexOf(x.severity)))];
 		const list = element('ol', {});
 		const group = element('details', {class: 'group ' + severity, 'data-code': code, open: opened},
-			element('summary', {onclick: () => this.opened.set(code, !group.open)}, element('span', {class: 'dot', title: severityName[severity]}), element('span', {class: 'name'}, titleOf(code)),
+			element('summary', {onclick: () => this.opened.set(code, !group.open)}, element('span', {class: 'dot', title: severity}), element('span', {class: 'name'}, titleOf(code)),
 				element('span', {class: 'number'}, count(items.length)), element('code', {}, code)),
 			element('p', {class: 'remedy'}, row.remedy || ''),
 			element('details', {class: 'about'}, element('summary', {}, 'What it means'), row.meaning || ''), list);

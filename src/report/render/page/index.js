@@ -85,15 +85,10 @@ class Overview {
 		if (!uv) return;
 		const {low, high} = uvBox(g);
 		const scale = Math.min(104 / (high[0] - low[0] || 1), 72 / (high[1] - low[1] || 1));
-		const x = u => 56 + (u - (low[0] + high[0]) / 2) * scale, y = v => 40 + (v - (low[1] + high[1]) / 2) * scale;
-		for (const region of g.regions) {
+		c.setTransform(scale, 0, 0, scale, 56 - scale * (low[0] + high[0]) / 2, 40 - scale * (low[1] + high[1]) / 2);
+		for (const region of g.regions.filter(r => !r.buried)) {
 			c.fillStyle = region.mirrored ? ink.mirroredLine : ink.plainLine;
-			c.beginPath();
-			for (const loop of region.loops) {
-				loop.forEach((v, i) => i ? c.lineTo(x(uv[2 * v]), y(uv[2 * v + 1])) : c.moveTo(x(uv[2 * v]), y(uv[2 * v + 1])));
-				c.closePath();
-			}
-			c.fill();
+			c.fill(outlinePath(uv, region.loops));
 		}
 	}
 }

@@ -238,7 +238,7 @@ function summary(counts, file) {
 	$('verdict').hidden = !file;
 	$('verdict').className = level;
 	showVerdict(file?.verdict || '', file);
-	$('summary').replaceChildren(...(file?.failure ? [] : severities.map((severity, i) => element('span', {class: 'verdict ' + (counts[i] ? severity : 'none')}, plural(counts[i], severityName[severity])))));
+	$('summary').replaceChildren(...(file?.failure ? [] : severities.map((severity, i) => element('span', {class: 'verdict ' + (counts[i] ? severity : 'none')}, plural(counts[i], severity)))));
 }
 
 function follow() {
@@ -349,14 +349,10 @@ layout.onoverlaps = layout.onpicture = noteLayout;
 layout.onseam = seam => choose({seam}, {from: 'layout'});
 layout.onhover = (u, v) => { $('layout-readout').textContent = u === null || u === undefined || !layout.geometry ? '' : 'u ' + u.toFixed(4) + '  v ' + (1 - v).toFixed(4); };
 MODES.forEach(([, name], i) => $('mode').append(new Option(name, i)));
-$('mode').addEventListener('change', e => changeSpace({mode: Number(e.target.value)}));
-$('frame').addEventListener('change', e => changeSpace({frame: Number(e.target.value)}));
-$('other').addEventListener('change', e => changeSpace({other: Number(e.target.value)}));
-$('flip').addEventListener('change', e => changeSpace({flip: e.target.checked}));
-$('base').addEventListener('change', e => changeSpace({showBase: e.target.checked}));
+for (const name of ['mode', 'frame', 'other']) $(name).addEventListener('change', e => changeSpace({[name]: Number(e.target.value)}));
+for (const [id, name] of [['flip', 'flip'], ['base', 'showBase'], ['seams', 'showSeams'], ['vectors', 'showVectors']])
+	$(id).addEventListener('change', e => changeSpace({[name]: e.target.checked}));
 $('fill').addEventListener('input', e => { layout.fill = e.target.value / 100; layout.draw(); });
-$('seams').addEventListener('change', e => changeSpace({showSeams: e.target.checked}));
-$('vectors').addEventListener('change', e => changeSpace({showVectors: e.target.checked}));
 $('texture').addEventListener('change', e => { wanted = layout.shown = Number(e.target.value); });
 $('overlaps').addEventListener('change', e => { layout.showOverlaps = e.target.checked; layout.draw(); noteLayout(); });
 $('layout-fit').addEventListener('click', () => layout.fit());
@@ -366,9 +362,7 @@ $('spot-before').addEventListener('click', () => goToSpot(-1));
 $('spot-next').addEventListener('click', () => goToSpot(1));
 $('selection-clear').addEventListener('click', chooseNothing);
 $('mesh').addEventListener('change', e => { chooseNothing(); openMesh(file.meshes[e.target.value]); });
-document.querySelectorAll('#arrange button').forEach(button => button.addEventListener('click', () => {
-	changeSpace({layout: button.dataset.layout});
-}));
+document.querySelectorAll('#arrange button').forEach(b => b.addEventListener('click', () => changeSpace({layout: b.dataset.layout})));
 document.querySelectorAll('#theme button').forEach(b => b.addEventListener('click', () => setTheme(b.dataset.theme)));
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => setTheme(document.documentElement.dataset.theme || ''));
 $('wipe').addEventListener('pointermove', e => {
@@ -429,10 +423,8 @@ window.nmtanReport = Object.freeze({
 	geometry: () => geometry,
 	selection: () => selection && {...selection, finding: selection.finding?.number, triangles: selection.triangles.length},
 	labels: () => layout.labels,
-	votes: () => layout.votes,
 	overlapPixels: () => layout.overlapPixels,
 	visible: () => space.visible(space.camera),
-	frames: () => space.frames,
 	twin: () => twin && {geometry: twin.geometry, camera: twin.space?.camera, view: twin.layout.view, mode: twin.space?.mode},
 	turn: (x, y) => space.turn(x, y),
 });

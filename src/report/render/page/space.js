@@ -38,7 +38,7 @@ class Space {
 		const gl = canvas.getContext('webgl2', {antialias: false, alpha: false});
 		if (!gl) throw new Error('this browser has no WebGL 2, or it is turned off');
 		Object.assign(this, {gl, canvas, mode: 0, frame: 0, other: -1, layout: 'wipe', wipe: 0.5, showVectors: false,
-			showSeams: true, camera: {target: [0, 0, 0], distance: 3, yaw: 0.6, pitch: 0.35}, buffers: [], frames: 0,
+			showSeams: true, camera: {target: [0, 0, 0], distance: 3, yaw: 0.6, pitch: 0.35}, buffers: [],
 			part: [0, 1], flip: false, showBase: true, moving: false, quality: 0.8, slow: 0, drawn: 0});
 		this.surfaces = new Map();
 		this.fill = this.program(surfaceVertex, fillFragment);
@@ -547,7 +547,6 @@ class Space {
 			this.drawPart(this.frame, [0, 0, half, h], [0, 0, half, h], scale);
 			this.drawPart(this.other, [half, 0, w - half, h], [half, 0, w - half, h], scale);
 		}
-		this.frames++;
 		this.ondraw?.();
 	}
 
@@ -608,22 +607,15 @@ class Space {
 			zoom: (factor, x, y, dx, dy) => { this.zoom(1 / factor); if (dx || dy) this.pan(dx, dy); },
 			twist: angle => this.turn(-angle, 0),
 			click: (x, y, again) => { if (this.geometry) this.onpick?.(this.pick(x, y), again); },
-		});
-		this.canvas.addEventListener('keydown', e => {
-			const arrows = {ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}[e.key];
-			if (arrows && e.shiftKey) this.pan(40 * arrows[0], 40 * arrows[1]);
-			else if (arrows) this.turn(0.1 * arrows[0], 0.1 * arrows[1]);
-			else if (e.key === '+' || e.key === '=') this.zoom(0.85);
-			else if (e.key === '-') this.zoom(1 / 0.85);
-			else if (e.key === 'Home' || e.key === '0') this.home();
-			else return;
-			e.preventDefault();
+			arrow: (x, y, shift) => shift ? this.pan(40 * x, 40 * y) : this.turn(0.1 * x, 0.1 * y),
+			home: () => this.home(),
 		});
 	}
 }
 
 // Drags, pinches, wheels and clicks of a canvas, in pixels of the page. drag(dx, dy, second): second button, shift or
-// space; zoom(factor, x, y, dx, dy); twist(radians, clockwise): two fingers; click(x, y, again).
+// space; zoom(factor, x, y, dx, dy); twist(radians, clockwise): two fingers; click(x, y, again). Keys: arrow(x, y, shift), and
+// home() for all of it.
 function trackPointers(canvas, on) {
 	const points = new Map();
 	let moved = 0;
@@ -656,6 +648,15 @@ function trackPointers(canvas, on) {
 	canvas.addEventListener('pointerup', end);
 	canvas.addEventListener('pointercancel', end);
 	canvas.addEventListener('pointerleave', () => on.leave?.());
+	canvas.addEventListener('keydown', e => {
+		const arrow = {ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}[e.key];
+		const factor = {'+': 1.25, '=': 1.25, '-': 0.8}[e.key];
+		if (arrow) on.arrow(...arrow, e.shiftKey);
+		else if (factor) on.zoom(factor, canvas.clientWidth / 2, canvas.clientHeight / 2, 0, 0);
+		else if (e.key === 'Home' || e.key === '0') on.home();
+		else return;
+		e.preventDefault();
+	});
 	canvas.addEventListener('wheel', e => {
 		e.preventDefault();
 		on.zoom(Math.exp(-e.deltaY * (e.deltaMode ? 20 : 1) / (e.ctrlKey ? 120 : 500)), e.offsetX, e.offsetY, 0, 0);

@@ -5,6 +5,17 @@
 
 const LEAST_VOTE = 20; // percent, from which on a block counts
 
+// Closed by lines back to the first points, since to close a path takes Chromium time for all of it.
+function outlinePath(uv, loops) {
+	const path = new Path2D();
+	for (const loop of loops) {
+		const last = 2 * loop[loop.length - 1];
+		path.moveTo(uv[last], uv[last + 1]);
+		for (const vertex of loop) path.lineTo(uv[2 * vertex], uv[2 * vertex + 1]);
+	}
+	return path;
+}
+
 class Layout {
 	constructor(canvas) {
 		this.canvas = canvas;
@@ -66,24 +77,13 @@ class Layout {
 
 	// ---- paths ----
 
-	// A line back to the first point, since to close a path takes Chromium time for all of it.
-	pathOf(loops) {
-		const uv = this.geometry.texcoords, path = new Path2D();
-		for (const loop of loops) {
-			const last = 2 * loop[loop.length - 1];
-			path.moveTo(uv[last], uv[last + 1]);
-			for (const vertex of loop) path.lineTo(uv[2 * vertex], uv[2 * vertex + 1]);
-		}
-		return path;
-	}
-
 	makePaths() {
 		const g = this.geometry, uv = g.texcoords, drawn = g.regions.filter(r => !r.buried);
 		// beyond some thousand islands some of one winding are one path: fewer calls, the same picture but where they overlap
 		const many = drawn.length > 4000 ? 64 : 1;
 		this.shapes = [false, true].flatMap(mirrored => {
 			const loops = drawn.filter(r => r.mirrored === mirrored).map(r => r.loops), shapes = [];
-			for (let i = 0; i < loops.length; i += many) shapes.push({mirrored, path: this.pathOf(loops.slice(i, i + many).flat())});
+			for (let i = 0; i < loops.length; i += many) shapes.push({mirrored, path: outlinePath(uv, loops.slice(i, i + many).flat())});
 			return shapes;
 		});
 		Object.assign(this, uvBox(g));
@@ -142,7 +142,7 @@ class Layout {
 			const island = triangles.length ? g.islands[triangles[0]] : 0;
 			const islandWhole = triangles.length > 1 && island && triangles.every(t => g.islands[t] === island) &&
 				g.islands.reduce((n, i) => n + (i === island), 0) === triangles.length;
-			const paths = islandWhole ? [this.pathOf(g.regions.filter(r => r.island === island - 1).flatMap(r => r.loops))] : [];
+			const paths = islandWhole ? [outlinePath(uv, g.regions.filter(r => r.island === island - 1).flatMap(r => r.loops))] : [];
 			if (!islandWhole && !seams.length) {
 				for (const t of triangles) {
 					for (let k = 0; k < 3; k++) {
@@ -499,15 +499,8 @@ class Layout {
 				if (seam >= 0) this.onseam?.(seam);
 				else this.onpick?.(triangleAtTexcoord(this.geometry, this.u(x), this.v(y)), again);
 			},
-		});
-		this.canvas.addEventListener('keydown', e => {
-			const arrows = {ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], ArrowDown: [0, -60]}[e.key];
-			if (arrows) this.pan(...arrows);
-			else if (e.key === '+' || e.key === '=') this.zoom(1.25);
-			else if (e.key === '-') this.zoom(0.8);
-			else if (e.key === 'Home' || e.key === '0') this.fit();
-			else return;
-			e.preventDefault();
+			arrow: (x, y) => this.pan(60 * x, 60 * y),
+			home: () => this.fit(),
 		});
 	}
 }
