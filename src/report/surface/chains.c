@@ -19,7 +19,7 @@
 /* A run of edges in walking order, in the arrays of `runs`. */
 typedef struct run {
 	size_t first, count;
-	uint32_t ends[2]; /* as `ends` numbers them */
+	uint32_t ends[2]; /* points */
 	bool closed, used;
 } run;
 
@@ -33,24 +33,15 @@ typedef struct runs {
 
 /* ---- the ends of marked edges ---- */
 
-/* Points that are ends, numbered in their order. */
 typedef struct ends {
 	const nt_surface *s;
-	uint64_t *touched; /* [point_count] bits */
-	uint32_t *ranks;
-	uint32_t *degrees; /* [count] marked edges */
-	size_t count;
+	uint32_t *degrees; /* [point_count] marked edges; 0: the point is no end */
 	bool forks;        /* more than two meet somewhere */
 } ends;
 
-static uint32_t begin_of(const ends *e, uint32_t side)
-{
-	return nt_bit_rank(e->touched, e->ranks, nt_side_point(e->s, side));
-}
-
 static uint32_t end_of(const ends *e, uint32_t side)
 {
-	return begin_of(e, nt_side_next(side));
+	return nt_side_point(e->s, nt_side_next(side));
 }
 
 /* The marked side from `side` on; as many as there are sides: none. */
@@ -61,23 +52,12 @@ static size_t next_marked(const nt_surface *s, const nt_marks *marks, size_t sid
 
 static nt_status find_ends(const nt_surface *s, const nt_marks *marks, nt_scratch *scratch, ends *e)
 {
-	const size_t words = nt_bit_words(s->point_count), sides = 3 * s->triangle_count;
-	*e = (ends){.s = s, .touched = nt_scratch_alloc(scratch, words, sizeof *e->touched),
-		.ranks = nt_scratch_alloc(scratch, words, sizeof *e->ranks)};
-	if (!e->touched || !e->ranks)
-		return NT_ERROR_MEMORY;
-	memset(e->touched, 0, words * sizeof *e->touched);
-	for (size_t side = 0; (side = next_marked(s, marks, side)) < sides; side++) {
-		nt_bit_set(e->touched, nt_side_point(s, side));
-		nt_bit_set(e->touched, nt_side_point(s, nt_side_next((uint32_t)side)));
-	}
-	e->count = nt_bit_ranks(e->touched, s->point_count, e->ranks);
-	e->degrees = nt_scratch_alloc(scratch, e->count, sizeof *e->degrees);
+	*e = (ends){.s = s, .degrees = nt_scratch_alloc(scratch, s->point_count, sizeof *e->degrees)};
 	if (!e->degrees)
 		return NT_ERROR_MEMORY;
-	memset(e->degrees, 0, e->count * sizeof *e->degrees);
-	for (size_t side = 0; (side = next_marked(s, marks, side)) < sides; side++) {
-		e->forks |= ++e->degrees[begin_of(e, (uint32_t)side)] > 2;
+	memset(e->degrees, 0, s->point_count * sizeof *e->degrees);
+	for (size_t side = 0; (side = next_marked(s, marks, side)) < 3 * s->triangle_count; side++) {
+		e->forks |= ++e->degrees[nt_side_point(s, side)] > 2;
 		e->forks |= ++e->degrees[end_of(e, (uint32_t)side)] > 2;
 	}
 	return NT_OK;
@@ -96,8 +76,8 @@ typedef struct vicinity {
 
 static bool has_end(const ends *e, size_t t)
 {
-	return nt_bit(e->touched, nt_side_point(e->s, 3 * t)) || nt_bit(e->touched, nt_side_point(e->s, 3 * t + 1)) ||
-		nt_bit(e->touched, nt_side_point(e->s, 3 * t + 2));
+	return e->degrees[nt_side_point(e->s, 3 * t)] || e->degrees[nt_side_point(e->s, 3 * t + 1)] ||
+		e->degrees[nt_side_point(e->s, 3 * t + 2)];
 }
 
 /* Numbers the edges of a point, lower ones of their two, of which near triangles have a side. */
@@ -155,8 +135,8 @@ static void add_run(runs *r, const ends *e, size_t first, bool closed)
 	const size_t count = r->side_count - first;
 	const uint32_t a = r->sides[first], b = r->sides[r->side_count - 1];
 	r->items[r->count++] = (run){.first = first, .count = count, .closed = closed,
-		.ends = {r->reversed[first] ? end_of(e, a) : begin_of(e, a),
-			r->reversed[r->side_count - 1] ? begin_of(e, b) : end_of(e, b)}};
+		.ends = {r->reversed[first] ? end_of(e, a) : nt_side_point(e->s, a),
+			r->reversed[r->side_count - 1] ? nt_side_point(e->s, b) : end_of(e, b)}};
 }
 
 typedef struct walk_taking {
@@ -182,10 +162,10 @@ static void take_walk(void *context, const uint32_t *steps, size_t count, bool c
 
 /* ---- joining ---- */
 
-/* Ends of runs, 2 * run + end, in two slots for each point. joints: [2 * e->count] */
+/* Ends of runs, 2 * run + end, in two slots for each point. joints: [2 * point_count] */
 static void find_joints(const ends *e, const runs *r, uint32_t *joints)
 {
-	memset(joints, 0xff, 2 * e->count * sizeof *joints);
+	memset(joints, 0xff, 2 * e->s->point_count * sizeof *joints);
 	for (size_t i = 0; i < r->count; i++) {
 		for (size_t end = 0; end < 2 && !r->items[i].closed; end++) {
 			uint32_t *slots = joints + 2 * (size_t)r->items[i].ends[end];
@@ -251,7 +231,7 @@ static int by_lowest_side(const void *a, const void *b)
 static nt_status join_runs(const ends *e, runs *r, nt_scratch *scratch, nt_chains *chains)
 {
 	uint64_t *order = nt_scratch_alloc(scratch, r->count, sizeof *order);
-	uint32_t *joints = nt_scratch_alloc(scratch, 2 * e->count, sizeof *joints);
+	uint32_t *joints = nt_scratch_alloc(scratch, 2 * e->s->point_count, sizeof *joints);
 	if (!order || !joints)
 		return NT_ERROR_MEMORY;
 	find_joints(e, r, joints);
