@@ -13,11 +13,11 @@ typedef struct slice {
 	size_t size;
 } slice;
 
-/* How a container is laid out: its children on lines of their own, or all on one. Lines begin with `base`, else with as
- * many units as it is deep. */
+/* How a container is laid out: its children on lines of their own, which begin with `base` and some units, or all on
+ * one. */
 typedef struct layout {
 	bool broken;
-	size_t depth;
+	size_t units;
 	slice base;
 } layout;
 
@@ -169,7 +169,7 @@ static void put_line(writer *w, const layout *l)
 		return;
 	put(w, w->newline);
 	put(w, l->base);
-	for (size_t i = 0; !l->base.size && i < l->depth; i++)
+	for (size_t i = 0; i < l->units; i++)
 		put(w, w->unit);
 }
 
@@ -177,15 +177,16 @@ static void put_line(writer *w, const layout *l)
  * out. */
 static layout layout_of(const nt_json_value *container, const layout *outer)
 {
-	layout l = {.broken = outer->broken, .depth = outer->depth + 1};
+	layout l = *outer;
+	l.units++;
 	if (container->made || !container->apart || !container->of.list->end)
 		return l;
 	const char *const first = nt_json_skip_space(nt_json_begin(container) + 1), *line = first;
 	while (nt_json_is_space(line[-1]) && line[-1] != '\n')
 		line--;
 	l.broken = line[-1] == '\n';
-	if (l.broken)
-		take_space(&l.base, line, first);
+	if (l.broken && first - line <= MOST_SPACE)
+		l = (layout){.broken = true, .base = between(line, first)};
 	return l;
 }
 
@@ -287,7 +288,7 @@ static void put_child(writer *w, const nt_json_value *container, size_t index, c
 static void put_container(writer *w, const nt_json_value *container, const layout *outer)
 {
 	const bool is_object = container->type == NT_JSON_OBJECT;
-	const layout inner = layout_of(container, outer), end = {.broken = inner.broken, .depth = outer->depth};
+	const layout inner = layout_of(container, outer), end = {inner.broken, outer->units, outer->base};
 	slice last_line = {"", 0};
 	if (!container->made && container->of.list->end)
 		take_space(&last_line, end_of_children(container), container->of.list->end - 1);
