@@ -73,20 +73,12 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 	edits->decoded = nt_calloc(edits->view_count, sizeof *edits->decoded);
 	edits->is_free = nt_calloc(edits->view_count, sizeof *edits->is_free);
 	edits->free_views = nt_alloc(edits->view_count, sizeof *edits->free_views);
-	edits->seen = nt_calloc(document->accessor_count, sizeof *edits->seen);
-	edits->pinned = nt_calloc(document->accessor_count, sizeof *edits->pinned);
-	edits->index_moved = nt_calloc(document->accessor_count, sizeof *edits->index_moved);
-	edits->welding = welds ? nt_calloc(document->accessor_count, sizeof *edits->welding) : NULL;
-	edits->replaced = nt_calloc(document->accessor_count, sizeof *edits->replaced);
-	edits->appended_by = nt_alloc(document->accessor_count, sizeof *edits->appended_by);
-	if (!edits->seen || !edits->pinned || !edits->replaced || !edits->index_moved || !edits->appended_by ||
-		!edits->buffers || (welds && !edits->welding) ||
-		!edits->decoded || !edits->is_free || !edits->free_views ||
+	edits->accessors = nt_calloc(document->accessor_count, sizeof *edits->accessors);
+	if (!edits->accessors || !edits->buffers || !edits->decoded || !edits->is_free || !edits->free_views ||
 		!nt_byte_users_find(&edits->users, document)) {
 		nt_edits_free(edits);
 		return nt_fail_memory(error);
 	}
-	memset(edits->appended_by, 0xFF, document->accessor_count * sizeof *edits->appended_by);
 	if (edits->users.unknown)
 		edits->alignment = CAREFUL_ALIGNMENT;
 	for (size_t i = 0; i < document->buffer_count; i++) {
@@ -117,12 +109,7 @@ void nt_edits_free(nt_buffer_edits *edits)
 	for (size_t i = 0; i < edits->packed_count; i++)
 		nt_buffer_free(&edits->packed[i].bytes);
 	free(edits->packed);
-	free(edits->welding);
-	free(edits->seen);
-	free(edits->pinned);
-	free(edits->replaced);
-	free(edits->index_moved);
-	free(edits->appended_by);
+	free(edits->accessors);
 	free(edits->is_free);
 	free(edits->free_views);
 	free(edits->decoded);

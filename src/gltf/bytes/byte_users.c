@@ -161,7 +161,7 @@ typedef struct question {
 	size_t first, last, found;
 	uint64_t begin;
 	uint32_t own;
-	const uint32_t *owners; /* NULL: accessors are their own */
+	const nt_edited_accessor *owners; /* NULL: accessors are their own */
 	const nt_byte_rows *rows; /* [row_count] that alone change; 0: all may */
 	size_t row_count;
 	bool counts;            /* all; otherwise one that is not `own` is enough */
@@ -189,7 +189,7 @@ static bool is_asked_for(const question *q, const nt_byte_user *user)
 {
 	const uint32_t accessor = user->accessor;
 	return q->counts || accessor == NT_NONE ||
-		((q->owners ? q->owners[accessor] : accessor) != q->own && !lies_apart(q, user));
+		((q->owners ? q->owners[accessor].appended_by : accessor) != q->own && !lies_apart(q, user));
 }
 
 static void look(question *q, size_t low, size_t high)
@@ -217,7 +217,7 @@ static size_t find_users(const nt_byte_users *users, uint32_t buffer, uint64_t b
 }
 
 bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
-	const uint32_t *owners, uint32_t own, const nt_byte_rows *rows, size_t row_count)
+	const nt_edited_accessor *owners, uint32_t own, const nt_byte_rows *rows, size_t row_count)
 {
 	return find_users(users, buffer, begin, end,
 		(question){.owners = owners, .own = own, .rows = rows, .row_count = row_count});

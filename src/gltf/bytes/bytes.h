@@ -22,6 +22,16 @@ typedef struct nt_byte_user {
 	uint32_t accessor; /* `same`; NT_NONE: an image, an extension, or an unknown user */
 } nt_byte_user;
 
+/* An accessor and its edits; numbers are those of the first one over the same bytes. An attribute belongs to one pool,
+ * so that nothing has to be emptied between pools; its bytes may be another pool's too. */
+typedef struct nt_edited_accessor {
+	uint32_t appended_by; /* the pool that appends to it: nt_append_owner(); 0: none */
+	uint32_t replaced;    /* uses by sets and morph targets that are no more */
+	uint32_t index_moved; /* uses as indices that have other ones by now */
+	uint32_t welded;      /* the last weld that compared its elements, from 1 on */
+	bool seen, pinned;    /* pinned: an unsolved user has it */
+} nt_edited_accessor;
+
 /* Bytes that get new values: `width` of them from `begin` on, every `stride` bytes. */
 typedef struct nt_byte_rows {
 	uint64_t begin;
@@ -38,10 +48,10 @@ typedef struct nt_byte_users {
 /* Faulty parts of the document are passed over. False: out of memory. */
 bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document);
 
-/* Whether something other than the accessors whose owner is `own` refers to bytes of [begin, end). rows: [row_count] if
- * nothing else of these bytes changes: an accessor that no edit touches may lie beside them. */
+/* Whether something other than the accessors that `own` appends to refers to bytes of [begin, end). rows: [row_count]
+ * if nothing else of these bytes changes: an accessor that no edit touches may lie beside them. */
 bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
-	const uint32_t *owners, uint32_t own, const nt_byte_rows *rows, size_t row_count);
+	const nt_edited_accessor *owners, uint32_t own, const nt_byte_rows *rows, size_t row_count);
 
 /* Whether something other than one accessor does. */
 bool nt_byte_users_other(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
@@ -127,17 +137,8 @@ typedef struct nt_buffer_edits {
 	nt_packed_view *packed;     /* [packed_count] new ones */
 	size_t packed_count, packed_capacity;
 
-	/* For appending to the attributes of one pool after the other. An attribute belongs to one pool, so that
-	 * nothing has to be emptied in between; bytes may be another pool's too. */
-	uint32_t *welding;          /* [accessor_count] by `same`: the last weld that compared its elements, from 1 on;
-	                               NULL: there is none */
+	nt_edited_accessor *accessors; /* [accessor_count] of the source */
 	uint32_t weld_count;
-	bool *seen;                 /* [accessor_count] */
-	bool *pinned;               /* [accessor_count] used by an unsolved user */
-	uint32_t *index_moved;      /* [accessor_count] by `same`: uses as indices that have other ones by now */
-	uint32_t *replaced;         /* [accessor_count] by `same`: uses by sets and morph targets that are no more */
-	uint32_t *appended_by;      /* [accessor_count] by `same`: the pool that appends to it, by its
-	                               first user */
 } nt_buffer_edits;
 
 /*

@@ -409,7 +409,7 @@ static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 		const unsigned char *elements;
 		double bounds[2][4];
 		const nt_json_value *json = nt_gltf_accessor_json(document, i);
-		if (edits->seen[i] || nt_gltf_users_of(document, i)->indices ||
+		if (edits->accessors[i].seen || nt_gltf_users_of(document, i)->indices ||
 			!nt_json_find(json, "min") ||
 			nt_gltf_get_accessor(document, i, "", &a, NULL) || a.view >= edits->view_count ||
 			a.sparse || !document->views[a.view].decoded || edits->is_free[a.view] || a.components > 4 ||

@@ -170,7 +170,7 @@ static nt_status clone_pinned(nt_appending *job)
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < job->target_count; i++) {
 		const uint32_t index = job->targets[i].accessor.index;
-		if (job->edits->pinned[index] || job->document->users[job->targets[i].accessor.same].foreign)
+		if (job->edits->accessors[index].pinned || job->document->users[job->targets[i].accessor.same].foreign)
 			status = clone_accessor(job, &job->targets[i]);
 	}
 	for (size_t i = 0; !status && i < job->vertices->pool->user_count; i++)
@@ -179,7 +179,7 @@ static nt_status clone_pinned(nt_appending *job)
 	for (size_t i = 0; i < job->target_count; i++)
 		if (job->targets[i].clone != NT_NONE && job->targets[i].accessor.view != NT_NONE &&
 			ends_vertices(job, &job->targets[i]))
-			job->edits->appended_by[job->targets[i].accessor.same] = NT_NONE;
+			job->edits->accessors[job->targets[i].accessor.same].appended_by = 0;
 	size_t kept = 0;
 	for (size_t i = 0; i < job->target_count; i++)
 		if (job->targets[i].clone == NT_NONE)
@@ -379,7 +379,7 @@ static nt_status append_to_block(nt_appending *job, const block *b, uint64_t pre
 	if (!rows)
 		return status;
 	if (b->begin < previous_end || b->misfits || is_crowded(b, next) ||
-		nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end, job->edits->appended_by,
+		nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end, job->edits->accessors,
 			nt_append_owner(job), rows, row_count)) {
 		for (size_t i = 0; !status && i < b->count; i++)
 			if (nt_vertices_differ(job->vertices) || b->targets[i].override)

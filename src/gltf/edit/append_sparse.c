@@ -60,7 +60,7 @@ static nt_status extend_sparse_array(nt_appending *job, const nt_append_target *
 	bool same, some;
 	find_edited(job, view.buffer, begin, end, &same, &some);
 	if (some || (!array->extended && begin % array->width) ||
-		nt_byte_users_foreign(&job->edits->users, view.buffer, begin, end, job->edits->appended_by,
+		nt_byte_users_foreign(&job->edits->users, view.buffer, begin, end, job->edits->accessors,
 			nt_append_owner(job), NULL, 0))
 		return move_sparse_array(job, array, json);
 	if (same)

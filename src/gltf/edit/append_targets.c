@@ -50,17 +50,17 @@ static nt_status add_target(nt_appending *job, uint32_t index, nt_error *error)
 		added->begin = view.offset + added->accessor.offset;
 	}
 	job->target_count++;
-	job->edits->appended_by[added->accessor.same] = nt_append_owner(job);
+	job->edits->accessors[added->accessor.same].appended_by = nt_append_owner(job);
 	return NT_OK;
 }
 
 static nt_status collect_attribute(nt_appending *job, uint32_t accessor)
 {
 	if (job->collecting_unsolved)
-		job->edits->pinned[accessor] = true;
-	if (job->edits->seen[accessor])
+		job->edits->accessors[accessor].pinned = true;
+	if (job->edits->accessors[accessor].seen)
 		return NT_OK;
-	job->edits->seen[accessor] = true;
+	job->edits->accessors[accessor].seen = true;
 	nt_error unread;
 	const nt_status status = add_target(job, accessor, job->collecting_beside ? &unread : job->error);
 	if (job->collecting_beside && status == NT_ERROR_MEMORY)
@@ -82,7 +82,7 @@ nt_status nt_append_collect(nt_appending *job, nt_override_list *overrides)
 		qsort(overrides->items, overrides->count, sizeof *overrides->items, compare_overrides);
 	for (size_t i = 0; i < overrides->count; i++)
 		if (!overrides->items[i].values)
-			job->edits->seen[overrides->items[i].accessor] = true;
+			job->edits->accessors[overrides->items[i].accessor].seen = true;
 	for (size_t i = 0; !status && i < overrides->count; i++)
 		status = collect_attribute(job, overrides->items[i].accessor);
 	/* where nothing grows, the others matter as far as overrides are between them */

@@ -292,7 +292,7 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_po
 	/* in place where everybody who uses these indices will have the same new ones, or has got others */
 	const nt_gltf_users *users = leader->index != NT_NONE ? &edits->document->users[leader->same] : NULL;
 	const bool agree = users && !users->idle && !users->attributes &&
-		leader->agreeing + edits->index_moved[leader->same] == users->indices;
+		leader->agreeing + edits->accessors[leader->same].index_moved == users->indices;
 	if (!status && agree && !old.decoded)
 		status = replace_indices(edits, leader->same, &old, &new, &done, error);
 	leader->accessor = leader->index;
@@ -307,7 +307,7 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_po
 		status = nt_packed_release(edits, old.view, old.offset,
 			old.count * nt_gltf_component_bytes(old.component_type), error);
 	if (!stays && leader->index != NT_NONE)
-		edits->index_moved[leader->same] += leader->agreeing;
+		edits->accessors[leader->same].index_moved += leader->agreeing;
 	if (!status)
 		status = add_indices(edits, buffer, &packing, &new, stays ? &old : NULL, &leader->accessor, error);
 	if (!status && stays)

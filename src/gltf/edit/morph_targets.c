@@ -167,7 +167,7 @@ static void count_replaced(const target_job *job)
 			i = pool->sets.next[i]) {
 			const uint32_t index = find_in_target(job, i, job->list[m].target, "TANGENT");
 			if (index != NT_NONE)
-				job->edits->replaced[nt_gltf_same(job->edits->document, index)]++;
+				job->edits->accessors[nt_gltf_same(job->edits->document, index)].replaced++;
 		}
 }
 
@@ -182,9 +182,9 @@ static nt_status take_over(const target_job *job, nt_override_list *overrides)
 		const uint32_t index = t->found ? NT_NONE : find_in_target(job, first, t->target, "TANGENT");
 		const uint32_t same = index == NT_NONE ? 0 : nt_gltf_same(document, index);
 		if (index == NT_NONE || document->users[same].foreign || document->users[same].idle ||
-			job->edits->replaced[same] != document->users[same].attributes)
+			job->edits->accessors[same].replaced != document->users[same].attributes)
 			continue;
-		job->edits->replaced[same] = 0; /* no second target takes it */
+		job->edits->accessors[same].replaced = 0; /* no second target takes it */
 		t->accessor = index;
 		status = nt_gltf_drop_elements(job->edits, index, job->error);
 		for (uint32_t k = same; !status && k != NT_NONE; k = document->accessors[k].next)

@@ -128,10 +128,10 @@ typedef struct nt_appending {
 	size_t edited_count, edited_capacity;
 } nt_appending;
 
-/* The pool, as nt_buffer_edits.appended_by has it. */
+/* The pool, as nt_edited_accessor.appended_by has it: by its first user. */
 static inline uint32_t nt_append_owner(const nt_appending *a)
 {
-	return a->vertices->pool->users[0];
+	return a->vertices->pool->users[0] + 1;
 }
 
 /* Notes that bytes of a source buffer have been edited. False: out of memory. */

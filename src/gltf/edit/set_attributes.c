@@ -30,7 +30,7 @@ static bool is_own(const nt_buffer_edits *edits, uint32_t accessor, size_t known
 	const nt_gltf_users *users = &edits->document->users[accessor];
 	const nt_gltf_accessor *a = nt_gltf_sound_accessor(edits->document, accessor);
 	return a && a->components == components && !users->foreign && !users->idle &&
-		edits->replaced[accessor] + known == users->attributes;
+		edits->accessors[accessor].replaced + known == users->attributes;
 }
 
 /* Whether the new elements go where the old ones are. */
@@ -112,7 +112,7 @@ nt_status nt_set_attribute_settle(nt_buffer_edits *edits, const nt_vertex_pool *
 			attribute->in_place &= fits_in_place(edits, list[i], &values->filter);
 			attribute->own[attribute->own_count++] = list[i];
 		} else {
-			edits->replaced[list[i]] += (uint32_t)(end - i);
+			edits->accessors[list[i]].replaced += (uint32_t)(end - i);
 		}
 	}
 	attribute->in_place &= attribute->own_count > 0;

@@ -113,7 +113,7 @@ static nt_status bake(welding *w, const nt_gltf_accessor *a, const unsigned char
 
 static nt_status add_attribute(welding *w, uint32_t index)
 {
-	uint32_t *known = &w->edits->welding[nt_gltf_same(w->edits->document, index)];
+	uint32_t *known = &w->edits->accessors[nt_gltf_same(w->edits->document, index)].welded;
 	if (*known == w->edits->weld_count || w->obstacle)
 		return NT_OK;
 	*known = w->edits->weld_count;
