@@ -916,6 +916,29 @@ gltf m.gltf quads 'delete g.meshes[0].primitives[0].attributes.TANGENT; g.asset.
 run quads.gltf out.glb
 says "[TAN_QUADS_LIKELY]; if the map was baked in the program that wrote the file: nmtan --quads=pairs quads.gltf out.glb"
 
+scene "tangents that clients have to ignore, or cannot read, are told in every way, and replaced if that is asked for"
+mapped
+gltf m.gltf bare 'delete g.meshes[0].primitives[0].attributes.NORMAL'
+gltf m.gltf vec3 'const n = g.meshes[0].primitives[0].attributes.TANGENT; g.accessors[n].type = "VEC3"'
+while IFS='|' read -r file options code tangents; do
+	run $options --fail-on=never $file.gltf $([[ $options = --check ]] || echo out.gltf)
+	exits 0
+	is "$file $options $(cat "$WORK/out.txt" "$WORK/err.txt" | grep -c "$code")" "$file $options $([ -n "$code" ] && echo 1 || cat "$WORK/out.txt" "$WORK/err.txt" | wc -l)"
+	[[ $options = --check ]] && continue
+	is "$file $options $(gltf out.gltf '(a => a.TANGENT >= 0 && a.NORMAL >= 0 ? rows(a.TANGENT)[0] + " " + rows(a.NORMAL)[0] : "none")(g.meshes[0].primitives[0].attributes)')" \
+		"$file $options $tangents"
+done <<'END'
+bare|--check|^  warning   TAN_NO_NORMAL|
+bare||TAN_NO_NORMAL|none
+bare|--existing=replace|TAN_NO_NORMAL|none
+bare|--normals=flat||1,0,0,1 0,0,1
+vec3|--check|^  error     TAN_ACCESSOR|
+vec3|--existing=keep|TAN_ACCESSOR|1,0,0 0,0,1
+vec3|--existing=replace||1,0,0,1 0,0,1
+vec3|--existing=repair||1,0,0,1 0,0,1
+vec3|--fix|fixed TAN_ACCESSOR|1,0,0,1 0,0,1
+END
+
 scene "a remedy of what --fix mends names a command, or says that nmtan cannot"
 mapped
 gltf m.gltf flat 'const p = g.meshes[0].primitives[0]; p.attributes.TANGENT = add("VEC4", 5126, Array(16).fill(0), {}); delete p.attributes.NORMAL;
