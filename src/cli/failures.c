@@ -7,11 +7,44 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Whether two reasons are equal but for what is quoted, as names of files are. */
+static bool are_alike(const char *a, const char *b)
+{
+	for (; *a && *a == *b; a++, b++) {
+		const char *a_end = *a == '"' ? strchr(a + 1, '"') : NULL;
+		const char *b_end = *a == '"' ? strchr(b + 1, '"') : NULL;
+		a = a_end && b_end ? a_end : a;
+		b = a_end && b_end ? b_end : b;
+	}
+	return *a == *b;
+}
+
+/* Leaves "..." of what is quoted. */
+static void drop_quoted(char *reason)
+{
+	char *to = reason;
+	for (const char *from = reason; *from;) {
+		const char *end = *from == '"' ? strchr(from + 1, '"') : NULL;
+		if (end && end - from >= 4) {
+			memcpy(to, "\"...", 4);
+			to += 4;
+			from = end;
+		}
+		*to++ = *from++;
+	}
+	*to = '\0';
+}
+
 static nt_failure_group *group_of(nt_failures *failures, const char *reason)
 {
-	for (size_t i = 0; i < failures->group_count; i++)
-		if (strcmp(failures->groups[i].reason, reason) == 0)
-			return &failures->groups[i];
+	for (size_t i = 0; i < failures->group_count; i++) {
+		char *known = failures->groups[i].reason;
+		if (!are_alike(known, reason))
+			continue;
+		if (strcmp(known, reason) != 0)
+			drop_quoted(known);
+		return &failures->groups[i];
+	}
 	if (failures->group_count == NT_FAILURE_GROUPS)
 		return NULL;
 	nt_failure_group *group = &failures->groups[failures->group_count];

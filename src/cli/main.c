@@ -164,6 +164,15 @@ static void add_page(session *s, nt_report *report, int *code)
 	*code = nt_exit_worse(*code, nt_exit_code(status));
 }
 
+/* Whether findings that are printed name the files that are missing. */
+static bool names_missing(const nt_finding_list *findings, const bool *ignore)
+{
+	bool named = false;
+	for (size_t i = 0; i < findings->count; i++)
+		named |= findings->items[i].code == NT_CODE_BUFFER_MISSING && !ignore[NT_CODE_BUFFER_MISSING];
+	return named;
+}
+
 /* Says what became of a job that ran, and returns its exit code. */
 static int tell_run(session *s, nt_job *job)
 {
@@ -191,9 +200,11 @@ static int tell_run(session *s, nt_job *job)
 	if (!job->status && !shown && (s->style.verbosity >= 0 || (summary->keeps_wrong && s->count == 1)))
 		nt_message_checked(&s->text, &summary->findings, summary->report, &s->plan->options, job->input,
 			job->output, most, style);
+	const bool is_found = s->style.verbosity >= 0 && !shown && job->status == NT_ERROR_MISSING &&
+		names_missing(&summary->findings, s->plan->options.ignore);
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
 	if (job->status) {
-		if (!job->reason_is_told)
+		if (!job->reason_is_told && !is_found)
 			nt_message_error(&s->text, &job->outcome->error, s->style);
 	} else {
 		if (s->style.verbosity >= 0)

@@ -76,8 +76,9 @@ static void tell_green(nt_finding_list *findings, nt_code code, const nt_place *
 	char detail[200];
 	int8_t *votes = nt_arena_alloc(&findings->arena, sizeof f->votes, 1);
 	snprintf(detail, sizeof detail,
-		"%scorrelation %.2f at the surest size of detail, where %.0f %% of the map have its sign; over all "
-		"sizes %zu of %d blocks say up, %zu down", use, f->correlation, 100 * f->agreement, f->blocks_up,
+		"%scorrelation %.2f (green %s) at the surest size of detail, where %.0f %% of the map have its "
+		"sign; over all sizes %zu of %d blocks say up, %zu down", use, f->correlation,
+		f->correlation < 0 ? "down" : "up", 100 * f->agreement, f->blocks_up,
 		NT_GREEN_BLOCKS * NT_GREEN_BLOCKS, f->blocks_down);
 	findings->failed |= !votes;
 	if (votes)

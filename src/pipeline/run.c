@@ -577,7 +577,7 @@ static nt_status name_limit(run *r, nt_status status)
 		/* the program takes up to 32 MB before it reads anything: less than that says nothing */
 		if (s->need > s->max_memory && s->need >= 32 << 20 && s->need != UINT64_MAX)
 			snprintf(r->error->message + strlen(r->error->message), 120,
-				": %" PRIu64 "M is for any file with as many elements, and most take much less",
+				": %" PRIu64 "M is the most that such a file needs: try half of it first",
 				(s->need >> 20) + 1);
 	}
 	return r->error->status;

@@ -531,9 +531,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"coordinates that the primitive lacks: no renderer can get that right. A warning if an OBJ's material "
 		"does: the output is without the map. If --uv asks for a set that a primitive lacks, its tangents stay "
 		"as they are, and none are made; the finding then tells which sets there are.",
-		"Nothing if no normal map is meant: take it out of the material. Else unwrap the mesh (Blender: UV > "
-		"Smart UV Project) and export its texture coordinates. If the finding tells other sets, choose one "
-		"with --uv.",
+		"Nothing, if the mesh is to have no normal map; if a material names one, take it out there. Else "
+		"unwrap the mesh (Blender: UV > Smart UV Project) and export its texture coordinates. If the finding "
+		"tells other sets, choose one with --uv.",
 		"a normal-mapped glTF primitive without TEXCOORD_0"),
 	ROW(TAN_UVSET_CONFLICT, WARNING, "w--", EXPORT, NULL,
 		"two textures want tangents of different texture coordinates",

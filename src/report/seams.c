@@ -354,6 +354,7 @@ static void report_seam(nt_check *check, const nt_chains *chains, size_t chain, 
 	nt_tally_number(&tally, "dihedral_max_degrees", seam->dihedral[1]);
 	nt_tally_number(&tally, "tangent_angle_min_degrees", seam->tangent_angle[0]);
 	nt_tally_number(&tally, "tangent_angle_max_degrees", seam->tangent_angle[1]);
+	nt_tally_number(&tally, "frame_angle_max_degrees", seam->frame_angle[1]);
 	nt_tally_number(&tally, "edges_sharing_vertices", (double)seam->shared_count);
 	tally.rank = rank_of(seam);
 	const double angle = widest_angle(seam);

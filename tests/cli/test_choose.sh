@@ -146,6 +146,9 @@ says "0 of 17 done, 17 failed"
 says "nmtan:   5 failed: no such file: missing1.obj, missing2.obj, missing3.obj and 2 more"
 is "$(grep -c '^nmtan:   1 failed: ' "$WORK/err.txt")" 9
 says "nmtan:   3 failed for other reasons, which are printed above"
+for i in 1 2; do printf '{"asset": {"version": "2.0"}, "buffers": [{"uri": "%s.bin", "byteLength": 4}]}' $i >gone$i.gltf; done
+run -q -d out gone1.gltf gone2.gltf
+says 'nmtan:   2 failed: a buffer cannot be opened: "...": gone1.gltf, gone2.gltf'
 
 scene "ten thousand names are few bytes"
 cp "$data/quad.obj" .

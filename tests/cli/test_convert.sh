@@ -287,8 +287,13 @@ for way in "a/in.gltf a/out.gltf" "a/in.gltf out.gltf" "a/in.gltf out.glb" "--ch
 	"-q --only=all a/in.gltf out.glb" "--buffers=link -q a/in.gltf out.gltf"; do
 	run $way
 	exits 2
-	says 'buffers cannot be opened: "plates.bin", "not%20there.bin"'
-	case $way in *-q*|*--check*) ;; *) says '/buffers/1: error: buffer cannot be opened: ' ;; esac
+	case $way in # one line for each, or for all
+	*-q* | *--check*) says 'buffers cannot be opened: "plates.bin", "not%20there.bin"' ;;
+	*)
+		says '/buffers/1: error: buffer cannot be opened: '
+		is "$(wc -l <"$WORK/err.txt")" 2
+		;;
+	esac
 done
 cp "$data/plates.bin" a
 run -q a/in.gltf out.gltf

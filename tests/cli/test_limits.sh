@@ -196,7 +196,7 @@ if ! $sanitized; then
 	python3 "$ROOT/tests/support/cost_inputs.py" windows 200 w.glb
 	run --only=all --max-memory=24M w.glb out.glb
 	refused "w.glb: --max-memory=24M is not enough: 7" w.glb
-	says "M is for any file with as many elements, and most take much less"
+	says "M is the most that such a file needs: try half of it first"
 	enough=$(sed -n 's/.*not enough: \([0-9]*M\).*/\1/p' "$WORK/err.txt")
 	run --only=all --max-memory=24M --report=r.json w.glb out.glb
 	exits 7

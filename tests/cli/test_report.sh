@@ -312,6 +312,8 @@ is "$(value r.json '[(m["texture_size"], m["split_cost"]) for m in r["files"][0]
 	"[([64, 32], {'vertices': 2, 'bytes_each': 48, 'bytes': 96})]"
 is "$(value r.json '[(s["frame_angle_degrees"], s["edges_sharing_texels"], s["unhidden_edges"])
 	for s in r["files"][0]["meshes"][0]["seams"]]')" "[([180, 180], 1, 1)]"
+is "$(value r.json '[(f["numbers"]["frame_angle_max_degrees"], "tangents up to 180 degrees apart" in f["message"])
+	for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[(180, True)]"
 sed -i 's/norm n.png/Kd 1 1 1/' m.mtl
 run -q --check --report=r.json m.obj
 is "$(value r.json '[(i["texel_density"], i["stretch"]["median"]) for i in r["files"][0]["meshes"][0]["islands"]]')" \
@@ -442,6 +444,14 @@ for format in json sarif lines junit csv markdown html; do
 	exits 2
 	grep -q BUFFER_MISSING r || wrong "not in $format"
 done
+run -q --check --report=r.lines --report-format=lines lost.gltf
+is "$(wc -l <r.lines)" 1
+run -q --check --report=r.xml lost.gltf
+is "$(grep -c '<failure\|<error' r.xml) $(grep -o 'failures="[0-9]*" errors="[0-9]*"' r.xml | sort -u)" '1 failures="1" errors="0"'
+run -q --check --report=r.xml --fail-on=never lost.gltf
+is "$(grep -c '<failure\|<error' r.xml) $(grep -o 'failures="[0-9]*" errors="[0-9]*"' r.xml | sort -u)" '1 failures="0" errors="1"'
+run --check lost.gltf
+prints 'error     BUFFER_MISSING  buffer cannot be opened: cannot open "no.bin": No such file or directory'
 run -q --report=r.json lost.gltf lost.glb
 exits 2
 validates report r.json

@@ -597,7 +597,7 @@ is "$(value r.json '[(f["code"], f["severity"], [min(map(min, v)) > 20 for v in 
 # a block is told by 20 % and more; the figures say of what they are
 is "$(value r.json '[f["message"].split(": ", 1)[1] == "correlation %s of 144 blocks say up, %d down" % (f["message"].split("correlation ")[1].split(" of 144")[0],
 	sum(v <= -20 for row in f["votes"] for v in row)) and "over all sizes %d of 144" % sum(v >= 20 for row in f["votes"] for v in row) in f["message"]
-	and " at the surest size of detail, where " in f["message"] for f in r["files"][0]["findings"] if f["votes"]]')" "[True]"
+	and (" (green up)" if "correlation 0" in f["message"] else " (green down)") + " at the surest size of detail, where " in f["message"] for f in r["files"][0]["findings"] if f["votes"]]')" "[True]"
 run --flip-green=auto quad.obj quad.glb
 exits 0
 images embedded quad.glb 0 made.png

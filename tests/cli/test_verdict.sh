@@ -628,6 +628,8 @@ is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["severity
 is "$(said)" "Convert with nmtan: 20 triangles have a bitangent that runs the wrong way: 100 % of 20, the convention is inverted: nmtan --fix turned.gltf turned-repaired.gltf"
 run --check -q --report=r.json --fail-on=never --severity=TAN_BAD_W=warning bad.gltf
 is "$(said | cut -d: -f1-2)" "Convert with nmtan: normal map whose green points down"
+run --check -q --report=made.json --fail-on=never --existing=replace bad.gltf
+is "$(value made.json 'r["files"][0]["verdict"]' | cut -d: -f1-3)" "After conversion with --existing=replace: Repair with nmtan: normal map whose green points down"
 run --check -q --report-format=text --fail-on=never --severity=TAN_BAD_W=warning bad.gltf
 is "$(sed -n 2p "$WORK/out.txt")" "  $(said)"
 run --check -q --report-format=markdown --fail-on=never --severity=TAN_BAD_W=warning bad.gltf

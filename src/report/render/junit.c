@@ -18,11 +18,17 @@ static size_t count_failures(const nt_report_list *reports, const nt_report *rep
 	return count;
 }
 
+/* Not judged, and no finding that fails says why. */
+static bool is_error(const nt_report_list *reports, const nt_report *report)
+{
+	return report->failure && !(count_failures(reports, report) && nt_failure_is_found(report));
+}
+
 static void begin(nt_walk *w, nt_buffer *out)
 {
 	size_t failures = 0, errors = 0;
 	for (size_t i = 0; i < w->count; i++) {
-		errors += w->items[i]->failure != NULL;
+		errors += is_error(w->reports, w->items[i]);
 		failures += count_failures(w->reports, w->items[i]) > 0;
 	}
 	nt_buffer_text(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
@@ -61,7 +67,7 @@ static void end_file(nt_walk *w, nt_buffer *out)
 	nt_buffer_text(out, "\t\t<testcase classname=\"nmtan\" name=\"");
 	nt_xml_text(report->shown, out);
 	nt_buffer_text(out, report->failure || report->finding_count ? "\">\n" : "\"/>\n");
-	if (report->failure) {
+	if (is_error(w->reports, report)) {
 		nt_buffer_text(out, "\t\t\t<error type=\"not judged\" message=\"");
 		nt_xml_text(report->failure, out);
 		nt_buffer_text(out, "\"/>\n");

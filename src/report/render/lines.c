@@ -25,7 +25,7 @@ static void put_raw(const char *text, nt_buffer *out)
 static void put_failure(const nt_walk *w, void (*put)(const log_line *line, nt_buffer *out), nt_buffer *out)
 {
 	const nt_report *report = w->report;
-	if (report->failure)
+	if (report->failure && !nt_failure_is_found(report))
 		put(&(log_line){report->shown, report->failure_place.line, NT_SEVERITY_ERROR, NULL, report->failure},
 			out);
 }

@@ -175,14 +175,13 @@ static void begin_file(nt_walk *w, nt_buffer *out)
 			nt_buffer_text(out, "\n  ");
 			nt_totals_text(&totals, out);
 		}
-		nt_buffer_text(out, "\n");
-		return;
+	} else {
+		nt_totals_text(&totals, out);
+		nt_buffer_text(out, "\n  ");
+		nt_put_verdict(report, nt_plain_text, out);
 	}
-	nt_totals_text(&totals, out);
-	nt_buffer_text(out, "\n  ");
-	nt_put_verdict(report, nt_plain_text, out);
 	nt_buffer_text(out, "\n");
-	for (size_t i = 0; i < report->mesh_count; i++)
+	for (size_t i = 0; i < report->mesh_count && !report->failure; i++)
 		write_mesh(report, (uint32_t)i, out);
 }
 
@@ -191,16 +190,12 @@ static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer 
 {
 	const char *repair = finding->repair ? finding->repair : "", **last = &w->told[finding->code];
 	const bool remedy = !*last || (*repair && strcmp(*last, repair) != 0);
-	if (w->report->failure)
-		return;
 	write_finding(w->reports, w->report, finding, remedy, out);
 	*last = remedy ? repair : *last;
 }
 
 static void end_file(nt_walk *w, nt_buffer *out)
 {
-	if (w->report->failure)
-		return;
 	nt_put_together(w->report, "  ", nt_plain_text, out);
 	nt_dropped_text(w->report, "  and ", "; --max-issues=0 shows all\n", out);
 }

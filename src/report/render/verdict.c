@@ -164,7 +164,8 @@ static void append_verdict(const nt_report *report, nt_buffer *out)
 	size_t repaired = 0;
 	const bool names = find_options(report, first, &options, &repaired);
 	const size_t more = (names && repaired < all ? repaired : all) - 1;
-	nt_buffer_format(out, "%s: %s", first ? verbs[advice_of(first)] : verbs[0],
+	const char *verb = verbs[first ? advice_of(first) : 0];
+	nt_buffer_format(out, "%s: %s", report->conversion && verb == verbs[1] ? "Repair with nmtan" : verb,
 		first ? first->message : "findings that are not shown");
 	if (more)
 		nt_buffer_format(out, "; and %zu more", more);

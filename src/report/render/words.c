@@ -364,6 +364,14 @@ void nt_member_repair(nt_buffer *out, const nt_report *report, const nt_report_f
 	nt_buffer_free_into(&command, out);
 }
 
+bool nt_failure_is_found(const nt_report *report)
+{
+	bool found = false;
+	for (size_t i = 0; report->failure && i < report->new_count; i++)
+		found |= report->findings[i].code == NT_CODE_BUFFER_MISSING;
+	return found;
+}
+
 void nt_plain_text(const char *text, nt_buffer *out)
 {
 	nt_buffer_clean(out, text);

@@ -139,6 +139,9 @@ void nt_member_votes(nt_buffer *out, const nt_report_finding *finding);
 /* The command that repairs a finding; null if nmtan cannot. */
 void nt_member_repair(nt_buffer *out, const nt_report *report, const nt_report_finding *finding);
 
+/* Whether a finding says, with its place, why a file is not judged. */
+bool nt_failure_is_found(const nt_report *report);
+
 /* Text for a terminal: nt_buffer_clean(). */
 void nt_plain_text(const char *text, nt_buffer *out);
 
