@@ -100,3 +100,34 @@ void nt_key_set_free(nt_key_set *set)
 	nt_hash_index_free(&set->index);
 	*set = (nt_key_set){0};
 }
+
+uint32_t nt_name_find(const nt_name_table *table, const char *text, size_t length)
+{
+	const uint64_t hash = nt_hash_bytes(0, text, length);
+	size_t at = NT_HASH_BEGIN;
+	uint32_t number;
+	while ((number = nt_hash_index_next(&table->index, hash, &at)) != UINT32_MAX)
+		if (table->names[number].length == length && memcmp(table->names[number].text, text, length) == 0)
+			break;
+	return number;
+}
+
+uint32_t nt_name_add(nt_name_table *table, const char *text, size_t length)
+{
+	const uint32_t known = nt_name_find(table, text, length);
+	if (known != UINT32_MAX)
+		return known;
+	if (table->count >= UINT32_MAX - 1 ||
+		!nt_grow((void **)&table->names, &table->capacity, table->count + 1, sizeof *table->names) ||
+		!nt_hash_index_add(&table->index, nt_hash_bytes(0, text, length), (uint32_t)table->count))
+		return UINT32_MAX;
+	table->names[table->count] = (nt_name){text, length};
+	return (uint32_t)table->count++;
+}
+
+void nt_name_table_free(nt_name_table *table)
+{
+	free(table->names);
+	nt_hash_index_free(&table->index);
+	*table = (nt_name_table){0};
+}

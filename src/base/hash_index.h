@@ -43,4 +43,24 @@ uint32_t nt_key_add(nt_key_set *set, const void *key, size_t size);
 
 void nt_key_set_free(nt_key_set *set);
 
+typedef struct nt_name {
+	const char *text; /* not copied, no NUL at its end */
+	size_t length;
+} nt_name;
+
+/* Names by number, as keys are, but not copied. Zeroed: empty. */
+typedef struct nt_name_table {
+	nt_name *names;
+	size_t count, capacity;
+	nt_hash_index index;
+} nt_name_table;
+
+/* The number of a name that is there; UINT32_MAX: it is not. */
+uint32_t nt_name_find(const nt_name_table *table, const char *text, size_t length);
+
+/* The number of a name, which is added where it is new. UINT32_MAX: out of memory. */
+uint32_t nt_name_add(nt_name_table *table, const char *text, size_t length);
+
+void nt_name_table_free(nt_name_table *table);
+
 #endif

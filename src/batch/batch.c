@@ -16,7 +16,6 @@
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "batch/gate.h"
-#include "batch/need.h"
 
 /* Shared by the threads of one batch. */
 typedef struct progress {

@@ -10,7 +10,8 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/name_table.h"
+#include "base/hash_index.h"
+#include "base/memory.h"
 #include "file/lookup.h"
 #include "file/output.h"
 #include "file/relative_path.h"

@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 
 #include "base/buffer.h"
-#include "base/name_table.h"
+#include "base/hash_index.h"
 #include "file/input.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"

@@ -93,12 +93,18 @@ static bool has_word(const char *list, const char *word)
 	return false;
 }
 
+/* The extension of a path with its dot; "": none. */
+static const char *extension_of(const char *path)
+{
+	const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash + 1 : path, '.');
+	return dot ? dot : "";
+}
+
 const nt_format_entry *nt_format_of_path(const char *path)
 {
-	const char *slash = strrchr(path, '/');
-	const char *dot = strrchr(slash ? slash + 1 : path, '.');
-	for (size_t i = 0; dot && i < FORMAT_COUNT; i++)
-		if (has_word(table[i].extensions, dot))
+	const char *extension = extension_of(path);
+	for (size_t i = 0; i < FORMAT_COUNT; i++)
+		if (has_word(table[i].extensions, extension))
 			return &table[i];
 	return NULL;
 }
@@ -106,4 +112,41 @@ const nt_format_entry *nt_format_of_path(const char *path)
 const nt_format_entry *nt_format_unnamed(const nt_format_entry *reader)
 {
 	return nt_format_find(reader->format == NT_FORMAT_PLY ? NT_FORMAT_PLY : NT_FORMAT_GLB);
+}
+
+/* ---- what is not read ---- */
+
+static const struct {
+	const char *begin;      /* first bytes; "": none that tell it */
+	const char *extensions; /* separated by spaces */
+	const char *advice;
+} foreign[] = {
+	{"Kaydara FBX Binary", ".fbx", "FBX is not read: export glTF (.glb) instead; Blender opens FBX and exports it"},
+	{"; FBX", ".fbx", "FBX is not read: export glTF (.glb) instead; Blender opens FBX and exports it"},
+	{"", ".dae", "COLLADA is not read: export glTF (.glb) instead, or OBJ"},
+	{"solid ", ".stl",
+		"STL is not read, and has no texture coordinates that tangents could follow: export OBJ or glTF "
+		"(.glb) of the unwrapped model instead"},
+	{"PXR-USDC", ".usd .usdc", "USD is not read: export glTF (.glb) instead; Blender opens USD and exports it"},
+	{"#usda", ".usda .usdz", "USD is not read: export glTF (.glb) instead; Blender opens USD and exports it"},
+	{"b3dm", ".b3dm",
+		"a tile of 3D Tiles is not read: the GLB in it is (b3dmToGlb of 3d-tiles-tools takes it out)"},
+	{"i3dm", ".i3dm",
+		"a tile of 3D Tiles is not read: the GLB in it is (i3dmToGlb of 3d-tiles-tools takes it out)"},
+	{"BLENDER", ".blend", "Blender's own files are not read: export glTF (.glb) from Blender instead"},
+};
+enum { FOREIGN_COUNT = sizeof foreign / sizeof foreign[0] };
+
+const char *nt_foreign_advice(const unsigned char *bytes, size_t size, const char *path)
+{
+	const char *extension = extension_of(path);
+	for (size_t i = 0; i < FOREIGN_COUNT; i++) {
+		const size_t length = strlen(foreign[i].begin);
+		if (length && size >= length && memcmp(bytes, foreign[i].begin, length) == 0)
+			return foreign[i].advice;
+	}
+	for (size_t i = 0; i < FOREIGN_COUNT; i++)
+		if (has_word(foreign[i].extensions, extension))
+			return foreign[i].advice;
+	return NULL;
 }

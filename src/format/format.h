@@ -47,4 +47,8 @@ const nt_format_entry *nt_format_of_path(const char *path);
 /* The format if no name says one: PLY for PLY, else GLB. */
 const nt_format_entry *nt_format_unnamed(const nt_format_entry *reader);
 
+/* Advice about a file that is not read, as in "FBX is not read: ...": by its first bytes, else by the name's ending;
+ * NULL: it is none that is known. Static. */
+const char *nt_foreign_advice(const unsigned char *bytes, size_t size, const char *path);
+
 #endif

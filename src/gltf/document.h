@@ -9,7 +9,7 @@
 #define NT_GLTF_DOCUMENT_H
 
 #include <string.h>
-#include "base/name_table.h"
+#include "base/hash_index.h"
 #include "ext/gltf_numbers.h"
 #include "ext/meshopt.h"
 #include "file/input.h"

@@ -11,7 +11,7 @@
 #define NT_GLTF_VERTEX_POOLS_H
 
 #include "base/buffer.h"
-#include "base/name_table.h"
+#include "base/hash_index.h"
 #include "scene/scene.h"
 #include "gltf/document.h"
 

@@ -14,7 +14,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 #include "base/hash_index.h"
-#include "base/name_table.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "file/relative_path.h"
 #include "file/temporary.h"

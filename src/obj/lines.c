@@ -19,6 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "base/compiler.h"
+#include "base/utf8.h"
 #include "file/decimal.h"
 #include "scene/srgb.h"
 
@@ -556,6 +557,39 @@ nt_status obj_read_lines(obj_chunk *c, size_t last)
 		c->line++;
 	}
 	return NT_OK;
+}
+
+/* ---- names ---- */
+
+static bool is_utf8(const char *text, size_t length)
+{
+	for (size_t i = 0; i < length;) {
+		const size_t step = nt_utf8_length(text + i, length - i);
+		if (step == 0)
+			return false;
+		i += step;
+	}
+	return true;
+}
+
+char *obj_utf8_text(nt_arena *arena, const char *text, size_t length)
+{
+	if (is_utf8(text, length))
+		return nt_arena_text(arena, text, length);
+	if (length > SIZE_MAX / 2 - 1)
+		return NULL;
+	char *copy = nt_arena_alloc(arena, 2 * length + 1, 1);
+	if (!copy)
+		return NULL;
+	char *to = copy;
+	for (size_t i = 0; i < length; i++) {
+		const unsigned char c = (unsigned char)text[i];
+		if (c >= 0x80)
+			*to++ = (char)(0xC0 | c >> 6);
+		*to++ = (char)(c < 0x80 ? c : 0x80 | (c & 0x3F));
+	}
+	*to = '\0';
+	return copy;
 }
 
 /* ---- chunks ---- */

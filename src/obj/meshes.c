@@ -10,7 +10,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/name_table.h"
+#include "base/hash_index.h"
 #include "base/parallel.h"
 #include "scene/origin.h"
 #include "scene/polygon.h"
@@ -392,7 +392,7 @@ static nt_status make_mesh(builder *b, size_t m)
 	};
 	const obj_event *object = file->meshes[m].object;
 	mesh->source_vertex_count = mesh->vertex_count;
-	mesh->name = object ? nt_utf8_text(&file->scene->arena, object->text, object->length) : "";
+	mesh->name = object ? obj_utf8_text(&file->scene->arena, object->text, object->length) : "";
 	mesh->file = file->scene->path;
 	mesh->line = file->meshes[m].line;
 	if (!mesh->name)

@@ -616,7 +616,7 @@ static nt_status begin_material(reader *r)
 	nt_mtl *mtl = r->mtl;
 	const size_t length = (size_t)(r->end - r->text);
 	const char *raw_name = nt_arena_text(&r->scene->arena, r->text, length);
-	const char *name = nt_utf8_text(&r->scene->arena, r->text, length);
+	const char *name = obj_utf8_text(&r->scene->arena, r->text, length);
 	if (!raw_name || !name ||
 		!nt_grow((void **)&mtl->definitions, &mtl->capacity, mtl->count + 1, sizeof *mtl->definitions))
 		return nt_fail_memory(r->error);

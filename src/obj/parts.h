@@ -7,7 +7,7 @@
 #define NT_OBJ_PARTS_H
 
 #include <string.h>
-#include "base/name_table.h"
+#include "base/hash_index.h"
 #include "scene/scene.h"
 
 /* The numbers of a face corner, as they are kept until the file has been read. Bit 31 clear: counted
@@ -322,6 +322,9 @@ void nt_mtl_free(nt_mtl *mtl);
 
 /* A file name with `\` as `/` and without quotes; NULL: out of memory. */
 char *nt_mtl_file_name(nt_arena *arena, const char *text, const char *end);
+
+/* The text as UTF-8 with a final NUL. If it is not UTF-8 already, it is taken as Latin-1. NULL: out of memory. */
+char *obj_utf8_text(nt_arena *arena, const char *text, size_t length);
 
 /* ---- steps over text ---- */
 

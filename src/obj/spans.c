@@ -13,7 +13,7 @@
 #include "obj/parts.h"
 
 #include <stdlib.h>
-#include "base/name_table.h"
+#include "base/hash_index.h"
 
 /* Materials that no library defines are named one by one up to this many. */
 enum { NAMED_UNKNOWN_MOST = 100 };
@@ -102,7 +102,7 @@ static nt_status name_groups(state *s)
 	file->groups[file->group_count++] = "";
 	for (size_t i = 0; i < s->groups.count; i++) {
 		const nt_name *name = &s->groups.names[i];
-		file->groups[file->group_count] = nt_utf8_text(&file->scene->arena, name->text, name->length);
+		file->groups[file->group_count] = obj_utf8_text(&file->scene->arena, name->text, name->length);
 		if (!file->groups[file->group_count++])
 			return nt_fail_memory(s->error);
 	}
@@ -176,7 +176,7 @@ static nt_status make_materials(state *s, const nt_mtl *mtl)
 	for (size_t i = 0; i < s->names.count; i++) {
 		const nt_name *name = &s->names.names[i];
 		scene->materials[i] =
-			nt_material_default(nt_utf8_text(&scene->arena, name->text, name->length));
+			nt_material_default(obj_utf8_text(&scene->arena, name->text, name->length));
 		if (!scene->materials[i].name)
 			return nt_fail_memory(s->error);
 	}

@@ -12,7 +12,7 @@
 #include "base/clock.h"
 #include "base/hash.h"
 #include "file/watch.h"
-#include "format/foreign.h"
+#include "format/format.h"
 #include "format/normal_map.h"
 #include "format/turned_maps.h"
 #include "gltf/sidecar.h"

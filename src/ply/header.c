@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 #include "base/memory.h"
-#include "base/name_table.h"
+#include "base/hash_index.h"
 
 static const struct {
 	const char *name, *alias;

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include "base/parallel.h"
-#include "base/name_table.h"
+#include "base/hash_index.h"
 #include "ply/parts.h"
 #include "scene/origin.h"
 #include "scene/srgb.h"

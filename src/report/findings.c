@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/name_table.h"
+#include "base/hash_index.h"
 #include "report/baseline.h"
 #include "report/digest.h"
 

@@ -19,7 +19,6 @@
 #include <math.h>
 #include <string.h>
 #include "base/hash_index.h"
-#include "base/name_table.h"
 
 enum { SAMPLE_COUNT = 16384, GRID_SIZE = 128 };
 

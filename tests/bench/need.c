@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Prints how many bytes src/batch/need.c guesses that a run takes: need [OPTIONS] INPUT OUTPUT
+ * Prints how many bytes src/batch/gate.c guesses that a run takes: need [OPTIONS] INPUT OUTPUT
  */
 #include <inttypes.h>
 #include <stdio.h>
-#include "batch/need.h"
+#include "batch/gate.h"
 #include "cli/options.h"
 
 int main(int argc, char **argv)

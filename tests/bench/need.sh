@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 #
 # make bench-need [FILES="FILE..."]: peak memory of one run for each FILE, over that of the smallest run, beside the guess of
-# src/batch/need.c. Without FILES, for some that are made: ordinary ones, and the worst of each format, in which every
+# src/batch/gate.c. Without FILES, for some that are made: ordinary ones, and the worst of each format, in which every
 # corner is a vertex of its own.
 set -eu
 nmtan=$1

@@ -5,7 +5,7 @@
 #ifndef NT_REPORT_RENDER_WRITERS_H
 #define NT_REPORT_RENDER_WRITERS_H
 
-#include "base/name_table.h"
+#include "base/hash_index.h"
 #include "report/render/words.h"
 
 /* Limits of one page while it grows. */

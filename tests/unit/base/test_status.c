@@ -2,7 +2,7 @@
 /*
  * Each status has words of its own, and what the compute library says passes into nt_status unchanged.
  */
-#include "base/status.h"
+#include "base/error.h"
 #include "test.h"
 
 TEST(statuses_have_texts)

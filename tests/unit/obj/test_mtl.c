@@ -401,4 +401,25 @@ TEST(nothing_outside_the_folder_is_read)
 	close_reading(&r);
 }
 
+TEST(text_becomes_utf8)
+{
+	static const struct {
+		const char *from, *to;
+	} cases[] = {
+		{"plain", "plain"},
+		{"", ""},
+		{"\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80", "\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80"},
+		{"\xE9t\xE9", "\xC3\xA9t\xC3\xA9"},          /* Latin-1 */
+		{"\xC3", "\xC3\x83"},                        /* cut */
+		{"\xC0\x80", "\xC3\x80\xC2\x80"},            /* overlong */
+		{"\xE0\x80\x80", "\xC3\xA0\xC2\x80\xC2\x80"},
+		{"\xED\xA0\x80", "\xC3\xAD\xC2\xA0\xC2\x80"}, /* a surrogate */
+		{"\xF4\x90\x80\x80", "\xC3\xB4\xC2\x90\xC2\x80\xC2\x80"}, /* beyond U+10FFFF */
+	};
+	nt_arena arena = {0};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+		assert_string_equal(obj_utf8_text(&arena, cases[i].from, strlen(cases[i].from)), cases[i].to);
+	nt_arena_free(&arena);
+}
+
 AROUND_ALL(make_libraries, remove_folder)
