@@ -89,14 +89,19 @@ static nt_status check_triangles(const run *r)
 	return nt_error_in_file(r->error, r->input_path);
 }
 
+static bool is_folder(const char *path)
+{
+	struct stat info;
+	return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
 static nt_status open_scene(run *r)
 {
 	begin_stage(r, NT_STAGE_MAP);
 	nt_status status = NT_OK;
 	if (!r->input_is_open)
 		status = nt_file_open_content(&r->input, r->input_path, false, r->error);
-	struct stat info;
-	if (status && stat(r->input_path, &info) == 0 && S_ISDIR(info.st_mode))
+	if (status && is_folder(r->input_path))
 		strncat(r->error->message, "; -r takes the meshes in it",
 			sizeof r->error->message - strlen(r->error->message) - 1);
 	if (status)
@@ -111,7 +116,7 @@ static nt_status open_scene(run *r)
 	r->reader = nt_format_of_input(r->input.data, r->input.size, r->input_path);
 	if (!r->reader) {
 		const char *advice = nt_foreign_advice(r->input.data, r->input.size, r->input_path);
-		return nt_fail(r->error, NT_ERROR_INPUT, "%s",
+		return nt_fail(r->error, advice ? NT_ERROR_UNSUPPORTED : NT_ERROR_INPUT, "%s",
 			advice ? advice : "not recognised: expected OBJ, PLY, glTF, GLB or Draco");
 	}
 	r->scene.format = r->reader->format;
@@ -359,6 +364,9 @@ static nt_status turn_maps(run *r)
 static nt_status run_stages(run *r)
 {
 	nt_status status = nt_choose_writer(r->settings, r->output_path, NULL, &r->writer, r->error);
+	/* an output of a folder is likely to be one, too */
+	if (status && is_folder(r->input_path))
+		return open_scene(r);
 	/* a PLY is one mesh in the world, so the reader has to say where the meshes stand */
 	r->read_options.world = r->writer && r->writer->format == NT_FORMAT_PLY;
 	r->read_options.origin.to_ply = !r->writer || r->read_options.world;

@@ -67,6 +67,9 @@ says "6 of 6 done"
 run -d out in
 exits 2
 says "in: cannot read: Is a directory; -r takes the meshes in it"
+run in out2
+exits 2
+says "in: cannot read: Is a directory; -r takes the meshes in it"
 run --check .
 exits 2
 says "; -r takes the meshes in it"

@@ -583,7 +583,7 @@ printf 'b3dm\1\0\0\0' >e.tile
 printf 'i3dm\1\0\0\0' >f.tile
 for pair in a.bin:FBX b.stl:STL c.dae:COLLADA d.usda:USD "e.tile:a tile of 3D Tiles" "f.tile:a tile of 3D Tiles"; do
 	run "${pair%:*}" out.glb
-	exits 3
+	exits 5
 	says "${pair#*:} is not read"
 	grep -q "glTF\|GLB" "$WORK/err.txt" || wrong "it says nothing to bring instead"
 done
