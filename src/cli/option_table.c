@@ -183,7 +183,7 @@ const nt_option_row nt_option_rows[] = {
 		"with --check OLD NEW: report what changed in tangents, seams and findings; only new findings "
 		"decide the exit code", FIELD(diff), false},
 	{"check-maps", 0, NT_OPTION_CHOICE, "auto|on|off", NT_CHECK_MAPS_AUTO, 0, "auto",
-		"decode and examine normal maps; auto: for a report, files of at most 16 MB",
+		"decode and examine normal maps; auto: for a report or --normal-map, files of at most 16 MB",
 		SETTING(check_maps), false},
 	{"fail-on", 0, NT_OPTION_CHOICE, "error|warning|info|never", NT_FAIL_ON_ERROR, 0,
 		"error with --check, else never",

@@ -19,6 +19,7 @@ enum { MOST_AUTO_BYTES = 16 << 20, MOST_OPEN = 16 };
 /* Facts about an image that outlive it. */
 typedef struct known_map {
 	const nt_mesh *mesh;    /* the first that uses it */
+	const nt_material *material;
 	const char *use;
 	nt_normal_facts *facts; /* of one whose green points down */
 	bool examined, decodable, turnable, paired, heights;
@@ -31,7 +32,8 @@ typedef struct examined {
 	size_t number;       /* in the examination's maps */
 	nt_normal_map map;
 	const nt_mesh *mesh; /* the first that uses it */
-	const char *use;     /* what a glTF's material calls it; "" of others */
+	const nt_material *material; /* not of a glTF, whose place is the mesh; else NULL */
+	const char *use;     /* what a glTF's material calls it, or the name of the file */
 	bool decoded;        /* and no height map */
 	nt_normal_facts facts;
 	nt_error error;
@@ -70,14 +72,34 @@ static void examine(void *context, size_t item, unsigned slot)
 
 /* ---- what is to be said ---- */
 
+/* The mesh, or the line of an MTL that names the map, or a file that the user named. */
+static const nt_place *place_of(const nt_scene *scene, const nt_mesh *mesh, const nt_material *m, nt_place *place)
+{
+	if (!m)
+		return nt_mesh_place(mesh, place);
+	*place = nt_material_place(scene, m, m->normal_map.line);
+	if (m->normal_map.given) {
+		snprintf(place->file, sizeof place->file, "%s", m->normal_map.name);
+		place->line = 0;
+	}
+	return place;
+}
+
+/* Findings from `begin` on are about the mesh, wherever their places are. */
+static void set_mesh(nt_finding_list *findings, size_t begin, const nt_mesh *mesh)
+{
+	for (size_t i = begin; i < findings->count; i++)
+		findings->items[i].mesh = mesh;
+}
+
 static void tell_green(nt_finding_list *findings, nt_code code, const nt_place *place, const char *use,
 	const nt_normal_facts *f, bool stays)
 {
-	char detail[200];
+	char detail[320];
 	int8_t *votes = nt_arena_alloc(&findings->arena, sizeof f->votes, 1);
 	snprintf(detail, sizeof detail,
-		"%scorrelation %.2f (green %s) at the surest size of detail, where %.0f %% of the map have its "
-		"sign; over all sizes %zu of %d blocks say up, %zu down", use, f->correlation,
+		"%.*s, correlation %.2f (green %s) at the surest size of detail, where %.0f %% of the map have its "
+		"sign; over all sizes %zu of %d blocks say up, %zu down", NT_CUT(100, use), f->correlation,
 		f->correlation < 0 ? "down" : "up", 100 * f->agreement, f->blocks_up,
 		NT_GREEN_BLOCKS * NT_GREEN_BLOCKS, f->blocks_down);
 	findings->failed |= !votes;
@@ -107,7 +129,8 @@ static void tell_facts(nt_finding_list *findings, const nt_place *place, const c
 static void tell(const examination *e, const examined *x)
 {
 	nt_finding_list *findings = &e->scene->findings;
-	const nt_place *place = nt_mesh_place(x->mesh, &(nt_place){0});
+	const nt_place *place = place_of(e->scene, x->mesh, x->material, &(nt_place){0});
+	const size_t begin = findings->count;
 	if (!is_wanted(e, &x->map)) {
 		const bool large = nt_image_is_decoded(x->map.type);
 		nt_finding_add(findings, NT_CODE_NMAP_NOT_EXAMINED, place, 1, "%s%s", nt_image_type_name(x->map.type),
@@ -118,13 +141,13 @@ static void tell(const examination *e, const examined *x)
 	else if (x->error.status)
 		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, place, 1, "normal map (%.*s)",
 			NT_CUT(200, x->error.message));
-	if (!x->decoded)
-		return;
-	tell_facts(findings, place, x->use, &x->facts);
-	if (x->facts.srgb)
+	if (x->decoded)
+		tell_facts(findings, place, x->use, &x->facts);
+	if (x->decoded && x->facts.srgb)
 		nt_finding_add(findings, NT_CODE_NMAP_SRGB, place, 1, NULL);
-	if (x->facts.lossy)
+	if (x->decoded && x->facts.lossy)
 		nt_finding_add(findings, NT_CODE_NMAP_JPEG, place, 1, "%s", nt_image_type_name(x->map.type));
+	set_mesh(findings, begin, x->mesh);
 }
 
 /* Height maps that nothing converts; and maps whose green points down, but for those of pairs and those that are
@@ -141,14 +164,16 @@ static void tell_kept(const examination *e)
 		}
 	for (size_t i = 0; i < e->count; i++) {
 		const known_map *map = &e->maps[i];
+		nt_finding_list *findings = &e->scene->findings;
+		const nt_place *place = place_of(scene, map->mesh, map->material, &(nt_place){0});
+		const size_t begin = findings->count;
 		/* of an OBJ, --bump=height is about map_bump alone */
 		if (map->heights && map->stays)
-			nt_finding_put(&e->scene->findings, (nt_finding){.code = NT_CODE_NMAP_HEIGHTS, .count = 1,
-				.detail = "", .repair = e->textures ? "--bump=auto" : NULL},
-				nt_mesh_place(map->mesh, &(nt_place){0}));
+			nt_finding_put(findings, (nt_finding){.code = NT_CODE_NMAP_HEIGHTS, .count = 1,
+				.detail = "", .repair = e->textures ? "--bump=auto" : NULL}, place);
 		if (map->facts && !map->paired && !(turns && map->turnable))
-			tell_green(&e->scene->findings, NT_CODE_NMAP_GREEN_DOWN,
-				nt_mesh_place(map->mesh, &(nt_place){0}), map->use, map->facts, !map->turnable);
+			tell_green(findings, NT_CODE_NMAP_GREEN_DOWN, place, map->use, map->facts, !map->turnable);
+		set_mesh(findings, begin, map->mesh);
 	}
 }
 
@@ -192,8 +217,8 @@ static nt_status flush(examination *e, nt_error *error)
 	return status;
 }
 
-static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot, nt_normal_map *map,
-	nt_error *error)
+static nt_status add_map(examination *e, const nt_mesh *mesh, const nt_material *m, enum nt_slot slot,
+	nt_normal_map *map, nt_error *error)
 {
 	const size_t number = e->count;
 	nt_status status = NT_OK;
@@ -201,9 +226,9 @@ static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot,
 		nt_normal_map_close(map);
 		return nt_fail_memory(error);
 	}
-	const char *use = !nt_format_is_gltf(e->scene->format) ? ""
-		: slot == NT_SLOT_NORMAL ? "normalTexture, " : "clearcoatNormalTexture, ";
-	e->maps[e->count++] = (known_map){.mesh = mesh, .use = use};
+	const char *use = m ? m->normal_map.name
+		: slot == NT_SLOT_NORMAL ? "normalTexture" : "clearcoatNormalTexture";
+	e->maps[e->count++] = (known_map){.mesh = mesh, .material = m, .use = use};
 	if (is_wanted(e, map)) {
 		const uint64_t work = nt_image_work(map->bytes, map->size);
 		e->pixels += work;
@@ -216,13 +241,14 @@ static nt_status add_map(examination *e, const nt_mesh *mesh, enum nt_slot slot,
 		nt_normal_map_close(map);
 		return status;
 	}
-	e->open[e->open_count++] = (examined){.number = number, .map = *map, .mesh = mesh, .use = use};
+	e->open[e->open_count++] = (examined){.number = number, .map = *map, .mesh = mesh, .material = m,
+		.use = use};
 	return e->open_count == MOST_OPEN ? flush(e, error) : NT_OK;
 }
 
-/* Takes over an image that is open. stays: it is not converted. */
-static nt_status take_map(examination *e, nt_mesh *mesh, enum nt_slot slot, nt_normal_map *map, bool stays,
-	nt_error *error)
+/* Takes over an image that is open. m: NULL: of a glTF; stays: it is not converted. */
+static nt_status take_map(examination *e, nt_mesh *mesh, const nt_material *m, enum nt_slot slot, nt_normal_map *map,
+	bool stays, nt_error *error)
 {
 	if (!map->bytes)
 		return NT_OK;
@@ -234,7 +260,7 @@ static nt_status take_map(examination *e, nt_mesh *mesh, enum nt_slot slot, nt_n
 	}
 	mesh->normal_maps[slot == NT_SLOT_CLEARCOAT_NORMAL] = (nt_mesh_map){.number = number + 1, .image = map->image};
 	if (number == e->count)
-		status = add_map(e, mesh, slot, map, error);
+		status = add_map(e, mesh, m, slot, map, error);
 	else
 		nt_normal_map_close(map);
 	if (!status)
@@ -250,7 +276,7 @@ static nt_status take_slot(examination *e, nt_mesh *mesh, enum nt_slot slot, nt_
 		return NT_OK;
 	const nt_status status = nt_normal_map_open(&map, e->scene, mesh, slot, NULL, error);
 	const bool converted = s->bump == NT_BUMP_HEIGHT && (!s->check || s->converts) && map.turnable;
-	return status ? status : take_map(e, mesh, slot, &map, !converted, error);
+	return status ? status : take_map(e, mesh, NULL, slot, &map, !converted, error);
 }
 
 /* Maps of a mesh's materials that the output has; each material is looked at once. */
@@ -266,7 +292,7 @@ static nt_status take_named(examination *e, nt_mesh *mesh, bool *seen, nt_error 
 		seen[number] = true;
 		status = nt_normal_map_open_named(&map, e->scene, m, NT_SLOT_NORMAL, &e->searched, error);
 		if (!status)
-			status = take_map(e, mesh, NT_SLOT_NORMAL, &map,
+			status = take_map(e, mesh, m, NT_SLOT_NORMAL, &map,
 				!nt_textures_of(e->textures, m->normal_map.request)->from_heights, error);
 	}
 	return status;

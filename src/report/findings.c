@@ -335,6 +335,8 @@ static void add_scene_finding(nt_check *check, const mesh_table *table, const nt
 		.box = nt_box_empty(),
 		.seam = NT_NONE,
 		.island = NT_NONE};
+	if (found->mesh && check->report->mesh_count) /* which a failed input has not */
+		finding.mesh = (uint32_t)(found->mesh - check->scene->meshes);
 	finding.alike = finding.mesh != NT_NONE;
 	if (finding.mesh != NT_NONE && found->count > 1)
 		finding.share = fmin(1.0, (double)found->count /

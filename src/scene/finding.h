@@ -134,6 +134,7 @@ typedef struct nt_finding {
 	unsigned votes_side;
 	const struct nt_mesh *judged; /* an info unless this mesh needs tangents, which its images may decide later;
 	                                 NULL: the severity stays. Ends with the scene */
+	const struct nt_mesh *mesh;   /* that it is about, if the place is that of its material; else NULL. The same */
 } nt_finding;
 
 typedef struct nt_finding_list {

@@ -570,7 +570,17 @@ run quad.obj quad.glb
 exits 0
 says_not "NMAP_"
 run --check-maps=on quad.obj quad.glb
-says "NMAP_GREEN_DOWN"
+says "m.mtl:2: material \"m\": warning: normal map whose green points down: down.png, correlation"
+# the place of a finding about a map is the statement that names it
+run --check --report-format=lines quad.obj
+prints "m.mtl:2: warning: NMAP_GREEN_DOWN: normal map whose green points down: down.png, correlation"
+prints ', in material "m". Invert the green channel: nmtan --fix quad.obj quad.glb'
+run --check quad.obj
+prints 'in material "m", line 2 of m.mtl'
+run --check -q --report=r.json quad.obj
+is "$(value r.json '[(f["place"]["line"], f["mesh"]) for f in r["files"][0]["findings"] if f["votes"]]')" "[(2, 0)]"
+run --normal-map=down.png quad.obj quad.glb
+says "down.png: material \"m\": warning: normal map whose green points down: down.png, correlation"
 run --flip-green=auto quad.obj quad.glb
 exits 0
 says "down.png became down-green-up.png"
@@ -595,7 +605,7 @@ is "$(value r.json '[(f["code"], f["severity"], [min(map(min, v)) > 20 for v in 
 	[max(map(max, v)) < -20 for v in (f["votes"][:6],)]) for f in r["files"][0]["findings"] if f["votes"]]')" \
 	"[('NMAP_GREEN_MIXED', 'info', [True], [True])]"
 # a block is told by 20 % and more; the figures say of what they are
-is "$(value r.json '[f["message"].split(": ", 1)[1] == "correlation %s of 144 blocks say up, %d down" % (f["message"].split("correlation ")[1].split(" of 144")[0],
+is "$(value r.json '[f["message"].split(": ", 1)[1] == "mixed.png, correlation %s of 144 blocks say up, %d down" % (f["message"].split("correlation ")[1].split(" of 144")[0],
 	sum(v <= -20 for row in f["votes"] for v in row)) and "over all sizes %d of 144" % sum(v >= 20 for row in f["votes"] for v in row) in f["message"]
 	and (" (green up)" if "correlation 0" in f["message"] else " (green down)") + " at the surest size of detail, where " in f["message"] for f in r["files"][0]["findings"] if f["votes"]]')" "[True]"
 run --flip-green=auto quad.obj quad.glb
@@ -808,6 +818,7 @@ while IFS='|' read -r code width formula; do
 	quad 'norm map.png'
 	run --check quad.obj
 	prints "$code"
+	prints 'in material "m", line 2 of m.mtl'
 done <<END
 info      NMAP_CONSTANT|8|(131, 124, 255)
 warning   NMAP_CONSTANT|8|(140, 128, 254)

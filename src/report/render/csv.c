@@ -52,10 +52,10 @@ static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer 
 {
 	const nt_report *report = w->report;
 	put_cell(nt_finding_file(report, finding), out);
-	if (finding->mesh != NT_NONE)
-		nt_put_label(report, finding->mesh, put_cell, out);
-	else
+	if (nt_finding_has_object(finding))
 		put_cell(finding->place.object, out);
+	else
+		nt_put_label(report, finding->mesh, put_cell, out);
 	nt_buffer_format(out, "%s,%s,%zu,", nt_code_info(finding->code)->name,
 		nt_severity_name(finding->severity), finding->count);
 	put_cell(finding->message, out);

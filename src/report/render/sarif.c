@@ -108,10 +108,10 @@ static void put_location(const nt_report *report, const nt_report_finding *findi
 	put_physical(nt_finding_file(report, finding), line ? line : 1, out);
 	if (finding->mesh != NT_NONE || finding->place.pointer[0] || finding->place.object[0]) {
 		nt_buffer label = {0};
-		if (finding->mesh != NT_NONE)
-			nt_mesh_label(report, finding->mesh, &label);
-		else
+		if (nt_finding_has_object(finding))
 			nt_buffer_text(&label, finding->place.object);
+		else
+			nt_mesh_label(report, finding->mesh, &label);
 		nt_buffer_text(out, ", \"logicalLocations\": [{");
 		if (label.size)
 			put_text("name", label.data, out);

@@ -101,6 +101,11 @@ size_t nt_finding_line(const nt_report_finding *finding)
 	return finding->place.line;
 }
 
+bool nt_finding_has_object(const nt_report_finding *finding)
+{
+	return finding->mesh == NT_NONE || (finding->file && finding->place.object[0]);
+}
+
 const char *nt_finding_file(const nt_report *report, const nt_report_finding *finding)
 {
 	return finding->file ? finding->file : report->shown;
@@ -122,7 +127,7 @@ void nt_put_where(const nt_report *report, const nt_report_finding *finding, boo
 	void (*put)(const char *text, nt_buffer *out), nt_buffer *out)
 {
 	const size_t begin = out->size;
-	if (finding->mesh == NT_NONE)
+	if (nt_finding_has_object(finding))
 		put(finding->place.object[0] ? finding->place.object : finding->place.pointer, out);
 	else if (label)
 		nt_put_label(report, finding->mesh, put, out);
@@ -133,10 +138,11 @@ void nt_put_sentence(const nt_report *report, const nt_report_finding *finding,
 	void (*put)(const char *text, nt_buffer *out), nt_buffer *out)
 {
 	put(finding->message, out);
-	if (finding->mesh == NT_NONE ? !finding->place.object[0] : report->mesh_count == 1)
+	const bool has_object = nt_finding_has_object(finding);
+	if (has_object ? !finding->place.object[0] : report->mesh_count == 1)
 		return;
 	nt_buffer_text(out, ", in ");
-	if (finding->mesh == NT_NONE)
+	if (has_object)
 		put(finding->place.object, out);
 	else
 		nt_put_label(report, finding->mesh, put, out);

@@ -70,6 +70,9 @@ void nt_dropped_text(const nt_report *report, const char *before, const char *af
 /* The line of a text where a finding begins, of its first face that has one; 0: none. */
 size_t nt_finding_line(const nt_report_finding *finding);
 
+/* Whether its place has an object of its own, which may be no mesh: a material. */
+bool nt_finding_has_object(const nt_report_finding *finding);
+
 /* Its file as reports show it: the input's, or that of a material library. */
 const char *nt_finding_file(const nt_report *report, const nt_report_finding *finding);
 
