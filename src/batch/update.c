@@ -83,6 +83,20 @@ static bool read_path(const open_record *record, const nt_json_value *uri, nt_bu
 	return text && !path->failed;
 }
 
+/* A path below the record's folder becomes what the run calls it, as the record's own name is spelled. */
+static void spell(const open_record *record, nt_buffer *path)
+{
+	const char *rest = path->data + record->folder.size + 1;
+	nt_buffer spelled = {0};
+	if (!record->spelled_length || nt_uri_has_parent_step(rest))
+		return;
+	nt_buffer_format(&spelled, "%.*s%s", (int)record->spelled_length, record->file.path, rest);
+	if (!spelled.failed) {
+		nt_buffer_free(path);
+		*path = spelled;
+	}
+}
+
 /* ---- records ---- */
 
 static void close_record(open_record *record)
@@ -495,8 +509,10 @@ static bool holds(look *l, const nt_json_value *line)
 		while (kind < KINDS && !nt_json_find(file, kinds[kind]))
 			kind++;
 		const nt_json_value *uri = kind < KINDS ? nt_json_find(file, kinds[kind]) : NULL;
-		same = read_path(l->job->record, uri, &l->path) &&
-			is_still[kind](l, file, nt_json_get_string(uri, NULL));
+		same = read_path(l->job->record, uri, &l->path);
+		if (same)
+			spell(l->job->record, &l->path);
+		same = same && is_still[kind](l, file, nt_json_get_string(uri, NULL));
 	}
 	return same && l->found_input;
 }

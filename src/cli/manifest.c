@@ -15,6 +15,8 @@
 #include "base/hash.h"
 #include "cli/messages.h"
 #include "file/input.h"
+#include "file/relative_path.h"
+#include "file/uri.h"
 #include "report/codes.h"
 #include "report/render/words.h"
 #include "scene/origin.h"
@@ -23,6 +25,34 @@
 enum { LINE_BYTES = 16 * 1024 };
 
 /* ---- a line ---- */
+
+static const char *without_dot(const char *path)
+{
+	return path[0] == '.' && path[1] == '/' ? path + 2 : path;
+}
+
+/* The path of a file in one spelling, whichever run met it: as the input or output (`like`) if it is that, relative to
+ * the folder of the run if `like` is relative, else absolute. */
+static void show_path(nt_buffer *shown, const nt_manifest *manifest, const char *path, const char *like)
+{
+	nt_buffer whole = {0}, uri = {0};
+	shown->size = 0;
+	nt_path_join(&whole, "/", path);
+	if (path[0] != '/' || whole.failed) {
+		nt_buffer_text(shown, without_dot(path));
+	} else if (like[0] != '/' && manifest->current.size) {
+		nt_link_uri(&uri, manifest->current.data, whole.data);
+		nt_uri_append_decoded(shown, uri.data ? uri.data : "", uri.size);
+	} else {
+		nt_buffer_text(shown, whole.data);
+	}
+	if (strcmp(path, like) == 0 || (!shown->failed && strcmp(shown->data, without_dot(like)) == 0)) {
+		shown->size = 0;
+		nt_buffer_text(shown, like);
+	}
+	nt_buffer_free_into(&whole, shown);
+	nt_buffer_free_into(&uri, shown);
+}
 
 /* A new output is read once more, while the system still has it in memory. Streams are no more. */
 static void append_digest(nt_buffer *out, const char *path)
@@ -35,37 +65,48 @@ static void append_digest(nt_buffer *out, const char *path)
 }
 
 /* A digest of names, in their order. */
-static void append_missing_digest(nt_buffer *out, const nt_trace *trace)
+static void append_missing_digest(nt_buffer *out, const nt_manifest *manifest, const nt_job *job, const nt_trace *trace)
 {
 	uint64_t digest = 0;
-	for (size_t i = 0; i < trace->count; i++)
-		if (trace->files[i].kind == NT_TRACE_MISSING)
-			digest = nt_hash_unkeyed(digest, trace->files[i].path, strlen(trace->files[i].path) + 1);
+	nt_buffer shown = {0};
+	for (size_t i = 0; i < trace->count; i++) {
+		if (trace->files[i].kind != NT_TRACE_MISSING)
+			continue;
+		show_path(&shown, manifest, trace->files[i].path, job->input);
+		digest = nt_hash_unkeyed(digest, shown.data, shown.size + 1);
+	}
+	nt_buffer_free_into(&shown, out);
 	if (digest)
 		nt_buffer_format(out, ",\"missing_digest\":\"%016" PRIx64 "\"", digest);
 }
 
 /* Files of one kind; those that are there with their sizes, and with digests where that is wanted. */
-static void append_files(nt_buffer *out, const char *key, const nt_trace *trace, nt_trace_kind kind, bool digests)
+static void append_files(nt_buffer *out, const char *key, const nt_manifest *manifest, const nt_job *job,
+	const nt_trace *trace, nt_trace_kind kind, bool digests)
 {
+	nt_buffer shown = {0};
 	nt_member_open(out, key, "[");
 	for (size_t i = 0; i < trace->count; i++) {
 		const nt_trace_file *file = &trace->files[i];
 		if (file->kind != kind)
 			continue;
 		nt_member_next(out, NT_SAME_LINE);
+		show_path(&shown, manifest, file->path,
+			kind == NT_TRACE_WRITTEN && job->output ? job->output : job->input);
+		const char *path = shown.data ? shown.data : "";
 		if (kind == NT_TRACE_MISSING || kind == NT_TRACE_SEARCHED) {
-			nt_json_string(file->path, out);
+			nt_json_string(path, out);
 			continue;
 		}
 		nt_buffer_text(out, "{");
-		nt_member_text(out, "path", file->path);
+		nt_member_text(out, "path", path);
 		nt_member_count(out, "bytes", file->size);
 		if (digests)
 			append_digest(out, file->path);
 		nt_buffer_text(out, "}");
 	}
 	nt_buffer_text(out, "]");
+	nt_buffer_free_into(&shown, out);
 }
 
 static void append_error(nt_buffer *out, const nt_error *error)
@@ -169,11 +210,11 @@ static void append_job(nt_buffer *out, const nt_job *job, const nt_manifest *man
 		: job->outcome->summary.left ? "left" : "done", exit_code);
 	nt_member_text(out, "nmtan", nmtan_version());
 	nt_member_text(out, "options", manifest->options);
-	append_files(out, "outputs", trace, NT_TRACE_WRITTEN, job->end == NT_JOB_RAN && !job->status);
-	append_files(out, "dependencies", trace, NT_TRACE_READ, false);
-	append_files(out, "missing", trace, NT_TRACE_MISSING, false);
-	append_files(out, "searched", trace, NT_TRACE_SEARCHED, false);
-	append_missing_digest(out, trace);
+	append_files(out, "outputs", manifest, job, trace, NT_TRACE_WRITTEN, job->end == NT_JOB_RAN && !job->status);
+	append_files(out, "dependencies", manifest, job, trace, NT_TRACE_READ, false);
+	append_files(out, "missing", manifest, job, trace, NT_TRACE_MISSING, false);
+	append_files(out, "searched", manifest, job, trace, NT_TRACE_SEARCHED, false);
+	append_missing_digest(out, manifest, job, trace);
 	if (job->status && job->outcome)
 		append_error(out, &job->outcome->error);
 	if (job->outcome && job->end == NT_JOB_RAN)
@@ -220,6 +261,9 @@ nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *
 		return error->status;
 	if (!nt_buffer_reserve(&manifest->line, LINE_BYTES))
 		return nt_fail_memory(error);
+	nt_error ignored; /* without a name of the folder, files are called as they were met */
+	if (nt_path_absolute(&manifest->current, ".", &ignored))
+		manifest->current.size = 0;
 	manifest->fd = standard ? dup(STDOUT_FILENO)
 				: open(path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
 	return manifest->fd < 0 ? fail(manifest, errno, error) : NT_OK;
@@ -255,6 +299,7 @@ nt_status nt_manifest_close(nt_manifest *manifest, nt_error *error)
 	if (manifest->fd >= 0 && close(manifest->fd) != 0 && !manifest->error.status)
 		fail(manifest, errno, &manifest->error);
 	manifest->fd = -1;
+	nt_buffer_free(&manifest->current);
 	nt_buffer_free(&manifest->line);
 	if (manifest->error.status)
 		*error = manifest->error;

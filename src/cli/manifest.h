@@ -14,6 +14,7 @@ typedef struct nt_manifest {
 	const nt_report_options *judged; /* which findings count */
 	bool check;          /* nothing is written: lines count all that was judged */
 	int fd;              /* below 0: not open */
+	nt_buffer current;   /* the folder of the run; empty: it has no name */
 	nt_buffer line;      /* what most lines take is there from the start */
 	nt_error error;      /* the first that came about */
 } nt_manifest;

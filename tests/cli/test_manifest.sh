@@ -119,6 +119,41 @@ validates --lines manifest m
 is "$(value m '[l["status"] for l in m.values()]')" "['up-to-date', 'failed', 'untried']"
 is "$(value m '[d["path"] for d in m["a.obj"]["dependencies"]]')" "['a.obj']"
 
+scene "each run spells a file in the same way, whether it was made, left or up to date"
+mkdir -p in/tex here
+printf 'newmtl m\nmap_Kd tex/n.png\nmap_Ks gone.png\n' >in/m.mtl
+cp "$data/bumps.png" in/tex/n.png
+{ echo 'mtllib m.mtl'; sed 's/^f/usemtl m\nf/' "$data/quad.obj" | grep -v ^mtllib; } >in/a.obj
+ln -s in/a.obj link.obj
+mkdir real
+ln -s real out3
+paths='[[d["path"] for d in l["outputs"] + l["dependencies"]] + l["missing"] + l["searched"] + [l.get("missing_digest")] for l in m.values()]'
+while IFS='|' read -r folder input output; do
+	cd "$WORK/here/$folder" || exit
+	run -q --manifest=first -d $output $input
+	later
+	run -q --update=content --manifest=m -d $output $input
+	first=$(value first "$paths")
+	for options in --update --write-if-changed; do
+		run -q $options --manifest=m -d $output $input
+		is "$folder|$input|$output $options: $(value m "$paths")" "$folder|$input|$output $options: $first"
+		is "$(value m '[l["status"] for l in m.values()]')" "['$([ $options = --update ] && echo up-to-date || echo left)']"
+	done
+done <<END
+.|in/a.obj|out
+.|./in/a.obj|./out2
+.|in/a.obj|out3
+.|link.obj|out4
+here|../in/a.obj|../out5
+.|$PWD/in/a.obj|$PWD/out6
+.|$PWD/in/a.obj|out7
+in|a.obj|.
+END
+cd "$WORK/here"
+run -q --update --manifest=m -d out in/a.obj
+is "$(value m '[d["path"] for l in m.values() for d in l["outputs"] + l["dependencies"]]')" \
+	"['out/a.glb', 'in/a.obj', 'in/m.mtl', 'in/tex/n.png']"
+
 scene "findings that fail are in the exit code, and --check has a manifest"
 cp "$data/mirrored_cube.obj" a.obj
 run --check -q --fail-on=warning --manifest=m a.obj
