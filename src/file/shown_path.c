@@ -63,20 +63,33 @@ static void append_prefix(const nt_shown_paths *paths, nt_buffer *out)
 		nt_buffer_format(out, "%s%s", prefix, *prefix && prefix[strlen(prefix) - 1] != '/' ? "/" : "");
 }
 
+/* The path from a folder on if it is below, else `otherwise`. */
+static void append_below(const nt_shown_paths *paths, const nt_buffer *folder, const char *path, const char *otherwise,
+	nt_buffer *out)
+{
+	nt_buffer whole = {0};
+	nt_path_join(&whole, paths->current.data, path);
+	const bool below = whole.data && nt_link_is_inside(whole.data, folder->data);
+	nt_buffer_text(out, below ? whole.data + (folder->size > 1 ? folder->size + 1 : 1) : otherwise);
+	nt_buffer_free_into(&whole, out);
+}
+
 void nt_shown_path(const nt_shown_paths *paths, const char *path, nt_buffer *out)
 {
 	if (!paths || strcmp(path, "-") == 0) {
 		nt_buffer_text(out, path);
 		return;
 	}
-	nt_buffer whole = {0};
-	nt_path_join(&whole, paths->current.data, path);
 	append_prefix(paths, out);
-	if (whole.data && nt_link_is_inside(whole.data, paths->base.data))
-		nt_buffer_text(out, whole.data + (paths->base.size > 1 ? paths->base.size + 1 : 1));
+	append_below(paths, &paths->base, path, nt_last_part(path), out);
+}
+
+void nt_opened_path(const nt_shown_paths *paths, const char *path, nt_buffer *out)
+{
+	if (!paths || paths->prefix || strcmp(path, "-") == 0)
+		nt_shown_path(paths, path, out);
 	else
-		nt_buffer_text(out, nt_last_part(path));
-	nt_buffer_free_into(&whole, out);
+		append_below(paths, &paths->current, path, path, out);
 }
 
 void nt_shown_paths_free(nt_shown_paths *paths)

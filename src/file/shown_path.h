@@ -24,6 +24,10 @@ nt_status nt_shown_paths_begin(nt_shown_paths *paths, const char *const *inputs,
  * as it is spelled. */
 void nt_shown_path(const nt_shown_paths *paths, const char *path, nt_buffer *out);
 
+/* Appends a path that opens the file from the folder of the run, as compilers and editors do: relative if it is below,
+ * else as it is spelled. With a prefix the same as nt_shown_path(). */
+void nt_opened_path(const nt_shown_paths *paths, const char *path, nt_buffer *out);
+
 void nt_shown_paths_free(nt_shown_paths *paths);
 
 #endif

@@ -144,6 +144,13 @@ run --check --min-severity=error --report-format=github plates.gltf # the comman
 is "$(sed 's/.*%0A//' ../out.txt)" "Make them: nmtan --fix plates.gltf plates-repaired.gltf"
 run --check --min-severity=error --report-format=lines plates.gltf
 is "$(sed 's/.*texture, [^.]*\. //' ../out.txt)" "Make them: nmtan --fix plates.gltf plates-repaired.gltf"
+gltf plates.gltf one 'g.meshes[0].primitives = [g.meshes[0].primitives[2]]'
+for format in junit sarif; do # of one mesh, too
+	run --check --min-severity=error --report-format=$format one.gltf
+	prints "Make them: nmtan --fix one.gltf one-repaired.gltf"
+	prints "/meshes/0/primitives/0"
+	prints 'mesh '
+done
 
 # Two libraries, in a folder below; the second line of the first is empty.
 scene "what a material library says is found at its lines, in every format"

@@ -37,14 +37,32 @@ static void begin(nt_walk *w, nt_buffer *out)
 			level ? "\t<testsuite" : "<testsuites", w->count, failures, errors);
 }
 
+/* ", in mesh "head", /meshes/0/primitives/0", of a file with one mesh, too; and the remedy. */
+static void put_rest(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
+{
+	nt_buffer where = {0}, remedy = {0};
+	nt_put_where(report, finding, true, nt_xml_text, &where);
+	if (where.size)
+		nt_buffer_format(out, ", in %s", where.data);
+	if (finding->mesh != NT_NONE && finding->place.pointer[0]) {
+		nt_buffer_text(out, ", ");
+		nt_xml_text(finding->place.pointer, out);
+	}
+	nt_remedy_text(finding->code, finding->repair, report->given, report->path, &remedy);
+	nt_buffer_text(out, ". ");
+	nt_xml_text(remedy.data ? remedy.data : "", out);
+	nt_buffer_free_into(&where, out);
+	nt_buffer_free_into(&remedy, out);
+}
+
 /* A line, of those that fail or of the others. */
 static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
 {
 	const bool fails = is_failure(w->reports, finding);
 	nt_buffer *to = &w->parts[fails];
 	nt_buffer_format(to, "%s: %s: ", nt_severity_name(finding->severity), nt_code_info(finding->code)->name);
-	nt_put_sentence(w->report, finding, nt_xml_text, to);
-	nt_put_line(finding, ", ", nt_xml_text, to);
+	nt_xml_text(finding->message, to);
+	put_rest(w->report, finding, to);
 	nt_buffer_text(to, finding->known ? " (known)\n" : "\n");
 	w->first = w->first || !fails ? w->first : finding;
 	w->rows += fails;

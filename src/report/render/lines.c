@@ -25,22 +25,28 @@ static void put_raw(const char *text, nt_buffer *out)
 static void put_failure(const nt_walk *w, void (*put)(const log_line *line, nt_buffer *out), nt_buffer *out)
 {
 	const nt_report *report = w->report;
-	if (report->failure && !nt_failure_is_found(report))
-		put(&(log_line){report->shown, report->failure_place.line, NT_SEVERITY_ERROR, NULL, report->failure},
-			out);
+	nt_buffer file = {0};
+	if (!report->failure || nt_failure_is_found(report))
+		return;
+	nt_opened_path(report->paths, report->path, &file);
+	put(&(log_line){file.data ? file.data : "", report->failure_place.line, NT_SEVERITY_ERROR, NULL,
+		report->failure}, out);
+	nt_buffer_free_into(&file, out);
 }
 
 /* before: the remedy. */
 static void put_new(const nt_walk *w, const nt_report_finding *finding, const char *before,
 	void (*put)(const log_line *line, nt_buffer *out), nt_buffer *out)
 {
-	nt_buffer text = {0};
+	nt_buffer text = {0}, file = {0};
+	nt_opened_path(w->report->paths, finding->file ? finding->place.file : w->report->path, &file);
 	nt_put_sentence(w->report, finding, put_raw, &text);
 	nt_buffer_text(&text, before);
 	nt_remedy_text(finding->code, finding->repair, w->report->given, w->report->path, &text);
-	put(&(log_line){nt_finding_file(w->report, finding), nt_finding_line(finding), finding->severity,
+	put(&(log_line){file.data ? file.data : "", nt_finding_line(finding), finding->severity,
 		nt_code_info(finding->code)->name, text.data ? text.data : ""}, out);
 	nt_buffer_free_into(&text, out);
+	nt_buffer_free_into(&file, out);
 }
 
 /* ---- as compilers print ---- */

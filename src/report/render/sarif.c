@@ -141,7 +141,11 @@ static void put_result(nt_walk *w, const nt_report_finding *finding, nt_buffer *
 	put_text("ruleId", nt_code_info(finding->code)->name, out);
 	nt_buffer_format(out, ", \"ruleIndex\": %u, \"level\": \"%s\", \"message\": {", (unsigned)finding->code,
 		level_of(finding->severity));
-	put_text("text", finding->message, out);
+	nt_buffer text = {0};
+	nt_buffer_format(&text, "%s. ", finding->message);
+	nt_remedy_text(finding->code, finding->repair, report->given, report->path, &text);
+	put_text("text", text.data ? text.data : "", out);
+	nt_buffer_free_into(&text, out);
 	nt_buffer_text(out, "},\n\t\t\t\t");
 	put_location(report, finding, out);
 	nt_buffer_format(out, ",\n\t\t\t\t\"partialFingerprints\": {\"nmtan/v1\": \"%016llx\"",
