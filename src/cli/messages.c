@@ -342,6 +342,13 @@ static void append_vertices(nt_buffer *out, const nt_summary *s)
 	nt_buffer_text(out, ")");
 }
 
+static void append_primitives(nt_buffer *out, const char *before, size_t count, const char *after)
+{
+	nt_buffer_text(out, before);
+	append_count(out, count, "primitive");
+	nt_buffer_text(out, after);
+}
+
 /* Options that came to nothing, and others with which they would not. */
 static void append_unused(nt_buffer *out, const nt_summary *s, const nt_settings *settings)
 {
@@ -357,14 +364,13 @@ static void append_unused(nt_buffer *out, const nt_summary *s, const nt_settings
 	if (settings->existing == NT_EXISTING_REPLACE && s->skipped[NT_SKIP_NO_SLOT])
 		nt_buffer_text(out, ", --only=all makes new tangents for all");
 	if (settings->existing == NT_EXISTING_DROP && s->skipped[NT_SKIP_HAS_TANGENTS])
-		nt_buffer_format(out, ", a material uses the tangents of %zu, which stay",
-			s->skipped[NT_SKIP_HAS_TANGENTS]);
-	if (s->without_normals && settings->normals == NT_NORMALS_AUTO)
-		nt_buffer_format(out, ", %zu without normals (--normals=smooth makes them)", s->without_normals);
-	if (s->without_normals && settings->normals != NT_NORMALS_AUTO)
-		nt_buffer_format(out, ", %zu still without normals", s->without_normals);
+		append_primitives(out, ", a material uses the tangents of ", s->skipped[NT_SKIP_HAS_TANGENTS],
+			", which stay");
+	if (s->without_normals)
+		append_primitives(out, ", ", s->without_normals, settings->normals == NT_NORMALS_AUTO
+			? " without normals (--normals=smooth makes them)" : " still without normals");
 	if (s->shaded_count)
-		nt_buffer_format(out, ", made the normals of %zu without tangents", s->shaded_count);
+		append_primitives(out, ", made the normals of ", s->shaded_count, " without tangents");
 	if (s->shaded_copies)
 		nt_buffer_format(out, " (+%zu vertices where they differ)", s->shaded_copies);
 	if (settings->bump == NT_BUMP_HEIGHT && nt_format_is_gltf(s->input_format) && !s->made_maps)
@@ -383,8 +389,8 @@ static void append_skipped(nt_buffer *out, const nt_summary *s)
 	for (int reason = 0; reason < NT_DECISION_COUNT; reason++) {
 		if (!skipped[reason])
 			continue;
-		nt_buffer_format(out, "%s%zu (%s)", first ? ", skipped " : ", ", skipped[reason],
-			nt_decision_text((nt_decision)reason));
+		append_primitives(out, first ? ", skipped " : ", ", skipped[reason], "");
+		nt_buffer_format(out, " (%s)", nt_decision_text((nt_decision)reason));
 		first = false;
 	}
 }

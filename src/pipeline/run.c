@@ -207,6 +207,15 @@ static void apply_fixes(run *r)
 	r->scene.turned_image_count = r->fixes.image_count;
 }
 
+/* A cloud of points goes from PLY to PLY, but is no mesh that could be judged; as glTF, points go with meshes. */
+static bool is_cloud(const run *r)
+{
+	bool cloud = r->scene.format == NT_FORMAT_PLY && r->settings->check && !r->settings->converts;
+	for (size_t i = 0; i < r->scene.mesh_count; i++)
+		cloud &= !r->scene.meshes[i].triangles || !r->scene.meshes[i].face_count;
+	return cloud;
+}
+
 static nt_status read_scene(run *r)
 {
 	nt_status status = open_scene(r);
@@ -216,6 +225,8 @@ static nt_status read_scene(run *r)
 	if (status)
 		return status;
 	r->scene.judged = r->writer ? r->writer->format : r->scene.format;
+	if (is_cloud(r))
+		return nt_fail(r->error, NT_ERROR_UNSUPPORTED, "found no faces, expected a mesh");
 
 	status = nt_stage_given_maps(&r->scene, r->settings, makes_document(r), r->error);
 	if (status)

@@ -5,7 +5,9 @@
  */
 #include "ply/parts.h"
 
+#include <string.h>
 #include <unistd.h>
+#include "base/name_table.h"
 #include "file/image_type.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
@@ -74,10 +76,32 @@ static nt_status settle_image(nt_buffer *name, const nt_texture_file *image, con
 	return status || !name->failed ? status : nt_fail_memory(error);
 }
 
+/* Counts the files that an OBJ's materials name, but for base colours if the output has those. *first: a normal map, if
+ * there is any. */
+static size_t count_maps(const nt_scene *scene, bool but_colors, const char **first)
+{
+	nt_name_table names = {0};
+	for (size_t i = 0; i < scene->material_count; i++) {
+		const nt_material *m = &scene->materials[i];
+		for (size_t k = 0; k < NT_MATERIAL_MAPS; k++) {
+			const char *name = but_colors && &m->maps[k] == &m->base_color_map ? NULL : m->maps[k].name;
+			if (name)
+				nt_name_add(&names, name, strlen(name)); /* without memory there are fewer */
+			if (name && (!*first || &m->maps[k] == &m->normal_map))
+				*first = name;
+		}
+	}
+	const size_t count = names.count;
+	nt_name_table_free(&names);
+	return count;
+}
+
 /* Says what of the materials is not there. image: name of the one that is; NULL: none. */
 static void tell_lost(nt_scene *scene, const char *image, const char *obstacle)
 {
-	const size_t textures = scene->left_out_textures - (image && scene->left_out_textures);
+	const char *first = NULL;
+	const size_t textures = scene->left_out_textures - (image && scene->left_out_textures) +
+		count_maps(scene, image != NULL, &first);
 	const size_t count = scene->material_count + textures + scene->left_out_count;
 	const nt_place place = nt_line_place(scene->path, scene->left_out_line);
 	nt_buffer text = {0};
@@ -86,9 +110,10 @@ static void tell_lost(nt_scene *scene, const char *image, const char *obstacle)
 	if (scene->left_out.size)
 		nt_buffer_format(&text, "%s%s", text.size ? ", " : "", scene->left_out.data);
 	if (textures)
-		nt_buffer_format(&text, "%stextures (%zu)", text.size ? ", " : "", textures);
+		nt_buffer_format(&text, "%stextures (%zu%s%.*s%s)", text.size ? ", " : "", textures, first ? ": " : "",
+			NT_CUT(60, first ? first : ""), first && textures > 1 ? " and others" : "");
 	if (image)
-		nt_buffer_format(&text, "; TextureFile is %.*s", NT_CUT(100, image));
+		nt_buffer_format(&text, "; %.*s stays: comment TextureFile", NT_CUT(100, image));
 	else if (obstacle)
 		nt_buffer_format(&text, "; no TextureFile: %s", obstacle);
 	if (count)

@@ -49,7 +49,7 @@ exits 0
 says "empty.gltf: checked"
 run --only=all --existing=replace --verify empty.gltf empty.glb
 exits 0
-says "skipped 1 (no faces)"
+says "skipped 1 primitive (no faces)"
 
 scene "a run that ends with 6 says how many of many files fail, with -q too, and a report without an ending what it may be"
 cp "$data/plates.glb" one.glb

@@ -450,7 +450,7 @@ run --only=all two.gltf two.ply
 exits 0
 is "$(texture_file two.ply)" tex/a.png
 grep -aqx 'property float s' two.ply || wrong "MeshLab reads no texture coordinates"
-says "materials (2), textures (2); TextureFile is tex/a.png"
+says "materials (2), textures (2); tex/a.png stays: comment TextureFile"
 mkdir out
 run --only=all two.gltf out/two.ply
 is "$(texture_file out/two.ply)" a.png
@@ -525,10 +525,14 @@ exits 0
 is "$(texture_file out/a.ply)" above.png
 run --outside=no in/in.obj out/b.ply
 is "$(texture_file out/b.ply)" ""
-says "materials (1); no TextureFile: the image of base colours cannot be read"
+says "materials (1), textures (1: ../above.png); no TextureFile: the image of base colours cannot be read"
 printf 'newmtl m\nmap_Kd near.png\n' >in/m.mtl
 run in/in.obj in/near.ply
 is "$(texture_file in/near.ply)" near.png
+says "1 part of the input is not in the output: materials (1); near.png stays: comment TextureFile"
+printf 'map_Ks s.png\nnorm n.png\n' >>in/m.mtl
+run in/in.obj in/near.ply
+says "3 parts of the input are not in the output: materials (1), textures (2: n.png and others); near.png stays: comment TextureFile"
 
 scene "a PLY made of a PLY says which image it leaves behind"
 mkdir from to

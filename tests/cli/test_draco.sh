@@ -562,7 +562,7 @@ exits 0
 says_not "nothing compressed"
 is "$(compressed out.glb)" 1
 run --existing=replace quad.glb out.glb
-says "0 of 1 primitives, skipped 1 (no material of it uses tangents), --only=all makes new tangents for all"
+says "0 of 1 primitives, skipped 1 primitive (no material of it uses tangents), --only=all makes new tangents for all"
 run --existing=replace --only=all quad.glb out.glb
 says "1 primitive, 2 triangles"
 

@@ -153,7 +153,7 @@ scene "a scan without texture coordinates gets the normals that are asked for"
 printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'v 1 1 1' 'f 1 2 3' 'f 2 4 3' >scan.obj
 run scan.obj scan.ply
 exits 0
-says "skipped 1 (no texture coordinates), 1 without normals (--normals=smooth makes them)"
+says "skipped 1 primitive (no texture coordinates), 1 primitive without normals (--normals=smooth makes them)"
 run scan.obj scan.gltf
 for input in scan.obj scan.ply scan.gltf; do
 	# (0, 0, 1) and (-1, -1, 1) / 3^.5: smooth, each corner weighs by its angle, at the ends of the common edge
@@ -176,9 +176,9 @@ for input in scan.obj scan.ply scan.gltf; do
 done
 run --verify --normals=flat scan.gltf flat.glb
 exits 0
-says "0 of 1 primitives, made the normals of 1 without tangents (+2 vertices where they differ)"
+says "0 of 1 primitives, made the normals of 1 primitive without tangents (+2 vertices where they differ)"
 run --normals=angle:30 scan.obj flat.glb
-says "skipped 1 (no texture coordinates), made the normals of 1 without tangents (+2 vertices where they differ)"
+says "skipped 1 primitive (no texture coordinates), made the normals of 1 primitive without tangents (+2 vertices where they differ)"
 run --check --fail-on=warning --normals=flat scan.gltf
 exits 0
 

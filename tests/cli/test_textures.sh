@@ -224,7 +224,7 @@ same in/n.png art/n.png
 run --images=link --normal-map=art/n.png in/quad.obj in/linked.gltf
 is "$(gltf in/linked.gltf 'g.images[0].uri')" ../art/n.png
 run --bump=height --normal-map=art/c.png in/quad.obj in/heights.glb
-says "c.png became c-normal.png"
+says "c.png, taken as heights, became c-normal.png"
 
 scene "they replace the maps of the only material, and go nowhere else"
 images write n.png 4 4 "(10 * x, 20 * y, 200)"

@@ -224,7 +224,7 @@ static void note_made(const nt_image_set *set, nt_output *output)
 		nt_output_note(output, "%s", count == 1 ? ";" : ",");
 		for (size_t k = 0; k < entry->image->source_count; k++)
 			nt_output_note(output, "%s %s", k ? " and" : "", nt_last_part(entry->image->sources[k]->path));
-		nt_output_note(output, " became %s%s",
+		nt_output_note(output, "%s became %s%s", entry->image->from_heights ? ", taken as heights," : "",
 			entry->file ? nt_sink_name(entry->file, false) : entry->image->name,
 			set->choice == NT_IMAGES_EMBED ? " (embedded)" : "");
 	}
