@@ -577,15 +577,35 @@ static nt_status check_pairs(const nt_command *c, const nt_batch *batch, nt_erro
 	return error->status;
 }
 
-/* A file that a run writes beside its outputs is new with --no-clobber. */
-static nt_status check_own(const nt_command *c, nt_error *error)
+/* Whether the folder of a file is there, which a run would miss at its end alone. */
+static nt_status check_folder(const char *path, nt_error *error)
 {
-	const char *const files[] = {c->depfile, c->manifest};
+	const size_t length = (size_t)(nt_last_part(path) - path);
+	struct stat info;
+	nt_buffer folder = {0};
+	nt_buffer_append(&folder, path, length);
+	if (folder.failed)
+		return nt_fail_memory(error);
+	const bool is_there = !length || (stat(folder.data, &info) == 0 && S_ISDIR(info.st_mode));
+	nt_buffer_free(&folder);
+	return is_there ? NT_OK : nt_fail_file(error, NT_ERROR_IO, path, "cannot write: there is no folder \"%.*s\"",
+		(int)(length > 1 ? length - 1 : length), path);
+}
+
+/* A file that a run writes beside its outputs has a folder, and is new with --no-clobber. */
+static nt_status check_own(const session *s, nt_error *error)
+{
+	const nt_command *c = s->command;
+	const char *const files[] = {c->depfile, c->manifest, s->folder ? NULL : c->report};
 	const nt_output_options options = {.no_clobber = c->settings.no_clobber};
 	nt_status status = NT_OK;
-	for (size_t i = 0; i < sizeof files / sizeof *files && !status; i++)
-		if (files[i] && strcmp(files[i], "-") != 0)
+	for (size_t i = 0; i < sizeof files / sizeof *files && !status; i++) {
+		if (!files[i] || strcmp(files[i], "-") == 0)
+			continue;
+		status = check_folder(files[i], error);
+		if (!status)
 			status = nt_output_check_clobber(&options, files[i], error);
+	}
 	return status;
 }
 
@@ -602,7 +622,7 @@ static nt_status begin_session(session *s, nt_error *error)
 	if (s->shaping.failed || s->judging.failed)
 		return nt_fail_memory(error);
 	const char *options = s->shaping.data ? s->shaping.data : "";
-	if (check_own(s->command, error))
+	if (check_own(s, error))
 		return error->status;
 	if (s->command->manifest && nt_manifest_open(&s->manifest, s->command->manifest, options,
 		&s->plan->options, s->command->settings.check, error))

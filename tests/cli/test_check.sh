@@ -72,4 +72,26 @@ for ending in txt json sarif xml csv md html; do
 	exists r.$ending
 done
 
+scene "a file whose folder is not there is refused before anything is done"
+cp "$data/quad.obj" a.obj
+for words in --report=no/r.html --manifest=no/m --depfile=no/d --report=a.obj/r.json; do
+	option=${words#*=}
+	run $words a.obj out.glb
+	exits 2
+	says "$option: cannot write: there is no folder \"${option%/*}\""
+	only a.obj
+done
+run --check --report=/no/r.json a.obj
+exits 2
+run -q -d made --report=made/r.json a.obj # it is made before
+exits 0
+exists made/r.json
+
+scene "a report that exists is refused by --no-clobber before anything is done"
+cp "$data/quad.obj" a.obj
+echo >r.txt
+run --no-clobber --report=r.txt a.obj out.glb
+exits 2
+only a.obj r.txt
+
 done_testing

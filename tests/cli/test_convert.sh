@@ -530,7 +530,7 @@ printf 'newmtl m\nmap_Kd near.png\n' >in/m.mtl
 run in/in.obj in/near.ply
 is "$(texture_file in/near.ply)" near.png
 says "1 part of the input is not in the output: materials (1); near.png stays: comment TextureFile"
-printf 'map_Ks s.png\nnorm n.png\n' >>in/m.mtl
+printf 'map_Ke e.png\nnorm n.png\n' >>in/m.mtl
 run in/in.obj in/near.ply
 says "3 parts of the input are not in the output: materials (1), textures (2: n.png and others); near.png stays: comment TextureFile"
 

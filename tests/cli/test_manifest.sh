@@ -172,7 +172,7 @@ exits 2
 says "/dev/full: cannot write the manifest: No space left on device"
 run --manifest=no/m -d out a.obj
 exits 2
-says "no/m: cannot write the manifest"
+says "no/m: cannot write: there is no folder \"no\""
 
 scene "standard output can have it, and many failures are found there"
 for i in $(seq 12); do
