@@ -152,6 +152,12 @@ nt_status nt_file_open_content(nt_file *file, const char *path, bool referred, n
 		"Git LFS's pointer to the file, not the file itself: git lfs pull brings it");
 }
 
+bool nt_is_folder(const char *path)
+{
+	struct stat info;
+	return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
 nt_status nt_file_open_untraced(nt_file *file, const char *path, nt_error *error)
 {
 	nt_trace *trace = nt_trace_use(NULL);

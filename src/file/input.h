@@ -35,6 +35,8 @@ nt_status nt_file_open_content(nt_file *file, const char *path, bool referred, n
  * the trace (trace.h). */
 nt_status nt_file_open_untraced(nt_file *file, const char *path, nt_error *error);
 
+bool nt_is_folder(const char *path);
+
 void nt_file_close(nt_file *file);
 
 /* Bytes of the caller, as a file. */

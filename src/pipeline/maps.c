@@ -72,24 +72,9 @@ static void examine(void *context, size_t item, unsigned slot)
 
 /* ---- what is to be said ---- */
 
-/* The mesh, or the line of an MTL that names the map, or a file that the user named. */
 static const nt_place *place_of(const nt_scene *scene, const nt_mesh *mesh, const nt_material *m, nt_place *place)
 {
-	if (!m)
-		return nt_mesh_place(mesh, place);
-	*place = nt_material_place(scene, m, m->normal_map.line);
-	if (m->normal_map.given) {
-		snprintf(place->file, sizeof place->file, "%s", m->normal_map.name);
-		place->line = 0;
-	}
-	return place;
-}
-
-/* Findings from `begin` on are about the mesh, wherever their places are. */
-static void set_mesh(nt_finding_list *findings, size_t begin, const nt_mesh *mesh)
-{
-	for (size_t i = begin; i < findings->count; i++)
-		findings->items[i].mesh = mesh;
+	return m ? nt_map_place(scene, m, &m->normal_map, place) : nt_mesh_place(mesh, place);
 }
 
 static void tell_green(nt_finding_list *findings, nt_code code, const nt_place *place, const char *use,
@@ -147,7 +132,7 @@ static void tell(const examination *e, const examined *x)
 		nt_finding_add(findings, NT_CODE_NMAP_SRGB, place, 1, NULL);
 	if (x->decoded && x->facts.lossy)
 		nt_finding_add(findings, NT_CODE_NMAP_JPEG, place, 1, "%s", nt_image_type_name(x->map.type));
-	set_mesh(findings, begin, x->mesh);
+	nt_findings_set_mesh(findings, begin, x->mesh);
 }
 
 /* Height maps that nothing converts; and maps whose green points down, but for those of pairs and those that are
@@ -173,7 +158,7 @@ static void tell_kept(const examination *e)
 				.detail = "", .repair = e->textures ? "--bump=auto" : NULL}, place);
 		if (map->facts && !map->paired && !(turns && map->turnable))
 			tell_green(findings, NT_CODE_NMAP_GREEN_DOWN, place, map->use, map->facts, !map->turnable);
-		set_mesh(findings, begin, map->mesh);
+		nt_findings_set_mesh(findings, begin, map->mesh);
 	}
 }
 

@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include "base/clock.h"
 #include "base/hash.h"
 #include "file/watch.h"
@@ -89,19 +88,13 @@ static nt_status check_triangles(const run *r)
 	return nt_error_in_file(r->error, r->input_path);
 }
 
-static bool is_folder(const char *path)
-{
-	struct stat info;
-	return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
-}
-
 static nt_status open_scene(run *r)
 {
 	begin_stage(r, NT_STAGE_MAP);
 	nt_status status = NT_OK;
 	if (!r->input_is_open)
 		status = nt_file_open_content(&r->input, r->input_path, false, r->error);
-	if (status && is_folder(r->input_path))
+	if (status && nt_is_folder(r->input_path))
 		strncat(r->error->message, "; -r takes the meshes in it",
 			sizeof r->error->message - strlen(r->error->message) - 1);
 	if (status)
@@ -207,15 +200,6 @@ static void apply_fixes(run *r)
 	r->scene.turned_image_count = r->fixes.image_count;
 }
 
-/* A cloud of points goes from PLY to PLY, but is no mesh that could be judged; as glTF, points go with meshes. */
-static bool is_cloud(const run *r)
-{
-	bool cloud = r->scene.format == NT_FORMAT_PLY && r->settings->check && !r->settings->converts;
-	for (size_t i = 0; i < r->scene.mesh_count; i++)
-		cloud &= !r->scene.meshes[i].triangles || !r->scene.meshes[i].face_count;
-	return cloud;
-}
-
 static nt_status read_scene(run *r)
 {
 	nt_status status = open_scene(r);
@@ -225,7 +209,9 @@ static nt_status read_scene(run *r)
 	if (status)
 		return status;
 	r->scene.judged = r->writer ? r->writer->format : r->scene.format;
-	if (is_cloud(r))
+	/* a cloud of points goes from PLY to PLY, but is no mesh that could be judged */
+	if (r->scene.format == NT_FORMAT_PLY && r->settings->check && !r->settings->converts &&
+		!nt_scene_has_triangles(&r->scene))
 		return nt_fail(r->error, NT_ERROR_UNSUPPORTED, "found no faces, expected a mesh");
 
 	status = nt_stage_given_maps(&r->scene, r->settings, makes_document(r), r->error);
@@ -376,7 +362,7 @@ static nt_status run_stages(run *r)
 {
 	nt_status status = nt_choose_writer(r->settings, r->output_path, NULL, &r->writer, r->error);
 	/* an output of a folder is likely to be one, too */
-	if (status && is_folder(r->input_path))
+	if (status && nt_is_folder(r->input_path))
 		return open_scene(r);
 	/* a PLY is one mesh in the world, so the reader has to say where the meshes stand */
 	r->read_options.world = r->writer && r->writer->format == NT_FORMAT_PLY;

@@ -5,14 +5,13 @@
 #include "pipeline/stages.h"
 
 #include <string.h>
-#include <sys/stat.h>
+#include "file/input.h"
 
 /* Whether cp would write into it. */
 static bool is_folder(const char *path)
 {
-	struct stat info;
 	const size_t length = strlen(path);
-	return (length && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
+	return (length && path[length - 1] == '/') || nt_is_folder(path);
 }
 
 /* The format of an output without a name, as a check without -o and -d has it. A glTF that is not to be converted is

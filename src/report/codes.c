@@ -277,9 +277,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"two triangles that share an edge and have the same UV at their third corners"),
 	ROW(UV_MIRROR_OVERLAP, INFO, "i-i", EXPORT, NULL,
 		"{count} {island has|islands have} mirrored triangles on texels that others show unmirrored",
-		"Mirrored islands, or parts of an island, that share their texture with a twin: the usual way to texture a symmetric "
-		"model at half the cost. Judged as the sampler wraps: repeated coordinates modulo 1, mirrored "
-		"ones folded, clamped ones as they stand.",
+		"Mirrored islands, or parts of an island, that share their texture with a twin: the usual way to "
+		"texture a symmetric model at half the cost. Judged as the sampler wraps: repeated coordinates "
+		"modulo 1, mirrored ones folded, clamped ones as they stand.",
 		"Nothing. When baking, have the mirrored islands a whole tile away so that only one of two is baked.",
 		"two separate quads with the same four UVs, the second one wound the other way"),
 	ROW(UV_MIRROR_LONE, INFO, "i-i", EXPORT, NULL,

@@ -81,6 +81,12 @@ void nt_finding_add_as(nt_finding_list *list, nt_code code, nt_severity severity
 		(nt_finding){.code = code, .severity = (uint8_t)(1 + severity), .count = 1, .detail = detail}, place);
 }
 
+void nt_findings_set_mesh(nt_finding_list *list, size_t begin, const struct nt_mesh *mesh)
+{
+	for (size_t i = begin; i < list->count; i++)
+		list->items[i].mesh = mesh;
+}
+
 void nt_finding_list_free(nt_finding_list *list)
 {
 	free(list->items);

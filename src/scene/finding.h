@@ -158,6 +158,9 @@ void nt_finding_put(nt_finding_list *list, nt_finding finding, const nt_place *p
 void nt_finding_add_as(nt_finding_list *list, nt_code code, nt_severity severity, const nt_place *place,
 	const char *detail);
 
+/* Findings from number `begin` on are about a mesh, wherever their places are. */
+void nt_findings_set_mesh(nt_finding_list *list, size_t begin, const struct nt_mesh *mesh);
+
 void nt_finding_list_free(nt_finding_list *list);
 
 /* The same place with texts in an arena. False: out of memory. */

@@ -161,6 +161,24 @@ nt_place nt_material_place(const nt_scene *scene, const nt_material *material, s
 	return place;
 }
 
+const nt_place *nt_map_place(const nt_scene *scene, const nt_material *material, const nt_map *map, nt_place *place)
+{
+	*place = nt_material_place(scene, material, map->line);
+	if (map->given) {
+		snprintf(place->file, sizeof place->file, "%s", map->name);
+		place->line = 0;
+	}
+	return place;
+}
+
+bool nt_scene_has_triangles(const nt_scene *scene)
+{
+	bool any = false;
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		any |= scene->meshes[i].triangles && scene->meshes[i].face_count;
+	return any;
+}
+
 bool nt_material_takes_texcoords(const nt_material *material)
 {
 	bool takes = material->anisotropy != 0;

@@ -451,6 +451,9 @@ static inline nt_place nt_line_place(const char *path, size_t line)
 	return place;
 }
 
+/* Whether there are any triangles. */
+bool nt_scene_has_triangles(const nt_scene *scene);
+
 /* Appends to scene->left_out. */
 void nt_scene_leave_out(nt_scene *scene, size_t line, size_t count, const char *format, ...) NT_PRINTF(4, 5);
 
@@ -521,6 +524,9 @@ nt_material nt_material_default(const char *name);
 
 /* A place in it; line: 0 is its newmtl. */
 nt_place nt_material_place(const nt_scene *scene, const nt_material *material, size_t line);
+
+/* Fills and returns the place of the statement that names a map, or a file that the user named for it. */
+const nt_place *nt_map_place(const nt_scene *scene, const nt_material *material, const nt_map *map, nt_place *place);
 
 /* Whether anything of a material takes texture coordinates: maps and anisotropy. */
 bool nt_material_takes_texcoords(const nt_material *material);
