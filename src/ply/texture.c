@@ -7,7 +7,7 @@
 
 #include <string.h>
 #include <unistd.h>
-#include "base/name_table.h"
+#include "base/hash_index.h"
 #include "file/image_type.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
