@@ -39,6 +39,19 @@ run --verify "$WORK/layouts/plain.gltf" out.gltf
 exits 0
 says_not NOT_VERIFIED
 
+scene "tangents that are kept without texture coordinates are none that a solve has to give"
+run "$WORK/layouts/plain.gltf" solved.gltf
+gltf solved.gltf bare 'for (const m of g.meshes) for (const p of m.primitives) {
+	const rows_of_normals = rows(p.attributes.NORMAL); /* along the normals: all have to be mended */
+	p.attributes = {POSITION: p.attributes.POSITION, NORMAL: p.attributes.NORMAL,
+		TANGENT: add("VEC4", 5126, rows_of_normals.flatMap((n) => [...n, 1]))}; }'
+for options in --existing=keep --existing=repair --draco=sequential --precision=short; do
+	run --only=all --verify $options bare.gltf out.glb
+	exits 0
+	says_not NOT_VERIFIED
+	is "$(gltf out.glb 'g.meshes.every((m) => m.primitives.every((p) => "TANGENT" in p.attributes))')" true
+done
+
 # glTF wants a byte at least, and a word what a buffer without a URI is. tinygltf looks for the first byte of none in a
 # .glb, and refuses an empty .bin, or none.
 scene "a buffer of no bytes is a fault of the input"
