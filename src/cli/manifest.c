@@ -32,8 +32,8 @@ static const char *without_dot(const char *path)
 }
 
 /* The path of a file in one spelling, whichever run met it: as the input or output (`like`) if it is that, relative to
- * the folder of the run if `like` is relative, else absolute. */
-static void show_path(nt_buffer *shown, const nt_manifest *manifest, const char *path, const char *like)
+ * the folder of the run if `like` is relative, else absolute; without memory, as it was met. */
+static const char *shown_path(nt_buffer *shown, const nt_manifest *manifest, const char *path, const char *like)
 {
 	nt_buffer whole = {0}, uri = {0};
 	shown->size = 0;
@@ -46,12 +46,11 @@ static void show_path(nt_buffer *shown, const nt_manifest *manifest, const char 
 	} else {
 		nt_buffer_text(shown, whole.data);
 	}
-	if (strcmp(path, like) == 0 || (!shown->failed && strcmp(shown->data, without_dot(like)) == 0)) {
-		shown->size = 0;
-		nt_buffer_text(shown, like);
-	}
 	nt_buffer_free_into(&whole, shown);
 	nt_buffer_free_into(&uri, shown);
+	if (strcmp(path, like) == 0 || (!shown->failed && strcmp(shown->data, without_dot(like)) == 0))
+		return like;
+	return shown->failed ? path : shown->data;
 }
 
 /* A new output is read once more, while the system still has it in memory. Streams are no more. */
@@ -72,10 +71,10 @@ static void append_missing_digest(nt_buffer *out, const nt_manifest *manifest, c
 	for (size_t i = 0; i < trace->count; i++) {
 		if (trace->files[i].kind != NT_TRACE_MISSING)
 			continue;
-		show_path(&shown, manifest, trace->files[i].path, job->input);
-		digest = nt_hash_unkeyed(digest, shown.data, shown.size + 1);
+		const char *path = shown_path(&shown, manifest, trace->files[i].path, job->input);
+		digest = nt_hash_unkeyed(digest, path, strlen(path) + 1);
 	}
-	nt_buffer_free_into(&shown, out);
+	nt_buffer_free(&shown);
 	if (digest)
 		nt_buffer_format(out, ",\"missing_digest\":\"%016" PRIx64 "\"", digest);
 }
@@ -91,9 +90,8 @@ static void append_files(nt_buffer *out, const char *key, const nt_manifest *man
 		if (file->kind != kind)
 			continue;
 		nt_member_next(out, NT_SAME_LINE);
-		show_path(&shown, manifest, file->path,
+		const char *path = shown_path(&shown, manifest, file->path,
 			kind == NT_TRACE_WRITTEN && job->output ? job->output : job->input);
-		const char *path = shown.data ? shown.data : "";
 		if (kind == NT_TRACE_MISSING || kind == NT_TRACE_SEARCHED) {
 			nt_json_string(path, out);
 			continue;
@@ -106,7 +104,7 @@ static void append_files(nt_buffer *out, const char *key, const nt_manifest *man
 		nt_buffer_text(out, "}");
 	}
 	nt_buffer_text(out, "]");
-	nt_buffer_free_into(&shown, out);
+	nt_buffer_free(&shown);
 }
 
 static void append_error(nt_buffer *out, const nt_error *error)

@@ -413,7 +413,7 @@ says_not LINK_LEAVES
 mkdir less && cp in/three_buffers* less && rm "less/three_buffers 2.bin"
 run less/three_buffers.gltf out/again.gltf
 exits 2
-says '/buffers/2: a buffer cannot be opened: "three_buffers%202.bin"'
+says '/buffers/2: error: buffer cannot be opened: cannot open "three_buffers%202.bin"'
 run --buffers=copy in/three_buffers.gltf out/copy.gltf
 exits 0
 copies=$(gltf out/copy.gltf "$uris")
