@@ -39,6 +39,14 @@ run --verify "$WORK/layouts/plain.gltf" out.gltf
 exits 0
 says_not NOT_VERIFIED
 
+scene "a data URI that tinygltf cannot read is no name of a file"
+mkdir -p data:application
+printf 1234 >data:application/gltf-buffer,AAAA
+echo '{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4, "uri": "data:application/gltf-buffer,AAAA"}]}' >data.gltf
+run --verify data.gltf out.gltf
+exits 0
+says "[NOT_VERIFIED]"
+
 scene "tangents that are kept without texture coordinates are none that a solve has to give"
 run "$WORK/layouts/plain.gltf" solved.gltf
 gltf solved.gltf bare 'for (const m of g.meshes) for (const p of m.primitives) {

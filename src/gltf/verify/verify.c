@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "ext/draco.h"
 #include "ext/tinygltf.h"
+#include "file/uri.h"
 #include "gltf/document.h"
 #include "gltf/morph_deltas.h"
 #include "gltf/quantize.h"
@@ -34,10 +35,14 @@ static void close_file(file_set *set)
 	set->open = false;
 }
 
-/* The file that a URI names: one of the output set, or one that was there before. */
+/* The file that a URI names: one of the output set, or one that was there before. tinygltf takes data URIs that it
+ * cannot read for names, and asks for "./name" after "name". */
 static bool find_file(void *user, const char *uri, const unsigned char **bytes, size_t *size)
 {
 	file_set *set = user;
+	const char *name = strncmp(uri, "./", 2) == 0 ? uri + 2 : uri;
+	if (nt_uri_is_data(name, strlen(name)))
+		return false;
 	const char *slash = strrchr(set->path, '/'), *written = NULL;
 	nt_buffer path = {0};
 	nt_error error;
