@@ -552,6 +552,25 @@ static bool is_current(nt_update_job *job, const nt_record_line *line, nt_trace 
 	return current;
 }
 
+/* Appends what shapes the output. Images may lie below the root of a tree, which is moved with the record. */
+static nt_status spell_options(nt_update_job *job, const char *root, nt_error *error)
+{
+	const char *options = job->update->options.options, *folder = job->record->folder.data;
+	nt_buffer path = {0};
+	nt_status status = root ? nt_path_absolute(&path, root, error) : NT_OK;
+	nt_buffer_text(&job->options, options);
+	if (root && !status) {
+		nt_buffer_format(&job->options, "%s--keep-tree=", *options ? " " : "");
+		/* the final slash keeps the name of a root above the record out of the URI: moving changes that name */
+		nt_buffer_text(&path, path.data[path.size - 1] == '/' ? "" : "/");
+		if (!path.failed)
+			nt_link_uri(&job->options, *folder ? folder : "/", path.data);
+	}
+	const bool failed = path.failed || job->options.failed;
+	nt_buffer_free(&path);
+	return status || !failed ? status : nt_fail_memory(error);
+}
+
 nt_status nt_update_look(nt_update *update, const char *input, const char *output, nt_update_job *job,
 	nt_settings *settings, bool *current, nt_trace *trace, nt_error *error)
 {
@@ -560,22 +579,14 @@ nt_status nt_update_look(nt_update *update, const char *input, const char *outpu
 	nt_buffer key = {0};
 	*job = (nt_update_job){.update = update, .input = input, .output = output, .worst = -1};
 	*current = false;
-	nt_buffer_text(&job->options, o->options);
-	/* images may lie below it */
-	if (settings->root) {
-		nt_buffer_format(&job->options, "%s--keep-tree=", *o->options ? " " : "");
-		nt_status status = nt_path_absolute(&job->options, settings->root, error);
-		if (status)
-			return status;
-	}
-	if (job->options.failed)
-		return nt_fail_memory(error);
 	/* regular files have records; the output need not be there yet */
 	const bool made = strcmp(output, "-") != 0 && stat(output, &info) == 0;
 	if (strcmp(input, "-") == 0 || strcmp(output, "-") == 0 || stat(input, &job->input_info) != 0 ||
 		!S_ISREG(job->input_info.st_mode) || (made && !S_ISREG(info.st_mode)))
 		return NT_OK;
-	const nt_status status = get_of_output(update, output, &job->record, error);
+	nt_status status = get_of_output(update, output, &job->record, error);
+	if (!status)
+		status = spell_options(job, settings->root, error);
 	if (status)
 		return status;
 	append_uri(update, job->record, output, &key);

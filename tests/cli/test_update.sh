@@ -221,13 +221,19 @@ run --update --record=records/r -d out $inputs
 is "$(made)" ""
 only $inputs mirrored_cube.mtl bumps.png plates.bin out records
 is "$(ls -A out | grep -c record)" 0
-mkdir moved
+# the root of a tree, which is above the record, moves with it
+run --update -r --exclude=out -d tree .
+exits 0
 later
 cd ..
 mv "$OLDPWD" moved
 cd moved
 run --update --record=records/r -d out $inputs
 is "$(made)" ""
+run --update -r --exclude=out -d tree .
+exits 0
+is "$(made)" ""
+says "3 of 3 done, 3 of them up to date"
 run --update --record=nowhere/r -d never $inputs
 exits 2
 says "nowhere"
