@@ -19,29 +19,30 @@ static bool are_alike(const char *a, const char *b)
 	return *a == *b;
 }
 
-/* Leaves "..." of what is quoted. */
-static void drop_quoted(char *reason)
+/* Puts "..." for what is quoted. */
+static void drop_quoted(char **reason)
 {
-	char *to = reason;
-	for (const char *from = reason; *from;) {
+	nt_buffer text = {0};
+	for (const char *from = *reason; *from; from++) {
 		const char *end = *from == '"' ? strchr(from + 1, '"') : NULL;
-		if (end && end - from >= 4) {
-			memcpy(to, "\"...", 4);
-			to += 4;
-			from = end;
-		}
-		*to++ = *from++;
+		nt_buffer_append(&text, end ? "\"...\"" : from, end ? strlen("\"...\"") : 1);
+		from = end ? end : from;
 	}
-	*to = '\0';
+	if (!text.failed) {
+		free(*reason);
+		*reason = text.data;
+	} else {
+		nt_buffer_free(&text);
+	}
 }
 
 static nt_failure_group *group_of(nt_failures *failures, const char *reason)
 {
 	for (size_t i = 0; i < failures->group_count; i++) {
-		char *known = failures->groups[i].reason;
-		if (!are_alike(known, reason))
+		char **known = &failures->groups[i].reason;
+		if (!are_alike(*known, reason))
 			continue;
-		if (strcmp(known, reason) != 0)
+		if (strcmp(*known, reason) != 0)
 			drop_quoted(known);
 		return &failures->groups[i];
 	}

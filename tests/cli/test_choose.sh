@@ -152,6 +152,9 @@ says "nmtan:   3 failed for other reasons, which are printed above"
 for i in 1 2; do printf '{"asset": {"version": "2.0"}, "buffers": [{"uri": "%s.bin", "byteLength": 4}]}' $i >gone$i.gltf; done
 run -q -d out gone1.gltf gone2.gltf
 says 'nmtan:   2 failed: a buffer cannot be opened: "...": gone1.gltf, gone2.gltf'
+for i in x y; do echo "v 0 0 $i" >$i.obj; done
+run -q -d out x.obj y.obj
+says 'nmtan:   2 failed: found "...", expected a number: x.obj, y.obj'
 
 scene "ten thousand names are few bytes"
 cp "$data/quad.obj" .

@@ -284,11 +284,12 @@ node -e 'const g = JSON.parse(fs.readFileSync(process.argv[1])); for (const m of
 	g.buffers.push({uri: "not%20there.bin", byteLength: 4}, {byteLength: 4, extensions: {EXT_meshopt_compression: {fallback: true}}});
 	fs.writeFileSync("a/in.gltf", JSON.stringify(g))' "$data/plates.gltf"
 for way in "a/in.gltf a/out.gltf" "a/in.gltf out.gltf" "a/in.gltf out.glb" "--check a/in.gltf" "-q a/in.gltf a/out.gltf" \
-	"-q --only=all a/in.gltf out.glb" "--buffers=link -q a/in.gltf out.gltf"; do
+	"-q --only=all a/in.gltf out.glb" "--buffers=link -q a/in.gltf out.gltf" "--severity=BUFFER_MISSING=info a/in.gltf out.gltf" \
+	"--severity=BUFFER_MISSING=warning --fail-on=error --min-severity=error a/in.gltf out.gltf"; do
 	run $way
 	exits 2
 	case $way in # one line for each, or for all
-	*-q* | *--check*) says 'buffers cannot be opened: "plates.bin", "not%20there.bin"' ;;
+	*-q* | *--check* | *--severity*) says 'buffers cannot be opened: "plates.bin", "not%20there.bin"' ;;
 	*)
 		says '/buffers/1: error: buffer cannot be opened: '
 		is "$(wc -l <"$WORK/err.txt")" 2
