@@ -248,8 +248,8 @@ static size_t change_data(document *d, int i)
 
 static size_t change_string(document *d)
 {
-	static const char *const strings[] = {"\"\"", "\"../plates.bin\"", "\"plates.bin\"", "\"bumps.png\"",
-		"\"a%20b\"",
+	static const char *const strings[] = {"\"\"", "\"../plates.bin\"", "\"link/plates.bin\"", "\"plates.bin\"",
+		"\"bumps.png\"", "\"a%20b\"",
 		"\"a\\u0000b\"", "\"\\ud800\"", "\"\\u00e9\"", "\"data:;base64,AAAA\"", "\"data:,x\"", "\"SCALAR\"",
 		"\"VEC2\"", "\"VEC3\"", "\"VEC4\"", "\"MAT4\"", "\"BLEND\"", "\"MASK\"", "\"ATTRIBUTES\"",
 		"\"TRIANGLES\"",

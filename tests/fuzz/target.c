@@ -49,7 +49,7 @@ static const struct target {
 };
 
 static const struct target *target;
-static char folder[64]; /* of everything; in it: in/, out/ */
+static char folder[64]; /* of everything; in it: in/, in/link -> .., out/, plates.bin, canary.bin */
 static char input[100], source[100];
 static nt_settings told;
 static bool verbose;
@@ -168,14 +168,16 @@ static void remove_folder(void)
 
 static void prepare(void)
 {
-	char command[400];
+	char command[600];
 	const char *data = getenv("FUZZ_DATA");
 	snprintf(folder, sizeof folder, "/dev/shm/nmtan-fuzz-XXXXXX");
 	if (!mkdtemp(folder))
 		wrong("no folder in /dev/shm");
 	atexit(remove_folder);
-	snprintf(command, sizeof command, "cd '%s' && mkdir '%s/in' '%s/out' && cp plates.bin bumps.png '%s/in'",
-		data ? data : "data", folder, folder, folder);
+	/* what is outside must be there: a file that is not is never opened */
+	snprintf(command, sizeof command, "cd '%s' && mkdir '%s/in' '%s/out' && cp plates.bin bumps.png '%s/in' && "
+		"ln -s .. '%s/in/link' && cp plates.bin '%s' && cp plates.bin '%s/canary.bin'",
+		data ? data : "data", folder, folder, folder, folder, folder, folder);
 	if (system(command) != 0)
 		wrong("plates.bin and bumps.png are not there");
 	snprintf(source, sizeof source, "%s/in/%s", folder, target->file);
