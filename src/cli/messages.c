@@ -66,7 +66,7 @@ static void append_sentence(nt_buffer *out, const nt_place_view *place, const ch
 		colour(style, "\033[0m"));
 	nt_buffer_clean(out, sentence);
 	if (more)
-		nt_buffer_format(out, " (and %zu more)", more);
+		nt_buffer_format(out, " (more at %zu other place%s)", more, more == 1 ? "" : "s");
 	nt_buffer_format(out, " [%s]%s\n", nt_code_info(code)->name, command ? command : "");
 }
 

@@ -1397,7 +1397,7 @@ says "[TAN_KEPT_SIGN]: nmtan --normals=angle:40 --fix inverted.gltf out.glb"
 for words in "" --report=r.json; do
 	run -q $words inverted.gltf out.glb
 	is "$(wc -l <"$WORK/err.txt")" 1
-	says " (and 6 more) [TAN_$([ -n "$words" ] && echo SIGN_MISMATCH || echo KEPT_SIGN)]: nmtan --fix inverted.gltf out.glb"
+	says " (more at 6 other places) [TAN_$([ -n "$words" ] && echo SIGN_MISMATCH || echo KEPT_SIGN)]: nmtan --fix inverted.gltf out.glb"
 done
 
 scene "options that come to nothing say so, --fix says what it leaves, and counts are of the primitives that are written"
