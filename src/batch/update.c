@@ -552,22 +552,28 @@ static bool is_current(nt_update_job *job, const nt_record_line *line, nt_trace 
 	return current;
 }
 
-/* Appends what shapes the output. Images may lie below the root of a tree, which is moved with the record. */
-static nt_status spell_options(nt_update_job *job, const char *root, nt_error *error)
+/* Appends what shapes the output: the options, and from the record's folder on, with which they may be moved, the files
+ * that they name and the root of a tree, which images may lie below. */
+static nt_status spell_options(nt_update_job *job, const nt_settings *settings, nt_error *error)
 {
-	const char *options = job->update->options.options, *folder = job->record->folder.data;
-	nt_buffer path = {0};
-	nt_status status = root ? nt_path_absolute(&path, root, error) : NT_OK;
-	nt_buffer_text(&job->options, options);
-	if (root && !status) {
-		nt_buffer_format(&job->options, "%s--keep-tree=", *options ? " " : "");
+	const char *folder = job->record->folder.data;
+	nt_buffer root = {0};
+	nt_status status = settings->root ? nt_path_absolute(&root, settings->root, error) : NT_OK;
+	nt_buffer_text(&job->options, job->update->options.options);
+	for (size_t i = 0; i < NT_GIVEN_COUNT; i++)
+		if (settings->given_maps[i]) {
+			nt_buffer_text(&job->options, " at ");
+			append_uri(job->update, job->record, settings->given_maps[i], &job->options);
+		}
+	if (settings->root && !status) {
+		nt_buffer_format(&job->options, "%s--keep-tree=", job->options.size ? " " : "");
 		/* the final slash keeps the name of a root above the record out of the URI: moving changes that name */
-		nt_buffer_text(&path, path.data[path.size - 1] == '/' ? "" : "/");
-		if (!path.failed)
-			nt_link_uri(&job->options, *folder ? folder : "/", path.data);
+		nt_buffer_text(&root, root.data[root.size - 1] == '/' ? "" : "/");
+		if (!root.failed)
+			nt_link_uri(&job->options, *folder ? folder : "/", root.data);
 	}
-	const bool failed = path.failed || job->options.failed;
-	nt_buffer_free(&path);
+	const bool failed = root.failed || job->options.failed;
+	nt_buffer_free(&root);
 	return status || !failed ? status : nt_fail_memory(error);
 }
 
@@ -586,7 +592,7 @@ nt_status nt_update_look(nt_update *update, const char *input, const char *outpu
 		return NT_OK;
 	nt_status status = get_of_output(update, output, &job->record, error);
 	if (!status)
-		status = spell_options(job, settings->root, error);
+		status = spell_options(job, settings, error);
 	if (status)
 		return status;
 	append_uri(update, job->record, output, &key);

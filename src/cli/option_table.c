@@ -90,7 +90,7 @@ const nt_option_row nt_option_rows[] = {
 	{.kind = NT_OPTION_HEADING, .name = "Incremental runs"},
 	{"update", 0, NT_OPTION_MAYBE_CHOICE, "time|content", 1 + NT_UPDATE_BY_TIME, 0, NULL,
 		"skip inputs if the output is up to date with the input, its files, the options and nmtan; time (or "
-		"no value): a file is unchanged if its size and time of change are; content: if its bytes are",
+		"no value): a file is unchanged if its size, times and inode are; content: if its bytes are",
 		FIELD(update), true},
 	{"record", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
 		"note in FILE what outputs are made of (with --update the default is .nmtan-record beside them)",

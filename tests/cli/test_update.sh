@@ -590,6 +590,12 @@ for folder in a b; do
 	same made.png $folder/tex/n.png
 done
 (cd b && "$NMTAN" --update --texture-path=./tex ../quad.obj ../o.glb) 2>&1 | grep -q "up to date" || wrong "it was made again"
+for folder in a b; do
+	(cd $folder && "$NMTAN" -q --update --base-color=tex/n.png "$data/quad.obj" ../given.glb) || wrong "exit code $?"
+	python3 "$ROOT/tests/support/images.py" embedded given.glb 0 made.png
+	same made.png $folder/tex/n.png
+done
+(cd b && "$NMTAN" --update --base-color=tex/n.png "$data/quad.obj" ../given.glb) 2>&1 | grep -q "up to date" || wrong "it was made again"
 
 scene "a dry run leaves records as they are"
 cp "$data/quad.obj" .
