@@ -184,12 +184,12 @@ static nt_status write_sidecar(writing *c, uint32_t index, bool first)
 	return status;
 }
 
-/* A .glb ends at 4 GiB. Said before data URIs are made of buffers that cannot fit, and before a file is begun; the
- * JSON's own length is added when it is known. */
+/* A .glb ends at 4 GiB. Said of the source's buffers before data URIs are made of those that cannot fit, and before a
+ * file is begun; nt_glb_begin() adds the JSON's own length and a new buffer, of which the source has no place. */
 static nt_status check_room(writing *c)
 {
 	uint64_t sum = 0;
-	for (uint32_t i = 0; c->to_glb && i < c->buffers.buffer_count; i++) {
+	for (uint32_t i = 0; c->to_glb && i < c->document->buffer_count; i++) {
 		const uint64_t length = c->buffers.buffers[i].length;
 		const destination what = choose_destination(c, i);
 		if (what != TO_BIN_CHUNK && what != TO_DATA_URI)
