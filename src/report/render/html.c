@@ -357,17 +357,20 @@ static void begin(nt_walk *w, nt_buffer *out)
 
 static void begin_file(nt_walk *w, nt_buffer *out)
 {
-	const size_t since = out->size;
+	size_t since = out->size;
 	put_head(w->report, out);
 	nt_member_open(out, "meshes", "[");
 	for (size_t i = 0; i < w->report->mesh_count; i++) {
 		nt_member_next(out, 0);
 		put_mesh(w->report, (uint32_t)i, &w->page, out);
+		make_safe(out, since);
+		nt_list_flush(w->reports, NT_FLUSHED_BYTES, out);
+		since = out->size;
 	}
+	make_safe(out, since);
 	nt_buffer_text(out, "]");
 	nt_member_open(out, "findings", "[");
 	w->page.left_out += w->report->dropped;
-	make_safe(out, since);
 }
 
 static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)

@@ -370,6 +370,7 @@ static void begin_file(nt_walk *w, nt_buffer *out)
 	for (size_t i = 0; i < report->mesh_count; i++) {
 		nt_member_next(out, 4);
 		put_mesh(out, report, &report->meshes[i]);
+		nt_list_flush(w->reports, NT_FLUSHED_BYTES, out);
 	}
 	nt_buffer_text(out, "]");
 	nt_member_key(out, 3, "findings");

@@ -9,7 +9,6 @@
 #include <strings.h>
 #include "report/render/writers.h"
 
-
 static const struct {
 	const char *name, *extensions;
 	const nt_report_writer *writer;

@@ -123,14 +123,6 @@ static void put_location(const nt_report *report, const nt_report_finding *findi
 	nt_buffer_text(out, "}]");
 }
 
-static bool has_baseline(const nt_report_list *reports)
-{
-	bool compared = false;
-	for (size_t i = 0; i < reports->count; i++)
-		compared |= reports->items[i]->compared;
-	return compared;
-}
-
 static void put_result(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
 {
 	const nt_report *report = w->report;
@@ -153,7 +145,7 @@ static void put_result(nt_walk *w, const nt_report_finding *finding, nt_buffer *
 	if (finding->geometry)
 		nt_buffer_format(out, ", \"geometry/v1\": \"%016llx\"", (unsigned long long)finding->geometry);
 	nt_buffer_text(out, "}");
-	if (has_baseline(w->reports))
+	if (report->compared)
 		nt_buffer_format(out, ", \"baselineState\": \"%s\"", finding->known ? "unchanged" : "new");
 	nt_buffer_format(out, ", \"occurrenceCount\": %zu, \"properties\": {", finding->count);
 	for (unsigned i = 0; i < finding->number_count; i++) {

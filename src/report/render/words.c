@@ -14,10 +14,11 @@
 void nt_list_flush(const nt_report_list *reports, size_t least, nt_buffer *out)
 {
 	nt_report_stream *to = reports->stream;
-	if (out->failed || to->status || out->size < least)
+	if (out->failed || out->size < least)
 		return;
 	const size_t kept = least ? 1 : 0;
-	to->status = to->sink(to->user, out->data ? out->data : "", out->size - kept, to->error);
+	if (!to->status)
+		to->status = to->sink(to->user, out->data ? out->data : "", out->size - kept, to->error);
 	if (kept) {
 		out->data[0] = out->data[out->size - 1];
 		out->data[1] = '\0';
