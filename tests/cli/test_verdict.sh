@@ -620,7 +620,7 @@ run --existing=drop none.gltf out.gltf
 says_not "which stay"
 echo 'f 1 2 3' >bad.obj
 run --check -q --report=r.json bad.obj
-is "$(said)" 'Not judged: face refers to "v" number 1, but the file has 0'
+is "$(said)" 'Not judged: line 1: face refers to "v" number 1, but the file has 0'
 gltf m.gltf worse 'const a = g.meshes[0].primitives[0].attributes; bytes[0].writeFloatLE(0, at(a.TANGENT, 0) + 12); bytes[0].writeFloatLE(NaN, at(a.TEXCOORD_0, 0))'
 run --check -q --report=r.json --fail-on=never worse.gltf
 is "$(said | cut -d';' -f1)" "Export again: 1 vertex has texture coordinates that are not finite"

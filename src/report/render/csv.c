@@ -77,8 +77,9 @@ static void begin_file(nt_walk *w, nt_buffer *out)
 		return;
 	put_cell(w->report->shown, out);
 	nt_buffer_text(out, ",,error,1,");
-	put_cell(w->report->failure, out);
-	nt_buffer_text(out, ",,,,,,,,\r\n");
+	nt_put_failure(w->report, false, put_cell, out);
+	nt_buffer_format(out, w->report->failure_place.line ? "%zu,,,,,,,,\r\n" : ",,,,,,,,\r\n",
+		w->report->failure_place.line);
 }
 
 const nt_report_writer nt_csv_writer = {

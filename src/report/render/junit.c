@@ -87,7 +87,7 @@ static void end_file(nt_walk *w, nt_buffer *out)
 	nt_buffer_text(out, report->failure || report->finding_count ? "\">\n" : "\"/>\n");
 	if (is_error(w->reports, report)) {
 		nt_buffer_text(out, "\t\t\t<error type=\"not judged\" message=\"");
-		nt_xml_text(report->failure, out);
+		nt_put_failure(report, true, nt_xml_text, out);
 		nt_buffer_text(out, "\"/>\n");
 	}
 	if (w->first)

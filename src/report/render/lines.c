@@ -25,13 +25,15 @@ static void put_raw(const char *text, nt_buffer *out)
 static void put_failure(const nt_walk *w, void (*put)(const log_line *line, nt_buffer *out), nt_buffer *out)
 {
 	const nt_report *report = w->report;
-	nt_buffer file = {0};
+	nt_buffer file = {0}, text = {0};
 	if (!report->failure || nt_failure_is_found(report))
 		return;
 	nt_opened_path(report->paths, report->path, &file);
+	nt_failure_text(report, false, &text);
 	put(&(log_line){file.data ? file.data : "", report->failure_place.line, NT_SEVERITY_ERROR, NULL,
-		report->failure}, out);
+		text.data ? text.data : ""}, out);
 	nt_buffer_free_into(&file, out);
+	nt_buffer_free_into(&text, out);
 }
 
 /* before: the remedy. */

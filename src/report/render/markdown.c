@@ -44,7 +44,7 @@ static void put_file_row(const nt_report *report, nt_buffer *out)
 	nt_markdown_text(report->shown, out);
 	if (report->failure) {
 		nt_buffer_text(out, " | not judged: ");
-		nt_markdown_text(report->failure, out);
+		nt_put_failure(report, true, nt_markdown_text, out);
 		nt_buffer_text(out, " | | | | | |\n");
 		return;
 	}

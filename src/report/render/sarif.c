@@ -172,7 +172,8 @@ static void put_invocation(const nt_report_list *reports, nt_buffer *out)
 		if (!report->failure)
 			continue;
 		nt_buffer_format(out, "%s\n\t\t\t{\"level\": \"error\", \"message\": {", count++ ? "," : "");
-		put_text("text", report->failure, out);
+		nt_member_key(out, NT_SPACED, "text");
+		nt_put_failure(report, false, nt_json_string, out);
 		nt_buffer_text(out, "}, \"locations\": [{");
 		put_physical(report->shown, report->failure_place.line ? report->failure_place.line : 1, out);
 		nt_buffer_text(out, "}]}");

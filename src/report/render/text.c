@@ -170,7 +170,7 @@ static void begin_file(nt_walk *w, nt_buffer *out)
 	nt_buffer_text(out, ": ");
 	if (report->failure) {
 		nt_buffer_text(out, "not judged: ");
-		nt_buffer_clean(out, report->failure);
+		nt_put_failure(report, true, nt_plain_text, out);
 		if (report->finding_count) { /* found before */
 			nt_buffer_text(out, "\n  ");
 			nt_totals_text(&totals, out);

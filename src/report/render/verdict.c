@@ -149,7 +149,8 @@ static void append_verdict(const nt_report *report, nt_buffer *out)
 	const size_t errors = report->by_severity[NT_SEVERITY_ERROR];
 	const size_t all = errors + report->by_severity[NT_SEVERITY_WARNING];
 	if (report->failure) {
-		nt_buffer_format(out, "Not judged: %s", report->failure);
+		nt_buffer_text(out, "Not judged: ");
+		nt_failure_text(report, true, out);
 		return;
 	}
 	if (report->conversion)

@@ -149,6 +149,32 @@ void nt_put_sentence(const nt_report *report, const nt_report_finding *finding,
 		nt_put_label(report, finding->mesh, put, out);
 }
 
+void nt_failure_text(const nt_report *report, bool line, nt_buffer *out)
+{
+	const nt_place_view *place = &report->failure_place;
+	if (place->file[0] && strcmp(place->file, report->path) != 0) {
+		nt_report_show_path(report, place->file, out);
+		nt_buffer_text(out, ": ");
+	}
+	if (place->line && line)
+		nt_buffer_format(out, "line %zu: ", place->line);
+	if (place->offset != NT_NO_OFFSET)
+		nt_buffer_format(out, "at byte %" PRIu64 ": ", place->offset);
+	if (place->pointer[0])
+		nt_buffer_format(out, "%s: ", place->pointer);
+	if (place->object[0])
+		nt_buffer_format(out, "%s: ", place->object);
+	nt_buffer_text(out, report->failure);
+}
+
+void nt_put_failure(const nt_report *report, bool line, void (*put)(const char *text, nt_buffer *out), nt_buffer *out)
+{
+	nt_buffer text = {0};
+	nt_failure_text(report, line, &text);
+	put(text.data ? text.data : "", out);
+	nt_buffer_free_into(&text, out);
+}
+
 void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out)
 {
 	const nt_report_mesh *m = &report->meshes[mesh];

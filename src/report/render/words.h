@@ -89,6 +89,12 @@ void nt_put_line(const nt_report_finding *finding, const char *before, void (*pu
 void nt_put_sentence(const nt_report *report, const nt_report_finding *finding,
 	void (*put)(const char *text, nt_buffer *out), nt_buffer *out);
 
+/* Why a file is not judged, behind where in it: "line 3: ", "/meshes/0: ". line: false leaves the line out. */
+void nt_failure_text(const nt_report *report, bool line, nt_buffer *out);
+
+/* The same, as `put` writes a text of any bytes. */
+void nt_put_failure(const nt_report *report, bool line, void (*put)(const char *text, nt_buffer *out), nt_buffer *out);
+
 /* The name a mesh is shown with: its object in words, its name or its number. Never empty. */
 void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out);
 
