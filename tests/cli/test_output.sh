@@ -30,6 +30,13 @@ says "plates.gltf: /buffers/0: "
 says "4 GiB"
 only plates.gltf plates.bin out
 rmdir out || wrong "something was left behind"
+# a new one is in no input that could have its name
+cp "$data/mirrored_cube.obj" "$data/mirrored_cube.mtl" "$data/bumps.png" .
+truncate -s 4400000000 bumps.png
+run mirrored_cube.obj out.glb
+exits 5
+says "nmtan: mirrored_cube.obj: the output would take 4 GiB or more"
+[ ! -e out.glb ] || wrong "something was left behind"
 
 scene "a sidecar never takes the name of a file of the input"
 cp "$data/plates.gltf" "$data/plates.bin" "$data/bumps.png" .
