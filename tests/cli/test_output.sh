@@ -138,13 +138,15 @@ rmdir out || wrong "something was written"
 
 scene "what has no files beside it gets no copies"
 cp "$data/plates.glb" a.glb
+cp "$data/quad.obj" quad.obj
 for words in "--images=copy a.glb - --output-format=glb" "--buffers=copy a.glb /dev/null" \
-	"--images=copy $data/quad.obj - --output-format=glb"; do
+	"--images=copy quad.obj - --output-format=glb"; do
+	# shellcheck disable=SC2086
 	run $words
 	exits 1
 	says "=copy: there are no files beside"
 done
-only a.glb
+only a.glb quad.obj
 
 scene "a link to the output stays a link"
 ln -s real.glb link.glb
