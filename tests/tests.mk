@@ -95,14 +95,14 @@ build/clients/node_modules/three/package.json: tests/bindings/package.json tests
 	@touch $@
 
 # Everything in release and under ASan and UBSan; make's own jobs carry over to the builds, which run at the same time, so
-# that no processor waits for the last link of one. A job that waits for disk and network installs meanwhile what tests run.
-# Tests run at the same time, so that what they ask make for is made here.
+# that no processor waits for the last link of one. npm installs meanwhile, and beside the first tests: it waits
+# for the network more than all builds take. Tests run at the same time, so that what they ask make for is made here.
 .PHONY: check-built soak-built built-release built-sanitize built-debug built-clients built-node built-rest
 check-built:
 	@echo "Building config=release and config=sanitize"
 	@$(MAKE) -s $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$$(($$(nproc) + 1))) need-check built-release built-sanitize \
 		built-debug built-rest built-node built-clients
-	@bash tests/run $(if $(filter true,$(CI)),--strict) build/release build/sanitize
+	@bash tests/run $(if $(filter true,$(CI)),--strict) --installing build/release build/sanitize
 built-release:
 	@$(MAKE) -s config=release all tests
 built-sanitize:
@@ -112,11 +112,15 @@ built-debug:
 built-rest: built-release need-check
 	@$(MAKE) -s config=release amalgamation python $$(command -v clang >/dev/null && echo wasm) man3 \
 		$(addprefix build/web/report.,html css js)
+# A file says that npm is at work: tests/run --installing. It goes with the last of its jobs, whatever that came to.
 built-node: need-check
-	@$(MAKE) -s build/node/node_modules/gltf-validator/package.json
+	@mkdir -p build && touch build/node.installing
+	@{ MAKEFLAGS= $(MAKE) -s build/node/node_modules/gltf-validator/package.json; rm -f build/node.installing; } &
 built-clients: need-check
-	@$(MAKE) -s build/clients/node_modules/three/package.json >/dev/null 2>&1 || \
-		echo "npm cannot install three, bundlers and others: the tests that need them will be skipped"
+	@mkdir -p build && touch build/clients.installing
+	@{ MAKEFLAGS= $(MAKE) -s build/clients/node_modules/three/package.json >/dev/null 2>&1 || \
+		echo "npm cannot install three, bundlers and others: the tests that need them will be skipped"; \
+		rm -f build/clients.installing; } &
 
 # mikktspace.c as published is in the folder that MIKKTSPACE names: tests/soak/published.sh.
 $(B)/tests/soak/published.o: NT_CFLAGS += -I$(MIKKTSPACE)
