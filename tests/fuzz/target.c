@@ -74,14 +74,14 @@ int __wrap_rename(const char *from, const char *to);
 int __real_link(const char *from, const char *to);
 int __wrap_link(const char *from, const char *to);
 
-/* Whether a path, or the folder of one that is not there, is inside folder/part. */
+/* Whether a path, or the first folder above it that is there, is inside folder/part. */
 static bool is_inside(const char *path, const char *part)
 {
 	char place[128], copy[4096];
 	snprintf(place, sizeof place, "%s/%s", folder, part);
 	snprintf(copy, sizeof copy, "%s", path);
-	char *real = realpath(copy, NULL), *slash = strrchr(copy, '/');
-	if (!real && slash) {
+	char *real = realpath(copy, NULL), *slash;
+	while (!real && (slash = strrchr(copy, '/'))) {
 		*slash = '\0';
 		real = realpath(copy, NULL);
 	}
