@@ -164,18 +164,6 @@ static void add_page(session *s, nt_report *report, int *code)
 	*code = nt_exit_worse(*code, nt_exit_code(status));
 }
 
-/* Whether findings that are printed name the files that are missing. */
-static bool names_missing(const nt_finding_list *findings, const nt_report_options *options)
-{
-	const uint8_t said = options->severity[NT_CODE_BUFFER_MISSING];
-	const int severity = said ? said - 1 : NT_SEVERITY_ERROR;
-	bool named = false;
-	for (size_t i = 0; i < findings->count; i++)
-		named |= findings->items[i].code == NT_CODE_BUFFER_MISSING;
-	return named && !options->ignore[NT_CODE_BUFFER_MISSING] && severity > NT_SEVERITY_INFO &&
-		severity >= (int)options->min_severity;
-}
-
 /* Says what became of a job that ran, and returns its exit code. */
 static int tell_run(session *s, nt_job *job)
 {
@@ -204,7 +192,7 @@ static int tell_run(session *s, nt_job *job)
 		nt_message_checked(&s->text, &summary->findings, summary->report, &s->plan->options, job->input,
 			job->output, most, style);
 	const bool is_found = s->style.verbosity >= 0 && !shown && job->status == NT_ERROR_MISSING &&
-		names_missing(&summary->findings, &s->plan->options);
+		nt_message_has(&summary->findings, &s->plan->options, NT_CODE_BUFFER_MISSING, style);
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
 	if (job->status) {
 		if (!job->reason_is_told && !is_found)

@@ -202,6 +202,17 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 	free(old);
 }
 
+bool nt_message_has(const nt_finding_list *findings, const nt_report_options *options, nt_code code, nt_style style)
+{
+	bool has = false;
+	for (size_t i = 0; i < findings->count && !options->ignore[code]; i++) {
+		const nt_finding *finding = &findings->items[i];
+		const nt_severity severity = shown_severity(finding, options, style);
+		has |= finding->code == code && severity > NT_SEVERITY_INFO && severity >= options->min_severity;
+	}
+	return has;
+}
+
 /* A finding of a report, with its command if that was not told before. */
 static void append_found(nt_buffer *out, const nt_report_finding *f, nt_severity severity, size_t more, bool *told,
 	const nt_report_options *options, const char *file, const char *output, nt_style style)

@@ -33,6 +33,9 @@ void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const 
 	const nt_report_options *options, const char *file, const char *output,
 	nt_shown_infos infos, int most, nt_style style);
 
+/* Whether nt_message_findings() prints an error or a warning of a code. */
+bool nt_message_has(const nt_finding_list *findings, const nt_report_options *options, nt_code code, nt_style style);
+
 /* Errors and warnings that the checks of a report found, up to a severity, as nt_message_findings() has it. In a quiet
  * run only wrong tangents that were kept, one line for each code; report NULL: findings know them. */
 void nt_message_checked(nt_buffer *out, const nt_finding_list *findings, const nt_report *report,
