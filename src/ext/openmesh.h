@@ -22,10 +22,10 @@ extern "C" {
 typedef struct nt_walked_mesh {
 	size_t edge_count, triangle_count; /* at most 2^31 / 6 triangles: OpenMesh numbers half-edges by int */
 	const uint32_t *sides; /* [3 * triangle_count] twice its edge, and 1 more in one of the edge's two directions */
-	const uint8_t *marked; /* [3 * triangle_count] */
+	const uint32_t *marks; /* [3 * triangle_count] numbers of the marked sides; UINT32_MAX: not marked */
 } nt_walked_mesh;
 
-/* Takes a walk of count > 0 steps, each twice a marked side, and 1 more where the walk goes against that side. */
+/* Takes a walk of count > 0 steps, each twice the number of a marked side, and 1 more if the walk goes against it. */
 typedef void nt_walk_taker(void *context, const uint32_t *steps, size_t count, bool closed);
 
 /*

@@ -41,12 +41,11 @@ nt_status nt_check_rims(nt_check *check)
 	nt_rims *rims = check->rims;
 	if (check->scene->format != NT_FORMAT_OBJ || check->scene->mesh_count < 2 || !check->mesh->texcoords)
 		return NT_OK;
-	const size_t sides = 3 * s->triangle_count;
-	for (size_t side = 0; (side = nt_bit_next(check->boundary, side, sides)) < sides; side++) {
-		const size_t t = side / 3;
-		nt_rim_side rim = {.mesh = check->mesh_index, .side = (uint32_t)side,
-			.face = s->faces ? s->faces[t] : (uint32_t)t, .orientation = nt_settled_orientation(check, t),
-			.ends = {nt_side_vertex(s, side), nt_side_vertex(s, nt_side_next((uint32_t)side))}};
+	for (size_t i = 0; i < check->boundary.count; i++) {
+		const uint32_t side = check->boundary.items[i].sides[0], t = side / 3;
+		nt_rim_side rim = {.mesh = check->mesh_index, .side = side,
+			.face = s->faces ? s->faces[t] : t, .orientation = nt_settled_orientation(check, t),
+			.ends = {nt_side_vertex(s, side), nt_side_vertex(s, nt_side_next(side))}};
 		if (!rim.orientation)
 			continue;
 		if (compare_positions(position_of(check, &rim, 0), position_of(check, &rim, 1)) > 0) {

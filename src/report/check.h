@@ -12,21 +12,6 @@
 #include "report/surface/others.h"
 #include "report/surface/surface.h"
 
-/* Two sides of one edge: of a mirror edge, whose triangles are wound differently in UV space, or of a hard edge. */
-typedef struct nt_edge_pair {
-	uint32_t sides[2]; /* unmirrored, mirrored; of a hard edge the lower one first */
-	float cosine;      /* of a hard edge: of the angle between its normals, where it is widest */
-	bool non_manifold;
-} nt_edge_pair;
-
-/* Edges by their first sides, ascending. */
-typedef struct nt_edge_set {
-	uint64_t *sides; /* [3 * triangle_count] bits: the first ones; NULL: there can be none */
-	uint32_t *ranks;
-	nt_edge_pair *edges; /* [count] */
-	size_t count;
-} nt_edge_set;
-
 /* Whose tangents are checked: the input's, or, on conversion, the result. */
 typedef enum nt_stored {
 	NT_STORED_NONE,
@@ -72,11 +57,8 @@ typedef struct nt_check {
 	                             this is one primitive; NULL: none */
 
 	/* by edges.c */
-	uint64_t *boundary;       /* [3 * triangle_count] bits: sides without a neighbour */
-	nt_edge_set mirrors;
-	uint64_t *mirrors_against; /* [3 * triangle_count] bits: of their first sides, those that run against the lowest
-	                              one of the edge */
-	nt_edge_set hard;         /* sides with other normals and the same texture coordinates */
+	nt_edges boundary, mirrors; /* edges of one side; edges whose triangles are wound differently in UV space */
+	nt_edges hard;            /* other normals and the same texture coordinates on both sides */
 	uint32_t *islands;        /* [triangle_count] NT_NONE: has no edges */
 	uint32_t *patches;        /* [triangle_count] parents of what is connected in UV space and of one orientation;
 	                             NULL: there is but one */
@@ -120,12 +102,6 @@ void nt_check_report(nt_check *check, const nt_tally *tally, const char *detail_
 	NT_PRINTF(3, 4);
 void nt_check_report_as(nt_check *check, const nt_tally *tally, nt_severity severity,
 	const char *detail_format, ...) NT_PRINTF(4, 5);
-
-/* The mirror edge of an unmirrored side that is in one. */
-static inline nt_edge_pair *nt_mirror_edge_of(const nt_check *check, uint32_t side)
-{
-	return &check->mirrors.edges[nt_bit_rank(check->mirrors.sides, check->mirrors.ranks, side)];
-}
 
 /* Whether what is judged is what a conversion writes, and in which format it is. */
 static inline bool nt_is_written(const nt_check *check)
@@ -224,7 +200,7 @@ static inline const float *nt_stored_tangent(const nt_check *check, uint32_t cor
 }
 
 /* An edge of a seam as it is seen from a point at one of its ends on. seams.c */
-nt_seam_edge nt_describe_edge(const nt_check *check, const nt_edge_pair *edge, uint32_t from);
+nt_seam_edge nt_describe_edge(const nt_check *check, const nt_edge *edge, uint32_t from);
 
 /* The checks, in the order in which they run. */
 nt_status nt_check_geometry(nt_check *check); /* geometry.c: the surface's triangles; positions, normals, UV

@@ -18,7 +18,6 @@
 #include "base/dvec.h"
 #include "base/hash_index.h"
 #include "base/parallel.h"
-#include "report/surface/union_find.h"
 
 /* Points whose edges a thread takes at a time: some 300 KB. Results of parts are joined in their order. */
 enum { PART = 4096 };
@@ -36,11 +35,11 @@ typedef struct edge_part {
 static const double SLIVER_SHARE = 0.001;
 
 /* By one thread, in no order. */
-enum { MIRRORS, HARD, KINDS };
+enum { BOUNDARY, MIRRORS, HARD, KINDS };
 
 typedef struct edge_lists {
 	struct {
-		nt_edge_pair *edges;
+		nt_edge *edges;
 		size_t count, capacity;
 	} of[KINDS];
 	nt_edge_side *sides; /* of one point */
@@ -53,13 +52,12 @@ typedef struct edge_work {
 	edge_lists *lists; /* [slots] */
 } edge_work;
 
-static void add_edge(edge_lists *lists, int kind, const nt_edge_set *set, nt_edge_pair edge)
+static void add_edge(edge_lists *lists, int kind, nt_edge edge)
 {
 	if (nt_grow((void **)&lists->of[kind].edges, &lists->of[kind].capacity, lists->of[kind].count + 1, sizeof edge))
 		lists->of[kind].edges[lists->of[kind].count++] = edge;
 	else
 		lists->failed = true;
-	nt_bit_set(set->sides, edge.sides[0]);
 }
 
 /* ---- one edge ---- */
@@ -87,7 +85,7 @@ static bool unite_many(const nt_check *check, const nt_edge_side *sides, size_t 
 }
 
 /* Remembers the first unmirrored and the first mirrored side of the edge, if it has both. */
-static void find_mirror(const nt_check *check, const nt_edge_side *sides, size_t count, edge_lists *lists)
+static void find_mirror(const nt_edge_side *sides, size_t count, edge_lists *lists)
 {
 	const nt_edge_side *found[2] = {NULL, NULL};
 	for (size_t i = count; i-- > 0;) {
@@ -97,10 +95,8 @@ static void find_mirror(const nt_check *check, const nt_edge_side *sides, size_t
 	}
 	if (!found[0] || !found[1])
 		return;
-	add_edge(lists, MIRRORS, &check->mirrors, (nt_edge_pair){.sides = {found[0]->side, found[1]->side},
-		.non_manifold = count > 2});
-	if (sides[0].ascending != found[0]->ascending)
-		nt_bit_set(check->mirrors_against, found[0]->side);
+	add_edge(lists, MIRRORS, (nt_edge){.sides = {found[0]->side, found[1]->side},
+		.against = sides[0].ascending != found[0]->ascending, .non_manifold = count > 2});
 }
 
 /*
@@ -132,7 +128,7 @@ static void find_hard(const nt_check *check, const nt_edge_side *sides, edge_lis
 	const double first = squared_cosine(s, a, nt_side_next(b)), second = squared_cosine(s, nt_side_next(a), b);
 	const double least = first < second ? first : second;
 	if (least < HARD_COSINE * HARD_COSINE)
-		add_edge(lists, HARD, &check->hard, (nt_edge_pair){.sides = {a, b},
+		add_edge(lists, HARD, (nt_edge){.sides = {a, b},
 			.cosine = (float)(least < 0.0 ? -sqrt(-least) : sqrt(least))});
 }
 
@@ -142,6 +138,8 @@ static void unite_patches(const nt_check *check, const nt_edge_side *sides, size
 	const nt_edge_side *last[3] = {NULL, NULL, NULL};
 	for (size_t i = 0; i < count; i++) {
 		const nt_edge_side **before = &last[sides[i].orientation + 1];
+		if (!sides[i].orientation)
+			continue;
 		if (*before)
 			nt_unite(check->patches, sides[i].side / 3, (*before)->side / 3);
 		*before = &sides[i];
@@ -154,7 +152,7 @@ static void check_edge(nt_check *check, uint32_t low, const nt_edge_side *sides,
 	result->edges++;
 	if (count == 1) {
 		result->boundary++;
-		nt_bit_set(check->boundary, sides[0].side);
+		add_edge(lists, BOUNDARY, (nt_edge){.sides = {sides[0].side, NT_NONE}});
 		return;
 	}
 	const bool bad = count > 2 || sides[0].ascending == sides[1].ascending;
@@ -166,7 +164,7 @@ static void check_edge(nt_check *check, uint32_t low, const nt_edge_side *sides,
 	if (!check->mesh->texcoords)
 		return;
 	if (count > 2 || sides[0].orientation != sides[1].orientation)
-		find_mirror(check, sides, count, lists);
+		find_mirror(sides, count, lists);
 	const uint64_t *joints = check->surface.joints;
 	const bool joint = nt_bit(joints, low) || nt_bit(joints, sides[0].high);
 	const bool meet = count > 2 || !joint || nt_sides_meet(&check->surface, sides[0].side, sides[1].side);
@@ -229,70 +227,47 @@ static void join_parts(nt_check *check, const edge_part *parts, size_t count)
 	nt_check_report_as(check, &inconsistent, areas[0] > least ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO, NULL);
 }
 
-/* Puts the edges that threads found in their order. */
-static nt_status join_lists(nt_check *check, const edge_lists *lists, unsigned slots, int kind, nt_edge_set *set)
+/* Puts the edges that threads found in the order of their first sides: a bit for each, and how many are before it.
+ * bits, ranks: [nt_bit_words(sides)] */
+static nt_status join_lists(nt_check *check, const edge_lists *lists, unsigned slots, int kind, uint64_t *bits,
+	uint32_t *ranks, nt_edges *edges)
 {
 	const size_t sides = 3 * check->surface.triangle_count;
-	for (unsigned slot = 0; slot < slots; slot++) {
-		set->count += lists[slot].of[kind].count;
-		if (lists[slot].failed)
-			return NT_ERROR_MEMORY;
-	}
-	if (!set->count)
-		return NT_OK;
-	set->edges = nt_scratch_alloc(check->scratch, set->count, sizeof *set->edges);
-	set->ranks = nt_scratch_alloc(check->scratch, nt_bit_words(sides), sizeof *set->ranks);
-	if (!set->edges || !set->ranks)
-		return NT_ERROR_MEMORY;
-	nt_bit_ranks(set->sides, sides, set->ranks);
+	for (unsigned slot = 0; slot < slots; slot++)
+		edges->count += lists[slot].of[kind].count;
+	edges->items = nt_scratch_alloc(check->scratch, edges->count, sizeof *edges->items);
+	if (!edges->items || !edges->count)
+		return edges->items ? NT_OK : NT_ERROR_MEMORY;
+	memset(bits, 0, nt_bit_words(sides) * sizeof *bits);
+	for (unsigned slot = 0; slot < slots; slot++)
+		for (size_t i = 0; i < lists[slot].of[kind].count; i++)
+			nt_bit_set(bits, lists[slot].of[kind].edges[i].sides[0]);
+	nt_bit_ranks(bits, sides, ranks);
 	for (unsigned slot = 0; slot < slots; slot++)
 		for (size_t i = 0; i < lists[slot].of[kind].count; i++) {
-			const nt_edge_pair *edge = &lists[slot].of[kind].edges[i];
-			set->edges[nt_bit_rank(set->sides, set->ranks, edge->sides[0])] = *edge;
+			const nt_edge *edge = &lists[slot].of[kind].edges[i];
+			edges->items[nt_bit_rank(bits, ranks, edge->sides[0])] = *edge;
 		}
 	return NT_OK;
-}
-
-/* From parents to the numbers of islands, which count by their lowest triangles. */
-static void number_islands(nt_check *check)
-{
-	const nt_surface *s = &check->surface;
-	uint32_t count = 0;
-	for (size_t t = 0; t < s->triangle_count; t++) {
-		const uint32_t parent = check->islands[t]; /* if it is a lower one it has its number */
-		if (!nt_has_edges(s, t) || !check->mesh->texcoords)
-			check->islands[t] = NT_NONE;
-		else
-			check->islands[t] = parent == t ? count++ : check->islands[parent];
-	}
-	check->facts->island_count = count;
-}
-
-/* Bits of sides, none of them set. */
-static bool make_bits(const nt_check *check, uint64_t **bits)
-{
-	const size_t words = nt_bit_words(3 * check->surface.triangle_count);
-	*bits = nt_scratch_alloc(check->scratch, words, sizeof **bits);
-	return *bits && memset(*bits, 0, words * sizeof **bits);
 }
 
 static nt_status allocate(nt_check *check)
 {
 	const size_t triangles = check->surface.triangle_count;
-	const bool both = check->facts->triangles[0] && check->facts->triangles[2];
 	check->islands = nt_scratch_alloc(check->scratch, triangles, sizeof *check->islands);
-	if (!check->islands || !make_bits(check, &check->boundary))
+	if (!check->islands)
 		return NT_ERROR_MEMORY;
+	/* without texture coordinates all triangles may be united at will: there are no islands */
 	for (size_t t = 0; t < triangles; t++)
-		check->islands[t] = (uint32_t)t;
-	if (check->mesh->texcoords && check->mesh->normals && !make_bits(check, &check->hard.sides))
-		return NT_ERROR_MEMORY;
-	if (!both)
+		check->islands[t] = check->mesh->texcoords && nt_has_edges(&check->surface, t) ? (uint32_t)t : NT_NONE;
+	if (!check->facts->triangles[0] || !check->facts->triangles[2])
 		return NT_OK;
 	check->patches = nt_scratch_alloc(check->scratch, triangles, sizeof *check->patches);
-	if (!check->patches || !make_bits(check, &check->mirrors.sides) || !make_bits(check, &check->mirrors_against))
+	if (!check->patches)
 		return NT_ERROR_MEMORY;
-	memcpy(check->patches, check->islands, triangles * sizeof *check->patches);
+	for (size_t t = 0; t < triangles; t++)
+		check->patches[t] = check->islands[t] != NT_NONE && check->surface.orientation[t] ? (uint32_t)t
+			: NT_NONE;
 	return NT_OK;
 }
 
@@ -303,7 +278,10 @@ static nt_status check_parts(nt_check *check, unsigned threads)
 	const unsigned slots = threads < parts ? threads : (unsigned)parts;
 	edge_work work = {check, nt_scratch_alloc(check->scratch, parts, sizeof *work.parts),
 		nt_scratch_alloc(check->scratch, slots, sizeof *work.lists)};
-	if (!work.parts || !work.lists)
+	const size_t words = nt_bit_words(3 * s->triangle_count);
+	uint64_t *bits = nt_scratch_alloc(check->scratch, words, sizeof *bits);
+	uint32_t *ranks = nt_scratch_alloc(check->scratch, words, sizeof *ranks);
+	if (!work.parts || !work.lists || !bits || !ranks)
 		return NT_ERROR_MEMORY;
 	for (unsigned slot = 0; slot < slots; slot++) {
 		work.lists[slot] = (edge_lists){.sides = nt_scratch_alloc(check->scratch, s->most_sides,
@@ -313,13 +291,16 @@ static nt_status check_parts(nt_check *check, unsigned threads)
 	}
 	nt_parallel_items(slots, parts, check_part, &work);
 	join_parts(check, work.parts, parts);
-	nt_status status = join_lists(check, work.lists, slots, MIRRORS, &check->mirrors);
-	if (!status)
-		status = join_lists(check, work.lists, slots, HARD, &check->hard);
-	for (unsigned slot = 0; slot < slots; slot++)
+	nt_edges *const sets[KINDS] = {&check->boundary, &check->mirrors, &check->hard};
+	bool failed = false;
+	for (int kind = 0; kind < KINDS; kind++)
+		failed |= join_lists(check, work.lists, slots, kind, bits, ranks, sets[kind]) != NT_OK;
+	for (unsigned slot = 0; slot < slots; slot++) {
+		failed |= work.lists[slot].failed;
 		for (int kind = 0; kind < KINDS; kind++)
 			free(work.lists[slot].of[kind].edges);
-	return status;
+	}
+	return failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
 nt_status nt_check_edges(nt_check *check)
@@ -331,6 +312,6 @@ nt_status nt_check_edges(nt_check *check)
 	if (!status)
 		status = check_parts(check, threads);
 	if (!status)
-		number_islands(check);
+		check->facts->island_count = nt_number_sets(check->islands, check->surface.triangle_count);
 	return status;
 }

@@ -49,19 +49,10 @@ static size_t island_size(const nt_island *island)
 	return island->triangles[0] + island->triangles[1] + island->triangles[2];
 }
 
-/* From parents to numbers, which count by the lowest triangles. */
 static nt_status number_patches(nt_check *check, patches *p)
 {
-	const nt_surface *s = &check->surface;
 	p->numbers = check->patches;
-	p->count = 0;
-	for (size_t t = 0; t < s->triangle_count; t++) {
-		const uint32_t parent = p->numbers[t];
-		if (!s->orientation[t] || check->islands[t] == NT_NONE)
-			p->numbers[t] = NT_NONE;
-		else
-			p->numbers[t] = parent == t ? p->count++ : p->numbers[parent];
-	}
+	p->count = nt_number_sets(p->numbers, check->surface.triangle_count);
 	p->items = nt_scratch_alloc(check->scratch, p->count, sizeof *p->items);
 	return p->items ? NT_OK : NT_ERROR_MEMORY;
 }
@@ -83,8 +74,8 @@ static void measure_patches(const nt_check *check, patches *p)
 	}
 	for (size_t i = 0; i < check->mirrors.count; i++) {
 		for (int side = 0; side < 2; side++) {
-			const uint32_t t = check->mirrors.edges[i].sides[side] / 3;
-			const uint32_t other = check->islands[check->mirrors.edges[i].sides[1 - side] / 3];
+			const uint32_t t = check->mirrors.items[i].sides[side] / 3;
+			const uint32_t other = check->islands[check->mirrors.items[i].sides[1 - side] / 3];
 			patch *one = p->numbers[t] == NT_NONE ? NULL : &p->items[p->numbers[t]];
 			if (!one || other == NT_NONE)
 				continue;
@@ -129,7 +120,7 @@ static void choose_flipped(const nt_check *check, patches *p)
 	for (uint32_t i = 0; i < p->count; i++)
 		p->items[i].small = is_candidate(check, &p->items[i]);
 	for (size_t i = 0; i < check->mirrors.count; i++) {
-		const uint32_t *sides = check->mirrors.edges[i].sides;
+		const uint32_t *sides = check->mirrors.items[i].sides;
 		for (int k = 0; k < 2; k++) {
 			const uint32_t number = p->numbers[sides[k] / 3], other = p->numbers[sides[1 - k] / 3];
 			if (number == NT_NONE || other == NT_NONE)
@@ -201,28 +192,17 @@ static nt_status find_twins(nt_check *check, patches *p)
 
 /* ---- what becomes of them ---- */
 
-static bool is_flipped(const nt_check *check, uint32_t side)
-{
-	return nt_bit(check->flipped, side / 3);
-}
-
 /* Mirror edges stay in their order. */
 static void drop_mirror_edges(nt_check *check)
 {
-	const size_t sides = 3 * check->surface.triangle_count;
+	nt_edges *mirrors = &check->mirrors;
 	size_t kept = 0;
-	for (size_t i = 0; i < check->mirrors.count; i++) {
-		const nt_edge_pair edge = check->mirrors.edges[i];
-		if (is_flipped(check, edge.sides[0]) || is_flipped(check, edge.sides[1])) {
-			nt_bit_clear(check->mirrors.sides, edge.sides[0]);
-			nt_bit_clear(check->mirrors_against, edge.sides[0]);
-		} else {
-			check->mirrors.edges[kept++] = edge;
-		}
+	for (size_t i = 0; i < mirrors->count; i++) {
+		const nt_edge edge = mirrors->items[i];
+		if (!nt_bit(check->flipped, edge.sides[0] / 3) && !nt_bit(check->flipped, edge.sides[1] / 3))
+			mirrors->items[kept++] = edge;
 	}
-	check->mirrors.count = kept;
-	if (kept)
-		nt_bit_ranks(check->mirrors.sides, sides, check->mirrors.ranks);
+	mirrors->count = kept;
 }
 
 static void report_flipped(nt_check *check, const patches *p)

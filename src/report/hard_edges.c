@@ -13,7 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "report/surface/union_find.h"
 
 static const double DEGREES = 57.29577951308232;
 
@@ -36,7 +35,7 @@ typedef struct nets {
 
 static uint32_t end_of(const nt_check *check, size_t edge, int end)
 {
-	const uint32_t side = check->hard.edges[edge].sides[0];
+	const uint32_t side = check->hard.items[edge].sides[0];
 	return nt_side_point(&check->surface, end ? nt_side_next(side) : side);
 }
 
@@ -84,10 +83,10 @@ static void measure_nets(const nt_check *check, nets *n, const uint8_t *degrees)
 	for (size_t i = 0; i < check->hard.count; i++) {
 		net *one = &n->items[n->numbers[i]];
 		one->count++;
-		const uint32_t side = check->hard.edges[i].sides[0];
+		const uint32_t side = check->hard.items[i].sides[0];
 		one->length += nt_world_length(check->facts, nt_side_position(&check->surface, side),
 			nt_side_position(&check->surface, nt_side_next(side)));
-		one->cosine = fminf(one->cosine, check->hard.edges[i].cosine);
+		one->cosine = fminf(one->cosine, check->hard.items[i].cosine);
 		for (int end = 0; end < 2; end++) {
 			one->forks |= degrees[end_of(check, i, end)] > 2;
 			one->ends += degrees[end_of(check, i, end)] == 1;
@@ -131,7 +130,7 @@ static nt_status keep_nets(nt_check *check, const nets *n, double length)
 		.edge_count = count, .length = length, .edges = edges, .box = nt_box_empty()};
 	for (size_t k = 0, filled = 0; k < n->count; k++)
 		for (size_t i = 0; i < n->items[k].count && filled < kept; i++) {
-			const nt_edge_pair *edge = &check->hard.edges[n->edges[n->items[k].first + i]];
+			const nt_edge *edge = &check->hard.items[n->edges[n->items[k].first + i]];
 			edges[filled++] = nt_describe_edge(check, edge, nt_side_point(&check->surface, edge->sides[0]));
 		}
 	facts->seams = all;
@@ -142,7 +141,7 @@ static nt_status keep_nets(nt_check *check, const nets *n, double length)
 static void tally_edges(const nt_check *check, const nets *n, size_t first, size_t count, nt_tally *tally)
 {
 	for (size_t i = first; i < first + count; i++) {
-		const nt_edge_pair *edge = &check->hard.edges[n->edges[i]];
+		const nt_edge *edge = &check->hard.items[n->edges[i]];
 		nt_tally_side(check, tally, edge->sides[0], acos(edge->cosine) * DEGREES);
 	}
 }

@@ -15,7 +15,6 @@
 #include <string.h>
 #include "base/angle.h"
 #include "base/dvec.h"
-#include "report/surface/chains.h"
 #include "scene/origin.h"
 
 /* A seam lies in a plane when its points keep within this part of the mesh's extent. */
@@ -100,7 +99,7 @@ static const float *corner_tangent(const nt_check *check, uint32_t side)
 }
 
 /* Adds an edge to frame_angle, same_texel_count and unhidden_count. */
-static void compare_frames(const nt_check *check, const nt_edge_pair *edge, uint32_t from, nt_seam *seam)
+static void compare_frames(const nt_check *check, const nt_edge *edge, uint32_t from, nt_seam *seam)
 {
 	const nt_surface *s = &check->surface;
 	bool same = true;
@@ -136,7 +135,7 @@ static uint32_t output_vertex(const nt_check *check, uint32_t side)
 						  : vertex + (uint32_t)mesh->unused_vertices;
 }
 
-nt_seam_edge nt_describe_edge(const nt_check *check, const nt_edge_pair *edge, uint32_t from)
+nt_seam_edge nt_describe_edge(const nt_check *check, const nt_edge *edge, uint32_t from)
 {
 	const nt_surface *s = &check->surface;
 	nt_seam_edge result = {.triangles = {edge->sides[0] / 3, edge->sides[1] / 3}};
@@ -177,7 +176,7 @@ static nt_dvec3 third_point(const nt_surface *s, uint32_t side)
 	return nt_dvec3_load(nt_side_position(s, nt_side_next(nt_side_next(side))));
 }
 
-static void add_to_sums(const nt_surface *s, const nt_edge_pair *edge, plane_sums *sums)
+static void add_to_sums(const nt_surface *s, const nt_edge *edge, plane_sums *sums)
 {
 	nt_dvec3 d = nt_dvec3_sub(third_point(s, edge->sides[0]), third_point(s, edge->sides[1]));
 	if (nt_dvec3_dot(d, sums->across) < 0.0)
@@ -194,10 +193,10 @@ static bool plane_holds(const nt_check *check, const nt_chains *chains, size_t c
 	double d, double tolerance)
 {
 	for (size_t i = chains->first[chain]; i < chains->first[chain + 1]; i++) {
-		for (int end = 0; end < 2; end++) {
-			const uint32_t side = end ? nt_side_next(chains->sides[i]) : chains->sides[i];
-			const nt_dvec3 p = nt_dvec3_load(nt_side_position(&check->surface, side));
-			if (!(fabs(nt_dvec3_dot(n, p) - d) <= tolerance))
+		const uint32_t side = check->mirrors.items[chains->edges[i]].sides[0];
+		for (uint32_t end = 0; end < 2; end++) {
+			const float *p = nt_side_position(&check->surface, end ? nt_side_next(side) : side);
+			if (!(fabs(nt_dvec3_dot(n, nt_dvec3_load(p)) - d) <= tolerance))
 				return false;
 		}
 	}
@@ -283,8 +282,8 @@ static nt_status describe_seam(nt_check *check, const nt_chains *chains, size_t 
 		return NT_ERROR_MEMORY;
 	plane_sums sums = {0};
 	for (size_t i = 0; i < seam->edge_count; i++) {
-		const uint32_t side = chains->sides[first + i];
-		const nt_edge_pair *mirror = nt_mirror_edge_of(check, side);
+		const nt_edge *mirror = &check->mirrors.items[chains->edges[first + i]];
+		const uint32_t side = mirror->sides[0];
 		const uint32_t from = nt_side_point(s, chains->reversed[first + i] ? nt_side_next(side) : side);
 		const nt_seam_edge edge = nt_describe_edge(check, mirror, from);
 		if (i < kept)
@@ -341,7 +340,7 @@ static int compare_seams(const void *a, const void *b)
 static void tally_seam(const nt_check *check, const nt_chains *chains, size_t chain, nt_tally *tally)
 {
 	for (size_t i = chains->first[chain]; i < chains->first[chain + 1]; i++)
-		nt_tally_side(check, tally, chains->sides[i], NAN);
+		nt_tally_side(check, tally, check->mirrors.items[chains->edges[i]].sides[0], NAN);
 }
 
 static void report_seam(nt_check *check, const nt_chains *chains, size_t chain, size_t index)
@@ -393,27 +392,22 @@ static bool any_conflict(const nt_check *check)
 static nt_status trace_boundary(nt_check *check)
 {
 	nt_chains chains;
-	const nt_marks marks = {.sides = check->boundary, .count = check->facts->boundary_edges,
-		.conflicts = any_conflict(check)};
-	const nt_status status = nt_chains_trace(&check->surface, &marks, check->scratch, &chains, check->error);
-	for (size_t i = 0; !status && i < chains.count; i++) {
-		if (chains.closed[i])
-			check->facts->boundary_loops++;
-		else
-			check->facts->boundary_chains++;
-	}
-	if (!status)
-		check->facts->left_out = chains.left_out;
-	return status;
+	const nt_status status = nt_chains_trace(&check->surface, &check->boundary, any_conflict(check),
+		check->scratch, &chains, check->error);
+	if (status)
+		return status;
+	for (size_t i = 0; i < chains.count; i++)
+		++*(chains.closed[i] ? &check->facts->boundary_loops : &check->facts->boundary_chains);
+	check->facts->left_out = chains.left_out;
+	return NT_OK;
 }
 
 static nt_status trace_seams(nt_check *check)
 {
 	nt_report_mesh *facts = check->facts;
 	nt_chains chains;
-	const nt_marks marks = {.sides = check->mirrors.sides, .against = check->mirrors_against,
-		.count = check->mirrors.count, .conflicts = any_conflict(check)};
-	nt_status status = nt_chains_trace(&check->surface, &marks, check->scratch, &chains, check->error);
+	nt_status status = nt_chains_trace(&check->surface, &check->mirrors, any_conflict(check), check->scratch,
+		&chains, check->error);
 	if (status)
 		return status;
 	facts->seams = nt_arena_alloc(&check->report->arena, chains.count, sizeof *facts->seams);

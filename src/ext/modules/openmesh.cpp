@@ -164,28 +164,28 @@ HalfedgeHandle opposite_of(const halfedges &mesh, HalfedgeHandle h)
 	return mesh.topology.opposite_halfedge_handle(h);
 }
 
-// The side of a half-edge, where that is marked.
-uint32_t marked_side(const halfedges &mesh, const uint8_t *marked, HalfedgeHandle h)
+// The number of a half-edge's side; `none`: it is not marked.
+uint32_t mark_of(const halfedges &mesh, const uint32_t *marks, HalfedgeHandle h)
 {
 	const uint32_t side = mesh.side[static_cast<size_t>(h.idx())];
-	return side != none && marked[side] ? side : none;
+	return side != none ? marks[side] : none;
 }
 
 // Marked edges, by half-edge, and how they meet.
 struct marked_edges {
 	const halfedges &mesh;
-	const uint8_t *marked;
+	const uint32_t *marks;
 	std::vector<bool> walked;     // [edge] walked, or not marked
 	std::vector<uint8_t> degree;  // [vertex of topology] marked edges, at most 3
 	std::vector<uint32_t> steps;  // of one walk
 
-	marked_edges(const halfedges &of, const uint8_t *flags)
-		: mesh(of), marked(flags), walked(of.topology.n_edges()), degree(of.topology.n_vertices())
+	marked_edges(const halfedges &of, const uint32_t *numbers)
+		: mesh(of), marks(numbers), walked(of.topology.n_edges()), degree(of.topology.n_vertices())
 	{
 		for (size_t e = 0; e < walked.size(); e++) {
 			const HalfedgeHandle h(static_cast<int>(2 * e));
-			walked[e] = marked_side(mesh, marked, h) == none &&
-				marked_side(mesh, marked, opposite_of(mesh, h)) == none;
+			walked[e] = mark_of(mesh, marks, h) == none &&
+				mark_of(mesh, marks, opposite_of(mesh, h)) == none;
 			if (walked[e])
 				continue;
 			for (const VertexHandle v : {mesh.topology.from_vertex_handle(h),
@@ -228,9 +228,9 @@ struct marked_edges {
 		HalfedgeHandle h = begin, last;
 		steps.clear();
 		while (h.is_valid()) {
-			const uint32_t side = marked_side(mesh, marked, h);
-			steps.push_back(side != none
-				? 2 * side : 2 * marked_side(mesh, marked, opposite_of(mesh, h)) + 1);
+			const uint32_t mark = mark_of(mesh, marks, h);
+			steps.push_back(mark != none
+				? 2 * mark : 2 * mark_of(mesh, marks, opposite_of(mesh, h)) + 1);
 			walked[static_cast<size_t>(h.idx() / 2)] = true;
 			last = h;
 			h = after(h);
@@ -258,7 +258,7 @@ nt_status walk_marked(const nt_walked_mesh *of, nt_walk_taker *take, void *conte
 		mesh.out.resize(of->triangle_count);
 		build(mesh, *of);
 		*left_out = static_cast<size_t>(std::count(mesh.out.begin(), mesh.out.end(), true));
-		marked_edges edges(mesh, of->marked);
+		marked_edges edges(mesh, of->marks);
 		for (const uint32_t h : mesh.halfedge)
 			if (h != none && !edges.walked[h / 2])
 				edges.walk(HalfedgeHandle(static_cast<int>(h)), take, context);

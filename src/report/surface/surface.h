@@ -65,6 +65,32 @@ typedef struct nt_edge_side {
 	bool ascending;     /* it runs from the lower point to the higher one */
 } nt_edge_side;
 
+/* An edge that a check marks. */
+typedef struct nt_edge {
+	uint32_t sides[2]; /* of a boundary edge the only one; of a mirror edge the first unmirrored and the first
+	                      mirrored one; of a hard edge the lower one first */
+	float cosine;      /* of a hard edge: of the angle between its normals, where it is widest */
+	bool against;      /* sides[0] runs against the lowest side of the edge */
+	bool non_manifold; /* it has more than two sides */
+} nt_edge;
+
+/* Edges by their first sides, ascending. */
+typedef struct nt_edges {
+	nt_edge *items;
+	size_t count;
+} nt_edges;
+
+/* Chain i has the edges edges[first[i]] to edges[first[i + 1] - 1]. A chain walks from one edge to the next across the
+ * point they share; reversed[k]: edges[k] is walked against its first side. */
+typedef struct nt_chains {
+	size_t count;
+	size_t *first; /* [count + 1] */
+	bool *closed;  /* [count] */
+	uint32_t *edges;
+	bool *reversed;
+	size_t left_out; /* triangles that OpenMesh could not take */
+} nt_chains;
+
 /* Builds the surface of a loaded mesh, but for orientation, flatness and blocks. Everything is in scratch or the mesh's
  * own. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, nt_scratch *scratch);
@@ -86,6 +112,29 @@ void nt_surface_free_sides(nt_surface *surface);
 /* The edges of which a point is the lower one, ordered by the higher one, on each its sides, ascending. `edges` has
  * room for most_sides. Returns how many sides these are. */
 size_t nt_surface_edges(const nt_surface *surface, uint32_t low, nt_edge_side *edges);
+
+/*
+ * Puts edges in walking order, as closed loops and open chains. These are as long as possible without passing a
+ * junction, a point where more than two of the edges meet (unless in fans that have only this point in common); they
+ * are ordered by their lowest first side. conflicts: somewhere triangles use an edge in one direction, or more than two
+ * share one.
+ *
+ * Everything is in scratch. Returns NT_OK, NT_ERROR_MEMORY, or NT_ERROR_MODULE and what else opening a module comes to.
+ * chains.c
+ */
+nt_status nt_chains_trace(const nt_surface *surface, const nt_edges *edges, bool conflicts, nt_scratch *scratch,
+	nt_chains *chains, nt_error *error);
+
+/* Gives the members of each set one number, in the order of their lowest members. sets: [count] made by nt_unite();
+ * what is NT_NONE is no member and stays so. Returns how many sets there are. */
+static inline uint32_t nt_number_sets(uint32_t *sets, size_t count)
+{
+	uint32_t numbers = 0;
+	for (size_t i = 0; i < count; i++)
+		if (sets[i] != NT_NONE)
+			sets[i] = sets[i] == i ? numbers++ : sets[sets[i]]; /* a parent is lower: it has its number */
+	return numbers;
+}
 
 static inline size_t nt_block_count(const nt_surface *s)
 {
@@ -158,6 +207,38 @@ static inline bool nt_sides_meet(const nt_surface *s, uint32_t a, uint32_t b)
 	const float *b0 = nt_side_texcoord(s, same_way ? b : nt_side_next(b));
 	const float *b1 = nt_side_texcoord(s, same_way ? nt_side_next(b) : b);
 	return a0[0] == b0[0] && a0[1] == b0[1] && a1[0] == b1[0] && a1[1] == b1[1];
+}
+
+/* ---- sets of numbers: union and find, the lower number on top ---- */
+
+/* Parents only ever become lower, whatever other threads unite at the same time; so the result does not depend on their
+ * order. */
+/* parents[i] is i at first. */
+static inline uint32_t nt_find_root(uint32_t *parents, uint32_t i)
+{
+	for (;;) {
+		const uint32_t parent = __atomic_load_n(&parents[i], __ATOMIC_RELAXED);
+		if (parent == i)
+			return i;
+		const uint32_t above = __atomic_load_n(&parents[parent], __ATOMIC_RELAXED);
+		if (above != parent)
+			__atomic_store_n(&parents[i], above, __ATOMIC_RELAXED);
+		i = above;
+	}
+}
+
+static inline void nt_unite(uint32_t *parents, uint32_t a, uint32_t b)
+{
+	for (;;) {
+		a = nt_find_root(parents, a);
+		b = nt_find_root(parents, b);
+		if (a == b)
+			return;
+		uint32_t high = a > b ? a : b;
+		const uint32_t low = a > b ? b : a;
+		if (__atomic_compare_exchange_n(&parents[high], &high, low, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+			return;
+	}
 }
 
 #endif

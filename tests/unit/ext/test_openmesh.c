@@ -29,7 +29,7 @@ static void take(void *context, const uint32_t *steps, size_t count, bool closed
 		const uint32_t side = steps[i] / 2, a = w->triangles[side],
 			b = w->triangles[side % 3 == 2 ? side - 2 : side + 1];
 		const uint32_t from = steps[i] % 2 ? b : a;
-		assert_true(w->mesh->marked[side]);
+		assert_int_equal(w->mesh->marks[side], side);
 		if (i > 0)
 			assert_int_equal(from, before);
 		else
@@ -58,14 +58,15 @@ static size_t side_between(const uint32_t (*triangles)[3], size_t count, uint32_
 /* Each edge is known by its first side, either way. */
 static walks walks_of(const uint32_t (*triangles)[3], size_t count, const uint8_t *marked)
 {
-	uint32_t sides[64];
+	uint32_t sides[64], marks[64];
 	assert_true(3 * count <= 64);
 	for (size_t s = 0; s < 3 * count; s++) {
 		const uint32_t a = triangles[s / 3][s % 3], b = triangles[s / 3][(s + 1) % 3];
 		const size_t along = side_between(triangles, count, a, b), back = side_between(triangles, count, b, a);
 		sides[s] = (uint32_t)(along <= back ? 2 * along : 2 * back + 1);
+		marks[s] = marked[s] ? (uint32_t)s : UINT32_MAX;
 	}
-	const nt_walked_mesh mesh = {3 * count, count, sides, marked};
+	const nt_walked_mesh mesh = {3 * count, count, sides, marks};
 	walks w = {.mesh = &mesh, .triangles = &triangles[0][0]};
 	nt_error error;
 	assert_int_equal(nt_walk_marked(&mesh, take, &w, &w.left_out, &error), NT_OK);
@@ -201,7 +202,7 @@ TEST(empty_mesh_and_bad_index_are_handled)
 static double walk_hub(size_t spokes)
 {
 	uint32_t(*triangles)[3] = malloc(sizeof *triangles * spokes), (*sides)[3] = malloc(sizeof *sides * spokes);
-	uint8_t *rim = calloc(spokes, 3);
+	uint32_t *rim = malloc(sizeof *rim * 3 * spokes);
 	for (size_t i = 0; i < spokes; i++) {
 		const uint32_t at = (uint32_t)(i * 30011 % spokes); /* 30011 is prime */
 		triangles[i][0] = 1 + at;
@@ -211,7 +212,8 @@ static double walk_hub(size_t spokes)
 		sides[i][0] = 2 * at;
 		sides[i][1] = 2 * ((uint32_t)spokes + (at + 1) % (uint32_t)spokes);
 		sides[i][2] = 2 * ((uint32_t)spokes + at) + 1;
-		rim[3 * i] = 1;
+		rim[3 * i] = 3 * (uint32_t)i;
+		rim[3 * i + 1] = rim[3 * i + 2] = UINT32_MAX;
 	}
 	const nt_walked_mesh mesh = {2 * spokes, spokes, &sides[0][0], rim};
 	walks loops = {.mesh = &mesh, .triangles = &triangles[0][0], .is_large = true};
