@@ -38,39 +38,41 @@ static void set(nt_json_value *value, nt_json_value content)
 /* An empty container at the same place, with room for so many children. */
 static bool set_container(nt_json *document, nt_json_value *value, nt_json_type type, size_t capacity)
 {
-	nt_json_list *list = nt_json_new_list(document, capacity, nt_json_begin(value));
-	if (list && type == NT_JSON_OBJECT)
-		list->shape = nt_json_shape_of(document, NULL, 0);
-	if (!list || (type == NT_JSON_OBJECT && !list->shape))
+	nt_json_list *list = nt_json_new_list(document, capacity, type == NT_JSON_OBJECT, nt_json_begin(value));
+	if (!list)
 		return false;
 	*value = (nt_json_value){.of.list = list, .type = type, .made = 1, .apart = 1};
 	return true;
 }
 
-/* Room for one more child; false: out of memory. */
-static bool grow(nt_json *document, nt_json_value *container)
+/* Moves the children of a container, an object's with their keys, which are its own then; false: out of memory. */
+static bool move(nt_json *document, nt_json_value *container, size_t capacity)
 {
+	const bool is_object = container->type == NT_JSON_OBJECT;
 	nt_json_list *const old = container->apart ? container->of.list : NULL;
-	if (old && container->size < old->capacity)
-		return true;
-	const size_t capacity = container->size < LEAST_CAPACITY
-		? LEAST_CAPACITY : container->size + container->size / 2;
-	nt_json_list *list = nt_json_new_list(document, capacity, nt_json_begin(container));
+	nt_json_list *list = nt_json_new_list(document, capacity, is_object, nt_json_begin(container));
 	if (!list)
 		return false;
 	if (old) {
 		list->end = old->end;
-		list->shape = old->shape;
+		if (is_object)
+			memcpy(nt_json_own_keys(list), old->keys, container->size * sizeof *old->keys);
 		memcpy(list->children, old->children, container->size * sizeof *list->children);
 		nt_drop_pages(old, sizeof *old + old->capacity * sizeof *old->children);
-	} else if (container->type == NT_JSON_OBJECT) {
-		list->shape = nt_json_shape_of(document, NULL, 0);
-		if (!list->shape)
-			return false;
 	}
 	container->of.list = list;
 	container->apart = 1;
 	return true;
+}
+
+/* Room for one more child. */
+static bool grow(nt_json *document, nt_json_value *container)
+{
+	const bool has_room = container->apart && container->size < container->of.list->capacity;
+	if (has_room && (container->type == NT_JSON_ARRAY || nt_json_own_keys(container->of.list)))
+		return true;
+	return move(document, container, has_room ? container->of.list->capacity : container->size < LEAST_CAPACITY
+		? LEAST_CAPACITY : container->size + container->size / 2);
 }
 
 /* A null behind the children of a container, which becomes an empty one of that type if it is no such. */
@@ -87,23 +89,14 @@ static nt_json_value *add(nt_json *document, nt_json_value *container, nt_json_t
 	return child;
 }
 
-/* The shape that has one more key; NULL: out of memory. */
-static nt_json_shape *longer(nt_json *document, nt_json_shape *shape, const char *key, size_t length)
+/* The document's copy of a key; NULL: out of memory. */
+static const char *keep_key(nt_json *document, const char *key, size_t length)
 {
-	const nt_json_name wanted = {key, length};
-	if (shape->longer && nt_json_same_key(&shape->longer->keys[shape->count], &wanted))
-		return shape->longer;
-	nt_json_name *keys = nt_alloc(shape->count + 1, sizeof *keys);
-	const char *text = nt_arena_text(&document->arena, key, length);
-	if (keys && shape->count)
-		memcpy(keys, shape->keys, shape->count * sizeof *keys);
-	if (keys)
-		keys[shape->count] = (nt_json_name){text, length};
-	nt_json_shape *found = keys && text ? nt_json_shape_of(document, keys, shape->count + 1) : NULL;
-	free(keys);
-	if (found)
-		shape->longer = found;
-	return found;
+	const unsigned char first = (unsigned char)key[0], last = (unsigned char)key[length ? length - 1 : 0];
+	const char **known = &document->added[(length + 5 * first + 11 * last) % NT_JSON_ADDED];
+	if (!*known || strcmp(*known, key) != 0)
+		*known = nt_arena_text(&document->arena, key, length);
+	return *known;
 }
 
 nt_json_value *nt_json_put(nt_json *document, nt_json_value *object, const char *key)
@@ -111,15 +104,12 @@ nt_json_value *nt_json_put(nt_json *document, nt_json_value *object, const char 
 	nt_json_value *found = nt_json_find(object, key);
 	if (found)
 		return found;
-	nt_json_value *child = add(document, object, NT_JSON_OBJECT);
-	nt_json_shape *shape = child ? longer(document, object->of.list->shape, key, strlen(key)) : NULL;
-	if (shape) {
-		object->of.list->shape = shape;
-		return child;
-	}
+	const size_t length = strlen(key);
+	const char *kept = keep_key(document, key, length);
+	nt_json_value *child = kept ? add(document, object, NT_JSON_OBJECT) : NULL;
 	if (child)
-		object->size--;
-	return fail(document);
+		nt_json_own_keys(object->of.list)[object->size - 1] = (nt_json_name){kept, length};
+	return child ? child : fail(document);
 }
 
 nt_json_value *nt_json_append(nt_json *document, nt_json_value *array)
@@ -128,37 +118,22 @@ nt_json_value *nt_json_append(nt_json *document, nt_json_value *array)
 	return child ? child : fail(document);
 }
 
-/* The shape without one of its keys; NULL: out of memory. */
-static nt_json_shape *shorter(nt_json *document, const nt_json_shape *shape, size_t index)
-{
-	nt_json_name *keys = nt_alloc(shape->count, sizeof *keys);
-	if (!keys)
-		return NULL;
-	memcpy(keys, shape->keys, index * sizeof *keys);
-	memcpy(keys + index, shape->keys + index + 1, (shape->count - index - 1) * sizeof *keys);
-	nt_json_shape *found = nt_json_shape_of(document, keys, shape->count - 1);
-	free(keys);
-	return found;
-}
-
 void nt_json_remove_at(nt_json *document, nt_json_value *container, size_t index)
 {
-	const size_t count = nt_json_count(container);
-	if (index >= count)
+	const bool is_object = nt_json_type_of(container) == NT_JSON_OBJECT;
+	if (index >= nt_json_count(container))
 		return;
-	nt_json_list *list = container->of.list;
-	if (container->type == NT_JSON_OBJECT) {
-		nt_json_shape *shape = shorter(document, list->shape, index);
-		if (!shape) {
-			fail(document);
-			return;
-		}
-		list->shape = shape;
+	if (is_object && !nt_json_own_keys(container->of.list) && !move(document, container, container->size)) {
+		fail(document);
+		return;
 	}
-	nt_json_value *child = &list->children[index];
+	const size_t behind = container->size-- - index - 1;
+	nt_json_value *child = nt_json_child(container, index);
 	container->taken |= nt_json_begin(child) != NULL;
-	memmove(child, child + 1, (count - index - 1) * sizeof *child);
-	container->size--;
+	memmove(child, child + 1, behind * sizeof *child);
+	if (is_object)
+		memmove(&nt_json_own_keys(container->of.list)[index], &container->of.list->keys[index + 1],
+			behind * sizeof(nt_json_name));
 }
 
 void nt_json_remove(nt_json *document, nt_json_value *object, const char *key)
@@ -268,12 +243,14 @@ void nt_json_set_object(nt_json *document, nt_json_value *value)
 /* The children of a container that has the room, one by one. */
 static void copy_children(nt_json *document, nt_json_value *value, const nt_json_value *from)
 {
-	nt_json_list *list = nt_json_new_list(document, from->size, nt_json_begin(value));
+	const bool is_object = from->type == NT_JSON_OBJECT;
+	nt_json_list *list = nt_json_new_list(document, from->size, is_object, nt_json_begin(value));
 	if (!list) {
 		fail(document);
 		return;
 	}
-	list->shape = from->of.list->shape;
+	if (is_object)
+		memcpy(nt_json_own_keys(list), from->of.list->keys, from->size * sizeof(nt_json_name));
 	for (size_t i = 0; i < from->size; i++) {
 		list->children[i] = (nt_json_value){.type = NT_JSON_NULL, .made = 1};
 		nt_json_set_copy(document, &list->children[i], nt_json_child(from, i));

@@ -46,8 +46,8 @@ typedef enum nt_json_type {
  *   document  receives the document; free it with nt_json_free()
  *
  * Memory: the text, and at most 32 bytes for each array and object, 16 for each element and member, and 16 for each key
- * of an object whose keys no other has in that order; all but the text twice while parsing. Returns NT_OK,
- * NT_ERROR_INPUT with the byte offset in `error`, or NT_ERROR_MEMORY.
+ * of an object whose keys none of the two kinds before it has in that order; all but the text twice while parsing.
+ * Returns NT_OK, NT_ERROR_INPUT with the byte offset in `error`, or NT_ERROR_MEMORY.
  */
 nt_status nt_json_parse(nt_json **document, const char *text, size_t size, const char *foreign, nt_error *error);
 

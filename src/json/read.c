@@ -17,23 +17,26 @@
 /* NULs behind the text: it ends for every loop, also where keys are compared in words of four bytes. */
 enum { PADDING_BYTES = 4 };
 
-/* A container whose end has not been read. The keys of an object mostly are those of the one before it at that depth:
- * while they are, they are compared and not read. */
+/* Keys of the object of a depth that is read, and behind them those of the one before it. Mostly they are the same: as
+ * long as they are, they are compared and not read, and the objects share them. The accessors of a primitive have two
+ * kinds of keys, one with bounds. */
+typedef struct names {
+	nt_json_name *list; /* [count] */
+	size_t count, capacity;
+	const nt_json_name *kept, *other; /* those of the object before it, and other ones that came before these */
+	size_t kept_count, other_count;
+	bool sound; /* no key of `kept` occurs twice */
+} names;
+
+/* A container whose end has not been read. */
 typedef struct opened {
 	const char *begin;
-	size_t first, first_key; /* where its children and keys begin in the stacks */
-	nt_json_shape *guessed;  /* its first keys are the first ones of this, and not in the stack; NULL: they
-	                            are there */
+	size_t first; /* where its children begin in the stack */
 	bool is_object;
 	bool foreign; /* duplicate keys and numbers beyond double are no fault */
 	bool foreign_member; /* of the value that comes next */
+	bool has_new_key; /* the object before it had another one there */
 } opened;
-
-/* Shapes of the objects of one depth that were read last; NULL: there were none. The accessors of a primitive have two,
- * one with bounds. */
-typedef struct recent {
-	nt_json_shape *last, *other;
-} recent;
 
 typedef struct reader {
 	nt_json *document;
@@ -42,12 +45,10 @@ typedef struct reader {
 	size_t foreign_length;
 	nt_error *error;
 	nt_json_value *values; /* [value_count] of the open containers */
-	nt_json_name *keys;     /* [key_count] of those that are objects */
-	size_t value_count, value_capacity, key_count, key_capacity;
-	size_t depth, deepest;
+	size_t value_count, value_capacity, depth, deepest;
 	/* most of both is never touched */
-	opened open[NT_JSON_MAX_DEPTH];             /* [depth] */
-	recent expected[NT_JSON_MAX_DEPTH];         /* [deepest] */
+	opened open[NT_JSON_MAX_DEPTH]; /* [depth] */
+	names keys[NT_JSON_MAX_DEPTH];  /* [deepest] */
 } reader;
 
 /* ---- faults ---- */
@@ -278,52 +279,25 @@ static nt_status push(reader *r, nt_json_value value)
 	return NT_OK;
 }
 
-/* Keys of the object that is read: the children that it has so far. */
-static size_t keys_before(const reader *r, const opened *o)
+/* Whether the next key is spelled as one in the text that is there: it has no escapes then, and was found to be sound.
+ * The text ends with NULs, which no key has that is in it. */
+static bool is_repeated(const reader *r, const nt_json_name *key)
 {
-	return r->value_count - o->first;
+	return (uintptr_t)key->text - (uintptr_t)r->document->text < r->document->size &&
+		nt_json_same_bytes(r->at + 1, key->text, key->length) && r->at[1 + key->length] == '"';
 }
 
-/* Whether the next key is the next one of the guessed shape, spelled as there: it has no escapes then, and was found to
- * be sound. The text ends with NULs, which no key has that is in it. */
-static bool meets_guess(reader *r, const opened *o, nt_json_name *key)
-{
-	const size_t index = keys_before(r, o);
-	if (index >= o->guessed->count)
-		return false;
-	*key = o->guessed->keys[index];
-	const bool is_spelled_so = (uintptr_t)key->text - (uintptr_t)r->document->text < r->document->size;
-	if (!is_spelled_so || !nt_json_same_bytes(r->at + 1, key->text, key->length) || r->at[1 + key->length] != '"')
-		return false;
-	r->at[1 + key->length] = '\0';
-	r->at += key->length + 2;
-	return true;
-}
-
-/* Puts the keys that were guessed so far into the stack. */
-static nt_status drop_guess(reader *r, opened *o)
-{
-	const size_t count = o->guessed ? keys_before(r, o) : 0;
-	if (!nt_grow((void **)&r->keys, &r->key_capacity, r->key_count + count + 1, sizeof *r->keys))
-		return nt_fail_memory(r->error);
-	if (count)
-		memcpy(r->keys + r->key_count, o->guessed->keys, count * sizeof *r->keys);
-	r->key_count += count;
-	o->guessed = NULL;
-	return NT_OK;
-}
-
-/* A key that is another one than guessed. */
-static nt_status read_other_key(reader *r, opened *o, nt_json_name *key)
+static nt_status read_new_key(reader *r, opened *o, names *keys, size_t index)
 {
 	nt_json_value string;
-	nt_status status = drop_guess(r, o);
-	if (!status)
-		status = read_string(r, &string);
+	const nt_status status = read_string(r, &string);
 	if (status)
 		return status;
-	*key = (nt_json_name){nt_json_text(&string), string.size};
-	r->keys[r->key_count++] = *key;
+	if (!nt_grow((void **)&keys->list, &keys->capacity, index + 1, sizeof *keys->list))
+		return nt_fail_memory(r->error);
+	keys->list[index] = (nt_json_name){nt_json_text(&string), string.size};
+	keys->count = index < keys->count ? keys->count : index + 1;
+	o->has_new_key = true;
 	return NT_OK;
 }
 
@@ -331,18 +305,25 @@ static nt_status read_other_key(reader *r, opened *o, nt_json_name *key)
 static nt_status read_key(reader *r)
 {
 	opened *const o = &r->open[r->depth - 1];
-	nt_json_name key;
+	names *const keys = &r->keys[r->depth - 1];
+	const size_t index = r->value_count - o->first;
 	if (*r->at != '"')
 		return fail(r, r->at, "a key in quotes");
-	const nt_status status = o->guessed && meets_guess(r, o, &key) ? NT_OK : read_other_key(r, o, &key);
-	if (status)
-		return status;
+	if (index < keys->count && is_repeated(r, &keys->list[index])) {
+		r->at += keys->list[index].length + 2;
+		r->at[-1] = '\0';
+	} else {
+		const nt_status status = read_new_key(r, o, keys, index);
+		if (status)
+			return status;
+	}
 	r->at = (char *)nt_json_skip_space(r->at);
 	if (*r->at != ':')
 		return fail(r, r->at, "':'");
 	r->at++;
-	o->foreign_member = r->foreign && key.length == r->foreign_length &&
-		nt_json_same_bytes(key.text, r->foreign, key.length);
+	const nt_json_name *const key = &keys->list[index];
+	o->foreign_member = r->foreign && key->length == r->foreign_length &&
+		nt_json_same_bytes(key->text, r->foreign, key->length);
 	return NT_OK;
 }
 
@@ -366,59 +347,105 @@ static nt_status open_container(reader *r, bool *complete)
 		return push(r, (nt_json_value){.of.text = begin, .type = is_object ? NT_JSON_OBJECT : NT_JSON_ARRAY});
 	}
 	if (r->depth == r->deepest)
-		r->expected[r->deepest++] = (recent){NULL, NULL};
-	r->open[r->depth] = (opened){begin, r->value_count, r->key_count, r->expected[r->depth].last, is_object,
-		foreign, false};
-	r->depth++;
+		r->keys[r->deepest++] = (names){.count = 0};
+	r->open[r->depth++] = (opened){.begin = begin, .first = r->value_count, .is_object = is_object,
+		.foreign = foreign};
 	return is_object ? read_key(r) : NT_OK;
 }
 
-/* A key of the object that ends here occurs for the second time. */
-static nt_status fail_repeated(const reader *r, const nt_json_value *value, const nt_json_name *key)
+static int compare_keys(const void *a, const void *b)
 {
+	const nt_json_name *x = *(const nt_json_name *const *)a, *y = *(const nt_json_name *const *)b;
+	if (x->length != y->length)
+		return x->length < y->length ? -1 : 1;
+	const int difference = memcmp(x->text, y->text, x->length);
+	return difference ? difference : x < y ? -1 : x > y;
+}
+
+/* Finds a key that one before it has too; `count`: there is none. Few are compared pair by pair, many are sorted.
+ * False: out of memory. */
+static bool find_repeated(const nt_json_name *keys, size_t count, size_t *repeated)
+{
+	enum { FEW = 16 };
+	*repeated = count;
+	for (size_t i = 1; i < count && count <= FEW; i++)
+		for (size_t k = 0; k < i; k++)
+			if (nt_json_same_key(&keys[i], &keys[k]))
+				*repeated = i;
+	if (count <= FEW)
+		return true;
+	const nt_json_name **order = nt_alloc(count, sizeof *order);
+	for (size_t i = 0; order && i < count; i++)
+		order[i] = &keys[i];
+	if (order)
+		qsort(order, count, sizeof *order, compare_keys);
+	for (size_t i = 1; order && i < count && *repeated == count; i++)
+		if (nt_json_same_key(order[i], order[i - 1]))
+			*repeated = (size_t)(order[i] - keys);
+	free(order);
+	return order != NULL;
+}
+
+/* A key of the object that ends here must not occur twice. */
+static nt_status check_keys(const reader *r, const nt_json_name *keys, const nt_json_value *children, size_t count)
+{
+	size_t repeated;
+	if (!find_repeated(keys, count, &repeated))
+		return nt_fail_memory(r->error);
+	if (repeated == count)
+		return NT_OK;
 	/* behind the key: in front of the value there are a colon and white space */
-	const char *at = nt_json_begin(value) - 1;
+	const char *at = nt_json_begin(&children[repeated]) - 1;
 	while (at[-1] != '\0')
 		at--;
 	return nt_fail_offset(r->error, NT_ERROR_INPUT, (uint64_t)(at - r->document->text),
-		"JSON: the key \"%.*s\" occurs twice in one object", NT_CUT(200, key->text));
+		"JSON: the key \"%.*s\" occurs twice in one object", NT_CUT(200, keys[repeated].text));
 }
 
-/* The shape of the object that ends here; NULL: out of memory. */
-static nt_json_shape *find_shape(reader *r, opened *o)
+static bool are_same(const nt_json_name *a, const nt_json_name *b, size_t count)
 {
-	recent *const expected = &r->expected[r->depth];
-	const size_t count = keys_before(r, o);
-	if (o->guessed && o->guessed->count == count)
-		return o->guessed;
-	if (o->guessed && drop_guess(r, o))
-		return NULL;
-	const nt_json_name *const keys = r->keys + o->first_key;
-	nt_json_shape *shape = expected->other;
-	if (!shape || !nt_json_has_keys(shape, keys, count))
-		shape = nt_json_shape_of(r->document, keys, count);
-	if (shape != expected->last)
-		*expected = (recent){shape, expected->last};
-	r->key_count = o->first_key;
-	return shape;
+	size_t i = 0;
+	while (i < count && nt_json_same_key(&a[i], &b[i]))
+		i++;
+	return i == count;
+}
+
+/* Keeps the keys of the object that ends here. False: out of memory. */
+static bool keep_keys(reader *r, const opened *o, names *keys, size_t count)
+{
+	if (keys->kept && !o->has_new_key && keys->kept_count == count)
+		return true;
+	const nt_json_name *kept = keys->other;
+	if (!kept || keys->other_count != count || !are_same(kept, keys->list, count)) {
+		nt_json_name *copy = nt_arena_alloc(&r->document->arena, count, sizeof *copy);
+		if (!copy)
+			return false;
+		kept = memcpy(copy, keys->list, count * sizeof *copy);
+	}
+	keys->other = keys->kept;
+	keys->other_count = keys->kept_count;
+	keys->kept = kept;
+	keys->kept_count = count;
+	keys->sound = false;
+	return true;
 }
 
 /* The container ends whose bracket was read; its children leave the stack. */
 static nt_status close_container(reader *r)
 {
-	opened *const o = &r->open[--r->depth];
+	const opened *const o = &r->open[--r->depth];
+	names *const keys = &r->keys[r->depth];
 	const size_t count = r->value_count - o->first;
 	const nt_json_value *const children = r->values + o->first;
-	nt_json_list *const list = nt_json_new_list(r->document, count, o->begin);
-	if (!list)
+	nt_json_list *const list = nt_json_new_list(r->document, count, false, o->begin);
+	if (!list || (o->is_object && !keep_keys(r, o, keys, count)))
 		return nt_fail_memory(r->error);
 	if (o->is_object) {
-		list->shape = find_shape(r, o);
-		if (!list->shape)
-			return nt_fail_memory(r->error);
-		const size_t repeated = list->shape->repeated;
-		if (!o->foreign && repeated < count)
-			return fail_repeated(r, &children[repeated], &list->shape->keys[repeated]);
+		list->keys = keys->kept;
+		const nt_status status = o->foreign || keys->sound ? NT_OK : check_keys(r, list->keys, children, count);
+		if (status)
+			return status;
+		keys->sound |= !o->foreign;
 	}
 	memcpy(list->children, children, count * sizeof *children);
 	list->end = r->at;
@@ -491,14 +518,17 @@ static nt_status read_text(reader *r)
 	return r->at == r->document->text + r->document->size ? NT_OK : fail(r, r->at, "the end of the text");
 }
 
-nt_json_list *nt_json_new_list(nt_json *document, size_t capacity, const char *begin)
+nt_json_list *nt_json_new_list(nt_json *document, size_t capacity, bool has_keys, const char *begin)
 {
 	size_t bytes;
-	if (!nt_size_mul(capacity, sizeof(nt_json_value), &bytes) || !nt_size_add(bytes, sizeof(nt_json_list), &bytes))
+	const size_t each = sizeof(nt_json_value) + (has_keys ? sizeof(nt_json_name) : 0);
+	if (!nt_size_mul(capacity, each, &bytes) || !nt_size_add(bytes, sizeof(nt_json_list), &bytes))
 		return NULL;
 	nt_json_list *list = nt_arena_alloc(&document->arena, bytes, 1);
 	if (list)
-		*list = (nt_json_list){.begin = begin, .capacity = capacity};
+		*list = (nt_json_list){.begin = begin, .capacity = capacity, .has_own_keys = has_keys};
+	if (list)
+		list->keys = nt_json_own_keys(list);
 	return list;
 }
 
@@ -530,10 +560,10 @@ nt_status nt_json_parse(nt_json **document, const char *text, size_t size, const
 	} else {
 		nt_fail_memory(error);
 	}
-	if (r) {
+	for (size_t i = 0; r && i < r->deepest; i++)
+		free(r->keys[i].list);
+	if (r)
 		free(r->values);
-		free(r->keys);
-	}
 	free(r);
 	if (status)
 		nt_json_free(parsed);
@@ -547,8 +577,6 @@ void nt_json_free(nt_json *document)
 	if (!document)
 		return;
 	nt_arena_free(&document->arena);
-	nt_hash_index_free(&document->known);
-	free(document->shapes);
 	free(document->text);
 	free(document);
 }

@@ -6,14 +6,13 @@
  * other NUL before the end, so that who copies text puts quotes in their place. A value that changes still knows where
  * the old one stands; children that are new come behind those that are in the text.
  *
- * A document of 100 000 primitives has millions of values, so these are small. Most are only a place in the text.
- * Objects with the same keys share a shape, which holds these.
+ * A document of 100 000 primitives has millions of values, so these are small. Most are only a place in the text. An
+ * object has its keys together with those of its depth before it that have the same ones in the same order.
  */
 #ifndef NT_JSON_TREE_H
 #define NT_JSON_TREE_H
 
 #include <string.h>
-#include "base/hash_index.h"
 #include "base/memory.h"
 #include "json/json.h"
 
@@ -46,32 +45,25 @@ typedef struct nt_json_name {
 	size_t length;
 } nt_json_name;
 
-/* Keys in their order. The document has no two shapes with the same ones. */
-typedef struct nt_json_shape {
-	size_t count;
-	size_t repeated; /* a key that one before it has too; `count`: there is none */
-	struct nt_json_shape *longer; /* with one more key, as it was wanted last; NULL: it was not */
-	nt_json_name keys[];
-} nt_json_shape;
-
 /* Children of a container. */
 struct nt_json_list {
 	const char *begin; /* of the container, in the text; NULL: it was added */
 	const char *end;   /* in the text, behind the bracket; NULL: the container had no children there */
-	nt_json_shape *shape; /* of an object */
-	size_t capacity;
+	const nt_json_name *keys; /* of an object */
+	uint64_t capacity : 63;
+	uint64_t has_own_keys : 1; /* [capacity] behind the children; else others share them */
 	nt_json_value children[];
 };
+
+enum { NT_JSON_ADDED = 64 };
 
 struct nt_json {
 	char *text; /* [size] and some NULs */
 	size_t size;
 	nt_json_value root;
 	nt_json_value scratch; /* what changing functions hand out once memory is exhausted */
-	nt_arena arena;        /* lists, shapes, override texts */
-	nt_hash_index known;   /* shapes by keys */
-	nt_json_shape **shapes;
-	size_t shape_count, shape_capacity;
+	nt_arena arena;        /* lists, override texts, keys */
+	const char *added[NT_JSON_ADDED]; /* keys that were added last, by what they look like */
 	bool failed;
 };
 
@@ -144,28 +136,14 @@ static inline bool nt_json_same_key(const nt_json_name *a, const nt_json_name *b
 	return a->length == b->length && nt_json_same_bytes(a->text, b->text, a->length);
 }
 
-/* The index of a key in a shape, of the first that is so; `count`: it has none. */
-static inline size_t nt_json_index_of(const nt_json_shape *shape, const char *text, size_t length)
+/* NULL: others share them. */
+static inline nt_json_name *nt_json_own_keys(nt_json_list *list)
 {
-	const nt_json_name key = {text, length};
-	size_t i = 0;
-	while (i < shape->count && !nt_json_same_key(&shape->keys[i], &key))
-		i++;
-	return i;
+	return list->has_own_keys ? (nt_json_name *)(list->children + list->capacity) : NULL;
 }
 
-static inline bool nt_json_has_keys(const nt_json_shape *shape, const nt_json_name *keys, size_t count)
-{
-	bool same = shape->count == count;
-	for (size_t i = 0; same && i < count; i++)
-		same = nt_json_same_key(&shape->keys[i], &keys[i]);
-	return same;
-}
-
-/* A list in the document's arena with room for `capacity` children; NULL: out of memory. */
-nt_json_list *nt_json_new_list(nt_json *document, size_t capacity, const char *begin);
-
-/* The shape with these keys, whose texts must live as long as the document; NULL: out of memory. */
-nt_json_shape *nt_json_shape_of(nt_json *document, const nt_json_name *keys, size_t count);
+/* A list in the document's arena with room for `capacity` children, and for keys of its own or without; NULL: out of
+ * memory. */
+nt_json_list *nt_json_new_list(nt_json *document, size_t capacity, bool has_keys, const char *begin);
 
 #endif

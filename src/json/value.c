@@ -44,7 +44,7 @@ const char *nt_json_key(const nt_json_value *object, size_t index, size_t *lengt
 {
 	if (index >= nt_json_count(object) || object->type != NT_JSON_OBJECT)
 		return NULL;
-	const nt_json_name *key = &object->of.list->shape->keys[index];
+	const nt_json_name *key = &object->of.list->keys[index];
 	if (length)
 		*length = key->length;
 	return key->text;
@@ -54,8 +54,12 @@ nt_json_value *nt_json_find_key(const nt_json_value *object, const char *key, si
 {
 	if (!object || object->type != NT_JSON_OBJECT || object->size == 0)
 		return NULL;
-	const size_t index = nt_json_index_of(object->of.list->shape, key, length);
-	return index < object->size ? nt_json_child(object, index) : NULL;
+	const nt_json_name wanted = {key, length};
+	const nt_json_name *const keys = object->of.list->keys;
+	size_t i = 0;
+	while (i < object->size && !nt_json_same_key(&keys[i], &wanted))
+		i++;
+	return i < object->size ? nt_json_child(object, i) : NULL;
 }
 
 /* ---- scalars ---- */
@@ -145,10 +149,9 @@ static bool equal_numbers(const nt_json_value *a, const nt_json_value *b)
 static bool equal_children(const nt_json_value *a, const nt_json_value *b)
 {
 	bool equal = a->size == b->size;
-	if (equal && a->size && a->type == NT_JSON_OBJECT)
-		equal = nt_json_has_keys(a->of.list->shape, b->of.list->shape->keys, b->size);
 	for (size_t i = 0; equal && i < a->size; i++)
-		equal = nt_json_equal(nt_json_child(a, i), nt_json_child(b, i));
+		equal = (a->type == NT_JSON_ARRAY || nt_json_same_key(&a->of.list->keys[i], &b->of.list->keys[i])) &&
+			nt_json_equal(nt_json_child(a, i), nt_json_child(b, i));
 	return equal;
 }
 

@@ -2,7 +2,7 @@
 /*
  * A changed document as text. The writer goes over the tree in the order of the old text and copies this up to the next
  * change: a value that was set, children that were added, or a container that lost some. Its other children are copied.
- * New text is laid out as its container begins, else as the document does.
+ * New text is laid out as the document begins, but on one line in a container that is.
  */
 #include <stdlib.h>
 #include "json/tree.h"
@@ -13,12 +13,10 @@ typedef struct slice {
 	size_t size;
 } slice;
 
-/* How a container is laid out: its children on lines of their own, which begin with `base` and some units, or all on
- * one. */
+/* How a container is laid out: its children on lines of their own, which begin with some units, or all on one. */
 typedef struct layout {
 	bool broken;
 	size_t units;
-	slice base;
 } layout;
 
 /* So many bytes are handed on at a time. */
@@ -168,35 +166,21 @@ static void put_line(writer *w, const layout *l)
 	if (!l->broken)
 		return;
 	put(w, w->newline);
-	put(w, l->base);
 	for (size_t i = 0; i < l->units; i++)
 		put(w, w->unit);
 }
 
-/* A container that has children in the old text goes on as it begins there. outer: how the container around it is laid
- * out. */
+/* outer: how the container around it is laid out. */
 static layout layout_of(const nt_json_value *container, const layout *outer)
 {
-	layout l = *outer;
-	l.units++;
-	if (container->made || !container->apart || !container->of.list->end)
-		return l;
-	const char *const first = nt_json_skip_space(nt_json_begin(container) + 1), *line = first;
-	while (nt_json_is_space(line[-1]) && line[-1] != '\n')
-		line--;
-	l.broken = line[-1] == '\n';
-	if (l.broken && first - line <= MOST_SPACE)
-		l = (layout){.broken = true, .base = between(line, first)};
+	layout l = {outer->broken, outer->units + 1};
+	if (!container->made && container->apart && container->of.list->end) {
+		const char *at = nt_json_begin(container) + 1;
+		while (nt_json_is_space(*at) && *at != '\n')
+			at++;
+		l.broken = *at == '\n';
+	}
 	return l;
-}
-
-/* The end of the last child of a container that has some in the old text. */
-static const char *end_of_children(const nt_json_value *container)
-{
-	const char *end = container->of.list->end - 1;
-	while (nt_json_is_space(end[-1]))
-		end--;
-	return end;
 }
 
 /* ---- new text ---- */
@@ -278,7 +262,7 @@ static void put_child(writer *w, const nt_json_value *container, size_t index, c
 		return;
 	}
 	if (in_object) {
-		const nt_json_name *key = &container->of.list->shape->keys[index];
+		const nt_json_name *key = &container->of.list->keys[index];
 		put_string(w, key->text, key->length, false);
 		put(w, w->colon);
 	}
@@ -288,17 +272,13 @@ static void put_child(writer *w, const nt_json_value *container, size_t index, c
 static void put_container(writer *w, const nt_json_value *container, const layout *outer)
 {
 	const bool is_object = container->type == NT_JSON_OBJECT;
-	const layout inner = layout_of(container, outer), end = {inner.broken, outer->units, outer->base};
-	slice last_line = {"", 0};
-	if (!container->made && container->of.list->end)
-		take_space(&last_line, end_of_children(container), container->of.list->end - 1);
+	const layout inner = layout_of(container, outer), end = {inner.broken, outer->units};
 	put(w, (slice){is_object ? "{" : "[", 1});
 	if (container->open)
 		hand_over(w);
 	for (size_t i = 0; i < container->size; i++)
 		put_child(w, container, i, &inner);
-	put(w, container->size ? last_line : (slice){"", 0});
-	if (container->size && !last_line.size)
+	if (container->size)
 		put_line(w, &end);
 	put(w, (slice){is_object ? "}" : "]", 1});
 }
@@ -337,7 +317,10 @@ static void write_children(writer *w, const nt_json_value *container, const layo
 		write_value(w, nt_json_child(container, i), &inner);
 	if (i == container->size)
 		return;
-	copy_to(w, end_of_children(container));
+	const char *end = container->of.list->end - 1;
+	while (nt_json_is_space(end[-1]))
+		end--;
+	copy_to(w, end);
 	for (; i < container->size; i++)
 		put_child(w, container, i, &inner);
 }
