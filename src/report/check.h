@@ -80,7 +80,25 @@ typedef struct nt_tally {
 	const char *repair;    /* options that repair this one; NULL: those of the table */
 	double rank;           /* among findings of its code: greater ones come first */
 	double share;          /* of the mesh that it concerns; 0: as many triangles as it has occurrences */
+	double area;           /* for the check alone: of the triangles that it concerns */
 } nt_tally;
+
+/* Findings of a check in a part of the mesh. */
+enum { NT_PART_TALLIES = 5, NT_PART_SUMS = 9 };
+typedef struct nt_part {
+	nt_tally tallies[NT_PART_TALLIES];
+	double sums[NT_PART_SUMS];
+	double greatest[2]; /* -INFINITY at first */
+} nt_part;
+
+/* Looks at the items [begin, end). Calls of one slot, which is below the number of threads, follow each other. */
+typedef void nt_part_check(void *context, size_t begin, size_t end, unsigned slot, nt_part *part);
+
+/* Calls part_check for parts of `size` of all `count` items, in several threads, with tallies of the codes. `all`
+ * receives what they found together, in the order of the parts: threads do not show. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_check_parts(const nt_check *check, size_t count, size_t size, const nt_code *codes, size_t code_count,
+	nt_part_check *part_check, void *context, nt_part *all);
 
 /* Each counts one occurrence. value is the number that was checked, or NAN. */
 void nt_tally_triangle(const nt_check *check, nt_tally *tally, size_t triangle, double value);
@@ -89,9 +107,6 @@ void nt_tally_side(const nt_check *check, nt_tally *tally, uint32_t side, double
 void nt_tally_edge(const nt_check *check, nt_tally *tally, uint32_t triangle, uint32_t face, const uint32_t ends[2],
 	double value);
 void nt_tally_vertex(const nt_check *check, nt_tally *tally, uint32_t vertex, double value);
-
-/* Adds another tally of the same code, whose occurrences come after those of the first. */
-void nt_tally_join(nt_tally *tally, const nt_tally *other);
 
 /* A number behind the finding. */
 void nt_tally_number(nt_tally *tally, const char *name, double value);

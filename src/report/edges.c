@@ -19,19 +19,15 @@
 #include "base/hash_index.h"
 #include "base/parallel.h"
 
-/* Points whose edges a thread takes at a time: some 300 KB. Results of parts are joined in their order. */
+/* Points whose edges a thread takes at a time: some 300 KB. */
 enum { PART = 4096 };
 
-/* ---- what is found ---- */
+/* Tallies and sums of a part. */
+enum { NON_MANIFOLD, INCONSISTENT };
+static const nt_code codes[] = {NT_CODE_MESH_NON_MANIFOLD_EDGE, NT_CODE_MESH_INCONSISTENT_WINDING};
+enum { EDGES, UV_SEAMS };
 
-/* In one part. */
-typedef struct edge_part {
-	size_t edges, boundary, uv_seams;
-	nt_tally non_manifold, inconsistent;
-	double areas[2]; /* of the triangles at inconsistent and at non-manifold edges */
-} edge_part;
-
-/* Share of the mesh's area up to which nobody sees those: slivers. */
+/* Share of the mesh's area up to which nobody sees the triangles at those: slivers. */
 static const double SLIVER_SHARE = 0.001;
 
 /* By one thread, in no order. */
@@ -48,7 +44,6 @@ typedef struct edge_lists {
 
 typedef struct edge_work {
 	nt_check *check;
-	edge_part *parts;
 	edge_lists *lists; /* [slots] */
 } edge_work;
 
@@ -146,21 +141,20 @@ static void unite_patches(const nt_check *check, const nt_edge_side *sides, size
 	}
 }
 
-static void check_edge(nt_check *check, uint32_t low, const nt_edge_side *sides, size_t count, edge_part *result,
+static void check_edge(nt_check *check, uint32_t low, const nt_edge_side *sides, size_t count, nt_part *part,
 	edge_lists *lists)
 {
-	result->edges++;
+	part->sums[EDGES]++;
 	if (count == 1) {
-		result->boundary++;
 		add_edge(lists, BOUNDARY, (nt_edge){.sides = {sides[0].side, NT_NONE}});
 		return;
 	}
-	const bool bad = count > 2 || sides[0].ascending == sides[1].ascending;
+	nt_tally *bad = count > 2 ? &part->tallies[NON_MANIFOLD]
+		: sides[0].ascending == sides[1].ascending ? &part->tallies[INCONSISTENT] : NULL;
 	if (bad)
-		nt_tally_side(check, count > 2 ? &result->non_manifold : &result->inconsistent, sides[0].side,
-			(double)count);
+		nt_tally_side(check, bad, sides[0].side, (double)count);
 	for (size_t i = 0; bad && i < count; i++)
-		result->areas[count > 2] += nt_triangle_area(&check->surface, sides[i].side / 3);
+		bad->area += nt_triangle_area(&check->surface, sides[i].side / 3);
 	if (!check->mesh->texcoords)
 		return;
 	if (count > 2 || sides[0].orientation != sides[1].orientation)
@@ -173,58 +167,48 @@ static void check_edge(nt_check *check, uint32_t low, const nt_edge_side *sides,
 	else if (meet)
 		nt_unite(check->islands, sides[0].side / 3, sides[1].side / 3);
 	else
-		result->uv_seams++;
+		part->sums[UV_SEAMS]++;
 	if (meet && check->patches)
 		unite_patches(check, sides, count);
 	if (meet && joint && count == 2 && check->mesh->normals)
 		find_hard(check, sides, lists);
 }
 
-static void check_part(void *context, size_t item, unsigned slot)
+static void check_part(void *context, size_t begin, size_t end, unsigned slot, nt_part *part)
 {
 	const edge_work *work = context;
 	const nt_surface *s = &work->check->surface;
 	nt_edge_side *sides = work->lists[slot].sides;
-	edge_part *part = &work->parts[item];
 	const size_t total = s->point_count ? s->ends[s->point_count - 1] : 0;
-	*part = (edge_part){.non_manifold = {.code = NT_CODE_MESH_NON_MANIFOLD_EDGE},
-		.inconsistent = {.code = NT_CODE_MESH_INCONSISTENT_WINDING}};
-	for (size_t low = item * PART; low < (item + 1) * PART && low < s->point_count; low++) {
+	for (size_t low = begin; low < end; low++) {
 		const size_t count = nt_surface_edges(s, (uint32_t)low, sides), next = s->ends[low];
-		for (size_t i = 0, end; i < count; i = end) {
-			for (end = i + 1; end < count && sides[end].high == sides[i].high;)
-				end++;
+		for (size_t i = 0, after; i < count; i = after) {
+			for (after = i + 1; after < count && sides[after].high == sides[i].high;)
+				after++;
 			if (next + i < total)
 				__builtin_prefetch(&work->check->islands[s->sides[next + i] / 3], 1);
-			check_edge(work->check, (uint32_t)low, sides + i, end - i, part, &work->lists[slot]);
+			check_edge(work->check, (uint32_t)low, sides + i, after - i, part, &work->lists[slot]);
 		}
 	}
 }
 
 /* ---- the results together ---- */
 
-static void join_parts(nt_check *check, const edge_part *parts, size_t count)
+static void report_edges(nt_check *check, const nt_part *all)
 {
 	nt_report_mesh *facts = check->facts;
-	nt_tally non_manifold = {.code = NT_CODE_MESH_NON_MANIFOLD_EDGE};
-	nt_tally inconsistent = {.code = NT_CODE_MESH_INCONSISTENT_WINDING};
-	double areas[2] = {0.0, 0.0};
-	for (size_t i = 0; i < count; i++) {
-		facts->edge_count += parts[i].edges;
-		facts->boundary_edges += parts[i].boundary;
-		facts->uv_seam_edges += parts[i].uv_seams;
-		nt_tally_join(&non_manifold, &parts[i].non_manifold);
-		nt_tally_join(&inconsistent, &parts[i].inconsistent);
-		areas[0] += parts[i].areas[0];
-		areas[1] += parts[i].areas[1];
-	}
-	facts->non_manifold_edges = non_manifold.count;
-	facts->inconsistent_edges = inconsistent.count;
+	const nt_tally *non_manifold = &all->tallies[NON_MANIFOLD], *inconsistent = &all->tallies[INCONSISTENT];
+	facts->edge_count = (size_t)all->sums[EDGES];
+	facts->boundary_edges = check->boundary.count;
+	facts->uv_seam_edges = (size_t)all->sums[UV_SEAMS];
+	facts->non_manifold_edges = non_manifold->count;
+	facts->inconsistent_edges = inconsistent->count;
 	const double least = SLIVER_SHARE * check->total_area;
 	/* of no matter to a surface without tangents */
-	const bool matters = check->mesh->texcoords && nt_needs_tangents(check) && areas[1] > least;
-	nt_check_report_as(check, &non_manifold, matters ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO, NULL);
-	nt_check_report_as(check, &inconsistent, areas[0] > least ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO, NULL);
+	const bool matters = check->mesh->texcoords && nt_needs_tangents(check) && non_manifold->area > least;
+	nt_check_report_as(check, non_manifold, matters ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO, NULL);
+	nt_check_report_as(check, inconsistent, inconsistent->area > least ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO,
+		NULL);
 }
 
 /* Puts the edges that threads found in the order of their first sides: a bit for each, and how many are before it.
@@ -273,33 +257,32 @@ static nt_status allocate(nt_check *check)
 
 static nt_status check_parts(nt_check *check, unsigned threads)
 {
-	nt_surface *s = &check->surface;
-	const size_t parts = s->point_count / PART + 1;
-	const unsigned slots = threads < parts ? threads : (unsigned)parts;
-	edge_work work = {check, nt_scratch_alloc(check->scratch, parts, sizeof *work.parts),
-		nt_scratch_alloc(check->scratch, slots, sizeof *work.lists)};
+	const nt_surface *s = &check->surface;
 	const size_t words = nt_bit_words(3 * s->triangle_count);
+	edge_work work = {check, nt_scratch_alloc(check->scratch, threads, sizeof *work.lists)};
 	uint64_t *bits = nt_scratch_alloc(check->scratch, words, sizeof *bits);
 	uint32_t *ranks = nt_scratch_alloc(check->scratch, words, sizeof *ranks);
-	if (!work.parts || !work.lists || !bits || !ranks)
+	if (!work.lists || !bits || !ranks)
 		return NT_ERROR_MEMORY;
-	for (unsigned slot = 0; slot < slots; slot++) {
+	for (unsigned slot = 0; slot < threads; slot++) {
 		work.lists[slot] = (edge_lists){.sides = nt_scratch_alloc(check->scratch, s->most_sides,
 			sizeof *work.lists->sides)};
 		if (!work.lists[slot].sides)
 			return NT_ERROR_MEMORY;
 	}
-	nt_parallel_items(slots, parts, check_part, &work);
-	join_parts(check, work.parts, parts);
+	nt_part all;
+	bool failed = nt_check_parts(check, s->point_count, PART, codes, sizeof codes / sizeof *codes, check_part,
+		&work, &all) != NT_OK;
 	nt_edges *const sets[KINDS] = {&check->boundary, &check->mirrors, &check->hard};
-	bool failed = false;
 	for (int kind = 0; kind < KINDS; kind++)
-		failed |= join_lists(check, work.lists, slots, kind, bits, ranks, sets[kind]) != NT_OK;
-	for (unsigned slot = 0; slot < slots; slot++) {
+		failed |= join_lists(check, work.lists, threads, kind, bits, ranks, sets[kind]) != NT_OK;
+	for (unsigned slot = 0; slot < threads; slot++) {
 		failed |= work.lists[slot].failed;
 		for (int kind = 0; kind < KINDS; kind++)
 			free(work.lists[slot].of[kind].edges);
 	}
+	if (!failed)
+		report_edges(check, &all);
 	return failed ? NT_ERROR_MEMORY : NT_OK;
 }
 

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash_index.h"
+#include "base/parallel.h"
 #include "report/baseline.h"
 #include "report/digest.h"
 
@@ -92,16 +93,59 @@ void nt_tally_vertex(const nt_check *check, nt_tally *tally, uint32_t vertex, do
 	add_vertex(check, tally, count_one(tally, value), vertex);
 }
 
-void nt_tally_join(nt_tally *tally, const nt_tally *other)
+/* Adds another tally of the same code, whose occurrences come after those of the first. */
+static void join_tally(nt_tally *tally, const nt_tally *other)
 {
 	if (other->count == 0)
 		return;
 	if (tally->count == 0)
 		tally->box = nt_box_empty();
 	tally->count += other->count;
+	tally->area += other->area;
 	nt_box_join(&tally->box, &other->box);
 	for (unsigned i = 0; i < other->spot_count && tally->spot_count < NT_SPOT_COUNT; i++)
 		tally->spots[tally->spot_count++] = other->spots[i];
+}
+
+typedef struct part_work {
+	size_t count, size;
+	nt_part_check *part_check;
+	void *context;
+	nt_part *parts;
+} part_work;
+
+static void check_part(void *context, size_t item, unsigned slot)
+{
+	const part_work *work = context;
+	const size_t end = (item + 1) * work->size;
+	work->part_check(work->context, item * work->size, end < work->count ? end : work->count, slot,
+		&work->parts[item]);
+}
+
+nt_status nt_check_parts(const nt_check *check, size_t count, size_t size, const nt_code *codes, size_t code_count,
+	nt_part_check *part_check, void *context, nt_part *all)
+{
+	const size_t parts = (count + size - 1) / size;
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	part_work work = {count, size, part_check, context,
+		nt_scratch_alloc(check->scratch, parts, sizeof *work.parts)};
+	*all = (nt_part){.greatest = {-INFINITY, -INFINITY}};
+	for (size_t k = 0; k < code_count; k++)
+		all->tallies[k].code = codes[k];
+	for (size_t i = 0; i < parts && work.parts; i++)
+		work.parts[i] = *all;
+	if (work.parts)
+		nt_parallel_items(nt_thread_count(check->options->threads), parts, check_part, &work);
+	for (size_t i = 0; i < parts && work.parts; i++) {
+		for (size_t k = 0; k < code_count; k++)
+			join_tally(&all->tallies[k], &work.parts[i].tallies[k]);
+		for (size_t k = 0; k < NT_PART_SUMS; k++)
+			all->sums[k] += work.parts[i].sums[k];
+		for (size_t k = 0; k < 2; k++)
+			all->greatest[k] = fmax(all->greatest[k], work.parts[i].greatest[k]);
+	}
+	nt_scratch_back(check->scratch, mark);
+	return work.parts ? NT_OK : NT_ERROR_MEMORY;
 }
 
 void nt_tally_number(nt_tally *tally, const char *name, double value)

@@ -16,7 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/dvec.h"
-#include "base/parallel.h"
 
 /* Sine of the rounding error from which on a triangle counts as nearly degenerate: of one degree. */
 static const double NEAR_DEGENERATE_SINE = 0.017452406437283512;
@@ -29,20 +28,18 @@ static const double UNIT_TOLERANCE = 0.00674;
 
 static const double DEGREES = 57.29577951308232;
 
-/* Blocks that a thread takes at a time. Their results are joined in their order. */
-enum { PART = 128 };
+/* Triangles that a thread takes at a time. */
+enum { PART = 128 * NT_BLOCK };
 
-/* Results in the triangles of a part. */
-typedef struct triangle_part {
-	nt_tally flat, missing, no_uv_area, near, against;
-	size_t coincident, collinear;
-	double missing_area, no_uv_area_sum, near_area, against_area;
-	double worst_bound, worst_determinant;
-} triangle_part;
+/* Tallies, sums and greatest values of a part. */
+enum { FLAT, MISSING, NO_AREA, NEAR, AGAINST };
+static const nt_code codes[] = {NT_CODE_POS_DEGENERATE_TRIANGLE, NT_CODE_UV_MISSING, NT_CODE_UV_DEGENERATE_TRIANGLE,
+	NT_CODE_UV_NEAR_DEGENERATE, NT_CODE_MESH_NORMAL_AGAINST_FACE};
+enum { COINCIDENT, COLLINEAR };
+enum { BOUND, DETERMINANT }; /* the least one's negative */
 
 typedef struct triangle_work {
 	nt_check *check;
-	triangle_part *parts;
 	float *determinants; /* [triangle_count] relative; NaN where a triangle has no orientation */
 } triangle_work;
 
@@ -111,16 +108,16 @@ static bool lacks_texcoords(const nt_check *check, const uint32_t v[3])
 
 /* face: d1 x d2 */
 static void check_texcoords(const triangle_work *work, size_t t, const uint32_t v[3], nt_dvec3 d1, nt_dvec3 d2,
-	nt_dvec3 face, triangle_part *part)
+	nt_dvec3 face, nt_part *part)
 {
 	nt_check *check = work->check;
 	const nt_surface *s = &check->surface;
 	work->determinants[t] = NAN;
 	if (s->orientation[t] == 0) {
 		const double area = nt_triangle_area(s, t);
-		const bool missing = lacks_texcoords(check, v);
-		nt_tally_triangle(check, missing ? &part->missing : &part->no_uv_area, t, area);
-		*(missing ? &part->missing_area : &part->no_uv_area_sum) += area;
+		nt_tally *tally = &part->tallies[lacks_texcoords(check, v) ? MISSING : NO_AREA];
+		nt_tally_triangle(check, tally, t, area);
+		tally->area += area;
 		return;
 	}
 	const float *const uv[3] = {s->texcoords + 2 * (size_t)v[0], s->texcoords + 2 * (size_t)v[1],
@@ -134,10 +131,10 @@ static void check_texcoords(const triangle_work *work, size_t t, const uint32_t 
 	const double sine = rounding_sine(s, t, &frame, nt_dvec3_length(face));
 	if (!(sine <= NEAR_DEGENERATE_SINE)) {
 		const double bound = sine < 1.0 ? asin(sine) * DEGREES : 90.0;
-		nt_tally_triangle(check, &part->near, t, bound);
-		part->near_area += nt_triangle_area(s, t);
-		part->worst_bound = fmax(part->worst_bound, bound);
-		part->worst_determinant = fmin(part->worst_determinant, determinant);
+		nt_tally_triangle(check, &part->tallies[NEAR], t, bound);
+		part->tallies[NEAR].area += nt_triangle_area(s, t);
+		part->greatest[BOUND] = fmax(part->greatest[BOUND], bound);
+		part->greatest[DETERMINANT] = fmax(part->greatest[DETERMINANT], -determinant);
 	}
 }
 
@@ -151,16 +148,15 @@ static bool is_against_normals(const float *normals, const uint32_t v[3], nt_dve
 	return true;
 }
 
-static void check_triangle(const triangle_work *work, size_t t, triangle_part *part)
+static void check_triangle(const triangle_work *work, size_t t, nt_part *part)
 {
 	nt_check *check = work->check;
 	const nt_surface *s = &check->surface;
 	const nt_flatness flatness = s->flatness[t];
 	/* POS_ROUNDED says what happened to the file's positions: the triangle may have an area there */
 	if ((flatness == NT_COINCIDENT || flatness == NT_COLLINEAR) && !check->scene->positions_rounded) {
-		part->coincident += flatness == NT_COINCIDENT;
-		part->collinear += flatness == NT_COLLINEAR;
-		nt_tally_triangle(check, &part->flat, t, nt_triangle_area(s, t));
+		part->sums[flatness == NT_COINCIDENT ? COINCIDENT : COLLINEAR]++;
+		nt_tally_triangle(check, &part->tallies[FLAT], t, nt_triangle_area(s, t));
 	}
 	const uint32_t v[3] = {nt_side_vertex(s, 3 * t), nt_side_vertex(s, 3 * t + 1), nt_side_vertex(s, 3 * t + 2)};
 	const float *positions = check->mesh->positions;
@@ -171,45 +167,20 @@ static void check_triangle(const triangle_work *work, size_t t, triangle_part *p
 	if (check->mesh->texcoords)
 		check_texcoords(work, t, v, d1, d2, face, part);
 	if (check->mesh->normals && flatness == NT_SOUND && is_against_normals(check->mesh->normals, v, face)) {
-		nt_tally_triangle(check, &part->against, t, NAN);
-		part->against_area += nt_triangle_area(s, t);
+		nt_tally_triangle(check, &part->tallies[AGAINST], t, NAN);
+		part->tallies[AGAINST].area += nt_triangle_area(s, t);
 	}
 }
 
-static void check_part(void *context, size_t item, unsigned slot)
+static void check_part(void *context, size_t begin, size_t end, unsigned slot, nt_part *part)
 {
 	const triangle_work *work = context;
-	triangle_part *part = &work->parts[item];
 	(void)slot;
-	*part = (triangle_part){.flat = {.code = NT_CODE_POS_DEGENERATE_TRIANGLE},
-		.missing = {.code = NT_CODE_UV_MISSING},
-		.no_uv_area = {.code = NT_CODE_UV_DEGENERATE_TRIANGLE},
-		.near = {.code = NT_CODE_UV_NEAR_DEGENERATE},
-		.against = {.code = NT_CODE_MESH_NORMAL_AGAINST_FACE},
-		.worst_determinant = INFINITY};
-	nt_surface *s = &work->check->surface;
-	for (size_t b = item * PART; b < (item + 1) * PART && b < nt_block_count(s); b++) {
-		nt_surface_measure(s, b);
-		for (size_t t = b * NT_BLOCK; t < nt_block_end(s, b); t++)
-			check_triangle(work, t, part);
+	for (size_t t = begin; t < end; t++) {
+		if (t % NT_BLOCK == 0)
+			nt_surface_measure(&work->check->surface, t / NT_BLOCK);
+		check_triangle(work, t, part);
 	}
-}
-
-static void join_part(triangle_part *all, const triangle_part *part)
-{
-	nt_tally_join(&all->flat, &part->flat);
-	nt_tally_join(&all->missing, &part->missing);
-	nt_tally_join(&all->no_uv_area, &part->no_uv_area);
-	nt_tally_join(&all->near, &part->near);
-	nt_tally_join(&all->against, &part->against);
-	all->coincident += part->coincident;
-	all->collinear += part->collinear;
-	all->missing_area += part->missing_area;
-	all->no_uv_area_sum += part->no_uv_area_sum;
-	all->near_area += part->near_area;
-	all->against_area += part->against_area;
-	all->worst_bound = fmax(all->worst_bound, part->worst_bound);
-	all->worst_determinant = fmin(all->worst_determinant, part->worst_determinant);
 }
 
 /* ---- least, median and greatest determinant ---- */
@@ -258,12 +229,6 @@ static void find_determinants(nt_report_mesh *facts, float *values, size_t count
 	facts->relative_determinant[2] = greatest;
 }
 
-/* Below it they are slivers that nobody sees. */
-static nt_severity severity_by_share(const nt_check *check, double area)
-{
-	return area > VISIBLE_SHARE * check->total_area ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO;
-}
-
 static void sum_blocks(nt_check *check)
 {
 	const nt_surface *s = &check->surface;
@@ -304,28 +269,34 @@ static nt_status count_neighbours(const nt_check *check, size_t *count)
 }
 
 /* from_neighbour: corners of degenerate triangles that take a neighbour's tangent. */
-static void report_triangles(nt_check *check, triangle_part *all, size_t from_neighbour)
+static void report_triangles(nt_check *check, nt_part *all, size_t from_neighbour)
 {
 	const double total = check->total_area > 0.0 ? check->total_area : 1.0;
-	nt_tally_number(&all->flat, "coincident_corners", (double)all->coincident);
-	nt_tally_number(&all->flat, "collinear_corners", (double)all->collinear);
-	nt_check_report(check, &all->flat, NULL);
+	nt_tally *tallies = all->tallies;
+	nt_severity severities[NT_PART_TALLIES];
+	for (size_t k = MISSING; k <= AGAINST; k++) {
+		severities[k] = tallies[k].area > VISIBLE_SHARE * check->total_area ? NT_SEVERITY_WARNING
+			: NT_SEVERITY_INFO; /* slivers that nobody sees */
+		if (k != AGAINST)
+			severities[k] = nt_texcoord_severity(check, severities[k]);
+		nt_tally_number(&tallies[k], "area_share", tallies[k].area / total);
+	}
 
-	nt_tally_number(&all->missing, "area_share", all->missing_area / total);
-	nt_check_report_as(check, &all->missing,
-		nt_texcoord_severity(check, severity_by_share(check, all->missing_area)),
-		"%zu of %zu triangles %s no texture coordinates", all->missing.count, check->surface.triangle_count,
-		all->missing.count == 1 ? "has" : "have");
+	nt_tally_number(&tallies[FLAT], "coincident_corners", all->sums[COINCIDENT]);
+	nt_tally_number(&tallies[FLAT], "collinear_corners", all->sums[COLLINEAR]);
+	nt_check_report(check, &tallies[FLAT], NULL);
 
-	nt_tally *no_area = &all->no_uv_area;
+	nt_check_report_as(check, &tallies[MISSING], severities[MISSING],
+		"%zu of %zu triangles %s no texture coordinates", tallies[MISSING].count,
+		check->surface.triangle_count, tallies[MISSING].count == 1 ? "has" : "have");
+
+	nt_tally *no_area = &tallies[NO_AREA];
 	const size_t from_normal = 3 * no_area->count - from_neighbour;
-	nt_tally_number(no_area, "area_share", all->no_uv_area_sum / total);
 	nt_tally_number(no_area, "corners_from_neighbour", (double)from_neighbour);
 	nt_tally_number(no_area, "corners_from_normal", (double)from_normal);
-	const nt_severity severity = nt_texcoord_severity(check, severity_by_share(check, all->no_uv_area_sum));
 	if (no_area->count == check->surface.triangle_count) {
 		no_area->code = NT_CODE_UV_UNMAPPED;
-		nt_check_report_as(check, no_area, severity, NULL);
+		nt_check_report_as(check, no_area, severities[NO_AREA], NULL);
 	} else {
 		/* each triangle has three, so that one of both is there */
 		char neighbours[80] = "", normals[80] = "";
@@ -335,42 +306,36 @@ static void report_triangles(nt_check *check, triangle_part *all, size_t from_ne
 		if (from_normal)
 			snprintf(normals, sizeof normals, "%zu %s a tangent made from the normal", from_normal,
 				from_normal == 1 ? "corner gets" : "corners get");
-		nt_check_report_as(check, no_area, severity, "%.3g %% of the area; %s%s%s",
-			100.0 * all->no_uv_area_sum / total, neighbours, *neighbours && *normals ? ", " : "", normals);
+		nt_check_report_as(check, no_area, severities[NO_AREA], "%.3g %% of the area; %s%s%s",
+			100.0 * no_area->area / total, neighbours, *neighbours && *normals ? ", " : "", normals);
 	}
 
-	nt_tally_number(&all->near, "area_share", all->near_area / total);
-	nt_tally_number(&all->near, "least_relative_determinant", all->worst_determinant);
-	nt_tally_number(&all->near, "greatest_error_degrees", all->worst_bound);
-	nt_check_report_as(check, &all->near, nt_texcoord_severity(check, severity_by_share(check, all->near_area)),
-		"relative determinant down to %.2g, error up to %.2g degrees", all->worst_determinant,
-		all->worst_bound);
+	const double least = -all->greatest[DETERMINANT];
+	nt_tally_number(&tallies[NEAR], "least_relative_determinant", least);
+	nt_tally_number(&tallies[NEAR], "greatest_error_degrees", all->greatest[BOUND]);
+	nt_check_report_as(check, &tallies[NEAR], severities[NEAR],
+		"relative determinant down to %.2g, error up to %.2g degrees", least, all->greatest[BOUND]);
 
-	nt_tally_number(&all->against, "area_share",
-		check->total_area > 0.0 ? all->against_area / check->total_area : 0.0);
-	nt_check_report_as(check, &all->against, severity_by_share(check, all->against_area), "%.3g %% of the area",
-		100.0 * all->against_area / total);
+	nt_check_report_as(check, &tallies[AGAINST], severities[AGAINST], "%.3g %% of the area",
+		100.0 * tallies[AGAINST].area / total);
 }
 
 static nt_status check_triangles(nt_check *check)
 {
 	const size_t triangles = check->surface.triangle_count;
-	const size_t parts = (nt_block_count(&check->surface) + PART - 1) / PART;
-	triangle_work work = {.check = check,
-		.parts = nt_scratch_alloc(check->scratch, parts, sizeof *work.parts),
-		.determinants = nt_scratch_alloc(check->scratch, triangles, sizeof *work.determinants)};
-	if (!work.parts || !work.determinants)
-		return NT_ERROR_MEMORY;
-	nt_parallel_items(nt_thread_count(check->options->threads), parts, check_part, &work);
-	for (size_t i = 1; i < parts; i++)
-		join_part(&work.parts[0], &work.parts[i]);
-	sum_blocks(check);
+	triangle_work work = {check, nt_scratch_alloc(check->scratch, triangles, sizeof *work.determinants)};
+	nt_part all;
 	size_t from_neighbour;
-	const nt_status status = count_neighbours(check, &from_neighbour);
+	nt_status status = work.determinants ? nt_check_parts(check, triangles, PART, codes,
+		sizeof codes / sizeof *codes, check_part, &work, &all) : NT_ERROR_MEMORY;
+	if (status)
+		return status;
+	sum_blocks(check);
 	if (check->mesh->texcoords)
 		find_determinants(check->facts, work.determinants, triangles);
+	status = count_neighbours(check, &from_neighbour);
 	if (!status)
-		report_triangles(check, &work.parts[0], from_neighbour);
+		report_triangles(check, &all, from_neighbour);
 	return status;
 }
 

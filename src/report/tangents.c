@@ -35,19 +35,8 @@ const double nt_angle_bins[NT_ANGLE_BINS] = {1.0, 5.0, 15.0, 30.0, 60.0, 180.0};
 
 static const double DEGREES = 57.29577951308232;
 
-/* Triangles that a thread takes at a time. Results of parts are joined in their order. */
+/* Triangles that a thread takes at a time. */
 enum { PART = 16384 };
-
-static size_t part_count(const nt_check *check)
-{
-	return (check->surface.triangle_count + PART - 1) / PART;
-}
-
-static size_t part_end(const nt_check *check, size_t part)
-{
-	const size_t end = (part + 1) * PART, count = check->surface.triangle_count;
-	return end < count ? end : count;
-}
 
 /* Said if wrong tangents follow the file's own coordinates, which a material's transform turns or mirrors. */
 static const char untransformed_text[] =
@@ -213,13 +202,16 @@ static bool is_reversed(const nt_check *check, size_t t, bool other_w)
 	return nt_is_reversed(&triangle);
 }
 
-typedef struct sign_tallies {
-	nt_tally mixed, wrong, of_quad;
-	size_t checked, by_w, reversed;
-	size_t by_t; /* of those by w: T is reversed, and the bitangent is right */
-	size_t untransformed; /* wrong, but right without the texture transform */
-	double wrong_area;
-} sign_tallies;
+/* Tallies and sums of a part. */
+enum { MIXED, WRONG, OF_QUAD };
+static const nt_code sign_codes[] = {NT_CODE_TAN_MIXED_W_TRIANGLE, NT_CODE_TAN_SIGN_MISMATCH, NT_CODE_TAN_QUAD_SIGN};
+enum {
+	CHECKED,
+	BY_W,
+	BY_T,     /* of those by w: T is reversed, and the bitangent is right */
+	REVERSED,
+	UNTRANSFORMED /* wrong, but right without the texture transform */
+};
 
 /* Whether w is right for the file's own coordinates, where a texture transform turns them over. */
 static bool fits_untransformed(const nt_check *check, size_t t, float w)
@@ -273,7 +265,7 @@ int nt_quad_orientation(const nt_check *check, size_t t)
 	return nt_orientation_of_halves(uv);
 }
 
-static void check_sign(const nt_check *check, size_t t, int orientation, sign_tallies *st)
+static void check_sign(const nt_check *check, size_t t, int orientation, nt_part *part)
 {
 	const nt_surface *s = &check->surface;
 	float w[3];
@@ -282,112 +274,88 @@ static void check_sign(const nt_check *check, size_t t, int orientation, sign_ta
 	if (!isfinite(w[0] + w[1] + w[2]) || w[0] == 0.0f || w[1] == 0.0f || w[2] == 0.0f)
 		return;
 	if ((w[0] > 0.0f) != (w[1] > 0.0f) || (w[1] > 0.0f) != (w[2] > 0.0f)) {
-		nt_tally_triangle(check, &st->mixed, t, NAN);
+		nt_tally_triangle(check, &part->tallies[MIXED], t, NAN);
 		return;
 	}
 	if (orientation == 0)
 		return;
-	st->checked++;
+	part->sums[CHECKED]++;
 	const bool by_w = (w[0] > 0.0f) != (orientation > 0);
 	const int quad = by_w ? nt_quad_orientation(check, t) : 0;
 	if (quad == NT_FOLDED_EITHER || (quad && (quad > 0) == (w[0] > 0.0f))) {
-		nt_tally_triangle(check, &st->of_quad, t, w[0]);
+		nt_tally_triangle(check, &part->tallies[OF_QUAD], t, w[0]);
 		return;
 	}
 	const bool turned = is_reversed(check, t, by_w), reversed = !by_w && turned;
-	st->by_w += by_w;
-	st->by_t += by_w && turned;
-	st->reversed += reversed;
-	st->untransformed += by_w && fits_untransformed(check, t, w[0]);
+	part->sums[BY_W] += by_w;
+	part->sums[BY_T] += by_w && turned;
+	part->sums[REVERSED] += reversed;
+	part->sums[UNTRANSFORMED] += by_w && fits_untransformed(check, t, w[0]);
 	if (by_w || reversed) {
-		nt_tally_triangle(check, &st->wrong, t, w[0]);
-		st->wrong_area += nt_triangle_area(s, t);
+		nt_tally_triangle(check, &part->tallies[WRONG], t, w[0]);
+		part->tallies[WRONG].area += nt_triangle_area(s, t);
 	}
 }
 
-typedef struct sign_work {
-	const nt_check *check;
-	sign_tallies *parts;
-} sign_work;
-
-static void check_sign_part(void *context, size_t item, unsigned slot)
+static void check_sign_part(void *context, size_t begin, size_t end, unsigned slot, nt_part *part)
 {
-	const sign_work *work = context;
-	const nt_check *check = work->check;
+	const nt_check *check = context;
 	const float v_offset = stored_v_offset(check);
 	(void)slot;
-	work->parts[item] = (sign_tallies){.mixed = {.code = NT_CODE_TAN_MIXED_W_TRIANGLE},
-		.wrong = {.code = NT_CODE_TAN_SIGN_MISMATCH}, .of_quad = {.code = NT_CODE_TAN_QUAD_SIGN}};
-	for (size_t t = item * PART; t < part_end(check, item); t++)
-		check_sign(check, t, stored_orientation(check, t, v_offset), &work->parts[item]);
+	for (size_t t = begin; t < end; t++)
+		check_sign(check, t, stored_orientation(check, t, v_offset), part);
 }
 
 static nt_status check_signs(nt_check *check)
 {
-	const size_t parts = part_count(check);
-	const sign_work work = {check, nt_scratch_alloc(check->scratch, parts, sizeof *work.parts)};
-	if (!work.parts)
-		return NT_ERROR_MEMORY;
-	nt_parallel_items(nt_thread_count(check->options->threads), parts, check_sign_part, (void *)&work);
-	sign_tallies st = work.parts[0];
-	for (size_t i = 1; i < parts; i++) {
-		nt_tally_join(&st.mixed, &work.parts[i].mixed);
-		nt_tally_join(&st.wrong, &work.parts[i].wrong);
-		nt_tally_join(&st.of_quad, &work.parts[i].of_quad);
-		st.checked += work.parts[i].checked;
-		st.by_w += work.parts[i].by_w;
-		st.reversed += work.parts[i].reversed;
-		st.by_t += work.parts[i].by_t;
-		st.untransformed += work.parts[i].untransformed;
-		st.wrong_area += work.parts[i].wrong_area;
-	}
-	nt_check_report_as(check, &st.mixed, severity_of(check, NT_CODE_TAN_MIXED_W_TRIANGLE), NULL);
-	nt_check_report(check, &st.of_quad, NULL);
-	const double share = st.checked ? (double)st.wrong.count / (double)st.checked : 0.0;
-	nt_tally_number(&st.wrong, "share", share);
-	nt_tally_number(&st.wrong, "judged_triangles", (double)st.checked);
-	nt_tally_number(&st.wrong, "wrong_w", (double)st.by_w);
-	nt_tally_number(&st.wrong, "reversed_tangents", (double)(st.reversed + st.by_t));
-	nt_tally_number(&st.wrong, "right_without_transform", (double)st.untransformed);
+	nt_part all;
+	const nt_status status = nt_check_parts(check, check->surface.triangle_count, PART, sign_codes,
+		sizeof sign_codes / sizeof *sign_codes, check_sign_part, check, &all);
+	if (status)
+		return status;
+	nt_check_report_as(check, &all.tallies[MIXED], severity_of(check, NT_CODE_TAN_MIXED_W_TRIANGLE), NULL);
+	nt_check_report(check, &all.tallies[OF_QUAD], NULL);
+	nt_tally *wrong = &all.tallies[WRONG];
+	const double *sums = all.sums, count = (double)wrong->count;
+	const double share = sums[CHECKED] > 0.0 ? count / sums[CHECKED] : 0.0;
+	nt_tally_number(wrong, "share", share);
+	nt_tally_number(wrong, "judged_triangles", sums[CHECKED]);
+	nt_tally_number(wrong, "wrong_w", sums[BY_W]);
+	nt_tally_number(wrong, "reversed_tangents", sums[REVERSED] + sums[BY_T]);
+	nt_tally_number(wrong, "right_without_transform", sums[UNTRANSFORMED]);
 	/* exporters disagree about texture transforms, and so do renderers: not an error */
-	const bool untransformed = st.untransformed > 0 && st.untransformed == st.wrong.count;
-	const bool slivers = share <= SLIVER_SHARE && st.wrong_area <= SLIVER_SHARE * check->total_area;
+	const bool untransformed = sums[UNTRANSFORMED] > 0.0 && sums[UNTRANSFORMED] == count;
+	const bool slivers = share <= SLIVER_SHARE && wrong->area <= SLIVER_SHARE * check->total_area;
 	const bool judged = check->stored == NT_STORED_AUTHORED;
 	if ((judged || check->mesh->keeps_inverted) && check->mesh->pair)
 		return NT_OK; /* the map cancels it: TAN_GREEN_PAIR */
 	const nt_doubt doubt = judged ? check->mesh->doubt : NT_DOUBT_NONE;
-	st.wrong.repair = doubt == NT_DOUBT_UNDECODABLE ? "--existing=replace" : NULL;
-	nt_check_report_as(check, &st.wrong,
+	wrong->repair = doubt == NT_DOUBT_UNDECODABLE ? "--existing=replace" : NULL;
+	nt_check_report_as(check, wrong,
 		severity_of(check, untransformed || slivers ? NT_CODE_TAN_MIXED_W_TRIANGLE : NT_CODE_TAN_SIGN_MISMATCH),
-		"%.3g %% of %zu%s%s", 100.0 * share, st.checked,
-		untransformed	     ? untransformed_text
-		: 2 * st.by_t > st.wrong.count ? ", T is reversed with w: red is inverted, not green"
-		: st.by_w == st.checked ? ", the convention is inverted"
-		: st.by_w == 0	     ? ", the tangents are reversed too"
-				     : "",
+		"%.3g %% of %.0f%s%s", 100.0 * share, sums[CHECKED],
+		untransformed ? untransformed_text
+		: 2.0 * sums[BY_T] > count ? ", T is reversed with w: red is inverted, not green"
+		: sums[BY_W] == sums[CHECKED] ? ", the convention is inverted"
+		: sums[BY_W] == 0.0 ? ", the tangents are reversed too"
+				    : "",
 		nt_doubt_text(doubt));
 	return NT_OK;
 }
 
 /* ---- directions ---- */
 
-typedef struct direction_part {
-	nt_tally wrong;
-	size_t histogram[NT_ANGLE_BINS];
-	double worst;
-} direction_part;
-
 typedef struct direction_work {
 	const nt_check *check;
 	const float *fresh;
 	const uint64_t *without; /* bits: corners that are not looked at; NULL: none */
-	direction_part *parts;
 } direction_work;
 
 /* tan^2 of 0.99 degrees: less is in the first bin for certain. */
 static const double SAME_DIRECTION = 0.0002986;
 
-static void check_direction(const direction_work *work, size_t c, direction_part *part)
+/* Sums are the histogram. */
+static void check_direction(const direction_work *work, size_t c, nt_part *part)
 {
 	const nt_check *check = work->check;
 	const uint32_t corner = nt_side_corner(&check->surface, c);
@@ -396,7 +364,7 @@ static void check_direction(const direction_work *work, size_t c, direction_part
 	const nt_dvec3 cross = nt_dvec3_cross(stored, fresh);
 	const double dot = nt_dvec3_dot(stored, fresh);
 	if (dot > 0.0 && nt_dvec3_dot(cross, cross) < SAME_DIRECTION * dot * dot) {
-		part->histogram[0]++;
+		part->sums[0]++;
 		return;
 	}
 	if (!nt_dvec3_normalise(&stored))
@@ -405,49 +373,43 @@ static void check_direction(const direction_work *work, size_t c, direction_part
 	int bin = 0;
 	while (bin + 1 < NT_ANGLE_BINS && angle > nt_angle_bins[bin])
 		bin++;
-	part->histogram[bin]++;
+	part->sums[bin]++;
 	if (angle > MISMATCH_DEGREES)
-		nt_tally_vertex(check, &part->wrong, nt_side_vertex(&check->surface, c), angle);
-	part->worst = fmax(part->worst, angle);
+		nt_tally_vertex(check, &part->tallies[0], nt_side_vertex(&check->surface, c), angle);
+	part->greatest[0] = fmax(part->greatest[0], angle);
 }
 
-static void check_direction_part(void *context, size_t item, unsigned slot)
+static void check_direction_part(void *context, size_t begin, size_t end, unsigned slot, nt_part *part)
 {
 	const direction_work *work = context;
 	const nt_surface *s = &work->check->surface;
 	(void)slot;
-	work->parts[item] = (direction_part){.wrong = {.code = NT_CODE_TAN_DIRECTION_MISMATCH}};
-	for (size_t t = item * PART; t < part_end(work->check, item); t++)
+	for (size_t t = begin; t < end; t++)
 		for (size_t c = 3 * t; c < 3 * t + 3 && s->orientation[t] && s->flatness[t] == NT_SOUND; c++)
 			if (!work->without || !nt_bit(work->without, nt_side_corner(s, c)))
-				check_direction(work, c, &work->parts[item]);
+				check_direction(work, c, part);
 }
 
 static nt_status check_directions(nt_check *check, const float *fresh, const uint64_t *without)
 {
-	const size_t parts = part_count(check);
-	const direction_work work = {check, fresh, without,
-		nt_scratch_alloc(check->scratch, parts, sizeof *work.parts)};
-	if (!work.parts)
-		return NT_ERROR_MEMORY;
-	nt_parallel_items(nt_thread_count(check->options->threads), parts, check_direction_part, (void *)&work);
-	nt_tally wrong = {.code = NT_CODE_TAN_DIRECTION_MISMATCH};
-	size_t checked = 0;
-	double worst = 0.0; /* of those that are not in the first bin, if there are any */
-	for (size_t i = 0; i < parts; i++) {
-		nt_tally_join(&wrong, &work.parts[i].wrong);
-		worst = fmax(worst, work.parts[i].worst);
-		for (int bin = 0; bin < NT_ANGLE_BINS; bin++) {
-			check->facts->angle_histogram[bin] += work.parts[i].histogram[bin];
-			checked += work.parts[i].histogram[bin];
-		}
+	direction_work work = {check, fresh, without};
+	nt_part all;
+	const nt_status status = nt_check_parts(check, check->surface.triangle_count, PART,
+		&(const nt_code){NT_CODE_TAN_DIRECTION_MISMATCH}, 1, check_direction_part, &work, &all);
+	if (status)
+		return status;
+	nt_tally *wrong = &all.tallies[0];
+	double checked = 0.0;
+	for (int bin = 0; bin < NT_ANGLE_BINS; bin++) {
+		check->facts->angle_histogram[bin] = (size_t)all.sums[bin];
+		checked += all.sums[bin];
 	}
-	const double share = checked ? (double)wrong.count / (double)checked : 0.0;
-	nt_tally_number(&wrong, "share", share);
-	nt_tally_number(&wrong, "worst_degrees", worst);
-	nt_check_report_as(check, &wrong,
-		share > MISMATCH_SHARE ? severity_of(check, wrong.code) : NT_SEVERITY_INFO,
-		"%.3g %% of the corners, the worst by %.4g degrees%s", 100.0 * share, worst,
+	const double share = checked > 0.0 ? (double)wrong->count / checked : 0.0;
+	nt_tally_number(wrong, "share", share);
+	nt_tally_number(wrong, "worst_degrees", all.greatest[0]);
+	nt_check_report_as(check, wrong,
+		share > MISMATCH_SHARE ? severity_of(check, wrong->code) : NT_SEVERITY_INFO,
+		"%.3g %% of the corners, the worst by %.4g degrees%s", 100.0 * share, all.greatest[0],
 		check->facts->maker.untransformed ? untransformed_text : "");
 	return NT_OK;
 }
