@@ -25,7 +25,7 @@
 /* Below so many superseded lines nothing is rewritten; how often a file may be replaced while we wait for it. */
 enum { FEW_LINES = 100, MOST_ATTEMPTS = 100 };
 
-static const char begin[] = "{\"output\":\"";
+static const char begin[] = NT_RECORD_BEGIN;
 enum { BEGIN_BYTES = sizeof begin - 1, SUM_BYTES = sizeof ",\"sum\":\"0123456789abcdef\"}" - 1 };
 
 static nt_status fail(const nt_record *record, int number, const char *then, nt_error *error)
@@ -41,11 +41,6 @@ static void spell_sum(char sum[SUM_BYTES + 1], const char *line, size_t size)
 	snprintf(sum, SUM_BYTES + 1, ",\"sum\":\"%016" PRIx64 "\"}", nt_hash_unkeyed(0, line, size));
 }
 
-void nt_record_begin(nt_buffer *line)
-{
-	nt_buffer_text(line, begin);
-}
-
 void nt_record_end(nt_buffer *line)
 {
 	char sum[SUM_BYTES + 1];
@@ -53,50 +48,30 @@ void nt_record_end(nt_buffer *line)
 	nt_buffer_format(line, "%s\n", sum);
 }
 
-/* Finds the name of the output; false: the line does not count. */
-static bool read_line(nt_record_line *line, const char *text, size_t length)
+const nt_name *nt_record_find(const nt_record *record, const nt_buffer *output)
+{
+	const uint32_t number = nt_name_find(&record->outputs, output->data, output->size);
+	return number != UINT32_MAX ? &record->lines[number] : NULL;
+}
+
+/* Takes a line, if it counts, in place of an earlier one of its output. */
+static nt_status add_line(nt_record *record, const char *text, size_t length, nt_error *error)
 {
 	char sum[SUM_BYTES + 1];
-	const char *end;
+	const char *name = text + BEGIN_BYTES, *end;
 	if (length < BEGIN_BYTES + SUM_BYTES || memcmp(text, begin, BEGIN_BYTES) != 0 ||
-		!(end = memchr(text + BEGIN_BYTES, '"', length - BEGIN_BYTES)))
-		return false;
-	spell_sum(sum, text, length - SUM_BYTES);
-	*line = (nt_record_line){text, length, (size_t)(end - text) - BEGIN_BYTES};
-	return memcmp(sum, text + length - SUM_BYTES, SUM_BYTES) == 0;
-}
-
-static uint32_t find(const nt_record *record, uint64_t hash, const char *name, size_t length)
-{
-	size_t at = NT_HASH_BEGIN;
-	for (uint32_t i; (i = nt_hash_index_next(&record->index, hash, &at)) != UINT32_MAX;)
-		if (record->lines[i].name_length == length &&
-			memcmp(record->lines[i].text + BEGIN_BYTES, name, length) == 0)
-			return i;
-	return UINT32_MAX;
-}
-
-const nt_record_line *nt_record_find(const nt_record *record, const char *name)
-{
-	const size_t length = strlen(name);
-	const uint32_t i = find(record, nt_hash_bytes(0, name, length), name, length);
-	return i != UINT32_MAX ? &record->lines[i] : NULL;
-}
-
-static nt_status add_line(nt_record *record, const nt_record_line *line, nt_error *error)
-{
-	const char *name = line->text + BEGIN_BYTES;
-	const uint64_t hash = nt_hash_bytes(0, name, line->name_length);
-	const uint32_t known = find(record, hash, name, line->name_length);
-	if (known != UINT32_MAX) {
-		record->lines[known] = *line;
-		record->superseded_count++;
+		!(end = memchr(name, '"', length - BEGIN_BYTES)))
 		return NT_OK;
-	}
-	if (!nt_grow((void **)&record->lines, &record->line_capacity, record->line_count + 1, sizeof *line) ||
-		!nt_hash_index_add(&record->index, hash, (uint32_t)record->line_count))
+	spell_sum(sum, text, length - SUM_BYTES);
+	if (memcmp(sum, text + length - SUM_BYTES, SUM_BYTES) != 0)
+		return NT_OK;
+	const size_t before = record->outputs.count;
+	const uint32_t number = nt_grow((void **)&record->lines, &record->line_capacity, before + 1,
+		sizeof *record->lines) ? nt_name_add(&record->outputs, name, (size_t)(end - name)) : UINT32_MAX;
+	if (number == UINT32_MAX)
 		return nt_fail_memory(error);
-	record->lines[record->line_count++] = *line;
+	record->lines[number] = (nt_name){text, length};
+	record->superseded_count += number < before;
 	return NT_OK;
 }
 
@@ -106,7 +81,7 @@ static void forget(nt_record *record)
 {
 	free(record->text);
 	free(record->lines);
-	nt_hash_index_free(&record->index);
+	nt_name_table_free(&record->outputs);
 	*record = (nt_record){.path = record->path};
 }
 
@@ -123,7 +98,7 @@ static nt_status read_text(nt_record *record, nt_error *error)
 	record->text = nt_alloc(input.size + 1, 1);
 	if (record->text) {
 		memcpy(record->text, input.data, input.size);
-		record->size = input.size;
+		record->text[record->size = input.size] = '\0';
 	} else {
 		status = nt_fail_memory(error);
 	}
@@ -137,13 +112,11 @@ static nt_status load(nt_record *record, nt_error *error)
 	nt_status status = read_text(record, error);
 	const char *const text = record->text, *end;
 	for (size_t at = 0; !status && at < record->size && (end = memchr(text + at, '\n', record->size - at));) {
-		nt_record_line line;
-		if (read_line(&line, text + at, (size_t)(end - text) - at))
-			status = add_line(record, &line, error);
+		status = add_line(record, text + at, (size_t)(end - text) - at, error);
 		at = (size_t)(end - text) + 1;
 	}
 	const size_t known = record->size < BEGIN_BYTES ? record->size : BEGIN_BYTES;
-	if (!status && known && !record->line_count && memcmp(text, begin, known) != 0)
+	if (!status && known && !record->outputs.count && memcmp(text, begin, known) != 0)
 		status = nt_fail_file(error, NT_ERROR_IO, record->path,
 			"refusing to write: it is no record; delete it, or name another by --record=FILE");
 	return status;
@@ -221,7 +194,7 @@ static nt_status write_anew(const nt_record *record, nt_error *error)
 	if (status)
 		return status;
 	status = nt_output_add(output, record->path, NT_ROLE_MAIN, &sink, error);
-	for (size_t i = 0; i < record->line_count && !status; i++)
+	for (size_t i = 0; i < record->outputs.count && !status; i++)
 		status = nt_sink_write(sink, record->lines[i].text, record->lines[i].length + 1, error);
 	if (!status)
 		return nt_output_commit(output, error);
@@ -270,7 +243,7 @@ nt_status nt_record_open(nt_record *record, const char *path, bool writes, nt_er
 	if (!status && writes)
 		status = check_writable(record, error);
 	const size_t superseded = record->superseded_count;
-	if (!status && writes && superseded > FEW_LINES && superseded > record->line_count / 2)
+	if (!status && writes && superseded > FEW_LINES && superseded > record->outputs.count / 2)
 		status = rewrite(record, error);
 	return status;
 }

@@ -12,18 +12,13 @@
 #include "base/buffer.h"
 #include "base/hash_index.h"
 
-typedef struct nt_record_line {
-	const char *text;
-	size_t length, name_length; /* without the line feed; of the output's name */
-} nt_record_line;
-
 typedef struct nt_record {
 	char *path;
-	char *text; /* as it was when it was read */
+	char *text; /* as it was when it was read, with a NUL behind it */
 	size_t size;
-	nt_record_line *lines; /* the last of each output */
-	size_t line_count, line_capacity, superseded_count;
-	nt_hash_index index;
+	nt_name_table outputs; /* URIs */
+	nt_name *lines;        /* the last of each, without its line feed */
+	size_t line_capacity, superseded_count;
 } nt_record;
 
 /* Reads a file, which need not be there. With `writes`, fails if it cannot be written; if many lines are superseded,
@@ -32,10 +27,12 @@ nt_status nt_record_open(nt_record *record, const char *path, bool writes, nt_er
 void nt_record_close(nt_record *record);
 
 /* The line of an output; NULL: none. */
-const nt_record_line *nt_record_find(const nt_record *record, const char *name);
+const nt_name *nt_record_find(const nt_record *record, const nt_buffer *output);
 
-/* Appends what a line begins with, to which the output's name comes, and what it ends with. */
-void nt_record_begin(nt_buffer *line);
+/* A line begins so, and goes on with the output's URI. */
+#define NT_RECORD_BEGIN "{\"output\":\""
+
+/* Appends what a line ends with. */
 void nt_record_end(nt_buffer *line);
 
 /* Appends whole lines in one piece, even if others append. */

@@ -24,7 +24,7 @@
 static const char record_name[] = ".nmtan-record", files_begin[] = ",\"files\":[";
 
 /* By nt_trace_kind; by 1 + nt_severity. */
-static const char *const kinds[] = {"read", "missing", "written", "searched", "link", "outside"};
+static const char *const kinds[] = {"read", "missing", "written", "searched", "link"};
 static const char *const verdicts[] = {"none", "info", "warning", "error"};
 enum { KINDS = sizeof kinds / sizeof *kinds, VERDICTS = sizeof verdicts / sizeof *verdicts };
 
@@ -41,8 +41,8 @@ struct nt_update {
 	nt_buffer current;    /* folder; "" is the root */
 	pthread_mutex_t lock; /* of what follows, and of what records have beside their file */
 	open_record **records;
-	size_t count, capacity;
-	nt_hash_index index; /* by path */
+	size_t capacity;
+	nt_name_table paths; /* of the records */
 };
 
 /* ---- names ---- */
@@ -114,13 +114,11 @@ static void close_record(open_record *record)
 static nt_status get(nt_update *update, const char *path, open_record **found, nt_error *error)
 {
 	path = without_dot(path);
-	const uint64_t hash = nt_hash_bytes(0, path, strlen(path));
-	size_t at = NT_HASH_BEGIN;
-	for (uint32_t i; (i = nt_hash_index_next(&update->index, hash, &at)) != UINT32_MAX;)
-		if (strcmp(update->records[i]->file.path, path) == 0) {
-			*found = update->records[i];
-			return NT_OK;
-		}
+	const uint32_t known = nt_name_find(&update->paths, path, strlen(path));
+	if (known != UINT32_MAX) {
+		*found = update->records[known];
+		return NT_OK;
+	}
 	open_record *record = nt_calloc(1, sizeof *record);
 	if (!record)
 		return nt_fail_memory(error);
@@ -130,15 +128,14 @@ static nt_status get(nt_update *update, const char *path, open_record **found, n
 	record->spelled_length = (size_t)(nt_last_part(path) - path);
 	if (!status)
 		status = nt_record_open(&record->file, path, !update->options.dry_run, error);
-	if (!status && (!nt_grow((void **)&update->records, &update->capacity, update->count + 1, sizeof record) ||
-		!nt_hash_index_add(&update->index, hash, (uint32_t)update->count)))
+	if (!status && (!nt_grow((void **)&update->records, &update->capacity, update->paths.count + 1, sizeof record) ||
+		nt_name_add(&update->paths, record->file.path, strlen(path)) == UINT32_MAX))
 		status = nt_fail_memory(error);
-	if (status) {
+	if (status)
 		close_record(record);
-		return status;
-	}
-	update->records[update->count++] = *found = record;
-	return NT_OK;
+	else
+		update->records[update->paths.count - 1] = *found = record;
+	return status;
 }
 
 static nt_status get_of_output(nt_update *update, const char *output, open_record **record, nt_error *error)
@@ -186,11 +183,11 @@ void nt_update_end(nt_update *update)
 {
 	if (!update)
 		return;
-	for (size_t i = 0; i < update->count; i++)
+	for (size_t i = 0; i < update->paths.count; i++)
 		close_record(update->records[i]);
 	free(update->records);
 	nt_buffer_free(&update->current);
-	nt_hash_index_free(&update->index);
+	nt_name_table_free(&update->paths);
 	pthread_mutex_destroy(&update->lock);
 	free(update);
 }
@@ -214,10 +211,10 @@ size_t nt_update_left_over(const nt_update *update, nt_buffer *first)
 {
 	size_t count = 0;
 	nt_buffer output = {0}, name = {0};
-	for (size_t i = 0; update && i < update->count; i++) {
+	for (size_t i = 0; update && i < update->paths.count; i++) {
 		const open_record *record = update->records[i];
 		const nt_record *file = &record->file;
-		for (size_t k = 0; k < file->line_count && record->looked < file->line_count; k++) {
+		for (size_t k = 0; k < file->outputs.count && record->looked < file->outputs.count; k++) {
 			nt_json *line;
 			nt_error ignored;
 			if (nt_json_parse(&line, file->lines[k].text, file->lines[k].length, NULL, &ignored))
@@ -325,7 +322,7 @@ nt_status nt_update_done(nt_update_job *job, bool made, const nt_trace *trace, n
 	nt_buffer line = {0};
 	nt_status status = NT_OK;
 	if (made && job->record && !update->options.dry_run) {
-		nt_record_begin(&line);
+		nt_buffer_text(&line, NT_RECORD_BEGIN);
 		append_uri(update, job->record, job->output, &line);
 		nt_buffer_format(&line, "\",\"nmtan\":\"%s\",\"options\":", nmtan_version());
 		nt_json_string(job->options.data ? job->options.data : "", &line);
@@ -462,26 +459,6 @@ static bool is_still_linked(look *l, const nt_json_value *file, const char *uri)
 	return same;
 }
 
-static bool is_still_outside(look *l, const nt_json_value *file, const char *uri)
-{
-	nt_buffer name = {0}, folder = {0};
-	nt_error ignored;
-	bool inside = true;
-	size_t length;
-	(void)uri;
-	const char *text = nt_json_find_string(file, "to", &length);
-	nt_uri_append_decoded(&name, text ? text : "", text ? length : 0);
-	bool asked = text && !name.failed && name.size < l->path.size;
-	if (asked) {
-		l->path.data[l->path.size - name.size - 1] = '\0';
-		asked = !nt_path_real(&folder, l->path.data, &ignored) &&
-			!nt_path_stays_inside(folder.data, name.data, &inside, &ignored);
-	}
-	nt_buffer_free(&name);
-	nt_buffer_free(&folder);
-	return asked && !inside;
-}
-
 /* Whether the findings would let a run pass, as far as the line tells. */
 static bool passes(const nt_update_options *options, const nt_json_value *line)
 {
@@ -497,7 +474,7 @@ static bool passes(const nt_update_options *options, const nt_json_value *line)
 static bool holds(look *l, const nt_json_value *line)
 {
 	static bool (*const is_still[])(look *l, const nt_json_value *file, const char *uri) = {is_still_read,
-		is_still_missing, is_still_written, is_still_found, is_still_linked, is_still_outside};
+		is_still_missing, is_still_written, is_still_found, is_still_linked};
 	const nt_json_value *files = nt_json_find(line, "files");
 	bool same = is_text(nt_json_find(line, "nmtan"), nmtan_version()) &&
 		is_text(nt_json_find(line, "options"), l->job->options.data) && passes(&l->job->update->options, line);
@@ -518,7 +495,7 @@ static bool holds(look *l, const nt_json_value *line)
 }
 
 /* Notes the line of an output with the times that its files have now, if that is another one. */
-static void renew(const nt_update_job *job, const nt_record_line *line, const nt_trace *trace)
+static void renew(const nt_update_job *job, const nt_name *line, const nt_trace *trace)
 {
 	open_record *record = job->record;
 	const char *files = memmem(line->text, line->length, files_begin, strlen(files_begin));
@@ -533,7 +510,7 @@ static void renew(const nt_update_job *job, const nt_record_line *line, const nt
 	nt_buffer_free(&text);
 }
 
-static bool is_current(nt_update_job *job, const nt_record_line *line, nt_trace *trace)
+static bool is_current(nt_update_job *job, const nt_name *line, nt_trace *trace)
 {
 	nt_json *json;
 	nt_error ignored;
@@ -560,11 +537,14 @@ static nt_status spell_options(nt_update_job *job, const nt_settings *settings, 
 	nt_buffer root = {0};
 	nt_status status = settings->root ? nt_path_absolute(&root, settings->root, error) : NT_OK;
 	nt_buffer_text(&job->options, job->update->options.options);
-	for (size_t i = 0; i < NT_GIVEN_COUNT; i++)
-		if (settings->given_maps[i]) {
-			nt_buffer_text(&job->options, " at ");
-			append_uri(job->update, job->record, settings->given_maps[i], &job->options);
+	for (size_t i = 0; i < NT_GIVEN_COUNT + settings->texture_path_count; i++) {
+		const char *path = i < NT_GIVEN_COUNT ? settings->given_maps[i]
+			: settings->texture_paths[i - NT_GIVEN_COUNT];
+		if (path) {
+			nt_buffer_text(&job->options, i < NT_GIVEN_COUNT ? " at " : " in ");
+			append_uri(job->update, job->record, path, &job->options);
 		}
+	}
 	if (settings->root && !status) {
 		nt_buffer_format(&job->options, "%s--keep-tree=", job->options.size ? " " : "");
 		/* the final slash keeps the name of a root above the record out of the URI: moving changes that name */
@@ -597,7 +577,7 @@ nt_status nt_update_look(nt_update *update, const char *input, const char *outpu
 		return status;
 	append_uri(update, job->record, output, &key);
 	const bool looks = o->look && made && !key.failed;
-	const nt_record_line *line = looks ? nt_record_find(&job->record->file, key.data) : NULL;
+	const nt_name *line = looks ? nt_record_find(&job->record->file, &key) : NULL;
 	if (line) {
 		pthread_mutex_lock(&update->lock);
 		job->record->looked++;

@@ -44,7 +44,7 @@ typedef struct session {
 	nt_style style;
 	nt_progress *progress;
 	nt_buffer text;   /* what is being said */
-	nt_buffer shaping, judging; /* the options on which outputs and severities of findings depend */
+	nt_buffer shaping, recorded, judging; /* the options on which outputs and severities of findings depend */
 	nt_update *update; /* NULL: no records */
 	nt_depfile depfile;
 	bool no_depfile; /* a rule is missing in it */
@@ -492,7 +492,7 @@ static nt_status begin_update(session *s, nt_error *error)
 	const nt_update_options options = {.look = c->update != 0,
 		.by = c->update ? (nt_update_by)(c->update - 1) : NT_UPDATE_BY_TIME, .record = c->record,
 		.folder = c->directory, .dry_run = c->settings.dry_run,
-		.options = s->shaping.data ? s->shaping.data : "",
+		.options = s->recorded.data ? s->recorded.data : "",
 		.judging = !s->plan->wanted ? NULL : s->judging.data ? s->judging.data : "",
 		.least_failure = s->plan->target.style.least_failure};
 	return nt_update_begin(&s->update, &options, error);
@@ -608,9 +608,10 @@ static nt_status begin_session(session *s, nt_error *error)
 		s->reports = nt_calloc(s->count, sizeof *s->reports);
 	if ((!s->reports && kept) || !nt_buffer_reserve(&s->text, MESSAGE_BYTES))
 		return nt_fail_memory(error);
-	nt_options_shaping(s->command, &s->shaping);
+	nt_options_shaping(s->command, true, &s->shaping);
+	nt_options_shaping(s->command, false, &s->recorded);
 	nt_options_judging(s->command, &s->judging);
-	if (s->shaping.failed || s->judging.failed)
+	if (s->shaping.failed || s->recorded.failed || s->judging.failed)
 		return nt_fail_memory(error);
 	const char *options = s->shaping.data ? s->shaping.data : "";
 	if (check_own(s, error))
@@ -631,6 +632,7 @@ static void end_session(session *s)
 	nt_update_end(s->update);
 	nt_depfile_free(&s->depfile);
 	nt_buffer_free(&s->shaping);
+	nt_buffer_free(&s->recorded);
 	nt_buffer_free(&s->judging);
 	nt_buffer_free(&s->text);
 	nt_failures_free(&s->failures);

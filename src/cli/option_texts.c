@@ -305,15 +305,8 @@ static void append_shaping(nt_buffer *out, const nt_option_row *row, const void 
 		nt_buffer_format(out, "=%s", *(const char *const *)field);
 	} else if (row->kind == NT_OPTION_LIST) {
 		const nt_words *words = field;
-		for (size_t i = 0; i < words->count; i++) {
-			/* folders count as what they are, wherever the program is run */
-			nt_error unused;
-			nt_buffer path = {0};
-			const bool named = nt_path_absolute(&path, words->items[i], &unused) != NT_OK;
-			nt_buffer_format(out, "%s%s=%s", i ? " --" : "", i ? row->name : "",
-				named ? words->items[i] : path.data);
-			nt_buffer_free(&path);
-		}
+		for (size_t i = 0; i < words->count; i++)
+			nt_buffer_format(out, "%s%s=%s", i ? " --" : "", i ? row->name : "", words->items[i]);
 	} else if (row->kind == NT_OPTION_SIZE) {
 		nt_buffer_format(out, "=%" PRIu64, *(const uint64_t *)field);
 	} else if (row->kind != NT_OPTION_FLAG && row->kind != NT_OPTION_SET) {
@@ -364,12 +357,13 @@ static const nt_option_row *next_shaping(const nt_command *command, size_t *i, b
 	return NULL;
 }
 
-void nt_options_shaping(const nt_command *command, nt_buffer *out)
+void nt_options_shaping(const nt_command *command, bool folders, nt_buffer *out)
 {
 	bool shapes = false;
 	size_t i = 0;
 	for (const nt_option_row *row; (row = next_shaping(command, &i, &shapes)) != NULL;)
-		append_shaping(out, row, (const char *)command + row->offset);
+		if (folders || row->kind != NT_OPTION_LIST)
+			append_shaping(out, row, (const char *)command + row->offset);
 }
 
 void nt_options_given(const nt_command *command, nt_buffer *out)

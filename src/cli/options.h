@@ -92,8 +92,9 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 /* Whether the operands are inputs, any number of them; else they are an input and an output. */
 bool nt_command_is_many(const nt_command *command);
 
-/* Appends the options on which the bytes of outputs depend, in one way for each meaning; defaults are left out. */
-void nt_options_shaping(const nt_command *command, nt_buffer *out);
+/* Appends the options on which the bytes of outputs depend, in one way for each meaning; defaults are left out. Without
+ * `folders` those of images are too: a record names them from its own folder on. */
+void nt_options_shaping(const nt_command *command, bool folders, nt_buffer *out);
 
 /* Appends those that a command for the same input repeats, each as a word of a shell, with line ends between them. */
 void nt_options_given(const nt_command *command, nt_buffer *out);

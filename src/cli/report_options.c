@@ -135,7 +135,7 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 	plan->options.min_severity = (nt_severity)least_severity[command->min_severity];
 	nt_status status = check_outputs(command, error);
 	if (command->settings.check && command->settings.converts) {
-		nt_options_shaping(command, &plan->conversion);
+		nt_options_shaping(command, true, &plan->conversion);
 		plan->options.conversion = plan->conversion.size ? plan->conversion.data : "";
 	}
 	nt_options_given(command, &plan->given);

@@ -109,7 +109,7 @@ nt_status nt_path_stays_inside(const char *folder, const char *name, bool *insid
 	}
 	const bool failed = real.failed || rest.failed;
 	if (!*inside && !failed)
-		nt_trace_outside(real.data, name);
+		nt_trace_missing(real.data);
 	nt_buffer_free(&real);
 	nt_buffer_free(&rest);
 	return failed ? nt_fail_memory(error) : NT_OK;

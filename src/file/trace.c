@@ -163,11 +163,6 @@ void nt_trace_link(const char *path, const char *real)
 	note(NT_TRACE_LINK, path, real, NULL);
 }
 
-void nt_trace_outside(const char *path, const char *name)
-{
-	note(NT_TRACE_OUTSIDE, path, name, NULL);
-}
-
 void nt_trace_searched(const char *path, const char *found, const struct stat *info)
 {
 	note(NT_TRACE_SEARCHED, path, found, info);

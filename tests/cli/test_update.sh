@@ -590,6 +590,13 @@ for folder in a b; do
 	same made.png $folder/tex/n.png
 done
 (cd b && "$NMTAN" --update --texture-path=./tex ../quad.obj ../o.glb) 2>&1 | grep -q "up to date" || wrong "it was made again"
+# and moves with the record
+mkdir moved && cp -a b moved/ && cp -p quad.obj m.mtl o.glb .nmtan-record moved/
+(cd moved/b && "$NMTAN" -q --update=content --texture-path=tex ../quad.obj ../o.glb) || wrong "exit code $?"
+later
+mv moved elsewhere
+(cd elsewhere/b && "$NMTAN" --update=content --texture-path=tex ../quad.obj ../o.glb) 2>&1 | grep -q "up to date" || wrong "it was made again"
+rm -r elsewhere
 for folder in a b; do
 	(cd $folder && "$NMTAN" -q --update --base-color=tex/n.png "$data/quad.obj" ../given.glb) || wrong "exit code $?"
 	python3 "$ROOT/tests/support/images.py" embedded given.glb 0 made.png

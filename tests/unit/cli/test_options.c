@@ -366,7 +366,7 @@ static void shapes(const char *expected, const char *const *words)
 	nt_command command;
 	nt_buffer text = {0};
 	accepts(&command, words);
-	nt_options_shaping(&command, &text);
+	nt_options_shaping(&command, true, &text);
 	assert_string_equal(text.data ? text.data : "", expected);
 	nt_buffer_free(&text);
 }
