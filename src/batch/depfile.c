@@ -14,25 +14,7 @@
 #include "base/memory.h"
 #include "file/lookup.h"
 #include "file/output.h"
-#include "file/relative_path.h"
-
-/* `path` as a build that runs here names it. */
-static nt_status append_shown(nt_depfile *depfile, const char *path, bool relative, nt_buffer *shown, nt_error *error)
-{
-	shown->size = 0;
-	if (!depfile->current.size) {
-		const nt_status status = nt_path_absolute(&depfile->current, ".", error);
-		if (status)
-			return status;
-	}
-	nt_buffer absolute = {0};
-	nt_path_join(&absolute, depfile->current.data, path);
-	const bool below = !absolute.failed && relative && path[0] == '/' &&
-		nt_link_is_inside(absolute.data, depfile->current.data);
-	nt_buffer_text(shown, below ? absolute.data + depfile->current.size + 1 : path);
-	nt_buffer_free_into(&absolute, shown);
-	return shown->failed ? nt_fail_memory(error) : NT_OK;
-}
+#include "file/path.h"
 
 static void append_escaped(nt_buffer *text, const char *name)
 {
@@ -54,7 +36,14 @@ static void append_escaped(nt_buffer *text, const char *name)
 static nt_status append_name(nt_depfile *depfile, const char *path, bool relative, nt_error *error)
 {
 	nt_buffer shown = {0};
-	nt_status status = append_shown(depfile, path, relative, &shown, error);
+	nt_status status = depfile->current.size ? NT_OK : nt_path_absolute(&depfile->current, ".", error);
+	/* as a build that runs here names it */
+	if (!status && relative && path[0] == '/')
+		nt_path_below(&shown, depfile->current.data, path, depfile->current.data, path);
+	else
+		nt_buffer_text(&shown, path);
+	if (!status && shown.failed)
+		status = nt_fail_memory(error);
 	if (!status && strpbrk(shown.data, "\n\r"))
 		status = nt_fail_file(error, NT_ERROR_UNSUPPORTED, path,
 			"a name with a line feed cannot be in a depfile");

@@ -15,7 +15,7 @@
 #include "base/hash_index.h"
 #include "file/input.h"
 #include "file/lookup.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "format/format.h"
 #include "pipeline/timer.h"
 

@@ -14,7 +14,7 @@
 
 #include "base/buffer.h"
 #include "file/lookup.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/uri.h"
 #include "format/format.h"
 
@@ -120,7 +120,7 @@ static nt_status refuse(nt_job *job, const nt_buffer *reason, nt_error *error)
 static void append_common_folder(nt_buffer *out, const nt_batch *batch)
 {
 	const char *first = batch->jobs[0].input;
-	size_t common = (size_t)(nt_last_part(first) - first);
+	size_t common = nt_folder_length(first);
 	for (size_t i = 1; i < batch->count; i++) {
 		size_t same = 0;
 		while (same < common && batch->jobs[i].input[same] == first[same])
@@ -142,8 +142,8 @@ static void append_common_folder(nt_buffer *out, const nt_batch *batch)
 static int compare_folders(const void *a, const void *b)
 {
 	const nt_job *x = *(const nt_job *const *)a, *y = *(const nt_job *const *)b;
-	const size_t length = (size_t)(nt_last_part(x->input) - x->input),
-		     other = (size_t)(nt_last_part(y->input) - y->input);
+	const size_t length = nt_folder_length(x->input),
+		     other = nt_folder_length(y->input);
 	return length != other ? (length > other) - (length < other) : memcmp(x->input, y->input, length);
 }
 
@@ -340,7 +340,7 @@ static nt_status make_folders(const nt_batch *batch, const char *directory, bool
 	const char *last = "";
 	for (size_t i = 0; i < batch->count && as_tree && !settings->dry_run && !status; i++) {
 		char *output = batch->jobs[i].output;
-		const size_t length = (size_t)(nt_last_part(output) - output);
+		const size_t length = nt_folder_length(output);
 		/* neighbours are mostly of one folder */
 		if (strncmp(last, output, length) != 0 || strchr(last + length, '/'))
 			status = make_folders_of(output, strlen(directory) + 1, settings, error);

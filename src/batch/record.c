@@ -20,7 +20,7 @@
 #include "file/input.h"
 #include "file/lookup.h"
 #include "file/output.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 
 /* Below so many superseded lines nothing is rewritten; how often a file may be replaced while we wait for it. */
 enum { FEW_LINES = 100, MOST_ATTEMPTS = 100 };
@@ -222,15 +222,10 @@ static nt_status rewrite(nt_record *record, nt_error *error)
 /* Said before anything is made; of a folder that is not there, the output is. */
 static nt_status check_writable(const nt_record *record, nt_error *error)
 {
-	const size_t folder = (size_t)(nt_last_part(record->path) - record->path);
+	char folder[PATH_MAX];
 	int failed = access(record->path, W_OK);
-	if (failed && errno == ENOENT) {
-		char *path = folder ? strndup(record->path, folder) : strdup(".");
-		if (!path)
-			return nt_fail_memory(error);
-		failed = access(path, W_OK);
-		free(path);
-	}
+	if (failed && errno == ENOENT)
+		failed = access(nt_folder_of(record->path, folder), W_OK);
 	return failed && errno != ENOENT ? fail(record, errno, "", error) : NT_OK;
 }
 

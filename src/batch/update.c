@@ -15,7 +15,7 @@
 #include "base/memory.h"
 #include "file/input.h"
 #include "file/lookup.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/uri.h"
 #include "json/json.h"
 #include "nmtan.h"
@@ -125,16 +125,17 @@ static nt_status get(nt_update *update, const char *path, open_record **found, n
 	nt_status status = nt_link_folder(&record->folder, path, error);
 	if (record->folder.size == 1)
 		record->folder.data[record->folder.size = 0] = '\0';
-	record->spelled_length = (size_t)(nt_last_part(path) - path);
+	record->spelled_length = nt_folder_length(path);
 	if (!status)
 		status = nt_record_open(&record->file, path, !update->options.dry_run, error);
-	if (!status && (!nt_grow((void **)&update->records, &update->capacity, update->paths.count + 1, sizeof record) ||
+	const size_t count = update->paths.count + 1;
+	if (!status && (!nt_grow((void **)&update->records, &update->capacity, count, sizeof record) ||
 		nt_name_add(&update->paths, record->file.path, strlen(path)) == UINT32_MAX))
 		status = nt_fail_memory(error);
 	if (status)
 		close_record(record);
 	else
-		update->records[update->paths.count - 1] = *found = record;
+		update->records[count - 1] = *found = record;
 	return status;
 }
 
@@ -143,7 +144,7 @@ static nt_status get_of_output(nt_update *update, const char *output, open_recor
 	const nt_update_options *o = &update->options;
 	/* of a folder, named with its slash or by nothing */
 	const char *folder = o->folder ? o->folder : output;
-	const size_t length = o->folder ? strlen(folder) : (size_t)(nt_last_part(output) - output);
+	const size_t length = o->folder ? strlen(folder) : nt_folder_length(output);
 	nt_buffer path = {0};
 	if (o->record)
 		nt_buffer_text(&path, o->record);
@@ -171,10 +172,8 @@ nt_status nt_update_begin(nt_update **update, const nt_update_options *options, 
 	/* the only one can be refused before anything runs; the folder of -d may be still to come, in a dry run */
 	if (!status && options->record) {
 		struct stat info;
-		const size_t length = (size_t)(nt_last_part(options->record) - options->record);
-		char *folder = length ? strndup(options->record, length) : strdup("./");
-		status = folder ? nt_lookup(folder, &info, error) : nt_fail_memory(error);
-		free(folder);
+		char folder[PATH_MAX];
+		status = nt_lookup(nt_folder_of(options->record, folder), &info, error);
 	}
 	return status || (!options->record && !options->folder) ? status : get_of_output(*update, "", &record, error);
 }
@@ -416,7 +415,7 @@ static bool is_still_missing(look *l, const nt_json_value *file, const char *uri
 static bool is_still_found(look *l, const nt_json_value *file, const char *uri)
 {
 	const nt_json_value *found = nt_json_find(file, "found");
-	const size_t folder = (size_t)(nt_last_part(l->path.data) - l->path.data), name_length = l->path.size - folder;
+	const size_t folder = nt_folder_length(l->path.data), name_length = l->path.size - folder;
 	struct stat info;
 	nt_buffer name = {0};
 	nt_error ignored;

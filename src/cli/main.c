@@ -29,7 +29,7 @@
 #include "ext/module.h"
 #include "file/lookup.h"
 #include "file/output.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "pipeline/report_folder.h"
 #include "report/codes.h"
 
@@ -506,16 +506,6 @@ typedef struct own_file {
 	nt_buffer place; /* its folder, of which the links are followed, and its name */
 } own_file;
 
-/* False: the folder is none, or memory is exhausted. */
-static bool find_place(nt_buffer *place, const char *path)
-{
-	nt_error ignored; /* opening the file will meet it again, and say it */
-	if (nt_link_folder(place, path, &ignored))
-		return false;
-	nt_buffer_format(place, "/%s", nt_last_part(path));
-	return !place->failed;
-}
-
 /* Whether a path names the file: by any link of any kind. Devices and pipes may be named twice. */
 static bool is_own(const own_file *own, const char *path, nt_error *error)
 {
@@ -523,8 +513,9 @@ static bool is_own(const own_file *own, const char *path, nt_error *error)
 	if (own->is_there)
 		return own->is_regular && stat(path, &info) == 0 && nt_same_file(&own->info, &info);
 	nt_buffer place = {0};
-	const bool same = strcmp(nt_last_part(own->path), nt_last_part(path)) == 0 && find_place(&place, path) &&
-		own->place.data && strcmp(own->place.data, place.data) == 0;
+	nt_error ignored; /* opening the file will meet it again, and say it */
+	const bool same = strcmp(nt_last_part(own->path), nt_last_part(path)) == 0 &&
+		!nt_path_place(&place, path, &ignored) && own->place.size && strcmp(own->place.data, place.data) == 0;
 	if (place.failed)
 		nt_fail_memory(error);
 	nt_buffer_free(&place);
@@ -546,7 +537,10 @@ static nt_status check_pairs(const nt_command *c, const nt_batch *batch, nt_erro
 			continue;
 		own[i].is_there = stat(own[i].path, &own[i].info) == 0;
 		own[i].is_regular = own[i].is_there && S_ISREG(own[i].info.st_mode);
-		if (!own[i].is_there && !find_place(&own[i].place, own[i].path) && own[i].place.failed)
+		nt_error failure = {.status = NT_OK};
+		if (!own[i].is_there && nt_path_place(&own[i].place, own[i].path, &failure))
+			own[i].place.size = 0;
+		if (failure.status == NT_ERROR_MEMORY)
 			nt_fail_memory(error);
 		for (size_t k = 0; k < i && !error->status; k++)
 			if (own[k].path && strcmp(own[k].path, "-") != 0 && is_own(&own[k], own[i].path, error))
@@ -568,21 +562,6 @@ static nt_status check_pairs(const nt_command *c, const nt_batch *batch, nt_erro
 	return error->status;
 }
 
-/* Whether the folder of a file is there, which a run would miss at its end alone. */
-static nt_status check_folder(const char *path, nt_error *error)
-{
-	const size_t length = (size_t)(nt_last_part(path) - path);
-	struct stat info;
-	nt_buffer folder = {0};
-	nt_buffer_append(&folder, path, length);
-	if (folder.failed)
-		return nt_fail_memory(error);
-	const bool is_there = !length || (stat(folder.data, &info) == 0 && S_ISDIR(info.st_mode));
-	nt_buffer_free(&folder);
-	return is_there ? NT_OK : nt_fail_file(error, NT_ERROR_IO, path, "cannot write: there is no folder \"%.*s\"",
-		(int)(length > 1 ? length - 1 : length), path);
-}
-
 /* A file that a run writes beside its outputs has a folder, and is new with --no-clobber. */
 static nt_status check_own(const session *s, nt_error *error)
 {
@@ -593,7 +572,7 @@ static nt_status check_own(const session *s, nt_error *error)
 	for (size_t i = 0; i < sizeof files / sizeof *files && !status; i++) {
 		if (!files[i] || strcmp(files[i], "-") == 0)
 			continue;
-		status = check_folder(files[i], error);
+		status = nt_output_check_folder(files[i], error);
 		if (!status)
 			status = nt_output_check_clobber(&options, files[i], error);
 	}

@@ -15,7 +15,7 @@
 #include "base/hash.h"
 #include "cli/messages.h"
 #include "file/input.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/uri.h"
 #include "report/codes.h"
 #include "report/render/words.h"
@@ -26,31 +26,25 @@ enum { LINE_BYTES = 16 * 1024 };
 
 /* ---- a line ---- */
 
-static const char *without_dot(const char *path)
-{
-	return path[0] == '.' && path[1] == '/' ? path + 2 : path;
-}
-
 /* The path of a file in one spelling, whichever run met it: as the input or output (`like`) if it is that, relative to
  * the folder of the run if `like` is relative, else absolute; without memory, as it was met. */
 static const char *shown_path(nt_buffer *shown, const nt_manifest *manifest, const char *path, const char *like)
 {
-	nt_buffer whole = {0}, uri = {0};
+	nt_buffer whole = {0}, other = {0};
 	shown->size = 0;
-	nt_path_join(&whole, "/", path);
-	if (path[0] != '/' || whole.failed) {
-		nt_buffer_text(shown, without_dot(path));
-	} else if (like[0] != '/' && manifest->current.size) {
-		nt_link_uri(&uri, manifest->current.data, whole.data);
-		nt_uri_append_decoded(shown, uri.data ? uri.data : "", uri.size);
-	} else {
-		nt_buffer_text(shown, whole.data);
+	if (manifest->current.size) {
+		nt_path_join(&whole, manifest->current.data, path);
+		nt_path_join(&other, manifest->current.data, like);
 	}
+	const bool known = whole.data && other.data && !whole.failed && !other.failed,
+		   same = known && strcmp(whole.data, other.data) == 0;
+	if (known && like[0] != '/')
+		nt_path_relative(shown, manifest->current.data, whole.data);
+	else
+		nt_buffer_text(shown, known ? whole.data : path);
 	nt_buffer_free_into(&whole, shown);
-	nt_buffer_free_into(&uri, shown);
-	if (strcmp(path, like) == 0 || (!shown->failed && strcmp(shown->data, without_dot(like)) == 0))
-		return like;
-	return shown->failed ? path : shown->data;
+	nt_buffer_free_into(&other, shown);
+	return same ? like : shown->failed ? path : shown->data;
 }
 
 /* A new output is read once more, while the system still has it in memory. Streams are no more. */

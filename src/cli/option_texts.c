@@ -5,7 +5,7 @@
 #include "cli/option_table.h"
 #include "cli/options.h"
 #include "file/input.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "report/codes.h"
 
 #include <inttypes.h>

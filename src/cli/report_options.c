@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include "file/relative_path.h"
+#include "file/path.h"
 
 /* Takes the next word of a list separated by commas; false at its end. */
 static bool next_word(const char **list, char *word, size_t size)

@@ -56,23 +56,25 @@ static nt_status taken_meanwhile(nt_output *output, const char *path, nt_error *
 
 /* ---- folders ---- */
 
-/* Not every file system lets a folder be synchronised, and not every user may open it. */
-nt_status nt_output_sync_name(const char *path, nt_error *error)
+static int open_folder(const char *path)
 {
-	char folder[PATH_MAX] = "."; /* no memory is asked for: what it tells of has its place */
-	size_t length = strlen(path);
-	while (length > 1 && path[length - 1] == '/')
-		length--;
-	while (length > 0 && path[length - 1] != '/')
-		length--;
-	if (length)
-		snprintf(folder, sizeof folder, "%.*s", length < PATH_MAX ? (int)length : PATH_MAX, path);
-	const int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	char folder[PATH_MAX]; /* no memory is asked for: what it tells of has its place */
+	return open(nt_folder_of(path, folder), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
+/* Not every file system lets a folder be synchronised, and not every user may open it. */
+static nt_status sync_opened(int fd, const char *path, nt_error *error)
+{
 	const bool failed = fd >= 0 && fsync(fd) != 0 && errno != EINVAL && errno != EBADF && errno != ENOTSUP;
 	const int number = errno;
 	if (fd >= 0)
 		close(fd);
 	return failed ? nt_sink_fail(error, path, number) : NT_OK;
+}
+
+nt_status nt_output_sync_name(const char *path, nt_error *error)
+{
+	return sync_opened(open_folder(path), path, error);
 }
 
 /* Syncs everything so far to the disk, before the next step. */
@@ -88,12 +90,7 @@ static nt_status sync_step(const nt_output *output, nt_error *error)
 /* A file that is used as it is may not have reached the disk yet. */
 static nt_status sync_used(const char *path, nt_error *error)
 {
-	const int fd = open(path, O_RDONLY | O_CLOEXEC);
-	const bool failed = fd >= 0 && fsync(fd) != 0;
-	const int number = errno;
-	if (fd >= 0)
-		close(fd);
-	return failed ? nt_sink_fail(error, path, number) : NT_OK;
+	return sync_opened(open(path, O_RDONLY | O_CLOEXEC), path, error);
 }
 
 /* ---- step 1 ---- */
@@ -190,7 +187,7 @@ static void unlink_second_name(const nt_sink *sink)
 {
 	nt_buffer path = {0};
 	struct stat status;
-	nt_buffer_append(&path, sink->path, (size_t)(nt_last_part(sink->path) - sink->path));
+	nt_buffer_append(&path, sink->path, nt_folder_length(sink->path));
 	nt_output_staging_name(&path, nt_last_part(sink->path), sink->staging ? sink->before : sink->text);
 	if (!path.failed && lstat(path.data, &status) == 0 && nt_same_id(nt_file_id_of(&status), sink->there.id))
 		unlink(path.data);
@@ -246,11 +243,7 @@ static nt_status settle_names(nt_output *output, nt_error *error)
  * the file system has none. */
 static int lock_folder(const nt_output *output)
 {
-	char folder[PATH_MAX];
-	const char *path = output->main->path;
-	const size_t length = (size_t)(nt_last_part(path) - path);
-	snprintf(folder, sizeof folder, "%.*s.", length < PATH_MAX - 2 ? (int)length : 0, path);
-	const int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	const int fd = open_folder(output->main->path);
 	int result = -1;
 	do
 		result = fd < 0 ? -1 : flock(fd, LOCK_EX);

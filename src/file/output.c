@@ -134,35 +134,40 @@ static int create_temporary(nt_output *output, nt_sink *sink, const char *beside
 	return nt_temporary_create(beside, mode, is_led ? output->leader : NULL, &sink->temporary);
 }
 
+static nt_status refuse_folder(const char *path, const char *folder, nt_error *error)
+{
+	return nt_fail_file(error, NT_ERROR_IO, path, "cannot write: there is no folder \"%s\"", folder);
+}
+
+nt_status nt_output_check_folder(const char *path, nt_error *error)
+{
+	char folder[PATH_MAX];
+	nt_folder_of(path, folder);
+	return nt_is_folder(folder) ? NT_OK : refuse_folder(path, folder, error);
+}
+
 /* Creates the temporary beside a path and explains why it cannot. */
 static nt_status open_temporary(nt_output *output, nt_sink *sink, const char *beside, nt_error *error)
 {
-	const size_t folder_length = (size_t)(nt_last_part(beside) - beside);
-	char *folder = folder_length ? strndup(beside, folder_length) : strdup("./");
-	if (!folder)
-		return nt_fail_memory(error);
+	char text[PATH_MAX];
+	const char *folder = nt_folder_of(beside, text);
 	sink->fd = create_temporary(output, sink, beside);
 	const int number = errno;
 	if (sink->fd >= 0) {
 		nt_temporaries_clean(folder);
-		free(folder);
 		return NT_OK;
 	}
-	const size_t length = strlen(folder) > 1 ? strlen(folder) - 1 : 1;
-	struct stat info;
-	const bool no_folder = number == ENOENT || number == ENOTDIR;
-	if (no_folder && stat(folder, &info) == 0 && S_ISDIR(info.st_mode)) /* as those of /proc */
-		nt_fail(error, NT_ERROR_IO, "cannot write: the folder \"%.*s\" takes no new files", (int)length,
-			folder);
-	else if (no_folder)
-		nt_fail(error, NT_ERROR_IO, "cannot write: there is no folder \"%.*s\"", (int)length, folder);
-	else if (number == ENOMEM)
+	if (number == ENOMEM) {
 		nt_fail_memory(error);
-	else
-		nt_fail(error, NT_ERROR_IO, "cannot create a file in the folder \"%.*s\": %s", (int)length,
+		return nt_error_in_file(error, sink->path);
+	}
+	if (number != ENOENT && number != ENOTDIR)
+		return nt_fail_file(error, NT_ERROR_IO, sink->path, "cannot create a file in the folder \"%s\": %s",
 			folder, strerror(number));
-	free(folder);
-	return nt_error_in_file(error, sink->path);
+	if (!nt_is_folder(folder))
+		return refuse_folder(sink->path, folder, error);
+	return nt_fail_file(error, NT_ERROR_IO, sink->path, /* as those of /proc */
+		"cannot write: the folder \"%s\" takes no new files", folder);
 }
 
 bool nt_output_is_stream(const char *path)
@@ -298,9 +303,9 @@ nt_status nt_output_written(nt_output *output, const char *path, const char **te
 {
 	*temporary = NULL;
 	/* sidecars are in the folder of the main file, however their writers spell that */
-	const size_t folder = (size_t)(nt_last_part(path) - path);
+	const size_t folder = nt_folder_length(path);
 	const char *main = output->main ? output->main->path : path;
-	const bool beside = (size_t)(nt_last_part(main) - main) == folder && strncmp(main, path, folder) == 0;
+	const bool beside = nt_folder_length(main) == folder && strncmp(main, path, folder) == 0;
 	for (nt_sink *sink = output->first; sink; sink = sink->next) {
 		const bool found = nt_sink_is_sidecar(sink)
 			? beside && sink->settled && strcmp(nt_sink_name(sink, false), nt_last_part(path)) == 0

@@ -80,6 +80,9 @@ nt_status nt_output_check_in_place(const nt_output_options *options, const char 
  */
 nt_status nt_output_add(nt_output *output, const char *path, nt_role role, nt_sink **sink, nt_error *error);
 
+/* Refuses a path whose folder is not there: for callers that add it at the end of a run. */
+nt_status nt_output_check_folder(const char *path, nt_error *error);
+
 /* Whether an output of this path has no files beside it: standard output ("-"), a pipe or a device. */
 bool nt_output_is_stream(const char *path);
 

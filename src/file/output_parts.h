@@ -10,7 +10,7 @@
 #include "base/hash_index.h"
 #include "file/lookup.h"
 #include "file/output.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/temporary.h"
 
 /* Treatment of a settled sidecar. */

@@ -341,7 +341,7 @@ void nt_output_remove_stale_staging(const nt_output *output)
 	static nt_buffer names;
 	nt_buffer folder = {0}, path = {0};
 	struct stat status;
-	const size_t length = (size_t)(nt_last_part(output->main->path) - output->main->path);
+	const size_t length = nt_folder_length(output->main->path);
 	nt_buffer_append(&folder, length ? output->main->path : "./", length ? length : 2);
 	pthread_mutex_lock(&lock);
 	if (folder.failed || stat(folder.data, &status) != 0)
@@ -413,7 +413,7 @@ static nt_status find_name(const nt_output *output, const nt_sink *sink, const c
 	*found = OTHER;
 	for (unsigned number = 0; !status && *found == OTHER && number < MOST_NUMBERS; number++) {
 		text.size = 0;
-		nt_buffer_append(&text, sink->path, (size_t)(nt_last_part(sink->path) - sink->path));
+		nt_path_beside(&text, sink->path, "");
 		append_name(&text, nt_last_part(sink->path), infix, sink->text, number);
 		status = text.failed ? nt_fail_memory(error) : look(output, sink, text.data, found, state, error);
 	}

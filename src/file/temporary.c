@@ -27,6 +27,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include "file/lookup.h"
+#include "file/path.h"
 
 /* Attempts to find a free name: names of ended processes with our number are rare. */
 enum { MOST_ATTEMPTS = 1000, BOOT_DIGITS = 32 };
@@ -143,13 +144,6 @@ static const char *boot_number(void)
 	return boot;
 }
 
-/* How many bytes of a path are its folder's, with the slash. */
-static size_t folder_length(const char *path)
-{
-	const char *slash = strrchr(path, '/');
-	return slash ? (size_t)(slash - path) + 1 : 0;
-}
-
 /* Name `attempt` beside target: hidden, of a length that any file system has, the target's own name left out. The
  * part behind a dash tells the leader from others of its process. */
 static void name_beside(char *path, size_t capacity, const char *target, unsigned attempt, const nt_temporary *leader)
@@ -157,7 +151,7 @@ static void name_beside(char *path, size_t capacity, const char *target, unsigne
 	static atomic_uint counter;
 	const char *number = leader ? strrchr(leader->path, '-') : "";
 	const size_t length = strlen(number);
-	snprintf(path, capacity, "%.*s%s%s-%ld-%u.%u%.*s%s", (int)folder_length(target), target, name_head,
+	snprintf(path, capacity, "%.*s%s%s-%ld-%u.%u%.*s%s", (int)nt_folder_length(target), target, name_head,
 		boot_number(), (long)getpid(), atomic_fetch_add(&counter, 1), attempt,
 		(int)(length ? length - strlen(name_tail) : 0), number, name_tail);
 }
@@ -181,7 +175,7 @@ static int folder_of(const nt_temporary *entry)
 
 static const char *name_in(const nt_temporary *entry, const char *path)
 {
-	return entry->folder ? path + folder_length(path) : path;
+	return entry->folder ? path + nt_folder_length(path) : path;
 }
 
 /* The folder that a path has now; with the list locked. NULL: it cannot be opened, or memory is exhausted. A browser's
@@ -194,12 +188,7 @@ static folder *open_folder(const char *path)
 #else
 	char text[PATH_MAX];
 	struct stat status;
-	const size_t length = folder_length(path);
-	if (length >= sizeof text)
-		return NULL;
-	memcpy(text, length ? path : ".", length ? length : 1);
-	text[length ? length : 1] = '\0';
-	const int fd = open(text, O_PATH | O_DIRECTORY | O_CLOEXEC);
+	const int fd = open(nt_folder_of(path, text), O_PATH | O_DIRECTORY | O_CLOEXEC);
 	if (fd < 0 || fstat(fd, &status) != 0) {
 		if (fd >= 0)
 			close(fd);
@@ -311,7 +300,7 @@ static int make(const char *target, const char *from, unsigned mode, const nt_te
 		return -1;
 	}
 	bool made = false;
-	memcpy(entry->path, target, folder_length(target));
+	memcpy(entry->path, target, nt_folder_length(target));
 	change_folder(entry, true);
 	entry->led = leader;
 	for (unsigned attempt = 0; !made && attempt < MOST_ATTEMPTS; attempt++) {

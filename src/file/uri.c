@@ -13,7 +13,7 @@
 #include <strings.h>
 #include "file/base64.h"
 #include "file/lookup.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 
 enum { SHOWN = 200 }; /* characters of a URI that a message shows */
 
@@ -183,21 +183,15 @@ static const char *check_text(const char *name, size_t length, bool allow_outsid
 	return NULL;
 }
 
-/* Folder of the document with its final slash; empty for the current folder. */
-static size_t folder_length(const char *document)
-{
-	const char *slash = strrchr(document, '/');
-	return slash ? (size_t)(slash - document) + 1 : 0;
-}
-
 /* Refuses a name that leaves the folder by a link, and one that is not there. */
 static nt_status check_links(
-	const char *path, const char *folder, const char *name, const char *uri, nt_error *error)
+	const char *path, const char *document, const char *name, const char *uri, nt_error *error)
 {
+	char folder[PATH_MAX];
 	nt_buffer real = {0};
 	bool inside = true;
 	struct stat info;
-	nt_status status = nt_path_real(&real, *folder ? folder : ".", error);
+	nt_status status = nt_path_real(&real, nt_folder_of(document, folder), error);
 	if (!status)
 		status = nt_path_stays_inside(real.data, name, &inside, error);
 	if (!inside && !status)
@@ -235,16 +229,13 @@ nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri,
 		return nt_fail(error, NT_ERROR_MISSING, "the URI \"%.*s\" has %zu bytes, which no file's name has",
 			NT_CUT_OF(SHOWN, length, uri), name_length);
 
-	/* An absolute name, allowed here, stands for itself. */
-	const size_t folder = name[0] == '/' ? 0 : folder_length(document);
-	char *full = nt_arena_alloc(arena, folder + name_length + 1, 1);
-	char *folder_text = nt_arena_text(arena, document, folder_length(document));
-	if (!full || !folder_text)
+	nt_buffer text = {0};
+	nt_path_beside(&text, document, name);
+	*path = text.failed ? NULL : nt_arena_text(arena, text.data, text.size);
+	nt_buffer_free(&text);
+	if (!*path)
 		return nt_fail_memory(error);
-	memcpy(full, document, folder);
-	memcpy(full + folder, name, name_length + 1);
-	*path = full;
-	return allow_outside ? NT_OK : check_links(full, folder_text, name, uri, error);
+	return allow_outside ? NT_OK : check_links(*path, document, name, uri, error);
 }
 
 void nt_uri_append_decoded(nt_buffer *text, const char *uri, size_t length)
@@ -279,20 +270,8 @@ void nt_uri_append_path(nt_buffer *buffer, const char *path)
 
 void nt_link_uri(nt_buffer *text, const char *folder, const char *path)
 {
-	if (strcmp(folder, "/") == 0)
-		folder = "";
-	/* where the last common component ends */
-	size_t common = 0;
-	for (size_t i = 0;; i++) {
-		const bool folder_ends = folder[i] == '/' || folder[i] == '\0';
-		if (folder_ends && path[i] == '/')
-			common = i;
-		if (folder[i] == '\0' || folder[i] != path[i])
-			break;
-	}
-	for (const char *rest = folder + common; *rest; rest++)
-		if (*rest == '/')
-			nt_buffer_text(text, "../");
-	const char *name = path + common + 1;
-	nt_uri_append_path(text, name);
+	nt_buffer relative = {0};
+	nt_path_relative(&relative, folder, path);
+	nt_uri_append_path(text, relative.data ? relative.data : "");
+	nt_buffer_free_into(&relative, text);
 }

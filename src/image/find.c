@@ -11,7 +11,7 @@
 #include "file/image_type.h"
 #include "file/input.h"
 #include "file/lookup.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/trace.h"
 #include "file/uri.h"
 
@@ -24,6 +24,7 @@ typedef struct search {
 	nt_buffer above, root; /* folders in and below which images may be, too; empty: none, or not asked for */
 	bool bounded;          /* they have been asked for */
 	bool outside; /* a name leads to where nobody may look */
+	bool foreign; /* the name is a path of another system */
 	nt_error *error;
 } search;
 
@@ -117,7 +118,7 @@ static nt_status accept(search *s, const char *folder, bool *accepted)
 static nt_status try_name(search *s, const char *folder, const char *name, bool *accepted)
 {
 	s->path->size = 0;
-	nt_link_join(s->path, folder, name);
+	nt_path_join(s->path, folder, name);
 	return s->path->failed ? nt_fail_memory(s->error) : accept(s, folder, accepted);
 }
 
@@ -185,7 +186,7 @@ static char *portable_part(const char *name)
 {
 	nt_buffer text = {0}, joined = {0};
 	const char *colon = nt_link_is_absolute(name) ? strchr(name, ':') : NULL;
-	nt_link_join(&joined, "/", colon ? colon + 1 : name);
+	nt_path_join(&joined, "/", colon ? colon + 1 : name);
 	nt_buffer_text(&text, joined.data ? joined.data + strspn(joined.data, "/") : "");
 	nt_buffer_free_into(&joined, &text);
 	if (text.failed)
@@ -247,9 +248,8 @@ static nt_status try_as_named(search *s, const char *name, nt_buffer *folder, bo
 	nt_status status = folder_at(s->places, 0, folder, &more, s->error);
 	if (status || !folder->size)
 		return status;
-	const bool absolute = nt_link_is_absolute(name);
-	if (absolute && (*name != '/' || s->places->confined) && !s->places->allow_outside) {
-		s->outside = *name == '/'; /* other systems' names are nowhere here */
+	if (nt_link_is_absolute(name) && (s->foreign || s->places->confined) && !s->places->allow_outside) {
+		s->outside = !s->foreign; /* other systems' names are nowhere here */
 		return NT_OK;
 	}
 	return try_name(s, folder->data, name, accepted);
@@ -260,9 +260,9 @@ static nt_status try_as_named_any_case(search *s, const char *name, const char *
 {
 	nt_buffer joined = {0};
 	*accepted = false;
-	if (nt_link_is_absolute(name) && *name != '/')
+	if (s->foreign)
 		return NT_OK;
-	nt_link_join(&joined, folder, name);
+	nt_path_join(&joined, folder, name);
 	/* below the folder itself try_folders() looks, which lists no folder above: each run may write there */
 	if (!joined.failed && nt_link_is_inside(joined.data, folder)) {
 		nt_buffer_free(&joined);
@@ -277,7 +277,7 @@ static nt_status try_as_named_any_case(search *s, const char *name, const char *
 	return status;
 }
 
-nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buffer *path, nt_image_found *found,
+nt_status nt_image_find(const nt_image_places *places, const char *spelled, nt_buffer *path, nt_image_found *found,
 	nt_error *error)
 {
 	nt_buffer folder = {0};
@@ -286,19 +286,21 @@ nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buff
 	nt_status status = NT_OK;
 	if (places->given) {
 		*found = NT_IMAGE_FOUND;
-		status = nt_link_folder(&folder, name, error);
-		if (!status)
-			nt_path_join(path, folder.data, nt_last_part(name));
-		nt_buffer_free(&folder);
-		return status || !path->failed ? status : nt_fail_memory(error);
+		return nt_path_place(path, spelled, error);
 	}
 	/* no folder has a file of such a name, and to follow it part by part would take long */
-	if (nt_name_is_too_long(name)) {
+	if (nt_name_is_too_long(spelled)) {
 		*found = NT_IMAGE_MISSING;
 		path->size = 0;
-		nt_buffer_text(path, name);
+		nt_buffer_text(path, spelled);
 		return path->failed ? nt_fail_memory(error) : NT_OK;
 	}
+	char *const name = strdup(spelled);
+	if (!name)
+		return nt_fail_memory(error);
+	s.foreign = nt_link_is_absolute(name) && *name != '/';
+	for (char *c = name; *c; c++)
+		*c = *c == '\\' ? '/' : *c;
 	status = try_as_named(&s, name, &folder, &accepted);
 	*found = NT_IMAGE_FOUND;
 	if (!status && !accepted) {
@@ -312,12 +314,13 @@ nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buff
 		if (!status && !accepted) {
 			*found = s.outside ? NT_IMAGE_OUTSIDE : NT_IMAGE_MISSING;
 			path->size = 0;
-			nt_link_join(path, folder.size ? folder.data : "/",
+			nt_path_join(path, folder.size ? folder.data : "/",
 				nt_link_is_absolute(name) ? nt_last_part(part) : name);
 			status = path->failed ? nt_fail_memory(error) : NT_OK;
 		}
 		free(part);
 	}
+	free(name);
 	nt_buffer_free(&folder);
 	nt_buffer_free(&s.above);
 	nt_buffer_free(&s.root);

@@ -8,7 +8,8 @@
 #include <strings.h>
 #include "file/input.h"
 #include "file/lookup.h"
-#include "file/relative_path.h"
+#include "file/path.h"
+#include "file/uri.h"
 #include "obj/parts.h"
 
 /* Arguments of reading the libraries that mtllib statements name. */
@@ -27,27 +28,9 @@ static const char *outside_reason(const char *name)
 		return "an absolute path, which is followed only with --outside=yes";
 	if (((name[0] | 0x20) >= 'a' && (name[0] | 0x20) <= 'z') && name[1] == ':')
 		return "a path with a drive letter";
-	for (const char *part = name; part;) {
-		if (strncmp(part, "..", 2) == 0 && (part[2] == '/' || part[2] == '\0'))
-			return "leaves the folder of the OBJ, which is followed only with --outside=yes";
-		part = strchr(part, '/');
-		if (part)
-			part++;
-	}
+	if (nt_uri_has_parent_step(name))
+		return "leaves the folder of the OBJ, which is followed only with --outside=yes";
 	return NULL;
-}
-
-/* The path of a name that the OBJ refers to. */
-static char *path_beside(nt_scene *scene, const char *name)
-{
-	const char *slash = name[0] == '/' ? NULL : strrchr(scene->path, '/');
-	const size_t folder = slash ? (size_t)(slash - scene->path) + 1 : 0;
-	char *path = nt_arena_alloc(&scene->arena, folder + strlen(name) + 1, 1);
-	if (path) {
-		memcpy(path, scene->path, folder);
-		strcpy(path + folder, name);
-	}
-	return path;
 }
 
 /* Opens a library; *reason, which may be the error's message, says why it is done without. */
@@ -93,7 +76,10 @@ static nt_status read_library(const request *q, const char *text, size_t length,
 {
 	*found = false;
 	const char *name = nt_mtl_file_name(&q->scene->arena, text, text + length);
-	char *path = name ? path_beside(q->scene, name) : NULL;
+	nt_buffer beside = {0};
+	nt_path_beside(&beside, q->scene->path, name ? name : "");
+	const char *path = name && !beside.failed ? nt_arena_text(&q->scene->arena, beside.data, beside.size) : NULL;
+	nt_buffer_free(&beside);
 	if (!path)
 		return nt_fail_memory(q->error);
 	const char *reason;

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include "file/relative_path.h"
+#include "file/path.h"
 
 static const char *const option_names[NT_GIVEN_COUNT] = {
 	"base-color", "normal-map", "metallic-roughness", "occlusion", "emissive"};

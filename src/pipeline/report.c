@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "file/image_type.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/uri.h"
 #include "format/normal_map.h"
 #include "image/reduce.h"
@@ -59,8 +59,7 @@ static nt_status refer(nt_arena *arena, const char *page_folder, const char *pat
 {
 	nt_error error;
 	nt_buffer whole = {0}, uri = {0};
-	nt_status status = nt_link_folder(&whole, path, &error);
-	nt_buffer_format(&whole, "/%s", nt_last_part(path));
+	const nt_status status = nt_path_place(&whole, path, &error);
 	if (!status && !whole.failed) {
 		const size_t first = 1 + strcspn(whole.data + 1, "/");
 		if (whole.data[first] && strncmp(page_folder, whole.data, first) == 0 &&

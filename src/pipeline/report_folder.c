@@ -14,7 +14,7 @@
 #include "file/input.h"
 #include "file/lookup.h"
 #include "file/output.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/uri.h"
 
 /* Names may have 255 bytes; the rest is for endings and temporary names. */

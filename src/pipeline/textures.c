@@ -14,7 +14,7 @@
 #include "base/pool.h"
 #include "base/utf8.h"
 #include "file/lookup.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/uri.h"
 
 /* Calls body once for each material that a mesh with texture coordinates uses, and `bare` (NULL: nothing) for those
@@ -157,16 +157,12 @@ static void tell_elsewhere(const telling *t, const nt_place *place, const char *
 {
 	nt_buffer folder = {0}, relative = {0};
 	nt_error unused;
-	nt_buffer uri = {0};
 	if (nt_link_folder(&folder, place->file, &unused) == NT_OK)
-		nt_link_uri(&uri, folder.data, path);
-	if (uri.size && !uri.failed)
-		nt_uri_append_decoded(&relative, uri.data, uri.size);
+		nt_path_relative(&relative, folder.data, path);
 	nt_finding_add(&t->scene->findings, NT_CODE_IMAGE_ELSEWHERE, place, 1, "%.*s is %.*s", NT_CUT(100, name),
 		NT_CUT(140, relative.data && !relative.failed ? relative.data : path));
 	nt_buffer_free(&folder);
 	nt_buffer_free(&relative);
-	nt_buffer_free(&uri);
 }
 
 /* Not ".", "..", or what ends in a slash. */

@@ -9,7 +9,7 @@
 #include <unistd.h>
 #include "base/hash_index.h"
 #include "file/image_type.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/uri.h"
 
 /* MeshLab drops all other characters of a name. */
@@ -52,26 +52,21 @@ static nt_status copy_image(nt_buffer *name, const nt_texture_file *image, const
 static nt_status settle_image(nt_buffer *name, const nt_texture_file *image, const nt_write_options *options,
 	nt_output *set, nt_error *error)
 {
-	nt_buffer folder = {0}, uri = {0}, path = {0};
+	nt_buffer folder = {0}, path = {0};
 	nt_status status = nt_link_folder(&folder, options->path, error);
 	if (!status && image->path)
-		status = nt_link_folder(&path, image->path, error);
-	nt_buffer_format(&path, "/%s", image->path ? nt_last_part(image->path) : "");
-	if (!status && (path.failed || folder.failed))
-		status = nt_fail_memory(error);
+		status = nt_path_place(&path, image->path, error);
 	bool inside = !status && image->path && nt_link_is_inside(path.data, folder.data);
 	for (const char *c = inside ? path.data + folder.size : ""; *c && inside; c++)
 		inside = is_read_by_all(*c);
 	if (!status && image->path && (options->images == NT_IMAGES_LINK ||
 		(inside && options->images != NT_IMAGES_COPY))) {
-		nt_link_uri(&uri, folder.data, path.data);
-		nt_uri_append_decoded(name, uri.data ? uri.data : "", uri.size);
-		status = uri.failed ? nt_fail_memory(error) : nt_output_protect(set, image->path, NULL, error);
+		nt_path_relative(name, folder.data, path.data);
+		status = nt_output_protect(set, image->path, NULL, error);
 	} else if (!status) {
 		status = copy_image(name, image, folder.data, options->path, set, error);
 	}
 	nt_buffer_free(&folder);
-	nt_buffer_free(&uri);
 	nt_buffer_free(&path);
 	return status || !name->failed ? status : nt_fail_memory(error);
 }
@@ -137,24 +132,22 @@ nt_status ply_settle_texture(nt_buffer *name, nt_scene *scene, const nt_write_op
 }
 
 /* Whether there is a file of this name in the folder of another. */
-static bool lies_beside(const char *path, const char *name, nt_error *error)
+static bool lies_beside(const char *path, const char *name)
 {
 	nt_buffer text = {0};
-	const bool found = !nt_link_folder(&text, path, error);
-	nt_buffer_format(&text, "/%s", name);
-	const bool lies = found && !text.failed && access(text.data, R_OK) == 0;
+	nt_path_beside(&text, path, name);
+	const bool lies = !text.failed && access(text.data, R_OK) == 0;
 	nt_buffer_free(&text);
 	return lies;
 }
 
 void ply_tell_left(nt_scene *scene, const nt_write_options *options)
 {
-	nt_error ignored;
 	size_t count = 0;
 	const char *first = NULL;
 	for (size_t i = 0; i < scene->material_count && !nt_output_is_stream(options->path); i++) {
 		const char *name = scene->materials[i].name;
-		if (!lies_beside(scene->path, name, &ignored) || lies_beside(options->path, name, &ignored))
+		if (!lies_beside(scene->path, name) || lies_beside(options->path, name))
 			continue;
 		first = first ? first : name;
 		count++;

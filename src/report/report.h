@@ -15,7 +15,7 @@
 #include <math.h>
 #include "report/maker/maker.h"
 #include "base/memory.h"
-#include "file/shown_path.h"
+#include "file/path.h"
 #include "report/surface/box.h"
 #include "report/codes.h"
 #include "scene/scene.h"
@@ -313,7 +313,7 @@ bool nt_report_worst(const nt_report *report, nt_severity *worst);
 enum { NT_FAULT_NOT_FINITE = 1, NT_FAULT_ZERO = 2, NT_FAULT_LENGTH = 4, NT_FAULT_W = 8, NT_FAULT_PARALLEL = 16 };
 unsigned nt_tangent_faults(const float *tangent, const float *normal);
 
-/* Appends a path as reports show it: see file/shown_path.h. */
+/* Appends a path as reports show it: see file/path.h. */
 void nt_report_show_path(const nt_report *report, const char *path, nt_buffer *out);
 
 #endif

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "file/input.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "image/examine.h"
 #include "image/heights.h"
 #include "image/image.h"

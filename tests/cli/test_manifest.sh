@@ -145,6 +145,8 @@ done <<END
 .|in/a.obj|out3
 .|link.obj|out4
 here|../in/a.obj|../out5
+here|../in/./a.obj|../out8
+here|../in/tex/../a.obj|../out9
 .|$PWD/in/a.obj|$PWD/out6
 .|$PWD/in/a.obj|out7
 in|a.obj|.

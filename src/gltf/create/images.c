@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/uri.h"
 #include "image/textures.h"
 

@@ -13,7 +13,7 @@
 #include <unistd.h>
 #include "base/hash_index.h"
 #include "file/image_type.h"
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/uri.h"
 #include "gltf/turned_images.h"
 

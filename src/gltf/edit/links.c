@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/uri.h"
 
 const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length)

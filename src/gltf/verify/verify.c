@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "ext/draco.h"
 #include "ext/tinygltf.h"
+#include "file/path.h"
 #include "file/uri.h"
 #include "gltf/document.h"
 #include "gltf/morph_deltas.h"
@@ -43,11 +44,10 @@ static bool find_file(void *user, const char *uri, const unsigned char **bytes, 
 	const char *name = strncmp(uri, "./", 2) == 0 ? uri + 2 : uri;
 	if (nt_uri_is_data(name, strlen(name)))
 		return false;
-	const char *slash = strrchr(set->path, '/'), *written = NULL;
+	const char *written = NULL;
 	nt_buffer path = {0};
 	nt_error error;
-	nt_buffer_append(&path, set->path, slash ? (size_t)(slash - set->path) + 1 : 0);
-	nt_buffer_text(&path, uri);
+	nt_path_beside(&path, set->path, uri);
 	close_file(set);
 	nt_status status = path.failed ? nt_fail_memory(&error)
 		: nt_output_written(set->output, path.data, &written, &error);

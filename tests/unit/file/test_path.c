@@ -2,7 +2,7 @@
 #include "test.h"
 
 #include <unistd.h>
-#include "file/relative_path.h"
+#include "file/path.h"
 #include "file/uri.h"
 
 /* The text that a function appends, as a string that lives until the next call. */
@@ -25,7 +25,7 @@ static const char *uri(const char *folder, const char *path)
 static const char *join(const char *folder, const char *name)
 {
 	nt_buffer text = {0};
-	nt_link_join(&text, folder, name);
+	nt_path_join(&text, folder, name);
 	return taken(&text);
 }
 
@@ -46,10 +46,10 @@ TEST(uri_encodes_what_may_not_stand_in_a_path)
 	assert_string_equal(uri("/a", "/a/\xc3\xa9-_~1.png"), "%C3%A9-_~1.png");
 }
 
-TEST(join_resolves_dots_and_backslashes)
+TEST(join_resolves_dots)
 {
 	assert_string_equal(join("/a/b", "c.png"), "/a/b/c.png");
-	assert_string_equal(join("/a/b", "t\\./u//c.png"), "/a/b/t/u/c.png");
+	assert_string_equal(join("/a/b", "t/./u//c.png"), "/a/b/t/u/c.png");
 	assert_string_equal(join("/a/b", "../c.png"), "/a/c.png");
 	assert_string_equal(join("/a/b", "../../../../c.png"), "/c.png");
 	assert_string_equal(join("/a/b", "/x/./y.png"), "/x/y.png");
@@ -102,4 +102,48 @@ TEST(absolute_paths_are_of_this_system)
 	assert_int_equal(nt_path_absolute(&text, "./x/", &error), NT_OK);
 	snprintf(expected, sizeof expected, "%s/x", here);
 	assert_string_equal(taken(&text), expected);
+}
+
+TEST(names_are_relative_to_the_folder_of_the_run_or_of_the_inputs)
+{
+	static const struct {
+		const char *inputs[3], *prefix, *path, *shown;
+	} rows[] = {
+		{{"a.obj"}, NULL, "./a.obj", "a.obj"},
+		{{"b/../a.obj", "b/a.obj"}, NULL, "b//a.obj", "b/a.obj"},
+		{{"/x/a.obj"}, NULL, "/x/a.obj", "a.obj"},
+		{{"/x/y/a.obj", "/x/z/a.obj"}, NULL, "/x/z/a.obj", "z/a.obj"},
+		/* a common beginning is no common folder */
+		{{"/x/ya/a.obj", "/x/yb/a.obj"}, NULL, "/x/ya/a.obj", "ya/a.obj"},
+		{{"/x/y/a.obj", "/x/y.obj"}, NULL, "/x/y.obj", "y.obj"},
+		{{"/x/a.obj", "/y/a.obj"}, NULL, "/x/a.obj", "x/a.obj"},
+		{{"/a.obj"}, NULL, "/a.obj", "a.obj"},
+		{{"-", "/x/a.obj"}, NULL, "-", "-"},
+		{{"-"}, NULL, "c/d.mtl", "c/d.mtl"},
+		/* what is elsewhere tells nothing of the machine */
+		{{"a.obj"}, NULL, "/there/m.mtl", "m.mtl"},
+		{{"a.obj"}, "art", "a.obj", "art/a.obj"},
+		{{"/x/a.obj"}, "art/", "/x/a.obj", "art/a.obj"},
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		nt_shown_paths paths;
+		nt_error error;
+		nt_buffer shown = {0};
+		size_t count = 0;
+		while (count < 3 && rows[i].inputs[count])
+			count++;
+		assert_int_equal(nt_shown_paths_begin(&paths, rows[i].inputs, count, rows[i].prefix, &error), NT_OK);
+		nt_shown_path(&paths, rows[i].path, &shown);
+		assert_string_equal(shown.data, rows[i].shown);
+		nt_buffer_free(&shown);
+		nt_shown_paths_free(&paths);
+	}
+}
+
+TEST(without_paths_names_are_as_they_are_spelled)
+{
+	nt_buffer shown = {0};
+	nt_shown_path(NULL, "../a.obj", &shown);
+	assert_string_equal(shown.data, "../a.obj");
+	nt_buffer_free(&shown);
 }
