@@ -19,7 +19,7 @@
 #include "file/uri.h"
 #include "json/json.h"
 #include "nmtan.h"
-#include "report/render/words.h"
+#include "report/render/render.h"
 
 static const char record_name[] = ".nmtan-record", files_begin[] = ",\"files\":[";
 
@@ -323,12 +323,11 @@ nt_status nt_update_done(nt_update_job *job, bool made, const nt_trace *trace, n
 	if (made && job->record && !update->options.dry_run) {
 		nt_buffer_text(&line, NT_RECORD_BEGIN);
 		append_uri(update, job->record, job->output, &line);
-		nt_buffer_format(&line, "\",\"nmtan\":\"%s\",\"options\":", nmtan_version());
-		nt_json_string(job->options.data ? job->options.data : "", &line);
-		if (update->options.judging) {
-			nt_buffer_format(&line, ",\"judged\":\"%s\",\"judging\":", verdicts[1 + job->worst]);
-			nt_json_string(update->options.judging, &line);
-		}
+		nt_put(&line, NT_JSON, "','nmtan':%s,'options':%s", nmtan_version(),
+			job->options.data ? job->options.data : "");
+		if (update->options.judging)
+			nt_put(&line, NT_JSON, ",'judged':%s,'judging':%s", verdicts[1 + job->worst],
+				update->options.judging);
 		if (job->keeps_wrong)
 			nt_buffer_text(&line, ",\"wrong\":1");
 		/* without a line the output is made again, nothing else */

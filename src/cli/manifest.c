@@ -18,7 +18,7 @@
 #include "file/path.h"
 #include "file/uri.h"
 #include "report/codes.h"
-#include "report/render/words.h"
+#include "report/render/render.h"
 #include "scene/origin.h"
 
 /* A job that failed for want of memory has a line all the same. */
@@ -54,7 +54,7 @@ static void append_digest(nt_buffer *out, const char *path)
 	struct stat info;
 	nt_error unused;
 	if (stat(path, &info) == 0 && S_ISREG(info.st_mode) && !nt_digest_of_file(path, digest, &unused) && digest[0])
-		nt_member_text(out, "xxh128", digest);
+		nt_put(out, NT_JSON, ",'xxh128':%s", digest);
 }
 
 /* A digest of names, in their order. */
@@ -70,7 +70,7 @@ static void append_missing_digest(nt_buffer *out, const nt_manifest *manifest, c
 	}
 	nt_buffer_free(&shown);
 	if (digest)
-		nt_buffer_format(out, ",\"missing_digest\":\"%016" PRIx64 "\"", digest);
+		nt_put(out, NT_JSON, ",'missing_digest':%" PRIx64, digest);
 }
 
 /* Files of one kind; those that are there with their sizes, and with digests where that is wanted. */
@@ -78,21 +78,18 @@ static void append_files(nt_buffer *out, const char *key, const nt_manifest *man
 	const nt_trace *trace, nt_trace_kind kind, bool digests)
 {
 	nt_buffer shown = {0};
-	nt_member_open(out, key, "[");
+	nt_put(out, NT_JSON, ",'%-s':[", key);
 	for (size_t i = 0; i < trace->count; i++) {
 		const nt_trace_file *file = &trace->files[i];
 		if (file->kind != kind)
 			continue;
-		nt_member_next(out, NT_SAME_LINE);
 		const char *path = shown_path(&shown, manifest, file->path,
 			kind == NT_TRACE_WRITTEN && job->output ? job->output : job->input);
 		if (kind == NT_TRACE_MISSING || kind == NT_TRACE_SEARCHED) {
-			nt_json_string(path, out);
+			nt_put(out, NT_JSON, ",%s", path);
 			continue;
 		}
-		nt_buffer_text(out, "{");
-		nt_member_text(out, "path", path);
-		nt_member_count(out, "bytes", file->size);
+		nt_put(out, NT_JSON, ",{'path':%s,'bytes':%" PRIu64, path, file->size);
 		if (digests)
 			append_digest(out, file->path);
 		nt_buffer_text(out, "}");
@@ -104,27 +101,27 @@ static void append_files(nt_buffer *out, const char *key, const nt_manifest *man
 static void append_error(nt_buffer *out, const nt_error *error)
 {
 	const nt_place *place = &error->place;
-	nt_member_open(out, "error", "{");
-	nt_member_text(out, "message", error->message[0] ? error->message : nt_status_text(error->status));
+	nt_put(out, NT_JSON, ",'error':{'message':%s",
+		error->message[0] ? error->message : nt_status_text(error->status));
 	if (place->file[0])
-		nt_member_text(out, "file", place->file);
+		nt_put(out, NT_JSON, ",'file':%s", place->file);
 	if (place->line)
-		nt_member_count(out, "line", place->line);
+		nt_put(out, NT_JSON, ",'line':%zu", place->line);
 	if (place->offset != NT_NO_OFFSET)
-		nt_member_count(out, "offset", place->offset);
+		nt_put(out, NT_JSON, ",'offset':%" PRIu64, place->offset);
 	if (place->pointer[0])
-		nt_member_text(out, "pointer", place->pointer);
+		nt_put(out, NT_JSON, ",'pointer':%s", place->pointer);
 	if (place->object[0])
-		nt_member_text(out, "object", place->object);
+		nt_put(out, NT_JSON, ",'object':%s", place->object);
 	nt_buffer_text(out, "}");
 }
 
 static void append_codes(nt_buffer *out, const char *key, const size_t counts[NT_CODE_COUNT])
 {
-	nt_member_open(out, key, "{");
+	nt_put(out, NT_JSON, ",'%-s':{", key);
 	for (int code = 0; code < NT_CODE_COUNT; code++)
 		if (counts[code])
-			nt_member_count(out, nt_code_info((nt_code)code)->name, counts[code]);
+			nt_put(out, NT_JSON, ",%s:%zu", nt_code_info((nt_code)code)->name, counts[code]);
 	nt_buffer_text(out, "}");
 }
 
@@ -144,10 +141,8 @@ static void append_sizes(nt_buffer *out, const nt_summary *s, bool check)
 			split += m->added_mirror + m->added_direction;
 		}
 	}
-	nt_member_count(out, "triangles", triangles);
-	nt_member_count(out, "vertices_before", before);
-	nt_member_count(out, "vertices_after", after);
-	nt_member_count(out, "split", split);
+	nt_put(out, NT_JSON, ",'triangles':%zu,'vertices_before':%zu,'vertices_after':%zu,'split':%zu", triangles,
+		before, after, split);
 }
 
 /* Whether a finding of a stage counts, as in a report: --ignore, --severity and --min-severity say so. */
@@ -170,38 +165,31 @@ static void append_run(nt_buffer *out, const nt_summary *s, const nt_report_opti
 	append_codes(out, "findings", found);
 	append_codes(out, "fixed", s->fixed);
 	append_sizes(out, s, check);
-	if (s->welded.before) {
-		nt_member_count(out, "weld_before", s->welded.before);
-		nt_member_count(out, "weld_after", s->welded.after);
-	}
-	nt_member_count(out, "repaired", s->repaired);
-	nt_member_count(out, "sorted_instead", s->counts.sorted_instead);
-	nt_member_count(out, "summed_instead", s->counts.summed_instead);
+	if (s->welded.before)
+		nt_put(out, NT_JSON, ",'weld_before':%zu,'weld_after':%zu", s->welded.before, s->welded.after);
+	nt_put(out, NT_JSON, ",'repaired':%zu,'sorted_instead':%zu,'summed_instead':%zu", s->repaired,
+		s->counts.sorted_instead, s->counts.summed_instead);
 	if (s->origin[0] != 0 || s->origin[1] != 0 || s->origin[2] != 0) {
 		char text[NT_ORIGIN_TEXT];
-		nt_buffer_format(out, ",\"origin\":[%s]", nt_origin_text(s->origin, text));
+		nt_put(out, NT_JSON, ",'origin':[%-s]", nt_origin_text(s->origin, text));
 	}
 	if (s->tangents_digest)
-		nt_buffer_format(out, ",\"tangents\":\"%016" PRIx64 "\"", s->tangents_digest);
-	nt_member_count(out, "bytes_read", s->bytes_read);
-	nt_member_count(out, "bytes_written", s->bytes_written);
+		nt_put(out, NT_JSON, ",'tangents':%" PRIx64, s->tangents_digest);
+	nt_put(out, NT_JSON, ",'bytes_read':%" PRIu64 ",'bytes_written':%" PRIu64, s->bytes_read, s->bytes_written);
 	nt_buffer_text(out, ",\"seconds\":{");
 	for (int stage = 0; stage < NT_STAGE_COUNT; stage++)
-		nt_buffer_format(out, "\"%s\":%.6f,", nt_stage_name((nt_stage)stage), s->seconds[stage]);
-	nt_buffer_format(out, "\"total\":%.6f}", s->total_seconds);
+		nt_put(out, NT_JSON, ",%s:%.6f", nt_stage_name((nt_stage)stage), s->seconds[stage]);
+	nt_put(out, NT_JSON, ",'total':%.6f}", s->total_seconds);
 }
 
 static void append_job(nt_buffer *out, const nt_job *job, const nt_manifest *manifest, int exit_code)
 {
 	static const nt_trace nothing;
 	const nt_trace *trace = job->outcome ? &job->outcome->summary.trace : &nothing;
-	nt_buffer_text(out, "{");
-	nt_member_text(out, "input", job->input);
-	nt_buffer_format(out, ",\"status\":\"%s\",\"exit_code\":%d", job->end == NT_JOB_UNTRIED ? "untried"
-		: job->end == NT_JOB_CURRENT ? "up-to-date" : job->status ? "failed"
-		: job->outcome->summary.left ? "left" : "done", exit_code);
-	nt_member_text(out, "nmtan", nmtan_version());
-	nt_member_text(out, "options", manifest->options);
+	nt_put(out, NT_JSON, "{'input':%s,'status':%s,'exit_code':%d,'nmtan':%s,'options':%s", job->input,
+		job->end == NT_JOB_UNTRIED ? "untried" : job->end == NT_JOB_CURRENT ? "up-to-date"
+		: job->status ? "failed" : job->outcome->summary.left ? "left" : "done", exit_code, nmtan_version(),
+		manifest->options);
 	append_files(out, "outputs", manifest, job, trace, NT_TRACE_WRITTEN, job->end == NT_JOB_RAN && !job->status);
 	append_files(out, "dependencies", manifest, job, trace, NT_TRACE_READ, false);
 	append_files(out, "missing", manifest, job, trace, NT_TRACE_MISSING, false);

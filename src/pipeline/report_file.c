@@ -29,14 +29,11 @@ static nt_status write_set(const nt_report *const *reports, size_t count,
 		status = nt_output_protect(output, target->inputs[i], NULL, error);
 	if (!status)
 		status = nt_output_add(output, target->path, NT_ROLE_MAIN, &sink, error);
-	if (!status && target->diff)
-		status = nt_diff_write(target->diff, target->format, to_sink, sink, error);
-	else if (!status && target->rows)
-		status = nt_report_write_index(target->rows, to_sink, sink, error);
-	else if (!status && target->text)
-		status = nt_sink_write(sink, target->text, strlen(target->text), error);
-	else if (!status)
-		status = nt_report_write(reports, count, target->format, &target->style, to_sink, sink, error);
+	const nt_report_list what = {.items = reports, .count = count, .style = target->style, .diff = target->diff,
+		.rows = target->rows};
+	if (!status)
+		status = target->text ? nt_sink_write(sink, target->text, strlen(target->text), error)
+				      : nt_report_write(&what, target->format, to_sink, sink, error);
 	if (status) {
 		nt_output_abort(output);
 		return status;

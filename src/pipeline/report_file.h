@@ -6,7 +6,7 @@
 #define NT_PIPELINE_REPORT_FILE_H
 
 #include "report/baseline.h"
-#include "report/render/diff.h"
+#include "report/render/render.h"
 
 /* The target of a report. */
 typedef struct nt_report_target {

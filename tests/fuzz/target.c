@@ -224,9 +224,10 @@ static void check_report(const nt_report *report)
 	nt_error error;
 	for (int format = 0; format < NT_REPORT_FORMAT_COUNT; format++) {
 		nt_buffer text = {0};
+		const nt_report_list what = {.items = &report, .count = 1};
 		/* without findings there are no lines */
 		const bool may_be_empty = format == NT_REPORT_LINES || format == NT_REPORT_GITHUB;
-		if (nt_report_write(&report, 1, (nt_report_format)format, NULL, to_buffer, &text, &error) ||
+		if (nt_report_write(&what, (nt_report_format)format, to_buffer, &text, &error) ||
 			(text.size == 0 && !may_be_empty))
 			wrong("report format %d: %s", format, error.message);
 		nt_baseline baseline = {0};

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Small pictures: see thumb.h. Triangles are drawn row by row; a mesh, with a depth for each pixel, is seen without
+ * Small pictures: see pack.h. Triangles are drawn row by row; a mesh, with a depth for each pixel, is seen without
  * perspective from the front, from the right and a little from above, brighter where it faces the eye. Triangles
  * smaller than a pixel have no middle of one inside: of a mesh of many the others cover the surface.
  */
-#include "report/pack/thumb.h"
+#include "report/pack/pack.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include "ext/deflate.h"
-#include "report/pack/pack.h"
 
 enum { PIXELS = NT_THUMB_WIDTH * NT_THUMB_HEIGHT, CHANGES = (NT_THUMB_WIDTH + 1) * NT_THUMB_HEIGHT, MARGIN = 4 };
 

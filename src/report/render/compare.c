@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Two versions of an asset: see compare.h. Exporters renumber vertices and triangles, so triangles are found by their
+ * Two versions of an asset: see render.h. Exporters renumber vertices and triangles, so triangles are found by their
  * positions, which are hashed from the least of the three corners on. Findings, meshes and triangles are paired alike:
  * by a key, each thing once.
  */
-#include "report/render/compare.h"
+#include "report/render/render.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -30,16 +30,10 @@
  * of JSON (fields of nt_packed, and how many planes each array has, as a digit) and its bytes as base64: see
  * pack/pack.h. Written and forgotten mesh by mesh.
  */
-#include "report/render/writers.h"
-
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
-#include "base/hash.h"
 #include "file/base64.h"
 #include "report/pack/pack.h"
-#include "report/pack/thumb.h"
-#include "report/render/render.h"
+#include "report/render/inside.h"
 
 /* Limits of one page. Triangles take 10 to 20 bytes of it; where the meshes have more together, each gets its share
  * and the page says so. */
@@ -50,40 +44,6 @@ enum {
 	MOST_SEAMS = 20000
 };
 
-/* ---- small things ---- */
-
-/* Appends JSON so that it is safe inside a script element. */
-static void put_safe(const nt_buffer *json, nt_buffer *out)
-{
-	const char *at = json->data ? json->data : "", *end = at + json->size, *mark;
-	for (; (mark = memchr(at, '<', (size_t)(end - at))); at = mark + 1) {
-		nt_buffer_append(out, at, (size_t)(mark - at));
-		nt_buffer_text(out, "\\u003c");
-	}
-	nt_buffer_append(out, at, (size_t)(end - at));
-}
-
-/* The same of what was appended since. */
-static void make_safe(nt_buffer *out, size_t since)
-{
-	if (out->size == since || !memchr(out->data + since, '<', out->size - since))
-		return;
-	nt_buffer copy = {0};
-	nt_buffer_append(&copy, out->data + since, out->size - since);
-	out->size = since;
-	put_safe(&copy, out);
-	nt_buffer_free_into(&copy, out);
-}
-
-/* Numbers that read back as doubles. */
-static void put_doubles(const char *name, const double *values, size_t count, nt_buffer *out)
-{
-	nt_member_open(out, name, "[");
-	for (size_t i = 0; i < count; i++)
-		nt_buffer_format(out, i ? ",%.17g" : "%.17g", values[i]);
-	nt_buffer_text(out, "]");
-}
-
 /* ---- meshes ---- */
 
 static bool has_geometry(const nt_report_mesh *m)
@@ -91,59 +51,30 @@ static bool has_geometry(const nt_report_mesh *m)
 	return m->geometry && m->geometry->triangle_count;
 }
 
-static void put_seam(const nt_seam *seam, bool hard, nt_buffer *out)
-{
-	nt_buffer_format(out, "[%zu,%s,%.6g,", seam->edge_count, seam->closed ? "true" : "false",
-		isfinite(seam->length) ? seam->length : 0.0);
-	nt_json_string(seam->has_plane ? seam->plane_text : "", out);
-	for (int side = 0; side < 2; side++) {
-		nt_buffer_text(out, ",");
-		nt_json_index(seam->islands[side], out);
-	}
-	nt_buffer_text(out, hard ? ",1]" : "]");
-}
-
-static void begin_fact(const char *name, nt_buffer *out)
-{
-	nt_member_next(out, NT_SAME_LINE);
-	nt_buffer_format(out, "[\"%s\",\"", name);
-}
-
 static void put_facts(const nt_report_mesh *m, nt_buffer *out)
 {
-	nt_member_open(out, "facts", "[");
-	begin_fact("triangles", out);
-	nt_buffer_format(out, "%zu: %zu unmirrored, %zu mirrored, %zu degenerate\"]", m->triangle_count,
-		m->triangles[2], m->triangles[0], m->triangles[1]);
-	begin_fact("vertices", out);
-	nt_buffer_format(out, "%zu", m->vertices_before);
+	nt_put(out, NT_SCRIPT, ",'facts':[['triangles','%zu: %zu unmirrored, %zu mirrored, %zu degenerate'],"
+		"['vertices','%zu", m->triangle_count, m->triangles[2], m->triangles[0], m->triangles[1],
+		m->vertices_before);
 	if (m->vertices_after != m->vertices_before)
 		nt_buffer_format(out, ", then %zu: %zu for mirroring, %zu for direction, %zu for normals",
 			m->vertices_after, m->added_mirror, m->added_direction, m->added_normals);
-	nt_buffer_text(out, "\"]");
-	begin_fact("islands", out);
-	nt_buffer_format(out, "%zu: %zu normal, %zu mirrored, %zu mixed, %zu degenerate\"]", m->island_count,
-		m->island_kinds[0], m->island_kinds[1], m->island_kinds[2], m->island_kinds[3]);
-	begin_fact("mirror seams", out);
-	nt_buffer_format(out, "%zu, of length %.4g\"]", m->seam_count, m->seam_length);
-	begin_fact("edges", out);
-	nt_buffer_format(out, "%zu: %zu open in %zu loops, %zu of more than two triangles, %zu against the "
-		"winding\"]", m->edge_count, m->boundary_edges, m->boundary_loops + m->boundary_chains,
-		m->non_manifold_edges, m->inconsistent_edges);
+	nt_put(out, NT_SCRIPT, "'],['islands','%zu: %zu normal, %zu mirrored, %zu mixed, %zu degenerate'],"
+		"['mirror seams','%zu, of length %.4g'],['edges','%zu: %zu open in %zu loops, "
+		"%zu of more than two triangles, %zu against the winding']", m->island_count, m->island_kinds[0],
+		m->island_kinds[1], m->island_kinds[2], m->island_kinds[3], m->seam_count, m->seam_length,
+		m->edge_count, m->boundary_edges, m->boundary_loops + m->boundary_chains, m->non_manifold_edges,
+		m->inconsistent_edges);
 	if (m->maker.known) {
-		begin_fact("tangents of", out);
+		nt_buffer_text(out, ",[\"tangents of\",\"");
 		nt_maker_text(&m->maker, out);
 		nt_buffer_text(out, "\"]");
 	}
-	if (isfinite(m->worst_orthogonality)) {
-		begin_fact("worst tangent", out);
-		nt_buffer_format(out, "%.3g degrees off perpendicular\"]", m->worst_orthogonality);
-	}
-	if (m->instance_count) {
-		begin_fact("instances", out);
-		nt_buffer_format(out, "%zu, %zu of them mirrored by their node\"]", m->instance_count,
+	if (isfinite(m->worst_orthogonality))
+		nt_put(out, NT_SCRIPT, ",['worst tangent','%.3g degrees off perpendicular']", m->worst_orthogonality);
+	if (m->instance_count)
+		nt_put(out, NT_SCRIPT, ",['instances','%zu, %zu of them mirrored by their node']", m->instance_count,
 			m->negative_instances);
-	}
 	nt_buffer_text(out, "]");
 }
 
@@ -152,17 +83,14 @@ static void put_facts(const nt_report_mesh *m, nt_buffer *out)
 static void put_image(const nt_image *image, size_t *bytes_left, nt_page_budget *left, nt_buffer *out)
 {
 	const char *bytes = (const char *)image->bytes;
+	const float *t = image->transform;
 	uint32_t number = bytes ? nt_name_find(&left->held, bytes, image->size) : NT_NONE;
 	const bool first = bytes && number == NT_NONE && image->size <= *bytes_left;
 	if (first)
 		number = nt_name_add(&left->held, bytes, image->size);
 	left->sources.failed |= first && number == NT_NONE;
-	nt_buffer_text(out, "{");
-	nt_member_index(out, "image", number);
-	nt_member_key(out, NT_SAME_LINE, "map");
-	nt_json_floats(image->transform, 6, out);
-	nt_member_text(out, "file", image->file);
-	nt_buffer_text(out, "}");
+	nt_put(out, NT_SCRIPT, ",{'image':%u,'map':[%g,%g,%g,%g,%g,%g],'file':%s}", number, (double)t[0], (double)t[1],
+		(double)t[2], (double)t[3], (double)t[4], (double)t[5], image->file);
 	if (!first)
 		return;
 	*bytes_left -= image->size;
@@ -174,108 +102,41 @@ static void put_image(const nt_image *image, size_t *bytes_left, nt_page_budget 
 static void put_mesh(const nt_report *report, uint32_t mesh, nt_page_budget *left, nt_buffer *out)
 {
 	const nt_report_mesh *m = &report->meshes[mesh];
-	nt_buffer_text(out, "{");
-	nt_member_key(out, NT_SAME_LINE, "label");
-	nt_put_label(report, mesh, nt_json_string, out);
-	nt_member_text(out, "why", m->why);
-	nt_member_index(out, "same_as", m->same_as);
-	nt_member_bool(out, "mapped", m->slots & NT_SLOT_NORMAL);
-	nt_member_count(out, "triangles", m->triangle_count);
-	nt_member_count(out, "vertices", m->vertices_before);
-	nt_member_count(out, "islands", m->island_count);
-	nt_member_bool(out, "geometry", has_geometry(m));
+	nt_put(out, NT_SCRIPT, ",\n{'label':%p,'why':%s,'same_as':%u,'mapped':%hhd,'triangles':%zu,'vertices':%zu,"
+		"'islands':%zu,'geometry':%hhd", nt_mesh_label(report, mesh), m->why, m->same_as,
+		(m->slots & NT_SLOT_NORMAL) != 0, m->triangle_count, m->vertices_before, m->island_count,
+		has_geometry(m));
 	put_facts(m, out);
-	nt_member_open(out, "images", "[");
-	for (int p = 0; p < NT_PICTURE_COUNT; p++) {
-		nt_member_next(out, NT_SAME_LINE);
+	nt_buffer_text(out, ",\"images\":[");
+	for (int p = 0; p < NT_PICTURE_COUNT; p++)
 		put_image(&m->pictures[p], &left->images[p], left, out);
-	}
-	nt_buffer_format(out, "],\"wrap\":[%d,%d],\"seams\":[", (int)m->wrap[0], (int)m->wrap[1]);
+	nt_put(out, NT_SCRIPT, "],'wrap':[%d,%d],'seams':[", (int)m->wrap[0], (int)m->wrap[1]);
 	const size_t seams = m->seams ? m->seam_count + m->hard_count : 0;
 	for (size_t i = 0; i < seams && left->seams > 0; i++, left->seams--) {
-		nt_member_next(out, NT_SAME_LINE);
-		put_seam(&m->seams[i], i >= m->seam_count, out);
+		const nt_seam *seam = &m->seams[i];
+		nt_put(out, NT_SCRIPT, ",[%zu,%hhd,%.6g,%s,%u,%u%-s]", seam->edge_count, seam->closed,
+			isfinite(seam->length) ? seam->length : 0.0, seam->has_plane ? seam->plane_text : "",
+			seam->islands[0], seam->islands[1], i >= m->seam_count ? ",1" : "");
 	}
 	nt_buffer_text(out, "]}");
 }
 
-/* ---- findings ---- */
-
-static void put_members(const nt_report *report, const nt_report_finding *finding, bool known, nt_buffer *out)
-{
-	nt_buffer where = {0};
-	nt_put_where(report, finding, report->mesh_count > 1, nt_plain_text, &where);
-	nt_buffer_text(out, "{");
-	nt_member_text(out, "code", nt_code_info(finding->code)->name);
-	nt_member_text(out, "severity", nt_severity_name(finding->severity));
-	nt_member_count(out, "count", finding->count);
-	nt_member_bool(out, "known", known);
-	nt_member_text(out, "message", finding->message);
-	nt_member_index(out, "mesh", finding->mesh);
-	nt_member_index(out, "seam", finding->seam);
-	nt_member_index(out, "island", finding->island);
-	nt_member_text(out, "where", where.data ? where.data : "");
-	nt_member_open(out, "at", "[");
-	for (unsigned i = 0; i < finding->spot_count; i++) {
-		if (finding->spots[i].triangle == NT_NONE)
-			continue;
-		nt_member_next(out, NT_SAME_LINE);
-		nt_json_index(finding->spots[i].triangle, out);
-	}
-	nt_buffer_text(out, "]");
-	nt_member_votes(out, finding);
-	nt_member_repair(out, report, finding);
-	nt_buffer_text(out, "}");
-	nt_buffer_free_into(&where, out);
-}
-
-/* How a file begins, in its page and in the index. */
-static void put_head(const nt_report *report, nt_buffer *out)
-{
-	nt_member_next(out, 0);
-	nt_buffer_text(out, "{");
-	nt_member_text(out, "name", report->shown);
-	nt_member_key(out, NT_SAME_LINE, "verdict");
-	nt_put_verdict(report, nt_json_string, out);
-	nt_member_open(out, "counts", "[");
-	for (int severity = NT_SEVERITY_ERROR; severity >= NT_SEVERITY_INFO; severity--)
-		nt_buffer_format(out, severity ? "%zu," : "%zu]", report->by_severity[severity]);
-	nt_member_text(out, "failure", report->failure);
-}
-
-static void put_codes(const nt_page_budget *left, nt_buffer *out)
-{
-	nt_member_open(out, "codes", "{");
-	for (unsigned code = 0; code < NT_CODE_COUNT; code++) {
-		if (!left->seen[code])
-			continue;
-		const nt_code_row *row = nt_code_info((nt_code)code);
-		nt_member_key(out, 0, row->name);
-		nt_buffer_text(out, "{");
-		nt_member_text(out, "meaning", row->meaning);
-		nt_member_text(out, "remedy", row->remedy);
-		nt_buffer_text(out, "}");
-	}
-	nt_buffer_text(out, "}");
-}
-
 /* ---- the page ---- */
 
+/* Numbers that read back as doubles are %.17g. */
 static void put_geometry(const nt_report *report, size_t file, uint32_t mesh, size_t most, nt_buffer *out)
 {
 	nt_packed packed;
 	if (nt_pack_mesh(&packed, report, mesh, most)) {
 		out->failed = true;
 	} else {
-		nt_buffer_format(out, "<script type=\"text/plain\" id=\"g-%zu-%u\">{", file, mesh);
-		nt_member_count(out, "vertices", packed.vertex_count);
-		nt_member_count(out, "triangles", packed.triangle_count);
-		nt_member_bool(out, "whole", packed.whole);
-		nt_member_count(out, "seams", packed.seam_count);
-		put_doubles("origin", packed.position_origin, 3, out);
-		put_doubles("step", packed.position_step, 3, out);
-		put_doubles("uvOrigin", packed.texcoord_origin, 2, out);
-		nt_buffer_format(out, ",\"uvStep\":%.17g,\"planes\":\"", packed.texcoord_step);
+		const double *origin = packed.position_origin, *step = packed.position_step;
+		const double *uv = packed.texcoord_origin;
+		nt_put(out, NT_SCRIPT, "<script type='text/plain' id='g-%zu-%u'>{'vertices':%zu,'triangles':%zu,"
+			"'whole':%hhd,'seams':%zu,'origin':[%.17g,%.17g,%.17g],'step':[%.17g,%.17g,%.17g],"
+			"'uvOrigin':[%.17g,%.17g],'uvStep':%.17g,'planes':'", file, mesh, packed.vertex_count,
+			packed.triangle_count, packed.whole, packed.seam_count, origin[0], origin[1], origin[2],
+			step[0], step[1], step[2], uv[0], uv[1], packed.texcoord_step);
 		for (unsigned i = 0; i < NT_PACKED_ARRAYS; i++)
 			nt_buffer_format(out, "%u", packed.arrays[i].planes);
 		nt_buffer_text(out, "\"}\n");
@@ -285,8 +146,9 @@ static void put_geometry(const nt_report *report, size_t file, uint32_t mesh, si
 	nt_buffer_free(&packed.bytes);
 }
 
-static void put_geometries(const nt_report_list *reports, nt_buffer *out)
+static void put_geometries(nt_walk *w, nt_buffer *out)
 {
+	const nt_report_list *reports = w->reports;
 	size_t wanted = 0;
 	for (size_t i = 0; i < reports->count; i++)
 		for (size_t m = 0; m < reports->items[i]->mesh_count; m++)
@@ -300,7 +162,7 @@ static void put_geometries(const nt_report_list *reports, nt_buffer *out)
 				continue;
 			const double most = ceil(share * (double)report->meshes[m].geometry->triangle_count);
 			put_geometry(report, i, m, (size_t)most, out);
-			nt_list_flush(reports, NT_FLUSHED_BYTES, out);
+			nt_walk_flush(w, NT_FLUSHED_BYTES, out);
 		}
 	}
 }
@@ -347,6 +209,15 @@ static void begin_page(bool in_folder, nt_buffer *out)
 	nt_buffer_text(out, nt_page_body);
 }
 
+/* A file, in its page and in the index: how it begins. */
+static void put_head(const nt_report *report, nt_buffer *out)
+{
+	const size_t *counts = report->by_severity;
+	nt_put(out, NT_SCRIPT, ",\n{'name':%s,'verdict':%p,'counts':[%zu,%zu,%zu],'failure':%s", report->shown,
+		nt_verdict(report), counts[NT_SEVERITY_ERROR], counts[NT_SEVERITY_WARNING], counts[NT_SEVERITY_INFO],
+		report->failure);
+}
+
 static void begin(nt_walk *w, nt_buffer *out)
 {
 	w->page = (nt_page_budget){.images = {IMAGE_BYTES, IMAGE_BYTES}, .findings = MOST_FINDINGS,
@@ -357,35 +228,39 @@ static void begin(nt_walk *w, nt_buffer *out)
 
 static void begin_file(nt_walk *w, nt_buffer *out)
 {
-	size_t since = out->size;
 	put_head(w->report, out);
-	nt_member_open(out, "meshes", "[");
+	nt_buffer_text(out, ",\"meshes\":[");
 	for (size_t i = 0; i < w->report->mesh_count; i++) {
-		nt_member_next(out, 0);
 		put_mesh(w->report, (uint32_t)i, &w->page, out);
-		make_safe(out, since);
-		nt_list_flush(w->reports, NT_FLUSHED_BYTES, out);
-		since = out->size;
+		nt_walk_flush(w, NT_FLUSHED_BYTES, out);
 	}
-	make_safe(out, since);
-	nt_buffer_text(out, "]");
-	nt_member_open(out, "findings", "[");
+	nt_buffer_text(out, "],\"findings\":[");
 	w->page.left_out += w->report->dropped;
 }
 
 static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
 {
-	const size_t since = out->size;
 	const nt_report_diff *diff = w->reports->diff;
+	const bool known = diff ? diff->known[w->file][w->finding] : finding->known;
+	nt_buffer where = {0};
 	if (!w->page.findings) {
 		w->page.left_out++;
 		return;
 	}
-	nt_member_next(out, 0);
-	put_members(w->report, finding, diff ? diff->known[w->file][w->finding] : finding->known, out);
-	w->page.seen[finding->code] = true;
 	w->page.findings--;
-	make_safe(out, since);
+	w->page.seen[finding->code] = true;
+	nt_put(&where, NT_TERMINAL, "%p", nt_finding_where(w->report, finding, w->report->mesh_count > 1));
+	nt_put(out, NT_SCRIPT, ",\n{'code':%s,'severity':%s,'count':%zu,'known':%hhd,'message':%s,'mesh':%u,'seam':%u,"
+		"'island':%u,'where':%p,'at':[", nt_finding_name(finding), nt_severity_name(finding->severity),
+		finding->count, known, finding->message, finding->mesh, finding->seam, finding->island,
+		nt_text_of(&where));
+	for (unsigned i = 0; i < finding->spot_count; i++)
+		if (finding->spots[i].triangle != NT_NONE)
+			nt_put(out, NT_SCRIPT, ",%u", finding->spots[i].triangle);
+	nt_buffer_text(out, "]");
+	nt_put_votes(finding, out);
+	nt_put_repair(w->report, finding, NT_SCRIPT, out);
+	nt_buffer_text(out, "}");
 }
 
 static void end_file(nt_walk *w, nt_buffer *out)
@@ -397,24 +272,25 @@ static void end_file(nt_walk *w, nt_buffer *out)
 static void end(nt_walk *w, nt_buffer *out)
 {
 	const nt_report_list *reports = w->reports;
-	const size_t since = out->size;
-	nt_buffer_text(out, "]");
-	put_codes(&w->page, out);
-	nt_member_count(out, "left_out", w->page.left_out);
-	nt_member_text(out, "index", reports->style.index);
-	if (reports->diff) {
-		nt_member_key(out, NT_SAME_LINE, "diff");
-		nt_buffer_append(out, reports->changes->data, reports->changes->size);
-		nt_buffer_free_into(reports->changes, out);
+	nt_buffer_text(out, "],\"codes\":{");
+	for (unsigned code = 0; code < NT_CODE_COUNT; code++) {
+		const nt_code_row *row = nt_code_info((nt_code)code);
+		if (w->page.seen[code])
+			nt_put(out, NT_SCRIPT, ",\n'%-s':{'meaning':%s,'remedy':%s}", row->name, row->meaning,
+				row->remedy);
 	}
-	make_safe(out, since);
-	nt_member_open(out, "images", "[");
+	nt_put(out, NT_SCRIPT, "},'left_out':%zu,'index':%s", w->page.left_out, reports->style.index);
+	if (reports->diff) {
+		nt_buffer_text(out, ",\"diff\":");
+		nt_diff_page(reports->diff, out);
+	}
+	nt_buffer_text(out, ",\"images\":[");
 	nt_buffer_append(out, w->page.sources.data, w->page.sources.size);
 	nt_buffer_free_into(&w->page.sources, out);
 	nt_name_table_free(&w->page.held);
 	nt_buffer_text(out, "]}</script>\n");
 	put_part(NT_HTML_SCRIPT, reports->style.index, out);
-	put_geometries(reports, out);
+	put_geometries(w, out);
 	nt_buffer_text(out, "</body>\n</html>\n");
 }
 
@@ -427,7 +303,7 @@ const nt_report_writer nt_html_writer = {.known = true, .begin = begin, .begin_f
 static void put_thumbs(const nt_report *report, nt_buffer *out)
 {
 	const nt_report_geometry *largest = NULL, *first = NULL;
-	nt_buffer model = {0}, layout = {0};
+	nt_buffer thumbs[2] = {{0}, {0}};
 	for (size_t m = 0; m < report->mesh_count; m++) {
 		const nt_report_geometry *g = report->meshes[m].geometry;
 		if (!has_geometry(&report->meshes[m]))
@@ -435,17 +311,15 @@ static void put_thumbs(const nt_report *report, nt_buffer *out)
 		first = first ? first : g;
 		largest = !largest || g->triangle_count > largest->triangle_count ? g : largest;
 	}
-	if (first && (nt_thumb_model(largest, &model) ||
-		nt_thumb_layout(first, nt_format_is_gltf(report->format), &layout)))
+	if (first && (nt_thumb_model(largest, &thumbs[0]) ||
+		nt_thumb_layout(first, nt_format_is_gltf(report->format), &thumbs[1])))
 		out->failed = true;
-	nt_member_open(out, "model", "\"");
-	nt_base64_append(out, model.data, model.size);
+	for (int i = 0; i < 2; i++) {
+		nt_buffer_text(out, i ? "\",\"layout\":\"" : ",\"model\":\"");
+		nt_base64_append(out, thumbs[i].data, thumbs[i].size);
+		nt_buffer_free(&thumbs[i]);
+	}
 	nt_buffer_text(out, "\"");
-	nt_member_open(out, "layout", "\"");
-	nt_base64_append(out, layout.data, layout.size);
-	nt_buffer_text(out, "\"");
-	nt_buffer_free(&model);
-	nt_buffer_free(&layout);
 }
 
 void nt_report_index_row(const nt_report *report, const char *page, nt_buffer *rows)
@@ -458,33 +332,29 @@ void nt_report_index_row(const nt_report *report, const char *page, nt_buffer *r
 		seams += report->meshes[i].seams ? report->meshes[i].seam_count : 0;
 	}
 	put_head(report, rows);
-	nt_member_text(rows, "page", page);
-	nt_member_count(rows, "triangles", triangles);
-	nt_member_count(rows, "islands", islands);
-	nt_member_count(rows, "seams", seams);
+	nt_put(rows, NT_SCRIPT, ",'page':%s,'triangles':%zu,'islands':%zu,'seams':%zu", page, triangles, islands,
+		seams);
 	put_thumbs(report, rows);
 	nt_buffer_text(rows, ",\"meshes\":[],\"findings\":[");
 	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *finding = &report->findings[i];
 		bool *before = &seen[finding->code][finding->severity];
-		if (*before)
-			continue;
-		nt_member_next(rows, NT_SAME_LINE);
-		nt_buffer_text(rows, "{");
-		nt_member_text(rows, "code", nt_code_info(finding->code)->name);
-		nt_member_text(rows, "severity", nt_severity_name(finding->severity));
-		nt_buffer_text(rows, "}");
+		if (!*before)
+			nt_put(rows, NT_SCRIPT, ",{'code':%s,'severity':%s}", nt_finding_name(finding),
+				nt_severity_name(finding->severity));
 		*before = true;
 	}
 	nt_buffer_text(rows, "]}");
 }
 
-void nt_write_html_index(const nt_buffer *rows, nt_buffer *out)
+static void begin_index(nt_walk *w, nt_buffer *out)
 {
 	begin_page(true, out);
 	nt_buffer_text(out, "<script type=\"application/json\" id=\"data\">{\"folder\":true,\"files\":[");
-	put_safe(rows, out);
+	nt_buffer_append(out, w->reports->rows->data, w->reports->rows->size);
 	nt_buffer_text(out, "]}</script>\n");
 	put_part(NT_HTML_SCRIPT, true, out);
 	nt_buffer_text(out, "</body>\n</html>\n");
 }
+
+const nt_report_writer nt_index_writer = {.begin = begin_index};

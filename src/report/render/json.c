@@ -5,272 +5,182 @@
  * Each mesh, island, seam and finding is on a line of its own, so that two reports can be compared by
  * diff.
  */
-#include "report/render/writers.h"
-
 #include <math.h>
+#include "report/render/inside.h"
 
 enum { SHOWN_SEAMS = 1000, SHOWN_ISLANDS = 1000 };
 
 static void put_place(nt_buffer *out, const char *name, const nt_report *report, const nt_place_view *place)
 {
 	nt_buffer file = {0};
-	nt_report_show_path(report, place->file, &file);
-	nt_member_open(out, name, "{");
-	nt_member_text(out, "file", place->file[0] && file.data ? file.data : NULL);
+	if (place->file[0])
+		nt_report_show_path(report, place->file, &file);
+	nt_put(out, NT_JSON, ",'%-s':{'file':%s,'line':%.0zu,'offset':%" PRIu64 ",'pointer':%s,'object':%s}", name,
+		file.data, place->line, place->offset, place->pointer[0] ? place->pointer : NULL,
+		place->object[0] ? place->object : NULL);
 	nt_buffer_free_into(&file, out);
-	nt_member_key(out, NT_SAME_LINE, "line");
-	nt_buffer_format(out, place->line ? "%zu" : "null", place->line);
-	nt_member_key(out, NT_SAME_LINE, "offset");
-	if (place->offset == NT_NO_OFFSET)
-		nt_buffer_text(out, "null");
-	else
-		nt_buffer_format(out, "%llu", (unsigned long long)place->offset);
-	nt_member_text(out, "pointer", place->pointer[0] ? place->pointer : NULL);
-	nt_member_text(out, "object", place->object[0] ? place->object : NULL);
-	nt_buffer_text(out, "}");
 }
 
-static void put_totals(nt_buffer *out, int indent, const nt_totals *totals)
+/* tabs: how far members are indented. */
+static void put_totals(nt_buffer *out, const char *tabs, const nt_totals *totals)
 {
-	nt_member_key(out, indent, "totals");
-	nt_buffer_text(out, "{");
-	nt_member_count(out, "errors", totals->by_severity[NT_SEVERITY_ERROR]);
-	nt_member_count(out, "warnings", totals->by_severity[NT_SEVERITY_WARNING]);
-	nt_member_count(out, "infos", totals->by_severity[NT_SEVERITY_INFO]);
-	nt_member_count(out, "known", nt_known_count(totals));
-	nt_member_count(out, "dropped", totals->dropped);
-	nt_buffer_text(out, "}");
-	nt_member_key(out, indent, "truncated");
-	nt_buffer_text(out, totals->dropped ? "true" : "false");
+	nt_put(out, NT_JSON, ",\n%-s'totals':{'errors':%zu,'warnings':%zu,'infos':%zu,'known':%zu,'dropped':%zu},\n"
+		"%-s'truncated':%hhd", tabs, totals->by_severity[NT_SEVERITY_ERROR],
+		totals->by_severity[NT_SEVERITY_WARNING], totals->by_severity[NT_SEVERITY_INFO],
+		nt_known_count(totals), totals->dropped, tabs, totals->dropped > 0);
 }
 
 /* ---- meshes ---- */
 
-static void by_orientation(nt_buffer *out, const char *name, const size_t counts[3])
+static void by_orientation(nt_buffer *out, const size_t counts[3])
 {
-	nt_member_key(out, NT_SAME_LINE, name);
-	nt_buffer_format(out, "{\"normal\":%zu,\"mirrored\":%zu,\"degenerate\":%zu}", counts[2], counts[0],
+	nt_put(out, NT_JSON, ",'triangles':{'normal':%zu,'mirrored':%zu,'degenerate':%zu}", counts[2], counts[0],
 		counts[1]);
-}
-
-static void area_shares(nt_buffer *out, const double areas[3])
-{
-	const double total = areas[0] + areas[1] + areas[2];
-	const double scale = total > 0.0 ? 1.0 / total : 0.0;
-	nt_member_open(out, "area_share", "{");
-	nt_member_float(out, "normal", areas[2] * scale);
-	nt_member_float(out, "mirrored", areas[0] * scale);
-	nt_member_float(out, "degenerate", areas[1] * scale);
-	nt_buffer_text(out, "}");
 }
 
 /* Median and worst; null where nothing was measured. */
 static void put_measure(nt_buffer *out, const char *name, const double values[2])
 {
-	nt_member_key(out, NT_SAME_LINE, name);
-	if (isnan(values[0])) {
-		nt_buffer_text(out, "null");
-		return;
-	}
-	nt_buffer_text(out, "{");
-	nt_member_float(out, "median", values[0]);
-	nt_member_float(out, "worst", values[1]);
-	nt_buffer_text(out, "}");
+	if (isnan(values[0]))
+		nt_put(out, NT_JSON, ",'%-s':null", name);
+	else
+		nt_put(out, NT_JSON, ",'%-s':{'median':%g,'worst':%g}", name, values[0], values[1]);
+}
+
+static void put_box(nt_buffer *out, const nt_report *report, const nt_box *box)
+{
+	const float *low = box->minimum, *high = box->maximum;
+	nt_buffer_text(out, low[0] <= high[0] ? ",\"box\":" : ",\"box\":null");
+	if (low[0] <= high[0])
+		nt_put_rows((const float[]){low[0], low[1], low[2], high[0], high[1], high[2]}, 2, 3, report->origin,
+			out);
 }
 
 static void put_island(nt_buffer *out, const nt_island *island)
 {
-	nt_buffer_text(out, "{");
-	nt_member_text(out, "kind", nt_island_kind_name(island->kind));
-	by_orientation(out, "triangles", island->triangles);
-	nt_member_float(out, "area", island->area);
-	nt_member_float(out, "covered_share", island->covered);
-	nt_member_bool(out, "twin", island->overlaps_itself);
+	nt_put(out, NT_JSON, ",\n\t\t\t\t{'kind':%s", nt_island_kind_name(island->kind));
+	by_orientation(out, island->triangles);
+	nt_put(out, NT_JSON, ",'area':%g,'covered_share':%g,'twin':%hhd", island->area, island->covered,
+		island->overlaps_itself);
 	put_measure(out, "texel_density", island->texel_density);
 	put_measure(out, "stretch", island->stretch);
-	nt_member_key(out, NT_SAME_LINE, "uv_box");
-	nt_json_rows((const float[]){island->minimum[0], island->minimum[1], island->maximum[0], island->maximum[1]},
-		2, 2, out);
-	nt_buffer_text(out, "}");
-}
-
-static void put_pairs(nt_buffer *out, const char *name, const uint32_t pairs[2][2])
-{
-	nt_member_key(out, NT_SAME_LINE, name);
-	nt_buffer_format(out, "[[%u,%u],[%u,%u]]", pairs[0][0], pairs[0][1], pairs[1][0], pairs[1][1]);
+	nt_put(out, NT_JSON, ",'uv_box':[[%g,%g],[%g,%g]]}", (double)island->minimum[0], (double)island->minimum[1],
+		(double)island->maximum[0], (double)island->maximum[1]);
 }
 
 static void put_edge(nt_buffer *out, const nt_report *report, const nt_seam_edge *edge)
 {
-	nt_buffer_text(out, "{");
-	nt_member_key(out, NT_SAME_LINE, "triangles");
-	nt_buffer_format(out, "[%u,%u]", edge->triangles[0], edge->triangles[1]);
-	put_pairs(out, "vertices", edge->vertices);
-	put_pairs(out, "output_vertices", edge->output);
-	nt_member_key(out, NT_SAME_LINE, "positions");
-	nt_json_positions(edge->positions[0], 2, report->origin, out);
-	nt_member_open(out, "texcoords", "[");
-	nt_json_rows(edge->texcoords[0][0], 2, 2, out);
-	nt_member_next(out, NT_SAME_LINE);
-	nt_json_rows(edge->texcoords[1][0], 2, 2, out);
-	nt_buffer_text(out, "]");
-	nt_member_float(out, "dihedral_degrees", edge->dihedral);
-	nt_member_float(out, "tangent_angle_degrees", edge->tangent_angle);
-	nt_buffer_text(out, "}");
+	const uint32_t *a = edge->vertices[0], *b = edge->vertices[1], *c = edge->output[0], *d = edge->output[1];
+	nt_put(out, NT_JSON, ",{'triangles':[%u,%u],'vertices':[[%u,%u],[%u,%u]],"
+		"'output_vertices':[[%u,%u],[%u,%u]],'positions':", edge->triangles[0], edge->triangles[1],
+		a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1]);
+	nt_put_rows(edge->positions[0], 2, 3, report->origin, out);
+	nt_buffer_text(out, ",\"texcoords\":[");
+	nt_put_rows(edge->texcoords[0][0], 2, 2, NULL, out);
+	nt_buffer_text(out, ",");
+	nt_put_rows(edge->texcoords[1][0], 2, 2, NULL, out);
+	nt_put(out, NT_JSON, "],'dihedral_degrees':%g,'tangent_angle_degrees':%g}", (double)edge->dihedral,
+		(double)edge->tangent_angle);
 }
 
 static void put_seam(nt_buffer *out, const nt_report *report, const nt_seam *seam)
 {
-	nt_buffer_text(out, "{");
-	nt_member_bool(out, "closed", seam->closed);
-	nt_member_count(out, "edge_count", seam->edge_count);
-	nt_member_float(out, "length", seam->length);
-	nt_member_doubles(out, "dihedral_degrees", seam->dihedral, 2);
-	nt_member_doubles(out, "tangent_angle_degrees", seam->tangent_angle, 2);
-	nt_member_open(out, "islands", "{");
-	nt_member_index(out, "normal", seam->islands[0]);
-	nt_member_index(out, "mirrored", seam->islands[1]);
-	nt_buffer_text(out, "}");
-	nt_member_count(out, "edges_sharing_vertices", seam->shared_count);
-	nt_member_doubles(out, "frame_angle_degrees", seam->frame_angle, 2);
-	nt_member_count(out, "edges_sharing_texels", seam->same_texel_count);
-	nt_member_count(out, "unhidden_edges", seam->unhidden_count);
-	nt_member_count(out, "non_manifold_edges", seam->non_manifold_count);
-	nt_member_key(out, NT_SAME_LINE, "plane");
-	if (seam->has_plane) {
-		nt_buffer_text(out, "{");
-		nt_member_text(out, "text", seam->plane_text);
-		nt_member_doubles(out, "normal", seam->plane, 3);
-		nt_member_float(out, "distance", seam->plane[3]);
-		nt_buffer_text(out, "}");
-	} else {
-		nt_buffer_text(out, "null");
-	}
-	nt_member_key(out, NT_SAME_LINE, "box");
-	nt_json_box(&seam->box, report->origin, out);
-	nt_member_bool(out, "edges_truncated", seam->edge_count > NT_SEAM_EDGES);
-	nt_member_open(out, "edges", "[");
-	for (size_t i = 0; i < seam->edge_count && i < NT_SEAM_EDGES; i++) {
-		nt_member_next(out, NT_SAME_LINE);
+	nt_put(out, NT_JSON, ",\n\t\t\t\t{'closed':%hhd,'edge_count':%zu,'length':%g,'dihedral_degrees':[%g,%g],"
+		"'tangent_angle_degrees':[%g,%g],'islands':{'normal':%u,'mirrored':%u},'edges_sharing_vertices':%zu,"
+		"'frame_angle_degrees':[%g,%g],'edges_sharing_texels':%zu,'unhidden_edges':%zu,"
+		"'non_manifold_edges':%zu", seam->closed, seam->edge_count, seam->length, seam->dihedral[0],
+		seam->dihedral[1], seam->tangent_angle[0], seam->tangent_angle[1], seam->islands[0], seam->islands[1],
+		seam->shared_count, seam->frame_angle[0], seam->frame_angle[1], seam->same_texel_count,
+		seam->unhidden_count, seam->non_manifold_count);
+	if (seam->has_plane)
+		nt_put(out, NT_JSON, ",'plane':{'text':%s,'normal':[%g,%g,%g],'distance':%g}", seam->plane_text,
+			seam->plane[0], seam->plane[1], seam->plane[2], seam->plane[3]);
+	else
+		nt_buffer_text(out, ",\"plane\":null");
+	put_box(out, report, &seam->box);
+	nt_put(out, NT_JSON, ",'edges_truncated':%hhd,'edges':[", seam->edge_count > NT_SEAM_EDGES);
+	for (size_t i = 0; i < seam->edge_count && i < NT_SEAM_EDGES; i++)
 		put_edge(out, report, &seam->edges[i]);
-	}
 	nt_buffer_text(out, "]}");
 }
 
 static void put_slots(nt_buffer *out, unsigned slots)
 {
 	static const char *const names[3] = {"normal", "clearcoat_normal", "anisotropy"};
-	nt_member_open(out, "slots", "[");
-	for (unsigned i = 0; i < 3; i++) {
-		if (slots >> i & 1u) {
-			nt_member_next(out, NT_SAME_LINE);
-			nt_buffer_format(out, "\"%s\"", names[i]);
-		}
-	}
+	nt_buffer_text(out, ",\"slots\":[");
+	for (unsigned i = 0; i < 3; i++)
+		if (slots >> i & 1u)
+			nt_put(out, NT_JSON, ",%s", names[i]);
 	nt_buffer_text(out, "]");
 }
 
 static void put_maker(nt_buffer *out, const nt_maker *maker)
 {
 	static const char *const methods[] = {"mikktspace", "area", "lengyel", "robust", "mikktspace-sorted"};
-	if (maker->agreement < 0.0)
-		return;
-	nt_member_open(out, "made_by", "{");
-	nt_member_next(out, NT_SAME_LINE);
-	nt_buffer_format(out,
-		"\"method\":\"%s\",\"faces\":\"%s\",\"across\":\"%s\",\"transform\":\"%s\",\"w\":\"%s\","
-		"\"agreement\":%.6g,\"within_degrees\":%g}",
-		maker->known ? methods[maker->method] : "unknown", maker->quads ? "quads" : "triangles",
-		maker->across ? "mesh" : "primitive", maker->untransformed ? "keep" : "bake",
-		maker->inverted ? "inverted" : "right", maker->agreement, maker->degrees);
-}
-
-/* The cost of splitting, and the texture that density is measured by. */
-static void put_costs(nt_buffer *out, const nt_report_mesh *mesh)
-{
-	const size_t added = mesh->split_vertices;
-	nt_member_key(out, NT_SAME_LINE, "split_cost");
-	if (mesh->vertex_bytes)
-		nt_buffer_format(out, "{\"vertices\":%zu,\"bytes_each\":%zu,\"bytes\":%zu}", added, mesh->vertex_bytes,
-			added * mesh->vertex_bytes);
-	else
-		nt_buffer_text(out, "null");
-	nt_member_key(out, NT_SAME_LINE, "texture_size");
-	if (mesh->texture_size[0])
-		nt_buffer_format(out, "[%u,%u]", mesh->texture_size[0], mesh->texture_size[1]);
-	else
-		nt_buffer_text(out, "null");
+	if (maker->agreement >= 0.0)
+		nt_put(out, NT_JSON, ",'made_by':{'method':%s,'faces':%s,'across':%s,'transform':%s,'w':%s,"
+			"'agreement':%.6g,'within_degrees':%.6g}", maker->known ? methods[maker->method] : "unknown",
+			maker->quads ? "quads" : "triangles", maker->across ? "mesh" : "primitive",
+			maker->untransformed ? "keep" : "bake", maker->inverted ? "inverted" : "right",
+			maker->agreement, maker->degrees);
 }
 
 static void put_counts(nt_buffer *out, const nt_report_mesh *mesh)
 {
-	nt_member_count(out, "faces", mesh->face_count);
-	by_orientation(out, "triangles", mesh->triangles);
-	area_shares(out, mesh->areas);
-	nt_member_open(out, "vertices", "{");
-	nt_member_count(out, "before", mesh->vertices_before);
-	nt_member_count(out, "added_normals", mesh->added_normals);
-	nt_member_count(out, "added_mirror", mesh->added_mirror);
-	nt_member_count(out, "added_direction", mesh->added_direction);
-	nt_member_count(out, "after", mesh->vertices_after);
-	nt_buffer_text(out, "}");
-	put_costs(out, mesh);
-	nt_member_open(out, "edges", "{");
-	nt_member_count(out, "all", mesh->edge_count);
-	nt_member_count(out, "boundary", mesh->boundary_edges);
-	nt_member_count(out, "boundary_loops", mesh->boundary_loops);
-	nt_member_count(out, "boundary_chains", mesh->boundary_chains);
-	nt_member_count(out, "non_manifold", mesh->non_manifold_edges);
-	nt_member_count(out, "inconsistent_winding", mesh->inconsistent_edges);
-	nt_member_count(out, "uv_cut", mesh->uv_seam_edges);
-	nt_member_count(out, "mirror", mesh->seam_edges);
-	nt_buffer_text(out, "}");
-	nt_member_count(out, "triangles_left_out", mesh->left_out);
-	nt_member_open(out, "islands_by_kind", "{");
-	for (unsigned kind = 0; kind < 4; kind++)
-		nt_member_count(out, nt_island_kind_name((nt_island_kind)kind), mesh->island_kinds[kind]);
-	nt_buffer_text(out, "}");
-	nt_member_count(out, "seam_count", mesh->seam_count);
-	nt_member_float(out, "seam_length", mesh->seam_length);
+	const double *areas = mesh->areas, total = areas[0] + areas[1] + areas[2];
+	const double scale = total > 0.0 ? 1.0 / total : 0.0;
+	const size_t *kinds = mesh->island_kinds;
+	nt_put(out, NT_JSON, ",'faces':%zu", mesh->face_count);
+	by_orientation(out, mesh->triangles);
+	nt_put(out, NT_JSON, ",'area_share':{'normal':%g,'mirrored':%g,'degenerate':%g},'vertices':{'before':%zu,"
+		"'added_normals':%zu,'added_mirror':%zu,'added_direction':%zu,'after':%zu}", areas[2] * scale,
+		areas[0] * scale, areas[1] * scale, mesh->vertices_before, mesh->added_normals, mesh->added_mirror,
+		mesh->added_direction, mesh->vertices_after);
+	/* the cost of splitting, and the texture that density is measured by */
+	nt_buffer_text(out, ",\"split_cost\":");
+	if (mesh->vertex_bytes)
+		nt_put(out, NT_JSON, "{'vertices':%zu,'bytes_each':%zu,'bytes':%zu}", mesh->split_vertices,
+			mesh->vertex_bytes, mesh->split_vertices * mesh->vertex_bytes);
+	else
+		nt_buffer_text(out, "null");
+	nt_buffer_text(out, ",\"texture_size\":");
+	if (mesh->texture_size[0])
+		nt_put(out, NT_JSON, "[%u,%u]", mesh->texture_size[0], mesh->texture_size[1]);
+	else
+		nt_buffer_text(out, "null");
+	nt_put(out, NT_JSON, ",'edges':{'all':%zu,'boundary':%zu,'boundary_loops':%zu,'boundary_chains':%zu,"
+		"'non_manifold':%zu,'inconsistent_winding':%zu,'uv_cut':%zu,'mirror':%zu},'triangles_left_out':%zu,"
+		"'islands_by_kind':{'normal':%zu,'mirrored':%zu,'mixed':%zu,'degenerate':%zu},'seam_count':%zu,"
+		"'seam_length':%g", mesh->edge_count, mesh->boundary_edges, mesh->boundary_loops, mesh->boundary_chains,
+		mesh->non_manifold_edges, mesh->inconsistent_edges, mesh->uv_seam_edges, mesh->seam_edges,
+		mesh->left_out, kinds[0], kinds[1], kinds[2], kinds[3], mesh->seam_count, mesh->seam_length);
 }
 
 static void put_mesh(nt_buffer *out, const nt_report *report, const nt_report_mesh *mesh)
 {
-	nt_buffer_text(out, "{");
-	nt_member_text(out, "name", mesh->name);
+	nt_put(out, NT_JSON, ",\n\t\t\t\t{'name':%s", mesh->name);
 	put_place(out, "place", report, &mesh->place);
-	nt_member_index(out, "gltf_mesh", mesh->gltf_mesh);
-	nt_member_index(out, "gltf_primitive", mesh->gltf_primitive);
-	nt_member_index(out, "same_as", mesh->same_as);
-	nt_member_text(out, "why", mesh->why);
+	nt_put(out, NT_JSON, ",'gltf_mesh':%u,'gltf_primitive':%u,'same_as':%u,'why':%s", mesh->gltf_mesh,
+		mesh->gltf_primitive, mesh->same_as, mesh->why);
 	put_slots(out, mesh->slots);
-	nt_member_count(out, "texcoord_set", mesh->texcoord_set);
-	nt_member_bool(out, "has_normals", mesh->has_normals);
-	nt_member_bool(out, "has_texcoords", mesh->has_texcoords);
-	nt_member_bool(out, "has_tangents", mesh->checked_tangents);
-	nt_member_bool(out, "analysed", mesh->analysed);
+	nt_put(out, NT_JSON, ",'texcoord_set':%zu,'has_normals':%hhd,'has_texcoords':%hhd,'has_tangents':%hhd,"
+		"'analysed':%hhd", (size_t)mesh->texcoord_set, mesh->has_normals, mesh->has_texcoords,
+		mesh->checked_tangents, mesh->analysed);
 	put_counts(out, mesh);
-	nt_member_float(out, "worst_orthogonality_degrees", mesh->worst_orthogonality);
-	nt_member_doubles(out, "relative_determinant", mesh->relative_determinant, 3);
+	nt_put(out, NT_JSON, ",'worst_orthogonality_degrees':%g,'relative_determinant':[%g,%g,%g]",
+		mesh->worst_orthogonality, mesh->relative_determinant[0], mesh->relative_determinant[1],
+		mesh->relative_determinant[2]);
 	put_maker(out, &mesh->maker);
-	nt_member_histogram(out, "direction_histogram", mesh->angle_histogram);
-	nt_member_count(out, "instances", mesh->instance_count);
-	nt_member_count(out, "negative_instances", mesh->negative_instances);
-	nt_member_key(out, NT_SAME_LINE, "box");
-	nt_json_box(&mesh->box, report->origin, out);
-	nt_member_bool(out, "islands_truncated", mesh->island_count > SHOWN_ISLANDS);
-	nt_member_open(out, "islands", "[");
-	for (size_t i = 0; mesh->islands && i < mesh->island_count && i < SHOWN_ISLANDS; i++) {
-		nt_member_next(out, 4);
+	nt_put_histogram("direction_histogram", mesh->angle_histogram, out);
+	nt_put(out, NT_JSON, ",'instances':%zu,'negative_instances':%zu", mesh->instance_count,
+		mesh->negative_instances);
+	put_box(out, report, &mesh->box);
+	nt_put(out, NT_JSON, ",'islands_truncated':%hhd,'islands':[", mesh->island_count > SHOWN_ISLANDS);
+	for (size_t i = 0; mesh->islands && i < mesh->island_count && i < SHOWN_ISLANDS; i++)
 		put_island(out, &mesh->islands[i]);
-	}
-	nt_buffer_text(out, "]");
-	nt_member_bool(out, "seams_truncated", mesh->seam_count > SHOWN_SEAMS);
-	nt_member_open(out, "seams", "[");
-	for (size_t i = 0; mesh->seams && i < mesh->seam_count && i < SHOWN_SEAMS; i++) {
-		nt_member_next(out, 4);
+	nt_put(out, NT_JSON, "],'seams_truncated':%hhd,'seams':[", mesh->seam_count > SHOWN_SEAMS);
+	for (size_t i = 0; mesh->seams && i < mesh->seam_count && i < SHOWN_SEAMS; i++)
 		put_seam(out, report, &mesh->seams[i]);
-	}
 	nt_buffer_text(out, "]}");
 }
 
@@ -278,103 +188,61 @@ static void put_mesh(nt_buffer *out, const nt_report *report, const nt_report_me
 
 static void put_spot(nt_buffer *out, const nt_report *report, const nt_spot *spot)
 {
-	nt_buffer_text(out, "{");
-	nt_member_index(out, "triangle", spot->triangle);
-	nt_member_index(out, "face", spot->face);
-	nt_member_key(out, NT_SAME_LINE, "line");
-	nt_buffer_format(out, spot->line ? "%zu" : "null", spot->line);
-	nt_member_text(out, "source", spot->source);
-	nt_member_float(out, "value", spot->value);
-	nt_member_open(out, "vertices", "[");
-	for (unsigned k = 0; k < spot->corner_count; k++) {
-		nt_member_next(out, NT_SAME_LINE);
-		nt_buffer_format(out, "%u", spot->vertices[k]);
-	}
-	nt_buffer_text(out, "]");
-	nt_member_key(out, NT_SAME_LINE, "positions");
-	nt_json_positions(spot->positions[0], spot->corner_count, report->origin, out);
-	nt_member_key(out, NT_SAME_LINE, "texcoords");
-	nt_json_rows(spot->texcoords[0], spot->has_texcoords ? spot->corner_count : 0, 2, out);
+	nt_put(out, NT_JSON, ",\n\t\t\t\t\t{'triangle':%u,'face':%u,'line':%.0zu,'source':%s,'value':%g,'vertices':[",
+		spot->triangle, spot->face, spot->line, spot->source, spot->value);
+	for (unsigned k = 0; k < spot->corner_count; k++)
+		nt_buffer_format(out, k ? ",%u" : "%u", spot->vertices[k]);
+	nt_buffer_text(out, "],\"positions\":");
+	nt_put_rows(spot->positions[0], spot->corner_count, 3, report->origin, out);
+	nt_buffer_text(out, ",\"texcoords\":");
+	nt_put_rows(spot->texcoords[0], spot->has_texcoords ? spot->corner_count : 0, 2, NULL, out);
 	nt_buffer_text(out, "}");
 }
 
 static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
 {
 	const nt_report *report = w->report;
-	nt_member_next(out, 4);
-	nt_buffer_text(out, "{");
-	nt_member_text(out, "code", nt_code_info(finding->code)->name);
-	nt_member_text(out, "severity", nt_severity_name(finding->severity));
-	nt_member_text(out, "message", finding->message);
-	nt_member_repair(out, report, finding);
-	nt_member_count(out, "count", finding->count);
-	nt_member_count(out, "alike", finding->alike);
-	nt_member_digest(out, "fingerprint", finding->fingerprint);
-	nt_member_digest(out, "geometry", finding->geometry);
-	nt_member_bool(out, "known", finding->known);
-	nt_member_index(out, "mesh", finding->mesh);
-	nt_member_index(out, "seam", finding->code == NT_CODE_UV_HARD_EDGE ? NT_NONE : finding->seam);
-	nt_member_index(out, "island", finding->island);
+	nt_put(out, NT_JSON, ",\n\t\t\t\t{'code':%s,'severity':%s,'message':%s", nt_finding_name(finding),
+		nt_severity_name(finding->severity), finding->message);
+	nt_put_repair(report, finding, NT_JSON, out);
+	nt_put(out, NT_JSON, ",'count':%zu,'alike':%zu,'fingerprint':%" PRIx64 ",'geometry':%" PRIx64 ",'known':%hhd,"
+		"'mesh':%u,'seam':%u,'island':%u", finding->count, finding->alike, finding->fingerprint,
+		finding->geometry, finding->known, finding->mesh,
+		finding->code == NT_CODE_UV_HARD_EDGE ? NT_NONE : finding->seam, finding->island);
 	put_place(out, "place", report, &finding->place);
-	nt_member_key(out, NT_SAME_LINE, "box");
-	nt_json_box(&finding->box, report->origin, out);
-	nt_member_open(out, "numbers", "{");
+	put_box(out, report, &finding->box);
+	nt_buffer_text(out, ",\"numbers\":{");
 	for (unsigned i = 0; i < finding->number_count; i++)
-		nt_member_float(out, finding->numbers[i].name, finding->numbers[i].value);
-	nt_buffer_text(out, "}");
-	nt_member_open(out, "spots", "[");
-	for (unsigned i = 0; i < finding->spot_count; i++) {
-		nt_member_next(out, 5);
+		nt_put(out, NT_JSON, ",'%-s':%g", finding->numbers[i].name, finding->numbers[i].value);
+	nt_buffer_text(out, "},\"spots\":[");
+	for (unsigned i = 0; i < finding->spot_count; i++)
 		put_spot(out, report, &finding->spots[i]);
-	}
 	nt_buffer_text(out, "]");
-	nt_member_votes(out, finding);
-	nt_buffer_text(out, "}");
-}
-
-static void put_failure(nt_buffer *out, const nt_report *report)
-{
-	nt_member_key(out, 3, "failure");
-	if (!report->failure) {
-		nt_buffer_text(out, "null");
-		return;
-	}
-	nt_buffer_text(out, "{");
-	nt_member_text(out, "message", report->failure);
-	put_place(out, "place", report, &report->failure_place);
+	nt_put_votes(finding, out);
 	nt_buffer_text(out, "}");
 }
 
 static void begin_file(nt_walk *w, nt_buffer *out)
 {
+	static const char *const formats[] = {"unknown", "obj", "ply", "gltf", "glb", "drc"};
 	const nt_report *report = w->report;
-	nt_member_next(out, 2);
-	const nt_report_list one = {.items = &report, .count = 1};
-	const nt_totals totals = nt_report_totals(&one);
-	nt_buffer_text(out, "{");
-	nt_member_key(out, 3, "file");
-	nt_json_string(report->shown, out);
-	nt_member_key(out, 3, "format");
-	nt_buffer_format(out, "\"%s\"", nt_input_format_name(report->format));
-	nt_member_key(out, 3, "verdict");
-	nt_put_verdict(report, nt_json_string, out);
-	nt_member_text(out, "conversion", report->conversion);
-	put_failure(out, report);
-	if (report->origin_text) {
-		nt_member_key(out, 3, "origin");
-		nt_buffer_format(out, "[%s]", report->origin_text);
+	const nt_totals totals = nt_report_totals(&report, 1);
+	nt_put(out, NT_JSON, ",\n\t\t{\n\t\t\t'file':%s,\n\t\t\t'format':%s,\n\t\t\t'verdict':%p,'conversion':%s,\n"
+		"\t\t\t'failure':", report->shown, formats[report->format], nt_verdict(report), report->conversion);
+	if (report->failure) {
+		nt_put(out, NT_JSON, "{'message':%s", report->failure);
+		put_place(out, "place", report, &report->failure_place);
 	}
-	put_totals(out, 3, &totals);
-	nt_member_key(out, 3, "meshes");
-	nt_buffer_text(out, "[");
+	nt_buffer_text(out, report->failure ? "}" : "null");
+	if (report->origin_text)
+		nt_put(out, NT_JSON, ",\n\t\t\t'origin':[%-s]", report->origin_text);
+	put_totals(out, "\t\t\t", &totals);
+	nt_buffer_text(out, ",\n\t\t\t\"meshes\":[");
 	for (size_t i = 0; i < report->mesh_count; i++) {
-		nt_member_next(out, 4);
 		put_mesh(out, report, &report->meshes[i]);
-		nt_list_flush(w->reports, NT_FLUSHED_BYTES, out);
+		nt_walk_flush(w, NT_FLUSHED_BYTES, out);
 	}
-	nt_buffer_text(out, "]");
-	nt_member_key(out, 3, "findings");
-	nt_buffer_text(out, "[");
+	nt_buffer_text(out, "],\n\t\t\t\"findings\":[");
 }
 
 static void end_file(nt_walk *w, nt_buffer *out)
@@ -385,17 +253,11 @@ static void end_file(nt_walk *w, nt_buffer *out)
 
 static void begin(nt_walk *w, nt_buffer *out)
 {
-	const nt_totals totals = nt_report_totals(w->reports);
-	nt_buffer_text(out, "{");
-	nt_member_key(out, 1, "report");
-	nt_buffer_text(out, "\"nmtan\"");
-	nt_member_key(out, 1, "report_version");
-	nt_buffer_text(out, "2");
-	nt_member_key(out, 1, "generator");
-	nt_buffer_format(out, "\"nmtan %s\"", NMTAN_VERSION_STRING);
-	put_totals(out, 1, &totals);
-	nt_member_key(out, 1, "files");
-	nt_buffer_text(out, "[");
+	const nt_totals totals = nt_report_totals(w->items, w->count);
+	nt_put(out, NT_JSON, "{\n\t'report':'nmtan',\n\t'report_version':2,\n\t'generator':'nmtan %-s'",
+		NMTAN_VERSION_STRING);
+	put_totals(out, "\t", &totals);
+	nt_buffer_text(out, ",\n\t\"files\":[");
 }
 
 static void end(nt_walk *w, nt_buffer *out)

@@ -3,34 +3,11 @@
  * Markdown, for comments on pull requests: short, the worst first. A table of the files with errors or warnings, then a
  * table of findings for each. Names come from files: everything that Markdown or HTML could take for markup is escaped.
  */
-#include "report/render/writers.h"
-
 #include <stdlib.h>
 #include <string.h>
-#include "base/utf8.h"
+#include "report/render/inside.h"
 
 enum { MOST_FILES = 50, MOST_ROWS = 100 };
-
-void nt_markdown_text(const char *text, nt_buffer *out)
-{
-	for (size_t length; *text; text += length) {
-		length = 1;
-		const unsigned char c = (unsigned char)*text;
-		if (c < 0x20 || c == 0x7f)
-			nt_buffer_text(out, " ");
-		else if (c == '<')
-			nt_buffer_text(out, "&lt;");
-		else if (c == '&')
-			nt_buffer_text(out, "&amp;");
-		else if (strchr("\\`*_{}[]()#+-!|>~@", c))
-			nt_buffer_format(out, "\\%c", c);
-		else if (nt_utf8_is_unsafe(text, length = nt_utf8_length(text, SIZE_MAX)))
-			nt_buffer_text(out, "\xef\xbf\xbd");
-		else
-			nt_buffer_append(out, text, length);
-		length = length ? length : 1;
-	}
-}
 
 static void put_file_row(const nt_report *report, nt_buffer *out)
 {
@@ -40,12 +17,9 @@ static void put_file_row(const nt_report *report, nt_buffer *out)
 		mirrored += report->meshes[i].triangles[0];
 		seams += report->meshes[i].seam_count;
 	}
-	nt_buffer_text(out, "| ");
-	nt_markdown_text(report->shown, out);
+	nt_put(out, NT_MARKDOWN, "| %s", report->shown);
 	if (report->failure) {
-		nt_buffer_text(out, " | not judged: ");
-		nt_put_failure(report, true, nt_markdown_text, out);
-		nt_buffer_text(out, " | | | | | |\n");
+		nt_put(out, NT_MARKDOWN, " | not judged: %p | | | | | |\n", nt_failure_text(report, true));
 		return;
 	}
 	nt_buffer_format(out, " | %zu | %zu | %zu | %zu | %zu | %zu |\n",
@@ -53,13 +27,10 @@ static void put_file_row(const nt_report *report, nt_buffer *out)
 		report->by_severity[NT_SEVERITY_INFO], triangles, mirrored, seams);
 }
 
-void nt_markdown_finding(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
+void nt_put_markdown_row(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
-	nt_buffer_format(out, "| %s | `%s` | ", nt_severity_name(finding->severity), nt_code_info(finding->code)->name);
-	nt_put_where(report, finding, true, nt_markdown_text, out);
-	nt_buffer_text(out, " | ");
-	nt_markdown_text(finding->message, out);
-	nt_buffer_text(out, " |\n");
+	nt_put(out, NT_MARKDOWN, "| %-s | `%-s` | %p | %s |\n", nt_severity_name(finding->severity),
+		nt_finding_name(finding), nt_finding_where(report, finding, true), finding->message);
 }
 
 /* Inputs that could not be read first, then by errors, warnings and infos. */
@@ -81,7 +52,7 @@ static bool is_clean(const nt_report *report)
 
 static void begin(nt_walk *w, nt_buffer *out)
 {
-	const nt_totals totals = nt_report_totals(w->reports);
+	const nt_totals totals = nt_report_totals(w->items, w->count);
 	qsort(w->items, w->count, sizeof *w->items, by_worst);
 	nt_buffer_text(out, "## nmtan: ");
 	nt_totals_text(&totals, out);
@@ -100,11 +71,7 @@ static void begin_file(nt_walk *w, nt_buffer *out)
 {
 	if (!w->report->finding_count)
 		return;
-	nt_buffer_text(out, "\n### ");
-	nt_markdown_text(w->report->shown, out);
-	nt_buffer_text(out, "\n\n");
-	nt_put_verdict(w->report, nt_markdown_text, out);
-	nt_buffer_text(out, "\n");
+	nt_put(out, NT_MARKDOWN, "\n### %s\n\n%p\n", w->report->shown, nt_verdict(w->report));
 	if (w->report->new_count)
 		nt_buffer_text(out, "\n| severity | code | where | finding |\n|---|---|---|---|\n");
 }
@@ -112,7 +79,7 @@ static void begin_file(nt_walk *w, nt_buffer *out)
 static void put_finding(nt_walk *w, const nt_report_finding *finding, nt_buffer *out)
 {
 	if (w->rows < MOST_ROWS) {
-		nt_markdown_finding(w->report, finding, out);
+		nt_put_markdown_row(w->report, finding, out);
 		w->rows++;
 	} else {
 		w->missing++;
@@ -123,7 +90,7 @@ static void end_file(nt_walk *w, nt_buffer *out)
 {
 	if (!w->report->finding_count)
 		return;
-	nt_put_together(w->report, "\n", nt_markdown_text, out);
+	nt_put_together(w->report, "\n", NT_MARKDOWN, out);
 	nt_dropped_text(w->report, "\nAnd ", ".\n", out);
 	if (w->missing)
 		nt_buffer_format(out, "\n%zu findings more do not fit.\n", w->missing);

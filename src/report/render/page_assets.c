@@ -4,7 +4,7 @@
  * the files; both compilers we build with have one that can, and no generated C is needed. The script is one function
  * made of several files, in the order in which they need each other.
  */
-#include "report/render/writers.h"
+#include "report/render/inside.h"
 
 #define FILE_BYTES(file) ".incbin \"src/report/render/page/" file "\"\n"
 #ifdef __wasm__

@@ -5,9 +5,8 @@
  * Errors count before warnings. Order of actions: export again comes first, since all else is made from it, then bake
  * again, then repairs of a conversion.
  */
-#include "report/render/words.h"
-
 #include <string.h>
+#include "report/render/inside.h"
 
 static nt_advice advice_of(const nt_report_finding *finding)
 {
@@ -149,8 +148,7 @@ static void append_verdict(const nt_report *report, nt_buffer *out)
 	const size_t errors = report->by_severity[NT_SEVERITY_ERROR];
 	const size_t all = errors + report->by_severity[NT_SEVERITY_WARNING];
 	if (report->failure) {
-		nt_buffer_text(out, "Not judged: ");
-		nt_failure_text(report, true, out);
+		nt_put(out, NT_PLAIN, "Not judged: %p", nt_failure_text(report, true));
 		return;
 	}
 	if (report->conversion)
@@ -178,8 +176,7 @@ static void append_verdict(const nt_report *report, nt_buffer *out)
 	nt_buffer_free_into(&options, out);
 }
 
-void nt_put_together(const nt_report *report, const char *before, void (*put)(const char *text, nt_buffer *out),
-	nt_buffer *out)
+void nt_put_together(const nt_report *report, const char *before, nt_syntax syntax, nt_buffer *out)
 {
 	nt_buffer all = {0}, told = {0}, command = {0};
 	const bool names = find_options(report, find_first(report), &told, NULL);
@@ -193,20 +190,16 @@ void nt_put_together(const nt_report *report, const char *before, void (*put)(co
 	if (join_options(report, (chosen){NT_SEVERITY_INFO, true}, &all) && all.data &&
 		!(names && told.data && strcmp(all.data, told.data) == 0)) {
 		nt_command_text(all.data, report->given, report->path, NULL, &command);
-		nt_buffer_format(out, "%sAll commands in one%s%s: ", before, infos ? ", those of infos too" : "",
-			conditions ? ", if their conditions hold" : "");
-		put(command.data ? command.data : "", out);
-		nt_buffer_text(out, "\n");
+		nt_put(out, syntax, "%-sAll commands in one%-s%-s: %p\n", before, infos ? ", those of infos too" : "",
+			conditions ? ", if their conditions hold" : "", nt_text_of(&command));
 	}
 	nt_buffer_free_into(&all, out);
 	nt_buffer_free_into(&told, out);
-	nt_buffer_free_into(&command, out);
 }
 
-void nt_put_verdict(const nt_report *report, void (*put)(const char *text, nt_buffer *out), nt_buffer *out)
+char *nt_verdict(const nt_report *report)
 {
 	nt_buffer verdict = {0};
 	append_verdict(report, &verdict);
-	put(verdict.data ? verdict.data : "", out);
-	nt_buffer_free_into(&verdict, out);
+	return nt_text_of(&verdict);
 }

@@ -1,24 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Names, sums and escaped text for reports: see words.h.
+ * Names, sums and numbers as reports say them, and how they are handed on: see inside.h.
  */
-#include "report/render/words.h"
-
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/utf8.h"
+#include "report/render/inside.h"
 
-void nt_list_flush(const nt_report_list *reports, size_t least, nt_buffer *out)
+void nt_walk_flush(nt_walk *w, size_t least, nt_buffer *out)
 {
-	nt_report_stream *to = reports->stream;
 	if (out->failed || out->size < least)
 		return;
 	const size_t kept = least ? 1 : 0;
-	if (!to->status)
-		to->status = to->sink(to->user, out->data ? out->data : "", out->size - kept, to->error);
+	if (!w->status)
+		w->status = w->sink(w->user, out->data ? out->data : "", out->size - kept, w->error);
 	if (kept) {
 		out->data[0] = out->data[out->size - 1];
 		out->data[1] = '\0';
@@ -26,17 +22,18 @@ void nt_list_flush(const nt_report_list *reports, size_t least, nt_buffer *out)
 	out->size = kept;
 }
 
-nt_totals nt_report_totals(const nt_report_list *reports)
+/* ---- sums ---- */
+
+nt_totals nt_report_totals(const nt_report *const *reports, size_t count)
 {
 	nt_totals totals = {0};
-	for (size_t i = 0; i < reports->count; i++) {
-		const nt_report *report = reports->items[i];
+	for (size_t i = 0; i < count; i++) {
 		for (int severity = 0; severity < 3; severity++) {
-			totals.by_severity[severity] += report->by_severity[severity];
-			totals.known[severity] += report->known[severity];
-			totals.hidden[severity] += report->hidden[severity];
+			totals.by_severity[severity] += reports[i]->by_severity[severity];
+			totals.known[severity] += reports[i]->known[severity];
+			totals.hidden[severity] += reports[i]->hidden[severity];
 		}
-		totals.dropped += report->dropped;
+		totals.dropped += reports[i]->dropped;
 	}
 	return totals;
 }
@@ -46,21 +43,14 @@ size_t nt_known_count(const nt_totals *totals)
 	return totals->known[0] + totals->known[1] + totals->known[2];
 }
 
-static void counted(size_t count, const char *noun, nt_buffer *out)
-{
-	nt_buffer_format(out, "%zu %s%s", count, noun, count == 1 ? "" : "s");
-}
-
 void nt_totals_text(const nt_totals *totals, nt_buffer *out)
 {
-	counted(totals->by_severity[NT_SEVERITY_ERROR], "error", out);
-	nt_buffer_text(out, ", ");
-	counted(totals->by_severity[NT_SEVERITY_WARNING], "warning", out);
-	nt_buffer_text(out, ", ");
-	counted(totals->by_severity[NT_SEVERITY_INFO], "info", out);
+	const size_t *n = totals->by_severity, hidden = totals->hidden[0] + totals->hidden[1] + totals->hidden[2];
+	nt_buffer_format(out, "%zu error%s, %zu warning%s, %zu info%s", n[NT_SEVERITY_ERROR],
+		nt_plural(n[NT_SEVERITY_ERROR]), n[NT_SEVERITY_WARNING], nt_plural(n[NT_SEVERITY_WARNING]),
+		n[NT_SEVERITY_INFO], nt_plural(n[NT_SEVERITY_INFO]));
 	if (nt_known_count(totals))
 		nt_buffer_format(out, ", %zu known from the baseline", nt_known_count(totals));
-	const size_t hidden = totals->hidden[0] + totals->hidden[1] + totals->hidden[2];
 	if (hidden)
 		nt_buffer_format(out, ", %zu below --min-severity", hidden);
 	if (totals->dropped)
@@ -82,16 +72,12 @@ void nt_dropped_text(const nt_report *report, const char *before, const char *af
 	nt_buffer_text(out, after);
 }
 
+/* ---- words ---- */
+
 const char *nt_island_kind_name(nt_island_kind kind)
 {
 	static const char *const names[] = {"normal", "mirrored", "mixed", "degenerate"};
 	return names[kind];
-}
-
-const char *nt_input_format_name(nt_format format)
-{
-	static const char *const names[] = {"unknown", "obj", "ply", "gltf", "glb", "drc"};
-	return names[format];
 }
 
 size_t nt_finding_line(const nt_report_finding *finding)
@@ -112,70 +98,23 @@ const char *nt_finding_file(const nt_report *report, const nt_report_finding *fi
 	return finding->file ? finding->file : report->shown;
 }
 
-void nt_put_line(const nt_report_finding *finding, const char *before, void (*put)(const char *text, nt_buffer *out),
-	nt_buffer *out)
+bool nt_failure_is_found(const nt_report *report)
 {
-	const size_t line = nt_finding_line(finding);
-	if (line || finding->file)
-		nt_buffer_text(out, before);
-	if (line)
-		nt_buffer_format(out, "line %zu%s", line, finding->file ? " of " : "");
-	if (finding->file)
-		put(finding->file, out);
+	bool found = false;
+	for (size_t i = 0; report->failure && i < report->new_count; i++)
+		found |= report->findings[i].code == NT_CODE_BUFFER_MISSING;
+	return found;
 }
 
-void nt_put_where(const nt_report *report, const nt_report_finding *finding, bool label,
-	void (*put)(const char *text, nt_buffer *out), nt_buffer *out)
+char *nt_text_of(nt_buffer *text)
 {
-	const size_t begin = out->size;
-	if (nt_finding_has_object(finding))
-		put(finding->place.object[0] ? finding->place.object : finding->place.pointer, out);
-	else if (label)
-		nt_put_label(report, finding->mesh, put, out);
-	nt_put_line(finding, out->size > begin ? ", " : "", put, out);
+	nt_buffer_text(text, "");
+	if (text->failed)
+		nt_buffer_free(text);
+	return text->data;
 }
 
-void nt_put_sentence(const nt_report *report, const nt_report_finding *finding,
-	void (*put)(const char *text, nt_buffer *out), nt_buffer *out)
-{
-	put(finding->message, out);
-	const bool has_object = nt_finding_has_object(finding);
-	if (has_object ? !finding->place.object[0] : report->mesh_count == 1)
-		return;
-	nt_buffer_text(out, ", in ");
-	if (has_object)
-		put(finding->place.object, out);
-	else
-		nt_put_label(report, finding->mesh, put, out);
-}
-
-void nt_failure_text(const nt_report *report, bool line, nt_buffer *out)
-{
-	const nt_place_view *place = &report->failure_place;
-	if (place->file[0] && strcmp(place->file, report->path) != 0) {
-		nt_report_show_path(report, place->file, out);
-		nt_buffer_text(out, ": ");
-	}
-	if (place->line && line)
-		nt_buffer_format(out, "line %zu: ", place->line);
-	if (place->offset != NT_NO_OFFSET)
-		nt_buffer_format(out, "at byte %" PRIu64 ": ", place->offset);
-	if (place->pointer[0])
-		nt_buffer_format(out, "%s: ", place->pointer);
-	if (place->object[0])
-		nt_buffer_format(out, "%s: ", place->object);
-	nt_buffer_text(out, report->failure);
-}
-
-void nt_put_failure(const nt_report *report, bool line, void (*put)(const char *text, nt_buffer *out), nt_buffer *out)
-{
-	nt_buffer text = {0};
-	nt_failure_text(report, line, &text);
-	put(text.data ? text.data : "", out);
-	nt_buffer_free_into(&text, out);
-}
-
-void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out)
+static void append_label(const nt_report *report, uint32_t mesh, nt_buffer *out)
 {
 	const nt_report_mesh *m = &report->meshes[mesh];
 	if (m->place.object[0])
@@ -186,160 +125,79 @@ void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out)
 		nt_buffer_format(out, "mesh %u", mesh);
 }
 
-void nt_put_label(const nt_report *report, uint32_t mesh, void (*put)(const char *text, nt_buffer *out),
-	nt_buffer *out)
+char *nt_mesh_label(const nt_report *report, uint32_t mesh)
 {
-	nt_buffer label = {0};
-	nt_mesh_label(report, mesh, &label);
-	put(label.data ? label.data : "", out);
-	nt_buffer_free_into(&label, out);
+	nt_buffer text = {0};
+	append_label(report, mesh, &text);
+	return nt_text_of(&text);
 }
 
-void nt_json_string(const char *text, nt_buffer *out)
+char *nt_finding_where(const nt_report *report, const nt_report_finding *finding, bool label)
 {
-	nt_buffer_text(out, "\"");
-	while (*text) {
-		const unsigned char c = (unsigned char)*text;
-		const size_t length = nt_utf8_length(text, SIZE_MAX);
-		if (c == '"' || c == '\\')
-			nt_buffer_format(out, "\\%c", c);
-		else if (c == '\n')
-			nt_buffer_text(out, "\\n");
-		else if (c < 0x20 || c == 0x7f)
-			nt_buffer_format(out, "\\u%04x", c);
-		else if (length)
-			nt_buffer_append(out, text, length);
-		else
-			nt_buffer_text(out, "\\ufffd");
-		text += length ? length : 1;
+	const size_t line = nt_finding_line(finding);
+	nt_buffer text = {0};
+	if (nt_finding_has_object(finding))
+		nt_buffer_text(&text, finding->place.object[0] ? finding->place.object : finding->place.pointer);
+	else if (label)
+		append_label(report, finding->mesh, &text);
+	if (text.size && (line || finding->file))
+		nt_buffer_text(&text, ", ");
+	if (line)
+		nt_buffer_format(&text, "line %zu%s", line, finding->file ? " of " : "");
+	nt_buffer_text(&text, finding->file ? finding->file : "");
+	return nt_text_of(&text);
+}
+
+char *nt_finding_sentence(const nt_report *report, const nt_report_finding *finding, const char *between)
+{
+	const bool has_object = nt_finding_has_object(finding);
+	nt_buffer text = {0};
+	nt_buffer_text(&text, finding->message);
+	if (has_object ? finding->place.object[0] : report->mesh_count != 1)
+		nt_buffer_text(&text, ", in ");
+	if (has_object)
+		nt_buffer_text(&text, finding->place.object);
+	else if (report->mesh_count != 1)
+		append_label(report, finding->mesh, &text);
+	nt_buffer_text(&text, between ? between : "");
+	if (between)
+		nt_remedy_text(finding->code, finding->repair, report->given, report->path, &text);
+	return nt_text_of(&text);
+}
+
+char *nt_finding_remedy(const nt_report *report, const nt_report_finding *finding)
+{
+	nt_buffer text = {0};
+	nt_remedy_text(finding->code, finding->repair, report->given, report->path, &text);
+	return nt_text_of(&text);
+}
+
+char *nt_failure_text(const nt_report *report, bool line)
+{
+	const nt_place_view *place = &report->failure_place;
+	nt_buffer text = {0};
+	if (place->file[0] && strcmp(place->file, report->path) != 0) {
+		nt_report_show_path(report, place->file, &text);
+		nt_buffer_text(&text, ": ");
 	}
-	nt_buffer_text(out, "\"");
+	if (place->line && line)
+		nt_buffer_format(&text, "line %zu: ", place->line);
+	if (place->offset != NT_NO_OFFSET)
+		nt_buffer_format(&text, "at byte %" PRIu64 ": ", place->offset);
+	if (place->pointer[0])
+		nt_buffer_format(&text, "%s: ", place->pointer);
+	if (place->object[0])
+		nt_buffer_format(&text, "%s: ", place->object);
+	nt_buffer_text(&text, report->failure);
+	return nt_text_of(&text);
 }
 
-void nt_json_float(double value, nt_buffer *out)
-{
-	if (isfinite(value))
-		nt_buffer_format(out, "%.9g", value == 0.0 ? 0.0 : value);
-	else
-		nt_buffer_text(out, "null");
-}
-
-void nt_json_index(uint32_t index, nt_buffer *out)
-{
-	if (index == NT_NONE)
-		nt_buffer_text(out, "null");
-	else
-		nt_buffer_format(out, "%u", index);
-}
-
-void nt_json_floats(const float *values, size_t count, nt_buffer *out)
-{
-	nt_buffer_text(out, "[");
-	for (size_t i = 0; i < count; i++) {
-		nt_member_next(out, NT_SAME_LINE);
-		nt_json_float(values[i], out);
-	}
-	nt_buffer_text(out, "]");
-}
-
-void nt_json_rows(const float *values, size_t count, size_t width, nt_buffer *out)
-{
-	nt_buffer_text(out, "[");
-	for (size_t i = 0; i < count; i++) {
-		nt_member_next(out, NT_SAME_LINE);
-		nt_json_floats(values + i * width, width, out);
-	}
-	nt_buffer_text(out, "]");
-}
-
-void nt_member_next(nt_buffer *out, int indent)
-{
-	const char last = out->size ? out->data[out->size - 1] : '{';
-	if (last != '{' && last != '[')
-		nt_buffer_text(out, indent == NT_SPACED ? ", " : ",");
-	if (indent >= 0)
-		nt_buffer_text(out, "\n");
-	for (int i = 0; i < indent; i++)
-		nt_buffer_text(out, "\t");
-}
-
-void nt_member_key(nt_buffer *out, int indent, const char *name)
-{
-	nt_member_next(out, indent);
-	nt_buffer_text(out, "\"");
-	nt_buffer_text(out, name);
-	nt_buffer_text(out, indent == NT_SPACED ? "\": " : "\":");
-}
-
-void nt_member_open(nt_buffer *out, const char *name, const char *bracket)
-{
-	nt_member_key(out, NT_SAME_LINE, name);
-	nt_buffer_text(out, bracket);
-}
-
-void nt_member_text(nt_buffer *out, const char *name, const char *text)
-{
-	nt_member_key(out, NT_SAME_LINE, name);
-	if (text)
-		nt_json_string(text, out);
-	else
-		nt_buffer_text(out, "null");
-}
-
-void nt_member_count(nt_buffer *out, const char *name, uint64_t count)
-{
-	nt_member_key(out, NT_SAME_LINE, name);
-	nt_buffer_format(out, "%" PRIu64, count);
-}
-
-void nt_member_index(nt_buffer *out, const char *name, uint32_t index)
-{
-	nt_member_key(out, NT_SAME_LINE, name);
-	nt_json_index(index, out);
-}
-
-void nt_member_bool(nt_buffer *out, const char *name, bool value)
-{
-	nt_member_key(out, NT_SAME_LINE, name);
-	nt_buffer_text(out, value ? "true" : "false");
-}
-
-void nt_member_float(nt_buffer *out, const char *name, double value)
-{
-	nt_member_key(out, NT_SAME_LINE, name);
-	nt_json_float(value, out);
-}
-
-void nt_member_doubles(nt_buffer *out, const char *name, const double *values, size_t count)
-{
-	nt_member_open(out, name, "[");
-	for (size_t i = 0; i < count; i++) {
-		nt_member_next(out, NT_SAME_LINE);
-		nt_json_float(values[i], out);
-	}
-	nt_buffer_text(out, "]");
-}
-
-void nt_member_digest(nt_buffer *out, const char *name, uint64_t digest)
-{
-	nt_member_key(out, NT_SAME_LINE, name);
-	nt_buffer_format(out, digest ? "\"%016" PRIx64 "\"" : "null", digest);
-}
-
-void nt_member_histogram(nt_buffer *out, const char *name, const size_t corners[NT_ANGLE_BINS])
-{
-	nt_member_open(out, name, "[");
-	for (int i = 0; i < NT_ANGLE_BINS; i++) {
-		nt_member_next(out, NT_SAME_LINE);
-		nt_buffer_format(out, "{\"up_to_degrees\":%g,\"corners\":%zu}", nt_angle_bins[i], corners[i]);
-	}
-	nt_buffer_text(out, "]");
-}
+/* ---- numbers and members of JSON ---- */
 
 void nt_put_coordinate(float value, double origin, nt_buffer *out)
 {
 	if (origin == 0 || !isfinite(value)) {
-		nt_json_float(value, out);
+		nt_put(out, NT_JSON, "%g", (double)value);
 		return;
 	}
 	/* the fewest digits of those numbers whose difference from the origin is this float */
@@ -352,83 +210,37 @@ void nt_put_coordinate(float value, double origin, nt_buffer *out)
 	nt_buffer_text(out, text);
 }
 
-void nt_json_positions(const float *positions, size_t count, const double origin[3], nt_buffer *out)
+void nt_put_rows(const float *values, size_t count, size_t width, const double *origin, nt_buffer *out)
 {
-	for (size_t i = 0; i < 3 * count; i++) {
-		nt_buffer_text(out, i == 0 ? "[[" : i % 3 == 0 ? "],[" : ",");
-		nt_put_coordinate(positions[i], origin[i % 3], out);
+	for (size_t i = 0; i < width * count; i++) {
+		nt_buffer_text(out, i == 0 ? "[[" : i % width == 0 ? "],[" : ",");
+		nt_put_coordinate(values[i], origin ? origin[i % width] : 0.0, out);
 	}
 	nt_buffer_text(out, count ? "]]" : "[]");
 }
 
-void nt_json_box(const nt_box *box, const double origin[3], nt_buffer *out)
+void nt_put_histogram(const char *name, const size_t corners[NT_ANGLE_BINS], nt_buffer *out)
 {
-	if (!(box->minimum[0] <= box->maximum[0])) {
-		nt_buffer_text(out, "null");
-		return;
-	}
-	float corners[6];
-	memcpy(corners, box->minimum, sizeof box->minimum);
-	memcpy(corners + 3, box->maximum, sizeof box->maximum);
-	nt_json_positions(corners, 2, origin, out);
+	nt_put(out, NT_JSON, ",'%-s':[", name);
+	for (int i = 0; i < NT_ANGLE_BINS; i++)
+		nt_put(out, NT_JSON, ",{'up_to_degrees':%g,'corners':%zu}", nt_angle_bins[i], corners[i]);
+	nt_buffer_text(out, "]");
 }
 
-void nt_member_votes(nt_buffer *out, const nt_report_finding *finding)
+void nt_put_votes(const nt_report_finding *finding, nt_buffer *out)
 {
 	const unsigned side = finding->votes_side;
-	nt_member_key(out, NT_SAME_LINE, "votes");
-	if (!finding->votes) {
-		nt_buffer_text(out, "null");
-		return;
-	}
-	for (unsigned i = 0; i < side * side; i++) {
-		nt_buffer_text(out, i == 0 ? "[[" : i % side == 0 ? "],[" : ",");
-		nt_buffer_format(out, "%d", finding->votes[i]);
-	}
-	nt_buffer_text(out, "]]");
+	nt_buffer_text(out, finding->votes ? ",\"votes\":" : ",\"votes\":null");
+	for (unsigned i = 0; finding->votes && i < side * side; i++)
+		nt_buffer_format(out, "%s%d", i == 0 ? "[[" : i % side == 0 ? "],[" : ",", finding->votes[i]);
+	nt_buffer_text(out, finding->votes ? "]]" : "");
 }
 
-void nt_member_repair(nt_buffer *out, const nt_report *report, const nt_report_finding *finding)
+void nt_put_repair(const nt_report *report, const nt_report_finding *finding, nt_syntax syntax, nt_buffer *out)
 {
 	nt_buffer command = {0};
 	if (finding->repair)
 		nt_command_text(finding->repair, report->given, report->path, NULL, &command);
-	nt_member_text(out, "repair", command.data);
+	nt_put(out, syntax, ",'repair':%s", command.data);
 	nt_buffer_free_into(&command, out);
-}
-
-bool nt_failure_is_found(const nt_report *report)
-{
-	bool found = false;
-	for (size_t i = 0; report->failure && i < report->new_count; i++)
-		found |= report->findings[i].code == NT_CODE_BUFFER_MISSING;
-	return found;
-}
-
-void nt_plain_text(const char *text, nt_buffer *out)
-{
-	nt_buffer_clean(out, text);
-}
-
-void nt_xml_text(const char *text, nt_buffer *out)
-{
-	while (*text) {
-		const unsigned char c = (unsigned char)*text;
-		const size_t length = nt_utf8_length(text, SIZE_MAX);
-		if (c == '<')
-			nt_buffer_text(out, "&lt;");
-		else if (c == '>')
-			nt_buffer_text(out, "&gt;");
-		else if (c == '&')
-			nt_buffer_text(out, "&amp;");
-		else if (c == '"')
-			nt_buffer_text(out, "&quot;");
-		else if (c == '\'')
-			nt_buffer_text(out, "&#39;");
-		else if (c != '\n' && c != '\t' && nt_utf8_is_unsafe(text, length))
-			nt_buffer_text(out, "\xef\xbf\xbd");
-		else
-			nt_buffer_append(out, text, length);
-		text += length ? length : 1;
-	}
 }
