@@ -138,19 +138,26 @@ static void put_unsigned(nt_buffer *out, bool json, conversion c, uint64_t value
 		nt_buffer_text(out, json ? "null" : "");
 	else if (hexadecimal)
 		nt_buffer_format(out, json ? "\"%016" PRIx64 "\"" : "%016" PRIx64, value);
-	else
-		nt_buffer_format(out, "%" PRIu64, value);
+	else {
+		char digits[20], *first = digits + sizeof digits;
+		do
+			*--first = (char)('0' + value % 10);
+		while (value /= 10);
+		nt_buffer_append(out, first, (size_t)(digits + sizeof digits - first));
+	}
 }
 
 static void put_double(nt_buffer *out, bool json, conversion c, double value)
 {
+	char text[40];
+	const int precision = c.precision >= 0 ? c.precision : json ? 9 : 6;
 	if (json && !isfinite(value))
 		nt_buffer_text(out, "null");
 	else if (c.letter == 'f')
-		nt_buffer_format(out, "%.*f", c.precision, value);
-	else
-		nt_buffer_format(out, "%.*g", c.precision >= 0 ? c.precision : json ? 9 : 6,
-			json && value == 0.0 ? 0.0 : value);
+		nt_buffer_format(out, "%.*f", precision, value);
+	else /* once, since reports are made of numbers */
+		nt_buffer_append(out, text,
+			(size_t)snprintf(text, sizeof text, "%.*g", precision, json && value == 0.0 ? 0.0 : value));
 }
 
 void nt_put(nt_buffer *out, nt_syntax syntax, const char *format, ...)
