@@ -104,7 +104,7 @@ static void put_mesh(const nt_report *report, uint32_t mesh, nt_page_budget *lef
 	const nt_report_mesh *m = &report->meshes[mesh];
 	nt_put(out, NT_SCRIPT, ",\n{'label':%p,'why':%s,'same_as':%u,'mapped':%hhd,'triangles':%zu,'vertices':%zu,"
 		"'islands':%zu,'geometry':%hhd", nt_mesh_label(report, mesh), m->why, m->same_as,
-		(m->slots & NT_SLOT_NORMAL) != 0, m->triangle_count, m->vertices_before, m->island_count,
+		(bool)(m->slots & NT_SLOT_NORMAL), m->triangle_count, m->vertices_before, m->island_count,
 		has_geometry(m));
 	put_facts(m, out);
 	nt_buffer_text(out, ",\"images\":[");

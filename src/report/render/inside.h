@@ -125,7 +125,7 @@ char *nt_finding_where(const nt_report *report, const nt_report_finding *finding
  * that is NULL. */
 char *nt_finding_sentence(const nt_report *report, const nt_report_finding *finding, const char *between);
 
-/* What to do about it, with the command that repairs it. */
+/* Its remedy, with the command that repairs it. */
 char *nt_finding_remedy(const nt_report *report, const nt_report_finding *finding);
 
 /* Why a file is not judged, behind where in it: "line 3: ", "/meshes/0: ". line: false leaves the line out. */

@@ -27,7 +27,7 @@ static void put_totals(nt_buffer *out, const char *tabs, const nt_totals *totals
 	nt_put(out, NT_JSON, ",\n%-s'totals':{'errors':%zu,'warnings':%zu,'infos':%zu,'known':%zu,'dropped':%zu},\n"
 		"%-s'truncated':%hhd", tabs, totals->by_severity[NT_SEVERITY_ERROR],
 		totals->by_severity[NT_SEVERITY_WARNING], totals->by_severity[NT_SEVERITY_INFO],
-		nt_known_count(totals), totals->dropped, tabs, totals->dropped > 0);
+		nt_known_count(totals), totals->dropped, tabs, (bool)totals->dropped);
 }
 
 /* ---- meshes ---- */
@@ -98,7 +98,8 @@ static void put_seam(nt_buffer *out, const nt_report *report, const nt_seam *sea
 	else
 		nt_buffer_text(out, ",\"plane\":null");
 	put_box(out, report, &seam->box);
-	nt_put(out, NT_JSON, ",'edges_truncated':%hhd,'edges':[", seam->edge_count > NT_SEAM_EDGES);
+	nt_put(out, NT_JSON, ",'edges_truncated':%hhd,'edges':[",
+		(bool)(seam->edge_count > NT_SEAM_EDGES));
 	for (size_t i = 0; i < seam->edge_count && i < NT_SEAM_EDGES; i++)
 		put_edge(out, report, &seam->edges[i]);
 	nt_buffer_text(out, "]}");
@@ -175,10 +176,12 @@ static void put_mesh(nt_buffer *out, const nt_report *report, const nt_report_me
 	nt_put(out, NT_JSON, ",'instances':%zu,'negative_instances':%zu", mesh->instance_count,
 		mesh->negative_instances);
 	put_box(out, report, &mesh->box);
-	nt_put(out, NT_JSON, ",'islands_truncated':%hhd,'islands':[", mesh->island_count > SHOWN_ISLANDS);
+	nt_put(out, NT_JSON, ",'islands_truncated':%hhd,'islands':[",
+		(bool)(mesh->island_count > SHOWN_ISLANDS));
 	for (size_t i = 0; mesh->islands && i < mesh->island_count && i < SHOWN_ISLANDS; i++)
 		put_island(out, &mesh->islands[i]);
-	nt_put(out, NT_JSON, "],'seams_truncated':%hhd,'seams':[", mesh->seam_count > SHOWN_SEAMS);
+	nt_put(out, NT_JSON, "],'seams_truncated':%hhd,'seams':[",
+		(bool)(mesh->seam_count > SHOWN_SEAMS));
 	for (size_t i = 0; mesh->seams && i < mesh->seam_count && i < SHOWN_SEAMS; i++)
 		put_seam(out, report, &mesh->seams[i]);
 	nt_buffer_text(out, "]}");

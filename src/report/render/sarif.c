@@ -108,7 +108,7 @@ static void put_invocation(const nt_report_list *reports, nt_buffer *out)
 	const size_t cut = results > MOST_RESULTS ? results - MOST_RESULTS : 0;
 	const size_t missing = nt_report_totals(reports->items, reports->count).dropped + cut;
 	nt_put(out, NT_JSON, "\t\t'invocations': [{'executionSuccessful': %hhd, 'toolExecutionNotifications': [",
-		!failures);
+		(bool)!failures);
 	for (size_t i = 0; i < reports->count; i++) {
 		const nt_report *report = reports->items[i];
 		if (!report->failure)

@@ -50,7 +50,7 @@ static const char *escape_markup(char *made, const char *text, size_t length, bo
 	return c != '\n' && c != '\t' && nt_utf8_is_unsafe(text, length) ? replacement : NULL;
 }
 
-/* What stands for the character at the beginning, of `length` bytes, 0: it is no UTF-8; NULL: itself. */
+/* The escape of the character at the beginning, of `length` bytes, 0: it is no UTF-8; NULL: it is itself. */
 static const char *escape(nt_syntax syntax, char *made, const char *text, size_t length)
 {
 	static const char unreserved[] =
