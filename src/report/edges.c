@@ -69,7 +69,10 @@ static bool unite_many(const nt_check *check, const nt_edge_side *sides, size_t 
 		const float *high = nt_side_texcoord(s, sides[i].ascending ? next : side);
 		const uint64_t hash = nt_hash_words(nt_hash_floats(low[0], low[1]), nt_hash_floats(high[0], high[1]));
 		size_t at = NT_HASH_BEGIN;
-		const uint32_t first = joint ? nt_hash_index_next(&met, hash, &at) : sides[0].side;
+		uint32_t first = sides[0].side;
+		while (joint && (first = nt_hash_index_next(&met, hash, &at)) != NT_NONE)
+			if (nt_sides_meet(s, side, first))
+				break;
 		if (first != NT_NONE)
 			nt_unite(check->islands, side / 3, first / 3);
 		else if (low[0] == low[0] && low[1] == low[1] && high[0] == high[0] && high[1] == high[1])

@@ -157,7 +157,41 @@ static uint64_t key_of(const nt_surface *s, size_t t, int orientation, bool poin
 	return points ? nt_hash_words(key, hash_corners(s, t, true)) : key;
 }
 
-/* A key stands once in the table, however many triangles have it; its first one is marked where a twin is met. */
+static bool same_corner(const nt_surface *s, size_t a, size_t b, bool points)
+{
+	const float *x = nt_side_texcoord(s, a), *y = nt_side_texcoord(s, b);
+	return points ? nt_side_point(s, a) == nt_side_point(s, b) : x[0] == y[0] && x[1] == y[1];
+}
+
+/* Whether two triangles have the same corners, in any order. */
+static bool same_corners(const nt_surface *s, size_t a, size_t b, bool points)
+{
+	for (size_t first = 0; first < 3; first++)
+		for (size_t step = 1; step < 3; step++)
+			if (same_corner(s, 3 * a, 3 * b + first, points) &&
+				same_corner(s, 3 * a + 1, 3 * b + (first + step) % 3, points) &&
+				same_corner(s, 3 * a + 2, 3 * b + (first + 2 * step) % 3, points))
+				return true;
+	return false;
+}
+
+/* The triangle among `keys` that has this orientation and the corners of t; NT_NONE. */
+static uint32_t find_alike(const nt_check *check, const patches *p, const nt_hash_index *keys, size_t t,
+	int orientation, bool points)
+{
+	const nt_surface *s = &check->surface;
+	const uint64_t key = key_of(s, t, orientation, points);
+	size_t at = NT_HASH_BEGIN;
+	for (;;) {
+		const uint32_t other = nt_hash_index_next(keys, key, &at);
+		if (other == NT_NONE || (s->orientation[other] == orientation && same_corners(s, t, other, false) &&
+				points != is_island(check, &p->items[p->numbers[other]]) &&
+				(!points || same_corners(s, t, other, true))))
+			return other;
+	}
+}
+
+/* Triangles with the same corners stand once in the table; there they are marked if a twin is met. */
 static nt_status find_twins(nt_check *check, patches *p)
 {
 	const nt_surface *s = &check->surface;
@@ -165,23 +199,21 @@ static nt_status find_twins(nt_check *check, patches *p)
 	bool failed = false, any[2] = {false, false};
 	for (int pass = 0; pass < 3 && !failed; pass++)
 		for (size_t t = 0; t < s->triangle_count && !failed && (pass == 0 || keys.count); t++) {
-			patch *one = p->numbers[t] == NT_NONE ? NULL : &p->items[p->numbers[t]];
-			for (int points = 0; points < 2 && !failed; points++) {
-				if (pass == 1 ? !any[points] : !one || !may_have_twins(check, one) ||
-						points == is_island(check, one))
+			const patch *one = p->numbers[t] == NT_NONE ? NULL : &p->items[p->numbers[t]];
+			for (int points = 0; points < 2 && one && !failed; points++) {
+				if (pass == 1 ? !any[points]
+						: !may_have_twins(check, one) || points == is_island(check, one))
 					continue;
-				const uint64_t key = key_of(s, t, pass == 1 ? -s->orientation[t] : s->orientation[t],
-					points);
-				size_t at = NT_HASH_BEGIN;
-				const uint32_t first = nt_hash_index_next(&keys, key, &at);
+				const int orientation = pass == 1 ? -s->orientation[t] : s->orientation[t];
+				const uint32_t first = find_alike(check, p, &keys, t, orientation, points);
 				any[points] |= pass == 0;
-				if (pass == 0 && first == NT_NONE) {
-					failed = !nt_hash_index_add(&keys, key, (uint32_t)t);
-				} else if (pass == 1 && first != NT_NONE) {
+				if (pass == 0 && first == NT_NONE)
+					failed = !nt_hash_index_add(&keys, key_of(s, t, orientation, points),
+						(uint32_t)t);
+				else if (pass == 1 && first != NT_NONE)
 					nt_bit_set(check->twins, first);
-				} else if (pass == 2 && nt_bit(check->twins, first)) {
+				else if (pass == 2 && nt_bit(check->twins, first))
 					nt_bit_set(check->twins, t);
-				}
 			}
 		}
 	for (size_t t = 0; (t = nt_bit_next(check->twins, t, s->triangle_count)) < s->triangle_count; t++)

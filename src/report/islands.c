@@ -17,6 +17,7 @@
 #include "report/check.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include "base/hash_index.h"
 
@@ -452,69 +453,107 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 
 /* ---- folds and overlapping islands ---- */
 
-/* Notes the point of an unmirrored corner by texture coordinates and island, two of them at most, or counts a mirrored
- * one: in counts[1] when an unmirrored corner at another point has its coordinates, in counts[0] when none has. Points
- * of the fold itself say nothing, but of a twin. False: out of memory. */
-static bool meet_corner(const nt_check *check, uint32_t side, uint32_t island, bool mirrored, nt_hash_index *points,
-	size_t *counts)
+/* An unmirrored corner, in a table by texture coordinates and island. */
+typedef struct corner {
+	float uv[2];
+	uint32_t island; /* NT_NONE: the place is free */
+	uint32_t point;
+} corner;
+
+typedef struct corner_table {
+	corner *corners; /* [size] */
+	size_t size, count; /* size: 0 or a power of two, at least twice the count */
+} corner_table;
+
+static size_t place_of(const corner_table *table, const corner *c)
 {
-	const uint32_t point = nt_side_point(&check->surface, side);
-	const float *uv = nt_side_texcoord(&check->surface, side);
-	const uint64_t hash = nt_hash_words(nt_hash_floats(uv[0], uv[1]), island);
-	size_t at = NT_HASH_BEGIN;
-	const uint32_t first = nt_hash_index_next(points, hash, &at);
-	const bool several = first != NT_NONE && nt_hash_index_next(points, hash, &at) != NT_NONE;
-	const bool other = several || first != point; /* or none */
-	if (!mirrored)
-		return several || !other || nt_hash_index_add(points, hash, point);
-	if (other || (check->twins && nt_bit(check->twins, side / 3)))
-		counts[2 * island + (first != NT_NONE)]++;
+	return (size_t)nt_hash_words(nt_hash_floats(c->uv[0], c->uv[1]), c->island) & (table->size - 1);
+}
+
+static bool grow_table(corner_table *table)
+{
+	corner_table larger = {.size = table->size ? 2 * table->size : 1024, .count = table->count};
+	larger.corners = nt_alloc(larger.size, sizeof *larger.corners);
+	if (!larger.corners)
+		return false;
+	memset(larger.corners, 0xff, larger.size * sizeof *larger.corners);
+	for (size_t i = 0; i < table->size; i++) {
+		if (table->corners[i].island == NT_NONE)
+			continue;
+		size_t at = place_of(&larger, &table->corners[i]);
+		while (larger.corners[at].island != NT_NONE)
+			at = (at + 1) & (larger.size - 1);
+		larger.corners[at] = table->corners[i];
+	}
+	free(table->corners);
+	*table = larger;
 	return true;
 }
 
-/* Calls meet_corner for the triangles of one orientation in mixed islands: once for each vertex and island, as long as
- * the island's triangles follow each other. */
-static bool visit_vertices(const nt_check *check, bool mirrored, uint32_t *last, nt_hash_index *points, size_t *counts)
+/* Notes an unmirrored corner, of two points at most, or counts a mirrored one: in counts[1] when an unmirrored corner
+ * at another point has its coordinates, in counts[0] when none has. Points of the fold itself say nothing, but of a
+ * twin. False: out of memory. */
+static bool meet_corner(const nt_check *check, uint32_t side, uint32_t island, bool mirrored, corner_table *table,
+	size_t *counts)
 {
-	const nt_surface *s = &check->surface;
-	bool done = true;
-	memset(last, 0xff, check->mesh->vertex_count * sizeof *last);
-	for (size_t t = 0; t < s->triangle_count; t++) {
-		const uint32_t island = check->islands[t];
-		if (nt_settled_orientation(check, t) != (mirrored ? -1 : 1) || island == NT_NONE ||
-			check->facts->islands[island].kind != NT_ISLAND_MIXED)
+	const float *uv = nt_side_texcoord(&check->surface, side);
+	const corner own = {{uv[0], uv[1]}, island, nt_side_point(&check->surface, side)};
+	if (2 * (table->count + 1) > table->size && !grow_table(table))
+		return false;
+	size_t at = place_of(table, &own), met = 0;
+	bool other = false;
+	for (; table->corners[at].island != NT_NONE; at = (at + 1) & (table->size - 1)) {
+		const corner *c = &table->corners[at];
+		if (c->uv[0] != uv[0] || c->uv[1] != uv[1] || c->island != island)
 			continue;
-		for (uint32_t side = (uint32_t)(3 * t); side < 3 * t + 3; side++) {
-			uint32_t *met = &last[nt_side_vertex(s, side)];
-			if (*met != island)
-				done &= meet_corner(check, side, island, mirrored, points, counts);
-			*met = island;
-		}
+		met++;
+		other |= c->point != own.point;
 	}
-	return done;
+	if (!mirrored && met < 2 && (other || !met)) {
+		table->corners[at] = own;
+		table->count++;
+	}
+	if (mirrored && (other || !met || (check->twins && nt_bit(check->twins, side / 3))))
+		counts[2 * island + (met > 0)]++;
+	return true;
 }
 
 /* Sets `overlaps_itself` of mixed islands: mirrored corners lie on unmirrored corners of the same island, and the
- * triangles on its triangles. */
+ * triangles on its triangles. Each vertex counts once for each island, as long as the island's triangles follow each
+ * other. */
 static nt_status find_overlapping(nt_check *check)
 {
-	const size_t islands = check->facts->island_count;
+	const nt_surface *s = &check->surface;
+	const size_t islands = check->facts->island_count, vertices = check->mesh->vertex_count;
 	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
-	uint32_t *last = nt_scratch_alloc(check->scratch, check->mesh->vertex_count, sizeof *last);
+	uint32_t *last = nt_scratch_alloc(check->scratch, vertices, sizeof *last);
 	size_t *counts = nt_scratch_alloc(check->scratch, 2 * islands, sizeof *counts);
-	if (!last || !counts)
-		return NT_ERROR_MEMORY;
-	memset(counts, 0, 2 * islands * sizeof *counts);
-	nt_hash_index points = {0};
-	const bool done = visit_vertices(check, false, last, &points, counts) &&
-		visit_vertices(check, true, last, &points, counts);
-	for (size_t i = 0; i < islands; i++) {
+	corner_table table = {0};
+	bool done = last && counts;
+	if (done)
+		memset(counts, 0, 2 * islands * sizeof *counts);
+	for (int mirrored = 0; mirrored < 2 && done; mirrored++) {
+		memset(last, 0xff, vertices * sizeof *last);
+		for (size_t t = 0; t < s->triangle_count && done; t++) {
+			const uint32_t island = check->islands[t];
+			if (nt_settled_orientation(check, t) != (mirrored ? -1 : 1) || island == NT_NONE ||
+				check->facts->islands[island].kind != NT_ISLAND_MIXED)
+				continue;
+			for (uint32_t side = (uint32_t)(3 * t); side < 3 * t + 3; side++) {
+				uint32_t *before = &last[nt_side_vertex(s, side)];
+				if (*before != island)
+					done &= meet_corner(check, side, island, mirrored, &table, counts);
+				*before = island;
+			}
+		}
+	}
+	for (size_t i = 0; i < islands && done; i++) {
 		nt_island *island = &check->facts->islands[i];
 		const double corners = (double)(counts[2 * i] + counts[2 * i + 1]);
 		island->overlaps_itself = island->kind == NT_ISLAND_MIXED && island->covered >= EXACT_SHARE &&
 			counts[2 * i + 1] > 0 && (double)counts[2 * i + 1] >= EXACT_SHARE * corners;
 	}
-	nt_hash_index_free(&points);
+	free(table.corners);
 	nt_scratch_back(check->scratch, mark);
 	return done ? NT_OK : NT_ERROR_MEMORY;
 }

@@ -50,45 +50,48 @@ static bool is_against(const nt_mesh *mesh, uint32_t a, uint32_t b)
 	return x[0] * y[0] + x[1] * y[1] + x[2] * y[2] < 0.0f && compare_normals(mesh, a, b) < 0;
 }
 
-/* A triangle, or a quad however it is cut, by the edges around it: sums of their hashes. */
+/* A triangle, or a quad however it is cut. */
 typedef struct outline {
-	uint64_t key;      /* whichever way they go */
-	uint64_t turn;     /* of those that ascend, less the others: that of the reverse is the negative */
-	uint32_t triangle; /* its first */
+	uint32_t points[4]; /* in the order, of all that go around it, that is the least; NT_NONE behind a third */
+	int turn;           /* 1: the face goes around that way, -1: the other way, 0: that is the same */
+	uint32_t triangle;  /* its first */
 } outline;
 
-static int by_key(const void *a, const void *b)
+static int by_points(const void *a, const void *b)
 {
 	const outline *x = a, *y = b;
-	if (x->key != y->key)
-		return x->key < y->key ? -1 : 1;
-	return x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
+	const int order = memcmp(x->points, y->points, sizeof x->points);
+	return order ? order : x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
 }
 
 /* The corners of a quad follow each other, and both ways to cut it begin with its first one. */
 static outline find_outline(const nt_surface *s, size_t t, size_t size)
 {
-	outline o = {.triangle = (uint32_t)t};
+	outline best = {.triangle = (uint32_t)t};
 	uint32_t points[4];
 	for (size_t k = 0; k < size; k++) {
 		const uint32_t corner = nt_side_corner(s, 3 * t) + (uint32_t)k;
 		points[k] = size == 3 ? nt_side_point(s, 3 * t + k)
 				      : s->points[s->mesh->indices ? s->mesh->indices[corner] : corner];
 	}
-	for (size_t k = 0; k < size; k++) {
-		const uint32_t a = points[k], b = points[(k + 1) % size];
-		const uint64_t hash = a < b ? nt_hash_words(a, b) : nt_hash_words(b, a);
-		o.key += hash;
-		o.turn += a < b ? hash : a > b ? 0 - hash : 0;
+	for (size_t way = 0; way < 2 * size; way++) {
+		outline next = {{NT_NONE, NT_NONE, NT_NONE, NT_NONE}, way % 2 ? -1 : 1, (uint32_t)t};
+		for (size_t k = 0; k < size; k++)
+			next.points[k] = points[(way / 2 + (way % 2 ? size - k : k)) % size];
+		const int order = way ? by_points(&next, &best) : -1;
+		if (order < 0)
+			best = next;
+		else if (order == 0 && next.turn != best.turn)
+			best.turn = 0;
 	}
-	return o;
+	return best;
 }
 
 /* Whether two faces of the same outline are each other's reverse and lit so. */
 static bool is_reverse(const nt_surface *s, const outline *a, const outline *b, size_t size)
 {
 	const size_t sides = 3 * (size - 2), first = 3 * (size_t)a->triangle, second = 3 * (size_t)b->triangle;
-	if (a->turn + b->turn != 0)
+	if (a->turn + b->turn)
 		return false;
 	for (size_t side = first; side < first + sides; side++)
 		for (size_t other = second; other < second + sides; other++)
@@ -123,9 +126,9 @@ static nt_status pair_faces(const nt_surface *s, const uint64_t *doubled, uint64
 		if (may_be_doubled(s, doubled, paired, t, size))
 			list[added++] = find_outline(s, t, size);
 	if (count)
-		qsort(list, count, sizeof *list, by_key);
+		qsort(list, count, sizeof *list, by_points);
 	for (size_t i = 0, end; i < count; i = end) {
-		for (end = i + 1; end < count && list[end].key == list[i].key;)
+		for (end = i + 1; end < count && !memcmp(list[end].points, list[i].points, sizeof list->points);)
 			end++;
 		if (end - i != 2 || !is_reverse(s, &list[i], &list[i + 1], size))
 			continue;

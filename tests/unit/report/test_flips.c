@@ -118,6 +118,17 @@ TEST(a_small_island_that_has_a_twin_is_mirrored)
 	hand_free(h, report);
 }
 
+/* Bits of 1 and 4 have the sum of those of 2 and 2: the triangle (3,2) (4,2) (4,3) is no twin. */
+TEST(what_has_the_hash_of_a_twin_is_none)
+{
+	const float other[3][2] = {{3, 1}, {4, 4}, {4, 3}};
+	hand_mesh *h = make_grid();
+	cut_out(h, 2 * (2 * N + 2), other);
+	nt_report *report = hand_report_by_equal_hashes(h);
+	assert_int_equal(hand_finding(report, NT_CODE_UV_FLIPPED_TRIANGLE)->count, 1);
+	hand_free(h, report);
+}
+
 /* All of it, or one quad of it, which would be few enough to be flipped. */
 TEST(the_back_of_a_doubled_sheet_shares_texels)
 {

@@ -236,6 +236,23 @@ TEST(fold_is_found_inside_its_island)
 	hand_free(h, report);
 }
 
+/* The same fold as the second island. */
+TEST(corners_of_one_hash_do_not_make_a_fold_symmetric)
+{
+	static const float u[4] = {0.0f, 1.0f, 0.4f, 1.4f};
+	hand_mesh *h = hand_new();
+	hand_triangle(h, hand_vertex(h, 9, 0, 0, 9, 0), hand_vertex(h, 10, 0, 0, 10, 0), hand_vertex(h, 9, 1, 0, 9, 1));
+	for (int i = 0; i < 4; i++) {
+		hand_vertex(h, (float)i, 0, 0, u[i], 0);
+		hand_vertex(h, (float)i, 1, 0, u[i], 1);
+	}
+	for (uint32_t i = 3; i < 9; i += 2)
+		hand_quad(h, i, i + 2, i + 3, i + 1);
+	nt_report *report = hand_report_by_equal_hashes(h);
+	assert_int_equal(hand_finding(report, NT_CODE_UV_MIXED_WINDING_ISLAND)->island, 1);
+	hand_free(h, report);
+}
+
 static void add_quad(hand_mesh *h, float x, float u, bool mirrored)
 {
 	const uint32_t a = hand_vertex(h, x, 0, 0, mirrored ? u + 1 : u, 0);
@@ -403,6 +420,20 @@ TEST(edge_of_many_triangles_joins_those_with_the_same_coordinates)
 	hand_free(h, report);
 }
 
+/* Five triangles with the coordinates (0, 0) at one end of their edge, and one of two at the other. */
+TEST(triangles_of_one_hash_are_not_joined)
+{
+	hand_mesh *h = hand_new();
+	for (unsigned i = 0; i < 5; i++) {
+		const uint32_t a = hand_vertex(h, 0, 0, 0, 0, 0), b = hand_vertex(h, 0, 1, 0, i % 2 ? 5 : 0, 1);
+		const uint32_t c = hand_vertex(h, cosf((float)i), 0, sinf((float)i), 1, 0);
+		hand_triangle(h, i % 2 ? b : a, i % 2 ? a : b, c);
+	}
+	nt_report *report = hand_report_by_equal_hashes(h);
+	assert_int_equal(report->meshes[0].island_count, 2);
+	hand_free(h, report);
+}
+
 static uint64_t seam_fingerprint(const hand_mesh *h)
 {
 	nt_report *report = hand_report(h, NULL);
@@ -472,6 +503,28 @@ TEST(front_and_back_of_a_sheet_with_opposite_normals_share_no_edge)
 		assert_int_equal(m->boundary_loops, rows[i].loops);
 		hand_free(h, report);
 	}
+}
+
+/* Triangles 0 2 3 and 0 5 1 around a middle have equal products of the numbers at their outer edges. */
+TEST(sheets_are_told_apart_by_their_points)
+{
+	hand_mesh *h = hand_new();
+	for (unsigned side = 0; side < 2; side++)
+		for (unsigned k = 0; k < 6; k++) {
+			const float angle = (float)k, r = k ? 1.0f : 0.0f;
+			const float x = r * cosf(angle), y = r * sinf(angle);
+			h->normals[hand_vertex(h, x, y, 0, x, y)][2] = side ? -1.0f : 1.0f;
+		}
+	for (uint32_t side = 0; side < 2; side++)
+		for (uint32_t k = 0; k < 5; k++) {
+			const uint32_t a = 6 * side + 1 + k, b = 6 * side + 1 + (k + 1) % 5;
+			hand_triangle(h, 6 * side, side ? b : a, side ? a : b);
+		}
+	hand_give_normals(h);
+	nt_report *report = hand_report_by_equal_hashes(h);
+	assert_int_equal(report->meshes[0].non_manifold_edges, 0);
+	assert_int_equal(report->meshes[0].boundary_edges, 10);
+	hand_free(h, report);
 }
 
 /* The lid of one box and the bottom of another are each other's reverse, but both hang on walls: four edges of four
