@@ -362,7 +362,7 @@ static float *add_delta(const nt_mesh *mesh, const nt_displacement *d, const flo
  * the tangents there are the base's, bit for bit. */
 static void normalise_moved(bool integers, const float *base, float *moved, size_t count)
 {
-	static const double unit = 1.0 / 2048; /* pipeline/unit_normals.c */
+	static const double unit = 1.0 / 2048; /* pipeline/normals.c */
 	for (size_t i = 0; i < count; i++) {
 		const float *b = base + 3 * i;
 		const double squared = (double)b[0] * b[0] + (double)b[1] * b[1] + (double)b[2] * b[2];

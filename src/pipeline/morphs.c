@@ -10,28 +10,39 @@
  *
  * Without texture coordinates there is nothing to solve: the tangents turn with their normals (authored.c). Half of
  * such a delta is half of the turn, so that nothing has to be looked at halfway.
+ *
+ * With them, tangents are off at weight 0.5. A client adds the delta of TANGENT times the weight, which is exact at the
+ * ends. Between them dP/du of a triangle moves along a straight line from its old to its new value; the sum of two unit
+ * vectors follows the angle, so that the two part where a target stretches what it turns, and the sum has no direction
+ * where a target turns by 180 degrees. The right answer is a solve of the mesh as the target moves it at weight 0.5.
+ * On one triangle what is right lies between the tangents of the two ends and the client's halfway, so the error is
+ * at most half of what the target turns. Averaging over triangles can exceed that a little. Targets that turn no
+ * tangent by more than the limit itself are therefore not solved again, which saves most of them the time.
  */
-#include "pipeline/morphs.h"
 #include "pipeline/stages.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "api/tangents.h"
+#include "base/angle.h"
+#include "base/dvec.h"
 #include "base/hash_index.h"
-#include "gltf/load.h"
 #include "gltf/morph_deltas.h"
 #include "scene/morphs.h"
 
 enum { KEY_BITS = 20 }; /* of a corner number in each float of a key: floats are exact to 24 */
+
+static size_t vertex_of(const nmtan_mesh *view, size_t corner)
+{
+	return view->indices ? view->indices[corner] : corner;
+}
 
 /* Which side of its winding the normals of a triangle are on: 1, -1, or 0 where that cannot be said. */
 static int side_of(const nmtan_mesh *view, size_t triangle)
 {
 	const float *p[3], *n[3];
 	for (size_t k = 0; k < 3; k++) {
-		const size_t corner = 3 * triangle + k;
-		const size_t vertex = view->indices ? view->indices[corner] : corner;
+		const size_t vertex = vertex_of(view, 3 * triangle + k);
 		p[k] = view->positions + 3 * vertex;
 		n[k] = view->normals + 3 * vertex;
 	}
@@ -65,58 +76,6 @@ nt_status nt_morphs_restore(nt_mesh *mesh, bool targets)
 	}
 	nt_restore_authored(mesh, mesh->corner_tangents, mesh->solved_tangents);
 	return NT_OK;
-}
-
-static nt_status measure_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved,
-	const nmtan_options *options, nt_morph *morph)
-{
-	if (!nt_morphs_turn(mesh, morph))
-		return NT_OK;
-	float *halfway;
-	const nt_status status = nt_morphs_solve_halfway(base, moved, mesh->halves, options, &halfway);
-	if (!status)
-		nt_morphs_compare_halfway(mesh, base, moved, halfway, morph);
-	free(halfway);
-	return status;
-}
-
-static nt_status solve_target(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_mesh *moved,
-	const nmtan_options *options, nt_morph *morph)
-{
-	morph->corner_tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float));
-	if (!morph->corner_tangents)
-		return NT_ERROR_MEMORY;
-	mesh->morph_turned += nt_morphs_count_turned(view, moved);
-	nt_status status = NT_OK;
-	if (!view->texcoords) {
-		nt_turn_untextured(mesh, view, moved, morph->corner_tangents);
-	} else {
-		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = morph->corner_tangents};
-		status = nt_status_of(nt_tangents_of_halves(moved, mesh->halves, options, &output, NULL));
-		if (!status)
-			status = measure_halfway(mesh, view, moved, options, morph);
-	}
-	return status ? status : nt_morphs_classify(mesh, morph);
-}
-
-nt_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options)
-{
-	nt_status status = NT_OK;
-	mesh->morph_turned = 0;
-	for (size_t m = 0; !status && m < mesh->morph_count; m++) {
-		float *positions, *normals;
-		nmtan_mesh moved = *view;
-		status = nt_gltf_move(mesh, &mesh->morphs[m], &positions, &normals);
-		if (positions)
-			moved.positions = positions;
-		if (normals)
-			moved.normals = normals;
-		if (!status)
-			status = solve_target(mesh, view, &moved, options, &mesh->morphs[m]);
-		free(positions);
-		free(normals);
-	}
-	return status;
 }
 
 /* ---- classes of corners ---- */
@@ -224,13 +183,13 @@ static bool has_row(const nt_mesh *mesh, const float *rows, size_t k)
 	return memcmp(row, other, 3 * sizeof *row) != 0;
 }
 
-static nt_status store_rows(nt_mesh *mesh, nt_morph *morph)
+static nt_status store_rows(nt_mesh *mesh, nt_morph *morph, const float *tangents)
 {
 	const nt_corner_classes *classes = mesh->corner_classes;
 	nt_morph_tangents *all = mesh->morph_tangents;
 	size_t count = 0;
 	for (size_t k = 0; k < classes->count; k++)
-		count += has_row(mesh, morph->corner_tangents, k);
+		count += has_row(mesh, tangents, k);
 	const bool listed = 4 * count < 3 * classes->count;
 	morph->class_count = classes->count;
 	morph->row_count = listed ? count : classes->count;
@@ -242,11 +201,11 @@ static nt_status store_rows(nt_mesh *mesh, nt_morph *morph)
 		return NT_ERROR_MEMORY;
 	uint32_t *number = all->words + all->word_count, *row = number + (listed ? count : 0);
 	for (size_t k = 0; k < classes->count; k++) {
-		if (listed && !has_row(mesh, morph->corner_tangents, k))
+		if (listed && !has_row(mesh, tangents, k))
 			continue;
 		if (listed)
 			*number++ = (uint32_t)k;
-		memcpy(row, morph->corner_tangents + 4 * (size_t)classes->first[k], 3 * sizeof *row);
+		memcpy(row, tangents + 4 * (size_t)classes->first[k], 3 * sizeof *row);
 		row += 3;
 	}
 	all->word_count = (size_t)(row - all->words);
@@ -263,17 +222,13 @@ static void keep_unturned(const nt_mesh *mesh, float *moved)
 			memcpy(moved, authored, 3 * sizeof *moved);
 }
 
-nt_status nt_morphs_classify(nt_mesh *mesh, nt_morph *morph)
+nt_status nt_morphs_classify(nt_mesh *mesh, nt_morph *morph, float *rows)
 {
-	nt_status status = mesh->corner_classes ? NT_OK : begin(mesh);
-	keep_unturned(mesh, morph->corner_tangents);
-	if (!status && !divide(mesh->corner_classes, mesh->corner_count, morph->corner_tangents))
-		status = NT_ERROR_MEMORY;
-	if (!status)
-		status = store_rows(mesh, morph);
-	free(morph->corner_tangents);
-	morph->corner_tangents = NULL;
-	return status;
+	const nt_status status = mesh->corner_classes ? NT_OK : begin(mesh);
+	keep_unturned(mesh, rows);
+	if (status)
+		return status;
+	return divide(mesh->corner_classes, mesh->corner_count, rows) ? store_rows(mesh, morph, rows) : NT_ERROR_MEMORY;
 }
 
 static bool same_corner(const nt_mesh *mesh, size_t a, size_t b)
@@ -322,12 +277,12 @@ nt_status nt_morphs_keys(nt_mesh *mesh, const nmtan_mesh *view, float *keys)
 	return status;
 }
 
-nt_status nt_morphs_finish(nt_mesh *mesh)
+nt_status nt_morphs_finish(nt_mesh *mesh, size_t source_count)
 {
-	nt_split *split = &mesh->split;
+	const nt_split *split = &mesh->split;
 	nt_corner_classes *classes = mesh->corner_classes;
 	nt_morph_tangents *all = mesh->morph_tangents;
-	const size_t count = mesh->vertex_count + split->source_count;
+	const size_t count = mesh->vertex_count + source_count;
 	all->class_of = nt_alloc(count, sizeof *all->class_of);
 	if (!all->class_of)
 		return NT_ERROR_MEMORY;
@@ -361,10 +316,6 @@ nt_status nt_morphs_keep(nt_mesh *mesh, nt_arena *arena)
 
 void nt_morphs_free(nt_mesh *mesh, bool failed)
 {
-	for (size_t m = 0; m < mesh->morph_count; m++) {
-		free(mesh->morphs[m].corner_tangents);
-		mesh->morphs[m].corner_tangents = NULL;
-	}
 	free(mesh->solved_tangents);
 	mesh->solved_tangents = NULL;
 	free_classes(mesh);
@@ -375,4 +326,115 @@ void nt_morphs_free(nt_mesh *mesh, bool failed)
 	free(mesh->morph_tangents->words);
 	free(mesh->morph_tangents);
 	mesh->morph_tangents = NULL;
+}
+
+/* ---- halfway ---- */
+
+/* The cosine of 5 degrees, from which on there is a finding. */
+static const double LIMIT_COSINE = 0.99619469809174553;
+
+/* Half a sum of two unit vectors that is shorter has lost its direction. */
+static const double CANCELLED = 1.0 / 1024;
+
+/* Twice the area of a triangle over the square of its longest edge at either end: what is below has collapsed on
+ * its way (positions are rounded), and no direction is right there. */
+static const double COLLAPSED = 1e-4;
+
+/* The cosine of the angle between two vectors that are not zero. */
+static double cosine_between(nt_dvec3 a, nt_dvec3 b)
+{
+	return nt_dvec3_dot(a, b) / sqrt(nt_dvec3_dot(a, a) * nt_dvec3_dot(b, b));
+}
+
+/* As they were solved. */
+static const float *base_tangents(const nt_mesh *mesh)
+{
+	return mesh->solved_tangents ? mesh->solved_tangents : mesh->corner_tangents;
+}
+
+bool nt_morphs_turn(const nt_mesh *mesh, const float *rows)
+{
+	const float *base = base_tangents(mesh);
+	for (size_t c = 0; c < mesh->corner_count; c++)
+		if (cosine_between(nt_dvec3_load(base + 4 * c), nt_dvec3_load(rows + 4 * c)) < LIMIT_COSINE)
+			return true;
+	return false;
+}
+
+/* The middle of rows that a target moves; NULL: memory is exhausted. */
+static float *middle_of(const float *a, const float *b, size_t count)
+{
+	float *middle = nt_alloc(count, 3 * sizeof *middle);
+	for (size_t i = 0; middle && i < 3 * count; i++)
+		middle[i] = (float)(((double)a[i] + b[i]) * 0.5);
+	return middle;
+}
+
+bool nt_morphs_halfway(const nmtan_mesh *base, const nmtan_mesh *moved, float **positions, float **normals)
+{
+	const size_t count = base->vertex_count;
+	if (moved->positions != base->positions)
+		*positions = middle_of(base->positions, moved->positions, count);
+	if (moved->normals != base->normals)
+		*normals = middle_of(base->normals, moved->normals, count);
+	for (size_t i = 0; *normals && i < count; i++) {
+		nt_dvec3 n = nt_dvec3_load(*normals + 3 * i);
+		nt_dvec3_normalise(&n);
+		nt_dvec3_store(n, *normals + 3 * i);
+	}
+	return (*positions || moved->positions == base->positions) && (*normals || moved->normals == base->normals);
+}
+
+/* Twice the area of a triangle between two places, and the square of its longest edge there. */
+static double measure(const nmtan_mesh *view, const float *from, const float *to, size_t triangle, double *longest)
+{
+	nt_dvec3 p[3];
+	for (size_t k = 0; k < 3; k++) {
+		const size_t v = vertex_of(view, 3 * triangle + k);
+		p[k] = nt_dvec3_scale(0.5, nt_dvec3_add(nt_dvec3_load(from + 3 * v), nt_dvec3_load(to + 3 * v)));
+	}
+	*longest = 0;
+	for (size_t k = 0; k < 3; k++) {
+		const nt_dvec3 edge = nt_dvec3_sub(p[(k + 1) % 3], p[k]);
+		*longest = fmax(*longest, nt_dvec3_dot(edge, edge));
+	}
+	return nt_dvec3_length(nt_dvec3_cross(nt_dvec3_sub(p[1], p[0]), nt_dvec3_sub(p[2], p[0])));
+}
+
+/* Whether the triangle itself has a direction at weight 0.5. */
+static bool has_direction(const nmtan_mesh *base, const nmtan_mesh *moved, size_t triangle)
+{
+	const float *uv[3], *from = base->positions, *to = moved->positions;
+	for (size_t k = 0; k < 3; k++)
+		uv[k] = base->texcoords + 2 * vertex_of(base, 3 * triangle + k);
+	double before, after, now;
+	measure(base, from, from, triangle, &before);
+	measure(base, to, to, triangle, &after);
+	const double area = measure(base, from, to, triangle, &now);
+	return area > COLLAPSED * fmax(before, after) && nmtan_orientation(uv[0], uv[1], uv[2]) != 0;
+}
+
+void nt_morphs_compare_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved,
+	const float *rows, const float *halfway, nt_morph *morph)
+{
+	static const double degrees = 57.29577951308232;
+	const float *own = base_tangents(mesh);
+	double least = 1;
+	morph->halfway_triangles = 0;
+	for (size_t t = 0; t < mesh->face_count; t++) {
+		double worst = 1;
+		bool cancelled = false;
+		for (size_t c = 3 * t; c < 3 * t + 3; c++) {
+			const nt_dvec3 client = nt_dvec3_scale(0.5, nt_dvec3_add(nt_dvec3_load(own + 4 * c),
+				nt_dvec3_load(rows + 4 * c)));
+			const bool lost = nt_dvec3_dot(client, client) < CANCELLED * CANCELLED;
+			worst = fmin(worst, lost ? 0 : cosine_between(client, nt_dvec3_load(halfway + 4 * c)));
+			cancelled |= lost;
+		}
+		if (worst < LIMIT_COSINE && (cancelled || has_direction(base, moved, t))) {
+			morph->halfway_triangles++;
+			least = fmin(least, worst);
+		}
+	}
+	morph->halfway_degrees = nt_angle(sqrt(fmax(0, 1 - least * least)), least) * degrees;
 }

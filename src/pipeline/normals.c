@@ -1,87 +1,32 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The stage that makes normals: corner normals come from tangent/normals.c; here they become vertices. A
- * vertex splits where its corners' normals differ: the same splitting as for tangents, with the normal in
- * the place of the tangent.
+ * Normals: tangent/normals.c makes them for corners, here they become those of vertices. A vertex splits where its
+ * corners' normals differ: the same splitting as for tangents, with the normal in the place of the tangent.
+ *
+ * The one normal of a vertex is what is written, made unit, and tangents have to lie across that. Most meshes have
+ * nothing but normals of unit length and are only looked at. A length is 1 if |n|^2 is within 2^-11 of it: such normals
+ * are used as they are, so that rounding them again changes no tangent. Others are made unit, here and in the same way
+ * for every format. The normals that are solved are those that are written; but a glTF that is made from a glTF keeps
+ * what it has, and so does a PLY whose normals are integers. One without a direction counts as lacking if the output
+ * gets new normals; in a glTF it stays, and tangents are made for the smooth normal of the faces around it.
  */
 #include "pipeline/stages.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/dvec.h"
+#include "base/parallel.h"
 #include "tangent/normals.h"
+#include "tangent/usable.h"
 
 /* Made normals less apart than this are one: rounding of positions makes some ten millionths of well-shaped triangles
  * in one plane, and the coarsest normals that glTF can quantize to in 16 bits are 3e-5 apart. */
 static const double CLOSE_RADIANS = 1e-5;
 
-/* Data of one run of the stage; everything is malloc'ed and handed to the arena at the end. */
-typedef struct normal_job {
-	float (*rows)[4];     /* [corner_count] normals as rows that nmtan_split compares */
-	uint32_t *indices;    /* [corner_count] */
-	uint32_t *sources;    /* [corner_count] */
-	float *normals;       /* [new vertex count][3] */
-} normal_job;
-
-static void free_job(normal_job *job)
-{
-	free(job->rows);
-	free(job->indices);
-	free(job->sources);
-	free(job->normals);
-}
-
-static bool replaces(nt_normals mode)
-{
-	return mode >= NT_NORMALS_REPLACE_FLAT;
-}
-
-static bool lacks_normal(const nt_mesh *mesh, size_t vertex)
-{
-	return !mesh->normals || (mesh->vertex_lacks && mesh->vertex_lacks[vertex] & NT_LACKS_NORMAL);
-}
-
-/* Whether there is anything to be made. */
-static bool any_made(const nt_mesh *mesh, nt_normals mode)
-{
-	if (replaces(mode) || !mesh->normals)
-		return true;
-	for (size_t v = 0; mesh->vertex_lacks && v < mesh->vertex_count; v++)
-		if (lacks_normal(mesh, v))
-			return true;
-	return false;
-}
-
-/* A grown copy of a vertex array in the arena, copies appended; NULL when memory is exhausted. */
-static float *grow_rows(nt_arena *arena, const float *rows, size_t floats, size_t count,
-	const uint32_t *sources, size_t source_count)
-{
-	float *grown = nt_arena_alloc(arena, count + source_count, floats * sizeof *grown);
-	if (!grown)
-		return NULL;
-	memcpy(grown, rows, count * floats * sizeof *grown);
-	for (size_t i = 0; i < source_count; i++)
-		memcpy(grown + (count + i) * floats, rows + (size_t)sources[i] * floats,
-			floats * sizeof *grown);
-	return grown;
-}
-
-static bool grow_mesh(nt_arena *arena, nt_mesh *mesh, const uint32_t *sources, size_t source_count)
-{
-	float **const arrays[] = {&mesh->positions, &mesh->texcoords, &mesh->colors,
-		&mesh->solve_texcoords};
-	static const size_t floats[] = {3, 2, 4, 2};
-	for (int i = 0; i < 4 && source_count > 0; i++) {
-		if (!*arrays[i])
-			continue;
-		*arrays[i] = grow_rows(arena, *arrays[i], floats[i], mesh->vertex_count, sources,
-			source_count);
-		if (!*arrays[i])
-			return false;
-	}
-	return true;
-}
-
-static nt_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, int degrees, normal_job *job)
+/* Corner normals of a mesh, as rows that nmtan_split compares; the fourth number says that smooth ones cancel. mode:
+ * how they are made; groups and smoothing go by it. */
+static nt_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, int degrees, float (*rows)[4])
 {
 	nmtan_stored_uv stored;
 	nmtan_mesh view = nt_mesh_view(mesh, &stored);
@@ -102,24 +47,140 @@ static nt_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, int d
 	}
 	if (!made)
 		made = nt_corner_normals(&view, mesh->corner_count,
-			mode == NT_NORMALS_AUTO ? mesh->face_smoothing : flat, groups, &scratch, job->rows);
+			mode == NT_NORMALS_AUTO ? mesh->face_smoothing : flat, groups, &scratch, rows);
 	nt_scratch_free(&scratch);
 	return nt_status_of(made);
 }
 
+/* ---- normals that are there ---- */
+
+typedef struct looking {
+	const float *normals;
+	atomic_bool odd;
+} looking;
+
+static void look_at_range(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	looking *l = context;
+	size_t odd = 0;
+	for (size_t v = begin; v < end; v++)
+		odd += !nt_is_unit_normal(l->normals + 3 * v);
+	if (odd)
+		atomic_store(&l->odd, true);
+}
+
+/* Whether a mesh has normals that are not of unit length. */
+static bool has_odd(const nt_mesh *mesh, unsigned threads)
+{
+	enum { GRAIN = 1 << 16 };
+	looking l = {.normals = mesh->normals};
+	const size_t count = mesh->normals ? mesh->vertex_count : 0;
+	nt_parallel_ranges(count < 2 * GRAIN ? 1 : nt_thread_count(threads), count, GRAIN, look_at_range, &l);
+	return l.odd;
+}
+
+static bool has_direction(const float *n)
+{
+	nt_dvec3 d = nt_dvec3_load(n);
+	return nt_dvec3_normalise(&d);
+}
+
+/* Vertices whose normal has no direction lack it. */
+static nt_status mark_directionless(nt_scene *scene, nt_mesh *mesh, unsigned threads)
+{
+	if (!has_odd(mesh, threads))
+		return NT_OK;
+	for (size_t v = 0; v < mesh->vertex_count; v++) {
+		if (has_direction(mesh->normals + 3 * v))
+			continue;
+		if (!mesh->vertex_lacks) {
+			mesh->vertex_lacks = nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->vertex_count, 1);
+			if (!mesh->vertex_lacks)
+				return NT_ERROR_MEMORY;
+			memset(mesh->vertex_lacks, 0, mesh->vertex_count);
+		}
+		mesh->vertex_lacks[v] |= NT_LACKS_NORMAL;
+	}
+	return NT_OK;
+}
+
+/* Vertices without a direction take the smooth normal of their first corner. */
+static nt_status replace_directionless(nt_mesh *mesh, float *normals)
+{
+	float (*corners)[4] = nt_alloc(mesh->corner_count, sizeof *corners);
+	const nt_status status = corners ? make_corner_normals(mesh, NT_NORMALS_SMOOTH, 0, corners) : NT_ERROR_MEMORY;
+	for (size_t c = 0; !status && c < mesh->corner_count; c++) {
+		float *n = normals + 3 * nt_mesh_vertex(mesh, c);
+		if (has_direction(n))
+			continue;
+		memcpy(n, corners[c], 3 * sizeof *n);
+		mesh->replaced_normals++;
+	}
+	free(corners);
+	return status;
+}
+
+/* In solve_normals of a glTF, which keeps those that it has. */
+static nt_status make_unit(nt_scene *scene, nt_mesh *mesh, unsigned threads)
+{
+	if (!has_odd(mesh, threads))
+		return NT_OK;
+	float *normals = nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->vertex_count, 3 * sizeof *normals);
+	if (!normals)
+		return NT_ERROR_MEMORY;
+	memcpy(normals, mesh->normals, mesh->vertex_count * 3 * sizeof *normals);
+	size_t directionless = 0;
+	for (size_t v = 0; v < mesh->vertex_count; v++) {
+		float *n = normals + 3 * v;
+		nt_dvec3 d = nt_dvec3_load(n);
+		if (nt_is_unit_normal(n))
+			continue;
+		if (!nt_dvec3_normalise(&d)) {
+			directionless++;
+			continue;
+		}
+		nt_dvec3_store(d, n);
+		mesh->scaled_normals++;
+	}
+	*(nt_format_is_gltf(scene->format) ? &mesh->solve_normals : &mesh->normals) = normals;
+	return directionless ? replace_directionless(mesh, normals) : NT_OK;
+}
+
+/* ---- normals that are made ---- */
+
+static bool replaces(nt_normals mode)
+{
+	return mode >= NT_NORMALS_REPLACE_FLAT;
+}
+
+static bool lacks_normal(const nt_mesh *mesh, size_t vertex)
+{
+	return !mesh->normals || (mesh->vertex_lacks && mesh->vertex_lacks[vertex] & NT_LACKS_NORMAL);
+}
+
+/* Whether there is anything to be made. */
+static bool any_made(const nt_mesh *mesh, nt_normals mode)
+{
+	bool any = replaces(mode) || !mesh->normals;
+	for (size_t v = 0; !any && mesh->vertex_lacks && v < mesh->vertex_count; v++)
+		any = lacks_normal(mesh, v);
+	return any && mesh->corner_count;
+}
+
 /* Corners keep the normal their vertex has, where it has one and that is not to be replaced. */
-static void choose_normals(nt_mesh *mesh, nt_normals mode, normal_job *job)
+static void choose_normals(nt_mesh *mesh, nt_normals mode, float (*rows)[4])
 {
 	mesh->made_normal_corners = mesh->replaced_normal_corners = mesh->cancelled_normal_corners = 0;
 	for (size_t c = 0; c < mesh->corner_count; c++) {
 		const size_t vertex = nt_mesh_vertex(mesh, c);
 		const bool lacks = lacks_normal(mesh, vertex), make = lacks || replaces(mode);
 		if (!make)
-			memcpy(job->rows[c], mesh->normals + 3 * vertex, 3 * sizeof(float));
+			memcpy(rows[c], mesh->normals + 3 * vertex, 3 * sizeof(float));
 		mesh->made_normal_corners += lacks;
 		mesh->replaced_normal_corners += make && !lacks;
-		mesh->cancelled_normal_corners += make && job->rows[c][3] != 0.0f;
-		job->rows[c][3] = 0.0f;
+		mesh->cancelled_normal_corners += make && rows[c][3] != 0.0f;
+		rows[c][3] = 0.0f;
 	}
 }
 
@@ -133,7 +194,7 @@ static bool are_close(const float a[3], const float b[3])
 
 /* A corner takes the normal of an earlier corner of its vertex that differs by no more than rounding: two triangles
  * of a plane do not make two vertices. The last few different ones are looked at, so that a hub stays cheap. */
-static nt_status join_close(const nt_mesh *mesh, normal_job *job)
+static nt_status join_close(const nt_mesh *mesh, float (*rows)[4])
 {
 	enum { MOST_COMPARED = 8 };
 	uint32_t *last = nt_alloc(mesh->vertex_count, sizeof *last);   /* corner with the latest normal of a vertex */
@@ -144,10 +205,10 @@ static nt_status join_close(const nt_mesh *mesh, normal_job *job)
 		const size_t vertex = nt_mesh_vertex(mesh, c);
 		uint32_t other = last[vertex];
 		for (int i = 0;
-			i < MOST_COMPARED && other != NT_NONE && !are_close(job->rows[c], job->rows[other]); i++)
+			i < MOST_COMPARED && other != NT_NONE && !are_close(rows[c], rows[other]); i++)
 			other = i + 1 < MOST_COMPARED ? before[other] : NT_NONE;
 		if (other != NT_NONE) {
-			memcpy(job->rows[c], job->rows[other], sizeof job->rows[c]);
+			memcpy(rows[c], rows[other], sizeof rows[c]);
 			continue;
 		}
 		before[c] = last[vertex];
@@ -159,29 +220,100 @@ static nt_status join_close(const nt_mesh *mesh, normal_job *job)
 	return done ? NT_OK : NT_ERROR_MEMORY;
 }
 
-static nt_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job)
+/* Appends copies of `floats` numbers for each source to a vertex array, if it is there. False: memory is exhausted. */
+static bool grow_rows(nt_arena *arena, float **rows, size_t floats, size_t count, const uint32_t *sources,
+	size_t source_count)
+{
+	const float *before = *rows;
+	if (!before || !source_count)
+		return true;
+	*rows = nt_arena_alloc(arena, count + source_count, floats * sizeof **rows);
+	if (!*rows)
+		return false;
+	memcpy(*rows, before, count * floats * sizeof **rows);
+	for (size_t i = 0; i < source_count; i++)
+		memcpy(*rows + (count + i) * floats, before + sources[i] * floats, floats * sizeof **rows);
+	return true;
+}
+
+/* The vertices that rows make, indices and sources of a mesh. Vertices and their copies without texture coordinates
+ * stay known. */
+static nt_status make_vertices(nt_arena *arena, nt_mesh *mesh, float (*rows)[4], uint32_t *indices, uint32_t *sources)
 {
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
-	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = job->indices,
-		.sources = job->sources,
+	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = indices, .sources = sources,
 		.source_capacity = mesh->corner_count};
-	const nt_status status = nt_status_of(nmtan_split(&view, &job->rows[0][0], NULL, &split));
+	const nt_status status = nt_status_of(nmtan_split(&view, rows[0], NULL, &split));
 	if (status)
 		return status;
-	const size_t vertex_count = mesh->vertex_count + split.source_count;
-	job->normals = nt_calloc(vertex_count, 3 * sizeof(float));
-	if (!job->normals || !grow_mesh(nt_mesh_arena(scene, mesh), mesh, job->sources, split.source_count))
+	const size_t before = mesh->vertex_count, added = split.source_count, count = before + added;
+	const uint8_t *lacks = mesh->vertex_lacks;
+	bool any = false;
+	for (size_t v = 0; lacks && v < before; v++)
+		any |= lacks[v] & NT_LACKS_TEXCOORD;
+	uint8_t *kept = any ? nt_arena_alloc(arena, count, 1) : NULL;
+	float *normals = nt_arena_alloc(arena, count, 3 * sizeof *normals);
+	if (!normals || (any && !kept) || !grow_rows(arena, &mesh->positions, 3, before, sources, added) ||
+		!grow_rows(arena, &mesh->texcoords, 2, before, sources, added) ||
+		!grow_rows(arena, &mesh->colors, 4, before, sources, added) ||
+		!grow_rows(arena, &mesh->solve_texcoords, 2, before, sources, added))
 		return NT_ERROR_MEMORY;
-	for (size_t v = 0; v < vertex_count; v++)
-		job->normals[3 * v + 2] = 1.0f; /* for vertices that no face uses */
+	for (size_t v = 0; v < count; v++) {
+		memcpy(normals + 3 * v, (float[]){0, 0, 1}, 3 * sizeof *normals); /* for those that no face uses */
+		if (kept)
+			kept[v] = lacks[v < before ? v : sources[v - before]] & NT_LACKS_TEXCOORD;
+	}
 	for (size_t c = 0; c < mesh->corner_count; c++)
-		memcpy(job->normals + 3 * (size_t)job->indices[c], job->rows[c], 3 * sizeof(float));
-	mesh->vertex_count = vertex_count;
+		memcpy(normals + 3 * (size_t)indices[c], rows[c], 3 * sizeof *normals);
+	mesh->vertex_lacks = kept;
+	mesh->vertex_count = count;
+	mesh->vertex_sources = sources;
+	mesh->indices = indices;
+	mesh->normals = normals;
+	mesh->stored_normals = NULL;
+	mesh->tangents = NULL; /* authored for other normals */
+	mesh->normals_made = mesh->has_normals = true;
 	return NT_OK;
 }
 
-static void report_normals(nt_scene *scene, const nt_mesh *mesh, nt_normals mode)
+static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode, int degrees)
+{
+	nt_arena *arena = nt_mesh_arena(scene, mesh);
+	if (!any_made(mesh, mode))
+		return NT_OK;
+	float (*rows)[4] = nt_alloc(mesh->corner_count, sizeof *rows);
+	uint32_t *indices = nt_alloc(mesh->corner_count, sizeof *indices);
+	uint32_t *sources = nt_alloc(mesh->corner_count, sizeof *sources);
+	nt_status status = NT_ERROR_MEMORY;
+	if (rows && indices && sources)
+		status = make_corner_normals(mesh, mode, degrees, rows);
+	if (!status) {
+		choose_normals(mesh, mode, rows);
+		status = join_close(mesh, rows);
+	}
+	if (!status)
+		status = make_vertices(arena, mesh, rows, indices, sources);
+	free(rows);
+	/* both, whatever became of the other: the arena frees what it cannot keep */
+	bool kept = nt_arena_adopt(arena, indices);
+	kept &= nt_arena_adopt(arena, sources);
+	return status || kept ? status : NT_ERROR_MEMORY;
+}
+
+nt_status nt_make_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, int degrees, unsigned threads,
+	nt_error *error)
+{
+	/* a glTF keeps the normals that it has, unless others are asked for */
+	nt_status status = nt_format_is_gltf(scene->format) ? NT_OK : mark_directionless(scene, mesh, threads);
+	if (!status)
+		status = make_lacking(scene, mesh, mode, degrees);
+	if (!status)
+		status = make_unit(scene, mesh, threads);
+	return status ? nt_fail(error, status, "cannot make normals: %s", nt_status_text(status)) : NT_OK;
+}
+
+void nt_tell_normals(nt_scene *scene, const nt_mesh *mesh, nt_normals mode)
 {
 	/* OBJ's default is flat; exporters that write neither s nor vn mean nothing by it, and scans are smooth */
 	const bool chosen = scene->format == NT_FORMAT_OBJ && mode == NT_NORMALS_AUTO && !mesh->face_smoothing;
@@ -194,121 +326,4 @@ static void report_normals(nt_scene *scene, const nt_mesh *mesh, nt_normals mode
 	if (mesh->cancelled_normal_corners)
 		nt_finding_add(&scene->findings, NT_CODE_NORMALS_CANCELLED, nt_mesh_place(mesh, &(nt_place){0}),
 			mesh->cancelled_normal_corners, NULL);
-}
-
-/* Vertices and their copies without texture coordinates stay known. */
-static bool keep_lacks(nt_scene *scene, nt_mesh *mesh, const uint32_t *sources)
-{
-	const uint8_t *before = mesh->vertex_lacks;
-	bool any = false;
-	for (size_t v = 0; before && v < mesh->source_vertex_count; v++)
-		any |= before[v] & NT_LACKS_TEXCOORD;
-	mesh->vertex_lacks = any ? nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->vertex_count, 1) : NULL;
-	for (size_t v = 0; mesh->vertex_lacks && v < mesh->vertex_count; v++)
-		mesh->vertex_lacks[v] = NT_LACKS_TEXCOORD &
-			before[v < mesh->source_vertex_count ? v : sources[v - mesh->source_vertex_count]];
-	return !any || mesh->vertex_lacks;
-}
-
-/* The new arrays become the mesh's. */
-static nt_status adopt(nt_scene *scene, nt_mesh *mesh, nt_normals mode, normal_job *job)
-{
-	mesh->indices = job->indices;
-	mesh->vertex_sources = job->sources;
-	mesh->normals = job->normals;
-	mesh->stored_normals = NULL;
-	const bool lacks_kept = keep_lacks(scene, mesh, job->sources);
-	mesh->tangents = NULL; /* authored for other normals */
-	mesh->normals_made = true;
-	mesh->has_normals = true;
-	uint32_t *indices = job->indices, *sources = job->sources;
-	float *normals = job->normals;
-	job->indices = job->sources = NULL;
-	job->normals = NULL;
-	report_normals(scene, mesh, mode);
-	/* each, whatever became of the others: the arena frees what it cannot keep */
-	bool kept = nt_arena_adopt(nt_mesh_arena(scene, mesh), indices);
-	kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), sources);
-	kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), normals);
-	return kept && lacks_kept ? NT_OK : NT_ERROR_MEMORY;
-}
-
-static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode, int degrees)
-{
-	if (!any_made(mesh, mode) || mesh->corner_count == 0)
-		return NT_OK;
-	normal_job job = {
-		.rows = nt_alloc(mesh->corner_count, sizeof *job.rows),
-		.indices = nt_alloc(mesh->corner_count, sizeof *job.indices),
-		.sources = nt_alloc(mesh->corner_count, sizeof *job.sources),
-	};
-	nt_status status = NT_ERROR_MEMORY;
-	if (job.rows && job.indices && job.sources)
-		status = make_corner_normals(mesh, mode, degrees, &job);
-	if (!status) {
-		choose_normals(mesh, mode, &job);
-		status = join_close(mesh, &job);
-		if (!status)
-			status = split_by_normal(scene, mesh, &job);
-		if (!status)
-			status = adopt(scene, mesh, mode, &job);
-	}
-	free_job(&job);
-	return status;
-}
-
-static nt_status make_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, int degrees, unsigned threads,
-	nt_error *error)
-{
-	/* a glTF keeps the normals that it has, unless others are asked for */
-	const bool keeps = nt_format_is_gltf(scene->format);
-	nt_status status = keeps ? NT_OK : nt_mark_directionless(scene, mesh, threads);
-	if (!status)
-		status = make_lacking(scene, mesh, mode, degrees);
-	if (!status)
-		status = nt_make_unit_normals(scene, mesh, threads);
-	return status ? nt_fail(error, status, "cannot make normals: %s", nt_status_text(status)) : NT_OK;
-}
-
-/* Copies in joins have their own normals, whatever the others get. */
-static nt_status make_normals_of_copies(nt_scene *scene, unsigned threads, nt_error *error)
-{
-	nt_status status = NT_OK;
-	for (size_t i = 0; !status && i < scene->join_count; i++)
-		for (size_t k = 0; !status && k < scene->joins[i].part_count; k++) {
-			nt_mesh *mesh = scene->joins[i].parts[k];
-			if (!nt_mesh_is_wanted(mesh) && mesh->positions)
-				status = make_normals(scene, mesh, NT_NORMALS_AUTO, 0, threads, error);
-		}
-	return status;
-}
-
-/* Whether a mesh that gets no tangents gets the normals that the user asks for: a scan without texture coordinates.
- * Primitives of a glTF have a decision of their own for that. */
-static bool is_shaded_only(const nt_scene *scene, const nt_mesh *mesh, nt_normals mode)
-{
-	return mode != NT_NORMALS_AUTO && !nt_format_is_gltf(scene->format) && mesh->positions &&
-	       !nt_mesh_is_wanted(mesh);
-}
-
-nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, int degrees, unsigned threads, nt_error *error)
-{
-	nt_status status = NT_OK;
-	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
-		nt_mesh *mesh = &scene->meshes[i];
-		if (is_shaded_only(scene, mesh, mode)) {
-			status = make_normals(scene, mesh, mode, degrees, threads, error);
-			continue;
-		}
-		if (!nt_mesh_is_wanted(mesh) || (!mesh->plan.same_as && nt_mesh_is_solved_ahead(mesh)))
-			continue;
-		if (!mesh->plan.same_as) {
-			status = make_normals(scene, mesh, mode, degrees, threads, error);
-			continue;
-		}
-		nt_mesh_share(mesh);
-		if (mesh->normals_made)
-			report_normals(scene, mesh, mode);
-	}
-	return status ? status : make_normals_of_copies(scene, threads, error);
 }

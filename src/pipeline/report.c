@@ -12,7 +12,6 @@
 #include "file/uri.h"
 #include "format/normal_map.h"
 #include "image/reduce.h"
-#include "pipeline/joins.h"
 
 /* A base colour in a page: the pixels of its longer side; and a file that is small enough to be there as it is. */
 enum { PREVIEW_PIXELS = 1024, PREVIEW_BYTES = 1 << 16 };

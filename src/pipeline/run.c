@@ -380,11 +380,12 @@ static nt_status run_stages(run *r)
 		begin_stage(r, NT_STAGE_TEXTURES);
 		status = nt_stage_textures(&r->scene, r->settings, r->output_path, &r->textures, r->error);
 	}
-	const nt_tasks tasks = {.scene = &r->scene, .reader = r->reader, .writer = r->writer, .settings = r->settings,
+	const nt_tasks tasks = {.scene = &r->scene, .reader = r->reader, .writer = r->writer,
+		.written = r->writer ? r->writer->format : NT_FORMAT_UNKNOWN, .settings = r->settings,
 		.options = &r->read_options, .textures = r->textures, .summary = r->summary,
 		.begin_stage = begin_stage, .run = r};
 	if (!status) {
-		status = nt_tasks_do(&tasks, r->error);
+		status = nt_stage_jobs(&tasks, r->error);
 		nt_error_in_file(r->error, r->input_path);
 	}
 	for (size_t i = 0; !status && i < r->scene.mesh_count && r->settings->digests; i++) {

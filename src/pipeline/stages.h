@@ -22,6 +22,7 @@ bool nt_writer_edits(const nt_format_entry *reader, const nt_format_entry *write
 typedef struct nt_tasks {
 	nt_scene *scene;
 	const nt_format_entry *reader, *writer; /* writer: NULL: the input is judged as it is */
+	nt_format written; /* of the writer; NT_FORMAT_UNKNOWN: there is none */
 	const nt_settings *settings;
 	const nt_read_options *options;
 	nt_textures *textures; /* to be made beside the solve; NULL: none */
@@ -30,19 +31,93 @@ typedef struct nt_tasks {
 	void *run;
 } nt_tasks;
 
-/* tasks.c. After the plan: loads whatever will be solved, written or reported, makes normals, solves, splits, and hands
- * the writer what it merges. */
-nt_status nt_tasks_do(const nt_tasks *tasks, nt_error *error);
+/* jobs.c. After the plan: loads whatever will be solved, written or reported, makes normals, solves, splits, hands the
+ * writer what it merges, and says what was found. The textures are made beside. */
+nt_status nt_stage_jobs(const nt_tasks *tasks, nt_error *error);
 
-/* Makes the normals that meshes lack (all of them when `mode` says replace); vertices whose corners get
- * different normals are split, copies appended. Sets mesh->normals_made where something was made. Then makes
- * unit what is not: see unit_normals.c. */
-nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, int degrees, unsigned threads, nt_error *error);
+/* normals.c. Makes the normals that a mesh lacks (all of them when `mode` says replace); vertices whose corners get
+ * different normals are split, copies appended. Sets mesh->normals_made where something was made. Then makes unit what
+ * is not. */
+nt_status nt_make_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, int degrees, unsigned threads,
+	nt_error *error);
+void nt_tell_normals(nt_scene *scene, const nt_mesh *mesh, nt_normals mode);
 
-/* Solves and splits every mesh whose decision says so; counts and findings go to the summary. Large
- * meshes take all threads one after the other, small ones run side by side. */
-nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
-	nt_summary *summary, nt_error *error);
+/* solve.c. A mesh, or the join that it is the first of, and what is to be done with it. */
+typedef struct nt_job {
+	nmtan_options options;
+	float v_offset;    /* that v is stored with: none if the format stays, else see nmtan_stored_uv */
+	bool triangulates; /* the output has triangles where the input has quads */
+	bool splits;       /* something is written, or judged as if it were */
+	bool digests;
+	nt_arena *arena;   /* gets the results */
+} nt_job;
+
+nt_status nt_job_solve(const nt_job *job, nt_mesh *mesh);
+
+/* A mesh that is solved by itself, or the parts of a join. */
+typedef struct nt_whole {
+	const nt_join *join; /* NULL: one mesh */
+	nt_mesh *const *parts; /* [part_count] */
+	size_t part_count;
+	const nmtan_options *options;
+	nmtan_mesh mesh;
+	nmtan_stored_uv stored; /* of it */
+	size_t corner_count;
+	const uint8_t *halves; /* [mesh.face_count]; NULL: there are no quads */
+	/* of a join: */
+	nt_arena arena;
+	size_t *first_vertex;  /* [part_count + 1] */
+	uint32_t *sources;     /* [mesh.vertex_count] vertex of its part */
+} nt_whole;
+
+/* joins.c. Puts the parts of a join together; the arena is to be freed after failure too. */
+nt_status nt_whole_gather(nt_whole *whole);
+
+/* Tangents of the corners of a mesh like the whole, malloc'ed, also after failure. */
+nt_status nt_whole_solve(const nt_whole *whole, const nmtan_mesh *mesh, const nmtan_options *options, float **rows,
+	nmtan_counts *counts);
+
+/* Puts rows of three floats of a part's vertices, NULL: none, into those of the whole, which begin as a copy of `base`
+ * if *to is NULL. False: memory is exhausted. */
+bool nt_whole_put(const nt_whole *whole, size_t part, const float *rows, const float *base, float **to);
+
+/* For a report on meshes that were solved each by itself: a finding for every mesh whose tangents would differ if its
+ * join were solved as one. */
+nt_status nt_stage_borders(nt_scene *scene, const nt_settings *settings, nt_error *error);
+
+/* morphs.c. Authored tangents come back into those that were solved (nt_restore_authored), if they stay with
+ * --existing=repair. targets: they will be solved. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_morphs_restore(nt_mesh *mesh, bool targets);
+
+/* Takes the corner tangents of a target into classes of corners; rows are changed. */
+nt_status nt_morphs_classify(nt_mesh *mesh, nt_morph *morph, float *rows);
+
+/* How many triangles a target turns to the other side of their normals. */
+size_t nt_morphs_count_turned(const nmtan_mesh *base, const nmtan_mesh *moved);
+
+/* Whether corner tangents of a target are turned enough for what is between to matter. */
+bool nt_morphs_turn(const nt_mesh *mesh, const float *rows);
+
+/* A mesh halfway between its own positions and normals and those it is moved to: malloc'ed, NULL if they are the same
+ * pointers. False: memory is exhausted. */
+bool nt_morphs_halfway(const nmtan_mesh *base, const nmtan_mesh *moved, float **positions, float **normals);
+
+/* Fills halfway_triangles and halfway_degrees of a target, by its corner tangents and those halfway. */
+void nt_morphs_compare_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved,
+	const float *rows, const float *halfway, nt_morph *morph);
+
+/* Writes to keys [corner_count][4] numbers that are equal for two corners of a vertex exactly where the base's and all
+ * targets' tangents are: what splitting goes by. */
+nt_status nt_morphs_keys(nt_mesh *mesh, const nmtan_mesh *view, float *keys);
+
+/* After a split by keys: vertex tangents of the base, and what nt_morph_read() takes those of targets from. */
+nt_status nt_morphs_finish(nt_mesh *mesh, size_t source_count);
+
+/* The results become the arena's. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_morphs_keep(nt_mesh *mesh, nt_arena *arena);
+
+/* Frees what is malloc'ed, and after a failure the results, too. */
+void nt_morphs_free(nt_mesh *mesh, bool failed);
 
 /* Takes the images that the settings name, for a scene with one material or none. Returns NT_OK, NT_ERROR_IO,
  * NT_ERROR_MEMORY or, where the scene or the output has no place for them or one is no image, NT_ERROR_USAGE. */
@@ -57,9 +132,8 @@ void nt_propose_normal_map(nt_scene *scene, const nt_settings *settings);
 nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const char *output, nt_textures **textures,
 	nt_error *error);
 
-/* nt_stage_tangents(), and beside it the textures are made; these may be NULL. */
-nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *settings, nt_format output,
-	nt_textures *textures, nt_summary *summary, nt_error *error);
+/* Makes them. */
+nt_status nt_make_textures(nt_textures *textures, const nt_settings *settings, nt_error *error);
 
 /* Adds what is to be said about the images of materials to the findings, and counts materials that have none left;
  * textures: NULL where they were not looked at.
@@ -96,19 +170,7 @@ nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error 
 /* Says of every mesh with quads where they are cut (face_diagonals), for writers of triangles. */
 nt_status nt_stage_quads(nt_scene *scene, nt_error *error);
 
-/* tangents.c, for tasks.c too: small meshes, of which up to `slots` threads at a time solve one each. NULL: memory is
- * exhausted. */
-typedef struct nt_small_solves nt_small_solves;
-nt_small_solves *nt_small_solves_begin(nt_scene *scene, const nt_settings *settings, nt_format output, unsigned slots);
-
-/* Solves a mesh, or the join that it is the first of. The scene has the results after nt_small_solves_end(). */
-nt_status nt_small_solve(nt_small_solves *small, nt_mesh *mesh, unsigned slot);
-void nt_small_solves_end(nt_small_solves *small);
-
-/* Corners from which on a mesh may be worth all threads: it is not solved ahead of others. */
-enum { NT_LEAST_ALONE_CORNERS = 3 * 30000 };
-
-/* authored.c, for tangents.c and morphs.c: authored tangents that stay with --existing=repair. If a mesh has texture
+/* authored.c, for solve.c and morphs.c: authored tangents that stay with --existing=repair. If a mesh has texture
  * coordinates, the corners of faces whose tangents are all valid take theirs back after a solve.
  *   solved  [corner_count][4] their w: 0 at corners that did; NULL: it is not asked for */
 void nt_restore_authored(nt_mesh *mesh, float *corner_tangents, float *solved);
@@ -120,7 +182,7 @@ void nt_mend_untextured(nt_mesh *mesh, const nmtan_mesh *view, float *tangents);
 /* The tangents that a mesh without texture coordinates has when its normals become those of `moved`. */
 void nt_turn_untextured(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved, float *tangents);
 
-/* folded_quads.c, for tangents.c. Cuts the folded quads of a mesh with corner_tangents in two and gives each half its
+/* folded_quads.c, for solve.c. Cuts the folded quads of a mesh with corner_tangents in two and gives each half its
  * own sign; the mesh gets new faces and indices, or face_diagonals, and cut_arrays to free. Returns NT_OK or
  * NT_ERROR_MEMORY. */
 nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads);
@@ -137,7 +199,7 @@ static inline bool nt_may_be_left(nt_status load)
 	return load != NT_ERROR_MEMORY && load != NT_ERROR_MISSING && load != NT_ERROR_IO;
 }
 
-/* kept.c, for tasks.c. Counts what is wrong with tangents that are kept and used, which nt_tell_kept() says once pairs
+/* kept.c, for jobs.c. Counts what is wrong with tangents that are kept and used, which nt_tell_kept() says once pairs
  * are known. Returns NT_OK, NT_ERROR_MEMORY,
  * or NT_ERROR_MISSING or NT_ERROR_IO where their file cannot be opened. */
 nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error);
@@ -177,12 +239,5 @@ void nt_fixes_free(nt_fixes *fixes);
 
 /* quads.c. Decides which triangles of a mesh with normals are solved as quads. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_find_halves(nt_scene *scene, nt_mesh *mesh, nt_quads choice, unsigned threads);
-
-/* unit_normals.c, for normals.c. Vertices whose normal has no direction lack it. Both return NT_OK or
- * NT_ERROR_MEMORY. */
-nt_status nt_mark_directionless(nt_scene *scene, nt_mesh *mesh, unsigned threads);
-
-/* Makes normals unit that are not: in mesh->solve_normals if it is a glTF, which keeps those that it has. */
-nt_status nt_make_unit_normals(nt_scene *scene, nt_mesh *mesh, unsigned threads);
 
 #endif

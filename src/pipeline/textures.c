@@ -10,8 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/parallel.h"
-#include "base/pool.h"
 #include "base/utf8.h"
 #include "file/lookup.h"
 #include "file/path.h"
@@ -99,46 +97,12 @@ nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const 
 
 /* ---- making ---- */
 
-typedef struct making {
-	nt_scene *scene;
-	const nt_settings *settings;
-	nt_format output;
-	nt_textures *textures;
-	nt_summary *summary;
-	nt_status status[2];
-	nt_error *error, texture_error;
-} making;
-
-static void make_part(void *context, unsigned slot)
+nt_status nt_make_textures(nt_textures *textures, const nt_settings *s, nt_error *error)
 {
-	making *m = context;
-	if (slot == 0) {
-		m->status[0] = nt_stage_tangents(m->scene, m->settings, m->output, m->summary, m->error);
-		return;
-	}
-	const nt_settings *s = m->settings;
 	const nt_texture_rules rules = {.choice = s->textures, .flip = s->flip_green, .threads = s->threads,
 		.max_pixels = s->max_pixels,
 		.judged_only = (s->check || s->dry_run) && !(s->report && s->report->keep_geometry)};
-	m->status[1] = nt_textures_make(m->textures, &rules, &m->texture_error);
-}
-
-nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *settings, nt_format output,
-	nt_textures *textures, nt_summary *summary, nt_error *error)
-{
-	making m = {.scene = scene, .settings = settings, .output = output, .textures = textures, .summary = summary,
-		.error = error};
-	/* a thread costs more than making nothing */
-	if (!textures || !nt_textures_requests(textures) || nt_thread_count(settings->threads) == 1) {
-		make_part(&m, 0);
-		if (textures && !m.status[0])
-			make_part(&m, 1);
-	} else {
-		nt_pool_run(2, make_part, &m);
-	}
-	if (m.status[1] && !m.status[0])
-		*error = m.texture_error;
-	return m.status[0] ? m.status[0] : m.status[1];
+	return nt_textures_make(textures, &rules, error);
 }
 
 /* ---- what is to be said ---- */

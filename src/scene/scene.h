@@ -127,7 +127,6 @@ typedef struct nt_morph {
 	const char *name;       /* "" where it has none */
 	const struct nt_displacement *positions, *normals; /* what is added to the base's, for nt_gltf_move(); NULL:
 	                                                     nothing */
-	float *corner_tangents; /* [corner_count][4] while it is being solved */
 	size_t class_count, row_count, first_word; /* of its tangents then: scene/morphs.h */
 	size_t halfway_triangles; /* where adding half of the deltas is wrong by more than 5 degrees */
 	double halfway_degrees;   /* by how much at most */
@@ -491,14 +490,7 @@ static inline bool nt_mesh_is_kept_and_used(const nt_mesh *mesh)
 	       mesh->has_positions && mesh->has_normals && mesh->has_texcoords;
 }
 
-/* Before the stages that make normals and solve: whether a mesh was solved as soon as it was loaded. It has results
- * then, and no geometry. */
-static inline bool nt_mesh_is_solved_ahead(const nt_mesh *mesh)
-{
-	return mesh->split.vertex_tangents != NULL;
-}
-
-/* Whether nobody keeps the triangles of a solved mesh: it was solved ahead, and none of its vertices was split. */
+/* Whether nobody keeps the triangles of a solved mesh: its geometry went with its job, and no vertex was split. */
 static inline bool nt_mesh_left_triangles(const nt_mesh *mesh)
 {
 	return mesh->plan.disposable && !mesh->indices && !mesh->split.indices;
