@@ -133,7 +133,7 @@ typedef struct nt_gltf {
 	nt_gltf_view *views;       /* [view_count] */
 	size_t view_count, decoded_count; /* decoded_count: of those that were compressed */
 	size_t file_accessor_count; /* accessors that the file has */
-	nt_gltf_accessor *accessors; /* [accessor_count] of the file, and those of draco_shared.c */
+	nt_gltf_accessor *accessors; /* [accessor_count] of the file, and those of nt_gltf_separate_draco() */
 	size_t accessor_count;
 	nt_gltf_floats_of *floats; /* [accessors] NULL until one is asked for */
 	struct nt_draco **draco_blocks; /* [view_count] decoded blocks: draco.c; NULL until there is something */
@@ -153,7 +153,6 @@ typedef struct nt_gltf {
 	bool dangling_known;     /* then these are, as the file had them */
 	nt_gltf_dangling dangling[NT_GLTF_GROWING];
 	uint64_t bytes_read;     /* of buffers */
-	uint64_t bytes_opened;   /* of external files and data URIs */
 } nt_gltf;
 
 /* Parses a document over the scene's bytes. Returns NT_OK, NT_ERROR_INPUT,
@@ -226,6 +225,9 @@ void nt_gltf_list_extension(nt_gltf *document, const char *list, const char *nam
 
 /* Takes an extension off "extensionsUsed" or "extensionsRequired". */
 void nt_gltf_remove_extension(nt_gltf *document, const char *list, const char *name);
+
+/* The same of both, if no primitive has the extension. */
+void nt_gltf_unlist_unused(nt_gltf *document, const char *name);
 
 /* ---- JSON pointers ---- */
 
@@ -375,7 +377,7 @@ uint32_t nt_gltf_index_type(uint64_t most, uint32_t least);
 /* Numbers as a type of `width` bytes has them: count * width bytes. */
 void nt_gltf_store_indices(const uint32_t *indices, size_t count, uint32_t width, unsigned char *bytes);
 
-/* ---- primitives: primitive.c ---- */
+/* ---- primitives: document.c ---- */
 
 /* Whether a mesh has tangents to be written. */
 bool nt_gltf_is_solved(const nt_mesh *mesh);

@@ -6,7 +6,7 @@
  * target are integers, its tangents are integers of that type; these end at 1, and a tangent that turns round takes a
  * delta of 2.
  */
-#include "gltf/morph_deltas.h"
+#include "gltf/quantize.h"
 
 #include <math.h>
 #include <string.h>

@@ -15,7 +15,6 @@
 #include "base/dvec.h"
 #include "ext/meshopt.h"
 #include "gltf/document.h"
-#include "gltf/morph_deltas.h"
 
 static const double LENGTH_TOLERANCE = 0.0065; /* quantize.c */
 

@@ -8,7 +8,7 @@
  * take NULL for "no such value" and answer with "nothing", so that look-ups can be chained.
  *
  * Functions that change a document never fail at once: a document that runs out of memory remembers it,
- * as nt_buffer does, and says so in nt_json_failed() and nt_json_dump(). They never return NULL.
+ * as nt_buffer does, and says so in nt_json_failed() and nt_json_write(). They never return NULL.
  *
  * Not for several threads that write; reading from several threads is fine.
  */
@@ -155,8 +155,5 @@ nt_status nt_json_write(const nt_json *document, nt_json_put_text take, void *us
 
 /* The length of that text. */
 nt_status nt_json_measure(const nt_json *document, uint64_t *size, nt_error *error);
-
-/* Appends that text to a buffer. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_json_dump(const nt_json *document, nt_buffer *text, nt_error *error);
 
 #endif

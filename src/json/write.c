@@ -369,15 +369,3 @@ nt_status nt_json_write(const nt_json *document, nt_json_put_text take, void *us
 	free(piece);
 	return status;
 }
-
-static nt_status append_text(void *user, const char *text, size_t size)
-{
-	nt_buffer *buffer = user;
-	nt_buffer_append(buffer, text, size);
-	return buffer->failed ? NT_ERROR_MEMORY : NT_OK;
-}
-
-nt_status nt_json_dump(const nt_json *document, nt_buffer *text, nt_error *error)
-{
-	return nt_json_write(document, append_text, text, error) ? nt_fail_memory(error) : NT_OK;
-}

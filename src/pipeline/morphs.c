@@ -27,7 +27,7 @@
 #include "base/angle.h"
 #include "base/dvec.h"
 #include "base/hash_index.h"
-#include "gltf/morph_deltas.h"
+#include "gltf/quantize.h"
 #include "scene/morphs.h"
 
 enum { KEY_BITS = 20 }; /* of a corner number in each float of a key: floats are exact to 24 */

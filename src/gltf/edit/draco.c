@@ -15,7 +15,7 @@
 #include <string.h>
 #include "gltf/document.h"
 #include "gltf/edit/pool_edit.h"
-#include "gltf/morph_deltas.h"
+#include "gltf/quantize.h"
 
 /* Whether a user has tangents to be written and is compressed. */
 static bool is_compressed(const nt_vertex_pool *pool, size_t user)
@@ -31,19 +31,17 @@ bool nt_gltf_has_draco(const nt_vertex_pool *pool)
 	return false;
 }
 
-void nt_gltf_drop_draco(const nt_scene *scene)
-{
-	nt_gltf *document = scene->source;
-	if (!document->draco_blocks)
-		return;
-	for (size_t i = 0; i < scene->mesh_count; i++)
-		if (nt_gltf_draco_of(nt_gltf_primitive_of(document, &scene->meshes[i])))
-			return;
-	nt_gltf_remove_extension(document, "extensionsRequired", "KHR_draco_mesh_compression");
-	nt_gltf_remove_extension(document, "extensionsUsed", "KHR_draco_mesh_compression");
-}
-
 /* ---- plain ---- */
+
+/* All blocks begin with DRAC, which views that an earlier run left free share (relocate.c): that stays for them. */
+enum { DRACO_HEAD = 4 };
+
+/* So many primitives do not refer to a block any more. Whether nobody does. */
+static bool release_block(nt_gltf *document, uint64_t view, size_t count)
+{
+	document->view_users[view].blocks -= (uint32_t)count;
+	return document->view_users[view].blocks == 0;
+}
 
 /* Takes the extension off a primitive, and its block out of the buffer. The view takes some of the elements. */
 static nt_status make_plain(nt_buffer_edits *edits, nt_json_value *primitive, nt_error *error)
@@ -54,8 +52,8 @@ static nt_status make_plain(nt_buffer_edits *edits, nt_json_value *primitive, nt
 	nt_status status = NT_OK;
 	if (nt_json_find_uint64(nt_gltf_draco_of(primitive), "bufferView", &index) &&
 		nt_gltf_get_view(document, index, "", &view, NULL) == NT_OK &&
-		nt_gltf_draco_release(document, index, 1))
-		status = nt_edits_release(edits, (uint32_t)index, NT_DRACO_HEAD, view.length - NT_DRACO_HEAD, error);
+		release_block(document, index, 1))
+		status = nt_edits_release(edits, (uint32_t)index, DRACO_HEAD, view.length - DRACO_HEAD, error);
 	nt_gltf_drop_extension(document->json, primitive, "KHR_draco_mesh_compression");
 	return status;
 }
@@ -69,6 +67,127 @@ nt_status nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_pool_vertices *ver
 		status = make_plain(edits, nt_pool_primitive(vertices->pool, i), error);
 		vertices->changed[i] = true;
 	}
+	return status;
+}
+
+/* ---- a block ---- */
+
+/* An attribute of ours: takes the place and the id of one of that name, else it gets an id that is free. */
+static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind, int components,
+	const float *elements, nt_draco_quantization grid)
+{
+	nt_draco_attribute attribute = {.kind = kind,
+		.component_type = NT_GLTF_FLOAT, .components = components,
+		.quantization = grid, .data = elements};
+	for (size_t i = 0; i < r->attribute_count; i++) {
+		const uint32_t id = r->attributes[i].unique_id;
+		if (strcmp(r->names[i], name) == 0) {
+			attribute.unique_id = id;
+			r->attributes[i] = attribute;
+			return;
+		}
+		attribute.unique_id = id >= attribute.unique_id ? id + 1 : attribute.unique_id;
+	}
+	nt_gltf_draco_add(r, name, attribute);
+}
+
+static nt_status gather_block(nt_gltf_recoding *r, nt_error *error)
+{
+	const nt_json_value *ids = nt_json_find(r->extension, "attributes");
+	r->attributes = nt_arena_alloc(r->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
+		sizeof *r->attributes);
+	r->names = nt_arena_alloc(r->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
+		sizeof *r->names);
+	if (!r->attributes || !r->names)
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < nt_json_count(ids); i++) {
+		uint64_t id = 0;
+		nt_json_get_uint64(nt_json_at(ids, i), &id);
+		nt_draco_attribute attribute = *nt_draco_find(r->source, (uint32_t)id);
+		attribute.quantization.explicit_box = attribute.quantization.bits > 0;
+		attribute.copied = r->vertices->sources;
+		attribute.own_count = r->vertices->own_count;
+		nt_gltf_draco_add(r, nt_json_key(ids, i, NULL), attribute);
+	}
+	return NT_OK;
+}
+
+static void add_own(nt_gltf_recoding *r)
+{
+	const nt_pool_vertices *vertices = r->vertices;
+	const int *bits = r->options->draco_bits;
+	if (vertices->sets[0].normals)
+		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, vertices->sets[0].normals,
+			(nt_draco_quantization){.bits = nt_gltf_draco_bits(bits, NT_DRACO_BITS_NORMAL)});
+	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, vertices->sets[0].tangents,
+		nt_gltf_draco_tangent_grid(nt_gltf_draco_tangents_of(r->document, r->primitive), bits));
+	if (r->options->bitangents)
+		put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, NULL,
+			(nt_draco_quantization){.bits = nt_gltf_draco_bits(bits, NT_DRACO_BITS_TANGENT)});
+}
+
+/* ---- its JSON ---- */
+
+/* All elements of the accessor are in the block. */
+static void set_count(nt_gltf *document, uint64_t accessor, size_t count)
+{
+	nt_json_value *json = nt_gltf_accessor_json(document, accessor);
+	nt_json_remove(document->json, json, "sparse");
+	nt_json_put_uint64(document->json, json, "count", count);
+}
+
+static void describe(nt_gltf_recoding *r)
+{
+	nt_json *json = r->json;
+	const nt_draco_block *block = &r->block;
+	nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	for (size_t i = 0; i < r->attribute_count; i++) {
+		const nt_draco_attribute *a = &r->attributes[i];
+		uint64_t accessor;
+		if (nt_json_find_uint64(attributes, r->names[i], &accessor)) {
+			set_count(r->document, accessor, block->point_count);
+			nt_gltf_state_bounds(json, nt_gltf_accessor_json(r->document, accessor),
+				(size_t)a->components, block->bounds[i]);
+		} else {
+			nt_json_put_uint64(json, attributes, r->names[i],
+				nt_gltf_new_accessor(json, NT_NONE, NT_GLTF_FLOAT,
+					a->components == 3 ? "VEC3" : "VEC4", block->point_count, false));
+		}
+		nt_json_put_uint64(json, nt_json_put(json, r->extension, "attributes"), r->names[i], a->unique_id);
+	}
+	uint64_t indices, type = 0;
+	if (!nt_json_find_uint64(r->primitive, "indices", &indices)) {
+		indices = nt_gltf_new_accessor(json, NT_NONE, NT_GLTF_UINT, "SCALAR", 0, false);
+		nt_json_put_uint64(json, r->primitive, "indices", indices);
+		r->extension = nt_gltf_draco_of(r->primitive); /* members have moved */
+	}
+	set_count(r->document, indices, block->face_count * 3);
+	nt_json_value *accessor = nt_gltf_accessor_json(r->document, indices);
+	nt_json_find_uint64(accessor, "componentType", &type);
+	const uint32_t wide = nt_gltf_index_type(block->point_count, (uint32_t)type);
+	if (wide != type)
+		nt_json_put_uint64(json, accessor, "componentType", wide);
+	nt_json_remove(json, accessor, "min");
+	nt_json_remove(json, accessor, "max");
+}
+
+static nt_status store_block(nt_gltf_recoding *r, uint32_t buffer, nt_error *error)
+{
+	unsigned char *bytes = r->block.bytes;
+	r->block.bytes = NULL;
+	if (!nt_arena_adopt(&r->edits->arena, bytes))
+		return nt_fail_memory(error);
+	nt_gltf_view view;
+	nt_status status = r->source ? nt_gltf_get_view(r->document, r->view, "", &view, error) : NT_OK;
+	if (status)
+		return status;
+	if (r->source && release_block(r->document, r->view, r->vertices->pool->user_count) &&
+		nt_byte_users_count(&r->edits->users, view.buffer, view.offset + DRACO_HEAD,
+			view.offset + view.length) == 1)
+		return nt_edits_replace(r->edits, view.buffer, view.offset, view.length, bytes, r->block.size, error);
+	uint32_t number;
+	status = nt_edits_add_view(r->edits, buffer, bytes, r->block.size, 0, 0, &number, error);
+	nt_json_put_uint64(r->json, r->extension, "bufferView", number);
 	return status;
 }
 
@@ -137,8 +256,8 @@ static nt_status store(nt_gltf_recoding *r, uint32_t buffer, nt_morph_cost *cost
 		return status;
 	r->primitive = nt_pool_primitive(r->vertices->pool, 0); /* members have moved */
 	r->extension = nt_gltf_draco_of(r->primitive);
-	nt_gltf_draco_describe(r);
-	return nt_gltf_draco_store(r, buffer, error);
+	describe(r);
+	return store_block(r, buffer, error);
 }
 
 /* Whether the pool is one primitive, perhaps several times: with the same geometry and the same
@@ -235,10 +354,10 @@ nt_status nt_gltf_draco_look_up(nt_gltf_recoding *r, nt_buffer_edits *edits, nt_
 			"they get, --draco=off writes them plain");
 	if (r->extension) {
 		r->source = nt_gltf_draco_block(r->document, r->view);
-		status = nt_gltf_draco_gather_block(r, error);
+		status = gather_block(r, error);
 	}
 	if (!status)
-		nt_gltf_draco_add_own(r);
+		add_own(r);
 	return status;
 }
 

@@ -39,30 +39,12 @@ typedef struct nt_gltf_recoding {
 /* Attributes that nmtan may add to those of the source: NORMAL, TANGENT, _BITANGENT. */
 enum { NT_GLTF_OWN_ATTRIBUTES = 3 };
 
-/* Whether an accessor is indices of the pool's primitives alone, and nobody's attribute. */
+/* draco_gather.c. Whether an accessor is indices of the pool's primitives alone, and nobody's attribute. */
 bool nt_gltf_draco_owns_indices(const nt_gltf_recoding *recoding, uint64_t accessor);
 
-/* There is room for what the primitive has and NT_GLTF_OWN_ATTRIBUTES. The name lives as long as the JSON. */
+/* draco_gather.c. There is room for what the primitive has and NT_GLTF_OWN_ATTRIBUTES. The name lives as long as the
+ * JSON. */
 void nt_gltf_draco_add(nt_gltf_recoding *recoding, const char *name, nt_draco_attribute attribute);
-
-/* The attributes of the primitive's block, as they are. */
-nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *recoding, nt_error *error);
-
-/* Attributes that nmtan made: NORMAL where it did, TANGENT, _BITANGENT where asked for. */
-void nt_gltf_draco_add_own(nt_gltf_recoding *recoding);
-
-/* The JSON of the primitive follows what a decoder will see; new accessors have no view, their elements are in the
- * block. */
-void nt_gltf_draco_describe(nt_gltf_recoding *recoding);
-
-/* All blocks begin with DRAC, which views that an earlier run left free share (relocate.c): that stays for them. */
-enum { NT_DRACO_HEAD = 4 };
-
-/* So many primitives do not refer to a block any more. Whether nobody does. */
-bool nt_gltf_draco_release(nt_gltf *document, uint64_t view, size_t count);
-
-/* Puts the block where the primitive's was, else into a new view of `buffer`. */
-nt_status nt_gltf_draco_store(nt_gltf_recoding *recoding, uint32_t buffer, nt_error *error);
 
 /* draco_gather.c. The attributes of a plain primitive; recoding->obstacle where it cannot be compressed. */
 nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding, nt_error *error);
@@ -105,8 +87,5 @@ nt_status nt_gltf_write_draco(nt_gltf_recoding *recoding, uint32_t buffer, nt_sc
 
 /* Makes the compressed users of a pool plain; their indices count as changed. */
 nt_status nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_pool_vertices *vertices, nt_error *error);
-
-/* Takes KHR_draco_mesh_compression off the lists where no primitive has it any more. */
-void nt_gltf_drop_draco(const nt_scene *scene);
 
 #endif

@@ -66,6 +66,14 @@ static bool is_vector(const nt_gltf_recoding *r, uint32_t accessor)
 	return type && !begins_with(type, "MAT");
 }
 
+bool nt_gltf_draco_owns_indices(const nt_gltf_recoding *r, uint64_t accessor)
+{
+	if (accessor >= r->document->accessor_count)
+		return false;
+	const nt_gltf_users *users = nt_gltf_users_of(r->document, (uint32_t)accessor);
+	return !users->attributes && users->indices == r->vertices->pool->user_count;
+}
+
 static bool indices_are_own(const nt_gltf_recoding *r)
 {
 	const uint32_t index = nt_gltf_reference(r->document, r->primitive, "indices");
@@ -75,6 +83,12 @@ static bool indices_are_own(const nt_gltf_recoding *r)
 }
 
 /* ---- gathering ---- */
+
+void nt_gltf_draco_add(nt_gltf_recoding *r, const char *name, nt_draco_attribute attribute)
+{
+	r->names[r->attribute_count] = name;
+	r->attributes[r->attribute_count++] = attribute;
+}
 
 static bool is_in_block(const nt_gltf_recoding *r, const nt_gltf_use *use)
 {

@@ -16,7 +16,6 @@
 #include "gltf/edit/pool_edit.h"
 #include "gltf/edit/draco.h"
 #include "gltf/bytes/bytes.h"
-#include "gltf/morph_deltas.h"
 #include "gltf/quantize.h"
 #include "gltf/turned_images.h"
 
@@ -336,8 +335,10 @@ static nt_status edit_pools(const editing *e)
 	nt_status status = window && list ? NT_OK : nt_fail_memory(e->error);
 	for (size_t first = 0; !status && first < e->pools->count;)
 		status = edit_window(e, window, list, &first);
-	nt_gltf_drop_draco(e->scene);
-	nt_gltf_drop_polygons(e->edits);
+	if (document->draco_blocks)
+		nt_gltf_unlist_unused(document, "KHR_draco_mesh_compression");
+	if (e->edits->polygons_dropped)
+		nt_gltf_unlist_unused(document, NT_GLTF_POLYGONS);
 	if (!status && *e->quantized) {
 		nt_gltf_list_extension(document, "extensionsUsed", NT_GLTF_QUANTIZATION);
 		nt_gltf_list_extension(document, "extensionsRequired", NT_GLTF_QUANTIZATION);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "gltf/document.h"
-#include "gltf/morph_deltas.h"
+#include "gltf/quantize.h"
 #include "scene/morphs.h"
 
 /* TANGENT of one target. */

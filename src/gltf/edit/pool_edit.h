@@ -226,6 +226,8 @@ nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_p
 
 /* ---- extensions that refer to vertices: vertex_extensions.c ---- */
 
+#define NT_GLTF_POLYGONS "FB_ngon_encoding"
+
 /* Adds a finding for each extension of the pool's primitives and their meshes that does not hold any more, and takes
  * FB_ngon_encoding off where it would say other polygons. compressed: by Draco, which may give triangles any order.
  * Returns NT_OK or NT_ERROR_MEMORY. */
@@ -241,8 +243,5 @@ bool nt_vertices_are_ids(const nt_json_value *primitive);
 
 /* After all edits: vertices were copied. Adds a finding for each scene with FB_geometry_metadata, which counts them. */
 void nt_vertices_tell_scenes(nt_scene *scene);
-
-/* Takes FB_ngon_encoding off the lists where the last primitive lost it. */
-void nt_gltf_drop_polygons(const nt_buffer_edits *edits);
 
 #endif

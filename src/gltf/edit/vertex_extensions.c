@@ -16,7 +16,7 @@
 #include "base/buffer.h"
 #include "gltf/document.h"
 
-static const char polygons_name[] = "FB_ngon_encoding", features_name[] = "EXT_mesh_features";
+static const char features_name[] = "EXT_mesh_features";
 
 typedef enum meaning {
 	UNKNOWN,
@@ -35,7 +35,7 @@ static const struct {
 	{"EXT_mesh_manifold", INDICES},
 	{"EXT_mesh_primitive_restart", INDICES},
 	{"EXT_structural_metadata", NOTHING},
-	{polygons_name, POLYGONS},
+	{NT_GLTF_POLYGONS, POLYGONS},
 	{"KHR_draco_mesh_compression", NOTHING},
 	{"KHR_materials_variants", NOTHING},
 };
@@ -177,7 +177,7 @@ nt_status nt_vertices_find_meaning(nt_scene *scene, const nt_mesh *mesh, size_t 
 	search s = begin_search(scene, mesh, old_count);
 	const nt_json_value *const lists[] = {nt_json_find(s.primitive, "extensions"),
 		mesh_extensions(s.document, mesh)};
-	*result = nt_json_find(lists[0], polygons_name) ? polygons_name : NULL;
+	*result = nt_json_find(lists[0], NT_GLTF_POLYGONS) ? NT_GLTF_POLYGONS : NULL;
 	for (size_t k = 0; k < 2; k++) {
 		const char *name;
 		for (size_t at = 0; !*result && (name = next_stale(&s, lists[k], "", true, true, &at));)
@@ -202,26 +202,10 @@ static bool keeps_polygons(const nt_pool_vertices *vertices, size_t user)
 
 static void drop_polygons(nt_scene *scene, nt_buffer_edits *edits, nt_json_value *primitive, const nt_mesh *mesh)
 {
-	nt_gltf_drop_extension(edits->document->json, primitive, polygons_name);
+	nt_gltf_drop_extension(edits->document->json, primitive, NT_GLTF_POLYGONS);
 	edits->polygons_dropped = true;
 	nt_finding_add(&scene->findings, NT_CODE_POLYGONS_DROPPED, nt_mesh_place(mesh, &(nt_place){0}), 1, "%s",
-		polygons_name);
-}
-
-void nt_gltf_drop_polygons(const nt_buffer_edits *edits)
-{
-	nt_gltf *document = edits->document;
-	const nt_json_value *meshes = nt_gltf_root_member(document, "meshes");
-	if (!edits->polygons_dropped)
-		return;
-	for (size_t i = 0; i < nt_json_count(meshes); i++) {
-		const nt_json_value *primitives = nt_json_find(nt_json_at(meshes, i), "primitives");
-		for (size_t k = 0; k < nt_json_count(primitives); k++)
-			if (nt_json_find(nt_json_find(nt_json_at(primitives, k), "extensions"), polygons_name))
-				return;
-	}
-	nt_gltf_remove_extension(document, "extensionsRequired", polygons_name);
-	nt_gltf_remove_extension(document, "extensionsUsed", polygons_name);
+		NT_GLTF_POLYGONS);
 }
 
 /* ---- the whole ---- */
@@ -251,8 +235,8 @@ nt_status nt_vertices_tell(nt_buffer_edits *edits, nt_scene *scene, const nt_poo
 		const nt_mesh *mesh = nt_pool_mesh(pool, i);
 		nt_json_value *primitive = nt_pool_primitive(pool, i);
 		search s = begin_search(scene, mesh, vertices->old_count);
-		if (nt_pool_is_solved(pool, i) && nt_json_find(nt_json_find(primitive, "extensions"), polygons_name) &&
-			(compressed || !keeps_polygons(vertices, i)))
+		if (nt_json_find(nt_json_find(primitive, "extensions"), NT_GLTF_POLYGONS) &&
+			nt_pool_is_solved(pool, i) && (compressed || !keeps_polygons(vertices, i)))
 			drop_polygons(scene, edits, primitive, mesh);
 		tell(&s, nt_json_find(primitive, "extensions"), nt_gltf_of_mesh(mesh).pointer,
 			compressed || vertices->changed[i], copied);

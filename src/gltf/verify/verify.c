@@ -15,7 +15,6 @@
 #include "file/path.h"
 #include "file/uri.h"
 #include "gltf/document.h"
-#include "gltf/morph_deltas.h"
 #include "gltf/quantize.h"
 #include "scene/morphs.h"
 

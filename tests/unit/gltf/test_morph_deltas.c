@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Deltas that count as none, integers for the others, and their storage. */
-#include "gltf/morph_deltas.h"
+#include "gltf/quantize.h"
 
 #include "ext/gltf_numbers.h"
 #include "test.h"

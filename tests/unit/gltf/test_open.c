@@ -427,8 +427,8 @@ TEST(buffers_are_opened_only_when_wanted)
 	nt_buffer_text(&f.text, ",{\"byteLength\":100,\"uri\":\"../absent.bin\"},{\"uri\":7}]}");
 	assert_int_equal(open_bytes(&f.scene, f.text.data, f.text.size, &plain_options, &f.error), NT_OK);
 	const nt_gltf *document = f.scene.source;
-	assert_int_equal(document->bytes_opened, 0);
+	assert_false(document->buffers[0].opened);
 	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), NT_OK);
-	assert_int_equal(document->bytes_opened, sizeof quad);
+	assert_true(document->buffers[0].opened && !document->buffers[1].opened && !document->buffers[2].opened);
 	close_text(&f);
 }

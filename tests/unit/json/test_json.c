@@ -18,12 +18,24 @@ static nt_json *parse(const char *text)
 	return document;
 }
 
+static nt_status append_text(void *user, const char *text, size_t size)
+{
+	nt_buffer *buffer = user;
+	nt_buffer_append(buffer, text, size);
+	return buffer->failed ? NT_ERROR_MEMORY : NT_OK;
+}
+
+static nt_status dump(const nt_json *document, nt_buffer *text, nt_error *error)
+{
+	return nt_json_write(document, append_text, text, error) ? nt_fail_memory(error) : NT_OK;
+}
+
 static void check_dump(const nt_json *document, const char *expected)
 {
 	nt_buffer text = {0};
 	nt_error error;
 	uint64_t size;
-	assert_int_equal(nt_json_dump(document, &text, &error), NT_OK);
+	assert_int_equal(dump(document, &text, &error), NT_OK);
 	assert_string_equal(text.data, expected);
 	assert_int_equal(nt_json_measure(document, &size, &error), NT_OK);
 	assert_int_equal(size, text.size);
@@ -268,7 +280,7 @@ TEST(long_white_space_is_not_repeated)
 		nt_json_append(document, nt_json_root(document));
 	nt_buffer out = {0};
 	nt_error error;
-	assert_int_equal(nt_json_dump(document, &out, &error), NT_OK);
+	assert_int_equal(dump(document, &out, &error), NT_OK);
 	assert_true(out.size < 110000);
 	nt_json_free(document);
 	nt_buffer_free(&text);
@@ -503,7 +515,7 @@ static nt_status edit_all(nt_buffer *out, nt_error *error)
 	nt_json_set_string(document, nt_json_put(document, root, "text"), "t", 1);
 	nt_json_set_uint64(document, nt_json_find(root, "k0"), 7);
 	nt_json_remove(document, root, "k1");
-	status = nt_json_dump(document, out, error);
+	status = dump(document, out, error);
 	assert_true(status == NT_OK || status == NT_ERROR_MEMORY);
 	nt_json_free(document);
 	return status;
