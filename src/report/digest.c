@@ -25,6 +25,17 @@ static uint64_t mix_position(uint64_t hash, const float *p)
 	return nt_hash_unkeyed(hash, values, sizeof values);
 }
 
+/* Vertices may lie anywhere: what is asked of a corner's is fetched before it is its turn. */
+static void prefetch(const nt_surface *s, const uint64_t *points, size_t corner)
+{
+	enum { AHEAD = 24 };
+	const size_t corners = 3 * s->triangle_count;
+	for (size_t k = corner; k < corner + 3 && k + 2 * AHEAD < corners; k++) {
+		__builtin_prefetch(&s->points[nt_side_vertex(s, k + 2 * AHEAD)]);
+		__builtin_prefetch(&points[nt_side_point(s, k + AHEAD)]);
+	}
+}
+
 /* A turned triangle is the same, a reversed one is not: each corner is mixed with the one after it. */
 nt_status nt_digest_surface(const nt_surface *surface, nt_scratch *scratch, uint64_t *digest)
 {
@@ -33,15 +44,16 @@ nt_status nt_digest_surface(const nt_surface *surface, nt_scratch *scratch, uint
 	if (!points)
 		return NT_ERROR_MEMORY;
 	memset(points, 0, surface->point_count * sizeof *points);
+	for (size_t v = 0; v < surface->mesh->vertex_count; v++) {
+		const uint32_t point = surface->points[v];
+		if (point != NT_NONE && !points[point])
+			points[point] = mix_position(1, surface->mesh->positions + 3 * v);
+	}
 	for (size_t t = 0; t < surface->triangle_count; t++) {
-		uint64_t corners[3];
-		for (size_t k = 0; k < 3; k++) {
-			uint64_t *point = &points[nt_side_point(surface, 3 * t + k)];
-			if (!*point)
-				*point = mix_position(1, nt_side_position(surface, 3 * t + k));
-			corners[k] = *point;
-		}
-		sum += mix(corners[0], corners[1]) + mix(corners[1], corners[2]) + mix(corners[2], corners[0]);
+		prefetch(surface, points, 3 * t);
+		const uint64_t a = points[nt_side_point(surface, 3 * t)], b = points[nt_side_point(surface, 3 * t + 1)];
+		const uint64_t c = points[nt_side_point(surface, 3 * t + 2)];
+		sum += mix(a, b) + mix(b, c) + mix(c, a);
 	}
 	*digest = mix(sum, surface->triangle_count) | 1;
 	nt_scratch_back(scratch, mark);

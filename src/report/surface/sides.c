@@ -17,7 +17,7 @@
 enum {
 	GRAIN = 32768,   /* triangles that are worth a thread */
 	MOST_RANGES = 4, /* each has a count for every point */
-	FEW_SIDES = 24,  /* up to which insertion is the fastest sort */
+	MOST_MOVES = 12, /* for each side of a point, up to which insertion is the fastest sort: fans are nearly sorted */
 	AHEAD = 12       /* sides by which points are prefetched; their vertices twice as early */
 };
 
@@ -117,17 +117,18 @@ static void prefetch(const nt_surface *s, size_t at)
 size_t nt_surface_edges(const nt_surface *s, uint32_t low, nt_edge_side *edges)
 {
 	const size_t begin = low ? s->ends[low - 1] : 0, count = s->ends[low] - begin;
+	size_t moves = 0;
 	for (size_t i = 0; i < count; i++) {
 		prefetch(s, begin + i);
 		const uint32_t side = s->sides[begin + i];
 		const uint32_t a = nt_side_point(s, side), b = nt_side_point(s, nt_side_next(side));
 		const nt_edge_side next = {side, a == low ? b : a, s->orientation[side / 3], a == low};
 		size_t k = i;
-		for (; k > 0 && count <= FEW_SIDES && next.high < edges[k - 1].high; k--)
+		for (; k > 0 && moves < MOST_MOVES * count && next.high < edges[k - 1].high; k--, moves++)
 			edges[k] = edges[k - 1];
 		edges[k] = next;
 	}
-	if (count > FEW_SIDES)
+	if (moves >= MOST_MOVES * count)
 		qsort(edges, count, sizeof *edges, by_high);
 	return count;
 }
