@@ -17,7 +17,7 @@
 enum {
 	GRAIN = 32768,   /* triangles that are worth a thread */
 	MOST_RANGES = 4, /* each has a count for every point */
-	MOST_MOVES = 12, /* for each side of a point, up to which insertion is the fastest sort: fans are nearly sorted */
+	MOST_MOVES = 12, /* a side, up to which insertion is the fastest sort: fans are nearly sorted */
 	AHEAD = 12       /* sides by which points are prefetched; their vertices twice as early */
 };
 
