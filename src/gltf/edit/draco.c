@@ -91,6 +91,7 @@ static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind
 	nt_gltf_draco_add(r, name, attribute);
 }
 
+/* The attributes of the primitive's block, as they are. */
 static nt_status gather_block(nt_gltf_recoding *r, nt_error *error)
 {
 	const nt_json_value *ids = nt_json_find(r->extension, "attributes");
@@ -112,18 +113,24 @@ static nt_status gather_block(nt_gltf_recoding *r, nt_error *error)
 	return NT_OK;
 }
 
-static void add_own(nt_gltf_recoding *r)
+/* Attributes that nmtan made: NORMAL where it did, TANGENT, _BITANGENT where asked for. */
+static nt_status add_own(nt_gltf_recoding *r, nt_error *error)
 {
 	const nt_pool_vertices *vertices = r->vertices;
 	const int *bits = r->options->draco_bits;
+	float *bitangents;
 	if (vertices->sets[0].normals)
 		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, vertices->sets[0].normals,
 			(nt_draco_quantization){.bits = nt_gltf_draco_bits(bits, NT_DRACO_BITS_NORMAL)});
 	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, vertices->sets[0].tangents,
 		nt_gltf_draco_tangent_grid(nt_gltf_draco_tangents_of(r->document, r->primitive), bits));
-	if (r->options->bitangents)
-		put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, NULL,
+	if (!r->options->bitangents)
+		return NT_OK;
+	const nt_status status = nt_gltf_bitangents(vertices, 0, r->arena, &bitangents, error);
+	if (!status)
+		put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, bitangents,
 			(nt_draco_quantization){.bits = nt_gltf_draco_bits(bits, NT_DRACO_BITS_TANGENT)});
+	return status;
 }
 
 /* ---- its JSON ---- */
@@ -136,6 +143,8 @@ static void set_count(nt_gltf *document, uint64_t accessor, size_t count)
 	nt_json_put_uint64(document->json, json, "count", count);
 }
 
+/* The JSON of the primitive follows what a decoder will see; new accessors have no view, their elements are in the
+ * block. */
 static void describe(nt_gltf_recoding *r)
 {
 	nt_json *json = r->json;
@@ -171,6 +180,7 @@ static void describe(nt_gltf_recoding *r)
 	nt_json_remove(json, accessor, "max");
 }
 
+/* Puts the block where the primitive's was, else into a new view of `buffer`. */
 static nt_status store_block(nt_gltf_recoding *r, uint32_t buffer, nt_error *error)
 {
 	unsigned char *bytes = r->block.bytes;
@@ -356,9 +366,7 @@ nt_status nt_gltf_draco_look_up(nt_gltf_recoding *r, nt_buffer_edits *edits, nt_
 		r->source = nt_gltf_draco_block(r->document, r->view);
 		status = gather_block(r, error);
 	}
-	if (!status)
-		add_own(r);
-	return status;
+	return status ? status : add_own(r, error);
 }
 
 nt_status nt_gltf_write_draco(nt_gltf_recoding *r, uint32_t buffer, nt_scene *scene, bool *done,

@@ -23,8 +23,7 @@ typedef struct nt_gltf_recoding {
 	nt_json_value *primitive, *extension; /* until the JSON changes */
 	uint64_t view;
 	const nt_draco_mesh *source; /* NULL: the primitive is plain */
-	nt_draco_attribute *attributes; /* their values are where the document or the scene has them; data NULL: of
-	                                   _BITANGENT, which are made when they are encoded */
+	nt_draco_attribute *attributes; /* their values are where the document or the scene has them */
 	size_t attribute_count;
 	const char **names;
 	bool outside; /* something of the primitive is not in the block */

@@ -99,20 +99,8 @@ static nt_status encode(nt_gltf_recoding *r, nt_error *error)
 
 nt_status nt_gltf_draco_encode(nt_gltf_recoding *r, nt_error *error)
 {
-	nt_arena arena = {0};
-	nt_draco_attribute *made = NULL; /* _BITANGENT */
-	float *bitangents = NULL;
-	for (size_t i = 0; i < r->attribute_count; i++)
-		made = r->attributes[i].data ? made : &r->attributes[i];
 	nt_error failure;
-	nt_status status = made ? nt_gltf_bitangents(r->vertices, 0, &arena, &bitangents, &failure) : NT_OK;
-	if (made)
-		made->data = bitangents;
-	if (!status)
-		status = encode(r, &failure);
-	if (made)
-		made->data = NULL;
-	nt_arena_free(&arena);
+	const nt_status status = encode(r, &failure);
 	if (nt_gltf_is_beside_mesh(status)) {
 		*error = failure;
 		return status;

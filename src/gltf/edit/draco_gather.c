@@ -184,17 +184,17 @@ nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r, nt_error *error)
 
 /* ---- taking out ---- */
 
-/* Bytes of a buffer that accessors of the primitive fill. */
+/* Bytes of a view that accessors of the primitive fill. */
 typedef struct run {
-	uint64_t begin, end, view_begin, view_end;
-	uint32_t buffer, view;
+	uint64_t begin, end; /* in the buffer */
+	uint32_t view;
 } run;
 
 static int compare_runs(const void *a, const void *b)
 {
 	const run *x = a, *y = b;
-	if (x->buffer != y->buffer)
-		return x->buffer < y->buffer ? -1 : 1;
+	if (x->view != y->view)
+		return x->view < y->view ? -1 : 1;
 	return (x->begin > y->begin) - (x->begin < y->begin);
 }
 
@@ -210,49 +210,25 @@ static run detach(const nt_gltf_recoding *r, uint64_t index)
 	nt_json_remove(r->json, json, "byteOffset");
 	r->document->accessors[index].view = NT_NONE; /* its elements are in the block */
 	const uint64_t begin = view.offset + a.offset;
-	return (run){begin, begin + (a.count - 1) * a.stride + a.element_bytes, view.offset,
-		view.offset + view.length, view.buffer, a.view};
+	return (run){begin, begin + (a.count - 1) * a.stride + a.element_bytes, a.view};
 }
 
-/* Views that only runs lie in go as a whole. */
-static nt_status remove_views(const nt_gltf_recoding *r, const run *runs, size_t count, nt_error *error)
+/* Takes out runs of one view: all of it, or those that nobody else has a use for. Interleaved ones go together. */
+static nt_status remove_runs(const nt_gltf_recoding *r, const run *runs, size_t count, nt_error *error)
 {
-	nt_status status = NT_OK;
-	for (size_t i = 0; !status && i < count; i++) {
-		size_t users = 0;
-		for (size_t k = 0; k < count; k++)
-			users += runs[k].view == runs[i].view;
-		status = nt_edits_release_view(r->edits, runs[i].view, users, error);
-	}
-	return status;
-}
-
-/* Bytes that somebody else has a use for stay, those in which another view begins or ends, and those that
- * are all of some view. */
-static bool can_go(const nt_byte_users *users, const run *runs, size_t count, uint64_t begin, uint64_t end)
-{
-	for (size_t i = 0; i < count; i++)
-		if (runs[i].view_begin > begin || runs[i].view_end < end ||
-			(runs[i].view_begin == begin && runs[i].view_end == end))
-			return false;
-	return nt_byte_users_count(users, runs->buffer, begin, end) == count;
-}
-
-static nt_status remove_runs(const nt_gltf_recoding *r, run *runs, size_t count, nt_error *error)
-{
-	if (count)
-		qsort(runs, count, sizeof *runs, compare_runs);
-	nt_status status = remove_views(r, runs, count, error);
-	for (size_t first = 0, next; !status && first < count; first = next) {
+	nt_gltf_view view;
+	nt_status status = nt_gltf_get_view(r->document, runs->view, "", &view, error);
+	if (!status)
+		status = nt_edits_release_view(r->edits, runs->view, count, error);
+	for (size_t first = 0, next; !status && !r->edits->is_free[runs->view] && first < count; first = next) {
 		const uint64_t begin = runs[first].begin;
 		uint64_t end = runs[first].end;
-		for (next = first + 1; next < count && runs[next].buffer == runs[first].buffer &&
-			runs[next].begin < end; next++)
+		for (next = first + 1; next < count && runs[next].begin < end; next++)
 			end = runs[next].end > end ? runs[next].end : end;
-		if (!r->edits->is_free[runs[first].view] &&
-			can_go(&r->edits->users, runs + first, next - first, begin, end))
-			status = nt_edits_replace(r->edits, runs[first].buffer, begin, end - begin,
-				(const unsigned char *)"", 0, error);
+		if (end - begin < view.length &&
+			nt_byte_users_count(&r->edits->users, view.buffer, begin, end) == next - first)
+			status = nt_edits_replace(r->edits, view.buffer, begin, end - begin, (const unsigned char *)"", 0,
+				error);
 	}
 	return status;
 }
@@ -281,7 +257,14 @@ nt_status nt_gltf_draco_take_out(nt_gltf_recoding *r, nt_error *error)
 			runs[count++] = detach(r, index);
 	if (nt_json_find_uint64(r->primitive, "indices", &index))
 		runs[count++] = detach(r, index);
-	const nt_status status = remove_runs(r, runs, count, error);
+	if (count)
+		qsort(runs, count, sizeof *runs, compare_runs);
+	nt_status status = NT_OK;
+	for (size_t first = 0, next; !status && first < count; first = next) {
+		for (next = first + 1; next < count && runs[next].view == runs[first].view;)
+			next++;
+		status = remove_runs(r, runs + first, next - first, error);
+	}
 	put_extension(r);
 	return status;
 }
