@@ -227,8 +227,8 @@ static nt_status remove_runs(const nt_gltf_recoding *r, const run *runs, size_t 
 			end = runs[next].end > end ? runs[next].end : end;
 		if (end - begin < view.length &&
 			nt_byte_users_count(&r->edits->users, view.buffer, begin, end) == next - first)
-			status = nt_edits_replace(r->edits, view.buffer, begin, end - begin, (const unsigned char *)"", 0,
-				error);
+			status = nt_edits_replace(r->edits, view.buffer, begin, end - begin,
+				(const unsigned char *)"", 0, error);
 	}
 	return status;
 }
