@@ -6,6 +6,8 @@
  */
 #include "ply/parts.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include "base/memory.h"
 #include "base/hash_index.h"
@@ -24,11 +26,18 @@ static const struct {
 };
 enum { TYPE_COUNT = sizeof type_names / sizeof type_names[0] };
 
+typedef struct word {
+	const char *text;
+	size_t length; /* 0: there is none */
+} word;
+
 /* A header that is being read. */
 typedef struct parser {
 	ply_header *header;
 	nt_error *error;
 	const char *at, *end; /* what is left of the line */
+	ply_span text;        /* the line with its end */
+	bool is_last;         /* it has none: the file ends there */
 	size_t line;
 	bool has_format;
 	nt_name_table names; /* of the elements; a name's number is its element's */
@@ -39,56 +48,52 @@ const char *ply_type_name(ply_type type)
 	return type_names[type].name;
 }
 
-/* The line that begins there, which may end in any way. */
-static ply_line read_line(const unsigned char *bytes, size_t size, size_t begin)
+/* Takes the line that begins where the last one ended. The first one tells whether '\r' comes alone: a '\n' after it
+ * may then be data. False: the file ended with the last one. */
+static bool next_line(parser *p)
 {
-	size_t end = begin;
-	while (end < size && bytes[end] != '\n' && bytes[end] != '\r')
+	ply_header *header = p->header;
+	const unsigned char *const bytes = header->bytes;
+	size_t end = p->text.end;
+	if (p->is_last)
+		return false;
+	p->text.begin = end;
+	while (end < header->size && !ply_is_line_end(bytes[end]))
 		end++;
-	ply_line line = {.text = (const char *)bytes + begin, .length = end - begin, .next = end};
-	if (end == size)
-		return line;
-	const bool pair = bytes[end] == '\r' && end + 1 < size && bytes[end + 1] == '\n';
-	line.newline = pair ? "\r\n" : bytes[end] == '\r' ? "\r" : "\n";
-	line.next += pair ? 2 : 1;
-	return line;
+	p->at = (const char *)bytes + p->text.begin;
+	p->end = (const char *)bytes + end;
+	p->is_last = end == header->size;
+	const bool returned = !p->is_last && bytes[end] == '\r', alone = p->line && strcmp(header->newline, "\r") == 0;
+	const bool pair = returned && !alone && end + 1 < header->size && bytes[end + 1] == '\n';
+	if (p->line++ == 0)
+		header->newline = pair ? "\r\n" : returned ? "\r" : "\n";
+	p->text.end = end + !p->is_last + pair;
+	return true;
 }
 
-ply_line ply_header_line(const ply_header *header, const unsigned char *bytes, size_t size, size_t begin)
+static bool word_is(word w, const char *text)
 {
-	ply_line line = read_line(bytes, size, begin);
-	if (line.newline && line.newline[0] == '\r' && strcmp(header->newline, "\r") == 0)
-		line.next = begin + line.length + 1;
-	return line;
+	return strlen(text) == w.length && memcmp(w.text, text, w.length) == 0;
 }
 
-ply_word ply_next_word(const char **at, const char *end)
+/* The next word of the line, blanks before it skipped. */
+static word next_word(parser *p)
 {
-	const char *begin = *at;
-	while (begin < end && ply_is_blank((unsigned char)*begin))
-		begin++;
-	for (*at = begin; *at < end && !ply_is_blank((unsigned char)**at);)
-		(*at)++;
-	return (ply_word){begin, (size_t)(*at - begin)};
-}
-
-bool ply_word_is(ply_word word, const char *text)
-{
-	return strlen(text) == word.length && memcmp(word.text, text, word.length) == 0;
-}
-
-static ply_word next_word(parser *p)
-{
-	return ply_next_word(&p->at, p->end);
+	while (p->at < p->end && ply_is_blank((unsigned char)*p->at))
+		p->at++;
+	const char *const begin = p->at;
+	while (p->at < p->end && !ply_is_blank((unsigned char)*p->at))
+		p->at++;
+	return (word){begin, (size_t)(p->at - begin)};
 }
 
 /* Length and text for "%.*s", shortened to what a message can take. */
-static int shown(ply_word w)
+static int shown(word w)
 {
 	return (int)nt_utf8_cut_of(w.text, w.length, 40);
 }
 
-static nt_status fail_word(parser *p, ply_word found, const char *expected)
+static nt_status fail_word(parser *p, word found, const char *expected)
 {
 	if (found.length == 0)
 		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
@@ -99,7 +104,7 @@ static nt_status fail_word(parser *p, ply_word found, const char *expected)
 
 static nt_status expect_end(parser *p)
 {
-	const ply_word w = next_word(p);
+	const word w = next_word(p);
 	return w.length ? fail_word(p, w, "the end of the line") : NT_OK;
 }
 
@@ -108,14 +113,14 @@ static nt_status parse_format(parser *p)
 	static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
 	if (p->has_format)
 		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line, "a second format line");
-	const ply_word name = next_word(p);
+	const word name = next_word(p);
 	int encoding = 0;
-	while (encoding < 3 && !ply_word_is(name, names[encoding]))
+	while (encoding < 3 && !word_is(name, names[encoding]))
 		encoding++;
 	if (encoding == 3)
 		return fail_word(p, name, "ascii, binary_little_endian or binary_big_endian");
-	const ply_word version = next_word(p);
-	if (version.length && !ply_word_is(version, "1.0"))
+	const word version = next_word(p);
+	if (version.length && !word_is(version, "1.0"))
 		return nt_fail_line(p->error, NT_ERROR_UNSUPPORTED, p->line,
 			"PLY version \"%.*s\": only 1.0 is known", shown(version), version.text);
 	if (version.length == 0)
@@ -128,9 +133,9 @@ static nt_status parse_format(parser *p)
 /* "TextureFile wood grain.png": the rest of the line is the name. */
 static nt_status parse_comment(parser *p)
 {
-	if (!ply_word_is(next_word(p), "TextureFile"))
+	if (!word_is(next_word(p), "TextureFile"))
 		return NT_OK;
-	ply_word name = next_word(p);
+	word name = next_word(p);
 	const char *end = p->end;
 	while (end > name.text && ply_is_blank((unsigned char)end[-1]))
 		end--;
@@ -145,7 +150,7 @@ static nt_status parse_comment(parser *p)
 	return NT_OK;
 }
 
-static bool read_count(ply_word w, size_t *count)
+static bool read_count(word w, size_t *count)
 {
 	*count = 0;
 	for (size_t i = 0; i < w.length; i++) {
@@ -159,11 +164,11 @@ static bool read_count(ply_word w, size_t *count)
 static nt_status parse_element(parser *p)
 {
 	ply_header *header = p->header;
-	const ply_word name = next_word(p);
+	const word name = next_word(p);
 	if (name.length == 0)
 		return fail_word(p, name, "the element's name");
-	ply_element element = {.line = p->line};
-	const ply_word number = next_word(p);
+	ply_element element = {.line = p->line, .text = p->text};
+	const word number = next_word(p);
 	if (!read_count(number, &element.count))
 		return fail_word(p, number, "the number of rows");
 	const uint32_t first = nt_name_add(&p->names, name.text, name.length);
@@ -181,10 +186,10 @@ static nt_status parse_element(parser *p)
 	return expect_end(p);
 }
 
-static nt_status parse_type(parser *p, ply_word name, ply_type *type)
+static nt_status parse_type(parser *p, word name, ply_type *type)
 {
 	for (int i = 0; i < TYPE_COUNT; i++) {
-		if (ply_word_is(name, type_names[i].name) || ply_word_is(name, type_names[i].alias)) {
+		if (word_is(name, type_names[i].name) || word_is(name, type_names[i].alias)) {
 			*type = (ply_type)i;
 			return NT_OK;
 		}
@@ -195,8 +200,8 @@ static nt_status parse_type(parser *p, ply_word name, ply_type *type)
 /* "list <type> <type>" or "<type>". */
 static nt_status parse_property_type(parser *p, ply_property *property)
 {
-	ply_word name = next_word(p);
-	property->list = ply_word_is(name, "list");
+	word name = next_word(p);
+	property->list = word_is(name, "list");
 	if (property->list) {
 		name = next_word(p);
 		const nt_status status = parse_type(p, name, &property->count_type);
@@ -216,11 +221,11 @@ static nt_status parse_property(parser *p)
 		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
 			"a property before the first element");
 	ply_element *element = &header->elements[header->element_count - 1];
-	ply_property property = {.line = p->line, .offset = element->row_bytes};
+	ply_property property = {.line = p->line, .text = p->text};
 	const nt_status status = parse_property_type(p, &property);
 	if (status)
 		return status;
-	const ply_word name = next_word(p);
+	const word name = next_word(p);
 	if (name.length == 0)
 		return fail_word(p, name, "the property's name");
 	property.name = nt_arena_text(&header->texts, name.text, name.length);
@@ -235,65 +240,53 @@ static nt_status parse_property(parser *p)
 
 static nt_status parse_line(parser *p, bool *finished)
 {
-	const ply_word keyword = next_word(p);
-	if (ply_word_is(keyword, "comment"))
+	const word keyword = next_word(p);
+	if (word_is(keyword, "comment"))
 		return parse_comment(p);
-	if (keyword.length == 0 || ply_word_is(keyword, "obj_info"))
+	if (keyword.length == 0 || word_is(keyword, "obj_info"))
 		return NT_OK;
-	if (ply_word_is(keyword, "format"))
+	if (word_is(keyword, "format"))
 		return parse_format(p);
-	if (ply_word_is(keyword, "element"))
+	if (word_is(keyword, "element"))
 		return parse_element(p);
-	if (ply_word_is(keyword, "property"))
+	if (word_is(keyword, "property"))
 		return parse_property(p);
 	/* A line that some exporter wrote without "comment" before it. Behind the first element it could be a
 	 * misspelt property, without which rows would be read as what they are not. */
-	if (p->header->element_count == 0 && !ply_word_is(keyword, "end_header")) {
+	if (p->header->element_count == 0 && !word_is(keyword, "end_header")) {
 		if (p->header->unknown_lines++ == 0)
 			p->header->unknown_line = p->line;
 		return NT_OK;
 	}
-	if (!ply_word_is(keyword, "end_header"))
+	if (!word_is(keyword, "end_header"))
 		return fail_word(p, keyword,
 			"comment, obj_info, element, property or end_header");
 	*finished = true;
 	return expect_end(p);
 }
 
-/* All lines behind the first, up to end_header. */
-static nt_status parse_lines(parser *p, ply_line *line, const unsigned char *bytes, size_t size)
+/* All lines up to end_header. */
+static nt_status parse_lines(parser *p)
 {
-	nt_status status = NT_OK;
-	for (bool finished = false; !status && !finished;) {
-		if (!line->newline)
-			return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
-				"the file ends within the header, end_header was expected");
-		*line = ply_header_line(p->header, bytes, size, line->next);
-		p->line++;
-		p->at = line->text;
-		p->end = line->text + line->length;
-		status = parse_line(p, &finished);
-	}
+	next_line(p);
+	if (!word_is(next_word(p), "ply"))
+		return nt_fail_line(p->error, NT_ERROR_INPUT, 1, "not a PLY file: it does not begin with \"ply\"");
+	nt_status status = expect_end(p);
+	for (bool finished = false; !status && !finished;)
+		status = next_line(p) ? parse_line(p, &finished) : nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
+			"the file ends within the header, end_header was expected");
 	if (!status && !p->has_format)
 		status = nt_fail_line(p->error, NT_ERROR_INPUT, p->line, "the header has no format line");
 	return status;
 }
 
-nt_status ply_parse_header(ply_header *header, const unsigned char *bytes, size_t size,
-	nt_error *error)
+nt_status ply_parse_header(ply_header *header, const unsigned char *bytes, size_t size, nt_error *error)
 {
-	parser p = {.header = header, .error = error, .line = 1};
-	ply_line line = read_line(bytes, size, 0);
-	p.at = line.text;
-	p.end = line.text + line.length;
-	if (!ply_word_is(next_word(&p), "ply"))
-		return nt_fail_line(error, NT_ERROR_INPUT, 1, "not a PLY file: it does not begin with \"ply\"");
-	/* the first line tells whether '\r' comes alone: a '\n' after it may then be data */
-	header->newline = line.newline;
-	nt_status status = expect_end(&p);
-	if (!status)
-		status = parse_lines(&p, &line, bytes, size);
-	header->body = line.next;
+	parser p = {.header = header, .error = error};
+	header->bytes = bytes;
+	header->size = size;
+	const nt_status status = parse_lines(&p);
+	header->body = p.text.end;
 	header->body_line = p.line + 1;
 	nt_name_table_free(&p.names);
 	return status;
@@ -309,7 +302,7 @@ void ply_free_header(ply_header *header)
 	*header = (ply_header){0};
 }
 
-const ply_element *ply_find_element(const ply_header *header, const char *name)
+ply_element *ply_find_element(const ply_header *header, const char *name)
 {
 	for (size_t i = 0; i < header->element_count; i++)
 		if (strcmp(header->elements[i].name, name) == 0)
@@ -323,4 +316,31 @@ int ply_find_property(const ply_element *element, const char *name)
 		if (strcmp(element->properties[i].name, name) == 0)
 			return (int)i;
 	return PLY_NO_PROPERTY;
+}
+
+nt_place ply_place(const ply_header *header, const unsigned char *at)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	if (header->encoding != PLY_ASCII) {
+		place.offset = (uint64_t)(at - header->bytes);
+		return place;
+	}
+	const unsigned char *const end = header->bytes + header->size;
+	place.line = header->body_line;
+	for (const unsigned char *p = header->bytes + header->body; p < at; p++)
+		place.line += *p == '\n' || (*p == '\r' && !(p + 1 < end && p[1] == '\n'));
+	return place;
+}
+
+nt_status ply_fail_at(const ply_header *header, const unsigned char *at, nt_error *error, const char *format, ...)
+{
+	char message[sizeof error->message];
+	va_list arguments;
+	va_start(arguments, format);
+	vsnprintf(message, sizeof message, format, arguments);
+	va_end(arguments);
+	const nt_place place = ply_place(header, at);
+	return header->encoding == PLY_ASCII ? nt_fail_line(error, NT_ERROR_INPUT, place.line, "%s", message)
+		: nt_fail_offset(error, NT_ERROR_INPUT, place.offset, "%s", message);
 }

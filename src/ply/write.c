@@ -18,8 +18,9 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include "base/buffer.h"
+#include "base/hash_index.h"
 #include "base/vec.h"
+#include "ext/number.h"
 #include "ply/parts.h"
 
 enum { DRAIN_BYTES = 64 * 1024, MOST_VALUE = NT_FLOAT_TEXT + 1 };
@@ -46,10 +47,14 @@ typedef struct writer {
 
 	/* of a PLY */
 	const nt_mesh *mesh;
-	ply_numbering n;
-	ply_cursor cursor;
+	const uint32_t *indices;  /* final vertex of each corner */
+	uint32_t *numbers;        /* of final vertices behind the rows of the source: their number in the output */
+	uint32_t *appended;       /* [appended_count] final vertex of each row behind those of the source */
+	size_t appended_count;
+	size_t cut_polygons, added_faces; /* polygons that become triangles, and how many faces that adds */
+	uint32_t *polygon;        /* vertices of one */
 	ply_rows vertices, faces;
-	size_t *row_offsets;      /* [row_count] where the row of a vertex begins */
+	size_t *row_offsets;      /* [count of vertices] where the row of a vertex begins */
 	bool new_normals, new_tangents, new_bitangents;
 } writer;
 
@@ -268,6 +273,19 @@ static nt_status put_vertex(writer *w, ply_cell old, const double *values)
 
 /* ---- faces ---- */
 
+/* The number of rows of the source, which keep their numbers. */
+static size_t row_count(const writer *w)
+{
+	return w->source->vertex->count;
+}
+
+/* The vertex of the output at a corner of the mesh. */
+static uint32_t output_vertex(const writer *w, size_t corner)
+{
+	const uint32_t v = w->indices[corner];
+	return v < row_count(w) ? v : w->numbers[v - row_count(w)];
+}
+
 /* The faces of a mesh; base: the number of its first vertex, unless it is a PLY's. The first corner stays the first if
  * a face is turned round. */
 static nt_status put_mesh_faces(writer *w, const nt_mesh *mesh, size_t base, bool mirrored)
@@ -279,8 +297,7 @@ static nt_status put_mesh_faces(writer *w, const nt_mesh *mesh, size_t base, boo
 		uint32_t vertices[4];
 		for (size_t k = 0; k < size; k++) {
 			const size_t c = corner + (mirrored && k > 0 ? size - k : k);
-			vertices[k] = w->source ? ply_output_vertex(&w->n, c)
-				: (uint32_t)(base + (indices ? indices[c] : c));
+			vertices[k] = w->source ? output_vertex(w, c) : (uint32_t)(base + (indices ? indices[c] : c));
 		}
 		put_list(w, PLY_UINT8, vertices, size, w->index_type);
 		status = end_row(w);
@@ -316,45 +333,143 @@ static nt_status put_face(writer *w, const uint32_t *vertices, size_t count, con
 	return end_row(w);
 }
 
-/* Puts the polygon in the next row, whose corners and cut begin there; moves both behind it. */
-static nt_status put_polygon(writer *w, size_t *corner, size_t *cut, uint32_t **vertices, size_t *capacity)
+/* Finds the vertices of a cut polygon whose triangles begin at `corner`; false: the triangles disagree about one. */
+static bool resolve_polygon(writer *w, size_t corner, size_t size, const uint32_t *cut)
 {
-	if (ply_read_row(&w->faces, w->error))
+	bool agrees = true;
+	memset(w->polygon, 0xff, size * sizeof *w->polygon);
+	for (size_t i = 0; i < 3 * (size - 2); i++) {
+		const uint32_t vertex = output_vertex(w, corner + i);
+		uint32_t *known = &w->polygon[cut[i]];
+		agrees &= *known == NT_NONE || *known == vertex;
+		*known = vertex;
+	}
+	for (size_t k = 0; k < size; k++)
+		agrees &= w->polygon[k] != NT_NONE;
+	return agrees;
+}
+
+/* Puts the polygon in the next row, whose corners and cut begin there; moves both behind it. */
+static nt_status put_polygon(writer *w, size_t *corner, size_t *cut)
+{
+	ply_column *indices = &w->faces.columns[w->source->face_indices];
+	w->faces.row = indices->used = 0;
+	if (ply_read_row(&w->faces))
 		return fail_changed(w);
-	const size_t size = w->faces.cells[w->source->face_indices].count;
-	const size_t corners = size < 3 ? 0 : size < 5 ? size : 3 * (size - 2);
-	const uint32_t *own = w->source->cuts ? w->source->cuts + *cut : NULL;
-	if (!nt_grow((void **)vertices, capacity, size, sizeof **vertices))
-		return nt_fail_memory(w->error);
+	const size_t size = indices->used, corners = size < 3 ? 0 : size < 5 ? size : 3 * (size - 2);
+	const uint32_t *own = w->source->cuts + *cut;
 	if (corners > w->mesh->corner_count - *corner || (size > 4 && corners > w->source->cut_count - *cut))
 		return fail_changed(w);
 	nt_status status = NT_OK;
-	if (size < 3) {
-		/* no face of the mesh: its vertices stay */
-		for (size_t k = 0; k < size; k++)
-			(*vertices)[k] = (uint32_t)ply_cell_integer(&w->faces, (size_t)w->source->face_indices, k);
-		status = put_face(w, *vertices, size, NULL);
-	} else if (size > 4 && !ply_resolve_polygon(&w->n, *corner, size, own, *vertices)) {
+	if (size > 4 && !resolve_polygon(w, *corner, size, own)) {
 		for (size_t t = 0; !status && t < corners; t += 3) {
 			for (size_t k = 0; k < 3; k++)
-				(*vertices)[k] = ply_output_vertex(&w->n, *corner + t + k);
-			status = put_face(w, *vertices, 3, own + t);
+				w->polygon[k] = output_vertex(w, *corner + t + k);
+			status = put_face(w, w->polygon, 3, own + t);
 		}
 	} else {
+		/* fewer than three are no face of the mesh: its vertices stay */
 		for (size_t k = 0; size < 5 && k < size; k++)
-			(*vertices)[k] = ply_output_vertex(&w->n, *corner + k);
-		status = put_face(w, *vertices, size, NULL);
+			w->polygon[k] = size < 3 ? indices->integers[k] : output_vertex(w, *corner + k);
+		status = put_face(w, w->polygon, size, NULL);
 	}
 	*corner += corners;
 	*cut += size > 4 ? corners : 0;
 	return status;
 }
 
+/* ---- numbers of vertices ---- */
+
+/* The vertex of the mesh, and the row of the source, that a final vertex has its attributes from. */
+static size_t mesh_vertex(const writer *w, size_t vertex)
+{
+	const nt_mesh *mesh = w->mesh;
+	return vertex < mesh->vertex_count ? vertex : mesh->split.sources[vertex - mesh->vertex_count];
+}
+
+static size_t source_row(const writer *w, size_t vertex)
+{
+	const nt_mesh *mesh = w->mesh;
+	size_t v = mesh_vertex(w, vertex);
+	if (v >= mesh->source_vertex_count)
+		v = mesh->vertex_sources[v - mesh->source_vertex_count];
+	return v < row_count(w) ? v : w->source->wedge_rows[v - row_count(w)];
+}
+
+/* Values by which vertices of one row may differ in the output. */
+typedef struct distinction {
+	size_t row;
+	float tangent[4], normal[3], unused;
+} distinction;
+
+static distinction distinction_of(const writer *w, size_t vertex)
+{
+	const nt_mesh *mesh = w->mesh;
+	distinction v = {.row = source_row(w, vertex)};
+	if (mesh->split.vertex_tangents)
+		memcpy(v.tangent, mesh->split.vertex_tangents + 4 * vertex, sizeof v.tangent);
+	if (mesh->normals_made)
+		memcpy(v.normal, mesh->normals + 3 * mesh_vertex(w, vertex), sizeof v.normal);
+	return v;
+}
+
+/* Rows of the source keep their number. Vertices that were told apart by per-face texture coordinates alone become one
+ * again if their normals and tangents are equal, since the coordinates stay with the faces. */
+static bool number_vertices(writer *w)
+{
+	const nt_mesh *mesh = w->mesh;
+	const size_t first = row_count(w), count = mesh->vertex_count + mesh->split.source_count - first;
+	nt_key_set set = {0}; /* of appended vertices */
+	w->indices = mesh->split.indices ? mesh->split.indices : mesh->indices;
+	w->numbers = nt_alloc(count, sizeof *w->numbers);
+	w->appended = nt_alloc(count, sizeof *w->appended);
+	bool done = w->numbers && w->appended;
+	for (size_t i = 0; done && i < count; i++) {
+		uint32_t number = (uint32_t)w->appended_count;
+		if (w->source->wedge_count > 0) {
+			const distinction own = distinction_of(w, first + i), rows = distinction_of(w, own.row);
+			const bool same = memcmp(&own, &rows, sizeof own) == 0;
+			number = same ? 0 : nt_key_add(&set, &own, sizeof own);
+			w->numbers[i] = (uint32_t)own.row;
+			done = number != NT_NONE;
+			if (same)
+				continue;
+		}
+		if (number == w->appended_count)
+			w->appended[w->appended_count++] = (uint32_t)(first + i);
+		w->numbers[i] = (uint32_t)(first + number);
+	}
+	nt_key_set_free(&set);
+	return done;
+}
+
+/* Counts the polygons that become triangles: the header needs the number of faces. */
+static void count_cut_polygons(writer *w)
+{
+	const nt_mesh *mesh = w->mesh;
+	const uint32_t *cut = w->source->cuts;
+	for (size_t face = 0, corner = 0, end; mesh->face_polygon && face < mesh->face_count; face = end) {
+		for (end = face + 1; end < mesh->face_count && mesh->face_polygon[end] == mesh->face_polygon[face];)
+			end++;
+		const size_t triangles = end - face;
+		if (triangles == 1) {
+			corner += mesh->face_sizes ? mesh->face_sizes[face] : 3;
+			continue;
+		}
+		if (!resolve_polygon(w, corner, triangles + 2, cut)) {
+			w->cut_polygons++;
+			w->added_faces += triangles - 1;
+		}
+		corner += 3 * triangles;
+		cut += 3 * triangles;
+	}
+}
+
 /* ---- from a PLY ---- */
 
 static bool faces_change(const writer *w)
 {
-	return w->n.appended_count > 0 || w->n.cut_polygons > 0;
+	return w->appended_count > 0 || w->cut_polygons > 0;
 }
 
 static bool replaces_strips(const writer *w)
@@ -368,103 +483,78 @@ static ply_type find_index_type(const writer *w)
 	static const size_t largest[] = {[PLY_INT8] = INT8_MAX, [PLY_UINT8] = UINT8_MAX, [PLY_INT16] = INT16_MAX,
 		[PLY_UINT16] = UINT16_MAX, [PLY_INT32] = INT32_MAX, [PLY_UINT32] = UINT32_MAX};
 	const ply_element *element = w->source->face ? w->source->face : w->source->strips;
-	const size_t count = w->n.row_count + w->n.appended_count;
+	const size_t count = row_count(w) + w->appended_count;
 	const ply_type type = element ? element->properties[w->source->face_indices].type : PLY_UINT32;
 	return count == 0 || count - 1 <= largest[type] ? type : count - 1 > INT32_MAX ? PLY_UINT32 : PLY_INT32;
 }
 
-/* The line of an element, with its new count; false: its properties are to be left out. */
-static bool put_element_line(writer *w, const ply_element *element, const char *line, size_t size)
+/* The source's header up to a line, from where the last one was met; `stays`: that one, too. */
+static void put_header_line(writer *w, size_t *at, ply_span line, bool stays)
 {
-	const ply_source *source = w->source;
-	size_t count = element->count;
-	if (replaces_strips(w) && element == source->strips) {
-		nt_buffer_format(&w->buffer, "element face %zu%sproperty list uchar %s vertex_indices%s",
-			w->mesh->face_count, w->newline, ply_type_name(w->index_type), w->newline);
-		return false;
-	}
-	/* an empty element "face" beside strips would come twice */
-	if (replaces_strips(w) && strcmp(element->name, "face") == 0)
-		return false;
-	if (element == source->vertex)
-		count += w->n.appended_count;
-	else if (element == source->face)
-		count += w->n.added_faces;
-	if (count != element->count)
-		nt_buffer_format(&w->buffer, "element %s %zu%s", element->name, count, w->newline);
-	else
-		nt_buffer_append(&w->buffer, line, size);
-	return true;
+	const size_t end = stays ? line.end : line.begin;
+	put_cell(w, w->source->header.bytes + *at, w->source->header.bytes + end);
+	*at = line.end;
 }
 
-/* next: the first of the old columns that has not been met; they are in the order of properties. */
-static void put_property_line(writer *w, const ply_element *element, size_t number, const char *line, size_t size,
-	size_t *next)
-{
-	const ply_property *property = &element->properties[number];
-	bool stays = element != w->source->vertex;
-	if (!stays && *next < w->old_count && w->columns[*next].property == (int)number) {
-		stays = true;
-		++*next;
-	}
-	if (element == w->source->face && (int)number == w->source->face_indices && w->index_type != property->type)
-		nt_buffer_format(&w->buffer, "property list %s %s %s%s", ply_type_name(property->count_type),
-			ply_type_name(w->index_type), property->name, w->newline);
-	else if (stays)
-		nt_buffer_append(&w->buffer, line, size);
-	if (element == w->source->vertex && number + 1 == element->property_count)
-		put_new_properties(w);
-}
-
-/* Walks the lines of the source's header once more. */
 static void put_old_header(writer *w)
 {
-	const ply_header *header = &w->source->header;
-	const ply_element *element = header->elements;
-	size_t property = 0, next = 0;
-	bool stays = true;
-	ply_line line;
-	for (size_t begin = 0; begin < header->body; begin = line.next) {
-		line = ply_header_line(header, w->scene->bytes, header->body, begin);
-		const char *at = line.text;
-		const ply_word word = ply_next_word(&at, line.text + line.length);
-		const size_t size = line.next - begin;
-		if (ply_word_is(word, "element")) {
-			stays = put_element_line(w, element++, line.text, size);
-			property = 0;
-		} else if (ply_word_is(word, "property")) {
-			if (stays)
-				put_property_line(w, element - 1, property, line.text, size, &next);
-			property++;
-		} else {
-			nt_buffer_append(&w->buffer, line.text, size);
+	const ply_source *source = w->source;
+	const ply_header *header = &source->header;
+	size_t at = 0, next = 0; /* next: the first of the old columns that has not been met */
+	for (size_t e = 0; e < header->element_count; e++) {
+		const ply_element *element = &header->elements[e];
+		const bool strips = replaces_strips(w) && element == source->strips;
+		/* an empty element "face" beside strips would come twice */
+		const bool goes = strips || (replaces_strips(w) && strcmp(element->name, "face") == 0);
+		const size_t added = element == source->vertex ? w->appended_count
+			: element == source->face ? w->added_faces : 0;
+		put_header_line(w, &at, element->text, !goes && !added);
+		if (strips)
+			nt_buffer_format(&w->buffer, "element face %zu%sproperty list uchar %s vertex_indices%s",
+				w->mesh->face_count, w->newline, ply_type_name(w->index_type), w->newline);
+		else if (added)
+			nt_buffer_format(&w->buffer, "element %s %zu%s", element->name, element->count + added,
+				w->newline);
+		for (size_t i = 0; i < element->property_count; i++) {
+			const ply_property *property = &element->properties[i];
+			const bool retyped = element == source->face && (int)i == source->face_indices &&
+				w->index_type != property->type;
+			bool stays = !goes && !retyped;
+			if (element == source->vertex)
+				stays = next < w->old_count && w->columns[next].property == (int)i;
+			next += element == source->vertex && stays;
+			put_header_line(w, &at, property->text, stays);
+			if (retyped)
+				nt_buffer_format(&w->buffer, "property list %s %s %s%s",
+					ply_type_name(property->count_type), ply_type_name(w->index_type),
+					property->name, w->newline);
 		}
+		if (element == source->vertex)
+			put_new_properties(w);
 	}
+	put_header_line(w, &at, (ply_span){header->body, header->body}, true);
 }
 
-/* The row at the cursor as that of a vertex. */
+/* The row of the source at the reader's place as that of a final vertex. */
 static nt_status put_old_vertex(writer *w, size_t vertex)
 {
-	const ply_element *element = w->source->vertex;
+	ply_rows *rows = &w->vertices;
 	const bool ascii = w->encoding == PLY_ASCII;
 	if (ascii)
-		ply_next_row(&w->cursor);
-	ply_cell row = {.begin = w->cursor.at, .end = w->cursor.at};
-	if (w->rows_stay && ascii) {
-		while (row.end < w->cursor.end && !ply_is_line_end(*row.end))
-			row.end++;
-		w->cursor.at = row.end;
-		while (row.end > row.begin && ply_is_blank(row.end[-1]))
-			row.end--;
-	} else if (w->rows_stay && !element->has_list) {
-		w->cursor.at = row.end += element->row_bytes;
-	} else {
-		w->vertices.row = 0;
-		if (ply_read_row(&w->vertices, w->error))
-			return fail_changed(w);
-		row.end = w->cursor.at;
-	}
-	const float *n = w->mesh->normals ? w->mesh->normals + 3 * ply_mesh_vertex(&w->n, vertex) : NULL;
+		ply_next_row(rows);
+	ply_cell row = {.begin = rows->at};
+	rows->row = 0;
+	if (w->rows_stay && ascii)
+		while (rows->at < rows->end && !ply_is_line_end(*rows->at))
+			rows->at++;
+	else if (w->rows_stay && !rows->element->has_list)
+		rows->at += rows->element->row_bytes;
+	else if (ply_read_row(rows))
+		return fail_changed(w);
+	row.end = rows->at;
+	while (ascii && row.end > row.begin && ply_is_blank(row.end[-1]))
+		row.end--;
+	const float *n = w->mesh->normals ? w->mesh->normals + 3 * mesh_vertex(w, vertex) : NULL;
 	const float *t = w->new_tangents ? w->mesh->split.vertex_tangents + 4 * vertex : NULL;
 	double values[PLY_VALUES];
 	float b[3];
@@ -482,94 +572,86 @@ static nt_status put_old_vertex(writer *w, size_t vertex)
 static nt_status put_old_vertices(writer *w)
 {
 	nt_status status = NT_OK;
-	for (size_t row = 0; !status && row < w->n.row_count; row++) {
-		w->row_offsets[row] = (size_t)(w->cursor.at - w->cursor.begin);
+	for (size_t row = 0; !status && row < row_count(w); row++) {
+		w->row_offsets[row] = (size_t)(w->vertices.at - w->source->header.bytes);
 		status = put_old_vertex(w, row);
 	}
-	const unsigned char *after = w->cursor.at;
-	for (size_t i = 0; !status && i < w->n.appended_count; i++) {
-		w->cursor.at = w->cursor.begin + w->row_offsets[ply_source_row(&w->n, w->n.appended[i])];
-		status = put_old_vertex(w, w->n.appended[i]);
+	for (size_t i = 0; !status && i < w->appended_count; i++) {
+		w->vertices.at = w->source->header.bytes + w->row_offsets[source_row(w, w->appended[i])];
+		status = put_old_vertex(w, w->appended[i]);
 	}
-	w->cursor.at = after;
-	return status;
-}
-
-static nt_status put_old_faces(writer *w)
-{
-	size_t corner = 0, cut = 0, capacity = 0;
-	uint32_t *vertices = NULL;
-	nt_status status = NT_OK;
-	while (!status && w->faces.row < w->source->face->count)
-		status = put_polygon(w, &corner, &cut, &vertices, &capacity);
-	free(vertices);
 	return status;
 }
 
 /* An element as it is. */
 static nt_status copy_element(writer *w, const ply_element *element)
 {
-	if (w->encoding == PLY_ASCII)
-		ply_next_row(&w->cursor);
-	const unsigned char *begin = w->cursor.at;
-	nt_status status = NT_OK;
-	if (element == w->source->face || element == w->source->strips)
-		w->cursor.at = w->cursor.begin + w->source->face_end;
-	else
-		status = ply_skip_element(&w->cursor, element, w->error);
-	if (status || begin >= w->cursor.at)
-		return status;
+	const unsigned char *begin = w->source->header.bytes + element->rows.begin;
+	const unsigned char *end = w->source->header.bytes + element->rows.end;
 	/* the reader may have stopped before or behind the end of the last line */
-	const unsigned char *end = w->cursor.at;
-	while (w->encoding == PLY_ASCII && ply_is_space(end[-1]))
+	while (w->encoding == PLY_ASCII && begin < end && ply_is_space(*begin))
+		begin++;
+	while (w->encoding == PLY_ASCII && begin < end && ply_is_space(end[-1]))
 		end--;
-	status = put_bytes(w, begin, (size_t)(end - begin));
-	return status ? status : end_row(w);
+	const nt_status status = begin < end ? put_bytes(w, begin, (size_t)(end - begin)) : NT_OK;
+	return status || begin >= end ? status : end_row(w);
 }
 
 static nt_status put_old_body(writer *w)
 {
 	const ply_source *source = w->source;
+	const unsigned char *rest = source->header.bytes + source->header.body;
+	const unsigned char *const end = source->header.bytes + source->header.size;
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < source->header.element_count; i++) {
 		const ply_element *element = &source->header.elements[i];
-		if (element == source->vertex) {
+		size_t corner = 0, cut = 0;
+		if (element == source->vertex)
 			status = put_old_vertices(w);
-		} else if (element == source->face && faces_change(w)) {
-			status = put_old_faces(w);
-		} else if (element == source->strips && faces_change(w)) {
-			w->cursor.at = w->cursor.begin + source->face_end;
+		else if (element == source->strips && faces_change(w))
 			status = put_mesh_faces(w, w->mesh, 0, false);
-		} else {
+		else if (element != source->face || !faces_change(w))
 			status = copy_element(w, element);
-		}
+		for (size_t f = 0; !status && element == source->face && faces_change(w) && f < element->count; f++)
+			status = put_polygon(w, &corner, &cut);
+		rest = source->header.bytes + element->rows.end;
 	}
-	if (w->encoding == PLY_ASCII)
-		ply_next_row(&w->cursor);
-	return status ? status : put_bytes(w, w->cursor.at, (size_t)(w->cursor.end - w->cursor.at));
+	while (w->encoding == PLY_ASCII && rest < end && ply_is_space(*rest))
+		rest++;
+	return status ? status : put_bytes(w, rest, (size_t)(end - rest));
 }
 
 static nt_status write_changed(writer *w, bool bitangents)
 {
 	const ply_source *source = w->source;
+	const ply_header *header = &source->header;
 	const ply_element *vertex = source->vertex;
 	nt_place place;
-	if (!ply_number_vertices(&w->n, w->mesh, source))
-		return nt_fail_memory(w->error);
 	w->columns = nt_alloc(vertex->property_count + PLY_VALUES, sizeof *w->columns);
-	w->row_offsets = nt_alloc(w->n.row_count, sizeof *w->row_offsets);
-	if (!w->columns || !w->row_offsets || !ply_begin_rows(&w->vertices, &w->cursor, vertex) ||
-		(source->face && !ply_begin_rows(&w->faces, &w->cursor, source->face)))
-		return nt_fail_memory(w->error);
-	w->faces.may_be_longer = true;
+	w->row_offsets = nt_alloc(vertex->count, sizeof *w->row_offsets);
+	w->polygon = nt_alloc(source->most_corners, sizeof *w->polygon);
+	nt_status status = w->columns && w->row_offsets && w->polygon && number_vertices(w) ? NT_OK
+		: nt_fail_memory(w->error);
+	if (!status)
+		status = ply_begin_rows(&w->vertices, header, vertex, header->bytes + vertex->rows.begin, w->error);
+	if (!status && source->face) {
+		status = ply_begin_rows(&w->faces, header, source->face,
+			header->bytes + source->face->rows.begin, w->error);
+		w->faces.may_be_longer = true;
+	}
+	if (status)
+		return status;
+	if (source->face)
+		w->faces.columns[source->face_indices] = (ply_column){.use = PLY_INDICES, .limit = vertex->count};
+	count_cut_polygons(w);
 	/* bitangents of other tangents must not stay */
 	w->new_bitangents = w->new_tangents && w->mesh->normals &&
 		(bitangents || ply_find_property(vertex, "bx") != PLY_NO_PROPERTY);
 	find_old_columns(w);
 	w->index_type = find_index_type(w);
 	nt_mesh_place(w->mesh, &place);
-	if (w->n.cut_polygons > 0)
-		nt_finding_add(&w->scene->findings, NT_CODE_POLYGON_CUT, &place, w->n.cut_polygons, NULL);
+	if (w->cut_polygons > 0)
+		nt_finding_add(&w->scene->findings, NT_CODE_POLYGON_CUT, &place, w->cut_polygons, NULL);
 	if (replaces_strips(w))
 		nt_finding_add(&w->scene->findings, NT_CODE_POLYGON_CUT, &place, source->strips->count,
 			"triangle strips");
@@ -584,7 +666,6 @@ static nt_status write_source(writer *w, bool bitangents)
 	w->mesh = mesh;
 	w->encoding = w->source->header.encoding;
 	w->newline = w->source->header.newline;
-	w->cursor = ply_begin_body(w->scene, &w->source->header, 1);
 	/* integers hold no unit vectors */
 	w->new_normals = mesh->normals_made ||
 		(mesh->scaled_normals && fit_in_place(w->source->vertex, PLY_NX, 3, false));
@@ -677,10 +758,12 @@ nt_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_outp
 	if (!status)
 		status = put_bytes(&w, NULL, 0);
 	nt_buffer_free(&w.buffer);
-	ply_numbering_free(&w.n);
 	ply_free_rows(&w.vertices);
 	ply_free_rows(&w.faces);
 	free(w.columns);
+	free(w.numbers);
+	free(w.appended);
+	free(w.polygon);
 	free(w.row_offsets);
 	return status;
 }
