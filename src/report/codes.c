@@ -315,7 +315,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"line shows along the edge. All of a mesh are one finding. Its places begin with the longest of those "
 		"that hang together: a loop, a chain or, if three edges meet, a net. An info if no material has a "
 		"normal map. A cut in the texture coordinates along which normals are smooth is no fault.",
-		"Cut the texture coordinates along these edges (in Blender: Select > Select Sharp Edges, Edge > Mark "
+		"Cut the texture coordinates along these edges (Blender: Select > Select Sharp Edges, Edge > Mark "
 		"Seam, UV > Unwrap) or shade them smooth, and bake again.",
 		"two quads at a right angle with normals of their own and one strip of texture coordinates"),
 	ROW(UV_DEGENERATE_TRIANGLE, INFO, "w-i", EXPORT, NULL,
@@ -352,7 +352,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"{count} {triangle changes|triangles change} orientation when v becomes 1 - v",
 		"glTF stores 1 - v, which rounds: tiny triangles lose their area or turn over. w is right for "
 		"the coordinates as stored.",
-		"Give the triangles more room, or keep v near 1.",
+		"Give the triangles more room (Blender: UV > Pack Islands), or keep v near 1.",
 		"an OBJ triangle with UVs (0,0), (1,0), (0,1e-9)"),
 	ROW(UV_NOT_FINITE, ERROR, "eee", EXPORT, NULL,
 		"{count} {vertex has texture coordinates|vertices have texture coordinates} that are not finite",

@@ -22,6 +22,20 @@ TEST(every_code_has_a_complete_row_and_is_found_by_its_name)
 	}
 }
 
+/* A remedy that is neither nothing nor another export says where that is in a program. */
+TEST(remedies_of_texture_coordinates_name_a_program)
+{
+	for (unsigned i = 0; i < NT_CODE_COUNT; i++) {
+		const nt_code_row *row = nt_code_info((nt_code)i);
+		if (strncmp(row->name, "UV_", 3) == 0 && strncmp(row->remedy, "Nothing", 7) != 0 &&
+			strncmp(row->remedy, "Export", 6) != 0 && !strstr(row->remedy, "Blender: "))
+			fail_msg("%s: %s", row->name, row->remedy);
+	}
+	/* nobody can make tangents without them */
+	assert_null(strstr(nt_code_info(NT_CODE_TAN_NO_UV)->remedy, "Convert the file with nmtan"));
+	assert_null(strstr(nt_code_info(NT_CODE_NMAP_GREEN_DOWN)->remedy, "OBJ"));
+}
+
 static void sentence_is(nt_code code, size_t count, const char *detail, const char *expected)
 {
 	nt_buffer out = {0};
