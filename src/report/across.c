@@ -44,7 +44,7 @@ nt_status nt_check_rims(nt_check *check)
 	for (size_t i = 0; i < check->boundary.count; i++) {
 		const uint32_t side = check->boundary.items[i].sides[0], t = side / 3;
 		nt_rim_side rim = {.mesh = check->mesh_index, .side = side,
-			.face = s->faces ? s->faces[t] : t, .orientation = nt_settled_orientation(check, t),
+			.face = nt_triangle_face(s, t), .orientation = nt_settled_orientation(check, t),
 			.ends = {nt_side_vertex(s, side), nt_side_vertex(s, nt_side_next(side))}};
 		if (!rim.orientation)
 			continue;

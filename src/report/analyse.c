@@ -7,7 +7,6 @@
  * solve that authored tangents are compared with.
  */
 #include "report/check.h"
-#include "report/digest.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -283,37 +282,37 @@ static bool same_uses(const nt_mesh *a, const nt_mesh *b)
 /* Faces of other meshes that are looked at, for all meshes together: some 0.1 s. */
 static const size_t MOST_FOREIGN_FACES = 4000000;
 
-/* Meshes that are checked together: of the same geometry and used alike. */
-typedef struct checked_meshes {
-	uint32_t *first; /* [mesh_count] the one that is checked in its place; NT_NONE: nobody */
-	uint32_t *next;  /* [mesh_count] another first one of the same geometry, NT_NONE: none */
-	size_t *alike;   /* [mesh_count] of a first one: how many it stands for */
-} checked_meshes;
+/* Meshes of the same geometry that are used alike are checked together. */
+typedef struct checked_mesh {
+	uint32_t first; /* the one that is checked in its place; NT_NONE: nobody */
+	uint32_t next;  /* another first one of the same geometry; NT_NONE: none */
+	size_t alike;   /* of a first one: how many it stands for */
+} checked_mesh;
 
-static uint32_t find_first(const nt_scene *scene, checked_meshes *checked, uint32_t mesh)
+static uint32_t find_first(const nt_scene *scene, checked_mesh *checked, uint32_t mesh)
 {
 	const nt_mesh *same_as = scene->meshes[mesh].plan.same_as;
 	if (!same_as)
 		return mesh;
 	uint32_t at = (uint32_t)(same_as - scene->meshes);
-	while (checked->first[at] == at && !same_uses(&scene->meshes[at], &scene->meshes[mesh])) {
-		if (checked->next[at] == NT_NONE) {
-			checked->next[at] = mesh;
+	while (checked[at].first == at && !same_uses(&scene->meshes[at], &scene->meshes[mesh])) {
+		if (checked[at].next == NT_NONE) {
+			checked[at].next = mesh;
 			return mesh;
 		}
-		at = checked->next[at];
+		at = checked[at].next;
 	}
-	return checked->first[at] == at ? at : mesh;
+	return checked[at].first == at ? at : mesh;
 }
 
-static void find_checked(const nt_scene *scene, checked_meshes *checked)
+static void find_checked(const nt_scene *scene, checked_mesh *checked)
 {
 	for (uint32_t i = 0; i < scene->mesh_count; i++) {
-		checked->next[i] = NT_NONE;
-		checked->alike[i] = 0;
-		checked->first[i] = is_checked(&scene->meshes[i]) ? find_first(scene, checked, i) : NT_NONE;
-		if (checked->first[i] != NT_NONE)
-			checked->alike[checked->first[i]]++;
+		checked[i] = (checked_mesh){NT_NONE, NT_NONE, 0};
+		if (!is_checked(&scene->meshes[i]))
+			continue;
+		checked[i].first = find_first(scene, checked, i);
+		checked[checked[i].first].alike++;
 	}
 }
 
@@ -341,23 +340,23 @@ static void share_facts(nt_report *report, uint32_t mesh, uint32_t first)
 	facts->texture_size[0] = facts->texture_size[1] = 0; /* its islands are not told either */
 }
 
-static nt_status check_meshes(const nt_check *check, const checked_meshes *checked)
+static nt_status check_meshes(const nt_check *check, const checked_mesh *checked)
 {
 	const nt_scene *scene = check->scene;
 	nt_status status = NT_OK;
 	size_t image_bytes[NT_PICTURE_COUNT] = {MOST_IMAGE_BYTES, MOST_IMAGE_BYTES};
 	for (uint32_t i = 0; i < scene->mesh_count && !status; i++) {
-		if (checked->first[i] == NT_NONE)
+		if (checked[i].first == NT_NONE)
 			continue;
-		if (checked->first[i] != i) {
-			share_facts(check->report, i, checked->first[i]);
+		if (checked[i].first != i) {
+			share_facts(check->report, i, checked[i].first);
 			continue;
 		}
 		nt_scratch scratch;
 		nt_scratch_init(&scratch, NULL);
 		nt_check one = *check;
 		one.mesh_index = i;
-		one.alike = checked->alike[i];
+		one.alike = checked[i].alike;
 		one.mesh = &scene->meshes[i];
 		one.facts = &check->report->meshes[i];
 		one.scratch = &scratch;
@@ -375,21 +374,17 @@ static nt_status check_scene(const nt_scene *scene, const nt_report_options *opt
 	nt_rims rims = {0};
 	nt_check check = {.scene = scene, .options = options, .report = report, .error = error,
 		.finding_capacity = &finding_capacity, .rims = &rims, .others = &others};
-	checked_meshes checked = {.first = nt_alloc(scene->mesh_count, sizeof *checked.first),
-		.next = nt_alloc(scene->mesh_count, sizeof *checked.next),
-		.alike = nt_alloc(scene->mesh_count, sizeof *checked.alike)};
+	checked_mesh *checked = nt_alloc(scene->mesh_count, sizeof *checked);
 	nt_status status = NT_ERROR_MEMORY;
-	if (checked.first && checked.next && checked.alike) {
-		find_checked(scene, &checked);
-		status = check_meshes(&check, &checked);
+	if (checked) {
+		find_checked(scene, checked);
+		status = check_meshes(&check, checked);
 	}
 	if (!status)
 		status = nt_check_across(&check);
 	free(rims.sides);
 	nt_others_free(&others);
-	free(checked.first);
-	free(checked.next);
-	free(checked.alike);
+	free(checked);
 	if (!status)
 		status = nt_report_add_findings(&check, &scene->findings);
 	return status ? status : check.failed ? NT_ERROR_MEMORY : NT_OK;

@@ -18,12 +18,6 @@ static int by_file(const void *a, const void *b)
 	return x->file < y->file ? -1 : x->file > y->file;
 }
 
-static int by_number(const void *a, const void *b)
-{
-	const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-	return x < y ? -1 : x > y;
-}
-
 /* Both sides of a pair as one kind of thing. */
 static uint64_t fingerprint_of(const void *entries, size_t index)
 {
@@ -57,8 +51,9 @@ static nt_status read_findings(nt_baseline *baseline, size_t *capacity, uint64_t
 	nt_error *error)
 {
 	const size_t count = nt_json_count(findings);
-	if (!nt_grow((void **)&baseline->entries, capacity, baseline->count + count, sizeof *baseline->entries))
+	if (!nt_grow((void **)&baseline->entries, capacity, baseline->count + count + 1, sizeof *baseline->entries))
 		return nt_fail_memory(error);
+	baseline->entries[baseline->count++] = (nt_baseline_entry){.file = file}; /* a file may have no findings */
 	for (size_t i = 0; i < count; i++) {
 		nt_baseline_entry entry = {.file = file};
 		if (!read_digits(nt_json_at(findings, i), "fingerprint", &entry.fingerprint))
@@ -78,14 +73,12 @@ static nt_status read_files(nt_baseline *baseline, const nt_json_value *root, nt
 	if (!report || strcmp(report, "nmtan") != 0 || nt_json_type_of(files) != NT_JSON_ARRAY)
 		return nt_fail(error, NT_ERROR_INPUT, "the baseline is not a JSON report of nmtan");
 	size_t capacity = 0;
-	baseline->files = nt_alloc(nt_json_count(files), sizeof *baseline->files);
-	nt_status status = baseline->files ? NT_OK : nt_fail_memory(error);
+	nt_status status = NT_OK;
 	for (size_t i = 0; i < nt_json_count(files) && !status; i++) {
 		const nt_json_value *file = nt_json_at(files, i);
 		const char *name = nt_json_get_string(nt_json_find(file, "file"), NULL);
-		const uint64_t key = key_of_file(name ? name : "");
-		baseline->files[baseline->file_count++] = key;
-		status = read_findings(baseline, &capacity, key, nt_json_find(file, "findings"), error);
+		status = read_findings(baseline, &capacity, key_of_file(name ? name : ""),
+			nt_json_find(file, "findings"), error);
 	}
 	return status;
 }
@@ -101,8 +94,6 @@ nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size,
 	nt_json_free(document);
 	if (!status && baseline->count)
 		qsort(baseline->entries, baseline->count, sizeof *baseline->entries, by_file);
-	if (!status && baseline->file_count)
-		qsort(baseline->files, baseline->file_count, sizeof *baseline->files, by_number);
 	if (!status) {
 		baseline->geometries = nt_list_keys(baseline->entries, baseline->count, geometry_of,
 			&baseline->geometry_count);
@@ -116,7 +107,6 @@ nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size,
 void nt_baseline_free(nt_baseline *baseline)
 {
 	free(baseline->entries);
-	free(baseline->files);
 	free(baseline->geometries);
 	*baseline = (nt_baseline){0};
 }
@@ -141,8 +131,6 @@ bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report)
 {
 	const size_t count = report->finding_count;
 	const uint64_t own = key_of_file(report->shown);
-	const bool named = baseline->file_count &&
-		bsearch(&own, baseline->files, baseline->file_count, sizeof own, by_number);
 	const size_t first = find_entries(baseline, own), old_count = find_entries(baseline, own + 1) - first;
 	const nt_baseline_entry *old = baseline->entries ? baseline->entries + first : NULL;
 	nt_baseline_entry *new = nt_calloc(count, sizeof *new);
@@ -153,7 +141,7 @@ bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report)
 		new[i].geometry = report->findings[i].geometry;
 		partners[i] = NT_NONE;
 	}
-	if (made && named) {
+	if (made && old_count) {
 		made = !nt_pair(old, old_count, new, count, fingerprint_of, partners, taken) &&
 			!nt_pair(old, old_count, new, count, geometry_of, partners, taken);
 	} else if (made) {

@@ -10,15 +10,13 @@
 
 typedef struct nt_baseline_entry {
 	uint64_t file;                  /* a key of its name as reports show it */
-	uint64_t fingerprint, geometry; /* geometry 0: not known */
+	uint64_t fingerprint, geometry; /* 0: not known; both of the entry that stands for the file */
 } nt_baseline_entry;
 
-/* Each entry is one finding: two equal ones excuse two. */
+/* Each entry is one finding, but one of each file: two equal ones excuse two. */
 struct nt_baseline {
 	nt_baseline_entry *entries; /* [count] by file */
 	size_t count;
-	uint64_t *files; /* [file_count] keys of the files' names, ascending */
-	size_t file_count;
 	nt_keyed *geometries; /* [geometry_count] of entries that have one, ascending */
 	size_t geometry_count;
 };

@@ -9,7 +9,6 @@
 #include <math.h>
 #include "report/codes.h"
 #include "report/report.h"
-#include "report/surface/others.h"
 #include "report/surface/surface.h"
 
 /* Whose tangents are checked: the input's, or, on conversion, the result. */
@@ -111,12 +110,13 @@ void nt_tally_vertex(const nt_check *check, nt_tally *tally, uint32_t vertex, do
 /* A number behind the finding. */
 void nt_tally_number(nt_tally *tally, const char *name, double value);
 
-/* Makes a finding of the tally unless it is empty or ignored. The severity is that of the table;
- * nt_check_report_as() takes another one. detail_format may be NULL. */
-void nt_check_report(nt_check *check, const nt_tally *tally, const char *detail_format, ...)
-	NT_PRINTF(3, 4);
-void nt_check_report_as(nt_check *check, const nt_tally *tally, nt_severity severity,
-	const char *detail_format, ...) NT_PRINTF(4, 5);
+/* Makes a finding of the tally unless it is empty or ignored. detail_format may be NULL. */
+void nt_check_report_as(nt_check *check, const nt_tally *tally, nt_severity severity, const char *detail_format, ...)
+	NT_PRINTF(4, 5);
+
+/* The same with the severity of the table. */
+#define nt_check_report(check, tally, ...) \
+	nt_check_report_as(check, tally, nt_code_info((tally)->code)->severity, __VA_ARGS__)
 
 /* Whether what is judged is what a conversion writes, and in which format it is. */
 static inline bool nt_is_written(const nt_check *check)
@@ -182,13 +182,6 @@ static inline void nt_source_range(const nt_scene *scene, float minimum[2], floa
 	}
 }
 
-/* The same of where a side begins. */
-static inline void nt_side_source_texcoord(const nt_check *check, uint32_t side, float out[2])
-{
-	nt_source_texcoord(check->scene,
-		check->mesh->texcoords + 2 * (size_t)nt_side_vertex(&check->surface, side), out);
-}
-
 /* Which of the stored tangents a corner has; the mesh has some. */
 static inline size_t nt_tangent_index(const nt_check *check, uint32_t corner)
 {
@@ -232,6 +225,20 @@ nt_status nt_check_measures(nt_check *check); /* measures.c: density, stretch, c
 
 /* Once all meshes are checked: seams between them. across.c */
 nt_status nt_check_across(nt_check *check);
+
+/* ---- identity of meshes and findings whose names have changed: digest.c ---- */
+
+/* The digest of a mesh's triangles in space, whatever their order and numbers. Never 0. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_digest_surface(const nt_surface *surface, nt_scratch *scratch, uint64_t *digest);
+
+/* The digest of a finding, before its mesh is known as a whole: its code and its places, or, without places, its
+ * detail. */
+uint64_t nt_digest_finding(const nt_report_finding *finding, const char *detail);
+
+/* Completes the digests of findings without places, which are about a mesh or the file: 0 where that has no
+ * triangles. */
+void nt_digest_complete(nt_report *report);
 
 /* Ends: most severe first, limits, baseline. findings.c */
 nt_status nt_report_complete(nt_report *report, const nt_report_options *options);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Digests of geometry: see digest.h. Exporters rename objects and leave out their names; positions stay. They are
- * compared exactly: a digest is for what was not changed but for its name.
+ * Digests of geometry, the same in every run. Exporters rename objects and leave out their names; positions stay. They
+ * are compared exactly: a digest is for what was not changed but for its name.
  */
-#include "report/digest.h"
+#include "report/check.h"
 
 #include <string.h>
 #include "base/hash.h"

@@ -15,7 +15,6 @@
 #include "base/hash_index.h"
 #include "base/parallel.h"
 #include "report/baseline.h"
-#include "report/digest.h"
 
 /* Counts an occurrence and returns the spot to fill, NULL when there are enough. */
 static nt_spot *count_one(nt_tally *tally, double value)
@@ -52,25 +51,12 @@ static void set_face(const nt_check *check, nt_spot *spot, size_t triangle, uint
 	spot->face = check->mesh->face_polygon ? check->mesh->face_polygon[face] : face;
 }
 
-static void set_triangle(const nt_check *check, nt_spot *spot, size_t triangle)
-{
-	set_face(check, spot, triangle, check->surface.faces ? check->surface.faces[triangle] : (uint32_t)triangle);
-}
-
 void nt_tally_triangle(const nt_check *check, nt_tally *tally, size_t triangle, double value)
 {
 	nt_spot *spot = count_one(tally, value);
-	set_triangle(check, spot, triangle);
+	set_face(check, spot, triangle, nt_triangle_face(&check->surface, triangle));
 	for (size_t k = 0; k < 3; k++)
 		add_vertex(check, tally, spot, nt_side_vertex(&check->surface, 3 * triangle + k));
-}
-
-void nt_tally_side(const nt_check *check, nt_tally *tally, uint32_t side, double value)
-{
-	nt_spot *spot = count_one(tally, value);
-	set_triangle(check, spot, side / 3);
-	add_vertex(check, tally, spot, nt_side_vertex(&check->surface, side));
-	add_vertex(check, tally, spot, nt_side_vertex(&check->surface, nt_side_next(side)));
 }
 
 void nt_tally_edge(const nt_check *check, nt_tally *tally, uint32_t triangle, uint32_t face, const uint32_t ends[2],
@@ -80,6 +66,13 @@ void nt_tally_edge(const nt_check *check, nt_tally *tally, uint32_t triangle, ui
 	set_face(check, spot, triangle, face);
 	add_vertex(check, tally, spot, ends[0]);
 	add_vertex(check, tally, spot, ends[1]);
+}
+
+void nt_tally_side(const nt_check *check, nt_tally *tally, uint32_t side, double value)
+{
+	const nt_surface *s = &check->surface;
+	const uint32_t ends[2] = {nt_side_vertex(s, side), nt_side_vertex(s, nt_side_next(side))};
+	nt_tally_edge(check, tally, side / 3, nt_triangle_face(s, side / 3), ends, value);
 }
 
 void nt_tally_vertex(const nt_check *check, nt_tally *tally, uint32_t vertex, double value)
@@ -270,14 +263,16 @@ static void add_finding(nt_check *check, nt_report_finding *finding, nt_severity
 	report->findings[report->finding_count++] = *finding;
 }
 
-static void report_tally(nt_check *check, const nt_tally *tally, nt_severity severity,
-	const char *format, va_list arguments)
+void nt_check_report_as(nt_check *check, const nt_tally *tally, nt_severity severity, const char *detail_format, ...)
 {
 	if (tally->count == 0)
 		return;
 	char detail[256] = "";
-	if (format)
-		vsnprintf(detail, sizeof detail, format, arguments);
+	va_list arguments;
+	va_start(arguments, detail_format);
+	if (detail_format)
+		vsnprintf(detail, sizeof detail, detail_format, arguments);
+	va_end(arguments);
 	nt_report_finding finding = {.code = tally->code,
 		.mesh = check->mesh_index,
 		.count = tally->count,
@@ -303,23 +298,6 @@ static void report_tally(nt_check *check, const nt_tally *tally, nt_severity sev
 	memcpy(finding.numbers, tally->numbers, tally->number_count * sizeof *finding.numbers);
 	memcpy(finding.spots, tally->spots, tally->spot_count * sizeof *finding.spots);
 	add_finding(check, &finding, severity, detail);
-}
-
-void nt_check_report(nt_check *check, const nt_tally *tally, const char *detail_format, ...)
-{
-	va_list arguments;
-	va_start(arguments, detail_format);
-	report_tally(check, tally, nt_code_info(tally->code)->severity, detail_format, arguments);
-	va_end(arguments);
-}
-
-void nt_check_report_as(nt_check *check, const nt_tally *tally, nt_severity severity,
-	const char *detail_format, ...)
-{
-	va_list arguments;
-	va_start(arguments, detail_format);
-	report_tally(check, tally, severity, detail_format, arguments);
-	va_end(arguments);
 }
 
 /* The key of a place: a JSON pointer, or an object of a text. */

@@ -185,48 +185,40 @@ static void check_part(void *context, size_t begin, size_t end, unsigned slot, n
 
 /* ---- least, median and greatest determinant ---- */
 
-/* Least, median and greatest of the known ones. Puts them in another order: quickselect, with pivots of a fixed random
- * sequence. */
-static void find_determinants(nt_report_mesh *facts, float *values, size_t count)
+static uint32_t bits_of(float value)
 {
-	float least = INFINITY, greatest = -INFINITY;
-	size_t known = 0;
+	uint32_t bits;
+	memcpy(&bits, &value, sizeof bits);
+	return bits;
+}
+
+/* The bits of floats that are not negative are in the order of the values: the median's upper half is found by counts
+ * of all, its lower half by counts of those with that upper half. counts: [65536] */
+static void find_determinants(nt_report_mesh *facts, const float *values, size_t count, uint32_t *counts)
+{
+	float least = INFINITY, greatest = -INFINITY, median;
+	uint32_t bits = 0;
+	size_t rank = 0;
 	for (size_t t = 0; t < count; t++) {
-		const float value = values[t];
-		if (value != value)
-			continue;
-		values[known++] = value;
-		least = value < least ? value : least;
-		greatest = value > greatest ? value : greatest;
+		least = values[t] < least ? values[t] : least;
+		greatest = values[t] > greatest ? values[t] : greatest;
+		rank += values[t] == values[t];
 	}
-	if (!known)
+	if (!rank)
 		return;
-	const size_t middle = known / 2;
-	uint64_t random = 1;
-	for (size_t low = 0, high = known - 1; low < high;) {
-		random = random * 6364136223846793005u + 1442695040888963407u;
-		const float pivot = values[low + (size_t)(random >> 32) % (high - low)];
-		size_t i = low, j = high;
-		for (;; i++, j--) {
-			while (values[i] < pivot)
-				i++;
-			while (values[j] > pivot)
-				j--;
-			if (i >= j)
-				break;
-			const float value = values[i];
-			values[i] = values[j];
-			values[j] = value;
-		}
-		/* nothing up to j is above the pivot, nothing behind it below */
-		if (middle <= j)
-			high = j;
-		else
-			low = j + 1;
+	rank /= 2;
+	for (unsigned shift = 16; shift <= 16; shift -= 16) { /* 16, 0 */
+		memset(counts, 0, 65536 * sizeof *counts);
+		for (size_t t = 0; t < count; t++)
+			if (values[t] == values[t] && (shift || bits_of(values[t]) >> 16 == bits))
+				counts[bits_of(values[t]) >> shift & 0xffff]++;
+		uint32_t half = 0;
+		while (counts[half] <= rank)
+			rank -= counts[half++];
+		bits = bits << 16 | half;
 	}
-	facts->relative_determinant[0] = least;
-	facts->relative_determinant[1] = values[middle];
-	facts->relative_determinant[2] = greatest;
+	memcpy(&median, &bits, sizeof median);
+	memcpy(facts->relative_determinant, (double[3]){least, median, greatest}, sizeof facts->relative_determinant);
 }
 
 static void sum_blocks(nt_check *check)
@@ -324,15 +316,16 @@ static nt_status check_triangles(nt_check *check)
 {
 	const size_t triangles = check->surface.triangle_count;
 	triangle_work work = {check, nt_scratch_alloc(check->scratch, triangles, sizeof *work.determinants)};
+	uint32_t *counts = nt_scratch_alloc(check->scratch, 65536, sizeof *counts);
 	nt_part all;
 	size_t from_neighbour;
-	nt_status status = work.determinants ? nt_check_parts(check, triangles, PART, codes,
+	nt_status status = work.determinants && counts ? nt_check_parts(check, triangles, PART, codes,
 		sizeof codes / sizeof *codes, check_part, &work, &all) : NT_ERROR_MEMORY;
 	if (status)
 		return status;
 	sum_blocks(check);
 	if (check->mesh->texcoords)
-		find_determinants(check->facts, work.determinants, triangles);
+		find_determinants(check->facts, work.determinants, triangles, counts);
 	status = count_neighbours(check, &from_neighbour);
 	if (!status)
 		report_triangles(check, &all, from_neighbour);

@@ -43,27 +43,23 @@ static uint32_t end_of(const nt_check *check, size_t edge, int end)
 static nt_status number_nets(const nt_check *check, nets *n, uint8_t *degrees)
 {
 	const size_t points = check->surface.point_count;
-	uint32_t *parents = nt_scratch_alloc(check->scratch, points, sizeof *parents);
-	uint32_t *of_root = nt_scratch_alloc(check->scratch, points, sizeof *of_root);
+	uint32_t *last = nt_scratch_alloc(check->scratch, points, sizeof *last);
 	n->numbers = nt_scratch_alloc(check->scratch, check->hard.count, sizeof *n->numbers);
-	if (!parents || !of_root || !n->numbers)
+	if (!last || !n->numbers)
 		return NT_ERROR_MEMORY;
 	memset(degrees, 0, points);
-	memset(of_root, 0xff, points * sizeof *of_root);
-	for (size_t p = 0; p < points; p++)
-		parents[p] = (uint32_t)p;
-	for (size_t i = 0; i < check->hard.count; i++) {
-		nt_unite(parents, end_of(check, i, 0), end_of(check, i, 1));
-		for (int end = 0; end < 2; end++)
-			degrees[end_of(check, i, end)] += degrees[end_of(check, i, end)] < 3;
+	memset(last, 0xff, points * sizeof *last);
+	for (uint32_t i = 0; i < check->hard.count; i++) {
+		n->numbers[i] = i;
+		for (int end = 0; end < 2; end++) {
+			const uint32_t point = end_of(check, i, end);
+			degrees[point] += degrees[point] < 3;
+			if (last[point] != NT_NONE)
+				nt_unite(n->numbers, last[point], i);
+			last[point] = i;
+		}
 	}
-	n->count = 0;
-	for (size_t i = 0; i < check->hard.count; i++) {
-		uint32_t *number = &of_root[nt_find_root(parents, end_of(check, i, 0))];
-		if (*number == NT_NONE)
-			*number = (uint32_t)n->count++;
-		n->numbers[i] = *number;
-	}
+	n->count = nt_number_sets(n->numbers, check->hard.count);
 	return NT_OK;
 }
 

@@ -180,8 +180,8 @@ static uint32_t *number_textures(const nt_check *check, const nt_mesh *mesh, nt_
 
 static uint32_t texture_of(const nt_check *check, const grid *g, size_t triangle)
 {
-	const uint32_t *faces = check->surface.faces, *primitives = g->mesh->face_primitive;
-	return g->textures[primitives ? primitives[faces ? faces[triangle] : triangle] : 0];
+	const uint32_t *primitives = g->mesh->face_primitive;
+	return g->textures[primitives ? primitives[nt_triangle_face(&check->surface, triangle)] : 0];
 }
 
 /* Takes every n-th mirrored triangle, at most SAMPLE_COUNT, and the first one of every island. `met` is

@@ -156,7 +156,7 @@ static nt_status find_size(const nt_check *check, map_sizes *sizes, uint32_t tri
 	memcpy(size, check->facts->texture_size, 2 * sizeof *size);
 	if (!sizes->known)
 		return NT_OK;
-	const uint32_t p = mesh->face_primitive[check->surface.faces ? check->surface.faces[triangle] : triangle];
+	const uint32_t p = mesh->face_primitive[nt_triangle_face(&check->surface, triangle)];
 	nt_status status = NT_OK;
 	if (!sizes->known[p]) {
 		nt_mesh one = *mesh;

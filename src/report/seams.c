@@ -98,22 +98,23 @@ static const float *corner_tangent(const nt_check *check, uint32_t side)
 		4 * (size_t)(mesh->split.indices ? mesh->split.indices[corner] : nt_side_vertex(&check->surface, side));
 }
 
+/* The end of an edge's side (0 or 1), as it is seen from a point at one of them on: the side that begins there. */
+static uint32_t end_from(const nt_surface *s, uint32_t side, uint32_t from, int end)
+{
+	return (nt_side_point(s, side) == from) == !end ? side : nt_side_next(side);
+}
+
 /* Adds an edge to frame_angle, same_texel_count and unhidden_count. */
 static void compare_frames(const nt_check *check, const nt_edge *edge, uint32_t from, nt_seam *seam)
 {
 	const nt_surface *s = &check->surface;
 	bool same = true;
 	double greatest = 0.0;
-	uint32_t ends[2][2]; /* [side][end] */
-	for (int i = 0; i < 2; i++) {
-		const uint32_t side = edge->sides[i];
-		const bool along = nt_side_point(s, side) == from;
-		ends[i][0] = along ? side : nt_side_next(side);
-		ends[i][1] = along ? nt_side_next(side) : side;
-	}
 	for (int end = 0; end < 2; end++) {
-		const float *a = corner_tangent(check, ends[0][end]), *b = corner_tangent(check, ends[1][end]);
-		same = same && same_texel(check, nt_side_texcoord(s, ends[0][end]), nt_side_texcoord(s, ends[1][end]));
+		const uint32_t one = end_from(s, edge->sides[0], from, end);
+		const uint32_t two = end_from(s, edge->sides[1], from, end);
+		const float *a = corner_tangent(check, one), *b = corner_tangent(check, two);
+		same = same && same_texel(check, nt_side_texcoord(s, one), nt_side_texcoord(s, two));
 		const double angle = a && b ? angle_between(nt_dvec3_load(a), nt_dvec3_load(b)) : NAN;
 		widen(seam->frame_angle, angle);
 		greatest = fmax(greatest, angle);
@@ -139,19 +140,15 @@ nt_seam_edge nt_describe_edge(const nt_check *check, const nt_edge *edge, uint32
 {
 	const nt_surface *s = &check->surface;
 	nt_seam_edge result = {.triangles = {edge->sides[0] / 3, edge->sides[1] / 3}};
-	for (int i = 0; i < 2; i++) {
-		const uint32_t side = edge->sides[i];
-		const bool along = nt_side_point(s, side) == from;
-		const uint32_t ends[2] = {along ? side : nt_side_next(side),
-			along ? nt_side_next(side) : side};
+	for (int i = 0; i < 2; i++)
 		for (int end = 0; end < 2; end++) {
-			result.vertices[i][end] = nt_source_vertex(check->mesh, nt_side_vertex(s, ends[end]));
-			result.output[i][end] = output_vertex(check, ends[end]);
-			nt_side_source_texcoord(check, ends[end], result.texcoords[i][end]);
-			memcpy(result.positions[end], nt_side_position(s, ends[end]),
-				sizeof result.positions[end]);
+			const uint32_t side = end_from(s, edge->sides[i], from, end), vertex = nt_side_vertex(s, side);
+			result.vertices[i][end] = nt_source_vertex(check->mesh, vertex);
+			result.output[i][end] = output_vertex(check, side);
+			nt_source_texcoord(check->scene, check->mesh->texcoords + 2 * (size_t)vertex,
+				result.texcoords[i][end]);
+			memcpy(result.positions[end], nt_side_position(s, side), sizeof result.positions[end]);
 		}
-	}
 	/* the dihedral angle is 0 on a flat surface; sides that run the same way face each other's back */
 	nt_dvec3 other = face_normal(s, result.triangles[1]);
 	if (nt_side_point(s, edge->sides[0]) == nt_side_point(s, edge->sides[1]))

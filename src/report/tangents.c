@@ -42,8 +42,13 @@ enum { PART = 16384 };
 static const char untransformed_text[] =
 	", they were made without the texture transform, as Blender's exporter, glTF-Transform and gltfpack do";
 
+/* Findings of single tangents: the last of them has a detail. */
+enum { NOT_FINITE, ZERO, NON_UNIT, BAD_W, PARALLEL, NOT_ORTHOGONAL, TANGENT_TALLIES };
+static const nt_code tangent_codes[TANGENT_TALLIES] = {NT_CODE_TAN_NOT_FINITE, NT_CODE_TAN_ZERO, NT_CODE_TAN_NON_UNIT,
+	NT_CODE_TAN_BAD_W, NT_CODE_TAN_PARALLEL_NORMAL, NT_CODE_TAN_NOT_ORTHOGONAL};
+
 typedef struct tangent_tallies {
-	nt_tally not_finite, zero, non_unit, bad_w, parallel, not_orthogonal;
+	nt_tally of[TANGENT_TALLIES];
 	double worst_length;
 	double worst_square; /* sin^2 of the angle off perpendicular that is the worst */
 } tangent_tallies;
@@ -104,9 +109,9 @@ static void check_angle(nt_check *check, tangent_tallies *tt, uint32_t vertex, n
 		tt->worst_square = square / both;
 	}
 	if (parallel)
-		nt_tally_vertex(check, &tt->parallel, vertex, off);
+		nt_tally_vertex(check, &tt->of[PARALLEL], vertex, off);
 	else if (off > ORTHOGONAL_DEGREES)
-		nt_tally_vertex(check, &tt->not_orthogonal, vertex, off);
+		nt_tally_vertex(check, &tt->of[NOT_ORTHOGONAL], vertex, off);
 }
 
 static void check_tangent(nt_check *check, tangent_tallies *tt, uint32_t vertex, const float *stored)
@@ -114,19 +119,19 @@ static void check_tangent(nt_check *check, tangent_tallies *tt, uint32_t vertex,
 	const float *normals = check->mesh->normals;
 	const unsigned faults = nt_tangent_faults(stored, normals ? normals + 3 * (size_t)vertex : NULL);
 	if (faults & NT_FAULT_NOT_FINITE) {
-		nt_tally_vertex(check, &tt->not_finite, vertex, NAN);
+		nt_tally_vertex(check, &tt->of[NOT_FINITE], vertex, NAN);
 		return;
 	}
 	if (faults & NT_FAULT_W)
-		nt_tally_vertex(check, &tt->bad_w, vertex, stored[3]);
+		nt_tally_vertex(check, &tt->of[BAD_W], vertex, stored[3]);
 	const nt_dvec3 tangent = nt_dvec3_load(stored);
 	const double length = length_of(tangent);
 	if (faults & NT_FAULT_ZERO) {
-		nt_tally_vertex(check, &tt->zero, vertex, length);
+		nt_tally_vertex(check, &tt->of[ZERO], vertex, length);
 		return;
 	}
 	if (faults & NT_FAULT_LENGTH) {
-		nt_tally_vertex(check, &tt->non_unit, vertex, length);
+		nt_tally_vertex(check, &tt->of[NON_UNIT], vertex, length);
 		if (fabs(length - 1.0) > fabs(tt->worst_length - 1.0))
 			tt->worst_length = length;
 	}
@@ -161,10 +166,9 @@ static nt_status check_each(nt_check *check)
 	if (!tt || !met)
 		return NT_ERROR_MEMORY;
 	memset(met, 0, count);
-	*tt = (tangent_tallies){.not_finite = {.code = NT_CODE_TAN_NOT_FINITE},
-		.zero = {.code = NT_CODE_TAN_ZERO}, .non_unit = {.code = NT_CODE_TAN_NON_UNIT},
-		.bad_w = {.code = NT_CODE_TAN_BAD_W}, .parallel = {.code = NT_CODE_TAN_PARALLEL_NORMAL},
-		.not_orthogonal = {.code = NT_CODE_TAN_NOT_ORTHOGONAL}, .worst_length = 1.0};
+	*tt = (tangent_tallies){.worst_length = 1.0};
+	for (size_t i = 0; i < TANGENT_TALLIES; i++)
+		tt->of[i].code = tangent_codes[i];
 	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
 		const size_t index = nt_tangent_index(check, nt_side_corner(s, c));
 		if (met[index])
@@ -172,12 +176,11 @@ static nt_status check_each(nt_check *check)
 		met[index] = 1;
 		check_tangent(check, tt, nt_side_vertex(s, c), nt_stored_tangents(check) + 4 * index);
 	}
-	nt_tally_number(&tt->non_unit, "worst_length", tt->worst_length);
-	nt_tally_number(&tt->not_orthogonal, "worst_degrees", check->facts->worst_orthogonality);
-	const nt_tally *all[] = {&tt->not_finite, &tt->zero, &tt->non_unit, &tt->bad_w, &tt->parallel};
-	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-		nt_check_report_as(check, all[i], severity_of(check, all[i]->code), NULL);
-	nt_check_report_as(check, &tt->not_orthogonal, severity_of(check, tt->not_orthogonal.code),
+	nt_tally_number(&tt->of[NON_UNIT], "worst_length", tt->worst_length);
+	nt_tally_number(&tt->of[NOT_ORTHOGONAL], "worst_degrees", check->facts->worst_orthogonality);
+	for (size_t i = 0; i < NOT_ORTHOGONAL; i++)
+		nt_check_report_as(check, &tt->of[i], severity_of(check, tangent_codes[i]), NULL);
+	nt_check_report_as(check, &tt->of[NOT_ORTHOGONAL], severity_of(check, NT_CODE_TAN_NOT_ORTHOGONAL),
 		"the worst is %.3g degrees off", check->facts->worst_orthogonality);
 	return NT_OK;
 }

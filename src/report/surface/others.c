@@ -5,10 +5,9 @@
  * of boxes (k-d, in place: the middle of a range knows the box of the range) when it is asked for: a scene of n
  * objects asks n times, and takes n log n.
  */
-#include "report/surface/others.h"
+#include "report/surface/surface.h"
 
 #include <stdlib.h>
-#include "report/surface/box.h"
 #include "topology/orientation.h"
 
 /* A mesh, and the box of its unmirrored triangles as the sampler wraps them, rounded outwards. */

@@ -27,37 +27,34 @@ typedef struct listing {
 	uint32_t *counts; /* [ranges][point_count] sides with that lower point; then where the next one goes */
 } listing;
 
-static void count_range(void *context, size_t begin, size_t end, unsigned slot)
+/* sides: NULL: they are only counted. */
+static inline void go_over(const nt_surface *s, size_t begin, size_t end, uint32_t *counts, uint32_t *sides)
 {
-	const listing *l = context;
-	const nt_surface *s = l->surface;
-	uint32_t *counts = l->counts + slot * s->point_count;
-	memset(counts, 0, s->point_count * sizeof *counts);
 	for (size_t t = begin; t < end; t++) {
 		if (!nt_has_edges(s, t))
 			continue;
-		const uint32_t a = nt_side_point(s, 3 * t), b = nt_side_point(s, 3 * t + 1),
-			       c = nt_side_point(s, 3 * t + 2);
-		counts[a < b ? a : b]++;
-		counts[b < c ? b : c]++;
-		counts[c < a ? c : a]++;
+		const uint32_t a = nt_side_point(s, 3 * t), b = nt_side_point(s, 3 * t + 1);
+		const uint32_t points[4] = {a, b, nt_side_point(s, 3 * t + 2), a};
+		for (uint32_t k = 0; k < 3; k++) {
+			const uint32_t at = counts[points[k] < points[k + 1] ? points[k] : points[k + 1]]++;
+			if (sides)
+				sides[at] = (uint32_t)(3 * t) + k;
+		}
 	}
+}
+
+static void count_range(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const listing *l = context;
+	uint32_t *counts = l->counts + slot * l->surface->point_count;
+	memset(counts, 0, l->surface->point_count * sizeof *counts);
+	go_over(l->surface, begin, end, counts, NULL);
 }
 
 static void list_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	const listing *l = context;
-	const nt_surface *s = l->surface;
-	uint32_t *places = l->counts + slot * s->point_count;
-	for (size_t t = begin; t < end; t++) {
-		if (!nt_has_edges(s, t))
-			continue;
-		const uint32_t a = nt_side_point(s, 3 * t), b = nt_side_point(s, 3 * t + 1),
-			       c = nt_side_point(s, 3 * t + 2);
-		s->sides[places[a < b ? a : b]++] = (uint32_t)(3 * t);
-		s->sides[places[b < c ? b : c]++] = (uint32_t)(3 * t + 1);
-		s->sides[places[c < a ? c : a]++] = (uint32_t)(3 * t + 2);
-	}
+	go_over(l->surface, begin, end, l->counts + slot * l->surface->point_count, l->surface->sides);
 }
 
 nt_status nt_surface_list_sides(nt_surface *s, unsigned threads)

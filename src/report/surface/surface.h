@@ -153,6 +153,11 @@ static inline uint32_t nt_side_corner(const nt_surface *s, size_t side)
 	return s->corners ? s->corners[side] : (uint32_t)side;
 }
 
+static inline uint32_t nt_triangle_face(const nt_surface *s, size_t triangle)
+{
+	return s->faces ? s->faces[triangle] : (uint32_t)triangle;
+}
+
 static inline uint32_t nt_side_vertex(const nt_surface *s, size_t side)
 {
 	return s->vertices ? s->vertices[side] : (uint32_t)side;
@@ -208,6 +213,44 @@ static inline bool nt_sides_meet(const nt_surface *s, uint32_t a, uint32_t b)
 	const float *b1 = nt_side_texcoord(s, same_way ? nt_side_next(b) : b);
 	return a0[0] == b0[0] && a0[1] == b0[1] && a1[0] == b1[0] && a1[1] == b1[1];
 }
+
+/* ---- other meshes of a scene that may share the texels of one: others.c ---- */
+
+/* Meshes by what a sampler takes alike. */
+typedef struct nt_other nt_other;
+typedef struct nt_others {
+	size_t faces;    /* of other meshes that checks of a mesh may still look at */
+	nt_other *all;   /* [count] by sampler; NULL: nobody asked */
+	uint32_t *built; /* of a sampler's first one: how many are in its tree; NT_NONE: nobody asked */
+	size_t count;
+} nt_others;
+
+/* The unmirrored triangles of a mesh that is no surface, quads cut anyhow: those of `face` come next. */
+typedef struct nt_mesh_triangles {
+	const nt_mesh *mesh;
+	size_t face, first, turn;
+} nt_mesh_triangles;
+
+/* The place that a sampler looks up along an axis, for a coordinate of the surface: repeated modulo 1, mirrored
+ * folded, clamped (inside the texture) or in tiles as it stands. Offsets that move all alike are left out. */
+static inline double nt_wrap_coordinate(const nt_mesh *mesh, int axis, double coordinate)
+{
+	const nt_wrap wrap = mesh->wrap[axis];
+	const double x = coordinate + mesh->wrap_offset[axis];
+	if (wrap == NT_WRAP_CLAMP || wrap == NT_WRAP_TILES)
+		return x;
+	const double tile = floor(x), within = x - tile;
+	return wrap == NT_WRAP_MIRRORED && fmod(tile, 2.0) != 0.0 ? 1.0 - within : within;
+}
+
+/* Goes to the next one; false: there is none. */
+bool nt_next_unmirrored(nt_mesh_triangles *at, const float *texcoords[3]);
+
+/* Calls visit for the meshes whose unmirrored triangles, as a sampler takes them, may reach into a box of UV space of
+ * a mesh that the sampler takes alike, which may be among them, until it returns false. */
+nt_status nt_others_ask(nt_others *others, const nt_scene *scene, const nt_mesh *mesh, const double minimum[2],
+	const double maximum[2], bool (*visit)(void *context, const nt_mesh *other), void *context);
+void nt_others_free(nt_others *others);
 
 /* ---- sets of numbers: union and find, the lower number on top ---- */
 
