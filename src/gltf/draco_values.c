@@ -78,6 +78,15 @@ nt_status nt_gltf_draco_takes(const nt_mesh *mesh, const nt_draco_attribute *att
 
 /* ---- what was loaded ---- */
 
+static nt_status check_whole(nt_mesh *mesh, nt_error *error)
+{
+	bool all = true;
+	const nt_status status = uses_all(mesh, &all, error);
+	if (!all)
+		mesh->plan.quantized = NT_QUANTIZED_NOT;
+	return status;
+}
+
 /* The attributes of a mesh that are plain floats. */
 typedef struct taking {
 	nt_draco_attribute attributes[3];
@@ -101,16 +110,20 @@ static void take(taking *t, nt_scene *scene, const nt_mesh *mesh, const nt_gltf_
 	t->loaded[i] = loaded;
 }
 
-static nt_status quantize_plain(nt_scene *scene, nt_mesh *mesh, const nt_gltf_sources *sources, const int *bits,
+nt_status nt_gltf_quantize_vertices(nt_scene *scene, nt_mesh *mesh, const nt_gltf_accessor *positions,
+	const nt_gltf_accessor *normals, const nt_gltf_accessor *texcoords, const nt_read_options *options,
 	nt_error *error)
 {
+	const int *bits = options->draco_bits;
 	taking t = {.count = 0};
-	take(&t, scene, mesh, sources->positions, NT_DRACO_POSITION,
-		nt_gltf_draco_bits(bits, NT_DRACO_BITS_POSITION), &mesh->positions);
-	take(&t, scene, mesh, sources->normals, NT_DRACO_NORMAL, nt_gltf_draco_bits(bits, NT_DRACO_BITS_NORMAL),
+	if (nt_gltf_draco_of(nt_gltf_primitive_of(scene->source, mesh)))
+		return mesh->plan.quantized == NT_QUANTIZED_WHOLE ? check_whole(mesh, error) : NT_OK;
+	take(&t, scene, mesh, positions, NT_DRACO_POSITION, nt_gltf_draco_bits(bits, NT_DRACO_BITS_POSITION),
+		&mesh->positions);
+	take(&t, scene, mesh, normals, NT_DRACO_NORMAL, nt_gltf_draco_bits(bits, NT_DRACO_BITS_NORMAL),
 		&mesh->normals);
-	take(&t, scene, mesh, sources->texcoords, NT_DRACO_TEXCOORD,
-		nt_gltf_draco_bits(bits, NT_DRACO_BITS_TEXCOORD), &mesh->texcoords);
+	take(&t, scene, mesh, texcoords, NT_DRACO_TEXCOORD, nt_gltf_draco_bits(bits, NT_DRACO_BITS_TEXCOORD),
+		&mesh->texcoords);
 	if (t.failed)
 		return nt_fail_memory(error);
 	/* texture coordinates lie on the grid as they are stored */
@@ -121,18 +134,6 @@ static nt_status quantize_plain(nt_scene *scene, nt_mesh *mesh, const nt_gltf_so
 		*t.loaded[i] = t.values[i];
 	if (mesh->texcoords)
 		flip_texcoords(mesh);
-	return status;
-}
-
-nt_status nt_gltf_quantize_vertices(nt_scene *scene, nt_mesh *mesh, const nt_gltf_sources *sources,
-	const nt_read_options *options, nt_error *error)
-{
-	if (!nt_gltf_draco_of(nt_gltf_primitive_of(scene->source, mesh)))
-		return quantize_plain(scene, mesh, sources, options->draco_bits, error);
-	bool all = true;
-	const nt_status status = mesh->plan.quantized == NT_QUANTIZED_WHOLE ? uses_all(mesh, &all, error) : NT_OK;
-	if (!all)
-		mesh->plan.quantized = NT_QUANTIZED_NOT;
 	return status;
 }
 

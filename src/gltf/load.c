@@ -20,103 +20,96 @@
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
 enum { UNBACKED_ELEMENTS = 65536 };
 
-/* An attribute of a primitive. *accessor has count 0 and no view where there is none. */
-typedef struct attribute {
-	bool exists;
-	nt_gltf_accessor accessor;
-} attribute;
+/* The attributes that a load takes of a primitive, in the order in which faults are told. */
+enum { POSITIONS, NORMALS, TEXCOORDS, TANGENTS, COLORS, INPUTS };
 
-static nt_status find_attribute(nt_gltf *document, const nt_mesh *mesh,
-	const nt_json_value *attributes, const char *name, uint32_t least, uint32_t most,
-	attribute *found, nt_error *error)
+static const struct {
+	const char *name;     /* NULL: TEXCOORD_ and the number of the mesh's set */
+	uint32_t least, most; /* components; a mesh has `most` */
+	float fill;
+} kinds[INPUTS] = {{"POSITION", 3, 3, 0}, {"NORMAL", 3, 3, 0}, {NULL, 2, 2, 0}, {"TANGENT", 4, 4, 0}, {"COLOR_0", 3, 4, 1}};
+
+/* Where a mesh has an input. */
+static float **array_of(nt_mesh *mesh, int input)
 {
-	found->exists = false;
-	const nt_json_value *reference = nt_json_find(attributes, name);
-	if (!reference)
-		return NT_OK;
-	char pointer[NT_GLTF_POINTER];
-	char *const end = nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/attributes");
+	float **const arrays[INPUTS] = {&mesh->positions, &mesh->normals, &mesh->texcoords, &mesh->tangents, &mesh->colors};
+	return arrays[input];
+}
+
+static const char *name_of(const nt_mesh *mesh, int input, char (*texcoords)[32])
+{
+	if (kinds[input].name)
+		return kinds[input].name;
+	nt_gltf_put_number(nt_gltf_put_text(*texcoords, "TEXCOORD_"), mesh->texcoord_set);
+	return *texcoords;
+}
+
+static bool is_taken(const nt_mesh *mesh, const nt_read_options *options, int input)
+{
+	return (input != TANGENTS || !mesh->tangents_fault) && (input != COLORS || options->world);
+}
+
+static bool is_there(const nt_gltf_accessor *input)
+{
+	return input->index != NT_NONE;
+}
+
+/* *found is_there(), if the primitive has it. */
+static nt_status find_input(nt_gltf *document, const nt_mesh *mesh, int input, nt_gltf_accessor *found, nt_error *error)
+{
+	char pointer[NT_GLTF_POINTER], texcoords[32];
+	const char *const name = name_of(mesh, input, &texcoords);
+	const nt_json_value *attributes = nt_json_find(nt_gltf_primitive_of(document, mesh), "attributes");
 	uint64_t index;
+	*found = (nt_gltf_accessor){.index = NT_NONE};
+	if (!nt_json_find(attributes, name))
+		return NT_OK;
+	char *const end = nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/attributes");
 	nt_status status =
 		nt_gltf_uint(attributes, pointer, name, UINT32_MAX - 1, NT_GLTF_REQUIRED, &index, error);
-	if (!status) {
-		nt_gltf_put_text(nt_gltf_put_text(end, "/"), name);
-		status = nt_gltf_get_accessor(document, index, pointer, &found->accessor, error);
+	if (status)
+		return status;
+	nt_gltf_put_text(nt_gltf_put_text(end, "/"), name);
+	status = nt_gltf_get_accessor(document, index, pointer, found, error);
+	if (!status && (found->components < kinds[input].least || found->components > kinds[input].most))
+		status = nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "accessor %llu has %u components, expected %u",
+			(unsigned long long)index, found->components, kinds[input].least);
+	return status;
+}
+
+/* in: [INPUTS]. Counts must agree, and something in the file must stand behind them. */
+static nt_status find_inputs(nt_gltf *document, nt_mesh *mesh, const nt_read_options *options, nt_gltf_accessor *in,
+	nt_error *error)
+{
+	char pointer[NT_GLTF_POINTER], texcoords[32];
+	nt_status status = NT_OK;
+	bool backed = false;
+	for (int i = 0; !status && i < INPUTS; i++) {
+		in[i].index = NT_NONE;
+		if (is_taken(mesh, options, i))
+			status = find_input(document, mesh, i, &in[i], error);
+		if (!status && !is_there(&in[POSITIONS]))
+			status = nt_fail_pointer(error, NT_ERROR_INPUT, nt_gltf_of_mesh(mesh).pointer,
+				"the primitive has no POSITION");
 	}
 	if (status)
 		return status;
-	if (found->accessor.components < least || found->accessor.components > most)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-			"accessor %llu has %u components, expected %u", (unsigned long long)index,
-			found->accessor.components, least);
-	found->exists = true;
-	return NT_OK;
-}
-
-static nt_status check_count(const nt_mesh *mesh, const attribute *found, const char *name,
-	nt_error *error)
-{
-	if (!found->exists || found->accessor.count == mesh->vertex_count)
-		return NT_OK;
-	char pointer[NT_GLTF_POINTER];
-	nt_gltf_put_text(nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/attributes/"), name);
-	return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-		"accessor %u has %llu elements, POSITION has %zu", found->accessor.index,
-		(unsigned long long)found->accessor.count, mesh->vertex_count);
-}
-
-/* The data that a load takes from a primitive. */
-typedef struct inputs {
-	attribute positions, normals, texcoords, tangents, colors;
-	char texcoord_name[32];
-} inputs;
-
-static nt_status find_inputs(nt_gltf *document, const nt_mesh *mesh, const nt_json_value *primitive,
-	const nt_read_options *options, inputs *in, nt_error *error)
-{
-	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
-	nt_gltf_put_number(nt_gltf_put_text(in->texcoord_name, "TEXCOORD_"), mesh->texcoord_set);
-	in->colors.exists = false;
-	nt_status status =
-		find_attribute(document, mesh, attributes, "POSITION", 3, 3, &in->positions, error);
-	if (!status && !in->positions.exists)
-		status = nt_fail_pointer(error, NT_ERROR_INPUT, nt_gltf_of_mesh(mesh).pointer,
-			"the primitive has no POSITION");
-	if (!status)
-		status = find_attribute(document, mesh, attributes, "NORMAL", 3, 3, &in->normals, error);
-	if (!status)
-		status = find_attribute(document, mesh, attributes, in->texcoord_name, 2, 2,
-			&in->texcoords, error);
-	in->tangents.exists = false;
-	if (!status && !mesh->tangents_fault)
-		status = find_attribute(document, mesh, attributes, "TANGENT", 4, 4, &in->tangents, error);
-	if (!status && options->world)
-		status = find_attribute(document, mesh, attributes, "COLOR_0", 3, 4, &in->colors, error);
-	return status;
-}
-
-static bool is_backed(const attribute *found)
-{
-	return found->exists && (found->accessor.view != NT_NONE || found->accessor.decoded);
-}
-
-/* Counts must agree, and something in the file must stand behind them. */
-static nt_status check_inputs(const nt_mesh *mesh, const inputs *in, nt_error *error)
-{
-	nt_status status = check_count(mesh, &in->normals, "NORMAL", error);
-	if (!status)
-		status = check_count(mesh, &in->texcoords, in->texcoord_name, error);
-	if (!status)
-		status = check_count(mesh, &in->tangents, "TANGENT", error);
-	if (!status)
-		status = check_count(mesh, &in->colors, "COLOR_0", error);
-	const bool backed = is_backed(&in->positions) || is_backed(&in->normals) ||
-		is_backed(&in->texcoords);
-	if (!status && !backed && mesh->vertex_count > UNBACKED_ELEMENTS)
-		status = nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, nt_gltf_of_mesh(mesh).pointer,
-			"%zu vertices, but neither positions nor normals nor texture coordinates have a "
-			"bufferView", mesh->vertex_count);
-	return status;
+	mesh->vertex_count = mesh->source_vertex_count = (size_t)in[POSITIONS].count;
+	for (int i = 0; i < INPUTS; i++) {
+		if (!is_there(&in[i]))
+			continue;
+		backed |= i <= TEXCOORDS && (in[i].view != NT_NONE || in[i].decoded);
+		if (in[i].count == mesh->vertex_count)
+			continue;
+		nt_gltf_put_text(nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/attributes/"),
+			name_of(mesh, i, &texcoords));
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "accessor %u has %llu elements, POSITION has %zu",
+			in[i].index, (unsigned long long)in[i].count, mesh->vertex_count);
+	}
+	return backed || mesh->vertex_count <= UNBACKED_ELEMENTS ? NT_OK :
+		nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, nt_gltf_of_mesh(mesh).pointer,
+			"%zu vertices, but neither positions nor normals nor texture coordinates have a bufferView",
+			mesh->vertex_count);
 }
 
 static void normalise_vector(float *n)
@@ -194,22 +187,6 @@ static void find_tangent_steps(const nt_scene *scene, nt_mesh *mesh, const nt_re
 		step_of(&next) : 0;
 }
 
-/* As they are stored, of all vertices of the pool. */
-static nt_status load_vertices(nt_scene *scene, nt_mesh *mesh, const inputs *in, nt_error *error)
-{
-	nt_status status = load_floats(scene, mesh, &in->positions.accessor, 3, 0, &mesh->positions, error);
-	if (!status && in->normals.exists)
-		status = load_floats(scene, mesh, &in->normals.accessor, 3, 0, &mesh->normals, error);
-	if (!status && in->tangents.exists)
-		status = load_floats(scene, mesh, &in->tangents.accessor, 4, 0, &mesh->tangents, error);
-	mesh->byte_tangents = in->tangents.exists && in->tangents.accessor.component_type == NT_GLTF_BYTE;
-	if (!status && in->colors.exists)
-		status = load_floats(scene, mesh, &in->colors.accessor, 4, 1, &mesh->colors, error);
-	if (!status && in->texcoords.exists)
-		status = load_floats(scene, mesh, &in->texcoords.accessor, 2, 0, &mesh->texcoords, error);
-	return status;
-}
-
 /* Shared arrays are not written to. */
 static nt_status copy_normals(nt_scene *scene, nt_mesh *mesh, nt_error *error)
 {
@@ -221,7 +198,7 @@ static nt_status copy_normals(nt_scene *scene, nt_mesh *mesh, nt_error *error)
 }
 
 /* The vertices that a pooled mesh uses. It keeps the pool's numbers if it uses all, or has no indices. */
-static nt_status make_compact(nt_scene *scene, nt_mesh *mesh, const inputs *in, size_t index_count,
+static nt_status make_compact(nt_scene *scene, nt_mesh *mesh, const nt_gltf_accessor *normals, size_t index_count,
 	nt_error *error)
 {
 	nt_arena *arena = nt_mesh_arena(scene, mesh);
@@ -231,13 +208,13 @@ static nt_status make_compact(nt_scene *scene, nt_mesh *mesh, const inputs *in, 
 		nt_compact_vertices(mesh->indices, index_count, pool_count, arena, &view))
 		return nt_fail_memory(error);
 	if (!view.vertices)
-		return mesh->plan.pooled && in->normals.exists && in->normals.accessor.component_type != NT_GLTF_FLOAT
+		return mesh->plan.pooled && is_there(normals) && normals->component_type != NT_GLTF_FLOAT
 			? copy_normals(scene, mesh, error) : NT_OK;
-	float **const rows[] = {&mesh->positions, &mesh->normals, &mesh->tangents, &mesh->colors, &mesh->texcoords};
-	static const size_t floats[] = {3, 3, 4, 4, 2};
-	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-		if (*rows[i] && !(*rows[i] = nt_compact_rows(&view, *rows[i], floats[i], arena)))
+	for (int i = 0; i < INPUTS; i++) {
+		float **const rows = array_of(mesh, i);
+		if (*rows && !(*rows = nt_compact_rows(&view, *rows, kinds[i].most, arena)))
 			return nt_fail_memory(error);
+	}
 	mesh->pool_vertices = view.vertices;
 	mesh->unused_vertices = pool_count - view.count;
 	mesh->vertex_count = mesh->source_vertex_count = view.count;
@@ -396,7 +373,7 @@ static const char *name_of_target(nt_scene *scene, const nt_gltf *document, cons
 
 /* The targets that move a mesh: their tangents differ from the base's. Displacements stay where they are, for
  * nt_gltf_move(). */
-static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const inputs *in,
+static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const nt_gltf_accessor *normals,
 	const nt_json_value *primitive, nt_error *error)
 {
 	const nt_json_value *targets = nt_json_find(primitive, "targets");
@@ -427,7 +404,7 @@ static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, 
 		if (morph.positions || morph.normals || (join && i < join->target_count && join->moves[i]))
 			mesh->morphs[mesh->morph_count++] = morph;
 	}
-	if (!turns || in->normals.accessor.component_type == NT_GLTF_FLOAT)
+	if (!turns || normals->component_type == NT_GLTF_FLOAT)
 		return NT_OK;
 	mesh->stored_normals = mesh->normals;
 	return copy_normals(scene, mesh, error);
@@ -455,14 +432,14 @@ static nt_status load_chain(nt_gltf *document, const nt_mesh *mesh, const nt_jso
 
 /* Faces, of compact vertices where the mesh shares them. */
 static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const nt_json_value *primitive,
-	const inputs *in, nt_error *error)
+	const nt_gltf_accessor *normals, nt_error *error)
 {
 	const uint64_t mode = nt_gltf_mode(primitive);
 	uint64_t count = mesh->vertex_count;
 	nt_status status = load_chain(document, mesh, primitive, nt_mesh_arena(scene, mesh), &mesh->indices,
 		&count, error);
 	if (!status)
-		status = make_compact(scene, mesh, in, (size_t)count, error);
+		status = make_compact(scene, mesh, normals, (size_t)count, error);
 	if (status)
 		return status;
 	mesh->face_count = mode == NT_GLTF_TRIANGLES ? (size_t)count / 3 : count < 3 ? 0 : (size_t)count - 2;
@@ -478,14 +455,6 @@ static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, c
 	return NT_OK;
 }
 
-static nt_status quantize(nt_scene *scene, nt_mesh *mesh, const inputs *in, const nt_read_options *options,
-	nt_error *error)
-{
-	const nt_gltf_sources sources = {&in->positions.accessor, in->normals.exists ? &in->normals.accessor : NULL,
-		in->texcoords.exists ? &in->texcoords.accessor : NULL};
-	return nt_gltf_quantize_vertices(scene, mesh, &sources, options, error);
-}
-
 nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 	nt_error *error)
 {
@@ -497,32 +466,33 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	}
 	nt_status status = mesh->ready ? NT_OK :
 		nt_gltf_decode_draco(document, primitive, nt_gltf_of_mesh(mesh).pointer, error);
-	inputs in;
+	nt_gltf_accessor in[INPUTS];
 	if (!status)
-		status = find_inputs(document, mesh, primitive, options, &in, error);
-	if (!status) {
-		mesh->vertex_count = mesh->source_vertex_count = (size_t)in.positions.accessor.count;
-		status = check_inputs(mesh, &in, error);
-	}
+		status = find_inputs(document, mesh, options, in, error);
+	/* as they are stored, of all vertices of the pool */
+	for (int i = 0; !status && i < INPUTS; i++)
+		if (is_there(&in[i]))
+			status = load_floats(scene, mesh, &in[i], kinds[i].most, kinds[i].fill, array_of(mesh, i), error);
 	if (!status)
-		status = load_vertices(scene, mesh, &in, error);
+		status = load_faces(scene, document, mesh, primitive, &in[NORMALS], error);
 	if (!status)
-		status = load_faces(scene, document, mesh, primitive, &in, error);
+		mesh->byte_tangents = is_there(&in[TANGENTS]) && in[TANGENTS].component_type == NT_GLTF_BYTE;
 	if (!status && mesh->texcoords)
 		status = flip_texcoords(scene, mesh, options->threads, error);
 	if (!status && mesh->tangents)
 		find_tangent_steps(scene, mesh, options);
 	if (!status && mesh->plan.quantized)
-		status = quantize(scene, mesh, &in, options, error);
+		status = nt_gltf_quantize_vertices(scene, mesh, &in[POSITIONS], is_there(&in[NORMALS]) ? &in[NORMALS] : NULL,
+			is_there(&in[TEXCOORDS]) ? &in[TEXCOORDS] : NULL, options, error);
 	if (!status && mesh->texcoords && mesh->transform)
 		status = nt_mesh_transform(mesh, mesh->transform, nt_mesh_arena(scene, mesh), error);
 	if (!status && options->report)
 		mesh->vertex_bytes = nt_gltf_vertex_bytes(document, primitive);
 	/* a mesh in the world is written without its targets */
 	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
-		status = load_morphs(scene, document, mesh, &in, primitive, error);
-	if (!status && in.normals.exists)
-		normalise_quantized(&in.normals.accessor, mesh->normals, mesh->vertex_count);
+		status = load_morphs(scene, document, mesh, &in[NORMALS], primitive, error);
+	if (!status && is_there(&in[NORMALS]))
+		normalise_quantized(&in[NORMALS], mesh->normals, mesh->vertex_count);
 	if (status && error && !error->place.object[0]) {
 		nt_place place;
 		memcpy(error->place.object, nt_mesh_place(mesh, &place)->object, sizeof error->place.object);
@@ -533,19 +503,18 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 nt_status nt_gltf_load_normals(nt_gltf *document, const nt_mesh *mesh, nt_arena *arena, float **normals,
 	nt_error *error)
 {
-	attribute found;
-	nt_status status = find_attribute(document, mesh, nt_json_find(nt_gltf_primitive_of(document, mesh),
-		"attributes"), "NORMAL", 3, 3, &found, error);
+	nt_gltf_accessor found;
+	nt_status status = find_input(document, mesh, NORMALS, &found, error);
 	if (!status)
-		status = nt_gltf_shared_floats(document, &found.accessor, 3, 0, normals, error);
-	if (status || found.accessor.component_type == NT_GLTF_FLOAT)
+		status = nt_gltf_shared_floats(document, &found, 3, 0, normals, error);
+	if (status || found.component_type == NT_GLTF_FLOAT)
 		return status;
-	const size_t count = (size_t)found.accessor.count;
+	const size_t count = (size_t)found.count;
 	float *own = nt_arena_alloc(arena, count, 3 * sizeof *own);
 	if (!own)
 		return nt_fail_memory(error);
 	*normals = memcpy(own, *normals, count * 3 * sizeof *own);
-	normalise_quantized(&found.accessor, own, count);
+	normalise_quantized(&found, own, count);
 	return NT_OK;
 }
 
@@ -582,12 +551,10 @@ static bool make_ready(nt_gltf *document, const nt_mesh *mesh, const nt_read_opt
 		*targets = nt_json_find(primitive, "targets");
 	char texcoords[32];
 	nt_error ignored;
-	nt_gltf_put_number(nt_gltf_put_text(texcoords, "TEXCOORD_"), mesh->texcoord_set);
 	bool ready = nt_gltf_decode_draco(document, primitive, "", &ignored) == NT_OK &&
-		open_accessor(document, attributes, "POSITION") && open_accessor(document, attributes, "NORMAL") &&
-		open_accessor(document, attributes, texcoords) && open_accessor(document, primitive, "indices") &&
-		(mesh->tangents_fault || open_accessor(document, attributes, "TANGENT")) &&
-		(!options->world || open_accessor(document, attributes, "COLOR_0"));
+		open_accessor(document, primitive, "indices");
+	for (int i = 0; ready && i < INPUTS; i++)
+		ready = !is_taken(mesh, options, i) || open_accessor(document, attributes, name_of(mesh, i, &texcoords));
 	const bool bakes = !options->world && options->morphs == NT_MORPH_BAKE;
 	for (size_t i = 0; ready && bakes && i < nt_json_count(targets); i++)
 		ready = open_accessor(document, nt_json_at(targets, i), "POSITION") &&
