@@ -27,12 +27,13 @@ static const struct {
 	const char *name;     /* NULL: TEXCOORD_ and the number of the mesh's set */
 	uint32_t least, most; /* components; a mesh has `most` */
 	float fill;
-} kinds[INPUTS] = {{"POSITION", 3, 3, 0}, {"NORMAL", 3, 3, 0}, {NULL, 2, 2, 0}, {"TANGENT", 4, 4, 0}, {"COLOR_0", 3, 4, 1}};
+} kinds[INPUTS] = {{"POSITION", 3, 3, 0}, {"NORMAL", 3, 3, 0}, {NULL, 2, 2, 0}, {"TANGENT", 4, 4, 0},
+	{"COLOR_0", 3, 4, 1}};
 
-/* Where a mesh has an input. */
+/* The array of a mesh that an input goes to. */
 static float **array_of(nt_mesh *mesh, int input)
 {
-	float **const arrays[INPUTS] = {&mesh->positions, &mesh->normals, &mesh->texcoords, &mesh->tangents, &mesh->colors};
+	float **const arrays[] = {&mesh->positions, &mesh->normals, &mesh->texcoords, &mesh->tangents, &mesh->colors};
 	return arrays[input];
 }
 
@@ -103,8 +104,9 @@ static nt_status find_inputs(nt_gltf *document, nt_mesh *mesh, const nt_read_opt
 			continue;
 		nt_gltf_put_text(nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/attributes/"),
 			name_of(mesh, i, &texcoords));
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "accessor %u has %llu elements, POSITION has %zu",
-			in[i].index, (unsigned long long)in[i].count, mesh->vertex_count);
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+			"accessor %u has %llu elements, POSITION has %zu", in[i].index,
+			(unsigned long long)in[i].count, mesh->vertex_count);
 	}
 	return backed || mesh->vertex_count <= UNBACKED_ELEMENTS ? NT_OK :
 		nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, nt_gltf_of_mesh(mesh).pointer,
@@ -472,7 +474,8 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	/* as they are stored, of all vertices of the pool */
 	for (int i = 0; !status && i < INPUTS; i++)
 		if (is_there(&in[i]))
-			status = load_floats(scene, mesh, &in[i], kinds[i].most, kinds[i].fill, array_of(mesh, i), error);
+			status = load_floats(scene, mesh, &in[i], kinds[i].most, kinds[i].fill, array_of(mesh, i),
+				error);
 	if (!status)
 		status = load_faces(scene, document, mesh, primitive, &in[NORMALS], error);
 	if (!status)
@@ -482,8 +485,8 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	if (!status && mesh->tangents)
 		find_tangent_steps(scene, mesh, options);
 	if (!status && mesh->plan.quantized)
-		status = nt_gltf_quantize_vertices(scene, mesh, &in[POSITIONS], is_there(&in[NORMALS]) ? &in[NORMALS] : NULL,
-			is_there(&in[TEXCOORDS]) ? &in[TEXCOORDS] : NULL, options, error);
+		status = nt_gltf_quantize_vertices(scene, mesh, &in[POSITIONS], &in[NORMALS], &in[TEXCOORDS], options,
+			error);
 	if (!status && mesh->texcoords && mesh->transform)
 		status = nt_mesh_transform(mesh, mesh->transform, nt_mesh_arena(scene, mesh), error);
 	if (!status && options->report)
@@ -554,7 +557,8 @@ static bool make_ready(nt_gltf *document, const nt_mesh *mesh, const nt_read_opt
 	bool ready = nt_gltf_decode_draco(document, primitive, "", &ignored) == NT_OK &&
 		open_accessor(document, primitive, "indices");
 	for (int i = 0; ready && i < INPUTS; i++)
-		ready = !is_taken(mesh, options, i) || open_accessor(document, attributes, name_of(mesh, i, &texcoords));
+		ready = !is_taken(mesh, options, i) ||
+			open_accessor(document, attributes, name_of(mesh, i, &texcoords));
 	const bool bakes = !options->world && options->morphs == NT_MORPH_BAKE;
 	for (size_t i = 0; ready && bakes && i < nt_json_count(targets); i++)
 		ready = open_accessor(document, nt_json_at(targets, i), "POSITION") &&
