@@ -358,6 +358,30 @@ nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt
 		count * accessor->element_bytes, pointer, values, error);
 }
 
+nt_status nt_gltf_whole_elements(nt_gltf *document, const nt_gltf_accessor *a, nt_arena *arena,
+	const unsigned char **elements, size_t *step, nt_error *error)
+{
+	const uint32_t *replaced;
+	const unsigned char *values;
+	nt_status status = nt_gltf_elements(document, a, elements, error);
+	*step = a->stride;
+	if (status || !a->sparse || a->decoded)
+		return status;
+	const size_t width = a->element_bytes;
+	unsigned char *whole = nt_arena_alloc(arena, (size_t)a->count, width);
+	if (!whole)
+		return nt_fail_memory(error);
+	memset(whole, 0, (size_t)a->count * width);
+	for (size_t i = 0; *elements && i < a->count; i++)
+		memcpy(whole + i * width, *elements + i * a->stride, width);
+	status = nt_gltf_sparse(document, a, arena, &replaced, &values, error);
+	for (size_t i = 0; !status && i < a->sparse->count; i++)
+		memcpy(whole + replaced[i] * width, values + i * width, width);
+	*elements = whole;
+	*step = width;
+	return status;
+}
+
 /* ---- decoding ---- */
 
 static void decode_element(const nt_gltf_accessor *accessor, const unsigned char *element, uint32_t width,

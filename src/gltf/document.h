@@ -344,6 +344,11 @@ void nt_gltf_state_bounds(nt_json *json, nt_json_value *accessor, size_t compone
 nt_status nt_gltf_elements(nt_gltf *document, const nt_gltf_accessor *accessor,
 	const unsigned char **elements, nt_error *error);
 
+/* The elements with what a sparse accessor replaces, `*step` apart: as the file has them, or in the arena. NULL: all
+ * are zero. */
+nt_status nt_gltf_whole_elements(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
+	const unsigned char **elements, size_t *step, nt_error *error);
+
 /* The elements a sparse accessor replaces: their numbers and new values, tightly packed. Numbers are
  * checked: increasing and below the count. The array is in the arena. */
 nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,

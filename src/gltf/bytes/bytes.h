@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Changes of the bytes of a document's buffers: insertions and replacements at places of the source, and new views
- * behind the end. Everything else is streamed from the source as it is, and every offset in the JSON is moved by what
- * was inserted before it.
+ * Changes of the bytes of a document's buffers. A source buffer is a row of segments, each with what refers to it. They
+ * are replaced, go on behind their end, or go when nothing refers to them any more. New views come behind the end.
+ * Everything else is streamed from the source as it is, and every offset in the JSON moves by what changed before it.
  */
 #ifndef NT_GLTF_BYTES_BYTES_H
 #define NT_GLTF_BYTES_BYTES_H
@@ -12,66 +12,72 @@
 #include "gltf/vertex_pools.h"
 #include "gltf/document.h"
 
-/* ---- users of bytes: byte_users.c ---- */
+/* ---- segments: segments.c ---- */
 
-/* Bytes of a source buffer that something in the document refers to. */
-typedef struct nt_byte_user {
+/* Bytes of a source buffer, or of a view that was decompressed, that something refers to, with all that overlaps
+ * them. */
+typedef struct nt_segment {
 	uint64_t begin, end;
-	uint64_t reach;    /* largest end of this and what is below it in the tree (byte_users.c) */
-	uint32_t buffer;
-	uint32_t accessor; /* `same`; NT_NONE: an image, an extension, or an unknown user */
-} nt_byte_user;
+	uint32_t buffer;       /* NT_GLTF_OF_VIEW(): a view's own */
+	uint32_t users;        /* that have not left; accessors over the same bytes are one */
+	uint32_t pool, known;  /* how many of them a pool has: nt_segment_know() */
+	uint32_t stride;       /* of vertices that were added; 0: none were */
+	uint32_t apart;        /* the last accessor that no edit touches; NT_NONE: none */
 
-/* An accessor and its edits; numbers are those of the first one over the same bytes. An attribute belongs to one pool,
- * so that nothing has to be emptied between pools; its bytes may be another pool's too. */
+	/* what becomes of it */
+	bool changed, kept;    /* kept: its bytes are, before the new ones */
+	uint8_t padding;       /* behind the new ones */
+	const unsigned char *bytes; /* [size] new ones */
+	size_t size;
+	int64_t shift;         /* how far it moves */
+} nt_segment;
+
+/* An accessor while pools are edited, or all over its bytes (`same`). An attribute belongs to one
+ * pool, so that nothing has to be emptied between pools; its bytes may be another pool's too. */
 typedef struct nt_edited_accessor {
-	uint32_t appended_by; /* the pool that appends to it: nt_append_owner(); 0: none */
-	uint32_t replaced;    /* uses by sets and morph targets that are no more */
-	uint32_t index_moved; /* uses as indices that have other ones by now */
-	uint32_t welded;      /* the last weld that compared its elements, from 1 on */
-	bool seen, pinned;    /* pinned: an unsolved user has it */
+	uint32_t replaced;    /* `same`: uses by sets and morph targets that are no more */
+	uint32_t index_moved; /* `same`: uses as indices that have other ones by now */
+	uint32_t welded;      /* `same`: the last weld that compared its elements, from 1 on */
+	uint32_t override;    /* `same`: its new values, by their number in the pool's list, from 1 on; 0: none */
+	uint32_t apart;       /* `same`: the one before it in its segment that no edit touches; NT_NONE: none */
+	bool seen;            /* the pool has it */
+	bool listed, pinned;  /* `same`: pinned: an unsolved user has it */
 } nt_edited_accessor;
-
-/* Bytes that get new values: `width` of them from `begin` on, every `stride` bytes. */
-typedef struct nt_byte_rows {
-	uint64_t begin;
-	uint32_t stride, width;
-} nt_byte_rows;
-
-typedef struct nt_byte_users {
-	const nt_gltf *document;
-	nt_byte_user *list; /* sorted by buffer and begin; malloc'ed */
-	size_t count, capacity;
-	bool unknown;       /* nothing that we know uses one of the views */
-} nt_byte_users;
-
-/* Faulty parts of the document are passed over. False: out of memory. */
-bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document);
-
-/* Whether something other than the accessors that `own` appends to refers to bytes of [begin, end). rows: [row_count]
- * if nothing else of these bytes changes: an accessor that no edit touches may lie beside them. */
-bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
-	const nt_edited_accessor *owners, uint32_t own, const nt_byte_rows *rows, size_t row_count);
-
-/* Whether something other than one accessor does. */
-bool nt_byte_users_other(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
-	uint32_t accessor);
-
-/* How many things refer to bytes of [begin, end). */
-size_t nt_byte_users_count(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end);
-
-/* ---- edits: buffer_edits.c ---- */
 
 /* glTF's own data in buffers needs no more. */
 enum { NT_EDITS_ALIGNMENT = 4 };
 
-/* New bytes at a place of a source buffer. */
-typedef struct nt_buffer_edit {
-	uint64_t at;      /* byte of the source buffer */
-	uint64_t removed; /* bytes from there on that go */
-	const unsigned char *bytes;
-	size_t size;
-} nt_buffer_edit;
+/* All Draco blocks begin with DRAC, which views that an earlier run left free share: these do not count as users. */
+enum { NT_FREE_VIEW_BYTES = 4 };
+
+typedef struct nt_buffer_edits nt_buffer_edits;
+
+/* Finds the segments of the source, and the users of its views. Faulty parts of the document are passed over. False:
+ * out of memory. */
+bool nt_segments_find(nt_buffer_edits *edits);
+
+/* Number of segments before the first one of `buffer` that begins at or behind `position`. */
+size_t nt_segments_before(nt_buffer_edits *edits, uint32_t buffer, uint64_t position);
+
+/* The segment that has a byte of a buffer, or of a view; NULL: none. */
+nt_segment *nt_segment_at(nt_buffer_edits *edits, uint32_t buffer, uint64_t position);
+nt_segment *nt_segment_of(nt_buffer_edits *edits, uint32_t view, uint64_t offset);
+
+/* Notes that a pool has some of the users of a segment (NULL: of none), and whether it has all. */
+void nt_segment_know(nt_segment *segment, uint32_t pool, uint32_t users);
+static inline bool nt_segment_is_known(const nt_segment *segment, uint32_t pool)
+{
+	return segment->pool == pool && segment->known == segment->users;
+}
+
+/* Puts bytes in the place of a segment's, or behind them where `kept`. They live as long as the edits. */
+void nt_segment_change(nt_segment *segment, bool kept, const void *bytes, size_t size);
+
+/* Returns where a position of a source buffer lies in the new one, once that is laid out: the begin of something, or
+ * its end. */
+uint64_t nt_segments_map(nt_buffer_edits *edits, uint32_t buffer, uint64_t position, bool is_end);
+
+/* ---- edits: edits.c ---- */
 
 /* The destination of the bytes of a buffer. */
 typedef struct nt_byte_target nt_byte_target;
@@ -83,26 +89,31 @@ nt_status nt_target_put_file(const nt_byte_target *to, const nt_file *file, nt_e
 /* Writes the bytes of a view, when its buffer is written. */
 typedef nt_status (*nt_view_writer)(const void *user, const nt_byte_target *to, nt_error *error);
 
-/* A new view behind the end of a buffer. */
+/* New bytes behind the end of a buffer. */
 typedef struct nt_buffer_addition {
 	const void *bytes; /* or the user of `write` */
 	nt_view_writer write; /* NULL: they are there */
 	size_t size;
-	uint32_t view; /* NT_NONE: of no view */
-	bool packed; /* they are what its extension refers to */
+	uint64_t offset; /* in the new buffer */
+	uint32_t view;   /* NT_NONE: of no view */
+	bool packed;     /* they are what its extension refers to */
 } nt_buffer_addition;
 
 typedef struct nt_edited_buffer {
-	nt_buffer_edit *edits;
-	size_t edit_count, edit_capacity;
 	nt_buffer_addition *additions;
 	size_t addition_count, addition_capacity;
 	uint64_t old_length; /* 0 for a new buffer */
-
-	/* of a decompressed view that will be packed again */
-	unsigned char *unfiltered; /* its bytes before the filter, owned; NULL: nobody asked, or there is none */
-	uint32_t new_stride;       /* all of its elements are replaced by such of another size; 0: they are not */
+	uint64_t length;     /* once it is laid out */
+	bool changed;        /* some of its segments are, once it is */
 } nt_edited_buffer;
+
+/* A view of the source. */
+typedef struct nt_edited_view {
+	uint32_t users;      /* that have not left */
+	bool is_free;        /* there were some, and all have left: its number serves the next new view */
+	uint32_t new_stride; /* of a packed one: all elements are replaced by such of another size; 0: they are not */
+	unsigned char *unfiltered; /* its bytes before the filter, owned; NULL: nobody asked, or there is none */
+} nt_edited_view;
 
 /* A new view that will be packed. */
 typedef struct nt_packed_view {
@@ -111,23 +122,18 @@ typedef struct nt_packed_view {
 	nt_buffer bytes; /* before the filter */
 } nt_packed_view;
 
-static inline bool nt_is_edited(const nt_edited_buffer *buffer)
-{
-	return buffer->edit_count || buffer->addition_count;
-}
-
-typedef struct nt_buffer_edits {
+struct nt_buffer_edits {
 	nt_gltf *document;
 	nt_arena arena;             /* owns the new bytes */
+	nt_segment *segments;       /* [segment_count] in order, apart from each other */
+	size_t segment_count, near;    /* near: where the last search ended */
 	nt_edited_buffer *buffers;  /* [buffer_count]: the document's, and at most one new one */
 	size_t buffer_count;
-	size_t view_count;          /* of the source */
-	bool *is_free;              /* [view_count] what it held is gone: see nt_edits_release() */
+	nt_edited_view *views;      /* [view_count] of the source */
+	size_t view_count;
 	uint32_t *free_views;       /* [free_count] those that nothing new has taken over */
 	size_t free_count;
-	nt_edited_buffer *decoded;  /* [view_count] bytes of decompressed views */
-	nt_byte_users users;        /* of the source */
-	uint32_t alignment;         /* insertions are multiples of this */
+	uint32_t alignment;         /* what changes by less than this is padded */
 	const nt_buffer *lists;     /* [list_count] of a new document: elements of arrays that were set open, in its
 	                               order, with "buffers" behind them. Empty: it has no such array */
 	size_t list_count;
@@ -139,7 +145,12 @@ typedef struct nt_buffer_edits {
 
 	nt_edited_accessor *accessors; /* [accessor_count] of the source */
 	uint32_t weld_count;
-} nt_buffer_edits;
+};
+
+static inline bool nt_is_edited(const nt_edited_buffer *buffer)
+{
+	return buffer->changed || buffer->addition_count;
+}
 
 /*
  * Starts with no edits. Compressed views that vertices will be appended to, or all with `welds`, are decompressed
@@ -151,37 +162,25 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 nt_status nt_edits_create_new(nt_buffer_edits *edits, nt_gltf *document, nt_error *error);
 void nt_edits_free(nt_buffer_edits *edits);
 
-/* Replaces `removed` bytes of a source buffer by others, which must live as long as the edits. The
- * difference is padded with zeros to their alignment. Edits must not overlap. */
-nt_status nt_edits_replace(nt_buffer_edits *edits, uint32_t buffer, uint64_t at, uint64_t removed,
-	const unsigned char *bytes, size_t size, nt_error *error);
-
 /*
- * Takes out a view to which so many things refer that will do so no more; nothing happens where anybody else
- * refers to its bytes, where it is compressed or has extensions. Views are never removed or renumbered: it
- * becomes free, and the next new view takes its number. If there is none it shares bytes with others, since a
- * view may not be empty.
+ * Something that refers to bytes of a view from `offset` on will do so no more: an accessor with all over its bytes, an
+ * array of a sparse one, an image, a block. Bytes that nothing refers to any more go. Views are never removed or
+ * renumbered, since extensions we do not know may refer to them: one without users is free, and the next new view takes
+ * its number. If there is none it shares bytes with others, since a view may not be empty.
  */
-nt_status nt_edits_release_view(nt_buffer_edits *edits, uint32_t view, size_t users, nt_error *error);
+void nt_edits_leave(nt_buffer_edits *edits, uint32_t view, uint64_t offset);
 
-/* The same for bytes of a view that one thing alone refers to; the view stays for what else is in it. */
-nt_status nt_edits_release(nt_buffer_edits *edits, uint32_t view, uint64_t offset, uint64_t length,
-	nt_error *error);
+/* The same of all that an accessor refers to. */
+void nt_edits_leave_accessor(nt_buffer_edits *edits, uint32_t accessor);
 
-/* The changes of a buffer, a decompressed view's among them. */
-nt_edited_buffer *nt_edits_of(nt_buffer_edits *edits, uint32_t buffer);
-
-/* Adds bytes behind the end of a buffer: of a view, whose byteOffset will be set, or NT_NONE. */
-nt_status nt_edits_add_bytes(nt_buffer_edits *edits, uint32_t buffer, uint32_t view, const void *bytes, size_t size,
-	nt_error *error);
+/* Adds bytes behind the end of a buffer: of a view, whose byteOffset will be set (that of its extension where
+ * `packed`), or NT_NONE. */
+nt_status nt_edits_add_bytes(nt_buffer_edits *edits, uint32_t buffer, uint32_t view, bool packed, const void *bytes,
+	size_t size, nt_error *error);
 
 /* The same of bytes that are written when the buffer is; of no view. */
 nt_status nt_edits_add_written(nt_buffer_edits *edits, uint32_t buffer, size_t size, nt_view_writer write,
 	const void *user, nt_error *error);
-
-/* The same of the packed bytes of a view, which its extension refers to. */
-nt_status nt_edits_add_packed(nt_buffer_edits *edits, uint32_t buffer, uint32_t view, const void *bytes, size_t size,
-	nt_error *error);
 
 /* The number of a new view, of which nothing is said yet. */
 uint32_t nt_edits_new_view(nt_buffer_edits *edits);
@@ -227,9 +226,6 @@ nt_status nt_packed_add(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_p
 /* Lets an accessor refer to elements in a new place, all of them. */
 void nt_gltf_place_accessor(nt_json *json, nt_json_value *accessor, uint32_t view, uint64_t offset);
 
-/* nt_edits_release(), of packed views that have been decompressed too. */
-nt_status nt_packed_release(nt_buffer_edits *edits, uint32_t view, uint64_t offset, uint64_t length, nt_error *error);
-
 /*
  * How new tangents are stored that go with a primitive's attributes. If its tangents are packed, as they are; else,
  * if its normals are, as these: integers by the octahedron if they are, floats by the same filter; else plain.
@@ -246,46 +242,29 @@ nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigne
 /* Packs the new ones. */
 nt_status nt_packed_finish(nt_buffer_edits *edits, nt_error *error);
 
-/* ---- moving offsets and writing buffers: relocate.c ---- */
+/* ---- the new buffers: save.c ---- */
 
-/* A buffer as it will be. */
-typedef struct nt_relocated_buffer {
-	const nt_edited_buffer *from; /* its edits are in order */
-	int64_t *shifts;              /* [edit_count] how far everything behind an edit moves */
-	size_t *near;                 /* the first edit behind the last position that was mapped */
-	uint64_t *offsets;            /* [addition_count] in the new buffer */
-	uint64_t length;
-} nt_relocated_buffer;
-
-/* The buffers of a document after all edits. It lives as long as those. */
-typedef struct nt_relocated {
-	nt_gltf *document;
-	nt_relocated_buffer *buffers; /* [buffer_count] */
-	size_t buffer_count;
-	const nt_buffer *lists;       /* [list_count] as the edits have them */
-	size_t list_count;
-} nt_relocated;
-
-/* Moves all offsets in the JSON and sets all lengths. Afterwards nothing may be edited any more. */
-nt_status nt_gltf_relocate(nt_buffer_edits *edits, nt_relocated *result, nt_error *error);
+/* Ends the edits: lays out the buffers, moves all offsets in the JSON and sets all lengths. */
+nt_status nt_edits_end(nt_buffer_edits *edits, nt_error *error);
 
 /* Writes the bytes of a buffer. `input` is the document's own file. */
-nt_status nt_relocated_write(const nt_relocated *relocated, uint32_t buffer, const nt_file *input, nt_sink *sink,
-	nt_error *error);
+nt_status nt_edits_write(nt_buffer_edits *edits, uint32_t buffer, const nt_file *input, nt_sink *sink, nt_error *error);
 
 /* The same as base64, without the last group's padding. */
-nt_status nt_relocated_encode(const nt_relocated *relocated, uint32_t buffer, nt_base64 *base64, nt_error *error);
+nt_status nt_edits_encode(nt_buffer_edits *edits, uint32_t buffer, nt_base64 *base64, nt_error *error);
 
-/* write.c. Writes the input as it is where that is what the output should be; *written tells. */
+/* ---- edit/write.c ---- */
+
+/* Writes the input as it is where that is what the output should be; *written tells. */
 nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *options,
 	nt_output *output, bool *written, nt_error *error);
 
-/* write.c. Ends the edits and writes the document with its buffers, into a main file that was added. link_prefix: the
- * way from the output's folder to the input's as a URI. */
+/* Ends the edits and writes the document with its buffers, into a main file that was added. link_prefix: the way from
+ * the output's folder to the input's as a URI. */
 nt_status nt_gltf_save(nt_scene *scene, nt_buffer_edits *edits, const nt_write_options *options,
 	const char *link_prefix, nt_output *output, nt_sink *main, nt_error *error);
 
-/* write.c. The same with the images of the source. */
+/* The same with the images of the source. */
 nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const nt_write_options *options,
 	nt_output *output, nt_error *error);
 

@@ -38,7 +38,7 @@ nt_status nt_packed_bytes(nt_buffer_edits *edits, uint32_t buffer, uint64_t offs
 	if (!nt_gltf_is_of_view(buffer) || !edits->keeps_packed)
 		return NT_OK;
 	const uint32_t view = buffer - NT_GLTF_OF_VIEW(0);
-	nt_edited_buffer *edited = nt_edits_of(edits, buffer);
+	nt_edited_view *edited = &edits->views[view];
 	const nt_gltf_packing p = nt_packing_of(edits, view);
 	if (!edited->unfiltered && p.extension && strcmp(p.view.filter, "NONE") != 0) {
 		const nt_status status = nt_gltf_unfiltered_view(edits->document, view, &edited->unfiltered, error);
@@ -128,14 +128,14 @@ nt_status nt_packed_tangents(nt_buffer_edits *edits, const nt_json_value *attrib
 /* ---- packing ---- */
 
 /* The members of a packed view's JSON. */
-static void describe(nt_json *json, nt_json_value *extension, const nt_gltf_packing *p, size_t count, size_t size)
+static void describe(nt_json *json, nt_json_value *extension, const nt_gltf_packing *p, size_t size)
 {
 	nt_json_put_uint64(json, extension, "byteLength", size);
 	nt_json_put_uint64(json, extension, "byteStride", p->view.stride);
 	const char *mode = nt_json_find_string(extension, "mode", NULL);
 	if (!mode || strcmp(mode, p->view.mode) != 0)
 		nt_json_set_string(json, nt_json_put(json, extension, "mode"), p->view.mode, strlen(p->view.mode));
-	nt_json_put_uint64(json, extension, "count", count);
+	nt_json_put_uint64(json, extension, "count", p->view.count);
 }
 
 /* The packed bytes of elements, and those after the filter where somebody reads them. Both are in the arena. */
@@ -160,26 +160,15 @@ static nt_status pack(nt_buffer_edits *edits, nt_gltf_packing *p, const unsigned
 	return nt_meshopt_filter(&p->view, filtered, "", error);
 }
 
-static const unsigned char nothing[1];
-
-/* A view that holds nothing any more is free for a new one. */
-static nt_status release_view(nt_buffer_edits *edits, uint32_t view, const nt_gltf_packing *p, uint64_t size,
-	nt_error *error)
+/* Puts bytes where a packed view has its own: in their place, or behind the buffer if somebody else refers to them. */
+static nt_status put(nt_buffer_edits *edits, uint32_t buffer, uint64_t position, uint32_t view, bool packed,
+	const unsigned char *bytes, size_t size, nt_error *error)
 {
-	nt_json *json = edits->document->json;
-	nt_json_value *object = nt_gltf_view_json(edits->document, view);
-	uint64_t offset = 0;
-	nt_status status = NT_OK;
-	nt_json_find_uint64(object, "byteOffset", &offset);
-	if (nt_byte_users_count(&edits->users, p->buffer, p->offset, p->offset + p->view.packed_size) == 1)
-		status = nt_edits_replace(edits, p->buffer, p->offset, p->view.packed_size, nothing, 0, error);
-	if (!status && nt_byte_users_count(&edits->users, p->place, offset, offset + size) == 1)
-		status = nt_edits_replace(edits, p->place, offset, size, nothing, 0, error);
-	nt_json_remove(json, object, "extensions");
-	nt_json_put_uint64(json, object, "buffer", p->buffer);
-	edits->is_free[view] = true;
-	edits->free_views[edits->free_count++] = view;
-	return status;
+	nt_segment *segment = nt_segment_at(edits, buffer, position);
+	if (!segment || segment->users != 1)
+		return nt_edits_add_bytes(edits, buffer, view, packed, bytes, size, error);
+	nt_segment_change(segment, false, bytes, size);
+	return NT_OK;
 }
 
 nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigned char *bytes, size_t size,
@@ -188,51 +177,20 @@ nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigne
 	nt_json *json = edits->document->json;
 	nt_json_value *object = nt_gltf_view_json(edits->document, view);
 	nt_gltf_packing p = nt_packing_of(edits, view);
-	const size_t old_size = (size_t)(p.view.count * p.view.stride), old_packed_size = (size_t)p.view.packed_size;
-	const uint32_t stride = edits->decoded[view].new_stride;
-	if (stride)
-		p.view.stride = stride;
-	const size_t count = size / (size_t)p.view.stride;
-	/* emptied accessor by accessor */
-	if (!size && nt_json_count(nt_json_find(object, "extensions")) == 1)
-		return release_view(edits, view, &p, old_size, error);
+	if (edits->views[view].new_stride)
+		p.view.stride = edits->views[view].new_stride;
 	unsigned char *packed;
 	const unsigned char *plain;
 	size_t packed_size;
-	nt_status status = pack(edits, &p, bytes, count, &packed, &packed_size, &plain, error);
+	nt_status status = pack(edits, &p, bytes, size / (size_t)p.view.stride, &packed, &packed_size, &plain, error);
 	if (status)
 		return status;
 	uint64_t offset = 0;
 	nt_json_find_uint64(object, "byteOffset", &offset);
-	describe(json, nt_gltf_compression_of(object, NULL), &p, count, packed_size);
+	describe(json, nt_gltf_compression_of(object, NULL), &p, packed_size);
 	nt_json_put_uint64(json, object, "byteLength", size);
-
-	/* where the old ones are, if these are nobody else's */
-	if (nt_byte_users_count(&edits->users, p.buffer, p.offset, p.offset + old_packed_size) == 1)
-		status = nt_edits_replace(edits, p.buffer, p.offset, old_packed_size, packed, packed_size, error);
-	else
-		status = nt_edits_add_packed(edits, p.buffer, view, packed, packed_size, error);
-	if (status)
-		return status;
-	if (nt_byte_users_count(&edits->users, p.place, offset, offset + old_size) == 1)
-		return nt_edits_replace(edits, p.place, offset, old_size, plain, size, error);
-	return nt_edits_add_bytes(edits, p.place, view, plain, size, error);
-}
-
-nt_status nt_packed_release(nt_buffer_edits *edits, uint32_t index, uint64_t offset, uint64_t length, nt_error *error)
-{
-	nt_gltf_view view;
-	const nt_gltf_packing p = nt_packing_of(edits, index);
-	if (!p.extension || nt_gltf_get_view(edits->document, index, "", &view, NULL) != NT_OK)
-		return nt_edits_release(edits, index, offset, length, error);
-	if (!nt_gltf_is_of_view(view.buffer) || length % p.view.stride ||
-		nt_byte_users_count(&edits->users, view.buffer, offset, offset + length) != 1)
-		return NT_OK;
-	const nt_json_value *object = nt_gltf_view_json(edits->document, index);
-	if (length < view.length)
-		return nt_edits_replace(edits, view.buffer, offset, length, nothing, 0, error);
-	return nt_json_count(nt_json_find(object, "extensions")) == 1
-		? release_view(edits, index, &p, view.length, error) : NT_OK;
+	status = put(edits, p.buffer, p.offset, view, true, packed, packed_size, error);
+	return status ? status : put(edits, p.place, offset, view, false, plain, size, error);
 }
 
 /* ---- new views ---- */
@@ -313,12 +271,12 @@ static nt_status finish(nt_buffer_edits *edits, nt_packed_view *new, nt_error *e
 	nt_json_value *extension = nt_json_put(json, nt_json_put(json, object, "extensions"), p->extension);
 	nt_json_put_uint64(json, extension, "buffer", p->buffer);
 	nt_json_put_uint64(json, extension, "byteOffset", 0);
-	describe(json, extension, p, count, packed_size);
+	describe(json, extension, p, packed_size);
 	if (strcmp(p->view.filter, "NONE") != 0)
 		nt_json_set_string(json, nt_json_put(json, extension, "filter"), p->view.filter,
 			strlen(p->view.filter));
-	status = nt_edits_add_packed(edits, p->buffer, new->view, packed, packed_size, error);
-	return status ? status : nt_edits_add_bytes(edits, p->place, new->view, plain, size, error);
+	status = nt_edits_add_bytes(edits, p->buffer, new->view, true, packed, packed_size, error);
+	return status ? status : nt_edits_add_bytes(edits, p->place, new->view, false, plain, size, error);
 }
 
 nt_status nt_packed_finish(nt_buffer_edits *edits, nt_error *error)

@@ -1,453 +1,562 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Vertices that splitting appended, in the accessors of a pool.
+ * Vertices that splitting appended, and new values, in the accessors of a pool.
  *
- * Accessors keep their number and their first elements. Attributes that are interleaved form a block whose
- * vertices are copied as a whole and inserted behind its last one. If bytes of a block also belong to somebody else,
- * its accessors move to new views. An accessor that has to keep its count, because a primitive without indices or an
- * animation uses it too, is left alone and the solved primitives get a copy of it.
+ * Accessors keep their number and their first elements. If a segment of a buffer has nothing but vertices of the pool,
+ * one attribute or several that are interleaved, they are copied as a whole to its end. Else its accessors go to new
+ * views. An accessor that has to keep its count, because a primitive without indices or an animation uses it too, is
+ * left alone and the solved primitives get a copy of it.
  */
 #include "gltf/edit/pool_edit.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "gltf/document.h"
 #include "gltf/bytes/bytes.h"
 
+/* An accessor of the pool, which stands for all over its bytes. */
+typedef struct target {
+	const nt_gltf_accessor *accessor;
+	const nt_gltf_override *override; /* NULL: its values stay */
+	nt_segment *segment;  /* NULL: it has no view */
+	uint64_t begin; /* of its elements, in the buffer */
+	bool stays;     /* solved primitives have a copy of it */
+	bool moved;     /* to a new view */
+} target;
+
+typedef struct appending {
+	nt_buffer_edits *edits;
+	nt_gltf *document; /* of the edits, as its JSON */
+	nt_json *json;
+	nt_arena *arena;   /* of the edits */
+	const nt_pool_vertices *vertices;
+	const nt_override_list *overrides;
+	uint32_t buffer;  /* of new views */
+	uint32_t owner;   /* the pool, as segments have it: by its first user */
+	bool decoded_too; /* decompressed accessors get plain views */
+	bool differs;     /* vertices are not those of the source */
+	nt_error *error;
+	target *targets;
+	size_t target_count, target_capacity;
+} appending;
+
+/* ---- the accessors of a pool ---- */
+
+nt_status nt_override_add(nt_buffer_edits *edits, nt_override_list *list, nt_gltf_override override, nt_error *error)
+{
+	if (!nt_grow((void **)&list->items, &list->capacity, list->count + 1, sizeof *list->items))
+		return nt_fail_memory(error);
+	list->items[list->count++] = override;
+	edits->accessors[override.accessor].override = (uint32_t)list->count;
+	return NT_OK;
+}
+
+static nt_status check_count(const appending *job, const nt_gltf_accessor *a)
+{
+	char pointer[NT_GLTF_POINTER];
+	nt_gltf_pointer(pointer, "accessors", a->index);
+	return a->count == job->vertices->old_count ? NT_OK : nt_fail_pointer(job->error, NT_ERROR_INPUT, pointer,
+		"%llu elements, but other attributes of the same primitives have %zu", (unsigned long long)a->count,
+		job->vertices->old_count);
+}
+
+static nt_status collect(appending *job, uint32_t index, bool solved)
+{
+	nt_edited_accessor *const all = job->edits->accessors;
+	const uint32_t same = nt_gltf_same(job->document, index);
+	const bool is_new = !all[index].seen;
+	nt_gltf_accessor a;
+	all[same].pinned |= !solved;
+	all[index].seen = true;
+	nt_status status = is_new ? nt_gltf_get_accessor(job->document, index, "/accessors", &a, job->error) : NT_OK;
+	if (is_new && !status)
+		status = check_count(job, &a);
+	/* where nothing grows, the others matter as far as new values are between them: none that cannot be read */
+	if (status && status != NT_ERROR_MEMORY && !job->differs && !job->decoded_too && !all[same].override) {
+		nt_error_clear(job->error);
+		return NT_OK;
+	}
+	if (status || all[same].listed || !is_new)
+		return status;
+	if (!nt_grow((void **)&job->targets, &job->target_capacity, job->target_count + 1, sizeof *job->targets))
+		return nt_fail_memory(job->error);
+	target *added = &job->targets[job->target_count++];
+	*added = (target){.accessor = &job->document->accessors[same],
+		.override = all[same].override ? &job->overrides->items[all[same].override - 1] : NULL};
+	all[same].listed = true;
+	nt_gltf_view view;
+	status = a.view == NT_NONE ? NT_OK : nt_gltf_get_view(job->document, a.view, "", &view, job->error);
+	if (status || a.view == NT_NONE)
+		return status;
+	added->begin = view.offset + a.offset;
+	added->segment = nt_segment_at(job->edits, view.buffer, added->begin);
+	return NT_OK;
+}
+
+static nt_status collect_all(appending *job)
+{
+	const nt_vertex_pool *pool = job->vertices->pool;
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < pool->user_count; i++)
+		for (nt_gltf_use u = {0}; !status && nt_gltf_next_use(job->document, nt_pool_primitive(pool, i), &u);)
+			status = collect(job, u.accessor, nt_pool_is_solved(pool, i));
+	return status;
+}
+
+/* The next accessor over the bytes of a target that a user of the pool has; before the first: NT_NONE. */
+static uint32_t next_accessor(const appending *job, const target *t, uint32_t before)
+{
+	uint32_t k = before == NT_NONE ? t->accessor->index : job->document->accessors[before].next;
+	while (k != NT_NONE && !job->edits->accessors[k].seen)
+		k = job->document->accessors[k].next;
+	return k;
+}
+
+/* ---- to new views ---- */
+
+/* Elements as a packed view stores them, or as readers have them with sparse ones put in, `*step` apart. */
+static nt_status find_elements(appending *job, const target *t, bool stored, const unsigned char **elements,
+	size_t *step)
+{
+	const nt_gltf_accessor *a = t->accessor;
+	*step = t->override ? t->override->width : a->stride;
+	if (t->override) {
+		*elements = stored ? t->override->stored : t->override->values;
+		return NT_OK;
+	}
+	if (!stored)
+		return nt_gltf_whole_elements(job->document, a, job->arena, elements, step, job->error);
+	const nt_status status = nt_gltf_elements(job->document, a, elements, job->error);
+	return status ? status : nt_packed_bytes(job->edits, t->segment->buffer, t->begin, elements, job->error);
+}
+
+/* An accessor's bounds become those of its values if these are new, or come from a decoder: the
+ * encoder may have moved them. Copies do not matter. */
+static nt_status settle_bounds(appending *job, const target *t, uint32_t accessor)
+{
+	static const int types[] = {[1] = NT_GLTF_BYTE, [2] = NT_GLTF_SHORT, [4] = NT_GLTF_FLOAT};
+	const nt_gltf_accessor *a = t->accessor;
+	const unsigned char *elements = NULL;
+	size_t step;
+	double bounds[2][4];
+	const bool decoded = a->decoded || (t->segment && nt_gltf_is_of_view(t->segment->buffer));
+	if ((!t->override && !decoded) || a->components > 4 || a->element_bytes != a->components * a->component_bytes)
+		return NT_OK;
+	const nt_status status = find_elements(job, t, false, &elements, &step);
+	if (status || !elements)
+		return status;
+	nt_component_bounds(elements, (uint32_t)step, t->override ? job->vertices->new_count : (size_t)a->count,
+		t->override ? types[t->override->width / a->components] : (int)a->component_type, a->components,
+		bounds);
+	nt_gltf_state_bounds(job->json, nt_gltf_accessor_json(job->document, accessor), a->components, bounds);
+	return NT_OK;
+}
+
+/* All elements go to a new place: of their own, or of others that are packed like them. */
+static nt_status move_elements(appending *job, target *t, uint32_t *view, uint64_t *offset)
+{
+	const nt_gltf_accessor *a = t->accessor;
+	const size_t count = job->vertices->new_count, element = t->override ? t->override->width : a->element_bytes;
+	const size_t stride = (element + 3) / 4 * 4;
+	nt_gltf_packing packing = nt_packing_of(job->edits, a->view);
+	const unsigned char *elements = NULL;
+	size_t step = 0;
+	/* a filter is one of whole elements */
+	const bool stored = packing.extension && packing.view.stride == stride && !a->sparse;
+	if (!stored)
+		packing.view.filter = "NONE";
+	packing.view.stride = stride;
+	unsigned char *out = nt_arena_alloc(job->arena, count, stride);
+	if (!out)
+		return nt_fail_memory(job->error);
+	memset(out, 0, count * stride);
+	const nt_status status = find_elements(job, t, stored, &elements, &step);
+	for (size_t v = 0; !status && elements && v < count; v++)
+		memcpy(out + v * stride, elements + (t->override ? v : nt_vertex_source(job->vertices, v)) * step,
+			element);
+	if (!t->stays && !status)
+		nt_edits_leave_accessor(job->edits, a->index);
+	t->moved = true;
+	/* of several accessors a view has to say how far apart elements are */
+	return status ? status : nt_packed_add(job->edits, job->buffer, &packing, out, count * stride,
+		NT_GLTF_ARRAY_BUFFER, a->next != NT_NONE || stride != element ? (uint32_t)stride : 0, view, offset,
+		job->error);
+}
+
+static nt_status move_away(appending *job, target *t)
+{
+	uint32_t view = 0;
+	uint64_t offset = 0;
+	const nt_status status = move_elements(job, t, &view, &offset);
+	for (uint32_t k = next_accessor(job, t, NT_NONE); !status && k != NT_NONE; k = next_accessor(job, t, k))
+		nt_gltf_place_accessor(job->json, nt_gltf_accessor_json(job->document, k), view, offset);
+	return status;
+}
+
 /* ---- accessors that must keep their count ---- */
 
 /* Primitives without indices draw every vertex, so none must be added to what they use. */
-static bool must_pin(const nt_appending *job)
+static bool must_pin(const appending *job)
 {
 	const nt_vertex_pool *pool = job->vertices->pool;
 	for (size_t i = 0; i < pool->user_count && !job->vertices->renumbered; i++)
 		if (!nt_pool_is_solved(pool, i) && !nt_json_find(nt_pool_primitive(pool, i), "indices"))
 			return true;
 	for (size_t i = 0; i < job->target_count; i++)
-		if (job->document->users[job->targets[i].accessor.same].foreign)
+		if (job->document->users[job->targets[i].accessor->index].foreign)
 			return true;
 	return false;
 }
 
-/* The elements of an accessor with the appended ones, `stride` apart; sparse values put in where `bake`, as a packed
- * view stores them where `stored`. */
-static nt_status copy_elements(nt_appending *job, const nt_append_target *from, uint32_t stride, bool bake, bool stored,
-	unsigned char **result)
+/* Gives the solved users a copy of an accessor. */
+static nt_status clone(appending *job, target *t)
 {
-	const nt_gltf_accessor *a = &from->accessor;
-	const size_t count = job->vertices->new_count;
-	unsigned char *out = nt_arena_alloc(job->arena, count, stride);
-	if (!out)
-		return nt_fail_memory(job->error);
-	memset(out, 0, count * stride);
-	*result = out;
-	/* welded ones are gathered from all of the source's */
-	unsigned char *all = job->vertices->own_count < a->count
-		? nt_arena_alloc(job->arena, (size_t)a->count, stride) : out;
-	if (!all)
-		return nt_fail_memory(job->error);
-	if (all != out)
-		memset(all, 0, (size_t)a->count * stride);
-	if (from->override) {
-		for (size_t v = 0; v < count; v++)
-			memcpy(out + v * stride, (stored ? from->override->stored : from->override->values) +
-				v * from->override->width, from->override->width);
-		return NT_OK;
-	}
-	const unsigned char *elements = NULL;
-	nt_status status = nt_gltf_elements(job->document, a, &elements, job->error);
-	if (!status && stored)
-		status = nt_packed_bytes(job->edits, from->buffer, from->begin, &elements, job->error);
-	for (size_t v = 0; !status && elements && v < a->count; v++)
-		memcpy(all + v * stride, elements + v * a->stride, a->element_bytes);
-	if (!status && bake && a->sparse) {
-		const uint32_t *replaced;
-		const unsigned char *values;
-		status = nt_gltf_sparse(job->document, a, job->arena, &replaced, &values, job->error);
-		for (size_t i = 0; !status && i < a->sparse->count; i++)
-			memcpy(all + (size_t)replaced[i] * stride, values + i * a->element_bytes,
-				a->element_bytes);
-	}
-	for (size_t v = job->vertices->own_count; !status && v < count; v++)
-		memcpy(out + v * stride, all + nt_vertex_source(job->vertices, v) * stride, a->element_bytes);
-	return status;
-}
-
-/* All elements of an accessor go to a new place: of its own, or of others that are packed like it. */
-static nt_status add_elements(nt_appending *job, nt_append_target *from, bool bake, nt_json_value *accessor)
-{
-	const uint32_t element = from->override ? from->override->width : from->accessor.element_bytes;
-	const uint32_t stride = (element + 3) / 4 * 4;
-	nt_gltf_packing packing = nt_packing_of(job->edits, from->accessor.view);
-	unsigned char *elements = NULL;
-	/* of several accessors a view has to say how far apart elements are */
-	const bool shared = from->accessor.same != from->accessor.index || from->accessor.next != NT_NONE;
-	/* a filter is one of whole elements */
-	const bool stored =
-		packing.extension && packing.view.stride == stride && !(bake && from->accessor.sparse);
-	if (!stored)
-		packing.view.filter = "NONE";
-	packing.view.stride = stride;
-	nt_status status = copy_elements(job, from, stride, bake, stored, &elements);
-	if (!status)
-		status = nt_packed_add(job->edits, job->buffer, &packing, elements,
-			job->vertices->new_count * stride, NT_GLTF_ARRAY_BUFFER,
-			shared || stride != element ? stride : 0, &from->new_view, &from->new_offset, job->error);
-	if (!status)
-		nt_gltf_place_accessor(job->json, accessor, from->new_view, from->new_offset);
-	return status;
-}
-
-/* An accessor's bounds become those of its values if these are new, or come from a decoder: the
- * encoder may have moved them. Copies do not matter. */
-static nt_status settle_bounds(nt_appending *job, const nt_append_target *of, uint32_t accessor)
-{
-	const nt_gltf_accessor *a = &of->accessor;
-	const nt_gltf_override *override = of->override;
-	uint32_t stride = override ? override->width : a->sparse ? a->element_bytes : a->stride;
-	int type = (int)a->component_type;
-	const unsigned char *elements = NULL;
-	double bounds[2][4];
-	nt_status status = NT_OK;
-	if ((!override && !a->decoded && !nt_gltf_is_of_view(of->buffer)) || a->components > 4 ||
-		a->element_bytes != a->components * a->component_bytes)
-		return NT_OK;
-	if (override) {
-		elements = override->values;
-		type = stride == 16 ? NT_GLTF_FLOAT : stride == 8 ? NT_GLTF_SHORT : NT_GLTF_BYTE;
-	} else if (a->sparse) {
-		unsigned char *baked = NULL;
-		status = copy_elements(job, of, stride, true, false, &baked);
-		elements = baked;
-	} else {
-		status = nt_gltf_elements(job->document, a, &elements, job->error);
-	}
-	if (status || !elements)
-		return status;
-	nt_component_bounds(elements, stride, override ? job->vertices->new_count : (size_t)a->count, type,
-		a->components, bounds);
-	nt_gltf_state_bounds(job->json, nt_gltf_accessor_json(job->document, accessor), a->components, bounds);
-	return NT_OK;
-}
-
-static nt_status clone_accessor(nt_appending *job, nt_append_target *from)
-{
+	const nt_vertex_pool *pool = job->vertices->pool;
 	nt_json_value *accessors = nt_gltf_root_member(job->document, "accessors");
-	from->clone = (uint32_t)nt_json_count(accessors);
-	nt_json_value *clone = nt_json_append(job->json, accessors);
-	nt_json_set_copy(job->json, clone, nt_json_at(accessors, from->accessor.index));
-	const nt_status status = add_elements(job, from, true, clone);
-	nt_json_put_uint64(job->json, clone, "count", job->vertices->new_count);
-	return status ? status : settle_bounds(job, from, from->clone);
-}
-
-static void use_clones(nt_appending *job, const nt_json_value *primitive)
-{
-	for (nt_gltf_use u = {0}; nt_gltf_next_use(job->document, primitive, &u);)
-		for (size_t i = 0; i < job->target_count; i++)
-			if (job->targets[i].accessor.index == u.accessor && job->targets[i].clone != NT_NONE)
-				nt_json_put_uint64(job->json, u.attributes, u.name, job->targets[i].clone);
-}
-
-/* Whether an accessor that stays lies at the end of vertices in which others of the pool lie: copies of these
- * would come in before its last element. */
-static bool ends_vertices(const nt_appending *job, const nt_append_target *pinned)
-{
-	bool before = false, behind = false;
-	for (size_t i = 0; i < job->target_count; i++) {
-		const nt_append_target *t = &job->targets[i];
-		if (t->clone != NT_NONE || t->accessor.view == NT_NONE || t->buffer != pinned->buffer)
-			continue;
-		before |= t->begin < pinned->begin && pinned->begin - t->begin < t->accessor.stride;
-		behind |= t->begin > pinned->begin && t->begin - pinned->begin < t->accessor.stride;
+	const uint32_t number = (uint32_t)nt_json_count(accessors), same = t->accessor->index;
+	nt_json_value *copy = nt_json_append(job->json, accessors);
+	uint32_t view = 0;
+	uint64_t offset = 0;
+	t->stays = true;
+	nt_json_set_copy(job->json, copy, nt_json_at(accessors, same));
+	nt_status status = move_elements(job, t, &view, &offset);
+	nt_gltf_place_accessor(job->json, copy, view, offset);
+	nt_json_put_uint64(job->json, copy, "count", job->vertices->new_count);
+	if (!status)
+		status = settle_bounds(job, t, number);
+	for (size_t i = 0; i < pool->user_count; i++) {
+		nt_gltf_use u = {0};
+		while (nt_pool_is_solved(pool, i) &&
+			nt_gltf_next_use(job->document, nt_pool_primitive(pool, i), &u))
+			if (nt_gltf_same(job->document, u.accessor) == same)
+				nt_json_put_uint64(job->json, u.attributes, u.name, number);
 	}
-	return before && !behind;
+	return status;
 }
 
-/* Copies the pinned accessors, points solved users to the copies and takes them off the list. */
-static nt_status clone_pinned(nt_appending *job)
+static nt_status clone_pinned(appending *job)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < job->target_count; i++) {
-		const uint32_t index = job->targets[i].accessor.index;
-		if (job->edits->accessors[index].pinned || job->document->users[job->targets[i].accessor.same].foreign)
-			status = clone_accessor(job, &job->targets[i]);
+		const uint32_t same = job->targets[i].accessor->index;
+		if (job->edits->accessors[same].pinned || job->document->users[same].foreign)
+			status = clone(job, &job->targets[i]);
 	}
-	for (size_t i = 0; !status && i < job->vertices->pool->user_count; i++)
-		if (nt_pool_is_solved(job->vertices->pool, i))
-			use_clones(job, nt_pool_primitive(job->vertices->pool, i));
-	for (size_t i = 0; i < job->target_count; i++)
-		if (job->targets[i].clone != NT_NONE && job->targets[i].accessor.view != NT_NONE &&
-			ends_vertices(job, &job->targets[i]))
-			job->edits->accessors[job->targets[i].accessor.same].appended_by = 0;
-	size_t kept = 0;
-	for (size_t i = 0; i < job->target_count; i++)
-		if (job->targets[i].clone == NT_NONE)
-			job->targets[kept++] = job->targets[i];
-	job->target_count = kept;
 	return status;
 }
 
-/* ---- appending in place ---- */
+/* ---- in place ---- */
 
 static int compare_targets(const void *a, const void *b)
 {
-	const nt_append_target *x = a, *y = b;
-	const bool x_has = x->accessor.view != NT_NONE, y_has = y->accessor.view != NT_NONE;
-	if (x_has != y_has)
-		return x_has ? -1 : 1;
-	if (x->buffer != y->buffer)
-		return x->buffer < y->buffer ? -1 : 1;
+	const target *x = a, *y = b;
+	if (x->segment != y->segment)
+		return !x->segment ? 1 : !y->segment ? -1 : x->segment < y->segment ? -1 : 1;
 	if (x->begin != y->begin)
 		return x->begin < y->begin ? -1 : 1;
-	return (x->accessor.index > y->accessor.index) - (x->accessor.index < y->accessor.index);
+	return (x->accessor->index > y->accessor->index) - (x->accessor->index < y->accessor->index);
 }
 
-/* Interleaved accessors: vertices of `width` bytes, `stride` apart. */
+/* Interleaved accessors: the targets of one segment. */
 typedef struct block {
-	nt_append_target *targets;
+	target *targets;
 	size_t count;
-	uint32_t buffer, stride, width;
-	uint64_t begin, end;
-	bool overridden;
-	bool misfits; /* its vertices are not the elements of the packed view that has them */
+	nt_segment *segment;
+	size_t stride, width; /* of a vertex */
+	bool overridden, changes;
 } block;
 
-/* The longest run of targets from `targets` on that share vertices. */
-static block find_block(const nt_appending *job, nt_append_target *targets, size_t left)
+/* Whether new values of a target are not where another accessor has its own. */
+static bool lies_apart(const block *b, const target *t, const nt_gltf_accessor *other, uint64_t begin)
 {
-	block b = {.targets = targets, .count = 1, .buffer = targets->buffer,
-		.stride = targets->accessor.stride, .width = targets->accessor.element_bytes,
-		.begin = targets->begin, .overridden = targets->override != NULL};
-	while (b.count < left) {
-		const nt_append_target *next = &targets[b.count];
-		const uint64_t end = next->begin - b.begin + next->accessor.element_bytes;
-		if (next->accessor.view == NT_NONE || next->buffer != b.buffer ||
-			next->accessor.stride != b.stride || end > b.stride)
-			break;
-		if (end > b.width)
-			b.width = (uint32_t)end;
-		b.overridden |= next->override != NULL;
-		b.count++;
-	}
-	const nt_gltf_packing packing = nt_packing_of(job->edits, targets->accessor.view);
-	if (packing.extension) {
-		/* what fills an element goes with it: a filter may need it */
-		b.misfits = packing.view.stride != b.stride;
-		b.begin -= b.begin % b.stride;
-		b.width = b.stride;
-	}
-	b.end = b.begin + (job->vertices->old_count - 1) * (uint64_t)b.stride + b.width;
-	return b;
+	const uint64_t stride = b->stride, behind = (t->begin + stride - begin % stride) % stride;
+	return !t->override || (other->stride == stride && behind >= other->element_bytes &&
+		behind + t->accessor->element_bytes <= stride);
 }
 
-/* Whether new values would go where another accessor of the block has its own, or the next target behind the block.
- * next: NULL: there is none. */
-static bool is_crowded(const block *b, const nt_append_target *next)
+/* Knows the accessors of a segment that no edit touches and that lie between what gets new values, if that is all that
+ * happens. */
+static void know_apart(const appending *job, const block *b)
 {
-	if (!b->overridden)
-		return false;
-	bool crowded = next && next->accessor.view != NT_NONE && next->buffer == b->buffer && next->begin < b->end;
-	for (size_t i = 0; !crowded && i < b->count; i++)
-		for (size_t k = 0; b->targets[i].override && !crowded && k < b->count; k++) {
-			const nt_append_target *x = &b->targets[i], *y = &b->targets[k];
-			crowded = x->accessor.same != y->accessor.same &&
-				x->begin < y->begin + y->accessor.element_bytes &&
-				y->begin < x->begin + x->accessor.element_bytes;
-		}
-	return crowded;
+	nt_gltf_view view;
+	uint32_t k = job->differs ? NT_NONE : b->segment->apart;
+	for (; k != NT_NONE; k = job->edits->accessors[k].apart) {
+		const nt_gltf_accessor *a = &job->document->accessors[k];
+		bool apart = nt_gltf_get_view(job->document, a->view, "", &view, NULL) == NT_OK;
+		for (size_t i = 0; apart && i < b->count; i++)
+			apart = lies_apart(b, &b->targets[i], a, view.offset + a->offset);
+		if (apart)
+			nt_segment_know(b->segment, job->owner, 1 + nt_gltf_users_of(job->document, k)->idle);
+	}
 }
 
-/* Moves a target to a view of its own, or to where one before it went that lies over the same bytes. A sparse accessor
- * becomes plain there; one of a Draco block is not sparse. */
-static nt_status move_away(nt_appending *job, nt_append_target *moved)
+/* Whether the segment of a block has nothing but vertices of the pool, without new values where another has its own.
+ * A filter may need all that fills an element of a packed view. */
+static bool fits_in_place(const appending *job, const block *b)
 {
-	nt_json_value *accessor = nt_gltf_accessor_json(job->document, moved->accessor.index);
-	const nt_append_target *other = moved;
-	while (other > job->targets && other[-1].begin == moved->begin &&
-		(other == moved || other->accessor.same != moved->accessor.same))
-		other--;
-	if (other == moved || other->accessor.same != moved->accessor.same || other->new_view == NT_NONE)
-		return add_elements(job, moved, !moved->accessor.decoded, accessor);
-	moved->new_view = other->new_view;
-	moved->new_offset = other->new_offset;
-	nt_gltf_place_accessor(job->json, accessor, other->new_view, other->new_offset);
+	const nt_gltf_packing packing = nt_packing_of(job->edits, b->targets->accessor->view);
+	bool fits = nt_segment_is_known(b->segment, job->owner) && b->width <= b->stride &&
+		(!packing.extension || packing.view.stride == b->stride);
+	for (size_t i = 0; fits && i < b->count; i++) {
+		const target *t = &b->targets[i];
+		fits = t->accessor->stride == b->stride && (i + 1 == b->count || !b->overridden ||
+			t->begin + t->accessor->element_bytes <= t[1].begin);
+	}
+	return fits;
+}
+
+/* The bytes of a segment, as readers have them and as they are stored. Each target has been checked against its own
+ * view; the segment is their union. */
+static nt_status segment_bytes(appending *job, const block *b, const unsigned char **decoded,
+	const unsigned char **stored)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < b->count; i++) {
+		const unsigned char *elements;
+		status = nt_gltf_elements(job->document, b->targets[i].accessor, &elements, job->error);
+		if (i == 0)
+			*stored = *decoded = elements - (b->targets->begin - b->segment->begin);
+	}
+	return status ? status : nt_packed_bytes(job->edits, b->segment->buffer, b->segment->begin, stored, job->error);
+}
+
+/* Values that a reader will see as before stay as they are stored, since several elements of a packed view may mean the
+ * same. */
+static void put_values(const appending *job, const block *b, const target *t, const unsigned char *decoded,
+	unsigned char *out)
+{
+	const nt_pool_vertices *vertices = job->vertices;
+	const size_t width = t->override->width, place = (size_t)(t->begin - b->segment->begin);
+	for (size_t v = 0; v < vertices->new_count; v++) {
+		const unsigned char *value = t->override->values + v * width;
+		const bool known = v < vertices->old_count || !vertices->own_count;
+		if (known && width == t->accessor->element_bytes &&
+			memcmp(decoded + place + nt_vertex_source(vertices, v) * b->stride, value, width) == 0)
+			continue;
+		memset(out + place + v * b->stride, 0, t->accessor->element_bytes);
+		memcpy(out + place + v * b->stride, t->override->stored + v * width, width);
+	}
+}
+
+/* Copied vertices come in behind those of a segment; all are replaced if some values are new, or none is where it
+ * was. */
+static nt_status edit_segment(appending *job, const block *b)
+{
+	const nt_pool_vertices *vertices = job->vertices;
+	const size_t own = vertices->own_count, count = vertices->new_count;
+	const bool kept = own && !b->overridden;
+	/* the last vertex may end before its stride does: padding comes first */
+	const size_t gap = kept ? b->stride - b->width : 0, first = kept ? own : 0;
+	const size_t size = kept ? (count - own) * b->stride : (count - 1) * b->stride + b->width;
+	const unsigned char *decoded = NULL, *stored = NULL;
+	nt_status status = segment_bytes(job, b, &decoded, &stored);
+	unsigned char *out = nt_arena_alloc(job->arena, size, 1);
+	if (status || !out)
+		return status ? status : nt_fail_memory(job->error);
+	memset(out, 0, size);
+	if (own && !kept)
+		memcpy(out, stored, (size_t)(b->segment->end - b->segment->begin));
+	for (size_t v = own; v < count; v++)
+		memcpy(out + gap + (v - first) * b->stride, stored + nt_vertex_source(vertices, v) * b->stride,
+			b->width);
+	for (size_t i = 0; i < b->count; i++)
+		if (b->targets[i].override)
+			put_values(job, b, &b->targets[i], decoded, out);
+	b->segment->stride = job->differs ? (uint32_t)b->stride : 0;
+	nt_segment_change(b->segment, kept, out, size);
 	return NT_OK;
 }
 
-static nt_status block_bytes(nt_appending *job, const block *b, const unsigned char **bytes)
+static nt_status edit_block(appending *job, const block *b)
 {
-	const nt_gltf_accessor *first = &b->targets->accessor;
-	nt_gltf_view view;
-	nt_status status =
-		nt_gltf_get_view(job->document, first->view, "/accessors", &view, job->error);
-	/* each target has been checked against its own view; the block is their union */
-	for (size_t i = 0; !status && i < b->count; i++) {
-		const unsigned char *elements;
-		status = nt_gltf_elements(job->document, &b->targets[i].accessor, &elements, job->error);
-		if (i == 0)
-			*bytes = elements - (b->targets->begin - b->begin);
-	}
+	nt_status status = NT_OK;
+	know_apart(job, b);
+	if (b->changes && fits_in_place(job, b))
+		return edit_segment(job, b);
+	for (size_t i = 0; !status && i < b->count; i++)
+		if (!b->targets[i].stays && (job->differs || b->targets[i].override))
+			status = move_away(job, &b->targets[i]);
 	return status;
 }
 
-/* Vertices come in behind the block: views that end before its last vertex does go on to its end, to have them too.
- * So it is where each accessor of a block has a view that ends with its last element. */
-static void lengthen_views(nt_appending *job, const block *b)
-{
-	for (size_t i = 0; i < b->count; i++) {
-		const uint32_t index = b->targets[i].accessor.view;
-		nt_gltf_view view;
-		if (nt_gltf_get_view(job->document, index, "", &view, NULL) != NT_OK ||
-			nt_gltf_is_of_view(view.buffer) ||
-			view.offset + view.length >= b->end)
-			continue;
-		nt_json_value *object = nt_gltf_view_json(job->document, index);
-		nt_json_put_uint64(job->json, object, "byteLength", b->end - view.offset);
-		job->document->views[index].length = b->end - view.offset;
-	}
-}
+/* ---- sparse accessors ---- */
 
-/* Inserts the copied vertices behind the block. */
-static nt_status insert_vertices(nt_appending *job, const block *b, const unsigned char *elements)
-{
-	const size_t old_count = job->vertices->old_count, added = job->vertices->new_count - old_count;
-	unsigned char *out = nt_arena_alloc(job->arena, added, b->stride);
-	if (!out)
-		return nt_fail_memory(job->error);
-	/* The last vertex of the block may end before its stride does: padding comes first. */
-	const size_t gap = b->stride - b->width;
-	for (size_t i = 0; i < added; i++) {
-		memset(out + i * b->stride, 0, gap);
-		memcpy(out + i * b->stride + gap,
-			elements + nt_vertex_source(job->vertices, old_count + i) * b->stride, b->width);
-	}
-	return nt_edits_replace(job->edits, b->buffer, b->end, 0, out, added * b->stride, job->error);
-}
+/* Numbers of the elements that are replaced, then those of their copies: these have the highest, so that numbers stay
+ * in order. */
+typedef struct replacement {
+	uint32_t *elements;
+	unsigned char *values;
+	size_t count;
+} replacement;
 
-/* Replaces the whole block: some of its values are new. Values that a reader will see as before stay as they are
- * stored, since several elements of a packed view may mean the same. */
-static nt_status replace_vertices(nt_appending *job, const block *b, const unsigned char *decoded,
-	const unsigned char *elements)
+/* If all that was replaced has the values of others now, the first element is replaced by what it is: a sparse accessor
+ * may not be without any. */
+static nt_status replace_first(appending *job, const nt_gltf_accessor *a, replacement *out)
 {
-	const size_t count = job->vertices->new_count, old_size = (size_t)(b->end - b->begin);
-	const size_t size = (count - 1) * b->stride + b->width;
-	unsigned char *out = nt_arena_alloc(job->arena, count, b->stride);
-	if (!out)
-		return nt_fail_memory(job->error);
-	memset(out, 0, count * b->stride);
-	if (job->vertices->own_count)
-		memcpy(out, elements, old_size);
-	for (size_t v = job->vertices->own_count; v < count; v++)
-		memcpy(out + v * b->stride, elements + nt_vertex_source(job->vertices, v) * b->stride, b->width);
-	for (size_t i = 0; i < b->count; i++) {
-		const nt_gltf_override *override = b->targets[i].override;
-		unsigned char *at = out + (b->targets[i].begin - b->begin);
-		const unsigned char *before = decoded + (b->targets[i].begin - b->begin);
-		for (size_t v = 0; override && v < count; v++) {
-			const bool known = v < job->vertices->old_count || !job->vertices->own_count;
-			if (known && override->width == b->targets[i].accessor.element_bytes &&
-				memcmp(before + nt_vertex_source(job->vertices, v) * b->stride,
-					override->values + v * override->width, override->width) == 0)
-				continue;
-			memset(at + v * b->stride, 0, b->targets[i].accessor.element_bytes);
-			memcpy(at + v * b->stride, override->stored + v * override->width,
-				override->width);
-		}
-	}
-	return nt_edits_replace(job->edits, b->buffer, b->begin, old_size, out, size, job->error);
-}
-
-/* The bytes of a block to which nothing is appended that get new values. NULL: memory is exhausted. */
-static nt_byte_rows *list_rows(nt_appending *job, const block *b, size_t *count)
-{
-	nt_byte_rows *rows = nt_arena_alloc(job->arena, b->count, sizeof *rows);
-	*count = 0;
-	for (size_t i = 0; rows && !nt_vertices_differ(job->vertices) && i < b->count; i++)
-		if (b->targets[i].override)
-			rows[(*count)++] = (nt_byte_rows){b->targets[i].begin, b->stride,
-				b->targets[i].accessor.element_bytes};
-	return rows;
-}
-
-static nt_status append_to_block(nt_appending *job, const block *b, uint64_t previous_end,
-	const nt_append_target *next)
-{
-	size_t row_count;
-	const nt_byte_rows *rows = list_rows(job, b, &row_count);
-	nt_status status = rows ? NT_OK : nt_fail_memory(job->error);
-	if (!rows)
-		return status;
-	if (b->begin < previous_end || b->misfits || is_crowded(b, next) ||
-		nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end, job->edits->accessors,
-			nt_append_owner(job), rows, row_count)) {
-		for (size_t i = 0; !status && i < b->count; i++)
-			if (nt_vertices_differ(job->vertices) || b->targets[i].override)
-				status = move_away(job, &b->targets[i]);
-		return status;
-	}
-	const unsigned char *decoded = NULL, *elements = NULL;
-	status = block_bytes(job, b, &decoded);
-	elements = decoded;
-	if (!status)
-		status = nt_packed_bytes(job->edits, b->buffer, b->begin, &elements, job->error);
-	if (!status && !nt_append_note_edit(job, b->buffer, b->begin, b->end))
-		status = nt_fail_memory(job->error);
+	const unsigned char *elements;
+	const nt_status status = nt_gltf_elements(job->document, a, &elements, job->error);
 	if (status)
 		return status;
-	if (nt_vertices_differ(job->vertices))
-		lengthen_views(job, b);
-	return b->overridden || !job->vertices->own_count ? replace_vertices(job, b, decoded, elements)
-							  : insert_vertices(job, b, elements);
+	out->count = 1;
+	out->elements[0] = 0;
+	memset(out->values, 0, a->element_bytes);
+	if (elements)
+		memcpy(out->values, elements + nt_vertex_source(job->vertices, 0) * a->stride, a->element_bytes);
+	return NT_OK;
+}
+
+static nt_status find_replacements(appending *job, const nt_gltf_accessor *a, replacement *out)
+{
+	const uint32_t *replaced;
+	const unsigned char *values;
+	const nt_status status = nt_gltf_sparse(job->document, a, job->arena, &replaced, &values, job->error);
+	if (status)
+		return status;
+	const nt_pool_vertices *vertices = job->vertices;
+	const size_t old_count = (size_t)a->sparse->count, most = old_count + vertices->new_count - vertices->own_count;
+	const uint32_t element = a->element_bytes;
+	out->elements = nt_arena_alloc(job->arena, most, sizeof *out->elements);
+	out->values = nt_arena_alloc(job->arena, most, element);
+	uint32_t *position = nt_alloc((size_t)a->count, sizeof *position); /* of an element in replaced */
+	if (!out->elements || !out->values || !position) {
+		free(position);
+		return nt_fail_memory(job->error);
+	}
+	memset(position, 0xFF, (size_t)a->count * sizeof *position);
+	for (size_t i = 0; i < old_count; i++)
+		position[replaced[i]] = (uint32_t)i;
+	memcpy(out->elements, replaced, old_count * sizeof *replaced);
+	memcpy(out->values, values, old_count * element);
+	/* welding leaves none where it was */
+	out->count = vertices->own_count ? old_count : 0;
+	for (size_t vertex = vertices->own_count; vertex < vertices->new_count; vertex++) {
+		const uint32_t at = position[nt_vertex_source(vertices, vertex)];
+		if (at == NT_NONE)
+			continue;
+		out->elements[out->count] = (uint32_t)vertex;
+		memcpy(out->values + out->count * element, values + (size_t)at * element, element);
+		out->count++;
+	}
+	free(position);
+	return out->count ? NT_OK : replace_first(job, a, out);
+}
+
+/* One of the two arrays of a sparse accessor, as it is and as it will be. */
+typedef struct sparse_array {
+	uint32_t view;
+	uint64_t offset, old_size, old_width;
+	const unsigned char *bytes;
+	size_t size, width; /* width: of an element, for its alignment */
+} sparse_array;
+
+/* Puts the new array where the old one is, else into a new view. Morph targets often share one array of indices: they
+ * replace the same elements, so that what it becomes for one is right for all. */
+static nt_status put_sparse_array(appending *job, nt_json_value *json, const sparse_array *array)
+{
+	nt_gltf_view view;
+	nt_status status = nt_gltf_get_view(job->document, array->view, "", &view, job->error);
+	if (status)
+		return status;
+	const uint64_t begin = view.offset + array->offset;
+	nt_segment *segment = nt_segment_at(job->edits, view.buffer, begin);
+	if (segment && nt_segment_is_known(segment, job->owner) && segment->begin == begin &&
+		segment->end == begin + array->old_size && begin % array->width == 0 &&
+		(array->width == array->old_width || !nt_gltf_is_of_view(view.buffer))) {
+		nt_segment_change(segment, false, array->bytes, array->size);
+		return NT_OK;
+	}
+	uint32_t number;
+	nt_edits_leave(job->edits, array->view, array->offset);
+	status = nt_edits_add_view(job->edits, job->buffer, array->bytes, array->size, 0, 0, &number, job->error);
+	nt_gltf_place_accessor(job->json, json, number, 0);
+	return status;
+}
+
+/* Copies of elements that a sparse accessor replaces are replaced too. */
+static nt_status append_sparse(appending *job, const nt_gltf_accessor *a)
+{
+	const nt_gltf_sparse_arrays *s = a->sparse;
+	replacement r = {0};
+	nt_status status = find_replacements(job, a, &r);
+	if (status || (job->vertices->own_count && r.count == s->count))
+		return status;
+	const uint32_t type = nt_gltf_index_type(r.elements[r.count - 1], s->index_type);
+	const uint32_t width = nt_gltf_component_bytes(type), old_width = nt_gltf_component_bytes(s->index_type);
+	unsigned char *numbers = nt_arena_alloc(job->arena, r.count, width);
+	if (!numbers)
+		return nt_fail_memory(job->error);
+	nt_gltf_store_indices(r.elements, r.count, width, numbers);
+
+	nt_json_value *sparse = nt_json_find(nt_gltf_accessor_json(job->document, a->index), "sparse");
+	nt_json_put_uint64(job->json, sparse, "count", r.count);
+	if (type != s->index_type)
+		nt_json_put_uint64(job->json, nt_json_find(sparse, "indices"), "componentType", type);
+	status = put_sparse_array(job, nt_json_find(sparse, "indices"), &(sparse_array){s->index_view, s->index_offset,
+		s->count * old_width, old_width, numbers, r.count * width, width});
+	return status ? status : put_sparse_array(job, nt_json_find(sparse, "values"), &(sparse_array){s->value_view,
+		s->value_offset, s->count * a->element_bytes, a->component_bytes, r.values,
+		r.count * a->element_bytes, a->component_bytes});
 }
 
 /* ---- the whole ---- */
 
-static nt_status append_to_targets(nt_appending *job)
+static nt_status edit_targets(appending *job)
 {
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < job->target_count; i++) {
+		const target *t = &job->targets[i];
+		const nt_gltf_sparse_arrays *s = t->accessor->sparse;
+		/* an accessor of nobody over the same bytes does not mind others behind them */
+		nt_segment_know(t->segment, job->owner, 1 + nt_gltf_users_of(job->document, t->accessor->index)->idle);
+		if (s && !t->stays) {
+			nt_segment_know(nt_segment_of(job->edits, s->index_view, s->index_offset), job->owner, 1);
+			nt_segment_know(nt_segment_of(job->edits, s->value_view, s->value_offset), job->owner, 1);
+		}
+	}
 	if (job->target_count)
 		qsort(job->targets, job->target_count, sizeof *job->targets, compare_targets);
-	nt_status status = NT_OK;
-	uint64_t previous_end = 0;
-	uint32_t previous_buffer = NT_NONE;
-	for (size_t i = 0; !status && i < job->target_count && job->targets[i].accessor.view != NT_NONE;) {
-		const block b = find_block(job, &job->targets[i], job->target_count - i);
-		if (nt_vertices_differ(job->vertices) || b.overridden)
-			status = append_to_block(job, &b, b.buffer == previous_buffer ? previous_end : 0,
-				i + b.count < job->target_count ? &job->targets[i + b.count] : NULL);
-		if (b.buffer != previous_buffer || b.end > previous_end)
-			previous_end = b.end;
-		previous_buffer = b.buffer;
-		i += b.count;
+	for (size_t i = 0; !status && i < job->target_count && job->targets[i].segment;) {
+		block b = {.targets = &job->targets[i], .segment = job->targets[i].segment,
+			.stride = job->targets[i].accessor->stride};
+		for (; i < job->target_count && job->targets[i].segment == b.segment; i++, b.count++) {
+			b.overridden |= job->targets[i].override != NULL;
+			b.changes |= job->targets[i].override || (job->differs && !job->targets[i].stays);
+		}
+		b.width = (size_t)(b.segment->end - b.segment->begin - (job->vertices->old_count - 1) * b.stride);
+		status = edit_block(job, &b);
 	}
-	for (size_t i = 0; !status && job->decoded_too && i < job->target_count; i++)
-		if (job->targets[i].accessor.decoded)
-			status = move_away(job, &job->targets[i]);
-	for (size_t i = 0; !status && i < job->target_count; i++)
-		status = settle_bounds(job, &job->targets[i], job->targets[i].accessor.index);
-	const bool counts_change = nt_vertices_differ(job->vertices) || job->decoded_too;
-	for (size_t i = 0; !status && counts_change && i < job->target_count; i++) {
-		const nt_append_target *target = &job->targets[i];
-		nt_json_value *json = nt_gltf_accessor_json(job->document, target->accessor.index);
-		nt_json_put_uint64(job->json, json, "count", job->vertices->new_count);
-		if (target->accessor.sparse && nt_vertices_differ(job->vertices) && nt_json_find(json, "sparse"))
-			status = nt_append_sparse(job, target);
+	for (size_t i = 0; !status && i < job->target_count; i++) {
+		target *t = &job->targets[i];
+		if (t->stays)
+			continue;
+		if (job->decoded_too && t->accessor->decoded)
+			status = move_away(job, t);
+		for (uint32_t k = next_accessor(job, t, NT_NONE); !status && k != NT_NONE;
+			k = next_accessor(job, t, k)) {
+			status = settle_bounds(job, t, k);
+			if (job->differs || job->decoded_too)
+				nt_json_put_uint64(job->json, nt_gltf_accessor_json(job->document, k), "count",
+					job->vertices->new_count);
+		}
+		if (!status && t->accessor->sparse && job->differs && !t->moved)
+			status = append_sparse(job, t->accessor);
 	}
 	return status;
 }
 
 nt_status nt_append_vertices(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
-	nt_override_list *overrides, bool decoded_too, nt_error *error)
+	const nt_override_list *overrides, bool decoded_too, nt_error *error)
 {
-	nt_appending job = {.edits = edits, .document = edits->document,
-		.json = edits->document->json, .arena = &edits->arena, .buffer = buffer, .vertices = vertices,
-		.decoded_too = decoded_too, .error = error};
-	nt_status status = nt_append_collect(&job, overrides);
-	if (!status && nt_vertices_differ(vertices) && must_pin(&job))
+	appending job = {.edits = edits, .document = edits->document, .json = edits->document->json,
+		.arena = &edits->arena, .vertices = vertices, .overrides = overrides, .buffer = buffer,
+		.owner = vertices->pool->users[0] + 1, .decoded_too = decoded_too,
+		.differs = nt_vertices_differ(vertices), .error = error};
+	nt_status status = collect_all(&job);
+	if (!status && job.differs && must_pin(&job))
 		status = clone_pinned(&job);
 	if (!status)
-		status = append_to_targets(&job);
+		status = edit_targets(&job);
 	free(job.targets);
-	free(job.edited);
 	return status;
 }

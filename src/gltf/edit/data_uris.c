@@ -22,7 +22,7 @@ static size_t head_length(const char *uri, size_t length)
 
 nt_status nt_data_uris_add(nt_data_uris *uris, uint32_t buffer, nt_error *error)
 {
-	nt_gltf *document = uris->relocated->document;
+	nt_gltf *document = uris->edits->document;
 	nt_json *json = document->json;
 	nt_json_value *object = nt_json_at(nt_gltf_root_member(document, "buffers"), buffer);
 	if (!nt_grow((void **)&uris->buffers, &uris->capacity, uris->count + 1, sizeof *uris->buffers))
@@ -38,11 +38,11 @@ nt_status nt_data_uris_add(nt_data_uris *uris, uint32_t buffer, nt_error *error)
 
 nt_status nt_data_uris_measure(const nt_data_uris *uris, uint64_t *length, nt_error *error)
 {
-	const nt_status status = nt_json_measure(uris->relocated->document->json, length, error);
-	for (size_t i = 0; !status && i < uris->relocated->list_count; i++)
-		*length += uris->relocated->lists[i].size;
+	const nt_status status = nt_json_measure(uris->edits->document->json, length, error);
+	for (size_t i = 0; !status && i < uris->edits->list_count; i++)
+		*length += uris->edits->lists[i].size;
 	for (size_t i = 0; !status && i < uris->count; i++)
-		*length += nt_base64_length(uris->relocated->buffers[uris->buffers[i]].length);
+		*length += nt_base64_length(uris->edits->buffers[uris->buffers[i]].length);
 	return status;
 }
 
@@ -56,21 +56,21 @@ typedef struct text_sink {
 static nt_status put_text(void *user, const char *text, size_t size)
 {
 	text_sink *to = user;
-	const nt_relocated *relocated = to->uris->relocated;
-	while (!size && to->list < relocated->list_count) {
-		const nt_buffer *list = &relocated->lists[to->list++];
+	nt_buffer_edits *edits = to->uris->edits;
+	while (!size && to->list < edits->list_count) {
+		const nt_buffer *list = &edits->lists[to->list++];
 		text = list->data;
 		size = list->size;
 	}
 	if (size)
 		return nt_sink_write(to->sink, text, size, to->error);
 	nt_base64 base64 = {.sink = to->sink};
-	const nt_status status = nt_relocated_encode(relocated, to->uris->buffers[to->next++], &base64,
+	const nt_status status = nt_edits_encode(edits, to->uris->buffers[to->next++], &base64,
 		to->error);
 	return status ? status : nt_base64_end(&base64, to->error);
 }
 
 nt_status nt_data_uris_write(const nt_data_uris *uris, nt_sink *sink, nt_error *error)
 {
-	return nt_json_write(uris->relocated->document->json, put_text, &(text_sink){uris, sink, 0, 0, error}, error);
+	return nt_json_write(uris->edits->document->json, put_text, &(text_sink){uris, sink, 0, 0, error}, error);
 }

@@ -33,9 +33,6 @@ bool nt_gltf_has_draco(const nt_vertex_pool *pool)
 
 /* ---- plain ---- */
 
-/* All blocks begin with DRAC, which views that an earlier run left free share (relocate.c): that stays for them. */
-enum { DRACO_HEAD = 4 };
-
 /* So many primitives do not refer to a block any more. Whether nobody does. */
 static bool release_block(nt_gltf *document, uint64_t view, size_t count)
 {
@@ -44,30 +41,24 @@ static bool release_block(nt_gltf *document, uint64_t view, size_t count)
 }
 
 /* Takes the extension off a primitive, and its block out of the buffer. The view takes some of the elements. */
-static nt_status make_plain(nt_buffer_edits *edits, nt_json_value *primitive, nt_error *error)
+static void make_plain(nt_buffer_edits *edits, nt_json_value *primitive)
 {
 	nt_gltf *document = edits->document;
 	uint64_t index;
-	nt_gltf_view view;
-	nt_status status = NT_OK;
-	if (nt_json_find_uint64(nt_gltf_draco_of(primitive), "bufferView", &index) &&
-		nt_gltf_get_view(document, index, "", &view, NULL) == NT_OK &&
+	if (nt_json_find_uint64(nt_gltf_draco_of(primitive), "bufferView", &index) && index < edits->view_count &&
 		release_block(document, index, 1))
-		status = nt_edits_release(edits, (uint32_t)index, DRACO_HEAD, view.length - DRACO_HEAD, error);
+		nt_edits_leave(edits, (uint32_t)index, 0);
 	nt_gltf_drop_extension(document->json, primitive, "KHR_draco_mesh_compression");
-	return status;
 }
 
-nt_status nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_pool_vertices *vertices, nt_error *error)
+void nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_pool_vertices *vertices)
 {
-	nt_status status = NT_OK;
-	for (size_t i = 0; !status && i < vertices->pool->user_count; i++) {
+	for (size_t i = 0; i < vertices->pool->user_count; i++) {
 		if (!is_compressed(vertices->pool, i))
 			continue;
-		status = make_plain(edits, nt_pool_primitive(vertices->pool, i), error);
+		make_plain(edits, nt_pool_primitive(vertices->pool, i));
 		vertices->changed[i] = true;
 	}
-	return status;
 }
 
 /* ---- a block ---- */
@@ -187,16 +178,13 @@ static nt_status store_block(nt_gltf_recoding *r, uint32_t buffer, nt_error *err
 	r->block.bytes = NULL;
 	if (!nt_arena_adopt(&r->edits->arena, bytes))
 		return nt_fail_memory(error);
-	nt_gltf_view view;
-	nt_status status = r->source ? nt_gltf_get_view(r->document, r->view, "", &view, error) : NT_OK;
-	if (status)
-		return status;
-	if (r->source && release_block(r->document, r->view, r->vertices->pool->user_count) &&
-		nt_byte_users_count(&r->edits->users, view.buffer, view.offset + DRACO_HEAD,
-			view.offset + view.length) == 1)
-		return nt_edits_replace(r->edits, view.buffer, view.offset, view.length, bytes, r->block.size, error);
+	nt_segment *segment = r->source ? nt_segment_of(r->edits, (uint32_t)r->view, 0) : NULL;
+	if (segment && release_block(r->document, r->view, r->vertices->pool->user_count) && segment->users == 1) {
+		nt_segment_change(segment, false, bytes, r->block.size);
+		return NT_OK;
+	}
 	uint32_t number;
-	status = nt_edits_add_view(r->edits, buffer, bytes, r->block.size, 0, 0, &number, error);
+	const nt_status status = nt_edits_add_view(r->edits, buffer, bytes, r->block.size, 0, 0, &number, error);
 	nt_json_put_uint64(r->json, r->extension, "bufferView", number);
 	return status;
 }
@@ -252,16 +240,16 @@ static nt_status quantize_tangents(const nt_gltf_recoding *r, float *least, nt_e
 /* Attributes in the block leave the buffers, others grow beside it. */
 static nt_status store(nt_gltf_recoding *r, uint32_t buffer, nt_morph_cost *cost, nt_error *error)
 {
-	nt_override_list overrides = {0};
 	float least = 0;
-	nt_status status = r->source ? NT_OK : nt_gltf_draco_take_out(r, error);
-	if (!status && r->mesh->morph_count)
+	nt_status status = NT_OK;
+	if (!r->source)
+		nt_gltf_draco_take_out(r);
+	if (r->mesh->morph_count)
 		status = quantize_tangents(r, &least, error);
 	if (!status)
-		status = nt_gltf_add_morphs(r->edits, buffer, r->vertices, 0, least, &overrides, cost, error);
+		status = nt_gltf_add_morphs(r->edits, buffer, r->vertices, 0, least, cost, error);
 	if (!status && r->outside && nt_vertices_differ(r->vertices))
-		status = nt_append_vertices(r->edits, buffer, r->vertices, &overrides, false, error);
-	free(overrides.items);
+		status = nt_append_vertices(r->edits, buffer, r->vertices, &(nt_override_list){0}, false, error);
 	if (status)
 		return status;
 	r->primitive = nt_pool_primitive(r->vertices->pool, 0); /* members have moved */
@@ -384,5 +372,7 @@ nt_status nt_gltf_write_draco(nt_gltf_recoding *r, uint32_t buffer, nt_scene *sc
 	if (*done)
 		share_block(r);
 	report_users(r, &scene->findings, *done);
-	return *done ? NT_OK : nt_gltf_draco_make_plain(r->edits, r->vertices, error);
+	if (!*done)
+		nt_gltf_draco_make_plain(r->edits, r->vertices);
+	return NT_OK;
 }

@@ -49,7 +49,7 @@ void nt_gltf_draco_add(nt_gltf_recoding *recoding, const char *name, nt_draco_at
 nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding, nt_error *error);
 
 /* draco_gather.c. Takes what the block holds out of the buffers, and gives the primitive its extension. */
-nt_status nt_gltf_draco_take_out(nt_gltf_recoding *recoding, nt_error *error);
+void nt_gltf_draco_take_out(nt_gltf_recoding *recoding);
 
 /* draco_encode.c. Encodes what was looked up: ->encoded then, with the block or the obstacle. Looks at no JSON, so that
  * several may be encoded at once. Returns NT_OK or what is not the mesh's fault: NT_ERROR_MEMORY, NT_ERROR_MODULE,
@@ -85,6 +85,6 @@ nt_status nt_gltf_write_draco(nt_gltf_recoding *recoding, uint32_t buffer, nt_sc
 	nt_error *error);
 
 /* Makes the compressed users of a pool plain; their indices count as changed. */
-nt_status nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_pool_vertices *vertices, nt_error *error);
+void nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_pool_vertices *vertices);
 
 #endif

@@ -184,53 +184,14 @@ nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r, nt_error *error)
 
 /* ---- taking out ---- */
 
-/* Bytes of a view that accessors of the primitive fill. */
-typedef struct run {
-	uint64_t begin, end; /* in the buffer */
-	uint32_t view;
-} run;
-
-static int compare_runs(const void *a, const void *b)
+/* An accessor loses its view. */
+static void detach(const nt_gltf_recoding *r, uint64_t index)
 {
-	const run *x = a, *y = b;
-	if (x->view != y->view)
-		return x->view < y->view ? -1 : 1;
-	return (x->begin > y->begin) - (x->begin < y->begin);
-}
-
-/* The bytes of an accessor, which loses its view. */
-static run detach(const nt_gltf_recoding *r, uint64_t index)
-{
-	nt_gltf_accessor a = {0};
-	nt_gltf_view view = {0};
-	nt_gltf_get_accessor(r->document, index, "", &a, NULL);
-	nt_gltf_get_view(r->document, a.view, "", &view, NULL);
 	nt_json_value *json = nt_gltf_accessor_json(r->document, index);
+	nt_edits_leave_accessor(r->edits, (uint32_t)index);
 	nt_json_remove(r->json, json, "bufferView");
 	nt_json_remove(r->json, json, "byteOffset");
 	r->document->accessors[index].view = NT_NONE; /* its elements are in the block */
-	const uint64_t begin = view.offset + a.offset;
-	return (run){begin, begin + (a.count - 1) * a.stride + a.element_bytes, a.view};
-}
-
-/* Takes out runs of one view: all of it, or those that nobody else has a use for. Interleaved ones go together. */
-static nt_status remove_runs(const nt_gltf_recoding *r, const run *runs, size_t count, nt_error *error)
-{
-	nt_gltf_view view;
-	nt_status status = nt_gltf_get_view(r->document, runs->view, "", &view, error);
-	if (!status)
-		status = nt_edits_release_view(r->edits, runs->view, count, error);
-	for (size_t first = 0, next; !status && !r->edits->is_free[runs->view] && first < count; first = next) {
-		const uint64_t begin = runs[first].begin;
-		uint64_t end = runs[first].end;
-		for (next = first + 1; next < count && runs[next].begin < end; next++)
-			end = runs[next].end > end ? runs[next].end : end;
-		if (end - begin < view.length &&
-			nt_byte_users_count(&r->edits->users, view.buffer, begin, end) == next - first)
-			status = nt_edits_replace(r->edits, view.buffer, begin, end - begin,
-				(const unsigned char *)"", 0, error);
-	}
-	return status;
 }
 
 static void put_extension(nt_gltf_recoding *r)
@@ -244,27 +205,14 @@ static void put_extension(nt_gltf_recoding *r)
 	nt_gltf_list_extension(r->document, "extensionsRequired", "KHR_draco_mesh_compression");
 }
 
-nt_status nt_gltf_draco_take_out(nt_gltf_recoding *r, nt_error *error)
+void nt_gltf_draco_take_out(nt_gltf_recoding *r)
 {
-	run *runs = nt_arena_alloc(r->arena, r->attribute_count + 1, sizeof *runs);
-	if (!runs)
-		return nt_fail_memory(error);
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
-	size_t count = 0;
 	uint64_t index;
 	for (size_t i = 0; i < r->attribute_count; i++)
 		if (nt_json_find_uint64(attributes, r->names[i], &index))
-			runs[count++] = detach(r, index);
+			detach(r, index);
 	if (nt_json_find_uint64(r->primitive, "indices", &index))
-		runs[count++] = detach(r, index);
-	if (count)
-		qsort(runs, count, sizeof *runs, compare_runs);
-	nt_status status = NT_OK;
-	for (size_t first = 0, next; !status && first < count; first = next) {
-		for (next = first + 1; next < count && runs[next].view == runs[first].view;)
-			next++;
-		status = remove_runs(r, runs + first, next - first, error);
-	}
+		detach(r, index);
 	put_extension(r);
-	return status;
 }

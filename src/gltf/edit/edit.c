@@ -188,7 +188,7 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 		status = settle_set(e, vertices, set, &new[set], attributes[set], &overrides);
 	for (uint32_t set = 0; !status && set < pool->sets.count; set++)
 		status = nt_gltf_add_morphs(e->edits, buffer, vertices, set, nt_tangent_filter_least(&new[set].filter),
-			&overrides, &e->scene->morph_cost, e->error);
+			&e->scene->morph_cost, e->error);
 
 	/* The copied vertices, the indices that use them, and what is new. */
 	if (!status && (decoded_too || overrides.count || nt_vertices_differ(vertices)))
@@ -274,7 +274,7 @@ static nt_status edit_pool(const editing *e, pool_edit *p)
 	if (!status && p->for_draco)
 		status = nt_gltf_write_draco(&p->recoding, buffer, e->scene, &done, e->error);
 	else if (!status && compressed)
-		status = nt_gltf_draco_make_plain(e->edits, &p->vertices, e->error);
+		nt_gltf_draco_make_plain(e->edits, &p->vertices);
 	if (!status && done)
 		status = nt_vertices_tell(e->edits, e->scene, &p->vertices, done, e->error);
 	/* plain tangents may be rounded, which makes others equal: vertices are welded again, as they were */
@@ -373,13 +373,12 @@ static nt_status drop_unused(const editing *e)
 		for (size_t t = 0; t < nt_json_count(targets); t++)
 			drop_attribute(e, nt_json_at(targets, t), gone);
 	}
-	nt_status status = NT_OK;
-	for (uint32_t i = 0; !status && i < document->accessor_count; i++)
+	for (uint32_t i = 0; i < document->accessor_count; i++)
 		if (gone[i] && !document->users[i].foreign && !document->users[i].idle &&
 			gone[i] == document->users[i].attributes)
-			status = nt_gltf_drop_elements(e->edits, i, e->error);
+			nt_gltf_drop_elements(e->edits, i);
 	free(gone);
-	return status;
+	return NT_OK;
 }
 
 nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_output *output, nt_error *error)

@@ -263,11 +263,10 @@ static nt_status place_turned(moving *m, nt_json_value *image, const nt_turned_i
 	}
 	if (!to_glb && nt_json_find(image, "uri"))
 		return embed_as_data(m, image, &file, type);
-	nt_status status = NT_OK;
-	if (turned->replaces && nt_json_find_uint64(image, "bufferView", &view))
-		status = nt_edits_release_view(m->edits, (uint32_t)view, 1, m->error);
+	if (turned->replaces && nt_json_find_uint64(image, "bufferView", &view) && view < m->edits->view_count)
+		nt_edits_leave(m->edits, (uint32_t)view, 0);
 	uint32_t new_view;
-	return status ? status : embed_in_view(m, image, &file, type, &new_view);
+	return embed_in_view(m, image, &file, type, &new_view);
 }
 
 /* Copies an image's file beside the output, under its own name where that is to be had; one that is there already is

@@ -57,9 +57,9 @@ void nt_gltf_tell_leaving(nt_scene *scene, const char *array, size_t index, cons
 
 /* ---- data_uris.c ---- */
 
-/* Zeroed but for the buffers they take their data from; the list is malloc'ed. */
+/* Zeroed but for the edits, which have ended; the list is malloc'ed. */
 typedef struct nt_data_uris {
-	const nt_relocated *relocated;
+	nt_buffer_edits *edits;
 	uint32_t *buffers; /* [count] ascending */
 	size_t count, capacity;
 } nt_data_uris;

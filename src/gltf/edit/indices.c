@@ -131,13 +131,13 @@ static bool fits_packed(nt_buffer_edits *edits, const nt_gltf_packing *packing, 
 		return true;
 	if (begin || size != view->length || new->width < 2)
 		return false;
-	nt_edits_of(edits, view->buffer)->new_stride = new->width;
+	edits->views[view->buffer - NT_GLTF_OF_VIEW(0)].new_stride = new->width;
 	return true;
 }
 
 /* Rewrites the accessor, all of whose users agree, where its bytes are its own; *done tells. */
-static nt_status replace_indices(nt_buffer_edits *edits, uint32_t same, const nt_gltf_accessor *old,
-	const encoded *new, bool *done, nt_error *error)
+static nt_status replace_indices(nt_buffer_edits *edits, const nt_gltf_accessor *old, const encoded *new, bool *done,
+	nt_error *error)
 {
 	*done = false;
 	nt_json *json = edits->document->json;
@@ -154,8 +154,8 @@ static nt_status replace_indices(nt_buffer_edits *edits, uint32_t same, const nt
 	if (view.offset % new->width || pad >= size || view.compressed)
 		return NT_OK;
 	const nt_gltf_packing packing = nt_packing_of(edits, old->view);
-	if (nt_byte_users_other(&edits->users, view.buffer, begin, begin + size, same) ||
-		!fits_packed(edits, &packing, &view, begin, size, new))
+	nt_segment *segment = nt_segment_at(edits, view.buffer, begin);
+	if (!segment || segment->users != 1 || !fits_packed(edits, &packing, &view, begin, size, new))
 		return NT_OK;
 	const unsigned char *bytes = new->bytes;
 	if (pad) {
@@ -175,7 +175,8 @@ static nt_status replace_indices(nt_buffer_edits *edits, uint32_t same, const nt
 		nt_json_put_uint64(json, accessor, "count", new->count);
 	set_bounds(json, accessor, new);
 	*done = true;
-	return nt_edits_replace(edits, view.buffer, begin, size, bytes, new->size + pad, error);
+	nt_segment_change(segment, false, bytes, new->size + pad);
+	return NT_OK;
 }
 
 /* A user's new indices. Users with equal ones in place of the same bytes follow the first of them. */
@@ -294,7 +295,7 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_po
 	const bool agree = users && !users->idle && !users->attributes &&
 		leader->agreeing + edits->accessors[leader->same].index_moved == users->indices;
 	if (!status && agree && !old.decoded)
-		status = replace_indices(edits, leader->same, &old, &new, &done, error);
+		status = replace_indices(edits, &old, &new, &done, error);
 	leader->accessor = leader->index;
 	if (done)
 		describe_others(edits->document, leader->index);
@@ -304,8 +305,7 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_po
 	const nt_gltf_packing packing = find_packing(edits, nt_pool_primitive(vertices->pool, user), &new);
 	const bool stays = agree && (old.decoded || packing.extension);
 	if (stays && !old.decoded)
-		status = nt_packed_release(edits, old.view, old.offset,
-			old.count * nt_gltf_component_bytes(old.component_type), error);
+		nt_edits_leave_accessor(edits, old.index);
 	if (!stays && leader->index != NT_NONE)
 		edits->accessors[leader->same].index_moved += leader->agreeing;
 	if (!status)

@@ -172,12 +172,11 @@ static void count_replaced(const target_job *job)
 }
 
 /* Targets take over the accessor that they have where no use of it is left; nobody appends to it. */
-static nt_status take_over(const target_job *job, nt_override_list *overrides)
+static void take_over(const target_job *job)
 {
 	const uint32_t first = job->vertices->pool->sets.first[job->set];
 	const nt_gltf *document = job->edits->document;
-	nt_status status = NT_OK;
-	for (size_t m = 0; !status && m < job->count; m++) {
+	for (size_t m = 0; m < job->count; m++) {
 		target_tangents *t = &job->list[m];
 		const uint32_t index = t->found ? NT_NONE : find_in_target(job, first, t->target, "TANGENT");
 		const uint32_t same = index == NT_NONE ? 0 : nt_gltf_same(document, index);
@@ -186,12 +185,8 @@ static nt_status take_over(const target_job *job, nt_override_list *overrides)
 			continue;
 		job->edits->accessors[same].replaced = 0; /* no second target takes it */
 		t->accessor = index;
-		status = nt_gltf_drop_elements(job->edits, index, job->error);
-		for (uint32_t k = same; !status && k != NT_NONE; k = document->accessors[k].next)
-			if (!nt_override_add(overrides, (nt_gltf_override){.accessor = k}))
-				status = nt_fail_memory(job->error);
+		nt_gltf_drop_elements(job->edits, index);
 	}
-	return status;
 }
 
 /* One view for all sparse ones. NT_NONE: there are none. */
@@ -299,7 +294,7 @@ static void add_cost(const target_job *job, nt_morph_cost *cost)
 }
 
 nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
-	float least, nt_override_list *overrides, nt_morph_cost *cost, nt_error *error)
+	float least, nt_morph_cost *cost, nt_error *error)
 {
 	target_job job = {.edits = edits, .vertices = vertices, .set = set, .buffer = buffer,
 		.count = nt_pool_set_mesh(vertices->pool, set)->morph_count, .error = error};
@@ -314,7 +309,7 @@ nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_p
 		nt_fail_memory(error);
 	if (!status) {
 		count_replaced(&job);
-		status = take_over(&job, overrides);
+		take_over(&job);
 	}
 	if (!status)
 		status = write_targets(&job);

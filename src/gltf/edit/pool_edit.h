@@ -77,78 +77,27 @@ const float *nt_pool_read_target(const nt_pool_vertices *vertices, uint32_t set,
 
 /* ---- vertices appended: append.c, indices.c ---- */
 
-/* An accessor whose values are replaced in place: elements of `width` bytes for every new vertex. Without values
- * nothing is appended to it: it will get a view of its own. */
+/* An accessor, with all over its bytes, whose values are replaced in place: elements of `width` bytes for every new
+ * vertex. */
 typedef struct nt_gltf_override {
-	uint32_t accessor;
+	uint32_t accessor; /* the first over its bytes */
 	const unsigned char *values; /* as readers have them */
 	const unsigned char *stored; /* before the filter of a packed view; the same where there is none */
 	uint32_t width;
 } nt_gltf_override;
 
+/* The overrides of one pool. */
 typedef struct nt_override_list {
 	nt_gltf_override *items; /* [count], malloc'ed */
 	size_t count, capacity;
 } nt_override_list;
 
-/* False: out of memory. */
-bool nt_override_add(nt_override_list *list, nt_gltf_override override);
+nt_status nt_override_add(nt_buffer_edits *edits, nt_override_list *list, nt_gltf_override override, nt_error *error);
 
-/* An accessor to which vertices are appended, or that may lie between values that are replaced. */
-typedef struct nt_append_target {
-	nt_gltf_accessor accessor;
-	uint32_t buffer;
-	uint64_t begin; /* in the buffer */
-	const nt_gltf_override *override;
-	uint32_t clone; /* accessor that takes its place in solved primitives; NT_NONE: none does */
-	uint32_t new_view; /* that has its elements now, from new_offset on; NT_NONE: they stay */
-	uint64_t new_offset;
-} nt_append_target;
-
-/* Bytes of the source that have been edited for this pool. */
-typedef struct nt_edited_range {
-	uint32_t buffer;
-	uint64_t begin, end;
-} nt_edited_range;
-
-typedef struct nt_appending {
-	nt_buffer_edits *edits;
-	nt_gltf *document; /* of the edits, as its JSON */
-	nt_json *json;
-	nt_arena *arena;   /* of the edits */
-	const nt_pool_vertices *vertices;
-	uint32_t buffer;  /* of new views */
-	bool decoded_too; /* decompressed accessors get plain views */
-	nt_error *error;
-	nt_append_target *targets;
-	size_t target_count, target_capacity;
-	bool collecting_unsolved;
-	bool collecting_beside; /* nothing is appended to them: one that cannot be read is none */
-	nt_edited_range *edited;
-	size_t edited_count, edited_capacity;
-} nt_appending;
-
-/* The pool, as nt_edited_accessor.appended_by has it: by its first user. */
-static inline uint32_t nt_append_owner(const nt_appending *a)
-{
-	return a->vertices->pool->users[0] + 1;
-}
-
-/* Notes that bytes of a source buffer have been edited. False: out of memory. */
-bool nt_append_note_edit(nt_appending *appending, uint32_t buffer, uint64_t begin, uint64_t end);
-
-/* All accessors of all users; when nothing is appended, only those with new values. Sorts the overrides. */
-nt_status nt_append_collect(nt_appending *appending, nt_override_list *overrides);
-
-/* Appends the elements that are copies of replaced ones to what a sparse accessor replaces. */
-nt_status nt_append_sparse(nt_appending *appending, const nt_append_target *target);
-
-/* ---- append.c, indices.c ---- */
-
-/* Gives every accessor of the pool its copied elements, and overridden accessors their new values; `overrides` is
- * sorted for that. buffer: of new views. decoded_too: what was decompressed by Draco goes into plain views. */
+/* Gives every accessor of the pool its copied elements, and overridden accessors their new values. buffer: of new
+ * views. decoded_too: what was decompressed by Draco goes into plain views. */
 nt_status nt_append_vertices(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
-	nt_override_list *overrides, bool decoded_too, nt_error *error);
+	const nt_override_list *overrides, bool decoded_too, nt_error *error);
 
 /* Writes the indices of a pool's solved users where they changed. buffer: of new views. */
 nt_status nt_gltf_write_indices(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
@@ -204,9 +153,9 @@ nt_status nt_set_attribute_settle(nt_buffer_edits *edits, const nt_vertex_pool *
 nt_status nt_set_attribute_write(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
 	uint32_t set, const nt_set_attribute *attribute, nt_error *error);
 
-/* Takes the elements of an accessor that nobody uses any more, and of others over the same bytes, out of the buffers:
- * they keep their numbers, without a view. */
-nt_status nt_gltf_drop_elements(nt_buffer_edits *edits, uint32_t accessor, nt_error *error);
+/* An accessor that nobody uses any more, and others over the same bytes, leave these and keep their numbers, without a
+ * view. Nothing is appended to them. */
+void nt_gltf_drop_elements(nt_buffer_edits *edits, uint32_t accessor);
 
 /* Appends the JSON of an accessor; view NT_NONE: without one. Returns its number. */
 uint32_t nt_gltf_new_accessor(nt_json *json, uint32_t view, uint32_t component_type, const char *type,
@@ -219,10 +168,9 @@ nt_status nt_gltf_bitangents(const nt_pool_vertices *vertices, uint32_t set, nt_
 /* ---- tangents of morph targets: morph_targets.c ---- */
 
 /* TANGENT of the morph targets of a set's meshes: what to add to the base's, which are final. Before vertices are
- * appended: accessors to which nothing is to be appended then are added to the overrides. least: as nt_morph_deltas()
- * has it. Their bytes are added to the cost. */
+ * appended. least: as nt_morph_deltas() has it. Their bytes are added to the cost. */
 nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices, uint32_t set,
-	float least, nt_override_list *overrides, nt_morph_cost *cost, nt_error *error);
+	float least, nt_morph_cost *cost, nt_error *error);
 
 /* ---- extensions that refer to vertices: vertex_extensions.c ---- */
 

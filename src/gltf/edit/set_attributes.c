@@ -34,21 +34,20 @@ static bool is_own(const nt_buffer_edits *edits, uint32_t accessor, size_t known
 }
 
 /* Whether the new elements go where the old ones are. */
-static bool fits_in_place(const nt_buffer_edits *edits, uint32_t accessor, const nt_tangent_filter *filter)
+static bool fits_in_place(nt_buffer_edits *edits, uint32_t accessor, const nt_tangent_filter *filter)
 {
 	const nt_precision precision = filter->precision;
 	const nt_gltf_packing packing = nt_packing_of_accessor(edits, accessor);
 	const nt_gltf_accessor *a = nt_gltf_sound_accessor(edits->document, accessor);
-	nt_gltf_view view;
-	if (a->view == NT_NONE || a->sparse || nt_gltf_get_view(edits->document, a->view, "", &view, NULL) != NT_OK ||
+	if (a->view == NT_NONE || a->sparse ||
 		strcmp(packing.extension ? packing.view.filter : "NONE", filter->filter) != 0)
 		return false;
 	if (a->component_type == nt_precision_component_type(precision) &&
 		(a->component_type == NT_GLTF_FLOAT || a->normalized))
 		return true;
-	const uint64_t begin = view.offset + a->offset, end = begin + (a->count - 1) * a->stride + a->element_bytes;
-	return a->stride > a->element_bytes && nt_precision_bytes(precision) <= a->element_bytes &&
-		nt_byte_users_count(&edits->users, view.buffer, begin, end) > 1;
+	const nt_segment *segment = nt_segment_of(edits, a->view, a->offset);
+	return a->stride > a->element_bytes && nt_precision_bytes(precision) <= a->element_bytes && segment &&
+		segment->users > 1;
 }
 
 static int compare_numbers(const void *a, const void *b)
@@ -77,21 +76,13 @@ static nt_status list_accessors(const nt_gltf *document, const nt_vertex_pool *p
 	return NT_OK;
 }
 
-/* Takes the elements of an accessor, and of others over the same bytes, out of the buffers. */
-static nt_status release_elements(nt_buffer_edits *edits, uint32_t accessor, nt_error *error)
+/* An accessor leaves its bytes, with all over the same. */
+static void leave(nt_buffer_edits *edits, uint32_t accessor)
 {
-	const nt_gltf_accessor *a = &edits->document->accessors[nt_gltf_same(edits->document, accessor)];
-	const nt_gltf_sparse_arrays *s = a->sparse;
-	nt_status status = NT_OK;
-	if (a->view != NT_NONE)
-		status = nt_packed_release(edits, a->view, a->offset, (a->count - 1) * a->stride + a->element_bytes,
-			error);
-	if (!status && s)
-		status = nt_edits_release(edits, s->index_view, s->index_offset,
-			s->count * nt_gltf_component_bytes(s->index_type), error);
-	if (!status && s)
-		status = nt_edits_release(edits, s->value_view, s->value_offset, s->count * a->element_bytes, error);
-	return status;
+	nt_edits_leave_accessor(edits, accessor);
+	for (uint32_t k = nt_gltf_same(edits->document, accessor); k != NT_NONE;
+		k = edits->document->accessors[k].next)
+		edits->accessors[k].seen = true;
 }
 
 nt_status nt_set_attribute_settle(nt_buffer_edits *edits, const nt_vertex_pool *pool, uint32_t set, nt_arena *arena,
@@ -116,27 +107,23 @@ nt_status nt_set_attribute_settle(nt_buffer_edits *edits, const nt_vertex_pool *
 		}
 	}
 	attribute->in_place &= attribute->own_count > 0;
-	for (size_t i = 0; !status && i < attribute->own_count; i++) {
-		if (!attribute->in_place)
-			status = release_elements(edits, attribute->own[i], error);
-		for (uint32_t k = attribute->own[i]; !status && k != NT_NONE; k = document->accessors[k].next)
-			if (!nt_override_add(overrides, (nt_gltf_override){.accessor = k, .stored = values->stored,
-				.values = attribute->in_place ? values->values : NULL,
-				.width = (uint32_t)values->element_bytes}))
-				status = nt_fail_memory(error);
-	}
+	for (size_t i = 0; !status && i < attribute->own_count; i++)
+		if (attribute->in_place)
+			status = nt_override_add(edits, overrides, (nt_gltf_override){attribute->own[i], values->values,
+				values->stored, (uint32_t)values->element_bytes}, error);
+		else
+			leave(edits, attribute->own[i]);
 	return status;
 }
 
-nt_status nt_gltf_drop_elements(nt_buffer_edits *edits, uint32_t accessor, nt_error *error)
+void nt_gltf_drop_elements(nt_buffer_edits *edits, uint32_t accessor)
 {
 	static const char *const gone[] = {"bufferView", "byteOffset", "sparse"};
 	nt_gltf *document = edits->document;
-	const nt_status status = release_elements(edits, accessor, error);
+	leave(edits, accessor);
 	for (uint32_t k = nt_gltf_same(document, accessor); k != NT_NONE; k = document->accessors[k].next)
 		for (size_t i = 0; i < sizeof gone / sizeof *gone; i++)
 			nt_json_remove(document->json, nt_gltf_accessor_json(document, k), gone[i]);
-	return status;
 }
 
 /* ---- writing ---- */

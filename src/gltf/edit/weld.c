@@ -90,27 +90,6 @@ static bool is_replaced(welding *w, const nt_mesh *mesh, const nt_gltf_use *use)
 	return tangent && w->morph < mesh->morph_count && mesh->morphs[w->morph].target == target;
 }
 
-/* The elements of a sparse accessor, with what it replaces. */
-static nt_status bake(welding *w, const nt_gltf_accessor *a, const unsigned char *elements, column *c)
-{
-	const uint32_t *replaced;
-	const unsigned char *values;
-	unsigned char *baked = nt_arena_alloc(w->scratch, (size_t)a->count, a->element_bytes);
-	if (!baked)
-		return nt_fail_memory(w->error);
-	const nt_status status = nt_gltf_sparse(w->edits->document, a, w->scratch, &replaced, &values, w->error);
-	for (size_t i = 0; !status && i < a->count; i++)
-		if (elements)
-			memcpy(baked + i * a->element_bytes, elements + i * a->stride, a->element_bytes);
-		else
-			memset(baked + i * a->element_bytes, 0, a->element_bytes);
-	for (size_t i = 0; !status && i < a->sparse->count; i++)
-		memcpy(baked + (size_t)replaced[i] * a->element_bytes, values + i * a->element_bytes, a->element_bytes);
-	c->bytes = baked;
-	c->stride = a->element_bytes;
-	return status;
-}
-
 static nt_status add_attribute(welding *w, uint32_t index)
 {
 	uint32_t *known = &w->edits->accessors[nt_gltf_same(w->edits->document, index)].welded;
@@ -118,21 +97,19 @@ static nt_status add_attribute(welding *w, uint32_t index)
 		return NT_OK;
 	*known = w->edits->weld_count;
 	nt_gltf_accessor a;
-	const unsigned char *elements = NULL;
+	column c = {.of_source = true};
 	nt_status status = nt_gltf_get_accessor(w->edits->document, index, "/accessors", &a, w->error);
 	if (!status)
-		status = nt_gltf_elements(w->edits->document, &a, &elements, w->error);
+		status = nt_gltf_whole_elements(w->edits->document, &a, w->scratch, &c.bytes, &c.stride, w->error);
 	if (status)
 		return leave_faulty(w, status);
 	if (a.count != w->vertices->old_count)
 		w->obstacle = "its attributes differ in their number of elements";
 	else if (nt_gltf_users_of(w->edits->document, index)->foreign)
 		w->obstacle = "something else uses its attributes";
-	column c = {.bytes = elements, .stride = a.stride, .width = a.element_bytes, .of_source = true};
-	if (!w->obstacle && a.sparse)
-		status = leave_faulty(w, bake(w, &a, elements, &c));
+	c.width = a.element_bytes;
 	/* without a view all elements are zero */
-	return status || w->obstacle || !c.bytes || add_column(w, c) ? status : nt_fail_memory(w->error);
+	return w->obstacle || !c.bytes || add_column(w, c) ? NT_OK : nt_fail_memory(w->error);
 }
 
 static nt_status list_columns(welding *w, const nt_stored_tangents *stored)

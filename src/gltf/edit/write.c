@@ -27,7 +27,7 @@ typedef struct writing {
 	nt_gltf_output output;
 	const nt_write_options *options; /* the output's */
 	nt_file input;                   /* the document's own file, to stream from */
-	nt_relocated buffers;
+	nt_buffer_edits *edits;
 	nt_data_uris uris;
 	nt_sink *main;
 	nt_sink **sidecars;            /* [buffer count] the files that buffers are written to; NULL: none */
@@ -111,7 +111,7 @@ static bool link_leaves(const writing *c, uint32_t index)
 static destination choose_destination(const writing *c, uint32_t index)
 {
 	const nt_gltf *document = c->document;
-	const bool edited = nt_is_edited(c->buffers.buffers[index].from);
+	const bool edited = nt_is_edited(&c->edits->buffers[index]);
 	/* The BIN chunk can be buffer 0 only, and only when the source's own chunk is not something else. */
 	const bool chunk_is_other = document->is_glb && document->glb.has_bin &&
 		document->buffer_count && document->buffers[0].storage != NT_GLTF_STORED_BIN;
@@ -175,8 +175,8 @@ static nt_status write_sidecar(writing *c, uint32_t index, bool first)
 	if (!status)
 		status = nt_output_add(c->output.set, path, NT_ROLE_BUFFER, &sink, c->error);
 	if (!status) {
-		nt_sink_expect(sink, c->buffers.buffers[index].length);
-		status = nt_relocated_write(&c->buffers, index, &c->input, sink, c->error);
+		nt_sink_expect(sink, c->edits->buffers[index].length);
+		status = nt_edits_write(c->edits, index, &c->input, sink, c->error);
 	}
 	if (!status)
 		status = nt_output_settle(c->output.set, sink, c->error);
@@ -190,7 +190,7 @@ static nt_status check_room(writing *c)
 {
 	uint64_t sum = 0;
 	for (uint32_t i = 0; c->to_glb && i < c->document->buffer_count; i++) {
-		const uint64_t length = c->buffers.buffers[i].length;
+		const uint64_t length = c->edits->buffers[i].length;
 		const destination what = choose_destination(c, i);
 		if (what != TO_BIN_CHUNK && what != TO_DATA_URI)
 			continue;
@@ -229,7 +229,7 @@ static nt_status open_source(writing *c, uint32_t index, destination what)
 static bool can_stay(const writing *c, uint32_t index)
 {
 	return index < c->document->buffer_count && c->document->buffers[index].storage == NT_GLTF_STORED_FILE &&
-		!nt_is_edited(c->buffers.buffers[index].from) && !c->embed && c->options->buffers == NT_BUFFERS_DEFAULT;
+		!nt_is_edited(&c->edits->buffers[index]) && !c->embed && c->options->buffers == NT_BUFFERS_DEFAULT;
 }
 
 /* Opens what will be written. A buffer that nothing needs does not fail the input: if it cannot be read, it stays a
@@ -254,7 +254,7 @@ static nt_status settle_buffers(writing *c, bool *bin)
 	bool first = true;
 	nt_status status = NT_OK;
 	*bin = false;
-	for (uint32_t i = 0; !status && i < c->buffers.buffer_count; i++) {
+	for (uint32_t i = 0; !status && i < c->edits->buffer_count; i++) {
 		nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), i);
 		destination what = choose_destination(c, i);
 		status = open_or_link(c, i, &what);
@@ -300,14 +300,14 @@ static nt_status write_glb(const writing *c, uint64_t length, bool bin, nt_sink 
 {
 	const nt_gltf *document = c->document;
 	const bool raw = !bin && document->is_glb && document->glb.has_bin; /* it is no buffer, and stays */
-	const uint64_t size = bin ? c->buffers.buffers[0].length : raw ? document->glb.bin.size : 0;
+	const uint64_t size = bin ? c->edits->buffers[0].length : raw ? document->glb.bin.size : 0;
 	nt_status status = nt_glb_begin(sink, length, bin || raw, size, other_bytes(document), c->error);
 	if (!status)
 		status = nt_data_uris_write(&c->uris, sink, c->error);
 	if (!status)
 		status = nt_glb_end_json(sink, length, bin || raw, size, c->error);
 	if (!status && bin)
-		status = nt_relocated_write(&c->buffers, 0, &c->input, sink, c->error);
+		status = nt_edits_write(c->edits, 0, &c->input, sink, c->error);
 	if (!status && raw)
 		status = nt_sink_copy(sink, &c->input, document->glb.bin.offset, document->glb.bin.size, c->error);
 	if (!status && (bin || raw))
@@ -324,7 +324,7 @@ static nt_status write_document(writing *c, bool bin, bool staging, nt_sink *sin
 {
 	uint64_t length;
 	nt_status status = NT_OK;
-	for (uint32_t i = 0; !status && i < c->buffers.buffer_count; i++) {
+	for (uint32_t i = 0; !status && i < c->edits->buffer_count; i++) {
 		nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), i);
 		if (c->sidecars[i])
 			status = nt_gltf_record(c->json, json, c->sidecars[i], staging, c->error);
@@ -352,7 +352,7 @@ static nt_status write_main(writing *c, bool bin)
 static nt_status write_files(writing *c)
 {
 	bool bin;
-	const size_t count = c->buffers.buffer_count;
+	const size_t count = c->edits->buffer_count;
 	c->sidecars = nt_arena_alloc(c->arena, count, sizeof *c->sidecars);
 	if (!c->sidecars)
 		return nt_fail_memory(c->error);
@@ -371,13 +371,13 @@ nt_status nt_gltf_save(nt_scene *scene, nt_buffer_edits *edits, const nt_write_o
 {
 	nt_gltf *document = edits->document;
 	const bool is_stream = nt_output_is_stream(options->path), to_glb = options->format == NT_FORMAT_GLB;
-	writing c = {.scene = scene, .document = document, .json = document->json,
+	writing c = {.scene = scene, .edits = edits, .document = document, .json = document->json,
 		.output = {options, output, link_prefix, is_stream}, .options = options, .input = input_file(scene),
-		.uris = {.relocated = &c.buffers}, .main = main, .arena = &edits->arena, .error = error,
+		.uris = {.edits = edits}, .main = main, .arena = &edits->arena, .error = error,
 		.to_glb = to_glb, .same_container = to_glb == document->is_glb,
 		.embed = options->buffers == NT_BUFFERS_EMBED || (!to_glb && is_stream),
 		.in_place = nt_output_is_in_place(output, options->path)};
-	nt_status status = nt_gltf_relocate(edits, &c.buffers, error);
+	nt_status status = nt_edits_end(edits, error);
 	if (!status)
 		status = nt_gltf_check_dangling(document, error);
 	return status ? status : write_files(&c);
@@ -387,12 +387,12 @@ nt_status nt_gltf_save(nt_scene *scene, nt_buffer_edits *edits, const nt_write_o
 
 /* In a .glb a buffer 0 without a uri is the BIN chunk. Bytes that exist nowhere cannot be put there: zeros would
  * be other data, and faulty where bounds or matrices are asked for. */
-static nt_status check_first_buffer(const nt_gltf *document, nt_format format, const nt_byte_users *users,
-	nt_error *error)
+static nt_status check_first_buffer(nt_buffer_edits *edits, nt_format format, nt_error *error)
 {
+	const nt_gltf *document = edits->document;
 	const nt_gltf_buffer *first = document->buffers;
 	if (format != NT_FORMAT_GLB || document->is_glb || !document->buffer_count || !first->described ||
-		first->storage != NT_GLTF_STORED_NOWHERE || nt_byte_users_count(users, 0, 0, first->length) == 0)
+		first->storage != NT_GLTF_STORED_NOWHERE || nt_segments_before(edits, 1, 0) == 0)
 		return NT_OK;
 	return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, "/buffers/0",
 		"no uri, so that a .glb would need its bytes as BIN chunk, which are not there; "
@@ -427,7 +427,7 @@ nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const 
 	if (has_external(document, "buffers") || has_external(document, "images"))
 		status = nt_gltf_link_prefix(&edits->arena, options->path, document->path, &to.link_prefix, error);
 	if (!status)
-		status = check_first_buffer(document, options->format, &edits->users, error);
+		status = check_first_buffer(edits, options->format, error);
 	if (!status)
 		status = protect_inputs(document, &edits->arena, output, error);
 	/* The main file comes first, so that it is refused before anything is written. */

@@ -1,23 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Edits of a document's buffers, collected. A source buffer is a string of bytes; an edit replaces some of
- * them; new views come behind its end. Nothing moves before all edits are known: see relocate.c.
- *
- * Views are never removed or renumbered, since extensions we do not know may refer to them, and they may not
- * be empty; but they need not keep bytes that nobody reads. The bytes are taken out, and the number waits
- * for a new view: see take_view().
+ * Edits of a document's buffers, collected: what becomes of segments, and what is new. Nothing moves before all edits
+ * are known: see save.c.
  */
 #include "gltf/bytes/bytes.h"
 
 #include <stdlib.h>
-#include <string.h>
 #include "gltf/document.h"
 
-/* Alignment of insertions if a view's user is unknown: it may be data of an extension that wants 8-byte alignment
- * (EXT_structural_metadata does). */
-enum { CAREFUL_ALIGNMENT = 8 };
-
 /* ---- beginning ---- */
+
 
 static nt_status decompress_accessor(nt_gltf *document, uint32_t index, nt_error *error)
 {
@@ -70,17 +62,13 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 	edits->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
 	edits->buffer_count = document->buffer_count;
 	edits->buffers = nt_calloc(document->buffer_count + 1, sizeof *edits->buffers);
-	edits->decoded = nt_calloc(edits->view_count, sizeof *edits->decoded);
-	edits->is_free = nt_calloc(edits->view_count, sizeof *edits->is_free);
+	edits->views = nt_calloc(edits->view_count, sizeof *edits->views);
 	edits->free_views = nt_alloc(edits->view_count, sizeof *edits->free_views);
 	edits->accessors = nt_calloc(document->accessor_count, sizeof *edits->accessors);
-	if (!edits->accessors || !edits->buffers || !edits->decoded || !edits->is_free || !edits->free_views ||
-		!nt_byte_users_find(&edits->users, document)) {
+	if (!edits->accessors || !edits->buffers || !edits->views || !edits->free_views || !nt_segments_find(edits)) {
 		nt_edits_free(edits);
 		return nt_fail_memory(error);
 	}
-	if (edits->users.unknown)
-		edits->alignment = CAREFUL_ALIGNMENT;
 	for (size_t i = 0; i < document->buffer_count; i++) {
 		nt_gltf_buffer *buffer;
 		if (nt_gltf_describe_buffer(document, i, "", &buffer, NULL) == NT_OK)
@@ -98,64 +86,103 @@ nt_status nt_edits_create_new(nt_buffer_edits *edits, nt_gltf *document, nt_erro
 
 void nt_edits_free(nt_buffer_edits *edits)
 {
-	for (size_t i = 0; edits->buffers && i < edits->buffer_count; i++) {
-		free(edits->buffers[i].edits);
+	for (size_t i = 0; edits->buffers && i < edits->buffer_count; i++)
 		free(edits->buffers[i].additions);
-	}
-	for (size_t i = 0; edits->decoded && edits->document->decoded_count && i < edits->view_count; i++) {
-		free(edits->decoded[i].edits);
-		free(edits->decoded[i].unfiltered);
-	}
+	for (size_t i = 0; edits->views && edits->document->decoded_count && i < edits->view_count; i++)
+		free(edits->views[i].unfiltered);
 	for (size_t i = 0; i < edits->packed_count; i++)
 		nt_buffer_free(&edits->packed[i].bytes);
 	free(edits->packed);
 	free(edits->accessors);
-	free(edits->is_free);
 	free(edits->free_views);
-	free(edits->decoded);
+	free(edits->views);
 	free(edits->buffers);
-	free(edits->users.list);
+	free(edits->segments);
 	nt_arena_free(&edits->arena);
 	*edits = (nt_buffer_edits){0};
 }
 
-/* ---- edits ---- */
+/* ---- what leaves ---- */
 
-nt_edited_buffer *nt_edits_of(nt_buffer_edits *edits, uint32_t buffer)
+/* Bytes that one user alone has go with it. */
+static void drop_alone(nt_buffer_edits *edits, uint32_t buffer, uint64_t position)
 {
-	if (!nt_gltf_is_of_view(buffer))
-		return &edits->buffers[buffer];
-	const uint32_t view = buffer - NT_GLTF_OF_VIEW(0);
-	edits->decoded[view].old_length = edits->document->views[view].length;
-	return &edits->decoded[view];
+	nt_segment *segment = nt_segment_at(edits, buffer, position);
+	if (segment && segment->users == 1)
+		nt_segment_change(segment, false, NULL, 0);
 }
 
-nt_status nt_edits_replace(nt_buffer_edits *edits, uint32_t index, uint64_t at, uint64_t removed,
-	const unsigned char *bytes, size_t size, nt_error *error)
+/* A compressed view leaves its packed bytes, and the place of the plain ones. Not where another extension has it. */
+static bool leave_packed(nt_buffer_edits *edits, uint32_t index)
 {
-	nt_edited_buffer *buffer = nt_edits_of(edits, index);
-	/* Bytes behind keep their alignment; in a view that will be packed again there are whole elements. */
-	const bool pads = at + removed < buffer->old_length && !(nt_gltf_is_of_view(index) && edits->keeps_packed);
-	const size_t excess = pads ? (size_t)((size - removed) % edits->alignment) : 0;
-	if (excess) {
-		const size_t padded = size + edits->alignment - excess;
-		unsigned char *copy = nt_arena_alloc(&edits->arena, padded, 1);
-		if (!copy)
-			return nt_fail_memory(error);
-		memcpy(copy, bytes, size);
-		memset(copy + size, 0, padded - size);
-		bytes = copy;
-		size = padded;
+	nt_json *json = edits->document->json;
+	nt_json_value *object = nt_gltf_view_json(edits->document, index);
+	nt_gltf_packing p;
+	uint64_t offset = 0;
+	if (nt_json_count(nt_json_find(object, "extensions")) != 1 ||
+		nt_gltf_get_packing(edits->document, index, &p, NULL) != NT_OK ||
+		p.buffer >= edits->document->buffer_count)
+		return false;
+	nt_json_find_uint64(object, "byteOffset", &offset);
+	drop_alone(edits, p.buffer, p.offset);
+	drop_alone(edits, p.place, offset);
+	nt_json_remove(json, object, "extensions");
+	nt_json_put_uint64(json, object, "buffer", p.buffer);
+	return true;
+}
+
+/* With the segments of a view goes what lies between and behind them: unused bytes, and padding. */
+static void leave_gaps(nt_buffer_edits *edits, const nt_gltf_view *view)
+{
+	const uint64_t alignment = edits->alignment, old_length = edits->buffers[view->buffer].old_length;
+	const uint64_t padded = view->offset + (view->length + alignment - 1) / alignment * alignment;
+	for (size_t i = nt_segments_before(edits, view->buffer, view->offset); i < edits->segment_count; i++) {
+		nt_segment *segment = &edits->segments[i];
+		if (segment->buffer != view->buffer || segment->begin >= view->offset + view->length)
+			break;
+		uint64_t end = padded < old_length ? padded : old_length;
+		if (i + 1 < edits->segment_count && segment[1].buffer == segment->buffer && segment[1].begin < end)
+			end = segment[1].begin;
+		if (!segment->users && end > segment->end)
+			segment->end = end;
 	}
-	if (!nt_grow((void **)&buffer->edits, &buffer->edit_capacity, buffer->edit_count + 1,
-		sizeof *buffer->edits))
-		return nt_fail_memory(error);
-	buffer->edits[buffer->edit_count++] = (nt_buffer_edit){at, removed, bytes, size};
-	return NT_OK;
 }
 
-static nt_status add_bytes(nt_buffer_edits *edits, uint32_t index, const nt_buffer_addition *addition,
-	nt_error *error)
+void nt_edits_leave(nt_buffer_edits *edits, uint32_t index, uint64_t offset)
+{
+	nt_gltf_view view;
+	if (nt_gltf_get_view(edits->document, index, "", &view, NULL) != NT_OK)
+		return;
+	const bool decoded = nt_gltf_is_of_view(view.buffer);
+	nt_edited_view *of = &edits->views[index];
+	nt_segment *segment = nt_segment_at(edits, view.buffer, view.offset + offset);
+	if (!segment || !segment->users || !of->users ||
+		(!decoded && nt_json_find(nt_gltf_view_json(edits->document, index), "extensions")))
+		return;
+	if (--segment->users == 0)
+		nt_segment_change(segment, false, NULL, 0);
+	if (--of->users || (decoded && !leave_packed(edits, index)))
+		return;
+	if (!decoded)
+		leave_gaps(edits, &view);
+	of->is_free = true;
+	edits->free_views[edits->free_count++] = index;
+}
+
+void nt_edits_leave_accessor(nt_buffer_edits *edits, uint32_t accessor)
+{
+	const nt_gltf_accessor *a = &edits->document->accessors[nt_gltf_same(edits->document, accessor)];
+	if (a->view != NT_NONE)
+		nt_edits_leave(edits, a->view, a->offset);
+	if (a->sparse) {
+		nt_edits_leave(edits, a->sparse->index_view, a->sparse->index_offset);
+		nt_edits_leave(edits, a->sparse->value_view, a->sparse->value_offset);
+	}
+}
+
+/* ---- what is new ---- */
+
+static nt_status add(nt_buffer_edits *edits, uint32_t index, const nt_buffer_addition *addition, nt_error *error)
 {
 	nt_edited_buffer *buffer = &edits->buffers[index];
 	if (!nt_grow((void **)&buffer->additions, &buffer->addition_capacity,
@@ -165,24 +192,18 @@ static nt_status add_bytes(nt_buffer_edits *edits, uint32_t index, const nt_buff
 	return NT_OK;
 }
 
-nt_status nt_edits_add_bytes(nt_buffer_edits *edits, uint32_t index, uint32_t view, const void *bytes,
+nt_status nt_edits_add_bytes(nt_buffer_edits *edits, uint32_t index, uint32_t view, bool packed, const void *bytes,
 	size_t size, nt_error *error)
 {
-	return add_bytes(edits, index, &(nt_buffer_addition){.view = view, .bytes = bytes, .size = size}, error);
+	const nt_buffer_addition added = {.view = view, .bytes = bytes, .size = size, .packed = packed};
+	return add(edits, index, &added, error);
 }
 
 nt_status nt_edits_add_written(nt_buffer_edits *edits, uint32_t index, size_t size, nt_view_writer write,
 	const void *user, nt_error *error)
 {
 	const nt_buffer_addition added = {.view = NT_NONE, .write = write, .bytes = user, .size = size};
-	return add_bytes(edits, index, &added, error);
-}
-
-nt_status nt_edits_add_packed(nt_buffer_edits *edits, uint32_t index, uint32_t view, const void *bytes, size_t size,
-	nt_error *error)
-{
-	const nt_buffer_addition added = {.view = view, .bytes = bytes, .size = size, .packed = true};
-	return add_bytes(edits, index, &added, error);
+	return add(edits, index, &added, error);
 }
 
 /* The object of a new view: of a free one, with what else it says, or appended. */
@@ -220,7 +241,7 @@ nt_status nt_edits_add_view(nt_buffer_edits *edits, uint32_t index, const void *
 		nt_json_put_uint64(json, object, "byteStride", stride);
 	if (target)
 		nt_json_put_uint64(json, object, "target", target);
-	return nt_edits_add_bytes(edits, index, *view, bytes, size, error);
+	return nt_edits_add_bytes(edits, index, *view, false, bytes, size, error);
 }
 
 /* Whether a buffer has bytes that can be extended. */
@@ -256,42 +277,3 @@ nt_status nt_edits_choose_buffer(nt_buffer_edits *edits, uint32_t near, uint32_t
 	return nt_json_failed(json) ? nt_fail_memory(error) : NT_OK;
 }
 
-/* ---- views whose content is gone ---- */
-
-static bool is_plain(const nt_buffer_edits *edits, uint32_t index, nt_gltf_view *view)
-{
-	const nt_json_value *json = nt_gltf_view_json(edits->document, index);
-	return nt_gltf_get_view(edits->document, index, "", view, NULL) == NT_OK &&
-		!nt_gltf_is_of_view(view->buffer) && !nt_json_find(json, "extensions");
-}
-
-nt_status nt_edits_release_view(nt_buffer_edits *edits, uint32_t index, size_t users, nt_error *error)
-{
-	nt_gltf_view view;
-	if (!is_plain(edits, index, &view) || edits->is_free[index])
-		return NT_OK;
-	const uint64_t begin = view.offset, end = begin + view.length, alignment = edits->alignment;
-	if (nt_byte_users_count(&edits->users, view.buffer, begin, end) != users)
-		return NT_OK;
-	/* padding behind it has no purpose any more */
-	const uint64_t padded = begin + (view.length + alignment - 1) / alignment * alignment;
-	const bool pads = padded <= edits->buffers[view.buffer].old_length &&
-		nt_byte_users_count(&edits->users, view.buffer, end, padded) == 0;
-	edits->is_free[index] = true;
-	edits->free_views[edits->free_count++] = index;
-	return nt_edits_replace(edits, view.buffer, begin, (pads ? padded : end) - begin,
-		(const unsigned char *)"", 0, error);
-}
-
-nt_status nt_edits_release(nt_buffer_edits *edits, uint32_t index, uint64_t offset, uint64_t length,
-	nt_error *error)
-{
-	nt_gltf_view view;
-	const nt_status status = nt_edits_release_view(edits, index, 1, error);
-	if (status || edits->is_free[index] || !is_plain(edits, index, &view))
-		return status;
-	const uint64_t begin = view.offset + offset;
-	if (length == view.length || nt_byte_users_count(&edits->users, view.buffer, begin, begin + length) != 1)
-		return NT_OK;
-	return nt_edits_replace(edits, view.buffer, begin, length, (const unsigned char *)"", 0, error);
-}
