@@ -90,7 +90,7 @@ static void find_least(few *f)
 	for (uint32_t t = f->count; t-- > f->window && 4 * t + 1 > f->least;) {
 		const uint32_t *v = f->ids + 3 * t;
 		const uint32_t middle = middle_of(f->low[v[0]], f->low[v[1]], f->low[v[2]]);
-		if (middle > f->least && !nt_welded_is_degenerate(f->mesh, v))
+		if (middle > f->least && !nt_welded_is_degenerate(f->mesh, t, v))
 			f->least = middle;
 	}
 }
@@ -126,7 +126,7 @@ static bool find_suspects(few *f, bool of_all)
 	for (uint32_t i = 0; i < f->suspect_count; i++) {
 		const uint32_t *v = f->ids + 3 * f->suspects[i];
 		f->suspects[count] = f->suspects[i];
-		count += of_all ? !nt_welded_is_degenerate(f->mesh, v) : is_suspect(f, f->suspects[i]);
+		count += of_all ? !nt_welded_is_degenerate(f->mesh, f->suspects[i], v) : is_suspect(f, f->suspects[i]);
 		f->beside[v[0]] = f->beside[v[1]] = f->beside[v[2]] = 0;
 		f->around[v[0]] = f->around[v[1]] = f->around[v[2]] = 0;
 	}
@@ -345,21 +345,25 @@ static bool weld_large(few_cell *c, uint32_t count, uint32_t corner_count)
 	nt_cell_vertex vertices[MOST_IN_CELL];
 	nt_cell_corner corners[MOST_CORNERS];
 	uint32_t order[MOST_IN_CELL], found[MOST_IN_CELL], swaps[MOST_CORNERS];
-	uint8_t below[MOST_IN_CELL], wanted[MOST_IN_CELL];
+	uint8_t below[MOST_IN_CELL];
+	nt_part parts[2 * MOST_IN_CELL], all = {.vertex_count = count, .corner_count = corner_count};
+	nt_cells cells = {.vertices = vertices, .corners = corners, .order = order, .found = found, .below = below,
+		.swaps = swaps, .parts = parts, .part_count = 2 * MOST_IN_CELL};
 	for (uint32_t i = 0; i < count; i++) {
 		memcpy(vertices[i].position, c->positions[i + 1], sizeof vertices->position);
 		vertices[i].corner_count = 0;
-		wanted[i] = c->wanted >> (i + 1) & 1;
+		order[i] = i;
 	}
 	for (uint32_t i = 0; i < corner_count; i++) {
 		corners[i] = (nt_cell_corner){c->owners[i] - 1u, c->corners[i]};
 		vertices[corners[i].vertex].corner_count++;
 	}
-	const nt_cell cell = {vertices, corners, order, swaps, below, wanted, found, count, corner_count};
-	if (!nt_weld_cell(&cell))
-		return false;
-	for (uint32_t i = 0; i < count; i++)
+	for (uint64_t left = c->wanted; left; left &= left - 1) {
+		const uint32_t i = (uint32_t)nt_trailing_zeros(left) - 1;
+		if (!nt_cells_find(&cells, &all, i))
+			return false;
 		c->found[i + 1] = (uint16_t)found[i];
+	}
 	return true;
 }
 

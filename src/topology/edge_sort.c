@@ -1,41 +1,56 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Which order has the last run, if it matters (edge_tail.c)? That of the published quicksort, of which only those parts
- * are sorted that hold edges of the run. Its keys are the representatives of all vertices.
+ * are sorted that hold edges of the run. Its keys are representatives of vertices, which lie between the first and the
+ * last corner: that decides most comparisons. The others find representatives, each in its cell.
  */
 #include "topology/edge_parts.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include "base/compiler.h"
-#include "base/parallel.h"
 
 #define NONE NT_NO_NEIGHBOUR
 
-/* A vertex's cell, and its number there. */
-typedef struct place {
-	uint32_t cell, number;
-} place;
+/* An edge by its lower end, or by what this is at least. */
+typedef struct key_edge {
+	uint32_t key, edge; /* 3 * triangle + k: from corner k to the next */
+} key_edge;
 
-/* All corners, by cell. */
-typedef struct cells {
+/* Edges of eight triangles, and what their keys are between: a block that a pivot is not in is skipped. */
+enum { BLOCK_TRIANGLES = 8, BLOCK = 3 * BLOCK_TRIANGLES };
+
+typedef struct block {
+	uint32_t least, most;
+} block;
+
+/* A vertex of the mesh. */
+typedef struct vertex {
+	uint32_t least, most; /* what its representative is between; equal: it is this one */
+	uint32_t number;      /* in the cells; until then, how many corners it has */
+	uint32_t cell;
+} vertex;
+
+/* The array that is sorted. */
+typedef struct edge_array {
 	const nt_welded_mesh *mesh;
-	place *places;           /* [vertex_count] */
-	uint32_t vertex_begins[NT_CELLS + 1], corner_begins[NT_CELLS + 1];
-	nt_cell_vertex *rows;    /* [vertex_count] by cell */
-	uint32_t *vertices;      /* [vertex_count] theirs */
-	nt_cell_corner *corners; /* [3 * triangle_count] by cell, in order: 3 * triangle + k */
-	bool *is_degenerate;     /* [triangle_count] */
-	uint32_t *found;         /* [vertex_count] receives representatives */
-	nt_cell *rooms;          /* [threads] */
-	bool limit;              /* a cell would have to be halved too often */
-} cells;
+	vertex *vertices;        /* [vertex_count] */
+	nt_cells cells;
+	nt_part *parts;          /* [NT_CELLS] */
+	key_edge *keys;          /* [count] of triangles that are not degenerate */
+	block *blocks;           /* [count / BLOCK + 1] */
+	size_t count;
+	bool are_known;          /* all keys */
+	bool failed;             /* out of memory, or a limit */
+} edge_array;
 
-/* Turns counts into places of the first of each cell, and one behind the last; returns the largest count. */
-static size_t add_up(uint32_t counts[NT_CELLS + 1])
+/* Vertices and corners by cell */
+
+/* Turns counts into places of the first of each cell; returns the largest count. */
+static uint32_t add_up(uint32_t counts[NT_CELLS])
 {
 	uint32_t most = 0, sum = 0;
-	for (size_t c = 0; c <= NT_CELLS; c++) {
+	for (size_t c = 0; c < NT_CELLS; c++) {
 		const uint32_t count = counts[c];
 		most = nt_most_of(most, count);
 		counts[c] = sum;
@@ -44,118 +59,177 @@ static size_t add_up(uint32_t counts[NT_CELLS + 1])
 	return most;
 }
 
-/* Puts vertices into their cells; returns the most that one has. */
-static size_t place_vertices(cells *c, const nt_grid *grid)
+/* Counts the corners of vertices, and finds the first and the last one of each. */
+static void count_corners(const nt_welded_mesh *m, vertex *vertices)
 {
-	const nt_welded_mesh *m = c->mesh;
-	uint32_t *const counts = c->vertex_begins;
-	memset(counts, 0, sizeof c->vertex_begins);
+	for (size_t v = 0; v < m->vertex_count; v++)
+		vertices[v] = (vertex){.least = UINT32_MAX};
+	for (size_t t = 0; t < m->triangle_count; t++) {
+		uint32_t copy[3];
+		const uint32_t *v = nt_vertices_of(m, t, copy);
+		for (unsigned k = 0; k < 3; k++) {
+			vertex *one = &vertices[v[k]];
+			const uint32_t corner = (uint32_t)nt_triangle_corner(m->triangles, t, k);
+			one->least = nt_least_of(one->least, corner);
+			one->most = nt_most_of(one->most, corner);
+			one->number++;
+		}
+	}
+}
+
+/* If a pivot leaves one of so many vertices open, all of them are found first. */
+enum { MANY = 8 };
+
+/* Makes cells of the vertices that have corners; returns how many these are. */
+static uint32_t make_cells(edge_array *e, const nt_grid *grid, uint32_t *most_corners)
+{
+	const nt_welded_mesh *m = e->mesh;
+	uint32_t places[NT_CELLS] = {0}, corner_places[NT_CELLS] = {0}, count = 0;
+	uint64_t sum = 0;
 	for (size_t v = 0; v < m->vertex_count; v++) {
 		const unsigned cell = nt_grid_cell(grid, m->positions[m->step * v + grid->axis]);
-		c->places[v] = (place){cell, counts[cell]++};
+		const uint32_t corners = e->vertices[v].number;
+		e->vertices[v].cell = cell;
+		places[cell] += corners > 0;
+		corner_places[cell] += corners;
+		count += corners > 0;
+		sum += corners > 1 ? e->vertices[v].most - e->vertices[v].least : 0;
 	}
-	const size_t most = add_up(counts);
-	for (size_t v = 0; v < m->vertex_count; v++) {
-		const size_t row = counts[c->places[v].cell] + c->places[v].number;
-		memcpy(c->rows[row].position, nt_welded_position(m, (uint32_t)v), sizeof c->rows->position);
-		c->rows[row].corner_count = 0;
-		c->vertices[row] = (uint32_t)v;
+	/* about so many vertices are open at each pivot */
+	e->are_known = MANY * sum / (3 * m->triangle_count) > count;
+	for (size_t c = 0; c < NT_CELLS; c++)
+		e->parts[c] = (nt_part){.vertex_count = places[c], .corner_count = corner_places[c]};
+	add_up(places);
+	*most_corners = add_up(corner_places);
+	for (size_t c = 0; c < NT_CELLS; c++) {
+		e->parts[c].vertices = places[c];
+		e->parts[c].corners = corner_places[c];
 	}
-	return most;
+	return count;
 }
 
-/* Puts corners into their cells, in order, and finds degenerate triangles; returns the most that one cell has. */
-static size_t place_corners(cells *c)
+static void place_vertices(const edge_array *e, nt_cell_vertex *rows)
 {
-	const nt_welded_mesh *m = c->mesh;
-	uint32_t *const counts = c->corner_begins, at[NT_CELLS], copy[3], cell[3];
-	memset(counts, 0, sizeof c->corner_begins);
-	for (size_t t = 0; t < m->triangle_count; t++) {
-		const uint32_t *v = nt_vertices_of(m, t, copy);
-		for (int k = 0; k < 3; k++)
-			counts[c->places[v[k]].cell]++;
+	const nt_welded_mesh *m = e->mesh;
+	uint32_t places[NT_CELLS];
+	for (size_t c = 0; c < NT_CELLS; c++)
+		places[c] = e->parts[c].vertices;
+	for (uint32_t v = 0; v < m->vertex_count; v++) {
+		vertex *one = &e->vertices[v];
+		if (one->number == 0)
+			continue;
+		const uint32_t number = places[one->cell]++;
+		memcpy(rows[number].position, nt_welded_position(m, v), sizeof rows->position);
+		rows[number].corner_count = one->number;
+		one->number = e->cells.order[number] = number;
 	}
-	const size_t most = add_up(counts);
-	memcpy(at, counts, sizeof at);
+}
+
+static void place_corners(const edge_array *e)
+{
+	const nt_welded_mesh *m = e->mesh;
+	const vertex *const vertices = e->vertices;
+	nt_cell_corner *const corners = e->cells.corners;
+	uint32_t places[NT_CELLS];
+	for (size_t c = 0; c < NT_CELLS; c++)
+		places[c] = e->parts[c].corners;
 	for (size_t t = 0; t < m->triangle_count; t++) {
+		uint32_t copy[3];
 		const uint32_t *v = nt_vertices_of(m, t, copy);
-		for (uint32_t k = 0; k < 3; k++) {
-			const place to = c->places[v[k]];
-			c->corners[at[to.cell]++] = (nt_cell_corner){to.number, (uint32_t)(3 * t + k)};
-			cell[k] = to.cell;
+		for (unsigned k = 0; k < 3; k++) {
+			const vertex *one = &vertices[v[k]];
+			const uint32_t corner = (uint32_t)nt_triangle_corner(m->triangles, t, k);
+			corners[places[one->cell]++] = (nt_cell_corner){one->number, corner};
 		}
-		/* vertices at one position are in one cell */
-		c->is_degenerate[t] = (cell[0] == cell[1] && nt_welded_are_same(m, v[0], v[1])) ||
-			(cell[1] == cell[2] && nt_welded_are_same(m, v[1], v[2])) ||
-			(cell[2] == cell[0] && nt_welded_are_same(m, v[2], v[0]));
 	}
-	return most;
 }
 
-/* Finds the representatives of the vertices of some cells. False: one would have to be halved too often. */
-static bool weld_cells(const cells *c, size_t begin, size_t end, nt_cell *cell)
+/* Finds all representatives, cell by cell. */
+static void find_all(edge_array *e)
 {
-	for (size_t i = begin; i < end; i++) {
-		const size_t row = c->vertex_begins[i], corner = c->corner_begins[i];
-		nt_cell_vertex *rows = c->rows + row;
-		cell->vertices = rows;
-		cell->vertex_count = c->vertex_begins[i + 1] - row;
-		cell->corners = c->corners + corner;
-		cell->corner_count = c->corner_begins[i + 1] - corner;
-		if (cell->vertex_count == 1) { /* many are */
-			if (cell->corner_count > 0)
-				c->found[c->vertices[row]] = nt_mesh_corner(c->mesh, cell->corners->corner);
+	nt_cells *c = &e->cells;
+	vertex *const vertices = e->vertices;
+	for (nt_part *cell = e->parts; cell < e->parts + NT_CELLS; cell++) {
+		if (cell->vertex_count == 1) { /* many have one */
+			c->found[cell->vertices] = c->corners[cell->corners].corner;
 			continue;
 		}
-		for (size_t k = 0; k < cell->corner_count; k++)
-			rows[cell->corners[k].vertex].corner_count++;
-		if (cell->corner_count > 0 && !nt_weld_cell(cell))
-			return false;
-		for (size_t v = 0; v < cell->vertex_count; v++)
-			if (rows[v].corner_count > 0)
-				c->found[c->vertices[row + v]] = nt_mesh_corner(c->mesh, cell->found[v]);
+		for (uint32_t i = cell->vertices, end = i + cell->vertex_count; i < end && !e->failed; i++)
+			e->failed = c->found[i] == NONE && !nt_cells_find(c, cell, i);
 	}
+	for (size_t v = 0; v < e->mesh->vertex_count && !e->failed; v++)
+		if (vertices[v].least < vertices[v].most)
+			vertices[v].least = vertices[v].most = c->found[vertices[v].number];
+}
+
+/* The one in the middle is the larger lower end of two edges of a triangle, and that of the third is the least. */
+static inline uint32_t middle_of(const uint32_t of[3])
+{
+	return nt_most_of(nt_least_of(of[0], of[1]), nt_least_of(nt_most_of(of[0], of[1]), of[2]));
+}
+
+/* Makes the array of edges. Returns what the largest key is at least. */
+static uint32_t list_edges(edge_array *e)
+{
+	const nt_welded_mesh *m = e->mesh;
+	const vertex *const vertices = e->vertices;
+	key_edge *key = e->keys;
+	uint32_t all_least = 0;
+	for (uint32_t t = 0; t < m->triangle_count;) {
+		block b = {UINT32_MAX, 0};
+		for (unsigned sound = 0; sound < BLOCK_TRIANGLES && t < m->triangle_count; t++) {
+			uint32_t copy[3], least[3], most[3];
+			const uint32_t *v = nt_vertices_of(m, t, copy);
+			if (nt_welded_is_degenerate(m, t, v))
+				continue;
+			for (int k = 0; k < 3; k++) {
+				least[k] = vertices[v[k]].least;
+				most[k] = vertices[v[k]].most;
+				b.least = nt_least_of(b.least, least[k]);
+			}
+			for (uint32_t k = 0; k < 3; k++)
+				key[k] = (key_edge){nt_least_of(least[k], least[k < 2 ? k + 1 : 0]), 3 * t + k};
+			key += 3;
+			b.most = nt_most_of(b.most, middle_of(most));
+			all_least = nt_most_of(all_least, middle_of(least));
+			sound++;
+		}
+		if (b.most > 0)
+			e->blocks[(key - e->keys - 1) / BLOCK] = b;
+	}
+	e->count = (size_t)(key - e->keys);
+	return all_least;
+}
+
+/* Makes the array. False when out of memory. */
+static bool make_array(edge_array *e, const nt_grid *grid, uint32_t *least)
+{
+	const nt_welded_mesh *m = e->mesh;
+	uint32_t most_corners;
+	nt_cell_corner *corners = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *corners);
+	e->keys = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *e->keys);
+	e->vertices = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *e->vertices);
+	e->blocks = nt_scratch_alloc(m->scratch, m->triangle_count / BLOCK_TRIANGLES + 1, sizeof *e->blocks);
+	e->parts = nt_scratch_alloc(m->scratch, NT_CELLS, sizeof *e->parts);
+	if (!corners || !e->keys || !e->vertices || !e->blocks || !e->parts)
+		return false;
+	count_corners(m, e->vertices);
+	const uint32_t count = make_cells(e, grid, &most_corners);
+	nt_cell_vertex *rows = nt_scratch_alloc(m->scratch, count, sizeof *rows);
+	if (!rows || !nt_cells_make(m->scratch, rows, count, most_corners, &e->cells))
+		return false;
+	e->cells.corners = corners;
+	place_vertices(e, rows);
+	place_corners(e);
+	if (e->are_known)
+		find_all(e);
+	*least = list_edges(e);
 	return true;
 }
 
-/* Cells that a thread welds at a time, and corners that a thread more should have. */
-enum { GROUP = 32, GRAIN = 1 << 16 };
+/* Keys */
 
-static void weld_group(void *context, size_t group, unsigned slot)
-{
-	cells *c = context;
-	if (!weld_cells(c, group * GROUP, (group + 1) * GROUP, &c->rooms[slot]))
-		nt_atomic_store(&c->limit, true, RELAXED);
-}
-
-/* Finds the corner of the mesh that stands for each vertex that has some. */
-static nmtan_status find_all(
-	const nt_welded_mesh *m, const nt_grid *grid, uint32_t *found, bool *is_degenerate, bool *limit)
-{
-	const unsigned threads = nt_parallel_slots(m->threads, 3 * m->triangle_count, GRAIN);
-	cells c = {.mesh = m, .is_degenerate = is_degenerate, .found = found};
-	/* first what needs most of what may be left of memory that is lent */
-	c.corners = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *c.corners);
-	c.places = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *c.places);
-	c.rows = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *c.rows);
-	c.vertices = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *c.vertices);
-	c.rooms = nt_scratch_alloc(m->scratch, threads, sizeof *c.rooms);
-	if (!c.places || !c.rows || !c.vertices || !c.corners || !c.rooms)
-		return NMTAN_ERROR_MEMORY;
-	const size_t vertices = place_vertices(&c, grid), corners = place_corners(&c);
-	for (unsigned i = 0; i < threads; i++) {
-		c.rooms[i] = nt_cell_make(m->scratch, vertices, corners);
-		if (!c.rooms[i].order)
-			return NMTAN_ERROR_MEMORY;
-		memset(c.rooms[i].wanted, 1, vertices);
-	}
-	nt_parallel_items(threads, (size_t)NT_CELLS / GROUP, weld_group, &c);
-	*limit = c.limit;
-	return NMTAN_OK;
-}
-
-/* Ends of an edge: from corner k of a triangle to the next. */
-static void ends_of(const nt_welded_mesh *m, uint32_t edge, uint32_t ends[2])
+static inline void ends_of(const nt_welded_mesh *m, uint32_t edge, uint32_t ends[2])
 {
 	uint32_t copy[3];
 	const uint32_t *v = nt_vertices_of(m, edge / 3, copy), k = edge % 3;
@@ -163,10 +237,73 @@ static void ends_of(const nt_welded_mesh *m, uint32_t edge, uint32_t ends[2])
 	ends[1] = v[k < 2 ? k + 1 : 0];
 }
 
-/* An edge by its lower end. */
-typedef struct key_edge {
-	uint32_t key, edge;
-} key_edge;
+static inline block bounds_of(const edge_array *e, const key_edge *at)
+{
+	uint32_t v[2];
+	if (e->are_known)
+		return (block){at->key, at->key};
+	ends_of(e->mesh, at->edge, v);
+	return (block){at->key, nt_least_of(e->vertices[v[0]].most, e->vertices[v[1]].most)};
+}
+
+/* Finds the representative of a vertex, unless that failed before. */
+static NT_NOINLINE void find(edge_array *e, vertex *v)
+{
+	if (v->least == v->most || e->failed)
+		return;
+	e->failed = !nt_cells_find(&e->cells, &e->parts[v->cell], v->number);
+	v->least = v->most = e->cells.found[v->number];
+}
+
+/* Less than 0: the key is less than the pivot; and so on. If it failed, it is 0. */
+static inline NT_ALWAYS_INLINE int compare_key(edge_array *e, const key_edge *at, uint32_t pivot)
+{
+	uint32_t ends[2], key = at->key;
+	if (key > pivot || e->are_known)
+		return (key > pivot) - (key < pivot);
+	ends_of(e->mesh, at->edge, ends);
+	vertex *a = &e->vertices[ends[0]], *b = &e->vertices[ends[1]];
+	if (nt_least_of(a->most, b->most) < pivot)
+		return -1;
+	if (a->least <= pivot && a->most >= pivot)
+		find(e, a);
+	if (a->least >= pivot && b->least <= pivot && b->most >= pivot)
+		find(e, b);
+	key = nt_least_of(a->least, b->least);
+	return e->failed ? 0 : (key > pivot) - (key < pivot);
+}
+
+static uint32_t key_of(edge_array *e, const key_edge *at)
+{
+	uint32_t ends[2];
+	if (e->are_known)
+		return at->key;
+	ends_of(e->mesh, at->edge, ends);
+	vertex *a = &e->vertices[ends[0]], *b = &e->vertices[ends[1]];
+	if (a->least < b->most)
+		find(e, a);
+	if (b->least < a->most)
+		find(e, b);
+	return nt_least_of(a->least, b->least);
+}
+
+/* The largest key, if it is at least `least`, and how many edges have it. */
+static uint32_t find_largest(edge_array *e, uint32_t least, size_t *run_count)
+{
+	*run_count = 0;
+	for (size_t i = 0; i < e->count && !e->failed; i++) {
+		if (i % BLOCK == 0 && e->blocks[i / BLOCK].most < least) {
+			i += BLOCK - 1;
+			continue;
+		}
+		const uint32_t key = bounds_of(e, &e->keys[i]).most < least ? 0 : key_of(e, &e->keys[i]);
+		*run_count = key > least ? 1 : *run_count + (key == least);
+		least = nt_most_of(least, key);
+	}
+	return least;
+}
+
+/* The published quicksort */
 
 /* A part of the array that the quicksort has still to sort. */
 typedef struct key_range {
@@ -174,90 +311,104 @@ typedef struct key_range {
 	uint32_t seed;
 } key_range;
 
+/* The first in [begin, end) whose key is not less than the pivot; end: there is none. */
+static inline NT_ALWAYS_INLINE size_t skip_less(edge_array *e, size_t begin, size_t end, uint32_t pivot)
+{
+	for (const key_edge *const keys = e->keys; e->are_known && begin < end && keys[begin].key < pivot;)
+		begin++;
+	if (e->are_known)
+		return begin;
+	while (begin < end) {
+		const size_t next = (begin / BLOCK + 1) * BLOCK, stop = next < end ? next : end;
+		if (e->blocks[begin / BLOCK].most < pivot)
+			begin = stop;
+		for (; begin < stop; begin++)
+			if (compare_key(e, &e->keys[begin], pivot) >= 0)
+				return begin;
+	}
+	return begin;
+}
+
+/* The same from the end: behind the last whose key is not greater. */
+static inline NT_ALWAYS_INLINE size_t skip_greater(edge_array *e, size_t begin, size_t end, uint32_t pivot)
+{
+	for (const key_edge *const keys = e->keys; e->are_known && end > begin && keys[end - 1].key > pivot;)
+		end--;
+	if (e->are_known)
+		return end;
+	while (begin < end) {
+		const size_t first = (end - 1) / BLOCK * BLOCK, stop = first > begin ? first : begin;
+		if (e->blocks[(end - 1) / BLOCK].least > pivot)
+			end = stop;
+		for (; end > stop; end--)
+			if (compare_key(e, &e->keys[end - 1], pivot) <= 0)
+				return end;
+	}
+	return end;
+}
+
+/* Adds the edge at a place to its block. */
+static inline void widen(edge_array *e, size_t place)
+{
+	block *to = &e->blocks[place / BLOCK], b = bounds_of(e, &e->keys[place]);
+	to->least = nt_least_of(to->least, b.least);
+	to->most = nt_most_of(to->most, b.most);
+}
+
+static inline void swap_edges(edge_array *e, size_t i, size_t k)
+{
+	const key_edge swapped = e->keys[i];
+	e->keys[i] = e->keys[k];
+	e->keys[k] = swapped;
+	if (e->are_known)
+		return;
+	widen(e, i);
+	widen(e, k);
+}
+
 /* The published quicksort's step: smaller keys come before `*left_end`, larger ones from `*right_begin` on. */
-static void part_keys(key_edge *keys, const key_range *range, uint32_t pivot, size_t *left_end, size_t *right_begin)
+static void part_keys(edge_array *e, const key_range *range, uint32_t pivot, size_t *left_end, size_t *right_begin)
 {
 	size_t left = range->begin, right = range->end; /* the latter one behind the reference's */
 	do {
-		while (keys[left].key < pivot)
-			left++;
-		while (keys[right - 1].key > pivot)
-			right--;
-		if (left < right) {
-			const key_edge swapped = keys[left];
-			keys[left++] = keys[right - 1];
-			keys[--right] = swapped;
-		}
-	} while (left < right);
+		left = skip_less(e, left, range->end, pivot);
+		right = skip_greater(e, range->begin, right, pivot);
+		if (left < right)
+			swap_edges(e, left++, --right);
+	} while (left < right && !e->failed);
 	*left_end = right;
 	*right_begin = left;
 }
 
-static bool has_key(const key_edge *keys, size_t begin, size_t end, uint32_t key)
-{
-	while (begin < end && keys[begin].key != key)
-		begin++;
-	return begin < end;
-}
-
 /* Sorts as the published file does, but only parts that hold the largest key, whose edges come last. False: that takes
- * more than NT_EDGE_SORT_VISITS. */
-static bool sort_largest(key_edge *keys, size_t count, uint32_t largest)
+ * more than NT_EDGE_SORT_VISITS, or it failed. */
+static bool sort_largest(edge_array *e, uint32_t largest)
 {
 	/* the smaller part comes first, so that each is half of what waits below it */
-	key_range waiting[64] = {{0, count, 39871946u}};
+	key_range waiting[64] = {{0, e->count, 39871946u}};
 	size_t depth = 1, visits = 0;
-	while (depth > 0) {
+	while (depth > 0 && !e->failed) {
 		key_range range = waiting[--depth];
 		const size_t size = range.end - range.begin;
 		visits += size;
-		if (visits / NT_EDGE_SORT_VISITS > count)
+		if (visits / NT_EDGE_SORT_VISITS > e->count)
 			return false;
-		if (size == 2 && keys[range.begin].key > keys[range.begin + 1].key) {
-			const key_edge swapped = keys[range.begin];
-			keys[range.begin] = keys[range.begin + 1];
-			keys[range.begin + 1] = swapped;
-		}
+		if (size == 2 && compare_key(e, &e->keys[range.begin], key_of(e, &e->keys[range.begin + 1])) > 0)
+			swap_edges(e, range.begin, range.begin + 1);
 		if (size < 3)
 			continue;
 		const uint32_t turn = range.seed & 31;
 		range.seed += (range.seed << turn | range.seed >> ((32 - turn) & 31)) + 3;
-		const uint32_t pivot = keys[range.begin + range.seed % (uint32_t)size].key;
+		const uint32_t pivot = key_of(e, &e->keys[range.begin + range.seed % (uint32_t)size]);
 		key_range left = range, right = range;
-		part_keys(keys, &range, pivot, &left.end, &right.begin);
-		if (pivot < largest || !has_key(keys, left.begin, left.end, largest))
+		part_keys(e, &range, pivot, &left.end, &right.begin);
+		if (pivot < largest || skip_less(e, left.begin, left.end, largest) == left.end)
 			left.end = left.begin;
 		const bool is_left_larger = left.end - left.begin > right.end - right.begin;
 		waiting[depth++] = is_left_larger ? left : right;
 		waiting[depth++] = is_left_larger ? right : left;
 	}
-	return true;
-}
-
-/* Makes the keys of all edges; returns how many there are. `largest`, and how many have it. */
-static size_t make_keys(const nt_welded_mesh *m, const uint32_t *found, const bool *is_degenerate, key_edge *keys,
-	uint32_t *largest, size_t *run_count)
-{
-	size_t key_count = 0;
-	*largest = 0;
-	*run_count = 0;
-	for (size_t t = 0; t < m->triangle_count; t++) {
-		uint32_t copy[3], ends[3];
-		const uint32_t *v = nt_vertices_of(m, t, copy);
-		if (is_degenerate[t])
-			continue;
-		for (int k = 0; k < 3; k++)
-			ends[k] = found[v[k]];
-		for (uint32_t k = 0; k < 3; k++) {
-			const uint32_t low = nt_least_of(ends[k], ends[k < 2 ? k + 1 : 0]);
-			keys[key_count++] = (key_edge){low, (uint32_t)(3 * t + k)};
-			if (low >= *largest) {
-				*run_count = low > *largest ? 1 : *run_count + 1;
-				*largest = low;
-			}
-		}
-	}
-	return key_count;
+	return !e->failed;
 }
 
 /* Edges of the run, in the order of triangles, and then in others. */
@@ -310,11 +461,12 @@ static void pair_run(run_edge *run, size_t count, bool published)
 	}
 }
 
-/* Pairs the run, the last keys, as published, and as if it were sorted; keeps the edges that differ. False when out of
+/* Pairs the run, the last edges, as published, and as if it were sorted; keeps the edges that differ. False when out of
  * memory. */
-static bool pair_both(const nt_welded_mesh *m, const uint32_t *found, const key_edge *last, size_t count,
+static bool pair_both(const nt_welded_mesh *m, uint32_t largest, const key_edge *last, size_t count,
 	nt_unsorted *unsorted)
 {
+	const uint32_t low = m->triangles->ids[largest];
 	unsorted->edges = nt_scratch_alloc(m->scratch, count, sizeof *unsorted->edges);
 	run_edge *published = nt_scratch_alloc(m->scratch, count, 2 * sizeof *published);
 	if (!published || !unsorted->edges)
@@ -323,8 +475,7 @@ static bool pair_both(const nt_welded_mesh *m, const uint32_t *found, const key_
 	for (size_t i = 0; i < count; i++) {
 		uint32_t v[2];
 		ends_of(m, last[i].edge, v);
-		const bool forward = found[v[0]] == last[i].key;
-		published[i] = (run_edge){last[i].edge, v[forward], forward, NONE};
+		published[i] = (run_edge){last[i].edge, v[v[0] == low], v[0] == low, NONE};
 	}
 	memcpy(sorted, published, count * sizeof *sorted);
 	pair_run(published, count, true);
@@ -342,24 +493,17 @@ static bool pair_both(const nt_welded_mesh *m, const uint32_t *found, const key_
 /* Finds the order, and what is paired otherwise by it. */
 static nmtan_status pair_as_published(const nt_welded_mesh *m, const nt_grid *grid, nt_unsorted *unsorted)
 {
-	uint32_t *found = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *found);
-	bool *is_degenerate = nt_scratch_alloc(m->scratch, m->triangle_count, sizeof *is_degenerate);
-	const nt_scratch_mark mark = nt_scratch_here(m->scratch);
-	const nmtan_status status = found && is_degenerate
-		? find_all(m, grid, found, is_degenerate, &unsorted->limit) : NMTAN_ERROR_MEMORY;
-	nt_scratch_back(m->scratch, mark);
-	if (status || unsorted->limit)
-		return status;
-	key_edge *keys = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *keys);
-	if (!keys)
-		return NMTAN_ERROR_MEMORY;
-	uint32_t largest;
+	edge_array e = {.mesh = m};
+	uint32_t least;
 	size_t count;
-	const size_t key_count = make_keys(m, found, is_degenerate, keys, &largest, &count);
-	if (count < NT_LEAST_EDGES)
+	if (!make_array(&e, grid, &least))
+		return NMTAN_ERROR_MEMORY;
+	const uint32_t largest = find_largest(&e, least, &count);
+	if (!e.failed && count < NT_LEAST_EDGES)
 		return NMTAN_OK;
-	unsorted->limit = !sort_largest(keys, key_count, largest);
-	return unsorted->limit || pair_both(m, found, keys + key_count - count, count, unsorted)
+	const bool sorted = !e.failed && sort_largest(&e, largest);
+	unsorted->limit = !sorted && (!e.failed || e.cells.limit);
+	return unsorted->limit || (sorted && pair_both(m, largest, e.keys + e.count - count, count, unsorted))
 		? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }
 

@@ -190,7 +190,7 @@ static NT_NOINLINE void note_members(question *q, uint32_t t, const uint32_t v[3
 		near[k] = (uint8_t)member;
 		count += member != NOBODY;
 	}
-	q->near_count += count > 1 && !nt_welded_is_degenerate(q->mesh, v);
+	q->near_count += count > 1 && !nt_welded_is_degenerate(q->mesh, t, v);
 	q->too_many |= q->near_count == MOST_NEAR;
 }
 
@@ -322,8 +322,8 @@ static uint32_t number_of(uint32_t vertex, uint32_t *table, uint32_t mask, uint3
 	return table[at] - 1;
 }
 
-/* Makes the cell of a slot, and its vertices; NULL when out of memory. */
-static uint32_t *make_cell(question *q, unsigned slot, nt_cell *cell)
+/* Makes the cell of a slot, a part; `vertices` receives the mesh's numbers. False when out of memory. */
+static bool make_cell(question *q, unsigned slot, nt_cells *cell, nt_part *all, uint32_t **vertices)
 {
 	const nt_welded_mesh *m = q->mesh;
 	const uint32_t *listed = q->corners + q->slot_begins[slot];
@@ -332,50 +332,48 @@ static uint32_t *make_cell(question *q, unsigned slot, nt_cell *cell)
 	while (mask < corner_count) /* most have several corners, so that few places are taken */
 		mask = 2 * mask + 1;
 	nt_cell_corner *corners = nt_scratch_alloc(m->scratch, corner_count, sizeof *corners);
-	uint32_t *vertices = nt_scratch_alloc(m->scratch, (size_t)corner_count + mask + 1, sizeof *vertices);
-	if (!corners || !vertices)
-		return NULL;
-	uint32_t *table = (uint32_t *)memset(vertices + corner_count, 0, (mask + (size_t)1) * sizeof *table);
+	uint32_t *names = nt_scratch_alloc(m->scratch, (size_t)corner_count + mask + 1, sizeof *names);
+	if (!corners || !names)
+		return false;
+	uint32_t *table = (uint32_t *)memset(names + corner_count, 0, (mask + (size_t)1) * sizeof *table);
 	for (size_t i = 0; i < corner_count; i++) {
-		const uint32_t vertex = m->triangles->ids[nt_mesh_corner(m, listed[i])];
-		corners[i] = (nt_cell_corner){number_of(vertex, table, mask, vertices, &count), listed[i]};
+		const uint32_t corner = nt_mesh_corner(m, listed[i]);
+		corners[i] = (nt_cell_corner){number_of(m->triangles->ids[corner], table, mask, names, &count), corner};
 	}
-	*cell = nt_cell_make(m->scratch, count, corner_count);
 	nt_cell_vertex *rows = nt_scratch_alloc(m->scratch, count, sizeof *rows);
-	if (!cell->order || !rows)
-		return NULL;
+	if (!rows || !nt_cells_make(m->scratch, rows, count, corner_count, cell))
+		return false;
 	for (uint32_t i = 0; i < count; i++) {
-		memcpy(rows[i].position, nt_welded_position(m, vertices[i]), sizeof rows->position);
+		memcpy(rows[i].position, nt_welded_position(m, names[i]), sizeof rows->position);
 		rows[i].corner_count = 0;
+		cell->order[i] = i;
 	}
 	for (size_t i = 0; i < corner_count; i++)
 		rows[corners[i].vertex].corner_count++;
-	cell->vertices = rows;
 	cell->corners = corners;
-	return vertices;
+	*all = (nt_part){.vertex_count = count, .corner_count = corner_count};
+	*vertices = names;
+	return true;
 }
 
 /* Finds the representatives of all members of a slot. False: out of memory, or its cell cannot be halved so often. */
 static bool find_members(question *q, unsigned slot, bool *limit)
 {
-	const nt_welded_mesh *m = q->mesh;
-	const nt_scratch_mark mark = nt_scratch_here(m->scratch);
-	nt_cell cell;
-	const uint32_t *vertices = make_cell(q, slot, &cell);
-	if (!vertices)
-		return false;
-	for (uint32_t i = 0; i < cell.vertex_count; i++) {
+	const nt_scratch_mark mark = nt_scratch_here(q->mesh->scratch);
+	nt_cells cell = {.limit = false};
+	nt_part all;
+	uint32_t *vertices;
+	bool done = make_cell(q, slot, &cell, &all, &vertices);
+	for (uint32_t i = 0; done && i < all.vertex_count; i++) {
 		const uint32_t member = member_of(q, vertices[i]);
-		cell.wanted[i] = member != NOBODY && !is_known(q, member);
+		if (member == NOBODY || is_known(q, member))
+			continue;
+		done = nt_cells_find(&cell, &all, i);
+		q->low[member] = q->high[member] = cell.found[i];
 	}
-	*limit = !nt_weld_cell(&cell);
-	for (uint32_t i = 0; i < cell.vertex_count && !*limit; i++)
-		if (cell.wanted[i]) {
-			const uint32_t member = member_of(q, vertices[i]);
-			q->low[member] = q->high[member] = nt_mesh_corner(m, cell.found[i]);
-		}
-	nt_scratch_back(m->scratch, mark);
-	return !*limit;
+	*limit = cell.limit;
+	nt_scratch_back(q->mesh->scratch, mark);
+	return done;
 }
 
 /* The answer */

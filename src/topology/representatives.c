@@ -98,71 +98,74 @@ bool nt_grid_of_used(const nt_welded_mesh *mesh, nt_grid *grid)
 	return ordered && set_grid(&all, grid);
 }
 
-nt_cell nt_cell_make(nt_scratch *scratch, size_t vertices, size_t corners)
+bool nt_cells_make(nt_scratch *scratch, const nt_cell_vertex *vertices, size_t vertex_count, size_t most_corners,
+	nt_cells *cells)
 {
-	nt_cell cell = {.vertex_count = vertices, .corner_count = corners};
-	uint32_t *room = nt_scratch_alloc(scratch, 1, (2 * vertices + corners) * sizeof *room + 2 * vertices);
+	uint32_t *room = nt_scratch_alloc(scratch, 1, (2 * vertex_count + most_corners) * sizeof *room + vertex_count);
 	if (!room)
-		return cell;
-	cell.order = room;
-	cell.found = cell.order + vertices;
-	cell.swaps = cell.found + vertices;
-	cell.below = (uint8_t *)(cell.swaps + corners);
-	cell.wanted = cell.below + vertices;
-	return cell;
+		return false;
+	*cells = (nt_cells){.vertices = vertices, .order = room, .scratch = scratch};
+	cells->found = memset(cells->order + vertex_count, 0xff, vertex_count * sizeof *cells->found);
+	cells->swaps = cells->found + vertex_count;
+	cells->below = (uint8_t *)(cells->swaps + most_corners);
+	return true;
 }
-
-/* A part of a cell: some of its vertices, in any order, and all of their corners. */
-typedef struct part {
-	uint32_t *order;
-	nt_cell_corner *corners;
-	size_t vertex_count, corner_count;
-	unsigned halvings;
-} part;
 
 /* The point at which a part is halved, and along which axis; false: nothing is left to halve. */
-static inline bool find_middle(const nt_cell *cell, const part *p, unsigned *axis, float *middle)
+static inline bool find_middle(const nt_cells *c, nt_part *p)
 {
-	enum { STEP = sizeof *cell->vertices / sizeof *cell->vertices->position };
+	enum { STEP = sizeof *c->vertices / sizeof *c->vertices->position };
 	nt_box b = nothing;
-	(void)add_rows(cell->vertices->position, STEP, p->order, p->vertex_count, &b);
-	*axis = nt_longest_axis(&b);
-	*middle = 0.5f * (b.high[*axis] + b.low[*axis]);
-	return *middle < b.high[*axis] && *middle > b.low[*axis];
+	(void)add_rows(c->vertices->position, STEP, c->order + p->vertices, p->vertex_count, &b);
+	p->axis = (uint8_t)nt_longest_axis(&b);
+	p->middle = 0.5f * (b.high[p->axis] + b.low[p->axis]);
+	return p->middle < b.high[p->axis] && p->middle > b.low[p->axis];
 }
 
-/* Halves a part, and leaves of it what is below the middle; `wanted` receives whether halves have vertices that are
- * wanted. Corners are swapped until those below come first, and only those that have to: the first that is above with
- * the last that is below, and so on. The order of all others, and which of them are swapped, decides in the end. */
-static part halve(const nt_cell *cell, part *p, unsigned axis, float middle, bool wanted[2])
+/* Two parts; NULL when out of memory. */
+static nt_part *take_parts(nt_cells *c)
 {
-	const nt_cell_vertex *const vertices = cell->vertices;
-	const uint8_t *const is_wanted = cell->wanted;
-	uint8_t *const is_below = cell->below;
-	uint32_t *const order = p->order;
-	nt_cell_corner *const corners = p->corners;
-	const size_t vertex_count = p->vertex_count;
-	uint32_t low = 0, left = 0, count = 0, wanted_low = 0, swap_count = 0, other_count = 0;
-	for (size_t i = 0; i < vertex_count; i++) {
-		const uint32_t one = order[i], other = order[low], corner_count = vertices[one].corner_count;
+	enum { PARTS = 512 };
+	if (c->part_count < 2) {
+		c->parts = nt_scratch_alloc(c->scratch, PARTS, sizeof *c->parts);
+		c->part_count = c->parts ? PARTS : 0;
+	}
+	nt_part *two = c->parts;
+	if (!two)
+		return NULL;
+	c->parts += 2;
+	c->part_count -= 2;
+	return two;
+}
+
+/* Halves a part. Corners are swapped until those below the middle come first, and only those that have to: the first
+ * that is above with the last that is below, and so on. The order of all others, and which of them are swapped, decides
+ * in the end. */
+static void halve(const nt_cells *c, nt_part *p)
+{
+	const nt_cell_vertex *const vertices = c->vertices;
+	uint8_t *const is_below = c->below;
+	uint32_t *const order = c->order + p->vertices;
+	nt_cell_corner *const corners = c->corners + p->corners;
+	const uint32_t vertex_count = p->vertex_count, corner_count = p->corner_count, axis = p->axis;
+	const float middle = p->middle;
+	uint32_t low = 0, left = 0, swap_count = 0, other_count = 0;
+	for (uint32_t i = 0; i < vertex_count; i++) {
+		const uint32_t one = order[i], other = order[low];
 		const bool below = vertices[one].position[axis] < middle;
-		const uint32_t want = is_wanted[one];
+		const uint32_t mask = -(uint32_t)below, changed = (one ^ other) & mask;
 		is_below[one] = below;
-		order[i] = below ? other : one;
-		order[low] = below ? one : other;
-		left += below ? corner_count : 0;
-		count += want;
-		wanted_low += below ? want : 0;
+		order[i] = one ^ changed;
+		order[low] = other ^ changed;
+		left += vertices[one].corner_count & mask;
 		low += below;
 	}
-	wanted[0] = wanted_low > 0;
-	wanted[1] = wanted_low < count;
-	uint32_t *const above = cell->swaps, *const below = above + left;
+	uint32_t *const above = c->swaps, *const below = above + left;
 	for (uint32_t i = 0; i < left; i++) {
 		above[swap_count] = i;
 		swap_count += !is_below[corners[i].vertex];
 	}
-	for (uint32_t i = (uint32_t)p->corner_count; i-- > left && other_count < swap_count;) {
+	for (uint32_t i = corner_count; i-- > left && other_count < swap_count;) {
 		below[other_count] = i;
 		other_count += is_below[corners[i].vertex];
 	}
@@ -171,64 +174,52 @@ static part halve(const nt_cell *cell, part *p, unsigned axis, float middle, boo
 		corners[above[i]] = corners[below[i]];
 		corners[below[i]] = swapped;
 	}
-	const part rest = {order + low, corners + left, p->vertex_count - low, p->corner_count - left, p->halvings};
-	p->vertex_count = low;
-	p->corner_count = left;
-	return rest;
+	const uint8_t halvings = p->halvings + 1;
+	p->halves[0] = (nt_part){.vertices = p->vertices, .corners = p->corners, .vertex_count = low,
+		.corner_count = left, .halvings = halvings};
+	p->halves[1] = (nt_part){.vertices = p->vertices + low, .corners = p->corners + left,
+		.vertex_count = vertex_count - low, .corner_count = corner_count - left, .halvings = halvings};
 }
 
 /* A part of two vertices at different places: the same as if it were halved. */
-static void find_two(const nt_cell *cell, const part *p, unsigned axis)
+static void find_two(const nt_cells *c, const nt_part *p)
 {
-	const nt_cell_vertex *const vertices = cell->vertices;
-	const nt_cell_corner *const corners = p->corners;
-	const bool second = vertices[p->order[1]].position[axis] < vertices[p->order[0]].position[axis];
-	const uint32_t below = p->order[second], above = p->order[!second];
-	const size_t left = vertices[below].corner_count;
-	size_t first = 0;
-	for (first = corners->vertex == below ? 0 : p->corner_count - 1; corners[first].vertex != below;)
+	const nt_cell_vertex *const vertices = c->vertices;
+	const uint32_t *const order = c->order + p->vertices;
+	const nt_cell_corner *const corners = c->corners + p->corners;
+	const bool second = vertices[order[1]].position[p->axis] < vertices[order[0]].position[p->axis];
+	const uint32_t below = order[second], above = order[!second], left = vertices[below].corner_count;
+	size_t first = corners->vertex == below ? 0 : p->corner_count - 1;
+	while (corners[first].vertex != below)
 		first--;
-	cell->found[below] = corners[first].corner;
-	for (first = corners[left].vertex == above ? left : left - 1; corners[first].vertex != above;)
+	c->found[below] = corners[first].corner;
+	first = corners[left].vertex == above ? left : left - 1;
+	while (corners[first].vertex != above)
 		first--;
-	cell->found[above] = corners[first].corner;
+	c->found[above] = corners[first].corner;
 }
 
-bool nt_weld_cell(const nt_cell *cell)
+bool nt_cells_find(nt_cells *c, nt_part *p, uint32_t vertex)
 {
-	part waiting[NT_HALVINGS + 1];
-	size_t waiting_count = 1, count = 0;
-	for (size_t i = 0; i < cell->vertex_count; i++) {
-		cell->order[count] = (uint32_t)i;
-		count += cell->vertices[i].corner_count > 0;
-	}
-	waiting[0] = (part){cell->order, cell->corners, count, cell->corner_count, 0};
-	while (waiting_count > 0) {
-		part p = waiting[--waiting_count];
-		unsigned axis;
-		float middle;
-		bool is_halved = false;
-		while (p.vertex_count > 1 && find_middle(cell, &p, &axis, &middle)) {
-			bool wanted[2];
-			is_halved = p.vertex_count == 2;
-			if (p.halvings++ == NT_HALVINGS)
+	for (;;) {
+		if (!p->halves) {
+			const bool is_halved = p->vertex_count > 1 && find_middle(c, p);
+			if (!is_halved) /* each has the first of its corners here */
+				for (uint32_t i = p->vertex_count > 1 ? p->corner_count : 1; i-- > 0;) {
+					const nt_cell_corner *corner = &c->corners[p->corners + i];
+					c->found[corner->vertex] = corner->corner;
+				}
+			else if ((c->limit = p->halvings == NT_HALVINGS))
 				return false;
-			if (p.vertex_count == 2)
-				break;
-			const part above = halve(cell, &p, axis, middle, wanted);
-			if (wanted[0] && wanted[1])
-				waiting[waiting_count++] = above;
-			else if (wanted[1])
-				p = above;
+			else if (p->vertex_count == 2)
+				find_two(c, p);
+			if (!is_halved || p->vertex_count == 2)
+				return true;
+			p->halves = take_parts(c);
+			if (!p->halves)
+				return false;
+			halve(c, p);
 		}
-		/* each has the first of its corners here */
-		if (p.vertex_count == 1)
-			cell->found[*p.order] = p.corners->corner;
-		else if (p.vertex_count == 2 && is_halved)
-			find_two(cell, &p, axis);
-		else
-			for (size_t i = p.corner_count; i-- > 0;)
-				cell->found[p.corners[i].vertex] = p.corners[i].corner;
+		p = &p->halves[!(c->vertices[vertex].position[p->axis] < p->middle)];
 	}
-	return true;
 }

@@ -34,6 +34,7 @@ static inline unsigned nt_longest_axis(const nt_box *b)
 /* Triangles of welded vertices, those with two corners at one position too. */
 typedef struct nt_welded_mesh {
 	const nt_triangles *triangles;
+	const uint8_t *flags;   /* [triangle_count] NT_DEGENERATE; NULL: positions are compared */
 	size_t triangle_count, vertex_count;
 	const float *positions; /* [vertex_count] rows of three floats, of numbers that no corner has too; three
 	                           floats behind the last one can be read */
@@ -54,9 +55,11 @@ static inline bool nt_welded_are_same(const nt_welded_mesh *mesh, uint32_t a, ui
 	return (p[0] == q[0]) & (p[1] == q[1]) & (p[2] == q[2]);
 }
 
-/* Whether two corners of a triangle with these vertices are at one position. */
-static inline bool nt_welded_is_degenerate(const nt_welded_mesh *mesh, const uint32_t v[3])
+/* Whether two corners of triangle t, with these vertices, are at one position. */
+static inline bool nt_welded_is_degenerate(const nt_welded_mesh *mesh, size_t t, const uint32_t v[3])
 {
+	if (mesh->flags)
+		return mesh->flags[t] & NT_DEGENERATE;
 	return nt_welded_are_same(mesh, v[0], v[1]) || nt_welded_are_same(mesh, v[1], v[2]) ||
 	       nt_welded_are_same(mesh, v[2], v[0]);
 }
@@ -91,7 +94,7 @@ static inline unsigned nt_grid_cell(const nt_grid *grid, float coordinate)
 	return (unsigned)(int)(from_zero < last ? from_zero : last);
 }
 
-/* A corner, by a number that tells the caller which, and its vertex: its number in the cell. */
+/* A corner, by a number that tells the caller which, and its vertex. */
 typedef struct nt_cell_corner {
 	uint32_t vertex, corner;
 } nt_cell_corner;
@@ -101,23 +104,37 @@ typedef struct nt_cell_vertex {
 	uint32_t corner_count;
 } nt_cell_vertex;
 
-/* The vertices and corners of one cell. Halves are made of vertices, of which there are few, and corners are only
- * swapped. */
-typedef struct nt_cell {
-	const nt_cell_vertex *vertices; /* [vertex_count] */
-	nt_cell_corner *corners;        /* [corner_count] in the order of triangles; lost */
-	uint32_t *order, *swaps;        /* [vertex_count], [corner_count] room */
-	uint8_t *below;                 /* [vertex_count] room */
-	uint8_t *wanted;                /* [vertex_count] 1: to be found, or 0 */
-	uint32_t *found;                /* [vertex_count] receives what stands for those that are wanted, and others */
-	size_t vertex_count, corner_count;
-} nt_cell;
+/* A part of a cell: some of its vertices, in any order, and all of their corners. */
+typedef struct nt_part {
+	struct nt_part *halves; /* two; NULL: it has not been halved */
+	uint32_t vertices, corners; /* the first ones */
+	uint32_t vertex_count, corner_count;
+	float middle;
+	uint8_t axis, halvings;
+} nt_part;
 
-/* Room for a cell of so many vertices and corners, which are elsewhere; its `order` is NULL when out of memory. */
-nt_cell nt_cell_make(nt_scratch *scratch, size_t vertices, size_t corners);
+/* Cells are halved where somebody asks for a vertex, each part once. Halves are made of vertices, of which there are
+ * few, and corners are only swapped. */
+typedef struct nt_cells {
+	const nt_cell_vertex *vertices;
+	nt_cell_corner *corners; /* of a cell at first in the order of triangles */
+	uint32_t *order;         /* all vertices: a part's are side by side */
+	uint32_t *found;         /* [vertices] receives the corner that stands for the vertex, and for others; those
+	                            that are not known have UINT32_MAX */
+	uint8_t *below;          /* [vertices] room */
+	uint32_t *swaps;         /* [most corners of a cell] room */
+	nt_part *parts;          /* [part_count] pairs that are free */
+	size_t part_count;
+	nt_scratch *scratch;     /* for more of them; NULL: there are two for each vertex */
+	bool limit;              /* a cell would have to be halved more than NT_HALVINGS times */
+} nt_cells;
 
-/* Finds the corners that stand for some vertices of a cell. False: it would have to be halved more than NT_HALVINGS
- * times. */
-bool nt_weld_cell(const nt_cell *cell);
+/* Cells with room for so many vertices, which receive their places in `order`, and so many corners in one cell. False
+ * when out of memory. */
+bool nt_cells_make(nt_scratch *scratch, const nt_cell_vertex *vertices, size_t vertex_count, size_t most_corners,
+	nt_cells *cells);
+
+/* Finds the representative of a vertex of a cell. False: a limit, or out of memory. */
+bool nt_cells_find(nt_cells *cells, nt_part *cell, uint32_t vertex);
 
 #endif

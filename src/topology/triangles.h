@@ -14,9 +14,9 @@
  * bits is the first corner of the face, which is the same for halves of one quad. */
 enum { NT_CUT_BITS = 3 };
 
-/* In a triangle's flags, whose other bits are the method's: it is the second half of a quad, whose first half is the
- * triangle before. */
-enum { NT_SECOND_HALF = 8 };
+/* In a triangle's flags, whose other bits are the method's: two corners are at one position; it is the second half of a
+ * quad, whose first half is the triangle before. */
+enum { NT_DEGENERATE = 4, NT_SECOND_HALF = 8 };
 
 typedef struct nt_triangles {
 	const uint32_t *ids;  /* [corners of the mesh] the vertex of each */

@@ -76,7 +76,8 @@ static unsigned count_ranges(const nt_fast *fast, const nt_fast_plan *plan)
 /* The mesh as the published sort of edges sees it. */
 static nt_welded_mesh welded_mesh(const nt_fast *fast, nt_scratch *scratch)
 {
-	return (nt_welded_mesh){.triangles = &fast->triangles, .triangle_count = fast->triangle_count,
+	return (nt_welded_mesh){.triangles = &fast->triangles, .flags = fast->flags,
+		.triangle_count = fast->triangle_count,
 		.vertex_count = fast->vertex_count, .positions = fast->rows->position,
 		.step = sizeof *fast->rows / sizeof *fast->rows->position, .box = fast->box,
 		.threads = fast->solve->threads, .scratch = scratch};

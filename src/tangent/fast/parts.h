@@ -23,7 +23,7 @@ enum { NT_LANES = 16, NT_TRIANGLES = 32 };
 enum {
 	NT_TRIANGLE_ORIENT = 1,     /* UV determinant positive (after a quad's halves agreed) */
 	NT_TRIANGLE_ANY = 2,        /* no frame: joins groups of any orientation */
-	NT_TRIANGLE_DEGENERATE = 4, /* two corners at one position: takes no part */
+	NT_TRIANGLE_DEGENERATE = NT_DEGENERATE, /* two corners at one position: takes no part */
 	NT_TRIANGLE_SECOND = NT_SECOND_HALF,
 	NT_TRIANGLE_COMPLEX = 16,   /* has a corner at a complex vertex, or one whose result is not usable */
 	NT_TRIANGLE_COPY = 32,      /* degenerate, and copies corners that are written later */

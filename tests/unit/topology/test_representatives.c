@@ -24,29 +24,41 @@ static bool weld(const uint32_t *ids, size_t triangles, size_t vertices, const n
 {
 	static nt_cell_vertex rows[MOST];
 	static nt_cell_corner corners[3 * MOST];
-	static uint32_t order[MOST], swaps[3 * MOST], numbers[MOST], results[MOST];
-	static uint8_t below[MOST], wanted[MOST];
-	nt_cell cell = {rows, corners, order, swaps, below, wanted, results, 0, 0};
+	static uint32_t numbers[MOST];
+	nt_part all = {.halves = NULL};
+	nt_scratch scratch;
+	nt_cells cells;
 	for (uint32_t v = 0; v < vertices; v++) {
 		if (nt_grid_cell(grid, positions[v][grid->axis]) != number)
 			continue;
-		memcpy(rows[cell.vertex_count].position, positions[v], sizeof *positions);
-		rows[cell.vertex_count].corner_count = 0;
-		wanted[cell.vertex_count] = one == UINT32_MAX || one == v;
-		numbers[v] = (uint32_t)cell.vertex_count++;
+		memcpy(rows[all.vertex_count].position, positions[v], sizeof *positions);
+		rows[all.vertex_count].corner_count = 0;
+		numbers[v] = all.vertex_count++;
 	}
 	for (uint32_t i = 0; i < 3 * triangles; i++) {
 		if (nt_grid_cell(grid, positions[ids[i]][grid->axis]) != number)
 			continue;
 		rows[numbers[ids[i]]].corner_count++;
-		corners[cell.corner_count++] = (nt_cell_corner){numbers[ids[i]], i};
+		corners[all.corner_count++] = (nt_cell_corner){numbers[ids[i]], i};
 	}
-	if (cell.corner_count > 0 && !nt_weld_cell(&cell))
-		return false;
-	for (uint32_t v = 0; v < vertices; v++)
-		if (nt_grid_cell(grid, positions[v][grid->axis]) == number && (one == UINT32_MAX || one == v))
-			found[v] = results[numbers[v]];
-	return true;
+	nt_scratch_init(&scratch, NULL);
+	assert_true(nt_cells_make(&scratch, rows, all.vertex_count, all.corner_count, &cells));
+	cells.corners = corners;
+	const uint32_t rows_count = all.vertex_count;
+	all.vertex_count = 0;
+	for (uint32_t i = 0; i < rows_count; i++)
+		if (rows[i].corner_count > 0)
+			cells.order[all.vertex_count++] = i;
+	bool done = true;
+	for (uint32_t v = 0; v < vertices && done; v++)
+		if (nt_grid_cell(grid, positions[v][grid->axis]) == number && rows[numbers[v]].corner_count > 0 &&
+			(one == UINT32_MAX || one == v)) {
+			done = nt_cells_find(&cells, &all, numbers[v]);
+			found[v] = cells.found[numbers[v]];
+		}
+	assert_true(done == !cells.limit);
+	nt_scratch_free(&scratch);
+	return done;
 }
 
 static bool find(const uint32_t *ids, size_t triangles, size_t vertices, uint32_t *found)
