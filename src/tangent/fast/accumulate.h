@@ -112,12 +112,28 @@ static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t
 			addition_of(out, k, turned_place((size_t)lane)));
 }
 
-/* Triangles with frames, lanes [i, end), up to the first with a corner whose cursor has a flag, or that has no narrow
- * entry left: its lane, or `end`. Entries are moved as words, and nothing is called, so that nearly all the loop needs
- * is in registers. */
-static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned range, size_t first, size_t i,
-	size_t end, const uint32_t *ids, const lanes_out *out, bool is_narrow)
+/* Adds a corner to its vertex's record, or puts it aside if an earlier range has the vertex. */
+static inline NT_ALWAYS_INLINE void add_or_defer(nt_record *records, uint32_t vertex, uint32_t cursor, uint32_t bit,
+	const float *add, nt_deferred *deferred)
 {
+	if (!(cursor & NT_CURSOR_SHARED)) {
+		add_record(records + vertex, add);
+		return;
+	}
+	deferred->to[deferred->count] = vertex | bit;
+	memcpy(&deferred->add[deferred->count++], add, sizeof *deferred->add);
+}
+
+/* Triangles with frames, lanes [i, end), up to the first with a corner whose cursor has a flag (of a hub, if some are
+ * shared), or that has no narrow entry left: its lane, or `end`. Entries are moved as words, and nothing is called, so
+ * that nearly all the loop needs is in registers. */
+static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned range, size_t first, size_t i,
+	size_t end, const uint32_t *ids, const lanes_out *out, bool is_narrow, bool is_shared)
+{
+	const uint32_t others = is_shared ? NT_CURSOR_HUB : NT_CURSOR_FLAGGED;
+	nt_deferred deferred = {NULL};
+	if (is_shared)
+		deferred = fast->deferred[range];
 	const nt_adjacency *const adjacency = &fast->adjacency;
 	const uint32_t step = is_narrow ? adjacency->step : NT_FAN_LANES, full = NT_FAN_DEPTH * step;
 	uint32_t *const narrow = adjacency->narrow;
@@ -127,9 +143,9 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 	const uint8_t *const flags = fast->flags + first;
 	for (ids += 3 * i; i < end; i++, ids += 3) {
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
-		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
+		uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
 		if (is_narrow ? pa >= full || pb >= full || pc >= full
-			: NT_EXPECT((pa | pb | pc) >= NT_CURSOR_FLAGGED, 0))
+			: NT_EXPECT((pa | pb | pc) >= others, 0))
 			break;
 		cursors[a] = pa + step;
 		cursors[b] = pb + step;
@@ -137,9 +153,19 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 		const size_t orient = flags[i] & NT_TRIANGLE_ORIENT;
 		nt_record *const to = records[orient];
 		const float *add = out->add[0] + turned_rows[i];
-		add_record(to + a, add);
-		add_record(to + b, add + 4 * NT_TRIANGLES);
-		add_record(to + c, add + 8 * NT_TRIANGLES);
+		if (is_shared) {
+			const uint32_t bit = (uint32_t)orient << 31;
+			add_or_defer(to, a, pa, bit, add, &deferred);
+			add_or_defer(to, b, pb, bit, add + 4 * NT_TRIANGLES, &deferred);
+			add_or_defer(to, c, pc, bit, add + 8 * NT_TRIANGLES, &deferred);
+			pa &= NT_CURSOR_PLACE;
+			pb &= NT_CURSOR_PLACE;
+			pc &= NT_CURSOR_PLACE;
+		} else {
+			add_record(to + a, add);
+			add_record(to + b, add + 4 * NT_TRIANGLES);
+			add_record(to + c, add + 8 * NT_TRIANGLES);
+		}
 		if (is_narrow) {
 			const uint32_t both = -(uint32_t)orient & 0x80008000u;
 			narrow[pa] = b | c << 16 | both;
@@ -158,19 +184,27 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 		memcpy(&entries[pb], &ca, sizeof ca);
 		memcpy(&entries[pc], &ab, sizeof ab);
 	}
+	if (is_shared)
+		fast->deferred[range].count = deferred.count;
 	return i;
 }
 
 static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
 	const uint32_t *ids, const lanes_out *out)
 {
-	return add_usual(fast, range, first, i, end, ids, out, false);
+	return add_usual(fast, range, first, i, end, ids, out, false, false);
+}
+
+static size_t NT_NOINLINE add_shared(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
+	const uint32_t *ids, const lanes_out *out)
+{
+	return add_usual(fast, range, first, i, end, ids, out, false, true);
 }
 
 static size_t NT_NOINLINE add_narrow(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
 	const uint32_t *ids, const lanes_out *out)
 {
-	return add_usual(fast, range, first, i, end, ids, out, true);
+	return add_usual(fast, range, first, i, end, ids, out, true, false);
 }
 
 /* Whether a corner of a triangle is at a hub. */
@@ -186,8 +220,8 @@ static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t beg
 {
 	for (size_t i = begin; i < end;) {
 		if (!fast->wants_more)
-			i = (nt_adjacency_is_narrow(&fast->adjacency) ? add_narrow : add_here)(fast, range,
-				first, i, end, ids, out);
+			i = (nt_adjacency_is_narrow(&fast->adjacency) ? add_narrow : range > 0 ? add_shared : add_here)(
+				fast, range, first, i, end, ids, out);
 		if (i == end)
 			return;
 		do {

@@ -18,6 +18,9 @@
 /* Records that are cleared at a time: 2 MiB, so that no two threads touch a huge page first, and each clears it. */
 enum { CHUNK = 131072 };
 
+/* Vertices for which a thread more adds what was put aside. */
+enum { GRAIN = 1 << 14 };
+
 /* The records of one orientation. */
 typedef struct array {
 	nt_record *records;
@@ -116,17 +119,23 @@ static bool make_deferred(nt_fast *fast)
 	return true;
 }
 
-static void add_deferred(const nt_fast *fast, const nt_deferred *d)
+/* Adds what ranges have put aside for vertices [begin, end). */
+static void add_deferred(void *context, size_t begin, size_t end, unsigned thread)
 {
-	for (size_t i = 0; i < d->count; i++) {
-		const int orient = (d->to[i] & NT_ENTRY_ORIENT) != 0;
-		const uint32_t vertex = d->to[i] & NT_ENTRY_VERTEX;
-		nt_int4 sum;
-		memcpy(&sum, &d->add[i], sizeof sum);
-		nt_record_add(&fast->records[orient][vertex], sum);
-		if (d->more)
-			nt_record_more_add(&fast->more[orient][vertex], &d->more[i]);
-	}
+	(void)thread;
+	const nt_fast *fast = context;
+	for (const nt_deferred *d = fast->deferred + 1; d < fast->deferred + fast->ranges.count; d++)
+		for (size_t i = 0; i < d->count; i++) {
+			const int orient = (d->to[i] & NT_ENTRY_ORIENT) != 0;
+			const uint32_t vertex = d->to[i] & NT_ENTRY_VERTEX;
+			if (vertex - begin >= end - begin)
+				continue;
+			nt_int4 sum;
+			memcpy(&sum, &d->add[i], sizeof sum);
+			nt_record_add(&fast->records[orient][vertex], sum);
+			if (d->more)
+				nt_record_more_add(&fast->more[orient][vertex], &d->more[i]);
+		}
 }
 
 nmtan_status nt_fast_add(nt_fast *fast, const nt_kernels *kernels)
@@ -145,7 +154,6 @@ nmtan_status nt_fast_add(nt_fast *fast, const nt_kernels *kernels)
 		fast->more[o] = j.arrays[o].more;
 	}
 	fast->record_step = 1;
-	for (unsigned r = 1; r < ranges; r++)
-		add_deferred(fast, &fast->deferred[r]);
+	nt_parallel_ranges(ranges, fast->vertex_count, GRAIN, add_deferred, fast);
 	return NMTAN_OK;
 }
