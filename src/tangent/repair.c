@@ -23,9 +23,13 @@
 #include <math.h>
 #include <string.h>
 #include "base/counts.h"
+#include "base/parallel.h"
 #include "tangent/frames.h"
 #include "tangent/usable.h"
 #include "topology/corners.h"
+
+/* Faces that share a word of faulty bits, and open vertices, or faces, for which a thread more pays. */
+enum { WORD = 64, GRAIN = 1 << 9 };
 
 /* Sums at a vertex and its usable corners, for orientation -1 and +1. */
 typedef struct neighbour_answers {
@@ -79,7 +83,7 @@ static int orientation_of(const repair_state *r, size_t face, size_t first)
 	int known;
 	if (!mesh->face_sizes && nt_knows_orientation(r->solve->known, face, &known))
 		return known;
-	const size_t faulty = r->faulty[face / 64] >> face % 64 & 1 ? nt_face_size(mesh, face) : 0;
+	const size_t faulty = r->faulty[face / WORD] >> face % WORD & 1 ? nt_face_size(mesh, face) : 0;
 	for (size_t c = first; c < first + faulty; c++)
 		if (!is_usable(r->solve, c) && signbit(r->solve->tangents[4 * c + 3]))
 			return 0;
@@ -133,12 +137,12 @@ static bool find_faulty(const repair_state *r, place *at)
 	const nmtan_mesh *mesh = r->solve->mesh;
 	size_t face = at->face;
 	while (face < mesh->face_count) {
-		const uint64_t left = r->faulty[face / 64] >> face % 64;
+		const uint64_t left = r->faulty[face / WORD] >> face % WORD;
 		if (left) {
 			face += (size_t)nt_trailing_zeros(left);
 			break;
 		}
-		face = (face / 64 + 1) * 64;
+		face = (face / WORD + 1) * WORD;
 	}
 	if (face >= mesh->face_count)
 		return false;
@@ -200,18 +204,28 @@ static nmtan_status number_vertices(repair_state *r, size_t unusable)
 
 /* Neighbourhoods */
 
-/* Adds a face of 3 or 4 corners to the neighbourhoods of its open vertices. */
-static void visit_face(const repair_state *r, size_t face, size_t first, unsigned size)
+/* Neighbourhoods [begin, begin + count) of a thread. */
+typedef struct share {
+	const repair_state *repair;
+	uint32_t begin, count;
+} share;
+
+/* Adds a face of 3 or 4 corners to the neighbourhoods of its open vertices, as far as they are a thread's. */
+static void visit_face(const share *s, size_t face, size_t first, unsigned size)
 {
+	const repair_state *r = s->repair;
 	const nt_solve *solve = r->solve;
 	neighbourhood *of[4]; /* its vertices; NULL: not open */
+	bool any = false;
 	for (size_t k = 0; k < size; k++) {
-		of[k] = is_open(r, first + k) ? &r->neighbourhoods[r->ids[r->welded[first + k]]] : NULL;
+		const uint32_t id = is_open(r, first + k) ? r->ids[r->welded[first + k]] : NT_NO_ID;
+		of[k] = id - s->begin < s->count ? &r->neighbourhoods[id] : NULL;
+		any |= of[k] != NULL;
 		const float w = of[k] ? nt_corner_tangent(solve, first + k)[3] : 0.0f;
 		if (w != 0.0f && of[k]->usable[w > 0.0f] == NT_NO_ID)
 			of[k]->usable[w > 0.0f] = (uint32_t)(first + k);
 	}
-	const int orientation = orientation_of(r, face, first);
+	const int orientation = any ? orientation_of(r, face, first) : 0;
 	if (!orientation)
 		return; /* no triangle of it has a frame */
 	uint32_t corners[2][3] = {{(uint32_t)first, (uint32_t)first + 1, (uint32_t)first + 2}};
@@ -246,29 +260,32 @@ static void answer(const nt_solve *solve, neighbourhood *at)
 }
 
 /* Visits the faces with an open vertex. Most have none, so that triangles have a loop of their own. */
-static void visit_faces(const repair_state *r)
+static void visit_faces(const share *s)
 {
+	const repair_state *r = s->repair;
 	const nmtan_mesh *mesh = r->solve->mesh;
 	const uint8_t *const open = r->open;
 	const uint32_t *v = r->welded;
 	for (size_t face = 0; !mesh->face_sizes && face < mesh->face_count; face++, v += 3)
 		if (NT_EXPECT(open[v[0]] | open[v[1]] | open[v[2]], 0))
-			visit_face(r, face, 3 * face, 3);
+			visit_face(s, face, 3 * face, 3);
 	for (size_t face = 0, first = 0; mesh->face_sizes && face < mesh->face_count;
 		first += mesh->face_sizes[face++]) {
 		const uint32_t *corners = r->welded + first;
 		const unsigned size = mesh->face_sizes[face];
 		if (open[corners[0]] | open[corners[1]] | open[corners[2]] | (size == 4 && open[corners[3]]))
-			visit_face(r, face, first, size);
+			visit_face(s, face, first, size);
 	}
 }
 
-/* Finds the answers of all open vertices. */
-static void visit_neighbourhoods(const repair_state *r)
+/* Finds the answers of open vertices [begin, end). */
+static void visit_neighbourhoods(void *context, size_t begin, size_t end, unsigned thread)
 {
-	visit_faces(r);
-	for (size_t i = 0; i < r->id_count; i++)
-		answer(r->solve, &r->neighbourhoods[i]);
+	(void)thread;
+	const share s = {context, (uint32_t)begin, (uint32_t)(end - begin)};
+	visit_faces(&s);
+	for (size_t i = begin; i < end; i++)
+		answer(s.repair->solve, &s.repair->neighbourhoods[i]);
 }
 
 /* Repairs */
@@ -339,6 +356,16 @@ static void repair_face(const repair_state *r, size_t number, size_t first)
 	}
 }
 
+/* Repairs the faces of words [begin, end). */
+static void repair_faces(void *context, size_t begin, size_t end, unsigned thread)
+{
+	(void)thread;
+	const repair_state *r = context;
+	place at = {WORD * begin, r->solve->mesh->face_sizes ? nt_first_corner(r->solve->mesh, WORD * begin) : 0};
+	for (; find_faulty(r, &at) && at.face < WORD * end; step_over(r, &at))
+		repair_face(r, at.face, at.first);
+}
+
 /* The part that nearly all meshes do not need: not in line, since it saves many registers. */
 static nmtan_status NT_NOINLINE repair(const nt_solve *solve, const nmtan_counts *counts,
 	const uint64_t *faulty)
@@ -349,9 +376,8 @@ static nmtan_status NT_NOINLINE repair(const nt_solve *solve, const nmtan_counts
 		status = number_vertices(&r, nt_counts_repaired(counts));
 	if (status)
 		return status;
-	visit_neighbourhoods(&r);
-	for (place at = {0, 0}; find_faulty(&r, &at); step_over(&r, &at))
-		repair_face(&r, at.face, at.first);
+	nt_parallel_ranges(solve->threads, r.id_count, GRAIN, visit_neighbourhoods, &r);
+	nt_parallel_ranges(solve->threads, (solve->mesh->face_count + WORD - 1) / WORD, GRAIN / WORD, repair_faces, &r);
 	return NMTAN_OK;
 }
 

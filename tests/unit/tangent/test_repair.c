@@ -525,3 +525,47 @@ TEST(noise_along_the_normal_is_no_answer)
 	}
 	assert_true(sum.repaired > 0);
 }
+
+/* A sheet with normals along dP/du at half of its vertices, and texture coordinates that have collapsed in places: all
+ * of triangles, and of quads too. */
+TEST(threads_repair_the_same)
+{
+	enum { SIDE = 100, VERTICES = (SIDE + 1) * (SIDE + 1), CORNERS = 6 * SIDE * SIDE };
+	static float p[VERTICES][3], n[VERTICES][3], t[VERTICES][2];
+	static uint32_t indices[CORNERS];
+	static uint8_t sizes[2 * SIDE * SIDE];
+	nt_random random = nt_random_seed(26);
+	for (uint32_t v = 0; v < VERTICES; v++) {
+		memcpy(p[v], (float[3]){(float)(v % (SIDE + 1)), (float)(v / (SIDE + 1)), 0}, sizeof *p);
+		memcpy(n[v], (float[3]){(float)(v % 2), 0, (float)((v + 1) % 2)}, sizeof *n);
+		memcpy(t[v], nt_random_below(&random, 5) ? p[v] : p[0], sizeof *t);
+	}
+	for (int quads = 0; quads < 2; quads++) {
+		size_t faces = 0, corners = 0;
+		for (uint32_t q = 0; q < SIDE * SIDE; q++) {
+			const uint32_t a = q / SIDE * (SIDE + 1) + q % SIDE, d = a + SIDE + 1;
+			const bool quad = quads && q % 3 == 0;
+			const uint32_t of_quad[4] = {a, a + 1, d + 1, d}, halves[6] = {a, a + 1, d + 1, a, d + 1, d};
+			memcpy(indices + corners, quad ? of_quad : halves, (quad ? 4 : 6) * sizeof *indices);
+			corners += quad ? 4 : 6;
+			sizes[faces] = quad ? 4 : 3;
+			sizes[faces + 1] = 3;
+			faces += quad ? 1 : 2;
+		}
+		const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = faces, .vertex_count = VERTICES,
+			.face_sizes = quads ? sizes : NULL, .indices = indices, .positions = p[0], .normals = n[0],
+			.texcoords = t[0]};
+		float *tangents[2] = {malloc(16 * corners), malloc(16 * corners)};
+		nmtan_counts counts[2] = {NMTAN_COUNTS_INIT, NMTAN_COUNTS_INIT};
+		for (unsigned i = 0; i < 2; i++) {
+			const nmtan_options options = {.struct_bytes = sizeof options, .threads = 1 + 4 * i};
+			const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents[i]};
+			assert_int_equal(nmtan_tangents(&mesh, &options, &output, &counts[i]), NMTAN_OK);
+		}
+		assert_true(counts[0].repaired_parallel + counts[0].repaired_zero > SIDE * SIDE / 2);
+		assert_memory_equal(&counts[0], &counts[1], sizeof *counts);
+		assert_memory_equal(tangents[0], tangents[1], 16 * corners);
+		free(tangents[0]);
+		free(tangents[1]);
+	}
+}
