@@ -30,6 +30,7 @@
 #include "file/lookup.h"
 #include "file/output.h"
 #include "file/path.h"
+#include "file/temporary.h"
 #include "pipeline/report_folder.h"
 #include "report/codes.h"
 
@@ -844,7 +845,7 @@ int main(int argc, char **argv)
 	 * which temporary files are removed. */
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN);
-	nt_output_catch_signals(tell_interrupted);
+	nt_temporaries_catch_signals(tell_interrupted);
 	nt_output_catch_exhaustion(end_exhausted);
 	nt_output_catch_faults(end_changed);
 

@@ -12,8 +12,8 @@
  *      it is free, else a.new-D.bin
  *   2  rename tmp onto M: the switch       M -> a.bin, a.new-D.bin      new
  *
- * That is all where every sidecar's name was free or had its bytes (NT_NAMING_NEW, NT_NAMING_USED). If a sidecar
- * replaces one of ours (NT_NAMING_REPLACES), what step 2 places is the staging main file, and it goes on:
+ * That is all where every sidecar's name was free or had its bytes. If a sidecar replaces one of ours, what step 2
+ * places is the staging main file, and it goes on:
  *
  *   3  link a.new-D.bin to tmp, rename     M -> a.new-D.bin             new; a.bin has old
  *      tmp onto a.bin, for each                                         or new bytes
@@ -95,43 +95,28 @@ static nt_status sync_used(const char *path, nt_error *error)
 
 /* ---- step 1 ---- */
 
-static nt_status take_name(nt_output *output, nt_sink *sink, const char *name, nt_error *error)
-{
-	sink->placed = nt_temporary_rename(sink->temporary, name, false);
-	if (sink->placed && output->options.result)
-		output->options.result->left = false;
-	if (sink->placed)
-		return NT_OK;
-	return errno == EEXIST ? taken_meanwhile(output, name, error) : nt_sink_fail(error, name, errno);
-}
-
-
 static nt_status place_sidecar(nt_output *output, nt_sink *sink, nt_error *error)
 {
-	const bool sync = output->options.sync;
-	switch (sink->naming) {
-	case NT_NAMING_NEW:
-		return take_name(output, sink, sink->target, error);
-	case NT_NAMING_USED:
-		if (sink->is_of_set)
-			return NT_OK;
-		if (!nt_state_is(sink->target, &sink->there))
-			return taken_meanwhile(output, sink->target, error);
-		return sync ? sync_used(sink->target, error) : NT_OK;
-	default:
-		if (!nt_state_is(sink->target, &sink->there))
-			return taken_meanwhile(output, sink->target, error);
-		if (!sink->staging_is_there)
-			return take_name(output, sink, sink->staging, error);
-		return sync ? sync_used(sink->staging, error) : NT_OK;
-	}
+	const char *name = nt_sink_place(sink);
+	if (sink->is_of_set)
+		return NT_OK;
+	if (sink->there.id.inode && !nt_state_is(sink->target, &sink->there))
+		return taken_meanwhile(output, sink->target, error);
+	if (sink->stays)
+		return output->options.sync ? sync_used(name, error) : NT_OK;
+	sink->placed = nt_temporary_rename(sink->temporary, name, false);
+	if (!sink->placed)
+		return errno == EEXIST ? taken_meanwhile(output, name, error) : nt_sink_fail(error, name, errno);
+	if (output->options.result)
+		output->options.result->left = false;
+	return NT_OK;
 }
 
 /* ---- step 2, and 4 ---- */
 
 static nt_status place_main(const nt_output *output, nt_sink *sink, nt_error *error)
 {
-	if (!sink->temporary)
+	if (!sink->temporary || sink->stays)
 		return NT_OK;
 	sink->placed = nt_temporary_rename(sink->temporary, sink->target, !output->options.no_clobber);
 	if (sink->placed)
@@ -160,7 +145,7 @@ static nt_status place_all(nt_output *output, nt_error *error)
 	/* buffers that have a name go again; the main file that would refer to them is not there */
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
 		if (sink->role == NT_ROLE_BUFFER && sink->placed)
-			nt_temporary_remove_name(sink->temporary, sink->staging ? sink->staging : sink->target);
+			nt_temporary_remove_name(sink->temporary, nt_sink_place(sink));
 	return status;
 }
 
@@ -182,30 +167,6 @@ static bool link_stable(const nt_sink *sink)
 	return renamed;
 }
 
-/* The staging name by which a run that was killed before step 5 left the file that has the name now, or had it. */
-static void unlink_second_name(const nt_sink *sink)
-{
-	nt_buffer path = {0};
-	struct stat status;
-	nt_buffer_append(&path, sink->path, nt_folder_length(sink->path));
-	nt_output_staging_name(&path, nt_last_part(sink->path), sink->staging ? sink->before : sink->text);
-	if (!path.failed && lstat(path.data, &status) == 0 && nt_same_id(nt_file_id_of(&status), sink->there.id))
-		unlink(path.data);
-	nt_buffer_free(&path);
-}
-
-/* Leftovers of earlier runs to which nothing refers any more. A file that cannot be removed stays. */
-static void remove_superseded(const nt_output *output)
-{
-	nt_buffer path = {0};
-	for (size_t at = 0; nt_output_superseded(output, &at, &path); path.size = 0)
-		unlink(path.data);
-	nt_buffer_free(&path);
-	for (const nt_sink *sink = output->first; sink && !output->main->in_place; sink = sink->next)
-		if (nt_sink_digest(sink) && sink->naming != NT_NAMING_NEW && strcmp(sink->path, sink->target) == 0)
-			unlink_second_name(sink);
-}
-
 /* Steps 3 to 5; the staging main file is in place. */
 static nt_status settle_names(nt_output *output, nt_error *error)
 {
@@ -216,7 +177,7 @@ static nt_status settle_names(nt_output *output, nt_error *error)
 	const int number = errno;
 	nt_status status = sync_step(output, error);
 	if (!status)
-		remove_superseded(output);
+		nt_output_remove_superseded(output);
 	if (!status)
 		status = sync_step(output, error);
 	if (status)
@@ -270,20 +231,20 @@ nt_status nt_output_place(nt_output *output, nt_error *error)
 	const int lock = alone ? lock_folder(output) : -1;
 	nt_temporaries_hold(&before);
 	nt_status status = NT_OK;
-	if (alone && output->main->temporary && !output->options.no_clobber && !main_is_unchanged(output->main))
-		status = taken_meanwhile(output, output->main->path, error);
+	const nt_sink *main = output->main && output->main->temporary && !output->main->stays ? output->main : NULL;
+	if (alone && main && !output->options.no_clobber && !main_is_unchanged(main))
+		status = taken_meanwhile(output, main->path, error);
 	/* since it was added somebody else may have come to read it */
 	struct stat there;
-	if (!status && output->main && output->main->temporary && stat(output->main->target, &there) == 0 &&
-		nt_trace_is_read_elsewhere(&there))
-		status = nt_fail_file(error, NT_ERROR_IO, output->main->path,
+	if (!status && main && stat(main->target, &there) == 0 && nt_trace_is_read_elsewhere(&there))
+		status = nt_fail_file(error, NT_ERROR_IO, main->path,
 			"refusing to write: another input of this run is made from it");
 	if (!status)
 		status = place_all(output, error);
 	if (!status && output->staging)
 		status = settle_names(output, error);
-	else if (!status && output->main)
-		remove_superseded(output);
+	else if (!status)
+		nt_output_remove_superseded(output);
 	if (!status && lock >= 0 && !output->main->in_place && output->options.find_ownership)
 		nt_output_remove_stale_staging(output);
 	nt_temporaries_release(&before);

@@ -42,13 +42,11 @@ nt_status nt_output_protect(nt_output *output, const char *path, const char *way
 		return NT_OK;
 	const nt_file_id id = nt_file_id_of(&status);
 	const size_t count = output->guards.count;
-	char *copy = strdup(path);
+	const char *copy = nt_arena_text(&output->texts, path, strlen(path));
 	const uint32_t number = copy && nt_grow((void **)&output->guarded, &output->guarded_capacity, count + 1,
 		sizeof *output->guarded) ? nt_key_add(&output->guards, &id, sizeof id) : UINT32_MAX;
 	if (number == count)
 		output->guarded[number] = (nt_protected_file){copy, way_out};
-	else
-		free(copy);
 	return number != UINT32_MAX ? NT_OK : nt_fail_memory(error);
 }
 
@@ -121,17 +119,11 @@ static nt_status check_existing(const nt_output *output, nt_sink *sink, const st
 	return sink->in_place ? refuse_in_place(sink->path, status, error) : NT_OK;
 }
 
-/* So many files of a set stay open, each with its own lock. Files behind them have one lock together, that of a file
- * which is there for nothing else: sets may have more files than a process may have open. */
-enum { MOST_OPEN = 32 };
-
-static int create_temporary(nt_output *output, nt_sink *sink, const char *beside)
+/* Sidecars have the lock of their main file: sets may have more files than a process may have open. */
+static int create_temporary(const nt_output *output, nt_sink *sink, const char *beside)
 {
-	const bool is_led = nt_sink_is_sidecar(sink) && output->sidecar_count++ >= MOST_OPEN;
-	if (is_led && !output->leader && nt_temporary_create(beside, 0600, NULL, &output->leader) < 0)
-		return -1;
-	const unsigned mode = sink->in_place ? 0600 : 0666;
-	return nt_temporary_create(beside, mode, is_led ? output->leader : NULL, &sink->temporary);
+	const nt_temporary *leader = nt_sink_is_sidecar(sink) && output->main ? output->main->temporary : NULL;
+	return nt_temporary_create(beside, sink->in_place ? 0600 : 0666, leader, &sink->temporary);
 }
 
 static nt_status refuse_folder(const char *path, const char *folder, nt_error *error)
@@ -147,7 +139,7 @@ nt_status nt_output_check_folder(const char *path, nt_error *error)
 }
 
 /* Creates the temporary beside a path and explains why it cannot. */
-static nt_status open_temporary(nt_output *output, nt_sink *sink, const char *beside, nt_error *error)
+static nt_status open_temporary(const nt_output *output, nt_sink *sink, const char *beside, nt_error *error)
 {
 	char text[PATH_MAX];
 	const char *folder = nt_folder_of(beside, text);
@@ -222,9 +214,12 @@ static nt_status open_main(nt_output *output, nt_sink *sink, nt_error *error)
 		sink->fd = open(sink->path, O_WRONLY | O_CLOEXEC);
 		return sink->fd < 0 ? nt_sink_fail(error, sink->path, errno) : NT_OK;
 	}
-	sink->target = exists ? realpath(sink->path, NULL) : strdup(sink->path);
-	if (!sink->target)
-		return nt_sink_fail(error, sink->path, errno);
+	char *real = exists ? realpath(sink->path, NULL) : NULL;
+	const int number = errno;
+	sink->target = real ? nt_arena_text(&output->texts, real, strlen(real)) : sink->path;
+	free(real);
+	if (!sink->target || (exists && !real))
+		return nt_sink_fail(error, sink->path, sink->target ? number : ENOMEM);
 	for (const nt_sink *other = output->first; other; other = other->next)
 		if (!nt_sink_is_sidecar(other) && other->target && strcmp(other->target, sink->target) == 0)
 			return nt_fail_file(error, NT_ERROR_IO, sink->path,
@@ -239,9 +234,6 @@ static void free_sink(nt_sink *sink)
 	nt_temporary_discard(sink->temporary);
 	nt_digest_free(sink->digest);
 	free(sink->buffer);
-	free(sink->path);
-	free(sink->target);
-	free(sink->staging);
 	free(sink);
 }
 
@@ -256,8 +248,8 @@ static nt_status open_sink(nt_output *output, nt_sink *sink, nt_error *error)
 	if (sink->role != NT_ROLE_STAGING)
 		return open_main(output, sink, error);
 	/* the same file as the main file, so it was checked with that */
-	sink->target = strdup(output->main->target);
-	return sink->target ? open_temporary(output, sink, sink->target, error) : nt_fail_memory(error);
+	sink->target = output->main->target;
+	return open_temporary(output, sink, sink->target, error);
 }
 
 static void append_sink(nt_output *output, nt_sink *sink)
@@ -281,7 +273,7 @@ nt_status nt_output_add(nt_output *output, const char *path, nt_role role, nt_si
 	added->fd = -1;
 	added->role = role;
 	added->dry = output->options.dry_run;
-	added->path = strdup(path);
+	added->path = nt_arena_text(&output->texts, path, strlen(path));
 	added->buffer = nt_alloc(NT_SINK_BUFFER_BYTES, 1);
 	nt_status status = added->path && added->buffer ? open_sink(output, added, error)
 							: nt_fail_memory(error);
@@ -384,9 +376,7 @@ static nt_status leave_equal(nt_output *output, nt_error *error)
 		nt_same_bytes(nt_temporary_path(main->temporary), main->target, &same, error);
 	/* what may not be touched is replaced */
 	if (!status && same && (choice == NT_EQUAL_KEEP || utimensat(AT_FDCWD, main->target, NULL, 0) == 0)) {
-		nt_temporary_discard(main->temporary);
-		main->temporary = NULL;
-		main->fd = -1;
+		main->stays = true; /* its lock is that of the sidecars */
 		nt_output_leave(output);
 	}
 	return status;
@@ -395,11 +385,7 @@ static nt_status leave_equal(nt_output *output, nt_error *error)
 /* The present name of a complete file of the set. */
 static const char *present_path(const nt_sink *sink)
 {
-	if (sink->naming == NT_NAMING_REPLACES && sink->staging_is_there)
-		return sink->staging;
-	if (sink->naming == NT_NAMING_USED)
-		return sink->target;
-	return sink->temporary ? nt_temporary_path(sink->temporary) : sink->target;
+	return sink->temporary && !sink->stays ? nt_temporary_path(sink->temporary) : nt_sink_place(sink);
 }
 
 nt_status nt_output_commit(nt_output *output, nt_error *error)
@@ -409,7 +395,7 @@ nt_status nt_output_commit(nt_output *output, nt_error *error)
 		if (nt_sink_is_sidecar(sink))
 			status = nt_output_settle(output, sink, error);
 		/* until now it was what others could read, whatever became of the file that is used */
-		if (sink->naming == NT_NAMING_USED && sink->temporary) {
+		if (sink->stays && sink->temporary) {
 			nt_temporary_discard(sink->temporary);
 			sink->temporary = NULL;
 			sink->fd = -1;
@@ -447,25 +433,13 @@ void nt_output_abort(nt_output *output)
 		free_sink(sink);
 		sink = next;
 	}
-	nt_temporary_discard(output->leader);
 	free(output->named);
 	nt_hash_index_free(&output->names);
-	for (size_t i = 0; i < output->guards.count; i++)
-		free(output->guarded[i].path);
 	nt_key_set_free(&output->guards);
-	nt_output_free_ownership(output);
+	free(output->ownership);
 	free(output->guarded);
+	nt_arena_free(&output->texts);
 	free(output);
-}
-
-void nt_output_catch_signals(void (*tell)(void))
-{
-	nt_temporaries_catch_signals(tell);
-}
-
-void nt_output_remove_temporaries(void)
-{
-	nt_temporaries_remove_all();
 }
 
 static void (*end_process)(void);

@@ -150,14 +150,6 @@ nt_status nt_output_sync_name(const char *path, nt_error *error);
 /* Removes the temporary files and frees the set; NULL is allowed. */
 void nt_output_abort(nt_output *output);
 
-/* Makes SIGINT, SIGTERM and SIGHUP remove the temporary files and call `tell` (NULL: nothing), in the
- * handler, before they end the process, and turns SIGPIPE into a write error. Called once by the front end. */
-void nt_output_catch_signals(void (*tell)(void));
-
-/* Removes the temporary files of all sets, for a process that ends: what is on its way to its place gets there first,
- * and nothing sets out any more. */
-void nt_output_remove_temporaries(void);
-
 /* Has the temporary files removed and `end` called, which must not return, where the process cannot go on for want of
  * memory. */
 void nt_output_catch_exhaustion(void (*end)(void));

@@ -8,17 +8,11 @@
 
 #include <sys/stat.h>
 #include "base/hash_index.h"
+#include "base/memory.h"
 #include "file/lookup.h"
 #include "file/output.h"
 #include "file/path.h"
 #include "file/temporary.h"
-
-/* Treatment of a settled sidecar. */
-typedef enum nt_naming {
-	NT_NAMING_NEW,     /* it takes a name that is free */
-	NT_NAMING_USED,    /* a file of these bytes has the name already, and stays */
-	NT_NAMING_REPLACES /* it takes the place of a file of ours, after a time under its staging name */
-} nt_naming;
 
 /* One state of one file; it has changed when any of it differs. */
 typedef struct nt_file_state {
@@ -44,33 +38,31 @@ struct nt_sink {
 	size_t used;              /* bytes in buffer */
 	unsigned char *buffer;
 	nt_digest *digest;        /* of all bytes; sidecars only */
-	char *path;               /* as the caller named it */
-	char *target;             /* where it goes: where symbolic links lead, or a settled sidecar's name; NULL when
+	/* texts are the set's */
+	const char *path;         /* as the caller named it */
+	const char *target;       /* where it goes: where symbolic links lead, or a settled sidecar's name; NULL when
 	                             written through */
+	bool stays;               /* the name that it gets has a file of its bytes, which is used */
+	nt_file_state there;      /* what has the target, of a main file: had when it was added; zeroed: nothing */
 	/* of a settled sidecar */
-	bool settled, ours, is_of_set; /* is_of_set: the file that it uses is another one of this very set */
-	nt_naming naming;
-	nt_file_state there;      /* what has the name: USED, REPLACES; of a main file: what had it when it was added */
-	char *staging;            /* REPLACES: path of the staging name */
-	bool staging_is_there;    /* with these bytes */
-	bool supersedes;          /* a file named by its bytes, of the same wanted name and ours, goes */
-	char text[NT_DIGEST_TEXT], before[NT_DIGEST_TEXT]; /* before: of what is replaced, or superseded */
+	bool settled, ours, is_of_set; /* is_of_set: the file that is used is another one of this very set */
+	const char *staging;      /* the name for a time of one that replaces what is there; NULL: it does not */
+	char text[NT_DIGEST_TEXT], before[NT_DIGEST_TEXT]; /* before: of what is replaced, or superseded; "": nothing */
 };
 
 typedef struct nt_protected_file {
-	char *path;
+	const char *path;
 	const char *way_out; /* a constant; NULL: none */
 } nt_protected_file;
 
 typedef struct nt_ownership {
-	char *name, *digest, *before; /* before: may be NULL */
+	const char *name, *digest, *before; /* before: may be NULL */
 } nt_ownership;
 
 struct nt_output {
 	nt_output_options options;
+	nt_arena texts;
 	nt_sink *first, *last, *main, *staging;
-	nt_temporary *leader; /* of the sidecars behind the first MOST_OPEN; NULL: none yet */
-	size_t sidecar_count;
 	nt_sink **named; /* by the names that they have or will have, those of sidecars for the time being, too */
 	size_t named_count, named_capacity;
 	nt_hash_index names;
@@ -103,17 +95,20 @@ nt_file_state nt_state_of(const struct stat *status);
 /* Whether a path, links followed, still is the file in that state. */
 bool nt_state_is(const char *path, const nt_file_state *state);
 
+/* The path of a settled sidecar once the main file is placed for the first time. */
+static inline const char *nt_sink_place(const nt_sink *sink)
+{
+	return sink->staging ? sink->staging : sink->target;
+}
+
 /* Notes a name that a file of the set has. */
 nt_status nt_output_note_name(nt_output *output, nt_sink *sink, const char *path, nt_error *error);
 
 /* `file`: its path is NULL where another run of the batch has read it. */
 bool nt_output_is_protected(const nt_output *output, const struct stat *status, const nt_protected_file **file);
 
-/* Appends the path of a file of ours that nothing refers to any more once the set is in place; one a call, *at begins
- * with 0; false: no more. */
-bool nt_output_superseded(const nt_output *output, size_t *at, nt_buffer *path);
-
-void nt_output_free_ownership(nt_output *output);
+/* Removes files of ours that were named by their bytes, to which nothing refers any more once the set is in place. */
+void nt_output_remove_superseded(const nt_output *output);
 
 /* Removes what killed runs left under staging names of the sidecars of this set, which is in place, if no document
  * beside it needs that. Nobody else may be placing files in the folder. */

@@ -108,25 +108,21 @@ const char *nt_sink_name(const nt_sink *sink, bool staging)
 
 /* ---- whose file ---- */
 
+static const char *keep(nt_output *output, const char *text)
+{
+	return text ? nt_arena_text(&output->texts, text, strlen(text)) : NULL;
+}
+
 nt_status nt_output_add_ownership(nt_output *output, const char *name, const char *digest, const char *before,
 	nt_error *error)
 {
-	if (!nt_grow((void **)&output->ownership, &output->ownership_capacity, output->ownership_count + 1,
-		sizeof *output->ownership))
+	const nt_ownership record = {keep(output, name), keep(output, digest), keep(output, before)};
+	if (!record.name || !record.digest || (before && !record.before) ||
+		!nt_grow((void **)&output->ownership, &output->ownership_capacity, output->ownership_count + 1,
+			sizeof record))
 		return nt_fail_memory(error);
-	nt_ownership *record = &output->ownership[output->ownership_count++];
-	*record = (nt_ownership){strdup(name), strdup(digest), before ? strdup(before) : NULL};
-	return record->name && record->digest && (record->before || !before) ? NT_OK : nt_fail_memory(error);
-}
-
-void nt_output_free_ownership(nt_output *output)
-{
-	for (size_t i = 0; i < output->ownership_count; i++) {
-		free(output->ownership[i].name);
-		free(output->ownership[i].digest);
-		free(output->ownership[i].before);
-	}
-	free(output->ownership);
+	output->ownership[output->ownership_count++] = record;
+	return NT_OK;
 }
 
 /* Asks the previous main file, once. */
@@ -175,19 +171,11 @@ static nt_status may_replace(nt_output *output, nt_sink *sink, bool *may, nt_err
 	sink->there = nt_state_of(&status);
 	result = nt_digest_of_file(sink->path, sink->before, error);
 	*may = !result && sink->before[0] && is_owned(output, name, sink->before);
+	if (!*may) {
+		sink->there = (nt_file_state){.size = 0};
+		sink->before[0] = '\0';
+	}
 	return result;
-}
-
-/* Whether a file is of this name and these bytes, and neither guarded nor a link. */
-static bool is_intact(const nt_output *output, const char *path, const char *digest)
-{
-	char text[NT_DIGEST_TEXT];
-	struct stat status;
-	const nt_protected_file *ignored;
-	nt_error unused;
-	return lstat(path, &status) == 0 && S_ISREG(status.st_mode) &&
-	       !nt_output_is_protected(output, &status, &ignored) && nt_digest_of_file(path, text, &unused) == NT_OK &&
-	       strcmp(text, digest) == 0;
 }
 
 /* A file's name, or a sidecar's for the time being. */
@@ -218,54 +206,55 @@ static bool is_used(const nt_output *output, const char *name)
 	return false;
 }
 
+/* The digest of a file that may be removed: none of this set's, neither guarded nor a link. False: it may not. */
+static bool find_unused(const nt_output *output, const char *path, char digest[NT_DIGEST_TEXT])
+{
+	struct stat status;
+	const nt_protected_file *file;
+	nt_error ignored;
+	return !is_used(output, nt_last_part(path)) && lstat(path, &status) == 0 && S_ISREG(status.st_mode) &&
+	       !nt_output_is_protected(output, &status, &file) && !nt_digest_of_file(path, digest, &ignored);
+}
+
 /* Whether an ownership record is of a file that an earlier run made in place of the name that a buffer wants. */
 static bool is_made_for(const nt_ownership *record, const nt_sink *sink)
 {
-	const char *name = nt_last_part(sink->path);
-	return sink->role == NT_ROLE_BUFFER && (is_name(record->name, name, of_content, record->digest) ||
-		is_name(record->name, name, for_the_time_being, record->digest));
+	return sink->role == NT_ROLE_BUFFER &&
+		is_name(record->name, nt_last_part(sink->path), of_content, record->digest);
 }
 
-/* Files made obsolete by this output: the recorded file and, if interrupted, its predecessor. */
-static bool find_superseded(const nt_output *output, const nt_ownership *record, const nt_sink *sink, bool itself,
-	nt_buffer *path)
+/* Removes the file of these bytes that was made in place of the wanted name, if it has them still. */
+static void remove_made(const nt_output *output, const nt_sink *sink, const char *digest)
 {
-	const char *wanted = nt_last_part(sink->path), *digest = itself ? record->digest : record->before;
-	if (!digest || !is_made_for(record, sink))
-		return false;
-	path->size = 0;
-	nt_buffer_append(path, sink->path, (size_t)(wanted - sink->path));
-	if (itself)
-		nt_buffer_text(path, record->name);
-	else if (is_name(record->name, wanted, of_content, record->digest))
-		append_name(path, wanted, of_content, digest, 0);
-	else
-		return false; /* it was to replace the wanted name */
-	return !path->failed && !is_used(output, nt_last_part(path->data)) && is_intact(output, path->data, digest);
+	nt_buffer path = {0};
+	char text[NT_DIGEST_TEXT];
+	nt_path_beside(&path, sink->path, "");
+	append_name(&path, nt_last_part(sink->path), of_content, digest, 0);
+	if (!path.failed && find_unused(output, path.data, text) && strcmp(text, digest) == 0)
+		unlink(path.data);
+	nt_buffer_free(&path);
 }
 
-bool nt_output_superseded(const nt_output *output, size_t *at, nt_buffer *path)
+void nt_output_remove_superseded(const nt_output *output)
 {
-	if (!output->main || output->main->in_place)
-		return false;
-	for (size_t i; (i = (*at)++) < 2 * output->ownership_count;)
-		for (const nt_sink *sink = output->first; sink; sink = sink->next)
-			if (find_superseded(output, &output->ownership[i / 2], sink, i % 2 == 0, path))
-				return true;
-	return false;
+	for (size_t i = 0; i < output->ownership_count && !output->main->in_place; i++)
+		for (const nt_sink *sink = output->first; sink; sink = sink->next) {
+			const nt_ownership *record = &output->ownership[i];
+			if (!is_made_for(record, sink))
+				continue;
+			remove_made(output, sink, record->digest);
+			if (record->before) /* of a run that was killed */
+				remove_made(output, sink, record->before);
+		}
 }
 
 /* So that a later run can go on with the removal if this one is cut short, the staging main file says what goes. */
 static void note_superseded(const nt_output *output, nt_sink *sink)
 {
-	const char *chosen = nt_last_part(sink->target);
 	for (size_t i = 0; i < output->ownership_count && !output->main->in_place; i++) {
 		const nt_ownership *record = &output->ownership[i];
-		if (!is_made_for(record, sink) || strcmp(record->name, chosen) == 0 ||
-			strlen(record->digest) >= NT_DIGEST_TEXT)
-			continue;
-		sink->supersedes = true;
-		strcpy(sink->before, record->digest);
+		if (is_made_for(record, sink) && strcmp(record->name, nt_last_part(sink->target)) != 0)
+			snprintf(sink->before, sizeof sink->before, "%s", record->digest);
 	}
 }
 
@@ -285,17 +274,12 @@ static void list_folder(const char *folder, bool staging, nt_buffer *names)
 /* Whether a file has the name that a sidecar of this set has for the time being, by its own bytes. */
 static bool is_staging(const nt_output *output, const char *path)
 {
-	const char *name = nt_last_part(path);
 	char digest[NT_DIGEST_TEXT];
-	struct stat status;
-	nt_error ignored;
-	const nt_protected_file *file;
-	if (is_used(output, name) || lstat(path, &status) != 0 ||
-		!S_ISREG(status.st_mode) || nt_output_is_protected(output, &status, &file) ||
-		nt_digest_of_file(path, digest, &ignored))
+	if (!find_unused(output, path, digest))
 		return false;
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		if (sink->role == NT_ROLE_BUFFER && is_name(name, nt_last_part(sink->path), for_the_time_being, digest))
+		if (sink->role == NT_ROLE_BUFFER && is_name(nt_last_part(path), nt_last_part(sink->path),
+			for_the_time_being, digest))
 			return true;
 	return false;
 }
@@ -306,7 +290,8 @@ static bool is_owner(const nt_output *output, const char *path, const char *name
 	nt_output other = {0};
 	nt_error ignored;
 	const bool is = output->options.find_ownership(&other, path, &ignored) || is_owned(&other, name, NULL);
-	nt_output_free_ownership(&other);
+	free(other.ownership);
+	nt_arena_free(&other.texts);
 	return is;
 }
 
@@ -399,67 +384,53 @@ static nt_status look(const nt_output *output, const nt_sink *sink, const char *
 	const nt_status result = nt_same_bytes(mine, theirs, &same, error);
 	if (result)
 		return result;
-	*state = nt_state_of(&status);
+	if (same)
+		*state = nt_state_of(&status);
 	*found = same ? EQUAL : OTHER;
 	return NT_OK;
 }
 
-/* The first name made of infix and digest that is free or has these bytes. */
-static nt_status find_name(const nt_output *output, const nt_sink *sink, const char *infix, char **path,
-	verdict *found, nt_file_state *state, nt_error *error)
+/* The first name made of infix and digest that is free or has these bytes, which then stay. */
+static nt_status find_name(nt_output *output, nt_sink *sink, const char *infix, const char **path,
+	nt_file_state *state, nt_error *error)
 {
 	nt_buffer text = {0};
 	nt_status status = NT_OK;
-	*found = OTHER;
-	for (unsigned number = 0; !status && *found == OTHER && number < MOST_NUMBERS; number++) {
+	verdict found = OTHER;
+	for (unsigned number = 0; !status && found == OTHER && number < MOST_NUMBERS; number++) {
 		text.size = 0;
 		nt_path_beside(&text, sink->path, "");
 		append_name(&text, nt_last_part(sink->path), infix, sink->text, number);
-		status = text.failed ? nt_fail_memory(error) : look(output, sink, text.data, found, state, error);
+		status = text.failed ? nt_fail_memory(error) : look(output, sink, text.data, &found, state, error);
 	}
-	if (!status && *found == OTHER)
+	if (!status && found == OTHER)
 		status = nt_sink_fail(error, sink->path, EEXIST);
-	*path = status ? NULL : text.data;
-	if (status)
-		nt_buffer_free(&text);
-	return status;
-}
-
-/* The name is somebody's who is not us, or ours to replace. */
-static nt_status choose_other(nt_output *output, nt_sink *sink, nt_error *error)
-{
-	bool may;
-	verdict found;
-	nt_file_state state;
-	nt_status status = may_replace(output, sink, &may, error);
-	if (status)
-		return status;
-	if (may) {
-		sink->naming = NT_NAMING_REPLACES;
-		status = find_name(output, sink, for_the_time_being, &sink->staging, &found, &state, error);
-		sink->staging_is_there = found == EQUAL;
-		sink->target = strdup(sink->path);
-		return status || sink->target ? status : nt_fail_memory(error);
-	}
-	status = find_name(output, sink, of_content, &sink->target, &found, &sink->there, error);
-	sink->naming = found == EQUAL ? NT_NAMING_USED : NT_NAMING_NEW;
-	sink->before[0] = '\0';
-	if (!status && output->main)
-		note_superseded(output, sink);
-	return status;
+	sink->stays = found == EQUAL;
+	*path = status ? NULL : keep(output, text.data);
+	nt_buffer_free(&text);
+	return status || *path ? status : nt_fail_memory(error);
 }
 
 static nt_status choose(nt_output *output, nt_sink *sink, nt_error *error)
 {
+	bool may = false;
 	verdict found;
+	nt_file_state ignored;
 	nt_status status = look(output, sink, sink->path, &found, &sink->there, error);
+	sink->target = sink->path;
+	sink->stays = found == EQUAL;
+	if (status || found != OTHER)
+		return status;
+	/* the name is somebody's who is not us, or ours to replace */
+	status = may_replace(output, sink, &may, error);
 	if (status)
 		return status;
-	if (found == OTHER)
-		return choose_other(output, sink, error);
-	sink->naming = found == EQUAL ? NT_NAMING_USED : NT_NAMING_NEW;
-	sink->target = strdup(sink->path);
-	return sink->target ? NT_OK : nt_fail_memory(error);
+	if (may)
+		return find_name(output, sink, for_the_time_being, &sink->staging, &ignored, error);
+	status = find_name(output, sink, of_content, &sink->target, &sink->there, error);
+	if (!status && output->main)
+		note_superseded(output, sink);
+	return status;
 }
 
 /* A file that is there is ours if the previous main file says so; one of this set, if that is. */
@@ -486,8 +457,8 @@ nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
 	nt_digest_text(sink->digest, sink->text);
 	if (sink->dry) {
 		sink->settled = sink->ours = true;
-		sink->target = strdup(sink->path);
-		return sink->target ? nt_output_note_name(output, sink, sink->target, error) : nt_fail_memory(error);
+		sink->target = sink->path;
+		return nt_output_note_name(output, sink, sink->target, error);
 	}
 	nt_status status = nt_sink_flush(sink, error);
 	if (!status)
@@ -495,7 +466,7 @@ nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
 	if (status)
 		return nt_error_in_file(error, sink->path);
 	sink->ours = true;
-	if (sink->naming == NT_NAMING_USED)
+	if (sink->stays && !sink->staging)
 		status = check_used(output, sink, error);
 	sink->settled = true;
 	/* nothing is written to it any more: of many, only the lists take memory and descriptors */
@@ -515,7 +486,7 @@ nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
 bool nt_output_has_staging(const nt_output *output)
 {
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		if (sink->staging || sink->supersedes)
+		if (sink->before[0])
 			return true;
 	return false;
 }
@@ -527,5 +498,5 @@ const char *nt_sink_digest(const nt_sink *sink)
 
 const char *nt_sink_digest_before(const nt_sink *sink)
 {
-	return sink->staging || sink->supersedes ? sink->before : NULL;
+	return sink->before[0] ? sink->before : NULL;
 }

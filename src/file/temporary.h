@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Temporary files that a signal removes, or, where nothing could (SIGKILL, a power cut), a later run (stale.c). A file
+ * Temporary files that a signal removes, or, where nothing could (SIGKILL, a power cut), a later run. A file
  * is on the list from the moment it exists until it has its name or is gone, without a gap in between.
  */
 #ifndef NT_FILE_TEMPORARY_H
@@ -58,11 +58,12 @@ void nt_temporary_remove_name(const nt_temporary *temporary, const char *target)
 /* Frees the entry and removes the file, where it has not been renamed. NULL is allowed. */
 void nt_temporary_discard(nt_temporary *temporary);
 
-/* Removes the temporary files of all sets, for a process that ends: nobody creates or renames one from now on. Safe in
- * a signal handler. */
+/* Removes the temporary files of all sets, for a process that ends: what is on its way to its place gets there first,
+ * and nothing sets out any more. Safe in a signal handler. */
 void nt_temporaries_remove_all(void);
 
-/* See nt_output_catch_signals(). */
+/* Makes SIGINT, SIGTERM and SIGHUP remove the temporary files and call `tell` (NULL: nothing), in the handler, before
+ * they end the process, and turns SIGPIPE into a write error. Called once by the front end. */
 void nt_temporaries_catch_signals(void (*tell)(void));
 
 #endif

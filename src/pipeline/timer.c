@@ -10,7 +10,7 @@
 #include <signal.h>
 #include <string.h>
 #include "base/clock.h"
-#include "file/output.h"
+#include "file/temporary.h"
 
 /* Time for a run to end by itself: most of the tenth of a second within which it is to be over. */
 static const double grace_seconds = 0.06;
@@ -39,7 +39,7 @@ static void *watch(void *context)
 		else if (now < t->end + grace_seconds)
 			sleep_until(t, t->end + grace_seconds);
 		else {
-			nt_output_remove_temporaries();
+			nt_temporaries_remove_all();
 			t->too_late(t->user);
 		}
 	}

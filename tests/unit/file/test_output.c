@@ -3,6 +3,7 @@
  * Output sets, in a folder of our own that is removed afterwards.
  */
 #include "file/output.h"
+#include "file/temporary.h"
 #include "folder.h"
 #include "test.h"
 
@@ -55,7 +56,7 @@ static void assert_refused(nt_output *output, const char *path, const char *mess
 static void wait_for_signal(int ready)
 {
 	nt_error error;
-	nt_output_catch_signals(NULL);
+	nt_temporaries_catch_signals(NULL);
 	nt_output *output;
 	nt_sink *sink;
 	if (nt_output_create(&output, NULL, &error) ||
