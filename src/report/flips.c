@@ -31,11 +31,11 @@ static const double FLIPPED_SHARE = 0.05, SINGLE_SHARE = 0.1, MINORITY_SHARE = 0
 
 typedef struct patch {
 	uint32_t first;             /* triangle */
-	uint32_t triangles, slivers;
+	uint32_t triangles;
 	uint32_t sides;             /* that lie against the other orientation */
 	uint32_t host;              /* the largest island there; NT_NONE */
 	double area;
-	bool small, flipped;
+	bool all_slivers, small, flipped;
 } patch;
 
 typedef struct patches {
@@ -68,8 +68,8 @@ static void measure_patches(const nt_check *check, patches *p)
 			continue;
 		patch *one = &p->items[p->numbers[t]];
 		one->first = one->first == NT_NONE ? (uint32_t)t : one->first;
+		one->all_slivers = (one->all_slivers || !one->triangles) && nt_is_sliver(s, t);
 		one->triangles++;
-		one->slivers += nt_is_sliver(s, t);
 		one->area += nt_triangle_area(s, t);
 	}
 	for (size_t i = 0; i < check->mirrors.count; i++) {
@@ -109,7 +109,7 @@ static bool is_candidate(const nt_check *check, patch *one)
 	one->host = alone ? one->host : own;
 	const nt_island *host = &check->facts->islands[one->host];
 	const double alike = alone ? 0.0 : (double)host->triangles[check->surface.orientation[one->first] + 1];
-	return one->slivers == one->triangles || (alike <= MINORITY_SHARE * (double)island_size(host) &&
+	return one->all_slivers || (alike <= MINORITY_SHARE * (double)island_size(host) &&
 		is_small(one, island_size(host) + (alone ? one->triangles : 0),
 			host->area + (alone ? one->area : 0.0)));
 }

@@ -21,11 +21,11 @@ static nt_status check_shared(nt_check *check)
 	if (!sides)
 		return NT_ERROR_MEMORY;
 	memset(sides, 0, vertex_count);
-	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
+	for (size_t t = 0; t < s->triangle_count; t++) {
 		/* both halves of a folded quad may have the quad's tangents */
-		const int folded = nt_quad_orientation(check, c / 3);
-		const int sign = folded ? folded : nt_settled_orientation(check, c / 3);
-		if (sign && sign != NT_FOLDED_EITHER)
+		const int folded = nt_quad_orientation(check, t);
+		const int sign = folded ? folded : nt_settled_orientation(check, t);
+		for (size_t c = 3 * t; c < 3 * t + 3 && sign && sign != NT_FOLDED_EITHER; c++)
 			sides[nt_side_vertex(s, c)] |= sign > 0 ? UNMIRRORED : MIRRORED;
 	}
 	nt_tally shared = {.code = NT_CODE_TAN_MIRROR_SHARED_VERTEX};

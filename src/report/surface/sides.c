@@ -27,19 +27,21 @@ typedef struct listing {
 	uint32_t *counts; /* [ranges][point_count] sides with that lower point; then where the next one goes */
 } listing;
 
-/* sides: NULL: they are only counted. */
+/* sides: NULL: they are only counted. Without a loop over the three: that took twice the instructions. */
 static inline void go_over(const nt_surface *s, size_t begin, size_t end, uint32_t *counts, uint32_t *sides)
 {
 	for (size_t t = begin; t < end; t++) {
 		if (!nt_has_edges(s, t))
 			continue;
-		const uint32_t a = nt_side_point(s, 3 * t), b = nt_side_point(s, 3 * t + 1);
-		const uint32_t points[4] = {a, b, nt_side_point(s, 3 * t + 2), a};
-		for (uint32_t k = 0; k < 3; k++) {
-			const uint32_t at = counts[points[k] < points[k + 1] ? points[k] : points[k + 1]]++;
-			if (sides)
-				sides[at] = (uint32_t)(3 * t) + k;
-		}
+		const uint32_t a = nt_side_point(s, 3 * t), b = nt_side_point(s, 3 * t + 1),
+			       c = nt_side_point(s, 3 * t + 2);
+		const uint32_t first = counts[a < b ? a : b]++, second = counts[b < c ? b : c]++,
+			       third = counts[c < a ? c : a]++;
+		if (!sides)
+			continue;
+		sides[first] = (uint32_t)(3 * t);
+		sides[second] = (uint32_t)(3 * t + 1);
+		sides[third] = (uint32_t)(3 * t + 2);
 	}
 }
 
@@ -114,18 +116,18 @@ static void prefetch(const nt_surface *s, size_t at)
 size_t nt_surface_edges(const nt_surface *s, uint32_t low, nt_edge_side *edges)
 {
 	const size_t begin = low ? s->ends[low - 1] : 0, count = s->ends[low] - begin;
-	size_t moves = 0;
+	size_t moves = MOST_MOVES * count;
 	for (size_t i = 0; i < count; i++) {
 		prefetch(s, begin + i);
 		const uint32_t side = s->sides[begin + i];
 		const uint32_t a = nt_side_point(s, side), b = nt_side_point(s, nt_side_next(side));
 		const nt_edge_side next = {side, a == low ? b : a, s->orientation[side / 3], a == low};
 		size_t k = i;
-		for (; k > 0 && moves < MOST_MOVES * count && next.high < edges[k - 1].high; k--, moves++)
+		for (; k > 0 && next.high < edges[k - 1].high && moves; k--, moves--)
 			edges[k] = edges[k - 1];
 		edges[k] = next;
 	}
-	if (moves >= MOST_MOVES * count)
+	if (!moves)
 		qsort(edges, count, sizeof *edges, by_high);
 	return count;
 }
