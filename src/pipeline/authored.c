@@ -18,7 +18,6 @@
 #include "base/dvec.h"
 #include "report/maker/quads.h"
 #include "topology/corners.h"
-#include "topology/reversed.h"
 
 /* Finite, of unit length (to the Khronos validator's tolerance), off perpendicular by no more than a degree, as
  * --check has it: half a degree comes from rounding to 8 bits. n may be NULL. margin: what storing it may do to a
@@ -71,25 +70,15 @@ static bool face_is_valid(const nt_mesh *mesh, const nmtan_mesh *view, size_t fa
 			return false;
 	uint32_t corners[2][3];
 	const unsigned count = nt_written_triangles(view, face, first, corners);
-	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
 	for (unsigned i = 0; i < count; i++) {
-		nt_tangent_triangle triangle = {.other_w = false};
-		const int sign = (mesh->solve_texcoords ? mesh->solve_sign : 1) *
-				 nmtan_orientation(mesh->texcoords + 2 * nt_mesh_vertex(mesh, corners[i][0]),
-					 mesh->texcoords + 2 * nt_mesh_vertex(mesh, corners[i][1]),
-					 mesh->texcoords + 2 * nt_mesh_vertex(mesh, corners[i][2]));
-		for (size_t k = 0; k < 3; k++) {
-			const size_t vertex = nt_mesh_vertex(mesh, corners[i][k]);
-			triangle.positions[k] = mesh->positions + 3 * vertex;
-			triangle.normals[k] = mesh->normals ? mesh->normals + 3 * vertex : NULL;
-			triangle.texcoords[k] = uv + 2 * vertex;
-			triangle.tangents[k] = tangents[corners[i][k] - first];
-		}
-		triangle.orientation = sign;
+		const size_t v[3] = {nt_mesh_vertex(mesh, corners[i][0]), nt_mesh_vertex(mesh, corners[i][1]),
+			nt_mesh_vertex(mesh, corners[i][2])};
+		const float *const own[3] = {tangents[corners[i][0] - first], tangents[corners[i][1] - first],
+			tangents[corners[i][2] - first]};
+		const int sign = nt_uv_sign(mesh, v, 0);
 		/* half of a folded quad may have the quad's */
-		if (sign != 0 && w == (float)sign && mesh->normals && nt_is_reversed(&triangle))
-			return false;
-		if (sign != 0 && w != (float)sign && !nt_is_folded_sign(mesh, mesh->halves, first / 3, (int)w))
+		if (sign != 0 && (w == (float)sign ? nt_runs_backwards(mesh, v, own, sign, false)
+						   : !nt_is_folded_sign(mesh, mesh->halves, first / 3, (int)w)))
 			return false;
 	}
 	return w != 0.0f;

@@ -128,44 +128,27 @@ static bool wants_normals(const nt_scene *scene)
 	return wants;
 }
 
-/* Images that may be the normal map, the likeliest first. */
+/* An image that may be the normal map. */
 typedef struct beside {
-	struct {
-		char name[256];
-		size_t rank;
-	} items[MOST_BESIDE];
-	size_t count;
+	char *name;
+	size_t rank;
 } beside;
 
-static bool comes_before(size_t rank, const char *name, size_t other_rank, const char *other)
+static int by_rank(const void *a, const void *b)
 {
-	return rank != other_rank ? rank < other_rank : strcmp(name, other) < 0;
+	const beside *x = a, *y = b;
+	return x->rank != y->rank ? (x->rank < y->rank ? -1 : 1) : strcmp(x->name, y->name);
 }
 
-/* Inserted in its order; the last one goes if there are too many. */
-static void add_beside(beside *found, const char *name, size_t rank)
-{
-	size_t at = found->count;
-	while (at > 0 && comes_before(rank, name, found->items[at - 1].rank, found->items[at - 1].name))
-		at--;
-	if (at == MOST_BESIDE)
-		return;
-	found->count += found->count < MOST_BESIDE;
-	for (size_t i = found->count - 1; i > at; i--)
-		found->items[i] = found->items[i - 1];
-	snprintf(found->items[at].name, sizeof found->items[at].name, "%s", name);
-	found->items[at].rank = rank;
-}
-
-static void tell_beside(nt_scene *scene, const char *folder, const beside *found)
+static void tell_beside(nt_scene *scene, const char *folder, const beside *found, size_t count)
 {
 	nt_buffer detail = {0}, option = {0}, word = {0};
 	nt_place place;
 	nt_place_clear(&place);
 	snprintf(place.file, sizeof place.file, "%s", scene->path);
-	for (size_t i = 0; i < found->count; i++)
-		nt_buffer_format(&detail, "%s%s", i ? ", or " : "", found->items[i].name);
-	nt_buffer_format(&option, "--normal-map=%s%s", folder, found->items[0].name);
+	for (size_t i = 0; i < count && i < MOST_BESIDE; i++)
+		nt_buffer_format(&detail, "%s%s", i ? ", or " : "", found[i].name);
+	nt_buffer_format(&option, "--normal-map=%s%s", folder, found[0].name);
 	const bool sayable = option.data && nt_shell_word(option.data, &word) && word.data;
 	char *repair = sayable ? nt_arena_text(&scene->findings.arena, word.data, word.size) : NULL;
 	scene->findings.failed |= !detail.data || !option.data || (sayable && !repair);
@@ -182,17 +165,25 @@ void nt_propose_normal_map(nt_scene *scene, const nt_settings *settings)
 	const char *name = nt_last_part(scene->path), *dot = strrchr(name, '.');
 	const size_t length = dot ? (size_t)(dot - name) : strlen(name);
 	char *folder = strndup(scene->path, (size_t)(name - scene->path));
-	beside found = {.count = 0};
+	beside *found = NULL;
+	size_t count = 0, capacity = 0;
 	DIR *dir = settings->own_input && settings->images != NT_IMAGES_NONE && length && folder && wants_normals(scene)
 		? opendir(*folder ? folder : ".") : NULL;
 	for (const struct dirent *entry; dir && (entry = readdir(dir));) {
 		const size_t rank = rank_of(entry->d_name, name, length);
-		if (rank < ENDINGS)
-			add_beside(&found, entry->d_name, rank);
+		if (rank == ENDINGS || !nt_grow((void **)&found, &capacity, count + 1, sizeof *found))
+			continue;
+		found[count] = (beside){strdup(entry->d_name), rank};
+		count += found[count].name != NULL;
 	}
 	if (dir)
 		closedir(dir);
-	if (found.count)
-		tell_beside(scene, folder, &found);
+	if (count) {
+		qsort(found, count, sizeof *found, by_rank);
+		tell_beside(scene, folder, found, count);
+	}
+	while (count)
+		free(found[--count].name);
+	free(found);
 	free(folder);
 }

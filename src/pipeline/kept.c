@@ -14,19 +14,6 @@
 #include "report/report.h"
 #include "topology/corners.h"
 
-/* The sign of w at all corners of a triangle; 0: some have none; MIXED: they differ. */
-enum { MIXED = 2 };
-
-static int common_sign(const nt_mesh *mesh, const size_t v[3])
-{
-	int positive = 0, negative = 0;
-	for (int k = 0; k < 3; k++) {
-		positive += mesh->tangents[4 * v[k] + 3] > 0.0f;
-		negative += mesh->tangents[4 * v[k] + 3] < 0.0f;
-	}
-	return positive + negative < 3 ? 0 : positive == 3 ? 1 : negative == 3 ? -1 : MIXED;
-}
-
 /* Triangles that say; of them those whose w differs, whose w is wrong, and whose T is reversed while w is right. */
 enum { JUDGED, DIFFERS, BY_W, REVERSED, KINDS };
 
@@ -40,22 +27,17 @@ typedef struct sign_count {
 static void count_triangle(const sign_count *c, size_t t, const uint32_t corners[3], size_t counts[KINDS])
 {
 	const nt_mesh *mesh = c->mesh;
-	float uv[3][2];
-	size_t v[3];
-	for (size_t k = 0; k < 3; k++) {
-		v[k] = nt_mesh_vertex(mesh, corners[k]);
-		uv[k][0] = mesh->texcoords[2 * v[k]];
-		uv[k][1] = mesh->texcoords[2 * v[k] + 1] + nt_stored_v_offset(c->view);
-	}
-	const int sign = common_sign(mesh, v), turn = mesh->solve_texcoords ? mesh->solve_sign : 1;
-	const int orientation = sign && turn ? turn * nmtan_orientation(uv[0], uv[1], uv[2]) : 0;
+	const size_t v[3] = {nt_mesh_vertex(mesh, corners[0]), nt_mesh_vertex(mesh, corners[1]),
+		nt_mesh_vertex(mesh, corners[2])};
+	const int sign = nt_w_sign(mesh, v);
+	const int orientation = sign ? nt_uv_sign(mesh, v, nt_stored_v_offset(c->view)) : 0;
 	if (orientation == 0)
 		return;
-	counts[JUDGED] += sign != MIXED;
+	counts[JUDGED] += sign != NT_W_MIXED;
 	if (orientation == sign)
-		counts[REVERSED] += nt_runs_backwards(mesh, v, orientation, false);
+		counts[REVERSED] += nt_runs_backwards(mesh, v, NULL, orientation, false);
 	else if (!nt_is_folded_sign(mesh, c->halves, t, sign))
-		counts[sign == MIXED ? DIFFERS : BY_W]++;
+		counts[sign == NT_W_MIXED ? DIFFERS : BY_W]++;
 }
 
 static void count_range(void *context, size_t begin, size_t end, unsigned slot)

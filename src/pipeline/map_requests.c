@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * From maps to images: see map_requests.h. glTF has alpha beside the base colour, roughness and metallic (green and
- * blue) in one image, in which occlusion (red) may be, too, and so may clearcoat (red) and its roughness (green).
+ * The images that are requested for the maps of a material: one image each, or one for those that glTF has in one. It
+ * has alpha beside the base colour, roughness and metallic (green and blue) in one image, in which occlusion (red) may
+ * be, too, and so may clearcoat (red) and its roughness (green).
  */
-#include "pipeline/map_requests.h"
+#include "pipeline/stages.h"
 
 #include <string.h>
 
@@ -14,41 +15,17 @@ double nt_bump_height(const nt_settings *settings)
 
 static bool has(const nt_map *map)
 {
-	return map->name && *map->name;
+	return map && map->name && *map->name;
 }
 
-static nt_channel_map channel_map(const nt_map *map, nt_channel otherwise)
+/* Maps of one image lie at one place; the first of them says where, and others that do not are left out. */
+static bool fits(const nt_map *map, const nt_map *first)
 {
-	const char *letters = "rgbml", *letter = map->channel ? strchr(letters, map->channel) : NULL;
-	return (nt_channel_map){.channel = letter ? (nt_channel)(letter - letters) : otherwise, .base = map->base,
-		.gain = map->gain, .exponent = map->exponent};
+	const nt_placement *a = &map->placement, *b = first ? &first->placement : NULL;
+	return has(map) && (!has(first) || (a->clamp == b->clamp && a->moved == b->moved &&
+		(!a->moved || (memcmp(a->scale, b->scale, sizeof a->scale) == 0 &&
+			memcmp(a->offset, b->offset, sizeof a->offset) == 0))));
 }
-
-/* A channel of numbers. */
-static void put_number(nt_map_request *w, int channel, nt_map *map, nt_channel otherwise)
-{
-	w->maps[channel] = map;
-	w->what.channels[channel] = (nt_texture_channel){true, map->name, map->given, channel_map(map, otherwise)};
-}
-
-/* A channel without a map is white where somebody samples it. */
-static void put_white(nt_map_request *w, int channel, bool used)
-{
-	w->what.channels[channel].used |= used;
-}
-
-/* Red, green and blue of a map of colours. */
-static void put_colors(nt_map_request *w, nt_map *map)
-{
-	for (int k = 0; k < 3; k++) {
-		w->what.channels[k] = (nt_texture_channel){true, map->name, map->given,
-			channel_map(map, (nt_channel)k)};
-		w->what.channels[k].map.channel = (nt_channel)k;
-	}
-	w->maps[0] = map;
-}
-
-/* ---- requests ---- */
 
 static nt_map_request *begin(nt_map_request *requests, size_t *count, nt_texture_kind kind, const char *suffix)
 {
@@ -57,15 +34,21 @@ static nt_map_request *begin(nt_map_request *requests, size_t *count, nt_texture
 	return w;
 }
 
-/* Maps of one image lie at one place; the first of them says where, and others that do not are left out. */
-static bool fits(const nt_map *map, const nt_map *first)
+/* A channel of a map, by its letter; otherwise: if it has none. The first map of an image says what is beyond it. */
+static void put(nt_map_request *w, int channel, nt_map *map, nt_channel otherwise)
 {
-	const nt_placement *a = &map->placement, *b = &first->placement;
-	return has(map) && (!has(first) || (a->clamp == b->clamp && a->moved == b->moved &&
-		(!a->moved || (memcmp(a->scale, b->scale, sizeof a->scale) == 0 &&
-			memcmp(a->offset, b->offset, sizeof a->offset) == 0))));
+	const char *letters = "rgbml", *letter = map->channel ? strchr(letters, map->channel) : NULL;
+	bool first = true;
+	for (int k = 0; k < 4; k++)
+		first &= !w->what.channels[k].name;
+	w->what.clamp = first ? map->placement.clamp : w->what.clamp;
+	w->maps[channel] = map;
+	w->what.channels[channel] = (nt_texture_channel){true, map->name, map->given,
+		{.channel = letter ? (nt_channel)(letter - letters) : otherwise, .base = map->base, .gain = map->gain,
+			.exponent = map->exponent}};
 }
 
+/* Red, green and blue of a map of colours, which stands for the three once. */
 static void request_colors(nt_map *colors, nt_map *alpha, nt_map_request *requests, size_t *count)
 {
 	const bool with_alpha = alpha && fits(alpha, colors),
@@ -74,61 +57,59 @@ static void request_colors(nt_map *colors, nt_map *alpha, nt_map_request *reques
 		return;
 	nt_map_request *w = begin(requests, count, packed ? NT_TEXTURE_PACKED : NT_TEXTURE_COLOR,
 		with_alpha ? "-alpha" : "-adjusted");
-	if (has(colors))
-		put_colors(w, colors);
+	for (int k = 0; k < 3 && has(colors); k++) {
+		put(w, k, colors, (nt_channel)k);
+		w->what.channels[k].map.channel = (nt_channel)k;
+		w->maps[k] = k ? NULL : colors;
+	}
 	if (with_alpha)
-		put_number(w, 3, alpha, NT_CHANNEL_OPACITY);
-	for (int k = 0; k < 3 && packed; k++)
-		put_white(w, k, true);
-	w->what.clamp = (has(colors) ? colors : alpha)->placement.clamp;
+		put(w, 3, alpha, NT_CHANNEL_OPACITY);
+	for (int k = 0; k < 3; k++)
+		w->what.channels[k].used |= packed;
 }
 
-/* Maps of numbers, in channels from `first` on. */
+/* Maps of numbers, in channels from `first` on; NULL: there are none. */
 static nt_map_request *request_numbers(nt_map *const maps[], int first, int map_count, const char *suffix,
 	nt_map_request *requests, size_t *count)
 {
-	nt_map_request *w = begin(requests, count, NT_TEXTURE_PACKED, suffix);
-	for (int k = 0; k < map_count; k++)
-		if (has(maps[k]))
-			put_number(w, first + k, maps[k], NT_CHANNEL_LUMINANCE);
-	for (int k = map_count; k-- > 0;)
-		w->what.clamp = has(maps[k]) ? maps[k]->placement.clamp : w->what.clamp;
+	nt_map_request *w = NULL;
+	for (int k = 0; k < map_count; k++) {
+		if (!has(maps[k]))
+			continue;
+		w = w ? w : begin(requests, count, NT_TEXTURE_PACKED, suffix);
+		put(w, first + k, maps[k], NT_CHANNEL_LUMINANCE);
+	}
 	return w;
 }
 
 static void request_reflection(nt_material *m, nt_map_request *requests, size_t *count)
 {
-	nt_map none = {0}, *roughness = &m->roughness_map, *occlusion = &m->occlusion_map;
-	nt_map *metallic = fits(&m->metallic_map, roughness) ? &m->metallic_map : &none;
+	nt_map *roughness = &m->roughness_map, *occlusion = &m->occlusion_map;
+	nt_map *metallic = fits(&m->metallic_map, roughness) ? &m->metallic_map : NULL;
 	const nt_map *leader = has(roughness) ? roughness : metallic;
-	const bool together = has(leader) && fits(occlusion, leader);
-	if (has(occlusion) && !together)
+	const bool together = leader && fits(occlusion, leader);
+	if (!together)
 		request_numbers(&occlusion, 0, 1, "-occlusion", requests, count);
-	if (!has(leader))
-		return;
-	nt_map *const maps[] = {together ? occlusion : &none, roughness, metallic};
+	nt_map *const maps[] = {together ? occlusion : NULL, roughness, metallic};
 	nt_map_request *w = request_numbers(maps, 0, 3, "-orm", requests, count);
-	/* a factor of 0 leaves nothing of a channel */
-	put_white(w, 1, m->roughness > 0);
-	put_white(w, 2, m->metallic > 0);
+	if (!w)
+		return;
+	/* without a map a channel is white where somebody samples it; a factor of 0 leaves nothing of it */
+	w->what.channels[1].used |= m->roughness > 0;
+	w->what.channels[2].used |= m->metallic > 0;
 }
 
 static void request_layers(nt_material *m, nt_map_request *requests, size_t *count)
 {
 	nt_map *const coat[] = {&m->clearcoat_map, &m->clearcoat_roughness_map};
-	if (has(coat[0]) && fits(coat[1], coat[0])) {
-		request_numbers(coat, 0, 2, "-clearcoat", requests, count);
-	} else {
-		for (int k = 0; k < 2; k++)
-			if (has(coat[k]))
-				request_numbers(&coat[k], k, 1, "-clearcoat", requests, count);
-	}
-	if (has(&m->sheen_map)) {
-		nt_map *const sheen[] = {&m->sheen_map, &m->sheen_map, &m->sheen_map};
-		nt_map_request *w = request_numbers(sheen, 0, 3, "-sheen", requests, count);
-		for (int k = 0; k < 3; k++)
-			w->what.channels[k].map.srgb = true;
-	}
+	const bool together = has(coat[0]) && fits(coat[1], coat[0]);
+	request_numbers(coat, 0, together ? 2 : 1, "-clearcoat", requests, count);
+	if (!together)
+		request_numbers(coat + 1, 1, 1, "-clearcoat", requests, count);
+	nt_map *const sheen[] = {&m->sheen_map, &m->sheen_map, &m->sheen_map};
+	nt_map_request *w = request_numbers(sheen, 0, 3, "-sheen", requests, count);
+	for (int k = 0; w && k < 3; k++)
+		w->what.channels[k].map.srgb = true;
 }
 
 /* A channel that is named is a height map's. */
@@ -145,8 +126,7 @@ static void request_normals(nt_material *m, const nt_settings *settings, nt_map_
 	if (!has(&m->normal_map) || (m->bump && settings->bump == NT_BUMP_IGNORE))
 		return;
 	nt_map_request *w = begin(requests, count, kind_of_normals(m, settings->bump), NULL);
-	put_number(w, 0, &m->normal_map, NT_CHANNEL_LUMINANCE);
-	w->what.clamp = m->normal_map.placement.clamp;
+	put(w, 0, &m->normal_map, NT_CHANNEL_LUMINANCE);
 	w->what.height = nt_bump_height(settings) * m->normal_scale;
 }
 

@@ -16,28 +16,18 @@
 /* Largest file that --check-maps=auto decodes; how many images are open at a time. */
 enum { MOST_AUTO_BYTES = 16 << 20, MOST_OPEN = 16 };
 
-/* Facts about an image that outlive it. */
+/* One image. */
 typedef struct known_map {
 	const nt_mesh *mesh;    /* the first that uses it */
-	const nt_material *material;
-	const char *use;
-	nt_normal_facts *facts; /* of one whose green points down */
-	bool examined, decodable, turnable, paired, heights;
-	bool stays; /* somebody has it as a normal map that is not made of heights */
-	nt_green green;
-} known_map;
-
-/* One image that is open. */
-typedef struct examined {
-	size_t number;       /* in the examination's maps */
-	nt_normal_map map;
-	const nt_mesh *mesh; /* the first that uses it */
 	const nt_material *material; /* not of a glTF, whose place is the mesh; else NULL */
-	const char *use;     /* what a glTF's material calls it, or the name of the file */
-	bool decoded;        /* and no height map */
+	const char *use;        /* what a glTF's material calls it, or the name of the file */
+	nt_normal_map image;    /* open until it is examined */
+	bool wanted;            /* it is to be decoded */
+	bool examined;          /* it was */
+	bool decodable, turnable, paired;
+	bool stays; /* somebody has it as a normal map that is not made of heights */
 	nt_normal_facts facts;
-	nt_error error;
-} examined;
+} known_map;
 
 typedef struct examination {
 	nt_scene *scene;
@@ -49,32 +39,29 @@ typedef struct examination {
 	size_t count, capacity;
 	bool told; /* what is found; else only pairs are */
 	uint64_t pixels, bytes; /* of images that are decoded, those of materials too */
-	examined open[MOST_OPEN];
-	size_t open_count;
+	size_t open;      /* maps from here on are open */
+	nt_error errors[MOST_OPEN];
 } examination;
-
-static bool is_wanted(const examination *e, const nt_normal_map *map)
-{
-	return nt_image_is_decoded(map->type) && e->settings->check_maps != NT_CHECK_MAPS_OFF &&
-	       (e->settings->check_maps == NT_CHECK_MAPS_ON || map->size <= MOST_AUTO_BYTES);
-}
 
 static void examine(void *context, size_t item, unsigned slot)
 {
 	(void)slot;
 	examination *e = context;
-	examined *x = &e->open[item];
-	nt_error_clear(&x->error);
-	if (is_wanted(e, &x->map))
-		x->decoded = nt_examine_image(x->map.bytes, x->map.size, &x->facts, &x->error) == NT_OK &&
-			!x->facts.heights;
+	known_map *map = &e->maps[e->open + item];
+	nt_error *error = &e->errors[item];
+	nt_error_clear(error);
+	if (map->wanted)
+		map->examined = nt_examine_image(map->image.bytes, map->image.size, &map->facts, error) == NT_OK;
+	map->decodable = nt_image_is_decoded(map->image.type) && !error->status;
+	map->turnable = map->image.turnable;
 }
 
 /* ---- what is to be said ---- */
 
-static const nt_place *place_of(const nt_scene *scene, const nt_mesh *mesh, const nt_material *m, nt_place *place)
+static const nt_place *place_of(const nt_scene *scene, const known_map *map, nt_place *place)
 {
-	return m ? nt_map_place(scene, m, &m->normal_map, place) : nt_mesh_place(mesh, place);
+	return map->material ? nt_map_place(scene, map->material, &map->material->normal_map, place)
+			     : nt_mesh_place(map->mesh, place);
 }
 
 static void tell_green(nt_finding_list *findings, nt_code code, const nt_place *place, const char *use,
@@ -111,33 +98,39 @@ static void tell_facts(nt_finding_list *findings, const nt_place *place, const c
 		nt_finding_add(findings, NT_CODE_NMAP_BANDED, place, 1, "%.0f %% of the slopes", 100 * f->banded);
 }
 
-static void tell(const examination *e, const examined *x)
+static void tell(const examination *e, const known_map *map, const nt_error *error)
 {
 	nt_finding_list *findings = &e->scene->findings;
-	const nt_place *place = place_of(e->scene, x->mesh, x->material, &(nt_place){0});
+	const nt_place *place = place_of(e->scene, map, &(nt_place){0});
 	const size_t begin = findings->count;
-	if (!is_wanted(e, &x->map)) {
-		const bool large = nt_image_is_decoded(x->map.type);
-		nt_finding_add(findings, NT_CODE_NMAP_NOT_EXAMINED, place, 1, "%s%s", nt_image_type_name(x->map.type),
-			large ? " of more than 16 MB" : "");
-	}
-	if (x->error.status == NT_ERROR_MODULE)
-		nt_finding_add(findings, NT_CODE_NMAP_NOT_EXAMINED, place, 1, "%.*s", NT_CUT(200, x->error.message));
-	else if (x->error.status)
+	const bool normals = map->examined && !map->facts.heights;
+	if (!map->wanted)
+		nt_finding_add(findings, NT_CODE_NMAP_NOT_EXAMINED, place, 1, "%s%s",
+			nt_image_type_name(map->image.type),
+			nt_image_is_decoded(map->image.type) ? " of more than 16 MB" : "");
+	if (error->status == NT_ERROR_MODULE)
+		nt_finding_add(findings, NT_CODE_NMAP_NOT_EXAMINED, place, 1, "%.*s", NT_CUT(200, error->message));
+	else if (error->status)
 		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, place, 1, "normal map (%.*s)",
-			NT_CUT(200, x->error.message));
-	if (x->decoded)
-		tell_facts(findings, place, x->use, &x->facts);
-	if (x->decoded && x->facts.srgb)
+			NT_CUT(200, error->message));
+	if (normals)
+		tell_facts(findings, place, map->use, &map->facts);
+	if (normals && map->facts.srgb)
 		nt_finding_add(findings, NT_CODE_NMAP_SRGB, place, 1, NULL);
-	if (x->decoded && x->facts.lossy)
-		nt_finding_add(findings, NT_CODE_NMAP_JPEG, place, 1, "%s", nt_image_type_name(x->map.type));
-	nt_findings_set_mesh(findings, begin, x->mesh);
+	if (normals && map->facts.lossy)
+		nt_finding_add(findings, NT_CODE_NMAP_JPEG, place, 1, "%s", nt_image_type_name(map->image.type));
+	nt_findings_set_mesh(findings, begin, map->mesh);
+}
+
+/* Whether its green points one way; height maps have none. */
+static nt_green green_of(const known_map *map)
+{
+	return map->examined && !map->facts.heights ? map->facts.green : NT_GREEN_UNKNOWN;
 }
 
 /* Height maps that nothing converts; and maps whose green points down, but for those of pairs and those that are
  * turned. */
-static void tell_kept(const examination *e)
+static void tell_unchanged(const examination *e)
 {
 	const nt_scene *scene = e->scene;
 	const bool turns = e->settings->flip_green != NT_FLIP_OFF && (!e->settings->check || e->settings->converts);
@@ -150,85 +143,61 @@ static void tell_kept(const examination *e)
 	for (size_t i = 0; i < e->count; i++) {
 		const known_map *map = &e->maps[i];
 		nt_finding_list *findings = &e->scene->findings;
-		const nt_place *place = place_of(scene, map->mesh, map->material, &(nt_place){0});
+		const nt_place *place = place_of(scene, map, &(nt_place){0});
 		const size_t begin = findings->count;
 		/* of an OBJ, --bump=height is about map_bump alone */
-		if (map->heights && map->stays)
+		if (map->facts.heights && map->stays)
 			nt_finding_put(findings, (nt_finding){.code = NT_CODE_NMAP_HEIGHTS, .count = 1,
 				.detail = "", .repair = e->textures ? "--bump=auto" : NULL}, place);
-		if (map->facts && !map->paired && !(turns && map->turnable))
-			tell_green(findings, NT_CODE_NMAP_GREEN_DOWN, place, map->use, map->facts, !map->turnable);
+		if (green_of(map) == NT_GREEN_DOWN && !map->paired && !(turns && map->turnable))
+			tell_green(findings, NT_CODE_NMAP_GREEN_DOWN, place, map->use, &map->facts, !map->turnable);
 		nt_findings_set_mesh(findings, begin, map->mesh);
 	}
 }
 
 /* ---- the images ---- */
 
-/* Keeps the facts about an image; memory for its facts can be refused. */
-static bool keep_facts(examination *e, const examined *x)
-{
-	known_map *map = &e->maps[x->number];
-	map->examined = x->facts.heights || x->decoded;
-	map->green = x->decoded ? x->facts.green : NT_GREEN_UNKNOWN;
-	map->decodable = nt_image_is_decoded(x->map.type) && !x->error.status;
-	map->turnable = x->map.turnable;
-	map->heights = x->facts.heights;
-	if (map->green != NT_GREEN_DOWN)
-		return true;
-	map->facts = nt_alloc(1, sizeof *map->facts);
-	if (map->facts)
-		*map->facts = x->facts;
-	return map->facts != NULL;
-}
-
 static nt_status flush(examination *e, nt_error *error)
 {
 	nt_status status = NT_OK;
-	nt_parallel_items(nt_thread_count(e->settings->threads), e->open_count, examine, e);
-	for (size_t i = 0; i < e->open_count; i++) {
-		const nt_error *failure = &e->open[i].error;
+	nt_parallel_items(nt_thread_count(e->settings->threads), e->count - e->open, examine, e);
+	for (size_t i = 0; e->open < e->count; i++, e->open++) {
+		const nt_error *failure = &e->errors[i];
 		const bool wanted = e->settings->check_maps == NT_CHECK_MAPS_ON;
 		if (failure->status == NT_ERROR_MEMORY || (failure->status == NT_ERROR_MODULE && wanted)) {
 			*error = *failure;
 			status = failure->status;
-		} else if (!keep_facts(e, &e->open[i])) {
-			status = nt_fail_memory(error);
 		} else if (e->told) {
-			tell(e, &e->open[i]);
+			tell(e, &e->maps[e->open], failure);
 		}
-		nt_normal_map_close(&e->open[i].map);
+		nt_normal_map_close(&e->maps[e->open].image);
 	}
-	e->open_count = 0;
 	return status;
 }
 
-static nt_status add_map(examination *e, const nt_mesh *mesh, const nt_material *m, enum nt_slot slot,
-	nt_normal_map *map, nt_error *error)
+/* Takes over an image that is open and new. */
+static nt_status add_map(examination *e, known_map map, nt_error *error)
 {
-	const size_t number = e->count;
+	const nt_settings *s = e->settings;
 	nt_status status = NT_OK;
-	if (!nt_grow((void **)&e->maps, &e->capacity, number + 1, sizeof *e->maps)) {
-		nt_normal_map_close(map);
-		return nt_fail_memory(error);
-	}
-	const char *use = m ? m->normal_map.name
-		: slot == NT_SLOT_NORMAL ? "normalTexture" : "clearcoatNormalTexture";
-	e->maps[e->count++] = (known_map){.mesh = mesh, .material = m, .use = use};
-	if (is_wanted(e, map)) {
-		const uint64_t work = nt_image_work(map->bytes, map->size);
+	map.wanted = nt_image_is_decoded(map.image.type) && s->check_maps != NT_CHECK_MAPS_OFF &&
+		(s->check_maps == NT_CHECK_MAPS_ON || map.image.size <= MOST_AUTO_BYTES);
+	if (map.wanted) {
+		const uint64_t work = nt_image_work(map.image.bytes, map.image.size);
 		e->pixels += work;
-		e->bytes += work ? map->size : 0;
-		status = nt_check_image(work, e->settings->max_pixels, map->size, NULL, error);
+		e->bytes += work ? map.image.size : 0;
+		status = nt_check_image(work, s->max_pixels, map.image.size, NULL, error);
 	}
 	if (!status)
-		status = nt_check_pixels(e->pixels, e->settings->max_pixels, e->bytes, error);
+		status = nt_check_pixels(e->pixels, s->max_pixels, e->bytes, error);
+	if (!status && !nt_grow((void **)&e->maps, &e->capacity, e->count + 1, sizeof *e->maps))
+		status = nt_fail_memory(error);
 	if (status) {
-		nt_normal_map_close(map);
+		nt_normal_map_close(&map.image);
 		return status;
 	}
-	e->open[e->open_count++] = (examined){.number = number, .map = *map, .mesh = mesh, .material = m,
-		.use = use};
-	return e->open_count == MOST_OPEN ? flush(e, error) : NT_OK;
+	e->maps[e->count++] = map;
+	return e->count - e->open == MOST_OPEN ? flush(e, error) : NT_OK;
 }
 
 /* Takes over an image that is open. m: NULL: of a glTF; stays: it is not converted. */
@@ -245,7 +214,9 @@ static nt_status take_map(examination *e, nt_mesh *mesh, const nt_material *m, e
 	}
 	mesh->normal_maps[slot == NT_SLOT_CLEARCOAT_NORMAL] = (nt_mesh_map){.number = number + 1, .image = map->image};
 	if (number == e->count)
-		status = add_map(e, mesh, m, slot, map, error);
+		status = add_map(e, (known_map){.mesh = mesh, .material = m, .image = *map,
+			.use = m ? m->normal_map.name : slot == NT_SLOT_NORMAL ? "normalTexture"
+									 : "clearcoatNormalTexture"}, error);
 	else
 		nt_normal_map_close(map);
 	if (!status)
@@ -292,7 +263,7 @@ static void share_facts(const examination *e)
 			if (!map->number)
 				continue;
 			const known_map *known = &e->maps[map->number - 1];
-			map->green = (uint8_t)known->green;
+			map->green = (uint8_t)green_of(known);
 			map->examined = known->examined;
 			map->decodable = known->decodable;
 			map->turnable = known->turnable;
@@ -319,7 +290,7 @@ static nt_status examine_all(examination *e, nt_error *error)
 	if (gltf && nt_find_pairs(scene, e->settings, e->count))
 		return nt_fail_memory(error);
 	if (e->told)
-		tell_kept(e);
+		tell_unchanged(e);
 	return NT_OK;
 }
 
@@ -344,8 +315,6 @@ nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_format 
 		e->pixels = nt_textures_pixels(textures, &e->bytes);
 	const nt_status status = examine_all(e, error);
 	nt_tell_kept(scene);
-	for (size_t i = 0; i < e->count; i++)
-		free(e->maps[i].facts);
 	nt_key_set_free(&e->known);
 	free(e->maps);
 	free(e);

@@ -30,7 +30,7 @@
 #include "gltf/quantize.h"
 #include "scene/morphs.h"
 
-enum { KEY_BITS = 20 }; /* of a corner number in each float of a key: floats are exact to 24 */
+enum { KEY_BITS = 20 }; /* of a class number in each float of a key: floats are exact to 24 */
 
 static size_t vertex_of(const nmtan_mesh *view, size_t corner)
 {
@@ -131,25 +131,21 @@ static bool begin_classes(nt_mesh *mesh)
 	return done;
 }
 
-/* Targets have no w of their own. */
-static bool same_tangent(const float *rows, size_t a, size_t b)
-{
-	return memcmp(rows + 4 * a, rows + 4 * b, 3 * sizeof(float)) == 0;
-}
-
-/* Divides classes by the tangents of corners. */
-static bool divide(nt_corner_classes *classes, size_t corner_count, const float *rows)
+/* Divides classes by the tangents of corners, of which so many numbers count: targets have no w of their own. */
+static bool divide(nt_corner_classes *classes, size_t corner_count, const float *rows, size_t numbers)
 {
 	nt_hash_index others = {0}; /* classes that come of it */
 	bool done = true;
 	for (uint32_t c = 0; done && c < corner_count; c++) {
 		const uint32_t before = classes->of[c];
-		if (same_tangent(rows, classes->first[before], c))
+		const float *row = rows + 4 * (size_t)c;
+		if (memcmp(rows + 4 * (size_t)classes->first[before], row, numbers * sizeof *row) == 0)
 			continue;
-		const uint64_t hash = nt_hash_bytes(before, rows + 4 * (size_t)c, 3 * sizeof(float));
+		const uint64_t hash = nt_hash_bytes(before, row, numbers * sizeof *row);
 		uint32_t other;
 		for (size_t at = NT_HASH_BEGIN; (other = nt_hash_index_next(&others, hash, &at)) != UINT32_MAX;)
-			if (classes->parent[other] == before && same_tangent(rows, classes->first[other], c))
+			if (classes->parent[other] == before &&
+				memcmp(rows + 4 * (size_t)classes->first[other], row, numbers * sizeof *row) == 0)
 				break;
 		if (other != UINT32_MAX)
 			classes->of[c] = other;
@@ -165,7 +161,7 @@ static nt_status begin(nt_mesh *mesh)
 {
 	mesh->morph_tangents = nt_calloc(1, sizeof *mesh->morph_tangents);
 	if (!mesh->morph_tangents || !begin_classes(mesh) ||
-		!divide(mesh->corner_classes, mesh->corner_count, mesh->corner_tangents))
+		!divide(mesh->corner_classes, mesh->corner_count, mesh->corner_tangents, 4))
 		return NT_ERROR_MEMORY;
 	for (size_t k = 0; k < mesh->corner_classes->count; k++)
 		mesh->corner_classes->parent[k] = (uint32_t)k;
@@ -226,55 +222,20 @@ nt_status nt_morphs_classify(nt_mesh *mesh, nt_morph *morph, float *rows)
 {
 	const nt_status status = mesh->corner_classes ? NT_OK : begin(mesh);
 	keep_unturned(mesh, rows);
-	if (status)
-		return status;
-	return divide(mesh->corner_classes, mesh->corner_count, rows) ? store_rows(mesh, morph, rows) : NT_ERROR_MEMORY;
-}
-
-static bool same_corner(const nt_mesh *mesh, size_t a, size_t b)
-{
-	return mesh->corner_classes->of[a] == mesh->corner_classes->of[b] &&
-		memcmp(mesh->corner_tangents + 4 * a, mesh->corner_tangents + 4 * b, 4 * sizeof(float)) == 0;
+	if (!status && divide(mesh->corner_classes, mesh->corner_count, rows, 3))
+		return store_rows(mesh, morph, rows);
+	return NT_ERROR_MEMORY;
 }
 
 /* ---- vertices ---- */
 
-/* The first corner of its vertex with the same tangents, behind the very first; which may be itself. */
-static nt_status find_other(const nt_mesh *mesh, uint32_t corner, nt_hash_index *others, uint32_t *first)
+void nt_morphs_keys(const nt_mesh *mesh, float *keys)
 {
-	const uint64_t hash = nt_hash_bytes(mesh->corner_classes->of[corner],
-		mesh->corner_tangents + 4 * (size_t)corner, 4 * sizeof(float));
-	for (size_t at = NT_HASH_BEGIN; (*first = nt_hash_index_next(others, hash, &at)) != UINT32_MAX;)
-		if (same_corner(mesh, *first, corner))
-			return NT_OK;
-	*first = corner;
-	return nt_hash_index_add(others, hash, corner) ? NT_OK : NT_ERROR_MEMORY;
-}
-
-nt_status nt_morphs_keys(nt_mesh *mesh, const nmtan_mesh *view, float *keys)
-{
-	/* the first corner of each vertex; corners that differ from it by hash, one for each combination */
-	uint32_t *head = nt_alloc(mesh->vertex_count, sizeof *head);
-	if (!head)
-		return NT_ERROR_MEMORY;
-	nt_hash_index others = {0};
-	nt_status status = NT_OK;
-	memset(head, 0xFF, mesh->vertex_count * sizeof *head);
-	for (uint32_t c = 0; !status && c < mesh->corner_count; c++) {
-		const uint32_t vertex = view->indices ? view->indices[c] : c;
-		uint32_t first = head[vertex];
-		if (first == NT_NONE)
-			head[vertex] = first = c;
-		else if (!same_corner(mesh, first, c))
-			status = find_other(mesh, c, &others, &first);
-		float *key = keys + 4 * (size_t)c;
-		key[0] = (float)(first & ((1u << KEY_BITS) - 1));
-		key[1] = (float)(first >> KEY_BITS);
-		key[2] = key[3] = 0;
+	for (size_t c = 0; c < mesh->corner_count; c++) {
+		const uint32_t k = mesh->corner_classes->of[c];
+		memcpy(keys + 4 * c, (float[]){(float)(k & ((1u << KEY_BITS) - 1)), (float)(k >> KEY_BITS), 0, 0},
+			4 * sizeof *keys);
 	}
-	free(head);
-	nt_hash_index_free(&others);
-	return status;
 }
 
 nt_status nt_morphs_finish(nt_mesh *mesh, size_t source_count)

@@ -21,17 +21,19 @@ enum { RIGHT_OF = 500 };
 
 /* ---- w ---- */
 
-bool nt_runs_backwards(const nt_mesh *mesh, const size_t v[3], int orientation, bool other_w)
+bool nt_runs_backwards(const nt_mesh *mesh, const size_t v[3], const float *const tangents[3], int orientation,
+	bool other_w)
 {
 	if (!mesh->normals || !mesh->positions)
 		return false;
 	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
 	/* nearly all triangles end here: T of the first corner runs along growing u (nt_is_reversed() asks the same) */
 	const float *p = mesh->positions + 3 * v[0], *q = mesh->positions + 3 * v[1], *r = mesh->positions + 3 * v[2];
+	const float *first = tangents ? tangents[0] : mesh->tangents + 4 * v[0];
 	const double b = (double)uv[2 * v[1] + 1] - uv[2 * v[0] + 1], c = (double)uv[2 * v[2] + 1] - uv[2 * v[0] + 1];
 	double along = 0.0;
 	for (size_t i = 0; i < 3; i++)
-		along += mesh->tangents[4 * v[0] + i] * (c * ((double)q[i] - p[i]) - b * ((double)r[i] - p[i]));
+		along += first[i] * (c * ((double)q[i] - p[i]) - b * ((double)r[i] - p[i]));
 	if (orientation * along > 0.0)
 		return false;
 	nt_tangent_triangle triangle = {.orientation = orientation, .other_w = other_w};
@@ -39,7 +41,7 @@ bool nt_runs_backwards(const nt_mesh *mesh, const size_t v[3], int orientation, 
 		triangle.positions[k] = mesh->positions + 3 * v[k];
 		triangle.normals[k] = mesh->normals + 3 * v[k];
 		triangle.texcoords[k] = uv + 2 * v[k];
-		triangle.tangents[k] = mesh->tangents + 4 * v[k];
+		triangle.tangents[k] = tangents ? tangents[k] : mesh->tangents + 4 * v[k];
 	}
 	return nt_is_reversed(&triangle);
 }
@@ -47,25 +49,20 @@ bool nt_runs_backwards(const nt_mesh *mesh, const size_t v[3], int orientation, 
 void nt_judge_w(nt_mesh *mesh)
 {
 	enum { MAPPED = NT_SLOT_NORMAL | NT_SLOT_CLEARCOAT_NORMAL };
-	const int turn = mesh->solve_texcoords ? mesh->solve_sign : 1;
 	size_t judged = 0, right = 0, reversed = 0;
-	if (!(mesh->slots & MAPPED) || !mesh->tangents || !mesh->texcoords || mesh->face_sizes || turn == 0)
+	if (!(mesh->slots & MAPPED) || !mesh->tangents || !mesh->texcoords || mesh->face_sizes ||
+		(mesh->solve_texcoords && !mesh->solve_sign))
 		return;
 	for (size_t t = 0; t < mesh->face_count && right <= mesh->face_count / RIGHT_OF; t++) {
 		const size_t v[3] = {nt_mesh_vertex(mesh, 3 * t), nt_mesh_vertex(mesh, 3 * t + 1),
 			nt_mesh_vertex(mesh, 3 * t + 2)};
 		if (v[0] >= mesh->vertex_count || v[1] >= mesh->vertex_count || v[2] >= mesh->vertex_count)
 			return; /* the solve says so */
-		const int orientation = turn * nmtan_orientation(mesh->texcoords + 2 * v[0],
-			mesh->texcoords + 2 * v[1], mesh->texcoords + 2 * v[2]);
-		bool wrong = orientation != 0;
-		for (int k = 0; k < 3; k++) {
-			const float w = mesh->tangents[4 * v[k] + 3];
-			wrong &= (w > 0.0f) - (w < 0.0f) == -orientation;
-		}
+		const int orientation = nt_uv_sign(mesh, v, 0);
+		const bool wrong = orientation && nt_w_sign(mesh, v) == -orientation;
 		judged += orientation != 0;
 		right += orientation != 0 && !wrong;
-		reversed += wrong && nt_runs_backwards(mesh, v, orientation, true);
+		reversed += wrong && nt_runs_backwards(mesh, v, NULL, orientation, true);
 	}
 	const bool inverted = judged && right <= judged / RIGHT_OF && 2 * reversed <= judged;
 	mesh->signs = judged == 0 && right == 0 ? NT_SIGN_NONE : inverted ? NT_SIGN_INVERTED : NT_SIGN_RIGHT;

@@ -16,7 +16,6 @@
 #include "format/turned_maps.h"
 #include "gltf/sidecar.h"
 #include "gltf/verify/verify.h"
-#include "pipeline/map_requests.h"
 #include "pipeline/stages.h"
 #include "pipeline/timer.h"
 #include "scene/origin.h"

@@ -294,8 +294,10 @@ static nt_status split_corners(const nt_job *job, nt_mesh *mesh)
 	nmtan_split_output output;
 	float *keys = mesh->morph_count ? nt_alloc(mesh->corner_count, 4 * sizeof *keys) : NULL;
 	nt_status status = make_split(mesh, &output);
-	if (!status && mesh->morph_count)
-		status = keys ? nt_morphs_keys(mesh, &view, keys) : NT_ERROR_MEMORY;
+	if (mesh->morph_count && !keys)
+		status = NT_ERROR_MEMORY;
+	if (keys)
+		nt_morphs_keys(mesh, keys);
 	if (!status)
 		status = nt_status_of(nmtan_split(&view, keys ? keys : mesh->corner_tangents, &job->options, &output));
 	if (!status && mesh->morph_count)

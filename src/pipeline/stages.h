@@ -108,7 +108,7 @@ void nt_morphs_compare_halfway(const nt_mesh *mesh, const nmtan_mesh *base, cons
 
 /* Writes to keys [corner_count][4] numbers that are equal for two corners of a vertex exactly where the base's and all
  * targets' tangents are: what splitting goes by. */
-nt_status nt_morphs_keys(nt_mesh *mesh, const nmtan_mesh *view, float *keys);
+void nt_morphs_keys(const nt_mesh *mesh, float *keys);
 
 /* After a split by keys: vertex tangents of the base, and what nt_morph_read() takes those of targets from. */
 nt_status nt_morphs_finish(nt_mesh *mesh, size_t source_count);
@@ -127,8 +127,25 @@ nt_status nt_stage_given_maps(nt_scene *scene, const nt_settings *settings, bool
  * called after it as one. */
 void nt_propose_normal_map(nt_scene *scene, const nt_settings *settings);
 
-/* Finds the images of materials for a document that is made anew, and notes in the materials which they are. output:
- * its path, which stays. *textures is to be freed after failure too. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
+/* map_requests.c. The images that are requested for the maps of a material. */
+typedef struct nt_map_request {
+	nt_map *maps[4]; /* of the request's channels; of colours the first stands for three; NULL: none */
+	nt_texture_request what;
+} nt_map_request;
+
+/* How far white is above black, as the settings or by default. */
+double nt_bump_height(const nt_settings *settings);
+
+/* Fills `requests` for the maps that a material has; returns how many there are. */
+size_t nt_map_requests(nt_material *material, const nt_settings *settings, nt_map_request requests[NT_MATERIAL_MAPS]);
+
+/* A map whose image is lost is none any more, nor is the roughness of a coat that there is not. lost: a bit for each
+ * channel of the request. */
+void nt_map_request_settle(nt_material *material, const nt_map_request *request, unsigned lost);
+
+/* textures.c. Finds the images of materials for a document that is made anew, and notes in the materials which they
+ * are. output: its path, which stays. *textures is to be freed after failure too. Returns NT_OK, NT_ERROR_IO or
+ * NT_ERROR_MEMORY. */
 nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const char *output, nt_textures **textures,
 	nt_error *error);
 
@@ -209,8 +226,32 @@ void nt_tell_kept(nt_scene *scene);
 void nt_judge_w(nt_mesh *mesh);
 bool nt_any_inverted(const nt_scene *scene);
 
-/* Whether T and the bitangent are reversed at all corners of a triangle, of vertices v; other_w: with w negated. */
-bool nt_runs_backwards(const nt_mesh *mesh, const size_t v[3], int orientation, bool other_w);
+/* A triangle, of vertices v, has an orientation by which w is judged, of its texture coordinates, with v_offset
+ * added to v; a sign of w at all its corners, 0: some have none; and whether T and the bitangent are reversed at all of
+ * them. tangents: NULL: the mesh's; other_w: with w negated. */
+enum { NT_W_MIXED = 2 };
+static inline int nt_uv_sign(const nt_mesh *mesh, const size_t v[3], float v_offset)
+{
+	float uv[3][2];
+	for (size_t k = 0; k < 3; k++) {
+		uv[k][0] = mesh->texcoords[2 * v[k]];
+		uv[k][1] = mesh->texcoords[2 * v[k] + 1] + v_offset;
+	}
+	return (mesh->solve_texcoords ? mesh->solve_sign : 1) * nmtan_orientation(uv[0], uv[1], uv[2]);
+}
+
+static inline int nt_w_sign(const nt_mesh *mesh, const size_t v[3])
+{
+	int positive = 0, negative = 0;
+	for (int k = 0; k < 3; k++) {
+		positive += mesh->tangents[4 * v[k] + 3] > 0.0f;
+		negative += mesh->tangents[4 * v[k] + 3] < 0.0f;
+	}
+	return positive + negative < 3 ? 0 : positive == 3 ? 1 : negative == 3 ? -1 : NT_W_MIXED;
+}
+
+bool nt_runs_backwards(const nt_mesh *mesh, const size_t v[3], const float *const tangents[3], int orientation,
+	bool other_w);
 
 /* Sets pair and doubted of meshes whose normal maps are known, of which there are map_count, and adds what is found.
  * Returns NT_OK or NT_ERROR_MEMORY. */

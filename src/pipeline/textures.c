@@ -4,7 +4,6 @@
  * the solve, the conversions, then what is to be said about them. Other inputs and outputs have no such images: a
  * glTF that is changed keeps its own.
  */
-#include "pipeline/map_requests.h"
 #include "pipeline/stages.h"
 
 #include <stdio.h>
@@ -15,49 +14,48 @@
 #include "file/path.h"
 #include "file/uri.h"
 
-/* Calls body once for each material that a mesh with texture coordinates uses, and `bare` (NULL: nothing) for those
- * that others alone use, in the order of the meshes. */
-typedef nt_status material_function(nt_scene *scene, nt_material *material, void *context, nt_error *error);
-
-static nt_status each_material(nt_scene *scene, void *context, nt_error *error, material_function *body,
-	material_function *bare)
+/* Materials that faces use, in the order of the meshes: first the *mapped ones that a mesh with texture coordinates
+ * uses. Malloc'ed; NULL: memory is exhausted. */
+static nt_material **list_materials(nt_scene *scene, size_t *mapped, size_t *count)
 {
+	nt_material **list = nt_alloc(scene->material_count, sizeof *list);
 	bool *seen = nt_calloc(scene->material_count, sizeof *seen);
-	nt_status status = seen ? NT_OK : nt_fail_memory(error);
-	for (size_t m = 0; m < (bare ? 2 : 1) * scene->mesh_count && !status; m++) {
+	*count = *mapped = 0;
+	for (size_t m = 0; list && seen && m < 2 * scene->mesh_count; m++) {
 		const nt_mesh *mesh = &scene->meshes[m % scene->mesh_count];
-		const bool is_first = m < scene->mesh_count;
-		for (size_t i = 0; i < mesh->primitive_count && is_first == (mesh->texcoords != NULL) && !status; i++) {
+		if ((m < scene->mesh_count) != (mesh->texcoords != NULL))
+			continue;
+		for (size_t i = 0; i < mesh->primitive_count; i++) {
 			const uint32_t number = mesh->primitives[i].material;
 			if (number == NT_NONE || !mesh->primitives[i].face_count || seen[number])
 				continue;
 			seen[number] = true;
-			status = (is_first ? body : bare)(scene, &scene->materials[number], context, error);
+			list[(*count)++] = &scene->materials[number];
+			*mapped += m < scene->mesh_count;
 		}
 	}
+	if (!seen) {
+		free(list);
+		list = NULL;
+	}
 	free(seen);
-	return status;
+	return list;
 }
 
 /* ---- requests ---- */
 
-typedef struct requesting {
-	nt_textures *textures;
-	const nt_settings *settings;
-} requesting;
-
-static nt_status request_material(nt_scene *scene, nt_material *m, void *context, nt_error *error)
+static nt_status request_material(const nt_scene *scene, const nt_settings *settings, nt_material *m,
+	nt_textures *textures, nt_error *error)
 {
-	const requesting *w = context;
-	nt_image_places places = nt_searched_places(w->settings);
+	nt_image_places places = nt_searched_places(settings);
 	places.document = m->library ? m->library : scene->path;
 	places.input = scene->path;
 	nt_map_request requests[NT_MATERIAL_MAPS];
-	const size_t count = nt_map_requests(m, w->settings, requests);
+	const size_t count = nt_map_requests(m, settings, requests);
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < count && !status; i++) {
 		uint32_t number;
-		status = nt_textures_request(w->textures, &places, &requests[i].what, &number, error);
+		status = nt_textures_request(textures, &places, &requests[i].what, &number, error);
 		for (int k = 0; k < 4 && !status; k++)
 			if (requests[i].maps[k])
 				requests[i].maps[k]->request = number;
@@ -89,10 +87,17 @@ nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const 
 	for (size_t i = 0; i < scene->material_count; i++)
 		for (size_t k = 0; k < NT_MATERIAL_MAPS; k++)
 			scene->materials[i].maps[k].request = NT_NONE;
-	requesting w = {*textures, settings};
-	const nt_status status = check_folders(settings, error);
-	return status || settings->images == NT_IMAGES_NONE
-		? status : each_material(scene, &w, error, request_material, NULL);
+	nt_status status = check_folders(settings, error);
+	if (status || settings->images == NT_IMAGES_NONE)
+		return status;
+	size_t mapped, count;
+	nt_material **materials = list_materials(scene, &mapped, &count);
+	if (!materials)
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < mapped && !status; i++)
+		status = request_material(scene, settings, materials[i], *textures, error);
+	free(materials);
+	return status;
 }
 
 /* ---- making ---- */
@@ -228,21 +233,21 @@ static void tell_normals(const telling *t, const nt_texture *image)
 	nt_material *m = t->material;
 	const nt_place place = nt_material_place(t->scene, m, m->normal_map.line);
 	nt_finding_list *findings = &t->scene->findings;
-	const bool normals = !image || (image->type != NT_IMAGE_OTHER && !image->from_heights);
-	const bool exists = image && image->sources[0]->found <= NT_IMAGE_FOUND_ELSEWHERE;
+	const bool normals = image->type != NT_IMAGE_OTHER && !image->from_heights;
+	const bool exists = image->sources[0]->found <= NT_IMAGE_FOUND_ELSEWHERE;
 	if (m->bump && !m->bump_is_normal && t->settings->bump == NT_BUMP_AUTO && normals && exists)
 		nt_finding_add(findings, NT_CODE_BUMP_AS_NORMAL, &place, 1, "%s %.*s", m->bump,
 			NT_CUT(200, m->normal_map.name));
-	if (image && normals && !nt_map_is_plain(&m->normal_map))
+	if (normals && !nt_map_is_plain(&m->normal_map))
 		nt_finding_add(findings, NT_CODE_MATERIAL_LOST, &place, 1, "MTL: -mm of a normal map");
-	if (image && image->from_heights)
+	if (image->from_heights)
 		m->normal_scale = 1; /* it went into the heights */
 }
 
 /* Maps for which nothing was requested, although they are there. */
 static void tell_misplaced(const telling *t)
 {
-	for (size_t i = 0; i < NT_MATERIAL_MAPS && t->textures; i++) {
+	for (size_t i = 0; i < NT_MATERIAL_MAPS; i++) {
 		const nt_map *map = &t->material->maps[i];
 		const nt_place place = nt_material_place(t->scene, t->material, map->line);
 		if (map->name && map->request == NT_NONE && map != &t->material->normal_map)
@@ -259,30 +264,25 @@ static void count_bare(const telling *t, const nt_material *m)
 			NT_CUT(sizeof t->summary->bare_material - 1, m->name));
 }
 
-static nt_status tell_material(nt_scene *scene, nt_material *m, void *context, nt_error *error)
+static void tell_material(telling *t)
 {
-	(void)error;
-	telling *t = context;
-	t->scene = scene;
-	t->material = m;
+	nt_material *m = t->material;
 	t->images = t->lost = 0;
 	nt_map_request requests[NT_MATERIAL_MAPS];
-	const size_t count = t->textures ? nt_map_requests(m, t->settings, requests) : 0;
-	const bool requested = t->textures && m->normal_map.request != NT_NONE;
-	if (requested || (m->normal_map.name && !t->textures))
-		tell_normals(t, requested ? nt_textures_of(t->textures, m->normal_map.request) : NULL);
+	const size_t count = nt_map_requests(m, t->settings, requests);
+	if (m->normal_map.request != NT_NONE)
+		tell_normals(t, nt_textures_of(t->textures, m->normal_map.request));
 	tell_misplaced(t);
 	for (size_t i = 0; i < count; i++)
 		tell_request(t, &requests[i]);
 	if (t->images && t->lost == t->images)
 		count_bare(t, m);
-	return NT_OK;
 }
 
 /* Images that no texture coordinates lay on the faces. */
-static nt_status tell_unmapped(nt_scene *scene, nt_material *m, void *context, nt_error *error)
+static void tell_unmapped(const telling *t)
 {
-	(void)error;
+	const nt_material *m = t->material;
 	const nt_map *first = NULL;
 	size_t count = 0;
 	for (size_t i = 0; i < NT_MATERIAL_MAPS; i++) {
@@ -290,13 +290,12 @@ static nt_status tell_unmapped(nt_scene *scene, nt_material *m, void *context, n
 		first = first ? first : m->maps[i].name ? &m->maps[i] : NULL;
 	}
 	if (!count)
-		return NT_OK;
-	const nt_place place = nt_material_place(scene, m, first->line);
-	nt_finding_add(&scene->findings, NT_CODE_MATERIAL_LOST, &place, count,
+		return;
+	const nt_place place = nt_material_place(t->scene, m, first->line);
+	nt_finding_add(&t->scene->findings, NT_CODE_MATERIAL_LOST, &place, count,
 		"%.*s%s: the faces have no texture coordinates, by which images lie on them", NT_CUT(120, first->name),
 		count > 1 ? " and the others" : "");
-	count_bare(context, m);
-	return NT_OK;
+	count_bare(t, m);
 }
 
 /* Whether the output has the normal map of a material. */
@@ -334,10 +333,22 @@ static void settle_slots(nt_scene *scene, const nt_settings *settings, const nt_
 nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const nt_textures *textures,
 	nt_summary *summary, nt_error *error)
 {
-	telling t = {.textures = textures, .settings = settings, .summary = summary};
+	telling t = {.scene = scene, .textures = textures, .settings = settings, .summary = summary};
 	if (textures)
 		settle_slots(scene, settings, textures);
 	if (settings->images == NT_IMAGES_NONE)
 		return NT_OK;
-	return each_material(scene, &t, error, tell_material, tell_unmapped);
+	size_t mapped, count;
+	nt_material **materials = list_materials(scene, &mapped, &count);
+	if (!materials)
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < count; i++) {
+		t.material = materials[i];
+		if (i >= mapped)
+			tell_unmapped(&t);
+		else if (textures)
+			tell_material(&t);
+	}
+	free(materials);
+	return NT_OK;
 }
