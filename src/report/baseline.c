@@ -134,27 +134,25 @@ bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report)
 	const size_t first = find_entries(baseline, own), old_count = find_entries(baseline, own + 1) - first;
 	const nt_baseline_entry *old = baseline->entries ? baseline->entries + first : NULL;
 	nt_baseline_entry *new = nt_calloc(count, sizeof *new);
-	uint32_t *partners = nt_alloc(count, sizeof *partners);
-	bool *taken = nt_calloc(old_count, sizeof *taken), made = new && partners && taken;
+	nt_pairs pairs = {0};
+	bool made = new != NULL;
 	for (size_t i = 0; made && i < count; i++) {
 		new[i].fingerprint = report->findings[i].fingerprint;
 		new[i].geometry = report->findings[i].geometry;
-		partners[i] = NT_NONE;
 	}
 	if (made && old_count) {
-		made = !nt_pair(old, old_count, new, count, fingerprint_of, partners, taken) &&
-			!nt_pair(old, old_count, new, count, geometry_of, partners, taken);
+		made = nt_pair(&pairs, old, old_count, new, count, (const nt_key_of[]){fingerprint_of, geometry_of});
 	} else if (made) {
 		size_t listed;
 		nt_keyed *keys = nt_list_keys(new, count, geometry_of, &listed);
-		made = keys != NULL;
-		nt_pair_keys(baseline->geometries, baseline->geometry_count, keys, listed, partners, NULL);
+		made = keys && nt_pairs_begin(&pairs, count);
+		if (made)
+			nt_pair_keys(&pairs, baseline->geometries, baseline->geometry_count, keys, listed);
 		free(keys);
 	}
 	for (size_t i = 0; made && i < count; i++)
-		report->findings[i].known = partners[i] != NT_NONE;
+		report->findings[i].known = pairs.partners[i] != UINT32_MAX;
 	free(new);
-	free(partners);
-	free(taken);
+	nt_pairs_free(&pairs);
 	return made;
 }

@@ -40,34 +40,52 @@ static size_t skip_to(const nt_keyed *list, size_t count, size_t at, uint64_t ke
 	return at;
 }
 
-void nt_pair_keys(const nt_keyed *old, size_t old_count, const nt_keyed *new, size_t new_count, uint32_t *partners,
-	bool *taken)
+void nt_pair_keys(nt_pairs *pairs, const nt_keyed *old, size_t old_count, const nt_keyed *new, size_t new_count)
 {
+	bool *taken = pairs->taken;
 	for (size_t a = 0, b = 0; b < new_count; b++) {
-		if (partners[new[b].index] != UINT32_MAX)
+		if (pairs->partners[new[b].index] != UINT32_MAX)
 			continue;
 		a = skip_to(old, old_count, a, new[b].key);
 		while (a < old_count && old[a].key == new[b].key && taken && taken[old[a].index])
 			a++;
 		if (a == old_count || old[a].key != new[b].key)
 			continue;
-		partners[new[b].index] = old[a].index;
+		pairs->partners[new[b].index] = old[a].index;
 		if (taken)
 			taken[old[a].index] = true;
 		a++;
 	}
 }
 
-nt_status nt_pair(const void *old, size_t old_count, const void *new, size_t new_count, nt_key_of key_of,
-	uint32_t *partners, bool *taken)
+bool nt_pairs_begin(nt_pairs *pairs, size_t new_count)
 {
-	size_t counts[2];
-	nt_keyed *lists[2] = {nt_list_keys(old, old_count, key_of, &counts[0]),
-		nt_list_keys(new, new_count, key_of, &counts[1])};
-	const bool made = lists[0] && lists[1];
-	if (made)
-		nt_pair_keys(lists[0], counts[0], lists[1], counts[1], partners, taken);
-	free(lists[0]);
-	free(lists[1]);
-	return made ? NT_OK : NT_ERROR_MEMORY;
+	pairs->partners = nt_alloc(new_count, sizeof *pairs->partners);
+	for (size_t i = 0; pairs->partners && i < new_count; i++)
+		pairs->partners[i] = UINT32_MAX;
+	return pairs->partners != NULL;
+}
+
+bool nt_pair(nt_pairs *pairs, const void *old, size_t old_count, const void *new, size_t new_count,
+	const nt_key_of keys[2])
+{
+	pairs->taken = nt_calloc(old_count, sizeof *pairs->taken);
+	bool made = nt_pairs_begin(pairs, new_count) && pairs->taken;
+	for (int i = 0; i < 2 && keys[i] && made; i++) {
+		size_t counts[2] = {0};
+		nt_keyed *lists[2] = {nt_list_keys(old, old_count, keys[i], &counts[0]),
+			nt_list_keys(new, new_count, keys[i], &counts[1])};
+		made = lists[0] && lists[1];
+		if (made)
+			nt_pair_keys(pairs, lists[0], counts[0], lists[1], counts[1]);
+		free(lists[0]);
+		free(lists[1]);
+	}
+	return made;
+}
+
+void nt_pairs_free(nt_pairs *pairs)
+{
+	free(pairs->partners);
+	free(pairs->taken);
 }

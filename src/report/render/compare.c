@@ -16,14 +16,6 @@
 
 static const double DEGREES = 57.29577951308232;
 
-static uint32_t *no_partners(size_t count)
-{
-	uint32_t *partners = nt_alloc(count, sizeof *partners);
-	for (size_t i = 0; partners && i < count; i++)
-		partners[i] = NT_NONE;
-	return partners;
-}
-
 /* ---- findings ---- */
 
 static uint64_t finding_key(const void *report, size_t index)
@@ -36,27 +28,24 @@ static uint64_t finding_geometry(const void *report, size_t index)
 	return ((const nt_report *)report)->findings[index].geometry;
 }
 
-static nt_status match_findings(nt_report_diff *diff)
+/* What has another name now is known by its geometry. */
+static bool match_findings(nt_report_diff *diff)
 {
-	const nt_report *old = diff->reports[0], *new = diff->reports[1];
-	uint32_t *partners = no_partners(new->finding_count);
-	for (int i = 0; i < 2; i++)
-		diff->known[i] = nt_calloc(diff->reports[i]->finding_count, sizeof(bool));
-	bool made = partners && diff->known[0] && diff->known[1];
-	/* what has another name now is known by its geometry */
-	const nt_key_of keys[] = {finding_key, finding_geometry};
-	for (int i = 0; i < 2 && made; i++)
-		made = !nt_pair(old, old->finding_count, new, new->finding_count, keys[i], partners, diff->known[0]);
-	for (size_t i = 0; made && i < new->finding_count; i++) {
-		diff->known[1][i] = partners[i] != NT_NONE;
+	const nt_report *const *reports = diff->reports;
+	nt_pairs pairs = {0};
+	diff->known[1] = nt_calloc(reports[1]->finding_count, sizeof(bool));
+	const bool made = nt_pair(&pairs, reports[0], reports[0]->finding_count, reports[1],
+		reports[1]->finding_count, (const nt_key_of[]){finding_key, finding_geometry}) && diff->known[1];
+	for (size_t i = 0; made && i < reports[1]->finding_count; i++) {
+		diff->known[1][i] = pairs.partners[i] != NT_NONE;
 		diff->unchanged += diff->known[1][i];
 	}
-	free(partners);
+	diff->known[0] = pairs.taken;
+	free(pairs.partners);
 	for (int i = 0; made && i < 2; i++)
-		for (size_t k = 0; k < diff->reports[i]->finding_count; k++)
-			if (!diff->known[i][k])
-				diff->by_severity[i][diff->reports[i]->findings[k].severity]++;
-	return made ? NT_OK : NT_ERROR_MEMORY;
+		for (size_t k = 0; k < reports[i]->finding_count; k++)
+			diff->by_severity[i][reports[i]->findings[k].severity] += !diff->known[i][k];
+	return made;
 }
 
 /* ---- meshes ---- */
@@ -73,43 +62,41 @@ static uint64_t mesh_digest(const void *report, size_t index)
 }
 
 /* Pairs the rest of both in order, if it has as many triangles. */
-static void match_rest(const nt_report *old, const nt_report *new, uint32_t *partners, bool *taken)
+static void match_rest(const nt_report *old, const nt_report *new, nt_pairs *pairs)
 {
 	size_t next = 0;
 	for (size_t i = 0; i < new->mesh_count; i++) {
-		if (partners[i] != NT_NONE)
+		if (pairs->partners[i] != NT_NONE)
 			continue;
-		while (next < old->mesh_count && taken[next])
+		while (next < old->mesh_count && pairs->taken[next])
 			next++;
 		if (next == old->mesh_count || old->meshes[next].triangle_count != new->meshes[i].triangle_count)
 			continue;
-		partners[i] = (uint32_t)next;
-		taken[next] = true;
+		pairs->partners[i] = (uint32_t)next;
+		pairs->taken[next] = true;
 	}
 }
 
-static nt_status match_meshes(nt_report_diff *diff)
+static bool match_meshes(nt_report_diff *diff)
 {
 	const nt_report *old = diff->reports[0], *new = diff->reports[1];
+	nt_pairs pairs = {0};
 	diff->meshes = nt_calloc(old->mesh_count + new->mesh_count, sizeof *diff->meshes);
-	bool *taken = nt_calloc(old->mesh_count, sizeof *taken);
-	uint32_t *partners = no_partners(new->mesh_count);
-	bool made = diff->meshes && taken && partners;
-	const nt_key_of keys[] = {mesh_key, mesh_digest};
-	for (int i = 0; i < 2 && made; i++)
-		made = !nt_pair(old, old->mesh_count, new, new->mesh_count, keys[i], partners, taken);
+	const bool made = nt_pair(&pairs, old, old->mesh_count, new, new->mesh_count,
+		(const nt_key_of[]){mesh_key, mesh_digest}) && diff->meshes;
 	if (made)
-		match_rest(old, new, partners, taken);
-	for (size_t i = 0; made && i < new->mesh_count; i++)
-		diff->meshes[diff->mesh_count++] =
-			(nt_mesh_change){.meshes = {partners[i], (uint32_t)i}, .worst_degrees = NAN};
-	for (size_t i = 0; made && i < old->mesh_count; i++)
-		if (!taken[i])
+		match_rest(old, new, &pairs);
+	for (size_t i = 0; made && i < new->mesh_count + old->mesh_count; i++) {
+		const uint32_t gone = (uint32_t)(i - new->mesh_count);
+		if (i < new->mesh_count)
 			diff->meshes[diff->mesh_count++] =
-				(nt_mesh_change){.meshes = {(uint32_t)i, NT_NONE}, .worst_degrees = NAN};
-	free(taken);
-	free(partners);
-	return made ? NT_OK : NT_ERROR_MEMORY;
+				(nt_mesh_change){.meshes = {pairs.partners[i], (uint32_t)i}, .worst_degrees = NAN};
+		else if (!pairs.taken[gone])
+			diff->meshes[diff->mesh_count++] =
+				(nt_mesh_change){.meshes = {gone, NT_NONE}, .worst_degrees = NAN};
+	}
+	nt_pairs_free(&pairs);
+	return made;
 }
 
 /* ---- triangles ---- */
@@ -211,19 +198,17 @@ static void compare_triangles(nt_mesh_change *change, const nt_report_geometry *
 	}
 }
 
-static nt_status compare_geometry(nt_mesh_change *change, const nt_report_geometry *a, const nt_report_geometry *b,
+static bool compare_geometry(nt_mesh_change *change, const nt_report_geometry *a, const nt_report_geometry *b,
 	bool exchange)
 {
-	uint32_t *partners = no_partners(b->triangle_count);
-	bool *taken = nt_calloc(a->triangle_count, sizeof *taken);
-	const bool made = partners && taken &&
-		!nt_pair(a, a->triangle_count, b, b->triangle_count, triangle_key, partners, taken);
+	nt_pairs pairs = {0};
+	const bool made = nt_pair(&pairs, a, a->triangle_count, b, b->triangle_count,
+		(const nt_key_of[]){triangle_key, NULL});
 	for (size_t u = 0; made && u < b->triangle_count; u++)
-		if (partners[u] != NT_NONE && same_place(a, partners[u], b, u))
-			compare_triangles(change, a, partners[u], b, u, exchange);
-	free(partners);
-	free(taken);
-	return made ? NT_OK : NT_ERROR_MEMORY;
+		if (pairs.partners[u] != NT_NONE && same_place(a, pairs.partners[u], b, u))
+			compare_triangles(change, a, pairs.partners[u], b, u, exchange);
+	nt_pairs_free(&pairs);
+	return made;
 }
 
 /* Meshes of one geometry have it at the first of them. */
@@ -233,7 +218,7 @@ static const nt_report_geometry *geometry_of(const nt_report *report, uint32_t m
 	return m->same_as == NT_NONE ? m->geometry : report->meshes[m->same_as].geometry;
 }
 
-static nt_status begin_exchange(nt_report *report)
+static bool begin_exchange(nt_report *report)
 {
 	for (size_t i = 0; i < report->mesh_count; i++) {
 		nt_report_geometry *g = report->meshes[i].geometry;
@@ -242,34 +227,28 @@ static nt_status begin_exchange(nt_report *report)
 		g->authored = g->tangents;
 		g->computed = nt_arena_alloc(&report->arena, g->vertex_count, 4 * sizeof *g->computed);
 		if (!g->computed)
-			return NT_ERROR_MEMORY;
+			return false;
 		memset(g->computed, 0, 4 * g->vertex_count * sizeof *g->computed);
 	}
-	return NT_OK;
+	return true;
 }
 
 nt_status nt_report_compare(nt_report_diff *diff, nt_report *before, nt_report *after, bool exchange)
 {
 	*diff = (nt_report_diff){.reports = {before, after}};
-	nt_status status = match_findings(diff);
-	if (!status && exchange)
-		status = begin_exchange(before);
-	if (!status && exchange)
-		status = begin_exchange(after);
-	if (!status)
-		status = match_meshes(diff);
-	for (size_t i = 0; i < diff->mesh_count && !status; i++) {
+	bool made = match_findings(diff) && match_meshes(diff) &&
+		(!exchange || (begin_exchange(before) && begin_exchange(after)));
+	for (size_t i = 0; i < diff->mesh_count && made; i++) {
 		nt_mesh_change *change = &diff->meshes[i];
 		if (change->meshes[0] == NT_NONE || change->meshes[1] == NT_NONE)
 			continue;
 		const nt_report_geometry *a = geometry_of(before, change->meshes[0]);
 		const nt_report_geometry *b = geometry_of(after, change->meshes[1]);
-		if (a && b)
-			status = compare_geometry(change, a, b, exchange);
+		made = !a || !b || compare_geometry(change, a, b, exchange);
 	}
-	if (status)
+	if (!made)
 		nt_report_diff_free(diff);
-	return status;
+	return made ? NT_OK : NT_ERROR_MEMORY;
 }
 
 void nt_report_diff_free(nt_report_diff *diff)
