@@ -31,7 +31,6 @@
 #include "file/output.h"
 #include "file/path.h"
 #include "file/temporary.h"
-#include "pipeline/report_folder.h"
 #include "report/codes.h"
 
 /* Sums over the jobs that have ended. */

@@ -148,15 +148,14 @@ static void put_geometry(const nt_report *report, size_t file, uint32_t mesh, si
 
 static void put_geometries(nt_walk *w, nt_buffer *out)
 {
-	const nt_report_list *reports = w->reports;
 	size_t wanted = 0;
-	for (size_t i = 0; i < reports->count; i++)
-		for (size_t m = 0; m < reports->items[i]->mesh_count; m++)
-			if (has_geometry(&reports->items[i]->meshes[m]))
-				wanted += reports->items[i]->meshes[m].geometry->triangle_count;
+	for (size_t i = 0; i < w->count; i++)
+		for (size_t m = 0; m < w->items[i]->mesh_count; m++)
+			if (has_geometry(&w->items[i]->meshes[m]))
+				wanted += w->items[i]->meshes[m].geometry->triangle_count;
 	const double share = wanted > MOST_TRIANGLES ? (double)MOST_TRIANGLES / (double)wanted : 1.0;
-	for (size_t i = 0; i < reports->count; i++) {
-		const nt_report *report = reports->items[i];
+	for (size_t i = 0; i < w->count; i++) {
+		const nt_report *report = w->items[i];
 		for (uint32_t m = 0; m < report->mesh_count; m++) {
 			if (!has_geometry(&report->meshes[m]))
 				continue;

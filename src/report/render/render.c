@@ -66,11 +66,12 @@ static void write_reports(nt_walk *w, const nt_report_writer *writer, nt_buffer 
 nt_status nt_report_write(const nt_report_list *what, nt_report_format format, nt_report_sink sink, void *user,
 	nt_error *error)
 {
-	nt_walk w = {.reports = what, .count = what->count, .sink = sink, .user = user, .error = error,
+	nt_walk w = {.reports = what, .sink = sink, .user = user, .error = error,
 		.items = nt_alloc(what->count, sizeof *w.items)};
 	nt_buffer out = {.failed = !w.items};
-	if (w.items && w.count)
-		memcpy(w.items, what->items, w.count * sizeof *w.items);
+	for (size_t i = 0; i < what->count && w.items; i++)
+		if (what->items[i])
+			w.items[w.count++] = what->items[i];
 	if (what->diff && formats[format].write_diff)
 		formats[format].write_diff(what->diff, &out);
 	else if (w.items)

@@ -84,7 +84,7 @@ typedef struct nt_report_style {
 
 /* A document: reports, one for each input; or what differs between two; or an index of pages. */
 typedef struct nt_report_list {
-	const nt_report *const *items;
+	const nt_report *const *items; /* NULL: none of this input, which is passed over */
 	size_t count;
 	nt_report_style style;
 	const nt_report_diff *diff; /* of the two reports, for HTML made with exchanged tangents; NULL: none */

@@ -98,19 +98,19 @@ static void put_result(nt_walk *w, const nt_report_finding *finding, nt_buffer *
 }
 
 /* Inputs that could not be read, and findings that are not here. */
-static void put_invocation(const nt_report_list *reports, nt_buffer *out)
+static void put_invocation(const nt_walk *w, nt_buffer *out)
 {
 	size_t results = 0, failures = 0;
-	for (size_t i = 0; i < reports->count; i++) {
-		results += reports->items[i]->finding_count;
-		failures += reports->items[i]->failure != NULL;
+	for (size_t i = 0; i < w->count; i++) {
+		results += w->items[i]->finding_count;
+		failures += w->items[i]->failure != NULL;
 	}
 	const size_t cut = results > MOST_RESULTS ? results - MOST_RESULTS : 0;
-	const size_t missing = nt_report_totals(reports->items, reports->count).dropped + cut;
+	const size_t missing = nt_report_totals(w->items, w->count).dropped + cut;
 	nt_put(out, NT_JSON, "\t\t'invocations': [{'executionSuccessful': %hhd, 'toolExecutionNotifications': [",
 		(bool)!failures);
-	for (size_t i = 0; i < reports->count; i++) {
-		const nt_report *report = reports->items[i];
+	for (size_t i = 0; i < w->count; i++) {
+		const nt_report *report = w->items[i];
 		if (!report->failure)
 			continue;
 		nt_put(out, NT_JSON, ",\n\t\t\t{'level': 'error', 'message': {'text': %p}, 'locations': [{",
@@ -137,7 +137,7 @@ static void begin(nt_walk *w, nt_buffer *out)
 static void end(nt_walk *w, nt_buffer *out)
 {
 	nt_buffer_text(out, "\n\t\t],\n");
-	put_invocation(w->reports, out);
+	put_invocation(w, out);
 	nt_buffer_text(out, "\t}]\n}\n");
 }
 

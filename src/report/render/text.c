@@ -163,7 +163,7 @@ static void end_file(nt_walk *w, nt_buffer *out)
 
 static void end(nt_walk *w, nt_buffer *out)
 {
-	const nt_totals totals = nt_report_totals(w->reports->items, w->count);
+	const nt_totals totals = nt_report_totals(w->items, w->count);
 	if (w->count < 2)
 		return;
 	nt_buffer_format(out, "%zu files: ", w->count);
