@@ -219,6 +219,26 @@ function leaveOutBuried(g) {
 	return buried.size ? g.indices.filter((_, c) => !buried.has(2 * g.islands[c / 3 | 0] - 2 + ((g.kinds[c / 3 | 0] & 3) === 0))) : g.indices;
 }
 
+// Triangles between cells of a grid, of which each has the first vertex in it: what is drawn of a large mesh while it turns.
+function coarseIndices(g) {
+	const cells = 64, scale = g.step.map(step => step * cells / (Math.max(...g.step) * 65536)), p = g.positions;
+	const firsts = new Int32Array(cells ** 3).fill(-1), of = new Uint32Array(g.vertices), kept = new Uint32Array(g.indices.length);
+	for (let v = 0; v < g.vertices; v++) {
+		const cell = (p[4 * v] * scale[0] | 0) + cells * ((p[4 * v + 1] * scale[1] | 0) + cells * (p[4 * v + 2] * scale[2] | 0));
+		if (firsts[cell] < 0) firsts[cell] = v;
+		of[v] = firsts[cell];
+	}
+	let count = 0;
+	for (let c = 0; c < g.indices.length; c += 3) {
+		const [a, b, d] = [of[g.indices[c]], of[g.indices[c + 1]], of[g.indices[c + 2]]];
+		if (a === b || b === d || d === a) continue;
+		kept[count++] = a;
+		kept[count++] = b;
+		kept[count++] = d;
+	}
+	return kept.subarray(0, count);
+}
+
 const opened = new Map(); // source -> promise of geometry
 
 // The element may come behind the script, in a page that is still being read.

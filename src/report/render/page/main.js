@@ -425,6 +425,7 @@ window.nmtanReport = Object.freeze({
 	labels: () => layout.labels,
 	overlapPixels: () => layout.overlapPixels,
 	visible: () => space.visible(space.camera),
+	drawn: () => space.shown.count / 3,
 	twin: () => twin && {geometry: twin.geometry, camera: twin.space?.camera, view: twin.layout.view, mode: twin.space?.mode},
-	turn: (x, y) => space.turn(x, y),
+	turn: (x, y = 0) => space.turn(x, y),
 });

@@ -8,11 +8,15 @@ const MODES = [
 	['skew', 'Tangent off surface']];
 const FRAMES = [['authored', 'in the file'], ['computed', 'by nmtan'], ['screen', 'by the screen']];
 
-const surfaceVertex = `#version 300 es
+// The inputs that a surface's shaders take of a vertex. Without a GPU a triangle pays for every input that the text has, used or not: those
+// that a mode does not use are constants in the fragment shader, and not there in the vertex shader.
+const inputs = [['n', 'vec3', 'vec2', 'direction(code1)'], ['st', 'vec2', 'vec2', 'code2'], ['authored', 'vec4', 'vec3', 'tangent(code3)'],
+	['computed', 'vec4', 'vec3', 'tangent(code4)']];
+const surfaceVertex = used => `#version 300 es
 uniform mat4 camera; uniform vec3 origin, step_;
-layout(location=0) in vec3 code; layout(location=1) in vec2 normalCode; layout(location=2) in vec2 uv;
-layout(location=3) in vec3 authoredCode; layout(location=4) in vec3 computedCode;
-out vec3 p, n; out vec2 st; out vec4 authored, computed;
+layout(location=0) in vec3 code;
+${inputs.map(([name, type, code], i) => used.includes(name) ? `layout(location=${i + 1}) in ${code} code${i + 1}; out ${type} ${name};` : '').join('\n')}
+out vec3 p;
 vec3 direction(vec2 code) {
 	vec2 xy = code / 2047.0 - 1.0;
 	float z = 1.0 - abs(xy.x) - abs(xy.y);
@@ -24,25 +28,24 @@ vec4 tangent(vec3 code) {
 }
 void main() {
 	p = origin + code * step_;
-	n = direction(normalCode);
-	st = uv;
-	authored = tangent(authoredCode);
-	computed = tangent(computedCode);
+	${inputs.map(([name, , , value]) => used.includes(name) ? `${name} = ${value};` : '').join(' ')}
 	gl_Position = camera * vec4(p, 1.0);
 }`;
 
-// A program for each mode and its frames: without a GPU a pixel pays for every branch and a triangle for every input that
-// the text has, taken or not. `normals`, `textured`, `based`: whether the mesh has normals, texture coordinates, a base colour.
+// A program for each mode and its frames: without a GPU a pixel pays for every branch, taken or not. `normals`, `textured`, `based`: whether the mesh has normals, texture coordinates, a base colour.
 //
 // The frame from screen derivatives: T and B as the gradients of u and v over the surface, with their common scale
 // taken out, so that a mirrored triangle gets a mirrored frame without stored data.
 const frameText = which => which === 2 ? 'derived(normal)' : 'stored(' + FRAMES[which][0] + ')';
 const signText = (which, frame) => which === 2 ? 'sideOf(' + frame + ')' : FRAMES[which][0] + '.w';
-const surfaceFragment = (mode, frame, other, normals, textured, based) => `#version 300 es
+const surfaceUses = (mode, frame, other, normals, textured) => inputs.map(([name]) => name).filter(name => name === 'n' ? normals :
+	name === 'st' ? textured && (mode <= 2 || frame === 2 || (mode === 7 && other === 2)) :
+	(mode === 0 || mode > 3) && (FRAMES[frame][0] === name || (mode === 7 && FRAMES[other][0] === name)));
+const surfaceFragment = (used, mode, frame, other, normals, textured, based) => `#version 300 es
 precision highp float;
 const int mode = ${mode}; const bool normals = ${normals}, textured = ${textured}, based = ${based};
 uniform vec3 light, eye; uniform float green; uniform sampler2D bump, base; uniform mat3 map, baseMap; uniform vec3 plain, mirrored, degenerate;
-in vec3 p, n; in vec2 st; in vec4 authored, computed;
+in vec3 p; ${inputs.map(([name, type]) => used.includes(name) ? `in ${type} ${name};` : `const ${type} ${name} = ${type}(0.0);`).join(' ')}
 out vec4 colour;
 mat3 derived(vec3 normal) {
 	vec2 at = (map * vec3(st, 1.0)).xy;
@@ -120,7 +123,7 @@ void main() {
 const fillFragment = `#version 300 es
 precision highp float;
 uniform vec4 tint; uniform vec3 eye;
-in vec3 p, n; in vec2 st; in vec4 authored, computed;
+in vec3 p;
 out vec4 colour;
 void main() {
 	vec3 face = normalize(cross(dFdx(p), dFdy(p)));
@@ -132,7 +135,7 @@ void main() {
 const seenFragment = `#version 300 es
 precision highp float;
 uniform vec4 tint;
-in vec3 p, n; in vec2 st; in vec4 authored, computed;
+in vec3 p;
 out vec4 colour;
 void main() { colour = gl_FrontFacing ? tint : vec4(0.0, 1.0, 0.0, 1.0); }`;
 

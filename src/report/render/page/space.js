@@ -4,6 +4,7 @@
 // side from which it is seen. Two frames can be looked at beside each other, or with a wipe between them.
 
 const MOST_REPEATED = 2e6; // triangles in other tiles that lie on what is seen: half a second
+const MOST_TURNED = 20000; // triangles that are drawn while it moves, if that is slow
 const MOST_OUTLINED = 8; // as many as a finding has places
 const HALF_VIEW = 0.35; // half the angle of view, of the shorter side: a sphere that fits it fits the other
 const WHOLE = 0.5 / Math.sin(HALF_VIEW); // from here a sphere fits whose diameter is 1
@@ -41,8 +42,8 @@ class Space {
 			showSeams: true, camera: {target: [0, 0, 0], distance: 3, yaw: 0.6, pitch: 0.35}, buffers: [],
 			part: [0, 1], flip: false, showBase: true, moving: false, quality: 0.8, slow: 0, drawn: 0});
 		this.surfaces = new Map();
-		this.fill = this.program(surfaceVertex, fillFragment);
-		this.seen = this.program(surfaceVertex, seenFragment);
+		this.fill = this.program(surfaceVertex([]), fillFragment);
+		this.seen = this.program(surfaceVertex([]), seenFragment);
 		this.lines = this.program(lineVertex, lineFragment);
 		this.cover = this.program(coverVertex, coverFragment);
 		this.textures = {bump: gl.createTexture(), base: gl.createTexture()};
@@ -75,7 +76,10 @@ class Space {
 		if (this.mode === 0 && !this.geometry[FRAMES[frame][0]]) frame = 2;
 		const other = this.mode === 7 && this.other >= 0 ? this.other : 2, {normals, texcoords} = this.geometry;
 		const what = [this.mode, frame, other, !!normals, !!texcoords, this.mode === 0 && this.showBase && !!this.images.base], key = what.join();
-		if (!this.surfaces.has(key)) this.surfaces.set(key, this.program(surfaceVertex, surfaceFragment(...what)));
+		if (!this.surfaces.has(key)) {
+			const used = surfaceUses(...what);
+			this.surfaces.set(key, this.program(surfaceVertex(used), surfaceFragment(used, ...what)));
+		}
 		return this.surfaces.get(key);
 	}
 
@@ -96,15 +100,18 @@ class Space {
 		this.buffers.push(buffer);
 	}
 
-	elements(indices, buffer = this.gl.createBuffer()) {
-		const gl = this.gl;
+	elements(indices, kept) {
+		const gl = this.gl, buffer = kept || gl.createBuffer();
+		gl.bindVertexArray(null); // an array object would take the buffer for its own
 		gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
 		gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
-		return buffer;
+		if (!kept) this.buffers.push(buffer);
+		return {buffer, count: indices.length};
 	}
 
 	load(mesh, geometry) {
 		const gl = this.gl, g = geometry;
+		this.coarse = null;
 		this.buffers.forEach(b => gl.deleteBuffer(b));
 		this.buffers = [];
 		this.mesh = mesh;
@@ -122,8 +129,6 @@ class Space {
 			this.attribute(4, g.computed, 3, 8);
 			this.whole = this.elements(g.indices);
 			this.covering = g.covering === g.indices ? this.whole : this.elements(g.covering);
-			this.buffers.push(this.whole, this.covering);
-			gl.bindVertexArray(null);
 			this.box = [0, 1, 2].map(i => g.step[i] * 65535);
 			this.extent = Math.hypot(...this.box) || 1;
 			this.centre = [0, 1, 2].map(i => g.origin[i] + this.box[i] / 2);
@@ -216,10 +221,8 @@ class Space {
 		if (triangles.length || seams.length) {
 			const indices = new Uint32Array(3 * triangles.length);
 			triangles.forEach((t, i) => indices.set(g.indices.subarray(3 * t, 3 * t + 3), 3 * i));
-			gl.bindVertexArray(null);
 			// one buffer for ever: a new one with the number of a deleted one is taken for that one by array objects
-			this.chosenElements = this.elements(indices, this.chosenElements);
-			this.chosen = {triangles, elements: this.chosenElements, count: indices.length,
+			this.chosen = {triangles, elements: this.elements(indices, this.chosenBuffer ||= gl.createBuffer()),
 				lines: this.lineArray(this.seamSegments(seams, SELECTED).concat(this.outlines(triangles)))};
 		}
 		this.draw();
@@ -251,7 +254,7 @@ class Space {
 	// Looks at what is chosen from outside: of some directions the one from which most of it is seen, those that it
 	// faces first.
 	focus() {
-		if (!this.chosen || !this.chosen.count) return;
+		if (!this.chosen?.elements.count) return;
 		const {middle, radius, facing} = this.chosenPlace(), out = sub(middle, this.centre);
 		const wanted = facing || (length(out) > 0.01 * this.extent ? unit(out) : [0.5, 0.3, 0.8]);
 		const whole = WHOLE * this.extent, near = clamp(4.5 * radius, 0.01 * this.extent, whole);
@@ -284,11 +287,11 @@ class Space {
 		const {matrix} = this.matrices(camera, 1);
 		this.use(this.seen, matrix);
 		gl.uniform4f(this.seen.at.tint, 0, 0, 0, 1);
-		this.drawElements(this.whole, this.geometry.indices.length);
+		this.drawElements(this.whole);
 		gl.enable(gl.POLYGON_OFFSET_FILL);
 		gl.polygonOffset(-1, -2);
 		gl.uniform4f(this.seen.at.tint, 1, 0, 0, 1);
-		this.drawElements(this.chosen.elements, this.chosen.count);
+		this.drawElements(this.chosen.elements);
 		gl.disable(gl.POLYGON_OFFSET_FILL);
 		this.drawLines(this.chosen.lines, matrix, [size, size], 1.5); // triangles may be smaller than a pixel
 		const pixels = new Uint8Array(4 * size * size);
@@ -373,7 +376,7 @@ class Space {
 			gl.uniform4f(this.cover.at.tint, red, 0, 0, 0.25);
 		};
 		place(window, 0.25);
-		this.drawElements(this.covering, this.geometry.covering.length);
+		this.drawElements(this.covering);
 		place(mapAfter(window, mapBack(this.mesh.map)), 0);
 		gl.bindVertexArray(this.again ||= gl.createVertexArray());
 		gl.bindBuffer(gl.ARRAY_BUFFER, this.againBuffer ||= gl.createBuffer());
@@ -423,13 +426,13 @@ class Space {
 		gl.uniform3fv(program.at.step_, g.step);
 	}
 
-	drawElements(elements, length) {
+	drawElements({buffer, count}) {
 		const gl = this.gl;
 		gl.bindVertexArray(this.array);
 		for (const [index, there] of [[1, this.geometry.normals], [2, this.geometry.texcoords], [3, this.geometry.authored], [4, this.geometry.computed]])
 			if (!there) gl.vertexAttrib4f(index, 2047, 2047, 0, 0);
-		gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, elements);
-		gl.drawElements(gl.TRIANGLES, length, gl.UNSIGNED_INT, 0);
+		gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
+		gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0);
 		gl.bindVertexArray(null);
 	}
 
@@ -447,7 +450,7 @@ class Space {
 	}
 
 	drawSurface(eye, matrix, frame) {
-		const gl = this.gl, surface = this.surface(frame), {at} = surface, g = this.geometry;
+		const gl = this.gl, surface = this.surface(frame), {at} = surface;
 		const [right, up, back] = axesOf(eye, this.camera.target);
 		this.use(surface, matrix);
 		gl.uniform3fv(at.light, unit(add(back, add(times(right, -0.35), times(up, 0.55)))));
@@ -462,7 +465,8 @@ class Space {
 			gl.uniform1i(at[name] ?? null, unit);
 		});
 		gl.activeTexture(gl.TEXTURE0);
-		this.drawElements(this.whole, g.indices.length);
+		this.shown = this.moving && this.coarse || this.whole;
+		this.drawElements(this.shown);
 	}
 
 	// One picture, with one frame, into a part of the canvas.
@@ -475,7 +479,7 @@ class Space {
 		gl.enable(gl.DEPTH_TEST);
 		gl.depthFunc(gl.LEQUAL);
 		this.drawSurface(eye, matrix, frame);
-		if (this.chosen && this.chosen.count) {
+		if (this.chosen?.elements.count) {
 			gl.enable(gl.BLEND);
 			gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
 			gl.enable(gl.POLYGON_OFFSET_FILL);
@@ -486,7 +490,7 @@ class Space {
 				gl.depthFunc(test);
 				gl.depthMask(test === gl.LEQUAL);
 				gl.uniform4f(this.fill.at.tint, ...SELECTED, alpha);
-				this.drawElements(this.chosen.elements, this.chosen.count);
+				this.drawElements(this.chosen.elements);
 			}
 			gl.disable(gl.POLYGON_OFFSET_FILL);
 			gl.disable(gl.BLEND);
@@ -508,21 +512,22 @@ class Space {
 		requestAnimationFrame(() => { this.pending = false; this.drawNow(); });
 	}
 
-	// While it moves, as many pixels as it is quick with, in steps, since another size is another buffer; at rest four for
-	// each of the page's, where edges are smooth.
+	// While it moves, as many triangles and pixels as it is quick with, in steps, since another size is another buffer; at rest all,
+	// and four pixels for each of the page's, where edges are smooth. Without a GPU triangles take the time.
 	pixelScale() {
 		const ratio = window.devicePixelRatio || 1, now = performance.now(), since = now - this.drawn;
 		this.drawn = now;
 		if (!this.moving) return ratio < 2 ? 2 : ratio;
 		this.slow = since > 2000 ? 0 : since > 36 ? this.slow + 1 : Math.max(0, this.slow - 1);
-		if (this.slow > 1 && this.quality > 0.3) { this.quality *= 0.7; this.slow = 0; }
+		if (this.slow > 1 && !this.coarse && this.geometry?.triangles > MOST_TURNED) {
+			this.coarse = this.elements(coarseIndices(this.geometry));
+			this.slow = 0;
+		} else if (this.slow > 1 && this.quality > 0.3) { this.quality *= 0.7; this.slow = 0; }
 		return ratio * this.quality;
 	}
 
 	move() {
 		this.moving = true;
-		clearTimeout(this.rest);
-		this.rest = setTimeout(() => { this.moving = false; this.draw(); }, 180);
 		this.draw();
 	}
 
@@ -548,6 +553,8 @@ class Space {
 			this.drawPart(this.other, [half, 0, w - half, h], [half, 0, w - half, h], scale);
 		}
 		this.ondraw?.();
+		clearTimeout(this.rest);
+		if (this.moving) this.rest = setTimeout(() => { this.moving = false; this.draw(); }, 180);
 	}
 
 	// ---- moving ----
