@@ -28,7 +28,7 @@ static uint64_t finding_geometry(const void *report, size_t index)
 	return ((const nt_report *)report)->findings[index].geometry;
 }
 
-/* What has another name now is known by its geometry. */
+/* A finding of another name now is known by its geometry. */
 static bool match_findings(nt_report_diff *diff)
 {
 	const nt_report *const *reports = diff->reports;
