@@ -119,7 +119,7 @@ static size_t mirrored_in(const nt_island *island)
 /* ---- which mirrored triangles lie on unmirrored ones ---- */
 
 typedef struct sample {
-	double u, v;
+	double uv[2];
 	double weight;     /* area in UV space */
 	uint32_t island;
 	uint32_t next;     /* in its cell, NT_NONE at the end */
@@ -128,14 +128,52 @@ typedef struct sample {
 } sample;
 
 typedef struct grid {
+	const nt_check *check;
 	double minimum[2], scale[2];
 	uint32_t cells[GRID_SIZE * GRID_SIZE]; /* first sample */
 	sample *samples;
 	size_t sample_count, left; /* not found yet */
 	size_t visits, most_visits;
-	const nt_mesh *mesh; /* whose wrap and wrap_offset count */
-	uint32_t *textures;  /* [primitive_count] numbers of images */
 } grid;
+
+/* The first map of a material, a normal map before others; "": none. A glTF's meshes are told apart by their
+ * materials. */
+static const char *texture_name(const nt_material *material)
+{
+	const char *name = material->normal_map.name;
+	for (size_t i = 0; !name && i < NT_MATERIAL_MAPS; i++)
+		name = material->maps[i].name;
+	return name ? name : "";
+}
+
+/* Numbers the images of all materials, and last that of none. False: out of memory. */
+static bool number_textures(const nt_scene *scene, nt_others *others)
+{
+	const size_t count = scene->material_count + 1;
+	nt_name_table names = {0};
+	others->textures = nt_alloc(count, sizeof *others->textures);
+	others->met = nt_calloc(count, sizeof *others->met);
+	bool done = others->textures && others->met;
+	for (size_t i = 0; i < count && done; i++) {
+		const char *name = i + 1 < count ? texture_name(&scene->materials[i]) : "";
+		others->textures[i] = nt_name_add(&names, name, strlen(name));
+		done = others->textures[i] != UINT32_MAX;
+	}
+	nt_name_table_free(&names);
+	return done;
+}
+
+static uint32_t texture_of_primitive(const nt_check *check, const nt_mesh *mesh, size_t primitive)
+{
+	const size_t count = check->scene->material_count;
+	const uint32_t material = mesh->primitive_count ? mesh->primitives[primitive].material : NT_NONE;
+	return check->others->textures[material < count ? material : count];
+}
+
+static uint32_t texture_of(const nt_check *check, const nt_mesh *mesh, size_t face)
+{
+	return texture_of_primitive(check, mesh, mesh->face_primitive ? mesh->face_primitive[face] : 0);
+}
 
 static double uv_area(const float *a, const float *b, const float *c)
 {
@@ -150,44 +188,11 @@ static int cell_of(const grid *g, int axis, double value)
 	return !(cell >= 0.0) ? 0 : cell >= GRID_SIZE ? GRID_SIZE - 1 : (int)cell;
 }
 
-/* The image that a primitive's material has: its first map, a normal map before others; "": none. A glTF's meshes are
- * told apart by their materials. */
-static const char *texture_name(const nt_scene *scene, const nt_mesh *mesh, size_t primitive)
-{
-	const uint32_t number = mesh->primitive_count ? mesh->primitives[primitive].material : NT_NONE;
-	const nt_material *material = number < scene->material_count ? &scene->materials[number] : NULL;
-	const char *name = material ? material->normal_map.name : NULL;
-	for (size_t i = 0; material && !name && i < NT_MATERIAL_MAPS; i++)
-		name = material->maps[i].name;
-	return name ? name : "";
-}
-
-/* The numbers of the images of a mesh's primitives, one at least, in scratch; NULL when out of memory. UINT32_MAX: of
- * another mesh, an image that the checked one does not have. */
-static uint32_t *number_textures(const nt_check *check, const nt_mesh *mesh, nt_name_table *names)
-{
-	const size_t count = mesh->primitive_count ? mesh->primitive_count : 1;
-	uint32_t *textures = nt_scratch_alloc(check->scratch, count, sizeof *textures);
-	for (size_t p = 0; textures && p < count; p++) {
-		const char *name = texture_name(check->scene, mesh, p);
-		textures[p] = mesh == check->mesh ? nt_name_add(names, name, strlen(name))
-			: nt_name_find(names, name, strlen(name));
-		if (mesh == check->mesh && textures[p] == UINT32_MAX)
-			return NULL;
-	}
-	return textures;
-}
-
-static uint32_t texture_of(const nt_check *check, const grid *g, size_t triangle)
-{
-	const uint32_t *primitives = g->mesh->face_primitive;
-	return g->textures[primitives ? primitives[nt_triangle_face(&check->surface, triangle)] : 0];
-}
-
 /* Takes every n-th mirrored triangle, at most SAMPLE_COUNT, and the first one of every island. `met` is
  * cleared memory, one byte for each island. */
-static void take_samples(const nt_check *check, grid *g, size_t mirrored_count, uint8_t *met)
+static void take_samples(grid *g, size_t mirrored_count, uint8_t *met)
 {
+	const nt_check *check = g->check;
 	const nt_surface *s = &check->surface;
 	const size_t stride = (mirrored_count + SAMPLE_COUNT - 1) / SAMPLE_COUNT;
 	size_t seen = 0;
@@ -198,71 +203,55 @@ static void take_samples(const nt_check *check, grid *g, size_t mirrored_count, 
 		met[check->islands[t]] = 1;
 		if (seen++ % stride != 0 && !first)
 			continue;
-		const float *a = nt_side_texcoord(s, (uint32_t)(3 * t));
-		const float *b = nt_side_texcoord(s, (uint32_t)(3 * t + 1));
-		const float *c = nt_side_texcoord(s, (uint32_t)(3 * t + 2));
-		g->samples[g->sample_count++] = (sample){
-			.u = nt_wrap_coordinate(g->mesh, 0, ((double)a[0] + b[0] + c[0]) / 3.0),
-			.v = nt_wrap_coordinate(g->mesh, 1, ((double)a[1] + b[1] + c[1]) / 3.0),
-			.weight = -uv_area(a, b, c),
-			.island = check->islands[t],
-			.texture = texture_of(check, g, t),
+		const float *a = nt_side_texcoord(s, 3 * t), *b = nt_side_texcoord(s, 3 * t + 1);
+		const float *c = nt_side_texcoord(s, 3 * t + 2);
+		sample *p = &g->samples[g->sample_count++];
+		*p = (sample){.weight = -uv_area(a, b, c), .island = check->islands[t],
+			.texture = texture_of(check, check->mesh, nt_triangle_face(s, t)),
 			.found = check->twins && nt_bit(check->twins, t)};
+		for (int axis = 0; axis < 2; axis++)
+			p->uv[axis] = nt_wrap_coordinate(check->mesh, axis,
+				((double)a[axis] + b[axis] + c[axis]) / 3.0);
 	}
 }
 
 static void fill_grid(grid *g)
 {
-	double maximum[2] = {-INFINITY, -INFINITY};
-	g->minimum[0] = g->minimum[1] = INFINITY;
-	for (size_t i = 0; i < g->sample_count; i++) {
-		g->minimum[0] = fmin(g->minimum[0], g->samples[i].u);
-		g->minimum[1] = fmin(g->minimum[1], g->samples[i].v);
-		maximum[0] = fmax(maximum[0], g->samples[i].u);
-		maximum[1] = fmax(maximum[1], g->samples[i].v);
-	}
 	for (int axis = 0; axis < 2; axis++) {
-		const double extent = maximum[axis] - g->minimum[axis];
+		double maximum = -INFINITY;
+		g->minimum[axis] = INFINITY;
+		for (size_t i = 0; i < g->sample_count; i++) {
+			g->minimum[axis] = fmin(g->minimum[axis], g->samples[i].uv[axis]);
+			maximum = fmax(maximum, g->samples[i].uv[axis]);
+		}
+		const double extent = maximum - g->minimum[axis];
 		g->scale[axis] = extent > 0.0 ? GRID_SIZE / extent : 0.0;
 	}
 	memset(g->cells, 0xff, sizeof g->cells);
 	for (size_t i = g->sample_count; i-- > 0;) {
-		const int x = cell_of(g, 0, g->samples[i].u), y = cell_of(g, 1, g->samples[i].v);
-		g->samples[i].next = g->cells[y * GRID_SIZE + x];
-		g->cells[y * GRID_SIZE + x] = (uint32_t)i;
+		sample *p = &g->samples[i];
+		uint32_t *cell = &g->cells[cell_of(g, 1, p->uv[1]) * GRID_SIZE + cell_of(g, 0, p->uv[0])];
+		p->next = *cell;
+		*cell = (uint32_t)i;
 	}
+	g->left = g->sample_count;
 }
 
 /* A triangle in UV space, counterclockwise. */
 typedef struct uv_triangle {
-	double u[3], v[3];
+	double uv[2][3];
 	uint32_t texture;
 } uv_triangle;
 
 static bool is_inside(const sample *p, const uv_triangle *t)
 {
+	const double *u = t->uv[0], *v = t->uv[1];
 	for (int k = 0; k < 3; k++) {
 		const int next = (k + 1) % 3;
-		if (!((t->u[next] - t->u[k]) * (p->v - t->v[k]) - (t->v[next] - t->v[k]) * (p->u - t->u[k]) >= 0.0))
+		if (!((u[next] - u[k]) * (p->uv[1] - v[k]) - (v[next] - v[k]) * (p->uv[0] - u[k]) >= 0.0))
 			return false;
 	}
 	return true;
-}
-
-/* Takes the samples that lie in an unmirrored triangle out of a cell. */
-static void search_cell(grid *g, size_t cell, const uv_triangle *t)
-{
-	for (uint32_t *link = &g->cells[cell]; *link != NT_NONE;) {
-		sample *p = &g->samples[*link];
-		g->visits++;
-		if (p->texture == t->texture && is_inside(p, t)) {
-			p->found = true;
-			g->left--;
-			*link = p->next;
-		} else {
-			link = &p->next;
-		}
-	}
 }
 
 static double least(const double x[3])
@@ -277,167 +266,138 @@ static double greatest(const double x[3])
 	return first > x[2] ? first : x[2];
 }
 
+/* Takes the samples that lie in an unmirrored triangle out of their cells. */
 static void search_cells(grid *g, const uv_triangle *t)
 {
-	const int x0 = cell_of(g, 0, least(t->u)), x1 = cell_of(g, 0, greatest(t->u));
-	const int y0 = cell_of(g, 1, least(t->v)), y1 = cell_of(g, 1, greatest(t->v));
+	const int x0 = cell_of(g, 0, least(t->uv[0])), x1 = cell_of(g, 0, greatest(t->uv[0]));
+	const int y0 = cell_of(g, 1, least(t->uv[1])), y1 = cell_of(g, 1, greatest(t->uv[1]));
 	for (int y = y0; y <= y1; y++) {
 		for (int x = x0; x <= x1; x++) {
 			g->visits++;
-			search_cell(g, (size_t)y * GRID_SIZE + (size_t)x, t);
+			for (uint32_t *link = &g->cells[y * GRID_SIZE + x]; *link != NT_NONE;) {
+				sample *p = &g->samples[*link];
+				g->visits++;
+				if (p->texture == t->texture && is_inside(p, t)) {
+					p->found = true;
+					g->left--;
+					*link = p->next;
+				} else {
+					link = &p->next;
+				}
+			}
 		}
 	}
 }
 
-/* The tiles that coordinates reach into: one where they are not wrapped. */
-static void find_tiles(const double x[3], nt_wrap wrap, double tiles[2])
+/* Searches in one of the tiles that a triangle reaches into, moved to the first one: that may turn it over. */
+static void search_tile(grid *g, uv_triangle t, const double tile[2])
 {
-	const bool wrapped = wrap == NT_WRAP_REPEAT || wrap == NT_WRAP_MIRRORED;
-	tiles[0] = wrapped ? floor(least(x)) : 0.0;
-	tiles[1] = wrapped ? floor(greatest(x)) : 0.0;
-}
-
-/* Moves a tile to the first one; returns whether that turns it over. */
-static bool move_tile(double x[3], double tile, nt_wrap wrap)
-{
-	const bool folded = wrap == NT_WRAP_MIRRORED && fmod(tile, 2.0) != 0.0;
-	for (int k = 0; k < 3; k++)
-		x[k] = folded ? 1.0 - (x[k] - tile) : x[k] - tile;
-	return folded;
-}
-
-static void search_tile(grid *g, uv_triangle t, double tile_u, double tile_v)
-{
-	const bool folded_u = move_tile(t.u, tile_u, g->mesh->wrap[0]),
-		folded_v = move_tile(t.v, tile_v, g->mesh->wrap[1]);
-	g->visits++;
-	if (folded_u != folded_v) {
-		const double u = t.u[1], v = t.v[1];
-		t.u[1] = t.u[2];
-		t.v[1] = t.v[2];
-		t.u[2] = u;
-		t.v[2] = v;
+	bool turned = false;
+	for (int axis = 0; axis < 2; axis++) {
+		const bool folded = g->check->mesh->wrap[axis] == NT_WRAP_MIRRORED && fmod(tile[axis], 2.0) != 0.0;
+		for (int k = 0; k < 3; k++)
+			t.uv[axis][k] = folded ? 1.0 - (t.uv[axis][k] - tile[axis]) : t.uv[axis][k] - tile[axis];
+		turned ^= folded;
 	}
+	for (int axis = 0; axis < 2 && turned; axis++) {
+		const double x = t.uv[axis][1];
+		t.uv[axis][1] = t.uv[axis][2];
+		t.uv[axis][2] = x;
+	}
+	g->visits++;
 	search_cells(g, &t);
 }
 
-/* An unmirrored triangle. */
+static bool goes_on(const grid *g)
+{
+	return g->left && g->visits < g->most_visits;
+}
+
+/* An unmirrored triangle, in the tiles that it reaches into: one if coordinates are not wrapped. */
 static void search_triangle(grid *g, const float *const texcoords[3], uint32_t texture)
 {
-	uv_triangle uv = {.texture = texture};
-	for (int k = 0; k < 3; k++) {
-		uv.u[k] = (double)texcoords[k][0] + g->mesh->wrap_offset[0];
-		uv.v[k] = (double)texcoords[k][1] + g->mesh->wrap_offset[1];
+	const nt_mesh *mesh = g->check->mesh;
+	uv_triangle t = {.texture = texture};
+	double first[2], last[2];
+	for (int axis = 0; axis < 2; axis++) {
+		for (int k = 0; k < 3; k++)
+			t.uv[axis][k] = (double)texcoords[k][axis] + mesh->wrap_offset[axis];
+		const bool wrapped = mesh->wrap[axis] == NT_WRAP_REPEAT || mesh->wrap[axis] == NT_WRAP_MIRRORED;
+		first[axis] = wrapped ? floor(least(t.uv[axis])) : 0.0;
+		last[axis] = wrapped ? floor(greatest(t.uv[axis])) : 0.0;
 	}
-	double us[2], vs[2];
-	find_tiles(uv.u, g->mesh->wrap[0], us);
-	find_tiles(uv.v, g->mesh->wrap[1], vs);
-	for (double v = vs[0]; v <= vs[1] && g->visits < g->most_visits; v += 1.0)
-		for (double u = us[0]; u <= us[1] && g->visits < g->most_visits; u += 1.0)
-			search_tile(g, uv, u, v);
-}
-
-static void stream_triangles(const nt_check *check, grid *g)
-{
-	const nt_surface *s = &check->surface;
-	for (size_t t = 0; t < s->triangle_count && g->left && g->visits < g->most_visits; t++)
-		if (s->orientation[t] > 0)
-			search_triangle(g, (const float *const[3]){nt_side_texcoord(s, 3 * t),
-				nt_side_texcoord(s, 3 * t + 1), nt_side_texcoord(s, 3 * t + 2)},
-				texture_of(check, g, t));
-}
-
-/* The search of samples among other meshes. */
-typedef struct search {
-	const nt_check *check;
-	nt_name_table *names;
-	grid *grid;
-	nt_status status;
-} search;
-
-static void stream_mesh(const nt_mesh *mesh, const uint32_t *textures, grid *g)
-{
-	nt_mesh_triangles at = {.mesh = mesh};
-	const float *texcoords[3];
-	while (g->left && g->visits < g->most_visits && nt_next_unmirrored(&at, texcoords))
-		search_triangle(g, texcoords, textures[mesh->face_primitive ? mesh->face_primitive[at.face] : 0]);
+	for (double v = first[1]; v <= last[1] && g->visits < g->most_visits; v += 1.0)
+		for (double u = first[0]; u <= last[0] && g->visits < g->most_visits; u += 1.0)
+			search_tile(g, t, (const double[2]){u, v});
 }
 
 /* Returns whether to go on: as long as the scene's budget for it lasts, as thousands may have mirrored islands. */
 static bool search_other(void *context, const nt_mesh *other)
 {
-	search *x = context;
-	const nt_check *check = x->check;
+	grid *g = context;
+	const nt_check *check = g->check;
 	size_t *faces = &check->others->faces;
+	bool shared = false;
 	if (other == check->mesh)
 		return true;
-	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
-	const uint32_t *textures = number_textures(check, other, x->names);
-	if (!textures) {
-		x->status = NT_ERROR_MEMORY;
-		return false;
-	}
-	bool shared = textures[0] != UINT32_MAX;
-	for (size_t p = 1; p < other->primitive_count && !shared; p++)
-		shared = textures[p] != UINT32_MAX;
+	for (size_t p = 0; p <= other->primitive_count && !shared; p++)
+		if (p < other->primitive_count || !p)
+			shared = check->others->met[texture_of_primitive(check, other, p)] == check->mesh_index + 1;
 	const size_t cost = 1 + other->primitive_count + (shared ? other->face_count : 0);
-	if (cost <= *faces && shared)
-		stream_mesh(other, textures, x->grid);
+	if (cost <= *faces && shared) {
+		nt_mesh_triangles at = {.mesh = other};
+		const float *texcoords[3];
+		while (goes_on(g) && nt_next_unmirrored(&at, texcoords))
+			search_triangle(g, texcoords, texture_of(check, other, at.face));
+	}
 	*faces -= cost <= *faces ? cost : 1;
-	nt_scratch_back(check->scratch, mark);
-	return x->grid->left && x->grid->visits < x->grid->most_visits && *faces;
+	return goes_on(g) && *faces;
 }
 
-static nt_status search_others(const nt_check *check, nt_name_table *names, grid *g)
+static nt_status search_others(grid *g)
 {
+	const nt_check *check = g->check;
 	double minimum[2] = {INFINITY, INFINITY}, maximum[2] = {-INFINITY, -INFINITY};
-	search x = {check, names, g, NT_OK};
-	if (!check->others->faces)
+	if (!g->left || !check->others->faces)
 		return NT_OK;
-	for (size_t i = 0; i < g->sample_count; i++) {
-		const sample *p = &g->samples[i];
-		if (p->found)
-			continue;
-		minimum[0] = fmin(minimum[0], p->u);
-		minimum[1] = fmin(minimum[1], p->v);
-		maximum[0] = fmax(maximum[0], p->u);
-		maximum[1] = fmax(maximum[1], p->v);
-	}
-	const nt_status status = nt_others_ask(check->others, check->scene, check->mesh, minimum, maximum,
-		search_other, &x);
-	return status ? status : x.status;
+	for (size_t p = 0; p < check->mesh->primitive_count || !p; p++)
+		check->others->met[texture_of_primitive(check, check->mesh, p)] = check->mesh_index + 1;
+	for (size_t i = 0; i < g->sample_count; i++)
+		for (int axis = 0; axis < 2 && !g->samples[i].found; axis++) {
+			minimum[axis] = fmin(minimum[axis], g->samples[i].uv[axis]);
+			maximum[axis] = fmax(maximum[axis], g->samples[i].uv[axis]);
+		}
+	return nt_others_ask(check->others, check->scene, check->mesh, minimum, maximum, search_other, g);
 }
 
 /* Sets `covered` of every island with mirrored triangles. */
 static nt_status find_covered(nt_check *check, size_t mirrored_count)
 {
-	const size_t islands = check->facts->island_count;
+	const nt_surface *s = &check->surface;
+	const size_t islands = check->facts->island_count, triangles = s->triangle_count;
 	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
 	grid *g = nt_scratch_alloc(check->scratch, 1, sizeof *g);
 	const size_t most = (mirrored_count < SAMPLE_COUNT ? mirrored_count : SAMPLE_COUNT) + islands;
 	sample *samples = nt_scratch_alloc(check->scratch, most, sizeof *samples);
 	uint8_t *met = nt_scratch_alloc(check->scratch, islands, sizeof *met);
 	double *sums = nt_scratch_alloc(check->scratch, 2 * islands, sizeof *sums);
-	nt_name_table names = {0};
-	if (g)
-		g->textures = number_textures(check, check->mesh, &names);
-	if (!g || !samples || !sums || !met || !g->textures) {
-		nt_name_table_free(&names);
+	if (!g || !samples || !sums || !met ||
+		(!check->others->met && !number_textures(check->scene, check->others)))
 		return NT_ERROR_MEMORY;
-	}
 	memset(met, 0, islands * sizeof *met);
+	g->check = check;
 	g->samples = samples;
 	g->sample_count = g->visits = 0;
-	const size_t triangles = check->surface.triangle_count;
 	g->most_visits = triangles < MOST_VISITS / TRIANGLE_VISITS
 		? MESH_VISITS + TRIANGLE_VISITS * triangles : MOST_VISITS;
-	g->mesh = check->mesh;
-	take_samples(check, g, mirrored_count, met);
+	take_samples(g, mirrored_count, met);
 	fill_grid(g);
-	g->left = g->sample_count;
-	stream_triangles(check, g);
-	const nt_status status = g->left ? search_others(check, &names, g) : NT_OK;
-	nt_name_table_free(&names);
+	for (size_t t = 0; t < triangles && goes_on(g); t++)
+		if (s->orientation[t] > 0)
+			search_triangle(g, (const float *const[3]){nt_side_texcoord(s, 3 * t),
+				nt_side_texcoord(s, 3 * t + 1), nt_side_texcoord(s, 3 * t + 2)},
+				texture_of(check, check->mesh, nt_triangle_face(s, t)));
+	const nt_status status = search_others(g);
 	memset(sums, 0, 2 * islands * sizeof *sums);
 	for (size_t i = 0; i < g->sample_count; i++) {
 		const sample *p = &samples[i];

@@ -204,4 +204,6 @@ void nt_others_free(nt_others *others)
 {
 	free(others->all);
 	free(others->built);
+	free(others->textures);
+	free(others->met);
 }

@@ -223,6 +223,8 @@ typedef struct nt_others {
 	nt_other *all;   /* [count] by sampler; NULL: nobody asked */
 	uint32_t *built; /* of a sampler's first one: how many are in its tree; NT_NONE: nobody asked */
 	size_t count;
+	uint32_t *textures, *met; /* [material_count + 1] by islands.c: numbers of the images of materials, the last of
+	                             none; of an image, one more than the mesh that had it last */
 } nt_others;
 
 /* The unmirrored triangles of a mesh that is no surface, quads cut anyhow: those of `face` come next. */
