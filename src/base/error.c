@@ -107,7 +107,7 @@ nt_status nt_fail_memory_limit(uint64_t most_bytes, nt_error *error)
 nt_status nt_error_in_file(nt_error *error, const char *file)
 {
 	if (!error->place.file[0])
-		snprintf(error->place.file, sizeof error->place.file, "%s", file);
+		nt_utf8_keep_end(error->place.file, sizeof error->place.file, file);
 	return error->status;
 }
 

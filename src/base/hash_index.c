@@ -70,26 +70,37 @@ void nt_hash_index_free(nt_hash_index *index)
 	*index = (nt_hash_index){0};
 }
 
-uint32_t nt_key_find(const nt_key_set *set, const void *key, size_t size)
+/* A key of a set, or a name, by its number. */
+static uint32_t find(const nt_hash_index *index, const unsigned char *keys, const nt_name *names, const void *key,
+	size_t size, uint64_t hash)
 {
-	const uint64_t hash = nt_hash_bytes(0, key, size);
 	size_t at = NT_HASH_BEGIN;
 	uint32_t number;
-	while ((number = nt_hash_index_next(&set->index, hash, &at)) != UINT32_MAX)
-		if (memcmp(set->keys + number * size, key, size) == 0)
+	while ((number = nt_hash_index_next(index, hash, &at)) != UINT32_MAX)
+		if (names ? names[number].length == size && memcmp(names[number].text, key, size) == 0
+			  : memcmp(keys + number * size, key, size) == 0)
 			break;
 	return number;
 }
 
+/* Room for one more thing, of which the index gets the number. */
+static bool extend(nt_hash_index *index, uint64_t hash, void **items, size_t *capacity, size_t count, size_t size)
+{
+	return count < UINT32_MAX - 1 && nt_grow(items, capacity, count + 1, size) &&
+		nt_hash_index_add(index, hash, (uint32_t)count);
+}
+
+uint32_t nt_key_find(const nt_key_set *set, const void *key, size_t size)
+{
+	return find(&set->index, set->keys, NULL, key, size, nt_hash_bytes(0, key, size));
+}
+
 uint32_t nt_key_add(nt_key_set *set, const void *key, size_t size)
 {
-	const uint32_t known = nt_key_find(set, key, size);
-	if (known != UINT32_MAX)
+	const uint64_t hash = nt_hash_bytes(0, key, size);
+	const uint32_t known = find(&set->index, set->keys, NULL, key, size, hash);
+	if (known != UINT32_MAX || !extend(&set->index, hash, (void **)&set->keys, &set->capacity, set->count, size))
 		return known;
-	if (set->count >= UINT32_MAX - 1 ||
-		!nt_grow((void **)&set->keys, &set->capacity, set->count + 1, size) ||
-		!nt_hash_index_add(&set->index, nt_hash_bytes(0, key, size), (uint32_t)set->count))
-		return UINT32_MAX;
 	memcpy(set->keys + set->count * size, key, size);
 	return (uint32_t)set->count++;
 }
@@ -103,24 +114,16 @@ void nt_key_set_free(nt_key_set *set)
 
 uint32_t nt_name_find(const nt_name_table *table, const char *text, size_t length)
 {
-	const uint64_t hash = nt_hash_bytes(0, text, length);
-	size_t at = NT_HASH_BEGIN;
-	uint32_t number;
-	while ((number = nt_hash_index_next(&table->index, hash, &at)) != UINT32_MAX)
-		if (table->names[number].length == length && memcmp(table->names[number].text, text, length) == 0)
-			break;
-	return number;
+	return find(&table->index, NULL, table->names, text, length, nt_hash_bytes(0, text, length));
 }
 
 uint32_t nt_name_add(nt_name_table *table, const char *text, size_t length)
 {
-	const uint32_t known = nt_name_find(table, text, length);
-	if (known != UINT32_MAX)
+	const uint64_t hash = nt_hash_bytes(0, text, length);
+	const uint32_t known = find(&table->index, NULL, table->names, text, length, hash);
+	if (known != UINT32_MAX || !extend(&table->index, hash, (void **)&table->names, &table->capacity, table->count,
+		sizeof *table->names))
 		return known;
-	if (table->count >= UINT32_MAX - 1 ||
-		!nt_grow((void **)&table->names, &table->capacity, table->count + 1, sizeof *table->names) ||
-		!nt_hash_index_add(&table->index, nt_hash_bytes(0, text, length), (uint32_t)table->count))
-		return UINT32_MAX;
 	table->names[table->count] = (nt_name){text, length};
 	return (uint32_t)table->count++;
 }

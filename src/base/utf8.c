@@ -48,6 +48,16 @@ size_t nt_utf8_cut_of(const char *text, size_t length, size_t most)
 	return length < most ? length : most;
 }
 
+void nt_utf8_keep_end(char *to, size_t room, const char *text)
+{
+	static const char dots[] = "...";
+	const size_t length = strlen(text);
+	const char *end = length < room ? text : text + length - room + sizeof dots;
+	while (end > text && (*end & 0xc0) == 0x80)
+		end++;
+	snprintf(to, room, "%s%s", end > text ? dots : "", end);
+}
+
 void nt_utf8_format(char *to, size_t room, const char *format, va_list arguments)
 {
 	const int wanted = vsnprintf(to, room, format, arguments);

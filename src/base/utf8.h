@@ -30,6 +30,9 @@ size_t nt_utf8_cut_of(const char *text, size_t length, size_t most);
 #define NT_CUT(most, text) (int)nt_utf8_cut((text), (most)), (text)
 #define NT_CUT_OF(most, length, text) (int)nt_utf8_cut_of((text), (length), (most)), (text)
 
+/* Copies a text, or of one without room for all its end, which begins with "..." and where a sequence does. */
+void nt_utf8_keep_end(char *to, size_t room, const char *text);
+
 /* As vsnprintf(), but a text without room for all ends where a sequence ends. */
 void nt_utf8_format(char *to, size_t room, const char *format, va_list arguments);
 

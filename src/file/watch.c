@@ -12,7 +12,6 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -101,7 +100,7 @@ int nt_watch_begin(const void *map, const struct stat *status, int fd, const cha
 		atomic_store(&w->owner, &has_lost);
 		w->fd = fd;
 		w->modified = status->st_mtim;
-		snprintf(w->path, sizeof w->path, "%s", path);
+		nt_utf8_keep_end(w->path, sizeof w->path, path);
 		atomic_store(&w->shortened, false);
 		atomic_store(&w->size, (size_t)status->st_size);
 		atomic_store(&w->begin, (uintptr_t)map);

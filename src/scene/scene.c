@@ -153,7 +153,7 @@ nt_place nt_material_place(const nt_scene *scene, const nt_material *material, s
 {
 	nt_place place;
 	nt_place_clear(&place);
-	snprintf(place.file, sizeof place.file, "%s", material->library ? material->library : scene->path);
+	nt_utf8_keep_end(place.file, sizeof place.file, material->library ? material->library : scene->path);
 	place.line = line ? line : material->line;
 	if (material->name[0])
 		snprintf(place.object, sizeof place.object, "material \"%.*s\"",

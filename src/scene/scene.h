@@ -445,7 +445,7 @@ static inline nt_place nt_line_place(const char *path, size_t line)
 {
 	nt_place place;
 	nt_place_clear(&place);
-	strncpy(place.file, path, sizeof place.file - 1);
+	nt_utf8_keep_end(place.file, sizeof place.file, path);
 	place.line = line;
 	return place;
 }

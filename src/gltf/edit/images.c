@@ -6,6 +6,7 @@
  */
 #include "gltf/edit/images.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -128,7 +129,7 @@ static nt_status look_for_image(nt_scene *scene, size_t index, bool linked, nt_e
 	if (!status)
 		nt_file_close(&file);
 	/* a file that may be read and cannot is the system's fault, as it is if the image is to be embedded */
-	if (status == NT_ERROR_MEMORY || (status == NT_ERROR_IO && access(path, R_OK) == 0)) {
+	if (status == NT_ERROR_MEMORY || (status == NT_ERROR_IO && (access(path, R_OK) == 0 || errno != EACCES))) {
 		*error = failure;
 		snprintf(error->place.pointer, sizeof error->place.pointer, "/images/%zu", index);
 		return status;

@@ -262,7 +262,7 @@ void nt_vertices_tell_scenes(nt_scene *scene)
 			continue;
 		nt_place place;
 		nt_place_clear(&place);
-		snprintf(place.file, sizeof place.file, "%s", document->path);
+		nt_utf8_keep_end(place.file, sizeof place.file, document->path);
 		snprintf(place.pointer, sizeof place.pointer, "/scenes/%zu/extensions/%s", i, name);
 		nt_finding_add(&scene->findings, NT_CODE_EXTENSION_STALE, &place, 1, "vertexCount of %s", name);
 	}

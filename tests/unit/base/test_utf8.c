@@ -110,3 +110,16 @@ TEST(a_cut_sequence_is_none)
 	assert_int_equal(nt_utf8_length("\xc3", SIZE_MAX), 0);
 	assert_int_equal(nt_utf8_length("\xe2\x82", SIZE_MAX), 0);
 }
+
+TEST(a_text_without_room_keeps_its_end)
+{
+	char room[8];
+	nt_utf8_keep_end(room, sizeof room, "a/b.obj");
+	assert_string_equal(room, "a/b.obj");
+	nt_utf8_keep_end(room, sizeof room, "folder/b.ob");
+	assert_string_equal(room, "...b.ob");
+	nt_utf8_keep_end(room, sizeof room, "folder/\xc3\xa4.o"); /* the first byte of the character has no room */
+	assert_string_equal(room, "...\xc3\xa4.o");
+	nt_utf8_keep_end(room, sizeof room, "folder/\xc3\xa4.ob");
+	assert_string_equal(room, "....ob");
+}
