@@ -48,6 +48,7 @@ typedef struct nt_reread_array {
 	bool normalized;
 	const char *filter; /* of meshoptimizer, by which they came; NULL: none */
 	const unsigned char *unfiltered; /* what it was applied to, as far apart as the elements */
+	bool turned; /* triangles that meshoptimizer packed: any of their corners may be the first */
 } nt_reread_array;
 
 /*

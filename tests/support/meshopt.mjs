@@ -43,7 +43,11 @@ function corners(file, primitive, names) {
 	const vertices = file.g.accessors[primitive.attributes.POSITION].count, known = new Map();
 	const rows = primitive.indices === undefined ? [...Array(vertices).keys()] : file.rows(primitive.indices).flat();
 	const text = (v) => numbers.map((number) => element(file, number, v)).join('|');
-	return rows.map((v) => known.get(v) ?? known.set(v, text(v)).get(v));
+	const all = rows.map((v) => known.get(v) ?? known.set(v, text(v)).get(v));
+	// the codec may begin a triangle with any of its corners
+	for (let i = 0; (primitive.mode ?? 4) === 4 && i < all.length; i += 3)
+		all.splice(i, 3, ...[0, 1, 2].map((turn) => [0, 1, 2].map((k) => all[i + (k + turn) % 3])).sort()[0]);
+	return all;
 }
 
 // The bytes of a view; of triangles, which an encoder may turn, each begins with its lowest index.

@@ -235,8 +235,9 @@ const char *resolve(nt_reread &model, int index, nt_reread_array *array)
 		return "the accessor has no buffer view";
 	}
 	*array = {bytes, accessor.count, stride, accessor.componentType, components, accessor.normalized, nullptr,
-		nullptr};
+		nullptr, false};
 	const auto packed = model.packed.find(static_cast<size_t>(accessor.bufferView));
+	array->turned = packed != model.packed.end() && packed->second.mode == "TRIANGLES";
 	if (bytes && !accessor.sparse.isSparse && packed != model.packed.end() && packed->second.filter != "NONE") {
 		array->filter = packed->second.filter.c_str();
 		array->unfiltered = bytes + size;

@@ -245,15 +245,15 @@ static size_t split_vertex(const nt_mesh *mesh, size_t corner, size_t *source)
 	return split;
 }
 
-/* The document's next corner of the primitive against the scene's. Arrays that are not float are decoded by the
+/* A corner of the document's primitive, at `place`, against the scene's. Arrays that are not float are decoded by the
  * reader of the source, so that positions of other types are not compared. */
-static bool corner_matches(const nt_mesh *mesh, size_t corner, primitive_view *view)
+static bool corner_matches(const nt_mesh *mesh, size_t corner, const primitive_view *view, size_t place)
 {
-	if (view->corner >= corner_count(view))
+	if (place >= corner_count(view))
 		return false;
 	size_t source;
 	const size_t split = split_vertex(mesh, corner, &source);
-	const size_t vertex = vertex_at(view, view->corner++);
+	const size_t vertex = vertex_at(view, place);
 	const unsigned char *position = element_at(&view->positions, vertex);
 	if (!position || (view->positions.component_type == NT_GLTF_FLOAT &&
 				 memcmp(position, mesh->positions + 3 * source, 12) != 0))
@@ -273,6 +273,25 @@ static nt_status fail_corner(const nt_mesh *mesh, size_t corner, nt_error *error
 	return NT_ERROR_INTERNAL;
 }
 
+/* How many corners of a triangle match the document's at `place`, its first one after `turn` others. */
+static unsigned match_triangle(const nt_mesh *mesh, const size_t corners[3], const primitive_view *view, size_t place,
+	unsigned turn)
+{
+	unsigned k = 0;
+	while (k < 3 && corner_matches(mesh, corners[k], view, place + (k + turn) % 3))
+		k++;
+	return k;
+}
+
+/* By how many corners the document's triangle is turned; 3: it is another one. */
+static unsigned find_turn(const nt_mesh *mesh, const size_t corners[3], const primitive_view *view, size_t place)
+{
+	unsigned turn = 0;
+	while (turn < 3 && match_triangle(mesh, corners, view, place, turn) < 3)
+		turn = view->indices.turned ? turn + 1 : 3;
+	return turn;
+}
+
 /* Faces of the scene's mesh against the primitives it became, views[p] for primitive p. */
 static nt_status compare_mesh(const nt_mesh *mesh, primitive_view *views, nt_error *error)
 {
@@ -283,19 +302,24 @@ static nt_status compare_mesh(const nt_mesh *mesh, primitive_view *views, nt_err
 		const int diagonal = size == 4 && mesh->face_diagonals ? mesh->face_diagonals[f] : 0;
 		const bool several = mesh->primitive_count > 1 && mesh->face_primitive;
 		primitive_view *view = &views[several ? mesh->face_primitive[f] : 0];
-		for (size_t k = 0; k < (size == 4 ? 6u : 3u); k++)
-			if (!corner_matches(mesh, corner + cut[diagonal][k], view))
-				return fail_corner(mesh, corner + cut[diagonal][k], error);
+		for (size_t k = 0; k < (size == 4 ? 6u : 3u); k += 3, view->corner += 3) {
+			const unsigned char *of = cut[diagonal] + k;
+			const size_t corners[3] = {corner + of[0], corner + of[1], corner + of[2]};
+			if (find_turn(mesh, corners, view, view->corner) < 3)
+				continue;
+			return fail_corner(mesh, corners[match_triangle(mesh, corners, view, view->corner, 0)], error);
+		}
 		corner += size;
 	}
 	return NT_OK;
 }
 
 /* The base's tangent of a corner as a client has it; its vertex was seen to be there. */
-static void stored_tangent(const nt_mesh *mesh, const primitive_view *view, size_t corner, float tangent[4])
+static void stored_tangent(const nt_mesh *mesh, const primitive_view *view, size_t corner, size_t vertex,
+	float tangent[4])
 {
 	size_t source;
-	const size_t split = split_vertex(mesh, corner, &source), vertex = vertex_at(view, corner);
+	const size_t split = split_vertex(mesh, corner, &source);
 	if (view->block)
 		memcpy(tangent, element_at(&view->tangents, vertex), 4 * sizeof *tangent);
 	else
@@ -312,14 +336,18 @@ static nt_status compare_targets(const nt_mesh *mesh, const primitive_view *view
 	for (size_t m = 0; m < mesh->morph_count && status == NT_OK; m++) {
 		if (nt_morph_read(mesh, m, moved) != NT_OK)
 			status = nt_fail_memory(error);
+		size_t turn = 0;
 		for (size_t c = 0; c < mesh->corner_count && status == NT_OK; c++) {
 			size_t source;
 			float stored[4];
-			const size_t split = split_vertex(mesh, c, &source), vertex = vertex_at(view, c);
+			if (c % 3 == 0 && view->indices.turned)
+				turn = find_turn(mesh, (const size_t[]){c, c + 1, c + 2}, view, c);
+			const size_t split = split_vertex(mesh, c, &source);
+			const size_t vertex = vertex_at(view, c - c % 3 + (c % 3 + turn) % 3);
 			const nt_tangent_filter filter = filter_of(&view->tangents, vertex);
 			const float least = view->tangent_bits ? nt_morph_least_of_bits(view->tangent_bits)
 							       : nt_tangent_filter_least(&filter);
-			stored_tangent(mesh, view, c, stored);
+			stored_tangent(mesh, view, c, vertex, stored);
 			if (!target_matches(&view->target_tangents[m], vertex, moved + 3 * split, stored, least))
 				status = fail_corner(mesh, c, error);
 		}
