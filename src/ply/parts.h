@@ -14,6 +14,7 @@
 #include <string.h>
 #include "base/buffer.h"
 #include "base/dvec.h"
+#include "base/hash_index.h"
 #include "base/memory.h"
 #include "file/output.h"
 #include "scene/scene.h"
@@ -172,18 +173,23 @@ typedef struct ply_cell {
 	size_t count; /* values of a list; else 1 */
 } ply_cell;
 
+/* Rows of a kind: how many, and the first. */
+typedef struct ply_tally {
+	size_t count, first;
+} ply_tally;
+
 typedef struct ply_rows {
 	const ply_header *header;
 	const ply_element *element;
 	nt_error *error;
 	const unsigned char *at, *end;
-	size_t row;           /* the next one */
+	size_t row, stop;     /* the next one, and that before which ply_read_rows stops: the element's count */
 	ply_column *columns;  /* [property_count] */
 	ply_cell *cells;      /* [property_count] */
 	unsigned threads;     /* of text; 0 and 1: the caller alone */
 	bool unsound;         /* floats to be mended were stored */
 	bool may_be_longer;   /* a line may have more values than the element has properties: they are passed over */
-	size_t longer, first_longer; /* lines that are, and the row of the first */
+	ply_tally longer;     /* lines that are */
 } ply_rows;
 
 /* Rows from `at` on, whose columns are all skipped. An element that cannot fit into the rest of the file, whatever its
@@ -195,7 +201,7 @@ void ply_free_rows(ply_rows *rows);
 /* Reads the next row: its cells and its columns. */
 nt_status ply_read_row(ply_rows *rows);
 
-/* Reads all rows. */
+/* Reads all rows up to `stop`. */
 nt_status ply_read_rows(ply_rows *rows);
 
 /* Moves behind all rows; those of text are only counted. */
@@ -244,12 +250,32 @@ typedef struct ply_source {
 
 /* ---- faces.c ---- */
 
-/* Reads the rows of faces (or strips), and says what is not taken of them. */
-nt_status ply_read_faces(nt_scene *scene, const ply_source *source, ply_rows *rows);
+/* Faces (or strips) that are read. */
+typedef struct ply_faces {
+	nt_scene *scene;
+	nt_mesh *mesh;
+	ply_source *source;
+	ply_rows rows;
+	ply_column *indices;  /* of rows */
+	size_t row_count;     /* of these; of triangles that strips have become */
+	uint32_t *textures;   /* [row_count] numbers of the header's textures, texture_count: none; NULL: none have */
+	struct wedge *wedges; /* [count of vertices] texture coordinates that each row has first; NULL: vertices' own */
+	nt_key_set copies;    /* and those of vertices behind the rows */
+	bool any_has, any_lacks; /* some corner has, some has no coordinates */
+	size_t large;            /* polygons of more than four corners */
+	bool quads;
+	ply_tally unsound, small; /* rows with a coordinate that is not finite, of fewer than three corners */
+	ply_tally guessed;        /* polygons that could be cut by a guess alone */
+} ply_faces;
 
-/* Makes the mesh's faces of these rows; its vertices are there. Copies of them are appended if faces have texture
+/* Reads the rows, and says what is not taken of them. */
+nt_status ply_read_faces(ply_faces *faces);
+
+/* Makes the mesh's faces of them; its vertices are there. Copies of them are appended if faces have texture
  * coordinates of their own. */
-nt_status ply_make_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply_rows *rows, const nt_origin *origin);
+nt_status ply_make_faces(ply_faces *faces, const nt_origin *origin);
+
+void ply_free_faces(ply_faces *faces);
 
 /* Lengths of one edge of each of `most` faces or fewer, evenly taken, of positions or of `exact` ones; NULL: there are
  * none. The count is returned. */

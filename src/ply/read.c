@@ -87,7 +87,7 @@ static nt_status find_indices(ply_source *source, ply_element *element, nt_error
 		return nt_fail_line(error, NT_ERROR_INPUT, property->line,
 			"property \"%s\" is not a list of integers", property->name);
 	source->face_indices = found;
-	source->face_texcoords = ply_find_property(element, "texcoord");
+	source->face_texcoords = source->strips ? PLY_NO_PROPERTY : ply_find_property(element, "texcoord");
 	if (source->face_texcoords >= 0 && !element->properties[source->face_texcoords].list)
 		source->face_texcoords = PLY_NO_PROPERTY;
 	element->properties[found].used = true;
@@ -220,26 +220,24 @@ static nt_status read_body(nt_scene *scene, nt_mesh *mesh, ply_source *source, c
 	nt_error *error)
 {
 	const ply_header *header = &source->header;
-	ply_rows faces = {0}, rows;
+	ply_faces faces = {.scene = scene, .mesh = mesh, .source = source};
 	const unsigned char *at = header->bytes + header->body, *const end = header->bytes + header->size;
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < header->element_count; i++) {
 		ply_element *element = &header->elements[i];
 		const bool is_faces = element == source->face || element == source->strips;
 		element->rows.begin = (size_t)(at - header->bytes);
-		status = ply_begin_rows(&rows, header, element, at, error);
-		rows.threads = nt_thread_count(options->threads);
-		if (!status && is_faces)
-			status = ply_read_faces(scene, source, &rows);
-		else if (!status)
-			status = element == source->vertex ? read_vertices(scene, mesh, source, &rows)
-				: ply_skip_rows(&rows);
-		at = rows.at;
+		ply_rows own, *rows = is_faces ? &faces.rows : &own;
+		status = ply_begin_rows(rows, header, element, at, error);
+		rows->threads = nt_thread_count(options->threads);
+		if (!status)
+			status = is_faces ? ply_read_faces(&faces)
+				: element == source->vertex ? read_vertices(scene, mesh, source, rows)
+				: ply_skip_rows(rows);
+		at = rows->at;
 		element->rows.end = (size_t)(at - header->bytes);
-		if (is_faces)
-			faces = rows;
-		else
-			ply_free_rows(&rows);
+		if (!is_faces)
+			ply_free_rows(rows);
 	}
 	while (header->encoding == PLY_ASCII && at < end && ply_is_space(*at))
 		at++;
@@ -250,9 +248,9 @@ static nt_status read_body(nt_scene *scene, nt_mesh *mesh, ply_source *source, c
 		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1,
 			"%zu bytes after the last element", (size_t)(end - at));
 	}
-	if (!status && faces.element)
-		status = ply_make_faces(scene, mesh, source, &faces, &options->origin);
-	ply_free_rows(&faces);
+	if (!status && (source->face || source->strips))
+		status = ply_make_faces(&faces, &options->origin);
+	ply_free_faces(&faces);
 	return status;
 }
 

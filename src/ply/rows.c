@@ -233,8 +233,7 @@ static nt_status end_longer_row(ply_rows *rows)
 {
 	if (!rows->may_be_longer)
 		return fail_found(rows, rows->at, "the end of the line", NULL);
-	if (rows->longer++ == 0)
-		rows->first_longer = rows->row;
+	rows->longer.first = rows->longer.count++ ? rows->longer.first : rows->row;
 	while (rows->at < rows->end && !ply_is_line_end(*rows->at))
 		rows->at++;
 	return NT_OK;
@@ -377,7 +376,8 @@ static nt_status read_binary_row(ply_rows *rows)
 		const unsigned char *const at = cell->end - cell->count * size;
 		const size_t to = property->list ? column->used : rows->row * column->stride;
 		size_t sound = cell->count;
-		if (property->list)
+		if (property->list &&
+			(column->counts || cell->count != column->size || to + cell->count > column->capacity))
 			status = begin_list(rows, column, cell->count);
 		column->used += cell->count;
 		if (!status && column->use != PLY_SKIPPED)
@@ -442,7 +442,7 @@ static void take_columns(ply_rows *rows)
 {
 	const ply_element *element = rows->element;
 	const bool swap = ply_swaps(rows->header->encoding);
-	const size_t room = (size_t)(rows->end - rows->at) / element->row_bytes, left = element->count - rows->row;
+	const size_t room = (size_t)(rows->end - rows->at) / element->row_bytes, left = rows->stop - rows->row;
 	size_t sound = 0, wanted = 0;
 	for (size_t most = left < room ? left : room; most && sound == wanted; most -= sound) {
 		const unsigned char *from = rows->at;
@@ -470,7 +470,7 @@ static inline __attribute__((always_inline)) nt_status take_lists_as(ply_rows *r
 	size_t row = rows->row, used = column->used;
 	size_t usual = column->counts ? SIZE_MAX : column->size;
 	nt_status status = NT_OK;
-	while (row < rows->element->count) {
+	while (row < rows->stop) {
 		const size_t left = (size_t)(rows->end - at);
 		const int64_t read = left < lead ? -1 : load_integer(at + head, count_type, swap);
 		const size_t count = (size_t)read, to = used;
@@ -571,8 +571,8 @@ static nt_status take_lines(ply_rows *rows, ply_column *list, bool first)
 {
 	nt_status status = NT_OK;
 	size_t taken = 1, size = 0;
-	while (!status && taken && rows->row < rows->element->count && rows->at < rows->end) {
-		const size_t left = rows->element->count - rows->row;
+	while (!status && taken && rows->row < rows->stop && rows->at < rows->end) {
+		const size_t left = rows->stop - rows->row;
 		if (list)
 			size = first ? (size_t)(*rows->at - '0') : list->size;
 		if (size > 9)
@@ -635,7 +635,7 @@ static void take_piece(void *context, size_t item, unsigned thread)
 /* Also without memory for it. */
 static void take_pieces(ply_rows *rows, ply_column *list)
 {
-	const size_t most = (size_t)(rows->end - rows->at) / PIECE_BYTES + 1, left = rows->element->count - rows->row;
+	const size_t most = (size_t)(rows->end - rows->at) / PIECE_BYTES + 1, left = rows->stop - rows->row;
 	pieces p = {.rows = rows, .list = list};
 	if (rows->threads < 2 || most < LEAST_PIECES || (list && list->capacity < list->used + left * list->size) ||
 		(list && list->size > 9))
@@ -671,7 +671,7 @@ static nt_status reserve_lists(ply_rows *rows)
 {
 	for (size_t i = 0; i < rows->element->property_count; i++) {
 		ply_column *column = &rows->columns[i];
-		if (column->size && column->size <= rows->header->size / rows->element->count &&
+		if (column->use == PLY_INDICES && column->size <= rows->header->size / rows->element->count &&
 			!nt_grow(&column->values, &column->capacity, column->size * rows->element->count,
 				sizeof(float)))
 			return nt_fail_memory(rows->error);
@@ -686,13 +686,13 @@ nt_status ply_read_rows(ply_rows *rows)
 	const bool plain = is_plain(rows, &number);
 	ply_column *list = number < element->property_count ? &rows->columns[number] : NULL;
 	nt_status status = NT_OK;
-	while (!status && rows->row < element->count) {
+	while (!status && rows->row < rows->stop) {
 		/* nobody but this one knows errors */
 		status = ply_read_row(rows);
 		const bool first = rows->row == 1;
 		if (!status && first)
 			status = reserve_lists(rows);
-		if (status || !plain || rows->row == element->count)
+		if (status || !plain || rows->row == rows->stop)
 			continue;
 		if (is_text(rows))
 			ply_next_row(rows);
@@ -729,7 +729,7 @@ nt_status ply_begin_rows(ply_rows *rows, const ply_header *header, const ply_ele
 	nt_error *error)
 {
 	const size_t count = element->property_count;
-	*rows = (ply_rows){.header = header, .element = element, .error = error, .at = at,
+	*rows = (ply_rows){.header = header, .element = element, .error = error, .at = at, .stop = element->count,
 		.end = header->bytes + header->size, .columns = nt_calloc(count, sizeof *rows->columns),
 		.cells = nt_calloc(count, sizeof *rows->cells)};
 	if (!rows->columns || !rows->cells)

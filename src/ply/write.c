@@ -353,24 +353,31 @@ static bool resolve_polygon(writer *w, size_t corner, size_t size, const uint32_
 static nt_status put_polygon(writer *w, size_t *corner, size_t *cut)
 {
 	ply_column *indices = &w->faces.columns[w->source->face_indices];
-	w->faces.row = indices->used = 0;
+	const unsigned char *const row = w->faces.at;
 	if (ply_read_row(&w->faces))
 		return fail_changed(w);
-	const size_t size = indices->used, corners = size < 3 ? 0 : size < 5 ? size : 3 * (size - 2);
+	const size_t size = w->faces.cells[w->source->face_indices].count;
+	const size_t corners = size < 3 ? 0 : size < 5 ? size : 3 * (size - 2);
 	const uint32_t *own = w->source->cuts + *cut;
 	if (corners > w->mesh->corner_count - *corner || (size > 4 && corners > w->source->cut_count - *cut))
 		return fail_changed(w);
 	nt_status status = NT_OK;
-	if (size > 4 && !resolve_polygon(w, *corner, size, own)) {
+	if (size < 3) {
+		/* no face of the mesh: its vertices stay */
+		w->faces.at = row;
+		*indices = (ply_column){.use = PLY_INDICES, .integers = w->polygon,
+			.capacity = w->source->most_corners, .size = size, .limit = row_count(w)};
+		status = ply_read_row(&w->faces) ? fail_changed(w) : put_face(w, w->polygon, size, NULL);
+		*indices = (ply_column){.use = PLY_SKIPPED};
+	} else if (size > 4 && !resolve_polygon(w, *corner, size, own)) {
 		for (size_t t = 0; !status && t < corners; t += 3) {
 			for (size_t k = 0; k < 3; k++)
 				w->polygon[k] = output_vertex(w, *corner + t + k);
 			status = put_face(w, w->polygon, 3, own + t);
 		}
 	} else {
-		/* fewer than three are no face of the mesh: its vertices stay */
 		for (size_t k = 0; size < 5 && k < size; k++)
-			w->polygon[k] = size < 3 ? indices->integers[k] : output_vertex(w, *corner + k);
+			w->polygon[k] = output_vertex(w, *corner + k);
 		status = put_face(w, w->polygon, size, NULL);
 	}
 	*corner += corners;
@@ -641,8 +648,6 @@ static nt_status write_changed(writer *w, bool bitangents)
 	}
 	if (status)
 		return status;
-	if (source->face)
-		w->faces.columns[source->face_indices] = (ply_column){.use = PLY_INDICES, .limit = vertex->count};
 	count_cut_polygons(w);
 	/* bitangents of other tangents must not stay */
 	w->new_bitangents = w->new_tangents && w->mesh->normals &&
