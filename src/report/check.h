@@ -11,6 +11,8 @@
 #include "report/report.h"
 #include "report/surface/surface.h"
 
+static const double NT_DEGREES = 57.29577951308232; /* of a radian */
+
 /* Whose tangents are checked: the input's, or, on conversion, the result. */
 typedef enum nt_stored {
 	NT_STORED_NONE,
@@ -220,7 +222,7 @@ nt_status nt_check_seams(nt_check *check);    /* seams.c */
 nt_status nt_check_hard_edges(nt_check *check); /* hard_edges.c */
 nt_status nt_check_rims(nt_check *check);     /* across.c */
 nt_status nt_check_tangents(nt_check *check); /* tangents.c */
-nt_status nt_check_growth(nt_check *check);   /* growth.c: shared and copied vertices */
+nt_status nt_check_growth(nt_check *check);   /* measures.c: shared and copied vertices */
 nt_status nt_check_measures(nt_check *check); /* measures.c: density, stretch, costs */
 
 /* Once all meshes are checked: seams between them. across.c */

@@ -26,8 +26,6 @@ static const double VISIBLE_SHARE = 0.01;
 /* The tolerance of the Khronos validator. */
 static const double UNIT_TOLERANCE = 0.00674;
 
-static const double DEGREES = 57.29577951308232;
-
 /* Triangles that a thread takes at a time. */
 enum { PART = 128 * NT_BLOCK };
 
@@ -130,7 +128,7 @@ static void check_texcoords(const triangle_work *work, size_t t, const uint32_t 
 		return;
 	const double sine = rounding_sine(s, t, &frame, nt_dvec3_length(face));
 	if (!(sine <= NEAR_DEGENERATE_SINE)) {
-		const double bound = sine < 1.0 ? asin(sine) * DEGREES : 90.0;
+		const double bound = sine < 1.0 ? asin(sine) * NT_DEGREES : 90.0;
 		nt_tally_triangle(check, &part->tallies[NEAR], t, bound);
 		part->tallies[NEAR].area += nt_triangle_area(s, t);
 		part->greatest[BOUND] = fmax(part->greatest[BOUND], bound);

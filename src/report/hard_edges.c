@@ -14,8 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double DEGREES = 57.29577951308232;
-
 /* Hard edges that hang together: edges[first] to edges[first + count - 1]. */
 typedef struct net {
 	size_t first, count, ends; /* ends: points where one edge ends */
@@ -138,7 +136,7 @@ static void tally_edges(const nt_check *check, const nets *n, size_t first, size
 {
 	for (size_t i = first; i < first + count; i++) {
 		const nt_edge *edge = &check->hard.items[n->edges[i]];
-		nt_tally_side(check, tally, edge->sides[0], acos(edge->cosine) * DEGREES);
+		nt_tally_side(check, tally, edge->sides[0], acos(edge->cosine) * NT_DEGREES);
 	}
 }
 
@@ -162,9 +160,9 @@ static nt_status report_nets(nt_check *check, const nets *n)
 	if (n->count > 1)
 		snprintf(nets_text, sizeof nets_text, "%zu nets, the longest ", n->count);
 	nt_tally_number(&tally, "length", length);
-	nt_tally_number(&tally, "worst_degrees", acos(cosine) * DEGREES);
+	nt_tally_number(&tally, "worst_degrees", acos(cosine) * NT_DEGREES);
 	nt_check_report_as(check, &tally, severity_of(check), "%s%s of length %.4g; normals up to %.3g degrees apart",
-		nets_text, kind, longest->length, acos(cosine) * DEGREES);
+		nets_text, kind, longest->length, acos(cosine) * NT_DEGREES);
 	return keep_nets(check, n, length);
 }
 

@@ -8,12 +8,16 @@
  * Gortler, Hoppe: Texture Mapping Progressive Meshes, 2001). Stretch is their ratio, 1 where the texture is not
  * distorted; density, in texels per unit of length, one over the root of their product. Medians are by area: half the
  * island has less.
+ *
+ * Vertices that mirrored and unmirrored triangles share, and the copies that splitting made, by cause: a copy whose w
+ * differs from its source's stands on the other side of a mirror, any other one has another direction.
  */
 #include "report/check.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "report/maker/quads.h"
 
 /* A triangle's number and how much of the island it is. */
 typedef struct weighed {
@@ -143,82 +147,130 @@ static void measure_island(const nt_check *check, nt_island *island, const uint3
 	}
 }
 
-/* Sizes of the normal maps of a mesh with several materials, each asked for once. */
-typedef struct map_sizes {
-	uint32_t (*pixels)[2]; /* [primitive_count] */
-	uint8_t *known;        /* [primitive_count]; NULL: all islands have the size of the mesh */
-} map_sizes;
-
-/* That of a triangle's material, which is that of its island, but where materials meet inside of one. */
-static nt_status find_size(const nt_check *check, map_sizes *sizes, uint32_t triangle, uint32_t size[2])
+/* The size of the normal map of a triangle's material, which is that of its island, but where materials meet inside of
+ * one. sizes: [primitive_count] those that were asked for, NT_NONE: not yet; NULL: all have the size of the mesh. */
+static nt_status find_size(const nt_check *check, uint32_t (*sizes)[2], uint32_t triangle, uint32_t size[2])
 {
-	const nt_mesh *mesh = check->mesh;
-	memcpy(size, check->facts->texture_size, 2 * sizeof *size);
-	if (!sizes->known)
-		return NT_OK;
-	const uint32_t p = mesh->face_primitive[nt_triangle_face(&check->surface, triangle)];
+	const nt_report_options *options = check->options;
 	nt_status status = NT_OK;
-	if (!sizes->known[p]) {
-		nt_mesh one = *mesh;
-		one.primitives += p;
-		one.primitive_count = 1;
-		sizes->known[p] = 1;
-		status = check->options->find_map_size(check->options->find_user, check->scene, &one, sizes->pixels[p]);
+	if (sizes) {
+		const uint32_t p = check->mesh->face_primitive[nt_triangle_face(&check->surface, triangle)];
+		if (sizes[p][0] == NT_NONE) {
+			nt_mesh one = *check->mesh;
+			one.primitives += p;
+			one.primitive_count = 1;
+			sizes[p][0] = 0;
+			status = options->find_map_size(options->find_user, check->scene, &one, sizes[p]);
+		}
+		sizes += p;
 	}
-	memcpy(size, sizes->pixels[p], 2 * sizeof *size);
+	memcpy(size, sizes ? *sizes : check->facts->texture_size, 2 * sizeof *size);
 	return status;
 }
 
-static void measure_split(nt_check *check)
+static nt_status measure_islands(nt_check *check)
 {
-	const nt_mesh *mesh = check->mesh;
-	nt_report_mesh *facts = check->facts;
-	/* what is made here is written as floats */
-	size_t bytes = mesh->vertex_bytes;
-	if (!bytes)
-		bytes = 12 + (mesh->normals ? 12 : 0) + (mesh->texcoords ? 8 : 0) + (mesh->colors ? 16 : 0) + 16;
-	facts->vertex_bytes = bytes;
-	facts->split_vertices = mesh->split.source_count;
-}
-
-nt_status nt_check_measures(nt_check *check)
-{
-	const size_t islands = check->facts->islands ? check->facts->island_count : 0;
-	const size_t triangles = check->surface.triangle_count;
-	if (!check->options->measures)
-		return NT_OK;
-	measure_split(check);
-	if (!islands)
-		return NT_OK;
-	nt_status status = NT_OK;
-	if (check->options->find_map_size)
-		status = check->options->find_map_size(check->options->find_user, check->scene, check->mesh,
-			check->facts->texture_size);
-	if (status)
-		return status;
-	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	const size_t islands = check->facts->island_count, triangles = check->surface.triangle_count;
+	const size_t primitives = check->mesh->primitive_count;
+	const bool several = check->mesh->face_primitive && check->options->find_map_size;
 	uint32_t *first = nt_scratch_alloc(check->scratch, islands + 2, sizeof *first);
 	uint32_t *list = nt_scratch_alloc(check->scratch, triangles, sizeof *list);
 	weighed *items = nt_scratch_alloc(check->scratch, triangles, sizeof *items);
 	weighed *other = nt_scratch_alloc(check->scratch, triangles, sizeof *other);
-	map_sizes sizes = {0};
-	const size_t primitives = check->mesh->primitive_count;
-	const bool several = check->mesh->face_primitive && check->options->find_map_size;
-	if (several) {
-		sizes.pixels = nt_scratch_alloc(check->scratch, primitives, sizeof *sizes.pixels);
-		sizes.known = nt_scratch_alloc(check->scratch, primitives, 1);
-	}
-	if (!first || !list || !items || !other || (several && (!sizes.pixels || !sizes.known)))
+	uint32_t(*sizes)[2] = several ? nt_scratch_alloc(check->scratch, primitives, sizeof *sizes) : NULL;
+	if (!first || !list || !items || !other || (several && !sizes))
 		return NT_ERROR_MEMORY;
 	if (several)
-		memset(sizes.known, 0, primitives);
+		memset(sizes, 0xff, primitives * sizeof *sizes);
 	list_triangles(check, first, list);
+	nt_status status = NT_OK;
 	for (size_t i = 0; i < islands && !status; i++) {
 		nt_island *island = &check->facts->islands[i];
 		uint32_t size[2];
-		status = find_size(check, &sizes, island->first_triangle, size);
+		status = find_size(check, sizes, island->first_triangle, size);
 		measure_island(check, island, list + first[i], first[i + 1] - first[i], size, items, other);
 	}
+	return status;
+}
+
+nt_status nt_check_measures(nt_check *check)
+{
+	const nt_mesh *mesh = check->mesh;
+	const nt_report_options *options = check->options;
+	nt_report_mesh *facts = check->facts;
+	nt_status status = NT_OK;
+	if (!options->measures)
+		return NT_OK;
+	/* what is made here is written as floats */
+	facts->vertex_bytes = mesh->vertex_bytes ? mesh->vertex_bytes
+		: 12 + (mesh->normals ? 12u : 0) + (mesh->texcoords ? 8u : 0) + (mesh->colors ? 16u : 0) + 16;
+	facts->split_vertices = mesh->split.source_count;
+	if (!facts->islands)
+		return NT_OK;
+	if (options->find_map_size)
+		status = options->find_map_size(options->find_user, check->scene, mesh, facts->texture_size);
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	if (!status)
+		status = measure_islands(check);
 	nt_scratch_back(check->scratch, mark);
+	return status;
+}
+
+/* ---- copies of vertices ---- */
+
+enum { UNMIRRORED = 1, MIRRORED = 2 };
+
+static nt_status check_shared(nt_check *check)
+{
+	const nt_surface *s = &check->surface;
+	const size_t vertex_count = check->mesh->vertex_count;
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	uint8_t *sides = nt_scratch_alloc(check->scratch, vertex_count, 1);
+	if (!sides)
+		return NT_ERROR_MEMORY;
+	memset(sides, 0, vertex_count);
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		/* both halves of a folded quad may have the quad's tangents */
+		const int folded = nt_quad_orientation(check, t);
+		const int sign = folded ? folded : nt_settled_orientation(check, t);
+		for (size_t c = 3 * t; c < 3 * t + 3 && sign && sign != NT_FOLDED_EITHER; c++)
+			sides[nt_side_vertex(s, c)] |= sign > 0 ? UNMIRRORED : MIRRORED;
+	}
+	nt_tally shared = {.code = NT_CODE_TAN_MIRROR_SHARED_VERTEX};
+	for (size_t v = 0; v < vertex_count; v++)
+		if (sides[v] == (UNMIRRORED | MIRRORED))
+			nt_tally_vertex(check, &shared, (uint32_t)v, NAN);
+	nt_scratch_back(check->scratch, mark);
+	/* who makes tangents splits them, too */
+	const bool stored = check->stored != NT_STORED_NONE;
+	nt_check_report_as(check, &shared, stored && nt_needs_tangents(check) ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO,
+		"%s", stored ? "their tangents are wrong on one side" : "");
+	return NT_OK;
+}
+
+static void check_copies(nt_check *check)
+{
+	const nt_mesh *mesh = check->mesh;
+	nt_report_mesh *facts = check->facts;
+	facts->added_normals = mesh->vertex_count - (facts->vertices_before - mesh->unused_vertices);
+	const float *tangents = mesh->split.vertex_tangents;
+	const size_t copies = nt_is_written(check) ? mesh->split.source_count : 0;
+	for (size_t i = 0; i < copies; i++) {
+		const size_t source = mesh->split.sources[i];
+		const bool mirror = tangents &&
+			tangents[4 * source + 3] != tangents[4 * (mesh->vertex_count + i) + 3];
+		*(mirror ? &facts->added_mirror : &facts->added_direction) += 1;
+	}
+	facts->vertices_after = mesh->unused_vertices + mesh->vertex_count + copies;
+}
+
+nt_status nt_check_growth(nt_check *check)
+{
+	/* what is split is counted by check_copies() */
+	const bool split = nt_is_written(check) && check->mesh->split.vertex_tangents;
+	const bool both = check->facts->triangles[0] && check->facts->triangles[2];
+	const nt_status status = both && !split ? check_shared(check) : NT_OK;
+	if (!status)
+		check_copies(check);
 	return status;
 }

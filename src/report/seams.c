@@ -20,8 +20,6 @@
 /* A seam lies in a plane when its points keep within this part of the mesh's extent. */
 static const double PLANE_TOLERANCE = 1e-4;
 
-static const double DEGREES = 57.29577951308232;
-
 /* ---- one edge ---- */
 
 static nt_dvec3 face_normal(const nt_surface *s, uint32_t t)
@@ -51,7 +49,7 @@ static double angle_between(nt_dvec3 a, nt_dvec3 b)
 	if (!nt_dvec3_normalise(&a) || !nt_dvec3_normalise(&b))
 		return NAN;
 	const nt_dvec3 cross = nt_dvec3_cross(a, b);
-	return nt_angle(sqrt(nt_dvec3_dot(cross, cross)), nt_dvec3_dot(a, b)) * DEGREES;
+	return nt_angle(sqrt(nt_dvec3_dot(cross, cross)), nt_dvec3_dot(a, b)) * NT_DEGREES;
 }
 
 static void widen(double range[2], double value)

@@ -33,8 +33,6 @@ static const double SLIVER_SHARE = 0.002;
 
 const double nt_angle_bins[NT_ANGLE_BINS] = {1.0, 5.0, 15.0, 30.0, 60.0, 180.0};
 
-static const double DEGREES = 57.29577951308232;
-
 /* Triangles that a thread takes at a time. */
 enum { PART = 16384 };
 
@@ -60,7 +58,7 @@ static double length_of(nt_dvec3 v)
 
 static double degrees_between(nt_dvec3 a, nt_dvec3 b)
 {
-	return nt_angle(length_of(nt_dvec3_cross(a, b)), nt_dvec3_dot(a, b)) * DEGREES;
+	return nt_angle(length_of(nt_dvec3_cross(a, b)), nt_dvec3_dot(a, b)) * NT_DEGREES;
 }
 
 /* The square of the cosine of a degree: within it of the normal the bitangent is noise. */
