@@ -320,7 +320,7 @@ static nmtan_status pair_unsorted(state *s)
 	nt_unsorted unsorted = {.edges = NULL};
 	const nt_welded_mesh mesh = {.triangles = &triangles,
 		.triangle_count = s->triangle_count, .vertex_count = s->vertex_count, .positions = positions,
-		.step = 3, .threads = 1, .scratch = scratch};
+		.step = 3, .scratch = scratch};
 	const nmtan_status status = nt_find_unsorted(&mesh, NULL, scratch, &unsorted);
 	for (size_t i = 0; i < unsorted.count; i++) {
 		const nt_unsorted_edge *e = &unsorted.edges[i];

@@ -40,7 +40,6 @@ typedef struct nt_welded_mesh {
 	                           floats behind the last one can be read */
 	size_t step;		/* floats from one row to the next */
 	const nt_box *box;	/* of all rows; NULL: not known */
-	unsigned threads;       /* at least 1 */
 	nt_scratch *scratch;
 } nt_welded_mesh;
 

@@ -26,7 +26,6 @@ static nmtan_status ask_of(
 		.vertex_count = vertices,
 		.positions = positions[0],
 		.step = 3,
-		.threads = 1,
 		.scratch = scratch};
 	return nt_find_unsorted(&mesh, NULL, scratch, unsorted);
 }
@@ -420,7 +419,7 @@ static nmtan_status ask_noted(
 	const nt_triangles *all, size_t triangles, size_t vertices, nt_scratch *scratch, nt_unsorted *unsorted)
 {
 	const nt_welded_mesh mesh = {.triangles = all, .triangle_count = triangles, .vertex_count = vertices,
-		.positions = positions[0], .step = 3, .threads = 2, .scratch = scratch};
+		.positions = positions[0], .step = 3, .scratch = scratch};
 	const size_t middle = triangles / 3 - (triangles / 3 > 0 && nt_is_cut_between(all, triangles / 3 - 1));
 	const size_t bounds[3] = {0, middle, triangles};
 	const nt_triangle_ranges ranges = {2, bounds};
@@ -479,35 +478,6 @@ TEST(every_form_of_a_tail_is_as_specified)
 		}
 		assert_true(shown > 0 || form == PLAIN);
 	}
-}
-
-/* Many corners of few vertices, so that several threads weld cells; the order matters. */
-TEST(threads_find_the_same)
-{
-	enum { TRIANGLES = 60000, VERTICES = 300 };
-	uint32_t *ids = malloc(3 * TRIANGLES * sizeof *ids);
-	nt_unsorted found[2];
-	nt_scratch scratches[2];
-	chance = 1;
-	place();
-	for (size_t i = 0; i < 3 * TRIANGLES; i++)
-		ids[i] = i < 3 * TRIANGLES - 90 ? below(VERTICES - 3) : VERTICES - 3 + three[i % 9];
-	for (int v = 0; v < VERTICES; v++)
-		memcpy(positions[v], (float[3]){(float)(v / 10), (float)(v % 10) / 16, 0}, sizeof *positions);
-	const nt_triangles all = {.ids = ids};
-	for (unsigned i = 0; i < 2; i++) {
-		nt_scratch_init(&scratches[i], NULL);
-		const nt_welded_mesh mesh = {.triangles = &all, .triangle_count = TRIANGLES, .vertex_count = VERTICES,
-			.positions = positions[0], .step = 3, .threads = 1 + 2 * i, .scratch = &scratches[i]};
-		assert_int_equal(nt_find_unsorted(&mesh, NULL, &scratches[i], &found[i]), NMTAN_OK);
-		assert_false(found[i].limit);
-	}
-	assert_true(found[0].count > 0);
-	assert_int_equal(found[0].count, found[1].count);
-	assert_memory_equal(found[0].edges, found[1].edges, found[0].count * sizeof *found[0].edges);
-	for (unsigned i = 0; i < 2; i++)
-		nt_scratch_free(&scratches[i]);
-	free(ids);
 }
 
 /* Memory that says nothing useful. */
