@@ -221,7 +221,7 @@ static nt_status parse_property(parser *p)
 		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
 			"a property before the first element");
 	ply_element *element = &header->elements[header->element_count - 1];
-	ply_property property = {.line = p->line, .text = p->text};
+	ply_property property = {.line = p->line, .text = p->text, .offset = element->row_bytes};
 	const nt_status status = parse_property_type(p, &property);
 	if (status)
 		return status;
@@ -232,8 +232,9 @@ static nt_status parse_property(parser *p)
 	if (!property.name || !nt_grow((void **)&element->properties, &element->property_capacity,
 				      element->property_count + 1, sizeof property))
 		return nt_fail_memory(p->error);
+	element->list_count += property.list;
+	element->last_list = property.list ? element->property_count : element->last_list;
 	element->properties[element->property_count++] = property;
-	element->has_list |= property.list;
 	element->row_bytes += ply_size(property.list ? property.count_type : property.type);
 	return expect_end(p);
 }

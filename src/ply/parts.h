@@ -90,6 +90,7 @@ typedef struct ply_property {
 	bool list;
 	ply_type count_type; /* of a list */
 	bool used;           /* it becomes part of the mesh */
+	size_t offset;       /* in the binary row, if no list comes before */
 } ply_property;
 
 typedef struct ply_element {
@@ -99,7 +100,7 @@ typedef struct ply_element {
 	size_t count;
 	ply_property *properties;
 	size_t property_count, property_capacity;
-	bool has_list;
+	size_t list_count, last_list; /* properties that are lists; the number of the last of them */
 	size_t row_bytes; /* of a binary row; with lists: of one whose lists are empty */
 	ply_span rows;    /* found by the reader */
 } ply_element;

@@ -421,20 +421,16 @@ ply_cell ply_cell_value(const ply_rows *rows, size_t property, size_t k)
 /* ---- plain rows ---- */
 
 /* Elements that are read quickly have one list at most, of indices, and the values of their binary rows beside it are
- * skipped: vertices, and faces as most files have them. Its number, or property_count: there is none; false: others. */
-static bool is_plain(const ply_rows *rows, size_t *list)
+ * skipped: vertices, and faces as most files have them. */
+static bool is_plain(const ply_rows *rows)
 {
-	bool plain = true, used = false;
-	*list = rows->element->property_count;
-	for (size_t i = 0; i < rows->element->property_count; i++) {
-		const ply_column *column = &rows->columns[i];
-		used |= column->use != PLY_SKIPPED && column->use != PLY_INDICES;
-		if (!rows->element->properties[i].list)
-			continue;
-		plain &= *list == rows->element->property_count && column->use == PLY_INDICES && !column->restarts;
-		*list = i;
-	}
-	return plain && (is_text(rows) || *list == rows->element->property_count || !used);
+	const ply_element *element = rows->element;
+	size_t used = 0;
+	for (size_t i = 0; i < element->property_count; i++)
+		used += rows->columns[i].use != PLY_SKIPPED;
+	const ply_column *list = element->list_count ? &rows->columns[element->last_list] : NULL;
+	return !list || (element->list_count == 1 && list->use == PLY_INDICES && !list->restarts &&
+		(is_text(rows) || used == 1));
 }
 
 /* Rows without lists: column by column. */
@@ -460,12 +456,13 @@ static void take_columns(ply_rows *rows)
 	}
 }
 
-/* Rows with one list, `head` bytes before it, and skipped values. Constant types give loops without a test. */
-static inline __attribute__((always_inline)) nt_status take_lists_as(ply_rows *rows, size_t list, size_t head,
-	ply_type count_type, ply_type type, bool swap)
+/* Rows with one list and skipped values. Constant types give loops without a test. */
+static inline __attribute__((always_inline)) nt_status take_lists_as(ply_rows *rows, ply_type count_type, ply_type type,
+	bool swap)
 {
+	const size_t head = rows->element->properties[rows->element->last_list].offset;
 	const size_t fixed = rows->element->row_bytes, lead = head + ply_size(count_type);
-	ply_column *column = &rows->columns[list];
+	ply_column *column = &rows->columns[rows->element->last_list];
 	const unsigned char *at = rows->at;
 	size_t row = rows->row, used = column->used;
 	size_t usual = column->counts ? SIZE_MAX : column->size;
@@ -497,16 +494,13 @@ static inline __attribute__((always_inline)) nt_status take_lists_as(ply_rows *r
 	return status;
 }
 
-static nt_status take_lists(ply_rows *rows, size_t list)
+static nt_status take_lists(ply_rows *rows)
 {
-	const ply_property *property = &rows->element->properties[list];
+	const ply_property *list = &rows->element->properties[rows->element->last_list];
 	const bool swap = ply_swaps(rows->header->encoding);
-	size_t head = 0;
-	for (size_t i = 0; i < list; i++)
-		head += ply_size(rows->element->properties[i].type);
-	return property->count_type == PLY_UINT8 && ply_size(property->type) == 4 && !swap
-		? take_lists_as(rows, list, head, PLY_UINT8, PLY_UINT32, false)
-		: take_lists_as(rows, list, head, property->count_type, property->type, swap);
+	return list->count_type == PLY_UINT8 && ply_size(list->type) == 4 && !swap
+		? take_lists_as(rows, PLY_UINT8, PLY_UINT32, false)
+		: take_lists_as(rows, list->count_type, list->type, swap);
 }
 
 /* Lines of values with blanks around them, far enough from the end of the file, whose list has `size` values, which go
@@ -682,9 +676,8 @@ static nt_status reserve_lists(ply_rows *rows)
 nt_status ply_read_rows(ply_rows *rows)
 {
 	const ply_element *element = rows->element;
-	size_t number;
-	const bool plain = is_plain(rows, &number);
-	ply_column *list = number < element->property_count ? &rows->columns[number] : NULL;
+	const bool plain = is_plain(rows);
+	ply_column *list = element->list_count ? &rows->columns[element->last_list] : NULL;
 	nt_status status = NT_OK;
 	while (!status && rows->row < rows->stop) {
 		/* nobody but this one knows errors */
@@ -699,9 +692,9 @@ nt_status ply_read_rows(ply_rows *rows)
 		if (is_text(rows) && first)
 			take_pieces(rows, list);
 		if (is_text(rows))
-			status = take_lines(rows, list, number == 0);
+			status = take_lines(rows, list, element->last_list == 0);
 		else if (list)
-			status = take_lists(rows, number);
+			status = take_lists(rows);
 		else
 			take_columns(rows);
 	}
@@ -720,9 +713,9 @@ nt_status ply_skip_rows(ply_rows *rows)
 		while (rows->at < rows->end && !ply_is_line_end(*rows->at))
 			rows->at++;
 	}
-	if (!is_text(rows) && !element->has_list)
+	if (!is_text(rows) && !element->list_count)
 		rows->at += element->count * element->row_bytes;
-	return is_text(rows) || !element->has_list ? NT_OK : ply_read_rows(rows);
+	return is_text(rows) || !element->list_count ? NT_OK : ply_read_rows(rows);
 }
 
 nt_status ply_begin_rows(ply_rows *rows, const ply_header *header, const ply_element *element, const unsigned char *at,

@@ -25,12 +25,8 @@
 
 enum { DRAIN_BYTES = 64 * 1024, MOST_VALUE = NT_FLOAT_TEXT + 1 };
 
-/* A property of the vertices that are written: bytes of the source, if there are any and the value is the same. */
-typedef struct column {
-	int property; /* of the source; PLY_NO_PROPERTY: it is new */
-	int value;    /* ply_value; -1: the source's bytes stay */
-	ply_type type;
-} column;
+/* The value that a property of the source becomes. */
+enum { STAYS = -1, GOES = -2 };
 
 typedef struct writer {
 	nt_scene *scene;
@@ -40,9 +36,11 @@ typedef struct writer {
 	nt_sink *sink;
 	ply_encoding encoding;
 	const char *newline;
-	column *columns;
-	size_t column_count, old_count; /* the source's come first */
-	bool rows_stay;           /* all properties of the source keep their bytes */
+	struct {
+		ply_value value;
+		ply_type type;
+	} added[PLY_VALUES];      /* properties that vertices get behind those of the source */
+	size_t added_count;
 	ply_type index_type;      /* of the faces written */
 
 	/* of a PLY */
@@ -53,6 +51,8 @@ typedef struct writer {
 	size_t appended_count;
 	size_t cut_polygons, added_faces; /* polygons that become triangles, and how many faces that adds */
 	uint32_t *polygon;        /* vertices of one */
+	int *becomes;             /* [property_count of vertices] ply_value, STAYS or GOES */
+	bool rows_stay;           /* all of them do */
 	ply_rows vertices, faces;
 	size_t *row_offsets;      /* [count of vertices] where the row of a vertex begins */
 	bool new_normals, new_tangents, new_bitangents;
@@ -171,15 +171,12 @@ static nt_status fail_changed(const writer *w)
 
 /* ---- columns ---- */
 
-static void add_column(writer *w, int property, int value, ply_type type)
+static void add_values(writer *w, int first, int count, ply_type type)
 {
-	w->columns[w->column_count++] = (column){property, value, type};
-}
-
-static void add_new_columns(writer *w, int first, int count, ply_type type)
-{
-	for (int i = first; i < first + count; i++)
-		add_column(w, PLY_NO_PROPERTY, i, type);
+	for (int i = first; i < first + count; i++, w->added_count++) {
+		w->added[w->added_count].value = (ply_value)i;
+		w->added[w->added_count].type = type;
+	}
 }
 
 /* Whether new values take the place and the type of properties that are there under their names: all of them, or none.
@@ -197,75 +194,62 @@ static bool fit_in_place(const ply_element *vertex, int first, int count, bool i
 	return fit;
 }
 
-/* The columns of a PLY. A name may be there more than once; a reader could take what stays for what is new, so that the
- * later ones go. */
-static void find_old_columns(writer *w)
+/* Values of a group take the place of what has their names. A name may be there more than once; a reader could take
+ * what stays for what is new, so that the later ones go. */
+static void place_values(writer *w, int first, int count, bool integers)
 {
 	const ply_element *vertex = w->source->vertex;
-	const struct {
-		bool written, integers;
-		int first, count;
-	} groups[] = {{w->new_normals, true, PLY_NX, 3}, {w->new_tangents, false, PLY_TX, 4},
-		{w->new_bitangents, false, PLY_BX, 3}};
-	bool placed[PLY_VALUES] = {false}, fit[3];
-	for (size_t g = 0; g < 3; g++)
-		fit[g] = fit_in_place(vertex, groups[g].first, groups[g].count, groups[g].integers);
-	w->rows_stay = true;
-	for (size_t i = 0; i < vertex->property_count; i++) {
-		int value = -1;
-		bool stays = true;
-		for (size_t g = 0; g < 3; g++)
-			for (int v = groups[g].first; groups[g].written && v < groups[g].first + groups[g].count; v++)
-				if (strcmp(vertex->properties[i].name, value_names[v]) == 0) {
-					value = v;
-					stays = fit[g] && !placed[v];
-					placed[v] = true;
-				}
-		if (stays)
-			add_column(w, (int)i, value, vertex->properties[i].type);
-		w->rows_stay &= value < 0;
+	const bool fit = fit_in_place(vertex, first, count, integers);
+	for (int v = first; v < first + count; v++) {
+		bool open = fit;
+		for (size_t i = 0; i < vertex->property_count; i++)
+			if (strcmp(vertex->properties[i].name, value_names[v]) == 0) {
+				w->becomes[i] = open ? v : GOES;
+				w->rows_stay = open = false;
+			}
 	}
-	w->old_count = w->column_count;
-	for (size_t g = 0; g < 3; g++)
-		if (groups[g].written && !fit[g])
-			add_new_columns(w, groups[g].first, groups[g].count, PLY_FLOAT32);
+	if (!fit)
+		add_values(w, first, count, PLY_FLOAT32);
 }
 
 static void put_new_properties(writer *w)
 {
-	for (size_t i = w->old_count; i < w->column_count; i++)
-		nt_buffer_format(&w->buffer, "property %s %s%s", ply_type_name(w->columns[i].type),
-			value_names[w->columns[i].value], w->newline);
+	for (size_t i = 0; i < w->added_count; i++)
+		nt_buffer_format(&w->buffer, "property %s %s%s", ply_type_name(w->added[i].type),
+			value_names[w->added[i].value], w->newline);
 }
 
-/* One row of vertices; old: bytes of the whole row, if rows stay. */
-static nt_status put_vertex(writer *w, ply_cell old, const double *values)
+/* The values of the row of the source that was read last, in their new places. A value that is the same keeps its
+ * bytes. */
+static void put_properties(writer *w, const double *values)
+{
+	const ply_rows *rows = &w->vertices;
+	bool first = true;
+	for (size_t i = 0; i < rows->element->property_count; i++) {
+		const int value = w->becomes[i];
+		char bytes[MOST_VALUE];
+		float was;
+		if (value == GOES)
+			continue;
+		put_gap(w, first);
+		first = false;
+		if (value == STAYS || (ply_cell_float(rows, i, &was) &&
+			memcmp(&was, &(float){(float)values[value]}, sizeof was) == 0))
+			put_cell(w, rows->cells[i].begin, rows->cells[i].end);
+		else
+			nt_buffer_append(&w->buffer, bytes, (size_t)(store_value(w, values[value],
+				rows->element->properties[i].type, bytes) - bytes));
+	}
+}
+
+/* The end of a row of vertices: values that are added. */
+static nt_status put_values(writer *w, const double *values)
 {
 	char bytes[PLY_VALUES * MOST_VALUE], *end = bytes;
-	size_t i = 0;
-	if (w->rows_stay) {
-		put_cell(w, old.begin, old.end);
-		i = w->old_count;
-	}
-	for (; i < w->old_count; i++) {
-		const column *c = &w->columns[i];
-		const ply_cell *cell = &w->vertices.cells[c->property];
-		float was;
-		const bool same = c->value < 0 || (ply_cell_float(&w->vertices, (size_t)c->property, &was) &&
-			memcmp(&was, &(float){(float)values[c->value]}, sizeof was) == 0);
-		put_gap(w, i == 0);
-		if (same) {
-			put_cell(w, cell->begin, cell->end);
-		} else {
-			end = store_value(w, values[c->value], c->type, bytes);
-			nt_buffer_append(&w->buffer, bytes, (size_t)(end - bytes));
-			end = bytes;
-		}
-	}
-	for (; i < w->column_count; i++) {
+	for (size_t i = 0; i < w->added_count; i++) {
 		if (w->encoding == PLY_ASCII)
 			*end++ = ' ';
-		end = store_value(w, values[w->columns[i].value], w->columns[i].type, end);
+		end = store_value(w, values[w->added[i].value], w->added[i].type, end);
 	}
 	nt_buffer_append(&w->buffer, bytes, (size_t)(end - bytes));
 	return end_row(w);
@@ -507,7 +491,7 @@ static void put_old_header(writer *w)
 {
 	const ply_source *source = w->source;
 	const ply_header *header = &source->header;
-	size_t at = 0, next = 0; /* next: the first of the old columns that has not been met */
+	size_t at = 0;
 	for (size_t e = 0; e < header->element_count; e++) {
 		const ply_element *element = &header->elements[e];
 		const bool strips = replaces_strips(w) && element == source->strips;
@@ -526,10 +510,7 @@ static void put_old_header(writer *w)
 			const ply_property *property = &element->properties[i];
 			const bool retyped = element == source->face && (int)i == source->face_indices &&
 				w->index_type != property->type;
-			bool stays = !goes && !retyped;
-			if (element == source->vertex)
-				stays = next < w->old_count && w->columns[next].property == (int)i;
-			next += element == source->vertex && stays;
+			const bool stays = element == source->vertex ? w->becomes[i] != GOES : !goes && !retyped;
 			put_header_line(w, &at, property->text, stays);
 			if (retyped)
 				nt_buffer_format(&w->buffer, "property list %s %s %s%s",
@@ -551,10 +532,12 @@ static nt_status put_old_vertex(writer *w, size_t vertex)
 		ply_next_row(rows);
 	ply_cell row = {.begin = rows->at};
 	rows->row = 0;
+	row.end = rows->at;
+	while (w->rows_stay && ascii && row.end < rows->end && !ply_is_line_end(*row.end))
+		row.end++;
 	if (w->rows_stay && ascii)
-		while (rows->at < rows->end && !ply_is_line_end(*rows->at))
-			rows->at++;
-	else if (w->rows_stay && !rows->element->has_list)
+		rows->at = row.end;
+	else if (w->rows_stay && !rows->element->list_count)
 		rows->at += rows->element->row_bytes;
 	else if (ply_read_row(rows))
 		return fail_changed(w);
@@ -573,7 +556,11 @@ static nt_status put_old_vertex(writer *w, size_t vertex)
 	}
 	for (size_t i = 0; i < 4; i++)
 		values[PLY_TX + i] = t ? t[i] : 0;
-	return put_vertex(w, row, values);
+	if (w->rows_stay)
+		put_cell(w, row.begin, row.end);
+	else
+		put_properties(w, values);
+	return put_values(w, values);
 }
 
 static nt_status put_old_vertices(writer *w)
@@ -634,10 +621,10 @@ static nt_status write_changed(writer *w, bool bitangents)
 	const ply_header *header = &source->header;
 	const ply_element *vertex = source->vertex;
 	nt_place place;
-	w->columns = nt_alloc(vertex->property_count + PLY_VALUES, sizeof *w->columns);
+	w->becomes = nt_alloc(vertex->property_count, sizeof *w->becomes);
 	w->row_offsets = nt_alloc(vertex->count, sizeof *w->row_offsets);
 	w->polygon = nt_alloc(source->most_corners, sizeof *w->polygon);
-	nt_status status = w->columns && w->row_offsets && w->polygon && number_vertices(w) ? NT_OK
+	nt_status status = w->becomes && w->row_offsets && w->polygon && number_vertices(w) ? NT_OK
 		: nt_fail_memory(w->error);
 	if (!status)
 		status = ply_begin_rows(&w->vertices, header, vertex, header->bytes + vertex->rows.begin, w->error);
@@ -652,7 +639,15 @@ static nt_status write_changed(writer *w, bool bitangents)
 	/* bitangents of other tangents must not stay */
 	w->new_bitangents = w->new_tangents && w->mesh->normals &&
 		(bitangents || ply_find_property(vertex, "bx") != PLY_NO_PROPERTY);
-	find_old_columns(w);
+	w->rows_stay = true;
+	for (size_t i = 0; i < vertex->property_count; i++)
+		w->becomes[i] = STAYS;
+	if (w->new_normals)
+		place_values(w, PLY_NX, 3, true);
+	if (w->new_tangents)
+		place_values(w, PLY_TX, 4, false);
+	if (w->new_bitangents)
+		place_values(w, PLY_BX, 3, false);
 	w->index_type = find_index_type(w);
 	nt_mesh_place(w->mesh, &place);
 	if (w->cut_polygons > 0)
@@ -686,17 +681,17 @@ static nt_status write_source(writer *w, bool bitangents)
 static void put_new_header(writer *w, const ply_world *world, const char *texture)
 {
 	nt_buffer *b = &w->buffer;
-	add_new_columns(w, PLY_X, 3, world->doubles ? PLY_FLOAT64 : PLY_FLOAT32);
+	add_values(w, PLY_X, 3, world->doubles ? PLY_FLOAT64 : PLY_FLOAT32);
 	if (world->normals)
-		add_new_columns(w, PLY_NX, 3, PLY_FLOAT32);
+		add_values(w, PLY_NX, 3, PLY_FLOAT32);
 	if (world->colors)
-		add_new_columns(w, PLY_RED, 4, world->byte_colors ? PLY_UINT8 : PLY_FLOAT32);
+		add_values(w, PLY_RED, 4, world->byte_colors ? PLY_UINT8 : PLY_FLOAT32);
 	if (world->texcoords)
-		add_new_columns(w, PLY_S, 2, PLY_FLOAT32);
+		add_values(w, PLY_S, 2, PLY_FLOAT32);
 	if (world->tangents)
-		add_new_columns(w, PLY_TX, 4, PLY_FLOAT32);
+		add_values(w, PLY_TX, 4, PLY_FLOAT32);
 	if (world->bitangents)
-		add_new_columns(w, PLY_BX, 3, PLY_FLOAT32);
+		add_values(w, PLY_BX, 3, PLY_FLOAT32);
 	nt_buffer_text(b, "ply\nformat binary_little_endian 1.0\ncomment nmtan " NMTAN_VERSION_STRING "\n");
 	if (texture)
 		nt_buffer_format(b, "comment TextureFile %s\n", texture);
@@ -717,7 +712,7 @@ static nt_status put_world(writer *w, const ply_world *world)
 			double values[PLY_VALUES];
 			status = ply_world_vertex(world, &placement, mesh, v, values, w->error);
 			if (!status)
-				status = put_vertex(w, (ply_cell){0}, values);
+				status = put_values(w, values);
 		}
 	}
 	size_t base = 0;
@@ -742,9 +737,7 @@ static nt_status write_world(writer *w, const nt_write_options *options, nt_outp
 	w->encoding = PLY_LITTLE;
 	w->newline = "\n";
 	w->index_type = PLY_UINT32;
-	w->columns = nt_alloc(PLY_VALUES, sizeof *w->columns);
-	nt_status status = w->columns ? ply_settle_texture(&texture, w->scene, options, set, w->error)
-		: nt_fail_memory(w->error);
+	nt_status status = ply_settle_texture(&texture, w->scene, options, set, w->error);
 	if (!status)
 		put_new_header(w, &world, texture.size ? texture.data : NULL);
 	nt_buffer_free(&texture);
@@ -765,7 +758,7 @@ nt_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_outp
 	nt_buffer_free(&w.buffer);
 	ply_free_rows(&w.vertices);
 	ply_free_rows(&w.faces);
-	free(w.columns);
+	free(w.becomes);
 	free(w.numbers);
 	free(w.appended);
 	free(w.polygon);
