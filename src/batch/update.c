@@ -386,7 +386,7 @@ static bool is_still_read(look *l, const nt_json_value *file, const char *uri)
 	if ((!is_input && stat(l->path.data, &info) != 0) ||
 		(nt_json_find(file, "bytes") && !is_same_file(l, file, l->path.data, &info)))
 		return false;
-	nt_trace_read(is_input ? l->job->input : l->path.data, &info);
+	nt_trace_note(NT_TRACE_READ, is_input ? l->job->input : l->path.data, NULL, &info);
 	return true;
 }
 
@@ -396,7 +396,7 @@ static bool is_still_written(look *l, const nt_json_value *file, const char *uri
 	(void)uri;
 	if (stat(l->path.data, &info) != 0 || !is_same_file(l, file, l->path.data, &info))
 		return false;
-	nt_trace_written(l->path.data, &info);
+	nt_trace_note(NT_TRACE_WRITTEN, l->path.data, NULL, &info);
 	return true;
 }
 
@@ -406,7 +406,7 @@ static bool is_still_missing(look *l, const nt_json_value *file, const char *uri
 	(void)file, (void)uri;
 	if (stat(l->path.data, &info) == 0 ? S_ISREG(info.st_mode) : errno != ENOENT && errno != ENOTDIR)
 		return false;
-	nt_trace_missing(l->path.data);
+	nt_trace_note(NT_TRACE_MISSING, l->path.data, NULL, NULL);
 	return true;
 }
 
@@ -430,7 +430,7 @@ static bool is_still_found(look *l, const nt_json_value *file, const char *uri)
 		if (text)
 			nt_uri_append_decoded(&name, text, length);
 		same = !name.failed;
-		nt_trace_searched(l->path.data, text ? name.data : NULL, &info);
+		nt_trace_note(NT_TRACE_SEARCHED, l->path.data, text ? name.data : NULL, &info);
 	} else if (same) {
 		l->renews |= l->job->update->options.by == NT_UPDATE_BY_TIME;
 		nt_uri_append_path(&name, entry ? entry : "");

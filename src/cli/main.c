@@ -23,6 +23,7 @@
 #include "cli/manifest.h"
 #include "cli/messages.h"
 #include "cli/options.h"
+#include "cli/own_files.h"
 #include "cli/progress.h"
 #include "cli/report_options.h"
 #include "cli/say.h"
@@ -234,20 +235,10 @@ static void note_end(void *user, const nt_job *job)
 /* Reports must not replace files that a job has read or written. */
 static void refuse_own(session *s, const nt_job *job, const char *path, bool *refused, int *code)
 {
-	struct stat own, other;
 	nt_error error;
-	if (!path || *refused || !job->outcome || strcmp(path, "-") == 0 || stat(path, &own) != 0)
+	if (*refused || !job->outcome || !nt_own_file_check_trace(path, &job->outcome->summary.trace, &error))
 		return;
-	const nt_trace *trace = &job->outcome->summary.trace;
-	size_t i = 0;
-	while (i < trace->count && !(stat(trace->files[i].path, &other) == 0 && nt_same_file(&own, &other)))
-		i++;
-	*refused = i < trace->count;
-	if (!*refused)
-		return;
-	nt_fail(&error, NT_ERROR_IO, "refusing to write: it is the same file as the %s %s",
-		trace->files[i].kind == NT_TRACE_WRITTEN ? "output" : "input", trace->files[i].path);
-	nt_error_in_file(&error, path);
+	*refused = true;
 	nt_message_error(&s->text, &error, s->style);
 	*code = nt_exit_worse(*code, nt_exit_code(error.status));
 }
@@ -498,87 +489,6 @@ static nt_status begin_update(session *s, nt_error *error)
 	return nt_update_begin(&s->update, &options, error);
 }
 
-/* A file that an option has written: what is there now, or where it will be. */
-typedef struct own_file {
-	const char *option, *path;
-	bool is_there, is_regular;
-	struct stat info;
-	nt_buffer place; /* its folder, of which the links are followed, and its name */
-} own_file;
-
-/* Whether a path names the file: by any link of any kind. Devices and pipes may be named twice. */
-static bool is_own(const own_file *own, const char *path, nt_error *error)
-{
-	struct stat info;
-	if (own->is_there)
-		return own->is_regular && stat(path, &info) == 0 && nt_same_file(&own->info, &info);
-	nt_buffer place = {0};
-	nt_error ignored; /* opening the file will meet it again, and say it */
-	const bool same = strcmp(nt_last_part(own->path), nt_last_part(path)) == 0 &&
-		!nt_path_place(&place, path, &ignored) && own->place.size && strcmp(own->place.data, place.data) == 0;
-	if (place.failed)
-		nt_fail_memory(error);
-	nt_buffer_free(&place);
-	return same;
-}
-
-/* Files that would replace one another, or an input, are refused before anything is read. batch: NULL: its jobs are not
- * known yet. */
-static nt_status check_pairs(const nt_command *c, const nt_batch *batch, nt_error *error)
-{
-	const bool is_pair = !c->settings.check && !nt_command_is_many(c) && c->operand_count == 2;
-	own_file own[] = {{.option = "--report", .path = c->report}, {.option = "--manifest", .path = c->manifest},
-		{.option = "--depfile", .path = c->depfile}, {.option = "--record", .path = c->record},
-		{.option = "an output", .path = is_pair ? c->operands[1] : NULL}};
-	const size_t count = sizeof own / sizeof *own;
-	nt_error_clear(error);
-	for (size_t i = 0; i < count && !error->status; i++) {
-		if (!own[i].path || strcmp(own[i].path, "-") == 0)
-			continue;
-		own[i].is_there = stat(own[i].path, &own[i].info) == 0;
-		own[i].is_regular = own[i].is_there && S_ISREG(own[i].info.st_mode);
-		nt_error failure = {.status = NT_OK};
-		if (!own[i].is_there && nt_path_place(&own[i].place, own[i].path, &failure))
-			own[i].place.size = 0;
-		if (failure.status == NT_ERROR_MEMORY)
-			nt_fail_memory(error);
-		for (size_t k = 0; k < i && !error->status; k++)
-			if (own[k].path && strcmp(own[k].path, "-") != 0 && is_own(&own[k], own[i].path, error))
-				nt_fail(error, NT_ERROR_USAGE, "%s and %s are both '%s'", own[k].option, own[i].option,
-					own[i].path);
-		/* an output has its own words for an input, and may be one */
-		for (size_t k = 0; batch && k < batch->count && i + 1 < count && !error->status; k++) {
-			const nt_job *job = &batch->jobs[k];
-			if (job->output && is_own(&own[i], job->output, error))
-				nt_fail(error, NT_ERROR_USAGE, "%s and an output are both '%s'", own[i].option,
-					own[i].path);
-			else if (own[i].is_there && !error->status && is_own(&own[i], job->input, error))
-				nt_fail_file(error, NT_ERROR_IO, own[i].path,
-					"refusing to write: it is the same file as the input %s", job->input);
-		}
-	}
-	for (size_t i = 0; i < count; i++)
-		nt_buffer_free(&own[i].place);
-	return error->status;
-}
-
-/* A file that a run writes beside its outputs has a folder, and is new with --no-clobber. */
-static nt_status check_own(const session *s, nt_error *error)
-{
-	const nt_command *c = s->command;
-	const char *const files[] = {c->depfile, c->manifest, s->folder ? NULL : c->report};
-	const nt_output_options options = {.no_clobber = c->settings.no_clobber};
-	nt_status status = NT_OK;
-	for (size_t i = 0; i < sizeof files / sizeof *files && !status; i++) {
-		if (!files[i] || strcmp(files[i], "-") == 0)
-			continue;
-		status = nt_output_check_folder(files[i], error);
-		if (!status)
-			status = nt_output_check_clobber(&options, files[i], error);
-	}
-	return status;
-}
-
 /* Memory for what is said and for the reports, and what else may be refused. */
 static nt_status begin_session(session *s, nt_error *error)
 {
@@ -593,8 +503,6 @@ static nt_status begin_session(session *s, nt_error *error)
 	if (s->shaping.failed || s->recorded.failed || s->judging.failed)
 		return nt_fail_memory(error);
 	const char *options = s->shaping.data ? s->shaping.data : "";
-	if (check_own(s, error))
-		return error->status;
 	if (s->command->manifest && nt_manifest_open(&s->manifest, s->command->manifest, options,
 		&s->plan->options, s->command->settings.check, error))
 		return error->status;
@@ -753,7 +661,7 @@ static int run(nt_command *command, nt_style style, bool colour_on_stdout)
 	nt_report_plan plan = {0};
 	nt_report_folder folder = {0};
 	nt_error error;
-	nt_status status = check_pairs(command, NULL, &error);
+	nt_status status = nt_own_files_check(command, NULL, false, &error);
 	if (!status)
 		status = choose_inputs(command, &inputs, style, &error);
 	const bool none = status && inputs.nothing.status && !inputs.count;
@@ -762,7 +670,7 @@ static int run(nt_command *command, nt_style style, bool colour_on_stdout)
 	if (!status)
 		status = prepare(&batch, command, inputs.roots, &error);
 	if (!status)
-		status = check_pairs(command, &batch, &error);
+		status = nt_own_files_check(command, &batch, plan.target.folder, &error);
 	if (!status && plan.target.folder)
 		status = nt_report_folder_begin(&folder, &plan.target, &error);
 	int code = nt_exit_code(status);

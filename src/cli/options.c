@@ -423,21 +423,19 @@ static nt_status parse_draco(parser *p)
 	return NT_OK;
 }
 
-/* A height map can be as deep as wide, which is more than anybody bakes. */
-static nt_status parse_bump_height(parser *p)
+/* A number above 0 and at most `most`, or with `share` the quotient of two. */
+static nt_status parse_number(parser *p, const char *option, const char *word, bool share, double most,
+	const char *expected, double *number)
 {
-	nt_settings *s = &p->command->settings;
-	const char *word = p->command->bump_height;
+	char *end;
 	if (!word)
 		return NT_OK;
-	char *end;
-	s->bump_height = strtod(word, &end);
-	if (*end == '/')
-		s->bump_height /= strtod(end + 1, &end);
-	if (*end || !(s->bump_height > 0 && s->bump_height <= 1))
-		return nt_fail(p->error, NT_ERROR_USAGE,
-			"--bump-height: '%s' is not a number above 0 and up to 1, as 0.02 or 1/64", word);
-	return NT_OK;
+	*number = strtod(word, &end);
+	if (share && *end == '/')
+		*number /= strtod(end + 1, &end);
+	if (!*end && *number > 0 && *number <= most)
+		return NT_OK;
+	return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '%s' is not a number above 0%s", option, word, expected);
 }
 
 /* "431236,5412347,101". A value that means a default is replaced by it, for the record of an
@@ -470,54 +468,41 @@ static nt_status parse_origin(parser *p)
 	return NT_OK;
 }
 
-static nt_status parse_max_seconds(parser *p)
-{
-	const char *word = p->command->max_seconds;
-	char *end;
-	if (!word)
-		return NT_OK;
-	p->command->settings.max_seconds = strtod(word, &end);
-	if (*end || !(p->command->settings.max_seconds > 0 && p->command->settings.max_seconds <= 1e9))
-		return nt_fail(p->error, NT_ERROR_USAGE, "--max-seconds: '%s' is not a number above 0, as 30 or 0.5",
-			word);
-	return NT_OK;
-}
-
-/* Options that contradict each other. */
+/* Options that contradict each other, or of which one is nothing without the other. */
 static nt_status check_clashes(parser *p)
 {
-	static const char *const pairs[][3] = {
-		{"quiet", "verbose", "say opposite things"},
-		{"check", "fix", "exclude each other: check what --fix has written"},
-		{"fix", "existing", "contradict each other: --fix decides for each primitive"},
-		{"fix", "flip-green", "contradict each other: --fix turns the maps that need it"},
-		{"in-place", "no-clobber", "contradict each other"},
+	static const struct {
+		const char *one, *other, *unless, *message; /* message NULL: the first needs the other */
+	} clashes[] = {
+		{"quiet", "verbose", NULL, " say opposite things"},
+		{"check", "fix", NULL, " exclude each other: check what --fix has written"},
+		{"fix", "existing", NULL, " contradict each other: --fix decides for each primitive"},
+		{"fix", "flip-green", NULL, " contradict each other: --fix turns the maps that need it"},
+		{"in-place", "no-clobber", NULL, " contradict each other"},
+		{"keep-tree", "directory", NULL, NULL},
+		{"include", "recursive", NULL, NULL},
+		{"exclude", "recursive", NULL, NULL},
+		/* what is not read has no findings */
+		{"update", "report", "check", " do not go together: a report needs inputs that --update skips"},
+		{"diff", "check", NULL, NULL},
+		{"output", "directory", NULL, " both say where to write"},
+		{"output", "in-place", "directory", " both say where to write"},
 	};
-	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
-		if (given(p, pairs[i][0]) && given(p, pairs[i][1]))
-			return nt_fail(p->error, NT_ERROR_USAGE, "--%s and --%s %s", pairs[i][0], pairs[i][1],
-				pairs[i][2]);
-	static const char *const needs[][2] = {{"keep-tree", "directory"}, {"include", "recursive"},
-		{"exclude", "recursive"}};
-	for (size_t i = 0; i < sizeof needs / sizeof *needs; i++)
-		if (given(p, needs[i][0]) && !given(p, needs[i][1]))
-			return nt_fail(p->error, NT_ERROR_USAGE, "--%s needs --%s", needs[i][0], needs[i][1]);
-	nt_settings *s = &p->command->settings;
-	/* what is not read has no findings */
-	if (p->command->update && p->command->report && !s->check)
-		return nt_fail(p->error, NT_ERROR_USAGE,
-			"--update and --report do not go together: a report needs inputs that --update skips");
-	if (p->command->diff && !s->check)
-		return nt_fail(p->error, NT_ERROR_USAGE, "--diff needs --check: nmtan --check --diff OLD NEW");
+	for (size_t i = 0; i < sizeof clashes / sizeof *clashes; i++) {
+		const bool needs = !clashes[i].message;
+		if (!given(p, clashes[i].one) || given(p, clashes[i].other) == needs ||
+			(clashes[i].unless && given(p, clashes[i].unless)))
+			continue;
+		return nt_fail(p->error, NT_ERROR_USAGE, "--%s %s --%s%s", clashes[i].one, needs ? "needs" : "and",
+			clashes[i].other, !needs ? clashes[i].message
+			: strcmp(clashes[i].one, "diff") == 0 ? ": nmtan --check --diff OLD NEW" : "");
+	}
 	/* findings that are not reported do not count */
 	if (given(p, "fail-on") && p->command->fail_on != NT_FAIL_ON_NEVER &&
 		p->command->fail_on > p->command->min_severity)
 		return nt_fail(p->error, NT_ERROR_USAGE,
 			"--fail-on counts what --min-severity shows: let --min-severity name the same "
 			"severity or a lower one");
-	const char *into = p->command->directory ? "directory" : s->in_place ? "in-place" : NULL;
-	if (p->command->output && into)
-		return nt_fail(p->error, NT_ERROR_USAGE, "--output and --%s both say where to write", into);
 	return NT_OK;
 }
 
@@ -654,12 +639,15 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 		!command->settings.in_place && !list_option(command) &&
 		command->operand_count == (command->settings.check ? 1 : 2);
 	nt_status status = parse_draco(&p);
+	/* a height map can be as deep as wide, which is more than anybody bakes */
 	if (!status)
-		status = parse_bump_height(&p);
+		status = parse_number(&p, "bump-height", command->bump_height, true, 1, " and up to 1, as 0.02 or 1/64",
+			&command->settings.bump_height);
 	if (!status)
 		status = parse_origin(&p);
 	if (!status)
-		status = parse_max_seconds(&p);
+		status = parse_number(&p, "max-seconds", command->max_seconds, false, 1e9, ", as 30 or 0.5",
+			&command->settings.max_seconds);
 	if (!status)
 		status = check_clashes(&p);
 	if (!status)

@@ -110,13 +110,13 @@ static nt_status open_file(nt_file *file, const char *path, bool referred, nt_er
 	}
 	if (referred && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
 		close(fd);
-		nt_trace_missing(path);
+		nt_trace_note(NT_TRACE_MISSING, path, NULL, NULL);
 		return nt_fail_file(error, NT_ERROR_MISSING, path, "cannot read: it is no regular file");
 	}
 	if (!standard) {
 		file->device = (uint64_t)status.st_dev;
 		file->inode = (uint64_t)status.st_ino;
-		nt_trace_read(path, &status);
+		nt_trace_note(NT_TRACE_READ, path, NULL, &status);
 	}
 	if (map_all(file, fd, path, &status))
 		return NT_OK;

@@ -27,7 +27,7 @@ nt_status nt_lookup_failed(const char *path, int number, nt_error *error)
 		nt_fail(error, NT_ERROR_IO, "cannot read: %s", strerror(number));
 	/* what has too long a name will not come to be */
 	if (error->status == NT_ERROR_MISSING && number != ENAMETOOLONG)
-		nt_trace_missing(path);
+		nt_trace_note(NT_TRACE_MISSING, path, NULL, NULL);
 	return nt_error_in_file(error, path);
 }
 
@@ -84,7 +84,7 @@ nt_status nt_lookup_any_case(
 	nt_buffer path = {0};
 	nt_buffer_format(&path, "%s/%.*s", folder, (int)length, name);
 	if (!path.failed)
-		nt_trace_searched(path.data, *entry, &info);
+		nt_trace_note(NT_TRACE_SEARCHED, path.data, *entry, &info);
 	else if (!status)
 		status = nt_fail_memory(error);
 	nt_buffer_free(&path);

@@ -93,7 +93,7 @@ void nt_output_leave(nt_output *output)
 	if (output->options.result)
 		output->options.result->left = true;
 	if (!output->main && output->options.in_place && stat(output->options.in_place, &status) == 0)
-		nt_trace_written(output->options.in_place, &status);
+		nt_trace_note(NT_TRACE_WRITTEN, output->options.in_place, NULL, &status);
 }
 
 /* Refuses a target that exists and has to stay. */
@@ -412,7 +412,8 @@ nt_status nt_output_commit(nt_output *output, nt_error *error)
 		struct stat info;
 		for (const nt_sink *sink = output->first; sink; sink = sink->next)
 			if (sink->target && sink->role != NT_ROLE_STAGING && stat(present_path(sink), &info) == 0)
-				nt_trace_written(nt_sink_is_sidecar(sink) ? sink->target : sink->path, &info);
+				nt_trace_note(NT_TRACE_WRITTEN, nt_sink_is_sidecar(sink) ? sink->target : sink->path,
+					NULL, &info);
 		if (output->options.placing)
 			status = output->options.placing(output->options.placing_user, error);
 	}

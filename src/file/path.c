@@ -144,9 +144,9 @@ nt_status nt_path_real(nt_buffer *text, const char *path, nt_error *error)
 	char *real = realpath(path, NULL);
 	nt_status status = real ? nt_path_absolute(&spelled, path, error) : nt_lookup_failed(path, errno, error);
 	if (!status && strcmp(spelled.data, real) != 0)
-		nt_trace_link(path, real);
+		nt_trace_note(NT_TRACE_LINK, path, real, NULL);
 	if (status == NT_ERROR_MISSING)
-		nt_trace_link(path, NULL);
+		nt_trace_note(NT_TRACE_LINK, path, NULL, NULL);
 	if (real)
 		nt_buffer_text(text, real);
 	nt_buffer_free(&spelled);
@@ -233,7 +233,7 @@ nt_status nt_path_stays_inside(const char *folder, const char *name, bool *insid
 	}
 	const bool failed = real.failed || rest.failed;
 	if (!*inside && !failed)
-		nt_trace_missing(real.data);
+		nt_trace_note(NT_TRACE_MISSING, real.data, NULL, NULL);
 	nt_buffer_free(&real);
 	nt_buffer_free(&rest);
 	return failed ? nt_fail_memory(error) : NT_OK;

@@ -122,7 +122,7 @@ static bool add(nt_trace *trace, uint64_t hash, const nt_trace_file *file)
 	return false;
 }
 
-static void note(nt_trace_kind kind, const char *path, const char *found, const struct stat *info)
+void nt_trace_note(nt_trace_kind kind, const char *path, const char *found, const struct stat *info)
 {
 	nt_trace *trace = current;
 	if (!trace)
@@ -141,31 +141,6 @@ static void note(nt_trace_kind kind, const char *path, const char *found, const 
 		trace->failed = !add(trace, hash, &file) ||
 			(kind == NT_TRACE_READ && trace->readers && !add_read(trace->readers, trace->reader, info));
 	pthread_mutex_unlock(&lock);
-}
-
-void nt_trace_read(const char *path, const struct stat *info)
-{
-	note(NT_TRACE_READ, path, NULL, info);
-}
-
-void nt_trace_missing(const char *path)
-{
-	note(NT_TRACE_MISSING, path, NULL, NULL);
-}
-
-void nt_trace_written(const char *path, const struct stat *info)
-{
-	note(NT_TRACE_WRITTEN, path, NULL, info);
-}
-
-void nt_trace_link(const char *path, const char *real)
-{
-	note(NT_TRACE_LINK, path, real, NULL);
-}
-
-void nt_trace_searched(const char *path, const char *found, const struct stat *info)
-{
-	note(NT_TRACE_SEARCHED, path, found, info);
 }
 
 /* Nothing but these comes after them. Their numbers stay in the index, and are given again. */

@@ -61,14 +61,10 @@ bool nt_trace_is_read_elsewhere(const struct stat *info);
  * in one trace: each that helps a run and opens files has to be lent it. */
 nt_trace *nt_trace_use(nt_trace *trace);
 
-/* Notes one; what is about to be written has its `info` already. Nothing happens where no trace is used. */
-void nt_trace_read(const char *path, const struct stat *info);
-void nt_trace_missing(const char *path);
-void nt_trace_written(const char *path, const struct stat *info);
-void nt_trace_link(const char *path, const char *real);
-
-/* `path` is a name in the folder that was searched; `info` is the folder's. */
-void nt_trace_searched(const char *path, const char *found, const struct stat *info);
+/* Notes one. A file that is about to be written has its `info` already. A search has that of the folder in which it
+ * looked for the last part of `path`; a link and a file that is missing have none. Nothing happens if no trace is used.
+ */
+void nt_trace_note(nt_trace_kind kind, const char *path, const char *found, const struct stat *info);
 
 /* Times in nanoseconds since 1970: of the last change of a file's bytes, and of its inode; the present one. */
 int64_t nt_trace_modified(const struct stat *info);

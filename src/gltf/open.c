@@ -267,7 +267,7 @@ static void stand_for(nt_gltf *document, nt_json_value *buffer, const nt_json_va
 		(new > old || old > most))
 		nt_json_set_uint64(document->json, length, new);
 	if (nt_uri_resolve(&document->arena, document->path, uri, text, document->allow_outside, &path, NULL) == NT_OK)
-		nt_trace_read(path, file);
+		nt_trace_note(NT_TRACE_READ, path, NULL, file);
 }
 
 /* Whether an extension may hold the number of a buffer: a vendor's one. KHR_ and EXT_ ones do in views alone. */

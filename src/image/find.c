@@ -34,7 +34,7 @@ static nt_status is_file(const char *path, bool *is, nt_error *error)
 	const nt_status status = nt_lookup_found(path, &info, is, error);
 	if (*is && !S_ISREG(info.st_mode)) {
 		*is = false;
-		nt_trace_missing(path);
+		nt_trace_note(NT_TRACE_MISSING, path, NULL, NULL);
 	}
 	return status;
 }
