@@ -660,14 +660,14 @@ static void take_pieces(ply_rows *rows, ply_column *list)
 
 /* ---- all rows ---- */
 
-/* Room for the lists of all rows, if they are as long as that of the first. */
-static nt_status reserve_lists(ply_rows *rows)
+/* Room for the indices of all rows, if they are as long as those of the first: most files are triangles, or quads. */
+static nt_status reserve_indices(ply_rows *rows)
 {
 	for (size_t i = 0; i < rows->element->property_count; i++) {
 		ply_column *column = &rows->columns[i];
-		if (column->use == PLY_INDICES && column->size <= rows->header->size / rows->element->count &&
-			!nt_grow(&column->values, &column->capacity, column->size * rows->element->count,
-				sizeof(float)))
+		const size_t size = column->size < 4 ? column->size : 4;
+		if (column->use == PLY_INDICES && !nt_grow(&column->values, &column->capacity,
+			size * rows->element->count, sizeof(float)))
 			return nt_fail_memory(rows->error);
 	}
 	return NT_OK;
@@ -684,7 +684,7 @@ nt_status ply_read_rows(ply_rows *rows)
 		status = ply_read_row(rows);
 		const bool first = rows->row == 1;
 		if (!status && first)
-			status = reserve_lists(rows);
+			status = reserve_indices(rows);
 		if (status || !plain || rows->row == rows->stop)
 			continue;
 		if (is_text(rows))

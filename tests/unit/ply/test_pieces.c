@@ -43,7 +43,8 @@ TEST(values_are_those_of_the_file)
 {
 	static const struct {
 		const char *before_vertex, *before_face, *line_end;
-	} files[] = {{"", "", "\n"}, {"", "", "\r\n"}, {"\n\n", "", "\n"}, {"", " ", "\n"}, {"\t", "\n", "\n"}};
+	} files[] = {{"", "", "\n"}, {"", "", "\r\n"}, {"\n\n", "", "\n"}, {"", " ", "\n"}, {"\t", "\n", "\n"},
+		{"", "", " \n"}, {"  ", "", "  \r\n"}};
 	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
 		nt_buffer text = make_file(files[i].before_vertex, files[i].before_face, files[i].line_end);
 		for (unsigned threads = 1; threads <= 3; threads++) {
