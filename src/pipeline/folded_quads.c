@@ -21,14 +21,14 @@
 /* Bits of nt_known.flags: the triangle is half of a cut quad. */
 enum { CUT = 1, POSITIVE = 2 };
 
-/* The arrays of a mesh whose folded quads are cut. */
+/* The arrays of a mesh whose folded quads are cut, of an arena but for the tangents. */
 typedef struct cut_mesh {
-	float (*tangents)[4];                                /* [corner_count] */
-	uint32_t *indices;                                   /* [corner_count], and the block of the following */
-	uint32_t *polygon, *smoothing, *primitive;           /* [face_count] */
-	uint8_t *sizes;                                      /* [face_count] */
-	uint8_t *flags;                                      /* [triangle_count] for repair */
-	size_t face_count, corner_count, triangle_count;     /* so far */
+	float (*tangents)[4];                      /* [corner_count] */
+	uint32_t *indices;                         /* [corner_count] */
+	uint32_t *polygon, *smoothing, *primitive; /* [face_count] */
+	uint8_t *sizes;                            /* [face_count] */
+	uint8_t *flags;                            /* [triangle_count] for repair */
+	size_t face_count, corner_count, triangle_count; /* so far */
 } cut_mesh;
 
 /* Whether a face is a folded quad, and if so its halves. */
@@ -62,18 +62,19 @@ static bool may_be_folded(const nt_mesh *mesh, size_t changed)
 		(c->mirrored && c->mirrored < nt_mesh_triangle_count(mesh)));
 }
 
-static bool alloc_cut(const nt_mesh *mesh, size_t folded, cut_mesh *cut)
+static bool alloc_cut(const nt_mesh *mesh, size_t folded, nt_arena *arena, cut_mesh *cut)
 {
 	const size_t faces = mesh->face_count + folded, corners = mesh->corner_count + 2 * folded;
 	*cut = (cut_mesh){.tangents = nt_alloc(corners, sizeof *cut->tangents),
-		.indices = nt_alloc(corners + 3 * faces + faces / 4 + 1, sizeof *cut->indices),
-		.flags = nt_alloc(corners - 2 * faces, 1)};
-	if (!cut->tangents || !cut->indices || !cut->flags)
+		.indices = nt_arena_alloc(arena, corners + 3 * faces, sizeof *cut->indices),
+		.sizes = nt_arena_alloc(arena, faces, 1), .flags = nt_arena_alloc(arena, corners - 2 * faces, 1)};
+	if (!cut->tangents || !cut->indices || !cut->sizes || !cut->flags) {
+		free(cut->tangents);
 		return false;
+	}
 	cut->polygon = cut->indices + corners;
 	cut->smoothing = cut->polygon + faces;
 	cut->primitive = cut->smoothing + faces;
-	cut->sizes = (uint8_t *)(cut->primitive + faces);
 	return true;
 }
 
@@ -110,12 +111,12 @@ static void cut_faces(nt_mesh *mesh, const nmtan_mesh *view, const uint8_t *diag
 	}
 }
 
-/* The cut arrays become the mesh's. The mesh's old arrays belong to the arena or the input, but for its tangents. */
+/* The cut arrays become the mesh's. */
 static void adopt_cut(nt_mesh *mesh, const cut_mesh *cut)
 {
 	free(mesh->corner_tangents);
 	mesh->corner_tangents = cut->tangents[0];
-	mesh->indices = mesh->cut_arrays = cut->indices;
+	mesh->indices = cut->indices;
 	mesh->face_sizes = cut->sizes;
 	mesh->face_polygon = cut->polygon;
 	mesh->face_smoothing = mesh->face_smoothing ? cut->smoothing : NULL;
@@ -139,40 +140,27 @@ static nt_status repair_halves(nt_mesh *mesh, const nmtan_mesh *view, unsigned t
 	return status;
 }
 
-static nt_status cut_folded(nt_mesh *mesh, nmtan_mesh *view, const uint8_t *diagonals, size_t folded, unsigned threads)
-{
-	cut_mesh cut;
-	if (!alloc_cut(mesh, folded, &cut)) {
-		free(cut.tangents);
-		free(cut.indices);
-		free(cut.flags);
-		return NT_ERROR_MEMORY;
-	}
-	cut_faces(mesh, view, diagonals, &cut);
-	adopt_cut(mesh, &cut);
-	view->face_count = mesh->face_count;
-	view->face_sizes = mesh->face_sizes;
-	view->indices = mesh->indices;
-	const nt_status status = repair_halves(mesh, view, threads, cut.flags);
-	free(cut.flags);
-	return status;
-}
-
-nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads)
+nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads, nt_arena *arena)
 {
 	nmtan_stored_uv stored;
 	nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	stored.v_offset = stored_v_offset;
-	uint8_t *diagonals = nt_alloc(mesh->face_count, 1);
+	uint8_t *diagonals = nt_arena_alloc(arena, mesh->face_count, 1);
 	if (!diagonals)
 		return NT_ERROR_MEMORY;
 	const size_t changed = nt_written_diagonals(&view, diagonals);
 	const size_t folded = may_be_folded(mesh, changed) ? count_folded(&view, diagonals) : 0;
 	if (!folded) {
-		mesh->face_diagonals = mesh->cut_arrays = diagonals;
+		mesh->face_diagonals = diagonals;
 		return NT_OK;
 	}
-	const nt_status status = cut_folded(mesh, &view, diagonals, folded, threads);
-	free(diagonals);
-	return status;
+	cut_mesh cut;
+	if (!alloc_cut(mesh, folded, arena, &cut))
+		return NT_ERROR_MEMORY;
+	cut_faces(mesh, &view, diagonals, &cut);
+	adopt_cut(mesh, &cut);
+	view.face_count = mesh->face_count;
+	view.face_sizes = mesh->face_sizes;
+	view.indices = mesh->indices;
+	return repair_halves(mesh, &view, threads, cut.flags);
 }

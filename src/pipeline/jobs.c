@@ -33,7 +33,7 @@ enum {
 };
 
 /* The next step of a mesh. */
-enum state { NOTHING, TO_LOAD, READY, LOADED, JOIN };
+enum state { NOTHING, TO_LOAD, READY, LOADED, JOIN, KEPT };
 
 /* A thread. */
 typedef struct worker {
@@ -130,35 +130,48 @@ static void drop_geometry(nt_mesh *mesh)
 	mesh->split = split;
 }
 
+/* One that keeps its tangents is loaded as if it were alone, and nothing stays but what is wrong with them. */
 static void do_mesh(window *w, worker *own, size_t item, unsigned threads)
 {
 	const nt_tasks *t = w->tasks;
 	nt_mesh *mesh = &w->scene.meshes[item];
 	const nt_mesh before = *mesh;
-	const bool loads = w->pass == READY;
-	const bool drops = loads && t->options->only_results && mesh->plan.disposable && !mesh->plan.temporary;
+	const bool looks = w->pass == KEPT, loads = w->pass == READY || (looks && t->reader->load);
+	const bool drops = looks || (loads && t->options->only_results && mesh->plan.disposable &&
+		!mesh->plan.temporary);
 	nt_arena kept = own->scene.arena;
 	nt_status status = NT_OK;
 	own->scene.meshes = mesh;
 	if (drops)
 		own->scene.arena = own->geometry;
+	if (looks)
+		mesh->plan = (nt_mesh_plan){.pooled = before.plan.pooled}; /* a primitive costs what it uses */
 	if (loads)
-		status = t->reader->load(&own->scene, mesh, &w->of_one, &own->error);
-	if (!status && w->pass != JOIN)
+		status = t->reader->load(&own->scene, mesh, threads == 1 ? &w->of_one : t->options, &own->error);
+	if (looks && !status)
+		nt_look_at_kept(&own->scene, mesh, t->written, threads);
+	else if (w->pass != JOIN && !status)
 		status = make_normals(w, own, mesh, threads, &own->error);
 	if (drops) {
 		own->geometry = own->scene.arena;
 		own->scene.arena = kept;
 	}
-	if (!status && (w->pass == JOIN || is_solved(mesh)))
+	if (!looks && !status && (w->pass == JOIN || is_solved(mesh)))
 		status = solve(w, own, mesh, threads, &own->error);
-	if (drops) {
-		if (!status)
-			drop_geometry(mesh);
-		nt_arena_clear(&own->geometry);
+	if (looks) {
+		const nt_kept found = mesh->kept;
+		const nt_signs signs = mesh->signs;
+		*mesh = before;
+		mesh->kept = found;
+		mesh->signs = signs;
+		status = nt_may_be_left(status) ? NT_OK : status;
+	} else if (drops && !status) {
+		drop_geometry(mesh);
 	}
+	if (drops)
+		nt_arena_clear(&own->geometry);
 	w->states[item] = NOTHING;
-	if (status && loads) {
+	if (status && w->pass == READY) {
 		*mesh = before;
 		w->states[item] = TO_LOAD;
 		nt_error_clear(&own->error);
@@ -506,6 +519,29 @@ static nt_status merge_meshes(window *w)
 	return status;
 }
 
+/* Tangents that stay as they are although somebody uses them. */
+static nt_status look_at_all_kept(window *w)
+{
+	const nt_tasks *t = w->tasks;
+	for (size_t i = 0; i < w->scene.mesh_count; i++) {
+		const nt_mesh *mesh = &w->scene.meshes[i];
+		w->needed[i] = t->reader->load ? nt_mesh_is_kept_and_used(mesh)
+					       : mesh->tangents && !nt_mesh_is_wanted(mesh);
+		w->states[i] = w->needed[i] ? KEPT : NOTHING;
+	}
+	find_large(w);
+	nt_status status = t->reader->load ? t->reader->prepare(&w->scene, w->needed, t->options, w->error) : NT_OK;
+	if (!status)
+		status = do_pass(w, KEPT);
+	for (size_t i = 0; !status && i < w->scene.mesh_count; i++) {
+		const nt_mesh *mesh = &w->scene.meshes[i];
+		if (mesh->kept.bad)
+			nt_finding_add(&w->scene.findings, NT_CODE_TAN_EXISTING_BAD,
+				nt_mesh_place(mesh, &(nt_place){0}), mesh->kept.bad, NULL);
+	}
+	return status;
+}
+
 static nt_status do_window(window *w)
 {
 	const nt_tasks *t = w->tasks;
@@ -528,7 +564,7 @@ static nt_status do_window(window *w)
 		return status;
 	tell_meshes(w);
 	if (t->writer && !t->settings->report)
-		status = nt_stage_kept(&w->scene, t, w->error);
+		status = look_at_all_kept(w);
 	return status ? status : merge_meshes(w);
 }
 

@@ -81,9 +81,9 @@ static void judge(nt_mesh *mesh, float v_offset, nt_arena *arena, unsigned threa
 	others.halves = halves;
 	if (halves && 2 * count_wrong(&others, threads) <= wrong)
 		c = others;
-	mesh->wrong_kept = c.counts[BY_W] + c.counts[REVERSED];
-	mesh->mixed_kept = c.counts[DIFFERS];
-	mesh->judged_kept = c.counts[JUDGED];
+	mesh->kept.wrong = c.counts[BY_W] + c.counts[REVERSED];
+	mesh->kept.mixed = c.counts[DIFFERS];
+	mesh->kept.judged = c.counts[JUDGED];
 }
 
 typedef struct fault_count {
@@ -120,78 +120,28 @@ static size_t count_faulty(const nt_mesh *mesh, nt_arena *arena, unsigned thread
 	return c.faulty;
 }
 
-/* Counts what is wrong with the tangents of a loaded mesh. */
-static void look_at(nt_scene *scene, const nt_tasks *tasks, nt_mesh *mesh, nt_arena *arena)
+void nt_look_at_kept(nt_scene *scene, nt_mesh *mesh, nt_format written, unsigned threads)
 {
-	const unsigned threads = tasks->settings->threads;
-	const nt_format written = tasks->writer->format;
 	if (mesh->tangents && mesh->texcoords && nt_mesh_needs_tangents(mesh, nt_format_is_gltf(written)))
-		judge(mesh, nt_v_offset(scene->format, written), arena, threads);
-	const size_t faulty = mesh->tangents && mesh->normals ? count_faulty(mesh, arena, threads) : 0;
-	if (faulty)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_EXISTING_BAD, nt_mesh_place(mesh, &(nt_place){0}), faulty,
-			NULL);
-	if (mesh->wrong_kept || mesh->mixed_kept || !mesh->judged_kept)
+		judge(mesh, nt_v_offset(scene->format, written), &scene->arena, threads);
+	if (mesh->tangents && mesh->normals)
+		mesh->kept.bad = count_faulty(mesh, &scene->arena, threads);
+	if (mesh->kept.wrong || mesh->kept.mixed || !mesh->kept.judged)
 		nt_judge_w(mesh);
 	else
 		mesh->signs = NT_SIGN_RIGHT;
-}
-
-/* Looks at one mesh of a glTF as if it were alone; `memory` is empty before and after. */
-static nt_status load_and_look(nt_scene *scene, const nt_tasks *tasks, nt_mesh *to, nt_arena *memory, nt_error *error)
-{
-	nt_mesh mesh = *to;
-	nt_scene own = *scene;
-	own.arena = *memory;
-	own.temporary = (nt_arena){0};
-	own.findings = (nt_finding_list){0}; /* what a load finds is said of meshes that are solved */
-	mesh.plan = (nt_mesh_plan){.pooled = mesh.plan.pooled}; /* a primitive costs what it uses */
-	const nt_status status = tasks->reader->load(&own, &mesh, tasks->options, error);
-	if (!status)
-		look_at(scene, tasks, &mesh, &own.arena);
-	to->signs = mesh.signs;
-	to->wrong_kept = mesh.wrong_kept;
-	to->mixed_kept = mesh.mixed_kept;
-	to->judged_kept = mesh.judged_kept;
-	*memory = own.arena;
-	nt_arena_clear(memory);
-	nt_arena_free(&own.temporary);
-	nt_finding_list_free(&own.findings);
-	return nt_may_be_left(status) ? NT_OK : status;
-}
-
-nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error)
-{
-	nt_arena memory = {0};
-	for (size_t i = 0; !tasks->reader->load && i < scene->mesh_count; i++)
-		if (scene->meshes[i].tangents && !nt_mesh_is_wanted(&scene->meshes[i]))
-			look_at(scene, tasks, &scene->meshes[i], &scene->temporary);
-	if (!tasks->reader->load)
-		return NT_OK;
-	bool *kept = nt_alloc(scene->mesh_count, sizeof *kept);
-	if (!kept)
-		return nt_fail_memory(error);
-	for (size_t i = 0; i < scene->mesh_count; i++)
-		kept[i] = nt_mesh_is_kept_and_used(&scene->meshes[i]);
-	nt_status status = tasks->reader->prepare(scene, kept, tasks->options, error);
-	for (size_t i = 0; !status && i < scene->mesh_count; i++)
-		if (kept[i])
-			status = load_and_look(scene, tasks, &scene->meshes[i], &memory, error);
-	nt_arena_free(&memory);
-	free(kept);
-	return status;
 }
 
 void nt_tell_kept(nt_scene *scene)
 {
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
-		const size_t wrong = mesh->wrong_kept, mixed = mesh->mixed_kept;
+		const size_t wrong = mesh->kept.wrong, mixed = mesh->kept.mixed;
 		char share[64], others[64], detail[256];
 		if ((!wrong && !mixed) || mesh->pair)
 			continue;
-		snprintf(share, sizeof share, "%.3g %% of %zu", 100.0 * (double)wrong / (double)mesh->judged_kept,
-			mesh->judged_kept);
+		snprintf(share, sizeof share, "%.3g %% of %zu", 100.0 * (double)wrong / (double)mesh->kept.judged,
+			mesh->kept.judged);
 		snprintf(others, sizeof others, ", and corners of %zu more have different w", mixed);
 		snprintf(detail, sizeof detail, "%s%s%s", wrong ? share : "corners with different w",
 			wrong && mixed ? others : "", nt_doubt_text(mesh->doubt));

@@ -80,55 +80,22 @@ nt_status nt_morphs_restore(nt_mesh *mesh, bool targets)
 
 /* ---- classes of corners ---- */
 
-/* Classes of scene/morphs.c, by corner. */
+/* Classes of scene/morphs.c, by corner, and rows of targets as they are there. */
 typedef struct nt_corner_classes {
-	uint32_t *of; /* [corner_count] */
-	uint32_t *first, *parent; /* [count] its first corner, the class that it was part of; itself: none */
-	size_t count, first_capacity, parent_capacity;
+	uint32_t *of;     /* [corner_count]; the block of the following, which have room for as many */
+	uint32_t *first;  /* [count] first corner of a class */
+	uint32_t *parent; /* [count] the class that it was part of; itself: none */
+	size_t count;
+	uint32_t *words;
+	size_t word_count, word_capacity;
 } nt_corner_classes;
 
-static void free_classes(nt_mesh *mesh)
+static uint32_t add_class(nt_corner_classes *classes, uint32_t corner, uint32_t parent)
 {
-	if (!mesh->corner_classes)
-		return;
-	free(mesh->corner_classes->of);
-	free(mesh->corner_classes->first);
-	free(mesh->corner_classes->parent);
-	free(mesh->corner_classes);
-	mesh->corner_classes = NULL;
-}
-
-static bool add_class(nt_corner_classes *classes, uint32_t corner, uint32_t parent)
-{
-	const size_t count = classes->count + 1;
-	if (!nt_grow((void **)&classes->first, &classes->first_capacity, count, sizeof *classes->first) ||
-		!nt_grow((void **)&classes->parent, &classes->parent_capacity, count, sizeof *classes->parent))
-		return false;
 	classes->first[classes->count] = corner;
 	classes->parent[classes->count] = parent;
-	classes->of[corner] = (uint32_t)classes->count++;
-	return true;
-}
-
-/* A class for each vertex that has corners. */
-static bool begin_classes(nt_mesh *mesh)
-{
-	nt_corner_classes *classes = mesh->corner_classes = nt_calloc(1, sizeof *classes);
-	uint32_t *known = nt_alloc(mesh->vertex_count, sizeof *known);
-	bool done = classes && known && (classes->of = nt_alloc(mesh->corner_count, sizeof *classes->of));
-	if (done)
-		memset(known, 0xFF, mesh->vertex_count * sizeof *known);
-	for (uint32_t c = 0; done && c < mesh->corner_count; c++) {
-		const uint32_t vertex = mesh->indices ? mesh->indices[c] : c;
-		if (known[vertex] != NT_NONE) {
-			classes->of[c] = known[vertex];
-			continue;
-		}
-		known[vertex] = (uint32_t)classes->count;
-		done = add_class(classes, c, known[vertex]);
-	}
-	free(known);
-	return done;
+	classes->of[corner] = (uint32_t)classes->count;
+	return (uint32_t)classes->count++;
 }
 
 /* Divides classes by the tangents of corners, of which so many numbers count: targets have no w of their own. */
@@ -150,22 +117,34 @@ static bool divide(nt_corner_classes *classes, size_t corner_count, const float 
 		if (other != UINT32_MAX)
 			classes->of[c] = other;
 		else
-			done = add_class(classes, c, before) && nt_hash_index_add(&others, hash, classes->of[c]);
+			done = nt_hash_index_add(&others, hash, add_class(classes, c, before));
 	}
 	nt_hash_index_free(&others);
 	return done;
 }
 
-/* The classes that the base makes have no parent. */
-static nt_status begin(nt_mesh *mesh)
+/* A class for each vertex that has corners, divided by the base: those that it makes have no parent. */
+static bool begin(nt_mesh *mesh)
 {
-	mesh->morph_tangents = nt_calloc(1, sizeof *mesh->morph_tangents);
-	if (!mesh->morph_tangents || !begin_classes(mesh) ||
-		!divide(mesh->corner_classes, mesh->corner_count, mesh->corner_tangents, 4))
-		return NT_ERROR_MEMORY;
-	for (size_t k = 0; k < mesh->corner_classes->count; k++)
-		mesh->corner_classes->parent[k] = (uint32_t)k;
-	return NT_OK;
+	nt_corner_classes *classes = mesh->corner_classes = nt_calloc(1, sizeof *classes);
+	uint32_t *known = nt_alloc(mesh->vertex_count, sizeof *known);
+	bool done = classes && known && (classes->of = nt_alloc(mesh->corner_count, 3 * sizeof *classes->of));
+	if (done) {
+		classes->first = classes->of + mesh->corner_count;
+		classes->parent = classes->first + mesh->corner_count;
+		memset(known, 0xFF, mesh->vertex_count * sizeof *known);
+		for (uint32_t c = 0; c < mesh->corner_count; c++) {
+			uint32_t *own = &known[nt_mesh_vertex(mesh, c)];
+			if (*own == NT_NONE)
+				*own = add_class(classes, c, (uint32_t)classes->count);
+			classes->of[c] = *own;
+		}
+		done = divide(classes, mesh->corner_count, mesh->corner_tangents, 4);
+		for (size_t k = 0; k < classes->count; k++)
+			classes->parent[k] = (uint32_t)k;
+	}
+	free(known);
+	return done;
 }
 
 /* Whether a class has a row: parents come before. */
@@ -179,23 +158,22 @@ static bool has_row(const nt_mesh *mesh, const float *rows, size_t k)
 	return memcmp(row, other, 3 * sizeof *row) != 0;
 }
 
-static nt_status store_rows(nt_mesh *mesh, nt_morph *morph, const float *tangents)
+static bool store_rows(const nt_mesh *mesh, nt_morph *morph, const float *tangents)
 {
-	const nt_corner_classes *classes = mesh->corner_classes;
-	nt_morph_tangents *all = mesh->morph_tangents;
+	nt_corner_classes *classes = mesh->corner_classes;
 	size_t count = 0;
 	for (size_t k = 0; k < classes->count; k++)
 		count += has_row(mesh, tangents, k);
 	const bool listed = 4 * count < 3 * classes->count;
 	morph->class_count = classes->count;
 	morph->row_count = listed ? count : classes->count;
-	morph->first_word = all->word_count;
+	morph->first_word = classes->word_count;
 	if (!morph->row_count) /* of all targets, words may still be NULL */
-		return NT_OK;
-	if (!nt_grow((void **)&all->words, &all->word_capacity, all->word_count + (listed ? 4 : 3) * morph->row_count,
-		sizeof *all->words))
-		return NT_ERROR_MEMORY;
-	uint32_t *number = all->words + all->word_count, *row = number + (listed ? count : 0);
+		return true;
+	if (!nt_grow((void **)&classes->words, &classes->word_capacity,
+		classes->word_count + (listed ? 4 : 3) * morph->row_count, sizeof *classes->words))
+		return false;
+	uint32_t *number = classes->words + classes->word_count, *row = number + (listed ? count : 0);
 	for (size_t k = 0; k < classes->count; k++) {
 		if (listed && !has_row(mesh, tangents, k))
 			continue;
@@ -204,8 +182,8 @@ static nt_status store_rows(nt_mesh *mesh, nt_morph *morph, const float *tangent
 		memcpy(row, tangents + 4 * (size_t)classes->first[k], 3 * sizeof *row);
 		row += 3;
 	}
-	all->word_count = (size_t)(row - all->words);
-	return NT_OK;
+	classes->word_count = (size_t)(row - classes->words);
+	return true;
 }
 
 /* A target that does not turn a tangent that was solved does not turn the authored one either. */
@@ -220,11 +198,10 @@ static void keep_unturned(const nt_mesh *mesh, float *moved)
 
 nt_status nt_morphs_classify(nt_mesh *mesh, nt_morph *morph, float *rows)
 {
-	const nt_status status = mesh->corner_classes ? NT_OK : begin(mesh);
+	const bool begun = mesh->corner_classes || begin(mesh);
 	keep_unturned(mesh, rows);
-	if (!status && divide(mesh->corner_classes, mesh->corner_count, rows, 3))
-		return store_rows(mesh, morph, rows);
-	return NT_ERROR_MEMORY;
+	return begun && divide(mesh->corner_classes, mesh->corner_count, rows, 3) && store_rows(mesh, morph, rows)
+		? NT_OK : NT_ERROR_MEMORY;
 }
 
 /* ---- vertices ---- */
@@ -238,55 +215,40 @@ void nt_morphs_keys(const nt_mesh *mesh, float *keys)
 	}
 }
 
-nt_status nt_morphs_finish(nt_mesh *mesh, size_t source_count)
+nt_status nt_morphs_finish(nt_mesh *mesh, size_t source_count, nt_arena *arena)
 {
 	const nt_split *split = &mesh->split;
 	nt_corner_classes *classes = mesh->corner_classes;
-	nt_morph_tangents *all = mesh->morph_tangents;
 	const size_t count = mesh->vertex_count + source_count;
-	all->class_of = nt_alloc(count, sizeof *all->class_of);
-	if (!all->class_of)
+	uint32_t *class_of = nt_arena_alloc(arena, count, sizeof *class_of);
+	uint32_t *parent = nt_arena_alloc(arena, classes->count, sizeof *parent), *words = classes->words;
+	nt_morph_tangents *all = nt_arena_alloc(arena, 1, sizeof *all);
+	classes->words = NULL;
+	if (!nt_arena_adopt(arena, words) || !class_of || !parent || !all)
 		return NT_ERROR_MEMORY;
-	memset(all->class_of, 0xFF, count * sizeof *all->class_of);
+	memset(class_of, 0xFF, count * sizeof *class_of);
 	for (size_t c = 0; c < mesh->corner_count; c++) {
 		const size_t vertex = split->indices[c];
 		memcpy(split->vertex_tangents + 4 * vertex, mesh->corner_tangents + 4 * c, 4 * sizeof(float));
-		all->class_of[vertex] = classes->of[c];
+		class_of[vertex] = classes->of[c];
 	}
-	all->parent = classes->parent;
-	all->class_count = classes->count;
-	all->user_count = 1;
-	classes->parent = NULL;
+	memcpy(parent, classes->parent, classes->count * sizeof *parent);
+	*all = (nt_morph_tangents){.class_of = class_of, .parent = parent, .class_count = classes->count,
+		.words = words, .word_count = classes->word_count, .user_count = 1};
+	mesh->morph_tangents = all;
 	return NT_OK;
 }
 
-nt_status nt_morphs_keep(nt_mesh *mesh, nt_arena *arena)
-{
-	nt_morph_tangents *all = mesh->morph_tangents;
-	if (!all)
-		return NT_OK;
-	/* all of them are tried: what is not kept is freed */
-	bool kept = nt_arena_adopt(arena, all->class_of);
-	kept &= nt_arena_adopt(arena, all->parent);
-	kept &= nt_arena_adopt(arena, all->words);
-	kept &= nt_arena_adopt(arena, all);
-	if (!kept)
-		mesh->morph_tangents = NULL;
-	return kept ? NT_OK : NT_ERROR_MEMORY;
-}
-
-void nt_morphs_free(nt_mesh *mesh, bool failed)
+void nt_morphs_free(nt_mesh *mesh)
 {
 	free(mesh->solved_tangents);
 	mesh->solved_tangents = NULL;
-	free_classes(mesh);
-	if (!failed || !mesh->morph_tangents)
-		return;
-	free(mesh->morph_tangents->class_of);
-	free(mesh->morph_tangents->parent);
-	free(mesh->morph_tangents->words);
-	free(mesh->morph_tangents);
-	mesh->morph_tangents = NULL;
+	if (mesh->corner_classes) {
+		free(mesh->corner_classes->of);
+		free(mesh->corner_classes->words);
+	}
+	free(mesh->corner_classes);
+	mesh->corner_classes = NULL;
 }
 
 /* ---- halfway ---- */

@@ -30,7 +30,7 @@ typedef struct run {
 	nt_scene scene;
 	bool nowhere; /* judged as if written to a stream */
 	const nt_format_entry *reader, *writer; /* writer: NULL where --check judges the input as it is */
-	nt_read_options read_options;
+	nt_read_options options; /* of reader and writer */
 	nt_textures *textures; /* NULL: the output has none */
 	nt_turned_images turned;
 	nt_fixes fixes; /* empty without --fix */
@@ -66,9 +66,9 @@ static void begin_stage(void *user, nt_stage stage)
 static nt_status check_triangles(const run *r)
 {
 	const nt_scene *scene = &r->scene;
-	const bool placed = r->read_options.world && scene->instance_count;
+	const bool placed = r->options.world && scene->instance_count;
 	const uint64_t most = r->settings->max_triangles;
-	const bool bakes = r->writer && !r->settings->check && !r->read_options.world &&
+	const bool bakes = r->writer && !r->settings->check && !r->options.world &&
 		r->settings->morphs == NT_MORPH_BAKE;
 	uint64_t count = 0, of_targets = 0;
 	for (size_t i = 0; most && i < (placed ? scene->instance_count : scene->mesh_count); i++) {
@@ -112,7 +112,7 @@ static nt_status open_scene(run *r)
 			advice ? advice : "not recognised: expected OBJ, PLY, glTF, GLB or Draco");
 	}
 	r->scene.format = r->reader->format;
-	status = r->reader->open(&r->scene, &r->read_options, r->error);
+	status = r->reader->open(&r->scene, &r->options, r->error);
 	end_stage(r);
 	r->summary->seconds[NT_STAGE_INDEX] += r->scene.index_seconds;
 	r->summary->seconds[NT_STAGE_PARSE] -= r->scene.index_seconds;
@@ -153,7 +153,7 @@ static nt_output_options output_options_of(run *r)
 static void plan_options_of(run *r)
 {
 	const nt_settings *s = r->settings;
-	nt_read_options *o = &r->read_options;
+	nt_read_options *o = &r->options;
 	o->edits = nt_writer_edits(r->reader, r->writer);
 	o->checks_kept = o->across && s->report && (o->edits || !r->writer);
 	o->only_results = o->edits && !s->check && !s->report && !s->verify && !s->bitangents && !o->across &&
@@ -246,7 +246,7 @@ static nt_status read_scene(run *r)
 	}
 	begin_stage(r, NT_STAGE_DECODE);
 	plan_options_of(r);
-	status = r->reader->plan ? r->reader->plan(&r->scene, &r->read_options, r->error) : NT_OK;
+	status = r->reader->plan ? r->reader->plan(&r->scene, &r->options, r->error) : NT_OK;
 	return status ? nt_error_in_file(r->error, r->input_path) : NT_OK;
 }
 
@@ -289,24 +289,14 @@ static nt_status write_scene(run *r)
 	nt_normal_map colors = {0};
 	nt_texture_file texture_file;
 	nt_status status = find_texture_file(r, &colors, &texture_file);
-	const nt_write_options options = {
-		.format = r->writer->format,
-		.texture_file = &texture_file,
-		.path = r->nowhere && texture_file.bytes ? r->input_path : r->output_path, /* the image lies beside */
-		.bitangents = s->bitangents,
-		.images = s->images,
-		.buffers = r->nowhere ? NT_BUFFERS_EMBED : s->buffers,
-		.draco = s->draco,
-		.morphs = s->morphs,
-		.draco_bits = {s->draco_bits[0], s->draco_bits[1], s->draco_bits[2], s->draco_bits[3]},
-		.precision = s->precision,
-		.meshopt = s->meshopt,
-		.weld = s->weld,
-		.allow_outside = s->outside == NT_OUTSIDE_YES,
-		.threads = s->threads,
-		.textures = r->textures,
-		.turned = &r->turned,
-	};
+	nt_write_options *options = &r->options;
+	options->format = r->writer->format;
+	options->texture_file = &texture_file;
+	options->path = r->nowhere && texture_file.bytes ? r->input_path : r->output_path; /* the image lies beside */
+	options->textures = r->textures;
+	options->turned = &r->turned;
+	if (r->nowhere)
+		options->buffers = NT_BUFFERS_EMBED;
 	nt_output *output = NULL;
 	if (!status && s->report && nt_format_is_gltf(r->scene.format) && !r->turned.count)
 		status = nt_normal_map_keep_uris(&r->scene, r->error);
@@ -317,7 +307,7 @@ static nt_status write_scene(run *r)
 	if (!status && !s->in_place && !r->nowhere)
 		status = protect_inputs(r, output);
 	if (!status)
-		status = r->writer->write(&r->scene, &options, output, r->error);
+		status = r->writer->write(&r->scene, options, output, r->error);
 	nt_normal_map_close(&colors);
 	/* the input may still be read here, and its faults are its own */
 	if (status && r->error->place.pointer[0])
@@ -364,9 +354,9 @@ static nt_status run_stages(run *r)
 	if (status && nt_is_folder(r->input_path))
 		return open_scene(r);
 	/* a PLY is one mesh in the world, so the reader has to say where the meshes stand */
-	r->read_options.world = r->writer && r->writer->format == NT_FORMAT_PLY;
-	r->read_options.origin.to_ply = !r->writer || r->read_options.world;
-	r->read_options.origin.keeps = r->settings->existing == NT_EXISTING_KEEP && !r->settings->fix &&
+	r->options.world = r->writer && r->writer->format == NT_FORMAT_PLY;
+	r->options.origin.to_ply = !r->writer || r->options.world;
+	r->options.origin.keeps = r->settings->existing == NT_EXISTING_KEEP && !r->settings->fix &&
 		r->settings->normals < NT_NORMALS_REPLACE_FLAT;
 	if (!status && r->writer) {
 		const nt_output_options options = output_options_of(r);
@@ -381,7 +371,7 @@ static nt_status run_stages(run *r)
 	}
 	const nt_tasks tasks = {.scene = &r->scene, .reader = r->reader, .writer = r->writer,
 		.written = r->writer ? r->writer->format : NT_FORMAT_UNKNOWN, .settings = r->settings,
-		.options = &r->read_options, .textures = r->textures, .summary = r->summary,
+		.options = &r->options, .textures = r->textures, .summary = r->summary,
 		.begin_stage = begin_stage, .run = r};
 	if (!status) {
 		status = nt_stage_jobs(&tasks, r->error);
@@ -442,17 +432,16 @@ static void forget_attempt(run *r)
 	nt_scene_init(&r->scene, r->input_path);
 }
 
-static void set_read_options(run *r, const nt_settings *settings)
+static void set_options(run *r, const nt_settings *s)
 {
-	r->settings = settings;
-	r->read_options = (nt_read_options){.texcoord_set = settings->texcoord_set,
-		.allow_outside = settings->outside == NT_OUTSIDE_YES, .morphs = settings->morphs,
-		.report = settings->report != NULL, .across = settings->across == NT_ACROSS_MESH,
-		.keeps_transforms = settings->transform == NT_TRANSFORM_KEEP,
-		.origin = settings->origin,
-		.threads = settings->threads,
-		.draco = settings->draco};
-	memcpy(r->read_options.draco_bits, settings->draco_bits, sizeof r->read_options.draco_bits);
+	r->settings = s;
+	r->options = (nt_read_options){.texcoord_set = s->texcoord_set,
+		.allow_outside = s->outside == NT_OUTSIDE_YES, .morphs = s->morphs, .report = s->report != NULL,
+		.keeps_transforms = s->transform == NT_TRANSFORM_KEEP, .origin = s->origin,
+		.across = s->across == NT_ACROSS_MESH, .draco = s->draco, .bitangents = s->bitangents,
+		.images = s->images, .buffers = s->buffers, .precision = s->precision, .meshopt = s->meshopt,
+		.weld = s->weld, .threads = s->threads};
+	memcpy(r->options.draco_bits, s->draco_bits, sizeof r->options.draco_bits);
 }
 
 /* A later stage judges an input that changed. */
@@ -487,7 +476,7 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 	const char *output = r->output_path;
 	r->output_path = "-";
 	r->nowhere = true;
-	set_read_options(r, &judged);
+	set_options(r, &judged);
 	nt_status status = make_report(r, run_stages(r));
 	r->output_path = output;
 	r->nowhere = false;
@@ -503,7 +492,7 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 	if (r->fixes.turns_maps)
 		fixed->flip_green = NT_FLIP_AUTO;
 	r->fixes.left[NT_CODE_NMAP_HEIGHTS] &= wished->bump != NT_BUMP_HEIGHT; /* which the check did not convert */
-	set_read_options(r, fixed);
+	set_options(r, fixed);
 	return status;
 }
 
@@ -604,7 +593,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	nt_settings fixed;
 	run r = {.input_path = input, .output_path = output ? output : "-", .nowhere = !output, .summary = summary,
 		.error = error};
-	set_read_options(&r, settings);
+	set_options(&r, settings);
 	const double begin = nt_seconds();
 	r.stage_begin = begin;
 	nt_scene_init(&r.scene, input);

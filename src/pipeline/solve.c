@@ -279,9 +279,8 @@ static nt_status keep_split(const nt_job *job, nt_mesh *mesh, const nmtan_split_
 		4 * sizeof(float) * (mesh->corner_count - count));
 	split->vertex_tangents = keep_block(job->arena, split->vertex_tangents, mesh->vertex_count + count,
 		4 * sizeof(float));
-	status = nt_morphs_keep(mesh, job->arena);
 	if (split->sources && split->vertex_tangents && (split->indices || count == 0))
-		return status;
+		return NT_OK;
 	*split = (nt_split){0};
 	return NT_ERROR_MEMORY;
 }
@@ -301,7 +300,7 @@ static nt_status split_corners(const nt_job *job, nt_mesh *mesh)
 	if (!status)
 		status = nt_status_of(nmtan_split(&view, keys ? keys : mesh->corner_tangents, &job->options, &output));
 	if (!status && mesh->morph_count)
-		status = nt_morphs_finish(mesh, output.source_count);
+		status = nt_morphs_finish(mesh, output.source_count, job->arena);
 	free(keys);
 	return keep_split(job, mesh, &output, status);
 }
@@ -315,7 +314,7 @@ static nt_status solve_corners(const nt_job *job, const nt_whole *w)
 	bool targets = false;
 	if (!status && !w->join && job->splits && job->triangulates && w->mesh.face_sizes &&
 		job->options.repair == NMTAN_REPAIR_ON)
-		status = nt_cut_folded_quads(w->parts[0], job->v_offset, job->options.threads);
+		status = nt_cut_folded_quads(w->parts[0], job->v_offset, job->options.threads, job->arena);
 	for (size_t i = 0; i < w->part_count; i++)
 		targets |= job->splits && is_solved_here(w, w->parts[i]) && w->parts[i]->morph_count;
 	for (size_t i = 0; !status && i < w->part_count; i++)
@@ -330,15 +329,12 @@ static nt_status finish_part(const nt_job *job, nt_mesh *mesh, nt_status status)
 	const bool splits = job->splits && nt_mesh_is_wanted(mesh);
 	if (!status && splits)
 		status = split_corners(job, mesh);
-	nt_morphs_free(mesh, status);
+	nt_morphs_free(mesh);
 	if (status || splits) {
 		free(mesh->corner_tangents);
 		mesh->corner_tangents = NULL;
 	}
-	/* both are tried: what is not kept is freed */
-	bool kept = nt_arena_adopt(job->arena, mesh->cut_arrays);
-	kept &= nt_arena_adopt(job->arena, mesh->corner_tangents);
-	return kept || status ? status : NT_ERROR_MEMORY;
+	return nt_arena_adopt(job->arena, mesh->corner_tangents) || status ? status : NT_ERROR_MEMORY;
 }
 
 /* Vertices take less memory than corners, so that they are split although nothing is written. */

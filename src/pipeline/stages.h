@@ -111,13 +111,8 @@ void nt_morphs_compare_halfway(const nt_mesh *mesh, const nmtan_mesh *base, cons
 void nt_morphs_keys(const nt_mesh *mesh, float *keys);
 
 /* After a split by keys: vertex tangents of the base, and what nt_morph_read() takes those of targets from. */
-nt_status nt_morphs_finish(nt_mesh *mesh, size_t source_count);
-
-/* The results become the arena's. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_morphs_keep(nt_mesh *mesh, nt_arena *arena);
-
-/* Frees what is malloc'ed, and after a failure the results, too. */
-void nt_morphs_free(nt_mesh *mesh, bool failed);
+nt_status nt_morphs_finish(nt_mesh *mesh, size_t source_count, nt_arena *arena);
+void nt_morphs_free(nt_mesh *mesh);
 
 /* Takes the images that the settings name, for a scene with one material or none. Returns NT_OK, NT_ERROR_IO,
  * NT_ERROR_MEMORY or, where the scene or the output has no place for them or one is no image, NT_ERROR_USAGE. */
@@ -200,9 +195,9 @@ void nt_mend_untextured(nt_mesh *mesh, const nmtan_mesh *view, float *tangents);
 void nt_turn_untextured(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved, float *tangents);
 
 /* folded_quads.c, for solve.c. Cuts the folded quads of a mesh with corner_tangents in two and gives each half its
- * own sign; the mesh gets new faces and indices, or face_diagonals, and cut_arrays to free. Returns NT_OK or
+ * own sign; the mesh gets new faces and indices, or face_diagonals, which are the arena's. Returns NT_OK or
  * NT_ERROR_MEMORY. */
-nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads);
+nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads, nt_arena *arena);
 
 /* The number that is added to v on its way between formats that count it from opposite ends: see nmtan_stored_uv. */
 static inline float nt_v_offset(nt_format from, nt_format to)
@@ -216,10 +211,9 @@ static inline bool nt_may_be_left(nt_status load)
 	return load != NT_ERROR_MEMORY && load != NT_ERROR_MISSING && load != NT_ERROR_IO;
 }
 
-/* kept.c, for jobs.c. Counts what is wrong with tangents that are kept and used, which nt_tell_kept() says once pairs
- * are known. Returns NT_OK, NT_ERROR_MEMORY,
- * or NT_ERROR_MISSING or NT_ERROR_IO where their file cannot be opened. */
-nt_status nt_stage_kept(nt_scene *scene, const nt_tasks *tasks, nt_error *error);
+/* kept.c. Counts what is wrong with tangents of a loaded mesh that are kept and used; nt_tell_kept() says whether w is
+ * right once pairs are known. Scratch is the scene's. */
+void nt_look_at_kept(nt_scene *scene, nt_mesh *mesh, nt_format written, unsigned threads);
 void nt_tell_kept(nt_scene *scene);
 
 /* pairs.c. Sets mesh->signs of a loaded mesh with authored tangents and a normal map. */

@@ -115,41 +115,38 @@ typedef enum nt_draco_bits {
 	NT_DRACO_BITS_COUNT
 } nt_draco_bits;
 
-typedef struct nt_read_options {
+/* The wishes of the user, and what a run knows of itself. */
+typedef struct nt_format_options {
 	int texcoord_set;   /* -1: the set that the material's slot asks for; else TEXCOORD_n */
 	bool allow_outside; /* URIs may leave the folder of the input */
-	bool world;         /* the output is one mesh in the world: instances and colours are wanted too */
 	nt_morph_choice morphs; /* targets are loaded where they are to be baked */
 	bool report;        /* meshes that get no tangents are loaded too, to be checked */
 	bool keeps_transforms; /* NT_TRANSFORM_KEEP */
 	nt_origin origin;
-	bool across;        /* and those that contribute to others: NT_ACROSS_MESH */
+	bool across;        /* meshes that contribute to others are loaded too: NT_ACROSS_MESH */
+	nt_draco_choice draco; /* what will be compressed is loaded as a decoder will have it */
+	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
+	bool bitangents;
+	nt_images images;
+	nt_buffers buffers;
+	nt_precision precision;
+	nt_meshopt_choice meshopt;
+	bool weld;          /* of a glTF that is edited: equal vertices become one */
+	unsigned threads;   /* 0: all */
+
+	/* once the output is known */
+	bool world;         /* the output is one mesh in the world: instances and colours are wanted too */
 	bool checks_kept;   /* kept tangents are checked against a solve with others */
 	bool edits;         /* the output is the source's document, edited */
 	bool only_results;  /* and nobody asks for geometry once it is solved */
 	bool compresses;    /* and it gets compressed content that is not compressed in the source */
-	nt_draco_choice draco; /* of the writer: what it will compress is loaded as a decoder will have it */
-	int draco_bits[NT_DRACO_BITS_COUNT];
-	unsigned threads;
-} nt_read_options;
 
-typedef struct nt_write_options {
+	/* when it is written */
 	nt_format format;   /* of the output */
 	const char *path;   /* of the output, "-" for standard output */
-	bool bitangents;
-	nt_images images;
-	nt_buffers buffers;
-	nt_draco_choice draco;
-	nt_morph_choice morphs;
-	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
-	nt_precision precision;
-	nt_meshopt_choice meshopt;
-	bool weld;          /* of a glTF that is edited: equal vertices become one */
-	bool allow_outside;
-	unsigned threads;   /* 0: all */
 	const struct nt_turned_images *turned; /* of a glTF: gltf/turned_images.h; NULL: none */
 	const struct nt_textures *textures; /* of a new document's materials: image/textures.h; NULL: none */
 	const struct nt_texture_file *texture_file; /* of a PLY: scene/scene.h; NULL: none */
-} nt_write_options;
+} nt_read_options, nt_write_options;
 
 #endif

@@ -14,7 +14,7 @@ typedef struct nt_morph_tangents {
 	size_t class_count;
 	uint32_t *words;    /* [word_count] of each target: [row_count] classes, unless these are all that it has, then
 	                       [row_count][3] floats */
-	size_t word_count, word_capacity;
+	size_t word_count;
 	size_t user_count;  /* meshes that have them, since geometry is shared, and a verification of the output */
 	size_t reader_count; /* of these, the ones of the tangent set that is written */
 	size_t *rows;       /* while a target of that set is read: as nt_morph_find_rows() has them; NULL: not yet */

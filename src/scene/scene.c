@@ -114,7 +114,6 @@ void nt_mesh_drop_arrays(nt_mesh *mesh)
 	mesh->halves = NULL;
 	mesh->face_polygon = mesh->face_smoothing = mesh->face_primitive = NULL;
 	mesh->vertex_lacks = mesh->face_sizes = mesh->face_diagonals = NULL;
-	mesh->cut_arrays = NULL;
 	mesh->morphs = NULL;
 	mesh->morph_tangents = NULL;
 	mesh->morph_count = 0;

@@ -185,6 +185,12 @@ typedef enum nt_signs {
 	NT_SIGN_INVERTED  /* of none, but for slivers, and T is not reversed as well */
 } nt_signs;
 
+/* Faults of tangents that are kept: triangles whose bitangent runs the wrong way, whose corners differ in w, and that
+ * say, without those that differ; tangents that no renderer can use. */
+typedef struct nt_kept {
+	size_t wrong, mixed, judged, bad;
+} nt_kept;
+
 /* Why it is not known whether a normal map cancels inverted w. */
 typedef enum nt_doubt { NT_DOUBT_NONE, NT_DOUBT_UNEXAMINED, NT_DOUBT_UNDECODABLE } nt_doubt;
 
@@ -247,8 +253,7 @@ typedef struct nt_mesh {
 
 	/* what tangents and normal maps are together: pipeline/pairs.c */
 	nt_signs signs;
-	size_t wrong_kept, mixed_kept, judged_kept; /* triangles of kept tangents: whose bitangent runs the wrong way,
-	                            whose corners differ in w, and that say, without those that differ */
+	nt_kept kept;            /* of tangents that stay */
 	nt_mesh_map normal_maps[2]; /* the normal map, and that of the clearcoat */
 	uint32_t pair;           /* number of a pair that it is in: its w and its maps are inverted; 0: none */
 	bool halved;             /* this run changes one half of such a pair alone */
@@ -318,8 +323,6 @@ typedef struct nt_mesh {
 	                             serves them with and without it; counted once for each target */
 
 	/* results */
-	void *cut_arrays;         /* the block of indices and face arrays, where folded quads were cut, or of
-	                             face_diagonals; NULL: neither */
 	float *corner_tangents;   /* [corner_count][4]; NULL until solved or after split */
 	float *solved_tangents;   /* [corner_count][4] while targets are solved: before authored ones took their place,
 	                             w: 0 if one did; NULL: corner_tangents */

@@ -144,8 +144,7 @@ TEST(a_mesh_whose_arena_is_gone_points_nowhere)
 		mesh.texcoords, mesh.solve_texcoords, mesh.colors, mesh.tangents, mesh.vertex_lacks, mesh.face_sizes,
 		mesh.face_diagonals, mesh.indices, mesh.halves, mesh.face_polygon, mesh.face_smoothing,
 		mesh.face_primitive, mesh.pool_vertices, mesh.vertex_sources, mesh.morphs, mesh.morph_tangents,
-		mesh.cut_arrays, mesh.corner_tangents, mesh.split.indices, mesh.split.sources,
-		mesh.split.vertex_tangents};
+		mesh.corner_tangents, mesh.split.indices, mesh.split.sources, mesh.split.vertex_tangents};
 	for (size_t i = 0; i < sizeof gone / sizeof *gone; i++)
 		assert_null(gone[i]);
 	assert_int_equal(mesh.morph_count, 0);
