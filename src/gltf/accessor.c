@@ -301,6 +301,17 @@ void nt_gltf_state_bounds(nt_json *json, nt_json_value *accessor, size_t compone
 	}
 }
 
+void nt_gltf_measure(nt_gltf *document, const nt_gltf_accessor *a, nt_json_value *json, const void *elements,
+	size_t stride, size_t count, uint32_t component_type)
+{
+	double bounds[2][4];
+	if (!elements || a->components > 4 || a->element_bytes != a->components * a->component_bytes ||
+		(!nt_json_find(json, "min") && !nt_json_find(json, "max")))
+		return;
+	nt_component_bounds(elements, stride, count, (int)component_type, a->components, bounds);
+	nt_gltf_state_bounds(document->json, json, a->components, bounds);
+}
+
 /* ---- bytes ---- */
 
 nt_status nt_gltf_elements(nt_gltf *document, const nt_gltf_accessor *accessor,

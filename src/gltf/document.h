@@ -340,6 +340,10 @@ nt_json_value *nt_gltf_accessor_json(const nt_gltf *document, uint64_t index);
  * bounds as nt_component_bounds() has them. */
 void nt_gltf_state_bounds(nt_json *json, nt_json_value *accessor, size_t components, double bounds[2][4]);
 
+/* The same of new elements of an accessor, `stride` apart. */
+void nt_gltf_measure(nt_gltf *document, const nt_gltf_accessor *accessor, nt_json_value *json, const void *elements,
+	size_t stride, size_t count, uint32_t component_type);
+
 /* The bytes of an accessor's elements, `stride` apart; NULL where it has no view. */
 nt_status nt_gltf_elements(nt_gltf *document, const nt_gltf_accessor *accessor,
 	const unsigned char **elements, nt_error *error);

@@ -111,7 +111,6 @@ typedef struct nt_edited_buffer {
 typedef struct nt_edited_view {
 	uint32_t users;      /* that have not left */
 	bool is_free;        /* there were some, and all have left: its number serves the next new view */
-	uint32_t new_stride; /* of a packed one: all elements are replaced by such of another size; 0: they are not */
 	unsigned char *unfiltered; /* its bytes before the filter, owned; NULL: nobody asked, or there is none */
 } nt_edited_view;
 
@@ -243,6 +242,9 @@ nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigne
 nt_status nt_packed_finish(nt_buffer_edits *edits, nt_error *error);
 
 /* ---- the new buffers: save.c ---- */
+
+/* Sets a member that has another value, 0 if it is not written. */
+void nt_gltf_set_number(nt_json *json, nt_json_value *object, const char *key, uint64_t value);
 
 /* Ends the edits: lays out the buffers, moves all offsets in the JSON and sets all lengths. */
 nt_status nt_edits_end(nt_buffer_edits *edits, nt_error *error);

@@ -177,8 +177,6 @@ nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigne
 	nt_json *json = edits->document->json;
 	nt_json_value *object = nt_gltf_view_json(edits->document, view);
 	nt_gltf_packing p = nt_packing_of(edits, view);
-	if (edits->views[view].new_stride)
-		p.view.stride = edits->views[view].new_stride;
 	unsigned char *packed;
 	const unsigned char *plain;
 	size_t packed_size;

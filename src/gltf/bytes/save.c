@@ -50,8 +50,7 @@ static void lay_out_additions(nt_buffer_edits *edits, nt_edited_buffer *buffer)
 
 /* ---- moving offsets ---- */
 
-/* Sets an offset; a zero that is not written stays so. */
-static void set_offset(nt_json *json, nt_json_value *object, const char *key, uint64_t value)
+void nt_gltf_set_number(nt_json *json, nt_json_value *object, const char *key, uint64_t value)
 {
 	uint64_t old = 0;
 	nt_json_find_uint64(object, key, &old);
@@ -67,7 +66,7 @@ static void move_packed(nt_buffer_edits *edits, nt_json_value *view)
 		uint64_t buffer, offset = 0;
 		nt_json_find_uint64(objects[k], "byteOffset", &offset);
 		if (nt_json_find_uint64(objects[k], "buffer", &buffer) && buffer < edits->document->buffer_count)
-			set_offset(edits->document->json, objects[k], "byteOffset",
+			nt_gltf_set_number(edits->document->json, objects[k], "byteOffset",
 				nt_segments_map(edits, (uint32_t)buffer, offset, false));
 	}
 }
@@ -95,8 +94,8 @@ static void move_views(nt_buffer_edits *edits)
 			continue;
 		const uint64_t begin = nt_segments_map(edits, view.buffer, view.offset, false);
 		const uint64_t end = nt_segments_map(edits, view.buffer, view.offset + view.length, true);
-		set_offset(json, object, "byteOffset", begin);
-		set_offset(json, object, "byteLength", end - begin);
+		nt_gltf_set_number(json, object, "byteOffset", begin);
+		nt_gltf_set_number(json, object, "byteLength", end - begin);
 		/* its bytes were another view's too, who has left */
 		if (view.length && end == begin)
 			edits->free_views[edits->free_count++] = i;
@@ -111,7 +110,7 @@ static void move_in_view(nt_buffer_edits *edits, nt_json_value *object)
 	if (!nt_json_find_uint64(object, "bufferView", &index) || !moves(edits, index, &view))
 		return;
 	nt_json_find_uint64(object, "byteOffset", &offset);
-	set_offset(edits->document->json, object, "byteOffset",
+	nt_gltf_set_number(edits->document->json, object, "byteOffset",
 		nt_segments_map(edits, view.buffer, view.offset + offset, false) -
 			nt_segments_map(edits, view.buffer, view.offset, false));
 }
@@ -141,8 +140,8 @@ static void settle_free_views(const nt_buffer_edits *edits)
 		nt_json_find_uint64(object, "buffer", &buffer);
 		const uint64_t length = edits->buffers[buffer].length;
 		nt_json_remove(json, object, "byteStride");
-		set_offset(json, object, "byteOffset", 0);
-		set_offset(json, object, "byteLength", length < NT_FREE_VIEW_BYTES ? length : NT_FREE_VIEW_BYTES);
+		nt_gltf_set_number(json, object, "byteOffset", 0);
+		nt_gltf_set_number(json, object, "byteLength", length < NT_FREE_VIEW_BYTES ? length : NT_FREE_VIEW_BYTES);
 	}
 }
 
@@ -342,20 +341,15 @@ static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 	for (uint32_t i = 0; !status && document->decoded_count && i < document->accessor_count; i++) {
 		const nt_gltf_accessor *a = nt_gltf_sound_accessor(document, i);
 		const unsigned char *elements;
-		double bounds[2][4];
-		nt_json_value *json = nt_gltf_accessor_json(document, i);
 		if (!a || edits->accessors[i].seen || nt_gltf_users_of(document, i)->indices ||
-			!nt_json_find(json, "min") || a->view >= edits->view_count || a->sparse ||
-			!document->views[a->view].decoded || edits->views[a->view].is_free || a->components > 4 ||
-			a->element_bytes != a->components * a->component_bytes ||
+			a->view >= edits->view_count || a->sparse || !document->views[a->view].decoded ||
+			edits->views[a->view].is_free ||
 			nt_gltf_compression_of(nt_gltf_view_json(document, a->view), NULL))
 			continue;
 		status = nt_gltf_elements(document, a, &elements, error);
-		if (status)
-			continue;
-		nt_component_bounds(elements, a->stride, (size_t)a->count, (int)a->component_type, a->components,
-			bounds);
-		nt_gltf_state_bounds(document->json, json, a->components, bounds);
+		if (!status)
+			nt_gltf_measure(document, a, nt_gltf_accessor_json(document, i), elements, a->stride,
+				(size_t)a->count, a->component_type);
 	}
 	return status;
 }
@@ -396,7 +390,7 @@ nt_status nt_edits_end(nt_buffer_edits *edits, nt_error *error)
 		nt_edited_buffer *buffer = &edits->buffers[i];
 		lay_out_additions(edits, buffer);
 		if (nt_is_edited(buffer))
-			set_offset(json, nt_json_at(nt_gltf_root_member(document, "buffers"), i), "byteLength",
+			nt_gltf_set_number(json, nt_json_at(nt_gltf_root_member(document, "buffers"), i), "byteLength",
 				buffer->length);
 	}
 	settle_free_views(edits);

@@ -135,22 +135,18 @@ static nt_status find_elements(appending *job, const target *t, bool stored, con
  * encoder may have moved them. Copies do not matter. */
 static nt_status settle_bounds(appending *job, const target *t, uint32_t accessor)
 {
-	static const int types[] = {[1] = NT_GLTF_BYTE, [2] = NT_GLTF_SHORT, [4] = NT_GLTF_FLOAT};
+	static const uint32_t types[] = {[1] = NT_GLTF_BYTE, [2] = NT_GLTF_SHORT, [4] = NT_GLTF_FLOAT};
 	const nt_gltf_accessor *a = t->accessor;
 	const unsigned char *elements = NULL;
 	size_t step;
-	double bounds[2][4];
-	const bool decoded = a->decoded || (t->segment && nt_gltf_is_of_view(t->segment->buffer));
-	if ((!t->override && !decoded) || a->components > 4 || a->element_bytes != a->components * a->component_bytes)
+	if (!t->override && !a->decoded && !(t->segment && nt_gltf_is_of_view(t->segment->buffer)))
 		return NT_OK;
 	const nt_status status = find_elements(job, t, false, &elements, &step);
-	if (status || !elements)
-		return status;
-	nt_component_bounds(elements, (uint32_t)step, t->override ? job->vertices->new_count : (size_t)a->count,
-		t->override ? types[t->override->width / a->components] : (int)a->component_type, a->components,
-		bounds);
-	nt_gltf_state_bounds(job->json, nt_gltf_accessor_json(job->document, accessor), a->components, bounds);
-	return NT_OK;
+	if (!status)
+		nt_gltf_measure(job->document, a, nt_gltf_accessor_json(job->document, accessor), elements, step,
+			t->override ? job->vertices->new_count : (size_t)a->count,
+			t->override ? types[t->override->width / a->components] : a->component_type);
+	return status;
 }
 
 /* All elements go to a new place: of their own, or of others that are packed like them. */

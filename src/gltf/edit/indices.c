@@ -6,7 +6,6 @@
  */
 #include "gltf/edit/pool_edit.h"
 
-#include <stdio.h>
 #include <string.h>
 #include "base/hash_index.h"
 #include "base/largest.h"
@@ -64,25 +63,6 @@ static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices,
 	return NT_OK;
 }
 
-/* Bounds that an accessor states are those of its new indices. */
-static void set_bounds(nt_json *json, nt_json_value *accessor, const encoded *new)
-{
-	nt_json_value *const bounds[2] = {nt_json_find(accessor, "min"), nt_json_find(accessor, "max")};
-	uint32_t least = UINT32_MAX, most = 0;
-	if (!bounds[0] && !bounds[1])
-		return;
-	for (size_t i = 0; i < new->count; i++) {
-		uint32_t index = 0;
-		for (uint32_t k = 0; k < new->width; k++)
-			index |= (uint32_t)new->bytes[new->width * i + k] << 8 * k;
-		least = index < least ? index : least;
-		most = index > most ? index : most;
-	}
-	for (int i = 0; i < 2; i++)
-		if (bounds[i] && nt_json_count(bounds[i]) == 1)
-			nt_json_set_uint64(json, nt_json_at(bounds[i], 0), i ? most : least);
-}
-
 /* New indices are packed as those before them are; where there were none, as the positions are. */
 static nt_gltf_packing find_packing(const nt_buffer_edits *edits, const nt_json_value *primitive, const encoded *new)
 {
@@ -99,84 +79,38 @@ static nt_gltf_packing find_packing(const nt_buffer_edits *edits, const nt_json_
 	return packing;
 }
 
-/* Indices in a new place: of an accessor that is there, or of a new one. */
-static nt_status add_indices(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_packing *packing,
-	const encoded *new, const nt_gltf_accessor *old, uint32_t *accessor, nt_error *error)
+/* The accessors over the bytes of an old one say of the new indices what these are, and where; view NT_NONE: where the
+ * old ones were. */
+static void describe(nt_gltf *document, uint32_t accessor, const encoded *new, uint32_t view, uint64_t offset)
 {
-	nt_json *json = edits->document->json;
-	uint32_t view;
-	uint64_t offset;
-	const nt_status status = nt_packed_add(edits, buffer, packing, new->bytes, new->size,
-		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, &offset, error);
-	if (status)
-		return status;
-	if (!old)
-		*accessor = nt_gltf_new_accessor(json, view, new->type, "SCALAR", new->count, false);
-	nt_json_value *object = nt_gltf_accessor_json(edits->document, old ? old->index : *accessor);
-	if (old || offset)
-		nt_gltf_place_accessor(json, object, view, offset);
-	if (old) {
-		nt_json_put_uint64(json, object, "componentType", new->type);
-		nt_json_put_uint64(json, object, "count", new->count);
-		set_bounds(json, object, new);
+	for (uint32_t k = nt_gltf_same(document, accessor); k != NT_NONE; k = document->accessors[k].next) {
+		nt_json_value *object = nt_gltf_accessor_json(document, k);
+		if (view != NT_NONE)
+			nt_gltf_place_accessor(document->json, object, view, offset);
+		nt_gltf_set_number(document->json, object, "componentType", new->type);
+		nt_gltf_set_number(document->json, object, "count", new->count);
+		nt_gltf_measure(document, &document->accessors[k], object, new->bytes, new->width, new->count,
+			new->type);
 	}
-	return NT_OK;
 }
 
-/* Whether indices go to where others were in a packed view, whose elements are all of a size. */
-static bool fits_packed(nt_buffer_edits *edits, const nt_gltf_packing *packing, const nt_gltf_view *view,
-	uint64_t begin, uint64_t size, const encoded *new)
+/* Puts them where the old ones are, of which nobody else has any; whether they fit: elements of a packed view are all of
+ * a size. */
+static bool replace_indices(nt_buffer_edits *edits, const nt_gltf_accessor *old, const encoded *new)
 {
-	if (!nt_gltf_is_of_view(view->buffer) || !packing->extension || new->width == packing->view.stride)
-		return true;
-	if (begin || size != view->length || new->width < 2)
-		return false;
-	edits->views[view->buffer - NT_GLTF_OF_VIEW(0)].new_stride = new->width;
-	return true;
-}
-
-/* Rewrites the accessor, all of whose users agree, where its bytes are its own; *done tells. */
-static nt_status replace_indices(nt_buffer_edits *edits, const nt_gltf_accessor *old, const encoded *new, bool *done,
-	nt_error *error)
-{
-	*done = false;
-	nt_json *json = edits->document->json;
 	const uint32_t old_width = nt_gltf_component_bytes(old->component_type);
-	if (old->view == NT_NONE || old->sparse || old->stride != old_width)
-		return NT_OK;
 	nt_gltf_view view;
-	nt_status status = nt_gltf_get_view(edits->document, old->view, "", &view, error);
-	if (status)
-		return status;
-	/* A wider type wants its own alignment: zeros before it, if the view allows. */
-	const uint64_t begin = view.offset + old->offset, size = old->count * old_width;
-	const size_t pad = (size_t)((new->width - begin % new->width) % new->width);
-	if (view.offset % new->width || pad >= size || view.compressed)
-		return NT_OK;
-	const nt_gltf_packing packing = nt_packing_of(edits, old->view);
+	if (old->view == NT_NONE || old->sparse || old->stride != old_width ||
+		nt_gltf_get_view(edits->document, old->view, "", &view, NULL) != NT_OK)
+		return false;
+	const uint64_t begin = view.offset + old->offset;
 	nt_segment *segment = nt_segment_at(edits, view.buffer, begin);
-	if (!segment || segment->users != 1 || !fits_packed(edits, &packing, &view, begin, size, new))
-		return NT_OK;
-	const unsigned char *bytes = new->bytes;
-	if (pad) {
-		unsigned char *padded = nt_arena_alloc(&edits->arena, new->size + pad, 1);
-		if (!padded)
-			return nt_fail_memory(error);
-		memset(padded, 0, pad);
-		memcpy(padded + pad, new->bytes, new->size);
-		bytes = padded;
-	}
-	nt_json_value *accessor = nt_gltf_accessor_json(edits->document, old->index);
-	if (pad)
-		nt_json_put_uint64(json, accessor, "byteOffset", old->offset + pad);
-	if (new->type != old->component_type)
-		nt_json_put_uint64(json, accessor, "componentType", new->type);
-	if (new->count != old->count)
-		nt_json_put_uint64(json, accessor, "count", new->count);
-	set_bounds(json, accessor, new);
-	*done = true;
-	nt_segment_change(segment, false, bytes, new->size + pad);
-	return NT_OK;
+	if (!segment || segment->users != 1 || view.compressed || view.offset % new->width || begin % new->width ||
+		(new->width != old_width && nt_gltf_is_of_view(view.buffer)))
+		return false;
+	nt_segment_change(segment, false, new->bytes, new->size);
+	describe(edits->document, old->index, new, NT_NONE, 0);
+	return true;
 }
 
 /* A user's new indices. Users with equal ones in place of the same bytes follow the first of them. */
@@ -256,33 +190,15 @@ static nt_status find_old(nt_gltf *document, const nt_mesh *mesh, uint32_t index
 	return status;
 }
 
-/* Accessors over the same bytes say of them what this one does now. */
-static void describe_others(nt_gltf *document, uint32_t accessor)
-{
-	static const char *const members[] = {"bufferView", "byteOffset", "componentType", "count", "min", "max"};
-	nt_json *json = document->json;
-	for (uint32_t k = nt_gltf_same(document, accessor); k != NT_NONE; k = document->accessors[k].next) {
-		nt_json_value *other = nt_gltf_accessor_json(document, k);
-		for (size_t i = 0; k != accessor && i < sizeof members / sizeof *members; i++) {
-			const nt_json_value *value =
-				nt_json_find(nt_gltf_accessor_json(document, accessor), members[i]);
-			if (value)
-				nt_json_set_copy(json, nt_json_put(json, other, members[i]), value);
-			else
-				nt_json_remove(json, other, members[i]);
-		}
-	}
-}
-
 /* Writes the indices of a leader: in place where that will do, else behind the end. */
 static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices, size_t user,
 	uint64_t mode, written *leader, nt_error *error)
 {
+	nt_gltf *document = edits->document;
 	const nt_mesh *mesh = nt_pool_mesh(vertices->pool, user);
 	nt_gltf_accessor old;
 	encoded new = {0};
-	bool done = false;
-	nt_status status = find_old(edits->document, mesh, leader->index, &old, error);
+	nt_status status = find_old(document, mesh, leader->index, &old, error);
 	/* welded vertices are fewer: two bytes may do for them */
 	const uint32_t least = vertices->counts && old.component_type == NT_GLTF_UINT ? NT_GLTF_USHORT
 		: old.component_type;
@@ -290,29 +206,33 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_po
 		status = encode(&edits->arena, mesh, vertices->indices[user], nt_pool_index_count(vertices, user),
 			vertices->borrowed, vertices->counts ? 0 : tail_of(mesh, mode, old.count), vertices->new_count,
 			least, &new, error);
-	/* in place where everybody who uses these indices will have the same new ones, or has got others */
-	const nt_gltf_users *users = leader->index != NT_NONE ? &edits->document->users[leader->same] : NULL;
-	const bool agree = users && !users->idle && !users->attributes &&
-		leader->agreeing + edits->accessors[leader->same].index_moved == users->indices;
-	if (!status && agree && !old.decoded)
-		status = replace_indices(edits, &old, &new, &done, error);
-	leader->accessor = leader->index;
-	if (done)
-		describe_others(edits->document, leader->index);
-	if (status || done)
+	if (status)
 		return status;
-	/* those that were compressed leave no bytes behind, and the accessor stays */
+	/* the accessor stays where everybody who uses these indices will have the same new ones, or has got others */
+	const nt_gltf_users *users = leader->index != NT_NONE ? &document->users[leader->same] : NULL;
+	const bool stays = users && !users->idle && !users->attributes &&
+		leader->agreeing + edits->accessors[leader->same].index_moved == users->indices;
+	leader->accessor = leader->index;
+	if (stays && replace_indices(edits, &old, &new))
+		return NT_OK;
 	const nt_gltf_packing packing = find_packing(edits, nt_pool_primitive(vertices->pool, user), &new);
-	const bool stays = agree && (old.decoded || packing.extension);
-	if (stays && !old.decoded)
-		nt_edits_leave_accessor(edits, old.index);
-	if (!stays && leader->index != NT_NONE)
+	uint32_t view;
+	uint64_t offset;
+	if (stays)
+		nt_edits_leave_accessor(edits, leader->index);
+	else if (leader->index != NT_NONE)
 		edits->accessors[leader->same].index_moved += leader->agreeing;
-	if (!status)
-		status = add_indices(edits, buffer, &packing, &new, stays ? &old : NULL, &leader->accessor, error);
-	if (!status && stays)
-		describe_others(edits->document, leader->index);
-	return status;
+	status = nt_packed_add(edits, buffer, &packing, new.bytes, new.size, NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view,
+		&offset, error);
+	if (status)
+		return status;
+	if (stays) {
+		describe(document, leader->index, &new, view, offset);
+		return NT_OK;
+	}
+	leader->accessor = nt_gltf_new_accessor(document->json, view, new.type, "SCALAR", new.count, false);
+	nt_gltf_set_number(document->json, nt_gltf_accessor_json(document, leader->accessor), "byteOffset", offset);
+	return NT_OK;
 }
 
 static nt_status edit_user(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices, size_t user,
