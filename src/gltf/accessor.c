@@ -290,13 +290,19 @@ nt_json_value *nt_gltf_accessor_json(const nt_gltf *document, uint64_t index)
 void nt_gltf_state_bounds(nt_json *json, nt_json_value *accessor, size_t components, double bounds[2][4])
 {
 	static const char *const names[] = {"min", "max"};
+	uint64_t type = NT_GLTF_FLOAT;
+	nt_json_find_uint64(accessor, "componentType", &type);
 	for (size_t b = 0; b < 2; b++) {
 		nt_json_value *stated = nt_json_find(accessor, names[b]);
 		for (size_t k = 0; nt_json_count(stated) == components && k < components; k++) {
 			double old;
-			if (isfinite(bounds[b][k]) &&
-				!(nt_json_get_double(nt_json_at(stated, k), &old) && old == bounds[b][k]))
+			if (!isfinite(bounds[b][k]) ||
+				(nt_json_get_double(nt_json_at(stated, k), &old) && old == bounds[b][k]))
+				continue;
+			if (type == NT_GLTF_FLOAT)
 				nt_json_set_double(json, nt_json_at(stated, k), bounds[b][k]);
+			else
+				nt_json_set_int64(json, nt_json_at(stated, k), (int64_t)bounds[b][k]);
 		}
 	}
 }

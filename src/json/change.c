@@ -184,6 +184,16 @@ void nt_json_set_uint64(nt_json *document, nt_json_value *value, uint64_t conten
 	set_text(document, value, NT_JSON_INTEGER, text, (size_t)length);
 }
 
+void nt_json_set_int64(nt_json *document, nt_json_value *value, int64_t content)
+{
+	char text[24];
+	if (content >= 0)
+		nt_json_set_uint64(document, value, (uint64_t)content);
+	else
+		set_text(document, value, NT_JSON_INTEGER, text,
+			(size_t)snprintf(text, sizeof text, "%" PRId64, content));
+}
+
 void nt_json_put_uint64(nt_json *document, nt_json_value *object, const char *key, uint64_t content)
 {
 	nt_json_set_uint64(document, nt_json_put(document, object, key), content);

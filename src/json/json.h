@@ -129,6 +129,7 @@ void nt_json_remove_at(nt_json *document, nt_json_value *container, size_t index
  * keep their spelling. */
 void nt_json_set_bool(nt_json *document, nt_json_value *value, bool content);
 void nt_json_set_uint64(nt_json *document, nt_json_value *value, uint64_t content);
+void nt_json_set_int64(nt_json *document, nt_json_value *value, int64_t content);
 void nt_json_set_double(nt_json *document, nt_json_value *value, double content);
 void nt_json_set_float(nt_json *document, nt_json_value *value, float content); /* in the fewest digits */
 void nt_json_set_string(nt_json *document, nt_json_value *value, const char *text, size_t length);

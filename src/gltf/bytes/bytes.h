@@ -38,7 +38,8 @@ typedef struct nt_edited_accessor {
 	uint32_t replaced;    /* `same`: uses by sets and morph targets that are no more */
 	uint32_t index_moved; /* `same`: uses as indices that have other ones by now */
 	uint32_t welded;      /* `same`: the last weld that compared its elements, from 1 on */
-	uint32_t override;    /* `same`: its new values, by their number in the pool's list, from 1 on; 0: none */
+	uint32_t override;    /* `same`: the attribute whose values it takes, by its number in the pool's list, from 1
+	                         on; 0: none */
 	uint32_t apart;       /* `same`: the one before it in its segment that no edit touches; NT_NONE: none */
 	bool seen;            /* the pool has it */
 	bool listed, pinned;  /* `same`: pinned: an unsolved user has it */
@@ -105,6 +106,7 @@ typedef struct nt_edited_buffer {
 	uint64_t old_length; /* 0 for a new buffer */
 	uint64_t length;     /* once it is laid out */
 	bool changed;        /* some of its segments are, once it is */
+	bool encoded;        /* it becomes a data URI */
 } nt_edited_buffer;
 
 /* A view of the source. */

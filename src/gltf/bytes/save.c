@@ -141,7 +141,8 @@ static void settle_free_views(const nt_buffer_edits *edits)
 		const uint64_t length = edits->buffers[buffer].length;
 		nt_json_remove(json, object, "byteStride");
 		nt_gltf_set_number(json, object, "byteOffset", 0);
-		nt_gltf_set_number(json, object, "byteLength", length < NT_FREE_VIEW_BYTES ? length : NT_FREE_VIEW_BYTES);
+		nt_gltf_set_number(json, object, "byteLength",
+			length < NT_FREE_VIEW_BYTES ? length : NT_FREE_VIEW_BYTES);
 	}
 }
 

@@ -18,7 +18,7 @@
 /* An accessor of the pool, which stands for all over its bytes. */
 typedef struct target {
 	const nt_gltf_accessor *accessor;
-	const nt_gltf_override *override; /* NULL: its values stay */
+	nt_set_attribute *override; /* NULL: its values stay */
 	nt_segment *segment;  /* NULL: it has no view */
 	uint64_t begin; /* of its elements, in the buffer */
 	bool stays;     /* solved primitives have a copy of it */
@@ -42,15 +42,6 @@ typedef struct appending {
 } appending;
 
 /* ---- the accessors of a pool ---- */
-
-nt_status nt_override_add(nt_buffer_edits *edits, nt_override_list *list, nt_gltf_override override, nt_error *error)
-{
-	if (!nt_grow((void **)&list->items, &list->capacity, list->count + 1, sizeof *list->items))
-		return nt_fail_memory(error);
-	list->items[list->count++] = override;
-	edits->accessors[override.accessor].override = (uint32_t)list->count;
-	return NT_OK;
-}
 
 static nt_status check_count(const appending *job, const nt_gltf_accessor *a)
 {
@@ -83,7 +74,7 @@ static nt_status collect(appending *job, uint32_t index, bool solved)
 		return nt_fail_memory(job->error);
 	target *added = &job->targets[job->target_count++];
 	*added = (target){.accessor = &job->document->accessors[same],
-		.override = all[same].override ? &job->overrides->items[all[same].override - 1] : NULL};
+		.override = all[same].override ? job->overrides->items[all[same].override - 1] : NULL};
 	all[same].listed = true;
 	nt_gltf_view view;
 	status = a.view == NT_NONE ? NT_OK : nt_gltf_get_view(job->document, a.view, "", &view, job->error);
@@ -120,11 +111,7 @@ static nt_status find_elements(appending *job, const target *t, bool stored, con
 	size_t *step)
 {
 	const nt_gltf_accessor *a = t->accessor;
-	*step = t->override ? t->override->width : a->stride;
-	if (t->override) {
-		*elements = stored ? t->override->stored : t->override->values;
-		return NT_OK;
-	}
+	*step = a->stride;
 	if (!stored)
 		return nt_gltf_whole_elements(job->document, a, job->arena, elements, step, job->error);
 	const nt_status status = nt_gltf_elements(job->document, a, elements, job->error);
@@ -135,17 +122,20 @@ static nt_status find_elements(appending *job, const target *t, bool stored, con
  * encoder may have moved them. Copies do not matter. */
 static nt_status settle_bounds(appending *job, const target *t, uint32_t accessor)
 {
-	static const uint32_t types[] = {[1] = NT_GLTF_BYTE, [2] = NT_GLTF_SHORT, [4] = NT_GLTF_FLOAT};
 	const nt_gltf_accessor *a = t->accessor;
+	nt_json_value *json = nt_gltf_accessor_json(job->document, accessor);
 	const unsigned char *elements = NULL;
 	size_t step;
-	if (!t->override && !a->decoded && !(t->segment && nt_gltf_is_of_view(t->segment->buffer)))
-		return NT_OK;
-	const nt_status status = find_elements(job, t, false, &elements, &step);
-	if (!status)
-		nt_gltf_measure(job->document, a, nt_gltf_accessor_json(job->document, accessor), elements, step,
-			t->override ? job->vertices->new_count : (size_t)a->count,
-			t->override ? types[t->override->width / a->components] : a->component_type);
+	nt_status status = NT_OK;
+	if (t->override) {
+		const nt_stored_tangents *new = &t->override->values;
+		nt_gltf_measure(job->document, a, json, new->values, new->element_bytes, job->vertices->new_count,
+			nt_precision_component_type(new->filter.precision));
+	} else if (a->decoded || (t->segment && nt_gltf_is_of_view(t->segment->buffer))) {
+		status = find_elements(job, t, false, &elements, &step);
+		if (!status)
+			nt_gltf_measure(job->document, a, json, elements, step, (size_t)a->count, a->component_type);
+	}
 	return status;
 }
 
@@ -153,8 +143,7 @@ static nt_status settle_bounds(appending *job, const target *t, uint32_t accesso
 static nt_status move_elements(appending *job, target *t, uint32_t *view, uint64_t *offset)
 {
 	const nt_gltf_accessor *a = t->accessor;
-	const size_t count = job->vertices->new_count, element = t->override ? t->override->width : a->element_bytes;
-	const size_t stride = (element + 3) / 4 * 4;
+	const size_t count = job->vertices->new_count, stride = (a->element_bytes + 3u) / 4 * 4;
 	nt_gltf_packing packing = nt_packing_of(job->edits, a->view);
 	const unsigned char *elements = NULL;
 	size_t step = 0;
@@ -169,25 +158,81 @@ static nt_status move_elements(appending *job, target *t, uint32_t *view, uint64
 	memset(out, 0, count * stride);
 	const nt_status status = find_elements(job, t, stored, &elements, &step);
 	for (size_t v = 0; !status && elements && v < count; v++)
-		memcpy(out + v * stride, elements + (t->override ? v : nt_vertex_source(job->vertices, v)) * step,
-			element);
+		memcpy(out + v * stride, elements + nt_vertex_source(job->vertices, v) * step, a->element_bytes);
 	if (!t->stays && !status)
 		nt_edits_leave_accessor(job->edits, a->index);
-	t->moved = true;
 	/* of several accessors a view has to say how far apart elements are */
 	return status ? status : nt_packed_add(job->edits, job->buffer, &packing, out, count * stride,
-		NT_GLTF_ARRAY_BUFFER, a->next != NT_NONE || stride != element ? (uint32_t)stride : 0, view, offset,
-		job->error);
+		NT_GLTF_ARRAY_BUFFER, a->next != NT_NONE || stride != a->element_bytes ? (uint32_t)stride : 0, view,
+		offset, job->error);
 }
 
 static nt_status move_away(appending *job, target *t)
 {
 	uint32_t view = 0;
 	uint64_t offset = 0;
-	const nt_status status = move_elements(job, t, &view, &offset);
-	for (uint32_t k = next_accessor(job, t, NT_NONE); !status && k != NT_NONE; k = next_accessor(job, t, k))
-		nt_gltf_place_accessor(job->json, nt_gltf_accessor_json(job->document, k), view, offset);
+	nt_status status = NT_OK;
+	t->moved = true;
+	if (t->override) {
+		nt_edits_leave_accessor(job->edits, t->accessor->index);
+		status = nt_set_attribute_place(job->edits, job->buffer, t->override, job->vertices->new_count,
+			t->override->own_count > 1 || t->accessor->next != NT_NONE, job->error);
+		view = t->override->view;
+		offset = t->override->offset;
+	} else {
+		status = move_elements(job, t, &view, &offset);
+	}
+	for (uint32_t k = next_accessor(job, t, NT_NONE); !status && k != NT_NONE; k = next_accessor(job, t, k)) {
+		nt_json_value *json = nt_gltf_accessor_json(job->document, k);
+		nt_gltf_place_accessor(job->json, json, view, offset);
+		for (size_t i = 0; t->override && i < 2; i++)
+			nt_json_remove(job->json, json, i ? "max" : "min");
+	}
 	return status;
+}
+
+/* ---- new values ---- */
+
+/* Whether new values go where the old ones are: of the same type, or smaller ones that are interleaved. */
+static bool values_fit(const appending *job, const target *t)
+{
+	const nt_tangent_filter *filter = &t->override->values.filter;
+	const nt_gltf_packing packing = nt_packing_of(job->edits, t->accessor->view);
+	const nt_gltf_accessor *a = t->accessor;
+	if (!t->segment || a->sparse || strcmp(packing.extension ? packing.view.filter : "NONE", filter->filter) != 0)
+		return false;
+	if (a->component_type == nt_precision_component_type(filter->precision) &&
+		(a->component_type == NT_GLTF_FLOAT || a->normalized))
+		return true;
+	return a->stride > a->element_bytes && t->override->values.element_bytes <= a->element_bytes &&
+		t->segment->users > 1;
+}
+
+/* New values that do not fit go to new views. */
+static nt_status move_values(appending *job)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < job->target_count; i++) {
+		target *t = &job->targets[i];
+		if (!t->override || values_fit(job, t))
+			continue;
+		status = move_away(job, t);
+		t->segment = NULL;
+	}
+	return status;
+}
+
+/* The type in which they are stored. */
+static void describe_values(const appending *job, const target *t, nt_json_value *accessor)
+{
+	const uint32_t type = nt_precision_component_type(t->override->values.filter.precision);
+	if (type == t->accessor->component_type && (type == NT_GLTF_FLOAT || t->accessor->normalized))
+		return;
+	nt_json_put_uint64(job->json, accessor, "componentType", type);
+	if (type == NT_GLTF_FLOAT)
+		nt_json_remove(job->json, accessor, "normalized");
+	else
+		nt_json_set_bool(job->json, nt_json_put(job->json, accessor, "normalized"), true);
 }
 
 /* ---- accessors that must keep their count ---- */
@@ -214,7 +259,7 @@ static nt_status clone(appending *job, target *t)
 	nt_json_value *copy = nt_json_append(job->json, accessors);
 	uint32_t view = 0;
 	uint64_t offset = 0;
-	t->stays = true;
+	t->stays = t->moved = true;
 	nt_json_set_copy(job->json, copy, nt_json_at(accessors, same));
 	nt_status status = move_elements(job, t, &view, &offset);
 	nt_gltf_place_accessor(job->json, copy, view, offset);
@@ -323,15 +368,16 @@ static void put_values(const appending *job, const block *b, const target *t, co
 	unsigned char *out)
 {
 	const nt_pool_vertices *vertices = job->vertices;
-	const size_t width = t->override->width, place = (size_t)(t->begin - b->segment->begin);
+	const nt_stored_tangents *new = &t->override->values;
+	const size_t width = new->element_bytes, place = (size_t)(t->begin - b->segment->begin);
 	for (size_t v = 0; v < vertices->new_count; v++) {
-		const unsigned char *value = t->override->values + v * width;
+		const unsigned char *value = new->values + v * width;
 		const bool known = v < vertices->old_count || !vertices->own_count;
 		if (known && width == t->accessor->element_bytes &&
 			memcmp(decoded + place + nt_vertex_source(vertices, v) * b->stride, value, width) == 0)
 			continue;
 		memset(out + place + v * b->stride, 0, t->accessor->element_bytes);
-		memcpy(out + place + v * b->stride, t->override->stored + v * width, width);
+		memcpy(out + place + v * b->stride, new->stored + v * width, width);
 	}
 }
 
@@ -526,10 +572,12 @@ static nt_status edit_targets(appending *job)
 		target *t = &job->targets[i];
 		if (t->stays)
 			continue;
-		if (job->decoded_too && t->accessor->decoded)
+		if (job->decoded_too && t->accessor->decoded && !t->moved)
 			status = move_away(job, t);
 		for (uint32_t k = next_accessor(job, t, NT_NONE); !status && k != NT_NONE;
 			k = next_accessor(job, t, k)) {
+			if (t->override)
+				describe_values(job, t, nt_gltf_accessor_json(job->document, k));
 			status = settle_bounds(job, t, k);
 			if (job->differs || job->decoded_too)
 				nt_json_put_uint64(job->json, nt_gltf_accessor_json(job->document, k), "count",
@@ -549,6 +597,8 @@ nt_status nt_append_vertices(nt_buffer_edits *edits, uint32_t buffer, const nt_p
 		.owner = vertices->pool->users[0] + 1, .decoded_too = decoded_too,
 		.differs = nt_vertices_differ(vertices), .error = error};
 	nt_status status = collect_all(&job);
+	if (!status)
+		status = move_values(&job);
 	if (!status && job.differs && must_pin(&job))
 		status = clone_pinned(&job);
 	if (!status)

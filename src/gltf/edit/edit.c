@@ -134,8 +134,8 @@ static nt_status settle_set(const editing *e, const nt_pool_vertices *vertices, 
 		attributes[TANGENTS].values.stored = NULL;
 	for (size_t i = 0; !status && i < SET_ATTRIBUTES; i++)
 		if (attributes[i].values.stored)
-			status = nt_set_attribute_settle(e->edits, vertices->pool, set, e->of_window, &attributes[i],
-				overrides, e->error);
+			status = nt_set_attribute_settle(e->edits, vertices->pool, set, &attributes[i], overrides,
+				e->error);
 	return status;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Images of an edited document, references to files, and data URIs.
+ * Images of an edited document, and references to files.
  */
 #ifndef NT_GLTF_EDIT_IMAGES_H
 #define NT_GLTF_EDIT_IMAGES_H
@@ -54,23 +54,5 @@ nt_status nt_gltf_link(nt_json *json, nt_json_value *object, const char *prefix,
 
 /* links.c. A finding about a uri that leads out of the output's folder: of an element of "buffers" or "images". */
 void nt_gltf_tell_leaving(nt_scene *scene, const char *array, size_t index, const char *why);
-
-/* ---- data_uris.c ---- */
-
-/* Zeroed but for the edits, which have ended; the list is malloc'ed. */
-typedef struct nt_data_uris {
-	nt_buffer_edits *edits;
-	uint32_t *buffers; /* [count] ascending */
-	size_t count, capacity;
-} nt_data_uris;
-
-/* Gives a buffer a uri, without its data; buffers come in their order. */
-nt_status nt_data_uris_add(nt_data_uris *uris, uint32_t buffer, nt_error *error);
-
-/* The length of the document's text with the data. */
-nt_status nt_data_uris_measure(const nt_data_uris *uris, uint64_t *length, nt_error *error);
-
-/* Writes that text. */
-nt_status nt_data_uris_write(const nt_data_uris *uris, nt_sink *sink, nt_error *error);
 
 #endif

@@ -94,8 +94,8 @@ static void describe(nt_gltf *document, uint32_t accessor, const encoded *new, u
 	}
 }
 
-/* Puts them where the old ones are, of which nobody else has any; whether they fit: elements of a packed view are all of
- * a size. */
+/* Puts them where the old ones are, of which nobody else has any. Returns whether they fit: elements of a packed view
+ * are all of a size. */
 static bool replace_indices(nt_buffer_edits *edits, const nt_gltf_accessor *old, const encoded *new)
 {
 	const uint32_t old_width = nt_gltf_component_bytes(old->component_type);

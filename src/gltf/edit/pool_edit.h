@@ -77,22 +77,35 @@ const float *nt_pool_read_target(const nt_pool_vertices *vertices, uint32_t set,
 
 /* ---- vertices appended: append.c, indices.c ---- */
 
-/* An accessor, with all over its bytes, whose values are replaced in place: elements of `width` bytes for every new
- * vertex. */
-typedef struct nt_gltf_override {
-	uint32_t accessor; /* the first over its bytes */
-	const unsigned char *values; /* as readers have them */
-	const unsigned char *stored; /* before the filter of a packed view; the same where there is none */
-	uint32_t width;
-} nt_gltf_override;
+/* Tangents of a set, or others of its attributes, as they will be stored. */
+typedef struct nt_stored_tangents {
+	nt_gltf_packing packing; /* of new bytes */
+	nt_tangent_filter filter;
+	const unsigned char *values, *stored; /* as readers have them, and before the filter */
+	size_t element_bytes;
+} nt_stored_tangents;
 
-/* The overrides of one pool. */
+/* NORMAL, TANGENT or _BITANGENT of a set. */
+typedef struct nt_set_attribute {
+	const char *name;
+	uint32_t components;
+	nt_stored_tangents values;
+	size_t own_count;  /* accessors of the document that take them, each for all over its bytes */
+	uint32_t first_own; /* the number that the first of these has in the list, from 1 on */
+	uint32_t accessor; /* the lowest of these; NT_NONE: a new one does */
+	uint32_t view;     /* that those which are not in place have together; NT_NONE: there is none yet */
+	uint64_t offset;
+} nt_set_attribute;
+
+/* The attributes whose values accessors of one pool take: nt_edited_accessor.override. */
 typedef struct nt_override_list {
-	nt_gltf_override *items; /* [count], malloc'ed */
+	nt_set_attribute **items; /* [count], malloc'ed */
 	size_t count, capacity;
 } nt_override_list;
 
-nt_status nt_override_add(nt_buffer_edits *edits, nt_override_list *list, nt_gltf_override override, nt_error *error);
+/* Puts the values into a new view of a buffer, once. */
+nt_status nt_set_attribute_place(nt_buffer_edits *edits, uint32_t buffer, nt_set_attribute *attribute, size_t count,
+	bool several, nt_error *error);
 
 /* Gives every accessor of the pool its copied elements, and overridden accessors their new values. buffer: of new
  * views. decoded_too: what was decompressed by Draco goes into plain views. */
@@ -104,14 +117,6 @@ nt_status nt_gltf_write_indices(nt_buffer_edits *edits, uint32_t buffer, const n
 	nt_error *error);
 
 /* ---- equal vertices welded: weld.c ---- */
-
-/* Tangents of a set as they will be stored. */
-typedef struct nt_stored_tangents {
-	nt_gltf_packing packing; /* of new bytes */
-	nt_tangent_filter filter;
-	const unsigned char *values, *stored; /* as readers have them, and before the filter */
-	size_t element_bytes;
-} nt_stored_tangents;
 
 /*
  * Makes one vertex of those that are equal in all that the users of the pool have of them: elements of all attributes
@@ -133,25 +138,15 @@ nt_status nt_pool_vertices_plain(const nt_vertex_pools *pools, nt_vertex_pool *p
 
 /* ---- attributes of a tangent set: set_attributes.c ---- */
 
-/* NORMAL, TANGENT or _BITANGENT of a set: its values, and where they go. */
-typedef struct nt_set_attribute {
-	const char *name;
-	uint32_t components;
-	nt_stored_tangents values;
-	uint32_t *own; /* [own_count] accessors that take them, each for all over its bytes; none: a new one does */
-	size_t own_count;
-	bool in_place; /* they go where the old ones are */
-} nt_set_attribute;
-
 /* Finds the accessors that take the values: those that the set's meshes have and nobody else uses. Before vertices are
- * appended: they become overrides, and what will not be in place leaves its bytes. Lists are in the arena. */
-nt_status nt_set_attribute_settle(nt_buffer_edits *edits, const nt_vertex_pool *pool, uint32_t set, nt_arena *arena,
+ * appended, which puts the values in place or into a new view. */
+nt_status nt_set_attribute_settle(nt_buffer_edits *edits, const nt_vertex_pool *pool, uint32_t set,
 	nt_set_attribute *attribute, nt_override_list *overrides, nt_error *error);
 
-/* After that: writes the values that are not in place, and lets all of the set's meshes have them. buffer: of new
+/* After that: lets all of the set's meshes have the values, in a new accessor if there is none. buffer: of new
  * views. */
 nt_status nt_set_attribute_write(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
-	uint32_t set, const nt_set_attribute *attribute, nt_error *error);
+	uint32_t set, nt_set_attribute *attribute, nt_error *error);
 
 /* An accessor that nobody uses any more, and others over the same bytes, leave these and keep their numbers, without a
  * view. Nothing is appended to them. */

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The edited document as files: .gltf with its buffers, .gltf with everything in it, or .glb.
+ * The edited document as files: .gltf with its buffers, .gltf with everything in it, or .glb. Data URIs are encoded
+ * while the text is written: the JSON has their heads alone, as strings that are left open, and a new document has open
+ * arrays, whose elements are text already. In the JSON a buffer would take its size four times over: its bytes, their
+ * base64, the string's copy, and the text.
  *
  * A buffer stays what it was where it can: a data URI remains one, an external file that nothing
  * changed is linked to, several buffers remain several. A changed external buffer becomes a sidecar of
@@ -12,7 +15,6 @@
 #include "gltf/bytes/bytes.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include "file/uri.h"
 #include "gltf/document.h"
@@ -28,7 +30,6 @@ typedef struct writing {
 	const nt_write_options *options; /* the output's */
 	nt_file input;                   /* the document's own file, to stream from */
 	nt_buffer_edits *edits;
-	nt_data_uris uris;
 	nt_sink *main;
 	nt_sink **sidecars;            /* [buffer count] the files that buffers are written to; NULL: none */
 	nt_arena *arena;
@@ -98,6 +99,72 @@ nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *option
 	nt_sink *sink;
 	status = nt_output_add(output, options->path, NT_ROLE_MAIN, &sink, error);
 	return status ? status : nt_sink_copy(sink, &file, 0, file.size, error);
+}
+
+/* ---- the text ---- */
+
+static const char plain_head[] = "data:application/octet-stream;base64,";
+
+/* The length of a data URI before its data; 0: it has none that could stay. */
+static size_t head_length(const char *uri, size_t length)
+{
+	static const char ending[] = ";base64,";
+	const char *comma = uri && nt_uri_is_data(uri, length) ? memchr(uri, ',', length) : NULL;
+	const size_t head = comma ? (size_t)(comma - uri) + 1 : 0;
+	return head >= strlen(ending) && memcmp(uri + head - strlen(ending), ending, strlen(ending)) == 0 ? head : 0;
+}
+
+/* Gives a buffer a uri without its data. */
+static void leave_open(writing *c, uint32_t index)
+{
+	nt_json_value *object = nt_json_at(nt_gltf_root_member(c->document, "buffers"), index);
+	size_t length = 0;
+	const char *uri = nt_json_find_string(object, "uri", &length);
+	const size_t head = head_length(uri, length);
+	c->edits->buffers[index].encoded = true;
+	nt_json_set_open(c->json, nt_json_put(c->json, object, "uri"), head ? uri : plain_head,
+		head ? head : sizeof plain_head - 1);
+}
+
+/* The length of the text with the data. */
+static nt_status measure_text(const writing *c, uint64_t *length)
+{
+	const nt_buffer_edits *edits = c->edits;
+	const nt_status status = nt_json_measure(c->json, length, c->error);
+	for (size_t i = 0; !status && i < edits->list_count; i++)
+		*length += edits->lists[i].size;
+	for (size_t i = 0; !status && i < edits->buffer_count; i++)
+		*length += edits->buffers[i].encoded ? nt_base64_length(edits->buffers[i].length) : 0;
+	return status;
+}
+
+typedef struct text_sink {
+	const writing *c;
+	nt_sink *sink;
+	uint32_t next, list; /* buffers come in their order, wherever the array stands; lists before them */
+} text_sink;
+
+static nt_status put_text(void *user, const char *text, size_t size)
+{
+	text_sink *to = user;
+	nt_buffer_edits *edits = to->c->edits;
+	while (!size && to->list < edits->list_count) {
+		const nt_buffer *list = &edits->lists[to->list++];
+		text = list->data;
+		size = list->size;
+	}
+	if (size)
+		return nt_sink_write(to->sink, text, size, to->c->error);
+	while (!edits->buffers[to->next].encoded)
+		to->next++;
+	nt_base64 base64 = {.sink = to->sink};
+	const nt_status status = nt_edits_encode(edits, to->next++, &base64, to->c->error);
+	return status ? status : nt_base64_end(&base64, to->c->error);
+}
+
+static nt_status write_text(const writing *c, nt_sink *sink)
+{
+	return nt_json_write(c->json, put_text, &(text_sink){c, sink, 0, 0}, c->error);
 }
 
 /* ---- what happens to each buffer ---- */
@@ -270,7 +337,7 @@ static nt_status settle_buffers(writing *c, bool *bin)
 			status = nt_gltf_link(c->json, json, c->output.link_prefix, c->error);
 			break;
 		case TO_DATA_URI:
-			status = nt_data_uris_add(&c->uris, i, c->error);
+			leave_open(c, i);
 			break;
 		case TO_BIN_CHUNK:
 			nt_json_remove(c->json, json, "uri");
@@ -303,7 +370,7 @@ static nt_status write_glb(const writing *c, uint64_t length, bool bin, nt_sink 
 	const uint64_t size = bin ? c->edits->buffers[0].length : raw ? document->glb.bin.size : 0;
 	nt_status status = nt_glb_begin(sink, length, bin || raw, size, other_bytes(document), c->error);
 	if (!status)
-		status = nt_data_uris_write(&c->uris, sink, c->error);
+		status = write_text(c, sink);
 	if (!status)
 		status = nt_glb_end_json(sink, length, bin || raw, size, c->error);
 	if (!status && bin)
@@ -330,9 +397,9 @@ static nt_status write_document(writing *c, bool bin, bool staging, nt_sink *sin
 			status = nt_gltf_record(c->json, json, c->sidecars[i], staging, c->error);
 	}
 	if (!status && !c->to_glb)
-		return nt_data_uris_write(&c->uris, sink, c->error);
+		return write_text(c, sink);
 	if (!status)
-		status = nt_data_uris_measure(&c->uris, &length, c->error);
+		status = measure_text(c, &length);
 	return status ? status : write_glb(c, length, bin, sink);
 }
 
@@ -362,7 +429,6 @@ static nt_status write_files(writing *c)
 		status = settle_buffers(c, &bin);
 	if (!status)
 		status = write_main(c, bin);
-	free(c->uris.buffers);
 	return status;
 }
 
@@ -373,7 +439,7 @@ nt_status nt_gltf_save(nt_scene *scene, nt_buffer_edits *edits, const nt_write_o
 	const bool is_stream = nt_output_is_stream(options->path), to_glb = options->format == NT_FORMAT_GLB;
 	writing c = {.scene = scene, .edits = edits, .document = document, .json = document->json,
 		.output = {options, output, link_prefix, is_stream}, .options = options, .input = input_file(scene),
-		.uris = {.edits = edits}, .main = main, .arena = &edits->arena, .error = error,
+		.main = main, .arena = &edits->arena, .error = error,
 		.to_glb = to_glb, .same_container = to_glb == document->is_glb,
 		.embed = options->buffers == NT_BUFFERS_EMBED || (!to_glb && is_stream),
 		.in_place = nt_output_is_in_place(output, options->path)};
