@@ -54,80 +54,51 @@ static nt_status append_name(nt_depfile *depfile, const char *path, bool relativ
 }
 
 /* The folder of a path, or the first above that is there. */
-static bool find_folder(const char *path, nt_buffer *folder, struct stat *info)
+static bool find_folder(const char *path, char folder[PATH_MAX], struct stat *info)
 {
-	folder->size = 0;
-	nt_buffer_text(folder, path);
-	while (!folder->failed) {
-		const char *slash = strrchr(folder->data, '/');
-		folder->size = slash ? (size_t)(slash - folder->data) : 0;
-		folder->data[folder->size] = '\0';
-		if (!folder->size)
-			nt_buffer_text(folder, slash ? "/" : ".");
-		if (!folder->failed && stat(folder->data, info) == 0 && S_ISDIR(info->st_mode))
+	char below[PATH_MAX];
+	for (;; path = strcpy(below, folder)) {
+		nt_folder_of(path, folder);
+		if (stat(folder, info) == 0 && S_ISDIR(info->st_mode))
 			return true;
-		if (!slash)
-			break;
+		if (!strchr(folder, '/') || !folder[1])
+			return false;
 	}
-	return false;
 }
 
-/* Notes the folders that are written to: in them each run leaves another time of change. */
-static nt_status list_written(const nt_trace *trace, nt_key_set *written, nt_error *error)
+/* Takes the folders of files of two kinds that are new in the set, and appends them to the list (NULL: nowhere). */
+static nt_status add_folders(const nt_trace *trace, nt_trace_kind one, nt_trace_kind other, nt_key_set *folders,
+	nt_buffer *list, nt_error *error)
 {
-	nt_buffer folder = {0};
-	nt_status status = NT_OK;
-	for (size_t i = 0; i < trace->count && !status; i++) {
+	for (size_t i = 0; i < trace->count; i++) {
+		const nt_trace_file *file = &trace->files[i];
+		char folder[PATH_MAX];
 		struct stat info;
-		if (trace->files[i].kind != NT_TRACE_WRITTEN || !find_folder(trace->files[i].path, &folder, &info))
+		if ((file->kind != one && file->kind != other) || !find_folder(file->path, folder, &info))
 			continue;
 		const nt_file_id id = nt_file_id_of(&info);
-		if (nt_key_add(written, &id, sizeof id) == UINT32_MAX)
-			status = nt_fail_memory(error);
+		const size_t before = folders->count;
+		if (nt_key_add(folders, &id, sizeof id) == UINT32_MAX)
+			return nt_fail_memory(error);
+		if (list && folders->count > before)
+			nt_buffer_append(list, folder, strlen(folder) + 1);
 	}
-	nt_buffer_free(&folder);
-	return status;
-}
-
-/* Appends the folders in which files were looked for in vain, each once. */
-static nt_status list_searched(const nt_trace *trace, const nt_key_set *written, nt_buffer *list, nt_error *error)
-{
-	nt_name_table listed = {0};
-	nt_arena texts = {0};
-	nt_buffer folder = {0};
-	nt_status status = NT_OK;
-	for (size_t i = 0; i < trace->count && !status; i++) {
-		const nt_trace_kind kind = trace->files[i].kind;
-		struct stat info;
-		if ((kind != NT_TRACE_MISSING && kind != NT_TRACE_SEARCHED) ||
-			!find_folder(trace->files[i].path, &folder, &info) ||
-			nt_name_find(&listed, folder.data, folder.size) != UINT32_MAX)
-			continue;
-		const char *text = nt_arena_text(&texts, folder.data, folder.size);
-		if (!text || nt_name_add(&listed, text, folder.size) == UINT32_MAX)
-			status = nt_fail_memory(error);
-		const nt_file_id id = nt_file_id_of(&info);
-		if (nt_key_find(written, &id, sizeof id) == UINT32_MAX)
-			nt_buffer_append(list, folder.data, folder.size + 1);
-	}
-	nt_name_table_free(&listed);
-	nt_arena_free(&texts);
-	nt_buffer_free_into(&folder, list);
-	return status;
+	return NT_OK;
 }
 
 /* The dependencies of an output, each with a NUL behind it: files that were read, the input first, and the folders in
- * which others were looked for in vain. */
+ * which others were looked for in vain, but for those that are written to: in them each run leaves another time of
+ * change. */
 static nt_status list_dependencies(const nt_trace *trace, nt_buffer *list, nt_error *error)
 {
-	nt_key_set written = {0};
+	nt_key_set folders = {0};
 	for (size_t i = 0; i < trace->count; i++)
 		if (trace->files[i].kind == NT_TRACE_READ)
 			nt_buffer_append(list, trace->files[i].path, strlen(trace->files[i].path) + 1);
-	nt_status status = list_written(trace, &written, error);
+	nt_status status = add_folders(trace, NT_TRACE_WRITTEN, NT_TRACE_WRITTEN, &folders, NULL, error);
 	if (!status)
-		status = list_searched(trace, &written, list, error);
-	nt_key_set_free(&written);
+		status = add_folders(trace, NT_TRACE_MISSING, NT_TRACE_SEARCHED, &folders, list, error);
+	nt_key_set_free(&folders);
 	return status || !list->failed ? status : nt_fail_memory(error);
 }
 
