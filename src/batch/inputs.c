@@ -63,42 +63,14 @@ static bool matches(const char *const *patterns, size_t count, const char *below
 
 /* ---- folders ---- */
 
-static int compare_names(const void *a, const void *b)
+static int is_named(const struct dirent *entry)
 {
-	return strcmp(*(const char *const *)a, *(const char *const *)b);
+	return strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
 }
 
-/* The names in a folder, sorted; free each, and the list. */
-static nt_status list_folder(const char *path, char ***names, size_t *count, nt_error *error)
+static int compare_names(const struct dirent **a, const struct dirent **b)
 {
-	size_t capacity = 0;
-	*names = NULL;
-	*count = 0;
-	DIR *folder = opendir(path);
-	if (!folder)
-		return fail_folder(path, errno, error);
-	nt_status status = NT_OK;
-	while (!status) {
-		errno = 0;
-		const struct dirent *entry = readdir(folder);
-		if (!entry) {
-			status = errno ? fail_folder(path, errno, error) : NT_OK;
-			break;
-		}
-		if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0)
-			continue;
-		char *name = strdup(entry->d_name);
-		if (name && nt_grow((void **)names, &capacity, *count + 1, sizeof **names)) {
-			(*names)[(*count)++] = name;
-		} else {
-			free(name);
-			status = nt_fail_memory(error);
-		}
-	}
-	closedir(folder);
-	if (*count)
-		qsort(*names, *count, sizeof **names, compare_names);
-	return status;
+	return strcmp((*a)->d_name, (*b)->d_name);
 }
 
 static nt_status look_through(walk *w, nt_buffer *path);
@@ -134,22 +106,24 @@ static nt_status visit(walk *w, nt_buffer *path)
 
 static nt_status look_through(walk *w, nt_buffer *path)
 {
-	char **names;
-	size_t count;
-	nt_status status = list_folder(path->data, &names, &count, w->error);
+	struct dirent **entries;
+	const int count = scandir(path->data, &entries, is_named, compare_names);
+	if (count < 0)
+		return fail_folder(path->data, errno, w->error);
+	nt_status status = NT_OK;
 	const size_t length = path->size;
-	for (size_t i = 0; i < count; i++) {
+	for (int i = 0; i < count; i++) {
 		if (!status) {
 			if (path->data[length - 1] != '/')
 				nt_buffer_text(path, "/");
-			nt_buffer_text(path, names[i]);
+			nt_buffer_text(path, entries[i]->d_name);
 			status = path->failed ? nt_fail_memory(w->error) : visit(w, path);
 			path->size = length;
 			path->data[length] = '\0';
 		}
-		free(names[i]);
+		free(entries[i]);
 	}
-	free(names);
+	free(entries);
 	return status;
 }
 

@@ -378,25 +378,17 @@ static bool is_same_file(look *l, const nt_json_value *file, const char *path, c
 	return modified ? has_times(file, info) : digest != NULL;
 }
 
-static bool is_still_read(look *l, const nt_json_value *file, const char *uri)
+static bool is_still_there(look *l, const nt_json_value *file, const char *uri)
 {
 	struct stat info = l->job->input_info;
-	const bool is_input = strcmp(uri, l->input.data) == 0;
+	const bool written = nt_json_find(file, kinds[NT_TRACE_WRITTEN]) != NULL,
+		   is_input = !written && strcmp(uri, l->input.data) == 0;
 	l->found_input |= is_input;
-	if ((!is_input && stat(l->path.data, &info) != 0) ||
-		(nt_json_find(file, "bytes") && !is_same_file(l, file, l->path.data, &info)))
+	if (!is_input && stat(l->path.data, &info) != 0)
 		return false;
-	nt_trace_note(NT_TRACE_READ, is_input ? l->job->input : l->path.data, NULL, &info);
-	return true;
-}
-
-static bool is_still_written(look *l, const nt_json_value *file, const char *uri)
-{
-	struct stat info;
-	(void)uri;
-	if (stat(l->path.data, &info) != 0 || !is_same_file(l, file, l->path.data, &info))
+	if ((written || nt_json_find(file, "bytes")) && !is_same_file(l, file, l->path.data, &info))
 		return false;
-	nt_trace_note(NT_TRACE_WRITTEN, l->path.data, NULL, &info);
+	nt_trace_note(written ? NT_TRACE_WRITTEN : NT_TRACE_READ, is_input ? l->job->input : l->path.data, NULL, &info);
 	return true;
 }
 
@@ -471,8 +463,8 @@ static bool passes(const nt_update_options *options, const nt_json_value *line)
 /* Whether all is as a line says. */
 static bool holds(look *l, const nt_json_value *line)
 {
-	static bool (*const is_still[])(look *l, const nt_json_value *file, const char *uri) = {is_still_read,
-		is_still_missing, is_still_written, is_still_found, is_still_linked};
+	static bool (*const is_still[])(look *l, const nt_json_value *file, const char *uri) = {is_still_there,
+		is_still_missing, is_still_there, is_still_found, is_still_linked};
 	const nt_json_value *files = nt_json_find(line, "files");
 	bool same = is_text(nt_json_find(line, "nmtan"), nmtan_version()) &&
 		is_text(nt_json_find(line, "options"), l->job->options.data) && passes(&l->job->update->options, line);
