@@ -124,15 +124,14 @@ static inline NT_ALWAYS_INLINE void add_or_defer(nt_record *records, uint32_t ve
 	memcpy(&deferred->add[deferred->count++], add, sizeof *deferred->add);
 }
 
-/* Triangles with frames, lanes [i, end), up to the first with a corner whose cursor has a flag (of a hub, if some are
- * shared), or that has no narrow entry left: its lane, or `end`. Entries are moved as words, and nothing is called, so
- * that nearly all the loop needs is in registers. */
+/* Triangles with frames, lanes [i, end), up to the first with a corner that has no narrow entry left, or whose cursor
+ * has a flag, if these are not looked at one by one: its lane, or `end`. Entries are moved as words, and nothing is
+ * called, so that nearly all the loop needs is in registers. */
 static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned range, size_t first, size_t i,
-	size_t end, const uint32_t *ids, const lanes_out *out, bool is_narrow, bool is_shared)
+	size_t end, const uint32_t *ids, const lanes_out *out, bool is_narrow, bool are_flagged)
 {
-	const uint32_t others = is_shared ? NT_CURSOR_HUB : NT_CURSOR_FLAGGED;
 	nt_deferred deferred = {NULL};
-	if (is_shared)
+	if (are_flagged && fast->deferred)
 		deferred = fast->deferred[range];
 	const nt_adjacency *const adjacency = &fast->adjacency;
 	const uint32_t step = is_narrow ? adjacency->step : NT_FAN_LANES, full = NT_FAN_DEPTH * step;
@@ -143,24 +142,21 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 	const uint8_t *const flags = fast->flags + first;
 	for (ids += 3 * i; i < end; i++, ids += 3) {
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
-		uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
+		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
 		if (is_narrow ? pa >= full || pb >= full || pc >= full
-			: NT_EXPECT((pa | pb | pc) >= others, 0))
+			: !are_flagged && NT_EXPECT((pa | pb | pc) >= NT_CURSOR_FLAGGED, 0))
 			break;
-		cursors[a] = pa + step;
-		cursors[b] = pb + step;
-		cursors[c] = pc + step;
+		cursors[a] = pa + (are_flagged && pa & NT_CURSOR_HUB ? 0 : step);
+		cursors[b] = pb + (are_flagged && pb & NT_CURSOR_HUB ? 0 : step);
+		cursors[c] = pc + (are_flagged && pc & NT_CURSOR_HUB ? 0 : step);
 		const size_t orient = flags[i] & NT_TRIANGLE_ORIENT;
 		nt_record *const to = records[orient];
 		const float *add = out->add[0] + turned_rows[i];
-		if (is_shared) {
+		if (are_flagged) {
 			const uint32_t bit = (uint32_t)orient << 31;
 			add_or_defer(to, a, pa, bit, add, &deferred);
 			add_or_defer(to, b, pb, bit, add + 4 * NT_TRIANGLES, &deferred);
 			add_or_defer(to, c, pc, bit, add + 8 * NT_TRIANGLES, &deferred);
-			pa &= NT_CURSOR_PLACE;
-			pb &= NT_CURSOR_PLACE;
-			pc &= NT_CURSOR_PLACE;
 		} else {
 			add_record(to + a, add);
 			add_record(to + b, add + 4 * NT_TRIANGLES);
@@ -180,11 +176,14 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 		ab |= bits;
 		bc |= bits;
 		const uint64_t ca = NT_BIG_ENDIAN ? bc << 32 | ab >> 32 : bc >> 32 | ab << 32;
-		memcpy(&entries[pa], &bc, sizeof bc);
-		memcpy(&entries[pb], &ca, sizeof ca);
-		memcpy(&entries[pc], &ab, sizeof ab);
+		if (!(are_flagged && pa & NT_CURSOR_HUB))
+			memcpy(&entries[are_flagged ? pa & NT_CURSOR_PLACE : pa], &bc, sizeof bc);
+		if (!(are_flagged && pb & NT_CURSOR_HUB))
+			memcpy(&entries[are_flagged ? pb & NT_CURSOR_PLACE : pb], &ca, sizeof ca);
+		if (!(are_flagged && pc & NT_CURSOR_HUB))
+			memcpy(&entries[are_flagged ? pc & NT_CURSOR_PLACE : pc], &ab, sizeof ab);
 	}
-	if (is_shared)
+	if (are_flagged && fast->deferred)
 		fast->deferred[range].count = deferred.count;
 	return i;
 }
@@ -195,10 +194,10 @@ static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, size_t f
 	return add_usual(fast, range, first, i, end, ids, out, false, false);
 }
 
-static size_t NT_NOINLINE add_shared(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
+static void NT_NOINLINE add_flagged(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
 	const uint32_t *ids, const lanes_out *out)
 {
-	return add_usual(fast, range, first, i, end, ids, out, false, true);
+	(void)add_usual(fast, range, first, i, end, ids, out, false, true);
 }
 
 static size_t NT_NOINLINE add_narrow(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
@@ -207,27 +206,24 @@ static size_t NT_NOINLINE add_narrow(const nt_fast *fast, unsigned range, size_t
 	return add_usual(fast, range, first, i, end, ids, out, true, false);
 }
 
-/* Whether a corner of a triangle is at a hub. */
-static inline bool has_hub(const nt_fast *fast, unsigned range, const uint32_t *v)
-{
-	const uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
-	return (cursors[v[0]] | cursors[v[1]] | cursors[v[2]]) & NT_CURSOR_HUB;
-}
-
 /* Triangles with frames, lanes [begin, end). */
 static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t begin, size_t end, const uint32_t *ids,
 	const lanes_out *out)
 {
-	for (size_t i = begin; i < end;) {
+	const bool is_narrow = nt_adjacency_is_narrow(&fast->adjacency);
+	size_t i = begin;
+	if (!is_narrow && !fast->wants_more) {
+		if (range == 0) /* without flags, but for hubs */
+			i = add_here(fast, range, first, i, end, ids, out);
+		if (i < end)
+			add_flagged(fast, range, first, i, end, ids, out);
+		return;
+	}
+	for (; i < end; i++) {
 		if (!fast->wants_more)
-			i = (nt_adjacency_is_narrow(&fast->adjacency) ? add_narrow : range > 0 ? add_shared : add_here)(
-				fast, range, first, i, end, ids, out);
-		if (i == end)
-			return;
-		do {
+			i = add_narrow(fast, range, first, i, end, ids, out);
+		if (i < end)
 			add_triangle(fast, range, first + i, ids + 3 * i, (int)i, out);
-			i++;
-		} while (i < end && (fast->wants_more || has_hub(fast, range, ids + 3 * i)));
 	}
 }
 
