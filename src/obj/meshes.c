@@ -30,10 +30,8 @@ typedef struct builder {
 	size_t polygon;           /* the next one of five corners and more */
 	obj_primitives primitives; /* of the current mesh */
 
-	/* of one polygon */
-	float (*points)[3];
-	uint32_t *triangles;
-	size_t point_capacity, triangle_capacity;
+	uint32_t *triangles; /* of one polygon */
+	size_t triangle_capacity;
 
 	atomic_uint largest;      /* bits of the largest coordinate */
 } builder;
@@ -164,13 +162,9 @@ static nt_status triangulate(builder *b, nt_mesh *mesh, const obj_polygon *polyg
 	const uint32_t *corners, uint32_t *to)
 {
 	const size_t size = polygon->size;
-	if (!nt_grow((void **)&b->points, &b->point_capacity, size, sizeof *b->points) ||
-		!nt_grow((void **)&b->triangles, &b->triangle_capacity, size, 3 * sizeof *b->triangles))
-		return nt_fail_memory(b->error);
-	for (size_t i = 0; i < size; i++)
-		memcpy(b->points[i], mesh->positions + 3 * (size_t)corners[i], sizeof b->points[i]);
 	bool sound;
-	if (nt_polygon_triangulate((const float(*)[3])b->points, size, b->triangles, &sound))
+	if (!nt_grow((void **)&b->triangles, &b->triangle_capacity, size, 3 * sizeof *b->triangles) ||
+		nt_polygon_triangulate((const float(*)[3])mesh->positions, corners, size, b->triangles, &sound))
 		return nt_fail_memory(b->error);
 	for (size_t i = 0; i < 3 * (size - 2); i++)
 		to[i] = corners[b->triangles[i]];
@@ -428,7 +422,6 @@ nt_status obj_make_meshes(obj_file *file, nt_error *error)
 	}
 	free(b.primitives.items);
 	nt_hash_index_free(&b.primitives.index);
-	free(b.points);
 	free(b.triangles);
 	return status;
 }

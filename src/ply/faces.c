@@ -253,17 +253,6 @@ static nt_status make_primitives(const ply_faces *f)
 	return NT_OK;
 }
 
-/* Cuts a polygon: the corner numbers of its triangles go to `cut`. */
-static nt_status cut_polygon(const ply_faces *f, const uint32_t *vertices, size_t size, uint32_t *cut, bool *sound)
-{
-	float (*points)[3] = nt_alloc(size, sizeof *points);
-	for (size_t k = 0; points && k < size; k++)
-		memcpy(points[k], f->mesh->positions + 3 * (size_t)vertices[k], sizeof *points);
-	const bool done = points && !nt_polygon_triangulate((const float(*)[3])points, size, cut, sound);
-	free(points);
-	return done ? NT_OK : nt_fail_memory(f->rows.error);
-}
-
 /* Counts faces, and makes arrays for them. If rows are faces as they stand, the mesh takes over their columns. */
 static nt_status start_faces(ply_faces *f)
 {
@@ -320,7 +309,7 @@ static nt_status fill_faces(ply_faces *f)
 		const size_t end = face + (size < 3 ? 0 : size > 4 ? size - 2 : 1);
 		bool sound = true;
 		if (size > 4)
-			status = cut_polygon(f, from, size, cut, &sound);
+			status = nt_polygon_triangulate((const float(*)[3])mesh->positions, from, size, cut, &sound);
 		if (!sound)
 			tally(&f->guessed, row);
 		for (size_t k = 0; !status && size > 2 && k < (size > 4 ? 3 * (size - 2) : size); k++)
@@ -338,7 +327,7 @@ static nt_status fill_faces(ply_faces *f)
 		to += size > 4 ? 3 * (size - 2) : size > 2 ? size : 0;
 		cut += size > 4 ? 3 * (size - 2) : 0;
 	}
-	return status;
+	return status ? nt_fail_memory(f->rows.error) : NT_OK;
 }
 
 /* ---- positions that float cannot hold ---- */

@@ -89,17 +89,25 @@ static bool same_point(const corner *a, const corner *b)
 	return a->x == b->x && a->y == b->y;
 }
 
+/* The position of a corner of a polygon. */
+static const float *position(const float (*points)[3], const uint32_t *vertices, size_t i)
+{
+	return points[vertices ? vertices[i] : i];
+}
+
 /* Newell's normal: its components are twice the areas of the polygon's shadows on the axis planes, and
  * no single bad corner spoils it. False where it is zero or not finite. */
-static bool newell_normal(const float (*points)[3], size_t count, double normal[3])
+static bool newell_normal(const float (*points)[3], const uint32_t *vertices, size_t count, double normal[3])
 {
+	const float *const first = position(points, vertices, 0);
 	double sum[3] = {0, 0, 0};
 	for (size_t i = 0; i < count; i++) {
 		double a[3], b[3];
-		const float *p = points[i], *q = points[i + 1 < count ? i + 1 : 0];
+		const float *p = position(points, vertices, i);
+		const float *q = position(points, vertices, i + 1 < count ? i + 1 : 0);
 		for (int k = 0; k < 3; k++) {
-			a[k] = (double)p[k] - points[0][k];
-			b[k] = (double)q[k] - points[0][k];
+			a[k] = (double)p[k] - first[k];
+			b[k] = (double)q[k] - first[k];
 		}
 		for (int k = 0; k < 3; k++)
 			sum[k] += a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
@@ -130,17 +138,19 @@ static void plane_axes(const double normal[3], double u[3], double v[3])
 }
 
 /* Fills the corners' coordinates and links. False where the polygon has no plane. */
-static bool project(outline *o, const float (*points)[3])
+static bool project(outline *o, const float (*points)[3], const uint32_t *vertices)
 {
 	double normal[3], u[3], v[3];
-	if (!newell_normal(points, o->count, normal))
+	if (!newell_normal(points, vertices, o->count, normal))
 		return false;
 	plane_axes(normal, u, v);
 	const uint32_t count = (uint32_t)o->count;
+	const float *const first = position(points, vertices, 0);
 	for (uint32_t i = 0; i < count; i++) {
+		const float *const own = position(points, vertices, i);
 		double p[3];
 		for (int k = 0; k < 3; k++)
-			p[k] = (double)points[i][k] - points[0][k];
+			p[k] = (double)own[k] - first[k];
 		corner *c = &o->corners[i];
 		c->x = p[0] * u[0] + p[1] * u[1] + p[2] * u[2];
 		c->y = p[0] * v[0] + p[1] * v[1] + p[2] * v[2];
@@ -406,7 +416,7 @@ static void fan(size_t count, uint32_t *triangles)
 	}
 }
 
-nt_status nt_polygon_triangulate(const float (*points)[3], size_t count, uint32_t *triangles,
+nt_status nt_polygon_triangulate(const float (*points)[3], const uint32_t *vertices, size_t count, uint32_t *triangles,
 	bool *sound)
 {
 	corner stack_corners[STACK_CORNERS];
@@ -430,7 +440,7 @@ nt_status nt_polygon_triangulate(const float (*points)[3], size_t count, uint32_
 		.triangles = triangles,
 		.sound = true,
 	};
-	if (project(&o, points)) {
+	if (project(&o, points, vertices)) {
 		find_blocking(&o);
 		clip_ears(&o);
 	} else {

@@ -10,7 +10,8 @@
 /*
  * Triangulates one polygon.
  *
- *   points     [count][3] positions of its corners, in order
+ *   points     positions
+ *   vertices   [count] which of them its corners are, in order; NULL: the first ones
  *   count      at least 3
  *   triangles  [3 * (count - 2)] receives corner numbers of the polygon, each triangle wound as it is
  *   sound      receives false when no proper triangulation was found (self-intersecting, collinear,
@@ -18,7 +19,7 @@
  *
  * Returns NT_OK or NT_ERROR_MEMORY.
  */
-nt_status nt_polygon_triangulate(const float (*points)[3], size_t count, uint32_t *triangles,
+nt_status nt_polygon_triangulate(const float (*points)[3], const uint32_t *vertices, size_t count, uint32_t *triangles,
 	bool *sound);
 
 #endif

@@ -114,11 +114,11 @@ TEST(allocations_of_large_polygons_may_fail)
 	for (size_t n = 0; n < 2; n++) {
 		fail_allocations_from(n);
 		const nt_status status =
-			nt_polygon_triangulate((const float(*)[3])points, 100, triangles, &sound);
+			nt_polygon_triangulate((const float(*)[3])points, NULL, 100, triangles, &sound);
 		assert_true(stop_failing_allocations());
 		assert_int_equal(status, NT_ERROR_MEMORY);
 	}
-	assert_int_equal(nt_polygon_triangulate((const float(*)[3])points, 100, triangles, &sound),
+	assert_int_equal(nt_polygon_triangulate((const float(*)[3])points, NULL, 100, triangles, &sound),
 		NT_OK);
 	assert_true(sound);
 }

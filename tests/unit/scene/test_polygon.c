@@ -23,7 +23,7 @@ static double assert_proper(const double (*plane)[2], const float (*points)[3], 
 	unsigned char *edge_used = calloc(count, 1);
 	bool sound = false;
 	const clock_t begin = clock();
-	assert_int_equal(nt_polygon_triangulate(points, count, triangles, &sound), NT_OK);
+	assert_int_equal(nt_polygon_triangulate(points, NULL, count, triangles, &sound), NT_OK);
 	const double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
 	assert_true(sound);
 	double area = 0, sum = 0;
@@ -68,7 +68,7 @@ TEST(convex_polygon_becomes_a_fan_in_order)
 	const uint32_t expected[12] = {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5};
 	uint32_t triangles[12];
 	bool sound = false;
-	assert_int_equal(nt_polygon_triangulate(points, 6, triangles, &sound), NT_OK);
+	assert_int_equal(nt_polygon_triangulate(points, NULL, 6, triangles, &sound), NT_OK);
 	assert_true(sound);
 	assert_memory_equal(triangles, expected, sizeof expected);
 }
@@ -187,7 +187,7 @@ static bool finish(const float (*points)[3], size_t count)
 	uint32_t triangles[3 * 64];
 	memset(triangles, 255, sizeof triangles);
 	bool sound = true;
-	assert_int_equal(nt_polygon_triangulate(points, count, triangles, &sound), NT_OK);
+	assert_int_equal(nt_polygon_triangulate(points, NULL, count, triangles, &sound), NT_OK);
 	for (size_t c = 0; c < 3 * (count - 2); c++)
 		assert_true(triangles[c] < count);
 	assert_int_equal(triangles[3 * (count - 2)], UINT32_MAX);
@@ -234,7 +234,7 @@ TEST(repeated_point_leaves_the_rest_proper)
 	const float points[5][3] = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 	uint32_t triangles[9];
 	bool sound = true;
-	assert_int_equal(nt_polygon_triangulate(points, 5, triangles, &sound), NT_OK);
+	assert_int_equal(nt_polygon_triangulate(points, NULL, 5, triangles, &sound), NT_OK);
 	assert_true(sum_areas(points, triangles, 3, 1, true) == 2.0);
 }
 
@@ -276,7 +276,7 @@ TEST(sound_results_have_no_turned_triangle)
 		}
 		uint32_t triangles[3 * 10];
 		bool sound = false;
-		assert_int_equal(nt_polygon_triangulate((const float(*)[3])points, count, triangles, &sound),
+		assert_int_equal(nt_polygon_triangulate((const float(*)[3])points, NULL, count, triangles, &sound),
 			NT_OK);
 		if (!sound)
 			continue;
