@@ -62,20 +62,9 @@ files.forEach((file, f) => {
 const TEXCOORD_CODES = 1 << 18;
 const MOST_STACKED = 8; // equal outlines of islands that are drawn
 
-const digits = new Uint8Array(128);
-[...'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/'].forEach((c, i) => { digits[c.charCodeAt(0)] = i; });
-
-function fromBase64(text, begin) {
-	let end = text.length;
-	while (end > begin && text[end - 1] === '=') end--;
-	const bytes = new Uint8Array((end - begin) * 3 >> 2);
-	for (let i = begin, to = 0; i < end; i += 4, to += 3) {
-		const group = digits[text.charCodeAt(i)] << 18 | digits[text.charCodeAt(i + 1)] << 12 |
-			(i + 2 < end ? digits[text.charCodeAt(i + 2)] << 6 : 0) | (i + 3 < end ? digits[text.charCodeAt(i + 3)] : 0);
-		bytes[to] = group >> 16;
-		bytes[to + 1] = group >> 8;
-		bytes[to + 2] = group;
-	}
+function fromBase64(text) {
+	const letters = atob(text), bytes = new Uint8Array(letters.length);
+	for (let i = 0; i < bytes.length; i++) bytes[i] = letters.charCodeAt(i);
 	return bytes;
 }
 
@@ -250,7 +239,7 @@ async function findSource(id) {
 
 async function readGeometry(mesh) {
 	const text = await findSource(mesh.source), line = text.indexOf('\n');
-	const g = JSON.parse(text.slice(0, line)), a = readArrays(await inflate(fromBase64(text, line + 1)), g);
+	const g = JSON.parse(text.slice(0, line)), a = readArrays(await inflate(fromBase64(text.slice(line + 1))), g);
 	const {vertices, triangles} = g, {u, v, numbers, seam_ends: ends} = a;
 	g.indices = readIndices(a.corners);
 	g.positions = joinColumns(4, a.x, a.y, a.z);

@@ -69,17 +69,17 @@ class Overview {
 	}
 
 	// A byte for each pixel: 0 where nothing is; of a model how bright it is, of a layout its winding.
-	async drawPixels({kind, pixels, width, height}, c, ink) {
-		const picture = new ImageData(width, height), model = rgb(ink.model), windings = [null, ink.plainLine, ink.mirroredLine].map(text => text && rgb(text).map(x => 255 * x));
-		(await inflate(fromBase64(pixels, 0))).forEach((pixel, i) => {
+	async drawPixels({kind, pixels, width, height}, c) {
+		const picture = new ImageData(width, height), model = lightOf('model'), windings = [null, colourOf('plain-line'), colourOf('mirrored-line')];
+		(await inflate(fromBase64(pixels))).forEach((pixel, i) => {
 			if (pixel) picture.data.set(kind === 'model' ? [...model.map(x => x * pixel), 255] : [...windings[pixel], 190], 4 * i);
 		});
 		c.putImageData(picture, 0, 0);
 	}
 
 	async drawThumb(canvas) {
-		const c = canvas.getContext('2d'), ink = layoutInk();
-		if (canvas.pixels) { await this.drawPixels(canvas, c, ink); return; }
+		const c = canvas.getContext('2d');
+		if (canvas.pixels) { await this.drawPixels(canvas, c); return; }
 		c.globalAlpha = 0.75;
 		const g = await readGeometry(canvas.mesh), uv = g.texcoords;
 		if (!uv) return;
@@ -87,7 +87,7 @@ class Overview {
 		const scale = Math.min(104 / (high[0] - low[0] || 1), 72 / (high[1] - low[1] || 1));
 		c.setTransform(scale, 0, 0, scale, 56 - scale * (low[0] + high[0]) / 2, 40 - scale * (low[1] + high[1]) / 2);
 		for (const region of g.regions.filter(r => !r.buried)) {
-			c.fillStyle = region.mirrored ? ink.mirroredLine : ink.plainLine;
+			c.fillStyle = region.mirrored ? ink('mirrored-line') : ink('plain-line');
 			c.fill(outlinePath(uv, region.loops));
 		}
 	}

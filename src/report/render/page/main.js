@@ -6,29 +6,25 @@
 
 // ---- colours ----
 
-const colourOf = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+// A colour of page.css as it is now: [red, green, blue], 0 to 255, and alpha if it has one; for WebGL; and as a text for a canvas.
+const colours = new Map();
+function colourOf(name) {
+	const root = document.documentElement;
+	if (!colours.has(name)) {
+		root.style.outlineColor = 'var(--' + name + ')';
+		colours.set(name, getComputedStyle(root).outlineColor.match(/[\d.]+/g).map(Number));
+	}
+	return colours.get(name);
+}
+const lightOf = name => colourOf(name).map(x => x / 255);
+const ink = (name, alpha) => 'rgba(' + colourOf(name).slice(0, alpha ? 3 : 4) + (alpha ? ', ' + alpha : '') + ')';
 const fontFamily = () => 'system-ui, sans-serif';
-const rgb = text => [1, 3, 5].map(i => parseInt(text.slice(i, i + 2), 16) / 255);
-let themeCache = null;
-
-function theme() {
-	return (themeCache ||= {}).space ||= {stage: rgb(colourOf('--stage')), plain: rgb(colourOf('--plain')), mirrored: rgb(colourOf('--mirrored')),
-		degenerate: rgb('#9a9a98')};
-}
-
-function layoutInk() {
-	return (themeCache ||= {}).layout ||= {stage: colourOf('--stage'), model: colourOf('--model'), grid: colourOf('--grid'), faint: colourOf('--grid-faint'), soft: colourOf('--soft'),
-		plainFill: colourOf('--plain') + '66', plainLine: colourOf('--plain-line'), mirroredFill: colourOf('--mirrored') + '66',
-		mirroredLine: colourOf('--mirrored-line'), hatch: colourOf('--mirrored-line') + '99', overlap: rgb(colourOf('--twice')).map(x => 255 * x),
-		seam: colourOf('--seam'), hard: colourOf('--hard'), label: colourOf('--label'), labelText: colourOf('--label-text'),
-		chosen: colourOf('--chosen'), chosenFill: colourOf('--chosen') + 'b0', chosenLine: colourOf('--chosen-line'), wire: colourOf('--wire')};
-}
 
 function setTheme(name) {
 	if (name) document.documentElement.dataset.theme = name;
 	else delete document.documentElement.dataset.theme;
 	document.querySelectorAll('#theme button').forEach(b => b.setAttribute('aria-pressed', b.dataset.theme === name));
-	themeCache = null;
+	colours.clear();
 	layout.overlaps = null;
 	layout.draw();
 	space?.draw();

@@ -458,7 +458,7 @@ class Space {
 		gl.uniform1f(at.green, this.flip && this.images.bump ? -1 : 1);
 		for (const [name, m] of [['map', this.mesh.map], ['baseMap', this.mesh.pictures[1].map]])
 			gl.uniformMatrix3fv(at[name] ?? null, false, [m[0], m[3], 0, m[1], m[4], 0, m[2], m[5], 1]);
-		for (const name of ['plain', 'mirrored', 'degenerate']) gl.uniform3fv(at[name], this.theme[name]);
+		for (const name of ['plain', 'mirrored', 'degenerate']) gl.uniform3fv(at[name], lightOf(name));
 		['bump', 'base'].forEach((name, unit) => {
 			gl.activeTexture(gl.TEXTURE0 + unit);
 			gl.bindTexture(gl.TEXTURE_2D, this.textures[name]);
@@ -535,10 +535,9 @@ class Space {
 		const gl = this.gl, canvas = this.canvas, scale = this.pixelScale();
 		const w = Math.max(1, Math.round(canvas.clientWidth * scale)), h = Math.max(1, Math.round(canvas.clientHeight * scale));
 		if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
-		this.theme = theme();
 		gl.bindFramebuffer(gl.FRAMEBUFFER, null);
 		gl.disable(gl.SCISSOR_TEST);
-		gl.clearColor(...this.theme.stage, 1);
+		gl.clearColor(...lightOf('stage'), 1);
 		gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
 		if (!this.geometry) return;
 		const two = this.other >= 0 && this.mode !== 7, half = Math.round(w / 2), cut = Math.round(this.wipe * w);

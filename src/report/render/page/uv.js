@@ -223,7 +223,7 @@ class Layout {
 		c.restore();
 	}
 
-	drawGrid(c, ink) {
+	drawGrid(c) {
 		const {scale} = this.view, low = [this.u(0), this.v(0)], high = [this.u(this.width), this.v(this.height)];
 		this.toPage(c);
 		const lines = (step, colour) => {
@@ -235,16 +235,16 @@ class Layout {
 			for (let v = Math.ceil(low[1] / step); v * step <= high[1]; v++) { const y = Math.round(this.y(v * step)) + 0.5; c.moveTo(0, y); c.lineTo(this.width, y); }
 			c.stroke();
 		};
-		lines(1 / 8, ink.faint);
-		lines(1, ink.grid);
+		lines(1 / 8, ink('grid-faint'));
+		lines(1, ink('grid'));
 		this.toTexture(c);
 		c.lineWidth = 1.5 / scale;
-		c.strokeStyle = ink.soft;
+		c.strokeStyle = ink('soft');
 		c.strokeRect(0, 0, 1, 1);
 	}
 
 	// UDIM numbers: 1001 + u + 10 v, v counted upwards from the tile of the image.
-	drawTiles(c, ink, taken) {
+	drawTiles(c, taken) {
 		const {scale} = this.view;
 		if (scale < 46) return;
 		this.toPage(c);
@@ -257,20 +257,20 @@ class Layout {
 				const up = -v, name = u >= 0 && u <= 9 && up >= 0 ? String(1001 + u + 10 * up) : u + ', ' + up;
 				const x = Math.max(this.x(u), 0) + 6, y = Math.min(this.y(v + 1), this.height) - 4, wide = c.measureText(name).width;
 				if (x + wide > Math.min(this.x(u + 1), this.width) || y - 14 < Math.max(this.y(v), 0)) continue;
-				c.fillStyle = ink.soft;
+				c.fillStyle = ink('soft');
 				c.fillText(name, x, y);
 				taken.push([x - 2, y - 14, x + wide + 2, y + 2]);
 			}
 	}
 
-	drawShapes(c, ink) {
-		const {scale} = this.view, pattern = this.hatch(ink.hatch);
+	drawShapes(c) {
+		const {scale} = this.view, pattern = this.hatch(ink('mirrored-line', 0.6));
 		pattern.setTransform(new DOMMatrix().scale(1 / (scale * this.ratio)));
 		this.toTexture(c);
 		c.lineJoin = c.lineCap = 'round';
 		for (const shape of this.opacity ? this.shapes : []) {
 			c.globalAlpha = this.opacity;
-			c.fillStyle = shape.mirrored ? ink.mirroredFill : ink.plainFill;
+			c.fillStyle = shape.mirrored ? ink('mirrored', 0.4) : ink('plain', 0.4);
 			c.fill(shape.path, 'nonzero');
 			c.globalAlpha = Math.sqrt(this.opacity); // lines hide less than areas
 			if (shape.mirrored) { c.fillStyle = pattern; c.fill(shape.path, 'nonzero'); }
@@ -278,7 +278,7 @@ class Layout {
 		c.globalAlpha = 1;
 		c.lineWidth = (this.geometry.regions.length > 600 ? 0.6 : 1.1) / scale;
 		for (const shape of this.shapes) {
-			c.strokeStyle = shape.mirrored ? ink.mirroredLine : ink.plainLine;
+			c.strokeStyle = shape.mirrored ? ink('mirrored-line') : ink('plain-line');
 			c.stroke(shape.path);
 		}
 	}
@@ -314,7 +314,7 @@ class Layout {
 	}
 
 	// The triangles themselves, once they are large enough to be picked.
-	drawTriangles(c, ink) {
+	drawTriangles(c) {
 		const g = this.geometry, uv = g.texcoords, {scale} = this.view, area = (this.high[0] - this.low[0]) * (this.high[1] - this.low[1]);
 		if (area * scale * scale / g.triangles < 120) return;
 		const [u0, v0, u1, v1] = [this.u(0), this.v(0), this.u(this.width), this.v(this.height)], path = new Path2D();
@@ -328,18 +328,18 @@ class Layout {
 			path.closePath();
 		}
 		this.toTexture(c);
-		c.strokeStyle = ink.wire;
+		c.strokeStyle = ink('wire');
 		c.lineWidth = 0.6 / scale;
 		c.stroke(path);
 	}
 
-	drawChosen(c, ink) {
+	drawChosen(c) {
 		const {scale} = this.view;
 		this.toTexture(c);
 		for (const path of this.chosen?.paths || []) {
-			c.fillStyle = ink.chosenFill;
+			c.fillStyle = ink('chosen', 0.69);
 			c.fill(path, 'nonzero');
-			c.strokeStyle = ink.chosenLine;
+			c.strokeStyle = ink('chosen-line');
 			c.lineWidth = 2.2 / scale;
 			c.stroke(path);
 		}
@@ -349,24 +349,24 @@ class Layout {
 		c.beginPath();
 		c.arc(this.x((this.chosen.low[0] + this.chosen.high[0]) / 2), this.y((this.chosen.low[1] + this.chosen.high[1]) / 2), 13, 0, 7);
 		c.lineWidth = 2.5;
-		c.strokeStyle = ink.chosenLine;
+		c.strokeStyle = ink('chosen-line');
 		c.stroke();
 	}
 
-	drawSeams(c, ink) {
+	drawSeams(c) {
 		const {scale} = this.view, chosen = new Set(this.chosen?.seams || []);
 		this.toTexture(c);
 		c.lineJoin = c.lineCap = 'round';
 		for (const pass of [0, 1]) this.seams.forEach((sides, i) => sides.forEach(({path}) => {
 			const wide = chosen.has(i) ? 4.5 : 2.6;
 			c.lineWidth = (pass ? wide : wide + 4) / scale;
-			c.strokeStyle = !pass ? ink.chosenLine : chosen.has(i) ? ink.chosen : i < this.geometry.firstHard ? ink.seam : ink.hard;
+			c.strokeStyle = !pass ? ink('chosen-line') : chosen.has(i) ? ink('chosen') : i < this.geometry.firstHard ? ink('seam') : ink('hard');
 			if (!pass && !chosen.has(i)) return;
 			c.stroke(path);
 		}));
 	}
 
-	drawLabels(c, ink, taken) {
+	drawLabels(c, taken) {
 		const chosen = new Set(this.chosen?.seams || []);
 		const order = [...chosen, ...this.labelled.filter(i => !chosen.has(i))];
 		this.labels = [];
@@ -384,15 +384,15 @@ class Layout {
 			this.labels.push({seam: i, box});
 			c.beginPath();
 			c.roundRect(box[0], box[1], 2 * half, 18, 9);
-			c.fillStyle = chosen.has(i) ? ink.chosen : ink.label;
+			c.fillStyle = chosen.has(i) ? ink('chosen') : ink('label');
 			c.fill();
-			c.fillStyle = chosen.has(i) ? '#16181d' : ink.labelText;
+			c.fillStyle = chosen.has(i) ? '#16181d' : ink('label-text');
 			c.fillText(text, x, y + 0.5);
 		}
 	}
 
 	// Marks places where two triangles lie on each other, as the sampler repeats them, once the picture rests.
-	drawOverlaps(c, ink) {
+	drawOverlaps(c) {
 		const {u, v, scale} = this.view, key = [u, v, scale, this.width, this.height].join();
 		if (!this.showOverlaps || !this.oncoverage) return;
 		if (this.overlaps?.key === key) {
@@ -403,15 +403,15 @@ class Layout {
 			return;
 		}
 		clearTimeout(this.timer);
-		this.timer = setTimeout(() => this.findOverlaps(key, ink), 80);
+		this.timer = setTimeout(() => this.findOverlaps(key), 80);
 	}
 
-	findOverlaps(key, ink) {
+	findOverlaps(key) {
 		const w = Math.round(this.width), h = Math.round(this.height);
 		const found = this.geometry && this.oncoverage([this.u(0), this.v(0)], [this.u(w), this.v(h)], w, h);
 		if (!found) return;
 		const {pixels, repeated} = found;
-		const [r, g, b] = ink.overlap;
+		const [r, g, b] = colourOf('twice');
 		this.overlapPixels = 0;
 		for (let i = 0; i < pixels.length; i += 4) {
 			const twice = pixels[i] > 32 && pixels[i + 3] > 96;
@@ -431,25 +431,25 @@ class Layout {
 	}
 
 	drawNow() {
-		const canvas = this.canvas, c = this.context, ink = layoutInk();
+		const canvas = this.canvas, c = this.context;
 		this.ratio = window.devicePixelRatio || 1;
 		const w = Math.max(1, Math.round(canvas.clientWidth * this.ratio)), h = Math.max(1, Math.round(canvas.clientHeight * this.ratio));
 		if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
 		c.setTransform(1, 0, 0, 1, 0, 0);
-		c.fillStyle = ink.stage;
+		c.fillStyle = ink('stage');
 		c.fillRect(0, 0, w, h);
 		if (!this.geometry) return;
 		const taken = [];
 		this.drawTexture(c);
-		this.drawGrid(c, ink);
-		this.drawShapes(c, ink);
-		this.drawOverlaps(c, ink);
+		this.drawGrid(c);
+		this.drawShapes(c);
+		this.drawOverlaps(c);
 		if (this.votes) this.drawVotes(c);
-		this.drawTriangles(c, ink);
-		this.drawChosen(c, ink);
-		this.drawSeams(c, ink);
-		this.drawTiles(c, ink, taken);
-		this.drawLabels(c, ink, taken);
+		this.drawTriangles(c);
+		this.drawChosen(c);
+		this.drawSeams(c);
+		this.drawTiles(c, taken);
+		this.drawLabels(c, taken);
 		this.ondraw?.();
 	}
 
