@@ -25,7 +25,7 @@ typedef struct picture {
 	subject of;
 	double middle[2], scale;
 	float depth[HEIGHT][WIDTH]; /* of a mesh */
-	/* Of a layout, unmirrored and mirrored: how many triangles begin at a pixel of a row, less those that end
+	/* of a layout, unmirrored and mirrored: how many triangles begin at a pixel of a row, less those that end
 	 * before it, so that stacked ones take a step for each row */
 	int32_t changes[2][HEIGHT][WIDTH + 1];
 	unsigned char shade[HEIGHT][WIDTH];

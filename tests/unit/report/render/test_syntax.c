@@ -17,7 +17,8 @@ static void expect(nt_buffer *out, const char *wanted)
 
 TEST(each_syntax_escapes_what_it_reserves)
 {
-	/* quotes, markup, a control character, a line end, two bytes of UTF-8, one that is none, a mark that turns text */
+	/* quotes, markup, a control character, a line end, UTF-8 of two bytes, a byte that is none, a mark that turns
+	 * text */
 	static const char text[] = "=\"a\\'<&>|*\x01\n\xc3\xbc\xff\xe2\x80\xae%,:";
 	static const struct {
 		nt_syntax syntax;
