@@ -118,13 +118,17 @@ static void check_part(void *context, size_t item, unsigned slot)
 nt_status nt_check_parts(const nt_check *check, size_t count, size_t size, const nt_code *codes, size_t code_count,
 	nt_part_check *part_check, void *context, nt_part *all)
 {
+	*all = (nt_part){.greatest = {-INFINITY, -INFINITY}};
+	for (size_t k = 0; k < code_count; k++)
+		all->tallies[k].code = codes[k];
+	if (count <= size) {
+		part_check(context, 0, count, 0, all);
+		return NT_OK;
+	}
 	const size_t parts = (count + size - 1) / size;
 	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
 	part_work work = {count, size, part_check, context,
 		nt_scratch_alloc(check->scratch, parts, sizeof *work.parts)};
-	*all = (nt_part){.greatest = {-INFINITY, -INFINITY}};
-	for (size_t k = 0; k < code_count; k++)
-		all->tallies[k].code = codes[k];
 	for (size_t i = 0; i < parts && work.parts; i++)
 		work.parts[i] = *all;
 	if (work.parts)

@@ -190,9 +190,9 @@ static uint32_t bits_of(float value)
 	return bits;
 }
 
-/* The bits of floats that are not negative are in the order of the values: the median's upper half is found by counts
- * of all, its lower half by counts of those with that upper half. counts: [65536] */
-static void find_determinants(nt_report_mesh *facts, const float *values, size_t count, uint32_t *counts)
+/* The bits of floats that are not negative are in the order of the values: the median's digits are found from the upper
+ * one on, by counts of the values that have those above. Small meshes have small digits: there may be many of them. */
+static void find_determinants(nt_report_mesh *facts, const float *values, size_t count)
 {
 	float least = INFINITY, greatest = -INFINITY, median;
 	uint32_t bits = 0;
@@ -205,15 +205,16 @@ static void find_determinants(nt_report_mesh *facts, const float *values, size_t
 	if (!rank)
 		return;
 	rank /= 2;
-	for (unsigned shift = 16; shift <= 16; shift -= 16) { /* 16, 0 */
-		memset(counts, 0, 65536 * sizeof *counts);
+	const int width = count > 1024 ? 8 : 4;
+	for (int shift = 32 - width; shift >= 0; shift -= width) {
+		uint32_t counts[256], digit = 0;
+		memset(counts, 0, sizeof *counts << width);
 		for (size_t t = 0; t < count; t++)
-			if (values[t] == values[t] && (shift || bits_of(values[t]) >> 16 == bits))
-				counts[bits_of(values[t]) >> shift & 0xffff]++;
-		uint32_t half = 0;
-		while (counts[half] <= rank)
-			rank -= counts[half++];
-		bits = bits << 16 | half;
+			if (values[t] == values[t] && (uint64_t)bits_of(values[t]) >> shift >> width == bits)
+				counts[bits_of(values[t]) >> shift & ((1u << width) - 1)]++;
+		while (counts[digit] <= rank)
+			rank -= counts[digit++];
+		bits = bits << width | digit;
 	}
 	memcpy(&median, &bits, sizeof median);
 	memcpy(facts->relative_determinant, (double[3]){least, median, greatest}, sizeof facts->relative_determinant);
@@ -314,16 +315,15 @@ static nt_status check_triangles(nt_check *check)
 {
 	const size_t triangles = check->surface.triangle_count;
 	triangle_work work = {check, nt_scratch_alloc(check->scratch, triangles, sizeof *work.determinants)};
-	uint32_t *counts = nt_scratch_alloc(check->scratch, 65536, sizeof *counts);
 	nt_part all;
 	size_t from_neighbour;
-	nt_status status = work.determinants && counts ? nt_check_parts(check, triangles, PART, codes,
+	nt_status status = work.determinants ? nt_check_parts(check, triangles, PART, codes,
 		sizeof codes / sizeof *codes, check_part, &work, &all) : NT_ERROR_MEMORY;
 	if (status)
 		return status;
 	sum_blocks(check);
 	if (check->mesh->texcoords)
-		find_determinants(check->facts, work.determinants, triangles, counts);
+		find_determinants(check->facts, work.determinants, triangles);
 	status = count_neighbours(check, &from_neighbour);
 	if (!status)
 		report_triangles(check, &all, from_neighbour);

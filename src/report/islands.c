@@ -21,7 +21,7 @@
 #include <string.h>
 #include "base/hash_index.h"
 
-enum { SAMPLE_COUNT = 16384, GRID_SIZE = 128 };
+enum { SAMPLE_COUNT = 16384, MOST_GRID = 128, SMALL_GRID = 16 };
 
 /* Cells that the streaming triangles may visit: some 10 ms for a mesh and 3 us for each of its triangles, at most 0.3
  * s. Beyond, points count as not found. */
@@ -130,7 +130,8 @@ typedef struct sample {
 typedef struct grid {
 	const nt_check *check;
 	double minimum[2], scale[2];
-	uint32_t cells[GRID_SIZE * GRID_SIZE]; /* first sample */
+	uint32_t cells[MOST_GRID * MOST_GRID]; /* [size * size] first sample */
+	int size;
 	sample *samples;
 	size_t sample_count, left; /* not found yet */
 	size_t visits, most_visits;
@@ -185,7 +186,7 @@ static double uv_area(const float *a, const float *b, const float *c)
 static int cell_of(const grid *g, int axis, double value)
 {
 	const double cell = (value - g->minimum[axis]) * g->scale[axis];
-	return !(cell >= 0.0) ? 0 : cell >= GRID_SIZE ? GRID_SIZE - 1 : (int)cell;
+	return !(cell >= 0.0) ? 0 : cell >= g->size ? g->size - 1 : (int)cell;
 }
 
 /* Takes every n-th mirrored triangle, at most SAMPLE_COUNT, and the first one of every island. `met` is
@@ -215,8 +216,10 @@ static void take_samples(grid *g, size_t mirrored_count, uint8_t *met)
 	}
 }
 
+/* A scene may have thousands of small meshes, for which clearing a large grid is half of a report's time. */
 static void fill_grid(grid *g)
 {
+	g->size = g->sample_count > SMALL_GRID * SMALL_GRID ? MOST_GRID : SMALL_GRID;
 	for (int axis = 0; axis < 2; axis++) {
 		double maximum = -INFINITY;
 		g->minimum[axis] = INFINITY;
@@ -225,12 +228,12 @@ static void fill_grid(grid *g)
 			maximum = fmax(maximum, g->samples[i].uv[axis]);
 		}
 		const double extent = maximum - g->minimum[axis];
-		g->scale[axis] = extent > 0.0 ? GRID_SIZE / extent : 0.0;
+		g->scale[axis] = extent > 0.0 ? g->size / extent : 0.0;
 	}
-	memset(g->cells, 0xff, sizeof g->cells);
+	memset(g->cells, 0xff, (size_t)(g->size * g->size) * sizeof *g->cells);
 	for (size_t i = g->sample_count; i-- > 0;) {
 		sample *p = &g->samples[i];
-		uint32_t *cell = &g->cells[cell_of(g, 1, p->uv[1]) * GRID_SIZE + cell_of(g, 0, p->uv[0])];
+		uint32_t *cell = &g->cells[cell_of(g, 1, p->uv[1]) * g->size + cell_of(g, 0, p->uv[0])];
 		p->next = *cell;
 		*cell = (uint32_t)i;
 	}
@@ -274,7 +277,7 @@ static void search_cells(grid *g, const uv_triangle *t)
 	for (int y = y0; y <= y1; y++) {
 		for (int x = x0; x <= x1; x++) {
 			g->visits++;
-			for (uint32_t *link = &g->cells[y * GRID_SIZE + x]; *link != NT_NONE;) {
+			for (uint32_t *link = &g->cells[y * g->size + x]; *link != NT_NONE;) {
 				sample *p = &g->samples[*link];
 				g->visits++;
 				if (p->texture == t->texture && is_inside(p, t)) {
