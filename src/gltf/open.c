@@ -295,13 +295,13 @@ static nt_status merge_buffers(nt_gltf *document, struct stat *files, nt_error *
 	uint32_t kept = 0, *numbers = nt_alloc(count, sizeof *numbers);
 	bool failed = !numbers, stays = false;
 	for (size_t i = 0; i < count && !failed && !stays; i++) {
-		const uint64_t key[2] = {files[i].st_dev, files[i].st_ino}, hash = nt_hash_bytes(0, key, sizeof key);
+		const nt_file_id id = nt_file_id_of(&files[i]);
+		const uint64_t hash = nt_hash_bytes(0, &id, sizeof id);
 		size_t at = NT_HASH_BEGIN;
 		/* a name, extras or an extension of its own would be lost */
 		const bool plain = files[i].st_nlink && nt_json_count(nt_json_at(buffers, i)) == 2;
 		uint32_t first = plain ? nt_hash_index_next(&known, hash, &at) : UINT32_MAX;
-		while (first != UINT32_MAX &&
-			(files[first].st_dev != files[i].st_dev || files[first].st_ino != files[i].st_ino))
+		while (first != UINT32_MAX && !nt_same_file(&files[first], &files[i]))
 			first = nt_hash_index_next(&known, hash, &at);
 		stays = first != UINT32_MAX && kept == i && may_refer(document);
 		if (first != UINT32_MAX && !stays) {

@@ -14,6 +14,7 @@
 #include <unistd.h>
 #include "base/hash_index.h"
 #include "file/image_type.h"
+#include "file/lookup.h"
 #include "file/path.h"
 #include "file/uri.h"
 #include "gltf/turned_images.h"
@@ -28,7 +29,6 @@ nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *
 
 /* The destination of a file: images that name it, by whatever name, have it together. */
 typedef struct moved_file {
-	uint64_t device, inode;
 	uint32_t view;   /* NT_NONE: into none */
 	const char *uri; /* NULL: not beside the output */
 } moved_file;
@@ -40,9 +40,9 @@ typedef struct moving {
 	nt_json *json;
 	const nt_gltf_output *output;
 	nt_open_images *images;
-	moved_file *moved; /* [moved_count] */
-	size_t moved_count, moved_capacity;
-	nt_hash_index moved_index;
+	nt_key_set files;  /* of nt_file_id */
+	moved_file *moved; /* [count] of each */
+	size_t count, capacity;
 	nt_error *error;
 } moving;
 
@@ -148,25 +148,18 @@ nt_status nt_gltf_look_for_images(nt_scene *scene, bool linked, nt_error *error)
 	return status;
 }
 
-/* The destination of a file that an earlier image names, too; NULL: none does. */
-static const moved_file *find_moved(const moving *m, const nt_file *file)
+/* The destination of a file, which has none yet if no earlier image names it. NULL: memory is exhausted. */
+static moved_file *destination_of(moving *m, const nt_file *file)
 {
-	const uint64_t key[2] = {file->device, file->inode}, hash = nt_hash_bytes(0, key, sizeof key);
-	size_t at = NT_HASH_BEGIN;
-	for (uint32_t i; (i = nt_hash_index_next(&m->moved_index, hash, &at)) != UINT32_MAX;)
-		if (m->moved[i].device == file->device && m->moved[i].inode == file->inode)
-			return &m->moved[i];
-	return NULL;
-}
-
-static nt_status note_moved(moving *m, const nt_file *file, uint32_t view, const char *uri)
-{
-	const uint64_t key[2] = {file->device, file->inode};
-	if (!nt_grow((void **)&m->moved, &m->moved_capacity, m->moved_count + 1, sizeof *m->moved) ||
-		!nt_hash_index_add(&m->moved_index, nt_hash_bytes(0, key, sizeof key), (uint32_t)m->moved_count))
-		return nt_fail_memory(m->error);
-	m->moved[m->moved_count++] = (moved_file){file->device, file->inode, view, uri};
-	return NT_OK;
+	const nt_file_id id = {file->device, file->inode};
+	const uint32_t number = nt_key_add(&m->files, &id, sizeof id);
+	if (number == UINT32_MAX || !nt_grow((void **)&m->moved, &m->capacity, m->files.count, sizeof *m->moved)) {
+		nt_fail_memory(m->error);
+		return NULL;
+	}
+	if (number == m->count)
+		m->moved[m->count++] = (moved_file){NT_NONE, NULL};
+	return &m->moved[number];
 }
 
 /* Keeps a file open until the output is written. */
@@ -274,18 +267,20 @@ static nt_status place_turned(moving *m, nt_json_value *image, const nt_turned_i
  * referred to. */
 static nt_status copy_file(moving *m, nt_json_value *image, const nt_file *file, const char *path)
 {
-	const moved_file *known = find_moved(m, file);
+	moved_file *moved = destination_of(m, file);
 	size_t length;
-	if (known && known->uri) {
-		nt_json_set_string(m->json, nt_json_put(m->json, image, "uri"), known->uri, strlen(known->uri));
+	if (!moved)
+		return NT_ERROR_MEMORY;
+	if (moved->uri) {
+		nt_json_set_string(m->json, nt_json_put(m->json, image, "uri"), moved->uri, strlen(moved->uri));
 		return NT_OK;
 	}
 	const nt_status status = write_beside(m, image, file, nt_last_part(path));
 	if (status)
 		return status;
 	const char *uri = nt_json_find_string(image, "uri", &length);
-	uri = nt_arena_text(&m->edits->arena, uri, length);
-	return uri ? note_moved(m, file, NT_NONE, uri) : nt_fail_memory(m->error);
+	moved->uri = nt_arena_text(&m->edits->arena, uri, length);
+	return moved->uri ? NT_OK : nt_fail_memory(m->error);
 }
 
 static nt_status copy_image(moving *m, size_t index, nt_json_value *image)
@@ -314,18 +309,16 @@ static nt_status embed_file(moving *m, size_t index, nt_json_value *image, const
 	}
 	if (m->output->options->format != NT_FORMAT_GLB)
 		return embed_as_data(m, image, file, type);
-	const moved_file *known = find_moved(m, file);
-	if (known && known->view != NT_NONE) {
-		refer_to_view(m, image, known->view, type);
+	moved_file *moved = destination_of(m, file);
+	if (!moved)
+		return NT_ERROR_MEMORY;
+	if (moved->view != NT_NONE) {
+		refer_to_view(m, image, moved->view, type);
 		return NT_OK;
 	}
-	uint32_t view;
-	nt_status status = keep_open(m, file);
-	if (status)
-		return status;
-	*is_kept = true;
-	status = embed_in_view(m, image, file, type, &view);
-	return status ? status : note_moved(m, file, view, NULL);
+	const nt_status status = keep_open(m, file);
+	*is_kept = !status;
+	return status ? status : embed_in_view(m, image, file, type, &moved->view);
 }
 
 static nt_status embed_image(moving *m, size_t index, nt_json_value *image)
@@ -395,7 +388,7 @@ nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_
 	}
 	free(turned_of);
 	free(m.moved);
-	nt_hash_index_free(&m.moved_index);
+	nt_key_set_free(&m.files);
 	return status;
 }
 
