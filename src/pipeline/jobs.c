@@ -19,6 +19,7 @@
 #include <stdlib.h>
 #include "base/clock.h"
 #include "base/counts.h"
+#include "base/hash.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "gltf/load.h"
@@ -436,6 +437,7 @@ static void tell_meshes(window *w)
 {
 	nt_scene *scene = &w->scene;
 	const nt_settings *s = w->tasks->settings;
+	uint64_t *digest = &w->tasks->summary->tangents_digest;
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
 		if (mesh->plan.same_as && nt_mesh_is_wanted(mesh))
@@ -450,6 +452,8 @@ static void tell_meshes(window *w)
 		w->tasks->summary->same_count += mesh->plan.same_as != NULL;
 		if (mesh->morph_tangents)
 			mesh->morph_tangents->user_count += (mesh->plan.same_as != NULL) + s->verify;
+		if (mesh->tangents_digest)
+			*digest = nt_hash_unkeyed(*digest, &mesh->tangents_digest, sizeof mesh->tangents_digest);
 		add_findings(scene, mesh);
 		add_counts(w->tasks->summary, mesh);
 	}

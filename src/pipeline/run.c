@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/clock.h"
-#include "base/hash.h"
 #include "file/watch.h"
 #include "format/format.h"
 #include "format/normal_map.h"
@@ -122,14 +121,14 @@ static nt_status open_scene(run *r)
 /* Whether any mesh gets tangents. */
 static bool count_decisions(run *r)
 {
-	bool any = false;
+	size_t wanted = 0;
 	r->summary->mesh_count = r->scene.mesh_count;
 	for (size_t i = 0; i < r->scene.mesh_count; i++) {
-		const nt_mesh *mesh = &r->scene.meshes[i];
-		r->summary->skipped[mesh->decision] += !nt_mesh_is_wanted(mesh);
-		any |= nt_mesh_is_wanted(mesh);
+		const bool is_wanted = nt_mesh_is_wanted(&r->scene.meshes[i]);
+		r->summary->skipped[r->scene.meshes[i].decision] += !is_wanted;
+		wanted += is_wanted;
 	}
-	return any;
+	return wanted > 0;
 }
 
 /* Nothing takes its name if it is too late for that, or if a record could not say of what it was made. */
@@ -347,6 +346,29 @@ static nt_status turn_maps(run *r)
 	return status;
 }
 
+/* The outcome of each mesh, copied out of the scene, which is gone when the run is over. */
+static nt_status list_meshes(const nt_scene *scene, nt_summary *summary, nt_error *error)
+{
+	summary->lines = nt_calloc(scene->mesh_count, sizeof *summary->lines);
+	if (!summary->lines)
+		return nt_fail_memory(error);
+	summary->line_count = scene->mesh_count;
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[i];
+		const nt_mesh *solved = mesh->plan.same_as ? mesh->plan.same_as : mesh;
+		nt_mesh_line *line = &summary->lines[i];
+		*line = (nt_mesh_line){.decision = mesh->decision,
+			.same = mesh->plan.same_as && nt_mesh_is_wanted(mesh),
+			.triangle_count = solved->triangles ? nt_mesh_triangle_count(solved) : 0,
+			.vertex_count = solved->unused_vertices + solved->source_vertex_count};
+		nt_mesh_place(mesh, &line->place);
+		if (solved->vertex_count > solved->source_vertex_count)
+			line->appended = solved->vertex_count - solved->source_vertex_count;
+		line->appended += solved->split.source_count;
+	}
+	return NT_OK;
+}
+
 static nt_status run_stages(run *r)
 {
 	nt_status status = nt_choose_writer(r->settings, r->output_path, NULL, &r->writer, r->error);
@@ -377,12 +399,6 @@ static nt_status run_stages(run *r)
 		status = nt_stage_jobs(&tasks, r->error);
 		nt_error_in_file(r->error, r->input_path);
 	}
-	for (size_t i = 0; !status && i < r->scene.mesh_count && r->settings->digests; i++) {
-		const uint64_t digest = r->scene.meshes[i].tangents_digest;
-		if (digest)
-			r->summary->tangents_digest =
-				nt_hash_unkeyed(r->summary->tangents_digest, &digest, sizeof digest);
-	}
 	if (!status)
 		status = nt_tell_textures(&r->scene, r->settings, r->textures, r->summary, r->error);
 	/* a writer finds out which of them it cannot read */
@@ -396,7 +412,7 @@ static nt_status run_stages(run *r)
 			nt_format_is_gltf(r->scene.format) ? "no two triangles that follow each other are a quad"
 				: "it is for glTF; the faces of this file are solved as they are");
 	if (!status && r->settings->list_meshes)
-		status = nt_stage_listing(&r->scene, r->summary, r->error);
+		status = list_meshes(&r->scene, r->summary, r->error);
 	if (!status && r->writer && nt_writer_edits(r->reader, r->writer) &&
 		(r->settings->flip_green || r->settings->bump == NT_BUMP_HEIGHT))
 		status = turn_maps(r);

@@ -176,9 +176,6 @@ nt_status nt_check_inputs(nt_scene *scene, nt_status status, nt_error *error);
 nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_format written, const nt_textures *textures,
 	nt_status status, nt_summary *summary, nt_error *error);
 
-/* Fills summary->lines. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error);
-
 /* Says of every mesh with quads where they are cut (face_diagonals), for writers of triangles. */
 nt_status nt_stage_quads(nt_scene *scene, nt_error *error);
 
