@@ -207,9 +207,9 @@ TEST(nearly_collinear_coordinates_far_from_the_origin)
 {
 	static const struct {
 		float u, v, height;
-		bool near;
-	} rows[] = {{0, 1000, 0.00006f, true}, {0, 1000, 0.0028f, true}, {0, 1000, 0.0044f, false},
-		{1000, 0, 0.0001f, false}, {1000, 0, 0.09f, false}};
+		double degrees; /* 0: it is no finding */
+	} rows[] = {{0, 1000, 0.00006f, 90}, {0, 1000, 0.0028f, 1.2457}, {0, 1000, 0.0044f, 0},
+		{1000, 0, 0.0001f, 0}, {1000, 0, 0.09f, 0}}; /* 0.0028 is 46 * 2^-14 there: the sine is 1 / 46 */
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
 		hand_mesh *h = hand_new();
 		hand_vertex(h, 0, 0, 0, rows[i].u, rows[i].v);
@@ -217,7 +217,12 @@ TEST(nearly_collinear_coordinates_far_from_the_origin)
 		hand_vertex(h, 0, 1, 0, rows[i].u, rows[i].v + rows[i].height);
 		hand_triangle(h, 0, 1, 2);
 		nt_report *report = hand_report(h, NULL);
-		assert_int_equal(hand_findings(report, NT_CODE_UV_NEAR_DEGENERATE), rows[i].near);
+		assert_int_equal(hand_findings(report, NT_CODE_UV_NEAR_DEGENERATE), rows[i].degrees > 0);
+		if (rows[i].degrees > 0) {
+			const nt_number *last = &hand_finding(report, NT_CODE_UV_NEAR_DEGENERATE)->numbers[2];
+			assert_string_equal(last->name, "greatest_error_degrees");
+			assert_true(fabs(last->value - rows[i].degrees) < 1e-4);
+		}
 		hand_free(h, report);
 	}
 }
