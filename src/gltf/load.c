@@ -246,19 +246,9 @@ static void list_triangles(uint64_t mode, const uint32_t *chain, size_t face_cou
 typedef struct nt_displacement {
 	nt_gltf_accessor accessor;
 	const unsigned char *elements; /* NULL: zeros */
-	const unsigned char *replaced, *values; /* [accessor.sparse->count] numbers that ascend, and their elements */
+	const uint32_t *replaced;      /* [accessor.sparse->count] numbers that ascend, */
+	const unsigned char *values;   /* and their elements */
 } nt_displacement;
-
-static nt_status find_sparse(nt_gltf *document, nt_displacement *d, nt_error *error)
-{
-	const nt_gltf_accessor *a = &d->accessor;
-	nt_arena scratch = {0};
-	const uint32_t *checked;
-	nt_status status = nt_gltf_sparse(document, a, &scratch, &checked, &d->values, error);
-	nt_arena_free(&scratch);
-	return status ? status : nt_gltf_view_bytes(document, a->sparse->index_view, a->sparse->index_offset,
-		a->sparse->count * nt_gltf_component_bytes(a->sparse->index_type), "", &d->replaced, error);
-}
 
 /* *delta: NULL where the target does not move the attribute. */
 static nt_status find_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *mesh, const nt_json_value *target,
@@ -283,23 +273,12 @@ static nt_status find_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *m
 			found.accessor.components, pool_count);
 	status = nt_gltf_elements(document, &found.accessor, &found.elements, error);
 	if (!status && found.accessor.sparse)
-		status = find_sparse(document, &found, error);
+		status = nt_gltf_sparse(document, &found.accessor, arena, &found.replaced, &found.values, error);
 	nt_displacement *kept = status ? NULL : nt_arena_alloc(arena, 1, sizeof *kept);
 	if (kept)
 		*kept = found;
 	*delta = kept;
 	return status || kept ? status : nt_fail_memory(error);
-}
-
-/* The vertex that a sparse element replaces. */
-static uint32_t replaced_by(const nt_displacement *d, size_t element)
-{
-	const uint32_t width = nt_gltf_component_bytes(d->accessor.sparse->index_type);
-	const unsigned char *at = d->replaced + element * width;
-	uint32_t number = 0;
-	for (uint32_t i = 0; i < width; i++)
-		number |= (uint32_t)at[i] << 8 * i;
-	return number;
 }
 
 static void read_delta(const nt_gltf_accessor *accessor, const unsigned char *element, float *delta)
@@ -323,9 +302,9 @@ static float *add_delta(const nt_mesh *mesh, const nt_displacement *d, const flo
 		return NULL;
 	for (size_t v = 0, at = 0; v < own_count; v++) {
 		const size_t row = nt_mesh_pool_vertex(mesh, (uint32_t)v);
-		while (at < replaced_count && replaced_by(d, at) < row)
+		while (at < replaced_count && d->replaced[at] < row)
 			at++;
-		if (at < replaced_count && replaced_by(d, at) == row)
+		if (at < replaced_count && d->replaced[at] == row)
 			read_delta(a, d->values + at * a->element_bytes, sums + 3 * v);
 		else if (d->elements)
 			read_delta(a, d->elements + row * a->stride, sums + 3 * v);
