@@ -81,12 +81,12 @@ module_libs_meshopt := -lmeshoptimizer
 module_libs_openmesh := -lOpenMeshCore
 module_libs_png := -lspng
 module_libs_tiff := -ltiff
-module_libs_tinygltf := -ltinygltf -lmeshoptimizer
+module_libs_tinygltf := -ltinygltf
 module_libs_webp := -lwebp
 modules := draco meshopt openmesh png tiff tinygltf webp
 module_so := $(modules:%=$(B)/nmtan-%.so)
 module_obj := $(call objects,$(wildcard src/ext/modules/*.c src/ext/modules/*.cpp))
-module_files = $(B)/ext/modules/$(1).c%.o $(B)/ext/modules/$(1)_%.o $(if $(filter tinygltf,$(1)),$(B)/ext/modules/meshopt%.o)
+module_files = $(B)/ext/modules/$(1).c%.o $(B)/ext/modules/$(1)_%.o
 
 .PHONY: all
 ifeq ($(MAKECMDGOALS),)

@@ -52,14 +52,7 @@ typedef struct nt_openmesh_table {
 
 typedef struct nt_tinygltf_table {
 	nt_module_head head;
-	__typeof__(nt_reread_open) *open;
-	__typeof__(nt_reread_free) *free;
-	__typeof__(nt_reread_mesh_count) *mesh_count;
-	__typeof__(nt_reread_primitive_count) *primitive_count;
-	__typeof__(nt_reread_attribute) *attribute;
-	__typeof__(nt_reread_target) *target;
-	__typeof__(nt_reread_block) *block;
-	__typeof__(nt_reread_block_id) *block_id;
+	__typeof__(nt_tinygltf_accept) *accept;
 } nt_tinygltf_table;
 
 /* The image formats have one kind of table; see ext/codec/pixels.h. */

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "file/output.h"
 #include "file/uri.h"
 #include "gltf/glb.h"
 
@@ -184,6 +185,7 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 	document->bytes = scene->bytes;
 	document->byte_count = scene->byte_count;
 	document->allow_outside = allow_outside;
+	document->written = scene->written;
 	document->is_glb = nt_glb_has_magic(scene->bytes, scene->byte_count) ||
 		scene->format == NT_FORMAT_GLB;
 	nt_status status = NT_OK;
@@ -312,14 +314,24 @@ static nt_status place_error(nt_error *error, nt_status status, const char *poin
 	return status;
 }
 
+nt_status nt_gltf_resolve(nt_gltf *document, const char *uri, size_t length, const char **path, nt_error *error)
+{
+	const char *written = NULL;
+	nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length, document->allow_outside, path,
+		error);
+	if (!status && document->written)
+		status = nt_output_written(document->written, *path, &written, error);
+	*path = written ? written : *path;
+	return status;
+}
+
 static nt_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const char *uri, size_t length,
 	nt_error *error)
 {
 	nt_error ignored; /* who wants none here: below, an error carries the status */
 	error = error ? error : &ignored;
 	const char *path;
-	nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length,
-		document->allow_outside, &path, error);
+	nt_status status = nt_gltf_resolve(document, uri, length, &path, error);
 	if (!status)
 		status = nt_file_open_content(&buffer->file, path, true, error);
 	if (status)

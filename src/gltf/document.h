@@ -127,6 +127,7 @@ typedef struct nt_gltf {
 	bool is_glb;
 	nt_glb glb;
 	bool allow_outside;
+	struct nt_output *written; /* nt_scene.written */
 	bool keeps_transforms;   /* texture transforms turn no tangents: set before meshes are described */
 	nt_gltf_buffer *buffers; /* [buffer_count] */
 	size_t buffer_count;
@@ -195,6 +196,9 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 /* The same with its bytes. */
 nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_buffer **buffer, nt_error *error);
+
+/* The path of the file of a buffer. Returns what nt_uri_resolve() and nt_output_written() do. */
+nt_status nt_gltf_resolve(nt_gltf *document, const char *uri, size_t length, const char **path, nt_error *error);
 
 /* Books bytes of a buffer as read: whole pages, each once. Data URIs were read with the JSON. */
 enum { NT_GLTF_PAGE = 4096 };

@@ -233,8 +233,7 @@ static nt_status look_for_file(nt_gltf *document, size_t index, struct stat *inf
 	info->st_nlink = 0;
 	if (!uri || nt_uri_is_data(uri, length))
 		return NT_OK;
-	nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length, document->allow_outside,
-		&path, failure);
+	nt_status status = nt_gltf_resolve(document, uri, length, &path, failure);
 	if (!status && document->allow_outside)
 		status = nt_lookup(path, info, failure);
 	if (!status && (access(path, R_OK) != 0 || stat(path, info) != 0))
@@ -266,7 +265,7 @@ static void stand_for(nt_gltf *document, nt_json_value *buffer, const nt_json_va
 	if (nt_json_get_uint64(length, &old) && nt_json_find_uint64(other, "byteLength", &new) && new <= most &&
 		(new > old || old > most))
 		nt_json_set_uint64(document->json, length, new);
-	if (nt_uri_resolve(&document->arena, document->path, uri, text, document->allow_outside, &path, NULL) == NT_OK)
+	if (nt_gltf_resolve(document, uri, text, &path, NULL) == NT_OK)
 		nt_trace_note(NT_TRACE_READ, path, NULL, file);
 }
 

@@ -99,7 +99,7 @@ typedef struct nt_settings {
 	size_t texture_path_count;
 	const char *given_maps[NT_GIVEN_COUNT]; /* paths; NULL: none */
 	bool bitangents;
-	bool verify;   /* read the output back with tinygltf before it takes its name */
+	bool verify;   /* read the output back before it takes its name, and have tinygltf open it */
 	bool dry_run;  /* do everything but write */
 	bool check;    /* a report only: no output */
 	bool converts; /* with check: a glTF is judged as it would be written, not as it is */

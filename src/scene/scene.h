@@ -415,6 +415,8 @@ typedef struct nt_scene {
 
 	/* Data that a reader keeps for the writer of the same format, and the input's bytes. */
 	void *source;
+	struct nt_output *written; /* its files are those of this output set, which is not in place yet: file/output.h;
+	                              NULL: they are in place */
 	void (*free_source)(void *source);
 	uint64_t (*read_of_source)(const void *source); /* bytes of the input and its files that were read, as far as
 	                                                   the reader knows; NULL: all of the input */

@@ -2,9 +2,9 @@
 //
 // tinygltf does not know that a decoder brings what compressed documents leave out. It refuses primitives whose
 // indices have no buffer view, which is how Draco has them, and buffers without bytes, which is what views packed by
-// meshoptimizer are said to lie in. It gets a text without the former and with a byte for the latter; who wants
-// their values unpacks them. Nor does its parser take numbers beyond double, which extras may have: it gets zeros. And
-// 8.0 is no integer to it, though it is one to JSON and glTF: it gets 8.
+// meshoptimizer are said to lie in. It gets a text without the former and with a byte for the latter. Nor does its
+// parser take numbers beyond double, which extras may have: it gets zeros. And 8.0 is no integer to it, though it is
+// one to JSON and glTF: it gets 8.
 #include "ext/modules/tinygltf_text.hpp"
 #include "ext/number.h"
 
@@ -17,6 +17,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
+constexpr char draco_extension[] = "KHR_draco_mesh_compression";
 const char *const packings[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
 uint32_t little_endian(const unsigned char *bytes)
@@ -38,19 +39,7 @@ const json *member(const json &object, const char *name)
 	return found == object.end() ? nullptr : &*found;
 }
 
-uint64_t number(const json &object, const char *name)
-{
-	const json *value = member(object, name);
-	return value && value->is_number_unsigned() ? value->get<uint64_t>() : 0;
-}
-
-std::string word(const json &object, const char *name, const char *otherwise)
-{
-	const json *value = member(object, name);
-	return value && value->is_string() ? value->get<std::string>() : otherwise;
-}
-
-// meshoptimizer's extension of a view or a buffer; null where there is none.
+// meshoptimizer's extension of a buffer; null where there is none.
 const json *packing_of(const json &object)
 {
 	const json *extensions = member(object, "extensions");
@@ -125,20 +114,10 @@ void drop_compressed_indices(json &document)
 			continue;
 		for (json &primitive : mesh["primitives"]) {
 			const json *extensions = member(primitive, "extensions");
-			if (extensions && member(*extensions, nt::draco_extension))
+			if (extensions && member(*extensions, draco_extension))
 				primitive.erase("indices");
 		}
 	}
-}
-
-void note_packed_views(const json &document, nt::packed_views &packed)
-{
-	const json *views = member(document, "bufferViews");
-	for (size_t i = 0; views && views->is_array() && i < views->size(); i++)
-		if (const json *p = packing_of((*views)[i]))
-			packed[i] = {number(*p, "buffer"), number(*p, "byteOffset"), number(*p, "byteLength"),
-				number(*p, "byteStride"), number(*p, "count"), word(*p, "mode", ""),
-				word(*p, "filter", "NONE")};
 }
 
 void fill_fallback_buffers(json &document, bool binary)
@@ -194,7 +173,7 @@ std::string nt::gltf_text::with(std::string changed) const
 	return out.append(bytes + 20 + text_size, rest);
 }
 
-std::string nt::gltf_text::eased(packed_views &packed) const
+std::string nt::gltf_text::eased() const
 {
 	const std::string easy = ease_numbers(text, text_size);
 	const char *const from = easy.empty() ? text : easy.data();
@@ -206,7 +185,6 @@ std::string nt::gltf_text::eased(packed_views &packed) const
 	if (!document.is_object()) // tinygltf says what it is
 		return {};
 	drop_compressed_indices(document);
-	note_packed_views(document, packed);
 	fill_fallback_buffers(document, binary);
 	return with(document.dump());
 }

@@ -5,20 +5,9 @@
 #define NT_EXT_MODULES_TINYGLTF_TEXT_HPP
 
 #include <cstddef>
-#include <cstdint>
-#include <map>
 #include <string>
 
 namespace nt {
-
-constexpr char draco_extension[] = "KHR_draco_mesh_compression";
-
-// What EXT_meshopt_compression or KHR_meshopt_compression says of a view.
-struct packed_view {
-	uint64_t buffer, offset, size, stride, count;
-	std::string mode, filter;
-};
-using packed_views = std::map<size_t, packed_view>; // by the number of the view
 
 class gltf_text {
 public:
@@ -33,9 +22,8 @@ public:
 	// is JSON at all is not decided here.
 	bool is_too_deep() const;
 
-	// The file without what tinygltf refuses although it is legal; empty where it can stay as it is. Fills the
-	// views that are packed.
-	std::string eased(packed_views &packed) const;
+	// The file without what tinygltf refuses although it is legal; empty where it can stay as it is.
+	std::string eased() const;
 
 private:
 	std::string with(std::string changed) const; // the file with another text

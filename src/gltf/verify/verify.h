@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A second opinion on glTF output before it takes its name: another parser reads the files, and finds in
- * every corner the position and tangent that were to be written.
+ * A second look at glTF output before it takes its name: another parser takes it, and what the reader finds in
+ * every corner is the position and tangent that were to be written.
  */
 #ifndef NT_GLTF_VERIFY_VERIFY_H
 #define NT_GLTF_VERIFY_VERIFY_H
@@ -12,10 +12,10 @@
 
 /*
  * Reads back the glTF or GLB `path` of an output set that is complete but not committed, and compares it
- * with the scene it was written from, morph targets included; views that meshoptimizer
- * packed unpacked, what Draco compresses within its quantization, and with vertices in any order where the method
- * is edgebreaker. An output that is written through cannot be read back: nothing
- * is done then. threads: 0 for one per processor; several compare meshes, with the same result. If tinygltf refuses
+ * with the scene it was written from, morph targets included; what Draco or a filter of meshoptimizer changes
+ * within that, and vertices of a block in any order if the method is edgebreaker. An output that is written
+ * through cannot be read back: nothing is done then. threads: 0 for one per processor; several compare meshes, with
+ * the same result. If tinygltf refuses
  * an output, the scene gets the finding NOT_VERIFIED.
  *
  * Returns NT_OK; NT_ERROR_INTERNAL where the output is not what it should be, which says mesh and

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The sign rule on whole files, by another reader than ours: in what nmtan writes as glTF, B = cross(N, T) w
+ * The sign rule on whole files: in what nmtan writes as glTF, B = cross(N, T) w
  * runs along -dP/dv of the written texture coordinates on every triangle whose normals agree with its
  * winding. The authored tangents of SheenCloth and of the pbr sphere obey the same rule, which
  * shows that it is the right one.
@@ -11,59 +11,14 @@
 #include <math.h>
 #include <stdio.h>
 #include <unistd.h>
-#include "ext/tinygltf.h"
 #include "file/input.h"
+#include "gltf/load.h"
 #include "pipeline/run.h"
 
 typedef struct rule_count {
 	size_t triangles, judged, wrong, mixed;
 	size_t bad_w; /* corners whose w is not minus the sign of the exact determinant */
 } rule_count;
-
-typedef struct folder {
-	const char *path;
-	nt_file files[16];
-	size_t count;
-} folder;
-
-static bool find_file(void *user, const char *uri, const unsigned char **bytes, size_t *size)
-{
-	folder *f = user;
-	char path[4096];
-	const char *slash = strrchr(f->path, '/');
-	snprintf(path, sizeof path, "%.*s/%s", slash ? (int)(slash - f->path) : 1, slash ? f->path : ".",
-		uri);
-	nt_error error;
-	if (f->count == 16 || nt_file_open(&f->files[f->count], path, &error))
-		return false;
-	*bytes = f->files[f->count].data;
-	*size = f->files[f->count++].size;
-	return true;
-}
-
-static uint32_t index_at(const nt_reread_array *indices, size_t i)
-{
-	if (!indices->data)
-		return (uint32_t)i;
-	const unsigned char *at = indices->data + i * indices->stride_bytes;
-	uint16_t two;
-	uint32_t four;
-	switch (indices->component_type) {
-	case NT_GLTF_UBYTE:
-		return *at;
-	case NT_GLTF_USHORT:
-		memcpy(&two, at, 2);
-		return two;
-	default:
-		memcpy(&four, at, 4);
-		return four;
-	}
-}
-
-static void load(const nt_reread_array *array, uint32_t i, float *row, int n)
-{
-	memcpy(row, array->data + i * array->stride_bytes, (size_t)n * sizeof *row);
-}
 
 static void cross(const float a[3], const float b[3], double out[3])
 {
@@ -77,14 +32,15 @@ static double dot(const double a[3], const float b[3])
 }
 
 /* One triangle: dP/dv = (-cu d1 + bu d2) / det. */
-static void judge_triangle(const nt_reread_array *a, const uint32_t v[3], rule_count *count)
+static void judge_triangle(const nt_mesh *mesh, const uint32_t v[3], rule_count *count)
 {
 	float p[3][3], n[3][3], uv[3][2], t[3][4];
 	for (int k = 0; k < 3; k++) {
-		load(&a[0], v[k], p[k], 3);
-		load(&a[1], v[k], n[k], 3);
-		load(&a[2], v[k], uv[k], 2);
-		load(&a[3], v[k], t[k], 4);
+		memcpy(p[k], mesh->positions + 3 * v[k], sizeof p[k]);
+		memcpy(n[k], mesh->normals + 3 * v[k], sizeof n[k]);
+		memcpy(t[k], mesh->tangents + 4 * v[k], sizeof t[k]);
+		uv[k][0] = mesh->texcoords[2 * v[k]];
+		uv[k][1] = -mesh->texcoords[2 * v[k] + 1]; /* as it is stored */
 	}
 	count->triangles++;
 	count->mixed += t[0][3] != t[1][3] || t[0][3] != t[2][3];
@@ -116,37 +72,30 @@ static void judge_triangle(const nt_reread_array *a, const uint32_t v[3], rule_c
 	}
 }
 
-/* Judges every triangle of a glTF file that has tangents; false: tinygltf does not read it. */
+/* Judges every triangle of a glTF file that has tangents; false: it is not read. */
 static bool judge_file(const char *path, rule_count *count)
 {
+	static const nt_format_options options = {.texcoord_set = 0, .keeps_transforms = true, .morphs = NT_MORPH_KEEP};
 	nt_error error;
 	nt_file file;
+	nt_scene scene;
 	if (nt_file_open(&file, path, &error))
 		return false;
-	folder f = {.path = path};
-	nt_reread *model = NULL;
-	const bool read = nt_reread_open(&model, file.data, file.size, find_file, &f, &error) == NT_OK;
-	for (size_t m = 0; read && m < nt_reread_mesh_count(model); m++) {
-		for (size_t p = 0; p < nt_reread_primitive_count(model, m); p++) {
-			static const char *const names[4] = {"POSITION", "NORMAL", "TEXCOORD_0", "TANGENT"};
-			nt_reread_array a[4], indices;
-			bool whole = nt_reread_attribute(model, m, p, NULL, &indices, &error) == NT_OK;
-			for (int i = 0; i < 4; i++)
-				whole = nt_reread_attribute(model, m, p, names[i], &a[i], &error) == NT_OK &&
-					a[i].data && a[i].component_type == NT_GLTF_FLOAT && whole;
-			if (!whole)
-				continue;
-			const size_t corners = indices.data ? indices.count : a[0].count;
-			for (size_t c = 0; c + 3 <= corners; c += 3) {
-				const uint32_t v[3] = {index_at(&indices, c), index_at(&indices, c + 1),
-					index_at(&indices, c + 2)};
-				judge_triangle(a, v, count);
-			}
+	nt_scene_init(&scene, path);
+	scene.bytes = file.data;
+	scene.byte_count = file.size;
+	const bool read = nt_gltf_open(&scene, &options, &error) == NT_OK;
+	for (size_t m = 0; read && m < scene.mesh_count; m++) {
+		nt_mesh *mesh = &scene.meshes[m];
+		if (!mesh->triangles || nt_gltf_load(&scene, mesh, &options, &error) || !mesh->normals ||
+			!mesh->texcoords || !mesh->tangents)
+			continue;
+		for (uint32_t c = 0; c + 3 <= mesh->corner_count; c += 3) {
+			const uint32_t corners[3] = {c, c + 1, c + 2};
+			judge_triangle(mesh, mesh->indices ? mesh->indices + c : corners, count);
 		}
 	}
-	nt_reread_free(model);
-	for (size_t i = 0; i < f.count; i++)
-		nt_file_close(&f.files[i]);
+	nt_scene_free(&scene);
 	nt_file_close(&file);
 	return read;
 }
