@@ -91,7 +91,7 @@ typedef struct verification {
 	size_t count;
 } verification;
 
-static const nt_format_options reading = {.texcoord_set = -1, .allow_outside = true, .morphs = NT_MORPH_KEEP,
+static const nt_read_options reading = {.texcoord_set = -1, .allow_outside = true, .morphs = NT_MORPH_KEEP,
 	.threads = 1};
 
 /* Half a step of the quantization of an attribute in a block, and what float arithmetic adds. */
@@ -263,8 +263,10 @@ static nt_status turn_triangles(nt_scene *found, const nt_mesh *mesh, part *p, n
 		return nt_fail_memory(error);
 	p->mesh.indices = memcpy(own, p->mesh.indices, p->mesh.corner_count * sizeof *own);
 	for (size_t c = 0; c + 2 < p->mesh.corner_count; c += 3)
-		for (int turn = 0; turn < 3 && !(corner_matches(mesh, c, p, c) && corner_matches(mesh, c + 1, p, c + 1) &&
-			corner_matches(mesh, c + 2, p, c + 2)); turn++) {
+		for (int turn = 0; turn < 3; turn++) {
+			if (corner_matches(mesh, c, p, c) && corner_matches(mesh, c + 1, p, c + 1) &&
+				corner_matches(mesh, c + 2, p, c + 2))
+				break;
 			const uint32_t first = own[c];
 			own[c] = own[c + 1];
 			own[c + 1] = own[c + 2];
@@ -485,7 +487,7 @@ static nt_status prepare_loads(nt_scene *found, nt_error *error)
 
 static nt_status compare_scene(verification *v, unsigned threads, nt_error *error)
 {
-	nt_format_options opening = reading;
+	nt_read_options opening = reading;
 	opening.threads = threads;
 	bool *needed = NULL;
 	nt_status status = nt_gltf_open(&v->found, &reading, error);

@@ -75,7 +75,7 @@ static void judge_triangle(const nt_mesh *mesh, const uint32_t v[3], rule_count 
 /* Judges every triangle of a glTF file that has tangents; false: it is not read. */
 static bool judge_file(const char *path, rule_count *count)
 {
-	static const nt_format_options options = {.texcoord_set = 0, .keeps_transforms = true, .morphs = NT_MORPH_KEEP};
+	static const nt_read_options options = {.texcoord_set = 0, .keeps_transforms = true, .morphs = NT_MORPH_KEEP};
 	nt_error error;
 	nt_file file;
 	nt_scene scene;
