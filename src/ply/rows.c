@@ -187,8 +187,8 @@ static nt_status begin_list(ply_rows *rows, ply_column *column, size_t count)
 	}
 	if (column->counts)
 		column->counts[rows->row] = (uint32_t)count;
-	/* both kinds of numbers have four bytes */
-	if (!nt_grow(&column->values, &column->capacity, column->used + count, sizeof(float)))
+	/* both kinds of numbers have four bytes; there is an array of an empty list, too */
+	if (!nt_grow(&column->values, &column->capacity, column->used + count + !count, sizeof(float)))
 		return nt_fail_memory(rows->error);
 	return NT_OK;
 }
@@ -376,8 +376,8 @@ static nt_status read_binary_row(ply_rows *rows)
 		const unsigned char *const at = cell->end - cell->count * size;
 		const size_t to = property->list ? column->used : rows->row * column->stride;
 		size_t sound = cell->count;
-		if (property->list &&
-			(column->counts || cell->count != column->size || to + cell->count > column->capacity))
+		if (property->list && (rows->row == 0 || column->counts || cell->count != column->size ||
+				to + cell->count > column->capacity))
 			status = begin_list(rows, column, cell->count);
 		column->used += cell->count;
 		if (!status && column->use != PLY_SKIPPED)
@@ -511,7 +511,8 @@ static __attribute__((noinline)) size_t take_run(const ply_rows *rows, size_t fi
 	const ply_column *const last = rows->columns + rows->element->property_count;
 	const char *const end = (const char *)rows->end, *at = (const char *)*position;
 	size_t row = first;
-	for (; row < first + most; row++, list += size) {
+	uint32_t none, *to = list ? list : &none;
+	for (; row < first + most; row++, to += size) {
 		for (const ply_column *column = rows->columns; column < last; column++) {
 			if (end - at <= DECIMAL_MARGIN || *at == ' ') {
 				while (at < end && *at == ' ')
@@ -532,8 +533,8 @@ static __attribute__((noinline)) size_t take_run(const ply_rows *rows, size_t fi
 				for (size_t k = 0; k < size; k++) {
 					if (*at++ != ' ' || end - at <= DECIMAL_MARGIN)
 						return row - first;
-					const unsigned digits = nt_read_digits(at, &list[k]);
-					if (digits == 0 || list[k] >= column->limit)
+					const unsigned digits = nt_read_digits(at, &to[k]);
+					if (digits == 0 || to[k] >= column->limit)
 						return row - first;
 					at += digits;
 				}

@@ -594,7 +594,7 @@ static nt_status copy_element(writer *w, const ply_element *element)
 static nt_status put_old_body(writer *w)
 {
 	const ply_source *source = w->source;
-	const unsigned char *rest = source->header.bytes + source->header.body;
+	const unsigned char *rest = source->header.bytes; /* behind the last element */
 	const unsigned char *const end = source->header.bytes + source->header.size;
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < source->header.element_count; i++) {

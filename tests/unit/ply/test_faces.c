@@ -87,6 +87,29 @@ TEST(faces_with_more_values_than_the_header_names_are_read)
 	close_reading(&r);
 }
 
+TEST(empty_lists_are_read_in_all_encodings)
+{
+	for (int encoding = 0; encoding < 3; encoding++) {
+		static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+		image m = {.big = encoding == PLY_BIG};
+		char line[64];
+		snprintf(line, sizeof line, "ply\nformat %s 1.0\nelement vertex 1\n", names[encoding]);
+		put_text(&m, line);
+		put_text(&m, "property uchar x\nproperty uchar y\nproperty uchar z\nelement face 2\n"
+			"property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n");
+		if (encoding == PLY_ASCII)
+			put_text(&m, "1 2 3\n0 0\n0 0\n");
+		else
+			put(&m, 0, 7);
+		reading r;
+		open_sound(&r, m.bytes, m.size);
+		assert_true(r.mesh->triangles);
+		assert_int_equal(r.mesh->face_count, 0);
+		assert_string_equal(r.scene.left_out.data, "faces of fewer than three corners (2)");
+		close_reading(&r);
+	}
+}
+
 TEST(polygons_without_area_are_cut_and_said)
 {
 	reading r;

@@ -197,6 +197,14 @@ TEST(tangents_without_tw_are_none_and_said)
 	close_reading(&r);
 }
 
+TEST(lines_before_the_first_element_that_are_no_statements_are_said)
+{
+	reading r;
+	open_text(&r, "ply\nformat ascii 1.0\nmade by hand\nand so on\nelement vertex 1\n" XYZ "end_header\n0 0 0\n");
+	assert_true(has_finding(&r, NT_CODE_STATEMENT_IGNORED, 3, 2, "lines of the header that are no statements"));
+	close_reading(&r);
+}
+
 /* sRGB to linear light. */
 static float linear(double c)
 {

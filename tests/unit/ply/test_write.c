@@ -311,4 +311,41 @@ TEST(normals_go_by_the_inverse_transpose)
 	close_reading(&back);
 }
 
+/* Positions that float cannot hold come from the source, those of vertices behind its own too; and one colour that is
+ * no byte makes all of them floats. */
+TEST(doubles_and_colors_are_written_as_they_need)
+{
+	hand_made h;
+	make_gltf(&h);
+	float positions[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0}, normals[12] = {0}, texcoords[8] = {0};
+	float colors[16] = {0}, tangents[16] = {0};
+	double exact[9] = {5e6 + 0.01, 0, 0, 5e6 + 1.02, 0, 0, 5e6, 1, 0};
+	uint32_t sources[] = {1};
+	colors[15] = 0.3f;
+	h.mesh.positions = positions;
+	h.mesh.normals = normals;
+	h.mesh.texcoords = texcoords;
+	h.mesh.colors = colors;
+	h.mesh.split.vertex_tangents = tangents;
+	h.mesh.vertex_count = 4;
+	h.mesh.source_vertex_count = 3;
+	h.mesh.vertex_sources = sources;
+	h.mesh.exact_positions = exact;
+	h.scene.origin[0] = 5e6;
+	h.scene.instance_count = 1;
+	nt_file file = write_scene(&h.scene, false);
+	static const char types[] = "element vertex 4\nproperty double x\n";
+	assert_non_null(memmem(file.data, file.size, types, strlen(types)));
+	assert_non_null(memmem(file.data, file.size, "property float alpha\n", 21));
+	const unsigned char *body = memmem(file.data, file.size, "end_header\n", 11);
+	assert_non_null(body);
+	/* doubles of 3 coordinates, then floats: 3 of a normal, 4 of a colour, 2 of u and v, 4 of a tangent */
+	double x[4];
+	for (size_t v = 0; v < 4; v++)
+		memcpy(&x[v], body + 11 + v * (3 * 8 + 13 * 4), sizeof x[v]);
+	assert_true(x[0] == exact[0] && x[1] == exact[3] && x[2] == exact[6] && x[3] == exact[3]);
+	nt_file_close(&file);
+	nt_finding_list_free(&h.scene.findings);
+}
+
 AROUND_EACH(make_folder, remove_folder)
