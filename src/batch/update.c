@@ -24,7 +24,7 @@
 static const char record_name[] = ".nmtan-record", files_begin[] = ",\"files\":[";
 
 /* By nt_trace_kind; by 1 + nt_severity. */
-static const char *const kinds[] = {"read", "missing", "written", "searched", "link"};
+static const char *const kinds[] = {"read", "missing", "written", "searched", "link", "outside"};
 static const char *const verdicts[] = {"none", "info", "warning", "error"};
 enum { KINDS = sizeof kinds / sizeof *kinds, VERDICTS = sizeof verdicts / sizeof *verdicts };
 
@@ -449,6 +449,26 @@ static bool is_still_linked(look *l, const nt_json_value *file, const char *uri)
 	return same;
 }
 
+static bool is_still_outside(look *l, const nt_json_value *file, const char *uri)
+{
+	nt_buffer name = {0}, folder = {0};
+	nt_error ignored;
+	bool inside = true;
+	size_t length;
+	(void)uri;
+	const char *text = nt_json_find_string(file, "to", &length);
+	nt_uri_append_decoded(&name, text ? text : "", text ? length : 0);
+	bool asked = text && !name.failed && name.size < l->path.size;
+	if (asked) {
+		l->path.data[l->path.size - name.size - 1] = '\0';
+		asked = !nt_path_real(&folder, l->path.data, &ignored) &&
+			!nt_path_stays_inside(folder.data, name.data, &inside, &ignored);
+	}
+	nt_buffer_free(&name);
+	nt_buffer_free(&folder);
+	return asked && !inside;
+}
+
 /* Whether the findings would let a run pass, as far as the line tells. */
 static bool passes(const nt_update_options *options, const nt_json_value *line)
 {
@@ -464,7 +484,7 @@ static bool passes(const nt_update_options *options, const nt_json_value *line)
 static bool holds(look *l, const nt_json_value *line)
 {
 	static bool (*const is_still[])(look *l, const nt_json_value *file, const char *uri) = {is_still_there,
-		is_still_missing, is_still_there, is_still_found, is_still_linked};
+		is_still_missing, is_still_there, is_still_found, is_still_linked, is_still_outside};
 	const nt_json_value *files = nt_json_find(line, "files");
 	bool same = is_text(nt_json_find(line, "nmtan"), nmtan_version()) &&
 		is_text(nt_json_find(line, "options"), l->job->options.data) && passes(&l->job->update->options, line);

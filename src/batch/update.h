@@ -16,6 +16,7 @@
  *   {"missing":"../a.mtl"}                            it was looked for
  *   {"searched":"../n.png","found":"N.PNG",...}       its folder was, for the name in any case; the folder's times
  *   {"link":"../tex","to":"../v1"}                    what the path is by links; without "to": nothing is there
+ *   {"outside":"../in/tex/n.png","to":"tex/n.png"}    this name leaves its folder by links
  *
  * A file that changed so shortly before it was read that it may have changed again within one tick of the clock has
  * a digest, too, and a folder no times: it is searched anew. An output is up to date if all is still so, and was made

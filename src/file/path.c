@@ -233,7 +233,7 @@ nt_status nt_path_stays_inside(const char *folder, const char *name, bool *insid
 	}
 	const bool failed = real.failed || rest.failed;
 	if (!*inside && !failed)
-		nt_trace_note(NT_TRACE_MISSING, real.data, NULL, NULL);
+		nt_trace_note(NT_TRACE_OUTSIDE, real.data, name, NULL);
 	nt_buffer_free(&real);
 	nt_buffer_free(&rest);
 	return failed ? nt_fail_memory(error) : NT_OK;

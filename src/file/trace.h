@@ -18,14 +18,16 @@ typedef enum nt_trace_kind {
 	NT_TRACE_MISSING, /* it was looked for, and would have been read as a regular file */
 	NT_TRACE_WRITTEN,
 	NT_TRACE_SEARCHED, /* its folder was searched for its name in any case */
-	NT_TRACE_LINK      /* by links on its way, it is another path */
+	NT_TRACE_LINK,     /* by links on its way, it is another path */
+	NT_TRACE_OUTSIDE   /* by links on its way, it leaves a folder */
 } nt_trace_kind;
 
 /* A file as it was when it was opened, or as it will be when its set is in place; or a folder as it was searched. */
 typedef struct nt_trace_file {
 	char *path; /* as the run named it: relative to the current folder, or absolute */
 	nt_trace_kind kind;
-	char *found; /* SEARCHED: the entry that has the name; LINK: the path; NULL: none */
+	char *found; /* SEARCHED: the entry that has the name; LINK: the path; NULL: none. OUTSIDE: the name
+	                in the folder */
 	uint64_t size, inode;      /* 0 for what is missing */
 	int64_t modified, changed; /* nanoseconds since 1970: last change of the bytes, and of the inode */
 	int64_t noted;             /* when it was noted */

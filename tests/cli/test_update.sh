@@ -515,6 +515,7 @@ cp -p tex/two/b.png tex/N.png|
 mv tex/N.png tex/n.png|made
 cp -p q.glb t; mv t q.glb|made
 cp -p q.glb t; dd if=q.obj of=t bs=1 count=9 seek=40 conv=notrunc; touch -r q.glb t; mv t q.glb|made
+mkdir ../beside; cp -p v1/n.png ../beside/; rm -r tex; ln -s ../beside tex|made
 rm .nmtan-record|made
 END
 rm -r q.glb tex .nmtan-record
