@@ -55,8 +55,8 @@ typedef enum nt_stage {
 	NT_STAGE_INDEX,    /* corners with indices of their own become vertices: OBJ */
 	NT_STAGE_DECODE,   /* small meshes that are solved as soon as they are loaded, too */
 	NT_STAGE_TEXTURES, /* images are looked for; they are made beside the solve */
-	NT_STAGE_NORMALS,
-	NT_STAGE_WELD,     /* weld and split of large meshes; small ones count as tangents */
+	NT_STAGE_NORMALS,  /* normals, weld and split are of large meshes; small ones count as tangents */
+	NT_STAGE_WELD,
 	NT_STAGE_TANGENTS,
 	NT_STAGE_SPLIT,
 	NT_STAGE_WRITE,
