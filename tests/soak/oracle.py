@@ -57,6 +57,8 @@ EXPLAINED = [
     ('report', r'cases/implicit_ids/', 'feature ids that are numbers of vertices are told'),
     ('values', r'draco=(sequential|edgebreaker) .*KHR_draco_mesh_compression/bufferView: \d+ became',
      'a block takes the number of the view that became free last'),
+    ('values', r'/bufferViews/\d+/target: 3496\d became 3496\d', 'a TANGENT of another type takes back the number of its view'),
+    ('values', r'weld .*mesh/valid\.gltf .*/accessors has', 'indices that get a new view keep their accessor'),
     ('report', r'could not be verified, since tinygltf refuses', 'what tinygltf refuses is told, whoever is at fault'),
     ('values', r'animation_data/invalid_input_values\.gltf', 'JSON that loses a member is laid out as the document is'),
     ('words', r'cases/animated_uv/', 'what tinygltf refuses is told, whoever is at fault'),
