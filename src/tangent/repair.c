@@ -282,10 +282,11 @@ static void visit_faces(const share *s)
 static void visit_neighbourhoods(void *context, size_t begin, size_t end, unsigned thread)
 {
 	(void)thread;
-	const share s = {context, (uint32_t)begin, (uint32_t)(end - begin)};
+	const repair_state *r = context;
+	const share s = {r, (uint32_t)begin, (uint32_t)(end - begin)};
 	visit_faces(&s);
 	for (size_t i = begin; i < end; i++)
-		answer(s.repair->solve, &s.repair->neighbourhoods[i]);
+		answer(r->solve, &r->neighbourhoods[i]);
 }
 
 /* Repairs */

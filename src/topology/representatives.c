@@ -105,7 +105,8 @@ bool nt_cells_make(nt_scratch *scratch, const nt_cell_vertex *vertices, size_t v
 	if (!room)
 		return false;
 	*cells = (nt_cells){.vertices = vertices, .order = room, .scratch = scratch};
-	cells->found = memset(cells->order + vertex_count, 0xff, vertex_count * sizeof *cells->found);
+	cells->found = cells->order + vertex_count;
+	memset(cells->found, 0xff, vertex_count * sizeof *cells->found);
 	cells->swaps = cells->found + vertex_count;
 	cells->below = (uint8_t *)(cells->swaps + most_corners);
 	return true;
