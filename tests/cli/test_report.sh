@@ -427,6 +427,12 @@ for shift in 0 8; do
 	is "$(value r.json '[f["count"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[3]"
 done
 
+scene "a mirrored island is looked for in other objects, those without texture coordinates left out"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\no mirrored\nf 1/1 2/3 3/2\no bare\nf 1 3 2\no other\nf 1/1 2/2 3/3\n' >bare.obj
+run --check --report=r.json bare.obj
+exits 0
+is "$(value r.json '[(f["code"], f["count"]) for f in r["files"][0]["findings"] if f["code"][:9] == "UV_MIRROR"]')" "[('UV_MIRROR_OVERLAP', 1)]"
+
 scene "images in a view are measured, moved by the edit or not"
 run -q --check --report=r.json "$data/plates.glb"
 run -q --only=all --report=w.json "$data/plates.glb" out.glb
