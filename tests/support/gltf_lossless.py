@@ -106,6 +106,12 @@ class File:
                 rows[row] = values[k * size:k * size + size]
         return rows
 
+    def packs_triangles(self, p):
+        """Whether a codec of triangles stores a primitive's indices."""
+        view = self.g['accessors'][p['indices']].get('bufferView') if 'indices' in p else None
+        packed = {} if view is None else self.g['bufferViews'][view].get('extensions', {})
+        return any(e.get('mode') == 'TRIANGLES' for n, e in packed.items() if 'meshopt' in n)
+
     def corners(self, p):
         """Vertex of each corner of each triangle; the plain list for points and lines."""
         mode = p.get('mode', 4)
@@ -124,12 +130,27 @@ class File:
         return chain
 
 
+def turned(a, b, p, q):
+    """Corners of the new file, whose codec of triangles may begin one with any corner: with the one of the old file."""
+    old, new = a.corners(p), b.corners(q)
+    if len(old) != len(new) or not b.packs_triangles(q):
+        return new
+    rows = [(a.rows(i), b.rows(q['attributes'][n])) for n, i in p['attributes'].items() if n != 'TANGENT']
+    for t in range(0, len(old), 3):
+        for k in range(3):
+            turn = [new[t + (i + k) % 3] for i in range(3)]
+            if all(x[i] == y[j] for x, y in rows for i, j in zip(old[t:t + 3], turn)):
+                new[t:t + 3] = turn
+                break
+    return new
+
+
 def same_geometry(a, b):
     for m, mesh in enumerate(a.g.get('meshes', [])):
         for k, p in enumerate(mesh['primitives']):
             q = b.g['meshes'][m]['primitives'][k]
             where = 'mesh %d primitive %d' % (m, k)
-            old, new = a.corners(p), b.corners(q)
+            old, new = a.corners(p), turned(a, b, p, q)
             if len(old) != len(new):
                 complain('%s: %d corners became %d' % (where, len(old), len(new)))
                 continue

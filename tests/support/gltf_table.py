@@ -1036,7 +1036,7 @@ def differ(x, y, tolerance):
 def check_tangents(a, b, m, k, options, fault, compressed):
     p, q = a.g['meshes'][m]['primitives'][k], b.g['meshes'][m]['primitives'][k]
     where = 'mesh %d primitive %d: ' % (m, k)
-    old, chain = a.corners(p), b.corners(q)
+    old, chain = a.corners(p), lossless.turned(a, b, p, q)
     repaired = '--existing=repair' in options and 'TANGENT' in p['attributes'] and 'NORMAL' in p['attributes'] and p.get('mode', 4) > 3
     if not solved(a, p, options) and not repaired:
         if ('TANGENT' in p['attributes']) != ('TANGENT' in q['attributes']) and not ('=drop' in options and p.get('material') == 1):
@@ -1128,7 +1128,7 @@ def check_counts(a, b, options, fault):
         needs, count = {}, 0
         for m, k in users:
             p, q = a.g['meshes'][m]['primitives'][k], b.g['meshes'][m]['primitives'][k]
-            old, new = a.corners(p), b.corners(q)
+            old, new = a.corners(p), lossless.turned(a, b, p, q)
             count = a.g['accessors'][p['attributes']['POSITION']]['count']
             if not solved(a, p, options):
                 continue
