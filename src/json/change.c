@@ -15,8 +15,9 @@
 /* Integers below it are in the value itself. */
 #define COUNTED_LIMIT ((uint64_t)1 << 48)
 
-/* Children that a container which gets some has room for: a new view or accessor has so many. */
-enum { LEAST_CAPACITY = 4 };
+/* Children that a container which gets some has room for: a new view or accessor has so many. Objects of more than the
+ * latter have keys of their own once they change. */
+enum { LEAST_CAPACITY = 4, MOST_SHARED = 16 };
 
 static nt_json_value *fail(nt_json *document)
 {
@@ -38,25 +39,27 @@ static void set(nt_json_value *value, nt_json_value content)
 /* An empty container at the same place, with room for so many children. */
 static bool set_container(nt_json *document, nt_json_value *value, nt_json_type type, size_t capacity)
 {
-	nt_json_list *list = nt_json_new_list(document, capacity, type == NT_JSON_OBJECT, nt_json_begin(value));
+	nt_json_list *list = nt_json_new_list(document, capacity, false, nt_json_begin(value));
 	if (!list)
 		return false;
 	*value = (nt_json_value){.of.list = list, .type = type, .made = 1, .apart = 1};
 	return true;
 }
 
-/* Moves the children of a container, an object's with their keys, which are its own then; false: out of memory. */
-static bool move(nt_json *document, nt_json_value *container, size_t capacity)
+/* Moves the children of a container. With `owns` it is an object, which gets keys of its own; else these stay.
+ * False: out of memory. */
+static bool move(nt_json *document, nt_json_value *container, size_t capacity, bool owns)
 {
-	const bool is_object = container->type == NT_JSON_OBJECT;
 	nt_json_list *const old = container->apart ? container->of.list : NULL;
-	nt_json_list *list = nt_json_new_list(document, capacity, is_object, nt_json_begin(container));
+	nt_json_list *list = nt_json_new_list(document, capacity, owns, nt_json_begin(container));
 	if (!list)
 		return false;
 	if (old) {
 		list->end = old->end;
-		if (is_object)
+		if (owns)
 			memcpy(nt_json_own_keys(list), old->keys, container->size * sizeof *old->keys);
+		else
+			list->keys = old->keys;
 		memcpy(list->children, old->children, container->size * sizeof *list->children);
 		nt_drop_pages(old, sizeof *old + old->capacity * sizeof *old->children);
 	}
@@ -65,14 +68,22 @@ static bool move(nt_json *document, nt_json_value *container, size_t capacity)
 	return true;
 }
 
+/* Whether an object has keys of its own, once it has one more child. */
+static bool owns_keys(const nt_json_value *object)
+{
+	return object->type == NT_JSON_OBJECT && (object->size >= MOST_SHARED ||
+		(object->apart && nt_json_own_keys(object->of.list)));
+}
+
 /* Room for one more child. */
 static bool grow(nt_json *document, nt_json_value *container)
 {
-	const bool has_room = container->apart && container->size < container->of.list->capacity;
-	if (has_room && (container->type == NT_JSON_ARRAY || nt_json_own_keys(container->of.list)))
+	const bool has_room = container->apart && container->size < container->of.list->capacity,
+		owns = owns_keys(container);
+	if (has_room && (!owns || nt_json_own_keys(container->of.list)))
 		return true;
 	return move(document, container, has_room ? container->of.list->capacity : container->size < LEAST_CAPACITY
-		? LEAST_CAPACITY : container->size + container->size / 2);
+		? LEAST_CAPACITY : container->size + container->size / 2, owns);
 }
 
 /* A null behind the children of a container, which becomes an empty one of that type if it is no such. */
@@ -89,27 +100,60 @@ static nt_json_value *add(nt_json *document, nt_json_value *container, nt_json_t
 	return child;
 }
 
-/* The document's copy of a key; NULL: out of memory. */
-static const char *keep_key(nt_json *document, const char *key, size_t length)
+/* The document's copy of a key; its text is NULL: out of memory. */
+static nt_json_name keep_key(nt_json *document, const char *key)
 {
-	const unsigned char first = (unsigned char)key[0], last = (unsigned char)key[length ? length - 1 : 0];
-	const char **known = &document->added[(length + 5 * first + 11 * last) % NT_JSON_ADDED];
-	if (!*known || strcmp(*known, key) != 0)
-		*known = nt_arena_text(&document->arena, key, length);
-	return *known;
+	const size_t length = strlen(key);
+	return (nt_json_name){nt_arena_text(&document->arena, key, length), length};
+}
+
+/* The keys of an object and one more: those that an object with the same ones got last time, if that was the same
+ * key. The search goes on behind those of the last time, since objects are made in turns. NULL: out of memory. */
+static const nt_json_name *longer_keys(nt_json *document, const nt_json_name *keys, size_t count, const char *key)
+{
+	for (size_t i = 0; i < NT_JSON_LONGER; i++) {
+		const size_t at = (document->longer_at + i) % NT_JSON_LONGER;
+		const nt_json_longer *known = &document->longer[at];
+		if (!known->keys || known->of != keys || known->count != count ||
+			strcmp(known->keys[count].text, key) != 0)
+			continue;
+		document->longer_at = at + 1;
+		return known->keys;
+	}
+	nt_json_name *made = nt_arena_alloc(&document->arena, count + 1, sizeof *made);
+	const nt_json_name name = keep_key(document, key);
+	if (!made || !name.text)
+		return NULL;
+	if (count)
+		memcpy(made, keys, count * sizeof *made);
+	made[count] = name;
+	document->longer[document->longer_at++ % NT_JSON_LONGER] =
+		(nt_json_longer){.of = keys, .keys = made, .count = count};
+	return made;
 }
 
 nt_json_value *nt_json_put(nt_json *document, nt_json_value *object, const char *key)
 {
-	nt_json_value *found = nt_json_find(object, key);
-	if (found)
-		return found;
-	const size_t length = strlen(key);
-	const char *kept = keep_key(document, key, length);
-	nt_json_value *child = kept ? add(document, object, NT_JSON_OBJECT) : NULL;
+	nt_json_value *child = nt_json_find(object, key);
 	if (child)
-		nt_json_own_keys(object->of.list)[object->size - 1] = (nt_json_name){kept, length};
-	return child ? child : fail(document);
+		return child;
+	child = add(document, object, NT_JSON_OBJECT);
+	if (!child)
+		return fail(document);
+	nt_json_list *list = object->of.list;
+	const size_t last = object->size - 1;
+	const nt_json_name *keys = NULL;
+	nt_json_name *own = nt_json_own_keys(list);
+	if (own)
+		own[last] = keep_key(document, key);
+	else
+		keys = longer_keys(document, last ? list->keys : NULL, last, key);
+	if (own ? !own[last].text : !keys) {
+		object->size--;
+		return fail(document);
+	}
+	list->keys = own ? own : keys;
+	return child;
 }
 
 nt_json_value *nt_json_append(nt_json *document, nt_json_value *array)
@@ -123,7 +167,7 @@ void nt_json_remove_at(nt_json *document, nt_json_value *container, size_t index
 	const bool is_object = nt_json_type_of(container) == NT_JSON_OBJECT;
 	if (index >= nt_json_count(container))
 		return;
-	if (is_object && !nt_json_own_keys(container->of.list) && !move(document, container, container->size)) {
+	if (is_object && !nt_json_own_keys(container->of.list) && !move(document, container, container->size, true)) {
 		fail(document);
 		return;
 	}

@@ -55,7 +55,13 @@ struct nt_json_list {
 	nt_json_value children[];
 };
 
-enum { NT_JSON_ADDED = 64 };
+enum { NT_JSON_LONGER = 32 };
+
+/* The keys that an object with the keys `of` got when one was added. */
+typedef struct nt_json_longer {
+	const nt_json_name *of, *keys; /* [count], [count + 1] */
+	size_t count;
+} nt_json_longer;
 
 struct nt_json {
 	char *text; /* [size] and some NULs */
@@ -63,7 +69,8 @@ struct nt_json {
 	nt_json_value root;
 	nt_json_value scratch; /* what changing functions hand out once memory is exhausted */
 	nt_arena arena;        /* lists, override texts, keys */
-	const char *added[NT_JSON_ADDED]; /* keys that were added last, by what they look like */
+	nt_json_longer longer[NT_JSON_LONGER]; /* that were asked for last */
+	size_t longer_at;      /* behind the last one of these */
 	bool failed;
 };
 
