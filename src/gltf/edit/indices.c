@@ -63,8 +63,10 @@ static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices,
 	return NT_OK;
 }
 
-/* New indices are packed as those before them are; where there were none, as the positions are. */
-static nt_gltf_packing find_packing(const nt_buffer_edits *edits, const nt_json_value *primitive, const encoded *new)
+/* New indices are packed as those before them are; where there were none, as the positions are. Packed triangles may be
+ * turned, so that other primitives are no TRIANGLES. */
+static nt_gltf_packing find_packing(const nt_buffer_edits *edits, const nt_json_value *primitive, const encoded *new,
+	bool triangles)
 {
 	const nt_json_value *indices = nt_json_find(primitive, "indices");
 	const uint32_t like = indices ? nt_gltf_reference(edits->document, primitive, "indices")
@@ -72,8 +74,8 @@ static nt_gltf_packing find_packing(const nt_buffer_edits *edits, const nt_json_
 	nt_gltf_packing packing = {.extension = NULL};
 	if (new->width > 1)
 		packing = nt_packing_of_accessor(edits, like);
-	if (!indices)
-		packing.view.mode = "TRIANGLES";
+	if (!indices || !triangles)
+		packing.view.mode = triangles ? "TRIANGLES" : "INDICES";
 	packing.view.filter = "NONE";
 	packing.view.stride = new->width;
 	return packing;
@@ -96,7 +98,7 @@ static void describe(nt_gltf *document, uint32_t accessor, const encoded *new, u
 
 /* Puts them where the old ones are, of which nobody else has any. Returns whether they fit: elements of a packed view
  * are all of a size. */
-static bool replace_indices(nt_buffer_edits *edits, const nt_gltf_accessor *old, const encoded *new)
+static bool replace_indices(nt_buffer_edits *edits, const nt_gltf_accessor *old, const encoded *new, bool triangles)
 {
 	const uint32_t old_width = nt_gltf_component_bytes(old->component_type);
 	nt_gltf_view view;
@@ -106,7 +108,7 @@ static bool replace_indices(nt_buffer_edits *edits, const nt_gltf_accessor *old,
 	const uint64_t begin = view.offset + old->offset;
 	nt_segment *segment = nt_segment_at(edits, view.buffer, begin);
 	if (!segment || segment->users != 1 || view.compressed || view.offset % new->width || begin % new->width ||
-		(new->width != old_width && nt_gltf_is_of_view(view.buffer)))
+		((new->width != old_width || !triangles) && nt_gltf_is_of_view(view.buffer)))
 		return false;
 	nt_segment_change(segment, false, new->bytes, new->size);
 	describe(edits->document, old->index, new, NT_NONE, 0);
@@ -213,9 +215,11 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_po
 	const bool stays = users && !users->idle && !users->attributes &&
 		leader->agreeing + edits->accessors[leader->same].index_moved == users->indices;
 	leader->accessor = leader->index;
-	if (stays && replace_indices(edits, &old, &new))
+	const bool triangles = mode == NT_GLTF_TRIANGLES || !(vertices->renumbered && vertices->renumbered[user]);
+	if (stays && replace_indices(edits, &old, &new, triangles))
 		return NT_OK;
-	const nt_gltf_packing packing = find_packing(edits, nt_pool_primitive(vertices->pool, user), &new);
+	const nt_gltf_packing packing = find_packing(edits, nt_pool_primitive(vertices->pool, user), &new,
+		triangles);
 	uint32_t view;
 	uint64_t offset;
 	if (stays)
