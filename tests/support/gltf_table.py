@@ -907,16 +907,6 @@ def unfilter(data, filter_, width):
 class File(lossless.File):
     """Views that meshoptimizer compressed have the bytes that a decoder gives."""
 
-    turned = False  # lists that are packed may turn each triangle: the corner with the least position comes first
-
-    def corners(self, p):
-        chain = super().corners(p)
-        rows = self.rows(p['attributes']['POSITION']) if File.turned and p.get('mode', 4) >= 4 else []
-        for at in range(0, len(chain) - 2 if rows else 0, 3):
-            first = min(range(at, at + 3), key=lambda i: rows[chain[i]])
-            chain[at:at + 3] = chain[first:at + 3] + chain[at:first]
-        return chain
-
     def view(self, i):
         packed = next((e for n, e in self.g['bufferViews'][i].get('extensions', {}).items() if 'meshopt' in n), None)
         if not packed:
@@ -1356,7 +1346,6 @@ def convert(name, program, stride):
                 file.write('%s\t%s\n' % (os.path.abspath(outputs[stem]), os.path.abspath(x)))
     # blocks are judged when they are plain again
     compressed = source == 'packed'
-    File.turned = compressed and '--meshopt=off' not in options
     draco = 'draco' in options + source or source == 'block'
     packed = outputs
     if draco and outputs:
