@@ -20,17 +20,24 @@ typedef struct nt_segment {
 	uint64_t begin, end;
 	uint32_t buffer;       /* NT_GLTF_OF_VIEW(): a view's own */
 	uint32_t users;        /* that have not left; accessors over the same bytes are one */
-	uint32_t pool, known;  /* how many of them a pool has: nt_segment_know() */
-	uint32_t stride;       /* of vertices that were added; 0: none were */
+	union {
+		struct {
+			uint32_t pool, known; /* how many of them a pool has: nt_segment_know() */
+		};
+		int64_t shift;         /* once it is laid out: how far it moves */
+	};
 	uint32_t apart;        /* the last accessor that no edit touches; NT_NONE: none */
+	bool changed;
+} nt_segment;
 
-	/* what becomes of it */
-	bool changed, kept;    /* kept: its bytes are, before the new ones */
-	uint8_t padding;       /* behind the new ones */
+/* The new content of a segment that is changed. */
+typedef struct nt_segment_change {
 	const unsigned char *bytes; /* [size] new ones */
 	size_t size;
-	int64_t shift;         /* how far it moves */
-} nt_segment;
+	uint32_t stride;       /* of vertices that were added; 0: none were */
+	bool kept;             /* its bytes are, before the new ones */
+	uint8_t padding;       /* behind the new ones */
+} nt_segment_change;
 
 /* An accessor while pools are edited, or all over its bytes (`same`). An attribute belongs to one
  * pool, so that nothing has to be emptied between pools; its bytes may be another pool's too. */
@@ -71,8 +78,8 @@ static inline bool nt_segment_is_known(const nt_segment *segment, uint32_t pool)
 	return segment->pool == pool && segment->known == segment->users;
 }
 
-/* Puts bytes in the place of a segment's, or behind them where `kept`. They live as long as the edits. */
-void nt_segment_change(nt_segment *segment, bool kept, const void *bytes, size_t size);
+/* Changes a segment; the new bytes live as long as the edits. */
+void nt_segment_edit(nt_buffer_edits *edits, nt_segment *segment, nt_segment_change change);
 
 /* Returns where a position of a source buffer lies in the new one, once that is laid out: the begin of something, or
  * its end. */
@@ -127,6 +134,7 @@ struct nt_buffer_edits {
 	nt_gltf *document;
 	nt_arena arena;             /* owns the new bytes */
 	nt_segment *segments;       /* [segment_count] in order, apart from each other */
+	nt_segment_change *changes; /* [segment_count] of those that are changed: pages of others are never touched */
 	size_t segment_count, near;    /* near: where the last search ended */
 	nt_edited_buffer *buffers;  /* [buffer_count]: the document's, and at most one new one */
 	size_t buffer_count;

@@ -98,6 +98,7 @@ void nt_edits_free(nt_buffer_edits *edits)
 	free(edits->views);
 	free(edits->buffers);
 	free(edits->segments);
+	free(edits->changes);
 	nt_arena_free(&edits->arena);
 	*edits = (nt_buffer_edits){0};
 }
@@ -109,7 +110,7 @@ static void drop_alone(nt_buffer_edits *edits, uint32_t buffer, uint64_t positio
 {
 	nt_segment *segment = nt_segment_at(edits, buffer, position);
 	if (segment && segment->users == 1)
-		nt_segment_change(segment, false, NULL, 0);
+		nt_segment_edit(edits, segment, (nt_segment_change){.size = 0});
 }
 
 /* A compressed view leaves its packed bytes, and the place of the plain ones. Not where another extension has it. */
@@ -160,7 +161,7 @@ void nt_edits_leave(nt_buffer_edits *edits, uint32_t index, uint64_t offset)
 		(!decoded && nt_json_find(nt_gltf_view_json(edits->document, index), "extensions")))
 		return;
 	if (--segment->users == 0)
-		nt_segment_change(segment, false, NULL, 0);
+		nt_segment_edit(edits, segment, (nt_segment_change){.size = 0});
 	if (--of->users || (decoded && !leave_packed(edits, index)))
 		return;
 	if (!decoded)

@@ -167,7 +167,7 @@ static nt_status put(nt_buffer_edits *edits, uint32_t buffer, uint64_t position,
 	nt_segment *segment = nt_segment_at(edits, buffer, position);
 	if (!segment || segment->users != 1)
 		return nt_edits_add_bytes(edits, buffer, view, packed, bytes, size, error);
-	nt_segment_change(segment, false, bytes, size);
+	nt_segment_edit(edits, segment, (nt_segment_change){.bytes = bytes, .size = size});
 	return NT_OK;
 }
 

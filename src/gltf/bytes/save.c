@@ -24,9 +24,10 @@ static uint64_t lay_out(nt_buffer_edits *edits, uint32_t buffer, uint64_t old_le
 		segment->shift = shift;
 		if (!segment->changed)
 			continue;
-		const uint64_t added = segment->size - (segment->kept ? 0 : segment->end - segment->begin);
-		segment->padding = segment->end < old_length ? (uint8_t)(-added % alignment) : 0;
-		shift += (int64_t)(added + segment->padding);
+		nt_segment_change *change = &edits->changes[i];
+		const uint64_t added = change->size - (change->kept ? 0 : segment->end - segment->begin);
+		change->padding = segment->end < old_length ? (uint8_t)(-added % alignment) : 0;
+		shift += (int64_t)(added + change->padding);
 		*changed = true;
 	}
 	return old_length + (uint64_t)shift;
@@ -225,11 +226,12 @@ static nt_status put_segments(nt_buffer_edits *edits, uint32_t index, nt_gltf_bu
 		const nt_segment *s = &edits->segments[i];
 		if (!s->changed)
 			continue;
-		status = put_source(edits->document, source, to, at, s->kept ? s->end : s->begin, error);
-		if (!status && s->size)
-			status = nt_target_put(to, s->bytes, s->size, error);
+		const nt_segment_change *c = &edits->changes[i];
+		status = put_source(edits->document, source, to, at, c->kept ? s->end : s->begin, error);
+		if (!status && c->size)
+			status = nt_target_put(to, c->bytes, c->size, error);
 		if (!status)
-			status = put_zeros(to, s->padding, error);
+			status = put_zeros(to, c->padding, error);
 		at = s->end;
 		/* many small edits come to as much as a large range, which is not kept in memory either */
 		if (at - released >= RELEASED_BYTES) {
@@ -302,7 +304,7 @@ static nt_status settle_decoded(nt_buffer_edits *edits, uint32_t index, nt_error
 	status = nt_gltf_get_packing(document, index, &p, error);
 	nt_segment *packed = status ? NULL : nt_segment_at(edits, p.buffer, p.offset);
 	if (packed && packed->users == 1)
-		nt_segment_change(packed, false, NULL, 0);
+		nt_segment_edit(edits, packed, (nt_segment_change){.size = 0});
 	if (!status)
 		status = nt_edits_choose_buffer(edits, p.buffer, &buffer, error);
 	if (!status)

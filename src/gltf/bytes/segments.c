@@ -159,7 +159,8 @@ bool nt_segments_find(nt_buffer_edits *edits)
 	if (!sorted)
 		qsort(list.items, list.count, sizeof *list.items, compare_users);
 	edits->segments = nt_alloc(list.count, sizeof *edits->segments);
-	list.failed |= !edits->segments;
+	edits->changes = nt_calloc(list.count, sizeof *edits->changes);
+	list.failed |= !edits->segments || !edits->changes;
 	if (!list.failed)
 		join(edits, &list);
 	free(list.items);
@@ -221,12 +222,10 @@ void nt_segment_know(nt_segment *segment, uint32_t pool, uint32_t users)
 	segment->pool = pool;
 }
 
-void nt_segment_change(nt_segment *segment, bool kept, const void *bytes, size_t size)
+void nt_segment_edit(nt_buffer_edits *edits, nt_segment *segment, nt_segment_change change)
 {
 	segment->changed = true;
-	segment->kept = kept;
-	segment->bytes = bytes;
-	segment->size = size;
+	edits->changes[segment - edits->segments] = change;
 }
 
 uint64_t nt_segments_map(nt_buffer_edits *edits, uint32_t buffer, uint64_t position, bool is_end)
@@ -237,9 +236,10 @@ uint64_t nt_segments_map(nt_buffer_edits *edits, uint32_t buffer, uint64_t posit
 	const uint64_t moved = position + (uint64_t)s->shift;
 	if (!s->changed)
 		return moved;
-	const uint64_t new_end = (uint64_t)s->shift + (s->kept ? s->end : s->begin) + s->size + s->padding;
+	const nt_segment_change *c = &edits->changes[s - edits->segments];
+	const uint64_t new_end = (uint64_t)s->shift + (c->kept ? s->end : s->begin) + c->size + c->padding;
 	if (position >= s->end)
 		return new_end + (position - s->end);
 	/* views of attributes that are interleaved may end before their last vertex does: they go on to its end */
-	return is_end && s->stride > s->end - position ? new_end : moved < new_end ? moved : new_end;
+	return is_end && c->stride > s->end - position ? new_end : moved < new_end ? moved : new_end;
 }

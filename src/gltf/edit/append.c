@@ -405,8 +405,8 @@ static nt_status edit_segment(appending *job, const block *b)
 	for (size_t i = 0; i < b->count; i++)
 		if (b->targets[i].override)
 			put_values(job, b, &b->targets[i], decoded, out);
-	b->segment->stride = job->differs ? (uint32_t)b->stride : 0;
-	nt_segment_change(b->segment, kept, out, size);
+	nt_segment_edit(job->edits, b->segment, (nt_segment_change){.kept = kept, .bytes = out, .size = size,
+		.stride = job->differs ? (uint32_t)b->stride : 0});
 	return NT_OK;
 }
 
@@ -505,7 +505,7 @@ static nt_status put_sparse_array(appending *job, nt_json_value *json, const spa
 	if (segment && nt_segment_is_known(segment, job->owner) && segment->begin == begin &&
 		segment->end == begin + array->old_size && begin % array->width == 0 &&
 		(array->width == array->old_width || !nt_gltf_is_of_view(view.buffer))) {
-		nt_segment_change(segment, false, array->bytes, array->size);
+		nt_segment_edit(job->edits, segment, (nt_segment_change){.bytes = array->bytes, .size = array->size});
 		return NT_OK;
 	}
 	uint32_t number;

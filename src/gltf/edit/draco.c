@@ -180,7 +180,7 @@ static nt_status store_block(nt_gltf_recoding *r, uint32_t buffer, nt_error *err
 		return nt_fail_memory(error);
 	nt_segment *segment = r->source ? nt_segment_of(r->edits, (uint32_t)r->view, 0) : NULL;
 	if (segment && release_block(r->document, r->view, r->vertices->pool->user_count) && segment->users == 1) {
-		nt_segment_change(segment, false, bytes, r->block.size);
+		nt_segment_edit(r->edits, segment, (nt_segment_change){.bytes = bytes, .size = r->block.size});
 		return NT_OK;
 	}
 	uint32_t number;

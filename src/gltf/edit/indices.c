@@ -110,7 +110,7 @@ static bool replace_indices(nt_buffer_edits *edits, const nt_gltf_accessor *old,
 	if (!segment || segment->users != 1 || view.compressed || view.offset % new->width || begin % new->width ||
 		((new->width != old_width || !triangles) && nt_gltf_is_of_view(view.buffer)))
 		return false;
-	nt_segment_change(segment, false, new->bytes, new->size);
+	nt_segment_edit(edits, segment, (nt_segment_change){.bytes = new->bytes, .size = new->size});
 	describe(edits->document, old->index, new, NT_NONE, 0);
 	return true;
 }
