@@ -124,7 +124,8 @@ static void add_deferred(void *context, size_t begin, size_t end, unsigned threa
 {
 	(void)thread;
 	const nt_fast *fast = context;
-	for (const nt_deferred *d = fast->deferred + 1; d < fast->deferred + fast->ranges.count; d++)
+	for (size_t r = 1; r < fast->ranges.count; r++) {
+		const nt_deferred *d = &fast->deferred[r];
 		for (size_t i = 0; i < d->count; i++) {
 			const int orient = (d->to[i] & NT_ENTRY_ORIENT) != 0;
 			const uint32_t vertex = d->to[i] & NT_ENTRY_VERTEX;
@@ -136,6 +137,7 @@ static void add_deferred(void *context, size_t begin, size_t end, unsigned threa
 			if (d->more)
 				nt_record_more_add(&fast->more[orient][vertex], &d->more[i]);
 		}
+	}
 }
 
 nmtan_status nt_fast_add(nt_fast *fast, const nt_kernels *kernels)
