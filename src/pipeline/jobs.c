@@ -175,7 +175,6 @@ static void do_mesh(window *w, worker *own, size_t item, unsigned threads)
 	if (status && w->pass == READY) {
 		*mesh = before;
 		w->states[item] = TO_LOAD;
-		nt_error_clear(&own->error);
 	} else if (status) {
 		own->failed = item;
 	}
@@ -238,8 +237,9 @@ static nt_status do_pass(window *w, enum state pass)
 	const worker *first = w->workers;
 	for (unsigned i = 1; i < w->worker_count; i++)
 		first = w->workers[i].failed < first->failed ? &w->workers[i] : first;
-	if (first->failed != SIZE_MAX)
-		*w->error = first->error;
+	if (first->failed == SIZE_MAX) /* errors that are there have been passed over */
+		return NT_OK;
+	*w->error = first->error;
 	return first->error.status;
 }
 

@@ -580,6 +580,8 @@ static nt_status name_limit(run *r, nt_status status)
 	const nt_settings *s = r->settings;
 	if (!status)
 		return NT_OK;
+	if (!r->error->status) /* a failure that nobody described is one, too */
+		nt_fail(r->error, status, "%s", nt_status_text(status));
 	if (nt_timer_end(&r->timer)) {
 		fail_late(r, r->error);
 	} else if (status == NT_ERROR_MEMORY && s->max_memory) {

@@ -489,6 +489,12 @@ exits 5
 says "/buffers/0: no uri"
 run nameless.gltf out.gltf
 exits 0
+# nor if tangents that stay cannot be read for want of it
+run --only=all "$data/quad.obj" kept.gltf
+sed 's/"uri": "kept.bin"/"extras": 1/' kept.gltf >nameless.gltf
+run nameless.gltf out.glb
+exits 5
+says "/buffers/0: no uri"
 
 scene "a glTF made from a glTF keeps its images"
 run --images=none "$data/plates.gltf" out.gltf
