@@ -42,7 +42,7 @@ typedef struct worker {
 	nt_arena geometry;  /* of a mesh whose geometry goes once it is solved */
 	nmtan_workspace *workspace; /* NULL: it is only slower */
 	size_t failed;      /* the first mesh that could not be done; SIZE_MAX: none */
-	nt_error error;     /* why */
+	nt_error error;     /* why; without one it means nothing */
 } worker;
 
 typedef struct window {
@@ -184,7 +184,7 @@ static void do_small(void *context, size_t item, unsigned slot)
 {
 	window *w = context;
 	worker *own = &w->workers[slot];
-	if (w->states[item] == w->pass && !w->large[item] && own->failed == SIZE_MAX)
+	if (w->states[item] == w->pass && !w->large[item] && item < own->failed)
 		do_mesh(w, own, item, 1);
 }
 
@@ -201,13 +201,15 @@ static size_t corners_of(const window *w, size_t item)
 	return corners;
 }
 
-/* Marks the large ones, and one that takes longer than all others beside it, whose threads would have nothing to do. */
+/* Marks the large ones, and one that takes longer than all others beside it, whose threads would have nothing to do;
+ * and those whose load has to open or decode what meshes may share, which one thread does at a time. */
 static void find_large(window *w)
 {
 	size_t longest = 0, most = 0, sum = 0;
 	for (size_t i = 0; i < w->scene.mesh_count; i++) {
 		const size_t corners = w->states[i] != NOTHING ? corners_of(w, i) : 0;
-		w->large[i] = corners >= LARGE_CORNERS;
+		w->large[i] = corners >= LARGE_CORNERS ||
+			(w->states[i] == KEPT && w->tasks->reader->load && !w->scene.meshes[i].ready);
 		sum += w->large[i] ? 0 : corners;
 		if (!w->large[i] && corners > most) {
 			most = corners;
@@ -533,8 +535,8 @@ static nt_status look_at_all_kept(window *w)
 					       : mesh->tangents && !nt_mesh_is_wanted(mesh);
 		w->states[i] = w->needed[i] ? KEPT : NOTHING;
 	}
-	find_large(w);
 	nt_status status = t->reader->load ? t->reader->prepare(&w->scene, w->needed, t->options, w->error) : NT_OK;
+	find_large(w);
 	if (!status)
 		status = do_pass(w, KEPT);
 	for (size_t i = 0; !status && i < w->scene.mesh_count; i++) {
