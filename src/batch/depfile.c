@@ -61,7 +61,7 @@ static bool find_folder(const char *path, char folder[PATH_MAX], struct stat *in
 		nt_folder_of(path, folder);
 		if (stat(folder, info) == 0 && S_ISDIR(info->st_mode))
 			return true;
-		if (!strchr(folder, '/') || !folder[1])
+		if (!folder[0] || strcmp(folder, ".") == 0 || strcmp(folder, "/") == 0)
 			return false;
 	}
 }

@@ -21,6 +21,17 @@ run --depfile=absolute "$PWD/mirrored_cube.obj" "$PWD/out.glb"
 is "$(sed -n '1,/[^\\]$/p' absolute | tr -d '\\\n' | tr -s ' ')" \
 	"$PWD/out.glb: $PWD/mirrored_cube.obj $PWD/mirrored_cube.mtl $PWD/bumps.png"
 
+scene "a depfile names the folder in which a file may come to be, also if a folder in between is missing"
+take
+sed -i 's|^mtllib.*|mtllib sub/folder/cube.mtl|' mirrored_cube.obj
+mkdir out
+run --depfile=d mirrored_cube.obj out/o.glb
+exits 0
+is "$(sed -n '1,/[^\\]$/p' d | tr -d '\\\n' | tr -s ' ')" "out/o.glb: mirrored_cube.obj ."
+mkdir sub
+run --depfile=d mirrored_cube.obj out/o.glb
+is "$(sed -n '1,/[^\\]$/p' d | tr -d '\\\n' | tr -s ' ')" "out/o.glb: mirrored_cube.obj sub"
+
 scene "a depfile is refused where it would be wrong, and stays where nothing was made"
 take
 echo mine >d
