@@ -210,7 +210,8 @@ static inline nt_status read_text_value(ply_rows *rows, size_t number, size_t to
 	}
 	if (!after)
 		return fail_found(rows, begin, rows->element->properties[number].list ? "another value of list"
-			: "a number for property", rows->element->properties[number].name);
+			: column->use == PLY_CHOICES ? "an integer for property" : "a number for property",
+			rows->element->properties[number].name);
 	*at = after;
 	if (column->use == PLY_FLOATS) {
 		column->floats[to] = value / column->divisor;

@@ -75,6 +75,9 @@ TEST(text_mistakes_have_their_line)
 		"face 0: found the end of the line, expected another value of list \"vertex_indices\"");
 	assert_refused(HEAD("3") FACES("1") POINTS "3 0 1 2.5\n", 13,
 		"face 0: found \"2.5\", expected another value of list \"vertex_indices\"");
+	assert_refused("ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 3\n" XYZ "element face 1\n"
+		"property list uchar int vertex_indices\nproperty int texnumber\nend_header\n" POINTS "3 0 1 2 1.0\n",
+		15, "face 0: found \"1.0\", expected an integer for property \"texnumber\"");
 	assert_refused(HEAD("3") FACES("1") POINTS "x 0 1 2\n", 13,
 		"face 0: found \"x\", expected the length of list \"vertex_indices\"");
 	assert_refused(HEAD("3") FACES("1") POINTS "-1 0 1 2\n", 13,
