@@ -6,9 +6,9 @@
  * nor bytes show which thread did what.
  *
  * Jobs whose load only reads what is there begin with it, and hold no geometry afterwards if the output needs only
- * results. The others are loaded before, one after the other; a job that fails is loaded again there, so that faults
- * come in the order of the file. Joins are solved when their parts are there, and meshes with the geometry of an
- * earlier one take its result.
+ * results, but for pooled ones: see below. The others are loaded before, one after the other; a job that fails is
+ * loaded again there, so that faults come in the order of the file. Joins are solved when their parts are there, and
+ * meshes with the geometry of an earlier one take its result.
  *
  * Meshes go through this in windows. Data of a mesh that only its pool needs is merged and freed at the end of its
  * window, so that memory follows the largest window and not the sum of all meshes. Most scenes are one window.
@@ -281,7 +281,8 @@ static void tell_transforms(nt_scene *scene, const nt_mesh *mesh)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED, &place, 1, NULL);
 }
 
-static nt_status load_meshes(window *w)
+/* Jobs that may begin with their load are done; the others are loaded. */
+static nt_status begin_jobs(window *w)
 {
 	const nt_tasks *t = w->tasks;
 	const bool all = needs_all(t);
@@ -556,7 +557,7 @@ static nt_status do_window(window *w)
 	for (size_t i = 0; !t->reader->load && i < w->scene.mesh_count; i++)
 		w->states[i] = LOADED;
 	if (t->reader->load)
-		status = load_meshes(w);
+		status = begin_jobs(w);
 	else
 		find_large(w);
 	t->begin_stage(t->run, NT_STAGE_TANGENTS);

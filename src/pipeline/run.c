@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * One input from file to file: see run.h. The order of the stages, their times, and nothing else.
+ * One input from file to file: see run.h. The order of the stages and their times; what --fix adds to the options, and
+ * what is counted and listed between stages.
  */
 #include "pipeline/run.h"
 

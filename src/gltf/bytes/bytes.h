@@ -251,7 +251,7 @@ nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigne
 /* Packs the new ones. */
 nt_status nt_packed_finish(nt_buffer_edits *edits, nt_error *error);
 
-/* ---- the new buffers: save.c ---- */
+/* ---- the new buffers: layout.c ---- */
 
 /* Sets a member that has another value, 0 if it is not written. */
 void nt_gltf_set_number(nt_json *json, nt_json_value *object, const char *key, uint64_t value);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Edits of a document's buffers, collected: what becomes of segments, and what is new. Nothing moves before all edits
- * are known: see save.c.
+ * are known: see layout.c.
  */
 #include "gltf/bytes/bytes.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * glTF from glTF: the source document with tangents put in, and nothing else changed. Pool by pool: splits are
- * merged, vertices appended, indices follow, TANGENT comes; then offsets are moved and the document is written.
+ * glTF from glTF: the source document with tangents put in, and nothing else changed. Pool by pool, whose
+ * splits are merged by now: vertices are appended, indices follow, TANGENT comes; then save.c writes the document.
  * Accessors that no solved primitive uses are not read. Only Draco takes long: its blocks are encoded on all threads,
  * of a window of pools before the first of them is edited.
  *
