@@ -247,6 +247,9 @@ async function clickTexture(page, u, v) {
 	check(day !== night, 'dark is dark');
 	await dark.click('#theme [data-theme=light]');
 	await expect(async () => await background(dark) === day, 'and can be made light');
+	const forced = await open('two.html', {hash: '#finding-1', forcedColors: 'active'}), layoutOf = page => page.locator('#layout').screenshot();
+	await expect(async () => (await layoutOf(forced)).equals(await layoutOf(light)), 'forced colours leave the picture of the layout');
+	await forced.close();
 	for (const width of [500, 700, 1000, 1900]) {
 		await dark.setViewportSize({width, height: 900});
 		await expect(async () => await dark.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing hangs over at ' + width);

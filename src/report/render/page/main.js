@@ -7,12 +7,13 @@
 // ---- colours ----
 
 // A colour of page.css as it is now: [red, green, blue], 0 to 255, and alpha if it has one; for WebGL; and as a text for a canvas.
+// A canvas keeps it if the system forces colours.
 const colours = new Map();
 function colourOf(name) {
-	const root = document.documentElement;
 	if (!colours.has(name)) {
-		root.style.outlineColor = 'var(--' + name + ')';
-		colours.set(name, getComputedStyle(root).outlineColor.match(/[\d.]+/g).map(Number));
+		const canvas = $('layout');
+		canvas.style.textDecorationColor = 'var(--' + name + ')';
+		colours.set(name, getComputedStyle(canvas).textDecorationColor.match(/[\d.]+/g).map(Number));
 	}
 	return colours.get(name);
 }

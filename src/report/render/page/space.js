@@ -40,7 +40,7 @@ class Space {
 		if (!gl) throw new Error('this browser has no WebGL 2, or it is turned off');
 		Object.assign(this, {gl, canvas, mode: 0, frame: 0, other: -1, layout: 'wipe', wipe: 0.5, showVectors: false,
 			showSeams: true, camera: {target: [0, 0, 0], distance: 3, yaw: 0.6, pitch: 0.35}, buffers: [],
-			part: [0, 1], flip: false, showBase: true, moving: false, quality: 0.8, slow: 0, drawn: 0});
+			part: [0, 1], flip: false, showBase: true, moving: false, quality: 0.8, slow: 0, took: 0});
 		this.surfaces = new Map();
 		this.fill = this.program(surfaceVertex([]), fillFragment);
 		this.seen = this.program(surfaceVertex([]), seenFragment);
@@ -515,10 +515,9 @@ class Space {
 	// While it moves, as many triangles and pixels as it is quick with, in steps, since another size is another buffer; at rest all,
 	// and four pixels for each of the page's, where edges are smooth. Without a GPU triangles take the time.
 	pixelScale() {
-		const ratio = window.devicePixelRatio || 1, now = performance.now(), since = now - this.drawn;
-		this.drawn = now;
+		const ratio = window.devicePixelRatio || 1;
 		if (!this.moving) return ratio < 2 ? 2 : ratio;
-		this.slow = since > 2000 ? 0 : since > 36 ? this.slow + 1 : Math.max(0, this.slow - 1);
+		this.slow = this.took > 2000 ? 0 : this.took > 36 ? this.slow + 1 : Math.max(0, this.slow - 1);
 		if (this.slow > 1 && !this.coarse && this.geometry?.triangles > MOST_TURNED) {
 			this.coarse = this.elements(coarseIndices(this.geometry));
 			this.slow = 0;
@@ -532,7 +531,8 @@ class Space {
 	}
 
 	drawNow() {
-		const gl = this.gl, canvas = this.canvas, scale = this.pixelScale();
+		const gl = this.gl, canvas = this.canvas, scale = this.pixelScale(), begun = performance.now();
+		requestAnimationFrame(() => { this.took = performance.now() - begun; }); // until a next picture may be, whenever it is asked for
 		const w = Math.max(1, Math.round(canvas.clientWidth * scale)), h = Math.max(1, Math.round(canvas.clientHeight * scale));
 		if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
 		gl.bindFramebuffer(gl.FRAMEBUFFER, null);
