@@ -119,10 +119,18 @@ static nt_status check_existing(const nt_output *output, nt_sink *sink, const st
 	return sink->in_place ? refuse_in_place(sink->path, status, error) : NT_OK;
 }
 
-/* Sidecars have the lock of their main file: sets may have more files than a process may have open. */
-static int create_temporary(const nt_output *output, nt_sink *sink, const char *beside)
+/* Sidecars have the lock of their main file: sets may have more files than a process may have open. A main file that is
+ * a link may lead to another folder, in which nobody looks for that lock: then a file beside them has it. */
+static int create_temporary(nt_output *output, nt_sink *sink, const char *beside)
 {
-	const nt_temporary *leader = nt_sink_is_sidecar(sink) && output->main ? output->main->temporary : NULL;
+	const nt_sink *main = nt_sink_is_sidecar(sink) ? output->main : NULL;
+	const nt_temporary *leader = main ? main->temporary : NULL;
+	struct stat info;
+	if (leader && lstat(main->path, &info) == 0 && S_ISLNK(info.st_mode)) {
+		if (!output->leader && nt_temporary_create(beside, 0600, NULL, &output->leader) < 0)
+			return -1;
+		leader = output->leader;
+	}
 	return nt_temporary_create(beside, sink->in_place ? 0600 : 0666, leader, &sink->temporary);
 }
 
@@ -139,7 +147,7 @@ nt_status nt_output_check_folder(const char *path, nt_error *error)
 }
 
 /* Creates the temporary beside a path and explains why it cannot. */
-static nt_status open_temporary(const nt_output *output, nt_sink *sink, const char *beside, nt_error *error)
+static nt_status open_temporary(nt_output *output, nt_sink *sink, const char *beside, nt_error *error)
 {
 	char text[PATH_MAX];
 	const char *folder = nt_folder_of(beside, text);
@@ -434,6 +442,7 @@ void nt_output_abort(nt_output *output)
 		free_sink(sink);
 		sink = next;
 	}
+	nt_temporary_discard(output->leader);
 	free(output->named);
 	nt_hash_index_free(&output->names);
 	nt_key_set_free(&output->guards);

@@ -324,6 +324,30 @@ TEST(output_through_a_link_keeps_the_link)
 	assert_true(S_ISLNK(status.st_mode));
 }
 
+/* The folder of the file that a link leads to is not the one in which sidecars are, and in which others look. */
+TEST(output_through_a_link_has_the_lock_of_its_sidecars_beside_them)
+{
+	assert_int_equal(mkdir(in_folder("elsewhere"), 0700), 0);
+	put_text_file("elsewhere/file", "old");
+	assert_int_equal(symlink("elsewhere/file", in_folder("soft")), 0);
+	nt_error error;
+	nt_output *output = start(NULL);
+	const char *temporary;
+	char leader[NT_TEMPORARY_NAME];
+	add(output, in_folder("soft"), NT_ROLE_MAIN);
+	nt_sink *sink = add(output, in_folder("soft.bin"), NT_ROLE_BUFFER);
+	assert_int_equal(nt_sink_write(sink, "new", 3, &error), NT_OK);
+	assert_int_equal(nt_output_settle(output, sink, &error), NT_OK);
+	assert_int_equal(nt_output_written(output, in_folder("soft.bin"), &temporary, &error), NT_OK);
+	assert_true(nt_temporary_leader_of(strrchr(temporary, '/') + 1, leader));
+	assert_int_equal(access(in_folder(leader), F_OK), 0);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	assert_content("soft.bin", "new");
+	assert_int_equal(count_in_folder(), 3);
+	assert_int_equal(unlink(in_folder("elsewhere/file")), 0);
+	assert_int_equal(rmdir(in_folder("elsewhere")), 0);
+}
+
 TEST(output_places_that_cannot_be_are_refused)
 {
 	put_text_file("file", "x");
