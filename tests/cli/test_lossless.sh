@@ -480,6 +480,18 @@ plain.bin
 plain.gltf
 stream.glb"
 
+scene "sparse arrays of two accessors, and of a view whose user is unknown"
+gltf "$WORK/layouts/sparse.gltf" shared 'const p = g.meshes[0].primitives[0], a = g.accessors[p.attributes.POSITION];
+	delete p.targets;
+	g.accessors.push(structuredClone(a));
+	g.meshes[0].primitives.push({...p, attributes: {...p.attributes, POSITION: g.accessors.length - 1}});
+	for (const part of ["indices", "values"]) g.bufferViews.push({...g.bufferViews[a.sparse[part].bufferView]})'
+run --existing=replace --verify shared.gltf out.glb
+exits 0
+# of which it keeps the old ones: the buffer grows by these, and nothing else is to be said
+python3 "$ROOT/tests/support/gltf_lossless.py" shared.gltf out.glb >said.txt 2>&1
+is "$(cat said.txt)" "out.glb: buffers grew by 6624, expected at most 6264"
+
 scene "a first buffer without uri cannot become the BIN chunk"
 sed 's/"uri": "[^"]*buffers%200.bin"/"extras": 1/' "$WORK/layouts/three_buffers.gltf" >nameless.gltf
 cp "$WORK"/layouts/three* .
@@ -490,8 +502,8 @@ says "/buffers/0: no uri"
 run nameless.gltf out.gltf
 exits 0
 # nor if tangents that stay cannot be read for want of it
-run --only=all "$data/quad.obj" kept.gltf
-sed 's/"uri": "kept.bin"/"extras": 1/' kept.gltf >nameless.gltf
+run "$data/mirrored_cube.obj" kept.gltf
+sed 's/"uri":"kept.bin",//' kept.gltf >nameless.gltf
 run nameless.gltf out.glb
 exits 5
 says "/buffers/0: no uri"

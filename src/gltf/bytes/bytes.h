@@ -78,6 +78,13 @@ static inline bool nt_segment_is_known(const nt_segment *segment, uint32_t pool)
 	return segment->pool == pool && segment->known == segment->users;
 }
 
+/* Whether `size` bytes from `begin` on are a segment, and nobody else is left in it: what others had around them before
+ * they left is no place for these. segment: may be NULL. */
+static inline bool nt_segment_is(const nt_segment *segment, uint64_t begin, uint64_t size)
+{
+	return segment && segment->users == 1 && segment->begin == begin && segment->end == begin + size;
+}
+
 /* Changes a segment; the new bytes live as long as the edits. */
 void nt_segment_edit(nt_buffer_edits *edits, nt_segment *segment, nt_segment_change change);
 

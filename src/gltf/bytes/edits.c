@@ -160,6 +160,7 @@ void nt_edits_leave(nt_buffer_edits *edits, uint32_t index, uint64_t offset)
 	if (!segment || !segment->users || !of->users ||
 		(!decoded && nt_json_find(nt_gltf_view_json(edits->document, index), "extensions")))
 		return;
+	segment->known -= segment->known > 0;
 	if (--segment->users == 0)
 		nt_segment_edit(edits, segment, (nt_segment_change){.size = 0});
 	if (--of->users || (decoded && !leave_packed(edits, index)))

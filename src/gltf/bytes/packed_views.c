@@ -161,11 +161,11 @@ static nt_status pack(nt_buffer_edits *edits, nt_gltf_packing *p, const unsigned
 }
 
 /* Puts bytes where a packed view has its own: in their place, or behind the buffer if somebody else refers to them. */
-static nt_status put(nt_buffer_edits *edits, uint32_t buffer, uint64_t position, uint32_t view, bool packed,
-	const unsigned char *bytes, size_t size, nt_error *error)
+static nt_status put(nt_buffer_edits *edits, uint32_t buffer, uint64_t position, uint64_t old_size, uint32_t view,
+	bool packed, const unsigned char *bytes, size_t size, nt_error *error)
 {
 	nt_segment *segment = nt_segment_at(edits, buffer, position);
-	if (!segment || segment->users != 1)
+	if (!nt_segment_is(segment, position, old_size))
 		return nt_edits_add_bytes(edits, buffer, view, packed, bytes, size, error);
 	nt_segment_edit(edits, segment, (nt_segment_change){.bytes = bytes, .size = size});
 	return NT_OK;
@@ -187,8 +187,9 @@ nt_status nt_packed_replace(nt_buffer_edits *edits, uint32_t view, const unsigne
 	nt_json_find_uint64(object, "byteOffset", &offset);
 	describe(json, nt_gltf_compression_of(object, NULL), &p, packed_size);
 	nt_json_put_uint64(json, object, "byteLength", size);
-	status = put(edits, p.buffer, p.offset, view, true, packed, packed_size, error);
-	return status ? status : put(edits, p.place, offset, view, false, plain, size, error);
+	status = put(edits, p.buffer, p.offset, p.view.packed_size, view, true, packed, packed_size, error);
+	return status ? status : put(edits, p.place, offset, edits->document->views[view].length, view, false, plain,
+		size, error);
 }
 
 /* ---- new views ---- */

@@ -33,7 +33,8 @@ typedef struct appending {
 	const nt_pool_vertices *vertices;
 	const nt_override_list *overrides;
 	uint32_t buffer;  /* of new views */
-	uint32_t owner;   /* the pool, as segments have it: by its first user */
+	uint32_t owner;   /* the pool's vertices, as segments have them: by its first user */
+	uint32_t sparse_owner; /* the same of its sparse arrays */
 	bool decoded_too; /* decompressed accessors get plain views */
 	bool differs;     /* vertices are not those of the source */
 	nt_error *error;
@@ -502,7 +503,7 @@ static nt_status put_sparse_array(appending *job, nt_json_value *json, const spa
 		return status;
 	const uint64_t begin = view.offset + array->offset;
 	nt_segment *segment = nt_segment_at(job->edits, view.buffer, begin);
-	if (segment && nt_segment_is_known(segment, job->owner) && segment->begin == begin &&
+	if (segment && nt_segment_is_known(segment, job->sparse_owner) && segment->begin == begin &&
 		segment->end == begin + array->old_size && begin % array->width == 0 &&
 		(array->width == array->old_width || !nt_gltf_is_of_view(view.buffer))) {
 		nt_segment_edit(job->edits, segment, (nt_segment_change){.bytes = array->bytes, .size = array->size});
@@ -548,13 +549,8 @@ static nt_status edit_targets(appending *job)
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < job->target_count; i++) {
 		const target *t = &job->targets[i];
-		const nt_gltf_sparse_arrays *s = t->accessor->sparse;
 		/* an accessor of nobody over the same bytes does not mind others behind them */
 		nt_segment_know(t->segment, job->owner, 1 + nt_gltf_users_of(job->document, t->accessor->index)->idle);
-		if (s && !t->stays) {
-			nt_segment_know(nt_segment_of(job->edits, s->index_view, s->index_offset), job->owner, 1);
-			nt_segment_know(nt_segment_of(job->edits, s->value_view, s->value_offset), job->owner, 1);
-		}
 	}
 	if (job->target_count)
 		qsort(job->targets, job->target_count, sizeof *job->targets, compare_targets);
@@ -567,6 +563,14 @@ static nt_status edit_targets(appending *job)
 		}
 		b.width = (size_t)(b.segment->end - b.segment->begin - (job->vertices->old_count - 1) * b.stride);
 		status = edit_block(job, &b);
+	}
+	for (size_t i = 0; !status && i < job->target_count; i++) {
+		const target *t = &job->targets[i];
+		const nt_gltf_sparse_arrays *s = t->stays || t->moved ? NULL : t->accessor->sparse;
+		if (!s)
+			continue;
+		nt_segment_know(nt_segment_of(job->edits, s->index_view, s->index_offset), job->sparse_owner, 1);
+		nt_segment_know(nt_segment_of(job->edits, s->value_view, s->value_offset), job->sparse_owner, 1);
 	}
 	for (size_t i = 0; !status && i < job->target_count; i++) {
 		target *t = &job->targets[i];
@@ -594,7 +598,8 @@ nt_status nt_append_vertices(nt_buffer_edits *edits, uint32_t buffer, const nt_p
 {
 	appending job = {.edits = edits, .document = edits->document, .json = edits->document->json,
 		.arena = &edits->arena, .vertices = vertices, .overrides = overrides, .buffer = buffer,
-		.owner = vertices->pool->users[0] + 1, .decoded_too = decoded_too,
+		.owner = 2 * vertices->pool->users[0] + 1, .sparse_owner = 2 * vertices->pool->users[0] + 2,
+		.decoded_too = decoded_too,
 		.differs = nt_vertices_differ(vertices), .error = error};
 	nt_status status = collect_all(&job);
 	if (!status)

@@ -107,8 +107,8 @@ static bool replace_indices(nt_buffer_edits *edits, const nt_gltf_accessor *old,
 		return false;
 	const uint64_t begin = view.offset + old->offset;
 	nt_segment *segment = nt_segment_at(edits, view.buffer, begin);
-	if (!segment || segment->users != 1 || view.compressed || view.offset % new->width || begin % new->width ||
-		((new->width != old_width || !triangles) && nt_gltf_is_of_view(view.buffer)))
+	if (!nt_segment_is(segment, begin, old->count * old_width) || view.compressed || view.offset % new->width ||
+		begin % new->width || ((new->width != old_width || !triangles) && nt_gltf_is_of_view(view.buffer)))
 		return false;
 	nt_segment_edit(edits, segment, (nt_segment_change){.bytes = new->bytes, .size = new->size});
 	describe(edits->document, old->index, new, NT_NONE, 0);
