@@ -273,6 +273,9 @@ async function clickTexture(page, u, v) {
 	}
 	await light.emulateMedia({media: 'print'});
 	await expect(async () => !await light.locator('#text').isVisible() && await light.locator('.finding').first().isVisible(), 'on paper there are findings and no controls');
+	await dark.emulateMedia({media: 'print'});
+	const [onPaper, inDark] = await Promise.all([light, dark].map(p => p.evaluate(() => getComputedStyle(document.body).color)));
+	check(onPaper === inDark, 'the ink is dark on paper whatever the theme: ' + inDark);
 	await light.close();
 	await dark.close();
 }
