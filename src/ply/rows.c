@@ -11,6 +11,7 @@
  */
 #include "ply/parts.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include "base/parallel.h"
@@ -345,7 +346,7 @@ static nt_status measure_binary_row(ply_rows *rows)
 		const ply_property *property = &element->properties[i];
 		const unsigned char *const begin = rows->at;
 		const size_t left = (size_t)(rows->end - begin);
-		size_t bytes = ply_size(property->list ? property->count_type : property->type);
+		uint64_t bytes = ply_size(property->list ? property->count_type : property->type);
 		int64_t count = 1;
 		if (property->list && bytes <= left) {
 			count = load_integer(begin, property->count_type, swap);
@@ -353,12 +354,13 @@ static nt_status measure_binary_row(ply_rows *rows)
 				return ply_fail_at(rows->header, begin, rows->error,
 					"list \"%s\" of %s %zu has the length %lld", property->name, element->name,
 					rows->row, (long long)count);
-			bytes += (size_t)count * ply_size(property->type);
+			bytes += (uint64_t)count * ply_size(property->type);
 		}
 		if (bytes > left)
 			return ply_fail_at(rows->header, begin, rows->error,
-				"the file ends within property \"%s\" of %s %zu of %zu: %zu bytes needed, %zu left",
-				property->name, element->name, rows->row, element->count, bytes, left);
+				"the file ends within property \"%s\" of %s %zu of %zu: %" PRIu64
+				" bytes needed, %zu left", property->name, element->name, rows->row, element->count,
+				bytes, left);
 		rows->at = begin + bytes;
 		rows->cells[i] = (ply_cell){begin, rows->at, (size_t)count};
 	}
@@ -472,7 +474,7 @@ static inline __attribute__((always_inline)) nt_status take_lists_as(ply_rows *r
 		const size_t left = (size_t)(rows->end - at);
 		const int64_t read = left < lead ? -1 : load_integer(at + head, count_type, swap);
 		const size_t count = (size_t)read, to = used;
-		if (read < 0 || fixed + count * ply_size(type) > left)
+		if (read < 0 || fixed + (uint64_t)read * ply_size(type) > left)
 			break;
 		if (count != usual || to + count > column->capacity) {
 			rows->row = row;
