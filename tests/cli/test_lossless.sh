@@ -492,6 +492,19 @@ exits 0
 python3 "$ROOT/tests/support/gltf_lossless.py" shared.gltf out.glb >said.txt 2>&1
 is "$(cat said.txt)" "out.glb: buffers grew by 6624, expected at most 6264"
 
+scene "tangents stay between others that two sparse accessors share"
+gltf "$WORK/layouts/tangents_interleaved.gltf" shared 'const p = g.meshes[0].primitives[0], uv = p.attributes.TEXCOORD_0;
+	const values = g.accessors[add("VEC2", 5126, [0.5, 0.5])], indices = g.accessors[add("SCALAR", 5123, [3])];
+	g.accessors.length -= 2;
+	g.accessors[uv].sparse = {count: 1, values: {bufferView: values.bufferView, byteOffset: values.byteOffset},
+		indices: {bufferView: indices.bufferView, byteOffset: indices.byteOffset, componentType: 5123}};
+	g.meshes[0].primitives.push({...p, attributes: {...p.attributes,
+		TEXCOORD_0: g.accessors.push(structuredClone(g.accessors[uv])) - 1}})'
+run --existing=replace --verify shared.gltf out.glb
+exits 0
+tangents='g.accessors[g.meshes[0].primitives[1].attributes.TANGENT].bufferView'
+is "$(gltf out.glb "$tangents")" 0
+
 scene "a first buffer without uri cannot become the BIN chunk"
 sed 's/"uri": "[^"]*buffers%200.bin"/"extras": 1/' "$WORK/layouts/three_buffers.gltf" >nameless.gltf
 cp "$WORK"/layouts/three* .

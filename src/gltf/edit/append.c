@@ -342,8 +342,9 @@ static bool fits_in_place(const appending *job, const block *b)
 		(!packing.extension || packing.view.stride == b->stride);
 	for (size_t i = 0; fits && i < b->count; i++) {
 		const target *t = &b->targets[i];
-		fits = t->accessor->stride == b->stride && (i + 1 == b->count || !b->overridden ||
-			t->begin + t->accessor->element_bytes <= t[1].begin);
+		fits = t->accessor->stride == b->stride;
+		for (size_t k = 0; fits && t->override && k < b->count; k++)
+			fits = k == i || lies_apart(b, t, b->targets[k].accessor, b->targets[k].begin);
 	}
 	return fits;
 }
