@@ -118,22 +118,6 @@ static inline int nt_trailing_zeros(uint64_t bits)
 #endif
 }
 
-/* The place of the highest bit that is set; there is one. */
-static inline int nt_highest_bit(uint64_t bits)
-{
-#if defined(__GNUC__) && !defined(NMTAN_PLAIN_C)
-	return 63 - __builtin_clzll(bits);
-#else
-	int place = 0;
-	for (int half = 32; half > 0; half /= 2)
-		if (bits >> half) {
-			bits >>= half;
-			place += half;
-		}
-	return place;
-#endif
-}
-
 static inline int nt_count_bits(uint64_t bits)
 {
 #if defined(__GNUC__) && !defined(NMTAN_PLAIN_C)

@@ -19,7 +19,7 @@
 enum {
 	MOST_ROWS = 3 * NT_EDGE_FEW,
 	MOST_ENDS = 64,
-	MOST_IN_CELL = 63, /* vertices; if corners are no more, each has a bit */
+	MOST_IN_CELL = 63, /* vertices */
 	MOST_CORNERS = 256,
 	WINDOW = 16,       /* triangles at the end that hold the last run */
 	LAST = 4,          /* a vertex of the last triangle that is older than these is likely to be found there */
@@ -141,97 +141,17 @@ static bool find_suspects(few *f, bool of_all)
 	return most >= NT_LEAST_EDGES;
 }
 
-/* A cell: representatives.h says how it is welded. Its vertices have numbers from 1 on and a bit each, so that parts of
- * it are words; its corners have places, and each vertex a bit for each of its corners' places. */
+/* A cell, as representatives.h halves it. */
 typedef struct few_cell {
-	uint64_t wanted;                    /* vertices */
-	uint64_t has[MOST_IN_CELL + 1];
-	const float *positions[MOST_IN_CELL + 1];
-	uint16_t names[MOST_IN_CELL + 1];   /* of vertices */
-	uint16_t found[MOST_IN_CELL + 1];   /* representatives of those that are wanted */
-	uint16_t corners[MOST_CORNERS + 3]; /* by place */
-	uint8_t owners[MOST_CORNERS + 3];   /* vertices, by place */
+	uint64_t wanted;                  /* a bit for each vertex */
+	uint32_t first;                   /* no corner is before */
+	uint16_t names[MOST_IN_CELL];     /* of vertices */
+	nt_cell_vertex vertices[MOST_IN_CELL];
+	nt_cell_corner corners[MOST_CORNERS + 3];
+	uint32_t order[MOST_IN_CELL], found[MOST_IN_CELL], swaps[MOST_CORNERS];
+	uint8_t below[MOST_IN_CELL];
+	nt_part parts[2 * MOST_IN_CELL];
 } few_cell;
-
-/* The box of a part, of which a vertex is the first. */
-static nt_box box_of(const few_cell *c, uint64_t part)
-{
-	nt_box box;
-#if defined(__SSE2__)
-	__m128 low = _mm_loadu_ps(c->positions[nt_trailing_zeros(part)]), high = low;
-	while (part &= part - 1) {
-		const __m128 p = _mm_loadu_ps(c->positions[nt_trailing_zeros(part)]);
-		low = _mm_min_ps(low, p);
-		high = _mm_max_ps(high, p);
-	}
-	_mm_storeu_ps(box.low, low);
-	_mm_storeu_ps(box.high, high);
-#else
-	memcpy(box.low, c->positions[nt_trailing_zeros(part)], 3 * sizeof(float));
-	memcpy(box.high, box.low, 3 * sizeof(float));
-	while (part &= part - 1)
-		for (int k = 0; k < 3; k++) {
-			const float p = c->positions[nt_trailing_zeros(part)][k];
-			box.low[k] = p < box.low[k] ? p : box.low[k];
-			box.high[k] = p > box.high[k] ? p : box.high[k];
-		}
-#endif
-	return box;
-}
-
-/* Swaps the first corner that is above with the last that is below, and so on. */
-static void swap_corners(few_cell *c, uint64_t above, uint64_t below)
-{
-	while (above) {
-		const int i = nt_trailing_zeros(above), k = nt_highest_bit(below);
-		const uint64_t both = (uint64_t)1 << i | (uint64_t)1 << k;
-		const uint8_t owner = c->owners[i];
-		const uint16_t corner = c->corners[i];
-		c->has[owner] ^= both;
-		c->has[c->owners[k]] ^= both;
-		c->owners[i] = c->owners[k];
-		c->corners[i] = c->corners[k];
-		c->owners[k] = owner;
-		c->corners[k] = corner;
-		above &= ~both;
-		below &= ~both;
-	}
-}
-
-/* Welds a part, whose corners' places begin at `place`. False: it has to be halved too often. */
-static bool weld_part(few_cell *c, uint64_t part, uint32_t place, int halvings)
-{
-	while (part & (part - 1)) {
-		const nt_box box = box_of(c, part);
-		const unsigned axis = nt_longest_axis(&box);
-		const float middle = 0.5f * (box.high[axis] + box.low[axis]);
-		uint64_t below = 0, low = 0;
-		if (!(middle < box.high[axis] && middle > box.low[axis]))
-			break;
-		if (halvings++ == NT_HALVINGS)
-			return false;
-		for (uint64_t left = part; left; left &= left - 1) {
-			const int v = nt_trailing_zeros(left);
-			const uint64_t mask = -(uint64_t)(c->positions[v][axis] < middle);
-			below |= c->has[v] & mask;
-			low |= (left & -left) & mask;
-		}
-		const uint32_t left = (uint32_t)nt_count_bits(below);
-		const uint64_t lower = (((uint64_t)1 << left) - 1) << place, high = part & ~low;
-		const bool low_wanted = low & c->wanted, high_wanted = high & c->wanted;
-		swap_corners(c, lower & ~below, below & ~lower);
-		if (low_wanted && high_wanted && !weld_part(c, high, place + left, halvings))
-			return false;
-		part = low_wanted ? low : high;
-		place += low_wanted ? 0 : left;
-	}
-	/* each has the first of its corners here */
-	for (; part; part &= part - 1) {
-		const int v = nt_trailing_zeros(part);
-		c->found[v] = c->corners[nt_trailing_zeros(c->has[v])];
-	}
-	return true;
-}
 
 /* Vertices farther apart are in two cells, whatever is rounded. If a box is so thin that this is 0, each float has a
  * cell of its own. */
@@ -295,6 +215,7 @@ static uint32_t list_vertices(const few *f, uint32_t vertex, few_cell *cell)
 	const uint32_t *last = f->ids + 3 * f->count - 3;
 	uint32_t count = 0;
 	cell->wanted = 0;
+	cell->first = f->moved;
 	for (uint32_t row = 0; row < f->mesh->vertex_count; row += BLOCK)
 		for (uint32_t left = near_rows(f, row, at, reach); left; left &= left - 1) {
 			const uint32_t v = row + (uint32_t)nt_trailing_zeros(left);
@@ -304,67 +225,41 @@ static uint32_t list_vertices(const few *f, uint32_t vertex, few_cell *cell)
 				continue;
 			if (count == MOST_IN_CELL)
 				return count + 1;
-			cell->names[++count] = (uint16_t)v;
-			cell->positions[count] = nt_welded_position(f->mesh, v);
-			cell->has[count] = 0;
+			memcpy(cell->vertices[count].position, nt_welded_position(f->mesh, v), 3 * sizeof(float));
+			cell->vertices[count].corner_count = 0;
+			cell->names[count] = (uint16_t)v;
+			cell->order[count] = count;
+			cell->found[count] = UINT32_MAX;
+			cell->first = nt_least_of(cell->first, f->low[v]);
 			cell->wanted |= (uint64_t)((v == vertex) | (v == last[0]) | (v == last[1]) | (v == last[2]))
-				<< count;
+				<< count++;
 		}
 	return count;
 }
 
-/* Gives the corners of a cell's vertices their places. Returns how many there are, or more than MOST_CORNERS. */
-static uint32_t place_corners(const few *f, uint32_t count, few_cell *cell)
+/* Lists the corners of a cell's vertices. Returns how many there are, or more than MOST_CORNERS. */
+static uint32_t list_corners(const few *f, uint32_t count, few_cell *cell)
 {
-	uint8_t owners[MOST_ROWS]; /* a vertex of the cell, or 0 */
+	uint8_t owners[MOST_ROWS]; /* 1 + a vertex of the cell, or 0 */
 	uint32_t place = 0;
 	for (size_t v = 0; v < f->mesh->vertex_count; v += BLOCK)
 		memset(owners + v, 0, BLOCK);
-	for (uint32_t i = 1; i <= count; i++)
-		owners[cell->names[i]] = (uint8_t)i;
-	const uint32_t *v = f->ids;
-	for (uint32_t c = 0; c < 4 * f->count && place <= MOST_CORNERS; c += 4, v += 3) {
+	for (uint32_t i = 0; i < count; i++)
+		owners[cell->names[i]] = (uint8_t)(i + 1);
+	const uint32_t *v = f->ids + cell->first / 4 * 3;
+	for (uint32_t c = cell->first & ~3u; c < 4 * f->count && place <= MOST_CORNERS; c += 4, v += 3) {
 		const uint8_t of[3] = {owners[v[0]], owners[v[1]], owners[v[2]]};
 		if (!(of[0] | of[1] | of[2]))
 			continue;
 		for (uint32_t k = 0; k < 3; k++) {
-			cell->corners[place] = (uint16_t)(c + k);
-			cell->owners[place] = of[k];
+			cell->corners[place] = (nt_cell_corner){of[k] - 1u, c + k};
 			place += of[k] != 0;
 		}
 	}
 	/* not above: those that are none would wait for one another */
-	for (uint32_t i = 0; i < place && place <= MOST_IN_CELL; i++)
-		cell->has[cell->owners[i]] |= (uint64_t)1 << i;
+	for (uint32_t i = 0; i < place && place <= MOST_CORNERS; i++)
+		cell->vertices[cell->corners[i].vertex].corner_count++;
 	return place;
-}
-
-/* Welds a cell of more corners than a word has bits. False: it has to be halved too often. */
-static bool weld_large(few_cell *c, uint32_t count, uint32_t corner_count)
-{
-	nt_cell_vertex vertices[MOST_IN_CELL];
-	nt_cell_corner corners[MOST_CORNERS];
-	uint32_t order[MOST_IN_CELL], found[MOST_IN_CELL], swaps[MOST_CORNERS];
-	uint8_t below[MOST_IN_CELL];
-	nt_part parts[2 * MOST_IN_CELL], all = {.vertex_count = count, .corner_count = corner_count};
-	nt_cells cells = {.vertices = vertices, .corners = corners, .order = order, .found = found, .below = below,
-		.swaps = swaps, .parts = parts, .part_count = 2 * MOST_IN_CELL};
-	for (uint32_t i = 0; i < count; i++) {
-		memcpy(vertices[i].position, c->positions[i + 1], sizeof vertices->position);
-		vertices[i].corner_count = 0;
-		order[i] = i;
-	}
-	for (uint32_t i = 0; i < corner_count; i++) {
-		corners[i] = (nt_cell_corner){c->owners[i] - 1u, c->corners[i]};
-		vertices[corners[i].vertex].corner_count++;
-	}
-	for (uint64_t left = c->wanted; left; left &= left - 1) {
-		const uint32_t i = (uint32_t)nt_trailing_zeros(left) - 1;
-		if (!nt_cells_find(&cells, &all, i))
-			return false;
-		c->found[i + 1] = (uint16_t)found[i];
-	}
-	return true;
 }
 
 /* Finds the representative of a vertex, and those of the last triangle's vertices in its cell. False: the
@@ -373,17 +268,20 @@ static bool find(few *f, uint32_t vertex)
 {
 	few_cell cell;
 	const uint32_t count = list_vertices(f, vertex, &cell);
-	const uint32_t corner_count = count > MOST_IN_CELL ? UINT32_MAX : place_corners(f, count, &cell);
+	const uint32_t corner_count = count > MOST_IN_CELL ? UINT32_MAX : list_corners(f, count, &cell);
 	if (corner_count > MOST_CORNERS)
 		return false;
-	const uint64_t all = (((uint64_t)1 << count) - 1) << 1;
-	if (corner_count > MOST_IN_CELL ? !weld_large(&cell, count, corner_count) : !weld_part(&cell, all, 0, 0))
-		return false;
+	nt_part all = {.vertex_count = count, .corner_count = corner_count};
+	nt_cells cells = {.vertices = cell.vertices, .corners = cell.corners, .order = cell.order,
+		.found = cell.found, .below = cell.below, .swaps = cell.swaps, .parts = cell.parts,
+		.part_count = 2 * MOST_IN_CELL};
 	for (uint64_t left = cell.wanted; left; left &= left - 1) {
-		const int i = nt_trailing_zeros(left);
+		const uint32_t i = (uint32_t)nt_trailing_zeros(left);
+		if (cell.found[i] == UINT32_MAX && !nt_cells_find(&cells, &all, i))
+			return false;
 		uint16_t *const low = &f->low[cell.names[i]];
 		f->moved = *low != cell.found[i] ? nt_least_of(f->moved, *low) : f->moved;
-		*low = f->high[cell.names[i]] = cell.found[i];
+		*low = f->high[cell.names[i]] = (uint16_t)cell.found[i];
 	}
 	return true;
 }
