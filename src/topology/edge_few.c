@@ -20,7 +20,6 @@ enum {
 	MOST_ROWS = 3 * NT_EDGE_FEW,
 	MOST_ENDS = 64,
 	MOST_IN_CELL = 63, /* vertices */
-	MOST_CORNERS = 256,
 	WINDOW = 16,       /* triangles at the end that hold the last run */
 	LAST = 4,          /* a vertex of the last triangle that is older than these is likely to be found there */
 	BLOCK = 32,        /* rows that are cleared, or compared, at a time */
@@ -141,15 +140,15 @@ static bool find_suspects(few *f, bool of_all)
 	return most >= NT_LEAST_EDGES;
 }
 
-/* A cell, as representatives.h halves it. */
+/* A cell, as representatives.h halves it. Its vertices have numbers from 1 on. */
 typedef struct few_cell {
-	uint64_t wanted;                  /* a bit for each vertex */
-	uint32_t first;                   /* no corner is before */
-	uint16_t names[MOST_IN_CELL];     /* of vertices */
-	nt_cell_vertex vertices[MOST_IN_CELL];
-	nt_cell_corner corners[MOST_CORNERS + 3];
-	uint32_t order[MOST_IN_CELL], found[MOST_IN_CELL], swaps[MOST_CORNERS];
-	uint8_t below[MOST_IN_CELL];
+	uint64_t wanted;                      /* a bit for each vertex */
+	uint32_t first;                       /* no corner is before */
+	uint16_t names[MOST_IN_CELL + 1];     /* of vertices */
+	nt_cell_vertex vertices[MOST_IN_CELL + 1];
+	nt_cell_corner corners[MOST_ROWS + 1];
+	uint32_t order[MOST_IN_CELL], found[MOST_IN_CELL + 1], swaps[MOST_ROWS];
+	uint8_t below[MOST_IN_CELL + 1];
 	nt_part parts[2 * MOST_IN_CELL];
 } few_cell;
 
@@ -225,59 +224,58 @@ static uint32_t list_vertices(const few *f, uint32_t vertex, few_cell *cell)
 				continue;
 			if (count == MOST_IN_CELL)
 				return count + 1;
-			memcpy(cell->vertices[count].position, nt_welded_position(f->mesh, v), 3 * sizeof(float));
+			cell->order[count] = count + 1;
+			memcpy(cell->vertices[++count].position, nt_welded_position(f->mesh, v), 3 * sizeof(float));
 			cell->vertices[count].corner_count = 0;
 			cell->names[count] = (uint16_t)v;
-			cell->order[count] = count;
 			cell->found[count] = UINT32_MAX;
 			cell->first = nt_least_of(cell->first, f->low[v]);
 			cell->wanted |= (uint64_t)((v == vertex) | (v == last[0]) | (v == last[1]) | (v == last[2]))
-				<< count++;
+				<< count;
 		}
 	return count;
 }
 
-/* Lists the corners of a cell's vertices. Returns how many there are, or more than MOST_CORNERS. */
+/* Lists the corners of a cell's vertices. Returns how many there are. */
 static uint32_t list_corners(const few *f, uint32_t count, few_cell *cell)
 {
-	uint8_t owners[MOST_ROWS]; /* 1 + a vertex of the cell, or 0 */
-	uint32_t place = 0;
+	uint8_t owners[MOST_ROWS]; /* a vertex of the cell, or 0 */
+	nt_cell_corner *corner = cell->corners;
 	for (size_t v = 0; v < f->mesh->vertex_count; v += BLOCK)
 		memset(owners + v, 0, BLOCK);
-	for (uint32_t i = 0; i < count; i++)
-		owners[cell->names[i]] = (uint8_t)(i + 1);
+	for (uint32_t i = 1; i <= count; i++)
+		owners[cell->names[i]] = (uint8_t)i;
 	const uint32_t *v = f->ids + cell->first / 4 * 3;
-	for (uint32_t c = cell->first & ~3u; c < 4 * f->count && place <= MOST_CORNERS; c += 4, v += 3) {
-		const uint8_t of[3] = {owners[v[0]], owners[v[1]], owners[v[2]]};
+	for (uint32_t c = cell->first / 4 * 4; c < 4 * f->count; c += 4, v += 3) {
+		const uint32_t of[3] = {owners[v[0]], owners[v[1]], owners[v[2]]};
 		if (!(of[0] | of[1] | of[2]))
 			continue;
 		for (uint32_t k = 0; k < 3; k++) {
-			cell->corners[place] = (nt_cell_corner){of[k] - 1u, c + k};
-			place += of[k] != 0;
+			*corner = (nt_cell_corner){of[k], c + k};
+			corner += of[k] != 0;
 		}
 	}
 	/* not above: those that are none would wait for one another */
-	for (uint32_t i = 0; i < place && place <= MOST_CORNERS; i++)
-		cell->vertices[cell->corners[i].vertex].corner_count++;
-	return place;
+	for (const nt_cell_corner *one = cell->corners; one < corner; one++)
+		cell->vertices[one->vertex].corner_count++;
+	return (uint32_t)(corner - cell->corners);
 }
 
 /* Finds the representative of a vertex, and those of the last triangle's vertices in its cell. False: the
- * cell has too many corners, or has to be halved too often. */
+ * cell has too many vertices, or has to be halved too often. */
 static bool find(few *f, uint32_t vertex)
 {
 	few_cell cell;
 	const uint32_t count = list_vertices(f, vertex, &cell);
-	const uint32_t corner_count = count > MOST_IN_CELL ? UINT32_MAX : list_corners(f, count, &cell);
-	if (corner_count > MOST_CORNERS)
+	if (count > MOST_IN_CELL)
 		return false;
-	nt_part all = {.vertex_count = count, .corner_count = corner_count};
+	nt_part all = {.vertex_count = count, .corner_count = list_corners(f, count, &cell)};
 	nt_cells cells = {.vertices = cell.vertices, .corners = cell.corners, .order = cell.order,
 		.found = cell.found, .below = cell.below, .swaps = cell.swaps, .parts = cell.parts,
 		.part_count = 2 * MOST_IN_CELL};
 	for (uint64_t left = cell.wanted; left; left &= left - 1) {
 		const uint32_t i = (uint32_t)nt_trailing_zeros(left);
-		if (cell.found[i] == UINT32_MAX && !nt_cells_find(&cells, &all, i))
+		if (!nt_cells_find(&cells, &all, i))
 			return false;
 		uint16_t *const low = &f->low[cell.names[i]];
 		f->moved = *low != cell.found[i] ? nt_least_of(f->moved, *low) : f->moved;

@@ -139,10 +139,10 @@ static nt_part *take_parts(nt_cells *c)
 	return two;
 }
 
-/* Halves a part. Corners are swapped until those below the middle come first, and only those that have to: the first
- * that is above with the last that is below, and so on. The order of all others, and which of them are swapped, decides
- * in the end. */
-static void halve(const nt_cells *c, nt_part *p)
+/* Halves a part; a half of one vertex is found at once, and the part becomes the other. False when out of memory.
+ * Corners are swapped until those below the middle come first, and only those that have to: the first that is above
+ * with the last that is below, and so on. The order of all others, and which are swapped, decides in the end. */
+static bool halve(nt_cells *c, nt_part *p)
 {
 	const nt_cell_vertex *const vertices = c->vertices;
 	uint8_t *const is_below = c->below;
@@ -166,8 +166,8 @@ static void halve(const nt_cells *c, nt_part *p)
 		above[swap_count] = i;
 		swap_count += !is_below[corners[i].vertex];
 	}
-	for (uint32_t i = corner_count; i-- > left && other_count < swap_count;) {
-		below[other_count] = i;
+	for (uint32_t i = corner_count; other_count < swap_count;) { /* as many are below */
+		below[other_count] = --i;
 		other_count += is_below[corners[i].vertex];
 	}
 	for (uint32_t i = 0; i < swap_count; i++) {
@@ -175,11 +175,23 @@ static void halve(const nt_cells *c, nt_part *p)
 		corners[above[i]] = corners[below[i]];
 		corners[below[i]] = swapped;
 	}
-	const uint8_t halvings = p->halvings + 1;
-	p->halves[0] = (nt_part){.vertices = p->vertices, .corners = p->corners, .vertex_count = low,
-		.corner_count = left, .halvings = halvings};
-	p->halves[1] = (nt_part){.vertices = p->vertices + low, .corners = p->corners + left,
-		.vertex_count = vertex_count - low, .corner_count = corner_count - left, .halvings = halvings};
+	const nt_part lower = {.vertices = p->vertices, .corners = p->corners, .vertex_count = low,
+		.corner_count = left, .halvings = p->halvings + 1};
+	const nt_part upper = {.vertices = p->vertices + low, .corners = p->corners + left,
+		.vertex_count = vertex_count - low, .corner_count = corner_count - left,
+		.halvings = lower.halvings};
+	if (low == 1) {
+		c->found[order[0]] = corners[0].corner;
+		*p = upper;
+	} else if (low + 1 == vertex_count) {
+		c->found[order[low]] = corners[left].corner;
+		*p = lower;
+	} else if ((p->halves = take_parts(c))) {
+		p->halves[0] = lower;
+		p->halves[1] = upper;
+	} else
+		return false;
+	return true;
 }
 
 /* A part of two vertices at different places: the same as if it were halved. */
@@ -202,25 +214,19 @@ static void find_two(const nt_cells *c, const nt_part *p)
 
 bool nt_cells_find(nt_cells *c, nt_part *p, uint32_t vertex)
 {
-	for (;;) {
-		if (!p->halves) {
-			const bool is_halved = p->vertex_count > 1 && find_middle(c, p);
-			if (!is_halved) /* each has the first of its corners here */
-				for (uint32_t i = p->vertex_count > 1 ? p->corner_count : 1; i-- > 0;) {
-					const nt_cell_corner *corner = &c->corners[p->corners + i];
-					c->found[corner->vertex] = corner->corner;
-				}
-			else if ((c->limit = p->halvings == NT_HALVINGS))
-				return false;
-			else if (p->vertex_count == 2)
-				find_two(c, p);
-			if (!is_halved || p->vertex_count == 2)
-				return true;
-			p->halves = take_parts(c);
-			if (!p->halves)
-				return false;
-			halve(c, p);
-		}
-		p = &p->halves[!(c->vertices[vertex].position[p->axis] < p->middle)];
-	}
+	while (c->found[vertex] == UINT32_MAX)
+		if (p->halves)
+			p = &p->halves[!(c->vertices[vertex].position[p->axis] < p->middle)];
+		else if (p->vertex_count == 1 || !find_middle(c, p)) /* each has the first of its corners here */
+			for (uint32_t i = p->vertex_count > 1 ? p->corner_count : 1; i-- > 0;) {
+				const nt_cell_corner *corner = &c->corners[p->corners + i];
+				c->found[corner->vertex] = corner->corner;
+			}
+		else if ((c->limit = p->halvings == NT_HALVINGS))
+			return false;
+		else if (p->vertex_count == 2)
+			find_two(c, p);
+		else if (!halve(c, p))
+			return false;
+	return true;
 }

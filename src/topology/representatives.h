@@ -113,13 +113,13 @@ typedef struct nt_part {
 } nt_part;
 
 /* Cells are halved where somebody asks for a vertex, each part once. Halves are made of vertices, of which there are
- * few, and corners are only swapped. */
+ * few, and corners are only swapped. A vertex that is alone in its half needs no part. */
 typedef struct nt_cells {
 	const nt_cell_vertex *vertices;
 	nt_cell_corner *corners; /* of a cell at first in the order of triangles */
 	uint32_t *order;         /* all vertices: a part's are side by side */
-	uint32_t *found;         /* [vertices] receives the corner that stands for the vertex, and for others; those
-	                            that are not known have UINT32_MAX */
+	uint32_t *found;         /* [vertices] UINT32_MAX at first; receives the corner that stands for the vertex,
+	                            and for others */
 	uint8_t *below;          /* [vertices] room */
 	uint32_t *swaps;         /* [most corners of a cell] room */
 	nt_part *parts;          /* [part_count] pairs that are free */

@@ -5,7 +5,7 @@
  *   weld     each thread its range of items, by a table of its own, as one does alone
  *   seek     each row of a range in the tables of the ranges before it, which nobody changes any more
  *   number   the rows that no range before has: after all rows of the ranges before, in their order
- *   resolve  the other rows have the number of the row that was found; then items have that of their row
+ *   resolve  items have the number of their row, or of the row that was found
  *
  * The first range's rows keep their numbers. A row is met first in the first range that has it, so numbers are in
  * order of first appearance, whatever the ranges: what one thread makes.
@@ -15,7 +15,7 @@
 #include "base/parallel.h"
 #include "topology/weld_parts.h"
 
-/* In `places`: no range before has the row; its number, behind the bit. */
+/* In `places`: no range before has the row; then its number, behind the bit. */
 #define NEW UINT32_MAX
 #define FINAL ((uint32_t)1 << 31)
 
@@ -38,7 +38,7 @@ typedef struct joint {
 	nt_welder *w;
 	unsigned count;
 	range *ranges;    /* [count] */
-	uint32_t *places; /* [rows of all ranges] place of an equal row of a range before, or NEW; later numbers */
+	uint32_t *places; /* [rows of all ranges] place of an equal row of a range before, or NEW; later its number */
 	unsigned sought;  /* range whose rows are sought now */
 } joint;
 
@@ -193,24 +193,12 @@ static bool number_rows(joint *j)
 
 /* Resolve */
 
-/* Numbers of rows that a range before has; a row that was found is new in its range. */
-static void resolve_rows(void *context, size_t begin, size_t end, unsigned thread)
-{
-	const joint *j = context;
-	const size_t first_count = j->ranges[0].welder.row_count;
-	(void)thread;
-	for (size_t i = first_count + begin; i < first_count + end; i++) {
-		const uint32_t place = j->places[i];
-		if (!(place & FINAL))
-			j->places[i] = (place < first_count ? place : j->places[place] & ~FINAL) | FINAL;
-	}
-}
-
-/* Items have got the number of their row in their range. */
+/* Items have got the number of their row in their range. If a range before has the row, it is new in that one, or of
+ * the first range. */
 static void resolve_items(void *context, size_t begin, size_t end, unsigned thread)
 {
 	const joint *j = context;
-	const size_t first_end = j->ranges[0].welder.item_count;
+	const size_t first_end = j->ranges[0].welder.item_count, first_count = j->ranges[0].welder.row_count;
 	(void)thread;
 	begin += first_end;
 	end += first_end;
@@ -218,8 +206,10 @@ static void resolve_items(void *context, size_t begin, size_t end, unsigned thre
 		const range *here = &j->ranges[r];
 		const size_t here_end = here->begin + here->welder.item_count;
 		const uint32_t *places = j->places + here->place;
-		for (size_t i = begin > here->begin ? begin : here->begin; i < end && i < here_end; i++)
-			j->w->numbers[i] = places[j->w->numbers[i]] & ~FINAL;
+		for (size_t i = begin > here->begin ? begin : here->begin; i < end && i < here_end; i++) {
+			const uint32_t place = places[j->w->numbers[i]];
+			j->w->numbers[i] = (place < first_count || place & FINAL ? place : j->places[place]) & ~FINAL;
+		}
 	}
 }
 
@@ -228,10 +218,7 @@ static bool weld_items_threads(nt_welder *w, unsigned ranges)
 	joint j = {.w = w, .count = nt_parallel_slots(ranges, w->item_count, 1)};
 	if (!make_ranges(&j) || !weld_ranges(&j) || !seek_all(&j) || !number_rows(&j))
 		return false;
-	const size_t first_count = j.ranges[0].welder.row_count, first_end = j.ranges[0].welder.item_count;
-	const range *last = &j.ranges[j.count - 1];
-	nt_parallel_ranges(j.count, last->place + last->welder.row_count - first_count, 1, resolve_rows, &j);
-	nt_parallel_ranges(j.count, w->item_count - first_end, 1, resolve_items, &j);
+	nt_parallel_ranges(j.count, w->item_count - j.ranges[0].welder.item_count, 1, resolve_items, &j);
 	return true;
 }
 
