@@ -12,11 +12,6 @@
 
 #define NONE NT_NO_NEIGHBOUR
 
-/* An edge by its lower end, or by what this is at least. */
-typedef struct key_edge {
-	uint32_t key, edge; /* 3 * triangle + k: from corner k to the next */
-} key_edge;
-
 /* Edges of eight triangles, and what their keys are between: a block that a pivot is not in is skipped. */
 enum { BLOCK_TRIANGLES = 8, BLOCK = 3 * BLOCK_TRIANGLES };
 
@@ -37,10 +32,10 @@ typedef struct edge_array {
 	vertex *vertices;        /* [vertex_count] */
 	nt_cells cells;
 	nt_part *parts;          /* [NT_CELLS] */
-	key_edge *keys;          /* [count] of triangles that are not degenerate */
+	uint32_t *edges;         /* [count] 3 * triangle + k, from corner k to the next; of none that is degenerate */
+	uint32_t *keys;          /* [count] their lower ends, in the place of the corners; NULL: not all are known */
 	block *blocks;           /* [count / BLOCK + 1] */
 	size_t count;
-	bool are_known;          /* all keys */
 	bool failed;             /* out of memory, or a limit */
 } edge_array;
 
@@ -80,8 +75,8 @@ static void count_corners(const nt_welded_mesh *m, vertex *vertices)
 /* If a pivot leaves one of so many vertices open, all of them are found first. */
 enum { MANY = 8 };
 
-/* Makes cells of the vertices that have corners; returns how many these are. */
-static uint32_t make_cells(edge_array *e, const nt_grid *grid, uint32_t *most_corners)
+/* Makes cells of the vertices that have corners; returns how many these are. `many`: all are to be found first. */
+static uint32_t make_cells(edge_array *e, const nt_grid *grid, uint32_t *most_corners, bool *many)
 {
 	const nt_welded_mesh *m = e->mesh;
 	uint32_t places[NT_CELLS] = {0}, corner_places[NT_CELLS] = {0}, count = 0;
@@ -96,7 +91,7 @@ static uint32_t make_cells(edge_array *e, const nt_grid *grid, uint32_t *most_co
 		sum += corners > 1 ? e->vertices[v].most - e->vertices[v].least : 0;
 	}
 	/* about so many vertices are open at each pivot */
-	e->are_known = MANY * sum / (3 * m->triangle_count) > count;
+	*many = MANY * sum / (3 * m->triangle_count) > count;
 	for (size_t c = 0; c < NT_CELLS; c++)
 		e->parts[c] = (nt_part){.vertex_count = places[c], .corner_count = corner_places[c]};
 	add_up(places);
@@ -160,6 +155,7 @@ static void find_all(edge_array *e)
 	for (size_t v = 0; v < e->mesh->vertex_count && !e->failed; v++)
 		if (vertices[v].least < vertices[v].most)
 			vertices[v].least = vertices[v].most = c->found[vertices[v].number];
+	e->keys = (uint32_t *)(void *)c->corners;
 }
 
 /* The one in the middle is the larger lower end of two edges of a triangle, and that of the third is the least. */
@@ -173,8 +169,8 @@ static uint32_t list_edges(edge_array *e)
 {
 	const nt_welded_mesh *m = e->mesh;
 	const vertex *const vertices = e->vertices;
-	key_edge *key = e->keys;
 	uint32_t all_least = 0;
+	e->count = 0;
 	for (uint32_t t = 0; t < m->triangle_count;) {
 		block b = {UINT32_MAX, 0};
 		for (unsigned sound = 0; sound < BLOCK_TRIANGLES && t < m->triangle_count; t++) {
@@ -188,16 +184,17 @@ static uint32_t list_edges(edge_array *e)
 				b.least = nt_least_of(b.least, least[k]);
 			}
 			for (uint32_t k = 0; k < 3; k++)
-				key[k] = (key_edge){nt_least_of(least[k], least[k < 2 ? k + 1 : 0]), 3 * t + k};
-			key += 3;
+				e->edges[e->count + k] = 3 * t + k;
+			for (uint32_t k = 0; e->keys && k < 3; k++)
+				e->keys[e->count + k] = nt_least_of(least[k], least[k < 2 ? k + 1 : 0]);
+			e->count += 3;
 			b.most = nt_most_of(b.most, middle_of(most));
 			all_least = nt_most_of(all_least, middle_of(least));
 			sound++;
 		}
 		if (b.most > 0)
-			e->blocks[(key - e->keys - 1) / BLOCK] = b;
+			e->blocks[(e->count - 1) / BLOCK] = b;
 	}
-	e->count = (size_t)(key - e->keys);
 	return all_least;
 }
 
@@ -206,22 +203,23 @@ static bool make_array(edge_array *e, const nt_grid *grid, uint32_t *least)
 {
 	const nt_welded_mesh *m = e->mesh;
 	uint32_t most_corners;
+	bool many;
 	nt_cell_corner *corners = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *corners);
-	e->keys = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *e->keys);
+	e->edges = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *e->edges);
 	e->vertices = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *e->vertices);
 	e->blocks = nt_scratch_alloc(m->scratch, m->triangle_count / BLOCK_TRIANGLES + 1, sizeof *e->blocks);
 	e->parts = nt_scratch_alloc(m->scratch, NT_CELLS, sizeof *e->parts);
-	if (!corners || !e->keys || !e->vertices || !e->blocks || !e->parts)
+	if (!corners || !e->edges || !e->vertices || !e->blocks || !e->parts)
 		return false;
 	count_corners(m, e->vertices);
-	const uint32_t count = make_cells(e, grid, &most_corners);
+	const uint32_t count = make_cells(e, grid, &most_corners, &many);
 	nt_cell_vertex *rows = nt_scratch_alloc(m->scratch, count, sizeof *rows);
 	if (!rows || !nt_cells_make(m->scratch, rows, count, most_corners, &e->cells))
 		return false;
 	e->cells.corners = corners;
 	place_vertices(e, rows);
 	place_corners(e);
-	if (e->are_known)
+	if (many)
 		find_all(e);
 	*least = list_edges(e);
 	return true;
@@ -237,13 +235,12 @@ static inline void ends_of(const nt_welded_mesh *m, uint32_t edge, uint32_t ends
 	ends[1] = v[k < 2 ? k + 1 : 0];
 }
 
-static inline block bounds_of(const edge_array *e, const key_edge *at)
+static inline block bounds_of(const edge_array *e, size_t place)
 {
 	uint32_t v[2];
-	if (e->are_known)
-		return (block){at->key, at->key};
-	ends_of(e->mesh, at->edge, v);
-	return (block){at->key, nt_least_of(e->vertices[v[0]].most, e->vertices[v[1]].most)};
+	ends_of(e->mesh, e->edges[place], v);
+	const vertex *a = &e->vertices[v[0]], *b = &e->vertices[v[1]];
+	return (block){nt_least_of(a->least, b->least), nt_least_of(a->most, b->most)};
 }
 
 /* Finds the representative of a vertex, unless that failed before. */
@@ -256,13 +253,15 @@ static NT_NOINLINE void find(edge_array *e, vertex *v)
 }
 
 /* Less than 0: the key is less than the pivot; and so on. If it failed, it is 0. */
-static inline NT_ALWAYS_INLINE int compare_key(edge_array *e, const key_edge *at, uint32_t pivot)
+static inline NT_ALWAYS_INLINE int compare_key(edge_array *e, size_t place, uint32_t pivot)
 {
-	uint32_t ends[2], key = at->key;
-	if (key > pivot || e->are_known)
-		return (key > pivot) - (key < pivot);
-	ends_of(e->mesh, at->edge, ends);
+	uint32_t ends[2], key;
+	if (e->keys)
+		return (e->keys[place] > pivot) - (e->keys[place] < pivot);
+	ends_of(e->mesh, e->edges[place], ends);
 	vertex *a = &e->vertices[ends[0]], *b = &e->vertices[ends[1]];
+	if (nt_least_of(a->least, b->least) > pivot)
+		return 1;
 	if (nt_least_of(a->most, b->most) < pivot)
 		return -1;
 	if (a->least <= pivot && a->most >= pivot)
@@ -273,12 +272,10 @@ static inline NT_ALWAYS_INLINE int compare_key(edge_array *e, const key_edge *at
 	return e->failed ? 0 : (key > pivot) - (key < pivot);
 }
 
-static uint32_t key_of(edge_array *e, const key_edge *at)
+static uint32_t key_of(edge_array *e, size_t place)
 {
 	uint32_t ends[2];
-	if (e->are_known)
-		return at->key;
-	ends_of(e->mesh, at->edge, ends);
+	ends_of(e->mesh, e->edges[place], ends);
 	vertex *a = &e->vertices[ends[0]], *b = &e->vertices[ends[1]];
 	if (a->least < b->most)
 		find(e, a);
@@ -296,7 +293,7 @@ static uint32_t find_largest(edge_array *e, uint32_t least, size_t *run_count)
 			i += BLOCK - 1;
 			continue;
 		}
-		const uint32_t key = bounds_of(e, &e->keys[i]).most < least ? 0 : key_of(e, &e->keys[i]);
+		const uint32_t key = bounds_of(e, i).most < least ? 0 : key_of(e, i);
 		*run_count = key > least ? 1 : *run_count + (key == least);
 		least = nt_most_of(least, key);
 	}
@@ -314,16 +311,17 @@ typedef struct key_range {
 /* The first in [begin, end) whose key is not less than the pivot; end: there is none. */
 static inline NT_ALWAYS_INLINE size_t skip_less(edge_array *e, size_t begin, size_t end, uint32_t pivot)
 {
-	for (const key_edge *const keys = e->keys; e->are_known && begin < end && keys[begin].key < pivot;)
+	const uint32_t *const keys = e->keys;
+	while (keys && begin < end && keys[begin] < pivot)
 		begin++;
-	if (e->are_known)
+	if (keys)
 		return begin;
 	while (begin < end) {
 		const size_t next = (begin / BLOCK + 1) * BLOCK, stop = next < end ? next : end;
 		if (e->blocks[begin / BLOCK].most < pivot)
 			begin = stop;
 		for (; begin < stop; begin++)
-			if (compare_key(e, &e->keys[begin], pivot) >= 0)
+			if (compare_key(e, begin, pivot) >= 0)
 				return begin;
 	}
 	return begin;
@@ -332,16 +330,17 @@ static inline NT_ALWAYS_INLINE size_t skip_less(edge_array *e, size_t begin, siz
 /* The same from the end: behind the last whose key is not greater. */
 static inline NT_ALWAYS_INLINE size_t skip_greater(edge_array *e, size_t begin, size_t end, uint32_t pivot)
 {
-	for (const key_edge *const keys = e->keys; e->are_known && end > begin && keys[end - 1].key > pivot;)
+	const uint32_t *const keys = e->keys;
+	while (keys && end > begin && keys[end - 1] > pivot)
 		end--;
-	if (e->are_known)
+	if (keys)
 		return end;
 	while (begin < end) {
 		const size_t first = (end - 1) / BLOCK * BLOCK, stop = first > begin ? first : begin;
 		if (e->blocks[(end - 1) / BLOCK].least > pivot)
 			end = stop;
 		for (; end > stop; end--)
-			if (compare_key(e, &e->keys[end - 1], pivot) <= 0)
+			if (compare_key(e, end - 1, pivot) <= 0)
 				return end;
 	}
 	return end;
@@ -350,20 +349,27 @@ static inline NT_ALWAYS_INLINE size_t skip_greater(edge_array *e, size_t begin, 
 /* Adds the edge at a place to its block. */
 static inline void widen(edge_array *e, size_t place)
 {
-	block *to = &e->blocks[place / BLOCK], b = bounds_of(e, &e->keys[place]);
+	block *to = &e->blocks[place / BLOCK], b = bounds_of(e, place);
 	to->least = nt_least_of(to->least, b.least);
 	to->most = nt_most_of(to->most, b.most);
 }
 
+static inline void swap_numbers(uint32_t *a, uint32_t *b)
+{
+	const uint32_t swapped = *a;
+	*a = *b;
+	*b = swapped;
+}
+
 static inline void swap_edges(edge_array *e, size_t i, size_t k)
 {
-	const key_edge swapped = e->keys[i];
-	e->keys[i] = e->keys[k];
-	e->keys[k] = swapped;
-	if (e->are_known)
-		return;
-	widen(e, i);
-	widen(e, k);
+	swap_numbers(&e->edges[i], &e->edges[k]);
+	if (e->keys)
+		swap_numbers(&e->keys[i], &e->keys[k]);
+	else {
+		widen(e, i);
+		widen(e, k);
+	}
 }
 
 /* The published quicksort's step: smaller keys come before `*left_end`, larger ones from `*right_begin` on. */
@@ -393,13 +399,13 @@ static bool sort_largest(edge_array *e, uint32_t largest)
 		visits += size;
 		if (visits / NT_EDGE_SORT_VISITS > e->count)
 			return false;
-		if (size == 2 && compare_key(e, &e->keys[range.begin], key_of(e, &e->keys[range.begin + 1])) > 0)
+		if (size == 2 && compare_key(e, range.begin, key_of(e, range.begin + 1)) > 0)
 			swap_edges(e, range.begin, range.begin + 1);
 		if (size < 3)
 			continue;
 		const uint32_t turn = range.seed & 31;
 		range.seed += (range.seed << turn | range.seed >> ((32 - turn) & 31)) + 3;
-		const uint32_t pivot = key_of(e, &e->keys[range.begin + range.seed % (uint32_t)size]);
+		const uint32_t pivot = key_of(e, range.begin + range.seed % (uint32_t)size);
 		key_range left = range, right = range;
 		part_keys(e, &range, pivot, &left.end, &right.begin);
 		if (pivot < largest || skip_less(e, left.begin, left.end, largest) == left.end)
@@ -463,7 +469,7 @@ static void pair_run(run_edge *run, size_t count, bool published)
 
 /* Pairs the run, the last edges, as published, and as if it were sorted; keeps the edges that differ. False when out of
  * memory. */
-static bool pair_both(const nt_welded_mesh *m, uint32_t largest, const key_edge *last, size_t count,
+static bool pair_both(const nt_welded_mesh *m, uint32_t largest, const uint32_t *last, size_t count,
 	nt_unsorted *unsorted)
 {
 	const uint32_t low = m->triangles->ids[largest];
@@ -474,8 +480,8 @@ static bool pair_both(const nt_welded_mesh *m, uint32_t largest, const key_edge 
 	run_edge *sorted = published + count;
 	for (size_t i = 0; i < count; i++) {
 		uint32_t v[2];
-		ends_of(m, last[i].edge, v);
-		published[i] = (run_edge){last[i].edge, v[v[0] == low], v[0] == low, NONE};
+		ends_of(m, last[i], v);
+		published[i] = (run_edge){last[i], v[v[0] == low], v[0] == low, NONE};
 	}
 	memcpy(sorted, published, count * sizeof *sorted);
 	pair_run(published, count, true);
@@ -503,7 +509,7 @@ static nmtan_status pair_as_published(const nt_welded_mesh *m, const nt_grid *gr
 		return NMTAN_OK;
 	const bool sorted = !e.failed && sort_largest(&e, largest);
 	unsorted->limit = !sorted && (!e.failed || e.cells.limit);
-	return unsorted->limit || (sorted && pair_both(m, largest, e.keys + e.count - count, count, unsorted))
+	return unsorted->limit || (sorted && pair_both(m, largest, e.edges + e.count - count, count, unsorted))
 		? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }
 
