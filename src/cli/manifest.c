@@ -15,6 +15,7 @@
 #include "base/hash.h"
 #include "cli/messages.h"
 #include "file/input.h"
+#include "file/lookup.h"
 #include "file/path.h"
 #include "file/uri.h"
 #include "report/codes.h"
@@ -26,8 +27,19 @@ enum { LINE_BYTES = 16 * 1024 };
 
 /* ---- a line ---- */
 
+/* Whether a path names another file once its ".." are resolved as they are spelled: one may stand behind a link. */
+static bool leads_elsewhere(const char *path, const char *resolved)
+{
+	struct stat own, other;
+	if (!strstr(path, "/../"))
+		return false;
+	const bool is_there = stat(path, &own) == 0, is_other = stat(resolved, &other) == 0;
+	return is_there != is_other || (is_there && !nt_same_file(&own, &other));
+}
+
 /* The path of a file in one spelling, whichever run met it: as the input or output (`like`) if it is that, relative to
- * the folder of the run if `like` is relative, else absolute; without memory, as it was met. */
+ * the folder of the run if `like` is relative, else absolute; as it was met if that would be another file, or without
+ * memory. */
 static const char *shown_path(nt_buffer *shown, const nt_manifest *manifest, const char *path, const char *like)
 {
 	nt_buffer whole = {0}, other = {0};
@@ -36,7 +48,8 @@ static const char *shown_path(nt_buffer *shown, const nt_manifest *manifest, con
 		nt_path_join(&whole, manifest->current.data, path);
 		nt_path_join(&other, manifest->current.data, like);
 	}
-	const bool known = whole.data && other.data && !whole.failed && !other.failed,
+	const bool known = whole.data && other.data && !whole.failed && !other.failed &&
+		!leads_elsewhere(path, whole.data),
 		   same = known && strcmp(whole.data, other.data) == 0;
 	if (known && like[0] != '/')
 		nt_path_relative(shown, manifest->current.data, whole.data);

@@ -156,6 +156,18 @@ run -q --update --manifest=m -d out in/a.obj
 is "$(value m '[d["path"] for l in m.values() for d in l["outputs"] + l["dependencies"]]')" \
 	"['out/a.glb', 'in/a.obj', 'in/m.mtl', 'in/tex/n.png']"
 
+scene "a path through a link stays as it is spelled: without its .. it would name another file"
+mkdir -p real/sub here
+cp "$data"/plates.* "$data/bumps.png" real
+ln -s ../real/sub here/link
+echo other >here/plates.bin
+cd here
+run -q --manifest=m link/../plates.gltf o.glb
+exits 0
+is "$(value m '[d["path"] for l in m.values() for d in l["dependencies"]]')" \
+	"['link/../plates.gltf', 'link/../plates.bin', 'link/../bumps.png']"
+cd ..
+
 scene "findings that fail are in the exit code, and --check has a manifest"
 cp "$data/mirrored_cube.obj" a.obj
 run --check -q --fail-on=warning --manifest=m a.obj
