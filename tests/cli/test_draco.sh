@@ -123,6 +123,15 @@ for three in "off three" "keep three" "off unlisted" "keep unlisted"; do
 	done
 	is "$(gltf three.glb 'new Set(g.meshes[0].primitives.map((p) => p.attributes.TEXCOORD_0)).size')" 2
 done
+# what a block has and its primitive has not is nobody's
+gltf one.glb more 'const block = g.meshes[0].primitives[0].extensions.KHR_draco_mesh_compression.attributes;
+	block._MORE = block.NORMAL' || wrong
+for choice in keep off; do
+	run --existing=replace --draco=$choice more.gltf more.glb
+	exits 0
+	[ $choice = off ] || { run --draco=off --existing=replace more.glb plain.glb; mv plain.glb more.glb; }
+	is "$(gltf more.glb "g.meshes[0].primitives.map((p) => $row)")" "$(gltf one_plain.glb "g.meshes[0].primitives.map((p) => $row)")"
+done
 
 scene "a compressed primitive that gets no tangents is judged by the triangles of its block"
 run -q --raw "$data/quad.obj" plain.glb

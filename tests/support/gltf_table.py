@@ -1253,6 +1253,10 @@ def check(options, before, after, fault, compressed=False):
             check_tangents(a, b, m, k, options, fault, compressed)
     check_counts(a, b, options, fault)
     check_image(b, options, fault)
+    packs = {n for v in b.g['bufferViews'] for n in v.get('extensions', {})}
+    for name in b.g.get('extensionsRequired', []):
+        if 'meshopt' in name and name not in packs:
+            fault('%s is required and nothing has it' % name)
     if compressed:
         return
     dead, loose = check_bytes(a, lambda text: None)
