@@ -23,13 +23,14 @@ typedef struct block {
 typedef struct vertex {
 	uint32_t least, most; /* what its representative is between; equal: it is this one */
 	uint32_t number;      /* in the cells; until then, how many corners it has */
-	uint32_t cell;
 } vertex;
 
 /* The array that is sorted. */
 typedef struct edge_array {
 	const nt_welded_mesh *mesh;
+	const nt_grid *grid;
 	vertex *vertices;        /* [vertex_count] */
+	uint16_t *cell_of;       /* [vertex_count] in the place of the edges, until these are listed */
 	nt_cells cells;
 	nt_part *parts;          /* [NT_CELLS] */
 	uint32_t *edges;         /* [count] 3 * triangle + k, from corner k to the next; of none that is degenerate */
@@ -76,15 +77,15 @@ static void count_corners(const nt_welded_mesh *m, vertex *vertices)
 enum { MANY = 8 };
 
 /* Makes cells of the vertices that have corners; returns how many these are. `many`: all are to be found first. */
-static uint32_t make_cells(edge_array *e, const nt_grid *grid, uint32_t *most_corners, bool *many)
+static uint32_t make_cells(edge_array *e, uint32_t *most_corners, bool *many)
 {
 	const nt_welded_mesh *m = e->mesh;
 	uint32_t places[NT_CELLS] = {0}, corner_places[NT_CELLS] = {0}, count = 0;
 	uint64_t sum = 0;
 	for (size_t v = 0; v < m->vertex_count; v++) {
-		const unsigned cell = nt_grid_cell(grid, m->positions[m->step * v + grid->axis]);
+		const unsigned cell = nt_grid_cell(e->grid, m->positions[m->step * v + e->grid->axis]);
 		const uint32_t corners = e->vertices[v].number;
-		e->vertices[v].cell = cell;
+		e->cell_of[v] = (uint16_t)cell;
 		places[cell] += corners > 0;
 		corner_places[cell] += corners;
 		count += corners > 0;
@@ -113,7 +114,7 @@ static void place_vertices(const edge_array *e, nt_cell_vertex *rows)
 		vertex *one = &e->vertices[v];
 		if (one->number == 0)
 			continue;
-		const uint32_t number = places[one->cell]++;
+		const uint32_t number = places[e->cell_of[v]]++;
 		memcpy(rows[number].position, nt_welded_position(m, v), sizeof rows->position);
 		rows[number].corner_count = one->number;
 		one->number = e->cells.order[number] = number;
@@ -132,9 +133,8 @@ static void place_corners(const edge_array *e)
 		uint32_t copy[3];
 		const uint32_t *v = nt_vertices_of(m, t, copy);
 		for (unsigned k = 0; k < 3; k++) {
-			const vertex *one = &vertices[v[k]];
 			const uint32_t corner = (uint32_t)nt_triangle_corner(m->triangles, t, k);
-			corners[places[one->cell]++] = (nt_cell_corner){one->number, corner};
+			corners[places[e->cell_of[v[k]]]++] = (nt_cell_corner){vertices[v[k]].number, corner};
 		}
 	}
 }
@@ -199,20 +199,22 @@ static uint32_t list_edges(edge_array *e)
 }
 
 /* Makes the array. False when out of memory. */
-static bool make_array(edge_array *e, const nt_grid *grid, uint32_t *least)
+static bool make_array(edge_array *e, uint32_t *least)
 {
 	const nt_welded_mesh *m = e->mesh;
 	uint32_t most_corners;
 	bool many;
 	nt_cell_corner *corners = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *corners);
-	e->edges = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *e->edges);
+	const size_t edges = 3 * m->triangle_count, halves = m->vertex_count / 2 + 1;
+	e->edges = nt_scratch_alloc(m->scratch, edges > halves ? edges : halves, sizeof *e->edges);
+	e->cell_of = (uint16_t *)(void *)e->edges;
 	e->vertices = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *e->vertices);
 	e->blocks = nt_scratch_alloc(m->scratch, m->triangle_count / BLOCK_TRIANGLES + 1, sizeof *e->blocks);
 	e->parts = nt_scratch_alloc(m->scratch, NT_CELLS, sizeof *e->parts);
 	if (!corners || !e->edges || !e->vertices || !e->blocks || !e->parts)
 		return false;
 	count_corners(m, e->vertices);
-	const uint32_t count = make_cells(e, grid, &most_corners, &many);
+	const uint32_t count = make_cells(e, &most_corners, &many);
 	nt_cell_vertex *rows = nt_scratch_alloc(m->scratch, count, sizeof *rows);
 	if (!rows || !nt_cells_make(m->scratch, rows, count, most_corners, &e->cells))
 		return false;
@@ -248,7 +250,8 @@ static NT_NOINLINE void find(edge_array *e, vertex *v)
 {
 	if (v->least == v->most || e->failed)
 		return;
-	e->failed = !nt_cells_find(&e->cells, &e->parts[v->cell], v->number);
+	const unsigned cell = nt_grid_cell(e->grid, e->cells.vertices[v->number].position[e->grid->axis]);
+	e->failed = !nt_cells_find(&e->cells, &e->parts[cell], v->number);
 	v->least = v->most = e->cells.found[v->number];
 }
 
@@ -499,10 +502,10 @@ static bool pair_both(const nt_welded_mesh *m, uint32_t largest, const uint32_t 
 /* Finds the order, and what is paired otherwise by it. */
 static nmtan_status pair_as_published(const nt_welded_mesh *m, const nt_grid *grid, nt_unsorted *unsorted)
 {
-	edge_array e = {.mesh = m};
+	edge_array e = {.mesh = m, .grid = grid};
 	uint32_t least;
 	size_t count;
-	if (!make_array(&e, grid, &least))
+	if (!make_array(&e, &least))
 		return NMTAN_ERROR_MEMORY;
 	const uint32_t largest = find_largest(&e, least, &count);
 	if (!e.failed && count < NT_LEAST_EDGES)
