@@ -147,7 +147,7 @@ typedef struct few_cell {
 	uint16_t names[MOST_IN_CELL + 1];     /* of vertices */
 	nt_cell_vertex vertices[MOST_IN_CELL + 1];
 	nt_cell_corner corners[MOST_ROWS + 1];
-	uint32_t order[MOST_IN_CELL], found[MOST_IN_CELL + 1], swaps[MOST_ROWS];
+	uint32_t order[MOST_IN_CELL], swaps[MOST_ROWS];
 	uint8_t below[MOST_IN_CELL + 1];
 	nt_part parts[2 * MOST_IN_CELL];
 } few_cell;
@@ -226,9 +226,8 @@ static uint32_t list_vertices(const few *f, uint32_t vertex, few_cell *cell)
 				return count + 1;
 			cell->order[count] = count + 1;
 			memcpy(cell->vertices[++count].position, nt_welded_position(f->mesh, v), 3 * sizeof(float));
-			cell->vertices[count].corner_count = 0;
+			cell->vertices[count].corners = 0;
 			cell->names[count] = (uint16_t)v;
-			cell->found[count] = UINT32_MAX;
 			cell->first = nt_least_of(cell->first, f->low[v]);
 			cell->wanted |= (uint64_t)((v == vertex) | (v == last[0]) | (v == last[1]) | (v == last[2]))
 				<< count;
@@ -257,7 +256,7 @@ static uint32_t list_corners(const few *f, uint32_t count, few_cell *cell)
 	}
 	/* not above: those that are none would wait for one another */
 	for (const nt_cell_corner *one = cell->corners; one < corner; one++)
-		cell->vertices[one->vertex].corner_count++;
+		cell->vertices[one->vertex].corners++;
 	return (uint32_t)(corner - cell->corners);
 }
 
@@ -271,15 +270,15 @@ static bool find(few *f, uint32_t vertex)
 		return false;
 	nt_part all = {.vertex_count = count, .corner_count = list_corners(f, count, &cell)};
 	nt_cells cells = {.vertices = cell.vertices, .corners = cell.corners, .order = cell.order,
-		.found = cell.found, .below = cell.below, .swaps = cell.swaps, .parts = cell.parts,
-		.part_count = 2 * MOST_IN_CELL};
+		.below = cell.below, .swaps = cell.swaps, .parts = cell.parts, .part_count = 2 * MOST_IN_CELL};
 	for (uint64_t left = cell.wanted; left; left &= left - 1) {
 		const uint32_t i = (uint32_t)nt_trailing_zeros(left);
 		if (!nt_cells_find(&cells, &all, i))
 			return false;
 		uint16_t *const low = &f->low[cell.names[i]];
-		f->moved = *low != cell.found[i] ? nt_least_of(f->moved, *low) : f->moved;
-		*low = f->high[cell.names[i]] = (uint16_t)cell.found[i];
+		const uint16_t found = (uint16_t)nt_cells_found(&cells, i);
+		f->moved = *low != found ? nt_least_of(f->moved, *low) : f->moved;
+		*low = f->high[cell.names[i]] = found;
 	}
 	return true;
 }

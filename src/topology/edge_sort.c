@@ -116,7 +116,7 @@ static void place_vertices(const edge_array *e, nt_cell_vertex *rows)
 			continue;
 		const uint32_t number = places[e->cell_of[v]]++;
 		memcpy(rows[number].position, nt_welded_position(m, v), sizeof rows->position);
-		rows[number].corner_count = one->number;
+		rows[number].corners = one->number;
 		one->number = e->cells.order[number] = number;
 	}
 }
@@ -146,15 +146,15 @@ static void find_all(edge_array *e)
 	vertex *const vertices = e->vertices;
 	for (nt_part *cell = e->parts; cell < e->parts + NT_CELLS; cell++) {
 		if (cell->vertex_count == 1) { /* many have one */
-			c->found[cell->vertices] = c->corners[cell->corners].corner;
+			c->vertices[cell->vertices].corners = NT_CELL_FOUND | c->corners[cell->corners].corner;
 			continue;
 		}
 		for (uint32_t i = cell->vertices, end = i + cell->vertex_count; i < end && !e->failed; i++)
-			e->failed = c->found[i] == NONE && !nt_cells_find(c, cell, i);
+			e->failed = !nt_cells_know(c, i) && !nt_cells_find(c, cell, i);
 	}
 	for (size_t v = 0; v < e->mesh->vertex_count && !e->failed; v++)
 		if (vertices[v].least < vertices[v].most)
-			vertices[v].least = vertices[v].most = c->found[vertices[v].number];
+			vertices[v].least = vertices[v].most = nt_cells_found(c, vertices[v].number);
 	e->keys = (uint32_t *)(void *)c->corners;
 }
 
@@ -252,7 +252,7 @@ static NT_NOINLINE void find(edge_array *e, vertex *v)
 		return;
 	const unsigned cell = nt_grid_cell(e->grid, e->cells.vertices[v->number].position[e->grid->axis]);
 	e->failed = !nt_cells_find(&e->cells, &e->parts[cell], v->number);
-	v->least = v->most = e->cells.found[v->number];
+	v->least = v->most = nt_cells_found(&e->cells, v->number);
 }
 
 /* Less than 0: the key is less than the pivot; and so on. If it failed, it is 0. */

@@ -345,11 +345,11 @@ static bool make_cell(question *q, unsigned slot, nt_cells *cell, nt_part *all, 
 		return false;
 	for (uint32_t i = 0; i < count; i++) {
 		memcpy(rows[i].position, nt_welded_position(m, names[i]), sizeof rows->position);
-		rows[i].corner_count = 0;
+		rows[i].corners = 0;
 		cell->order[i] = i;
 	}
 	for (size_t i = 0; i < corner_count; i++)
-		rows[corners[i].vertex].corner_count++;
+		rows[corners[i].vertex].corners++;
 	cell->corners = corners;
 	*all = (nt_part){.vertex_count = count, .corner_count = corner_count};
 	*vertices = names;
@@ -369,7 +369,7 @@ static bool find_members(question *q, unsigned slot, bool *limit)
 		if (member == NOBODY || is_known(q, member))
 			continue;
 		done = nt_cells_find(&cell, &all, i);
-		q->low[member] = q->high[member] = cell.found[i];
+		q->low[member] = q->high[member] = nt_cells_found(&cell, i);
 	}
 	*limit = cell.limit;
 	nt_scratch_back(q->mesh->scratch, mark);

@@ -98,16 +98,14 @@ bool nt_grid_of_used(const nt_welded_mesh *mesh, nt_grid *grid)
 	return ordered && set_grid(&all, grid);
 }
 
-bool nt_cells_make(nt_scratch *scratch, const nt_cell_vertex *vertices, size_t vertex_count, size_t most_corners,
+bool nt_cells_make(nt_scratch *scratch, nt_cell_vertex *vertices, size_t vertex_count, size_t most_corners,
 	nt_cells *cells)
 {
-	uint32_t *room = nt_scratch_alloc(scratch, 1, (2 * vertex_count + most_corners) * sizeof *room + vertex_count);
+	uint32_t *room = nt_scratch_alloc(scratch, 1, (vertex_count + most_corners) * sizeof *room + vertex_count);
 	if (!room)
 		return false;
 	*cells = (nt_cells){.vertices = vertices, .order = room, .scratch = scratch};
-	cells->found = cells->order + vertex_count;
-	memset(cells->found, 0xff, vertex_count * sizeof *cells->found);
-	cells->swaps = cells->found + vertex_count;
+	cells->swaps = cells->order + vertex_count;
 	cells->below = (uint8_t *)(cells->swaps + most_corners);
 	return true;
 }
@@ -144,7 +142,7 @@ static nt_part *take_parts(nt_cells *c)
  * with the last that is below, and so on. The order of all others, and which are swapped, decides in the end. */
 static bool halve(nt_cells *c, nt_part *p)
 {
-	const nt_cell_vertex *const vertices = c->vertices;
+	nt_cell_vertex *const vertices = c->vertices;
 	uint8_t *const is_below = c->below;
 	uint32_t *const order = c->order + p->vertices;
 	nt_cell_corner *const corners = c->corners + p->corners;
@@ -158,7 +156,7 @@ static bool halve(nt_cells *c, nt_part *p)
 		is_below[one] = below;
 		order[i] = one ^ changed;
 		order[low] = other ^ changed;
-		left += vertices[one].corner_count & mask;
+		left += vertices[one].corners & mask;
 		low += below;
 	}
 	uint32_t *const above = c->swaps, *const below = above + left;
@@ -181,10 +179,10 @@ static bool halve(nt_cells *c, nt_part *p)
 		.vertex_count = vertex_count - low, .corner_count = corner_count - left,
 		.halvings = lower.halvings};
 	if (low == 1) {
-		c->found[order[0]] = corners[0].corner;
+		vertices[order[0]].corners = NT_CELL_FOUND | corners[0].corner;
 		*p = upper;
 	} else if (low + 1 == vertex_count) {
-		c->found[order[low]] = corners[left].corner;
+		vertices[order[low]].corners = NT_CELL_FOUND | corners[left].corner;
 		*p = lower;
 	} else if ((p->halves = take_parts(c))) {
 		p->halves[0] = lower;
@@ -197,30 +195,30 @@ static bool halve(nt_cells *c, nt_part *p)
 /* A part of two vertices at different places: the same as if it were halved. */
 static void find_two(const nt_cells *c, const nt_part *p)
 {
-	const nt_cell_vertex *const vertices = c->vertices;
+	nt_cell_vertex *const vertices = c->vertices;
 	const uint32_t *const order = c->order + p->vertices;
 	const nt_cell_corner *const corners = c->corners + p->corners;
 	const bool second = vertices[order[1]].position[p->axis] < vertices[order[0]].position[p->axis];
-	const uint32_t below = order[second], above = order[!second], left = vertices[below].corner_count;
+	const uint32_t below = order[second], above = order[!second], left = vertices[below].corners;
 	size_t first = corners->vertex == below ? 0 : p->corner_count - 1;
 	while (corners[first].vertex != below)
 		first--;
-	c->found[below] = corners[first].corner;
+	vertices[below].corners = NT_CELL_FOUND | corners[first].corner;
 	first = corners[left].vertex == above ? left : left - 1;
 	while (corners[first].vertex != above)
 		first--;
-	c->found[above] = corners[first].corner;
+	vertices[above].corners = NT_CELL_FOUND | corners[first].corner;
 }
 
 bool nt_cells_find(nt_cells *c, nt_part *p, uint32_t vertex)
 {
-	while (c->found[vertex] == UINT32_MAX)
+	while (!nt_cells_know(c, vertex))
 		if (p->halves)
 			p = &p->halves[!(c->vertices[vertex].position[p->axis] < p->middle)];
 		else if (p->vertex_count == 1 || !find_middle(c, p)) /* each has the first of its corners here */
 			for (uint32_t i = p->vertex_count > 1 ? p->corner_count : 1; i-- > 0;) {
 				const nt_cell_corner *corner = &c->corners[p->corners + i];
-				c->found[corner->vertex] = corner->corner;
+				c->vertices[corner->vertex].corners = NT_CELL_FOUND | corner->corner;
 			}
 		else if ((c->limit = p->halvings == NT_HALVINGS))
 			return false;

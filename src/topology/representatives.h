@@ -100,8 +100,10 @@ typedef struct nt_cell_corner {
 
 typedef struct nt_cell_vertex {
 	float position[3];
-	uint32_t corner_count;
+	uint32_t corners; /* how many it has; then NT_CELL_FOUND and the one that stands for it */
 } nt_cell_vertex;
+
+#define NT_CELL_FOUND ((uint32_t)1 << 31)
 
 /* A part of a cell: some of its vertices, in any order, and all of their corners. */
 typedef struct nt_part {
@@ -115,11 +117,9 @@ typedef struct nt_part {
 /* Cells are halved where somebody asks for a vertex, each part once. Halves are made of vertices, of which there are
  * few, and corners are only swapped. A vertex that is alone in its half needs no part. */
 typedef struct nt_cells {
-	const nt_cell_vertex *vertices;
+	nt_cell_vertex *vertices;
 	nt_cell_corner *corners; /* of a cell at first in the order of triangles */
 	uint32_t *order;         /* all vertices: a part's are side by side */
-	uint32_t *found;         /* [vertices] UINT32_MAX at first; receives the corner that stands for the vertex,
-	                            and for others */
 	uint8_t *below;          /* [vertices] room */
 	uint32_t *swaps;         /* [most corners of a cell] room */
 	nt_part *parts;          /* [part_count] pairs that are free */
@@ -130,10 +130,22 @@ typedef struct nt_cells {
 
 /* Cells with room for so many vertices, which receive their places in `order`, and so many corners in one cell. False
  * when out of memory. */
-bool nt_cells_make(nt_scratch *scratch, const nt_cell_vertex *vertices, size_t vertex_count, size_t most_corners,
+bool nt_cells_make(nt_scratch *scratch, nt_cell_vertex *vertices, size_t vertex_count, size_t most_corners,
 	nt_cells *cells);
 
-/* Finds the representative of a vertex of a cell. False: a limit, or out of memory. */
+/* Finds the representative of a vertex of a cell, if it is not known; and those of others. False: a limit, or out of
+ * memory. */
 bool nt_cells_find(nt_cells *cells, nt_part *cell, uint32_t vertex);
+
+static inline bool nt_cells_know(const nt_cells *cells, uint32_t vertex)
+{
+	return cells->vertices[vertex].corners & NT_CELL_FOUND;
+}
+
+/* The representative that was found. */
+static inline uint32_t nt_cells_found(const nt_cells *cells, uint32_t vertex)
+{
+	return cells->vertices[vertex].corners & ~NT_CELL_FOUND;
+}
 
 #endif

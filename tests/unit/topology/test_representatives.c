@@ -32,13 +32,13 @@ static bool weld(const uint32_t *ids, size_t triangles, size_t vertices, const n
 		if (nt_grid_cell(grid, positions[v][grid->axis]) != number)
 			continue;
 		memcpy(rows[all.vertex_count].position, positions[v], sizeof *positions);
-		rows[all.vertex_count].corner_count = 0;
+		rows[all.vertex_count].corners = 0;
 		numbers[v] = all.vertex_count++;
 	}
 	for (uint32_t i = 0; i < 3 * triangles; i++) {
 		if (nt_grid_cell(grid, positions[ids[i]][grid->axis]) != number)
 			continue;
-		rows[numbers[ids[i]]].corner_count++;
+		rows[numbers[ids[i]]].corners++;
 		corners[all.corner_count++] = (nt_cell_corner){numbers[ids[i]], i};
 	}
 	nt_scratch_init(&scratch, NULL);
@@ -47,14 +47,14 @@ static bool weld(const uint32_t *ids, size_t triangles, size_t vertices, const n
 	const uint32_t rows_count = all.vertex_count;
 	all.vertex_count = 0;
 	for (uint32_t i = 0; i < rows_count; i++)
-		if (rows[i].corner_count > 0)
+		if (rows[i].corners > 0)
 			cells.order[all.vertex_count++] = i;
 	bool done = true;
 	for (uint32_t v = 0; v < vertices && done; v++)
-		if (nt_grid_cell(grid, positions[v][grid->axis]) == number && rows[numbers[v]].corner_count > 0 &&
+		if (nt_grid_cell(grid, positions[v][grid->axis]) == number && rows[numbers[v]].corners > 0 &&
 			(one == UINT32_MAX || one == v)) {
 			done = nt_cells_find(&cells, &all, numbers[v]);
-			found[v] = cells.found[numbers[v]];
+			found[v] = nt_cells_found(&cells, numbers[v]);
 		}
 	assert_true(done == !cells.limit);
 	nt_scratch_free(&scratch);
