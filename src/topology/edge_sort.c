@@ -150,7 +150,7 @@ static void find_all(edge_array *e)
 			continue;
 		}
 		for (uint32_t i = cell->vertices, end = i + cell->vertex_count; i < end && !e->failed; i++)
-			e->failed = !nt_cells_know(c, i) && !nt_cells_find(c, cell, i);
+			e->failed = !nt_cells_find(c, cell, i);
 	}
 	for (size_t v = 0; v < e->mesh->vertex_count && !e->failed; v++)
 		if (vertices[v].least < vertices[v].most)

@@ -174,7 +174,7 @@ static bool halve(nt_cells *c, nt_part *p)
 		corners[below[i]] = swapped;
 	}
 	const nt_part lower = {.vertices = p->vertices, .corners = p->corners, .vertex_count = low,
-		.corner_count = left, .halvings = p->halvings + 1};
+		.corner_count = left, .halvings = (uint8_t)(p->halvings + 1)};
 	const nt_part upper = {.vertices = p->vertices + low, .corners = p->corners + left,
 		.vertex_count = vertex_count - low, .corner_count = corner_count - left,
 		.halvings = lower.halvings};
@@ -212,7 +212,7 @@ static void find_two(const nt_cells *c, const nt_part *p)
 
 bool nt_cells_find(nt_cells *c, nt_part *p, uint32_t vertex)
 {
-	while (!nt_cells_know(c, vertex))
+	while (!(c->vertices[vertex].corners & NT_CELL_FOUND))
 		if (p->halves)
 			p = &p->halves[!(c->vertices[vertex].position[p->axis] < p->middle)];
 		else if (p->vertex_count == 1 || !find_middle(c, p)) /* each has the first of its corners here */

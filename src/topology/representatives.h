@@ -137,11 +137,6 @@ bool nt_cells_make(nt_scratch *scratch, nt_cell_vertex *vertices, size_t vertex_
  * memory. */
 bool nt_cells_find(nt_cells *cells, nt_part *cell, uint32_t vertex);
 
-static inline bool nt_cells_know(const nt_cells *cells, uint32_t vertex)
-{
-	return cells->vertices[vertex].corners & NT_CELL_FOUND;
-}
-
 /* The representative that was found. */
 static inline uint32_t nt_cells_found(const nt_cells *cells, uint32_t vertex)
 {
