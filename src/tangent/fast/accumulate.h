@@ -130,7 +130,7 @@ static inline NT_ALWAYS_INLINE void add_or_defer(nt_record *records, uint32_t ve
 static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned range, size_t first, size_t i,
 	size_t end, const uint32_t *ids, const lanes_out *out, bool is_narrow, bool are_flagged)
 {
-	nt_deferred deferred = {NULL};
+	nt_deferred deferred = {.to = NULL};
 	if (are_flagged && fast->deferred)
 		deferred = fast->deferred[range];
 	const nt_adjacency *const adjacency = &fast->adjacency;
