@@ -39,8 +39,8 @@ WASM_FLAGS := --target=wasm32-wasi --sysroot=/usr -std=c11 -D_GNU_SOURCE -DNDEBU
 build/wasm/%.o: WASM_LEVEL := -Oz
 wasm_fast := src/base/% src/topology/% src/api/% src/tangent/fast/% src/tangent/usable.c src/tangent/repair.c src/tangent/frames.c
 $(patsubst %.c,build/wasm/%.o,$(filter $(wasm_fast),$(wasm_src))): WASM_LEVEL := -O2
-# Few meshes need these: 2 KB less, compressed.
-$(addprefix build/wasm/src/topology/,edge_tail.o edge_sort.o): WASM_LEVEL := -Oz
+# Few meshes need these, and the last ones run once a call: 4 KB less, compressed.
+$(addprefix build/wasm/src/,topology/edge_tail.o topology/edge_sort.o api/self_test.o api/split.o api/tangents.o): WASM_LEVEL := -Oz
 build/wasm/%.o: %.c | need-wasm
 	@mkdir -p $(@D)
 	$(WASM_CC) $(WASM_FLAGS) $(WASM_LEVEL) -c -o $@ $<
