@@ -165,8 +165,9 @@ static nt_status flush(examination *e, nt_error *error)
 		const nt_error *failure = &e->errors[i];
 		const bool wanted = e->settings->check_maps == NT_CHECK_MAPS_ON;
 		if (failure->status == NT_ERROR_MEMORY || (failure->status == NT_ERROR_MODULE && wanted)) {
-			*error = *failure;
-			status = failure->status;
+			if (!status)
+				*error = *failure;
+			status = error->status;
 		} else if (e->told) {
 			tell(e, &e->maps[e->open], failure);
 		}
@@ -283,7 +284,7 @@ static nt_status examine_all(examination *e, nt_error *error)
 			status = take_slot(e, &scene->meshes[i], NT_SLOT_CLEARCOAT_NORMAL, error);
 	}
 	free(seen);
-	const nt_status flushed = flush(e, error);
+	const nt_status flushed = flush(e, status ? &(nt_error){0} : error); /* the first failure is named */
 	if (status || flushed)
 		return status ? status : flushed;
 	share_facts(e);

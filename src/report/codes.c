@@ -329,8 +329,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"{count} {triangle has|triangles have} nearly collinear texture coordinates",
 		"Rounding of the texture coordinates to float alone may turn the tangent of these triangles by "
 		"more than one degree, or their winding: the finding gives the smallest relative determinant "
-		"|det| / (|e1| |e2|) and the largest angle. A warning when they are more than 1 % of the mesh's area, "
-		"unless no material of a glTF needs tangents (of an OBJ: of its glTF).",
+		"|det| / (|e1| |e2|), of a triangle's two longest sides, and the largest angle. A warning when they "
+		"are more than 1 % of the mesh's area, unless no material of a glTF needs tangents (of an OBJ: of its "
+		"glTF).",
 		"Unwrap these triangles again, or keep islands near the origin (Blender: UV > Pack Islands).",
 		"a triangle with UVs (0,1000), (1,1000), (0,1000.001)"),
 	ROW(UV_FOLDED_QUAD, WARNING, "w-i", EXPORT, NULL,

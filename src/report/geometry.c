@@ -51,7 +51,8 @@ static bool is_finite(const float *values, size_t count)
 
 /* A triangle's UV edges, and its tangent times the determinant. */
 typedef struct uv_frame {
-	double n1, n2, determinant; /* |e1|^2, |e2|^2, |det M| */
+	double n1, n2, n3;          /* squares of its sides: |e1|^2, |e2|^2, |e1 - e2|^2 */
+	double determinant;         /* |det M| */
 	double uu;                  /* |det M|^2 |T|^2 */
 	double range, size;         /* of v: greatest difference, max |v| */
 	double uncertain;           /* |det M| from which on rounding does not turn its sign */
@@ -71,7 +72,8 @@ static uv_frame measure_frame(const float *const t[3], nt_dvec3 d1, nt_dvec3 d2)
 	const double size = greater(fabs(t[0][1]), greater(fabs(t[1][1]), fabs(t[2][1])));
 	const double x = greater(greater(fabs(e1[0]), fabs(e2[0])), fabs(e1[0] - e2[0]));
 	const double y = greater(greater(fabs(e1[1]), fabs(e2[1])), fabs(e1[1] - e2[1]));
-	return (uv_frame){e1[0] * e1[0] + e1[1] * e1[1], e2[0] * e2[0] + e2[1] * e2[1],
+	const double e3[2] = {e1[0] - e2[0], e1[1] - e2[1]};
+	return (uv_frame){e1[0] * e1[0] + e1[1] * e1[1], e2[0] * e2[0] + e2[1] * e2[1], e3[0] * e3[0] + e3[1] * e3[1],
 		fabs(e1[0] * e2[1] - e1[1] * e2[0]), nt_dvec3_dot(u, u),
 		y, size, 2.0 * 0x1p-24 * (width * y + size * x)}; /* as nt_is_sliver() has it */
 }
@@ -132,7 +134,9 @@ static void check_texcoords(const triangle_work *work, size_t t, const uint32_t 
 		nt_tally_triangle(check, &part->tallies[NEAR], t, bound);
 		part->tallies[NEAR].area += nt_triangle_area(s, t);
 		part->greatest[BOUND] = fmax(part->greatest[BOUND], bound);
-		part->greatest[DETERMINANT] = fmax(part->greatest[DETERMINANT], -determinant);
+		/* that of the two longest sides, whichever corner is the first */
+		const double longest = greater(frame.n1 * frame.n2, frame.n3 * greater(frame.n1, frame.n2));
+		part->greatest[DETERMINANT] = fmax(part->greatest[DETERMINANT], -frame.determinant / sqrt(longest));
 	}
 }
 

@@ -208,20 +208,25 @@ TEST(nearly_collinear_coordinates_far_from_the_origin)
 	static const struct {
 		float u, v, height;
 		double degrees; /* 0: it is no finding */
-	} rows[] = {{0, 1000, 0.00006f, 90}, {0, 1000, 0.0028f, 1.2457}, {0, 1000, 0.0044f, 0},
-		{1000, 0, 0.0001f, 0}, {1000, 0, 0.09f, 0}}; /* 0.0028 is 46 * 2^-14 there: the sine is 1 / 46 */
-	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		double steps;   /* of 2^-14, that the height has there: the sine is 1 / 46 in the second row */
+	} rows[] = {{0, 1000, 0.00006f, 90, 1}, {0, 1000, 0.0028f, 1.2457, 46}, {0, 1000, 0.0044f, 0, 0},
+		{1000, 0, 0.0001f, 0, 0}, {1000, 0, 0.09f, 0, 0}};
+	for (size_t n = 0; n < 3 * sizeof rows / sizeof *rows; n++) {
+		const size_t i = n / 3, first = n % 3; /* whichever corner comes first */
 		hand_mesh *h = hand_new();
 		hand_vertex(h, 0, 0, 0, rows[i].u, rows[i].v);
 		hand_vertex(h, 1, 0, 0, rows[i].u + 1, rows[i].v);
 		hand_vertex(h, 0, 1, 0, rows[i].u, rows[i].v + rows[i].height);
-		hand_triangle(h, 0, 1, 2);
+		hand_triangle(h, (uint32_t)first, (uint32_t)(first + 1) % 3, (uint32_t)(first + 2) % 3);
 		nt_report *report = hand_report(h, NULL);
 		assert_int_equal(hand_findings(report, NT_CODE_UV_NEAR_DEGENERATE), rows[i].degrees > 0);
 		if (rows[i].degrees > 0) {
-			const nt_number *last = &hand_finding(report, NT_CODE_UV_NEAR_DEGENERATE)->numbers[2];
-			assert_string_equal(last->name, "greatest_error_degrees");
-			assert_true(fabs(last->value - rows[i].degrees) < 1e-4);
+			const nt_number *numbers = hand_finding(report, NT_CODE_UV_NEAR_DEGENERATE)->numbers;
+			const double height = rows[i].steps * 0x1p-14;
+			assert_string_equal(numbers[1].name, "least_relative_determinant");
+			assert_true(fabs(numbers[1].value - height / hypot(1, height)) < 1e-9);
+			assert_string_equal(numbers[2].name, "greatest_error_degrees");
+			assert_true(fabs(numbers[2].value - rows[i].degrees) < 1e-4);
 		}
 		hand_free(h, report);
 	}
