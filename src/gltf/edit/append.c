@@ -358,7 +358,7 @@ static nt_status segment_bytes(appending *job, const block *b, const unsigned ch
 	for (size_t i = 0; !status && i < b->count; i++) {
 		const unsigned char *elements;
 		status = nt_gltf_elements(job->document, b->targets[i].accessor, &elements, job->error);
-		if (i == 0)
+		if (!status && i == 0)
 			*stored = *decoded = elements - (b->targets->begin - b->segment->begin);
 	}
 	return status ? status : nt_packed_bytes(job->edits, b->segment->buffer, b->segment->begin, stored, job->error);
