@@ -63,7 +63,11 @@ typedef struct nt_draco_mesh {
 
 /* ---- decoding ---- */
 
-typedef struct nt_draco nt_draco;
+/* A mesh that was decoded. */
+typedef struct nt_draco {
+	nt_draco_mesh mesh;
+	void (*free)(struct nt_draco *draco);
+} nt_draco;
 
 /*
  * Decodes a mesh.
@@ -78,13 +82,20 @@ nt_status nt_draco_decode(nt_draco **result, const unsigned char *bytes, size_t 
 	size_t max_faces, nt_error *error);
 
 /* NULL is allowed. */
-void nt_draco_free(nt_draco *result);
-
-/* The decoded mesh; it belongs to the result. */
-const nt_draco_mesh *nt_draco_get(const nt_draco *result);
+static inline void nt_draco_free(nt_draco *result)
+{
+	if (result)
+		result->free(result);
+}
 
 /* The attribute with that id; NULL: none. */
-const nt_draco_attribute *nt_draco_find(const nt_draco_mesh *mesh, uint32_t unique_id);
+static inline const nt_draco_attribute *nt_draco_find(const nt_draco_mesh *mesh, uint32_t unique_id)
+{
+	for (size_t i = 0; i < mesh->attribute_count; i++)
+		if (mesh->attributes[i].unique_id == unique_id)
+			return &mesh->attributes[i];
+	return NULL;
+}
 
 /* ---- encoding ---- */
 

@@ -53,7 +53,8 @@ static const row rows[NT_MODULE_COUNT] = {
 static _Atomic(const nt_module_head *) tables[NT_MODULE_COUNT];
 static pthread_mutex_t opening = PTHREAD_MUTEX_INITIALIZER;
 
-const void *nt_module_opened(nt_module module)
+/* The table of a module; NULL: it is not open. */
+static const void *opened(nt_module module)
 {
 	return atomic_load_explicit(&tables[module], memory_order_acquire);
 }
@@ -150,12 +151,12 @@ static nt_status load(const row *module, const nt_module_head **head, nt_error *
 
 const void *nt_module_open(nt_module module, nt_status *status, nt_error *error)
 {
-	const void *table = nt_module_opened(module);
+	const void *table = opened(module);
 	*status = NT_OK;
 	if (table)
 		return table;
 	pthread_mutex_lock(&opening);
-	const nt_module_head *head = nt_module_opened(module);
+	const nt_module_head *head = opened(module);
 	if (!head) {
 		head = rows[module].linked;
 		if (!head)

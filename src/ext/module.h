@@ -29,9 +29,6 @@ typedef enum nt_module {
  */
 const void *nt_module_open(nt_module module, nt_status *status, nt_error *error);
 
-/* The table of a module that is open. */
-const void *nt_module_opened(nt_module module);
-
 /* One line about a module: the library behind it and its licence, or why it cannot be opened. */
 void nt_module_describe(nt_module module, char *line, size_t size);
 

@@ -31,8 +31,6 @@ typedef struct nt_module_head {
 typedef struct nt_draco_table {
 	nt_module_head head;
 	__typeof__(nt_draco_decode) *decode;
-	__typeof__(nt_draco_free) *free;
-	__typeof__(nt_draco_get) *get;
 	__typeof__(nt_draco_encode) *encode;
 	__typeof__(nt_draco_quantize) *quantize;
 } nt_draco_table;

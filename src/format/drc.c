@@ -131,7 +131,7 @@ nt_status nt_drc_open(nt_scene *scene, const nt_read_options *options, nt_error 
 	nt_status status =
 		nt_draco_decode(&decoded, scene->bytes, scene->byte_count, 0, error);
 	if (status == NT_OK)
-		status = fill_scene(scene, nt_draco_get(decoded), error);
+		status = fill_scene(scene, &decoded->mesh, error);
 	nt_draco_free(decoded);
 	return status;
 }

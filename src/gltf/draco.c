@@ -90,7 +90,7 @@ const nt_draco_mesh *nt_gltf_draco_block(const nt_gltf *document, uint64_t view)
 {
 	const nt_draco *block = document->draco_blocks && view < document->view_count ?
 		document->draco_blocks[view] : NULL;
-	return block ? nt_draco_get(block) : NULL;
+	return block ? &block->mesh : NULL;
 }
 
 static nt_status find_bytes(nt_gltf *document, uint64_t index, const char *pointer, const unsigned char **bytes,

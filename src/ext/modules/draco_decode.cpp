@@ -7,7 +7,7 @@
 // Floats that were quantized are made here of the integers that the decoder has of them (its portable attributes),
 // since the library rounds where its compiler likes: Debian's for arm64 multiplies and adds in one step, and has a w
 // that is neither 1 nor -1.
-// Encoding is in draco_encode.cpp.
+// Encoding, and the module's table, are in draco_encode.cpp.
 #include "ext/modules/draco_parts.hpp"
 #include "ext/modules/guard.hpp"
 
@@ -215,7 +215,7 @@ bool is_sound(const PointAttribute &attribute, size_t point_count)
 }
 
 // portable: the integers of floats that were quantized; null where Draco has none.
-nt_status take_attribute(nt_draco &result, const PointAttribute &decoded, const PointAttribute *portable,
+nt_status take_attribute(nt::draco_arrays &result, const PointAttribute &decoded, const PointAttribute *portable,
 	nt_error *error)
 {
 	const size_t point_count = result.mesh.point_count;
@@ -244,7 +244,7 @@ nt_status take_attribute(nt_draco &result, const PointAttribute &decoded, const 
 	return NT_OK;
 }
 
-nt_status take_mesh(nt_draco &result, draco::MeshDecoder &decoder, nt_error *error)
+nt_status take_mesh(nt::draco_arrays &result, draco::MeshDecoder &decoder, nt_error *error)
 {
 	const draco::Mesh &mesh = *decoder.mesh();
 	result.mesh.face_count = mesh.num_faces();
@@ -285,6 +285,12 @@ nt_status check_head(const unsigned char *bytes, size_t size, size_t limit, stre
 			"expected", size, static_cast<unsigned long long>(head->faces),
 			static_cast<unsigned long long>(head->points), limit);
 	return NT_OK;
+}
+
+void free_arrays(nt_draco *result)
+{
+	const nt::reserve memory;
+	delete static_cast<nt::draco_arrays *>(result);
 }
 
 } // namespace
@@ -371,7 +377,7 @@ std::vector<unsigned char> nt::restore(const PointAttribute &portable, const nt_
 	return result;
 }
 
-nt_status nt::decode_draco(nt_draco &result, const unsigned char *bytes, size_t size, size_t face_limit,
+nt_status nt::decode_draco(nt::draco_arrays &result, const unsigned char *bytes, size_t size, size_t face_limit,
 	nt_error *error)
 {
 	stream_head head = {};
@@ -393,25 +399,20 @@ nt_status nt::decode_draco(nt_draco &result, const unsigned char *bytes, size_t 
 	return take_mesh(result, *decoder, error);
 }
 
-nt_status nt::decode_checked(nt_draco **result, const unsigned char *bytes, size_t size, size_t max_faces,
+nt_status nt::decode_guarded(nt_draco **result, const unsigned char *bytes, size_t size, size_t max_faces,
 	nt_error *error)
 {
-	nt_draco *made = nullptr;
+	draco_arrays *made = nullptr;
 	const size_t plausible = plausible_faces(size);
 	const size_t limit = max_faces && max_faces < plausible ? max_faces : plausible;
 	const nt_status status = nt::guard(error, "Draco", [&] {
-		made = new nt_draco;
+		made = new draco_arrays;
+		made->free = free_arrays;
 		return nt::decode_draco(*made, bytes, size, limit, error);
 	});
 	if (status == NT_OK)
 		*result = made;
 	else
-		free_decoded(made);
+		free_arrays(made);
 	return status;
-}
-
-void nt::free_decoded(nt_draco *result)
-{
-	const nt::reserve memory;
-	delete result;
 }

@@ -2,10 +2,15 @@
 //
 // Encoding with Draco. Refuses input that would kill the encoder (values that are not finite), take it beyond memory,
 // or could not be decoded again (more than three points per face); and its result is decoded and compared with the
-// input after quantization (draco_compare.cpp), since what it cannot keep it does not tell.
+// input after quantization, since what it cannot keep it does not tell.
+//
+// Expected are the values after quantization by Draco's own transforms, and what decoding makes of them. Sequential
+// encoding keeps the order of points and faces, so that bytes are compared; edgebreaker reorders both and joins and
+// splits points, so that a sum of hashes over faces stands for the set of them.
 #include "base/hash.h"
 #include "ext/modules/draco_parts.hpp"
 #include "ext/modules/guard.hpp"
+#include "ext/tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,13 +21,34 @@
 #include <memory>
 #include <string>
 
+#include <draco/attributes/attribute_octahedron_transform.h>
+#include <draco/attributes/attribute_quantization_transform.h>
 #include <draco/compression/expert_encode.h>
+#include <draco/core/draco_version.h>
 
 namespace {
 
 using draco::PointAttribute;
-using nt::is_octahedral;
-using nt::value_of;
+
+// ---- attributes ----
+
+// Draco encodes such normals by their direction.
+bool is_octahedral(const nt_draco_attribute &a)
+{
+	return a.kind == NT_DRACO_NORMAL && a.components == 3;
+}
+
+size_t stride_of(const nt_draco_attribute &a)
+{
+	return a.stride_bytes ? a.stride_bytes
+			      : nt_component_size(a.component_type) * static_cast<size_t>(a.components);
+}
+
+const unsigned char *value_of(const nt_draco_attribute &a, size_t point)
+{
+	const size_t owner = a.copied && point >= a.own_count ? a.copied[point - a.own_count] : point;
+	return static_cast<const unsigned char *>(a.data) + stride_of(a) * owner;
+}
 
 // ---- what Draco must not get ----
 
@@ -111,9 +137,8 @@ nt_status check_positions(const nt_draco_mesh &mesh, nt_error *error)
 		"Edgebreaker cannot encode %zu attributes of positions, expected one", static_cast<size_t>(count));
 }
 
-} // namespace
-
-nt_status nt::check_mesh(const nt_draco_mesh &mesh, nt_error *error)
+// Whether a mesh may go to Draco: see nt_draco_encode().
+nt_status check_mesh(const nt_draco_mesh &mesh, nt_error *error)
 {
 	if (mesh.face_count > 0x7fffffff / 6 || mesh.point_count > 0x7fffffff)
 		return nt_fail(error, NT_ERROR_TOO_LARGE, "%zu faces are too many for Draco",
@@ -134,7 +159,8 @@ nt_status nt::check_mesh(const nt_draco_mesh &mesh, nt_error *error)
 
 // ---- the mesh as Draco wants it ----
 
-std::vector<uint32_t> nt::compact(const nt_draco_mesh &mesh, std::vector<uint32_t> &numbers)
+// The points that faces use, in their order; receives their new numbers.
+std::vector<uint32_t> compact(const nt_draco_mesh &mesh, std::vector<uint32_t> &numbers)
 {
 	std::vector<uint32_t> sources;
 	numbers.assign(mesh.point_count, 0);
@@ -148,7 +174,8 @@ std::vector<uint32_t> nt::compact(const nt_draco_mesh &mesh, std::vector<uint32_
 	return sources;
 }
 
-void nt::add_attribute(draco::Mesh &to, const nt_draco_attribute &a, const std::vector<uint32_t> &sources)
+// An attribute with the values of these points.
+void add_attribute(draco::Mesh &to, const nt_draco_attribute &a, const std::vector<uint32_t> &sources)
 {
 	const size_t width = nt_component_size(a.component_type) * static_cast<size_t>(a.components);
 	draco::GeometryAttribute layout;
@@ -161,8 +188,6 @@ void nt::add_attribute(draco::Mesh &to, const nt_draco_attribute &a, const std::
 	for (size_t p = 0; p < sources.size(); p++)
 		std::memcpy(values + width * p, value_of(a, sources[p]), width);
 }
-
-namespace {
 
 std::unique_ptr<draco::Mesh> make_mesh(const nt_draco_mesh &mesh,
 	const std::vector<uint32_t> &sources, const std::vector<uint32_t> &numbers)
@@ -177,7 +202,7 @@ std::unique_ptr<draco::Mesh> make_mesh(const nt_draco_mesh &mesh,
 		made->SetFace(draco::FaceIndex(f), face);
 	}
 	for (size_t i = 0; i < mesh.attribute_count; i++)
-		nt::add_attribute(*made, mesh.attributes[i], sources);
+		add_attribute(*made, mesh.attributes[i], sources);
 	return made;
 }
 
@@ -302,6 +327,166 @@ bool edges_are_found_soon(const draco::Mesh &mesh)
 	return looks < (uint64_t{1} << 28) + 256 * static_cast<uint64_t>(3 * mesh.num_faces());
 }
 
+// ---- what a decoder will have ----
+
+// Computes what a decoder should return for an attribute, point by point: the values after quantization, by Draco's
+// own transforms.
+std::vector<unsigned char> expected_values(const draco::PointAttribute &attribute,
+	const nt_draco_attribute &a, size_t point_count)
+{
+	const nt_draco_quantization &q = a.quantization;
+	if (!q.bits)
+		return nt::copy_values(attribute, point_count);
+	draco::AttributeOctahedronTransform octahedron;
+	draco::AttributeQuantizationTransform box;
+	draco::AttributeTransform *transform = &box;
+	if (is_octahedral(a)) {
+		octahedron.SetParameters(q.bits);
+		transform = &octahedron;
+	} else if (q.explicit_box) {
+		box.SetParameters(q.bits, q.origin, a.components, q.range);
+	} else {
+		box.ComputeParameters(attribute, q.bits);
+	}
+	const auto portable =
+		transform->InitTransformedAttribute(attribute, static_cast<int>(point_count));
+	if (!transform->TransformAttribute(attribute, {}, portable.get()) ||
+		!transform->TransferToAttribute(portable.get()))
+		return {};
+	return nt::restore(*portable, nt::quantization_of(*portable), point_count);
+}
+
+// Two corners at one point or one position.
+bool is_degenerate(const nt_draco_attribute &positions, const uint32_t *face)
+{
+	const size_t width =
+		nt_component_size(positions.component_type) * static_cast<size_t>(positions.components);
+	bool equal = false;
+	for (size_t k = 0; k < 3 && !equal; k++)
+		equal = std::memcmp(value_of(positions, face[k]), value_of(positions, face[(k + 1) % 3]), width) == 0;
+	return equal;
+}
+
+// Computes what a decoder should return for a mesh: without points that no face uses, values as quantization leaves
+// them. made: the mesh as the encoder gets it; numbers: of each point of `from` in it.
+void expect_back(nt::draco_arrays &expected, const nt_draco_mesh &from, const draco::Mesh &made,
+	const std::vector<uint32_t> &numbers)
+{
+	const size_t point_count = made.num_points();
+	for (size_t i = 0; i < from.attribute_count; i++) {
+		nt_draco_attribute a = from.attributes[i];
+		expected.data.push_back(
+			expected_values(*made.attribute(static_cast<int>(i)), a, point_count));
+		a.data = expected.data.back().data();
+		a.stride_bytes = 0;
+		a.copied = nullptr;
+		expected.attributes.push_back(a);
+	}
+	const nt_draco_attribute *positions = from.attributes; // edgebreaker's input has them
+	while (from.method == NT_DRACO_EDGEBREAKER && positions->kind != NT_DRACO_POSITION)
+		positions++;
+	expected.indices.reserve(3 * from.face_count);
+	for (size_t f = 0; f < from.face_count; f++)
+		if (from.method == NT_DRACO_SEQUENTIAL || !is_degenerate(*positions, from.indices + 3 * f))
+			for (size_t k = 0; k < 3; k++)
+				expected.indices.push_back(numbers[from.indices[3 * f + k]]);
+	expected.mesh = {from.method, point_count, expected.indices.size() / 3, expected.indices.data(),
+		expected.attributes.data(), expected.attributes.size(), from.speed};
+}
+
+// ---- whether it came back ----
+
+// A number for a corner's values, the same for -0 and +0, which Draco may merge.
+uint64_t hash_point(const nt_draco_mesh &mesh, uint32_t point)
+{
+	uint64_t hash = 0x9e3779b97f4a7c15;
+	for (size_t i = 0; i < mesh.attribute_count; i++) {
+		const nt_draco_attribute &a = mesh.attributes[i];
+		const size_t size = nt_component_size(a.component_type);
+		const unsigned char *at = value_of(a, point);
+		for (int c = 0; c < a.components; c++, at += size) {
+			uint32_t bits = 0;
+			if (size == sizeof bits)
+				std::memcpy(&bits, at, sizeof bits);
+			else
+				std::memcpy(&bits, at, size);
+			if (a.component_type == NT_GLTF_FLOAT && bits == 0x80000000)
+				bits = 0;
+			hash = (hash ^ bits) * 0xff51afd7ed558ccd;
+			hash ^= hash >> 32;
+		}
+	}
+	return hash;
+}
+
+uint64_t mix(uint64_t hash)
+{
+	hash = (hash ^ hash >> 29) * 0xc4ceb9fe1a85ec53;
+	return hash ^ hash >> 32;
+}
+
+// A number for a side that runs from one point to the other.
+uint64_t hash_side(uint64_t from, uint64_t to)
+{
+	return mix(from * 0xff51afd7ed558ccd + to);
+}
+
+// A number for a set of faces, in any order, each beginning at any of its corners.
+uint64_t hash_faces(const nt_draco_mesh &mesh)
+{
+	std::vector<uint64_t> points(mesh.point_count);
+	for (size_t p = 0; p < points.size(); p++)
+		points[p] = hash_point(mesh, static_cast<uint32_t>(p));
+	uint64_t sum = 0;
+	for (size_t f = 0; f < mesh.face_count; f++) {
+		const uint32_t *face = mesh.indices + 3 * f;
+		const uint64_t a = points[face[0]], b = points[face[1]], c = points[face[2]];
+		sum += mix(hash_side(a, b) + hash_side(b, c) + hash_side(c, a));
+	}
+	return sum;
+}
+
+bool same_attributes(const nt_draco_mesh &a, const nt_draco_mesh &b)
+{
+	if (a.attribute_count != b.attribute_count)
+		return false;
+	for (size_t i = 0; i < a.attribute_count; i++)
+		if (a.attributes[i].unique_id != b.attributes[i].unique_id ||
+			a.attributes[i].component_type != b.attributes[i].component_type ||
+			a.attributes[i].components != b.attributes[i].components)
+			return false;
+	return true;
+}
+
+// Attributes in the order of their ids: Draco groups them as it likes.
+void sort_attributes(std::vector<nt_draco_attribute> &attributes)
+{
+	std::sort(attributes.begin(), attributes.end(),
+		[](const nt_draco_attribute &a, const nt_draco_attribute &b) {
+			return a.unique_id < b.unique_id;
+		});
+}
+
+// Whether it is what came back. Sorts attributes by their ids on both sides.
+bool came_back(nt::draco_arrays &expected, nt::draco_arrays &decoded)
+{
+	sort_attributes(expected.attributes);
+	sort_attributes(decoded.attributes);
+	const nt_draco_mesh &a = expected.mesh, &b = decoded.mesh;
+	if (a.face_count != b.face_count || !same_attributes(a, b))
+		return false;
+	if (a.method == NT_DRACO_EDGEBREAKER)
+		return hash_faces(a) == hash_faces(b);
+	if (a.point_count != b.point_count ||
+		std::memcmp(a.indices, b.indices, 12 * a.face_count) != 0)
+		return false;
+	for (size_t i = 0; i < a.attribute_count; i++)
+		if (std::memcmp(a.attributes[i].data, b.attributes[i].data,
+			    stride_of(a.attributes[i]) * a.point_count) != 0)
+			return false;
+	return true;
+}
+
 // ---- encoding ----
 
 // A float as text that gives it back.
@@ -341,7 +526,7 @@ void set_options(draco::ExpertEncoder &encoder, const nt_draco_mesh &mesh)
 	encoder.SetSpeedOptions(mesh.speed, mesh.speed);
 }
 
-nt_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco_mesh &mesh, const nt_draco &decoded,
+nt_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco_mesh &mesh, const nt::draco_arrays &decoded,
 	const std::vector<uint32_t> &sources, nt_draco_block *block, nt_error *error)
 {
 	block->bytes = static_cast<unsigned char *>(std::malloc(buffer.size()));
@@ -370,14 +555,14 @@ nt_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco_mesh &mes
 
 nt_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *error)
 {
-	nt_status status = nt::check_mesh(mesh, error);
+	nt_status status = check_mesh(mesh, error);
 	if (status != NT_OK)
 		return status;
 	std::vector<uint32_t> numbers;
-	const std::vector<uint32_t> sources = nt::compact(mesh, numbers);
+	const std::vector<uint32_t> sources = compact(mesh, numbers);
 	const auto made = make_mesh(mesh, sources, numbers);
-	nt_draco expected;
-	nt::expect_back(expected, mesh, *made, numbers);
+	nt::draco_arrays expected;
+	expect_back(expected, mesh, *made, numbers);
 	if (expected.mesh.face_count == 0)
 		return nt_fail(error, NT_ERROR_INPUT, "every face is degenerate: nothing to encode");
 	if (mesh.method == NT_DRACO_EDGEBREAKER) {
@@ -394,21 +579,59 @@ nt_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *err
 		return nt_fail(error, NT_ERROR_INTERNAL, "Draco cannot encode the mesh: %s",
 			encoded.error_msg());
 
-	nt_draco decoded;
+	nt::draco_arrays decoded;
 	status = nt::decode_draco(decoded, reinterpret_cast<const unsigned char *>(buffer.data()), buffer.size(),
 		mesh.face_count, error);
-	if (status != NT_OK || !nt::came_back(expected, decoded))
+	if (status != NT_OK || !came_back(expected, decoded))
 		return nt_fail(error, NT_ERROR_INTERNAL,
 			"Draco does not decode its own block to the values that it encoded");
 	return hand_over(buffer, mesh, decoded, sources, block, error);
 }
 
-} // namespace
+// ---- quantization alone ----
 
-nt_status nt::encode_draco(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error)
+nt_status quantize(const nt_draco_mesh &mesh, float *const *values, nt_error *error)
+{
+	const nt_status status = check_mesh(mesh, error);
+	if (status != NT_OK)
+		return status;
+	std::vector<uint32_t> numbers;
+	const std::vector<uint32_t> sources = compact(mesh, numbers);
+	for (size_t i = 0; i < mesh.attribute_count; i++) {
+		const nt_draco_attribute &a = mesh.attributes[i];
+		if (!values[i])
+			continue;
+		draco::Mesh alone;
+		alone.set_num_points(static_cast<uint32_t>(sources.size()));
+		add_attribute(alone, a, sources);
+		const auto back = expected_values(*alone.attribute(0), a, sources.size());
+		if (back.empty())
+			return nt_fail(error, NT_ERROR_INTERNAL, "Draco cannot quantize attribute %u", a.unique_id);
+		const size_t components = static_cast<size_t>(a.components), width = sizeof(float) * components;
+		for (size_t p = 0; p < mesh.point_count && sources.size() < mesh.point_count; p++)
+			std::memmove(values[i] + components * p, value_of(a, p), width);
+		for (size_t p = 0; p < sources.size(); p++)
+			std::memcpy(values[i] + components * sources[p], back.data() + width * p, width);
+	}
+	return NT_OK;
+}
+
+// ---- the table ----
+
+nt_status encode_guarded(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error)
 {
 	const nt_status status = nt::guard(error, "Draco", [&] { return encode(*mesh, block, error); });
 	if (status != NT_OK)
 		nt_draco_block_free(block);
 	return status;
 }
+
+nt_status quantize_guarded(const nt_draco_mesh *mesh, float *const *values, nt_error *error)
+{
+	return nt::guard(error, "Draco", [&] { return quantize(*mesh, values, error); });
+}
+
+} // namespace
+
+const nt_draco_table nt_draco_module = {NT_MODULE_HEAD(nt_draco_table, "Draco", draco::kDracoVersion,
+	"Apache-2.0", &nt::cxx), nt::decode_guarded, encode_guarded, quantize_guarded};

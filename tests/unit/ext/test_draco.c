@@ -94,7 +94,7 @@ static void code_grid(coded *c, nt_draco_method method, int bits)
 	make_grid(&c->g, method, bits);
 	c->block = encoded(&c->g.mesh);
 	c->result = decoded(&c->block);
-	c->mesh = nt_draco_get(c->result);
+	c->mesh = &c->result->mesh;
 }
 
 static void end_coded(coded *c)
@@ -184,7 +184,7 @@ TEST(second_encoding_in_the_same_box_moves_nothing)
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 11);
 	nt_draco_block first = encoded(&g.mesh);
 	nt_draco *once = decoded(&first);
-	const nt_draco_mesh *mesh = nt_draco_get(once);
+	const nt_draco_mesh *mesh = &once->mesh;
 	/* origin and range came with the data: the box of the positions */
 	const nt_draco_quantization *box = &nt_draco_find(mesh, 0)->quantization;
 	assert_true(box->explicit_box);
@@ -198,7 +198,7 @@ TEST(second_encoding_in_the_same_box_moves_nothing)
 	nt_draco *twice = decoded(&second);
 	for (uint32_t id = 0; id <= 7; id++) {
 		const nt_draco_attribute *a = nt_draco_find(mesh, id);
-		const nt_draco_attribute *b = nt_draco_find(nt_draco_get(twice), id);
+		const nt_draco_attribute *b = nt_draco_find(&twice->mesh, id);
 		if (!a || a->quantization.octahedral)
 			continue;
 		const size_t width = 4 * (size_t)a->components;
@@ -360,7 +360,7 @@ TEST(quantized_values_are_those_that_are_decoded)
 		nt_draco_block block = encoded(&g.mesh);
 		nt_draco *result = decoded(&block);
 		for (uint32_t i = 0; i < 3; i++) {
-			const nt_draco_attribute *a = nt_draco_find(nt_draco_get(result), i);
+			const nt_draco_attribute *a = nt_draco_find(&result->mesh, i);
 			const size_t width = (size_t)a->components;
 			for (size_t p = 0; p < block.point_count; p++)
 				assert_memory_equal((const float *)a->data + width * p,
@@ -530,7 +530,7 @@ static size_t mutate(const unsigned char *bytes, size_t size, unsigned count, ui
 		nt_draco *result;
 		nt_error error;
 		if (nt_draco_decode(&result, copy, size, max_faces, &error) == NT_OK) {
-			touch(nt_draco_get(result));
+			touch(&result->mesh);
 			good++;
 		}
 		nt_draco_free(result);
@@ -586,7 +586,7 @@ TEST(shared_models_decode_and_round_trip)
 		}
 		const nt_draco_block block = {.bytes = bytes, .size = size};
 		nt_draco *result = decoded(&block);
-		nt_draco_mesh mesh = *nt_draco_get(result);
+		nt_draco_mesh mesh = result->mesh;
 		assert_int_equal(mesh.face_count, models[i].faces);
 		assert_int_equal(mesh.point_count, models[i].points);
 		touch(&mesh);
