@@ -59,7 +59,7 @@ static nt_status run_stream(progress *p, nt_job *job, nt_settings *settings)
 	stream_run r = {.gate = &p->gate};
 	settings->on_stage = enter_once_read;
 	settings->on_stage_user = &r;
-	settings->threads = p->threads;
+	settings->io.threads = p->threads;
 	nt_pool_reserve(p->jobs - 1 + p->threads - 1);
 	const nt_status status = run(p, job, settings);
 	if (r.inside)
@@ -89,7 +89,7 @@ static nt_status run_with_memory(progress *p, nt_job *job, nt_settings *settings
 	const uint64_t need = nt_need_of(job->input, settings, p->gate.limit / p->jobs);
 	const bool alone = nt_gate_enter(&p->gate, need);
 	if (alone) {
-		settings->threads = p->threads;
+		settings->io.threads = p->threads;
 		nt_pool_reserve(p->jobs - 1 + p->threads - 1); /* the others wait */
 	}
 	/* too little beside others is no limit yet; what one needs that had all of it is not there */
@@ -207,7 +207,7 @@ static void run_deferred(void *context, size_t item, unsigned slot)
 
 void nt_batch_run(nt_batch *batch, const nt_settings *settings, const nt_batch_options *options)
 {
-	const unsigned threads = nt_thread_count(settings->threads);
+	const unsigned threads = nt_thread_count(settings->io.threads);
 	unsigned jobs = options->jobs ? options->jobs : threads;
 	if (jobs > batch->count)
 		jobs = (unsigned)batch->count;
@@ -215,7 +215,7 @@ void nt_batch_run(nt_batch *batch, const nt_settings *settings, const nt_batch_o
 	nt_settings each = *settings;
 	each.readers = batch->count > 1 ? &readers : NULL;
 	if (jobs)
-		each.threads = threads / jobs ? threads / jobs : 1;
+		each.io.threads = threads / jobs ? threads / jobs : 1;
 	progress p = {.batch = batch, .settings = &each, .options = options, .threads = threads, .jobs = jobs,
 		.lock = PTHREAD_MUTEX_INITIALIZER};
 #ifdef M_TRIM_THRESHOLD

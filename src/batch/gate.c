@@ -99,8 +99,8 @@ static uint64_t gltf_need(const nt_file *file, const nt_settings *settings)
 		size = length < size - HEAD ? length : size - HEAD;
 	}
 	const char *const end = text + size;
-	const bool compressed = settings->draco == NT_DRACO_AS_SEQUENTIAL ||
-		settings->draco == NT_DRACO_AS_EDGEBREAKER || memmem(text, size, draco, sizeof draco - 1);
+	const bool compressed = settings->io.draco == NT_DRACO_AS_SEQUENTIAL ||
+		settings->io.draco == NT_DRACO_AS_EDGEBREAKER || memmem(text, size, draco, sizeof draco - 1);
 	uint64_t counts = 0;
 	for (const char *at = text; (at = memmem(at, (size_t)(end - at), count, sizeof count - 1));) {
 		at += sizeof count - 1;

@@ -559,7 +559,7 @@ static void limit_memory(const nt_command *command, const nt_batch *batch)
 	exhausted.code = NT_EXIT_LIMIT;
 	const uint64_t each = stack.rlim_cur == RLIM_INFINITY ? 2 << 20 : stack.rlim_cur;
 	data_before = data;
-	const uint64_t whole = most + each * (nt_thread_count(command->settings.threads) + 1);
+	const uint64_t whole = most + each * (nt_thread_count(command->settings.io.threads) + 1);
 	if (data.rlim_cur == RLIM_INFINITY || whole < data.rlim_cur)
 		data.rlim_cur = whole;
 	setrlimit(RLIMIT_DATA, &data);

@@ -388,7 +388,7 @@ static void append_unused(nt_buffer *out, const nt_summary *s, const nt_settings
 		nt_buffer_text(out, ", nothing that --bump=height converts");
 	if (settings->flip_green == NT_FLIP_ON && nt_format_is_gltf(s->input_format) && !s->made_maps)
 		nt_buffer_text(out, ", nothing that --flip-green turns");
-	if (settings->draco > NT_DRACO_OFF && !s->solved_count)
+	if (settings->io.draco > NT_DRACO_OFF && !s->solved_count)
 		nt_buffer_text(out,
 			", nothing compressed, as no primitive got tangents: --existing=replace --only=all");
 }
@@ -479,9 +479,11 @@ static void append_idle(nt_buffer *out, const nt_job *job, const nt_settings *se
 		bool given;
 		const char *name;
 	} options[] = {{settings->method != NMTAN_METHOD_MIKKTSPACE, "--method"},
-		{settings->repair == NMTAN_REPAIR_OFF, "--raw"}, {settings->across == NT_ACROSS_MESH, "--across=mesh"},
+		{settings->repair == NMTAN_REPAIR_OFF, "--raw"},
+		{settings->io.across == NT_ACROSS_MESH, "--across=mesh"},
 		{settings->quads == NT_QUADS_PAIRS, "--quads=pairs"},
-		{settings->precision != NT_PRECISION_AUTO, "--precision"}, {settings->bitangents, "--bitangents"}};
+		{settings->io.precision != NT_PRECISION_AUTO, "--precision"},
+		{settings->io.bitangents, "--bitangents"}};
 	size_t count = 0;
 	if (!s->unchanged || settings->check || settings->fix || settings->existing != NT_EXISTING_KEEP ||
 		!s->mesh_count || s->skipped[NT_SKIP_HAS_TANGENTS] != s->mesh_count ||
@@ -534,7 +536,7 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	}
 	if (s->welded.before > s->welded.after)
 		nt_buffer_format(out, ", welded %zu vertices to %zu", s->welded.before, s->welded.after);
-	else if (settings->weld)
+	else if (settings->io.weld)
 		nt_buffer_text(out, s->welded.before ? ", no vertices are equal" : ", nothing that --weld welds");
 	if (s->repaired) {
 		nt_buffer_format(out, ", %s the tangents of ", settings->check ? "would repair" : "repaired");

@@ -41,18 +41,18 @@ const nt_option_row nt_option_rows[] = {
 		SETTING(normals), true},
 	{"across", 0, NT_OPTION_CHOICE, "primitive|mesh", NT_ACROSS_PRIMITIVE, 0, "primitive",
 		"glTF: solve each primitive alone, or all primitives of a mesh that share texture coordinates as "
-		"one, as bakers do", SETTING(across), false},
+		"one, as bakers do", SETTING(io.across), false},
 	{"transform", 0, NT_OPTION_CHOICE, "bake|keep", NT_TRANSFORM_BAKE, 0, "bake",
 		"if a material transforms texture coordinates; bake: tangents follow the result; keep: they follow "
 		"those of the file, for a renderer that turns TANGENT itself",
-		SETTING(transform), false},
+		SETTING(io.transform), false},
 	{"quads", 0, NT_OPTION_CHOICE, "auto|off|pairs", NT_QUADS_AUTO, 0, "auto",
 		"glTF: which triangles to solve as quads, as bakers do; auto: if FB_ngon_encoding or the input's "
 		"tangents show them; pairs: each triangle with the next one if both make a quad",
 		SETTING(quads), false},
 	{"uv", 0, NT_OPTION_AUTO_NUMBER, "auto|N", 0, 999, "auto",
 		"the set of texture coordinates; auto: the one that the material uses",
-		SETTING(texcoord_set), false},
+		SETTING(io.texcoord_set), false},
 	{"origin", 0, NT_OPTION_TEXT, "auto|keep|X,Y,Z", 0, 0, "auto",
 		"OBJ and PLY: store positions relative to an origin, which the nodes of a glTF add again; auto: if "
 		"float would move vertices by more than a hundredth of an edge; keep: round them",
@@ -60,7 +60,7 @@ const nt_option_row nt_option_rows[] = {
 	{"outside", 0, NT_OPTION_CHOICE, "no|root|yes", NT_OUTSIDE_NO, 0, "root",
 		"files outside the input's folder; no: refuse them; root: allow images of an OBJ below the folder "
 		"above it and below a folder that is named with -r or --keep-tree; yes: allow all",
-		SETTING(outside), false},
+		SETTING(io.outside), false},
 
 	{.kind = NT_OPTION_HEADING, .name = "Many inputs"},
 	{"directory", 'd', NT_OPTION_TEXT, "DIR", 0, 0, NULL,
@@ -113,11 +113,11 @@ const nt_option_row nt_option_rows[] = {
 		"embed for .glb from .gltf, else by folder",
 		"embed: write all buffers into the output, in .gltf as data URIs; link, copy: refer to glTF's "
 		"unchanged .bin files, or copy them; by folder: link those in the output's folder, copy others",
-		SETTING(buffers), true},
+		SETTING(io.buffers), true},
 	{"images", 0, NT_OPTION_CHOICE, "link|embed|copy|none", NT_IMAGES_LINK, 0,
 		"embed for .glb, else by folder",
 		"how the output refers to its images; by folder: link those in the output's folder, copy others",
-		SETTING(images), true},
+		SETTING(io.images), true},
 	{"textures", 0, NT_OPTION_CHOICE, "auto|keep|png", NT_TEXTURES_AUTO, 0, "auto",
 		"images of an OBJ; auto: convert to PNG if glTF does not carry them; keep: leave those out; png: "
 		"convert all that can be decoded; height maps, and maps that share an image in glTF, become PNG in any "
@@ -148,24 +148,24 @@ const nt_option_row nt_option_rows[] = {
 		"on: convert all", SETTING(flip_green), true},
 	{"draco", 0, NT_OPTION_CHOICE, "keep|off|sequential|edgebreaker", NT_DRACO_KEEP, 0, "keep",
 		"glTF primitives that get tangents; keep: compress compressed ones again; off: write them "
-		"uncompressed; sequential, edgebreaker: compress all", SETTING(draco), true},
+		"uncompressed; sequential, edgebreaker: compress all", SETTING(io.draco), true},
 	{"draco-bits", 0, NT_OPTION_TEXT, "POS,NRM,UV,TAN", 0, 0, "14,12,12,12",
 		"quantize attributes that were not quantized before; tangents get 12 bits or more",
 		FIELD(draco_bits), true},
 	{"morph", 0, NT_OPTION_CHOICE, "bake|keep|drop", NT_MORPH_BAKE, 0, "bake",
 		"glTF morph targets of primitives that get tangents; bake: compute their TANGENT; keep: leave it; "
-		"drop: remove it", SETTING(morphs), true},
+		"drop: remove it", SETTING(io.morphs), true},
 	{"precision", 0, NT_OPTION_CHOICE, "auto|float|short|byte", NT_PRECISION_AUTO, 0, "auto",
 		"how glTF stores tangents; short and byte need KHR_mesh_quantization; auto: float, or as normals if "
-		"meshopt compresses these", SETTING(precision), true},
+		"meshopt compresses these", SETTING(io.precision), true},
 	{"meshopt", 0, NT_OPTION_CHOICE, "keep|off", NT_MESHOPT_KEEP, 0, "keep",
 		"meshopt-compressed buffer views that change; keep: compress them again, and new data too; off: "
-		"write them uncompressed", SETTING(meshopt), true},
+		"write them uncompressed", SETTING(io.meshopt), true},
 	{"weld", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"glTF from glTF: make one vertex of those that are equal in everything, and write indices",
-		SETTING(weld), true},
+		SETTING(io.weld), true},
 	{"bitangents", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
-		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(bitangents), true},
+		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(io.bitangents), true},
 	{"no-clobber", 'n', NT_OPTION_FLAG, NULL, 0, 0, NULL, "never replace a file",
 		SETTING(no_clobber), true},
 	{"sync", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
@@ -226,7 +226,7 @@ const nt_option_row nt_option_rows[] = {
 
 	{.kind = NT_OPTION_HEADING, .name = "Run"},
 	{"threads", 'j', NT_OPTION_NUMBER, "N", 0, 1024, "0",
-		"how many threads to use; 0: one for each processor", SETTING(threads), false},
+		"how many threads to use; 0: one for each processor", SETTING(io.threads), false},
 	{"quiet", 'q', NT_OPTION_SET, NULL, -1, 0, NULL,
 		"print only errors, findings that fail the run, what an output lacks of its input, and that it keeps "
 		"wrong tangents",

@@ -415,10 +415,10 @@ static nt_status parse_draco(parser *p)
 			return nt_fail(p->error, NT_ERROR_USAGE,
 				"--draco-bits: '%.*s' for %s is not a number from %d to %d", (int)length, word,
 				parts[i].what, parts[i].least, MOST);
-		p->command->settings.draco_bits[i] = bits;
+		p->command->settings.io.draco_bits[i] = bits;
 		word += length + 1;
 	}
-	if (p->command->draco_bits && p->command->settings.draco == NT_DRACO_OFF)
+	if (p->command->draco_bits && p->command->settings.io.draco == NT_DRACO_OFF)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--draco=off leaves nothing for --draco-bits");
 	return NT_OK;
 }
@@ -442,7 +442,7 @@ static nt_status parse_number(parser *p, const char *option, const char *word, b
  * incremental run. */
 static nt_status parse_origin(parser *p)
 {
-	nt_origin *origin = &p->command->settings.origin;
+	nt_origin *origin = &p->command->settings.io.origin;
 	const char *word = p->command->origin;
 	static const double most = 1e30; /* so that what is left of a float is one */
 	if (word && strcmp(word, "auto") == 0)
@@ -566,7 +566,7 @@ static nt_status check_dashes(const parser *p)
 		return nt_fail(p->error, NT_ERROR_USAGE, "'-' can be read once only");
 	if (many || !is_dash(c->operands[1]))
 		return NT_OK;
-	if (c->settings.output_format == NT_FORMAT_GLTF && c->settings.buffers != NT_BUFFERS_EMBED)
+	if (c->settings.output_format == NT_FORMAT_GLTF && c->settings.io.buffers != NT_BUFFERS_EMBED)
 		return nt_fail(p->error, NT_ERROR_USAGE,
 			"'-' has no place for the .bin of --output-format=gltf: add --buffers=embed");
 	if (c->depfile)
@@ -576,7 +576,7 @@ static nt_status check_dashes(const parser *p)
 	return NT_OK;
 }
 
-const nt_command nt_default_command = {.settings = {.texcoord_set = -1, .outside = NT_OUTSIDE_ROOT},
+const nt_command nt_default_command = {.settings = {.io.texcoord_set = -1, .io.outside = NT_OUTSIDE_ROOT},
 	.fail_on = NT_FAIL_ON_NEVER, .min_severity = NT_FAIL_ON_INFO, .max_issues = -1};
 
 /* --explain A B: operands are codes, too. */

@@ -443,10 +443,10 @@ static uint64_t count_read(const void *source)
 nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
 	nt_gltf *document;
-	nt_status status = nt_gltf_create(&document, scene, options->allow_outside, error);
+	nt_status status = nt_gltf_create(&document, scene, options->outside == NT_OUTSIDE_YES, error);
 	if (status)
 		return status;
-	document->keeps_transforms = options->keeps_transforms;
+	document->keeps_transforms = options->transform == NT_TRANSFORM_KEEP;
 	scene->source = document;
 	scene->free_source = nt_gltf_free;
 	scene->read_of_source = count_read;

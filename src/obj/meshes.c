@@ -369,7 +369,7 @@ static nt_status set_slots(const obj_file *file, nt_mesh *mesh, nt_error *error)
 	for (int axis = 0; axis < 2; axis++)
 		mesh->wrap[axis] = clamps && !repeats ? NT_WRAP_CLAMP : NT_WRAP_REPEAT;
 	const bool scaled = transform.scale[0] != 1 || transform.scale[1] != 1;
-	return mesh->texcoords && scaled && !file->options->keeps_transforms
+	return mesh->texcoords && scaled && file->options->transform == NT_TRANSFORM_BAKE
 		? nt_mesh_transform(mesh, &transform, &scene->arena, error) : NT_OK;
 }
 

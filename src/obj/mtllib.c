@@ -37,7 +37,7 @@ static const char *outside_reason(const char *name)
 static nt_status open_library(const request *q, const char *name, const char *path, nt_file *file,
 	const char **reason, nt_error *error)
 {
-	const bool confined = !q->options->allow_outside;
+	const bool confined = q->options->outside != NT_OUTSIDE_YES;
 	bool inside = true;
 	*reason = !*name ? "no file name"
 		: nt_name_is_too_long(name) ? "a name that is too long for any file"

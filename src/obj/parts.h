@@ -302,7 +302,7 @@ typedef struct nt_mtl {
 
 /*
  * Reads the libraries of one mtllib statement: one file name, blanks allowed, or several. A library that cannot be
- * read, or lies outside the folder of scene->path without options->allow_outside, is a finding.
+ * read, or lies outside the folder of scene->path if options->outside is not YES, is a finding.
  *
  *   names, length   what follows "mtllib"
  *   line            of the statement

@@ -167,8 +167,9 @@ void nt_propose_normal_map(nt_scene *scene, const nt_settings *settings)
 	char *folder = strndup(scene->path, (size_t)(name - scene->path));
 	beside *found = NULL;
 	size_t count = 0, capacity = 0;
-	DIR *dir = settings->own_input && settings->images != NT_IMAGES_NONE && length && folder && wants_normals(scene)
-		? opendir(*folder ? folder : ".") : NULL;
+	const bool looks = settings->own_input && settings->io.images != NT_IMAGES_NONE && length && folder &&
+		wants_normals(scene);
+	DIR *dir = looks ? opendir(*folder ? folder : ".") : NULL;
 	for (const struct dirent *entry; dir && (entry = readdir(dir));) {
 		const size_t rank = rank_of(entry->d_name, name, length);
 		if (rank == ENDINGS || !nt_grow((void **)&found, &capacity, count + 1, sizeof *found))

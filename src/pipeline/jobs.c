@@ -231,7 +231,7 @@ static nt_status do_pass(window *w, enum state pass)
 		if (!w->large[i])
 			corners += corners_of(w, i);
 		else if (pass != READY && w->workers->failed == SIZE_MAX)
-			do_mesh(w, w->workers, i, w->tasks->settings->threads);
+			do_mesh(w, w->workers, i, w->tasks->settings->io.threads);
 	}
 	if (corners)
 		nt_parallel_items(corners < LEAST_SHARED_CORNERS ? 1 : w->worker_count, w->scene.mesh_count, do_small,
@@ -340,7 +340,7 @@ static nt_status load_copies(window *w)
 				}
 			}
 			if (!status && !nt_mesh_is_wanted(mesh) && mesh->positions)
-				status = nt_make_normals(&w->scene, mesh, NT_NORMALS_AUTO, 0, t->settings->threads,
+				status = nt_make_normals(&w->scene, mesh, NT_NORMALS_AUTO, 0, t->settings->io.threads,
 					w->error);
 		}
 	return status;
@@ -499,7 +499,7 @@ static nt_status do_beside_textures(window *w)
 {
 	/* a thread costs more than making nothing */
 	nt_textures *textures = w->tasks->textures;
-	if (textures && nt_textures_requests(textures) && nt_thread_count(w->tasks->settings->threads) > 1) {
+	if (textures && nt_textures_requests(textures) && nt_thread_count(w->tasks->settings->io.threads) > 1) {
 		nt_pool_run(2, do_part, w);
 	} else {
 		do_part(w, 0);
@@ -591,7 +591,7 @@ static size_t find_end(const nt_scene *scene, size_t first)
 nt_status nt_stage_jobs(const nt_tasks *t, nt_error *error)
 {
 	nt_scene *scene = t->scene;
-	const unsigned worker_count = nt_thread_count(t->settings->threads);
+	const unsigned worker_count = nt_thread_count(t->settings->io.threads);
 	bool *marks = nt_calloc(scene->mesh_count, 2 * sizeof *marks);
 	uint8_t *states = nt_calloc(scene->mesh_count, 1);
 	worker *workers = nt_calloc(worker_count, sizeof *workers);

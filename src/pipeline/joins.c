@@ -198,7 +198,7 @@ static nt_status compare_join(nt_scene *scene, const nt_join *join, const nmtan_
 nt_status nt_stage_borders(nt_scene *scene, const nt_settings *settings, nt_error *error)
 {
 	const nmtan_options options = {.struct_bytes = sizeof options, .method = settings->method,
-		.repair = settings->repair, .threads = settings->threads};
+		.repair = settings->repair, .threads = settings->io.threads};
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->join_count; i++)
 		if (is_comparable(&scene->joins[i])) {

@@ -160,7 +160,7 @@ static void tell_unchanged(const examination *e)
 static nt_status flush(examination *e, nt_error *error)
 {
 	nt_status status = NT_OK;
-	nt_parallel_items(nt_thread_count(e->settings->threads), e->count - e->open, examine, e);
+	nt_parallel_items(nt_thread_count(e->settings->io.threads), e->count - e->open, examine, e);
 	for (size_t i = 0; e->open < e->count; i++, e->open++) {
 		const nt_error *failure = &e->errors[i];
 		const bool wanted = e->settings->check_maps == NT_CHECK_MAPS_ON;

@@ -160,7 +160,7 @@ static nt_status build_report(nt_scene *scene, const nt_settings *settings, cons
 	nt_summary *summary, nt_error *error)
 {
 	nt_status status = NT_OK;
-	if (settings->across == NT_ACROSS_PRIMITIVE)
+	if (settings->io.across == NT_ACROSS_PRIMITIVE)
 		status = nt_stage_borders(scene, settings, error);
 	if (!status && scene->findings.failed)
 		status = nt_fail_memory(error);
@@ -201,7 +201,7 @@ nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_forma
 	options.find_map_size = find_map_size;
 	if (options.keep_geometry)
 		options.find_picture = find_picture;
-	options.threads = settings->threads;
+	options.threads = settings->io.threads;
 	options.quads = settings->quads;
 	return build_report(scene, settings, &options, summary, error);
 }

@@ -69,7 +69,7 @@ static nt_status check_triangles(const run *r)
 	const bool placed = r->options.world && scene->instance_count;
 	const uint64_t most = r->settings->max_triangles;
 	const bool bakes = r->writer && !r->settings->check && !r->options.world &&
-		r->settings->morphs == NT_MORPH_BAKE;
+		r->settings->io.morphs == NT_MORPH_BAKE;
 	uint64_t count = 0, of_targets = 0;
 	for (size_t i = 0; most && i < (placed ? scene->instance_count : scene->mesh_count); i++) {
 		const nt_mesh *mesh = &scene->meshes[placed ? scene->instances[i].mesh : i];
@@ -156,11 +156,11 @@ static void plan_options_of(run *r)
 	nt_read_options *o = &r->options;
 	o->edits = nt_writer_edits(r->reader, r->writer);
 	o->checks_kept = o->across && s->report && (o->edits || !r->writer);
-	o->only_results = o->edits && !s->check && !s->report && !s->verify && !s->bitangents && !o->across &&
-		s->draco <= NT_DRACO_OFF && s->normals == NT_NORMALS_AUTO && !s->list_meshes;
+	o->only_results = o->edits && !s->check && !s->report && !s->verify && !s->io.bitangents && !o->across &&
+		s->io.draco <= NT_DRACO_OFF && s->normals == NT_NORMALS_AUTO && !s->list_meshes;
 	/* primitives, or normals that are made for some that are compressed */
-	o->compresses = o->edits && (s->draco > NT_DRACO_OFF ||
-		(s->draco == NT_DRACO_KEEP && s->normals != NT_NORMALS_AUTO));
+	o->compresses = o->edits && (s->io.draco > NT_DRACO_OFF ||
+		(s->io.draco == NT_DRACO_KEEP && s->normals != NT_NORMALS_AUTO));
 }
 
 /* Whether materials become those of a new glTF. */
@@ -176,7 +176,7 @@ static nt_making_normals making_normals(const run *r)
 	const nt_settings *s = r->settings;
 	if (s->normals == NT_NORMALS_AUTO)
 		return nt_format_is_gltf(r->reader->format) ? NT_MAKING_NONE : NT_MAKING_MISSING;
-	if (!r->writer || s->draco > NT_DRACO_OFF)
+	if (!r->writer || s->io.draco > NT_DRACO_OFF)
 		return NT_MAKING_MISSING;
 	return s->normals >= NT_NORMALS_REPLACE_FLAT ? NT_MAKING_ALL : NT_MAKING_ALL_MISSING;
 }
@@ -220,11 +220,11 @@ static nt_status read_scene(run *r)
 	if (r->settings->existing == NT_EXISTING_DROP && !nt_format_is_gltf(r->scene.format))
 		return nt_fail(r->error, NT_ERROR_USAGE,
 			"--existing=drop is for glTF, whose materials say which tangents are used");
-	if (r->settings->texcoord_set > 0 && !nt_format_is_gltf(r->scene.format))
+	if (r->settings->io.texcoord_set > 0 && !nt_format_is_gltf(r->scene.format))
 		return nt_fail(r->error, NT_ERROR_USAGE,
 			"--uv=%d is for glTF: an OBJ, PLY or Draco file has one set of texture coordinates, 0",
-			r->settings->texcoord_set);
-	if (nt_origin_is_given(&r->settings->origin) && r->reader->format != NT_FORMAT_OBJ &&
+			r->settings->io.texcoord_set);
+	if (nt_origin_is_given(&r->settings->io.origin) && r->reader->format != NT_FORMAT_OBJ &&
 		r->reader->format != NT_FORMAT_PLY)
 		return nt_fail(r->error, NT_ERROR_USAGE,
 			"--origin=X,Y,Z is for OBJ and PLY: the positions of this file are floats already");
@@ -268,7 +268,7 @@ static nt_status find_texture_file(run *r, nt_normal_map *map, nt_texture_file *
 	const nt_settings *s = r->settings;
 	const nt_image_places searched = nt_searched_places(s);
 	*file = (nt_texture_file){0};
-	if (r->writer->format != NT_FORMAT_PLY || r->scene.format == NT_FORMAT_PLY || s->images == NT_IMAGES_NONE)
+	if (r->writer->format != NT_FORMAT_PLY || r->scene.format == NT_FORMAT_PLY || s->io.images == NT_IMAGES_NONE)
 		return NT_OK;
 	const nt_status status = nt_color_image_open(map, &file->obstacle, &r->scene, &searched, r->error);
 	if (status || !map->bytes)
@@ -318,7 +318,7 @@ static nt_status write_scene(run *r)
 	}
 	if (!status && s->verify && !dry) {
 		begin_stage(r, NT_STAGE_VERIFY);
-		status = nt_verify_gltf(&r->scene, output, r->output_path, s->threads, r->error);
+		status = nt_verify_gltf(&r->scene, output, r->output_path, s->io.threads, r->error);
 	}
 	if (!status)
 		status = nt_watch_check(r->error);
@@ -341,7 +341,7 @@ static nt_status turn_maps(run *r)
 	begin_stage(r, NT_STAGE_TEXTURES);
 	const nt_status status = nt_turned_maps_make(&r->scene, &(nt_turning){.flip = s->flip_green,
 		.heights = s->bump == NT_BUMP_HEIGHT, .height = nt_bump_height(s), .max_pixels = s->max_pixels,
-		.images = r->fixes.images, .image_count = r->fixes.image_count, .threads = s->threads}, &r->turned,
+		.images = r->fixes.images, .image_count = r->fixes.image_count, .threads = s->io.threads}, &r->turned,
 		r->error);
 	r->summary->made_maps = r->turned.count;
 	return status;
@@ -452,13 +452,8 @@ static void forget_attempt(run *r)
 static void set_options(run *r, const nt_settings *s)
 {
 	r->settings = s;
-	r->options = (nt_read_options){.texcoord_set = s->texcoord_set,
-		.allow_outside = s->outside == NT_OUTSIDE_YES, .morphs = s->morphs, .report = s->report != NULL,
-		.keeps_transforms = s->transform == NT_TRANSFORM_KEEP, .origin = s->origin,
-		.across = s->across == NT_ACROSS_MESH, .draco = s->draco, .bitangents = s->bitangents,
-		.images = s->images, .buffers = s->buffers, .precision = s->precision, .meshopt = s->meshopt,
-		.weld = s->weld, .threads = s->threads};
-	memcpy(r->options.draco_bits, s->draco_bits, sizeof r->options.draco_bits);
+	r->options = s->io;
+	r->options.report = s->report != NULL;
 }
 
 /* A later stage judges an input that changed. */

@@ -66,8 +66,9 @@ typedef enum nt_stage {
 } nt_stage;
 
 /* Everything a run can be told. Zero-initialised means the defaults of the command line, but for
- * texcoord_set, whose default is -1, and outside, whose default is root. */
+ * io.texcoord_set, whose default is -1, and io.outside, whose default is root. */
 typedef struct nt_settings {
+	nt_format_options io; /* of readers and writers; the run fills the rest in its copy */
 	nmtan_method method;
 	nmtan_repair repair;
 	nt_only only;
@@ -75,21 +76,8 @@ typedef struct nt_settings {
 	bool fix;      /* repair what a check of the input calls error or warning, as far as that is proven: fix.c */
 	nt_normals normals;
 	int normals_degrees; /* of those by ANGLE: faces that meet at less share a normal */
-	nt_across across;
-	nt_transform_choice transform;
-	nt_origin origin;
 	nt_quads quads;
-	nt_images images;
-	nt_buffers buffers;
-	nt_draco_choice draco;
-	nt_morph_choice morphs;
-	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
-	nt_precision precision;
-	nt_meshopt_choice meshopt;
-	bool weld;
 	nt_format output_format; /* NT_FORMAT_UNKNOWN: by name; with check: see writer.c */
-	int texcoord_set;        /* -1: auto */
-	unsigned threads;        /* 0: all */
 	nt_texture_choice textures;
 	nt_bump bump;
 	double bump_height;      /* 0: the default */
@@ -98,7 +86,6 @@ typedef struct nt_settings {
 	const char *const *texture_paths; /* [texture_path_count] folders */
 	size_t texture_path_count;
 	const char *given_maps[NT_GIVEN_COUNT]; /* paths; NULL: none */
-	bool bitangents;
 	bool verify;   /* read the output back before it takes its name, and have tinygltf open it */
 	bool dry_run;  /* do everything but write */
 	bool check;    /* a report only: no output */
@@ -108,7 +95,6 @@ typedef struct nt_settings {
 	bool list_meshes; /* summary->lines is wanted */
 	bool digests;     /* summary->tangents_digest is wanted */
 	bool in_place;
-	nt_outside outside;
 	const char *root; /* with NT_OUTSIDE_ROOT: the folder of the user's that the input is below; NULL: none */
 	bool own_input;   /* the one input that the user names: see options.c */
 	nt_equal_choice equal; /* what becomes of an output that has its bytes already */

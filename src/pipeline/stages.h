@@ -164,8 +164,8 @@ nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_format 
 static inline nt_image_places nt_searched_places(const nt_settings *settings)
 {
 	return (nt_image_places){.folders = settings->texture_paths, .folder_count = settings->texture_path_count,
-		.root = settings->root, .confined = settings->outside == NT_OUTSIDE_NO,
-		.allow_outside = settings->outside == NT_OUTSIDE_YES};
+		.root = settings->root, .confined = settings->io.outside == NT_OUTSIDE_NO,
+		.allow_outside = settings->io.outside == NT_OUTSIDE_YES};
 }
 
 /* If an input changed during the run, reports only that; else returns `status`. */

@@ -88,7 +88,7 @@ nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const 
 		for (size_t k = 0; k < NT_MATERIAL_MAPS; k++)
 			scene->materials[i].maps[k].request = NT_NONE;
 	nt_status status = check_folders(settings, error);
-	if (status || settings->images == NT_IMAGES_NONE)
+	if (status || settings->io.images == NT_IMAGES_NONE)
 		return status;
 	size_t mapped, count;
 	nt_material **materials = list_materials(scene, &mapped, &count);
@@ -104,7 +104,7 @@ nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const 
 
 nt_status nt_make_textures(nt_textures *textures, const nt_settings *s, nt_error *error)
 {
-	const nt_texture_rules rules = {.choice = s->textures, .flip = s->flip_green, .threads = s->threads,
+	const nt_texture_rules rules = {.choice = s->textures, .flip = s->flip_green, .threads = s->io.threads,
 		.max_pixels = s->max_pixels,
 		.judged_only = (s->check || s->dry_run) && !(s->report && s->report->keep_geometry)};
 	return nt_textures_make(textures, &rules, error);
@@ -308,7 +308,7 @@ static bool is_mapped(const nt_scene *scene, const nt_settings *settings, const 
 		return false;
 	const nt_texture *image = nt_textures_at(textures, nt_textures_result(textures, map->request));
 	return image->type != NT_IMAGE_OTHER &&
-		(image->sources[0]->found != NT_IMAGE_MISSING || settings->images == NT_IMAGES_LINK);
+		(image->sources[0]->found != NT_IMAGE_MISSING || settings->io.images == NT_IMAGES_LINK);
 }
 
 /* Meshes are judged as the output has them, and so is what was found in their texture coordinates before. */
@@ -336,7 +336,7 @@ nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const n
 	telling t = {.scene = scene, .textures = textures, .settings = settings, .summary = summary};
 	if (textures)
 		settle_slots(scene, settings, textures);
-	if (settings->images == NT_IMAGES_NONE)
+	if (settings->io.images == NT_IMAGES_NONE)
 		return NT_OK;
 	size_t mapped, count;
 	nt_material **materials = list_materials(scene, &mapped, &count);

@@ -51,7 +51,7 @@ static nt_status choose(const nt_settings *settings, const char *path, const nt_
 			settings->in_place ? ": -d DIR writes them elsewhere" : "");
 	if (settings->verify && (*writer)->format == NT_FORMAT_PLY)
 		return nt_fail_file(error, NT_ERROR_USAGE, path, "--verify reads glTF back; this will be PLY");
-	if (settings->precision > NT_PRECISION_FLOAT && (*writer)->format == NT_FORMAT_PLY)
+	if (settings->io.precision > NT_PRECISION_FLOAT && (*writer)->format == NT_FORMAT_PLY)
 		return nt_fail_file(error, NT_ERROR_USAGE, path,
 			"--precision is about glTF; this will be PLY, whose tangents are floats");
 	return NT_OK;
@@ -62,26 +62,26 @@ static nt_status check_edit(const nt_settings *settings, const char *path, const
 	const nt_format_entry *writer, nt_error *error)
 {
 	const bool edits = writer && writer->format != NT_FORMAT_PLY && nt_format_is_gltf(reader->format);
-	if (writer && !edits && settings->draco > NT_DRACO_OFF)
+	if (writer && !edits && settings->io.draco > NT_DRACO_OFF)
 		return nt_fail(error, NT_ERROR_USAGE,
 			writer->format == NT_FORMAT_PLY ? "--draco=%s compresses glTF, not PLY" :
 			"--draco=%s compresses glTF that is made from glTF: convert to .glb without it, and then that "
 			"with --existing=replace --only=all and it",
-			settings->draco == NT_DRACO_AS_SEQUENTIAL ? "sequential" : "edgebreaker");
+			settings->io.draco == NT_DRACO_AS_SEQUENTIAL ? "sequential" : "edgebreaker");
 	if (writer && writer->format == NT_FORMAT_PLY && reader->format != NT_FORMAT_PLY &&
-		settings->images == NT_IMAGES_EMBED)
+		settings->io.images == NT_IMAGES_EMBED)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"--images=embed: a PLY names a file; use link, copy or none");
 	if (writer && !settings->check && writer->format != NT_FORMAT_PLY && nt_output_is_stream(path) &&
-		(settings->images == NT_IMAGES_COPY || settings->buffers == NT_BUFFERS_COPY))
+		(settings->io.images == NT_IMAGES_COPY || settings->io.buffers == NT_BUFFERS_COPY))
 		return nt_fail(error, NT_ERROR_USAGE, "--%s=copy: there are no files beside \"%s\"; use link or embed",
-			settings->images == NT_IMAGES_COPY ? "images" : "buffers", path);
-	if (writer && settings->weld && !edits && reader->format != NT_FORMAT_OBJ)
+			settings->io.images == NT_IMAGES_COPY ? "images" : "buffers", path);
+	if (writer && settings->io.weld && !edits && reader->format != NT_FORMAT_OBJ)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"--weld: only glTF made from glTF is welded, not %s made from %s; an OBJ's vertices always are",
 			writer->name, reader->name);
 	/* taking images away would renumber what refers to them */
-	if (edits && settings->images == NT_IMAGES_NONE)
+	if (edits && settings->io.images == NT_IMAGES_NONE)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"--images=none: a glTF made from a glTF keeps its images; use link, embed or copy");
 	return NT_OK;

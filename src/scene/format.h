@@ -52,6 +52,7 @@ typedef enum nt_origin_choice {
 typedef struct nt_origin {
 	nt_origin_choice choice;
 	double at[3]; /* GIVEN: 0 0 0 is nothing, too */
+	/* of a run: */
 	bool to_ply;  /* the output is a PLY, or would be one of a PLY: that keeps a PLY's own numbers */
 	bool keeps;   /* normals and tangents that are there stay */
 } nt_origin;
@@ -115,15 +116,14 @@ typedef enum nt_draco_bits {
 	NT_DRACO_BITS_COUNT
 } nt_draco_bits;
 
-/* The wishes of the user, and what a run knows of itself. */
+/* Settings of readers and writers: the wishes of the user, which nt_settings has, and what a run adds to its copy. */
 typedef struct nt_format_options {
 	int texcoord_set;   /* -1: the set that the material's slot asks for; else TEXCOORD_n */
-	bool allow_outside; /* URIs may leave the folder of the input */
-	nt_morph_choice morphs; /* targets are loaded where they are to be baked */
-	bool report;        /* meshes that get no tangents are loaded too, to be checked */
-	bool keeps_transforms; /* NT_TRANSFORM_KEEP */
+	nt_outside outside; /* URIs may leave the folder of the input if YES */
+	nt_transform_choice transform;
 	nt_origin origin;
-	bool across;        /* meshes that contribute to others are loaded too: NT_ACROSS_MESH */
+	nt_across across;   /* MESH: meshes that contribute to others are loaded too */
+	nt_morph_choice morphs; /* targets are loaded where they are to be baked */
 	nt_draco_choice draco; /* what will be compressed is loaded as a decoder will have it */
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
 	bool bitangents;
@@ -133,6 +133,9 @@ typedef struct nt_format_options {
 	nt_meshopt_choice meshopt;
 	bool weld;          /* of a glTF that is edited: equal vertices become one */
 	unsigned threads;   /* 0: all */
+
+	/* the rest is the run's */
+	bool report;        /* meshes that get no tangents are loaded too, to be checked */
 
 	/* once the output is known */
 	bool world;         /* the output is one mesh in the world: instances and colours are wanted too */
@@ -147,6 +150,9 @@ typedef struct nt_format_options {
 	const struct nt_turned_images *turned; /* of a glTF: gltf/turned_images.h; NULL: none */
 	const struct nt_textures *textures; /* of a new document's materials: image/textures.h; NULL: none */
 	const struct nt_texture_file *texture_file; /* of a PLY: scene/scene.h; NULL: none */
-} nt_read_options, nt_write_options;
+} nt_format_options;
+
+/* A reader's and a writer's, which differ in what the run has added. */
+typedef nt_format_options nt_read_options, nt_write_options;
 
 #endif

@@ -202,9 +202,10 @@ static nt_status run(const char *path, const char *output, const nt_settings *se
 			"status %d %s:%zu:%lld %s: %s\n",
 			path, settings->check, (int)settings->output_format, (int)settings->only,
 			(int)settings->existing,
-			(int)settings->normals, (int)settings->across, (int)settings->draco, (int)settings->morphs,
-			(int)settings->method, (int)settings->images, (int)settings->buffers, (int)settings->precision,
-			settings->bitangents, settings->verify, settings->threads, (int)status,
+			(int)settings->normals, (int)settings->io.across, (int)settings->io.draco,
+			(int)settings->io.morphs, (int)settings->method, (int)settings->io.images,
+			(int)settings->io.buffers, (int)settings->io.precision,
+			settings->io.bitangents, settings->verify, settings->io.threads, (int)status,
 			error->place.file, error->place.line, (long long)error->place.offset, error->place.pointer,
 			error->message);
 	if (status == NT_ERROR_INTERNAL || (status && strlen(error->message) < 8))
@@ -248,10 +249,10 @@ static void check_output(const char *output)
 	again.report = NULL;
 	again.verify = false;
 	again.in_place = true;
-	again.draco = NT_DRACO_KEEP;
-	if (told.draco >= NT_DRACO_AS_SEQUENTIAL) /* then no normals are made of meshes that get no tangents */
+	again.io.draco = NT_DRACO_KEEP;
+	if (told.io.draco >= NT_DRACO_AS_SEQUENTIAL) /* then no normals are made of meshes that get no tangents */
 		again.normals = NT_NORMALS_AUTO;
-	again.origin = (nt_origin){.choice = NT_ORIGIN_AUTO}; /* glTF takes none */
+	again.io.origin = (nt_origin){.choice = NT_ORIGIN_AUTO}; /* glTF takes none */
 	if (run(output, output, &again, &summary, &error))
 		wrong("what was written is refused: %s: %s", error.place.pointer, error.message);
 	/* tangents that were there are not judged, and glTF has none without normals */
@@ -267,7 +268,7 @@ static void check_threads(const char *output)
 	nt_summary summary;
 	nt_error error;
 	nt_settings two = told;
-	two.threads = 2;
+	two.io.threads = 2;
 	empty_output();
 	if (run(input, output, &two, &summary, &error))
 		wrong("two threads fail: %s", error.message);

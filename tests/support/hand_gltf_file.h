@@ -73,7 +73,7 @@ static inline nt_summary convert_file(const char *from, const char *to, nt_setti
 {
 	nt_summary summary;
 	nt_error error;
-	settings.texcoord_set = -1;
+	settings.io.texcoord_set = -1;
 	if (nt_run(in_folder(from), to ? in_folder(to) : NULL, &settings, &summary, &error))
 		fail_msg("%s: %s: %s", from, error.place.pointer, error.message);
 	return summary;
@@ -87,7 +87,7 @@ static inline size_t exhaust_memory(const char *from, nt_settings settings)
 	size_t told = 0;
 	bool failed = true;
 	snprintf(input, sizeof input, "%s", from); /* in_folder() forgets it */
-	settings.texcoord_set = -1;
+	settings.io.texcoord_set = -1;
 	for (size_t n = 0; failed; n++) {
 		nt_summary summary;
 		nt_error error;

@@ -26,7 +26,7 @@
 typedef struct planning {
 	nt_scene *scene;
 	nt_vertex_pools *pools;
-	nt_write_options options;
+	const nt_write_options *options;
 	nt_arena of_pool;
 } planning;
 
@@ -85,11 +85,11 @@ static nt_status look_at_pool(planning *f, size_t number, nt_error *error)
 		return status;
 	vertices.own_count = vertices.old_count = (size_t)positions->count;
 	const bool compressed = nt_gltf_draco_of(nt_pool_primitive(&pool, 0)) != NULL;
-	if (!compressed && f->options.draco == NT_DRACO_KEEP)
+	if (!compressed && f->options->draco == NT_DRACO_KEEP)
 		return NT_OK;
 	/* what is wrong with the file is found again when it is loaded */
 	nt_error ignored;
-	status = nt_gltf_draco_begin(&recoding, document, &vertices, &f->options, &f->of_pool, &ignored);
+	status = nt_gltf_draco_begin(&recoding, document, &vertices, f->options, &f->of_pool, &ignored);
 	if (status == NT_ERROR_MEMORY)
 		return nt_fail_memory(error);
 	bool takes = !status && !recoding.obstacle;
@@ -183,7 +183,7 @@ static bool lay_grid(const planning *f, const nt_join *join, bool texcoords)
 	}
 	if (floats == 0)
 		return true;
-	nt_draco_quantization grid = {.bits = nt_gltf_draco_bits(f->options.draco_bits,
+	nt_draco_quantization grid = {.bits = nt_gltf_draco_bits(f->options->draco_bits,
 		texcoords ? NT_DRACO_BITS_TEXCOORD : NT_DRACO_BITS_POSITION), .explicit_box = true};
 	for (uint32_t k = 0; k < components; k++) {
 		grid.origin[k] = b.least[k];
@@ -236,11 +236,8 @@ static nt_status look_at_joins(const planning *f, nt_error *error)
 nt_status nt_gltf_find_quantized(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
 	nt_gltf *document = scene->source;
-	planning f = {.scene = scene, .pools = document->pools,
-		.options = {.draco = options->draco, .threads = options->threads}};
+	planning f = {.scene = scene, .pools = document->pools, .options = options};
 	nt_status status = NT_OK;
-	for (size_t i = 0; i < NT_DRACO_BITS_COUNT; i++)
-		f.options.draco_bits[i] = options->draco_bits[i];
 	for (size_t i = 0; !status && i < f.pools->count; i++)
 		status = look_at_pool(&f, i, error);
 	clear_shared(scene);

@@ -401,7 +401,7 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	nt_arena of_window = {0};
 	nt_buffer_edits edits = {0};
 	if (!document->pools)
-		status = nt_vertex_pools_find(scene, &(nt_read_options){.morphs = options->morphs}, error);
+		status = nt_vertex_pools_find(scene, options, error);
 	if (!status)
 		status = nt_edits_create(&edits, document->pools, options->meshopt == NT_MESHOPT_KEEP,
 			options->weld, error);

@@ -91,7 +91,7 @@ typedef struct verification {
 	size_t count;
 } verification;
 
-static const nt_read_options reading = {.texcoord_set = -1, .allow_outside = true, .morphs = NT_MORPH_KEEP,
+static const nt_read_options reading = {.texcoord_set = -1, .outside = NT_OUTSIDE_YES, .morphs = NT_MORPH_KEEP,
 	.threads = 1};
 
 /* Half a step of the quantization of an attribute in a block, and what float arithmetic adds. */

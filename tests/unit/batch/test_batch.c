@@ -16,7 +16,7 @@ static nt_status fake_run(const char *input, const char *output, const nt_settin
 	nt_summary *summary, nt_error *error)
 {
 	(void)output;
-	threads_seen = settings->threads;
+	threads_seen = settings->io.threads;
 	usleep((useconds_t)(input[0] - 'a') * 2000);
 	summary->mesh_count = (size_t)(input[0] - 'a');
 	if (strchr(input, 'x'))
@@ -51,7 +51,7 @@ TEST(every_input_runs_and_is_told_about_in_order)
 	nt_batch batch;
 	nt_error error;
 	for (unsigned threads = 1; threads <= 8; threads += 3) {
-		const nt_settings settings = {.threads = threads, .check = true};
+		const nt_settings settings = {.io.threads = threads, .check = true};
 		run_log l = {0};
 		assert_int_equal(nt_batch_check(&batch, INPUTS("h1 ", "ax ", "c ", "gx ", "b ", "d ", "a "),
 					 &error),
@@ -78,7 +78,7 @@ static nt_status watched_run(const char *input, const char *output, const nt_set
 	nt_error *error)
 {
 	(void)output, (void)summary, (void)error;
-	const size_t need = settings->threads == 4 ? 0 : (1 << 20) + 8 * (atoi(input + 1) % 4 ? LARGE : SMALL);
+	const size_t need = settings->io.threads == 4 ? 0 : (1 << 20) + 8 * (atoi(input + 1) % 4 ? LARGE : SMALL);
 	const size_t bytes = atomic_fetch_add(&running_bytes, need) + need;
 	for (size_t most = most_bytes; bytes > most && !atomic_compare_exchange_weak(&most_bytes, &most, bytes);)
 		;
@@ -88,7 +88,7 @@ static nt_status watched_run(const char *input, const char *output, const nt_set
 	usleep(2000);
 	for (int i = 0; i < 15000 && most_running < awaited; i++)
 		usleep(2000);
-	if (settings->threads == 4) {
+	if (settings->io.threads == 4) {
 		wide_runs++;
 		wide_beside += atomic_load(&running) > 1 || now > 1;
 	}
@@ -115,7 +115,7 @@ TEST(the_bound_of_memory_keeps_jobs_waiting)
 		nt_batch batch;
 		nt_error error;
 		run_log l = {0};
-		const nt_settings settings = {.threads = 4, .check = true};
+		const nt_settings settings = {.io.threads = 4, .check = true};
 		most_running = wide_runs = wide_beside = 0;
 		most_bytes = 0;
 		awaited = cases[i].beside;
@@ -160,7 +160,7 @@ TEST(what_had_no_memory_beside_others_is_tried_again_alone_with_a_limit_too)
 		nt_batch batch;
 		nt_error error;
 		size_t ran = 0;
-		const nt_settings settings = {.threads = 2, .check = true, .max_memory = limited ? 100 << 20 : 0};
+		const nt_settings settings = {.io.threads = 2, .check = true, .max_memory = limited ? 100 << 20 : 0};
 		tries[0] = tries[1] = 0;
 		assert_int_equal(nt_batch_check(&batch, INPUTS("a.obj", "bx.obj"), &error), NT_OK);
 		nt_batch_run(&batch, &settings, &(nt_batch_options){.run = hungry_run, .jobs = 2, .memory = 100 << 20,
@@ -178,7 +178,7 @@ TEST(after_a_failure_no_further_job_begins_if_so_wished)
 {
 	nt_batch batch;
 	nt_error error;
-	const nt_settings settings = {.threads = 1, .check = true};
+	const nt_settings settings = {.io.threads = 1, .check = true};
 	size_t ran = 0;
 	assert_int_equal(nt_batch_check(&batch, INPUTS("a", "bx", "c", "d"), &error), NT_OK);
 	nt_batch_run(&batch, &settings,
@@ -196,7 +196,7 @@ TEST(one_input_has_all_threads)
 	nt_batch batch;
 	nt_error error;
 	run_log l = {0};
-	const nt_settings settings = {.threads = 5};
+	const nt_settings settings = {.io.threads = 5};
 	assert_int_equal(nt_batch_pair(&batch, "a", "b", &error), NT_OK);
 	assert_string_equal(batch.jobs[0].output, "b");
 	nt_batch_run(&batch, &settings, &(nt_batch_options){.run = fake_run, .done = note, .user = &l});

@@ -131,7 +131,7 @@ TEST(gltf_counts_by_its_accessors_wherever_their_bytes_are)
 	assert_int_equal(need_of("a.gltf"), MB + 12 * strlen(plain) + 46 * 630);
 	put_text_file("d.gltf", draco);
 	assert_int_equal(need_of("d.gltf"), MB + 12 * strlen(draco) + 112 * 600);
-	const nt_settings compress = {.draco = NT_DRACO_AS_EDGEBREAKER};
+	const nt_settings compress = {.io.draco = NT_DRACO_AS_EDGEBREAKER};
 	assert_int_equal(nt_need_of(in_folder("a.gltf"), &compress, 0), MB + 12 * strlen(plain) + 112 * 630);
 	/* cut anywhere */
 	for (size_t size = 0; size < sizeof plain - 1; size++) {

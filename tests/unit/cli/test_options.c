@@ -42,7 +42,7 @@ TEST(no_options_mean_the_defaults)
 {
 	nt_command c;
 	accepts(&c, WORDS("in.obj", "out.glb"));
-	const nt_settings defaults = {.texcoord_set = -1, .outside = NT_OUTSIDE_ROOT, .own_input = true};
+	const nt_settings defaults = {.io.texcoord_set = -1, .io.outside = NT_OUTSIDE_ROOT, .own_input = true};
 	assert_memory_equal(&c.settings, &defaults, sizeof defaults);
 	assert_int_equal(c.action, NT_ACTION_RUN);
 	assert_int_equal(c.verbosity, 0);
@@ -69,26 +69,26 @@ TEST(every_option_sets_its_field)
 		{"--raw", FIELD(settings.repair), NMTAN_REPAIR_OFF},
 		{"--normals=smooth", FIELD(settings.normals), NT_NORMALS_SMOOTH},
 		{"--normals=flat", FIELD(settings.normals), NT_NORMALS_FLAT},
-		{"--across=mesh", FIELD(settings.across), NT_ACROSS_MESH},
-		{"--uv=3", FIELD(settings.texcoord_set), 3},
-		{"--images=none", FIELD(settings.images), NT_IMAGES_NONE},
-		{"--images=link", FIELD(settings.images), NT_IMAGES_LINK},
-		{"--images=copy", FIELD(settings.images), NT_IMAGES_COPY},
-		{"--buffers=copy", FIELD(settings.buffers), NT_BUFFERS_COPY},
-		{"--buffers=embed", FIELD(settings.buffers), NT_BUFFERS_EMBED},
+		{"--across=mesh", FIELD(settings.io.across), NT_ACROSS_MESH},
+		{"--uv=3", FIELD(settings.io.texcoord_set), 3},
+		{"--images=none", FIELD(settings.io.images), NT_IMAGES_NONE},
+		{"--images=link", FIELD(settings.io.images), NT_IMAGES_LINK},
+		{"--images=copy", FIELD(settings.io.images), NT_IMAGES_COPY},
+		{"--buffers=copy", FIELD(settings.io.buffers), NT_BUFFERS_COPY},
+		{"--buffers=embed", FIELD(settings.io.buffers), NT_BUFFERS_EMBED},
 		{"--textures=png", FIELD(settings.textures), NT_TEXTURES_PNG},
 		{"--bump=ignore", FIELD(settings.bump), NT_BUMP_IGNORE},
-		{"--draco=off", FIELD(settings.draco), NT_DRACO_OFF},
-		{"--draco=sequential", FIELD(settings.draco), NT_DRACO_AS_SEQUENTIAL},
-		{"--draco=edgebreaker", FIELD(settings.draco), NT_DRACO_AS_EDGEBREAKER},
-		{"--threads=5", FIELD(settings.threads), 5},
+		{"--draco=off", FIELD(settings.io.draco), NT_DRACO_OFF},
+		{"--draco=sequential", FIELD(settings.io.draco), NT_DRACO_AS_SEQUENTIAL},
+		{"--draco=edgebreaker", FIELD(settings.io.draco), NT_DRACO_AS_EDGEBREAKER},
+		{"--threads=5", FIELD(settings.io.threads), 5},
 		{"--output-format=gltf", FIELD(settings.output_format), NT_FORMAT_GLTF},
 		{"--output-format=ply", FIELD(settings.output_format), NT_FORMAT_PLY},
 		{"--output-format=glb", FIELD(settings.output_format), NT_FORMAT_GLB},
-		{"--outside=no", FIELD(settings.outside), NT_OUTSIDE_NO},
-		{"--outside=root", FIELD(settings.outside), NT_OUTSIDE_ROOT},
-		{"--outside=yes", FIELD(settings.outside), NT_OUTSIDE_YES},
-		{"--bitangents", FIELD(settings.bitangents), true},
+		{"--outside=no", FIELD(settings.io.outside), NT_OUTSIDE_NO},
+		{"--outside=root", FIELD(settings.io.outside), NT_OUTSIDE_ROOT},
+		{"--outside=yes", FIELD(settings.io.outside), NT_OUTSIDE_YES},
+		{"--bitangents", FIELD(settings.io.bitangents), true},
 		{"--sync", FIELD(settings.sync), true},
 		{"--verify", FIELD(settings.verify), true},
 		{"--dry-run", FIELD(settings.dry_run), true},
@@ -118,12 +118,12 @@ TEST(every_option_sets_its_field)
 	assert_int_equal(c.settings.texture_path_count, 2);
 	assert_string_equal(c.settings.texture_paths[1], "y");
 	accepts(&c, WORDS("--origin=1e3,-2.5,+.5", "a", "b"));
-	assert_int_equal(c.settings.origin.choice, NT_ORIGIN_GIVEN);
-	assert_memory_equal(c.settings.origin.at, ((double[]){1000, -2.5, 0.5}), 3 * sizeof(double));
+	assert_int_equal(c.settings.io.origin.choice, NT_ORIGIN_GIVEN);
+	assert_memory_equal(c.settings.io.origin.at, ((double[]){1000, -2.5, 0.5}), 3 * sizeof(double));
 	accepts(&c, WORDS("--origin=0,-0,0.0", "a", "b"));
-	assert_int_equal(c.settings.origin.choice, NT_ORIGIN_KEEP);
+	assert_int_equal(c.settings.io.origin.choice, NT_ORIGIN_KEEP);
 	accepts(&c, WORDS("--draco=edgebreaker", "--draco-bits=16,10,1,24", "a", "b"));
-	assert_memory_equal(c.settings.draco_bits, ((int[]){16, 10, 1, 24}), 4 * sizeof(int));
+	assert_memory_equal(c.settings.io.draco_bits, ((int[]){16, 10, 1, 24}), 4 * sizeof(int));
 	accepts(&c, WORDS("--in-place", "a"));
 	assert_true(c.settings.in_place);
 	accepts(&c, WORDS("--check", "--fail-on=info", "a", "b", "c"));
@@ -154,11 +154,11 @@ TEST(values_stand_behind_equals_or_in_the_next_word)
 {
 	nt_command c;
 	accepts(&c, WORDS("--threads", "7", "a", "b"));
-	assert_int_equal(c.settings.threads, 7);
+	assert_int_equal(c.settings.io.threads, 7);
 	accepts(&c, WORDS("-j", "7", "a", "b"));
-	assert_int_equal(c.settings.threads, 7);
+	assert_int_equal(c.settings.io.threads, 7);
 	accepts(&c, WORDS("-nvj7", "a", "b"));
-	assert_int_equal(c.settings.threads, 7);
+	assert_int_equal(c.settings.io.threads, 7);
 	assert_true(c.settings.no_clobber);
 	accepts(&c, WORDS("-d", "there", "a", "b", "c"));
 	assert_string_equal(c.directory, "there");
@@ -166,7 +166,7 @@ TEST(values_stand_behind_equals_or_in_the_next_word)
 	accepts(&c, WORDS("--directory=there", "a"));
 	assert_string_equal(c.directory, "there");
 	accepts(&c, WORDS("--uv", "auto", "a", "b"));
-	assert_int_equal(c.settings.texcoord_set, -1);
+	assert_int_equal(c.settings.io.texcoord_set, -1);
 }
 
 TEST(options_and_names_may_mix_and_two_dashes_end_options)
@@ -283,7 +283,7 @@ TEST(of_choices_the_last_counts_but_names_and_lists_stand_once)
 	nt_command c;
 	accepts(&c, WORDS("--method=area", "--method=lengyel", "-j2", "-j3", "a", "b"));
 	assert_int_equal(c.settings.method, NMTAN_METHOD_LENGYEL);
-	assert_int_equal(c.settings.threads, 3);
+	assert_int_equal(c.settings.io.threads, 3);
 	refuses("--report is there twice: 'r.xml' and 'r.sarif'; another run writes the other",
 		WORDS("--check", "--report=r.xml", "--report=r.sarif", "a"));
 	refuses("--directory is there twice", WORDS("-d", "x", "-dy", "a"));

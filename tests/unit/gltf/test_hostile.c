@@ -30,8 +30,8 @@ typedef struct counts {
 
 static void run_one(const char *path, uint32_t *chance, counts *tally)
 {
-	const nt_settings settings = {.texcoord_set = -1, .only = NT_ONLY_ALL,
-		.existing = NT_EXISTING_REPLACE, .dry_run = true, .threads = 1,
+	const nt_settings settings = {.io.texcoord_set = -1, .only = NT_ONLY_ALL,
+		.existing = NT_EXISTING_REPLACE, .dry_run = true, .io.threads = 1,
 		.output_format = mutate_random(chance, 4) ? NT_FORMAT_GLB : NT_FORMAT_GLTF};
 	nt_summary summary;
 	nt_error error;

@@ -314,7 +314,8 @@ static void open_obj(reading *r, char path[200], const char *text, bool allow_ou
 	nt_scene_init(&r->scene, path);
 	r->scene.bytes = (const unsigned char *)text;
 	r->scene.byte_count = strlen(text);
-	const nt_read_options options = {.texcoord_set = -1, .allow_outside = allow_outside, .threads = 1};
+	const nt_read_options options = {.texcoord_set = -1,
+		.outside = allow_outside ? NT_OUTSIDE_YES : NT_OUTSIDE_NO, .threads = 1};
 	assert_int_equal(nt_obj_open(&r->scene, &options, &r->error), NT_OK);
 }
 

@@ -14,7 +14,7 @@ static const char text[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 3 0 0
 	"vt 0 0\nvt 1 0\nvt 1 1\nvt 1.25 .5\nvn 0 0 1\nvn 0 0 .5\nvn 0 0 0\n"
 	"f 1/1/1 2/2/1 3/3/1 4/4/1\nf 5/1/2 6/2/3 7/3\n";
 
-static const nt_settings settings = {.texcoord_set = -1, .dry_run = true, .threads = 1,
+static const nt_settings settings = {.io.texcoord_set = -1, .dry_run = true, .io.threads = 1,
 	.output_format = NT_FORMAT_GLB};
 
 TEST(odd_normals_and_folded_quads_are_counted)
@@ -77,7 +77,7 @@ TEST(the_normals_that_are_solved_are_written)
 	}
 	put_file("in.obj", obj.data, obj.size);
 	nt_buffer_free(&obj);
-	const nt_settings raw = {.texcoord_set = -1, .threads = 1, .repair = NMTAN_REPAIR_OFF,
+	const nt_settings raw = {.io.texcoord_set = -1, .io.threads = 1, .repair = NMTAN_REPAIR_OFF,
 		.existing = NT_EXISTING_REPLACE};
 	nt_summary summary = convert_file("in.obj", "out.ply", raw);
 	assert_in_range(count_findings(&summary, NT_CODE_NORMALS_SCALED), 1, POINTS - 1);

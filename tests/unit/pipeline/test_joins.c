@@ -194,7 +194,7 @@ static size_t differing(const nt_mesh *mesh, const nt_mesh *joined, size_t first
 }
 
 static const int mapped[3] = {0, 1, 0};
-static const nt_settings across = {.across = NT_ACROSS_MESH, .threads = 1};
+static const nt_settings across = {.io.across = NT_ACROSS_MESH, .io.threads = 1};
 
 /* ---- tests ---- */
 
@@ -206,11 +206,11 @@ TEST(bytes_are_those_of_one_primitive)
 	put_joined("one.glb", &sheet, 0, "");
 	put_three("three.glb", &sheet, mapped, NULL, NULL);
 	for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_MIKKTSPACE_SORTED; method++) {
-		nt_settings settings = {.method = (nmtan_method)method, .threads = 1};
+		nt_settings settings = {.method = (nmtan_method)method, .io.threads = 1};
 		convert(&one, "one.glb", settings);
-		settings.across = NT_ACROSS_MESH;
+		settings.io.across = NT_ACROSS_MESH;
 		for (unsigned threads = 1; threads < 4; threads++) {
-			settings.threads = threads;
+			settings.io.threads = threads;
 			convert(&r, "three.glb", settings);
 			for (size_t i = 0, corner = 0; i < 3; corner += r.scene.meshes[i++].corner_count)
 				assert_int_equal(differing(&r.scene.meshes[i], &one.scene.meshes[0], corner), 0);
@@ -220,7 +220,7 @@ TEST(bytes_are_those_of_one_primitive)
 			close_result(&r);
 		}
 		/* without it they differ: the test sees something */
-		settings.across = NT_ACROSS_PRIMITIVE;
+		settings.io.across = NT_ACROSS_PRIMITIVE;
 		convert(&r, "three.glb", settings);
 		assert_true(differing(&r.scene.meshes[0], &one.scene.meshes[0], 0) > 20);
 		close_result(&r);
@@ -262,7 +262,7 @@ TEST(texture_transforms_divide)
 	/* 0 and 5 are not: each is alone */
 	for (int other = 0; other <= 5; other += 5) {
 		put_three("three.glb", &sheet, (int[]){other, 3, 3}, NULL, NULL);
-		convert(&one, "three.glb", (nt_settings){.threads = 1});
+		convert(&one, "three.glb", (nt_settings){.io.threads = 1});
 		convert(&r, "three.glb", across);
 		assert_int_equal(differing(&r.scene.meshes[0], &one.scene.meshes[0], 0), 0);
 		assert_true(differing(&r.scene.meshes[1], &one.scene.meshes[1], 0) > 20);
@@ -289,7 +289,7 @@ TEST(shared_geometry_gets_tangents_of_its_own)
 	put_joined("one.glb", &sheet, 0, "");
 	put_three("three.glb", &sheet, mapped, NULL, NULL);
 	convert(&one, "one.glb", across);
-	convert(&apart, "three.glb", (nt_settings){.threads = 1});
+	convert(&apart, "three.glb", (nt_settings){.io.threads = 1});
 	convert(&r, "shared.glb", across);
 	const nt_mesh *m = r.scene.meshes;
 	assert_int_equal(r.scene.mesh_count, 7);
@@ -370,7 +370,7 @@ TEST(shared_vertices_are_not_split_at_borders)
 	assert_int_equal(meshes[0].vertex_count, one.scene.meshes[0].vertex_count);
 	close_result(&r);
 	/* each by itself they are */
-	convert(&r, "two.glb", (nt_settings){.threads = 1});
+	convert(&r, "two.glb", (nt_settings){.io.threads = 1});
 	assert_true(r.scene.meshes[0].vertex_count >= one.scene.meshes[0].vertex_count + SIDE - 1);
 	close_result(&r);
 	close_result(&one);
@@ -387,9 +387,9 @@ TEST(failed_allocations_end_the_run)
 	}
 	const char *const target = ",\"targets\":[{\"POSITION\":4}]";
 	put_three("three.glb", &small, (int[]){3, 2, 3}, NULL, (const char *[]){target, "", ""});
-	nt_settings settings = {.dry_run = true, .threads = 1, .report = &report};
+	nt_settings settings = {.dry_run = true, .io.threads = 1, .report = &report};
 	assert_true(exhaust_memory(in_folder("three.glb"), settings) > 100);
-	settings.across = NT_ACROSS_MESH;
+	settings.io.across = NT_ACROSS_MESH;
 	assert_true(exhaust_memory(in_folder("three.glb"), settings) > 100);
 }
 
@@ -398,14 +398,14 @@ TEST(same_for_others_and_for_checks)
 	result r;
 	/* nothing to join: the bytes are those of the default */
 	put_joined("one.glb", &sheet, 0, "");
-	convert(&r, "one.glb", (nt_settings){.threads = 1});
+	convert(&r, "one.glb", (nt_settings){.io.threads = 1});
 	close_result(&r);
 	assert_int_equal(rename(in_folder("out.glb"), in_folder("default.glb")), 0);
 	convert(&r, "one.glb", across);
 	assert_true(same_files("out.glb", "default.glb"));
 	close_result(&r);
 	put_three("three.glb", &sheet, mapped, NULL, NULL);
-	convert(&r, "three.glb", (nt_settings){.across = NT_ACROSS_MESH, .check = true, .threads = 1});
+	convert(&r, "three.glb", (nt_settings){.io.across = NT_ACROSS_MESH, .check = true, .io.threads = 1});
 }
 
 /*
@@ -451,7 +451,7 @@ TEST(a_report_tells_borders_that_would_change)
 		result r;
 		put_sheared(k);
 		for (int check = 0; check < 2; check++) {
-			convert(&r, "border.glb", (nt_settings){.report = &report, .check = check, .threads = 1});
+			convert(&r, "border.glb", (nt_settings){.report = &report, .check = check, .io.threads = 1});
 			if (fabs(r.border_degrees - (worst > 5 ? worst : 0)) > 0.06)
 				fail_msg("k %g: %g degrees, expected %g", k, r.border_degrees, worst);
 			assert_int_equal(r.border_count > 0, worst > 5);
@@ -459,10 +459,11 @@ TEST(a_report_tells_borders_that_would_change)
 				close_result(&r);
 		}
 		/* nothing is computed unless it is asked for, nor where it is done */
-		convert(&r, "border.glb", (nt_settings){.threads = 1});
+		convert(&r, "border.glb", (nt_settings){.io.threads = 1});
 		assert_int_equal(r.border_count, 0);
 		close_result(&r);
-		convert(&r, "border.glb", (nt_settings){.report = &report, .across = NT_ACROSS_MESH, .threads = 1});
+		convert(&r, "border.glb",
+			(nt_settings){.report = &report, .io.across = NT_ACROSS_MESH, .io.threads = 1});
 		assert_int_equal(r.border_count, 0);
 		close_result(&r);
 	}
@@ -473,7 +474,7 @@ static size_t mismatches(nt_across how)
 {
 	const nt_report_options report = {0};
 	nt_summary summary = convert_file("out.glb", NULL,
-		(nt_settings){.check = true, .report = &report, .across = how, .threads = 1});
+		(nt_settings){.check = true, .report = &report, .io.across = how, .io.threads = 1});
 	size_t count = 0;
 	for (size_t i = 0; i < summary.report->finding_count; i++)
 		if (summary.report->findings[i].code == NT_CODE_TAN_DIRECTION_MISMATCH)

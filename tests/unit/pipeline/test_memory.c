@@ -83,8 +83,8 @@ static size_t peak_of(const char *input, const char *output)
 	assert_true(child >= 0);
 	if (child == 0) {
 		prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0); /* by how much large pages round up is the machine's affair */
-		const nt_settings settings = {.texcoord_set = -1, .threads = 2,
-			.buffers = strstr(output, ".gltf") ? NT_BUFFERS_EMBED : NT_BUFFERS_DEFAULT};
+		const nt_settings settings = {.io.texcoord_set = -1, .io.threads = 2,
+			.io.buffers = strstr(output, ".gltf") ? NT_BUFFERS_EMBED : NT_BUFFERS_DEFAULT};
 		nt_summary summary;
 		nt_error error;
 		const nt_status status = nt_run(input, output, &settings, &summary, &error);

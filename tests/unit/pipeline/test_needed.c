@@ -69,7 +69,7 @@ static void run(const char *which, size_t *begin, size_t *end, size_t expected_s
 	const struct sigaction watch = {.sa_sigaction = on_fault, .sa_flags = SA_SIGINFO | SA_NODEFER};
 	struct sigaction before;
 	assert_int_equal(sigaction(SIGSEGV, &watch, &before), 0);
-	const nt_settings settings = {.texcoord_set = -1, .dry_run = true, .output_format = NT_FORMAT_GLB};
+	const nt_settings settings = {.io.texcoord_set = -1, .dry_run = true, .output_format = NT_FORMAT_GLB};
 	nt_summary summary;
 	nt_error error;
 	map = NULL;

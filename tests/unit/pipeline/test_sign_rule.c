@@ -75,7 +75,8 @@ static void judge_triangle(const nt_mesh *mesh, const uint32_t v[3], rule_count 
 /* Judges every triangle of a glTF file that has tangents; false: it is not read. */
 static bool judge_file(const char *path, rule_count *count)
 {
-	static const nt_read_options options = {.texcoord_set = 0, .keeps_transforms = true, .morphs = NT_MORPH_KEEP};
+	static const nt_read_options options = {.texcoord_set = 0, .transform = NT_TRANSFORM_KEEP,
+		.morphs = NT_MORPH_KEEP};
 	nt_error error;
 	nt_file file;
 	nt_scene scene;
@@ -103,8 +104,8 @@ static bool judge_file(const char *path, rule_count *count)
 /* Converts a file to a new GLB and judges that. */
 static void judge_conversion(const char *input, rule_count *count)
 {
-	const nt_settings settings = {.texcoord_set = -1, .existing = NT_EXISTING_REPLACE,
-		.images = NT_IMAGES_LINK, .verify = true};
+	const nt_settings settings = {.io.texcoord_set = -1, .existing = NT_EXISTING_REPLACE,
+		.io.images = NT_IMAGES_LINK, .verify = true};
 	const char *output = in_folder("out.glb");
 	nt_summary summary;
 	nt_error error;

@@ -39,7 +39,7 @@ static bool has_text(const nt_file *file, const char *text)
 static void assert_embedded(const char *name)
 {
 	put_triangle(name);
-	run("in.gltf", "embedded.gltf", (nt_settings){.buffers = NT_BUFFERS_EMBED, .verify = true});
+	run("in.gltf", "embedded.gltf", (nt_settings){.io.buffers = NT_BUFFERS_EMBED, .verify = true});
 	run("in.gltf", "linked.gltf", (nt_settings){.verify = true});
 	run("embedded.gltf", "a.glb", (nt_settings){0});
 	run("linked.gltf", "b.glb", (nt_settings){0});
@@ -64,7 +64,7 @@ TEST(buffers_are_encoded_where_they_belong)
  * out/in.bin, while the other buffer is a data URI in both texts. */
 TEST(data_is_in_every_text)
 {
-	const nt_settings settings = {.buffers = NT_BUFFERS_COPY, .verify = true};
+	const nt_settings settings = {.io.buffers = NT_BUFFERS_COPY, .verify = true};
 	assert_int_equal(mkdir(in_folder("out"), 0777), 0);
 	put_triangle("first");
 	run("in.gltf", "out/in.gltf", settings);

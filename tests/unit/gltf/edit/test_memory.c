@@ -8,7 +8,7 @@
 
 static void fail_each(const char *input, nt_settings settings)
 {
-	settings.threads = 1;
+	settings.io.threads = 1;
 	settings.dry_run = true;
 	assert_true(exhaust_memory(input, settings) > 40);
 	assert_int_equal(count_in_folder(), 0);
@@ -18,11 +18,12 @@ TEST(allocations_of_every_kind_of_edit_may_fail)
 {
 	fail_each(NT_DATA_DIR "/sparse.gltf", (nt_settings){.output_format = NT_FORMAT_GLB});
 	fail_each(NT_DATA_DIR "/morph.gltf",
-		(nt_settings){.output_format = NT_FORMAT_GLTF, .buffers = NT_BUFFERS_EMBED});
-	fail_each(NT_DATA_DIR "/plates.gltf", (nt_settings){.output_format = NT_FORMAT_GLTF, .buffers = NT_BUFFERS_COPY,
-		.bitangents = true, .precision = NT_PRECISION_BYTE});
+		(nt_settings){.output_format = NT_FORMAT_GLTF, .io.buffers = NT_BUFFERS_EMBED});
+	fail_each(NT_DATA_DIR "/plates.gltf",
+		(nt_settings){.output_format = NT_FORMAT_GLTF, .io.buffers = NT_BUFFERS_COPY,
+		.io.bitangents = true, .io.precision = NT_PRECISION_BYTE});
 	fail_each(NT_DATA_DIR "/plates.glb", (nt_settings){.output_format = NT_FORMAT_GLB,
-		.draco = NT_DRACO_AS_SEQUENTIAL, .bitangents = true});
+		.io.draco = NT_DRACO_AS_SEQUENTIAL, .io.bitangents = true});
 	fail_each(NT_DATA_DIR "/transformed.gltf", (nt_settings){.output_format = NT_FORMAT_GLB});
 }
 

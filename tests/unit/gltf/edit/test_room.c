@@ -41,7 +41,7 @@ static nt_status run(const char *to, nt_error *error)
 {
 	nt_summary summary;
 	asked_for = 0;
-	const nt_status status = nt_run(in_folder("in.gltf"), in_folder(to), &(nt_settings){.texcoord_set = -1},
+	const nt_status status = nt_run(in_folder("in.gltf"), in_folder(to), &(nt_settings){.io.texcoord_set = -1},
 		&summary, error);
 	nt_summary_free(&summary);
 	return status;

@@ -75,7 +75,7 @@ static void expect(nt_settings settings, size_t dropped, size_t marks, size_t us
 TEST(polygon_whose_first_corner_is_copied_loses_its_mark)
 {
 	put_file_of((int[]){SPLITS_FIRST}, 1, EXTENSION);
-	expect((nt_settings){.threads = 1, .quads = NT_QUADS_OFF}, 1, 0, 0);
+	expect((nt_settings){.io.threads = 1, .quads = NT_QUADS_OFF}, 1, 0, 0);
 	nt_file out = file_in_folder("out.glb");
 	assert_null(memmem(out.data, out.size, "xtensions", 9)); /* nor an empty object or list */
 	nt_file_close(&out);
@@ -84,34 +84,34 @@ TEST(polygon_whose_first_corner_is_copied_loses_its_mark)
 TEST(polygon_whose_other_corners_are_copied_keeps_it)
 {
 	put_file_of((int[]){SPLITS_OTHERS}, 1, EXTENSION);
-	expect((nt_settings){.threads = 1}, 0, 1, 1);
+	expect((nt_settings){.io.threads = 1}, 0, 1, 1);
 }
 
 TEST(list_names_it_while_another_primitive_has_it)
 {
 	put_file_of((int[]){SPLITS_FIRST, SPLITS_OTHERS, SPLITS_FIRST}, 3, EXTENSION);
-	expect((nt_settings){.threads = 1, .quads = NT_QUADS_OFF}, 2, 1, 1);
+	expect((nt_settings){.io.threads = 1, .quads = NT_QUADS_OFF}, 2, 1, 1);
 }
 
 /* Draco's edgebreaker gives triangles another order. */
 TEST(compressed_triangles_lose_it)
 {
 	put_file_of((int[]){SPLITS_OTHERS}, 1, EXTENSION);
-	expect((nt_settings){.threads = 1, .draco = NT_DRACO_AS_EDGEBREAKER}, 1, 0, 0);
+	expect((nt_settings){.io.threads = 1, .io.draco = NT_DRACO_AS_EDGEBREAKER}, 1, 0, 0);
 }
 
 /* An extension that is listed without need is not ours to take away. */
 TEST(nothing_goes_where_nothing_was)
 {
 	put_file_of((int[]){SPLITS_FIRST}, 1, "\"extras\":1");
-	expect((nt_settings){.threads = 1}, 0, 0, 1);
+	expect((nt_settings){.io.threads = 1}, 0, 0, 1);
 }
 
 /* The polygons' halves and quads are allocated too. */
 TEST(exhausted_memory_is_told)
 {
 	put_file_of((int[]){SPLITS_FIRST, SPLITS_OTHERS}, 2, EXTENSION);
-	assert_true(exhaust_memory(in_folder("in.glb"), (nt_settings){.threads = 1}) > 30);
+	assert_true(exhaust_memory(in_folder("in.glb"), (nt_settings){.io.threads = 1}) > 30);
 }
 
 AROUND_EACH(make_folder, remove_folder)
