@@ -115,19 +115,19 @@ static nt_status check_dense(nt_gltf *document, const nt_json_value *json, const
 	if (accessor->view == NT_NONE)
 		return NT_OK;
 	status = nt_gltf_uint(json, pointer, "byteOffset", (uint64_t)1 << 53, 0, &accessor->offset, error);
-	nt_gltf_view view;
+	const nt_gltf_view *view;
 	if (!status)
 		status = nt_gltf_get_view(document, index, pointer, &view, error);
 	if (status)
 		return status;
-	if (view.stride) {
-		if (view.stride < accessor->element_bytes)
+	if (view->stride) {
+		if (view->stride < accessor->element_bytes)
 			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 				"elements of %u bytes, but bufferView %u has a byteStride of %u",
-				accessor->element_bytes, accessor->view, view.stride);
-		accessor->stride = view.stride;
+				accessor->element_bytes, accessor->view, view->stride);
+		accessor->stride = view->stride;
 	}
-	return check_range(accessor->view, &view, accessor->offset, accessor->count, accessor->element_bytes,
+	return check_range(accessor->view, view, accessor->offset, accessor->count, accessor->element_bytes,
 		accessor->stride, pointer, error);
 }
 
@@ -144,13 +144,13 @@ static nt_status check_sparse_array(nt_gltf *document, const nt_json_value *spar
 		&index, error);
 	if (!status)
 		status = nt_gltf_uint(list, place, "byteOffset", (uint64_t)1 << 53, 0, offset, error);
-	nt_gltf_view view;
+	const nt_gltf_view *view;
 	if (!status)
 		status = nt_gltf_get_view(document, index, place, &view, error);
 	if (status)
 		return status;
 	*view_index = (uint32_t)index;
-	return check_range(*view_index, &view, *offset, count, element_bytes, element_bytes, place, error);
+	return check_range(*view_index, view, *offset, count, element_bytes, element_bytes, place, error);
 }
 
 static nt_status check_sparse(nt_gltf *document, const nt_json_value *sparse, const char *accessor_pointer,
@@ -226,8 +226,8 @@ static bool lies_in_view(const nt_gltf_accessor *accessor)
 	return accessor->index != NT_NONE && accessor->view != NT_NONE && !accessor->sparse;
 }
 
-/* Finds accessors over the same bytes. Most views have one accessor, about which there is no question. */
-static bool find_same(nt_gltf *document)
+/* Most views have one accessor, about which there is no question. */
+nt_status nt_gltf_find_same_bytes(nt_gltf *document, nt_error *error)
 {
 	nt_gltf_accessor *const all = document->accessors;
 	uint32_t *users = nt_calloc(document->view_count, sizeof *users);
@@ -252,34 +252,34 @@ static bool find_same(nt_gltf *document)
 	const bool found = list != NULL;
 	free(list);
 	free(users);
-	return found;
-}
-
-nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from, nt_gltf_accessor *accessor,
-	nt_error *error)
-{
-	*accessor = (nt_gltf_accessor){.view = NT_NONE};
-	nt_status status = nt_gltf_check_index("accessors", index, document->accessor_count, from, error);
-	if (status)
-		return status;
-	nt_gltf_accessor *known = &document->accessors[index];
-	if (known->index != NT_NONE) {
-		*accessor = *known;
-		return NT_OK;
-	}
-	status = read_accessor(document, (uint32_t)index, accessor, error);
-	if (!status)
-		*known = *accessor;
-	return status;
+	return found ? NT_OK : nt_fail_memory(error);
 }
 
 nt_status nt_gltf_read_accessors(nt_gltf *document, nt_error *error)
 {
-	nt_gltf_accessor ignored;
-	nt_status status = NT_OK;
-	for (uint32_t i = 0; status != NT_ERROR_MEMORY && i < document->accessor_count; i++)
-		status = nt_gltf_get_accessor(document, i, "", &ignored, NULL);
-	return status != NT_ERROR_MEMORY && find_same(document) ? NT_OK : nt_fail_memory(error);
+	document->accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
+	document->accessors = nt_alloc(document->accessor_count, sizeof *document->accessors);
+	if (!document->accessors)
+		return nt_fail_memory(error);
+	for (uint32_t i = 0; i < document->accessor_count; i++) {
+		nt_gltf_accessor *accessor = &document->accessors[i];
+		const nt_status status = read_accessor(document, i, accessor, NULL);
+		if (status == NT_ERROR_MEMORY)
+			return nt_fail_memory(error);
+		if (status)
+			*accessor = (nt_gltf_accessor){.index = NT_NONE, .view = NT_NONE};
+	}
+	return NT_OK;
+}
+
+nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
+	const nt_gltf_accessor **accessor, nt_error *error)
+{
+	nt_gltf_accessor faulty;
+	const nt_status status = nt_gltf_check_index("accessors", index, document->accessor_count, from, error);
+	*accessor = nt_gltf_sound_accessor(document, index);
+	/* a faulty one is read again, to tell what is wrong */
+	return status || *accessor ? status : read_accessor(document, (uint32_t)index, &faulty, error);
 }
 
 nt_json_value *nt_gltf_accessor_json(const nt_gltf *document, uint64_t index)

@@ -210,8 +210,6 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 			status = nt_fail_memory(error);
 		for (size_t i = 0; !status && i < document->buffer_count; i++)
 			document->buffers[i].number = i;
-		for (size_t i = 0; !status && i < document->view_count; i++)
-			document->views[i].buffer = NT_NONE;
 	}
 	if (status) {
 		nt_gltf_free(document);
@@ -292,18 +290,6 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 		return status;
 	*result = &document->buffers[index];
 	return (*result)->described ? NT_OK : read_buffer(document, (size_t)index, *result, error);
-}
-
-nt_status nt_gltf_begin_arrays(nt_gltf *document, nt_error *error)
-{
-	nt_gltf_buffer *buffer;
-	document->accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
-	document->accessors = nt_alloc(document->accessor_count, sizeof *document->accessors);
-	for (size_t i = 0; document->accessors && i < document->accessor_count; i++)
-		document->accessors[i] = (nt_gltf_accessor){.index = NT_NONE, .view = NT_NONE};
-	for (size_t i = 0; i < document->buffer_count; i++)
-		nt_gltf_describe_buffer(document, i, "", &buffer, NULL);
-	return document->accessors ? NT_OK : nt_fail_memory(error);
 }
 
 /* Names the buffer in an error of a lower room that knows no document. */
@@ -483,12 +469,6 @@ uint32_t nt_gltf_reference(const nt_gltf *document, const nt_json_value *object,
 	uint64_t accessor;
 	return nt_json_find_uint64(object, name, &accessor) && accessor < document->accessor_count ? (uint32_t)accessor
 		: NT_NONE;
-}
-
-const nt_gltf_accessor *nt_gltf_sound_accessor(const nt_gltf *document, uint32_t index)
-{
-	const bool sound = index < document->accessor_count && document->accessors[index].index != NT_NONE;
-	return sound ? &document->accessors[index] : NULL;
 }
 
 void nt_gltf_unlist_unused(nt_gltf *document, const char *name)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A glTF document as nmtan sees it: the JSON as parsed, and arrays of what it has, filled as somebody asks. Parts that
- * nobody asks for are neither opened nor decoded, and a fault is told to whoever asks for what is faulty.
+ * A glTF document as nmtan sees it: the JSON as parsed, and arrays of the buffers, views and accessors that it has,
+ * read when it is opened. Bytes that nobody asks for are neither opened nor decoded, and a faulty element is told to
+ * whoever asks for it.
  *
  * Every function that reads from the document reports faults with the JSON pointer of what is wrong.
  */
@@ -56,11 +57,11 @@ static inline bool nt_gltf_is_of_view(uint32_t buffer)
 	return buffer >= NT_GLTF_OF_VIEW(0);
 }
 
-/* A bufferView. */
+/* A bufferView. Once a compressed one is decoded, its buffer is NT_GLTF_OF_VIEW() of it, from 0 on. */
 typedef struct nt_gltf_view {
 	uint64_t offset, length;
 	unsigned char *decoded; /* [length] of a compressed one, owned by the document; NULL: nobody asked yet */
-	uint32_t buffer; /* NT_NONE: nobody asked yet, or the file is at fault */
+	uint32_t buffer; /* NT_NONE: the file is at fault */
 	uint16_t stride; /* 0: none given */
 	bool compressed; /* by an extension, and not yet undone */
 } nt_gltf_view;
@@ -76,9 +77,9 @@ typedef struct nt_gltf_accessor {
 	uint64_t count;
 	uint64_t offset;         /* in the view */
 	const unsigned char *decoded; /* elements from a compressed primitive; NULL: none */
-	uint32_t index;          /* NT_NONE: nobody asked yet, or the file is at fault */
+	uint32_t index;          /* NT_NONE: the file is at fault */
 	uint32_t same;           /* the first accessor over the same bytes, or itself: it stands for all of them. This
-	                            and the next are valid after nt_gltf_read_accessors() */
+	                            and the next are valid after nt_gltf_find_users() */
 	uint32_t next;           /* the next accessor over the same bytes; NT_NONE: none */
 	uint32_t view;           /* NT_NONE: all zeros, or decoded */
 	uint32_t stride;         /* as it applies, never 0 */
@@ -295,9 +296,20 @@ typedef struct nt_gltf_packing {
 	nt_meshopt_view view;
 } nt_gltf_packing;
 
-/* A view of the source; one that was decompressed lies in bytes of its own: NT_GLTF_OF_VIEW(). */
-nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
+/* Reads all buffers and views of the source, without their bytes: none is added to it any more. */
+void nt_gltf_read_views(nt_gltf *document);
+
+/* A view of the source. NT_ERROR_INPUT: there is none, or the file is at fault. `from` is the JSON pointer of the
+ * reference. */
+nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, const nt_gltf_view **view,
 	nt_error *error);
+
+/* The same where faults are told by others; NULL: there is none, or the file is at fault. */
+static inline const nt_gltf_view *nt_gltf_sound_view(const nt_gltf *document, uint64_t index)
+{
+	const bool sound = index < document->view_count && document->views[index].buffer != NT_NONE;
+	return sound ? &document->views[index] : NULL;
+}
 
 /* The extension object of a compressed view; NULL: none. *name (may be NULL) receives the extension. */
 nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **name);
@@ -318,18 +330,28 @@ nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t view, uint64_t offset, 
 
 /* ---- accessors: accessor.c ---- */
 
-/* From now on accessors may be asked for, and buffers are known: none is added to the source any more. */
-nt_status nt_gltf_begin_arrays(nt_gltf *document, nt_error *error);
-
-/* An accessor of the source. It is read and checked when somebody asks first, with its views, in one thread: before
- * several threads load meshes, nt_gltf_prepare() asks for all that these take. `from` is the JSON pointer of the
- * reference. */
-nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
-	nt_gltf_accessor *accessor, nt_error *error);
-
-/* Reads those that nobody asked for yet, and finds which lie over the same bytes; whoever uses a faulty one is told.
- * Returns NT_OK or NT_ERROR_MEMORY. */
+/* Reads all accessors, once views are read. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_gltf_read_accessors(nt_gltf *document, nt_error *error);
+
+/* An accessor. NT_ERROR_INPUT: there is none, or the file is at fault. `from` is the JSON pointer of the reference. */
+nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
+	const nt_gltf_accessor **accessor, nt_error *error);
+
+/* The same where faults are told by others; NULL: there is none (NT_NONE), or the file is at fault. */
+static inline const nt_gltf_accessor *nt_gltf_sound_accessor(const nt_gltf *document, uint64_t index)
+{
+	const bool sound = index < document->accessor_count && document->accessors[index].index != NT_NONE;
+	return sound ? &document->accessors[index] : NULL;
+}
+
+/* The view of a sound accessor that has one. */
+static inline const nt_gltf_view *nt_gltf_view_of(const nt_gltf *document, const nt_gltf_accessor *accessor)
+{
+	return &document->views[accessor->view];
+}
+
+/* Finds which lie over the same bytes. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_gltf_find_same_bytes(nt_gltf *document, nt_error *error);
 
 /* The JSON of a view, NULL where there is none. */
 static inline nt_json_value *nt_gltf_view_json(const nt_gltf *document, uint64_t index)
@@ -420,9 +442,6 @@ bool nt_gltf_next_use(const nt_gltf *document, const nt_json_value *primitive, n
 
 /* The accessor that a member of an object names; NT_NONE: none that is there. */
 uint32_t nt_gltf_reference(const nt_gltf *document, const nt_json_value *object, const char *name);
-
-/* An accessor that was read; NULL: the file is at fault, or there is none (NT_NONE). */
-const nt_gltf_accessor *nt_gltf_sound_accessor(const nt_gltf *document, uint32_t index);
 
 /* The accessor that a member names; NULL: none, or a faulty one. */
 static inline const nt_gltf_accessor *nt_gltf_named(const nt_gltf *document, const nt_json_value *object,

@@ -96,12 +96,12 @@ const nt_draco_mesh *nt_gltf_draco_block(const nt_gltf *document, uint64_t view)
 static nt_status find_bytes(nt_gltf *document, uint64_t index, const char *pointer, const unsigned char **bytes,
 	size_t *size, nt_error *error)
 {
-	nt_gltf_view view;
+	const nt_gltf_view *view;
 	const nt_status status = nt_gltf_get_view(document, index, pointer, &view, error);
 	if (status)
 		return status;
-	*size = (size_t)view.length;
-	return nt_gltf_view_bytes(document, (uint32_t)index, 0, view.length, pointer, bytes, error);
+	*size = (size_t)view->length;
+	return nt_gltf_view_bytes(document, (uint32_t)index, 0, view->length, pointer, bytes, error);
 }
 
 static nt_status decode_block(nt_gltf *document, uint64_t index, const char *pointer, nt_error *error)
@@ -205,16 +205,16 @@ static void use_decoded(nt_gltf_accessor *accessor, const unsigned char *element
 static nt_status give_attribute(nt_gltf *document, uint64_t index, const char *name,
 	const nt_draco_mesh *mesh, const nt_draco_attribute *from, const char *pointer, nt_error *error)
 {
-	nt_gltf_accessor accessor;
+	const nt_gltf_accessor *accessor;
 	nt_status status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
 	if (status)
 		return status;
-	if (accessor.component_type != (uint32_t)from->component_type ||
-		accessor.components != (uint32_t)from->components)
+	if (accessor->component_type != (uint32_t)from->component_type ||
+		accessor->components != (uint32_t)from->components)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"%.*s: accessor %llu has %u components of type %u, the compressed attribute %d of "
-			"type %d", NT_CUT(40, name), (unsigned long long)index, accessor.components,
-			accessor.component_type, from->components, from->component_type);
+			"type %d", NT_CUT(40, name), (unsigned long long)index, accessor->components,
+			accessor->component_type, from->components, from->component_type);
 	use_decoded(&document->accessors[index], from->data, mesh->point_count, (uint32_t)from->component_type);
 	return NT_OK;
 }
@@ -272,9 +272,8 @@ nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive
 		return status;
 	status = nt_gltf_uint(primitive, primitive_pointer, "indices", document->accessor_count,
 		NT_NONE, &index, error);
-	nt_gltf_accessor indices; /* a faulty one is told by the load */
-	if (!status && index < document->accessor_count &&
-		nt_gltf_get_accessor(document, index, "", &indices, NULL) == NT_OK)
+	/* a faulty one is told by the load */
+	if (!status && nt_gltf_sound_accessor(document, index))
 		use_decoded(&document->accessors[index], (const unsigned char *)mesh->indices, mesh->face_count * 3,
 			NT_GLTF_UINT);
 	return status;

@@ -99,7 +99,7 @@ typedef struct taking {
 static void take(taking *t, nt_scene *scene, const nt_mesh *mesh, const nt_gltf_accessor *from, nt_draco_kind kind,
 	int bits, float **loaded)
 {
-	if (from->component_type != NT_GLTF_FLOAT || t->failed)
+	if (!from || from->component_type != NT_GLTF_FLOAT || t->failed)
 		return;
 	const size_t i = t->count++;
 	t->attributes[i] = (nt_draco_attribute){.unique_id = (uint32_t)i, .kind = kind,

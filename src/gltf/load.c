@@ -50,19 +50,15 @@ static bool is_taken(const nt_mesh *mesh, const nt_read_options *options, int in
 	return (input != TANGENTS || !mesh->tangents_fault) && (input != COLORS || options->world);
 }
 
-static bool is_there(const nt_gltf_accessor *input)
-{
-	return input->index != NT_NONE;
-}
-
-/* *found is_there(), if the primitive has it. */
-static nt_status find_input(nt_gltf *document, const nt_mesh *mesh, int input, nt_gltf_accessor *found, nt_error *error)
+/* *found: NULL: the primitive has none. */
+static nt_status find_input(nt_gltf *document, const nt_mesh *mesh, int input, const nt_gltf_accessor **found,
+	nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER], texcoords[32];
 	const char *const name = name_of(mesh, input, &texcoords);
 	const nt_json_value *attributes = nt_json_find(nt_gltf_primitive_of(document, mesh), "attributes");
 	uint64_t index;
-	*found = (nt_gltf_accessor){.index = NT_NONE};
+	*found = NULL;
 	if (!nt_json_find(attributes, name))
 		return NT_OK;
 	char *const end = nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/attributes");
@@ -72,41 +68,41 @@ static nt_status find_input(nt_gltf *document, const nt_mesh *mesh, int input, n
 		return status;
 	nt_gltf_put_text(nt_gltf_put_text(end, "/"), name);
 	status = nt_gltf_get_accessor(document, index, pointer, found, error);
-	if (!status && (found->components < kinds[input].least || found->components > kinds[input].most))
+	if (!status && ((*found)->components < kinds[input].least || (*found)->components > kinds[input].most))
 		status = nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "accessor %llu has %u components, expected %u",
-			(unsigned long long)index, found->components, kinds[input].least);
+			(unsigned long long)index, (*found)->components, kinds[input].least);
 	return status;
 }
 
 /* in: [INPUTS]. Counts must agree, and something in the file must stand behind them. */
-static nt_status find_inputs(nt_gltf *document, nt_mesh *mesh, const nt_read_options *options, nt_gltf_accessor *in,
-	nt_error *error)
+static nt_status find_inputs(nt_gltf *document, nt_mesh *mesh, const nt_read_options *options,
+	const nt_gltf_accessor **in, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER], texcoords[32];
 	nt_status status = NT_OK;
 	bool backed = false;
 	for (int i = 0; !status && i < INPUTS; i++) {
-		in[i].index = NT_NONE;
+		in[i] = NULL;
 		if (is_taken(mesh, options, i))
 			status = find_input(document, mesh, i, &in[i], error);
-		if (!status && !is_there(&in[POSITIONS]))
+		if (!status && !in[POSITIONS])
 			status = nt_fail_pointer(error, NT_ERROR_INPUT, nt_gltf_of_mesh(mesh).pointer,
 				"the primitive has no POSITION");
 	}
 	if (status)
 		return status;
-	mesh->vertex_count = mesh->source_vertex_count = (size_t)in[POSITIONS].count;
+	mesh->vertex_count = mesh->source_vertex_count = (size_t)in[POSITIONS]->count;
 	for (int i = 0; i < INPUTS; i++) {
-		if (!is_there(&in[i]))
+		if (!in[i])
 			continue;
-		backed |= i <= TEXCOORDS && (in[i].view != NT_NONE || in[i].decoded);
-		if (in[i].count == mesh->vertex_count)
+		backed |= i <= TEXCOORDS && (in[i]->view != NT_NONE || in[i]->decoded);
+		if (in[i]->count == mesh->vertex_count)
 			continue;
 		nt_gltf_put_text(nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/attributes/"),
 			name_of(mesh, i, &texcoords));
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-			"accessor %u has %llu elements, POSITION has %zu", in[i].index,
-			(unsigned long long)in[i].count, mesh->vertex_count);
+			"accessor %u has %llu elements, POSITION has %zu", in[i]->index,
+			(unsigned long long)in[i]->count, mesh->vertex_count);
 	}
 	return backed || mesh->vertex_count <= UNBACKED_ELEMENTS ? NT_OK :
 		nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, nt_gltf_of_mesh(mesh).pointer,
@@ -210,7 +206,7 @@ static nt_status make_compact(nt_scene *scene, nt_mesh *mesh, const nt_gltf_acce
 		nt_compact_vertices(mesh->indices, index_count, pool_count, arena, &view))
 		return nt_fail_memory(error);
 	if (!view.vertices)
-		return mesh->plan.pooled && is_there(normals) && normals->component_type != NT_GLTF_FLOAT
+		return mesh->plan.pooled && normals && normals->component_type != NT_GLTF_FLOAT
 			? copy_normals(scene, mesh, error) : NT_OK;
 	for (int i = 0; i < INPUTS; i++) {
 		float **const rows = array_of(mesh, i);
@@ -244,9 +240,9 @@ static void list_triangles(uint64_t mode, const uint32_t *chain, size_t face_cou
 
 /* The displacement of an attribute: elements of the pool's vertices. */
 typedef struct nt_displacement {
-	nt_gltf_accessor accessor;
+	const nt_gltf_accessor *accessor;
 	const unsigned char *elements; /* NULL: zeros */
-	const uint32_t *replaced;      /* [accessor.sparse->count] numbers that ascend, */
+	const uint32_t *replaced;      /* [accessor->sparse->count] numbers that ascend, */
 	const unsigned char *values;   /* and their elements */
 } nt_displacement;
 
@@ -266,14 +262,14 @@ static nt_status find_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *m
 		status = nt_gltf_get_accessor(document, index, pointer, &found.accessor, error);
 	if (status)
 		return status;
-	if (found.accessor.components != 3 || found.accessor.count != pool_count)
+	if (found.accessor->components != 3 || found.accessor->count != pool_count)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"%s: accessor %llu has %llu elements of %u components, expected %zu of 3", name,
-			(unsigned long long)index, (unsigned long long)found.accessor.count,
-			found.accessor.components, pool_count);
-	status = nt_gltf_elements(document, &found.accessor, &found.elements, error);
-	if (!status && found.accessor.sparse)
-		status = nt_gltf_sparse(document, &found.accessor, arena, &found.replaced, &found.values, error);
+			(unsigned long long)index, (unsigned long long)found.accessor->count,
+			found.accessor->components, pool_count);
+	status = nt_gltf_elements(document, found.accessor, &found.elements, error);
+	if (!status && found.accessor->sparse)
+		status = nt_gltf_sparse(document, found.accessor, arena, &found.replaced, &found.values, error);
 	nt_displacement *kept = status ? NULL : nt_arena_alloc(arena, 1, sizeof *kept);
 	if (kept)
 		*kept = found;
@@ -294,7 +290,7 @@ static void read_delta(const nt_gltf_accessor *accessor, const unsigned char *el
 /* Base and delta, malloc'ed. NULL: memory is exhausted. */
 static float *add_delta(const nt_mesh *mesh, const nt_displacement *d, const float *base)
 {
-	const nt_gltf_accessor *a = &d->accessor;
+	const nt_gltf_accessor *a = d->accessor;
 	const size_t own_count = mesh->source_vertex_count;
 	const uint64_t replaced_count = a->sparse ? a->sparse->count : 0;
 	float *sums = nt_calloc(mesh->vertex_count, 3 * sizeof *sums);
@@ -403,12 +399,12 @@ static nt_status load_chain(nt_gltf *document, const nt_mesh *mesh, const nt_jso
 		return status;
 	char pointer[NT_GLTF_POINTER];
 	nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/indices");
-	nt_gltf_accessor accessor;
+	const nt_gltf_accessor *accessor;
 	status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
-	if (!status)
-		status = nt_gltf_indices(document, &accessor, mesh->vertex_count, arena, chain, error);
-	*count = accessor.count;
-	return status;
+	if (status)
+		return status;
+	*count = accessor->count;
+	return nt_gltf_indices(document, accessor, mesh->vertex_count, arena, chain, error);
 }
 
 /* Faces, of compact vertices where the mesh shares them. */
@@ -447,24 +443,24 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	}
 	nt_status status = mesh->ready ? NT_OK :
 		nt_gltf_decode_draco(document, primitive, nt_gltf_of_mesh(mesh).pointer, error);
-	nt_gltf_accessor in[INPUTS];
+	const nt_gltf_accessor *in[INPUTS];
 	if (!status)
 		status = find_inputs(document, mesh, options, in, error);
 	/* as they are stored, of all vertices of the pool */
 	for (int i = 0; !status && i < INPUTS; i++)
-		if (is_there(&in[i]))
-			status = load_floats(scene, mesh, &in[i], kinds[i].most, kinds[i].fill, array_of(mesh, i),
+		if (in[i])
+			status = load_floats(scene, mesh, in[i], kinds[i].most, kinds[i].fill, array_of(mesh, i),
 				error);
 	if (!status)
-		status = load_faces(scene, document, mesh, primitive, &in[NORMALS], error);
+		status = load_faces(scene, document, mesh, primitive, in[NORMALS], error);
 	if (!status)
-		mesh->byte_tangents = is_there(&in[TANGENTS]) && in[TANGENTS].component_type == NT_GLTF_BYTE;
+		mesh->byte_tangents = in[TANGENTS] && in[TANGENTS]->component_type == NT_GLTF_BYTE;
 	if (!status && mesh->texcoords)
 		status = flip_texcoords(scene, mesh, options->threads, error);
 	if (!status && mesh->tangents)
 		find_tangent_steps(scene, mesh, options);
 	if (!status && mesh->plan.quantized)
-		status = nt_gltf_quantize_vertices(scene, mesh, &in[POSITIONS], &in[NORMALS], &in[TEXCOORDS], options,
+		status = nt_gltf_quantize_vertices(scene, mesh, in[POSITIONS], in[NORMALS], in[TEXCOORDS], options,
 			error);
 	if (!status && mesh->texcoords && mesh->transform)
 		status = nt_mesh_transform(mesh, mesh->transform, nt_mesh_arena(scene, mesh), error);
@@ -472,9 +468,9 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		mesh->vertex_bytes = nt_gltf_vertex_bytes(document, primitive);
 	/* a mesh in the world is written without its targets */
 	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
-		status = load_morphs(scene, document, mesh, &in[NORMALS], primitive, error);
-	if (!status && is_there(&in[NORMALS]))
-		normalise_quantized(&in[NORMALS], mesh->normals, mesh->vertex_count);
+		status = load_morphs(scene, document, mesh, in[NORMALS], primitive, error);
+	if (!status && in[NORMALS])
+		normalise_quantized(in[NORMALS], mesh->normals, mesh->vertex_count);
 	if (status && error && !error->place.object[0]) {
 		nt_place place;
 		memcpy(error->place.object, nt_mesh_place(mesh, &place)->object, sizeof error->place.object);
@@ -485,18 +481,18 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 nt_status nt_gltf_load_normals(nt_gltf *document, const nt_mesh *mesh, nt_arena *arena, float **normals,
 	nt_error *error)
 {
-	nt_gltf_accessor found;
+	const nt_gltf_accessor *found;
 	nt_status status = find_input(document, mesh, NORMALS, &found, error);
 	if (!status)
-		status = nt_gltf_shared_floats(document, &found, 3, 0, normals, error);
-	if (status || found.component_type == NT_GLTF_FLOAT)
+		status = nt_gltf_shared_floats(document, found, 3, 0, normals, error);
+	if (status || found->component_type == NT_GLTF_FLOAT)
 		return status;
-	const size_t count = (size_t)found.count;
+	const size_t count = (size_t)found->count;
 	float *own = nt_arena_alloc(arena, count, 3 * sizeof *own);
 	if (!own)
 		return nt_fail_memory(error);
 	*normals = memcpy(own, *normals, count * 3 * sizeof *own);
-	normalise_quantized(&found, own, count);
+	normalise_quantized(found, own, count);
 	return NT_OK;
 }
 
@@ -505,24 +501,21 @@ nt_status nt_gltf_load_normals(nt_gltf *document, const nt_mesh *mesh, nt_arena 
 /* Whether the bytes of a view are there, which are unpacked for it. */
 static bool open_view(nt_gltf *document, uint32_t index)
 {
-	nt_gltf_view view;
 	nt_gltf_buffer *buffer;
 	nt_error ignored;
 	return index == NT_NONE || (nt_gltf_decompress_view(document, index, &ignored) == NT_OK &&
-		nt_gltf_get_view(document, index, "", &view, &ignored) == NT_OK &&
-		nt_gltf_open_buffer(document, view.buffer, "", &buffer, &ignored) == NT_OK);
+		nt_gltf_open_buffer(document, document->views[index].buffer, "", &buffer, &ignored) == NT_OK);
 }
 
 /* The same of an accessor that a member names, if there is one. */
 static bool open_accessor(nt_gltf *document, const nt_json_value *object, const char *name)
 {
-	nt_gltf_accessor a;
-	nt_error ignored;
-	const uint32_t index = nt_gltf_reference(document, object, name);
-	if (index == NT_NONE)
+	const nt_gltf_accessor *a = nt_gltf_named(document, object, name);
+	if (!a)
 		return !nt_json_find(object, name);
-	return nt_gltf_get_accessor(document, index, "", &a, &ignored) == NT_OK && open_view(document, a.view) &&
-		(!a.sparse || (open_view(document, a.sparse->index_view) && open_view(document, a.sparse->value_view)));
+	const nt_gltf_sparse_arrays *sparse = a->sparse;
+	return open_view(document, a->view) &&
+		(!sparse || (open_view(document, sparse->index_view) && open_view(document, sparse->value_view)));
 }
 
 /* Whether all that a load takes of a mesh is there now. */

@@ -52,8 +52,8 @@ nt_status nt_gltf_draco_takes(const nt_mesh *mesh, const nt_draco_attribute *att
 
 /* The plain floats of a mesh with ->quantized become what a decoder will have of them: nt_gltf_draco_takes() it. After
  * faces are loaded, before texture transforms are applied. One with a block that cannot be made again, since something
- * beside it counts vertices that no face uses, loses ->quantized. positions, normals, texcoords: accessors, empty
- * ones of what the mesh does not have. */
+ * beside it counts vertices that no face uses, loses ->quantized. positions, normals, texcoords: accessors,
+ * NULL of what the mesh does not have. */
 nt_status nt_gltf_quantize_vertices(nt_scene *scene, nt_mesh *mesh, const nt_gltf_accessor *positions,
 	const nt_gltf_accessor *normals, const nt_gltf_accessor *texcoords, const nt_read_options *options,
 	nt_error *error);

@@ -62,18 +62,18 @@ static nt_status describe_tangents(nt_scene *scene, nt_gltf *document, const nt_
 	if (!reference)
 		return NT_OK;
 	uint64_t index = UINT64_MAX;
-	nt_gltf_accessor accessor;
+	const nt_gltf_accessor *accessor;
 	nt_error error;
 	nt_error_clear(&error);
 	nt_json_get_uint64(reference, &index);
 	if (index >= UINT32_MAX)
 		nt_fail(&error, NT_ERROR_INPUT, "%s, expected an accessor's number", nt_json_type_text(reference));
-	else if (!nt_gltf_get_accessor(document, index, "", &accessor, &error) && accessor.components != 4)
-		nt_fail(&error, NT_ERROR_INPUT, "accessor %u has %u components, expected 4", accessor.index,
-			accessor.components);
-	else if (!error.status && accessor.count != position_count)
-		nt_fail(&error, NT_ERROR_INPUT, "accessor %u has %llu elements, POSITION has %llu", accessor.index,
-			(unsigned long long)accessor.count, (unsigned long long)position_count);
+	else if (!nt_gltf_get_accessor(document, index, "", &accessor, &error) && accessor->components != 4)
+		nt_fail(&error, NT_ERROR_INPUT, "accessor %u has %u components, expected 4", accessor->index,
+			accessor->components);
+	else if (!error.status && accessor->count != position_count)
+		nt_fail(&error, NT_ERROR_INPUT, "accessor %u has %llu elements, POSITION has %llu", accessor->index,
+			(unsigned long long)accessor->count, (unsigned long long)position_count);
 	mesh->tangents_fault = error.status ? nt_arena_text(&scene->arena, error.message, strlen(error.message)) : NULL;
 	return error.status && !mesh->tangents_fault ? nt_fail_memory(out_of_memory) : NT_OK;
 }
@@ -465,8 +465,10 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 		status = look_for_buffers(scene, document, error);
 	if (!status)
 		status = nt_gltf_separate_draco(document, error);
-	if (!status)
-		status = nt_gltf_begin_arrays(document, error);
+	if (!status) {
+		nt_gltf_read_views(document);
+		status = nt_gltf_read_accessors(document, error);
+	}
 	if (!status)
 		status = describe_meshes(&all, document, options);
 	const bool has_scenes = nt_gltf_root_member(document, "scenes") != NULL;

@@ -23,14 +23,15 @@ nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **na
 	return NULL;
 }
 
-/* A view as its JSON has it, checked against its buffer's byteLength. */
-static nt_status read_view(nt_gltf *document, uint32_t index, nt_gltf_view *view, nt_error *error)
+/* A view as its JSON has it, checked against its buffer's byteLength. A faulty one has the buffer NT_NONE. */
+static nt_status read_view(nt_gltf *document, size_t index, nt_gltf_view *view, nt_error *error)
 {
 	const nt_json_value *json = nt_gltf_view_json(document, index);
 	char pointer[NT_GLTF_POINTER];
 	nt_gltf_pointer(pointer, "bufferViews", index);
 	const uint64_t limit = (uint64_t)1 << 53;
 	uint64_t buffer_index = 0, stride = 0;
+	view->buffer = NT_NONE;
 	nt_status status = nt_gltf_check_object(json, pointer, error);
 	if (!status)
 		status = nt_gltf_uint(json, pointer, "buffer", UINT32_MAX - 1, NT_GLTF_REQUIRED, &buffer_index,
@@ -58,21 +59,23 @@ static nt_status read_view(nt_gltf *document, uint32_t index, nt_gltf_view *view
 	return NT_OK;
 }
 
-nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
+void nt_gltf_read_views(nt_gltf *document)
+{
+	nt_gltf_buffer *buffer;
+	for (size_t i = 0; i < document->buffer_count; i++)
+		nt_gltf_describe_buffer(document, i, "", &buffer, NULL);
+	for (size_t i = 0; i < document->view_count; i++)
+		read_view(document, i, &document->views[i], NULL);
+}
+
+nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, const nt_gltf_view **view,
 	nt_error *error)
 {
-	nt_status status = nt_gltf_check_index("bufferViews", index, document->view_count, from, error);
-	if (!status && document->views[index].buffer == NT_NONE)
-		status = read_view(document, (uint32_t)index, &document->views[index], error);
-	if (status)
-		return status;
-	*view = document->views[index];
-	if (view->decoded) {
-		view->buffer = NT_GLTF_OF_VIEW(index);
-		view->offset = 0;
-		view->compressed = false;
-	}
-	return NT_OK;
+	nt_gltf_view faulty = {.buffer = NT_NONE};
+	const nt_status status = nt_gltf_check_index("bufferViews", index, document->view_count, from, error);
+	*view = nt_gltf_sound_view(document, index);
+	/* a faulty one is read again, to tell what is wrong */
+	return status || *view ? status : read_view(document, (size_t)index, &faulty, error);
 }
 
 /* ---- decompression ---- */
@@ -150,18 +153,20 @@ nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error *e
 {
 	char pointer[NT_GLTF_POINTER];
 	nt_gltf_pointer(pointer, "bufferViews", index);
-	nt_gltf_view view;
+	const nt_gltf_view *found;
 	nt_gltf_packing p;
 	unsigned char *bytes;
-	nt_status status = nt_gltf_get_view(document, index, pointer, &view, error);
-	if (status || !view.compressed)
+	nt_status status = nt_gltf_get_view(document, index, pointer, &found, error);
+	if (status || !found->compressed)
 		return status;
+	nt_gltf_view *view = &document->views[index];
 	status = nt_gltf_get_packing(document, index, &p, error);
 	if (!status)
-		status = unpack_view(document, index, view.length, &p.view, &p, &bytes, error);
+		status = unpack_view(document, index, view->length, &p.view, &p, &bytes, error);
 	if (status)
 		return status;
-	document->views[index].decoded = bytes;
+	*view = (nt_gltf_view){.length = view->length, .decoded = bytes, .buffer = NT_GLTF_OF_VIEW(index),
+		.stride = view->stride};
 	document->decoded_count++;
 	return NT_OK;
 }
@@ -180,36 +185,34 @@ nt_status nt_gltf_unfiltered_view(nt_gltf *document, uint32_t index, unsigned ch
 nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offset, uint64_t length,
 	const char *what, const unsigned char **bytes, nt_error *error)
 {
-	nt_gltf_view view;
+	const nt_gltf_view *view;
 	nt_status status = nt_gltf_get_view(document, index, what, &view, error);
-	if (status)
-		return status;
-	char pointer[NT_GLTF_POINTER];
-	nt_gltf_pointer(pointer, "bufferViews", index);
-	if (view.compressed)
+	if (!status && view->compressed)
 		status = nt_gltf_decompress_view(document, index, error);
 	if (status)
 		return status;
-	if (offset > view.length || length > view.length - offset)
+	if (offset > view->length || length > view->length - offset)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, what,
 			"takes bytes %llu to %llu of bufferView %u, which has %llu",
 			(unsigned long long)offset, (unsigned long long)(offset + length), index,
-			(unsigned long long)view.length);
-	if (document->views[index].decoded) {
-		*bytes = document->views[index].decoded + offset;
+			(unsigned long long)view->length);
+	if (view->decoded) {
+		*bytes = view->decoded + offset;
 		return NT_OK;
 	}
+	char pointer[NT_GLTF_POINTER];
 	nt_gltf_buffer *buffer;
-	status = nt_gltf_open_buffer(document, view.buffer, pointer, &buffer, error);
+	nt_gltf_pointer(pointer, "bufferViews", index);
+	status = nt_gltf_open_buffer(document, view->buffer, pointer, &buffer, error);
 	if (status)
 		return status;
-	if (view.offset + offset > buffer->size || length > buffer->size - (view.offset + offset)) {
-		snprintf(pointer, sizeof pointer, "/buffers/%u", view.buffer);
+	if (view->offset + offset > buffer->size || length > buffer->size - (view->offset + offset)) {
+		snprintf(pointer, sizeof pointer, "/buffers/%u", view->buffer);
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"byteLength is %llu, but only %zu bytes are there",
 			(unsigned long long)buffer->length, buffer->size);
 	}
-	*bytes = buffer->bytes + view.offset + offset;
-	nt_gltf_note_read(document, buffer, view.offset + offset, length);
+	*bytes = buffer->bytes + view->offset + offset;
+	nt_gltf_note_read(document, buffer, view->offset + offset, length);
 	return NT_OK;
 }

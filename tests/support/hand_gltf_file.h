@@ -167,12 +167,12 @@ static inline uint32_t tangent_of(const nt_scene *scene, size_t mesh, size_t pri
 /* The rows of an accessor, which the scene keeps; *count receives how many there are. */
 static inline const float *rows_of(nt_scene *scene, uint32_t index, uint32_t width, uint64_t *count)
 {
-	nt_gltf_accessor accessor;
+	const nt_gltf_accessor *accessor;
 	nt_error error;
 	float *rows;
 	assert_int_equal(nt_gltf_get_accessor(scene->source, index, "", &accessor, &error), NT_OK);
-	assert_int_equal(nt_gltf_floats(scene->source, &accessor, width, 0, &scene->arena, &rows, &error), NT_OK);
-	*count = accessor.count;
+	assert_int_equal(nt_gltf_floats(scene->source, accessor, width, 0, &scene->arena, &rows, &error), NT_OK);
+	*count = accessor->count;
 	return rows;
 }
 

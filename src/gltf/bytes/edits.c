@@ -13,9 +13,9 @@
 
 static nt_status decompress_accessor(nt_gltf *document, uint32_t index, nt_error *error)
 {
-	nt_gltf_accessor accessor;
+	const nt_gltf_accessor *accessor;
 	const nt_status status = nt_gltf_get_accessor(document, index, "/accessors", &accessor, error);
-	return status || accessor.view == NT_NONE ? status : nt_gltf_decompress_view(document, accessor.view, error);
+	return status || accessor->view == NT_NONE ? status : nt_gltf_decompress_view(document, accessor->view, error);
 }
 
 /* Tangents may be replaced where they are. */
@@ -151,12 +151,12 @@ static void leave_gaps(nt_buffer_edits *edits, const nt_gltf_view *view)
 
 void nt_edits_leave(nt_buffer_edits *edits, uint32_t index, uint64_t offset)
 {
-	nt_gltf_view view;
-	if (nt_gltf_get_view(edits->document, index, "", &view, NULL) != NT_OK)
+	const nt_gltf_view *view = nt_gltf_sound_view(edits->document, index);
+	if (!view)
 		return;
-	const bool decoded = nt_gltf_is_of_view(view.buffer);
+	const bool decoded = nt_gltf_is_of_view(view->buffer);
 	nt_edited_view *of = &edits->views[index];
-	nt_segment *segment = nt_segment_at(edits, view.buffer, view.offset + offset);
+	nt_segment *segment = nt_segment_at(edits, view->buffer, view->offset + offset);
 	if (!segment || !segment->users || !of->users ||
 		(!decoded && nt_json_find(nt_gltf_view_json(edits->document, index), "extensions")))
 		return;
@@ -166,7 +166,7 @@ void nt_edits_leave(nt_buffer_edits *edits, uint32_t index, uint64_t offset)
 	if (--of->users || (decoded && !leave_packed(edits, index)))
 		return;
 	if (!decoded)
-		leave_gaps(edits, &view);
+		leave_gaps(edits, view);
 	of->is_free = true;
 	edits->free_views[edits->free_count++] = index;
 }

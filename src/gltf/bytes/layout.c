@@ -72,12 +72,12 @@ static void move_packed(nt_buffer_edits *edits, nt_json_value *view)
 	}
 }
 
-/* Whether a view of the source moves, or what is in it. */
-static bool moves(nt_buffer_edits *edits, uint64_t index, nt_gltf_view *view)
+/* A view of the source that moves, or of which something moves within it; NULL: neither. */
+static const nt_gltf_view *moving_view(const nt_buffer_edits *edits, uint64_t index)
 {
-	return index < edits->view_count && !edits->views[index].is_free &&
-		nt_gltf_get_view(edits->document, index, "", view, NULL) == NT_OK &&
-		(nt_gltf_is_of_view(view->buffer) || edits->buffers[view->buffer].changed);
+	const nt_gltf_view *view = nt_gltf_sound_view(edits->document, index);
+	return view && !edits->views[index].is_free &&
+		(nt_gltf_is_of_view(view->buffer) || edits->buffers[view->buffer].changed) ? view : NULL;
 }
 
 static void move_views(nt_buffer_edits *edits)
@@ -86,19 +86,19 @@ static void move_views(nt_buffer_edits *edits)
 	nt_json_value *views = nt_gltf_root_member(edits->document, "bufferViews");
 	for (uint32_t i = 0; i < edits->view_count; i++) {
 		nt_json_value *object = nt_json_at(views, i);
-		nt_gltf_view view;
 		if (nt_gltf_compression_of(object, NULL)) {
 			move_packed(edits, object);
 			continue;
 		}
-		if (!moves(edits, i, &view) || nt_gltf_is_of_view(view.buffer))
+		const nt_gltf_view *view = moving_view(edits, i);
+		if (!view || nt_gltf_is_of_view(view->buffer))
 			continue;
-		const uint64_t begin = nt_segments_map(edits, view.buffer, view.offset, false);
-		const uint64_t end = nt_segments_map(edits, view.buffer, view.offset + view.length, true);
+		const uint64_t begin = nt_segments_map(edits, view->buffer, view->offset, false);
+		const uint64_t end = nt_segments_map(edits, view->buffer, view->offset + view->length, true);
 		nt_gltf_set_number(json, object, "byteOffset", begin);
 		nt_gltf_set_number(json, object, "byteLength", end - begin);
 		/* its bytes were another view's too, who has left */
-		if (view.length && end == begin)
+		if (view->length && end == begin)
 			edits->free_views[edits->free_count++] = i;
 	}
 }
@@ -107,13 +107,13 @@ static void move_views(nt_buffer_edits *edits)
 static void move_in_view(nt_buffer_edits *edits, nt_json_value *object)
 {
 	uint64_t index, offset = 0;
-	nt_gltf_view view;
-	if (!nt_json_find_uint64(object, "bufferView", &index) || !moves(edits, index, &view))
+	const nt_gltf_view *view = nt_json_find_uint64(object, "bufferView", &index) ? moving_view(edits, index) : NULL;
+	if (!view)
 		return;
 	nt_json_find_uint64(object, "byteOffset", &offset);
 	nt_gltf_set_number(edits->document->json, object, "byteOffset",
-		nt_segments_map(edits, view.buffer, view.offset + offset, false) -
-			nt_segments_map(edits, view.buffer, view.offset, false));
+		nt_segments_map(edits, view->buffer, view->offset + offset, false) -
+			nt_segments_map(edits, view->buffer, view->offset, false));
 }
 
 static void move_accessors(nt_buffer_edits *edits)

@@ -84,12 +84,10 @@ static nt_status find_bits(nt_buffer_edits *edits, const nt_gltf_accessor *a, co
 	nt_error *error)
 {
 	const unsigned char *elements = NULL;
-	nt_gltf_view view;
+	const nt_gltf_view *view = nt_gltf_view_of(edits->document, a);
 	nt_status status = nt_gltf_elements(edits->document, a, &elements, error);
-	if (!status)
-		status = nt_gltf_get_view(edits->document, a->view, "", &view, error);
 	if (!status && elements)
-		status = nt_packed_bytes(edits, view.buffer, view.offset + a->offset, &elements, error);
+		status = nt_packed_bytes(edits, view->buffer, view->offset + a->offset, &elements, error);
 	*bits = status || !elements ? 0 : nt_filter_bits(filter, elements, (size_t)a->count, a->stride,
 		(int)a->component_type, a->components);
 	return status;

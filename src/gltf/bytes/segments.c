@@ -39,17 +39,15 @@ static void add_user(user_list *list, user added)
 static void add_in_view(user_list *list, uint32_t index, uint64_t offset, uint64_t length, uint8_t count,
 	uint32_t apart)
 {
-	nt_gltf_view view;
-	if (nt_gltf_get_view(list->edits->document, index, "", &view, NULL) != NT_OK)
-		return;
-	uint64_t begin = view.offset + offset, end = begin + length;
-	if (nt_gltf_is_of_view(view.buffer) && view.stride) {
-		begin -= begin % view.stride;
-		end += view.stride - 1 - (end - 1) % view.stride;
-		end = end < view.length ? end : view.length;
+	const nt_gltf_view *view = &list->edits->document->views[index];
+	uint64_t begin = view->offset + offset, end = begin + length;
+	if (nt_gltf_is_of_view(view->buffer) && view->stride) {
+		begin -= begin % view->stride;
+		end += view->stride - 1 - (end - 1) % view->stride;
+		end = end < view->length ? end : view->length;
 	}
 	list->edits->views[index].users += count;
-	add_user(list, (user){begin, end, view.buffer, apart, count, false, false});
+	add_user(list, (user){begin, end, view->buffer, apart, count, false, false});
 }
 
 static void add_accessor(user_list *list, uint32_t index)
@@ -91,12 +89,12 @@ static void add_views(user_list *list)
 	nt_gltf *document = edits->document;
 	const nt_json_value *views = nt_gltf_root_member(document, "bufferViews");
 	for (uint32_t i = 0; i < edits->view_count; i++) {
-		nt_gltf_view view;
+		const nt_gltf_view *view = nt_gltf_sound_view(document, i);
 		const nt_gltf_view_users *users = &document->view_users[i];
-		if (!edits->views[i].users && nt_gltf_get_view(document, i, "", &view, NULL) == NT_OK) {
+		if (view && !edits->views[i].users) {
 			edits->views[i].users = 1;
-			add_user(list, (user){view.offset, view.offset + view.length, view.buffer, NT_NONE, 1,
-				view.length <= NT_FREE_VIEW_BYTES, users->blocks > 0});
+			add_user(list, (user){view->offset, view->offset + view->length, view->buffer, NT_NONE, 1,
+				view->length <= NT_FREE_VIEW_BYTES, users->blocks > 0});
 			if (!users->image)
 				edits->alignment = 8; /* it may be data of an extension that wants this
 				                         (EXT_structural_metadata does) */
@@ -209,9 +207,8 @@ nt_segment *nt_segment_at(nt_buffer_edits *edits, uint32_t buffer, uint64_t posi
 
 nt_segment *nt_segment_of(nt_buffer_edits *edits, uint32_t index, uint64_t offset)
 {
-	nt_gltf_view view;
-	return nt_gltf_get_view(edits->document, index, "", &view, NULL) == NT_OK
-		? nt_segment_at(edits, view.buffer, view.offset + offset) : NULL;
+	const nt_gltf_view *view = nt_gltf_sound_view(edits->document, index);
+	return view ? nt_segment_at(edits, view->buffer, view->offset + offset) : NULL;
 }
 
 void nt_segment_know(nt_segment *segment, uint32_t pool, uint32_t users)

@@ -58,12 +58,12 @@ static nt_status collect(appending *job, uint32_t index, bool solved)
 	nt_edited_accessor *const all = job->edits->accessors;
 	const uint32_t same = nt_gltf_same(job->document, index);
 	const bool is_new = !all[index].seen;
-	nt_gltf_accessor a;
+	const nt_gltf_accessor *a = NULL;
 	all[same].pinned |= !solved;
 	all[index].seen = true;
 	nt_status status = is_new ? nt_gltf_get_accessor(job->document, index, "/accessors", &a, job->error) : NT_OK;
 	if (is_new && !status)
-		status = check_count(job, &a);
+		status = check_count(job, a);
 	/* where nothing grows, the others matter as far as new values are between them: none that cannot be read */
 	if (status && status != NT_ERROR_MEMORY && !job->differs && !job->decoded_too && !all[same].override) {
 		nt_error_clear(job->error);
@@ -77,12 +77,11 @@ static nt_status collect(appending *job, uint32_t index, bool solved)
 	*added = (target){.accessor = &job->document->accessors[same],
 		.override = all[same].override ? job->overrides->items[all[same].override - 1] : NULL};
 	all[same].listed = true;
-	nt_gltf_view view;
-	status = a.view == NT_NONE ? NT_OK : nt_gltf_get_view(job->document, a.view, "", &view, job->error);
-	if (status || a.view == NT_NONE)
-		return status;
-	added->begin = view.offset + a.offset;
-	added->segment = nt_segment_at(job->edits, view.buffer, added->begin);
+	if (a->view == NT_NONE)
+		return NT_OK;
+	const nt_gltf_view *view = nt_gltf_view_of(job->document, a);
+	added->begin = view->offset + a->offset;
+	added->segment = nt_segment_at(job->edits, view->buffer, added->begin);
 	return NT_OK;
 }
 
@@ -321,13 +320,13 @@ static bool lies_apart(const block *b, const target *t, const nt_gltf_accessor *
  * happens. */
 static void know_apart(const appending *job, const block *b)
 {
-	nt_gltf_view view;
 	uint32_t k = job->differs ? NT_NONE : b->segment->apart;
 	for (; k != NT_NONE; k = job->edits->accessors[k].apart) {
 		const nt_gltf_accessor *a = &job->document->accessors[k];
-		bool apart = nt_gltf_get_view(job->document, a->view, "", &view, NULL) == NT_OK;
+		const uint64_t begin = nt_gltf_view_of(job->document, a)->offset + a->offset;
+		bool apart = true;
 		for (size_t i = 0; apart && i < b->count; i++)
-			apart = lies_apart(b, &b->targets[i], a, view.offset + a->offset);
+			apart = lies_apart(b, &b->targets[i], a, begin);
 		if (apart)
 			nt_segment_know(b->segment, job->owner, 1 + nt_gltf_users_of(job->document, k)->idle);
 	}
@@ -498,21 +497,19 @@ typedef struct sparse_array {
  * replace the same elements, so that what it becomes for one is right for all. */
 static nt_status put_sparse_array(appending *job, nt_json_value *json, const sparse_array *array)
 {
-	nt_gltf_view view;
-	nt_status status = nt_gltf_get_view(job->document, array->view, "", &view, job->error);
-	if (status)
-		return status;
-	const uint64_t begin = view.offset + array->offset;
-	nt_segment *segment = nt_segment_at(job->edits, view.buffer, begin);
+	const nt_gltf_view *view = &job->document->views[array->view];
+	const uint64_t begin = view->offset + array->offset;
+	nt_segment *segment = nt_segment_at(job->edits, view->buffer, begin);
 	if (segment && nt_segment_is_known(segment, job->sparse_owner) && segment->begin == begin &&
 		segment->end == begin + array->old_size && begin % array->width == 0 &&
-		(array->width == array->old_width || !nt_gltf_is_of_view(view.buffer))) {
+		(array->width == array->old_width || !nt_gltf_is_of_view(view->buffer))) {
 		nt_segment_edit(job->edits, segment, (nt_segment_change){.bytes = array->bytes, .size = array->size});
 		return NT_OK;
 	}
 	uint32_t number;
 	nt_edits_leave(job->edits, array->view, array->offset);
-	status = nt_edits_add_view(job->edits, job->buffer, array->bytes, array->size, 0, 0, &number, job->error);
+	const nt_status status = nt_edits_add_view(job->edits, job->buffer, array->bytes, array->size, 0, 0, &number,
+		job->error);
 	nt_gltf_place_accessor(job->json, json, number, 0);
 	return status;
 }

@@ -178,11 +178,10 @@ static nt_status store_block(nt_gltf_recoding *r, uint32_t buffer, nt_error *err
 	r->block.bytes = NULL;
 	if (!nt_arena_adopt(&r->edits->arena, bytes))
 		return nt_fail_memory(error);
-	nt_gltf_view view;
-	nt_segment *segment = r->source && !nt_gltf_get_view(r->document, r->view, "", &view, NULL) ?
-		nt_segment_at(r->edits, view.buffer, view.offset) : NULL;
+	const nt_gltf_view *view = r->source ? nt_gltf_sound_view(r->document, r->view) : NULL;
+	nt_segment *segment = view ? nt_segment_at(r->edits, view->buffer, view->offset) : NULL;
 	if (segment && release_block(r->document, r->view, r->vertices->pool->user_count) &&
-		nt_segment_is(segment, view.offset, view.length)) {
+		nt_segment_is(segment, view->offset, view->length)) {
 		nt_segment_edit(r->edits, segment, (nt_segment_change){.bytes = bytes, .size = r->block.size});
 		return NT_OK;
 	}

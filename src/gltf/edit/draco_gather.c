@@ -49,14 +49,12 @@ static int bits_of(const nt_write_options *options, const char *name)
 }
 
 /* Whether the elements of an accessor lie in the file as they are. */
-static bool lies_plain(const nt_gltf_recoding *r, uint64_t index, nt_gltf_accessor *accessor)
+static bool lies_plain(const nt_gltf_recoding *r, const nt_gltf_accessor *accessor)
 {
-	nt_gltf_view view;
-	return index < r->document->accessor_count &&
-		nt_gltf_get_accessor(r->document, index, "", accessor, NULL) == NT_OK &&
-		accessor->view != NT_NONE && !accessor->sparse && !accessor->decoded &&
-		nt_gltf_get_view(r->document, accessor->view, "", &view, NULL) == NT_OK &&
-		!view.compressed && !nt_gltf_is_of_view(view.buffer);
+	if (!accessor || accessor->view == NT_NONE || accessor->sparse || accessor->decoded)
+		return false;
+	const nt_gltf_view *view = nt_gltf_view_of(r->document, accessor);
+	return !view->compressed && !nt_gltf_is_of_view(view->buffer);
 }
 
 /* Matrices are no attributes of Draco's. */
@@ -77,9 +75,8 @@ bool nt_gltf_draco_owns_indices(const nt_gltf_recoding *r, uint64_t accessor)
 static bool indices_are_own(const nt_gltf_recoding *r)
 {
 	const uint32_t index = nt_gltf_reference(r->document, r->primitive, "indices");
-	nt_gltf_accessor accessor;
 	return !nt_json_find(r->primitive, "indices") ||
-		(lies_plain(r, index, &accessor) && nt_gltf_draco_owns_indices(r, index));
+		(lies_plain(r, nt_gltf_sound_accessor(r->document, index)) && nt_gltf_draco_owns_indices(r, index));
 }
 
 /* ---- gathering ---- */
@@ -100,29 +97,29 @@ static bool is_in_block(const nt_gltf_recoding *r, const nt_gltf_use *use)
 
 static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_t index, nt_error *error)
 {
-	nt_gltf_accessor accessor;
-	if (!lies_plain(r, index, &accessor) || accessor.count != r->vertices->old_count)
+	const nt_gltf_accessor *accessor = nt_gltf_sound_accessor(r->document, index);
+	if (!lies_plain(r, accessor) || accessor->count != r->vertices->old_count)
 		r->obstacle = "an attribute is sparse or compressed";
-	else if (r->document->users[accessor.same].foreign)
+	else if (r->document->users[accessor->same].foreign)
 		r->obstacle = "something else uses its attributes";
 	if (r->obstacle)
 		return NT_OK;
-	if (!is_vector(r, accessor.index)) {
+	if (!is_vector(r, accessor->index)) {
 		r->outside = true;
 		return NT_OK;
 	}
-	const bool is_float = accessor.component_type == NT_GLTF_FLOAT;
+	const bool is_float = accessor->component_type == NT_GLTF_FLOAT;
 	/* ours takes its place */
-	if (strcmp(name, "TANGENT") == 0 && !(is_float && accessor.components == 4))
+	if (strcmp(name, "TANGENT") == 0 && !(is_float && accessor->components == 4))
 		r->obstacle = "it has tangents that are no floats";
 	nt_draco_attribute attribute = {.unique_id = (uint32_t)r->attribute_count,
-		.kind = kind_of(name), .component_type = (int)accessor.component_type,
-		.components = (int)accessor.components, .normalized = accessor.normalized,
-		.quantization = nt_gltf_draco_grid(r->document, accessor.index,
+		.kind = kind_of(name), .component_type = (int)accessor->component_type,
+		.components = (int)accessor->components, .normalized = accessor->normalized,
+		.quantization = nt_gltf_draco_grid(r->document, accessor->index,
 			is_float ? bits_of(r->options, name) : 0),
-		.stride_bytes = accessor.stride, .copied = r->vertices->sources, .own_count = r->vertices->own_count};
+		.stride_bytes = accessor->stride, .copied = r->vertices->sources, .own_count = r->vertices->own_count};
 	const unsigned char *elements = NULL;
-	const nt_status status = nt_gltf_elements(r->document, &accessor, &elements, error);
+	const nt_status status = nt_gltf_elements(r->document, accessor, &elements, error);
 	attribute.data = elements;
 	if (!status)
 		nt_gltf_draco_add(r, name, attribute);

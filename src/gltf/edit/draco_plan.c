@@ -34,17 +34,17 @@ typedef struct planning {
 static nt_status find_faces(planning *f, const nt_gltf_recoding *r, nt_mesh *mesh, nt_error *error)
 {
 	uint64_t index;
-	nt_gltf_accessor accessor = {.count = mesh->vertex_count};
+	const nt_gltf_accessor *accessor = NULL;
 	uint32_t *indices = NULL;
 	nt_status status = NT_OK;
 	if (nt_json_find_uint64(r->primitive, "indices", &index)) {
 		status = nt_gltf_get_accessor(r->document, index, "", &accessor, error);
 		if (!status)
-			status = nt_gltf_indices(r->document, &accessor, mesh->vertex_count,
+			status = nt_gltf_indices(r->document, accessor, mesh->vertex_count,
 				&f->of_pool, &indices, error);
 	}
 	mesh->indices = indices;
-	mesh->face_count = (size_t)accessor.count / 3;
+	mesh->face_count = (accessor ? (size_t)accessor->count : mesh->vertex_count) / 3;
 	mesh->corner_count = 3 * mesh->face_count;
 	return status;
 }

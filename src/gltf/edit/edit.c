@@ -148,10 +148,8 @@ static nt_status choose_buffer(const editing *e, const nt_vertex_pool *pool, uin
 	const size_t user = pool->sets.count ? pool->sets.first[0] : 0;
 	const nt_gltf_accessor *positions = nt_gltf_named(document, nt_json_find(nt_pool_primitive(pool, user),
 		"attributes"), "POSITION");
-	nt_gltf_view view = {.buffer = NT_NONE};
-	if (positions && positions->view != NT_NONE)
-		nt_gltf_get_view(document, positions->view, "", &view, NULL);
-	return nt_edits_choose_buffer(e->edits, view.buffer, buffer, e->error);
+	return nt_edits_choose_buffer(e->edits, positions && positions->view != NT_NONE ?
+		nt_gltf_view_of(document, positions)->buffer : NT_NONE, buffer, e->error);
 }
 
 /* Equal vertices become one, unless they were welded for Draco. */

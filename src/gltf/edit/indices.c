@@ -101,14 +101,13 @@ static void describe(nt_gltf *document, uint32_t accessor, const encoded *new, u
 static bool replace_indices(nt_buffer_edits *edits, const nt_gltf_accessor *old, const encoded *new, bool triangles)
 {
 	const uint32_t old_width = nt_gltf_component_bytes(old->component_type);
-	nt_gltf_view view;
-	if (old->view == NT_NONE || old->sparse || old->stride != old_width ||
-		nt_gltf_get_view(edits->document, old->view, "", &view, NULL) != NT_OK)
+	if (old->view == NT_NONE || old->sparse || old->stride != old_width)
 		return false;
-	const uint64_t begin = view.offset + old->offset;
-	nt_segment *segment = nt_segment_at(edits, view.buffer, begin);
-	if (!nt_segment_is(segment, begin, old->count * old_width) || view.compressed || view.offset % new->width ||
-		begin % new->width || ((new->width != old_width || !triangles) && nt_gltf_is_of_view(view.buffer)))
+	const nt_gltf_view *view = nt_gltf_view_of(edits->document, old);
+	const uint64_t begin = view->offset + old->offset;
+	nt_segment *segment = nt_segment_at(edits, view->buffer, begin);
+	if (!nt_segment_is(segment, begin, old->count * old_width) || view->compressed || view->offset % new->width ||
+		begin % new->width || ((new->width != old_width || !triangles) && nt_gltf_is_of_view(view->buffer)))
 		return false;
 	nt_segment_edit(edits, segment, (nt_segment_change){.bytes = new->bytes, .size = new->size});
 	describe(edits->document, old->index, new, NT_NONE, 0);
@@ -183,13 +182,16 @@ static nt_status find_old(nt_gltf *document, const nt_mesh *mesh, uint32_t index
 		.component_type = NT_GLTF_USHORT};
 	if (index == NT_NONE)
 		return NT_OK;
-	const nt_status status = nt_gltf_get_accessor(document, index, nt_gltf_of_mesh(mesh).pointer, old, error);
+	const nt_gltf_accessor *found;
+	const nt_status status = nt_gltf_get_accessor(document, index, nt_gltf_of_mesh(mesh).pointer, &found, error);
+	if (status)
+		return status;
+	*old = *found;
 	/* Draco's indices have 32 bits; the accessor may say less. */
 	uint64_t type;
-	if (!status && old->decoded &&
-		nt_json_find_uint64(nt_gltf_accessor_json(document, index), "componentType", &type))
+	if (old->decoded && nt_json_find_uint64(nt_gltf_accessor_json(document, index), "componentType", &type))
 		old->component_type = (uint32_t)type;
-	return status;
+	return NT_OK;
 }
 
 /* Writes the indices of a leader: in place where that will do, else behind the end. */

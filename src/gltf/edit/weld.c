@@ -96,18 +96,18 @@ static nt_status add_attribute(welding *w, uint32_t index)
 	if (*known == w->edits->weld_count || w->obstacle)
 		return NT_OK;
 	*known = w->edits->weld_count;
-	nt_gltf_accessor a;
+	const nt_gltf_accessor *a;
 	column c = {.of_source = true};
 	nt_status status = nt_gltf_get_accessor(w->edits->document, index, "/accessors", &a, w->error);
 	if (!status)
-		status = nt_gltf_whole_elements(w->edits->document, &a, w->scratch, &c.bytes, &c.stride, w->error);
+		status = nt_gltf_whole_elements(w->edits->document, a, w->scratch, &c.bytes, &c.stride, w->error);
 	if (status)
 		return leave_faulty(w, status);
-	if (a.count != w->vertices->old_count)
+	if (a->count != w->vertices->old_count)
 		w->obstacle = "its attributes differ in their number of elements";
 	else if (nt_gltf_users_of(w->edits->document, index)->foreign)
 		w->obstacle = "something else uses its attributes";
-	c.width = a.element_bytes;
+	c.width = a->element_bytes;
 	/* without a view all elements are zero */
 	return w->obstacle || !c.bytes || add_column(w, c) ? NT_OK : nt_fail_memory(w->error);
 }
@@ -282,7 +282,7 @@ static nt_status indices_of(welding *w, size_t user, const uint32_t **indices, s
 	const nt_pool_vertices *vertices = w->vertices;
 	const nt_json_value *primitive = nt_pool_primitive(vertices->pool, user);
 	const uint32_t number = nt_gltf_reference(w->edits->document, primitive, "indices");
-	nt_gltf_accessor a;
+	const nt_gltf_accessor *a;
 	*renumbered = !(nt_pool_is_solved(vertices->pool, user) && (vertices->changed[user] ||
 		nt_gltf_draco_of(primitive))) || !vertices->indices[user];
 	if (!*renumbered) {
@@ -295,10 +295,10 @@ static nt_status indices_of(welding *w, size_t user, const uint32_t **indices, s
 		nt_status status = nt_gltf_get_accessor(w->edits->document, number,
 			nt_gltf_of_mesh(nt_pool_mesh(vertices->pool, user)).pointer, &a, w->error);
 		if (!status)
-			status = nt_gltf_indices(w->edits->document, &a, vertices->old_count, w->scratch, &read,
+			status = nt_gltf_indices(w->edits->document, a, vertices->old_count, w->scratch, &read,
 				w->error);
 		*indices = status ? NULL : read;
-		*count = status ? 0 : (size_t)a.count;
+		*count = status ? 0 : (size_t)a->count;
 		return status;
 	}
 	uint32_t *all = nt_arena_alloc(w->scratch, vertices->old_count, sizeof *all);

@@ -461,16 +461,13 @@ static nt_status compare_all(verification *v, unsigned threads, nt_error *error)
 	return status;
 }
 
-/* Accessors are read before threads ask for them; those that several primitives have are decoded once. No texture
- * coordinates are asked for. */
+/* Accessors that several primitives have are decoded once. No texture coordinates are asked for. */
 static nt_status prepare_loads(nt_scene *found, nt_error *error)
 {
 	nt_gltf *document = found->source;
 	uint32_t *users = nt_calloc(document->accessor_count, sizeof *users);
-	if (!users || nt_gltf_read_accessors(document, error) != NT_OK) {
-		free(users);
+	if (!users)
 		return nt_fail_memory(error);
-	}
 	for (int pass = 0; pass < 2; pass++)
 		for (size_t i = 0; i < found->mesh_count; i++) {
 			const uint32_t positions = nt_gltf_reference(document, nt_json_find(

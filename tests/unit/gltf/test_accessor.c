@@ -38,21 +38,21 @@ enum { ACCESSORS = sizeof expected / sizeof *expected };
 
 static void check_accessor(nt_gltf *document, uint32_t index, uint64_t count)
 {
-	nt_gltf_accessor a;
+	const nt_gltf_accessor *a;
 	const nt_gltf_accessor *e = &expected[index];
 	assert_int_equal(nt_gltf_get_accessor(document, index, "", &a, NULL), NT_OK);
-	assert_int_equal(a.index, index);
-	assert_int_equal(a.component_type, e->component_type);
-	assert_int_equal(a.component_bytes, e->component_bytes);
-	assert_int_equal(a.components, e->components);
-	assert_int_equal(a.element_bytes, e->element_bytes);
-	assert_int_equal(a.normalized, e->normalized);
-	assert_int_equal(a.count, count);
-	assert_int_equal(a.view, e->view);
-	assert_int_equal(a.offset, e->offset);
-	assert_int_equal(a.stride, e->stride);
-	assert_int_equal(a.sparse ? a.sparse->count : 0, e->sparse ? e->sparse->count : 0);
-	assert_null(a.decoded);
+	assert_int_equal(a->index, index);
+	assert_int_equal(a->component_type, e->component_type);
+	assert_int_equal(a->component_bytes, e->component_bytes);
+	assert_int_equal(a->components, e->components);
+	assert_int_equal(a->element_bytes, e->element_bytes);
+	assert_int_equal(a->normalized, e->normalized);
+	assert_int_equal(a->count, count);
+	assert_int_equal(a->view, e->view);
+	assert_int_equal(a->offset, e->offset);
+	assert_int_equal(a->stride, e->stride);
+	assert_int_equal(a->sparse ? a->sparse->count : 0, e->sparse ? e->sparse->count : 0);
+	assert_null(a->decoded);
 }
 
 /* They stay those of the source, whatever an edit writes. */
