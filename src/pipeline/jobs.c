@@ -382,6 +382,9 @@ static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 	const bool unmapped = triangles > 0 && degenerate == triangles;
 	const uint8_t unless_needed = !nt_mesh_needs_tangents(mesh, nt_format_is_gltf(scene->judged)); /* an info */
 	char detail[96];
+	size_t turned = 0; /* counted once for each target */
+	for (size_t m = 0; m < mesh->morph_count; m++)
+		turned += mesh->morphs[m].turned_triangles;
 	if (missing)
 		snprintf(detail, sizeof detail, "%zu of %zu triangles %s no texture coordinates", missing, triangles,
 			missing == 1 ? "has" : "have");
@@ -393,7 +396,7 @@ static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 		{NT_CODE_UV_FOLDED_QUAD, c->folded_quads},
 		{NT_CODE_UV_ROUNDED_AWAY, c->stored_differently},
 		{NT_CODE_NORMALS_SCALED, mesh->scaled_normals},
-		{NT_CODE_TAN_MORPH_TURNED, mesh->morph_turned},
+		{NT_CODE_TAN_MORPH_TURNED, turned},
 		{NT_CODE_TAN_REPAIRED, nt_counts_repaired(c)},
 		{NT_CODE_TAN_EXISTING_REPAIRED, mesh->replaced_tangents},
 		{NT_CODE_TAN_EXISTING_LEFT, mesh->left_tangents},
@@ -418,20 +421,18 @@ static void add_findings(nt_scene *scene, const nt_mesh *mesh)
 		add_halfway(list, mesh, &mesh->morphs[m]);
 }
 
-static void add_counts(nt_summary *summary, nt_mesh *mesh)
+static void add_counts(nt_summary *summary, const nt_mesh *mesh)
 {
 	if (mesh->decision == NT_DECISION_NORMALS)
 		return;
-	mesh->normal_copies = mesh->vertex_count - mesh->source_vertex_count;
-	mesh->tangent_copies = mesh->split.source_count;
 	summary->solved_count++;
 	summary->triangle_count += nt_mesh_triangle_count(mesh);
 	summary->repaired += mesh->decision == NT_DECISION_REPAIR && mesh->has_tangents
 		? mesh->replaced_tangents : nt_counts_repaired(&mesh->counts);
 	summary->quad_count += mesh->quad_count;
 	summary->vertex_count += mesh->unused_vertices + mesh->source_vertex_count;
-	summary->appended_normals += mesh->normal_copies;
-	summary->appended_tangents += mesh->tangent_copies;
+	summary->appended_normals += mesh->vertex_count - mesh->source_vertex_count;
+	summary->appended_tangents += mesh->split.source_count;
 	nt_counts_add(&summary->counts, &mesh->counts);
 }
 

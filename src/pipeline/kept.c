@@ -132,7 +132,7 @@ void nt_look_at_kept(nt_scene *scene, nt_mesh *mesh, nt_format written, unsigned
 		mesh->signs = NT_SIGN_RIGHT;
 }
 
-void nt_tell_kept(nt_scene *scene)
+void nt_tell_kept(nt_scene *scene, const bool *halved)
 {
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
@@ -146,7 +146,7 @@ void nt_tell_kept(nt_scene *scene)
 		snprintf(detail, sizeof detail, "%s%s%s", wrong ? share : "corners with different w",
 			wrong && mixed ? others : "", nt_doubt_text(mesh->doubt));
 		nt_finding_put(&scene->findings, (nt_finding){.code = NT_CODE_TAN_KEPT_SIGN,
-			.count = wrong ? wrong : mixed, .detail = detail, .stays = mesh->halved,
+			.count = wrong ? wrong : mixed, .detail = detail, .stays = halved && halved[i],
 			.repair = mesh->doubt == NT_DOUBT_UNDECODABLE ? "--existing=replace" : NULL},
 			nt_mesh_place(mesh, &(nt_place){0}));
 	}

@@ -38,6 +38,7 @@ typedef struct examination {
 	known_map *maps;  /* [count], of the first of them */
 	size_t count, capacity;
 	bool told; /* what is found; else only pairs are */
+	bool *halved; /* [mesh_count] as nt_find_pairs() has it */
 	uint64_t pixels, bytes; /* of images that are decoded, those of materials too */
 	size_t open;      /* maps from here on are open */
 	nt_error errors[MOST_OPEN];
@@ -288,7 +289,7 @@ static nt_status examine_all(examination *e, nt_error *error)
 	if (status || flushed)
 		return status ? status : flushed;
 	share_facts(e);
-	if (gltf && nt_find_pairs(scene, e->settings, e->count))
+	if (gltf && nt_find_pairs(scene, e->settings, e->count, e->halved))
 		return nt_fail_memory(error);
 	if (e->told)
 		tell_unchanged(e);
@@ -302,11 +303,15 @@ nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_format 
 	const bool told = written != NT_FORMAT_PLY && (settings->check_maps == NT_CHECK_MAPS_ON ||
 		(settings->check_maps == NT_CHECK_MAPS_AUTO &&
 			(settings->report || settings->given_maps[NT_GIVEN_NORMAL])));
-	examination *e = told || nt_any_inverted(scene) ? nt_calloc(1, sizeof *e) : NULL;
-	if (!e) {
-		nt_tell_kept(scene);
-		return told || nt_any_inverted(scene) ? nt_fail_memory(error) : NT_OK;
+	const bool needed = told || nt_any_inverted(scene);
+	examination *e = needed ? nt_calloc(1, sizeof *e) : NULL;
+	bool *halved = e ? nt_calloc(scene->mesh_count, sizeof *halved) : NULL;
+	if (!halved) {
+		free(e);
+		nt_tell_kept(scene, NULL);
+		return needed ? nt_fail_memory(error) : NT_OK;
 	}
+	e->halved = halved;
 	e->scene = scene;
 	e->settings = settings;
 	e->textures = textures;
@@ -315,7 +320,8 @@ nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_format 
 	if (textures)
 		e->pixels = nt_textures_pixels(textures, &e->bytes);
 	const nt_status status = examine_all(e, error);
-	nt_tell_kept(scene);
+	nt_tell_kept(scene, halved);
+	free(halved);
 	nt_key_set_free(&e->known);
 	free(e->maps);
 	free(e);

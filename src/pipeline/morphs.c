@@ -64,17 +64,17 @@ size_t nt_morphs_count_turned(const nmtan_mesh *base, const nmtan_mesh *moved)
 	return count;
 }
 
-nt_status nt_morphs_restore(nt_mesh *mesh, bool targets)
+nt_status nt_morphs_restore(nt_mesh *mesh, nt_morph_work *work, bool targets)
 {
 	if (mesh->decision != NT_DECISION_REPAIR || !mesh->tangents || !mesh->texcoords)
 		return NT_OK;
 	if (targets && mesh->morph_count) {
-		mesh->solved_tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float));
-		if (!mesh->solved_tangents)
+		work->solved = nt_alloc(mesh->corner_count, 4 * sizeof(float));
+		if (!work->solved)
 			return NT_ERROR_MEMORY;
-		memcpy(mesh->solved_tangents, mesh->corner_tangents, mesh->corner_count * 4 * sizeof(float));
+		memcpy(work->solved, mesh->corner_tangents, mesh->corner_count * 4 * sizeof(float));
 	}
-	nt_restore_authored(mesh, mesh->corner_tangents, mesh->solved_tangents);
+	nt_restore_authored(mesh, mesh->corner_tangents, work->solved);
 	return NT_OK;
 }
 
@@ -124,9 +124,9 @@ static bool divide(nt_corner_classes *classes, size_t corner_count, const float 
 }
 
 /* A class for each vertex that has corners, divided by the base: those that it makes have no parent. */
-static bool begin(nt_mesh *mesh)
+static bool begin(const nt_mesh *mesh, nt_morph_work *work)
 {
-	nt_corner_classes *classes = mesh->corner_classes = nt_calloc(1, sizeof *classes);
+	nt_corner_classes *classes = work->classes = nt_calloc(1, sizeof *classes);
 	uint32_t *known = nt_alloc(mesh->vertex_count, sizeof *known);
 	bool done = classes && known && (classes->of = nt_alloc(mesh->corner_count, 3 * sizeof *classes->of));
 	if (done) {
@@ -148,9 +148,8 @@ static bool begin(nt_mesh *mesh)
 }
 
 /* Whether a class has a row: parents come before. */
-static bool has_row(const nt_mesh *mesh, const float *rows, size_t k)
+static bool has_row(const nt_mesh *mesh, const nt_corner_classes *classes, const float *rows, size_t k)
 {
-	const nt_corner_classes *classes = mesh->corner_classes;
 	const uint32_t parent = classes->parent[k];
 	const float *row = rows + 4 * (size_t)classes->first[k];
 	const float *other = parent == k ? mesh->corner_tangents + 4 * (size_t)classes->first[k]
@@ -158,12 +157,11 @@ static bool has_row(const nt_mesh *mesh, const float *rows, size_t k)
 	return memcmp(row, other, 3 * sizeof *row) != 0;
 }
 
-static bool store_rows(const nt_mesh *mesh, nt_morph *morph, const float *tangents)
+static bool store_rows(const nt_mesh *mesh, nt_corner_classes *classes, nt_morph *morph, const float *tangents)
 {
-	nt_corner_classes *classes = mesh->corner_classes;
 	size_t count = 0;
 	for (size_t k = 0; k < classes->count; k++)
-		count += has_row(mesh, tangents, k);
+		count += has_row(mesh, classes, tangents, k);
 	const bool listed = 4 * count < 3 * classes->count;
 	morph->class_count = classes->count;
 	morph->row_count = listed ? count : classes->count;
@@ -175,7 +173,7 @@ static bool store_rows(const nt_mesh *mesh, nt_morph *morph, const float *tangen
 		return false;
 	uint32_t *number = classes->words + classes->word_count, *row = number + (listed ? count : 0);
 	for (size_t k = 0; k < classes->count; k++) {
-		if (listed && !has_row(mesh, tangents, k))
+		if (listed && !has_row(mesh, classes, tangents, k))
 			continue;
 		if (listed)
 			*number++ = (uint32_t)k;
@@ -187,38 +185,38 @@ static bool store_rows(const nt_mesh *mesh, nt_morph *morph, const float *tangen
 }
 
 /* A target that does not turn a tangent that was solved does not turn the authored one either. */
-static void keep_unturned(const nt_mesh *mesh, float *moved)
+static void keep_unturned(const nt_mesh *mesh, const float *solved, float *moved)
 {
-	const float *solved = mesh->solved_tangents, *authored = mesh->corner_tangents;
+	const float *authored = mesh->corner_tangents;
 	for (size_t c = 0; solved && c < mesh->corner_count; c++, moved += 4, solved += 4, authored += 4)
 		if (solved[3] == 0 && fabsf(moved[0] - solved[0]) <= NT_MORPH_LEAST &&
 			fabsf(moved[1] - solved[1]) <= NT_MORPH_LEAST && fabsf(moved[2] - solved[2]) <= NT_MORPH_LEAST)
 			memcpy(moved, authored, 3 * sizeof *moved);
 }
 
-nt_status nt_morphs_classify(nt_mesh *mesh, nt_morph *morph, float *rows)
+nt_status nt_morphs_classify(const nt_mesh *mesh, nt_morph_work *work, nt_morph *morph, float *rows)
 {
-	const bool begun = mesh->corner_classes || begin(mesh);
-	keep_unturned(mesh, rows);
-	return begun && divide(mesh->corner_classes, mesh->corner_count, rows, 3) && store_rows(mesh, morph, rows)
-		? NT_OK : NT_ERROR_MEMORY;
+	const bool begun = work->classes || begin(mesh, work);
+	keep_unturned(mesh, work->solved, rows);
+	return begun && divide(work->classes, mesh->corner_count, rows, 3) &&
+		store_rows(mesh, work->classes, morph, rows) ? NT_OK : NT_ERROR_MEMORY;
 }
 
 /* ---- vertices ---- */
 
-void nt_morphs_keys(const nt_mesh *mesh, float *keys)
+void nt_morphs_keys(const nt_mesh *mesh, const nt_morph_work *work, float *keys)
 {
 	for (size_t c = 0; c < mesh->corner_count; c++) {
-		const uint32_t k = mesh->corner_classes->of[c];
+		const uint32_t k = work->classes->of[c];
 		memcpy(keys + 4 * c, (float[]){(float)(k & ((1u << KEY_BITS) - 1)), (float)(k >> KEY_BITS), 0, 0},
 			4 * sizeof *keys);
 	}
 }
 
-nt_status nt_morphs_finish(nt_mesh *mesh, size_t source_count, nt_arena *arena)
+nt_status nt_morphs_finish(nt_mesh *mesh, const nt_morph_work *work, size_t source_count, nt_arena *arena)
 {
 	const nt_split *split = &mesh->split;
-	nt_corner_classes *classes = mesh->corner_classes;
+	nt_corner_classes *classes = work->classes;
 	const size_t count = mesh->vertex_count + source_count;
 	uint32_t *class_of = nt_arena_alloc(arena, count, sizeof *class_of);
 	uint32_t *parent = nt_arena_alloc(arena, classes->count, sizeof *parent), *words = classes->words;
@@ -239,16 +237,14 @@ nt_status nt_morphs_finish(nt_mesh *mesh, size_t source_count, nt_arena *arena)
 	return NT_OK;
 }
 
-void nt_morphs_free(nt_mesh *mesh)
+void nt_morphs_free(nt_morph_work *work)
 {
-	free(mesh->solved_tangents);
-	mesh->solved_tangents = NULL;
-	if (mesh->corner_classes) {
-		free(mesh->corner_classes->of);
-		free(mesh->corner_classes->words);
+	free(work->solved);
+	if (work->classes) {
+		free(work->classes->of);
+		free(work->classes->words);
 	}
-	free(mesh->corner_classes);
-	mesh->corner_classes = NULL;
+	free(work->classes);
 }
 
 /* ---- halfway ---- */
@@ -270,14 +266,14 @@ static double cosine_between(nt_dvec3 a, nt_dvec3 b)
 }
 
 /* As they were solved. */
-static const float *base_tangents(const nt_mesh *mesh)
+static const float *base_tangents(const nt_mesh *mesh, const nt_morph_work *work)
 {
-	return mesh->solved_tangents ? mesh->solved_tangents : mesh->corner_tangents;
+	return work->solved ? work->solved : mesh->corner_tangents;
 }
 
-bool nt_morphs_turn(const nt_mesh *mesh, const float *rows)
+bool nt_morphs_turn(const nt_mesh *mesh, const nt_morph_work *work, const float *rows)
 {
-	const float *base = base_tangents(mesh);
+	const float *base = base_tangents(mesh, work);
 	for (size_t c = 0; c < mesh->corner_count; c++)
 		if (cosine_between(nt_dvec3_load(base + 4 * c), nt_dvec3_load(rows + 4 * c)) < LIMIT_COSINE)
 			return true;
@@ -337,11 +333,11 @@ static bool has_direction(const nmtan_mesh *base, const nmtan_mesh *moved, size_
 	return area > COLLAPSED * fmax(before, after) && nmtan_orientation(uv[0], uv[1], uv[2]) != 0;
 }
 
-void nt_morphs_compare_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved,
-	const float *rows, const float *halfway, nt_morph *morph)
+void nt_morphs_compare_halfway(const nt_mesh *mesh, const nt_morph_work *work, const nmtan_mesh *base,
+	const nmtan_mesh *moved, const float *rows, const float *halfway, nt_morph *morph)
 {
 	static const double degrees = 57.29577951308232;
-	const float *own = base_tangents(mesh);
+	const float *own = base_tangents(mesh, work);
 	double least = 1;
 	morph->halfway_triangles = 0;
 	for (size_t t = 0; t < mesh->face_count; t++) {

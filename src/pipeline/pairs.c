@@ -139,7 +139,7 @@ static void tell_half(nt_scene *scene, const part *p, const nt_settings *setting
 }
 
 /* Gives meshes their pair, and says of each what is to be said. */
-static void settle(nt_scene *scene, const nt_settings *settings, uint32_t *parents, part *parts)
+static void settle(nt_scene *scene, const nt_settings *settings, uint32_t *parents, part *parts, bool *halved)
 {
 	const bool turns = (!settings->check || settings->converts) && settings->flip_green != NT_FLIP_OFF;
 	uint32_t pair_count = 0;
@@ -159,7 +159,7 @@ static void settle(nt_scene *scene, const nt_settings *settings, uint32_t *paren
 		const bool first = p->first == i, half = p->tangents_change != p->maps_turn;
 		if (first && half)
 			tell_half(scene, p, settings);
-		mesh->halved = half;
+		halved[i] = half;
 		if (p->tangents_change || p->maps_turn)
 			continue;
 		if (first) {
@@ -172,7 +172,7 @@ static void settle(nt_scene *scene, const nt_settings *settings, uint32_t *paren
 	}
 }
 
-nt_status nt_find_pairs(nt_scene *scene, const nt_settings *settings, size_t map_count)
+nt_status nt_find_pairs(nt_scene *scene, const nt_settings *settings, size_t map_count, bool *halved)
 {
 	const size_t count = scene->mesh_count + map_count;
 	uint32_t *parents = nt_alloc(count, sizeof *parents);
@@ -187,7 +187,7 @@ nt_status nt_find_pairs(nt_scene *scene, const nt_settings *settings, size_t map
 				parents[find(parents, (uint32_t)scene->mesh_count + map - 1)] = find(parents, i);
 		}
 	if (made)
-		settle(scene, settings, parents, parts);
+		settle(scene, settings, parents, parts, halved);
 	free(parents);
 	free(parts);
 	return made ? NT_OK : NT_ERROR_MEMORY;

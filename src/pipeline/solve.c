@@ -155,7 +155,8 @@ static nt_status measure_halfway(const nt_whole *w, uint32_t target, const nmtan
 {
 	bool turns = false;
 	for (size_t i = 0, corner = 0; !turns && i < w->part_count; corner += w->parts[i++]->corner_count)
-		turns = find_morph(w, w->parts[i], target) && nt_morphs_turn(w->parts[i], rows + 4 * corner);
+		turns = find_morph(w, w->parts[i], target) &&
+			nt_morphs_turn(w->parts[i], &w->works[i], rows + 4 * corner);
 	if (!turns)
 		return NT_OK;
 	float *positions = NULL, *normals = NULL, *halfway = NULL;
@@ -174,8 +175,8 @@ static nt_status measure_halfway(const nt_whole *w, uint32_t target, const nmtan
 		const nmtan_mesh base = view_of_part(&w->mesh, w->parts[i], corner),
 				 to = view_of_part(moved, w->parts[i], corner);
 		if (morph)
-			nt_morphs_compare_halfway(w->parts[i], &base, &to, rows + 4 * corner, halfway + 4 * corner,
-				morph);
+			nt_morphs_compare_halfway(w->parts[i], &w->works[i], &base, &to, rows + 4 * corner,
+				halfway + 4 * corner, morph);
 	}
 	free(halfway);
 	return status;
@@ -204,8 +205,8 @@ static nt_status solve_target(const nt_whole *w, uint32_t target)
 		const nmtan_mesh base = view_of_part(&w->mesh, part, corner), to = view_of_part(&moved, part, corner);
 		if (!morph)
 			continue;
-		part->morph_turned += nt_morphs_count_turned(&base, &to);
-		status = nt_morphs_classify(part, morph, rows + 4 * corner);
+		morph->turned_triangles = nt_morphs_count_turned(&base, &to);
+		status = nt_morphs_classify(part, &w->works[i], morph, rows + 4 * corner);
 	}
 	free(positions);
 	free(normals);
@@ -286,7 +287,7 @@ static nt_status keep_split(const nt_job *job, nt_mesh *mesh, const nmtan_split_
 }
 
 /* With morph targets: wherever the base or a target needs it. */
-static nt_status split_corners(const nt_job *job, nt_mesh *mesh)
+static nt_status split_corners(const nt_job *job, nt_mesh *mesh, const nt_morph_work *work)
 {
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
@@ -296,11 +297,11 @@ static nt_status split_corners(const nt_job *job, nt_mesh *mesh)
 	if (mesh->morph_count && !keys)
 		status = NT_ERROR_MEMORY;
 	if (keys)
-		nt_morphs_keys(mesh, keys);
+		nt_morphs_keys(mesh, work, keys);
 	if (!status)
 		status = nt_status_of(nmtan_split(&view, keys ? keys : mesh->corner_tangents, &job->options, &output));
 	if (!status && mesh->morph_count)
-		status = nt_morphs_finish(mesh, output.source_count, job->arena);
+		status = nt_morphs_finish(mesh, work, output.source_count, job->arena);
 	free(keys);
 	return keep_split(job, mesh, &output, status);
 }
@@ -319,17 +320,17 @@ static nt_status solve_corners(const nt_job *job, const nt_whole *w)
 		targets |= job->splits && is_solved_here(w, w->parts[i]) && w->parts[i]->morph_count;
 	for (size_t i = 0; !status && i < w->part_count; i++)
 		if (is_solved_here(w, w->parts[i]))
-			status = nt_morphs_restore(w->parts[i], targets);
+			status = nt_morphs_restore(w->parts[i], &w->works[i], targets);
 	return !status && targets ? solve_targets(w) : status;
 }
 
 /* Splits the parts; those that nobody writes, or that are only compared, keep tangents of corners. */
-static nt_status finish_part(const nt_job *job, nt_mesh *mesh, nt_status status)
+static nt_status finish_part(const nt_job *job, nt_mesh *mesh, nt_morph_work *work, nt_status status)
 {
 	const bool splits = job->splits && nt_mesh_is_wanted(mesh);
 	if (!status && splits)
-		status = split_corners(job, mesh);
-	nt_morphs_free(mesh);
+		status = split_corners(job, mesh, work);
+	nt_morphs_free(work);
 	if (status || splits) {
 		free(mesh->corner_tangents);
 		mesh->corner_tangents = NULL;
@@ -358,10 +359,8 @@ nt_status nt_job_solve(const nt_job *job, nt_mesh *mesh)
 	if (!join && mesh->decision == NT_DECISION_NORMALS && !job->triangulates)
 		return NT_OK; /* the edit of a glTF alone asks for a split */
 	for (size_t i = 0; i < w.part_count; i++)
-		if (is_solved_here(&w, w.parts[i])) {
+		if (is_solved_here(&w, w.parts[i]))
 			w.parts[i]->counts = (nmtan_counts)NMTAN_COUNTS_INIT;
-			w.parts[i]->morph_turned = 0;
-		}
 	if (join) {
 		status = nt_whole_gather(&w);
 	} else {
@@ -374,13 +373,17 @@ nt_status nt_job_solve(const nt_job *job, nt_mesh *mesh)
 		(job->splits && job->triangulates && mesh->face_sizes);
 	if (!by_corner)
 		return solve_vertices(job, mesh, &w.mesh);
+	nt_morph_work own = {0};
+	w.works = join ? nt_calloc(w.part_count, sizeof *w.works) : &own;
 	if (!status)
-		status = solve_corners(job, &w);
-	for (size_t i = 0; i < w.part_count; i++)
+		status = w.works ? solve_corners(job, &w) : NT_ERROR_MEMORY;
+	for (size_t i = 0; w.works && i < w.part_count; i++)
 		if (is_solved_here(&w, w.parts[i])) {
-			const nt_status finished = finish_part(job, w.parts[i], status);
+			const nt_status finished = finish_part(job, w.parts[i], &w.works[i], status);
 			status = status ? status : finished;
 		}
+	if (join)
+		free(w.works);
 	nt_arena_free(&w.arena);
 	return status;
 }

@@ -64,6 +64,7 @@ typedef struct nt_whole {
 	nmtan_stored_uv stored; /* of it */
 	size_t corner_count;
 	const uint8_t *halves; /* [mesh.face_count]; NULL: there are no quads */
+	struct nt_morph_work *works; /* [part_count] while targets are solved */
 	/* of a join: */
 	nt_arena arena;
 	size_t *first_vertex;  /* [part_count + 1] */
@@ -85,34 +86,41 @@ bool nt_whole_put(const nt_whole *whole, size_t part, const float *rows, const f
  * join were solved as one. */
 nt_status nt_stage_borders(nt_scene *scene, const nt_settings *settings, nt_error *error);
 
-/* morphs.c. Authored tangents come back into those that were solved (nt_restore_authored), if they stay with
+/* morphs.c. Data of a part while its targets are solved. Zeroed: nothing yet. */
+typedef struct nt_morph_work {
+	struct nt_corner_classes *classes;
+	float *solved; /* [corner_count][4] before authored tangents took their place, w: 0 if one did; NULL: the mesh's
+	                  corner_tangents */
+} nt_morph_work;
+
+/* Authored tangents come back into those that were solved (nt_restore_authored), if they stay with
  * --existing=repair. targets: they will be solved. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_morphs_restore(nt_mesh *mesh, bool targets);
+nt_status nt_morphs_restore(nt_mesh *mesh, nt_morph_work *work, bool targets);
 
 /* Takes the corner tangents of a target into classes of corners; rows are changed. */
-nt_status nt_morphs_classify(nt_mesh *mesh, nt_morph *morph, float *rows);
+nt_status nt_morphs_classify(const nt_mesh *mesh, nt_morph_work *work, nt_morph *morph, float *rows);
 
 /* How many triangles a target turns to the other side of their normals. */
 size_t nt_morphs_count_turned(const nmtan_mesh *base, const nmtan_mesh *moved);
 
 /* Whether corner tangents of a target are turned enough for what is between to matter. */
-bool nt_morphs_turn(const nt_mesh *mesh, const float *rows);
+bool nt_morphs_turn(const nt_mesh *mesh, const nt_morph_work *work, const float *rows);
 
 /* A mesh halfway between its own positions and normals and those it is moved to: malloc'ed, NULL if they are the same
  * pointers. False: memory is exhausted. */
 bool nt_morphs_halfway(const nmtan_mesh *base, const nmtan_mesh *moved, float **positions, float **normals);
 
 /* Fills halfway_triangles and halfway_degrees of a target, by its corner tangents and those halfway. */
-void nt_morphs_compare_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved,
-	const float *rows, const float *halfway, nt_morph *morph);
+void nt_morphs_compare_halfway(const nt_mesh *mesh, const nt_morph_work *work, const nmtan_mesh *base,
+	const nmtan_mesh *moved, const float *rows, const float *halfway, nt_morph *morph);
 
 /* Writes to keys [corner_count][4] numbers that are equal for two corners of a vertex exactly where the base's and all
  * targets' tangents are: what splitting goes by. */
-void nt_morphs_keys(const nt_mesh *mesh, float *keys);
+void nt_morphs_keys(const nt_mesh *mesh, const nt_morph_work *work, float *keys);
 
 /* After a split by keys: vertex tangents of the base, and what nt_morph_read() takes those of targets from. */
-nt_status nt_morphs_finish(nt_mesh *mesh, size_t source_count, nt_arena *arena);
-void nt_morphs_free(nt_mesh *mesh);
+nt_status nt_morphs_finish(nt_mesh *mesh, const nt_morph_work *work, size_t source_count, nt_arena *arena);
+void nt_morphs_free(nt_morph_work *work);
 
 /* Takes the images that the settings name, for a scene with one material or none. Returns NT_OK, NT_ERROR_IO,
  * NT_ERROR_MEMORY or, where the scene or the output has no place for them or one is no image, NT_ERROR_USAGE. */
@@ -209,9 +217,9 @@ static inline bool nt_may_be_left(nt_status load)
 }
 
 /* kept.c. Counts what is wrong with tangents of a loaded mesh that are kept and used; nt_tell_kept() says whether w is
- * right once pairs are known. Scratch is the scene's. */
+ * right once pairs are known. Scratch is the scene's. halved: as nt_find_pairs() has it; NULL: of none. */
 void nt_look_at_kept(nt_scene *scene, nt_mesh *mesh, nt_format written, unsigned threads);
-void nt_tell_kept(nt_scene *scene);
+void nt_tell_kept(nt_scene *scene, const bool *halved);
 
 /* pairs.c. Sets mesh->signs of a loaded mesh with authored tangents and a normal map. */
 void nt_judge_w(nt_mesh *mesh);
@@ -244,9 +252,10 @@ static inline int nt_w_sign(const nt_mesh *mesh, const size_t v[3])
 bool nt_runs_backwards(const nt_mesh *mesh, const size_t v[3], const float *const tangents[3], int orientation,
 	bool other_w);
 
-/* Sets pair and doubted of meshes whose normal maps are known, of which there are map_count, and adds what is found.
- * Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_find_pairs(nt_scene *scene, const nt_settings *settings, size_t map_count);
+/* Sets pair and doubt of meshes whose normal maps are known, of which there are map_count, and adds what is found.
+ * halved: [mesh_count] zeroed; receives whether this run changes one half of a mesh's pair alone. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_find_pairs(nt_scene *scene, const nt_settings *settings, size_t map_count, bool *halved);
 
 /* fix.c. Repairs of --fix, found by a check of the input. */
 typedef struct nt_mesh_fix {

@@ -128,6 +128,8 @@ typedef struct nt_morph {
 	const struct nt_displacement *positions, *normals; /* what is added to the base's, for nt_gltf_move(); NULL:
 	                                                     nothing */
 	size_t class_count, row_count, first_word; /* of its tangents then: scene/morphs.h */
+	size_t turned_triangles;  /* that it turns to the other side of their normals: no w serves them with and
+	                             without it */
 	size_t halfway_triangles; /* where adding half of the deltas is wrong by more than 5 degrees */
 	double halfway_degrees;   /* by how much at most */
 } nt_morph;
@@ -256,7 +258,6 @@ typedef struct nt_mesh {
 	nt_kept kept;            /* of tangents that stay */
 	nt_mesh_map normal_maps[2]; /* the normal map, and that of the clearcoat */
 	uint32_t pair;           /* number of a pair that it is in: its w and its maps are inverted; 0: none */
-	bool halved;             /* this run changes one half of such a pair alone */
 	nt_doubt doubt;          /* w is inverted, and a map that is not known may be, too */
 
 	bool ready;              /* load() only reads what the scene holds: several may be loaded at once */
@@ -317,22 +318,16 @@ typedef struct nt_mesh {
 
 	nt_morph *morphs;         /* [morph_count] targets that move positions or normals; filled by load() */
 	size_t morph_count;
-	struct nt_corner_classes *corner_classes; /* while they are solved: pipeline/morphs.c */
-	struct nt_morph_tangents *morph_tangents; /* then: scene/morphs.h; NULL: none */
-	size_t morph_turned;      /* triangles that a target turns to the other side of their normals: no w
-	                             serves them with and without it; counted once for each target */
+	struct nt_morph_tangents *morph_tangents; /* once they are solved: scene/morphs.h; NULL: none */
 
 	/* results */
 	float *corner_tangents;   /* [corner_count][4]; NULL until solved or after split */
-	float *solved_tangents;   /* [corner_count][4] while targets are solved: before authored ones took their place,
-	                             w: 0 if one did; NULL: corner_tangents */
 	nmtan_counts counts;
 	size_t replaced_tangents; /* corners whose authored tangent was invalid, or is beside one that was, and is
 	                             another now */
 	size_t left_tangents;     /* those that stay, as a solve gives no valid one either */
 	nt_split split;
 	uint64_t tangents_digest; /* of split.vertex_tangents, where that is wanted; 0: not known */
-	size_t normal_copies, tangent_copies; /* vertices that made normals and the split appended */
 	bool merged;              /* the writer has merged them with those of the meshes that share its vertices */
 } nt_mesh;
 

@@ -221,7 +221,7 @@ static void count_shared(nt_scene *scene, const nt_vertex_pools *pools, size_t n
 			continue;
 		users++;
 		before = mesh->unused_vertices + mesh->source_vertex_count;
-		add_counts(&all, before, mesh->normal_copies, mesh->tangent_copies);
+		add_counts(&all, before, mesh->vertex_count - mesh->source_vertex_count, mesh->split.source_count);
 	}
 	if (users < 2)
 		return;

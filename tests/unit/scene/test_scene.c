@@ -104,7 +104,7 @@ TEST(twins_share_geometry_and_nothing_else)
 	const nt_join join = {.part_count = 2};
 	nt_mesh first = {.name = "first", .gltf_mesh = 0, .gltf_primitive = 1, .gltf_material = 2,
 		.gltf_material_name = "wood", .positions = numbers, .normals = numbers, .indices = indices,
-		.vertex_count = 3, .source_vertex_count = 3, .face_count = 1, .corner_count = 3, .tangent_copies = 4,
+		.vertex_count = 3, .source_vertex_count = 3, .face_count = 1, .corner_count = 3, .quad_count = 4,
 		.split = {.vertex_tangents = numbers, .source_count = 1}, .primitives = parts + 1,
 		.primitive_count = 1, .decision = NT_DECISION_SOLVE, .wrap = {1, 2}, .wrap_offset = {3, 4}};
 	nt_mesh own = {.name = "own", .gltf_mesh = 5, .gltf_primitive = 6, .gltf_material = 7,
@@ -129,7 +129,7 @@ TEST(twins_share_geometry_and_nothing_else)
 	assert_ptr_equal(mesh.positions, numbers);
 	assert_ptr_equal(mesh.indices, indices);
 	assert_ptr_equal(mesh.split.vertex_tangents, numbers);
-	assert_true(mesh.vertex_count == 3 && mesh.face_count == 1 && mesh.tangent_copies == 4);
+	assert_true(mesh.vertex_count == 3 && mesh.face_count == 1 && mesh.quad_count == 4);
 	assert_ptr_equal(mesh.primitives, parts);
 	assert_int_equal(parts[0].face_count, 1);
 	assert_int_equal(parts[1].face_count, 9);
@@ -148,7 +148,7 @@ TEST(a_mesh_whose_arena_is_gone_points_nowhere)
 	for (size_t i = 0; i < sizeof gone / sizeof *gone; i++)
 		assert_null(gone[i]);
 	assert_int_equal(mesh.morph_count, 0);
-	assert_true(mesh.vertex_count && mesh.tangent_copies && mesh.split.source_count);
+	assert_true(mesh.vertex_count && mesh.quad_count && mesh.split.source_count);
 }
 
 TEST(the_view_is_of_what_is_solved)
