@@ -178,7 +178,8 @@ nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rul
 static nt_status read_list(nt_file *file, const char *path, double seconds, nt_error *error)
 {
 	nt_timer timer;
-	nt_status status = nt_timer_begin(&timer, seconds, NULL, NULL) ? nt_file_open(file, path, error)
+	nt_status status = nt_timer_begin(&timer, seconds, NULL, NULL)
+		? nt_file_open(file, path, NT_NAMED_BY_USER, error)
 		: nt_fail_memory(error);
 	if (nt_timer_end(&timer) && status == NT_ERROR_MEMORY)
 		status = nt_fail_file(error, NT_ERROR_LIMIT, path, "not read after --max-seconds=%.9g", seconds);

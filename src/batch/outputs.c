@@ -47,7 +47,7 @@ static nt_format input_format(const char *path)
 	struct stat info;
 	/* A pipe could be read once only. */
 	if (!entry && stat(path, &info) == 0 && S_ISREG(info.st_mode) &&
-		nt_file_open(&file, path, &ignored) == NT_OK) {
+		nt_file_open(&file, path, NT_NAMED_BY_USER, &ignored) == NT_OK) {
 		entry = nt_format_of_input(file.data, file.size, path);
 		nt_file_close(&file);
 	}

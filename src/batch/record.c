@@ -92,7 +92,7 @@ static nt_status read_text(nt_record *record, nt_error *error)
 	struct stat info;
 	if (stat(record->path, &info) != 0 && errno == ENOENT)
 		return NT_OK;
-	nt_status status = nt_file_open_untraced(&input, record->path, error);
+	nt_status status = nt_file_open(&input, record->path, NT_NAMED_BY_US, error);
 	if (status)
 		return status;
 	record->text = nt_alloc(input.size + 1, 1);

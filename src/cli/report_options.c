@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 #include "file/path.h"
 
 /* Takes the next word of a list separated by commas; false at its end. */
@@ -125,6 +126,18 @@ static nt_status check_diff(const nt_command *c, nt_error *error)
 	return NT_OK;
 }
 
+/* With the command that makes one. */
+static void tell_no_baseline(const char *path, nt_error *error)
+{
+	nt_buffer word = {0};
+	nt_report_format format;
+	const bool named = nt_report_format_of_path(path, &format) && format == NT_REPORT_JSON;
+	nt_shell_word(path, &word);
+	nt_fail(error, NT_ERROR_MISSING, "--baseline: there is no file '%s'; to make it: nmtan --check %s--report=%s "
+		"INPUT...", path, named ? "" : "--report-format=json ", word.data ? word.data : "FILE");
+	nt_buffer_free(&word);
+}
+
 nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, bool colour,
 	nt_error *error)
 {
@@ -164,9 +177,8 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 	}
 	if (!status && command->baseline) {
 		status = nt_baseline_open(&plan->baseline, command->baseline, error);
-		if (status == NT_ERROR_MISSING)
-			nt_fail(error, status, "--baseline: there is no file '%s'; to make it: nmtan --check "
-				"--report=%s INPUT...", command->baseline, command->baseline);
+		if (status == NT_ERROR_MISSING && access(command->baseline, F_OK) != 0)
+			tell_no_baseline(command->baseline, error);
 		plan->options.baseline = &plan->baseline;
 	}
 	const bool page_wanted = target->path && target->format == NT_REPORT_HTML;

@@ -89,8 +89,8 @@ static bool map_all(nt_file *file, int fd, const char *path, const struct stat *
 	return true;
 }
 
-/* `referred`: a name that a document has, which must not make the run wait for the writer of a pipe. Nor is a thread
- * with a deadline to wait for one: it opens the pipe first, and waits for bytes. */
+/* `referred`: by a document, which must not make the run wait for the writer of a pipe. Nor is a thread with a deadline
+ * to wait for one: it opens the pipe first, and waits for bytes. */
 static nt_status open_file(nt_file *file, const char *path, bool referred, nt_error *error)
 {
 	*file = (nt_file){.data = no_bytes, .fd = -1};
@@ -131,21 +131,15 @@ static nt_status open_file(nt_file *file, const char *path, bool referred, nt_er
 	return result;
 }
 
-nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
-{
-	return open_file(file, path, false, error);
-}
-
-nt_status nt_file_open_referred(nt_file *file, const char *path, nt_error *error)
-{
-	return open_file(file, path, true, error);
-}
-
-nt_status nt_file_open_content(nt_file *file, const char *path, bool referred, nt_error *error)
+nt_status nt_file_open(nt_file *file, const char *path, nt_naming naming, nt_error *error)
 {
 	static const char pointer[] = "version https://git-lfs.github.com/spec/";
-	const nt_status status = open_file(file, path, referred, error);
-	if (status || file->size < sizeof pointer - 1 || memcmp(file->data, pointer, sizeof pointer - 1) != 0)
+	const bool ours = naming == NT_NAMED_BY_US;
+	nt_trace *trace = ours ? nt_trace_use(NULL) : NULL;
+	const nt_status status = open_file(file, path, naming == NT_NAMED_BY_DOCUMENT, error);
+	if (ours)
+		nt_trace_use(trace);
+	if (status || ours || file->size < sizeof pointer - 1 || memcmp(file->data, pointer, sizeof pointer - 1) != 0)
 		return status;
 	nt_file_close(file);
 	return nt_fail_file(error, NT_ERROR_MISSING, path,
@@ -156,14 +150,6 @@ bool nt_is_folder(const char *path)
 {
 	struct stat info;
 	return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
-}
-
-nt_status nt_file_open_untraced(nt_file *file, const char *path, nt_error *error)
-{
-	nt_trace *trace = nt_trace_use(NULL);
-	const nt_status status = nt_file_open(file, path, error);
-	nt_trace_use(trace);
-	return status;
 }
 
 nt_file nt_file_of_bytes(const unsigned char *bytes, size_t size)
@@ -229,7 +215,7 @@ static nt_status open_foreign(nt_file *file, const char *path, bool *opened, nt_
 	*opened = false;
 	if (access(path, R_OK) != 0)
 		return NT_OK;
-	const nt_status status = nt_file_open_untraced(file, path, error);
+	const nt_status status = nt_file_open(file, path, NT_NAMED_BY_US, error);
 	*opened = status == NT_OK;
 	return status;
 }

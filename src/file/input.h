@@ -19,21 +19,17 @@ typedef struct nt_file {
 	uint64_t device, inode; /* which file it is; 0, 0 for standard input */
 } nt_file;
 
-/* Maps a file, or reads standard input when path is "-" or the file is a pipe; devices have no end and are refused.
- * The error carries the name. Returns NT_OK, NT_ERROR_MISSING, NT_ERROR_IO or NT_ERROR_MEMORY. */
-nt_status nt_file_open(nt_file *file, const char *path, nt_error *error);
+/* The one who names a file. */
+typedef enum nt_naming {
+	NT_NAMED_BY_USER,     /* "-" is standard input; a pipe is read to its end */
+	NT_NAMED_BY_DOCUMENT, /* only regular files, for which nobody waits; "-" is a file that is called so */
+	NT_NAMED_BY_US        /* no source of what is made, such as an output that is compared: not in the trace */
+} nt_naming;
 
-/* The same for a name that a document has: only regular files, which nobody waits for; else NT_ERROR_MISSING. "-" is a
- * file that is called so. */
-nt_status nt_file_open_referred(nt_file *file, const char *path, nt_error *error);
-
-/* The one (`referred`) or the other for what has to be the file itself: where a checkout has only the pointer by which
- * Git LFS stands for it, NT_ERROR_MISSING says so. */
-nt_status nt_file_open_content(nt_file *file, const char *path, bool referred, nt_error *error);
-
-/* The same as nt_file_open() for a file that is no source of what is made, such as an output that is compared: not in
- * the trace (trace.h). */
-nt_status nt_file_open_untraced(nt_file *file, const char *path, nt_error *error);
+/* Maps a file, or reads it where it cannot be mapped; devices have no end and are refused. If a checkout has only the
+ * pointer by which Git LFS stands for the file, NT_ERROR_MISSING says so, but for files of ours. The error carries the
+ * name. Returns NT_OK, NT_ERROR_MISSING, NT_ERROR_IO or NT_ERROR_MEMORY. */
+nt_status nt_file_open(nt_file *file, const char *path, nt_naming naming, nt_error *error);
 
 bool nt_is_folder(const char *path);
 

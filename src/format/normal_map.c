@@ -21,7 +21,7 @@ static nt_status without_map(nt_status status)
 
 static nt_status open_file(nt_normal_map *map, const char *path, nt_error *error)
 {
-	const nt_status status = nt_file_open_referred(&map->file, path, error);
+	const nt_status status = nt_file_open(&map->file, path, NT_NAMED_BY_DOCUMENT, error);
 	if (status)
 		return status;
 	map->path = strdup(path);

@@ -319,7 +319,7 @@ static nt_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const char
 	const char *path;
 	nt_status status = nt_gltf_resolve(document, uri, length, &path, error);
 	if (!status)
-		status = nt_file_open_content(&buffer->file, path, true, error);
+		status = nt_file_open(&buffer->file, path, NT_NAMED_BY_DOCUMENT, error);
 	if (status)
 		return status;
 	buffer->path = path;

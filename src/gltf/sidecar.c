@@ -59,7 +59,7 @@ nt_status nt_gltf_find_ownership(nt_output *output, const char *path, nt_error *
 	nt_file file;
 	nt_json *json = NULL;
 	nt_error ignored;
-	nt_status status = nt_file_open_untraced(&file, path, &ignored);
+	nt_status status = nt_file_open(&file, path, NT_NAMED_BY_US, &ignored);
 	if (!status) {
 		status = parse(&file, &json, &ignored);
 		nt_file_close(&file);

@@ -39,13 +39,14 @@ static nt_status is_file(const char *path, bool *is, nt_error *error)
 	return status;
 }
 
-/* Whether a file is an image by its content; what cannot be opened is none. */
+/* Whether a file is an image by its content; what cannot be opened is none, but for Git LFS's pointer to it. */
 static nt_status is_image(const char *path, bool *is, nt_error *error)
 {
 	nt_file file;
 	nt_error unused;
 	*is = false;
-	const nt_status status = nt_file_open_referred(&file, path, &unused);
+	const nt_status status = nt_file_open(&file, path, NT_NAMED_BY_DOCUMENT, &unused);
+	*is = status == NT_ERROR_MISSING;
 	if (status)
 		return status == NT_ERROR_MEMORY ? nt_fail_memory(error) : NT_OK;
 	*is = nt_image_type_of_bytes(file.data, file.size) != NT_IMAGE_OTHER;

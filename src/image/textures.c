@@ -100,15 +100,20 @@ void nt_textures_free(nt_textures *t)
 /* ---- requests ---- */
 
 /* Looks into the file for its type and identity, if there is one. */
-static nt_status inspect(nt_texture_source *s, nt_error *error)
+static nt_status inspect(nt_textures *t, nt_texture_source *s, nt_error *error)
 {
 	nt_file file;
+	nt_status status = NT_OK;
+	if (s->found <= NT_IMAGE_FOUND_ELSEWHERE)
+		status = nt_file_open(&file, s->path, NT_NAMED_BY_DOCUMENT, error);
+	if (status == NT_ERROR_MISSING) {
+		s->found = NT_IMAGE_MISSING;
+		s->obstacle = nt_arena_text(&t->arena, error->message, strlen(error->message));
+		status = s->obstacle ? NT_OK : nt_fail_memory(error);
+	}
 	if (s->found == NT_IMAGE_MISSING)
 		s->type = nt_image_type_of_name(s->path);
-	if (s->found > NT_IMAGE_FOUND_ELSEWHERE)
-		return NT_OK;
-	const nt_status status = nt_file_open_referred(&file, s->path, error);
-	if (status)
+	if (status || s->found > NT_IMAGE_FOUND_ELSEWHERE)
 		return status;
 	s->type = nt_image_type_of_bytes(file.data, file.size);
 	uint32_t sides[2];
@@ -152,7 +157,7 @@ static nt_status add_source(nt_textures *t, const nt_image_places *places, const
 	t->sources[t->source_count++] = s;
 	s->path = path.data;
 	s->file = (nt_texture_source){.path = path.data, .found = found};
-	return inspect(&s->file, error);
+	return inspect(t, &s->file, error);
 }
 
 /* A name is looked for once for each document. */
@@ -223,7 +228,7 @@ static bool can_decode(const nt_texture_source *s)
  * close_source(). */
 static nt_status open_source(const nt_texture_source *s, nt_file *file, nt_error *error)
 {
-	const nt_status status = nt_file_open_untraced(file, s->path, error);
+	const nt_status status = nt_file_open(file, s->path, NT_NAMED_BY_US, error);
 	if (status)
 		return status;
 	if (file->size == s->identity.size && file->device == s->identity.device && file->inode == s->identity.inode)

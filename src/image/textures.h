@@ -59,6 +59,7 @@ typedef struct nt_texture_rules {
 typedef struct nt_texture_source {
 	const char *path;     /* absolute: the file, or where it would be */
 	nt_image_found found;
+	const char *obstacle; /* why a file that is there counts as missing; NULL: it does not */
 	nt_image_type type;   /* of the file; of a missing one, by its name */
 	nt_file identity;     /* of the file, closed: size, device and inode */
 	uint64_t pixels;      /* as the file's header says, or as a decoder goes over them; 0: not known */

@@ -53,7 +53,7 @@ static nt_status open_library(const request *q, const char *name, const char *pa
 		*reason = "leaves the folder of the OBJ by a symbolic link, which is followed only "
 			  "with --outside=yes";
 	else if (!status)
-		status = nt_file_open_content(file, path, true, error);
+		status = nt_file_open(file, path, NT_NAMED_BY_DOCUMENT, error);
 	if (status != NT_ERROR_MISSING)
 		return status;
 	*reason = error->message;

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 #include "file/path.h"
 
 static const char *const option_names[NT_GIVEN_COUNT] = {
@@ -18,7 +19,11 @@ static const char *const option_names[NT_GIVEN_COUNT] = {
 static nt_status check_file(const char *option, const char *path, nt_error *error)
 {
 	nt_file file;
-	const nt_status status = nt_file_open_referred(&file, path, error);
+	const nt_status status = nt_file_open(&file, path, NT_NAMED_BY_DOCUMENT, error);
+	if (status == NT_ERROR_MISSING && access(path, F_OK) == 0) {
+		nt_error why = *error;
+		return nt_fail(error, NT_ERROR_USAGE, "--%s: '%s': %s", option, path, why.message);
+	}
 	if (status && status != NT_ERROR_MISSING)
 		return status;
 	const bool image = !status && nt_image_type_of_bytes(file.data, file.size) != NT_IMAGE_OTHER;

@@ -60,7 +60,7 @@ nt_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_re
 nt_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_error *error)
 {
 	nt_file file;
-	nt_status status = nt_file_open(&file, path, error);
+	nt_status status = nt_file_open(&file, path, NT_NAMED_BY_USER, error);
 	if (status)
 		return status;
 	status = nt_baseline_read(baseline, (const char *)file.data, file.size, error);
@@ -235,7 +235,7 @@ static nt_status find_part(const char *path, const char *text, bool *there, nt_e
 	*there = stat(path, &info) == 0 && S_ISREG(info.st_mode);
 	if (!*there)
 		return NT_OK; /* what else is in the way is said when it is written */
-	nt_status status = nt_file_open_untraced(&file, path, error);
+	nt_status status = nt_file_open(&file, path, NT_NAMED_BY_US, error);
 	if (status)
 		return status;
 	if (file.size != strlen(text) || memcmp(file.data, text, file.size) != 0)

@@ -92,7 +92,7 @@ static nt_status open_scene(run *r)
 	begin_stage(r, NT_STAGE_MAP);
 	nt_status status = NT_OK;
 	if (!r->input_is_open)
-		status = nt_file_open_content(&r->input, r->input_path, false, r->error);
+		status = nt_file_open(&r->input, r->input_path, NT_NAMED_BY_USER, r->error);
 	if (status && nt_is_folder(r->input_path))
 		strncat(r->error->message, "; -r takes the meshes in it",
 			sizeof r->error->message - strlen(r->error->message) - 1);

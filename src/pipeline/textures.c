@@ -170,6 +170,9 @@ static void tell_source(telling *t, const nt_map *map, int channel, const nt_tex
 		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1,
 			"%.*s (it is outside of the folders where it may be; --outside=yes allows it)",
 			NT_CUT(110, map->name));
+	else if (source->obstacle)
+		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1, "%.*s (%.*s)", NT_CUT(100, map->name),
+			NT_CUT(120, source->obstacle));
 	else if (source->found == NT_IMAGE_MISSING)
 		tell_missing(t, &place, map->name);
 	else if (failed)

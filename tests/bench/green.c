@@ -138,7 +138,7 @@ static void real(const char *path)
 	nt_file file;
 	nt_error error;
 	nt_normal_facts facts;
-	nt_status status = nt_file_open(&file, path, &error);
+	nt_status status = nt_file_open(&file, path, NT_NAMED_BY_USER, &error);
 	if (!status) {
 		status = nt_examine_image(file.data, file.size, &facts, &error);
 		nt_file_close(&file);

@@ -326,6 +326,21 @@ printf 'newmtl bumps\nKd 1 \0\n' >mirrored_cube.mtl
 run mirrored_cube.obj out.glb
 exits 0
 says "material library cannot be read: mirrored_cube.mtl: a byte 0 in it, expected text [MTL_MISSING]"
+while IFS='|' read -r code expected words; do
+	cp pointer image.png
+	printf 'newmtl bumps\nmap_Kd image.png\n' >mirrored_cube.mtl
+	run $words
+	exits "$code"
+	says "$expected: git lfs pull brings it"
+done <<-'END'
+	0|image cannot be read: image.png (Git LFS's pointer to the file, not the file itself|mirrored_cube.obj out.gltf
+	0|image cannot be read: image.png (Git LFS's pointer to the file, not the file itself|--images=link mirrored_cube.obj linked.gltf
+	1|--base-color: 'image.png': Git LFS's pointer to the file, not the file itself|--base-color=image.png mirrored_cube.obj out.glb
+	2|pointer: Git LFS's pointer to the file, not the file itself|--check --baseline=pointer mirrored_cube.obj
+	2|pointer: Git LFS's pointer to the file, not the file itself|--check --files-from=pointer
+END
+grep -q '"uri" *: *"image.png"' linked.gltf || wrong "a link to an image that is a pointer is gone"
+rm image.png linked.* out.*
 cp "$data/plates.bin" .
 cp pointer bumps.png
 run plates.gltf out.glb

@@ -241,6 +241,14 @@ done
 run --check --baseline=none.json head.obj
 exits 2
 says "--baseline: there is no file 'none.json'; to make it: nmtan --check --report=none.json INPUT..."
+for name in none "it's one"; do # the command runs as it stands
+	run --check --baseline="$name" head.obj
+	command=$(sed -n 's/.*to make it: nmtan \(.*\) INPUT.*/\1/p' "$WORK/err.txt")
+	eval "run $command head.obj"
+	exits 0
+	run --check --fail-on=info --baseline="$name" head.obj
+	exits 0
+done
 run -q --check --fail-on=never --report=none.json head.obj
 run -q --check --fail-on=info --baseline=none.json head.obj
 exits 0

@@ -119,7 +119,7 @@ static inline nt_file file_in_folder(const char *name)
 {
 	nt_file file;
 	nt_error error;
-	assert_int_equal(nt_file_open(&file, in_folder(name), &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, in_folder(name), NT_NAMED_BY_USER, &error), NT_OK);
 	return file;
 }
 

@@ -115,7 +115,7 @@ static nt_status open_image(const nt_texture *image, nt_file *file, nt_error *er
 		return NT_OK;
 	}
 	const nt_texture_source *source = image->sources[0];
-	const nt_status status = nt_file_open_referred(file, source->path, error);
+	const nt_status status = nt_file_open(file, source->path, NT_NAMED_BY_DOCUMENT, error);
 	if (status || file->size == source->identity.size)
 		return status;
 	nt_file_close(file);

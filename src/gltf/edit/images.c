@@ -69,7 +69,7 @@ static nt_status open_file(nt_gltf *document, const char *uri, size_t length, nt
 		failure);
 	if (status)
 		return status;
-	status = nt_file_open_content(file, *path, true, failure);
+	status = nt_file_open(file, *path, NT_NAMED_BY_DOCUMENT, failure);
 	if (status) {
 		const nt_error opening = *failure;
 		snprintf(failure->message, sizeof failure->message, "\"%.*s\": %.*s",

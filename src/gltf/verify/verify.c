@@ -51,7 +51,7 @@ static bool find_file(void *user, const char *uri, const unsigned char **bytes, 
 	nt_status status = path.failed ? nt_fail_memory(&error)
 		: nt_output_written(set->output, path.data, &written, &error);
 	if (!status)
-		status = nt_file_open_untraced(&set->file, written ? written : path.data, &error);
+		status = nt_file_open(&set->file, written ? written : path.data, NT_NAMED_BY_US, &error);
 	set->open = !status;
 	if (status && (written || status == NT_ERROR_MEMORY))
 		set->failure = error;
@@ -513,7 +513,7 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, u
 	nt_status status = nt_output_written(output, path, &written, error);
 	if (status != NT_OK || !written)
 		return status;
-	status = nt_file_open_untraced(&file, written, error);
+	status = nt_file_open(&file, written, NT_NAMED_BY_US, error);
 	if (status != NT_OK)
 		return status;
 	nt_error refusal;

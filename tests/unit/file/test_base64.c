@@ -18,7 +18,7 @@ static char *encoded(const unsigned char *bytes, size_t size, size_t piece)
 	assert_int_equal(nt_base64_end(&base64, &error), NT_OK);
 	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("out"), &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("out"), NT_NAMED_BY_USER, &error), NT_OK);
 	char *text = calloc(file.size + 1, 1);
 	memcpy(text, file.data, file.size);
 	nt_file_close(&file);

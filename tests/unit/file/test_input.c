@@ -19,7 +19,7 @@ TEST(input_is_mapped_and_knows_which_file_it_is)
 	put_text_file("c", "some bytes");
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("a"), &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("a"), NT_NAMED_BY_USER, &error), NT_OK);
 	assert_true(file.mapped);
 	assert_int_equal(file.size, 10);
 	assert_memory_equal(file.data, "some bytes", 10);
@@ -59,7 +59,7 @@ TEST(input_pages_that_are_forgotten_go_and_come_back)
 	fclose(stream);
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("in"), &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("in"), NT_NAMED_BY_USER, &error), NT_OK);
 	unsigned sum = 0;
 	for (size_t i = 0; i < file.size; i++)
 		sum += file.data[i];
@@ -80,7 +80,7 @@ TEST(input_empty_is_no_error)
 	put_text_file("a", "");
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("a"), &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("a"), NT_NAMED_BY_USER, &error), NT_OK);
 	assert_int_equal(file.size, 0);
 	assert_non_null(file.data);
 	nt_file_close(&file);
@@ -90,11 +90,11 @@ TEST(input_missing_or_a_folder_is_named)
 {
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("missing"), &error), NT_ERROR_MISSING);
+	assert_int_equal(nt_file_open(&file, in_folder("missing"), NT_NAMED_BY_USER, &error), NT_ERROR_MISSING);
 	assert_string_equal(error.message, "no such file");
 	assert_string_equal(error.place.file, in_folder("missing"));
 	nt_file_close(&file);
-	assert_int_equal(nt_file_open(&file, in_folder(""), &error), NT_ERROR_MISSING);
+	assert_int_equal(nt_file_open(&file, in_folder(""), NT_NAMED_BY_USER, &error), NT_ERROR_MISSING);
 	assert_string_equal(error.message, "cannot read: Is a directory");
 	nt_file_close(&file);
 }
@@ -105,7 +105,7 @@ TEST(input_without_permission_is_named)
 	assert_int_equal(chmod(in_folder("a"), 0), 0);
 	nt_error error;
 	nt_file file;
-	const nt_status status = nt_file_open(&file, in_folder("a"), &error);
+	const nt_status status = nt_file_open(&file, in_folder("a"), NT_NAMED_BY_USER, &error);
 	if (geteuid() == 0) { /* root reads everything */
 		assert_int_equal(status, NT_OK);
 	} else {
@@ -128,7 +128,7 @@ TEST(input_pipe_is_read_to_its_end)
 	}
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("pipe"), &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("pipe"), NT_NAMED_BY_USER, &error), NT_OK);
 	assert_false(file.mapped);
 	assert_int_equal(file.size, 500000);
 	for (size_t i = 0; i < file.size; i++)

@@ -19,7 +19,7 @@ static void assert_content(const char *name, const char *text)
 {
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder(name), &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, in_folder(name), NT_NAMED_BY_USER, &error), NT_OK);
 	assert_int_equal(file.size, strlen(text));
 	assert_memory_equal(file.data, text, file.size);
 	nt_file_close(&file);
@@ -106,7 +106,8 @@ static void fault(int number, bool shorter)
 	nt_sink *sink;
 	signal(number, SIG_DFL);
 	nt_output_catch_faults(tell_changed);
-	if (nt_file_open(&file, in_folder("in"), &error) || !file.mapped || nt_output_create(&output, NULL, &error) ||
+	if (nt_file_open(&file, in_folder("in"), NT_NAMED_BY_USER, &error) || !file.mapped ||
+		nt_output_create(&output, NULL, &error) ||
 		nt_output_add(output, in_folder("a"), NT_ROLE_MAIN, &sink, &error) ||
 		(shorter && truncate(in_folder("in"), 1) != 0))
 		_exit(1);
@@ -191,7 +192,7 @@ TEST(output_bytes_are_the_same_for_small_and_large_writes)
 	assert_int_equal(nt_output_size(output), SIZE);
 	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("out"), &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("out"), NT_NAMED_BY_USER, &error), NT_OK);
 	assert_int_equal(file.size, SIZE);
 	assert_memory_equal(file.data, bytes, SIZE);
 
@@ -206,7 +207,7 @@ TEST(output_bytes_are_the_same_for_small_and_large_writes)
 	assert_int_equal(nt_output_size(output), LARGE + 104);
 	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	nt_file copy;
-	assert_int_equal(nt_file_open(&copy, in_folder("copy"), &error), NT_OK);
+	assert_int_equal(nt_file_open(&copy, in_folder("copy"), NT_NAMED_BY_USER, &error), NT_OK);
 	assert_int_equal(copy.size, LARGE + 104);
 	assert_memory_equal(copy.data, "head", 4);
 	assert_memory_equal(copy.data + 4, bytes + 1, LARGE + 100);
@@ -268,7 +269,7 @@ TEST(output_can_be_read_back_before_it_has_its_name)
 	const char *temporary;
 	assert_int_equal(nt_output_written(output, in_folder("out"), &temporary, &error), NT_OK);
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, temporary, &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, temporary, NT_NAMED_BY_USER, &error), NT_OK);
 	assert_int_equal(file.size, 4);
 	nt_file_close(&file);
 	assert_int_equal(nt_output_commit(output, &error), NT_OK);
@@ -300,7 +301,7 @@ TEST(output_in_place_replaces_what_is_mapped)
 	put_text_file("a.ply", "0123456789");
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("a.ply"), &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("a.ply"), NT_NAMED_BY_USER, &error), NT_OK);
 	nt_output *output = start(NULL);
 	nt_sink *sink = add(output, in_folder("a.ply"), NT_ROLE_MAIN);
 	assert_int_equal(nt_sink_copy(sink, &file, 5, 5, &error), NT_OK);

@@ -31,7 +31,7 @@ static void open_pages(nt_file *file, const char *name, size_t count)
 	nt_error error;
 	put_pages(name, count);
 	nt_watch_forget();
-	assert_int_equal(nt_file_open(file, in_folder(name), &error), NT_OK);
+	assert_int_equal(nt_file_open(file, in_folder(name), NT_NAMED_BY_USER, &error), NT_OK);
 	assert_true(file->mapped);
 }
 
@@ -174,7 +174,7 @@ TEST(more_files_than_are_watched_are_read)
 	nt_error error;
 	put_pages("g", 1);
 	for (int i = 0; i < COUNT; i++)
-		assert_int_equal(nt_file_open(&files[i], in_folder("g"), &error), NT_OK);
+		assert_int_equal(nt_file_open(&files[i], in_folder("g"), NT_NAMED_BY_USER, &error), NT_OK);
 	assert_true(files[0].mapped);
 	assert_false(files[COUNT - 1].mapped);
 	assert_int_equal(files[COUNT - 1].size, page);
@@ -188,7 +188,7 @@ TEST(devices_are_refused)
 {
 	nt_file file;
 	nt_error error;
-	assert_int_equal(nt_file_open(&file, "/dev/full", &error), NT_ERROR_IO);
+	assert_int_equal(nt_file_open(&file, "/dev/full", NT_NAMED_BY_USER, &error), NT_ERROR_IO);
 	assert_string_equal(error.message, "cannot read: it is a device");
 	assert_string_equal(error.place.file, "/dev/full");
 }

@@ -38,7 +38,7 @@ static void read_file(const char *path, counts *tally)
 	nt_file file;
 	nt_error error;
 	nt_error_clear(&error);
-	assert_int_equal(nt_file_open(&file, path, &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, path, NT_NAMED_BY_USER, &error), NT_OK);
 	nt_scene scene;
 	nt_scene_init(&scene, path);
 	scene.bytes = file.data;

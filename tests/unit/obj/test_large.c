@@ -456,7 +456,7 @@ TEST(public_models_agree_with_the_naive_reader)
 		nt_error error;
 		nt_file file;
 		snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-		assert_int_equal(nt_file_open(&file, path, &error), NT_OK);
+		assert_int_equal(nt_file_open(&file, path, NT_NAMED_BY_USER, &error), NT_OK);
 		const char *bytes = (const char *)file.data;
 		if (refusal(entry->d_name)) {
 			reading r;

@@ -80,7 +80,7 @@ static bool judge_file(const char *path, rule_count *count)
 	nt_error error;
 	nt_file file;
 	nt_scene scene;
-	if (nt_file_open(&file, path, &error))
+	if (nt_file_open(&file, path, NT_NAMED_BY_USER, &error))
 		return false;
 	nt_scene_init(&scene, path);
 	scene.bytes = file.data;

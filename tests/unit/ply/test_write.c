@@ -20,7 +20,7 @@ static nt_file write_scene(nt_scene *scene, bool bitangents)
 	assert_int_equal(nt_output_create(&output, NULL, &error), NT_OK);
 	assert_int_equal(nt_ply_write(scene, &options, output, &error), NT_OK);
 	assert_int_equal(nt_output_commit(output, &error), NT_OK);
-	assert_int_equal(nt_file_open(&file, in_folder("out.ply"), &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("out.ply"), NT_NAMED_BY_USER, &error), NT_OK);
 	return file;
 }
 

@@ -88,7 +88,7 @@ static void edit(edited *p, const char *input, const nt_write_options *options)
 {
 	static const nt_read_options reading = {.texcoord_set = -1, .morphs = NT_MORPH_BAKE};
 	nt_error error;
-	assert_int_equal(nt_file_open(&p->file, input, &error), NT_OK);
+	assert_int_equal(nt_file_open(&p->file, input, NT_NAMED_BY_USER, &error), NT_OK);
 	nt_scene_init(&p->scene, input);
 	p->scene.bytes = p->file.data;
 	p->scene.byte_count = p->file.size;
