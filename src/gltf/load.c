@@ -504,7 +504,8 @@ static bool open_view(nt_gltf *document, uint32_t index)
 	nt_gltf_buffer *buffer;
 	nt_error ignored;
 	return index == NT_NONE || (nt_gltf_decompress_view(document, index, &ignored) == NT_OK &&
-		nt_gltf_open_buffer(document, document->views[index].buffer, "", &buffer, &ignored) == NT_OK);
+		(document->views[index].decoded ||
+			nt_gltf_open_buffer(document, document->views[index].buffer, "", &buffer, &ignored) == NT_OK));
 }
 
 /* The same of an accessor that a member names, if there is one. */

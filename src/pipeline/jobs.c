@@ -49,13 +49,13 @@ typedef struct window {
 	const nt_tasks *tasks;
 	nt_scene scene;     /* the meshes of the window, as if they were all */
 	bool *needed;       /* [mesh_count] to be loaded */
-	bool *large;        /* [mesh_count] all threads do it */
+	bool *alone;        /* [mesh_count] all threads do it, while no other mesh is done */
 	uint8_t *states;    /* [mesh_count] */
 	enum state pass;    /* meshes in this state are being done */
 	nt_read_options of_one; /* thread that loads a mesh */
 	worker *workers;    /* [worker_count] */
 	unsigned worker_count;
-	nmtan_timing timing; /* of large meshes */
+	nmtan_timing timing; /* of meshes that are done alone */
 	nt_status status, texture_status;
 	nt_error *error, texture_error;
 } window;
@@ -67,7 +67,7 @@ bool nt_writer_edits(const nt_format_entry *reader, const nt_format_entry *write
 
 /* ---- one job ---- */
 
-/* Takes seconds that large meshes need from those of the solve. */
+/* Takes seconds that meshes which are done alone need from those of the solve. */
 static void book(const window *w, nt_stage stage, double seconds)
 {
 	w->tasks->summary->seconds[stage] += seconds;
@@ -78,7 +78,7 @@ static void book(const window *w, nt_stage stage, double seconds)
 static nt_status make_normals(const window *w, worker *own, nt_mesh *mesh, unsigned threads, nt_error *error)
 {
 	const nt_settings *s = w->tasks->settings;
-	const double begin = w->large[mesh - w->scene.meshes] ? nt_seconds() : 0;
+	const double begin = w->alone[mesh - w->scene.meshes] ? nt_seconds() : 0;
 	if (mesh->decision == NT_SKIP_DROPPED)
 		mesh->tangents = NULL;
 	nt_judge_w(mesh);
@@ -100,13 +100,13 @@ static nt_status make_normals(const window *w, worker *own, nt_mesh *mesh, unsig
 static nt_status solve(window *w, worker *own, nt_mesh *mesh, unsigned threads, nt_error *error)
 {
 	const nt_tasks *t = w->tasks;
-	const bool large = w->large[mesh - w->scene.meshes];
+	const bool alone = w->alone[mesh - w->scene.meshes];
 	/* without a workspace it is only slower */
-	if (!large && !own->workspace)
+	if (!alone && !own->workspace)
 		own->workspace = nmtan_workspace_create(NULL);
 	const nt_job job = {.options = {.struct_bytes = sizeof job.options, .method = t->settings->method,
 			.repair = t->settings->repair, .threads = threads,
-			.workspace = large ? NULL : own->workspace, .timing = large ? &w->timing : NULL},
+			.workspace = alone ? NULL : own->workspace, .timing = alone ? &w->timing : NULL},
 		.v_offset = t->written == NT_FORMAT_UNKNOWN ? 0.0f : nt_v_offset(t->scene->format, t->written),
 		.triangulates = nt_format_is_gltf(t->written), .splits = t->written != NT_FORMAT_UNKNOWN,
 		.digests = t->settings->digests, .arena = nt_mesh_arena(&own->scene, mesh)};
@@ -184,7 +184,7 @@ static void do_small(void *context, size_t item, unsigned slot)
 {
 	window *w = context;
 	worker *own = &w->workers[slot];
-	if (w->states[item] == w->pass && !w->large[item] && item < own->failed)
+	if (w->states[item] == w->pass && !w->alone[item] && item < own->failed)
 		do_mesh(w, own, item, 1);
 }
 
@@ -201,26 +201,31 @@ static size_t corners_of(const window *w, size_t item)
 	return corners;
 }
 
+/* Whether a job has to open or decode what meshes may share. Others are loaded before, if they have to. */
+static bool must_open(const window *w, size_t item)
+{
+	return w->states[item] == KEPT && w->tasks->reader->load && !w->scene.meshes[item].ready;
+}
+
 /* Marks the large ones, and one that takes longer than all others beside it, whose threads would have nothing to do;
- * and those whose load has to open or decode what meshes may share, which one thread does at a time. */
-static void find_large(window *w)
+ * and those that must open. */
+static void find_alone(window *w)
 {
 	size_t longest = 0, most = 0, sum = 0;
 	for (size_t i = 0; i < w->scene.mesh_count; i++) {
 		const size_t corners = w->states[i] != NOTHING ? corners_of(w, i) : 0;
-		w->large[i] = corners >= LARGE_CORNERS ||
-			(w->states[i] == KEPT && w->tasks->reader->load && !w->scene.meshes[i].ready);
-		sum += w->large[i] ? 0 : corners;
-		if (!w->large[i] && corners > most) {
+		w->alone[i] = corners >= LARGE_CORNERS || must_open(w, i);
+		sum += w->alone[i] ? 0 : corners;
+		if (!w->alone[i] && corners > most) {
 			most = corners;
 			longest = i;
 		}
 	}
 	if (most >= LEAST_ALONE_CORNERS && sum - most < most / 2)
-		w->large[longest] = true;
+		w->alone[longest] = true;
 }
 
-/* Does all meshes in a state; of those that are to be loaded the large ones stay. */
+/* Does all meshes in a state; of those that are to be loaded some stay, which are done alone. */
 static nt_status do_pass(window *w, enum state pass)
 {
 	size_t corners = 0;
@@ -228,7 +233,7 @@ static nt_status do_pass(window *w, enum state pass)
 	for (size_t i = 0; i < w->scene.mesh_count; i++) {
 		if (w->states[i] != pass)
 			continue;
-		if (!w->large[i])
+		if (!w->alone[i])
 			corners += corners_of(w, i);
 		else if (pass != READY && w->workers->failed == SIZE_MAX)
 			do_mesh(w, w->workers, i, w->tasks->settings->io.threads);
@@ -299,7 +304,7 @@ static nt_status begin_jobs(window *w)
 		w->states[i] = !w->needed[i] ? NOTHING : mesh->ready && !mesh->plan.same_as ? READY : TO_LOAD;
 	}
 	w->pass = READY;
-	find_large(w);
+	find_alone(w);
 	if (!status)
 		status = do_pass(w, READY);
 	for (size_t i = 0; !status && i < w->scene.mesh_count; i++) {
@@ -477,7 +482,7 @@ static nt_status do_jobs(window *w)
 		w->states[i] = mesh->plan.join && mesh->plan.join->first == mesh ? JOIN : NOTHING;
 	}
 	w->pass = JOIN;
-	find_large(w);
+	find_alone(w);
 	if (!status)
 		status = do_pass(w, JOIN);
 	book(w, NT_STAGE_WELD, w->timing.weld);
@@ -538,7 +543,7 @@ static nt_status look_at_all_kept(window *w)
 		w->states[i] = w->needed[i] ? KEPT : NOTHING;
 	}
 	nt_status status = t->reader->load ? t->reader->prepare(&w->scene, w->needed, t->options, w->error) : NT_OK;
-	find_large(w);
+	find_alone(w);
 	if (!status)
 		status = do_pass(w, KEPT);
 	for (size_t i = 0; !status && i < w->scene.mesh_count; i++) {
@@ -560,7 +565,7 @@ static nt_status do_window(window *w)
 	if (t->reader->load)
 		status = begin_jobs(w);
 	else
-		find_large(w);
+		find_alone(w);
 	t->begin_stage(t->run, NT_STAGE_TANGENTS);
 	if (!status)
 		status = do_beside_textures(w);
@@ -605,7 +610,7 @@ nt_status nt_stage_jobs(const nt_tasks *t, nt_error *error)
 	}
 	for (size_t first = 0, end; !status && (first == 0 || first < scene->mesh_count); first = end ? end : 1) {
 		end = find_end(scene, first);
-		window w = {.tasks = t, .scene = *scene, .needed = marks, .large = marks + scene->mesh_count,
+		window w = {.tasks = t, .scene = *scene, .needed = marks, .alone = marks + scene->mesh_count,
 			.states = states, .of_one = *t->options, .workers = workers, .worker_count = worker_count,
 			.timing = NMTAN_TIMING_INIT, .error = error};
 		w.of_one.threads = 1;

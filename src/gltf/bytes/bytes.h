@@ -24,7 +24,7 @@ typedef struct nt_segment {
 		struct {
 			uint32_t pool, known; /* how many of them a pool has: nt_segment_know() */
 		};
-		int64_t shift;         /* once it is laid out: how far it moves */
+		int64_t shift;         /* how far it moves: layout.c, once buffers are laid out */
 	};
 	uint32_t apart;        /* the last accessor that no edit touches; NT_NONE: none */
 	bool changed;
@@ -88,10 +88,6 @@ static inline bool nt_segment_is(const nt_segment *segment, uint64_t begin, uint
 /* Changes a segment; the new bytes live as long as the edits. */
 void nt_segment_edit(nt_buffer_edits *edits, nt_segment *segment, nt_segment_change change);
 
-/* Returns where a position of a source buffer lies in the new one, once that is laid out: the begin of something, or
- * its end. */
-uint64_t nt_segments_map(nt_buffer_edits *edits, uint32_t buffer, uint64_t position, bool is_end);
-
 /* ---- edits: edits.c ---- */
 
 /* The destination of the bytes of a buffer. */
@@ -150,6 +146,7 @@ struct nt_buffer_edits {
 	uint32_t *free_views;       /* [free_count] those that nothing new has taken over */
 	size_t free_count;
 	uint32_t alignment;         /* what changes by less than this is padded */
+	bool laid_out;              /* segments have their places, and are not asked any more who has their users */
 	const nt_buffer *lists;     /* [list_count] of a new document: elements of arrays that were set open, in its
 	                               order, with "buffers" behind them. Empty: it has no such array */
 	size_t list_count;

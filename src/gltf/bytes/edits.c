@@ -5,6 +5,7 @@
  */
 #include "gltf/bytes/bytes.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include "gltf/document.h"
 
@@ -160,6 +161,7 @@ void nt_edits_leave(nt_buffer_edits *edits, uint32_t index, uint64_t offset)
 	if (!segment || !segment->users || !of->users ||
 		(!decoded && nt_json_find(nt_gltf_view_json(edits->document, index), "extensions")))
 		return;
+	assert(!edits->laid_out);
 	segment->known -= segment->known > 0;
 	if (--segment->users == 0)
 		nt_segment_edit(edits, segment, (nt_segment_change){.size = 0});

@@ -5,6 +5,7 @@
  */
 #include "gltf/bytes/bytes.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 #include "gltf/document.h"
@@ -31,6 +32,26 @@ static uint64_t lay_out(nt_buffer_edits *edits, uint32_t buffer, uint64_t old_le
 		*changed = true;
 	}
 	return old_length + (uint64_t)shift;
+}
+
+/* Returns where a position of a source buffer lies in the new one, once that is laid out: the begin of something, or
+ * its end. */
+static uint64_t new_place(nt_buffer_edits *edits, uint32_t buffer, uint64_t position, bool is_end)
+{
+	const size_t count = nt_segments_before(edits, buffer, position + !is_end);
+	const nt_segment *s = count ? &edits->segments[count - 1] : NULL;
+	assert(edits->laid_out);
+	if (!s || s->buffer != buffer)
+		return position;
+	const uint64_t moved = position + (uint64_t)s->shift;
+	if (!s->changed)
+		return moved;
+	const nt_segment_change *c = &edits->changes[s - edits->segments];
+	const uint64_t new_end = (uint64_t)s->shift + (c->kept ? s->end : s->begin) + c->size + c->padding;
+	if (position >= s->end)
+		return new_end + (position - s->end);
+	/* views of attributes that are interleaved may end before their last vertex does: they go on to its end */
+	return is_end && c->stride > s->end - position ? new_end : moved < new_end ? moved : new_end;
 }
 
 static void lay_out_additions(nt_buffer_edits *edits, nt_edited_buffer *buffer)
@@ -68,7 +89,7 @@ static void move_packed(nt_buffer_edits *edits, nt_json_value *view)
 		nt_json_find_uint64(objects[k], "byteOffset", &offset);
 		if (nt_json_find_uint64(objects[k], "buffer", &buffer) && buffer < edits->document->buffer_count)
 			nt_gltf_set_number(edits->document->json, objects[k], "byteOffset",
-				nt_segments_map(edits, (uint32_t)buffer, offset, false));
+				new_place(edits, (uint32_t)buffer, offset, false));
 	}
 }
 
@@ -93,8 +114,8 @@ static void move_views(nt_buffer_edits *edits)
 		const nt_gltf_view *view = moving_view(edits, i);
 		if (!view || nt_gltf_is_of_view(view->buffer))
 			continue;
-		const uint64_t begin = nt_segments_map(edits, view->buffer, view->offset, false);
-		const uint64_t end = nt_segments_map(edits, view->buffer, view->offset + view->length, true);
+		const uint64_t begin = new_place(edits, view->buffer, view->offset, false);
+		const uint64_t end = new_place(edits, view->buffer, view->offset + view->length, true);
 		nt_gltf_set_number(json, object, "byteOffset", begin);
 		nt_gltf_set_number(json, object, "byteLength", end - begin);
 		/* its bytes were another view's too, who has left */
@@ -112,8 +133,8 @@ static void move_in_view(nt_buffer_edits *edits, nt_json_value *object)
 		return;
 	nt_json_find_uint64(object, "byteOffset", &offset);
 	nt_gltf_set_number(edits->document->json, object, "byteOffset",
-		nt_segments_map(edits, view->buffer, view->offset + offset, false) -
-			nt_segments_map(edits, view->buffer, view->offset, false));
+		new_place(edits, view->buffer, view->offset + offset, false) -
+			new_place(edits, view->buffer, view->offset, false));
 }
 
 static void move_accessors(nt_buffer_edits *edits)
@@ -247,7 +268,7 @@ static nt_status put_buffer(nt_buffer_edits *edits, uint32_t index, const nt_byt
 	const nt_edited_buffer *buffer = &edits->buffers[index];
 	nt_gltf_buffer *source = NULL;
 	nt_status status = NT_OK;
-	uint64_t written = nt_segments_map(edits, index, buffer->old_length, true);
+	uint64_t written = new_place(edits, index, buffer->old_length, true);
 	if (buffer->old_length && edits->document->buffers[index].storage == NT_GLTF_STORED_NOWHERE)
 		return put_zeros(to, buffer->length, error);
 	if (buffer->old_length)
@@ -383,6 +404,7 @@ nt_status nt_edits_end(nt_buffer_edits *edits, nt_error *error)
 	}
 	if (status)
 		return status;
+	edits->laid_out = true;
 
 	/* Old data moves; new data comes behind it. */
 	if (changes) {

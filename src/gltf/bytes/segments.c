@@ -192,17 +192,11 @@ size_t nt_segments_before(nt_buffer_edits *edits, uint32_t buffer, uint64_t posi
 	return edits->near = low;
 }
 
-/* The last segment that begins before a position; NULL: none in that buffer. */
-static nt_segment *last_before(nt_buffer_edits *edits, uint32_t buffer, uint64_t position)
-{
-	const size_t count = nt_segments_before(edits, buffer, position);
-	return count && edits->segments[count - 1].buffer == buffer ? &edits->segments[count - 1] : NULL;
-}
-
 nt_segment *nt_segment_at(nt_buffer_edits *edits, uint32_t buffer, uint64_t position)
 {
-	nt_segment *segment = last_before(edits, buffer, position + 1);
-	return segment && position < segment->end ? segment : NULL;
+	const size_t count = nt_segments_before(edits, buffer, position + 1);
+	nt_segment *segment = count ? &edits->segments[count - 1] : NULL;
+	return segment && segment->buffer == buffer && position < segment->end ? segment : NULL;
 }
 
 nt_segment *nt_segment_of(nt_buffer_edits *edits, uint32_t index, uint64_t offset)
@@ -223,20 +217,4 @@ void nt_segment_edit(nt_buffer_edits *edits, nt_segment *segment, nt_segment_cha
 {
 	segment->changed = true;
 	edits->changes[segment - edits->segments] = change;
-}
-
-uint64_t nt_segments_map(nt_buffer_edits *edits, uint32_t buffer, uint64_t position, bool is_end)
-{
-	const nt_segment *s = last_before(edits, buffer, position + !is_end);
-	if (!s)
-		return position;
-	const uint64_t moved = position + (uint64_t)s->shift;
-	if (!s->changed)
-		return moved;
-	const nt_segment_change *c = &edits->changes[s - edits->segments];
-	const uint64_t new_end = (uint64_t)s->shift + (c->kept ? s->end : s->begin) + c->size + c->padding;
-	if (position >= s->end)
-		return new_end + (position - s->end);
-	/* views of attributes that are interleaved may end before their last vertex does: they go on to its end */
-	return is_end && c->stride > s->end - position ? new_end : moved < new_end ? moved : new_end;
 }
