@@ -3,16 +3,18 @@
 """mutate.py [--all] ROOM N SEED: which of N random faults in the sources of a room do the tests notice?
 
 A copy of the tree in build/mutate gets one fault at a time: a relation, a constant, a statement that is gone. First the
-scripts of the file's room and subject run, which see the tool from outside and outlive a room that is written anew; then
-the unit tests of the room, and the first scripts again under sanitizers, as `make check` has both; with --all then all
-others, but those of cost, pages, tree and bindings. A change that no test notices is listed with its line. A fault that
-does not compile, or that compiles to the same code, does not count. Scripts that do not execute the line (gcov says it, of
-a build of the tree without faults) are passed over. ROOM is a folder of src ("gltf", "report/render"), or "all". The choice
-follows from SEED alone.
+scripts of the file's room and subject run, which see the tool from outside and outlive a room that is written anew (the unit
+tests of the room, which take seconds, before those that take longest). With --all then all others, but those of cost, pages,
+tree and bindings, and the first scripts again under sanitizers, as `make check` has both. A change that no test notices is
+listed with its line. A fault that does not compile, or that compiles to the same code, does not count. Scripts that do not
+execute the line (gcov says it, of a build of the tree without faults) are passed over; of the others those come first that
+execute it most often in their time. A note keeps how the tests do without a fault for the next seed. ROOM is a folder of
+src ("gltf", "report/render"), or "all". The choice follows from SEED alone.
 """
 import concurrent.futures
 import glob
 import json
+import math
 import os
 import random
 import re
@@ -43,6 +45,9 @@ SUBJECTS = {
     'ext': ['draco', 'meshopt', 'modules', 'textures', 'verify'], 'base': ['limits', 'batch'],
 }
 LEFT_OUT = re.compile(r'test_cost|test_page|/tree/|/bindings/')
+
+
+QUICK = 5  # scripts before the unit tests
 
 
 def shell(*words, **more):
@@ -210,12 +215,21 @@ def lines_of(room):
     return found
 
 
+def kept(name, find):
+    """Asks find() about the tree without a fault, or takes the note of an earlier run over the same tree."""
+    note = os.path.join(TREE, '../%s.json' % name)
+    key = shell('sh', '-c', 'cat src/*/*.[ch] src/*/*/*.[ch] tests/cli/* tests/support/* tests/unit/*/*.c tests/unit/*/*/*.c | '
+                'sha256sum').stdout + room
+    if os.path.exists(note) and json.loads(bytes_of(note))['key'] == key:
+        return json.loads(bytes_of(note))['found']
+    found = find()
+    with open(note, 'w', encoding='utf-8') as file:
+        json.dump({'key': key, 'found': found}, file)
+    return found
+
+
 def find_reached(room, scripts):
     """[script][path] -> lines that it executes."""
-    note = os.path.join(TREE, '../reached.json')
-    key = shell('sh', '-c', "cat src/*/*.[ch] src/*/*/*.[ch] tests/cli/* tests/support/* | sha256sum").stdout + room
-    if os.path.exists(note) and json.loads(bytes_of(note))['key'] == key:
-        return json.loads(bytes_of(note))['reached']
     shell('make', '-s', '-j%d' % JOBS, 'config=debug', 'CFLAGS=--coverage', 'LDFLAGS=--coverage', 'all',
           'build/debug/tests/preload/calls.so', 'build/debug/tests/unit/ext/test_meshopt')
     reached = {}
@@ -228,25 +242,43 @@ def find_reached(room, scripts):
                     path = os.path.relpath(os.path.join(folder, name), top)
                     if path.startswith(room):
                         os.replace(os.path.join(folder, name), os.path.join(TREE, 'build/debug', path))
-        reached[script] = {path: sorted(lines.items()) for path, lines in lines_of(room).items()}
-        print('%s executes %d lines' % (script, sum(bool(n) for x in reached[script].values() for _, n in x)), flush=True)
-    with open(note, 'w', encoding='utf-8') as file:
-        json.dump({'key': key, 'reached': reached}, file)
+        lines = {path: sorted(lines.items()) for path, lines in lines_of(room).items()}
+        executed = sum(bool(n) for x in lines.values() for _, n in x)
+        if executed:  # else it was not asked
+            reached[script] = lines
+        print('%s executes %d lines' % (script, executed), flush=True)
     return reached
 
 
-def executes(script, path, number):
-    """Whether a script executes a line, or the one on which its statement begins."""
+def find_usual(tests):
+    """Tests that fail without a fault, and the seconds that each takes."""
+    seconds.clear()
+    with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
+        failing = [test for test, failed in zip(tests, pool.map(fails, tests)) if failed]
+    return failing, seconds
+
+
+def executions(script, path, number):
+    """How often a script executes a line, or the one on which its statement begins."""
     before = [(line, times) for line, times in reached.get(script, {}).get(path, []) if line <= number]
-    return script not in reached or bool(before and before[-1][1])
+    return 1 if script not in reached else before[-1][1] if before else 0
+
+
+def scripts_for(outside, path, number):
+    """Scripts that execute the line, those first that are most likely to notice it soon."""
+    times = {script: executions(script, path, number) for script in outside}
+    cost = lambda script: seconds.get(script, LIMIT) / math.log2(2 + times[script])
+    return sorted([script for script in outside if times[script]], key=cost)
 
 
 def make(*targets):
     return shell('make', '-s', '-j%d' % JOBS, *targets).returncode == 0
 
 
-def code_of(path):
-    return shell('sh', '-c', 'cat %s/*.so %s/nmtan %s/libnmtan.so | sha256sum' % (B, B, B)).stdout
+def built_code():
+    """A sum of what is built, without the columns that -g1 notes."""
+    return shell('sh', '-c', 'for f in %s/*.so %s/nmtan; do objcopy -S "$f" build/stripped && cat build/stripped; done | sha256sum'
+                 % (B, B)).stdout
 
 
 def try_one(path, number):
@@ -254,26 +286,30 @@ def try_one(path, number):
     outside, units, others = [[p for p in tests if p not in ignored] for tests in tests_of(path)]
     if not make('all'):
         return 'does not compile', False
-    if code_of(path) == usual:
+    if built_code() == usual:
         return 'same code', False
-    seen = first_that_fails([p for p in outside if executes(p, path, number + 1)])
+    outside = scripts_for(outside, path, number + 1)
+    seen = first_that_fails(outside[:QUICK])
     if seen:
         return seen, True
     if not make(*units):
         return 'does not compile', False
     seen = first_that_fails(units)
-    if not seen:
-        if not make('config=sanitize', 'all'):
-            return 'does not compile', False
-        scripts = [p for p in outside if executes(p, path, number + 1) and 'meshopt' not in p][:4]
-        seen = next(('%s, sanitized' % p for p in scripts if fails(p, build='build/sanitize')), None)
-        if seen:
-            return seen, True
-    if not seen and everything:
-        if not make('all', 'tests'):
-            return 'does not compile', False
-        seen = first_that_fails(others)
-    return seen, False
+    if seen:
+        return seen, False
+    seen = first_that_fails(outside[QUICK:])
+    if seen or not everything:
+        return seen, bool(seen)
+    if not make('all', 'tests'):
+        return 'does not compile', False
+    seen = first_that_fails(others)
+    if seen:
+        return seen, seen.endswith('.sh')
+    if not make('config=sanitize', 'all'):
+        return 'does not compile', False
+    scripts = [p for p in outside if 'meshopt' not in p][:4]
+    seen = next(('%s, sanitized' % p for p in scripts if fails(p, build='build/sanitize')), None)
+    return seen, bool(seen)
 
 
 everything = '--all' in sys.argv
@@ -285,13 +321,11 @@ sample = tests_of('src/%s/x.c' % ('gltf' if room == 'all' else room))
 needed = sum(sample[:3 if everything else 2], [])
 if not make('all', *(['tests'] if everything else sample[1] + [B + '/tests/preload/calls.so', B + '/tests/unit/ext/test_meshopt'])):
     sys.exit('the tree does not build')
-reached = find_reached('' if room == 'all' else room, sample[0])
-with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
-    ignored = {test for test, failed in zip(needed, pool.map(fails, needed)) if failed}
+reached = kept('reached', lambda: find_reached('' if room == 'all' else room, sample[0]))
+ignored, seconds = kept('usual', lambda: find_usual(needed))
 for test in sorted(ignored):
     print('fails without a fault, and is left out: ' + test)
-# -g1 puts line numbers into what is built, but no fault changes those.
-usual = code_of('')
+usual = built_code()
 choices = list(places(room))
 chance = random.Random(seed)
 noticed = from_outside = tried = 0
