@@ -76,7 +76,8 @@ typedef struct nt_gltf_sparse_arrays {
 typedef struct nt_gltf_accessor {
 	uint64_t count;
 	uint64_t offset;         /* in the view */
-	const unsigned char *decoded; /* elements from a compressed primitive; NULL: none */
+	const unsigned char *decoded; /* elements from a block of Draco, or that went into one; NULL: neither */
+	const struct nt_draco_attribute *packed; /* as its block has it; NULL: it is in none */
 	uint32_t index;          /* NT_NONE: the file is at fault */
 	uint32_t same;           /* the first accessor over the same bytes, or itself: it stands for all of them. This
 	                            and the next are valid after nt_gltf_find_users() */

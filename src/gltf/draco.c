@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include "base/hash_index.h"
 #include "base/parallel.h"
 #include "gltf/document.h"
@@ -32,14 +33,30 @@ nt_draco_quantization nt_gltf_draco_grid(const nt_gltf *document, uint32_t acces
 
 const nt_draco_quantization *nt_gltf_draco_tangents_of(const nt_gltf *document, const nt_json_value *primitive)
 {
-	const nt_json_value *extension = nt_gltf_draco_of(primitive);
-	uint64_t view, id;
-	const nt_draco_mesh *block = nt_json_find_uint64(extension, "bufferView", &view)
-		? nt_gltf_draco_block(document, view) : NULL;
-	const nt_draco_attribute *found = block &&
-			nt_json_find_uint64(nt_json_find(extension, "attributes"), "TANGENT", &id)
-		? nt_draco_find(block, (uint32_t)id) : NULL;
-	return found ? &found->quantization : NULL;
+	const nt_gltf_accessor *a = nt_gltf_named(document, nt_json_find(primitive, "attributes"), "TANGENT");
+	return a && a->packed ? &a->packed->quantization : NULL;
+}
+
+nt_draco_kind nt_gltf_draco_kind(const char *name)
+{
+	return strcmp(name, "POSITION") == 0 ? NT_DRACO_POSITION :
+	       strcmp(name, "NORMAL") == 0 ? NT_DRACO_NORMAL :
+	       strncmp(name, "COLOR_", 6) == 0 ? NT_DRACO_COLOR :
+	       strncmp(name, "TEXCOORD_", 9) == 0 ? NT_DRACO_TEXCOORD : NT_DRACO_GENERIC;
+}
+
+int nt_gltf_draco_bits_of(const int *draco_bits, const char *name)
+{
+	switch (nt_gltf_draco_kind(name)) {
+	case NT_DRACO_POSITION:
+		return nt_gltf_draco_bits(draco_bits, NT_DRACO_BITS_POSITION);
+	case NT_DRACO_NORMAL:
+		return nt_gltf_draco_bits(draco_bits, NT_DRACO_BITS_NORMAL);
+	case NT_DRACO_TEXCOORD:
+		return nt_gltf_draco_bits(draco_bits, NT_DRACO_BITS_TEXCOORD);
+	default:
+		return strcmp(name, "TANGENT") == 0 ? nt_gltf_draco_bits(draco_bits, NT_DRACO_BITS_TANGENT) : 0;
+	}
 }
 
 /* A value as a decoder will have it, in Draco's arithmetic. */
@@ -216,6 +233,7 @@ static nt_status give_attribute(nt_gltf *document, uint64_t index, const char *n
 			"type %d", NT_CUT(40, name), (unsigned long long)index, accessor->components,
 			accessor->component_type, from->components, from->component_type);
 	use_decoded(&document->accessors[index], from->data, mesh->point_count, (uint32_t)from->component_type);
+	document->accessors[index].packed = from;
 	return NT_OK;
 }
 

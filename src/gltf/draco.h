@@ -25,10 +25,14 @@ nt_status nt_gltf_decode_ahead(nt_scene *scene, const bool *needed, const nt_rea
 /* Quantization of what was not quantized before, as the options have it, or the default. */
 int nt_gltf_draco_bits(const int *draco_bits, nt_draco_bits which);
 
+/* Draco's kind of an attribute of that name, and the bits of its floats: 0 for what must come back as it was. */
+nt_draco_kind nt_gltf_draco_kind(const char *name);
+int nt_gltf_draco_bits_of(const int *draco_bits, const char *name);
+
 /* How an accessor is quantized that was not: on the document's grid for it, or on its own with these bits. */
 nt_draco_quantization nt_gltf_draco_grid(const nt_gltf *document, uint32_t accessor, int bits);
 
-/* How a primitive's block has its tangents; NULL: it has none, or is not decoded. */
+/* How a primitive's block has its tangents; NULL: it has none, or is not loaded. */
 const nt_draco_quantization *nt_gltf_draco_tangents_of(const nt_gltf *document, const nt_json_value *primitive);
 
 /* The grid of tangents that are encoded: the one that they have where it decodes to -1 and 1 exactly, as w has to be,

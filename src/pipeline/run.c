@@ -318,7 +318,7 @@ static nt_status write_scene(run *r)
 	}
 	if (!status && s->verify && !dry) {
 		begin_stage(r, NT_STAGE_VERIFY);
-		status = nt_verify_gltf(&r->scene, output, r->output_path, s->io.threads, r->error);
+		status = nt_verify_gltf(&r->scene, output, r->output_path, options, r->error);
 	}
 	if (!status)
 		status = nt_watch_check(r->error);

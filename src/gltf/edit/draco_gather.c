@@ -24,30 +24,6 @@ static bool begins_with(const char *text, const char *start)
 	return strncmp(text, start, strlen(start)) == 0;
 }
 
-static nt_draco_kind kind_of(const char *name)
-{
-	return strcmp(name, "POSITION") == 0 ? NT_DRACO_POSITION :
-	       strcmp(name, "NORMAL") == 0 ? NT_DRACO_NORMAL :
-	       begins_with(name, "COLOR_") ? NT_DRACO_COLOR :
-	       begins_with(name, "TEXCOORD_") ? NT_DRACO_TEXCOORD : NT_DRACO_GENERIC;
-}
-
-/* 0 for what must come back as it was. */
-static int bits_of(const nt_write_options *options, const char *name)
-{
-	switch (kind_of(name)) {
-	case NT_DRACO_POSITION:
-		return nt_gltf_draco_bits(options->draco_bits, NT_DRACO_BITS_POSITION);
-	case NT_DRACO_NORMAL:
-		return nt_gltf_draco_bits(options->draco_bits, NT_DRACO_BITS_NORMAL);
-	case NT_DRACO_TEXCOORD:
-		return nt_gltf_draco_bits(options->draco_bits, NT_DRACO_BITS_TEXCOORD);
-	default:
-		return strcmp(name, "TANGENT") == 0 ?
-			nt_gltf_draco_bits(options->draco_bits, NT_DRACO_BITS_TANGENT) : 0;
-	}
-}
-
 /* Whether the elements of an accessor lie in the file as they are. */
 static bool lies_plain(const nt_gltf_recoding *r, const nt_gltf_accessor *accessor)
 {
@@ -113,10 +89,10 @@ static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_
 	if (strcmp(name, "TANGENT") == 0 && !(is_float && accessor->components == 4))
 		r->obstacle = "it has tangents that are no floats";
 	nt_draco_attribute attribute = {.unique_id = (uint32_t)r->attribute_count,
-		.kind = kind_of(name), .component_type = (int)accessor->component_type,
+		.kind = nt_gltf_draco_kind(name), .component_type = (int)accessor->component_type,
 		.components = (int)accessor->components, .normalized = accessor->normalized,
 		.quantization = nt_gltf_draco_grid(r->document, accessor->index,
-			is_float ? bits_of(r->options, name) : 0),
+			is_float ? nt_gltf_draco_bits_of(r->options->draco_bits, name) : 0),
 		.stride_bytes = accessor->stride, .copied = r->vertices->sources, .own_count = r->vertices->own_count};
 	const unsigned char *elements = NULL;
 	const nt_status status = nt_gltf_elements(r->document, accessor, &elements, error);
@@ -181,14 +157,19 @@ nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r, nt_error *error)
 
 /* ---- taking out ---- */
 
-/* An accessor loses its view. */
+/* An accessor loses its view, but not its elements: what reads the output back will ask for them. */
 static void detach(const nt_gltf_recoding *r, uint64_t index)
 {
+	nt_gltf_accessor *accessor = &r->document->accessors[index];
+	const unsigned char *elements = NULL;
+	nt_error ignored;
 	nt_json_value *json = nt_gltf_accessor_json(r->document, index);
 	nt_edits_leave_accessor(r->edits, (uint32_t)index);
 	nt_json_remove(r->json, json, "bufferView");
 	nt_json_remove(r->json, json, "byteOffset");
-	r->document->accessors[index].view = NT_NONE; /* its elements are in the block */
+	if (nt_gltf_elements(r->document, accessor, &elements, &ignored) == NT_OK)
+		accessor->decoded = elements;
+	accessor->view = NT_NONE;
 }
 
 static void put_extension(nt_gltf_recoding *r)

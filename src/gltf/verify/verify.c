@@ -6,6 +6,7 @@
 #include "gltf/verify/verify.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
@@ -71,8 +72,7 @@ typedef struct part {
 	nt_tangent_filter filter; /* of its tangents; bits 0: none */
 	float least;   /* nt_morph_deltas() */
 	bool packed;   /* a block of Draco */
-	bool is_exact; /* floats as they are */
-	nt_verify_tolerance tolerance;
+	float tolerance; /* how far its tangents may be from those they were made of; 0: they are the same */
 } part;
 
 /* A mesh of the scene and the primitives that it became. */
@@ -85,6 +85,7 @@ typedef struct mesh_check {
 
 typedef struct verification {
 	const nt_scene *scene;
+	const nt_write_options *options;
 	nt_scene found; /* read back */
 	bool edited;    /* else the document is a new one */
 	mesh_check *checks; /* [count] */
@@ -94,42 +95,16 @@ typedef struct verification {
 static const nt_read_options reading = {.texcoord_set = -1, .outside = NT_OUTSIDE_YES, .morphs = NT_MORPH_KEEP,
 	.threads = 1};
 
-/* Half a step of the quantization of an attribute in a block, and what float arithmetic adds. */
-static float tolerance_of(const nt_gltf *document, const nt_json_value *primitive, const char *name, int *bits)
-{
-	const nt_json_value *extension = nt_gltf_draco_of(primitive);
-	uint64_t view, id;
-	*bits = 0;
-	if (!nt_json_find_uint64(extension, "bufferView", &view) ||
-		!nt_json_find_uint64(nt_json_find(extension, "attributes"), name, &id))
-		return 0;
-	const nt_draco_mesh *block = nt_gltf_draco_block(document, view);
-	const nt_draco_attribute *a = block ? nt_draco_find(block, (uint32_t)id) : NULL;
-	if (!a || a->component_type != NT_GLTF_FLOAT)
-		return 1e-6f; /* of what integers are mapped to */
-	if (!a->quantization.bits)
-		return 0;
-	float largest = 0;
-	const float *values = a->data;
-	for (size_t i = 0; i < block->point_count * (size_t)a->components; i++)
-		largest = fmaxf(largest, fabsf(values[i]));
-	*bits = a->quantization.bits;
-	const double steps = (double)(((uint64_t)1 << a->quantization.bits) - 1);
-	return (float)(0.501 * a->quantization.range / steps + 1e-6 * largest);
-}
-
 /* How the tangents of a part are stored, and what that may do to them. */
 static nt_status find_tolerance(nt_gltf *document, part *p, nt_error *error)
 {
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, &p->mesh);
 	const nt_gltf_accessor *a = nt_gltf_named(document, nt_json_find(primitive, "attributes"), "TANGENT");
+	const nt_draco_quantization *grid = nt_gltf_draco_tangents_of(document, primitive);
 	nt_gltf_packing packing = {.extension = NULL};
 	unsigned char *bytes = NULL;
-	int bits;
 	nt_status status = NT_OK;
 	p->packed = nt_gltf_draco_of(primitive) != NULL;
-	p->tolerance.position = tolerance_of(document, primitive, "POSITION", &bits);
-	p->tolerance.tangent = tolerance_of(document, primitive, "TANGENT", &bits);
 	p->filter.precision = !a ? NT_PRECISION_FLOAT : a->component_type == NT_GLTF_SHORT ? NT_PRECISION_SHORT :
 		a->component_type == NT_GLTF_BYTE ? NT_PRECISION_BYTE : NT_PRECISION_FLOAT;
 	if (a && a->view != NT_NONE)
@@ -141,12 +116,11 @@ static nt_status find_tolerance(nt_gltf *document, part *p, nt_error *error)
 			p->filter.bits = nt_filter_bits(packing.view.filter, bytes + a->offset, (size_t)a->count,
 				a->stride, (int)a->component_type, 4);
 		free(bytes);
-		p->tolerance.tangent = nt_tangent_filter_least(&p->filter);
+		p->tolerance = nt_tangent_filter_least(&p->filter);
 	} else if (p->filter.precision != NT_PRECISION_FLOAT) {
-		p->tolerance.tangent = 1e-6f; /* they are rounded as the writer does */
+		p->tolerance = 1e-6f; /* they are rounded as the writer does */
 	}
-	p->is_exact = !p->packed && !p->tolerance.tangent;
-	p->least = bits ? nt_morph_least_of_bits(bits) : nt_tangent_filter_least(&p->filter);
+	p->least = grid && grid->bits ? nt_morph_least_of_bits(grid->bits) : nt_tangent_filter_least(&p->filter);
 	return status;
 }
 
@@ -175,43 +149,56 @@ static bool has_tangents(const nt_mesh *mesh)
 	return mesh->split.vertex_tangents && mesh->normals;
 }
 
-/* A corner as the scene has it, rounded to the integers that the part has. */
-static nt_verify_vertex wanted_corner(const nt_mesh *mesh, size_t corner, const part *p)
-{
-	size_t source;
-	const size_t split = split_vertex(mesh, corner, &source);
-	nt_verify_vertex wanted = {{0}, {0}};
-	memcpy(wanted.position, mesh->positions + 3 * source, sizeof wanted.position);
-	if (has_tangents(mesh))
-		memcpy(wanted.tangent, mesh->split.vertex_tangents + 4 * split, sizeof wanted.tangent);
-	if (has_tangents(mesh) && !p->filter.filter)
-		nt_precision_round(p->filter.precision, wanted.tangent, 1, NULL);
-	return wanted;
-}
-
 static size_t vertex_at(const part *p, size_t corner)
 {
 	return p->mesh.indices ? p->mesh.indices[corner] : corner;
 }
 
-/* The same as the document has it. */
-static nt_verify_vertex found_corner(const nt_mesh *mesh, size_t corner, const part *p)
+/* Values that are not finite have to be the same. */
+static bool within(const float *a, const float *b, size_t count, float tolerance)
 {
-	const size_t vertex = vertex_at(p, corner);
-	nt_verify_vertex found = {{0}, {0}};
-	memcpy(found.position, p->mesh.positions + 3 * vertex, sizeof found.position);
-	if (has_tangents(mesh) && p->mesh.tangents)
-		memcpy(found.tangent, p->mesh.tangents + 4 * vertex, sizeof found.tangent);
-	return found;
+	for (size_t i = 0; i < count; i++)
+		if (!(fabsf(a[i] - b[i]) <= tolerance) && !(isnan(a[i]) && isnan(b[i])) && a[i] != b[i])
+			return false;
+	return true;
+}
+
+/* A tangent as it was to be written against one that was read. */
+static bool tangent_matches(const float *wanted, const float *found, const part *p)
+{
+	float rounded[4];
+	if (!p->tolerance)
+		return memcmp(wanted, found, sizeof rounded) == 0;
+	memcpy(rounded, wanted, sizeof rounded);
+	if (!p->filter.filter)
+		nt_precision_round(p->filter.precision, rounded, 1, NULL);
+	/* a client takes w of 1 and -1 alone */
+	return within(rounded, found, 4, p->tolerance) &&
+		(rounded[3] == found[3] || (fabsf(rounded[3]) != 1 && fabsf(found[3]) != 1));
+}
+
+static nt_status fail_in(const nt_mesh *mesh, const char *what, nt_error *error)
+{
+	nt_fail(error, NT_ERROR_INTERNAL,
+		"the output, read back, differs from what was written %s of mesh \"%s\"", what,
+		mesh->name ? mesh->name : "");
+	nt_mesh_place(mesh, &error->place);
+	return NT_ERROR_INTERNAL;
 }
 
 static nt_status fail_corner(const nt_mesh *mesh, size_t corner, nt_error *error)
 {
-	nt_fail(error, NT_ERROR_INTERNAL,
-		"the output, read back, differs from what was written at corner %zu of mesh \"%s\"",
-		corner, mesh->name ? mesh->name : "");
-	nt_mesh_place(mesh, &error->place);
-	return NT_ERROR_INTERNAL;
+	char what[40];
+	snprintf(what, sizeof what, "at corner %zu", corner);
+	return fail_in(mesh, what, error);
+}
+
+/* bad: as nt_verify_block() has it. */
+static nt_status fail_block(const nt_mesh *mesh, const char *bad, nt_error *error)
+{
+	char what[60];
+	snprintf(what, sizeof what, "in %.*s", NT_CUT(40, bad));
+	return fail_in(mesh, what, error);
 }
 
 /* A corner of the primitive, at `place`, against the scene's. */
@@ -222,12 +209,12 @@ static bool corner_matches(const nt_mesh *mesh, size_t corner, const part *p, si
 	const size_t vertex = vertex_at(p, place);
 	size_t source;
 	const size_t split = split_vertex(mesh, corner, &source);
-	if (p->is_exact)
-		return memcmp(mesh->positions + 3 * source, p->mesh.positions + 3 * vertex, 3 * sizeof(float)) == 0 &&
-			(!has_tangents(mesh) || (p->mesh.tangents && memcmp(mesh->split.vertex_tangents + 4 * split,
-				p->mesh.tangents + 4 * vertex, 4 * sizeof(float)) == 0));
-	const nt_verify_vertex wanted = wanted_corner(mesh, corner, p), found = found_corner(mesh, place, p);
-	return nt_verify_close(&wanted, &found, &p->tolerance);
+	const float *position = mesh->positions + 3 * source, *found = p->mesh.positions + 3 * vertex;
+	if (memcmp(position, found, 3 * sizeof *found) != 0 && (!p->tolerance || !within(position, found, 3, 0)))
+		return false;
+	return !has_tangents(mesh) ||
+		(p->mesh.tangents && tangent_matches(mesh->split.vertex_tangents + 4 * split,
+			p->mesh.tangents + 4 * vertex, p));
 }
 
 /* Faces of the scene's mesh against the primitives it became, parts[p] for primitive p. */
@@ -318,65 +305,25 @@ static nt_status compare_targets(nt_scene *found, const nt_mesh *mesh, const par
 	return status;
 }
 
-/* ---- compressed primitives ---- */
-
-/* Takes out the triangles of which two corners are at one position, as edgebreaker does; returns how many corners are
- * left. */
-static size_t drop_degenerate(nt_verify_vertex *corners, size_t count)
-{
-	size_t kept = 0;
-	for (size_t c = 0; c < count; c += 3) {
-		const float *a = corners[c].position, *b = corners[c + 1].position, *d = corners[c + 2].position;
-		if (memcmp(a, b, 3 * sizeof *a) == 0 || memcmp(b, d, 3 * sizeof *a) == 0 ||
-			memcmp(d, a, 3 * sizeof *a) == 0)
-			continue;
-		memmove(&corners[kept], &corners[c], 3 * sizeof *corners);
-		kept += 3;
-	}
-	return kept;
-}
-
-/* The sequential method keeps corners where they are; if they are elsewhere, their vertices have to be the same. */
-static nt_status compare_block(const nt_mesh *mesh, const part *p, nt_error *error)
-{
-	size_t count = mesh->corner_count, first = SIZE_MAX;
-	nt_verify_vertex *wanted = nt_alloc(count, sizeof *wanted), *found = nt_alloc(count, sizeof *found);
-	nt_status status = wanted && found ? NT_OK : nt_fail_memory(error);
-	bool ordered = true;
-	for (size_t c = 0; c < count && status == NT_OK; c++)
-		wanted[c] = wanted_corner(mesh, c, p);
-	if (status == NT_OK && p->mesh.corner_count != count && !mesh->morph_count)
-		count = drop_degenerate(wanted, count);
-	if (status == NT_OK && p->mesh.corner_count != count)
-		status = fail_corner(mesh, 0, error);
-	for (size_t c = 0; c < count && status == NT_OK; c++) {
-		found[c] = found_corner(mesh, c, p);
-		ordered &= nt_verify_close(&wanted[c], &found[c], &p->tolerance);
-	}
-	if (status == NT_OK && !ordered &&
-		nt_verify_vertices(wanted, count, found, count, &p->tolerance, &first) != NT_OK)
-		status = nt_fail_memory(error);
-	if (status == NT_OK && first != SIZE_MAX)
-		status = fail_corner(mesh, first, error);
-	free(wanted);
-	free(found);
-	return status;
-}
-
 /* ---- all meshes ---- */
 
 /* A mesh of an edited document stands where it stood. Strips and fans keep their own indices: there only the tangents
  * have to be there. */
-static nt_status compare_edited(nt_scene *found, const nt_mesh *mesh, part *p, nt_error *error)
+static nt_status compare_edited(const verification *v, nt_scene *found, const nt_mesh *mesh, part *p, nt_error *error)
 {
-	const bool list = nt_gltf_mode(nt_gltf_primitive_of(found->source, &p->mesh)) == NT_GLTF_TRIANGLES;
+	const nt_json_value *primitive = nt_gltf_primitive_of(found->source, &p->mesh);
+	const bool list = nt_gltf_mode(primitive) == NT_GLTF_TRIANGLES;
+	const char *bad = NULL;
 	if (!p->mesh.tangents || (list && !p->packed && p->mesh.corner_count != mesh->corner_count))
 		return fail_corner(mesh, 0, error);
 	if (!list)
 		return NT_OK;
-	nt_status status = p->packed ? NT_OK : turn_triangles(found, mesh, p, error);
-	if (!status)
-		status = p->packed ? compare_block(mesh, p, error) : compare_mesh(mesh, p, error);
+	nt_status status = p->packed ? nt_verify_block(v->scene->source, mesh, v->options, found->source, primitive,
+		&found->arena, &bad, error) : turn_triangles(found, mesh, p, error);
+	if (bad)
+		return fail_block(mesh, bad, error);
+	if (!status && !p->packed)
+		status = compare_mesh(mesh, p, error);
 	return status ? status : compare_targets(found, mesh, p, error);
 }
 
@@ -404,7 +351,7 @@ static nt_status compare_check(const verification *v, const mesh_check *check, n
 		if (parts[p].is_there || v->edited)
 			status = read_part(&alone, number++, &parts[p], error);
 	if (status == NT_OK)
-		status = v->edited ? compare_edited(&alone, check->mesh, parts, error)
+		status = v->edited ? compare_edited(v, &alone, check->mesh, parts, error)
 				   : compare_mesh(check->mesh, parts, error);
 	nt_arena_free(&alone.arena);
 	free(parts);
@@ -482,10 +429,10 @@ static nt_status prepare_loads(nt_scene *found, nt_error *error)
 	return NT_OK;
 }
 
-static nt_status compare_scene(verification *v, unsigned threads, nt_error *error)
+static nt_status compare_scene(verification *v, nt_error *error)
 {
 	nt_read_options opening = reading;
-	opening.threads = threads;
+	opening.threads = v->options->threads;
 	bool *needed = NULL;
 	nt_status status = nt_gltf_open(&v->found, &reading, error);
 	if (status == NT_OK)
@@ -499,13 +446,13 @@ static nt_status compare_scene(verification *v, unsigned threads, nt_error *erro
 	if (status == NT_OK)
 		status = nt_gltf_prepare(&v->found, needed, &opening, error);
 	if (status == NT_OK)
-		status = compare_all(v, nt_thread_count(threads), error);
+		status = compare_all(v, nt_thread_count(opening.threads), error);
 	free(v->checks);
 	free(needed);
 	return status == NT_ERROR_INPUT ? error->status = NT_ERROR_INTERNAL : status;
 }
 
-nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, unsigned threads,
+nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, const nt_write_options *options,
 	nt_error *error)
 {
 	const char *written;
@@ -527,13 +474,13 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, u
 	}
 	if (status == NT_OK) {
 		nt_trace *const trace = nt_trace_use(NULL);
-		verification v = {.scene = scene,
+		verification v = {.scene = scene, .options = options,
 			.edited = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB};
 		nt_scene_init(&v.found, path);
 		v.found.bytes = file.data;
 		v.found.byte_count = file.size;
 		v.found.written = output;
-		status = compare_scene(&v, threads, error);
+		status = compare_scene(&v, error);
 		nt_scene_free(&v.found);
 		nt_trace_use(trace);
 	} else if (status == NT_ERROR_INPUT) {

@@ -28,7 +28,7 @@ static nt_status verify_after(const char *name, void (*spoil)(hand_scene *), nt_
 	assert_int_equal(nt_gltf_compose(&hand.scene, &options, output, error), NT_OK);
 	if (spoil)
 		spoil(&hand);
-	const nt_status status = nt_verify_gltf(&hand.scene, output, path, 1, error);
+	const nt_status status = nt_verify_gltf(&hand.scene, output, path, &options, error);
 	nt_output_abort(output);
 	return status;
 }
@@ -141,10 +141,10 @@ TEST(tangents_of_targets_are_compared)
 		nt_error error;
 		edit(&p, NT_DATA_DIR "/morph.gltf", &options);
 		assert_int_equal(p.scene.meshes[0].morph_count, 1);
-		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, 1, &error), NT_OK);
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_OK);
 		/* one bit of one number: 0.6 again, but for its last one */
 		p.moved[2][1] = nextafterf(p.moved[2][1], 1);
-		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, 1, &error), NT_ERROR_INTERNAL);
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_ERROR_INTERNAL);
 		assert_non_null(strstr(error.message, "corner 2 "));
 		close_edited(&p);
 	}
@@ -156,24 +156,54 @@ TEST(the_first_mesh_that_differs_is_told)
 	static const nt_draco_choice ways[] = {NT_DRACO_OFF, NT_DRACO_AS_SEQUENTIAL, NT_DRACO_AS_EDGEBREAKER};
 	for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
 		const char *path = in_folder("a.glb");
-		const nt_write_options options = {.path = path, .format = NT_FORMAT_GLB, .draco = ways[i]};
+		nt_write_options options = {.path = path, .format = NT_FORMAT_GLB, .draco = ways[i]};
 		edited p;
 		nt_error error;
 		edit(&p, NT_DATA_DIR "/plates.gltf", &options);
 		assert_int_equal(p.scene.mesh_count, MESHES);
-		for (unsigned threads = 1; threads <= 4; threads++)
-			assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, threads, &error), NT_OK);
+		for (options.threads = 1; options.threads <= 4; options.threads++)
+			assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_OK);
 		for (int m = MESHES; m-- > 0;) {
 			p.tangents[m][p.scene.meshes[m].indices[3]][3] = -1;
-			for (unsigned threads = 1; threads <= 4; threads++) {
+			for (options.threads = 1; options.threads <= 4; options.threads++) {
 				char pointer[40];
-				assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, threads, &error),
+				assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error),
 					NT_ERROR_INTERNAL);
 				snprintf(pointer, sizeof pointer, "/meshes/0/primitives/%d", m);
 				assert_string_equal(error.place.pointer, pointer);
-				assert_non_null(strstr(error.message, "corner "));
+				assert_non_null(strstr(error.message, i == 0 ? "corner " : "in TANGENT of"));
 			}
 		}
+		close_edited(&p);
+	}
+}
+
+/* Changes the source instead of the block: the first vertex, by more than a step of its grid. */
+TEST(each_attribute_of_a_block_is_compared)
+{
+	static const nt_draco_choice ways[] = {NT_DRACO_AS_SEQUENTIAL, NT_DRACO_AS_EDGEBREAKER};
+	static const char *const names[] = {"POSITION", "NORMAL", "TEXCOORD_0", "JOINTS_0", "WEIGHTS_0"};
+	for (size_t i = 0; i < 2 * sizeof names / sizeof *names; i++) {
+		const char *path = in_folder("a.glb"), *name = names[i / 2];
+		const nt_write_options options = {.path = path, .format = NT_FORMAT_GLB, .draco = ways[i % 2]};
+		_Alignas(float) unsigned char changed[VERTICES * 16];
+		char expected[60];
+		edited p;
+		nt_error error;
+		edit(&p, NT_DATA_DIR "/skin.gltf", &options);
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_OK);
+		nt_gltf *document = p.scene.source;
+		nt_gltf_accessor *a = &document->accessors[nt_gltf_reference(document,
+			nt_json_find(nt_gltf_primitive_of(document, &p.scene.meshes[0]), "attributes"), name)];
+		assert_true(a->decoded && a->count * a->stride <= sizeof changed);
+		a->decoded = memcpy(changed, a->decoded, (size_t)a->count * a->stride);
+		if (a->component_type == NT_GLTF_FLOAT)
+			*(float *)(void *)changed += 0.01f;
+		else
+			changed[0]++;
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_ERROR_INTERNAL);
+		snprintf(expected, sizeof expected, "in %s of mesh", name);
+		assert_non_null(strstr(error.message, expected));
 		close_edited(&p);
 	}
 }
