@@ -99,9 +99,12 @@ nt_status nt_fail_memory(nt_error *error)
 
 nt_status nt_fail_memory_limit(uint64_t most_bytes, nt_error *error)
 {
-	const bool megabytes = most_bytes % (1 << 20) == 0;
-	return nt_fail(error, NT_ERROR_LIMIT, "--max-memory=%llu%c is not enough",
-		(unsigned long long)(most_bytes >> (megabytes ? 20 : 10)), megabytes ? 'M' : 'K');
+	static const char *const units[] = {"", "K", "M"};
+	unsigned unit = 0;
+	for (; unit < 2 && most_bytes && most_bytes % 1024 == 0; unit++)
+		most_bytes /= 1024;
+	return nt_fail(error, NT_ERROR_LIMIT, "--max-memory=%llu%s is not enough", (unsigned long long)most_bytes,
+		units[unit]);
 }
 
 nt_status nt_error_in_file(nt_error *error, const char *file)

@@ -27,6 +27,7 @@ typedef struct walk {
 	const char *root;        /* the folder that was named */
 	size_t root_length;      /* of the path up to and with the slash behind the folder that was named */
 	size_t file_count, mesh_count; /* looked at */
+	bool has_excluded; /* a folder */
 	struct stat leave_out;
 	bool has_leave_out;
 } walk;
@@ -86,8 +87,10 @@ static nt_status visit(walk *w, nt_buffer *path)
 	const nt_folder_rules *rules = w->rules;
 	w->file_count += !S_ISDIR(info.st_mode);
 	w->mesh_count += !S_ISDIR(info.st_mode) && nt_format_of_path(below);
-	if (matches(rules->exclude, rules->exclude_count, below))
+	if (matches(rules->exclude, rules->exclude_count, below)) {
+		w->has_excluded |= S_ISDIR(info.st_mode);
 		return NT_OK;
+	}
 	if (S_ISDIR(info.st_mode)) {
 		const bool left_out = w->has_leave_out && nt_same_file(&info, &w->leave_out);
 		return left_out ? NT_OK : look_through(w, path);
@@ -136,8 +139,8 @@ static void note_nothing(walk *w)
 		return;
 	if (!w->mesh_count)
 		nt_fail_file(nothing, NT_ERROR_IO, w->root,
-			"no mesh is in it or below it (.obj .ply .gltf .glb .drc); files looked at: %zu",
-			w->file_count);
+			"no mesh is in it or below it (.obj .ply .gltf .glb .drc)%s; files looked at: %zu",
+			w->has_excluded ? " outside of folders that --exclude takes out" : "", w->file_count);
 	else if (rules->include_count)
 		nt_fail_file(nothing, NT_ERROR_IO, w->root, "no file matches --include='%s'%s%s; meshes looked at: %zu",
 			rules->include[0], rules->include_count > 1 ? " or another pattern" : "",

@@ -17,6 +17,7 @@
 #include "file/path.h"
 #include "file/uri.h"
 #include "format/format.h"
+#include "report/codes.h"
 
 nt_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
 {
@@ -116,7 +117,8 @@ static nt_status refuse(nt_job *job, const nt_buffer *reason, nt_error *error)
 	return job->refused ? NT_OK : nt_fail_memory(error);
 }
 
-/* The folder that all inputs are in or below, as they are spelled; "ROOT": none that their spelling tells. */
+/* The folder that all inputs are in or below, as they are spelled, a word of a shell; "ROOT": none that their spelling
+ * tells. */
 static void append_common_folder(nt_buffer *out, const nt_batch *batch)
 {
 	const char *first = batch->jobs[0].input;
@@ -133,10 +135,14 @@ static void append_common_folder(nt_buffer *out, const nt_batch *batch)
 	for (size_t i = 0; i < batch->count; i++)
 		below &= (common || batch->jobs[i].input[0] != '/') &&
 			!nt_uri_has_parent_step(batch->jobs[i].input + common);
+	nt_buffer folder = {0};
 	if (below && common)
-		nt_buffer_append(out, first, common > 1 ? common - 1 : 1);
-	else
-		nt_buffer_text(out, below ? "." : "ROOT");
+		nt_buffer_append(&folder, first, common > 1 ? common - 1 : 1);
+	else if (below)
+		nt_buffer_text(&folder, ".");
+	if (!folder.data || !nt_shell_word(folder.data, out))
+		nt_buffer_text(out, "ROOT");
+	nt_buffer_free_into(&folder, out);
 }
 
 static int compare_folders(const void *a, const void *b)

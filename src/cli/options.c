@@ -18,6 +18,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 /* The parser's memory: which rows were given. */
@@ -517,6 +518,19 @@ static const char *list_option(const nt_command *c)
 	return c->files_from ? "files-from" : c->recursive ? "recursive" : NULL;
 }
 
+/* With what the user may mean; an OBJ or Draco file is not written in place. */
+static nt_status fail_without_output(const parser *p, const char *input)
+{
+	nt_buffer word = {0};
+	const char *dot = strrchr(input, '.');
+	const bool stays = !dot || (strcasecmp(dot, ".obj") != 0 && strcasecmp(dot, ".drc") != 0);
+	const bool sayable = nt_shell_word(input, &word) && word.data;
+	nt_fail(p->error, NT_ERROR_USAGE, "OUTPUT is missing: nmtan %s OUT.glb, -d DIR%s or --check",
+		sayable ? word.data : "INPUT", stays ? ", --in-place" : "");
+	nt_buffer_free(&word);
+	return p->error->status;
+}
+
 /* Too few or too many names. */
 static nt_status check_count(const parser *p)
 {
@@ -533,8 +547,7 @@ static nt_status check_count(const parser *p)
 	if (count == 0 && !c->files_from)
 		return nt_fail(p->error, NT_ERROR_USAGE, "INPUT is missing");
 	if (!many && count == 1)
-		return nt_fail(p->error, NT_ERROR_USAGE,
-			"OUTPUT is missing: nmtan %s OUT.glb, -d DIR, --in-place or --check", c->operands[0]);
+		return fail_without_output(p, c->operands[0]);
 	if (c->settings.check && c->output && (count > 1 || list_option(c)))
 		return nt_fail(p->error, NT_ERROR_USAGE, "--output names the output of one input; for many use -d DIR");
 	/* -o comes last of the operands */

@@ -94,7 +94,8 @@ static nt_status open_scene(run *r)
 	if (!r->input_is_open)
 		status = nt_file_open(&r->input, r->input_path, NT_NAMED_BY_USER, r->error);
 	if (status && nt_is_folder(r->input_path))
-		strncat(r->error->message, "; -r takes the meshes in it",
+		strncat(r->error->message, r->settings->own_input && !r->settings->check
+			? "; -r with -d DIR takes the meshes in it" : "; -r takes the meshes in it",
 			sizeof r->error->message - strlen(r->error->message) - 1);
 	if (status)
 		return status;

@@ -126,6 +126,10 @@ says "'x/a.obj' and 'y/a.glb' would both be written to 'out/a.glb'"
 says "'x/b.obj' and 'y/b.ply' would both be written to 'out/b.glb'; --keep-tree=. keeps the folders of inputs"
 says "nmtan:   4 failed: would replace another output or an input: x/a.obj, y/a.glb, x/b.obj and 1 more"
 is "$(wc -l <"$WORK/err.txt")" 4 # a line for each clash, the sum, and who failed
+mkdir "it's" && cp -r x y "it's"
+run -d new --output-format=glb "it's/x/b.obj" "it's/y/b.ply"
+says "; --keep-tree='it'\''s' keeps the folders of inputs"
+rm -r "it's"
 is "$(ls out)" one.glb
 is "$(wc -l <m)" 5
 cp x/a.obj y/A.OBJ
@@ -229,6 +233,7 @@ while IFS='|' read -r words message; do
 done <<-'EOF'
 	-r -d out empty|empty: no mesh is in it or below it (.obj .ply .gltf .glb .drc); files looked at: 1
 	-r --check empty|empty: no mesh is in it or below it (.obj .ply .gltf .glb .drc); files looked at: 1
+	-r --check --exclude=one .|.: no mesh is in it or below it (.obj .ply .gltf .glb .drc) outside of folders that --exclude takes out; files looked at: 2
 	-r -d out --include=*.glb one empty|one: no file matches --include='*.glb'; meshes looked at: 1
 	-r --check --include=*.glb --include=b* --exclude=c one|one: no file matches --include='*.glb' or another pattern and no --exclude; meshes looked at: 1
 	-r --in-place --exclude=*.obj one|one: --exclude takes out every mesh; meshes looked at: 1

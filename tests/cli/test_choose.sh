@@ -69,7 +69,7 @@ exits 2
 says "in: cannot read: Is a directory; -r takes the meshes in it"
 run in out2
 exits 2
-says "in: cannot read: Is a directory; -r takes the meshes in it"
+says "in: cannot read: Is a directory; -r with -d DIR takes the meshes in it"
 run --check .
 exits 2
 says "; -r takes the meshes in it"

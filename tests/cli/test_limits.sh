@@ -207,7 +207,7 @@ if ! $sanitized; then
 	scene "memory that is not enough to begin is a limit, too"
 	cp "$data"/{head.obj,quad_le.ply} .
 	gltf "$data/plates.gltf" plates ''
-	for size in 1K 300K 1M 4M; do
+	for size in 1 1500 1K 300K 1M 4M; do
 		for file in head.obj quad_le.ply plates.gltf; do
 			for words in "" --check --fix; do
 				output=out.glb

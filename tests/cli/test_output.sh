@@ -158,6 +158,12 @@ run "$data/quad.obj" direct.glb
 same real.glb direct.glb
 
 scene "a full disk is an error of writing"
+grep -v '^vn' "$data/mirrored_cube.obj" | sed 's|/[0-9]* | |g; s|/[0-9]*$||' >bare.obj
+run bare.obj out.glb
+says "[NORMALS_MADE]"
+run --output-format=glb bare.obj /dev/full
+says_not "[NORMALS_MADE]" # what was chosen for a file that is not there
+rm bare.obj out.glb
 run --output-format=glb "$data/head.obj" /dev/full
 exits 2
 says "/dev/full"
