@@ -83,7 +83,7 @@ NT_PRINTF(4, 5)
 static void find(const reader *r, nt_code code, size_t line, const char *format, ...)
 {
 	nt_place place = nt_line_place(r->path, line);
-	const bool named = r->scene->findings.count <= NAMED_FINDINGS_MOST;
+	const bool named = r->scene->findings.count < NAMED_FINDINGS_MOST;
 	char detail[256] = "";
 	va_list arguments;
 	va_start(arguments, format);

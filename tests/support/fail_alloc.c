@@ -8,11 +8,18 @@
 /* of all threads */
 static atomic_size_t left = SIZE_MAX; /* allocations that succeed; SIZE_MAX: all */
 static atomic_bool failed;
+static bool alone; /* one fails, and no later one */
 
 void fail_allocations_from(size_t n)
 {
 	left = n;
-	failed = false;
+	failed = alone = false;
+}
+
+void fail_allocation(size_t n)
+{
+	fail_allocations_from(n);
+	alone = true;
 }
 
 bool stop_failing_allocations(void)
@@ -29,6 +36,8 @@ static bool fails(void)
 	if (now > 0)
 		return false;
 	failed = true;
+	if (alone)
+		left = SIZE_MAX;
 	errno = ENOMEM;
 	return true;
 }

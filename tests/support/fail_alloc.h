@@ -12,6 +12,9 @@
 /* From now on the allocation number n (0: the next one) fails, and every later one. */
 void fail_allocations_from(size_t n);
 
+/* The same of that one alone: memory comes back, so that what passes over a failure makes something else. */
+void fail_allocation(size_t n);
+
 /* Ends that. Returns whether an allocation failed meanwhile. */
 bool stop_failing_allocations(void);
 

@@ -277,6 +277,21 @@ TEST(damaged_numbers_are_named_and_not_used)
 	}
 }
 
+TEST(a_thousand_statements_are_named_and_the_others_are_one_finding)
+{
+	enum { NAMED = 1000, OTHERS = 3 };
+	char text[8 * (NAMED + OTHERS) + 16], *p = text + sprintf(text, "newmtl a\n");
+	for (int i = 0; i < NAMED + OTHERS; i++)
+		p += sprintf(p, "x%d\n", i);
+	reading r;
+	parse(&r, text);
+	assert_int_equal(r.scene.findings.count, NAMED + 1);
+	assert_string_equal(r.scene.findings.items[NAMED - 1].detail, "MTL: x999");
+	assert_string_equal(r.scene.findings.items[NAMED].detail, "MTL: ");
+	assert_int_equal(r.scene.findings.items[NAMED].count, OTHERS);
+	close_reading(&r);
+}
+
 TEST(every_prefix_is_survived)
 {
 	static const char text[] = "\xEF\xBB\xBFnewmtl a\r\nKd 1 1 1\nd -halo 0.5\nmap_Kd -bm 1 -s 1 1 a b.png\n"
