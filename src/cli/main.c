@@ -417,23 +417,21 @@ static void tell_end(session *s)
 {
 	const size_t failed = s->failures.count, count = s->count;
 	if (count > 1 && (failed || s->failing || s->wrong || s->style.verbosity >= 0)) {
+		const bool check = s->command->settings.check;
+		const nt_phrase jobs[] = {
+			{s->current, ", ", "", " of them up to date"},
+			{failed, ", ", "", " failed"},
+			{s->untried, ", ", "", " not tried"},
+			{s->failing, ", ", "", " with findings that fail the run"}};
+		const nt_phrase rest[] = {
+			{s->command->settings.dry_run && !check, "; dry run, nothing written", NULL, ""},
+			{s->total.bare_materials, ", ", "material", " without any image"},
+			{1, "\n", NULL, ""}};
 		nt_buffer_format(&s->text, "nmtan: %zu of %zu done", count - failed - s->untried, count);
-		if (s->current)
-			nt_buffer_format(&s->text, ", %zu of them up to date", s->current);
-		if (failed)
-			nt_buffer_format(&s->text, ", %zu failed", failed);
-		if (s->untried)
-			nt_buffer_format(&s->text, ", %zu not tried", s->untried);
-		if (s->failing)
-			nt_buffer_format(&s->text, ", %zu with findings that fail the run", s->failing);
-		if (!s->command->settings.check)
+		nt_message_phrases(&s->text, jobs, sizeof jobs / sizeof *jobs);
+		if (!check)
 			append_outcomes(s);
-		if (s->command->settings.dry_run && !s->command->settings.check)
-			nt_buffer_text(&s->text, "; dry run, nothing written");
-		if (s->total.bare_materials)
-			nt_buffer_format(&s->text, ", %zu material%s without any image", s->total.bare_materials,
-				s->total.bare_materials == 1 ? "" : "s");
-		nt_buffer_text(&s->text, "\n");
+		nt_message_phrases(&s->text, rest, sizeof rest / sizeof *rest);
 		nt_failures_append(&s->text, &s->failures, s->command->manifest);
 	}
 	tell_left_over(s);

@@ -23,6 +23,25 @@ static const char *colour(nt_style style, const char *code)
 	return style.colour ? code : "";
 }
 
+/* "1 primitive", "2 primitives". */
+static void append_count(nt_buffer *out, size_t count, const char *noun)
+{
+	nt_buffer_format(out, "%zu%s%s%s", count, *noun ? " " : "", noun, *noun && count != 1 ? "s" : "");
+}
+
+void nt_message_phrases(nt_buffer *out, const nt_phrase *phrases, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		const nt_phrase *p = &phrases[i];
+		if (!p->count)
+			continue;
+		nt_buffer_text(out, p->before);
+		if (p->noun)
+			append_count(out, p->count, p->noun);
+		nt_buffer_text(out, p->after);
+	}
+}
+
 /* "file:line: ", "file: at byte N: ", "file: /pointer: ", then "mesh "head": ". */
 static void append_place(nt_buffer *out, const nt_place_view *place, const char *file)
 {
@@ -320,12 +339,6 @@ void nt_message_failure(nt_buffer *out, const nt_report *report, const nt_report
 		nt_buffer_format(out, "nmtan: and %zu more findings that fail; --report shows all\n", more);
 }
 
-/* "1 primitive", "2 primitives". */
-static void append_count(nt_buffer *out, size_t count, const char *noun)
-{
-	nt_buffer_format(out, "%zu %s%s", count, noun, count == 1 ? "" : "s");
-}
-
 /* "0.1 ms" at least, "12.3 ms", "1.23 s": three digits of what takes longer. */
 static void append_seconds(nt_buffer *out, double seconds)
 {
@@ -338,26 +351,15 @@ static void append_seconds(nt_buffer *out, double seconds)
 static void append_vertices(nt_buffer *out, const nt_summary *s)
 {
 	const size_t added = s->appended_normals + s->appended_tangents;
+	const nt_phrase phrases[] = {
+		{added, " -> ", NULL, ""},
+		{added ? s->vertex_count + added : 0, "", "", ""},
+		{1, " vertices", NULL, ""},
+		{s->appended_tangents, " (+", "", " where tangents differ"},
+		{s->appended_normals, s->appended_tangents ? ", +" : " (+", "", " where made normals differ"},
+		{added, ")", NULL, ""}};
 	nt_buffer_format(out, ", %zu", s->vertex_count);
-	if (added)
-		nt_buffer_format(out, " -> %zu", s->vertex_count + added);
-	nt_buffer_text(out, " vertices");
-	if (!added)
-		return;
-	nt_buffer_text(out, " (");
-	if (s->appended_tangents)
-		nt_buffer_format(out, "+%zu where tangents differ", s->appended_tangents);
-	if (s->appended_normals)
-		nt_buffer_format(out, "%s+%zu where made normals differ", s->appended_tangents ? ", " : "",
-			s->appended_normals);
-	nt_buffer_text(out, ")");
-}
-
-static void append_primitives(nt_buffer *out, const char *before, size_t count, const char *after)
-{
-	nt_buffer_text(out, before);
-	append_count(out, count, "primitive");
-	nt_buffer_text(out, after);
+	nt_message_phrases(out, phrases, sizeof phrases / sizeof *phrases);
 }
 
 /* Options that came to nothing, and others with which they would not. */
@@ -372,25 +374,21 @@ static void append_unused(nt_buffer *out, const nt_summary *s, const nt_settings
 			nt_buffer_format(out, ":%d", settings->normals_degrees);
 		nt_buffer_text(out, " makes new ones");
 	}
-	if (settings->existing == NT_EXISTING_REPLACE && s->skipped[NT_SKIP_NO_SLOT])
-		nt_buffer_text(out, ", --only=all makes new tangents for all");
-	if (settings->existing == NT_EXISTING_DROP && s->skipped[NT_SKIP_HAS_TANGENTS])
-		append_primitives(out, ", a material uses the tangents of ", s->skipped[NT_SKIP_HAS_TANGENTS],
-			", which stay");
-	if (s->without_normals)
-		append_primitives(out, ", ", s->without_normals, settings->normals == NT_NORMALS_AUTO
-			? " without normals (--normals=smooth makes them)" : " still without normals");
-	if (s->shaded_count)
-		append_primitives(out, ", made the normals of ", s->shaded_count, " without tangents");
-	if (s->shaded_copies)
-		nt_buffer_format(out, " (+%zu vertices where they differ)", s->shaded_copies);
-	if (settings->bump == NT_BUMP_HEIGHT && nt_format_is_gltf(s->input_format) && !s->made_maps)
-		nt_buffer_text(out, ", nothing that --bump=height converts");
-	if (settings->flip_green == NT_FLIP_ON && nt_format_is_gltf(s->input_format) && !s->made_maps)
-		nt_buffer_text(out, ", nothing that --flip-green turns");
-	if (settings->io.draco > NT_DRACO_OFF && !s->solved_count)
-		nt_buffer_text(out,
-			", nothing compressed, as no primitive got tangents: --existing=replace --only=all");
+	const bool no_maps = nt_format_is_gltf(s->input_format) && !s->made_maps;
+	const nt_phrase phrases[] = {
+		{settings->existing == NT_EXISTING_REPLACE ? s->skipped[NT_SKIP_NO_SLOT] : 0,
+			", --only=all makes new tangents for all", NULL, ""},
+		{settings->existing == NT_EXISTING_DROP ? s->skipped[NT_SKIP_HAS_TANGENTS] : 0,
+			", a material uses the tangents of ", "primitive", ", which stay"},
+		{s->without_normals, ", ", "primitive", normals == NT_NORMALS_AUTO
+			? " without normals (--normals=smooth makes them)" : " still without normals"},
+		{s->shaded_count, ", made the normals of ", "primitive", " without tangents"},
+		{s->shaded_copies, " (+", "", " vertices where they differ)"},
+		{settings->bump == NT_BUMP_HEIGHT && no_maps, ", nothing that --bump=height converts", NULL, ""},
+		{settings->flip_green == NT_FLIP_ON && no_maps, ", nothing that --flip-green turns", NULL, ""},
+		{settings->io.draco > NT_DRACO_OFF && !s->solved_count,
+			", nothing compressed, as no primitive got tangents: --existing=replace --only=all", NULL, ""}};
+	nt_message_phrases(out, phrases, sizeof phrases / sizeof *phrases);
 }
 
 static void append_skipped(nt_buffer *out, const nt_summary *s)
@@ -400,7 +398,8 @@ static void append_skipped(nt_buffer *out, const nt_summary *s)
 	for (int reason = 0; reason < NT_DECISION_COUNT; reason++) {
 		if (!skipped[reason])
 			continue;
-		append_primitives(out, first ? ", skipped " : ", ", skipped[reason], "");
+		nt_buffer_text(out, first ? ", skipped " : ", ");
+		append_count(out, skipped[reason], "primitive");
 		nt_buffer_format(out, " (%s)", nt_decision_text((nt_decision)reason));
 		first = false;
 	}
@@ -420,16 +419,12 @@ static void append_findings_count(nt_buffer *out, const nt_summary *s)
 	}
 	if (!counts[0] && !counts[1] && !counts[2] && (known || !hidden))
 		nt_buffer_format(out, known ? ", nothing new, %zu known" : ", no findings", known);
-	for (int severity = NT_SEVERITY_ERROR; severity >= NT_SEVERITY_INFO; severity--)
-		if (counts[severity]) {
-			nt_buffer_text(out, ", ");
-			append_count(out, counts[severity], nt_severity_name((nt_severity)severity));
-		}
-	if (hidden) {
-		nt_buffer_text(out, ", ");
-		append_count(out, hidden, "finding");
-		nt_buffer_text(out, " below --min-severity");
-	}
+	const nt_phrase phrases[] = {
+		{counts[NT_SEVERITY_ERROR], ", ", "error", ""},
+		{counts[NT_SEVERITY_WARNING], ", ", "warning", ""},
+		{counts[NT_SEVERITY_INFO], ", ", "info", ""},
+		{hidden, ", ", "finding", " below --min-severity"}};
+	nt_message_phrases(out, phrases, sizeof phrases / sizeof *phrases);
 }
 
 /* Repairs of --fix, by the codes of the findings, and what it leaves to other options. */
@@ -507,52 +502,44 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 {
 	const nt_summary *s = &job->outcome->summary;
 	append_job(out, job);
-	nt_buffer_format(out, ": %s", settings->check ? "checked, "
-				      : settings->dry_run ? "dry run, nothing written, "
-							  : "");
-	if (s->left)
-		nt_buffer_text(out, "left as it is, ");
-	const bool made = s->made.count && !settings->check;
+	const bool check = settings->check;
+	const nt_phrase begin[] = {
+		{1, ": ", NULL, check ? "checked, " : settings->dry_run ? "dry run, nothing written, " : ""},
+		{s->left, "left as it is, ", NULL, ""}};
+	nt_message_phrases(out, begin, sizeof begin / sizeof *begin);
+	const bool made = s->made.count && !check;
 	const size_t all = made ? s->made.count : s->mesh_count, solved = made ? s->made.solved : s->solved_count;
-	if (settings->check || solved == all)
+	if (check || solved == all)
 		append_count(out, all, "primitive");
 	else
 		nt_buffer_format(out, "%zu of %zu primitives", solved, all);
-	if (s->same_count)
-		nt_buffer_format(out, " (%zu the same as others)", s->same_count);
-	if (s->solved_count && !settings->check) {
-		nt_buffer_text(out, ", ");
-		append_count(out, s->triangle_count, "triangle");
-		if (s->quad_count) {
-			nt_buffer_text(out, " (as ");
-			append_count(out, s->quad_count, "quad");
-			if (s->triangle_count > 2 * s->quad_count) {
-				nt_buffer_text(out, " and ");
-				append_count(out, s->triangle_count - 2 * s->quad_count, "triangle");
-			}
-			nt_buffer_text(out, ")");
-		}
+	const bool solves = s->solved_count && !check;
+	const size_t quads = solves ? s->quad_count : 0;
+	const nt_phrase counts[] = {
+		{s->same_count, " (", "", " the same as others)"},
+		{solves ? s->triangle_count : 0, ", ", "triangle", ""},
+		{quads, " (as ", "quad", ""},
+		{quads && s->triangle_count > 2 * quads ? s->triangle_count - 2 * quads : 0, " and ", "triangle", ""},
+		{quads, ")", NULL, ""}};
+	nt_message_phrases(out, counts, sizeof counts / sizeof *counts);
+	if (solves)
 		append_vertices(out, s);
-	}
 	if (s->welded.before > s->welded.after)
 		nt_buffer_format(out, ", welded %zu vertices to %zu", s->welded.before, s->welded.after);
 	else if (settings->io.weld)
 		nt_buffer_text(out, s->welded.before ? ", no vertices are equal" : ", nothing that --weld welds");
-	if (s->repaired) {
-		nt_buffer_format(out, ", %s the tangents of ", settings->check ? "would repair" : "repaired");
-		append_count(out, s->repaired, "corner");
-	}
+	const nt_phrase repaired = {
+		s->repaired, check ? ", would repair the tangents of " : ", repaired the tangents of ", "corner", ""};
+	nt_message_phrases(out, &repaired, 1);
 	append_fixed(out, s, settings);
 	/* append_fixed() has those whose green --fix turned */
 	const size_t turned = settings->fix ? s->fixed[NT_CODE_NMAP_GREEN_DOWN] : 0;
-	if (s->made_maps > turned && (!settings->fix || settings->bump == NT_BUMP_HEIGHT)) {
-		nt_buffer_format(out, ", %s ", settings->check ? "would convert" : "converted");
-		append_count(out, s->made_maps - turned, "normal map");
-	}
-	if (s->counts.summed_instead)
-		nt_buffer_format(out, ", %zu corners of hubs with one sum", s->counts.summed_instead);
-	if (s->counts.sorted_instead)
-		nt_buffer_format(out, ", %zu solved as mikktspace-sorted", s->counts.sorted_instead);
+	const bool converts = s->made_maps > turned && (!settings->fix || settings->bump == NT_BUMP_HEIGHT);
+	const nt_phrase ways[] = {
+		{converts ? s->made_maps - turned : 0, check ? ", would convert " : ", converted ", "normal map", ""},
+		{s->counts.summed_instead, ", ", "corner", " of hubs with one sum"},
+		{s->counts.sorted_instead, ", ", "", " solved as mikktspace-sorted"}};
+	nt_message_phrases(out, ways, sizeof ways / sizeof *ways);
 	if (s->rounding.count && s->rounding.worst_radians > 0)
 		nt_buffer_format(out, ", rounded tangents by %.2g degrees at most, %.2g on average",
 			s->rounding.worst_radians * DEGREES,
@@ -563,15 +550,15 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		nt_buffer_format(out, " take %.3g MB, their meshes %.3g", (double)s->morph_cost.bytes * 1e-6,
 			(double)s->morph_cost.mesh_bytes * 1e-6);
 	}
-	if (settings->check)
+	if (check)
 		append_findings_count(out, s);
 	else
 		append_skipped(out, s);
-	if (!settings->check)
+	if (!check)
 		append_unused(out, s, settings);
 	append_bare(out, ", ", s);
 	append_seconds(out, s->total_seconds);
-	if (s->note && !settings->check && !settings->dry_run)
+	if (s->note && !check && !settings->dry_run)
 		nt_buffer_clean(out, s->note);
 	nt_buffer_text(out, "\n");
 	append_idle(out, job, settings);
@@ -618,12 +605,13 @@ void nt_message_timing(nt_buffer *out, const nt_summary *summary)
 	if (summary->bytes_copied)
 		nt_buffer_format(out, "%" PRIu64 " copied as they are, ", summary->bytes_copied);
 	nt_buffer_format(out, "%" PRIu64 " bytes written\n", summary->bytes_written);
-	if (summary->same_count)
-		nt_buffer_format(out, "not solved again: %zu %s (the same geometry as another)\n",
-			summary->same_count, summary->same_count == 1 ? "primitive" : "primitives");
-	for (int reason = 0; reason < NT_DECISION_COUNT; reason++)
-		if (summary->skipped[reason])
-			nt_buffer_format(out, "not decoded: %zu %s (%s)\n", summary->skipped[reason],
-				summary->skipped[reason] == 1 ? "primitive" : "primitives",
-				nt_decision_text((nt_decision)reason));
+	const nt_phrase same = {summary->same_count, "not solved again: ", "primitive",
+		" (the same geometry as another)\n"};
+	nt_message_phrases(out, &same, 1);
+	for (int reason = 0; reason < NT_DECISION_COUNT; reason++) {
+		const nt_phrase skipped[] = {
+			{summary->skipped[reason], "not decoded: ", "primitive", " ("},
+			{summary->skipped[reason], nt_decision_text((nt_decision)reason), NULL, ")\n"}};
+		nt_message_phrases(out, skipped, sizeof skipped / sizeof *skipped);
+	}
 }

@@ -19,6 +19,15 @@ typedef struct nt_style {
 	bool fails;    /* what is told of ends with an exit code that is not 0 */
 } nt_style;
 
+/* A part of a sentence, said if its count is not 0: what is before, "1 primitive" or "2 primitives" with this noun (""
+ * the number alone, NULL nothing), what is after. */
+typedef struct nt_phrase {
+	size_t count;
+	const char *before, *noun, *after;
+} nt_phrase;
+
+void nt_message_phrases(nt_buffer *out, const nt_phrase *phrases, size_t count);
+
 /* "nmtan: file:line: message", "nmtan: file: at byte N: message" or "nmtan: file: /pointer: message". */
 void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 
