@@ -127,6 +127,8 @@ static nt_scratch *begin_own_scratch(request *r, size_t corner_count)
 static void end_request(request *r)
 {
 	nt_pool_use(r->jobs_before);
+	if (r->solve.threads > 1)
+		nt_pool_stay(-1);
 	nmtan_timing sum;
 	if (r->options.timing && nt_struct_read(&sum, sizeof sum, r->options.timing)) {
 		sum.weld += r->timing.weld;
@@ -179,6 +181,8 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 	r->summed_instead = 0;
 	r->mark = nt_scratch_here(scratch);
 	r->jobs_before = nt_pool_use(r->options.jobs);
+	if (r->solve.threads > 1)
+		nt_pool_stay(1);
 	status = nt_make_plain(&r->mesh, corner_count, scratch, &r->corners);
 	if (status)
 		end_request(r);

@@ -53,6 +53,13 @@ static void run_job(void *context, unsigned i)
 
 #endif
 
+static unsigned staying; /* atomic: callers that will soon post another region */
+
+void nt_pool_stay(int callers)
+{
+	(void)nt_atomic_add(&staying, (unsigned)callers, RELAXED);
+}
+
 /* Whether the caller's threads have done it. */
 static bool run_given(unsigned slots, region_body *body, void *context)
 {
@@ -99,16 +106,17 @@ void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), voi
 #include <stdint.h>
 #include <unistd.h>
 
-/* How often a caller gives way to its helpers before it sleeps: for somewhat longer than waking it takes, 50
- * microseconds in a virtual machine. After a thread could not be made, the regions that do without before one is tried
- * again. */
+/* How often a caller gives way to its helpers before it sleeps, and a thread of the pool to callers that stay: for
+ * somewhat longer than waking it takes, 50 microseconds in a virtual machine. After a thread could not be made, the
+ * regions that do without before one is tried again. */
 enum { MOST_LOOKS = 200, REGIONS_WITHOUT = 100 };
 
 typedef struct region {
 	void (*body)(void *context, unsigned slot);
 	void *context;
 	unsigned slots;
-	unsigned next;    /* atomic: the first slot that nobody has taken; beyond `slots` when all are */
+	unsigned next;    /* atomic: the first slot that nobody has taken; beyond `slots` when all are. Slot 0 is the
+	                     caller's, which finds in its cache what it left there in the region before */
 	unsigned helpers; /* atomic: threads of the pool that are in it */
 	struct region *older;
 	const nt_deadline *deadline; /* the caller's */
@@ -124,6 +132,7 @@ static struct {
 	unsigned without;      /* regions to go before a thread is tried again */
 	bool watches_forks;
 	unsigned waiting;      /* atomic: callers that sleep until helpers leave */
+	unsigned posts;        /* atomic: regions that were linked */
 	unsigned made;         /* threads that are */
 	pthread_t ids[NT_POOL_MOST];
 	bool ending;           /* they shall end */
@@ -190,12 +199,26 @@ static void send_elsewhere(pthread_t thread)
 #endif
 }
 
+/* With the lock, which is given back meanwhile: whether a region was linked, or all shall end. */
+static bool await_region(void)
+{
+	const unsigned posts = pool.posts;
+	pthread_mutex_unlock(&pool.lock);
+	for (unsigned i = 0; i < MOST_LOOKS && nt_atomic_load(&staying, RELAXED) > 0 &&
+		nt_atomic_load(&pool.posts, RELAXED) == posts; i++)
+		nt_give_way();
+	pthread_mutex_lock(&pool.lock);
+	return pool.posts != posts || pool.ending;
+}
+
 static void *run_thread(void *unused)
 {
 	(void)unused;
 	pthread_mutex_lock(&pool.lock);
 	while (!pool.ending) {
 		region *r = enter_region();
+		if (!r && nt_atomic_load(&staying, RELAXED) > 0 && await_region())
+			continue;
 		if (!r) {
 			pool.sleeping++;
 			pthread_cond_wait(&pool.posted, &pool.lock);
@@ -244,6 +267,7 @@ static void start_anew(void)
 	pool.newest = NULL;
 	pool.threads = pool.sleeping = pool.without = pool.made = 0;
 	nt_atomic_store(&pool.waiting, 0, SEQ_CST);
+	nt_atomic_store(&staying, 0, RELAXED);
 }
 
 /* With the lock: how many threads the pool lacks for a region, which the caller must then make. */
@@ -284,6 +308,7 @@ static void post(region *r)
 	const unsigned lacking = reserve_threads(r->slots);
 	r->older = pool.newest;
 	pool.newest = r;
+	nt_atomic_add(&pool.posts, 1, RELAXED);
 	const unsigned wakes = pool.sleeping < r->slots - 1 ? pool.sleeping : r->slots - 1;
 	for (unsigned i = 0; i < wakes; i++)
 		pthread_cond_signal(&pool.posted);
@@ -335,15 +360,16 @@ void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), voi
 {
 	if (run_given(slots, body, context))
 		return;
-	region r = {.body = body, .context = context, .slots = slots, .deadline = nt_deadline_own()};
-	if (slots <= 1) {
-		work(&r);
+	region r = {.body = body, .context = context, .slots = slots, .next = 1, .deadline = nt_deadline_own()};
+	if (slots == 1)
+		body(context, 0);
+	if (slots <= 1)
 		return;
-	}
 	/* a thread that ends while it waits for helpers would keep the lock, and leave them a region that is gone */
 	int cancel;
 	pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, &cancel);
 	post(&r);
+	body(context, 0);
 	work(&r);
 	close_region(&r);
 	pthread_setcancelstate(cancel, NULL);

@@ -27,6 +27,10 @@ const nmtan_jobs *nt_pool_use(const nmtan_jobs *jobs);
 /* Makes at least so many threads: for a region that starts while others of the pool are known to wait. */
 void nt_pool_reserve(unsigned threads);
 
+/* One caller more (1), or less (-1), whose next region comes soon: threads of the pool need not sleep at once. Waking
+ * one takes as long as adding up 3 000 triangles. */
+void nt_pool_stay(int callers);
+
 /* Calls body once for each slot below `slots` and returns when all have returned. Several at a time where
  * threads are free, begun in their order: a slot may wait for one below it, and for no other. */
 void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), void *context);

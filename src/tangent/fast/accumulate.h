@@ -397,7 +397,7 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 			prefetch_rows(fast, first, end, 2);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
 		for (int missing; (missing = missing_record(fast, first, count)) >= 0;)
-			if (!make(fast, missing, context))
+			if (!make(fast, missing, range, context))
 				return;
 		for (size_t i = 0; i < count; i++) {
 			const size_t from = i;

@@ -78,8 +78,8 @@ typedef struct nt_settled {
 	size_t complex_count, complex_corners, tangled_count, tangled_corners, most_tangled;
 } nt_settled;
 
-/* Makes fast->records[orient], which a triangle needs and which does not exist; false: it cannot be had now. */
-typedef bool nt_record_maker(nt_fast *fast, int orient, void *context);
+/* Makes fast->records[orient], which a triangle of a range needs and which does not exist; false: it cannot be had. */
+typedef bool nt_record_maker(nt_fast *fast, int orient, unsigned range, void *context);
 
 /* The contribution of a corner to its group. */
 typedef struct nt_corner {

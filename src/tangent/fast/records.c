@@ -3,8 +3,9 @@
  * Step 4 of the fast path where vertices are near: corners are added to the records of their vertices at once.
  *
  * Most meshes need records of one orientation only, and which one is known when its first triangle is solved. So
- * a range that needs an array asks for it in the middle of its work: the first that asks allocates it, and all that
- * ask help to clear it.
+ * a range that needs an array asks for it in the middle of its work: the first that asks allocates it. Each range has a
+ * part of it, and clears its own first: vertices are often in the order of triangles, and then these records are in the
+ * cache of who adds to them. All that ask help to clear the others.
  *
  * A vertex belongs to the first range that touches it. Later ranges put their contributions aside, and these are
  * added in the end in the order of ranges: every sum is in triangle order, whatever the number of threads.
@@ -15,9 +16,6 @@
 #include "base/lock.h"
 #include "base/parallel.h"
 
-/* Records that are cleared at a time: 2 MiB, so that no two threads touch a huge page first, and each clears it. */
-enum { CHUNK = 131072 };
-
 /* Vertices for which a thread more adds what was put aside. */
 enum { GRAIN = 1 << 14 };
 
@@ -25,7 +23,8 @@ enum { GRAIN = 1 << 14 };
 typedef struct array {
 	nt_record *records;
 	nt_record_more *more;   /* NULL: not wanted */
-	size_t chunks_begun, chunks_cleared; /* atomic, once the array is there */
+	unsigned *begun;        /* [ranges] atomic: whether somebody clears the part of a range */
+	unsigned cleared;       /* atomic: parts that are */
 } array;
 
 typedef struct job {
@@ -37,53 +36,65 @@ typedef struct job {
 	bool failed;
 } job;
 
-static void clear_chunk(const job *j, array *a, size_t chunk)
+/* The first record of a range's part, which begins a block: no two parts have a cache line in common. */
+static size_t part_begin(const job *j, unsigned range)
 {
-	const size_t begin = chunk * CHUNK, left = j->record_count - begin, count = left < CHUNK ? left : CHUNK;
-	for (size_t v = begin; v < begin + count; v++)
-		a->records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
-	if (a->more)
-		memset(a->more + begin, 0, count * sizeof *a->more);
-	(void)nt_atomic_add(&a->chunks_cleared, 1, RELEASE);
+	const size_t blocks = j->record_count / NT_LANES;
+	const unsigned ranges = j->fast->ranges.count;
+	return (blocks / ranges * range + blocks % ranges * range / ranges) * NT_LANES;
 }
 
-/* Allocates the array if nobody has, and clears its first chunk. False: out of memory. */
-static bool begin_array(job *j, array *a)
+static void clear_part(const job *j, array *a, unsigned range)
+{
+	const size_t begin = part_begin(j, range), end = part_begin(j, range + 1);
+	for (size_t v = begin; v < end; v++)
+		a->records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+	if (a->more)
+		memset(a->more + begin, 0, (end - begin) * sizeof *a->more);
+	(void)nt_atomic_add(&a->cleared, 1, RELEASE);
+}
+
+/* Allocates the array if nobody has. False: out of memory. */
+static bool make_array(job *j, array *a)
 {
 	const nt_fast *fast = j->fast;
+	nt_scratch *scratch = fast->solve->scratch;
 	nt_lock_take(&j->lock);
 	if (!a->records && !j->failed) {
-		a->records = nt_scratch_alloc(fast->solve->scratch, j->record_count, sizeof *a->records);
+		a->records = nt_scratch_alloc(scratch, j->record_count, sizeof *a->records);
+		a->begun = nt_scratch_alloc(scratch, fast->ranges.count, sizeof *a->begun);
 		if (fast->wants_more)
-			a->more = nt_scratch_alloc(fast->solve->scratch, j->record_count, sizeof *a->more);
-		j->failed = !a->records || (fast->wants_more && !a->more);
-		a->chunks_begun = 1;
-		if (!j->failed)
-			clear_chunk(j, a, 0);
+			a->more = nt_scratch_alloc(scratch, j->record_count, sizeof *a->more);
+		j->failed = !a->records || !a->begun || (fast->wants_more && !a->more);
+		if (a->begun)
+			memset(a->begun, 0, fast->ranges.count * sizeof *a->begun);
 	}
 	const bool failed = j->failed;
 	nt_lock_give(&j->lock);
 	return !failed;
 }
 
-/* Clears what no other range has begun to clear, and waits for those that have. */
-static void clear_array(const job *j, array *a)
+/* Clears the part of a range, then those that nobody else has begun to clear, and waits for those that have. */
+static void clear_array(const job *j, array *a, unsigned range)
 {
-	const size_t chunks = (j->record_count + CHUNK - 1) / CHUNK;
-	for (size_t chunk; chunks > 1 && (chunk = nt_atomic_add(&a->chunks_begun, 1, RELAXED)) < chunks;)
-		clear_chunk(j, a, chunk);
-	while (nt_atomic_load(&a->chunks_cleared, ACQUIRE) < chunks)
+	const unsigned ranges = j->fast->ranges.count;
+	for (unsigned i = 0; i < ranges; i++) {
+		const unsigned part = range + i < ranges ? range + i : range + i - ranges;
+		if (nt_atomic_add(&a->begun[part], 1, RELAXED) == 0)
+			clear_part(j, a, part);
+	}
+	while (nt_atomic_load(&a->cleared, ACQUIRE) < ranges)
 		nt_give_way();
 }
 
 /* The nt_record_maker of all ranges. */
-static bool get_array(nt_fast *view, int orient, void *context)
+static bool get_array(nt_fast *view, int orient, unsigned range, void *context)
 {
 	job *j = context;
 	array *a = &j->arrays[orient];
-	if (!begin_array(j, a))
+	if (!make_array(j, a))
 		return false;
-	clear_array(j, a);
+	clear_array(j, a, range);
 	view->records[orient] = a->records;
 	view->more[orient] = a->more;
 	return true;

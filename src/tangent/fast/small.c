@@ -109,8 +109,9 @@ static const uint32_t *number_corners(const nmtan_mesh *mesh, size_t corner_coun
 }
 
 /* The nt_record_maker. */
-static bool clear_records(nt_fast *fast, int orient, void *context)
+static bool clear_records(nt_fast *fast, int orient, unsigned range, void *context)
 {
+	(void)range;
 	small_room *room = context;
 	nt_record *records = room->records[orient];
 	for (size_t v = 0; v < (fast->vertex_count + NT_LANES - 1) / NT_LANES * NT_LANES; v++)

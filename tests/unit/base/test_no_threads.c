@@ -8,6 +8,7 @@
 #define nt_pool_processors processors_alone
 #define nt_pool_reserve reserve_alone
 #define nt_pool_run run_alone
+#define nt_pool_stay stay_alone
 #define nt_pool_use use_alone
 #define nmtan_end_threads end_alone
 #include "base/pool.c"

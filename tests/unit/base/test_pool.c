@@ -168,6 +168,14 @@ TEST(slots_run_beside_one_another_and_threads_are_kept)
 			usleep(2000);
 	}
 	assert_true(two_slots_meet());
+	nt_pool_stay(1);
+	for (unsigned i = 0; i < 3000; i++) {
+		assert_true(each_slot_once(2));
+		if (i % 1000 == 0) /* longer than a thread stays */
+			usleep(2000);
+	}
+	assert_true(two_slots_meet());
+	nt_pool_stay(-1);
 	assert_int_equal(threads_made, 1);
 	assert_true(each_slot_once(5));
 	assert_int_equal(threads_made, 4);
@@ -176,11 +184,17 @@ TEST(slots_run_beside_one_another_and_threads_are_kept)
 	assert_int_equal(threads_made, 38);
 }
 
+/* Every other time threads stay, of other callers too. */
 static void *run_regions(void *fault)
 {
-	for (unsigned i = 0; i < 2000; i++)
+	for (unsigned i = 0; i < 2000; i++) {
+		const bool stays = i / 50 % 2;
+		if (i % 50 == 0 && i > 0)
+			nt_pool_stay(stays ? 1 : -1);
 		if (!each_slot_once(2 + i % 7))
 			*(bool *)fault = true;
+	}
+	nt_pool_stay(-1);
 	return NULL;
 }
 
