@@ -73,39 +73,25 @@ static inline size_t nt_next_flagged(const uint8_t *flags, size_t t, size_t coun
 enum { NT_FLAG_WORD = 64 };
 
 /* A bit for each of `count` flags, at most NT_FLAG_WORD, that has a bit of `mask`; `neither` receives how many have
- * none of `mask` nor the bit `other`, which is not in it. All of them at a time where there are as many: each byte of
- * `plain` counts one of sixteen columns, at most four, and the product has the sum of the bytes in its highest one. */
+ * none of `mask` nor the bit `other`, which is not in it. Eight at a time: what a byte has of a mask becomes its lowest
+ * bit, and products gather these, or add them up. */
 static inline uint64_t nt_flagged(const uint8_t *flags, size_t count, uint8_t mask, uint8_t other, size_t *neither)
 {
-	uint64_t flagged = 0;
-	*neither = 0;
-#if NT_VECTORS
-	typedef uint8_t nt_flag_lanes __attribute__((vector_size(16))); /* SSE2's, and NEON's */
-	const uint64_t ones = 0x0101010101010101u;
+	const uint64_t ones = 0x0101010101010101u, low = 0x7f7f7f7f7f7f7f7fu;
 	/* moves the lowest bit of byte i, in the order of memory, to bit i of the highest byte */
 	const uint64_t gather = NT_BIG_ENDIAN ? 0x8040201008040201u : 0x0102040810204080u;
-	if (count == NT_FLAG_WORD) {
-		nt_flag_lanes has[NT_FLAG_WORD / sizeof(nt_flag_lanes)], any = {0}, plain = {0};
-		for (size_t i = 0; i < NT_FLAG_WORD / sizeof *has; i++) {
-			nt_flag_lanes f;
-			memcpy(&f, flags + sizeof f * i, sizeof f);
-			has[i] = (nt_flag_lanes)((f & mask) != 0);
-			any |= has[i];
-			plain -= (nt_flag_lanes)((f & other) == 0) & ~has[i];
-		}
-		uint64_t halves[2], there[2];
-		memcpy(halves, &plain, sizeof halves);
-		memcpy(there, &any, sizeof there);
-		*neither = (halves[0] + halves[1]) * ones >> 56;
-		for (size_t i = 0; (there[0] | there[1]) && i < NT_FLAG_WORD; i += sizeof ones) {
-			uint64_t eight;
-			memcpy(&eight, (const char *)has + i, sizeof eight);
-			flagged |= (eight & ones) * gather >> 56 << i;
-		}
-		return flagged;
+	uint64_t flagged = 0, plain = 0;
+	size_t i = 0;
+	for (uint64_t eight; i + sizeof eight <= count; i += sizeof eight) {
+		memcpy(&eight, flags + i, sizeof eight);
+		uint64_t has = eight & ones * mask, any = eight & ones * (mask | other);
+		has = (((has & low) + low) | has) >> 7 & ones;
+		any = (((any & low) + low) | any) >> 7 & ones;
+		flagged |= (has * gather >> 56) << i;
+		plain += ones - any;
 	}
-#endif
-	for (size_t i = 0; i < count; i++) {
+	*neither = plain * ones >> 56;
+	for (; i < count; i++) {
 		flagged |= (uint64_t)((flags[i] & mask) != 0) << i;
 		*neither += !(flags[i] & (mask | other));
 	}

@@ -35,68 +35,35 @@
 /* Vertices for a thread at least: 70 microseconds. */
 enum { GRAIN = 256 };
 
-/* Triangles that are listed before they are gone through. */
-enum { LISTED = 48 };
-
-/* Lists triangles from *t on that have a complex vertex. */
-static size_t list_triangles(const nt_fast *fast, size_t *t, uint32_t list[LISTED])
-{
-	size_t count = 0;
-	while (count < LISTED && (*t = nt_fast_next_flagged(fast, *t, NT_TRIANGLE_COMPLEX)) < fast->triangle_count)
-		list[count++] = (uint32_t)(*t)++;
-	return count;
-}
-
-/* A corner at a complex vertex, and the vertices after and before it in its triangle. */
-typedef struct listed_corner {
-	uint32_t corner, vertex, after, before;
-} listed_corner;
-
-/* Lists the corners of triangles that are at complex vertices: about half, at random, so that there is no branch. */
-static size_t list_corners(const nt_complex *c, const uint32_t *triangles, size_t count,
-	listed_corner corners[3 * LISTED + 1])
-{
-	size_t n = 0;
-	for (size_t i = 0; i < count; i++) {
-		const uint32_t t = triangles[i];
-		const unsigned flags = c->fast->flags[t];
-		const uint32_t any = flags / NT_TRIANGLE_ANY % 2 * NT_COMPLEX_ANY, plus = flags % 2 * NT_COMPLEX_PLUS;
-		uint32_t copy[3];
-		const uint32_t *v = nt_triangle_vertices(&c->fast->triangles, t, 1, copy);
-		NT_UNROLL(3)
-		for (uint32_t k = 0; k < 3; k++) {
-			corners[n] = (listed_corner){4 * t + k + any + plus, v[k], v[(k + 1) % 3], v[(k + 2) % 3]};
-			n += nt_fast_record(c->fast, c->orient, v[k])->state / NT_RESULT_COMPLEX % 2;
-		}
-	}
-	return n;
-}
-
 /* The next free places, by whether the vertex is tangled. */
 typedef struct cursors {
 	size_t vertex[2];
 	uint32_t place[2], *order;
 } cursors;
 
-/* A vertex gets its places when it comes up first. */
-static inline void place_corner(const nt_complex *c, const listed_corner *corner, cursors *at)
+/* Corner k of triangle t, which has vertices v. A complex vertex gets its places when it comes up first. */
+static inline void place_corner(const nt_complex *c, size_t t, const uint32_t v[3], unsigned k, cursors *at)
 {
-	uint32_t *state_at = &nt_fast_record(c->fast, c->orient, corner->vertex)->state, state = *state_at;
+	uint32_t *state_at = &nt_fast_record(c->fast, c->orient, v[k])->state, state = *state_at;
+	const unsigned flags = c->fast->flags[t];
+	if (!(state & NT_RESULT_COMPLEX))
+		return;
 	if (!(state & NT_RESULT_PLACED)) {
 		const unsigned tangled = state / NT_RESULT_TANGLED % 2;
-		const size_t v = at->vertex[tangled]++;
+		const size_t vertex = at->vertex[tangled]++;
 		const uint32_t place = at->place[tangled];
-		c->vertices[v] = place | (state & NT_RESULT_SUM);
-		c->welded[v] = corner->vertex;
+		c->vertices[vertex] = place | (state & NT_RESULT_SUM);
+		c->welded[vertex] = v[k];
 		at->place[tangled] += state & NT_RESULT_NUMBER;
 		state = (state & ~NT_RESULT_NUMBER) | NT_RESULT_PLACED | place;
 	}
 	*state_at = state + 1;
 	const uint32_t place = state & NT_RESULT_NUMBER;
-	c->corners[place] = corner->corner;
+	c->corners[place] = (4 * (uint32_t)t + k) | flags / NT_TRIANGLE_ANY % 2 * NT_COMPLEX_ANY |
+		flags % 2 * NT_COMPLEX_PLUS;
 	if (!(state & NT_RESULT_TANGLED)) {
-		c->across[2 * place] = corner->after;
-		c->across[2 * place + 1] = corner->before;
+		c->across[2 * place] = v[k < 2 ? k + 1 : 0];
+		c->across[2 * place + 1] = v[k > 0 ? k - 1 : 2];
 	}
 	if (at->order)
 		*at->order++ = place;
@@ -130,12 +97,11 @@ static nmtan_status collect(nt_complex *c, const nt_settled *settled)
 		return NMTAN_ERROR_MEMORY;
 	const uint32_t plain = (uint32_t)(places - settled->tangled_corners);
 	cursors at = {{0, c->plain_count}, {0, plain}, c->order};
-	for (size_t t = 0; t < fast->triangle_count;) {
-		uint32_t triangles[LISTED];
-		listed_corner corners[3 * LISTED + 1];
-		const size_t count = list_corners(c, triangles, list_triangles(fast, &t, triangles), corners);
-		for (size_t i = 0; i < count; i++)
-			place_corner(c, &corners[i], &at);
+	for (size_t t = 0; (t = nt_fast_next_flagged(fast, t, NT_TRIANGLE_COMPLEX)) < fast->triangle_count; t++) {
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
+		for (unsigned k = 0; k < 3; k++)
+			place_corner(c, t, v, k, &at);
 	}
 	c->vertices[c->vertex_count] = at.place[1];
 	c->corner_count = ordered ? (size_t)(at.order - c->order) : 0;

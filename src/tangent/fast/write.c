@@ -168,16 +168,9 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 /* A bit for each of four triangles one of whose records is not just a result; given is the union of their bits. */
 static inline unsigned find_open(nt_int4 a, nt_int4 b, nt_int4 c, nt_int4 d)
 {
-#if NT_VECTORS && defined(__SSE2__)
-	const nt_int4 ab = __builtin_shufflevector(a, b, 2, 6, 3, 7), cd = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-	const nt_int4 states = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-	static_assert(NT_RESULT_COMPLEX << 1 == 1u << 31 && NT_RESULT_UNUSABLE << 31 == 1u << 31, "both become signs");
-	return (unsigned)__builtin_ia32_movmskps((nt_float4)(states << 1 | states << 31));
-#else
 	const uint32_t mask = NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE;
 	return (unsigned)((nt_state4(a) & mask) != 0) | (unsigned)((nt_state4(b) & mask) != 0) << 1 |
 	       (unsigned)((nt_state4(c) & mask) != 0) << 2 | (unsigned)((nt_state4(d) & mask) != 0) << 3;
-#endif
 }
 
 /* Copies the records of a triangle to its corners; returns the union of their bits. */
