@@ -38,7 +38,7 @@ SUBJECTS = {
     'json': ['damaged', 'layouts', 'extensions', 'lossless', 'convert'],
     'scene': ['choose', 'colors', 'convert', 'normals', 'report', 'textures'],
     'file': ['sets', 'output', 'placement', 'damaged', 'stale'], 'image': ['textures', 'materials'],
-    'obj': ['materials', 'colors', 'convert', 'damaged', 'normals', 'origin'], 'ply': ['convert', 'damaged', 'small_models'],
+    'obj': ['texts', 'materials', 'colors', 'convert', 'damaged', 'normals', 'origin'], 'ply': ['texts', 'convert', 'damaged', 'small_models'],
     'format': ['convert', 'verdict', 'textures'], 'report': ['report', 'check', 'verdict', 'diff', 'report_folder', 'page'],
     'pipeline': ['convert', 'quads', 'normals', 'morphs', 'choose', 'report', 'manifest', 'textures'],
     'batch': ['batch', 'update', 'manifest', 'depfile', 'placement'], 'cli': ['usage', 'output', 'limits', 'choose'],

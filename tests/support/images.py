@@ -161,4 +161,5 @@ def main():
             file.write(embedded(open(sys.argv[2], "rb").read(), int(sys.argv[3])))
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -52,18 +52,4 @@ static inline const nt_mesh *only_mesh(reading *r, const char *text)
 	return &r->scene.meshes[0];
 }
 
-static inline void assert_fails(const char *text, size_t line, const char *message)
-{
-	reading r;
-	open_text(&r, text);
-	if (r.status != NT_ERROR_INPUT || r.error.place.line != line ||
-		strcmp(r.error.message, message) != 0)
-		print_message("[%s] %d line %zu: %s\n", text, (int)r.status, r.error.place.line, r.error.message);
-	assert_int_equal(r.status, NT_ERROR_INPUT);
-	assert_int_equal(r.error.place.line, line);
-	assert_string_equal(r.error.message, message);
-	assert_string_equal(r.error.place.file, "folder/test.obj");
-	close_reading(&r);
-}
-
 #endif

@@ -63,15 +63,7 @@ static inline void assert_floats(const float *floats, size_t count, const float 
 		assert_true(floats[i] == expected[i]);
 }
 
-static inline void assert_numbers(const uint32_t *numbers, size_t count, const uint32_t *expected)
-{
-	assert_non_null(numbers);
-	for (size_t i = 0; i < count; i++)
-		assert_int_equal(numbers[i], expected[i]);
-}
-
 #define FLOATS(...) sizeof((float[]){__VA_ARGS__}) / sizeof(float), (float[]){__VA_ARGS__}
-#define NUMBERS(...) sizeof((uint32_t[]){__VA_ARGS__}) / sizeof(uint32_t), (uint32_t[]){__VA_ARGS__}
 
 /* Refused with this message at this line (ASCII, header) or offset (binary; line 0). */
 static inline void assert_refused_bytes(const void *bytes, size_t size, nt_status status, size_t line,
@@ -85,22 +77,6 @@ static inline void assert_refused_bytes(const void *bytes, size_t size, nt_statu
 	assert_int_equal(r.error.place.offset, offset);
 	assert_string_equal(r.error.place.file, "test.ply");
 	close_reading(&r);
-}
-
-static inline void assert_refused(const char *text, size_t line, const char *message)
-{
-	assert_refused_bytes(text, strlen(text), NT_ERROR_INPUT, line, NT_NO_OFFSET, message);
-}
-
-static inline bool has_finding(const reading *r, nt_code code, size_t line, size_t count, const char *detail)
-{
-	for (size_t i = 0; i < r->scene.findings.count; i++) {
-		const nt_finding *f = &r->scene.findings.items[i];
-		if (f->code == code && f->place.line == line && f->count == count &&
-			strcmp(f->detail, detail) == 0)
-			return true;
-	}
-	return false;
 }
 
 /* A binary file under construction. */
@@ -129,19 +105,10 @@ static inline void put_float(image *m, float value)
 	put(m, bits, 4);
 }
 
-static inline void put_double(image *m, double value)
-{
-	uint64_t bits;
-	memcpy(&bits, &value, sizeof bits);
-	put(m, bits, 8);
-}
-
 #define XYZ "property float x\nproperty float y\nproperty float z\n"
 #define HEAD(vertices) "ply\nformat ascii 1.0\nelement vertex " vertices "\n" XYZ
 #define FACES(faces) "element face " faces "\nproperty list uchar int vertex_indices\nend_header\n"
 #define POINTS "0 0 0\n1 0 0\n0 1 0\n"
-#define WEDGES "element face 2\nproperty list uchar int vertex_indices\n" \
-	"property list uchar float texcoord\nend_header\n"
 
 /* A file with everything in it, in the three encodings. */
 static inline void make_full(image *m, ply_encoding encoding)

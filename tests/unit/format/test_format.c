@@ -24,7 +24,11 @@ TEST(format_of_an_input_is_its_content_before_its_name)
 		size_t size;
 		const char *path, *name;
 	} rows[] = {{"DRACO\2\2", 7, "a.obj", "drc"}, {"ply\n", 4, "a.gltf", "ply"}, {"ply\rformat", 10, "-", "ply"},
-		{"plyx", 4, "-", ""}, {"", 0, "a.obj", "obj"}, {"", 0, "a.txt", ""}, {"\0\1\2\3", 4, "-", ""}};
+		{"plyx", 4, "-", ""}, {"", 0, "a.obj", "obj"}, {"", 0, "a.txt", ""}, {"\0\1\2\3", 4, "-", ""},
+		{"v 0 0 0\n", 8, "-", "obj"}, {"# x\n\n  o a\n", 11, "-", "obj"}, {"g\n", 2, "-", "obj"},
+		{"\xEF\xBB\xBF# x\r\nmtllib a.mtl\r\n", 22, "-", "obj"}, {"# only comments\n", 16, "-", ""},
+		{"newmtl a\n", 9, "-", ""}, {"v", 1, "-", ""}, {"vertex 1 2 3\n", 13, "-", ""}, {"v\1 0\n", 5, "-", ""},
+		{"\0v 1 2 3\n", 9, "-", ""}};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		is_called(nt_format_of_input((const unsigned char *)rows[i].bytes, rows[i].size, rows[i].path),
 			rows[i].name);
