@@ -141,38 +141,6 @@ TEST(faults_after_an_input_has_changed_leave_nothing)
 	}
 }
 
-TEST(output_appears_at_commit_only)
-{
-	put_text_file("out.gltf", "old");
-	nt_error error;
-	nt_output *output = start(NULL);
-	nt_sink *main = add(output, in_folder("out.gltf"), NT_ROLE_MAIN);
-	nt_sink *sidecar = add(output, in_folder("out.bin"), NT_ROLE_BUFFER);
-	assert_int_equal(nt_sink_write(main, "new document", 12, &error), NT_OK);
-	assert_int_equal(nt_sink_write(sidecar, "bytes", 5, &error), NT_OK);
-	assert_int_equal(nt_output_size(output), 17);
-	assert_content("out.gltf", "old");
-	assert_int_equal(access(in_folder("out.bin"), F_OK), -1);
-	assert_int_equal(count_in_folder(), 3);
-	assert_int_equal(nt_output_commit(output, &error), NT_OK);
-	assert_content("out.gltf", "new document");
-	assert_content("out.bin", "bytes");
-	assert_int_equal(count_in_folder(), 2);
-}
-
-TEST(output_abort_leaves_nothing)
-{
-	put_text_file("out", "old");
-	nt_error error;
-	nt_output *output = start(NULL);
-	nt_sink *sink = add(output, in_folder("out"), NT_ROLE_MAIN);
-	assert_int_equal(nt_sink_write(sink, "new", 3, &error), NT_OK);
-	nt_output_abort(output);
-	assert_content("out", "old");
-	assert_int_equal(count_in_folder(), 1);
-	nt_output_abort(NULL);
-}
-
 TEST(output_bytes_are_the_same_for_small_and_large_writes)
 {
 	enum { SIZE = 7000000, LARGE = 5000000 };
@@ -260,71 +228,6 @@ TEST(output_has_its_bytes_whatever_was_announced)
 	}
 }
 
-TEST(output_can_be_read_back_before_it_has_its_name)
-{
-	nt_error error;
-	nt_output *output = start(&(nt_output_options){.sync = true});
-	nt_sink *sink = add(output, in_folder("out"), NT_ROLE_MAIN);
-	assert_int_equal(nt_sink_write(sink, "text", 4, &error), NT_OK);
-	const char *temporary;
-	assert_int_equal(nt_output_written(output, in_folder("out"), &temporary, &error), NT_OK);
-	nt_file file;
-	assert_int_equal(nt_file_open(&file, temporary, NT_NAMED_BY_USER, &error), NT_OK);
-	assert_int_equal(file.size, 4);
-	nt_file_close(&file);
-	assert_int_equal(nt_output_commit(output, &error), NT_OK);
-	assert_content("out", "text");
-}
-
-TEST(output_that_is_an_input_is_refused_by_name)
-{
-	put_text_file("in.ply", "input");
-	assert_int_equal(link(in_folder("in.ply"), in_folder("hard")), 0);
-	assert_int_equal(symlink("in.ply", in_folder("soft")), 0);
-	nt_error error;
-	nt_output *output = start(NULL);
-	assert_int_equal(nt_output_protect(output, in_folder("in.ply"), NULL, &error), NT_OK);
-	assert_int_equal(nt_output_protect(output, in_folder("missing.png"), NULL, &error), NT_OK);
-	char message[256];
-	snprintf(message, sizeof message, "refusing to write: it is the same file as the input %s",
-		in_folder("in.ply"));
-	assert_refused(output, in_folder("in.ply"), message);
-	assert_refused(output, in_folder("hard"), message);
-	assert_refused(output, in_folder("soft"), message);
-	assert_int_equal(nt_output_commit(output, &error), NT_OK);
-	assert_content("in.ply", "input");
-	assert_int_equal(count_in_folder(), 3);
-}
-
-TEST(output_in_place_replaces_what_is_mapped)
-{
-	put_text_file("a.ply", "0123456789");
-	nt_error error;
-	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("a.ply"), NT_NAMED_BY_USER, &error), NT_OK);
-	nt_output *output = start(NULL);
-	nt_sink *sink = add(output, in_folder("a.ply"), NT_ROLE_MAIN);
-	assert_int_equal(nt_sink_copy(sink, &file, 5, 5, &error), NT_OK);
-	assert_int_equal(nt_output_commit(output, &error), NT_OK);
-	assert_memory_equal(file.data, "0123456789", 10);
-	nt_file_close(&file);
-	assert_content("a.ply", "56789");
-}
-
-TEST(output_through_a_link_keeps_the_link)
-{
-	put_text_file("file", "old");
-	assert_int_equal(symlink("file", in_folder("soft")), 0);
-	nt_error error;
-	nt_output *output = start(NULL);
-	assert_int_equal(nt_sink_write(add(output, in_folder("soft"), NT_ROLE_MAIN), "new", 3, &error), NT_OK);
-	assert_int_equal(nt_output_commit(output, &error), NT_OK);
-	assert_content("file", "new");
-	struct stat status;
-	assert_int_equal(lstat(in_folder("soft"), &status), 0);
-	assert_true(S_ISLNK(status.st_mode));
-}
-
 /* The folder of the file that a link leads to is not the one in which sidecars are, and in which others look. */
 TEST(output_through_a_link_has_the_lock_of_its_sidecars_beside_them)
 {
@@ -349,24 +252,6 @@ TEST(output_through_a_link_has_the_lock_of_its_sidecars_beside_them)
 	assert_int_equal(rmdir(in_folder("elsewhere")), 0);
 }
 
-TEST(output_places_that_cannot_be_are_refused)
-{
-	put_text_file("file", "x");
-	nt_output *output = start(NULL);
-	assert_refused(output, in_folder(""), "cannot write: it is a directory");
-	char path[128], message[256];
-	snprintf(path, sizeof path, "%s", in_folder("none/out"));
-	snprintf(message, sizeof message, "cannot write: there is no folder \"%s\"", in_folder("none"));
-	assert_refused(output, path, message);
-	snprintf(path, sizeof path, "%s", in_folder("file/out"));
-	snprintf(message, sizeof message, "cannot write: there is no folder \"%s\"", in_folder("file"));
-	assert_refused(output, path, message);
-	add(output, in_folder("twice"), NT_ROLE_MAIN);
-	assert_refused(output, in_folder("twice"),
-		"refusing to write: another file of this output has the same name");
-	nt_output_abort(output);
-}
-
 TEST(output_no_clobber_keeps_what_exists)
 {
 	put_text_file("out", "old");
@@ -383,85 +268,6 @@ TEST(output_no_clobber_keeps_what_exists)
 	assert_content("late", "somebody else's");
 	assert_content("out", "old");
 	assert_int_equal(count_in_folder(), 2);
-}
-
-TEST(output_mode_follows_the_umask)
-{
-	nt_error error;
-	const mode_t before = umask(027);
-	nt_output *output = start(NULL);
-	add(output, in_folder("out"), NT_ROLE_MAIN);
-	assert_int_equal(nt_output_commit(output, &error), NT_OK);
-	umask(before);
-	struct stat status;
-	assert_int_equal(stat(in_folder("out"), &status), 0);
-	assert_int_equal(status.st_mode & 0777, 0640);
-}
-
-TEST(output_dry_run_counts_and_refuses_but_writes_nothing)
-{
-	const nt_output_options options = {.dry_run = true};
-	nt_error error;
-	nt_output *output;
-	nt_sink *sink, *stream;
-	put_text_file("dry", "old");
-	const size_t before = count_in_folder();
-	assert_int_equal(nt_output_create(&output, &options, &error), NT_OK);
-	assert_int_equal(nt_output_add(output, in_folder("dry"), NT_ROLE_MAIN, &sink, &error), NT_OK);
-	assert_int_equal(nt_output_add(output, "-", false, &stream, &error), NT_OK);
-	assert_int_equal(nt_sink_write(sink, "new!", 4, &error), NT_OK);
-	assert_int_equal(nt_sink_write(stream, "noise", 5, &error), NT_OK);
-	assert_int_equal(nt_output_size(output), 9);
-	const char *temporary;
-	assert_int_equal(nt_output_written(output, in_folder("dry"), &temporary, &error), NT_OK);
-	assert_null(temporary);
-	assert_int_equal(count_in_folder(), before);
-	nt_sink *refused;
-	assert_int_equal(nt_output_add(output, in_folder(""), false, &refused, &error), NT_ERROR_IO);
-	assert_int_equal(nt_output_commit(output, &error), NT_OK);
-	assert_int_equal(count_in_folder(), before);
-	assert_content("dry", "old");
-}
-
-TEST(output_pipe_is_written_through)
-{
-	assert_int_equal(mkfifo(in_folder("pipe"), 0600), 0);
-	const pid_t child = fork();
-	if (child == 0) {
-		char text[16] = {0};
-		const int fd = open(in_folder("pipe"), O_RDONLY);
-		size_t size = 0;
-		for (ssize_t count; (count = read(fd, text + size, 15 - size)) > 0;)
-			size += (size_t)count;
-		_exit(strcmp(text, "through") == 0 ? 0 : 1);
-	}
-	nt_error error;
-	nt_output *output = start(&(nt_output_options){.no_clobber = true, .sync = true});
-	nt_sink *sink = add(output, in_folder("pipe"), NT_ROLE_MAIN);
-	const char *temporary;
-	assert_int_equal(nt_output_written(output, in_folder("pipe"), &temporary, &error), NT_OK);
-	assert_null(temporary);
-	assert_int_equal(nt_sink_write(sink, "through", 7, &error), NT_OK);
-	assert_int_equal(nt_output_commit(output, &error), NT_OK);
-	int code;
-	assert_int_equal(waitpid(child, &code, 0), child);
-	assert_int_equal(code, 0);
-	struct stat status;
-	assert_int_equal(stat(in_folder("pipe"), &status), 0);
-	assert_true(S_ISFIFO(status.st_mode));
-}
-
-TEST(output_full_disk_is_an_error)
-{
-	if (access("/dev/full", W_OK) != 0)
-		skip();
-	nt_error error;
-	nt_output *output = start(NULL);
-	nt_sink *sink = add(output, "/dev/full", NT_ROLE_MAIN);
-	assert_int_equal(nt_sink_write(sink, "x", 1, &error), NT_OK);
-	assert_int_equal(nt_output_commit(output, &error), NT_ERROR_IO);
-	assert_string_equal(error.message, "cannot write: No space left on device");
-	assert_string_equal(error.place.file, "/dev/full");
 }
 
 AROUND_EACH(make_folder, remove_folder)
