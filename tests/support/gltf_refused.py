@@ -24,6 +24,7 @@ g['accessors'] = {}|/accessors|an object, expected an array
 a[0] = []|/accessors/0|an array, expected an object
 a[0]['count'] = '6'|/accessors/0/count|a string, expected a whole number of at least 0
 a[0]['count'] = 0|/meshes/0/primitives/0/attributes/NORMAL|accessor 1 has 6 elements, POSITION has 0
+a[0]['count'] = 10 ** 20 - 1|/accessors/0/count|expected a whole number of at least 0
 a[0]['count'] = 2 ** 32 - 1|/accessors/0/count|4294967295, expected at most 4294967294
 del a[0]['count']|/accessors/0|"count" is missing
 del a[0]['componentType']|/accessors/0|"componentType" is missing
@@ -67,6 +68,9 @@ p['indices'] = 'x'|/meshes/0/primitives/0/indices|
 p['indices'] = 0|/accessors/0|the indices of a primitive are 3 components of type 5126, expected an unsigned SCALAR
 del a[p['indices']]['bufferView']
 a[p['indices']]['componentType'] = 5120|/accessors/9|the indices of a primitive are 1 components of type 5120, expected an unsigned SCALAR
+a[p['indices']].update(count=3999999999); del a[p['indices']]['bufferView']|/accessors/9|
+g.update(cameras=[7], skins={}, animations=[{'channels': 9}])
+g['buffers'].append({'byteLength': 100, 'uri': '../absent.bin'}); g['buffers'].append({'uri': 7})
 p['mode'] = 7|/meshes/0/primitives/0/mode|7, expected at most 6
 p['mode'] = -1|/meshes/0/primitives/0/mode|
 p['material'] = 9|/meshes/0/primitives/0|refers to materials[9], there are 4
