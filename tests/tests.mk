@@ -61,12 +61,12 @@ $(B)/tests/faults/sweep: $(B)/tests/faults/sweep.o
 $(B)/tests/faults/make_meshopt: $(B)/tests/faults/make_meshopt.o
 	$(CXX) $(NT_LDFLAGS) -o $@ $^ -lmeshoptimizer
 
-# Sources of fuzz, stress and bench compile in every check, but for those that need a peer's header.
+# Sources of fuzz, stress and bench compile in every check.
 rest_looked := $(patsubst %,$(B)/tests/%.looked,bench fuzz stress)
 $(rest_looked): $(B)/tests/%.looked: $(wildcard tests/*/*.[ch] src/*/*.h src/*/*/*.h include/*.h)
 	@mkdir -p $(@D)
 	$(CC) $(filter-out -MMD -MP,$(NT_CFLAGS)) -Werror=implicit-function-declaration -Werror=incompatible-pointer-types -Itests/support \
-		-DNT_DATA_DIR='"data"' -fsyntax-only $(filter-out tests/bench/peer_%,$(filter tests/$*/%.c,$^))
+		-DNT_DATA_DIR='"data"' -fsyntax-only $(filter tests/$*/%.c,$^)
 	@touch $@
 
 .PHONY: tests

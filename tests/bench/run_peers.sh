@@ -1,18 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# run_peers.sh FOLDER: the meshes of a folder in the peers that the machine has: assimp natively (pkg-config
-# assimp), npm's packages of peers.mjs under node, installed below build/. Missing ones are said and skipped.
+# run_peers.sh FOLDER: the meshes of a folder in npm's packages of peers.mjs under node, installed below build/. Missing
+# ones are said and skipped.
 folder=$1 peers=build/peers
 mkdir -p "$peers" || exit 2
-if pkg-config --exists assimp 2>/dev/null; then
-	# shellcheck disable=SC2046
-	if ${CC:-gcc} -O2 -o "$peers/peer_assimp" tests/bench/peer_assimp.c $(pkg-config --cflags --libs assimp) -lm; then
-		"$peers/peer_assimp" "$folder" || echo "bench: assimp failed"
-	fi
-else
-	echo "bench: no assimp (libassimp-dev), skipped"
-fi
 if command -v node >/dev/null && command -v npm >/dev/null; then
 	if ! cmp -s tests/bench/package.json "$peers/package.json" || [ ! -d "$peers/node_modules" ]; then
 		cp tests/bench/package.json "$peers/"
