@@ -526,4 +526,32 @@ exits 1
 says "--images=none"
 only
 
+scene "data URIs are made while the text is written, whatever a name looks like, and in each text that is written"
+cp "$data"/plates.* "$data/bumps.png" .
+for name in plain 'data:application/octet-stream;base64,' 'data:application/gltf-buffer;base64,A'; do
+	python3 -c 'import base64, json, sys
+g = json.load(open("plates.gltf"))
+view = g["bufferViews"][0]
+part = open("plates.bin", "rb").read()[view.get("byteOffset", 0):][:view["byteLength"]]
+g["buffers"].append({"byteLength": len(part), "uri": "data:application/gltf-buffer;base64," + base64.b64encode(part).decode()})
+view.update(buffer=1, byteOffset=0)
+g["asset"]["generator"] = sys.argv[1]
+json.dump(g, open("in.gltf", "w"))' "$name"
+	run --only=all --verify --buffers=embed in.gltf embedded.gltf
+	exits 0
+	is "$(value embedded.gltf '[r["asset"]["generator"]] + [b["uri"].split(",")[0] for b in r["buffers"]]')" \
+		"['$name', 'data:application/octet-stream;base64', 'data:application/gltf-buffer;base64']"
+	run --only=all --verify in.gltf linked.gltf
+	run embedded.gltf a.glb
+	run linked.gltf b.glb
+	same a.glb b.glb
+done
+# a .bin that gets its name in two steps: the second run replaces the first one's
+mkdir out
+run --only=all --buffers=copy --verify in.gltf out/in.gltf
+python3 -c 'data = bytearray(open("plates.bin", "rb").read()); data[144] ^= 1; open("plates.bin", "wb").write(data)'
+run --only=all --buffers=copy --verify in.gltf out/in.gltf
+exits 0
+is "$(value out/in.gltf '[b["uri"].split(",")[0] for b in r["buffers"]]')" "['in.bin', 'data:application/gltf-buffer;base64']"
+
 done_testing

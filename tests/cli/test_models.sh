@@ -48,6 +48,10 @@ done < <(find "$shared/models" "$shared/corpus" -type f \( -name '*.obj' -o -nam
 [ "$number" -gt 100 ] || wrong "only $number files found"
 valid --pairs pairs
 
+scene "what is refused has a place"
+[ -s "$refused" ] || wrong "nothing is refused"
+is "$(grep -E '\.gl(tf|b)	' "$refused" | grep -vE '	nmtan: [^	]*\.gl(tf|b): (/|at byte )' | head -3)" ""
+
 scene "what is refused is invalid, compressed or has no triangles"
 if [ -f "$ROOT/build/node/node_modules/gltf-validator/package.json" ]; then
 	grep -E '\.(gltf|glb)	' "$refused" | grep -v '^5' | cut -f2 >suspects

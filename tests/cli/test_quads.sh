@@ -272,6 +272,30 @@ same_places out.glb obj.glb
 run --only=all --quads=off fans.gltf out.glb
 says_not quads
 
+# Triangles (0 1 2)(0 2 3) are one polygon, (4 2 1) another. 3 folded onto 1 has the first corner of the quad copied, 4 folded
+# over the side 1 2 others.
+scene "a polygon whose first corner is copied loses its FB_ngon_encoding, one whose other corners are copied keeps it"
+while IFS='|' read -r folded marked options said left; do
+	gltf new in 'const uvs = [0, 0, 1, 0, 1, 1, 0, 1, 2, 1], up = Array(5).fill([0, 0, 1]).flat(), to = {3: [1, 0], 4: [0, 1]};
+		const strip = (v) => ({attributes: {POSITION: add("VEC3", 5126, uvs.flatMap((x, i) => i % 2 ? [x, 0] : [x])),
+			NORMAL: add("VEC3", 5126, up), TEXCOORD_0: add("VEC2", 5126, uvs.map((x, i) => i >> 1 === v ? to[v][i % 2] : x))},
+			indices: add("SCALAR", 5123, [0, 1, 2, 0, 2, 3, 4, 2, 1]), '"$marked"'});
+		g.meshes = [{primitives: ['"$folded"'].map(strip)}]; g.nodes = [{mesh: 0}]; g.scenes = [{nodes: [0]}];
+		g.extensionsUsed = ["FB_ngon_encoding"]'
+	# shellcheck disable=SC2086
+	run --only=all $options in.gltf out.glb
+	exits 0
+	is "$folded $options: $(grep -c POLYGONS_DROPPED "$WORK/err.txt")" "$folded $options: $said"
+	is "$folded $options: $(gltf out.glb '[g.meshes[0].primitives.filter((p) => p.extensions?.FB_ngon_encoding).length, (g.extensionsUsed ?? []).includes("FB_ngon_encoding")].join()')" \
+		"$folded $options: $left"
+done <<'END'
+3|extensions: {FB_ngon_encoding: {}}|--quads=off|1|0,false
+4|extensions: {FB_ngon_encoding: {}}||0|1,true
+3, 4, 3|extensions: {FB_ngon_encoding: {}}|--quads=off|2|1,true
+4|extensions: {FB_ngon_encoding: {}}|--draco=edgebreaker|1|0,false
+3|extras: 1||0|0,true
+END
+
 scene "other words are refused"
 cp "$data/quad.obj" .
 run --quads=all quad.obj out.glb
