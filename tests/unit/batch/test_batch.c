@@ -46,26 +46,6 @@ static void pass(void *user, nt_job *job)
 	++*(size_t *)user;
 }
 
-TEST(every_input_runs_and_is_told_about_in_order)
-{
-	nt_batch batch;
-	nt_error error;
-	for (unsigned threads = 1; threads <= 8; threads += 3) {
-		const nt_settings settings = {.io.threads = threads, .check = true};
-		run_log l = {0};
-		assert_int_equal(nt_batch_check(&batch, INPUTS("h1 ", "ax ", "c ", "gx ", "b ", "d ", "a "),
-					 &error),
-			NT_OK);
-		nt_batch_run(&batch, &settings, &(nt_batch_options){.run = fake_run, .done = note, .user = &l});
-		assert_string_equal(l.names, "h1 ax c gx b d a ");
-		assert_int_equal(l.meshes, 7 + 0 + 2 + 6 + 1 + 3 + 0);
-		assert_int_equal(l.failures, 2);
-		assert_int_equal(threads_seen, 1);
-		assert_int_equal(batch.jobs[1].status, NT_ERROR_INPUT);
-		nt_batch_free(&batch);
-	}
-}
-
 /* Stands for nt_run where the bound of memory is about: notes who runs beside whom, with how many threads, and what
  * that takes by the gate's guess. Runs stay until as many as there is room for have been beside one another, half a
  * minute at most, so that no scheduler keeps them apart. */
@@ -172,23 +152,6 @@ TEST(what_had_no_memory_beside_others_is_tried_again_alone_with_a_limit_too)
 		assert_int_equal(tries[1], 2);
 		nt_batch_free(&batch);
 	}
-}
-
-TEST(after_a_failure_no_further_job_begins_if_so_wished)
-{
-	nt_batch batch;
-	nt_error error;
-	const nt_settings settings = {.io.threads = 1, .check = true};
-	size_t ran = 0;
-	assert_int_equal(nt_batch_check(&batch, INPUTS("a", "bx", "c", "d"), &error), NT_OK);
-	nt_batch_run(&batch, &settings,
-		&(nt_batch_options){.run = fake_run, .fail_fast = true, .done = pass, .user = &ran});
-	assert_int_equal(ran, 4);
-	assert_int_equal(batch.jobs[0].end, NT_JOB_RAN);
-	assert_int_equal(batch.jobs[1].status, NT_ERROR_INPUT);
-	assert_int_equal(batch.jobs[2].end, NT_JOB_UNTRIED);
-	assert_int_equal(batch.jobs[3].end, NT_JOB_UNTRIED);
-	nt_batch_free(&batch);
 }
 
 TEST(one_input_has_all_threads)

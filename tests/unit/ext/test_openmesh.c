@@ -111,31 +111,6 @@ static const uint32_t cube[][3] = {
 	{1, 3, 7}, {1, 7, 5}, /* x = 1 */
 };
 
-TEST(closed_seams_are_walked_round)
-{
-	/* the rim of z = 1: 4-5-7-6, marked in no particular order and from either side */
-	uint8_t marked[36] = {0};
-	marked[side_between(cube, 12, 7, 6)] = 1;
-	marked[side_between(cube, 12, 5, 4)] = 1;
-	marked[side_between(cube, 12, 5, 7)] = 1;
-	marked[side_between(cube, 12, 4, 6)] = 1;
-	walks w = walks_of(cube, 12, marked);
-	assert_int_equal(w.count, 1);
-	assert_true(w.closed[0]);
-	static const uint32_t rim[] = {4, 5, 7, 6}; /* lowest side of the edges: 6, which is 4-5 of triangle 2 */
-	assert_int_equal(w.ends[0], 4);
-	assert_memory_equal(w.from, rim, sizeof rim);
-
-	/* the rim and one upright edge: vertex 4 is a junction, so the rim begins there */
-	marked[side_between(cube, 12, 0, 4)] = 1;
-	w = walks_of(cube, 12, marked);
-	assert_int_equal(w.count, 2);
-	assert_true(w.closed[0]);
-	assert_int_equal(w.from[0], 4);
-	assert_false(w.closed[1]);
-	assert_int_equal(w.ends[1] - w.ends[0], 1);
-}
-
 TEST(open_chain_is_ordered_from_end_to_end)
 {
 	uint8_t marked[36] = {0};
@@ -150,19 +125,6 @@ TEST(open_chain_is_ordered_from_end_to_end)
 	assert_int_equal(w.ends[0], 3);
 	assert_memory_equal(w.from, expected, sizeof expected);
 	assert_int_equal(w.to[2], 6);
-}
-
-TEST(moebius_strip_leaves_its_last_triangle)
-{
-	/* Five triangles (i, i+1, i+2) mod 5, every other one turned: the strip closes with a twist, and
-	 * since 5 is odd the last and the first use an edge in the same direction. */
-	static const uint32_t band[][3] = {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 0, 4}, {4, 0, 1}};
-	uint8_t marked[15] = {0};
-	marked[14] = marked[3] = 1; /* the first is of the triangle left out: the caller has it */
-	const walks w = walks_of(band, COUNT(band), marked);
-	assert_int_equal(w.left_out, 1);
-	assert_int_equal(w.count, 1);
-	assert_int_equal(w.sides[0], 3);
 }
 
 TEST(degenerate_and_third_triangles_are_left_out)

@@ -370,26 +370,6 @@ TEST(long_text_comes_in_pieces)
 	nt_buffer_free(&text);
 }
 
-TEST(look_ups_of_nothing_give_nothing)
-{
-	nt_json *document = parse("{\"a\":{\"b\":[10,\"x\"]}}");
-	const nt_json_value *root = nt_json_root(document);
-	const nt_json_value *b = nt_json_find(nt_json_find(root, "a"), "b");
-	assert_int_equal(nt_json_count(b), 2);
-	assert_null(nt_json_at(b, 2));
-	assert_null(nt_json_find(b, "c"));
-	assert_null(nt_json_find(nt_json_find(root, "c"), "b"));
-	assert_int_equal(nt_json_count(NULL), 0);
-	assert_null(nt_json_get_string(NULL, NULL));
-	assert_null(nt_json_key(b, 0, NULL));
-	assert_int_equal(nt_json_type_of(NULL), NT_JSON_NONE);
-	assert_string_equal(nt_json_type_text(b), "an array");
-	size_t length;
-	assert_string_equal(nt_json_key(root, 0, &length), "a");
-	assert_int_equal(length, 1);
-	nt_json_free(document);
-}
-
 TEST(escapes_are_what_they_stand_for)
 {
 	nt_json *document = parse("{\"\\u006be\\u0000y\":\""
@@ -460,42 +440,6 @@ TEST(objects_after_others_have_their_own_keys)
 	check_refused("[{\"a\":1},{\"a\":1,\"a\":2}]", 23, 19);
 	check_refused("[{\"a\":1,\"b\":2},{\"a\":1,\"a\":2}]", 29, 25);
 	nt_json_free(parse("[{\"extras\":{\"a\":1,\"a\":2}},{\"extras\":{\"a\":1,\"a\":2}}]"));
-}
-
-TEST(changes_keep_the_order_of_the_rest)
-{
-	nt_json *document = parse("{\"z\":1,\"y\":{\"deep\":[1,2]},\"x\":3}");
-	nt_json_value *root = nt_json_root(document);
-	const nt_json_value *deep = nt_json_at(nt_json_find(nt_json_find(root, "y"), "deep"), 1);
-	nt_json_set_uint64(document, nt_json_put(document, root, "z"), 7);
-	nt_json_set_string(document, nt_json_put(document, root, "new"), "n\0w", 3);
-	nt_json_set_double(document, nt_json_put(document, root, "mid"), 0.1);
-	nt_json_value *array = nt_json_put(document, root, "list");
-	nt_json_set_bool(document, nt_json_append(document, array), true);
-	nt_json_set_object(document, nt_json_append(document, array));
-	nt_json_set_copy(document, nt_json_append(document, array), nt_json_find(root, "y"));
-	/* values deep inside members that moved stay where they were */
-	uint64_t two = 0;
-	assert_true(nt_json_get_uint64(deep, &two));
-	assert_int_equal(two, 2);
-	nt_json_remove(document, root, "x");
-	nt_json_remove(document, root, "absent");
-	nt_json_remove_at(document, nt_json_find(root, "list"), 1);
-	check_dump(document, "{\"z\":7,\"y\":{\"deep\":[1,2]},\"new\":\"n\\u0000w\",\"mid\":0.1,"
-		"\"list\":[true,{\"deep\":[1,2]}]}");
-	assert_false(nt_json_failed(document));
-	nt_json_free(document);
-}
-
-TEST(equality_looks_at_values_and_order)
-{
-	nt_json *document = parse("[{\"a\":1,\"b\":2},{\"a\":1.0,\"b\":2},{\"b\":2,\"a\":1},{\"a\":1}]");
-	const nt_json_value *root = nt_json_root(document);
-	assert_true(nt_json_equal(nt_json_at(root, 0), nt_json_at(root, 1)));
-	assert_false(nt_json_equal(nt_json_at(root, 0), nt_json_at(root, 2)));
-	assert_false(nt_json_equal(nt_json_at(root, 0), nt_json_at(root, 3)));
-	assert_false(nt_json_equal(nt_json_at(root, 0), NULL));
-	nt_json_free(document);
 }
 
 static nt_status edit_all(nt_buffer *out, nt_error *error)
