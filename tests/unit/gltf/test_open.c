@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a document says of its meshes before they are loaded; tests/support/gltf_refused.py has faults, gltf_table.py layouts.
+ * Materials, texture transforms, scenes and instances of a document. tests/support/gltf_refused.py has its faults,
+ * gltf_table.py how its bytes may lie.
  */
 #include "hand_gltf_file.h"
 #include <math.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Every prefix of an OBJ file and of a library, and every byte replaced; tests/cli/texts.tsv has each fault and its line.
+ * Every prefix of an OBJ file and of a library, and every byte replaced; tests/cli/texts.tsv has each fault and its
+ * line.
  */
 #include "obj_file.h"
 #include "obj/parts.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Every prefix of a PLY file, every byte replaced, and memory that ends; tests/cli/texts.tsv has each fault and where it is.
+ * Every prefix of a PLY file, every byte replaced, and memory that ends; tests/cli/texts.tsv has each fault and where
+ * it is.
  */
 #include "fail_alloc.h"
 #include "ply/ply.h"
