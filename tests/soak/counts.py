@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 """counts.py NMTAN [WORD...]: what is counted in inputs, from 1 000 to 100 000 of it, takes n log n time.
 
-Each quantity is a function that writes an input with n of something, and each input is run with several sets of options.
+Each quantity is a function, or a row of counts.tsv, that writes an input with n of something, and each input is run with several
+sets of options.
 Processor time and memory of 10 000 and 100 000 may be at most 1.5 times what n log n makes of those of the size before;
 less than FLOOR seconds or bytes count as that. Runs end with an exit code that the manual has, but for 4. WORDs choose
 quantities by parts of their names, a word with "--" sets of options. NT_SEED (1) is the seed of values and orders,
@@ -105,62 +106,6 @@ def grid(doc, side, binary=b''):
 
 
 @quantity(*MESHES)
-def gltf_primitives(n, folder):
-    doc = document()
-    doc['meshes'][0]['primitives'] *= n
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*MESHES)
-def gltf_primitives_with_materials(n, folder):
-    doc = document()
-    one = doc['meshes'][0]['primitives'][0]
-    doc['meshes'][0]['primitives'] = [one | {'material': i} for i in range(n)]
-    doc['materials'] = [{'name': 'm%d' % random.randrange(n), 'normalTexture': {'index': 0}} for i in range(n)]
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*MESHES)
-def gltf_meshes_and_nodes(n, folder):
-    doc = document()
-    doc['meshes'] = [dict(doc['meshes'][0], name='x' * random.randrange(9)) for i in range(n)]
-    doc['nodes'] = [{'mesh': i, 'scale': [1, -1, 1]} for i in range(n)]
-    doc['scenes'][0]['nodes'] = list(range(n))
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*MESHES)
-def gltf_nodes_of_one_mesh(n, folder):
-    doc = document()
-    doc['nodes'] = [{'mesh': 0, 'translation': [i, 0, 0]} for i in range(n)]
-    doc['scenes'][0]['nodes'] = list(range(n))
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN, '--only=all IN OUT.ply')
-def gltf_node_chain(n, folder):
-    doc = document()
-    doc['nodes'] = [{'children': [i + 1]} for i in range(n - 1)] + [{'mesh': 0}]
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
-def gltf_scenes(n, folder):
-    doc = document()
-    doc['scenes'] *= n
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*MESHES)
-def gltf_accessors_of_one_view(n, folder):
-    doc = document()
-    one = doc['meshes'][0]['primitives'][0]
-    doc['accessors'] += [dict(doc['accessors'][2]) for i in range(n)]
-    doc['meshes'][0]['primitives'] = [dict(one, attributes=dict(one['attributes'], TEXCOORD_0=4 + i)) for i in range(n)]
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*MESHES)
 def gltf_everything_of_its_own(n, folder):
     doc = document()
     one, views, accessors = doc['meshes'][0]['primitives'][0], doc['bufferViews'], doc['accessors']
@@ -170,21 +115,6 @@ def gltf_everything_of_its_own(n, folder):
                                           indices=4 * i + 3)]} for i in range(n)]
     doc['nodes'] = [{'mesh': i} for i in range(n)]
     return glb(folder + '/a.glb', doc, TRIANGLE * n)
-
-
-@quantity(*MESHES)
-def gltf_existing_tangents(n, folder):
-    path = gltf_everything_of_its_own(n, folder)
-    subprocess.run([nmtan, '-q', path, folder + '/b.glb'], check=True)
-    return folder + '/b.glb'
-
-
-@quantity('IN OUT.glb', 'IN OUT.gltf', '--buffers=copy IN out/o.gltf', '--buffers=embed IN OUT.gltf')
-def gltf_buffers(n, folder):
-    doc = document()
-    doc['buffers'] += [{'byteLength': 3, 'uri': 'data:;base64,AAAA'} for i in range(n)]
-    doc['bufferViews'] += [{'buffer': i + 1, 'byteLength': 3} for i in range(n)]
-    return glb(folder + '/a.glb', doc)
 
 
 @quantity('IN OUT.glb', 'IN OUT.gltf', '--buffers=copy IN out/o.gltf', '--only=all --verify IN OUT.glb', most=10000)
@@ -235,49 +165,6 @@ def gltf_images_of_their_own(n, folder):
     return gltf(folder + '/a.gltf', doc)
 
 
-@quantity(*IMAGES[:-2])
-def gltf_images_missing(n, folder):
-    doc = document()
-    doc['images'] = [{'uri': 'no/%d.png' % i} for i in range(n)]
-    doc['textures'] = [{'source': i} for i in range(n)]
-    doc['materials'] = [{'normalTexture': {'index': i}} for i in range(n)]
-    return gltf(folder + '/a.gltf', doc)
-
-
-@quantity(*PLAIN)
-def gltf_samplers_and_textures(n, folder):
-    doc = document()
-    doc['samplers'] = [{'wrapS': random.choice((33071, 33648, 10497))} for i in range(n)]
-    doc['textures'] = [{'source': 0, 'sampler': i} for i in range(n)]
-    doc['materials'] = [{'normalTexture': {'index': random.randrange(n)}} for i in range(n)]
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN, '--only=all IN OUT.ply')
-def gltf_texture_sets(n, folder):
-    doc = document()
-    attributes = doc['meshes'][0]['primitives'][0]['attributes']
-    attributes |= {'TEXCOORD_%d' % i: 2 for i in range(n)} | {'_X%d' % i: 2 for i in range(n)}
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
-def gltf_attributes_of_their_own(n, folder):
-    doc = document()
-    doc['accessors'] += [dict(doc['accessors'][2]) for i in range(n)]
-    doc['meshes'][0]['primitives'][0]['attributes'] |= {'_X%d' % i: 4 + i for i in range(n)}
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN, '--only=all --morph=keep IN OUT.glb', '--only=all --morph=drop IN OUT.glb', '--only=all --draco=edgebreaker IN OUT.glb')
-def gltf_targets(n, folder):
-    doc = document()
-    primitive = doc['meshes'][0]['primitives'][0]
-    primitive['targets'] = [{'POSITION': 0, 'NORMAL': 1}] * n
-    doc['meshes'][0]['weights'] = [0] * n
-    return glb(folder + '/a.glb', doc)
-
-
 @quantity(*PLAIN, most=10000)
 def gltf_targets_of_their_own(n, folder):
     doc = document()
@@ -304,32 +191,6 @@ def gltf_sparse(n, folder):
 
 
 @quantity(*PLAIN)
-def gltf_sparse_accessors(n, folder):
-    doc = document()
-    sparse = {'count': 1, 'indices': {'bufferView': 3, 'componentType': 5123}, 'values': {'bufferView': 2}}
-    one = doc['meshes'][0]['primitives'][0]
-    doc['accessors'] += [dict(doc['accessors'][2], sparse=sparse) for i in range(n)]
-    doc['meshes'][0]['primitives'] = [dict(one, attributes=dict(one['attributes'], TEXCOORD_0=4 + i)) for i in range(n)]
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
-def gltf_animations(n, folder):
-    doc = document()
-    doc['animations'] = [{'channels': [{'sampler': 0, 'target': {'node': 0, 'path': 'translation'}}],
-                          'samplers': [{'input': 2, 'output': 0}]}] * n
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
-def gltf_channels(n, folder):
-    doc = document()
-    doc['animations'] = [{'channels': [{'sampler': i, 'target': {'node': 0, 'path': 'weights'}} for i in range(n)],
-                          'samplers': [{'input': 2, 'output': 0}] * n}]
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
 def gltf_animated_transforms(n, folder):
     doc = document()
     transform = 'extensions/KHR_texture_transform'
@@ -343,85 +204,6 @@ def gltf_animated_transforms(n, folder):
     return glb(folder + '/a.glb', doc)
 
 
-@quantity(*PLAIN, '--only=all IN OUT.ply')
-def gltf_skins_and_joints(n, folder):
-    doc = document()
-    doc['nodes'] += [{}] * n
-    doc['nodes'][0]['skin'] = 0
-    doc['skins'] = [{'joints': list(range(1, n + 1))}] + [{'joints': [1]}] * n
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
-def gltf_cameras_and_lights(n, folder):
-    doc = document()
-    doc['cameras'] = [{'type': 'perspective', 'perspective': {'yfov': 1, 'znear': 1}}] * n
-    doc['extensions'] = {'KHR_lights_punctual': {'lights': [{'type': 'point'}] * n}}
-    doc['nodes'] += [{'camera': i, 'extensions': {'KHR_lights_punctual': {'light': i}}} for i in range(n)]
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
-def gltf_variants(n, folder):
-    doc = document()
-    doc['materials'] = [{'normalTexture': {'index': 0}}] * n
-    doc['extensions'] = {'KHR_materials_variants': {'variants': [{'name': 'v%d' % i} for i in range(n)]}}
-    doc['meshes'][0]['primitives'][0]['extensions'] = {'KHR_materials_variants': {
-        'mappings': [{'material': i, 'variants': [i]} for i in range(n)]}}
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
-def gltf_levels_of_detail(n, folder):
-    doc = document()
-    doc['meshes'][0]['primitives'] *= n
-    doc['materials'] = [{'normalTexture': {'index': 0}, 'extensions': {'MSFT_lod': {'ids': list(range(1, n))}}}] + [
-        {'normalTexture': {'index': 0}}] * (n - 1)
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
-def gltf_extensions_used(n, folder):
-    doc = document()
-    doc['extensionsUsed'] = ['X_%d' % i for i in range(n)]
-    doc['meshes'][0]['primitives'] *= n
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
-def gltf_unknown_extensions(n, folder):
-    doc = document()
-    doc['meshes'][0]['primitives'][0]['extensions'] = {'X_%d' % i: {'accessor': i % 4} for i in range(n)}
-    doc['extensionsUsed'] = ['X_%d' % i for i in range(n)]
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
-def gltf_features(n, folder):
-    doc = document()
-    doc['accessors'].append({'componentType': 5126, 'count': 3, 'type': 'SCALAR'})
-    doc['meshes'][0]['primitives'][0]['attributes'] |= {'_FEATURE_ID_%d' % i: 4 for i in range(n)}
-    doc['meshes'][0]['primitives'][0]['extensions'] = {'EXT_mesh_features': {
-        'featureIds': [{'featureCount': 1, 'attribute': i} for i in range(n)]}}
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
-def gltf_instances(n, folder):
-    doc = document()
-    doc['nodes'] = [{'mesh': 0, 'extensions': {'EXT_mesh_gpu_instancing': {'attributes': {'TRANSLATION': 0}}}}] * n
-    doc['scenes'][0]['nodes'] = list(range(n))
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*PLAIN)
-def gltf_members(n, folder):
-    doc = document()
-    doc['extras'] = {'k%d' % random.randrange(n): [i, 'x\u20ac"', None] for i in range(n)}
-    doc['materials'][0]['extras'] = [{'k%d' % i: 0} for i in range(n)]
-    return glb(folder + '/a.glb', doc)
-
-
 def written_as(folder, material):
     """A glTF whose JSON has this text in place of the key "material"."""
     path = gltf(folder + '/a.gltf', document())
@@ -430,54 +212,6 @@ def written_as(folder, material):
         out.write(text.replace('"material"', material))
     return path
 
-
-@quantity(*PLAIN, code=3)
-def gltf_equal_members(n, folder):
-    return written_as(folder, '"x": 1, ' * n + '"material"')
-
-
-@quantity(*PLAIN)
-def gltf_blanks_and_escapes(n, folder):
-    return written_as(folder, '"x": "%s"%s, "material"' % ('\\u0041' * n, ' \n\t' * n))
-
-
-@quantity(*PLAIN, code=3)
-def gltf_nesting(n, folder):
-    return written_as(folder, '"x": %s%s, "material"' % ('[' * n, ']' * n))
-
-
-@quantity('IN OUT.glb', '--check --report=r.json IN', '--check --report=r.html IN')
-def gltf_long_names(n, folder):
-    doc = document()
-    doc['meshes'][0]['name'] = 'x' * 30 * n
-    doc['materials'][0]['name'] = '<\x1b' * n
-    doc['meshes'][0]['primitives'] *= 1000
-    return glb(folder + '/a.glb', doc)
-
-
-@quantity(*MESHES, '--only=all --draco=sequential IN OUT.glb', '--only=all --draco=edgebreaker --verify IN OUT.glb',
-          '--only=all --method=robust --precision=short IN OUT.glb', '--only=all --quads=pairs IN OUT.glb')
-def gltf_triangles(n, folder):
-    doc = document()
-    return glb(folder + '/a.glb', doc, grid(doc, int(math.sqrt(n / 2))))
-
-
-@quantity(*MESHES)
-def gltf_windows(n, folder):
-    """Primitives with different parts of one index array."""
-    doc = document()
-    binary = grid(doc, int(math.sqrt(n)))
-    one, indices = doc['meshes'][0]['primitives'][0], doc['accessors'][3]
-    doc['accessors'] += [dict(indices, byteOffset=24 * i, count=3) for i in range(min(n, indices['count'] // 6))]
-    doc['meshes'][0]['primitives'] = [dict(one, indices=4 + i) for i in range(len(doc['accessors']) - 4)]
-    return glb(folder + '/a.glb', doc, binary)
-
-
-@quantity('--only=all IN OUT.glb', '--only=all --draco=off IN OUT.glb', most=10000)
-def gltf_draco_blocks(n, folder):
-    path = gltf_everything_of_its_own(n, folder)
-    subprocess.run([nmtan, '-q', '--only=all', '--draco=sequential', path, folder + '/b.glb'], check=True)
-    return folder + '/b.glb'
 
 # ---- OBJ and MTL ----
 
@@ -511,85 +245,6 @@ for name, line in {'objects': 'o x%d', 'groups': 'g x%d y', 'equal_objects': 'o 
     quantity(*(MESHES if name in ('objects', 'materials', 'smoothing') else PLAIN))(make)
 
 
-@quantity(*PLAIN)
-def obj_names_of_one_library(n, folder):
-    return obj(folder, 'mtllib' + ''.join(' ' + './' * random.randrange(4) + 'a.mtl' for i in range(n)) + '\n' + CORNERS +
-               'usemtl m0\n' + FACE, ''.join('newmtl m%d\nmap_Kd x.png\n' % i for i in range(n)))
-
-
-@quantity(*PLAIN)
-def obj_statements_of_one_library(n, folder):
-    return obj(folder, ''.join('mtllib %sa.mtl\n' % ('./' * random.randrange(40)) for i in range(n)) + CORNERS +
-               'usemtl m0\n' + FACE, ''.join('newmtl m%d\nmap_Kd x.png\n' % i for i in range(n)))
-
-
-@quantity(*PLAIN, '--only=all --normals=replace-smooth IN OUT.ply')
-def obj_polygon(n, folder):
-    corners = [(math.cos(2 * math.pi * i / n), math.sin(2 * math.pi * i / n)) for i in range(n)]
-    return obj(folder, ''.join('v %.9f %.9f 0\nvt %.9f %.9f\n' % (p + p) for p in corners) + 'f ' + ' '.join(
-        '%d/%d' % (i + 1, i + 1) for i in range(n)) + '\n')
-
-
-@quantity(*PLAIN)
-def obj_concave_polygon(n, folder):
-    corners = [(i, (i * 7919) % 13 + 20 if i < n // 2 else 0) for i in range(n // 2)] + [(i, -1 - i % 2) for i in
-                                                                                   range(n // 2, 0, -1)]
-    return obj(folder, ''.join('v %d %d 0\nvt %d %d\n' % (p + p) for p in corners) + 'f ' + ' '.join(
-        '%d/%d' % (i + 1, i + 1) for i in range(len(corners))) + '\n')
-
-
-@quantity(*PLAIN)
-def obj_continued_line(n, folder):
-    return obj(folder, CORNERS + 'g' + ' x\\\n' * n + '\n' + FACE)
-
-
-@quantity(*MESHES)
-def obj_hub(n, folder):
-    text = ''.join('v %.9f %.9f 0\nvt %.9f %d\n' % (math.cos(i), math.sin(i), math.cos(i), i % 2) for i in range(n))
-    return obj(folder, text + 'v 0 0 0\nvt 0 0\n' + ''.join('f %d/%d %d/%d %d/%d\n' % (
-        i + 1, i + 1, (i + 1) % n + 1, (i + 1) % n + 1, n + 1, n + 1) for i in range(n)))
-
-
-@quantity(*MESHES)
-def obj_equal_faces(n, folder):
-    return obj(folder, CORNERS + FACE * n)
-
-
-@quantity(*MESHES)
-def obj_random_faces(n, folder):
-    text = ''.join('v %g %g %g\nvt %g %g\n' % tuple(random.random() for k in range(5)) for i in range(n // 3))
-    pick = lambda: 2 * (random.randint(1, n // 3),)
-    return obj(folder, text + ''.join('f %d/%d %d/%d %d/%d\n' % (pick() + pick() + pick()) for i in range(n)))
-
-
-@quantity(*PLAIN, '--depfile=d --manifest=m --update IN OUT.glb')
-def mtl_materials(n, folder):
-    return obj(folder, CORNERS + ''.join('usemtl m%d\n' % i + FACE for i in range(n)),
-               ''.join('newmtl m%d\nKd 1 0 0\nPr .5\n' % i for i in range(n)))
-
-
-@quantity(*PLAIN)
-def mtl_equal_materials(n, folder):
-    return obj(folder, CORNERS + 'usemtl m\n' + FACE, 'newmtl m\nKd 1 0 0\n' * n)
-
-
-@quantity(*PLAIN)
-def mtl_statements(n, folder):
-    return obj(folder, CORNERS + 'usemtl m\n' + FACE, 'newmtl m\n' + ''.join(
-        'map_Kd a%d.png\nnorm b%d.png\nNs %d\nxyz\ndisp %d.png\n' % (i, i, i, i) for i in range(n)))
-
-
-@quantity(*PLAIN)
-def mtl_map_options(n, folder):
-    return obj(folder, CORNERS + 'usemtl m\n' + FACE, 'newmtl m\nmap_Kd ' + '-s 1 1 1 -o 0 0 0 -mm 0 1 ' * n + 'a.png\n')
-
-
-@quantity(*PLAIN, '--depfile=d --manifest=m --update IN OUT.glb', '--textures=keep IN OUT.gltf')
-def mtl_missing_images(n, folder):
-    return obj(folder, CORNERS + ''.join('usemtl m%d\n' % i + FACE for i in range(n)),
-               ''.join('newmtl m%d\nmap_Kd c%d.png\nnorm sub/n%d.png\nmap_Pr C:\\x\\y\\r%d.png\n' % (i, i, i, i) for i in range(n)))
-
-
 @quantity(*PLAIN, '--images=embed IN OUT.glb', '--images=copy IN out/o.gltf', '--textures=png IN out/o.gltf', most=10000)
 def mtl_images_of_their_own(n, folder):
     for i in range(n):
@@ -607,10 +262,6 @@ def mtl_images_of_one_file(n, folder):
                ''.join('newmtl m%d\nmap_Kd %sc.png\n' % (i, './' * random.randrange(9)) for i in range(n)))
 
 
-@quantity(*PLAIN)
-def mtl_slashes(n, folder):
-    return obj(folder, CORNERS + 'usemtl m\n' + FACE, 'newmtl m\nmap_Kd %sc.png\nmap_Ke %s/c.png\n' % ('a/' * n, 'x/../' * n))
-
 # ---- PLY ----
 
 
@@ -625,58 +276,6 @@ def ply(folder, header, body=b'0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n', vert
 
 PLYS = ('IN OUT.glb', 'IN OUT.ply', '--check --report=r.json IN')
 
-
-@quantity(*PLYS)
-def ply_comments(n, folder):
-    return ply(folder, ''.join('comment %d\nobj_info %d\n' % (i, i) for i in range(n)))
-
-
-@quantity(*PLYS)
-def ply_textures(n, folder):
-    return ply(folder, ''.join('comment TextureFile t%d.png\n' % i for i in range(n)))
-
-
-@quantity(*PLYS)
-def ply_elements(n, folder):
-    return ply(folder, ''.join('element x%d 0\nproperty int y\n' % i for i in range(n)))
-
-
-@quantity(*PLYS)
-def ply_properties(n, folder):
-    return ply(folder, '', b''.join(b'%d %d 0 %d %d' % (i % 2, i // 2, i % 2, i // 2) + b' 0' * n + b'\n' for i in range(3)) +
-               b'3 0 1 2\n', more=''.join('property int p%d\n' % i for i in range(n)))
-
-
-@quantity(*PLYS)
-def ply_face_properties(n, folder):
-    return ply(folder, '', b'0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2' + b' 1 0' * n + b'\n', face=
-               'property list uchar int vertex_indices\n' + ''.join('property list uchar int p%d\n' % i for i in range(n)))
-
-
-@quantity(*PLYS)
-def ply_faces(n, folder):
-    return ply(folder, '', b'0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n' + b'3 0 1 2\n' * n, faces=n)
-
-
-@quantity(*PLYS)
-def ply_polygon(n, folder):
-    rows = ''.join('%.9f %.9f 0 %.9f 0\n' % (math.cos(6.2831 * i / n), math.sin(6.2831 * i / n), i / n) for i in range(n))
-    return ply(folder, '', (rows + '%d ' % n + ' '.join(map(str, range(n))) + '\n').encode(), vertices=n,
-               face='property list int int vertex_indices\n')
-
-
-@quantity(*PLYS)
-def ply_wedges(n, folder):
-    rows = b'0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n'
-    return ply(folder, '', rows + b''.join(b'3 0 1 2 6 0 0 1 0 0 %d %d\n' % (i, i % 7) for i in range(n)), faces=n, face=
-               'property list uchar int vertex_indices\nproperty list uchar float texcoord\nproperty int texnumber\n')
-
-
-@quantity(*PLYS)
-def ply_binary(n, folder):
-    rows = b''.join(struct.pack('<5f', *(random.random() for k in range(5))) for i in range(n))
-    faces = b''.join(struct.pack('<BIII', 3, *(random.randrange(n) for k in range(3))) for i in range(n))
-    return ply(folder, '', rows + faces, n, n, 'binary_little_endian')
 
 # ---- images ----
 
@@ -702,40 +301,6 @@ def image(folder, ending, data):
     return obj(folder, CORNERS + 'usemtl m\n' + FACE, 'newmtl m\nmap_Kd i.%s\nnorm i.%s\n' % (ending, ending))
 
 
-@quantity(*DECODED)
-def png_chunks(n, folder):
-    return image(folder, 'png', png(64, 64, before=b''.join(chunk(b'tEXt', b'k\0%d' % i) for i in range(n))))
-
-
-@quantity(*DECODED)
-def png_parts(n, folder):
-    noise = bytes(random.randrange(256) for i in range(n))
-    return image(folder, 'png', b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', n, 1, 8, 0, 0, 0, 0)) + b''.join(
-        chunk(b'IDAT', bytes((b,))) for b in zlib.compress(b'\0' + noise)) + chunk(b'IEND', b''))
-
-
-@quantity(*DECODED)
-def png_rows(n, folder):
-    return image(folder, 'png', png(4, n))
-
-
-@quantity(*DECODED)
-def png_columns(n, folder):
-    return image(folder, 'png', png(n, 4))
-
-
-@quantity(*DECODED)
-def tga_runs(n, folder):
-    return image(folder, 'tga', bytes((0, 0, 10)) + bytes(9) + struct.pack('<HHBB', n % 60000 or 1000, max(1, n // 60000) or 1, 24, 32) +
-                 b'\x80\1\2\3' * n)
-
-
-@quantity(*DECODED)
-def jpeg_segments(n, folder):
-    first = open(JPEG, 'rb').read()
-    return image(folder, 'jpg', first[:2] + b'\xff\xfe\0\4xx' * n + first[2:])
-
-
 def tiff(width, height, strips, entries, compression=1):
     """A grey TIFF whose strips are [(offset, size)] or bytes; entries: more tags."""
     data, offsets, sizes = b'', [], []
@@ -758,28 +323,7 @@ def tiff(width, height, strips, entries, compression=1):
     return struct.pack('<2sHI', b'II', 42, at + len(tables)) + data + tables + directory
 
 
-@quantity(*DECODED, most=60000)
-def tiff_strips(n, folder):
-    return image(folder, 'tif', tiff(8, n, [bytes((i % 256,)) * 8 for i in range(n)], []))
-
-
-@quantity(*DECODED, most=60000)
-def tiff_tags(n, folder):
-    return image(folder, 'tif', tiff(8, 8, [bytes(64)], [(300 + i, 4, 1, i) for i in range(min(n, 60000))]))
-
-
-@quantity(*DECODED, most=60000)
-def tiff_shared_strips(n, folder):
-    """Strips that share their bytes."""
-    row = zlib.compress(bytes(256))
-    return image(folder, 'tif', tiff(256, n, [row] + [(8, len(row))] * (n - 1), [], 8))
-
 # ---- lists of options and of inputs ----
-
-
-@quantity('--check --ignore=@LIST IN', '--check --severity=@LEVELS IN', most=10000)
-def option_codes(n, folder):
-    return obj(folder, CORNERS + FACE)
 
 
 @quantity('-d out @INPUTS', '--check --report=r.json @INPUTS', '--check --report=r.sarif @INPUTS', '--check --report=pages/ @INPUTS',
@@ -820,16 +364,25 @@ def option_missing_inputs(n, folder):
     return folder + '/names'
 
 
-@quantity('--check --baseline=b.json IN', '--check --baseline=b.json --report=r.html IN')
-def option_baseline(n, folder):
-    path = obj(folder, CORNERS + ''.join('o x%d\n' % i + FACE for i in range(n)))
-    subprocess.run([nmtan, '-q', '--check', '--fail-on=never', '--report=b.json', 'a.obj'], cwd=folder, check=True)
-    return path
+# ---- inputs that a few statements make ----
 
 
-@quantity('--texture-path=@FOLDERS IN OUT.glb', most=1000)
-def option_texture_paths(n, folder):
-    return mtl_missing_images(n, folder)
+def from_row(name, statements):
+    """What counts.tsv has of a quantity; without a path the document becomes a GLB."""
+    def make(n, folder):
+        scope = dict(globals(), n=n, folder=folder, doc=document())
+        exec(statements, scope)
+        return scope.get('path') or glb(folder + '/a.glb', scope['doc'])
+    make.__name__ = name
+    globals()[name] = make
+    return make
+
+
+with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), 'counts.tsv'), encoding='utf-8') as table:
+    for row in table:
+        if not row.startswith('#'):
+            row_name, row_options, row_statements = row.rstrip('\n').split('\t')
+            eval('quantity(%s)' % row_options)(from_row(row_name, row_statements))
 
 # ---- running ----
 
