@@ -368,7 +368,7 @@ def option_missing_inputs(n, folder):
 
 
 def from_row(name, statements):
-    """What counts.tsv has of a quantity; without a path the document becomes a GLB."""
+    """Makes the input of a row of counts.tsv. If the statements set no path, the document becomes a GLB."""
     def make(n, folder):
         scope = dict(globals(), n=n, folder=folder, doc=document())
         exec(statements, scope)
