@@ -442,6 +442,17 @@ TEST(objects_after_others_have_their_own_keys)
 	nt_json_free(parse("[{\"extras\":{\"a\":1,\"a\":2}},{\"extras\":{\"a\":1,\"a\":2}}]"));
 }
 
+TEST(equality_looks_at_values_and_order)
+{
+	nt_json *document = parse("[{\"a\":1,\"b\":2},{\"a\":1.0,\"b\":2},{\"b\":2,\"a\":1},{\"a\":1}]");
+	const nt_json_value *root = nt_json_root(document);
+	assert_true(nt_json_equal(nt_json_at(root, 0), nt_json_at(root, 1)));
+	assert_false(nt_json_equal(nt_json_at(root, 0), nt_json_at(root, 2)));
+	assert_false(nt_json_equal(nt_json_at(root, 0), nt_json_at(root, 3)));
+	assert_false(nt_json_equal(nt_json_at(root, 0), NULL));
+	nt_json_free(document);
+}
+
 static nt_status edit_all(nt_buffer *out, nt_error *error)
 {
 	static const char text[] =

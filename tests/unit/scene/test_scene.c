@@ -4,23 +4,6 @@
 #include "scene/origin.h"
 #include "scene/scene.h"
 
-TEST(what_is_left_out_is_one_list)
-{
-	nt_scene scene;
-	nt_scene_init(&scene, "a.obj");
-	nt_scene_leave_out(&scene, 0, 2, "points (%d)", 2);
-	assert_int_equal(scene.left_out_line, 0);
-	nt_scene_leave_out(&scene, 9, 3, "lines (%d)", 3);
-	nt_scene_leave_out(&scene, 4, 1, "curves");
-	nt_scene_leave_out(&scene, 7, 1, "surfaces");
-	assert_string_equal(scene.left_out.data, "points (2), lines (3), curves, surfaces");
-	assert_int_equal(scene.left_out_count, 7);
-	assert_int_equal(scene.left_out_line, 4);
-	nt_scene_free(&scene);
-	assert_null(scene.path);
-	assert_int_equal(scene.left_out.size, 0);
-}
-
 TEST(meshes_are_called_as_their_source_calls_them)
 {
 	static const struct {
@@ -45,54 +28,6 @@ TEST(meshes_are_called_as_their_source_calls_them)
 		assert_string_equal(place.file, rows[i].mesh.file ? rows[i].mesh.file : "");
 		assert_int_equal(place.line, rows[i].mesh.line);
 	}
-}
-
-TEST(materials_and_maps_have_the_place_of_their_statement)
-{
-	const nt_scene scene = {.path = "a.obj"};
-	nt_material m = nt_material_default("skin");
-	assert_true(m.roughness == 1 && m.metallic == 0 && m.normal_scale == 1 && m.base_color[3] == 1);
-	m.line = 3;
-	nt_place place = nt_material_place(&scene, &m, 0);
-	assert_string_equal(place.file, "a.obj");
-	assert_string_equal(place.object, "material \"skin\"");
-	assert_int_equal(place.line, 3);
-	m.library = "a.mtl";
-	m.name = "";
-	place = nt_material_place(&scene, &m, 8);
-	assert_string_equal(place.file, "a.mtl");
-	assert_string_equal(place.object, "");
-	assert_int_equal(place.line, 8);
-	nt_map map = {.name = "n.png", .line = 6};
-	nt_map_place(&scene, &m, &map, &place);
-	assert_string_equal(place.file, "a.mtl");
-	assert_int_equal(place.line, 6);
-	map.given = true;
-	nt_map_place(&scene, &m, &map, &place);
-	assert_string_equal(place.file, "n.png");
-	assert_int_equal(place.line, 0);
-}
-
-TEST(maps_and_anisotropy_take_texture_coordinates)
-{
-	nt_material m = nt_material_default("");
-	assert_false(nt_material_takes_texcoords(&m));
-	m.anisotropy = -0.5f;
-	assert_true(nt_material_takes_texcoords(&m));
-	for (size_t i = 0; i < NT_MATERIAL_MAPS; i++) {
-		m = nt_material_default("");
-		m.maps[i].name = "a.png";
-		assert_true(nt_material_takes_texcoords(&m));
-	}
-}
-
-TEST(a_mesh_without_triangles_has_none)
-{
-	nt_mesh meshes[2] = {{.triangles = true, .face_count = 0}, {.triangles = false, .face_count = 4}};
-	nt_scene scene = {.meshes = meshes, .mesh_count = 2};
-	assert_false(nt_scene_has_triangles(&scene));
-	meshes[0].face_count = 1;
-	assert_true(nt_scene_has_triangles(&scene));
 }
 
 /* The twin keeps what it is called, how it is shown and what was decided; what was computed is the other's. */
@@ -133,50 +68,6 @@ TEST(twins_share_geometry_and_nothing_else)
 	assert_ptr_equal(mesh.primitives, parts);
 	assert_int_equal(parts[0].face_count, 1);
 	assert_int_equal(parts[1].face_count, 9);
-}
-
-TEST(a_mesh_whose_arena_is_gone_points_nowhere)
-{
-	nt_mesh mesh;
-	memset(&mesh, 0x5a, sizeof mesh);
-	nt_mesh_drop_arrays(&mesh);
-	const void *const gone[] = {mesh.positions, mesh.normals, mesh.solve_normals, mesh.stored_normals,
-		mesh.texcoords, mesh.solve_texcoords, mesh.colors, mesh.tangents, mesh.vertex_lacks, mesh.face_sizes,
-		mesh.face_diagonals, mesh.indices, mesh.halves, mesh.face_polygon, mesh.face_smoothing,
-		mesh.face_primitive, mesh.pool_vertices, mesh.vertex_sources, mesh.morphs, mesh.morph_tangents,
-		mesh.corner_tangents, mesh.split.indices, mesh.split.sources, mesh.split.vertex_tangents};
-	for (size_t i = 0; i < sizeof gone / sizeof *gone; i++)
-		assert_null(gone[i]);
-	assert_int_equal(mesh.morph_count, 0);
-	assert_true(mesh.vertex_count && mesh.quad_count && mesh.split.source_count);
-}
-
-TEST(the_view_is_of_what_is_solved)
-{
-	float arrays[5][6];
-	nt_mesh mesh = {.positions = arrays[0], .normals = arrays[1], .texcoords = arrays[2], .face_count = 1,
-		.vertex_count = 3, .solve_sign = -1};
-	nmtan_stored_uv stored;
-	nmtan_mesh view = nt_mesh_view(&mesh, &stored);
-	assert_ptr_equal(view.normals, arrays[1]);
-	assert_ptr_equal(view.texcoords, arrays[2]);
-	assert_null(stored.texcoords);
-	assert_ptr_equal(view.stored, &stored);
-	assert_true(view.position_stride_bytes == 12 && view.normal_stride_bytes == 12 &&
-		view.texcoord_stride_bytes == 8);
-	mesh.solve_normals = arrays[3];
-	mesh.solve_texcoords = arrays[4];
-	view = nt_mesh_view(&mesh, &stored);
-	assert_ptr_equal(view.normals, arrays[3]);
-	assert_ptr_equal(view.texcoords, arrays[4]);
-	assert_ptr_equal(stored.texcoords, arrays[2]);
-	assert_true(stored.mirrored);
-	mesh.solve_sign = 1;
-	nt_mesh_view(&mesh, &stored);
-	assert_false(stored.mirrored);
-	mesh.solve_sign = 0;
-	nt_mesh_view(&mesh, &stored);
-	assert_null(stored.texcoords);
 }
 
 /* Half a unit in the last place of IEEE 754 floats: 24 bits. */
