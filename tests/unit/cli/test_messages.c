@@ -21,24 +21,6 @@ static void fails_with(nt_error *error, const char *file, nt_style style, const 
 	says(&out, expected);
 }
 
-TEST(an_error_stands_behind_its_line_offset_or_pointer)
-{
-	nt_error error;
-	nt_fail_line(&error, NT_ERROR_INPUT, 12, "vertex 9 of 8");
-	fails_with(&error, "a.obj", plain, "nmtan: a.obj:12: vertex 9 of 8\n");
-	nt_fail_offset(&error, NT_ERROR_INPUT, 0, "no magic");
-	fails_with(&error, "a.glb", plain, "nmtan: a.glb: at byte 0: no magic\n");
-	nt_fail_pointer(&error, NT_ERROR_INPUT, "/accessors/3/count", "is -1");
-	fails_with(&error, "-", plain, "nmtan: standard input: /accessors/3/count: is -1\n");
-	nt_fail_memory(&error);
-	fails_with(&error, NULL, plain, "nmtan: out of memory\n");
-	nt_fail(&error, NT_ERROR_USAGE, "bad");
-	fails_with(&error, NULL, coloured, "\033[1;31mnmtan:\033[0m bad\n");
-	/* text from files cannot steer the terminal */
-	nt_fail(&error, NT_ERROR_INPUT, "found '%s'", "\033[2J\r\n\x7f\xc3\xa9");
-	fails_with(&error, "a\tb", plain, "nmtan: a\\x09b: found '\\x1b[2J\\x0d\\x0a\\x7f\xc3\xa9'\n");
-}
-
 TEST(times_are_numbers_for_people)
 {
 	static const struct {
@@ -96,23 +78,4 @@ TEST(timing_names_every_stage)
 	nt_message_timing(&out, &summary);
 	assert_non_null(strstr(out.data, "5000000000 bytes read, 7 copied as they are, 0 bytes written"));
 	nt_buffer_free(&out);
-}
-
-TEST(of_many_exit_codes_the_worst_counts)
-{
-	/* The order of the issue. */
-	static const int order[] = {4, 2, 3, 5, 6, 0};
-	for (unsigned i = 0; i < 6; i++)
-		for (unsigned k = i; k < 6; k++) {
-			assert_int_equal(nt_exit_worse(order[i], order[k]), order[i]);
-			assert_int_equal(nt_exit_worse(order[k], order[i]), order[i]);
-		}
-	assert_int_equal(nt_exit_worse(1, 0), 1);
-	static const struct {
-		nt_status status;
-		int code;
-	} rows[] = {{NT_OK, 0}, {NT_ERROR_USAGE, 1}, {NT_ERROR_IO, 2}, {NT_ERROR_INPUT, 3}, {NT_ERROR_MEMORY, 4},
-		{NT_ERROR_INTERNAL, 4}, {NT_ERROR_UNSUPPORTED, 5}};
-	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-		assert_int_equal(nt_exit_code(rows[i].status), rows[i].code);
 }

@@ -38,20 +38,6 @@ static void refuses(const char *text, const char *const *words)
 		fail_msg("'%s' does not say '%s'", error.message, text);
 }
 
-TEST(no_options_mean_the_defaults)
-{
-	nt_command c;
-	accepts(&c, WORDS("in.obj", "out.glb"));
-	const nt_settings defaults = {.io.texcoord_set = -1, .io.outside = NT_OUTSIDE_ROOT, .own_input = true};
-	assert_memory_equal(&c.settings, &defaults, sizeof defaults);
-	assert_int_equal(c.action, NT_ACTION_RUN);
-	assert_int_equal(c.verbosity, 0);
-	assert_int_equal(c.fail_on, NT_FAIL_ON_NEVER);
-	assert_int_equal(c.operand_count, 2);
-	assert_string_equal(c.operands[0], "in.obj");
-	assert_string_equal(c.operands[1], "out.glb");
-}
-
 #define FIELD(name) offsetof(nt_command, name), sizeof(((nt_command *)0)->name)
 
 TEST(every_option_sets_its_field)
@@ -167,19 +153,6 @@ TEST(values_stand_behind_equals_or_in_the_next_word)
 	assert_string_equal(c.directory, "there");
 	accepts(&c, WORDS("--uv", "auto", "a", "b"));
 	assert_int_equal(c.settings.io.texcoord_set, -1);
-}
-
-TEST(options_and_names_may_mix_and_two_dashes_end_options)
-{
-	nt_command c;
-	accepts(&c, WORDS("a", "-v", "b", "--timing"));
-	assert_int_equal(c.operand_count, 2);
-	assert_string_equal(c.operands[1], "b");
-	accepts(&c, WORDS("-v", "--", "-a", "--b"));
-	assert_string_equal(c.operands[0], "-a");
-	assert_string_equal(c.operands[1], "--b");
-	accepts(&c, WORDS("-", "-"));
-	assert_string_equal(c.operands[0], "-");
 }
 
 TEST(unknown_options_are_refused_by_name)
@@ -312,18 +285,6 @@ TEST(names_must_be_as_many_as_the_form_takes)
 	refuses("4999 bytes", WORDS("a", "b.glb", "--report", name));
 	name[4095] = '\0';
 	accepts(&c, WORDS("a", name));
-}
-
-TEST(help_and_version_ask_for_no_names)
-{
-	nt_command c;
-	accepts(&c, WORDS("--help"));
-	assert_int_equal(c.action, NT_ACTION_HELP);
-	accepts(&c, WORDS("-h"));
-	assert_int_equal(c.action, NT_ACTION_FIRST_HELP);
-	accepts(&c, WORDS("--version", "a"));
-	assert_int_equal(c.action, NT_ACTION_VERSION);
-	refuses("'--nope'", WORDS("--help", "--nope"));
 }
 
 TEST(texts_name_every_option_that_is_not_hidden)

@@ -119,31 +119,6 @@ TEST(each_kind_of_bad_tangent_has_its_code)
 	}
 }
 
-TEST(required_tangents_are_missed)
-{
-	hand_mesh *h = sound_quad();
-	h->mesh.tangents = NULL;
-	h->mesh.has_tangents = false;
-	nt_report *report = hand_report(h, NULL);
-	assert_int_equal(hand_finding(report, NT_CODE_TAN_MISSING_REQUIRED)->severity, NT_SEVERITY_INFO);
-	nt_report_free(report);
-	h->mesh.slots = NT_SLOT_ANISOTROPY;
-	report = hand_report(h, NULL);
-	assert_int_equal(hand_finding(report, NT_CODE_TAN_MISSING_REQUIRED)->severity, NT_SEVERITY_ERROR);
-	hand_free(h, report);
-}
-
-TEST(kept_tangents_that_are_bad_are_told_once_on_conversion)
-{
-	hand_mesh *h = sound_quad();
-	set_tangent(h, 1, 0, 0, 0, 1);
-	const nt_report_options options = {.written = NT_FORMAT_PLY};
-	nt_report *report = hand_report(h, &options);
-	assert_int_equal(hand_finding(report, NT_CODE_TAN_ZERO)->count, 1);
-	assert_int_equal(hand_findings(report, NT_CODE_TAN_EXISTING_BAD), 0);
-	hand_free(h, report);
-}
-
 TEST(morph_targets_without_tangents_are_told)
 {
 	hand_mesh *h = sound_quad();
@@ -279,30 +254,6 @@ TEST(values_that_are_not_finite_are_told_and_harmless)
 	hand_free(h, report);
 }
 
-TEST(options_ignore_reweigh_and_limit)
-{
-	hand_mesh *h = sound_quad();
-	set_tangent(h, 1, 0, 0, 0, 1);    /* TAN_ZERO, error */
-	set_tangent(h, 3, 0.8f, 0, 0.6f, 1); /* TAN_NOT_ORTHOGONAL, warning */
-	nt_report_options options = {.max_findings = 1};
-	nt_report *report = hand_report(h, &options);
-	assert_int_equal(report->finding_count, 1);
-	assert_int_equal(report->dropped, report->by_severity[0] + report->by_severity[1]);
-	assert_int_equal(report->findings[0].code, NT_CODE_TAN_ZERO); /* the most severe stays */
-	nt_report_free(report);
-
-	options = (nt_report_options){0};
-	options.ignore[NT_CODE_TAN_ZERO] = true;
-	options.severity[NT_CODE_TAN_NOT_ORTHOGONAL] = 1 + NT_SEVERITY_ERROR;
-	report = hand_report(h, &options);
-	assert_int_equal(hand_findings(report, NT_CODE_TAN_ZERO), 0);
-	assert_int_equal(report->findings[0].code, NT_CODE_TAN_NOT_ORTHOGONAL);
-	nt_severity worst;
-	assert_true(nt_report_worst(report, &worst));
-	assert_int_equal(worst, NT_SEVERITY_ERROR);
-	hand_free(h, report);
-}
-
 /* Lone mirrored triangles of area 1/2, 2 and 9/2, one without an area in UV space, of 1/2, and one that is not
  * mirrored. */
 TEST(what_concerns_most_comes_first_and_no_code_hides_another)
@@ -352,26 +303,6 @@ static nt_baseline baseline_with(const char *file, const nt_report_finding *find
 		file, (unsigned long long)finding->fingerprint, (unsigned long long)finding->geometry);
 	assert_int_equal(nt_baseline_read(&baseline, text, strlen(text), &error), NT_OK);
 	return baseline;
-}
-
-TEST(baseline_knows_old_findings_each_as_often_as_it_has_them)
-{
-	hand_mesh *h = sound_quad();
-	set_tangent(h, 1, 0, 0, 0, 1);
-	nt_report *report = hand_report(h, NULL);
-	nt_baseline baseline = baseline_with("hand.ply", hand_finding(report, NT_CODE_TAN_ZERO));
-	nt_error error;
-	nt_report_free(report);
-	set_tangent(h, 3, 0, 0, 1, 1); /* new */
-	const nt_report_options options = {.baseline = &baseline};
-	report = hand_report(h, &options);
-	assert_true(hand_finding(report, NT_CODE_TAN_ZERO)->known);
-	assert_false(hand_finding(report, NT_CODE_TAN_PARALLEL_NORMAL)->known);
-	assert_int_equal(report->known[NT_SEVERITY_ERROR], 1);
-	nt_baseline_free(&baseline);
-	assert_int_equal(nt_baseline_read(&baseline, "{}", 2, &error), NT_ERROR_INPUT);
-	assert_int_equal(nt_baseline_read(&baseline, "{", 1, &error), NT_ERROR_INPUT);
-	hand_free(h, report);
 }
 
 /* v that points the other way mirrors all of a mesh: one finding, not one for each island. */

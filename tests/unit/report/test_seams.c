@@ -55,18 +55,6 @@ TEST(mirrored_pair_has_one_open_seam_of_one_edge)
 	hand_free(h, report);
 }
 
-TEST(seam_between_split_vertices_counts_too)
-{
-	hand_mesh *h = mirrored_pair(true);
-	h->positions[4][0] = -0.0f; /* the same place as 0 */
-	nt_report *report = hand_report(h, NULL);
-	assert_int_equal(report->meshes[0].seam_count, 1);
-	assert_int_equal(report->meshes[0].seams[0].shared_count, 0);
-	assert_int_equal(report->meshes[0].seams[0].edges[0].vertices[1][0], 4);
-	assert_int_equal(hand_findings(report, NT_CODE_TAN_MIRROR_SHARED_VERTEX), 0);
-	hand_free(h, report);
-}
-
 /*
  * A cube of 2 x 2 x 2, cut by x = 0 into two halves that share their texture: the front, back, top and bottom
  * are two quads each, left and right one each: 10 quads. u = |x| / 2 on the four cut faces, u = a second
@@ -132,40 +120,6 @@ TEST(mirrored_cube_has_one_closed_seam_around_x_0)
 	assert_int_equal(m->island_count, 4);
 	assert_int_equal(hand_findings(report, NT_CODE_UV_MIXED_WINDING_ISLAND), 0);
 	assert_int_equal(hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP)->count, 4);
-	hand_free(h, report);
-}
-
-/* A sheet of 2n x m quads over x in [-n, n], u = |x|: symmetric like a head, centre vertices shared. */
-TEST(symmetric_sheet_has_a_seam_along_its_middle)
-{
-	enum { N = 3, M = 5 };
-	hand_mesh *h = hand_new();
-	for (int y = 0; y <= M; y++)
-		for (int x = -N; x <= N; x++)
-			hand_vertex(h, (float)x, (float)y, (float)(x * x), (float)abs(x) / N, (float)y / M);
-	for (uint32_t y = 0; y < M; y++) {
-		for (uint32_t x = 0; x < 2 * N; x++) {
-			const uint32_t a = y * (2 * N + 1) + x;
-			hand_quad(h, a, a + 1, a + 2 * N + 2, a + 2 * N + 1);
-		}
-	}
-	nt_report *report = hand_report(h, NULL);
-	const nt_report_mesh *m = &report->meshes[0];
-	assert_int_equal(m->triangles[0], 2 * N * M);
-	assert_int_equal(m->triangles[2], 2 * N * M);
-	assert_int_equal(m->seam_count, 1);
-	assert_int_equal(m->seams[0].edge_count, M);
-	assert_int_equal(m->seams[0].shared_count, M);
-	assert_false(m->seams[0].closed);
-	assert_true(m->seams[0].length == M);
-	/* the way of its lowest side, of the first quad left of the middle */
-	assert_true(m->seams[0].edges[0].positions[0][1] == 0 && m->seams[0].edges[0].positions[1][1] == 1);
-	assert_string_equal(m->seams[0].plane_text, "x = 0");
-	assert_int_equal(m->island_count, 1);
-	assert_int_equal(hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP)->count, 1);
-	assert_int_equal(hand_findings(report, NT_CODE_UV_MIXED_WINDING_ISLAND), 0);
-	assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_LONE), 0);
-	assert_int_equal(hand_finding(report, NT_CODE_TAN_MIRROR_SHARED_VERTEX)->count, M + 1);
 	hand_free(h, report);
 }
 
@@ -262,29 +216,6 @@ static void add_quad(hand_mesh *h, float x, float u, bool mirrored)
 	hand_quad(h, a, b, c, d);
 }
 
-TEST(stacked_islands_are_told_from_lone_ones)
-{
-	hand_mesh *h = hand_new();
-	add_quad(h, 0, 0, false);
-	add_quad(h, 10, 0, true); /* on the first: another diagonal, but the same area */
-	add_quad(h, 20, 5, true); /* by itself */
-	add_quad(h, 30, 0, false); /* a copy, not mirrored */
-	h->mesh.wrap[0] = h->mesh.wrap[1] = NT_WRAP_CLAMP;
-	nt_report *report = hand_report(h, NULL);
-	const nt_report_mesh *m = &report->meshes[0];
-	assert_int_equal(m->island_count, 4);
-	assert_int_equal(m->island_kinds[NT_ISLAND_NORMAL], 2);
-	assert_int_equal(m->island_kinds[NT_ISLAND_MIRRORED], 2);
-	assert_int_equal(m->seam_count, 0);
-	const nt_report_finding *overlap = hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP);
-	assert_int_equal(overlap->island, 1);
-	assert_int_equal(overlap->count, 1);
-	const nt_report_finding *lone = hand_finding(report, NT_CODE_UV_MIRROR_LONE);
-	assert_int_equal(lone->island, 2);
-	assert_int_equal(lone->severity, NT_SEVERITY_INFO); /* normal maps are right there */
-	hand_free(h, report);
-}
-
 /* An unmirrored triangle at u 0.1 to 0.3 and a mirrored one whose u is `offset` + `scale` u, in another place; the
  * texture is moved by `moved`. */
 static nt_code code_of_pair(nt_wrap wrap, float moved, float offset, float scale)
@@ -332,33 +263,6 @@ TEST(search_of_overlap_is_bounded_by_the_triangles)
 	}
 	assert_true(least < CLOCKS_PER_SEC / 4); /* 0.02 s; without a bound 0.8 s */
 	hand_free(h, report);
-}
-
-TEST(overlap_is_judged_as_the_sampler_wraps)
-{
-	const nt_code on = NT_CODE_UV_MIRROR_OVERLAP, off = NT_CODE_UV_MIRROR_LONE;
-	const struct {
-		float offset, scale;
-		nt_code repeat, mirrored, clamp;
-	} rows[] = {
-		{0, 1, on, on, on},
-		{1, 1, on, off, off}, /* folded to 0.7 to 0.9 */
-		{-3, 1, on, off, off},
-		{2, 1, on, on, off},
-		{-6, 1, on, on, off},
-		{2, -1, off, on, off}, /* 1.7 to 1.9, folded to 0.1 to 0.3; repeated it is 0.7 to 0.9 */
-		{0.5f, 1, off, off, off},
-	};
-	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-		assert_int_equal(code_of_pair(NT_WRAP_REPEAT, 0, rows[i].offset, rows[i].scale), rows[i].repeat);
-		assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0, rows[i].offset, rows[i].scale), rows[i].mirrored);
-		assert_int_equal(code_of_pair(NT_WRAP_CLAMP, 0, rows[i].offset, rows[i].scale), rows[i].clamp);
-	}
-	/* u + 0.25 and its mirror image 2 - (u + 0.25), which u' = 1.5 - u has */
-	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25f, 1.5f, -1), on);
-	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0, 1.5f, -1), off);
-	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25f, 2, -1), off);
-	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25f, 2, 1), on);
 }
 
 TEST(bowtie_of_two_triangles_meets_in_a_point_only)
@@ -440,23 +344,6 @@ static uint64_t seam_fingerprint(const hand_mesh *h)
 	const uint64_t fingerprint = hand_finding(report, NT_CODE_UV_MIRROR_SEAM)->fingerprint;
 	nt_report_free(report);
 	return fingerprint;
-}
-
-TEST(fingerprint_survives_other_indices_but_not_another_place)
-{
-	hand_mesh *h = mirrored_cube();
-	const uint64_t before = seam_fingerprint(h);
-	/* the last triangle becomes the first, corners rotate */
-	uint32_t last[3];
-	memcpy(last, h->indices + 57, sizeof last);
-	memmove(h->indices + 3, h->indices, 57 * sizeof *last);
-	h->indices[0] = last[1];
-	h->indices[1] = last[2];
-	h->indices[2] = last[0];
-	assert_true(seam_fingerprint(h) == before);
-	h->mesh.name = "another";
-	assert_false(seam_fingerprint(h) == before);
-	hand_free(h, NULL);
 }
 
 /* A square with its back, whose corners have the same positions and texture coordinates; `again`: it is wound as the
