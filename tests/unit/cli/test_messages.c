@@ -3,22 +3,12 @@
 #include "cli/messages.h"
 #include "test.h"
 
-static const nt_style plain = {false, 0, true}, coloured = {true, 0, true};
 
 static void says(nt_buffer *out, const char *expected)
 {
 	assert_false(out->failed);
 	assert_string_equal(out->data, expected);
 	nt_buffer_free(out);
-}
-
-static void fails_with(nt_error *error, const char *file, nt_style style, const char *expected)
-{
-	nt_buffer out = {0};
-	if (file)
-		nt_error_in_file(error, file);
-	nt_message_error(&out, error, style);
-	says(&out, expected);
 }
 
 TEST(times_are_numbers_for_people)

@@ -207,41 +207,6 @@ TEST(corners_of_one_hash_do_not_make_a_fold_symmetric)
 	hand_free(h, report);
 }
 
-static void add_quad(hand_mesh *h, float x, float u, bool mirrored)
-{
-	const uint32_t a = hand_vertex(h, x, 0, 0, mirrored ? u + 1 : u, 0);
-	const uint32_t b = hand_vertex(h, x + 1, 0, 0, mirrored ? u : u + 1, 0);
-	const uint32_t c = hand_vertex(h, x + 1, 1, 0, mirrored ? u : u + 1, 1);
-	const uint32_t d = hand_vertex(h, x, 1, 0, mirrored ? u + 1 : u, 1);
-	hand_quad(h, a, b, c, d);
-}
-
-/* An unmirrored triangle at u 0.1 to 0.3 and a mirrored one whose u is `offset` + `scale` u, in another place; the
- * texture is moved by `moved`. */
-static nt_code code_of_pair(nt_wrap wrap, float moved, float offset, float scale)
-{
-	static const float uv[3][2] = {{0.1f, 0.1f}, {0.3f, 0.1f}, {0.1f, 0.3f}};
-	hand_mesh *h = hand_new();
-	for (int i = 0; i < 3; i++)
-		hand_vertex(h, uv[i][0], uv[i][1], 0, uv[i][0], uv[i][1]);
-	for (int i = 0; i < 3; i++)
-		hand_vertex(h, 5 + uv[i][0], uv[i][1], 0, offset + scale * uv[i][0], uv[i][1]);
-	hand_triangle(h, 0, 1, 2);
-	if (scale > 0)
-		hand_triangle(h, 3, 5, 4);
-	else
-		hand_triangle(h, 3, 4, 5);
-	h->mesh.wrap[0] = wrap;
-	h->mesh.wrap_offset[0] = moved;
-	nt_report *report = hand_report(h, NULL);
-	assert_int_equal(report->meshes[0].triangles[0], 1);
-	const nt_code code = hand_findings(report, NT_CODE_UV_MIRROR_OVERLAP) ? NT_CODE_UV_MIRROR_OVERLAP
-									     : NT_CODE_UV_MIRROR_LONE;
-	assert_int_equal(hand_findings(report, code), 1);
-	hand_free(h, report);
-	return code;
-}
-
 /* Over 3e35 tiles, of which few are searched: many small meshes may have such coordinates. */
 TEST(search_of_overlap_is_bounded_by_the_triangles)
 {
@@ -336,14 +301,6 @@ TEST(triangles_of_one_hash_are_not_joined)
 	nt_report *report = hand_report_by_equal_hashes(h);
 	assert_int_equal(report->meshes[0].island_count, 2);
 	hand_free(h, report);
-}
-
-static uint64_t seam_fingerprint(const hand_mesh *h)
-{
-	nt_report *report = hand_report(h, NULL);
-	const uint64_t fingerprint = hand_finding(report, NT_CODE_UV_MIRROR_SEAM)->fingerprint;
-	nt_report_free(report);
-	return fingerprint;
 }
 
 /* A square with its back, whose corners have the same positions and texture coordinates; `again`: it is wound as the
