@@ -3,7 +3,7 @@
 """texts.py NMTAN TABLE: small files that a table has as text, and what is said of them or made of them, all in one run.
 
 A row is a sentence (. for that of the row above), a file (. for the one above), a question and its answer. A file is its ending,
-"=", and lines with | between them; "@@NAME " and lines behind it are another file beside it, a.png and b.png are there, too. {9*x} is x nine times.
+"=", and lines with | between them; "@@NAME " and lines behind it are another file beside it, a.png and b.png are there, too. {9*x#} is x0 to x8.
 $NAME stands for what a row "$NAME text" gave before. "ply:" is written as text and in both byte orders, its numbers by the types
 of its header. Questions are: fails, and the answer is place and message; says, and the answer is what stands in one line; none, and
 nothing is to be said; or a Python expression, which is to be equal to the answer: P, N, U, C, T and I are positions, normals,
@@ -76,7 +76,8 @@ def read(path):
             if file != '.':
                 for key in sorted(names, key=len, reverse=True):
                     file = file.replace('$' + key, names[key])
-                file = re.sub(r'\{(\d+)\*([^}]*)\}', lambda found: int(found[1]) * found[2], file)
+                file = re.sub(r'\{(\d+)\*([^}]*)\}', lambda found: ''.join(
+                    found[2].replace('#', str(i)) for i in range(int(found[1]))), file)
                 kind, text = re.split('[:=]', file, maxsplit=1)
                 text, *others = text.split('@@')
                 text = unescape(text)
