@@ -130,18 +130,17 @@ is "$(cat ../out.txt)" '::error file=a%2Cb%25c%3Ad.obj,line=7,title=UV_UNMAPPED:
 ::error file=bad.obj,line=1,title=not judged::face refers to "v" number 1, but the file has 0'
 # why a file is not judged comes with its place in every format
 printf '{"asset":{"version":"1.0"}}' >old.gltf
-run $strict --report-format=text bad.obj
-prints 'bad.obj: not judged: line 1: face refers to "v" number 1, but the file has 0'
-run $strict --report-format=markdown bad.obj
-prints '| bad.obj | not judged: line 1: face'
-run $strict --report-format=junit bad.obj
-prints 'message="line 1: face'
-run $strict --report-format=csv bad.obj
-prints 'but the file has 0",1,,,,,,,,'
-run $strict --report-format=lines old.gltf
-prints 'old.gltf: error: /asset/version: glTF version "1.0", expected 2.0'
-run $strict --report-format=sarif old.gltf
-prints '{"text": "/asset/version: glTF version'
+while IFS=: read -r format file text; do
+	run $strict --report-format=$format $file
+	prints "$text"
+done <<'END'
+text:bad.obj:bad.obj: not judged: line 1: face refers to "v" number 1, but the file has 0
+markdown:bad.obj:| bad.obj | not judged: line 1: face
+junit:bad.obj:message="line 1: face
+csv:bad.obj:but the file has 0",1,,,,,,,,
+lines:old.gltf:old.gltf: error: /asset/version: glTF version "1.0", expected 2.0
+sarif:old.gltf:{"text": "/asset/version: glTF version
+END
 cp 'a,b%c:d.obj' $'e\r\nf.obj'
 run --check --report-format=github --severity=UV_UNMAPPED=warning --path-prefix=art $'e\r\nf.obj'
 exits 0
