@@ -226,7 +226,8 @@ def main():
     expected = make()
     done = subprocess.run([sys.argv[1], '-v', '--only=all', '-d', 'good', *expected], stdin=subprocess.DEVNULL, capture_output=True)
     said = done.stderr.decode().split('\n')
-    faults = []
+    # a sanitizer's code is another
+    faults = [] if done.returncode == 3 else ['ends with %d' % done.returncode]
     for name, (message, change, spelled) in expected.items():
         lines = [line[len('nmtan: ' + name + ': '):] for line in said if line.startswith('nmtan: ' + name + ': ')]
         output = 'good' + name[3:]
