@@ -241,7 +241,7 @@ static void describe_values(const appending *job, const target *t, nt_json_value
 static bool must_pin(const appending *job)
 {
 	const nt_vertex_pool *pool = job->vertices->pool;
-	for (size_t i = 0; i < pool->user_count && !job->vertices->renumbered; i++)
+	for (size_t i = 0; i < pool->user_count && !nt_vertices_are_welded(job->vertices); i++)
 		if (!nt_pool_is_solved(pool, i) && !nt_json_find(nt_pool_primitive(pool, i), "indices"))
 			return true;
 	for (size_t i = 0; i < job->target_count; i++)
@@ -373,7 +373,7 @@ static void put_values(const appending *job, const block *b, const target *t, co
 	const size_t width = new->element_bytes, place = (size_t)(t->begin - b->segment->begin);
 	for (size_t v = 0; v < vertices->new_count; v++) {
 		const unsigned char *value = new->values + v * width;
-		const bool known = v < vertices->old_count || !vertices->own_count;
+		const bool known = v < vertices->old_count || nt_vertices_are_welded(vertices);
 		if (known && width == t->accessor->element_bytes &&
 			memcmp(decoded + place + nt_vertex_source(vertices, v) * b->stride, value, width) == 0)
 			continue;
@@ -472,7 +472,7 @@ static nt_status find_replacements(appending *job, const nt_gltf_accessor *a, re
 	memcpy(out->elements, replaced, old_count * sizeof *replaced);
 	memcpy(out->values, values, old_count * element);
 	/* welding leaves none where it was */
-	out->count = vertices->own_count ? old_count : 0;
+	out->count = nt_vertices_are_welded(vertices) ? 0 : old_count;
 	for (size_t vertex = vertices->own_count; vertex < vertices->new_count; vertex++) {
 		const uint32_t at = position[nt_vertex_source(vertices, vertex)];
 		if (at == NT_NONE)
@@ -520,7 +520,7 @@ static nt_status append_sparse(appending *job, const nt_gltf_accessor *a)
 	const nt_gltf_sparse_arrays *s = a->sparse;
 	replacement r = {0};
 	nt_status status = find_replacements(job, a, &r);
-	if (status || (job->vertices->own_count && r.count == s->count))
+	if (status || (!nt_vertices_are_welded(job->vertices) && r.count == s->count))
 		return status;
 	const uint32_t type = nt_gltf_index_type(r.elements[r.count - 1], s->index_type);
 	const uint32_t width = nt_gltf_component_bytes(type), old_width = nt_gltf_component_bytes(s->index_type);

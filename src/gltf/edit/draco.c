@@ -57,7 +57,7 @@ void nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_pool_vertices *vertices
 		if (!is_compressed(vertices->pool, i))
 			continue;
 		make_plain(edits, nt_pool_primitive(vertices->pool, i));
-		vertices->changed[i] = true;
+		vertices->users[i].changed = true;
 	}
 }
 
@@ -232,7 +232,7 @@ static nt_status quantize_tangents(const nt_gltf_recoding *r, float *least, nt_e
 	while (tangents->data != vertices->sets[0].tangents)
 		tangents++;
 	const nt_draco_mesh mesh = {.method = NT_DRACO_SEQUENTIAL, .point_count = vertices->new_count,
-		.face_count = r->mesh->face_count, .indices = vertices->indices[0], .attributes = tangents,
+		.face_count = r->mesh->face_count, .indices = vertices->users[0].numbers, .attributes = tangents,
 		.attribute_count = 1};
 	*least = nt_morph_least_of_bits(tangents->quantization.bits);
 	vertices->sets[0].tangents = quantized;

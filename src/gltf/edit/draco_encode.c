@@ -24,7 +24,7 @@ static size_t count_degenerate_faces(const nt_gltf_recoding *r)
 	const nt_draco_attribute *positions = NULL;
 	for (size_t i = 0; !positions && i < r->attribute_count; i++)
 		positions = r->attributes[i].kind == NT_DRACO_POSITION ? &r->attributes[i] : NULL;
-	const uint32_t *indices = r->vertices->indices[0];
+	const uint32_t *indices = r->vertices->users[0].numbers;
 	if (!positions)
 		return 0;
 	const size_t width = nt_component_size(positions->component_type) * (size_t)positions->components;
@@ -83,7 +83,7 @@ static nt_status encode(nt_gltf_recoding *r, nt_error *error)
 		.method = wanted_method(r),
 		.point_count = r->vertices->new_count,
 		.face_count = r->mesh->corner_count / 3,
-		.indices = r->vertices->indices[0],
+		.indices = r->vertices->users[0].numbers,
 		.attributes = r->attributes,
 		.attribute_count = r->attribute_count,
 		.speed = DRACO_SPEED,

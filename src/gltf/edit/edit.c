@@ -155,7 +155,7 @@ static nt_status choose_buffer(const editing *e, const nt_vertex_pool *pool, uin
 /* Equal vertices become one, unless they were welded for Draco. */
 static nt_status weld(const editing *e, nt_pool_vertices *vertices, nt_stored_tangents *stored)
 {
-	return e->options->weld && !vertices->welded ? nt_pool_weld(e->edits, e->scene, vertices, stored,
+	return e->options->weld && !vertices->seen_equal ? nt_pool_weld(e->edits, e->scene, vertices, stored,
 		e->options->bitangents, e->of_window, e->error) : NT_OK;
 }
 

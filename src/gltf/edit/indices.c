@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Indices of primitives whose vertices were split. The accessor keeps its number and, while the numbers
- * still fit, its component type (the largest value of a type is reserved). Strips and fans whose
+ * Indices of primitives whose vertices are others now (pool_edit.h: nt_user_indices). The accessor keeps its number
+ * and, while the numbers still fit, its component type (the largest value of a type is reserved). Strips and fans whose
  * triangles changed become lists; primitives without indices get some.
  */
 #include "gltf/edit/pool_edit.h"
@@ -125,10 +125,9 @@ typedef struct written {
 
 static bool equal_indices(const nt_pool_vertices *vertices, size_t a, size_t b)
 {
-	const size_t count = nt_pool_index_count(vertices, a);
-	const uint32_t *of_a = vertices->indices[a], *of_b = vertices->indices[b];
-	return count == nt_pool_index_count(vertices, b) &&
-		(of_a == of_b || memcmp(of_a, of_b, count * sizeof *of_a) == 0);
+	const nt_user_indices *x = &vertices->users[a], *y = &vertices->users[b];
+	return x->count == y->count &&
+		(x->numbers == y->numbers || memcmp(x->numbers, y->numbers, x->count * sizeof *x->numbers) == 0);
 }
 
 /* The user before this one that has the same indices and leads; itself: none. NT_NONE: memory is exhausted.
@@ -138,13 +137,13 @@ static uint32_t find_leader(const nt_pool_vertices *vertices, uint32_t user, uin
 {
 	/* of primitives with the same triangles, which mostly follow each other, nothing is hashed again; of one alone
 	 * nothing is hashed */
-	if (last != NT_NONE && vertices->indices[last] == vertices->indices[user] &&
+	if (last != NT_NONE && vertices->users[last].numbers == vertices->users[user].numbers &&
 		log[last].same == log[user].same)
 		return log[last].leader;
 	if (vertices->pool->user_count == 1)
 		return user;
-	const uint64_t hash = nt_hash_bytes(log[user].same, vertices->indices[user],
-		nt_pool_index_count(vertices, user) * sizeof **vertices->indices);
+	const nt_user_indices *own = &vertices->users[user];
+	const uint64_t hash = nt_hash_bytes(log[user].same, own->numbers, own->count * sizeof *own->numbers);
 	uint32_t leader;
 	for (size_t at = NT_HASH_BEGIN; (leader = nt_hash_index_next(leaders, hash, &at)) != NT_NONE;)
 		if (log[leader].same == log[user].same && equal_indices(vertices, leader, user))
@@ -152,13 +151,13 @@ static uint32_t find_leader(const nt_pool_vertices *vertices, uint32_t user, uin
 	return nt_hash_index_add(leaders, hash, user) ? user : NT_NONE;
 }
 
-/* Fills the log of changed users but for its accessors. */
+/* Fills the log of users that get new ones, but for its accessors. */
 static bool find_leaders(const nt_gltf *document, const nt_pool_vertices *vertices, written *log)
 {
 	nt_hash_index leaders = {0};
 	bool found = true;
 	for (uint32_t i = 0, last = NT_NONE; found && i < vertices->pool->user_count; i++) {
-		if (!vertices->changed[i])
+		if (!vertices->users[i].changed)
 			continue;
 		const uint32_t index = nt_gltf_reference(document, nt_pool_primitive(vertices->pool, i),
 			"indices");
@@ -200,16 +199,17 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_po
 {
 	nt_gltf *document = edits->document;
 	const nt_mesh *mesh = nt_pool_mesh(vertices->pool, user);
+	const nt_user_indices *own = &vertices->users[user];
+	const bool welded = nt_vertices_are_welded(vertices);
 	nt_gltf_accessor old;
 	encoded new = {0};
 	nt_status status = find_old(document, mesh, leader->index, &old, error);
 	/* welded vertices are fewer: two bytes may do for them */
-	const uint32_t least = vertices->counts && old.component_type == NT_GLTF_UINT ? NT_GLTF_USHORT
+	const uint32_t least = welded && old.component_type == NT_GLTF_UINT ? NT_GLTF_USHORT
 		: old.component_type;
 	if (!status)
-		status = encode(&edits->arena, mesh, vertices->indices[user], nt_pool_index_count(vertices, user),
-			vertices->borrowed, vertices->counts ? 0 : tail_of(mesh, mode, old.count), vertices->new_count,
-			least, &new, error);
+		status = encode(&edits->arena, mesh, own->numbers, own->count, vertices->borrowed,
+			welded ? 0 : tail_of(mesh, mode, old.count), vertices->new_count, least, &new, error);
 	if (status)
 		return status;
 	/* the accessor stays where everybody who uses these indices will have the same new ones, or has got others */
@@ -217,7 +217,7 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_po
 	const bool stays = users && !users->idle && !users->attributes &&
 		leader->agreeing + edits->accessors[leader->same].index_moved == users->indices;
 	leader->accessor = leader->index;
-	const bool triangles = mode == NT_GLTF_TRIANGLES || !(vertices->renumbered && vertices->renumbered[user]);
+	const bool triangles = mode == NT_GLTF_TRIANGLES || !own->renumbered;
 	if (stays && replace_indices(edits, &old, &new, triangles))
 		return NT_OK;
 	const nt_gltf_packing packing = find_packing(edits, nt_pool_primitive(vertices->pool, user), &new,
@@ -255,7 +255,7 @@ static nt_status edit_user(nt_buffer_edits *edits, uint32_t buffer, const nt_poo
 	/* in place, each user keeps its accessor */
 	if (leader->accessor != leader->index)
 		nt_json_put_uint64(json, primitive, "indices", leader->accessor);
-	if (mode != NT_GLTF_TRIANGLES && !(vertices->renumbered && vertices->renumbered[user]))
+	if (mode != NT_GLTF_TRIANGLES && !vertices->users[user].renumbered)
 		nt_json_put_uint64(json, primitive, "mode", NT_GLTF_TRIANGLES);
 	return NT_OK;
 }
@@ -264,14 +264,17 @@ nt_status nt_gltf_write_indices(nt_buffer_edits *edits, uint32_t buffer, const n
 	nt_error *error)
 {
 	const nt_vertex_pool *pool = vertices->pool;
-	if (!memchr(vertices->changed, true, pool->user_count * sizeof *vertices->changed))
+	size_t first = 0;
+	while (first < pool->user_count && !vertices->users[first].changed)
+		first++;
+	if (first == pool->user_count)
 		return NT_OK;
 	written *log = nt_arena_alloc(&edits->arena, pool->user_count, sizeof *log);
 	if (!log || !find_leaders(edits->document, vertices, log))
 		return nt_fail_memory(error);
 	nt_status status = NT_OK;
-	for (size_t i = 0; !status && i < pool->user_count; i++)
-		if (vertices->changed[i])
+	for (size_t i = first; !status && i < pool->user_count; i++)
+		if (vertices->users[i].changed)
 			status = edit_user(edits, buffer, vertices, i, log, error);
 	return status;
 }

@@ -389,8 +389,7 @@ static nt_status merge_user(nt_pool_merge *m, uint32_t user, nt_error *error)
 	const nt_mesh *same_as = mesh->plan.same_as;
 	const uint32_t set = pool->sets.of[user], same = same_as ? find_user(pool, same_as) : NT_NONE;
 	if (same != NT_NONE && pool->sets.of[same] == set) {
-		vertices->indices[user] = vertices->indices[same];
-		vertices->changed[user] = vertices->changed[same];
+		vertices->users[user] = vertices->users[same];
 		return NT_OK;
 	}
 	if (!m->last && !start_merging(m, mesh->source_vertex_count + mesh->unused_vertices))
@@ -399,14 +398,16 @@ static nt_status merge_user(nt_pool_merge *m, uint32_t user, nt_error *error)
 	const bool first = pool->sets.first[set] == user;
 	if (!status && ((first && !start_set(m, &vertices->sets[set], mesh)) || digest_targets(m, mesh)))
 		status = nt_fail_memory(error);
-	vertices->indices[user] = status ? NULL : nt_arena_alloc(m->arena, mesh->corner_count, sizeof(uint32_t));
-	if (!status && (!vertices->indices[user] || !merge_mesh(m, mesh, user, vertices->indices[user])))
+	uint32_t *indices = status ? NULL : nt_arena_alloc(m->arena, mesh->corner_count, sizeof *indices);
+	if (!status && (!indices || !merge_mesh(m, mesh, user, indices)))
 		status = nt_fail_memory(error);
 	if (!status && first)
 		status = set_unused(m, mesh, user, error);
 	free(m->digests);
 	m->digests = NULL;
-	vertices->changed[user] = !status && is_changed(mesh, vertices->indices[user]);
+	if (!status)
+		vertices->users[user] = (nt_user_indices){.numbers = indices, .count = mesh->corner_count,
+			.changed = is_changed(mesh, indices)};
 	return status;
 }
 
@@ -427,15 +428,13 @@ static nt_pool_merge *new_merge(nt_vertex_pools *pools, size_t number, nt_error 
 		return NULL;
 	}
 	const size_t count = m->pool.user_count;
-	m->vertices.indices = nt_arena_alloc(m->arena, count, sizeof *m->vertices.indices);
-	m->vertices.changed = nt_arena_alloc(m->arena, count, sizeof *m->vertices.changed);
-	if (!m->vertices.indices || !m->vertices.changed) {
+	m->vertices.users = nt_arena_alloc(m->arena, count, sizeof *m->vertices.users);
+	if (!m->vertices.users) {
 		nt_fail_memory(error);
 		free(m);
 		return NULL;
 	}
-	memset(m->vertices.indices, 0, count * sizeof *m->vertices.indices);
-	memset(m->vertices.changed, 0, count * sizeof *m->vertices.changed);
+	memset(m->vertices.users, 0, count * sizeof *m->vertices.users);
 	return m;
 }
 
@@ -510,19 +509,17 @@ static bool borrow_split(nt_pool_vertices *vertices, const nt_mesh *mesh, nt_are
 	vertices->new_count = vertices->old_count + mesh->split.source_count;
 	vertices->sources = mesh->split.sources;
 	vertices->borrowed = true;
-	vertices->indices = nt_arena_alloc(tables, user_count, sizeof *vertices->indices);
-	vertices->changed = nt_arena_alloc(tables, user_count, sizeof *vertices->changed);
+	vertices->users = nt_arena_alloc(tables, user_count, sizeof *vertices->users);
 	vertices->sets = nt_arena_alloc(tables, 1, sizeof *vertices->sets);
-	if (!vertices->indices || !vertices->changed || !vertices->sets)
+	if (!vertices->users || !vertices->sets)
 		return false;
 	vertices->sets[0] = (nt_pool_set){.tangents = mesh->split.vertex_tangents, .lone = mesh,
 		.morph_count = mesh->morph_count};
 	uint32_t *triangles = split_triangles(mesh, tables);
-	for (size_t i = 0; i < user_count; i++) {
-		const bool solved = nt_pool_is_solved(vertices->pool, i);
-		vertices->indices[i] = solved ? triangles : NULL;
-		vertices->changed[i] = solved && mesh->split.source_count > 0;
-	}
+	for (size_t i = 0; i < user_count; i++)
+		vertices->users[i] = nt_pool_is_solved(vertices->pool, i) ? (nt_user_indices){.numbers = triangles,
+			.count = mesh->corner_count, .changed = mesh->split.source_count > 0}
+			: (nt_user_indices){.numbers = NULL};
 	return triangles || nt_mesh_left_triangles(mesh);
 }
 
@@ -536,7 +533,7 @@ nt_status nt_pool_vertices_get(nt_vertex_pools *pools, size_t number, const nt_v
 	nt_pool_merge *m = merge_of(pools, number, error);
 	nt_status status = m ? NT_OK : NT_ERROR_MEMORY;
 	for (uint32_t i = 0; !status && i < pool->user_count; i++)
-		if (nt_pool_is_solved(pool, i) && !m->vertices.indices[i])
+		if (nt_pool_is_solved(pool, i) && !m->vertices.users[i].numbers)
 			status = merge_user(m, i, error);
 	if (status)
 		return status;

@@ -28,6 +28,15 @@ typedef struct nt_pool_set {
 	                         copies of a vertex */
 } nt_pool_set;
 
+/* The new indices of a user, by whatever vertices became new: by splits, or because equal ones were welded. */
+typedef struct nt_user_indices {
+	uint32_t *numbers; /* [count] of the pool's new vertices; NULL: the source's stay */
+	size_t count;
+	bool changed;      /* they are not the source's triangles */
+	bool renumbered;   /* they are the source's with other numbers, of any mode; else a list of triangles */
+} nt_user_indices;
+
+/* The new vertices of a pool: where each comes from, and the indices that its users have then. */
 typedef struct nt_pool_vertices {
 	const nt_vertex_pool *pool;
 	size_t old_count;   /* of the source */
@@ -36,11 +45,8 @@ typedef struct nt_pool_vertices {
 	size_t normal_copies; /* of those that were appended: their made normal is another than the first's */
 	uint32_t *sources;  /* [new_count - own_count] vertex of the source */
 	nt_pool_set *sets;  /* [pool->sets.count] */
-	uint32_t **indices; /* [user][corner count]; NULL: not solved */
-	bool *changed;      /* [user] indices differ from the source's triangles */
-	size_t *counts;     /* [user] of indices; NULL: as many as the mesh has corners */
-	bool *renumbered;   /* [user] indices are the source's with other numbers, of any mode; NULL: of none */
-	bool welded;        /* equal ones were looked for */
+	nt_user_indices *users; /* [pool->user_count] */
+	bool seen_equal;    /* equal ones were looked for */
 	bool borrowed;      /* sources, tangents and indices are the scene's: do not write to them */
 } nt_pool_vertices;
 
@@ -50,16 +56,16 @@ static inline size_t nt_vertex_source(const nt_pool_vertices *vertices, size_t v
 	return vertex < vertices->own_count ? vertex : vertices->sources[vertex - vertices->own_count];
 }
 
+/* Whether equal ones are one vertex now, so that none is where it was. */
+static inline bool nt_vertices_are_welded(const nt_pool_vertices *vertices)
+{
+	return !vertices->own_count;
+}
+
 /* Whether vertices are not just those of the source. */
 static inline bool nt_vertices_differ(const nt_pool_vertices *vertices)
 {
 	return vertices->new_count != vertices->own_count;
-}
-
-/* How many indices a user has. */
-static inline size_t nt_pool_index_count(const nt_pool_vertices *vertices, size_t user)
-{
-	return vertices->counts ? vertices->counts[user] : nt_pool_mesh(vertices->pool, user)->corner_count;
 }
 
 /* For the table of formats. Merges the split of a pooled mesh, in the order of the scene's meshes, with those of its

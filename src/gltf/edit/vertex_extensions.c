@@ -191,7 +191,7 @@ nt_status nt_vertices_find_meaning(nt_scene *scene, const nt_mesh *mesh, size_t 
 /* Whether triangles that follow each other have one first vertex where they had, and nowhere else. */
 static bool keeps_polygons(const nt_pool_vertices *vertices, size_t user)
 {
-	const uint32_t *indices = vertices->indices[user];
+	const uint32_t *indices = vertices->users[user].numbers;
 	const size_t count = nt_pool_mesh(vertices->pool, user)->corner_count;
 	for (size_t c = 3; indices && c < count; c += 3)
 		if (indices[c] != indices[c - 3] &&
@@ -218,7 +218,7 @@ static size_t end_of_mesh(const nt_pool_vertices *vertices, size_t first, bool *
 	size_t end = first;
 	for (; end < pool->user_count &&
 		nt_pool_mesh(pool, end)->gltf_mesh == nt_pool_mesh(pool, first)->gltf_mesh; end++)
-		*changed |= vertices->changed[end];
+		*changed |= vertices->users[end].changed;
 	return end;
 }
 
@@ -239,7 +239,7 @@ nt_status nt_vertices_tell(nt_buffer_edits *edits, nt_scene *scene, const nt_poo
 			nt_pool_is_solved(pool, i) && (compressed || !keeps_polygons(vertices, i)))
 			drop_polygons(scene, edits, primitive, mesh);
 		tell(&s, nt_json_find(primitive, "extensions"), nt_gltf_of_mesh(mesh).pointer,
-			compressed || vertices->changed[i], copied);
+			compressed || vertices->users[i].changed, copied);
 		if (i == end) {
 			bool changed = compressed;
 			char owner[NT_GLTF_POINTER];

@@ -283,11 +283,11 @@ static nt_status indices_of(welding *w, size_t user, const uint32_t **indices, s
 	const nt_json_value *primitive = nt_pool_primitive(vertices->pool, user);
 	const uint32_t number = nt_gltf_reference(w->edits->document, primitive, "indices");
 	const nt_gltf_accessor *a;
-	*renumbered = !(nt_pool_is_solved(vertices->pool, user) && (vertices->changed[user] ||
-		nt_gltf_draco_of(primitive))) || !vertices->indices[user];
+	const nt_user_indices *split = &vertices->users[user];
+	*renumbered = !split->numbers || !(split->changed || nt_gltf_draco_of(primitive));
 	if (!*renumbered) {
-		*indices = vertices->indices[user];
-		*count = nt_pool_mesh(vertices->pool, user)->corner_count;
+		*indices = split->numbers;
+		*count = split->count;
 		return NT_OK;
 	}
 	if (nt_json_find(primitive, "indices")) {
@@ -309,22 +309,22 @@ static nt_status indices_of(welding *w, size_t user, const uint32_t **indices, s
 	return all ? NT_OK : nt_fail_memory(w->error);
 }
 
-static nt_status renumber(welding *w, const uint32_t *remap, uint32_t **indices, size_t *counts, bool *renumbered,
-	bool *changed)
+/* to: [user_count] */
+static nt_status renumber(welding *w, const uint32_t *remap, nt_user_indices *to)
 {
 	const size_t user_count = w->vertices->pool->user_count;
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && !w->obstacle && i < user_count; i++) {
 		const uint32_t *old = NULL;
-		status = leave_faulty(w, indices_of(w, i, &old, &counts[i], &renumbered[i]));
-		changed[i] = true;
-		if (w->obstacle)
+		to[i] = (nt_user_indices){.changed = true};
+		status = leave_faulty(w, indices_of(w, i, &old, &to[i].count, &to[i].renumbered));
+		if (status || w->obstacle)
 			break;
-		indices[i] = status ? NULL : nt_arena_alloc(&w->edits->arena, counts[i], sizeof **indices);
-		if (!status && !indices[i])
+		to[i].numbers = nt_arena_alloc(&w->edits->arena, to[i].count, sizeof *to[i].numbers);
+		if (!to[i].numbers)
 			status = nt_fail_memory(w->error);
-		for (size_t c = 0; !status && c < counts[i]; c++)
-			indices[i][c] = remap[old[c]];
+		for (size_t c = 0; !status && c < to[i].count; c++)
+			to[i].numbers[c] = remap[old[c]];
 	}
 	return status;
 }
@@ -337,15 +337,11 @@ static nt_status take_welded(welding *w, nt_stored_tangents *stored, const uint3
 	nt_arena *arena = &w->edits->arena;
 	const size_t user_count = vertices->pool->user_count;
 	nt_pool_vertices to = {.pool = vertices->pool, .old_count = vertices->old_count, .new_count = count,
-		.welded = true,
+		.seen_equal = true,
 		.sources = nt_arena_alloc(arena, count, sizeof *to.sources), .sets = vertices->sets,
-		.indices = nt_arena_alloc(arena, user_count, sizeof *to.indices),
-		.counts = nt_arena_alloc(arena, user_count, sizeof *to.counts),
-		.changed = nt_arena_alloc(arena, user_count, sizeof *to.changed),
-		.renumbered = nt_arena_alloc(arena, user_count, sizeof *to.renumbered)};
-	bool done = to.sources && to.indices && to.counts && to.changed && to.renumbered;
-	const nt_status status = done ? renumber(w, remap, to.indices, to.counts, to.renumbered, to.changed)
-		: NT_ERROR_MEMORY;
+		.users = nt_arena_alloc(arena, user_count, sizeof *to.users)};
+	bool done = to.sources && to.users;
+	const nt_status status = done ? renumber(w, remap, to.users) : NT_ERROR_MEMORY;
 	if (w->obstacle || (status && status != NT_ERROR_MEMORY))
 		return status;
 	for (size_t s = 0; done && s < vertices->pool->sets.count; s++)
@@ -375,7 +371,7 @@ nt_status nt_pool_weld(nt_buffer_edits *edits, nt_scene *scene, nt_pool_vertices
 	welding w = {.edits = edits, .vertices = vertices, .scratch = scratch,
 		.bitangents = bitangents, .error = error};
 	const size_t before = vertices->new_count;
-	vertices->welded = true;
+	vertices->seen_equal = true;
 	edits->weld_count++;
 	if (draws_points_alone(vertices->pool))
 		return NT_OK;
@@ -411,15 +407,13 @@ nt_status nt_pool_vertices_plain(const nt_vertex_pools *pools, nt_vertex_pool *p
 	*can = a && a->count < NT_NONE;
 	const size_t count = a ? (size_t)a->count : 0;
 	*vertices = (nt_pool_vertices){.pool = pool, .old_count = count, .new_count = count, .own_count = count,
-		.indices = nt_arena_alloc(tables, pool->user_count, sizeof *vertices->indices),
-		.changed = nt_arena_alloc(tables, pool->user_count, sizeof *vertices->changed)};
+		.users = nt_arena_alloc(tables, pool->user_count, sizeof *vertices->users)};
 	pool->sets.count = 0;
-	if (!vertices->indices || !vertices->changed)
+	if (!vertices->users)
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < pool->user_count; i++) {
 		pool->sets.of[i] = NT_NONE;
-		vertices->indices[i] = NULL;
-		vertices->changed[i] = false;
+		vertices->users[i] = (nt_user_indices){.numbers = NULL};
 	}
 	return NT_OK;
 }
