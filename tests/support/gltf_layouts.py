@@ -259,6 +259,15 @@ unshared = {n: (k, z, [rows[i] for i in flat]) for n, (k, z, rows) in attributes
 d.primitive(d.separate(unshared))
 d.write('unindexed.gltf')
 
+# a second primitive over the same vertices has indices that use some of them twice: it gets copies, which the first,
+# with none to be copied, must not draw
+d = Document()
+shared = d.separate(unshared)
+first = {i: k for k, i in reversed(list(enumerate(flat)))}
+d.primitive(dict(shared))
+d.primitive(dict(shared), d.indices([first[i] for i in flat], USHORT))
+d.write('two_ranges_unindexed.gltf')
+
 # two primitives on one set of accessors, meeting at a column where u turns
 d = Document()
 shared = d.separate(attributes)

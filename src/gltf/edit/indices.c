@@ -2,7 +2,7 @@
 /*
  * Indices of primitives whose vertices are others now (pool_edit.h: nt_user_indices). The accessor keeps its number
  * and, while the numbers still fit, its component type (the largest value of a type is reserved). Strips and fans whose
- * triangles changed become lists; primitives without indices get some.
+ * triangles changed become lists; primitives without indices get some, also if only others of their pool have copies.
  */
 #include "gltf/edit/pool_edit.h"
 
@@ -123,6 +123,14 @@ typedef struct written {
 	uint32_t accessor;    /* of a leader: the one in the output */
 } written;
 
+/* Whether a user gets new ones: a primitive without any draws all vertices, so it would draw the copies of others. */
+static bool is_written(const nt_pool_vertices *vertices, size_t user)
+{
+	const nt_user_indices *own = &vertices->users[user];
+	return own->changed || (own->numbers && nt_vertices_differ(vertices) &&
+		!nt_json_find(nt_pool_primitive(vertices->pool, user), "indices"));
+}
+
 static bool equal_indices(const nt_pool_vertices *vertices, size_t a, size_t b)
 {
 	const nt_user_indices *x = &vertices->users[a], *y = &vertices->users[b];
@@ -157,7 +165,7 @@ static bool find_leaders(const nt_gltf *document, const nt_pool_vertices *vertic
 	nt_hash_index leaders = {0};
 	bool found = true;
 	for (uint32_t i = 0, last = NT_NONE; found && i < vertices->pool->user_count; i++) {
-		if (!vertices->users[i].changed)
+		if (!is_written(vertices, i))
 			continue;
 		const uint32_t index = nt_gltf_reference(document, nt_pool_primitive(vertices->pool, i),
 			"indices");
@@ -265,7 +273,7 @@ nt_status nt_gltf_write_indices(nt_buffer_edits *edits, uint32_t buffer, const n
 {
 	const nt_vertex_pool *pool = vertices->pool;
 	size_t first = 0;
-	while (first < pool->user_count && !vertices->users[first].changed)
+	while (first < pool->user_count && !is_written(vertices, first))
 		first++;
 	if (first == pool->user_count)
 		return NT_OK;
@@ -274,7 +282,7 @@ nt_status nt_gltf_write_indices(nt_buffer_edits *edits, uint32_t buffer, const n
 		return nt_fail_memory(error);
 	nt_status status = NT_OK;
 	for (size_t i = first; !status && i < pool->user_count; i++)
-		if (vertices->users[i].changed)
+		if (is_written(vertices, i))
 			status = edit_user(edits, buffer, vertices, i, log, error);
 	return status;
 }
