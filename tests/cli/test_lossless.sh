@@ -492,6 +492,21 @@ exits 0
 python3 "$ROOT/tests/support/gltf_lossless.py" shared.gltf out.glb >said.txt 2>&1
 is "$(cat said.txt)" "out.glb: buffers grew by 6624, expected at most 6264"
 
+scene "the comparison of two outputs follows their references"
+run --existing=replace "$WORK/layouts/plain.gltf" out.gltf
+gltf out.gltf one ';'
+gltf out.gltf moved 'const last = g.bufferViews.length - 1;
+	g.bufferViews.reverse();
+	for (const a of g.accessors)
+		for (const x of [a, a.sparse?.indices, a.sparse?.values])
+			if (x && "bufferView" in x) x.bufferView = last - x.bufferView'
+gltf out.gltf other 'const a = g.meshes[0].primitives[0].attributes;
+	[a.POSITION, a.NORMAL] = [a.NORMAL, a.POSITION]'
+compare() { python3 "$ROOT/tests/support/gltf_lossless.py" --outputs one.gltf "$1" 2>&1 | cut -d: -f2; }
+is "$(compare moved.gltf)" ""
+is "$(compare other.gltf | grep values)" " /meshes/0/primitives/0/attributes/POSITION/values
+ /meshes/0/primitives/0/attributes/NORMAL/values"
+
 scene "tangents stay between others that two sparse accessors share"
 gltf "$WORK/layouts/tangents_interleaved.gltf" shared 'const p = g.meshes[0].primitives[0], uv = p.attributes.TEXCOORD_0;
 	const values = g.accessors[add("VEC2", 5126, [0.5, 0.5])], indices = g.accessors[add("SCALAR", 5123, [3])];

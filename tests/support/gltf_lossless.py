@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """gltf_lossless.py [--quantized] [--welded] INPUT OUTPUT [--tangents=REFERENCE]: says what OUTPUT changed that it should not have.
+gltf_lossless.py --outputs ONE OTHER: says what differs in two outputs of one input but where their bytes lie.
 
 A second reading of both files that shares no code with nmtan. Per triangle corner every attribute and
 morph target holds the same bytes; the JSON is equal value for value and in key order but for what
@@ -8,8 +9,13 @@ tangents need; views that no triangle uses hold the same bytes; the buffers grew
 rows. With --tangents, corners have the tangents that REFERENCE has. With --quantized, OUTPUT requires
 KHR_mesh_quantization and its tangents are normalized integers. With --welded, no two vertices of OUTPUT are equal in
 everything that primitives with one of their accessors have, and the buffers lost what INPUT had of those.
+
+With --outputs, references are followed: what an accessor or a view holds is compared, whatever its number, and of primitives
+what each corner has, whatever its vertex.
 """
 import base64
+import copy
+import hashlib
 import json
 import os
 import struct
@@ -324,7 +330,121 @@ def take_quantization(a, b):
                 complain('a TANGENT is of type %d' % accessor['componentType'])
 
 
+def digest(rows):
+    return hashlib.sha256(b''.join(rows)).hexdigest()[:16]
+
+
+class Resolved:
+    """The JSON of a file in which references to accessors and views are replaced by what is there."""
+    PLACES = ('buffer', 'byteOffset', 'byteLength')
+
+    def __init__(self, f):
+        self.f, self.seen = f, {}
+        self.g = copy.deepcopy(f.g)
+        for mesh in self.g.get('meshes', []):
+            for p in mesh['primitives']:
+                self.primitive(p)
+        for animation in self.g.get('animations', []):
+            for sampler in animation['samplers']:
+                self.name(sampler, ('input', 'output'))
+        for skin in self.g.get('skins', []):
+            self.name(skin, ('inverseBindMatrices',))
+        self.walk(self.g)
+        for name in ('accessors', 'bufferViews'):
+            self.g.pop(name, None)
+        for buffer in self.g.get('buffers', []):
+            buffer.pop('byteLength', None), buffer.pop('uri', None)
+        # how many there are is a matter of layout
+        self.g['buffers'] = [x for x in self.g.get('buffers', []) if x]
+
+    def view(self, i):
+        if not isinstance(i, int) or i >= len(self.f.g.get('bufferViews', [])):
+            return i
+        view = copy.deepcopy(self.f.g['bufferViews'][i])
+        packed = next((e for n, e in view.get('extensions', {}).items() if 'meshopt' in n), None)
+        place = view if packed is None else packed
+        at = place.get('byteOffset', 0)
+        bytes_there = self.f.buffer(place['buffer'])[at:at + place['byteLength']]
+        for part in (view, place):
+            for key in self.PLACES:
+                part.pop(key, None)
+        return dict(view, bytes=digest([bytes_there]), length=len(bytes_there))
+
+    def accessor(self, i, corners=None):
+        """The values of an accessor; of a primitive's, those of its corners."""
+        if not isinstance(i, int) or i >= len(self.f.g.get('accessors', [])):
+            return i
+        a = self.f.g['accessors'][i]
+        found = {k: v for k, v in a.items() if k not in ('bufferView', 'byteOffset', 'sparse')}
+        view = self.view(a['bufferView']) if 'bufferView' in a else {}
+        if 'extensions' in view:
+            return dict(found, packed=view, at=a.get('byteOffset', 0))
+        found['view'] = {k: v for k, v in view.items() if k not in ('bytes', 'length', 'byteStride')}
+        if 'bufferView' in a or 'sparse' in a:
+            if i not in self.seen:
+                self.seen[i] = self.f.rows(i)
+            rows = self.seen[i]
+            found['values'] = digest(rows) if corners is None else digest([rows[c] for c in corners])
+        return found
+
+    def name(self, holder, keys, corners=None):
+        for key in keys:
+            if key in holder:
+                holder[key] = self.accessor(holder[key], corners)
+
+    def primitive(self, p):
+        draco = 'KHR_draco_mesh_compression' in p.get('extensions', {})
+        packed = self.f.packs_triangles(p)
+        # a codec's own corners are told by its bytes
+        corners = None if draco or packed else self.f.corners(p)
+        for attributes in [p['attributes']] + p.get('targets', []):
+            self.name(attributes, list(attributes), corners)
+        if 'indices' in p:
+            p['indices'] = self.accessor(p['indices'], None if corners is None else ())
+            if corners is not None:
+                p['indices']['count'] = len(corners)
+
+    def walk(self, x):
+        """Views, and accessors of extensions, wherever they are named."""
+        for key, value in x.items() if isinstance(x, dict) else enumerate(x):
+            if key == 'bufferView' or key in ('values', 'arrayOffsets', 'stringOffsets') and isinstance(value, int):
+                x[key] = self.view(value)
+            elif key == 'EXT_mesh_gpu_instancing':
+                self.name(value.get('attributes', {}), list(value.get('attributes', {})))
+            elif key == 'EXT_mesh_manifold':
+                self.name(value.get('manifoldPrimitive', {}), ['indices'])
+                self.name(value, ['mergeIndices', 'mergeValues'])
+            elif key == 'CESIUM_primitive_outline':
+                self.name(value, ['indices'])
+            elif isinstance(value, (dict, list)):
+                self.walk(value)
+
+
+def compare_resolved(a, b, path=''):
+    if isinstance(a, dict) and isinstance(b, dict):
+        for k in list(a) + [k for k in b if k not in a]:
+            if k in a and k in b:
+                compare_resolved(a[k], b[k], '%s/%s' % (path, k))
+            else:
+                complain('%s/%s %s' % (path, k, 'is gone' if k in a else 'is new'))
+    elif isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
+        for i, (x, y) in enumerate(zip(a, b)):
+            compare_resolved(x, y, '%s/%d' % (path, i))
+    elif a != b and not (a != a and b != b):
+        show = lambda x: '%d elements' % len(x) if isinstance(x, (list, dict)) else repr(x)
+        complain('%s: %s became %s' % (path, show(a), show(b)))
+
+
+def tell(name):
+    for text in complaints[:20]:
+        print('%s: %s' % (os.path.basename(name), text))
+    sys.exit(1 if complaints else 0)
+
+
 def main():
+    if sys.argv[1] == '--outputs':
+        compare_resolved(Resolved(File(sys.argv[2])).g, Resolved(File(sys.argv[3])).g)
+        tell(sys.argv[3])
     quantized, welded = '--quantized' in sys.argv, '--welded' in sys.argv
     sys.argv = [x for x in sys.argv if x not in ('--quantized', '--welded')]
     a, b = File(sys.argv[1]), File(sys.argv[2])
@@ -343,9 +463,7 @@ def main():
         if mine != theirs:
             wrong = sum(x != y for x, y in zip(mine, theirs))
             complain('tangents differ from the reference at %d of %d corners (%d)' % (wrong, len(mine), len(theirs)))
-    for text in complaints[:20]:
-        print('%s: %s' % (os.path.basename(sys.argv[2]), text))
-    sys.exit(1 if complaints else 0)
+    tell(sys.argv[2])
 
 
 if __name__ == '__main__':
