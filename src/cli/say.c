@@ -4,8 +4,11 @@
  */
 #include "cli/say.h"
 
+#include <poll.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 #include "base/utf8.h"
 
 bool nt_say(nt_buffer *text)
@@ -36,6 +39,18 @@ void nt_say_error(const nt_error *error, nt_style style)
 		nt_say(&text);
 	}
 	nt_buffer_free(&text);
+}
+
+bool nt_reader_is_gone(void)
+{
+	struct pollfd out = {.fd = STDOUT_FILENO, .events = POLLOUT};
+	return poll(&out, 1, 0) == 1 && (out.revents & POLLERR);
+}
+
+void nt_end_unread(void)
+{
+	signal(SIGPIPE, SIG_DFL);
+	raise(SIGPIPE);
 }
 
 /* ---- exit codes ---- */

@@ -16,6 +16,12 @@ bool nt_say(nt_buffer *text);
 /* Prints "nmtan: place: message". */
 void nt_say_error(const nt_error *error, nt_style style);
 
+/* Whether standard output is a pipe that nobody reads any more. */
+bool nt_reader_is_gone(void);
+
+/* Ends the program as others end if a reader takes the first lines alone (head), without a message. */
+void nt_end_unread(void);
+
 enum nt_exit {
 	NT_EXIT_DONE = 0,
 	NT_EXIT_USAGE = 1,
