@@ -301,11 +301,12 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"three quads in a row with u = 0, 1, 0.4, 1.4"),
 	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-i", EXPORT, NULL, "{count} of {detail} {is|are} flipped",
 		"A few triangles in a row are wound against their island, or have texture coordinates of their own "
-		"inside a large island of the other winding: at most 5 % of its triangles and area, or a single one "
-		"up to 10 %, if all triangles that are wound so are at most a quarter. Texture is mirrored there. "
-		"They make no seam, fold or mirrored island. Needles whose winding is rounding are UV_NEAR_DEGENERATE "
-		"instead. An info if no material of a glTF needs tangents (of an OBJ: of its glTF), and up to a "
-		"thousandth of the mesh's area.",
+		"inside a large island of the other winding: at most 5 % of its triangles, of its area and of its "
+		"texels, or a single one up to 10 %, if all triangles that are wound so are at most a fifth of each. "
+		"Texture is mirrored there. They make no seam, fold or mirrored island. Nothing is said of needles "
+		"whose winding is rounding (UV_NEAR_DEGENERATE has those that can be mended) and below a millionth of "
+		"the mesh's area. An info if no material of a glTF needs tangents (of an OBJ: of its glTF), and up to "
+		"a thousandth of the mesh's area.",
 		"Relax the knot in the UV editor (Blender: UV > Minimize Stretch), or unwrap these triangles again.",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
 	ROW(UV_HARD_EDGE, WARNING, "w-i", LOOK, NULL,
@@ -326,13 +327,16 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Unwrap these triangles (Blender: UV > Smart UV Project) if they are visible and normal mapped.",
 		"two triangles, of which one has UVs (0,0), (1,0), (2,0)"),
 	ROW(UV_NEAR_DEGENERATE, INFO, "w-i", EXPORT, NULL,
-		"{count} {triangle has|triangles have} nearly collinear texture coordinates",
-		"Rounding of the texture coordinates to float alone may turn the tangent of these triangles by "
-		"more than one degree, or their winding: the finding gives the smallest relative determinant "
-		"|det| / (|e1| |e2|), of a triangle's two longest sides, and the largest angle. A warning when they "
-		"are more than 1 % of the mesh's area, unless no material of a glTF needs tangents (of an OBJ: of its "
-		"glTF).",
-		"Unwrap these triangles again, or keep islands near the origin (Blender: UV > Pack Islands).",
+		"{count} {triangle has|triangles have} next to no area in UV space: {detail}",
+		"Rounding of the texture coordinates to float alone may turn the tangent of these triangles by more "
+		"than one degree. It decides a tangent if it may turn the triangle over in UV space or its tangent by "
+		"90 degrees. The coordinates are coincident if rounding may turn a side between them by one degree, "
+		"else collinear. The finding gives the smallest relative determinant |det| / (|e1| |e2|) of a "
+		"triangle's two longest sides. Nothing is said of triangles that are as thin in space, and below a "
+		"millionth of the mesh's area. A warning when they are more than 1 % of the mesh's area, unless no "
+		"material of a glTF needs tangents (of an OBJ: of its glTF).",
+		"If they are normal mapped, give them more room in the texture (Blender: UV > Unwrap, or UV > Smart UV "
+		"Project). Move an island that is tiles away from the origin back (Blender: UV > Pack Islands).",
 		"a triangle with UVs (0,1000), (1,1000), (0,1000.001)"),
 	ROW(UV_FOLDED_QUAD, WARNING, "w-i", EXPORT, NULL,
 		"{count} {quad crosses itself|quads cross themselves} in UV space",

@@ -8,6 +8,8 @@
  * to d = 2^-24 max |v|, turns T towards B, to first order by the sine of d (|v1| + |v2| + |v1 - v2|) / |det| times
  * the part of B across T over |T|, which is |d1 x d2| |det| / |v2 d1 - v1 d2|^2. An error of u only makes T longer or
  * shorter. If rounding may turn the sign of det, w and all of T are uncertain.
+ *
+ * Nothing is said of a triangle that is as thin in space: no unwrap makes it wider, and nobody sees it.
  */
 #include "report/check.h"
 
@@ -19,6 +21,9 @@
 
 /* Sine of the rounding error from which on a triangle counts as nearly degenerate: of one degree. */
 static const double NEAR_DEGENERATE_SINE = 0.017452406437283512;
+
+/* A triangle is as thin in space if its height over its longest side is at most so many times that in UV space. */
+static const double FAITHFUL_STRETCH = 2.0;
 
 /* Share of the mesh's area from which on degenerate triangles, and triangles lit from behind, are a warning. */
 static const double VISIBLE_SHARE = 0.01;
@@ -33,7 +38,7 @@ enum { PART = 128 * NT_BLOCK };
 enum { FLAT, MISSING, NO_AREA, NEAR, AGAINST };
 static const nt_code codes[] = {NT_CODE_POS_DEGENERATE_TRIANGLE, NT_CODE_UV_MISSING, NT_CODE_UV_DEGENERATE_TRIANGLE,
 	NT_CODE_UV_NEAR_DEGENERATE, NT_CODE_MESH_NORMAL_AGAINST_FACE};
-enum { COINCIDENT, COLLINEAR };
+enum { COINCIDENT, COLLINEAR, NEARLY_COINCIDENT, UNDECIDED };
 enum { BOUND, DETERMINANT }; /* the least one's negative */
 
 typedef struct triangle_work {
@@ -55,6 +60,7 @@ typedef struct uv_frame {
 	double determinant;         /* |det M| */
 	double uu;                  /* |det M|^2 |T|^2 */
 	double range, size;         /* of v: greatest difference, max |v| */
+	double reach;               /* greatest |u| or |v| */
 	double uncertain;           /* |det M| from which on rounding does not turn its sign */
 } uv_frame;
 
@@ -75,7 +81,7 @@ static uv_frame measure_frame(const float *const t[3], nt_dvec3 d1, nt_dvec3 d2)
 	const double e3[2] = {e1[0] - e2[0], e1[1] - e2[1]};
 	return (uv_frame){e1[0] * e1[0] + e1[1] * e1[1], e2[0] * e2[0] + e2[1] * e2[1], e3[0] * e3[0] + e3[1] * e3[1],
 		fabs(e1[0] * e2[1] - e1[1] * e2[0]), nt_dvec3_dot(u, u),
-		y, size, 2.0 * 0x1p-24 * (width * y + size * x)}; /* as nt_is_sliver() has it */
+		y, size, greater(width, size), 2.0 * 0x1p-24 * (width * y + size * x)}; /* as nt_is_sliver() has it */
 }
 
 /* The sine of how far rounding of the texture coordinates may turn the tangent; across: |d1 x d2|. */
@@ -97,6 +103,38 @@ static bool is_far_from_degenerate(const uv_frame *f, nt_dvec3 face)
 	const double left = error * error * nt_dvec3_dot(face, face);
 	const double right = 0.9 * NEAR_DEGENERATE_SINE * NEAR_DEGENERATE_SINE * f->uu * f->uu;
 	return left < right && right > 1e-200 && f->determinant > f->uncertain;
+}
+
+/* Whether rounding may turn a side of that squared length by more than the limit: its ends are at one place. */
+static bool is_coincident(const uv_frame *f, double square)
+{
+	const double error = 0x1p-24 * f->reach; /* of each end along each axis */
+	return square * NEAR_DEGENERATE_SINE * NEAR_DEGENERATE_SINE <= 8.0 * error * error;
+}
+
+/* Whether a triangle is as thin in space, unless all its coordinates are at one place. across: |d1 x d2| */
+static bool is_thin_in_space(const uv_frame *f, nt_dvec3 d1, nt_dvec3 d2, double across)
+{
+	const nt_dvec3 d3 = nt_dvec3_sub(d1, d2);
+	const double longest = greater(nt_dvec3_dot(d1, d1), greater(nt_dvec3_dot(d2, d2), nt_dvec3_dot(d3, d3)));
+	const double uv_longest = greater(f->n1, greater(f->n2, f->n3));
+	return across * uv_longest <= FAITHFUL_STRETCH * f->determinant * longest && !is_coincident(f, uv_longest);
+}
+
+/* Notes a triangle whose tangent rounding may turn by `sine` and more than the limit. */
+static void note_near_degenerate(const nt_check *check, size_t t, const uv_frame *f, double sine, nt_part *part)
+{
+	const double bound = sine < 1.0 ? asin(sine) * NT_DEGREES : 90.0;
+	/* that of the two longest sides, whichever corner is the first */
+	const double two_longest = greater(f->n1 * f->n2, f->n3 * greater(f->n1, f->n2));
+	const double shortest = -greater(-f->n1, greater(-f->n2, -f->n3));
+	nt_tally_triangle(check, &part->tallies[NEAR], t, bound);
+	part->tallies[NEAR].area += nt_triangle_area(&check->surface, t);
+	part->sums[NEARLY_COINCIDENT] += is_coincident(f, shortest);
+	part->sums[UNDECIDED] += !(sine < 1.0);
+	if (sine < 1.0)
+		part->greatest[BOUND] = fmax(part->greatest[BOUND], bound);
+	part->greatest[DETERMINANT] = fmax(part->greatest[DETERMINANT], -f->determinant / sqrt(two_longest));
 }
 
 /* Whether the file has no texture coordinates for a triangle, but for others. */
@@ -128,16 +166,9 @@ static void check_texcoords(const triangle_work *work, size_t t, const uint32_t 
 		work->determinants[t] = (float)determinant;
 	if (is_far_from_degenerate(&frame, face) || s->flatness[t] == NT_COINCIDENT || s->flatness[t] == NT_COLLINEAR)
 		return;
-	const double sine = rounding_sine(s, t, &frame, nt_dvec3_length(face));
-	if (!(sine <= NEAR_DEGENERATE_SINE)) {
-		const double bound = sine < 1.0 ? asin(sine) * NT_DEGREES : 90.0;
-		nt_tally_triangle(check, &part->tallies[NEAR], t, bound);
-		part->tallies[NEAR].area += nt_triangle_area(s, t);
-		part->greatest[BOUND] = fmax(part->greatest[BOUND], bound);
-		/* that of the two longest sides, whichever corner is the first */
-		const double longest = greater(frame.n1 * frame.n2, frame.n3 * greater(frame.n1, frame.n2));
-		part->greatest[DETERMINANT] = fmax(part->greatest[DETERMINANT], -frame.determinant / sqrt(longest));
-	}
+	const double across = nt_dvec3_length(face), sine = rounding_sine(s, t, &frame, across);
+	if (!(sine <= NEAR_DEGENERATE_SINE) && !is_thin_in_space(&frame, d1, d2, across))
+		note_near_degenerate(check, t, &frame, sine, part);
 }
 
 /* Whether the normals of all corners point to the back, and with them what is interpolated at each pixel. If one does
@@ -263,6 +294,32 @@ static nt_status count_neighbours(const nt_check *check, size_t *count)
 	return NT_OK;
 }
 
+static void report_near_degenerate(nt_check *check, nt_part *all, nt_severity severity, double percent)
+{
+	nt_tally *near = &all->tallies[NEAR];
+	const size_t coincident = (size_t)all->sums[NEARLY_COINCIDENT], undecided = (size_t)all->sums[UNDECIDED];
+	const double degrees = undecided < near->count ? all->greatest[BOUND] : NAN;
+	char kinds[80] = "collinear", error[96];
+	nt_tally_number(near, "least_relative_determinant", -all->greatest[DETERMINANT]);
+	nt_tally_number(near, "greatest_error_degrees", degrees);
+	nt_tally_number(near, "coincident_corners", (double)coincident);
+	nt_tally_number(near, "undecided_tangents", (double)undecided);
+	if (coincident == near->count)
+		snprintf(kinds, sizeof kinds, "coincident");
+	else if (coincident)
+		snprintf(kinds, sizeof kinds, "collinear (%zu) or coincident (%zu)",
+			near->count - coincident, coincident);
+	if (undecided == near->count)
+		snprintf(error, sizeof error, "decides %s", undecided == 1 ? "the tangent" : "their tangents");
+	else if (undecided)
+		snprintf(error, sizeof error, "decides the tangent%s of %zu and turns others by up to %.2g degrees",
+			undecided == 1 ? "" : "s", undecided, degrees);
+	else
+		snprintf(error, sizeof error, "turns tangents by up to %.2g degrees", degrees);
+	nt_check_report_as(check, near, severity, "nearly %s coordinates, %.3g %% of the area; rounding %s", kinds,
+		percent, error);
+}
+
 /* from_neighbour: corners of degenerate triangles that take a neighbour's tangent. */
 static void report_triangles(nt_check *check, nt_part *all, size_t from_neighbour)
 {
@@ -305,11 +362,8 @@ static void report_triangles(nt_check *check, nt_part *all, size_t from_neighbou
 			100.0 * no_area->area / total, neighbours, *neighbours && *normals ? ", " : "", normals);
 	}
 
-	const double least = -all->greatest[DETERMINANT];
-	nt_tally_number(&tallies[NEAR], "least_relative_determinant", least);
-	nt_tally_number(&tallies[NEAR], "greatest_error_degrees", all->greatest[BOUND]);
-	nt_check_report_as(check, &tallies[NEAR], severities[NEAR],
-		"relative determinant down to %.2g, error up to %.2g degrees", least, all->greatest[BOUND]);
+	if (nt_is_visible(check, tallies[NEAR].area))
+		report_near_degenerate(check, all, severities[NEAR], 100.0 * tallies[NEAR].area / total);
 
 	nt_check_report_as(check, &tallies[AGAINST], severities[AGAINST], "%.3g %% of the area",
 		100.0 * tallies[AGAINST].area / total);

@@ -182,9 +182,9 @@ TEST(nearly_collinear_coordinates_far_from_the_origin)
 {
 	static const struct {
 		float u, v, height;
-		double degrees; /* 0: it is no finding */
+		double degrees; /* 0: it is no finding; infinite: any */
 		double steps;   /* of 2^-14, that the height has there: the sine is 1 / 46 in the second row */
-	} rows[] = {{0, 1000, 0.00006f, 90, 1}, {0, 1000, 0.0028f, 1.2457, 46}, {0, 1000, 0.0044f, 0, 0},
+	} rows[] = {{0, 1000, 0.00006f, INFINITY, 1}, {0, 1000, 0.0028f, 1.2457, 46}, {0, 1000, 0.0044f, 0, 0},
 		{1000, 0, 0.0001f, 0, 0}, {1000, 0, 0.09f, 0, 0}};
 	for (size_t n = 0; n < 3 * sizeof rows / sizeof *rows; n++) {
 		const size_t i = n / 3, first = n % 3; /* whichever corner comes first */
@@ -201,10 +201,73 @@ TEST(nearly_collinear_coordinates_far_from_the_origin)
 			assert_string_equal(numbers[1].name, "least_relative_determinant");
 			assert_true(fabs(numbers[1].value - height / hypot(1, height)) < 1e-9);
 			assert_string_equal(numbers[2].name, "greatest_error_degrees");
-			assert_true(fabs(numbers[2].value - rows[i].degrees) < 1e-4);
+			assert_true(isinf(rows[i].degrees) ? isnan(numbers[2].value)
+				: fabs(numbers[2].value - rows[i].degrees) < 1e-4);
 		}
 		hand_free(h, report);
 	}
+}
+
+/* A right triangle in space beside a square, which is mapped well. Rounding may turn the tangent by the angle whose
+ * sine is 2 / n if the triangle is n / 2^25 high in v. */
+TEST(triangles_with_next_to_no_area_are_told_by_what_is_wrong_with_them)
+{
+#define DECIDED(kind) "nearly " kind " coordinates, 33.3 % of the area; rounding decides the tangent"
+	static const struct {
+		float uv[3][2];
+		float height, side;  /* in space: of the triangle and of the square */
+		const char *message; /* NULL: none */
+	} rows[] = {
+		{{{0, 0.25f}, {1, 0.25f}, {0.5f, 0.25f + 0x1p-25f}}, 1, 1, DECIDED("collinear")},
+		{{{0, 0.5f}, {1, 0.5f}, {0.5f, 0.5f + 0x1p-18f}}, 1, 1, NULL}, /* by 0.9 degrees */
+		{{{0, 0.25f}, {1, 0.25f}, {1, 0.25f + 0x1p-25f}}, 1, 1, DECIDED("coincident")},
+		{{{0.5f, 0.5f}, {0.5f + 0x1p-20f, 0.5f}, {0.5f, 0.5f + 0x1p-20f}}, 1, 1,
+			"nearly coincident coordinates, 33.3 % of the area; rounding turns tangents by up to 3.6 "
+			"degrees"},
+		/* as thin in space: as it is, and in a mesh where nobody sees it */
+		{{{0, 0.25f}, {1, 0.25f}, {0.5f, 0.25f + 0x1p-25f}}, 0x1p-25f, 0, NULL},
+		{{{0, 0.25f}, {1, 0.25f}, {0.5f, 0.25f + 0x1p-25f}}, 1, 1000, NULL},
+	};
+#undef DECIDED
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		hand_mesh *h = hand_new();
+		for (uint32_t k = 0; k < 3; k++)
+			hand_vertex(h, k == 1, k == 2 ? rows[i].height : 0, 0, rows[i].uv[k][0], rows[i].uv[k][1]);
+		hand_triangle(h, 0, 1, 2);
+		for (uint32_t k = 0; k < 4; k++)
+			hand_vertex(h, 5 + rows[i].side * (float)(k % 2), rows[i].side * (float)(k / 2), 0,
+				(float)(k % 2), (float)(k / 2));
+		hand_quad(h, 3, 4, 6, 5);
+		nt_report *report = hand_report(h, NULL);
+		assert_int_equal(hand_findings(report, NT_CODE_UV_NEAR_DEGENERATE), rows[i].message != NULL);
+		if (rows[i].message)
+			assert_non_null(strstr(hand_finding(report, NT_CODE_UV_NEAR_DEGENERATE)->message,
+				rows[i].message));
+		hand_free(h, report);
+	}
+}
+
+TEST(what_is_wrong_with_several_is_counted)
+{
+	static const float uv[][2] = {{0, 0.25f}, {1, 0.25f}, {0.5f, 0.25f + 0x1p-25f}, {1, 0.25f + 0x1p-25f},
+		{0.5f, 0.5f}, {0.5f + 0x1p-20f, 0.5f}, {0.5f, 0.5f + 0x1p-20f}};
+	static const float xy[][2] = {{0, 0}, {1, 0}, {0, 1}, {0, -1}, {5, 0}, {6, 0}, {5, 1}};
+	hand_mesh *h = hand_new();
+	for (uint32_t v = 0; v < sizeof uv / sizeof *uv; v++)
+		hand_vertex(h, xy[v][0], xy[v][1], 0, uv[v][0], uv[v][1]);
+	hand_triangle(h, 0, 1, 2);
+	hand_triangle(h, 0, 1, 3);
+	hand_triangle(h, 4, 5, 6);
+	nt_report *report = hand_report(h, NULL);
+	const nt_report_finding *found = hand_finding(report, NT_CODE_UV_NEAR_DEGENERATE);
+	assert_string_equal(found->message, "3 triangles have next to no area in UV space: nearly collinear (1) or "
+		"coincident (2) coordinates, 100 % of the area; rounding decides the tangents of 2 and turns others "
+		"by up to 3.6 degrees");
+	assert_string_equal(found->numbers[3].name, "coincident_corners");
+	assert_true(found->numbers[3].value == 2);
+	assert_string_equal(found->numbers[4].name, "undecided_tangents");
+	assert_true(found->numbers[4].value == 2);
+	hand_free(h, report);
 }
 
 /* Right triangles but one with an angle of 30 degrees: the relative determinant is the sine of the angle. */
