@@ -300,9 +300,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"> Mark Seam) and unwrap it again.",
 		"three quads in a row with u = 0, 1, 0.4, 1.4"),
 	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-i", EXPORT, NULL, "{count} of {detail} {is|are} flipped",
-		"A few triangles in a row are wound against their island, or have texture coordinates of their own "
-		"inside a large island of the other winding: at most 5 % of its triangles, of its area and of its "
-		"texels, or a single one up to 10 %, if all triangles that are wound so are at most a fifth of each. "
+		"A few triangles in a row are wound against their island, or have texture coordinates of their own and "
+		"lie inside a large island of the other winding: at most 5 % of its triangles, of its area and of its "
+		"texels, or a single one up to 10 %, if all triangles that are wound so are at most 15 % of each. "
 		"Texture is mirrored there. They make no seam, fold or mirrored island. Nothing is said of needles "
 		"whose winding is rounding (UV_NEAR_DEGENERATE has those that can be mended) and below a millionth of "
 		"the mesh's area. An info if no material of a glTF needs tangents (of an OBJ: of its glTF), and up to "
@@ -322,8 +322,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(UV_DEGENERATE_TRIANGLE, INFO, "w-i", EXPORT, NULL,
 		"{count} {triangle has|triangles have} no area in UV space",
 		"The three texture coordinates are collinear: there is no direction in which u grows, so the tangent "
-		"comes from a neighbour or from the normal. A warning when such triangles are more than 1 % of the "
-		"mesh's area, unless no material of a glTF needs tangents (of an OBJ: of its glTF).",
+		"comes from a neighbour or from the normal. Nothing is said below a millionth of the mesh's area. A "
+		"warning when such triangles are more than 1 % of the mesh's area, unless no material of a glTF needs "
+		"tangents (of an OBJ: of its glTF).",
 		"Unwrap these triangles (Blender: UV > Smart UV Project) if they are visible and normal mapped.",
 		"two triangles, of which one has UVs (0,0), (1,0), (2,0)"),
 	ROW(UV_NEAR_DEGENERATE, INFO, "w-i", EXPORT, NULL,

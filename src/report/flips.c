@@ -26,12 +26,12 @@
  *
  * All that has the winding of a flipped patch has to be a minority of its island: of 876 islands with small patches, of
  * 1 451 public files, 722 have up to a fourth and 85 two fifths to a half. These are halves with a jagged middle line;
- * above a fifth, readers of pictures did not agree that the one is more flipped than what lies beside it.
+ * above a seventh, readers of pictures did not agree that the one is more flipped than what lies beside it.
  *
  * Area counts because a fold may be a few large triangles beside many small ones; texels count because the back of a
  * planar projection may be a few small triangles that lie on all of the front.
  */
-static const double FLIPPED_SHARE = 0.05, SINGLE_SHARE = 0.1, MINORITY_SHARE = 0.2;
+static const double FLIPPED_SHARE = 0.05, SINGLE_SHARE = 0.1, MINORITY_SHARE = 0.15;
 
 /* How much is wound one way. */
 typedef struct extent {
@@ -151,8 +151,8 @@ static bool is_candidate(const nt_check *check, const patches *p, patch *one)
 {
 	const uint32_t own = check->islands[one->first];
 	const bool alone = is_island(check, one);
-	/* n triangles in a row have n + 2 outer sides, most of which lie against the host */
-	if (alone && (one->host == NT_NONE || 2 * one->host_sides <= one->size.triangles + 2))
+	/* n triangles in a row have n + 2 outer sides: of two or more, one may lie elsewhere */
+	if (alone && (one->host == NT_NONE || one->host_sides + (one->size.triangles > 1) < one->size.triangles + 2))
 		return false;
 	one->host = alone ? one->host : own;
 	if (one->all_slivers)

@@ -112,13 +112,15 @@ static bool is_coincident(const uv_frame *f, double square)
 	return square * NEAR_DEGENERATE_SINE * NEAR_DEGENERATE_SINE <= 8.0 * error * error;
 }
 
-/* Whether a triangle is as thin in space, unless all its coordinates are at one place. across: |d1 x d2| */
+/* Whether a triangle is as thin in space, or so thin that it would be nearly degenerate if it were mapped without
+ * stretch, unless all its coordinates are at one place. across: |d1 x d2| */
 static bool is_thin_in_space(const uv_frame *f, nt_dvec3 d1, nt_dvec3 d2, double across)
 {
 	const nt_dvec3 d3 = nt_dvec3_sub(d1, d2);
 	const double longest = greater(nt_dvec3_dot(d1, d1), greater(nt_dvec3_dot(d2, d2), nt_dvec3_dot(d3, d3)));
 	const double uv_longest = greater(f->n1, greater(f->n2, f->n3));
-	return across * uv_longest <= FAITHFUL_STRETCH * f->determinant * longest && !is_coincident(f, uv_longest);
+	const double width = greater(FAITHFUL_STRETCH * f->determinant, f->uncertain / NEAR_DEGENERATE_SINE);
+	return across * uv_longest <= width * longest && !is_coincident(f, uv_longest);
 }
 
 /* Notes a triangle whose tangent rounding may turn by `sine` and more than the limit. */
@@ -349,7 +351,7 @@ static void report_triangles(nt_check *check, nt_part *all, size_t from_neighbou
 	if (no_area->count == check->surface.triangle_count) {
 		no_area->code = NT_CODE_UV_UNMAPPED;
 		nt_check_report_as(check, no_area, severities[NO_AREA], NULL);
-	} else {
+	} else if (nt_is_visible(check, no_area->area)) {
 		/* each triangle has three, so that one of both is there */
 		char neighbours[80] = "", normals[80] = "";
 		if (from_neighbour)

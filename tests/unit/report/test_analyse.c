@@ -224,8 +224,9 @@ TEST(triangles_with_next_to_no_area_are_told_by_what_is_wrong_with_them)
 		{{{0.5f, 0.5f}, {0.5f + 0x1p-20f, 0.5f}, {0.5f, 0.5f + 0x1p-20f}}, 1, 1,
 			"nearly coincident coordinates, 33.3 % of the area; rounding turns tangents by up to 3.6 "
 			"degrees"},
-		/* as thin in space: as it is, and in a mesh where nobody sees it */
+		/* as thin in space; wider, but rounding would decide if it were mapped so; where nobody sees it */
 		{{{0, 0.25f}, {1, 0.25f}, {0.5f, 0.25f + 0x1p-25f}}, 0x1p-25f, 0, NULL},
+		{{{0, 0.25f}, {1, 0.25f}, {0.5f, 0.25f + 0x1p-25f}}, 0x1p-20f, 0, NULL},
 		{{{0, 0.25f}, {1, 0.25f}, {0.5f, 0.25f + 0x1p-25f}}, 1, 1000, NULL},
 	};
 #undef DECIDED
@@ -245,6 +246,17 @@ TEST(triangles_with_next_to_no_area_are_told_by_what_is_wrong_with_them)
 				rows[i].message));
 		hand_free(h, report);
 	}
+}
+
+/* Positions and texture coordinates of three corners at one place: POS_DEGENERATE_TRIANGLE says it. */
+TEST(a_triangle_without_area_in_space_needs_none_in_uv_space)
+{
+	hand_mesh *h = sound_quad();
+	hand_triangle(h, 0, 0, 1);
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_DEGENERATE_TRIANGLE), 0);
+	assert_int_equal(hand_finding(report, NT_CODE_POS_DEGENERATE_TRIANGLE)->count, 1);
+	hand_free(h, report);
 }
 
 TEST(what_is_wrong_with_several_is_counted)
