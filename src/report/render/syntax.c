@@ -102,13 +102,13 @@ static const char *read_conversion(const char *format, conversion *c)
 	c->width = (int)strtol(format, &end, 10);
 	if (*end == '.')
 		c->precision = (int)strtol(end + 1, &end, 10);
-	for (; strchr("hzl", *end); end++) {
+	for (; *end && strchr("hzl", *end); end++) {
 		c->is_byte |= *end == 'h';
 		c->is_size |= *end == 'z';
 		c->is_long |= *end == 'l';
 	}
 	c->letter = *end;
-	return end + 1;
+	return end + (*end != '\0');
 }
 
 static void put_string(nt_buffer *out, nt_syntax syntax, conversion c, const char *text)
@@ -192,6 +192,8 @@ void nt_put(nt_buffer *out, nt_syntax syntax, const char *format, ...)
 			nt_buffer_format(out, "%d", va_arg(a, int));
 		else if (c.letter == '%')
 			nt_buffer_text(out, "%");
+		else if (!c.letter)
+			break; /* the template ends in a conversion: compilers refuse it, unless it is no literal */
 		else if (c.is_size)
 			put_unsigned(out, json, c, va_arg(a, size_t));
 		else if (c.is_long)
