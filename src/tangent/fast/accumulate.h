@@ -101,15 +101,21 @@ static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orien
 		add_more(&fast->more[orient][vertex], &add);
 }
 
-/* Triangle t, of vertices v, with a frame. */
-static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t *v, int lane, const lanes_out *out)
+/* Orientation of the record that takes note of an "any" triangle: any that exists. */
+static int any_record(const nt_fast *fast, int orient)
 {
-	const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
-	const uint32_t bit = (uint32_t)orient << 31;
+	return fast->records[orient] || !fast->records[!orient] ? orient : !orient;
+}
+
+/* A triangle of vertices v and one of change_special()'s orientations. */
+static void add_triangle(nt_fast *fast, unsigned range, unsigned orient, const uint32_t *v, size_t lane,
+	const lanes_out *out)
+{
+	const uint32_t bit = orient << 31;
 	for (size_t k = 0; k < 3; k++)
-		add_corner(fast, range, v[k], orient,
+		add_corner(fast, range, v[k], any_record(fast, (int)orient),
 			(nt_fan_entry){v[(k + 1) % 3] | bit, v[(k + 2) % 3] | bit},
-			addition_of(out, k, turned_place((size_t)lane)));
+			addition_of(out, k, turned_place(lane)));
 }
 
 /* Adds a corner to its vertex's record, or puts it aside if an earlier range has the vertex. */
@@ -124,11 +130,11 @@ static inline NT_ALWAYS_INLINE void add_or_defer(nt_record *records, uint32_t ve
 	memcpy(&deferred->add[deferred->count++], add, sizeof *deferred->add);
 }
 
-/* Triangles with frames, lanes [i, end), up to the first with a corner that has no narrow entry left, or whose cursor
- * has a flag, if these are not looked at one by one: its lane, or `end`. Entries are moved as words, and nothing is
- * called, so that nearly all the loop needs is in registers. */
-static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned range, size_t first, size_t i,
-	size_t end, const uint32_t *ids, const lanes_out *out, bool is_narrow, bool are_flagged)
+/* Triangles that are not degenerate, lanes [i, end), up to the first with a corner that has no narrow entry left, or
+ * whose cursor has a flag, if these are not looked at one by one: its lane, or `end`. Entries are moved as words, and
+ * nothing is called, so that nearly all the loop needs is in registers. */
+static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned range, const uint8_t *flags,
+	size_t i, size_t end, const uint32_t *ids, const lanes_out *out, bool is_narrow, bool are_flagged)
 {
 	nt_deferred deferred = {.to = NULL};
 	if (are_flagged && fast->deferred)
@@ -138,8 +144,7 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 	uint32_t *const narrow = adjacency->narrow;
 	uint32_t *const cursors = adjacency->cursors + range * adjacency->vertex_count;
 	nt_fan_entry *const entries = adjacency->entries;
-	nt_record *const records[2] = {fast->records[0], fast->records[1]};
-	const uint8_t *const flags = fast->flags + first;
+	nt_record *const records[2] = {fast->records[!fast->records[0]], fast->records[1]}; /* any_record() */
 	for (ids += 3 * i; i < end; i++, ids += 3) {
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
@@ -153,7 +158,7 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 		nt_record *const to = records[orient];
 		const float *add = out->add[0] + turned_rows[i];
 		if (are_flagged) {
-			const uint32_t bit = (uint32_t)orient << 31;
+			const uint32_t bit = (uint32_t)(to == fast->records[1]) << 31;
 			add_or_defer(to, a, pa, bit, add, &deferred);
 			add_or_defer(to, b, pb, bit, add + 4 * NT_TRIANGLES, &deferred);
 			add_or_defer(to, c, pc, bit, add + 8 * NT_TRIANGLES, &deferred);
@@ -188,42 +193,42 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 	return i;
 }
 
-static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
-	const uint32_t *ids, const lanes_out *out)
+static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, const uint8_t *flags, size_t i,
+	size_t end, const uint32_t *ids, const lanes_out *out)
 {
-	return add_usual(fast, range, first, i, end, ids, out, false, false);
+	return add_usual(fast, range, flags, i, end, ids, out, false, false);
 }
 
-static void NT_NOINLINE add_flagged(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
-	const uint32_t *ids, const lanes_out *out)
+static void NT_NOINLINE add_flagged(const nt_fast *fast, unsigned range, const uint8_t *flags, size_t i,
+	size_t end, const uint32_t *ids, const lanes_out *out)
 {
-	(void)add_usual(fast, range, first, i, end, ids, out, false, true);
+	(void)add_usual(fast, range, flags, i, end, ids, out, false, true);
 }
 
-static size_t NT_NOINLINE add_narrow(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
-	const uint32_t *ids, const lanes_out *out)
+static size_t NT_NOINLINE add_narrow(const nt_fast *fast, unsigned range, const uint8_t *flags, size_t i,
+	size_t end, const uint32_t *ids, const lanes_out *out)
 {
-	return add_usual(fast, range, first, i, end, ids, out, true, false);
+	return add_usual(fast, range, flags, i, end, ids, out, true, false);
 }
 
-/* Triangles with frames, lanes [begin, end). */
-static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t begin, size_t end, const uint32_t *ids,
-	const lanes_out *out)
+/* Triangles that are not degenerate, lanes [begin, end). */
+static void add_ordinary(nt_fast *fast, unsigned range, const uint8_t *flags, size_t begin, size_t end,
+	const uint32_t *ids, const lanes_out *out)
 {
 	const bool is_narrow = nt_adjacency_is_narrow(&fast->adjacency);
 	size_t i = begin;
 	if (!is_narrow && !fast->wants_more) {
 		if (range == 0) /* without flags, but for hubs */
-			i = add_here(fast, range, first, i, end, ids, out);
+			i = add_here(fast, range, flags, i, end, ids, out);
 		if (i < end)
-			add_flagged(fast, range, first, i, end, ids, out);
+			add_flagged(fast, range, flags, i, end, ids, out);
 		return;
 	}
 	for (; i < end; i++) {
 		if (!fast->wants_more)
-			i = add_narrow(fast, range, first, i, end, ids, out);
+			i = add_narrow(fast, range, flags, i, end, ids, out);
 		if (i < end)
-			add_triangle(fast, range, first + i, ids + 3 * i, (int)i, out);
+			add_triangle(fast, range, flags[i] & NT_TRIANGLE_ORIENT, ids + 3 * i, i, out);
 	}
 }
 
@@ -241,62 +246,43 @@ static void NT_NOINLINE bin_ordinary(const nt_fast *fast, unsigned range, size_t
 		bin_corner(&bins, cursors, v[0], orient, v[1], v[2], out->add[0] + place);
 		bin_corner(&bins, cursors, v[1], orient, v[2], v[0], out->add[1] + place);
 		bin_corner(&bins, cursors, v[2], orient, v[0], v[1], out->add[2] + place);
-		seen |= NT_SEEN(orient);
+		seen |= fast->flags[first + i] & NT_TRIANGLE_ANY ? NT_SEEN_ANY : NT_SEEN(orient);
 	}
 	/* stored where it changes: those of other ranges are in the same cache line */
 	if (seen & ~(unsigned)bins.seen[range])
 		bins.seen[range] |= (uint8_t)seen;
 }
 
-/* Orientation of the record that takes note of an "any" triangle: any that exists. */
-static int any_record(const nt_fast *fast, int orient)
+/* Changes what triangles add that are not ordinary: one without a frame adds a note, and of others the bounds of the
+ * lanes may not hold. `flags` receives theirs, without an orientation where there is no frame. */
+static void NT_NOINLINE change_special(const nt_fast *fast, size_t first, size_t count, lanes_out *out, uint8_t *flags)
 {
-	return fast->records[orient] || !fast->records[!orient] ? orient : !orient;
-}
-
-/* Adds a triangle that is degenerate (voids in the fans) or has no frame (a corner in the fans, a note in the
- * records), or is ordinary but has values for which the bounds of the lanes do not hold. */
-static void NT_NOINLINE add_special(nt_fast *fast, unsigned range, size_t t, const uint32_t *v,
-	int lane, lanes_out *out)
-{
-	static const float zero[4] = {0};
 	static const nt_record note = {.state = NT_STATE_BASE | (NT_STATE_ALL & ~NT_STATE_NO_ANY)};
 	static const uint32_t unsound = NT_STATE_BASE | NT_STATE_NO_ANY | NT_STATE_LOCAL;
-	const uint8_t flags = fast->flags[t];
-	if (fast->bins.cursors && !(flags & NT_TRIANGLE_DEGENERATE))
-		fast->bins.seen[range] |= flags & NT_TRIANGLE_ANY ? NT_SEEN_ANY : NT_SEEN(flags & NT_TRIANGLE_ORIENT);
-	if (!(flags & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY))) {
-		for (int k = 0; k < 3; k++)
-			memcpy(&out->add[k][4 * turned_place((size_t)lane) + 3], &unsound, sizeof unsound);
-		add_triangle(fast, range, t, v, lane, out);
-		return;
-	}
-	const int orient = any_record(fast, flags & NT_TRIANGLE_ORIENT);
-	if ((flags & NT_TRIANGLE_DEGENERATE) && fast->bins.cursors)
-		return;
-	if (flags & NT_TRIANGLE_DEGENERATE) {
-		uint32_t *cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
-		for (int k = 0; k < 3; k++) {
-			const nt_adjacency *a = &fast->adjacency;
-			const uint32_t place = nt_adjacency_next(a, &cursors[v[k]]);
-			const uint32_t number = NT_ENTRY_VOID | 2 * ((place & NT_CURSOR_PLACE) / a->step);
-			if (!(place & NT_CURSOR_HUB))
-				nt_adjacency_store(a, place, (nt_fan_entry){number, number + 1});
+	for (size_t i = 0; i < count; i++) {
+		const size_t place = 4 * turned_place(i);
+		const bool any = fast->flags[first + i] & NT_TRIANGLE_ANY;
+		flags[i] = (uint8_t)(fast->flags[first + i] & ~(any ? NT_TRIANGLE_ORIENT : 0));
+		for (int k = 0; k < 3 && any; k++) {
+			memcpy(out->add[k] + place, &note, sizeof note);
+			memset(out->more[k][0] + place, 0, sizeof note);
+			memset(out->more[k][1] + place, 0, sizeof note);
 		}
-		return;
+		for (int k = 0; k < 3 && !any && !out->sound[i]; k++)
+			memcpy(out->add[k] + place + 3, &unsound, sizeof unsound);
 	}
-	for (int k = 0; k < 3; k++)
-		add_corner(fast, range, v[k], orient, (nt_fan_entry){v[(k + 1) % 3], v[(k + 2) % 3]},
-			(addition){&note.x, {zero, zero}});
 }
 
-/* The next lane from i on whose triangle is one for add_special(). */
-static size_t next_special(const nt_fast *fast, size_t first, size_t i, size_t count, const lanes_out *out)
+/* Puts voids into the fans at the corners of a degenerate triangle. */
+static void NT_NOINLINE add_voids(const nt_fast *fast, unsigned range, const uint32_t *v)
 {
-	const uint8_t *flags = fast->flags + first;
-	while (i < count && out->sound[i] && !(flags[i] & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY)))
-		i++;
-	return i;
+	const nt_adjacency *a = &fast->adjacency;
+	for (int k = 0; k < 3 && !fast->bins.cursors; k++) {
+		const uint32_t place = nt_adjacency_next(a, &a->cursors[range * a->vertex_count + v[k]]);
+		const uint32_t number = NT_ENTRY_VOID | 2 * ((place & NT_CURSOR_PLACE) / a->step);
+		if (!(place & NT_CURSOR_HUB))
+			nt_adjacency_store(a, place, (nt_fan_entry){number, number + 1});
+	}
 }
 
 /* The orientation of a record array that these triangles need and that does not exist; -1: none. */
@@ -396,18 +382,22 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 		if (scattered)
 			prefetch_rows(fast, first, end, 2);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
+		uint8_t changed[NT_TRIANGLES];
+		const uint8_t *const flags = ordinary ? fast->flags + first : changed;
+		if (!ordinary)
+			change_special(fast, first, count, &out, changed);
 		for (int missing; (missing = missing_record(fast, first, count)) >= 0;)
 			if (!make(fast, missing, range, context))
 				return;
 		for (size_t i = 0; i < count; i++) {
 			const size_t from = i;
-			i = ordinary ? count : next_special(fast, first, i, count, &out);
+			i = ordinary ? count : nt_next_flagged(flags, i, count, NT_TRIANGLE_DEGENERATE);
 			if (fast->bins.cursors)
 				bin_ordinary(fast, range, first, from, i, ids, &out);
 			else
-				add_ordinary(fast, range, first, from, i, ids, &out);
+				add_ordinary(fast, range, flags, from, i, ids, &out);
 			if (i < count)
-				add_special(fast, range, first + i, ids + 3 * i, (int)i, &out);
+				add_voids(fast, range, ids + 3 * i);
 		}
 	}
 	if (note)
