@@ -27,7 +27,7 @@ for file in "$data"/damaged/*.obj "$data"/damaged/*.ply "$data"/damaged/*.glb "$
 	grep -q "^${file##*/}	" "$ROOT/tests/cli/damaged.tsv" || wrong "${file##*/} is not in damaged.tsv"
 done
 
-scene "each fault of a glTF is told at its place, each spelling of JSON is kept"
+scene "each fault of a glTF is told at its place, each spelling of JSON is kept, materials and scenes mean what they should"
 python3 "$ROOT/tests/support/gltf_refused.py" "$NMTAN" >"$WORK/err.txt" 2>&1 || wrong "gltf_refused.py"
 
 scene "an index that is out of range, of a mesh that has tangents and a normal map"

@@ -3,7 +3,8 @@
 """gltf_refused.py NMTAN: a good glTF with one fault each, and JSON of each spelling: what is said, and where, and what is kept.
 
 A row is a change of the document, the place and the words of the message; without a place the file is converted. Rows of
-JSON are the text of a value, how many bytes of it are read before the fault, and the words; without words the output spells it alike.
+JSON are the text of a value, how many bytes of it are read before the fault, and the words; without words the output spells it
+alike. Rows of MEANT are documents in order.
 """
 import json
 import os
@@ -122,6 +123,31 @@ draco(p, bufferView=0); p['mode'] = 5|/meshes/0/primitives/0/extensions/KHR_drac
 draco(p, bufferView=0, attributes=3)|/bufferViews/0|not Draco data
 """
 
+# What a material, or a scene, means for the primitive: a change, what a report says of it, and the value. Texture 0 is a normal map.
+MEANT = r"""
+m[0] = {}|slots|[]
+m[0] = normal(texCoord=1)|slots, texcoord_set, has_texcoords|(['normal'], 1, False)
+m[0] = normal(texCoord=1, extensions={'KHR_texture_transform': {'texCoord': 0}})|slots, texcoord_set|(['normal'], 0)
+m[0] = also({}, KHR_materials_anisotropy={})|slots|['anisotropy']
+m[0] = also({}, KHR_materials_clearcoat={})|slots|[]
+m[0] = also({}, KHR_materials_clearcoat={'clearcoatNormalTexture': {'index': 0, 'texCoord': 1}}, KHR_materials_anisotropy={'anisotropyTexture': {'index': 0}})|sorted(slots), texcoord_set|(['anisotropy', 'clearcoat_normal'], 1)
+m[0] = also(normal(), KHR_materials_unlit={})|slots|[]
+# MToon of VRM 1 samples the map although the fallback is unlit; that of VRM 0 is in the root
+m[0] = also(normal(), KHR_materials_unlit={}, VRMC_materials_mtoon={})|slots|['normal']
+m[0] = also({}, KHR_materials_unlit={}, VRMC_materials_mtoon={})|slots|[]
+m[0] = also({}, KHR_materials_unlit={}); g['extensions'] = {'VRM': {'materialProperties': [{'textureProperties': {'_BumpMap': 0}}]}}|slots|['normal']
+m[0] = {}; g['extensions'] = {'VRM': {'materialProperties': [{'textureProperties': {'_MainTex': 0}}]}}|slots|[]
+m[0:2] = {}, normal(); also(p, KHR_materials_variants={'mappings': [{'material': 0}, {'material': 1}]})|slots|['normal']
+m[0:2] = also({}, MSFT_lod={'ids': [1]}), normal()|slots|['normal']
+g['scenes'] = []|hidden|True
+g.update(scenes=[{'nodes': [0]}], nodes=[{'children': [1]}, {'mesh': 0}])|hidden|False
+g.update(scenes=[{'nodes': [0]}], nodes=[{}, {'mesh': 0}])|hidden|True
+g.update(scenes=[{}, {'nodes': [1]}], nodes=[{}, {'mesh': 0}])|hidden|False
+g.update(scenes=[{'nodes': [0]}], nodes=[{'children': [0, 77, 'x', 1]}, {'children': [0]}])|hidden|True
+g.update(scenes=[{'nodes': [0]}], nodes=[also({}, MSFT_lod={'ids': [1]}), {'mesh': 0}])|hidden|False
+g.update(scenes=7, nodes=8)|hidden|True
+"""
+
 # Text, bytes of it that are read, words; one blank more is no part of it.
 TEXTS = r"""
 01|1|expected ',' or '}'
@@ -221,6 +247,35 @@ def make():
     return expected
 
 
+def normal(**members):
+    return {'normalTexture': {'index': 0, **members}}
+
+
+def also(object, **extensions):
+    object.setdefault('extensions', {}).update(extensions)
+    return object
+
+
+def misunderstood(nmtan):
+    """The rows of MEANT that a report contradicts."""
+    text, faults, rows = json.dumps(base()), [], [row for row in rows_of(MEANT) if row[0][0] != '#']
+    names = ['bad/meant%02d.gltf' % number for number in range(len(rows))]
+    for name, (change, _, _) in zip(names, rows):
+        g = json.loads(text)
+        exec(change, {'g': g, 'm': g['materials'], 'p': g['meshes'][0]['primitives'][0], 'normal': normal, 'also': also})
+        with open(name, 'w', encoding='utf-8') as file:
+            json.dump(g, file)
+    subprocess.run([nmtan, '-q', '--check', '--fail-on=never', '--report=meant.json', *names], check=False)
+    with open('meant.json', encoding='utf-8') as file:
+        judged = {f['file'].split('/')[-1]: f['meshes'][0] for f in json.load(file)['files']}
+    for name, (change, question, answer) in zip(names, rows):
+        mesh = judged[os.path.basename(name)]
+        said = eval(question, dict(mesh, hidden='scene' in mesh['why'], sorted=sorted))
+        if said != eval(answer):
+            faults.append('%s: %s is %s' % (change, question, said))
+    return faults
+
+
 def main():
     os.makedirs('bad')
     expected = make()
@@ -241,6 +296,7 @@ def main():
             with open(output, encoding='utf-8') as file:
                 if '"extras": %s }' % spelled not in file.read():
                     faults.append('%s is spelled otherwise' % spelled)
+    faults += misunderstood(sys.argv[1])
     print('\n'.join(faults))
     return 1 if faults else 0
 
