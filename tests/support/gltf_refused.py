@@ -123,7 +123,7 @@ draco(p, bufferView=0); p['mode'] = 5|/meshes/0/primitives/0/extensions/KHR_drac
 draco(p, bufferView=0, attributes=3)|/bufferViews/0|not Draco data
 """
 
-# What a material, or a scene, means for the primitive: a change, what a report says of it, and the value. Texture 0 is a normal map.
+# A row has a change, what a report says of the primitive then, and the value. Texture 0 is a normal map.
 MEANT = r"""
 m[0] = {}|slots|[]
 m[0] = normal(texCoord=1)|slots, texcoord_set, has_texcoords|(['normal'], 1, False)
