@@ -37,7 +37,8 @@ nmtan_status nt_edge_tail_matters(const nt_welded_mesh *mesh, const nt_edge_tail
 	bool *limit);
 
 /* Whether the order of the last run certainly does not matter, or is beyond a limit; for at most NT_EDGE_FEW triangles
- * that are not halves of quads, and no more rows than corners may be. */
-bool nt_few_edges_are_sorted(const nt_welded_mesh *mesh, bool *limit);
+ * that are not halves of quads, and no more rows than corners may be. `grid` receives that of the vertices that have
+ * corners. */
+bool nt_few_edges_are_sorted(const nt_welded_mesh *mesh, nt_grid *grid, bool *limit);
 
 #endif

@@ -31,8 +31,10 @@ typedef struct edge_array {
 	const nt_grid *grid;
 	vertex *vertices;        /* [vertex_count] */
 	uint16_t *cell_of;       /* [vertex_count] in the place of the edges, until these are listed */
+	uint16_t names[NT_CELLS]; /* of those cells that have vertices, from 1 on; 0: it has none */
+	uint32_t cell_count;
 	nt_cells cells;
-	nt_part *parts;          /* [NT_CELLS] */
+	nt_part *parts;          /* [cell_count + 1] by name */
 	uint32_t *edges;         /* [count] 3 * triangle + k, from corner k to the next; of none that is degenerate */
 	uint32_t *keys;          /* [count] their lower ends, in the place of the corners; NULL: not all are known */
 	block *blocks;           /* [count / BLOCK + 1] */
@@ -41,19 +43,6 @@ typedef struct edge_array {
 } edge_array;
 
 /* Vertices and corners by cell */
-
-/* Turns counts into places of the first of each cell; returns the largest count. */
-static uint32_t add_up(uint32_t counts[NT_CELLS])
-{
-	uint32_t most = 0, sum = 0;
-	for (size_t c = 0; c < NT_CELLS; c++) {
-		const uint32_t count = counts[c];
-		most = nt_most_of(most, count);
-		counts[c] = sum;
-		sum += count;
-	}
-	return most;
-}
 
 /* Counts the corners of vertices, and finds the first and the last one of each. */
 static void count_corners(const nt_welded_mesh *m, vertex *vertices)
@@ -80,35 +69,41 @@ enum { MANY = 8 };
 static uint32_t make_cells(edge_array *e, uint32_t *most_corners, bool *many)
 {
 	const nt_welded_mesh *m = e->mesh;
-	uint32_t places[NT_CELLS] = {0}, corner_places[NT_CELLS] = {0}, count = 0;
+	uint32_t count = 0, corner_count = 0;
 	uint64_t sum = 0;
 	for (size_t v = 0; v < m->vertex_count; v++) {
 		const unsigned cell = nt_grid_cell(e->grid, m->positions[m->step * v + e->grid->axis]);
 		const uint32_t corners = e->vertices[v].number;
-		e->cell_of[v] = (uint16_t)cell;
-		places[cell] += corners > 0;
-		corner_places[cell] += corners;
-		count += corners > 0;
-		sum += corners > 1 ? e->vertices[v].most - e->vertices[v].least : 0;
+		if (corners == 0)
+			continue;
+		if (e->names[cell] == 0) {
+			e->names[cell] = (uint16_t)++e->cell_count;
+			e->parts[e->cell_count] = (nt_part){.vertex_count = 0};
+		}
+		nt_part *part = &e->parts[e->names[cell]];
+		e->cell_of[v] = e->names[cell];
+		part->vertex_count++;
+		part->corner_count += corners;
+		sum += e->vertices[v].most - e->vertices[v].least;
+	}
+	*most_corners = 0;
+	for (nt_part *part = e->parts + 1; part <= e->parts + e->cell_count; part++) {
+		*most_corners = nt_most_of(*most_corners, part->corner_count);
+		part->vertices = count;
+		part->corners = corner_count;
+		count += part->vertex_count;
+		corner_count += part->corner_count;
 	}
 	/* about so many vertices are open at each pivot */
 	*many = MANY * sum / (3 * m->triangle_count) > count;
-	for (size_t c = 0; c < NT_CELLS; c++)
-		e->parts[c] = (nt_part){.vertex_count = places[c], .corner_count = corner_places[c]};
-	add_up(places);
-	*most_corners = add_up(corner_places);
-	for (size_t c = 0; c < NT_CELLS; c++) {
-		e->parts[c].vertices = places[c];
-		e->parts[c].corners = corner_places[c];
-	}
 	return count;
 }
 
 static void place_vertices(const edge_array *e, nt_cell_vertex *rows)
 {
 	const nt_welded_mesh *m = e->mesh;
-	uint32_t places[NT_CELLS];
-	for (size_t c = 0; c < NT_CELLS; c++)
+	uint32_t places[NT_CELLS + 1];
+	for (size_t c = 1; c <= e->cell_count; c++)
 		places[c] = e->parts[c].vertices;
 	for (uint32_t v = 0; v < m->vertex_count; v++) {
 		vertex *one = &e->vertices[v];
@@ -126,8 +121,8 @@ static void place_corners(const edge_array *e)
 	const nt_welded_mesh *m = e->mesh;
 	const vertex *const vertices = e->vertices;
 	nt_cell_corner *const corners = e->cells.corners;
-	uint32_t places[NT_CELLS];
-	for (size_t c = 0; c < NT_CELLS; c++)
+	uint32_t places[NT_CELLS + 1];
+	for (size_t c = 1; c <= e->cell_count; c++)
 		places[c] = e->parts[c].corners;
 	for (size_t t = 0; t < m->triangle_count; t++) {
 		uint32_t copy[3];
@@ -139,23 +134,25 @@ static void place_corners(const edge_array *e)
 	}
 }
 
-/* Finds all representatives, cell by cell. */
+/* Finds all representatives, cell by cell. If one cannot be found, none is known, since the run may not need it. */
 static void find_all(edge_array *e)
 {
 	nt_cells *c = &e->cells;
 	vertex *const vertices = e->vertices;
-	for (nt_part *cell = e->parts; cell < e->parts + NT_CELLS; cell++) {
+	bool done = true;
+	for (nt_part *cell = e->parts + 1; cell <= e->parts + e->cell_count; cell++) {
 		if (cell->vertex_count == 1) { /* many have one */
 			c->vertices[cell->vertices].corners = NT_CELL_FOUND | c->corners[cell->corners].corner;
 			continue;
 		}
-		for (uint32_t i = cell->vertices, end = i + cell->vertex_count; i < end && !e->failed; i++)
-			e->failed = !nt_cells_find(c, cell, i);
+		for (uint32_t i = cell->vertices, end = i + cell->vertex_count; i < end && done; i++)
+			done = nt_cells_find(c, cell, i);
 	}
-	for (size_t v = 0; v < e->mesh->vertex_count && !e->failed; v++)
+	c->limit = false;
+	for (size_t v = 0; v < e->mesh->vertex_count && done; v++)
 		if (vertices[v].least < vertices[v].most)
 			vertices[v].least = vertices[v].most = nt_cells_found(c, vertices[v].number);
-	e->keys = (uint32_t *)(void *)c->corners;
+	e->keys = done ? (uint32_t *)(void *)c->corners : NULL;
 }
 
 /* The one in the middle is the larger lower end of two edges of a triangle, and that of the third is the least. */
@@ -210,7 +207,8 @@ static bool make_array(edge_array *e, uint32_t *least)
 	e->cell_of = (uint16_t *)(void *)e->edges;
 	e->vertices = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *e->vertices);
 	e->blocks = nt_scratch_alloc(m->scratch, m->triangle_count / BLOCK_TRIANGLES + 1, sizeof *e->blocks);
-	e->parts = nt_scratch_alloc(m->scratch, NT_CELLS, sizeof *e->parts);
+	e->parts = nt_scratch_alloc(m->scratch, (m->vertex_count < NT_CELLS ? m->vertex_count : NT_CELLS) + 1,
+		sizeof *e->parts);
 	if (!corners || !e->edges || !e->vertices || !e->blocks || !e->parts)
 		return false;
 	count_corners(m, e->vertices);
@@ -251,7 +249,7 @@ static NT_NOINLINE void find(edge_array *e, vertex *v)
 	if (v->least == v->most || e->failed)
 		return;
 	const unsigned cell = nt_grid_cell(e->grid, e->cells.vertices[v->number].position[e->grid->axis]);
-	e->failed = !nt_cells_find(&e->cells, &e->parts[cell], v->number);
+	e->failed = !nt_cells_find(&e->cells, &e->parts[e->names[cell]], v->number);
 	v->least = v->most = nt_cells_found(&e->cells, v->number);
 }
 
@@ -499,8 +497,9 @@ static bool pair_both(const nt_welded_mesh *m, uint32_t largest, const uint32_t 
 	return true;
 }
 
-/* Finds the order, and what is paired otherwise by it. */
-static nmtan_status pair_as_published(const nt_welded_mesh *m, const nt_grid *grid, nt_unsorted *unsorted)
+/* Finds the order, and what is paired otherwise by it. Not in line: few triangles would have its large frame. */
+static nmtan_status NT_NOINLINE pair_as_published(const nt_welded_mesh *m, const nt_grid *grid,
+	nt_unsorted *unsorted)
 {
 	edge_array e = {.mesh = m, .grid = grid};
 	uint32_t least;
@@ -522,14 +521,15 @@ nmtan_status nt_find_unsorted(const nt_welded_mesh *mesh, const nt_edge_tail *ta
 	*unsorted = (nt_unsorted){.limit = 3 * mesh->triangle_count > NT_EDGE_SORT_CORNERS};
 	if (mesh->triangle_count == 0 || unsorted->limit)
 		return NMTAN_OK;
-	if (mesh->triangle_count <= NT_EDGE_FEW && mesh->vertex_count <= 3 * NT_EDGE_FEW &&
-		!mesh->triangles->cuts && nt_few_edges_are_sorted(mesh, &unsorted->limit))
-		return NMTAN_OK;
-	unsorted->limit = false;
-	const nt_scratch_mark mark = nt_scratch_here(mesh->scratch);
 	nt_grid grid;
-	bool matters;
-	nmtan_status status = nt_edge_tail_matters(mesh, tail, &grid, &matters, &unsorted->limit);
+	bool matters = true; /* that of few triangles may: to find the order is quicker than to ask once more */
+	nmtan_status status = NMTAN_OK;
+	const bool few = nt_edge_are_few(mesh);
+	if (few && nt_few_edges_are_sorted(mesh, &grid, &unsorted->limit))
+		return NMTAN_OK;
+	const nt_scratch_mark mark = nt_scratch_here(mesh->scratch);
+	if (!few)
+		status = nt_edge_tail_matters(mesh, tail, &grid, &matters, &unsorted->limit);
 	nt_scratch_back(mesh->scratch, mark);
 	if (status || !matters)
 		return status;

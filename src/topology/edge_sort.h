@@ -31,7 +31,12 @@ typedef struct nt_unsorted {
 enum { NT_EDGE_SORT_VISITS = 64 };
 
 /* So few triangles have a quicker way to the answer, which is nearly always that the order does not matter. */
-enum { NT_EDGE_FEW = 256 };
+enum { NT_EDGE_FEW = 512 };
+
+static inline bool nt_edge_are_few(const nt_welded_mesh *mesh)
+{
+	return mesh->triangle_count <= NT_EDGE_FEW && mesh->vertex_count <= 3 * NT_EDGE_FEW && !mesh->triangles->cuts;
+}
 
 /* Triangles first + i with bit i, and at most so many. */
 typedef struct nt_edge_note {

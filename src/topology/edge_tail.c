@@ -61,7 +61,7 @@ nmtan_status nt_edge_tail_make(const nt_welded_mesh *m, const nt_triangle_ranges
 {
 	tail->notes = NULL;
 	tail->ranges = *ranges;
-	if (m->triangle_count <= NT_EDGE_FEW || 3 * m->triangle_count > NT_EDGE_SORT_CORNERS)
+	if (nt_edge_are_few(m) || 3 * m->triangle_count > NT_EDGE_SORT_CORNERS)
 		return NMTAN_OK;
 	tail->is_grid_of_used = !nt_grid_make(m, tail->extremes, &tail->grid);
 	if (tail->is_grid_of_used && !nt_grid_of_used(m, &tail->grid))

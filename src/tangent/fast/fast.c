@@ -412,9 +412,7 @@ bool nt_fast_can(const nt_solve *solve)
 static nmtan_status add_small(nt_fast *fast, const nt_kernels *kernels, bool *welded)
 {
 	nt_borrowed none = nt_borrow(NULL, 0, fast->solve->scratch);
-	nmtan_status status = nt_fast_weld_small(fast, welded);
-	if (!status && *welded && fast->triangle_count > NT_EDGE_FEW)
-		status = make_tail(fast, &none);
+	const nmtan_status status = nt_fast_weld_small(fast, welded);
 	if (status || !*welded)
 		return status;
 	nt_fast_add_small(fast, kernels);
