@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
+#include "ext/gltf_numbers.h"
 #include "format/normal_map.h"
 #include "gltf/document.h"
 #include "image/image.h"
@@ -94,13 +95,12 @@ static void tell(const turning *t, const use *u, nt_code code, const char *what)
 
 static bool clamps(const turning *t, const nt_json_value *texture)
 {
-	enum { CLAMP_TO_EDGE = 33071 };
 	const nt_json_value *samplers = nt_gltf_root_member(t->document, "samplers");
 	uint32_t sampler;
 	uint64_t wrap = 0;
 	if (get_index(nt_json_find(texture, "sampler"), nt_json_count(samplers), &sampler))
 		nt_json_get_uint64(nt_json_find(nt_json_at(samplers, sampler), "wrapS"), &wrap);
-	return wrap == CLAMP_TO_EDGE;
+	return wrap == NT_GLTF_CLAMP_TO_EDGE;
 }
 
 static bool may_be_flipped(const turning *t, uint32_t image)
