@@ -99,6 +99,7 @@ typedef struct obj_mrgb_line {
 /* Whole lines of the file and what was in them. */
 typedef struct obj_chunk {
 	const char *begin, *end; /* of the last chunk: in obj_file.tail */
+	size_t mesh;             /* that its first corner belongs to, or one before; known when vertices are numbered */
 
 	/* the position of the reader */
 	const char *p;

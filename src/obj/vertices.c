@@ -154,6 +154,7 @@ static nt_status number_chunk(obj_file *file, obj_chunk *chunk, table *vertices,
 {
 	const size_t end_corner = chunk->first_corner + chunk->corner_count;
 	size_t begin = 0;
+	chunk->mesh = *mesh;
 	while (*mesh + 1 < file->mesh_count && file->meshes[*mesh + 1].corner < end_corner) {
 		/* The first corner of a mesh is a distinct one of its own. */
 		const size_t end = chunk->corners[file->meshes[*mesh + 1].corner - chunk->first_corner];
@@ -189,26 +190,12 @@ static nt_status number_all(obj_file *file, table *vertices, nt_error *error)
 
 /* ---- corners ---- */
 
-/* The mesh of a corner of the file. */
-static size_t mesh_of_corner(const obj_file *file, size_t corner)
-{
-	size_t low = 0, high = file->mesh_count;
-	while (high - low > 1) {
-		const size_t middle = low + (high - low) / 2;
-		if (file->meshes[middle].corner <= corner)
-			low = middle;
-		else
-			high = middle;
-	}
-	return low;
-}
-
 /* Writes the vertices of the corners of chunks [begin, end), relative to their meshes. */
 static void write_corners(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
 	const obj_file *file = context;
-	size_t mesh = mesh_of_corner(file, file->chunks[begin].first_corner);
+	size_t mesh = file->chunks[begin].mesh;
 	for (size_t k = begin; k < end; k++) {
 		obj_chunk *chunk = &file->chunks[k];
 		uint32_t *to = file->corner_vertices + chunk->first_corner;
