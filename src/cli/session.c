@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is told of a run's jobs: see session.h. Sums are over jobs that have ended; their messages come in the order of
+ * Tells what became of a run's jobs: see session.h. Sums are over jobs that have ended; their messages come in the order of
  * the jobs, each in one piece. The last words, from signal handlers and where memory is exhausted, are at the end.
  */
 #include "cli/session.h"

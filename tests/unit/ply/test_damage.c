@@ -51,7 +51,7 @@ TEST(damaged_bytes_do_no_harm)
 }
 
 /* Opens a file, of which `is_right` says whether it was read as it should be, with ever more allocations; each fails
- * alone, and with all that come later. What fails in a list is told by who writes it. */
+ * alone, and with all that come later. The writer tells what fails in a list. */
 static void open_with_few_allocations(const void *bytes, size_t size, bool (*is_right)(const nt_scene *scene))
 {
 	bool failed = true;
