@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Tells what became of a run's jobs: see session.h. Sums are over jobs that have ended; their messages come in the order of
- * the jobs, each in one piece. The last words, from signal handlers and where memory is exhausted, are at the end.
+ * Tells what became of a run's jobs: see session.h. Sums are over jobs that have ended; their messages come in the
+ * order of the jobs, each in one piece. The last words, from signal handlers and where memory is exhausted, are at the
+ * end.
  */
 #include "cli/session.h"
 
