@@ -130,7 +130,9 @@ m[0] = normal(texCoord=1)|slots, texcoord_set, has_texcoords|(['normal'], 1, Fal
 m[0] = normal(texCoord=1, extensions={'KHR_texture_transform': {'texCoord': 0}})|slots, texcoord_set|(['normal'], 0)
 m[0] = also({}, KHR_materials_anisotropy={})|slots|['anisotropy']
 m[0] = also({}, KHR_materials_clearcoat={})|slots|[]
-m[0] = also({}, KHR_materials_clearcoat={'clearcoatNormalTexture': {'index': 0, 'texCoord': 1}}, KHR_materials_anisotropy={'anisotropyTexture': {'index': 0}})|sorted(slots), texcoord_set|(['anisotropy', 'clearcoat_normal'], 1)
+m[0] = also({}, KHR_materials_clearcoat={'clearcoatNormalTexture': {'index': 0, 'texCoord': 1}}, KHR_materials_anisotropy={'anisotropyTexture': {'index': 0}})|sorted(slots), texcoord_set, 'TAN_UVSET_CONFLICT' in codes|(['anisotropy', 'clearcoat_normal'], 1, True)
+m[0] = normal(extensions={'KHR_texture_transform': {'scale': [1, 1]}}); animate('rotation')|'TAN_UV_TRANSFORM_ANIMATED' in codes|True
+m[0] = normal(extensions={'KHR_texture_transform': {'scale': [1, 1]}}); animate('offset')|'TAN_UV_TRANSFORM_ANIMATED' in codes|False
 m[0] = also(normal(), KHR_materials_unlit={})|slots|[]
 # MToon of VRM 1 samples the map although the fallback is unlit; that of VRM 0 is in the root
 m[0] = also(normal(), KHR_materials_unlit={}, VRMC_materials_mtoon={})|slots|['normal']
@@ -262,12 +264,17 @@ def misunderstood(nmtan):
     names = ['bad/meant%02d.gltf' % number for number in range(len(rows))]
     for name, (change, _, _) in zip(names, rows):
         g = json.loads(text)
-        exec(change, {'g': g, 'm': g['materials'], 'p': g['meshes'][0]['primitives'][0], 'normal': normal, 'also': also})
+        def animate(member):
+            pointer = '/materials/0/normalTexture/extensions/KHR_texture_transform/' + member
+            target = {'extensions': {'KHR_animation_pointer': {'pointer': pointer}}}
+            g['animations'] = [{'channels': [{'target': target}]}]
+        exec(change, {'animate': animate, 'g': g, 'm': g['materials'], 'p': g['meshes'][0]['primitives'][0], 'normal': normal, 'also': also})
         with open(name, 'w', encoding='utf-8') as file:
             json.dump(g, file)
     subprocess.run([nmtan, '-q', '--check', '--fail-on=never', '--report=meant.json', *names], check=False)
     with open('meant.json', encoding='utf-8') as file:
-        judged = {f['file'].split('/')[-1]: f['meshes'][0] for f in json.load(file)['files']}
+        judged = {f['file'].split('/')[-1]: dict(f['meshes'][0], codes=[x['code'] for x in f['findings']])
+                  for f in json.load(file)['files']}
     for name, (change, question, answer) in zip(names, rows):
         mesh = judged[os.path.basename(name)]
         said = eval(question, dict(mesh, hidden='scene' in mesh['why'], sorted=sorted))
