@@ -220,6 +220,7 @@ static const file_kind files[] = {
 	{"psd of 16 bits", make_psd, NT_IMAGE_PSD, 3, 16, 0, false},
 	{"tiff", make_tiff, NT_IMAGE_TIFF, 3, 8, COMPRESSION_LZW, false},
 	{"tiff of 16 bits", make_tiff, NT_IMAGE_TIFF, 1, 16, COMPRESSION_ADOBE_DEFLATE, false},
+	{"tiff of alpha and 16 bits", make_tiff, NT_IMAGE_TIFF, 4, 16, COMPRESSION_LZW, false},
 	{"tiled tiff", make_tiff, NT_IMAGE_TIFF, 3, 8, COMPRESSION_PACKBITS, false},
 	{"grey jpeg", make_jpeg, NT_IMAGE_JPEG, 1, 8, 0, true},
 	{"jpeg", make_jpeg, NT_IMAGE_JPEG, 3, 8, 0, true},
