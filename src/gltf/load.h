@@ -23,6 +23,17 @@ nt_status nt_gltf_describe_materials(nt_scene *scene, nt_mesh *mesh, const nt_js
 nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 	nt_error *error);
 
+/* ---- what morph targets add: load_targets.c ---- */
+
+/* Finds the targets that move a mesh: their tangents differ from the base's. normals: its accessor; NULL: none. */
+nt_status nt_gltf_load_targets(nt_scene *scene, nt_mesh *mesh, const nt_gltf_accessor *normals, nt_error *error);
+
+/* Copies the normals of a mesh, which are written to: shared arrays are not. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_gltf_own_normals(nt_scene *scene, nt_mesh *mesh, nt_error *error);
+
+/* Gives a vector the length 1, if it has any. */
+void nt_gltf_normalise(float *n);
+
 /* A mesh as a morph target moves it: both are malloc'ed, [vertex_count][3], NULL as the base has them. Nothing changes,
  * so that threads may ask at once. Returns NT_OK or NT_ERROR_MEMORY; to be freed in either case. */
 nt_status nt_gltf_move(const nt_mesh *mesh, const nt_morph *morph, float **positions, float **normals);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * One input from file to file: see run.h. The order of the stages and their times; what --fix adds to the options, and
- * what is counted and listed between stages.
+ * One input from file to file: see run.h. The order of the stages and their times, and what --fix adds to the options:
+ * it runs the stages twice. summary.c counts and lists what comes of them.
  */
 #include "pipeline/run.h"
 
@@ -120,19 +120,6 @@ static nt_status open_scene(run *r)
 	return status;
 }
 
-/* Whether any mesh gets tangents. */
-static bool count_decisions(run *r)
-{
-	size_t wanted = 0;
-	r->summary->mesh_count = r->scene.mesh_count;
-	for (size_t i = 0; i < r->scene.mesh_count; i++) {
-		const bool is_wanted = nt_mesh_is_wanted(&r->scene.meshes[i]);
-		r->summary->skipped[r->scene.meshes[i].decision] += !is_wanted;
-		wanted += is_wanted;
-	}
-	return wanted > 0;
-}
-
 /* Nothing takes its name if it is too late for that, or if a record could not say of what it was made. */
 static nt_status check_placing(void *user, nt_error *error)
 {
@@ -239,7 +226,7 @@ static nt_status read_scene(run *r)
 	if (status)
 		return status;
 	/* what needs nothing may be left alone wherever it is */
-	if (count_decisions(r) && r->settings->in_place) {
+	if (nt_count_decisions(r->summary, &r->scene) && r->settings->in_place) {
 		const nt_output_options options = output_options_of(r);
 		status = nt_output_check_in_place(&options, r->output_path, r->error);
 		if (status)
@@ -348,29 +335,6 @@ static nt_status turn_maps(run *r)
 	return status;
 }
 
-/* The outcome of each mesh, copied out of the scene, which is gone when the run is over. */
-static nt_status list_meshes(const nt_scene *scene, nt_summary *summary, nt_error *error)
-{
-	summary->lines = nt_calloc(scene->mesh_count, sizeof *summary->lines);
-	if (!summary->lines)
-		return nt_fail_memory(error);
-	summary->line_count = scene->mesh_count;
-	for (size_t i = 0; i < scene->mesh_count; i++) {
-		const nt_mesh *mesh = &scene->meshes[i];
-		const nt_mesh *solved = mesh->plan.same_as ? mesh->plan.same_as : mesh;
-		nt_mesh_line *line = &summary->lines[i];
-		*line = (nt_mesh_line){.decision = mesh->decision,
-			.same = mesh->plan.same_as && nt_mesh_is_wanted(mesh),
-			.triangle_count = solved->triangles ? nt_mesh_triangle_count(solved) : 0,
-			.vertex_count = solved->unused_vertices + solved->source_vertex_count};
-		nt_mesh_place(mesh, &line->place);
-		if (solved->vertex_count > solved->source_vertex_count)
-			line->appended = solved->vertex_count - solved->source_vertex_count;
-		line->appended += solved->split.source_count;
-	}
-	return NT_OK;
-}
-
 static nt_status run_stages(run *r)
 {
 	nt_status status = nt_choose_writer(r->settings, r->output_path, NULL, &r->writer, r->error);
@@ -414,7 +378,7 @@ static nt_status run_stages(run *r)
 			nt_format_is_gltf(r->scene.format) ? "no two triangles that follow each other are a quad"
 				: "it is for glTF; the faces of this file are solved as they are");
 	if (!status && r->settings->list_meshes)
-		status = list_meshes(&r->scene, r->summary, r->error);
+		status = nt_list_meshes(r->summary, &r->scene, r->error);
 	if (!status && r->writer && nt_writer_edits(r->reader, r->writer) &&
 		(r->settings->flip_green || r->settings->bump == NT_BUMP_HEIGHT))
 		status = turn_maps(r);
@@ -509,26 +473,6 @@ static nt_status plan_fixes(run *r, nt_settings *fixed)
 	return status;
 }
 
-/* Counts meshes that are written without normals, although a word would make some, those without tangents for which
- * they were made, and primitives of a new glTF. */
-static void count_written(const run *r)
-{
-	nt_summary *s = r->summary;
-	const bool matters = (r->settings->normals != NT_NORMALS_AUTO) == nt_format_is_gltf(r->scene.format);
-	for (size_t i = 0; i < r->scene.mesh_count; i++) {
-		const nt_mesh *mesh = &r->scene.meshes[i];
-		const bool shaded = mesh->normals_made && !nt_mesh_gets_tangents(mesh);
-		s->without_normals += matters && mesh->triangles && mesh->face_count && !mesh->has_normals;
-		s->shaded_count += shaded;
-		s->made_normals += mesh->normals_made;
-		s->kept_normals += mesh->triangles && mesh->has_normals && !mesh->normals_made;
-		s->shaded_copies += shaded ? mesh->vertex_count - mesh->source_vertex_count : 0;
-		s->made.count += mesh->made_primitives;
-		s->made.solved += nt_mesh_gets_tangents(mesh) ? mesh->made_primitives : 0;
-		s->made.skipped[mesh->decision] += nt_mesh_is_wanted(mesh) ? 0 : mesh->made_primitives;
-	}
-}
-
 /* Whether the output has what the input has: nobody's tangents or normals were made or dropped, no image was turned, no
  * vertices welded. */
 static bool is_unchanged(const run *r)
@@ -539,19 +483,6 @@ static bool is_unchanged(const run *r)
 	for (size_t i = 0; i < r->scene.mesh_count; i++)
 		same &= !r->scene.meshes[i].normals_made;
 	return same;
-}
-
-/* Whether tangents stayed of which a stage or the report found that they are wrong. */
-static bool keeps_wrong(const nt_summary *summary)
-{
-	bool any = false;
-	for (size_t i = 0; i < summary->findings.count; i++)
-		any |= nt_code_is_of_kept(summary->findings.items[i].code);
-	for (size_t i = 0; summary->report && i < summary->report->finding_count; i++) {
-		const nt_report_finding *f = &summary->report->findings[i];
-		any |= f->mesh != NT_NONE && f->severity > NT_SEVERITY_INFO && nt_code_is_of_kept(f->code);
-	}
-	return any;
 }
 
 /* ---- limits ---- */
@@ -590,14 +521,6 @@ static nt_status name_limit(run *r, nt_status status)
 				(s->need >> 20) + 1);
 	}
 	return r->error->status;
-}
-
-/* Vertices that several meshes share are counted once, and copies that they share too. */
-static void count_once(const nt_shared_vertices *shared, nt_summary *summary)
-{
-	summary->vertex_count += shared->actual.vertices - shared->counted.vertices;
-	summary->appended_normals += shared->actual.normal_copies - shared->counted.normal_copies;
-	summary->appended_tangents += shared->actual.tangent_copies - shared->counted.tangent_copies;
 }
 
 nt_status nt_run(const char *input, const char *output, const nt_settings *settings,
@@ -640,17 +563,8 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	end_stage(&r);
 	if (r.scene.read_of_source)
 		summary->bytes_read = r.scene.read_of_source(r.scene.source);
-	summary->findings = r.scene.findings;
-	summary->input_format = r.scene.format;
-	summary->rounding = r.scene.rounding;
-	summary->morph_cost = r.scene.morph_cost;
-	if (!status) /* else meshes may be without content */
-		count_written(&r);
-	summary->welded = r.scene.welded;
-	count_once(&r.scene.shared, summary);
+	nt_summarise(summary, &r.scene, settings, status);
 	summary->unchanged = !status && is_unchanged(&r);
-	summary->keeps_wrong = !settings->check && keeps_wrong(summary);
-	r.scene.findings = (nt_finding_list){0};
 	nt_scene_free(&r.scene);
 	nt_textures_free(r.textures);
 	nt_turned_maps_free(&r.turned);
@@ -663,35 +577,4 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	if (status && status != NT_ERROR_USAGE)
 		nt_error_in_file(error, input);
 	return status;
-}
-
-void nt_summary_free(nt_summary *summary)
-{
-	nt_finding_list_free(&summary->findings);
-	nt_report_free(summary->report);
-	free(summary->lines);
-	free(summary->note);
-	nt_trace_free(&summary->trace);
-	summary->lines = NULL;
-	summary->note = NULL;
-	summary->report = NULL;
-}
-
-const char *nt_stage_name(nt_stage stage)
-{
-	static const char *const names[NT_STAGE_COUNT] = {
-		[NT_STAGE_MAP] = "map",
-		[NT_STAGE_PARSE] = "parse",
-		[NT_STAGE_INDEX] = "index",
-		[NT_STAGE_DECODE] = "decode",
-		[NT_STAGE_TEXTURES] = "textures",
-		[NT_STAGE_NORMALS] = "normals",
-		[NT_STAGE_WELD] = "weld",
-		[NT_STAGE_TANGENTS] = "tangents",
-		[NT_STAGE_SPLIT] = "split",
-		[NT_STAGE_WRITE] = "write",
-		[NT_STAGE_VERIFY] = "verify",
-		[NT_STAGE_REPORT] = "report",
-	};
-	return names[stage];
 }

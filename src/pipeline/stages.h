@@ -31,6 +31,15 @@ typedef struct nt_tasks {
 	void *run;
 } nt_tasks;
 
+/* summary.c. Counts what was decided of meshes. Returns whether any gets tangents. */
+bool nt_count_decisions(nt_summary *summary, const nt_scene *scene);
+
+/* summary.c. Lists the outcome of each mesh. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_list_meshes(nt_summary *summary, const nt_scene *scene, nt_error *error);
+
+/* summary.c. At the end of a run, which failed with `status`: takes the findings of the scene, and counts the rest. */
+void nt_summarise(nt_summary *summary, nt_scene *scene, const nt_settings *settings, nt_status status);
+
 /* jobs.c. After the plan: loads whatever will be solved, written or reported, makes normals, solves, splits, hands the
  * writer what it merges, and says what was found. The textures are made beside. */
 nt_status nt_stage_jobs(const nt_tasks *tasks, nt_error *error);
