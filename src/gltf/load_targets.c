@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Morph targets of one glTF primitive: which of them move it, and the mesh as each of them moves it, where that is asked
- * for. Displacements stay where the file has them.
+ * Morph targets of one glTF primitive: which of them move it, and the mesh as each of them moves it, where that is
+ * asked for. Displacements stay where the file has them.
  */
 #include "gltf/load.h"
 

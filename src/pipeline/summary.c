@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a run counts and lists of its meshes for those who asked for it. Nothing here changes a mesh.
+ * A run counts and lists its meshes here, for those who called it. Nothing changes a mesh.
  */
 #include "pipeline/run.h"
 
