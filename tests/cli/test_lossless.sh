@@ -507,6 +507,37 @@ is "$(compare moved.gltf)" ""
 is "$(compare other.gltf | grep values)" " /meshes/0/primitives/0/attributes/POSITION/values
  /meshes/0/primitives/0/attributes/NORMAL/values"
 
+scene "indices may be sparse"
+gltf "$WORK/layouts/plain.gltf" indices 'const p = g.meshes[0].primitives[0], a = g.accessors[p.indices];
+	const [whole] = [rows(p.indices).flat()];
+	const values = g.accessors[add("SCALAR", a.componentType, [whole[4], whole[5], whole[3]])];
+	const indices = g.accessors[add("SCALAR", 5123, [3, 4, 5])];
+	g.accessors.length -= 2;
+	a.sparse = {count: 3, values: {bufferView: values.bufferView, byteOffset: values.byteOffset ?? 0},
+		indices: {bufferView: indices.bufferView, byteOffset: indices.byteOffset ?? 0, componentType: 5123}}'
+run --existing=replace --verify indices.gltf out.glb
+exits 0
+places() { gltf "$1" "((p) => [$2].map((c) => rows(p.attributes.POSITION)[rows(p.indices)[c][0]]))(g.meshes[0].primitives[0])"; }
+is "$(places out.glb 3,4,5)" "$(places "$WORK/layouts/plain.gltf" 4,5,3)"
+
+scene "a path that goes down and up again stays in its folder"
+mkdir in
+cp "$WORK"/layouts/plain* in
+gltf in/plain.gltf in/image 'g.images = [{uri: "sub/../map.png"}]'
+run --images=link --existing=replace in/image.gltf out.gltf
+exits 0
+says_not LINK_LEAVES
+is "$(gltf out.gltf 'g.images[0].uri')" in/sub/../map.png
+
+scene "the output takes no name of a file that the input refers to, read or not"
+cp "$WORK"/layouts/plain* .
+gltf plain.gltf image 'g.images = [{uri: "map.png"}]'
+echo kept >map.png
+run --output-format=glb --images=link --existing=replace image.gltf map.png
+exits 2
+says "it is the same file as the input"
+is "$(<map.png)" kept
+
 scene "tangents stay between others that two sparse accessors share"
 gltf "$WORK/layouts/tangents_interleaved.gltf" shared 'const p = g.meshes[0].primitives[0], uv = p.attributes.TEXCOORD_0;
 	const values = g.accessors[add("VEC2", 5126, [0.5, 0.5])], indices = g.accessors[add("SCALAR", 5123, [3])];
