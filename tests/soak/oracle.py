@@ -56,7 +56,8 @@ LAYOUT = [('layout', '', 'the same values lie elsewhere, or in a view of another
 FINDINGS = (r'(NORMALS_MADE|REFERENCE_LOST|MATERIAL_LOST|MATERIAL_FIRST|IMAGE_MISSING|TAN_QUADS_LIKELY|TAN_QUADS_NONE|UV_HARD_EDGE|'
             r'UV_MISSING|UV_UNMAPPED|UV_FOLDED_QUAD|UV_MIXED_WINDING_ISLAND|UV_DEGENERATE_TRIANGLE|POS_DEGENERATE_TRIANGLE|'
             r'UV_NEAR_DEGENERATE|MESH_INCONSISTENT_WINDING|MESH_NON_MANIFOLD_EDGE|MESH_NORMAL_ZERO|POS_NOT_FINITE|POS_ORIGIN|'
-            r'TAN_DIRECTION_MISMATCH|TAN_NON_UNIT|TAN_MIXED_W_TRIANGLE|TAN_ZERO|STATEMENT_IGNORED)')
+            r'MESH_NORMAL_AGAINST_FACE|TAN_DIRECTION_MISMATCH|TAN_SIGN_MISMATCH|TAN_NON_UNIT|TAN_MIXED_W_TRIANGLE|TAN_ZERO|'
+            r'STATEMENT_IGNORED)')
 EXPLAINED = LAYOUT + [
     ('values', r' out\.gl\w+: \S*/name is new(\nout\.gl\w+: \S*/name is new)*$', 'a view whose number is taken again keeps its name'),
     ('values', r'^weld .*/indices/(min|max) is new', 'indices that get a new view keep their accessor, whose bounds are those of the new ones'),
