@@ -247,9 +247,18 @@ async function clickTexture(page, u, v) {
 	check(day !== night, 'dark is dark');
 	await dark.click('#theme [data-theme=light]');
 	await expect(async () => await background(dark) === day, 'and can be made light');
-	const forced = await open('two.html', {hash: '#finding-1', forcedColors: 'active'}), layoutOf = page => page.locator('#layout').screenshot();
-	await expect(async () => (await layoutOf(forced)).equals(await layoutOf(light)), 'forced colours leave the picture of the layout');
+	const forced = await open('two.html', {hash: '#finding-1', forcedColors: 'active'});
+	for (const part of ['#layout', '.key >> nth=0']) {
+		const picture = page => page.locator(part).screenshot();
+		await expect(async () => (await picture(forced)).equals(await picture(light)), 'forced colours leave ' + part);
+	}
 	await forced.close();
+	// without light-dark(): the same light colours
+	const [palettes, fallback] = await light.evaluate(() => [...document.styleSheets[0].cssRules].flatMap(r => [r, ...r.cssRules || []])
+		.filter(r => r.selectorText === ':root' && r.style.getPropertyValue('--bg').length > 4)
+		.map(r => [...r.style].filter(n => n.startsWith('--')).map(n => n + r.style.getPropertyValue(n).replaceAll(/light-dark\(([^,]+), [^)]+\)/g, '$1'))));
+	const same = palettes.filter(colour => fallback.includes(colour)).length;
+	check(same > 30 && same === fallback.length, 'all colours of old browsers are those of light: ' + same + ' of ' + fallback.length);
 	for (const width of [500, 700, 1000, 1900]) {
 		await dark.setViewportSize({width, height: 900});
 		await expect(async () => await dark.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing hangs over at ' + width);
