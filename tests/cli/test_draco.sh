@@ -70,6 +70,18 @@ for choice in sequential edgebreaker; do
 	is "$(gltf packed.glb "$turns")" "$(gltf plain.glb "$turns")"
 done
 
+scene "copies that made normals append, and those where tangents differ, are read back in blocks"
+gltf "$WORK/layouts/plain.gltf" still 'delete g.meshes[0].primitives[0].targets; delete g.meshes[0].weights'
+for draco in sequential edgebreaker; do
+	for normals in replace-flat replace-angle:30; do
+		run --only=all --existing=replace --normals=$normals --draco=$draco --verify still.gltf packed.glb
+		exits 0
+		says_not DRACO_SEQUENTIAL
+		says "where tangents differ"
+		says "where made normals differ"
+	done
+done
+
 scene "a compressed primitive that becomes plain without being told so is a finding"
 run --draco=sequential "$WORK/layouts/plain.gltf" packed.glb
 exits 0

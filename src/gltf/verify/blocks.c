@@ -29,8 +29,7 @@ typedef struct comparison {
 	uint32_t *copied;
 	size_t own_count; /* vertices of the source */
 	bool *used;	  /* by faces */
-	uint64_t *
-		positions; /* hashes of the source's positions: edgebreaker drops faces with two corners at one */
+	uint64_t *positions; /* hashes of the source's: edgebreaker drops faces with two corners at one */
 } comparison;
 
 static size_t width_of(const nt_draco_attribute *a)
@@ -49,12 +48,21 @@ static const unsigned char *value_of(const nt_draco_attribute *a, size_t point)
 
 /* ---- what was to be encoded ---- */
 
-/* The number of a split's vertex. */
+/* The number of a vertex; those that made normals appended, and then those of the split, stand behind the source's. */
 static uint32_t point_of(const comparison *c, uint32_t vertex)
 {
-	const size_t count = c->mesh->vertex_count;
-	return vertex < count ? nt_mesh_pool_vertex(c->mesh, vertex)
-			      : (uint32_t)(c->own_count + vertex - count);
+	const size_t count = c->mesh->source_vertex_count;
+	return vertex < count ? nt_mesh_pool_vertex(c->mesh, vertex) : (uint32_t)(c->own_count + vertex - count);
+}
+
+/* The vertex of the source that a vertex is, or is a copy of. */
+static uint32_t source_of(const nt_mesh *mesh, uint32_t vertex)
+{
+	if (vertex >= mesh->vertex_count)
+		vertex = mesh->split.sources[vertex - mesh->vertex_count];
+	while (vertex >= mesh->source_vertex_count)
+		vertex = mesh->vertex_sources[vertex - mesh->source_vertex_count];
+	return vertex;
 }
 
 /* Faces, and the vertices that copies are of. */
@@ -62,9 +70,10 @@ static nt_status find_faces(comparison *c, nt_error *error)
 {
 	const nt_mesh *mesh = c->mesh;
 	const uint32_t *vertices = mesh->split.indices ? mesh->split.indices : mesh->indices;
-	const size_t point_count = c->own_count + mesh->split.source_count;
+	const size_t copy_count = mesh->vertex_count - mesh->source_vertex_count + mesh->split.source_count;
+	const size_t point_count = c->own_count + copy_count;
 	uint32_t *indices = nt_arena_alloc(c->arena, mesh->corner_count, sizeof *indices);
-	c->copied = nt_arena_alloc(c->arena, mesh->split.source_count, sizeof *c->copied);
+	c->copied = nt_arena_alloc(c->arena, copy_count, sizeof *c->copied);
 	c->used = nt_arena_alloc(c->arena, point_count, sizeof *c->used);
 	if (!indices || !c->copied || !c->used)
 		return nt_fail_memory(error);
@@ -73,8 +82,8 @@ static nt_status find_faces(comparison *c, nt_error *error)
 		indices[i] = point_of(c, vertices ? vertices[i] : (uint32_t)i);
 		c->used[indices[i]] = true;
 	}
-	for (size_t i = 0; i < mesh->split.source_count; i++)
-		c->copied[i] = point_of(c, mesh->split.sources[i]);
+	for (size_t i = 0; i < copy_count; i++)
+		c->copied[i] = point_of(c, source_of(mesh, (uint32_t)(mesh->source_vertex_count + i)));
 	c->wanted = (nt_draco_mesh){.method = NT_DRACO_SEQUENTIAL,
 		.point_count = point_count,
 		.face_count = mesh->corner_count / 3,
