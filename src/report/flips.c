@@ -43,8 +43,9 @@ typedef struct patch {
 	extent size;
 	uint32_t first;             /* triangle */
 	uint32_t sides;             /* that lie against the other orientation */
-	uint32_t host;              /* the largest island there; NT_NONE */
+	uint32_t host;              /* the island at most of them, if any is at more than half; NT_NONE: at none */
 	uint32_t host_sides;        /* that lie against it */
+	uint32_t votes;             /* for the host, less those against it */
 	bool all_slivers, small, flipped;
 } patch;
 
@@ -115,17 +116,22 @@ static patch *patch_at(const nt_check *check, const patches *p, const nt_edge *e
 	return number == NT_NONE || *across == NT_NONE ? NULL : &p->items[number];
 }
 
+/* By Boyer and Moore's vote: which island is at more than half of a patch's sides does not follow from their order, as
+ * which one of equal size is met first would. */
 static void find_hosts(const nt_check *check, patches *p)
 {
-	const nt_island *islands = check->facts->islands;
 	uint32_t across;
 	for (size_t i = 0; i < 2 * check->mirrors.count; i++) {
 		patch *one = patch_at(check, p, &check->mirrors.items[i / 2], i % 2, &across);
 		if (!one)
 			continue;
 		one->sides++;
-		if (one->host == NT_NONE || island_size(&islands[across]) > island_size(&islands[one->host]))
+		if (one->votes == 0)
 			one->host = across;
+		if (one->host == across)
+			one->votes++;
+		else
+			one->votes--;
 	}
 	for (size_t i = 0; i < 2 * check->mirrors.count; i++) {
 		patch *one = patch_at(check, p, &check->mirrors.items[i / 2], i % 2, &across);

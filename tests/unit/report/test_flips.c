@@ -209,6 +209,32 @@ TEST(area_texels_and_the_island_around_say_whether_one_is_flipped)
 	}
 }
 
+/* Two islands of 29 quads each; a quad between them is mirrored, and lies against the first one at three sides. */
+TEST(which_island_is_around_follows_from_sides_and_not_from_the_order_of_faces)
+{
+	enum { WIDE = 12, HIGH = 5 };
+	enum { FIRST, SECOND, BETWEEN };
+	for (int backwards = 0; backwards < 2; backwards++) {
+		hand_mesh *h = hand_new();
+		uint32_t vertices[BETWEEN + 1][WIDE + 1][HIGH + 1];
+		for (int island = FIRST; island <= BETWEEN; island++)
+			for (int x = 0; x <= WIDE; x++)
+				for (int y = 0; y <= HIGH; y++)
+					vertices[island][x][y] = hand_vertex(h, (float)x, (float)y, 0,
+						(float)(100 * island + (island == BETWEEN ? -x : x)), (float)y);
+		for (int i = 0; i < WIDE * HIGH - 1; i++) { /* all but the last */
+			const int place = backwards ? WIDE * HIGH - 2 - i : i, x = place / HIGH, y = place % HIGH;
+			const int island = x == 5 && y == 2 ? BETWEEN : x < WIDE / 2 ? FIRST : SECOND;
+			uint32_t (*const of)[HIGH + 1] = vertices[island];
+			hand_quad(h, of[x][y], of[x + 1][y], of[x + 1][y + 1], of[x][y + 1]);
+		}
+		nt_report *report = hand_report(h, NULL);
+		assert_int_equal(report->meshes[0].island_count, 3);
+		assert_int_equal(hand_finding(report, NT_CODE_UV_FLIPPED_TRIANGLE)->count, 2);
+		hand_free(h, report);
+	}
+}
+
 /* A column of 10 triangles folded over: a fifth of the island. */
 TEST(what_is_larger_is_a_fold)
 {
