@@ -3,9 +3,10 @@
  * glTF and GLB as a scene: every primitive is a mesh of its own, since glTF defines tangents per
  * primitive. Opening describes the meshes from the JSON alone; load.c brings the geometry of one.
  *
- * Only what must be read is checked. Opening looks at meshes, their materials and who shows them; a
- * primitive's accessors are checked when it is loaded; cameras, skins, animations and images are not
- * looked at.
+ * Opening looks at meshes, their materials and who shows them. It checks that the files of all buffers are there, and
+ * makes one buffer of those that are one file. A load tells what is wrong with the accessors of its primitive; but a
+ * TANGENT that cannot be read is noted here. Cameras, skins and animations are counted for what writers leave out, and
+ * no more.
  */
 #include "gltf/load.h"
 

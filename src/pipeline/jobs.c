@@ -5,10 +5,17 @@
  * other threads would wait for. Findings are told afterwards, in the order of the file, so that neither they
  * nor bytes show which thread did what.
  *
- * Jobs whose load only reads what is there begin with it, and hold no geometry afterwards if the output needs only
- * results, but for pooled ones: see below. The others are loaded before, one after the other; a job that fails is
- * loaded again there, so that faults come in the order of the file. Joins are solved when their parts are there, and
- * meshes with the geometry of an earlier one take its result.
+ * The passes of a window, by the state of the meshes that they do:
+ *
+ *   READY    loads that only read what is open: load, normals, solve, in one job
+ *   TO_LOAD  the others, and those that failed, are loaded one after the other, so that faults come in the order of
+ *            the file; then they are LOADED
+ *   LOADED   normals, solve
+ *   JOIN     the parts of a join are solved as one mesh
+ *   KEPT     tangents that stay although somebody uses them: loaded, looked at, dropped
+ *
+ * A mesh with the geometry of an earlier one takes its result. If the output needs only results, geometry goes at the
+ * end of the job, of a pooled mesh at the end of its window.
  *
  * Meshes go through this in windows. Data of a mesh that only its pool needs is merged and freed at the end of its
  * window, so that memory follows the largest window and not the sum of all meshes. Most scenes are one window.
@@ -33,7 +40,7 @@ enum {
 	WINDOW_CORNERS = 4 << 20         /* of temporary meshes: enough for all threads, and some hundred megabytes */
 };
 
-/* The next step of a mesh. */
+/* The next step of a mesh: see above. */
 enum state { NOTHING, TO_LOAD, READY, LOADED, JOIN, KEPT };
 
 /* A thread. */
@@ -131,7 +138,8 @@ static void drop_geometry(nt_mesh *mesh)
 	mesh->split = split;
 }
 
-/* One that keeps its tangents is loaded as if it were alone, and nothing stays but what is wrong with them. */
+/* Does what the pass asks of a mesh. If a load of the READY pass fails, the mesh is as before, and to be loaded. One
+ * that keeps its tangents is loaded as if it were alone, and nothing stays but what is wrong with them. */
 static void do_mesh(window *w, worker *own, size_t item, unsigned threads)
 {
 	const nt_tasks *t = w->tasks;
@@ -201,7 +209,8 @@ static size_t corners_of(const window *w, size_t item)
 	return corners;
 }
 
-/* Whether a job has to open or decode what meshes may share. Others are loaded before, if they have to. */
+/* Whether a job of the KEPT pass has to open or decode what meshes may share. In other passes only TO_LOAD meshes do,
+ * which no job loads. */
 static bool must_open(const window *w, size_t item)
 {
 	return w->states[item] == KEPT && w->tasks->reader->load && !w->scene.meshes[item].ready;
@@ -517,7 +526,7 @@ static nt_status do_beside_textures(window *w)
 	return w->status ? w->status : w->texture_status;
 }
 
-/* Gives pools the results of their meshes, and what these hold back. */
+/* Gives pools the results of their meshes, and frees what temporary meshes hold. */
 static nt_status merge_meshes(window *w)
 {
 	const nt_tasks *t = w->tasks;

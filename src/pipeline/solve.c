@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The solve of a job: tangents of corners, of the base and of its morph targets, then the vertices that they split.
+ * The solve of a job: tangents, then the vertices that they split. Usually the library does both at once, by vertices
+ * (solve_vertices()). Joins, morph targets, quads and tangents that stay need those of corners first.
  *
  * A job is one mesh, or the primitives that are solved as one (--across=mesh). Parts of such a join are put one behind
  * the other (joins.c), and MikkTSpace welds by value, so that their borders vanish; the rows of a part's corners are
  * then the part's own. One mesh is its own whole, and nothing is copied.
  *
  * Each morph target that moves any part is solved in the same way: a part that it does not move has other tangents at
- * the border to one that it does. If triangles stay triangles and nothing else has to be done with corners, the library
- * splits while it solves, and corners have no memory at all.
+ * the border to one that it does.
  */
 #include "pipeline/stages.h"
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * glTF from glTF: the source document with tangents put in, and nothing else changed. Pool by pool, whose
- * splits are merged by now: vertices are appended, indices follow, TANGENT comes; then save.c writes the document.
- * Accessors that no solved primitive uses are not read. Only Draco takes long: its blocks are encoded on all threads,
- * of a window of pools before the first of them is edited.
+ * glTF from glTF: the source document with tangents put in, and nothing else changed but what options ask for (new
+ * normals, equal vertices welded, tangents dropped). Pool by pool: vertices are appended, indices follow, TANGENT
+ * comes; then save.c writes the document. A pool with one mesh takes the split of that, one with several the merge of
+ * theirs. Accessors that no solved primitive uses are not read. Only Draco takes long: its blocks are encoded on all
+ * threads, of a window of pools before the first of them is edited.
  *
  * The solve is made on (u, -v), so its w is glTF's as it stands.
  */
@@ -323,7 +324,7 @@ static nt_status edit_window(const editing *e, pool_edit *window, nt_gltf_recodi
 	return status ? status : unprepared;
 }
 
-/* All pools with a solved user. */
+/* All pools, window by window. */
 static nt_status edit_pools(const editing *e)
 {
 	nt_gltf *document = e->edits->document;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The plan of a document, made from its JSON before any geometry is read. It says of each primitive with whom it shares
- * vertices (its pool), whose geometry it has, with whom it is solved, whether it is solved as a decoder of Draco will
- * have it, and whether what it holds may go once its pool has its results. Reader, stages and writer keep to it.
+ * The plan of a document, made before any mesh is loaded: from its JSON, but for Draco. It says of each primitive with
+ * whom it shares vertices (its pool), whose geometry it has, with whom it is solved, whether it is solved as a decoder
+ * of Draco will have it, and whether what it holds may go once its pool has its results. Reader, stages and writer
+ * keep to it.
  */
 #include "gltf/edit/edit.h"
 
