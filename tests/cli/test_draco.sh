@@ -82,6 +82,20 @@ for draco in sequential edgebreaker; do
 	done
 done
 
+scene "made normals and bitangents are floats in a block, whatever the accessors were that they replace"
+gltf "$data/quantized.gltf" integers 'const a = g.meshes[0].primitives[0].attributes;
+	a._BITANGENT = g.accessors.push({ ...g.accessors[a.NORMAL] }) - 1'
+for draco in sequential edgebreaker; do
+	for input in "$data/quantized.gltf" integers.gltf; do
+		run --only=all --existing=replace --normals=replace-smooth --bitangents --draco=$draco --verify "$input" packed.glb
+		exits 0
+		run --existing=replace --draco=off packed.glb plain.glb
+		exits 0
+		is "$(gltf plain.glb '["NORMAL", "_BITANGENT"].map((name) =>
+			g.accessors[g.meshes[0].primitives[0].attributes[name]].componentType).join()')" 5126,5126
+	done
+done
+
 scene "a compressed primitive that becomes plain without being told so is a finding"
 run --draco=sequential "$WORK/layouts/plain.gltf" packed.glb
 exits 0

@@ -126,12 +126,30 @@ static nt_status add_own(nt_gltf_recoding *r, nt_error *error)
 
 /* ---- its JSON ---- */
 
+/* Directions are VEC3, tangents VEC4. */
+static const char *type_name(const nt_draco_attribute *a)
+{
+	return a->components == 3 ? "VEC3" : "VEC4";
+}
+
 /* All elements of the accessor are in the block. */
 static void set_count(nt_gltf *document, uint64_t accessor, size_t count)
 {
 	nt_json_value *json = nt_gltf_accessor_json(document, accessor);
 	nt_json_remove(document->json, json, "sparse");
 	nt_json_put_uint64(document->json, json, "count", count);
+}
+
+/* Floats of ours may take the place of integers, and of other vectors. */
+static void set_type(nt_gltf *document, uint64_t accessor, const nt_draco_attribute *a)
+{
+	const nt_gltf_accessor *was = nt_gltf_sound_accessor(document, accessor);
+	nt_json_value *json = nt_gltf_accessor_json(document, accessor);
+	if (was && was->component_type == (uint32_t)a->component_type && was->components == (uint32_t)a->components)
+		return;
+	nt_json_put_uint64(document->json, json, "componentType", (uint64_t)a->component_type);
+	nt_json_set_string(document->json, nt_json_put(document->json, json, "type"), type_name(a), 4);
+	nt_json_remove(document->json, json, "normalized");
 }
 
 /* The JSON of the primitive follows what a decoder will see; new accessors have no view, their elements are in the
@@ -146,12 +164,13 @@ static void describe(nt_gltf_recoding *r)
 		uint64_t accessor;
 		if (nt_json_find_uint64(attributes, r->names[i], &accessor)) {
 			set_count(r->document, accessor, block->point_count);
+			set_type(r->document, accessor, a);
 			nt_gltf_state_bounds(json, nt_gltf_accessor_json(r->document, accessor),
 				(size_t)a->components, block->bounds[i]);
 		} else {
 			nt_json_put_uint64(json, attributes, r->names[i],
 				nt_gltf_new_accessor(json, NT_NONE, NT_GLTF_FLOAT,
-					a->components == 3 ? "VEC3" : "VEC4", block->point_count, false));
+					type_name(a), block->point_count, false));
 		}
 		nt_json_put_uint64(json, nt_json_put(json, r->extension, "attributes"), r->names[i], a->unique_id);
 	}
