@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Output sets: see output.h. Everything that can be refused is refused when a file is added, before a
- * byte is computed: a folder that is missing, a target that is a directory, an input or a file that
+ * byte is written: a folder that is missing, a target that is a directory, an input or a file that
  * must stay.
  *
  * A target that is a symbolic link keeps being one: the file it points to is replaced.

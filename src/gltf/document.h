@@ -144,7 +144,7 @@ typedef struct nt_gltf {
 	struct nt_draco_quantization *grids; /* [accessors of the source] on which accessors will be compressed: those
 	                                        of joins (edit/draco_plan.c),
 	                                        bits 0: on their own. NULL: all of them */
-	struct nt_vertex_pools *pools; /* who shares vertices: edit/vertex_pools.h; NULL until that is found */
+	struct nt_vertex_pools *pools; /* who shares vertices: gltf/vertex_pools.h; NULL until that is found */
 	void (*free_pools)(void *pools); /* set with them */
 	nt_name_table animated;  /* pointers of texture transforms that an animation turns or scales: materials.c */
 	bool animated_known;     /* then these are all */

@@ -295,8 +295,8 @@ static void tell_transforms(nt_scene *scene, const nt_mesh *mesh)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED, &place, 1, NULL);
 }
 
-/* Jobs that may begin with their load are done; the others are loaded. */
-static nt_status begin_jobs(window *w)
+/* The READY pass, and the loads of the others. */
+static nt_status load_and_do_ready(window *w)
 {
 	const nt_tasks *t = w->tasks;
 	const bool all = needs_all(t);
@@ -479,7 +479,7 @@ static void tell_meshes(window *w)
 
 /* ---- one window ---- */
 
-static nt_status do_jobs(window *w)
+static nt_status do_loaded_and_joins(window *w)
 {
 	nt_status status = do_pass(w, LOADED);
 	if (!status)
@@ -505,7 +505,7 @@ static void do_part(void *context, unsigned slot)
 	window *w = context;
 	const nt_tasks *t = w->tasks;
 	if (slot == 0)
-		w->status = do_jobs(w);
+		w->status = do_loaded_and_joins(w);
 	else
 		w->texture_status = nt_make_textures(t->textures, t->settings, &w->texture_error);
 }
@@ -572,7 +572,7 @@ static nt_status do_window(window *w)
 	for (size_t i = 0; !t->reader->load && i < w->scene.mesh_count; i++)
 		w->states[i] = LOADED;
 	if (t->reader->load)
-		status = begin_jobs(w);
+		status = load_and_do_ready(w);
 	else
 		find_alone(w);
 	t->begin_stage(t->run, NT_STAGE_TANGENTS);

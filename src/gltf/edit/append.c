@@ -3,8 +3,8 @@
  * Vertices that splitting appended, and new values, in the accessors of a pool.
  *
  * Accessors keep their number, and their first elements unless these are new (made normals) or fewer (welded). If a
- * segment of a buffer has nothing but vertices of the pool, one attribute or several that are interleaved, they are
- * copied as a whole to its end. Else its accessors go to new views. An accessor that has to keep its count, because a
+ * segment of a buffer has nothing but vertices of the pool, one attribute or several that are interleaved, the copies
+ * of all go to its end. Else its accessors go to new views. An accessor that has to keep its count, because a
  * primitive without indices or an animation uses it too, is left alone and the solved primitives get a copy of it.
  */
 #include "gltf/edit/pool_edit.h"
