@@ -518,16 +518,22 @@ static const char *list_option(const nt_command *c)
 	return c->files_from ? "files-from" : c->recursive ? "recursive" : NULL;
 }
 
-/* With what the user may mean; an OBJ or Draco file is not written in place. */
+static bool is_dash(const char *name)
+{
+	return name && strcmp(name, "-") == 0;
+}
+
+/* With what the user may mean; an OBJ or Draco file is not written in place, and standard input has no name. */
 static nt_status fail_without_output(const parser *p, const char *input)
 {
-	nt_buffer word = {0};
+	nt_buffer command = {0};
 	const char *dot = strrchr(input, '.');
 	const bool stays = !dot || (strcasecmp(dot, ".obj") != 0 && strcasecmp(dot, ".drc") != 0);
-	const bool sayable = nt_shell_word(input, &word) && word.data;
-	nt_fail(p->error, NT_ERROR_USAGE, "OUTPUT is missing: nmtan %s OUT.glb, -d DIR%s or --check",
-		sayable ? word.data : "INPUT", stays ? ", --in-place" : "");
-	nt_buffer_free(&word);
+	nt_command_text("", NULL, input, "OUT.glb", &command);
+	nt_fail(p->error, NT_ERROR_USAGE, "OUTPUT is missing: %s%s%s or --check",
+		command.data ? command.data : "nmtan IN OUT", is_dash(input) ? "" : ", -d DIR",
+		stays && !is_dash(input) ? ", --in-place" : "");
+	nt_buffer_free(&command);
 	return p->error->status;
 }
 
@@ -556,11 +562,6 @@ static nt_status check_count(const parser *p)
 		return nt_fail(p->error, NT_ERROR_USAGE,
 			"'%s' is one name too many; for many inputs use -d DIR or --in-place", c->operands[extra]);
 	return NT_OK;
-}
-
-static bool is_dash(const char *name)
-{
-	return name && strcmp(name, "-") == 0;
 }
 
 /* "-" where a name is needed. */

@@ -269,6 +269,8 @@ TEST(names_must_be_as_many_as_the_form_takes)
 	assert_int_equal(parse(&c, &error, (const char *const[]){NULL}), NT_ERROR_USAGE);
 	refuses("OUTPUT is missing: nmtan a OUT.glb, -d DIR, --in-place or --check", WORDS("a"));
 	refuses("OUTPUT is missing: nmtan 'it'\\''s a.OBJ' OUT.glb, -d DIR or --check", WORDS("it's a.OBJ"));
+	refuses("OUTPUT is missing: nmtan ./-a.glb OUT.glb, -d DIR, --in-place or --check", WORDS("--", "-a.glb"));
+	refuses("OUTPUT is missing: nmtan - OUT.glb or --check", WORDS("-"));
 	refuses("'c'", WORDS("a", "b", "c"));
 	refuses("there is no file 'check'; did you mean --check?", WORDS("check", "a.glb"));
 	refuses("there is no file 'help'; did you mean --help?", WORDS("help"));
