@@ -155,7 +155,9 @@ static nt_status open_uri(nt_normal_map *map, nt_gltf *document, const char *uri
 static nt_status open_view(nt_normal_map *map, nt_gltf *document, uint64_t index, nt_error *error)
 {
 	const nt_gltf_view *view;
-	nt_status status = nt_gltf_get_view(document, index, "", &view, error);
+	nt_status status = nt_gltf_read_arrays(document, error);
+	if (!status)
+		status = nt_gltf_get_view(document, index, "", &view, error);
 	if (!status)
 		status = nt_gltf_view_bytes(document, (uint32_t)index, 0, view->length, "", &map->bytes, error);
 	map->size = status ? 0 : (size_t)view->length;

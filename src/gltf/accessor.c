@@ -255,20 +255,23 @@ nt_status nt_gltf_find_same_bytes(nt_gltf *document, nt_error *error)
 	return found ? NT_OK : nt_fail_memory(error);
 }
 
-nt_status nt_gltf_read_accessors(nt_gltf *document, nt_error *error)
+nt_status nt_gltf_read_arrays(nt_gltf *document, nt_error *error)
 {
-	document->accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
-	document->accessors = nt_alloc(document->accessor_count, sizeof *document->accessors);
-	if (!document->accessors)
-		return nt_fail_memory(error);
-	for (uint32_t i = 0; i < document->accessor_count; i++) {
-		nt_gltf_accessor *accessor = &document->accessors[i];
-		const nt_status status = read_accessor(document, i, accessor, NULL);
-		if (status == NT_ERROR_MEMORY)
-			return nt_fail_memory(error);
+	if (document->accessors)
+		return NT_OK;
+	nt_gltf_accessor *all = nt_alloc(document->accessor_count, sizeof *all);
+	nt_gltf_read_views(document);
+	nt_status status = all ? NT_OK : NT_ERROR_MEMORY;
+	for (uint32_t i = 0; status != NT_ERROR_MEMORY && i < document->accessor_count; i++) {
+		status = read_accessor(document, i, &all[i], NULL);
 		if (status)
-			*accessor = (nt_gltf_accessor){.index = NT_NONE, .view = NT_NONE};
+			all[i] = (nt_gltf_accessor){.index = NT_NONE, .view = NT_NONE};
 	}
+	if (status == NT_ERROR_MEMORY) {
+		free(all);
+		return nt_fail_memory(error);
+	}
+	document->accessors = all;
 	return NT_OK;
 }
 

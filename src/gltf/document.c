@@ -206,6 +206,7 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 		document->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
 		document->views = nt_calloc(document->view_count, sizeof *document->views);
 		document->file_accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
+		document->accessor_count = document->file_accessor_count;
 		if (!document->buffers || !document->views)
 			status = nt_fail_memory(error);
 		for (size_t i = 0; !status && i < document->buffer_count; i++)

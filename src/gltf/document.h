@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A glTF document as nmtan sees it: the JSON as parsed, and arrays of the buffers, views and accessors that it has,
- * read when it is opened. Bytes that nobody asks for are neither opened nor decoded, and a faulty element is told to
- * whoever asks for it.
+ * read once, before anybody asks for one. Bytes that nobody asks for are neither opened nor decoded, and a faulty
+ * element is told to whoever asks for it.
  *
  * Every function that reads from the document reports faults with the JSON pointer of what is wrong.
  */
@@ -133,10 +133,11 @@ typedef struct nt_gltf {
 	bool keeps_transforms;   /* texture transforms turn no tangents: set before meshes are described */
 	nt_gltf_buffer *buffers; /* [buffer_count] */
 	size_t buffer_count;
-	nt_gltf_view *views;       /* [view_count] */
+	nt_gltf_view *views;       /* [view_count] zeros until nt_gltf_read_arrays() */
 	size_t view_count, decoded_count; /* decoded_count: of those that were compressed */
 	size_t file_accessor_count; /* accessors that the file has */
-	nt_gltf_accessor *accessors; /* [accessor_count] of the file, and those of nt_gltf_separate_draco() */
+	nt_gltf_accessor *accessors; /* [accessor_count] of the file, and those of nt_gltf_separate_draco(); NULL until
+	                                nt_gltf_read_arrays() */
 	size_t accessor_count;
 	nt_gltf_floats_of *floats; /* [accessors] NULL until one is asked for */
 	struct nt_draco **draco_blocks; /* [view_count] decoded blocks: draco.c; NULL until there is something */
@@ -297,7 +298,7 @@ typedef struct nt_gltf_packing {
 	nt_meshopt_view view;
 } nt_gltf_packing;
 
-/* Reads all buffers and views of the source, without their bytes: none is added to it any more. */
+/* Reads all buffers and views of the source, without their bytes: for nt_gltf_read_arrays(). */
 void nt_gltf_read_views(nt_gltf *document);
 
 /* A view of the source. NT_ERROR_INPUT: there is none, or the file is at fault. `from` is the JSON pointer of the
@@ -331,8 +332,9 @@ nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t view, uint64_t offset, 
 
 /* ---- accessors: accessor.c ---- */
 
-/* Reads all accessors, once views are read. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_gltf_read_accessors(nt_gltf *document, nt_error *error);
+/* Reads all buffers, views and accessors, unless that is done: before anybody asks for one, and before there are
+ * threads. A document that is only copied needs none of them. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_gltf_read_arrays(nt_gltf *document, nt_error *error);
 
 /* An accessor. NT_ERROR_INPUT: there is none, or the file is at fault. `from` is the JSON pointer of the reference. */
 nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,

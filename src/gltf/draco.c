@@ -380,6 +380,7 @@ nt_status nt_gltf_separate_draco(nt_gltf *document, nt_error *error)
 		for (size_t k = 0; room && k < nt_json_count(primitives); k++)
 			room = separate_primitive(&s, nt_json_at(primitives, k));
 	}
+	document->accessor_count = nt_json_count(s.accessors);
 	nt_key_set_free(&s.contents);
 	free(s.accessor_of);
 	free(s.given);

@@ -268,8 +268,10 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		nt_mesh_share(mesh);
 		return NT_OK;
 	}
-	nt_status status = mesh->ready ? NT_OK :
-		nt_gltf_decode_draco(document, primitive, nt_gltf_of_mesh(mesh).pointer, error);
+	/* of one that was not prepared, too */
+	nt_status status = nt_gltf_read_arrays(document, error);
+	if (!status && !mesh->ready)
+		status = nt_gltf_decode_draco(document, primitive, nt_gltf_of_mesh(mesh).pointer, error);
 	const nt_gltf_accessor *in[INPUTS];
 	if (!status)
 		status = find_inputs(document, mesh, options, in, error);
@@ -368,7 +370,14 @@ static bool make_ready(nt_gltf *document, const nt_mesh *mesh, const nt_read_opt
 
 nt_status nt_gltf_prepare(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error)
 {
-	const nt_status status = nt_gltf_decode_ahead(scene, needed, options, error);
+	nt_status status = NT_OK;
+	bool some = false;
+	for (size_t i = 0; !some && i < scene->mesh_count; i++)
+		some = needed[i];
+	if (some)
+		status = nt_gltf_read_arrays(scene->source, error);
+	if (!status)
+		status = nt_gltf_decode_ahead(scene, needed, options, error);
 	for (size_t i = 0; !status && i < scene->mesh_count; i++)
 		if (needed[i] && !scene->meshes[i].plan.same_as)
 			scene->meshes[i].ready = make_ready(scene->source, &scene->meshes[i], options);

@@ -65,6 +65,8 @@ static nt_status describe_tangents(nt_scene *scene, nt_gltf *document, const nt_
 	uint64_t index = UINT64_MAX;
 	const nt_gltf_accessor *accessor;
 	nt_error error;
+	if (nt_gltf_read_arrays(document, out_of_memory))
+		return NT_ERROR_MEMORY;
 	nt_error_clear(&error);
 	nt_json_get_uint64(reference, &index);
 	if (index >= UINT32_MAX)
@@ -466,10 +468,6 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 		status = look_for_buffers(scene, document, error);
 	if (!status)
 		status = nt_gltf_separate_draco(document, error);
-	if (!status) {
-		nt_gltf_read_views(document);
-		status = nt_gltf_read_accessors(document, error);
-	}
 	if (!status)
 		status = describe_meshes(&all, document, options);
 	const bool has_scenes = nt_gltf_root_member(document, "scenes") != NULL;

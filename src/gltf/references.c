@@ -182,7 +182,7 @@ void nt_gltf_find_dangling(nt_gltf *document)
 
 nt_status nt_gltf_find_users(nt_gltf *document, nt_error *error)
 {
-	if (nt_gltf_find_same_bytes(document, error))
+	if (nt_gltf_read_arrays(document, error) || nt_gltf_find_same_bytes(document, error))
 		return NT_ERROR_MEMORY;
 	document->users = nt_calloc(document->accessor_count, sizeof *document->users);
 	document->view_users = nt_calloc(document->view_count, sizeof *document->view_users);

@@ -56,19 +56,22 @@ static void check_accessor(nt_gltf *document, uint32_t index, uint64_t count)
 }
 
 /* They stay those of the source, whatever an edit writes. */
-TEST(accessors_are_read_once)
+TEST(accessors_are_read_once_when_somebody_asks)
 {
 	nt_scene scene;
 	nt_error error;
 	assert_int_equal(open_bytes(&scene, document_text, sizeof document_text - 1,
 		&(nt_read_options){.texcoord_set = -1, .threads = 1}, &error), NT_OK);
 	nt_gltf *document = scene.source;
+	assert_null(document->accessors);
+	assert_int_equal(nt_gltf_read_arrays(document, &error), NT_OK);
 	for (uint32_t i = 0; i < ACCESSORS; i++)
 		check_accessor(document, i, expected[i].count);
 	for (uint32_t i = 0; i < ACCESSORS; i++) {
 		nt_json_value *json = nt_gltf_accessor_json(document, i);
 		nt_json_set_uint64(document->json, nt_json_put(document->json, json, "count"), 11);
 	}
+	assert_int_equal(nt_gltf_read_arrays(document, &error), NT_OK);
 	for (uint32_t i = 0; i < ACCESSORS; i++)
 		check_accessor(document, i, expected[i].count);
 	assert_null(nt_gltf_accessor_json(document, ACCESSORS));

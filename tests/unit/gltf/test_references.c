@@ -31,8 +31,7 @@ static nt_gltf *create(nt_scene *scene, const char *text, size_t size)
 	scene->bytes = (const unsigned char *)text;
 	scene->byte_count = size;
 	assert_int_equal(nt_gltf_create(&document, scene, false, &error), NT_OK);
-	nt_gltf_read_views(document);
-	assert_int_equal(nt_gltf_read_accessors(document, &error), NT_OK);
+	assert_int_equal(nt_gltf_read_arrays(document, &error), NT_OK);
 	scene->source = document;
 	scene->free_source = nt_gltf_free;
 	return document;
