@@ -63,23 +63,28 @@ void nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_pool_vertices *vertices
 
 /* ---- a block ---- */
 
-/* An attribute of ours: takes the place and the id of one of that name, else it gets an id that is free. */
+/* An attribute of ours: takes the place of one of that name, and its id if no other has it, else one that is free. */
 static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind, int components,
 	const float *elements, nt_draco_quantization grid)
 {
 	nt_draco_attribute attribute = {.kind = kind,
 		.component_type = NT_GLTF_FLOAT, .components = components,
 		.quantization = grid, .data = elements};
-	for (size_t i = 0; i < r->attribute_count; i++) {
+	const size_t count = r->attribute_count;
+	size_t place = 0, same_id = 0;
+	while (place < count && strcmp(r->names[place], name) != 0)
+		place++;
+	for (size_t i = 0; i < count; i++) {
 		const uint32_t id = r->attributes[i].unique_id;
-		if (strcmp(r->names[i], name) == 0) {
-			attribute.unique_id = id;
-			r->attributes[i] = attribute;
-			return;
-		}
+		same_id += place < count && id == r->attributes[place].unique_id;
 		attribute.unique_id = id >= attribute.unique_id ? id + 1 : attribute.unique_id;
 	}
-	nt_gltf_draco_add(r, name, attribute);
+	if (same_id == 1)
+		attribute.unique_id = r->attributes[place].unique_id;
+	if (place < count)
+		r->attributes[place] = attribute;
+	else
+		nt_gltf_draco_add(r, name, attribute);
 }
 
 /* The attributes of the primitive's block, as they are. */
