@@ -29,7 +29,8 @@ static void mark(const nt_scene *scene, const nt_report *report, const nt_report
 			continue;
 		if (f->code == NT_CODE_TAN_SIGN_MISMATCH && mesh->doubt == NT_DOUBT_UNDECODABLE && !mesh->pair)
 			fixes->meshes[i].doubtful = f->count;
-		if (!mends)
+		/* without texture coordinates nothing takes the place of what cannot be read */
+		if (!mends || (f->code == NT_CODE_TAN_ACCESSOR && !mesh->has_texcoords))
 			continue;
 		fixes->meshes[i].existing = NT_EXISTING_REPAIR;
 		fixes->counts[f->code]++;

@@ -85,12 +85,18 @@ static bool has_tangents_that_count(const nt_mesh *mesh)
 	return mesh->has_tangents && mesh->has_normals;
 }
 
+/* nmtan mends values that it can read. */
+static bool can_mend(const nt_mesh *mesh)
+{
+	return has_tangents_that_count(mesh) && !mesh->tangents_fault;
+}
+
 /* Whether the mesh has what a solve takes, or what mending takes that has to do without texture coordinates; if not,
  * what is missing first. */
 static nt_decision decide_by_attributes(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 {
 	const bool lacks_normals = !mesh->has_normals && !w->normals;
-	const bool lacks_texcoords = !mesh->has_texcoords && !has_tangents_that_count(mesh);
+	const bool lacks_texcoords = !mesh->has_texcoords && !can_mend(mesh);
 	if (lacks_texcoords)
 		report_no_texcoords(scene, mesh, w->any_texcoords);
 	if (lacks_normals && needs_tangents(mesh))
@@ -127,8 +133,7 @@ static nt_decision decide(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 		return decision;
 	/* what cannot be computed anew is not thrown away either */
 	const bool repair = existing == NT_EXISTING_REPAIR || !mesh->has_texcoords;
-	return has_tangents_that_count(mesh) && !mesh->tangents_fault && repair ? NT_DECISION_REPAIR
-									       : NT_DECISION_SOLVE;
+	return can_mend(mesh) && repair ? NT_DECISION_REPAIR : NT_DECISION_SOLVE;
 }
 
 /* A mesh of a glTF that would be skipped, for which normals were asked. Tangents that it has follow them. A block of

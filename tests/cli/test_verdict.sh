@@ -931,6 +931,7 @@ scene "tangents that clients have to ignore, or cannot read, are told in every w
 mapped
 gltf m.gltf bare 'delete g.meshes[0].primitives[0].attributes.NORMAL'
 gltf m.gltf vec3 'const n = g.meshes[0].primitives[0].attributes.TANGENT; g.accessors[n].type = "VEC3"'
+gltf vec3.gltf no_uv 'delete g.meshes[0].primitives[0].attributes.TEXCOORD_0'
 while IFS='|' read -r file options code tangents; do
 	run $options --fail-on=never $file.gltf $([[ $options = --check ]] || echo out.gltf)
 	exits 0
@@ -948,6 +949,9 @@ vec3|--existing=keep|TAN_ACCESSOR|1,0,0 0,0,1
 vec3|--existing=replace||1,0,0,1 0,0,1
 vec3|--existing=repair||1,0,0,1 0,0,1
 vec3|--fix|fixed TAN_ACCESSOR|1,0,0,1 0,0,1
+no_uv|--existing=replace|TAN_ACCESSOR|1,0,0 0,0,1
+no_uv|--existing=repair|TAN_ACCESSOR|1,0,0 0,0,1
+no_uv|--fix|the input has nothing that --fix repairs|1,0,0 0,0,1
 END
 
 scene "a remedy of what --fix mends names a command, or says that nmtan cannot"
