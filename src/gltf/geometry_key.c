@@ -79,21 +79,25 @@ static bool is_wanted(const nt_mesh *mesh, const nt_read_options *options)
 		((options->report || options->across) && mesh->triangles && mesh->has_positions);
 }
 
-/* The block, and which of its attributes an attribute is. */
-static void put_block(nt_key_table *table, const nt_json_value *primitive, const nt_mesh *mesh)
+/* The block, and which of its attributes has which name. In another order they are taken for others, which costs a
+ * load. */
+static void put_block(nt_key_table *table, const nt_json_value *primitive)
 {
 	const nt_json_value *extension = nt_gltf_draco_of(primitive);
 	const nt_json_value *ids = nt_json_find(extension, "attributes");
-	char texcoords[32];
-	nt_gltf_put_number(nt_gltf_put_text(texcoords, "TEXCOORD_"), mesh->texcoord_set);
-	const char *const names[] = {"POSITION", "NORMAL", texcoords, "TANGENT", "COLOR_0"};
 	uint64_t number = UINT64_MAX;
 	nt_json_find_uint64(extension, "bufferView", &number);
 	nt_key_put(table, number);
-	for (size_t i = 0; extension && i < sizeof names / sizeof *names; i++) {
+	nt_key_put(table, nt_json_count(ids));
+	for (size_t i = 0; i < nt_json_count(ids); i++) {
+		size_t length;
+		const char *name = nt_json_key(ids, i, &length);
 		number = UINT64_MAX;
-		nt_json_find_uint64(ids, names[i], &number);
+		nt_json_get_uint64(nt_json_at(ids, i), &number);
 		nt_key_put(table, number);
+		nt_key_put(table, name ? length : 0);
+		if (name)
+			nt_buffer_append(&table->key, name, length);
 	}
 }
 
@@ -110,7 +114,7 @@ static void put_all(nt_key_table *table, const nt_gltf *document, const nt_mesh 
 	if (options->world)
 		put_accessor(table, document, mesh, attributes, "COLOR_0");
 	put_accessor(table, document, mesh, primitive, "indices");
-	put_block(table, primitive, mesh);
+	put_block(table, primitive);
 	nt_geometry_key(table, document, mesh, !options->world && options->morphs == NT_MORPH_BAKE);
 }
 
