@@ -300,7 +300,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		status = nt_gltf_load_targets(scene, mesh, in[NORMALS], error);
 	if (!status && in[NORMALS])
 		normalise_quantized(in[NORMALS], mesh->normals, mesh->vertex_count);
-	if (status && error && !error->place.object[0]) {
+	if (status && error) {
 		nt_place place;
 		memcpy(error->place.object, nt_mesh_place(mesh, &place)->object, sizeof error->place.object);
 	}

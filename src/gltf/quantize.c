@@ -109,8 +109,6 @@ void nt_precision_round(nt_precision precision, float *tangents, size_t count, n
 void nt_precision_encode(nt_precision precision, const float *tangents, size_t count, unsigned char *bytes)
 {
 	const float most = (float)kinds[precision].most;
-	if (precision <= NT_PRECISION_FLOAT)
-		memcpy(bytes, tangents, count * kinds[precision].bytes);
 	for (size_t i = 0; precision == NT_PRECISION_SHORT && i < 4 * count; i++) {
 		const int16_t value = (int16_t)lrintf(tangents[i] * most);
 		memcpy(bytes + i * sizeof value, &value, sizeof value);

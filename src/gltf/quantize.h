@@ -73,7 +73,7 @@ void nt_precision_round(nt_precision precision, float *tangents, size_t count, n
 bool nt_precision_has(const float *direction, double most);
 nt_dvec3 nt_nearest_direction(const float *direction, double most);
 
-/* The integers of rounded tangents: count * nt_precision_bytes() bytes. */
+/* The integers of rounded tangents: count * nt_precision_bytes() bytes. Not for NT_PRECISION_FLOAT. */
 void nt_precision_encode(nt_precision precision, const float *tangents, size_t count, unsigned char *bytes);
 
 /* Adds a cost to the scene's, and the finding that tells it. */

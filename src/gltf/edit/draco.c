@@ -274,7 +274,7 @@ static nt_status store(nt_gltf_recoding *r, uint32_t buffer, nt_morph_cost *cost
 		status = quantize_tangents(r, &least, error);
 	if (!status)
 		status = nt_gltf_add_morphs(r->edits, buffer, r->vertices, 0, least, cost, error);
-	if (!status && r->outside && nt_vertices_differ(r->vertices))
+	if (!status && nt_vertices_differ(r->vertices)) /* of what is not in the block */
 		status = nt_append_vertices(r->edits, buffer, r->vertices, &(nt_override_list){0}, false, error);
 	if (status)
 		return status;

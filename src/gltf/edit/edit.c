@@ -272,7 +272,7 @@ static nt_status edit_pool(const editing *e, pool_edit *p)
 	bool done = false;
 	if (!status && p->for_draco)
 		status = nt_gltf_write_draco(&p->recoding, buffer, e->scene, &done, e->error);
-	else if (!status && compressed)
+	else if (!status)
 		nt_gltf_draco_make_plain(e->edits, &p->vertices);
 	if (!status && done)
 		status = nt_vertices_tell(e->edits, e->scene, &p->vertices, done, e->error);
