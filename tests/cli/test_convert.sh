@@ -589,6 +589,18 @@ while IFS=$'\t' read -r name lines question answer; do
 	esac
 done <"$ROOT/tests/cli/obj.tsv"
 
+scene "borders to other primitives are looked at where that costs at most four times what is solved and 65 536 triangles"
+# 800 triangles and 79 200, whose tangents would turn where they meet
+grid_obj 200 | awk '/^v / {$4 = 0.002 * (NR * 7 % 11)} /^f / && (n++ == 0 || n == 401) {print "usemtl m" n} {print}' >grid.obj
+run -q --only=all grid.obj grid.glb
+for solved in 2 1; do
+	gltf grid.glb some "const solved = $solved;" 'g.textures = [{}];
+		g.materials.forEach((m, i) => i < solved && (m.normalTexture = {index: 0}))'
+	run -v --report=r.json --existing=replace some.gltf out.glb
+	exits 0
+	if [ $solved = 2 ]; then says TAN_PRIMITIVE_BORDER; else says_not TAN_PRIMITIVE_BORDER; fi
+done
+
 scene "a line longer than what is read at once, and the lines behind it"
 { printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0'; awk 'BEGIN { printf "l"; for (i = 0; i < 600000; i++) printf " 1 2"; print "" }'; echo 'f 1 2 3'; echo 'f 1 2 4'; } >long.obj
 run long.obj out.glb

@@ -164,6 +164,44 @@ for choice in keep off; do
 	is "$(gltf more.glb "g.meshes[0].primitives.map((p) => $row)")" "$(gltf one_plain.glb "g.meshes[0].primitives.map((p) => $row)")"
 done
 
+scene "an id that its block has not is told, whoever else has the same block and accessors"
+gltf "$WORK/layouts/plain.gltf" one 'delete g.meshes[0].primitives[0].targets'
+run -q --draco=sequential one.gltf one.glb
+gltf one.glb ids 'const [p] = g.meshes[0].primitives, plain = open("one.gltf");
+	p.attributes.TEXCOORD_0 = add("VEC2", 5126, plain.rows(plain.g.meshes[0].primitives[0].attributes.TEXCOORD_0).flat());
+	const other = structuredClone(p);
+	other.extensions.KHR_draco_mesh_compression.attributes.TEXCOORD_0 = 99;
+	g.meshes[0].primitives.push(other)'
+run --existing=replace ids.gltf out.glb
+exits 3
+says "primitive 1, material \"bumpy\": TEXCOORD_0 has the id 99, which the compressed data does not"
+
+scene "a .drc has integers of any width as positions, and as texture coordinates that are fractions of the most"
+python3 - <<'END'
+import struct
+def block(name, attributes):
+    # version 2.2, one triangle, not compressed, and attributes of one decoder, each as it is
+    data = b"DRACO" + bytes([2, 2, 1, 0, 0, 0, 1, 3, 1, 0, 1, 2, 1, len(attributes)])
+    for number, (kind, of, normalized, rows) in enumerate(attributes):
+        data += bytes([kind, of, len(rows[0]), normalized, number])
+    data += bytes(len(attributes))
+    for kind, of, normalized, rows in attributes:
+        data += b"".join(struct.pack("<%d%s" % (len(row), " bBhHiI"[of]), *row) for row in rows)
+    with open(name, "wb") as file:
+        file.write(data)
+for of in range(1, 7):
+    most = 2 ** (8 * (1, 1, 2, 2, 4, 4)[of - 1] - of % 2) - 1
+    least = -3 if of % 2 else 5
+    block("%d.drc" % of, [(0, of, 0, [(0, 0, 0), (least, 100, 0), (0, 7, 1)]), (3, of, 1, [(0, 0), (most, 0), (0, most)])])
+END
+for of in 1 2 3 4 5 6; do
+	run -q --normals=smooth $of.drc out.gltf
+	exits 0
+	is "$(gltf out.gltf 'rows(g.meshes[0].primitives[0].attributes.POSITION)')" \
+		"[[0,0,0],[$((of % 2 ? -3 : 5)),100,0],[0,7,1]]"
+	is "$(gltf out.gltf 'rows(g.meshes[0].primitives[0].attributes.TEXCOORD_0)')" "[[0,1],[1,1],[0,0]]"
+done
+
 scene "a compressed primitive that gets no tangents is judged by the triangles of its block"
 run -q --raw "$data/quad.obj" plain.glb
 run -q --only=all --existing=replace --draco=sequential plain.glb packed.glb

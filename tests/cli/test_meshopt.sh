@@ -74,6 +74,25 @@ for words in "1.08 -c" "1.08 -cc" "1.12 -cc -ce khr" "0 -c -vi" "0 -c -noq" "0 -
 		wrong "$words: $(stat -c %s out.glb) bytes, gltfpack makes $(stat -c %s gt.glb)"
 done
 
+scene "tangents have the bits of the normals beside them, wherever in a view these lie"
+bare
+# the same again, twice as large, in another material: gltfpack puts its normals behind the first ones
+gltf bare.gltf both 'const [mesh] = g.meshes, [p] = mesh.primitives, a = g.accessors[p.attributes.POSITION], twice = (x) => 2 * x;
+	const large = add("VEC3", 5126, rows(p.attributes.POSITION).flat().map(twice));
+	Object.assign(g.accessors[large], {min: a.min.map(twice), max: a.max.map(twice)});
+	const material = g.materials.push({normalTexture: {index: 0, scale: 0.5}}) - 1;
+	g.meshes.push({primitives: [{...p, attributes: {...p.attributes, POSITION: large}, material}]});
+	g.scenes[0].nodes.push(g.nodes.push({mesh: 1}) - 1)'
+mv both.gltf bare.gltf
+for bits in 6 10; do
+	pack packed.glb -cc -kn -vpf -vn $bits
+	[ "$(gltf packed.glb 'g.accessors[g.meshes[1].primitives[0].attributes.NORMAL].byteOffset')" -gt 0 ] || wrong "it lies first"
+	run -q --verify packed.glb out.glb
+	sound packed.glb out.glb
+	is "$(gltf out.glb 'rows(g.meshes[1].primitives[0].attributes.TANGENT)')" \
+		"$(gltf out.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT)')"
+done
+
 scene "packed vertices that quantization made equal are welded, and packed again"
 bare
 for words in "-c -vp 4 -vt 3 -vn 3" "-cc -vp 4 -vt 2 -vn 3"; do

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "gltf/create/create.h"
+#include "gltf/draco.h"
 #include "gltf/edit/edit.h"
 #include "gltf/load.h"
 #include "gltf/verify/verify.h"
@@ -201,6 +202,47 @@ TEST(each_attribute_of_a_block_is_compared)
 			*(float *)(void *)changed += 0.01f;
 		else
 			changed[0]++;
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_ERROR_INTERNAL);
+		snprintf(expected, sizeof expected, "in %s of mesh", name);
+		assert_non_null(strstr(error.message, expected));
+		close_edited(&p);
+	}
+}
+
+/* As if the encoder had taken one bit less than was asked for: a value of the source is put 0.3 of its grid's step
+ * beside a point of the grid, which is 0.6 of a step if there is one bit more. Sequential normals may be two steps
+ * away. The tangents' 0.8 is between two points. */
+TEST(fewer_bits_than_were_asked_for_are_told)
+{
+	static const nt_draco_choice ways[] = {NT_DRACO_AS_SEQUENTIAL, NT_DRACO_AS_EDGEBREAKER};
+	static const struct {
+		const char *name;
+		nt_draco_bits kind;
+		size_t place; /* of the float */
+		float values[2]; /* by way */
+	} rows[] = {{"POSITION", NT_DRACO_BITS_POSITION, 3, {0.3f * 2 / 16383, 0.3f * 2 / 16383}},
+		{"NORMAL", NT_DRACO_BITS_NORMAL, 0, {1.5f / 2047, 0.3f / 2047}},
+		{"TEXCOORD_0", NT_DRACO_BITS_TEXCOORD, 0, {1 - 0.3f / 4095, 1 - 0.3f / 4095}},
+		{"TANGENT", NT_DRACO_BITS_TANGENT, 0, {0, 0}}};
+	for (size_t i = 0; i < 2 * sizeof rows / sizeof *rows; i++) {
+		const char *path = in_folder("a.glb"), *name = rows[i / 2].name;
+		nt_write_options options = {.path = path, .format = NT_FORMAT_GLB, .draco = ways[i % 2]};
+		float changed[VERTICES * 4];
+		char expected[60];
+		edited p;
+		nt_error error;
+		edit(&p, NT_DATA_DIR "/skin.gltf", &options);
+		nt_gltf *document = p.scene.source;
+		const uint32_t number = nt_gltf_reference(document,
+			nt_json_find(nt_gltf_primitive_of(document, &p.scene.meshes[0]), "attributes"), name);
+		if (rows[i / 2].values[0] > 0) {
+			nt_gltf_accessor *a = &document->accessors[number];
+			const void *all = memcpy(changed, a->decoded, (size_t)a->count * a->stride);
+			changed[rows[i / 2].place] = rows[i / 2].values[i % 2];
+			a->decoded = all;
+		}
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_OK);
+		options.draco_bits[rows[i / 2].kind] = nt_gltf_draco_bits(options.draco_bits, rows[i / 2].kind) + 1;
 		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_ERROR_INTERNAL);
 		snprintf(expected, sizeof expected, "in %s of mesh", name);
 		assert_non_null(strstr(error.message, expected));
