@@ -87,6 +87,14 @@ for draco in sequential edgebreaker; do
 	exits 0
 done
 
+scene "normals of any length are directions in a block"
+gltf "$WORK/layouts/plain.gltf" long 'const p = g.meshes[0].primitives[0]; delete p.targets; delete g.meshes[0].weights;
+	bytes[0].writeFloatLE(1e30, at(p.attributes.NORMAL, 0) + 8)'
+for draco in sequential edgebreaker; do
+	run --only=all --existing=replace --draco=$draco --verify long.gltf packed.glb
+	exits 0
+done
+
 scene "made normals and bitangents are floats in a block, whatever the accessors were that they replace"
 gltf "$data/quantized.gltf" integers 'const a = g.meshes[0].primitives[0].attributes;
 	a._BITANGENT = g.accessors.push({ ...g.accessors[a.NORMAL] }) - 1'

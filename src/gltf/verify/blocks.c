@@ -249,7 +249,8 @@ static double tolerance_of(const comparison *c, const nt_draco_attribute *a)
 static bool is_near(const nt_draco_attribute *a, size_t point, const void *value, double tolerance)
 {
 	const size_t width = width_of(a);
-	float from[4], to[4], scale = 1;
+	float from[4], to[4];
+	double scale = 1;
 	if (memcmp(value_of(a, point), value, width) == 0)
 		return true;
 	if (a->component_type != NT_GLTF_FLOAT)
@@ -257,13 +258,13 @@ static bool is_near(const nt_draco_attribute *a, size_t point, const void *value
 	memcpy(from, value_of(a, point), width);
 	memcpy(to, value, width);
 	if (is_octahedral(a) && a->quantization.bits) {
-		const float length = sqrtf(from[0] * from[0] + from[1] * from[1] + from[2] * from[2]);
-		if (!(length > 1e-5f)) /* no direction */
+		const double x = from[0], y = from[1], z = from[2], length = sqrt(x * x + y * y + z * z);
+		if (!(length > 1e-5)) /* no direction */
 			return true;
 		scale = 1 / length;
 	}
 	for (int k = 0; k < a->components; k++)
-		if (!(fabs((double)from[k] * scale - to[k]) <= tolerance))
+		if (!(fabs(from[k] * scale - to[k]) <= tolerance))
 			return false;
 	return true;
 }
