@@ -307,6 +307,12 @@ static nt_status compare_targets(nt_scene *found, const nt_mesh *mesh, const par
 
 /* ---- all meshes ---- */
 
+/* Vertices that the accessors of a primitive have in its document. */
+static size_t count_vertices(const nt_mesh *mesh)
+{
+	return mesh->source_vertex_count + mesh->unused_vertices;
+}
+
 /* A mesh of an edited document stands where it stood. Strips and fans keep their own indices: there only the tangents
  * have to be there. */
 static nt_status compare_edited(const verification *v, nt_scene *found, const nt_mesh *mesh, part *p, nt_error *error)
@@ -316,6 +322,9 @@ static nt_status compare_edited(const verification *v, nt_scene *found, const nt
 	const char *bad = NULL;
 	if (!p->mesh.tangents || (list && !p->packed && p->mesh.corner_count != mesh->corner_count))
 		return fail_corner(mesh, 0, error);
+	/* without indices it draws all that its accessors have: copies that others got would be more */
+	if (!p->packed && !nt_json_find(primitive, "indices") && count_vertices(&p->mesh) != count_vertices(mesh))
+		return fail_in(mesh, "in the vertices that are drawn", error);
 	if (!list)
 		return NT_OK;
 	nt_status status = p->packed ? nt_verify_block(v->scene->source, mesh, v->options, found->source, primitive,

@@ -179,6 +179,26 @@ TEST(the_first_mesh_that_differs_is_told)
 	}
 }
 
+/* A triangle and a vertex that is in none. A source without that vertex would have the same corners. */
+TEST(vertices_that_are_drawn_besides_triangles_are_told)
+{
+	static const char text[] = "{\"asset\":{\"version\":\"2.0\"},"
+		"\"accessors\":[{\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"}],"
+		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":0}}]}]}";
+	const char *path = in_folder("a.glb");
+	const nt_write_options options = {.path = path, .format = NT_FORMAT_GLB};
+	edited p;
+	nt_error error;
+	put_text_file("unindexed.gltf", text);
+	edit(&p, in_folder("unindexed.gltf"), &options);
+	assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_OK);
+	p.scene.meshes[0].source_vertex_count--;
+	assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_ERROR_INTERNAL);
+	assert_non_null(strstr(error.message, "in the vertices that are drawn of mesh"));
+	close_edited(&p);
+	remove(in_folder("unindexed.gltf"));
+}
+
 /* Changes the source instead of the block: the first vertex, by more than a step of its grid. */
 TEST(each_attribute_of_a_block_is_compared)
 {
