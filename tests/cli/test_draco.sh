@@ -95,6 +95,15 @@ for draco in sequential edgebreaker; do
 	exits 0
 done
 
+scene "edgebreaker keeps a face between -0 and 0, which are not one position"
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'v 1 1 0' 'v -0 0 0' 'vn 0 0 1' 'vt 0 0' 'vt 1 0' 'vt 0 1' 'vt 1 1' 'vt .2 .1' \
+	'f 1/1/1 2/2/1 3/3/1' 'f 3/3/1 2/2/1 4/4/1' 'f 1/1/1 5/5/1 4/4/1' >zeros.obj
+run -q zeros.obj zeros.glb
+run --only=all --existing=replace --draco=edgebreaker --verify zeros.glb packed.glb
+exits 0
+says "3 triangles"
+says_not DRACO_SEQUENTIAL
+
 scene "made normals and bitangents are floats in a block, whatever the accessors were that they replace"
 gltf "$data/quantized.gltf" integers 'const a = g.meshes[0].primitives[0].attributes;
 	a._BITANGENT = g.accessors.push({ ...g.accessors[a.NORMAL] }) - 1'

@@ -301,9 +301,9 @@ static nt_status quantize(comparison *c, const char **bad, nt_error *error)
 
 /* ---- comparing ---- */
 
-/* A number for what each point has of some attributes, the same for -0 and +0, which Draco may merge. */
-static uint64_t *hash_points(
-	nt_arena *arena, const nt_draco_attribute *attributes, size_t count, size_t point_count)
+/* A number for what each point has of some attributes; unless `exact` the same for -0 and +0, which Draco may merge. */
+static uint64_t *hash_points(nt_arena *arena, const nt_draco_attribute *attributes, size_t count, size_t point_count,
+	bool exact)
 {
 	uint64_t *hashes = nt_arena_alloc(arena, point_count, sizeof *hashes);
 	for (size_t p = 0; hashes && p < point_count; p++) {
@@ -311,9 +311,8 @@ static uint64_t *hash_points(
 		for (size_t i = 0; i < count; i++) {
 			float value[4];
 			memcpy(value, value_of(&attributes[i], p), width_of(&attributes[i]));
-			for (int k = 0; attributes[i].component_type == NT_GLTF_FLOAT &&
-					k < attributes[i].components;
-				k++)
+			const bool floats = attributes[i].component_type == NT_GLTF_FLOAT;
+			for (int k = 0; floats && !exact && k < attributes[i].components; k++)
 				value[k] += 0.0f;
 			hashes[p] = nt_hash_bytes(hashes[p], value, width_of(&attributes[i]));
 		}
@@ -367,8 +366,8 @@ static nt_status compare_corners(const comparison *c, const nt_draco_mesh *block
 static nt_status compare_sets(const comparison *c, const nt_draco_mesh *block, size_t first, size_t count, bool *same,
 	nt_error *error)
 {
-	const uint64_t *wanted = hash_points(c->arena, c->attributes + first, count, c->wanted.point_count);
-	const uint64_t *found = hash_points(c->arena, c->found + first, count, block->point_count);
+	const uint64_t *wanted = hash_points(c->arena, c->attributes + first, count, c->wanted.point_count, false);
+	const uint64_t *found = hash_points(c->arena, c->found + first, count, block->point_count, false);
 	if (!wanted || !found)
 		return nt_fail_memory(error);
 	*same = hash_faces(&c->wanted, wanted, c->positions) == hash_faces(block, found, NULL);
@@ -382,7 +381,7 @@ static nt_status compare_faces(comparison *c, const nt_draco_mesh *block, const 
 	bool same = true;
 	for (size_t i = 0; i < count; i++)
 		if (strcmp(c->names[i], "POSITION") == 0)
-			c->positions = hash_points(c->arena, &c->attributes[i], 1, c->wanted.point_count);
+			c->positions = hash_points(c->arena, &c->attributes[i], 1, c->wanted.point_count, true);
 	nt_status status = c->positions ? quantize(c, bad, error) : nt_fail_memory(error);
 	if (!status && !*bad)
 		status = compare_sets(c, block, 0, count, &same, error);
