@@ -139,6 +139,10 @@ m[0] = also(normal(), KHR_materials_unlit={}, VRMC_materials_mtoon={})|slots|['n
 m[0] = also({}, KHR_materials_unlit={}, VRMC_materials_mtoon={})|slots|[]
 m[0] = also({}, KHR_materials_unlit={}); g['extensions'] = {'VRM': {'materialProperties': [{'textureProperties': {'_BumpMap': 0}}]}}|slots|['normal']
 m[0] = {}; g['extensions'] = {'VRM': {'materialProperties': [{'textureProperties': {'_MainTex': 0}}]}}|slots|[]
+# its normal map lies as the main texture does: offset and scale
+m[0:2] = {}, normal(); also(p, KHR_materials_variants={'mappings': [{'material': 0}, {'material': 1}]}); g['extensions'] = {'VRM': {'materialProperties': [{'textureProperties': {'_BumpMap': 0}, 'vectorProperties': {'_MainTex': [0, 0, -1, 1]}}]}}|'TAN_UVSET_CONFLICT' in codes|True
+m[0:2] = {}, normal(); also(p, KHR_materials_variants={'mappings': [{'material': 0}, {'material': 1}]}); g['extensions'] = {'VRM': {'materialProperties': [{'textureProperties': {'_BumpMap': 0}, 'vectorProperties': {'_MainTex': [0, 0, 1, -1]}}]}}|'TAN_UVSET_CONFLICT' in codes|True
+m[0:2] = {}, normal(); also(p, KHR_materials_variants={'mappings': [{'material': 0}, {'material': 1}]}); g['extensions'] = {'VRM': {'materialProperties': [{'textureProperties': {'_BumpMap': 0}, 'vectorProperties': {'_MainTex': [0.5, 0.5, 1, 1]}}]}}|'TAN_UVSET_CONFLICT' in codes|False
 m[0:2] = {}, normal(); also(p, KHR_materials_variants={'mappings': [{'material': 0}, {'material': 1}]})|slots|['normal']
 m[0:2] = also({}, MSFT_lod={'ids': [1]}), normal()|slots|['normal']
 g['scenes'] = []|hidden|True
