@@ -10,7 +10,7 @@
  * that an unwrap could make wider.
  *
  * A flipped triangle or a needle makes no mirror edge, no fold, no overlap and no shared vertex: its bit is set in
- * check->flipped, and its mirror edges go.
+ * check->flipped, and its mirror edges go. A patch as small that is not reported loses its mirror edges, too.
  */
 #include "report/check.h"
 
@@ -26,12 +26,15 @@
  *
  * All that has the winding of a flipped patch has to be a minority of its island: of 876 islands with small patches, of
  * 1 451 public files, 722 have up to a fourth and 85 two fifths to a half. These are halves with a jagged middle line;
- * above a seventh, readers of pictures did not agree that the one is more flipped than what lies beside it.
+ * above a seventh, the author alone looked at pictures, and did not find the one more flipped than what lies beside it.
+ *
+ * Up to a fourth such patches, and small islands of which most of the rim lies against one, have no mirror seam either.
+ * Their rims are of one to three edges, and there are hundreds in an island that UV_MIXED_WINDING_ISLAND tells of once.
  *
  * Area counts because a fold may be a few large triangles beside many small ones; texels count because the back of a
  * planar projection may be a few small triangles that lie on all of the front.
  */
-static const double FLIPPED_SHARE = 0.05, SINGLE_SHARE = 0.1, MINORITY_SHARE = 0.15;
+static const double FLIPPED_SHARE = 0.05, SINGLE_SHARE = 0.1, MINORITY_SHARE = 0.15, SEAMLESS_SHARE = 0.25;
 
 /* How much is wound one way. */
 typedef struct extent {
@@ -46,7 +49,9 @@ typedef struct patch {
 	uint32_t host;              /* the island at most of them, if any is at more than half; NT_NONE: at none */
 	uint32_t host_sides;        /* that lie against it */
 	uint32_t votes;             /* for the host, less those against it */
-	bool all_slivers, small, flipped;
+	bool all_slivers;
+	bool small, flipped;        /* by itself, and beside what is not small */
+	bool minor, seamless;       /* alike: what has no seam of its own */
 } patch;
 
 typedef struct patches {
@@ -152,32 +157,33 @@ static bool is_island(const nt_check *check, const patch *one)
 	return island_size(&check->facts->islands[check->islands[one->first]]) == one->size.triangles;
 }
 
-/* Whether a patch may be flipped, by itself. */
-static bool is_candidate(const nt_check *check, const patches *p, patch *one)
+/* Sets what a patch is by itself: small, minor. */
+static void judge_patch(const nt_check *check, const patches *p, patch *one)
 {
-	const uint32_t own = check->islands[one->first];
 	const bool alone = is_island(check, one);
-	/* n triangles in a row have n + 2 outer sides: of two or more, one may lie elsewhere */
-	if (alone && (one->host == NT_NONE || one->host_sides + (one->size.triangles > 1) < one->size.triangles + 2))
-		return false;
-	one->host = alone ? one->host : own;
-	if (one->all_slivers)
-		return true;
+	const size_t rim = one->size.triangles + 2; /* outer sides of n triangles in a row */
+	if (alone && (one->host == NT_NONE || 2 * (size_t)one->host_sides <= rim))
+		return;
+	/* of two triangles or more, one side may lie elsewhere */
+	const bool inside = !alone || one->host_sides + (one->size.triangles > 1) >= rim;
+	one->host = alone ? one->host : check->islands[one->first];
 	const extent *host = p->islands[one->host], *alike = &host[check->surface.orientation[one->first] > 0];
 	extent all = host[0];
 	add_extent(&all, &host[1]);
-	if (!is_share(alike, &all, MINORITY_SHARE))
-		return false;
+	const bool minority = is_share(alike, &all, MINORITY_SHARE);
+	const bool no_half = (double)alike->triangles <= SEAMLESS_SHARE * (double)all.triangles;
 	if (alone)
 		add_extent(&all, &one->size);
-	return is_share(&one->size, &all, one->size.triangles == 1 ? SINGLE_SHARE : FLIPPED_SHARE);
+	const bool few = is_share(&one->size, &all, one->size.triangles == 1 ? SINGLE_SHARE : FLIPPED_SHARE);
+	one->small = inside && (one->all_slivers || (few && minority));
+	one->minor = one->all_slivers || (few && no_half);
 }
 
 /* A patch that only small patches surround is cut off by them, and not flipped itself. */
 static void choose_flipped(const nt_check *check, patches *p)
 {
 	for (uint32_t i = 0; i < p->count; i++)
-		p->items[i].small = is_candidate(check, p, &p->items[i]);
+		judge_patch(check, p, &p->items[i]);
 	for (size_t i = 0; i < check->mirrors.count; i++) {
 		const uint32_t *sides = check->mirrors.items[i].sides;
 		for (int k = 0; k < 2; k++) {
@@ -185,8 +191,9 @@ static void choose_flipped(const nt_check *check, patches *p)
 			if (number == NT_NONE || other == NT_NONE)
 				continue;
 			patch *one = &p->items[number];
-			one->flipped |= one->small && !p->items[other].small &&
-				one->host == check->islands[sides[1 - k] / 3];
+			const bool hosted = one->host == check->islands[sides[1 - k] / 3];
+			one->flipped |= hosted && one->small && !p->items[other].small;
+			one->seamless |= one->flipped || (hosted && one->minor && !p->items[other].minor);
 		}
 	}
 }
@@ -206,7 +213,7 @@ static uint64_t hash_corners(const nt_surface *s, size_t t, bool points)
 /* The sides of a doubled triangle lie against its twin: a patch of n such triangles has n outer sides or more. */
 static bool may_have_twins(const nt_check *check, const patch *one)
 {
-	return one->flipped || (check->surface.orientation[one->first] < 0 && one->sides >= one->size.triangles);
+	return one->seamless || (check->surface.orientation[one->first] < 0 && one->sides >= one->size.triangles);
 }
 
 /* The key of a triangle of this orientation. With `points` it lies where its twin lies. */
@@ -276,21 +283,27 @@ static nt_status find_twins(nt_check *check, patches *p)
 			}
 		}
 	for (size_t t = 0; (t = nt_bit_next(check->twins, t, s->triangle_count)) < s->triangle_count; t++)
-		p->items[p->numbers[t]].flipped = false;
+		p->items[p->numbers[t]].flipped = p->items[p->numbers[t]].seamless = false;
 	nt_hash_index_free(&keys);
 	return failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
 /* ---- what becomes of them ---- */
 
+/* Whether a triangle's patch has no seam of its own. */
+static bool is_seamless(const patches *p, uint32_t triangle)
+{
+	return p->numbers[triangle] != NT_NONE && p->items[p->numbers[triangle]].seamless;
+}
+
 /* Mirror edges stay in their order. */
-static void drop_mirror_edges(nt_check *check)
+static void drop_mirror_edges(nt_check *check, const patches *p)
 {
 	nt_edges *mirrors = &check->mirrors;
 	size_t kept = 0;
 	for (size_t i = 0; i < mirrors->count; i++) {
 		const nt_edge edge = mirrors->items[i];
-		if (!nt_bit(check->flipped, edge.sides[0] / 3) && !nt_bit(check->flipped, edge.sides[1] / 3))
+		if (!is_seamless(p, edge.sides[0] / 3) && !is_seamless(p, edge.sides[1] / 3))
 			mirrors->items[kept++] = edge;
 	}
 	mirrors->count = kept;
@@ -339,6 +352,6 @@ nt_status nt_check_flips(nt_check *check)
 	if (status)
 		return status;
 	report_flipped(check, &p);
-	drop_mirror_edges(check);
+	drop_mirror_edges(check, &p);
 	return NT_OK;
 }

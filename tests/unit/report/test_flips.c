@@ -175,15 +175,18 @@ static void move_rows(hand_mesh *h, uint32_t rows, float du)
 /* A single triangle is wound the other way in each. */
 TEST(area_texels_and_the_island_around_say_whether_one_is_flipped)
 {
-	enum { SEVENTH, HALF_OF_AREA, MANY_TEXELS, LONE, BETWEEN_HALVES, BETWEEN_ISLANDS, INVISIBLE, COUNT };
+	enum { SEVENTH, FIFTH, HALF_OF_AREA, MANY_TEXELS, LONE, BETWEEN_HALVES, BETWEEN_ISLANDS, INVISIBLE, COUNT };
 	static const size_t flipped[COUNT] = {[SEVENTH] = 1, [LONE] = 1};
+	/* of the column that is folded over, of the triangle, of both folded rows and the triangle */
+	static const size_t seams[COUNT] = {[SEVENTH] = 1, [FIFTH] = 1, [HALF_OF_AREA] = 1, [MANY_TEXELS] = 1,
+		[BETWEEN_HALVES] = 3};
 	static const float swapped[3][2] = {{2, 2}, {3, 3}, {3, 2}}; /* with coordinates of its own */
 	for (int i = 0; i < COUNT; i++) {
 		hand_mesh *h = make_grid();
-		if (i == SEVENTH || i == HALF_OF_AREA || i == INVISIBLE)
+		if (i <= HALF_OF_AREA || i == INVISIBLE)
 			set_uv(h, at(0, N), 0.75f, N - 0.75f);
-		/* 6 more are mirrored, at the other side: 7 of 50 */
-		for (uint32_t y = 2; y < N && (i == SEVENTH || i == HALF_OF_AREA); y++)
+		/* 6 more are mirrored, at the other side: 7 of 50; or 10 */
+		for (uint32_t y = i == FIFTH ? 0 : 2; y < N && i <= HALF_OF_AREA; y++)
 			set_uv(h, at(N, y), N - 1.6f, (float)y);
 		for (uint32_t y = 0; y <= N && i == HALF_OF_AREA; y++)
 			h->positions[at(N, y)][0] = 2 * N - 2;
@@ -205,6 +208,7 @@ TEST(area_texels_and_the_island_around_say_whether_one_is_flipped)
 		}
 		nt_report *report = hand_report(h, NULL);
 		assert_int_equal(hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE), flipped[i]);
+		assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_SEAM), seams[i]);
 		hand_free(h, report);
 	}
 }
