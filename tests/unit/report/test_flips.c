@@ -57,7 +57,7 @@ TEST(one_flipped_triangle_is_one_finding_at_its_own_place)
 	set_uv(h, at(N, 0), N - 0.75f, 0.75f); /* over the diagonal of its quad */
 	nt_report *report = hand_report(h, NULL);
 	const nt_report_finding *found = hand_finding(report, NT_CODE_UV_FLIPPED_TRIANGLE);
-	assert_string_equal(found->message, "1 of 50 triangles is flipped");
+	assert_string_equal(found->message, "1 of 50 triangles, 2 % of the area, is flipped");
 	assert_int_equal(found->severity, NT_SEVERITY_WARNING);
 	assert_int_equal(found->spot_count, 1);
 	assert_int_equal(found->spots[0].triangle, 2 * (N - 1));
@@ -175,8 +175,9 @@ static void move_rows(hand_mesh *h, uint32_t rows, float du)
 /* A single triangle is wound the other way in each. */
 TEST(area_texels_and_the_island_around_say_whether_one_is_flipped)
 {
-	enum { SEVENTH, FIFTH, HALF_OF_AREA, MANY_TEXELS, LONE, BETWEEN_HALVES, BETWEEN_ISLANDS, INVISIBLE, COUNT };
-	static const size_t flipped[COUNT] = {[SEVENTH] = 1, [LONE] = 1};
+	enum { SEVENTH, FIFTH, HALF_OF_AREA, MANY_TEXELS, LONE, BETWEEN_HALVES, BETWEEN_ISLANDS, INVISIBLE, NEEDLE,
+		WIDER, COUNT };
+	static const size_t flipped[COUNT] = {[SEVENTH] = 1, [LONE] = 1, [WIDER] = 1};
 	/* of the column that is folded over, of the triangle, of both folded rows and the triangle */
 	static const size_t seams[COUNT] = {[SEVENTH] = 1, [FIFTH] = 1, [HALF_OF_AREA] = 1, [MANY_TEXELS] = 1,
 		[BETWEEN_HALVES] = 3};
@@ -199,9 +200,12 @@ TEST(area_texels_and_the_island_around_say_whether_one_is_flipped)
 			cut_out(h, 2 * (2 * N + 2), swapped);
 		if (i == BETWEEN_ISLANDS) /* below it is another one */
 			move_rows(h, 2, 200);
-		if (i == INVISIBLE) { /* beside a square of a million */
+		/* the longest side is a root of two long; over it the third corner is 0.009 or 0.011 of that high */
+		if (i == NEEDLE || i == WIDER)
+			set_uv(h, at(0, N), i == NEEDLE ? 0.509f : 0.511f, i == NEEDLE ? N - 0.509f : N - 0.511f);
+		if (i == INVISIBLE) { /* beside a square of 62 500: the triangle is 0.5 of that and 25 more */
 			for (uint32_t k = 0; k < 4; k++)
-				hand_vertex(h, 1000.0f * (float)(1 + k % 2), 1000.0f * (float)(k / 2), 0,
+				hand_vertex(h, 250.0f * (float)(1 + k % 2), 250.0f * (float)(k / 2), 0,
 					(float)(100 + k % 2), (float)(k / 2));
 			const uint32_t first = (N + 1) * (N + 1);
 			hand_quad(h, first, first + 1, first + 3, first + 2);
