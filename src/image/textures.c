@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The images of one output: see textures.h. A source is a file; a request names sources and what they become; requests
- * of the same share a result. nt_textures_make() turns requests into results: whether a source is a height
+ * with the same bytes share a result. nt_textures_make() turns requests into results: whether a source is a height
  * map is known when its first rows are decoded.
  *
  * Files are opened to see their type and closed again, so that a thousand images do not need a thousand
@@ -42,6 +42,7 @@ typedef struct result {
 	nt_texture texture;
 	char *name;
 	nt_error error;
+	uint32_t same; /* an earlier result that is the same file; UINT32_MAX: none */
 } result;
 
 struct nt_textures {
@@ -338,7 +339,7 @@ static nt_status add_result(nt_textures *t, const nt_conversion *how, unsigned l
 	if (!nt_grow((void **)&t->results, &t->result_capacity, t->result_count + 1, sizeof *t->results))
 		return nt_fail_memory(error);
 	result *r = &t->results[t->result_count++];
-	*r = (result){.how = *how,
+	*r = (result){.how = *how, .same = UINT32_MAX,
 		.texture = {.from_heights = how->heights, .packed = how->packed, .lost = lost, .type = NT_IMAGE_OTHER}};
 	nt_texture *texture = &r->texture;
 	list_sources(t, how, texture);
@@ -491,6 +492,28 @@ static nt_status fatal(const nt_error *failure, nt_error *error)
 	return failure->status;
 }
 
+/* Results that turned out to be a file as it is are one. */
+static nt_status join_results(nt_textures *t, nt_error *error)
+{
+	nt_hash_index files = {0};
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < t->result_count && !status; i++) {
+		result *r = &t->results[i];
+		const nt_texture *texture = &r->texture;
+		if (texture->made || texture->type == NT_IMAGE_OTHER)
+			continue;
+		const uint64_t hash = nt_hash_bytes(0, &texture->sources[0], sizeof texture->sources[0]);
+		size_t at = NT_HASH_BEGIN;
+		while ((r->same = nt_hash_index_next(&files, hash, &at)) != UINT32_MAX)
+			if (t->results[r->same].texture.sources[0] == texture->sources[0])
+				break;
+		if (r->same == UINT32_MAX && !nt_hash_index_add(&files, hash, (uint32_t)i))
+			status = nt_fail_memory(error);
+	}
+	nt_hash_index_free(&files);
+	return status;
+}
+
 uint64_t nt_textures_pixels(const nt_textures *t, uint64_t *bytes)
 {
 	*bytes = 0;
@@ -564,7 +587,7 @@ nt_status nt_textures_make(nt_textures *t, const nt_texture_rules *rules, nt_err
 	nt_parallel_items(threads, t->result_count, make_result, t);
 	for (size_t i = 0; i < t->result_count && !status; i++)
 		status = fatal(&t->results[i].error, error);
-	return status;
+	return status ? status : join_results(t, error);
 }
 
 size_t nt_textures_requests(const nt_textures *t)
@@ -584,7 +607,8 @@ const nt_texture *nt_textures_at(const nt_textures *t, size_t number)
 
 size_t nt_textures_result(const nt_textures *t, uint32_t number)
 {
-	return t->requests[number].result;
+	const uint32_t own = t->requests[number].result, same = t->results[own].same;
+	return same != UINT32_MAX ? same : own;
 }
 
 const nt_texture *nt_textures_of(const nt_textures *t, uint32_t number)

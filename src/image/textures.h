@@ -106,7 +106,8 @@ nt_status nt_textures_make(nt_textures *textures, const nt_texture_rules *rules,
 /* Pixels that this has decoded and made, and bytes of the files. */
 uint64_t nt_textures_pixels(const nt_textures *textures, uint64_t *bytes);
 
-/* The results, none before they are made; equal requests have one. */
+/* The results, none before they are made; several requests may have one, and of results that are the same file one
+ * stands for all. */
 size_t nt_textures_count(const nt_textures *textures);
 const nt_texture *nt_textures_at(const nt_textures *textures, size_t result);
 size_t nt_textures_result(const nt_textures *textures, uint32_t request);

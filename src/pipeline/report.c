@@ -36,7 +36,7 @@ static const nt_texture *find_converted(const nt_textures *textures, const nt_ma
 {
 	if (!textures || !map || map->request == NT_NONE)
 		return NULL;
-	const nt_texture *made = nt_textures_of(textures, map->request);
+	const nt_texture *made = nt_textures_at(textures, nt_textures_result(textures, map->request));
 	return made->bytes ? made : NULL;
 }
 

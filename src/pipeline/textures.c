@@ -309,7 +309,7 @@ static bool is_mapped(const nt_scene *scene, const nt_settings *settings, const 
 		: &scene->materials[primitive->material].normal_map;
 	if (!map || !map->name || map->request == NT_NONE)
 		return false;
-	const nt_texture *image = nt_textures_of(textures, map->request);
+	const nt_texture *image = nt_textures_at(textures, nt_textures_result(textures, map->request));
 	return image->type != NT_IMAGE_OTHER &&
 		(image->sources[0]->found != NT_IMAGE_MISSING || settings->io.images == NT_IMAGES_LINK);
 }

@@ -192,10 +192,10 @@ for coat in gone.png short.png; do
 	done
 done
 
-scene "an image that is used as a colour and as a normal map is one image"
+scene "an image that is used as a colour and as a normal map that stays is one image"
 images write n.png 16 16 '(128, 128, 255)'
 quad "map_Kd n.png" "norm n.png"
-run quad.obj quad.glb
+run --flip-green=auto quad.obj quad.glb
 exits 0
 is "$(gltf quad.glb 'g.images.length')" 1
 

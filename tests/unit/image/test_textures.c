@@ -37,7 +37,7 @@ static uint32_t request(nt_textures *textures, const char *name, nt_texture_kind
 
 static const nt_texture *result(const nt_textures *textures, uint32_t number)
 {
-	return nt_textures_of(textures, number);
+	return nt_textures_at(textures, nt_textures_result(textures, number));
 }
 
 static nt_status make(nt_textures *textures, nt_error *error)
