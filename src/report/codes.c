@@ -221,8 +221,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"--weld leaves primitives that share vertices as they are if a vertex has meaning by its number: "
 		"EXT_mesh_features with implicit ids, CESIUM_primitive_outline, EXT_mesh_manifold, FB_ngon_encoding, "
 		"an extension that names an accessor with one element for each vertex, an animation that uses an "
-		"attribute's accessor; if Draco compresses primitives that get no tangents; and if an accessor cannot "
-		"be read.",
+		"attribute's accessor; if Draco compresses primitives that get no tangents; if no bufferView has "
+		"the positions of more than 65 536 vertices; and if an accessor cannot be read.",
 		"Leave --weld away, or take the extension out before.",
 		"nmtan --weld of a primitive with CESIUM_primitive_outline"),
 	ROW(EXTENSION_STALE, WARNING, "w--", LOOK, NULL, "{detail} refers to vertices, and vertices were copied",

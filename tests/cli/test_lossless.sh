@@ -152,6 +152,16 @@ gltf plain.glb ids 'g.meshes[0].primitives[0].extensions = {EXT_mesh_features: {
 run --weld ids.gltf out.gltf
 says "welded 648"
 
+scene "vertices that nothing in the file backs are not welded, whatever number it claims"
+python3 - <<'END' >claims.gltf
+import json
+print(json.dumps({'asset': {'version': '2.0'}, 'meshes': [{'primitives': [{'attributes': {'POSITION': 0}}]}],
+    'accessors': [{'componentType': 5126, 'count': 10**9, 'type': 'VEC3', 'min': [0] * 3, 'max': [0] * 3}]}))
+END
+run --weld --max-memory=64M claims.gltf out.gltf
+exits 0
+says "WELD_LEFT"
+
 scene "other formats are refused, but for OBJ, whose vertices are welded always"
 run --weld "$data/quad_ascii.ply" out.glb
 exits 1
