@@ -161,6 +161,12 @@ END
 run --weld claims.gltf out.gltf
 exits 0
 says "WELD_LEFT"
+# whose numbers of elements, twice the same, would be refused if it were read
+gltf "$WORK/layouts/unindexed.gltf" claims 'g.meshes[0].primitives[0].attributes._CLAIM = g.accessors.push({componentType: 5126, type: "SCALAR",
+	count: 1e6, sparse: {count: 2, indices: {bufferView: 0, componentType: 5121}, values: {bufferView: 0}}}) - 1'
+run --weld claims.gltf out.gltf
+exits 0
+says "its attributes differ in their number of elements"
 
 scene "other formats are refused, but for OBJ, whose vertices are welded always"
 run --weld "$data/quad_ascii.ply" out.glb

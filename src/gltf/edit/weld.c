@@ -107,14 +107,15 @@ static nt_status add_attribute(welding *w, uint32_t index)
 	const nt_gltf_accessor *a;
 	column c = {.of_source = true};
 	nt_status status = nt_gltf_get_accessor(w->edits->document, index, "/accessors", &a, w->error);
-	if (!status)
+	/* a number that no positions back may be any */
+	if (!status && a->count != w->vertices->old_count)
+		w->obstacle = "its attributes differ in their number of elements";
+	else if (!status && nt_gltf_users_of(w->edits->document, index)->foreign)
+		w->obstacle = "something else uses its attributes";
+	else if (!status)
 		status = nt_gltf_whole_elements(w->edits->document, a, w->scratch, &c.bytes, &c.stride, w->error);
 	if (status)
 		return leave_faulty(w, status);
-	if (a->count != w->vertices->old_count)
-		w->obstacle = "its attributes differ in their number of elements";
-	else if (nt_gltf_users_of(w->edits->document, index)->foreign)
-		w->obstacle = "something else uses its attributes";
 	c.width = a->element_bytes;
 	/* without a view all elements are zero */
 	return w->obstacle || !c.bytes || add_column(w, c) ? NT_OK : nt_fail_memory(w->error);
