@@ -375,6 +375,14 @@ static void compare_one(void *context, size_t item, unsigned thread)
 	v->checks[item].status = compare_check(v, &v->checks[item], &ignored);
 }
 
+/* Whether a primitive of an edited document has the faces of the source's, also if it gets no tangents: copies that
+ * others of its pool got are not for it. Blocks may drop faces, and accessors over them may claim anything. */
+static bool keeps_faces(const nt_mesh *mesh, const nt_mesh *found)
+{
+	return mesh->compressed || found->compressed ||
+		mesh->primitives[0].face_count == found->primitives[0].face_count;
+}
+
 /* Lists the meshes that are compared, and which primitives of the document each is. needed: [mesh_count] of the
  * document. */
 static nt_status list_checks(verification *v, bool *needed, nt_error *error)
@@ -386,6 +394,8 @@ static nt_status list_checks(verification *v, bool *needed, nt_error *error)
 		mesh_check *check = &v->checks[v->count];
 		*check = (mesh_check){.mesh = mesh, .first = v->edited ? m : number,
 			.part_count = !v->edited && mesh->primitive_count ? mesh->primitive_count : 1};
+		if (v->edited && m < v->found.mesh_count && !keeps_faces(mesh, &v->found.meshes[m]))
+			return fail_in(mesh, "in the number of faces", error);
 		if (v->edited ? !solved : !mesh->face_count)
 			continue;
 		v->count++;
@@ -481,6 +491,10 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, c
 		refusal = set.failure;
 		status = refusal.status;
 	}
+	if (status == NT_ERROR_INPUT) {
+		nt_finding_add(&scene->findings, NT_CODE_NOT_VERIFIED, NULL, 1, "%s", refusal.message);
+		status = NT_OK;
+	}
 	if (status == NT_OK) {
 		nt_trace *const trace = nt_trace_use(NULL);
 		verification v = {.scene = scene, .options = options,
@@ -492,9 +506,6 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, c
 		status = compare_scene(&v, error);
 		nt_scene_free(&v.found);
 		nt_trace_use(trace);
-	} else if (status == NT_ERROR_INPUT) {
-		nt_finding_add(&scene->findings, NT_CODE_NOT_VERIFIED, NULL, 1, "%s", refusal.message);
-		status = NT_OK;
 	} else {
 		*error = refusal;
 	}

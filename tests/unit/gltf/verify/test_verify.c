@@ -179,10 +179,11 @@ TEST(the_first_mesh_that_differs_is_told)
 	}
 }
 
-/* A triangle and a vertex that is in none. A source without that vertex would have the same corners. */
+/* A triangle and a vertex that is in none. A source without that vertex would have the same corners. tinygltf refuses
+ * the skin, and meshes are compared all the same. */
 TEST(vertices_that_are_drawn_besides_triangles_are_told)
 {
-	static const char text[] = "{\"asset\":{\"version\":\"2.0\"},"
+	static const char text[] = "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{}],\"skins\":[{\"joints\":[0]}],"
 		"\"accessors\":[{\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"}],"
 		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":0}}]}]}";
 	const char *path = in_folder("a.glb");
@@ -195,6 +196,13 @@ TEST(vertices_that_are_drawn_besides_triangles_are_told)
 	p.scene.meshes[0].source_vertex_count--;
 	assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_ERROR_INTERNAL);
 	assert_non_null(strstr(error.message, "in the vertices that are drawn of mesh"));
+	assert_int_equal(p.scene.findings.items[0].code, NT_CODE_NOT_VERIFIED);
+	/* one more face, of a primitive that gets no tangents */
+	p.scene.meshes[0].decision = NT_SKIP_NO_SLOT;
+	assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_OK);
+	p.scene.meshes[0].primitives[0].face_count--;
+	assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &options, &error), NT_ERROR_INTERNAL);
+	assert_non_null(strstr(error.message, "in the number of faces of mesh"));
 	close_edited(&p);
 	remove(in_folder("unindexed.gltf"));
 }
