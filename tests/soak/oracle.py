@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""oracle.py [--commit=HASH] [--jobs=N] [--only=WORD] [--all] FOLDER...: does this tree do what an older one did?
+"""oracle.py [--commit=HASH] [--jobs=N] [--only=WORD] [--all] [--sample=N] [--bytes=N] FOLDER...: does this tree do what an older one did?
 
 Builds HASH from git in build/oracle, converts every mesh below the folders with both programs and a dozen sets of
 options, and compares exit codes, messages (by code and place), reports (field by field) and outputs: their names and bytes,
 and where the bytes of a glTF differ, every value. It prints a table of kinds and counts, the first five of each kind
-(all of them with --all), and fails if a difference is not among those that EXPLAINED names.
+(all of them with --all), and fails if a difference is not among those that EXPLAINED names. With --sample, at most N files
+of each folder are taken, the same ones each time; with --bytes, only files up to that size.
 """
 import collections
 import concurrent.futures
 import json
 import os
+import random
 import re
 import subprocess
 import sys
@@ -177,7 +179,7 @@ def compare(job):
     return [(kind, label, source, text) for kind, text in found]
 
 
-commit, jobs, only, most, inputs = COMMIT, os.cpu_count() or 1, '', 5, []
+commit, jobs, only, most, sample, largest, inputs = COMMIT, os.cpu_count() or 1, '', 5, sys.maxsize, sys.maxsize, []
 for word in sys.argv[1:]:
     if word.startswith('--commit='):
         commit = word[9:]
@@ -187,9 +189,14 @@ for word in sys.argv[1:]:
         only = word[7:]
     elif word == '--all':
         most = sys.maxsize
+    elif word.startswith('--sample='):
+        sample = int(word[9:])
+    elif word.startswith('--bytes='):
+        largest = int(word[8:])
     else:
-        for path, _, names in os.walk(word):
-            inputs += [os.path.abspath(os.path.join(path, name)) for name in names if name.lower().endswith(MESHES)]
+        below = sorted(os.path.abspath(os.path.join(path, name)) for path, _, names in os.walk(word) for name in names
+                       if name.lower().endswith(MESHES) and os.path.getsize(os.path.join(path, name)) <= largest)
+        inputs += random.Random(45).sample(below, min(sample, len(below)))
 programs = [build(commit), os.path.abspath('build/release/nmtan')]
 rows = EXPLAINED if commit.startswith(COMMIT) else LAYOUT
 work = [(source, options) for source in sorted(inputs) for options in SETS if only in options[0]]
