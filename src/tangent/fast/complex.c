@@ -30,7 +30,7 @@
 
 #include <string.h>
 #include "base/parallel.h"
-#include "tangent/fast/complex_solve.h"
+#include "tangent/fast/complex.h"
 
 /* Vertices for a thread at least: 70 microseconds. */
 enum { GRAIN = 256 };

@@ -4,7 +4,7 @@
  * its few corners, or, where it is tangled, in order and through a table over all vertices, so that a hub costs as much
  * for each of its corners as any other vertex does.
  */
-#include "tangent/fast/complex_groups.h"
+#include "tangent/fast/complex.h"
 
 #include <string.h>
 

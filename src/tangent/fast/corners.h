@@ -11,7 +11,7 @@
 #define NT_TANGENT_FAST_CORNERS_H
 
 #include "base/vec.h"
-#include "tangent/fast/complex_groups.h"
+#include "tangent/fast/complex.h"
 #include "tangent/fast/lanes.h"
 
 /* 16 single corners by component. */

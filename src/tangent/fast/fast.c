@@ -38,7 +38,7 @@
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/parallel.h"
-#include "tangent/fast/memory.h"
+#include "tangent/fast/parts.h"
 #include "topology/corners.h"
 
 /* Each thread has cursors of its own for all vertices, which are then gone over together: the more threads, the more

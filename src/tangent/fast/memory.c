@@ -18,7 +18,7 @@
  * Borrowed is the output itself, or, in a sparse solve, whose output is not filled so that its pages need not exist,
  * what the caller fills afterwards (nt_solve.spare).
  */
-#include "tangent/fast/memory.h"
+#include "tangent/fast/parts.h"
 
 static size_t output_bytes(const nt_solve *solve)
 {
