@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * nmtan_split(), and what it has in common with nmtan_vertex_tangents(): see split.h.
+ * nmtan_split(), and what it has in common with nmtan_vertex_tangents(): see inside.h.
  */
-#include "api/split.h"
+#include "api/inside.h"
 
 #include <string.h>
 #include "base/struct_bytes.h"
 #include "topology/corners.h"
-#include "topology/plain.h"
 #include "topology/split.h"
 
 bool nt_split_read(nt_split_places *places, const nmtan_mesh *mesh, const nmtan_split_output *output)

@@ -9,8 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
-#include "api/split.h"
-#include "api/vertices.h"
+#include "api/inside.h"
 #include "base/clock.h"
 #include "base/counts.h"
 #include "base/cpu.h"
@@ -19,11 +18,10 @@
 #include "base/struct_bytes.h"
 #include "base/vec.h"
 #include "tangent/fast/fast.h"
-#include "tangent/repair.h"
+#include "tangent/frames.h"
 #include "tangent/solve.h"
 #include "tangent/sums/sums.h"
 #include "topology/corners.h"
-#include "topology/plain.h"
 
 /* No stage shares fewer corners among threads. */
 enum { LEAST_SHARED_CORNERS = 1 << 14 };

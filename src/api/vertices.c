@@ -10,12 +10,12 @@
  *
  * For meshes with quads all rows are written and split one after the other.
  */
-#include "api/vertices.h"
+#include "api/inside.h"
 
 #include <string.h>
 #include "base/clock.h"
 #include "base/parallel.h"
-#include "tangent/repair.h"
+#include "tangent/frames.h"
 #include "topology/corners.h"
 
 typedef struct vertex_split {

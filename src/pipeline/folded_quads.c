@@ -15,7 +15,6 @@
 #include <string.h>
 #include "base/counts.h"
 #include "tangent/frames.h"
-#include "tangent/repair.h"
 #include "topology/corners.h"
 
 /* Bits of nt_known.flags: the triangle is half of a cut quad. */

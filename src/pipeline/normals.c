@@ -17,8 +17,7 @@
 #include <string.h>
 #include "base/dvec.h"
 #include "base/parallel.h"
-#include "tangent/normals.h"
-#include "tangent/usable.h"
+#include "tangent/frames.h"
 
 /* Made normals less apart than this are one: rounding of positions makes some ten millionths of well-shaped triangles
  * in one plane, and the coarsest normals that glTF can quantize to in 16 bits are 3e-5 apart. */

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include "base/counts.h"
 #include "image/examine.h"
-#include "topology/reversed.h"
+#include "topology/corners.h"
 
 /* Share of the triangles whose w may be right all the same: slivers. */
 enum { RIGHT_OF = 500 };

@@ -20,7 +20,7 @@
 #include "base/pages.h"
 #include "gltf/load.h"
 #include "scene/morphs.h"
-#include "tangent/usable.h"
+#include "tangent/frames.h"
 
 /* Whether a part is a mesh of the scene. */
 static bool is_solved_here(const nt_whole *w, const nt_mesh *part)

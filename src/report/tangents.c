@@ -15,8 +15,7 @@
 #include "base/parallel.h"
 #include "report/maker/maker.h"
 #include "report/maker/quads.h"
-#include "topology/orientation.h"
-#include "topology/reversed.h"
+#include "topology/corners.h"
 
 /* Below this a tangent has no length; the tolerance of the Khronos validator for the others. */
 static const double ZERO_LENGTH = 1e-6, UNIT_TOLERANCE = 0.00674;

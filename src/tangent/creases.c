@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Which corners share a normal if faces that meet at an angle make a crease: see normals.h. At each position the
+ * Which corners share a normal if faces that meet at an angle make a crease: see frames.h. At each position the
  * corners are the nodes of a graph; two are joined if their faces have an edge there in common and meet at less than
  * the angle.
  * So a crease that ends within a surface opens only as far as it goes. Expected linear time: of an edge of many faces
@@ -10,7 +10,7 @@
 #include <string.h>
 #include "base/dvec.h"
 #include "base/hash.h"
-#include "tangent/normals.h"
+#include "tangent/frames.h"
 #include "topology/corners.h"
 
 enum { MOST_COMPARED = 8 };

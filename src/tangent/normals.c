@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Normals from faces: see normals.h. Corners meet by the value of their position, not by index, so that a
+ * Normals from faces: see frames.h. Corners meet by the value of their position, not by index, so that a
  * texture seam does not become a crease. Expected linear time; a vertex remembers the sum that it has in the group of
  * the corner before, so that hardly more than one look-up is made for each. Face normals and angles are worked out for
  * some faces at a time, in vectors of whatever the compiler assumes of every processor; sums are in the order of faces.
  */
-#include "tangent/normals.h"
+#include "tangent/frames.h"
 
 #include <float.h>
 #include <string.h>
 #include "base/angle.h"
 #include "base/dvec.h"
 #include "base/hash.h"
-#include "tangent/frames.h"
 #include "topology/corners.h"
 
 /* The sum for one position and smoothing group. */

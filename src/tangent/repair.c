@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Repair: see repair.h.
+ * Repair: see frames.h.
  *
  * The check (usable.c) finds nothing on most meshes, and then nothing is done here. If it finds something, it has
  * marked the corners concerned with w = 0. They are collected by welded vertex, the triangles around these vertices
@@ -18,14 +18,12 @@
  *
  * Apart from what is faulty this costs one look at the numbers of each triangle's vertices.
  */
-#include "tangent/repair.h"
+#include "tangent/frames.h"
 
 #include <math.h>
 #include <string.h>
 #include "base/counts.h"
 #include "base/parallel.h"
-#include "tangent/frames.h"
-#include "tangent/usable.h"
 #include "topology/corners.h"
 
 /* Faces that share a word of faulty bits, and open vertices, or faces, for which a thread more pays. */

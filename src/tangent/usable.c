@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The search for unusable tangents: see usable.h. Most faces need no look: a method that has bounded the error of
+ * The search for unusable tangents: see frames.h. Most faces need no look: a method that has bounded the error of
  * its determinants and checked the vectors it shared out knows that they are usable (nt_solve.known). The others
  * are suspects. The triangles among 64 are found first and then checked.
  */
-#include "tangent/usable.h"
+#include "tangent/frames.h"
 
 #include <string.h>
 #include "base/counts.h"
 #include "base/parallel.h"
-#include "tangent/frames.h"
 #include "topology/corners.h"
 
 /* Faces that share a word of faulty bits, and the words per thread below which threads do not pay. */

@@ -16,7 +16,7 @@
 
 #include "base/borrowed.h"
 #include "nmtan.h"
-#include "topology/triangles.h"
+#include "topology/corners.h"
 
 enum { NT_FAN_LANES = 16, NT_FAN_DEPTH = 12 };
 

@@ -6,7 +6,7 @@
 #include "topology/corners.h"
 
 #include "base/largest.h"
-#include "topology/weld_parts.h"
+#include "topology/inside.h"
 
 /* Counts the corners; every face must have 3 or 4. */
 static nmtan_status count_corners(const nmtan_mesh *mesh, size_t *corner_count)

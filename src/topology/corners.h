@@ -1,15 +1,157 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Corners that are one vertex to MikkTSpace: equal position, normal and texture coordinates, compared as
- * floats (0 equals -0, NaN equals nothing), no epsilon. Spec page, step 2.
+ * What a mesh is to this room: its triangles, by corners; when corners are one vertex; which orientation a triangle
+ * has in UV space. Corners are numbered through all faces.
  */
 #ifndef NT_TOPOLOGY_CORNERS_H
 #define NT_TOPOLOGY_CORNERS_H
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include "base/exact.h"
 #include "base/scratch.h"
 #include "nmtan.h"
-#include "topology/orientation.h"
-#include "topology/triangles.h"
+
+/* ---- triangles ---- */
+
+/*
+ * Faces of 3 as they are, faces of 4 cut in two. A cut takes 4 bytes a triangle, and vertices are looked up through
+ * it. Arrays of corners and of vertices would be read in one go, but take 24 bytes, more than everything else of a
+ * mesh of quads that does not fit its output.
+ */
+
+/* Corner k of a triangle is corner k of its face, or the one behind where bit k of its cut is set. Above these
+ * bits is the first corner of the face, which is the same for halves of one quad. */
+enum { NT_CUT_BITS = 3 };
+
+/* In a triangle's flags, whose other bits are the method's: two corners are at one position; it is the second half of a
+ * quad, whose first half is the triangle before. */
+enum { NT_DEGENERATE = 4, NT_SECOND_HALF = 8 };
+
+typedef struct nt_triangles {
+	const uint32_t *ids;  /* [corners of the mesh] the vertex of each */
+	const uint32_t *cuts; /* [triangles]; NULL: every face is a triangle */
+} nt_triangles;
+
+/* First triangle of each range: range r holds [bounds[r], bounds[r + 1]). */
+typedef struct nt_triangle_ranges {
+	unsigned count;
+	const size_t *bounds; /* [count + 1] */
+} nt_triangle_ranges;
+
+/* The cut of a triangle with these corners of the face that begins at corner `first`. */
+static inline uint32_t nt_cut_of(uint32_t first, const uint32_t corners[3])
+{
+	uint32_t cut = first << NT_CUT_BITS;
+	for (uint32_t k = 0; k < 3; k++)
+		cut |= (corners[k] - first - k) << k;
+	return cut;
+}
+
+/* Corner k of triangle t, as a corner of the mesh. */
+static inline size_t nt_triangle_corner(const nt_triangles *triangles, size_t t, unsigned k)
+{
+	if (!triangles->cuts)
+		return 3 * t + k;
+	const uint32_t cut = triangles->cuts[t];
+	return (cut >> NT_CUT_BITS) + k + (cut >> k & 1);
+}
+
+/* Whether triangles t and t + 1 are of one face. */
+static inline int nt_is_cut_between(const nt_triangles *triangles, size_t t)
+{
+	const uint32_t *cuts = triangles->cuts;
+	return cuts && (cuts[t] ^ cuts[t + 1]) >> NT_CUT_BITS == 0;
+}
+
+/* The vertices of `count` triangles from t on, three each: in place, or copied to copy[3 * count]. */
+static inline const uint32_t *nt_triangle_vertices(const nt_triangles *triangles, size_t t, size_t count,
+	uint32_t *copy)
+{
+	if (!triangles->cuts)
+		return triangles->ids + 3 * t;
+	for (size_t i = 0; i < count; i++) {
+		const uint32_t cut = triangles->cuts[t + i];
+		const uint32_t *face = triangles->ids + (cut >> NT_CUT_BITS);
+		copy[3 * i] = face[cut & 1];
+		copy[3 * i + 1] = face[1 + (cut >> 1 & 1)];
+		copy[3 * i + 2] = face[2 + (cut >> 2 & 1)];
+	}
+	return copy;
+}
+
+/* ---- orientation: orientation.c ---- */
+
+/*
+ * The one definition of "mirrored" and "degenerate" in UV space, and of how a quad is cut: as MikkTSpace does where it
+ * is solved, inside where it is written as triangles.
+ *
+ * The sign is exact. A difference of two floats is exact in double unless their exponents lie more
+ * than 2^29 apart; rounding a product is monotone, so two rounded products that differ compare as the
+ * exact ones do; and where they are equal the residuals, which fma gives exactly, decide. The rest (inexact
+ * differences) is summed as an expansion (J. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
+ * Geometric Predicates", 1997).
+ */
+
+/* The same as nt_orientation for any input, by expansions alone. */
+int nt_orientation_slow(const float a[2], const float b[2], const float c[2]);
+
+/* The same for equal products p = fl(bu cv) = fl(bv cu) of exact differences: the residuals decide. */
+static inline int nt_orientation_residual(double bu, double bv, double cu, double cv, double p)
+{
+	const double left = nt_fma(bu, cv, -p), right = nt_fma(bv, cu, -p);
+	return p == 0.0 ? 0 : (left > right) - (left < right);
+}
+
+/* The edges of a triangle in UV space from its first corner, and 0.0 if they are exact. */
+typedef struct nt_uv_edges {
+	double bu, bv, cu, cv, error;
+} nt_uv_edges;
+
+static inline nt_uv_edges nt_uv_edges_of(const float a[2], const float b[2], const float c[2])
+{
+	const double bu = (double)b[0] - a[0], bv = (double)b[1] - a[1];
+	const double cu = (double)c[0] - a[0], cv = (double)c[1] - a[1];
+	return (nt_uv_edges){bu, bv, cu, cv, nt_difference_error(bu, a[0], b[0]) + nt_difference_error(bv, a[1], b[1]) +
+		nt_difference_error(cu, a[0], c[0]) + nt_difference_error(cv, a[1], c[1])};
+}
+
+/* Exact sign of the UV determinant of a triangle, which has these edges: see nmtan_orientation(). */
+static inline int nt_orientation_by(const nt_uv_edges *e, const float a[2], const float b[2], const float c[2])
+{
+	const double p = e->bu * e->cv, r = e->bv * e->cu;
+	if (e->error == 0.0)
+		return p != r ? p > r ? 1 : -1 : nt_orientation_residual(e->bu, e->bv, e->cu, e->cv, p);
+	return nt_orientation_slow(a, b, c);
+}
+
+static inline int nt_orientation(const float a[2], const float b[2], const float c[2])
+{
+	const nt_uv_edges edges = nt_uv_edges_of(a, b, c);
+	return nt_orientation_by(&edges, a, b, c);
+}
+
+/* Exact comparison of the determinants' magnitudes: -1, 0, +1 as |det(a, b, c)| is less than, equal to
+ * or greater than |det(d, e, f)|. A triangle with a value that is not finite counts as 0. */
+int nt_compare_area(const float a[2], const float b[2], const float c[2], const float d[2],
+	const float e[2], const float f[2]);
+
+/* The triangles of a quad as corner numbers 0..3: row 0 for the diagonal 0-2, row 1 for 1-3, each with
+ * MikkTSpace's order and first corners. */
+extern const unsigned char nt_quad_triangles[2][2][3];
+
+/* The diagonal along which MikkTSpace cuts a quad, as a row of nt_quad_triangles: the shorter one in UV
+ * space; where those are equal or not comparable, the shorter one in space, 0-2 when in doubt. */
+int nt_quad_diagonal(const float *const texcoords[4], const float *const positions[4]);
+
+/* The diagonal along which a quad is written as triangles. It is that of the solve, unless one triangle is inverted by
+ * it (it lies outside of the quad in space) and none by the other diagonal. Inverted means against the quad's Newell
+ * normal. A simple outline has at most one corner that turns inwards, so one diagonal inverts nothing; an outline that
+ * crosses itself has an inverted triangle either way. */
+int nt_written_quad_diagonal(int solved, const float *const positions[4]);
+
+/* ---- faces and corners of a mesh: corners.c ---- */
 
 /* A row of an attribute. */
 static inline const float *nt_row(const float *data, size_t stride_bytes, size_t row)
@@ -23,7 +165,7 @@ static inline size_t nt_vertex_of(const nmtan_mesh *mesh, size_t corner)
 	return mesh->indices ? mesh->indices[corner] : corner;
 }
 
-/* Whether normals or texture coordinates have numbers of their own: see nmtan_mesh and plain.h. */
+/* Whether normals or texture coordinates have numbers of their own: see nmtan_mesh and nt_make_plain(). */
 static inline bool nt_makes_vertices(const nmtan_mesh *mesh)
 {
 	return mesh->normal_count || mesh->normal_indices || mesh->texcoord_count || mesh->texcoord_indices;
@@ -176,5 +318,33 @@ nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count);
  */
 nmtan_status nt_weld_corners(const nmtan_mesh *mesh, size_t corner_count, nt_scratch *scratch,
 	uint32_t *ids, size_t *count);
+
+/* ---- triangles whose tangents run against their texture coordinates: reversed.c ---- */
+
+/* A triangle with what its corners have. */
+typedef struct nt_tangent_triangle {
+	const float *positions[3], *normals[3], *texcoords[3];
+	const float *tangents[3]; /* of four numbers */
+	int orientation;          /* of the texture coordinates, not 0 */
+	bool other_w;             /* w is negated */
+} nt_tangent_triangle;
+
+/* Whether all three tangents run against growing u and all bitangents against growing v although the normals agree with
+ * the winding. Asked of triangles whose w is right. */
+bool nt_is_reversed(const nt_tangent_triangle *triangle);
+
+/* ---- plain meshes: plain.c ---- */
+
+/* The only ones that the solve knows have 32-bit indices, one row of each attribute for each vertex, and v up. */
+
+/*
+ * Makes a mesh plain, whose faces nt_check_faces() has accepted and whose strides are filled in; of attributes that are
+ * NULL nothing is made. New arrays are in the scratch; a plain mesh stays as it is, at no cost.
+ *
+ *   corners  receives NULL or, where vertices have come into being, the first corner of each: [mesh->vertex_count]
+ *
+ * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ */
+nmtan_status nt_make_plain(nmtan_mesh *mesh, size_t corner_count, nt_scratch *scratch, const uint32_t **corners);
 
 #endif

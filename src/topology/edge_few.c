@@ -9,7 +9,7 @@
  * The representative of a vertex is between its first and its last corner. The order of the last run can only matter
  * if two of three triangles or more, whose middle representative may be the largest lower end, share the largest.
  */
-#include "topology/edge_parts.h"
+#include "topology/inside.h"
 
 #include <math.h>
 #include <string.h>
@@ -142,7 +142,7 @@ static bool find_suspects(few *f, bool of_all)
 	return most >= NT_LEAST_EDGES;
 }
 
-/* A cell, as representatives.h halves it. Its vertices have numbers from 1 on. */
+/* A cell, as representatives.c halves it. Its vertices have numbers from 1 on. */
 typedef struct few_cell {
 	uint64_t wanted;                      /* a bit for each vertex */
 	uint32_t first;                       /* no corner is before */

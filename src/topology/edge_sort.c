@@ -4,7 +4,7 @@
  * are sorted that hold edges of the run. Its keys are representatives of vertices, which lie between the first and the
  * last corner: that decides most comparisons. The others find representatives, each in its cell.
  */
-#include "topology/edge_parts.h"
+#include "topology/inside.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -12,7 +12,7 @@
  * That takes the triangles with a corner in one of these cells. The sums note them in passing, since they have every
  * corner's position in lanes.
  */
-#include "topology/edge_parts.h"
+#include "topology/inside.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Exact orientation: the slow half of orientation.h, and the cut of quads.
+ * Exact orientation: the slow half of corners.h, and the cut of quads.
  *
  * The determinant of a triangle is (bu)(cv) - (bv)(cu). Each difference is a sum of two doubles, each
  * product of two doubles a sum of two, so the determinant is a sum of 16 doubles, all multiples of
  * 2^-298 below 2^260: nothing overflows, nothing underflows, and the expansion is exact.
  */
-#include "topology/orientation.h"
+#include "topology/corners.h"
 
 #include <math.h>
 #include <stddef.h>

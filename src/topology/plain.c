@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Plain meshes: see plain.h. Corners that use the same rows become one vertex. The weld that finds them is the one of
+ * Plain meshes: see corners.h. Corners that use the same rows become one vertex. The weld that finds them is the one of
  * attributes, over the halves of the rows' numbers: a float holds 16 bits exactly.
  */
-#include "topology/plain.h"
+#include "topology/corners.h"
 
 #include <string.h>
-#include "topology/corners.h"
 
 enum { KEY_FLOATS = 8 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "topology/representatives.h"
+#include "topology/edge_sort.h"
 
 #include <float.h>
 #include <string.h>

@@ -4,7 +4,7 @@
  * bumps look like dents. So it is where a file's tangents were made for texture coordinates that were turned since,
  * or are those of a triangle that rounding has turned over.
  */
-#include "topology/reversed.h"
+#include "topology/corners.h"
 
 #include "base/dvec.h"
 

@@ -7,7 +7,7 @@
 #include "topology/weld.h"
 
 #include "base/parallel.h"
-#include "topology/weld_parts.h"
+#include "topology/inside.h"
 
 /* Soups of fewer corners are not looked at. */
 enum { LEAST_FLAT = 3 * 1024 };

@@ -15,7 +15,7 @@
  * counts as marked again. Equality does not depend on threads, nor on whether a vertex is listed by chance.
  */
 #include "base/parallel.h"
-#include "topology/weld_parts.h"
+#include "topology/inside.h"
 
 /* Threads that fill filters: each takes up to 8 bytes a vertex for its bitmaps. */
 enum { MOST_RANGES = 8 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Numbers for rows of eight floats, by a table of hashes (weld_parts.h) on one thread.
+ * Numbers for rows of eight floats, by a table of hashes (inside.h) on one thread.
  *
  * Rows go in batches: first all hashes of the batch and a prefetch of their entries, then the probes. On a
  * mesh of a million vertices the table is larger than the second-level cache, and a probe without the
@@ -8,7 +8,7 @@
  *
  * NaN equals nothing: each item of a row with a NaN has a row of its own.
  */
-#include "topology/weld_parts.h"
+#include "topology/inside.h"
 
 typedef struct batch {
 	nt_weld_row *rows; /* where they were loaded */

@@ -13,7 +13,7 @@
  * The fewer rows the ranges have in common, the more threads gain.
  */
 #include "base/parallel.h"
-#include "topology/weld_parts.h"
+#include "topology/inside.h"
 
 /* In `places`: no range before has the row; then its number, behind the bit. */
 #define NEW UINT32_MAX

@@ -3,7 +3,7 @@
 
 #include <math.h>
 #include <string.h>
-#include "topology/orientation.h"
+#include "topology/corners.h"
 
 static bool are_rows_equal(const float *rows, size_t floats, uint32_t a, uint32_t b)
 {

@@ -8,7 +8,7 @@
 #include "report/surface/surface.h"
 
 #include <stdlib.h>
-#include "topology/orientation.h"
+#include "topology/corners.h"
 
 /* A mesh, and the box of its unmirrored triangles as the sampler wraps them, rounded outwards. */
 struct nt_other {

@@ -13,7 +13,7 @@
 #include "base/deadline.h"
 #include "base/parallel.h"
 #include "base/vec.h"
-#include "tangent/usable.h"
+#include "tangent/frames.h"
 #include "topology/corners.h"
 
 /*

@@ -15,9 +15,9 @@
 #include "tangent/fast/fan_lanes.h"
 #include "tangent/fast/parts.h"
 #include "tangent/fast/turn.h"
-#include "tangent/usable.h"
+#include "tangent/frames.h"
 
-/* ---- 16 records by component: loaded, normalised, judged by the rules of usable.h, stored ---- */
+/* ---- 16 records by component: loaded, normalised, judged by the rules of tangent/frames.h, stored ---- */
 
 /* The lanes of records that hold their states, with those bits; 0 in the others. */
 #if WIDTH == 16

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
 #include <math.h>
-#include "tangent/normals.h"
+#include "tangent/frames.h"
 
 /* Two quads that meet at a right angle along the y axis: one in z = 0 (normal +z), one in x = 0 below
  * it (normal +x). Vertices of the edge are separate, as at a texture seam. */

@@ -2,7 +2,7 @@
 #include "test.h"
 #include <float.h>
 #include <math.h>
-#include "topology/orientation.h"
+#include "topology/corners.h"
 
 TEST(orientation_is_positive_counterclockwise)
 {

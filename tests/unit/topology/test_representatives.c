@@ -3,7 +3,7 @@
 #include "test.h"
 #include <float.h>
 #include <math.h>
-#include "topology/representatives.h"
+#include "topology/edge_sort.h"
 
 enum { MOST = 20000 };
 

@@ -8,7 +8,7 @@
 #include "budget.h"
 #include "topology/corners.h"
 #include "topology/weld.h"
-#include "topology/weld_parts.h"
+#include "topology/inside.h"
 
 static const unsigned thread_counts[] = {1, 2, 3, 8};
 enum { THREAD_COUNTS = 4 };

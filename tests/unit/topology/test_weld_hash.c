@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The hash of the weld's rows (topology/weld_row.h): vertices of structured meshes spread over a table as random ones
+ * The hash of the weld's rows (topology/weld.h): vertices of structured meshes spread over a table as random ones
  * would.
  */
 #include "test.h"
-#include "topology/weld_parts.h"
+#include "topology/inside.h"
 
 enum { SIDE = 256, COUNT = SIDE * SIDE, TABLE_BITS = 17, TAG_BITS = 14 };
 

@@ -17,8 +17,8 @@
 #include "tangent/fast/bins.h"
 #include "tangent/fast/fast.h"
 #include "tangent/fast/parts.h"
-#include "tangent/repair.h"
-#include "topology/orientation.h"
+#include "tangent/frames.h"
+#include "topology/corners.h"
 
 typedef struct golden_comparison {
 	bool sorted;

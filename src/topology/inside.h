@@ -1,16 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The entries of the table of rows (weld_table.c), for its use on several threads (weld_threads.c) and the weld of
- * vertices (weld_bloom.c, weld.c).
+ * What the files of the weld, and of the order of edges, have among themselves.
+ */
+#ifndef NT_TOPOLOGY_INSIDE_H
+#define NT_TOPOLOGY_INSIDE_H
+
+#include "base/borrowed.h"
+#include "topology/edge_sort.h"
+#include "topology/weld.h"
+
+/* ---- the weld: entries of the table of rows ---- */
+
+/*
+ * For the table (weld_table.c), its use on several threads (weld_threads.c) and the weld of vertices (weld_bloom.c,
+ * weld.c).
  *
  * An entry of 4 bytes holds a number and, in the bits that the number leaves free, a tag of the hash, so that
  * the row of another key is read about once in 2^tag probes. Tables are open-addressing and at most half full.
  */
-#ifndef NT_TOPOLOGY_WELD_PARTS_H
-#define NT_TOPOLOGY_WELD_PARTS_H
-
-#include "base/borrowed.h"
-#include "topology/weld_row.h"
 
 /* Rows whose hashes are made, and whose entries are prefetched, at a time. */
 enum { NT_WELD_BATCH = 32 };
@@ -94,5 +101,45 @@ typedef enum nt_weld_outcome {
 /* Welds vertices, which are the items of `w`: those of corners where the mesh has no indices. Makes rows, row_count
  * and, where a number is another than the vertex's own, numbers. */
 nt_weld_outcome nt_weld_by_filter(nt_welder *w, unsigned ranges);
+
+/* ---- the order of edges ---- */
+
+/* Shared by edge_tail.c, edge_few.c (does the order of the last run matter?) and edge_sort.c (which order?) alone. */
+
+/* If the order of the last run matters, it has three edges or more. */
+enum { NT_LEAST_EDGES = 3 };
+
+static inline uint32_t nt_least_of(uint32_t a, uint32_t b)
+{
+	return a < b ? a : b;
+}
+
+static inline uint32_t nt_most_of(uint32_t a, uint32_t b)
+{
+	return a < b ? b : a;
+}
+
+static inline const uint32_t *nt_vertices_of(const nt_welded_mesh *mesh, size_t triangle, uint32_t copy[3])
+{
+	return nt_triangle_vertices(mesh->triangles, triangle, 1, copy);
+}
+
+/* The corner of the mesh that is corner k of triangle t: 3 * t + k. */
+static inline uint32_t nt_mesh_corner(const nt_welded_mesh *mesh, uint32_t corner)
+{
+	return (uint32_t)nt_triangle_corner(mesh->triangles, corner / 3, corner % 3);
+}
+
+/* Whether the order of the last run may matter, of a mesh of LEAST_EDGES triangles or more; `grid` receives that of the
+ * vertices that have corners, if it may. Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ *
+ *   tail    NULL: nothing has been noted */
+nmtan_status nt_edge_tail_matters(const nt_welded_mesh *mesh, const nt_edge_tail *tail, nt_grid *grid, bool *matters,
+	bool *limit);
+
+/* Whether the order of the last run certainly does not matter, or is beyond a limit; for at most NT_EDGE_FEW triangles
+ * that are not halves of quads, and no more rows than corners may be. `grid` receives that of the vertices that have
+ * corners. */
+bool nt_few_edges_are_sorted(const nt_welded_mesh *mesh, nt_grid *grid, bool *limit);
 
 #endif

@@ -1,14 +1,28 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The output of a split, between the caller's arrays and those of the splitter, which knows plain meshes and rows of
- * tangents that are tightly packed.
+ * From the tangents of corners to those of vertices, in the arrays of the caller.
  */
-#ifndef NT_API_SPLIT_H
-#define NT_API_SPLIT_H
+#ifndef NT_API_INSIDE_H
+#define NT_API_INSIDE_H
 
 #include <stdbool.h>
 #include "base/scratch.h"
 #include "nmtan.h"
+#include "tangent/solve.h"
+#include "topology/split.h"
+
+/* ---- from a method's result: vertices.c ---- */
+
+/* From a method's result, which may be sparse: checks or repairs it, and splits. Returns what
+ * nmtan_vertex_tangents() does. */
+nmtan_status nt_repair_and_split(const nt_solve *solve, nmtan_counts *counts, nt_splitter *splitter);
+
+/* ---- the output of a split: split.c ---- */
+
+/*
+ * Between the caller's arrays and those of the splitter, which knows plain meshes and rows of
+ * tangents that are tightly packed.
+ */
 
 /* Rows of tangents. */
 enum { NT_TANGENT_BYTES = 4 * sizeof(float) };
